@@ -1,0 +1,11 @@
+# Libraries of the rooms below ros.
+find_package(Eigen3 REQUIRED NO_MODULE)
+find_package(assimp REQUIRED)
+find_package(PCL REQUIRED COMPONENTS common io features search surface)
+find_package(yaml-cpp REQUIRED)
+find_package(fmt REQUIRED)
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(ODE REQUIRED IMPORTED_TARGET ode)
+pkg_check_modules(URDFDOM REQUIRED IMPORTED_TARGET urdfdom urdfdom_headers)
+pkg_check_modules(CONSOLE_BRIDGE REQUIRED IMPORTED_TARGET console_bridge)
+pkg_check_modules(TINYXML2 REQUIRED IMPORTED_TARGET tinyxml2)

@@ -1,0 +1,26 @@
+# catkin: messages, services and what other packages see. Before any target, so that libraries land in the devel space.
+set(BLEM_SIM_CATKIN_COMPONENTS
+  diagnostic_msgs
+  diagnostic_updater
+  geometry_msgs
+  nav_msgs
+  roscpp
+  rosgraph_msgs
+  sensor_msgs
+  std_msgs
+  std_srvs
+  tf2_msgs
+  trajectory_msgs
+  visualization_msgs)
+find_package(catkin REQUIRED COMPONENTS message_generation ${BLEM_SIM_CATKIN_COMPONENTS})
+
+file(GLOB messages CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/msg ${PROJECT_SOURCE_DIR}/msg/*.msg)
+file(GLOB services CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/srv ${PROJECT_SOURCE_DIR}/srv/*.srv)
+add_message_files(FILES ${messages})
+add_service_files(FILES ${services})
+generate_messages(DEPENDENCIES geometry_msgs std_msgs)
+
+catkin_package(
+  INCLUDE_DIRS include
+  LIBRARIES blem_sim_geometry blem_sim_model blem_sim_contact blem_sim_dynamics blem_sim_sim
+  CATKIN_DEPENDS message_runtime ${BLEM_SIM_CATKIN_COMPONENTS})

@@ -1,0 +1,19 @@
+# One library per room; links, like includes, only downwards (test/structure/arrows_test.py).
+function(blem_sim_room room)
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${room}/*.cpp)
+  add_library(blem_sim_${room} ${sources})
+  target_include_directories(blem_sim_${room} PUBLIC ${PROJECT_SOURCE_DIR}/include PRIVATE ${PROJECT_SOURCE_DIR}/src/${room})
+  target_link_libraries(blem_sim_${room} PUBLIC ${ARGN})
+  set_target_properties(blem_sim_${room} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+endfunction()
+
+blem_sim_room(geometry Eigen3::Eigen)
+blem_sim_room(model blem_sim_geometry)
+target_include_directories(blem_sim_model SYSTEM PRIVATE ${PCL_INCLUDE_DIRS} ${ASSIMP_INCLUDE_DIRS})
+target_link_libraries(blem_sim_model PRIVATE PkgConfig::URDFDOM PkgConfig::CONSOLE_BRIDGE PkgConfig::TINYXML2 assimp fmt::fmt
+  ${PCL_COMMON_LIBRARIES} ${PCL_IO_LIBRARIES} ${PCL_FEATURES_LIBRARIES} ${PCL_SEARCH_LIBRARIES} ${PCL_SURFACE_LIBRARIES})
+blem_sim_room(contact blem_sim_geometry)
+blem_sim_room(dynamics blem_sim_contact blem_sim_model)
+target_link_libraries(blem_sim_dynamics PRIVATE PkgConfig::ODE)
+blem_sim_room(sim blem_sim_dynamics)
+target_link_libraries(blem_sim_sim PUBLIC yaml-cpp fmt::fmt)

@@ -1,0 +1,30 @@
+# The ros room: its library, the node, what is installed, the rostests.
+blem_sim_room(ros blem_sim_sim)
+add_dependencies(blem_sim_ros ${PROJECT_NAME}_generate_messages_cpp)
+target_include_directories(blem_sim_ros SYSTEM PUBLIC ${CATKIN_DEVEL_PREFIX}/include ${catkin_INCLUDE_DIRS})
+target_link_libraries(blem_sim_ros PUBLIC ${catkin_LIBRARIES})
+
+add_executable(blem_sim_node ${PROJECT_SOURCE_DIR}/src/ros_node/blem_sim_node.cpp)
+target_include_directories(blem_sim_node PRIVATE ${PROJECT_SOURCE_DIR}/src/ros)
+target_link_libraries(blem_sim_node blem_sim_ros)
+
+catkin_install_python(PROGRAMS scripts/play_trajectory DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+install(TARGETS blem_sim_node RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+install(TARGETS blem_sim_geometry blem_sim_model blem_sim_contact blem_sim_dynamics blem_sim_sim blem_sim_ros
+  ARCHIVE DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
+  LIBRARY DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
+  RUNTIME DESTINATION ${CATKIN_GLOBAL_BIN_DESTINATION})
+install(DIRECTORY include/${PROJECT_NAME}/ DESTINATION ${CATKIN_PACKAGE_INCLUDE_DESTINATION})
+foreach(folder launch config rviz urdf meshes)
+  if(IS_DIRECTORY ${PROJECT_SOURCE_DIR}/${folder})
+    install(DIRECTORY ${folder} DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
+  endif()
+endforeach()
+
+if(CATKIN_ENABLE_TESTING)
+  find_package(rostest REQUIRED)
+  file(GLOB rostests CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/test/ros/*.test)
+  foreach(rostest ${rostests})
+    add_rostest(${rostest} DEPENDENCIES blem_sim_node)
+  endforeach()
+endif()

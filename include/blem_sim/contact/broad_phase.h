@@ -1,0 +1,44 @@
+#pragma once
+
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "blem_sim/contact/collider.h"
+
+namespace blem_sim {
+
+/** A pair of colliders that may be within rA + rB + margin of each other; a < b. */
+struct ColliderPair {
+  int a, b;
+  double margin;  ///< [m] how far beyond the layers the narrow phase shall look: a speculative contact's largest gap
+};
+
+/** Which colliders may touch at all. Static against static and two colliders of one body never do. */
+class CollisionFilter {
+ public:
+  /** Colliders of one model touch each other only if this is on (robots; default off). */
+  void setSelfCollision(int model, bool on);
+  /** Two bodies that never touch: neighbours at a joint, listed pairs. Order does not matter. */
+  void disableBodies(int body_a, int body_b);
+  bool allows(const Collider& a, const Collider& b) const;
+
+ private:
+  std::set<int> self_colliding_models_;
+  std::set<std::pair<int, int>> disabled_bodies_;
+};
+
+/** Motion of a collider over the coming step, for its margin. */
+struct ColliderMotion {
+  Pose X_WC;         ///< geometry frame in the world
+  double reach = 0;  ///< [m] bound on how far any of its points moves in the coming step
+};
+
+/**
+ * Pairs whose layers may come within reach, sorted by (a, b): sweep along the axis of largest spread over world boxes. A pair's margin is
+ * min(max_margin, max(base_margin, reach_a + reach_b)).
+ */
+std::vector<ColliderPair> broadPhase(const std::vector<Collider>& colliders, const std::vector<ColliderMotion>& motion,
+                                     const CollisionFilter& filter, double base_margin, double max_margin);
+
+}  // namespace blem_sim

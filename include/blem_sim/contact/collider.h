@@ -1,0 +1,65 @@
+// What can touch: boundary-layer expanded meshes [Hauser 2013, Eq. 1] placed on bodies.
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <string>
+
+#include "blem_sim/geometry/bvh.h"
+#include "blem_sim/geometry/mesh_topology.h"
+#include "blem_sim/geometry/triangle_mesh.h"
+
+namespace blem_sim {
+
+/** Surface of a body as contact response wants it. */
+struct SurfaceProperties {
+  double friction = 0.5;  ///< Coulomb coefficient
+  double restitution = 0;
+  double stiffness = std::numeric_limits<double>::infinity();  ///< [N/m] per contact; infinite = rigid
+  double damping = std::numeric_limits<double>::infinity();    ///< [N s/m] per contact
+};
+
+enum class FrictionRule { MIN, HARMONIC_MEAN, MEAN, PRODUCT };
+
+/** Surface of a pair: friction by the rule (harmonic mean: 2/(1/a+1/b)), the larger restitution, springs and dampers in series. */
+SurfaceProperties combineSurfaces(const SurfaceProperties& a, const SurfaceProperties& b, FrictionRule rule);
+
+/** Geometry that contact searches, shared by all its copies: a mesh with its topology and tree, or a half-space. Immutable. */
+class CollisionGeometry {
+ public:
+  explicit CollisionGeometry(std::shared_ptr<const TriangleMesh> mesh);
+  /** The solid half-space normal . x <= offset; normal is made unit. */
+  static std::shared_ptr<const CollisionGeometry> halfSpace(const Vector3& normal, double offset);
+
+  bool isHalfSpace() const { return mesh_ == nullptr; }
+  const TriangleMesh& mesh() const { return *mesh_; }
+  const MeshTopology& topology() const { return topology_; }
+  const Bvh& bvh() const { return bvh_; }
+  const Box& bounds() const { return bounds_; }  ///< [m], geometry frame; unbounded below for a half-space
+  const Vector3& planeNormal() const { return normal_; }
+  double planeOffset() const { return offset_; }
+
+ private:
+  CollisionGeometry() = default;
+  std::shared_ptr<const TriangleMesh> mesh_;
+  MeshTopology topology_;
+  Bvh bvh_;
+  Box bounds_;
+  Vector3 normal_ = Vector3::UnitZ();
+  double offset_ = 0;
+};
+
+/** A BLEM on a body. */
+struct Collider {
+  std::string name;              ///< "model::link", for messages and reports
+  int body = -1;                 ///< dynamics' body; -1 = part of the static world
+  int model = -1;                ///< robot, object or environment it belongs to; contact budgets and self-collision go by it
+  int link = -1;                 ///< link of its robot, else -1
+  Pose X_BC = Pose::Identity();  ///< geometry frame in the body's frame (in the world's if static)
+  std::shared_ptr<const CollisionGeometry> geometry;
+  double radius = 0;  ///< [m] r, boundary width
+  SurfaceProperties surface;
+  bool enabled = true;  ///< false: an unloaded slot, never collides
+};
+
+}  // namespace blem_sim

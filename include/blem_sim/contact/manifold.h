@@ -1,0 +1,37 @@
+// The contacts of one pair of colliders.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "blem_sim/geometry/types.h"
+
+namespace blem_sim {
+
+/** One contact of a pair (A, B); NaN until filled. */
+struct Contact {
+  /** [m] world; middle of the overlap of the two layers, (xA + xB)/2 + n (rB - rA)/2 [Hauser 2013, 3.2]. */
+  Vector3 point = Vector3::Constant(std::numeric_limits<double>::quiet_NaN());
+  /** Unit, world, from B towards A: (xA - xB)/|xA - xB|. A push along it separates A from B. */
+  Vector3 normal_BA = Vector3::Constant(std::numeric_limits<double>::quiet_NaN());
+  /** [m] rA + rB - |xA - xB|; negative = a gap: a speculative contact, which exists before touch. */
+  double depth = std::numeric_limits<double>::quiet_NaN();
+  /** Feature of A and feature of B that made it; the same from step to step while both stay the closest. */
+  std::uint64_t id = 0;
+  /** The bare meshes cross here: direction and depth are the fallback's, not to be trusted. */
+  bool pierced = false;
+};
+
+/** All contacts of one pair of colliders; a < b. */
+struct ContactManifold {
+  int a = -1, b = -1;    ///< indices of the colliders
+  double layer = 0;      ///< [m] rA + rB
+  bool pierced = false;  ///< the bare meshes cross somewhere
+  std::vector<Contact> contacts;
+
+  /** Depth [m] of the deepest contact, -infinity if there is none. */
+  double maxDepth() const;
+};
+
+}  // namespace blem_sim

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <vector>
+
+#include "blem_sim/contact/broad_phase.h"
+#include "blem_sim/contact/collider.h"
+#include "blem_sim/contact/manifold.h"
+
+namespace blem_sim {
+
+/**
+ * All contacts of one pair: every pair of simplices (vertex-face, edge-edge, vertex-edge, vertex-vertex, each asked once by its one owner)
+ * whose closest points lie inside both and are within rA + rB + margin [Hauser 2013, Eq. 6 and Fig. 5]. Flat features own nothing,
+ * coincident contacts are merged. Complete: the smallest distance among them is the distance of the meshes. Independent of the order of
+ * triangles and of their winding; sorted by id.
+ * @param out overwritten; contacts in the world frame
+ */
+void narrowPhase(const Collider& a, const Pose& X_WA, const Collider& b, const Pose& X_WB, double margin, ContactManifold* out);
+
+}  // namespace blem_sim

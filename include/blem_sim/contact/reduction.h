@@ -1,0 +1,54 @@
+// At most k contacts per robot and per object, wrench kept.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "blem_sim/contact/manifold.h"
+
+namespace blem_sim {
+
+/** Reduces `contacts` to at most k >= 1, in place. Deterministic. Never invents a deeper contact than the deepest given. */
+using ReduceFunction = void (*)(std::vector<Contact>& contacts, int k);
+
+/** One way to reduce contacts; a new one is one function and one row in the table. */
+struct Reduction {
+  const char* name;  ///< as in the parameter contact.reduction
+  const char* what;  ///< one line for the manual
+  ReduceFunction reduce;
+};
+
+/** hull | hierarchical | kmeans | none. */
+const std::vector<Reduction>& reductionTable();
+
+/** @return nullptr if there is no such name */
+const Reduction* findReduction(const std::string& name);
+
+/** Hull: within equal normals the corners of the convex hull (lossless, [Hauser 2013, 5]), points deeper than the hull's own interpolation
+ * kept; beyond k the extremes that span the wrench cone best are kept. */
+void reduceHull(std::vector<Contact>& contacts, int k);
+/** Average-linkage clusters of (x, n, p), then their means [Hauser 2013, 3.4]. O(N^2 log N); above 300 contacts k-means, as the paper does.
+ */
+void reduceHierarchical(std::vector<Contact>& contacts, int k);
+/** Lloyd's k-means on (x, n, p), k iterations, farthest-point start (no random number). */
+void reduceKmeans(std::vector<Contact>& contacts, int k);
+/** All contacts. */
+void reduceNone(std::vector<Contact>& contacts, int k);
+
+/** Contacts a model may have. */
+struct ContactBudget {
+  int max_contacts = 20;  ///< k of this model; a static environment has none of its own: INT_MAX
+};
+
+/**
+ * Reduces every manifold so that the contacts of each model sum to at most its k: each manifold is reduced by `method` first with the
+ * smaller k of its two models; where a model still has too many, its manifolds share k in proportion to what they have, each at
+ * least one (3 if it has them, and k allows). Pierced contacts are kept out of the choice while others exist.
+ * @param model_a, model_b models of the two colliders of each manifold, indices into budgets
+ * @return how many contacts were left out
+ */
+int reduceManifolds(std::vector<ContactManifold>& manifolds, const std::vector<int>& model_a, const std::vector<int>& model_b,
+                    const std::vector<ContactBudget>& budgets, const Reduction& method);
+
+}  // namespace blem_sim

@@ -1,0 +1,153 @@
+// Bodies, joints and one step of time: the ODE world behind plain data.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "blem_sim/geometry/triangle_mesh.h"
+#include "blem_sim/geometry/types.h"
+
+namespace blem_sim {
+
+constexpr int WORLD_BODY = -1;  ///< the static world where a body is asked for
+
+/** A rigid body. Its frame B is wherever its maker put it (a link's frame, a mesh's frame); the centre of mass may be elsewhere. */
+struct BodySpec {
+  std::string name;         ///< "model::link"
+  MassProperties inertial;  ///< mass > 0, com and inertia in B's axes, inertia about the com
+  Pose X_WB = Pose::Identity();
+};
+
+enum class JointKind { FIXED, REVOLUTE, PRISMATIC };
+
+/** A joint between two bodies, or a body and the world. Position 0 is where the child's frame C coincides with the joint frame J. */
+struct JointSpec {
+  std::string name;  ///< "model::joint"
+  JointKind kind = JointKind::REVOLUTE;
+  int parent = WORLD_BODY;
+  int child = 0;
+  Pose X_PJ = Pose::Identity();                             ///< joint frame in the parent body's frame (or the world)
+  Vector3 axis = Vector3::UnitZ();                          ///< unit, in J; child's motion relative to the parent is along/about +axis
+  double lower = -std::numeric_limits<double>::infinity();  ///< [rad or m]
+  double upper = std::numeric_limits<double>::infinity();
+  /** q = multiplier * q[mimic_joint] + offset, if mimic_joint >= 0. */
+  int mimic_joint = -1;
+  double mimic_multiplier = 1, mimic_offset = 0;
+};
+
+struct BodyState {
+  Pose X_WB = Pose::Identity();
+  Vector3 v_WCom = Vector3::Zero();  ///< [m/s] of the centre of mass, world axes
+  Vector3 w_WB = Vector3::Zero();    ///< [rad/s] world axes
+};
+
+struct JointState {
+  double position = 0;  ///< [rad or m], counts full turns
+  double velocity = 0;
+  double effort = 0;  ///< [N m or N] what motor and joint friction exerted along the axis in the last step
+};
+
+/** What drives one joint during one step. Every term acts together. */
+struct JointDrive {
+  double effort = 0;  ///< [N m or N] given in advance: explicit PID, already capped, or an outside effort
+  /** Implicit PD: stiffness (target_position - q) + damping (target_velocity - qdot), both taken at the end of the step, bounded by
+   *  max_effort. Stable for any gain. Off while both gains are 0. */
+  double stiffness = 0, damping = 0, target_position = 0, target_velocity = 0;
+  double max_effort = std::numeric_limits<double>::infinity();
+  double dry_friction = 0;      ///< [N m or N] mu_D: sticks up to it, slips against it [Hauser 2013, 4.1]
+  double viscous_friction = 0;  ///< mu_V
+};
+
+/** One contact as the solver takes it. */
+struct ContactConstraint {
+  int body_a = WORLD_BODY, body_b = WORLD_BODY;
+  Vector3 point, normal_BA;  ///< world
+  double depth = 0;          ///< [m], negative = gap
+  double friction = 0, restitution = 0;
+  double stiffness = std::numeric_limits<double>::infinity(), damping = std::numeric_limits<double>::infinity();
+  std::uint64_t id = 0;  ///< identity across steps, unique within one step (colliders and features)
+};
+
+struct SolverSettings {
+  std::string stepper = "world_step";  ///< a name in stepperTable()
+  int quick_step_iterations = 50;
+  double cfm = 1e-6;                  ///< constraint force mixing of contacts
+  double correction_fraction = 0.2;   ///< of a contact's depth removed per step, at most at max_correction_speed
+  double max_correction_speed = 0.1;  ///< [m/s]
+  double joint_erp = 0.2;
+  double joint_cfm = 1e-10;
+};
+
+/** What one solve did; lives until the next one. Indices go with the constraints, joints, bodies given. */
+struct SolveResult {
+  std::vector<Vector3> contact_forces;  ///< [N] on body A, world axes, mean over the step
+  std::vector<Wrench> joint_wrenches;   ///< what the child feels from the parent, world axes, about the joint frame's origin at the
+                                        ///< start of the step; from motion (Newton-Euler over the step), not from a residual
+  std::vector<double> joint_efforts;    ///< [N m or N] motor and friction along the axis
+  int lcp_errors = 0;                   ///< the complementarity solver complained; the step was redone with more CFM
+  bool finite = true;                   ///< step gave a finite state; if not, bodies stay as before it and nothing else here means anything
+};
+
+/** Everything a world needs to replay bit for bit. */
+struct WorldState {
+  std::vector<double> numbers;
+  std::vector<std::uint64_t> words;
+  bool operator==(const WorldState& o) const { return numbers == o.numbers && words == o.words; }
+};
+
+/**
+ * Bodies and joints in an ODE world. Deterministic: same calls, same bits. Not thread safe.
+ * Indices returned by add functions stay valid until the thing is removed; a removed index is not given out again.
+ */
+class World {
+ public:
+  World(const Vector3& gravity, const SolverSettings& settings);
+  ~World();
+  World(const World&) = delete;
+  World& operator=(const World&) = delete;
+
+  int addBody(const BodySpec& spec);
+  /** Precondition: parents' poses are consistent with X_PJ at the position given. @param position present q [rad or m] */
+  int addJoint(const JointSpec& spec, double position = 0);
+  /** Takes a body and its joints out of the world. */
+  void removeBody(int body);
+
+  int bodyCount() const;  ///< slots, removed ones included
+  int jointCount() const;
+  const BodySpec& bodySpec(int body) const;
+  const JointSpec& jointSpec(int joint) const;
+
+  BodyState bodyState(int body) const;
+  void setBodyState(int body, const BodyState& state);
+  JointState jointState(int joint) const;
+  /** Tells the joint which position its bodies' poses stand for, after setBodyState; keeps count of full turns. */
+  void resetJointPosition(int joint, double position);
+
+  const Vector3& gravity() const;
+  void setGravity(const Vector3& gravity);
+
+  /** Adds an outside wrench for the next step only: force [N] and torque [N m] in world axes, at a point of the world. */
+  void applyWrench(int body, const Wrench& wrench, const Vector3& point);
+
+  /** Advances by dt [s] > 0. @param drives one per joint slot. */
+  const SolveResult& step(double dt, const std::vector<ContactConstraint>& contacts, const std::vector<JointDrive>& drives);
+
+  double kineticEnergy() const;    ///< [J]
+  double potentialEnergy() const;  ///< [J] against gravity, zero at the origin
+
+  WorldState save() const;
+  /** Precondition: state was saved from a world with the same bodies and joints. */
+  void restore(const WorldState& state);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/** Names of the steppers: world_step, quick_step, articulated. */
+std::vector<std::string> stepperNames();
+
+}  // namespace blem_sim

@@ -1,0 +1,61 @@
+// The doors of the model room: URIs, meshes, clouds, URDF. Each throws InputError with one line: file, field, cure.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "blem_sim/geometry/input_error.h"
+#include "blem_sim/model/robot_model.h"
+
+namespace blem_sim {
+
+/** Resolves package://NAME/path, file://path, absolute and relative paths to a file that exists. */
+class UriResolver {
+ public:
+  /** @param packages NAME -> directory, asked first; then ROS_PACKAGE_PATH (each entry is a package, or holds them at any depth),
+   *                  then share/NAME below CMAKE_PREFIX_PATH and /usr. */
+  explicit UriResolver(std::map<std::string, std::string> packages = {});
+
+  /** @param base directory against which a relative path is meant; empty: the working directory. @throws InputError naming every
+   *  place that was tried. */
+  std::string resolve(const std::string& uri, const std::string& base = "") const;
+
+ private:
+  std::map<std::string, std::string> packages_;
+};
+
+/** How a file of points is to be simulated. */
+struct CloudOptions {
+  enum class As { AUTO, POINTS, MESH };
+  As as = As::AUTO;             ///< AUTO: points for a file without faces, triangles otherwise
+  double point_radius = 0.004;  ///< [m] boundary of each point
+  double max_edge = 0.05;       ///< [m] as: mesh; longest edge that joins neighbours of an organized cloud or of the projection mesher
+};
+
+/** A mesh or a cloud as contact wants it. */
+struct LoadedSurface {
+  std::shared_ptr<const TriangleMesh> mesh;  ///< cleaned, scaled, mesh frame
+  double radius = 0;                         ///< [m] > 0 for clouds as points: their boundary
+  MeshReport report;
+};
+
+/**
+ * Loads triangles (STL, PLY, OBJ, OFF, DAE by assimp: node transforms, DAE units and up-axis, polygons split) or points (PCD, PLY
+ * without faces), scales and cleans them. A mirroring scale or node keeps the outside outside.
+ * COLLADA as in rviz and MoveIt: <unit meter> is applied, <up_axis> is not, so that x, y, z of the file stay x, y, z of the link.
+ * A PCD's VIEWPOINT is not applied either; the report says so.
+ * @param file resolved path @param scale factors per axis, none zero @param cloud for files of points, or a mesh's vertices as points
+ * @throws InputError: missing, unreadable, truncated, damaged, empty after cleaning, unknown extension.
+ */
+LoadedSurface loadSurface(const std::string& file, const Vector3& scale = Vector3::Ones(), const CloudOptions& cloud = {});
+
+/**
+ * Parses URDF text. Limits of 1e6 and more mean none. What is not simulated (safety_controller, gazebo, transmission ...) is noted.
+ * @param source for messages; @param base directory for relative mesh paths. @throws InputError
+ */
+RobotModel loadUrdf(const std::string& xml, const std::string& source, const UriResolver& resolver, const std::string& base = "");
+
+/** Reads the file and parses it. */
+RobotModel loadUrdfFile(const std::string& file, const UriResolver& resolver);
+
+}  // namespace blem_sim

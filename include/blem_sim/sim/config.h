@@ -1,0 +1,144 @@
+// The YAML of interface: what a simulation is made of. Filled by config_parser, or by hand in tests.
+#pragma once
+
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "blem_sim/contact/collider.h"
+#include "blem_sim/dynamics/world.h"
+#include "blem_sim/model/loaders.h"
+
+namespace YAML {
+class Node;
+}
+
+namespace blem_sim {
+
+/** Contact settings that may be set again per environment, robot, object or link; unset ones inherit. */
+struct ContactOverrides {
+  std::optional<double> boundary_width, friction, restitution, stiffness, damping;
+};
+
+struct ContactConfig {
+  double boundary_width = 0.0025;  ///< [m] robots and objects; environments default to 0
+  SurfaceProperties surface;
+  FrictionRule friction_rule = FrictionRule::MIN;
+  int max_contacts_per_robot = 50;
+  int max_contacts_per_object = 20;
+  std::string reduction = "hull";
+};
+
+struct EnvironmentConfig {
+  std::string name;
+  std::string uri;                       ///< file, or
+  std::optional<Eigen::Vector4d> plane;  ///< a x + b y + c z = d, solid below, or
+  std::string topic, frame;              ///< a live cloud (node only)
+  Pose X_WE = Pose::Identity();
+  Vector3 scale = Vector3::Ones();
+  CloudOptions cloud;
+  ContactOverrides contact;
+};
+
+/** Eq. 7's gains. */
+struct JointGains {
+  double p = 0, i = 0, d = 0;
+  double i_clamp = std::numeric_limits<double>::infinity();  ///< [N m or N] bound on the integral term
+};
+
+enum class MotorLaw { PID, IMPLICIT_PD };
+
+struct JointFriction {
+  double dry = 0, viscous = 0;
+};
+
+enum class SensorType { FORCE_TORQUE, IMU, CONTACT, TILT, MOTOR_CURRENT };
+
+struct SensorConfig {
+  std::string name;
+  SensorType type = SensorType::IMU;
+  std::string joint;                        ///< force_torque
+  std::string frame = "child";              ///< force_torque: child | parent | sensor (axes of the joint frame)
+  std::string measure = "parent_to_child";  ///< force_torque: parent_to_child (what the child feels) | child_to_parent
+  std::string link;                         ///< imu, contact, tilt
+  std::string topic;                        ///< empty: the sensor's name
+  Pose X_LS = Pose::Identity();             ///< imu, tilt: sensor in the link
+  double rate = 0;                          ///< [Hz], 0 = every step
+  double noise_stddev = 0;                  ///< force_torque [N, N m]
+  double accel_stddev = 0, gyro_stddev = 0, accel_bias_stddev = 0, gyro_bias_stddev = 0;
+  std::map<std::string, double> torque_constant;  ///< motor_current, by joint, "default"
+};
+
+struct RobotConfig {
+  std::string name;
+  std::string urdf;               ///< file or URI, or
+  std::string description_param;  ///< ROS parameter that holds the text (node), or
+  std::string urdf_xml;           ///< the text itself (what the node puts here; spawned robots)
+  std::string name_space;
+  bool fixed_base = false;
+  Pose X_WR = Pose::Identity();  ///< root link in the world
+  std::map<std::string, double> initial_positions;
+  bool self_collision = false;
+  std::vector<std::pair<std::string, std::string>> disable_collisions;
+  ContactOverrides contact;
+  std::map<std::string, ContactOverrides> links;
+  std::map<std::string, JointGains> gains;              ///< by joint, "default"
+  std::map<std::string, MotorLaw> motor;                ///< by joint, "default"
+  std::map<std::string, JointFriction> joint_friction;  ///< by joint, "default"; beats the URDF's
+  std::map<std::string, double> effort_limits;          ///< beats the URDF's
+  std::vector<SensorConfig> sensors;
+  std::optional<int> max_contacts;  ///< k of this robot
+};
+
+struct ObjectConfig {
+  std::string name;
+  std::string uri;   ///< mesh or cloud, or
+  std::string urdf;  ///< a one-body URDF
+  Vector3 scale = Vector3::Ones();
+  Pose X_OM = Pose::Identity();  ///< mesh in the object's frame
+  Pose X_WO = Pose::Identity();
+  std::optional<double> mass;
+  std::optional<Vector3> com;                                                     ///< in the object's frame
+  std::optional<Matrix3> inertia;                                                 ///< about com, object's axes
+  Vector3 linear_velocity = Vector3::Zero(), angular_velocity = Vector3::Zero();  ///< [m/s, rad/s] at the start, world axes
+  CloudOptions cloud;
+  ContactOverrides contact;
+  std::optional<int> max_contacts;
+};
+
+/** Rates of the node [Hz]; 0 = every step. */
+struct PublishRates {
+  double clock = 0, joint_state = 100, tf = 50, odom = 50, contact = 30, markers = 15, link_states = 50, step_report = 10;
+};
+
+struct SimulationConfig {
+  double time_step = 0.001;
+  double real_time_factor = 1.0;
+  bool paused = false;
+  Vector3 gravity = Vector3(0, 0, -9.81);
+  std::uint64_t random_seed = 1;
+  SolverSettings solver;
+  ContactConfig contact;
+  std::vector<EnvironmentConfig> environments;
+  std::vector<RobotConfig> robots;
+  std::vector<ObjectConfig> objects;
+  PublishRates rates;
+  std::string base_directory;  ///< relative files are meant against it
+};
+
+/**
+ * Reads a configuration. @param source names the file or the node in messages. @param base_directory for relative files.
+ * @throws InputError for an unknown key (names the nearest known one), a wrong type or range, a missing field.
+ */
+SimulationConfig parseConfig(const YAML::Node& root, const std::string& source, const std::string& base_directory);
+SimulationConfig loadConfigFile(const std::string& file);
+/** The document in a file, unread. @throws InputError if it cannot be read or is not YAML */
+YAML::Node loadYamlFile(const std::string& file);
+
+/** One environment entry, as the load_environment service takes it. */
+EnvironmentConfig parseEnvironment(const YAML::Node& node, const std::string& source);
+
+}  // namespace blem_sim

@@ -1,0 +1,125 @@
+// The simulation: models from a configuration, one step, commands between steps.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "blem_sim/contact/collider.h"
+#include "blem_sim/model/robot_model.h"
+#include "blem_sim/sim/config.h"
+#include "blem_sim/sim/step_report.h"
+#include "blem_sim/sim/trajectory.h"
+
+namespace blem_sim {
+
+enum class ModelKind { ENVIRONMENT, ROBOT, OBJECT };
+
+/** A robot, object or environment in the simulation. */
+struct ModelInfo {
+  std::string name;
+  ModelKind kind = ModelKind::OBJECT;
+  std::vector<int> bodies;  ///< world bodies; [0] holds the root link
+  std::vector<int> joints;  ///< world joints, movable ones, in the robot's order
+  bool alive = true;        ///< false once unloaded
+};
+
+/** A robot as publishers and commands see it. */
+struct RobotInfo {
+  int model = 0;
+  std::string name, name_space;
+  bool fixed_base = false;
+  std::shared_ptr<const RobotModel> description;
+  std::shared_ptr<const LumpedRobot> lumped;
+  std::string root_link;
+  Pose X_WR = Pose::Identity();          ///< root link at the start; a fixed base's for good
+  std::vector<int> bodies;               ///< world body of lumped body i; WORLD_BODY for a fixed base
+  std::vector<int> world_joints;         ///< world joint of lumped joint i, fixed ones kept for a sensor too; -1 for a floating one
+  std::vector<std::string> joint_names;  ///< movable joints
+  std::vector<int> joints;               ///< their world joints
+  std::vector<JointLimits> limits;
+};
+
+struct SensorInfo {
+  int robot = 0;
+  SensorConfig config;
+  std::string frame_id;  ///< link the reading is expressed in
+};
+
+/** Targets for joints by name; empty vectors = not commanded. Position and velocity go to the motor, effort adds to it. */
+struct JointCommandMessage {
+  std::vector<std::string> joints;
+  std::vector<double> positions, velocities, efforts;
+};
+
+/** Everything a simulation needs to replay bit for bit: world, motors, trajectories, sensors, random generators, contact memory. */
+struct SimulationState {
+  std::uint64_t step = 0;
+  WorldState world;
+  std::vector<double> numbers;
+  std::vector<std::uint64_t> words;
+  std::string layout;  ///< which models and joints it belongs to
+};
+
+/**
+ * Owns the world and steps it. Single-threaded: call everything from one thread, between steps. The constructor and the load functions
+ * throw InputError for bad input and leave the simulation as it was; step() never throws on physics trouble.
+ */
+class Simulator {
+ public:
+  Simulator(const SimulationConfig& config, const UriResolver& resolver);
+  ~Simulator();
+  Simulator(const Simulator&) = delete;
+  Simulator& operator=(const Simulator&) = delete;
+
+  /** One time step, as in the table of docs/architecture.md. The report lives until the next step. */
+  const StepReport& step();
+  /** The state at hand without stepping: bodies and joints now, contacts of the last step. */
+  const StepReport& report() const;
+
+  double time() const;  ///< [s] simulated, steps * time_step: never goes back except by reset_simulation
+  std::uint64_t steps() const;
+  const SimulationConfig& config() const;
+  const Vector3& gravity() const;
+
+  const std::vector<ModelInfo>& models() const;
+  const std::vector<RobotInfo>& robots() const;
+  const std::vector<SensorInfo>& sensors() const;
+  const std::vector<Collider>& colliders() const;  ///< with pose on the body, geometry, width: what markers draw
+  const std::vector<MeshReport>& loadReport() const;
+  const std::vector<std::string>& notes() const;  ///< what was repaired or assumed while loading, in words
+  std::string bodyName(int body) const;           ///< "model::link", "world" for WORLD_BODY
+  const World& world() const;
+
+  int robotIndex(const std::string& name) const;  ///< -1 if there is none
+  int modelIndex(const std::string& name) const;
+  Pose linkPose(int robot, int link) const;  ///< X_WL now
+
+  /** @throws InputError: unknown joint, NaN, wrong sizes; nothing is changed then */
+  void commandTrajectory(int robot, const JointTrajectory& trajectory);
+  void commandJoints(int robot, const JointCommandMessage& command);
+  JointSample desiredState(int robot, int joint) const;  ///< what the motor is told now; joint = index into joint_names
+
+  /** Adds static geometry between steps. @throws InputError if it cannot be loaded or the name is taken */
+  void loadEnvironment(const EnvironmentConfig& environment);
+  /** @throws InputError if there is no such environment */
+  void unloadEnvironment(const std::string& name);
+
+  /** Models back to where they started, at rest (objects at their configured velocity), commands and sensors cleared; time goes on. */
+  void resetWorld();
+  /** The same, and time and random generators start again. */
+  void resetSimulation();
+
+  SimulationState save() const;
+  /** @throws InputError if the state belongs to other models */
+  void restore(const SimulationState& state);
+  /** 64-bit hash of all state that steps depend on. */
+  std::uint64_t stateHash() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace blem_sim

@@ -1,0 +1,98 @@
+// What one step did, as immutable plain data: sensors, statistics and publishers read this and nothing else.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "blem_sim/contact/manifold.h"
+#include "blem_sim/dynamics/world.h"
+
+namespace blem_sim {
+
+/** Bits of StepReport::status. Each says what to change. */
+enum StepStatus : std::uint32_t {
+  STEP_OK = 0,
+  STEP_SHORTENED = 1u << 0,  ///< a boundary layer was about to be used up; the step was halved. Thicker boundary_width or smaller time_step
+  CONTACT_UNRELIABLE =
+      1u << 1,  ///< bare meshes cross: normals there are a guess. Thicker boundary_width, smaller time_step, or a better start pose
+  CONTACTS_REDUCED = 1u << 2,  ///< contacts were left out by max_contacts_per_robot/object. Raise them if forces look wrong
+  SOLVER_TROUBLE = 1u << 3,  ///< the complementarity solver complained and the step was redone softer. Raise solver.cfm, or fewer contacts
+  STATE_NOT_FINITE = 1u << 4,  ///< a body's state is NaN or infinite; the last finite state was restored and the simulation is stopped
+  EFFORT_SATURATED = 1u << 5,  ///< a motor ran into its effort limit. Raise effort_limits, or a slower motion
+  JOINT_LIMIT_HIT = 1u << 6,   ///< a joint is at its limit
+};
+/** Names in the report and in messages, in bit order. */
+extern const std::vector<std::string> STEP_STATUS_NAMES;
+
+enum class Stage { SAMPLE_COMMANDS, MOTOR_TORQUE, BROAD_PHASE, NARROW_PHASE, REDUCTION, STEP_GUARD, SOLVE, SENSORS, REPORT, COUNT };
+extern const std::array<const char*, static_cast<int>(Stage::COUNT)> STAGE_NAMES;  ///< "sample_commands", ...
+
+/** Wall time [s] per stage of one step. */
+struct StepProfile {
+  std::array<double, static_cast<int>(Stage::COUNT)> seconds{};
+};
+
+/** A contact that acted, for publishing. */
+struct ContactReport {
+  int collider_a, collider_b;
+  int body_a, body_b;
+  Vector3 point, normal_BA;         ///< world
+  double depth = 0;                 ///< [m]
+  double of_layer = 0;              ///< depth / (rA + rB); above 1 a bare mesh is pierced; 0 without a layer
+  Vector3 force = Vector3::Zero();  ///< [N] on A, world
+  bool pierced = false;
+};
+
+struct ForceTorqueReading {
+  Vector3 force, torque;  ///< in the frame and of the sign the sensor's configuration asks for
+  std::string frame_id;   ///< link whose axes (and, for the torque, whose joint frame origin) they are in
+};
+struct ImuReading {
+  Quaternion orientation;       ///< sensor in the world
+  Vector3 angular_velocity;     ///< [rad/s] sensor axes
+  Vector3 linear_acceleration;  ///< [m/s^2] specific force, sensor axes: +9.81 up at rest
+  double accel_stddev, gyro_stddev;
+};
+struct ContactReading {
+  std::vector<int> contacts;  ///< indices into StepReport::contacts
+  int link_body = -1;
+  Wrench total;  ///< on the link, world axes, about the link's origin
+};
+struct TiltReading {
+  Quaternion orientation;
+  Vector3 angular_velocity;
+  double roll = 0, pitch = 0;  ///< [rad]
+};
+struct MotorCurrentReading {
+  std::vector<std::string> joints;
+  std::vector<double> efforts, currents;  ///< [N m or N], [A]
+};
+/** A new sensor is one alternative; the visits in blem_sim_run and in ros do not compile until they know it. */
+using SensorReading = std::variant<ForceTorqueReading, ImuReading, ContactReading, TiltReading, MotorCurrentReading>;
+
+struct SensorSample {
+  int sensor = 0;  ///< index into Simulator::sensors()
+  SensorReading reading;
+};
+
+struct StepReport {
+  std::uint64_t step = 0;
+  double time = 0;  ///< [s] simulated, after the step
+  double dt = 0;
+  std::uint32_t status = STEP_OK;
+  int substeps = 1;
+  int raw_contacts = 0, reduced_contacts = 0;
+  double max_depth = 0, max_of_layer = 0;  ///< over this step's contacts
+  int deepest_a = -1, deepest_b = -1;      ///< colliders
+  double energy = 0;                       ///< [J] kinetic + potential
+  StepProfile profile;
+  std::vector<ContactReport> contacts;  ///< of the last solve of the step
+  std::vector<BodyState> bodies;        ///< one per body slot
+  std::vector<JointState> joints;       ///< one per joint slot
+  std::vector<SensorSample> samples;    ///< those whose time has come
+};
+
+}  // namespace blem_sim

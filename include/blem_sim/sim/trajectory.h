@@ -1,0 +1,67 @@
+// Joint trajectories with joint_trajectory_controller's semantics, without ROS.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "blem_sim/geometry/input_error.h"
+
+namespace blem_sim {
+
+struct TrajectoryPoint {
+  double time_from_start = 0;         ///< [s], strictly increasing
+  std::vector<double> positions;      ///< one per joint
+  std::vector<double> velocities;     ///< empty, or one per joint: cubic
+  std::vector<double> accelerations;  ///< empty, or one per joint: quintic (needs velocities)
+  std::vector<double> effort;         ///< empty, or one per joint: feed-forward
+};
+
+/** A command for some or all joints of a robot; no points = hold where it is now. */
+struct JointTrajectory {
+  std::vector<std::string> joints;
+  double start_time = 0;  ///< [s] simulated; <= 0: now
+  std::vector<TrajectoryPoint> points;
+};
+
+/** Desired state of one joint at one time. */
+struct JointSample {
+  double position = 0, velocity = 0, acceleration = 0, effort = 0;
+};
+
+/** One joint's piecewise polynomial: what of a trajectory is in force for it. */
+class JointSpline {
+ public:
+  struct Knot {
+    double time;  ///< [s] simulated
+    double position, velocity, acceleration, effort;
+    int order;  ///< what this point is good for: 1 linear (positions only), 3 cubic (velocities), 5 quintic (accelerations)
+  };
+  JointSpline() = default;
+  /** Hold. */
+  explicit JointSpline(double position);
+  /**
+   * From `now` on: follows the present spline until the new trajectory's start, then the new knots (times absolute, strictly
+   * increasing). As joint_trajectory_controller has it: knots at or before `now` are dropped; the first one left is reached by a bridge
+   * from the present spline, of that knot's own order; between two knots the lower of their orders counts. Nothing changes if all were
+   * in the past. No knots given: hold where the spline is now.
+   * @param continuous positions are taken to the turn nearest to the present one.
+   */
+  void splice(double now, double start, std::vector<Knot> knots, bool continuous);
+  JointSample sample(double time) const;
+  double endTime() const;
+  /** State as numbers, for save and restore. */
+  void append(std::vector<double>* numbers) const;
+  void read(const double** cursor);
+
+ private:
+  std::vector<Knot> knots_;
+};
+
+/** Checks a command against a robot's joints. @throws InputError: unknown or repeated joint, sizes, NaN, times not increasing */
+void checkTrajectory(const JointTrajectory& trajectory, const std::vector<std::string>& known_joints);
+
+/** Reads a CSV with a `time` column, NAME and NAME_vel columns; `#` starts a comment. Columns of no known joint are listed in
+ *  the output `ignored`. @throws InputError */
+JointTrajectory loadTrajectoryCsv(const std::string& file, const std::vector<std::string>& known_joints, std::vector<std::string>* ignored);
+
+}  // namespace blem_sim

@@ -1,0 +1,59 @@
+#include "blem_sim/contact/collider.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "blem_sim/geometry/input_error.h"
+
+namespace blem_sim {
+namespace {
+
+double combinedFriction(double a, double b, FrictionRule rule) {
+  switch (rule) {
+    case FrictionRule::MIN:
+      return std::min(a, b);
+    case FrictionRule::HARMONIC_MEAN:
+      return a > 0 && b > 0 ? 2 / (1 / a + 1 / b) : 0;
+    case FrictionRule::MEAN:
+      return 0.5 * (a + b);
+    case FrictionRule::PRODUCT:
+      return a * b;
+  }
+  return 0;
+}
+
+/** Springs (or dampers) in series; infinite = rigid. */
+double inSeries(double a, double b) { return a > 0 && b > 0 ? 1 / (1 / a + 1 / b) : 0; }
+
+}  // namespace
+
+SurfaceProperties combineSurfaces(const SurfaceProperties& a, const SurfaceProperties& b, FrictionRule rule) {
+  SurfaceProperties pair;
+  pair.friction = combinedFriction(a.friction, b.friction, rule);
+  pair.restitution = std::max(a.restitution, b.restitution);
+  pair.stiffness = inSeries(a.stiffness, b.stiffness);
+  pair.damping = inSeries(a.damping, b.damping);
+  return pair;
+}
+
+CollisionGeometry::CollisionGeometry(std::shared_ptr<const TriangleMesh> mesh) : mesh_(std::move(mesh)) {
+  if (!mesh_ || mesh_->elements.empty()) throw InputError("collision geometry: the mesh has no element; leave the collider out");
+  topology_ = MeshTopology(*mesh_);
+  bvh_ = Bvh(*mesh_);
+  bounds_ = mesh_->bounds();
+}
+
+std::shared_ptr<const CollisionGeometry> CollisionGeometry::halfSpace(const Vector3& normal, double offset) {
+  const double norm = normal.norm();
+  if (!(norm > 0) || !std::isfinite(norm) || !std::isfinite(offset)) {
+    throw InputError("half-space: normal and offset must be finite, the normal not zero");
+  }
+  const std::shared_ptr<CollisionGeometry> geometry(new CollisionGeometry);
+  geometry->normal_ = normal / norm;
+  geometry->offset_ = offset;
+  const Vector3 far = Vector3::Constant(std::numeric_limits<double>::infinity());
+  geometry->bounds_ = Box(-far, far);
+  return geometry;
+}
+
+}  // namespace blem_sim

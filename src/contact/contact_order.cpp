@@ -1,0 +1,44 @@
+#include "contact_order.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace blem_sim {
+
+namespace {
+
+constexpr double SHORTEST_NORMAL = 1e-9;  // below, a normal has no direction to trust
+
+// <0, 0, >0 as a is before, equal to, after b
+int compare(const Vector3& a, const Vector3& b) {
+  for (int i = 0; i < 3; ++i) {
+    if (a[i] != b[i]) return a[i] < b[i] ? -1 : 1;
+  }
+  return 0;
+}
+
+bool isUsable(const Contact& c) {
+  return c.point.allFinite() && c.normal_BA.allFinite() && std::isfinite(c.depth) && c.normal_BA.norm() > SHORTEST_NORMAL;
+}
+
+}  // namespace
+
+bool contactBefore(const Contact& a, const Contact& b) {
+  if (a.id != b.id) return a.id < b.id;
+  if (const int order = compare(a.point, b.point)) return order < 0;
+  if (const int order = compare(a.normal_BA, b.normal_BA)) return order < 0;
+  if (a.depth != b.depth) return a.depth < b.depth;
+  return a.pierced < b.pierced;
+}
+
+void makeCanonical(std::vector<Contact>& contacts) {
+  contacts.erase(std::remove_if(contacts.begin(), contacts.end(), [](const Contact& c) { return !isUsable(c); }), contacts.end());
+  for (Contact& contact : contacts) {
+    // A normal that is unit already keeps its bits: reducing twice changes nothing.
+    const double length = contact.normal_BA.norm();
+    if (std::abs(length - 1.0) > 1e-14) contact.normal_BA /= length;
+  }
+  if (!std::is_sorted(contacts.begin(), contacts.end(), contactBefore)) std::sort(contacts.begin(), contacts.end(), contactBefore);
+}
+
+}  // namespace blem_sim

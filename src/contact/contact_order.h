@@ -1,0 +1,16 @@
+// A total order of contacts, so that no result depends on the order they came in.
+#pragma once
+
+#include <vector>
+
+#include "blem_sim/contact/manifold.h"
+
+namespace blem_sim {
+
+/** Total order: by id, then point, normal, depth, trust. Precondition: finite. */
+bool contactBefore(const Contact& a, const Contact& b);
+
+/** Drops contacts with non-finite numbers or no direction, makes the normals unit length and sorts by contactBefore. */
+void makeCanonical(std::vector<Contact>& contacts);
+
+}  // namespace blem_sim

@@ -1,0 +1,26 @@
+// What the neighbourhood of a vertex or an edge says about directions.
+#pragma once
+
+#include "mesh_pair.h"
+
+namespace blem_sim {
+
+/** Does the surface at the vertex lead nowhere along `direction`? No edge there has a larger part of it than `slack` (sine).
+ *  @param direction unit, the mesh's frame, towards the other mesh */
+bool vertexConeAllows(const MeshSide& side, int vertex, const Vector3& direction, double slack);
+
+/** The same for the faces of an edge. */
+bool edgeConeAllows(const MeshSide& side, int edge, const Vector3& direction, double slack);
+
+/** Sum of the unit directions from the vertex into the surface (edges) / from the edge into its faces; mesh's frame. */
+Vector3 vertexLean(const MeshSide& side, int vertex);
+Vector3 edgeLean(const MeshSide& side, int edge);
+
+/**
+ * On which side of each other two bodies are, where their surfaces at a point do not tell: the smaller body's middle is on its own side.
+ * Frame F.
+ * @return not unit, from the fixed body's side to the moving one's; may be zero
+ */
+Vector3 bodySide(const MeshPair& pair, const Vector3& point);
+
+}  // namespace blem_sim

@@ -1,0 +1,60 @@
+// Two meshes in one frame, and contacts named by their features.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "blem_sim/contact/collider.h"
+
+namespace blem_sim {
+
+enum class FeatureKind : std::uint8_t { VERTEX = 0, EDGE = 1, FACE = 2, HALF_SPACE = 3 };
+
+/** A simplex of one mesh. A face is named by its planar patch, so that it keeps its name while a foot wanders over a plane's triangles. */
+struct Feature {
+  FeatureKind kind;
+  int index;
+};
+
+/** Bits 62-63 kind of a, 32-61 its index, 30-31 kind of b, 0-29 its index. */
+inline std::uint64_t contactId(const Feature& a, const Feature& b) {
+  constexpr std::uint64_t INDEX_MASK = (1u << 30) - 1;
+  const auto pack = [](const Feature& f) {
+    return static_cast<std::uint64_t>(f.kind) << 30 | (static_cast<std::uint64_t>(f.index) & INDEX_MASK);
+  };
+  return pack(a) << 32 | pack(b);
+}
+
+/** One mesh of a pair. */
+struct MeshSide {
+  explicit MeshSide(const CollisionGeometry& geometry)
+      : mesh(geometry.mesh()), topology(geometry.topology()), bvh(geometry.bvh()), bounds(geometry.bounds()) {}
+  const TriangleMesh& mesh;
+  const MeshTopology& topology;
+  const Bvh& bvh;
+  const Box& bounds;
+};
+
+/**
+ * The moving mesh M is seen from the frame F of the other, fixed one: near the geometry wherever the pair is in the world. M is the mesh
+ * with fewer elements, whose vertices are turned; F's are used as they lie in memory.
+ */
+struct MeshPair {
+  MeshSide moving, fixed;
+  Pose X_FM;
+  double range;  ///< [m] contacts within this distance of the bare meshes
+};
+
+/** A contact in frame F; its normal points from the fixed mesh to the moving one. */
+struct FeatureContact {
+  Feature moving, fixed;
+  Vector3 point_M, point_F;  ///< [m] witness points on the moving and on the fixed mesh
+  Vector3 normal;            ///< unit, fixed -> moving
+  double gap;                ///< [m] distance of the witness points; negative where pierced
+  bool pierced = false;
+};
+
+/** Bare meshes closer than this [m] touch: the direction between their points is rounding, and comes from their neighbourhoods instead. */
+constexpr double TOUCH = 1e-9;
+
+}  // namespace blem_sim

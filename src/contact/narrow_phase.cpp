@@ -1,0 +1,103 @@
+#include "blem_sim/contact/narrow_phase.h"
+
+#include "blem_sim/geometry/bvh_traversal.h"
+#include "merge_contacts.h"
+#include "retraction.h"
+#include "simplex_search.h"
+
+namespace blem_sim {
+namespace {
+
+/** Witness points to a contact: its place is the middle of the overlap of the layers [Hauser 2013, 3.2]. */
+Contact makeContact(const Vector3& point_A, const Vector3& point_B, const Vector3& normal_BA, double gap, double r_a, double r_b) {
+  Contact contact;
+  contact.point = 0.5 * (point_A + point_B) + 0.5 * (r_b - r_a) * normal_BA;
+  contact.normal_BA = normal_BA;
+  contact.depth = r_a + r_b - gap;
+  return contact;
+}
+
+/** Order of the pair: which of the two roles (moving or fixed, mesh or half-space) A plays. */
+struct Roles {
+  bool first_is_a;  ///< moving, or the mesh on a half-space
+  double r_a, r_b;
+
+  Contact contact(const Feature& first, const Feature& second, const Vector3& point_first, const Vector3& point_second,
+                  const Vector3& normal, double gap) const {
+    Contact out = first_is_a ? makeContact(point_first, point_second, normal, gap, r_a, r_b)
+                             : makeContact(point_second, point_first, -normal, gap, r_a, r_b);
+    out.id = first_is_a ? contactId(first, second) : contactId(second, first);
+    return out;
+  }
+};
+
+void meshMesh(const Collider& a, const Pose& X_WA, const Collider& b, const Pose& X_WB, double range, ContactManifold* out) {
+  const bool a_moves = a.geometry->mesh().elements.size() <= b.geometry->mesh().elements.size();
+  const Pose &X_WM = a_moves ? X_WA : X_WB, &X_WF = a_moves ? X_WB : X_WA;
+  const MeshPair pair{MeshSide(a_moves ? *a.geometry : *b.geometry), MeshSide(a_moves ? *b.geometry : *a.geometry), X_WF.inverse() * X_WM,
+                      range};
+  // Only its memory outlives a call.
+  thread_local SearchBuffers buffers;
+  searchSimplexPairs(pair, &buffers);
+  out->pierced = !buffers.crossings.empty();
+  if (out->pierced) addRetractions(pair, buffers.crossings, &buffers.contacts);
+
+  const Roles roles{a_moves, a.radius, b.radius};
+  for (const FeatureContact& c : buffers.contacts) {
+    out->contacts.push_back(roles.contact(c.moving, c.fixed, c.point_M, c.point_F, c.normal, c.gap));
+    out->contacts.back().pierced = c.pierced;
+  }
+  mergeContacts(&out->contacts);
+  for (Contact& contact : out->contacts) {
+    contact.point = X_WF * contact.point;
+    contact.normal_BA = X_WF.linear() * contact.normal_BA;
+  }
+}
+
+/** Vertices of the mesh near or below the plane; however deep, each knows its way out. */
+void meshHalfSpace(const Collider& mesh, const Pose& X_WM, const Collider& half_space, const Pose& X_WH, double range, const Roles& roles,
+                   ContactManifold* out) {
+  const MeshSide side(*mesh.geometry);
+  const Pose X_MH = X_WM.inverse() * X_WH;
+  const Vector3 normal = X_MH.linear() * half_space.geometry->planeNormal();
+  const double offset = half_space.geometry->planeOffset() + normal.dot(X_MH.translation());
+  visitLeavesBelowPlane(side.bvh, normal, offset, range, [&](std::uint32_t leaf) {
+    const Bvh::Node& node = side.bvh.nodes()[leaf];
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+      const int element = static_cast<int>(side.bvh.order()[i]);
+      for (int k = 0; k < 3; ++k) {
+        if (!side.topology.ownsVertex(element, k)) continue;
+        const int vertex = side.mesh.elements[element][k];
+        const Vector3& p = side.mesh.vertices[vertex];
+        const double height = normal.dot(p) - offset;
+        if (height > range) continue;
+        out->contacts.push_back(
+            roles.contact({FeatureKind::VERTEX, vertex}, {FeatureKind::HALF_SPACE, 0}, p, p - height * normal, normal, height));
+      }
+    }
+  });
+  mergeContacts(&out->contacts);
+  for (Contact& contact : out->contacts) {
+    contact.point = X_WM * contact.point;
+    contact.normal_BA = X_WM.linear() * contact.normal_BA;
+  }
+}
+
+}  // namespace
+
+void narrowPhase(const Collider& a, const Pose& X_WA, const Collider& b, const Pose& X_WB, double margin, ContactManifold* out) {
+  out->layer = a.radius + b.radius;
+  out->pierced = false;
+  out->contacts.clear();
+  const double range = out->layer + margin;
+  if (a.geometry->isHalfSpace() && b.geometry->isHalfSpace()) return;
+  if (b.geometry->isHalfSpace()) {
+    meshHalfSpace(a, X_WA, b, X_WB, range, {true, a.radius, b.radius}, out);
+  } else if (a.geometry->isHalfSpace()) {
+    meshHalfSpace(b, X_WB, a, X_WA, range, {false, a.radius, b.radius}, out);
+  } else {
+    meshMesh(a, X_WA, b, X_WB, range, out);
+  }
+}
+
+}  // namespace blem_sim

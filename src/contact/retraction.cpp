@@ -1,0 +1,110 @@
+#include "retraction.h"
+
+#include <algorithm>
+
+#include "edge_pair.h"
+#include "feature_cones.h"
+
+namespace blem_sim {
+namespace {
+
+/** Where meshes cross, a contact must push the bodies apart by this (cosine) at least. */
+constexpr double MIN_OUTWARD = 1e-3;
+
+class Retraction {
+ public:
+  explicit Retraction(const MeshPair& pair)
+      : pair_(pair), longest_(0.5 * std::min(pair.moving.bounds.diagonal().norm(), pair.fixed.bounds.diagonal().norm())) {}
+
+  FeatureContact shortest(const Crossing& crossing) const {
+    const MeshSide &edge_side = crossing.edge_of_moving ? pair_.moving : pair_.fixed,
+                   &face_side = crossing.edge_of_moving ? pair_.fixed : pair_.moving;
+    FeatureContact best = byEnd(crossing, edge_side, face_side);
+    forEachBorderNear(face_side, crossing.face, [&](int border) {
+      FeatureContact over_border;
+      const int m = crossing.edge_of_moving ? crossing.edge : border, f = crossing.edge_of_moving ? border : crossing.edge;
+      if (overEdges(m, f, &over_border) && over_border.gap > best.gap) best = over_border;
+    });
+    return best;
+  }
+
+ private:
+  /** Calls visit(edge) for the borders of the face's plane at its corners: a border of the plane need not be one of this face. */
+  template <typename Visit>
+  static void forEachBorderNear(const MeshSide& side, int face, Visit&& visit) {
+    const MeshTopology& topology = side.topology;
+    const auto isBorder = [&topology, face](int edge) {
+      const auto begin = topology.edge_faces.begin() + topology.edge_face_begin[edge];
+      return !topology.edge_flat[edge] && std::any_of(begin, topology.edge_faces.begin() + topology.edge_face_begin[edge + 1],
+                                                      [&](int other) { return topology.patch[other] == topology.patch[face]; });
+    };
+    for (int k = 0; k < 3; ++k) {
+      const int vertex = side.mesh.elements[face][k];
+      for (int i = topology.vertex_edge_begin[vertex]; i < topology.vertex_edge_begin[vertex + 1]; ++i) {
+        if (isBorder(topology.vertex_edges[i])) visit(topology.vertex_edges[i]);
+      }
+    }
+  }
+
+  Vector3 position(const MeshSide& side, int vertex) const {
+    const Vector3& p = side.mesh.vertices[vertex];
+    return &side == &pair_.moving ? Vector3(pair_.X_FM * p) : p;
+  }
+
+  FeatureContact byEnd(const Crossing& crossing, const MeshSide& edge_side, const MeshSide& face_side) const {
+    const std::array<int, 2>& ends = edge_side.topology.edges[crossing.edge];
+    const Vector3 p0 = position(edge_side, ends[0]), p1 = position(edge_side, ends[1]);
+    Vector3 normal = face_side.topology.normals[crossing.face];
+    if (&face_side == &pair_.moving) normal = pair_.X_FM.linear() * normal;
+    const Vector3 corner = position(face_side, face_side.mesh.elements[crossing.face][0]);
+    const double h0 = normal.dot(p0 - corner), h1 = normal.dot(p1 - corner);
+    const Vector3 through = p0 + h0 / (h0 - h1) * (p1 - p0);
+    double side = bodySide(pair_, through).dot(normal);
+    if (side == 0) side = (std::abs(h0) < std::abs(h1) ? -h0 : -h1) * (crossing.edge_of_moving ? 1 : -1);
+    if (side < 0) normal = -normal;
+    // The end behind the face if the edge moves, in front of it if the face moves.
+    const bool first = (normal.dot(p0 - through) < 0) == crossing.edge_of_moving;
+    const Vector3 out = (first ? p0 : p1) - through;
+    const Vector3 end = through + out * std::min(1.0, longest_ / out.norm());
+    const Vector3 foot = end - normal * normal.dot(end - through);
+    const Feature vertex{FeatureKind::VERTEX, ends[first ? 0 : 1]}, patch{FeatureKind::FACE, face_side.topology.patch[crossing.face]};
+    const double gap = -std::abs(normal.dot(end - through));
+    if (crossing.edge_of_moving) return {vertex, patch, end, foot, normal, gap, true};
+    return {patch, vertex, foot, end, normal, gap, true};
+  }
+
+  bool overEdges(int m, int f, FeatureContact* out) const {
+    const std::array<int, 2>&ends_m = pair_.moving.topology.edges[m], &ends_f = pair_.fixed.topology.edges[f];
+    EdgePair feet;
+    if (!findEdgePair(position(pair_.moving, ends_m[0]), position(pair_.moving, ends_m[1]), position(pair_.fixed, ends_f[0]),
+                      position(pair_.fixed, ends_f[1]), longest_, &feet)) {
+      return false;
+    }
+    // Crossed: the moving edge lies on the far side of the fixed one.
+    const Vector3 normal = feet.offset < 0 ? feet.axis : Vector3(-feet.axis);
+    if (feet.offset == 0 || bodySide(pair_, feet.point_q).dot(normal) <= 0) return false;
+    if (!edgeConeAllows(pair_.fixed, f, normal, EDGE_CONE_SLACK) ||
+        !edgeConeAllows(pair_.moving, m, -(pair_.X_FM.linear().transpose() * normal), EDGE_CONE_SLACK)) {
+      return false;
+    }
+    *out = {{FeatureKind::EDGE, m}, {FeatureKind::EDGE, f}, feet.point_p, feet.point_q, normal, -std::abs(feet.offset), true};
+    return true;
+  }
+
+  const MeshPair& pair_;
+  const double longest_;  // [m]
+};
+
+}  // namespace
+
+void addRetractions(const MeshPair& pair, const std::vector<Crossing>& crossings, std::vector<FeatureContact>* contacts) {
+  const auto points_back = [&pair](const FeatureContact& contact) {
+    const Vector3 side = bodySide(pair, contact.point_F);
+    return contact.normal.dot(side) < MIN_OUTWARD * side.norm();
+  };
+  contacts->erase(std::remove_if(contacts->begin(), contacts->end(), points_back), contacts->end());
+  const Retraction retraction(pair);
+  for (const Crossing& crossing : crossings) contacts->push_back(retraction.shortest(crossing));
+}
+
+}  // namespace blem_sim

@@ -1,0 +1,18 @@
+// The fallback where bare meshes cross [Hauser 2013, Fig. 6 bottom].
+#pragma once
+
+#include <vector>
+
+#include "simplex_search.h"
+
+namespace blem_sim {
+
+/**
+ * One contact per crossing: the shortest retraction among its candidates, which are the edge's end that is on the wrong side of the face
+ * (its direction is the face's normal, the right side being the one of the smaller body's middle), and the edge over a border of the face
+ * where both edges' normal cones allow it. The gap is minus the retraction, bounded by half the smaller body. Contacts already there that
+ * point to the wrong side come from features that have passed through; they are dropped.
+ */
+void addRetractions(const MeshPair& pair, const std::vector<Crossing>& crossings, std::vector<FeatureContact>* contacts);
+
+}  // namespace blem_sim

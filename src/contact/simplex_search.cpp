@@ -1,0 +1,390 @@
+#include "simplex_search.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "blem_sim/geometry/bvh_traversal.h"
+#include "edge_pair.h"
+#include "feature_cones.h"
+
+namespace blem_sim {
+namespace {
+
+/** Slack of the test that a vertex or an edge is the other's local minimum (sine): rounding. */
+constexpr double CONE_SLACK = 1e-6;
+/** A direction summed from neighbours means nothing below this. */
+constexpr double MIN_LEAN = 1e-6;
+
+/** A surface along a plane leaves it if its lean has this part (sine) off it. */
+constexpr double MIN_LEAN_INSIDE = 1e-3;
+
+constexpr int NEXT[3] = {1, 2, 0};
+
+void findBox(ElementShape* shape) {
+  shape->lower = shape->corners[0].cwiseMin(shape->corners[1]).cwiseMin(shape->corners[2]);
+  shape->upper = shape->corners[0].cwiseMax(shape->corners[1]).cwiseMax(shape->corners[2]);
+}
+
+bool boxesWithin(const Vector3& lower, const Vector3& upper, const ElementShape& f, double range) {
+  return ((lower - f.upper).array() <= range).all() && ((f.lower - upper).array() <= range).all();
+}
+
+bool oneSided(const double heights[3], double range) {
+  return (heights[0] > range && heights[1] > range && heights[2] > range) ||
+         (heights[0] < -range && heights[1] < -range && heights[2] < -range);
+}
+
+Vector3 middle(const Vector3 corners[3]) { return (corners[0] + corners[1] + corners[2]) / 3; }
+
+/** How far p projects inside the face's side k, times the side's length; negative outside. */
+double insideSide(const ElementShape& face, int k, const Vector3& side, const Vector3& p) {
+  return face.normal.cross(side).dot(p - face.corners[k]);
+}
+
+/** Does p project into the face, or beside it by no more than CLOSED? */
+bool holdsProjection(const ElementShape& face, const Vector3& p) {
+  for (int k = 0; k < 3; ++k) {
+    const Vector3 side = face.corners[NEXT[k]] - face.corners[k];
+    const double inside = insideSide(face, k, side, p);
+    if (inside >= 0) continue;
+    // Beside it, and not beyond a sharp corner, where two strips of that width meet far out.
+    const double length2 = side.squaredNorm();
+    if (inside * inside > CLOSED * CLOSED * length2) return false;
+    if (!edge_pair_detail::isInside(side.dot(p - face.corners[k]), length2, length2)) return false;
+  }
+  return true;
+}
+
+class SimplexSearch {
+ public:
+  SimplexSearch(const MeshPair& pair, SearchBuffers* buffers) : pair_(pair), R_FM_(pair.X_FM.linear()), buffers_(*buffers) {}
+
+  void run() {
+    buffers_.contacts.clear();
+    buffers_.crossings.clear();
+    buffers_.leaf_pairs.clear();
+    visitLeafPairs(pair_.moving.bvh, pair_.fixed.bvh, pair_.X_FM, pair_.range,
+                   [this](std::uint32_t m, std::uint32_t f) { buffers_.leaf_pairs.emplace_back(m, f); });
+    // Sorted, so that each leaf of the moving mesh is turned once.
+    std::sort(buffers_.leaf_pairs.begin(), buffers_.leaf_pairs.end());
+    std::uint32_t turned_leaf = std::numeric_limits<std::uint32_t>::max();
+    for (const auto& [m, f] : buffers_.leaf_pairs) {
+      if (m != turned_leaf) turnLeaf(turned_leaf = m);
+      testLeaf(f);
+    }
+  }
+
+ private:
+  void turnLeaf(std::uint32_t leaf) {
+    const Bvh::Node& node = pair_.moving.bvh.nodes()[leaf];
+    buffers_.moving_leaf.resize(node.count);
+    for (std::uint32_t i = 0; i < node.count; ++i) {
+      ElementShape& shape = buffers_.moving_leaf[i];
+      shape.element = static_cast<int>(pair_.moving.bvh.order()[node.first + i]);
+      const Vector3i& e = pair_.moving.mesh.elements[shape.element];
+      for (int k = 0; k < 3; ++k) shape.corners[k] = pair_.X_FM * pair_.moving.mesh.vertices[e[k]];
+      findBox(&shape);
+      buffers_.leaf_lower = i == 0 ? shape.lower : Vector3(buffers_.leaf_lower.cwiseMin(shape.lower));
+      buffers_.leaf_upper = i == 0 ? shape.upper : Vector3(buffers_.leaf_upper.cwiseMax(shape.upper));
+      describe(pair_.moving.topology, &shape);
+      shape.normal = R_FM_ * shape.normal;
+    }
+  }
+
+  static void describe(const MeshTopology& topology, ElementShape* shape) {
+    shape->normal = topology.normals[shape->element];
+    shape->is_face = topology.isFace(shape->element);
+    shape->owns_vertices = topology.ownsVertices(shape->element);
+    shape->owns_edges = topology.ownsEdges(shape->element);
+  }
+
+  void testLeaf(std::uint32_t leaf) {
+    const Bvh::Node& node = pair_.fixed.bvh.nodes()[leaf];
+    ElementShape shape;
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+      shape.element = static_cast<int>(pair_.fixed.bvh.order()[i]);
+      const Vector3i& e = pair_.fixed.mesh.elements[shape.element];
+      for (int k = 0; k < 3; ++k) shape.corners[k] = pair_.fixed.mesh.vertices[e[k]];
+      findBox(&shape);
+      if (!boxesWithin(buffers_.leaf_lower, buffers_.leaf_upper, shape, pair_.range)) continue;
+      describe(pair_.fixed.topology, &shape);
+      for (const ElementShape& m : buffers_.moving_leaf) {
+        if (boxesWithin(m.lower, m.upper, shape, pair_.range)) testElements(m, shape);
+      }
+    }
+  }
+
+  void testElements(const ElementShape& m, const ElementShape& f) {
+    const bool m_owns = m.owns_vertices || m.owns_edges, f_owns = f.owns_vertices || f.owns_edges;
+    double heights_m[3], heights_f[3];  // of the corners over the other's plane
+    if (f.is_face) {
+      for (int k = 0; k < 3; ++k) heights_m[k] = f.normal.dot(m.corners[k] - f.corners[0]);
+      if (oneSided(heights_m, pair_.range)) return;
+    }
+    if (m.is_face) {
+      for (int k = 0; k < 3; ++k) heights_f[k] = m.normal.dot(f.corners[k] - m.corners[0]);
+      if (oneSided(heights_f, pair_.range)) return;
+    }
+    if (f.is_face && m_owns) testOverFace(m, heights_m, f, true);
+    if (m.is_face && f_owns) testOverFace(f, heights_f, m, false);
+    if (!m_owns || !f_owns) return;
+    if (m.owns_edges && f.owns_edges) testEdges(m, f);
+    testVertices(m, f);
+  }
+
+  // ---- vertices and edges over a face
+
+  void testOverFace(const ElementShape& e, const double heights[3], const ElementShape& face, bool e_moves) {
+    const MeshTopology& topology = side(e_moves).topology;
+    for (int k = 0; k < 3; ++k) {
+      if (std::abs(heights[k]) <= pair_.range && topology.ownsVertex(e.element, k) && holdsProjection(face, e.corners[k])) {
+        addVertexFace(e, k, heights[k], face, e_moves);
+      }
+      if (topology.ownsEdge(e.element, k) && crosses(e, k, heights, face, e_moves)) {
+        buffers_.crossings.push_back({e_moves, topology.element_edges[e.element][k], face.element});
+      }
+    }
+  }
+
+  /** Does side k of e pass through the face? What only touches it, or only grazes a border, is an ordinary contact. */
+  bool crosses(const ElementShape& e, int k, const double heights[3], const ElementShape& face, bool e_moves) const {
+    const double height_p = heights[k], height_q = heights[NEXT[k]];
+    if (std::min(height_p, height_q) >= -TOUCH || std::max(height_p, height_q) <= TOUCH) return false;
+    const Vector3 &p = e.corners[k], &q = e.corners[NEXT[k]], through = p + height_p / (height_p - height_q) * (q - p);
+    if (!holdsProjection(face, through)) return false;
+    const int edge = side(e_moves).topology.element_edges[e.element][k];
+    const Vector3 lean = turned(edgeLean(side(e_moves), edge), e_moves), face_inward = middle(face.corners) - through;
+    // At a border it only grazes an edge or a corner, unless it runs down along a neighbour's plane, its own surface within: so aligned
+    // boxes sink into each other.
+    bool enters = true, along_neighbour = false;
+    const bool at_border = forEachNeighbourAt(face, through, !e_moves, [&](const Vector3& inward, const Vector3& normal) {
+      const Vector3& end = (face.normal.dot(inward) > 0) == (height_p > 0) ? p : q;
+      double inside = normal.dot(end - through);
+      if (std::abs(inside) <= TOUCH) {
+        along_neighbour = true;
+        inside = std::abs(normal.dot(lean)) > MIN_LEAN_INSIDE ? normal.dot(lean) : 0;
+      }
+      enters = enters && (normal.dot(face_inward) < 0 ? -inside : inside) > TOUCH;
+    });
+    return !at_border || (enters && along_neighbour);
+  }
+
+  /** Does the plane of `face` end within CLOSED of p? Then calls visit(direction into it, unit normal) for each face of other planes there.
+   */
+  template <typename Visit>
+  bool forEachNeighbourAt(const ElementShape& face, const Vector3& p, bool face_moves, Visit&& visit) const {
+    const MeshSide& face_side = side(face_moves);
+    const MeshTopology& topology = face_side.topology;
+    const auto visitFacesOf = [&](int edge) {
+      for (int i = topology.edge_face_begin[edge]; i < topology.edge_face_begin[edge + 1]; ++i) {
+        const int neighbour = topology.edge_faces[i];
+        if (topology.patch[neighbour] == topology.patch[face.element]) continue;
+        const Vector3i& v = face_side.mesh.elements[neighbour];
+        const Vector3 middle = (face_side.mesh.vertices[v[0]] + face_side.mesh.vertices[v[1]] + face_side.mesh.vertices[v[2]]) / 3;
+        visit(placed(middle, face_moves) - p, turned(topology.normals[neighbour], face_moves));
+      }
+    };
+    const int corner = cornerAt(face, p);
+    if (corner >= 0) {
+      const int vertex = face_side.mesh.elements[face.element][corner];
+      const auto begin = topology.vertex_edges.begin() + topology.vertex_edge_begin[vertex];
+      std::for_each(begin, topology.vertex_edges.begin() + topology.vertex_edge_begin[vertex + 1], visitFacesOf);
+      return !topology.vertex_flat[vertex];
+    }
+    bool at_border = false;
+    forEachBorderAt(face, p, face_moves, [&](int edge, int) {
+      at_border = true;
+      visitFacesOf(edge);
+    });
+    return at_border;
+  }
+
+  static int cornerAt(const ElementShape& face, const Vector3& p) {
+    for (int k = 0; k < 3; ++k) {
+      if ((p - face.corners[k]).squaredNorm() <= 16 * CLOSED * CLOSED) return k;
+    }
+    return -1;
+  }
+
+  /** Calls visit(edge, face) for each edge where the plane of `face` ends within CLOSED of p, with the plane's face there. */
+  template <typename Visit>
+  void forEachBorderAt(const ElementShape& face, const Vector3& p, bool face_moves, Visit&& visit) const {
+    const MeshSide& face_side = side(face_moves);
+    const MeshTopology& topology = face_side.topology;
+    const int corner = cornerAt(face, p);
+    if (corner >= 0) {
+      // The plane's borders there may belong to its other faces.
+      const int vertex = face_side.mesh.elements[face.element][corner];
+      for (int i = topology.vertex_edge_begin[vertex]; i < topology.vertex_edge_begin[vertex + 1]; ++i) {
+        visitIfBorder(topology, topology.vertex_edges[i], topology.patch[face.element], visit);
+      }
+      return;
+    }
+    for (int k = 0; k < 3; ++k) {
+      const Vector3 along = face.corners[NEXT[k]] - face.corners[k];
+      const double inside = insideSide(face, k, along, p);
+      if (inside > 0 && inside * inside > CLOSED * CLOSED * along.squaredNorm()) continue;
+      visitIfBorder(topology, topology.element_edges[face.element][k], topology.patch[face.element], visit);
+    }
+  }
+
+  template <typename Visit>
+  static void visitIfBorder(const MeshTopology& topology, int edge, int patch, Visit&& visit) {
+    if (topology.edge_flat[edge]) return;
+    for (int i = topology.edge_face_begin[edge]; i < topology.edge_face_begin[edge + 1]; ++i) {
+      if (topology.patch[topology.edge_faces[i]] == patch) return visit(edge, topology.edge_faces[i]);
+    }
+  }
+
+  void addVertexFace(const ElementShape& e, int k, double height, const ElementShape& face, bool e_moves) {
+    const Vector3 &p = e.corners[k], foot = p - height * face.normal;
+    const Feature vertex{FeatureKind::VERTEX, side(e_moves).mesh.elements[e.element][k]};
+    const Feature patch{FeatureKind::FACE, side(!e_moves).topology.patch[face.element]};
+    if (std::abs(height) <= TOUCH && !reachesOver(vertex.index, p, face, e_moves)) return;
+    // From fixed to moving: towards the vertex if it is the moving mesh's.
+    Vector3 normal = (height > 0) == e_moves ? face.normal : Vector3(-face.normal);
+    if (std::abs(height) <= TOUCH) normal = e_moves ? towardsMoving(normal, vertex, patch, p) : towardsMoving(normal, patch, vertex, p);
+    if (e_moves) {
+      buffers_.contacts.push_back({vertex, patch, p, foot, normal, std::abs(height)});
+    } else {
+      buffers_.contacts.push_back({patch, vertex, foot, p, normal, std::abs(height)});
+    }
+  }
+
+  /** Where a vertex touches a face's border: does its surface extend over the face, or only beside it? */
+  bool reachesOver(int vertex, const Vector3& p, const ElementShape& face, bool vertex_moves) const {
+    const MeshSide& vertex_side = side(vertex_moves);
+    if (vertex_side.topology.vertex_edge_begin[vertex] == vertex_side.topology.vertex_edge_begin[vertex + 1]) return true;
+    bool reaches = true;
+    forEachBorderAt(face, p, !vertex_moves, [&](int border, int border_face) {
+      Vector3 inward = turned(side(!vertex_moves).topology.inward(side(!vertex_moves).mesh, border, border_face), !vertex_moves);
+      if (vertex_moves) inward = R_FM_.transpose() * inward;
+      reaches = reaches && !vertexConeAllows(vertex_side, vertex, inward, CONE_SLACK);
+    });
+    return reaches;
+  }
+
+  // ---- edge and edge
+
+  void testEdges(const ElementShape& m, const ElementShape& f) {
+    for (int k = 0; k < 3; ++k) {
+      if (!pair_.moving.topology.ownsEdge(m.element, k)) continue;
+      for (int l = 0; l < 3; ++l) {
+        if (!pair_.fixed.topology.ownsEdge(f.element, l)) continue;
+        EdgePair feet;
+        if (!findEdgePair(m.corners[k], m.corners[NEXT[k]], f.corners[l], f.corners[NEXT[l]], pair_.range, &feet)) continue;
+        addEdgeEdge({FeatureKind::EDGE, pair_.moving.topology.element_edges[m.element][k]},
+                    {FeatureKind::EDGE, pair_.fixed.topology.element_edges[f.element][l]}, feet);
+      }
+    }
+  }
+
+  void addEdgeEdge(const Feature& m, const Feature& f, const EdgePair& feet) {
+    Vector3 normal = feet.offset < 0 ? Vector3(-feet.axis) : feet.axis;
+    if (std::abs(feet.offset) <= TOUCH) normal = towardsMoving(normal, m, f, feet.point_q);
+    if (!conesAllow(m, f, normal, EDGE_CONE_SLACK)) return;
+    buffers_.contacts.push_back({m, f, feet.point_p, feet.point_q, normal, std::abs(feet.offset)});
+  }
+
+  // ---- vertex and edge, vertex and vertex: where each is the other's local minimum
+
+  void testVertices(const ElementShape& m, const ElementShape& f) {
+    for (int k = 0; k < 3; ++k) {
+      if (pair_.moving.topology.ownsVertex(m.element, k)) {
+        testVertexEdges(m, k, f, true);
+        for (int l = 0; l < 3; ++l) {
+          if (pair_.fixed.topology.ownsVertex(f.element, l)) testVertexVertex(m, k, f, l);
+        }
+      }
+      if (pair_.fixed.topology.ownsVertex(f.element, k)) testVertexEdges(f, k, m, false);
+    }
+  }
+
+  void testVertexEdges(const ElementShape& v, int k, const ElementShape& e, bool v_moves) {
+    const Vector3& p = v.corners[k];
+    for (int l = 0; l < 3; ++l) {
+      if (!side(!v_moves).topology.ownsEdge(e.element, l)) continue;
+      const Vector3 &q = e.corners[l], along = e.corners[NEXT[l]] - q, r = p - q;
+      const double length2 = along.squaredNorm(), part = r.dot(along);
+      if (!edge_pair_detail::isInside(part, length2, length2)) continue;
+      const Vector3 foot = q + part / length2 * along;
+      if ((p - foot).squaredNorm() > pair_.range * pair_.range) continue;
+      const Feature vertex{FeatureKind::VERTEX, side(v_moves).mesh.elements[v.element][k]};
+      const Feature edge{FeatureKind::EDGE, side(!v_moves).topology.element_edges[e.element][l]};
+      if (v_moves) {
+        addLocalMinimum(vertex, edge, p, foot, along);
+      } else {
+        addLocalMinimum(edge, vertex, foot, p, along);
+      }
+    }
+  }
+
+  void testVertexVertex(const ElementShape& m, int k, const ElementShape& f, int l) {
+    if ((m.corners[k] - f.corners[l]).squaredNorm() > pair_.range * pair_.range) return;
+    addLocalMinimum({FeatureKind::VERTEX, pair_.moving.mesh.elements[m.element][k]},
+                    {FeatureKind::VERTEX, pair_.fixed.mesh.elements[f.element][l]}, m.corners[k], f.corners[l], Vector3::Zero());
+  }
+
+  /** @param along direction of the edge, to which the normal is square; zero if there is none */
+  void addLocalMinimum(const Feature& m, const Feature& f, const Vector3& point_M, const Vector3& point_F, const Vector3& along) {
+    const Vector3 d = point_M - point_F;
+    const double gap = d.norm();
+    const Vector3 normal = gap > TOUCH ? Vector3(d / gap) : touchNormal(m, f, point_F, along);
+    if (conesAllow(m, f, normal, CONE_SLACK)) buffers_.contacts.push_back({m, f, point_M, point_F, normal, gap});
+  }
+
+  // ---- directions
+
+  const MeshSide& side(bool moving) const { return moving ? pair_.moving : pair_.fixed; }
+
+  /** Direction of either mesh in frame F. */
+  Vector3 turned(const Vector3& direction, bool of_moving) const { return of_moving ? Vector3(R_FM_ * direction) : direction; }
+
+  Vector3 placed(const Vector3& p, bool of_moving) const { return of_moving ? Vector3(pair_.X_FM * p) : p; }
+
+  static bool coneAllows(const MeshSide& side, const Feature& feature, const Vector3& direction, double slack) {
+    return feature.kind == FeatureKind::VERTEX ? vertexConeAllows(side, feature.index, direction, slack)
+                                               : edgeConeAllows(side, feature.index, direction, slack);
+  }
+
+  /** Does neither surface come closer to the other beside its feature? */
+  bool conesAllow(const Feature& m, const Feature& f, const Vector3& normal, double slack) const {
+    return coneAllows(pair_.fixed, f, normal, slack) && coneAllows(pair_.moving, m, -(R_FM_.transpose() * normal), slack);
+  }
+
+  static Vector3 leanOf(const MeshSide& side, const Feature& feature) {
+    if (feature.kind == FeatureKind::VERTEX) return vertexLean(side, feature.index);
+    if (feature.kind == FeatureKind::EDGE) return edgeLean(side, feature.index);
+    return Vector3::Zero();
+  }
+
+  /** Where the meshes touch: from the fixed surface at the feature to the moving one. */
+  Vector3 lean(const Feature& m, const Feature& f) const { return R_FM_ * leanOf(pair_.moving, m) - leanOf(pair_.fixed, f); }
+
+  /** The axis, turned so that the moving surface lies on its side. */
+  Vector3 towardsMoving(const Vector3& axis, const Feature& m, const Feature& f, const Vector3& point) const {
+    double along = lean(m, f).dot(axis);
+    if (std::abs(along) <= MIN_LEAN) along = bodySide(pair_, point).dot(axis);
+    return along < 0 ? Vector3(-axis) : axis;
+  }
+
+  Vector3 touchNormal(const Feature& m, const Feature& f, const Vector3& point, const Vector3& along) const {
+    const double length2 = along.squaredNorm();
+    for (const Vector3& direction : {lean(m, f), bodySide(pair_, point)}) {
+      const Vector3 square = length2 > 0 ? Vector3(direction - direction.dot(along) / length2 * along) : direction;
+      const double norm = square.norm();
+      if (norm > MIN_LEAN * (1 + direction.norm())) return square / norm;
+    }
+    return length2 > 0 ? along.unitOrthogonal() : Vector3(Vector3::UnitZ());
+  }
+
+  const MeshPair& pair_;
+  const Matrix3 R_FM_;
+  SearchBuffers& buffers_;
+};
+
+}  // namespace
+
+void searchSimplexPairs(const MeshPair& pair, SearchBuffers* buffers) { SimplexSearch(pair, buffers).run(); }
+
+}  // namespace blem_sim

@@ -1,0 +1,40 @@
+// Finds the contacts of two meshes: every pair of simplices, each asked once by the two elements that own them.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "mesh_pair.h"
+
+namespace blem_sim {
+
+/** An edge of one mesh passes through a face of the other. */
+struct Crossing {
+  bool edge_of_moving;
+  int edge;
+  int face;  ///< element
+};
+
+/** An element as the tests want it, in frame F. */
+struct ElementShape {
+  Vector3 corners[3];
+  Vector3 lower, upper;  ///< its box
+  Vector3 normal;        ///< unit; meaningless unless is_face
+  int element;
+  bool is_face, owns_vertices, owns_edges;
+};
+
+/** What a search works in; kept between searches for its memory only. */
+struct SearchBuffers {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> leaf_pairs;
+  std::vector<ElementShape> moving_leaf;
+  Vector3 leaf_lower, leaf_upper;  ///< box of moving_leaf
+  std::vector<FeatureContact> contacts;
+  std::vector<Crossing> crossings;
+};
+
+/** Fills buffers->contacts and ->crossings (both cleared first). Complete: see narrow_phase.h. */
+void searchSimplexPairs(const MeshPair& pair, SearchBuffers* buffers);
+
+}  // namespace blem_sim

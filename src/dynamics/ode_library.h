@@ -1,0 +1,29 @@
+// ODE as a process-wide library: its start and end, and what it has to say.
+#pragma once
+
+#include <stdexcept>
+
+namespace blem_sim {
+
+/** ODE met an internal error it would have ended the process for. */
+class OdeFailure : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/**
+ * Keeps ODE initialised while one exists, and its messages, errors and debug assertions in our hands. ODE's handlers are process wide; what
+ * they hear is counted per thread, so worlds stepped in different threads do not hear each other.
+ */
+class OdeLibrary {
+ public:
+  OdeLibrary();
+  ~OdeLibrary();
+  OdeLibrary(const OdeLibrary&) = delete;
+  OdeLibrary& operator=(const OdeLibrary&) = delete;
+
+  /** Complaints of the complementarity solver in this thread since the last call. */
+  static int takeLcpErrors();
+};
+
+}  // namespace blem_sim

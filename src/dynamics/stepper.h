@@ -1,0 +1,44 @@
+// A stepper solves one step: given bodies, joints, contacts and drives, it moves the bodies. All steppers stand in one table.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "contact_law.h"
+#include "scene.h"
+#include "world_state.h"
+
+namespace blem_sim {
+
+struct StepInput {
+  double dt;  ///< [s]
+  const std::vector<ContactConstraint>& contacts;
+  const std::vector<JointDrive>& drives;  ///< one per joint slot
+};
+
+/**
+ * The scene is the one store of bodies and joints: a stepper reads poses, velocities and pending wrenches from it and writes poses and
+ * velocities back; what it remembers beside that (a warm start, a seed) is private and part of its saved state.
+ */
+class Stepper {
+ public:
+  virtual ~Stepper() = default;
+  /** Advances the bodies by input.dt under gravity, pending wrenches, drives and contacts. Fills contact_forces, joint_efforts and
+   * lcp_errors; replaces the contacts' memory by that of this step. */
+  virtual void step(Scene* scene, ContactMemory* memory, const StepInput& input, SolveResult* result) = 0;
+  virtual void save(StateWriter* writer) const = 0;
+  virtual void restore(StateReader* reader) = 0;
+};
+
+struct StepperRow {
+  const char* name;
+  std::unique_ptr<Stepper> (*make)(const SolverSettings& settings);
+};
+
+const std::vector<StepperRow>& stepperTable();
+
+/** Throws InputError for a name that is not in the table. */
+std::unique_ptr<Stepper> makeStepper(const SolverSettings& settings);
+
+}  // namespace blem_sim

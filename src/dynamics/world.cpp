@@ -1,0 +1,168 @@
+#include "blem_sim/dynamics/world.h"
+
+#include <cassert>
+#include <cmath>
+
+#include "joint_wrenches.h"
+#include "scene.h"
+#include "stepper.h"
+#include "world_state.h"
+
+namespace blem_sim {
+namespace {
+
+bool finite(const ContactConstraint& c) {
+  return c.point.allFinite() && c.normal_BA.allFinite() && std::isfinite(c.depth) && c.friction >= 0 && c.restitution >= 0 &&
+         c.stiffness >= 0 && c.damping >= 0;
+}
+
+bool finite(const JointDrive& d) {
+  return std::isfinite(d.effort) && std::isfinite(d.stiffness) && std::isfinite(d.damping) && std::isfinite(d.target_position) &&
+         std::isfinite(d.target_velocity) && !std::isnan(d.max_effort) && std::isfinite(d.dry_friction) &&
+         std::isfinite(d.viscous_friction);
+}
+
+bool finite(const Scene& scene) {
+  for (std::size_t b = 0; b < scene.bodies().size(); ++b) {
+    const BodySlot& slot = scene.bodies()[b];
+    if (!slot.ode) continue;
+    for (const double x : scene.bits(static_cast<int>(b)).numbers)
+      if (!std::isfinite(x)) return false;
+    if (!slot.pending.force.allFinite() || !slot.pending.torque.allFinite()) return false;
+  }
+  return true;
+}
+
+bool finite(const Scene& scene, const StepInput& input) {
+  for (const ContactConstraint& c : input.contacts)
+    if (!finite(c)) return false;
+  for (const JointDrive& d : input.drives)
+    if (!finite(d)) return false;
+  return scene.gravity().allFinite() && finite(scene);
+}
+
+}  // namespace
+
+struct World::Impl {
+  Impl(const Vector3& gravity, const SolverSettings& settings) : scene(gravity, settings), stepper(makeStepper(settings)) {}
+
+  /** False if the step broke down; the scene is then as it was. */
+  bool advance(const StepInput& input) {
+    if (!finite(scene, input)) return false;
+    try {
+      stepper->step(&scene, &memory, input, &result);
+    } catch (const OdeFailure&) {
+      OdeLibrary::takeLcpErrors();
+      scene.rebuild(start);
+      return false;
+    }
+    if (finite(scene)) return true;
+    scene.setBits(start);
+    return false;
+  }
+
+  void clearPending() {
+    for (BodySlot& slot : scene.bodies()) slot.pending = Wrench();
+  }
+
+  Scene scene;
+  std::unique_ptr<Stepper> stepper;
+  ContactMemory memory;
+  SolveResult result;
+  std::vector<BodyBits> start;
+};
+
+World::World(const Vector3& gravity, const SolverSettings& settings) : impl_(std::make_unique<Impl>(gravity, settings)) {}
+World::~World() = default;
+
+int World::addBody(const BodySpec& spec) { return impl_->scene.addBody(spec); }
+int World::addJoint(const JointSpec& spec, double position) { return impl_->scene.addJoint(spec, position); }
+
+void World::removeBody(int body) {
+  if (impl_->scene.exists(body)) impl_->scene.removeBody(body);
+}
+
+int World::bodyCount() const { return static_cast<int>(impl_->scene.bodies().size()); }
+int World::jointCount() const { return static_cast<int>(impl_->scene.joints().size()); }
+const BodySpec& World::bodySpec(int body) const { return impl_->scene.bodies()[body].spec; }
+const JointSpec& World::jointSpec(int joint) const { return impl_->scene.joints()[joint].spec; }
+
+BodyState World::bodyState(int body) const { return impl_->scene.exists(body) ? impl_->scene.bodyState(body) : BodyState(); }
+
+void World::setBodyState(int body, const BodyState& state) {
+  if (impl_->scene.exists(body)) impl_->scene.setBodyState(body, state);
+}
+
+JointState World::jointState(int joint) const {
+  return {impl_->scene.jointPosition(joint), impl_->scene.jointVelocity(joint), impl_->scene.joints()[joint].last_effort};
+}
+
+void World::resetJointPosition(int joint, double position) { impl_->scene.joints()[joint].last_position = position; }
+
+const Vector3& World::gravity() const { return impl_->scene.gravity(); }
+void World::setGravity(const Vector3& gravity) { impl_->scene.setGravity(gravity); }
+
+void World::applyWrench(int body, const Wrench& wrench, const Vector3& point) {
+  if (!impl_->scene.exists(body)) return;
+  Wrench& pending = impl_->scene.bodies()[body].pending;
+  pending.force += wrench.force;
+  pending.torque += wrench.torque + (point - impl_->scene.bits(body).com()).cross(wrench.force);
+}
+
+const SolveResult& World::step(double dt, const std::vector<ContactConstraint>& contacts, const std::vector<JointDrive>& drives) {
+  assert(dt > 0);
+  assert(static_cast<int>(drives.size()) == jointCount());
+  Impl& impl = *impl_;
+  const StepInput input{dt, contacts, drives};
+  impl.scene.bits(&impl.start);
+  impl.result = SolveResult();
+  impl.result.finite = impl.advance(input);
+  if (impl.result.finite) {
+    jointWrenches(impl.scene, impl.start, input, impl.result, &impl.result.joint_wrenches);
+    impl.scene.rememberPositions();
+    for (std::size_t j = 0; j < drives.size(); ++j) impl.scene.joints()[j].last_effort = impl.result.joint_efforts[j];
+  } else {
+    impl.result.contact_forces.assign(contacts.size(), Vector3::Zero());
+    impl.result.joint_wrenches.assign(drives.size(), Wrench());
+    impl.result.joint_efforts.assign(drives.size(), 0);
+  }
+  impl.clearPending();
+  return impl.result;
+}
+
+double World::kineticEnergy() const {
+  double energy = 0;
+  for (int b = 0; b < bodyCount(); ++b) {
+    if (!impl_->scene.exists(b)) continue;
+    const BodyBits bits = impl_->scene.bits(b);
+    energy += 0.5 * bodySpec(b).inertial.mass * bits.velocity().squaredNorm();
+    energy += 0.5 * bits.spin().dot(impl_->scene.inertiaInWorld(b, bits.rotation()) * bits.spin());
+  }
+  return energy;
+}
+
+double World::potentialEnergy() const {
+  double energy = 0;
+  for (int b = 0; b < bodyCount(); ++b)
+    if (impl_->scene.exists(b)) energy -= bodySpec(b).inertial.mass * gravity().dot(impl_->scene.bits(b).com());
+  return energy;
+}
+
+WorldState World::save() const {
+  WorldState state;
+  StateWriter writer(&state);
+  saveScene(impl_->scene, &writer);
+  saveMemory(impl_->memory, &writer);
+  impl_->stepper->save(&writer);
+  return state;
+}
+
+void World::restore(const WorldState& state) {
+  StateReader reader(state);
+  restoreScene(&impl_->scene, &reader);
+  restoreMemory(&impl_->memory, &reader);
+  impl_->stepper->restore(&reader);
+  reader.finish();
+}
+
+}  // namespace blem_sim

@@ -1,0 +1,44 @@
+// Reading and writing a WorldState, number by number.
+#pragma once
+
+#include "blem_sim/dynamics/world.h"
+
+namespace blem_sim {
+
+class StateWriter {
+ public:
+  explicit StateWriter(WorldState* state) : state_(state) {}
+  void number(double x) { state_->numbers.push_back(x); }
+  void numbers(const double* x, std::size_t count) { state_->numbers.insert(state_->numbers.end(), x, x + count); }
+  void vector(const Vector3& v) { numbers(v.data(), 3); }
+  void word(std::uint64_t w) { state_->words.push_back(w); }
+
+ private:
+  WorldState* state_;
+};
+
+/** Reads in the order of writing; throws InputError where the state ends too early. */
+class StateReader {
+ public:
+  explicit StateReader(const WorldState& state) : state_(state) {}
+  double number();
+  void numbers(double* x, std::size_t count);
+  Vector3 vector();
+  std::uint64_t word();
+  /** Throws InputError unless everything was read. */
+  void finish() const;
+
+ private:
+  const WorldState& state_;
+  std::size_t next_number_ = 0, next_word_ = 0;
+};
+
+class Scene;
+class ContactMemory;
+
+void saveScene(const Scene& scene, StateWriter* writer);
+void restoreScene(Scene* scene, StateReader* reader);
+void saveMemory(const ContactMemory& memory, StateWriter* writer);
+void restoreMemory(ContactMemory* memory, StateReader* reader);
+
+}  // namespace blem_sim

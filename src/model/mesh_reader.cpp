@@ -1,0 +1,132 @@
+#include <assimp/config.h>
+#include <assimp/scene.h>
+
+#include <algorithm>
+#include <assimp/Importer.hpp>
+
+#include <fmt/format.h>
+
+#include "blem_sim/geometry/input_error.h"
+#include "file_check.h"
+#include "one_line.h"
+#include "polygon_split.h"
+#include "surface_soup.h"
+
+namespace blem_sim {
+namespace {
+
+using Matrix4 = Eigen::Matrix4d;
+
+Matrix4 toMatrix(const aiMatrix4x4& m) {
+  Matrix4 matrix;
+  matrix << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4, m.d1, m.d2, m.d3, m.d4;
+  return matrix;
+}
+
+/** assimp's readers pass indices on unchecked. */
+void checkIndices(const std::string& file, const aiScene& scene) {
+  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+    const aiMesh& mesh = *scene.mMeshes[m];
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f)
+      for (unsigned c = 0; c < mesh.mFaces[f].mNumIndices; ++c)
+        if (mesh.mFaces[f].mIndices[c] >= mesh.mNumVertices)
+          throw InputError(fmt::format("{}: face {} names vertex {}, but there are only {}; write the file anew", file, f,
+                                       static_cast<int>(mesh.mFaces[f].mIndices[c]), mesh.mNumVertices));
+  }
+}
+
+/** Gathers the meshes of a scene. */
+class SoupBuilder {
+ public:
+  SoupBuilder(const aiScene& scene, SurfaceSoup* soup) : scene_(scene), soup_(*soup) {}
+
+  void appendNode(const aiNode& node, const Matrix4& X_MP) {
+    const Matrix4 X_MN = X_MP * toMatrix(node.mTransformation);
+    for (unsigned m = 0; m < node.mNumMeshes; ++m) appendMesh(*scene_.mMeshes[node.mMeshes[m]], X_MN);
+    for (unsigned c = 0; c < node.mNumChildren; ++c) appendNode(*node.mChildren[c], X_MN);
+  }
+
+  std::size_t polygons() const { return polygons_; }
+
+ private:
+  void appendMesh(const aiMesh& mesh, const Matrix4& X_MN) {
+    const int first = static_cast<int>(soup_.mesh.vertices.size());
+    const bool moved = X_MN != Matrix4::Identity();
+    for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
+      const Vector3 p(mesh.mVertices[v].x, mesh.mVertices[v].y, mesh.mVertices[v].z);
+      soup_.mesh.vertices.push_back(moved ? Vector3(X_MN.topLeftCorner<3, 3>() * p + X_MN.topRightCorner<3, 1>()) : p);
+    }
+    const bool mirrored = X_MN.topLeftCorner<3, 3>().determinant() < 0;
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f) appendFace(mesh.mFaces[f], first, mirrored);
+  }
+
+  /** Polygon, triangle, line or point. A mirroring node turns the winding, so that outside stays outside. */
+  void appendFace(const aiFace& face, int first, bool mirrored) {
+    std::vector<int> corners;
+    for (unsigned c = 0; c < face.mNumIndices; ++c) corners.push_back(first + static_cast<int>(face.mIndices[c]));
+    if (mirrored) std::reverse(corners.begin(), corners.end());
+    if (corners.size() > 3) {
+      ++polygons_;
+      // assimp's own triangulation splits some concave quadrilaterals along the outer diagonal.
+      for (const Vector3i& triangle : splitPolygon(soup_.mesh.vertices, corners)) appendTriangle(triangle);
+    } else if (corners.size() == 3) {
+      appendTriangle(Vector3i(corners[0], corners[1], corners[2]));
+    } else if (!corners.empty()) {
+      soup_.mesh.elements.emplace_back(corners.front(), corners.back(), corners.back());
+    }
+  }
+
+  void appendTriangle(const Vector3i& t) {
+    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0])
+      ++soup_.collapsed;
+    else
+      soup_.mesh.elements.push_back(t);
+  }
+
+  const aiScene& scene_;
+  SurfaceSoup& soup_;
+  std::size_t polygons_ = 0;
+};
+
+/** What the header of a PLY announces must have arrived: assimp ends early without a word where rows are missing. */
+void checkPlyArrived(const std::string& file, const PlyCounts& announced, const aiScene& scene) {
+  std::size_t vertices = 0, faces = 0;
+  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+    vertices += scene.mMeshes[m]->mNumVertices;
+    faces += scene.mMeshes[m]->mNumFaces;
+  }
+  if (vertices < announced.vertices || faces < announced.faces)
+    throw InputError(fmt::format("{}: truncated PLY: {} vertices and {} faces announced, {} and {} there; write the file anew", file,
+                                 announced.vertices, announced.faces, vertices, faces));
+}
+
+}  // namespace
+
+SurfaceSoup readMesh(const std::string& file, const std::string& extension) {
+  SurfaceSoup soup;
+  std::string bytes = readBytes(file);
+  PlyCounts announced;
+  if (extension == "stl") checkStl(file, &bytes, &soup.notes);
+  if (extension == "off") checkOff(file, bytes);
+  if (extension == "dae") checkCollada(file, bytes);
+  if (extension == "ply") announced = checkPly(file, bytes);
+
+  Assimp::Importer importer;
+  // Root transformation: units stay, the turn to y-up goes, see loadSurface.
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
+  const aiScene* scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, extension.c_str());
+  if (!scene || !scene->mRootNode || scene->mNumMeshes == 0) {
+    const std::string reason = scene ? "it holds no mesh" : oneLine(importer.GetErrorString());
+    throw InputError(fmt::format("{}: not a readable {} mesh: {}; export it again", file, extension, reason));
+  }
+  if (extension == "ply") checkPlyArrived(file, announced, *scene);
+  checkIndices(file, *scene);
+  SoupBuilder builder(*scene, &soup);
+  builder.appendNode(*scene->mRootNode, Matrix4::Identity());
+  if (builder.polygons() > 0) soup.notes.push_back(fmt::format("{} polygons split into triangles", builder.polygons()));
+  soup.width = static_cast<int>(soup.mesh.vertices.size());
+  return soup;
+}
+
+}  // namespace blem_sim

@@ -1,0 +1,37 @@
+#include "blem_sim/model/robot_model.h"
+
+namespace blem_sim {
+namespace {
+
+template <typename Named>
+int indexOf(const std::vector<Named>& items, const std::string& name) {
+  for (std::size_t i = 0; i < items.size(); ++i)
+    if (items[i].name == name) return static_cast<int>(i);
+  return -1;
+}
+
+}  // namespace
+
+int RobotModel::linkIndex(const std::string& link) const { return indexOf(links, link); }
+
+int RobotModel::jointIndex(const std::string& joint) const { return indexOf(joints, joint); }
+
+Pose LumpedJoint::pose(double q) const {
+  switch (type) {
+    case JointType::REVOLUTE:
+    case JointType::CONTINUOUS:
+      return X_PJ * Pose(Eigen::AngleAxisd(q, axis));
+    case JointType::PRISMATIC:
+      return X_PJ * Pose(Eigen::Translation3d(q * axis));
+    default:
+      return X_PJ;
+  }
+}
+
+double LumpedRobot::mass() const {
+  double sum = 0;
+  for (const LumpedBody& body : bodies) sum += body.inertial.mass;
+  return sum;
+}
+
+}  // namespace blem_sim

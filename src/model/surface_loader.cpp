@@ -1,0 +1,121 @@
+#include <algorithm>
+#include <filesystem>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "blem_sim/model/loaders.h"
+#include "surface_soup.h"
+
+namespace blem_sim {
+namespace {
+
+using Reader = SurfaceSoup (*)(const std::string& file, const std::string& extension);
+
+/** One row per kind of file. */
+const std::map<std::string, Reader>& readers() {
+  static const std::map<std::string, Reader> READERS = {
+      {"dae", readMesh}, {"obj", readMesh}, {"off", readMesh},
+      {"ply", readMesh}, {"stl", readMesh}, {"pcd", [](const std::string& file, const std::string&) { return readPcd(file); }},
+  };
+  return READERS;
+}
+
+std::string extensionOf(const std::string& file) {
+  std::string extension = std::filesystem::path(file).extension().string();
+  extension.erase(0, std::min<std::size_t>(1, extension.size()));
+  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+SurfaceSoup readSurface(const std::string& file) {
+  const std::string extension = extensionOf(file);
+  const auto row = readers().find(extension);
+  if (row == readers().end())
+    throw InputError(fmt::format("{}: unknown kind of file '.{}'; use .stl, .ply, .obj, .off, .dae or .pcd", file, extension));
+  return row->second(file, extension);
+}
+
+void checkOptions(const std::string& file, const Vector3& scale, const CloudOptions& cloud) {
+  if (!scale.allFinite() || scale.cwiseAbs().minCoeff() == 0)
+    throw InputError(fmt::format("{}: scale {} {} {}: every factor must be finite and not zero", file, scale.x(), scale.y(), scale.z()));
+  if (!(cloud.point_radius > 0) || !std::isfinite(cloud.point_radius))
+    throw InputError(fmt::format("{}: point_radius {} m must be greater than zero", file, cloud.point_radius));
+  if (!(cloud.max_edge > 0) || !std::isfinite(cloud.max_edge))
+    throw InputError(fmt::format("{}: max_edge {} m must be greater than zero", file, cloud.max_edge));
+}
+
+/** Scales in place; a mirroring scale turns the winding, so that outside stays outside. */
+void scaleSoup(const Vector3& scale, TriangleMesh* mesh) {
+  if (scale == Vector3::Ones()) return;
+  for (Vector3& p : mesh->vertices) p = p.cwiseProduct(scale);
+  if (scale.prod() < 0)
+    for (Vector3i& e : mesh->elements)
+      if (e[0] != e[1] && e[1] != e[2]) std::swap(e[1], e[2]);
+}
+
+bool wantsPoints(const SurfaceSoup& soup, CloudOptions::As as) {
+  return as == CloudOptions::As::POINTS || (as == CloudOptions::As::AUTO && soup.mesh.elements.empty());
+}
+
+/** Triangles from points. A grid keeps its places; else points that are not finite or there twice go first, as they confuse normals. */
+void joinCloud(double max_edge, SurfaceSoup* soup, MeshReport* report) {
+  const bool grid = soup->width > 1 && soup->height > 1;
+  MeshReport points;
+  TriangleMesh unique = pointCloudMesh(soup->mesh.vertices, &points);
+  report->nonfinite = points.nonfinite;
+  report->welded = points.welded;
+  if (!grid) soup->mesh.vertices = std::move(unique.vertices);
+  soup->mesh.elements = meshCloud(*soup, max_edge);
+  if (soup->mesh.elements.empty())
+    throw InputError(fmt::format("{}: no triangle joins its {} points with edges up to {} m; raise max_edge or load it as points",
+                                 report->source, points.points, max_edge));
+  report->notes.push_back(fmt::format("{} triangles joined from {} points by {}, edges up to {} m", soup->mesh.elements.size(),
+                                      points.points, grid ? "the pixel grid" : "greedy projection", max_edge));
+}
+
+/** cleanMesh, with what was already left out counted in. */
+TriangleMesh cleanSoup(const SurfaceSoup& soup, MeshReport* report) {
+  const MeshReport before = *report;
+  TriangleMesh cleaned = cleanMesh(soup.mesh, report);
+  report->nonfinite += before.nonfinite;
+  report->welded += before.welded;
+  report->degenerate += soup.collapsed;
+  return cleaned;
+}
+
+void noteDropped(MeshReport* report) {
+  if (report->nonfinite > 0)
+    report->notes.push_back(fmt::format("{} elements with a coordinate that is not finite dropped", report->nonfinite));
+  if (report->degenerate > 0) report->notes.push_back(fmt::format("{} triangles without area dropped", report->degenerate));
+  if (report->duplicate > 0) report->notes.push_back(fmt::format("{} repeated triangles dropped", report->duplicate));
+  if (report->triangles == 0 && report->welded > 0)
+    report->notes.push_back(fmt::format("{} points merged with another at the same place", report->welded));
+}
+
+}  // namespace
+
+LoadedSurface loadSurface(const std::string& file, const Vector3& scale, const CloudOptions& cloud) {
+  checkOptions(file, scale, cloud);
+  SurfaceSoup soup = readSurface(file);
+  scaleSoup(scale, &soup.mesh);
+  LoadedSurface surface;
+  surface.report.name = std::filesystem::path(file).stem().string();
+  surface.report.source = file;
+  surface.report.notes = soup.notes;
+  const bool points = wantsPoints(soup, cloud.as);
+  if (!points && soup.mesh.elements.empty()) joinCloud(cloud.max_edge, &soup, &surface.report);
+  TriangleMesh cleaned = points ? pointCloudMesh(soup.mesh.vertices, &surface.report) : cleanSoup(soup, &surface.report);
+  if (points) {
+    surface.radius = surface.report.boundary_width = cloud.point_radius;
+    surface.report.notes.push_back(fmt::format("simulated as points of radius {} m", cloud.point_radius));
+  }
+  noteDropped(&surface.report);
+  if (cleaned.elements.empty())
+    throw InputError(fmt::format("{}: nothing is left after cleaning ({} not finite, {} without area); check the file and its scale", file,
+                                 surface.report.nonfinite, surface.report.degenerate));
+  surface.mesh = std::make_shared<const TriangleMesh>(std::move(cleaned));
+  return surface;
+}
+
+}  // namespace blem_sim

@@ -1,0 +1,24 @@
+// What urdfdom swallows or says badly: the text is looked through before urdfdom reads it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace blem_sim {
+
+/** Names in the file's order (urdfdom sorts them) and what is left out of the simulation. */
+struct UrdfOutline {
+  std::vector<std::string> links;
+  std::vector<std::string> joints;
+  std::vector<std::string> notes;
+};
+
+/**
+ * @param source names the text in messages.
+ * @throws InputError with the link or joint and the cure: not XML, no robot, unexpanded xacro, names missing or given twice, numbers that
+ * are missing or not finite, masses below zero, unknown joint types, missing limits, unknown or cyclic mimic joints, parents or children
+ * that do not exist, loops, several roots.
+ */
+UrdfOutline checkUrdf(const std::string& xml, const std::string& source);
+
+}  // namespace blem_sim

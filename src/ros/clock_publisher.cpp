@@ -1,0 +1,29 @@
+#include "clock_publisher.h"
+
+#include "conversions.h"
+
+namespace blem_sim {
+
+namespace {
+// Long enough for every stamp of a batch of steps made between two flushes of the outbox.
+constexpr int QUEUE_SIZE = 1000;
+}  // namespace
+
+ClockPublisher::ClockPublisher(ros::NodeHandle node, double rate) : publisher_(&node, "/clock", QUEUE_SIZE), schedule_(rate) {}
+
+void ClockPublisher::publish(const StepReport& report) {
+  rosgraph_msgs::Clock message;
+  message.clock = toStamp(report.time);
+  if (published_ && message.clock <= last_) return;
+  if (!schedule_.due(report.time)) return;
+  publisher_.publish(message);
+  published_ = true;
+  last_ = message.clock;
+}
+
+void ClockPublisher::timeRestarted() {
+  schedule_.restart();
+  published_ = false;
+}
+
+}  // namespace blem_sim

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <ros/node_handle.h>
+#include <rosgraph_msgs/Clock.h>
+
+#include "greeting_publisher.h"
+#include "publish_schedule.h"
+#include "step_publisher.h"
+
+namespace blem_sim {
+
+/** /clock: strictly increasing stamps until time is restarted. A node that starts during a pause is told the time. */
+class ClockPublisher : public StepPublisher {
+ public:
+  ClockPublisher(ros::NodeHandle node, double rate);
+  void publish(const StepReport& report) override;
+  void timeRestarted() override;
+  void settled() override { publisher_.settle(); }
+
+ private:
+  GreetingPublisher<rosgraph_msgs::Clock> publisher_;
+  PublishSchedule schedule_;
+  bool published_ = false;
+  ros::Time last_;
+};
+
+}  // namespace blem_sim

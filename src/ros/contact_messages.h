@@ -1,0 +1,18 @@
+// Contacts as messages.
+#pragma once
+
+#include <blem_sim/ContactArray.h>
+#include <blem_sim/ContactsState.h>
+
+#include "blem_sim/sim/simulator.h"
+
+namespace blem_sim {
+
+/** Every contact of the report. */
+ContactArray toContactArray(const Simulator& simulator, const StepReport& report);
+
+/** A contact sensor's reading: one state per pair of colliders, in the order of the colliders. */
+ContactsState toContactsState(const Simulator& simulator, const StepReport& report, const SensorInfo& sensor,
+                              const ContactReading& reading);
+
+}  // namespace blem_sim

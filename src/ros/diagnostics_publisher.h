@@ -1,0 +1,33 @@
+#pragma once
+
+#include <diagnostic_updater/diagnostic_updater.h>
+
+#include <chrono>
+
+#include "step_publisher.h"
+#include "step_statistics.h"
+
+namespace blem_sim {
+
+/** /diagnostics once per second of wall time, also while paused: speed, contacts and what to change. */
+class DiagnosticsPublisher : public StepPublisher {
+ public:
+  DiagnosticsPublisher(ros::NodeHandle node, ros::NodeHandle private_node, const Simulator& simulator);
+  void publish(const StepReport& report) override { collector_.add(report); }
+  void resumed() override { collector_.resume(); }
+  /** To be called often; publishes when a second has passed. */
+  void serve(bool paused);
+
+ private:
+  void describeSpeed(diagnostic_updater::DiagnosticStatusWrapper& status) const;
+  void describeContacts(diagnostic_updater::DiagnosticStatusWrapper& status) const;
+
+  const Simulator& simulator_;
+  diagnostic_updater::Updater updater_;
+  StepStatisticsCollector collector_;
+  StepStatistics statistics_;  // of the last second
+  bool paused_ = false;
+  std::chrono::steady_clock::time_point next_;
+};
+
+}  // namespace blem_sim

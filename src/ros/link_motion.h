@@ -1,0 +1,23 @@
+// Pose and velocity of a link, from the state of the body it is part of.
+#pragma once
+
+#include "blem_sim/sim/simulator.h"
+
+namespace blem_sim {
+
+struct LinkMotion {
+  Pose X_WL = Pose::Identity();
+  Vector3 v_WL = Vector3::Zero();  ///< [m/s] of the link's origin, world axes
+  Vector3 w_WL = Vector3::Zero();  ///< [rad/s] world axes
+};
+
+/** @param link index into the robot's description */
+LinkMotion linkMotion(const Simulator& simulator, const StepReport& report, const RobotInfo& robot, int link);
+
+/** Motion of a body's own frame. */
+LinkMotion bodyMotion(const Simulator& simulator, const StepReport& report, int body);
+
+/** Root link of a robot, frame of an object's body, or where an environment's geometry stands. */
+LinkMotion modelMotion(const Simulator& simulator, const StepReport& report, int model);
+
+}  // namespace blem_sim

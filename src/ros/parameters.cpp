@@ -1,0 +1,155 @@
+#include "parameters.h"
+
+#include <ros/names.h>
+#include <ros/param.h>
+#include <yaml-cpp/yaml.h>
+
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "blem_sim/geometry/input_error.h"
+
+namespace blem_sim {
+
+namespace {
+
+const char* const DEFAULT_DESCRIPTION = "robot_description";
+
+YAML::Node realNumber(double value) {
+  if (std::isnan(value)) return YAML::Node(".nan");
+  if (std::isinf(value)) return YAML::Node(value > 0 ? ".inf" : "-.inf");
+  return YAML::Node(value);
+}
+
+/** Takes a text out of the parameters, for keys that parseConfig does not know. */
+std::string takeText(YAML::Node* parameters, const std::string& key, const std::string& source) {
+  const YAML::Node value = (*parameters)[key];
+  if (!value) return "";
+  if (!value.IsScalar()) throw InputError(source + ": " + key + ": must be a string");
+  const auto text = value.as<std::string>();
+  parameters->remove(key);
+  return text;
+}
+
+std::string directoryOf(const std::string& file) {
+  const auto slash = file.rfind('/');
+  return slash == std::string::npos ? "" : file.substr(0, slash);
+}
+
+/** The name attribute of <robot>; a description without one is refused later, by the URDF loader, with its own words. */
+std::string robotName(const std::string& xml) {
+  const auto tag = xml.find("<robot");
+  const auto end = xml.find('>', tag == std::string::npos ? xml.size() : tag);
+  if (end == std::string::npos) return "robot";
+  const std::string attributes = xml.substr(tag, end - tag);
+  auto begin = attributes.find("name=");
+  if (begin == std::string::npos || begin + 6 >= attributes.size()) return "robot";
+  begin += 5;
+  const auto close = attributes.find(attributes[begin], begin + 1);
+  return close == std::string::npos ? "robot" : attributes.substr(begin + 1, close - begin - 1);
+}
+
+std::string readFile(const std::string& file, const std::string& source) {
+  std::ifstream stream(file);
+  std::stringstream text;
+  text << stream.rdbuf();
+  if (!stream || text.str().empty()) throw InputError(source + ": robot_description_file: cannot read '" + file + "'");
+  return text.str();
+}
+
+/** Takes the settings of a robot that is made without a list of robots: its row, without what it is read from. */
+YAML::Node takeRobotRow(YAML::Node* parameters) {
+  YAML::Node row(YAML::NodeType::Map);
+  for (const auto& [key, row_key] : {std::make_pair("robot_pose", "pose"), std::make_pair("robot_fixed_base", "fixed_base")}) {
+    if ((*parameters)[key].IsDefined()) row[row_key] = YAML::Clone((*parameters)[key]);
+    parameters->remove(key);
+  }
+  return row;
+}
+
+/** The row of somebody who gave a URDF and no list of robots; nothing if there is none either. */
+YAML::Node describedRobots(YAML::Node row, const std::string& file, const std::string& base_directory, const std::string& source) {
+  YAML::Node robots(YAML::NodeType::Sequence);
+  std::string xml;
+  if (!file.empty()) {
+    const std::string path = UriResolver().resolve(file, base_directory);
+    xml = readFile(path, source);
+    row["urdf"] = path;
+  } else if (ros::param::get(DEFAULT_DESCRIPTION, xml)) {
+    row["description_param"] = DEFAULT_DESCRIPTION;
+  } else {
+    return robots;
+  }
+  row["name"] = robotName(xml);
+  robots.push_back(row);
+  return robots;
+}
+
+void fetchDescriptions(const std::string& source, SimulationConfig* config) {
+  for (RobotConfig& robot : config->robots) {
+    if (robot.description_param.empty()) continue;
+    const std::string parameter = ros::names::resolve(robot.description_param);
+    if (!ros::param::get(parameter, robot.urdf_xml)) {
+      throw InputError(source + ": robots: " + robot.name + ": description_param: there is no string parameter " + parameter +
+                       "; set it before the node starts, or give urdf: FILE");
+    }
+  }
+}
+
+}  // namespace
+
+YAML::Node toYaml(XmlRpc::XmlRpcValue value) {
+  using XmlRpc::XmlRpcValue;
+  switch (value.getType()) {
+    case XmlRpcValue::TypeBoolean:
+      return YAML::Node(static_cast<bool>(value));
+    case XmlRpcValue::TypeInt:
+      return YAML::Node(static_cast<int>(value));
+    case XmlRpcValue::TypeDouble:
+      return realNumber(static_cast<double>(value));
+    case XmlRpcValue::TypeString:
+      return YAML::Node(static_cast<std::string>(value));
+    case XmlRpcValue::TypeArray: {
+      YAML::Node list(YAML::NodeType::Sequence);
+      for (int i = 0; i < value.size(); ++i) list.push_back(toYaml(value[i]));
+      return list;
+    }
+    case XmlRpcValue::TypeStruct: {
+      YAML::Node map(YAML::NodeType::Map);
+      for (auto& [name, member] : value) map[name] = toYaml(member);
+      return map;
+    }
+    case XmlRpcValue::TypeInvalid:
+      return YAML::Node(YAML::NodeType::Null);
+    default:
+      throw InputError("parameters: a date or binary data is no setting; quote it if it is meant as text");
+  }
+}
+
+SimulationConfig readParameters(const ros::NodeHandle& private_node) {
+  const std::string source = private_node.getNamespace();
+  XmlRpc::XmlRpcValue given;
+  YAML::Node parameters(YAML::NodeType::Map);
+  if (ros::param::get(source, given) && given.getType() == XmlRpc::XmlRpcValue::TypeStruct) parameters = toYaml(given);
+
+  const std::string config_file = takeText(&parameters, "config_file", source);
+  const std::string environment = takeText(&parameters, "environment", source);
+  const std::string description_file = takeText(&parameters, "robot_description_file", source);
+  takeText(&parameters, DEFAULT_DESCRIPTION, source);  // may be kept here, for robots: {description_param: ~robot_description}
+  const YAML::Node robot_row = takeRobotRow(&parameters);
+  if (!parameters["robots"].IsDefined()) {
+    parameters["robots"] = describedRobots(robot_row, description_file, directoryOf(config_file), source);
+  }
+  if (!environment.empty()) {
+    YAML::Node row(YAML::NodeType::Map);
+    row["name"] = "environment";
+    row["uri"] = environment;
+    parameters["environments"].push_back(row);
+  }
+  SimulationConfig config = parseConfig(parameters, source, directoryOf(config_file));
+  fetchDescriptions(source, &config);
+  return config;
+}
+
+}  // namespace blem_sim

@@ -1,0 +1,28 @@
+// The node's private parameters as a SimulationConfig.
+#pragma once
+
+#include <ros/node_handle.h>
+#include <xmlrpcpp/XmlRpcValue.h>
+
+#include "blem_sim/sim/config.h"
+
+namespace YAML {
+class Node;
+}
+
+namespace blem_sim {
+
+/** Parameters are YAML that has been through XML-RPC; this is the way back. @throws InputError: dates and binary data, which no key takes
+ */
+YAML::Node toYaml(XmlRpc::XmlRpcValue value);
+
+/**
+ * Reads every private parameter through parseConfig, so that the node and blem_sim_run take the same keys, plus the node's own:
+ * `config_file` (relative files are meant against its folder), `environment` (URI of one more environment, of that name) and, if there is
+ * no key `robots`, for one robot that is made then: `robot_description_file` (URDF file; else the parameter `robot_description` if it is
+ * set), `robot_pose` ({xyz, rpy} of its root link) and `robot_fixed_base`. Fetches every `description_param`.
+ * @throws InputError
+ */
+SimulationConfig readParameters(const ros::NodeHandle& private_node);
+
+}  // namespace blem_sim

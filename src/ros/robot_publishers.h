@@ -1,0 +1,67 @@
+// What every robot publishes: joint states, the pose of its root link.
+#pragma once
+
+#include <nav_msgs/Odometry.h>
+#include <ros/node_handle.h>
+#include <sensor_msgs/JointState.h>
+#include <tf2_msgs/TFMessage.h>
+
+#include <vector>
+
+#include "greeting_publisher.h"
+#include "publish_schedule.h"
+#include "step_publisher.h"
+
+namespace blem_sim {
+
+/** `joint_states` in each robot's namespace: position, velocity and effort of every movable joint. Told late subscribers during a pause. */
+class JointStatePublisher : public StepPublisher {
+ public:
+  JointStatePublisher(ros::NodeHandle node, const Simulator& simulator);
+  void publish(const StepReport& report) override;
+  void timeRestarted() override { schedule_.restart(); }
+  void settled() override {
+    for (auto& publisher : publishers_) publisher.settle();
+  }
+
+ private:
+  const Simulator& simulator_;
+  PublishSchedule schedule_;
+  std::vector<GreetingPublisher<sensor_msgs::JointState>> publishers_;  // per robot
+  std::vector<sensor_msgs::JointState> messages_;                       // per robot, names filled in once
+};
+
+/** `odom` in each robot's namespace: ground truth of the root link, twist in its own axes. Told late subscribers during a pause. */
+class OdometryPublisher : public StepPublisher {
+ public:
+  OdometryPublisher(ros::NodeHandle node, const Simulator& simulator);
+  void publish(const StepReport& report) override;
+  void timeRestarted() override { schedule_.restart(); }
+  void settled() override {
+    for (auto& publisher : publishers_) publisher.settle();
+  }
+
+ private:
+  const Simulator& simulator_;
+  PublishSchedule schedule_;
+  std::vector<GreetingPublisher<nav_msgs::Odometry>> publishers_;  // per robot
+};
+
+/**
+ * /tf: world to the root link of each robot whose root is not itself called world, and world to each object. Told late
+ * subscribers during a pause, so that rviz sees where everything stands.
+ */
+class TransformPublisher : public StepPublisher {
+ public:
+  TransformPublisher(ros::NodeHandle node, const Simulator& simulator);
+  void publish(const StepReport& report) override;
+  void timeRestarted() override { schedule_.restart(); }
+  void settled() override { publisher_.settle(); }
+
+ private:
+  const Simulator& simulator_;
+  PublishSchedule schedule_;
+  GreetingPublisher<tf2_msgs::TFMessage> publisher_;
+};
+
+}  // namespace blem_sim

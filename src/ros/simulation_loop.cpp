@@ -1,0 +1,91 @@
+#include "simulation_loop.h"
+
+#include <ros/console.h>
+#include <ros/init.h>
+
+#include <algorithm>
+
+#include "status_text.h"
+
+namespace blem_sim {
+
+namespace {
+// Longest wait for a callback, so that a shutdown and the 1 Hz diagnostics are noticed during a pause.
+constexpr double LONGEST_WAIT = 0.05;  // [s]
+// Steps made without a look at the sockets; below the publishers' queue lengths, so that no message of a batch is dropped.
+constexpr std::uint32_t STEPS_PER_FLUSH = 50;
+}  // namespace
+
+SimulationLoop::SimulationLoop(Simulator* simulator)
+    : simulator_(simulator),
+      pacer_(simulator->config().real_time_factor, simulator->config().time_step),
+      paused_(simulator->config().paused) {}
+
+void SimulationLoop::publish(const StepReport& report) {
+  settled_ = false;
+  for (const auto& publisher : publishers_) publisher->publish(report);
+}
+
+void SimulationLoop::settle() {
+  if (settled_) return;
+  outbox_.flush();
+  for (const auto& publisher : publishers_) publisher->settled();
+  settled_ = true;
+}
+
+bool SimulationLoop::step() {
+  const StepReport& report = simulator_->step();
+  publish(report);
+  if ((report.status & STATE_NOT_FINITE) == 0) return true;
+  paused_ = true;
+  ROS_ERROR("t = %.3f s: %s", report.time, statusAdvice(STATE_NOT_FINITE).front().c_str());
+  return false;
+}
+
+void SimulationLoop::run(ros::CallbackQueue* callbacks, const std::function<void(bool paused)>& serve) {
+  publish(simulator_->report());
+  for (const auto& publisher : publishers_) publisher->resumed();
+  pacer_.restart(StepPacer::Clock::now());
+  while (ros::ok()) {
+    if (paused_) settle();
+    const double wait = paused_ ? LONGEST_WAIT : std::min(LONGEST_WAIT, pacer_.wait(StepPacer::Clock::now()));
+    callbacks->callAvailable(ros::WallDuration(wait));
+    serve(paused_);
+    if (paused_ || pacer_.wait(StepPacer::Clock::now()) > 0) continue;
+    step();
+    pacer_.stepped(StepPacer::Clock::now());
+  }
+}
+
+void SimulationLoop::unpause() {
+  if (!paused_) return;
+  paused_ = false;
+  pacer_.restart(StepPacer::Clock::now());
+  for (const auto& publisher : publishers_) publisher->resumed();
+}
+
+std::uint32_t SimulationLoop::stepPaused(std::uint32_t count) {
+  paused_ = true;
+  for (const auto& publisher : publishers_) publisher->resumed();
+  std::uint32_t made = 0;
+  bool finite = true;
+  while (made < count && finite && ros::ok()) {
+    finite = step();
+    ++made;
+    if (made % STEPS_PER_FLUSH == 0) outbox_.flush();
+  }
+  settle();
+  return made;
+}
+
+void SimulationLoop::resetSimulation() {
+  simulator_->resetSimulation();
+  for (const auto& publisher : publishers_) publisher->timeRestarted();
+  publish(simulator_->report());
+}
+
+void SimulationLoop::geometryChanged() {
+  for (const auto& publisher : publishers_) publisher->geometryChanged();
+}
+
+}  // namespace blem_sim

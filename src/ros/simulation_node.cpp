@@ -1,0 +1,87 @@
+#include "simulation_node.h"
+
+#include <ros/console.h>
+
+#include "blem_sim/sim/simulator.h"
+#include "clock_publisher.h"
+#include "contact_publisher.h"
+#include "diagnostics_publisher.h"
+#include "environment_services.h"
+#include "geometry_publishers.h"
+#include "parameters.h"
+#include "physics_services.h"
+#include "robot_commands.h"
+#include "robot_publishers.h"
+#include "sensor_publisher.h"
+#include "simulation_loop.h"
+#include "state_publisher.h"
+#include "step_report_publisher.h"
+#include "step_service.h"
+
+namespace blem_sim {
+
+namespace {
+
+ros::NodeHandle nodeOn(ros::CallbackQueue* callbacks, const std::string& name) {
+  ros::NodeHandle node(name);
+  node.setCallbackQueue(callbacks);
+  return node;
+}
+
+}  // namespace
+
+struct SimulationNode::Impl {
+  // Own queue: callbacks are served between steps, in the thread that steps.
+  ros::CallbackQueue callbacks;
+  ros::NodeHandle node = nodeOn(&callbacks, "");
+  ros::NodeHandle private_node = nodeOn(&callbacks, "~");
+  Simulator simulator{readParameters(private_node), UriResolver()};
+  SimulationLoop loop{&simulator};
+  DiagnosticsPublisher* diagnostics = nullptr;
+  std::unique_ptr<RobotCommands> commands;
+  std::unique_ptr<PhysicsServices> physics;
+  std::unique_ptr<StepService> step;
+  std::unique_ptr<EnvironmentServices> environments;
+
+  void addPublishers() {
+    // The clock goes last: whoever wakes by it finds the messages of that time on their way.
+    loop.add(std::make_unique<JointStatePublisher>(node, simulator));
+    loop.add(std::make_unique<TransformPublisher>(node, simulator));
+    loop.add(std::make_unique<OdometryPublisher>(node, simulator));
+    loop.add(std::make_unique<SensorPublisher>(node, simulator));
+    loop.add(std::make_unique<ContactPublisher>(private_node, simulator));
+    loop.add(std::make_unique<ContactMarkerPublisher>(private_node, simulator));
+    loop.add(std::make_unique<GeometryMarkerPublisher>(private_node, simulator));
+    loop.add(std::make_unique<LoadReportPublisher>(private_node, simulator));
+    loop.add(std::make_unique<StatePublisher>(private_node, simulator));
+    loop.add(std::make_unique<StepReportPublisher>(private_node, simulator));
+    auto diagnostics_publisher = std::make_unique<DiagnosticsPublisher>(node, private_node, simulator);
+    diagnostics = diagnostics_publisher.get();
+    loop.add(std::move(diagnostics_publisher));
+    loop.add(std::make_unique<ClockPublisher>(node, simulator.config().rates.clock));
+  }
+
+  void addInputs() {
+    commands = std::make_unique<RobotCommands>(node, &simulator);
+    physics = std::make_unique<PhysicsServices>(private_node, &loop);
+    step = std::make_unique<StepService>(private_node, &loop);
+    environments = std::make_unique<EnvironmentServices>(private_node, &loop);
+  }
+};
+
+SimulationNode::SimulationNode() : impl_(std::make_unique<Impl>()) {
+  for (const std::string& note : impl_->simulator.notes()) ROS_WARN("%s", note.c_str());
+  impl_->addPublishers();
+  impl_->addInputs();
+}
+
+SimulationNode::~SimulationNode() = default;
+
+void SimulationNode::run() {
+  const Simulator& simulator = impl_->simulator;
+  ROS_INFO("ready: %zu robots, %zu models, %zu colliders, time step %g s%s", simulator.robots().size(), simulator.models().size(),
+           simulator.colliders().size(), simulator.config().time_step, impl_->loop.paused() ? ", paused" : "");
+  impl_->loop.run(&impl_->callbacks, [this](bool paused) { impl_->diagnostics->serve(paused); });
+}
+
+}  // namespace blem_sim

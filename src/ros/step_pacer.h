@@ -1,0 +1,30 @@
+// When the next step is due on the wall clock.
+#pragma once
+
+#include <chrono>
+
+namespace blem_sim {
+
+/** Keeps simulated time at real_time_factor times wall time. A late simulation is not sped up for more than MAX_BACKLOG of what it missed.
+ */
+class StepPacer {
+ public:
+  using Clock = std::chrono::steady_clock;
+  /** [s] wall time that may be caught up; what is later than that is given up, so that a pause of the machine makes no burst. */
+  static constexpr double MAX_BACKLOG = 0.02;
+
+  /** @param real_time_factor 0 = as fast as possible. @param time_step [s] */
+  StepPacer(double real_time_factor, double time_step);
+  /** The first step is due now: at the start and after a pause. */
+  void restart(Clock::time_point now);
+  /** [s] wall time until the next step is due; 0 = now. */
+  double wait(Clock::time_point now) const;
+  /** A step was made: the next one is due one period later. */
+  void stepped(Clock::time_point now);
+
+ private:
+  Clock::duration period_;
+  Clock::time_point due_;
+};
+
+}  // namespace blem_sim

@@ -1,0 +1,23 @@
+// What the simulation loop tells after each step; one family of topics each.
+#pragma once
+
+#include "blem_sim/sim/simulator.h"
+
+namespace blem_sim {
+
+class StepPublisher {
+ public:
+  virtual ~StepPublisher() = default;
+  /** After every step, and once with the state at hand when the node is ready or time has started again. */
+  virtual void publish(const StepReport& report) = 0;
+  /** Simulated time starts again at 0. */
+  virtual void timeRestarted() {}
+  /** Steps are about to be made again after a pause: what was measured on the wall clock starts anew. */
+  virtual void resumed() {}
+  /** A pause has begun and what was published has reached every subscriber's link. */
+  virtual void settled() {}
+  /** An environment was loaded or unloaded. */
+  virtual void geometryChanged() {}
+};
+
+}  // namespace blem_sim

@@ -1,0 +1,51 @@
+#include "step_report_publisher.h"
+
+#include "conversions.h"
+#include "status_text.h"
+#include "step_report_message.h"
+
+namespace blem_sim {
+
+namespace {
+constexpr int QUEUE_SIZE = 100;
+}
+
+StepReportPublisher::StepReportPublisher(ros::NodeHandle private_node, const Simulator& simulator)
+    : simulator_(simulator),
+      schedule_(simulator.config().rates.step_report),
+      publisher_(private_node.advertise<StepReportMessage>("step_report", QUEUE_SIZE)) {}
+
+void StepReportPublisher::timeRestarted() {
+  schedule_.restart();
+  collector_.take();
+  collector_.resume();
+}
+
+void StepReportPublisher::publish(const StepReport& report) {
+  collector_.add(report);
+  if (!schedule_.due(report.time)) return;
+  const StepStatistics statistics = collector_.take();
+  StepReportMessage message;
+  message.header.stamp = toStamp(report.time);
+  message.step = report.step;
+  message.steps = statistics.steps;
+  message.time_step = simulator_.config().time_step;
+  message.status = statistics.status;
+  message.status_names = statusNames(statistics.status);
+  message.real_time_factor = statistics.realTimeFactor();
+  message.substeps = report.substeps;
+  message.raw_contacts = report.raw_contacts;
+  message.reduced_contacts = report.reduced_contacts;
+  message.max_depth = statistics.max_depth;
+  message.max_of_layer = statistics.max_of_layer;
+  if (statistics.deepest_a >= 0) message.deepest_a = simulator_.colliders()[statistics.deepest_a].name;
+  if (statistics.deepest_b >= 0) message.deepest_b = simulator_.colliders()[statistics.deepest_b].name;
+  message.energy = report.energy;
+  for (std::size_t i = 0; i < statistics.stage_seconds.size(); ++i) {
+    message.stages.emplace_back(STAGE_NAMES[i]);
+    message.stage_seconds.push_back(statistics.stage_seconds[i] / statistics.steps);
+  }
+  publisher_.publish(message);
+}
+
+}  // namespace blem_sim

@@ -1,0 +1,40 @@
+// What happened over several steps, for topics slower than the simulation.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+
+#include "blem_sim/sim/step_report.h"
+
+namespace blem_sim {
+
+struct StepStatistics {
+  std::uint32_t steps = 0;
+  std::uint32_t status = STEP_OK;      ///< every bit that was set
+  std::uint32_t unreliable_steps = 0;  ///< steps with a contact outside the boundary layers
+  double max_depth = 0, max_of_layer = 0;
+  int deepest_a = -1, deepest_b = -1;                                  ///< colliders of the deepest contact
+  double simulated = 0, wall = 0;                                      ///< [s]
+  std::array<double, static_cast<int>(Stage::COUNT)> stage_seconds{};  ///< sums
+
+  /** 0 before any wall time has passed. */
+  double realTimeFactor() const { return wall > 0 ? simulated / wall : 0; }
+};
+
+/** Collects statistics; wall time runs from the last take() or resume(). */
+class StepStatisticsCollector {
+ public:
+  void add(const StepReport& report);
+  /** Wall time that has passed since the last step does not count. */
+  void resume() { last_ = Clock::now(); }
+  /** What was collected; starts anew. */
+  StepStatistics take();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  StepStatistics statistics_;
+  Clock::time_point last_ = Clock::now();
+};
+
+}  // namespace blem_sim

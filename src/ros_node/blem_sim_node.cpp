@@ -1,0 +1,24 @@
+// The simulation server. Exit codes: 0 shut down, 2 bad input.
+#include <ros/console.h>
+#include <ros/init.h>
+#include <ros/node_handle.h>
+#include <ros/param.h>
+
+#include "simulation_node.h"
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "blem_sim");
+  // Before the node starts its own clock, which asks for it.
+  if (!ros::param::has("/use_sim_time")) ros::param::set("/use_sim_time", true);
+  // roscpp ends with its last handle, and its log with it: this one sees the error line out.
+  const ros::NodeHandle handle;
+  try {
+    blem_sim::SimulationNode node;
+    node.run();
+  } catch (const std::exception& error) {
+    ROS_FATAL("%s", error.what());
+    ros::shutdown();
+    return 2;
+  }
+  return 0;
+}

@@ -1,0 +1,30 @@
+// Boundary width and surface of a shape: the innermost setting counts.
+#pragma once
+
+#include <initializer_list>
+
+#include "blem_sim/sim/config.h"
+
+namespace blem_sim {
+
+struct ContactSettings {
+  double boundary_width = 0;  ///< [m]
+  SurfaceProperties surface;
+};
+
+/** @param overrides outermost first */
+inline ContactSettings contactSettings(double boundary_width, const SurfaceProperties& surface,
+                                       std::initializer_list<const ContactOverrides*> overrides) {
+  ContactSettings settings{boundary_width, surface};
+  for (const ContactOverrides* o : overrides) {
+    if (!o) continue;
+    settings.boundary_width = o->boundary_width.value_or(settings.boundary_width);
+    settings.surface.friction = o->friction.value_or(settings.surface.friction);
+    settings.surface.restitution = o->restitution.value_or(settings.surface.restitution);
+    settings.surface.stiffness = o->stiffness.value_or(settings.surface.stiffness);
+    settings.surface.damping = o->damping.value_or(settings.surface.damping);
+  }
+  return settings;
+}
+
+}  // namespace blem_sim

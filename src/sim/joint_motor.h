@@ -1,0 +1,63 @@
+// One joint's motor: what it is told, and how that becomes effort.
+#pragma once
+
+#include <vector>
+
+#include "blem_sim/dynamics/world.h"
+#include "blem_sim/sim/config.h"
+#include "blem_sim/sim/trajectory.h"
+
+namespace blem_sim {
+
+struct MotorSettings {
+  JointGains gains;
+  MotorLaw law = MotorLaw::PID;
+  JointFriction friction;
+  double effort_limit = std::numeric_limits<double>::infinity();  ///< [N m or N]
+  bool continuous = false;                                        ///< positions are meant to the nearest turn
+  bool commanded = false;  ///< false: no motor of its own (a fixed joint, a mimic joint); friction stays
+};
+
+/** Follows a trajectory, holds a target, or keeps a velocity; an effort adds to each. State: trajectory, targets, integral term. */
+class JointMotor {
+ public:
+  JointMotor() = default;
+  JointMotor(const MotorSettings& settings, double initial_position);
+
+  /** Back to holding the initial position, integral 0. */
+  void reset();
+  /** Takes over a trajectory's knots. @param position [rad or m] of the joint now, from which a velocity target is left */
+  void follow(double now, double start, std::vector<JointSpline::Knot> knots, double position);
+  void hold(double position, double velocity = 0);
+  /** Velocity alone: damping against the velocity error, no stiffness, no integral. */
+  void keepVelocity(double velocity);
+  void addEffort(double effort) { added_effort_ = effort; }
+
+  JointSample desired(double time) const;
+
+  /** Latches what the motor is told for the coming (sub)step: Eq. 7 looks at its start, the implicit law at its end. */
+  void sample(double time, double dt);
+  /** What drives the joint in the coming (sub)step, within the effort limit [Hauser 2013, Eq. 7 and 4.1]. */
+  JointDrive drive(const JointState& state);
+  /** After a (sub)step that was accepted: integrates, and notes whether the limit was met. @return true if it was */
+  bool accept(const JointDrive& drive, const JointState& after, double dt);
+
+  const MotorSettings& settings() const { return settings_; }
+  void append(std::vector<double>* numbers) const;
+  void read(const double** cursor);
+
+ private:
+  MotorSettings settings_;
+  double initial_position_ = 0;
+  JointSpline spline_;
+  bool velocity_only_ = false;
+  double velocity_target_ = 0;  ///< adds to the spline's
+  double added_effort_ = 0;
+  double integral_ = 0;  ///< [N m or N] the integral term, k_I times the integral of the error
+  // Of the present (sub)step, not state.
+  JointSample sample_;
+  double error_ = 0;
+  bool capped_ = false;
+};
+
+}  // namespace blem_sim

@@ -1,0 +1,68 @@
+// A sensor looks at an accepted step and says what it read. A new one is one class here, one row in makeSensor, one alternative in
+// SensorReading.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "blem_sim/sim/step_report.h"
+#include "random_numbers.h"
+#include "simulated_world.h"
+
+namespace blem_sim {
+
+/** What a sensor may look at: one accepted step. */
+struct StepContext {
+  const SimulatedWorld& world;
+  double dt;                                    ///< [s] of the step
+  const std::vector<BodyState>& bodies_before;  ///< at the start of the step
+  const std::vector<BodyState>& bodies;         ///< at its end
+  const std::vector<JointState>& joints;        ///< at its end
+  const std::vector<Wrench>& joint_wrenches;    ///< mean over the step, as SolveResult has them
+  const std::vector<ContactReport>& contacts;
+};
+
+class Sensor {
+ public:
+  virtual ~Sensor() = default;
+  /** @param period [s] since the last reading */
+  virtual SensorReading read(const StepContext& step, double period) = 0;
+  /** Forgets what it remembers (a drifting bias), without touching the random numbers. */
+  virtual void reset() {}
+  /** What it remembers. */
+  virtual void append(std::vector<double>* numbers) const {}
+  virtual void restore(const double** cursor) {}
+
+  RandomNumbers& random() { return random_; }
+  const RandomNumbers& random() const { return random_; }
+
+ protected:
+  RandomNumbers random_;
+};
+
+std::unique_ptr<Sensor> makeForceTorqueSensor(const SimulatedWorld& world, const SensorInfo& info);
+std::unique_ptr<Sensor> makeImuSensor(const SimulatedWorld& world, const SensorInfo& info);
+std::unique_ptr<Sensor> makeContactSensor(const SimulatedWorld& world, const SensorInfo& info);
+std::unique_ptr<Sensor> makeTiltSensor(const SimulatedWorld& world, const SensorInfo& info);
+std::unique_ptr<Sensor> makeMotorCurrentSensor(const SimulatedWorld& world, const SensorInfo& info);
+std::unique_ptr<Sensor> makeSensor(const SimulatedWorld& world, const SensorInfo& info);
+
+/** A frame that is fixed on a link, and how it moves. */
+class MountedFrame {
+ public:
+  /** @param X_LS frame in the link */
+  MountedFrame(const SimulatedWorld& world, const RobotInfo& robot, const std::string& link, const Pose& X_LS);
+
+  struct Motion {
+    Pose X_WS = Pose::Identity();
+    Vector3 v_WS = Vector3::Zero(), w_WS = Vector3::Zero();  ///< of the origin and of the axes, world axes
+  };
+  Motion motion(const std::vector<BodyState>& bodies) const;
+
+ private:
+  int body_;
+  Pose X_BS_;  ///< in the world's frame if the body is the world
+  Vector3 p_BCom_ = Vector3::Zero();
+};
+
+}  // namespace blem_sim

@@ -1,0 +1,47 @@
+// Everything a simulation is made of once it is built: the world, its models, and what can touch.
+#pragma once
+
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "blem_sim/contact/broad_phase.h"
+#include "blem_sim/contact/reduction.h"
+#include "blem_sim/sim/simulator.h"
+#include "joint_motor.h"
+
+namespace blem_sim {
+
+struct SimulatedWorld {
+  SimulatedWorld(const Vector3& gravity, const SolverSettings& solver) : world(gravity, solver) {}
+
+  World world;
+  std::vector<ModelInfo> models;
+  std::vector<RobotInfo> robots;
+  std::vector<SensorInfo> sensors;
+  std::vector<JointMotor> motors;  ///< one per joint slot of the world
+  std::vector<Collider> colliders;
+  std::vector<ContactBudget> budgets;  ///< one per model
+  CollisionFilter filter;
+  std::set<std::pair<int, int>> disabled_pairs;  ///< (smaller, larger) index of colliders that never touch
+  std::vector<MeshReport> load_report;
+  std::vector<std::string> notes;
+
+  /** @throws InputError if the name is empty or taken. @param section of the configuration, for the message */
+  void checkNewName(const std::string& name, const std::string& section) const;
+  /** @param max_contacts its k @return its index */
+  int addModel(const std::string& name, ModelKind kind, int max_contacts);
+  /** Adds a collider and its line in the load report. @param width [m] of the layer */
+  void addCollider(Collider collider, double width, const SurfaceProperties& surface, MeshReport report);
+
+  int modelIndex(const std::string& name) const;  ///< among the living; -1 if there is none
+  /** Pose of a link in the world now. */
+  Pose linkPose(const RobotInfo& robot, int link) const;
+  /** Pose of a link in the world when the bodies have these states. */
+  Pose linkPose(const RobotInfo& robot, int link, const std::vector<BodyState>& bodies) const;
+  /** State of every body slot. */
+  void bodyStates(std::vector<BodyState>* out) const;
+};
+
+}  // namespace blem_sim

@@ -1,0 +1,101 @@
+#include "blem_sim/sim/simulator.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "blem_sim/geometry/input_error.h"
+#include "nearest_name.h"
+#include "simulator_impl.h"
+
+namespace blem_sim {
+namespace {
+
+void check(const SimulationConfig& config) {
+  if (!(config.time_step > 0) || !std::isfinite(config.time_step))
+    throw InputError("time_step: needs a finite number of seconds above 0, such as 0.001");
+  if (!config.gravity.allFinite()) throw InputError("gravity: needs three finite numbers, such as [0, 0, -9.81]");
+}
+
+std::uint64_t stepsPerReading(double rate, double time_step) {
+  if (!(rate > 0)) return 1;
+  return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(1 / (rate * time_step))));
+}
+
+template <typename Named>
+int indexOf(const std::vector<Named>& items, const std::string& name) {
+  const auto at = std::find_if(items.begin(), items.end(), [&](const Named& item) { return item.name == name; });
+  return at == items.end() ? -1 : static_cast<int>(at - items.begin());
+}
+
+}  // namespace
+
+Simulator::Impl::Impl(const SimulationConfig& config, const UriResolver& resolver)
+    : config_((check(config), config)),
+      world_(config.gravity, config.solver),
+      builder_(config.contact, config.base_directory, resolver),
+      contacts_(config.contact) {
+  for (const EnvironmentConfig& environment : config_.environments) builder_.addEnvironment(environment, &world_);
+  for (const RobotConfig& robot : config_.robots) builder_.addRobot(robot, &world_);
+  for (const ObjectConfig& object : config_.objects) builder_.addObject(object, &world_);
+  for (const SensorInfo& sensor : world_.sensors) {
+    sensors_.push_back(makeSensor(world_, sensor));
+    sensor_periods_.push_back(stepsPerReading(sensor.config.rate, config_.time_step));
+  }
+  seedSensors();
+  initial_state_ = world_.world.save();
+  reportWithoutStep();
+}
+
+void Simulator::Impl::unloadEnvironment(const std::string& name) {
+  std::vector<std::string> environments;
+  for (const ModelInfo& model : world_.models)
+    if (model.alive && model.kind == ModelKind::ENVIRONMENT) environments.push_back(model.name);
+  requireName(name, environments, "unload_environment", "environment");
+  const int index = world_.modelIndex(name);
+  world_.models[index].alive = false;
+  for (Collider& collider : world_.colliders) {
+    if (collider.model != index) continue;
+    collider.enabled = false;
+    collider.geometry.reset();
+  }
+  std::vector<MeshReport>& reports = world_.load_report;
+  reports.erase(std::remove_if(reports.begin(), reports.end(), [&](const MeshReport& report) { return report.name == name; }),
+                reports.end());
+  contacts_.forget();
+}
+
+Simulator::Simulator(const SimulationConfig& config, const UriResolver& resolver) : impl_(std::make_unique<Impl>(config, resolver)) {}
+Simulator::~Simulator() = default;
+
+const StepReport& Simulator::step() { return impl_->step(); }
+const StepReport& Simulator::report() const { return impl_->report_; }
+double Simulator::time() const { return impl_->time(); }
+std::uint64_t Simulator::steps() const { return impl_->step_count_; }
+const SimulationConfig& Simulator::config() const { return impl_->config_; }
+const Vector3& Simulator::gravity() const { return impl_->world_.world.gravity(); }
+
+const std::vector<ModelInfo>& Simulator::models() const { return impl_->world_.models; }
+const std::vector<RobotInfo>& Simulator::robots() const { return impl_->world_.robots; }
+const std::vector<SensorInfo>& Simulator::sensors() const { return impl_->world_.sensors; }
+const std::vector<Collider>& Simulator::colliders() const { return impl_->world_.colliders; }
+const std::vector<MeshReport>& Simulator::loadReport() const { return impl_->world_.load_report; }
+const std::vector<std::string>& Simulator::notes() const { return impl_->world_.notes; }
+const World& Simulator::world() const { return impl_->world_.world; }
+
+std::string Simulator::bodyName(int body) const { return body == WORLD_BODY ? "world" : world().bodySpec(body).name; }
+int Simulator::robotIndex(const std::string& name) const { return indexOf(robots(), name); }
+int Simulator::modelIndex(const std::string& name) const { return impl_->world_.modelIndex(name); }
+Pose Simulator::linkPose(int robot, int link) const { return impl_->world_.linkPose(robots().at(robot), link); }
+
+void Simulator::commandTrajectory(int robot, const JointTrajectory& trajectory) { impl_->commandTrajectory(robot, trajectory); }
+void Simulator::commandJoints(int robot, const JointCommandMessage& command) { impl_->commandJoints(robot, command); }
+JointSample Simulator::desiredState(int robot, int joint) const { return impl_->desiredState(robots().at(robot).joints.at(joint)); }
+
+void Simulator::loadEnvironment(const EnvironmentConfig& environment) {
+  impl_->builder_.addEnvironment(environment, &impl_->world_);
+  impl_->contacts_.forget();
+}
+
+void Simulator::unloadEnvironment(const std::string& name) { impl_->unloadEnvironment(name); }
+
+}  // namespace blem_sim

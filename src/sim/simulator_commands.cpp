@@ -1,0 +1,93 @@
+// Commands between steps: all of a command is checked before any of it takes effect.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "blem_sim/geometry/input_error.h"
+#include "nearest_name.h"
+#include "simulator_impl.h"
+
+namespace blem_sim {
+namespace {
+
+using Knot = JointSpline::Knot;
+
+double valueAt(const std::vector<double>& values, std::size_t i) { return values.empty() ? 0 : values[i]; }
+
+std::vector<Knot> knotsOf(const JointTrajectory& trajectory, std::size_t joint, double start) {
+  std::vector<Knot> knots;
+  for (const TrajectoryPoint& point : trajectory.points) {
+    const int order = point.velocities.empty() ? 1 : point.accelerations.empty() ? 3 : 5;
+    knots.push_back({start + point.time_from_start, point.positions[joint], valueAt(point.velocities, joint),
+                     valueAt(point.accelerations, joint), valueAt(point.effort, joint), order});
+  }
+  return knots;
+}
+
+std::size_t indexOf(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) - names.begin();
+}
+
+void checkValues(const std::vector<double>& values, const JointCommandMessage& command, const std::string& where, const char* field) {
+  if (values.empty()) return;
+  if (values.size() != command.joints.size())
+    throw InputError(
+        fmt::format("{}: {}: {} values for {} joints; give one each, or none", where, field, values.size(), command.joints.size()));
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (!std::isfinite(values[i]))
+      throw InputError(fmt::format("{}: {}: joint '{}' has {}; numbers must be finite", where, field, command.joints[i], values[i]));
+}
+
+void checkCommand(const JointCommandMessage& command, const RobotInfo& robot) {
+  const std::string where = "robot '" + robot.name + "': joint command";
+  std::set<std::string> seen;
+  for (const std::string& joint : command.joints) {
+    requireName(joint, robot.joint_names, where, "movable joint");
+    if (!seen.insert(joint).second) throw InputError(fmt::format("{}: joint '{}' is there twice; name it once", where, joint));
+  }
+  checkValues(command.positions, command, where, "position");
+  checkValues(command.velocities, command, where, "velocity");
+  checkValues(command.efforts, command, where, "effort");
+}
+
+}  // namespace
+
+void Simulator::Impl::commandTrajectory(int robot, const JointTrajectory& trajectory) {
+  const RobotInfo& info = world_.robots.at(robot);
+  try {
+    checkTrajectory(trajectory, info.joint_names);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("robot '{}': {}", info.name, error.what()));
+  }
+  const double now = time(), start = trajectory.start_time > 0 ? trajectory.start_time : now;
+  const std::vector<std::string>& joints = trajectory.joints.empty() ? info.joint_names : trajectory.joints;
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    const int joint = info.joints[indexOf(info.joint_names, joints[i])];
+    world_.motors[joint].follow(now, start, knotsOf(trajectory, i, start), world_.world.jointState(joint).position);
+  }
+}
+
+void Simulator::Impl::commandJoints(int robot, const JointCommandMessage& command) {
+  const RobotInfo& info = world_.robots.at(robot);
+  checkCommand(command, info);
+  for (std::size_t i = 0; i < command.joints.size(); ++i) {
+    JointMotor& motor = world_.motors[info.joints[indexOf(info.joint_names, command.joints[i])]];
+    if (!command.positions.empty())
+      motor.hold(command.positions[i], valueAt(command.velocities, i));
+    else if (!command.velocities.empty())
+      motor.keepVelocity(command.velocities[i]);
+    if (!command.efforts.empty()) motor.addEffort(command.efforts[i]);
+  }
+}
+
+JointSample Simulator::Impl::desiredState(int joint) const {
+  const JointSpec& spec = world_.world.jointSpec(joint);
+  if (spec.mimic_joint < 0) return world_.motors[joint].desired(time());
+  const JointSample master = desiredState(spec.mimic_joint);
+  return {spec.mimic_multiplier * master.position + spec.mimic_offset, spec.mimic_multiplier * master.velocity,
+          spec.mimic_multiplier * master.acceleration, 0};
+}
+
+}  // namespace blem_sim

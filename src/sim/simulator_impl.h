@@ -1,0 +1,84 @@
+// What a Simulator holds. Its work is split by concept: simulator_step.cpp, simulator_commands.cpp, simulator_state.cpp.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "contact_stage.h"
+#include "sensor.h"
+#include "simulated_world.h"
+#include "step_guard.h"
+#include "world_builder.h"
+
+namespace blem_sim {
+
+struct Simulator::Impl {
+  Impl(const SimulationConfig& config, const UriResolver& resolver);
+
+  // One step, stage by stage: simulator_step.cpp.
+  const StepReport& step();
+  void startStep();
+  void sampleCommands();
+  void motorTorque();
+  void broadPhase();
+  void narrowPhase();
+  void reduction();
+  void stepGuard();
+  /** False if the state is not finite any more; the last finite one is then restored. */
+  bool solve();
+  void readSensors();
+  void report();
+  void acceptSubstep();
+  void recordContacts();
+  void recordSaturation();
+  const StepReport& stop();
+  void findFirstContacts();
+  void jointStates(std::vector<JointState>* out) const;
+  bool bodiesAreFinite() const;
+  /** Report of the state at hand, nothing having happened. */
+  void reportWithoutStep();
+
+  // simulator_commands.cpp
+  void commandTrajectory(int robot, const JointTrajectory& trajectory);
+  void commandJoints(int robot, const JointCommandMessage& command);
+  JointSample desiredState(int world_joint) const;
+
+  // simulator_state.cpp
+  std::string layout() const;
+  SimulationState save() const;
+  void restore(const SimulationState& state);
+  void resetWorld();
+  void seedSensors();
+
+  void unloadEnvironment(const std::string& name);
+
+  double time() const { return static_cast<double>(step_count_) * config_.time_step; }
+  /** Simulated time at which the substep at hand starts. */
+  double substepTime() const { return time() + substeps_.fractionDone() * config_.time_step; }
+  double substepLength() const { return substeps_.fraction() * config_.time_step; }
+
+  const SimulationConfig config_;
+  SimulatedWorld world_;
+  WorldBuilder builder_;
+  ContactStage contacts_;
+  std::vector<std::unique_ptr<Sensor>> sensors_;
+  std::vector<std::uint64_t> sensor_periods_;  ///< [steps]
+  WorldState initial_state_;
+
+  std::uint64_t step_count_ = 0;
+  bool stopped_ = false;  ///< the state is not finite any more
+
+  // Of the step at hand.
+  Substeps substeps_;
+  StepReport report_;
+  std::vector<JointDrive> drives_;
+  WorldState substep_start_;
+  std::vector<BodyState> bodies_before_;  ///< at the start of the step
+  std::vector<BodyState> bodies_before_substep_, bodies_;
+  std::vector<JointState> joints_;
+  std::vector<Wrench> joint_wrenches_;  ///< mean over the step
+  std::vector<ContactReport> contact_reports_;
+  const SolveResult* solved_ = nullptr;
+};
+
+}  // namespace blem_sim

@@ -1,0 +1,225 @@
+// One step: the table of docs/architecture.md.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "simulator_impl.h"
+
+namespace blem_sim {
+namespace {
+
+constexpr double FARTHEST = 1e12;       // [m], [m/s], [rad/s]: what is beyond has no meaning as a number any more
+constexpr double LIMIT_REACHED = 1e-6;  // [rad or m]
+
+/** Adds the wall time of a scope to a stage. */
+class StageTimer {
+ public:
+  StageTimer(StepProfile* profile, Stage stage) : seconds_(&profile->seconds[static_cast<int>(stage)]), start_(Clock::now()) {}
+  ~StageTimer() { *seconds_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
+  StageTimer(const StageTimer&) = delete;
+  StageTimer& operator=(const StageTimer&) = delete;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  double* seconds_;
+  Clock::time_point start_;
+};
+
+bool withinReach(const BodyState& state) {
+  const auto small = [](const Vector3& v) { return v.allFinite() && v.cwiseAbs().maxCoeff() < FARTHEST; };
+  return small(state.X_WB.translation()) && state.X_WB.linear().allFinite() && small(state.v_WCom) && small(state.w_WB);
+}
+
+}  // namespace
+
+const StepReport& Simulator::Impl::step() {
+  if (stopped_) return report_;
+  startStep();
+  if (!bodiesAreFinite()) return stop();
+  if (!contacts_.known()) findFirstContacts();
+  while (!substeps_.finished()) {
+    sampleCommands();
+    motorTorque();
+    reduction();
+    if (!solve()) return stop();
+    // Contacts at the new state: the guard judges by them, and the next solve starts from them.
+    broadPhase();
+    narrowPhase();
+    stepGuard();
+  }
+  ++step_count_;
+  readSensors();
+  report();
+  return report_;
+}
+
+void Simulator::Impl::startStep() {
+  substeps_ = Substeps();
+  report_.status = STEP_OK;
+  report_.profile = StepProfile();
+  report_.samples.clear();
+  report_.dt = config_.time_step;
+  joint_wrenches_.assign(world_.world.jointCount(), Wrench());
+  world_.bodyStates(&bodies_before_);
+  bodies_ = bodies_before_;
+}
+
+void Simulator::Impl::findFirstContacts() {
+  broadPhase();
+  narrowPhase();
+  contacts_.accept();
+}
+
+void Simulator::Impl::sampleCommands() {
+  const StageTimer timer(&report_.profile, Stage::SAMPLE_COMMANDS);
+  for (JointMotor& motor : world_.motors) motor.sample(substepTime(), substepLength());
+}
+
+void Simulator::Impl::motorTorque() {
+  const StageTimer timer(&report_.profile, Stage::MOTOR_TORQUE);
+  drives_.resize(world_.motors.size());
+  for (std::size_t j = 0; j < drives_.size(); ++j) drives_[j] = world_.motors[j].drive(world_.world.jointState(static_cast<int>(j)));
+}
+
+void Simulator::Impl::broadPhase() {
+  const StageTimer timer(&report_.profile, Stage::BROAD_PHASE);
+  contacts_.broadPhase(world_, config_.time_step);
+}
+
+void Simulator::Impl::narrowPhase() {
+  const StageTimer timer(&report_.profile, Stage::NARROW_PHASE);
+  contacts_.narrowPhase(world_);
+}
+
+void Simulator::Impl::reduction() {
+  const StageTimer timer(&report_.profile, Stage::REDUCTION);
+  contacts_.reduction(world_);
+}
+
+bool Simulator::Impl::solve() {
+  const StageTimer timer(&report_.profile, Stage::SOLVE);
+  substep_start_ = world_.world.save();
+  bodies_before_substep_ = bodies_;
+  solved_ = &world_.world.step(substepLength(), contacts_.constraints(), drives_);
+  if (solved_->finite) world_.bodyStates(&bodies_);
+  if (solved_->finite && bodiesAreFinite()) return true;
+  world_.world.restore(substep_start_);
+  bodies_ = bodies_before_substep_;
+  return false;
+}
+
+void Simulator::Impl::stepGuard() {
+  const StageTimer timer(&report_.profile, Stage::STEP_GUARD);
+  if (substeps_.canHalve() && usesUpLayer(world_.colliders, contacts_.current(), contacts_.found(), bodies_before_substep_, bodies_)) {
+    world_.world.restore(substep_start_);
+    bodies_ = bodies_before_substep_;
+    substeps_.halve();
+    report_.status |= STEP_SHORTENED;
+    return;
+  }
+  acceptSubstep();
+}
+
+void Simulator::Impl::acceptSubstep() {
+  if (solved_->lcp_errors > 0) report_.status |= SOLVER_TROUBLE;
+  if (contacts_.budgetUsedUp()) report_.status |= CONTACTS_REDUCED;
+  for (std::size_t j = 0; j < joint_wrenches_.size(); ++j) {
+    joint_wrenches_[j].force += substeps_.fraction() * solved_->joint_wrenches[j].force;
+    joint_wrenches_[j].torque += substeps_.fraction() * solved_->joint_wrenches[j].torque;
+  }
+  recordSaturation();
+  recordContacts();
+  contacts_.accept();
+  substeps_.accept();
+}
+
+void Simulator::Impl::recordSaturation() {
+  for (std::size_t j = 0; j < drives_.size(); ++j) {
+    const JointState state = world_.world.jointState(static_cast<int>(j));
+    if (world_.motors[j].accept(drives_[j], state, substepLength())) report_.status |= EFFORT_SATURATED;
+    const JointSpec& spec = world_.world.jointSpec(static_cast<int>(j));
+    if (spec.kind == JointKind::FIXED) continue;
+    if (state.position < spec.lower + LIMIT_REACHED || state.position > spec.upper - LIMIT_REACHED) report_.status |= JOINT_LIMIT_HIT;
+  }
+}
+
+// Speculative contacts that did not act are left out.
+void Simulator::Impl::recordContacts() {
+  report_.raw_contacts = contacts_.rawContacts();
+  report_.reduced_contacts = static_cast<int>(contacts_.constraints().size());
+  report_.max_depth = report_.max_of_layer = 0;
+  report_.deepest_a = report_.deepest_b = -1;
+  contact_reports_.clear();
+  for (std::size_t i = 0; i < contacts_.constraints().size(); ++i) {
+    const ContactConstraint& constraint = contacts_.constraints()[i];
+    const SolvedContact& solved = contacts_.solved()[i];
+    const Vector3& force = solved_->contact_forces[i];
+    if (constraint.depth < 0 && force.isZero(0)) continue;
+    const double of_layer = solved.layer > 0 ? std::max(0.0, constraint.depth) / solved.layer : 0;
+    contact_reports_.push_back({solved.collider_a, solved.collider_b, constraint.body_a, constraint.body_b, constraint.point,
+                                constraint.normal_BA, constraint.depth, of_layer, force, solved.pierced});
+  }
+  for (const ContactManifold& manifold : contacts_.current()) {
+    if (manifold.pierced) report_.status |= CONTACT_UNRELIABLE;
+    const double depth = manifold.maxDepth();
+    if (manifold.layer > 0) report_.max_of_layer = std::max(report_.max_of_layer, depth / manifold.layer);
+    if (depth <= report_.max_depth) continue;
+    report_.max_depth = depth;
+    report_.deepest_a = manifold.a;
+    report_.deepest_b = manifold.b;
+  }
+}
+
+void Simulator::Impl::readSensors() {
+  const StageTimer timer(&report_.profile, Stage::SENSORS);
+  jointStates(&joints_);
+  const StepContext context{world_, config_.time_step, bodies_before_, bodies_, joints_, joint_wrenches_, contact_reports_};
+  for (std::size_t i = 0; i < sensors_.size(); ++i) {
+    if (step_count_ % sensor_periods_[i] != 0) continue;
+    const double period = static_cast<double>(sensor_periods_[i]) * config_.time_step;
+    report_.samples.push_back({static_cast<int>(i), sensors_[i]->read(context, period)});
+  }
+}
+
+void Simulator::Impl::report() {
+  const StageTimer timer(&report_.profile, Stage::REPORT);
+  report_.step = step_count_;
+  report_.time = time();
+  report_.substeps = substeps_.count();
+  report_.energy = world_.world.kineticEnergy() + world_.world.potentialEnergy();
+  std::swap(report_.contacts, contact_reports_);
+  report_.bodies = bodies_;
+  report_.joints = joints_;
+}
+
+void Simulator::Impl::reportWithoutStep() {
+  startStep();
+  contact_reports_.clear();
+  report_.raw_contacts = report_.reduced_contacts = 0;
+  report_.max_depth = report_.max_of_layer = 0;
+  report_.deepest_a = report_.deepest_b = -1;
+  jointStates(&joints_);
+  report();
+}
+
+bool Simulator::Impl::bodiesAreFinite() const {
+  for (const BodyState& state : bodies_)
+    if (!withinReach(state)) return false;
+  return true;
+}
+
+const StepReport& Simulator::Impl::stop() {
+  stopped_ = true;
+  report_.status |= STATE_NOT_FINITE;
+  contact_reports_.clear();
+  jointStates(&joints_);
+  report();
+  return report_;
+}
+
+void Simulator::Impl::jointStates(std::vector<JointState>* out) const {
+  out->resize(world_.world.jointCount());
+  for (int joint = 0; joint < world_.world.jointCount(); ++joint) (*out)[joint] = world_.world.jointState(joint);
+}
+
+}  // namespace blem_sim

@@ -1,0 +1,58 @@
+#include "step_guard.h"
+
+#include <algorithm>
+#include <tuple>
+
+namespace blem_sim {
+namespace {
+
+constexpr double USED_UP = 0.9;       // of the layer
+constexpr double LEAST_GROWTH = 0.1;  // of the layer in one step: slower sinking is not for the guard
+
+/** Of the layer; 0 without contact. */
+double used(const ContactManifold* manifold) { return manifold ? std::max(0.0, manifold->maxDepth() / manifold->layer) : 0; }
+
+bool inDanger(double before, double after) { return after > USED_UP && after - before > LEAST_GROWTH; }
+
+const ContactManifold* find(const std::vector<ContactManifold>& manifolds, int a, int b) {
+  const auto at = std::lower_bound(manifolds.begin(), manifolds.end(), std::make_pair(a, b),
+                                   [](const ContactManifold& m, const auto& key) { return std::make_pair(m.a, m.b) < key; });
+  return at != manifolds.end() && at->a == a && at->b == b ? &*at : nullptr;
+}
+
+/** How a point fixed on the body moved. */
+Pose motionOf(int body, const std::vector<BodyState>& before, const std::vector<BodyState>& after) {
+  return body == WORLD_BODY ? Pose::Identity() : after[body].X_WB * before[body].X_WB.inverse();
+}
+
+/** Deepest that a contact of the manifold was carried, of the layer. */
+double carried(const ContactManifold& manifold, const Pose& motion_a, const Pose& motion_b) {
+  double deepest = 0;
+  for (const Contact& contact : manifold.contacts) {
+    const double parted = contact.normal_BA.dot(motion_a * contact.point - motion_b * contact.point);
+    deepest = std::max(deepest, (contact.depth - parted) / manifold.layer);
+  }
+  return deepest;
+}
+
+}  // namespace
+
+bool usesUpLayer(const std::vector<Collider>& colliders, const std::vector<ContactManifold>& before,
+                 const std::vector<ContactManifold>& after, const std::vector<BodyState>& bodies_before,
+                 const std::vector<BodyState>& bodies_after) {
+  for (const ContactManifold& now : after) {
+    if (!(now.layer > 0)) continue;
+    const ContactManifold* then = find(before, now.a, now.b);
+    if (now.pierced && !(then && then->pierced)) return true;
+    if (inDanger(used(then), used(&now))) return true;
+  }
+  for (const ContactManifold& then : before) {
+    if (!(then.layer > 0) || then.pierced) continue;
+    const Pose motion_a = motionOf(colliders[then.a].body, bodies_before, bodies_after);
+    const Pose motion_b = motionOf(colliders[then.b].body, bodies_before, bodies_after);
+    if (inDanger(used(&then), carried(then, motion_a, motion_b))) return true;
+  }
+  return false;
+}
+
+}  // namespace blem_sim

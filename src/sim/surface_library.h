@@ -1,0 +1,37 @@
+// Surfaces that several models share: a mesh that 18 mugs use is read once and has one tree.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "blem_sim/contact/collider.h"
+#include "blem_sim/model/loaders.h"
+
+namespace blem_sim {
+
+/** A file as contact wants it. */
+struct SharedSurface {
+  std::shared_ptr<const CollisionGeometry> geometry;
+  double radius = 0;  ///< [m] > 0 for clouds as points
+  MeshReport report;
+};
+
+/** Gives the same geometry for the same file and settings, or the same mesh, while anybody holds it. */
+class SurfaceLibrary {
+ public:
+  /** @throws InputError as loadSurface does */
+  SharedSurface load(const std::string& file, const Vector3& scale, const CloudOptions& cloud);
+  std::shared_ptr<const CollisionGeometry> geometry(const std::shared_ptr<const TriangleMesh>& mesh);
+
+ private:
+  struct Entry {
+    std::weak_ptr<const CollisionGeometry> geometry;
+    double radius = 0;
+    MeshReport report;
+  };
+  std::map<std::string, Entry> files_;
+  std::map<const TriangleMesh*, std::weak_ptr<const CollisionGeometry>> meshes_;  ///< a mesh lives as long as its geometry
+};
+
+}  // namespace blem_sim

@@ -1,0 +1,192 @@
+#include "world_builder.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <climits>
+
+#include "blem_sim/geometry/input_error.h"
+#include "contact_settings.h"
+#include "robot_builder.h"
+
+namespace blem_sim {
+namespace {
+
+// Half the size [m] that a body's mass is spread over at least, so that a point or a line can turn.
+constexpr double SMALLEST_EXTENT = 0.001;
+
+/** Mass properties in the object's frame from its shape, and in words where they come from. */
+MassProperties massFromShape(const TriangleMesh& mesh_O, bool closed, double mass, std::string* from) {
+  MassProperties properties;
+  if (closed && massFromVolume(mesh_O, mass, &properties)) {
+    *from = "the enclosed volume";
+    return properties;
+  }
+  *from = closed ? "the surface, as a thin shell (the enclosed volume is not positive)" : "the surface, as a thin shell (it is open)";
+  return massFromSurface(mesh_O, mass);
+}
+
+/** An inertia too small about some axis, as a line's or a point's, gets that of a small ball there. */
+bool floorInertia(double radius, MassProperties* properties) {
+  const double r = std::max(radius, SMALLEST_EXTENT);
+  const double least = 0.4 * properties->mass * r * r;
+  Eigen::SelfAdjointEigenSolver<Matrix3> eigen(properties->inertia);
+  const Vector3 moments = eigen.eigenvalues();
+  if (moments.minCoeff() >= 1e-3 * least) return false;
+  const Matrix3 axes = eigen.eigenvectors();
+  properties->inertia = axes * moments.cwiseMax(least).asDiagonal() * axes.transpose();
+  return true;
+}
+
+std::string words(const Vector3& v) { return fmt::format("[{:.4g}, {:.4g}, {:.4g}]", v.x(), v.y(), v.z()); }
+
+int addFreeBody(const std::string& name, const MassProperties& inertial, const ObjectConfig& config, SimulatedWorld* world) {
+  BodySpec spec;
+  spec.name = name;
+  spec.inertial = inertial;
+  spec.X_WB = config.X_WO;
+  const int body = world->world.addBody(spec);
+  BodyState state;
+  state.X_WB = config.X_WO;
+  state.v_WCom = config.linear_velocity + config.angular_velocity.cross(config.X_WO.linear() * inertial.com);
+  state.w_WB = config.angular_velocity;
+  world->world.setBodyState(body, state);
+  return body;
+}
+
+}  // namespace
+
+SharedSurface WorldBuilder::load(const std::string& uri, const Vector3& scale, const CloudOptions& cloud, const std::string& where) {
+  try {
+    return surfaces_.load(resolver_.resolve(uri, base_directory_), scale, cloud);
+  } catch (const InputError& error) {
+    throw InputError(where + ": " + error.what());
+  }
+}
+
+void WorldBuilder::addEnvironment(const EnvironmentConfig& config, SimulatedWorld* world) {
+  world->checkNewName(config.name, "environments");
+  const std::string where = "environments: " + config.name;
+  SharedSurface surface;
+  if (config.plane) {
+    const Vector3 normal = config.plane->head<3>();
+    if (!config.plane->allFinite() || !(normal.norm() > 0))
+      throw InputError(where + ": plane: a x + b y + c z = d needs finite numbers and a direction (a, b, c) that is not zero");
+    surface.geometry = CollisionGeometry::halfSpace(normal, (*config.plane)[3]);
+    surface.report.source = fmt::format("half-space below the plane {} . x = {:g}", words(normal), (*config.plane)[3]);
+  } else if (!config.uri.empty()) {
+    surface = load(config.uri, config.scale, config.cloud, where);
+  } else if (!config.topic.empty()) {
+    throw InputError(where + ": topic: live clouds are not simulated; save the cloud as .pcd or .ply and give its uri");
+  } else {
+    throw InputError(where + ": nothing to load; give a uri or a plane");
+  }
+  const ContactSettings settings = contactSettings(0, contact_.surface, {&config.contact});
+  Collider collider;
+  collider.name = config.name;
+  collider.model = world->addModel(config.name, ModelKind::ENVIRONMENT, INT_MAX);
+  collider.X_BC = config.X_WE;
+  collider.geometry = surface.geometry;
+  world->addCollider(collider, surface.radius > 0 ? surface.radius : settings.boundary_width, settings.surface, surface.report);
+}
+
+std::shared_ptr<const RobotModel> WorldBuilder::description(const RobotConfig& config) {
+  const bool text = !config.urdf_xml.empty();
+  if (!text && config.urdf.empty()) {
+    throw InputError(
+        fmt::format("robots: {}: no description; give urdf{}", config.name,
+                    config.description_param.empty() ? "" : " (the parameter " + config.description_param + " is not read here)"));
+  }
+  const std::string key = text ? config.urdf_xml : resolver_.resolve(config.urdf, base_directory_);
+  std::weak_ptr<const RobotModel>& held = descriptions_[key];
+  if (auto known = held.lock()) return known;
+  const std::string source = config.description_param.empty() ? "robots: " + config.name : config.description_param;
+  const auto model =
+      std::make_shared<const RobotModel>(text ? loadUrdf(key, source, resolver_, base_directory_) : loadUrdfFile(key, resolver_));
+  held = model;
+  return model;
+}
+
+void WorldBuilder::addRobot(const RobotConfig& config, SimulatedWorld* world) {
+  world->checkNewName(config.name, "robots");
+  RobotBuilder(config, contact_, description(config)).addTo(world, &surfaces_);
+}
+
+void WorldBuilder::addObject(const ObjectConfig& config, SimulatedWorld* world) {
+  world->checkNewName(config.name, "objects");
+  if (!config.linear_velocity.allFinite() || !config.angular_velocity.allFinite())
+    throw InputError(fmt::format("objects: {}: velocity: numbers must be finite", config.name));
+  if (config.urdf.empty())
+    addMeshObject(config, world);
+  else
+    addUrdfObject(config, world);
+}
+
+void WorldBuilder::addMeshObject(const ObjectConfig& config, SimulatedWorld* world) {
+  const std::string where = "objects: " + config.name;
+  if (config.uri.empty()) throw InputError(where + ": nothing to load; give a uri or a urdf");
+  if (!config.mass || !(*config.mass > 0) || !std::isfinite(*config.mass))
+    throw InputError(where + ": mass: needs a finite number of kg above 0");
+  SharedSurface surface = load(config.uri, config.scale, config.cloud, where);
+  const ContactSettings settings = contactSettings(contact_.boundary_width, contact_.surface, {&config.contact});
+  const double width = surface.radius > 0 ? surface.radius : settings.boundary_width;
+
+  std::string from = "the configuration";
+  MassProperties inertial;
+  if (!config.com || !config.inertia)
+    inertial = massFromShape(transformed(surface.geometry->mesh(), config.X_OM), surface.report.closed, *config.mass, &from);
+  inertial.mass = *config.mass;
+  if (config.com) inertial.com = *config.com;
+  if (config.inertia) inertial.inertia = *config.inertia;
+  if (!config.inertia && floorInertia(width, &inertial)) from += ", made turnable as a small ball would be";
+  if (!inertial.com.allFinite() || !inertial.inertia.allFinite() || inertial.inertia.llt().info() != Eigen::Success)
+    throw InputError(where + ": inertia: is not positive definite; correct [ixx, ixy, ixz, iyy, iyz, izz] and com");
+  const char* what = config.com ? "inertia" : config.inertia ? "centre of mass" : "centre of mass and inertia";
+  surface.report.notes.push_back(fmt::format("{} from {}: com {}", what, from, words(inertial.com)));
+
+  const int body = addFreeBody(config.name + "::link", inertial, config, world);
+  Collider collider;
+  collider.name = config.name;
+  collider.model = world->addModel(config.name, ModelKind::OBJECT, config.max_contacts.value_or(contact_.max_contacts_per_object));
+  collider.body = body;
+  collider.X_BC = config.X_OM;
+  collider.geometry = surface.geometry;
+  world->addCollider(collider, width, settings.surface, surface.report);
+  world->models.back().bodies = {body};
+}
+
+void WorldBuilder::addUrdfObject(const ObjectConfig& config, SimulatedWorld* world) {
+  const std::string where = "objects: " + config.name;
+  const RobotModel model = loadUrdfFile(resolver_.resolve(config.urdf, base_directory_), resolver_);
+  const LumpedRobot lumped = lumpFixedJoints(model, {}, false);
+  if (lumped.bodies.size() != 1)
+    throw InputError(fmt::format("{}: urdf: {} has {} bodies that move against each other; load it under robots", where, model.source,
+                                 lumped.bodies.size()));
+  MassProperties inertial = lumped.bodies[0].inertial;
+  if (config.mass) {
+    inertial.inertia *= *config.mass / inertial.mass;
+    inertial.mass = *config.mass;
+  }
+  if (config.com) inertial.com = *config.com;
+  if (config.inertia) inertial.inertia = *config.inertia;
+  const ContactSettings settings = contactSettings(contact_.boundary_width, contact_.surface, {&config.contact});
+  const std::string name = config.name + "::" + lumped.bodies[0].name;
+  const int body = addFreeBody(name, inertial, config, world);
+  const int index = world->addModel(config.name, ModelKind::OBJECT, config.max_contacts.value_or(contact_.max_contacts_per_object));
+  world->models[index].bodies = {body};
+  for (std::size_t link = 0; link < model.links.size(); ++link) {
+    for (const CollisionShape& shape : model.links[link].collisions) {
+      Collider collider;
+      collider.name = config.name + "::" + model.links[link].name;
+      collider.model = index;
+      collider.body = body;
+      collider.X_BC = lumped.link_placement[link].X_BL;
+      collider.geometry = surfaces_.geometry(shape.mesh);
+      world->addCollider(collider, shape.radius > 0 ? shape.radius : settings.boundary_width, settings.surface, shape.report);
+    }
+  }
+  for (const auto* notes : {&model.notes, &lumped.notes})
+    for (const std::string& note : *notes) world->notes.push_back(config.name + ": " + note);
+}
+
+}  // namespace blem_sim

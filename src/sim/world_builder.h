@@ -1,0 +1,39 @@
+// From a configuration to a world: files are loaded, names are checked, everything stands where it starts.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "blem_sim/model/loaders.h"
+#include "blem_sim/sim/config.h"
+#include "simulated_world.h"
+#include "surface_library.h"
+
+namespace blem_sim {
+
+/** Adds models one by one. Each function throws InputError before it changes the world. */
+class WorldBuilder {
+ public:
+  /** @param base_directory that relative files are meant against */
+  WorldBuilder(const ContactConfig& contact, std::string base_directory, const UriResolver& resolver)
+      : contact_(contact), base_directory_(std::move(base_directory)), resolver_(resolver) {}
+
+  void addEnvironment(const EnvironmentConfig& config, SimulatedWorld* world);
+  void addRobot(const RobotConfig& config, SimulatedWorld* world);
+  void addObject(const ObjectConfig& config, SimulatedWorld* world);
+
+ private:
+  void addMeshObject(const ObjectConfig& config, SimulatedWorld* world);
+  void addUrdfObject(const ObjectConfig& config, SimulatedWorld* world);
+  SharedSurface load(const std::string& uri, const Vector3& scale, const CloudOptions& cloud, const std::string& where);
+  std::shared_ptr<const RobotModel> description(const RobotConfig& config);
+
+  const ContactConfig contact_;
+  const std::string base_directory_;
+  const UriResolver resolver_;
+  SurfaceLibrary surfaces_;
+  std::map<std::string, std::weak_ptr<const RobotModel>> descriptions_;  ///< by file or text
+};
+
+}  // namespace blem_sim

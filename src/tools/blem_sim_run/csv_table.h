@@ -1,0 +1,32 @@
+// --csv: joints, free bodies and sensors over time, one row per sampling instant.
+#pragma once
+
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "blem_sim/sim/simulator.h"
+
+namespace blem_sim {
+
+/**
+ * Columns: time; per movable joint MODEL::JOINT, _vel, _effort, _desired; per free robot or object the pose of its first body, _x _y _z
+ * _qx _qy _qz _qw; per sensor its fields, empty until its first reading, the last reading in between.
+ */
+class CsvTable {
+ public:
+  /** @param rate [Hz], 0 = every step @throws InputError if the file cannot be written */
+  CsvTable(const Simulator& simulator, const std::string& file, double rate);
+  void add(const StepReport& report);
+
+ private:
+  void writeHeader();
+  void writeRow(const StepReport& report);
+
+  const Simulator& simulator_;
+  std::ofstream stream_;
+  double rate_ = 0;
+  std::vector<std::vector<double>> readings_;  ///< last ones, per sensor; NaN before the first
+};
+
+}  // namespace blem_sim

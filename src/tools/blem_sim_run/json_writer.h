@@ -1,0 +1,46 @@
+// Writes JSON [RFC 8259]; what is no number there (NaN, infinity) becomes null.
+#pragma once
+
+#include <cstdint>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "blem_sim/geometry/types.h"
+
+namespace blem_sim {
+
+/** Text, number or list on its way into a document. Objects are opened and closed by hand. */
+class JsonWriter {
+ public:
+  explicit JsonWriter(std::ostream& stream) : stream_(stream) {}
+
+  void openObject();
+  void closeObject();
+  void openList();
+  void closeList();
+  /** Name of the next value of an object. */
+  JsonWriter& key(const std::string& name);
+  void value(double number);
+  void value(std::uint64_t number);
+  void value(int number) { value(static_cast<double>(number)); }
+  void value(const std::string& text);
+  void value(const Vector3& vector);
+  void value(const Quaternion& quaternion);  ///< [x, y, z, w]
+  void value(const std::vector<double>& numbers);
+  void value(const std::vector<std::string>& texts);
+
+ private:
+  void separate();
+  void open(char bracket);
+  void close(char bracket);
+  void newLine();
+  template <typename Values>
+  void list(const Values& values);
+
+  std::ostream& stream_;
+  std::vector<bool> empty_;  ///< per open bracket: nothing in it yet
+  bool after_key_ = false;
+};
+
+}  // namespace blem_sim

@@ -1,0 +1,54 @@
+// What a run leaves behind: counted step by step, written as one JSON object at the end.
+#pragma once
+
+#include <array>
+#include <map>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "blem_sim/sim/simulator.h"
+#include "json_writer.h"
+#include "statistics.h"
+
+namespace blem_sim {
+
+/** Time that a run took [s]. */
+struct RunTimes {
+  double cpu = 0, wall = 0;
+};
+
+class RunRecord {
+ public:
+  /** @param stats_from [s] simulated time after which sensors count */
+  RunRecord(const Simulator& simulator, double stats_from);
+  void add(const StepReport& report);
+  void write(const RunTimes& times, const std::vector<std::string>& notes, std::ostream& stream) const;
+
+ private:
+  struct Deepest {
+    double depth = 0, of_layer = 0, time = 0;
+    int collider_a = -1, collider_b = -1;
+  };
+
+  void addDepth(const StepReport& report);
+  void writeStatus(JsonWriter& json) const;
+  void writeProfile(JsonWriter& json) const;
+  void writeContacts(JsonWriter& json) const;
+  void writeBodies(JsonWriter& json) const;
+  void writeJoints(JsonWriter& json) const;
+  void writeSensors(JsonWriter& json) const;
+  void writeLoadReport(JsonWriter& json) const;
+
+  const Simulator& simulator_;
+  double stats_from_ = 0;
+  std::uint64_t steps_ = 0, raw_contacts_ = 0, reduced_contacts_ = 0;
+  int most_reduced_contacts_ = 0;
+  std::vector<std::uint64_t> status_steps_;  ///< per bit
+  std::array<Distribution, static_cast<int>(Stage::COUNT)> stages_;
+  Distribution step_;
+  Deepest deepest_;
+  std::vector<VectorStatistics> sensors_;
+};
+
+}  // namespace blem_sim

@@ -1,0 +1,79 @@
+#include "sensor_values.h"
+
+#include <map>
+
+namespace blem_sim {
+
+namespace {
+
+class Row {
+ public:
+  Row& add(const std::string& name, double value) {
+    row_.names.push_back(name);
+    row_.values.push_back(value);
+    return *this;
+  }
+  Row& add(const std::string& name, const Vector3& v) { return add(name + "_x", v.x()).add(name + "_y", v.y()).add(name + "_z", v.z()); }
+  Row& add(const Quaternion& q) {
+    return add("orientation_x", q.x()).add("orientation_y", q.y()).add("orientation_z", q.z()).add("orientation_w", q.w());
+  }
+  operator SensorValues() const { return row_; }
+
+ private:
+  SensorValues row_;
+};
+
+struct ToRow {
+  SensorValues operator()(const ForceTorqueReading& r) const { return Row().add("force", r.force).add("torque", r.torque); }
+  SensorValues operator()(const ImuReading& r) const {
+    return Row().add("linear_acceleration", r.linear_acceleration).add("angular_velocity", r.angular_velocity).add(r.orientation);
+  }
+  SensorValues operator()(const ContactReading& r) const {
+    return Row().add("force", r.total.force).add("torque", r.total.torque).add("contacts", static_cast<double>(r.contacts.size()));
+  }
+  SensorValues operator()(const TiltReading& r) const {
+    return Row().add("roll", r.roll).add("pitch", r.pitch).add("angular_velocity", r.angular_velocity).add(r.orientation);
+  }
+  SensorValues operator()(const MotorCurrentReading& r) const {
+    Row row;
+    for (std::size_t i = 0; i < r.joints.size(); ++i) row.add(r.joints[i] + "_current", r.currents[i]);
+    for (std::size_t i = 0; i < r.joints.size(); ++i) row.add(r.joints[i] + "_effort", r.efforts[i]);
+    return row;
+  }
+};
+
+}  // namespace
+
+SensorValues sensorValues(const SensorReading& reading) { return std::visit(ToRow(), reading); }
+
+std::vector<std::string> sensorFields(const Simulator& simulator, const SensorInfo& sensor) {
+  const auto& joints = simulator.robots()[static_cast<std::size_t>(sensor.robot)].joint_names;
+  const std::vector<double> none(joints.size());
+  const Vector3 zero = Vector3::Zero();
+  switch (sensor.config.type) {
+    case SensorType::FORCE_TORQUE:
+      return sensorValues(ForceTorqueReading{zero, zero, ""}).names;
+    case SensorType::IMU:
+      return sensorValues(ImuReading{Quaternion::Identity(), zero, zero, 0, 0}).names;
+    case SensorType::CONTACT:
+      return sensorValues(ContactReading()).names;
+    case SensorType::TILT:
+      return sensorValues(TiltReading{Quaternion::Identity(), zero, 0, 0}).names;
+    case SensorType::MOTOR_CURRENT:
+      return sensorValues(MotorCurrentReading{joints, none, none}).names;
+  }
+  return {};
+}
+
+std::vector<std::string> sensorNames(const Simulator& simulator) {
+  std::map<std::string, int> uses;
+  for (const SensorInfo& sensor : simulator.sensors()) ++uses[sensor.config.name];
+  std::vector<std::string> names;
+  for (const SensorInfo& sensor : simulator.sensors()) {
+    const std::string& name = sensor.config.name;
+    names.push_back(uses[name] > 1 ? simulator.robots()[static_cast<std::size_t>(sensor.robot)].name + "::" + name : name);
+  }
+  return names;
+}
+
+}  // namespace blem_sim

@@ -1,0 +1,25 @@
+// A sensor's reading as a row of numbers, for statistics and tables.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "blem_sim/sim/simulator.h"
+
+namespace blem_sim {
+
+struct SensorValues {
+  std::vector<std::string> names;  ///< force_x, ...
+  std::vector<double> values;
+};
+
+/** Does not compile until it knows every kind of reading. */
+SensorValues sensorValues(const SensorReading& reading);
+
+/** Names of the fields of a sensor's readings, known before the first one. */
+std::vector<std::string> sensorFields(const Simulator& simulator, const SensorInfo& sensor);
+
+/** Names for a report: the sensor's own, "robot::name" where two robots have one of the same name. */
+std::vector<std::string> sensorNames(const Simulator& simulator);
+
+}  // namespace blem_sim

@@ -1,0 +1,119 @@
+#include "state_file.h"
+
+#include <fmt/format.h>
+
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+#include "blem_sim/geometry/input_error.h"
+
+namespace blem_sim {
+
+namespace {
+
+// Little-endian 64-bit words throughout, so that a state goes from one machine to another.
+const char MAGIC[] = "blem_sim state 1\n";
+
+void putWord(std::ostream& stream, std::uint64_t word) {
+  char bytes[8];
+  for (int i = 0; i < 8; ++i) bytes[i] = static_cast<char>((word >> (8 * i)) & 0xff);
+  stream.write(bytes, 8);
+}
+
+void putWords(std::ostream& stream, const std::vector<std::uint64_t>& words) {
+  putWord(stream, words.size());
+  for (const std::uint64_t word : words) putWord(stream, word);
+}
+
+void putNumbers(std::ostream& stream, const std::vector<double>& numbers) {
+  putWord(stream, numbers.size());
+  for (const double number : numbers) {
+    std::uint64_t word;
+    std::memcpy(&word, &number, sizeof word);
+    putWord(stream, word);
+  }
+}
+
+/** Walks through the bytes of a file. */
+class StateReader {
+ public:
+  StateReader(const std::string& bytes, const std::string& file) : bytes_(bytes), file_(file) {}
+
+  std::string text(std::size_t size) {
+    if (size > bytes_.size() - at_) fail();
+    at_ += size;
+    return bytes_.substr(at_ - size, size);
+  }
+
+  std::uint64_t word() {
+    const std::string bytes = text(8);
+    std::uint64_t word = 0;
+    for (int i = 7; i >= 0; --i) word = (word << 8) | static_cast<unsigned char>(bytes[static_cast<std::size_t>(i)]);
+    return word;
+  }
+
+  std::vector<std::uint64_t> words() {
+    const std::uint64_t count = word();
+    if (count > (bytes_.size() - at_) / 8) fail();
+    std::vector<std::uint64_t> words(count);
+    for (std::uint64_t& item : words) item = word();
+    return words;
+  }
+
+  std::vector<double> numbers() {
+    const std::vector<std::uint64_t> given = words();
+    std::vector<double> numbers(given.size());
+    if (!given.empty()) std::memcpy(numbers.data(), given.data(), 8 * given.size());
+    return numbers;
+  }
+
+  void expectEnd() const {
+    if (at_ != bytes_.size()) fail();
+  }
+
+ private:
+  [[noreturn]] void fail() const { throw InputError(fmt::format("{}: is no whole state; save it again with --save-state", file_)); }
+
+  const std::string& bytes_;
+  const std::string& file_;
+  std::size_t at_ = 0;
+};
+
+}  // namespace
+
+void saveState(const SimulationState& state, const std::string& file) {
+  std::ofstream stream(file, std::ios::binary);
+  stream.write(MAGIC, sizeof MAGIC - 1);
+  putWord(stream, state.layout.size());
+  stream << state.layout;
+  putWord(stream, state.step);
+  putNumbers(stream, state.world.numbers);
+  putWords(stream, state.world.words);
+  putNumbers(stream, state.numbers);
+  putWords(stream, state.words);
+  stream.close();
+  if (!stream) throw InputError(fmt::format("{}: cannot be written; check the folder", file));
+}
+
+SimulationState loadState(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw InputError(fmt::format("{}: cannot be read; check the path", file));
+  std::ostringstream buffer;
+  buffer << stream.rdbuf();
+  const std::string bytes = buffer.str();
+  StateReader reader(bytes, file);
+  if (bytes.compare(0, sizeof MAGIC - 1, MAGIC) != 0) throw InputError(fmt::format("{}: is not a state that --save-state wrote", file));
+  reader.text(sizeof MAGIC - 1);
+  SimulationState state;
+  state.layout = reader.text(reader.word());
+  state.step = reader.word();
+  state.world.numbers = reader.numbers();
+  state.world.words = reader.words();
+  state.numbers = reader.numbers();
+  state.words = reader.words();
+  reader.expectEnd();
+  return state;
+}
+
+}  // namespace blem_sim

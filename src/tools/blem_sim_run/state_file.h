@@ -1,0 +1,15 @@
+// A simulation's state in a file, every bit of it.
+#pragma once
+
+#include <string>
+
+#include "blem_sim/sim/simulator.h"
+
+namespace blem_sim {
+
+/** @throws InputError if the file cannot be written */
+void saveState(const SimulationState& state, const std::string& file);
+/** @throws InputError if the file cannot be read, or is not one of ours, or is cut short */
+SimulationState loadState(const std::string& file);
+
+}  // namespace blem_sim

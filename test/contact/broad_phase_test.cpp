@@ -1,0 +1,121 @@
+#include "blem_sim/contact/broad_phase.h"
+
+#include <gtest/gtest.h>
+
+#include "contact_shapes.h"
+
+namespace blem_sim {
+namespace {
+
+struct Scene {
+  std::vector<Collider> colliders;
+  std::vector<ColliderMotion> motion;
+
+  int add(Collider collider, const Pose& X_WC, int body, int model, double reach = 0) {
+    collider.body = body;
+    collider.model = model;
+    colliders.push_back(collider);
+    motion.push_back({X_WC, reach});
+    return static_cast<int>(colliders.size()) - 1;
+  }
+  std::vector<std::pair<int, int>> pairs(const CollisionFilter& filter = {}, double base = 0.001, double max = 0.1) const {
+    std::vector<std::pair<int, int>> out;
+    for (const ColliderPair& p : broadPhase(colliders, motion, filter, base, max)) out.emplace_back(p.a, p.b);
+    return out;
+  }
+};
+
+using Pairs = std::vector<std::pair<int, int>>;
+
+Collider box(double radius = 0) { return makeCollider(boxMesh(Vector3::Constant(0.1)), radius); }
+
+TEST(BroadPhase, NothingThatNarrowPhaseFindsIsMissed) {
+  RandomShapes random(51);
+  const Collider shapes[] = {box(0.002), makeCollider(octahedronMesh(0.06), 0.004), makeCollider(pointMesh(Vector3::Zero()), 0.05)};
+  int touching = 0;
+  for (int round = 0; round < 40; ++round) {
+    Scene scene;
+    scene.add(makeHalfSpace({0.1, 0, 1}, -0.3), makePose({0, 0, 0.02}, {0.1, 0, 0}), -1, 0);
+    for (int i = 0; i < 30; ++i) {
+      scene.add(shapes[i % 3], makePose(random.point(0.4), random.point(3)), i % 7 == 0 ? -1 : i, i, random.uniform(0, 0.02));
+    }
+    const std::vector<ColliderPair> found = broadPhase(scene.colliders, scene.motion, {}, 0.001, 0.015);
+    std::size_t next = 0;
+    for (int a = 0; a < static_cast<int>(scene.colliders.size()); ++a) {
+      for (int b = a + 1; b < static_cast<int>(scene.colliders.size()); ++b) {
+        const double margin = std::min(0.015, std::max(0.001, scene.motion[a].reach + scene.motion[b].reach));
+        const bool listed = next < found.size() && found[next].a == a && found[next].b == b;
+        if (listed) {
+          EXPECT_DOUBLE_EQ(found[next++].margin, margin);
+        }
+        if (scene.colliders[a].body == scene.colliders[b].body) {
+          EXPECT_FALSE(listed);
+          continue;
+        }
+        const ContactManifold manifold =
+            contactsOf(scene.colliders[a], scene.motion[a].X_WC, scene.colliders[b], scene.motion[b].X_WC, margin);
+        if (manifold.contacts.empty()) continue;
+        ++touching;
+        EXPECT_TRUE(listed) << a << " " << b;
+      }
+    }
+    EXPECT_EQ(next, found.size());  // sorted by (a, b), nothing twice
+  }
+  EXPECT_GT(touching, 400);
+}
+
+TEST(BroadPhase, LeavesOutWhatIsFar) {
+  Scene scene;
+  scene.add(box(0.002), makePose({0, 0, 0}), 0, 0);
+  scene.add(box(0.002), makePose({0.1049, 0, 0}), 1, 1);
+  scene.add(box(0.002), makePose({0.1049, 0.1051, 0}), 2, 2);
+  scene.add(makeHalfSpace({0, 0, 1}, -0.053), Pose::Identity(), -1, 3);
+  scene.add(makeHalfSpace({0, 0, 1}, -0.0531), Pose::Identity(), -1, 4);
+  EXPECT_EQ(scene.pairs(), (Pairs{{0, 1}, {0, 3}, {1, 3}, {2, 3}}));
+}
+
+TEST(BroadPhase, MarginFollowsTheMotionUpToItsBound) {
+  Scene scene;
+  scene.add(box(), makePose({0, 0, 0}), 0, 0, 0.01);
+  scene.add(box(), makePose({0.125, 0, 0}), 1, 1, 0.02);
+  ASSERT_EQ(scene.pairs(), (Pairs{{0, 1}}));
+  EXPECT_DOUBLE_EQ(broadPhase(scene.colliders, scene.motion, {}, 0.001, 0.1)[0].margin, 0.03);
+  EXPECT_TRUE(scene.pairs({}, 0.001, 0.02).empty());
+  EXPECT_DOUBLE_EQ(broadPhase(scene.colliders, scene.motion, {}, 0.04, 0.1)[0].margin, 0.04);
+}
+
+TEST(BroadPhase, StateThatIsNotFiniteIsLeftOut) {
+  Scene scene;
+  for (int i = 0; i < 3; ++i) scene.add(box(), makePose({0.05 * i, 0, 0}), i, i);
+  scene.motion[1].X_WC.translation().x() = std::nan("");
+  EXPECT_EQ(scene.pairs(), (Pairs{{0, 2}}));
+}
+
+TEST(CollisionFilter, WhoMayTouchWhom) {
+  const auto collider = [](int body, int model) {
+    Collider c;
+    c.body = body;
+    c.model = model;
+    return c;
+  };
+  CollisionFilter filter;
+  const Collider hand = collider(1, 0), arm = collider(2, 0), cup = collider(3, 1), floor = collider(-1, 2), wall = collider(-1, 3);
+  EXPECT_FALSE(filter.allows(floor, wall));
+  EXPECT_FALSE(filter.allows(hand, arm));
+  EXPECT_TRUE(filter.allows(hand, cup));
+  EXPECT_TRUE(filter.allows(hand, floor));
+  filter.setSelfCollision(0, true);
+  EXPECT_TRUE(filter.allows(hand, arm));
+  EXPECT_FALSE(filter.allows(hand, hand));
+  filter.disableBodies(2, 1);
+  EXPECT_FALSE(filter.allows(hand, arm));
+  EXPECT_FALSE(filter.allows(arm, hand));
+  filter.setSelfCollision(0, false);
+  EXPECT_FALSE(filter.allows(hand, arm));
+  Collider unloaded = cup;
+  unloaded.enabled = false;
+  EXPECT_FALSE(filter.allows(hand, unloaded));
+}
+
+}  // namespace
+}  // namespace blem_sim

@@ -1,0 +1,153 @@
+// The smallest distance among the contacts is the distance of the meshes, by brute force over all pairs of triangles. Brute force and
+// search share no code; where both meshes are within rounding of touching, the distance is the oracle's to call and either may say 0.
+#include <gtest/gtest.h>
+
+#include "blem_sim/geometry/closest_points.h"
+#include "contact_shapes.h"
+
+namespace blem_sim {
+namespace {
+
+constexpr double SIZE = 0.1;
+constexpr double LAYER = 0.01;
+
+struct Shape {
+  const char* name;
+  Collider collider;
+};
+
+std::vector<Shape> makeShapes() {
+  RandomShapes random(7);
+  std::vector<Shape> shapes;
+  shapes.push_back({"cube", makeCollider(boxMesh(Vector3::Constant(SIZE)), LAYER / 2)});
+  shapes.push_back({"slab", makeCollider(boxMesh({SIZE, 0.5 * SIZE, 0.02 * SIZE}), LAYER / 2)});
+  shapes.push_back({"octahedron", makeCollider(octahedronMesh(0.5 * SIZE), LAYER / 2)});
+  shapes.push_back({"fine cube", makeCollider(subdivided(boxMesh(Vector3::Constant(SIZE)), 1), LAYER / 2)});
+  shapes.push_back({"grid", makeCollider(gridMesh(SIZE, SIZE, 3, 2), LAYER / 2)});
+  shapes.push_back({"hills", makeCollider(hillMesh(random, SIZE, 4, 0.1 * SIZE), LAYER / 2)});
+  shapes.push_back({"soup", makeCollider(soupMesh(random, 12, 0.5 * SIZE), LAYER / 2)});
+  shapes.push_back({"point", makeCollider(pointMesh(Vector3(0.01, 0, 0)), LAYER / 2)});
+  shapes.push_back({"segment", makeCollider(segmentMesh(Vector3(-0.5 * SIZE, 0, 0), Vector3(0.5 * SIZE, 0, 0)), LAYER / 2)});
+  return shapes;
+}
+
+class Completeness {
+ public:
+  int poses = 0, within = 0, apart = 0, meeting = 0;
+  double worst = 0;
+
+  void check(const Shape& a, const Shape& b, const Pose& X_BA) {
+    ++poses;
+    const ClosestPoints exact = closestMeshMeshBruteForce(a.collider.geometry->mesh(), b.collider.geometry->mesh(), X_BA);
+    const ContactManifold manifold = contactsOf(a.collider, X_BA, b.collider, Pose::Identity());
+    ASSERT_TRUE(allFinite(manifold));
+    if (exact.distance > LAYER) {
+      ++apart;
+      if (exact.distance > LAYER + 1e-9) {
+        ASSERT_TRUE(manifold.contacts.empty()) << a.name << " on " << b.name;
+      }
+    } else if (exact.distance > 1e-12) {
+      ++within;
+      ASSERT_FALSE(manifold.contacts.empty()) << a.name << " on " << b.name << " distance " << exact.distance << "\n" << X_BA.matrix();
+      const double error = std::abs(manifold.layer - manifold.maxDepth() - exact.distance);
+      worst = std::max(worst, error);
+      ASSERT_LE(error, 1e-8) << a.name << " on " << b.name << " distance " << exact.distance << "\n" << X_BA.matrix();
+      ASSERT_TRUE(exact.distance < 1e-8 || !manifold.pierced) << a.name << " on " << b.name;
+    } else {
+      ++meeting;
+      ASSERT_FALSE(manifold.contacts.empty()) << a.name << " meets " << b.name << "\n" << X_BA.matrix();
+      ASSERT_GE(manifold.maxDepth(), manifold.layer - 1e-8) << a.name << " meets " << b.name << "\n" << X_BA.matrix();
+    }
+  }
+};
+
+/** Moves A along the shortest way to B until `gap` is left. */
+Pose approached(const Shape& a, const Shape& b, Pose X_BA, double gap) {
+  const ClosestPoints exact = closestMeshMeshBruteForce(a.collider.geometry->mesh(), b.collider.geometry->mesh(), X_BA);
+  if (exact.distance > gap) X_BA.pretranslate((exact.point_b - exact.point_a) * (1 - gap / exact.distance));
+  return X_BA;
+}
+
+TEST(NarrowPhaseCompleteness, RandomPoses) {
+  const std::vector<Shape> shapes = makeShapes();
+  RandomShapes random(1);
+  Completeness all;
+  while (all.poses < 12000) {
+    const Shape& a = shapes[random.integer(0, shapes.size() - 1)];
+    const Shape& b = shapes[random.integer(0, shapes.size() - 1)];
+    Pose X_BA = random.pose(1);
+    X_BA.translation() = X_BA.translation().normalized() * 2 * SIZE;
+    const double gap = LAYER * std::pow(10, random.uniform(-8, 0));
+    all.check(a, b, approached(a, b, X_BA, gap));
+    if (HasFatalFailure()) return;
+  }
+  RecordProperty("within_layer", all.within);
+  EXPECT_GT(all.within, 10000);
+  std::printf("random: %d within the layer, %d apart, %d meeting, worst error %.2g m\n", all.within, all.apart, all.meeting, all.worst);
+}
+
+TEST(NarrowPhaseCompleteness, AxisAlignedPoses) {
+  const std::vector<Shape> shapes = makeShapes();
+  RandomShapes random(2);
+  Completeness all;
+  while (all.poses < 12000) {
+    const Shape& a = shapes[random.integer(0, shapes.size() - 1)];
+    const Shape& b = shapes[random.integer(0, shapes.size() - 1)];
+    Pose X_BA = Pose::Identity();
+    X_BA.linear() = axisRotation(random);
+    // Centres on a lattice: faces over faces, edges over edges, corners over corners; then apart along one axis.
+    for (int k = 0; k < 3; ++k) X_BA.translation()[k] = 0.25 * SIZE * random.integer(-4, 4);
+    const int axis = random.integer(0, 2);
+    X_BA.translation()[axis] = 2 * SIZE * (random.integer(0, 1) ? 1 : -1);
+    const double gap = random.integer(0, 9) == 0 ? 0 : LAYER * std::pow(10, random.uniform(-8, 0));
+    all.check(a, b, approached(a, b, X_BA, gap));
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_GT(all.within, 6000);
+  std::printf("aligned: %d within the layer, %d apart, %d meeting, worst error %.2g m\n", all.within, all.apart, all.meeting, all.worst);
+}
+
+TEST(NarrowPhaseCompleteness, NearlyAlignedPoses) {
+  const std::vector<Shape> shapes = makeShapes();
+  RandomShapes random(3);
+  Completeness all;
+  while (all.poses < 6000) {
+    const Shape& a = shapes[random.integer(0, shapes.size() - 1)];
+    const Shape& b = shapes[random.integer(0, shapes.size() - 1)];
+    const double tilt = std::pow(10, random.uniform(-9, -2));
+    Pose X_BA = makePose(Vector3::Zero(), random.point(tilt));
+    X_BA.linear() = X_BA.linear() * axisRotation(random);
+    for (int k = 0; k < 2; ++k) X_BA.translation()[k] = 0.25 * SIZE * random.integer(-4, 4) + random.uniform(-tilt, tilt) * SIZE;
+    X_BA.translation().z() = 2 * SIZE;
+    all.check(a, b, approached(a, b, X_BA, LAYER * std::pow(10, random.uniform(-8, 0))));
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_GT(all.within, 3000);
+  std::printf("nearly aligned: %d within the layer, %d apart, %d meeting, worst error %.2g m\n", all.within, all.apart, all.meeting,
+              all.worst);
+}
+
+/** Deep poses: whatever meets has contacts, all finite, none deeper than the layer by more than the smaller body. */
+TEST(NarrowPhaseCompleteness, MeetingPosesAreFiniteAndBounded) {
+  const std::vector<Shape> shapes = makeShapes();
+  RandomShapes random(4);
+  int pierced = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const Shape& a = shapes[random.integer(0, shapes.size() - 1)];
+    const Shape& b = shapes[random.integer(0, shapes.size() - 1)];
+    const Pose X_BA = random.pose(SIZE);
+    const ContactManifold manifold = contactsOf(a.collider, X_BA, b.collider, Pose::Identity());
+    ASSERT_TRUE(allFinite(manifold));
+    if (!manifold.pierced) continue;
+    ++pierced;
+    const double exact = closestMeshMeshBruteForce(a.collider.geometry->mesh(), b.collider.geometry->mesh(), X_BA).distance;
+    ASSERT_EQ(exact, 0) << a.name << " " << b.name;
+    ASSERT_TRUE(std::any_of(manifold.contacts.begin(), manifold.contacts.end(), [](const Contact& c) { return c.pierced; }));
+    const double smaller = std::min(a.collider.geometry->bounds().diagonal().norm(), b.collider.geometry->bounds().diagonal().norm());
+    ASSERT_LE(manifold.maxDepth(), manifold.layer + 0.5 * smaller);
+  }
+  EXPECT_GT(pierced, 500);
+}
+
+}  // namespace
+}  // namespace blem_sim

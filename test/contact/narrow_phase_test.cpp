@@ -1,0 +1,224 @@
+// Poses whose contacts are known in closed form.
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "blem_sim/contact/reduction.h"
+#include "contact_shapes.h"
+
+namespace blem_sim {
+namespace {
+
+constexpr double EDGE = 0.1;  // of the cubes
+
+Collider cube(double radius) { return makeCollider(boxMesh(Vector3::Constant(EDGE)), radius); }
+Pose at(double x, double y, double z) { return makePose({x, y, z}); }
+
+/** Every contact of A, which lies above, points up and is `gap` high. */
+void expectUp(const ContactManifold& manifold, double gap, double tolerance = 1e-12) {
+  for (const Contact& c : manifold.contacts) {
+    EXPECT_NEAR((c.normal_BA - Vector3::UnitZ()).norm(), 0, tolerance);
+    EXPECT_NEAR(c.depth, manifold.layer - gap, tolerance);
+  }
+}
+
+TEST(NarrowPhase, AlignedCubesHaveFourContacts) {
+  const ContactManifold manifold = contactsOf(cube(0.003), at(0, 0, EDGE + 0.004), cube(0.002), Pose::Identity());
+  ASSERT_EQ(manifold.contacts.size(), 4u);
+  EXPECT_DOUBLE_EQ(manifold.layer, 0.005);
+  EXPECT_FALSE(manifold.pierced);
+  expectUp(manifold, 0.004);
+  for (const Contact& c : manifold.contacts) {
+    EXPECT_NEAR(std::abs(c.point.x()), EDGE / 2, 1e-12);
+    EXPECT_NEAR(std::abs(c.point.y()), EDGE / 2, 1e-12);
+    // Layers end at 0.052 and 0.051: the middle of their overlap.
+    EXPECT_NEAR(c.point.z(), 0.0515, 1e-12);
+  }
+}
+
+TEST(NarrowPhase, CubesSlightlyOffHaveFourCorners) {
+  for (const double offset : {1e-6, 1e-5, 1e-3}) {
+    ContactManifold manifold = contactsOf(cube(0.0025), at(offset, 0.7 * offset, EDGE + 0.004), cube(0.0025), Pose::Identity());
+    EXPECT_EQ(manifold.contacts.size(), 4u) << offset;
+    expectUp(manifold, 0.004);
+    reduceHull(manifold.contacts, 20);
+    EXPECT_EQ(manifold.contacts.size(), 4u) << offset;
+  }
+}
+
+TEST(NarrowPhase, TurnedCubesHaveEightCorners) {
+  ContactManifold manifold = contactsOf(cube(0.0025), makePose({0, 0, EDGE + 0.004}, {0, 0, M_PI / 4}), cube(0.0025), Pose::Identity());
+  expectUp(manifold, 0.004);
+  reduceHull(manifold.contacts, 20);
+  EXPECT_EQ(manifold.contacts.size(), 8u);
+}
+
+TEST(NarrowPhase, TessellationOfThePlaneDoesNotMatter) {
+  for (const int cells : {1, 7, 60}) {
+    for (const double tilt : {0.0, 0.002}) {
+      const Pose X_WA = makePose({0.013, 0.021, EDGE / 2 + 0.002}, {tilt, 0.4 * tilt, 0.3});
+      const ContactManifold manifold = contactsOf(cube(0.0025), X_WA, makeCollider(gridMesh(1, 1, cells, cells), 0), Pose::Identity());
+      ASSERT_EQ(manifold.contacts.size(), 4u) << cells << " cells, tilt " << tilt;
+      for (const Contact& c : manifold.contacts) EXPECT_NEAR((c.normal_BA - Vector3::UnitZ()).norm(), 0, 1e-12);
+    }
+  }
+}
+
+TEST(NarrowPhase, TessellationOfTheCubeDoesNotMatterAfterReduction) {
+  const Collider fine = makeCollider(subdivided(boxMesh(Vector3::Constant(EDGE)), 3), 0.0025);
+  ContactManifold manifold = contactsOf(fine, at(0.01, 0.02, EDGE + 0.003), fine, Pose::Identity());
+  expectUp(manifold, 0.003);
+  EXPECT_LT(manifold.contacts.size(), 50u);  // nothing from inside the faces
+  reduceHull(manifold.contacts, 20);
+  EXPECT_EQ(manifold.contacts.size(), 4u);
+}
+
+TEST(NarrowPhase, SpeculativeContactsHaveNegativeDepth) {
+  const ContactManifold manifold = contactsOf(cube(0.002), at(0, 0, EDGE + 0.0055), cube(0.003), Pose::Identity(), 0.001);
+  ASSERT_EQ(manifold.contacts.size(), 4u);
+  expectUp(manifold, 0.0055);
+  EXPECT_NEAR(manifold.maxDepth(), -0.0005, 1e-12);
+  EXPECT_TRUE(contactsOf(cube(0.002), at(0, 0, EDGE + 0.0061), cube(0.003), Pose::Identity(), 0.001).contacts.empty());
+}
+
+TEST(NarrowPhase, SphereOnPlaneBoxEdgeAndCorner) {
+  const double r = 0.03, gap = 0.025;
+  const Collider sphere = makeCollider(pointMesh(Vector3::Zero()), r);
+  const Collider plane = makeCollider(gridMesh(1, 1, 10, 10), 0.002), box = cube(0.002);
+  const auto expectOne = [&](const Collider& on, const Vector3& centre, const Vector3& foot) {
+    const ContactManifold manifold = contactsOf(sphere, makePose(centre), on, Pose::Identity());
+    ASSERT_EQ(manifold.contacts.size(), 1u);
+    const Contact& c = manifold.contacts[0];
+    const double distance = (centre - foot).norm();
+    const Vector3 normal = (centre - foot) / distance;
+    EXPECT_NEAR((c.normal_BA - normal).norm(), 0, 1e-12);
+    EXPECT_NEAR(c.depth, 0.032 - distance, 1e-12);
+    EXPECT_NEAR((c.point - (0.5 * (centre + foot) + normal * 0.5 * (0.002 - r))).norm(), 0, 1e-12);
+  };
+  const double h = EDGE / 2;
+  expectOne(plane, {0.123, -0.201, gap}, {0.123, -0.201, 0});
+  expectOne(plane, {0.1, -0.2, -gap}, {0.1, -0.2, 0});  // from below, over a vertex of the plane
+  expectOne(plane, {0.51, 0.02, 0.01}, {0.5, 0.02, 0});
+  expectOne(box, {0.01, 0.02, h + gap}, {0.01, 0.02, h});
+  expectOne(box, {0.01, h + 0.01, h + 0.02}, {0.01, h, h});
+  expectOne(box, {h + 0.01, h + 0.015, -h - 0.01}, {h, h, -h});
+}
+
+TEST(NarrowPhase, SpheresAndCapsules) {
+  const Collider sphere = makeCollider(pointMesh({0.001, 0, 0}), 0.03), ball = makeCollider(pointMesh(Vector3::Zero()), 0.02);
+  const Collider capsule = makeCollider(segmentMesh({-0.1, 0, 0}, {0.1, 0, 0}), 0.01);
+  ContactManifold manifold = contactsOf(sphere, at(0.029, 0, 0.04), ball, Pose::Identity());
+  ASSERT_EQ(manifold.contacts.size(), 1u);
+  EXPECT_NEAR(manifold.contacts[0].depth, 0, 1e-15);
+  EXPECT_NEAR((manifold.contacts[0].normal_BA - Vector3(0.6, 0, 0.8)).norm(), 0, 1e-12);
+
+  manifold = contactsOf(capsule, at(0, 0, 0.025), ball, at(0.05, 0, 0));
+  ASSERT_EQ(manifold.contacts.size(), 1u);
+  EXPECT_NEAR(manifold.contacts[0].depth, 0.005, 1e-12);
+
+  // Crosswise: the common perpendicular. Parallel: the ends that overlap.
+  manifold = contactsOf(capsule, at(0, 0, 0.015), capsule, makePose({0, 0.03, 0}, {0, 0, M_PI / 2}));
+  ASSERT_EQ(manifold.contacts.size(), 1u);
+  EXPECT_NEAR(manifold.contacts[0].depth, 0.005, 1e-12);
+  EXPECT_NEAR(manifold.contacts[0].point.head<2>().norm(), 0, 1e-12);
+  manifold = contactsOf(capsule, at(0.04, 0, 0.015), capsule, Pose::Identity());
+  ASSERT_EQ(manifold.contacts.size(), 2u);
+  expectUp(manifold, 0.015);
+
+  // The axis lies along a plane: both ends.
+  manifold = contactsOf(capsule, at(0, 0, 0.008), makeCollider(gridMesh(1, 1, 20, 20), 0), Pose::Identity());
+  ASSERT_EQ(manifold.contacts.size(), 2u);
+  expectUp(manifold, 0.008);
+}
+
+TEST(NarrowPhase, CloudOnMesh) {
+  RandomShapes random(5);
+  std::vector<Vector3> points;
+  for (int i = 0; i < 200; ++i) points.push_back({random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4), random.uniform(0, 0.02)});
+  const Collider cloud = makeCollider(pointCloudMesh(points, nullptr), 0.01), plane = makeCollider(gridMesh(1, 1, 9, 9), 0);
+  const ContactManifold manifold = contactsOf(cloud, Pose::Identity(), plane, Pose::Identity());
+  EXPECT_EQ(manifold.contacts.size(), std::count_if(points.begin(), points.end(), [](const Vector3& p) { return p.z() <= 0.01; }));
+  for (const Contact& c : manifold.contacts) EXPECT_NEAR((c.normal_BA - Vector3::UnitZ()).norm(), 0, 1e-12);
+}
+
+TEST(NarrowPhase, HalfSpaceInEitherOrder) {
+  const Collider half_space = makeHalfSpace({0, 0, 2}, 0.25, 0.001),
+                 box = makeCollider(subdivided(boxMesh(Vector3::Constant(EDGE)), 1), 0.003);
+  // Deep, shallow and speculative; the plane turned with its frame.
+  for (const double gap : {-0.03, 0.002, 0.0045}) {
+    const Pose X_WH = makePose({1, 2, 3}, {0.3, -0.8, 0.5}), X_WA = X_WH * makePose({0.2, 0.1, 0.25 + EDGE / 2 + gap}, {0, 0, 0.4});
+    const ContactManifold above = contactsOf(box, X_WA, half_space, X_WH, 0.001);
+    ContactManifold below = contactsOf(half_space, X_WH, box, X_WA, 0.001);
+    EXPECT_FALSE(above.pierced);
+    ASSERT_EQ(above.contacts.size(), 8u) << gap;  // corners and the middles of the bottom's sides
+    for (const Contact& c : above.contacts) {
+      EXPECT_NEAR((c.normal_BA - X_WH.linear().col(2)).norm(), 0, 1e-12);
+      EXPECT_NEAR(c.depth, 0.004 - gap, 1e-12);
+      EXPECT_NEAR((X_WH.inverse() * c.point).z(), 0.25 + gap / 2 + 0.5 * (0.001 - 0.003), 1e-12);
+      EXPECT_FALSE(c.pierced);
+    }
+    for (Contact& c : below.contacts) c.normal_BA = -c.normal_BA;
+    EXPECT_EQ(above.contacts.size(), below.contacts.size());
+    EXPECT_NEAR(largestDifference(above.contacts, below.contacts), 0, 1e-12);
+  }
+  EXPECT_TRUE(contactsOf(half_space, Pose::Identity(), half_space, at(0, 0, 0.1)).contacts.empty());
+  const Collider sphere = makeCollider(pointMesh(Vector3::Zero()), 0.05);
+  EXPECT_NEAR(contactsOf(sphere, at(0, 0, 0.27), half_space, Pose::Identity()).maxDepth(), 0.031, 1e-12);
+}
+
+/** Bare meshes that touch exactly have no direction between them; their surfaces have. */
+TEST(NarrowPhase, ExactTouchPointsOut) {
+  const Collider bare = cube(0), plane = makeCollider(gridMesh(1, 1, 5, 5), 0);
+  for (const double gap : {0.0, 1e-17, 1e-12, -1e-12, 1e-9, -1e-10}) {
+    for (const Pose& X_WA :
+         {at(0, 0, EDGE + gap), at(0.03, 0.02, EDGE + gap), makePose({0.03, 0, EDGE + gap}, {0, 0, 0.3}), at(EDGE / 2, 0, EDGE + gap)}) {
+      ContactManifold manifold = contactsOf(bare, X_WA, bare, Pose::Identity(), 1e-6);
+      EXPECT_FALSE(manifold.pierced);
+      EXPECT_GE(manifold.contacts.size(), 4u);
+      for (const Contact& c : manifold.contacts) EXPECT_NEAR((c.normal_BA - Vector3::UnitZ()).norm(), 0, 1e-6) << gap;
+      manifold = contactsOf(plane, Pose::Identity(), bare, X_WA * at(0, 0, -EDGE / 2), 1e-6);
+      EXPECT_FALSE(manifold.pierced);
+      EXPECT_EQ(manifold.contacts.size(), 4u);
+      for (const Contact& c : manifold.contacts) EXPECT_NEAR((c.normal_BA + Vector3::UnitZ()).norm(), 0, 1e-6) << gap;
+    }
+  }
+}
+
+TEST(NarrowPhase, ContactsAreSortedByUniqueIdsWhichLast) {
+  RandomShapes random(11);
+  const Collider hills = makeCollider(hillMesh(random, 0.5, 40, 0.001), 0), box = cube(0.005);
+  Pose X_WA = makePose({0.013, 0.007, EDGE / 2 + 0.003}, {0.001, 0.002, 0.4});
+  std::set<std::uint64_t> before;
+  for (int step = 0; step < 20; ++step) {
+    const ContactManifold manifold = contactsOf(box, X_WA, hills, Pose::Identity());
+    ASSERT_GT(manifold.contacts.size(), 20u);
+    std::set<std::uint64_t> ids;
+    for (std::size_t i = 0; i < manifold.contacts.size(); ++i) {
+      if (i > 0) {
+        EXPECT_LT(manifold.contacts[i - 1].id, manifold.contacts[i].id);
+      }
+      ids.insert(manifold.contacts[i].id);
+    }
+    std::vector<std::uint64_t> kept;
+    std::set_intersection(ids.begin(), ids.end(), before.begin(), before.end(), std::back_inserter(kept));
+    EXPECT_GE(kept.size() + 2, before.size());
+    before = ids;
+    X_WA.pretranslate(Vector3(1e-7, 0.5e-7, 0));
+  }
+}
+
+TEST(NarrowPhase, SlidingOverATessellatedPlaneKeepsTheIds) {
+  const Collider plane = makeCollider(gridMesh(1, 1, 100, 100), 0), box = cube(0.005);
+  std::vector<std::uint64_t> first;
+  for (int step = 0; step < 50; ++step) {
+    const ContactManifold manifold = contactsOf(box, at(0.001 * step, 0.0007 * step, EDGE / 2 + 0.004), plane, Pose::Identity());
+    ASSERT_EQ(manifold.contacts.size(), 4u);
+    std::vector<std::uint64_t> ids;
+    for (const Contact& c : manifold.contacts) ids.push_back(c.id);
+    if (step == 0) first = ids;
+    EXPECT_EQ(ids, first);
+  }
+}
+
+}  // namespace
+}  // namespace blem_sim

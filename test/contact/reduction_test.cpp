@@ -1,0 +1,472 @@
+// Every reduction keeps the same promises; hull loses nothing on flat patches; budgets hold over several manifolds.
+#include "blem_sim/contact/reduction.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <climits>
+#include <cmath>
+#include <functional>
+#include <random>
+#include <tuple>
+
+namespace blem_sim {
+namespace {
+
+using Contacts = std::vector<Contact>;
+
+Contact makeContact(const Vector3& point, const Vector3& normal, double depth, std::uint64_t id) {
+  Contact contact;
+  contact.point = point;
+  contact.normal_BA = normal.normalized();
+  contact.depth = depth;
+  contact.id = id;
+  return contact;
+}
+
+// Uniform in [-1, 1), the same with every standard library.
+class Noise {
+ public:
+  explicit Noise(unsigned seed) : engine_(seed) {}
+  double operator()() { return engine_() * (2.0 / 4294967296.0) - 1.0; }
+
+ private:
+  std::mt19937 engine_;
+};
+
+// A 10 cm square in the plane across `normal`, all contacts at one depth: what a tessellated cube on a plane gives.
+Contacts flatPatch(int count, const Vector3& normal, const Vector3& centre, unsigned seed = 1) {
+  Noise noise(seed);
+  const Quaternion tilt = Quaternion::FromTwoVectors(Vector3::UnitZ(), normal);
+  Contacts contacts;
+  for (int i = 0; i < count; ++i) {
+    const Vector3 p(0.05 * noise(), 0.05 * noise(), 0);
+    contacts.push_back(makeContact(centre + tilt * p, normal, 1e-3, i));
+  }
+  return contacts;
+}
+
+// A cube's face on sensor noise: normals within some degrees, depths within the layer.
+Contacts noisyPatch(int count, unsigned seed = 2) {
+  Noise noise(seed);
+  Contacts contacts;
+  for (int i = 0; i < count; ++i) {
+    const Vector3 normal(0.1 * noise() + 0.1 * noise(), 0.1 * noise() + 0.1 * noise(), 1);
+    contacts.push_back(makeContact({0.05 * noise(), 0.05 * noise(), 5e-4 * noise()}, normal, 1.25e-3 * (1 + noise()), i));
+  }
+  return contacts;
+}
+
+// A ring around a handle: normals all around, which cancel in the mean.
+Contacts ring(int count) {
+  Contacts contacts;
+  for (int i = 0; i < count; ++i) {
+    const double angle = 2 * M_PI * i / count;
+    const Vector3 normal(std::cos(angle), std::sin(angle), 0);
+    contacts.push_back(makeContact(-0.03 * normal, normal, 1e-3, i));
+  }
+  return contacts;
+}
+
+Contacts sphereCap(int count) {
+  Noise noise(3);
+  Contacts contacts;
+  for (int i = 0; i < count; ++i) {
+    const Vector3 p(0.01 * noise(), 0.01 * noise(), -std::sqrt(0.04 * 0.04 - 2e-4));
+    const Vector3 normal = -p.normalized();
+    contacts.push_back(makeContact(-0.04 * normal, normal, 2e-3 * normal.z() - 1.5e-3, i));
+  }
+  return contacts;
+}
+
+// Largest component along (a, b) of the wrenches about the origin that contacts with unit normal force give.
+double support(const Contacts& contacts, const Vector3& a, const Vector3& b, double friction = 0.5) {
+  double best = -std::numeric_limits<double>::infinity();
+  for (const Contact& c : contacts) {
+    const Vector3 g = a + b.cross(c.point);
+    const double along = g.dot(c.normal_BA);
+    best = std::max(best, along + friction * (g - along * c.normal_BA).norm());
+  }
+  return best;
+}
+
+bool same(const Contact& a, const Contact& b) {
+  return a.point == b.point && a.normal_BA == b.normal_BA && a.depth == b.depth && a.id == b.id && a.pierced == b.pierced;
+}
+
+bool sameAll(const Contacts& a, const Contacts& b) { return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), same); }
+
+Contacts shuffled(Contacts contacts, unsigned seed) {
+  std::mt19937 engine(seed);
+  for (std::size_t i = contacts.size(); i > 1; --i) std::swap(contacts[i - 1], contacts[engine() % i]);
+  return contacts;
+}
+
+struct InputCase {
+  const char* name;
+  std::function<Contacts()> make;
+};
+
+Contacts duplicates() {
+  Contacts contacts;
+  for (int i = 0; i < 200; ++i) contacts.push_back(makeContact({0.1, 0.2, 0.3}, {0, 0, 1}, 1e-3, 7));
+  return contacts;
+}
+
+Contacts line() {
+  Contacts contacts;
+  for (int i = 0; i < 100; ++i) contacts.push_back(makeContact({0.001 * i, 0.0005 * i, 0}, {0, 0, 1}, 1e-3 + 1e-6 * i, i));
+  return contacts;
+}
+
+Contacts opposite() {
+  Contacts contacts = flatPatch(100, {0, 0, 1}, {0, 0, 0});
+  for (Contact c : flatPatch(100, {0, 0, -1}, {0, 0, 0.1}, 5)) {
+    c.id += 1000;
+    contacts.push_back(c);
+  }
+  return contacts;
+}
+
+const InputCase INPUTS[] = {
+    {"empty", [] { return Contacts(); }},
+    {"one",
+     [] {
+       return flatPatch(1, {0, 0, 1}, {1, 2, 3});
+     }},
+    {"three",
+     [] {
+       return flatPatch(3, {1, 1, 1}, {1, 2, 3});
+     }},
+    {"flat",
+     [] {
+       return flatPatch(400, {0.3, -0.2, 1}, {0.5, 0.7, 0.1});
+     }},
+    {"noisy", [] { return noisyPatch(1500); }},
+    {"few_noisy", [] { return noisyPatch(120); }},
+    {"ring", [] { return ring(240); }},
+    {"sphere", [] { return sphereCap(500); }},
+    {"duplicates", duplicates},
+    {"line", line},
+    {"opposite", opposite},
+};
+
+class EveryReduction : public ::testing::TestWithParam<std::tuple<int, int>> {
+ protected:
+  const Reduction& method() const { return reductionTable()[std::get<0>(GetParam())]; }
+  Contacts input() const { return INPUTS[std::get<1>(GetParam())].make(); }
+  bool keepsAll() const { return method().reduce == reduceNone; }
+};
+
+TEST_P(EveryReduction, KeepsItsPromises) {
+  const Contacts given = input();
+  Box box;
+  double deepest = -std::numeric_limits<double>::infinity();
+  for (const Contact& c : given) {
+    box.extend(c.point);
+    deepest = std::max(deepest, c.depth);
+  }
+  for (int k : {1, 2, 3, 7, 20, 50}) {
+    Contacts reduced = given;
+    method().reduce(reduced, k);
+    SCOPED_TRACE(k);
+    EXPECT_EQ(reduced.empty(), given.empty());
+    if (keepsAll()) {
+      EXPECT_EQ(reduced.size(), given.size());
+    } else {
+      EXPECT_LE(reduced.size(), static_cast<std::size_t>(k));
+    }
+    for (const Contact& c : reduced) {
+      EXPECT_NEAR(c.normal_BA.norm(), 1, 1e-12);
+      EXPECT_TRUE(c.point.allFinite());
+      EXPECT_LE(c.depth, deepest);
+      EXPECT_TRUE((c.point.array() >= box.min().array()).all() && (c.point.array() <= box.max().array()).all());
+    }
+    EXPECT_TRUE(std::is_sorted(reduced.begin(), reduced.end(), [](const Contact& a, const Contact& b) { return a.id < b.id; }));
+  }
+}
+
+TEST_P(EveryReduction, DoesNotDependOnTheOrderOfItsInput) {
+  for (int k : {3, 20}) {
+    Contacts reference = input();
+    method().reduce(reference, k);
+    for (unsigned seed = 1; seed <= 3; ++seed) {
+      Contacts other = shuffled(input(), seed);
+      method().reduce(other, k);
+      EXPECT_TRUE(sameAll(reference, other)) << "k " << k << ", seed " << seed;
+    }
+  }
+}
+
+TEST_P(EveryReduction, ChangesNothingTheSecondTime) {
+  Contacts once = input();
+  method().reduce(once, 20);
+  Contacts twice = once;
+  method().reduce(twice, 20);
+  EXPECT_TRUE(sameAll(once, twice));
+}
+
+TEST_P(EveryReduction, DropsContactsWithoutNumbersOrDirection) {
+  Contacts contacts = input();
+  const std::size_t sound = contacts.size();
+  Contact bad = makeContact({0, 0, 0}, {0, 0, 1}, 0, 5000);
+  bad.depth = std::numeric_limits<double>::quiet_NaN();
+  contacts.push_back(bad);
+  bad = makeContact({0, 0, 0}, {0, 0, 1}, 0, 5001);
+  bad.normal_BA.setZero();
+  contacts.push_back(bad);
+  bad = makeContact({std::numeric_limits<double>::infinity(), 0, 0}, {0, 0, 1}, 0, 5002);
+  contacts.push_back(bad);
+  method().reduce(contacts, 20);
+  EXPECT_EQ(contacts.empty(), sound == 0);
+  for (const Contact& c : contacts) EXPECT_LT(c.id, 5000u);
+}
+
+std::string caseName(const ::testing::TestParamInfo<std::tuple<int, int>>& info) {
+  return std::string(reductionTable()[std::get<0>(info.param)].name) + "_" + INPUTS[std::get<1>(info.param)].name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Table, EveryReduction,
+                         ::testing::Combine(::testing::Range(0, static_cast<int>(reductionTable().size())),
+                                            ::testing::Range(0, static_cast<int>(std::size(INPUTS)))),
+                         caseName);
+
+TEST(Reduction, IsFoundByName) {
+  for (const char* name : {"hull", "hierarchical", "kmeans", "none"}) {
+    ASSERT_NE(findReduction(name), nullptr) << name;
+    EXPECT_STREQ(findReduction(name)->name, name);
+  }
+  EXPECT_EQ(findReduction("Hull"), nullptr);
+  EXPECT_EQ(findReduction(""), nullptr);
+}
+
+TEST(ReduceHull, KeepsExactlyTheCornersOfAGridOnAPlane) {
+  Contacts contacts;
+  for (int i = 0; i <= 20; ++i) {
+    for (int j = 0; j <= 20; ++j) contacts.push_back(makeContact({0.005 * i, 0.005 * j, 0}, {0, 0, 1}, 1e-3, 21 * i + j));
+  }
+  reduceHull(contacts, 20);
+  ASSERT_EQ(contacts.size(), 4u);
+  EXPECT_EQ(contacts[0].id, 0u);
+  EXPECT_EQ(contacts[1].id, 20u);
+  EXPECT_EQ(contacts[2].id, 420u);
+  EXPECT_EQ(contacts[3].id, 440u);
+}
+
+TEST(ReduceHull, LosesNoWrenchOnFlatPatches) {
+  Noise noise(11);
+  for (int trial = 0; trial < 40; ++trial) {
+    const Vector3 normal(noise(), noise(), noise());
+    Contacts all = flatPatch(300, normal.normalized(), {noise(), noise(), noise()}, 100 + trial);
+    // A second plane of the same direction, 3 cm higher: the steps of a stair.
+    Contacts upper = flatPatch(100, normal.normalized(), all[0].point + 0.03 * normal.normalized(), 200 + trial);
+    for (Contact& c : upper) c.id += 1000;
+    all.insert(all.end(), upper.begin(), upper.end());
+    Contacts reduced = all;
+    reduceHull(reduced, 60);
+    EXPECT_LT(reduced.size(), 60u);
+    for (int d = 0; d < 500; ++d) {
+      const Vector3 a(noise(), noise(), noise()), b(10 * noise(), 10 * noise(), 10 * noise());
+      ASSERT_NEAR(support(reduced, a, b), support(all, a, b), 1e-12);
+    }
+  }
+}
+
+// Does some affine function separate p from the kept contacts in (x, y, depth)? Then p's constraint is not implied by theirs.
+bool isImplied(const Contact& p, const Contacts& kept) {
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    for (std::size_t j = 0; j < kept.size(); ++j) {
+      for (std::size_t l = 0; l < kept.size(); ++l) {
+        Matrix3 m;
+        m << kept[i].point.x(), kept[j].point.x(), kept[l].point.x(), kept[i].point.y(), kept[j].point.y(), kept[l].point.y(), 1, 1, 1;
+        if (std::abs(m.determinant()) < 1e-14) continue;
+        const Vector3 weights = m.inverse() * Vector3(p.point.x(), p.point.y(), 1);
+        if (weights.minCoeff() < -1e-9) continue;
+        if (weights.dot(Vector3(kept[i].depth, kept[j].depth, kept[l].depth)) >= p.depth - 1e-8) return true;
+      }
+    }
+  }
+  return false;
+}
+
+TEST(ReduceHull, KeepsWhatIsDeeperThanItsCornersInterpolate) {
+  Contacts all = flatPatch(200, {0, 0, 1}, {0, 0, 0}, 21);
+  for (Contact& c : all) {
+    const bool raised = std::abs(c.point.x()) < 0.02 && std::abs(c.point.y()) < 0.02;
+    if (raised) c.depth += 5e-4;
+  }
+  Contacts reduced = all;
+  reduceHull(reduced, 100);
+  EXPECT_LT(reduced.size(), 50u);
+  EXPECT_GT(std::count_if(reduced.begin(), reduced.end(), [](const Contact& c) { return c.depth > 1.2e-3; }), 2);
+  for (const Contact& c : all) EXPECT_TRUE(isImplied(c, reduced)) << c.id;
+}
+
+TEST(ReduceHull, ImpliesEveryContactOfAPatchWithNoisyDepths) {
+  Noise noise(22);
+  Contacts all = flatPatch(300, {0, 0, 1}, {0, 0, 0}, 23);
+  for (Contact& c : all) c.depth += 1e-3 * noise();
+  Contacts reduced = all;
+  reduceHull(reduced, 150);
+  EXPECT_LT(reduced.size(), 100u);
+  for (const Contact& c : all) EXPECT_TRUE(isImplied(c, reduced)) << c.id;
+}
+
+TEST(ReduceHull, KeepsContactsAsTheyAre) {
+  const Contacts all = noisyPatch(800);
+  Contacts reduced = all;
+  reduceHull(reduced, 20);
+  for (const Contact& c : reduced) EXPECT_TRUE(same(c, all[c.id]));
+}
+
+TEST(ReduceHull, KeepsTheDeepestContact) {
+  Contacts all = noisyPatch(800);
+  all[400].depth = 2.45e-3 + 1e-4;
+  for (int k : {1, 5, 20}) {
+    Contacts reduced = all;
+    reduceHull(reduced, k);
+    EXPECT_EQ(std::count_if(reduced.begin(), reduced.end(), [](const Contact& c) { return c.id == 400; }), 1) << k;
+  }
+}
+
+TEST(ReduceHull, KeepsAllSidesOfARing) {
+  Contacts all = ring(240);
+  Contacts reduced = all;
+  reduceHull(reduced, 12);
+  for (int d = 0; d < 360; ++d) {
+    const Vector3 a(std::cos(d * M_PI / 180), std::sin(d * M_PI / 180), 0);
+    EXPECT_NEAR(support(reduced, a, Vector3::Zero()), support(all, a, Vector3::Zero()), 0.15);
+  }
+}
+
+struct SupportError {
+  double mean = 0, max = 0;
+};
+
+// Difference of the support functions of the friction wrenches over 500 directions, relative to the mean; torques at half the patch's size.
+SupportError supportError(const Contacts& all, const Contacts& reduced) {
+  Noise noise(31);
+  double sum = 0, worst = 0, level = 0;
+  for (int d = 0; d < 500; ++d) {
+    Eigen::Matrix<double, 6, 1> w;
+    for (int i = 0; i < 6; ++i) w[i] = noise() + noise() + noise();
+    w.normalize();
+    const Vector3 a = w.head<3>(), b = w.tail<3>() / 0.05;
+    const double difference = support(all, a, b) - support(reduced, a, b);
+    sum += difference;
+    worst = std::max(worst, difference);
+    level += std::abs(support(all, a, b));
+  }
+  return {sum / level, worst * 500 / level};
+}
+
+TEST(ReduceHull, SpansTheWrenchesOfANoisyPatch) {
+  const Contacts all = noisyPatch(5000);
+  for (const auto& [k, mean_limit] : {std::pair<int, double>{20, 0.04}, {50, 0.005}}) {
+    Contacts reduced = all;
+    reduceHull(reduced, k);
+    const SupportError error = supportError(all, reduced);
+    RecordProperty("mean_error_k" + std::to_string(k), std::to_string(error.mean));
+    RecordProperty("max_error_k" + std::to_string(k), std::to_string(error.max));
+    EXPECT_LT(error.mean, mean_limit) << "k " << k << ", max " << error.max;
+    EXPECT_GE(error.mean, 0);
+  }
+}
+
+TEST(ReduceKmeans, AveragesWhatBelongsTogether) {
+  Contacts contacts;
+  for (int i = 0; i < 10; ++i) {
+    contacts.push_back(makeContact({0.001 * i, 0, 0}, {0, 0, 1}, 1e-3, i));
+    contacts.push_back(makeContact({1 + 0.001 * i, 0, 0}, {0, 0, 1}, 2e-3, 100 + i));
+  }
+  Contacts by_linkage = contacts;
+  reduceKmeans(contacts, 2);
+  reduceHierarchical(by_linkage, 2);
+  for (const Contacts& reduced : {contacts, by_linkage}) {
+    ASSERT_EQ(reduced.size(), 2u);
+    EXPECT_NEAR(reduced[0].point.x(), 0.0045, 1e-12);
+    EXPECT_NEAR(reduced[1].point.x(), 1.0045, 1e-12);
+    EXPECT_NEAR(reduced[0].depth, 1e-3, 1e-12);
+    EXPECT_NEAR(reduced[1].depth, 2e-3, 1e-12);
+  }
+}
+
+ContactManifold manifoldOf(int a, int b, Contacts contacts) {
+  ContactManifold manifold;
+  manifold.a = a;
+  manifold.b = b;
+  manifold.contacts = std::move(contacts);
+  return manifold;
+}
+
+class Budgets : public ::testing::TestWithParam<int> {
+ protected:
+  const Reduction& method() const { return reductionTable()[GetParam()]; }
+};
+
+int contactsOf(int model, const std::vector<ContactManifold>& manifolds, const std::vector<int>& model_a, const std::vector<int>& model_b) {
+  int count = 0;
+  for (std::size_t m = 0; m < manifolds.size(); ++m) {
+    if (model_a[m] == model || model_b[m] == model) count += static_cast<int>(manifolds[m].contacts.size());
+  }
+  return count;
+}
+
+// Models: 0 the static world, 1 a robot (k = 50), 2 and 3 objects (k = 20).
+TEST_P(Budgets, HoldForRobotObjectsAndStaticWorld) {
+  const std::vector<ContactBudget> budgets = {{INT_MAX}, {50}, {20}, {20}};
+  const std::vector<int> model_a = {1, 1, 1, 1, 0, 2, 1, 0};
+  const std::vector<int> model_b = {0, 0, 2, 0, 2, 3, 1, 3};
+  std::vector<ContactManifold> manifolds;
+  for (int m = 0; m < 8; ++m) manifolds.push_back(manifoldOf(m, m + 1, noisyPatch(m == 3 ? 2 : 200 + 10 * m, 50 + m)));
+  int before = 0, after = 0;
+  for (const ContactManifold& manifold : manifolds) before += static_cast<int>(manifold.contacts.size());
+  const int left_out = reduceManifolds(manifolds, model_a, model_b, budgets, method());
+  for (const ContactManifold& manifold : manifolds) {
+    after += static_cast<int>(manifold.contacts.size());
+    EXPECT_GE(manifold.contacts.size(), manifold.a == 3 ? 2u : 3u) << manifold.a;
+  }
+  EXPECT_EQ(left_out, before - after);
+  if (method().reduce == reduceNone) {
+    EXPECT_EQ(left_out, 0);
+    return;
+  }
+  EXPECT_LE(contactsOf(1, manifolds, model_a, model_b), 50);
+  EXPECT_LE(contactsOf(2, manifolds, model_a, model_b), 20);
+  EXPECT_LE(contactsOf(3, manifolds, model_a, model_b), 20);
+  EXPECT_GT(contactsOf(1, manifolds, model_a, model_b), 25);
+}
+
+TEST_P(Budgets, HoldWithMoreManifoldsThanContactsAllowed) {
+  if (method().reduce == reduceNone) return;  // has no budget
+  std::vector<ContactManifold> manifolds;
+  for (int m = 0; m < 9; ++m) manifolds.push_back(manifoldOf(0, m + 1, noisyPatch(5, 70 + m)));
+  const std::vector<int> robot(9, 1), world(9, 0);
+  reduceManifolds(manifolds, robot, world, {{INT_MAX}, {4}}, method());
+  EXPECT_EQ(contactsOf(1, manifolds, robot, world), 4);
+}
+
+TEST_P(Budgets, ChoosePiercedContactsLast) {
+  if (method().reduce == reduceNone) return;  // has no choice
+  Contacts contacts = noisyPatch(300);
+  for (int i = 0; i < 150; ++i) {
+    contacts[i].pierced = true;
+    contacts[i].depth = 0.05;
+  }
+  std::vector<ContactManifold> manifolds = {manifoldOf(0, 1, contacts)};
+  reduceManifolds(manifolds, {0}, {1}, {{20}, {INT_MAX}}, method());
+  ASSERT_FALSE(manifolds[0].contacts.empty());
+  EXPECT_LE(manifolds[0].contacts.size(), 20u);
+  EXPECT_GE(std::count_if(manifolds[0].contacts.begin(), manifolds[0].contacts.end(), [](const Contact& c) { return !c.pierced; }), 15);
+
+  for (Contact& c : contacts) c.pierced = true;
+  manifolds = {manifoldOf(0, 1, contacts)};
+  reduceManifolds(manifolds, {0}, {1}, {{20}, {INT_MAX}}, method());
+  EXPECT_FALSE(manifolds[0].contacts.empty());
+}
+
+INSTANTIATE_TEST_SUITE_P(Table, Budgets, ::testing::Range(0, static_cast<int>(reductionTable().size())),
+                         [](const auto& info) { return std::string(reductionTable()[info.param].name); });
+
+}  // namespace
+}  // namespace blem_sim

@@ -1,0 +1,106 @@
+// Beyond the layer: what the fallback says where bare meshes cross.
+#include <gtest/gtest.h>
+
+#include "contact_shapes.h"
+
+namespace blem_sim {
+namespace {
+
+constexpr double EDGE = 0.1;
+constexpr double LAYER = 0.005;
+
+Collider cube(int level = 0) { return makeCollider(subdivided(boxMesh(Vector3::Constant(EDGE)), level), LAYER / 2); }
+
+int countPierced(const ContactManifold& manifold) {
+  return std::count_if(manifold.contacts.begin(), manifold.contacts.end(), [](const Contact& c) { return c.pierced; });
+}
+
+/** Depth grows past the layer, the direction stays: what a cube sunk into another or a sheet should feel, whatever the tessellations. */
+TEST(Retraction, SunkCubeIsPushedOutTheWayItCame) {
+  struct Ground {
+    const char* name;
+    Collider collider;
+    double top;
+  };
+  const std::vector<Ground> grounds = {{"cube", cube(), EDGE / 2},
+                                       {"fine cube", cube(2), EDGE / 2},
+                                       {"two triangles", makeCollider(gridMesh(1, 1, 1, 1), LAYER / 2), 0},
+                                       {"fine sheet", makeCollider(gridMesh(1, 1, 90, 90), LAYER / 2), 0},
+                                       {"block", makeCollider(boxMesh({1, 1, 0.2}), LAYER / 2), 0.1}};
+  for (const Ground& ground : grounds) {
+    for (const int level : {0, 2}) {
+      for (const Vector3& offset : {Vector3(0, 0, 0), Vector3(1e-6, 0, 0), Vector3(0.02, 0.013, 0), Vector3(0.0123, 0, 0)}) {
+        for (const double sunk : {1e-7, 1e-4, 2e-3}) {
+          const Pose X_WA = makePose(offset + Vector3(0, 0, ground.top + EDGE / 2 - sunk));
+          const ContactManifold manifold = contactsOf(cube(level), X_WA, ground.collider, Pose::Identity());
+          SCOPED_TRACE(testing::Message() << ground.name << " level " << level << " offset " << offset.transpose() << " sunk " << sunk);
+          EXPECT_TRUE(manifold.pierced);
+          EXPECT_GE(countPierced(manifold), 4);
+          EXPECT_NEAR(manifold.maxDepth(), LAYER + sunk, 1e-9);
+          for (const Contact& c : manifold.contacts) EXPECT_NEAR((c.normal_BA - Vector3::UnitZ()).norm(), 0, 1e-9);
+        }
+      }
+    }
+  }
+}
+
+TEST(Retraction, CornerAndEdgeThroughASheet) {
+  const Collider sheet = makeCollider(gridMesh(1, 1, 20, 20), LAYER / 2);
+  const double corner = EDGE / 2 * std::sqrt(3.0), edge = EDGE / 2 * std::sqrt(2.0), sunk = 0.001;
+  Pose X_WA = Pose::Identity();
+  X_WA.linear() = Quaternion::FromTwoVectors(Vector3(1, 1, 1), Vector3(0, 0, -1)).toRotationMatrix();
+  X_WA.translation() = Vector3(0.011, 0.007, corner - sunk);
+  ContactManifold manifold = contactsOf(cube(), X_WA, sheet, Pose::Identity());
+  EXPECT_TRUE(manifold.pierced);
+  ASSERT_EQ(countPierced(manifold), 1);  // three edges, one end
+  EXPECT_NEAR(manifold.maxDepth(), LAYER + sunk, 1e-12);
+  manifold = contactsOf(cube(), makePose({0, 0, edge - sunk}, {M_PI / 4, 0, 0.2}), sheet, Pose::Identity());
+  EXPECT_EQ(countPierced(manifold), 2);
+  EXPECT_NEAR(manifold.maxDepth(), LAYER + sunk, 1e-12);
+  for (const Contact& c : manifold.contacts) EXPECT_NEAR((c.normal_BA - Vector3::UnitZ()).norm(), 0, 1e-12);
+}
+
+/** Roof ridge across roof ridge: shorter over the ridge than back along it. */
+TEST(Retraction, CrossedRidgesPartOverTheRidge) {
+  const double h = EDGE / 2 * std::sqrt(2.0), sunk = 0.001;
+  const Pose upper = makePose({0, 0, 2 * h - sunk}, {M_PI / 4, 0, 0}), lower = makePose({0, 0, 0}, {0, M_PI / 4, 0});
+  const ContactManifold manifold = contactsOf(cube(), upper, cube(), lower);
+  EXPECT_TRUE(manifold.pierced);
+  ASSERT_EQ(countPierced(manifold), 1);
+  EXPECT_NEAR(manifold.maxDepth(), LAYER + sunk, 1e-12);
+  for (const Contact& c : manifold.contacts) EXPECT_NEAR((c.normal_BA - Vector3::UnitZ()).norm(), 0, 1e-12);
+}
+
+TEST(Retraction, DepthIsContinuousThroughThePiercing) {
+  RandomShapes random(31);
+  const Collider hills = makeCollider(hillMesh(random, 0.5, 25, 0.002), LAYER / 2), box = cube(1);
+  double before = -LAYER;
+  for (int step = 0; step < 400; ++step) {
+    const double height = EDGE / 2 + 0.004 - 1e-5 * step;
+    const ContactManifold manifold = contactsOf(box, makePose({0.013, 0.007, height}, {0.01, 0.02, 0.4}), hills, Pose::Identity());
+    ASSERT_TRUE(allFinite(manifold));
+    EXPECT_GE(manifold.maxDepth(), before - 1e-9) << step;
+    before = manifold.maxDepth();
+  }
+  EXPECT_GT(before, LAYER);
+}
+
+TEST(Retraction, SwappedPairIsMirrored) {
+  RandomShapes random(32);
+  int pierced = 0;
+  for (int i = 0; i < 300; ++i) {
+    const Collider a = cube(), b = makeCollider(octahedronMesh(0.04), 0.001);
+    const Pose X_WA = random.pose(0.06);
+    const ContactManifold ab = contactsOf(a, X_WA, b, Pose::Identity());
+    ContactManifold ba = contactsOf(b, Pose::Identity(), a, X_WA);
+    for (Contact& contact : ba.contacts) contact.normal_BA = -contact.normal_BA;
+    pierced += ab.pierced;
+    EXPECT_EQ(ab.pierced, ba.pierced);
+    EXPECT_EQ(ab.contacts.size(), ba.contacts.size());
+    EXPECT_NEAR(largestDifference(ab.contacts, ba.contacts), 0, 1e-9);
+  }
+  EXPECT_GT(pierced, 100);
+}
+
+}  // namespace
+}  // namespace blem_sim

@@ -1,0 +1,87 @@
+"""What each demo promises, run as fast as it goes by blem_sim_run (environment BLEM_SIM_RUN)."""
+import csv
+import json
+import os
+import pathlib
+import subprocess
+
+import pytest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+CONFIG = ROOT / "config"
+HUMANOID_WEIGHT = 33.71 * 9.81  # [N]
+
+
+def run(folder, config, duration, *options):
+    """Runs a demo. Returns its report and its rows of state as dicts of numbers."""
+    program = os.environ.get("BLEM_SIM_RUN")
+    if not program:
+        pytest.skip("BLEM_SIM_RUN does not name a built blem_sim_run; run by scripts/test")
+    report, table = folder / "report.json", folder / "state.csv"
+    command = [program, str(CONFIG / config), "--duration", str(duration), "--report", str(report), "--csv", str(table), "--csv-rate", "50"]
+    subprocess.run(command + ["--package", "blem_sim=%s" % ROOT] + list(options), check=True, timeout=600)
+    with open(str(table)) as stream:
+        rows = [{key: float(value) for key, value in row.items()} for row in csv.DictReader(stream)]
+    return json.loads(report.read_text()), rows
+
+
+def untroubled(report):
+    """No step left a layer, was shortened or redone."""
+    for bit in ("STEP_SHORTENED", "CONTACT_UNRELIABLE", "SOLVER_TROUBLE", "STATE_NOT_FINITE"):
+        assert report["status"][bit] == 0, (bit, report["status"])
+    assert report["max_penetration"]["of_layer"] < 0.01
+
+
+def upright(report, height):
+    pelvis = report["bodies"]["humanoid::pelvis"]
+    assert abs(pelvis["xyz"][2] - height) < 0.005, pelvis
+    assert abs(pelvis["quat_xyzw"][3]) > 0.999, pelvis
+
+
+def test_humanoid_stands_on_the_scan(tmp_path):
+    report, _ = run(tmp_path, "demo_humanoid_on_scan.yaml", 6, "--stats-from", "5")
+    untroubled(report)
+    upright(report, 0.610)
+    # Each ankle's sensor and the foot below it; the feet carry all.
+    soles = [report["sensors"][name]["mean"][2] for name in ("left_sole", "right_sole")]
+    assert abs(sum(soles) - HUMANOID_WEIGHT) < 1e-3 * HUMANOID_WEIGHT
+
+
+def test_humanoid_shifts_its_weight(tmp_path):
+    report, _ = run(tmp_path, "demo_humanoid_on_scan.yaml", 10, "--trajectory", str(CONFIG / "demo_humanoid_sway.csv"))
+    untroubled(report)
+    upright(report, 0.610)
+    for ankle in ("left_ankle", "right_ankle"):
+        # In the child's axes the foot is pressed down: the shift loads one leg and then the other.
+        assert report["sensors"][ankle]["min"][2] < -0.6 * HUMANOID_WEIGHT, report["sensors"][ankle]
+
+
+def test_humanoid_stands_on_the_points(tmp_path):
+    report, _ = run(tmp_path, "demo_point_cloud.yaml", 5, "--stats-from", "4")
+    untroubled(report)
+    upright(report, 0.6155)
+    soles = [report["sensors"][name]["mean"][2] for name in ("left_sole", "right_sole")]
+    assert abs(sum(soles) - HUMANOID_WEIGHT) < 1e-3 * HUMANOID_WEIGHT
+
+
+def test_gripper_lifts_shakes_and_puts_back_the_mug(tmp_path):
+    report, rows = run(tmp_path, "demo_gripper_mug.yaml", 10.5, "--trajectory", str(CONFIG / "demo_gripper_mug.csv"))
+    untroubled(report)
+    height = {round(row["time"], 3): row["mug::link_z"] for row in rows}
+    assert abs(height[3.6] - height[1.0] - 0.1) < 1e-3
+    # While it is shaken the mug moves with the pads.
+    held = [row["mug::link_x"] - row["gripper::shake"] for row in rows if 3.6 <= row["time"] <= 6.8]
+    assert max(held) - min(held) < 1e-3, (min(held), max(held))
+    travel = [row["mug::link_x"] for row in rows if 3.6 <= row["time"] <= 6.8]
+    assert max(travel) - min(travel) > 0.095
+    assert abs(height[10.5] - height[0.5]) < 1e-5
+
+
+def test_ten_cubes_stand(tmp_path):
+    report, _ = run(tmp_path, "demo_cube_stack.yaml", 10)
+    untroubled(report)
+    for i in range(10):
+        # Every cube carries a layer of 2.5 mm; between two of them lie two.
+        x, y, z = report["bodies"]["cube_%d::link" % (i + 1)]["xyz"]
+        assert abs(x) < 1e-4 and abs(y) < 1e-4, (i, x, y)
+        assert abs(z - (0.0525 + 0.105 * i)) < 1e-4, (i, z)

@@ -1,0 +1,128 @@
+#!/usr/bin/python3
+"""Bad parameters are refused with one line and exit code 2; a good node starts, and stops when it is told to."""
+import os
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+import rosgraph
+import rosnode
+import rospkg
+import rospy
+import rostest
+import yaml
+from rosgraph_msgs.msg import Clock
+
+from sim_client import Recorder
+
+NAME = "/starting_blem_sim"
+DATA = os.path.join(rospkg.RosPack().get_path("blem_sim"), "test", "data", "ros")
+WORLD = os.path.join(DATA, "world.yaml")
+
+
+class StartupTest(unittest.TestCase):
+    def setUp(self):
+        if rospy.has_param(NAME):
+            rospy.delete_param(NAME)
+        with open(WORLD) as stream:
+            self.parameters = yaml.safe_load(stream)
+        self.parameters["config_file"] = WORLD
+
+    def start(self, parameters):
+        rospy.set_param(NAME, parameters)
+        self.output = tempfile.TemporaryFile(mode="w+")
+        command = ["rosrun", "blem_sim", "blem_sim_node", "__name:=" + NAME.strip("/")]
+        process = subprocess.Popen(command, stdout=self.output, stderr=subprocess.STDOUT)
+        self.addCleanup(lambda: process.poll() is None and process.kill())
+        return process
+
+    def assert_refused(self, parameters, *words):
+        process = self.start(parameters)
+        self.assertEqual(process.wait(timeout=60), 2)
+        self.output.seek(0)
+        lines = [line for line in self.output.read().splitlines() if "FATAL" in line]
+        self.assertEqual(len(lines), 1, lines)
+        for word in words:
+            self.assertIn(word, lines[0])
+
+    def wait_until_ready(self, process):
+        clock = Recorder("/clock", Clock)
+        clock.wait_for(1)
+        clock.stop()
+        self.assertIsNone(process.poll())
+
+    def test_unknown_parameter_names_the_nearest(self):
+        self.parameters["time_stp"] = 0.001
+        self.assert_refused(self.parameters, "time_stp", "time_step")
+
+    def test_unknown_parameter_of_a_robot(self):
+        self.parameters["robots"][0]["fixed_bas"] = True
+        self.assert_refused(self.parameters, "fixed_bas", "fixed_base")
+
+    def test_wrong_type(self):
+        self.parameters["time_step"] = "fast"
+        self.assert_refused(self.parameters, "time_step")
+
+    def test_missing_mesh(self):
+        self.parameters["environments"][0]["uri"] = "no_such_mesh.off"
+        self.assert_refused(self.parameters, "no_such_mesh.off")
+
+    def test_missing_description_parameter(self):
+        del self.parameters["robots"][0]["urdf"]
+        self.parameters["robots"][0]["description_param"] = "no_such_parameter"
+        self.assert_refused(self.parameters, "no_such_parameter")
+
+    def test_description_that_is_not_xml(self):
+        rospy.set_param("/broken_description", "this is no URDF")
+        del self.parameters["robots"][0]["urdf"]
+        self.parameters["robots"][0]["description_param"] = "/broken_description"
+        self.assert_refused(self.parameters, "broken_description")
+
+    def test_two_sensors_on_one_topic(self):
+        self.parameters["robots"][0]["sensors"][1]["topic"] = "tilt"
+        self.assert_refused(self.parameters, "tilt")
+
+    def test_interrupt_ends_it_cleanly(self):
+        for paused in (False, True):
+            self.parameters["paused"] = paused
+            process = self.start(self.parameters)
+            self.wait_until_ready(process)
+            process.send_signal(signal.SIGINT)
+            self.assertEqual(process.wait(timeout=20), 0)
+
+    def test_rosnode_kill_ends_it(self):
+        process = self.start(self.parameters)
+        self.wait_until_ready(process)
+        rosnode.kill_nodes([NAME])
+        self.assertEqual(process.wait(timeout=20), 0)
+
+    def test_sim_time_is_set_if_it_was_not(self):
+        master = rosgraph.Master("/startup_test")
+        if master.hasParam("/use_sim_time"):
+            master.deleteParam("/use_sim_time")
+        process = self.start(self.parameters)
+        self.wait_until_ready(process)
+        self.assertIs(master.getParam("/use_sim_time"), True)
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.wait(timeout=20), 0)
+
+    def test_robot_from_the_parameter_robot_description(self):
+        with open(os.path.join(DATA, "arm_on_base.urdf")) as stream:
+            rospy.set_param("/robot_description", stream.read())
+        del self.parameters["robots"]
+        process = self.start(self.parameters)
+        self.wait_until_ready(process)
+        deadline = time.time() + 20
+        while "/joint_states" not in dict(rospy.get_published_topics()) and time.time() < deadline:
+            time.sleep(0.05)
+        self.assertIn("/joint_states", dict(rospy.get_published_topics()))
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.wait(timeout=20), 0)
+        rospy.delete_param("/robot_description")
+
+
+if __name__ == "__main__":
+    rospy.init_node("startup_test")
+    rostest.rosrun("blem_sim", "startup", StartupTest)

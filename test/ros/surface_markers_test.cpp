@@ -1,0 +1,87 @@
+#include "surface_markers.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <set>
+
+namespace blem_sim {
+namespace {
+
+using visualization_msgs::Marker;
+
+Collider colliderOf(const TriangleMesh& mesh, double radius) {
+  Collider collider;
+  collider.name = "thing";
+  collider.geometry = std::make_shared<CollisionGeometry>(std::make_shared<TriangleMesh>(mesh));
+  collider.radius = radius;
+  return collider;
+}
+
+std::vector<Marker> markersOf(const Collider& collider) {
+  return surfaceMarkers(collider, "world", makePose(Vector3(1, 2, 3)), std_msgs::ColorRGBA(), 5);
+}
+
+TEST(SurfaceMarkers, HugeMeshesAreSplitAndNothingIsLost) {
+  const TriangleMesh grid = gridMesh(1, 1, 200, 200);
+  const std::vector<Marker> markers = markersOf(colliderOf(grid, 0.0025));
+  ASSERT_GT(markers.size(), 3U);
+  std::size_t corners = 0;
+  std::set<int> ids;
+  for (const Marker& marker : markers) {
+    EXPECT_EQ(marker.type, Marker::TRIANGLE_LIST);
+    EXPECT_EQ(marker.points.size() % 3, 0U);
+    EXPECT_LE(marker.points.size(), 60000U);
+    EXPECT_EQ(marker.pose.position.z, 3);
+    corners += marker.points.size();
+    ids.insert(marker.id);
+  }
+  EXPECT_EQ(corners, 3 * grid.elements.size());
+  EXPECT_EQ(ids.size(), markers.size());
+  EXPECT_EQ(*ids.begin(), 5);
+}
+
+TEST(SurfaceMarkers, PointsAreSpheresOfTheirRadius) {
+  const std::vector<Marker> markers = markersOf(colliderOf(pointMesh(Vector3(1, 0, 0)), 0.004));
+  ASSERT_EQ(markers.size(), 1U);
+  EXPECT_EQ(markers[0].type, Marker::SPHERE_LIST);
+  EXPECT_EQ(markers[0].scale.x, 0.008);
+  ASSERT_EQ(markers[0].points.size(), 1U);
+  EXPECT_EQ(markers[0].points[0].x, 1);
+}
+
+TEST(SurfaceMarkers, ManyPointsAreNoSpheres) {
+  TriangleMesh cloud;
+  for (int i = 0; i < 70000; ++i) {
+    cloud.vertices.emplace_back(1e-3 * (i % 300), 1e-3 * (i / 300), 0);
+    cloud.elements.emplace_back(i, i, i);
+  }
+  std::size_t points = 0;
+  for (const Marker& marker : markersOf(colliderOf(cloud, 0.004))) {
+    EXPECT_EQ(marker.type, Marker::POINTS);
+    points += marker.points.size();
+  }
+  EXPECT_EQ(points, 70000U);
+}
+
+TEST(SurfaceMarkers, SegmentsAreLines) {
+  const std::vector<Marker> markers = markersOf(colliderOf(segmentMesh(Vector3(0, 0, 0), Vector3(0, 0, 1)), 0.01));
+  ASSERT_EQ(markers.size(), 1U);
+  EXPECT_EQ(markers[0].type, Marker::LINE_LIST);
+  ASSERT_EQ(markers[0].points.size(), 2U);
+  EXPECT_EQ(markers[0].points[1].z, 1);
+}
+
+TEST(SurfaceMarkers, AHalfSpaceIsASquareInItsPlane) {
+  Collider collider;
+  const Vector3 normal = Vector3(1, 2, 3).normalized();
+  collider.geometry = CollisionGeometry::halfSpace(normal, 0.7);
+  const std::vector<Marker> markers = markersOf(collider);
+  ASSERT_EQ(markers.size(), 1U);
+  ASSERT_EQ(markers[0].points.size(), 6U);
+  for (const auto& p : markers[0].points) EXPECT_NEAR(normal.dot(Vector3(p.x, p.y, p.z)), 0.7, 1e-12);
+}
+
+}  // namespace
+}  // namespace blem_sim

@@ -1,0 +1,99 @@
+// Small scenes for the tests of the simulation: mesh files in a folder of their own, configurations by hand, inline robots.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iomanip>
+#include <string>
+
+#include "blem_sim/sim/simulator.h"
+
+namespace blem_sim {
+
+constexpr double G = 9.81;  // [m/s^2], the default configuration's
+
+/** Writes a mesh (or points) as a file and names it. */
+inline std::string meshFile(const std::string& name, const TriangleMesh& mesh) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "blem_sim_scene";
+  std::filesystem::create_directories(folder);
+  const std::string file = (folder / (name + ".off")).string();
+  std::ofstream out(file);
+  out << std::setprecision(17) << "OFF\n" << mesh.vertices.size() << " " << mesh.elements.size() << " 0\n";
+  for (const Vector3& v : mesh.vertices) out << v.x() << " " << v.y() << " " << v.z() << "\n";
+  for (const Vector3i& e : mesh.elements) out << "3 " << e[0] << " " << e[1] << " " << e[2] << "\n";
+  return file;
+}
+
+inline std::string pointsFile(const std::string& name, const std::vector<Vector3>& points) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "blem_sim_scene";
+  std::filesystem::create_directories(folder);
+  const std::string file = (folder / (name + ".pcd")).string();
+  std::ofstream out(file);
+  out << "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH " << points.size()
+      << "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " << points.size() << "\nDATA ascii\n";
+  for (const Vector3& p : points) out << p.x() << " " << p.y() << " " << p.z() << "\n";
+  return file;
+}
+
+/** A mesh of two triangles at z = 0. */
+inline EnvironmentConfig ground(double size = 4) {
+  EnvironmentConfig environment;
+  environment.name = "ground";
+  environment.uri = meshFile("ground" + std::to_string(static_cast<int>(1000 * size)), gridMesh(size, size, 1, 1));
+  return environment;
+}
+
+/** A closed box of triangles; its layer of 2.5 mm comes on top. */
+inline ObjectConfig box(const std::string& name, const Vector3& size, double mass, const Vector3& position) {
+  ObjectConfig object;
+  object.name = name;
+  object.uri = meshFile("box_" + std::to_string(size.x()) + "_" + std::to_string(size.y()) + "_" + std::to_string(size.z()), boxMesh(size));
+  object.mass = mass;
+  object.X_WO = makePose(position);
+  return object;
+}
+
+inline RobotConfig robot(const std::string& name, const std::string& urdf, bool fixed_base) {
+  RobotConfig config;
+  config.name = name;
+  config.urdf_xml = urdf;
+  config.fixed_base = fixed_base;
+  return config;
+}
+
+inline void stepFor(Simulator* simulator, double seconds) {
+  const long steps = std::lround(seconds / simulator->config().time_step);
+  for (long i = 0; i < steps; ++i) simulator->step();
+}
+
+inline BodyState bodyOf(const Simulator& simulator, const std::string& model) {
+  return simulator.report().bodies[simulator.models()[simulator.modelIndex(model)].bodies[0]];
+}
+
+/** The last reading of a sensor of the report. */
+template <typename Reading>
+Reading reading(const StepReport& report, int sensor) {
+  for (const SensorSample& sample : report.samples)
+    if (sample.sensor == sensor) return std::get<Reading>(sample.reading);
+  ADD_FAILURE() << "sensor " << sensor << " has no reading";
+  return Reading();
+}
+
+/** One link of 2 kg on a hinge about y, its centre of mass 0.5 m along x from the hinge; no collision shape. */
+inline std::string pendulumUrdf(const std::string& joint_extras = "") {
+  return R"(<robot name="pendulum">
+  <link name="base"/>
+  <link name="arm">
+    <inertial><origin xyz="0.5 0 0"/><mass value="2"/><inertia ixx="0.01" iyy="0.02" izz="0.03" ixy="0" ixz="0" iyz="0"/></inertial>
+  </link>
+  <joint name="hinge" type="revolute">
+    <parent link="base"/><child link="arm"/><origin xyz="0 0 1"/><axis xyz="0 1 0"/>
+    <limit lower="-3" upper="3" effort="200" velocity="10"/>)" +
+         joint_extras + R"(
+  </joint>
+</robot>)";
+}
+
+}  // namespace blem_sim

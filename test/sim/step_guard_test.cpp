@@ -1,0 +1,127 @@
+#include "step_guard.h"
+
+#include <algorithm>
+
+#include "simulation_scene.h"
+
+namespace blem_sim {
+namespace {
+
+TEST(Substeps, HalvesAtMostFourTimesAndEndsExactly) {
+  Substeps substeps;
+  EXPECT_EQ(substeps.fraction(), 1);
+  while (substeps.canHalve()) substeps.halve();
+  EXPECT_EQ(substeps.fraction(), 1.0 / 16);
+  while (!substeps.finished()) substeps.accept();
+  EXPECT_EQ(substeps.count(), 16);
+  EXPECT_EQ(substeps.fractionDone(), 1);
+}
+
+class UsesUpLayer : public testing::Test {
+ protected:
+  UsesUpLayer() : colliders_(2), before_(2), after_(2) {
+    colliders_[0].body = 0;
+    colliders_[1].body = 1;
+  }
+
+  /** Body 0 is A, above; the normal is +z. */
+  static ContactManifold manifold(double depth, bool pierced = false) {
+    ContactManifold m;
+    m.a = 0;
+    m.b = 1;
+    m.layer = 0.01;
+    m.pierced = pierced;
+    Contact contact;
+    contact.point = Vector3::Zero();
+    contact.normal_BA = Vector3::UnitZ();
+    contact.depth = depth;
+    m.contacts = {contact};
+    return m;
+  }
+
+  bool check(const std::vector<ContactManifold>& then, const std::vector<ContactManifold>& now) {
+    return usesUpLayer(colliders_, then, now, before_, after_);
+  }
+
+  std::vector<Collider> colliders_;
+  std::vector<BodyState> before_, after_;
+};
+
+TEST_F(UsesUpLayer, AcceptsShallowAndSlow) {
+  EXPECT_FALSE(check({}, {}));
+  EXPECT_FALSE(check({manifold(-0.001)}, {manifold(0.008)}));
+  EXPECT_FALSE(check({manifold(0.0091)}, {manifold(0.0095)}));
+  EXPECT_FALSE(check({manifold(0.0099, true)}, {manifold(0.0105, true)}));
+}
+
+TEST_F(UsesUpLayer, RefusesDeepAndFast) {
+  EXPECT_TRUE(check({manifold(-0.001)}, {manifold(0.0092)}));
+  EXPECT_TRUE(check({}, {manifold(0.0092)}));
+  EXPECT_TRUE(check({manifold(0.0085)}, {manifold(0.005, true)}));
+}
+
+TEST_F(UsesUpLayer, RefusesWhatPassedThrough) {
+  // 20 mm down, and on the other side nothing is near any more.
+  after_[0].X_WB.translation().z() = -0.02;
+  EXPECT_TRUE(check({manifold(-0.002)}, {}));
+  // Sideways is no danger.
+  after_[0].X_WB.translation() = Vector3(0.02, 0, 0);
+  EXPECT_FALSE(check({manifold(-0.002)}, {}));
+}
+
+TEST_F(UsesUpLayer, IgnoresPairsWithoutLayer) {
+  ContactManifold bare = manifold(0.001, true);
+  bare.layer = 0;
+  EXPECT_FALSE(check({}, {bare}));
+}
+
+/** Height [m] of a cube 0.3 s after it was thrown at a single sheet; was a bare mesh ever pierced? */
+double thrownAtSheet(double speed, double tilt, bool* pierced) {
+  SimulationConfig config;
+  config.environments = {ground()};
+  config.objects = {box("cube", Vector3::Constant(0.1), 1, {0, 0, 0.2})};
+  config.objects[0].X_WO = makePose({0, 0, 0.2}, {tilt, 0.3 * tilt, 0});
+  config.objects[0].linear_velocity = {0, 0, -speed};
+  Simulator simulator(config, UriResolver());
+  *pierced = false;
+  for (int i = 0; i < 300; ++i) {
+    const StepReport& report = simulator.step();
+    *pierced = *pierced || (report.status & CONTACT_UNRELIABLE);
+    EXPECT_LE(report.substeps, 16);
+  }
+  return bodyOf(simulator, "cube").X_WB.translation().z();
+}
+
+TEST(StepGuard, FastCubeDoesNotPassAThinSheet) {
+  for (const double speed : {5.0, 20.0}) {
+    for (const double tilt : {0.0, 0.7}) {
+      bool pierced = false;
+      EXPECT_GT(thrownAtSheet(speed, tilt, &pierced), 0.05) << speed << " m/s, tilt " << tilt;
+      EXPECT_FALSE(pierced) << speed << " m/s, tilt " << tilt;
+    }
+  }
+}
+
+TEST(StepGuard, SoftLayerThatIsUsedUpShortensTheStep) {
+  SimulationConfig config;
+  config.environments = {ground()};
+  config.objects = {box("cube", Vector3::Constant(0.1), 1, {0, 0, 0.06})};
+  config.objects[0].linear_velocity = {0, 0, -5};
+  for (ContactOverrides* contact : {&config.environments[0].contact, &config.objects[0].contact}) {
+    contact->stiffness = 1e5;
+    contact->damping = 50;
+  }
+  Simulator simulator(config, UriResolver());
+  int most_substeps = 1;
+  for (int i = 0; i < 10; ++i) {
+    const StepReport& report = simulator.step();
+    EXPECT_EQ((report.status & STEP_SHORTENED) != 0, report.substeps > 1);
+    most_substeps = std::max(most_substeps, report.substeps);
+  }
+  EXPECT_GT(most_substeps, 1);
+  EXPECT_LE(most_substeps, 16);
+  EXPECT_DOUBLE_EQ(simulator.time(), 0.01);
+}
+
+}  // namespace
+}  // namespace blem_sim
