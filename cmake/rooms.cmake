@@ -14,6 +14,6 @@ target_link_libraries(blem_sim_model PRIVATE PkgConfig::URDFDOM PkgConfig::CONSO
   ${PCL_COMMON_LIBRARIES} ${PCL_IO_LIBRARIES} ${PCL_FEATURES_LIBRARIES} ${PCL_SEARCH_LIBRARIES} ${PCL_SURFACE_LIBRARIES})
 blem_sim_room(contact blem_sim_geometry)
 blem_sim_room(dynamics blem_sim_contact blem_sim_model)
-target_link_libraries(blem_sim_dynamics PRIVATE PkgConfig::ODE)
+target_link_libraries(blem_sim_dynamics PRIVATE PkgConfig::ODE PkgConfig::TBB)
 blem_sim_room(sim blem_sim_dynamics)
 target_link_libraries(blem_sim_sim PUBLIC yaml-cpp fmt::fmt)

@@ -1,407 +1,301 @@
 #include "articulated_stepper.h"
 
-#include <algorithm>
-#include <cmath>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
-#include "articulated_tree.h"
+#include <algorithm>
+#include <cstring>
+#include <functional>
+
 #include "contact_motion.h"
+#include "island_motion.h"
+#include "island_terms.h"
 #include "islands.h"
-#include "step_problem.h"
 
 namespace blem_sim {
 namespace {
 
-constexpr double CONTACT_PROXIMAL = 1e-4;  // rho = this * inverse mass at the contact: smaller is stiffer and needs more Newton iterations
-constexpr double JOINT_PROXIMAL = 1e-3;    // gain of friction and limits = inertia / this
-constexpr double SAME_BIAS = 1e-13;        // [sqrt(kg) m/s] change of the free momentum that needs no second pass
+constexpr double SAME_PRODUCTS = 1e-9;  // [sqrt(kg) m/s] change of the free momentum that needs no second pass
 
-/** Impulse of one contact in the last step. */
-struct ImpulseMemo {
-  std::uint64_t id;
-  Vector3 impulse;  ///< [N s] on A, world axes
+/** An island with what belongs to it in this step. */
+struct Island {
+  IslandProblem problem;
+  std::vector<int> contacts;     ///< of the step's input
+  std::vector<double> approach;  ///< [m/s] of each of them, to be remembered
+  NewtonReport report;
 };
-
-/** Reactions of one joint in the last step [N m s or N s]. */
-struct JointMemo {
-  double dry = 0, lower = 0, upper = 0;
-};
-
-/** q = multiplier * q[master] + offset, through a chain of mimic joints to the first master. */
-struct MimicRelation {
-  int master;
-  double multiplier = 1, offset = 0;
-};
-
-MimicRelation mimicRelation(const Scene& scene, int joint) {
-  MimicRelation relation{joint};
-  for (const JointSpec* spec = &scene.joints()[joint].spec; spec->mimic_joint >= 0; spec = &scene.joints()[relation.master].spec) {
-    relation.offset += relation.multiplier * spec->mimic_offset;
-    relation.multiplier *= spec->mimic_multiplier;
-    relation.master = spec->mimic_joint;
-  }
-  return relation;
-}
-
-/** One tree with its state of this step. */
-struct Tree {
-  ArticulatedTree tree;
-  TreeState state;
-  Pose root_pose;
-  std::vector<double> positions;            ///< per node, of its joint
-  Eigen::VectorXd velocity, next_velocity;  ///< at the start and at the end of the step
-  Eigen::VectorXd bias;
-  Eigen::MatrixXd mass;
-};
-
-/** Moves a free root by its centre of mass and turns it about it. @param velocity spin, then velocity of the centre of mass */
-void moveRoot(const Vector3& com_B, double dt, const Eigen::VectorXd& velocity, Pose* X_WB) {
-  const Vector3 spin = velocity.segment<3>(0), com = *X_WB * com_B + dt * velocity.segment<3>(3);
-  const double angle = dt * spin.norm();
-  if (angle > 0) {
-    const Quaternion turn(Eigen::AngleAxisd(angle, spin.normalized()));
-    X_WB->linear() = (turn * Quaternion(X_WB->linear())).normalized().toRotationMatrix();
-  }
-  X_WB->translation() = com - X_WB->linear() * com_B;
-}
 
 class ArticulatedStepper : public Stepper {
  public:
-  explicit ArticulatedStepper(const SolverSettings& settings) : settings_(settings) {}
+  explicit ArticulatedStepper(const SolverSettings& settings) : settings_(settings), arena_(settings.threads) {}
 
-  void step(Scene* scene, ContactMemory* memory, const StepInput& input, SolveResult* result) override;
-  void save(StateWriter* writer) const override;
-  void restore(StateReader* reader) override;
+  void step(Scene* scene, const StepInput& input, SolveResult* result) override;
+  void save(const Scene& scene, StateWriter* writer) const override;
+  void restore(const Scene& scene, StateReader* reader) override;
 
  private:
-  void buildTrees(const Scene& scene);
-  void readTrees(const Scene& scene);
-  std::vector<std::vector<int>> findIslands(const std::vector<ContactConstraint>& contacts, const Scene& scene) const;
-  void solveIsland(const Scene& scene, const std::vector<int>& members, const StepInput& input, SolveResult* result);
-  void addTrees(const std::vector<int>& members, const StepInput& input, StepProblem* problem);
-  void addJoints(const Scene& scene, int tree, int base, const StepInput& input, StepProblem* problem);
-  JointTerm jointTerm(const JointSpec& spec, int joint, const Tree& tree, int node, const StepInput& input) const;
-  void addMimics(const Scene& scene, const std::vector<int>& members, StepProblem* problem) const;
-  int dofIndex(const Scene& scene, int joint, const StepProblem& problem) const;
-  void readMimics(const Scene& scene, const std::vector<int>& members, double dt, StepProblem* problem, SolveResult* result);
-  void followMimics(const Scene& scene);
-  ContactTerm contactTerm(const ContactConstraint& contact, const ContactRows& rows, double dt) const;
-  bool takeMidpointBias(const Scene& scene, const std::vector<int>& members, double dt, StepProblem* problem);
-  void readJoints(const std::vector<int>& members, const StepInput& input, const StepProblem& problem, SolveResult* result);
-  void integrate(Scene* scene, double dt);
-  const ImpulseMemo* findImpulse(std::uint64_t id) const;
+  void rebuild(const Scene& scene);
+  bool isOurs(const Scene& scene, int tree) const;
+  void readEdits(const Scene& scene);
+  void findIslands(const Scene& scene, const std::vector<ContactConstraint>& contacts);
+  bool isMoved(const ContactConstraint& contact) const;
+  void makeTerms(const TermSource& source, Island* island);
+  void solveIsland(const Scene& scene, const StepInput& input, Island* island);
+  void finishIsland(const Scene& scene, const StepInput& input, const Island& island, SolveResult* result);
+  void forEachIsland(const std::function<void(Island*)>& work);
+  void report(double dt, SolveResult* result) const;
+  void readContacts(const StepInput& input, const Island& island, SolveResult* result) const;
+  void readJoints(const StepInput& input, const Island& island, SolveResult* result);
+  void remember(const StepInput& input, const SolveResult& result);
+  void writeScene(Scene* scene);
 
   SolverSettings settings_;
-  std::vector<ImpulseMemo> impulses_;  ///< of the last step, sorted by id
-  std::vector<JointMemo> joint_memos_;
-
-  std::uint64_t structure_ = 0;  ///< Scene::structure() that the trees were built for
-
-  // Of this step.
-  std::vector<Tree> trees_;
-  std::vector<int> body_tree_, body_node_, local_tree_;
-  std::vector<ContactRows> rows_;
-  std::vector<ImpulseMemo> next_impulses_;
+  tbb::task_arena arena_;
+  std::uint64_t structure_ = 0;  ///< Scene::structure() that the forest was built for
+  Forest forest_;
+  ForestMotion motion_;
+  StepMemory memory_;
+  std::vector<BodyBits> written_;  ///< per node: what the scene was given last
+  SolverSpace space_;
+  Islands islands_;
+  std::vector<Island> islands_of_step_;
+  int island_count_ = 0;
+  std::vector<ContactRecord> next_contacts_;
 };
 
-void ArticulatedStepper::buildTrees(const Scene& scene) {
-  joint_memos_.resize(scene.joints().size());
+void ArticulatedStepper::rebuild(const Scene& scene) {
   if (structure_ == scene.structure()) return;
   structure_ = scene.structure();
-  const int bodies = static_cast<int>(scene.bodies().size());
-  std::vector<bool> carried(bodies, false);
-  for (const JointSlot& slot : scene.joints())
-    if (slot.joint && slot.in_tree && slot.spec.parent != WORLD_BODY) carried[slot.spec.child] = true;
-  trees_.clear();
-  body_tree_.assign(bodies, -1);
-  body_node_.assign(bodies, -1);
-  for (int body = 0; body < bodies; ++body) {
-    if (!scene.exists(body) || carried[body]) continue;
-    const ArticulatedTree tree(scene, body);
-    for (std::size_t i = 0; i < tree.nodes().size(); ++i) {
-      body_tree_[tree.nodes()[i].body] = static_cast<int>(trees_.size());
-      body_node_[tree.nodes()[i].body] = static_cast<int>(i);
-    }
-    trees_.push_back({tree, {}, {}, {}, {}, {}, {}, {}});
+  forest_.build(scene);
+  motion_.resize(forest_);
+  space_.resize(forest_);
+  memory_.joints.resize(scene.joints().size());
+  memory_.loops.resize(forest_.loops().size());
+  BodyBits nothing;
+  std::fill(std::begin(nothing.numbers), std::end(nothing.numbers), NAN);
+  written_.assign(forest_.nodes().size(), nothing);
+}
+
+bool ArticulatedStepper::isOurs(const Scene& scene, int tree) const {
+  const ForestTree& t = forest_.trees()[tree];
+  for (int i = t.first_node; i < t.node_end; ++i) {
+    const BodyBits bits = scene.bits(forest_.nodes()[i].body);
+    if (std::memcmp(bits.numbers, written_[i].numbers, sizeof bits.numbers) != 0) return false;
+  }
+  return true;
+}
+
+// A tree whose bodies somebody else has set since our last step is read back; the others' joint coordinates are kept as they are.
+void ArticulatedStepper::readEdits(const Scene& scene) {
+  for (int tree = 0; tree < static_cast<int>(forest_.trees().size()); ++tree) {
+    if (isOurs(scene, tree)) continue;
+    readTree(forest_, scene, tree, &motion_);
+    placeBodies(forest_, tree, &motion_);
+    computeInertias(forest_, tree, &motion_);
+    takeMomentum(forest_, tree, &motion_, &space_.mass_velocity);
   }
 }
 
-void ArticulatedStepper::readTrees(const Scene& scene) {
-  for (Tree& t : trees_) {
-    t.tree.read(scene, &t.positions, &t.velocity, &t.root_pose);
-    t.tree.kinematics(scene, t.root_pose, t.positions, t.velocity, &t.state);
-    t.tree.massMatrix(t.state, &t.mass);
-    t.tree.bias(scene, t.state, &t.bias);
-  }
+// A contact between things that nothing can move is no contact.
+bool ArticulatedStepper::isMoved(const ContactConstraint& c) const {
+  const auto moved = [&](int body) { return body != WORLD_BODY && forest_.nodes()[forest_.nodeOfBody(body)].last_dof >= 0; };
+  return moved(c.body_a) || moved(c.body_b);
 }
 
-std::vector<std::vector<int>> ArticulatedStepper::findIslands(const std::vector<ContactConstraint>& contacts, const Scene& scene) const {
-  Islands islands(static_cast<int>(trees_.size()));
+void ArticulatedStepper::findIslands(const Scene& scene, const std::vector<ContactConstraint>& contacts) {
+  const auto treeOfNode = [&](int node) { return forest_.nodes()[node].tree; };
+  const auto treeOfBody = [&](int body) { return treeOfNode(forest_.nodeOfBody(body)); };
+  islands_.reset(static_cast<int>(forest_.trees().size()));
   for (const ContactConstraint& c : contacts)
-    if (c.body_a != WORLD_BODY && c.body_b != WORLD_BODY && isUsable(scene, c)) islands.join(body_tree_[c.body_a], body_tree_[c.body_b]);
-  for (const JointSlot& slot : scene.joints())
-    if (slot.joint && slot.spec.mimic_joint >= 0)
-      islands.join(body_tree_[slot.spec.child], body_tree_[scene.joints()[slot.spec.mimic_joint].spec.child]);
-  return islands.members();
-}
-
-JointTerm ArticulatedStepper::jointTerm(const JointSpec& spec, int joint, const Tree& tree, int node, const StepInput& input) const {
-  const JointDrive& drive = input.drives[joint];
-  const int dof = tree.tree.nodes()[node].first_dof;
-  const double q = tree.positions[node], inertia = tree.mass(dof, dof), dt = input.dt;
-  JointTerm term;
-  const double gain = dt * drive.stiffness + drive.damping;
-  if (gain > 0) {
-    term.motor_gain = dt * gain;
-    term.motor_velocity = (drive.stiffness * (drive.target_position - q) + drive.damping * drive.target_velocity) / gain;
-    term.motor_bound = dt * drive.max_effort;
+    if (c.body_a != WORLD_BODY && c.body_b != WORLD_BODY && isUsable(scene, c)) islands_.join(treeOfBody(c.body_a), treeOfBody(c.body_b));
+  for (const MimicRelation& m : forest_.mimics()) islands_.join(treeOfNode(m.node), treeOfNode(m.master));
+  for (const LoopClosure& l : forest_.loops())
+    if (l.parent >= 0) islands_.join(treeOfNode(l.child), treeOfNode(l.parent));
+  island_count_ = islands_.number();
+  if (static_cast<int>(islands_of_step_.size()) < island_count_) islands_of_step_.resize(island_count_);
+  for (int i = 0; i < island_count_; ++i) {
+    islands_of_step_[i].problem.clear();
+    islands_of_step_[i].contacts.clear();
+    islands_of_step_[i].approach.clear();
   }
-  term.viscous = dt * drive.viscous_friction;
-  if (drive.dry_friction > 0) {
-    term.dry_gain = inertia / JOINT_PROXIMAL;
-    term.dry_bound = dt * drive.dry_friction;
-    term.dry_previous = joint_memos_[joint].dry;
-  }
-  if (std::isfinite(spec.lower) || std::isfinite(spec.upper)) {
-    term.limit_gain = inertia / JOINT_PROXIMAL;
-    // Speed that just reaches the limit, or leads back to it at a bounded speed.
-    const auto allowed = [&](double room) {
-      return room >= 0 ? room / dt : std::max(settings_.correction_fraction * room / dt, -settings_.max_correction_speed);
-    };
-    term.lower_velocity = -allowed(q - spec.lower);
-    term.upper_velocity = allowed(spec.upper - q);
-    term.lower_previous = joint_memos_[joint].lower;
-    term.upper_previous = joint_memos_[joint].upper;
-  }
-  return term;
-}
-
-void ArticulatedStepper::addJoints(const Scene& scene, int tree, int base, const StepInput& input, StepProblem* problem) {
-  const Tree& t = trees_[tree];
-  const std::vector<TreeNode>& nodes = t.tree.nodes();
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    if (nodes[i].dofs != 1) continue;
-    problem->free_momentum[base + nodes[i].first_dof] += input.dt * input.drives[nodes[i].joint].effort;
-    problem->joints.push_back(jointTerm(scene.joints()[nodes[i].joint].spec, nodes[i].joint, t, static_cast<int>(i), input));
-    problem->joints.back().dof = base + nodes[i].first_dof;
+  for (std::size_t t = 0; t < forest_.trees().size(); ++t)
+    islands_of_step_[islands_.islandOf(static_cast<int>(t))].problem.trees.push_back(static_cast<int>(t));
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const ContactConstraint& c = contacts[i];
+    if (!isUsable(scene, c) || !isMoved(c)) continue;
+    const int body = c.body_a != WORLD_BODY ? c.body_a : c.body_b;
+    islands_of_step_[islands_.islandOf(treeOfBody(body))].contacts.push_back(static_cast<int>(i));
   }
 }
 
-int ArticulatedStepper::dofIndex(const Scene& scene, int joint, const StepProblem& problem) const {
-  const int body = scene.joints()[joint].spec.child, tree = body_tree_[body];
-  return problem.offset[local_tree_[tree]] + trees_[tree].tree.nodes()[body_node_[body]].first_dof;
-}
-
-void ArticulatedStepper::addMimics(const Scene& scene, const std::vector<int>& members, StepProblem* problem) const {
-  for (const int member : members) {
-    for (const TreeNode& node : trees_[member].tree.nodes()) {
-      if (node.dofs != 1 || scene.joints()[node.joint].spec.mimic_joint < 0) continue;
-      const MimicRelation relation = mimicRelation(scene, node.joint);
-      problem->mimics.push_back({dofIndex(scene, node.joint, *problem), dofIndex(scene, relation.master, *problem), relation.multiplier});
-    }
+void ArticulatedStepper::makeTerms(const TermSource& source, Island* island) {
+  IslandProblem& problem = island->problem;
+  for (const int tree : problem.trees) {
+    for (int i = forest_.trees()[tree].first_node; i < forest_.trees()[tree].node_end; ++i)
+      if (forest_.nodes()[i].dofs == 1) problem.joints.push_back(jointTerm(source, i));
   }
-}
-
-void ArticulatedStepper::addTrees(const std::vector<int>& members, const StepInput& input, StepProblem* problem) {
-  int dofs = 0;
-  for (std::size_t m = 0; m < members.size(); ++m) {
-    const Tree& t = trees_[members[m]];
-    local_tree_[members[m]] = static_cast<int>(m);
-    problem->trees.push_back(&t.tree);
-    problem->states.push_back(&t.state);
-    problem->mass.push_back(t.mass);
-    problem->offset.push_back(dofs);
-    dofs += t.tree.dofCount();
-  }
-  problem->velocity.resize(dofs);
-  problem->free_momentum.resize(dofs);
-  for (std::size_t m = 0; m < members.size(); ++m) {
-    const Tree& t = trees_[members[m]];
-    const int base = problem->offset[m], n = t.tree.dofCount();
-    problem->velocity.segment(base, n) = t.velocity;
-    problem->free_momentum.segment(base, n) = t.mass.selfadjointView<Eigen::Lower>() * t.velocity;
-    problem->free_momentum.segment(base, n) -= input.dt * t.bias;
-  }
-}
-
-const ImpulseMemo* ArticulatedStepper::findImpulse(std::uint64_t id) const {
-  const auto it = std::lower_bound(impulses_.begin(), impulses_.end(), id, [](const ImpulseMemo& m, std::uint64_t i) { return m.id < i; });
-  return it != impulses_.end() && it->id == id ? &*it : nullptr;
-}
-
-ContactTerm ArticulatedStepper::contactTerm(const ContactConstraint& c, const ContactRows& rows, double dt) const {
-  ContactTerm term;
-  double inverse_mass = 0;
-  const auto place = [&](int body, int* tree, int* node, Vector3* point) {
-    if (body == WORLD_BODY) return;
-    const Tree& t = trees_[body_tree_[body]];
-    *tree = local_tree_[body_tree_[body]];
-    *node = body_node_[body];
-    *point = c.point - t.state.reference;
-    for (int k = t.tree.lastDof(*node); k >= 0; k = t.tree.dofParent(k)) {
-      const Vector6& s = t.state.subspace[k];
-      inverse_mass += (s.tail<3>() + s.head<3>().cross(*point)).squaredNorm() / t.mass(k, k) / 3;
-    }
+  const auto contains = [&](int node) {
+    return std::binary_search(problem.trees.begin(), problem.trees.end(), forest_.nodes()[node].tree);
   };
-  place(c.body_a, &term.tree_a, &term.node_a, &term.point_a);
-  place(c.body_b, &term.tree_b, &term.node_b, &term.point_b);
-  term.frame.row(0) = c.normal_BA;
-  term.frame.row(1) = c.normal_BA.unitOrthogonal();
-  term.frame.row(2) = c.normal_BA.cross(term.frame.row(1).transpose());
-  term.friction = c.friction;
-  term.rho = CONTACT_PROXIMAL * inverse_mass;
-  term.target.x() = rows.normal_speed;
-  term.compliance = rows.normal_cfm > settings_.cfm ? rows.normal_cfm / dt : 0;  // the rigid rows' cfm is only for complementarity solvers
-  if (const ImpulseMemo* memo = findImpulse(c.id)) term.previous = term.frame * memo->impulse;
-  return term;
+  for (const MimicRelation& m : forest_.mimics())
+    if (contains(m.node)) problem.mimics.push_back({forest_.nodes()[m.node].first_dof, forest_.nodes()[m.master].first_dof, m.multiplier});
+  for (std::size_t l = 0; l < forest_.loops().size(); ++l) {
+    if (!contains(forest_.loops()[l].child)) continue;
+    BodyPair pair;
+    problem.loops.push_back(loopTerm(source, static_cast<int>(l), &pair));
+    problem.loop_pairs.push_back(pair);
+  }
+  for (const int index : island->contacts) {
+    double approach = 0;
+    addContact(source, source.input.contacts[index], &problem, &approach);
+    island->approach.push_back(approach);
+  }
+  weighContacts(source, &problem);
 }
 
-// Velocity products at the middle of the step: explicit ones let light limbs gain energy.
-bool ArticulatedStepper::takeMidpointBias(const Scene& scene, const std::vector<int>& members, double dt, StepProblem* problem) {
-  bool changed = false;
-  for (std::size_t m = 0; m < members.size(); ++m) {
-    Tree& t = trees_[members[m]];
-    const int base = problem->offset[m], n = t.tree.dofCount();
-    const Eigen::VectorXd first = t.bias;
-    t.tree.setVelocity(0.5 * (t.velocity + problem->velocity.segment(base, n)), &t.state);
-    t.tree.bias(scene, t.state, &t.bias);
-    const Eigen::VectorXd change = dt * (t.bias - first);
-    problem->free_momentum.segment(base, n) -= change;
-    for (int k = 0; k < n; ++k) changed |= std::abs(change[k]) > SAME_BIAS * std::sqrt(t.mass(k, k));
-  }
-  return changed;
-}
-
-void ArticulatedStepper::solveIsland(const Scene& scene, const std::vector<int>& members, const StepInput& input, SolveResult* result) {
-  StepProblem problem;
-  std::fill(local_tree_.begin(), local_tree_.end(), -1);
-  addTrees(members, input, &problem);
-  for (std::size_t m = 0; m < members.size(); ++m) addJoints(scene, members[m], problem.offset[m], input, &problem);
-  addMimics(scene, members, &problem);
-  std::vector<std::size_t> term_contact;
-  for (std::size_t i = 0; i < input.contacts.size(); ++i) {
-    const ContactConstraint& c = input.contacts[i];
-    if (!isUsable(scene, c) || local_tree_[body_tree_[c.body_a != WORLD_BODY ? c.body_a : c.body_b]] < 0) continue;
-    term_contact.push_back(i);
-    problem.contacts.push_back(contactTerm(c, rows_[i], input.dt));
-  }
+void ArticulatedStepper::solveIsland(const Scene& scene, const StepInput& input, Island* island) {
+  IslandProblem& problem = island->problem;
+  for (const int tree : problem.trees) setFreeMomentum(forest_, scene, tree, input.dt, &motion_, &space_);
+  makeTerms({scene, forest_, motion_, input, settings_, memory_}, island);
+  addEfforts(input, problem, &space_);
   const NewtonSettings newton;
-  problem.solve(newton);
-  if (takeMidpointBias(scene, members, input.dt, &problem)) problem.solve(newton);
-  for (std::size_t i = 0; i < problem.contacts.size(); ++i) {
-    const Vector3 impulse = problem.contacts[i].frame.transpose() * problem.contacts[i].impulse;
-    result->contact_forces[term_contact[i]] = impulse / input.dt;
-    next_impulses_.push_back({input.contacts[term_contact[i]].id, impulse});
-  }
-  readJoints(members, input, problem, result);
-  readMimics(scene, members, input.dt, &problem, result);
+  island->report = problem.solve(forest_, motion_, newton, &space_);
+  // Velocity products at the middle of the step, where the first guess of it was not good enough.
+  double change = 0;
+  for (const int tree : problem.trees) change = std::max(change, correctProducts(forest_, tree, input.dt, &motion_, &space_));
+  if (change <= SAME_PRODUCTS) return;
+  const int iterations = island->report.iterations;
+  island->report = problem.solve(forest_, motion_, newton, &space_);
+  island->report.iterations += iterations;
 }
 
-// A mimic joint feels its master's pull, the master its reaction.
-void ArticulatedStepper::readMimics(const Scene& scene, const std::vector<int>& members, double dt, StepProblem* problem,
-                                    SolveResult* result) {
-  const std::vector<double> impulses = problem->foldImpulses();
-  std::size_t next = 0;
-  for (const int member : members) {
-    for (const TreeNode& node : trees_[member].tree.nodes()) {
-      if (node.dofs != 1 || scene.joints()[node.joint].spec.mimic_joint < 0) continue;
-      const MimicRelation relation = mimicRelation(scene, node.joint);
-      const double effort = impulses[next++] / dt;
-      result->joint_efforts[node.joint] += effort;
-      result->joint_efforts[relation.master] -= relation.multiplier * effort;
+void ArticulatedStepper::finishIsland(const Scene& scene, const StepInput& input, const Island& island, SolveResult* result) {
+  readContacts(input, island, result);
+  readJoints(input, island, result);
+  for (const int tree : island.problem.trees) {
+    const ForestTree& t = forest_.trees()[tree];
+    motion_.next_velocity.segment(t.first_dof, t.dofCount()) = space_.velocity.segment(t.first_dof, t.dofCount());
+  }
+  computeWrenches(forest_, scene, island.problem, input.dt, &motion_, &space_, &result->joint_wrenches);
+  advanceIsland(forest_, island.problem, input.dt, &motion_, space_);
+}
+
+void ArticulatedStepper::readContacts(const StepInput& input, const Island& island, SolveResult* result) const {
+  for (std::size_t i = 0; i < island.contacts.size(); ++i) {
+    const ContactConstraint& c = input.contacts[island.contacts[i]];
+    result->contact_forces[island.contacts[i]] = termSign(c) / input.dt * island.problem.contacts[i].impulse;
+  }
+}
+
+void ArticulatedStepper::readJoints(const StepInput& input, const Island& island, SolveResult* result) {
+  const IslandProblem& problem = island.problem;
+  const auto read = [&](const JointTerm& j, double v) {
+    memory_.joints[j.joint] = {j.dryImpulse(v) / input.dt, j.lowerImpulse(v) / input.dt, j.upperImpulse(v) / input.dt};
+    result->joint_efforts[j.joint] =
+        input.drives[j.joint].effort + (j.motorImpulse(v) + j.dryImpulse(v) - j.viscous * v) / input.dt;
+  };
+  for (const JointTerm& j : problem.joints) read(j, space_.velocity[j.dof]);
+  std::size_t next_loop = 0, next_mimic = 0;
+  const auto contains = [&](int node) {
+    return std::binary_search(problem.trees.begin(), problem.trees.end(), forest_.nodes()[node].tree);
+  };
+  for (std::size_t l = 0; l < forest_.loops().size(); ++l) {
+    if (!contains(forest_.loops()[l].child)) continue;
+    const LoopTerm& loop = problem.loops[next_loop++];
+    memory_.loops[l].force = loop.impulses() / input.dt;
+    if (loop.rows < 6) read(loop.drive, loop.velocity[5]);
+  }
+  // A mimic joint feels its master's pull, the master its reaction.
+  for (const MimicRelation& m : forest_.mimics()) {
+    if (!contains(m.node)) continue;
+    const double effort = problem.mimic_impulses[next_mimic++] / input.dt;
+    result->joint_efforts[forest_.nodes()[m.node].joint] += effort;
+    result->joint_efforts[forest_.nodes()[m.master].joint] -= m.multiplier * effort;
+  }
+}
+
+void ArticulatedStepper::remember(const StepInput& input, const SolveResult& result) {
+  next_contacts_.clear();
+  for (int n = 0; n < island_count_; ++n) {
+    const Island& island = islands_of_step_[n];
+    for (std::size_t i = 0; i < island.contacts.size(); ++i) {
+      const int index = island.contacts[i];
+      const Vector3& force = result.contact_forces[index];
+      const bool pushes = input.contacts[index].normal_BA.dot(force) > 0;
+      if (pushes) next_contacts_.push_back({input.contacts[index].id, force, island.problem.contacts[i].slipVelocity().norm(), island.approach[i]});
     }
   }
+  std::sort(next_contacts_.begin(), next_contacts_.end(), [](const ContactRecord& a, const ContactRecord& b) { return a.id < b.id; });
+  memory_.contacts.swap(next_contacts_);
 }
 
-void ArticulatedStepper::readJoints(const std::vector<int>& members, const StepInput& input, const StepProblem& problem,
-                                    SolveResult* result) {
-  std::size_t term = 0;
-  for (std::size_t m = 0; m < members.size(); ++m) {
-    Tree& t = trees_[members[m]];
-    t.next_velocity = problem.velocity.segment(problem.offset[m], t.tree.dofCount());
-    for (const TreeNode& node : t.tree.nodes()) {
-      if (node.dofs != 1) continue;
-      const JointTerm& j = problem.joints[term++];
-      const double v = problem.velocity[j.dof], limit = j.limitImpulse(v);
-      joint_memos_[node.joint] = {j.dryImpulse(v), std::max(0.0, limit), std::max(0.0, -limit)};
-      result->joint_efforts[node.joint] =
-          input.drives[node.joint].effort + (j.motorImpulse(v) + j.dryImpulse(v) - j.viscous * v) / input.dt;
-    }
+void ArticulatedStepper::writeScene(Scene* scene) {
+  for (int tree = 0; tree < static_cast<int>(forest_.trees().size()); ++tree) {
+    writeTree(forest_, tree, motion_, scene);
+    for (int i = forest_.trees()[tree].first_node; i < forest_.trees()[tree].node_end; ++i) written_[i] = scene->bits(forest_.nodes()[i].body);
   }
 }
 
-void ArticulatedStepper::followMimics(const Scene& scene) {
-  for (Tree& t : trees_) {
-    for (std::size_t i = 0; i < t.tree.nodes().size(); ++i) {
-      const TreeNode& node = t.tree.nodes()[i];
-      if (node.dofs != 1 || scene.joints()[node.joint].spec.mimic_joint < 0) continue;
-      const MimicRelation relation = mimicRelation(scene, node.joint);
-      const int body = scene.joints()[relation.master].spec.child;
-      t.positions[i] = relation.multiplier * trees_[body_tree_[body]].positions[body_node_[body]] + relation.offset;
-    }
+// Islands share nothing that they write, so their order does not matter.
+void ArticulatedStepper::forEachIsland(const std::function<void(Island*)>& work) {
+  if (settings_.threads == 1 || island_count_ == 1) {
+    for (int i = 0; i < island_count_; ++i) work(&islands_of_step_[i]);
+  } else {
+    arena_.execute([&] { tbb::parallel_for(0, island_count_, [&](int i) { work(&islands_of_step_[i]); }); });
   }
 }
 
-void ArticulatedStepper::integrate(Scene* scene, double dt) {
-  for (Tree& t : trees_) {
-    const std::vector<TreeNode>& nodes = t.tree.nodes();
-    for (std::size_t i = 0; i < nodes.size(); ++i)
-      if (nodes[i].dofs == 1) t.positions[i] += dt * t.next_velocity[nodes[i].first_dof];
-    if (t.tree.isFree()) moveRoot(scene->bodies()[nodes[0].body].spec.inertial.com, dt, t.next_velocity, &t.root_pose);
-  }
-  followMimics(*scene);
-  for (Tree& t : trees_) {
-    t.tree.kinematics(*scene, t.root_pose, t.positions, t.next_velocity, &t.state);
-    t.tree.write(t.state, scene);
+void ArticulatedStepper::report(double dt, SolveResult* result) const {
+  result->residual = result->creep = 0;
+  result->iterations = result->lcp_errors = 0;
+  for (int i = 0; i < island_count_; ++i) {
+    const NewtonReport& report = islands_of_step_[i].report;
+    result->residual = std::max(result->residual, report.contact_residual / dt);
+    result->creep = std::max(result->creep, report.joint_creep);
+    result->iterations += report.iterations;
   }
 }
 
-void ArticulatedStepper::step(Scene* scene, ContactMemory* memory, const StepInput& input, SolveResult* result) {
-  buildTrees(*scene);
-  readTrees(*scene);
-  local_tree_.resize(trees_.size());
-  rows_.resize(input.contacts.size());
-  for (std::size_t i = 0; i < input.contacts.size(); ++i) {
-    const ContactConstraint& c = input.contacts[i];
-    if (isUsable(*scene, c)) rows_[i] = contactRows(c, contactMotion(*scene, c), memory->find(c.id), input.dt, settings_);
-  }
-  result->lcp_errors = 0;
+void ArticulatedStepper::step(Scene* scene, const StepInput& input, SolveResult* result) {
+  rebuild(*scene);
+  readEdits(*scene);
+  findIslands(*scene, input.contacts);
   result->contact_forces.assign(input.contacts.size(), Vector3::Zero());
   result->joint_efforts.assign(scene->joints().size(), 0);
-  next_impulses_.clear();
-  for (const std::vector<int>& members : findIslands(input.contacts, *scene)) solveIsland(*scene, members, input, result);
-  integrate(scene, input.dt);
-  impulses_ = next_impulses_;
-  std::stable_sort(impulses_.begin(), impulses_.end(), [](const ImpulseMemo& a, const ImpulseMemo& b) { return a.id < b.id; });
-  std::vector<ContactMemo> memos;
-  for (std::size_t i = 0; i < input.contacts.size(); ++i) addMemo(input.contacts[i], rows_[i], result->contact_forces[i], &memos);
-  memory->replace(std::move(memos));
+  result->joint_wrenches.assign(scene->joints().size(), Wrench());
+  forEachIsland([&](Island* island) { solveIsland(*scene, input, island); });
+  // Nothing was changed yet: a step that broke down leaves everything as it was.
+  result->finite = space_.velocity.allFinite();
+  if (!result->finite) return;
+  forEachIsland([&](Island* island) { finishIsland(*scene, input, *island, result); });
+  report(input.dt, result);
+  remember(input, *result);
+  writeScene(scene);
 }
 
-void ArticulatedStepper::save(StateWriter* writer) const {
-  writer->word(impulses_.size());
-  for (const ImpulseMemo& m : impulses_) {
-    writer->word(m.id);
-    writer->vector(m.impulse);
-  }
-  writer->word(joint_memos_.size());
-  for (const JointMemo& m : joint_memos_) {
-    writer->number(m.dry);
-    writer->number(m.lower);
-    writer->number(m.upper);
+void ArticulatedStepper::save(const Scene& scene, StateWriter* writer) const {
+  memory_.save(writer);
+  // Of a forest that is not of this scene, or of trees that were edited since, nothing is worth keeping.
+  const bool built = structure_ == scene.structure();
+  writer->word(built ? forest_.trees().size() : 0);
+  for (int tree = 0; built && tree < static_cast<int>(forest_.trees().size()); ++tree) {
+    const bool ours = isOurs(scene, tree);
+    writer->word(ours);
+    if (ours) saveTree(forest_, tree, motion_, writer);
   }
 }
 
-void ArticulatedStepper::restore(StateReader* reader) {
-  impulses_.resize(reader->word());
-  for (ImpulseMemo& m : impulses_) {
-    m.id = reader->word();
-    m.impulse = reader->vector();
-  }
-  joint_memos_.resize(reader->word());
-  for (JointMemo& m : joint_memos_) {
-    m.dry = reader->number();
-    m.lower = reader->number();
-    m.upper = reader->number();
+void ArticulatedStepper::restore(const Scene& scene, StateReader* reader) {
+  structure_ = 0;
+  rebuild(scene);
+  memory_.restore(reader);
+  memory_.joints.resize(scene.joints().size());
+  memory_.loops.resize(forest_.loops().size());
+  const int trees = static_cast<int>(reader->word());
+  for (int tree = 0; tree < trees; ++tree) {
+    if (!reader->word()) continue;
+    restoreTree(forest_, tree, &motion_, reader);
+    for (int i = forest_.trees()[tree].first_node; i < forest_.trees()[tree].node_end; ++i) written_[i] = scene.bits(forest_.nodes()[i].body);
   }
 }
 

@@ -14,18 +14,14 @@ Vector3 tangential(const Vector3& v, const Vector3& normal) { return v - normal 
 
 bool compliant(const ContactConstraint& c) { return std::isfinite(c.stiffness) && std::isfinite(c.damping) && c.stiffness + c.damping > 0; }
 
-void setNormalRow(const ContactConstraint& c, double dt, const SolverSettings& settings, ContactRows* rows) {
-  rows->normal_cfm = settings.cfm;
+void setSurface(const ContactConstraint& c, double dt, double softness, const SolverSettings& settings, NormalRow* row) {
+  row->compliance = softness;
   const double gap_speed = c.depth / dt;
-  if (c.depth <= 0) {
-    rows->normal_speed = gap_speed;
-  } else {
-    rows->normal_speed = std::min(settings.correction_fraction * gap_speed, settings.max_correction_speed);
-  }
+  row->speed = c.depth <= 0 ? gap_speed : std::min(settings.correction_fraction * gap_speed, settings.max_correction_speed);
   if (!compliant(c)) return;
   // f = k depth+ - d v+ with depth+ = depth - dt v+.
-  rows->normal_cfm = std::max(settings.cfm, 1 / (dt * c.stiffness + c.damping));
-  if (c.depth > 0) rows->normal_speed = std::min(1.0, dt * c.stiffness * rows->normal_cfm) * gap_speed;
+  row->compliance = std::max(softness, 1 / (dt * c.stiffness + c.damping));
+  if (c.depth > 0) row->speed = std::min(1.0, dt * c.stiffness * row->compliance) * gap_speed;
 }
 
 // A step of free motion keeps v^2/2 + a x - a dt v/2 constant; e^2 of it, taken at the surface, is what is left after an impact. So e = 1
@@ -41,14 +37,13 @@ double reboundSpeed(double impact, double acceleration, double depth, double dt,
   return std::sqrt(std::max(0.0, half * half + square)) - half;
 }
 
-void setRestitution(const ContactConstraint& c, const ContactMotion& motion, const ContactMemo* memo, double dt, ContactRows* rows) {
+void setRestitution(const ContactConstraint& c, const ContactMotion& motion, double approach, double dt, NormalRow* row) {
   if (!(c.restitution > 0)) return;
   const double acceleration = -c.normal_BA.dot(motion.acceleration_BA);
-  if (memo && memo->approach > 0) {
-    rows->normal_speed = std::max(rows->normal_speed, reboundSpeed(memo->approach, acceleration, c.depth, dt, c.restitution));
-    return;
-  }
-  rows->approach = impactSpeed(-c.normal_BA.dot(motion.velocity_BA), acceleration, c.depth, dt);
+  if (approach > 0)
+    row->speed = std::max(row->speed, reboundSpeed(approach, acceleration, c.depth, dt, c.restitution));
+  else
+    row->approach = impactSpeed(-c.normal_BA.dot(motion.velocity_BA), acceleration, c.depth, dt);
 }
 
 // The force friction is about to exert: last step's, less what the present slip adds against the row's softness. So the pyramid's first
@@ -88,11 +83,21 @@ void addMemo(const ContactConstraint& contact, const ContactRows& rows, const Ve
   if (push > 0) memos->push_back({contact.id, force - push * contact.normal_BA, rows.approach});
 }
 
+NormalRow normalRow(const ContactConstraint& contact, const ContactMotion& motion, double approach, double dt, double softness,
+                    const SolverSettings& settings) {
+  NormalRow row;
+  setSurface(contact, dt, softness, settings, &row);
+  setRestitution(contact, motion, approach, dt, &row);
+  return row;
+}
+
 ContactRows contactRows(const ContactConstraint& contact, const ContactMotion& motion, const ContactMemo* memo, double dt,
                         const SolverSettings& settings) {
+  const NormalRow normal = normalRow(contact, motion, memo ? memo->approach : 0, dt, settings.cfm, settings);
   ContactRows rows;
-  setNormalRow(contact, dt, settings, &rows);
-  setRestitution(contact, motion, memo, dt, &rows);
+  rows.normal_speed = normal.speed;
+  rows.normal_cfm = normal.compliance;
+  rows.approach = normal.approach;
   setFriction(contact, motion, memo, dt, settings, &rows);
   return rows;
 }

@@ -32,6 +32,17 @@ struct ContactMotion {
   Vector3 acceleration_BA = Vector3::Zero();  ///< [m/s^2] what gravity and outside wrenches alone would give
 };
 
+/** What a contact asks along its normal: v_n+ >= speed - compliance f_n. */
+struct NormalRow {
+  double speed = 0;       ///< [m/s]
+  double compliance = 0;  ///< [m/s per N] of the surface, at least the solver's own softness
+  double approach = 0;    ///< [m/s] to be remembered if the contact pushes in this step
+};
+
+/** @param approach [m/s] remembered of the last step, 0 if none; softness [m/s per N] least compliance that the solver needs */
+NormalRow normalRow(const ContactConstraint& contact, const ContactMotion& motion, double approach, double dt, double softness,
+                    const SolverSettings& settings);
+
 /**
  * The rows of one contact: v_n+ >= normal_speed - normal_cfm f_n, and in the tangent plane v_t+ = tangent_velocity - tangent_cfm f_t within
  * the friction pyramid whose first axis is `first_axis`. Velocities of A against B, forces on A, cfm in m/s per N.

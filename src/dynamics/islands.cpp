@@ -5,30 +5,30 @@
 
 namespace blem_sim {
 
-Islands::Islands(int trees) : parent_(trees) { std::iota(parent_.begin(), parent_.end(), 0); }
+void Islands::reset(int trees) {
+  parent_.resize(trees);
+  std::iota(parent_.begin(), parent_.end(), 0);
+}
 
 int Islands::root(int tree) const {
   while (parent_[tree] != tree) tree = parent_[tree];
   return tree;
 }
 
+// The smaller root wins, so that it is numbered before its island's other trees.
 void Islands::join(int a, int b) {
   const int ra = root(a), rb = root(b);
   parent_[std::max(ra, rb)] = std::min(ra, rb);
 }
 
-std::vector<std::vector<int>> Islands::members() const {
-  std::vector<std::vector<int>> islands;
-  std::vector<int> index(parent_.size(), -1);
+int Islands::number() {
+  int count = 0;
+  island_.resize(parent_.size());
   for (int t = 0; t < static_cast<int>(parent_.size()); ++t) {
     const int r = root(t);
-    if (index[r] < 0) {
-      index[r] = static_cast<int>(islands.size());
-      islands.emplace_back();
-    }
-    islands[index[r]].push_back(t);
+    island_[t] = r == t ? count++ : island_[r];
   }
-  return islands;
+  return count;
 }
 
 }  // namespace blem_sim

@@ -1,21 +1,23 @@
-// Trees that contacts tie together.
+// Trees that contacts, loops or mimic joints tie together.
 #pragma once
 
 #include <vector>
 
 namespace blem_sim {
 
-/** Union-find over trees; the smallest member names an island. */
+/** Union-find over trees; islands are numbered in the order of their smallest trees. */
 class Islands {
  public:
-  explicit Islands(int trees);
+  void reset(int trees);
   void join(int a, int b);
-  int root(int tree) const;
-  /** Members of each island, both in ascending order. */
-  std::vector<std::vector<int>> members() const;
+  /** Numbers the islands once all is joined. @return how many there are */
+  int number();
+  int islandOf(int tree) const { return island_[tree]; }
 
  private:
-  std::vector<int> parent_;
+  int root(int tree) const;
+
+  std::vector<int> parent_, island_;
 };
 
 }  // namespace blem_sim

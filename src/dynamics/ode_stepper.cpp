@@ -4,6 +4,7 @@
 
 #include "contact_joints.h"
 #include "joint_drives.h"
+#include "joint_wrenches.h"
 #include "mimic_coupling.h"
 #include "stepper.h"
 
@@ -55,13 +56,13 @@ class OdeStepper : public Stepper {
  public:
   OdeStepper(const SolverSettings& settings, std::unique_ptr<OdeSolver> solver) : settings_(settings), solver_(std::move(solver)) {}
 
-  void step(Scene* scene, ContactMemory* memory, const StepInput& input, SolveResult* result) override {
+  void step(Scene* scene, const StepInput& input, SolveResult* result) override {
     result->lcp_errors = 0;
     scene->bits(&start_);
     axes_.resize(scene->joints().size());
     for (std::size_t j = 0; j < axes_.size(); ++j)
       if (scene->joints()[j].motor) axes_[j] = scene->jointAxis(static_cast<int>(j));
-    contacts_.prepare(*scene, input.contacts, *memory, input.dt, settings_);
+    contacts_.prepare(*scene, input.contacts, memory_, input.dt, settings_);
     mimics_.solve(*scene, input.dt, settings_, [&](const std::vector<double>& coupling) {
       scene->setBits(start_);
       solve(scene, input, coupling, result);
@@ -69,14 +70,17 @@ class OdeStepper : public Stepper {
     solver_->accept();
     contacts_.readForces(&result->contact_forces);
     readEfforts(*scene, input.drives, mimics_.efforts(), axes_, &result->joint_efforts);
-    memory->replace(contacts_.memos(result->contact_forces));
+    memory_.replace(contacts_.memos(result->contact_forces));
+    jointWrenches(*scene, start_, input, *result, &result->joint_wrenches);
   }
 
-  void save(StateWriter* writer) const override {
+  void save(const Scene&, StateWriter* writer) const override {
+    saveMemory(memory_, writer);
     solver_->save(writer);
     mimics_.save(writer);
   }
-  void restore(StateReader* reader) override {
+  void restore(const Scene&, StateReader* reader) override {
+    restoreMemory(&memory_, reader);
     solver_->restore(reader);
     mimics_.restore(reader);
   }
@@ -112,6 +116,7 @@ class OdeStepper : public Stepper {
 
   SolverSettings settings_;
   std::unique_ptr<OdeSolver> solver_;
+  ContactMemory memory_;
   ContactJoints contacts_;
   MimicCoupling mimics_;
   std::vector<BodyBits> start_;

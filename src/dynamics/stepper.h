@@ -24,11 +24,12 @@ struct StepInput {
 class Stepper {
  public:
   virtual ~Stepper() = default;
-  /** Advances the bodies by input.dt under gravity, pending wrenches, drives and contacts. Fills contact_forces, joint_efforts and
-   * lcp_errors; replaces the contacts' memory by that of this step. */
-  virtual void step(Scene* scene, ContactMemory* memory, const StepInput& input, SolveResult* result) = 0;
-  virtual void save(StateWriter* writer) const = 0;
-  virtual void restore(StateReader* reader) = 0;
+  /** Advances the bodies by input.dt under gravity, pending wrenches, drives and contacts, and fills the result.
+   *  A stepper that notices that a step broke down says finite = false and leaves the scene as it was. */
+  virtual void step(Scene* scene, const StepInput& input, SolveResult* result) = 0;
+  virtual void save(const Scene& scene, StateWriter* writer) const = 0;
+  /** The scene is already restored. */
+  virtual void restore(const Scene& scene, StateReader* reader) = 0;
 };
 
 struct StepperRow {

@@ -3,7 +3,6 @@
 #include <cassert>
 #include <cmath>
 
-#include "joint_wrenches.h"
 #include "scene.h"
 #include "stepper.h"
 #include "world_state.h"
@@ -49,13 +48,15 @@ struct World::Impl {
   /** False if the step broke down; the scene is then as it was. */
   bool advance(const StepInput& input) {
     if (!finite(scene, input)) return false;
+    result.finite = true;
     try {
-      stepper->step(&scene, &memory, input, &result);
+      stepper->step(&scene, input, &result);
     } catch (const OdeFailure&) {
       OdeLibrary::takeLcpErrors();
       scene.rebuild(start);
       return false;
     }
+    if (!result.finite) return false;
     if (finite(scene)) return true;
     scene.setBits(start);
     return false;
@@ -67,7 +68,6 @@ struct World::Impl {
 
   Scene scene;
   std::unique_ptr<Stepper> stepper;
-  ContactMemory memory;
   SolveResult result;
   std::vector<BodyBits> start;
 };
@@ -115,16 +115,16 @@ const SolveResult& World::step(double dt, const std::vector<ContactConstraint>& 
   Impl& impl = *impl_;
   const StepInput input{dt, contacts, drives};
   impl.scene.bits(&impl.start);
-  impl.result = SolveResult();
   impl.result.finite = impl.advance(input);
   if (impl.result.finite) {
-    jointWrenches(impl.scene, impl.start, input, impl.result, &impl.result.joint_wrenches);
     impl.scene.rememberPositions();
     for (std::size_t j = 0; j < drives.size(); ++j) impl.scene.joints()[j].last_effort = impl.result.joint_efforts[j];
   } else {
     impl.result.contact_forces.assign(contacts.size(), Vector3::Zero());
     impl.result.joint_wrenches.assign(drives.size(), Wrench());
     impl.result.joint_efforts.assign(drives.size(), 0);
+    impl.result.residual = impl.result.creep = 0;
+    impl.result.iterations = impl.result.lcp_errors = 0;
   }
   impl.clearPending();
   return impl.result;
@@ -152,16 +152,14 @@ WorldState World::save() const {
   WorldState state;
   StateWriter writer(&state);
   saveScene(impl_->scene, &writer);
-  saveMemory(impl_->memory, &writer);
-  impl_->stepper->save(&writer);
+  impl_->stepper->save(impl_->scene, &writer);
   return state;
 }
 
 void World::restore(const WorldState& state) {
   StateReader reader(state);
   restoreScene(&impl_->scene, &reader);
-  restoreMemory(&impl_->memory, &reader);
-  impl_->stepper->restore(&reader);
+  impl_->stepper->restore(impl_->scene, &reader);
   reader.finish();
 }
 

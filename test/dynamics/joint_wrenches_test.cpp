@@ -106,14 +106,14 @@ TEST(JointWrenches, AgreeWithOdesFeedback) {
     scene.addJoint(spec, 0);
     parent = body;
   }
-  const auto stepper = makeStepper({});
-  ContactMemory memory;
+  SolverSettings settings;
+  settings.stepper = "world_step";
+  const auto stepper = makeStepper(settings);
   std::vector<JointDrive> drives(3);
   drives[0].effort = -3, drives[0].dry_friction = 0.5;
   drives[1].stiffness = 500, drives[1].damping = 20, drives[1].max_effort = 30;
   drives[2].viscous_friction = 0.3, drives[2].effort = 1;
   std::vector<BodyBits> start;
-  std::vector<Wrench> wrenches;
   for (int i = 0; i < 500; ++i) {
     scene.bits(&start);
     scene.bodies()[1].pending = {{1, 2, 3}, {0.1, 0.2, 0.3}};
@@ -124,8 +124,8 @@ TEST(JointWrenches, AgreeWithOdesFeedback) {
     for (int j = 0; j < 3; ++j) axes.push_back(scene.jointAxis(j)), gaps.push_back(hingeGap(scene.joints()[j]));
     const StepInput input{DT, contacts, drives};
     SolveResult result;
-    stepper->step(&scene, &memory, input, &result);
-    jointWrenches(scene, start, input, result, &wrenches);
+    stepper->step(&scene, input, &result);
+    const std::vector<Wrench>& wrenches = result.joint_wrenches;
     double gap_moment = 0;
     for (int j = 2; j >= 0; --j) {
       const JointSlot& slot = scene.joints()[j];

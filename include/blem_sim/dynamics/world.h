@@ -36,6 +36,7 @@ struct JointSpec {
   /** q = multiplier * q[mimic_joint] + offset, if mimic_joint >= 0. */
   int mimic_joint = -1;
   double mimic_multiplier = 1, mimic_offset = 0;
+  double armature = 0;  ///< [kg m^2 or kg] inertia of the motor's rotor, seen at the joint; only `articulated` knows it
 };
 
 struct BodyState {
@@ -72,7 +73,8 @@ struct ContactConstraint {
 };
 
 struct SolverSettings {
-  std::string stepper = "world_step";  ///< a name in stepperTable()
+  std::string stepper = "articulated";  ///< a name in stepperTable()
+  int threads = 1;                      ///< for `articulated`: islands at once; the result is the same for any number
   int quick_step_iterations = 50;
   double cfm = 1e-6;                  ///< constraint force mixing of contacts
   double correction_fraction = 0.2;   ///< of a contact's depth removed per step, at most at max_correction_speed
@@ -87,6 +89,9 @@ struct SolveResult {
   std::vector<Wrench> joint_wrenches;   ///< what the child feels from the parent, world axes, about the joint frame's origin at the
                                         ///< start of the step; from motion (Newton-Euler over the step), not from a residual
   std::vector<double> joint_efforts;    ///< [N m or N] motor and friction along the axis
+  double residual = 0;    ///< [N] by how much contact forces miss Coulomb's law, worst contact; 0 where a stepper does not know it
+  double creep = 0;       ///< [rad/s or m/s] by how much joints miss sticking, their limits, or a loop; worst
+  int iterations = 0;     ///< of the solver, over all islands
   int lcp_errors = 0;                   ///< the complementarity solver complained; the step was redone with more CFM
   bool finite = true;                   ///< step gave a finite state; if not, bodies stay as before it and nothing else here means anything
 };

@@ -1,0 +1,78 @@
+// How the trees of a forest stand and move: kinematics, inertias, momenta. One tree at a time, so that trees can be worked on at once.
+#pragma once
+
+#include <vector>
+
+#include "forest.h"
+
+namespace blem_sim {
+
+/**
+ * Where bodies are and how they move. World axes; everything of a tree about its reference point, which stands still during a step: a
+ * free root's centre of mass at its start, else the root's origin. The six velocities of a free root are its spin and the velocity of its
+ * moving centre of mass.
+ */
+struct ForestMotion {
+  // Per node.
+  std::vector<Matrix3> rotation;        ///< R_WB
+  std::vector<Vector3> origin;          ///< of the body frame, in the world
+  std::vector<Vector3> com;             ///< about the reference point
+  std::vector<Vector6> twist;           ///< at the start of the step
+  std::vector<SpatialInertia> inertia;
+  std::vector<double> position;         ///< of its joint
+  // Per dof.
+  std::vector<Vector6> subspace;        ///< twist of unit velocity
+  Eigen::VectorXd velocity;             ///< start of the step
+  Eigen::VectorXd change;               ///< of the velocity in the last step
+  Eigen::VectorXd next_velocity;        ///< end of the step
+  Eigen::VectorXd products;             ///< velocity products: what M dv/dt lacks to the forces
+  Eigen::VectorXd applied;              ///< gravity and outside wrenches
+  // Per packed entry.
+  std::vector<double> mass;             ///< joint space inertia
+  // Per tree.
+  std::vector<Vector3> reference;
+  std::vector<Vector6> momentum;        ///< of a free tree, carried from step to step
+  std::vector<Vector3> tree_com;        ///< about the reference point, at the start of the step
+
+  // Work space, per node.
+  std::vector<Vector6> node_twist, node_force;
+  std::vector<SpatialInertia> composite;
+
+  void resize(const Forest& forest);
+};
+
+/** Places the bodies of a tree for the joint positions at hand; a free root stands where motion says. */
+void placeBodies(const Forest& forest, int tree, ForestMotion* motion);
+
+/** Motion subspaces, inertias and the mass matrix of a tree, and its twists; bodies must be placed. */
+void computeInertias(const Forest& forest, int tree, ForestMotion* motion);
+
+/** Twists of a tree's nodes for given velocities of its dofs. */
+void computeTwists(const Forest& forest, int tree, const ForestMotion& motion, const Eigen::VectorXd& velocity, std::vector<Vector6>* twist);
+
+/** Wrenches that move the nodes with the given velocities and accelerations (null: none), in node_force; without gravity. */
+void computeForces(const Forest& forest, int tree, const Eigen::VectorXd& velocity, const Eigen::VectorXd* acceleration,
+                   ForestMotion* motion);
+
+/** Where the joint that moves a node has its frame, in the world. */
+Vector3 jointOrigin(const Forest& forest, int node, const ForestMotion& motion);
+
+/** Fills products, for the given velocities at the present poses. */
+void computeProducts(const Forest& forest, int tree, const Eigen::VectorXd& velocity, ForestMotion* motion);
+
+/** Fills applied: gravity and the bodies' pending wrenches. */
+void computeApplied(const Forest& forest, const Scene& scene, int tree, ForestMotion* motion);
+
+/** out = M v on the dofs of a tree. */
+void massTimes(const Forest& forest, int tree, const ForestMotion& motion, const Eigen::VectorXd& v, Eigen::VectorXd* out);
+
+/** Adds S' w along the tree to the dofs of `out`; the nodes' wrenches are summed towards the root in place. */
+void addProjected(const Forest& forest, int tree, const ForestMotion& motion, double sign, std::vector<Vector6>* wrench, Eigen::VectorXd* out);
+
+/** Positions, velocities and a free root's pose from the bodies of the scene, which somebody else has set. */
+void readTree(const Forest& forest, const Scene& scene, int tree, ForestMotion* motion);
+
+/** Sets the bodies of the scene to the motion at hand. */
+void writeTree(const Forest& forest, int tree, const ForestMotion& motion, Scene* scene);
+
+}  // namespace blem_sim

@@ -1,0 +1,180 @@
+#include "island_motion.h"
+
+#include <cmath>
+
+#include "joint_motion.h"
+
+namespace blem_sim {
+namespace {
+
+// Of the velocity products, the share that a row's free momentum takes. A free root carries its momentum from middle to middle of its
+// steps, half a step beside the poses where the mass matrix holds.
+double productsShare(const ForestTree& tree, int dof) { return tree.free && dof < tree.first_dof + 6 ? 0.5 : 1; }
+
+void turn(double dt, const Vector3& spin, Matrix3* R) {
+  const double angle = dt * spin.norm();
+  if (!(angle > 0)) return;
+  const Quaternion step(Eigen::AngleAxisd(angle, spin.normalized()));
+  *R = (step * Quaternion(*R)).normalized().toRotationMatrix();
+}
+
+// Moves joints by their next velocity, a free root by its centre of mass.
+void integrate(const Forest& forest, int tree, double dt, ForestMotion* motion) {
+  const ForestTree& t = forest.trees()[tree];
+  for (int i = t.first_node; i < t.node_end; ++i)
+    if (forest.nodes()[i].dofs == 1) motion->position[i] += dt * motion->next_velocity[forest.nodes()[i].first_dof];
+  for (int k = t.first_dof; k < t.dof_end; ++k) {
+    motion->change[k] = motion->next_velocity[k] - motion->velocity[k];
+    motion->velocity[k] = motion->next_velocity[k];
+  }
+  if (!t.free) return;
+  const Vector3& com_B = forest.nodes()[t.first_node].inertial.com;
+  const Vector3 com = motion->reference[tree] + dt * motion->velocity.segment<3>(t.first_dof + 3);
+  turn(dt, motion->velocity.segment<3>(t.first_dof), &motion->rotation[t.first_node]);
+  motion->origin[t.first_node] = com - motion->rotation[t.first_node] * com_B;
+}
+
+// In flight the whole tree's centre of mass moves by its momentum; joints that turn while the root moves would lead it astray.
+void followMomentum(const Forest& forest, int tree, const Vector3& target, ForestMotion* motion) {
+  const ForestTree& t = forest.trees()[tree];
+  const Vector3 shift = target - (motion->reference[tree] + motion->tree_com[tree]);
+  motion->reference[tree] += shift;
+  for (int i = t.first_node; i < t.node_end; ++i) motion->origin[i] += shift;
+}
+
+// Wrenches on the nodes from contacts, and from loops whose joints' wrenches are noted on the way, about the trees' reference points.
+void addReactions(const Forest& forest, const IslandProblem& problem, const ForestMotion& motion, double dt, std::vector<Vector6>* on_node,
+                  std::vector<Wrench>* wrenches) {
+  const auto add = [&](const BodyPair& pair, const Vector6& wrench) {
+    (*on_node)[pair.a] += wrench;
+    if (pair.b >= 0) (*on_node)[pair.b] -= moveWrench(wrench, -pair.shift);
+  };
+  for (const ContactPatch& patch : problem.patches)
+    for (int i = patch.first; i < patch.end; ++i)
+      add(patch.pair, wrenchOf(problem.contacts[i].impulse / dt, problem.contacts[i].point));
+  for (std::size_t l = 0; l < problem.loops.size(); ++l) {
+    const LoopTerm& loop = problem.loops[l];
+    const Vector6 wrench = loop.basis * loop.impulses() / dt;
+    add(problem.loop_pairs[l], wrench);
+    const Vector6 at_origin = moveWrench(wrench, motion.reference[forest.nodes()[problem.loop_pairs[l].a].tree] - loop.origin);
+    (*wrenches)[loop.drive.joint] = {linear(at_origin), angular(at_origin)};
+  }
+}
+
+}  // namespace
+
+void takeMomentum(const Forest& forest, int tree, ForestMotion* motion, Eigen::VectorXd* scratch) {
+  const ForestTree& t = forest.trees()[tree];
+  if (!t.free) return;
+  massTimes(forest, tree, *motion, motion->velocity, scratch);
+  motion->momentum[tree] = scratch->segment<6>(t.first_dof);
+}
+
+void setFreeMomentum(const Forest& forest, const Scene& scene, int tree, double dt, ForestMotion* motion, SolverSpace* space) {
+  const ForestTree& t = forest.trees()[tree];
+  const int first = t.first_dof, count = t.dofCount();
+  computeApplied(forest, scene, tree, motion);
+  space->direction.segment(first, count) = motion->velocity.segment(first, count) + 0.5 * motion->change.segment(first, count);
+  computeProducts(forest, tree, space->direction, motion);
+  massTimes(forest, tree, *motion, motion->velocity, &space->free_momentum);
+  if (t.free) space->free_momentum.segment<6>(first) = motion->momentum[tree];
+  for (int k = first; k < t.dof_end; ++k) {
+    space->free_momentum[k] += dt * (motion->applied[k] - productsShare(t, k) * motion->products[k]);
+    space->velocity[k] = motion->velocity[k];
+  }
+}
+
+void addEfforts(const StepInput& input, const IslandProblem& problem, SolverSpace* space) {
+  for (const JointTerm& j : problem.joints) space->free_momentum[j.dof] += input.dt * input.drives[j.joint].effort;
+}
+
+double correctProducts(const Forest& forest, int tree, double dt, ForestMotion* motion, SolverSpace* space) {
+  const ForestTree& t = forest.trees()[tree];
+  const int first = t.first_dof, count = t.dofCount();
+  space->gradient.segment(first, count) = motion->products.segment(first, count);
+  space->direction.segment(first, count) = 0.5 * (motion->velocity.segment(first, count) + space->velocity.segment(first, count));
+  computeProducts(forest, tree, space->direction, motion);
+  double worst = 0;
+  for (int k = first; k < t.dof_end; ++k) {
+    const double change = dt * productsShare(t, k) * (motion->products[k] - space->gradient[k]);
+    space->free_momentum[k] -= change;
+    worst = std::max(worst, std::abs(change) * space->scale[k]);
+  }
+  return worst;
+}
+
+void computeWrenches(const Forest& forest, const Scene& scene, const IslandProblem& problem, double dt, ForestMotion* motion,
+                     SolverSpace* space, std::vector<Wrench>* wrenches) {
+  std::vector<Vector6>& reaction = space->wrench;
+  for (const int tree : problem.trees) {
+    const ForestTree& t = forest.trees()[tree];
+    for (int i = t.first_node; i < t.node_end; ++i) reaction[i].setZero();
+  }
+  addReactions(forest, problem, *motion, dt, &reaction, wrenches);
+  for (const int tree : problem.trees) {
+    const ForestTree& t = forest.trees()[tree];
+    const int first = t.first_dof, count = t.dofCount();
+    space->direction.segment(first, count) = 0.5 * (motion->velocity.segment(first, count) + motion->next_velocity.segment(first, count));
+    space->gradient.segment(first, count) = (motion->next_velocity.segment(first, count) - motion->velocity.segment(first, count)) / dt;
+    computeForces(forest, tree, space->direction, &space->gradient, motion);
+    for (int i = t.node_end - 1; i >= t.first_node; --i) {
+      const ForestNode& node = forest.nodes()[i];
+      const Wrench& pending = scene.bodies()[node.body].pending;
+      const Vector3 outside = node.inertial.mass * scene.gravity() + pending.force;
+      Vector6& through = motion->node_force[i];
+      through -= reaction[i] + spatial(motion->com[i].cross(outside) + pending.torque, outside);
+      if (node.parent >= 0) motion->node_force[node.parent] += through;
+      if (node.joint < 0) continue;
+      const Vector6 at_origin = moveWrench(through, motion->reference[tree] - jointOrigin(forest, i, *motion));
+      (*wrenches)[node.joint] = {linear(at_origin), angular(at_origin)};
+    }
+  }
+}
+
+void advanceIsland(const Forest& forest, const IslandProblem& problem, double dt, ForestMotion* motion, const SolverSpace& space) {
+  const bool flies = problem.contacts.empty() && problem.loops.empty();
+  for (const int tree : problem.trees) {
+    const ForestTree& t = forest.trees()[tree];
+    if (t.free)
+      motion->momentum[tree] =
+          space.mass_velocity.segment<6>(t.first_dof) + 0.5 * dt * motion->products.segment<6>(t.first_dof);
+    integrate(forest, tree, dt, motion);
+  }
+  for (const MimicRelation& m : forest.mimics())
+    if (std::binary_search(problem.trees.begin(), problem.trees.end(), forest.nodes()[m.node].tree))
+      motion->position[m.node] = m.multiplier * motion->position[m.master] + m.offset;
+  for (const int tree : problem.trees) {
+    const ForestTree& t = forest.trees()[tree];
+    const Vector3 reference = motion->reference[tree];
+    const Vector3 com = reference + motion->tree_com[tree] + dt * linear(motion->momentum[tree]) / motion->composite[t.first_node].mass;
+    placeBodies(forest, tree, motion);
+    computeInertias(forest, tree, motion);
+    if (!t.free) continue;
+    if (flies && t.node_end - t.first_node > 1) followMomentum(forest, tree, com, motion);
+    motion->momentum[tree] = moveWrench(motion->momentum[tree], reference - motion->reference[tree]);
+  }
+}
+
+void saveTree(const Forest& forest, int tree, const ForestMotion& motion, StateWriter* writer) {
+  const ForestTree& t = forest.trees()[tree];
+  writer->numbers(motion.rotation[t.first_node].data(), 9);
+  writer->vector(motion.origin[t.first_node]);
+  writer->numbers(motion.momentum[tree].data(), 6);
+  writer->numbers(motion.position.data() + t.first_node, t.node_end - t.first_node);
+  writer->numbers(motion.velocity.data() + t.first_dof, t.dofCount());
+  writer->numbers(motion.change.data() + t.first_dof, t.dofCount());
+}
+
+void restoreTree(const Forest& forest, int tree, ForestMotion* motion, StateReader* reader) {
+  const ForestTree& t = forest.trees()[tree];
+  reader->numbers(motion->rotation[t.first_node].data(), 9);
+  motion->origin[t.first_node] = reader->vector();
+  reader->numbers(motion->momentum[tree].data(), 6);
+  reader->numbers(motion->position.data() + t.first_node, t.node_end - t.first_node);
+  reader->numbers(motion->velocity.data() + t.first_dof, t.dofCount());
+  reader->numbers(motion->change.data() + t.first_dof, t.dofCount());
+  placeBodies(forest, tree, motion);
+  computeInertias(forest, tree, motion);
+}
+
+}  // namespace blem_sim

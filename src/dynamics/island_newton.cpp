@@ -1,0 +1,189 @@
+#include <Eigen/Cholesky>
+
+#include "island_problem.h"
+#include "tree_factor.h"
+
+namespace blem_sim {
+namespace {
+
+constexpr int MAX_LINE_SEARCH = 30;
+constexpr double LINE_SEARCH_SLOPE = 1e-3;  // of the first slope: where the search is near enough to its minimum
+constexpr double NO_STEP = 1e-16;           // [rad/s or m/s] largest change of a velocity that is none
+
+}  // namespace
+
+bool IslandProblem::solveTrees() {
+  SolverSpace& s = *space_;
+  for (const int tree : trees) {
+    const ForestTree& t = forest_->trees()[tree];
+    for (int k = t.first_dof; k < t.dof_end; ++k) s.direction[k] = -s.gradient[k];
+    if (!factorTree(*forest_, tree, &s.hessian)) return false;
+    solveTree(*forest_, tree, s.hessian, &s.direction);
+  }
+  return true;
+}
+
+// A mimic's row and column go to its master; what is left of them is an identity.
+void IslandProblem::foldDense(Eigen::Ref<Eigen::MatrixXd> h) const {
+  h.triangularView<Eigen::StrictlyUpper>() = h.transpose();
+  for (const MimicFold& m : mimics) {
+    const int d = space_->dense_index[m.dof], master = space_->dense_index[m.master];
+    h.row(master) += m.multiplier * h.row(d);
+    h.col(master) += m.multiplier * h.col(d);
+    h.row(d).setZero();
+    h.col(d).setZero();
+    h(d, d) = 1;
+  }
+}
+
+bool IslandProblem::solveDense() {
+  SolverSpace& s = *space_;
+  Eigen::Ref<Eigen::MatrixXd> h = dense_.topLeftCorner(dense_size_, dense_size_);
+  Eigen::Ref<Eigen::VectorXd> x = dense_vector_.head(dense_size_);
+  for (const int tree : trees) {
+    const ForestTree& t = forest_->trees()[tree];
+    for (int k = t.first_dof; k < t.dof_end; ++k) {
+      const int row = s.dense_index[k];
+      const double* packed = s.hessian.data() + forest_->rowStart(k);
+      for (int e = 0; e < forest_->rowLength(k); ++e) h(row, s.dense_index[forest_->columns(k)[e]]) += packed[e];
+      x[row] = -s.gradient[k];
+    }
+  }
+  if (!mimics.empty()) foldDense(h);
+  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>, Eigen::Lower> llt(h);
+  if (llt.info() != Eigen::Success) return false;
+  llt.solveInPlace(x);
+  for (const int tree : trees) {
+    const ForestTree& t = forest_->trees()[tree];
+    for (int k = t.first_dof; k < t.dof_end; ++k) s.direction[k] = x[s.dense_index[k]];
+  }
+  for (const MimicFold& m : mimics) s.direction[m.dof] = m.multiplier * s.direction[m.master];
+  return true;
+}
+
+// Slope of the objective at a along the direction, and its derivative.
+double IslandProblem::slope(double a, double* curvature) const {
+  double first = linear_ + a * quadratic_, second = quadratic_;
+  for (const JointTerm& j : joints) {
+    const double d = space_->direction[j.dof], v = space_->velocity[j.dof] + a * d;
+    first -= j.impulse(v) * d;
+    second += j.stiffness(v) * d * d;
+  }
+  for (const ContactTerm& c : contacts) {
+    const ConeResponse response = c.respond(c.velocity + a * c.step);
+    first -= response.impulse.dot(c.step);
+    second += response.curvature(c.step);
+  }
+  for (const LoopTerm& loop : loops) {
+    for (int r = 0; r < 6; ++r) {
+      const double d = loop.step[r], v = loop.velocity[r] + a * d;
+      first -= loop.impulse(r, v) * d;
+      second += loop.stiffness(r, v) * d * d;
+    }
+  }
+  *curvature = second;
+  return first;
+}
+
+double IslandProblem::lineSearch() {
+  SolverSpace& s = *space_;
+  linear_ = quadratic_ = 0;
+  double start = 0;
+  for (const int tree : trees) {
+    massTimes(*forest_, tree, *motion_, s.direction, &s.mass_direction);
+    const ForestTree& t = forest_->trees()[tree];
+    for (int k = t.first_dof; k < t.dof_end; ++k) {
+      quadratic_ += s.direction[k] * s.mass_direction[k];
+      linear_ += s.direction[k] * (s.mass_velocity[k] - s.free_momentum[k]);
+      start += s.direction[k] * s.gradient[k];
+    }
+  }
+  relativeSteps(s.direction, false);
+  double low = 0, high = -1, a = 1, curvature;
+  for (int it = 0; it < MAX_LINE_SEARCH; ++it) {
+    const double here = slope(a, &curvature);
+    if (std::abs(here) <= LINE_SEARCH_SLOPE * std::abs(start)) break;
+    (here < 0 ? low : high) = a;
+    double next = a - here / curvature;
+    if (high > 0 && !(next > low && next < high)) next = 0.5 * (low + high);
+    if (high < 0 && !(next > low)) next = 2 * a;
+    if (next == a) break;
+    a = next;
+  }
+  return a;
+}
+
+int IslandProblem::newton(const NewtonSettings& settings, int max_iterations) {
+  SolverSpace& s = *space_;
+  for (int iterations = 0;; ++iterations) {
+    evaluate();
+    gradient();
+    for (const MimicFold& m : mimics) {
+      s.gradient[m.master] += m.multiplier * s.gradient[m.dof];
+      s.gradient[m.dof] = 0;
+    }
+    double worst = 0;
+    for (const int tree : trees)
+      for (int k = forest_->trees()[tree].first_dof; k < forest_->trees()[tree].dof_end; ++k)
+        worst = std::max(worst, std::abs(s.gradient[k]) * s.scale[k]);
+    if (worst <= settings.gradient_tolerance || iterations >= max_iterations) return iterations;
+    for (const int tree : trees) treeHessian(tree);
+    for (const JointTerm& j : joints)
+      s.hessian[forest_->rowStart(j.dof) + forest_->rowLength(j.dof) - 1] += j.stiffness(s.velocity[j.dof]);
+    if (!(coupled_ ? solveDense() : solveTrees())) return iterations;
+    const double a = lineSearch();
+    double moved = 0;
+    for (const int tree : trees) {
+      const ForestTree& t = forest_->trees()[tree];
+      for (int k = t.first_dof; k < t.dof_end; ++k) {
+        s.velocity[k] += a * s.direction[k];
+        s.mass_velocity[k] += a * s.mass_direction[k];
+        moved = std::max(moved, std::abs(a * s.direction[k]));
+      }
+    }
+    for (ContactTerm& c : contacts) c.velocity += a * c.step;
+    for (LoopTerm& loop : loops) loop.velocity += a * loop.step;
+    if (moved < NO_STEP) return iterations + 1;
+  }
+}
+
+void IslandProblem::remember() {
+  for (ContactTerm& c : contacts) c.remember();
+  for (JointTerm& j : joints) j.remember(space_->velocity[j.dof]);
+  for (LoopTerm& loop : loops) loop.remember();
+}
+
+void IslandProblem::assess(NewtonReport* report) const {
+  report->contact_residual = report->joint_creep = 0;
+  for (const ContactTerm& c : contacts) report->contact_residual = std::max(report->contact_residual, c.residual());
+  for (const JointTerm& j : joints) report->joint_creep = std::max(report->joint_creep, j.creep(space_->velocity[j.dof]));
+  for (const LoopTerm& loop : loops) report->joint_creep = std::max(report->joint_creep, loop.creep());
+}
+
+// The fold's reaction is what the gradient lacks on the mimic's own dof.
+void IslandProblem::readMimics() {
+  mimic_impulses.clear();
+  if (mimics.empty()) return;
+  evaluate();
+  gradient();
+  for (const MimicFold& m : mimics) mimic_impulses.push_back(space_->gradient[m.dof]);
+}
+
+NewtonReport IslandProblem::solve(const Forest& forest, const ForestMotion& motion, const NewtonSettings& settings, SolverSpace* space) {
+  forest_ = &forest;
+  motion_ = &motion;
+  space_ = space;
+  start();
+  NewtonReport report;
+  for (int outer = 1;; ++outer) {
+    report.iterations += newton(settings, settings.max_iterations - report.iterations);
+    assess(&report);
+    const bool done = report.contact_residual <= settings.contact_tolerance && report.joint_creep <= settings.joint_tolerance;
+    if (done || outer >= settings.max_outer || report.iterations >= settings.max_iterations) break;
+    remember();
+  }
+  readMimics();
+  return report;
+}
+
+}  // namespace blem_sim

@@ -1,0 +1,111 @@
+// The step problem of one island: minimise, over the velocities v at the end of the step,
+//   1/2 (v - v*)' M (v - v*) + sum_j phi_j(v_j) + sum_c psi_c(J_c v)
+// by Newton's method with a line search. Every reaction is minus a gradient. See docs/solver.md.
+#pragma once
+
+#include <vector>
+
+#include "contact_term.h"
+#include "forest_motion.h"
+#include "joint_term.h"
+#include "loop_term.h"
+
+namespace blem_sim {
+
+/** Two nodes that act on each other. */
+struct BodyPair {
+  int a = -1;                        ///< node; wrenches are on it, about its tree's reference point
+  int b = -1;                        ///< node, -1: the static world
+  Vector3 shift = Vector3::Zero();   ///< from a's reference point to b's
+};
+
+/** Contacts of one pair, consecutive among the problem's contacts. */
+struct ContactPatch {
+  BodyPair pair;
+  int first = 0, end = 0;
+};
+
+/** v[dof] = multiplier * v[master], kept exactly: the column of dof is folded into that of its master. */
+struct MimicFold {
+  int dof, master;
+  double multiplier;
+};
+
+struct NewtonSettings {
+  int max_iterations = 40;          ///< over all proximal steps
+  int max_outer = 6;                ///< proximal steps
+  double gradient_tolerance = 1e-10;  ///< [sqrt(kg) m/s]
+  double contact_tolerance = 1e-7;  ///< [N s]
+  double joint_tolerance = 1e-7;    ///< [rad/s or m/s]
+};
+
+/** What a solve needed and how good it is. */
+struct NewtonReport {
+  int iterations = 0;
+  double contact_residual = 0;  ///< [N s] largest violation of Coulomb's law over the contacts
+  double joint_creep = 0;       ///< [rad/s or m/s] largest creep of a joint that sticks, miss of a limit or of a loop
+};
+
+/** Vectors over the forest that the islands work in, each in its own trees. */
+struct SolverSpace {
+  Eigen::VectorXd free_momentum;  ///< M v*
+  Eigen::VectorXd velocity, mass_velocity, gradient, direction, mass_direction, scale;
+  std::vector<double> hessian;             ///< packed rows
+  std::vector<Vector6> twist, wrench;      ///< per node
+  std::vector<Matrix6> stiffness;          ///< per node
+  std::vector<char> stiff;                 ///< per node: stiffness is not zero
+  std::vector<int> dense_index;            ///< per dof: its row in the island's dense matrix
+
+  void resize(const Forest& forest);
+};
+
+/** One island: trees that something ties together. Used again from step to step, so that it need not allocate. */
+class IslandProblem {
+ public:
+  std::vector<int> trees;
+  std::vector<JointTerm> joints;
+  std::vector<ContactPatch> patches;
+  std::vector<ContactTerm> contacts;
+  std::vector<LoopTerm> loops;
+  std::vector<BodyPair> loop_pairs;  ///< of each loop, a the child
+  std::vector<MimicFold> mimics;
+  std::vector<double> mimic_impulses;  ///< after solve: by which each mimic's dof follows its master
+
+  void clear();
+  /** Solves for space->velocity, which holds the first guess. The terms hold the reactions afterwards. */
+  NewtonReport solve(const Forest& forest, const ForestMotion& motion, const NewtonSettings& settings, SolverSpace* space);
+
+ private:
+  // island_problem.cpp: the objective's gradient and Hessian
+  void start();
+  void relativeSteps(const Eigen::VectorXd& v, bool as_velocity);
+  void evaluate();
+  void evaluatePatch(const ContactPatch& patch);
+  void evaluateLoop(std::size_t index);
+  void stiffen(int node, const Matrix6& stiffness);
+  void push(const BodyPair& pair, const Vector6& wrench, const Matrix6* stiffness);
+  void coupleDense(const BodyPair& pair, const Matrix6& stiffness);
+  void gradient();
+  void treeHessian(int tree);
+  // island_newton.cpp: the iteration
+  bool solveTrees();
+  bool solveDense();
+  void foldDense(Eigen::Ref<Eigen::MatrixXd> h) const;
+  double slope(double a, double* curvature) const;
+  double lineSearch();
+  int newton(const NewtonSettings& settings, int max_iterations);
+  void remember();
+  void assess(NewtonReport* report) const;
+  void readMimics();
+
+  const Forest* forest_ = nullptr;
+  const ForestMotion* motion_ = nullptr;
+  SolverSpace* space_ = nullptr;
+  bool coupled_ = false;  ///< two branches or two trees are tied: the Hessian is dense
+  int dense_size_ = 0;
+  double linear_ = 0, quadratic_ = 0;  ///< of the kinetic part along the search direction
+  Eigen::MatrixXd dense_;
+  Eigen::VectorXd dense_vector_;
+};
+
+}  // namespace blem_sim

@@ -1,0 +1,39 @@
+// What the articulated stepper remembers from one step to the next: reactions, as forces, so that a step of another length can use them.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "spatial.h"
+#include "world_state.h"
+
+namespace blem_sim {
+
+struct ContactRecord {
+  std::uint64_t id = 0;
+  Vector3 force = Vector3::Zero();  ///< [N] on A, world axes
+  double slip = 0;                  ///< [m/s]
+  double approach = 0;              ///< [m/s] closing speed of an impact that landed and is still to bounce
+};
+
+/** [N m or N] */
+struct JointRecord {
+  double dry = 0, lower = 0, upper = 0;
+};
+
+struct LoopRecord {
+  Vector6 force = Vector6::Zero();  ///< along the loop's forbidden directions
+};
+
+struct StepMemory {
+  std::vector<ContactRecord> contacts;  ///< sorted by id
+  std::vector<JointRecord> joints;      ///< one per joint slot
+  std::vector<LoopRecord> loops;        ///< one per loop of the forest
+
+  /** Null if there was no such contact in the last step. */
+  const ContactRecord* find(std::uint64_t id) const;
+  void save(StateWriter* writer) const;
+  void restore(StateReader* reader);
+};
+
+}  // namespace blem_sim
