@@ -78,6 +78,17 @@ Vector3 angularMomentum(const World& world, const std::vector<int>& bodies, cons
   return sum;
 }
 
+double innerKineticEnergy(const World& world, const std::vector<int>& bodies) {
+  const Vector3 velocity = momentum(world, bodies) / totalMass(world, bodies);
+  double energy = 0;
+  for (const int b : bodies) {
+    const BodyState state = world.bodyState(b);
+    energy += 0.5 * world.bodySpec(b).inertial.mass * (state.v_WCom - velocity).squaredNorm();
+    energy += 0.5 * state.w_WB.dot(inertiaInWorld(world, b, state.X_WB) * state.w_WB);
+  }
+  return energy;
+}
+
 std::vector<BodyState> bodyStates(const World& world) {
   std::vector<BodyState> states;
   for (int b = 0; b < world.bodyCount(); ++b) states.push_back(world.bodyState(b));

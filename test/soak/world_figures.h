@@ -23,6 +23,8 @@ double totalMass(const World& world, const std::vector<int>& bodies);
 Vector3 centreOfMass(const World& world, const std::vector<int>& bodies);
 Vector3 momentum(const World& world, const std::vector<int>& bodies);                               ///< [kg m/s]
 Vector3 angularMomentum(const World& world, const std::vector<int>& bodies, const Vector3& about);  ///< [kg m^2/s]
+/** [J] kinetic, in the frame that moves with their centre of mass. */
+double innerKineticEnergy(const World& world, const std::vector<int>& bodies);
 /** Wrench that the bodies' motion over a step needs, less gravity, about a point; lever arms and inertias of the step's start. */
 Wrench neededWrench(const World& world, const std::vector<BodyState>& before, const std::vector<int>& bodies, double dt,
                     const Vector3& about);
