@@ -33,7 +33,7 @@ void expectWithinCaps(const std::string& name, HuboStand* hubo, int steps) {
     hubo->prepare();
     times.start();
     const SolveResult& result = hubo->solve();
-    times.stop();
+    times.stop(result);
     ASSERT_TRUE(result.finite) << i;
     saturation.observe(hubo->world(), hubo->drives(), result);
     gap = std::max(gap, worstJointGap(hubo->world()));
@@ -140,7 +140,7 @@ TEST(EffortLimits, TwentyGramsUnderFortyKilograms) {
     }
     times.start();
     const SolveResult& result = robot.step();
-    times.stop();
+    times.stop(result);
     ASSERT_TRUE(result.finite) << i;
     saturation.observe(robot.world, robot.drives, result);
     gap = std::max(gap, worstJointGap(robot.world));

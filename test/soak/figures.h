@@ -46,11 +46,36 @@ inline double threadSeconds() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
+/** Anything, to a template that looks for a member it may not have. */
+struct StatesNothing {
+  template <typename Any>
+  StatesNothing(const Any&) {}
+};
+
+/** [N] and count that the solver states of a step, or NaN where it states none. */
+template <typename Result>
+auto residualOf(const Result& result, int) -> decltype(static_cast<double>(result.residual)) {
+  return result.residual;
+}
+inline double residualOf(const StatesNothing&, long) { return NAN; }
+template <typename Result>
+auto iterationsOf(const Result& result, int) -> decltype(static_cast<double>(result.iterations)) {
+  return result.iterations;
+}
+inline double iterationsOf(const StatesNothing&, long) { return NAN; }
+
 /** Processor times of single steps, and the solver's own account of them. */
 class StepTimes {
  public:
   void start() { start_ = threadSeconds(); }
   void stop() { microseconds_.push_back(1e6 * (threadSeconds() - start_)); }
+  /** @param result SolveResult or StepReport of the step */
+  template <typename Result>
+  void stop(const Result& result) {
+    stop();
+    residual_ = std::fmax(residual_, residualOf(result, 0));
+    iterations_ = std::fmax(iterations_, iterationsOf(result, 0));
+  }
   /** [us] below which this fraction of the steps stayed. Precondition: a step was timed. */
   double quantile(double fraction) const {
     std::vector<double> sorted = microseconds_;
@@ -64,10 +89,12 @@ class StepTimes {
     figure(name + " step median", median(), "us");
     figure(name + " step p99", quantile(0.99), "us");
     figure(name + " worst step", worst(), "us");
+    if (!std::isnan(residual_)) figure(name + " worst residual", residual_, "N");
+    if (!std::isnan(iterations_)) figure(name + " most iterations", iterations_, "");
   }
 
  private:
-  double start_ = 0;
+  double start_ = 0, residual_ = NAN, iterations_ = NAN;
   std::vector<double> microseconds_;
 };
 

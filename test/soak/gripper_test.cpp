@@ -93,7 +93,7 @@ struct Gripper {
     drives[0].target_velocity = AMPLITUDE * 2 * M_PI * std::sin(phase);
     times.start();
     const SolveResult& result = world.step(DT, contacts, drives);
-    times.stop();
+    times.stop(result);
     return result;
   }
   Pose cubeInPalm() const { return world.bodyState(palm).X_WB.inverse() * world.bodyState(cube).X_WB; }

@@ -18,7 +18,7 @@ TEST_P(Heap, GainsNoEnergyAndLosesNone) {
   for (int k = 0; k < soakSteps(20, 2); ++k) {
     times.start();
     const StepReport& report = simulator.step();
-    times.stop();
+    times.stop(report);
     ASSERT_FALSE(report.status & STATE_NOT_FINITE) << k;
     if (report.energy - energy > gained) worst_at = k;
     gained = std::max(gained, report.energy - energy);

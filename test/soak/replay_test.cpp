@@ -41,5 +41,42 @@ TEST(Replay, RestoredInTheMiddleOfAnImpact) {
   std::printf("hash after the impact: %016" PRIx64 "\n", first);
 }
 
+/** False where the solver has no such setting. */
+template <typename Settings>
+auto setThreads(Settings* settings, int threads, int) -> decltype(settings->threads = threads, true) {
+  settings->threads = threads;
+  return true;
+}
+template <typename Settings>
+bool setThreads(Settings*, int, long) {
+  return false;
+}
+
+/** Twelve pairs of cubes that fall onto each other. */
+std::uint64_t hashOfPairs(const SolverSettings& settings) {
+  const Vector3 size(0.1, 0.1, 0.1);
+  World world(Vector3(0, 0, -9.81), settings);
+  for (int i = 0; i < 24; ++i) world.addBody(boxBody("cube", 1 + i, size, {0.5 * (i / 2), 0.001 * i, 0.1 + 0.15 * (i % 2)}));
+  for (int k = 0; k < soakSteps(2, 0.5); ++k) {
+    std::vector<ContactConstraint> contacts;
+    for (int i = 0; i < 24; i += 2) {
+      boxOnPlane(world, i, size, Vector3::UnitZ(), 0, {}, &contacts, 5e-3);
+      boxOnBox(world, i + 1, size, i, size, {}, &contacts);
+    }
+    EXPECT_TRUE(world.step(1e-3, contacts, {}).finite) << k;
+  }
+  return hashOf(world.save());
+}
+
+TEST(Replay, AnyNumberOfThreads) {
+  SolverSettings settings = soakSettings();
+  if (!setThreads(&settings, 1, 0)) GTEST_SKIP() << "SolverSettings has no number of threads: islands are solved one after the other";
+  const std::uint64_t one = hashOfPairs(settings);
+  for (const int threads : {2, 4}) {
+    setThreads(&settings, threads, 0);
+    EXPECT_EQ(hashOfPairs(settings), one) << threads;
+  }
+}
+
 }  // namespace
 }  // namespace blem_sim

@@ -26,7 +26,7 @@ struct Tower {
     for (int i = 1; i < world.bodyCount(); ++i) boxOnBox(world, i, CUBE, i - 1, CUBE, {}, &contacts);
     times.start();
     const SolveResult& result = world.step(1e-3, contacts, {});
-    times.stop();
+    times.stop(result);
     return result;
   }
   World world;
@@ -77,7 +77,7 @@ void expectMeshesStand(const std::string& name, const std::vector<double>& masse
   for (int k = 0; k < soakSteps(20, 3); ++k) {
     times.start();
     const StepReport& report = simulator.step();
-    times.stop();
+    times.stop(report);
     ASSERT_FALSE(report.status & STATE_NOT_FINITE) << k;
     gained = std::max(gained, report.energy - energy);
     energy = report.energy;

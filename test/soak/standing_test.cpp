@@ -33,7 +33,7 @@ TEST_P(Standing, SixtySeconds) {
     hubo.prepare();
     times.start();
     const SolveResult& result = hubo.solve();
-    times.stop();
+    times.stop(result);
     ASSERT_TRUE(result.finite) << i;
     lcp_errors += result.lcp_errors;
     gap = std::max(gap, worstJointGap(hubo.world()));
@@ -105,9 +105,9 @@ TEST(Sway, StaysFiniteWithItsJointsClosed) {
   for (int i = 0; i < steps; ++i) {
     hubo.prepare();
     times.start();
-    const bool finite = hubo.solve().finite;
-    times.stop();
-    ASSERT_TRUE(finite) << i;
+    const SolveResult& result = hubo.solve();
+    times.stop(result);
+    ASSERT_TRUE(result.finite) << i;
     gap = std::max(gap, worstJointGap(hubo.world()));
   }
   figure("sway: joint gap", gap, "m");
