@@ -136,7 +136,7 @@ TEST(EffortLimits, TwentyGramsUnderFortyKilograms) {
   for (int i = 0; i < steps; ++i) {
     if (i == steps / 2) {
       rest_speed = rmsJointSpeed(robot.world);
-      robot.world.applyWrench(robot.body, {{30000, 0, 0}, Vector3::Zero()}, bodyCom(robot.world, robot.body));  // 30 N s in one step
+      robot.world.applyWrench(robot.body, {{60000, 0, 0}, Vector3::Zero()}, bodyCom(robot.world, robot.body));  // 60 N s in one step
     }
     times.start();
     const SolveResult& result = robot.step();
