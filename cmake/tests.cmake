@@ -22,3 +22,11 @@ foreach(room ${tested_rooms})
     add_test(NAME ${room} COMMAND test_${room})
   endif()
 endforeach()
+
+# The long runs that show what the solver must hold; scripts/validate_solver builds and runs them, scripts/test does not.
+file(GLOB soak_tests CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/test/soak/*.cpp)
+add_executable(soak_dynamics EXCLUDE_FROM_ALL ${soak_tests})
+target_include_directories(soak_dynamics PRIVATE ${PROJECT_SOURCE_DIR}/test ${PROJECT_SOURCE_DIR}/src/sim)
+target_link_libraries(soak_dynamics blem_sim_sim GTest::gtest GTest::gtest_main Threads::Threads)
+target_compile_definitions(soak_dynamics PRIVATE BLEM_SIM_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+set_target_properties(soak_dynamics PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})

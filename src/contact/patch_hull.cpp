@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace blem_sim {
 
 namespace {
 
-constexpr double FLATNESS =
-    1e-8;  // [m] a corner that stands out less is none: contacts along an edge are collinear only to the bodies' tilt
+constexpr double FLATNESS = 1e-7;   // [m] a corner that stands out less is none: where vertices coincide, merging moves points about
 constexpr double DEPTH_TIE = 1e-8;  // [m] a contact this much deeper than the interpolation adds nothing
 
 // A contact seen along the normal.
@@ -87,12 +87,7 @@ template <typename Iterator>
 std::vector<PlanePoint> halfHull(Iterator begin, Iterator end) {
   std::vector<PlanePoint> half;
   for (Iterator p = begin; p != end; ++p) {
-    while (half.size() >= 2) {
-      const PlanePoint& last = half[half.size() - 1];
-      const PlanePoint& previous = half[half.size() - 2];
-      if (cross(previous, last, *p) > FLATNESS * distance(previous, *p)) break;
-      half.pop_back();
-    }
+    while (half.size() >= 2 && cross(half[half.size() - 2], half.back(), *p) <= 0) half.pop_back();
     half.push_back(*p);
   }
   return half;
@@ -104,6 +99,54 @@ std::vector<PlanePoint> convexHull(const std::vector<PlanePoint>& sorted) {
   hull.pop_back();
   hull.insert(hull.end(), upper.begin(), upper.end() - 1);
   return hull;
+}
+
+// The two corners farthest from each other, ascending: they stand out whatever lies along the sides.
+std::pair<std::size_t, std::size_t> farthestPair(const std::vector<PlanePoint>& hull) {
+  std::pair<std::size_t, std::size_t> farthest = {0, 0};
+  double most = -1;
+  for (std::size_t i = 0; i < hull.size(); ++i) {
+    for (std::size_t j = i + 1; j < hull.size(); ++j) {
+      const double dx = hull[j].x - hull[i].x, dy = hull[j].y - hull[i].y, length2 = dx * dx + dy * dy;
+      if (length2 > most) {
+        most = length2;
+        farthest = {i, j};
+      }
+    }
+  }
+  return farthest;
+}
+
+// Appends chain[from] and those of the corners up to, and without, chain[to] that stand out from the chords. [Douglas 1973]
+void appendProminent(const std::vector<PlanePoint>& chain, std::size_t from, std::size_t to, std::vector<PlanePoint>& corners) {
+  std::size_t farthest = from;
+  double most = FLATNESS * distance(chain[from], chain[to]);
+  for (std::size_t i = from + 1; i < to; ++i) {
+    const double out = cross(chain[from], chain[i], chain[to]);
+    if (out > most) {
+      most = out;
+      farthest = i;
+    }
+  }
+  if (farthest == from) {
+    corners.push_back(chain[from]);
+    return;
+  }
+  appendProminent(chain, from, farthest, corners);
+  appendProminent(chain, farthest, to, corners);
+}
+
+// The hull without corners that stand out less than FLATNESS: decided from the whole hull, since along a side noise decides what comes
+// first in any order, and a chain thinned on the way can lose a true corner.
+std::vector<PlanePoint> prominentCorners(const std::vector<PlanePoint>& hull) {
+  if (hull.size() <= 2) return hull;
+  const auto [first, second] = farthestPair(hull);
+  std::vector<PlanePoint> ring(hull.begin() + first, hull.end());
+  ring.insert(ring.end(), hull.begin(), hull.begin() + first + 1);
+  std::vector<PlanePoint> corners;
+  appendProminent(ring, 0, second - first, corners);
+  appendProminent(ring, second - first, hull.size(), corners);
+  return corners;
 }
 
 // Points that lie over one triangle of kept points (a segment if c is b).
@@ -125,16 +168,25 @@ double interpolatedDepth(const Facet& facet, const PlanePoint& p) {
   return (1 - weight_b) * facet.a.depth + weight_b * facet.b.depth;
 }
 
-// Hands the points of `from` to the first facet that holds them; rounding at the rims leaves those over to the last.
+// How far p lies inside the facet's sides; negative outside.
+double insideBy(const Facet& f, const PlanePoint& p) {
+  const auto from_side = [&p](const PlanePoint& a, const PlanePoint& b) { return cross(a, b, p) / std::max(distance(a, b), 1e-300); };
+  return std::min({from_side(f.a, f.b), from_side(f.b, f.c), from_side(f.c, f.a)});
+}
+
+// Hands each point of `from` to the facet that holds it, or misses it by least.
 void distribute(const std::vector<PlanePoint>& from, std::vector<Facet>& facets) {
   for (const PlanePoint& p : from) {
-    for (std::size_t i = 0; i < facets.size(); ++i) {
-      Facet& f = facets[i];
-      const bool inside = cross(f.a, f.b, p) >= 0 && cross(f.b, f.c, p) >= 0 && cross(f.c, f.a, p) >= 0;
-      if (!inside && i + 1 < facets.size()) continue;
-      f.points.push_back(p);
-      break;
+    Facet* best = nullptr;
+    double most = -std::numeric_limits<double>::infinity();
+    for (Facet& facet : facets) {
+      const double inside = insideBy(facet, p);
+      if (best != nullptr && inside <= most) continue;
+      best = &facet;
+      most = inside;
+      if (inside >= 0) break;
     }
+    best->points.push_back(p);
   }
 }
 
@@ -211,7 +263,7 @@ std::vector<int> patchHull(const std::vector<Contact>& contacts, const std::vect
   if (points.size() <= 2) {
     for (const PlanePoint& p : points) kept.push_back(p.contact);
   } else {
-    const std::vector<PlanePoint> corners = convexHull(points);
+    const std::vector<PlanePoint> corners = prominentCorners(convexHull(points));
     for (const PlanePoint& corner : corners) kept.push_back(corner.contact);
     std::vector<int> sorted_corners = kept;
     std::sort(sorted_corners.begin(), sorted_corners.end());

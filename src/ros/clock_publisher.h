@@ -15,7 +15,6 @@ class ClockPublisher : public StepPublisher {
   ClockPublisher(ros::NodeHandle node, double rate);
   void publish(const StepReport& report) override;
   void timeRestarted() override;
-  void settled() override { publisher_.settle(); }
 
  private:
   GreetingPublisher<rosgraph_msgs::Clock> publisher_;

@@ -1,4 +1,4 @@
-// Publishers whose late subscribers learn the last message during a pause.
+// Publishers whose late subscribers learn the last message, also during a pause.
 #pragma once
 
 #include <ros/callback_queue_interface.h>
@@ -9,9 +9,11 @@
 #include <mutex>
 #include <string>
 
+#include "poll_rounds.h"
+
 namespace blem_sim {
 
-/** Runs callbacks at once, in the transport's thread. */
+/** Runs callbacks at once, in the poll thread. */
 class ImmediateQueue : public ros::CallbackQueueInterface {
  public:
   void addCallback(const ros::CallbackInterfacePtr& callback, std::uint64_t) override { callback->call(); }
@@ -19,18 +21,19 @@ class ImmediateQueue : public ros::CallbackQueueInterface {
 };
 
 /**
- * A publisher that gives a new subscriber the last message during a pause. roscpp's own latching does so at any time, a moment after the
- * connection, and so gives a message twice to who connects while messages are under way; stamps must never repeat.
+ * A publisher that gives a new subscriber the last message. roscpp's own latching does so a moment after the connection, and so gives a
+ * message twice to who connects while messages are under way; here nobody gets one twice, or misses the last: stamps must never repeat.
  */
 template <typename Message>
 class GreetingPublisher {
  public:
   GreetingPublisher(ros::NodeHandle* node, const std::string& topic, int queue_size) : state_(std::make_shared<State>()) {
+    PollRounds::instance().watchEnd();
     // The transport may call after this object is gone, so the callback shares the state.
     const std::shared_ptr<State> state = state_;
     const auto greet = [state](const ros::SingleSubscriberPublisher& subscriber) {
       const std::lock_guard<std::mutex> lock(state->mutex);
-      if (state->settled) subscriber.publish(state->message);
+      if (state->published && PollRounds::instance().count() > state->round) subscriber.publish(state->message);
     };
     ros::AdvertiseOptions options = ros::AdvertiseOptions::create<Message>(topic, queue_size, greet, ros::SubscriberStatusCallback(),
                                                                            ros::VoidConstPtr(), immediateQueue());
@@ -38,26 +41,22 @@ class GreetingPublisher {
   }
 
   void publish(const Message& message) {
+    const auto lock_round = PollRounds::instance().betweenHandOvers();
     {
       const std::lock_guard<std::mutex> lock(state_->mutex);
       state_->message = message;
+      state_->round = PollRounds::instance().count();
       state_->published = true;
-      state_->settled = false;
     }
     publisher_.publish(message);
-  }
-
-  /** What was published has reached every link there is: who connects from now on until the next message has not got the last one. */
-  void settle() {
-    const std::lock_guard<std::mutex> lock(state_->mutex);
-    state_->settled = state_->published;
   }
 
  private:
   struct State {
     std::mutex mutex;
     Message message;
-    bool published = false, settled = false;
+    std::uint64_t round = 0;  ///< the last one before it was published
+    bool published = false;
   };
 
   static ImmediateQueue* immediateQueue() {

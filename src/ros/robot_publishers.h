@@ -14,15 +14,12 @@
 
 namespace blem_sim {
 
-/** `joint_states` in each robot's namespace: position, velocity and effort of every movable joint. Told late subscribers during a pause. */
+/** `joint_states` in each robot's namespace: position, velocity and effort of every movable joint. Told late subscribers. */
 class JointStatePublisher : public StepPublisher {
  public:
   JointStatePublisher(ros::NodeHandle node, const Simulator& simulator);
   void publish(const StepReport& report) override;
   void timeRestarted() override { schedule_.restart(); }
-  void settled() override {
-    for (auto& publisher : publishers_) publisher.settle();
-  }
 
  private:
   const Simulator& simulator_;
@@ -31,15 +28,12 @@ class JointStatePublisher : public StepPublisher {
   std::vector<sensor_msgs::JointState> messages_;                       // per robot, names filled in once
 };
 
-/** `odom` in each robot's namespace: ground truth of the root link, twist in its own axes. Told late subscribers during a pause. */
+/** `odom` in each robot's namespace: ground truth of the root link, twist in its own axes. Told late subscribers. */
 class OdometryPublisher : public StepPublisher {
  public:
   OdometryPublisher(ros::NodeHandle node, const Simulator& simulator);
   void publish(const StepReport& report) override;
   void timeRestarted() override { schedule_.restart(); }
-  void settled() override {
-    for (auto& publisher : publishers_) publisher.settle();
-  }
 
  private:
   const Simulator& simulator_;
@@ -56,7 +50,6 @@ class TransformPublisher : public StepPublisher {
   TransformPublisher(ros::NodeHandle node, const Simulator& simulator);
   void publish(const StepReport& report) override;
   void timeRestarted() override { schedule_.restart(); }
-  void settled() override { publisher_.settle(); }
 
  private:
   const Simulator& simulator_;

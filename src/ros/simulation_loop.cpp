@@ -22,15 +22,7 @@ SimulationLoop::SimulationLoop(Simulator* simulator)
       paused_(simulator->config().paused) {}
 
 void SimulationLoop::publish(const StepReport& report) {
-  settled_ = false;
   for (const auto& publisher : publishers_) publisher->publish(report);
-}
-
-void SimulationLoop::settle() {
-  if (settled_) return;
-  outbox_.flush();
-  for (const auto& publisher : publishers_) publisher->settled();
-  settled_ = true;
 }
 
 bool SimulationLoop::step() {
@@ -47,7 +39,6 @@ void SimulationLoop::run(ros::CallbackQueue* callbacks, const std::function<void
   for (const auto& publisher : publishers_) publisher->resumed();
   pacer_.restart(StepPacer::Clock::now());
   while (ros::ok()) {
-    if (paused_) settle();
     const double wait = paused_ ? LONGEST_WAIT : std::min(LONGEST_WAIT, pacer_.wait(StepPacer::Clock::now()));
     callbacks->callAvailable(ros::WallDuration(wait));
     serve(paused_);
@@ -74,7 +65,7 @@ std::uint32_t SimulationLoop::stepPaused(std::uint32_t count) {
     ++made;
     if (made % STEPS_PER_FLUSH == 0) outbox_.flush();
   }
-  settle();
+  outbox_.flush();
   return made;
 }
 

@@ -41,15 +41,12 @@ class SimulationLoop {
   /** False if the state stopped being finite: the simulation is paused then. */
   bool step();
   void publish(const StepReport& report);
-  /** Once per pause: sees messages off and lets publishers greet late subscribers. */
-  void settle();
 
   Simulator* simulator_;
   std::vector<std::unique_ptr<StepPublisher>> publishers_;
   StepPacer pacer_;
   Outbox outbox_;
   bool paused_;
-  bool settled_ = false;
 };
 
 }  // namespace blem_sim

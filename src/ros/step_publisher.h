@@ -14,8 +14,6 @@ class StepPublisher {
   virtual void timeRestarted() {}
   /** Steps are about to be made again after a pause: what was measured on the wall clock starts anew. */
   virtual void resumed() {}
-  /** A pause has begun and what was published has reached every subscriber's link. */
-  virtual void settled() {}
   /** An environment was loaded or unloaded. */
   virtual void geometryChanged() {}
 };

@@ -4,10 +4,12 @@
 #include <ros/node_handle.h>
 #include <ros/param.h>
 
+#include "poll_rounds.h"
 #include "simulation_node.h"
 
 int main(int argc, char** argv) {
   ros::init(argc, argv, "blem_sim");
+  blem_sim::PollRounds::instance().watchBegin();
   // Before the node starts its own clock, which asks for it.
   if (!ros::param::has("/use_sim_time")) ros::param::set("/use_sim_time", true);
   // roscpp ends with its last handle, and its log with it: this one sees the error line out.

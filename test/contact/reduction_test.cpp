@@ -253,6 +253,27 @@ TEST(ReduceHull, KeepsExactlyTheCornersOfAGridOnAPlane) {
   EXPECT_EQ(contacts[3].id, 440u);
 }
 
+// Coincident vertices leave their contacts' places to rounding and to the merging of several: nothing of that may cost a corner.
+TEST(ReduceHull, KeepsTheFourCornersHoweverTheSidesTremble) {
+  Noise noise(12);
+  for (int trial = 0; trial < 300; ++trial) {
+    const Quaternion turn = Quaternion::FromTwoVectors(Vector3::UnitX(), Vector3(noise(), noise(), noise()));
+    const double tremble = std::pow(10, -8.5 + noise());  // up to 32 nm
+    Contacts contacts;
+    for (int i = 0; i <= 4; ++i) {
+      for (int j = 0; j <= 4; ++j) {
+        if (i % 4 != 0 && j % 4 != 0) continue;
+        const Vector3 p(0.025 * i + tremble * noise(), 0.025 * j + tremble * noise(), 1e-9 * noise());
+        contacts.push_back(makeContact(trial % 2 ? p : Vector3(turn * p), trial % 2 ? Vector3::UnitZ() : Vector3(turn * Vector3::UnitZ()),
+                                       1e-6 + 1e-6 * p.x(), 10 * i + j));
+      }
+    }
+    reduceHull(contacts, 20);
+    ASSERT_EQ(contacts.size(), 4u) << "trial " << trial << ", trembling by " << tremble;
+    for (int corner = 0; corner < 4; ++corner) EXPECT_EQ(contacts[corner].id, 40u * (corner / 2) + 4u * (corner % 2));
+  }
+}
+
 TEST(ReduceHull, LosesNoWrenchOnFlatPatches) {
   Noise noise(11);
   for (int trial = 0; trial < 40; ++trial) {

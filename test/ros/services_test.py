@@ -82,7 +82,8 @@ class ServicesTest(unittest.TestCase):
         joints.stop()
 
     def test_reset_simulation_starts_time_again(self):
-        sim_client.step(20)
+        stamp = sim_client.step(20).stamp
+        wait_until(lambda: self.clock.messages()[-1].clock == stamp, "the stamp of the last step")
         self.clock.clear()
         sim_client.reset_simulation()
         self.assertEqual(self.clock.wait_for(1)[0].clock.to_nsec(), 0)

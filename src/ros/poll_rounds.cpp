@@ -1,0 +1,36 @@
+#include "poll_rounds.h"
+
+#include <ros/poll_manager.h>
+
+namespace blem_sim {
+
+PollRounds& PollRounds::instance() {
+  static PollRounds rounds;
+  return rounds;
+}
+
+void PollRounds::watchBegin() {
+  ros::PollManager::instance()->addPollThreadListener([this] { begin(); });
+}
+
+void PollRounds::watchEnd() {
+  std::call_once(end_watched_, [this] {
+    ros::PollManager::instance()->addPollThreadListener([this] { end(); });
+    both_ends_ = true;
+  });
+}
+
+void PollRounds::begin() {
+  if (!both_ends_) return;
+  mutex_.lock();
+  held_ = true;
+}
+
+void PollRounds::end() {
+  ++count_;
+  if (!held_) return;
+  held_ = false;
+  mutex_.unlock();
+}
+
+}  // namespace blem_sim

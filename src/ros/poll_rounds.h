@@ -1,0 +1,43 @@
+// Which of two came first: a message, or the link to a new subscriber.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <mutex>
+
+namespace blem_sim {
+
+/**
+ * roscpp's poll thread works in rounds: first it hands queued messages to the links there are, then it serves the sockets, where new links
+ * come from. A message that is queued after round n is handed over in round n + 1: links made in round n or before get it, later ones do
+ * not. So that a message is never queued in the middle of a hand-over, publishers publish under betweenHandOvers().
+ */
+class PollRounds {
+ public:
+  static PollRounds& instance();
+
+  /** Call after ros::init and before the first NodeHandle: roscpp's own hand-over then lies between our two looks at a round. */
+  void watchBegin();
+  /** Call once roscpp has started. */
+  void watchEnd();
+
+  /** Keeps the poll thread from handing messages over while it lives. Given up after 100 ms: a poll thread that shuts roscpp down does so
+   *  in the middle of a round and does not come back. */
+  std::unique_lock<std::timed_mutex> betweenHandOvers() { return {mutex_, std::chrono::milliseconds(100)}; }
+  /** Rounds so far. To be asked between hand-overs, or in the poll thread. */
+  std::uint64_t count() const { return count_; }
+
+ private:
+  PollRounds() = default;
+  void begin();
+  void end();
+
+  std::timed_mutex mutex_;
+  std::atomic<std::uint64_t> count_{0};
+  std::atomic<bool> both_ends_{false};
+  std::once_flag end_watched_;
+  bool held_ = false;  ///< of the poll thread: it holds the mutex
+};
+
+}  // namespace blem_sim
