@@ -15,6 +15,7 @@
 namespace blem_sim {
 namespace {
 
+constexpr double FASTEST = 1e12;         // [m/s or rad/s]: what is beyond has no meaning as a number any more
 constexpr double SAME_PRODUCTS = 1e-9;  // [sqrt(kg) m/s] change of the free momentum that needs no second pass
 
 /** An island with what belongs to it in this step. */
@@ -47,6 +48,7 @@ class ArticulatedStepper : public Stepper {
   void readContacts(const StepInput& input, const Island& island, SolveResult* result) const;
   void readJoints(const StepInput& input, const Island& island, SolveResult* result);
   void remember(const StepInput& input, const SolveResult& result);
+  void noteWritten(const Scene& scene, int tree);
   void writeScene(Scene* scene);
 
   SolverSettings settings_;
@@ -71,9 +73,8 @@ void ArticulatedStepper::rebuild(const Scene& scene) {
   space_.resize(forest_);
   memory_.joints.resize(scene.joints().size());
   memory_.loops.resize(forest_.loops().size());
-  BodyBits nothing;
-  std::fill(std::begin(nothing.numbers), std::end(nothing.numbers), NAN);
-  written_.assign(forest_.nodes().size(), nothing);
+  written_.resize(forest_.nodes().size());
+  for (BodyBits& bits : written_) bits.numbers[0] = NAN;
 }
 
 bool ArticulatedStepper::isOurs(const Scene& scene, int tree) const {
@@ -191,8 +192,7 @@ void ArticulatedStepper::readJoints(const StepInput& input, const Island& island
   const IslandProblem& problem = island.problem;
   const auto read = [&](const JointTerm& j, double v) {
     memory_.joints[j.joint] = {j.dryImpulse(v) / input.dt, j.lowerImpulse(v) / input.dt, j.upperImpulse(v) / input.dt};
-    result->joint_efforts[j.joint] =
-        input.drives[j.joint].effort + (j.motorImpulse(v) + j.dryImpulse(v) - j.viscous * v) / input.dt;
+    result->joint_efforts[j.joint] = input.drives[j.joint].effort + (j.motorImpulse(v) + j.dryImpulse(v) - j.viscous * v) / input.dt;
   };
   for (const JointTerm& j : problem.joints) read(j, space_.velocity[j.dof]);
   std::size_t next_loop = 0, next_mimic = 0;
@@ -222,17 +222,23 @@ void ArticulatedStepper::remember(const StepInput& input, const SolveResult& res
       const int index = island.contacts[i];
       const Vector3& force = result.contact_forces[index];
       const bool pushes = input.contacts[index].normal_BA.dot(force) > 0;
-      if (pushes) next_contacts_.push_back({input.contacts[index].id, force, island.problem.contacts[i].slipVelocity().norm(), island.approach[i]});
+      if (pushes)
+        next_contacts_.push_back({input.contacts[index].id, force, island.problem.contacts[i].slipVelocity().norm(), island.approach[i]});
     }
   }
   std::sort(next_contacts_.begin(), next_contacts_.end(), [](const ContactRecord& a, const ContactRecord& b) { return a.id < b.id; });
   memory_.contacts.swap(next_contacts_);
 }
 
+void ArticulatedStepper::noteWritten(const Scene& scene, int tree) {
+  const ForestTree& t = forest_.trees()[tree];
+  for (int i = t.first_node; i < t.node_end; ++i) written_[i] = scene.bits(forest_.nodes()[i].body);
+}
+
 void ArticulatedStepper::writeScene(Scene* scene) {
   for (int tree = 0; tree < static_cast<int>(forest_.trees().size()); ++tree) {
     writeTree(forest_, tree, motion_, scene);
-    for (int i = forest_.trees()[tree].first_node; i < forest_.trees()[tree].node_end; ++i) written_[i] = scene->bits(forest_.nodes()[i].body);
+    noteWritten(*scene, tree);
   }
 }
 
@@ -265,7 +271,7 @@ void ArticulatedStepper::step(Scene* scene, const StepInput& input, SolveResult*
   result->joint_wrenches.assign(scene->joints().size(), Wrench());
   forEachIsland([&](Island* island) { solveIsland(*scene, input, island); });
   // Nothing was changed yet: a step that broke down leaves everything as it was.
-  result->finite = space_.velocity.allFinite();
+  result->finite = (space_.velocity.array().abs() < FASTEST).all();
   if (!result->finite) return;
   forEachIsland([&](Island* island) { finishIsland(*scene, input, *island, result); });
   report(input.dt, result);
@@ -286,16 +292,16 @@ void ArticulatedStepper::save(const Scene& scene, StateWriter* writer) const {
 }
 
 void ArticulatedStepper::restore(const Scene& scene, StateReader* reader) {
-  structure_ = 0;
   rebuild(scene);
   memory_.restore(reader);
   memory_.joints.resize(scene.joints().size());
   memory_.loops.resize(forest_.loops().size());
+  for (BodyBits& bits : written_) bits.numbers[0] = NAN;
   const int trees = static_cast<int>(reader->word());
   for (int tree = 0; tree < trees; ++tree) {
     if (!reader->word()) continue;
     restoreTree(forest_, tree, &motion_, reader);
-    for (int i = forest_.trees()[tree].first_node; i < forest_.trees()[tree].node_end; ++i) written_[i] = scene.bits(forest_.nodes()[i].body);
+    noteWritten(scene, tree);
   }
 }
 

@@ -72,7 +72,8 @@ struct ContactTerm {
   double friction = 0;
   double compliance = 0;               ///< R [m/s per N s] along the normal, 0 = rigid
   double inverse_mass = 0;             ///< [1/kg] mean over directions
-  double rho = 0;                      ///< proximal weight [m/s per N s]
+  double stiffest_rho = 0;             ///< least proximal weight [m/s per N s]
+  double rho = 0;                      ///< the present one
   double target = 0;                   ///< [m/s] u_n >= target - R g_n
   Vector3 previous = Vector3::Zero();  ///< [N s] impulse of the proximal point
   double slip = 0;                     ///< [m/s] |u_t| there: De Saxce's term

@@ -14,25 +14,25 @@ namespace blem_sim {
  */
 struct ForestMotion {
   // Per node.
-  std::vector<Matrix3> rotation;        ///< R_WB
-  std::vector<Vector3> origin;          ///< of the body frame, in the world
-  std::vector<Vector3> com;             ///< about the reference point
-  std::vector<Vector6> twist;           ///< at the start of the step
+  std::vector<Matrix3> rotation;  ///< R_WB
+  std::vector<Vector3> origin;    ///< of the body frame, in the world
+  std::vector<Vector3> com;       ///< about the reference point
+  std::vector<Vector6> twist;     ///< at the start of the step
   std::vector<SpatialInertia> inertia;
-  std::vector<double> position;         ///< of its joint
+  std::vector<double> position;  ///< of its joint
   // Per dof.
-  std::vector<Vector6> subspace;        ///< twist of unit velocity
-  Eigen::VectorXd velocity;             ///< start of the step
-  Eigen::VectorXd change;               ///< of the velocity in the last step
-  Eigen::VectorXd next_velocity;        ///< end of the step
-  Eigen::VectorXd products;             ///< velocity products: what M dv/dt lacks to the forces
-  Eigen::VectorXd applied;              ///< gravity and outside wrenches
+  std::vector<Vector6> subspace;  ///< twist of unit velocity
+  Eigen::VectorXd velocity;       ///< start of the step
+  Eigen::VectorXd change;         ///< of the velocity in the last step
+  Eigen::VectorXd next_velocity;  ///< end of the step
+  Eigen::VectorXd products;       ///< velocity products: what M dv/dt lacks to the forces
+  Eigen::VectorXd applied;        ///< gravity and outside wrenches
   // Per packed entry.
-  std::vector<double> mass;             ///< joint space inertia
+  std::vector<double> mass;  ///< joint space inertia
   // Per tree.
   std::vector<Vector3> reference;
-  std::vector<Vector6> momentum;        ///< of a free tree, carried from step to step
-  std::vector<Vector3> tree_com;        ///< about the reference point, at the start of the step
+  std::vector<Vector6> momentum;  ///< of a free tree, carried from step to step
+  std::vector<Vector3> tree_com;  ///< about the reference point, at the start of the step
 
   // Work space, per node.
   std::vector<Vector6> node_twist, node_force;
@@ -48,7 +48,8 @@ void placeBodies(const Forest& forest, int tree, ForestMotion* motion);
 void computeInertias(const Forest& forest, int tree, ForestMotion* motion);
 
 /** Twists of a tree's nodes for given velocities of its dofs. */
-void computeTwists(const Forest& forest, int tree, const ForestMotion& motion, const Eigen::VectorXd& velocity, std::vector<Vector6>* twist);
+void computeTwists(const Forest& forest, int tree, const ForestMotion& motion, const Eigen::VectorXd& velocity,
+                   std::vector<Vector6>* twist);
 
 /** Wrenches that move the nodes with the given velocities and accelerations (null: none), in node_force; without gravity. */
 void computeForces(const Forest& forest, int tree, const Eigen::VectorXd& velocity, const Eigen::VectorXd* acceleration,
@@ -67,7 +68,8 @@ void computeApplied(const Forest& forest, const Scene& scene, int tree, ForestMo
 void massTimes(const Forest& forest, int tree, const ForestMotion& motion, const Eigen::VectorXd& v, Eigen::VectorXd* out);
 
 /** Adds S' w along the tree to the dofs of `out`; the nodes' wrenches are summed towards the root in place. */
-void addProjected(const Forest& forest, int tree, const ForestMotion& motion, double sign, std::vector<Vector6>* wrench, Eigen::VectorXd* out);
+void addProjected(const Forest& forest, int tree, const ForestMotion& motion, double sign, std::vector<Vector6>* wrench,
+                  Eigen::VectorXd* out);
 
 /** Positions, velocities and a free root's pose from the bodies of the scene, which somebody else has set. */
 void readTree(const Forest& forest, const Scene& scene, int tree, ForestMotion* motion);

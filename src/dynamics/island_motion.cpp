@@ -50,8 +50,7 @@ void addReactions(const Forest& forest, const IslandProblem& problem, const Fore
     if (pair.b >= 0) (*on_node)[pair.b] -= moveWrench(wrench, -pair.shift);
   };
   for (const ContactPatch& patch : problem.patches)
-    for (int i = patch.first; i < patch.end; ++i)
-      add(patch.pair, wrenchOf(problem.contacts[i].impulse / dt, problem.contacts[i].point));
+    for (int i = patch.first; i < patch.end; ++i) add(patch.pair, wrenchOf(problem.contacts[i].impulse / dt, problem.contacts[i].point));
   for (std::size_t l = 0; l < problem.loops.size(); ++l) {
     const LoopTerm& loop = problem.loops[l];
     const Vector6 wrench = loop.basis * loop.impulses() / dt;
@@ -135,9 +134,7 @@ void advanceIsland(const Forest& forest, const IslandProblem& problem, double dt
   const bool flies = problem.contacts.empty() && problem.loops.empty();
   for (const int tree : problem.trees) {
     const ForestTree& t = forest.trees()[tree];
-    if (t.free)
-      motion->momentum[tree] =
-          space.mass_velocity.segment<6>(t.first_dof) + 0.5 * dt * motion->products.segment<6>(t.first_dof);
+    if (t.free) motion->momentum[tree] = space.mass_velocity.segment<6>(t.first_dof) + 0.5 * dt * motion->products.segment<6>(t.first_dof);
     integrate(forest, tree, dt, motion);
   }
   for (const MimicRelation& m : forest.mimics())

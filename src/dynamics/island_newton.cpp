@@ -8,6 +8,12 @@ namespace {
 
 constexpr int MAX_LINE_SEARCH = 30;
 constexpr double LINE_SEARCH_SLOPE = 1e-3;  // of the first slope: where the search is near enough to its minimum
+constexpr double INEXACT = 0.02;            // of the first gradient of a proximal step: where it is solved well enough
+// Proximal weights of the first steps against the last one's: soft contacts and soft joint friction find who sticks in few iterations.
+constexpr int SOFT_STAGES = 2;
+constexpr double CONTACT_SOFTNESS[SOFT_STAGES] = {1000, 30};
+constexpr double JOINT_SOFTNESS[SOFT_STAGES] = {10, 3};
+constexpr int FIRST_ITERATIONS = 4;  // of the hard problem, before the soft ones are asked
 constexpr double NO_STEP = 1e-16;           // [rad/s or m/s] largest change of a velocity that is none
 
 }  // namespace
@@ -115,6 +121,7 @@ double IslandProblem::lineSearch() {
 
 int IslandProblem::newton(const NewtonSettings& settings, int max_iterations) {
   SolverSpace& s = *space_;
+  double enough = settings.gradient_tolerance;
   for (int iterations = 0;; ++iterations) {
     evaluate();
     gradient();
@@ -126,10 +133,11 @@ int IslandProblem::newton(const NewtonSettings& settings, int max_iterations) {
     for (const int tree : trees)
       for (int k = forest_->trees()[tree].first_dof; k < forest_->trees()[tree].dof_end; ++k)
         worst = std::max(worst, std::abs(s.gradient[k]) * s.scale[k]);
-    if (worst <= settings.gradient_tolerance || iterations >= max_iterations) return iterations;
+    // The next proximal step changes the problem again: far from its end, this one need not be solved to the last digit.
+    if (iterations == 0) enough = std::max(enough, INEXACT * worst);
+    if (worst <= enough || iterations >= max_iterations) return iterations;
     for (const int tree : trees) treeHessian(tree);
-    for (const JointTerm& j : joints)
-      s.hessian[forest_->rowStart(j.dof) + forest_->rowLength(j.dof) - 1] += j.stiffness(s.velocity[j.dof]);
+    for (const JointTerm& j : joints) s.hessian[forest_->rowStart(j.dof) + forest_->rowLength(j.dof) - 1] += j.stiffness(s.velocity[j.dof]);
     if (!(coupled_ ? solveDense() : solveTrees())) return iterations;
     const double a = lineSearch();
     double moved = 0;
@@ -145,6 +153,12 @@ int IslandProblem::newton(const NewtonSettings& settings, int max_iterations) {
     for (LoopTerm& loop : loops) loop.velocity += a * loop.step;
     if (moved < NO_STEP) return iterations + 1;
   }
+}
+
+void IslandProblem::soften(double contact, double joint) {
+  for (ContactTerm& c : contacts) c.rho = contact * c.stiffest_rho;
+  for (JointTerm& j : joints) j.softness = joint;
+  for (LoopTerm& loop : loops) loop.drive.softness = joint;
 }
 
 void IslandProblem::remember() {
@@ -175,12 +189,25 @@ NewtonReport IslandProblem::solve(const Forest& forest, const ForestMotion& moti
   space_ = space;
   start();
   NewtonReport report;
-  for (int outer = 1;; ++outer) {
+  // Most steps are like the one before: the hard problem is solved in a few iterations. Where it is not, soft ones lead to it.
+  soften(1, 1);
+  report.iterations = newton(settings, FIRST_ITERATIONS);
+  const bool like_before = report.iterations < FIRST_ITERATIONS;
+  if (!like_before) {
+    for (int stage = 0; stage < SOFT_STAGES; ++stage) {
+      soften(CONTACT_SOFTNESS[stage], JOINT_SOFTNESS[stage]);
+      report.iterations += newton(settings, settings.max_iterations - report.iterations);
+      remember();
+    }
+    soften(1, 1);
     report.iterations += newton(settings, settings.max_iterations - report.iterations);
+  }
+  for (int outer = 1;; ++outer) {
     assess(&report);
-    const bool done = report.contact_residual <= settings.contact_tolerance && report.joint_creep <= settings.joint_tolerance;
-    if (done || outer >= settings.max_outer || report.iterations >= settings.max_iterations) break;
+    const bool good = report.contact_residual <= settings.contact_tolerance && report.joint_creep <= settings.joint_tolerance;
+    if (good || outer >= settings.max_outer || report.iterations >= settings.max_iterations) break;
     remember();
+    report.iterations += newton(settings, settings.max_iterations - report.iterations);
   }
   readMimics();
   return report;

@@ -14,9 +14,9 @@ namespace blem_sim {
 
 /** Two nodes that act on each other. */
 struct BodyPair {
-  int a = -1;                        ///< node; wrenches are on it, about its tree's reference point
-  int b = -1;                        ///< node, -1: the static world
-  Vector3 shift = Vector3::Zero();   ///< from a's reference point to b's
+  int a = -1;                       ///< node; wrenches are on it, about its tree's reference point
+  int b = -1;                       ///< node, -1: the static world
+  Vector3 shift = Vector3::Zero();  ///< from a's reference point to b's
 };
 
 /** Contacts of one pair, consecutive among the problem's contacts. */
@@ -32,11 +32,11 @@ struct MimicFold {
 };
 
 struct NewtonSettings {
-  int max_iterations = 40;          ///< over all proximal steps
-  int max_outer = 6;                ///< proximal steps
+  int max_iterations = 100;           ///< over all proximal steps
+  int max_outer = 12;                 ///< proximal steps
   double gradient_tolerance = 1e-10;  ///< [sqrt(kg) m/s]
-  double contact_tolerance = 1e-7;  ///< [N s]
-  double joint_tolerance = 1e-7;    ///< [rad/s or m/s]
+  double contact_tolerance = 1e-7;    ///< [N s]
+  double joint_tolerance = 1e-7;      ///< [rad/s or m/s]
 };
 
 /** What a solve needed and how good it is. */
@@ -50,11 +50,11 @@ struct NewtonReport {
 struct SolverSpace {
   Eigen::VectorXd free_momentum;  ///< M v*
   Eigen::VectorXd velocity, mass_velocity, gradient, direction, mass_direction, scale;
-  std::vector<double> hessian;             ///< packed rows
-  std::vector<Vector6> twist, wrench;      ///< per node
-  std::vector<Matrix6> stiffness;          ///< per node
-  std::vector<char> stiff;                 ///< per node: stiffness is not zero
-  std::vector<int> dense_index;            ///< per dof: its row in the island's dense matrix
+  std::vector<double> hessian;         ///< packed rows
+  std::vector<Vector6> twist, wrench;  ///< per node
+  std::vector<Matrix6> stiffness;      ///< per node
+  std::vector<char> stiff;             ///< per node: stiffness is not zero
+  std::vector<int> dense_index;        ///< per dof: its row in the island's dense matrix
 
   void resize(const Forest& forest);
 };
@@ -94,6 +94,7 @@ class IslandProblem {
   double slope(double a, double* curvature) const;
   double lineSearch();
   int newton(const NewtonSettings& settings, int max_iterations);
+  void soften(double contact, double joint);
   void remember();
   void assess(NewtonReport* report) const;
   void readMimics();

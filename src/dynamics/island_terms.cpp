@@ -7,8 +7,9 @@ namespace blem_sim {
 namespace {
 
 constexpr double CONTACT_PROXIMAL = 1e-4;  // rho = this * inverse mass at the contact: smaller is stiffer and needs more Newton iterations
-constexpr double JOINT_PROXIMAL = 1e-2;    // gain of friction and limits = inertia / this
+constexpr double JOINT_PROXIMAL = 1e-3;    // gain of friction and limits = inertia / this
 constexpr double LOOP_PROXIMAL = 1e-4;     // rho = this * inverse inertia
+constexpr double IMMOVABLE = 1e-12;        // [1/kg or 1/(kg m^2)]
 
 double massEntry(const TermSource& s, int dof) { return s.motion.mass[s.forest.rowStart(dof) + s.forest.rowLength(dof) - 1]; }
 
@@ -124,10 +125,13 @@ LoopTerm loopTerm(const TermSource& s, int index, BodyPair* pair) {
     const Vector6 wrench = term.basis.col(r);
     const double inverse =
         inverseInertia(s, pair->a, wrench) + (pair->b < 0 ? 0 : inverseInertia(s, pair->b, moveWrench(wrench, -pair->shift)));
-    term.rho[r] = LOOP_PROXIMAL * inverse;
+    // What nothing can move, such as the way out of a planar loop's plane, needs no row.
+    const bool movable = inverse > IMMOVABLE;
+    term.rho[r] = movable ? LOOP_PROXIMAL * inverse : INFINITY;
+    if (!movable) term.target[r] = 0;
     if (r == 5 && term.rows == 5) term.drive = driveTerm(s, loop.joint, q, 1 / inverse);
   }
-  term.previous = s.input.dt * s.memory.loops[index].force;
+  for (int r = 0; r < 6; ++r) term.previous[r] = std::isfinite(term.rho[r]) ? s.input.dt * s.memory.loops[index].force[r] : 0;
   return term;
 }
 
@@ -168,7 +172,7 @@ void weighContacts(const TermSource& s, IslandProblem* problem) {
     if (patch.pair.b >= 0) inverse += inverseMass(s, patch.pair.b, middle - patch.pair.shift);
     for (int i = patch.first; i < patch.end; ++i) {
       problem->contacts[i].inverse_mass = inverse;
-      problem->contacts[i].rho = CONTACT_PROXIMAL * inverse;
+      problem->contacts[i].stiffest_rho = CONTACT_PROXIMAL * inverse;
     }
   }
 }

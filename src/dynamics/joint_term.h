@@ -14,33 +14,34 @@ struct JointTerm {
   double motor_velocity = 0;
   double motor_bound = 0;
   double viscous = 0;   ///< h mu_V
-  double dry_gain = 0;  ///< impulse dry_previous - dry_gain v, within +-dry_bound
+  double softness = 1;  ///< divides the gains of friction and limits
+  double dry_gain = 0;  ///< impulse dry_previous - dry_gain / softness * v, within +-dry_bound
   double dry_previous = 0;
   double dry_bound = 0;
   double limit_gain = 0;                          ///< 0: no limits
-  double lower_velocity = 0, lower_previous = 0;  ///< impulse max(0, lower_previous + limit_gain (lower_velocity - v))
-  double upper_velocity = 0, upper_previous = 0;  ///< impulse -max(0, upper_previous + limit_gain (v - upper_velocity))
+  double lower_velocity = 0, lower_previous = 0;  ///< impulse max(0, lower_previous + limit_gain / softness * (lower_velocity - v))
+  double upper_velocity = 0, upper_previous = 0;  ///< impulse -max(0, upper_previous + limit_gain / softness * (v - upper_velocity))
 
   double motorImpulse(double v) const { return std::clamp(motor_gain * (motor_velocity - v), -motor_bound, motor_bound); }
-  double dryImpulse(double v) const { return std::clamp(dry_previous - dry_gain * v, -dry_bound, dry_bound); }
-  double lowerImpulse(double v) const { return limit_gain > 0 ? std::max(0.0, lower_previous + limit_gain * (lower_velocity - v)) : 0; }
-  double upperImpulse(double v) const { return limit_gain > 0 ? std::max(0.0, upper_previous + limit_gain * (v - upper_velocity)) : 0; }
+  double dryImpulse(double v) const { return std::clamp(dry_previous - dry_gain / softness * v, -dry_bound, dry_bound); }
+  double lowerImpulse(double v) const { return limit_gain > 0 ? std::max(0.0, lower_previous + limit_gain / softness * (lower_velocity - v)) : 0; }
+  double upperImpulse(double v) const { return limit_gain > 0 ? std::max(0.0, upper_previous + limit_gain / softness * (v - upper_velocity)) : 0; }
   double impulse(double v) const { return motorImpulse(v) - viscous * v + dryImpulse(v) + lowerImpulse(v) - upperImpulse(v); }
 
   /** -d impulse / dv >= 0 */
   double stiffness(double v) const {
     double sum = viscous;
     if (std::abs(motor_gain * (motor_velocity - v)) < motor_bound) sum += motor_gain;
-    if (std::abs(dry_previous - dry_gain * v) < dry_bound) sum += dry_gain;
-    if (lowerImpulse(v) > 0) sum += limit_gain;
-    if (upperImpulse(v) > 0) sum += limit_gain;
+    if (std::abs(dry_previous - dry_gain / softness * v) < dry_bound) sum += dry_gain / softness;
+    if (lowerImpulse(v) > 0) sum += limit_gain / softness;
+    if (upperImpulse(v) > 0) sum += limit_gain / softness;
     return sum;
   }
 
   /** Speed [rad/s or m/s] by which friction that sticks still creeps, or a limit that pushes is still missed. */
   double creep(double v) const {
     double worst = 0;
-    if (dry_gain > 0 && std::abs(dry_previous - dry_gain * v) < dry_bound) worst = std::abs(v);
+    if (dry_gain > 0 && std::abs(dry_previous - dry_gain / softness * v) < dry_bound) worst = std::abs(v);
     if (lowerImpulse(v) > 0) worst = std::max(worst, std::abs(lower_velocity - v));
     if (upperImpulse(v) > 0) worst = std::max(worst, std::abs(v - upper_velocity));
     return worst;

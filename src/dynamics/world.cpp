@@ -150,10 +150,16 @@ double World::potentialEnergy() const {
 
 WorldState World::save() const {
   WorldState state;
-  StateWriter writer(&state);
+  save(&state);
+  return state;
+}
+
+void World::save(WorldState* state) const {
+  state->numbers.clear();
+  state->words.clear();
+  StateWriter writer(state);
   saveScene(impl_->scene, &writer);
   impl_->stepper->save(impl_->scene, &writer);
-  return state;
 }
 
 void World::restore(const WorldState& state) {

@@ -41,6 +41,9 @@ void StepReportPublisher::publish(const StepReport& report) {
   if (statistics.deepest_a >= 0) message.deepest_a = simulator_.colliders()[statistics.deepest_a].name;
   if (statistics.deepest_b >= 0) message.deepest_b = simulator_.colliders()[statistics.deepest_b].name;
   message.energy = report.energy;
+  message.solver_residual = statistics.solver_residual;
+  message.solver_creep = statistics.solver_creep;
+  message.solver_iterations = static_cast<double>(statistics.solver_iterations) / statistics.steps;
   for (std::size_t i = 0; i < statistics.stage_seconds.size(); ++i) {
     message.stages.emplace_back(STAGE_NAMES[i]);
     message.stage_seconds.push_back(statistics.stage_seconds[i] / statistics.steps);

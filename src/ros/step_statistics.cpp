@@ -1,5 +1,6 @@
 #include "step_statistics.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace blem_sim {
@@ -18,6 +19,9 @@ void StepStatisticsCollector::add(const StepReport& report) {
     statistics_.deepest_a = report.deepest_a;
     statistics_.deepest_b = report.deepest_b;
   }
+  statistics_.solver_residual = std::max(statistics_.solver_residual, report.solver_residual);
+  statistics_.solver_creep = std::max(statistics_.solver_creep, report.solver_creep);
+  statistics_.solver_iterations += report.solver_iterations;
   for (std::size_t i = 0; i < statistics_.stage_seconds.size(); ++i) statistics_.stage_seconds[i] += report.profile.seconds[i];
 }
 

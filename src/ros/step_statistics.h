@@ -16,6 +16,8 @@ struct StepStatistics {
   double max_depth = 0, max_of_layer = 0;
   int deepest_a = -1, deepest_b = -1;                                  ///< colliders of the deepest contact
   double simulated = 0, wall = 0;                                      ///< [s]
+  double solver_residual = 0, solver_creep = 0;                        ///< largest
+  std::uint64_t solver_iterations = 0;                                 ///< sum
   std::array<double, static_cast<int>(Stage::COUNT)> stage_seconds{};  ///< sums
 
   /** 0 before any wall time has passed. */

@@ -26,6 +26,7 @@ SolverSettings readSolver(YamlReader reader) {
   SolverSettings solver;
   const std::vector<std::string> steppers = stepperNames();
   if (const auto stepper = reader.choice("stepper", steppers)) solver.stepper = steppers[*stepper];
+  reader.read("threads", &solver.threads, 1);
   reader.read("quick_step_iterations", &solver.quick_step_iterations, 1);
   reader.read("cfm", &solver.cfm, NumberRange::notNegative());
   reader.read("correction_fraction", &solver.correction_fraction, NumberRange::fraction());

@@ -30,6 +30,7 @@ struct Simulator::Impl {
   void report();
   void acceptSubstep();
   void recordContacts();
+  void recordSolve();
   void recordSaturation();
   const StepReport& stop();
   void findFirstContacts();

@@ -8,8 +8,9 @@
 namespace blem_sim {
 namespace {
 
-constexpr double FARTHEST = 1e12;       // [m], [m/s], [rad/s]: what is beyond has no meaning as a number any more
-constexpr double LIMIT_REACHED = 1e-6;  // [rad or m]
+constexpr double FARTHEST = 1e12;             // [m], [m/s], [rad/s]: what is beyond has no meaning as a number any more
+constexpr double LIMIT_REACHED = 1e-6;        // [rad or m]
+constexpr double RESIDUAL_IS_TROUBLE = 0.01;  // of the largest contact force
 
 /** Adds the wall time of a scope to a stage. */
 class StageTimer {
@@ -58,6 +59,8 @@ void Simulator::Impl::startStep() {
   report_.status = STEP_OK;
   report_.profile = StepProfile();
   report_.samples.clear();
+  report_.solver_residual = report_.solver_creep = 0;
+  report_.solver_iterations = 0;
   report_.dt = config_.time_step;
   joint_wrenches_.assign(world_.world.jointCount(), Wrench());
   world_.bodyStates(&bodies_before_);
@@ -98,7 +101,7 @@ void Simulator::Impl::reduction() {
 
 bool Simulator::Impl::solve() {
   const StageTimer timer(&report_.profile, Stage::SOLVE);
-  substep_start_ = world_.world.save();
+  world_.world.save(&substep_start_);
   bodies_before_substep_ = bodies_;
   solved_ = &world_.world.step(substepLength(), contacts_.constraints(), drives_);
   if (solved_->finite) world_.bodyStates(&bodies_);
@@ -121,7 +124,7 @@ void Simulator::Impl::stepGuard() {
 }
 
 void Simulator::Impl::acceptSubstep() {
-  if (solved_->lcp_errors > 0) report_.status |= SOLVER_TROUBLE;
+  recordSolve();
   if (contacts_.budgetUsedUp()) report_.status |= CONTACTS_REDUCED;
   for (std::size_t j = 0; j < joint_wrenches_.size(); ++j) {
     joint_wrenches_[j].force += substeps_.fraction() * solved_->joint_wrenches[j].force;
@@ -131,6 +134,15 @@ void Simulator::Impl::acceptSubstep() {
   recordContacts();
   contacts_.accept();
   substeps_.accept();
+}
+
+void Simulator::Impl::recordSolve() {
+  double largest = 0;
+  for (const Vector3& force : solved_->contact_forces) largest = std::max(largest, force.norm());
+  if (solved_->lcp_errors > 0 || solved_->residual > RESIDUAL_IS_TROUBLE * largest) report_.status |= SOLVER_TROUBLE;
+  report_.solver_residual = std::max(report_.solver_residual, solved_->residual);
+  report_.solver_creep = std::max(report_.solver_creep, solved_->creep);
+  report_.solver_iterations += solved_->iterations;
 }
 
 void Simulator::Impl::recordSaturation() {

@@ -66,6 +66,7 @@ TEST(Manual, SaysWhatHoldsWithoutIt) {
   EXPECT_EQ(manual_config.gravity, defaults.gravity);
   EXPECT_EQ(manual_config.random_seed, defaults.random_seed);
   EXPECT_EQ(manual_config.solver.stepper, defaults.solver.stepper);
+  EXPECT_EQ(manual_config.solver.threads, defaults.solver.threads);
   EXPECT_EQ(manual_config.solver.quick_step_iterations, defaults.solver.quick_step_iterations);
   EXPECT_EQ(manual_config.solver.cfm, defaults.solver.cfm);
   EXPECT_EQ(manual_config.solver.correction_fraction, defaults.solver.correction_fraction);
@@ -182,7 +183,7 @@ robots:
 TEST(ConfigParser, ReadsEnvironmentsAndObjects) {
   const auto config = parse(R"(
 contact: {friction_rule: harmonic_mean, reduction: kmeans}
-solver: {stepper: quick_step, quick_step_iterations: 99}
+solver: {stepper: quick_step, threads: 3, quick_step_iterations: 99}
 random_seed: 18446744073709551615
 environments:
   - {name: ladder, uri: ladder.ply, scale: 0.25, cloud: {as: mesh, max_edge: 0.02}}
@@ -195,6 +196,7 @@ objects:
   EXPECT_EQ(config.contact.friction_rule, FrictionRule::HARMONIC_MEAN);
   EXPECT_EQ(config.contact.reduction, "kmeans");
   EXPECT_EQ(config.solver.stepper, "quick_step");
+  EXPECT_EQ(config.solver.threads, 3);
   EXPECT_EQ(config.solver.quick_step_iterations, 99);
   EXPECT_EQ(config.random_seed, 18446744073709551615u);
   EXPECT_EQ(config.environments[0].scale, Vector3::Constant(0.25));

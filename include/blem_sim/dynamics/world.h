@@ -89,11 +89,11 @@ struct SolveResult {
   std::vector<Wrench> joint_wrenches;   ///< what the child feels from the parent, world axes, about the joint frame's origin at the
                                         ///< start of the step; from motion (Newton-Euler over the step), not from a residual
   std::vector<double> joint_efforts;    ///< [N m or N] motor and friction along the axis
-  double residual = 0;    ///< [N] by how much contact forces miss Coulomb's law, worst contact; 0 where a stepper does not know it
-  double creep = 0;       ///< [rad/s or m/s] by how much joints miss sticking, their limits, or a loop; worst
-  int iterations = 0;     ///< of the solver, over all islands
-  int lcp_errors = 0;                   ///< the complementarity solver complained; the step was redone with more CFM
-  bool finite = true;                   ///< step gave a finite state; if not, bodies stay as before it and nothing else here means anything
+  double residual = 0;  ///< [N] by how much contact forces miss Coulomb's law, worst contact; 0 where a stepper does not know it
+  double creep = 0;     ///< [rad/s or m/s] by how much joints miss sticking, their limits, or a loop; worst
+  int iterations = 0;   ///< of the solver, over all islands
+  int lcp_errors = 0;   ///< the complementarity solver complained; the step was redone with more CFM
+  bool finite = true;   ///< step gave a finite state; if not, bodies stay as before it and nothing else here means anything
 };
 
 /** Everything a world needs to replay bit for bit. */
@@ -144,6 +144,8 @@ class World {
   double potentialEnergy() const;  ///< [J] against gravity, zero at the origin
 
   WorldState save() const;
+  /** The same into a state that is used again. */
+  void save(WorldState* state) const;
   /** Precondition: state was saved from a world with the same bodies and joints. */
   void restore(const WorldState& state);
 

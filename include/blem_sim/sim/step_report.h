@@ -19,7 +19,8 @@ enum StepStatus : std::uint32_t {
   CONTACT_UNRELIABLE =
       1u << 1,  ///< bare meshes cross: normals there are a guess. Thicker boundary_width, smaller time_step, or a better start pose
   CONTACTS_REDUCED = 1u << 2,  ///< contacts were left out by max_contacts_per_robot/object. Raise them if forces look wrong
-  SOLVER_TROUBLE = 1u << 3,  ///< the complementarity solver complained and the step was redone softer. Raise solver.cfm, or fewer contacts
+  SOLVER_TROUBLE = 1u << 3,  ///< the complementarity solver complained and the step was redone softer, or Newton stopped at its bound with
+                             ///< contact forces off by over 1 % of the largest. Smaller time_step, fewer contacts; ODE: raise solver.cfm
   STATE_NOT_FINITE = 1u << 4,  ///< a body's state is NaN or infinite; the last finite state was restored and the simulation is stopped
   EFFORT_SATURATED = 1u << 5,  ///< a motor ran into its effort limit. Raise effort_limits, or a slower motion
   JOINT_LIMIT_HIT = 1u << 6,   ///< a joint is at its limit
@@ -88,6 +89,9 @@ struct StepReport {
   double max_depth = 0, max_of_layer = 0;  ///< over this step's contacts
   int deepest_a = -1, deepest_b = -1;      ///< colliders
   double energy = 0;                       ///< [J] kinetic + potential
+  double solver_residual = 0;              ///< [N] worst over the step: SolveResult::residual
+  double solver_creep = 0;                 ///< [rad/s or m/s] worst over the step: SolveResult::creep
+  int solver_iterations = 0;               ///< over the step's solves
   StepProfile profile;
   std::vector<ContactReport> contacts;  ///< of the last solve of the step
   std::vector<BodyState> bodies;        ///< one per body slot
