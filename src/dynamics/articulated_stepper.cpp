@@ -15,7 +15,7 @@
 namespace blem_sim {
 namespace {
 
-constexpr double FASTEST = 1e12;         // [m/s or rad/s]: what is beyond has no meaning as a number any more
+constexpr double FASTEST = 1e100;       // [m/s or rad/s]: beyond, ODE could not normalise what it is given
 constexpr double SAME_PRODUCTS = 1e-9;  // [sqrt(kg) m/s] change of the free momentum that needs no second pass
 
 /** An island with what belongs to it in this step. */

@@ -27,7 +27,7 @@ Vector3 jointOrigin(const Forest& forest, int node, const ForestMotion& motion) 
 void ForestMotion::resize(const Forest& forest) {
   const std::size_t nodes = forest.nodes().size(), dofs = forest.dofCount(), trees = forest.trees().size();
   for (auto* v : {&origin, &com}) v->resize(nodes);
-  for (auto* v : {&twist, &node_twist, &node_force}) v->resize(nodes);
+  for (auto* v : {&twist, &node_twist, &node_force, &drift}) v->resize(nodes);
   for (auto* v : {&inertia, &composite}) v->resize(nodes);
   rotation.resize(nodes);
   position.resize(nodes);
@@ -122,8 +122,10 @@ void computeForces(const Forest& forest, int tree, const Eigen::VectorXd& veloci
       if (acceleration) a += s * (*acceleration)[node.first_dof];
     }
   }
-  for (int i = t.first_node; i < t.node_end; ++i)
+  for (int i = t.first_node; i < t.node_end; ++i) {
+    if (!acceleration) motion->drift[i] = force[i];
     force[i] = motion->inertia[i].times(force[i]) + crossForce(twist[i], motion->inertia[i].times(twist[i]));
+  }
 }
 
 void computeProducts(const Forest& forest, int tree, const Eigen::VectorXd& velocity, ForestMotion* motion) {

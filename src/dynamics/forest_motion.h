@@ -35,6 +35,7 @@ struct ForestMotion {
   std::vector<Vector3> tree_com;  ///< about the reference point, at the start of the step
 
   // Work space, per node.
+  std::vector<Vector6> drift;  ///< acceleration that goes with node_twist and constant velocities of the dofs, of computeProducts
   std::vector<Vector6> node_twist, node_force;
   std::vector<SpatialInertia> composite;
 

@@ -8,12 +8,14 @@ namespace {
 
 constexpr int MAX_LINE_SEARCH = 30;
 constexpr double LINE_SEARCH_SLOPE = 1e-3;  // of the first slope: where the search is near enough to its minimum
-constexpr double INEXACT = 0.02;            // of the first gradient of a proximal step: where it is solved well enough
+// Of the first gradient of a proximal step: the next step changes the problem again, so this one need not be solved to the last digit.
+constexpr double INEXACT = 0.02;
 // Proximal weights of the first steps against the last one's: soft contacts and soft joint friction find who sticks in few iterations.
 constexpr int SOFT_STAGES = 2;
 constexpr double CONTACT_SOFTNESS[SOFT_STAGES] = {1000, 30};
 constexpr double JOINT_SOFTNESS[SOFT_STAGES] = {10, 3};
 constexpr int FIRST_ITERATIONS = 4;  // of the hard problem, before the soft ones are asked
+constexpr double UNRELIABLE = 0.2;  // of the largest impulse: a residual beyond it at the end of the iterations calls for the soft problem
 constexpr double NO_STEP = 1e-16;           // [rad/s or m/s] largest change of a velocity that is none
 
 }  // namespace
@@ -119,39 +121,52 @@ double IslandProblem::lineSearch() {
   return a;
 }
 
-int IslandProblem::newton(const NewtonSettings& settings, int max_iterations) {
+double IslandProblem::gradientNorm() const {
+  double worst = 0;
+  for (const int tree : trees)
+    for (int k = forest_->trees()[tree].first_dof; k < forest_->trees()[tree].dof_end; ++k)
+      worst = std::max(worst, std::abs(space_->gradient[k]) * space_->scale[k]);
+  return worst;
+}
+
+// Moves by a along the direction. Returns the largest change of a velocity.
+double IslandProblem::take(double a) {
   SolverSpace& s = *space_;
+  double moved = 0;
+  for (const int tree : trees) {
+    const ForestTree& t = forest_->trees()[tree];
+    for (int k = t.first_dof; k < t.dof_end; ++k) {
+      s.velocity[k] += a * s.direction[k];
+      s.mass_velocity[k] += a * s.mass_direction[k];
+      moved = std::max(moved, std::abs(a * s.direction[k]));
+    }
+  }
+  for (ContactTerm& c : contacts) c.velocity += a * c.step;
+  for (LoopTerm& loop : loops) loop.velocity += a * loop.step;
+  return moved;
+}
+
+bool IslandProblem::findDirection() {
+  SolverSpace& s = *space_;
+  for (const int tree : trees) treeHessian(tree);
+  for (const JointTerm& j : joints) s.hessian[forest_->rowStart(j.dof) + forest_->rowLength(j.dof) - 1] += j.stiffness(s.velocity[j.dof]);
+  return coupled_ ? solveDense() : solveTrees();
+}
+
+// Until the gradient is below `exactness` times the first one, or the tolerance.
+int IslandProblem::newton(const NewtonSettings& settings, double exactness, int max_iterations) {
   double enough = settings.gradient_tolerance;
   for (int iterations = 0;; ++iterations) {
     evaluate();
     gradient();
     for (const MimicFold& m : mimics) {
-      s.gradient[m.master] += m.multiplier * s.gradient[m.dof];
-      s.gradient[m.dof] = 0;
+      space_->gradient[m.master] += m.multiplier * space_->gradient[m.dof];
+      space_->gradient[m.dof] = 0;
     }
-    double worst = 0;
-    for (const int tree : trees)
-      for (int k = forest_->trees()[tree].first_dof; k < forest_->trees()[tree].dof_end; ++k)
-        worst = std::max(worst, std::abs(s.gradient[k]) * s.scale[k]);
-    // The next proximal step changes the problem again: far from its end, this one need not be solved to the last digit.
-    if (iterations == 0) enough = std::max(enough, INEXACT * worst);
-    if (worst <= enough || iterations >= max_iterations) return iterations;
-    for (const int tree : trees) treeHessian(tree);
-    for (const JointTerm& j : joints) s.hessian[forest_->rowStart(j.dof) + forest_->rowLength(j.dof) - 1] += j.stiffness(s.velocity[j.dof]);
-    if (!(coupled_ ? solveDense() : solveTrees())) return iterations;
-    const double a = lineSearch();
-    double moved = 0;
-    for (const int tree : trees) {
-      const ForestTree& t = forest_->trees()[tree];
-      for (int k = t.first_dof; k < t.dof_end; ++k) {
-        s.velocity[k] += a * s.direction[k];
-        s.mass_velocity[k] += a * s.mass_direction[k];
-        moved = std::max(moved, std::abs(a * s.direction[k]));
-      }
-    }
-    for (ContactTerm& c : contacts) c.velocity += a * c.step;
-    for (LoopTerm& loop : loops) loop.velocity += a * loop.step;
-    if (moved < NO_STEP) return iterations + 1;
+    gradient_norm_ = gradientNorm();
+    if (iterations == 0) enough = std::max(enough, exactness * gradient_norm_);
+    if (gradient_norm_ <= enough || iterations >= max_iterations || !findDirection()) return iterations;
+    if (take(lineSearch()) < NO_STEP) return iterations + 1;
   }
 }
 
@@ -159,6 +174,21 @@ void IslandProblem::soften(double contact, double joint) {
   for (ContactTerm& c : contacts) c.rho = contact * c.stiffest_rho;
   for (JointTerm& j : joints) j.softness = joint;
   for (LoopTerm& loop : loops) loop.drive.softness = joint;
+}
+
+double IslandProblem::largestImpulse() const {
+  double largest = 0;
+  for (const ContactTerm& c : contacts) largest = std::max(largest, c.impulse.norm());
+  return largest;
+}
+
+// Without memory the problem is convex and its contacts can only take energy away: they give way a little, which the next steps repair.
+void IslandProblem::settleForSoft() {
+  soften(CONTACT_SOFTNESS[0], JOINT_SOFTNESS[0]);
+  for (ContactTerm& c : contacts) {
+    c.previous.setZero();
+    c.slip = 0;
+  }
 }
 
 void IslandProblem::remember() {
@@ -169,6 +199,7 @@ void IslandProblem::remember() {
 
 void IslandProblem::assess(NewtonReport* report) const {
   report->contact_residual = report->joint_creep = 0;
+  report->imbalance = gradient_norm_;
   for (const ContactTerm& c : contacts) report->contact_residual = std::max(report->contact_residual, c.residual());
   for (const JointTerm& j : joints) report->joint_creep = std::max(report->joint_creep, j.creep(space_->velocity[j.dof]));
   for (const LoopTerm& loop : loops) report->joint_creep = std::max(report->joint_creep, loop.creep());
@@ -189,25 +220,32 @@ NewtonReport IslandProblem::solve(const Forest& forest, const ForestMotion& moti
   space_ = space;
   start();
   NewtonReport report;
+  const auto left = [&] { return settings.max_iterations - report.iterations; };
   // Most steps are like the one before: the hard problem is solved in a few iterations. Where it is not, soft ones lead to it.
   soften(1, 1);
-  report.iterations = newton(settings, FIRST_ITERATIONS);
-  const bool like_before = report.iterations < FIRST_ITERATIONS;
-  if (!like_before) {
+  report.iterations = newton(settings, 0, FIRST_ITERATIONS);
+  if (report.iterations == FIRST_ITERATIONS) {
     for (int stage = 0; stage < SOFT_STAGES; ++stage) {
       soften(CONTACT_SOFTNESS[stage], JOINT_SOFTNESS[stage]);
-      report.iterations += newton(settings, settings.max_iterations - report.iterations);
+      report.iterations += newton(settings, INEXACT, left());
       remember();
     }
     soften(1, 1);
-    report.iterations += newton(settings, settings.max_iterations - report.iterations);
+    report.iterations += newton(settings, INEXACT, left());
   }
-  for (int outer = 1;; ++outer) {
+  for (int outer = 1; outer < settings.max_outer; ++outer) {
     assess(&report);
-    const bool good = report.contact_residual <= settings.contact_tolerance && report.joint_creep <= settings.joint_tolerance;
-    if (good || outer >= settings.max_outer || report.iterations >= settings.max_iterations) break;
-    remember();
-    report.iterations += newton(settings, settings.max_iterations - report.iterations);
+    const bool lawful = report.contact_residual <= settings.contact_tolerance && report.joint_creep <= settings.joint_tolerance;
+    const bool exact = gradient_norm_ <= settings.gradient_tolerance;
+    if ((lawful && exact) || left() <= 0) break;
+    if (!lawful) remember();
+    report.iterations += newton(settings, lawful ? 0 : INEXACT, left());
+  }
+  assess(&report);
+  if (report.contact_residual > UNRELIABLE * largestImpulse()) {
+    settleForSoft();
+    report.iterations += newton(settings, 0, settings.max_soft_iterations);
+    assess(&report);
   }
   readMimics();
   return report;

@@ -33,6 +33,7 @@ struct MimicFold {
 
 struct NewtonSettings {
   int max_iterations = 100;           ///< over all proximal steps
+  int max_soft_iterations = 40;       ///< more of them, where those did not lead to the end
   int max_outer = 12;                 ///< proximal steps
   double gradient_tolerance = 1e-10;  ///< [sqrt(kg) m/s]
   double contact_tolerance = 1e-7;    ///< [N s]
@@ -43,6 +44,7 @@ struct NewtonSettings {
 struct NewtonReport {
   int iterations = 0;
   double contact_residual = 0;  ///< [N s] largest violation of Coulomb's law over the contacts
+  double imbalance = 0;         ///< [sqrt(kg) m/s] by how much momentum and impulses differ, over the root of the inertia; worst dof
   double joint_creep = 0;       ///< [rad/s or m/s] largest creep of a joint that sticks, miss of a limit or of a loop
 };
 
@@ -93,8 +95,13 @@ class IslandProblem {
   void foldDense(Eigen::Ref<Eigen::MatrixXd> h) const;
   double slope(double a, double* curvature) const;
   double lineSearch();
-  int newton(const NewtonSettings& settings, int max_iterations);
+  double gradientNorm() const;
+  double take(double a);
+  bool findDirection();
+  int newton(const NewtonSettings& settings, double exactness, int max_iterations);
   void soften(double contact, double joint);
+  double largestImpulse() const;
+  void settleForSoft();
   void remember();
   void assess(NewtonReport* report) const;
   void readMimics();
@@ -104,6 +111,7 @@ class IslandProblem {
   SolverSpace* space_ = nullptr;
   bool coupled_ = false;  ///< two branches or two trees are tied: the Hessian is dense
   int dense_size_ = 0;
+  double gradient_norm_ = 0;           ///< [sqrt(kg) m/s]
   double linear_ = 0, quadratic_ = 0;  ///< of the kinetic part along the search direction
   Eigen::MatrixXd dense_;
   Eigen::VectorXd dense_vector_;

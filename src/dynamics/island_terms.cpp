@@ -84,6 +84,58 @@ BodyPair makePair(const TermSource& s, int a, int b) {
   return pair;
 }
 
+/** Where a loop's child is against where the joint wants it. */
+struct LoopFrames {
+  Matrix3 R_WJ;
+  Vector3 origin;       ///< of the joint frame, in the world
+  Vector3 anchor;       ///< the child's, about the child's reference point
+  Vector3 shift, tilt;  ///< of the child from where it should be [m], [rad]
+};
+
+LoopFrames loopFrames(const TermSource& s, const LoopClosure& loop, double q) {
+  const Pose X_WP = nodePose(s, loop.parent) * loop.X_PJ, X_WJ = X_WP * jointMotion(loop.kind, loop.axis, q);
+  const Pose X_WC = nodePose(s, loop.child) * loop.X_CJ;
+  const Pose error = X_WJ.inverse() * X_WC;
+  const Eigen::AngleAxisd turn(error.linear());
+  LoopFrames frames;
+  frames.R_WJ = X_WJ.linear();
+  frames.origin = X_WP.translation();
+  frames.anchor = X_WC.translation() - s.motion.reference[s.forest.nodes()[loop.child].tree];
+  frames.shift = frames.R_WJ * error.translation();
+  frames.tilt = frames.R_WJ * (turn.angle() * turn.axis());
+  return frames;
+}
+
+/** Acceleration of the child against the parent while all joint velocities stay. */
+struct LoopDrift {
+  Vector3 point, spin;
+};
+
+LoopDrift loopDrift(const TermSource& s, const BodyPair& pair, const Vector3& anchor) {
+  const auto pointDrift = [&](int node, const Vector3& point) {
+    return Vector3(velocityAt(s.motion.drift[node], point) + angular(s.motion.node_twist[node]).cross(velocityAt(s.motion.node_twist[node], point)));
+  };
+  LoopDrift drift{pointDrift(pair.a, anchor), angular(s.motion.drift[pair.a])};
+  if (pair.b < 0) return drift;
+  const Vector3 spin = angular(s.motion.node_twist[pair.b]);
+  drift.point -= pointDrift(pair.b, anchor - pair.shift);
+  drift.spin -= angular(s.motion.drift[pair.b]) + spin.cross(angular(s.motion.node_twist[pair.a]) - spin);
+  return drift;
+}
+
+// Proximal weights and points of a loop's rows. What nothing can move, such as the way out of a planar loop's plane, needs no row.
+void weighLoop(const TermSource& s, const BodyPair& pair, const LoopRecord& record, LoopTerm* term) {
+  for (int r = 0; r < 6; ++r) {
+    const Vector6 wrench = term->basis.col(r);
+    double inverse = inverseInertia(s, pair.a, wrench);
+    if (pair.b >= 0) inverse += inverseInertia(s, pair.b, moveWrench(wrench, -pair.shift));
+    const bool movable = inverse > IMMOVABLE;
+    term->rho[r] = movable ? LOOP_PROXIMAL * inverse : INFINITY;
+    term->previous[r] = movable ? s.input.dt * record.force[r] : 0;
+    if (!movable) term->target[r] = 0;
+  }
+}
+
 }  // namespace
 
 JointTerm jointTerm(const TermSource& s, int node) {
@@ -96,42 +148,31 @@ JointTerm jointTerm(const TermSource& s, int node) {
 LoopTerm loopTerm(const TermSource& s, int index, BodyPair* pair) {
   const LoopClosure& loop = s.forest.loops()[index];
   *pair = makePair(s, loop.child, loop.parent);
-  const Pose X_WJ = nodePose(s, loop.parent) * loop.X_PJ;
   const double q = s.scene.jointPosition(loop.joint);
-  // Where the child's joint frame is against where the joint wants it.
-  const Pose error = (X_WJ * jointMotion(loop.kind, loop.axis, q)).inverse() * nodePose(s, loop.child) * loop.X_CJ;
-  const Matrix3 R = X_WJ.linear() * jointMotion(loop.kind, loop.axis, q).linear();
-  const Vector3 anchor = (nodePose(s, loop.child) * loop.X_CJ).translation() - s.motion.reference[s.forest.nodes()[loop.child].tree];
-  const Eigen::AngleAxisd turn(error.linear());
-  const Vector3 shift = R * error.translation(), tilt = R * (turn.angle() * turn.axis());
+  const LoopFrames frames = loopFrames(s, loop, q);
+  const LoopDrift drift = loopDrift(s, *pair, frames.anchor);
   // Directions in the joint frame, the free axis last: of translation for a slider, of rotation for a hinge.
-  const Vector3 axis = R * loop.axis, one = R * loop.axis.unitOrthogonal(), two = axis.cross(one);
+  const Vector3 axis = frames.R_WJ * loop.axis, one = frames.R_WJ * loop.axis.unitOrthogonal(), two = axis.cross(one);
   const bool slides = loop.kind == JointKind::PRISMATIC;
   LoopTerm term;
-  term.origin = X_WJ.translation();
+  term.origin = frames.origin;
   term.drive.joint = loop.joint;
   term.rows = loop.kind == JointKind::FIXED ? 6 : 5;
-  int column = 0;
+  int row = 0;
   const auto add = [&](const Vector3& direction, bool linear) {
-    term.basis.col(column) = linear ? wrenchOf(direction, anchor) : spatial(direction, Vector3::Zero());
-    term.target[column] = -s.settings.joint_erp / s.input.dt * direction.dot(linear ? shift : tilt);
-    ++column;
+    term.basis.col(row) = linear ? wrenchOf(direction, frames.anchor) : spatial(direction, Vector3::Zero());
+    // The speed that closes the gap by the end of the step, along a path that bends.
+    const double closing = -direction.dot(linear ? frames.shift : frames.tilt) / s.input.dt;
+    term.target[row] = std::clamp(closing, -s.settings.max_correction_speed, s.settings.max_correction_speed) -
+                       0.5 * s.input.dt * direction.dot(linear ? drift.point : drift.spin);
+    ++row;
   };
   for (const Vector3& d : {one, two}) add(d, true);
   for (const Vector3& d : {one, two}) add(d, false);
   add(axis, !slides);
   add(axis, slides);
-  for (int r = 0; r < 6; ++r) {
-    const Vector6 wrench = term.basis.col(r);
-    const double inverse =
-        inverseInertia(s, pair->a, wrench) + (pair->b < 0 ? 0 : inverseInertia(s, pair->b, moveWrench(wrench, -pair->shift)));
-    // What nothing can move, such as the way out of a planar loop's plane, needs no row.
-    const bool movable = inverse > IMMOVABLE;
-    term.rho[r] = movable ? LOOP_PROXIMAL * inverse : INFINITY;
-    if (!movable) term.target[r] = 0;
-    if (r == 5 && term.rows == 5) term.drive = driveTerm(s, loop.joint, q, 1 / inverse);
-  }
-  for (int r = 0; r < 6; ++r) term.previous[r] = std::isfinite(term.rho[r]) ? s.input.dt * s.memory.loops[index].force[r] : 0;
+  weighLoop(s, *pair, s.memory.loops[index], &term);
+  if (term.rows == 5) term.drive = driveTerm(s, loop.joint, q, LOOP_PROXIMAL / term.rho[5]);
   return term;
 }
 
