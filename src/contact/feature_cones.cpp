@@ -1,5 +1,7 @@
 #include "feature_cones.h"
 
+#include <algorithm>
+
 namespace blem_sim {
 namespace {
 
@@ -36,6 +38,18 @@ bool edgeConeAllows(const MeshSide& side, int edge, const Vector3& direction, do
   bool allows = true;
   forEachFaceDirection(side, edge, [&](const Vector3& u) { allows = allows && u.dot(direction) <= slack; });
   return allows;
+}
+
+double vertexSlope(const MeshSide& side, int vertex, const Vector3& direction) {
+  double slope = -1;
+  forEachEdgeDirection(side, vertex, [&](const Vector3& w) { slope = std::max(slope, w.dot(direction) / w.norm()); });
+  return slope;
+}
+
+double edgeSlope(const MeshSide& side, int edge, const Vector3& direction) {
+  double slope = -1;
+  forEachFaceDirection(side, edge, [&](const Vector3& u) { slope = std::max(slope, u.dot(direction)); });
+  return slope;
 }
 
 Vector3 vertexLean(const MeshSide& side, int vertex) {

@@ -12,6 +12,12 @@ bool vertexConeAllows(const MeshSide& side, int vertex, const Vector3& direction
 /** The same for the faces of an edge. */
 bool edgeConeAllows(const MeshSide& side, int edge, const Vector3& direction, double slack);
 
+/** Largest part (sine) along `direction` (unit, mesh's frame) of the edges at the vertex: how steeply its surface goes that way. */
+double vertexSlope(const MeshSide& side, int vertex, const Vector3& direction);
+
+/** The same for the faces of an edge; -1 without faces. */
+double edgeSlope(const MeshSide& side, int edge, const Vector3& direction);
+
 /** Sum of the unit directions from the vertex into the surface (edges) / from the edge into its faces; mesh's frame. */
 Vector3 vertexLean(const MeshSide& side, int vertex);
 Vector3 edgeLean(const MeshSide& side, int edge);

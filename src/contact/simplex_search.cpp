@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "blem_sim/geometry/bvh_traversal.h"
+#include "border_fade.h"
 #include "edge_pair.h"
 #include "feature_cones.h"
 
@@ -128,8 +129,9 @@ class SimplexSearch {
     if (f.is_face && m_owns) testOverFace(m, heights_m, f, true);
     if (m.is_face && f_owns) testOverFace(f, heights_f, m, false);
     if (!m_owns || !f_owns) return;
-    if (m.owns_edges && f.owns_edges) testEdges(m, f);
-    testVertices(m, f);
+    const double *over_f = f.is_face ? heights_m : nullptr, *over_m = m.is_face ? heights_f : nullptr;
+    if (m.owns_edges && f.owns_edges) testEdges(m, over_f, f, over_m);
+    testVertices(m, over_f, f, over_m);
   }
 
   // ---- vertices and edges over a face
@@ -137,8 +139,12 @@ class SimplexSearch {
   void testOverFace(const ElementShape& e, const double heights[3], const ElementShape& face, bool e_moves) {
     const MeshTopology& topology = side(e_moves).topology;
     for (int k = 0; k < 3; ++k) {
-      if (std::abs(heights[k]) <= pair_.range && topology.ownsVertex(e.element, k) && holdsProjection(face, e.corners[k])) {
-        addVertexFace(e, k, heights[k], face, e_moves);
+      if (std::abs(heights[k]) <= pair_.range && topology.ownsVertex(e.element, k)) {
+        if (holdsProjection(face, e.corners[k])) {
+          addVertexFace(e, k, heights[k], face, e_moves);
+        } else {
+          addFading(e, k, heights[k], face, e_moves);
+        }
       }
       if (topology.ownsEdge(e.element, k) && crosses(e, k, heights, face, e_moves)) {
         buffers_.crossings.push_back({e_moves, topology.element_edges[e.element][k], face.element});
@@ -251,6 +257,22 @@ class SimplexSearch {
     }
   }
 
+  void addFading(const ElementShape& e, int k, double height, const ElementShape& face, bool e_moves) {
+    const Vector3& p = e.corners[k];
+    const Feature vertex{FeatureKind::VERTEX, side(e_moves).mesh.elements[e.element][k]};
+    BorderFade fade;
+    if (!fadeOverBorder(pair_, e_moves, vertex.index, p, height, face, pair_.range - std::abs(height), &fade)) return;
+    const Vector3 d = e_moves ? Vector3(p - fade.foot) : Vector3(fade.foot - p);
+    const double gap = d.norm();
+    if (gap <= TOUCH || gap + fade.lost > pair_.range) return;
+    const Feature patch{FeatureKind::FACE, side(!e_moves).topology.patch[face.element]};
+    if (e_moves) {
+      buffers_.contacts.push_back({vertex, patch, p, fade.foot, d / gap, gap + fade.lost});
+    } else {
+      buffers_.contacts.push_back({patch, vertex, fade.foot, p, d / gap, gap + fade.lost});
+    }
+  }
+
   /** Where a vertex touches a face's border: does its surface extend over the face, or only beside it? */
   bool reachesOver(int vertex, const Vector3& p, const ElementShape& face, bool vertex_moves) const {
     const MeshSide& vertex_side = side(vertex_moves);
@@ -266,37 +288,91 @@ class SimplexSearch {
 
   // ---- edge and edge
 
-  void testEdges(const ElementShape& m, const ElementShape& f) {
+  /** @param heights_m of m's corners over f's plane, null unless f is a face; the other way round */
+  void testEdges(const ElementShape& m, const double* heights_m, const ElementShape& f, const double* heights_f) {
+    const int edges_m = edgesNear(pair_.moving.topology, m.element, heights_m),
+              edges_f = edgesNear(pair_.fixed.topology, f.element, heights_f);
+    if (edges_m == 0 || edges_f == 0) return;
     for (int k = 0; k < 3; ++k) {
-      if (!pair_.moving.topology.ownsEdge(m.element, k)) continue;
+      if (!(edges_m >> k & 1)) continue;
       for (int l = 0; l < 3; ++l) {
-        if (!pair_.fixed.topology.ownsEdge(f.element, l)) continue;
-        EdgePair feet;
-        if (!findEdgePair(m.corners[k], m.corners[NEXT[k]], f.corners[l], f.corners[NEXT[l]], pair_.range, &feet)) continue;
-        addEdgeEdge({FeatureKind::EDGE, pair_.moving.topology.element_edges[m.element][k]},
-                    {FeatureKind::EDGE, pair_.fixed.topology.element_edges[f.element][l]}, feet);
+        if (edges_f >> l & 1) testEdgePair(m, k, f, l);
       }
+    }
+  }
+
+  /** Bits of the edges the element owns that are not wholly farther than the range above or below the other's plane. */
+  int edgesNear(const MeshTopology& topology, int element, const double* heights) const {
+    int near = 0;
+    for (int k = 0; k < 3; ++k) {
+      if (!topology.ownsEdge(element, k)) continue;
+      const bool far =
+          heights && (std::min(heights[k], heights[NEXT[k]]) > pair_.range || std::max(heights[k], heights[NEXT[k]]) < -pair_.range);
+      near |= far ? 0 : 1 << k;
+    }
+    return near;
+  }
+
+  void testEdgePair(const ElementShape& m, int k, const ElementShape& f, int l) {
+    const Vector3 &p0 = m.corners[k], &q0 = f.corners[l];
+    LinePair lines;
+    if (!lines.find(p0, m.corners[NEXT[k]], q0, f.corners[NEXT[l]], pair_.range, pair_.range / FADE_SLOPE)) return;
+    const Feature edge_m{FeatureKind::EDGE, pair_.moving.topology.element_edges[m.element][k]},
+        edge_f{FeatureKind::EDGE, pair_.fixed.topology.element_edges[f.element][l]};
+    EdgePair feet;
+    EdgesBeyond beyond;
+    if (findEdgePair(lines, p0, q0, &feet)) {
+      addEdgeEdge(edge_m, edge_f, feet);
+    } else {
+      findEdgesBeyond(lines, p0, q0, &beyond);
+      const int end_m = beyond.end_p < 0 ? -1 : pair_.moving.mesh.elements[m.element][(k + beyond.end_p) % 3];
+      const int end_f = beyond.end_q < 0 ? -1 : pair_.fixed.mesh.elements[f.element][(l + beyond.end_q) % 3];
+      addFadingEdges(edge_m, end_m, edge_f, end_f, beyond);
     }
   }
 
   void addEdgeEdge(const Feature& m, const Feature& f, const EdgePair& feet) {
     Vector3 normal = feet.offset < 0 ? Vector3(-feet.axis) : feet.axis;
     if (std::abs(feet.offset) <= TOUCH) normal = towardsMoving(normal, m, f, feet.point_q);
-    if (!conesAllow(m, f, normal, EDGE_CONE_SLACK)) return;
-    buffers_.contacts.push_back({m, f, feet.point_p, feet.point_q, normal, std::abs(feet.offset)});
+    addWithinCones(m, f, feet.point_p, feet.point_q, normal, std::abs(feet.offset), 0);
+  }
+
+  /** Depth fades as the normal leaves an edge's cone. @param lost [m] of depth for other reasons */
+  void addWithinCones(const Feature& m, const Feature& f, const Vector3& point_M, const Vector3& point_F, const Vector3& normal,
+                      double distance, double lost) {
+    const double slope = std::max(edgeSlope(pair_.fixed, f.index, normal), edgeSlope(pair_.moving, m.index, -(R_FM_.transpose() * normal)));
+    if (slope > EDGE_CONE_SLACK) return;
+    const double gap = distance + lost + fadePart(slope) * std::max(0.0, pair_.layer - distance - lost);
+    if (gap <= pair_.range) buffers_.contacts.push_back({m, f, point_M, point_F, normal, gap});
+  }
+
+  /** The feet have left the edges over these vertices (-1: not), around which a surface comes closer elsewhere: nothing takes over exactly.
+   */
+  void addFadingEdges(const Feature& m, int end_m, const Feature& f, int end_f, const EdgesBeyond& edges) {
+    const Vector3 d = edges.point_p - edges.point_q;
+    const double distance = d.norm(), most = pair_.range - distance;
+    if (distance <= TOUCH || FADE_SLOPE * edges.beyond > most) return;
+    const Vector3 normal = d / distance;
+    double slope = -1;
+    if (end_m >= 0) slope = std::max(slope, vertexSlope(pair_.moving, end_m, -(R_FM_.transpose() * normal)));
+    if (end_f >= 0) slope = std::max(slope, vertexSlope(pair_.fixed, end_f, normal));
+    const double part = fadePart(slope);
+    if (part * most < FADE_SLOPE * edges.beyond) return;
+    addWithinCones(m, f, edges.point_p, edges.point_q, normal, distance, FADE_SLOPE * edges.beyond / part);
   }
 
   // ---- vertex and edge, vertex and vertex: where each is the other's local minimum
 
-  void testVertices(const ElementShape& m, const ElementShape& f) {
+  void testVertices(const ElementShape& m, const double* heights_m, const ElementShape& f, const double* heights_f) {
+    const auto far = [this](const double* heights, int k) { return heights && std::abs(heights[k]) > pair_.range; };
     for (int k = 0; k < 3; ++k) {
-      if (pair_.moving.topology.ownsVertex(m.element, k)) {
+      if (pair_.moving.topology.ownsVertex(m.element, k) && !far(heights_m, k)) {
         testVertexEdges(m, k, f, true);
         for (int l = 0; l < 3; ++l) {
-          if (pair_.fixed.topology.ownsVertex(f.element, l)) testVertexVertex(m, k, f, l);
+          if (pair_.fixed.topology.ownsVertex(f.element, l) && !far(heights_f, l)) testVertexVertex(m, k, f, l);
         }
       }
-      if (pair_.fixed.topology.ownsVertex(f.element, k)) testVertexEdges(f, k, m, false);
+      if (pair_.fixed.topology.ownsVertex(f.element, k) && !far(heights_f, k)) testVertexEdges(f, k, m, false);
     }
   }
 
