@@ -8,8 +8,6 @@
 namespace blem_sim {
 namespace {
 
-constexpr int NEXT[3] = {1, 2, 0};
-
 /** How steeply (sine) the face's neighbours over side k rise out of its plane towards `up`, the mesh's frame; negative where they fall. */
 double neighbourSlope(const MeshSide& side, int face, int edge, const Vector3& up) {
   double slope = -1;

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "edge_pair.h"
+#include "element_shape.h"
 #include "mesh_pair.h"
-#include "simplex_search.h"
 
 namespace blem_sim {
 

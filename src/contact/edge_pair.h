@@ -26,6 +26,7 @@ struct EdgePair {
 /** Segments whose feet lie beyond an end of one or both, by little. */
 struct EdgesBeyond {
   Vector3 point_p, point_q;  ///< closest points of the segments
+  Vector3 normal;            ///< unit, square to both lines, from q to p
   double beyond;             ///< [m] the farther of the feet's distances from their segments
   int end_p, end_q;          ///< end beyond which the foot lies, 0 or 1; -1 if it lies inside
 };
@@ -91,6 +92,7 @@ inline void findEdgesBeyond(const LinePair& lines, const Vector3& p0, const Vect
   out->beyond = std::sqrt(std::max(over_p2 * lines.p2, over_q2 * lines.q2)) / n2;
   out->end_p = over_p2 == 0 ? -1 : lines.s > 0;
   out->end_q = over_q2 == 0 ? -1 : lines.t > 0;
+  out->normal = lines.n * ((lines.rn > 0 ? -1 : 1) / std::sqrt(n2));
   // Clamped one after the other: exact where one foot lies inside.
   const auto clamped = [](double part) { return std::min(std::max(part, 0.0), 1.0); };
   out->point_p = p0 + clamped(lines.s / n2) * lines.p;

@@ -29,4 +29,11 @@ Vector3 edgeLean(const MeshSide& side, int edge);
  */
 Vector3 bodySide(const MeshPair& pair, const Vector3& point);
 
+/** The axis, turned so that the moving surface, where the meshes touch at features m and f, lies on its side. Frame F. */
+Vector3 towardsMoving(const MeshPair& pair, const Vector3& axis, const Feature& m, const Feature& f, const Vector3& point);
+
+/** Unit direction between the surfaces where a vertex touches an edge or a vertex. Frame F.
+ *  @param along direction to which it is square; zero if there is none */
+Vector3 touchNormal(const MeshPair& pair, const Feature& m, const Feature& f, const Vector3& point, const Vector3& along);
+
 }  // namespace blem_sim

@@ -1,7 +1,6 @@
 #include "simplex_search.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "blem_sim/geometry/bvh_traversal.h"
 #include "border_fade.h"
@@ -13,48 +12,8 @@ namespace {
 
 /** Slack of the test that a vertex or an edge is the other's local minimum (sine): rounding. */
 constexpr double CONE_SLACK = 1e-6;
-/** A direction summed from neighbours means nothing below this. */
-constexpr double MIN_LEAN = 1e-6;
-
 /** A surface along a plane leaves it if its lean has this part (sine) off it. */
 constexpr double MIN_LEAN_INSIDE = 1e-3;
-
-constexpr int NEXT[3] = {1, 2, 0};
-
-void findBox(ElementShape* shape) {
-  shape->lower = shape->corners[0].cwiseMin(shape->corners[1]).cwiseMin(shape->corners[2]);
-  shape->upper = shape->corners[0].cwiseMax(shape->corners[1]).cwiseMax(shape->corners[2]);
-}
-
-bool boxesWithin(const Vector3& lower, const Vector3& upper, const ElementShape& f, double range) {
-  return ((lower - f.upper).array() <= range).all() && ((f.lower - upper).array() <= range).all();
-}
-
-bool oneSided(const double heights[3], double range) {
-  return (heights[0] > range && heights[1] > range && heights[2] > range) ||
-         (heights[0] < -range && heights[1] < -range && heights[2] < -range);
-}
-
-Vector3 middle(const Vector3 corners[3]) { return (corners[0] + corners[1] + corners[2]) / 3; }
-
-/** How far p projects inside the face's side k, times the side's length; negative outside. */
-double insideSide(const ElementShape& face, int k, const Vector3& side, const Vector3& p) {
-  return face.normal.cross(side).dot(p - face.corners[k]);
-}
-
-/** Does p project into the face, or beside it by no more than CLOSED? */
-bool holdsProjection(const ElementShape& face, const Vector3& p) {
-  for (int k = 0; k < 3; ++k) {
-    const Vector3 side = face.corners[NEXT[k]] - face.corners[k];
-    const double inside = insideSide(face, k, side, p);
-    if (inside >= 0) continue;
-    // Beside it, and not beyond a sharp corner, where two strips of that width meet far out.
-    const double length2 = side.squaredNorm();
-    if (inside * inside > CLOSED * CLOSED * length2) return false;
-    if (!edge_pair_detail::isInside(side.dot(p - face.corners[k]), length2, length2)) return false;
-  }
-  return true;
-}
 
 class SimplexSearch {
  public:
@@ -249,7 +208,8 @@ class SimplexSearch {
     if (std::abs(height) <= TOUCH && !reachesOver(vertex.index, p, face, e_moves)) return;
     // From fixed to moving: towards the vertex if it is the moving mesh's.
     Vector3 normal = (height > 0) == e_moves ? face.normal : Vector3(-face.normal);
-    if (std::abs(height) <= TOUCH) normal = e_moves ? towardsMoving(normal, vertex, patch, p) : towardsMoving(normal, patch, vertex, p);
+    if (std::abs(height) <= TOUCH)
+      normal = e_moves ? towardsMoving(pair_, normal, vertex, patch, p) : towardsMoving(pair_, normal, patch, vertex, p);
     if (e_moves) {
       buffers_.contacts.push_back({vertex, patch, p, foot, normal, std::abs(height)});
     } else {
@@ -333,7 +293,7 @@ class SimplexSearch {
 
   void addEdgeEdge(const Feature& m, const Feature& f, const EdgePair& feet) {
     Vector3 normal = feet.offset < 0 ? Vector3(-feet.axis) : feet.axis;
-    if (std::abs(feet.offset) <= TOUCH) normal = towardsMoving(normal, m, f, feet.point_q);
+    if (std::abs(feet.offset) <= TOUCH) normal = towardsMoving(pair_, normal, m, f, feet.point_q);
     addWithinCones(m, f, feet.point_p, feet.point_q, normal, std::abs(feet.offset), 0);
   }
 
@@ -354,8 +314,8 @@ class SimplexSearch {
     if (distance <= TOUCH || FADE_SLOPE * edges.beyond > most) return;
     const Vector3 normal = d / distance;
     double slope = -1;
-    if (end_m >= 0) slope = std::max(slope, vertexSlope(pair_.moving, end_m, -(R_FM_.transpose() * normal)));
-    if (end_f >= 0) slope = std::max(slope, vertexSlope(pair_.fixed, end_f, normal));
+    if (end_m >= 0) slope = std::max(slope, vertexSlope(pair_.moving, end_m, -(R_FM_.transpose() * edges.normal)));
+    if (end_f >= 0) slope = std::max(slope, vertexSlope(pair_.fixed, end_f, edges.normal));
     const double part = fadePart(slope);
     if (part * most < FADE_SLOPE * edges.beyond) return;
     addWithinCones(m, f, edges.point_p, edges.point_q, normal, distance, FADE_SLOPE * edges.beyond / part);
@@ -405,7 +365,7 @@ class SimplexSearch {
   void addLocalMinimum(const Feature& m, const Feature& f, const Vector3& point_M, const Vector3& point_F, const Vector3& along) {
     const Vector3 d = point_M - point_F;
     const double gap = d.norm();
-    const Vector3 normal = gap > TOUCH ? Vector3(d / gap) : touchNormal(m, f, point_F, along);
+    const Vector3 normal = gap > TOUCH ? Vector3(d / gap) : touchNormal(pair_, m, f, point_F, along);
     if (conesAllow(m, f, normal, CONE_SLACK)) buffers_.contacts.push_back({m, f, point_M, point_F, normal, gap});
   }
 
@@ -426,32 +386,6 @@ class SimplexSearch {
   /** Does neither surface come closer to the other beside its feature? */
   bool conesAllow(const Feature& m, const Feature& f, const Vector3& normal, double slack) const {
     return coneAllows(pair_.fixed, f, normal, slack) && coneAllows(pair_.moving, m, -(R_FM_.transpose() * normal), slack);
-  }
-
-  static Vector3 leanOf(const MeshSide& side, const Feature& feature) {
-    if (feature.kind == FeatureKind::VERTEX) return vertexLean(side, feature.index);
-    if (feature.kind == FeatureKind::EDGE) return edgeLean(side, feature.index);
-    return Vector3::Zero();
-  }
-
-  /** Where the meshes touch: from the fixed surface at the feature to the moving one. */
-  Vector3 lean(const Feature& m, const Feature& f) const { return R_FM_ * leanOf(pair_.moving, m) - leanOf(pair_.fixed, f); }
-
-  /** The axis, turned so that the moving surface lies on its side. */
-  Vector3 towardsMoving(const Vector3& axis, const Feature& m, const Feature& f, const Vector3& point) const {
-    double along = lean(m, f).dot(axis);
-    if (std::abs(along) <= MIN_LEAN) along = bodySide(pair_, point).dot(axis);
-    return along < 0 ? Vector3(-axis) : axis;
-  }
-
-  Vector3 touchNormal(const Feature& m, const Feature& f, const Vector3& point, const Vector3& along) const {
-    const double length2 = along.squaredNorm();
-    for (const Vector3& direction : {lean(m, f), bodySide(pair_, point)}) {
-      const Vector3 square = length2 > 0 ? Vector3(direction - direction.dot(along) / length2 * along) : direction;
-      const double norm = square.norm();
-      if (norm > MIN_LEAN * (1 + direction.norm())) return square / norm;
-    }
-    return length2 > 0 ? along.unitOrthogonal() : Vector3(Vector3::UnitZ());
   }
 
   const MeshPair& pair_;
