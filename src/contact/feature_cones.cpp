@@ -1,5 +1,7 @@
 #include "feature_cones.h"
 
+#include <algorithm>
+
 namespace blem_sim {
 namespace {
 
@@ -21,6 +23,20 @@ void forEachFaceDirection(const MeshSide& side, int edge, Visit&& visit) {
   }
 }
 
+/** A direction summed from neighbours means nothing below this. */
+constexpr double MIN_LEAN = 1e-6;
+
+Vector3 leanOf(const MeshSide& side, const Feature& feature) {
+  if (feature.kind == FeatureKind::VERTEX) return vertexLean(side, feature.index);
+  if (feature.kind == FeatureKind::EDGE) return edgeLean(side, feature.index);
+  return Vector3::Zero();
+}
+
+/** Where the meshes touch: from the fixed surface at the feature to the moving one. */
+Vector3 leanBetween(const MeshPair& pair, const Feature& m, const Feature& f) {
+  return pair.X_FM.linear() * leanOf(pair.moving, m) - leanOf(pair.fixed, f);
+}
+
 }  // namespace
 
 bool vertexConeAllows(const MeshSide& side, int vertex, const Vector3& direction, double slack) {
@@ -36,6 +52,18 @@ bool edgeConeAllows(const MeshSide& side, int edge, const Vector3& direction, do
   bool allows = true;
   forEachFaceDirection(side, edge, [&](const Vector3& u) { allows = allows && u.dot(direction) <= slack; });
   return allows;
+}
+
+double vertexSlope(const MeshSide& side, int vertex, const Vector3& direction) {
+  double slope = -1;
+  forEachEdgeDirection(side, vertex, [&](const Vector3& w) { slope = std::max(slope, w.dot(direction) / w.norm()); });
+  return slope;
+}
+
+double edgeSlope(const MeshSide& side, int edge, const Vector3& direction) {
+  double slope = -1;
+  forEachFaceDirection(side, edge, [&](const Vector3& u) { slope = std::max(slope, u.dot(direction)); });
+  return slope;
 }
 
 Vector3 vertexLean(const MeshSide& side, int vertex) {
@@ -56,6 +84,22 @@ Vector3 bodySide(const MeshPair& pair, const Vector3& point) {
   if (moving_size < fixed_size) return from_moving;
   if (moving_size > fixed_size) return -from_fixed;
   return from_moving - from_fixed;
+}
+
+Vector3 towardsMoving(const MeshPair& pair, const Vector3& axis, const Feature& m, const Feature& f, const Vector3& point) {
+  double along = leanBetween(pair, m, f).dot(axis);
+  if (std::abs(along) <= MIN_LEAN) along = bodySide(pair, point).dot(axis);
+  return along < 0 ? Vector3(-axis) : axis;
+}
+
+Vector3 touchNormal(const MeshPair& pair, const Feature& m, const Feature& f, const Vector3& point, const Vector3& along) {
+  const double length2 = along.squaredNorm();
+  for (const Vector3& direction : {leanBetween(pair, m, f), bodySide(pair, point)}) {
+    const Vector3 square = length2 > 0 ? Vector3(direction - direction.dot(along) / length2 * along) : direction;
+    const double norm = square.norm();
+    if (norm > MIN_LEAN * (1 + direction.norm())) return square / norm;
+  }
+  return length2 > 0 ? along.unitOrthogonal() : Vector3(Vector3::UnitZ());
 }
 
 }  // namespace blem_sim

@@ -12,6 +12,12 @@ bool vertexConeAllows(const MeshSide& side, int vertex, const Vector3& direction
 /** The same for the faces of an edge. */
 bool edgeConeAllows(const MeshSide& side, int edge, const Vector3& direction, double slack);
 
+/** Largest part (sine) along `direction` (unit, mesh's frame) of the edges at the vertex: how steeply its surface goes that way. */
+double vertexSlope(const MeshSide& side, int vertex, const Vector3& direction);
+
+/** The same for the faces of an edge; -1 without faces. */
+double edgeSlope(const MeshSide& side, int edge, const Vector3& direction);
+
 /** Sum of the unit directions from the vertex into the surface (edges) / from the edge into its faces; mesh's frame. */
 Vector3 vertexLean(const MeshSide& side, int vertex);
 Vector3 edgeLean(const MeshSide& side, int edge);
@@ -22,5 +28,12 @@ Vector3 edgeLean(const MeshSide& side, int edge);
  * @return not unit, from the fixed body's side to the moving one's; may be zero
  */
 Vector3 bodySide(const MeshPair& pair, const Vector3& point);
+
+/** The axis, turned so that the moving surface, where the meshes touch at features m and f, lies on its side. Frame F. */
+Vector3 towardsMoving(const MeshPair& pair, const Vector3& axis, const Feature& m, const Feature& f, const Vector3& point);
+
+/** Unit direction between the surfaces where a vertex touches an edge or a vertex. Frame F.
+ *  @param along direction to which it is square; zero if there is none */
+Vector3 touchNormal(const MeshPair& pair, const Feature& m, const Feature& f, const Vector3& point, const Vector3& along);
 
 }  // namespace blem_sim

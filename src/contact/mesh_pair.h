@@ -42,7 +42,8 @@ struct MeshSide {
 struct MeshPair {
   MeshSide moving, fixed;
   Pose X_FM;
-  double range;  ///< [m] contacts within this distance of the bare meshes
+  double layer;  ///< [m] rA + rB
+  double range;  ///< [m] contacts within this distance of the bare meshes: layer + margin
 };
 
 /** A contact in frame F; its normal points from the fixed mesh to the moving one. */

@@ -35,7 +35,7 @@ void meshMesh(const Collider& a, const Pose& X_WA, const Collider& b, const Pose
   const bool a_moves = a.geometry->mesh().elements.size() <= b.geometry->mesh().elements.size();
   const Pose &X_WM = a_moves ? X_WA : X_WB, &X_WF = a_moves ? X_WB : X_WA;
   const MeshPair pair{MeshSide(a_moves ? *a.geometry : *b.geometry), MeshSide(a_moves ? *b.geometry : *a.geometry), X_WF.inverse() * X_WM,
-                      range};
+                      a.radius + b.radius, range};
   // Only its memory outlives a call.
   thread_local SearchBuffers buffers;
   searchSimplexPairs(pair, &buffers);

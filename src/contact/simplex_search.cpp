@@ -1,9 +1,9 @@
 #include "simplex_search.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "blem_sim/geometry/bvh_traversal.h"
+#include "border_fade.h"
 #include "edge_pair.h"
 #include "feature_cones.h"
 
@@ -12,48 +12,8 @@ namespace {
 
 /** Slack of the test that a vertex or an edge is the other's local minimum (sine): rounding. */
 constexpr double CONE_SLACK = 1e-6;
-/** A direction summed from neighbours means nothing below this. */
-constexpr double MIN_LEAN = 1e-6;
-
 /** A surface along a plane leaves it if its lean has this part (sine) off it. */
 constexpr double MIN_LEAN_INSIDE = 1e-3;
-
-constexpr int NEXT[3] = {1, 2, 0};
-
-void findBox(ElementShape* shape) {
-  shape->lower = shape->corners[0].cwiseMin(shape->corners[1]).cwiseMin(shape->corners[2]);
-  shape->upper = shape->corners[0].cwiseMax(shape->corners[1]).cwiseMax(shape->corners[2]);
-}
-
-bool boxesWithin(const Vector3& lower, const Vector3& upper, const ElementShape& f, double range) {
-  return ((lower - f.upper).array() <= range).all() && ((f.lower - upper).array() <= range).all();
-}
-
-bool oneSided(const double heights[3], double range) {
-  return (heights[0] > range && heights[1] > range && heights[2] > range) ||
-         (heights[0] < -range && heights[1] < -range && heights[2] < -range);
-}
-
-Vector3 middle(const Vector3 corners[3]) { return (corners[0] + corners[1] + corners[2]) / 3; }
-
-/** How far p projects inside the face's side k, times the side's length; negative outside. */
-double insideSide(const ElementShape& face, int k, const Vector3& side, const Vector3& p) {
-  return face.normal.cross(side).dot(p - face.corners[k]);
-}
-
-/** Does p project into the face, or beside it by no more than CLOSED? */
-bool holdsProjection(const ElementShape& face, const Vector3& p) {
-  for (int k = 0; k < 3; ++k) {
-    const Vector3 side = face.corners[NEXT[k]] - face.corners[k];
-    const double inside = insideSide(face, k, side, p);
-    if (inside >= 0) continue;
-    // Beside it, and not beyond a sharp corner, where two strips of that width meet far out.
-    const double length2 = side.squaredNorm();
-    if (inside * inside > CLOSED * CLOSED * length2) return false;
-    if (!edge_pair_detail::isInside(side.dot(p - face.corners[k]), length2, length2)) return false;
-  }
-  return true;
-}
 
 class SimplexSearch {
  public:
@@ -128,8 +88,9 @@ class SimplexSearch {
     if (f.is_face && m_owns) testOverFace(m, heights_m, f, true);
     if (m.is_face && f_owns) testOverFace(f, heights_f, m, false);
     if (!m_owns || !f_owns) return;
-    if (m.owns_edges && f.owns_edges) testEdges(m, f);
-    testVertices(m, f);
+    const double *over_f = f.is_face ? heights_m : nullptr, *over_m = m.is_face ? heights_f : nullptr;
+    if (m.owns_edges && f.owns_edges) testEdges(m, over_f, f, over_m);
+    testVertices(m, over_f, f, over_m);
   }
 
   // ---- vertices and edges over a face
@@ -137,8 +98,12 @@ class SimplexSearch {
   void testOverFace(const ElementShape& e, const double heights[3], const ElementShape& face, bool e_moves) {
     const MeshTopology& topology = side(e_moves).topology;
     for (int k = 0; k < 3; ++k) {
-      if (std::abs(heights[k]) <= pair_.range && topology.ownsVertex(e.element, k) && holdsProjection(face, e.corners[k])) {
-        addVertexFace(e, k, heights[k], face, e_moves);
+      if (std::abs(heights[k]) <= pair_.range && topology.ownsVertex(e.element, k)) {
+        if (holdsProjection(face, e.corners[k])) {
+          addVertexFace(e, k, heights[k], face, e_moves);
+        } else {
+          addFading(e, k, heights[k], face, e_moves);
+        }
       }
       if (topology.ownsEdge(e.element, k) && crosses(e, k, heights, face, e_moves)) {
         buffers_.crossings.push_back({e_moves, topology.element_edges[e.element][k], face.element});
@@ -243,11 +208,28 @@ class SimplexSearch {
     if (std::abs(height) <= TOUCH && !reachesOver(vertex.index, p, face, e_moves)) return;
     // From fixed to moving: towards the vertex if it is the moving mesh's.
     Vector3 normal = (height > 0) == e_moves ? face.normal : Vector3(-face.normal);
-    if (std::abs(height) <= TOUCH) normal = e_moves ? towardsMoving(normal, vertex, patch, p) : towardsMoving(normal, patch, vertex, p);
+    if (std::abs(height) <= TOUCH)
+      normal = e_moves ? towardsMoving(pair_, normal, vertex, patch, p) : towardsMoving(pair_, normal, patch, vertex, p);
     if (e_moves) {
       buffers_.contacts.push_back({vertex, patch, p, foot, normal, std::abs(height)});
     } else {
       buffers_.contacts.push_back({patch, vertex, foot, p, normal, std::abs(height)});
+    }
+  }
+
+  void addFading(const ElementShape& e, int k, double height, const ElementShape& face, bool e_moves) {
+    const Vector3& p = e.corners[k];
+    const Feature vertex{FeatureKind::VERTEX, side(e_moves).mesh.elements[e.element][k]};
+    BorderFade fade;
+    if (!fadeOverBorder(pair_, e_moves, vertex.index, p, height, face, pair_.range - std::abs(height), &fade)) return;
+    const Vector3 d = e_moves ? Vector3(p - fade.foot) : Vector3(fade.foot - p);
+    const double gap = d.norm();
+    if (gap <= TOUCH || gap + fade.lost > pair_.range) return;
+    const Feature patch{FeatureKind::FACE, side(!e_moves).topology.patch[face.element]};
+    if (e_moves) {
+      buffers_.contacts.push_back({vertex, patch, p, fade.foot, d / gap, gap + fade.lost});
+    } else {
+      buffers_.contacts.push_back({patch, vertex, fade.foot, p, d / gap, gap + fade.lost});
     }
   }
 
@@ -266,37 +248,91 @@ class SimplexSearch {
 
   // ---- edge and edge
 
-  void testEdges(const ElementShape& m, const ElementShape& f) {
+  /** @param heights_m of m's corners over f's plane, null unless f is a face; the other way round */
+  void testEdges(const ElementShape& m, const double* heights_m, const ElementShape& f, const double* heights_f) {
+    const int edges_m = edgesNear(pair_.moving.topology, m.element, heights_m),
+              edges_f = edgesNear(pair_.fixed.topology, f.element, heights_f);
+    if (edges_m == 0 || edges_f == 0) return;
     for (int k = 0; k < 3; ++k) {
-      if (!pair_.moving.topology.ownsEdge(m.element, k)) continue;
+      if (!(edges_m >> k & 1)) continue;
       for (int l = 0; l < 3; ++l) {
-        if (!pair_.fixed.topology.ownsEdge(f.element, l)) continue;
-        EdgePair feet;
-        if (!findEdgePair(m.corners[k], m.corners[NEXT[k]], f.corners[l], f.corners[NEXT[l]], pair_.range, &feet)) continue;
-        addEdgeEdge({FeatureKind::EDGE, pair_.moving.topology.element_edges[m.element][k]},
-                    {FeatureKind::EDGE, pair_.fixed.topology.element_edges[f.element][l]}, feet);
+        if (edges_f >> l & 1) testEdgePair(m, k, f, l);
       }
+    }
+  }
+
+  /** Bits of the edges the element owns that are not wholly farther than the range above or below the other's plane. */
+  int edgesNear(const MeshTopology& topology, int element, const double* heights) const {
+    int near = 0;
+    for (int k = 0; k < 3; ++k) {
+      if (!topology.ownsEdge(element, k)) continue;
+      const bool far =
+          heights && (std::min(heights[k], heights[NEXT[k]]) > pair_.range || std::max(heights[k], heights[NEXT[k]]) < -pair_.range);
+      near |= far ? 0 : 1 << k;
+    }
+    return near;
+  }
+
+  void testEdgePair(const ElementShape& m, int k, const ElementShape& f, int l) {
+    const Vector3 &p0 = m.corners[k], &q0 = f.corners[l];
+    LinePair lines;
+    if (!lines.find(p0, m.corners[NEXT[k]], q0, f.corners[NEXT[l]], pair_.range, pair_.range / FADE_SLOPE)) return;
+    const Feature edge_m{FeatureKind::EDGE, pair_.moving.topology.element_edges[m.element][k]},
+        edge_f{FeatureKind::EDGE, pair_.fixed.topology.element_edges[f.element][l]};
+    EdgePair feet;
+    EdgesBeyond beyond;
+    if (findEdgePair(lines, p0, q0, &feet)) {
+      addEdgeEdge(edge_m, edge_f, feet);
+    } else {
+      findEdgesBeyond(lines, p0, q0, &beyond);
+      const int end_m = beyond.end_p < 0 ? -1 : pair_.moving.mesh.elements[m.element][(k + beyond.end_p) % 3];
+      const int end_f = beyond.end_q < 0 ? -1 : pair_.fixed.mesh.elements[f.element][(l + beyond.end_q) % 3];
+      addFadingEdges(edge_m, end_m, edge_f, end_f, beyond);
     }
   }
 
   void addEdgeEdge(const Feature& m, const Feature& f, const EdgePair& feet) {
     Vector3 normal = feet.offset < 0 ? Vector3(-feet.axis) : feet.axis;
-    if (std::abs(feet.offset) <= TOUCH) normal = towardsMoving(normal, m, f, feet.point_q);
-    if (!conesAllow(m, f, normal, EDGE_CONE_SLACK)) return;
-    buffers_.contacts.push_back({m, f, feet.point_p, feet.point_q, normal, std::abs(feet.offset)});
+    if (std::abs(feet.offset) <= TOUCH) normal = towardsMoving(pair_, normal, m, f, feet.point_q);
+    addWithinCones(m, f, feet.point_p, feet.point_q, normal, std::abs(feet.offset), 0);
+  }
+
+  /** Depth fades as the normal leaves an edge's cone. @param lost [m] of depth for other reasons */
+  void addWithinCones(const Feature& m, const Feature& f, const Vector3& point_M, const Vector3& point_F, const Vector3& normal,
+                      double distance, double lost) {
+    const double slope = std::max(edgeSlope(pair_.fixed, f.index, normal), edgeSlope(pair_.moving, m.index, -(R_FM_.transpose() * normal)));
+    if (slope > EDGE_CONE_SLACK) return;
+    const double gap = distance + lost + fadePart(slope) * std::max(0.0, pair_.layer - distance - lost);
+    if (gap <= pair_.range) buffers_.contacts.push_back({m, f, point_M, point_F, normal, gap});
+  }
+
+  /** The feet have left the edges over these vertices (-1: not), around which a surface comes closer elsewhere: nothing takes over exactly.
+   */
+  void addFadingEdges(const Feature& m, int end_m, const Feature& f, int end_f, const EdgesBeyond& edges) {
+    const Vector3 d = edges.point_p - edges.point_q;
+    const double distance = d.norm(), most = pair_.range - distance;
+    if (distance <= TOUCH || FADE_SLOPE * edges.beyond > most) return;
+    const Vector3 normal = d / distance;
+    double slope = -1;
+    if (end_m >= 0) slope = std::max(slope, vertexSlope(pair_.moving, end_m, -(R_FM_.transpose() * edges.normal)));
+    if (end_f >= 0) slope = std::max(slope, vertexSlope(pair_.fixed, end_f, edges.normal));
+    const double part = fadePart(slope);
+    if (part * most < FADE_SLOPE * edges.beyond) return;
+    addWithinCones(m, f, edges.point_p, edges.point_q, normal, distance, FADE_SLOPE * edges.beyond / part);
   }
 
   // ---- vertex and edge, vertex and vertex: where each is the other's local minimum
 
-  void testVertices(const ElementShape& m, const ElementShape& f) {
+  void testVertices(const ElementShape& m, const double* heights_m, const ElementShape& f, const double* heights_f) {
+    const auto far = [this](const double* heights, int k) { return heights && std::abs(heights[k]) > pair_.range; };
     for (int k = 0; k < 3; ++k) {
-      if (pair_.moving.topology.ownsVertex(m.element, k)) {
+      if (pair_.moving.topology.ownsVertex(m.element, k) && !far(heights_m, k)) {
         testVertexEdges(m, k, f, true);
         for (int l = 0; l < 3; ++l) {
-          if (pair_.fixed.topology.ownsVertex(f.element, l)) testVertexVertex(m, k, f, l);
+          if (pair_.fixed.topology.ownsVertex(f.element, l) && !far(heights_f, l)) testVertexVertex(m, k, f, l);
         }
       }
-      if (pair_.fixed.topology.ownsVertex(f.element, k)) testVertexEdges(f, k, m, false);
+      if (pair_.fixed.topology.ownsVertex(f.element, k) && !far(heights_f, k)) testVertexEdges(f, k, m, false);
     }
   }
 
@@ -329,7 +365,7 @@ class SimplexSearch {
   void addLocalMinimum(const Feature& m, const Feature& f, const Vector3& point_M, const Vector3& point_F, const Vector3& along) {
     const Vector3 d = point_M - point_F;
     const double gap = d.norm();
-    const Vector3 normal = gap > TOUCH ? Vector3(d / gap) : touchNormal(m, f, point_F, along);
+    const Vector3 normal = gap > TOUCH ? Vector3(d / gap) : touchNormal(pair_, m, f, point_F, along);
     if (conesAllow(m, f, normal, CONE_SLACK)) buffers_.contacts.push_back({m, f, point_M, point_F, normal, gap});
   }
 
@@ -350,32 +386,6 @@ class SimplexSearch {
   /** Does neither surface come closer to the other beside its feature? */
   bool conesAllow(const Feature& m, const Feature& f, const Vector3& normal, double slack) const {
     return coneAllows(pair_.fixed, f, normal, slack) && coneAllows(pair_.moving, m, -(R_FM_.transpose() * normal), slack);
-  }
-
-  static Vector3 leanOf(const MeshSide& side, const Feature& feature) {
-    if (feature.kind == FeatureKind::VERTEX) return vertexLean(side, feature.index);
-    if (feature.kind == FeatureKind::EDGE) return edgeLean(side, feature.index);
-    return Vector3::Zero();
-  }
-
-  /** Where the meshes touch: from the fixed surface at the feature to the moving one. */
-  Vector3 lean(const Feature& m, const Feature& f) const { return R_FM_ * leanOf(pair_.moving, m) - leanOf(pair_.fixed, f); }
-
-  /** The axis, turned so that the moving surface lies on its side. */
-  Vector3 towardsMoving(const Vector3& axis, const Feature& m, const Feature& f, const Vector3& point) const {
-    double along = lean(m, f).dot(axis);
-    if (std::abs(along) <= MIN_LEAN) along = bodySide(pair_, point).dot(axis);
-    return along < 0 ? Vector3(-axis) : axis;
-  }
-
-  Vector3 touchNormal(const Feature& m, const Feature& f, const Vector3& point, const Vector3& along) const {
-    const double length2 = along.squaredNorm();
-    for (const Vector3& direction : {lean(m, f), bodySide(pair_, point)}) {
-      const Vector3 square = length2 > 0 ? Vector3(direction - direction.dot(along) / length2 * along) : direction;
-      const double norm = square.norm();
-      if (norm > MIN_LEAN * (1 + direction.norm())) return square / norm;
-    }
-    return length2 > 0 ? along.unitOrthogonal() : Vector3(Vector3::UnitZ());
   }
 
   const MeshPair& pair_;

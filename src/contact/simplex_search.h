@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "element_shape.h"
 #include "mesh_pair.h"
 
 namespace blem_sim {
@@ -14,15 +15,6 @@ struct Crossing {
   bool edge_of_moving;
   int edge;
   int face;  ///< element
-};
-
-/** An element as the tests want it, in frame F. */
-struct ElementShape {
-  Vector3 corners[3];
-  Vector3 lower, upper;  ///< its box
-  Vector3 normal;        ///< unit; meaningless unless is_face
-  int element;
-  bool is_face, owns_vertices, owns_edges;
 };
 
 /** What a search works in; kept between searches for its memory only. */
