@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <functional>
 
 #include "contact_motion.h"
 #include "island_motion.h"
@@ -18,6 +17,8 @@ namespace {
 constexpr double FASTEST = 1e100;       // [m/s or rad/s]: beyond, ODE could not normalise what it is given
 constexpr double SAME_PRODUCTS = 1e-9;  // [sqrt(kg) m/s] change of the free momentum that needs no second pass
 
+constexpr std::uint64_t NO_MORE_TREES = ~0ull;
+
 /** An island with what belongs to it in this step. */
 struct Island {
   IslandProblem problem;
@@ -28,7 +29,8 @@ struct Island {
 
 class ArticulatedStepper : public Stepper {
  public:
-  explicit ArticulatedStepper(const SolverSettings& settings) : settings_(settings), arena_(settings.threads) {}
+  explicit ArticulatedStepper(const SolverSettings& settings)
+      : settings_(settings), arena_(std::min(settings.threads, tbb::this_task_arena::max_concurrency())) {}
 
   void step(Scene* scene, const StepInput& input, SolveResult* result) override;
   void save(const Scene& scene, StateWriter* writer) const override;
@@ -43,7 +45,8 @@ class ArticulatedStepper : public Stepper {
   void makeTerms(const TermSource& source, Island* island);
   void solveIsland(const Scene& scene, const StepInput& input, Island* island);
   void finishIsland(const Scene& scene, const StepInput& input, const Island& island, SolveResult* result);
-  void forEachIsland(const std::function<void(Island*)>& work);
+  template <typename Work>
+  void forEachIsland(const Work& work);
   void report(double dt, SolveResult* result) const;
   void readContacts(const StepInput& input, const Island& island, SolveResult* result) const;
   void readJoints(const StepInput& input, const Island& island, SolveResult* result);
@@ -71,8 +74,7 @@ void ArticulatedStepper::rebuild(const Scene& scene) {
   forest_.build(scene);
   motion_.resize(forest_);
   space_.resize(forest_);
-  memory_.joints.resize(scene.joints().size());
-  memory_.loops.resize(forest_.loops().size());
+  memory_.resize(scene);
   written_.resize(forest_.nodes().size());
   for (BodyBits& bits : written_) bits.numbers[0] = NAN;
 }
@@ -202,7 +204,7 @@ void ArticulatedStepper::readJoints(const StepInput& input, const Island& island
   for (std::size_t l = 0; l < forest_.loops().size(); ++l) {
     if (!contains(forest_.loops()[l].child)) continue;
     const LoopTerm& loop = problem.loops[next_loop++];
-    memory_.loops[l].force = loop.impulses() / input.dt;
+    memory_.joints[forest_.loops()[l].joint].loop = loop.impulses() / input.dt;
     if (loop.rows < 6) read(loop.drive, loop.velocity[5]);
   }
   // A mimic joint feels its master's pull, the master its reaction.
@@ -243,7 +245,8 @@ void ArticulatedStepper::writeScene(Scene* scene) {
 }
 
 // Islands share nothing that they write, so their order does not matter.
-void ArticulatedStepper::forEachIsland(const std::function<void(Island*)>& work) {
+template <typename Work>
+void ArticulatedStepper::forEachIsland(const Work& work) {
   if (settings_.threads == 1 || island_count_ == 1) {
     for (int i = 0; i < island_count_; ++i) work(&islands_of_step_[i]);
   } else {
@@ -279,29 +282,25 @@ void ArticulatedStepper::step(Scene* scene, const StepInput& input, SolveResult*
   writeScene(scene);
 }
 
+// The same words for a world that was just made and for one that was brought back to its beginning: trees that are not ours are left out.
 void ArticulatedStepper::save(const Scene& scene, StateWriter* writer) const {
-  memory_.save(writer);
-  // Of a forest that is not of this scene, or of trees that were edited since, nothing is worth keeping.
-  const bool built = structure_ == scene.structure();
-  writer->word(built ? forest_.trees().size() : 0);
-  for (int tree = 0; built && tree < static_cast<int>(forest_.trees().size()); ++tree) {
-    const bool ours = isOurs(scene, tree);
-    writer->word(ours);
-    if (ours) saveTree(forest_, tree, motion_, writer);
+  memory_.save(scene, writer);
+  const int trees = structure_ == scene.structure() ? static_cast<int>(forest_.trees().size()) : 0;
+  for (int tree = 0; tree < trees; ++tree) {
+    if (!isOurs(scene, tree)) continue;
+    writer->word(tree);
+    saveTree(forest_, tree, motion_, writer);
   }
+  writer->word(NO_MORE_TREES);
 }
 
 void ArticulatedStepper::restore(const Scene& scene, StateReader* reader) {
   rebuild(scene);
-  memory_.restore(reader);
-  memory_.joints.resize(scene.joints().size());
-  memory_.loops.resize(forest_.loops().size());
+  memory_.restore(scene, reader);
   for (BodyBits& bits : written_) bits.numbers[0] = NAN;
-  const int trees = static_cast<int>(reader->word());
-  for (int tree = 0; tree < trees; ++tree) {
-    if (!reader->word()) continue;
-    restoreTree(forest_, tree, &motion_, reader);
-    noteWritten(scene, tree);
+  for (std::uint64_t tree = reader->word(); tree != NO_MORE_TREES; tree = reader->word()) {
+    restoreTree(forest_, static_cast<int>(tree), &motion_, reader);
+    noteWritten(scene, static_cast<int>(tree));
   }
 }
 

@@ -15,8 +15,7 @@ constexpr int SOFT_STAGES = 2;
 constexpr double CONTACT_SOFTNESS[SOFT_STAGES] = {1000, 30};
 constexpr double JOINT_SOFTNESS[SOFT_STAGES] = {10, 3};
 constexpr int FIRST_ITERATIONS = 4;  // of the hard problem, before the soft ones are asked
-constexpr double UNRELIABLE = 0.2;  // of the largest impulse: a residual beyond it at the end of the iterations calls for the soft problem
-constexpr double NO_STEP = 1e-16;           // [rad/s or m/s] largest change of a velocity that is none
+constexpr double NO_STEP = 1e-16;    // [rad/s or m/s] largest change of a velocity that is none
 
 }  // namespace
 
@@ -176,21 +175,6 @@ void IslandProblem::soften(double contact, double joint) {
   for (LoopTerm& loop : loops) loop.drive.softness = joint;
 }
 
-double IslandProblem::largestImpulse() const {
-  double largest = 0;
-  for (const ContactTerm& c : contacts) largest = std::max(largest, c.impulse.norm());
-  return largest;
-}
-
-// Without memory the problem is convex and its contacts can only take energy away: they give way a little, which the next steps repair.
-void IslandProblem::settleForSoft() {
-  soften(CONTACT_SOFTNESS[0], JOINT_SOFTNESS[0]);
-  for (ContactTerm& c : contacts) {
-    c.previous.setZero();
-    c.slip = 0;
-  }
-}
-
 void IslandProblem::remember() {
   for (ContactTerm& c : contacts) c.remember();
   for (JointTerm& j : joints) j.remember(space_->velocity[j.dof]);
@@ -242,11 +226,6 @@ NewtonReport IslandProblem::solve(const Forest& forest, const ForestMotion& moti
     report.iterations += newton(settings, lawful ? 0 : INEXACT, left());
   }
   assess(&report);
-  if (report.contact_residual > UNRELIABLE * largestImpulse()) {
-    settleForSoft();
-    report.iterations += newton(settings, 0, settings.max_soft_iterations);
-    assess(&report);
-  }
   readMimics();
   return report;
 }

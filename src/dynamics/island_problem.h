@@ -33,7 +33,6 @@ struct MimicFold {
 
 struct NewtonSettings {
   int max_iterations = 100;           ///< over all proximal steps
-  int max_soft_iterations = 40;       ///< more of them, where those did not lead to the end
   int max_outer = 12;                 ///< proximal steps
   double gradient_tolerance = 1e-10;  ///< [sqrt(kg) m/s]
   double contact_tolerance = 1e-7;    ///< [N s]
@@ -100,8 +99,6 @@ class IslandProblem {
   bool findDirection();
   int newton(const NewtonSettings& settings, double exactness, int max_iterations);
   void soften(double contact, double joint);
-  double largestImpulse() const;
-  void settleForSoft();
   void remember();
   void assess(NewtonReport* report) const;
   void readMimics();

@@ -113,7 +113,8 @@ struct LoopDrift {
 
 LoopDrift loopDrift(const TermSource& s, const BodyPair& pair, const Vector3& anchor) {
   const auto pointDrift = [&](int node, const Vector3& point) {
-    return Vector3(velocityAt(s.motion.drift[node], point) + angular(s.motion.node_twist[node]).cross(velocityAt(s.motion.node_twist[node], point)));
+    return Vector3(velocityAt(s.motion.drift[node], point) +
+                   angular(s.motion.node_twist[node]).cross(velocityAt(s.motion.node_twist[node], point)));
   };
   LoopDrift drift{pointDrift(pair.a, anchor), angular(s.motion.drift[pair.a])};
   if (pair.b < 0) return drift;
@@ -124,14 +125,14 @@ LoopDrift loopDrift(const TermSource& s, const BodyPair& pair, const Vector3& an
 }
 
 // Proximal weights and points of a loop's rows. What nothing can move, such as the way out of a planar loop's plane, needs no row.
-void weighLoop(const TermSource& s, const BodyPair& pair, const LoopRecord& record, LoopTerm* term) {
+void weighLoop(const TermSource& s, const BodyPair& pair, const Vector6& force, LoopTerm* term) {
   for (int r = 0; r < 6; ++r) {
     const Vector6 wrench = term->basis.col(r);
     double inverse = inverseInertia(s, pair.a, wrench);
     if (pair.b >= 0) inverse += inverseInertia(s, pair.b, moveWrench(wrench, -pair.shift));
     const bool movable = inverse > IMMOVABLE;
     term->rho[r] = movable ? LOOP_PROXIMAL * inverse : INFINITY;
-    term->previous[r] = movable ? s.input.dt * record.force[r] : 0;
+    term->previous[r] = movable ? s.input.dt * force[r] : 0;
     if (!movable) term->target[r] = 0;
   }
 }
@@ -171,7 +172,7 @@ LoopTerm loopTerm(const TermSource& s, int index, BodyPair* pair) {
   for (const Vector3& d : {one, two}) add(d, false);
   add(axis, !slides);
   add(axis, slides);
-  weighLoop(s, *pair, s.memory.loops[index], &term);
+  weighLoop(s, *pair, s.memory.joints[loop.joint].loop, &term);
   if (term.rows == 5) term.drive = driveTerm(s, loop.joint, q, LOOP_PROXIMAL / term.rho[5]);
   return term;
 }

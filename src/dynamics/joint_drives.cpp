@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "spatial.h"
+
 namespace blem_sim {
 namespace {
 
@@ -16,7 +18,8 @@ struct Row {
 // Reach of a limit: rows are added once a joint could be there soon, so that it never lands in a step without its row.
 constexpr double LIMIT_REACH = 0.02;   // [rad or m], on top of two steps of motion
 constexpr double LOCKED_RANGE = 1e-9;  // [rad or m] between limits that hold the joint
-// Dry friction against a rigid bilateral row needs some softness; relative to the speed one newton (metre) gives in one step.
+// Dry friction against a rigid bilateral row needs some softness; relative to the speed one newton (metre) gives in one step to all that
+// the joint carries. (Of its two bodies alone one may be a massless link of a wrist.)
 constexpr double DRY_SOFTNESS = 1e-9;
 
 void setParameter(const JointSlot& slot, int parameter, double value) {
@@ -37,6 +40,27 @@ Row pdRow(const JointDrive& drive, double q, double dt) {
   const double gain = dt * drive.stiffness + drive.damping;
   if (!(gain > 0) || !(drive.max_effort > 0)) return {};
   return {(drive.stiffness * (drive.target_position - q) + drive.damping * drive.target_velocity) / gain, 1 / gain, drive.max_effort};
+}
+
+/** Of each joint in a tree, the inertia of all that it carries along its axis; 0 for others. */
+std::vector<double> carriedInertias(const Scene& scene) {
+  std::vector<BodyBits> bits;
+  scene.bits(&bits);
+  std::vector<SpatialInertia> carried(bits.size());
+  for (std::size_t b = 0; b < bits.size(); ++b)
+    if (scene.exists(static_cast<int>(b))) carried[b] = SpatialInertia(scene.bodies()[b].spec.inertial, bits[b].rotation(), bits[b].com());
+  std::vector<double> inertias(scene.joints().size(), 0);
+  for (const int joint : scene.leavesFirst()) {
+    const JointSlot& slot = scene.joints()[joint];
+    if (slot.spec.kind != JointKind::FIXED) {
+      const Vector3 axis = scene.jointAxis(joint);
+      const bool turns = slot.spec.kind == JointKind::REVOLUTE;
+      const Vector6 twist = turns ? spatial(axis, scene.jointOrigin(joint, bits).cross(axis)) : spatial(Vector3::Zero(), axis);
+      inertias[joint] = twist.dot(carried[slot.spec.child].times(twist));
+    }
+    if (slot.spec.parent != WORLD_BODY) carried[slot.spec.parent].add(carried[slot.spec.child]);
+  }
+  return inertias;
 }
 
 void setMotorRows(const JointSlot& slot, const JointDrive& drive, double q, double inverse_inertia, double dt, double joint_cfm) {
@@ -108,12 +132,13 @@ void addEffort(const JointSlot& slot, double effort) {
 void setDrives(Scene* scene, double dt, const std::vector<JointDrive>& drives, const std::vector<double>& coupling,
                const SolverSettings& settings, double cfm_scale) {
   const double cfm = settings.joint_cfm * cfm_scale;
+  const std::vector<double> inertias = carriedInertias(*scene);
   for (std::size_t j = 0; j < scene->joints().size(); ++j) {
     const JointSlot& slot = scene->joints()[j];
     if (!slot.motor) continue;
     const int joint = static_cast<int>(j);
     const double q = scene->jointPosition(joint);
-    const double inverse_inertia = drives[j].dry_friction > 0 ? scene->inverseInertia(joint) : 0;
+    const double inverse_inertia = inertias[j] > 0 ? 1 / inertias[j] : scene->inverseInertia(joint);
     setMotorRows(slot, drives[j], q, inverse_inertia * cfm_scale, dt, cfm);
     setStop(slot, q, scene->jointVelocity(joint), dt, settings, cfm);
     addEffort(slot, drives[j].effort + coupling[j]);

@@ -24,8 +24,12 @@ struct JointTerm {
 
   double motorImpulse(double v) const { return std::clamp(motor_gain * (motor_velocity - v), -motor_bound, motor_bound); }
   double dryImpulse(double v) const { return std::clamp(dry_previous - dry_gain / softness * v, -dry_bound, dry_bound); }
-  double lowerImpulse(double v) const { return limit_gain > 0 ? std::max(0.0, lower_previous + limit_gain / softness * (lower_velocity - v)) : 0; }
-  double upperImpulse(double v) const { return limit_gain > 0 ? std::max(0.0, upper_previous + limit_gain / softness * (v - upper_velocity)) : 0; }
+  double lowerImpulse(double v) const {
+    return limit_gain > 0 ? std::max(0.0, lower_previous + limit_gain / softness * (lower_velocity - v)) : 0;
+  }
+  double upperImpulse(double v) const {
+    return limit_gain > 0 ? std::max(0.0, upper_previous + limit_gain / softness * (v - upper_velocity)) : 0;
+  }
   double impulse(double v) const { return motorImpulse(v) - viscous * v + dryImpulse(v) + lowerImpulse(v) - upperImpulse(v); }
 
   /** -d impulse / dv >= 0 */

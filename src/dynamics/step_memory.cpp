@@ -9,7 +9,9 @@ const ContactRecord* StepMemory::find(std::uint64_t id) const {
   return it != contacts.end() && it->id == id ? &*it : nullptr;
 }
 
-void StepMemory::save(StateWriter* writer) const {
+void StepMemory::resize(const Scene& scene) { joints.resize(scene.joints().size()); }
+
+void StepMemory::save(const Scene& scene, StateWriter* writer) const {
   writer->word(contacts.size());
   for (const ContactRecord& c : contacts) {
     writer->word(c.id);
@@ -17,14 +19,15 @@ void StepMemory::save(StateWriter* writer) const {
     writer->number(c.slip);
     writer->number(c.approach);
   }
-  writer->word(joints.size());
-  for (const JointRecord& j : joints)
-    for (const double x : {j.dry, j.lower, j.upper}) writer->number(x);
-  writer->word(loops.size());
-  for (const LoopRecord& l : loops) writer->numbers(l.force.data(), 6);
+  // A joint that was added since the last step has nothing to remember.
+  for (std::size_t j = 0; j < scene.joints().size(); ++j) {
+    const JointRecord record = j < joints.size() ? joints[j] : JointRecord();
+    for (const double x : {record.dry, record.lower, record.upper}) writer->number(x);
+    if (!scene.joints()[j].in_tree) writer->numbers(record.loop.data(), 6);
+  }
 }
 
-void StepMemory::restore(StateReader* reader) {
+void StepMemory::restore(const Scene& scene, StateReader* reader) {
   contacts.resize(reader->word());
   for (ContactRecord& c : contacts) {
     c.id = reader->word();
@@ -32,11 +35,11 @@ void StepMemory::restore(StateReader* reader) {
     c.slip = reader->number();
     c.approach = reader->number();
   }
-  joints.resize(reader->word());
-  for (JointRecord& j : joints)
-    for (double* x : {&j.dry, &j.lower, &j.upper}) *x = reader->number();
-  loops.resize(reader->word());
-  for (LoopRecord& l : loops) reader->numbers(l.force.data(), 6);
+  resize(scene);
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    for (double* x : {&joints[j].dry, &joints[j].lower, &joints[j].upper}) *x = reader->number();
+    if (!scene.joints()[j].in_tree) reader->numbers(joints[j].loop.data(), 6);
+  }
 }
 
 }  // namespace blem_sim

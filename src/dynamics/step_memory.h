@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "scene.h"
 #include "spatial.h"
 #include "world_state.h"
 
@@ -19,21 +20,18 @@ struct ContactRecord {
 /** [N m or N] */
 struct JointRecord {
   double dry = 0, lower = 0, upper = 0;
-};
-
-struct LoopRecord {
-  Vector6 force = Vector6::Zero();  ///< along the loop's forbidden directions
+  Vector6 loop = Vector6::Zero();  ///< of a joint that closes a loop: along its forbidden directions
 };
 
 struct StepMemory {
   std::vector<ContactRecord> contacts;  ///< sorted by id
   std::vector<JointRecord> joints;      ///< one per joint slot
-  std::vector<LoopRecord> loops;        ///< one per loop of the forest
 
   /** Null if there was no such contact in the last step. */
   const ContactRecord* find(std::uint64_t id) const;
-  void save(StateWriter* writer) const;
-  void restore(StateReader* reader);
+  void resize(const Scene& scene);
+  void save(const Scene& scene, StateWriter* writer) const;
+  void restore(const Scene& scene, StateReader* reader);
 };
 
 }  // namespace blem_sim

@@ -107,6 +107,7 @@ RobotConfig readRobot(YamlReader& reader) {
   robot.motor = readMotor(reader);
   robot.joint_friction = readByJoint<JointFriction>(reader, "joint_friction", readJointFriction);
   robot.effort_limits = readNumbers(reader, "effort_limits", NumberRange::notNegativeOrInfinite());
+  robot.armature = readNumbers(reader, "armature", NumberRange::notNegative());
   robot.sensors = readSensors(reader);
   return robot;
 }

@@ -88,6 +88,8 @@ void RobotBuilder::checkMotors() const {
     if (wrong(friction.dry) || wrong(friction.viscous)) refuse("joint_friction", joint);
   for (const auto& [joint, limit] : config_.effort_limits)
     if (!(limit >= 0)) refuse("effort_limits", joint);
+  for (const auto& [joint, inertia] : config_.armature)
+    if (wrong(inertia)) refuse("armature", joint);
   for (const auto& [joint, position] : config_.initial_positions)
     if (!std::isfinite(position)) refuse("initial_positions", joint);
 }
@@ -188,6 +190,7 @@ void RobotBuilder::addJoint(int j) {
     spec.mimic_multiplier = joint.mimic->multiplier;
     spec.mimic_offset = joint.mimic->offset;
   }
+  if (moves(joint)) spec.armature = byJoint(config_.armature, joint.name, 0.0);
   info_.world_joints[j] = world_->world.addJoint(spec, positions_[j]);
   addMotor(joint, positions_[j]);
 }

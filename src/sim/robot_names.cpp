@@ -65,6 +65,7 @@ void checkRobotNames(const RobotConfig& config, const RobotModel& model, const L
   checkJoints(config.motor, where + "motor", names.movable, true);
   checkJoints(config.joint_friction, where + "joint_friction", names.movable, true);
   checkJoints(config.effort_limits, where + "effort_limits", names.movable, true);
+  checkJoints(config.armature, where + "armature", names.movable, true);
   for (const auto& entry : config.links) requireName(entry.first, names.links, where + "links", "link");
   for (const auto& pair : config.disable_collisions)
     for (const std::string& link : {pair.first, pair.second}) requireName(link, names.links, where + "disable_collisions", "link");

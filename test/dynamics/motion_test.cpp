@@ -46,23 +46,46 @@ TEST(Motion, SpinAboutAPrincipalAxisIsExact) {
   EXPECT_NEAR(world.kineticEnergy(), 0.5 * 1.0 / 12 * 0.05 * 100, 1e-12);
 }
 
-TEST(Motion, TumblingKeepsItsMomentumAndGainsNoEnergy) {
-  World world(Vector3::Zero(), {});
-  const int body = world.addBody(boxBody("box", 1, {0.1, 0.2, 0.3}, Vector3::Zero()));
-  BodyState state;
-  state.w_WB = {1, 5, 0.5};
-  world.setBodyState(body, state);
-  const auto momentum = [&] {
-    const BodyState s = world.bodyState(body);
-    const Matrix3 R = s.X_WB.linear();
-    return Vector3(R * world.bodySpec(body).inertial.inertia * R.transpose() * s.w_WB);
-  };
-  const Vector3 before = momentum();
-  const double energy = world.kineticEnergy();
-  for (int i = 0; i < 2000; ++i) world.step(DT, {}, {});
-  EXPECT_LT((momentum() - before).norm(), 0.02 * before.norm());
-  EXPECT_LE(world.kineticEnergy(), energy * (1 + 1e-9));
-  EXPECT_GT(world.kineticEnergy(), energy * 0.97);
+/** How a tumbling box fares: its angular momentum and its energy against those of the start. */
+struct Tumbling {
+  explicit Tumbling(const std::string& stepper) {
+    SolverSettings settings;
+    settings.stepper = stepper;
+    World world(Vector3::Zero(), settings);
+    const int body = world.addBody(boxBody("box", 1, {0.1, 0.2, 0.3}, Vector3::Zero()));
+    BodyState state;
+    state.w_WB = {1, 5, 0.5};
+    world.setBodyState(body, state);
+    const auto momentum = [&] {
+      const BodyState s = world.bodyState(body);
+      const Matrix3 R = s.X_WB.linear();
+      return Vector3(R * world.bodySpec(body).inertial.inertia * R.transpose() * s.w_WB);
+    };
+    const Vector3 before = momentum();
+    const double energy = world.kineticEnergy();
+    for (int i = 0; i < 2000; ++i) {
+      world.step(DT, {}, {});
+      momentum_off = std::max(momentum_off, (momentum() - before).norm() / before.norm());
+      highest = std::max(highest, world.kineticEnergy() / energy - 1);
+      lowest = std::min(lowest, world.kineticEnergy() / energy - 1);
+    }
+  }
+  double momentum_off = 0, highest = 0, lowest = 0;
+};
+
+TEST(Motion, TumblingInOdeLosesALittle) {
+  const Tumbling tumbling("world_step");
+  EXPECT_LT(tumbling.momentum_off, 0.02);
+  EXPECT_LE(tumbling.highest, 1e-9);
+  EXPECT_GT(tumbling.lowest, -0.03);
+}
+
+// Carried momentum: what is published swings about it by half a step, and nothing is lost.
+TEST(Motion, TumblingInTheArticulatedStepperLosesNothing) {
+  const Tumbling tumbling("articulated");
+  EXPECT_LT(tumbling.momentum_off, 2e-3);
+  EXPECT_LE(tumbling.highest, 1e-5);
+  EXPECT_GT(tumbling.lowest, -1e-5);
 }
 
 TEST(Motion, OutsideWrenchActsForOneStep) {

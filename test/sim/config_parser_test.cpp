@@ -121,6 +121,7 @@ robots:
     motor: {default: implicit_pd, LKP: pid}
     joint_friction: {default: {dry: 0, viscous: 0.5}, LKP: {dry: 0.1}}
     effort_limits: {LKP: 150, LAR: .inf}
+    armature: {LKP: 0.03}
     max_contacts_per_robot: 12
 )");
   const RobotConfig& robot = config.robots.at(0);
@@ -143,6 +144,7 @@ robots:
   EXPECT_EQ(robot.joint_friction.at("LKP").dry, 0.1);
   EXPECT_EQ(robot.joint_friction.at("LKP").viscous, 0.5);
   EXPECT_EQ(robot.effort_limits.at("LAR"), INF);
+  EXPECT_EQ(robot.armature.at("LKP"), 0.03);
   EXPECT_EQ(robot.max_contacts, 12);
 }
 

@@ -127,6 +127,7 @@ TEST(RobotBuilder, RefusesUnknownNamesWithTheNearest) {
       {"'finger_a'", [](RobotConfig* r) { r->motor["finger_aa"] = MotorLaw::PID; }},
       {"'finger_a'", [](RobotConfig* r) { r->joint_friction["finger_a "] = {}; }},
       {"'finger_b'", [](RobotConfig* r) { r->effort_limits["finger_bb"] = 1; }},
+      {"'finger_b'", [](RobotConfig* r) { r->armature["finger_bb"] = 1; }},
       {"'upper'", [](RobotConfig* r) { r->links["uper"] = {}; }},
       {"'camera'",
        [](RobotConfig* r) {

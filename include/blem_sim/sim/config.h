@@ -89,6 +89,7 @@ struct RobotConfig {
   std::map<std::string, MotorLaw> motor;                ///< by joint, "default"
   std::map<std::string, JointFriction> joint_friction;  ///< by joint, "default"; beats the URDF's
   std::map<std::string, double> effort_limits;          ///< beats the URDF's
+  std::map<std::string, double> armature;               ///< [kg m^2 or kg] rotor inertia seen at the joint; by joint, "default"
   std::vector<SensorConfig> sensors;
   std::optional<int> max_contacts;  ///< k of this robot
 };
