@@ -1,0 +1,183 @@
+// The articulated stepper where trees meet: loops, threads, edits from outside; and what it tells of its own solve.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "analytic_contacts.h"
+
+namespace blem_sim {
+namespace {
+
+constexpr double DT = 1e-3;
+constexpr double G = 9.81;
+const Vector3 CUBE(0.1, 0.1, 0.1);
+
+int addBar(World* world, const Vector3& from, const Vector3& to) {
+  BodySpec bar = boxBody("bar", 0.4, {0.02, 0.02, (to - from).norm()}, Vector3::Zero());
+  bar.X_WB.translation() = from;
+  bar.X_WB.linear() = Quaternion::FromTwoVectors(Vector3::UnitZ(), to - from).toRotationMatrix();
+  bar.inertial.com = {0, 0, 0.5 * (to - from).norm()};
+  return world->addBody(bar);
+}
+
+/** Joins a child to a parent at a point of the world, about y. */
+int addHinge(World* world, int parent, int child, const Vector3& point, JointKind kind = JointKind::REVOLUTE) {
+  JointSpec spec;
+  spec.kind = kind;
+  spec.parent = parent;
+  spec.child = child;
+  const Pose X_WP = parent == WORLD_BODY ? Pose::Identity() : world->bodyState(parent).X_WB;
+  spec.X_PJ = X_WP.inverse() * makePose(point);
+  spec.axis = spec.X_PJ.linear() * Vector3::UnitY();
+  return world->addJoint(spec);
+}
+
+/** Crank, coupler and rocker between two pins of the world; the last hinge closes the loop. */
+struct FourBar {
+  FourBar() : world({0, 0, -G}, {}), drives(4) {
+    const Vector3 crank_end(0, 0, 0.1), rocker_end(0.35, 0, 0.25), foot(0.3, 0, 0);
+    crank = addBar(&world, Vector3::Zero(), crank_end);
+    coupler = addBar(&world, crank_end, rocker_end);
+    rocker = addBar(&world, foot, rocker_end);
+    addHinge(&world, WORLD_BODY, crank, Vector3::Zero());
+    addHinge(&world, crank, coupler, crank_end);
+    addHinge(&world, WORLD_BODY, rocker, foot);
+    closing = addHinge(&world, rocker, coupler, rocker_end);
+  }
+  double gap() const {
+    const Vector3 on_coupler = world.bodyState(coupler).X_WB * Vector3(0, 0, Vector3(0.35, 0, 0.15).norm());
+    return (on_coupler - world.bodyState(rocker).X_WB * Vector3(0, 0, Vector3(0.05, 0, 0.25).norm())).norm();
+  }
+  World world;
+  std::vector<JointDrive> drives;
+  int crank, coupler, rocker, closing;
+};
+
+TEST(ArticulatedLoop, StaysClosedWhileItsCrankTurns) {
+  FourBar bar;
+  bar.drives[0].damping = 100;
+  bar.drives[0].target_velocity = 3;
+  for (int i = 0; i < 3000; ++i) {
+    const SolveResult& result = bar.world.step(DT, {}, bar.drives);
+    ASSERT_TRUE(result.finite);
+    ASSERT_LT(result.creep, 1e-6) << i;
+    ASSERT_LT(bar.gap(), 1e-6) << i;
+  }
+  EXPECT_NEAR(bar.world.jointState(0).velocity, 3, 0.3);
+}
+
+// Held still, the two pins of the world carry all of it; the closing joint's wrench is part of the balance.
+TEST(ArticulatedLoop, CarriesItsWeight) {
+  FourBar bar;
+  bar.drives[0].stiffness = 1e4, bar.drives[0].damping = 100;
+  SolveResult result;
+  for (int i = 0; i < 3000; ++i) result = bar.world.step(DT, {}, bar.drives);
+  EXPECT_NEAR(result.joint_wrenches[0].force.z() + result.joint_wrenches[2].force.z(), 3 * 0.4 * G, 1e-8);
+  EXPECT_NEAR(result.joint_wrenches[1].force.z() + result.joint_wrenches[bar.closing].force.z(), 0.4 * G, 1e-8);
+  EXPECT_GT(result.joint_wrenches[bar.closing].force.norm(), 0.1);
+}
+
+TEST(ArticulatedThreads, AnyNumberGivesTheSameBits) {
+  const auto run = [](int threads) {
+    SolverSettings settings;
+    settings.threads = threads;
+    World world({0, 0, -G}, settings);
+    for (int i = 0; i < 12; ++i) world.addBody(boxBody("cube", 1 + i, CUBE, {0.5 * (i / 2), 0.002 * i, 0.1 + 0.15 * (i % 2)}));
+    for (int k = 0; k < 300; ++k) {
+      std::vector<ContactConstraint> contacts;
+      for (int i = 0; i < 12; i += 2) {
+        boxOnPlane(world, i, CUBE, Vector3::UnitZ(), 0, {}, &contacts);
+        boxOnBox(world, i + 1, CUBE, i, CUBE, {}, &contacts);
+      }
+      world.step(DT, contacts, {});
+    }
+    return world.save();
+  };
+  const WorldState one = run(1);
+  EXPECT_EQ(run(2), one);
+  EXPECT_EQ(run(4), one);
+}
+
+// A rotor's inertia adds to the link's: the same effort turns the joint more slowly, and the same gravity too.
+TEST(ArticulatedJoint, ArmatureAddsToTheInertia) {
+  const auto speed = [](double armature) {
+    World world(Vector3::Zero(), {});
+    JointSpec spec;
+    spec.child = world.addBody(boxBody("wheel", 1, CUBE, Vector3::Zero()));
+    spec.axis = Vector3::UnitY();
+    spec.armature = armature;
+    world.addJoint(spec);
+    std::vector<JointDrive> drives(1);
+    drives[0].effort = 0.5;
+    for (int i = 0; i < 100; ++i) world.step(DT, {}, drives);
+    return world.jointState(0).velocity;
+  };
+  const double inertia = 0.02 / 12;
+  EXPECT_NEAR(speed(0), 0.05 / inertia, 1e-9);
+  EXPECT_NEAR(speed(3 * inertia), 0.05 / (4 * inertia), 1e-9);
+}
+
+// Someone sets the upper link: its tree is read back, and only its tree.
+TEST(ArticulatedEdits, AreReadBackOnce) {
+  World world({0, 0, -G}, {});
+  const int flying = world.addBody(boxBody("flying", 1, CUBE, {0, 0, 5})), other = world.addBody(boxBody("other", 1, CUBE, {1, 0, 5}));
+  for (int i = 0; i < 50; ++i) world.step(DT, {}, {});
+  const BodyState before = world.bodyState(other);
+  BodyState state = world.bodyState(flying);
+  state.X_WB.translation() = Vector3(0, 0, 9);
+  state.v_WCom = {1, 0, 0};
+  state.w_WB = {0, 0, 2};
+  world.setBodyState(flying, state);
+  for (int i = 0; i < 100; ++i) world.step(DT, {}, {});
+  const BodyState after = world.bodyState(flying);
+  EXPECT_NEAR(after.X_WB.translation().x(), 0.1, 1e-12);
+  EXPECT_NEAR(after.X_WB.translation().z(), 9 - 0.5 * G * 0.1 * 0.101, 1e-12);
+  EXPECT_NEAR(after.w_WB.z(), 2, 1e-12);
+  EXPECT_NEAR(world.bodyState(other).v_WCom.z(), before.v_WCom.z() - 0.1 * G, 1e-12);
+}
+
+// Legs that swing in flight: the whole goes on along its parabola, and turns no more than its momentum says.
+TEST(ArticulatedFlight, KeepsItsMomenta) {
+  World world({0, 0, -G}, {});
+  const int torso = world.addBody(boxBody("torso", 5, {0.2, 0.3, 0.4}, Vector3::Zero()));
+  std::vector<JointDrive> drives;
+  for (const double side : {-1.0, 1.0}) {
+    const int leg = world.addBody(boxBody("leg", 2, {0.08, 0.08, 0.4}, {0, 0.1 * side, -0.4}));
+    addHinge(&world, torso, leg, {0, 0.1 * side, -0.2});
+    drives.push_back({});
+    drives.back().stiffness = 200, drives.back().damping = 5;
+  }
+  const auto com = [&] {
+    Vector3 sum = Vector3::Zero();
+    for (int b = 0; b < 3; ++b) sum += world.bodySpec(b).inertial.mass * world.bodyState(b).X_WB.translation();
+    return Vector3(sum / 9);
+  };
+  const Vector3 start = com();
+  for (int i = 0; i < 1000; ++i) {
+    drives[0].target_position = 0.8 * std::sin(6 * i * DT), drives[0].target_velocity = 4.8 * std::cos(6 * i * DT);
+    drives[1].target_position = 0.3 * drives[0].target_position;
+    world.step(DT, {}, drives);
+  }
+  EXPECT_LT((com() - start + Vector3(0, 0, 0.5 * G * 1.001)).norm(), 1e-7);
+}
+
+// A step that is like the one before is exact; what is left of it is stated.
+TEST(ArticulatedReport, StatesWhatIsLeft) {
+  World world({0, 0, -G}, {});
+  world.addBody(boxBody("cube", 1, CUBE, {0, 0, 0.0501}));
+  int most = 0;
+  SolveResult result;
+  for (int i = 0; i < 200; ++i) {
+    std::vector<ContactConstraint> contacts;
+    boxOnPlane(world, 0, CUBE, Vector3::UnitZ(), 0, {}, &contacts);
+    result = world.step(DT, contacts, {});
+    most = std::max(most, result.iterations);
+    ASSERT_LT(result.residual, 1e-4) << i;
+  }
+  EXPECT_GT(most, 0);
+  EXPECT_LE(result.iterations, 1);
+  EXPECT_LT(result.residual, 1e-9);
+}
+
+}  // namespace
+}  // namespace blem_sim
