@@ -4,6 +4,7 @@
 
 #include "blem_sim/geometry/bvh_traversal.h"
 #include "border_fade.h"
+#include "candidates.h"
 #include "edge_pair.h"
 #include "feature_cones.h"
 
@@ -23,11 +24,12 @@ class SimplexSearch {
     buffers_.contacts.clear();
     buffers_.crossings.clear();
     buffers_.leaf_pairs.clear();
+    for (SearchBuffers::FixedLeaf& held : buffers_.fixed_leaves) held.leaf = SearchBuffers::NO_LEAF;
     visitLeafPairs(pair_.moving.bvh, pair_.fixed.bvh, pair_.X_FM, pair_.range,
                    [this](std::uint32_t m, std::uint32_t f) { buffers_.leaf_pairs.emplace_back(m, f); });
     // Sorted, so that each leaf of the moving mesh is turned once.
     std::sort(buffers_.leaf_pairs.begin(), buffers_.leaf_pairs.end());
-    std::uint32_t turned_leaf = std::numeric_limits<std::uint32_t>::max();
+    std::uint32_t turned_leaf = SearchBuffers::NO_LEAF;
     for (const auto& [m, f] : buffers_.leaf_pairs) {
       if (m != turned_leaf) turnLeaf(turned_leaf = m);
       testLeaf(f);
@@ -46,28 +48,31 @@ class SimplexSearch {
       findBox(&shape);
       buffers_.leaf_lower = i == 0 ? shape.lower : Vector3(buffers_.leaf_lower.cwiseMin(shape.lower));
       buffers_.leaf_upper = i == 0 ? shape.upper : Vector3(buffers_.leaf_upper.cwiseMax(shape.upper));
-      describe(pair_.moving.topology, &shape);
-      shape.normal = R_FM_ * shape.normal;
+      describe(pair_.moving.topology, &R_FM_, &shape);
     }
   }
 
-  static void describe(const MeshTopology& topology, ElementShape* shape) {
-    shape->normal = topology.normals[shape->element];
-    shape->is_face = topology.isFace(shape->element);
-    shape->owns_vertices = topology.ownsVertices(shape->element);
-    shape->owns_edges = topology.ownsEdges(shape->element);
-  }
-
-  void testLeaf(std::uint32_t leaf) {
+  std::vector<ElementShape>& fixedLeaf(std::uint32_t leaf) {
+    SearchBuffers::FixedLeaf& held = buffers_.fixed_leaves[leaf % buffers_.fixed_leaves.size()];
+    if (held.leaf == leaf) return held.shapes;
+    held.leaf = leaf;
     const Bvh::Node& node = pair_.fixed.bvh.nodes()[leaf];
-    ElementShape shape;
-    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      shape.element = static_cast<int>(pair_.fixed.bvh.order()[i]);
+    held.shapes.resize(node.count);
+    for (std::uint32_t i = 0; i < node.count; ++i) {
+      ElementShape& shape = held.shapes[i];
+      shape.element = static_cast<int>(pair_.fixed.bvh.order()[node.first + i]);
       const Vector3i& e = pair_.fixed.mesh.elements[shape.element];
       for (int k = 0; k < 3; ++k) shape.corners[k] = pair_.fixed.mesh.vertices[e[k]];
       findBox(&shape);
+      shape.is_described = false;
+    }
+    return held.shapes;
+  }
+
+  void testLeaf(std::uint32_t leaf) {
+    for (ElementShape& shape : fixedLeaf(leaf)) {
       if (!boxesWithin(buffers_.leaf_lower, buffers_.leaf_upper, shape, pair_.range)) continue;
-      describe(pair_.fixed.topology, &shape);
+      if (!shape.is_described) describe(pair_.fixed.topology, nullptr, &shape);
       for (const ElementShape& m : buffers_.moving_leaf) {
         if (boxesWithin(m.lower, m.upper, shape, pair_.range)) testElements(m, shape);
       }
@@ -75,7 +80,8 @@ class SimplexSearch {
   }
 
   void testElements(const ElementShape& m, const ElementShape& f) {
-    const bool m_owns = m.owns_vertices || m.owns_edges, f_owns = f.owns_vertices || f.owns_edges;
+    const bool m_owns = m.vertices | m.edges, f_owns = f.vertices | f.edges;
+    if (!m_owns && !f_owns) return;
     double heights_m[3], heights_f[3];  // of the corners over the other's plane
     if (f.is_face) {
       for (int k = 0; k < 3; ++k) heights_m[k] = f.normal.dot(m.corners[k] - f.corners[0]);
@@ -88,33 +94,41 @@ class SimplexSearch {
     if (f.is_face && m_owns) testOverFace(m, heights_m, f, true);
     if (m.is_face && f_owns) testOverFace(f, heights_f, m, false);
     if (!m_owns || !f_owns) return;
-    const double *over_f = f.is_face ? heights_m : nullptr, *over_m = m.is_face ? heights_f : nullptr;
-    if (m.owns_edges && f.owns_edges) testEdges(m, over_f, f, over_m);
-    testVertices(m, over_f, f, over_m);
+    const Candidates of_m = candidatesOf(m, f.is_face ? heights_m : nullptr, f, pair_.range),
+                     of_f = candidatesOf(f, m.is_face ? heights_f : nullptr, m, pair_.range);
+    testEdges(m, of_m, f, of_f);
+    testVertices(m, of_m, f, of_f);
   }
 
   // ---- vertices and edges over a face
 
   void testOverFace(const ElementShape& e, const double heights[3], const ElementShape& face, bool e_moves) {
-    const MeshTopology& topology = side(e_moves).topology;
     for (int k = 0; k < 3; ++k) {
-      if (std::abs(heights[k]) <= pair_.range && topology.ownsVertex(e.element, k)) {
-        if (holdsProjection(face, e.corners[k])) {
-          addVertexFace(e, k, heights[k], face, e_moves);
-        } else {
-          addFading(e, k, heights[k], face, e_moves);
-        }
-      }
-      if (topology.ownsEdge(e.element, k) && crosses(e, k, heights, face, e_moves)) {
-        buffers_.crossings.push_back({e_moves, topology.element_edges[e.element][k], face.element});
+      if (e.vertices >> k & 1) testVertexFace(e, k, heights[k], face, e_moves);
+      if (e.edges >> k & 1 && passesThrough(heights[k], heights[NEXT[k]]) && crosses(e, k, heights, face, e_moves)) {
+        buffers_.crossings.push_back({e_moves, side(e_moves).topology.element_edges[e.element][k], face.element});
       }
     }
   }
 
-  /** Does side k of e pass through the face? What only touches it, or only grazes a border, is an ordinary contact. */
+  void testVertexFace(const ElementShape& e, int k, double height, const ElementShape& face, bool e_moves) {
+    const double most = pair_.range - std::abs(height);
+    if (most < 0 || !mayHoldProjection(face, e.corners[k], most / FADE_SLOPE)) return;
+    if (holdsProjection(face, e.corners[k])) {
+      addVertexFace(e, k, height, face, e_moves);
+    } else {
+      addFading(e, k, height, face, e_moves);
+    }
+  }
+
+  static bool passesThrough(double height_p, double height_q) {
+    return std::min(height_p, height_q) < -TOUCH && std::max(height_p, height_q) > TOUCH;
+  }
+
+  /** Does side k of e, which passes through the face's plane, pass through the face? What only touches it, or only grazes a border, is an
+   * ordinary contact. */
   bool crosses(const ElementShape& e, int k, const double heights[3], const ElementShape& face, bool e_moves) const {
     const double height_p = heights[k], height_q = heights[NEXT[k]];
-    if (std::min(height_p, height_q) >= -TOUCH || std::max(height_p, height_q) <= TOUCH) return false;
     const Vector3 &p = e.corners[k], &q = e.corners[NEXT[k]], through = p + height_p / (height_p - height_q) * (q - p);
     if (!holdsProjection(face, through)) return false;
     const int edge = side(e_moves).topology.element_edges[e.element][k];
@@ -186,9 +200,8 @@ class SimplexSearch {
       return;
     }
     for (int k = 0; k < 3; ++k) {
-      const Vector3 along = face.corners[NEXT[k]] - face.corners[k];
-      const double inside = insideSide(face, k, along, p);
-      if (inside > 0 && inside * inside > CLOSED * CLOSED * along.squaredNorm()) continue;
+      const double inside = insideSide(face, k, p);
+      if (inside > 0 && inside * inside > CLOSED * CLOSED * face.length2[k]) continue;
       visitIfBorder(topology, topology.element_edges[face.element][k], topology.patch[face.element], visit);
     }
   }
@@ -248,29 +261,14 @@ class SimplexSearch {
 
   // ---- edge and edge
 
-  /** @param heights_m of m's corners over f's plane, null unless f is a face; the other way round */
-  void testEdges(const ElementShape& m, const double* heights_m, const ElementShape& f, const double* heights_f) {
-    const int edges_m = edgesNear(pair_.moving.topology, m.element, heights_m),
-              edges_f = edgesNear(pair_.fixed.topology, f.element, heights_f);
-    if (edges_m == 0 || edges_f == 0) return;
+  void testEdges(const ElementShape& m, const Candidates& of_m, const ElementShape& f, const Candidates& of_f) {
+    if (of_m.edges == 0 || of_f.edges == 0) return;
     for (int k = 0; k < 3; ++k) {
-      if (!(edges_m >> k & 1)) continue;
+      if (!(of_m.edges >> k & 1)) continue;
       for (int l = 0; l < 3; ++l) {
-        if (edges_f >> l & 1) testEdgePair(m, k, f, l);
+        if (of_f.edges >> l & 1 && mayMeetSide(of_m, k, l) && mayMeetSide(of_f, l, k)) testEdgePair(m, k, f, l);
       }
     }
-  }
-
-  /** Bits of the edges the element owns that are not wholly farther than the range above or below the other's plane. */
-  int edgesNear(const MeshTopology& topology, int element, const double* heights) const {
-    int near = 0;
-    for (int k = 0; k < 3; ++k) {
-      if (!topology.ownsEdge(element, k)) continue;
-      const bool far =
-          heights && (std::min(heights[k], heights[NEXT[k]]) > pair_.range || std::max(heights[k], heights[NEXT[k]]) < -pair_.range);
-      near |= far ? 0 : 1 << k;
-    }
-    return near;
   }
 
   void testEdgePair(const ElementShape& m, int k, const ElementShape& f, int l) {
@@ -323,23 +321,22 @@ class SimplexSearch {
 
   // ---- vertex and edge, vertex and vertex: where each is the other's local minimum
 
-  void testVertices(const ElementShape& m, const double* heights_m, const ElementShape& f, const double* heights_f) {
-    const auto far = [this](const double* heights, int k) { return heights && std::abs(heights[k]) > pair_.range; };
+  void testVertices(const ElementShape& m, const Candidates& of_m, const ElementShape& f, const Candidates& of_f) {
     for (int k = 0; k < 3; ++k) {
-      if (pair_.moving.topology.ownsVertex(m.element, k) && !far(heights_m, k)) {
-        testVertexEdges(m, k, f, true);
+      if (of_m.vertices >> k & 1) {
+        testVertexEdges(m, k, f, of_f, true);
         for (int l = 0; l < 3; ++l) {
-          if (pair_.fixed.topology.ownsVertex(f.element, l) && !far(heights_f, l)) testVertexVertex(m, k, f, l);
+          if (of_f.vertices >> l & 1) testVertexVertex(m, k, f, l);
         }
       }
-      if (pair_.fixed.topology.ownsVertex(f.element, k) && !far(heights_f, k)) testVertexEdges(f, k, m, false);
+      if (of_f.vertices >> k & 1) testVertexEdges(f, k, m, of_m, false);
     }
   }
 
-  void testVertexEdges(const ElementShape& v, int k, const ElementShape& e, bool v_moves) {
+  void testVertexEdges(const ElementShape& v, int k, const ElementShape& e, const Candidates& of_e, bool v_moves) {
     const Vector3& p = v.corners[k];
     for (int l = 0; l < 3; ++l) {
-      if (!side(!v_moves).topology.ownsEdge(e.element, l)) continue;
+      if (!mayMeetCorner(of_e, l, k)) continue;
       const Vector3 &q = e.corners[l], along = e.corners[NEXT[l]] - q, r = p - q;
       const double length2 = along.squaredNorm(), part = r.dot(along);
       if (!edge_pair_detail::isInside(part, length2, length2)) continue;

@@ -19,9 +19,16 @@ struct Crossing {
 
 /** What a search works in; kept between searches for its memory only. */
 struct SearchBuffers {
+  static constexpr std::uint32_t NO_LEAF = 0xFFFFFFFF;
+  struct FixedLeaf {
+    std::uint32_t leaf = NO_LEAF;
+    std::vector<ElementShape> shapes;
+  };
+
   std::vector<std::pair<std::uint32_t, std::uint32_t>> leaf_pairs;
   std::vector<ElementShape> moving_leaf;
-  Vector3 leaf_lower, leaf_upper;  ///< box of moving_leaf
+  Vector3 leaf_lower, leaf_upper;                                     ///< box of moving_leaf
+  std::vector<FixedLeaf> fixed_leaves = std::vector<FixedLeaf>(512);  ///< leaf i, if it is held, at i modulo their number
   std::vector<FeatureContact> contacts;
   std::vector<Crossing> crossings;
 };

@@ -40,9 +40,9 @@ struct MeshTopology {
   bool ownsVertex(int element, int k) const { return owned_[element] >> k & 1; }
   bool ownsEdge(int element, int k) const { return owned_[element] >> (3 + k) & 1; }
 
-  /** Does it ask for any of its vertices / edges? */
-  bool ownsVertices(int element) const { return owned_[element] & 7; }
-  bool ownsEdges(int element) const { return owned_[element] >> 3; }
+  /** Bits k of the vertices / edges that it asks for. */
+  std::uint8_t ownedVertices(int element) const { return owned_[element] & 7; }
+  std::uint8_t ownedEdges(int element) const { return owned_[element] >> 3; }
 
   /** Unit direction in the face's plane, square to the edge, into the face. @param face one of the edge's faces */
   Vector3 inward(const TriangleMesh& mesh, int edge, int face) const;
