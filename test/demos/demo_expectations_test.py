@@ -25,11 +25,11 @@ def run(folder, config, duration, *options):
     return json.loads(report.read_text()), rows
 
 
-def untroubled(report):
-    """No step left a layer, was shortened or redone."""
+def untroubled(report, of_layer=0.01):
+    """No step left a layer, was shortened or redone; nothing sank deeper than this share of its layers."""
     for bit in ("STEP_SHORTENED", "CONTACT_UNRELIABLE", "SOLVER_TROUBLE", "STATE_NOT_FINITE"):
         assert report["status"][bit] == 0, (bit, report["status"])
-    assert report["max_penetration"]["of_layer"] < 0.01
+    assert report["max_penetration"]["of_layer"] < of_layer
 
 
 def upright(report, height):
@@ -66,7 +66,7 @@ def test_humanoid_stands_on_the_points(tmp_path):
 
 def test_gripper_lifts_shakes_and_puts_back_the_mug(tmp_path):
     report, rows = run(tmp_path, "demo_gripper_mug.yaml", 10.5, "--trajectory", str(CONFIG / "demo_gripper_mug.csv"))
-    untroubled(report)
+    untroubled(report, of_layer=0.1)  # rubber pads give way by 0.4 mm
     height = {round(row["time"], 3): row["mug::link_z"] for row in rows}
     assert abs(height[3.6] - height[1.0] - 0.1) < 1e-3
     # While it is shaken the mug moves with the pads.
