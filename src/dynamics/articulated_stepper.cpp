@@ -260,7 +260,7 @@ void ArticulatedStepper::report(double dt, SolveResult* result) const {
   for (int i = 0; i < island_count_; ++i) {
     const NewtonReport& report = islands_of_step_[i].report;
     result->residual = std::max(result->residual, report.contact_residual / dt);
-    result->creep = std::max(result->creep, report.joint_creep);
+    result->creep = std::max({result->creep, report.joint_creep, report.imbalance});
     result->iterations += report.iterations;
   }
 }

@@ -128,6 +128,15 @@ double IslandProblem::gradientNorm() const {
   return worst;
 }
 
+// The gradient as the velocity that each dof's own inertia would make of it.
+double IslandProblem::imbalance() const {
+  double worst = 0;
+  for (const int tree : trees)
+    for (int k = forest_->trees()[tree].first_dof; k < forest_->trees()[tree].dof_end; ++k)
+      worst = std::max(worst, std::abs(space_->gradient[k]) * space_->scale[k] * space_->scale[k]);
+  return worst;
+}
+
 // Moves by a along the direction. Returns the largest change of a velocity.
 double IslandProblem::take(double a) {
   SolverSpace& s = *space_;
@@ -183,7 +192,7 @@ void IslandProblem::remember() {
 
 void IslandProblem::assess(NewtonReport* report) const {
   report->contact_residual = report->joint_creep = 0;
-  report->imbalance = gradient_norm_;
+  report->imbalance = imbalance();
   for (const ContactTerm& c : contacts) report->contact_residual = std::max(report->contact_residual, c.residual());
   for (const JointTerm& j : joints) report->joint_creep = std::max(report->joint_creep, j.creep(space_->velocity[j.dof]));
   for (const LoopTerm& loop : loops) report->joint_creep = std::max(report->joint_creep, loop.creep());

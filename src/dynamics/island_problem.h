@@ -43,8 +43,8 @@ struct NewtonSettings {
 struct NewtonReport {
   int iterations = 0;
   double contact_residual = 0;  ///< [N s] largest violation of Coulomb's law over the contacts
-  double imbalance = 0;         ///< [sqrt(kg) m/s] by how much momentum and impulses differ, over the root of the inertia; worst dof
   double joint_creep = 0;       ///< [rad/s or m/s] largest creep of a joint that sticks, miss of a limit or of a loop
+  double imbalance = 0;         ///< [rad/s or m/s] by how much momentum and impulses differ, over the dof's inertia; worst dof
 };
 
 /** Vectors over the forest that the islands work in, each in its own trees. */
@@ -95,6 +95,7 @@ class IslandProblem {
   double slope(double a, double* curvature) const;
   double lineSearch();
   double gradientNorm() const;
+  double imbalance() const;
   double take(double a);
   bool findDirection();
   int newton(const NewtonSettings& settings, double exactness, int max_iterations);

@@ -10,6 +10,7 @@ namespace {
 
 constexpr double FARTHEST = 1e12;             // [m], [m/s], [rad/s]: what is beyond has no meaning as a number any more
 constexpr double LIMIT_REACHED = 1e-6;        // [rad or m]
+constexpr double CREEP_IS_TROUBLE = 0.01;     // [rad/s or m/s]
 constexpr double RESIDUAL_IS_TROUBLE = 0.01;  // of the largest contact force
 
 /** Adds the wall time of a scope to a stage. */
@@ -139,7 +140,8 @@ void Simulator::Impl::acceptSubstep() {
 void Simulator::Impl::recordSolve() {
   double largest = 0;
   for (const Vector3& force : solved_->contact_forces) largest = std::max(largest, force.norm());
-  if (solved_->lcp_errors > 0 || solved_->residual > RESIDUAL_IS_TROUBLE * largest) report_.status |= SOLVER_TROUBLE;
+  if (solved_->lcp_errors > 0 || solved_->residual > RESIDUAL_IS_TROUBLE * largest || solved_->creep > CREEP_IS_TROUBLE)
+    report_.status |= SOLVER_TROUBLE;
   report_.solver_residual = std::max(report_.solver_residual, solved_->residual);
   report_.solver_creep = std::max(report_.solver_creep, solved_->creep);
   report_.solver_iterations += solved_->iterations;

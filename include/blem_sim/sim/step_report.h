@@ -20,7 +20,8 @@ enum StepStatus : std::uint32_t {
       1u << 1,  ///< bare meshes cross: normals there are a guess. Thicker boundary_width, smaller time_step, or a better start pose
   CONTACTS_REDUCED = 1u << 2,  ///< contacts were left out by max_contacts_per_robot/object. Raise them if forces look wrong
   SOLVER_TROUBLE = 1u << 3,  ///< the complementarity solver complained and the step was redone softer, or Newton stopped at its bound with
-                             ///< contact forces off by over 1 % of the largest. Smaller time_step, fewer contacts; ODE: raise solver.cfm
+                             ///< contact forces off by over 1 % of the largest, or velocities by 0.01. Smaller time_step, fewer contacts;
+                             ///< ODE: more solver.cfm
   STATE_NOT_FINITE = 1u << 4,  ///< a body's state is NaN or infinite; the last finite state was restored and the simulation is stopped
   EFFORT_SATURATED = 1u << 5,  ///< a motor ran into its effort limit. Raise effort_limits, or a slower motion
   JOINT_LIMIT_HIT = 1u << 6,   ///< a joint is at its limit
