@@ -4,6 +4,7 @@
 
 #include "blem_sim/geometry/closest_points.h"
 #include "contact_shapes.h"
+#include "support/sanitizers.h"
 
 namespace blem_sim {
 namespace {
@@ -72,7 +73,7 @@ TEST(NarrowPhaseCompleteness, RandomPoses) {
   const std::vector<Shape> shapes = makeShapes();
   RandomShapes random(1);
   Completeness all;
-  while (all.poses < 12000) {
+  while (all.poses < samples(12000)) {
     const Shape& a = shapes[random.integer(0, shapes.size() - 1)];
     const Shape& b = shapes[random.integer(0, shapes.size() - 1)];
     Pose X_BA = random.pose(1);
@@ -82,7 +83,7 @@ TEST(NarrowPhaseCompleteness, RandomPoses) {
     if (HasFatalFailure()) return;
   }
   RecordProperty("within_layer", all.within);
-  EXPECT_GT(all.within, 10000);
+  EXPECT_GT(all.within, samples(10000));
   std::printf("random: %d within the layer, %d apart, %d meeting, worst error %.2g m\n", all.within, all.apart, all.meeting, all.worst);
 }
 
@@ -90,7 +91,7 @@ TEST(NarrowPhaseCompleteness, AxisAlignedPoses) {
   const std::vector<Shape> shapes = makeShapes();
   RandomShapes random(2);
   Completeness all;
-  while (all.poses < 12000) {
+  while (all.poses < samples(12000)) {
     const Shape& a = shapes[random.integer(0, shapes.size() - 1)];
     const Shape& b = shapes[random.integer(0, shapes.size() - 1)];
     Pose X_BA = Pose::Identity();
@@ -103,7 +104,7 @@ TEST(NarrowPhaseCompleteness, AxisAlignedPoses) {
     all.check(a, b, approached(a, b, X_BA, gap));
     if (HasFatalFailure()) return;
   }
-  EXPECT_GT(all.within, 6000);
+  EXPECT_GT(all.within, samples(6000));
   std::printf("aligned: %d within the layer, %d apart, %d meeting, worst error %.2g m\n", all.within, all.apart, all.meeting, all.worst);
 }
 
@@ -111,7 +112,7 @@ TEST(NarrowPhaseCompleteness, NearlyAlignedPoses) {
   const std::vector<Shape> shapes = makeShapes();
   RandomShapes random(3);
   Completeness all;
-  while (all.poses < 6000) {
+  while (all.poses < samples(6000)) {
     const Shape& a = shapes[random.integer(0, shapes.size() - 1)];
     const Shape& b = shapes[random.integer(0, shapes.size() - 1)];
     const double tilt = std::pow(10, random.uniform(-9, -2));
@@ -122,7 +123,7 @@ TEST(NarrowPhaseCompleteness, NearlyAlignedPoses) {
     all.check(a, b, approached(a, b, X_BA, LAYER * std::pow(10, random.uniform(-8, 0))));
     if (HasFatalFailure()) return;
   }
-  EXPECT_GT(all.within, 3000);
+  EXPECT_GT(all.within, samples(3000));
   std::printf("nearly aligned: %d within the layer, %d apart, %d meeting, worst error %.2g m\n", all.within, all.apart, all.meeting,
               all.worst);
 }
@@ -132,7 +133,7 @@ TEST(NarrowPhaseCompleteness, MeetingPosesAreFiniteAndBounded) {
   const std::vector<Shape> shapes = makeShapes();
   RandomShapes random(4);
   int pierced = 0;
-  for (int i = 0; i < 3000; ++i) {
+  for (int i = 0; i < samples(3000); ++i) {
     const Shape& a = shapes[random.integer(0, shapes.size() - 1)];
     const Shape& b = shapes[random.integer(0, shapes.size() - 1)];
     const Pose X_BA = random.pose(SIZE);

@@ -4,6 +4,7 @@
 #include "blem_sim/contact/reduction.h"
 #include "contact/stl_soup.h"
 #include "contact_shapes.h"
+#include "support/sanitizers.h"
 
 namespace blem_sim {
 namespace {
@@ -105,7 +106,7 @@ struct Scene {
 Walk walk(const Scene& scene, double overlap, int poses, int steps) {
   RandomShapes random(77);
   Walk all;
-  for (int pose = 0; pose < poses; ++pose) {
+  for (int pose = 0; pose < samples(poses); ++pose) {
     const double tilt = std::array<double, 4>{0, 1e-3, 0.05, 1}[pose % 4];
     Pose X_BA = makePose({random.uniform(-scene.spread, scene.spread), random.uniform(-scene.spread, scene.spread), scene.height},
                          {random.uniform(-tilt, tilt), random.uniform(-tilt, tilt), pose % 8 < 4 ? 0 : random.uniform(-3, 3)});

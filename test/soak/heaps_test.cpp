@@ -12,7 +12,7 @@ class Heap : public ::testing::TestWithParam<int> {};
 TEST_P(Heap, GainsNoEnergyAndLosesNone) {
   Simulator simulator(heapOfCubes(GetParam(), soakSettings()), UriResolver());
   const std::string name = "heap " + std::to_string(GetParam());
-  double energy = simulator.report().energy, gained = -INFINITY, lowest = INFINITY, deepest = 0, slowest_solve = 0;
+  double energy = simulator.report().energy, gained = -INFINITY, lowest = INFINITY, deepest = 0, slowest_solve = 0, residual = 0;
   int gaining = 0, worst_at = 0, shortened = 0;
   StepTimes times;
   for (int k = 0; k < soakSteps(20, 2); ++k) {
@@ -26,6 +26,7 @@ TEST_P(Heap, GainsNoEnergyAndLosesNone) {
     energy = report.energy;
     shortened += report.substeps > 1;
     deepest = std::max(deepest, report.max_of_layer);
+    residual = std::max(residual, report.solver_residual);
     slowest_solve = std::max(slowest_solve, 1e6 * report.profile.seconds[static_cast<int>(Stage::SOLVE)]);
     for (const BodyState& body : report.bodies) lowest = std::min(lowest, body.X_WB.translation().z());
   }
@@ -35,6 +36,7 @@ TEST_P(Heap, GainsNoEnergyAndLosesNone) {
   figure(name + ": lowest centre", lowest, "m");
   figure(name + ": kinetic energy at the end", simulator.world().kineticEnergy(), "J");
   figure(name + ": deepest of layer", deepest, "");
+  figure(name + ": worst residual", residual, "N");
   figure(name + ": steps shortened", shortened, "");
   figure(name + ": slowest solve, wall", slowest_solve, "us");
   times.print(name);
