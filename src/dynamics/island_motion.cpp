@@ -1,8 +1,7 @@
 #include "island_motion.h"
 
+#include <algorithm>
 #include <cmath>
-
-#include "joint_motion.h"
 
 namespace blem_sim {
 namespace {

@@ -66,6 +66,18 @@ TEST(ArticulatedLoop, StaysClosedWhileItsCrankTurns) {
   EXPECT_NEAR(bar.world.jointState(0).velocity, 3, 0.3);
 }
 
+// Fast enough for the bend of the paths to matter.
+TEST(ArticulatedLoop, StaysClosedWhileItSwingsFreely) {
+  FourBar bar;
+  double fastest = 0;
+  for (int i = 0; i < 3000; ++i) {
+    ASSERT_TRUE(bar.world.step(DT, {}, bar.drives).finite);
+    ASSERT_LT(bar.gap(), 1e-6) << i;
+    fastest = std::max(fastest, std::abs(bar.world.jointState(0).velocity));
+  }
+  EXPECT_GT(fastest, 5);
+}
+
 // Held still, the two pins of the world carry all of it; the closing joint's wrench is part of the balance.
 TEST(ArticulatedLoop, CarriesItsWeight) {
   FourBar bar;
