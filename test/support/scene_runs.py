@@ -1,0 +1,52 @@
+"""Worlds of the shared data through blem_sim_run, for the scripts that validate."""
+import argparse
+import csv
+import json
+import os
+import pathlib
+import subprocess
+import sys
+
+import yaml
+
+import convert_world
+from shared_data import SOURCE_DIR, package_options, shared_data
+
+
+def program():
+    """blem_sim_run: BLEM_SIM_RUN, else that of scripts/build; ends the script if there is none."""
+    built = SOURCE_DIR / "build_release" / "devel" / "lib" / "blem_sim" / "blem_sim_run"
+    path = os.environ.get("BLEM_SIM_RUN", str(built))
+    if not os.access(path, os.X_OK):
+        sys.exit("%s: %s is not there; run scripts/build, or set BLEM_SIM_RUN" % (pathlib.Path(sys.argv[0]).name, path))
+    return path
+
+
+def world(name, **choices):
+    """A world as a configuration; choices are those of convert_world."""
+    options = argparse.Namespace(motor="implicit_pd", sensors=True, self_collision=False, start_at=None)
+    options.__dict__.update(choices)
+    with open(str(shared_data("worlds/%s.yaml" % name))) as stream:
+        return convert_world.convert(yaml.safe_load(stream), options)
+
+
+def execute(folder, config, duration, options=(), timeout=None):
+    """Runs a configuration in a folder. Returns (exit status, report or None, what was said on standard error)."""
+    with open(str(folder / "config.yaml"), "w") as stream:
+        yaml.safe_dump(config, stream, sort_keys=False)
+    report = folder / "report.json"
+    if report.exists():
+        report.unlink()
+    command = [program(), str(folder / "config.yaml"), "--duration", str(duration), "--report", str(report)] + package_options()
+    done = subprocess.run(command + list(options), stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True, timeout=timeout)
+    return done.returncode, json.loads(report.read_text()) if report.exists() else None, done.stderr.strip()
+
+
+def simulate(folder, config, duration, csv_rate, options=()):
+    """Runs a configuration. Returns its report and its rows over time, as texts by column; raises RuntimeError with what was said."""
+    table = folder / "state.csv"
+    status, report, said = execute(folder, config, duration, ["--csv", str(table), "--csv-rate", str(csv_rate)] + list(options))
+    if status:
+        raise RuntimeError("exit %d: %s" % (status, said))
+    with open(str(table)) as stream:
+        return report, list(csv.DictReader(stream))
