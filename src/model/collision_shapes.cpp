@@ -82,7 +82,10 @@ CollisionShape CollisionShapeReader::readMesh(const urdf::Mesh& mesh, const Pose
     const std::string file = resolver_.resolve(mesh.filename, base_);
     const auto key = std::make_tuple(file, mesh.scale.x, mesh.scale.y, mesh.scale.z);
     auto loaded = loaded_.find(key);
-    if (loaded == loaded_.end()) loaded = loaded_.emplace(key, loadSurface(file, Vector3(mesh.scale.x, mesh.scale.y, mesh.scale.z))).first;
+    if (loaded == loaded_.end()) {
+      const Vector3 scale(mesh.scale.x, mesh.scale.y, mesh.scale.z);
+      loaded = loaded_.emplace(key, loadSurface(file, scale, {}, mending_)).first;
+    }
     CollisionShape shape;
     shape.mesh = loaded->second.mesh;
     shape.radius = loaded->second.radius;

@@ -19,7 +19,8 @@ Pose toPose(const urdf::Pose& pose);
 class CollisionShapeReader {
  public:
   /** @param base directory for relative mesh paths; both must outlive the reader */
-  CollisionShapeReader(const UriResolver& resolver, const std::string& base) : resolver_(resolver), base_(base) {}
+  CollisionShapeReader(const UriResolver& resolver, const std::string& base, Mending mending)
+      : resolver_(resolver), base_(base), mending_(mending) {}
 
   /**
    * Spheres become points, a cylinder with a sphere of its radius at each end becomes a segment, the rest triangles; in the link's frame.
@@ -33,6 +34,7 @@ class CollisionShapeReader {
 
   const UriResolver& resolver_;
   const std::string& base_;
+  const Mending mending_;
   std::map<std::tuple<std::string, double, double, double>, LoadedSurface> loaded_;  // by file and scale
 };
 

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "blem_sim/geometry/mesh_mending.h"
 #include "blem_sim/model/loaders.h"
 #include "surface_soup.h"
 
@@ -84,6 +85,19 @@ TriangleMesh cleanSoup(const SurfaceSoup& soup, MeshReport* report) {
   return cleaned;
 }
 
+/** mendMesh, told in words. */
+TriangleMesh mended(const TriangleMesh& cleaned, MeshReport* report) {
+  constexpr double MICRO = 1e-6;
+  MeshMending what;
+  TriangleMesh mesh = mendMesh(cleaned, report, &what);
+  if (what.cracks > 0) report->notes.push_back(fmt::format("{} cracks up to {:.3g} um closed", what.cracks, what.widest_crack / MICRO));
+  if (what.split_edges > 0) report->notes.push_back(fmt::format("{} edges split at T-junctions", what.split_edges));
+  if (what.flattened > 0)
+    report->notes.push_back(
+        fmt::format("{} vertices moved by up to {:.3g} um onto {} planes", what.flattened, what.farthest / MICRO, what.planes));
+  return mesh;
+}
+
 void noteDropped(MeshReport* report) {
   if (report->nonfinite > 0)
     report->notes.push_back(fmt::format("{} elements with a coordinate that is not finite dropped", report->nonfinite));
@@ -95,7 +109,7 @@ void noteDropped(MeshReport* report) {
 
 }  // namespace
 
-LoadedSurface loadSurface(const std::string& file, const Vector3& scale, const CloudOptions& cloud) {
+LoadedSurface loadSurface(const std::string& file, const Vector3& scale, const CloudOptions& cloud, Mending mending) {
   checkOptions(file, scale, cloud);
   SurfaceSoup soup = readSurface(file);
   scaleSoup(scale, &soup.mesh);
@@ -106,6 +120,7 @@ LoadedSurface loadSurface(const std::string& file, const Vector3& scale, const C
   const bool points = wantsPoints(soup, cloud.as);
   if (!points && soup.mesh.elements.empty()) joinCloud(cloud.max_edge, &soup, &surface.report);
   TriangleMesh cleaned = points ? pointCloudMesh(soup.mesh.vertices, &surface.report) : cleanSoup(soup, &surface.report);
+  if (!points && mending == Mending::ON) cleaned = mended(cleaned, &surface.report);
   if (points) {
     surface.radius = surface.report.boundary_width = cloud.point_radius;
     surface.report.notes.push_back(fmt::format("simulated as points of radius {} m", cloud.point_radius));

@@ -149,14 +149,15 @@ void addNotes(RobotModel* robot) {
 
 }  // namespace
 
-RobotModel loadUrdf(const std::string& xml, const std::string& source, const UriResolver& resolver, const std::string& base) {
+RobotModel loadUrdf(const std::string& xml, const std::string& source, const UriResolver& resolver, const std::string& base,
+                    Mending mending) {
   const UrdfOutline outline = checkUrdf(xml, source);
   const urdf::ModelInterfaceSharedPtr model = parseQuietly(xml, source);
   RobotModel robot;
   robot.name = model->getName();
   robot.source = source;
   robot.notes = outline.notes;
-  CollisionShapeReader shapes(resolver, base);
+  CollisionShapeReader shapes(resolver, base, mending);
   readLinks(*model, outline, &shapes, &robot);
   robot.root = robot.linkIndex(model->getRoot()->name);
   std::vector<JointModel> joints;
@@ -166,9 +167,9 @@ RobotModel loadUrdf(const std::string& xml, const std::string& source, const Uri
   return robot;
 }
 
-RobotModel loadUrdfFile(const std::string& file, const UriResolver& resolver) {
+RobotModel loadUrdfFile(const std::string& file, const UriResolver& resolver, Mending mending) {
   const std::string base = std::filesystem::absolute(file).parent_path().string();
-  return loadUrdf(readBytes(file), file, resolver, base);
+  return loadUrdf(readBytes(file), file, resolver, base, mending);
 }
 
 }  // namespace blem_sim

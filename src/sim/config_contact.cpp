@@ -15,6 +15,9 @@ ContactConfig readContact(YamlReader reader) {
   reader.read("max_contacts_per_object", &contact.max_contacts_per_object, 1);
   const std::vector<FrictionRule> rules = {FrictionRule::MIN, FrictionRule::HARMONIC_MEAN, FrictionRule::MEAN, FrictionRule::PRODUCT};
   if (const auto rule = reader.choice("friction_rule", {"min", "harmonic_mean", "mean", "product"})) contact.friction_rule = rules[*rule];
+  bool mend = true;
+  reader.read("mend_meshes", &mend);
+  contact.mending = mend ? Mending::ON : Mending::OFF;
   std::vector<std::string> reductions;
   for (const Reduction& reduction : reductionTable()) reductions.push_back(reduction.name);
   if (const auto reduction = reader.choice("reduction", reductions)) contact.reduction = reductions[*reduction];

@@ -9,7 +9,7 @@ SharedSurface SurfaceLibrary::load(const std::string& file, const Vector3& scale
                                       cloud.point_radius, cloud.max_edge);
   Entry& entry = files_[key];
   if (const auto held = entry.geometry.lock()) return {held, entry.radius, entry.report};
-  const LoadedSurface surface = loadSurface(file, scale, cloud);
+  const LoadedSurface surface = loadSurface(file, scale, cloud, mending_);
   const auto made = geometry(surface.mesh);
   entry = {made, surface.radius, surface.report};
   return {made, surface.radius, surface.report};

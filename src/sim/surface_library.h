@@ -20,6 +20,7 @@ struct SharedSurface {
 /** Gives the same geometry for the same file and settings, or the same mesh, while anybody holds it. */
 class SurfaceLibrary {
  public:
+  explicit SurfaceLibrary(Mending mending = Mending::ON) : mending_(mending) {}
   /** @throws InputError as loadSurface does */
   SharedSurface load(const std::string& file, const Vector3& scale, const CloudOptions& cloud);
   std::shared_ptr<const CollisionGeometry> geometry(const std::shared_ptr<const TriangleMesh>& mesh);
@@ -30,6 +31,7 @@ class SurfaceLibrary {
     double radius = 0;
     MeshReport report;
   };
+  const Mending mending_;
   std::map<std::string, Entry> files_;
   std::map<const TriangleMesh*, std::weak_ptr<const CollisionGeometry>> meshes_;  ///< a mesh lives as long as its geometry
 };

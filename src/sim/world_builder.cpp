@@ -101,8 +101,8 @@ std::shared_ptr<const RobotModel> WorldBuilder::description(const RobotConfig& c
   std::weak_ptr<const RobotModel>& held = descriptions_[key];
   if (auto known = held.lock()) return known;
   const std::string source = config.description_param.empty() ? "robots: " + config.name : config.description_param;
-  const auto model =
-      std::make_shared<const RobotModel>(text ? loadUrdf(key, source, resolver_, base_directory_) : loadUrdfFile(key, resolver_));
+  const auto model = std::make_shared<const RobotModel>(text ? loadUrdf(key, source, resolver_, base_directory_, contact_.mending)
+                                                             : loadUrdfFile(key, resolver_, contact_.mending));
   held = model;
   return model;
 }
@@ -157,7 +157,7 @@ void WorldBuilder::addMeshObject(const ObjectConfig& config, SimulatedWorld* wor
 
 void WorldBuilder::addUrdfObject(const ObjectConfig& config, SimulatedWorld* world) {
   const std::string where = "objects: " + config.name;
-  const RobotModel model = loadUrdfFile(resolver_.resolve(config.urdf, base_directory_), resolver_);
+  const RobotModel model = loadUrdfFile(resolver_.resolve(config.urdf, base_directory_), resolver_, contact_.mending);
   const LumpedRobot lumped = lumpFixedJoints(model, {}, false);
   if (lumped.bodies.size() != 1)
     throw InputError(fmt::format("{}: urdf: {} has {} bodies that move against each other; load it under robots", where, model.source,

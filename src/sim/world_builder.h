@@ -17,7 +17,7 @@ class WorldBuilder {
  public:
   /** @param base_directory that relative files are meant against */
   WorldBuilder(const ContactConfig& contact, std::string base_directory, const UriResolver& resolver)
-      : contact_(contact), base_directory_(std::move(base_directory)), resolver_(resolver) {}
+      : contact_(contact), base_directory_(std::move(base_directory)), resolver_(resolver), surfaces_(contact.mending) {}
 
   void addEnvironment(const EnvironmentConfig& config, SimulatedWorld* world);
   void addRobot(const RobotConfig& config, SimulatedWorld* world);

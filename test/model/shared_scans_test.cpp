@@ -19,7 +19,7 @@ class SharedScans : public testing::TestWithParam<ScanRow> {};
 TEST_P(SharedScans, loadWithTheirCounts) {
   const ScanRow& row = GetParam();
   SKIP_WITHOUT_SHARED_DATA(row.file);
-  const MeshReport report = loadSurface(*sharedData(row.file)).report;
+  const MeshReport report = loadSurface(*sharedData(row.file), Vector3::Ones(), {}, Mending::OFF).report;
   EXPECT_EQ(report.triangles, row.triangles - row.dropped);
   EXPECT_EQ(report.degenerate + report.duplicate, row.dropped);
   EXPECT_EQ(report.vertices, row.vertices);

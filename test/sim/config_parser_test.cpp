@@ -82,6 +82,7 @@ TEST(Manual, SaysWhatHoldsWithoutIt) {
   EXPECT_EQ(manual_config.contact.max_contacts_per_robot, defaults.contact.max_contacts_per_robot);
   EXPECT_EQ(manual_config.contact.max_contacts_per_object, defaults.contact.max_contacts_per_object);
   EXPECT_EQ(manual_config.contact.reduction, defaults.contact.reduction);
+  EXPECT_EQ(manual_config.contact.mending, defaults.contact.mending);
   EXPECT_EQ(manual_config.rates.clock, defaults.rates.clock);
   EXPECT_EQ(manual_config.rates.joint_state, defaults.rates.joint_state);
   EXPECT_EQ(manual_config.rates.tf, defaults.rates.tf);

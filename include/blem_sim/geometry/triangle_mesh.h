@@ -32,8 +32,8 @@ struct TriangleMesh {
 struct MeshReport {
   std::string name;    ///< who uses it: "hubo::Body_LAR", "ladder"
   std::string source;  ///< file or primitive it came from
-  int vertices = 0;    ///< after cleaning
-  int triangles = 0;   ///< after cleaning
+  int vertices = 0;    ///< after cleaning and mending
+  int triangles = 0;   ///< after cleaning and mending
   int segments = 0;
   int points = 0;
   int degenerate = 0;              ///< triangles without area, dropped
@@ -44,7 +44,7 @@ struct MeshReport {
   int open_edges = 0;              ///< edges with one triangle
   int nonmanifold_edges = 0;       ///< edges with three or more triangles
   bool closed = false;             ///< every edge has two triangles
-  Box extents;                     ///< [m], mesh frame, after cleaning
+  Box extents;                     ///< [m], mesh frame, after cleaning and mending
   double boundary_width = 0;       ///< [m] r that contact uses
   std::vector<std::string> notes;  ///< what was done, in words
 };

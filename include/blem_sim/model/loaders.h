@@ -32,30 +32,35 @@ struct CloudOptions {
   double max_edge = 0.05;       ///< [m] as: mesh; longest edge that joins neighbours of an organized cloud or of the projection mesher
 };
 
+/** Are meshes for contact mended after cleaning (mendMesh), or taken as they are? */
+enum class Mending { ON, OFF };
+
 /** A mesh or a cloud as contact wants it. */
 struct LoadedSurface {
-  std::shared_ptr<const TriangleMesh> mesh;  ///< cleaned, scaled, mesh frame
+  std::shared_ptr<const TriangleMesh> mesh;  ///< scaled, cleaned, mended, mesh frame
   double radius = 0;                         ///< [m] > 0 for clouds as points: their boundary
   MeshReport report;
 };
 
 /**
  * Loads triangles (STL, PLY, OBJ, OFF, DAE by assimp: node transforms, DAE units and up-axis, polygons split) or points (PCD, PLY
- * without faces), scales and cleans them. A mirroring scale or node keeps the outside outside.
+ * without faces), scales, cleans and mends them. A mirroring scale or node keeps the outside outside.
  * COLLADA as in rviz and MoveIt: <unit meter> is applied, <up_axis> is not, so that x, y, z of the file stay x, y, z of the link.
  * A PCD's VIEWPOINT is not applied either; the report says so.
  * @param file resolved path @param scale factors per axis, none zero @param cloud for files of points, or a mesh's vertices as points
  * @throws InputError: missing, unreadable, truncated, damaged, empty after cleaning, unknown extension.
  */
-LoadedSurface loadSurface(const std::string& file, const Vector3& scale = Vector3::Ones(), const CloudOptions& cloud = {});
+LoadedSurface loadSurface(const std::string& file, const Vector3& scale = Vector3::Ones(), const CloudOptions& cloud = {},
+                          Mending mending = Mending::ON);
 
 /**
  * Parses URDF text. Limits of 1e6 and more mean none. What is not simulated (safety_controller, gazebo, transmission ...) is noted.
  * @param source for messages; @param base directory for relative mesh paths. @throws InputError
  */
-RobotModel loadUrdf(const std::string& xml, const std::string& source, const UriResolver& resolver, const std::string& base = "");
+RobotModel loadUrdf(const std::string& xml, const std::string& source, const UriResolver& resolver, const std::string& base = "",
+                    Mending mending = Mending::ON);
 
 /** Reads the file and parses it. */
-RobotModel loadUrdfFile(const std::string& file, const UriResolver& resolver);
+RobotModel loadUrdfFile(const std::string& file, const UriResolver& resolver, Mending mending = Mending::ON);
 
 }  // namespace blem_sim

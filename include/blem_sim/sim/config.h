@@ -30,6 +30,7 @@ struct ContactConfig {
   int max_contacts_per_robot = 50;
   int max_contacts_per_object = 20;
   std::string reduction = "hull";
+  Mending mending = Mending::ON;  ///< of the meshes of robots, objects and environments
 };
 
 struct EnvironmentConfig {

@@ -1,0 +1,64 @@
+// Edges with one triangle, and the vertices that mending makes one.
+#pragma once
+
+#include <vector>
+
+#include "blem_sim/geometry/mesh_mending.h"
+#include "blem_sim/geometry/mesh_topology.h"
+
+namespace blem_sim {
+
+/** An edge with one triangle. */
+struct Border {
+  int face, side;    ///< from corner `side` of the face to the next one
+  int a, b;          ///< its vertices
+  double length;     ///< [m]
+  Vector3 inward;    ///< unit, in the triangle's plane, square to the edge
+  Vector3i corners;  ///< of the triangle
+};
+
+std::vector<Border> bordersOf(const TriangleMesh& mesh, const MeshTopology& topology);
+
+/** May the surface go on from one to the other? Not if the triangles lie on one another, nor if they are neighbours already. */
+bool mayContinue(const Border& e, const Border& f);
+
+/** How far apart [m] their ends may be: CRACK_WIDTH, less for short edges. */
+double reachOf(const Border& e, const Border& f);
+
+/** Are they ends of one edge of the mesh? */
+bool areNeighbours(const MeshTopology& topology, int vertex, int other);
+
+/** Sets of vertices that become one, at the mean of their places. */
+class VertexClusters {
+ public:
+  explicit VertexClusters(int vertices);
+  int root(int vertex);
+  void join(int vertex, int other);
+
+  /** The mesh with one vertex per cluster; triangles that lose a corner are dropped. @param places of the vertices before any joining */
+  TriangleMesh applied(const TriangleMesh& mesh, const std::vector<Vector3>& places);
+  /** [m] per vertex: how far the farthest of its cluster is from it. @param joined what applied() gave */
+  std::vector<double> spreads(const TriangleMesh& joined, const std::vector<Vector3>& places);
+
+ private:
+  std::vector<int> parent_;
+};
+
+/** Joins the ends of borders that lie side by side from end to end. */
+void joinMatching(const TriangleMesh& mesh, const MeshTopology& topology, const std::vector<Border>& borders, VertexClusters* clusters,
+                  MeshMending* what);
+
+/** A vertex on the inside of a border. */
+struct EdgeSplit {
+  int face, side;
+  int vertex;
+};
+
+/** Joins ends and finds splits where borders overlap in part. */
+std::vector<EdgeSplit> joinOverlapping(const TriangleMesh& mesh, const MeshTopology& topology, const std::vector<Border>& borders,
+                                       VertexClusters* clusters, MeshMending* what);
+
+/** The mesh with triangles cut from splits to the opposite corners; a split at a corner is none. */
+TriangleMesh splitMesh(const TriangleMesh& mesh, std::vector<EdgeSplit> splits, MeshMending* what);
+
+}  // namespace blem_sim

@@ -1,0 +1,307 @@
+#include "mesh_planes.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace blem_sim {
+namespace {
+
+/** Two triangles of height h whose corners are off a plane by PLANE_DEVIATION bend by up to this [m] / h [rad] ... */
+constexpr double BEND_HEIGHT = 4 * PLANE_DEVIATION;
+/** ... but by no more than this [rad], however low they are: a chamfer is no noise. */
+constexpr double MAX_BEND = 0.5;
+/** A crease bends by this many times what noise can, or by MIN_CREASE [rad]; between the two a curved surface is likelier. */
+constexpr double CREASE = 3;
+constexpr double MIN_CREASE = 0.7;
+/** Part of a patch's outline that may be neither crease nor open border. */
+constexpr double MAX_DOUBTFUL = 0.2;
+/** Width of a patch over its deviation, at least. */
+constexpr double MIN_WIDTH = 500;
+/** A few triangles of a scan or a curved surface lie in a plane by chance now and then; so many triangles do not. */
+constexpr int MANY_FACES = 24;
+/** Fewer must be closer to their plane for their size, and only this part of their outline may bend by less than MIN_CREASE. */
+constexpr double MIN_WIDTH_OF_FEW = 50000;
+constexpr double MAX_BLUNT = 0.1;
+/** Vertices that no crack moves go no farther than this many times the deviation of their patches. */
+constexpr double MAX_MOVE = 4;
+/** Planes whose normals differ by less than this have no intersection worth the name. */
+constexpr double PARALLEL = 1e-3;
+
+/** Triangles that continue one another, with sums for their least-squares plane. */
+struct Patch {
+  Vector3 reference = Vector3::Zero();  ///< [m] near the patch, to sum from
+  double area = 0;
+  Vector3 first = Vector3::Zero();   ///< [m^3]
+  Matrix3 second = Matrix3::Zero();  ///< [m^4]
+  Vector3 centre = Vector3::Zero(), normal = Vector3::Zero();
+  double width = 0;                             ///< [m] of the rectangle that has the same second moments
+  double deviation = 0;                         ///< [m] of the farthest vertex
+  double outline = 0, doubtful = 0, blunt = 0;  ///< [m]
+  double noise = 0;                             ///< [m] twice the largest noise known of its vertices
+  int faces = 0;
+  bool rough = false;  ///< has an edge inside that is not flat
+  bool plane = false;
+};
+
+class PlaneFinder {
+ public:
+  PlaneFinder(const MeshTopology& topology, const TriangleMesh& mesh, const std::vector<double>& noise)
+      : topology_(topology), mesh_(mesh), noise_(noise), parent_(topology.patch), bends_(topology.edges.size(), Bend::NONE) {}
+
+  /** @return false if nothing is to be done */
+  bool find() {
+    joinFaces();
+    if (rough_edges_.empty()) return false;
+    numberPatches();
+    addOutlines();
+    for (const int edge : rough_edges_) patches_[patch_of_[faceOf(edge)]].rough = true;
+    for (std::size_t i = 0; i < patch_of_.size(); ++i) addFace(static_cast<int>(i));
+    for (Patch& patch : patches_) fit(&patch);
+    measureDeviations();
+    bool found = false;
+    for (Patch& patch : patches_) {
+      patch.plane = isPlane(patch);
+      found = found || (patch.plane && patch.rough);
+    }
+    return found;
+  }
+
+  std::vector<Patch>& patches() { return patches_; }
+  static constexpr int NO_PATCH = -1;
+  int patchOf(int element) const { return patch_of_[element]; }
+
+ private:
+  enum class Bend : std::uint8_t { NONE, SMOOTH, DOUBTFUL, CREASE, SHARP };
+
+  int faceOf(int edge) const { return topology_.edge_faces[topology_.edge_face_begin[edge]]; }
+
+  int root(int i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+
+  double height(int edge, int face, const Vector3& inward) const {
+    const std::array<int, 2>& ends = topology_.edges[edge];
+    const int opposite = mesh_.elements[face].sum() - ends[0] - ends[1];
+    return (mesh_.vertices[opposite] - mesh_.vertices[ends[0]]).dot(inward);
+  }
+
+  Bend bendOf(int edge, int face, int other) const {
+    if (std::abs(topology_.normals[face].dot(topology_.normals[other])) < std::cos(MIN_CREASE)) return Bend::SHARP;
+    const Vector3 u = topology_.inward(mesh_, edge, face), v = topology_.inward(mesh_, edge, other);
+    if (u.dot(v) > 0) return Bend::SHARP;
+    const double bend = (u + v).norm(), noise = BEND_HEIGHT / std::min(height(edge, face, u), height(edge, other, v));
+    if (bend <= std::min(noise, MAX_BEND)) return Bend::SMOOTH;
+    if (bend <= std::min(CREASE * noise, MIN_CREASE)) return Bend::DOUBTFUL;
+    return bend <= MIN_CREASE ? Bend::CREASE : Bend::SHARP;
+  }
+
+  /** Starts from the flat patches of the topology. */
+  void joinFaces() {
+    for (int edge = 0; edge < static_cast<int>(topology_.edges.size()); ++edge) {
+      const int begin = topology_.edge_face_begin[edge], end = topology_.edge_face_begin[edge + 1];
+      if (topology_.edge_flat[edge] || end - begin < 2) continue;
+      bool smooth = false;
+      for (int i = begin; i < end; ++i) {
+        for (int j = i + 1; j < end; ++j) {
+          const int face = topology_.edge_faces[i], other = topology_.edge_faces[j];
+          const Bend bend = bendOf(edge, face, other);
+          bends_[edge] = std::max(bends_[edge], bend);
+          if (bend != Bend::SMOOTH) continue;
+          smooth = true;
+          const int a = root(face), b = root(other);
+          parent_[std::max(a, b)] = std::min(a, b);
+        }
+      }
+      if (smooth && end - begin == 2) rough_edges_.push_back(edge);
+    }
+  }
+
+  /** Triangles alone are no patches. */
+  void numberPatches() {
+    std::vector<int> faces(parent_.size(), 0);
+    for (int i = 0; i < static_cast<int>(parent_.size()); ++i) ++faces[root(i)];
+    patch_of_.assign(parent_.size(), NO_PATCH);
+    for (int i = 0; i < static_cast<int>(parent_.size()); ++i) {
+      const int first = root(i);
+      if (faces[first] == 1) continue;
+      if (first == i) {
+        patch_of_[i] = static_cast<int>(patches_.size());
+        patches_.emplace_back();
+        patches_.back().reference = mesh_.vertices[mesh_.elements[i][0]];
+        patches_.back().faces = faces[i];
+      } else {
+        patch_of_[i] = patch_of_[first];
+      }
+    }
+  }
+
+  /** How much of a patch's outline is crease or border, and how much might be the way a curved surface goes on. */
+  void addOutlines() {
+    for (int edge = 0; edge < static_cast<int>(topology_.edges.size()); ++edge) {
+      const int begin = topology_.edge_face_begin[edge], end = topology_.edge_face_begin[edge + 1];
+      if (topology_.edge_flat[edge] || begin == end) continue;
+      const auto first = topology_.edge_faces.begin() + begin, last = topology_.edge_faces.begin() + end;
+      const int patch = patch_of_[*first];
+      const bool inside = end - begin > 1 && std::all_of(first, last, [&](int face) { return patch_of_[face] == patch; });
+      if (inside) continue;
+      const double length = (mesh_.vertices[topology_.edges[edge][1]] - mesh_.vertices[topology_.edges[edge][0]]).norm();
+      for (auto face = first; face != last; ++face) {
+        if (patch_of_[*face] == NO_PATCH) continue;
+        Patch& own = patches_[patch_of_[*face]];
+        own.outline += length;
+        if (bends_[edge] == Bend::DOUBTFUL) own.doubtful += length;
+        if (bends_[edge] != Bend::SHARP) own.blunt += length;
+      }
+    }
+  }
+
+  void addFace(int face) {
+    if (patch_of_[face] == NO_PATCH) return;
+    Patch& patch = patches_[patch_of_[face]];
+    const Vector3i& e = mesh_.elements[face];
+    const Vector3 a = mesh_.vertices[e[0]] - patch.reference, b = mesh_.vertices[e[1]] - patch.reference,
+                  c = mesh_.vertices[e[2]] - patch.reference, sum = a + b + c;
+    const double area = 0.5 * (b - a).cross(c - a).norm();
+    patch.area += area;
+    patch.first += area / 3 * sum;
+    patch.second += area / 12 * (a * a.transpose() + b * b.transpose() + c * c.transpose() + sum * sum.transpose());
+  }
+
+  static void fit(Patch* patch) {
+    const Vector3 mean = patch->first / patch->area;
+    const Matrix3 covariance = patch->second / patch->area - mean * mean.transpose();
+    const Eigen::SelfAdjointEigenSolver<Matrix3> eigen(covariance);
+    patch->centre = patch->reference + mean;
+    patch->normal = eigen.eigenvectors().col(0);
+    patch->width = std::sqrt(12 * std::max(0.0, eigen.eigenvalues()[1]));
+  }
+
+  void measureDeviations() {
+    for (std::size_t i = 0; i < patch_of_.size(); ++i) {
+      if (patch_of_[i] == NO_PATCH) continue;
+      Patch& patch = patches_[patch_of_[i]];
+      for (int k = 0; k < 3; ++k) {
+        const int vertex = mesh_.elements[i][k];
+        const double off = std::abs(patch.normal.dot(mesh_.vertices[vertex] - patch.centre));
+        patch.deviation = std::max(patch.deviation, off);
+        if (!noise_.empty()) patch.noise = std::max(patch.noise, 2 * noise_[vertex]);
+      }
+    }
+  }
+
+  static bool isPlane(const Patch& patch) {
+    if (patch.deviation > PLANE_DEVIATION || MIN_WIDTH * patch.deviation > patch.width) return false;
+    if (patch.doubtful > MAX_DOUBTFUL * patch.outline) return false;
+    const bool has_edges = MIN_WIDTH_OF_FEW * patch.deviation <= patch.width && patch.blunt <= MAX_BLUNT * patch.outline;
+    return patch.faces >= MANY_FACES || patch.deviation <= patch.noise || has_edges;
+  }
+
+  const MeshTopology& topology_;
+  const TriangleMesh& mesh_;
+  const std::vector<double>& noise_;
+  std::vector<int> parent_;
+  std::vector<Bend> bends_;
+  std::vector<int> rough_edges_;
+  std::vector<int> patch_of_;
+  std::vector<Patch> patches_;
+};
+
+/** Which planes each vertex lies on. */
+class VertexPlanes {
+ public:
+  VertexPlanes(const TriangleMesh& mesh, const std::vector<double>& noise, PlaneFinder* finder)
+      : mesh_(mesh), noise_(noise), patches_(finder->patches()) {
+    for (int i = 0; i < static_cast<int>(mesh.elements.size()); ++i) {
+      const int patch = finder->patchOf(i);
+      if (patch == PlaneFinder::NO_PATCH || !patches_[patch].plane) continue;
+      for (int k = 0; k < 3; ++k) pairs_.emplace_back(mesh.elements[i][k], patch);
+    }
+    std::sort(pairs_.begin(), pairs_.end());
+    pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
+  }
+
+  /** Places on the planes; patches that would move a vertex too far are given up, until none does. */
+  std::vector<std::pair<int, Vector3>> targets() {
+    while (true) {
+      std::vector<std::pair<int, Vector3>> places;
+      bool given_up = false;
+      for (std::size_t begin = 0, end = 0; begin < pairs_.size(); begin = end) {
+        while (end < pairs_.size() && pairs_[end].first == pairs_[begin].first) ++end;
+        if (!onRoughPlane(begin, end)) continue;
+        const Vector3 move = moveOnto(begin, end);
+        if (move.norm() <= longestMove(begin, end)) {
+          places.emplace_back(pairs_[begin].first, mesh_.vertices[pairs_[begin].first] + move);
+        } else {
+          given_up = true;
+          for (std::size_t i = begin; i < end; ++i) doomed_.push_back(pairs_[i].second);
+        }
+      }
+      if (!given_up) return places;
+      for (const int patch : doomed_) patches_[patch].plane = patches_[patch].plane && !patches_[patch].rough;
+      doomed_.clear();
+    }
+  }
+
+ private:
+  bool onRoughPlane(std::size_t begin, std::size_t end) const {
+    return std::any_of(pairs_.begin() + begin, pairs_.begin() + end,
+                       [this](const auto& pair) { return patches_[pair.second].plane && patches_[pair.second].rough; });
+  }
+
+  double longestMove(std::size_t begin, std::size_t end) const {
+    if (!noise_.empty() && noise_[pairs_[begin].first] > 0) return 2 * PLANE_DEVIATION;
+    double deviation = 0;
+    for (std::size_t i = begin; i < end; ++i) deviation = std::max(deviation, patches_[pairs_[i].second].deviation);
+    return std::min(MAX_MOVE * deviation, 2 * PLANE_DEVIATION);
+  }
+
+  /** The shortest way onto all planes of a vertex, or as near as they let. */
+  Vector3 moveOnto(std::size_t begin, std::size_t end) const {
+    const Vector3& p = mesh_.vertices[pairs_[begin].first];
+    Eigen::Matrix<double, Eigen::Dynamic, 3> normals(end - begin, 3);
+    Eigen::VectorXd gaps(end - begin);
+    int count = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Patch& patch = patches_[pairs_[i].second];
+      if (!patch.plane) continue;
+      normals.row(count) = patch.normal.transpose();
+      gaps[count++] = patch.normal.dot(patch.centre - p);
+    }
+    if (count == 1) return gaps[0] * normals.row(0).transpose();
+    Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix<double, Eigen::Dynamic, 3>> onto;
+    onto.setThreshold(PARALLEL);
+    onto.compute(normals.topRows(count));
+    const Eigen::VectorXd here = gaps.head(count);
+    const Vector3 move = onto.solve(here);
+    const Eigen::VectorXd left = here - normals.topRows(count) * move;
+    return move + onto.solve(left);
+  }
+
+  const TriangleMesh& mesh_;
+  const std::vector<double>& noise_;
+  std::vector<Patch>& patches_;
+  std::vector<std::pair<int, int>> pairs_;  // vertex, patch
+  std::vector<int> doomed_;
+};
+
+}  // namespace
+
+void flattenPlanes(const MeshTopology& topology, const std::vector<double>& noise, TriangleMesh* mesh, MeshMending* what) {
+  PlaneFinder finder(topology, *mesh, noise);
+  if (!finder.find()) return;
+  for (const auto& [vertex, place] : VertexPlanes(*mesh, noise, &finder).targets()) {
+    const double move = (place - mesh->vertices[vertex]).norm();
+    if (move == 0) continue;
+    ++what->flattened;
+    what->farthest = std::max(what->farthest, move);
+    mesh->vertices[vertex] = place;
+  }
+  for (const Patch& patch : finder.patches()) what->planes += patch.plane && patch.rough;
+}
+
+}  // namespace blem_sim
