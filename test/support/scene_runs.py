@@ -42,11 +42,40 @@ def execute(folder, config, duration, options=(), timeout=None):
     return done.returncode, json.loads(report.read_text()) if report.exists() else None, done.stderr.strip()
 
 
-def simulate(folder, config, duration, csv_rate, options=()):
-    """Runs a configuration. Returns its report and its rows over time, as texts by column; raises RuntimeError with what was said."""
+def simulate(folder, config, duration, csv_rate, options=(), wanted=None):
+    """Runs a configuration. Returns its report and its rows over time, as texts by column; raises RuntimeError with what was said.
+
+    wanted: which columns to keep beside the time, as a function of the name; all of them if None.
+    """
     table = folder / "state.csv"
     status, report, said = execute(folder, config, duration, ["--csv", str(table), "--csv-rate", str(csv_rate)] + list(options))
     if status:
         raise RuntimeError("exit %d: %s" % (status, said))
     with open(str(table)) as stream:
-        return report, list(csv.DictReader(stream))
+        rows = csv.reader(stream)
+        names = next(rows)
+        kept = [k for k, name in enumerate(names) if k == 0 or wanted is None or wanted(name)]
+        return report, [{names[k]: row[k] for k in kept} for row in rows]
+
+
+def read_motion(name):
+    """A motion of the shared data as a list of (time, positions by joint); of rows with the same time the first."""
+    rows = []
+    with open(str(shared_data("motions/%s.csv" % name))) as stream:
+        for row in csv.DictReader(stream):
+            if not rows or float(row["time"]) > rows[-1][0]:
+                rows.append((float(row["time"]), {key: float(value) for key, value in row.items() if key.endswith("_joint")}))
+    return rows
+
+
+def write_trajectory(path, rows):
+    """A list of (time, positions by joint) for --trajectory, with velocities from differences: the run goes along cubics."""
+    names = list(rows[0][1])
+    with open(str(path), "w") as stream:
+        table = csv.writer(stream)
+        table.writerow(["time"] + names + [name + "_vel" for name in names])
+        for k, (time, positions) in enumerate(rows):
+            (t0, before), (t1, after) = rows[max(0, k - 1)], rows[min(len(rows) - 1, k + 1)]
+            still = k in (0, len(rows) - 1)
+            rates = [0.0 if still else (after[name] - before[name]) / (t1 - t0) for name in names]
+            table.writerow(["%.6f" % time] + ["%.9f" % positions[name] for name in names] + ["%.9f" % rate for rate in rates])

@@ -1,0 +1,68 @@
+"""Motions of the TX90 arm with the PR2 gripper, as trajectories for blem_sim_run: grasping from above, and stirring."""
+import math
+
+from kinematics import Tree
+from shared_data import shared_data
+
+URDF = "robots/klampt/tx90pr2/tx90pr2.urdf"
+ARM = ["Link_%d_joint" % k for k in range(1, 7)]
+FINGER = "gripper_Link_1_joint"  # the driver's joint; the three others mimic it
+HAND = "gripper_Link_0"
+ELBOW_UP = [0.1, -0.3, -1.6, 0.0, -1.8, 0.0]  # [rad] where the search for the arm's posture begins
+PAD = 0.134        # [m] from the hand's origin to the middle of the pads along its x axis, when they are some 9 cm apart
+FREE = 0.034       # [m] from the hand's origin to where an object 8 cm wide would meet the fingers, short of PAD
+OPEN = 0.85        # [rad] pads some 125 mm apart
+SQUEEZE = 0.40     # [rad] past the touch of an 8 cm object: the motor is at its limit
+ROW_STEP = 0.01    # [s] between the rows of a trajectory
+
+
+def smooth(t, start, end):
+    """0 before start, 1 after end, in between a polynomial of degree 5 without a jump in acceleration."""
+    s = min(max((t - start) / (end - start), 0.0), 1.0)
+    return s * s * s * (10 - 15 * s + 6 * s * s)
+
+
+def hand_pose(xyz, closing_angle):
+    """Hand pointing down with its origin at xyz and its pads closing along a horizontal line at an angle to the world's x."""
+    c, s = math.cos(closing_angle), math.sin(closing_angle)
+    return ((0, c, s), (0, s, -c), (-1, 0, 0)), xyz
+
+
+class Grasp:
+    """Down to an object, close, lift, shake, put back, open, leave. All times in s, all lengths in m.
+
+    hand: the hand's origin when it grasps; closing_angle [rad]; shaking along the horizontal direction at 45 degrees to the closing
+    line, so that both the pads' normal and their friction carry it.
+    """
+    ABOVE, LIFT, AMPLITUDE, RATE = 0.12, 0.10, 0.05, 1.0
+    SETTLED, DOWN, CLOSED, LIFTED = 0.8, 2.0, 3.0, 4.5
+
+    def __init__(self, hand, closing_angle, shaking):
+        self.hand, self.closing_angle = hand, closing_angle
+        self.shake_from, self.shake_to = self.LIFTED + 0.5, self.LIFTED + 0.5 + shaking
+        self.put_back = self.shake_to + 2.0
+        self.opened, self.left = self.put_back + 1.5, self.put_back + 2.7
+        self.end = self.left + 0.5
+
+    def at(self, t):
+        """Hand pose and finger angle."""
+        height = self.ABOVE * (1 - smooth(t, self.SETTLED, self.DOWN) + smooth(t, self.opened, self.left))
+        height += self.LIFT * (smooth(t, self.CLOSED + 0.3, self.LIFTED) - smooth(t, self.shake_to + 0.3, self.put_back))
+        strength = smooth(t, self.shake_from, self.shake_from + 1) - smooth(t, self.shake_to - 1, self.shake_to)
+        out = self.AMPLITUDE * strength * math.sin(2 * math.pi * self.RATE * (t - self.shake_from))
+        angle = self.closing_angle + math.pi / 4
+        xyz = (self.hand[0] + out * math.cos(angle), self.hand[1] + out * math.sin(angle), self.hand[2] + height)
+        closed = smooth(t, self.DOWN + 0.2, self.CLOSED) - smooth(t, self.put_back + 0.3, self.opened)
+        return hand_pose(xyz, self.closing_angle), OPEN - SQUEEZE * closed
+
+
+def joint_rows(motion, step=ROW_STEP):
+    """The motion's joint positions at every step: a list of (time, map by joint). Raises ValueError where the arm cannot follow."""
+    tree, rows, positions = Tree(shared_data(URDF)), [], dict(zip(ARM, ELBOW_UP))
+    for k in range(int(round(motion.end / step)) + 1):
+        pose, finger = motion.at(k * step)
+        positions = dict(tree.reach(HAND, pose, ARM, positions), **{FINGER: finger})
+        if tree.beyond_limits(positions):
+            raise ValueError("beyond their limits at %.2f s: %s" % (k * step, ", ".join(tree.beyond_limits(positions))))
+        rows.append((k * step, positions))
+    return rows
