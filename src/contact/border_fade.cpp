@@ -1,6 +1,7 @@
 #include "border_fade.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "blem_sim/geometry/closest_points.h"
 #include "feature_cones.h"
@@ -26,6 +27,9 @@ bool fadeOverBorder(const MeshPair& pair, bool vertex_moves, int vertex, const V
   const MeshSide &vertex_side = vertex_moves ? pair.moving : pair.fixed, &face_side = vertex_moves ? pair.fixed : pair.moving;
   const Matrix3 R_FM = pair.X_FM.linear();
   const Vector3 projection = p - height * face.normal;
+  const Vector3 up = height > 0 ? face.normal : Vector3(-face.normal);
+  const Vector3 face_up = vertex_moves ? up : Vector3(R_FM.transpose() * up);
+  const Vector3 down = vertex_moves ? Vector3(R_FM.transpose() * -up) : Vector3(-up);
   int borders = 0;  // bits of the sides outside which p projects
   for (int k = 0; k < 3; ++k) {
     const Vector3 side = face.corners[NEXT[k]] - face.corners[k];
@@ -37,16 +41,14 @@ bool fadeOverBorder(const MeshPair& pair, bool vertex_moves, int vertex, const V
     borders |= 1 << k;
   }
   if (borders == 0) return false;
-  const Vector3 up = height > 0 ? face.normal : Vector3(-face.normal);
-  const Vector3 face_up = vertex_moves ? up : Vector3(R_FM.transpose() * up);
-  double rise = -1;
+  double jump = -1;
   for (int k = 0; k < 3; ++k) {
-    if (borders >> k & 1) {
-      rise = std::max(rise, neighbourSlope(face_side, face.element, face_side.topology.element_edges[face.element][k], face_up));
-    }
+    if (!(borders >> k & 1)) continue;
+    const Vector3 across = face.inward[k] / std::sqrt(face.length2[k]);
+    jump = std::max({jump, neighbourSlope(face_side, face.element, face_side.topology.element_edges[face.element][k], face_up),
+                     successorJump(vertex_side, vertex, down, vertex_moves ? Vector3(R_FM.transpose() * across) : across)});
   }
-  const Vector3 down = vertex_moves ? Vector3(R_FM.transpose() * -up) : Vector3(-up);
-  const double part = fadePart(std::max(rise, vertexSlope(vertex_side, vertex, down)));
+  const double part = borderFade(jump);
   if (part == 0) return false;
   out->foot = closestPointTriangle(projection, {face.corners[0], face.corners[1], face.corners[2]}).point_b;
   out->lost = FADE_SLOPE * (projection - out->foot).norm() / part;

@@ -1,6 +1,7 @@
 #include "feature_cones.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace blem_sim {
 namespace {
@@ -54,10 +55,21 @@ bool edgeConeAllows(const MeshSide& side, int edge, const Vector3& direction, do
   return allows;
 }
 
-double vertexSlope(const MeshSide& side, int vertex, const Vector3& direction) {
-  double slope = -1;
-  forEachEdgeDirection(side, vertex, [&](const Vector3& w) { slope = std::max(slope, w.dot(direction) / w.norm()); });
-  return slope;
+double successorJump(const MeshSide& side, int vertex, const Vector3& direction, const Vector3& across) {
+  const MeshTopology& topology = side.topology;
+  bool goes_on = true;
+  double nearest = 1;
+  for (int i = topology.vertex_edge_begin[vertex]; i < topology.vertex_edge_begin[vertex + 1]; ++i) {
+    const int edge = topology.vertex_edges[i], other = topology.edges[edge][topology.edges[edge][0] == vertex];
+    const Vector3 w = side.mesh.vertices[other] - side.mesh.vertices[vertex];
+    const double along = w.dot(direction), length2 = w.squaredNorm();
+    if (along <= 0 || along * along <= CONE_SLACK * CONE_SLACK * length2) continue;
+    goes_on = false;
+    if (topology.edge_flat[edge]) continue;
+    const double aside = w.dot(across), span2 = along * along + aside * aside;
+    nearest = std::min(nearest, along * std::sqrt(length2) / span2);
+  }
+  return goes_on ? -1 : nearest;
 }
 
 double edgeSlope(const MeshSide& side, int edge, const Vector3& direction) {

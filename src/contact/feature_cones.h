@@ -5,6 +5,9 @@
 
 namespace blem_sim {
 
+/** Slack of the test that a vertex or an edge is the other's local minimum (sine): rounding. */
+constexpr double CONE_SLACK = 1e-6;
+
 /** Does the surface at the vertex lead nowhere along `direction`? No edge there has a larger part of it than `slack` (sine).
  *  @param direction unit, the mesh's frame, towards the other mesh */
 bool vertexConeAllows(const MeshSide& side, int vertex, const Vector3& direction, double slack);
@@ -12,10 +15,16 @@ bool vertexConeAllows(const MeshSide& side, int vertex, const Vector3& direction
 /** The same for the faces of an edge. */
 bool edgeConeAllows(const MeshSide& side, int edge, const Vector3& direction, double slack);
 
-/** Largest part (sine) along `direction` (unit, mesh's frame) of the edges at the vertex: how steeply its surface goes that way. */
-double vertexSlope(const MeshSide& side, int vertex, const Vector3& direction);
+/**
+ * How far a contact of the vertex jumps, in terms of its length, when the vertex leaves its partner over an edge of the other mesh and an
+ * edge of its own takes over: the nearest of those that lead towards the other mesh, as part of the distance. Where none does the vertex
+ * itself goes on: -1. A plane's inner edges take over nothing.
+ * @param direction unit, towards the other mesh @param across unit, square to it and to the edge that is left; both in the mesh's frame
+ */
+double successorJump(const MeshSide& side, int vertex, const Vector3& direction, const Vector3& across);
 
-/** The same for the faces of an edge; -1 without faces. */
+/** Largest part (sine) along `direction` (unit, mesh's frame) of the faces of an edge: how steeply its surface goes that way; -1 without
+ * faces. */
 double edgeSlope(const MeshSide& side, int edge, const Vector3& direction);
 
 /** Sum of the unit directions from the vertex into the surface (edges) / from the edge into its faces; mesh's frame. */

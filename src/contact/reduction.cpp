@@ -12,16 +12,16 @@ namespace blem_sim {
 namespace {
 
 // Sound contacts take part in the choice; pierced ones, whose directions are not to be trusted, get the room that is left.
-void reduceManifold(ContactManifold& manifold, int k, const Reduction& method) {
+void reduceManifold(ContactManifold& manifold, int k, const Reduction& method, const ContactIds& chosen_before) {
   std::vector<Contact>& contacts = manifold.contacts;
   std::vector<Contact> pierced;
   const auto first_pierced = std::stable_partition(contacts.begin(), contacts.end(), [](const Contact& c) { return !c.pierced; });
   pierced.assign(first_pierced, contacts.end());
   contacts.erase(first_pierced, contacts.end());
-  method.reduce(contacts, k);
+  method.reduce(contacts, k, chosen_before);
   const int room = k - static_cast<int>(contacts.size());
   if (pierced.empty() || room <= 0) return;
-  method.reduce(pierced, room);
+  method.reduce(pierced, room, chosen_before);
   contacts.insert(contacts.end(), pierced.begin(), pierced.end());
   std::sort(contacts.begin(), contacts.end(), contactBefore);
 }
@@ -92,14 +92,14 @@ const Reduction* findReduction(const std::string& name) {
   return nullptr;
 }
 
-void reduceNone(std::vector<Contact>& contacts, int) { makeCanonical(contacts); }
+void reduceNone(std::vector<Contact>& contacts, int, const ContactIds&) { makeCanonical(contacts); }
 
 int reduceManifolds(std::vector<ContactManifold>& manifolds, const std::vector<int>& model_a, const std::vector<int>& model_b,
-                    const std::vector<ContactBudget>& budgets, const Reduction& method) {
+                    const std::vector<ContactBudget>& budgets, const Reduction& method, ReductionMemory* memory) {
   const int before = countContacts(manifolds);
   const int count = static_cast<int>(manifolds.size());
   if (method.reduce == reduceNone) {
-    for (ContactManifold& manifold : manifolds) reduceNone(manifold.contacts, INT_MAX);
+    for (ContactManifold& manifold : manifolds) reduceNone(manifold.contacts, INT_MAX, {});
     return before - countContacts(manifolds);
   }
   std::map<int, std::vector<int>> manifolds_of;
@@ -111,7 +111,7 @@ int reduceManifolds(std::vector<ContactManifold>& manifolds, const std::vector<i
   std::vector<int> limits(count);
   for (int m = 0; m < count; ++m) {
     limits[m] = std::min(budgets[model_a[m]].max_contacts, budgets[model_b[m]].max_contacts);
-    reduceManifold(manifolds[m], limits[m], method);
+    reduceManifold(manifolds[m], limits[m], method, memory->of(manifolds[m]));
   }
   for (const auto& [model, of_model] : manifolds_of) applyBudget(manifolds, of_model, budgets[model].max_contacts, limits);
   for (int m = 0; m < count; ++m) {
@@ -119,9 +119,10 @@ int reduceManifolds(std::vector<ContactManifold>& manifolds, const std::vector<i
     if (limits[m] == 0) {
       manifolds[m].contacts.clear();
     } else {
-      reduceManifold(manifolds[m], limits[m], method);
+      reduceManifold(manifolds[m], limits[m], method, memory->of(manifolds[m]));
     }
   }
+  memory->remember(manifolds);
   return before - countContacts(manifolds);
 }
 

@@ -154,7 +154,7 @@ class Linkage {
 
 }  // namespace
 
-void reduceKmeans(std::vector<Contact>& contacts, int k) {
+void reduceKmeans(std::vector<Contact>& contacts, int k, const ContactIds&) {
   makeCanonical(contacts);
   if (static_cast<int>(contacts.size()) <= k) return;
   const std::vector<Feature> features = featuresOf(contacts);
@@ -165,10 +165,10 @@ void reduceKmeans(std::vector<Contact>& contacts, int k) {
   takeMeans(contacts, cluster_of, k);
 }
 
-void reduceHierarchical(std::vector<Contact>& contacts, int k) {
+void reduceHierarchical(std::vector<Contact>& contacts, int k, const ContactIds&) {
   makeCanonical(contacts);
   if (static_cast<int>(contacts.size()) <= k) return;
-  if (contacts.size() > MANY) return reduceKmeans(contacts, k);
+  if (contacts.size() > MANY) return reduceKmeans(contacts, k, {});
   Linkage linkage(featuresOf(contacts));
   std::vector<int> cluster_of(contacts.size());
   for (std::size_t i = 0; i < contacts.size(); ++i) cluster_of[i] = static_cast<int>(i);

@@ -5,6 +5,7 @@
 
 #include "blem_sim/contact/reduction.h"
 #include "contact_order.h"
+#include "normal_cells.h"
 #include "patch_hull.h"
 #include "wrench_choice.h"
 
@@ -15,38 +16,11 @@ namespace {
 constexpr double EQUAL_NORMALS = 1.0 / 16384;  // cell of the grid over normals in which a patch counts as flat
 constexpr double ALIKE_NORMALS = 1.0 / 32;     // coarser cell for crowds of contacts on noise: about 2 degrees
 constexpr double STAIR = 1e-3;                 // [m] parallel patches with this much air between their heights are two patches
-constexpr int CELL_OFFSET = 1 << 15;           // makes every cell's number positive; a number has 16 bits
 constexpr std::size_t CROWD = 400;             // more than this many contacts are thinned before the choice, to save time
-
-// Cell of the grid over normals that a contact falls into.
-struct CellKey {
-  std::uint64_t cell;
-  int contact;
-};
-
-bool keyBefore(const CellKey& a, const CellKey& b) { return a.cell != b.cell ? a.cell < b.cell : a.contact < b.contact; }
-
-// Rounding puts axis-aligned normals into the middles of cells, so that theirs do not fall apart at a border.
-std::uint64_t cellNumber(double scaled) { return static_cast<std::uint64_t>(scaled + CELL_OFFSET + 0.5); }
-
-std::uint64_t cellOf(const Vector3& normal, double cell) {
-  return cellNumber(normal.x() / cell) << 32 | cellNumber(normal.y() / cell) << 16 | cellNumber(normal.z() / cell);
-}
-
-Vector3 cellNormal(std::uint64_t cell) {
-  const auto part = [&](int shift) { return static_cast<double>(static_cast<int>(cell >> shift & 0xFFFF) - CELL_OFFSET); };
-  return Vector3(part(32), part(16), part(0)).normalized();
-}
-
-std::vector<CellKey> sortedByCell(const std::vector<Contact>& contacts, double cell) {
-  std::vector<CellKey> keys(contacts.size());
-  for (std::size_t i = 0; i < contacts.size(); ++i) keys[i] = {cellOf(contacts[i].normal_BA, cell), static_cast<int>(i)};
-  if (!std::is_sorted(keys.begin(), keys.end(), keyBefore)) std::sort(keys.begin(), keys.end(), keyBefore);
-  return keys;
-}
 
 // Adds the hull of every patch among contacts of one cell to `kept`. Reorders the members.
 void keepHullsOfCell(const std::vector<Contact>& contacts, std::vector<int>& members, const Vector3& normal, std::vector<int>& kept) {
+  if (members.size() == 1) return kept.push_back(members[0]);
   const auto height = [&](int i) { return normal.dot(contacts[i].point); };
   double lowest = height(members[0]), highest = lowest;
   for (int i : members) {
@@ -66,35 +40,30 @@ void keepHullsOfCell(const std::vector<Contact>& contacts, std::vector<int>& mem
   }
 }
 
-// Replaces the contacts of every patch by its hull.
-void keepPatchHulls(std::vector<Contact>& contacts, double cell) {
-  const std::vector<CellKey> keys = sortedByCell(contacts, cell);
-  std::vector<int> kept, members;
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    members.push_back(keys[i].contact);
-    if (i + 1 < keys.size() && keys[i].cell == keys[i + 1].cell) continue;
-    if (members.size() > 1) {
-      keepHullsOfCell(contacts, members, cellNormal(keys[i].cell), kept);
-    } else {
-      kept.push_back(members[0]);
-    }
-    members.clear();
-  }
+// Replaces the contacts of every patch by its hull, but for those of these ids.
+void keepPatchHulls(std::vector<Contact>& contacts, double cell, const ContactIds& spared) {
+  std::vector<int> kept;
+  forEachNormalCell(contacts, cell,
+                    [&](std::vector<int>& members, const Vector3& normal) { keepHullsOfCell(contacts, members, normal, kept); });
   if (kept.size() == contacts.size()) return;
-  std::sort(kept.begin(), kept.end());
-  for (std::size_t i = 0; i < kept.size(); ++i) contacts[i] = contacts[kept[i]];
-  contacts.resize(kept.size());
+  std::vector<char> keep(contacts.size(), 0);
+  for (int i : kept) keep[i] = 1;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    if (keep[i] || std::binary_search(spared.begin(), spared.end(), contacts[i].id)) contacts[count++] = contacts[i];
+  }
+  contacts.resize(count);
 }
 
 }  // namespace
 
-void reduceHull(std::vector<Contact>& contacts, int k) {
+void reduceHull(std::vector<Contact>& contacts, int k, const ContactIds& chosen_before) {
   makeCanonical(contacts);
-  keepPatchHulls(contacts, EQUAL_NORMALS);
+  keepPatchHulls(contacts, EQUAL_NORMALS, {});
   if (static_cast<int>(contacts.size()) <= k) return;
-  if (contacts.size() > CROWD) keepPatchHulls(contacts, ALIKE_NORMALS);
+  if (contacts.size() > CROWD) keepPatchHulls(contacts, ALIKE_NORMALS, chosen_before);
   if (static_cast<int>(contacts.size()) <= k) return;
-  const std::vector<int> chosen = chooseSpanningContacts(contacts, k);
+  const std::vector<int> chosen = chooseSpanningContacts(contacts, k, chosen_before);
   for (std::size_t i = 0; i < chosen.size(); ++i) contacts[i] = contacts[chosen[i]];
   contacts.resize(chosen.size());
 }

@@ -11,8 +11,6 @@
 namespace blem_sim {
 namespace {
 
-/** Slack of the test that a vertex or an edge is the other's local minimum (sine): rounding. */
-constexpr double CONE_SLACK = 1e-6;
 /** A surface along a plane leaves it if its lean has this part (sine) off it. */
 constexpr double MIN_LEAN_INSIDE = 1e-3;
 
@@ -285,7 +283,7 @@ class SimplexSearch {
       findEdgesBeyond(lines, p0, q0, &beyond);
       const int end_m = beyond.end_p < 0 ? -1 : pair_.moving.mesh.elements[m.element][(k + beyond.end_p) % 3];
       const int end_f = beyond.end_q < 0 ? -1 : pair_.fixed.mesh.elements[f.element][(l + beyond.end_q) % 3];
-      addFadingEdges(edge_m, end_m, edge_f, end_f, beyond);
+      addFadingEdges(edge_m, end_m, edge_f, end_f, lines, beyond);
     }
   }
 
@@ -300,21 +298,25 @@ class SimplexSearch {
                       double distance, double lost) {
     const double slope = std::max(edgeSlope(pair_.fixed, f.index, normal), edgeSlope(pair_.moving, m.index, -(R_FM_.transpose() * normal)));
     if (slope > EDGE_CONE_SLACK) return;
-    const double gap = distance + lost + fadePart(slope) * std::max(0.0, pair_.layer - distance - lost);
+    const double gap = distance + lost + coneFade(slope) * std::max(0.0, pair_.layer - distance - lost);
     if (gap <= pair_.range) buffers_.contacts.push_back({m, f, point_M, point_F, normal, gap});
   }
 
   /** The feet have left the edges over these vertices (-1: not), around which a surface comes closer elsewhere: nothing takes over exactly.
    */
-  void addFadingEdges(const Feature& m, int end_m, const Feature& f, int end_f, const EdgesBeyond& edges) {
+  void addFadingEdges(const Feature& m, int end_m, const Feature& f, int end_f, const LinePair& lines, const EdgesBeyond& edges) {
     const Vector3 d = edges.point_p - edges.point_q;
     const double distance = d.norm(), most = pair_.range - distance;
     if (distance <= TOUCH || FADE_SLOPE * edges.beyond > most) return;
     const Vector3 normal = d / distance;
-    double slope = -1;
-    if (end_m >= 0) slope = std::max(slope, vertexSlope(pair_.moving, end_m, -(R_FM_.transpose() * edges.normal)));
-    if (end_f >= 0) slope = std::max(slope, vertexSlope(pair_.fixed, end_f, edges.normal));
-    const double part = fadePart(slope);
+    double jump = -1;
+    if (end_m >= 0) {
+      const Vector3 across_f = edges.normal.cross(lines.q) / std::sqrt(lines.q2);
+      jump = successorJump(pair_.moving, end_m, -(R_FM_.transpose() * edges.normal), R_FM_.transpose() * across_f);
+    }
+    if (end_f >= 0)
+      jump = std::max(jump, successorJump(pair_.fixed, end_f, edges.normal, edges.normal.cross(lines.p) / std::sqrt(lines.p2)));
+    const double part = borderFade(jump);
     if (part * most < FADE_SLOPE * edges.beyond) return;
     addWithinCones(m, f, edges.point_p, edges.point_q, normal, distance, FADE_SLOPE * edges.beyond / part);
   }

@@ -16,6 +16,9 @@ constexpr double GAP_SCALE = 2e-4;
 // [m] Once no wrench lacks, depth counts too, a unit force per this depth.
 constexpr double DEPTH_SCALE = 1e-3;
 constexpr float NOTHING_LACKS = 1e-6f;  // of a unit force
+// What an earlier choice may lack beyond a fresh one, in the direction that lacks most, of a unit force; and [m] in depth.
+constexpr float GOOD_ENOUGH = 0.05f;
+constexpr double DEEP_ENOUGH = 1e-6;
 
 using DirectionValues = Eigen::Array<float, DIRECTIONS, 1>;
 
@@ -87,27 +90,44 @@ int deepest(const std::vector<Contact>& contacts) {
   return best;
 }
 
-// Adds to `chosen` the extreme contacts of the directions that lack most, until k are chosen or nothing lacks.
-void addExtremes(const std::vector<DirectionValues>& support, int k, std::vector<int>& chosen) {
-  DirectionValues best = support[0];
-  std::array<int, DIRECTIONS> extreme{};
-  for (std::size_t i = 1; i < support.size(); ++i) {
-    for (int d = 0; d < DIRECTIONS; ++d) {
-      if (support[i][d] > best[d]) {
-        best[d] = support[i][d];
-        extreme[d] = static_cast<int>(i);
+// The largest component of all contacts along each direction, and whose it is.
+struct Extremes {
+  explicit Extremes(const std::vector<DirectionValues>& support) : value(support[0]) {
+    for (std::size_t i = 1; i < support.size(); ++i) {
+      for (int d = 0; d < DIRECTIONS; ++d) {
+        if (support[i][d] > value[d]) {
+          value[d] = support[i][d];
+          contact[d] = static_cast<int>(i);
+        }
       }
     }
   }
+  DirectionValues value;
+  std::array<int, DIRECTIONS> contact{};
+};
+
+// Adds to `chosen` the extreme contacts of the directions that lack most, until k are chosen or nothing lacks.
+// Returns what still lacks most.
+float addExtremes(const std::vector<DirectionValues>& support, const Extremes& extremes, int k, std::vector<int>& chosen) {
   DirectionValues reached = support[chosen[0]];
   for (int i : chosen) reached = reached.max(support[i]);
-  while (static_cast<int>(chosen.size()) < k) {
+  while (true) {
     Eigen::Index direction = 0;
-    const float lack = (best - reached).maxCoeff(&direction);
-    if (lack <= NOTHING_LACKS) break;
-    chosen.push_back(extreme[direction]);
+    const float lack = (extremes.value - reached).maxCoeff(&direction);
+    if (lack <= NOTHING_LACKS || static_cast<int>(chosen.size()) >= k) return lack;
+    chosen.push_back(extremes.contact[direction]);
     reached = reached.max(support[chosen.back()]);
   }
+}
+
+// Those of `contacts` that were chosen before; none if they are too many.
+std::vector<int> stillThere(const std::vector<Contact>& contacts, int k, const std::vector<std::uint64_t>& chosen_before) {
+  std::vector<int> there;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    if (std::binary_search(chosen_before.begin(), chosen_before.end(), contacts[i].id)) there.push_back(static_cast<int>(i));
+  }
+  if (static_cast<int>(there.size()) > k) there.clear();
+  return there;
 }
 
 // Adds the deepest of those not chosen until k are.
@@ -126,14 +146,21 @@ void addDeepest(const std::vector<Contact>& contacts, int k, std::vector<int>& c
 
 }  // namespace
 
-std::vector<int> chooseSpanningContacts(const std::vector<Contact>& contacts, int k) {
+std::vector<int> chooseSpanningContacts(const std::vector<Contact>& contacts, int k, const std::vector<std::uint64_t>& chosen_before) {
   if (contacts.empty()) return {};
   std::vector<DirectionValues> support = supportOfEach(contacts);
+  const Extremes extremes(support);
   std::vector<int> chosen = {deepest(contacts)};
-  addExtremes(support, k, chosen);
+  const float lack = addExtremes(support, extremes, k, chosen);
+  std::vector<int> continued = stillThere(contacts, k, chosen_before);
+  if (!continued.empty() && addExtremes(support, extremes, k, continued) <= lack + GOOD_ENOUGH) {
+    const auto shallower = [&](int a, int b) { return contacts[a].depth < contacts[b].depth; };
+    const int its_deepest = *std::max_element(continued.begin(), continued.end(), shallower);
+    if (contacts[its_deepest].depth >= contacts[chosen[0]].depth - DEEP_ENOUGH) chosen = std::move(continued);
+  }
   if (static_cast<int>(chosen.size()) < k) {
     for (std::size_t i = 0; i < contacts.size(); ++i) support[i] += static_cast<float>(std::max(0.0, contacts[i].depth) / DEPTH_SCALE);
-    addExtremes(support, k, chosen);
+    addExtremes(support, Extremes(support), k, chosen);
     addDeepest(contacts, k, chosen);
   }
   std::sort(chosen.begin(), chosen.end());

@@ -168,7 +168,7 @@ TEST_P(EveryReduction, KeepsItsPromises) {
   }
   for (int k : {1, 2, 3, 7, 20, 50}) {
     Contacts reduced = given;
-    method().reduce(reduced, k);
+    method().reduce(reduced, k, {});
     SCOPED_TRACE(k);
     EXPECT_EQ(reduced.empty(), given.empty());
     if (keepsAll()) {
@@ -189,10 +189,10 @@ TEST_P(EveryReduction, KeepsItsPromises) {
 TEST_P(EveryReduction, DoesNotDependOnTheOrderOfItsInput) {
   for (int k : {3, 20}) {
     Contacts reference = input();
-    method().reduce(reference, k);
+    method().reduce(reference, k, {});
     for (unsigned seed = 1; seed <= 3; ++seed) {
       Contacts other = shuffled(input(), seed);
-      method().reduce(other, k);
+      method().reduce(other, k, {});
       EXPECT_TRUE(sameAll(reference, other)) << "k " << k << ", seed " << seed;
     }
   }
@@ -200,9 +200,9 @@ TEST_P(EveryReduction, DoesNotDependOnTheOrderOfItsInput) {
 
 TEST_P(EveryReduction, ChangesNothingTheSecondTime) {
   Contacts once = input();
-  method().reduce(once, 20);
+  method().reduce(once, 20, {});
   Contacts twice = once;
-  method().reduce(twice, 20);
+  method().reduce(twice, 20, {});
   EXPECT_TRUE(sameAll(once, twice));
 }
 
@@ -217,7 +217,7 @@ TEST_P(EveryReduction, DropsContactsWithoutNumbersOrDirection) {
   contacts.push_back(bad);
   bad = makeContact({std::numeric_limits<double>::infinity(), 0, 0}, {0, 0, 1}, 0, 5002);
   contacts.push_back(bad);
-  method().reduce(contacts, 20);
+  method().reduce(contacts, 20, {});
   EXPECT_EQ(contacts.empty(), sound == 0);
   for (const Contact& c : contacts) EXPECT_LT(c.id, 5000u);
 }
@@ -442,7 +442,8 @@ TEST_P(Budgets, HoldForRobotObjectsAndStaticWorld) {
   for (int m = 0; m < 8; ++m) manifolds.push_back(manifoldOf(m, m + 1, noisyPatch(m == 3 ? 2 : 200 + 10 * m, 50 + m)));
   int before = 0, after = 0;
   for (const ContactManifold& manifold : manifolds) before += static_cast<int>(manifold.contacts.size());
-  const int left_out = reduceManifolds(manifolds, model_a, model_b, budgets, method());
+  ReductionMemory memory;
+  const int left_out = reduceManifolds(manifolds, model_a, model_b, budgets, method(), &memory);
   for (const ContactManifold& manifold : manifolds) {
     after += static_cast<int>(manifold.contacts.size());
     EXPECT_GE(manifold.contacts.size(), manifold.a == 3 ? 2u : 3u) << manifold.a;
@@ -463,7 +464,8 @@ TEST_P(Budgets, HoldWithMoreManifoldsThanContactsAllowed) {
   std::vector<ContactManifold> manifolds;
   for (int m = 0; m < 9; ++m) manifolds.push_back(manifoldOf(0, m + 1, noisyPatch(5, 70 + m)));
   const std::vector<int> robot(9, 1), world(9, 0);
-  reduceManifolds(manifolds, robot, world, {{INT_MAX}, {4}}, method());
+  ReductionMemory memory;
+  reduceManifolds(manifolds, robot, world, {{INT_MAX}, {4}}, method(), &memory);
   EXPECT_EQ(contactsOf(1, manifolds, robot, world), 4);
 }
 
@@ -475,14 +477,15 @@ TEST_P(Budgets, ChoosePiercedContactsLast) {
     contacts[i].depth = 0.05;
   }
   std::vector<ContactManifold> manifolds = {manifoldOf(0, 1, contacts)};
-  reduceManifolds(manifolds, {0}, {1}, {{20}, {INT_MAX}}, method());
+  ReductionMemory memory;
+  reduceManifolds(manifolds, {0}, {1}, {{20}, {INT_MAX}}, method(), &memory);
   ASSERT_FALSE(manifolds[0].contacts.empty());
   EXPECT_LE(manifolds[0].contacts.size(), 20u);
   EXPECT_GE(std::count_if(manifolds[0].contacts.begin(), manifolds[0].contacts.end(), [](const Contact& c) { return !c.pierced; }), 15);
 
   for (Contact& c : contacts) c.pierced = true;
   manifolds = {manifoldOf(0, 1, contacts)};
-  reduceManifolds(manifolds, {0}, {1}, {{20}, {INT_MAX}}, method());
+  reduceManifolds(manifolds, {0}, {1}, {{20}, {INT_MAX}}, method(), &memory);
   EXPECT_FALSE(manifolds[0].contacts.empty());
 }
 

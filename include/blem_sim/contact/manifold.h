@@ -19,6 +19,8 @@ struct Contact {
   double depth = std::numeric_limits<double>::quiet_NaN();
   /** Feature of A and feature of B that made it; the same from step to step while both stay the closest. */
   std::uint64_t id = 0;
+  /** Share of the surface's stiffness and damping: weighSprings in reduction.h. */
+  double weight = 1;
   /** The bare meshes cross here: direction and depth are the fallback's, not to be trusted. */
   bool pierced = false;
 };

@@ -9,8 +9,14 @@
 
 namespace blem_sim {
 
-/** Reduces `contacts` to at most k >= 1, in place. Deterministic. Never invents a deeper contact than the deepest given. */
-using ReduceFunction = void (*)(std::vector<Contact>& contacts, int k);
+/** Identities of contacts (Contact::id), ascending. */
+using ContactIds = std::vector<std::uint64_t>;
+
+/**
+ * Reduces `contacts` to at most k >= 1, in place. Deterministic. Never invents a deeper contact than the deepest given.
+ * @param chosen_before what it kept of the same pair in the step before: among equal choices that one is gone on with
+ */
+using ReduceFunction = void (*)(std::vector<Contact>& contacts, int k, const ContactIds& chosen_before);
 
 /** One way to reduce contacts; a new one is one function and one row in the table. */
 struct Reduction {
@@ -27,14 +33,40 @@ const Reduction* findReduction(const std::string& name);
 
 /** Hull: within equal normals the corners of the convex hull (lossless, [Hauser 2013, 5]), points deeper than the hull's own interpolation
  * kept; beyond k the extremes that span the wrench cone best are kept. */
-void reduceHull(std::vector<Contact>& contacts, int k);
+void reduceHull(std::vector<Contact>& contacts, int k, const ContactIds& chosen_before = {});
 /** Average-linkage clusters of (x, n, p), then their means [Hauser 2013, 3.4]. O(N^2 log N); above 300 contacts k-means, as the paper does.
  */
-void reduceHierarchical(std::vector<Contact>& contacts, int k);
+void reduceHierarchical(std::vector<Contact>& contacts, int k, const ContactIds& chosen_before = {});
 /** Lloyd's k-means on (x, n, p), k iterations, farthest-point start (no random number). */
-void reduceKmeans(std::vector<Contact>& contacts, int k);
+void reduceKmeans(std::vector<Contact>& contacts, int k, const ContactIds& chosen_before = {});
 /** All contacts. */
-void reduceNone(std::vector<Contact>& contacts, int k);
+void reduceNone(std::vector<Contact>& contacts, int k, const ContactIds& chosen_before = {});
+
+/** What each pair of colliders kept in the last reduction. It decides between equal choices of the next one: state. */
+class ReductionMemory {
+ public:
+  const ContactIds& of(const ContactManifold& manifold) const;
+  void remember(const std::vector<ContactManifold>& manifolds);
+  void clear() { choices_.clear(); }
+  /** State as words, for save and restore. */
+  void append(std::vector<std::uint64_t>* words) const;
+  /** @return false if the words up to `end` are none that append wrote */
+  bool read(const std::uint64_t** cursor, const std::uint64_t* end);
+
+ private:
+  struct Choice {
+    int a, b;
+    ContactIds ids;
+  };
+  std::vector<Choice> choices_;  // sorted by (a, b)
+};
+
+/**
+ * Sets Contact::weight where surfaces are compliant, for reduced contacts of one manifold: the springs at the corners of a rectangle, an
+ * edge or a point count fully, those of a patch with more corners by the angles, so that a patch is as stiff as four springs whatever its
+ * tessellation; contacts at one place share. Contacts that do not touch keep the weight 1.
+ */
+void weighSprings(std::vector<Contact>& contacts);
 
 /** Contacts a model may have. */
 struct ContactBudget {
@@ -45,10 +77,12 @@ struct ContactBudget {
  * Reduces every manifold so that the contacts of each model sum to at most its k: each manifold is reduced by `method` first with the
  * smaller k of its two models; where a model still has too many, its manifolds share k in proportion to what they have, each at
  * least one (3 if it has them, and k allows). Pierced contacts are kept out of the choice while others exist.
+ * @param manifolds sorted by (a, b)
  * @param model_a, model_b models of the two colliders of each manifold, indices into budgets
+ * @param memory of the last reduction, overwritten by this one's
  * @return how many contacts were left out
  */
 int reduceManifolds(std::vector<ContactManifold>& manifolds, const std::vector<int>& model_a, const std::vector<int>& model_b,
-                    const std::vector<ContactBudget>& budgets, const Reduction& method);
+                    const std::vector<ContactBudget>& budgets, const Reduction& method, ReductionMemory* memory);
 
 }  // namespace blem_sim

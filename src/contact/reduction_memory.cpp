@@ -1,0 +1,47 @@
+#include <algorithm>
+#include <utility>
+
+#include "blem_sim/contact/reduction.h"
+
+namespace blem_sim {
+
+const ContactIds& ReductionMemory::of(const ContactManifold& manifold) const {
+  static const ContactIds nothing;
+  const auto at = std::lower_bound(choices_.begin(), choices_.end(), std::make_pair(manifold.a, manifold.b),
+                                   [](const Choice& c, const auto& pair) { return std::make_pair(c.a, c.b) < pair; });
+  return at != choices_.end() && at->a == manifold.a && at->b == manifold.b ? at->ids : nothing;
+}
+
+void ReductionMemory::remember(const std::vector<ContactManifold>& manifolds) {
+  choices_.resize(manifolds.size());
+  for (std::size_t m = 0; m < manifolds.size(); ++m) {
+    choices_[m].a = manifolds[m].a;
+    choices_[m].b = manifolds[m].b;
+    choices_[m].ids.clear();
+    for (const Contact& contact : manifolds[m].contacts) choices_[m].ids.push_back(contact.id);
+    std::sort(choices_[m].ids.begin(), choices_[m].ids.end());
+  }
+}
+
+void ReductionMemory::append(std::vector<std::uint64_t>* words) const {
+  words->push_back(choices_.size());
+  for (const Choice& choice : choices_) {
+    words->insert(words->end(), {static_cast<std::uint64_t>(choice.a), static_cast<std::uint64_t>(choice.b), choice.ids.size()});
+    words->insert(words->end(), choice.ids.begin(), choice.ids.end());
+  }
+}
+
+bool ReductionMemory::read(const std::uint64_t** cursor, const std::uint64_t* end) {
+  const auto left = [&] { return static_cast<std::uint64_t>(end - *cursor); };
+  choices_.clear();
+  if (left() < 1) return false;
+  for (std::uint64_t pairs = *(*cursor)++; pairs > 0; --pairs) {
+    if (left() < 3 || left() - 3 < (*cursor)[2]) return false;
+    const std::uint64_t *ids = *cursor + 3, *ids_end = ids + (*cursor)[2];
+    choices_.push_back({static_cast<int>((*cursor)[0]), static_cast<int>((*cursor)[1]), ContactIds(ids, ids_end)});
+    *cursor = ids_end;
+  }
+  return true;
+}
+
+}  // namespace blem_sim
