@@ -23,8 +23,8 @@ constexpr double MAX_DOUBTFUL = 0.2;
 constexpr double MIN_WIDTH = 500;
 /** A few triangles of a scan or a curved surface lie in a plane by chance now and then; so many triangles do not. */
 constexpr int MANY_FACES = 24;
-/** Fewer must be closer to their plane for their size, and only this part of their outline may bend by less than MIN_CREASE. */
-constexpr double MIN_WIDTH_OF_FEW = 50000;
+/** Fewer must be flat but for the rounding of floats in files, and no more than this part of their outline bend by less than MIN_CREASE. */
+constexpr double MIN_WIDTH_OF_FEW = 3e5;
 constexpr double MAX_BLUNT = 0.1;
 /** Vertices that no crack moves go no farther than this many times the deviation of their patches. */
 constexpr double MAX_MOVE = 4;
