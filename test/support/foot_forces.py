@@ -30,8 +30,8 @@ def shares(points, centre):
 class FootForces:
     """Rows of states at every step of dt [s] -> vertical forces [N] by foot, measured and in theory.
 
-    feet: foot -> (ankle sensor, foot link). A foot's measured force is what the ground must exert on the foot for its sensor to read what it
-    reads: m_f (g + a_f) less the ankle's force. In theory the feet carry m g, divided by where the centre of mass stands along a line:
+    feet: foot -> (ankle sensor, foot link). A foot's measured force is what the ground must exert on the foot for its sensor to read what
+    it reads: m_f (g + a_f) less the ankle's force. In theory the feet carry m g, divided by where the centre of mass stands along a line:
     `static` between the soles' middles (`soles`, points in the foot links), `balanced` between the centres of pressure that the ankles'
     torques tell. Their sum is m (g + a), a being the centre of mass's own acceleration.
     """
@@ -60,7 +60,8 @@ class FootForces:
         """Row, link poses, centre of mass, centres of mass of the feet."""
         positions = {j.name: float(row["%s::%s" % (self.robot, j.name)]) for j in self.tree.joints if j.type != "fixed"}
         poses = self.tree.link_poses(positions, pose_in(row, "%s::%s" % (self.robot, self.tree.root)))
-        return row, poses, self.tree.centre_of_mass(poses), {f: at(poses[link], self.tree.masses[link][1]) for f, (_, link) in self.feet.items()}
+        centres = {foot: at(poses[link], self.tree.masses[link][1]) for foot, (_, link) in self.feet.items()}
+        return row, poses, self.tree.centre_of_mass(poses), centres
 
     def _read_step(self, before, start, end):
         """The forces of the step from start to end: they made the difference of its velocity and the last step's."""
@@ -89,7 +90,8 @@ class FootForces:
         if ground[2] < 1:
             return ground[2], sole
         below = sole[2] - ankle[2]
-        return ground[2], (ankle[0] + (below * ground[0] - moment[1]) / ground[2], ankle[1] + (below * ground[1] + moment[0]) / ground[2], sole[2])
+        away = ((below * ground[0] - moment[1]) / ground[2], (below * ground[1] + moment[0]) / ground[2], below)
+        return ground[2], kinematics.added(ankle, away)
 
     def sums(self):
         return [sum(forces) for forces in zip(*self.measured.values())]
@@ -104,8 +106,8 @@ class FootForces:
         figure, (forces, off) = pyplot.subplots(2, 1, sharex=True, figsize=(9, 7), gridspec_kw={"height_ratios": [3, 1]})
         for foot in self.feet:
             forces.plot(self.times, self.measured[foot], color=LINES[foot], label="%s foot, by its ankle sensor" % foot)
-            forces.plot(self.times, self.balanced[foot], "--", color="black", linewidth=0.8, label="quasi-static, by the centres of pressure")
-            forces.plot(self.times, self.static[foot], ":", color=LINES[foot], label="%s foot, quasi-static, by the soles' middles" % foot)
+            forces.plot(self.times, self.balanced[foot], "--", color="black", linewidth=0.8, label="quasi-static, centres of pressure")
+            forces.plot(self.times, self.static[foot], ":", color=LINES[foot], label="%s foot, quasi-static, soles' middles" % foot)
         forces.plot(self.times, self.sums(), color="black", label="sum")
         forces.set_ylabel("vertical force [N]")
         forces.set_ylim(-50, 1.6 * self.tree.total_mass() * self.gravity)

@@ -66,3 +66,26 @@ def joint_rows(motion, step=ROW_STEP):
             raise ValueError("beyond their limits at %.2f s: %s" % (k * step, ", ".join(tree.beyond_limits(positions))))
         rows.append((k * step, positions))
     return rows
+
+
+class Stir:
+    """Closed fingers go down into a tray beside its things and through them along a circle. Times in s, lengths in m.
+
+    middle: of the circle; entry: where the hand goes down; depth: height of the hand's origin while it stirs.
+    """
+    RADIUS, SPEED, ABOVE, CLOSED = 0.10, 0.10, 0.30, 0.10
+    SETTLED, DOWN, BEGUN = 1.2, 2.5, 4.0
+
+    def __init__(self, middle, entry, depth, stirring):
+        self.middle, self.entry, self.depth = middle, entry, depth
+        self.stirred = self.BEGUN + stirring
+        self.end = self.stirred + 0.5
+
+    def at(self, t):
+        """Hand pose and finger angle."""
+        turns = 2 * math.pi * self.RADIUS / self.SPEED
+        angle = 0.5 * math.pi - 2 * math.pi * max(0.0, min(t, self.stirred) - self.BEGUN) / turns * smooth(t, self.BEGUN, self.BEGUN + 1)
+        on_circle = (self.middle[0] + self.RADIUS * math.cos(angle), self.middle[1] + self.RADIUS * math.sin(angle))
+        s = smooth(t, self.DOWN, self.BEGUN)
+        x, y = [a + s * (b - a) for a, b in zip(self.entry, on_circle)]
+        return hand_pose((x, y, self.depth + self.ABOVE * (1 - smooth(t, self.SETTLED, self.DOWN))), 0.0), self.CLOSED
