@@ -1,0 +1,68 @@
+#include <filesystem>
+#include <fstream>
+#include <iomanip>
+
+#include "blem_sim/sim/simulator.h"
+#include "engine.h"
+
+namespace blem_sim {
+namespace {
+
+std::string written(const std::string& name, const TriangleMesh& mesh) {
+  const std::string file = (std::filesystem::temp_directory_path() / ("blem_sim_comparison_" + name + ".off")).string();
+  std::ofstream out(file);
+  out << std::setprecision(17) << "OFF\n" << mesh.vertices.size() << " " << mesh.elements.size() << " 0\n";
+  for (const Vector3& v : mesh.vertices) out << v.x() << " " << v.y() << " " << v.z() << "\n";
+  for (const Vector3i& e : mesh.elements) out << "3 " << e[0] << " " << e[1] << " " << e[2] << "\n";
+  return file;
+}
+
+class BlemSim : public Engine {
+ public:
+  BlemSim(const StackScene& scene, const std::string& stepper) : simulator_(configOf(scene, stepper), UriResolver()) {}
+  void step() override { simulator_.step(); }
+  std::vector<CubeState> cubes() const override {
+    std::vector<CubeState> states;
+    for (const ObjectConfig& object : simulator_.config().objects) {
+      const int body = simulator_.models()[simulator_.modelIndex(object.name)].bodies[0];
+      const BodyState& state = simulator_.report().bodies[body];
+      states.push_back({state.X_WB.translation(), state.v_WCom});
+    }
+    return states;
+  }
+  double layer() const override { return LAYER; }
+
+ private:
+  static constexpr double LAYER = 0.0025;
+
+  static SimulationConfig configOf(const StackScene& scene, const std::string& stepper) {
+    SimulationConfig config;
+    config.solver.stepper = stepper;
+    config.time_step = scene.time_step;
+    config.contact.boundary_width = LAYER;
+    config.contact.surface.friction = scene.friction;
+    EnvironmentConfig ground;
+    ground.name = "ground";
+    ground.uri = written("ground", scene.ground);
+    config.environments = {ground};
+    const double size = scene.cube.bounds().sizes().z();
+    for (int i = 0; i < scene.cubes; ++i) {
+      ObjectConfig cube;
+      cube.name = "cube" + std::to_string(i);
+      cube.uri = written("cube", scene.cube);
+      cube.mass = scene.mass;
+      cube.X_WO = makePose({0, 0, 0.5 * size + LAYER + scene.gap + i * (size + 2 * LAYER + scene.gap)});
+      config.objects.push_back(cube);
+    }
+    return config;
+  }
+
+  Simulator simulator_;
+};
+
+}  // namespace
+
+std::unique_ptr<Engine> makeBlemSimArticulated(const StackScene& scene) { return std::make_unique<BlemSim>(scene, "articulated"); }
+std::unique_ptr<Engine> makeBlemSimWorldStep(const StackScene& scene) { return std::make_unique<BlemSim>(scene, "world_step"); }
+
+}  // namespace blem_sim
