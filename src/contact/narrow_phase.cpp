@@ -31,7 +31,8 @@ struct Roles {
   }
 };
 
-void meshMesh(const Collider& a, const Pose& X_WA, const Collider& b, const Pose& X_WB, double range, ContactManifold* out) {
+void meshMesh(const Collider& a, const Pose& X_WA, const Collider& b, const Pose& X_WB, double range, const Pose* X_AB_apart,
+              ContactManifold* out) {
   const bool a_moves = a.geometry->mesh().elements.size() <= b.geometry->mesh().elements.size();
   const Pose &X_WM = a_moves ? X_WA : X_WB, &X_WF = a_moves ? X_WB : X_WA;
   const MeshPair pair{MeshSide(a_moves ? *a.geometry : *b.geometry), MeshSide(a_moves ? *b.geometry : *a.geometry), X_WF.inverse() * X_WM,
@@ -40,7 +41,11 @@ void meshMesh(const Collider& a, const Pose& X_WA, const Collider& b, const Pose
   thread_local SearchBuffers buffers;
   searchSimplexPairs(pair, &buffers);
   out->pierced = !buffers.crossings.empty();
-  if (out->pierced) addRetractions(pair, buffers.crossings, &buffers.contacts);
+  if (out->pierced) {
+    Pose X_FM_apart;
+    if (X_AB_apart) X_FM_apart = a_moves ? X_AB_apart->inverse() : *X_AB_apart;
+    addRetractions(pair, X_AB_apart ? &X_FM_apart : nullptr, buffers.crossings, &buffers.contacts);
+  }
 
   const Roles roles{a_moves, a.radius, b.radius};
   for (const FeatureContact& c : buffers.contacts) {
@@ -85,7 +90,8 @@ void meshHalfSpace(const Collider& mesh, const Pose& X_WM, const Collider& half_
 
 }  // namespace
 
-void narrowPhase(const Collider& a, const Pose& X_WA, const Collider& b, const Pose& X_WB, double margin, ContactManifold* out) {
+void narrowPhase(const Collider& a, const Pose& X_WA, const Collider& b, const Pose& X_WB, double margin, ContactManifold* out,
+                 const Pose* X_AB_apart) {
   out->layer = a.radius + b.radius;
   out->pierced = false;
   out->contacts.clear();
@@ -96,7 +102,7 @@ void narrowPhase(const Collider& a, const Pose& X_WA, const Collider& b, const P
   } else if (a.geometry->isHalfSpace()) {
     meshHalfSpace(b, X_WB, a, X_WA, range, {false, a.radius, b.radius}, out);
   } else {
-    meshMesh(a, X_WA, b, X_WB, range, out);
+    meshMesh(a, X_WA, b, X_WB, range, X_AB_apart, out);
   }
 }
 

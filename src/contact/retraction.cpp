@@ -8,13 +8,47 @@
 namespace blem_sim {
 namespace {
 
-/** Where meshes cross, a contact must push the bodies apart by this (cosine) at least. */
-constexpr double MIN_OUTWARD = 1e-3;
+/** Where meshes cross, a contact must push the bodies apart by this (cosine) at least: known from where they were, or guessed. */
+constexpr double MIN_OUTWARD = 1e-3, MIN_OUTWARD_GUESSED = 0.2;
+/** Retractions farther (cosine) from their mean direction than this are turned into it: one motion must be able to satisfy all of them. */
+constexpr double MIN_AGREEMENT = 0.3;
+/** A mean of unit vectors shorter than this says nothing. */
+constexpr double MIN_MEAN = 0.1;
+
+/** On which sides of each other the bodies were before they crossed. Everything in frame F. */
+class Sides {
+ public:
+  Sides(const MeshPair& pair, const Pose* X_FM_apart) : pair_(pair), known_(X_FM_apart != nullptr) {
+    if (known_) back_ = *X_FM_apart * pair.X_FM.inverse();
+  }
+
+  /** Not unit; from the fixed body's side to the moving one's, where these two points are now; may be zero. */
+  Vector3 between(const Vector3& point_M, const Vector3& point_F) const {
+    return known_ ? Vector3(back_ * point_M - point_F) : bodySide(pair_, point_F);
+  }
+
+  /** Does a contact push the moving body back to its side? */
+  bool isOutward(const FeatureContact& contact) const {
+    const Vector3 side = between(contact.point_M, contact.point_F);
+    return contact.normal.dot(side) >= (known_ ? MIN_OUTWARD : MIN_OUTWARD_GUESSED) * side.norm();
+  }
+
+  /** The side along a face's normal, at a point where an edge passes through it. */
+  double through(const Vector3& point, const Vector3& normal, bool face_moves) const {
+    const Vector3 then = known_ && face_moves ? Vector3(back_.linear() * normal) : normal;
+    return between(point, point).dot(then);
+  }
+
+ private:
+  const MeshPair& pair_;
+  const bool known_;
+  Pose back_ = Pose::Identity();  // takes the moving body to where it was
+};
 
 class Retraction {
  public:
-  explicit Retraction(const MeshPair& pair)
-      : pair_(pair), longest_(0.5 * std::min(pair.moving.bounds.diagonal().norm(), pair.fixed.bounds.diagonal().norm())) {}
+  Retraction(const MeshPair& pair, const Sides& sides)
+      : pair_(pair), sides_(sides), longest_(0.5 * std::min(pair.moving.bounds.diagonal().norm(), pair.fixed.bounds.diagonal().norm())) {}
 
   FeatureContact shortest(const Crossing& crossing) const {
     const MeshSide &edge_side = crossing.edge_of_moving ? pair_.moving : pair_.fixed,
@@ -59,7 +93,7 @@ class Retraction {
     const Vector3 corner = position(face_side, face_side.mesh.elements[crossing.face][0]);
     const double h0 = normal.dot(p0 - corner), h1 = normal.dot(p1 - corner);
     const Vector3 through = p0 + h0 / (h0 - h1) * (p1 - p0);
-    double side = bodySide(pair_, through).dot(normal);
+    double side = sides_.through(through, normal, !crossing.edge_of_moving);
     if (side == 0) side = (std::abs(h0) < std::abs(h1) ? -h0 : -h1) * (crossing.edge_of_moving ? 1 : -1);
     if (side < 0) normal = -normal;
     // The end behind the face if the edge moves, in front of it if the face moves.
@@ -82,7 +116,7 @@ class Retraction {
     }
     // Crossed: the moving edge lies on the far side of the fixed one.
     const Vector3 normal = feet.offset < 0 ? feet.axis : Vector3(-feet.axis);
-    if (feet.offset == 0 || bodySide(pair_, feet.point_q).dot(normal) <= 0) return false;
+    if (feet.offset == 0 || sides_.between(feet.point_p, feet.point_q).dot(normal) <= 0) return false;
     if (!edgeConeAllows(pair_.fixed, f, normal, EDGE_CONE_SLACK) ||
         !edgeConeAllows(pair_.moving, m, -(pair_.X_FM.linear().transpose() * normal), EDGE_CONE_SLACK)) {
       return false;
@@ -92,19 +126,34 @@ class Retraction {
   }
 
   const MeshPair& pair_;
+  const Sides& sides_;
   const double longest_;  // [m]
 };
 
+void turnIntoMean(const Sides& sides, std::vector<FeatureContact>::iterator begin, std::vector<FeatureContact>::iterator end) {
+  Vector3 mean = Vector3::Zero(), side = Vector3::Zero();
+  for (auto c = begin; c != end; ++c) {
+    mean += c->normal;
+    side += sides.between(c->point_M, c->point_F);
+  }
+  if (mean.norm() < MIN_MEAN * static_cast<double>(end - begin)) mean = side;
+  if (!(mean.norm() > 0)) return;
+  mean.normalize();
+  for (auto c = begin; c != end; ++c)
+    if (c->normal.dot(mean) < MIN_AGREEMENT) c->normal = mean;
+}
+
 }  // namespace
 
-void addRetractions(const MeshPair& pair, const std::vector<Crossing>& crossings, std::vector<FeatureContact>* contacts) {
-  const auto points_back = [&pair](const FeatureContact& contact) {
-    const Vector3 side = bodySide(pair, contact.point_F);
-    return contact.normal.dot(side) < MIN_OUTWARD * side.norm();
-  };
+void addRetractions(const MeshPair& pair, const Pose* X_FM_apart, const std::vector<Crossing>& crossings,
+                    std::vector<FeatureContact>* contacts) {
+  const Sides sides(pair, X_FM_apart);
+  const auto points_back = [&sides](const FeatureContact& contact) { return !sides.isOutward(contact); };
   contacts->erase(std::remove_if(contacts->begin(), contacts->end(), points_back), contacts->end());
-  const Retraction retraction(pair);
+  const Retraction retraction(pair, sides);
+  const auto sound = static_cast<std::ptrdiff_t>(contacts->size());
   for (const Crossing& crossing : crossings) contacts->push_back(retraction.shortest(crossing));
+  turnIntoMean(sides, contacts->begin() + sound, contacts->end());
 }
 
 }  // namespace blem_sim

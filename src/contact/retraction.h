@@ -9,10 +9,13 @@ namespace blem_sim {
 
 /**
  * One contact per crossing: the shortest retraction among its candidates, which are the edge's end that is on the wrong side of the face
- * (its direction is the face's normal, the right side being the one of the smaller body's middle), and the edge over a border of the face
- * where both edges' normal cones allow it. The gap is minus the retraction, bounded by half the smaller body. Contacts already there that
- * point to the wrong side come from features that have passed through; they are dropped.
+ * (its direction is the face's normal), and the edge over a border of the face where both edges' normal cones allow it. The right side is
+ * the one where the crossing's place was when the pair was last apart; if nobody knows, the one of the smaller body's middle. The gap is
+ * minus the retraction, bounded by half the smaller body. Contacts already there that point to the wrong side come from features that have
+ * passed through; they are dropped.
+ * @param X_FM_apart where the pair was last apart, or null
  */
-void addRetractions(const MeshPair& pair, const std::vector<Crossing>& crossings, std::vector<FeatureContact>* contacts);
+void addRetractions(const MeshPair& pair, const Pose* X_FM_apart, const std::vector<Crossing>& crossings,
+                    std::vector<FeatureContact>* contacts);
 
 }  // namespace blem_sim

@@ -1,6 +1,8 @@
 #include "contact_stage.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "blem_sim/contact/narrow_phase.h"
 #include "blem_sim/contact/reduction.h"
@@ -11,9 +13,29 @@ namespace {
 
 // Contacts exist before touch, so that none appears with a force: at rest within this of the layer, sooner at speed.
 constexpr double BASE_MARGIN = 0.001;  // [m]
-constexpr double MAX_MARGIN = 0.1;     // [m]: 66 m/s at 1 ms
+// What is farther than this is not looked at: before it comes close, the step guard ends the substep.
+constexpr double LEAST_MAX_MARGIN = 0.005;  // [m], or
+constexpr double MAX_MARGIN_OF_LAYER = 2;   // layers
+constexpr double UNGUARDED_MARGIN = 0.1;    // [m] where there is no layer, and over half-spaces: 66 m/s at 1 ms
 // Forces may speed a body up during the step; its margin covers this times its present motion.
 constexpr double REACH_FACTOR = 1.5;
+// Pierced contacts part at this speed; what weighs on them slows them down by its weight over this rate times the lighter model's mass.
+constexpr double SEPARATION_SPEED = 0.1;  // [m/s]
+constexpr double SEPARATION_RATE = 1e4;   // [1/s]
+constexpr double APART = 0.25;            // of the layer: what crossed is sound again when its deepest contact uses up less
+
+double knownMargin(const Collider& a, const Collider& b, double margin) {
+  const double layer = a.radius + b.radius;
+  const bool guarded = layer > 0 && !a.geometry->isHalfSpace() && !b.geometry->isHalfSpace();
+  return std::min(margin, guarded ? std::max(LEAST_MAX_MARGIN, MAX_MARGIN_OF_LAYER * layer) : UNGUARDED_MARGIN);
+}
+
+template <typename Item>
+const Item* findPair(const std::vector<Item>& items, int a, int b) {
+  const auto at = std::lower_bound(items.begin(), items.end(), std::make_pair(a, b),
+                                   [](const Item& item, const auto& key) { return std::make_pair(item.a, item.b) < key; });
+  return at != items.end() && at->a == a && at->b == b ? &*at : nullptr;
+}
 
 /** Farthest corner of the geometry's box from the body's centre of mass. */
 double armOf(const Collider& collider, const Vector3& com) {
@@ -36,6 +58,22 @@ std::uint64_t contactId(const ContactManifold& manifold, const Contact& contact)
   return mixed(contact.id + mixed((static_cast<std::uint64_t>(manifold.a) << 32) + static_cast<std::uint64_t>(manifold.b) + 1));
 }
 
+/** [kg] of all that moves with the collider. */
+double massOf(const SimulatedWorld& world, const Collider& collider) {
+  if (collider.body == WORLD_BODY) return std::numeric_limits<double>::infinity();
+  double mass = 0;
+  for (const int body : world.models[collider.model].bodies)
+    if (body != WORLD_BODY) mass += world.world.bodySpec(body).inertial.mass;
+  return mass;
+}
+
+/** Where meshes cross, contacts may contradict each other: a damper that lets go at SEPARATION_SPEED, and never bounces. */
+void separate(double mass, double layer, ContactConstraint* contact) {
+  contact->damping = SEPARATION_RATE * mass;
+  contact->stiffness = SEPARATION_SPEED * contact->damping / std::max(layer, contact->depth);
+  contact->restitution = 0;
+}
+
 const Reduction* reductionNamed(const std::string& name) {
   const Reduction* method = findReduction(name);
   if (method) return method;
@@ -55,34 +93,48 @@ void ContactStage::moveColliders(const SimulatedWorld& world, double dt) {
     arms_.push_back(body == WORLD_BODY ? 0 : armOf(colliders[i], world.world.bodySpec(body).inertial.com));
   }
   const double fall = 0.5 * world.world.gravity().norm() * dt * dt;
-  motion_.resize(colliders.size());
+  std::vector<ColliderMotion>& motion = search_.motion;
+  motion.resize(colliders.size());
   for (std::size_t i = 0; i < colliders.size(); ++i) {
     if (colliders[i].body == WORLD_BODY) {
-      motion_[i] = {colliders[i].X_BC, 0};
+      motion[i] = {colliders[i].X_BC, 0};
       continue;
     }
     const BodyState state = world.world.bodyState(colliders[i].body);
     const double speed = state.v_WCom.norm() + state.w_WB.norm() * arms_[i];
-    motion_[i] = {state.X_WB * colliders[i].X_BC, REACH_FACTOR * speed * dt + fall};
+    motion[i] = {state.X_WB * colliders[i].X_BC, REACH_FACTOR * speed * dt + fall};
   }
 }
 
 void ContactStage::broadPhase(const SimulatedWorld& world, double dt) {
   moveColliders(world, dt);
-  pairs_ = blem_sim::broadPhase(world.colliders, motion_, world.filter, BASE_MARGIN, MAX_MARGIN);
+  search_.pairs.clear();
+  for (const ColliderPair& pair :
+       blem_sim::broadPhase(world.colliders, search_.motion, world.filter, BASE_MARGIN, std::numeric_limits<double>::infinity())) {
+    if (world.disabled_pairs.count({pair.a, pair.b}) > 0) continue;
+    search_.pairs.push_back({pair.a, pair.b, pair.margin, knownMargin(world.colliders[pair.a], world.colliders[pair.b], pair.margin)});
+  }
+}
+
+Recovery ContactStage::lastApart(int a, int b) const {
+  if (const Recovery* recovery = findPair(current_search_.recoveries, a, b)) return *recovery;
+  if (!known_) return {a, b, false, Pose::Identity()};
+  return {a, b, true, current_search_.motion[a].X_WC.inverse() * current_search_.motion[b].X_WC};
 }
 
 void ContactStage::narrowPhase(const SimulatedWorld& world) {
+  search_.recoveries.clear();
   std::size_t count = 0;
-  for (const ColliderPair& pair : pairs_) {
-    if (world.disabled_pairs.count({pair.a, pair.b}) > 0) continue;
+  for (const WatchedPair& pair : search_.pairs) {
     if (count == found_.size()) found_.emplace_back();
     ContactManifold& manifold = found_[count];
-    blem_sim::narrowPhase(world.colliders[pair.a], motion_[pair.a].X_WC, world.colliders[pair.b], motion_[pair.b].X_WC, pair.margin,
-                          &manifold);
+    const Recovery last = lastApart(pair.a, pair.b);
+    blem_sim::narrowPhase(world.colliders[pair.a], search_.motion[pair.a].X_WC, world.colliders[pair.b], search_.motion[pair.b].X_WC,
+                          pair.known, &manifold, last.known ? &last.X_AB : nullptr);
     manifold.a = pair.a;
     manifold.b = pair.b;
-    manifold.layer = world.colliders[pair.a].radius + world.colliders[pair.b].radius;
+    const bool was_recovering = findPair(current_search_.recoveries, pair.a, pair.b) != nullptr;
+    if (manifold.pierced || (was_recovering && manifold.maxDepth() > APART * manifold.layer)) search_.recoveries.push_back(last);
     if (!manifold.contacts.empty()) ++count;
   }
   found_.resize(count);
@@ -90,7 +142,27 @@ void ContactStage::narrowPhase(const SimulatedWorld& world) {
 
 void ContactStage::accept() {
   std::swap(current_, found_);
+  std::swap(current_search_, search_);
   known_ = true;
+}
+
+void ContactStage::appendRecoveries(std::vector<double>* numbers, std::vector<std::uint64_t>* words) const {
+  words->push_back(current_search_.recoveries.size());
+  for (const Recovery& recovery : current_search_.recoveries) {
+    for (const int word : {recovery.a, recovery.b, static_cast<int>(recovery.known)}) words->push_back(static_cast<std::uint64_t>(word));
+    numbers->insert(numbers->end(), recovery.X_AB.matrix().data(), recovery.X_AB.matrix().data() + 16);
+  }
+}
+
+void ContactStage::readRecoveries(const double** numbers, const std::uint64_t** words) {
+  current_search_.recoveries.resize(*(*words)++);
+  for (Recovery& recovery : current_search_.recoveries) {
+    recovery.a = static_cast<int>(*(*words)++);
+    recovery.b = static_cast<int>(*(*words)++);
+    recovery.known = *(*words)++ != 0;
+    std::copy(*numbers, *numbers + 16, recovery.X_AB.matrix().data());
+    *numbers += 16;
+  }
 }
 
 int ContactStage::rawContacts() const {
@@ -99,9 +171,11 @@ int ContactStage::rawContacts() const {
   return count;
 }
 
-void ContactStage::addConstraints(const SimulatedWorld& world, const ContactManifold& manifold) {
+void ContactStage::addConstraints(const SimulatedWorld& world, ContactManifold& manifold) {
   const Collider &a = world.colliders[manifold.a], &b = world.colliders[manifold.b];
   const SurfaceProperties surface = combineSurfaces(a.surface, b.surface, config_.friction_rule);
+  if (std::isfinite(surface.stiffness) || std::isfinite(surface.damping)) weighSprings(manifold.contacts);
+  const bool recovers = findPair(current_search_.recoveries, manifold.a, manifold.b) != nullptr;
   for (const Contact& contact : manifold.contacts) {
     ContactConstraint constraint;
     constraint.body_a = a.body;
@@ -111,8 +185,9 @@ void ContactStage::addConstraints(const SimulatedWorld& world, const ContactMani
     constraint.depth = contact.depth;
     constraint.friction = surface.friction;
     constraint.restitution = surface.restitution;
-    constraint.stiffness = surface.stiffness;
-    constraint.damping = surface.damping;
+    constraint.stiffness = contact.weight * surface.stiffness;
+    constraint.damping = contact.weight * surface.damping;
+    if (recovers && contact.depth > 0) separate(std::min(massOf(world, a), massOf(world, b)), manifold.layer, &constraint);
     constraint.id = contactId(manifold, contact);
     constraints_.push_back(constraint);
     solved_.push_back({manifold.a, manifold.b, manifold.layer, contact.pierced});
@@ -126,7 +201,7 @@ void ContactStage::reduction(const SimulatedWorld& world) {
     model_a.push_back(world.colliders[manifold.a].model);
     model_b.push_back(world.colliders[manifold.b].model);
   }
-  const int left_out = reduceManifolds(reduced_, model_a, model_b, world.budgets, *method_);
+  const int left_out = reduceManifolds(reduced_, model_a, model_b, world.budgets, *method_, &memory_);
   constraints_.clear();
   solved_.clear();
   std::vector<int> counts(world.models.size(), 0);

@@ -5,6 +5,7 @@
 
 #include "blem_sim/contact/broad_phase.h"
 #include "blem_sim/contact/manifold.h"
+#include "blem_sim/contact/reduction.h"
 #include "blem_sim/dynamics/world.h"
 #include "simulated_world.h"
 
@@ -17,9 +18,23 @@ struct SolvedContact {
   bool pierced;
 };
 
+/** Two colliders that may meet in the coming step. */
+struct WatchedPair {
+  int a, b;
+  double margin;  ///< [m] beyond the layers, within which they may meet at all
+  double known;   ///< [m] beyond the layers, within which their contacts are known
+};
+
+/** A pair whose bare meshes cross, or did and are not apart yet. */
+struct Recovery {
+  int a, b;
+  bool known;  ///< false if the pair crossed from the start
+  Pose X_AB;   ///< geometry of B in A's where they were last apart
+};
+
 /**
- * Finds contacts at the state at hand. The manifolds are a function of the state alone, so those found at the end of an accepted step
- * serve the next one, and after a restore they are found anew, the same.
+ * Finds contacts at the state at hand. The manifolds are a function of the state and of recoveries() alone, so those found at the end of an
+ * accepted step serve the next one, and after a restore they are found anew, the same.
  */
 class ContactStage {
  public:
@@ -31,8 +46,11 @@ class ContactStage {
   void narrowPhase(const SimulatedWorld& world);
   /** What was found is the state the next solve starts from. */
   void accept();
-  /** After bodies or geometry changed other than by a step: nothing is known. */
+  /** After bodies or geometry changed other than by a step: no contact is known. */
   void forget() { known_ = false; }
+  /** What the last reduction chose; the only thing that outlives a step here, beside what the state tells. */
+  ReductionMemory& memory() { return memory_; }
+  const ReductionMemory& memory() const { return memory_; }
   bool known() const { return known_; }
   /** At most k contacts per model out of current(), as constraints. */
   void reduction(const SimulatedWorld& world);
@@ -41,20 +59,39 @@ class ContactStage {
   const std::vector<ContactManifold>& current() const { return current_; }  ///< of the accepted state, before reduction
   const std::vector<ContactConstraint>& constraints() const { return constraints_; }
   const std::vector<SolvedContact>& solved() const { return solved_; }
+  const std::vector<WatchedPair>& watched() const { return current_search_.pairs; }  ///< of the accepted state
+  /** [colliders] of the accepted state: where they are, and how far they may move. */
+  const std::vector<ColliderMotion>& motion() const { return current_search_.motion; }
+  /**
+   * Sorted by (a, b). Contacts of these pairs may contradict each other: they push as dampers that let go at 0.1 m/s, less while no more
+   * than the layer is used up.
+   */
+  const std::vector<Recovery>& recoveries() const { return current_search_.recoveries; }
+  void forgetRecoveries() { current_search_.recoveries.clear(); }
+  /** recoveries() as numbers and words, for save and restore. */
+  void appendRecoveries(std::vector<double>* numbers, std::vector<std::uint64_t>* words) const;
+  void readRecoveries(const double** numbers, const std::uint64_t** words);
   int rawContacts() const;
   /** A model has as many contacts as it may, and others were left out. */
   bool budgetUsedUp() const { return budget_used_up_; }
 
  private:
+  struct Search {
+    std::vector<ColliderMotion> motion;
+    std::vector<WatchedPair> pairs;
+    std::vector<Recovery> recoveries;
+  };
   void moveColliders(const SimulatedWorld& world, double dt);
-  void addConstraints(const SimulatedWorld& world, const ContactManifold& manifold);
+  /** Where a pair was last apart, as far as the accepted state knows. */
+  Recovery lastApart(int a, int b) const;
+  void addConstraints(const SimulatedWorld& world, ContactManifold& manifold);
 
   const ContactConfig config_;
   const Reduction* method_;
+  ReductionMemory memory_;
   bool known_ = false;
   std::vector<double> arms_;  ///< [m] by collider: farthest point of its geometry from the body's centre of mass
-  std::vector<ColliderMotion> motion_;
-  std::vector<ColliderPair> pairs_;
+  Search search_, current_search_;
   std::vector<ContactManifold> found_, current_, reduced_;
   std::vector<ContactConstraint> constraints_;
   std::vector<SolvedContact> solved_;

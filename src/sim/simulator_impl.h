@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "contact_stage.h"
+#include "energy_balance.h"
+#include "layer_watch.h"
 #include "sensor.h"
 #include "simulated_world.h"
 #include "step_guard.h"
@@ -18,6 +20,7 @@ struct Simulator::Impl {
   // One step, stage by stage: simulator_step.cpp.
   const StepReport& step();
   void startStep();
+  void planSubstep();
   void sampleCommands();
   void motorTorque();
   void broadPhase();
@@ -62,6 +65,8 @@ struct Simulator::Impl {
   SimulatedWorld world_;
   WorldBuilder builder_;
   ContactStage contacts_;
+  LayerWatch layer_watch_;
+  EnergyBalance energy_balance_;
   std::vector<std::unique_ptr<Sensor>> sensors_;
   std::vector<std::uint64_t> sensor_periods_;  ///< [steps]
   WorldState initial_state_;

@@ -1,5 +1,6 @@
 // Save, restore, reset, hash.
 #include <cstring>
+#include <utility>
 
 #include "blem_sim/geometry/input_error.h"
 #include "simulator_impl.h"
@@ -56,25 +57,38 @@ SimulationState Simulator::Impl::save() const {
   state.step = step_count_;
   state.world = world_.world.save();
   state.words.push_back(stopped_ ? 1 : 0);
+  energy_balance_.append(&state.numbers);
   for (const JointMotor& motor : world_.motors) motor.append(&state.numbers);
   for (const auto& sensor : sensors_) {
     sensor->append(&state.numbers);
     state.words.push_back(sensor->random().state());
   }
+  contacts_.memory().append(&state.words);
+  layer_watch_.append(&state.words);
+  contacts_.appendRecoveries(&state.numbers, &state.words);
   state.layout = layout();
   return state;
 }
 
 void Simulator::Impl::restore(const SimulationState& state) {
-  if (state.layout != layout() || state.words.size() != sensors_.size() + 1)
+  if (state.layout != layout() || state.words.size() < sensors_.size() + 4)
     throw InputError("restore: the state belongs to other models; restore it where the same models, joints and environments are loaded");
+  const std::uint64_t *words = state.words.data() + sensors_.size() + 1, *words_end = state.words.data() + state.words.size();
+  ReductionMemory memory;
+  LayerWatch layer_watch;
+  if (!memory.read(&words, words_end) || !layer_watch.read(&words, words_end))
+    throw InputError("restore: the state is cut short; save it again");
+  contacts_.memory() = std::move(memory);
+  layer_watch_ = std::move(layer_watch);
   world_.world.restore(state.world);
   const double* cursor = state.numbers.data();
+  energy_balance_.read(&cursor);
   for (JointMotor& motor : world_.motors) motor.read(&cursor);
   for (std::size_t i = 0; i < sensors_.size(); ++i) {
     sensors_[i]->restore(&cursor);
     sensors_[i]->random().setState(state.words[i + 1]);
   }
+  contacts_.readRecoveries(&cursor, &words);
   step_count_ = state.step;
   stopped_ = state.words[0] != 0;
   contacts_.forget();
@@ -86,6 +100,10 @@ void Simulator::Impl::resetWorld() {
   for (JointMotor& motor : world_.motors) motor.reset();
   for (const auto& sensor : sensors_) sensor->reset();
   stopped_ = false;
+  contacts_.memory().clear();
+  contacts_.forgetRecoveries();
+  layer_watch_.clear();
+  energy_balance_.clear();
   contacts_.forget();
   reportWithoutStep();
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "simulator_impl.h"
+#include "step_prediction.h"
 
 namespace blem_sim {
 namespace {
@@ -40,6 +41,7 @@ const StepReport& Simulator::Impl::step() {
   if (!bodiesAreFinite()) return stop();
   if (!contacts_.known()) findFirstContacts();
   while (!substeps_.finished()) {
+    planSubstep();
     sampleCommands();
     motorTorque();
     reduction();
@@ -60,18 +62,28 @@ void Simulator::Impl::startStep() {
   report_.status = STEP_OK;
   report_.profile = StepProfile();
   report_.samples.clear();
+  report_.layer_events.clear();
+  report_.energy_gained = 0;
   report_.solver_residual = report_.solver_creep = 0;
   report_.solver_iterations = 0;
   report_.dt = config_.time_step;
   joint_wrenches_.assign(world_.world.jointCount(), Wrench());
   world_.bodyStates(&bodies_before_);
   bodies_ = bodies_before_;
+  energy_balance_.start(world_.world);
 }
 
 void Simulator::Impl::findFirstContacts() {
   broadPhase();
   narrowPhase();
   contacts_.accept();
+}
+
+void Simulator::Impl::planSubstep() {
+  const StageTimer timer(&report_.profile, Stage::STEP_GUARD);
+  if (substeps_.isRedone()) return;
+  const double left = substeps_.fractionLeft() * config_.time_step;
+  substeps_.plan(safeTime(world_, contacts_, bodies_, left) / left);
 }
 
 void Simulator::Impl::sampleCommands() {
@@ -87,7 +99,9 @@ void Simulator::Impl::motorTorque() {
 
 void Simulator::Impl::broadPhase() {
   const StageTimer timer(&report_.profile, Stage::BROAD_PHASE);
-  contacts_.broadPhase(world_, config_.time_step);
+  // The next solve goes on with the rest of the step, or with the next one.
+  const double left = substeps_.fractionAfter();
+  contacts_.broadPhase(world_, (left > 0 ? left : 1) * config_.time_step);
 }
 
 void Simulator::Impl::narrowPhase() {
@@ -118,7 +132,6 @@ void Simulator::Impl::stepGuard() {
     world_.world.restore(substep_start_);
     bodies_ = bodies_before_substep_;
     substeps_.halve();
-    report_.status |= STEP_SHORTENED;
     return;
   }
   acceptSubstep();
@@ -133,6 +146,8 @@ void Simulator::Impl::acceptSubstep() {
   }
   recordSaturation();
   recordContacts();
+  layer_watch_.look(contacts_.current(), substepTime(), &report_.layer_events);
+  report_.energy_gained += energy_balance_.addSolve(world_.world, contacts_, solved_->contact_forces, bodies_before_substep_, bodies_);
   contacts_.accept();
   substeps_.accept();
 }
@@ -173,8 +188,8 @@ void Simulator::Impl::recordContacts() {
     contact_reports_.push_back({solved.collider_a, solved.collider_b, constraint.body_a, constraint.body_b, constraint.point,
                                 constraint.normal_BA, constraint.depth, of_layer, force, solved.pierced});
   }
+  if (!contacts_.recoveries().empty()) report_.status |= CONTACT_UNRELIABLE;
   for (const ContactManifold& manifold : contacts_.current()) {
-    if (manifold.pierced) report_.status |= CONTACT_UNRELIABLE;
     const double depth = manifold.maxDepth();
     if (manifold.layer > 0) report_.max_of_layer = std::max(report_.max_of_layer, depth / manifold.layer);
     if (depth <= report_.max_depth) continue;
@@ -200,6 +215,8 @@ void Simulator::Impl::report() {
   report_.step = step_count_;
   report_.time = time();
   report_.substeps = substeps_.count();
+  report_.redone_solves = substeps_.redone();
+  if (report_.substeps > 1) report_.status |= STEP_SHORTENED;
   report_.energy = world_.world.kineticEnergy() + world_.world.potentialEnergy();
   std::swap(report_.contacts, contact_reports_);
   report_.bodies = bodies_;

@@ -1,6 +1,7 @@
 #include "step_guard.h"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
 namespace blem_sim {
@@ -53,6 +54,24 @@ bool usesUpLayer(const std::vector<Collider>& colliders, const std::vector<Conta
     if (inDanger(used(&then), carried(then, motion_a, motion_b))) return true;
   }
   return false;
+}
+
+void Substeps::plan(double part) {
+  const int left = MAX_SUBSTEPS - done_;
+  size_ = std::clamp(static_cast<int>(std::floor(part * left)), 1, left);
+}
+
+void Substeps::halve() {
+  size_ /= 2;
+  ++redone_;
+  halved_ = true;
+}
+
+void Substeps::accept() {
+  done_ += size_;
+  ++count_;
+  size_ = std::min(size_, MAX_SUBSTEPS - done_);
+  halved_ = false;
 }
 
 }  // namespace blem_sim

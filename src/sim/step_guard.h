@@ -1,4 +1,4 @@
-// Was too much of a boundary layer used up by a step? Then it is made again in halves [Hauser 2013, 3.3].
+// Was too much of a boundary layer used up by a step, though step_prediction.h saw no danger? Then it is made again in halves.
 #pragma once
 
 #include <cstdint>
@@ -21,24 +21,31 @@ bool usesUpLayer(const std::vector<Collider>& colliders, const std::vector<Conta
                  const std::vector<ContactManifold>& after, const std::vector<BodyState>& bodies_before,
                  const std::vector<BodyState>& bodies_after);
 
-/** Divides one step into substeps, halved on demand, at most 16 of them. */
+/**
+ * Divides one step into substeps of whole ticks. So a step costs at most MAX_SUBSTEPS + MAX_REDONE solves and searches for contacts,
+ * whatever happens in it.
+ */
 class Substeps {
  public:
-  static constexpr int TICKS = 16;
+  static constexpr int MAX_SUBSTEPS = 16, MAX_REDONE = 4;
 
-  bool finished() const { return done_ == TICKS; }
-  double fraction() const { return static_cast<double>(size_) / TICKS; }  ///< of the step, the substep at hand
-  double fractionDone() const { return static_cast<double>(done_) / TICKS; }
-  bool canHalve() const { return size_ > 1; }
-  void halve() { size_ /= 2; }
-  void accept() {
-    done_ += size_;
-    ++count_;
-  }
-  int count() const { return count_; }  ///< accepted so far
+  bool finished() const { return done_ == MAX_SUBSTEPS; }
+  double fraction() const { return static_cast<double>(size_) / MAX_SUBSTEPS; }  ///< of the step, the substep at hand
+  double fractionDone() const { return static_cast<double>(done_) / MAX_SUBSTEPS; }
+  double fractionLeft() const { return static_cast<double>(MAX_SUBSTEPS - done_) / MAX_SUBSTEPS; }           ///< with the substep at hand
+  double fractionAfter() const { return static_cast<double>(MAX_SUBSTEPS - done_ - size_) / MAX_SUBSTEPS; }  ///< without it
+  /** The next substep takes at most this part (0 to 1) of what is left, in whole ticks, at least one. */
+  void plan(double part);
+  bool canHalve() const { return size_ > 1 && redone_ < MAX_REDONE; }
+  void halve();
+  void accept();
+  int count() const { return count_; }       ///< accepted so far
+  int redone() const { return redone_; }     ///< halved so far
+  bool isRedone() const { return halved_; }  ///< the substep at hand was halved: its length stands
 
  private:
-  int size_ = TICKS, done_ = 0, count_ = 0;
+  int size_ = MAX_SUBSTEPS, done_ = 0, count_ = 0, redone_ = 0;
+  bool halved_ = false;
 };
 
 }  // namespace blem_sim

@@ -44,6 +44,49 @@ TEST(Retraction, SunkCubeIsPushedOutTheWayItCame) {
   }
 }
 
+/** Sunk by more than half, only where it was tells the side. */
+TEST(Retraction, WayBackIsTheOneFromWhereThePairWasApart) {
+  const Collider sheet = makeCollider(gridMesh(1, 1, 7, 7), LAYER / 2);
+  for (const double above : {1.0, -1.0}) {
+    const Pose X_BA_apart = makePose({0.01, 0, above * (EDGE / 2 + LAYER)}, {0, 0, 0.1});
+    for (const double sunk : {0.001, 0.04, 0.08}) {
+      const Pose X_WB = makePose({0.3, -0.2, 0.1}, {0.4, 0.3, 0.2}), X_BA = makePose({0.05, 0.02, above * (EDGE / 2 - sunk)}, {0, 0, 0.2});
+      for (const bool a_is_cube : {true, false}) {
+        SCOPED_TRACE(testing::Message() << "above " << above << " sunk " << sunk << " cube first " << a_is_cube);
+        ContactManifold manifold;
+        const Pose X_AB_apart = a_is_cube ? X_BA_apart.inverse() : X_BA_apart;
+        if (a_is_cube) {
+          narrowPhase(cube(), X_WB * X_BA, sheet, X_WB, 0, &manifold, &X_AB_apart);
+        } else {
+          narrowPhase(sheet, X_WB, cube(), X_WB * X_BA, 0, &manifold, &X_AB_apart);
+        }
+        EXPECT_TRUE(manifold.pierced);
+        ASSERT_EQ(countPierced(manifold), 4);
+        EXPECT_NEAR(manifold.maxDepth(), LAYER + sunk, 1e-9);
+        const Vector3 up = X_WB.linear() * Vector3(0, 0, a_is_cube ? above : -above);
+        for (const Contact& c : manifold.contacts) EXPECT_NEAR((c.normal_BA - up).norm(), 0, 1e-9);
+      }
+    }
+  }
+}
+
+/** A wedged body: walls that cross on both sides must not pull it apart. */
+TEST(Retraction, DirectionsOfOnePairAgree) {
+  RandomShapes random(33);
+  int pierced = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Collider a = makeCollider(hillMesh(random, 0.2, 6, 0.03), 0.001), b = makeCollider(octahedronMesh(0.04), 0.001);
+    const ContactManifold manifold = contactsOf(b, random.pose(0.05), a, Pose::Identity());
+    ASSERT_TRUE(allFinite(manifold));
+    Vector3 mean = Vector3::Zero();
+    for (const Contact& c : manifold.contacts) mean += c.pierced ? c.normal_BA : Vector3(Vector3::Zero());
+    pierced += manifold.pierced;
+    for (const Contact& c : manifold.contacts)
+      EXPECT_TRUE(!c.pierced || c.normal_BA.dot(mean) > 0);
+  }
+  EXPECT_GT(pierced, 50);
+}
+
 TEST(Retraction, CornerAndEdgeThroughASheet) {
   const Collider sheet = makeCollider(gridMesh(1, 1, 20, 20), LAYER / 2);
   const double corner = EDGE / 2 * std::sqrt(3.0), edge = EDGE / 2 * std::sqrt(2.0), sunk = 0.001;

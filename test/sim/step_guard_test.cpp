@@ -17,6 +17,36 @@ TEST(Substeps, HalvesAtMostFourTimesAndEndsExactly) {
   EXPECT_EQ(substeps.fractionDone(), 1);
 }
 
+TEST(Substeps, PlansWholeTicksOfWhatIsLeft) {
+  Substeps substeps;
+  substeps.plan(0.51);
+  EXPECT_EQ(substeps.fraction(), 0.5);
+  EXPECT_EQ(substeps.fractionAfter(), 0.5);
+  substeps.accept();
+  substeps.plan(1);
+  EXPECT_EQ(substeps.fraction(), 0.5);
+  substeps.plan(1e-9);
+  EXPECT_EQ(substeps.fraction(), 1.0 / 16);
+  substeps.accept();
+  EXPECT_EQ(substeps.fractionLeft(), 7.0 / 16);
+}
+
+TEST(Substeps, CostOfAStepIsBoundedWhateverIsAskedFor) {
+  Substeps substeps;
+  int solves = 0;
+  for (; !substeps.finished(); ++solves) {
+    if (!substeps.isRedone()) substeps.plan(0.3);
+    if (substeps.canHalve()) {
+      substeps.halve();
+    } else {
+      substeps.accept();
+    }
+    ASSERT_LE(solves, Substeps::MAX_SUBSTEPS + Substeps::MAX_REDONE);
+  }
+  EXPECT_LE(substeps.count(), Substeps::MAX_SUBSTEPS);
+  EXPECT_EQ(substeps.redone(), Substeps::MAX_REDONE);
+}
+
 class UsesUpLayer : public testing::Test {
  protected:
   UsesUpLayer() : colliders_(2), before_(2), after_(2) {
@@ -100,6 +130,52 @@ TEST(StepGuard, FastCubeDoesNotPassAThinSheet) {
       EXPECT_FALSE(pierced) << speed << " m/s, tilt " << tilt;
     }
   }
+}
+
+/** Most substeps of 60 ms of a cube above a sheet. */
+int mostSubsteps(const Vector3& position, const Vector3& velocity, const Vector3& spin) {
+  SimulationConfig config;
+  config.environments = {ground()};
+  config.objects = {box("cube", Vector3::Constant(0.1), 1, position)};
+  config.objects[0].linear_velocity = velocity;
+  config.objects[0].angular_velocity = spin;
+  Simulator simulator(config, UriResolver());
+  int most = 1;
+  for (int i = 0; i < 60; ++i) {
+    const StepReport& report = simulator.step();
+    most = std::max(most, report.substeps);
+    EXPECT_EQ(report.redone_solves, 0);
+    EXPECT_EQ((report.status & STEP_SHORTENED) != 0, report.substeps > 1);
+  }
+  return most;
+}
+
+TEST(StepGuard, OnlyWhatIsFastAndNearShortensTheStep) {
+  const Vector3 zero = Vector3::Zero();
+  EXPECT_EQ(mostSubsteps({0, 0, 0.0525}, zero, zero), 1);
+  EXPECT_EQ(mostSubsteps({0, 0, 0.06}, {1.5, 0, -1.5}, zero), 1);
+  EXPECT_EQ(mostSubsteps({0, 0, 0.5}, {20, 0, 0}, {0, 0, 100}), 1);
+  EXPECT_EQ(mostSubsteps({0, 0, 0.2}, {0, 0, 20}, zero), 1);
+  EXPECT_GT(mostSubsteps({0, 0, 0.2}, {0, 0, -10}, zero), 1);
+  // On its way along the sheet it might meet what no contact foresees.
+  EXPECT_GT(mostSubsteps({0, 0, 0.0525}, {5, 0, 0}, zero), 1);
+  EXPECT_GT(mostSubsteps({0, 0, 0.0525}, zero, {0, 0, 100}), 1);
+}
+
+TEST(StepGuard, ShortensBeforehandInsteadOfSolvingAgain) {
+  SimulationConfig config;
+  config.environments = {ground()};
+  config.objects = {box("cube", Vector3::Constant(0.1), 1, Vector3::Zero()), box("other", Vector3::Constant(0.1), 1, {1, 0, 0.0525})};
+  config.objects[0].X_WO = makePose({0, 0, 0.15}, {0.7, 0.21, 0});
+  config.objects[0].linear_velocity = {0, 0, -20};
+  Simulator simulator(config, UriResolver());
+  int substeps = 0;
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_EQ(simulator.step().redone_solves, 0) << i;
+    EXPECT_LT(simulator.report().max_of_layer, 0.1) << i;
+    substeps = std::max(substeps, simulator.report().substeps);
+  }
+  EXPECT_GT(substeps, 4);
 }
 
 TEST(StepGuard, SoftLayerThatIsUsedUpShortensTheStep) {

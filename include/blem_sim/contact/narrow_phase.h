@@ -15,8 +15,12 @@ namespace blem_sim {
  * a vertex whose surface comes closer beside it), its depth fades by 4 um per um outside; where an edge-edge normal leaves an edge's cone,
  * between sines of 0.01 and 0.02. Complete: the smallest distance among them is the distance of the meshes. Independent of the order of
  * triangles and of their winding; sorted by id.
+ * Where bare meshes cross, contacts beside these are the fallback's: one per crossing of an edge and a face, whose depth grows past rA + rB
+ * with what has to be taken back, and whose direction is the way back to where the pair was apart.
  * @param out overwritten; contacts in the world frame
+ * @param X_AB_apart geometry of B in A's where they last did not cross; null: nobody knows, the smaller body's middle is on its own side
  */
-void narrowPhase(const Collider& a, const Pose& X_WA, const Collider& b, const Pose& X_WB, double margin, ContactManifold* out);
+void narrowPhase(const Collider& a, const Pose& X_WA, const Collider& b, const Pose& X_WB, double margin, ContactManifold* out,
+                 const Pose* X_AB_apart = nullptr);
 
 }  // namespace blem_sim

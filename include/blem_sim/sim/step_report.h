@@ -15,10 +15,11 @@ namespace blem_sim {
 /** Bits of StepReport::status. Each says what to change. */
 enum StepStatus : std::uint32_t {
   STEP_OK = 0,
-  STEP_SHORTENED = 1u << 0,  ///< a boundary layer was about to be used up; the step was halved. Thicker boundary_width or smaller time_step
-  CONTACT_UNRELIABLE =
-      1u << 1,  ///< bare meshes cross: normals there are a guess. Thicker boundary_width, smaller time_step, or a better start pose
-  CONTACTS_REDUCED = 1u << 2,  ///< contacts were left out by max_contacts_per_robot/object. Raise them if forces look wrong
+  STEP_SHORTENED = 1u << 0,  ///< bodies so fast that they could use up a boundary layer: the step was made in parts. Thicker boundary_width
+                             ///< or smaller time_step
+  CONTACT_UNRELIABLE = 1u << 1,  ///< bare meshes cross, or did and are not apart yet: directions there are the way back or a guess. Thicker
+                                 ///< boundary_width, smaller time_step, or a better start pose
+  CONTACTS_REDUCED = 1u << 2,    ///< contacts were left out by max_contacts_per_robot/object. Raise them if forces look wrong
   SOLVER_TROUBLE = 1u << 3,  ///< the complementarity solver complained and the step was redone softer, or Newton stopped at its bound with
                              ///< contact forces off by over 1 % of the largest, or velocities by 0.01. Smaller time_step, fewer contacts;
                              ///< ODE: more solver.cfm
@@ -46,6 +47,16 @@ struct ContactReport {
   double of_layer = 0;              ///< depth / (rA + rB); above 1 a bare mesh is pierced; 0 without a layer
   Vector3 force = Vector3::Zero();  ///< [N] on A, world
   bool pierced = false;
+};
+
+/** The contacts of two colliders left their boundary layers, or came back. */
+struct LayerEvent {
+  double time = 0;                       ///< [s] simulated, of the state whose contacts they are: where the (sub)step started
+  int collider_a = -1, collider_b = -1;  ///< a < b
+  bool outside = false;                  ///< true: more than the layers is used up, or bare meshes cross; false: not any more
+  double depth = 0;                      ///< [m] of their deepest contact, 0 without one
+  double of_layer = 0;                   ///< depth / (rA + rB); 0 without a layer
+  bool pierced = false;                  ///< bare meshes cross
 };
 
 struct ForceTorqueReading {
@@ -86,18 +97,23 @@ struct StepReport {
   double dt = 0;
   std::uint32_t status = STEP_OK;
   int substeps = 1;
+  int redone_solves = 0;  ///< solves thrown away because they used up a layer, and made again shorter
   int raw_contacts = 0, reduced_contacts = 0;
   double max_depth = 0, max_of_layer = 0;  ///< over this step's contacts
   int deepest_a = -1, deepest_b = -1;      ///< colliders
   double energy = 0;                       ///< [J] kinetic + potential
-  double solver_residual = 0;              ///< [N] worst over the step: SolveResult::residual
-  double solver_creep = 0;                 ///< [rad/s or m/s] worst over the step: SolveResult::creep
-  int solver_iterations = 0;               ///< over the step's solves
+  /** [J] by which energy (bodies, rotors, springs of compliant contacts) rose in this step beyond the work of motors and joint friction
+   *  (effort times joint motion); 0 where it fell, which contacts may make it do. Integration errors of order dt count. */
+  double energy_gained = 0;
+  double solver_residual = 0;  ///< [N] worst over the step: SolveResult::residual
+  double solver_creep = 0;     ///< [rad/s or m/s] worst over the step: SolveResult::creep
+  int solver_iterations = 0;   ///< over the step's solves
   StepProfile profile;
-  std::vector<ContactReport> contacts;  ///< of the last solve of the step
-  std::vector<BodyState> bodies;        ///< one per body slot
-  std::vector<JointState> joints;       ///< one per joint slot
-  std::vector<SensorSample> samples;    ///< those whose time has come
+  std::vector<ContactReport> contacts;   ///< of the last solve of the step
+  std::vector<LayerEvent> layer_events;  ///< in order of time, then of colliders
+  std::vector<BodyState> bodies;         ///< one per body slot
+  std::vector<JointState> joints;        ///< one per joint slot
+  std::vector<SensorSample> samples;     ///< those whose time has come
 };
 
 }  // namespace blem_sim
