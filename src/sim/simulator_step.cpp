@@ -147,7 +147,8 @@ void Simulator::Impl::acceptSubstep() {
   recordSaturation();
   recordContacts();
   layer_watch_.look(contacts_.current(), substepTime(), &report_.layer_events);
-  report_.energy_gained += energy_balance_.addSolve(world_.world, contacts_, solved_->contact_forces, bodies_before_substep_, bodies_);
+  report_.energy_gained +=
+      energy_balance_.addSolve(world_.world, substepLength(), contacts_, solved_->contact_forces, bodies_before_substep_, bodies_);
   contacts_.accept();
   substeps_.accept();
 }

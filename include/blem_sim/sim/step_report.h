@@ -50,7 +50,7 @@ struct ContactReport {
 };
 
 /** The contacts of two colliders left their boundary layers, or came back. */
-struct LayerEvent {
+struct LayerEventReport {
   double time = 0;                       ///< [s] simulated, of the state whose contacts they are: where the (sub)step started
   int collider_a = -1, collider_b = -1;  ///< a < b
   bool outside = false;                  ///< true: more than the layers is used up, or bare meshes cross; false: not any more
@@ -109,11 +109,11 @@ struct StepReport {
   double solver_creep = 0;     ///< [rad/s or m/s] worst over the step: SolveResult::creep
   int solver_iterations = 0;   ///< over the step's solves
   StepProfile profile;
-  std::vector<ContactReport> contacts;   ///< of the last solve of the step
-  std::vector<LayerEvent> layer_events;  ///< in order of time, then of colliders
-  std::vector<BodyState> bodies;         ///< one per body slot
-  std::vector<JointState> joints;        ///< one per joint slot
-  std::vector<SensorSample> samples;     ///< those whose time has come
+  std::vector<ContactReport> contacts;         ///< of the last solve of the step
+  std::vector<LayerEventReport> layer_events;  ///< in order of time, then of colliders
+  std::vector<BodyState> bodies;               ///< one per body slot
+  std::vector<JointState> joints;              ///< one per joint slot
+  std::vector<SensorSample> samples;           ///< those whose time has come
 };
 
 }  // namespace blem_sim

@@ -1,0 +1,70 @@
+#include "layer_watch.h"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace blem_sim {
+namespace {
+
+LayerEventReport eventOf(const ContactManifold& manifold, double time) {
+  LayerEventReport event;
+  event.time = time;
+  event.collider_a = manifold.a;
+  event.collider_b = manifold.b;
+  event.depth = std::max(0.0, manifold.maxDepth());
+  event.of_layer = manifold.layer > 0 ? event.depth / manifold.layer : 0;
+  event.pierced = manifold.pierced;
+  event.outside = event.of_layer > 1 || event.pierced;
+  return event;
+}
+
+LayerEventReport goneEvent(const std::pair<int, int>& pair, double time) {
+  LayerEventReport event;
+  event.time = time;
+  event.collider_a = pair.first;
+  event.collider_b = pair.second;
+  return event;
+}
+
+}  // namespace
+
+void LayerWatch::look(const std::vector<ContactManifold>& manifolds, double time, std::vector<LayerEventReport>* events) {
+  std::vector<std::pair<int, int>> outside;
+  auto known = outside_.begin();
+  // Both are sorted: what was outside and has no contacts any more comes before the next manifold.
+  const auto tellGoneBefore = [&](const std::pair<int, int>* pair) {
+    for (; known != outside_.end() && (pair == nullptr || *known < *pair); ++known) events->push_back(goneEvent(*known, time));
+  };
+  for (const ContactManifold& manifold : manifolds) {
+    const std::pair<int, int> pair(manifold.a, manifold.b);
+    tellGoneBefore(&pair);
+    const bool was_outside = known != outside_.end() && *known == pair;
+    if (was_outside) ++known;
+    const LayerEventReport event = eventOf(manifold, time);
+    if (event.outside) outside.push_back(pair);
+    if (event.outside != was_outside) events->push_back(event);
+  }
+  tellGoneBefore(nullptr);
+  outside_ = std::move(outside);
+}
+
+void LayerWatch::append(std::vector<std::uint64_t>* words) const {
+  words->push_back(outside_.size());
+  for (const auto& [a, b] : outside_) {
+    words->push_back(static_cast<std::uint64_t>(a));
+    words->push_back(static_cast<std::uint64_t>(b));
+  }
+}
+
+bool LayerWatch::read(const std::uint64_t** words, const std::uint64_t* end) {
+  const std::uint64_t* cursor = *words;
+  if (cursor == end) return false;
+  const std::uint64_t count = *cursor++;
+  if (static_cast<std::uint64_t>(end - cursor) / 2 < count) return false;
+  outside_.clear();
+  for (std::uint64_t i = 0; i < count; ++i, cursor += 2) outside_.emplace_back(static_cast<int>(cursor[0]), static_cast<int>(cursor[1]));
+  *words = cursor;
+  return true;
+}
+
+}  // namespace blem_sim

@@ -1,0 +1,28 @@
+// Which pairs of colliders are outside their boundary layers, and when that changes.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "blem_sim/contact/manifold.h"
+#include "blem_sim/sim/step_report.h"
+
+namespace blem_sim {
+
+/** Remembers who is outside, so that every change is told once; part of the simulation's state. */
+class LayerWatch {
+ public:
+  /** Appends what changed, in order of the pairs. @param manifolds of the state at `time` [s], sorted by (a, b) */
+  void look(const std::vector<ContactManifold>& manifolds, double time, std::vector<LayerEventReport>* events);
+  /** Nobody is outside. */
+  void clear() { outside_.clear(); }
+  void append(std::vector<std::uint64_t>* words) const;
+  /** Reads what append wrote and moves the cursor behind it; false, and nothing changed, if the words end too early. */
+  bool read(const std::uint64_t** words, const std::uint64_t* end);
+
+ private:
+  std::vector<std::pair<int, int>> outside_;  // sorted
+};
+
+}  // namespace blem_sim
