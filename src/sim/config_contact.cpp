@@ -7,6 +7,7 @@ namespace blem_sim {
 ContactConfig readContact(YamlReader reader) {
   ContactConfig contact;
   reader.read("boundary_width", &contact.boundary_width, NumberRange::notNegative());
+  reader.read("shrink", &contact.shrink);
   reader.read("friction", &contact.surface.friction, NumberRange::notNegative());
   reader.read("restitution", &contact.surface.restitution, NumberRange::fraction());
   reader.read("stiffness", &contact.surface.stiffness, NumberRange::positiveOrInfinite());
@@ -43,6 +44,7 @@ SolverSettings readSolver(YamlReader reader) {
 ContactOverrides readContactOverrides(YamlReader& reader) {
   ContactOverrides contact;
   reader.read("boundary_width", &contact.boundary_width, NumberRange::notNegative());
+  reader.read("shrink", &contact.shrink);
   reader.read("friction", &contact.friction, NumberRange::notNegative());
   reader.read("restitution", &contact.restitution, NumberRange::fraction());
   reader.read("stiffness", &contact.stiffness, NumberRange::positiveOrInfinite());

@@ -10,18 +10,20 @@ namespace blem_sim {
 struct ContactSettings {
   double boundary_width = 0;  ///< [m]
   SurfaceProperties surface;
+  bool shrink = false;
 };
 
-/** @param overrides outermost first */
-inline ContactSettings contactSettings(double boundary_width, const SurfaceProperties& surface,
+/** @param boundary_width [m] to start from @param overrides outermost first */
+inline ContactSettings contactSettings(double boundary_width, const ContactConfig& defaults,
                                        std::initializer_list<const ContactOverrides*> overrides) {
-  ContactSettings settings{boundary_width, surface};
+  ContactSettings settings{boundary_width, defaults.surface, defaults.shrink};
   for (const ContactOverrides* o : overrides) {
     if (!o) continue;
     settings.boundary_width = o->boundary_width.value_or(settings.boundary_width);
     settings.surface.friction = o->friction.value_or(settings.surface.friction);
     settings.surface.restitution = o->restitution.value_or(settings.surface.restitution);
     settings.surface.stiffness = o->stiffness.value_or(settings.surface.stiffness);
+    settings.shrink = o->shrink.value_or(settings.shrink);
     settings.surface.damping = o->damping.value_or(settings.surface.damping);
   }
   return settings;

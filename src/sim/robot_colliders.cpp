@@ -8,7 +8,7 @@ void RobotBuilder::addColliders(SurfaceLibrary* surfaces) {
   for (std::size_t link = 0; link < model_->links.size(); ++link) {
     const LinkModel& description = model_->links[link];
     const auto overrides = config_.links.find(description.name);
-    const ContactSettings settings = contactSettings(contact_.boundary_width, contact_.surface,
+    const ContactSettings settings = contactSettings(contact_.boundary_width, contact_,
                                                      {&config_.contact, overrides == config_.links.end() ? nullptr : &overrides->second});
     const LinkPlacement& placement = lumped_->link_placement[link];
     const int body = info_.bodies[placement.body];
@@ -19,8 +19,9 @@ void RobotBuilder::addColliders(SurfaceLibrary* surfaces) {
       collider.model = info_.model;
       collider.link = static_cast<int>(link);
       collider.X_BC = body == WORLD_BODY ? config_.X_WR * placement.X_BL : placement.X_BL;
-      collider.geometry = surfaces->geometry(shape.mesh);
-      world_->addCollider(collider, shape.radius > 0 ? shape.radius : settings.boundary_width, settings.surface, shape.report);
+      MeshReport report = shape.report;
+      collider.geometry = surfaces->fitted(surfaces->geometry(shape.mesh), settings, shape.radius, &report);
+      world_->addCollider(collider, shape.radius > 0 ? shape.radius : settings.boundary_width, settings.surface, report);
     }
   }
 }

@@ -2,7 +2,24 @@
 
 #include <fmt/format.h>
 
+#include "blem_sim/geometry/mesh_shrinking.h"
+
 namespace blem_sim {
+namespace {
+
+std::string wordsFor(const MeshShrinking& what, double r) {
+  if (!what.refused.empty())
+    return fmt::format("not shrunk: {}; every side stands out by its boundary_width, {:.3g} mm", what.refused, 1e3 * r);
+  std::string words = fmt::format("shrunk by {:.3g} mm", 1e3 * r);
+  if (what.held_back > 0)
+    words += fmt::format("; {} of {} vertices less, where it is thin or sharp", what.held_back, what.moved + what.held_back);
+  constexpr double SAME = 1e-6;  // [m]
+  if (what.excess > SAME) words += fmt::format("; outside stands out by up to {:.3g} mm", 1e3 * what.excess);
+  if (what.shortfall > SAME) words += fmt::format("; lies inside by up to {:.3g} mm", 1e3 * what.shortfall);
+  return what.excess > SAME || what.shortfall > SAME ? words : words + "; outer dimensions stay";
+}
+
+}  // namespace
 
 SharedSurface SurfaceLibrary::load(const std::string& file, const Vector3& scale, const CloudOptions& cloud) {
   const std::string key = fmt::format("{}|{} {} {}|{} {} {}", file, scale.x(), scale.y(), scale.z(), static_cast<int>(cloud.as),
@@ -20,6 +37,22 @@ std::shared_ptr<const CollisionGeometry> SurfaceLibrary::geometry(const std::sha
   if (auto known = held.lock()) return known;
   const auto made = std::make_shared<const CollisionGeometry>(mesh);
   held = made;
+  return made;
+}
+
+std::shared_ptr<const CollisionGeometry> SurfaceLibrary::fitted(const std::shared_ptr<const CollisionGeometry>& geometry,
+                                                                const ContactSettings& settings, double own_radius, MeshReport* report) {
+  const double r = settings.boundary_width;
+  if (!settings.shrink || geometry->isHalfSpace() || own_radius > 0 || !(r > 0)) return geometry;
+  Shrunk& held = shrunk_[{geometry.get(), r}];
+  std::shared_ptr<const CollisionGeometry> made = held.geometry.lock();
+  // Another geometry may have got the address of one that is gone.
+  if (!made || held.original.lock() != geometry) {
+    MeshShrinking what;
+    made = std::make_shared<const CollisionGeometry>(std::make_shared<const TriangleMesh>(shrinkMesh(geometry->mesh(), r, &what)));
+    held = {geometry, made, wordsFor(what, r)};
+  }
+  report->notes.push_back(held.note);
   return made;
 }
 

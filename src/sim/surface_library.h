@@ -4,9 +4,11 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "blem_sim/contact/collider.h"
 #include "blem_sim/model/loaders.h"
+#include "contact_settings.h"
 
 namespace blem_sim {
 
@@ -24,8 +26,18 @@ class SurfaceLibrary {
   /** @throws InputError as loadSurface does */
   SharedSurface load(const std::string& file, const Vector3& scale, const CloudOptions& cloud);
   std::shared_ptr<const CollisionGeometry> geometry(const std::shared_ptr<const TriangleMesh>& mesh);
+  /**
+   * The geometry, moved inwards by its boundary width if the settings ask for it.
+   * @param own_radius [m] > 0 if it is its own boundary: then it stays @param report notes what was done and where it could not be
+   */
+  std::shared_ptr<const CollisionGeometry> fitted(const std::shared_ptr<const CollisionGeometry>& geometry, const ContactSettings& settings,
+                                                  double own_radius, MeshReport* report);
 
  private:
+  struct Shrunk {
+    std::weak_ptr<const CollisionGeometry> original, geometry;
+    std::string note;
+  };
   struct Entry {
     std::weak_ptr<const CollisionGeometry> geometry;
     double radius = 0;
@@ -33,6 +45,7 @@ class SurfaceLibrary {
   };
   const Mending mending_;
   std::map<std::string, Entry> files_;
+  std::map<std::pair<const CollisionGeometry*, double>, Shrunk> shrunk_;
   std::map<const TriangleMesh*, std::weak_ptr<const CollisionGeometry>> meshes_;  ///< a mesh lives as long as its geometry
 };
 

@@ -81,12 +81,12 @@ void WorldBuilder::addEnvironment(const EnvironmentConfig& config, SimulatedWorl
   } else {
     throw InputError(where + ": nothing to load; give a uri or a plane");
   }
-  const ContactSettings settings = contactSettings(0, contact_.surface, {&config.contact});
+  const ContactSettings settings = contactSettings(0, contact_, {&config.contact});
   Collider collider;
   collider.name = config.name;
   collider.model = world->addModel(config.name, ModelKind::ENVIRONMENT, INT_MAX);
   collider.X_BC = config.X_WE;
-  collider.geometry = surface.geometry;
+  collider.geometry = surfaces_.fitted(surface.geometry, settings, surface.radius, &surface.report);
   world->addCollider(collider, surface.radius > 0 ? surface.radius : settings.boundary_width, settings.surface, surface.report);
 }
 
@@ -128,7 +128,7 @@ void WorldBuilder::addMeshObject(const ObjectConfig& config, SimulatedWorld* wor
   if (!config.mass || !(*config.mass > 0) || !std::isfinite(*config.mass))
     throw InputError(where + ": mass: needs a finite number of kg above 0");
   SharedSurface surface = load(config.uri, config.scale, config.cloud, where);
-  const ContactSettings settings = contactSettings(contact_.boundary_width, contact_.surface, {&config.contact});
+  const ContactSettings settings = contactSettings(contact_.boundary_width, contact_, {&config.contact});
   const double width = surface.radius > 0 ? surface.radius : settings.boundary_width;
 
   std::string from = "the configuration";
@@ -150,7 +150,7 @@ void WorldBuilder::addMeshObject(const ObjectConfig& config, SimulatedWorld* wor
   collider.model = world->addModel(config.name, ModelKind::OBJECT, config.max_contacts.value_or(contact_.max_contacts_per_object));
   collider.body = body;
   collider.X_BC = config.X_OM;
-  collider.geometry = surface.geometry;
+  collider.geometry = surfaces_.fitted(surface.geometry, settings, surface.radius, &surface.report);
   world->addCollider(collider, width, settings.surface, surface.report);
   world->models.back().bodies = {body};
 }
@@ -169,7 +169,7 @@ void WorldBuilder::addUrdfObject(const ObjectConfig& config, SimulatedWorld* wor
   }
   if (config.com) inertial.com = *config.com;
   if (config.inertia) inertial.inertia = *config.inertia;
-  const ContactSettings settings = contactSettings(contact_.boundary_width, contact_.surface, {&config.contact});
+  const ContactSettings settings = contactSettings(contact_.boundary_width, contact_, {&config.contact});
   const std::string name = config.name + "::" + lumped.bodies[0].name;
   const int body = addFreeBody(name, inertial, config, world);
   const int index = world->addModel(config.name, ModelKind::OBJECT, config.max_contacts.value_or(contact_.max_contacts_per_object));
@@ -181,8 +181,9 @@ void WorldBuilder::addUrdfObject(const ObjectConfig& config, SimulatedWorld* wor
       collider.model = index;
       collider.body = body;
       collider.X_BC = lumped.link_placement[link].X_BL;
-      collider.geometry = surfaces_.geometry(shape.mesh);
-      world->addCollider(collider, shape.radius > 0 ? shape.radius : settings.boundary_width, settings.surface, shape.report);
+      MeshReport report = shape.report;
+      collider.geometry = surfaces_.fitted(surfaces_.geometry(shape.mesh), settings, shape.radius, &report);
+      world->addCollider(collider, shape.radius > 0 ? shape.radius : settings.boundary_width, settings.surface, report);
     }
   }
   for (const auto* notes : {&model.notes, &lumped.notes})

@@ -108,6 +108,13 @@ void YamlReader::read(const std::string& key, bool* value) {
   if (!YAML::convert<bool>::decode(found, *value)) refuse(key, fmt::format("must be true or false, not {}", quoted(found)));
 }
 
+void YamlReader::read(const std::string& key, std::optional<bool>* value) {
+  if (!node(key).IsDefined()) return;
+  bool given = false;
+  read(key, &given);
+  *value = given;
+}
+
 void YamlReader::read(const std::string& key, double* value, const NumberRange& range) {
   if (const YAML::Node found = node(key); found.IsDefined()) *value = number(key, found, range);
 }

@@ -43,6 +43,7 @@ class YamlReader {
   bool has(const std::string& key);
   void read(const std::string& key, std::string* value);
   void read(const std::string& key, bool* value);
+  void read(const std::string& key, std::optional<bool>* value);
   void read(const std::string& key, double* value, const NumberRange& range);
   void read(const std::string& key, std::optional<double>* value, const NumberRange& range);
   void read(const std::string& key, int* value, int lower);

@@ -81,8 +81,7 @@ TEST(Retraction, DirectionsOfOnePairAgree) {
     Vector3 mean = Vector3::Zero();
     for (const Contact& c : manifold.contacts) mean += c.pierced ? c.normal_BA : Vector3(Vector3::Zero());
     pierced += manifold.pierced;
-    for (const Contact& c : manifold.contacts)
-      EXPECT_TRUE(!c.pierced || c.normal_BA.dot(mean) > 0);
+    for (const Contact& c : manifold.contacts) EXPECT_TRUE(!c.pierced || c.normal_BA.dot(mean) > 0);
   }
   EXPECT_GT(pierced, 50);
 }

@@ -21,10 +21,12 @@ namespace blem_sim {
 /** Contact settings that may be set again per environment, robot, object or link; unset ones inherit. */
 struct ContactOverrides {
   std::optional<double> boundary_width, friction, restitution, stiffness, damping;
+  std::optional<bool> shrink;
 };
 
 struct ContactConfig {
   double boundary_width = 0.0025;  ///< [m] robots and objects; environments default to 0
+  bool shrink = false;             ///< meshes by their boundary_width, so that outer dimensions stay (shrinkMesh)
   SurfaceProperties surface;
   FrictionRule friction_rule = FrictionRule::MIN;
   int max_contacts_per_robot = 50;
