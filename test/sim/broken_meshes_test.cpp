@@ -212,5 +212,27 @@ TEST(BrokenMeshes, SoupOfTrianglesStandsOnWhatSticksOut) {
   EXPECT_LT(rest.X_WB.translation().z(), 0.05 + LAYER + 0.0004);
 }
 
+bool notesHold(const Simulator& simulator, const std::string& words) {
+  const std::vector<std::string>& notes = simulator.loadReport()[0].notes;
+  return std::any_of(notes.begin(), notes.end(), [&](const std::string& note) { return note.find(words) != std::string::npos; });
+}
+
+TEST(BrokenMeshes, TheLoadReportSaysWhatWasMended) {
+  RandomShapes random(35);
+  SimulationConfig config;
+  ObjectConfig object = box("body", Vector3::Constant(0.1), 1, {0, 0, 1});
+  object.uri = meshFile("told", crackedCopy(tJunctionCopy(CUBE), CRACKS, random));
+  config.objects = {object};
+  const Simulator mended(config, UriResolver());
+  EXPECT_TRUE(notesHold(mended, "cracks up to"));
+  EXPECT_TRUE(notesHold(mended, "edges split at T-junctions"));
+  EXPECT_TRUE(notesHold(mended, "onto 6 planes"));
+  EXPECT_TRUE(mended.loadReport()[0].closed);
+  config.contact.mending = Mending::OFF;
+  const Simulator as_it_is(config, UriResolver());
+  EXPECT_FALSE(notesHold(as_it_is, "cracks"));
+  EXPECT_EQ(as_it_is.loadReport()[0].open_edges, 3 * as_it_is.loadReport()[0].triangles);
+}
+
 }  // namespace
 }  // namespace blem_sim
