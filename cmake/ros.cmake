@@ -8,7 +8,7 @@ add_executable(blem_sim_node ${PROJECT_SOURCE_DIR}/src/ros_node/blem_sim_node.cp
 target_include_directories(blem_sim_node PRIVATE ${PROJECT_SOURCE_DIR}/src/ros)
 target_link_libraries(blem_sim_node blem_sim_ros)
 
-catkin_install_python(PROGRAMS scripts/play_trajectory DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+catkin_install_python(PROGRAMS scripts/expect_contacts_in_layer scripts/play_trajectory DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 install(TARGETS blem_sim_node RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 install(TARGETS blem_sim_geometry blem_sim_model blem_sim_contact blem_sim_dynamics blem_sim_sim blem_sim_ros
   ARCHIVE DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}

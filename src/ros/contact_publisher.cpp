@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "contact_colour.h"
 #include "contact_messages.h"
 #include "conversions.h"
 
@@ -19,18 +20,6 @@ constexpr double POINT_SIZE = 0.012;      // [m]
 constexpr double SHAFT_SIZE = 0.008;      // [m]
 constexpr double HEAD_SIZE = 0.02;        // [m]
 constexpr double SHORTEST_ARROW = 0.002;  // [m]
-
-/** Green at no depth, yellow where the layers are used up, red beyond. */
-std_msgs::ColorRGBA colourOf(const ContactReport& contact) {
-  const double used = std::clamp(contact.of_layer, 0.0, 1.0);
-  const bool crossed = contact.pierced || contact.of_layer > 1;
-  std_msgs::ColorRGBA colour;
-  colour.r = crossed ? 1.0F : static_cast<float>(0.9 * used);
-  colour.g = crossed ? 0.0F : 0.8F;
-  colour.b = crossed ? 0.1F : 0.1F;
-  colour.a = 1;
-  return colour;
-}
 
 Marker makeMarker(const char* name, int id, int type, const ros::Time& stamp) {
   Marker marker;
@@ -82,7 +71,7 @@ void ContactMarkerPublisher::publish(const StepReport& report) {
   points.scale.x = points.scale.y = points.scale.z = POINT_SIZE;
   int arrows = 0;
   for (const ContactReport& contact : report.contacts) {
-    const std_msgs::ColorRGBA colour = colourOf(contact);
+    const std_msgs::ColorRGBA colour = contactColour(contact);
     points.points.push_back(toPoint(contact.point));
     points.colors.push_back(colour);
     // What the moving side feels.

@@ -29,12 +29,21 @@ DiagnosticsPublisher::DiagnosticsPublisher(ros::NodeHandle node, ros::NodeHandle
   updater_.add("contacts", [this](DiagnosticStatusWrapper& status) { describeContacts(status); });
 }
 
+void DiagnosticsPublisher::timeRestarted() {
+  collector_.take();
+  collector_.resume();
+  energy_gained_ = 0;
+  contacts_left_ = 0;
+}
+
 void DiagnosticsPublisher::serve(bool paused) {
   const auto now = std::chrono::steady_clock::now();
   if (now < next_) return;
   next_ = std::max(next_ + std::chrono::seconds(1), now);
   paused_ = paused;
   statistics_ = collector_.take();
+  energy_gained_ += statistics_.energy_gained;
+  contacts_left_ += statistics_.contacts_left;
   updater_.force_update();
 }
 
@@ -87,7 +96,9 @@ void DiagnosticsPublisher::describeContacts(DiagnosticStatusWrapper& status) con
     status.add("between",
                simulator_.colliders()[statistics_.deepest_a].name + " and " + simulator_.colliders()[statistics_.deepest_b].name);
   }
+  status.add("times that contacts left their boundary layers since the start", contacts_left_);
   status.addf("energy [J]", "%.6f", report.energy);
+  status.addf("energy gained out of nothing since the start [J]", "%.6g", energy_gained_);
   status.add("status", joined(statusNames(bits)));
 }
 

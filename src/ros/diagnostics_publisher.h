@@ -14,6 +14,7 @@ class DiagnosticsPublisher : public StepPublisher {
  public:
   DiagnosticsPublisher(ros::NodeHandle node, ros::NodeHandle private_node, const Simulator& simulator);
   void publish(const StepReport& report) override { collector_.add(report); }
+  void timeRestarted() override;
   void resumed() override { collector_.resume(); }
   /** To be called often; publishes when a second has passed. */
   void serve(bool paused);
@@ -26,6 +27,8 @@ class DiagnosticsPublisher : public StepPublisher {
   diagnostic_updater::Updater updater_;
   StepStatisticsCollector collector_;
   StepStatistics statistics_;  // of the last second
+  double energy_gained_ = 0;   // [J] since time started, until the last second
+  std::uint64_t contacts_left_ = 0;
   bool paused_ = false;
   std::chrono::steady_clock::time_point next_;
 };

@@ -51,6 +51,12 @@ class GreetingPublisher {
     publisher_.publish(message);
   }
 
+  /** There is no last message any more. */
+  void forget() {
+    const std::lock_guard<std::mutex> lock(state_->mutex);
+    state_->published = false;
+  }
+
  private:
   struct State {
     std::mutex mutex;

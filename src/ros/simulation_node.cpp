@@ -8,6 +8,7 @@
 #include "diagnostics_publisher.h"
 #include "environment_services.h"
 #include "geometry_publishers.h"
+#include "layer_event_publisher.h"
 #include "parameters.h"
 #include "physics_services.h"
 #include "robot_commands.h"
@@ -51,6 +52,7 @@ struct SimulationNode::Impl {
     loop.add(std::make_unique<SensorPublisher>(node, simulator));
     loop.add(std::make_unique<ContactPublisher>(private_node, simulator));
     loop.add(std::make_unique<ContactMarkerPublisher>(private_node, simulator));
+    loop.add(std::make_unique<LayerEventPublisher>(private_node, simulator));
     loop.add(std::make_unique<GeometryMarkerPublisher>(private_node, simulator));
     loop.add(std::make_unique<LoadReportPublisher>(private_node, simulator));
     loop.add(std::make_unique<StatePublisher>(private_node, simulator));

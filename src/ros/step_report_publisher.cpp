@@ -41,6 +41,7 @@ void StepReportPublisher::publish(const StepReport& report) {
   if (statistics.deepest_a >= 0) message.deepest_a = simulator_.colliders()[statistics.deepest_a].name;
   if (statistics.deepest_b >= 0) message.deepest_b = simulator_.colliders()[statistics.deepest_b].name;
   message.energy = report.energy;
+  message.energy_gained = statistics.energy_gained;
   message.solver_residual = statistics.solver_residual;
   message.solver_creep = statistics.solver_creep;
   message.solver_iterations = static_cast<double>(statistics.solver_iterations) / statistics.steps;

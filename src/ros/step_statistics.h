@@ -14,10 +14,12 @@ struct StepStatistics {
   std::uint32_t status = STEP_OK;      ///< every bit that was set
   std::uint32_t unreliable_steps = 0;  ///< steps with a contact outside the boundary layers
   double max_depth = 0, max_of_layer = 0;
-  int deepest_a = -1, deepest_b = -1;                                  ///< colliders of the deepest contact
+  int deepest_a = -1, deepest_b = -1;                                  ///< colliders of the contact that used up most of its layers
   double simulated = 0, wall = 0;                                      ///< [s]
   double solver_residual = 0, solver_creep = 0;                        ///< largest
   std::uint64_t solver_iterations = 0;                                 ///< sum
+  double energy_gained = 0;                                            ///< [J] sum
+  std::uint64_t contacts_left = 0;                                     ///< times that a pair left its boundary layers
   std::array<double, static_cast<int>(Stage::COUNT)> stage_seconds{};  ///< sums
 
   /** 0 before any wall time has passed. */
@@ -34,6 +36,8 @@ class StepStatisticsCollector {
   StepStatistics take();
 
  private:
+  void noteDeepest(const StepReport& report);
+
   using Clock = std::chrono::steady_clock;
   StepStatistics statistics_;
   Clock::time_point last_ = Clock::now();

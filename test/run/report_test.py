@@ -34,6 +34,23 @@ class ReportTest(RunCase):
         self.assertEqual(set(report["max_penetration"]), {"depth_m", "of_layer", "pair", "time_s"})
         self.assertTrue(math.isfinite(report["energy_J"]))
 
+    def test_energy_and_contacts_outside_their_layers(self):
+        sound = self.report("world.yaml", "--duration", 0.3)
+        self.assertEqual(set(sound["energy"]), {"gained_j", "most_in_a_step_j", "most_in_a_step_time_s"})
+        self.assertLess(sound["energy"]["gained_j"], 0.1)
+        self.assertEqual((sound["layer_event_count"], sound["layer_events"]), (0, []))
+        # The cube starts 2 cm deep in the base: it is pushed out.
+        report = self.report("world.yaml", "--duration", 1, "--set", "objects[0].pose.xyz=[0.1, 0, 0.135]", "--set",
+                             "objects[0].pose.rpy=[0, 0, 0]")
+        self.assertGreater(report["energy"]["gained_j"], 9.81 * 0.02)
+        self.assertEqual(report["layer_event_count"], len(report["layer_events"]))
+        first = report["layer_events"][0]
+        self.assertEqual(set(first), {"time_s", "pair", "outside", "depth_m", "of_layer", "pierced"})
+        self.assertEqual((first["time_s"], first["pair"], first["outside"], first["pierced"]), (0, ["arm::base", "cube"], True, True))
+        self.assertGreater(first["of_layer"], 1)
+        last = report["layer_events"][-1]
+        self.assertEqual((last["pair"], last["outside"]), (["arm::base", "cube"], False))
+
     def test_bodies_and_joints(self):
         report = self.report("world.yaml", "--duration", 0.3)
         self.assertEqual(sorted(report["bodies"]), ["arm::base", "arm::lower", "arm::upper", "cube::link"])

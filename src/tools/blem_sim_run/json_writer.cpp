@@ -54,6 +54,11 @@ void JsonWriter::close(char bracket) {
   if (empty_.empty()) stream_ << '\n';
 }
 
+void JsonWriter::boolean(bool truth) {
+  separate();
+  stream_ << (truth ? "true" : "false");
+}
+
 void JsonWriter::openObject() { open('{'); }
 void JsonWriter::closeObject() { close('}'); }
 void JsonWriter::openList() { open('['); }

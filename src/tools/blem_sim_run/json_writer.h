@@ -25,6 +25,7 @@ class JsonWriter {
   void value(std::uint64_t number);
   void value(int number) { value(static_cast<double>(number)); }
   void value(const std::string& text);
+  void boolean(bool truth);
   void value(const Vector3& vector);
   void value(const Quaternion& quaternion);  ///< [x, y, z, w]
   void value(const std::vector<double>& numbers);

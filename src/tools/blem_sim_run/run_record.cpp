@@ -36,6 +36,7 @@ void RunRecord::add(const StepReport& report) {
   reduced_contacts_ += static_cast<std::uint64_t>(report.reduced_contacts);
   most_reduced_contacts_ = std::max(most_reduced_contacts_, report.reduced_contacts);
   addDepth(report);
+  trust_.add(report);
   if (report.time <= stats_from_) return;
   for (const SensorSample& sample : report.samples)
     sensors_[static_cast<std::size_t>(sample.sensor)].add(sensorValues(sample.reading).values);
@@ -71,6 +72,7 @@ void RunRecord::write(const RunTimes& times, const std::vector<std::string>& not
   writeJoints(json);
   writeSensors(json);
   json.key("energy_J").value(simulator_.report().energy);
+  trust_.write(simulator_, json);
   writeLoadReport(json);
   json.key("notes").value(notes);
   json.closeObject();

@@ -10,6 +10,7 @@
 #include "blem_sim/sim/simulator.h"
 #include "json_writer.h"
 #include "statistics.h"
+#include "trust_record.h"
 
 namespace blem_sim {
 
@@ -48,6 +49,7 @@ class RunRecord {
   std::array<Distribution, static_cast<int>(Stage::COUNT)> stages_;
   Distribution step_;
   Deepest deepest_;
+  TrustRecord trust_;
   std::vector<VectorStatistics> sensors_;
 };
 

@@ -1,0 +1,34 @@
+#include "contact_colour.h"
+
+#include <gtest/gtest.h>
+
+namespace blem_sim {
+namespace {
+
+std_msgs::ColorRGBA colourOf(double of_layer, bool pierced) {
+  ContactReport contact{};
+  contact.of_layer = of_layer;
+  contact.pierced = pierced;
+  return contactColour(contact);
+}
+
+bool isAlarm(const std_msgs::ColorRGBA& colour) { return colour.r == 1 && colour.g == 0 && colour.a == 1; }
+
+TEST(ContactColour, BeyondTheLayerIsTheAlarmColourAndNothingElse) {
+  for (const double of_layer : {0.0, 0.3, 0.999, 1.0}) EXPECT_FALSE(isAlarm(colourOf(of_layer, false))) << of_layer;
+  for (const double of_layer : {1.001, 1.5, 20.0}) EXPECT_TRUE(isAlarm(colourOf(of_layer, false))) << of_layer;
+  EXPECT_TRUE(isAlarm(colourOf(0, true)));
+}
+
+TEST(ContactColour, GreenTurnsYellowAsTheLayerIsUsedUp) {
+  float red = -1;
+  for (const double of_layer : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+    const std_msgs::ColorRGBA colour = colourOf(of_layer, false);
+    EXPECT_GT(colour.r, red);
+    EXPECT_GT(colour.g, 0.7F);
+    red = colour.r;
+  }
+}
+
+}  // namespace
+}  // namespace blem_sim

@@ -1,0 +1,230 @@
+// What tells whether a run is to be trusted: contacts that leave their layers, energy out of nothing.
+#include <cmath>
+
+#include "layer_watch.h"
+#include "simulation_scene.h"
+
+namespace blem_sim {
+namespace {
+
+constexpr double LAYER = 0.005;  // [m] of two boxes
+
+ContactManifold manifoldOf(int a, int b, double depth, bool pierced = false) {
+  ContactManifold manifold;
+  manifold.a = a;
+  manifold.b = b;
+  manifold.layer = LAYER;
+  manifold.pierced = pierced;
+  Contact contact;
+  contact.depth = depth;
+  contact.pierced = pierced;
+  manifold.contacts = {contact};
+  return manifold;
+}
+
+std::vector<LayerEventReport> lookAt(LayerWatch* watch, const std::vector<ContactManifold>& manifolds, double time) {
+  std::vector<LayerEventReport> events;
+  watch->look(manifolds, time, &events);
+  return events;
+}
+
+TEST(LayerWatch, TellsEveryChangeOnceInOrderOfPairs) {
+  LayerWatch watch;
+  EXPECT_TRUE(lookAt(&watch, {manifoldOf(0, 1, LAYER), manifoldOf(2, 3, -0.001)}, 0).empty());
+  std::vector<LayerEventReport> events = lookAt(&watch, {manifoldOf(0, 1, 0.006), manifoldOf(0, 2, 0.001, true), manifoldOf(2, 3, 0)}, 1);
+  ASSERT_EQ(events.size(), 2u);
+  EXPECT_EQ(events[0].collider_b, 1);
+  EXPECT_TRUE(events[0].outside && !events[0].pierced);
+  EXPECT_DOUBLE_EQ(events[0].of_layer, 1.2);
+  EXPECT_EQ(events[0].time, 1);
+  EXPECT_EQ(events[1].collider_b, 2);
+  EXPECT_TRUE(events[1].outside && events[1].pierced);
+  EXPECT_TRUE(lookAt(&watch, {manifoldOf(0, 1, 0.007), manifoldOf(0, 2, 0.008)}, 2).empty());
+  // One is inside again, the other is gone.
+  events = lookAt(&watch, {manifoldOf(0, 2, 0.004)}, 3);
+  ASSERT_EQ(events.size(), 2u);
+  EXPECT_EQ(events[0].collider_b, 1);
+  EXPECT_FALSE(events[0].outside);
+  EXPECT_EQ(events[0].of_layer, 0);
+  EXPECT_EQ(events[1].collider_b, 2);
+  EXPECT_FALSE(events[1].outside);
+  EXPECT_DOUBLE_EQ(events[1].of_layer, 0.8);
+  EXPECT_TRUE(lookAt(&watch, {}, 4).empty());
+}
+
+TEST(LayerWatch, ReadsWhatItWroteAndNothingLess) {
+  LayerWatch watch;
+  lookAt(&watch, {manifoldOf(0, 1, 0.006), manifoldOf(4, 9, 0.006)}, 0);
+  std::vector<std::uint64_t> words;
+  watch.append(&words);
+  LayerWatch other;
+  for (std::size_t size = 0; size < words.size(); ++size) {
+    const std::uint64_t* cursor = words.data();
+    EXPECT_FALSE(other.read(&cursor, words.data() + size)) << size;
+    EXPECT_EQ(cursor, words.data());
+  }
+  const std::uint64_t* cursor = words.data();
+  EXPECT_TRUE(other.read(&cursor, words.data() + words.size()));
+  EXPECT_EQ(cursor, words.data() + words.size());
+  EXPECT_EQ(lookAt(&other, {}, 1).size(), 2u);
+}
+
+/** A cube that starts 1 mm inside a block: it comes out by itself. */
+SimulationConfig cubeInBlock() {
+  SimulationConfig config;
+  config.environments = {ground()};
+  config.objects = {box("block", {0.4, 0.4, 0.2}, 50, {0, 0, 0.1025}),
+                    box("cube", Vector3::Constant(0.1), 1, {0.05, 0.03, 0.2025 + 0.05 - 0.001})};
+  return config;
+}
+
+std::vector<LayerEventReport> eventsOf(Simulator* simulator, double seconds) {
+  std::vector<LayerEventReport> events;
+  const long steps = std::lround(seconds / simulator->config().time_step);
+  for (long i = 0; i < steps; ++i) {
+    const StepReport& report = simulator->step();
+    events.insert(events.end(), report.layer_events.begin(), report.layer_events.end());
+  }
+  return events;
+}
+
+double gainedBy(Simulator* simulator, double seconds) {
+  double gained = 0;
+  const long steps = std::lround(seconds / simulator->config().time_step);
+  for (long i = 0; i < steps; ++i) gained += simulator->step().energy_gained;
+  return gained;
+}
+
+TEST(LayerEvents, ACubeStartedInABlockIsOutsideOnceAndComesBackOnce) {
+  Simulator simulator(cubeInBlock(), UriResolver());
+  const std::vector<LayerEventReport> events = eventsOf(&simulator, 0.5);
+  ASSERT_EQ(events.size(), 2u);
+  for (const LayerEventReport& event : events) {
+    EXPECT_EQ(simulator.colliders()[event.collider_a].name, "block");
+    EXPECT_EQ(simulator.colliders()[event.collider_b].name, "cube");
+  }
+  EXPECT_TRUE(events[0].outside);
+  EXPECT_EQ(events[0].time, 0);
+  EXPECT_NEAR(events[0].of_layer, 1.2, 1e-6);
+  EXPECT_NEAR(events[0].depth, 0.006, 1e-8);
+  EXPECT_TRUE(events[0].pierced);
+  EXPECT_FALSE(events[1].outside);
+  EXPECT_GT(events[1].time, 0.005);
+  EXPECT_LE(events[1].of_layer, 1);
+  EXPECT_GT(events[1].of_layer, 0.9);
+}
+
+TEST(LayerEvents, NoneInASoundScene) {
+  SimulationConfig config;
+  config.environments = {ground()};
+  config.objects = {box("cube", Vector3::Constant(0.1), 1, {0, 0, 0.1})};
+  Simulator simulator(config, UriResolver());
+  EXPECT_TRUE(eventsOf(&simulator, 0.5).empty());
+}
+
+TEST(LayerEvents, ARestoredRunNeitherRepeatsNorLosesThem) {
+  Simulator simulator(cubeInBlock(), UriResolver());
+  EXPECT_EQ(eventsOf(&simulator, 0.005).size(), 1u);
+  const SimulationState saved = simulator.save();
+  const std::vector<LayerEventReport> first = eventsOf(&simulator, 0.1);
+  Simulator other(cubeInBlock(), UriResolver());
+  other.restore(saved);
+  EXPECT_TRUE(other.report().layer_events.empty());
+  const std::vector<LayerEventReport> again = eventsOf(&other, 0.1);
+  ASSERT_EQ(first.size(), 1u);
+  ASSERT_EQ(again.size(), 1u);
+  EXPECT_FALSE(again[0].outside);
+  EXPECT_EQ(again[0].time, first[0].time);
+  other.resetSimulation();
+  EXPECT_EQ(eventsOf(&other, 0.005).size(), 1u);
+}
+
+TEST(LayerEvents, WhatIsUnloadedIsOutsideNoMore) {
+  SimulationConfig config;
+  config.environments = {ground()};
+  config.objects = {box("cube", Vector3::Constant(0.1), 1, {0, 0, 0.049})};
+  Simulator simulator(config, UriResolver());
+  EXPECT_EQ(eventsOf(&simulator, 0.002).size(), 1u);
+  simulator.unloadEnvironment("ground");
+  const std::vector<LayerEventReport> events = eventsOf(&simulator, 0.002);
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_FALSE(events[0].outside);
+  EXPECT_EQ(events[0].depth, 0);
+}
+
+TEST(EnergyGained, NothingByAStackAtRest) {
+  SimulationConfig config;
+  config.environments = {ground()};
+  for (int i = 0; i < 3; ++i)
+    config.objects.push_back(box("cube" + std::to_string(i), Vector3::Constant(0.1), 1, {0, 0, 0.0525 + 0.105 * i}));
+  Simulator simulator(config, UriResolver());
+  gainedBy(&simulator, 0.5);
+  EXPECT_LT(gainedBy(&simulator, 1), 1e-9);
+}
+
+TEST(EnergyGained, LiftedOutOfABlockByAtLeastItsWeight) {
+  Simulator simulator(cubeInBlock(), UriResolver());
+  const double height = bodyOf(simulator, "cube").X_WB.translation().z();
+  const double gained = gainedBy(&simulator, 0.5);
+  const double rise = bodyOf(simulator, "cube").X_WB.translation().z() - height;
+  EXPECT_GT(gained, G * rise);
+  EXPECT_LT(gained, G * rise + 0.01);
+}
+
+SimulationConfig droppedCube() {
+  SimulationConfig config;
+  config.environments = {ground()};
+  config.objects = {box("cube", Vector3::Constant(0.1), 1, {0, 0, 0.0525 + 0.2})};
+  return config;
+}
+
+TEST(EnergyGained, ABounceGivesBackWhatTheImpactTook) {
+  SimulationConfig config = droppedCube();
+  config.objects[0].contact.restitution = 1;
+  Simulator simulator(config, UriResolver());
+  const double gained = gainedBy(&simulator, 2);
+  EXPECT_GT(simulator.report().energy, 0.8 * (G * 0.25));
+  EXPECT_LT(gained, 1e-9);
+}
+
+TEST(EnergyGained, SpringsGiveBackWhatTheyTook) {
+  SimulationConfig config = droppedCube();
+  for (ContactOverrides* contact : {&config.environments[0].contact, &config.objects[0].contact}) {
+    contact->stiffness = 1e6;
+    contact->damping = 1;
+  }
+  Simulator simulator(config, UriResolver());
+  EXPECT_LT(gainedBy(&simulator, 2), 1e-3);
+}
+
+TEST(EnergyGained, MotorsAndJointFrictionAreAccountedFor) {
+  for (const MotorLaw law : {MotorLaw::PID, MotorLaw::IMPLICIT_PD}) {
+    SimulationConfig config;
+    config.robots = {robot("pendulum", pendulumUrdf(R"(<dynamics damping="0.1" friction="0.5"/>)"), true)};
+    config.robots[0].motor["default"] = law;
+    config.robots[0].gains["default"] = {100, 0, 5, 50};
+    Simulator simulator(config, UriResolver());
+    simulator.commandJoints(0, {{"hinge"}, {-1}, {}, {}});
+    const double gained = gainedBy(&simulator, 1);
+    EXPECT_GT(simulator.report().energy, 2 * G * 1.3);  // it was lifted
+    EXPECT_LT(gained, 1e-3);
+  }
+}
+
+TEST(EnergyGained, IsTheSameInARestoredRun) {
+  SimulationConfig config = droppedCube();
+  config.objects[0].contact.restitution = 1;
+  Simulator simulator(config, UriResolver());
+  std::uint64_t hash = 0;
+  for (int i = 0; i < 400; ++i) {
+    const SimulationState saved = simulator.save();
+    const double gained = simulator.step().energy_gained;
+    hash = simulator.stateHash();
+    simulator.restore(saved);
+    EXPECT_EQ(simulator.step().energy_gained, gained) << i;
+    EXPECT_EQ(simulator.stateHash(), hash) << i;
+  }
+}
+
+}  // namespace
+}  // namespace blem_sim
