@@ -1,7 +1,6 @@
 #include "border_fade.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "blem_sim/geometry/closest_points.h"
 #include "feature_cones.h"
@@ -41,17 +40,18 @@ bool fadeOverBorder(const MeshPair& pair, bool vertex_moves, int vertex, const V
     borders |= 1 << k;
   }
   if (borders == 0) return false;
-  double jump = -1;
+  bool fades = false;
   for (int k = 0; k < 3; ++k) {
     if (!(borders >> k & 1)) continue;
-    const Vector3 across = face.inward[k] / std::sqrt(face.length2[k]);
-    jump = std::max({jump, neighbourSlope(face_side, face.element, face_side.topology.element_edges[face.element][k], face_up),
-                     successorJump(vertex_side, vertex, down, vertex_moves ? Vector3(R_FM.transpose() * across) : across)});
+    const int border = face_side.topology.element_edges[face.element][k];
+    const double rise = neighbourSlope(face_side, face.element, border, face_up);
+    // A neighbour that rises by little takes over itself.
+    const LeavingVertex leaving{vertex_side, face_side, vertex, border, vertex_moves ? R_FM : Matrix3(R_FM.transpose()), down};
+    fades = fades || rise > NEAR_SUCCESSOR || (rise <= CONE_SLACK && !isTakenOver(leaving));
   }
-  const double part = borderFade(jump);
-  if (part == 0) return false;
+  if (!fades) return false;
   out->foot = closestPointTriangle(projection, {face.corners[0], face.corners[1], face.corners[2]}).point_b;
-  out->lost = FADE_SLOPE * (projection - out->foot).norm() / part;
+  out->lost = FADE_SLOPE * (projection - out->foot).norm();
   return out->lost <= most;
 }
 

@@ -27,6 +27,9 @@ inline int cornersInside(const ElementShape& face, int k, const ElementShape& ot
   return bits;
 }
 
+/** How far beyond its end an edge's fading contact may lie, as part of the range: a fifth of it deep it has faded by then. */
+constexpr double FADED = 0.1;
+
 /** @param heights [m] of e's corners over the other's plane, null unless the other is a face @param range [m] within which contacts count
  */
 inline Candidates candidatesOf(const ElementShape& e, const double* heights, const ElementShape& other, double range) {
@@ -36,7 +39,7 @@ inline Candidates candidatesOf(const ElementShape& e, const double* heights, con
     out.vertices &= ~(static_cast<int>(std::abs(p) > range) << k);
     out.edges &= ~(static_cast<int>((std::min(p, q) > range) | (std::max(p, q) < -range)) << k);
   }
-  const double limit = 1.001 * EDGE_CONE_SLACK * range + 10 * CLOSED;
+  const double limit = (1.001 * EDGE_CONE_SLACK + FADED) * range + 10 * CLOSED;
   for (int k = 0; k < 3; ++k) {
     if (out.edges >> k & 1) out.inside[k] = cornersInside(e, k, other, limit);
     if (out.inside[k] == 7) out.edges &= ~(1 << k);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "edge_pair.h"
+
 namespace blem_sim {
 namespace {
 
@@ -55,27 +57,36 @@ bool edgeConeAllows(const MeshSide& side, int edge, const Vector3& direction, do
   return allows;
 }
 
-double successorJump(const MeshSide& side, int vertex, const Vector3& direction, const Vector3& across) {
-  const MeshTopology& topology = side.topology;
-  bool goes_on = true;
-  double nearest = 1;
-  for (int i = topology.vertex_edge_begin[vertex]; i < topology.vertex_edge_begin[vertex + 1]; ++i) {
-    const int edge = topology.vertex_edges[i], other = topology.edges[edge][topology.edges[edge][0] == vertex];
-    const Vector3 w = side.mesh.vertices[other] - side.mesh.vertices[vertex];
-    const double along = w.dot(direction), length2 = w.squaredNorm();
-    if (along <= 0 || along * along <= CONE_SLACK * CONE_SLACK * length2) continue;
-    goes_on = false;
-    if (topology.edge_flat[edge]) continue;
-    const double aside = w.dot(across), span2 = along * along + aside * aside;
-    nearest = std::min(nearest, along * std::sqrt(length2) / span2);
-  }
-  return goes_on ? -1 : nearest;
-}
-
 double edgeSlope(const MeshSide& side, int edge, const Vector3& direction) {
   double slope = -1;
   forEachFaceDirection(side, edge, [&](const Vector3& u) { slope = std::max(slope, u.dot(direction)); });
   return slope;
+}
+
+bool isTakenOver(const LeavingVertex& leaving) {
+  const MeshSide& side = leaving.side;
+  const MeshTopology& topology = side.topology;
+  const std::array<int, 2>& ends = leaving.partner.topology.edges[leaving.edge];
+  const Vector3 along =
+      leaving.R_PS.transpose() * (leaving.partner.mesh.vertices[ends[1]] - leaving.partner.mesh.vertices[ends[0]]).normalized();
+  const Vector3 across = leaving.normal.cross(along);
+  const auto partnerAllows = [&leaving](const Vector3& normal, double slack) {
+    return edgeConeAllows(leaving.partner, leaving.edge, -(leaving.R_PS * normal), slack);
+  };
+  bool goes_on = partnerAllows(leaving.normal, CONE_SLACK);
+  for (int i = topology.vertex_edge_begin[leaving.vertex]; i < topology.vertex_edge_begin[leaving.vertex + 1]; ++i) {
+    const int edge = topology.vertex_edges[i], other = topology.edges[edge][topology.edges[edge][0] == leaving.vertex];
+    const Vector3 w = side.mesh.vertices[other] - side.mesh.vertices[leaving.vertex];
+    const double down = w.dot(leaving.normal), aside = w.dot(across), length2 = w.squaredNorm();
+    if (down <= 0 || down * down <= CONE_SLACK * CONE_SLACK * length2) continue;
+    goes_on = false;
+    // Its foot lies so far from the vertex, as part of the contact's length.
+    const double span2 = down * down + aside * aside, jump = down * std::sqrt(length2) / span2;
+    if (topology.edge_flat[edge] || jump > NEAR_SUCCESSOR) continue;
+    const Vector3 normal = (leaving.normal * std::abs(aside) - across * (aside > 0 ? down : -down)) / std::sqrt(span2);
+    if (edgeSlope(side, edge, normal) <= EDGE_CONE_SLACK && partnerAllows(normal, EDGE_CONE_SLACK)) return true;
+  }
+  return goes_on;
 }
 
 Vector3 vertexLean(const MeshSide& side, int vertex) {

@@ -15,13 +15,23 @@ bool vertexConeAllows(const MeshSide& side, int vertex, const Vector3& direction
 /** The same for the faces of an edge. */
 bool edgeConeAllows(const MeshSide& side, int edge, const Vector3& direction, double slack);
 
+/** A contact that takes over where another leaves is no farther from it than this part of its length. */
+constexpr double NEAR_SUCCESSOR = 0.01;
+
+/** A vertex whose contact with an edge of the other mesh, or with a plane that ends there, leaves over that edge. */
+struct LeavingVertex {
+  const MeshSide &side, &partner;
+  int vertex, edge;  ///< of `side`, of `partner`
+  Matrix3 R_PS;      ///< directions of side's frame in partner's
+  Vector3 normal;    ///< unit, side's frame, towards the partner, square to the edge
+};
+
 /**
- * How far a contact of the vertex jumps, in terms of its length, when the vertex leaves its partner over an edge of the other mesh and an
- * edge of its own takes over: the nearest of those that lead towards the other mesh, as part of the distance. Where none does the vertex
- * itself goes on: -1. A plane's inner edges take over nothing.
- * @param direction unit, towards the other mesh @param across unit, square to it and to the edge that is left; both in the mesh's frame
+ * Does another contact take over where it leaves? The vertex's own with the edge, where no edge at the vertex leads towards the partner;
+ * else that of such an edge with the partner's, if it is there and not far: a plane's inner edges have none, nor have edges whose contact
+ * would point into a face.
  */
-double successorJump(const MeshSide& side, int vertex, const Vector3& direction, const Vector3& across);
+bool isTakenOver(const LeavingVertex& leaving);
 
 /** Largest part (sine) along `direction` (unit, mesh's frame) of the faces of an edge: how steeply its surface goes that way; -1 without
  * faces. */

@@ -283,42 +283,27 @@ class SimplexSearch {
       findEdgesBeyond(lines, p0, q0, &beyond);
       const int end_m = beyond.end_p < 0 ? -1 : pair_.moving.mesh.elements[m.element][(k + beyond.end_p) % 3];
       const int end_f = beyond.end_q < 0 ? -1 : pair_.fixed.mesh.elements[f.element][(l + beyond.end_q) % 3];
-      addFadingEdges(edge_m, end_m, edge_f, end_f, lines, beyond);
+      addFadingEdges(edge_m, end_m, edge_f, end_f, beyond);
     }
   }
 
   void addEdgeEdge(const Feature& m, const Feature& f, const EdgePair& feet) {
     Vector3 normal = feet.offset < 0 ? Vector3(-feet.axis) : feet.axis;
     if (std::abs(feet.offset) <= TOUCH) normal = towardsMoving(pair_, normal, m, f, feet.point_q);
-    addWithinCones(m, f, feet.point_p, feet.point_q, normal, std::abs(feet.offset), 0);
+    const double gap = std::abs(feet.offset);
+    if (gap <= pair_.range && conesAllow(m, f, normal, EDGE_CONE_SLACK))
+      buffers_.contacts.push_back({m, f, feet.point_p, feet.point_q, normal, gap});
   }
 
-  /** Depth fades as the normal leaves an edge's cone. @param lost [m] of depth for other reasons */
-  void addWithinCones(const Feature& m, const Feature& f, const Vector3& point_M, const Vector3& point_F, const Vector3& normal,
-                      double distance, double lost) {
-    const double slope = std::max(edgeSlope(pair_.fixed, f.index, normal), edgeSlope(pair_.moving, m.index, -(R_FM_.transpose() * normal)));
-    if (slope > EDGE_CONE_SLACK) return;
-    const double gap = distance + lost + coneFade(slope) * std::max(0.0, pair_.layer - distance - lost);
-    if (gap <= pair_.range) buffers_.contacts.push_back({m, f, point_M, point_F, normal, gap});
-  }
-
-  /** The feet have left the edges over these vertices (-1: not), around which a surface comes closer elsewhere: nothing takes over exactly.
-   */
-  void addFadingEdges(const Feature& m, int end_m, const Feature& f, int end_f, const LinePair& lines, const EdgesBeyond& edges) {
+  /** The feet have left the edges over these vertices (-1: not). */
+  void addFadingEdges(const Feature& m, int end_m, const Feature& f, int end_f, const EdgesBeyond& edges) {
     const Vector3 d = edges.point_p - edges.point_q;
-    const double distance = d.norm(), most = pair_.range - distance;
-    if (distance <= TOUCH || FADE_SLOPE * edges.beyond > most) return;
-    const Vector3 normal = d / distance;
-    double jump = -1;
-    if (end_m >= 0) {
-      const Vector3 across_f = edges.normal.cross(lines.q) / std::sqrt(lines.q2);
-      jump = successorJump(pair_.moving, end_m, -(R_FM_.transpose() * edges.normal), R_FM_.transpose() * across_f);
-    }
-    if (end_f >= 0)
-      jump = std::max(jump, successorJump(pair_.fixed, end_f, edges.normal, edges.normal.cross(lines.p) / std::sqrt(lines.p2)));
-    const double part = borderFade(jump);
-    if (part * most < FADE_SLOPE * edges.beyond) return;
-    addWithinCones(m, f, edges.point_p, edges.point_q, normal, distance, FADE_SLOPE * edges.beyond / part);
+    const double distance = d.norm(), gap = distance + FADE_SLOPE * edges.beyond;
+    if (distance <= TOUCH || gap > pair_.range || !conesAllow(m, f, edges.normal, EDGE_CONE_SLACK)) return;
+    const bool fades =
+        (end_m >= 0 && !isTakenOver({pair_.moving, pair_.fixed, end_m, f.index, R_FM_, -(R_FM_.transpose() * edges.normal)})) ||
+        (end_f >= 0 && !isTakenOver({pair_.fixed, pair_.moving, end_f, m.index, R_FM_.transpose(), edges.normal}));
+    if (fades) buffers_.contacts.push_back({m, f, edges.point_p, edges.point_q, d / distance, gap});
   }
 
   // ---- vertex and edge, vertex and vertex: where each is the other's local minimum

@@ -86,22 +86,23 @@ const TriangleMesh& ball() {
 TEST(SoakRest, BallOnTwoTriangles) {
   SimulationConfig config = scene(environment("two_triangles", gridMesh(1, 1, 1, 1)));
   config.objects = {object("ball", ball(), makePose({0.013, 0.007, 0.0335}, {0.1, 0.2, 0.3}))};
-  expectRest("ball on 2 triangles", config, 1, 1e-6);
+  expectRest("ball on 2 triangles", config, 5, 1e-6);
 }
 
 TEST(SoakRest, BallOnFineTriangles) {
   SimulationConfig config = scene(environment("fine", gridMesh(0.3, 0.3, 300, 300)));
   config.objects = {object("ball", ball(), makePose({0.0132, 0.0073, 0.0335}, {0.1, 0.2, 0.3}))};
-  expectRest("ball on 1 mm triangles", config, 1, 1e-6);
+  expectRest("ball on 1 mm triangles", config, 5, 1e-6);
 }
 
 // On the facet that the icosphere has at the bottom: there is nowhere to go.
 TEST(SoakRest, BallOnItsFacet) {
-  Vector3 facet = Vector3::Zero();
   const Vector3i& e = ball().elements[0];
-  for (int k = 0; k < 3; ++k) facet += ball().vertices[e[k]];
+  const Vector3 &p = ball().vertices[e[0]], &q = ball().vertices[e[1]], &r = ball().vertices[e[2]];
+  Vector3 facet = (q - p).cross(r - p).normalized();
+  if (facet.dot(p) < 0) facet = -facet;
   SimulationConfig config = scene(environment("two_triangles", gridMesh(1, 1, 1, 1)));
-  ObjectConfig resting = object("ball", ball(), makePose({0.013, 0.007, 0.0335}));
+  ObjectConfig resting = object("ball", ball(), makePose({0.013, 0.007, 0.0325}));
   resting.X_WO.linear() = Quaternion::FromTwoVectors(facet, -Vector3::UnitZ()).toRotationMatrix();
   config.objects = {resting};
   expectRest("ball on its facet", config, 0, 1e-4);
