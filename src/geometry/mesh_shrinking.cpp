@@ -40,9 +40,15 @@ std::string whyNot(const TriangleMesh& mesh, const MeshTopology& topology, doubl
 class Shrinking {
  public:
   Shrinking(const TriangleMesh& mesh, const MeshTopology& topology, double r, double outward)
-      : mesh_(mesh), r_(r), outward_(outward), normals_(topology.normals), part_(mesh.vertices.size(), 1) {
+      : mesh_(mesh),
+        r_(r),
+        outward_(outward),
+        normals_(topology.normals),
+        part_(mesh.vertices.size(), 1),
+        crossed_before_(mesh.elements.size(), false) {
     findMoves();
     findTriangles();
+    for (const int triangle : crossingTriangles(mesh_)) crossed_before_[triangle] = true;
   }
 
   TriangleMesh run(MeshShrinking* what) {
@@ -118,8 +124,9 @@ class Shrinking {
     return turned;
   }
 
-  /** Triangles with a side that passes through another one, and these. Sides that share a corner with it do not count. */
-  static std::vector<int> crossingTriangles(const TriangleMesh& mesh) {
+  /** Triangles with a side that passes through another one, and these, unless they did before. Sides that share a corner with it do not
+   * count. */
+  std::vector<int> crossingTriangles(const TriangleMesh& mesh) const {
     std::vector<char> crosses(mesh.elements.size(), false);
     const Bvh tree(mesh);
     visitLeafPairs(tree, tree, Pose::Identity(), 0, [&](std::uint32_t leaf_a, std::uint32_t leaf_b) {
@@ -132,7 +139,7 @@ class Shrinking {
     });
     std::vector<int> crossing;
     for (std::size_t e = 0; e < crosses.size(); ++e)
-      if (crosses[e]) crossing.push_back(static_cast<int>(e));
+      if (crosses[e] && !crossed_before_[e]) crossing.push_back(static_cast<int>(e));
     return crossing;
   }
 
@@ -182,6 +189,7 @@ class Shrinking {
   const double r_, outward_;  // -1: the winding shows inwards
   const std::vector<Vector3>& normals_;
   std::vector<double> part_;  // of its move, per vertex
+  std::vector<char> crossed_before_;
   std::vector<Vector3> moves_;
   std::vector<std::vector<int>> triangles_of_;
 };

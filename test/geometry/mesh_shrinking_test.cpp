@@ -71,6 +71,18 @@ TEST(MeshShrinking, ThinPartsAreHeldBack) {
   EXPECT_GT(what.excess, 0);
 }
 
+/** As in a CAD model: parts that stick in each other shrink each for itself. */
+TEST(MeshShrinking, PartsThatCrossedBeforeAreNoHindrance) {
+  TriangleMesh mesh = boxMesh({0.1, 0.1, 0.1});
+  const TriangleMesh rod = boxMesh({0.03, 0.03, 0.3});
+  for (const Vector3& v : rod.vertices) mesh.vertices.push_back(v);
+  for (const Vector3i& e : rod.elements) mesh.elements.push_back(e + Vector3i::Constant(8));
+  MeshShrinking what;
+  const TriangleMesh shrunk = shrinkMesh(mesh, R, &what);
+  EXPECT_EQ(what.held_back, 0);
+  EXPECT_NEAR((shrunk.bounds().sizes() - Vector3(0.095, 0.095, 0.295)).norm(), 0, 1e-12);
+}
+
 TEST(MeshShrinking, SpikesMoveByABoundedLength) {
   TriangleMesh spike;
   spike.vertices = {{0, 0, 0.5}, {0.02, 0, 0}, {-0.01, 0.017, 0}, {-0.01, -0.017, 0}};

@@ -83,6 +83,7 @@ TEST(Manual, SaysWhatHoldsWithoutIt) {
   EXPECT_EQ(manual_config.contact.max_contacts_per_object, defaults.contact.max_contacts_per_object);
   EXPECT_EQ(manual_config.contact.reduction, defaults.contact.reduction);
   EXPECT_EQ(manual_config.contact.mending, defaults.contact.mending);
+  EXPECT_EQ(manual_config.contact.shrink, defaults.contact.shrink);
   EXPECT_EQ(manual_config.rates.clock, defaults.rates.clock);
   EXPECT_EQ(manual_config.rates.joint_state, defaults.rates.joint_state);
   EXPECT_EQ(manual_config.rates.tf, defaults.rates.tf);
@@ -117,7 +118,7 @@ robots:
     initial_positions: {LKP: 0.4}
     disable_collisions: [[LinkA, LinkB]]
     friction: 1.0
-    links: {Body_LAR: {friction: 0.9, boundary_width: 0.01, stiffness: 80000, damping: 20000}}
+    links: {Body_LAR: {friction: 0.9, shrink: true, boundary_width: 0.01, stiffness: 80000, damping: 20000}}
     gains: {LKP: {p: 3000, d: 10, i_clamp: 50}, default: {p: 100, i: 2, d: 1}}
     motor: {default: implicit_pd, LKP: pid}
     joint_friction: {default: {dry: 0, viscous: 0.5}, LKP: {dry: 0.1}}
@@ -134,6 +135,7 @@ robots:
   EXPECT_EQ(robot.disable_collisions.at(0), std::make_pair(std::string("LinkA"), std::string("LinkB")));
   EXPECT_EQ(robot.contact.friction, 1.0);
   EXPECT_FALSE(robot.contact.boundary_width.has_value());
+  EXPECT_EQ(robot.links.at("Body_LAR").shrink, true);
   EXPECT_EQ(robot.links.at("Body_LAR").stiffness, 80000);
   EXPECT_FALSE(robot.links.at("Body_LAR").restitution.has_value());
   EXPECT_EQ(robot.gains.at("LKP").p, 3000);

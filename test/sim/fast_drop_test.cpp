@@ -31,7 +31,7 @@ TEST(FastDrop, NothingPasses) {
   for (const Drop& drop : drops()) {
     for (const double speed : {10.0, 20.0, 40.0}) {
       for (const auto& turn : THROWN_TURNS) {
-        ThrowScene scene{drop.thrown(), drop.hit(), speed, Vector3(turn[0], turn[1], turn[2]), drop.spin, drop.both_move};
+        ThrowScene scene{drop.thrown(), drop.hit(), speed, Vector3(turn[0], turn[1], turn[2]), drop.spin, Vector3::Zero(), drop.both_move};
         const ThrowOutcome outcome = throwIt(scene, SolverSettings(), [](const auto& step) { step(); });
         SCOPED_TRACE(testing::Message() << drop.name << " " << speed << " m/s, turn " << scene.turn.transpose());
         EXPECT_FALSE(outcome.passed);

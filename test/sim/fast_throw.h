@@ -18,10 +18,11 @@ struct ThrowBody {
 
 struct ThrowScene {
   ThrowBody thrown, hit;
-  double speed = 20;               ///< [m/s] of approach
-  Vector3 turn = Vector3::Zero();  ///< [rad] roll, pitch, yaw of what is thrown
-  Vector3 spin = Vector3::Zero();  ///< [rad/s] of it
-  bool both_move = false;          ///< what is hit is free too, of the same mass, and comes up at half the speed
+  double speed = 20;                 ///< [m/s] of approach
+  Vector3 turn = Vector3::Zero();    ///< [rad] roll, pitch, yaw of what is thrown
+  Vector3 spin = Vector3::Zero();    ///< [rad/s] of it
+  Vector3 beside = Vector3::Zero();  ///< [m] by which it is thrown off the middle
+  bool both_move = false;            ///< what is hit is free too, of the same mass, and comes up at half the speed
 };
 
 struct ThrowOutcome {
@@ -63,7 +64,7 @@ inline SimulationConfig configOf(const ThrowScene& scene) {
   thrown.name = "thrown";
   thrown.uri = scene.thrown.uri;
   thrown.mass = 1;
-  thrown.X_WO = makePose({0.013, 0.007, scene.hit.half_height + scene.thrown.half_height + 0.03}, scene.turn);
+  thrown.X_WO = makePose(scene.beside + Vector3(0.013, 0.007, scene.hit.half_height + scene.thrown.half_height + 0.03), scene.turn);
   thrown.angular_velocity = scene.spin;
   thrown.linear_velocity = {0, 0, scene.both_move ? -scene.speed / 2 : -scene.speed};
   config.objects = {thrown};

@@ -1,6 +1,8 @@
 // Thrown bodies must not pass, whatever they hit, how they are turned and how thin it is; and what a step of it costs at most.
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "sim/fast_throw.h"
 #include "soak/figures.h"
 
@@ -38,6 +40,86 @@ void sweep(const std::string& name, ThrowScene scene, double speed) {
   figure(title + ": greatest depth", all.max_of_layer, "of the layer");
   EXPECT_LE(all.most_substeps, Substeps::MAX_SUBSTEPS);
   EXPECT_LE(all.most_redone, Substeps::MAX_REDONE);
+}
+
+/** Any turn, spin, speed and place. */
+TEST(FastThrows, AtRandom) {
+  std::mt19937_64 generator(7);
+  const auto uniform = [&generator](double low, double high) {
+    return low + (high - low) * static_cast<double>(generator() >> 11) * 0x1p-53;
+  };
+  const auto vector = [&uniform](double size) {
+    const double x = uniform(-size, size), y = uniform(-size, size), z = uniform(-size, size);
+    return Vector3(x, y, z);
+  };
+  const std::vector<ThrowBody> thrown = {cubeThrown(), plateThrown()}, hit = {sheetHit(2, 1), boxHit(), plateHit(), mugHit()};
+  const int throws = soakShort() ? 200 : 2000;
+  ThrowOutcome all;
+  StepTimes times;
+  int passed = 0, pierced = 0;
+  for (int i = 0; i < throws; ++i) {
+    ThrowScene scene{thrown[i % 2], hit[i / 2 % 4]};
+    scene.turn = vector(M_PI);
+    scene.spin = vector(60);
+    scene.speed = uniform(3, 40);
+    scene.beside = 0.04 * Vector3(uniform(-1, 1), uniform(-1, 1), 0);
+    scene.both_move = i % 3 == 0 && i / 2 % 4 == 1;
+    const ThrowOutcome outcome = throwIt(scene, soakSettings(), [&times](const auto& step) {
+      times.start();
+      step();
+      times.stop();
+    });
+    passed += outcome.passed;
+    pierced += outcome.pierced_steps > 0;
+    all.join(outcome);
+  }
+  EXPECT_EQ(passed, 0);
+  EXPECT_EQ(pierced, 0);
+  EXPECT_LE(all.most_substeps, Substeps::MAX_SUBSTEPS);
+  EXPECT_LE(all.most_redone, Substeps::MAX_REDONE);
+  figure("throws at random: passed of " + std::to_string(throws), passed, "");
+  figure("throws at random: pierced", pierced, "");
+  figure("throws at random: worst step", 1e-3 * times.worst(), "ms");
+  figure("throws at random: steps with redone solves", all.redone_steps, "");
+  figure("throws at random: greatest depth", all.max_of_layer, "of the layer");
+}
+
+/** Started in each other: they part steadily. */
+TEST(Recovery, InterlockedMugs) {
+  SimulationConfig config;
+  config.solver = soakSettings();
+  config.environments = {ground()};
+  for (int i = 0; i < 2; ++i) {
+    ObjectConfig mug;
+    mug.name = "mug" + std::to_string(i);
+    mug.uri = mugThrown().uri;
+    mug.mass = 0.3;
+    mug.X_WO = i == 0 ? makePose({0, 0, 0.0026}) : makePose({0.05, 0.01, 0.0226}, {0.3, 0.2, 0.5});
+    config.objects.push_back(mug);
+  }
+  Simulator simulator(config, UriResolver());
+  double fastest = 0, fastest_turn = 0, speed = 0;
+  int unreliable = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const StepReport& report = simulator.step();
+    ASSERT_FALSE(report.status & STATE_NOT_FINITE);
+    const bool crossed = report.status & CONTACT_UNRELIABLE;
+    unreliable += crossed;
+    speed = 0;
+    for (const BodyState& body : report.bodies) {
+      speed = std::max(speed, body.v_WCom.norm());
+      if (!crossed) continue;
+      fastest = std::max(fastest, body.v_WCom.norm());
+      fastest_turn = std::max(fastest_turn, body.w_WB.norm());
+    }
+  }
+  EXPECT_FALSE(simulator.report().status & CONTACT_UNRELIABLE);
+  EXPECT_LT(fastest, 0.5);
+  EXPECT_LT(speed, 0.1);  // a mug may roll
+  figure("interlocked mugs: steps until apart", unreliable, "");
+  figure("interlocked mugs: fastest", fastest, "m/s");
+  figure("interlocked mugs: fastest turn", fastest_turn, "rad/s");
+  figure("interlocked mugs: speed after 3 s", speed, "m/s");
 }
 
 class FastDrops : public testing::TestWithParam<double> {};

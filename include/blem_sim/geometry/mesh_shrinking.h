@@ -19,7 +19,7 @@ struct MeshShrinking {
 /**
  * Moves every vertex inwards so that the planes of its triangles move by r; where they cannot all, in the mean square by the triangles'
  * angles. No vertex moves farther than 3 r, so that spikes stay. Then no triangle may have turned over (or by more than 60 degrees) and no
- * edge may pass through a triangle that it did not touch before: vertices where one does are held back, by halves, and stay where they are
+ * triangle may cross another, unless it did before: vertices where one does are held back, by halves, and stay where they are
  * if that is not enough.
  * The mesh must be closed and wound consistently, its inside being where the enclosed volume is positive; else it comes back as it is and
  * `what` says why. Deterministic. Elements keep their order and corners.
