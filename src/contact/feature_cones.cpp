@@ -66,6 +66,7 @@ double edgeSlope(const MeshSide& side, int edge, const Vector3& direction) {
 bool isTakenOver(const LeavingVertex& leaving) {
   const MeshSide& side = leaving.side;
   const MeshTopology& topology = side.topology;
+  if (topology.vertex_straight[leaving.vertex]) return true;
   const std::array<int, 2>& ends = leaving.partner.topology.edges[leaving.edge];
   const Vector3 along =
       leaving.R_PS.transpose() * (leaving.partner.mesh.vertices[ends[1]] - leaving.partner.mesh.vertices[ends[0]]).normalized();

@@ -77,7 +77,8 @@ struct ContactTerm {
   double target = 0;                   ///< [m/s] u_n >= target - R g_n
   Vector3 previous = Vector3::Zero();  ///< [N s] impulse of the proximal point
   double slip = 0;                     ///< [m/s] |u_t| there: De Saxce's term
-  Vector3 velocity = Vector3::Zero();  ///< [m/s] relative, at the present iterate
+  Vector3 bend = Vector3::Zero();      ///< [m/s] across the normal: what the bodies' paths bend apart there, over the step
+  Vector3 velocity = Vector3::Zero();  ///< [m/s] relative, mean over the step, at the present iterate
   Vector3 step = Vector3::Zero();      ///< its change along the search direction
   Vector3 impulse = Vector3::Zero();   ///< [N s] at the present iterate
 

@@ -71,7 +71,11 @@ void IslandProblem::relativeSteps(const Eigen::VectorXd& v, bool as_velocity) {
   for (const int tree : trees) computeTwists(*forest_, tree, *motion_, v, &space_->twist);
   for (const ContactPatch& p : patches) {
     const Vector6 relative = relativeTwist(p.pair, space_->twist);
-    for (int i = p.first; i < p.end; ++i) (as_velocity ? contacts[i].velocity : contacts[i].step) = velocityAt(relative, contacts[i].point);
+    for (int i = p.first; i < p.end; ++i) {
+      ContactTerm& c = contacts[i];
+      const Vector3 u = velocityAt(relative, c.point);
+      (as_velocity ? c.velocity : c.step) = as_velocity ? Vector3(u + c.bend) : u;
+    }
   }
   for (std::size_t l = 0; l < loops.size(); ++l)
     (as_velocity ? loops[l].velocity : loops[l].step) = loops[l].basis.transpose() * relativeTwist(loop_pairs[l], space_->twist);

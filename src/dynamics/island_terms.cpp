@@ -106,17 +106,17 @@ LoopFrames loopFrames(const TermSource& s, const LoopClosure& loop, double q) {
   return frames;
 }
 
-/** Acceleration of the child against the parent while all joint velocities stay. */
-struct LoopDrift {
+/** Acceleration of node a against node b, at a point, while the velocities of all dofs stay. */
+struct PairDrift {
   Vector3 point, spin;
 };
 
-LoopDrift loopDrift(const TermSource& s, const BodyPair& pair, const Vector3& anchor) {
+PairDrift pairDrift(const TermSource& s, const BodyPair& pair, const Vector3& anchor) {
   const auto pointDrift = [&](int node, const Vector3& point) {
     return Vector3(velocityAt(s.motion.drift[node], point) +
                    angular(s.motion.node_twist[node]).cross(velocityAt(s.motion.node_twist[node], point)));
   };
-  LoopDrift drift{pointDrift(pair.a, anchor), angular(s.motion.drift[pair.a])};
+  PairDrift drift{pointDrift(pair.a, anchor), angular(s.motion.drift[pair.a])};
   if (pair.b < 0) return drift;
   const Vector3 spin = angular(s.motion.node_twist[pair.b]);
   drift.point -= pointDrift(pair.b, anchor - pair.shift);
@@ -151,7 +151,7 @@ LoopTerm loopTerm(const TermSource& s, int index, BodyPair* pair) {
   *pair = makePair(s, loop.child, loop.parent);
   const double q = s.scene.jointPosition(loop.joint);
   const LoopFrames frames = loopFrames(s, loop, q);
-  const LoopDrift drift = loopDrift(s, *pair, frames.anchor);
+  const PairDrift drift = pairDrift(s, *pair, frames.anchor);
   // Directions in the joint frame, the free axis last: of translation for a slider, of rotation for a hinge.
   const Vector3 axis = frames.R_WJ * loop.axis, one = frames.R_WJ * loop.axis.unitOrthogonal(), two = axis.cross(one);
   const bool slides = loop.kind == JointKind::PRISMATIC;
@@ -193,6 +193,9 @@ void addContact(const TermSource& s, const ContactConstraint& c, IslandProblem* 
   ContactTerm term;
   term.point = c.point - s.motion.reference[s.forest.nodes()[a].tree];
   term.normal = termSign(c) * c.normal_BA;
+  // What sticks shall not have moved at the end of the step, along paths that bend.
+  const Vector3 drift = pairDrift(s, problem->patches.back().pair, term.point).point;
+  term.bend = 0.5 * s.input.dt * (drift - drift.dot(term.normal) * term.normal);
   term.friction = c.friction;
   term.target = row.speed;
   term.compliance = row.compliance / s.input.dt;

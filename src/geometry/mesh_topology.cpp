@@ -122,13 +122,27 @@ bool MeshTopology::isFlat(const TriangleMesh& mesh, int edge) const {
   return continued;
 }
 
+bool MeshTopology::isStraight(const TriangleMesh& mesh, int vertex) const {
+  Vector3 sum = Vector3::Zero();
+  int sharp = 0;
+  for (int i = vertex_edge_begin[vertex]; i < vertex_edge_begin[vertex + 1]; ++i) {
+    const int edge = vertex_edges[i];
+    if (edge_flat[edge]) continue;
+    sum += (mesh.vertices[edges[edge][edges[edge][0] == vertex]] - mesh.vertices[vertex]).normalized();
+    ++sharp;
+  }
+  return sharp == 2 && sum.norm() <= FLAT_SINE;
+}
+
 void MeshTopology::findFlatness(const TriangleMesh& mesh) {
   edge_flat.resize(edges.size());
   for (std::size_t i = 0; i < edges.size(); ++i) edge_flat[i] = isFlat(mesh, static_cast<int>(i));
   vertex_flat.resize(mesh.vertices.size());
+  vertex_straight.resize(mesh.vertices.size());
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
     const auto begin = vertex_edges.begin() + vertex_edge_begin[v], end = vertex_edges.begin() + vertex_edge_begin[v + 1];
     vertex_flat[v] = begin != end && std::all_of(begin, end, [this](int edge) { return edge_flat[edge] != 0; });
+    vertex_straight[v] = isStraight(mesh, static_cast<int>(v));
   }
 }
 
@@ -147,6 +161,7 @@ void MeshTopology::findPatches() {
 
 void MeshTopology::findOwners(const TriangleMesh& mesh) {
   std::vector<std::uint8_t> vertex_taken = vertex_flat, edge_taken = edge_flat;
+  for (std::size_t v = 0; v < vertex_taken.size(); ++v) vertex_taken[v] |= vertex_straight[v];
   owned_.assign(mesh.elements.size(), 0);
   for (std::size_t i = 0; i < mesh.elements.size(); ++i) {
     for (int k = 0; k < 3; ++k) {

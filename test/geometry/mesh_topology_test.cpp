@@ -48,7 +48,7 @@ void expectConsistent(const TriangleMesh& mesh, const MeshTopology& topology) {
       }
     }
   }
-  EXPECT_EQ(ownedVertices(mesh, topology), static_cast<int>(mesh.vertices.size()) - countOf(topology.vertex_flat));
+  EXPECT_EQ(ownedVertices(mesh, topology), static_cast<int>(mesh.vertices.size()) - countOf(topology.vertex_flat) - countOf(topology.vertex_straight));
   EXPECT_EQ(ownedEdges(mesh, topology), static_cast<int>(topology.edges.size()) - countOf(topology.edge_flat));
   for (int v = 0; v < static_cast<int>(mesh.vertices.size()); ++v) {
     for (int i = topology.vertex_edge_begin[v]; i < topology.vertex_edge_begin[v + 1]; ++i) {
@@ -67,7 +67,8 @@ TEST(MeshTopology, CubeOwnsItsCornersAndEdges) {
     const int n = 1 << level;
     EXPECT_EQ(static_cast<int>(topology.edges.size()), 18 * n * n);
     EXPECT_EQ(ownedEdges(mesh, topology), 12 * n);
-    EXPECT_EQ(ownedVertices(mesh, topology), 8 + 12 * (n - 1));
+    EXPECT_EQ(ownedVertices(mesh, topology), 8);
+    EXPECT_EQ(countOf(topology.vertex_straight), 12 * (n - 1));
     for (std::size_t i = 0; i < topology.edges.size(); ++i) EXPECT_EQ(facesOf(topology, i), 2);
     std::vector<int> patches = topology.patch;
     std::sort(patches.begin(), patches.end());
@@ -75,12 +76,12 @@ TEST(MeshTopology, CubeOwnsItsCornersAndEdges) {
   }
 }
 
-TEST(MeshTopology, GridOwnsItsOutline) {
+TEST(MeshTopology, GridOwnsItsOutlineAndCorners) {
   const TriangleMesh mesh = gridMesh(1, 2, 5, 7);
   const MeshTopology topology(mesh);
   expectConsistent(mesh, topology);
   EXPECT_EQ(ownedEdges(mesh, topology), 24);
-  EXPECT_EQ(ownedVertices(mesh, topology), 24);
+  EXPECT_EQ(ownedVertices(mesh, topology), 4);
   EXPECT_TRUE(std::all_of(topology.patch.begin(), topology.patch.end(), [](int patch) { return patch == 0; }));
 }
 
@@ -137,7 +138,7 @@ TEST(MeshTopology, SegmentsPointsAndSliversAreNoFaces) {
   for (int i = 0; i < 3; ++i) EXPECT_FALSE(topology.isFace(i));
   EXPECT_EQ(topology.edges.size(), 3u);
   EXPECT_TRUE(topology.edge_faces.empty());
-  EXPECT_EQ(ownedVertices(mesh, topology), 4);
+  EXPECT_EQ(ownedVertices(mesh, topology), 3);  // vertex 1 lies inside the edge from 0 to 2
   EXPECT_EQ(ownedEdges(mesh, topology), 3);
   EXPECT_TRUE(topology.ownsVertex(1, 0));
   EXPECT_TRUE(topology.ownsEdge(0, 0));

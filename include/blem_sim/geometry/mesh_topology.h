@@ -13,7 +13,7 @@ namespace blem_sim {
  * Features of a TriangleMesh: its vertices, its edges (each once, with any number of incident faces: none for a segment, one on a border,
  * two inside a surface, more where a soup is not a manifold) and its faces (elements with area). Nothing is assumed of winding.
  * A feature is flat, and owns nothing, where it lies inside a plane: an edge whose faces continue each other, a vertex with flat edges
- * only. Precondition: indices in range; coincident vertices are one, as cleanMesh leaves them (else neighbours are not seen: more features,
+ * only. Nor does a vertex inside a straight edge, whose parts speak for it. Precondition: indices in range; coincident vertices are one, as cleanMesh leaves them (else neighbours are not seen: more features,
  * none lost).
  */
 struct MeshTopology {
@@ -33,6 +33,7 @@ struct MeshTopology {
   std::vector<Vector3> normals;                   ///< unit, by the element's winding; zero for elements without area: they are no faces
   std::vector<std::uint8_t> edge_flat;
   std::vector<std::uint8_t> vertex_flat;
+  std::vector<std::uint8_t> vertex_straight;  ///< but for flat ones it has two edges, which continue each other
   std::vector<int> patch;  ///< per element: first element of the plane that it is part of, across flat edges
 
   bool isFace(int element) const { return !normals[element].isZero(0); }
@@ -54,6 +55,7 @@ struct MeshTopology {
   void findPatches();
   void findOwners(const TriangleMesh& mesh);
   bool isFlat(const TriangleMesh& mesh, int edge) const;
+  bool isStraight(const TriangleMesh& mesh, int vertex) const;
 
   std::vector<std::uint8_t> owned_;  // bits 0-2 vertices, 3-5 edges
 };
