@@ -40,7 +40,24 @@ CollisionGeometry::CollisionGeometry(std::shared_ptr<const TriangleMesh> mesh) :
   if (!mesh_ || mesh_->elements.empty()) throw InputError("collision geometry: the mesh has no element; leave the collider out");
   topology_ = MeshTopology(*mesh_);
   bvh_ = Bvh(*mesh_);
+  findOwners();
   bounds_ = mesh_->bounds();
+}
+
+// Children lie behind their parents.
+void CollisionGeometry::findOwners() {
+  const std::vector<Bvh::Node>& nodes = bvh_.nodes();
+  owners_.assign(nodes.size(), 0);
+  for (std::size_t n = nodes.size(); n-- > 0;) {
+    if (!nodes[n].isLeaf()) {
+      owners_[n] = owners_[nodes[n].first] | owners_[nodes[n].first + 1];
+      continue;
+    }
+    for (std::uint32_t i = nodes[n].first; i < nodes[n].first + nodes[n].count; ++i) {
+      const int element = static_cast<int>(bvh_.order()[i]);
+      owners_[n] |= topology_.ownedVertices(element) != 0 || topology_.ownedEdges(element) != 0;
+    }
+  }
 }
 
 std::shared_ptr<const CollisionGeometry> CollisionGeometry::halfSpace(const Vector3& normal, double offset) {

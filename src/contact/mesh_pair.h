@@ -28,10 +28,11 @@ inline std::uint64_t contactId(const Feature& a, const Feature& b) {
 /** One mesh of a pair. */
 struct MeshSide {
   explicit MeshSide(const CollisionGeometry& geometry)
-      : mesh(geometry.mesh()), topology(geometry.topology()), bvh(geometry.bvh()), bounds(geometry.bounds()) {}
+      : mesh(geometry.mesh()), topology(geometry.topology()), bvh(geometry.bvh()), owners(geometry.owners()), bounds(geometry.bounds()) {}
   const TriangleMesh& mesh;
   const MeshTopology& topology;
   const Bvh& bvh;
+  const std::vector<std::uint8_t>& owners;
   const Box& bounds;
 };
 

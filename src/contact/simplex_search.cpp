@@ -23,8 +23,9 @@ class SimplexSearch {
     buffers_.crossings.clear();
     buffers_.leaf_pairs.clear();
     for (SearchBuffers::FixedLeaf& held : buffers_.fixed_leaves) held.leaf = SearchBuffers::NO_LEAF;
-    visitLeafPairs(pair_.moving.bvh, pair_.fixed.bvh, pair_.X_FM, pair_.range,
-                   [this](std::uint32_t m, std::uint32_t f) { buffers_.leaf_pairs.emplace_back(m, f); });
+    const auto matters = [this](std::uint32_t m, std::uint32_t f) { return (pair_.moving.owners[m] | pair_.fixed.owners[f]) != 0; };
+    visitLeafPairsIf(pair_.moving.bvh, pair_.fixed.bvh, pair_.X_FM, pair_.range, matters,
+                     [this](std::uint32_t m, std::uint32_t f) { buffers_.leaf_pairs.emplace_back(m, f); });
     // Sorted, so that each leaf of the moving mesh is turned once.
     std::sort(buffers_.leaf_pairs.begin(), buffers_.leaf_pairs.end());
     std::uint32_t turned_leaf = SearchBuffers::NO_LEAF;

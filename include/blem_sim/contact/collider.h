@@ -1,9 +1,11 @@
 // What can touch: boundary-layer expanded meshes [Hauser 2013, Eq. 1] placed on bodies.
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "blem_sim/geometry/bvh.h"
 #include "blem_sim/geometry/mesh_topology.h"
@@ -35,15 +37,20 @@ class CollisionGeometry {
   const TriangleMesh& mesh() const { return *mesh_; }
   const MeshTopology& topology() const { return topology_; }
   const Bvh& bvh() const { return bvh_; }
+  /** Per node of the tree: does an element below it own a vertex or an edge? Two that own nothing have no contact. */
+  const std::vector<std::uint8_t>& owners() const { return owners_; }
   const Box& bounds() const { return bounds_; }  ///< [m], geometry frame; unbounded below for a half-space
   const Vector3& planeNormal() const { return normal_; }
   double planeOffset() const { return offset_; }
 
  private:
   CollisionGeometry() = default;
+  void findOwners();
+
   std::shared_ptr<const TriangleMesh> mesh_;
   MeshTopology topology_;
   Bvh bvh_;
+  std::vector<std::uint8_t> owners_;
   Box bounds_;
   Vector3 normal_ = Vector3::UnitZ();
   double offset_ = 0;

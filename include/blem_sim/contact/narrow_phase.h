@@ -12,10 +12,10 @@ namespace blem_sim {
  * All contacts of one pair: every pair of simplices (vertex-face, edge-edge, vertex-edge, vertex-vertex, each asked once by its one owner)
  * whose closest points lie inside both and are within rA + rB + margin [Hauser 2013, Eq. 6 and Fig. 5]. Flat features own nothing,
  * coincident contacts are merged. Where a closest point leaves its face or edge and nothing takes the contact over exactly (a concave edge,
- * a vertex whose surface comes closer beside it), its depth fades by 2 um per um outside. Complete: the smallest distance among them is the distance of the meshes. Independent of the order of
- * triangles and of their winding; sorted by id.
- * Where bare meshes cross, contacts beside these are the fallback's: one per crossing of an edge and a face, whose depth grows past rA + rB
- * with what has to be taken back, and whose direction is the way back to where the pair was apart.
+ * a vertex whose surface comes closer beside it), its depth fades by 2 um per um outside. Complete: the smallest distance among them is the
+ * distance of the meshes. Independent of the order of triangles and of their winding; sorted by id. Where bare meshes cross, contacts
+ * beside these are the fallback's: one per crossing of an edge and a face, whose depth grows past rA + rB with what has to be taken back,
+ * and whose direction is the way back to where the pair was apart.
  * @param out overwritten; contacts in the world frame
  * @param X_AB_apart geometry of B in A's where they last did not cross; null: nobody knows, the smaller body's middle is on its own side
  */

@@ -44,6 +44,10 @@ class Bvh {
 template <typename Visit>
 void visitLeafPairs(const Bvh& a, const Bvh& b, const Pose& X_BA, double margin, Visit&& visit);
 
+/** The same below pairs of nodes for which matters(node_a, node_b) holds. */
+template <typename Matters, typename Visit>
+void visitLeafPairsIf(const Bvh& a, const Bvh& b, const Pose& X_BA, double margin, Matters&& matters, Visit&& visit);
+
 /** Calls visit(leaf) for every leaf whose box meets `box` (tree's frame). In bvh_traversal.h. */
 template <typename Visit>
 void visitLeaves(const Bvh& tree, const Box& box, Visit&& visit);

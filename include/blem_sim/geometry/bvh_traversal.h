@@ -70,8 +70,8 @@ void visitLeavesIf(const Bvh& tree, Meets&& meets, Visit&& visit) {
 
 }  // namespace bvh_detail
 
-template <typename Visit>
-void visitLeafPairs(const Bvh& a, const Bvh& b, const Pose& X_BA, double margin, Visit&& visit) {
+template <typename Matters, typename Visit>
+void visitLeafPairsIf(const Bvh& a, const Bvh& b, const Pose& X_BA, double margin, Matters&& matters, Visit&& visit) {
   using namespace bvh_detail;
   if (a.empty() || b.empty() || margin < 0) return;
   struct Pair {
@@ -86,7 +86,7 @@ void visitLeafPairs(const Bvh& a, const Bvh& b, const Pose& X_BA, double margin,
     const Pair pair = stack[--depth];
     const Bvh::Node& node_a = a.nodes()[pair.a];
     const Bvh::Node& node_b = b.nodes()[pair.b];
-    if (!mayBeWithin(pair.box_a, node_b, margin)) continue;
+    if (!matters(pair.a, pair.b) || !mayBeWithin(pair.box_a, node_b, margin)) continue;
     if (node_a.isLeaf() && node_b.isLeaf()) {
       visit(pair.a, pair.b);
     } else if (descendsFirst(node_a, node_b)) {
@@ -95,6 +95,12 @@ void visitLeafPairs(const Bvh& a, const Bvh& b, const Pose& X_BA, double margin,
       for (const std::uint32_t child : {node_b.first + 1, node_b.first}) stack[depth++] = {pair.a, child, pair.box_a};
     }
   }
+}
+
+template <typename Visit>
+void visitLeafPairs(const Bvh& a, const Bvh& b, const Pose& X_BA, double margin, Visit&& visit) {
+  visitLeafPairsIf(
+      a, b, X_BA, margin, [](std::uint32_t, std::uint32_t) { return true; }, visit);
 }
 
 template <typename Visit>
