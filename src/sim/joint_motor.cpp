@@ -76,10 +76,13 @@ JointDrive JointMotor::drive(const JointState& state) {
 
 bool JointMotor::accept(const JointDrive& drive, const JointState& after, double dt) {
   if (!settings_.commanded) return false;
-  integral_ = clamped(integral_ + settings_.gains.i * error_ * dt, settings_.gains.i_clamp);
   const double asked =
       drive.stiffness * (drive.target_position - after.position) + drive.damping * (drive.target_velocity - after.velocity);
-  return capped_ || std::abs(asked) > drive.max_effort * (1 + SATURATION_TOLERANCE);
+  const bool saturated = capped_ || std::abs(asked) > drive.max_effort * (1 + SATURATION_TOLERANCE);
+  // What the motor cannot give is not asked for later either: the integral does not wind up.
+  const bool winds_up = saturated && (capped_ ? drive.effort : asked) * error_ > 0;
+  if (!winds_up) integral_ = clamped(integral_ + settings_.gains.i * error_ * dt, settings_.gains.i_clamp);
+  return saturated;
 }
 
 void JointMotor::append(std::vector<double>* numbers) const {

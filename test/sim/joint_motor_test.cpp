@@ -39,6 +39,23 @@ TEST(JointMotor, IntegralTermIsClamped) {
   EXPECT_DOUBLE_EQ(motor.drive({0, 0, 0}).effort, 0.05);
 }
 
+/** A hand that has grasped for seconds opens at once. */
+TEST(JointMotor, IntegralDoesNotWindUpWhileSaturated) {
+  for (const MotorLaw law : {MotorLaw::PID, MotorLaw::IMPLICIT_PD}) {
+    JointMotor motor(settings(law, {100, 1000, 1}, 30), 1);  // 0 is where it is held
+    for (int i = 0; i < 5000; ++i) {
+      motor.sample(i * DT, DT);
+      EXPECT_TRUE(motor.accept(motor.drive({0, 0, 0}), {0, 0, 0}, DT));
+    }
+    // 100 N m/rad ask for 100; of the integral nothing but what the first steps gave.
+    motor.hold(-0.1, 0);
+    motor.sample(5, DT);
+    const JointDrive drive = motor.drive({0, 0, 0});
+    const double asked = law == MotorLaw::PID ? drive.effort : drive.stiffness * drive.target_position;
+    EXPECT_NEAR(asked, -10, 1.1);
+  }
+}
+
 TEST(JointMotor, EffortIsCappedAndSaid) {
   JointMotor motor(settings(MotorLaw::PID, {1000, 0, 0}, 30), 1);
   motor.sample(0, DT);
