@@ -198,11 +198,23 @@ class SimplexSearch {
       }
       return;
     }
+    // A border that p lies on need not be a side of this face where two sides meet at a small angle, but it ends at one of its corners.
     for (int k = 0; k < 3; ++k) {
-      const double inside = insideSide(face, k, p);
-      if (inside > 0 && inside * inside > CLOSED * CLOSED * face.length2[k]) continue;
-      visitIfBorder(topology, topology.element_edges[face.element][k], topology.patch[face.element], visit);
+      const int vertex = face_side.mesh.elements[face.element][k];
+      for (int i = topology.vertex_edge_begin[vertex]; i < topology.vertex_edge_begin[vertex + 1]; ++i) {
+        const int edge = topology.vertex_edges[i];
+        if (liesOn(face_side, edge, p, face_moves)) visitIfBorder(topology, edge, topology.patch[face.element], visit);
+      }
     }
+  }
+
+  /** Is p within CLOSED of the edge? */
+  bool liesOn(const MeshSide& edge_side, int edge, const Vector3& p, bool edge_moves) const {
+    const std::array<int, 2>& ends = edge_side.topology.edges[edge];
+    const Vector3 q = placed(edge_side.mesh.vertices[ends[0]], edge_moves),
+                  along = placed(edge_side.mesh.vertices[ends[1]], edge_moves) - q;
+    const double length2 = along.squaredNorm(), part = std::min(std::max((p - q).dot(along), 0.0), length2);
+    return (p - q - part / length2 * along).squaredNorm() <= CLOSED * CLOSED;
   }
 
   template <typename Visit>

@@ -128,6 +128,19 @@ TEST(NarrowPhaseCompleteness, NearlyAlignedPoses) {
               all.worst);
 }
 
+/** An edge that touches a corner passes the plane of a side beside it, on a diagonal of that side: no crossing. */
+TEST(NarrowPhaseCompleteness, EdgeGrazesACorner) {
+  const std::vector<Shape> shapes = makeShapes();
+  Pose X_BA = Pose::Identity();
+  X_BA.matrix() << -0.0027391364947207566, 0.99999624181455637, 0.00011613796312474911, -0.074863065371878396,  //
+      0.99999190526702708, 0.0027394668744232238, -0.0029469851823538426, -0.050324844976090528,                //
+      -0.0029472922631398712, 0.0001080648283565629, -0.99999565088569686, 0.0021446587488663238,               //
+      0, 0, 0, 1;
+  Completeness one;
+  one.check(shapes[1], shapes[1], X_BA);
+  EXPECT_EQ(one.within, 1);
+}
+
 /** Deep poses: whatever meets has contacts, all finite, none deeper than the layer by more than the smaller body. */
 TEST(NarrowPhaseCompleteness, MeetingPosesAreFiniteAndBounded) {
   const std::vector<Shape> shapes = makeShapes();
