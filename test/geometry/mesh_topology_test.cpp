@@ -48,7 +48,8 @@ void expectConsistent(const TriangleMesh& mesh, const MeshTopology& topology) {
       }
     }
   }
-  EXPECT_EQ(ownedVertices(mesh, topology), static_cast<int>(mesh.vertices.size()) - countOf(topology.vertex_flat) - countOf(topology.vertex_straight));
+  EXPECT_EQ(ownedVertices(mesh, topology),
+            static_cast<int>(mesh.vertices.size()) - countOf(topology.vertex_flat) - countOf(topology.vertex_straight));
   EXPECT_EQ(ownedEdges(mesh, topology), static_cast<int>(topology.edges.size()) - countOf(topology.edge_flat));
   for (int v = 0; v < static_cast<int>(mesh.vertices.size()); ++v) {
     for (int i = topology.vertex_edge_begin[v]; i < topology.vertex_edge_begin[v + 1]; ++i) {
