@@ -13,8 +13,8 @@ namespace blem_sim {
  * Features of a TriangleMesh: its vertices, its edges (each once, with any number of incident faces: none for a segment, one on a border,
  * two inside a surface, more where a soup is not a manifold) and its faces (elements with area). Nothing is assumed of winding.
  * A feature is flat, and owns nothing, where it lies inside a plane: an edge whose faces continue each other, a vertex with flat edges
- * only. Nor does a vertex inside a straight edge, whose parts speak for it. Precondition: indices in range; coincident vertices are one, as cleanMesh leaves them (else neighbours are not seen: more features,
- * none lost).
+ * only. Nor does a vertex inside a straight edge, whose parts speak for it. Precondition: indices in range; coincident vertices are one, as
+ * cleanMesh leaves them (else neighbours are not seen: more features, none lost).
  */
 struct MeshTopology {
   MeshTopology() = default;
@@ -34,7 +34,7 @@ struct MeshTopology {
   std::vector<std::uint8_t> edge_flat;
   std::vector<std::uint8_t> vertex_flat;
   std::vector<std::uint8_t> vertex_straight;  ///< but for flat ones it has two edges, which continue each other
-  std::vector<int> patch;  ///< per element: first element of the plane that it is part of, across flat edges
+  std::vector<int> patch;                     ///< per element: first element of the plane that it is part of, across flat edges
 
   bool isFace(int element) const { return !normals[element].isZero(0); }
   /** Is this element the one that asks for its corner k / its edge between corners k and k + 1? Never for flat ones. */
