@@ -6,13 +6,17 @@ endif()
 
 find_package(benchmark QUIET)
 if(benchmark_FOUND)
-  add_executable(solver_benchmark EXCLUDE_FROM_ALL ${PROJECT_SOURCE_DIR}/benchmark/solver_benchmark.cpp
-    ${PROJECT_SOURCE_DIR}/test/soak/hubo_stand.cpp)
-  target_include_directories(solver_benchmark PRIVATE ${PROJECT_SOURCE_DIR}/test ${PROJECT_SOURCE_DIR}/src/sim)
-  target_link_libraries(solver_benchmark blem_sim_sim GTest::gtest Threads::Threads benchmark::benchmark)
-  target_compile_definitions(solver_benchmark PRIVATE BLEM_SIM_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-  set_target_properties(solver_benchmark PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
-  add_custom_target(benchmarks DEPENDS solver_benchmark)
+  function(add_benchmark name)
+    add_executable(${name} EXCLUDE_FROM_ALL ${ARGN})
+    target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/test ${PROJECT_SOURCE_DIR}/src/sim)
+    target_link_libraries(${name} blem_sim_sim GTest::gtest Threads::Threads benchmark::benchmark)
+    target_compile_definitions(${name} PRIVATE BLEM_SIM_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+    set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
+  endfunction()
+  add_benchmark(solver_benchmark ${PROJECT_SOURCE_DIR}/benchmark/solver_benchmark.cpp ${PROJECT_SOURCE_DIR}/test/soak/hubo_stand.cpp)
+  add_benchmark(contact_benchmark ${PROJECT_SOURCE_DIR}/benchmark/contact_benchmark.cpp ${PROJECT_SOURCE_DIR}/benchmark/contact_scenes.cpp
+    ${PROJECT_SOURCE_DIR}/benchmark/plain_tree.cpp)
+  add_custom_target(benchmarks DEPENDS solver_benchmark contact_benchmark)
 endif()
 
 # The peers of the comparison, as Debian packages them.

@@ -1,0 +1,149 @@
+#include "contact_scenes.h"
+
+#include <cmath>
+
+#include "blem_sim/model/loaders.h"
+#include "blem_sim/model/robot_model.h"
+#include "contact/contact_shapes.h"
+#include "support/shared_data.h"
+#include "support/shared_packages.h"
+
+namespace blem_sim {
+namespace {
+
+constexpr double LAYER = 0.0025, NOISE = 2.5e-4, CLEARANCE = 2e-4, SIZE = 3;  // [m]
+constexpr double DT = 1e-3;                                                   // [s]
+constexpr double TURN_RATE = 31.4159265358979312;                             // [rad/s] 5 Hz
+const char* const MUG = "meshes/klampt/object_srimugsmooth.stl";
+const char* const FRACTAL = "meshes/klampt/terrain_fractal_terrain_1.stl";
+
+/** Translation and a small turn, different for every collider. */
+Pose oscillation(int collider, int step) {
+  const double phase = TURN_RATE * DT * step + 1.7 * collider, reach = SCENE_SPEED / TURN_RATE;
+  const Vector3 direction = Vector3(std::cos(2.1 * collider), std::sin(2.1 * collider), 0.05).normalized();
+  return makePose(reach * std::sin(phase) * direction, {0, 0, 0.01 * std::sin(phase)});
+}
+
+/** Oscillates about its own middle, where it stands. */
+Pose moved(const Pose& X, const Vector3& middle, int collider, int step) {
+  const Pose about = makePose(X * middle);
+  return about * oscillation(collider, step) * about.inverse() * X;
+}
+
+TriangleMesh noisyGrid(int triangles, const std::vector<Box>& raised) {
+  RandomShapes random(5);
+  const int cells = static_cast<int>(std::lround(std::sqrt(0.5 * triangles)));
+  TriangleMesh mesh = gridMesh(SIZE, SIZE, cells, cells);
+  for (Vector3& v : mesh.vertices) {
+    v.z() = random.uniform(-NOISE, NOISE);
+    for (const Box& patch : raised)
+      if ((v.head<2>().array() > patch.min().head<2>().array()).all() && (v.head<2>().array() < patch.max().head<2>().array()).all())
+        v.z() += patch.min().z() - NOISE - CLEARANCE;
+  }
+  return mesh;
+}
+
+Box boundsOf(const TriangleMesh& mesh, const Pose& X) {
+  Box box;
+  for (const Vector3& v : mesh.vertices) box.extend(X * v);
+  return box;
+}
+
+struct PosedLink {
+  std::string name;
+  std::shared_ptr<const TriangleMesh> mesh;
+  Pose X_WL;
+};
+
+/** The links at zero joint angles, the lowest vertex of the robot just above the noise. */
+std::vector<PosedLink> huboLinks() {
+  const RobotModel robot = loadUrdfFile(*sharedData("robots/klampt/huboplus/huboplus.urdf"), UriResolver(sharedPackages()));
+  std::vector<Pose> X_WL(robot.links.size(), Pose::Identity());
+  for (const JointModel& joint : robot.joints) X_WL[joint.child] = X_WL[joint.parent] * joint.X_PJ;
+  std::vector<PosedLink> links;
+  Box all;
+  for (std::size_t i = 0; i < robot.links.size(); ++i) {
+    for (const CollisionShape& shape : robot.links[i].collisions) {
+      links.push_back({robot.links[i].name, shape.mesh, X_WL[i]});
+      all.extend(boundsOf(*shape.mesh, X_WL[i]));
+    }
+  }
+  for (PosedLink& link : links) link.X_WL.pretranslate(Vector3(-all.center().x(), -all.center().y(), NOISE + CLEARANCE - all.min().z()));
+  return links;
+}
+
+TriangleMesh loadedMesh(const char* file) { return *loadSurface(*sharedData(file), Vector3::Ones(), CloudOptions()).mesh; }
+
+}  // namespace
+
+std::unique_ptr<ContactScene> huboOnTerrain(int triangles) {
+  if (!sharedData("robots/klampt/huboplus/huboplus.urdf")) return nullptr;
+  auto scene = std::make_unique<ContactScene>();
+  scene->name = "hubo on " + std::to_string(triangles);
+  const std::vector<PosedLink> links = huboLinks();
+  std::vector<Box> raised;
+  for (const PosedLink& link : links)
+    if (link.name.find("Hand") != std::string::npos || link.name.find("Finger") != std::string::npos)
+      raised.push_back(boundsOf(*link.mesh, link.X_WL));
+  scene->standing = makeCollider(noisyGrid(triangles, raised), 0);
+  std::vector<Pose> poses;
+  std::vector<Vector3> middles;
+  for (const PosedLink& link : links) {
+    scene->moving.push_back(makeCollider(*link.mesh, LAYER));
+    poses.push_back(link.X_WL);
+    middles.push_back(link.mesh->bounds().center());
+  }
+  scene->pose = [poses, middles](int collider, int step) { return moved(poses[collider], middles[collider], collider, step); };
+  return scene;
+}
+
+std::unique_ptr<ContactScene> cubeOnTerrain(int triangles) {
+  auto scene = std::make_unique<ContactScene>();
+  scene->name = "cube on " + std::to_string(triangles);
+  scene->standing = makeCollider(noisyGrid(triangles, {}), 0);
+  scene->moving = {makeCollider(boxMesh(Vector3::Constant(0.1)), LAYER)};
+  scene->pose = [](int collider, int step) {
+    return moved(makePose({0.01, 0.02, 0.05 + NOISE + CLEARANCE}), Vector3::Zero(), collider, step);
+  };
+  return scene;
+}
+
+std::unique_ptr<ContactScene> mugOnFractalTerrain(int triangles) {
+  if (!sharedData(MUG) || !sharedData(FRACTAL)) return nullptr;
+  auto scene = std::make_unique<ContactScene>();
+  TriangleMesh terrain = loadedMesh(FRACTAL);
+  int level = 0;
+  while ((terrain.elements.size() << 2 * (level + 1)) <= 1.1 * triangles) ++level;
+  scene->standing = makeCollider(subdivided(terrain, level), 0);
+  scene->name = "mug on fractal " + std::to_string(scene->standing.geometry->mesh().elements.size());
+  const TriangleMesh mug = loadedMesh(MUG);
+  scene->moving = {makeCollider(mug, LAYER)};
+  // Lowered until the layers overlap by half.
+  Pose X = makePose({0.3, 0.2, 2});
+  for (double step = 1; step > 1e-5; step *= 0.5) {
+    X.translation().z() -= step;
+    if (contactsOf(scene->moving[0], X, scene->standing, Pose::Identity(), 0).maxDepth() > 0.5 * LAYER) X.translation().z() += step;
+  }
+  const Vector3 middle = mug.bounds().center();
+  scene->pose = [X, middle](int collider, int step) { return moved(X, middle, collider, step); };
+  return scene;
+}
+
+std::unique_ptr<ContactScene> mugBesideMug() {
+  if (!sharedData(MUG)) return nullptr;
+  auto scene = std::make_unique<ContactScene>();
+  scene->name = "mug beside mug";
+  const TriangleMesh mug = loadedMesh(MUG);
+  scene->standing = makeCollider(mug, LAYER);
+  scene->moving = {makeCollider(mug, LAYER)};
+  const Pose X = makePose({0, mug.bounds().sizes().y() + 0.002, 0});
+  const Vector3 middle = mug.bounds().center();
+  scene->pose = [X, middle](int, int step) {
+    const double along = SCENE_SPEED / TURN_RATE * std::sin(TURN_RATE * DT * step);
+    return Pose(Eigen::Translation3d(0.7 * along, 0, 0.7 * along) * X * makePose(middle) * makePose(Vector3::Zero(), {0, 0, 0.01 * along}) *
+                makePose(-middle));
+  };
+  return scene;
+}
+
+}  // namespace blem_sim

@@ -1,0 +1,36 @@
+// Bodies that move along given paths close to others: what contact generation is timed on.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "blem_sim/contact/collider.h"
+
+namespace blem_sim {
+
+/** Moving colliders against one that stands. Their poses are functions of the step; nothing is simulated. */
+struct ContactScene {
+  std::string name;
+  Collider standing;
+  std::vector<Collider> moving;
+  std::function<Pose(int collider, int step)> pose;  ///< in the standing one's frame
+};
+
+/** [m/s] of the moving bodies; every one oscillates by itself at 5 Hz. */
+constexpr double SCENE_SPEED = 0.1;
+
+/**
+ * Hubo, 57 links, standing on a grid of 3 m x 3 m with noise of 0.5 mm from lowest to highest, raised under its hands; r 2.5 mm.
+ * @param triangles of the grid, about. Null without the shared data.
+ */
+std::unique_ptr<ContactScene> huboOnTerrain(int triangles);
+/** A cube of 12 triangles on the same grid. */
+std::unique_ptr<ContactScene> cubeOnTerrain(int triangles);
+/** A mug of 22,300 triangles upright on a fractal terrain, split to about `triangles`. Null without the shared data. */
+std::unique_ptr<ContactScene> mugOnFractalTerrain(int triangles);
+/** Two such mugs side by side, 2 mm apart, r 5 mm in all. */
+std::unique_ptr<ContactScene> mugBesideMug();
+
+}  // namespace blem_sim
