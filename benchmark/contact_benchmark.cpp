@@ -87,7 +87,7 @@ int main(int argc, char** argv) {
   add("contacts/hubo_on_100k", [] { return huboOnTerrain(100000); });
   add("contacts/hubo_on_1M", [] { return huboOnTerrain(1000000); });
   add("contacts/cube_on_1M", [] { return cubeOnTerrain(1000000); });
-  add("contacts/mug_on_fractal_1M", [] { return mugOnFractalTerrain(1000000); });
+  add("contacts/mug_on_fractal_500k", [] { return mugOnFractalTerrain(500000); });
   add("contacts/mug_beside_mug", [] { return mugBesideMug(); });
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
