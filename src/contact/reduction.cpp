@@ -11,14 +11,16 @@ namespace blem_sim {
 
 namespace {
 
-// Sound contacts take part in the choice; pierced ones, whose directions are not to be trusted, get the room that is left.
+// Sound contacts take part in the choice; pierced ones, whose directions are the fallback's, get the room that is left, and a quarter of k
+// if they are so many: else what crossed would stay crossed.
 void reduceManifold(ContactManifold& manifold, int k, const Reduction& method, const ContactIds& chosen_before) {
   std::vector<Contact>& contacts = manifold.contacts;
   std::vector<Contact> pierced;
   const auto first_pierced = std::stable_partition(contacts.begin(), contacts.end(), [](const Contact& c) { return !c.pierced; });
   pierced.assign(first_pierced, contacts.end());
   contacts.erase(first_pierced, contacts.end());
-  method.reduce(contacts, k, chosen_before);
+  const int reserved = std::min(k / 4, static_cast<int>(pierced.size()));
+  method.reduce(contacts, k - reserved, chosen_before);
   const int room = k - static_cast<int>(contacts.size());
   if (pierced.empty() || room <= 0) return;
   method.reduce(pierced, room, chosen_before);

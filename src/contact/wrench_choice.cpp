@@ -19,6 +19,7 @@ constexpr float NOTHING_LACKS = 1e-6f;  // of a unit force
 // What an earlier choice may lack beyond a fresh one, in the direction that lacks most, of a unit force; and [m] in depth.
 constexpr float GOOD_ENOUGH = 0.05f;
 constexpr double DEEP_ENOUGH = 1e-6;
+constexpr double DEPTH_TIE = 1e-8;  // [m]
 
 using DirectionValues = Eigen::Array<float, DIRECTIONS, 1>;
 
@@ -82,10 +83,16 @@ std::vector<DirectionValues> supportOfEach(const std::vector<Contact>& contacts)
   return support;
 }
 
+// The deepest contact; of those that are as deep but for rounding the farthest along a direction that no mesh has, so that the names of
+// vertices do not decide.
 int deepest(const std::vector<Contact>& contacts) {
-  int best = 0;
-  for (std::size_t i = 1; i < contacts.size(); ++i) {
-    if (contacts[i].depth > contacts[best].depth) best = static_cast<int>(i);
+  const Vector3 direction(0.5773, 0.6411, 0.5057);
+  double depth = contacts[0].depth;
+  for (const Contact& contact : contacts) depth = std::max(depth, contact.depth);
+  int best = -1;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    if (contacts[i].depth < depth - DEPTH_TIE) continue;
+    if (best < 0 || direction.dot(contacts[i].point) > direction.dot(contacts[best].point)) best = static_cast<int>(i);
   }
   return best;
 }

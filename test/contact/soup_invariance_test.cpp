@@ -19,11 +19,11 @@ namespace {
 constexpr double LAYER = 0.0025;  // [m]
 constexpr double CRACKS = 1e-5;   // [m] in each coordinate
 constexpr double MOTION = 1e-5;   // [m]
-constexpr double OVERLAP = 2e-5;  // [m] of the layers
+constexpr double OVERLAP = 1e-3;  // [m] of the layers
 constexpr double ARM = 0.05;      // [m] that makes turns shifts
-constexpr int BUDGET = 200;       // none has to be left out for want of room: which of equal ones go depends on their order
-constexpr double SAME = 1e-9;     // [m] of support, where the surface is the same
-constexpr double ALIKE = 1e-4;    // [m] where it was cracked
+constexpr int BUDGET = 50;
+constexpr double SAME = 1e-9;   // [m] of support, where the surface is the same
+constexpr double ALIKE = 1e-4;  // [m] where it was cracked
 
 Collider loaded(const TriangleMesh& soup) {
   MeshReport report;
