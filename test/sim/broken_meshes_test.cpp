@@ -144,7 +144,8 @@ void expectSameRest(const Resting& scene) {
   };
   std::printf("%s: speed %.2g m/s\n", scene.name.c_str(), whole.speed);
   EXPECT_NEAR(whole.wrench.force.z(), G, 1e-6 * G);
-  for (const auto& [name, mesh, tolerance] : copies) {
+  for (std::size_t i = SANITIZED ? copies.size() - 1 : 0; i < copies.size(); ++i) {
+    const auto& [name, mesh, tolerance] = copies[i];
     const Rest rest = restOf(scene, mesh, seconds);
     const double apart = (rest.X_WB.translation() - whole.X_WB.translation()).norm();
     const double force = (rest.wrench.force - whole.wrench.force).norm() / G,
