@@ -6,16 +6,11 @@ endif()
 
 find_package(benchmark QUIET)
 if(benchmark_FOUND)
-  function(add_benchmark name)
-    add_executable(${name} EXCLUDE_FROM_ALL ${ARGN})
-    target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/test ${PROJECT_SOURCE_DIR}/src/sim)
-    target_link_libraries(${name} blem_sim_sim GTest::gtest Threads::Threads benchmark::benchmark)
-    target_compile_definitions(${name} PRIVATE BLEM_SIM_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
-    set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
-  endfunction()
-  add_benchmark(solver_benchmark ${PROJECT_SOURCE_DIR}/benchmark/solver_benchmark.cpp ${PROJECT_SOURCE_DIR}/test/soak/hubo_stand.cpp)
-  add_benchmark(contact_benchmark ${PROJECT_SOURCE_DIR}/benchmark/contact_benchmark.cpp ${PROJECT_SOURCE_DIR}/benchmark/contact_scenes.cpp
+  add_long_run(solver_benchmark ${PROJECT_SOURCE_DIR}/benchmark/solver_benchmark.cpp ${PROJECT_SOURCE_DIR}/test/soak/hubo_stand.cpp)
+  add_long_run(contact_benchmark ${PROJECT_SOURCE_DIR}/benchmark/contact_benchmark.cpp ${PROJECT_SOURCE_DIR}/benchmark/contact_scenes.cpp
     ${PROJECT_SOURCE_DIR}/benchmark/plain_tree.cpp)
+  target_link_libraries(solver_benchmark benchmark::benchmark)
+  target_link_libraries(contact_benchmark benchmark::benchmark)
   add_custom_target(benchmarks DEPENDS solver_benchmark contact_benchmark)
 endif()
 

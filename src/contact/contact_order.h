@@ -7,6 +7,9 @@
 
 namespace blem_sim {
 
+/** A direction that no mesh has: few contacts share a place along it. Not longer than 1. */
+inline const Vector3 UNCOMMON_DIRECTION(0.5773, 0.6411, 0.5057);
+
 /** Total order: by id, then point, normal, depth, trust. Precondition: finite. */
 bool contactBefore(const Contact& a, const Contact& b);
 

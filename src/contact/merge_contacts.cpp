@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <tuple>
 
+#include "contact_order.h"
+
 namespace blem_sim {
 namespace {
 
@@ -17,12 +19,12 @@ bool coincide(const Contact& a, const Contact& b) {
          (a.normal_BA - b.normal_BA).squaredNorm() <= MERGE_SINE * MERGE_SINE;
 }
 
-/** Contacts along a direction that no mesh has, so that few share a place on it. */
+/** Contacts along UNCOMMON_DIRECTION, so that few share a place on it. */
 class PlaceOrder {
  public:
   explicit PlaceOrder(const std::vector<Contact>& contacts) {
     places_.reserve(contacts.size());
-    for (std::size_t i = 0; i < contacts.size(); ++i) places_.emplace_back(DIRECTION.dot(contacts[i].point), i);
+    for (std::size_t i = 0; i < contacts.size(); ++i) places_.emplace_back(UNCOMMON_DIRECTION.dot(contacts[i].point), i);
     std::sort(places_.begin(), places_.end());
     rank_.resize(contacts.size());
     for (std::size_t i = 0; i < places_.size(); ++i) rank_[places_[i].second] = i;
@@ -38,8 +40,6 @@ class PlaceOrder {
   }
 
  private:
-  inline static const Vector3 DIRECTION = Vector3(0.5773, 0.6411, 0.5057);  // not longer than 1
-
   std::vector<std::pair<double, std::size_t>> places_;
   std::vector<std::size_t> rank_;
 };

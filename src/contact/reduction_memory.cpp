@@ -1,15 +1,14 @@
 #include <algorithm>
-#include <utility>
 
+#include "blem_sim/contact/collider_pairs.h"
 #include "blem_sim/contact/reduction.h"
 
 namespace blem_sim {
 
 const ContactIds& ReductionMemory::of(const ContactManifold& manifold) const {
   static const ContactIds nothing;
-  const auto at = std::lower_bound(choices_.begin(), choices_.end(), std::make_pair(manifold.a, manifold.b),
-                                   [](const Choice& c, const auto& pair) { return std::make_pair(c.a, c.b) < pair; });
-  return at != choices_.end() && at->a == manifold.a && at->b == manifold.b ? at->ids : nothing;
+  const Choice* choice = findPair(choices_, manifold.a, manifold.b);
+  return choice ? choice->ids : nothing;
 }
 
 void ReductionMemory::remember(const std::vector<ContactManifold>& manifolds) {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "contact_order.h"
+
 namespace blem_sim {
 
 namespace {
@@ -83,16 +85,15 @@ std::vector<DirectionValues> supportOfEach(const std::vector<Contact>& contacts)
   return support;
 }
 
-// The deepest contact; of those that are as deep but for rounding the farthest along a direction that no mesh has, so that the names of
-// vertices do not decide.
+// The deepest contact; of those that are as deep but for rounding the farthest along UNCOMMON_DIRECTION, so that the names of vertices do
+// not decide.
 int deepest(const std::vector<Contact>& contacts) {
-  const Vector3 direction(0.5773, 0.6411, 0.5057);
   double depth = contacts[0].depth;
   for (const Contact& contact : contacts) depth = std::max(depth, contact.depth);
   int best = -1;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     if (contacts[i].depth < depth - DEPTH_TIE) continue;
-    if (best < 0 || direction.dot(contacts[i].point) > direction.dot(contacts[best].point)) best = static_cast<int>(i);
+    if (best < 0 || UNCOMMON_DIRECTION.dot(contacts[i].point) > UNCOMMON_DIRECTION.dot(contacts[best].point)) best = static_cast<int>(i);
   }
   return best;
 }

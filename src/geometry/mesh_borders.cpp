@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <cstring>
 #include <limits>
 #include <numeric>
+
+#include "place_hash.h"
 
 namespace blem_sim {
 namespace {
@@ -56,17 +56,7 @@ class PlaceGrid {
 
   Vector3 cellOf(const Vector3& place) const { return (place / cell_size_).array().floor(); }
 
-  std::size_t slotOf(const Vector3& cell) const {
-    std::uint64_t h = 0;
-    for (int k = 0; k < 3; ++k) {
-      const double x = cell[k] + 0.0;  // makes -0.0 positive
-      std::uint64_t bits;
-      std::memcpy(&bits, &x, sizeof bits);
-      h = (h ^ bits) * 0x9E3779B97F4A7C15u;
-      h ^= h >> 32;
-    }
-    return h & (first_.size() - 1);
-  }
+  std::size_t slotOf(const Vector3& cell) const { return placeHash(cell) & (first_.size() - 1); }
 
   double reach_, cell_size_;
   std::vector<int> first_, next_;

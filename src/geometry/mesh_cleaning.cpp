@@ -2,11 +2,11 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <tuple>
 #include <utility>
 
 #include "blem_sim/geometry/triangle_mesh.h"
+#include "place_hash.h"
 
 namespace blem_sim {
 namespace {
@@ -35,7 +35,7 @@ class PositionIndex {
 
   int firstAt(int vertex) {
     const std::size_t mask = slots_.size() - 1;
-    for (std::size_t slot = hash(vertices_[vertex]) & mask;; slot = (slot + 1) & mask) {
+    for (std::size_t slot = placeHash(vertices_[vertex]) & mask;; slot = (slot + 1) & mask) {
       if (slots_[slot] == EMPTY) return slots_[slot] = vertex;
       if (vertices_[slots_[slot]] == vertices_[vertex]) return slots_[slot];
     }
@@ -43,18 +43,6 @@ class PositionIndex {
 
  private:
   static constexpr int EMPTY = -1;
-
-  static std::size_t hash(const Vector3& v) {
-    std::uint64_t h = 0;
-    for (int k = 0; k < 3; ++k) {
-      const double x = v[k] + 0.0;  // makes -0.0 positive
-      std::uint64_t bits;
-      std::memcpy(&bits, &x, sizeof bits);
-      h = (h ^ bits) * 0x9E3779B97F4A7C15u;
-      h ^= h >> 32;
-    }
-    return h;
-  }
 
   const std::vector<Vector3>& vertices_;
   std::vector<int> slots_;

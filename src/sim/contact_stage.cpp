@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "blem_sim/contact/collider_pairs.h"
 #include "blem_sim/contact/narrow_phase.h"
 #include "blem_sim/contact/reduction.h"
 #include "blem_sim/geometry/input_error.h"
@@ -28,13 +29,6 @@ double knownMargin(const Collider& a, const Collider& b, double margin) {
   const double layer = a.radius + b.radius;
   const bool guarded = layer > 0 && !a.geometry->isHalfSpace() && !b.geometry->isHalfSpace();
   return std::min(margin, guarded ? std::max(LEAST_MAX_MARGIN, MAX_MARGIN_OF_LAYER * layer) : UNGUARDED_MARGIN);
-}
-
-template <typename Item>
-const Item* findPair(const std::vector<Item>& items, int a, int b) {
-  const auto at = std::lower_bound(items.begin(), items.end(), std::make_pair(a, b),
-                                   [](const Item& item, const auto& key) { return std::make_pair(item.a, item.b) < key; });
-  return at != items.end() && at->a == a && at->b == b ? &*at : nullptr;
 }
 
 /** Farthest corner of the geometry's box from the body's centre of mass. */

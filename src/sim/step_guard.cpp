@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
+
+#include "blem_sim/contact/collider_pairs.h"
 
 namespace blem_sim {
 namespace {
@@ -14,12 +15,6 @@ constexpr double LEAST_GROWTH = 0.1;  // of the layer in one step: slower sinkin
 double used(const ContactManifold* manifold) { return manifold ? std::max(0.0, manifold->maxDepth() / manifold->layer) : 0; }
 
 bool inDanger(double before, double after) { return after > USED_UP && after - before > LEAST_GROWTH; }
-
-const ContactManifold* find(const std::vector<ContactManifold>& manifolds, int a, int b) {
-  const auto at = std::lower_bound(manifolds.begin(), manifolds.end(), std::make_pair(a, b),
-                                   [](const ContactManifold& m, const auto& key) { return std::make_pair(m.a, m.b) < key; });
-  return at != manifolds.end() && at->a == a && at->b == b ? &*at : nullptr;
-}
 
 /** How a point fixed on the body moved. */
 Pose motionOf(int body, const std::vector<BodyState>& before, const std::vector<BodyState>& after) {
@@ -43,7 +38,7 @@ bool usesUpLayer(const std::vector<Collider>& colliders, const std::vector<Conta
                  const std::vector<BodyState>& bodies_after) {
   for (const ContactManifold& now : after) {
     if (!(now.layer > 0)) continue;
-    const ContactManifold* then = find(before, now.a, now.b);
+    const ContactManifold* then = findPair(before, now.a, now.b);
     if (now.pierced && !(then && then->pierced)) return true;
     if (inDanger(used(then), used(&now))) return true;
   }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "blem_sim/contact/collider_pairs.h"
+
 namespace blem_sim {
 namespace {
 
@@ -31,12 +33,6 @@ Box boxOf(const Collider& collider, const Pose& X_WC, double margin) {
   return Box(centre - half, centre + half);
 }
 
-const ContactManifold* manifoldOf(const std::vector<ContactManifold>& manifolds, const WatchedPair& pair) {
-  const auto at = std::lower_bound(manifolds.begin(), manifolds.end(), std::make_pair(pair.a, pair.b),
-                                   [](const ContactManifold& m, const auto& key) { return std::make_pair(m.a, m.b) < key; });
-  return at != manifolds.end() && at->a == pair.a && at->b == pair.b ? &*at : nullptr;
-}
-
 class Prediction {
  public:
   Prediction(const SimulatedWorld& world, const ContactStage& contacts, const std::vector<BodyState>& bodies)
@@ -46,7 +42,7 @@ class Prediction {
     const Collider &a = world_.colliders[pair.a], &b = world_.colliders[pair.b];
     const double layer = a.radius + b.radius;
     if (!(layer > 0) || pair.margin <= LEAST_MARGIN * layer) return time;
-    const ContactManifold* manifold = manifoldOf(contacts_.current(), pair);
+    const ContactManifold* manifold = findPair(contacts_.current(), pair.a, pair.b);
     const double gap = std::min(pair.known, manifold ? -manifold->maxDepth() : pair.known);  // between the layers, at least
     const double harmless = std::max(PER_SOLVE * layer, std::min(pair.known, USED_UP * (layer + gap)));
     const double speed = meetingSpeed(pair, layer + pair.margin);

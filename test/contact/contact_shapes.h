@@ -68,6 +68,17 @@ inline ContactManifold contactsOf(const Collider& a, const Pose& X_WA, const Col
   return manifold;
 }
 
+/** Lowers A onto B until the layers overlap by `overlap` [m]. */
+inline Pose lowered(const Collider& a, Pose X_BA, const Collider& b, double overlap) {
+  for (int i = 0; i < 100; ++i) {
+    const ContactManifold manifold = contactsOf(a, X_BA, b, Pose::Identity(), 1e-3);
+    const double missing = manifold.contacts.empty() ? 0.004 : overlap - manifold.maxDepth();
+    if (std::abs(missing) < 1e-8) break;
+    X_BA.translation().z() -= 0.9 * missing;
+  }
+  return X_BA;
+}
+
 inline bool allFinite(const ContactManifold& manifold) {
   return std::all_of(manifold.contacts.begin(), manifold.contacts.end(), [](const Contact& c) {
     return c.point.allFinite() && c.normal_BA.allFinite() && std::isfinite(c.depth) && std::abs(c.normal_BA.norm() - 1) < 1e-12;

@@ -78,17 +78,6 @@ inline void compare(const std::vector<Contact>& before, const std::vector<Contac
   }
 }
 
-/** Lowers A onto B until the layers overlap by `overlap` [m]. */
-inline Pose lowered(const Collider& a, Pose X_BA, const Collider& b, double overlap) {
-  for (int i = 0; i < 100; ++i) {
-    const ContactManifold manifold = contactsOf(a, X_BA, b, Pose::Identity(), 1e-3);
-    const double missing = manifold.contacts.empty() ? 0.004 : overlap - manifold.maxDepth();
-    if (std::abs(missing) < 1e-8) break;
-    X_BA.translation().z() -= 0.9 * missing;
-  }
-  return X_BA;
-}
-
 struct Scene {
   const char* name;
   Collider a, b;

@@ -1,61 +1,16 @@
-// Every reduction keeps the same promises; hull loses nothing on flat patches; budgets hold over several manifolds.
-#include "blem_sim/contact/reduction.h"
-
+// Every reduction keeps the same promises; hull loses nothing on flat patches.
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <climits>
 #include <cmath>
 #include <functional>
 #include <random>
 #include <tuple>
 
+#include "contact_patches.h"
+
 namespace blem_sim {
 namespace {
-
-using Contacts = std::vector<Contact>;
-
-Contact makeContact(const Vector3& point, const Vector3& normal, double depth, std::uint64_t id) {
-  Contact contact;
-  contact.point = point;
-  contact.normal_BA = normal.normalized();
-  contact.depth = depth;
-  contact.id = id;
-  return contact;
-}
-
-// Uniform in [-1, 1), the same with every standard library.
-class Noise {
- public:
-  explicit Noise(unsigned seed) : engine_(seed) {}
-  double operator()() { return engine_() * (2.0 / 4294967296.0) - 1.0; }
-
- private:
-  std::mt19937 engine_;
-};
-
-// A 10 cm square in the plane across `normal`, all contacts at one depth: what a tessellated cube on a plane gives.
-Contacts flatPatch(int count, const Vector3& normal, const Vector3& centre, unsigned seed = 1) {
-  Noise noise(seed);
-  const Quaternion tilt = Quaternion::FromTwoVectors(Vector3::UnitZ(), normal);
-  Contacts contacts;
-  for (int i = 0; i < count; ++i) {
-    const Vector3 p(0.05 * noise(), 0.05 * noise(), 0);
-    contacts.push_back(makeContact(centre + tilt * p, normal, 1e-3, i));
-  }
-  return contacts;
-}
-
-// A cube's face on sensor noise: normals within some degrees, depths within the layer.
-Contacts noisyPatch(int count, unsigned seed = 2) {
-  Noise noise(seed);
-  Contacts contacts;
-  for (int i = 0; i < count; ++i) {
-    const Vector3 normal(0.1 * noise() + 0.1 * noise(), 0.1 * noise() + 0.1 * noise(), 1);
-    contacts.push_back(makeContact({0.05 * noise(), 0.05 * noise(), 5e-4 * noise()}, normal, 1.25e-3 * (1 + noise()), i));
-  }
-  return contacts;
-}
 
 // A ring around a handle: normals all around, which cancel in the mean.
 Contacts ring(int count) {
@@ -411,86 +366,6 @@ TEST(ReduceKmeans, AveragesWhatBelongsTogether) {
     EXPECT_NEAR(reduced[1].depth, 2e-3, 1e-12);
   }
 }
-
-ContactManifold manifoldOf(int a, int b, Contacts contacts) {
-  ContactManifold manifold;
-  manifold.a = a;
-  manifold.b = b;
-  manifold.contacts = std::move(contacts);
-  return manifold;
-}
-
-class Budgets : public ::testing::TestWithParam<int> {
- protected:
-  const Reduction& method() const { return reductionTable()[GetParam()]; }
-};
-
-int contactsOf(int model, const std::vector<ContactManifold>& manifolds, const std::vector<int>& model_a, const std::vector<int>& model_b) {
-  int count = 0;
-  for (std::size_t m = 0; m < manifolds.size(); ++m) {
-    if (model_a[m] == model || model_b[m] == model) count += static_cast<int>(manifolds[m].contacts.size());
-  }
-  return count;
-}
-
-// Models: 0 the static world, 1 a robot (k = 50), 2 and 3 objects (k = 20).
-TEST_P(Budgets, HoldForRobotObjectsAndStaticWorld) {
-  const std::vector<ContactBudget> budgets = {{INT_MAX}, {50}, {20}, {20}};
-  const std::vector<int> model_a = {1, 1, 1, 1, 0, 2, 1, 0};
-  const std::vector<int> model_b = {0, 0, 2, 0, 2, 3, 1, 3};
-  std::vector<ContactManifold> manifolds;
-  for (int m = 0; m < 8; ++m) manifolds.push_back(manifoldOf(m, m + 1, noisyPatch(m == 3 ? 2 : 200 + 10 * m, 50 + m)));
-  int before = 0, after = 0;
-  for (const ContactManifold& manifold : manifolds) before += static_cast<int>(manifold.contacts.size());
-  ReductionMemory memory;
-  const int left_out = reduceManifolds(manifolds, model_a, model_b, budgets, method(), &memory);
-  for (const ContactManifold& manifold : manifolds) {
-    after += static_cast<int>(manifold.contacts.size());
-    EXPECT_GE(manifold.contacts.size(), manifold.a == 3 ? 2u : 3u) << manifold.a;
-  }
-  EXPECT_EQ(left_out, before - after);
-  if (method().reduce == reduceNone) {
-    EXPECT_EQ(left_out, 0);
-    return;
-  }
-  EXPECT_LE(contactsOf(1, manifolds, model_a, model_b), 50);
-  EXPECT_LE(contactsOf(2, manifolds, model_a, model_b), 20);
-  EXPECT_LE(contactsOf(3, manifolds, model_a, model_b), 20);
-  EXPECT_GT(contactsOf(1, manifolds, model_a, model_b), 25);
-}
-
-TEST_P(Budgets, HoldWithMoreManifoldsThanContactsAllowed) {
-  if (method().reduce == reduceNone) return;  // has no budget
-  std::vector<ContactManifold> manifolds;
-  for (int m = 0; m < 9; ++m) manifolds.push_back(manifoldOf(0, m + 1, noisyPatch(5, 70 + m)));
-  const std::vector<int> robot(9, 1), world(9, 0);
-  ReductionMemory memory;
-  reduceManifolds(manifolds, robot, world, {{INT_MAX}, {4}}, method(), &memory);
-  EXPECT_EQ(contactsOf(1, manifolds, robot, world), 4);
-}
-
-TEST_P(Budgets, ChoosePiercedContactsLast) {
-  if (method().reduce == reduceNone) return;  // has no choice
-  Contacts contacts = noisyPatch(300);
-  for (int i = 0; i < 150; ++i) {
-    contacts[i].pierced = true;
-    contacts[i].depth = 0.05;
-  }
-  std::vector<ContactManifold> manifolds = {manifoldOf(0, 1, contacts)};
-  ReductionMemory memory;
-  reduceManifolds(manifolds, {0}, {1}, {{20}, {INT_MAX}}, method(), &memory);
-  ASSERT_FALSE(manifolds[0].contacts.empty());
-  EXPECT_LE(manifolds[0].contacts.size(), 20u);
-  EXPECT_GE(std::count_if(manifolds[0].contacts.begin(), manifolds[0].contacts.end(), [](const Contact& c) { return !c.pierced; }), 15);
-
-  for (Contact& c : contacts) c.pierced = true;
-  manifolds = {manifoldOf(0, 1, contacts)};
-  reduceManifolds(manifolds, {0}, {1}, {{20}, {INT_MAX}}, method(), &memory);
-  EXPECT_FALSE(manifolds[0].contacts.empty());
-}
-
-INSTANTIATE_TEST_SUITE_P(Table, Budgets, ::testing::Range(0, static_cast<int>(reductionTable().size())),
-                         [](const auto& info) { return std::string(reductionTable()[info.param].name); });
 
 }  // namespace
 }  // namespace blem_sim

@@ -2,34 +2,14 @@
 #include <gtest/gtest.h>
 
 #include "contact/stl_soup.h"
+#include "geometry/gridded_box.h"
 #include "micro_steps.h"
 
 namespace blem_sim {
 namespace {
 
-/** Closed box with n triangles' squares along each axis. */
-TriangleMesh tessellatedBox(const Vector3& size, const Vector3i& n) {
-  TriangleMesh mesh;
-  for (int axis = 0; axis < 3; ++axis) {
-    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-    TriangleMesh side = gridMesh(size[u], size[v], n[u], n[v]);
-    for (const double height : {-0.5 * size[axis], 0.5 * size[axis]}) {
-      const int first = static_cast<int>(mesh.vertices.size());
-      for (const Vector3& p : side.vertices) {
-        Vector3 q;
-        q[axis] = height;
-        q[u] = p.x();
-        q[v] = p.y();
-        mesh.vertices.push_back(q);
-      }
-      for (const Vector3i& e : side.elements) mesh.elements.push_back(e + Vector3i::Constant(first));
-    }
-  }
-  return cleanMesh(mesh, nullptr);
-}
-
 Collider cube() { return makeCollider(boxMesh(Vector3::Constant(0.1)), R); }
-Collider pad() { return makeCollider(tessellatedBox({0.02, 0.02, 0.004}, {20, 20, 4}), R); }
+Collider pad() { return makeCollider(cleanMesh(griddedBox({0.02, 0.02, 0.004}, Vector3i(20, 20, 4)), nullptr), R); }
 Collider shellMug() { return makeCollider(cleanMesh(readStlSoup(BLEM_SIM_SOURCE_DIR "/meshes/shell_mug.stl"), nullptr), R); }
 
 TEST(Smoothness, CubeOnCube) {

@@ -50,17 +50,6 @@ std::vector<double> supports(const Collider& a, const Pose& X_WA, const Collider
   return supports;
 }
 
-/** Lowered until the layers overlap by `overlap` [m]. */
-Pose lowered(const Collider& a, Pose X_WA, const Collider& b, double overlap) {
-  for (int i = 0; i < 100; ++i) {
-    const ContactManifold manifold = contactsOf(a, X_WA, b, Pose::Identity(), 1e-3);
-    const double missing = manifold.contacts.empty() ? 0.004 : overlap - manifold.maxDepth();
-    if (std::abs(missing) < 1e-8) break;
-    X_WA.translation().z() -= 0.9 * missing;
-  }
-  return X_WA;
-}
-
 struct Scene {
   const char* name;
   TriangleMesh mesh;

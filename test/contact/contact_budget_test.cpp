@@ -1,0 +1,85 @@
+// Budgets hold over several manifolds, for every reduction.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <climits>
+
+#include "contact_patches.h"
+
+namespace blem_sim {
+namespace {
+
+class Budgets : public ::testing::TestWithParam<int> {
+ protected:
+  const Reduction& method() const { return reductionTable()[GetParam()]; }
+};
+
+int contactsOf(int model, const std::vector<ContactManifold>& manifolds, const std::vector<int>& model_a, const std::vector<int>& model_b) {
+  int count = 0;
+  for (std::size_t m = 0; m < manifolds.size(); ++m) {
+    if (model_a[m] == model || model_b[m] == model) count += static_cast<int>(manifolds[m].contacts.size());
+  }
+  return count;
+}
+
+// Models: 0 the static world, 1 a robot (k = 50), 2 and 3 objects (k = 20).
+TEST_P(Budgets, HoldForRobotObjectsAndStaticWorld) {
+  const std::vector<ContactBudget> budgets = {{INT_MAX}, {50}, {20}, {20}};
+  const std::vector<int> model_a = {1, 1, 1, 1, 0, 2, 1, 0};
+  const std::vector<int> model_b = {0, 0, 2, 0, 2, 3, 1, 3};
+  std::vector<ContactManifold> manifolds;
+  for (int m = 0; m < 8; ++m) manifolds.push_back(manifoldOf(m, m + 1, noisyPatch(m == 3 ? 2 : 200 + 10 * m, 50 + m)));
+  int before = 0, after = 0;
+  for (const ContactManifold& manifold : manifolds) before += static_cast<int>(manifold.contacts.size());
+  ReductionMemory memory;
+  const int left_out = reduceManifolds(manifolds, model_a, model_b, budgets, method(), &memory);
+  for (const ContactManifold& manifold : manifolds) {
+    after += static_cast<int>(manifold.contacts.size());
+    EXPECT_GE(manifold.contacts.size(), manifold.a == 3 ? 2u : 3u) << manifold.a;
+  }
+  EXPECT_EQ(left_out, before - after);
+  if (method().reduce == reduceNone) {
+    EXPECT_EQ(left_out, 0);
+    return;
+  }
+  EXPECT_LE(contactsOf(1, manifolds, model_a, model_b), 50);
+  EXPECT_LE(contactsOf(2, manifolds, model_a, model_b), 20);
+  EXPECT_LE(contactsOf(3, manifolds, model_a, model_b), 20);
+  EXPECT_GT(contactsOf(1, manifolds, model_a, model_b), 25);
+}
+
+TEST_P(Budgets, HoldWithMoreManifoldsThanContactsAllowed) {
+  if (method().reduce == reduceNone) return;  // has no budget
+  std::vector<ContactManifold> manifolds;
+  for (int m = 0; m < 9; ++m) manifolds.push_back(manifoldOf(0, m + 1, noisyPatch(5, 70 + m)));
+  const std::vector<int> robot(9, 1), world(9, 0);
+  ReductionMemory memory;
+  reduceManifolds(manifolds, robot, world, {{INT_MAX}, {4}}, method(), &memory);
+  EXPECT_EQ(contactsOf(1, manifolds, robot, world), 4);
+}
+
+TEST_P(Budgets, ChoosePiercedContactsLast) {
+  if (method().reduce == reduceNone) return;  // has no choice
+  Contacts contacts = noisyPatch(300);
+  for (int i = 0; i < 150; ++i) {
+    contacts[i].pierced = true;
+    contacts[i].depth = 0.05;
+  }
+  std::vector<ContactManifold> manifolds = {manifoldOf(0, 1, contacts)};
+  ReductionMemory memory;
+  reduceManifolds(manifolds, {0}, {1}, {{20}, {INT_MAX}}, method(), &memory);
+  ASSERT_FALSE(manifolds[0].contacts.empty());
+  EXPECT_LE(manifolds[0].contacts.size(), 20u);
+  EXPECT_GE(std::count_if(manifolds[0].contacts.begin(), manifolds[0].contacts.end(), [](const Contact& c) { return !c.pierced; }), 15);
+
+  for (Contact& c : contacts) c.pierced = true;
+  manifolds = {manifoldOf(0, 1, contacts)};
+  reduceManifolds(manifolds, {0}, {1}, {{20}, {INT_MAX}}, method(), &memory);
+  EXPECT_FALSE(manifolds[0].contacts.empty());
+}
+
+INSTANTIATE_TEST_SUITE_P(Table, Budgets, ::testing::Range(0, static_cast<int>(reductionTable().size())),
+                         [](const auto& info) { return std::string(reductionTable()[info.param].name); });
+
+}  // namespace
+}  // namespace blem_sim

@@ -1,0 +1,85 @@
+// Contacts as patches, curves and crowds, for the tests of their reduction.
+#pragma once
+
+#include <cmath>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "blem_sim/contact/reduction.h"
+#include "geometry/random_shapes.h"
+
+namespace blem_sim {
+
+using Contacts = std::vector<Contact>;
+
+inline Contact makeContact(const Vector3& point, const Vector3& normal, double depth, std::uint64_t id) {
+  Contact contact;
+  contact.point = point;
+  contact.normal_BA = normal.normalized();
+  contact.depth = depth;
+  contact.id = id;
+  return contact;
+}
+
+// Uniform in [-1, 1), the same with every standard library.
+class Noise {
+ public:
+  explicit Noise(unsigned seed) : engine_(seed) {}
+  double operator()() { return engine_() * (2.0 / 4294967296.0) - 1.0; }
+
+ private:
+  std::mt19937 engine_;
+};
+
+// A 10 cm square in the plane across `normal`, all contacts at one depth: what a tessellated cube on a plane gives.
+inline Contacts flatPatch(int count, const Vector3& normal, const Vector3& centre, unsigned seed = 1) {
+  Noise noise(seed);
+  const Quaternion tilt = Quaternion::FromTwoVectors(Vector3::UnitZ(), normal);
+  Contacts contacts;
+  for (int i = 0; i < count; ++i) {
+    const Vector3 p(0.05 * noise(), 0.05 * noise(), 0);
+    contacts.push_back(makeContact(centre + tilt * p, normal, 1e-3, i));
+  }
+  return contacts;
+}
+
+// A cube's face on sensor noise: normals within some degrees, depths within the layer.
+inline Contacts noisyPatch(int count, unsigned seed = 2) {
+  Noise noise(seed);
+  Contacts contacts;
+  for (int i = 0; i < count; ++i) {
+    const Vector3 normal(0.1 * noise() + 0.1 * noise(), 0.1 * noise() + 0.1 * noise(), 1);
+    contacts.push_back(makeContact({0.05 * noise(), 0.05 * noise(), 5e-4 * noise()}, normal, 1.25e-3 * (1 + noise()), i));
+  }
+  return contacts;
+}
+
+constexpr int RIM_CORNERS = 72;
+
+/** The rim of a mug's foot, its depths trembling by some nanometres. */
+inline ContactManifold rim(RandomShapes& random, double tremble) {
+  ContactManifold manifold;
+  manifold.a = 3;
+  manifold.b = 7;
+  for (int i = 0; i < RIM_CORNERS; ++i) {
+    Contact contact;
+    const double angle = 2 * M_PI * i / RIM_CORNERS;
+    contact.point = {0.03 * std::cos(angle), 0.03 * std::sin(angle), 0};
+    contact.normal_BA = Vector3::UnitZ();
+    contact.depth = 1e-5 + random.uniform(-tremble, tremble);
+    contact.id = 100 + i;
+    manifold.contacts.push_back(contact);
+  }
+  return manifold;
+}
+
+inline ContactManifold manifoldOf(int a, int b, Contacts contacts) {
+  ContactManifold manifold;
+  manifold.a = a;
+  manifold.b = b;
+  manifold.contacts = std::move(contacts);
+  return manifold;
+}
+
+}  // namespace blem_sim

@@ -1,0 +1,64 @@
+// A patch is as stiff whatever it is made of.
+#include <gtest/gtest.h>
+
+#include "contact_patches.h"
+
+namespace blem_sim {
+namespace {
+
+double totalWeight(std::vector<Contact> contacts) {
+  weighSprings(contacts);
+  double total = 0;
+  for (const Contact& c : contacts) total += c.weight;
+  return total;
+}
+
+TEST(SpringWeights, CountFullyUpToTheCornersOfARectangle) {
+  RandomShapes random(4);
+  for (int pose = 0; pose < 20; ++pose) {
+    const Pose X = random.pose(1);
+    std::vector<Contact> contacts(4);
+    for (int i = 0; i < 4; ++i) {
+      contacts[i].point = X * Vector3(i % 2 ? 0.05 : -0.05, i / 2 ? 0.02 : -0.02, 0);
+      contacts[i].normal_BA = X.linear() * Vector3::UnitZ();
+      contacts[i].depth = 1e-3;
+    }
+    for (int count = 1; count <= 4; ++count) {
+      std::vector<Contact> some(contacts.begin(), contacts.begin() + count);
+      weighSprings(some);
+      for (const Contact& c : some) EXPECT_EQ(c.weight, 1) << count;
+    }
+  }
+}
+
+TEST(SpringWeights, HoldWhateverTheTessellation) {
+  RandomShapes random(4);
+  std::vector<Contact> contacts = rim(random, 0).contacts, doubled = contacts;
+  doubled.insert(doubled.end(), contacts.begin(), contacts.end());
+  std::vector<Contact> coarse;
+  for (int i = 0; i < RIM_CORNERS; i += 3) coarse.push_back(contacts[i]);
+  EXPECT_NEAR(totalWeight(contacts), 5, 0.1);
+  EXPECT_NEAR(totalWeight(doubled), totalWeight(contacts), 1e-9);
+  EXPECT_NEAR(totalWeight(coarse), totalWeight(contacts), 0.1);
+}
+
+TEST(SpringWeights, OfSidesOfACornerAreTheirOwn) {
+  std::vector<Contact> contacts;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int i = 0; i < 4; ++i) {
+      Contact contact;
+      contact.point = Vector3::Constant(0.05);
+      contact.point[axis] = 0;
+      contact.point[(axis + 1) % 3] += i % 2 ? 0.05 : -0.04;
+      contact.point[(axis + 2) % 3] += i / 2 ? 0.05 : -0.04;
+      contact.normal_BA = Vector3::Unit(axis);
+      contact.depth = 1e-4;
+      contacts.push_back(contact);
+    }
+  }
+  weighSprings(contacts);
+  for (const Contact& c : contacts) EXPECT_EQ(c.weight, 1);
+}
+
+}  // namespace
+}  // namespace blem_sim
