@@ -1,5 +1,6 @@
-// Contact generation on given motions, against a plain tree that lists the pairs of triangles within reach. Processor time per step,
-// median of the steps; p99, contacts, pairs and the ratio as counters. Arguments: Google Benchmark's.
+// Contact generation on given motions, with and without a memory of the step before, against a plain tree that lists the pairs of triangles
+// within reach. Processor time per step, median of the steps; mean, p99, contacts, pairs and the ratio as counters. Arguments: Google
+// Benchmark's.
 #include <benchmark/benchmark.h>
 
 #include "blem_sim/contact/narrow_phase.h"
@@ -11,7 +12,7 @@
 namespace blem_sim {
 namespace {
 
-constexpr int STEPS = 200, PLAIN_STEPS = 10;  // the plain tree hardly varies
+constexpr int STEPS = 1000, PLAIN_STEPS = 10;  // the plain tree hardly varies
 
 /** [us] per step, mean; the number of pairs found. */
 std::pair<double, double> plainTime(const ContactScene& scene) {
@@ -25,22 +26,45 @@ std::pair<double, double> plainTime(const ContactScene& scene) {
     for (std::size_t i = 0; i < moving.size(); ++i) {
       const int collider = static_cast<int>(i);
       const double range = scene.moving[i].radius + scene.standing.radius;
-      PlainTree::trianglePairs(*moving[i], standing, scene.pose(collider, step * STEPS / PLAIN_STEPS), range, &pairs);
+      PlainTree::trianglePairs(*moving[i], standing, scene.pose(collider, step * 200 / PLAIN_STEPS), range, &pairs);
       found += pairs.size();
     }
   }
   return {1e6 * (threadSeconds() - start) / PLAIN_STEPS, static_cast<double>(found) / PLAIN_STEPS};
 }
 
-/** One step: contacts of every moving collider, reduced to 50. */
-std::size_t step(const ContactScene& scene, int step, ContactManifold* manifold) {
-  std::size_t contacts = 0;
-  for (std::size_t i = 0; i < scene.moving.size(); ++i) {
-    const Pose X = scene.pose(static_cast<int>(i), step);
-    narrowPhase(scene.moving[i], X, scene.standing, Pose::Identity(), 0, manifold);
-    contacts += manifold->contacts.size();
+/** Contacts of every moving collider in every step. */
+struct Generation {
+  StepTimes times;
+  double mean = 0;      ///< [us]
+  double contacts = 0;  ///< per step, mean
+};
+
+Generation generate(const ContactScene& scene, bool remembers) {
+  std::vector<NarrowPhaseMemory> memories(scene.moving.size());
+  ContactManifold manifold;
+  Generation out;
+  double total = 0;
+  for (int step = -1; step < STEPS; ++step) {  // the first one fills the memory
+    std::vector<Pose> poses;
+    for (std::size_t i = 0; i < scene.moving.size(); ++i) poses.push_back(scene.pose(static_cast<int>(i), step));
+    std::size_t contacts = 0;
+    const double start = threadSeconds();
+    out.times.start();
+    for (std::size_t i = 0; i < scene.moving.size(); ++i) {
+      narrowPhase(scene.moving[i], poses[i], scene.standing, Pose::Identity(), 0, &manifold, nullptr, remembers ? &memories[i] : nullptr);
+      contacts += manifold.contacts.size();
+    }
+    out.times.stop();
+    if (step < 0) {
+      out.times = StepTimes();
+      continue;
+    }
+    total += threadSeconds() - start;
+    out.contacts += static_cast<double>(contacts) / STEPS;
   }
-  return contacts;
+  out.mean = 1e6 * total / STEPS;
+  return out;
 }
 
 void run(benchmark::State& state, std::unique_ptr<ContactScene> (*make)()) {
@@ -50,25 +74,20 @@ void run(benchmark::State& state, std::unique_ptr<ContactScene> (*make)()) {
     return;
   }
   const auto [plain, pairs] = plainTime(*scene);
-  ContactManifold manifold;
-  StepTimes times;
-  double contacts = 0, total = 0;
   for (auto _ : state) {
-    for (int k = 0; k < STEPS; ++k) {
-      const double start = threadSeconds();
-      times.start();
-      contacts += static_cast<double>(step(*scene, k, &manifold));
-      times.stop();
-      total += threadSeconds() - start;
-    }
-    state.SetIterationTime(1e-6 * times.median());
+    const Generation fresh = generate(*scene, false), coherent = generate(*scene, true);
+    state.SetIterationTime(1e-6 * coherent.times.median());
+    state.counters["mean_us"] = coherent.mean;
+    state.counters["p99_us"] = coherent.times.quantile(0.99);
+    state.counters["max_us"] = coherent.times.worst();
+    state.counters["fresh_us"] = fresh.mean;
+    state.counters["plain_us"] = plain;
+    state.counters["plain_over_mean"] = plain / coherent.mean;
+    state.counters["plain_over_fresh"] = plain / fresh.mean;
+    state.counters["p99_over_fresh"] = coherent.times.quantile(0.99) / fresh.mean;
+    state.counters["contacts"] = coherent.contacts;
+    state.counters["pairs"] = pairs;
   }
-  const double mean = 1e6 * total / (STEPS * static_cast<double>(state.iterations()));
-  state.counters["p99_us"] = times.quantile(0.99);
-  state.counters["contacts"] = contacts / (STEPS * static_cast<double>(state.iterations()));
-  state.counters["pairs"] = pairs;
-  state.counters["plain_us"] = plain;
-  state.counters["plain_over_mean"] = plain / mean;
 }
 
 void add(const char* name, std::unique_ptr<ContactScene> (*make)()) {

@@ -13,6 +13,19 @@ target_include_directories(blem_sim_model SYSTEM PRIVATE ${PCL_INCLUDE_DIRS} ${A
 target_link_libraries(blem_sim_model PRIVATE PkgConfig::URDFDOM PkgConfig::CONSOLE_BRIDGE PkgConfig::TINYXML2 assimp fmt::fmt
   ${PCL_COMMON_LIBRARIES} ${PCL_IO_LIBRARIES} ${PCL_FEATURES_LIBRARIES} ${PCL_SEARCH_LIBRARIES} ${PCL_SURFACE_LIBRARIES})
 blem_sim_room(contact blem_sim_geometry)
+
+# The kernels of the contact search, one source for several instruction sets; the fastest that the machine has is chosen when it runs.
+set(kernels ${PROJECT_SOURCE_DIR}/src/contact/kernels)
+target_sources(blem_sim_contact PRIVATE ${kernels}/kernels.cpp ${kernels}/kernels_baseline.cpp)
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  target_sources(blem_sim_contact PRIVATE ${kernels}/kernels_avx2.cpp ${kernels}/kernels_avx512.cpp)
+  set_source_files_properties(${kernels}/kernels_avx2.cpp PROPERTIES COMPILE_OPTIONS "-mavx2")
+  # GCC 12 warns of its own headers there.
+  set_source_files_properties(${kernels}/kernels_avx512.cpp PROPERTIES COMPILE_OPTIONS
+    "-mavx512f;-mavx512dq;-mavx512vl;-mavx512bw;-mprefer-vector-width=512;-Wno-maybe-uninitialized;-Wno-uninitialized")
+  set_source_files_properties(${kernels}/kernels.cpp PROPERTIES COMPILE_DEFINITIONS BLEM_SIM_X86_KERNELS)
+endif()
+
 blem_sim_room(dynamics blem_sim_contact blem_sim_model)
 target_link_libraries(blem_sim_dynamics PRIVATE PkgConfig::ODE PkgConfig::TBB)
 blem_sim_room(sim blem_sim_dynamics)

@@ -2,57 +2,84 @@
 
 #include <algorithm>
 
-#include "blem_sim/geometry/closest_points.h"
 #include "feature_cones.h"
+#include "vectors.h"
 
 namespace blem_sim {
 namespace {
 
-/** How steeply (sine) the face's neighbours over side k rise out of its plane towards `up`, the mesh's frame; negative where they fall. */
-double neighbourSlope(const MeshSide& side, int face, int edge, const Vector3& up) {
-  double slope = -1;
-  for (int i = side.topology.edge_face_begin[edge]; i < side.topology.edge_face_begin[edge + 1]; ++i) {
-    const int neighbour = side.topology.edge_faces[i];
-    if (side.topology.patch[neighbour] == side.topology.patch[face]) continue;
-    slope = std::max(slope, side.topology.inward(side.mesh, edge, neighbour).dot(up));
-  }
-  return slope;
+/** The point of side k of the face that is closest to q; mesh's frame. */
+Vector3 closestOnSide(const MeshSide& side, int face, int k, const Vector3& q) {
+  const Vector3i& e = side.mesh.elements[face];
+  const Vector3 &start = side.mesh.vertices[e[k]], along = side.mesh.vertices[e[(k + 1) % 3]] - start;
+  return start + std::clamp((q - start).dot(along) / along.squaredNorm(), 0.0, 1.0) * along;
 }
 
 }  // namespace
 
-bool fadeOverBorder(const MeshPair& pair, bool vertex_moves, int vertex, const Vector3& p, double height, const ElementShape& face,
-                    double most, BorderFade* out) {
-  const MeshSide &vertex_side = vertex_moves ? pair.moving : pair.fixed, &face_side = vertex_moves ? pair.fixed : pair.moving;
-  const Matrix3 R_FM = pair.X_FM.linear();
-  const Vector3 projection = p - height * face.normal;
-  const Vector3 up = height > 0 ? face.normal : Vector3(-face.normal);
-  const Vector3 face_up = vertex_moves ? up : Vector3(R_FM.transpose() * up);
-  const Vector3 down = vertex_moves ? Vector3(R_FM.transpose() * -up) : Vector3(-up);
-  int borders = 0;  // bits of the sides outside which p projects
+bool BorderFades::find(bool vertex_moves, std::uint32_t vertex, std::uint32_t face, const Vector3& p, double height, double most,
+                       BorderFade* out) {
+  NearFeatures& near = lists_.near[!vertex_moves];
+  const MeshSide& side = pair_.side(!vertex_moves);
+  const kernels::FaceRecord& record = near.faces.records[face];
+  const int element = near.faces.names[face];
+  double outside[3];
+  bool is_outside = false;
   for (int k = 0; k < 3; ++k) {
-    const Vector3 side = face.corners[NEXT[k]] - face.corners[k];
-    const double outside = side.cross(face.normal).dot(projection - face.corners[k]);
-    if (outside <= 0) continue;
-    if (FADE_SLOPE * FADE_SLOPE * outside * outside > most * most * side.squaredNorm()) return false;
-    // Beyond a flat side the plane goes on, and is asked there.
-    if (face_side.topology.edge_flat[face_side.topology.element_edges[face.element][k]]) return false;
-    borders |= 1 << k;
+    outside[k] = record.sides[k].w - vector3(record.sides[k]).dot(p);
+    if (outside[k] <= 0) continue;
+    if (FADE_SLOPE * outside[k] > most) return false;
+    is_outside = true;
   }
-  if (borders == 0) return false;
+  if (!is_outside) return false;
+  const FaceBorders& borders = near.borders(side, face);
+  const Vector3 normal = vector3(record.plane), down = height > 0 ? Vector3(-normal) : normal;
   bool fades = false;
   for (int k = 0; k < 3; ++k) {
-    if (!(borders >> k & 1)) continue;
-    const int border = face_side.topology.element_edges[face.element][k];
-    const double rise = neighbourSlope(face_side, face.element, border, face_up);
-    // A neighbour that rises by little takes over itself.
-    const LeavingVertex leaving{vertex_side, face_side, vertex, border, vertex_moves ? R_FM : Matrix3(R_FM.transpose()), down};
-    fades = fades || rise > NEAR_SUCCESSOR || (rise <= CONE_SLACK && !isTakenOver(leaving));
+    if (outside[k] <= 0) continue;
+    const FaceBorders::Kind kind = borders.kinds[height > 0][k];
+    // Beyond a flat side the plane goes on, and is asked there.
+    if (kind == FaceBorders::FLAT) return false;
+    fades = fades || kind == FaceBorders::RISING ||
+            (kind == FaceBorders::FALLING &&
+             leaves(vertex_moves, vertex, side.topology.element_edges[element][k], down, vector3(record.sides[k])));
   }
   if (!fades) return false;
-  out->foot = closestPointTriangle(projection, {face.corners[0], face.corners[1], face.corners[2]}).point_b;
-  out->lost = FADE_SLOPE * (projection - out->foot).norm();
+  const Vector3 projection = p - height * normal;
+  double nearest2 = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 3; ++k) {
+    if (outside[k] <= 0) continue;
+    const Vector3 foot = closestOnSide(side, element, k, projection);
+    const double distance2 = (projection - foot).squaredNorm();
+    if (distance2 >= nearest2) continue;
+    nearest2 = distance2;
+    out->foot = foot;
+  }
+  out->lost = FADE_SLOPE * std::sqrt(nearest2);
+  out->foot = pair_.placed(out->foot, !vertex_moves);
   return out->lost <= most;
+}
+
+/** Does nothing take over where the vertex leaves over a border behind which the surface falls? isTakenOver in a few products: over such a
+ * border the partner allows the vertex's own contact. @param down, inward face's mesh's frame */
+bool BorderFades::leaves(bool vertex_moves, std::uint32_t vertex, int border, const Vector3& down, const Vector3& inward) {
+  const MeshSide &side = pair_.side(vertex_moves), &partner = pair_.side(!vertex_moves);
+  NearFeatures& near = lists_.near[vertex_moves];
+  const int name = near.vertices.names[vertex];
+  if (side.topology.vertex_straight[name]) return false;
+  const Matrix3 R_PS = vertex_moves ? Matrix3(pair_.X_FM.linear()) : Matrix3(pair_.X_FM.linear().transpose());
+  const Vector3 own_down = R_PS.transpose() * down, own_aside = R_PS.transpose() * inward;
+  bool leads_down = false;
+  const VertexRing ring = near.ring(side, vertex);
+  for (std::uint32_t i = ring.begin; i < ring.end; ++i) {
+    const Vector3 w = vector3(near.ring_directions[i]);
+    const double sine = w.dot(own_down), aside = w.dot(own_aside);
+    if (sine <= CONE_SLACK) continue;
+    leads_down = true;
+    const bool flat = near.ring_directions[i].w != 0;
+    if (!flat && sine <= NEAR_SUCCESSOR * (sine * sine + aside * aside)) return !isTakenOver({side, partner, name, border, R_PS, own_down});
+  }
+  return leads_down;
 }
 
 }  // namespace blem_sim

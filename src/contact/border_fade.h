@@ -1,27 +1,38 @@
 // A vertex that has left a plane over its border, where nothing takes the contact over: it fades instead of vanishing.
 #pragma once
 
-#include "edge_pair.h"
-#include "element_shape.h"
+#include <vector>
+
+#include "candidate_lists.h"
 #include "mesh_pair.h"
 
 namespace blem_sim {
 
-/** Depth lost per distance outside: a contact of depth p is gone p / FADE_SLOPE beyond the border. */
-constexpr double FADE_SLOPE = 2;
-
+/** Where a contact that fades is. */
 struct BorderFade {
   Vector3 foot;  ///< closest point of the face, on its plane's border; frame F
   double lost;   ///< [m] of depth
 };
 
 /**
- * Over a border that is convex an exact successor is there (vertex-edge, edge-edge) unless the vertex's own surface comes closer to the
- * plane away from it; over a concave border there is none.
- * @param p the vertex in frame F @param height of p over the face's plane, by its normal
- * @return false if p projects into the plane, has a successor, or has lost more than `most` [m]
+ * Vertices beside faces, by the records of lists of candidates. Over a border that is convex an exact successor is there (vertex-edge,
+ * edge-edge) unless the vertex's own surface comes closer to the plane away from it; over a concave border there is none.
  */
-bool fadeOverBorder(const MeshPair& pair, bool vertex_moves, int vertex, const Vector3& p, double height, const ElementShape& face,
-                    double most, BorderFade* out);
+class BorderFades {
+ public:
+  BorderFades(const MeshPair& pair, CandidateLists* lists) : pair_(pair), lists_(*lists) {}
+
+  /**
+   * @param vertex, face of the lists @param p the vertex in the face's mesh's frame @param height [m] of p over the face's plane
+   * @return false if p projects into the plane, has a successor, or has lost more than `most` [m]
+   */
+  bool find(bool vertex_moves, std::uint32_t vertex, std::uint32_t face, const Vector3& p, double height, double most, BorderFade* out);
+
+ private:
+  bool leaves(bool vertex_moves, std::uint32_t vertex, int border, const Vector3& down, const Vector3& inward);
+
+  const MeshPair& pair_;
+  CandidateLists& lists_;
+};
 
 }  // namespace blem_sim

@@ -1,9 +1,11 @@
 #include "blem_sim/contact/collider.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "blem_sim/geometry/input_error.h"
+#include "kernels/records.h"
 
 namespace blem_sim {
 namespace {
@@ -39,7 +41,9 @@ SurfaceProperties combineSurfaces(const SurfaceProperties& a, const SurfacePrope
 CollisionGeometry::CollisionGeometry(std::shared_ptr<const TriangleMesh> mesh) : mesh_(std::move(mesh)) {
   if (!mesh_ || mesh_->elements.empty()) throw InputError("collision geometry: the mesh has no element; leave the collider out");
   topology_ = MeshTopology(*mesh_);
-  bvh_ = Bvh(*mesh_);
+  bvh_ = Bvh(*mesh_, kernels::MAX_LEAF_ELEMENTS);
+  static std::atomic<std::uint64_t> last_identity{0};
+  identity_ = ++last_identity;
   findOwners();
   bounds_ = mesh_->bounds();
 }

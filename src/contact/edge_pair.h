@@ -5,16 +5,9 @@
 #include <cmath>
 
 #include "blem_sim/geometry/types.h"
+#include "tolerances.h"
 
 namespace blem_sim {
-
-/** A foot this far [m] beyond the end of its domain still counts: domains overlap, never gape; what is found twice is merged. */
-constexpr double CLOSED = 1e-9;
-/** Edges closer to parallel than this sine have no common perpendicular; their ends speak for them. */
-constexpr double MIN_EDGE_SINE = 1e-8;
-/** An edge-edge normal may point this far (sine) into a face beside either edge: nearly parallel edges blink beyond it (notes on
- * smoothness). */
-constexpr double EDGE_CONE_SLACK = 0.02;
 
 /** Segments p0 p1 and q0 q1 where their lines are closest. */
 struct EdgePair {

@@ -2,11 +2,9 @@
 #pragma once
 
 #include "mesh_pair.h"
+#include "tolerances.h"
 
 namespace blem_sim {
-
-/** Slack of the test that a vertex or an edge is the other's local minimum (sine): rounding. */
-constexpr double CONE_SLACK = 1e-6;
 
 /** Does the surface at the vertex lead nowhere along `direction`? No edge there has a larger part of it than `slack` (sine).
  *  @param direction unit, the mesh's frame, towards the other mesh */

@@ -1,16 +1,15 @@
 #include "merge_contacts.h"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
-
-#include "contact_order.h"
 
 namespace blem_sim {
 namespace {
 
 /** Of one id the one to keep comes first; total. */
 bool keptBefore(const Contact& a, const Contact& b) {
-  const auto key = [](const Contact& c) { return std::make_tuple(c.id, !c.pierced, -c.depth, c.point.x(), c.point.y(), c.point.z()); };
+  const auto key = [](const Contact& c) { return std::make_tuple(!c.pierced, -c.depth, c.point.x(), c.point.y(), c.point.z()); };
   return key(a) < key(b);
 }
 
@@ -19,57 +18,98 @@ bool coincide(const Contact& a, const Contact& b) {
          (a.normal_BA - b.normal_BA).squaredNorm() <= MERGE_SINE * MERGE_SINE;
 }
 
-/** Contacts along UNCOMMON_DIRECTION, so that few share a place on it. */
-class PlaceOrder {
+/** Contacts by the cell of space that they lie in. */
+class Cells {
  public:
-  explicit PlaceOrder(const std::vector<Contact>& contacts) {
-    places_.reserve(contacts.size());
-    for (std::size_t i = 0; i < contacts.size(); ++i) places_.emplace_back(UNCOMMON_DIRECTION.dot(contacts[i].point), i);
-    std::sort(places_.begin(), places_.end());
-    rank_.resize(contacts.size());
-    for (std::size_t i = 0; i < places_.size(); ++i) rank_[places_[i].second] = i;
+  explicit Cells(std::size_t contacts) {
+    std::size_t size = 16;
+    while (size < 2 * contacts) size *= 2;
+    heads_.assign(size, NONE);
+    next_.reserve(contacts);
   }
 
-  /** Calls visit(j) for every other contact that may be within MERGE_DISTANCE of i. */
+  void add(const Vector3& point) {
+    std::uint32_t& head = heads_[slot(cell(point, Vector3::Zero()))];
+    next_.push_back(head);
+    head = static_cast<std::uint32_t>(next_.size()) - 1;
+  }
+
+  /** Calls visit(index) for every contact within MERGE_DISTANCE of the point, and others, until it returns true. */
   template <typename Visit>
-  void visitNear(std::size_t i, Visit&& visit) const {
-    const std::size_t rank = rank_[i];
-    const double place = places_[rank].first;
-    for (std::size_t r = rank; r-- > 0 && place - places_[r].first <= MERGE_DISTANCE;) visit(places_[r].second);
-    for (std::size_t r = rank + 1; r < places_.size() && places_[r].first - place <= MERGE_DISTANCE; ++r) visit(places_[r].second);
+  void visitNear(const Vector3& point, Visit&& visit) const {
+    const Eigen::Matrix<std::int64_t, 3, 1> low = cell(point, Vector3::Constant(-MERGE_DISTANCE)),
+                                            high = cell(point, Vector3::Constant(MERGE_DISTANCE));
+    for (std::int64_t x = low.x(); x <= high.x(); ++x) {
+      for (std::int64_t y = low.y(); y <= high.y(); ++y) {
+        for (std::int64_t z = low.z(); z <= high.z(); ++z) {
+          for (std::uint32_t i = heads_[slot({x, y, z})]; i != NONE; i = next_[i])
+            if (visit(i)) return;
+        }
+      }
+    }
   }
 
  private:
-  std::vector<std::pair<double, std::size_t>> places_;
-  std::vector<std::size_t> rank_;
+  static constexpr std::uint32_t NONE = 0xFFFFFFFF;
+  static constexpr double SIZE = 64 * MERGE_DISTANCE;  // few points are that near a border
+
+  static Eigen::Matrix<std::int64_t, 3, 1> cell(const Vector3& point, const Vector3& offset) {
+    return ((point + offset) / SIZE).array().floor().cast<std::int64_t>();
+  }
+  std::size_t slot(const Eigen::Matrix<std::int64_t, 3, 1>& cell) const {
+    const std::uint64_t mixed = static_cast<std::uint64_t>(cell.x()) * 0x9E3779B97F4A7C15u +
+                                static_cast<std::uint64_t>(cell.y()) * 0xC2B2AE3D27D4EB4Fu +
+                                static_cast<std::uint64_t>(cell.z()) * 0x165667B19E3779F9u;
+    return (mixed ^ mixed >> 32) & (heads_.size() - 1);
+  }
+
+  std::vector<std::uint32_t> heads_, next_;
 };
+
+/** Of every id the best, sorted by id. */
+std::vector<Contact> bestOfEachId(const std::vector<Contact>& contacts) {
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
+  order.reserve(contacts.size());
+  for (std::size_t i = 0; i < contacts.size(); ++i) order.emplace_back(contacts[i].id, i);
+  std::sort(order.begin(), order.end());
+  std::vector<Contact> best;
+  best.reserve(contacts.size());
+  for (const auto& [id, i] : order) {
+    if (best.empty() || best.back().id != id) {
+      best.push_back(contacts[i]);
+    } else if (keptBefore(contacts[i], best.back())) {
+      best.back() = contacts[i];
+    }
+  }
+  return best;
+}
 
 }  // namespace
 
 void mergeContacts(std::vector<Contact>* contacts) {
-  std::sort(contacts->begin(), contacts->end(), keptBefore);
-  const auto same_id = [](const Contact& a, const Contact& b) { return a.id == b.id; };
-  contacts->erase(std::unique(contacts->begin(), contacts->end(), same_id), contacts->end());
-
-  const PlaceOrder order(*contacts);
-  std::vector<char> absorbed(contacts->size(), false);
-  std::vector<Contact> merged;
-  merged.reserve(contacts->size());
-  for (std::size_t i = 0; i < contacts->size(); ++i) {
-    if (absorbed[i]) continue;
-    const Contact& first = (*contacts)[i];
-    std::size_t deepest = i;
-    order.visitNear(i, [&](std::size_t j) {
-      const Contact& other = (*contacts)[j];
-      if (j < i || absorbed[j] || !coincide(first, other)) return;
-      absorbed[j] = true;
-      const Contact& best = (*contacts)[deepest];
-      if (std::make_pair(-other.depth, other.id) < std::make_pair(-best.depth, best.id)) deepest = j;
+  const std::vector<Contact> sorted = bestOfEachId(*contacts);
+  contacts->clear();
+  Cells cells(sorted.size());
+  std::vector<Vector3> firsts;  // places of the contacts that each of the merged ones began with
+  for (const Contact& contact : sorted) {
+    bool merged = false;
+    cells.visitNear(contact.point, [&](std::uint32_t i) {
+      Contact& other = (*contacts)[i];
+      Contact first = other;
+      first.point = firsts[i];
+      if (!coincide(first, contact)) return false;
+      if (contact.depth > other.depth) {
+        const std::uint64_t id = other.id;
+        other = contact;
+        other.id = id;
+      }
+      return merged = true;
     });
-    merged.push_back((*contacts)[deepest]);
-    merged.back().id = first.id;
+    if (merged) continue;
+    cells.add(contact.point);
+    firsts.push_back(contact.point);
+    contacts->push_back(contact);
   }
-  contacts->swap(merged);
 }
 
 }  // namespace blem_sim

@@ -3,12 +3,9 @@
 #include <vector>
 
 #include "blem_sim/contact/manifold.h"
+#include "tolerances.h"
 
 namespace blem_sim {
-
-/** Contacts closer than this [m] with normals within this sine are one. */
-constexpr double MERGE_DISTANCE = 0.2e-6;
-constexpr double MERGE_SINE = 1e-3;
 
 /**
  * Sorts by id; contacts of one id, and contacts at one place with one normal, become the deepest of them under their smallest id.

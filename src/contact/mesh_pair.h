@@ -28,23 +28,32 @@ inline std::uint64_t contactId(const Feature& a, const Feature& b) {
 /** One mesh of a pair. */
 struct MeshSide {
   explicit MeshSide(const CollisionGeometry& geometry)
-      : mesh(geometry.mesh()), topology(geometry.topology()), bvh(geometry.bvh()), owners(geometry.owners()), bounds(geometry.bounds()) {}
+      : mesh(geometry.mesh()),
+        topology(geometry.topology()),
+        bvh(geometry.bvh()),
+        owners(geometry.owners()),
+        bounds(geometry.bounds()),
+        identity(geometry.identity()) {}
   const TriangleMesh& mesh;
   const MeshTopology& topology;
   const Bvh& bvh;
   const std::vector<std::uint8_t>& owners;
   const Box& bounds;
+  std::uint64_t identity;  ///< of the geometry, its own for as long as the program runs
 };
 
-/**
- * The moving mesh M is seen from the frame F of the other, fixed one: near the geometry wherever the pair is in the world. M is the mesh
- * with fewer elements, whose vertices are turned; F's are used as they lie in memory.
- */
+/** The moving mesh M, the one with fewer elements, is seen from the frame F of the other, fixed one: near the geometry wherever the pair is
+ * in the world. */
 struct MeshPair {
   MeshSide moving, fixed;
   Pose X_FM;
   double layer;  ///< [m] rA + rB
   double range;  ///< [m] contacts within this distance of the bare meshes: layer + margin
+
+  const MeshSide& side(bool moves) const { return moves ? moving : fixed; }
+  /** Direction and point of either mesh in frame F. */
+  Vector3 turned(const Vector3& direction, bool of_moving) const { return of_moving ? Vector3(X_FM.linear() * direction) : direction; }
+  Vector3 placed(const Vector3& p, bool of_moving) const { return of_moving ? Vector3(X_FM * p) : p; }
 };
 
 /** A contact in frame F; its normal points from the fixed mesh to the moving one. */
@@ -55,8 +64,5 @@ struct FeatureContact {
   double gap;                ///< [m] distance of the witness points; negative where pierced
   bool pierced = false;
 };
-
-/** Bare meshes closer than this [m] touch: the direction between their points is rounding, and comes from their neighbourhoods instead. */
-constexpr double TOUCH = 1e-9;
 
 }  // namespace blem_sim

@@ -1,9 +1,9 @@
 #include "blem_sim/contact/narrow_phase.h"
 
 #include "blem_sim/geometry/bvh_traversal.h"
+#include "contact_search.h"
 #include "merge_contacts.h"
 #include "retraction.h"
-#include "simplex_search.h"
 
 namespace blem_sim {
 namespace {
@@ -31,32 +31,46 @@ struct Roles {
   }
 };
 
+/** What a thread's searches work in. */
+struct Buffers {
+  ContactSearchBuffers search;
+  FoundContacts found;
+  std::vector<Contact> close;
+};
+
+void convert(const std::vector<FeatureContact>& found, const Roles& roles, const Pose& X_WF, std::vector<Contact>* out) {
+  for (const FeatureContact& c : found) {
+    Contact contact = roles.contact(c.moving, c.fixed, c.point_M, c.point_F, c.normal, c.gap);
+    contact.point = X_WF * contact.point;
+    contact.normal_BA = X_WF.linear() * contact.normal_BA;
+    contact.pierced = c.pierced;
+    out->push_back(contact);
+  }
+}
+
 void meshMesh(const Collider& a, const Pose& X_WA, const Collider& b, const Pose& X_WB, double range, const Pose* X_AB_apart,
-              ContactManifold* out) {
+              ContactSearchMemory* memory, ContactManifold* out) {
   const bool a_moves = a.geometry->mesh().elements.size() <= b.geometry->mesh().elements.size();
   const Pose &X_WM = a_moves ? X_WA : X_WB, &X_WF = a_moves ? X_WB : X_WA;
   const MeshPair pair{MeshSide(a_moves ? *a.geometry : *b.geometry), MeshSide(a_moves ? *b.geometry : *a.geometry), X_WF.inverse() * X_WM,
                       a.radius + b.radius, range};
-  // Only its memory outlives a call.
-  thread_local SearchBuffers buffers;
-  searchSimplexPairs(pair, &buffers);
-  out->pierced = !buffers.crossings.empty();
+  thread_local Buffers buffers;
+  FoundContacts& found = buffers.found;
+  searchContacts(pair, memory, &buffers.search, &found);
+  out->pierced = !found.crossings.empty();
   if (out->pierced) {
+    found.close.insert(found.close.end(), found.plain.begin(), found.plain.end());
+    found.plain.clear();
     Pose X_FM_apart;
     if (X_AB_apart) X_FM_apart = a_moves ? X_AB_apart->inverse() : *X_AB_apart;
-    addRetractions(pair, X_AB_apart ? &X_FM_apart : nullptr, buffers.crossings, &buffers.contacts);
+    addRetractions(pair, X_AB_apart ? &X_FM_apart : nullptr, found.crossings, &found.close);
   }
-
   const Roles roles{a_moves, a.radius, b.radius};
-  for (const FeatureContact& c : buffers.contacts) {
-    out->contacts.push_back(roles.contact(c.moving, c.fixed, c.point_M, c.point_F, c.normal, c.gap));
-    out->contacts.back().pierced = c.pierced;
-  }
-  mergeContacts(&out->contacts);
-  for (Contact& contact : out->contacts) {
-    contact.point = X_WF * contact.point;
-    contact.normal_BA = X_WF.linear() * contact.normal_BA;
-  }
+  convert(found.plain, roles, X_WF, &out->contacts);
+  buffers.close.clear();
+  convert(found.close, roles, X_WF, &buffers.close);
+  mergeContacts(&buffers.close);
+  out->contacts.insert(out->contacts.end(), buffers.close.begin(), buffers.close.end());
 }
 
 /** Vertices of the mesh near or below the plane; however deep, each knows its way out. */
@@ -90,8 +104,17 @@ void meshHalfSpace(const Collider& mesh, const Pose& X_WM, const Collider& half_
 
 }  // namespace
 
+struct NarrowPhaseMemory::Impl {
+  ContactSearchMemory search;
+};
+
+NarrowPhaseMemory::NarrowPhaseMemory() : impl_(std::make_unique<Impl>()) {}
+NarrowPhaseMemory::~NarrowPhaseMemory() = default;
+NarrowPhaseMemory::NarrowPhaseMemory(NarrowPhaseMemory&&) noexcept = default;
+NarrowPhaseMemory& NarrowPhaseMemory::operator=(NarrowPhaseMemory&&) noexcept = default;
+
 void narrowPhase(const Collider& a, const Pose& X_WA, const Collider& b, const Pose& X_WB, double margin, ContactManifold* out,
-                 const Pose* X_AB_apart) {
+                 const Pose* X_AB_apart, NarrowPhaseMemory* memory) {
   out->layer = a.radius + b.radius;
   out->pierced = false;
   out->contacts.clear();
@@ -102,7 +125,7 @@ void narrowPhase(const Collider& a, const Pose& X_WA, const Collider& b, const P
   } else if (a.geometry->isHalfSpace()) {
     meshHalfSpace(b, X_WB, a, X_WA, range, {false, a.radius, b.radius}, out);
   } else {
-    meshMesh(a, X_WA, b, X_WB, range, X_AB_apart, out);
+    meshMesh(a, X_WA, b, X_WB, range, X_AB_apart, memory ? &memory->impl_->search : nullptr, out);
   }
 }
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "simplex_search.h"
+#include "edge_crossing.h"
 
 namespace blem_sim {
 

@@ -39,6 +39,8 @@ class CollisionGeometry {
   const Bvh& bvh() const { return bvh_; }
   /** Per node of the tree: does an element below it own a vertex or an edge? Two that own nothing have no contact. */
   const std::vector<std::uint8_t>& owners() const { return owners_; }
+  /** A number that no other geometry of this run has; 0 for a half-space. */
+  std::uint64_t identity() const { return identity_; }
   const Box& bounds() const { return bounds_; }  ///< [m], geometry frame; unbounded below for a half-space
   const Vector3& planeNormal() const { return normal_; }
   double planeOffset() const { return offset_; }
@@ -51,6 +53,7 @@ class CollisionGeometry {
   MeshTopology topology_;
   Bvh bvh_;
   std::vector<std::uint8_t> owners_;
+  std::uint64_t identity_ = 0;
   Box bounds_;
   Vector3 normal_ = Vector3::UnitZ();
   double offset_ = 0;

@@ -1,0 +1,100 @@
+// Which features of two meshes may have a contact: found by their trees, good for as long as nothing has moved by more than a margin.
+#pragma once
+
+#include <vector>
+
+#include "kernels/kernels.h"
+#include "leaf_features.h"
+#include "mesh_pair.h"
+
+namespace blem_sim {
+
+/** Records of some features of a mesh, in its own frame, and their names in it. */
+template <typename Record>
+struct FeatureRecords {
+  std::vector<Record> records;
+  std::vector<int> names;
+
+  std::uint32_t add(const Record& record, int name) {
+    records.push_back(record);
+    names.push_back(name);
+    return static_cast<std::uint32_t>(names.size()) - 1;
+  }
+  void clear() {
+    records.clear();
+    names.clear();
+  }
+};
+
+/** What lies behind the sides of a face, seen from above its plane [1] and from below [0]. */
+struct FaceBorders {
+  enum Kind : std::uint8_t {
+    UNKNOWN,
+    FLAT,     ///< the plane goes on
+    FALLING,  ///< nothing rises out of the plane
+    TURNING,  ///< something rises by so little that it takes a contact over that leaves
+    RISING
+  };
+  Kind kinds[2][3] = {{UNKNOWN}};
+};
+
+/** Directions of the edges at a vertex: a run of NearFeatures::ring_directions. */
+struct VertexRing {
+  std::uint32_t begin = 0, end = 0;
+};
+
+/** The features of one mesh that appear in candidates. */
+struct NearFeatures {
+  FeatureRecords<kernels::Vec4> vertices;
+  FeatureRecords<kernels::EdgeRecord> edges;
+  FeatureRecords<kernels::FaceRecord> faces;
+
+  /** What few candidates ask for, worked out when the first one does. @param side the mesh */
+  const FaceBorders& borders(const MeshSide& side, std::uint32_t face);
+  const VertexRing& ring(const MeshSide& side, std::uint32_t vertex);
+  std::vector<kernels::Vec4> ring_directions;  ///< unit, mesh's frame; w: 1 if the edge is flat
+
+  void clear();
+
+ private:
+  std::vector<FaceBorders> borders_;
+  std::vector<VertexRing> rings_;
+};
+
+/** Pairs of features, in an order that the meshes alone decide. An index [moves] tells whether the feature named first is the moving
+ * mesh's; Candidate::a is that one's. */
+struct CandidateLists {
+  using Candidates = std::vector<kernels::Candidate>;
+  NearFeatures near[2];  ///< [1] of the moving mesh, [0] of the fixed one
+  Candidates vertex_face[2], vertex_edge[2], edge_face[2];
+  Candidates edge_edge, vertex_vertex;  ///< a is the moving mesh's
+
+  void clear();
+};
+
+/** The features of lists in the other mesh's frame. */
+struct TurnedFeatures {
+  std::vector<kernels::Vec4> vertices[2];
+  std::vector<kernels::EdgeRecord> edges[2];
+
+  /** The moving mesh's vertices and edges, the fixed one's as asked. @param X_FM of the pair */
+  void turn(const CandidateLists& lists, const Pose& X_FM);
+};
+
+/** What a search for candidates works in. */
+struct CandidateSearchBuffers {
+  LeafMemory leaves;
+  kernels::LeafHits hits;
+  std::uint64_t searches = 0;
+};
+
+/**
+ * Candidates for every contact within pair.range that there is at the pair's pose, or at one where no point of either mesh near the other
+ * has moved by more than `margin` [m] against it. Overwrites all lists but edge_face, which it clears.
+ */
+void findContactCandidates(const MeshPair& pair, double margin, CandidateSearchBuffers* buffers, CandidateLists* lists);
+
+/** The same for edges that pass through faces: fills edge_face, clears the others. */
+void findCrossingCandidates(const MeshPair& pair, double margin, CandidateSearchBuffers* buffers, CandidateLists* lists);
+
+}  // namespace blem_sim

@@ -1,0 +1,267 @@
+#include "contact_search.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "border_fade.h"
+#include "exact_tests.h"
+#include "vectors.h"
+
+namespace blem_sim {
+namespace {
+
+using kernels::Candidate;
+using kernels::Vec4;
+
+// A list is made for so many steps of the present motion: longer ones cost more in every step, shorter ones are made anew too often.
+constexpr double MARGIN_STEPS = 16, FEWEST_STEPS = 3;
+constexpr double LEAST_MARGIN = 0.02, MOST_MARGIN = 0.4;  // of the range
+constexpr double FIRST_MARGIN = 0.1;                      // of the range, where the motion is not known yet
+/** What a distance may be wrong by [m]: float boxes, rounding. */
+constexpr double DISTANCE_ROUNDING = 1e-7;
+
+/** What of the moving mesh's frame is near the fixed mesh: its box there, where the other's box is, both wider by the range. */
+Box commonRegion(const MeshPair& pair) {
+  const Pose X_MF = pair.X_FM.inverse();
+  const Box& fixed = pair.fixed.bounds;
+  const Vector3 half = X_MF.linear().cwiseAbs() * (0.5 * fixed.sizes()) + Vector3::Constant(2 * pair.range), centre = X_MF * fixed.center();
+  const Vector3 wider = Vector3::Constant(pair.range);
+  return Box(centre - half, centre + half).intersection(Box(pair.moving.bounds.min() - wider, pair.moving.bounds.max() + wider));
+}
+
+/** How far [m] a point of the region moves at most from one pose to the other: a convex function of place. */
+double largestMotion(const Box& region, const Pose& X, const Pose& Y) {
+  if (region.isEmpty()) return 0;
+  const Matrix3 turn = X.linear() - Y.linear();
+  const Vector3 shift = X.translation() - Y.translation();
+  double largest2 = 0;
+  for (int corner = 0; corner < 8; ++corner)
+    largest2 = std::max(largest2, (turn * region.corner(static_cast<Box::CornerType>(corner)) + shift).squaredNorm());
+  return std::sqrt(largest2);
+}
+
+/** Turns candidates into contacts. */
+class Evaluation {
+ public:
+  Evaluation(const MeshPair& pair, CandidateLists* lists, ContactSearchBuffers* buffers, FoundContacts* found)
+      : pair_(pair), lists_(*lists), buffers_(*buffers), found_(*found), exact_(pair, &found->close), fades_(pair, lists) {
+    buffers_.turned.turn(*lists, pair.X_FM);
+  }
+
+  void findContacts() {
+    const auto& vertices = buffers_.turned.vertices;
+    const auto& edges = buffers_.turned.edges;
+    for (const bool moves : {true, false}) {
+      vertexFaces(moves);
+      vertexEdges(moves, moves ? vertices[1].data() : lists_.near[0].vertices.records.data(),
+                  moves ? lists_.near[0].edges.records.data() : edges[1].data());
+    }
+    edgeEdges(edges[1].data(), lists_.near[0].edges.records.data());
+    vertexVertices(vertices[1].data(), lists_.near[0].vertices.records.data());
+  }
+
+  void findCrossings() {
+    for (const bool moves : {true, false}) {
+      const std::vector<Candidate>& candidates = lists_.edge_face[moves];
+      const auto& edges = lists_.near[moves].edges;
+      const auto& turned = buffers_.turned.edges[moves];
+      const auto& faces = lists_.near[!moves].faces;
+      forEachHit(candidates,
+                 kernels::kernels().edgeFaces(turned.data(), faces.records.data(), candidates.data(), candidates.size(), room(candidates)),
+                 [&](const Candidate& c) {
+                   const Crossing crossing{moves, edges.names[c.a], faces.names[c.b]};
+                   if (crosses(pair_, crossing)) found_.crossings.push_back(crossing);
+                 });
+    }
+  }
+
+ private:
+  std::uint32_t* room(const std::vector<Candidate>& candidates) {
+    buffers_.hits.resize(std::max(buffers_.hits.size(), candidates.size()));
+    return buffers_.hits.data();
+  }
+
+  template <typename Visit>
+  void forEachHit(const std::vector<Candidate>& candidates, std::uint32_t count, Visit&& visit) const {
+    for (std::uint32_t i = 0; i < count; ++i) visit(candidates[buffers_.hits[i]]);
+  }
+
+  void vertexFaces(bool moves) {
+    const std::vector<Candidate>& candidates = lists_.vertex_face[moves];
+    const auto& vertices = lists_.near[moves].vertices;
+    const auto& faces = lists_.near[!moves].faces;
+    auto& hits = buffers_.vertex_faces;
+    hits.resize(std::max(hits.size(), candidates.size()));
+    const std::uint32_t count = kernels::kernels().vertexFaces(buffers_.turned.vertices[moves].data(), faces.records.data(),
+                                                               candidates.data(), candidates.size(), pair_.range, hits.data());
+    const std::vector<int>& patches = pair_.side(!moves).topology.patch;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const kernels::VertexFaceHit& hit = hits[i];
+      const Candidate& c = candidates[hit.candidate];
+      if (!hit.is_plain) {
+        if (hit.is_beside || !exact_.vertexFace(moves, vertices.names[c.a], faces.names[c.b])) addFading(moves, c, hit.height);
+        continue;
+      }
+      const Feature vertex{FeatureKind::VERTEX, vertices.names[c.a]}, patch{FeatureKind::FACE, patches[faces.names[c.b]]};
+      const Vector3 p = vector3(moves ? buffers_.turned.vertices[1][c.a] : vertices.records[c.a]);
+      const Vector3 up = pair_.turned(vector3(faces.records[c.b].plane), !moves), foot = p - hit.height * up;
+      const Vector3 normal = (hit.height > 0) == moves ? up : Vector3(-up);
+      std::vector<FeatureContact>& out = hit.near_border ? found_.close : found_.plain;
+      if (moves) {
+        out.push_back({vertex, patch, p, foot, normal, std::abs(hit.height)});
+      } else {
+        out.push_back({patch, vertex, foot, p, normal, std::abs(hit.height)});
+      }
+    }
+  }
+
+  void addFading(bool moves, const Candidate& c, double height) {
+    BorderFade fade;
+    const double most = pair_.range - std::abs(height);
+    if (!fades_.find(moves, c.a, c.b, vector3(buffers_.turned.vertices[moves][c.a]), height, most, &fade)) return;
+    const Vector3 p = vector3(moves ? buffers_.turned.vertices[1][c.a] : lists_.near[0].vertices.records[c.a]);
+    const Vector3 d = moves ? Vector3(p - fade.foot) : Vector3(fade.foot - p);
+    const double distance = d.norm(), gap = distance + fade.lost;
+    if (distance <= TOUCH || gap > pair_.range) return;
+    const Feature vertex{FeatureKind::VERTEX, lists_.near[moves].vertices.names[c.a]},
+        patch{FeatureKind::FACE, pair_.side(!moves).topology.patch[lists_.near[!moves].faces.names[c.b]]};
+    if (moves) {
+      found_.close.push_back({vertex, patch, p, fade.foot, d / distance, gap});
+    } else {
+      found_.close.push_back({patch, vertex, fade.foot, p, d / distance, gap});
+    }
+  }
+
+  void edgeEdges(const kernels::EdgeRecord* moving, const kernels::EdgeRecord* fixed) {
+    const std::vector<Candidate>& candidates = lists_.edge_edge;
+    auto& hits = buffers_.edge_edges;
+    hits.resize(std::max(hits.size(), candidates.size()));
+    const std::uint32_t count = kernels::kernels().edgeEdges(moving, fixed, candidates.data(), candidates.size(), pair_.range, hits.data());
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const kernels::EdgeEdgeHit& hit = hits[i];
+      const Candidate& c = candidates[hit.candidate];
+      const int m = lists_.near[1].edges.names[c.a], f = lists_.near[0].edges.names[c.b];
+      if (!hit.is_plain) {
+        exact_.edgeEdge(m, f);
+        continue;
+      }
+      const auto foot = [](const kernels::EdgeRecord& edge, double part) {
+        return Vector3(vector3(edge.start) + part * vector3(edge.along));
+      };
+      (hit.near_border ? found_.close : found_.plain)
+          .push_back({{FeatureKind::EDGE, m},
+                      {FeatureKind::EDGE, f},
+                      foot(moving[c.a], hit.part_a),
+                      foot(fixed[c.b], hit.part_b),
+                      Vector3(hit.normal[0], hit.normal[1], hit.normal[2]),
+                      hit.gap});
+    }
+  }
+
+  void vertexEdges(bool moves, const Vec4* vertices, const kernels::EdgeRecord* edges) {
+    const std::vector<Candidate>& candidates = lists_.vertex_edge[moves];
+    forEachHit(candidates,
+               kernels::kernels().vertexEdges(vertices, edges, candidates.data(), candidates.size(), pair_.range, room(candidates)),
+               [&](const Candidate& c) {
+                 exact_.vertexEdge(moves, lists_.near[moves].vertices.names[c.a], lists_.near[!moves].edges.names[c.b]);
+               });
+  }
+
+  void vertexVertices(const Vec4* moving, const Vec4* fixed) {
+    const std::vector<Candidate>& candidates = lists_.vertex_vertex;
+    forEachHit(candidates,
+               kernels::kernels().vertexVertices(moving, fixed, candidates.data(), candidates.size(), pair_.range, room(candidates)),
+               [&](const Candidate& c) { exact_.vertexVertex(lists_.near[1].vertices.names[c.a], lists_.near[0].vertices.names[c.b]); });
+  }
+
+  const MeshPair& pair_;
+  CandidateLists& lists_;
+  ContactSearchBuffers& buffers_;
+  FoundContacts& found_;
+  ExactTests exact_;
+  BorderFades fades_;
+};
+
+/** One search with what is known. */
+class ContactSearch {
+ public:
+  ContactSearch(const MeshPair& pair, ContactSearchMemory* memory, ContactSearchBuffers* buffers, FoundContacts* found)
+      : pair_(pair), memory_(*memory), buffers_(*buffers), found_(*found), region_(commonRegion(pair)) {
+    if (memory->moving != pair.moving.identity || memory->fixed != pair.fixed.identity) forget();
+    motion_ = memory_.visited ? largestMotion(region_, pair.X_FM, memory_.X_FM) : 0;
+  }
+
+  void run(bool keeps) {
+    const bool apart = memory_.visited && motion_ + DISTANCE_ROUNDING < memory_.distance;
+    const double margin = keeps ? chooseMargin() : 0;
+    refresh(pair_.range, margin, findContactCandidates, &memory_.contacts);
+    Evaluation(pair_, &memory_.contacts.lists, &buffers_, &found_).findContacts();
+    if (!apart) {
+      refresh(0, margin, findCrossingCandidates, &memory_.crossings);
+      Evaluation(pair_, &memory_.crossings.lists, &buffers_, &found_).findCrossings();
+    }
+    memory_.visited = keeps;
+    memory_.X_FM = pair_.X_FM;
+    memory_.distance = found_.crossings.empty() ? leastGap() : 0;
+  }
+
+ private:
+  void forget() {
+    memory_.contacts.known = memory_.crossings.known = memory_.visited = false;
+    memory_.moving = pair_.moving.identity;
+    memory_.fixed = pair_.fixed.identity;
+  }
+
+  double chooseMargin() const {
+    if (!memory_.visited) return FIRST_MARGIN * pair_.range;
+    if (FEWEST_STEPS * motion_ > MOST_MARGIN * pair_.range) return 0;
+    return std::clamp(MARGIN_STEPS * motion_, LEAST_MARGIN * pair_.range, MOST_MARGIN * pair_.range);
+  }
+
+  template <typename Find>
+  void refresh(double range, double margin, Find&& find, KnownCandidates* known) {
+    if (known->known) {
+      const double motion = largestMotion(region_, pair_.X_FM, known->X_FM);
+      if (motion <= known->margin && range + motion <= known->range + known->margin) return;
+    }
+    find(pair_, margin, &buffers_.search, &known->lists);
+    known->known = true;
+    known->X_FM = pair_.X_FM;
+    known->range = range;
+    known->margin = margin;
+  }
+
+  double leastGap() const {
+    double least = pair_.range;
+    for (const FeatureContact& c : found_.plain) least = std::min(least, c.gap);
+    for (const FeatureContact& c : found_.close) least = std::min(least, c.gap);
+    return least;
+  }
+
+  const MeshPair& pair_;
+  ContactSearchMemory& memory_;
+  ContactSearchBuffers& buffers_;
+  FoundContacts& found_;
+  const Box region_;
+  double motion_ = 0;  // [m] since the last search
+};
+
+}  // namespace
+
+void FoundContacts::clear() {
+  plain.clear();
+  close.clear();
+  crossings.clear();
+}
+
+void searchContacts(const MeshPair& pair, ContactSearchMemory* memory, ContactSearchBuffers* buffers, FoundContacts* found) {
+  found->clear();
+  if (!memory) {
+    buffers->unknown.moving = 0;
+    ContactSearch(pair, &buffers->unknown, buffers, found).run(false);
+  } else {
+    ContactSearch(pair, memory, buffers, found).run(true);
+  }
+}
+
+}  // namespace blem_sim

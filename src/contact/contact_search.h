@@ -1,0 +1,55 @@
+// The contacts of two meshes, from lists of candidates that are kept while they are good.
+#pragma once
+
+#include <vector>
+
+#include "candidate_lists.h"
+#include "edge_crossing.h"
+#include "mesh_pair.h"
+
+namespace blem_sim {
+
+/** What a search finds. */
+struct FoundContacts {
+  std::vector<FeatureContact> plain;  ///< each in a place of its own
+  std::vector<FeatureContact> close;  ///< some may be in one place, or have one name
+  std::vector<Crossing> crossings;
+
+  void clear();
+};
+
+/** Lists that are good while no point near the other mesh has moved by more than the margin from where the pair was. */
+struct KnownCandidates {
+  CandidateLists lists;
+  bool known = false;
+  Pose X_FM = Pose::Identity();
+  double range = 0, margin = 0;  ///< [m]
+};
+
+/** What is kept of a pair of meshes from search to search; it saves time and changes no result. */
+struct ContactSearchMemory {
+  std::uint64_t moving = 0, fixed = 0;  ///< whose
+  KnownCandidates contacts, crossings;
+  bool visited = false;
+  Pose X_FM = Pose::Identity();  ///< at the last search
+  double distance = 0;           ///< [m] of the meshes then, at least; 0 if they crossed
+};
+
+/** What searches of one thread work in. */
+struct ContactSearchBuffers {
+  CandidateSearchBuffers search;
+  TurnedFeatures turned;
+  std::vector<kernels::VertexFaceHit> vertex_faces;
+  std::vector<kernels::EdgeEdgeHit> edge_edges;
+  std::vector<std::uint32_t> hits;
+  ContactSearchMemory unknown;  ///< for searches without a memory
+};
+
+/**
+ * Finds the contacts of two meshes: every pair of simplices, each asked once by its two owners. Complete: see narrow_phase.h. The result
+ * depends on the pair alone.
+ * @param memory of this pair; null: everything is searched anew
+ */
+void searchContacts(const MeshPair& pair, ContactSearchMemory* memory, ContactSearchBuffers* buffers, FoundContacts* found);
+
+}  // namespace blem_sim

@@ -1,0 +1,21 @@
+// Bare meshes that cross.
+#pragma once
+
+#include "mesh_pair.h"
+
+namespace blem_sim {
+
+/** An edge of one mesh passes through a face of the other. */
+struct Crossing {
+  bool edge_of_moving;
+  int edge;
+  int face;  ///< element
+};
+
+/**
+ * Does the edge pass through the face? What only touches it, or only grazes a border, is an ordinary contact.
+ * Precondition: its ends are on different sides of the face's plane, neither within TOUCH of it.
+ */
+bool crosses(const MeshPair& pair, const Crossing& crossing);
+
+}  // namespace blem_sim

@@ -1,0 +1,141 @@
+#include "exact_tests.h"
+
+#include <algorithm>
+
+#include "edge_pair.h"
+#include "face_borders.h"
+#include "feature_cones.h"
+
+namespace blem_sim {
+
+void ExactTests::add(bool first_moves, const Feature& first, const Feature& second, const Vector3& point_first, const Vector3& point_second,
+                     const Vector3& normal, double gap) {
+  if (first_moves) {
+    contacts_.push_back({first, second, point_first, point_second, normal, gap});
+  } else {
+    contacts_.push_back({second, first, point_second, point_first, normal, gap});
+  }
+}
+
+// ---- a vertex over a face
+
+bool ExactTests::vertexFace(bool vertex_moves, int name, int element) {
+  const FaceShape face = faceShape(pair_, !vertex_moves, element);
+  const Vector3 p = position(vertex_moves, name);
+  const double height = face.normal.dot(p - face.corners[0]);
+  if (!holdsProjection(face, p)) return false;
+  if (std::abs(height) > pair_.range) return true;
+  const Feature vertex{FeatureKind::VERTEX, name}, patch{FeatureKind::FACE, pair_.side(!vertex_moves).topology.patch[element]};
+  // From fixed to moving: towards the vertex if it is the moving mesh's.
+  Vector3 normal = (height > 0) == vertex_moves ? face.normal : Vector3(-face.normal);
+  if (std::abs(height) <= TOUCH) {
+    if (!reachesOver(vertex_moves, name, p, face)) return true;
+    normal = vertex_moves ? towardsMoving(pair_, normal, vertex, patch, p) : towardsMoving(pair_, normal, patch, vertex, p);
+  }
+  add(vertex_moves, vertex, patch, p, p - height * face.normal, normal, std::abs(height));
+  return true;
+}
+
+/** Where a vertex touches a face's border: does its surface extend over the face, or only beside it? */
+bool ExactTests::reachesOver(bool vertex_moves, int vertex, const Vector3& p, const FaceShape& face) const {
+  const MeshSide &vertex_side = pair_.side(vertex_moves), &face_side = pair_.side(!vertex_moves);
+  if (vertex_side.topology.vertex_edge_begin[vertex] == vertex_side.topology.vertex_edge_begin[vertex + 1]) return true;
+  bool reaches = true;
+  forEachBorderAt(pair_, face, !vertex_moves, p, [&](int border, int border_face) {
+    Vector3 inward = pair_.turned(face_side.topology.inward(face_side.mesh, border, border_face), !vertex_moves);
+    if (vertex_moves) inward = R_FM_.transpose() * inward;
+    reaches = reaches && !vertexConeAllows(vertex_side, vertex, inward, CONE_SLACK);
+  });
+  return reaches;
+}
+
+// ---- edge and edge
+
+void ExactTests::edgeEdge(int moving, int fixed) {
+  const std::array<int, 2>&ends_m = pair_.moving.topology.edges[moving], &ends_f = pair_.fixed.topology.edges[fixed];
+  const Vector3 p0 = position(true, ends_m[0]), p1 = position(true, ends_m[1]), &q0 = pair_.fixed.mesh.vertices[ends_f[0]],
+                &q1 = pair_.fixed.mesh.vertices[ends_f[1]];
+  LinePair lines;
+  if (!lines.find(p0, p1, q0, q1, pair_.range, pair_.range / FADE_SLOPE)) return;
+  EdgePair feet;
+  if (!findEdgePair(lines, p0, q0, &feet)) {
+    EdgesBeyond beyond;
+    findEdgesBeyond(lines, p0, q0, &beyond);
+    addFadingEdges(moving, fixed, beyond);
+    return;
+  }
+  const Feature m{FeatureKind::EDGE, moving}, f{FeatureKind::EDGE, fixed};
+  Vector3 normal = feet.offset < 0 ? Vector3(-feet.axis) : feet.axis;
+  if (std::abs(feet.offset) <= TOUCH) normal = towardsMoving(pair_, normal, m, f, feet.point_q);
+  const double gap = std::abs(feet.offset);
+  if (gap <= pair_.range && conesAllow(m, f, normal, EDGE_CONE_SLACK)) add(true, m, f, feet.point_p, feet.point_q, normal, gap);
+}
+
+void ExactTests::addFadingEdges(int moving, int fixed, const EdgesBeyond& edges) {
+  const Feature m{FeatureKind::EDGE, moving}, f{FeatureKind::EDGE, fixed};
+  const Vector3 d = edges.point_p - edges.point_q;
+  const double distance = d.norm(), gap = distance + FADE_SLOPE * edges.beyond;
+  if (distance <= TOUCH || gap > pair_.range || !conesAllow(m, f, edges.normal, EDGE_CONE_SLACK)) return;
+  if (liesInside(true, moving, fixed) || liesInside(false, fixed, moving)) return;
+  const auto leaves = [&](int end, bool moves, int edge, int partner, const Matrix3& R_PS, const Vector3& normal) {
+    const MeshSide& side = pair_.side(moves);
+    return end >= 0 && !isTakenOver({side, pair_.side(!moves), side.topology.edges[edge][end], partner, R_PS, normal});
+  };
+  const bool fades = leaves(edges.end_p, true, moving, fixed, R_FM_, -(R_FM_.transpose() * edges.normal)) ||
+                     leaves(edges.end_q, false, fixed, moving, R_FM_.transpose(), edges.normal);
+  if (fades) add(true, m, f, edges.point_p, edges.point_q, d / distance, gap);
+}
+
+bool ExactTests::liesInside(bool edge_moves, int edge, int other) const {
+  const MeshSide &side = pair_.side(edge_moves), &other_side = pair_.side(!edge_moves);
+  const Vector3 start = position(edge_moves, side.topology.edges[edge][0]);
+  const std::array<int, 2>& ends = other_side.topology.edges[other];
+  const Vector3 p = position(!edge_moves, ends[0]) - start, q = position(!edge_moves, ends[1]) - start;
+  const double limit = deepestInside(pair_.range);
+  bool inside = false;
+  for (int i = side.topology.edge_face_begin[edge]; i < side.topology.edge_face_begin[edge + 1]; ++i) {
+    const Vector3 inward = pair_.turned(side.topology.inward(side.mesh, edge, side.topology.edge_faces[i]), edge_moves);
+    inside = inside || std::min(inward.dot(p), inward.dot(q)) > limit;
+  }
+  return inside;
+}
+
+// ---- vertex and edge, vertex and vertex: where each is the other's local minimum
+
+void ExactTests::vertexEdge(bool vertex_moves, int vertex, int edge) {
+  const std::array<int, 2>& ends = pair_.side(!vertex_moves).topology.edges[edge];
+  const Vector3 p = position(vertex_moves, vertex), q = position(!vertex_moves, ends[0]), along = position(!vertex_moves, ends[1]) - q;
+  const double length2 = along.squaredNorm(), part = (p - q).dot(along);
+  if (!edge_pair_detail::isInside(part, length2, length2)) return;
+  const Vector3 foot = q + part / length2 * along;
+  if ((p - foot).squaredNorm() > pair_.range * pair_.range) return;
+  if (vertex_moves) {
+    addLocalMinimum({FeatureKind::VERTEX, vertex}, {FeatureKind::EDGE, edge}, p, foot, along);
+  } else {
+    addLocalMinimum({FeatureKind::EDGE, edge}, {FeatureKind::VERTEX, vertex}, foot, p, along);
+  }
+}
+
+void ExactTests::vertexVertex(int moving, int fixed) {
+  const Vector3 p = position(true, moving), &q = pair_.fixed.mesh.vertices[fixed];
+  if ((p - q).squaredNorm() > pair_.range * pair_.range) return;
+  addLocalMinimum({FeatureKind::VERTEX, moving}, {FeatureKind::VERTEX, fixed}, p, q, Vector3::Zero());
+}
+
+/** @param along direction of the edge, to which the normal is square; zero if there is none */
+void ExactTests::addLocalMinimum(const Feature& m, const Feature& f, const Vector3& point_M, const Vector3& point_F, const Vector3& along) {
+  const Vector3 d = point_M - point_F;
+  const double gap = d.norm();
+  const Vector3 normal = gap > TOUCH ? Vector3(d / gap) : touchNormal(pair_, m, f, point_F, along);
+  if (conesAllow(m, f, normal, CONE_SLACK)) add(true, m, f, point_M, point_F, normal, gap);
+}
+
+bool ExactTests::conesAllow(const Feature& m, const Feature& f, const Vector3& normal, double slack) const {
+  const auto allows = [slack](const MeshSide& side, const Feature& feature, const Vector3& direction) {
+    return feature.kind == FeatureKind::VERTEX ? vertexConeAllows(side, feature.index, direction, slack)
+                                               : edgeConeAllows(side, feature.index, direction, slack);
+  };
+  return allows(pair_.fixed, f, normal) && allows(pair_.moving, m, -(R_FM_.transpose() * normal));
+}
+
+}  // namespace blem_sim

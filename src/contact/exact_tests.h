@@ -1,0 +1,42 @@
+// One pair of features at a time: what the kernels cannot tell, since it touches, has left its face or edge, or asks for neighbourhoods.
+#pragma once
+
+#include <vector>
+
+#include "face_shape.h"
+#include "mesh_pair.h"
+
+namespace blem_sim {
+
+struct EdgesBeyond;
+
+/** Appends the contact of a pair of features, if they have one, to a list. */
+class ExactTests {
+ public:
+  ExactTests(const MeshPair& pair, std::vector<FeatureContact>* contacts) : pair_(pair), R_FM_(pair.X_FM.linear()), contacts_(*contacts) {}
+
+  /** @param face element of the other mesh @return false if the vertex projects beside the face by more than CLOSED */
+  bool vertexFace(bool vertex_moves, int vertex, int face);
+  void edgeEdge(int moving, int fixed);
+  /** Where each is the other's local minimum. */
+  void vertexEdge(bool vertex_moves, int vertex, int edge);
+  void vertexVertex(int moving, int fixed);
+
+ private:
+  bool reachesOver(bool vertex_moves, int vertex, const Vector3& p, const FaceShape& face) const;
+  void addFadingEdges(int moving, int fixed, const EdgesBeyond& edges);
+  void addLocalMinimum(const Feature& m, const Feature& f, const Vector3& point_M, const Vector3& point_F, const Vector3& along);
+  /** Does neither surface come closer to the other beside its feature? */
+  bool conesAllow(const Feature& m, const Feature& f, const Vector3& normal, double slack) const;
+  /** Do both ends of an edge lie farther inside a face of the other edge than a contact within range could? */
+  bool liesInside(bool edge_moves, int edge, int other) const;
+  void add(bool first_moves, const Feature& first, const Feature& second, const Vector3& point_first, const Vector3& point_second,
+           const Vector3& normal, double gap);
+  Vector3 position(bool moves, int vertex) const { return pair_.placed(pair_.side(moves).mesh.vertices[vertex], moves); }
+
+  const MeshPair& pair_;
+  const Matrix3 R_FM_;
+  std::vector<FeatureContact>& contacts_;
+};
+
+}  // namespace blem_sim

@@ -1,0 +1,47 @@
+// Tests of many pairs of features at once. One source, compiled for several instruction sets; every one gives the same bits.
+#pragma once
+
+#include <vector>
+
+#include "records.h"
+
+namespace blem_sim::kernels {
+
+/** One set of kernels. Arrays of hits must have room for as many as there are candidates, and for one vector more. */
+struct Kernels {
+  const char* name;  ///< "avx512", "avx2", "baseline"
+
+  /** out[i] = motion of in[i]; w is kept. */
+  void (*turnPoints)(const Vec4* in, std::uint32_t count, const Motion& motion, Vec4* out);
+  void (*turnEdges)(const EdgeRecord* in, std::uint32_t count, const Motion& motion, EdgeRecord* out);
+
+  void (*turnLeaf)(const LeafShapes& in, const Motion& motion, LeafShapes* out);  ///< all but the box
+
+  /** Pairs of features of two leaves that can have a contact within the range while no point moves by more than the margin; conservative,
+   * if the reach has room for the rounding of floats. */
+  void (*leafContacts)(const LeafShapes& a, const LeafShapes& b, const LeafReach& reach, LeafHits* hits);
+  /** The same of edges that pass through faces. */
+  void (*leafCrossings)(const LeafShapes& a, const LeafShapes& b, const LeafReach& reach, LeafHits* hits);
+
+  /** Candidates with a contact within `range`, and those that need a closer look. @return number of hits */
+  std::uint32_t (*vertexFaces)(const Vec4* a, const FaceRecord* b, const Candidate* candidates, std::uint32_t count, double range,
+                               VertexFaceHit* hits);
+  std::uint32_t (*edgeEdges)(const EdgeRecord* a, const EdgeRecord* b, const Candidate* candidates, std::uint32_t count, double range,
+                             EdgeEdgeHit* hits);
+  /** Indices of candidates that need a closer look. @return their number */
+  std::uint32_t (*vertexEdges)(const Vec4* a, const EdgeRecord* b, const Candidate* candidates, std::uint32_t count, double range,
+                               std::uint32_t* hits);
+  std::uint32_t (*vertexVertices)(const Vec4* a, const Vec4* b, const Candidate* candidates, std::uint32_t count, double range,
+                                  std::uint32_t* hits);
+  /** Edges that pass through a face's plane where the face may be. */
+  std::uint32_t (*edgeFaces)(const EdgeRecord* a, const FaceRecord* b, const Candidate* candidates, std::uint32_t count,
+                             std::uint32_t* hits);
+};
+
+/** The fastest set that this machine runs; $BLEM_SIM_KERNELS (avx512, avx2, baseline) forces another one that it runs. */
+const Kernels& kernels();
+
+/** Sets that this machine runs, fastest first; the last one is "baseline". */
+const std::vector<const Kernels*>& availableKernels();
+
+}  // namespace blem_sim::kernels

@@ -1,0 +1,6 @@
+#include "kernels_code.h"
+
+namespace blem_sim::kernels {
+extern const Kernels AVX2;
+const Kernels AVX2 = BLEM_SIM_KERNEL_TABLE("avx2");
+}  // namespace blem_sim::kernels

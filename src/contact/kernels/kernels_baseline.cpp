@@ -1,0 +1,6 @@
+#include "kernels_code.h"
+
+namespace blem_sim::kernels {
+extern const Kernels BASELINE;
+const Kernels BASELINE = BLEM_SIM_KERNEL_TABLE("baseline");
+}  // namespace blem_sim::kernels

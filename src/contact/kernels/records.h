@@ -1,0 +1,89 @@
+// What the kernels work on: plain numbers, the same for every instruction set.
+#pragma once
+
+#include <cstdint>
+
+namespace blem_sim::kernels {
+
+struct alignas(32) Vec4 {
+  double x, y, z, w;
+};
+
+/** A face in some frame: signed heights over its plane and inside its three sides, all in metres, as normal . p - offset. */
+struct FaceRecord {
+  Vec4 plane;     ///< unit normal, offset
+  Vec4 sides[3];  ///< unit, in the plane, square to side k and into the face; offset
+};
+
+/** An edge in some frame. */
+struct EdgeRecord {
+  Vec4 start;      ///< its first vertex; w: squared length
+  Vec4 along;      ///< to its second vertex; w: 1 if it has more faces than `inward` tells
+  Vec4 inward[2];  ///< unit, square to it, into its first and second face; zero where there is none
+};
+
+/** A rigid motion: rotation by rows, then translation. */
+struct Motion {
+  double R[9], t[3];
+};
+
+/** A pair of features that may have a contact: indices into arrays of records. */
+struct Candidate {
+  std::uint32_t a, b;
+};
+
+/** Elements of a leaf; room for their features, in whole vectors. */
+constexpr int MAX_LEAF_ELEMENTS = 8, MAX_LEAF_FACES = 16, MAX_LEAF_EDGES = 32, MAX_LEAF_VERTICES = 32;
+
+/** Features of a leaf in float, a coordinate after the other, in some frame. */
+struct alignas(64) LeafShapes {
+  float planes[4][MAX_LEAF_FACES];    ///< FaceRecord::plane
+  float sides[3][4][MAX_LEAF_FACES];  ///< FaceRecord::sides
+  float starts[3][MAX_LEAF_EDGES], alongs[3][MAX_LEAF_EDGES];
+  float inwards[2][4][MAX_LEAF_EDGES];  ///< EdgeRecord::inward; offset of the edge along it
+  float vertices[3][MAX_LEAF_VERTICES];
+  float lower[3], upper[3];  ///< box of all its elements
+  std::uint32_t face_count, edge_count, vertex_count;
+};
+
+/** What a search for candidates asks [m]. */
+struct LeafReach {
+  float range;   ///< of contacts, and the margin
+  float margin;  ///< that points may move
+  float inside;  ///< both ends of an edge may lie so far inside a face of the other one
+};
+
+/** Features of one leaf by their bits, near a feature of another. */
+struct LeafHit {
+  std::uint32_t feature;  ///< of the first leaf
+  std::uint32_t bits;     ///< of the second one's features
+};
+
+/** Pairs of features of two leaves that may have a contact, or a crossing: first the moving mesh's kind, then the fixed one's. */
+struct LeafHits {
+  LeafHit vertex_face[MAX_LEAF_VERTICES], vertex_edge[MAX_LEAF_VERTICES], vertex_vertex[MAX_LEAF_VERTICES];
+  LeafHit edge_edge[MAX_LEAF_EDGES], edge_vertex[MAX_LEAF_EDGES], edge_face[MAX_LEAF_EDGES];
+  LeafHit face_vertex[MAX_LEAF_FACES], face_edge[MAX_LEAF_FACES];
+  int vertex_faces, vertex_edges, vertex_vertices, edge_edges, edge_vertices, edge_faces, face_vertices, face_edges;
+};
+
+/** A vertex near a face. */
+struct VertexFaceHit {
+  std::uint32_t candidate;
+  bool is_plain;     ///< over the face's inside and not touching: a contact as it stands
+  bool is_beside;    ///< outside the face
+  bool near_border;  ///< and close enough to its border that another may lie in the same place
+  double height;     ///< [m]
+};
+
+/** Two edges near each other whose common perpendicular points out of their faces. */
+struct EdgeEdgeHit {
+  std::uint32_t candidate;
+  bool is_plain;          ///< feet inside both, not touching
+  bool near_border;       ///< and close to an end
+  double part_a, part_b;  ///< of the edges, where the feet are
+  double gap;             ///< [m]
+  double normal[3];       ///< unit, from b to a
+};
+
+}  // namespace blem_sim::kernels

@@ -1,0 +1,150 @@
+#include "leaf_features.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "vectors.h"
+
+namespace blem_sim {
+namespace {
+
+using kernels::EdgeRecord;
+using kernels::FaceRecord;
+using kernels::LeafShapes;
+using kernels::Vec4;
+
+template <int CAPACITY>
+void place(const Vec4& v, std::uint32_t i, float (*rows)[CAPACITY]) {
+  rows[0][i] = static_cast<float>(v.x);
+  rows[1][i] = static_cast<float>(v.y);
+  rows[2][i] = static_cast<float>(v.z);
+}
+
+template <int CAPACITY>
+void placePlane(const Vec4& plane, double offset, std::uint32_t i, float (*rows)[CAPACITY]) {
+  place(plane, i, rows);
+  rows[3][i] = static_cast<float>(offset);
+}
+
+void describeFace(const MeshSide& side, int element, LeafFeatures* leaf) {
+  LeafShapes& shapes = leaf->shapes;
+  const std::uint32_t i = shapes.face_count++;
+  const FaceRecord record = faceRecord(side, element);
+  leaf->faces[i] = element;
+  placePlane(record.plane, record.plane.w, i, shapes.planes);
+  for (int k = 0; k < 3; ++k) placePlane(record.sides[k], record.sides[k].w, i, shapes.sides[k]);
+}
+
+void describeEdge(const MeshSide& side, int edge, LeafFeatures* leaf) {
+  LeafShapes& shapes = leaf->shapes;
+  const std::uint32_t i = shapes.edge_count++;
+  const EdgeRecord record = edgeRecord(side, edge);
+  leaf->edges[i] = edge;
+  place(record.start, i, shapes.starts);
+  place(record.along, i, shapes.alongs);
+  for (int k = 0; k < 2; ++k) {
+    const Vec4 &u = record.inward[k], &p = record.start;
+    placePlane(u, u.x * p.x + u.y * p.y + u.z * p.z, i, shapes.inwards[k]);
+  }
+}
+
+void describe(const MeshSide& side, std::uint32_t index, LeafFeatures* leaf) {
+  const Bvh::Node& node = side.bvh.nodes()[index];
+  assert(node.count <= kernels::MAX_LEAF_ELEMENTS);
+  leaf->geometry = side.identity;
+  leaf->leaf = index;
+  leaf->search = 0;
+  LeafShapes& shapes = leaf->shapes;
+  shapes = LeafShapes{};
+  Eigen::Map<Eigen::Vector3f>(shapes.lower) = node.lower;
+  Eigen::Map<Eigen::Vector3f>(shapes.upper) = node.upper;
+  for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+    const int element = static_cast<int>(side.bvh.order()[i]);
+    if (side.topology.isFace(element)) describeFace(side, element, leaf);
+    for (int k = 0; k < 3; ++k) {
+      if (side.topology.ownsEdge(element, k)) describeEdge(side, side.topology.element_edges[element][k], leaf);
+      if (!side.topology.ownsVertex(element, k)) continue;
+      const std::uint32_t v = shapes.vertex_count++;
+      leaf->vertices[v] = side.mesh.elements[element][k];
+      place(vertexRecord(side, leaf->vertices[v]), v, shapes.vertices);
+    }
+  }
+}
+
+void forgetSlots(LeafFeatures* leaf) {
+  std::fill_n(leaf->face_slots, leaf->shapes.face_count, LeafFeatures::NO_SLOT);
+  std::fill_n(leaf->edge_slots, leaf->shapes.edge_count, LeafFeatures::NO_SLOT);
+  std::fill_n(leaf->vertex_slots, leaf->shapes.vertex_count, LeafFeatures::NO_SLOT);
+}
+
+}  // namespace
+
+FaceRecord faceRecord(const MeshSide& side, int element) {
+  const Vector3i& e = side.mesh.elements[element];
+  const Vector3& normal = side.topology.normals[element];
+  FaceRecord record;
+  record.plane = vec4(normal, normal.dot(side.mesh.vertices[e[0]]));
+  for (int k = 0; k < 3; ++k) {
+    const Vector3& corner = side.mesh.vertices[e[k]];
+    const Vector3 inward = normal.cross(side.mesh.vertices[e[(k + 1) % 3]] - corner).normalized();
+    record.sides[k] = vec4(inward, inward.dot(corner));
+  }
+  return record;
+}
+
+EdgeRecord edgeRecord(const MeshSide& side, int edge) {
+  const std::array<int, 2>& ends = side.topology.edges[edge];
+  const int begin = side.topology.edge_face_begin[edge], count = side.topology.edge_face_begin[edge + 1] - begin;
+  const Vector3 &start = side.mesh.vertices[ends[0]], along = side.mesh.vertices[ends[1]] - start;
+  EdgeRecord record{vec4(start, along.squaredNorm()), vec4(along, count > 2), {}};
+  for (int k = 0; k < std::min(count, 2); ++k)
+    record.inward[k] = vec4(side.topology.inward(side.mesh, edge, side.topology.edge_faces[begin + k]), 0);
+  return record;
+}
+
+/** The place that holds the leaf, or the one of its few that was used longest ago. */
+LeafFeatures& LeafMemory::find(Table* table, const MeshSide& side, std::uint32_t leaf, std::uint64_t search) {
+  const std::size_t first = (leaf + 0x9E3779B9u * side.identity) % (CAPACITY / WAYS) * WAYS;
+  std::unique_ptr<LeafFeatures>* oldest = &(*table)[first];
+  for (std::size_t i = first; i < first + WAYS; ++i) {
+    std::unique_ptr<LeafFeatures>& held = (*table)[i];
+    if (!held) {
+      oldest = &held;
+      break;
+    }
+    if (held->geometry == side.identity && held->leaf == leaf) return *held;
+    if (held->search < (*oldest)->search) oldest = &held;
+  }
+  if (!*oldest) *oldest = std::make_unique<LeafFeatures>();
+  describe(side, leaf, oldest->get());
+  return **oldest;
+}
+
+LeafFeatures& LeafMemory::standing(const MeshSide& side, std::uint32_t leaf, std::uint64_t search) {
+  LeafFeatures& found = find(&standing_, side, leaf, search);
+  if (found.search != search) forgetSlots(&found);
+  found.search = search;
+  return found;
+}
+
+LeafFeatures& LeafMemory::moving(const MeshSide& side, std::uint32_t leaf, std::uint64_t search, const kernels::Motion& motion) {
+  LeafFeatures& found = find(&moving_, side, leaf, search);
+  if (found.search == search) return found;
+  found.search = search;
+  forgetSlots(&found);
+  kernels::kernels().turnLeaf(found.shapes, motion, &found.turned);
+  const LeafShapes& shapes = found.shapes;
+  for (int k = 0; k < 3; ++k) {
+    double centre = motion.t[k], half = 0;
+    for (int j = 0; j < 3; ++j) {
+      centre += motion.R[3 * k + j] * 0.5 * (static_cast<double>(shapes.lower[j]) + shapes.upper[j]);
+      half += std::abs(motion.R[3 * k + j]) * 0.5 * (static_cast<double>(shapes.upper[j]) - shapes.lower[j]);
+    }
+    found.turned.lower[k] = static_cast<float>(centre - half);
+    found.turned.upper[k] = static_cast<float>(centre + half);
+  }
+  return found;
+}
+
+}  // namespace blem_sim

@@ -1,0 +1,51 @@
+// What the leaves of a mesh's tree own, as the kernels want it; worked out when a search first comes to a leaf, and kept.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "kernels/kernels.h"
+#include "mesh_pair.h"
+
+namespace blem_sim {
+
+/** The features that the elements of one leaf own: its faces, and those of its edges and vertices that no other element asks for. */
+struct LeafFeatures {
+  std::uint64_t geometry = 0;  ///< whose; 0: nobody's
+  std::uint32_t leaf = 0;
+  std::uint64_t search = 0;  ///< the last search that came here: slots and a moving leaf's turned shapes are of it
+  int faces[kernels::MAX_LEAF_FACES], edges[kernels::MAX_LEAF_EDGES], vertices[kernels::MAX_LEAF_VERTICES];  ///< names in the mesh
+  kernels::LeafShapes shapes;                                                                                ///< in the mesh's frame
+
+  /** Where the search put a feature; NO_SLOT: nowhere yet. */
+  static constexpr std::uint32_t NO_SLOT = 0xFFFFFFFF;
+  std::uint32_t face_slots[kernels::MAX_LEAF_FACES], edge_slots[kernels::MAX_LEAF_EDGES], vertex_slots[kernels::MAX_LEAF_VERTICES];
+
+  kernels::LeafShapes turned;  ///< of a moving leaf, in the frame of the search
+};
+
+kernels::FaceRecord faceRecord(const MeshSide& side, int element);
+kernels::EdgeRecord edgeRecord(const MeshSide& side, int edge);
+inline kernels::Vec4 vertexRecord(const MeshSide& side, int vertex) {
+  const Vector3& p = side.mesh.vertices[vertex];
+  return {p.x(), p.y(), p.z(), 0};
+}
+
+/** Leaves that were looked at lately. What is kept changes no result. */
+class LeafMemory {
+ public:
+  /** Leaf of a mesh that stands. */
+  LeafFeatures& standing(const MeshSide& side, std::uint32_t leaf, std::uint64_t search);
+  /** Leaf of a mesh that moves: turned once per search. */
+  LeafFeatures& moving(const MeshSide& side, std::uint32_t leaf, std::uint64_t search, const kernels::Motion& motion);
+
+ private:
+  using Table = std::vector<std::unique_ptr<LeafFeatures>>;
+  static constexpr std::size_t CAPACITY = 4096, WAYS = 4;  // of each table; places that a leaf may have
+  static LeafFeatures& find(Table* table, const MeshSide& side, std::uint32_t leaf, std::uint64_t search);
+
+  Table standing_ = Table(CAPACITY), moving_ = Table(CAPACITY);
+};
+
+}  // namespace blem_sim
