@@ -47,7 +47,9 @@ class Search {
     return slot(moves, &leaf->edge_slots[i], &lists_.near[moves].edges, leaf->edges[i], edgeRecord);
   }
   std::uint32_t face(bool moves, LeafFeatures* leaf, std::uint32_t i) {
-    return slot(moves, &leaf->face_slots[i], &lists_.near[moves].faces, leaf->faces[i], faceRecord);
+    NearFeatures& near = lists_.near[moves];
+    if (leaf->face_slots[i] == LeafFeatures::NO_SLOT) near.patches.push_back(pair_.side(moves).topology.patch[leaf->faces[i]]);
+    return slot(moves, &leaf->face_slots[i], &near.faces, leaf->faces[i], faceRecord);
   }
 
   /** Appends visit(i, j) for the features i of the moving leaf and j of the fixed one. */
@@ -143,6 +145,7 @@ void NearFeatures::clear() {
   vertices.clear();
   edges.clear();
   faces.clear();
+  patches.clear();
   borders_.clear();
   rings_.clear();
   ring_directions.clear();
@@ -156,16 +159,29 @@ void CandidateLists::clear() {
   }
 }
 
-void TurnedFeatures::turn(const CandidateLists& lists, const Pose& X_FM) {
-  for (const bool moves : {false, true}) {
-    const kernels::Motion motion = motionOf(moves ? X_FM : X_FM.inverse());
-    const NearFeatures& near = lists.near[moves];
-    // Room only grows: nothing is cleared that is overwritten.
-    if (vertices[moves].size() < near.vertices.records.size()) vertices[moves].resize(near.vertices.records.size());
-    if (edges[moves].size() < near.edges.records.size()) edges[moves].resize(near.edges.records.size());
-    kernels::kernels().turnPoints(near.vertices.records.data(), near.vertices.records.size(), motion, vertices[moves].data());
-    kernels::kernels().turnEdges(near.edges.records.data(), near.edges.records.size(), motion, edges[moves].data());
-  }
+// Room only grows: nothing is cleared that is overwritten.
+void TurnedFeatures::turnVertices(bool moves, const CandidateLists& lists, const kernels::Motion& motion) {
+  const auto& records = lists.near[moves].vertices.records;
+  if (vertices[moves].size() < records.size()) vertices[moves].resize(records.size());
+  kernels::kernels().turnPoints(records.data(), records.size(), motion, vertices[moves].data());
+}
+
+void TurnedFeatures::turnEdges(bool moves, const CandidateLists& lists, const kernels::Motion& motion) {
+  const auto& records = lists.near[moves].edges.records;
+  if (edges[moves].size() < records.size()) edges[moves].resize(records.size());
+  kernels::kernels().turnEdges(records.data(), records.size(), motion, edges[moves].data());
+}
+
+void TurnedFeatures::turnForContacts(const CandidateLists& lists, const Pose& X_FM) {
+  const kernels::Motion to_fixed = motionOf(X_FM);
+  turnVertices(true, lists, to_fixed);
+  turnVertices(false, lists, motionOf(X_FM.inverse()));
+  turnEdges(true, lists, to_fixed);
+}
+
+void TurnedFeatures::turnForCrossings(const CandidateLists& lists, const Pose& X_FM) {
+  turnEdges(true, lists, motionOf(X_FM));
+  turnEdges(false, lists, motionOf(X_FM.inverse()));
 }
 
 void findContactCandidates(const MeshPair& pair, double margin, CandidateSearchBuffers* buffers, CandidateLists* lists) {

@@ -48,6 +48,7 @@ struct NearFeatures {
   FeatureRecords<kernels::Vec4> vertices;
   FeatureRecords<kernels::EdgeRecord> edges;
   FeatureRecords<kernels::FaceRecord> faces;
+  std::vector<int> patches;  ///< of the faces
 
   /** What few candidates ask for, worked out when the first one does. @param side the mesh */
   const FaceBorders& borders(const MeshSide& side, std::uint32_t face);
@@ -77,8 +78,13 @@ struct TurnedFeatures {
   std::vector<kernels::Vec4> vertices[2];
   std::vector<kernels::EdgeRecord> edges[2];
 
-  /** The moving mesh's vertices and edges, the fixed one's as asked. @param X_FM of the pair */
-  void turn(const CandidateLists& lists, const Pose& X_FM);
+  /** Those that candidates for contacts, or for crossings, are tested with. @param X_FM of the pair */
+  void turnForContacts(const CandidateLists& lists, const Pose& X_FM);
+  void turnForCrossings(const CandidateLists& lists, const Pose& X_FM);
+
+ private:
+  void turnVertices(bool moves, const CandidateLists& lists, const kernels::Motion& motion);
+  void turnEdges(bool moves, const CandidateLists& lists, const kernels::Motion& motion);
 };
 
 /** What a search for candidates works in. */

@@ -40,15 +40,38 @@ double largestMotion(const Box& region, const Pose& X, const Pose& Y) {
   return std::sqrt(largest2);
 }
 
+/** The planes that vertices lie over. */
+class PlanesBelow {
+ public:
+  explicit PlanesBelow(std::vector<kernels::Candidate>* runs, std::vector<std::uint32_t>* last, std::size_t vertices)
+      : entries_(*runs), last_(*last) {
+    entries_.clear();
+    last_.assign(vertices, NONE);
+  }
+  void add(std::uint32_t vertex, int patch) {
+    entries_.push_back({static_cast<std::uint32_t>(patch), last_[vertex]});
+    last_[vertex] = static_cast<std::uint32_t>(entries_.size()) - 1;
+  }
+  bool has(std::uint32_t vertex, int patch) const {
+    for (std::uint32_t i = last_[vertex]; i != NONE; i = entries_[i].b)
+      if (entries_[i].a == static_cast<std::uint32_t>(patch)) return true;
+    return false;
+  }
+
+ private:
+  static constexpr std::uint32_t NONE = 0xFFFFFFFF;
+  std::vector<kernels::Candidate>& entries_;  // a: patch; b: the entry before of the same vertex
+  std::vector<std::uint32_t>& last_;
+};
+
 /** Turns candidates into contacts. */
 class Evaluation {
  public:
   Evaluation(const MeshPair& pair, CandidateLists* lists, ContactSearchBuffers* buffers, FoundContacts* found)
-      : pair_(pair), lists_(*lists), buffers_(*buffers), found_(*found), exact_(pair, &found->close), fades_(pair, lists) {
-    buffers_.turned.turn(*lists, pair.X_FM);
-  }
+      : pair_(pair), lists_(*lists), buffers_(*buffers), found_(*found), exact_(pair, &found->close), fades_(pair, lists) {}
 
   void findContacts() {
+    buffers_.turned.turnForContacts(lists_, pair_.X_FM);
     const auto& vertices = buffers_.turned.vertices;
     const auto& edges = buffers_.turned.edges;
     for (const bool moves : {true, false}) {
@@ -61,6 +84,7 @@ class Evaluation {
   }
 
   void findCrossings() {
+    buffers_.turned.turnForCrossings(lists_, pair_.X_FM);
     for (const bool moves : {true, false}) {
       const std::vector<Candidate>& candidates = lists_.edge_face[moves];
       const auto& edges = lists_.near[moves].edges;
@@ -94,24 +118,37 @@ class Evaluation {
     hits.resize(std::max(hits.size(), candidates.size()));
     const std::uint32_t count = kernels::kernels().vertexFaces(buffers_.turned.vertices[moves].data(), faces.records.data(),
                                                                candidates.data(), candidates.size(), pair_.range, hits.data());
-    const std::vector<int>& patches = pair_.side(!moves).topology.patch;
+    const std::vector<int>& patches = lists_.near[!moves].patches;
+    PlanesBelow below(&buffers_.planes_below, &buffers_.last_plane, vertices.names.size());
     for (std::uint32_t i = 0; i < count; ++i) {
-      const kernels::VertexFaceHit& hit = hits[i];
+      kernels::VertexFaceHit& hit = hits[i];
       const Candidate& c = candidates[hit.candidate];
       if (!hit.is_plain) {
-        if (hit.is_beside || !exact_.vertexFace(moves, vertices.names[c.a], faces.names[c.b])) addFading(moves, c, hit.height);
-        continue;
-      }
-      const Feature vertex{FeatureKind::VERTEX, vertices.names[c.a]}, patch{FeatureKind::FACE, patches[faces.names[c.b]]};
-      const Vector3 p = vector3(moves ? buffers_.turned.vertices[1][c.a] : vertices.records[c.a]);
-      const Vector3 up = pair_.turned(vector3(faces.records[c.b].plane), !moves), foot = p - hit.height * up;
-      const Vector3 normal = (hit.height > 0) == moves ? up : Vector3(-up);
-      std::vector<FeatureContact>& out = hit.near_border ? found_.close : found_.plain;
-      if (moves) {
-        out.push_back({vertex, patch, p, foot, normal, std::abs(hit.height)});
+        hit.is_beside = hit.is_beside || !exact_.vertexFace(moves, vertices.names[c.a], faces.names[c.b]);
+        if (hit.is_beside) continue;
       } else {
-        out.push_back({patch, vertex, foot, p, normal, std::abs(hit.height)});
+        addPlain(moves, c, hit);
       }
+      below.add(c.a, patches[c.b]);
+    }
+    // Beside one face of a plane but over another it does not fade.
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const Candidate& c = candidates[hits[i].candidate];
+      if (hits[i].is_beside && !below.has(c.a, patches[c.b])) addFading(moves, c, hits[i].height);
+    }
+  }
+
+  void addPlain(bool moves, const Candidate& c, const kernels::VertexFaceHit& hit) {
+    const auto& faces = lists_.near[!moves].faces;
+    const Feature vertex{FeatureKind::VERTEX, lists_.near[moves].vertices.names[c.a]}, patch{FeatureKind::FACE, lists_.near[!moves].patches[c.b]};
+    const Vector3 p = vector3(moves ? buffers_.turned.vertices[1][c.a] : lists_.near[0].vertices.records[c.a]);
+    const Vector3 up = pair_.turned(vector3(faces.records[c.b].plane), !moves), foot = p - hit.height * up;
+    const Vector3 normal = (hit.height > 0) == moves ? up : Vector3(-up);
+    std::vector<FeatureContact>& out = hit.near_border ? found_.close : found_.plain;
+    if (moves) {
+      out.push_back({vertex, patch, p, foot, normal, std::abs(hit.height)});
+    } else {
+      out.push_back({patch, vertex, foot, p, normal, std::abs(hit.height)});
     }
   }
 
@@ -124,7 +161,7 @@ class Evaluation {
     const double distance = d.norm(), gap = distance + fade.lost;
     if (distance <= TOUCH || gap > pair_.range) return;
     const Feature vertex{FeatureKind::VERTEX, lists_.near[moves].vertices.names[c.a]},
-        patch{FeatureKind::FACE, pair_.side(!moves).topology.patch[lists_.near[!moves].faces.names[c.b]]};
+        patch{FeatureKind::FACE, lists_.near[!moves].patches[c.b]};
     if (moves) {
       found_.close.push_back({vertex, patch, p, fade.foot, d / distance, gap});
     } else {

@@ -41,7 +41,8 @@ struct ContactSearchBuffers {
   TurnedFeatures turned;
   std::vector<kernels::VertexFaceHit> vertex_faces;
   std::vector<kernels::EdgeEdgeHit> edge_edges;
-  std::vector<std::uint32_t> hits;
+  std::vector<std::uint32_t> hits, last_plane;
+  std::vector<kernels::Candidate> planes_below;
   ContactSearchMemory unknown;  ///< for searches without a memory
 };
 

@@ -94,12 +94,19 @@ FaceRecord faceRecord(const MeshSide& side, int element) {
 }
 
 EdgeRecord edgeRecord(const MeshSide& side, int edge) {
-  const std::array<int, 2>& ends = side.topology.edges[edge];
-  const int begin = side.topology.edge_face_begin[edge], count = side.topology.edge_face_begin[edge + 1] - begin;
+  const MeshTopology& topology = side.topology;
+  const std::array<int, 2>& ends = topology.edges[edge];
+  const int begin = topology.edge_face_begin[edge], count = topology.edge_face_begin[edge + 1] - begin;
   const Vector3 &start = side.mesh.vertices[ends[0]], along = side.mesh.vertices[ends[1]] - start;
-  EdgeRecord record{vec4(start, along.squaredNorm()), vec4(along, count > 2), {}};
-  for (int k = 0; k < std::min(count, 2); ++k)
-    record.inward[k] = vec4(side.topology.inward(side.mesh, edge, side.topology.edge_faces[begin + k]), 0);
+  const double length2 = along.squaredNorm(), length = std::sqrt(length2);
+  EdgeRecord record{vec4(start, length2), vec4(along, count > 2), {}};
+  for (int k = 0; k < std::min(count, 2); ++k) {
+    const int face = topology.edge_faces[begin + k];
+    // By the face's own winding: does the edge run along its side, or against it?
+    const Vector3i& e = side.mesh.elements[face];
+    const bool forward = (e[0] == ends[0] && e[1] == ends[1]) || (e[1] == ends[0] && e[2] == ends[1]) || (e[2] == ends[0] && e[0] == ends[1]);
+    record.inward[k] = vec4(topology.normals[face].cross(along) / (forward ? length : -length), 0);
+  }
   return record;
 }
 

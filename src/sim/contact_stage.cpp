@@ -78,7 +78,8 @@ const Reduction* reductionNamed(const std::string& name) {
 
 }  // namespace
 
-ContactStage::ContactStage(const ContactConfig& config) : config_(config), method_(reductionNamed(config.reduction)) {}
+ContactStage::ContactStage(const ContactConfig& config, int threads)
+    : config_(config), method_(reductionNamed(config.reduction)), searches_(threads) {}
 
 void ContactStage::moveColliders(const SimulatedWorld& world, double dt) {
   const std::vector<Collider>& colliders = world.colliders;
@@ -117,21 +118,36 @@ Recovery ContactStage::lastApart(int a, int b) const {
 }
 
 void ContactStage::narrowPhase(const SimulatedWorld& world) {
+  const std::size_t pairs = search_.pairs.size();
+  for (; found_.size() < pairs && !spare_.empty(); spare_.pop_back()) found_.push_back(std::move(spare_.back()));
+  if (found_.size() < pairs) found_.resize(pairs);
   search_.recoveries.clear();
-  std::size_t count = 0;
-  for (const WatchedPair& pair : search_.pairs) {
-    if (count == found_.size()) found_.emplace_back();
-    ContactManifold& manifold = found_[count];
-    const Recovery last = lastApart(pair.a, pair.b);
+  for (const WatchedPair& pair : search_.pairs) search_.recoveries.push_back(lastApart(pair.a, pair.b));
+  searches_.run(search_.pairs, [&](std::size_t i, NarrowPhaseMemory* memory) {
+    const WatchedPair& pair = search_.pairs[i];
+    const Recovery& last = search_.recoveries[i];
     blem_sim::narrowPhase(world.colliders[pair.a], search_.motion[pair.a].X_WC, world.colliders[pair.b], search_.motion[pair.b].X_WC,
-                          pair.known, &manifold, last.known ? &last.X_AB : nullptr);
-    manifold.a = pair.a;
-    manifold.b = pair.b;
-    const bool was_recovering = findPair(current_search_.recoveries, pair.a, pair.b) != nullptr;
-    if (manifold.pierced || (was_recovering && manifold.maxDepth() > APART * manifold.layer)) search_.recoveries.push_back(last);
-    if (!manifold.contacts.empty()) ++count;
+                          pair.known, &found_[i], last.known ? &last.X_AB : nullptr, memory);
+    found_[i].a = pair.a;
+    found_[i].b = pair.b;
+  });
+  keepWhatWasFound(pairs);
+}
+
+/** Manifolds with contacts, and the pairs that cross or are not apart yet. */
+void ContactStage::keepWhatWasFound(std::size_t pairs) {
+  std::size_t manifolds = 0, recoveries = 0;
+  for (std::size_t i = 0; i < pairs; ++i) {
+    const ContactManifold& manifold = found_[i];
+    const bool was_recovering = findPair(current_search_.recoveries, manifold.a, manifold.b) != nullptr;
+    if (manifold.pierced || (was_recovering && manifold.maxDepth() > APART * manifold.layer))
+      search_.recoveries[recoveries++] = search_.recoveries[i];
+    if (manifold.contacts.empty()) continue;
+    if (manifolds != i) std::swap(found_[manifolds], found_[i]);
+    ++manifolds;
   }
-  found_.resize(count);
+  for (; found_.size() > manifolds; found_.pop_back()) spare_.push_back(std::move(found_.back()));
+  search_.recoveries.resize(recoveries);
 }
 
 void ContactStage::accept() {

@@ -7,6 +7,7 @@
 #include "blem_sim/contact/manifold.h"
 #include "blem_sim/contact/reduction.h"
 #include "blem_sim/dynamics/world.h"
+#include "pair_searches.h"
 #include "simulated_world.h"
 
 namespace blem_sim {
@@ -38,7 +39,8 @@ struct Recovery {
  */
 class ContactStage {
  public:
-  explicit ContactStage(const ContactConfig& config);
+  /** @param threads that search pairs at once; the result is the same for any number */
+  ContactStage(const ContactConfig& config, int threads);
 
   /** Pairs that may touch within the coming step of length dt [s]. */
   void broadPhase(const SimulatedWorld& world, double dt);
@@ -84,6 +86,7 @@ class ContactStage {
   void moveColliders(const SimulatedWorld& world, double dt);
   /** Where a pair was last apart, as far as the accepted state knows. */
   Recovery lastApart(int a, int b) const;
+  void keepWhatWasFound(std::size_t pairs);
   void addConstraints(const SimulatedWorld& world, ContactManifold& manifold);
 
   const ContactConfig config_;
@@ -92,7 +95,9 @@ class ContactStage {
   bool known_ = false;
   std::vector<double> arms_;  ///< [m] by collider: farthest point of its geometry from the body's centre of mass
   Search search_, current_search_;
+  PairSearches searches_;
   std::vector<ContactManifold> found_, current_, reduced_;
+  std::vector<ContactManifold> spare_;  // only their memory
   std::vector<ContactConstraint> constraints_;
   std::vector<SolvedContact> solved_;
   bool budget_used_up_ = false;

@@ -1,0 +1,35 @@
+// The narrow phase of many pairs, on several threads, each pair with its memory.
+#pragma once
+
+#include <tbb/task_arena.h>
+
+#include <functional>
+#include <vector>
+
+#include "blem_sim/contact/narrow_phase.h"
+
+namespace blem_sim {
+
+struct WatchedPair;
+
+/** Memories of pairs live while the pairs are watched. They change no result, so they are no state. */
+class PairSearches {
+ public:
+  explicit PairSearches(int threads);
+
+  /** Calls search(i, memory of pairs[i]) for all, in any order and at once. @param pairs sorted by (a, b) */
+  void run(const std::vector<WatchedPair>& pairs, const std::function<void(std::size_t, NarrowPhaseMemory*)>& search);
+
+ private:
+  struct Known {
+    int a, b;
+    NarrowPhaseMemory memory;
+  };
+  void watch(const std::vector<WatchedPair>& pairs);
+
+  std::vector<Known> known_, before_;  // sorted by (a, b)
+  int threads_;
+  tbb::task_arena arena_;
+};
+
+}  // namespace blem_sim
