@@ -1,0 +1,157 @@
+// Every instruction set gives the same bits.
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "geometry/random_shapes.h"
+#include "kernels/kernels.h"
+#include "vectors.h"
+
+namespace blem_sim {
+namespace {
+
+using namespace kernels;
+
+constexpr std::uint32_t FEATURES = 61, CANDIDATES = 997;  // no whole number of vectors
+constexpr double RANGE = 0.3;
+
+struct Features {
+  std::vector<Vec4> vertices;
+  std::vector<EdgeRecord> edges;
+  std::vector<FaceRecord> faces;
+  std::vector<Candidate> candidates;
+};
+
+Features randomFeatures() {
+  RandomShapes random(17);
+  Features out;
+  for (std::uint32_t i = 0; i < FEATURES; ++i) {
+    const Triangle t = random.triangle(1);
+    const Vector3 along = t[1] - t[0], normal = along.cross(t[2] - t[0]).normalized();
+    out.vertices.push_back(vec4(random.point(1), 0));
+    const auto inward = [&](double sign) { return vec4(sign * (normal + random.point(3)).cross(along).normalized(), 0); };
+    out.edges.push_back({vec4(t[0], along.squaredNorm()), vec4(along, i % 7 == 0), {inward(1), inward(-1)}});
+    FaceRecord face;
+    face.plane = vec4(normal, normal.dot(t[0]));
+    for (int k = 0; k < 3; ++k) {
+      const Vector3 side = normal.cross(t[(k + 1) % 3] - t[k]).normalized();
+      face.sides[k] = vec4(side, side.dot(t[k]));
+    }
+    out.faces.push_back(face);
+  }
+  for (std::uint32_t i = 0; i < CANDIDATES; ++i)
+    out.candidates.push_back(
+        {static_cast<std::uint32_t>(random.integer(0, FEATURES - 1)), static_cast<std::uint32_t>(random.integer(0, FEATURES - 1))});
+  return out;
+}
+
+/** What one set finds, as bytes. */
+struct Found {
+  std::vector<std::uint32_t> counts, indices;
+  std::vector<double> numbers;
+};
+
+Found found(const Kernels& set, const Features& in) {
+  Found out;
+  const auto add = [&](std::uint32_t count) { out.counts.push_back(count); };
+  const Candidate* candidates = in.candidates.data();
+  std::vector<VertexFaceHit> vertex_faces(CANDIDATES);
+  add(set.vertexFaces(in.vertices.data(), in.faces.data(), candidates, CANDIDATES, RANGE, vertex_faces.data()));
+  for (std::uint32_t i = 0; i < out.counts.back(); ++i) {
+    const VertexFaceHit& hit = vertex_faces[i];
+    out.indices.insert(out.indices.end(), {hit.candidate, hit.is_plain, hit.is_beside, hit.near_border});
+    out.numbers.push_back(hit.height);
+  }
+  std::vector<EdgeEdgeHit> edge_edges(CANDIDATES);
+  add(set.edgeEdges(in.edges.data(), in.edges.data(), candidates, CANDIDATES, RANGE, edge_edges.data()));
+  for (std::uint32_t i = 0; i < out.counts.back(); ++i) {
+    const EdgeEdgeHit& hit = edge_edges[i];
+    out.indices.insert(out.indices.end(), {hit.candidate, hit.is_plain, hit.near_border});
+    out.numbers.insert(out.numbers.end(), {hit.part_a, hit.part_b, hit.gap, hit.normal[0], hit.normal[1], hit.normal[2]});
+  }
+  std::vector<std::uint32_t> hits(CANDIDATES);
+  const auto addHits = [&](std::uint32_t count) {
+    add(count);
+    out.indices.insert(out.indices.end(), hits.begin(), hits.begin() + count);
+  };
+  addHits(set.vertexEdges(in.vertices.data(), in.edges.data(), candidates, CANDIDATES, 3 * RANGE, hits.data()));
+  addHits(set.vertexVertices(in.vertices.data(), in.vertices.data(), candidates, CANDIDATES, RANGE, hits.data()));
+  addHits(set.edgeFaces(in.edges.data(), in.faces.data(), candidates, CANDIDATES, hits.data()));
+  const Motion motion = motionOf(makePose({0.1, -0.2, 0.3}, {0.4, 0.5, -0.6}));
+  std::vector<EdgeRecord> turned(FEATURES);
+  set.turnEdges(in.edges.data(), FEATURES, motion, turned.data());
+  for (const EdgeRecord& edge : turned)
+    for (const Vec4& v : {edge.start, edge.along, edge.inward[0], edge.inward[1]})
+      out.numbers.insert(out.numbers.end(), {v.x, v.y, v.z, v.w});
+  return out;
+}
+
+TEST(Kernels, AllInstructionSetsFindTheSame) {
+  const Features features = randomFeatures();
+  const Found baseline = found(*availableKernels().back(), features);
+  for (const std::uint32_t count : baseline.counts) EXPECT_GT(count, 5u);
+  for (const Kernels* set : availableKernels()) {
+    SCOPED_TRACE(set->name);
+    const Found each = found(*set, features);
+    EXPECT_EQ(each.counts, baseline.counts);
+    EXPECT_EQ(each.indices, baseline.indices);
+    ASSERT_EQ(each.numbers.size(), baseline.numbers.size());
+    EXPECT_EQ(std::memcmp(each.numbers.data(), baseline.numbers.data(), sizeof(double) * each.numbers.size()), 0);
+  }
+}
+
+LeafShapes randomLeaf(std::uint64_t seed) {
+  RandomShapes random(seed);
+  LeafShapes leaf{};
+  leaf.face_count = 8;
+  leaf.edge_count = 19;
+  leaf.vertex_count = 7;
+  const auto fill = [&](float* from, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) from[i] = static_cast<float>(random.uniform(-1, 1));
+  };
+  fill(&leaf.planes[0][0], sizeof leaf.planes / sizeof(float));
+  fill(&leaf.sides[0][0][0], sizeof leaf.sides / sizeof(float));
+  fill(&leaf.starts[0][0], sizeof leaf.starts / sizeof(float));
+  fill(&leaf.alongs[0][0], sizeof leaf.alongs / sizeof(float));
+  fill(&leaf.inwards[0][0][0], sizeof leaf.inwards / sizeof(float));
+  fill(&leaf.vertices[0][0], sizeof leaf.vertices / sizeof(float));
+  for (int k = 0; k < 3; ++k) {
+    leaf.lower[k] = -2;
+    leaf.upper[k] = 2;
+  }
+  return leaf;
+}
+
+std::vector<std::uint32_t> leafHits(const Kernels& set, const LeafShapes& a, const LeafShapes& b) {
+  LeafShapes turned = a;
+  set.turnLeaf(a, motionOf(makePose({0.01, 0.02, -0.03}, {0.1, 0.2, 0.3})), &turned);
+  LeafHits hits;
+  set.leafContacts(turned, b, {0.5f, 0.1f, 0.2f}, &hits);
+  set.leafCrossings(turned, b, {0.5f, 0.1f, 0.2f}, &hits);
+  std::vector<std::uint32_t> out;
+  const auto add = [&out](const LeafHit* from, int count) {
+    out.push_back(count);
+    for (int i = 0; i < count; ++i) out.insert(out.end(), {from[i].feature, from[i].bits});
+  };
+  add(hits.vertex_face, hits.vertex_faces);
+  add(hits.vertex_edge, hits.vertex_edges);
+  add(hits.vertex_vertex, hits.vertex_vertices);
+  add(hits.edge_edge, hits.edge_edges);
+  add(hits.edge_vertex, hits.edge_vertices);
+  add(hits.edge_face, hits.edge_faces);
+  add(hits.face_vertex, hits.face_vertices);
+  add(hits.face_edge, hits.face_edges);
+  return out;
+}
+
+TEST(Kernels, AllInstructionSetsListTheSameCandidates) {
+  for (int i = 0; i < 20; ++i) {
+    const LeafShapes a = randomLeaf(2 * i), b = randomLeaf(2 * i + 1);
+    const std::vector<std::uint32_t> baseline = leafHits(*availableKernels().back(), a, b);
+    EXPECT_GT(baseline.size(), 30u);
+    for (const Kernels* set : availableKernels()) EXPECT_EQ(leafHits(*set, a, b), baseline) << set->name;
+  }
+}
+
+}  // namespace
+}  // namespace blem_sim

@@ -1,0 +1,110 @@
+// What a search remembers saves time and changes nothing.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <functional>
+
+#include "contact_shapes.h"
+
+namespace blem_sim {
+namespace {
+
+constexpr double R = 0.002;
+
+bool sameBits(const Contact& a, const Contact& b) {
+  return a.id == b.id && a.pierced == b.pierced && std::memcmp(a.point.data(), b.point.data(), sizeof(Vector3)) == 0 &&
+         std::memcmp(a.normal_BA.data(), b.normal_BA.data(), sizeof(Vector3)) == 0 && a.depth == b.depth;
+}
+
+/** Along a path, contacts with and without a memory. @return how many there were, and whether meshes crossed and did not */
+struct Followed {
+  std::size_t contacts = 0;
+  bool crossed = false, apart = false;
+};
+Followed follow(const Collider& a, const Collider& b, int steps, const std::function<Pose(int)>& path,
+                const std::function<double(int)>& margin) {
+  NarrowPhaseMemory memory;
+  ContactManifold remembered, fresh;
+  Followed out;
+  for (int step = 0; step < steps; ++step) {
+    const Pose X = path(step);
+    narrowPhase(a, X, b, Pose::Identity(), margin(step), &remembered, nullptr, &memory);
+    narrowPhase(a, X, b, Pose::Identity(), margin(step), &fresh);
+    EXPECT_EQ(remembered.pierced, fresh.pierced) << step;
+    if (remembered.contacts.size() != fresh.contacts.size()) {
+      ADD_FAILURE() << "step " << step << ": " << remembered.contacts.size() << " contacts instead of " << fresh.contacts.size();
+      return out;
+    }
+    for (std::size_t i = 0; i < fresh.contacts.size(); ++i) EXPECT_TRUE(sameBits(remembered.contacts[i], fresh.contacts[i])) << step;
+    out.contacts += fresh.contacts.size();
+    out.crossed = out.crossed || fresh.pierced;
+    out.apart = out.apart || !fresh.pierced;
+  }
+  return out;
+}
+
+/** Wanders and turns about its place, some 10 um to 1 mm a step. */
+std::function<Pose(int)> wandering(const Vector3& place, double reach, double speed) {
+  return [=](int step) {
+    const double t = speed * step;
+    return makePose(place + reach * Vector3(std::sin(t), std::cos(1.3 * t), std::sin(0.7 * t)),
+                    {0.1 * std::sin(0.9 * t), 0.1 * std::sin(1.1 * t), 0.5 * std::sin(0.3 * t)});
+  };
+}
+
+double noMargin(int) { return 0; }
+
+TEST(NarrowPhaseMemory, ContactsAreTheSameBits) {
+  RandomShapes random(5);
+  const Collider hills = makeCollider(hillMesh(random, 0.3, 60, 0.001), 0), cube = makeCollider(boxMesh(Vector3::Constant(0.05)), R),
+                 ball = makeCollider(icosphereMesh(0.02, 3), R), soup = makeCollider(soupMesh(random, 60, 0.02), R);
+  for (const double speed : {0.001, 0.02, 0.2}) {
+    EXPECT_GT(follow(cube, hills, 300, wandering({0, 0, 0.026}, 0.004, speed), noMargin).contacts, 300u);
+    EXPECT_GT(follow(ball, hills, 300, wandering({0, 0, 0.0215}, 0.003, speed), noMargin).contacts, 300u);
+    EXPECT_GT(follow(soup, cube, 300, wandering({0.02, 0.01, 0.03}, 0.01, speed), noMargin).contacts, 300u);
+  }
+}
+
+TEST(NarrowPhaseMemory, CrossingsAreFoundAndLost) {
+  RandomShapes random(6);
+  const Collider hills = makeCollider(hillMesh(random, 0.3, 60, 0.001), 0), ball = makeCollider(icosphereMesh(0.02, 3), R);
+  for (const double speed : {0.002, 0.05}) {
+    const Followed found = follow(ball, hills, 1500, wandering({0, 0, 0.019}, 0.004, speed), noMargin);
+    EXPECT_TRUE(found.crossed);
+    EXPECT_TRUE(found.apart);
+  }
+}
+
+TEST(NarrowPhaseMemory, MarginsMayChange) {
+  RandomShapes random(7);
+  const Collider hills = makeCollider(hillMesh(random, 0.3, 60, 0.001), 0), cube = makeCollider(boxMesh(Vector3::Constant(0.05)), R);
+  const auto margin = [](int step) { return 0.001 * (1 + std::sin(0.3 * step)); };
+  EXPECT_GT(follow(cube, hills, 300, wandering({0, 0, 0.027}, 0.003, 0.01), margin).contacts, 300u);
+}
+
+TEST(NarrowPhaseMemory, FarFromTheOriginToo) {
+  RandomShapes random(8);
+  TriangleMesh far = hillMesh(random, 0.3, 40, 0.001);
+  for (Vector3& v : far.vertices) v += Vector3(90, -40, 3);
+  const Collider hills = makeCollider(far, 0), cube = makeCollider(boxMesh(Vector3::Constant(0.05)), R);
+  EXPECT_GT(follow(cube, hills, 200, wandering({90, -40, 3.027}, 0.003, 0.02), noMargin).contacts, 200u);
+}
+
+TEST(NarrowPhaseMemory, AnotherGeometryIsNotTakenForTheOneBefore) {
+  RandomShapes random(9);
+  const Collider hills = makeCollider(hillMesh(random, 0.3, 60, 0.001), 0);
+  const Pose X = makePose({0, 0, 0.0275});
+  NarrowPhaseMemory memory;
+  for (const double size : {0.05, 0.051, 0.05}) {
+    const Collider cube = makeCollider(boxMesh(Vector3::Constant(size)), R);
+    ContactManifold remembered;
+    narrowPhase(cube, X, hills, Pose::Identity(), 0, &remembered, nullptr, &memory);
+    const ContactManifold fresh = contactsOf(cube, X, hills, Pose::Identity());
+    ASSERT_GT(fresh.contacts.size(), 10u);
+    ASSERT_EQ(remembered.contacts.size(), fresh.contacts.size());
+    for (std::size_t i = 0; i < fresh.contacts.size(); ++i) EXPECT_TRUE(sameBits(remembered.contacts[i], fresh.contacts[i]));
+  }
+}
+
+}  // namespace
+}  // namespace blem_sim
