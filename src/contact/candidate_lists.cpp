@@ -94,6 +94,12 @@ FaceBorders::Kind borderKind(const MeshSide& side, int face, int k, const Vector
   return rise > NEAR_SUCCESSOR ? FaceBorders::RISING : rise > CONE_SLACK ? FaceBorders::TURNING : FaceBorders::FALLING;
 }
 
+bool boxesWithin(const kernels::LeafShapes& a, const kernels::LeafShapes& b, float reach) {
+  bool within = true;
+  for (int k = 0; k < 3; ++k) within = within && a.lower[k] <= b.upper[k] + reach && b.lower[k] <= a.upper[k] + reach;
+  return within;
+}
+
 /** Drops pairs of vertices one of which has an edge that leads towards the other, however they move by the margin: they have no contact. */
 void dropLeading(const MeshPair& pair, double margin, CandidateLists* lists) {
   const double limit = CONE_SLACK * (pair.range + margin) + margin;
@@ -172,19 +178,16 @@ void TurnedFeatures::turnEdges(bool moves, const CandidateLists& lists, const ke
   kernels::kernels().turnEdges(records.data(), records.size(), motion, edges[moves].data());
 }
 
-void TurnedFeatures::turnForContacts(const CandidateLists& lists, const Pose& X_FM) {
+void TurnedFeatures::turn(const CandidateLists& lists, const Pose& X_FM) {
   const kernels::Motion to_fixed = motionOf(X_FM);
   turnVertices(true, lists, to_fixed);
   turnVertices(false, lists, motionOf(X_FM.inverse()));
   turnEdges(true, lists, to_fixed);
 }
 
-void TurnedFeatures::turnForCrossings(const CandidateLists& lists, const Pose& X_FM) {
-  turnEdges(true, lists, motionOf(X_FM));
-  turnEdges(false, lists, motionOf(X_FM.inverse()));
-}
+void TurnedFeatures::turnForCrossings(const CandidateLists& lists, const Pose& X_FM) { turnEdges(false, lists, motionOf(X_FM.inverse())); }
 
-void findContactCandidates(const MeshPair& pair, double margin, CandidateSearchBuffers* buffers, CandidateLists* lists) {
+void findCandidates(const MeshPair& pair, double margin, CandidateSearchBuffers* buffers, CandidateLists* lists) {
   const kernels::Kernels& kernels = kernels::kernels();
   Search search(pair, pair.range + margin, buffers, lists);
   const kernels::LeafReach reach = search.leafReach(margin);
@@ -209,16 +212,7 @@ void findContactCandidates(const MeshPair& pair, double margin, CandidateSearchB
     Search::append(hits.face_vertex, hits.face_vertices, &lists->vertex_face[0], [&](auto i, auto j) -> Candidate {
       return {search.vertex(false, &f, j), search.face(true, &m, i)};
     });
-  });
-  dropLeading(pair, margin, lists);
-}
-
-void findCrossingCandidates(const MeshPair& pair, double margin, CandidateSearchBuffers* buffers, CandidateLists* lists) {
-  const kernels::Kernels& kernels = kernels::kernels();
-  Search search(pair, margin, buffers, lists);
-  const kernels::LeafReach reach = search.leafReach(margin);
-  kernels::LeafHits& hits = buffers->hits;
-  search.forEachLeafPair([&](LeafFeatures& m, LeafFeatures& f) {
+    if (!boxesWithin(m.turned, f.shapes, reach.margin)) return;
     kernels.leafCrossings(m.turned, f.shapes, reach, &hits);
     Search::append(hits.edge_face, hits.edge_faces, &lists->edge_face[1], [&](auto i, auto j) -> Candidate {
       return {search.edge(true, &m, i), search.face(false, &f, j)};
@@ -227,6 +221,7 @@ void findCrossingCandidates(const MeshPair& pair, double margin, CandidateSearch
       return {search.edge(false, &f, j), search.face(true, &m, i)};
     });
   });
+  dropLeading(pair, margin, lists);
 }
 
 }  // namespace blem_sim

@@ -78,8 +78,9 @@ struct TurnedFeatures {
   std::vector<kernels::Vec4> vertices[2];
   std::vector<kernels::EdgeRecord> edges[2];
 
-  /** Those that candidates for contacts, or for crossings, are tested with. @param X_FM of the pair */
-  void turnForContacts(const CandidateLists& lists, const Pose& X_FM);
+  /** Those that candidates for contacts are tested with. @param X_FM of the pair */
+  void turn(const CandidateLists& lists, const Pose& X_FM);
+  /** And those for crossings. */
   void turnForCrossings(const CandidateLists& lists, const Pose& X_FM);
 
  private:
@@ -95,12 +96,9 @@ struct CandidateSearchBuffers {
 };
 
 /**
- * Candidates for every contact within pair.range that there is at the pair's pose, or at one where no point of either mesh near the other
- * has moved by more than `margin` [m] against it. Overwrites all lists but edge_face, which it clears.
+ * Candidates for every contact within pair.range and every crossing that there is at the pair's pose, or at one where no point of either
+ * mesh near the other has moved by more than `margin` [m] against it. Overwrites the lists.
  */
-void findContactCandidates(const MeshPair& pair, double margin, CandidateSearchBuffers* buffers, CandidateLists* lists);
-
-/** The same for edges that pass through faces: fills edge_face, clears the others. */
-void findCrossingCandidates(const MeshPair& pair, double margin, CandidateSearchBuffers* buffers, CandidateLists* lists);
+void findCandidates(const MeshPair& pair, double margin, CandidateSearchBuffers* buffers, CandidateLists* lists);
 
 }  // namespace blem_sim

@@ -15,7 +15,7 @@ using kernels::Vec4;
 
 // A list is made for so many steps of the present motion: longer ones cost more in every step, shorter ones are made anew too often.
 constexpr double MARGIN_STEPS = 16, FEWEST_STEPS = 3;
-constexpr double LEAST_MARGIN = 0.02, MOST_MARGIN = 0.4;  // of the range
+constexpr double LEAST_MARGIN = 0.02, MOST_MARGIN = 0.6;  // of the range
 constexpr double FIRST_MARGIN = 0.1;                      // of the range, where the motion is not known yet
 /** What a distance may be wrong by [m]: float boxes, rounding. */
 constexpr double DISTANCE_ROUNDING = 1e-7;
@@ -71,7 +71,7 @@ class Evaluation {
       : pair_(pair), lists_(*lists), buffers_(*buffers), found_(*found), exact_(pair, &found->close), fades_(pair, lists) {}
 
   void findContacts() {
-    buffers_.turned.turnForContacts(lists_, pair_.X_FM);
+    buffers_.turned.turn(lists_, pair_.X_FM);
     const auto& vertices = buffers_.turned.vertices;
     const auto& edges = buffers_.turned.edges;
     for (const bool moves : {true, false}) {
@@ -140,7 +140,8 @@ class Evaluation {
 
   void addPlain(bool moves, const Candidate& c, const kernels::VertexFaceHit& hit) {
     const auto& faces = lists_.near[!moves].faces;
-    const Feature vertex{FeatureKind::VERTEX, lists_.near[moves].vertices.names[c.a]}, patch{FeatureKind::FACE, lists_.near[!moves].patches[c.b]};
+    const Feature vertex{FeatureKind::VERTEX, lists_.near[moves].vertices.names[c.a]},
+        patch{FeatureKind::FACE, lists_.near[!moves].patches[c.b]};
     const Vector3 p = vector3(moves ? buffers_.turned.vertices[1][c.a] : lists_.near[0].vertices.records[c.a]);
     const Vector3 up = pair_.turned(vector3(faces.records[c.b].plane), !moves), foot = p - hit.height * up;
     const Vector3 normal = (hit.height > 0) == moves ? up : Vector3(-up);
@@ -179,7 +180,7 @@ class Evaluation {
       const Candidate& c = candidates[hit.candidate];
       const int m = lists_.near[1].edges.names[c.a], f = lists_.near[0].edges.names[c.b];
       if (!hit.is_plain) {
-        exact_.edgeEdge(m, f);
+        exact_.edgeEdge(m, f, moving[c.a], fixed[c.b]);
         continue;
       }
       const auto foot = [](const kernels::EdgeRecord& edge, double part) {
@@ -230,13 +231,10 @@ class ContactSearch {
 
   void run(bool keeps) {
     const bool apart = memory_.visited && motion_ + DISTANCE_ROUNDING < memory_.distance;
-    const double margin = keeps ? chooseMargin() : 0;
-    refresh(pair_.range, margin, findContactCandidates, &memory_.contacts);
-    Evaluation(pair_, &memory_.contacts.lists, &buffers_, &found_).findContacts();
-    if (!apart) {
-      refresh(0, margin, findCrossingCandidates, &memory_.crossings);
-      Evaluation(pair_, &memory_.crossings.lists, &buffers_, &found_).findCrossings();
-    }
+    refreshLists(keeps ? chooseMargin() : 0);
+    Evaluation evaluation(pair_, &memory_.lists, &buffers_, &found_);
+    evaluation.findContacts();
+    if (!apart) evaluation.findCrossings();
     memory_.visited = keeps;
     memory_.X_FM = pair_.X_FM;
     memory_.distance = found_.crossings.empty() ? leastGap() : 0;
@@ -244,7 +242,7 @@ class ContactSearch {
 
  private:
   void forget() {
-    memory_.contacts.known = memory_.crossings.known = memory_.visited = false;
+    memory_.visited = false;
     memory_.moving = pair_.moving.identity;
     memory_.fixed = pair_.fixed.identity;
   }
@@ -255,17 +253,15 @@ class ContactSearch {
     return std::clamp(MARGIN_STEPS * motion_, LEAST_MARGIN * pair_.range, MOST_MARGIN * pair_.range);
   }
 
-  template <typename Find>
-  void refresh(double range, double margin, Find&& find, KnownCandidates* known) {
-    if (known->known) {
-      const double motion = largestMotion(region_, pair_.X_FM, known->X_FM);
-      if (motion <= known->margin && range + motion <= known->range + known->margin) return;
+  void refreshLists(double margin) {
+    if (memory_.visited) {
+      const double motion = largestMotion(region_, pair_.X_FM, memory_.X_FM_lists);
+      if (motion <= memory_.margin && pair_.range + motion <= memory_.range + memory_.margin) return;
     }
-    find(pair_, margin, &buffers_.search, &known->lists);
-    known->known = true;
-    known->X_FM = pair_.X_FM;
-    known->range = range;
-    known->margin = margin;
+    findCandidates(pair_, margin, &buffers_.search, &memory_.lists);
+    memory_.X_FM_lists = pair_.X_FM;
+    memory_.range = pair_.range;
+    memory_.margin = margin;
   }
 
   double leastGap() const {

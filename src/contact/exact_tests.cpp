@@ -5,6 +5,7 @@
 #include "edge_pair.h"
 #include "face_borders.h"
 #include "feature_cones.h"
+#include "vectors.h"
 
 namespace blem_sim {
 
@@ -51,53 +52,52 @@ bool ExactTests::reachesOver(bool vertex_moves, int vertex, const Vector3& p, co
 
 // ---- edge and edge
 
-void ExactTests::edgeEdge(int moving, int fixed) {
-  const std::array<int, 2>&ends_m = pair_.moving.topology.edges[moving], &ends_f = pair_.fixed.topology.edges[fixed];
-  const Vector3 p0 = position(true, ends_m[0]), p1 = position(true, ends_m[1]), &q0 = pair_.fixed.mesh.vertices[ends_f[0]],
-                &q1 = pair_.fixed.mesh.vertices[ends_f[1]];
+namespace {
+
+/** Do both ends of an edge lie farther inside a face of the other edge than a contact within range could? Of its first two faces. */
+bool liesInside(const kernels::EdgeRecord& edge, const kernels::EdgeRecord& other, double range) {
+  const Vector3 p = vector3(other.start) - vector3(edge.start), q = p + vector3(other.along);
+  bool inside = false;
+  for (const kernels::Vec4& inward : edge.inward)
+    inside = inside || std::min(vector3(inward).dot(p), vector3(inward).dot(q)) > deepestInside(range);
+  return inside;
+}
+
+}  // namespace
+
+void ExactTests::edgeEdge(int moving, int fixed, const kernels::EdgeRecord& record_m, const kernels::EdgeRecord& record_f) {
+  const Vector3 p0 = vector3(record_m.start), p1 = p0 + vector3(record_m.along), q0 = vector3(record_f.start),
+                q1 = q0 + vector3(record_f.along);
   LinePair lines;
   if (!lines.find(p0, p1, q0, q1, pair_.range, pair_.range / FADE_SLOPE)) return;
+  const Feature m{FeatureKind::EDGE, moving}, f{FeatureKind::EDGE, fixed};
+  const bool few_faces = record_m.along.w == 0 && record_f.along.w == 0;
   EdgePair feet;
   if (!findEdgePair(lines, p0, q0, &feet)) {
+    if (liesInside(record_m, record_f, pair_.range) || liesInside(record_f, record_m, pair_.range)) return;
     EdgesBeyond beyond;
     findEdgesBeyond(lines, p0, q0, &beyond);
-    addFadingEdges(moving, fixed, beyond);
+    addFadingEdges(m, f, beyond, few_faces);
     return;
   }
-  const Feature m{FeatureKind::EDGE, moving}, f{FeatureKind::EDGE, fixed};
   Vector3 normal = feet.offset < 0 ? Vector3(-feet.axis) : feet.axis;
-  if (std::abs(feet.offset) <= TOUCH) normal = towardsMoving(pair_, normal, m, f, feet.point_q);
   const double gap = std::abs(feet.offset);
+  if (gap <= TOUCH) normal = towardsMoving(pair_, normal, m, f, feet.point_q);
   if (gap <= pair_.range && conesAllow(m, f, normal, EDGE_CONE_SLACK)) add(true, m, f, feet.point_p, feet.point_q, normal, gap);
 }
 
-void ExactTests::addFadingEdges(int moving, int fixed, const EdgesBeyond& edges) {
-  const Feature m{FeatureKind::EDGE, moving}, f{FeatureKind::EDGE, fixed};
+void ExactTests::addFadingEdges(const Feature& m, const Feature& f, const EdgesBeyond& edges, bool cones_known) {
   const Vector3 d = edges.point_p - edges.point_q;
   const double distance = d.norm(), gap = distance + FADE_SLOPE * edges.beyond;
-  if (distance <= TOUCH || gap > pair_.range || !conesAllow(m, f, edges.normal, EDGE_CONE_SLACK)) return;
-  if (liesInside(true, moving, fixed) || liesInside(false, fixed, moving)) return;
+  if (distance <= TOUCH || gap > pair_.range) return;
+  if (!cones_known && !conesAllow(m, f, edges.normal, EDGE_CONE_SLACK)) return;
   const auto leaves = [&](int end, bool moves, int edge, int partner, const Matrix3& R_PS, const Vector3& normal) {
     const MeshSide& side = pair_.side(moves);
     return end >= 0 && !isTakenOver({side, pair_.side(!moves), side.topology.edges[edge][end], partner, R_PS, normal});
   };
-  const bool fades = leaves(edges.end_p, true, moving, fixed, R_FM_, -(R_FM_.transpose() * edges.normal)) ||
-                     leaves(edges.end_q, false, fixed, moving, R_FM_.transpose(), edges.normal);
+  const bool fades = leaves(edges.end_p, true, m.index, f.index, R_FM_, -(R_FM_.transpose() * edges.normal)) ||
+                     leaves(edges.end_q, false, f.index, m.index, R_FM_.transpose(), edges.normal);
   if (fades) add(true, m, f, edges.point_p, edges.point_q, d / distance, gap);
-}
-
-bool ExactTests::liesInside(bool edge_moves, int edge, int other) const {
-  const MeshSide &side = pair_.side(edge_moves), &other_side = pair_.side(!edge_moves);
-  const Vector3 start = position(edge_moves, side.topology.edges[edge][0]);
-  const std::array<int, 2>& ends = other_side.topology.edges[other];
-  const Vector3 p = position(!edge_moves, ends[0]) - start, q = position(!edge_moves, ends[1]) - start;
-  const double limit = deepestInside(pair_.range);
-  bool inside = false;
-  for (int i = side.topology.edge_face_begin[edge]; i < side.topology.edge_face_begin[edge + 1]; ++i) {
-    const Vector3 inward = pair_.turned(side.topology.inward(side.mesh, edge, side.topology.edge_faces[i]), edge_moves);
-    inside = inside || std::min(inward.dot(p), inward.dot(q)) > limit;
-  }
-  return inside;
 }
 
 // ---- vertex and edge, vertex and vertex: where each is the other's local minimum

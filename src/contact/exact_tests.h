@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "face_shape.h"
+#include "kernels/records.h"
 #include "mesh_pair.h"
 
 namespace blem_sim {
@@ -17,19 +18,19 @@ class ExactTests {
 
   /** @param face element of the other mesh @return false if the vertex projects beside the face by more than CLOSED */
   bool vertexFace(bool vertex_moves, int vertex, int face);
-  void edgeEdge(int moving, int fixed);
+  /** @param record_m, record_f of the two edges in frame F; their cones are known to allow the contact but where they touch, or have more
+   * than two faces */
+  void edgeEdge(int moving, int fixed, const kernels::EdgeRecord& record_m, const kernels::EdgeRecord& record_f);
   /** Where each is the other's local minimum. */
   void vertexEdge(bool vertex_moves, int vertex, int edge);
   void vertexVertex(int moving, int fixed);
 
  private:
   bool reachesOver(bool vertex_moves, int vertex, const Vector3& p, const FaceShape& face) const;
-  void addFadingEdges(int moving, int fixed, const EdgesBeyond& edges);
+  void addFadingEdges(const Feature& m, const Feature& f, const EdgesBeyond& edges, bool cones_known);
   void addLocalMinimum(const Feature& m, const Feature& f, const Vector3& point_M, const Vector3& point_F, const Vector3& along);
   /** Does neither surface come closer to the other beside its feature? */
   bool conesAllow(const Feature& m, const Feature& f, const Vector3& normal, double slack) const;
-  /** Do both ends of an edge lie farther inside a face of the other edge than a contact within range could? */
-  bool liesInside(bool edge_moves, int edge, int other) const;
   void add(bool first_moves, const Feature& first, const Feature& second, const Vector3& point_first, const Vector3& point_second,
            const Vector3& normal, double gap);
   Vector3 position(bool moves, int vertex) const { return pair_.placed(pair_.side(moves).mesh.vertices[vertex], moves); }

@@ -52,8 +52,6 @@ void describeEdge(const MeshSide& side, int edge, LeafFeatures* leaf) {
 void describe(const MeshSide& side, std::uint32_t index, LeafFeatures* leaf) {
   const Bvh::Node& node = side.bvh.nodes()[index];
   assert(node.count <= kernels::MAX_LEAF_ELEMENTS);
-  leaf->geometry = side.identity;
-  leaf->leaf = index;
   leaf->search = 0;
   LeafShapes& shapes = leaf->shapes;
   shapes = LeafShapes{};
@@ -104,28 +102,30 @@ EdgeRecord edgeRecord(const MeshSide& side, int edge) {
     const int face = topology.edge_faces[begin + k];
     // By the face's own winding: does the edge run along its side, or against it?
     const Vector3i& e = side.mesh.elements[face];
-    const bool forward = (e[0] == ends[0] && e[1] == ends[1]) || (e[1] == ends[0] && e[2] == ends[1]) || (e[2] == ends[0] && e[0] == ends[1]);
+    const bool forward =
+        (e[0] == ends[0] && e[1] == ends[1]) || (e[1] == ends[0] && e[2] == ends[1]) || (e[2] == ends[0] && e[0] == ends[1]);
     record.inward[k] = vec4(topology.normals[face].cross(along) / (forward ? length : -length), 0);
   }
   return record;
 }
 
-/** The place that holds the leaf, or the one of its few that was used longest ago. */
+/** What is held of the leaf; else it takes the place, of its few, that was used longest ago. */
 LeafFeatures& LeafMemory::find(Table* table, const MeshSide& side, std::uint32_t leaf, std::uint64_t search) {
-  const std::size_t first = (leaf + 0x9E3779B9u * side.identity) % (CAPACITY / WAYS) * WAYS;
-  std::unique_ptr<LeafFeatures>* oldest = &(*table)[first];
-  for (std::size_t i = first; i < first + WAYS; ++i) {
-    std::unique_ptr<LeafFeatures>& held = (*table)[i];
-    if (!held) {
-      oldest = &held;
-      break;
+  Place* const first = &(*table)[(leaf + 0x9E3779B9u * side.identity) % (CAPACITY / WAYS) * WAYS];
+  Place* place = first;
+  for (Place* each = first; each != first + WAYS; ++each) {
+    if (each->geometry == side.identity && each->leaf == leaf) {
+      each->search = search;
+      return *each->features;
     }
-    if (held->geometry == side.identity && held->leaf == leaf) return *held;
-    if (held->search < (*oldest)->search) oldest = &held;
+    if (each->search < place->search) place = each;
   }
-  if (!*oldest) *oldest = std::make_unique<LeafFeatures>();
-  describe(side, leaf, oldest->get());
-  return **oldest;
+  if (!place->features) place->features = std::make_unique<LeafFeatures>();
+  place->geometry = side.identity;
+  place->leaf = leaf;
+  place->search = search;
+  describe(side, leaf, place->features.get());
+  return *place->features;
 }
 
 LeafFeatures& LeafMemory::standing(const MeshSide& side, std::uint32_t leaf, std::uint64_t search) {

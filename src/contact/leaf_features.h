@@ -12,8 +12,6 @@ namespace blem_sim {
 
 /** The features that the elements of one leaf own: its faces, and those of its edges and vertices that no other element asks for. */
 struct LeafFeatures {
-  std::uint64_t geometry = 0;  ///< whose; 0: nobody's
-  std::uint32_t leaf = 0;
   std::uint64_t search = 0;  ///< the last search that came here: slots and a moving leaf's turned shapes are of it
   int faces[kernels::MAX_LEAF_FACES], edges[kernels::MAX_LEAF_EDGES], vertices[kernels::MAX_LEAF_VERTICES];  ///< names in the mesh
   kernels::LeafShapes shapes;                                                                                ///< in the mesh's frame
@@ -41,7 +39,13 @@ class LeafMemory {
   LeafFeatures& moving(const MeshSide& side, std::uint32_t leaf, std::uint64_t search, const kernels::Motion& motion);
 
  private:
-  using Table = std::vector<std::unique_ptr<LeafFeatures>>;
+  struct Place {
+    std::uint64_t geometry = 0;  // whose leaf; 0: nobody's
+    std::uint32_t leaf = 0;
+    std::uint64_t search = 0;  // the last one that asked
+    std::unique_ptr<LeafFeatures> features;
+  };
+  using Table = std::vector<Place>;
   static constexpr std::size_t CAPACITY = 4096, WAYS = 4;  // of each table; places that a leaf may have
   static LeafFeatures& find(Table* table, const MeshSide& side, std::uint32_t leaf, std::uint64_t search);
 

@@ -6,6 +6,9 @@
 namespace blem_sim::kernels {
 namespace {
 
+// Wide vectors are passed inside this file only.
+#pragma GCC diagnostic ignored "-Wpsabi"
+
 constexpr unsigned ALL_LANES = (1u << LANES) - 1;
 
 /** Which candidates the lanes hold: behind the last one it is repeated, and masked. */
@@ -74,24 +77,32 @@ inline Doubles insideSides(const Batch& batch, const FaceRecord* faces, const Ve
 
 // ---- motions
 
-void turnPoints(const Vec4* in, std::uint32_t count, const Motion& motion, Vec4* out) {
-  const double* R = motion.R;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const Vec4 p = in[i];
-    out[i] = {R[0] * p.x + R[1] * p.y + R[2] * p.z + motion.t[0], R[3] * p.x + R[4] * p.y + R[5] * p.z + motion.t[1],
-              R[6] * p.x + R[7] * p.y + R[8] * p.z + motion.t[2], p.w};
-  }
-}
+typedef double Quad __attribute__((vector_size(32)));
 
-inline Vec4 turned(const Vec4& v, const double* R) {
-  return {R[0] * v.x + R[1] * v.y + R[2] * v.z, R[3] * v.x + R[4] * v.y + R[5] * v.z, R[6] * v.x + R[7] * v.y + R[8] * v.z, v.w};
+/** A motion by columns, so that a vector turns in three products. */
+struct Turn {
+  explicit Turn(const Motion& m)
+      : x{m.R[0], m.R[3], m.R[6], 0}, y{m.R[1], m.R[4], m.R[7], 0}, z{m.R[2], m.R[5], m.R[8], 0}, shift{m.t[0], m.t[1], m.t[2], 0} {}
+  void direction(const Vec4& in, Vec4* out) const { store(in.x * x + in.y * y + in.z * z, in.w, out); }
+  void point(const Vec4& in, Vec4* out) const { store(in.x * x + in.y * y + in.z * z + shift, in.w, out); }
+  static void store(Quad v, double w, Vec4* out) {
+    *reinterpret_cast<Quad*>(out) = v;
+    out->w = w;
+  }
+  Quad x, y, z, shift;
+};
+
+void turnPoints(const Vec4* in, std::uint32_t count, const Motion& motion, Vec4* out) {
+  const Turn turn(motion);
+  for (std::uint32_t i = 0; i < count; ++i) turn.point(in[i], &out[i]);
 }
 
 void turnEdges(const EdgeRecord* in, std::uint32_t count, const Motion& motion, EdgeRecord* out) {
+  const Turn turn(motion);
   for (std::uint32_t i = 0; i < count; ++i) {
-    turnPoints(&in[i].start, 1, motion, &out[i].start);
-    out[i].along = turned(in[i].along, motion.R);
-    for (int k = 0; k < 2; ++k) out[i].inward[k] = turned(in[i].inward[k], motion.R);
+    turn.point(in[i].start, &out[i].start);
+    turn.direction(in[i].along, &out[i].along);
+    for (int k = 0; k < 2; ++k) turn.direction(in[i].inward[k], &out[i].inward[k]);
   }
 }
 
