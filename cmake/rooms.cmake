@@ -13,6 +13,9 @@ target_include_directories(blem_sim_model SYSTEM PRIVATE ${PCL_INCLUDE_DIRS} ${A
 target_link_libraries(blem_sim_model PRIVATE PkgConfig::URDFDOM PkgConfig::CONSOLE_BRIDGE PkgConfig::TINYXML2 assimp fmt::fmt
   ${PCL_COMMON_LIBRARIES} ${PCL_IO_LIBRARIES} ${PCL_FEATURES_LIBRARIES} ${PCL_SEARCH_LIBRARIES} ${PCL_SURFACE_LIBRARIES})
 blem_sim_room(contact blem_sim_geometry)
+# Square roots and comparisons as vector code; changes no result, only what becomes of errno and the flags of exceptions.
+set_source_files_properties(${PROJECT_SOURCE_DIR}/src/contact/reduction_lanes.cpp PROPERTIES COMPILE_OPTIONS
+  "-fno-math-errno;-fno-trapping-math")
 blem_sim_room(dynamics blem_sim_contact blem_sim_model)
 target_link_libraries(blem_sim_dynamics PRIVATE PkgConfig::ODE PkgConfig::TBB)
 blem_sim_room(sim blem_sim_dynamics)

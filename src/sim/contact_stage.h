@@ -95,6 +95,8 @@ class ContactStage {
   std::vector<ContactManifold> found_, current_, reduced_;
   std::vector<ContactConstraint> constraints_;
   std::vector<SolvedContact> solved_;
+  std::vector<int> model_a_, model_b_;  // of each of current_
+  std::vector<int> contacts_of_model_;
   bool budget_used_up_ = false;
 };
 

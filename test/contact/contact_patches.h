@@ -74,6 +74,21 @@ inline ContactManifold rim(RandomShapes& random, double tremble) {
   return manifold;
 }
 
+inline Contacts reducedBy(const Reduction& method, const Contacts& contacts, int k) {
+  Contacts reduced;
+  method.reduce(contacts, k, {}, &reduced);
+  return reduced;
+}
+
+/** Reduces manifolds in place. @return how many contacts were left out */
+inline int reduceAll(std::vector<ContactManifold>& manifolds, const std::vector<int>& model_a, const std::vector<int>& model_b,
+                     const std::vector<ContactBudget>& budgets, const Reduction& method, ReductionMemory* memory) {
+  std::vector<ContactManifold> reduced;
+  const int left_out = reduceManifolds(manifolds, model_a, model_b, budgets, method, memory, &reduced);
+  manifolds = std::move(reduced);
+  return left_out;
+}
+
 inline ContactManifold manifoldOf(int a, int b, Contacts contacts) {
   ContactManifold manifold;
   manifold.a = a;

@@ -11,7 +11,7 @@ namespace {
 
 ContactIds reduced(ContactManifold manifold, int k, ReductionMemory* memory) {
   std::vector<ContactManifold> manifolds = {std::move(manifold)};
-  reduceManifolds(manifolds, {0}, {1}, {{k}, {INT_MAX}}, *findReduction("hull"), memory);
+  reduceAll(manifolds, {0}, {1}, {{k}, {INT_MAX}}, *findReduction("hull"), memory);
   ContactIds ids;
   for (const Contact& c : manifolds[0].contacts) ids.push_back(c.id);
   return ids;

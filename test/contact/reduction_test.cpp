@@ -122,8 +122,7 @@ TEST_P(EveryReduction, KeepsItsPromises) {
     deepest = std::max(deepest, c.depth);
   }
   for (int k : {1, 2, 3, 7, 20, 50}) {
-    Contacts reduced = given;
-    method().reduce(reduced, k, {});
+    const Contacts reduced = reducedBy(method(), given, k);
     SCOPED_TRACE(k);
     EXPECT_EQ(reduced.empty(), given.empty());
     if (keepsAll()) {
@@ -143,21 +142,17 @@ TEST_P(EveryReduction, KeepsItsPromises) {
 
 TEST_P(EveryReduction, DoesNotDependOnTheOrderOfItsInput) {
   for (int k : {3, 20}) {
-    Contacts reference = input();
-    method().reduce(reference, k, {});
+    const Contacts reference = reducedBy(method(), input(), k);
     for (unsigned seed = 1; seed <= 3; ++seed) {
-      Contacts other = shuffled(input(), seed);
-      method().reduce(other, k, {});
+      const Contacts other = reducedBy(method(), shuffled(input(), seed), k);
       EXPECT_TRUE(sameAll(reference, other)) << "k " << k << ", seed " << seed;
     }
   }
 }
 
 TEST_P(EveryReduction, ChangesNothingTheSecondTime) {
-  Contacts once = input();
-  method().reduce(once, 20, {});
-  Contacts twice = once;
-  method().reduce(twice, 20, {});
+  const Contacts once = reducedBy(method(), input(), 20);
+  const Contacts twice = reducedBy(method(), once, 20);
   EXPECT_TRUE(sameAll(once, twice));
 }
 
@@ -172,9 +167,9 @@ TEST_P(EveryReduction, DropsContactsWithoutNumbersOrDirection) {
   contacts.push_back(bad);
   bad = makeContact({std::numeric_limits<double>::infinity(), 0, 0}, {0, 0, 1}, 0, 5002);
   contacts.push_back(bad);
-  method().reduce(contacts, 20, {});
-  EXPECT_EQ(contacts.empty(), sound == 0);
-  for (const Contact& c : contacts) EXPECT_LT(c.id, 5000u);
+  const Contacts reduced = reducedBy(method(), contacts, 20);
+  EXPECT_EQ(reduced.empty(), sound == 0);
+  for (const Contact& c : reduced) EXPECT_LT(c.id, 5000u);
 }
 
 std::string caseName(const ::testing::TestParamInfo<std::tuple<int, int>>& info) {
@@ -355,10 +350,8 @@ TEST(ReduceKmeans, AveragesWhatBelongsTogether) {
     contacts.push_back(makeContact({0.001 * i, 0, 0}, {0, 0, 1}, 1e-3, i));
     contacts.push_back(makeContact({1 + 0.001 * i, 0, 0}, {0, 0, 1}, 2e-3, 100 + i));
   }
-  Contacts by_linkage = contacts;
-  reduceKmeans(contacts, 2);
-  reduceHierarchical(by_linkage, 2);
-  for (const Contacts& reduced : {contacts, by_linkage}) {
+  for (const char* name : {"kmeans", "hierarchical"}) {
+    const Contacts reduced = reducedBy(*findReduction(name), contacts, 2);
     ASSERT_EQ(reduced.size(), 2u);
     EXPECT_NEAR(reduced[0].point.x(), 0.0045, 1e-12);
     EXPECT_NEAR(reduced[1].point.x(), 1.0045, 1e-12);
