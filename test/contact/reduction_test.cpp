@@ -34,17 +34,6 @@ Contacts sphereCap(int count) {
   return contacts;
 }
 
-// Largest component along (a, b) of the wrenches about the origin that contacts with unit normal force give.
-double support(const Contacts& contacts, const Vector3& a, const Vector3& b, double friction = 0.5) {
-  double best = -std::numeric_limits<double>::infinity();
-  for (const Contact& c : contacts) {
-    const Vector3 g = a + b.cross(c.point);
-    const double along = g.dot(c.normal_BA);
-    best = std::max(best, along + friction * (g - along * c.normal_BA).norm());
-  }
-  return best;
-}
-
 bool same(const Contact& a, const Contact& b) {
   return a.point == b.point && a.normal_BA == b.normal_BA && a.depth == b.depth && a.id == b.id && a.pierced == b.pierced;
 }
@@ -308,27 +297,6 @@ TEST(ReduceHull, KeepsAllSidesOfARing) {
     const Vector3 a(std::cos(d * M_PI / 180), std::sin(d * M_PI / 180), 0);
     EXPECT_NEAR(support(reduced, a, Vector3::Zero()), support(all, a, Vector3::Zero()), 0.15);
   }
-}
-
-struct SupportError {
-  double mean = 0, max = 0;
-};
-
-// Difference of the support functions of the friction wrenches over 500 directions, relative to the mean; torques at half the patch's size.
-SupportError supportError(const Contacts& all, const Contacts& reduced) {
-  Noise noise(31);
-  double sum = 0, worst = 0, level = 0;
-  for (int d = 0; d < 500; ++d) {
-    Eigen::Matrix<double, 6, 1> w;
-    for (int i = 0; i < 6; ++i) w[i] = noise() + noise() + noise();
-    w.normalize();
-    const Vector3 a = w.head<3>(), b = w.tail<3>() / 0.05;
-    const double difference = support(all, a, b) - support(reduced, a, b);
-    sum += difference;
-    worst = std::max(worst, difference);
-    level += std::abs(support(all, a, b));
-  }
-  return {sum / level, worst * 500 / level};
 }
 
 TEST(ReduceHull, SpansTheWrenchesOfANoisyPatch) {
