@@ -32,6 +32,21 @@ TEST(ReductionMemory, KeepsItsChoiceAmongEquals) {
   EXPECT_GT(forgetful, 0);  // else there is nothing to remember
 }
 
+TEST(ReductionMemory, KeepsItsChoiceInACrowd) {
+  Noise noise(8);
+  ReductionMemory memory;
+  const Contacts patch = noisyPatch(2000);
+  const ContactIds first = reduced(manifoldOf(3, 7, patch), 20, &memory);
+  for (int step = 0; step < 20; ++step) {
+    Contacts now = patch;
+    for (Contact& c : now) {
+      c.point += 1e-7 * Vector3(noise(), noise(), noise());
+      c.depth += 1e-7 * noise();
+    }
+    EXPECT_EQ(reduced(manifoldOf(3, 7, now), 20, &memory), first) << step;
+  }
+}
+
 TEST(ReductionMemory, GivesUpAChoiceThatLacksMuch) {
   RandomShapes random(4);
   ReductionMemory memory;

@@ -72,6 +72,18 @@ Contacts opposite() {
   return contacts;
 }
 
+// Many normals, and places that tie in many directions.
+Contacts roughGrid() {
+  Contacts contacts;
+  for (int i = 0; i < 30; ++i) {
+    for (int j = 0; j < 30; ++j) {
+      const Vector3 normal(0.004 * (i % 25 - 12), 0.004 * (j % 25 - 12), 1);
+      contacts.push_back(makeContact({0.002 * i, 0.002 * j, 0}, normal, 1e-3, 30 * i + j));
+    }
+  }
+  return contacts;
+}
+
 const InputCase INPUTS[] = {
     {"empty", [] { return Contacts(); }},
     {"one",
@@ -93,6 +105,7 @@ const InputCase INPUTS[] = {
     {"duplicates", duplicates},
     {"line", line},
     {"opposite", opposite},
+    {"rough_grid", roughGrid},
 };
 
 class EveryReduction : public ::testing::TestWithParam<std::tuple<int, int>> {
