@@ -25,7 +25,7 @@ void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 namespace blem_sim {
 namespace {
 
-constexpr int CALLS = 400, STEPS = 8, WARM_UP = 2 * STEPS;
+constexpr int CALLS = 400, STEPS = 2, WARM_UP = 20;  // two buffers of contacts, as in the simulation
 constexpr double MOTION = 1e-5;  // [m] from step to step
 
 struct Patch {
