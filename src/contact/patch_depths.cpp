@@ -8,17 +8,6 @@
 
 namespace blem_sim {
 
-namespace {
-
-constexpr double FLATNESS = 1e-7;  // [m] a triangle less high has no area
-
-double distance(const PlanePoint& a, const PlanePoint& b) {
-  const double dx = b.x - a.x, dy = b.y - a.y;
-  return std::sqrt(dx * dx + dy * dy);
-}
-
-}  // namespace
-
 double PatchDepths::interpolatedDepth(const Facet& facet, const PlanePoint& p) {
   const double area = cross(facet.a, facet.b, facet.c);
   if (area > 0) {

@@ -1,6 +1,7 @@
 // Contacts of a flat patch that are deeper than its corners tell.
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include "blem_sim/contact/manifold.h"
@@ -8,6 +9,8 @@
 
 namespace blem_sim {
 
+/** [m] A corner that stands out less is none: where vertices coincide, merging moves points about. */
+constexpr double FLATNESS = 1e-7;
 constexpr int NO_POINT = -1;
 
 /** A contact seen along the normal; points form lists. */
@@ -19,6 +22,11 @@ struct PlanePoint {
 /** Twice the area of a triangle, positive if counter-clockwise. */
 inline double cross(const PlanePoint& o, const PlanePoint& a, const PlanePoint& b) {
   return (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
+}
+
+inline double distance(const PlanePoint& a, const PlanePoint& b) {
+  const double dx = b.x - a.x, dy = b.y - a.y;
+  return std::sqrt(dx * dx + dy * dy);
 }
 
 /** Interpolates depths over the corners of a patch, and raises the interpolation to its highest point, again and again, until no point is

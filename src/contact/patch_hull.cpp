@@ -14,8 +14,6 @@ namespace blem_sim {
 
 namespace {
 
-constexpr double FLATNESS = 1e-7;  // [m] a corner that stands out less is none: where vertices coincide, merging moves points about
-
 struct Buffers {
   std::vector<PlanePlace> places;
   std::vector<int> outside;
@@ -29,11 +27,6 @@ bool planePointBefore(const std::vector<Contact>& contacts, const PlanePoint& a,
   if (a.y != b.y) return a.y < b.y;
   if (a.depth != b.depth) return a.depth > b.depth;
   return a.contact != b.contact && contactBefore(contacts[a.contact], contacts[b.contact]);
-}
-
-double distance(const PlanePoint& a, const PlanePoint& b) {
-  const double dx = b.x - a.x, dy = b.y - a.y;
-  return std::sqrt(dx * dx + dy * dy);
 }
 
 PlanePoint pointOf(const PlanePlace& place, int contact) { return {place.x, place.y, place.depth, contact, NO_POINT}; }
