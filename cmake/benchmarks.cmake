@@ -11,7 +11,9 @@ if(benchmark_FOUND)
     ${PROJECT_SOURCE_DIR}/benchmark/plain_tree.cpp)
   target_link_libraries(solver_benchmark benchmark::benchmark)
   target_link_libraries(contact_benchmark benchmark::benchmark)
-  add_custom_target(benchmarks DEPENDS solver_benchmark contact_benchmark)
+  add_long_run(reduction_benchmark ${PROJECT_SOURCE_DIR}/benchmark/reduction_benchmark.cpp)
+  target_link_libraries(reduction_benchmark benchmark::benchmark)
+  add_custom_target(benchmarks DEPENDS solver_benchmark contact_benchmark reduction_benchmark)
 endif()
 
 # The peers of the comparison, as Debian packages them.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace blem_sim {
 
@@ -31,14 +32,31 @@ bool contactBefore(const Contact& a, const Contact& b) {
   return a.pierced < b.pierced;
 }
 
-void makeCanonical(std::vector<Contact>& contacts) {
+void makeUsable(std::vector<Contact>& contacts) {
   contacts.erase(std::remove_if(contacts.begin(), contacts.end(), [](const Contact& c) { return !isUsable(c); }), contacts.end());
   for (Contact& contact : contacts) {
     // A normal that is unit already keeps its bits: reducing twice changes nothing.
     const double length = contact.normal_BA.norm();
     if (std::abs(length - 1.0) > 1e-14) contact.normal_BA /= length;
   }
+}
+
+void makeCanonical(std::vector<Contact>& contacts) {
+  makeUsable(contacts);
   if (!std::is_sorted(contacts.begin(), contacts.end(), contactBefore)) std::sort(contacts.begin(), contacts.end(), contactBefore);
+}
+
+void sortCanonically(const std::vector<Contact>& contacts, std::vector<int>* indices) {
+  struct Key {
+    std::uint64_t id;
+    int index;
+  };
+  static thread_local std::vector<Key> keys;
+  keys.clear();
+  for (const int index : *indices) keys.push_back({contacts[index].id, index});
+  std::sort(keys.begin(), keys.end(),
+            [&](const Key& a, const Key& b) { return a.id != b.id ? a.id < b.id : contactBefore(contacts[a.index], contacts[b.index]); });
+  for (std::size_t i = 0; i < keys.size(); ++i) (*indices)[i] = keys[i].index;
 }
 
 }  // namespace blem_sim

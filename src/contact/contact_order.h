@@ -16,4 +16,10 @@ bool contactBefore(const Contact& a, const Contact& b);
 /** Drops contacts with non-finite numbers or no direction, makes the normals unit length and sorts by contactBefore. */
 void makeCanonical(std::vector<Contact>& contacts);
 
+/** Drops contacts as makeCanonical does, and makes the normals unit length, in the order given. */
+void makeUsable(std::vector<Contact>& contacts);
+
+/** Sorts indices of contacts by contactBefore. */
+void sortCanonically(const std::vector<Contact>& contacts, std::vector<int>* indices);
+
 }  // namespace blem_sim

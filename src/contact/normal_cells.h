@@ -1,7 +1,7 @@
-// Contacts in groups of alike normals: cells of a grid over normals.
+// Contacts in groups of equal normals: cells of a grid over normals.
 #pragma once
 
-#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -9,38 +9,30 @@
 
 namespace blem_sim {
 
-/** Number of the cell that a normal lies in; axis-aligned normals lie in the middles of cells, so that theirs do not fall apart at a
- * border. @param cell its size, at least 2^-15 */
-inline std::uint64_t normalCell(const Vector3& normal, double cell) {
-  constexpr int OFFSET = 1 << 15;  // makes every number positive; one has 16 bits
-  const auto number = [cell](double part) { return static_cast<std::uint64_t>(part / cell + OFFSET + 0.5); };
-  return number(normal.x()) << 32 | number(normal.y()) << 16 | number(normal.z());
-}
+/** Contacts by the cell of a fine grid over normals that theirs lies in. Keeps its memory. */
+class NormalCells {
+ public:
+  static constexpr int MOST = 400;  ///< cells
 
-/** Unit normal in the middle of a cell. */
-inline Vector3 cellNormal(std::uint64_t cell) {
-  const auto part = [cell](int shift) { return static_cast<double>(static_cast<int>(cell >> shift & 0xFFFF) - (1 << 15)); };
-  return Vector3(part(32), part(16), part(0)).normalized();
-}
+  /** @return false if there are more than MOST cells; none is formed then. Whether does not depend on the order of the contacts. */
+  bool group(const std::vector<Contact>& contacts);
 
-/** Calls visit(members, normal) for every cell, in order; members ascending, the visitor may reorder them. */
-template <typename Visit>
-void forEachNormalCell(const std::vector<Contact>& contacts, double cell, Visit&& visit) {
-  struct Key {
-    std::uint64_t cell;
-    int contact;
-    bool operator<(const Key& other) const { return cell != other.cell ? cell < other.cell : contact < other.contact; }
-  };
-  std::vector<Key> keys(contacts.size());
-  for (std::size_t i = 0; i < contacts.size(); ++i) keys[i] = {normalCell(contacts[i].normal_BA, cell), static_cast<int>(i)};
-  if (!std::is_sorted(keys.begin(), keys.end())) std::sort(keys.begin(), keys.end());
-  std::vector<int> members;
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    members.push_back(keys[i].contact);
-    if (i + 1 < keys.size() && keys[i].cell == keys[i + 1].cell) continue;
-    visit(members, cellNormal(keys[i].cell));
-    members.clear();
-  }
-}
+  int count() const { return static_cast<int>(cells_.size()); }
+  /** Unit normal in the middle of a cell. */
+  Vector3 normal(int cell) const;
+  /** Indices of its contacts, which may be reordered. */
+  int* begin(int cell) { return members_.data() + ends_[cell]; }
+  int* end(int cell) { return members_.data() + ends_[cell + 1]; }
+
+ private:
+  static constexpr std::size_t SLOTS = 1024;
+  /** -1 if there is no room for another. */
+  int cellOf(std::uint64_t key);
+
+  std::array<std::int16_t, SLOTS> slots_;
+  std::vector<std::uint64_t> cells_;
+  std::vector<std::int16_t> cell_of_;
+  std::vector<int> ends_, members_;
+};
 
 }  // namespace blem_sim

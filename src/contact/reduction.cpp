@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <climits>
-#include <map>
 #include <numeric>
 
 #include "contact_order.h"
@@ -11,62 +10,93 @@ namespace blem_sim {
 
 namespace {
 
+// Kept between calls.
+struct Buffers {
+  std::vector<Contact> sound, pierced, more, again;
+  std::vector<int> limits, touching, counts, shares;
+  std::vector<std::pair<int, int>> of_models;    // (model, manifold)
+  std::vector<std::pair<long, int>> remainders;  // negative, so that the largest comes first
+};
+
 // Sound contacts take part in the choice; pierced ones, whose directions are the fallback's, get the room that is left, and a quarter of k
 // if they are so many: else what crossed would stay crossed.
-void reduceManifold(ContactManifold& manifold, int k, const Reduction& method, const ContactIds& chosen_before) {
-  std::vector<Contact>& contacts = manifold.contacts;
-  std::vector<Contact> pierced;
-  const auto first_pierced = std::stable_partition(contacts.begin(), contacts.end(), [](const Contact& c) { return !c.pierced; });
-  pierced.assign(first_pierced, contacts.end());
-  contacts.erase(first_pierced, contacts.end());
-  const int reserved = std::min(k / 4, static_cast<int>(pierced.size()));
-  method.reduce(contacts, k - reserved, chosen_before);
-  const int room = k - static_cast<int>(contacts.size());
-  if (pierced.empty() || room <= 0) return;
-  method.reduce(pierced, room, chosen_before);
-  contacts.insert(contacts.end(), pierced.begin(), pierced.end());
-  std::sort(contacts.begin(), contacts.end(), contactBefore);
+void reduceContacts(const std::vector<Contact>& contacts, int k, const Reduction& method, const ContactIds& chosen_before, Buffers* buffers,
+                    std::vector<Contact>* reduced) {
+  const auto is_pierced = [](const Contact& c) { return c.pierced; };
+  if (std::none_of(contacts.begin(), contacts.end(), is_pierced)) return method.reduce(contacts, k, chosen_before, reduced);
+  buffers->sound.clear();
+  buffers->pierced.clear();
+  for (const Contact& contact : contacts) (contact.pierced ? buffers->pierced : buffers->sound).push_back(contact);
+  const int reserved = std::min(k / 4, static_cast<int>(buffers->pierced.size()));
+  method.reduce(buffers->sound, k - reserved, chosen_before, reduced);
+  const int room = k - static_cast<int>(reduced->size());
+  if (room <= 0) return;
+  method.reduce(buffers->pierced, room, chosen_before, &buffers->more);
+  reduced->insert(reduced->end(), buffers->more.begin(), buffers->more.end());
+  std::sort(reduced->begin(), reduced->end(), contactBefore);
 }
 
 /** k shared by `counts` in proportion, by largest remainders; nobody gets more than it has; each at least `floor`, if it has that. */
-std::vector<int> fairShares(const std::vector<int>& counts, int k) {
+void fairShares(int k, Buffers* buffers) {
+  const std::vector<int>& counts = buffers->counts;
+  std::vector<int>& shares = buffers->shares;
   const int parties = static_cast<int>(counts.size());
   const long total = std::accumulate(counts.begin(), counts.end(), 0L);
   const int floor = 3L * parties <= k ? 3 : (parties <= k ? 1 : 0);
-  std::vector<int> shares(parties);
-  std::vector<std::pair<long, int>> remainders;  // negative, so that the largest comes first
+  shares.resize(parties);
+  buffers->remainders.clear();
   for (int i = 0; i < parties; ++i) {
     const long part = static_cast<long>(k) * counts[i];
     shares[i] = std::max(static_cast<int>(part / total), std::min(floor, counts[i]));
-    remainders.push_back({-(part % total), i});
+    buffers->remainders.push_back({-(part % total), i});
   }
-  std::sort(remainders.begin(), remainders.end());
+  std::sort(buffers->remainders.begin(), buffers->remainders.end());
   int left = k - std::accumulate(shares.begin(), shares.end(), 0);
-  for (std::size_t i = 0; i < remainders.size() && left > 0; ++i) {
-    const int party = remainders[i].second;
+  for (std::size_t i = 0; i < buffers->remainders.size() && left > 0; ++i) {
+    const int party = buffers->remainders[i].second;
     if (shares[party] >= counts[party]) continue;
     ++shares[party];
     --left;
   }
   // The floors may have overdrawn: the largest give back, one at a time.
   for (; left < 0; ++left) --*std::max_element(shares.begin(), shares.end());
-  return shares;
 }
 
+using ModelManifold = std::vector<std::pair<int, int>>::const_iterator;
+
 // Where a model has more contacts than its k, lowers the limits of its manifolds to their shares.
-void applyBudget(const std::vector<ContactManifold>& manifolds, const std::vector<int>& of_model, int k, std::vector<int>& limits) {
-  std::vector<int> counts, touching;
+void applyBudget(const std::vector<ContactManifold>& reduced, ModelManifold begin, ModelManifold end, int k, Buffers* buffers) {
+  std::vector<int>&limits = buffers->limits, &touching = buffers->touching;
+  touching.clear();
+  buffers->counts.clear();
   int total = 0;
-  for (int m : of_model) {
-    const int count = std::min(limits[m], static_cast<int>(manifolds[m].contacts.size()));
+  for (ModelManifold of_model = begin; of_model != end; ++of_model) {
+    const int m = of_model->second;
+    const int count = std::min(limits[m], static_cast<int>(reduced[m].contacts.size()));
     if (count == 0) continue;
     touching.push_back(m);
-    counts.push_back(count);
+    buffers->counts.push_back(count);
     total += count;
   }
   if (total <= k) return;
-  const std::vector<int> shares = fairShares(counts, k);
-  for (std::size_t i = 0; i < touching.size(); ++i) limits[touching[i]] = std::min(limits[touching[i]], shares[i]);
+  fairShares(k, buffers);
+  for (std::size_t i = 0; i < touching.size(); ++i) limits[touching[i]] = std::min(limits[touching[i]], buffers->shares[i]);
+}
+
+// Lowers limits until every model keeps to its budget.
+void applyBudgets(const std::vector<ContactManifold>& reduced, const std::vector<int>& model_a, const std::vector<int>& model_b,
+                  const std::vector<ContactBudget>& budgets, Buffers* buffers) {
+  std::vector<std::pair<int, int>>& of_models = buffers->of_models;
+  of_models.clear();
+  for (int m = 0; m < static_cast<int>(reduced.size()); ++m) {
+    of_models.push_back({model_a[m], m});
+    if (model_b[m] != model_a[m]) of_models.push_back({model_b[m], m});
+  }
+  std::sort(of_models.begin(), of_models.end());
+  for (ModelManifold begin = of_models.begin(), end = begin; begin != of_models.end(); begin = end) {
+    while (end != of_models.end() && end->first == begin->first) ++end;
+    applyBudget(reduced, begin, end, budgets[begin->first].max_contacts, buffers);
+  }
 }
 
 int countContacts(const std::vector<ContactManifold>& manifolds) {
@@ -94,38 +124,40 @@ const Reduction* findReduction(const std::string& name) {
   return nullptr;
 }
 
-void reduceNone(std::vector<Contact>& contacts, int, const ContactIds&) { makeCanonical(contacts); }
+void reduceNone(const std::vector<Contact>& contacts, int, const ContactIds&, std::vector<Contact>* reduced) {
+  *reduced = contacts;
+  makeCanonical(*reduced);
+}
 
-int reduceManifolds(std::vector<ContactManifold>& manifolds, const std::vector<int>& model_a, const std::vector<int>& model_b,
-                    const std::vector<ContactBudget>& budgets, const Reduction& method, ReductionMemory* memory) {
-  const int before = countContacts(manifolds);
+int reduceManifolds(const std::vector<ContactManifold>& manifolds, const std::vector<int>& model_a, const std::vector<int>& model_b,
+                    const std::vector<ContactBudget>& budgets, const Reduction& method, ReductionMemory* memory,
+                    std::vector<ContactManifold>* reduced) {
+  static thread_local Buffers buffers;
+  const bool all = method.reduce == reduceNone;
   const int count = static_cast<int>(manifolds.size());
-  if (method.reduce == reduceNone) {
-    for (ContactManifold& manifold : manifolds) reduceNone(manifold.contacts, INT_MAX, {});
-    return before - countContacts(manifolds);
-  }
-  std::map<int, std::vector<int>> manifolds_of;
+  buffers.limits.resize(count);
+  reduced->resize(count);
   for (int m = 0; m < count; ++m) {
-    manifolds_of[model_a[m]].push_back(m);
-    if (model_b[m] != model_a[m]) manifolds_of[model_b[m]].push_back(m);
+    ContactManifold& kept = (*reduced)[m];
+    kept.a = manifolds[m].a;
+    kept.b = manifolds[m].b;
+    kept.layer = manifolds[m].layer;
+    kept.pierced = manifolds[m].pierced;
+    buffers.limits[m] = all ? INT_MAX : std::min(budgets[model_a[m]].max_contacts, budgets[model_b[m]].max_contacts);
+    reduceContacts(manifolds[m].contacts, buffers.limits[m], method, memory->of(manifolds[m]), &buffers, &kept.contacts);
   }
+  if (all) return countContacts(manifolds) - countContacts(*reduced);
 
-  std::vector<int> limits(count);
+  applyBudgets(*reduced, model_a, model_b, budgets, &buffers);
   for (int m = 0; m < count; ++m) {
-    limits[m] = std::min(budgets[model_a[m]].max_contacts, budgets[model_b[m]].max_contacts);
-    reduceManifold(manifolds[m], limits[m], method, memory->of(manifolds[m]));
+    std::vector<Contact>& kept = (*reduced)[m].contacts;
+    if (buffers.limits[m] >= static_cast<int>(kept.size())) continue;
+    buffers.again = kept;
+    kept.clear();
+    if (buffers.limits[m] > 0) reduceContacts(buffers.again, buffers.limits[m], method, memory->of(manifolds[m]), &buffers, &kept);
   }
-  for (const auto& [model, of_model] : manifolds_of) applyBudget(manifolds, of_model, budgets[model].max_contacts, limits);
-  for (int m = 0; m < count; ++m) {
-    if (limits[m] >= static_cast<int>(manifolds[m].contacts.size())) continue;
-    if (limits[m] == 0) {
-      manifolds[m].contacts.clear();
-    } else {
-      reduceManifold(manifolds[m], limits[m], method, memory->of(manifolds[m]));
-    }
-  }
-  memory->remember(manifolds);
-  return before - countContacts(manifolds);
+  memory->remember(*reduced);
+  return countContacts(manifolds) - countContacts(*reduced);
 }
 
 }  // namespace blem_sim

@@ -154,31 +154,34 @@ class Linkage {
 
 }  // namespace
 
-void reduceKmeans(std::vector<Contact>& contacts, int k, const ContactIds&) {
-  makeCanonical(contacts);
-  if (static_cast<int>(contacts.size()) <= k) return;
-  const std::vector<Feature> features = featuresOf(contacts);
-  std::vector<Feature> centres = farthestPoints(contacts, features, k);
-  std::vector<int> cluster_of(contacts.size(), -1);
+void reduceKmeans(const std::vector<Contact>& contacts, int k, const ContactIds&, std::vector<Contact>* reduced) {
+  *reduced = contacts;
+  makeCanonical(*reduced);
+  if (static_cast<int>(reduced->size()) <= k) return;
+  const std::vector<Feature> features = featuresOf(*reduced);
+  std::vector<Feature> centres = farthestPoints(*reduced, features, k);
+  std::vector<int> cluster_of(reduced->size(), -1);
   for (int round = 0; round < k && improve(features, centres, cluster_of); ++round) {
   }
-  takeMeans(contacts, cluster_of, k);
+  takeMeans(*reduced, cluster_of, k);
 }
 
-void reduceHierarchical(std::vector<Contact>& contacts, int k, const ContactIds&) {
-  makeCanonical(contacts);
-  if (static_cast<int>(contacts.size()) <= k) return;
-  if (contacts.size() > MANY) return reduceKmeans(contacts, k, {});
-  Linkage linkage(featuresOf(contacts));
-  std::vector<int> cluster_of(contacts.size());
-  for (std::size_t i = 0; i < contacts.size(); ++i) cluster_of[i] = static_cast<int>(i);
-  for (int left = static_cast<int>(contacts.size()); left > k; --left) {
+void reduceHierarchical(const std::vector<Contact>& contacts, int k, const ContactIds&, std::vector<Contact>* reduced) {
+  *reduced = contacts;
+  makeCanonical(*reduced);
+  const int count = static_cast<int>(reduced->size());
+  if (count <= k) return;
+  if (reduced->size() > MANY) return reduceKmeans(contacts, k, {}, reduced);
+  Linkage linkage(featuresOf(*reduced));
+  std::vector<int> cluster_of(reduced->size());
+  for (int i = 0; i < count; ++i) cluster_of[i] = i;
+  for (int left = count; left > k; --left) {
     const auto [kept, merged] = linkage.mergeClosest();
     for (int& cluster : cluster_of) {
       if (cluster == merged) cluster = kept;
     }
   }
-  takeMeans(contacts, cluster_of, static_cast<int>(contacts.size()));
+  takeMeans(*reduced, cluster_of, count);
 }
 
 }  // namespace blem_sim

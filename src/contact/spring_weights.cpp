@@ -16,6 +16,7 @@ constexpr double ALIKE = 0.5;         // contacts whose normals differ more are 
 constexpr double SPRINGS = 5;         // of a patch in all, if it has as many contacts; a rectangle's corners then still count fully
 
 using Directions = std::vector<Vector3>;
+using Prominence = Eigen::Map<Eigen::ArrayXXd>;
 
 // Spread evenly over the sphere [Fibonacci].
 Directions makeDirections() {
@@ -29,9 +30,11 @@ Directions makeDirections() {
 }
 
 // How far out every contact lies along every direction, as powers of e: entry (contact, direction), the largest of a direction is 1.
-Eigen::ArrayXXd prominence(const std::vector<Contact>& contacts) {
+Prominence prominence(const std::vector<Contact>& contacts) {
   static const Directions directions = makeDirections();
-  Eigen::ArrayXXd out(contacts.size(), DIRECTIONS);
+  static thread_local std::vector<double> memory;  // kept between calls
+  memory.resize(contacts.size() * DIRECTIONS);
+  Prominence out(memory.data(), static_cast<Eigen::Index>(contacts.size()), DIRECTIONS);
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const Vector3 lever = contacts[i].point - contacts[0].point;
     for (int m = 0; m < DIRECTIONS; ++m) out(i, m) = (directions[m].dot(lever) + DEPTH_SLOPE * contacts[i].depth) / RESOLUTION;
@@ -41,7 +44,7 @@ Eigen::ArrayXXd prominence(const std::vector<Contact>& contacts) {
 }
 
 // Of the directions in which a patch has an extreme, the part in which contact i is it.
-double shareOf(const std::vector<Contact>& contacts, const Eigen::ArrayXXd& prominence, Eigen::Index i) {
+double shareOf(const std::vector<Contact>& contacts, const Prominence& prominence, Eigen::Index i) {
   Eigen::Array<double, 1, DIRECTIONS> all = Eigen::Array<double, 1, DIRECTIONS>::Zero();
   for (Eigen::Index j = 0; j < prominence.rows(); ++j) {
     const double alike = 1 - (contacts[i].normal_BA - contacts[j].normal_BA).norm() / ALIKE;
@@ -57,7 +60,7 @@ void weighSprings(std::vector<Contact>& contacts) {
     for (Contact& contact : contacts) contact.weight = 1;
     return;
   }
-  const Eigen::ArrayXXd far_out = prominence(contacts);
+  const Prominence far_out = prominence(contacts);
   for (std::size_t i = 0; i < contacts.size(); ++i)
     contacts[i].weight = std::clamp(SPRINGS * shareOf(contacts, far_out, static_cast<Eigen::Index>(i)), 1e-6, 1.0);
 }

@@ -1,22 +1,26 @@
 // Which k contacts span the wrenches of all of them best.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
-#include "blem_sim/contact/manifold.h"
+#include "blem_sim/contact/reduction.h"
+#include "patch_frame.h"
 
 namespace blem_sim {
 
 /**
- * Indices of at most k contacts, ascending: the deepest, then greedily the extreme contact of that fixed 6-D wrench direction in which the
- * contacts chosen so far lack most; then, with what is left of k, the same where depth counts too, and at last the deepest.
- * Contacts that do not touch yet stand back.
+ * At most k contacts: the deepest, then greedily the extreme contact of that fixed 6-D wrench direction in which the contacts chosen so far
+ * lack most; then, with what is left of k, the same where depth counts too, and at last the deepest. Contacts that do not touch yet stand
+ * back.
  * A choice made before is gone on with, completed by the same rule, while it spans nearly as much as a fresh one: among equals no noise
  * decides anew from step to step.
- * Precondition: contacts in canonical order (contact_order.h), k >= 1.
- * @param chosen_before ids, ascending
+ * The result depends on the sets given only, not on their order.
+ * Precondition: k >= 1, candidates are there, the deepest of the members among them.
+ * @param members indices of the contacts to choose from @param scale of all contacts
+ * @param candidates those of the members that may be extreme; reordered
+ * @param chosen overwritten by indices
  */
-std::vector<int> chooseSpanningContacts(const std::vector<Contact>& contacts, int k, const std::vector<std::uint64_t>& chosen_before);
+void chooseSpanningContacts(const std::vector<Contact>& contacts, const std::vector<int>& members, const PatchScale& scale, int k,
+                            const ContactIds& chosen_before, std::vector<int>* candidates, std::vector<int>* chosen);
 
 }  // namespace blem_sim

@@ -205,24 +205,25 @@ void ContactStage::addConstraints(const SimulatedWorld& world, ContactManifold& 
 }
 
 void ContactStage::reduction(const SimulatedWorld& world) {
-  reduced_ = current_;
-  std::vector<int> model_a, model_b;
-  for (const ContactManifold& manifold : reduced_) {
-    model_a.push_back(world.colliders[manifold.a].model);
-    model_b.push_back(world.colliders[manifold.b].model);
+  model_a_.clear();
+  model_b_.clear();
+  for (const ContactManifold& manifold : current_) {
+    model_a_.push_back(world.colliders[manifold.a].model);
+    model_b_.push_back(world.colliders[manifold.b].model);
   }
-  const int left_out = reduceManifolds(reduced_, model_a, model_b, world.budgets, *method_, &memory_);
+  const int left_out = reduceManifolds(current_, model_a_, model_b_, world.budgets, *method_, &memory_, &reduced_);
   constraints_.clear();
   solved_.clear();
-  std::vector<int> counts(world.models.size(), 0);
+  contacts_of_model_.assign(world.models.size(), 0);
   for (std::size_t m = 0; m < reduced_.size(); ++m) {
     addConstraints(world, reduced_[m]);
-    counts[model_a[m]] += static_cast<int>(reduced_[m].contacts.size());
-    if (model_b[m] != model_a[m]) counts[model_b[m]] += static_cast<int>(reduced_[m].contacts.size());
+    const int count = static_cast<int>(reduced_[m].contacts.size());
+    contacts_of_model_[model_a_[m]] += count;
+    if (model_b_[m] != model_a_[m]) contacts_of_model_[model_b_[m]] += count;
   }
   budget_used_up_ = false;
-  for (std::size_t model = 0; model < counts.size(); ++model)
-    budget_used_up_ = budget_used_up_ || (left_out > 0 && counts[model] >= world.budgets[model].max_contacts);
+  for (std::size_t model = 0; model < contacts_of_model_.size(); ++model)
+    budget_used_up_ = budget_used_up_ || (left_out > 0 && contacts_of_model_[model] >= world.budgets[model].max_contacts);
 }
 
 }  // namespace blem_sim

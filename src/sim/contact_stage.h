@@ -100,6 +100,8 @@ class ContactStage {
   std::vector<ContactManifold> spare_;  // only their memory
   std::vector<ContactConstraint> constraints_;
   std::vector<SolvedContact> solved_;
+  std::vector<int> model_a_, model_b_;  // of each of current_
+  std::vector<int> contacts_of_model_;
   bool budget_used_up_ = false;
 };
 

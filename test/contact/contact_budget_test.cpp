@@ -32,7 +32,7 @@ TEST_P(Budgets, HoldForRobotObjectsAndStaticWorld) {
   int before = 0, after = 0;
   for (const ContactManifold& manifold : manifolds) before += static_cast<int>(manifold.contacts.size());
   ReductionMemory memory;
-  const int left_out = reduceManifolds(manifolds, model_a, model_b, budgets, method(), &memory);
+  const int left_out = reduceAll(manifolds, model_a, model_b, budgets, method(), &memory);
   for (const ContactManifold& manifold : manifolds) {
     after += static_cast<int>(manifold.contacts.size());
     EXPECT_GE(manifold.contacts.size(), manifold.a == 3 ? 2u : 3u) << manifold.a;
@@ -54,7 +54,7 @@ TEST_P(Budgets, HoldWithMoreManifoldsThanContactsAllowed) {
   for (int m = 0; m < 9; ++m) manifolds.push_back(manifoldOf(0, m + 1, noisyPatch(5, 70 + m)));
   const std::vector<int> robot(9, 1), world(9, 0);
   ReductionMemory memory;
-  reduceManifolds(manifolds, robot, world, {{INT_MAX}, {4}}, method(), &memory);
+  reduceAll(manifolds, robot, world, {{INT_MAX}, {4}}, method(), &memory);
   EXPECT_EQ(contactsOf(1, manifolds, robot, world), 4);
 }
 
@@ -67,14 +67,14 @@ TEST_P(Budgets, ChoosePiercedContactsLast) {
   }
   std::vector<ContactManifold> manifolds = {manifoldOf(0, 1, contacts)};
   ReductionMemory memory;
-  reduceManifolds(manifolds, {0}, {1}, {{20}, {INT_MAX}}, method(), &memory);
+  reduceAll(manifolds, {0}, {1}, {{20}, {INT_MAX}}, method(), &memory);
   ASSERT_FALSE(manifolds[0].contacts.empty());
   EXPECT_LE(manifolds[0].contacts.size(), 20u);
   EXPECT_GE(std::count_if(manifolds[0].contacts.begin(), manifolds[0].contacts.end(), [](const Contact& c) { return !c.pierced; }), 15);
 
   for (Contact& c : contacts) c.pierced = true;
   manifolds = {manifoldOf(0, 1, contacts)};
-  reduceManifolds(manifolds, {0}, {1}, {{20}, {INT_MAX}}, method(), &memory);
+  reduceAll(manifolds, {0}, {1}, {{20}, {INT_MAX}}, method(), &memory);
   EXPECT_FALSE(manifolds[0].contacts.empty());
 }
 

@@ -55,6 +55,19 @@ inline Contacts noisyPatch(int count, unsigned seed = 2) {
   return contacts;
 }
 
+/** The wall of a mug of 4 cm beside another, with noise: normals within 30 degrees, the deepest along a line. */
+inline Contacts wallPatch(int count, unsigned seed = 7) {
+  Noise noise(seed);
+  Contacts contacts;
+  for (int i = 0; i < count; ++i) {
+    const double angle = 0.5 * noise();
+    const Vector3 out(std::cos(angle), std::sin(angle), 0);
+    const Vector3 point = 0.04 * (out - Vector3::UnitX()) + 0.04 * noise() * Vector3::UnitZ();
+    contacts.push_back(makeContact(point, out + 0.05 * noise() * Vector3::UnitZ(), 5e-3 - 0.04 * angle * angle + 2e-4 * noise(), i));
+  }
+  return contacts;
+}
+
 constexpr int RIM_CORNERS = 72;
 
 /** The rim of a mug's foot, its depths trembling by some nanometres. */
@@ -72,6 +85,54 @@ inline ContactManifold rim(RandomShapes& random, double tremble) {
     manifold.contacts.push_back(contact);
   }
   return manifold;
+}
+
+inline Contacts reducedBy(const Reduction& method, const Contacts& contacts, int k) {
+  Contacts reduced;
+  method.reduce(contacts, k, {}, &reduced);
+  return reduced;
+}
+
+/** Reduces manifolds in place. @return how many contacts were left out */
+inline int reduceAll(std::vector<ContactManifold>& manifolds, const std::vector<int>& model_a, const std::vector<int>& model_b,
+                     const std::vector<ContactBudget>& budgets, const Reduction& method, ReductionMemory* memory) {
+  std::vector<ContactManifold> reduced;
+  const int left_out = reduceManifolds(manifolds, model_a, model_b, budgets, method, memory, &reduced);
+  manifolds = std::move(reduced);
+  return left_out;
+}
+
+// Largest component along (a, b) of the wrenches about the origin that contacts with unit normal force give.
+inline double support(const Contacts& contacts, const Vector3& a, const Vector3& b, double friction = 0.5) {
+  double best = -std::numeric_limits<double>::infinity();
+  for (const Contact& c : contacts) {
+    const Vector3 g = a + b.cross(c.point);
+    const double along = g.dot(c.normal_BA);
+    best = std::max(best, along + friction * (g - along * c.normal_BA).norm());
+  }
+  return best;
+}
+
+struct SupportError {
+  double mean = 0, max = 0;
+};
+
+/** Difference of the support functions of the friction wrenches over 500 directions, relative to the mean; torques at half the patch's
+ * size. */
+inline SupportError supportError(const Contacts& all, const Contacts& reduced) {
+  Noise noise(31);
+  double sum = 0, worst = 0, level = 0;
+  for (int d = 0; d < 500; ++d) {
+    Eigen::Matrix<double, 6, 1> w;
+    for (int i = 0; i < 6; ++i) w[i] = noise() + noise() + noise();
+    w.normalize();
+    const Vector3 a = w.head<3>(), b = w.tail<3>() / 0.05;
+    const double difference = support(all, a, b) - support(reduced, a, b);
+    sum += difference;
+    worst = std::max(worst, difference);
+    level += std::abs(support(all, a, b));
+  }
+  return {sum / level, worst * 500 / level};
 }
 
 inline ContactManifold manifoldOf(int a, int b, Contacts contacts) {

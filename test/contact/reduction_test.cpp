@@ -34,17 +34,6 @@ Contacts sphereCap(int count) {
   return contacts;
 }
 
-// Largest component along (a, b) of the wrenches about the origin that contacts with unit normal force give.
-double support(const Contacts& contacts, const Vector3& a, const Vector3& b, double friction = 0.5) {
-  double best = -std::numeric_limits<double>::infinity();
-  for (const Contact& c : contacts) {
-    const Vector3 g = a + b.cross(c.point);
-    const double along = g.dot(c.normal_BA);
-    best = std::max(best, along + friction * (g - along * c.normal_BA).norm());
-  }
-  return best;
-}
-
 bool same(const Contact& a, const Contact& b) {
   return a.point == b.point && a.normal_BA == b.normal_BA && a.depth == b.depth && a.id == b.id && a.pierced == b.pierced;
 }
@@ -83,6 +72,18 @@ Contacts opposite() {
   return contacts;
 }
 
+// Many normals, and places that tie in many directions.
+Contacts roughGrid() {
+  Contacts contacts;
+  for (int i = 0; i < 30; ++i) {
+    for (int j = 0; j < 30; ++j) {
+      const Vector3 normal(0.004 * (i % 25 - 12), 0.004 * (j % 25 - 12), 1);
+      contacts.push_back(makeContact({0.002 * i, 0.002 * j, 0}, normal, 1e-3, 30 * i + j));
+    }
+  }
+  return contacts;
+}
+
 const InputCase INPUTS[] = {
     {"empty", [] { return Contacts(); }},
     {"one",
@@ -104,6 +105,7 @@ const InputCase INPUTS[] = {
     {"duplicates", duplicates},
     {"line", line},
     {"opposite", opposite},
+    {"rough_grid", roughGrid},
 };
 
 class EveryReduction : public ::testing::TestWithParam<std::tuple<int, int>> {
@@ -122,8 +124,7 @@ TEST_P(EveryReduction, KeepsItsPromises) {
     deepest = std::max(deepest, c.depth);
   }
   for (int k : {1, 2, 3, 7, 20, 50}) {
-    Contacts reduced = given;
-    method().reduce(reduced, k, {});
+    const Contacts reduced = reducedBy(method(), given, k);
     SCOPED_TRACE(k);
     EXPECT_EQ(reduced.empty(), given.empty());
     if (keepsAll()) {
@@ -143,21 +144,17 @@ TEST_P(EveryReduction, KeepsItsPromises) {
 
 TEST_P(EveryReduction, DoesNotDependOnTheOrderOfItsInput) {
   for (int k : {3, 20}) {
-    Contacts reference = input();
-    method().reduce(reference, k, {});
+    const Contacts reference = reducedBy(method(), input(), k);
     for (unsigned seed = 1; seed <= 3; ++seed) {
-      Contacts other = shuffled(input(), seed);
-      method().reduce(other, k, {});
+      const Contacts other = reducedBy(method(), shuffled(input(), seed), k);
       EXPECT_TRUE(sameAll(reference, other)) << "k " << k << ", seed " << seed;
     }
   }
 }
 
 TEST_P(EveryReduction, ChangesNothingTheSecondTime) {
-  Contacts once = input();
-  method().reduce(once, 20, {});
-  Contacts twice = once;
-  method().reduce(twice, 20, {});
+  const Contacts once = reducedBy(method(), input(), 20);
+  const Contacts twice = reducedBy(method(), once, 20);
   EXPECT_TRUE(sameAll(once, twice));
 }
 
@@ -172,9 +169,9 @@ TEST_P(EveryReduction, DropsContactsWithoutNumbersOrDirection) {
   contacts.push_back(bad);
   bad = makeContact({std::numeric_limits<double>::infinity(), 0, 0}, {0, 0, 1}, 0, 5002);
   contacts.push_back(bad);
-  method().reduce(contacts, 20, {});
-  EXPECT_EQ(contacts.empty(), sound == 0);
-  for (const Contact& c : contacts) EXPECT_LT(c.id, 5000u);
+  const Contacts reduced = reducedBy(method(), contacts, 20);
+  EXPECT_EQ(reduced.empty(), sound == 0);
+  for (const Contact& c : reduced) EXPECT_LT(c.id, 5000u);
 }
 
 std::string caseName(const ::testing::TestParamInfo<std::tuple<int, int>>& info) {
@@ -315,27 +312,6 @@ TEST(ReduceHull, KeepsAllSidesOfARing) {
   }
 }
 
-struct SupportError {
-  double mean = 0, max = 0;
-};
-
-// Difference of the support functions of the friction wrenches over 500 directions, relative to the mean; torques at half the patch's size.
-SupportError supportError(const Contacts& all, const Contacts& reduced) {
-  Noise noise(31);
-  double sum = 0, worst = 0, level = 0;
-  for (int d = 0; d < 500; ++d) {
-    Eigen::Matrix<double, 6, 1> w;
-    for (int i = 0; i < 6; ++i) w[i] = noise() + noise() + noise();
-    w.normalize();
-    const Vector3 a = w.head<3>(), b = w.tail<3>() / 0.05;
-    const double difference = support(all, a, b) - support(reduced, a, b);
-    sum += difference;
-    worst = std::max(worst, difference);
-    level += std::abs(support(all, a, b));
-  }
-  return {sum / level, worst * 500 / level};
-}
-
 TEST(ReduceHull, SpansTheWrenchesOfANoisyPatch) {
   const Contacts all = noisyPatch(5000);
   for (const auto& [k, mean_limit] : {std::pair<int, double>{20, 0.04}, {50, 0.005}}) {
@@ -355,10 +331,8 @@ TEST(ReduceKmeans, AveragesWhatBelongsTogether) {
     contacts.push_back(makeContact({0.001 * i, 0, 0}, {0, 0, 1}, 1e-3, i));
     contacts.push_back(makeContact({1 + 0.001 * i, 0, 0}, {0, 0, 1}, 2e-3, 100 + i));
   }
-  Contacts by_linkage = contacts;
-  reduceKmeans(contacts, 2);
-  reduceHierarchical(by_linkage, 2);
-  for (const Contacts& reduced : {contacts, by_linkage}) {
+  for (const char* name : {"kmeans", "hierarchical"}) {
+    const Contacts reduced = reducedBy(*findReduction(name), contacts, 2);
     ASSERT_EQ(reduced.size(), 2u);
     EXPECT_NEAR(reduced[0].point.x(), 0.0045, 1e-12);
     EXPECT_NEAR(reduced[1].point.x(), 1.0045, 1e-12);

@@ -13,10 +13,13 @@ namespace blem_sim {
 using ContactIds = std::vector<std::uint64_t>;
 
 /**
- * Reduces `contacts` to at most k >= 1, in place. Deterministic. Never invents a deeper contact than the deepest given.
+ * Reduces `contacts` to at most k >= 1. Deterministic, whatever their order. Never invents a deeper contact than the deepest given.
+ * @param contacts ids are their own
  * @param chosen_before what it kept of the same pair in the step before: among equal choices that one is gone on with
+ * @param reduced overwritten; sorted by id; not `contacts` itself
  */
-using ReduceFunction = void (*)(std::vector<Contact>& contacts, int k, const ContactIds& chosen_before);
+using ReduceFunction = void (*)(const std::vector<Contact>& contacts, int k, const ContactIds& chosen_before,
+                                std::vector<Contact>* reduced);
 
 /** One way to reduce contacts; a new one is one function and one row in the table. */
 struct Reduction {
@@ -32,15 +35,18 @@ const std::vector<Reduction>& reductionTable();
 const Reduction* findReduction(const std::string& name);
 
 /** Hull: within equal normals the corners of the convex hull (lossless, [Hauser 2013, 5]), points deeper than the hull's own interpolation
- * kept; beyond k the extremes that span the wrench cone best are kept. */
-void reduceHull(std::vector<Contact>& contacts, int k, const ContactIds& chosen_before = {});
+ * kept; beyond k the extremes that span the wrench cone best are kept. Allocates nothing once it has seen as many contacts. */
+void reduceHull(const std::vector<Contact>& contacts, int k, const ContactIds& chosen_before, std::vector<Contact>* reduced);
 /** Average-linkage clusters of (x, n, p), then their means [Hauser 2013, 3.4]. O(N^2 log N); above 300 contacts k-means, as the paper does.
  */
-void reduceHierarchical(std::vector<Contact>& contacts, int k, const ContactIds& chosen_before = {});
+void reduceHierarchical(const std::vector<Contact>& contacts, int k, const ContactIds& chosen_before, std::vector<Contact>* reduced);
 /** Lloyd's k-means on (x, n, p), k iterations, farthest-point start (no random number). */
-void reduceKmeans(std::vector<Contact>& contacts, int k, const ContactIds& chosen_before = {});
+void reduceKmeans(const std::vector<Contact>& contacts, int k, const ContactIds& chosen_before, std::vector<Contact>* reduced);
 /** All contacts. */
-void reduceNone(std::vector<Contact>& contacts, int k, const ContactIds& chosen_before = {});
+void reduceNone(const std::vector<Contact>& contacts, int k, const ContactIds& chosen_before, std::vector<Contact>* reduced);
+
+/** reduceHull in place. */
+void reduceHull(std::vector<Contact>& contacts, int k, const ContactIds& chosen_before = {});
 
 /** What each pair of colliders kept in the last reduction. It decides between equal choices of the next one: state. */
 class ReductionMemory {
@@ -77,12 +83,14 @@ struct ContactBudget {
  * Reduces every manifold so that the contacts of each model sum to at most its k: each manifold is reduced by `method` first with the
  * smaller k of its two models; where a model still has too many, its manifolds share k in proportion to what they have, each at
  * least one (3 if it has them, and k allows). Pierced contacts are kept out of the choice while others exist.
- * @param manifolds sorted by (a, b)
+ * @param manifolds before reduction, sorted by (a, b)
  * @param model_a, model_b models of the two colliders of each manifold, indices into budgets
  * @param memory of the last reduction, overwritten by this one's
+ * @param reduced overwritten, its memory used again; manifold by manifold the contacts kept
  * @return how many contacts were left out
  */
-int reduceManifolds(std::vector<ContactManifold>& manifolds, const std::vector<int>& model_a, const std::vector<int>& model_b,
-                    const std::vector<ContactBudget>& budgets, const Reduction& method, ReductionMemory* memory);
+int reduceManifolds(const std::vector<ContactManifold>& manifolds, const std::vector<int>& model_a, const std::vector<int>& model_b,
+                    const std::vector<ContactBudget>& budgets, const Reduction& method, ReductionMemory* memory,
+                    std::vector<ContactManifold>* reduced);
 
 }  // namespace blem_sim

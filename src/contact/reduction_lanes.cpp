@@ -1,0 +1,127 @@
+#include "reduction_lanes.h"
+
+// Compiled for several processors, chosen when the program starts. None may fuse a product into a sum (-ffp-contract=off).
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define BLEM_SIM_LANES __attribute__((target_clones("avx512f", "avx2", "default")))
+#else
+#define BLEM_SIM_LANES
+#endif
+#if defined(__GNUC__)
+#define BLEM_SIM_INLINE inline __attribute__((always_inline))
+#else
+#define BLEM_SIM_INLINE inline
+#endif
+
+namespace blem_sim {
+
+namespace {
+
+constexpr float CHOICE_FRICTION = 0.5f;  // of the cones that are compared; the choice hardly depends on it
+constexpr int LANES = 16;
+
+// With g the direction seen by a force at x, the largest component along direction d is g.n + mu |g - (g.n) n|.
+BLEM_SIM_INLINE float wrenchComponent(const WrenchDirections& w, const WrenchPoint& p, int d) {
+  const float gx = w.force[0][d] + w.torque[1][d] * p.x[2] - w.torque[2][d] * p.x[1];
+  const float gy = w.force[1][d] + w.torque[2][d] * p.x[0] - w.torque[0][d] * p.x[2];
+  const float gz = w.force[2][d] + w.torque[0][d] * p.x[1] - w.torque[1][d] * p.x[0];
+  const float along = gx * p.n[0] + gy * p.n[1] + gz * p.n[2];
+  const float rest = gx * gx + gy * gy + gz * gz - along * along;
+  return along + CHOICE_FRICTION * __builtin_sqrtf(rest > 0 ? rest : 0) - p.handicap;
+}
+
+BLEM_SIM_INLINE float cellComponent(const CellDirections& c, const WrenchPoint& p, int d) {
+  return c.place[0][d] * p.x[0] + c.place[1][d] * p.x[1] + c.place[2][d] * p.x[2] + c.normal[0][d] * p.n[0] + c.normal[1][d] * p.n[1] +
+         c.normal[2][d] * p.n[2] - p.handicap;
+}
+
+}  // namespace
+
+BLEM_SIM_LANES void findWrenchExtremes(const WrenchDirections& directions, const WrenchPoint* points, int count, WrenchExtremes* extremes) {
+  for (int d = 0; d < WRENCH_DIRECTIONS; ++d) {
+    extremes->value[d] = wrenchComponent(directions, points[0], d);
+    extremes->point[d] = 0;
+  }
+  for (int i = 1; i < count; ++i) {
+    const WrenchPoint point = points[i];
+    for (int d = 0; d < WRENCH_DIRECTIONS; ++d) {
+      const float component = wrenchComponent(directions, point, d);
+      const bool larger = component > extremes->value[d];
+      extremes->value[d] = larger ? component : extremes->value[d];
+      extremes->point[d] = larger ? i : extremes->point[d];
+    }
+  }
+}
+
+BLEM_SIM_LANES WrenchLack addWrenches(const WrenchDirections& directions, const WrenchPoint& point, const WrenchExtremes& extremes,
+                                      float* reached) {
+  const WrenchPoint p = point;
+  float most[LANES];
+  int where[LANES];
+  for (int lane = 0; lane < LANES; ++lane) {
+    most[lane] = -1;
+    where[lane] = 0;
+  }
+  for (int block = 0; block < WRENCH_DIRECTIONS; block += LANES) {
+    for (int lane = 0; lane < LANES; ++lane) {
+      const int d = block + lane;
+      const float component = wrenchComponent(directions, p, d);
+      reached[d] = component > reached[d] ? component : reached[d];
+      const float lack = extremes.value[d] - reached[d];
+      const bool more = lack > most[lane];
+      most[lane] = more ? lack : most[lane];
+      where[lane] = more ? d : where[lane];
+    }
+  }
+  WrenchLack worst{most[0], where[0]};
+  for (int lane = 1; lane < LANES; ++lane) {
+    if (most[lane] > worst.most || (most[lane] == worst.most && where[lane] < worst.direction)) worst = {most[lane], where[lane]};
+  }
+  return worst;
+}
+
+BLEM_SIM_LANES int raiseCellExtremes(const CellPoints& points, int count, int* raising) {
+  int size = 0;
+  for (int i = 0; i < count; ++i) {
+    const WrenchPoint point = points.points[i];
+    const CellDirections& directions = points.directions[points.cells[i]];
+    float* value = points.extremes[points.cells[i]].value;
+    int raises = 0;
+    for (int d = 0; d < CELL_DIRECTIONS; ++d) {
+      const float component = cellComponent(directions, point, d);
+      raises |= component >= value[d];
+      value[d] = component > value[d] ? component : value[d];
+    }
+    raising[size] = i;
+    size += raises;
+  }
+  return size;
+}
+
+BLEM_SIM_LANES int keepExtremePoints(const CellPoints& points, int count, int* among) {
+  int size = 0;
+  for (int i = 0; i < count; ++i) {
+    const WrenchPoint point = points.points[among[i]];
+    const CellDirections& directions = points.directions[points.cells[among[i]]];
+    const float* value = points.extremes[points.cells[among[i]]].value;
+    int extreme = 0;
+    for (int d = 0; d < CELL_DIRECTIONS; ++d) extreme |= cellComponent(directions, point, d) == value[d];
+    among[size] = among[i];
+    size += extreme;
+  }
+  return size;
+}
+
+BLEM_SIM_LANES int findOutside(const Octagon& octagon, double depth, const PlanePlace* points, int count, int* found) {
+  int size = 0;
+  for (int i = 0; i < count; ++i) {
+    const PlanePlace p = points[i];
+    int outside = p.depth > depth;
+    for (int s = 0; s < OCTAGON_SIDES; ++s)
+      outside |= octagon.dx[s] * (p.y - octagon.y[s]) - octagon.dy[s] * (p.x - octagon.x[s]) <= octagon.limit[s];
+    found[size] = i;
+    size += outside;
+  }
+  return size;
+}
+
+}  // namespace blem_sim
