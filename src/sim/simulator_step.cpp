@@ -215,6 +215,7 @@ void Simulator::Impl::report() {
   const StageTimer timer(&report_.profile, Stage::REPORT);
   report_.step = step_count_;
   report_.time = time();
+  report_.searched_pairs = static_cast<int>(contacts_.watched().size());
   report_.substeps = substeps_.count();
   report_.redone_solves = substeps_.redone();
   if (report_.substeps > 1) report_.status |= STEP_SHORTENED;
