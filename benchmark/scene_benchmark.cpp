@@ -101,6 +101,9 @@ void run(const Scene& scene, benchmark::State& state) {
     }
     state.SetIterationTime(1e-6 * times.median());
   }
+  char hash[17];
+  std::snprintf(hash, sizeof(hash), "%016llx", static_cast<unsigned long long>(simulator.stateHash()));
+  state.SetLabel(hash);  // what was reached
   count(times, totals, steps, threadSeconds() - start, simulator.config().time_step, &state);
 }
 
