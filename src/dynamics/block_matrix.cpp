@@ -86,7 +86,7 @@ void BlockMatrix::analyse() {
   for (int k = 0; k < count; ++k) {
     int least = -1;
     for (int block = 0; block < count; ++block)
-      if (position_[block] < 0 && (least < 0 || degrees_[block] < degrees_[least])) least = block;
+      if (position_[block] < 0 && (least < 0 || degrees_[block] <= degrees_[least])) least = block;
     eliminate(least);
   }
   place();
