@@ -6,13 +6,6 @@
 namespace blem_sim {
 namespace {
 
-/** A collider in the sweep: its box in the world, and how much farther it may matter. */
-struct SweepBox {
-  int collider;
-  Vector3 lower, upper;  // [m] world, without the layer
-  double reach;          // [m] layer and this collider's share of the margin, at most
-};
-
 Vector3 halfExtents(const Box& box) { return 0.5 * (box.max() - box.min()); }
 
 /** Box around the turned box. */
@@ -30,35 +23,40 @@ double boxAbovePlane(const CollisionGeometry& half_space, const Pose& X_WH, cons
   return normal_W.dot(X_WC * box.center()) - normal_C.cwiseAbs().dot(halfExtents(box)) - offset_W;
 }
 
-class PairSearch {
- public:
-  PairSearch(const std::vector<Collider>& colliders, const std::vector<ColliderMotion>& motion, const CollisionFilter& filter,
-             double base_margin, double max_margin)
-      : colliders_(colliders), motion_(motion), filter_(filter), base_margin_(base_margin), max_margin_(max_margin) {}
+}  // namespace
 
-  std::vector<ColliderPair> run() {
+class BroadPhase::Search {
+ public:
+  Search(BroadPhase* space, const std::vector<Collider>& colliders, const std::vector<ColliderMotion>& motion,
+         const CollisionFilter& filter, double base_margin, double max_margin)
+      : space_(*space), colliders_(colliders), motion_(motion), filter_(filter), base_margin_(base_margin), max_margin_(max_margin) {}
+
+  void run() {
+    space_.half_spaces_.clear();
+    space_.boxes_.clear();
+    space_.pairs_.clear();
     for (int i = 0; i < static_cast<int>(colliders_.size()); ++i) {
       if (colliders_[i].enabled && colliders_[i].geometry) enter(i);
     }
-    for (const int half_space : half_spaces_) {
-      for (const SweepBox& box : boxes_) meetHalfSpace(half_space, box);
+    for (const int half_space : space_.half_spaces_) {
+      for (const SweepBox& box : space_.boxes_) meetHalfSpace(half_space, box);
     }
     sweep();
-    std::sort(pairs_.begin(), pairs_.end(),
+    std::sort(space_.pairs_.begin(), space_.pairs_.end(),
               [](const ColliderPair& p, const ColliderPair& q) { return std::tie(p.a, p.b) < std::tie(q.a, q.b); });
-    return std::move(pairs_);
   }
 
  private:
   void enter(int i) {
     if (colliders_[i].geometry->isHalfSpace()) {
-      half_spaces_.push_back(i);
+      space_.half_spaces_.push_back(i);
       return;
     }
-    SweepBox box{i, {}, {}, colliders_[i].radius + std::min(max_margin_, std::max(0.5 * base_margin_, motion_[i].reach))};
+    const int model = colliders_[i].model >= 0 && !filter_.selfCollides(colliders_[i].model) ? colliders_[i].model : -1;
+    SweepBox box{i, model, {}, {}, colliders_[i].radius + std::min(max_margin_, std::max(0.5 * base_margin_, motion_[i].reach))};
     turn(colliders_[i].geometry->bounds(), motion_[i].X_WC, &box.lower, &box.upper);
     // A state that is not finite is the step's to report; here it would only upset the order.
-    if (box.lower.allFinite() && box.upper.allFinite()) boxes_.push_back(box);
+    if (box.lower.allFinite() && box.upper.allFinite()) space_.boxes_.push_back(box);
   }
 
   double margin(int i, int j) const { return std::min(max_margin_, std::max(base_margin_, motion_[i].reach + motion_[j].reach)); }
@@ -66,7 +64,7 @@ class PairSearch {
   /** Furthest distance [m] at which the pair matters. */
   double range(int i, int j) const { return colliders_[i].radius + colliders_[j].radius + margin(i, j); }
 
-  void add(int i, int j) { pairs_.push_back({std::min(i, j), std::max(i, j), margin(i, j)}); }
+  void add(int i, int j) { space_.pairs_.push_back({std::min(i, j), std::max(i, j), margin(i, j)}); }
 
   void meetHalfSpace(int half_space, const SweepBox& box) {
     const int i = box.collider;
@@ -79,46 +77,46 @@ class PairSearch {
   /** Axis along which the boxes' centres are spread most. */
   int sweepAxis() const {
     Vector3 sum = Vector3::Zero(), sum_of_squares = Vector3::Zero();
-    for (const SweepBox& box : boxes_) {
+    for (const SweepBox& box : space_.boxes_) {
       const Vector3 centre = 0.5 * (box.lower + box.upper);
       sum += centre;
       sum_of_squares += centre.cwiseAbs2();
     }
     int axis = 0;
-    (sum_of_squares - sum.cwiseAbs2() / std::max<double>(1, boxes_.size())).maxCoeff(&axis);
+    (sum_of_squares - sum.cwiseAbs2() / std::max<double>(1, space_.boxes_.size())).maxCoeff(&axis);
     return axis;
   }
 
   void sweep() {
     const int axis = sweepAxis();
-    std::sort(boxes_.begin(), boxes_.end(), [axis](const SweepBox& p, const SweepBox& q) {
-      return std::make_tuple(p.lower[axis] - p.reach, p.collider) < std::make_tuple(q.lower[axis] - q.reach, q.collider);
-    });
-    for (std::size_t i = 0; i < boxes_.size(); ++i) {
-      const SweepBox& box = boxes_[i];
-      for (std::size_t j = i + 1; j < boxes_.size() && boxes_[j].lower[axis] - boxes_[j].reach <= box.upper[axis] + box.reach; ++j) {
-        meet(box, boxes_[j]);
-      }
+    std::vector<SweepStart>& starts = space_.starts_;
+    starts.clear();
+    for (std::size_t i = 0; i < space_.boxes_.size(); ++i)
+      starts.push_back({space_.boxes_[i].lower[axis] - space_.boxes_[i].reach, static_cast<int>(i)});
+    // Boxes are in the order of their colliders.
+    std::sort(starts.begin(), starts.end(),
+              [](const SweepStart& p, const SweepStart& q) { return p.at < q.at || (p.at == q.at && p.box < q.box); });
+    for (std::size_t i = 0; i < starts.size(); ++i) {
+      const SweepBox& box = space_.boxes_[starts[i].box];
+      const double end = box.upper[axis] + box.reach;
+      for (std::size_t j = i + 1; j < starts.size() && starts[j].at <= end; ++j) meet(box, space_.boxes_[starts[j].box]);
     }
   }
 
   void meet(const SweepBox& box, const SweepBox& other) {
-    if (!filter_.allows(colliders_[box.collider], colliders_[other.collider])) return;
+    if (box.model >= 0 && box.model == other.model) return;
     const Vector3 gap = (box.lower - other.upper).cwiseMax(other.lower - box.upper).cwiseMax(0.0);
     const double furthest = range(box.collider, other.collider);
-    if (gap.squaredNorm() <= furthest * furthest) add(box.collider, other.collider);
+    if (gap.squaredNorm() > furthest * furthest) return;
+    if (filter_.allows(colliders_[box.collider], colliders_[other.collider])) add(box.collider, other.collider);
   }
 
+  BroadPhase& space_;
   const std::vector<Collider>& colliders_;
   const std::vector<ColliderMotion>& motion_;
   const CollisionFilter& filter_;
   const double base_margin_, max_margin_;
-  std::vector<int> half_spaces_;
-  std::vector<SweepBox> boxes_;
-  std::vector<ColliderPair> pairs_;
 };
-
-}  // namespace
 
 void CollisionFilter::setSelfCollision(int model, bool on) {
   if (on) {
@@ -132,13 +130,14 @@ void CollisionFilter::disableBodies(int body_a, int body_b) { disabled_bodies_.i
 
 bool CollisionFilter::allows(const Collider& a, const Collider& b) const {
   if (!a.enabled || !b.enabled || a.body == b.body) return false;
-  if (a.model == b.model && a.model >= 0 && self_colliding_models_.count(a.model) == 0) return false;
+  if (a.model == b.model && a.model >= 0 && !selfCollides(a.model)) return false;
   return disabled_bodies_.count(std::minmax(a.body, b.body)) == 0;
 }
 
-std::vector<ColliderPair> broadPhase(const std::vector<Collider>& colliders, const std::vector<ColliderMotion>& motion,
-                                     const CollisionFilter& filter, double base_margin, double max_margin) {
-  return PairSearch(colliders, motion, filter, base_margin, max_margin).run();
+const std::vector<ColliderPair>& BroadPhase::find(const std::vector<Collider>& colliders, const std::vector<ColliderMotion>& motion,
+                                                  const CollisionFilter& filter, double base_margin, double max_margin) {
+  Search(this, colliders, motion, filter, base_margin, max_margin).run();
+  return pairs_;
 }
 
 }  // namespace blem_sim

@@ -58,6 +58,15 @@ BodyBits Scene::bits(int body) const {
   return out;
 }
 
+bool Scene::isFinite(int body) const {
+  const dBodyID ode = bodies_[body].ode;
+  const auto finite = [](const dReal* numbers, int count) {
+    return std::all_of(numbers, numbers + count, [](double x) { return std::isfinite(x); });
+  };
+  return finite(dBodyGetPosition(ode), 3) && finite(dBodyGetQuaternion(ode), 4) && finite(dBodyGetRotation(ode), 12) &&
+         finite(dBodyGetLinearVel(ode), 3) && finite(dBodyGetAngularVel(ode), 3);
+}
+
 void Scene::setBits(int body, const BodyBits& bits) {
   const dBodyID ode = bodies_[body].ode;
   const double* n = bits.numbers;
@@ -70,12 +79,11 @@ void Scene::setBits(int body, const BodyBits& bits) {
 }
 
 BodyState Scene::bodyState(int body) const {
-  const BodyBits b = bits(body);
   BodyState state;
-  state.X_WB.linear() = b.rotation();
-  state.X_WB.translation() = b.com() - b.rotation() * bodies_[body].spec.inertial.com;
-  state.v_WCom = b.velocity();
-  state.w_WB = b.spin();
+  state.X_WB.linear() = rotation(body);
+  state.X_WB.translation() = com(body) - state.X_WB.linear() * bodies_[body].spec.inertial.com;
+  state.v_WCom = velocity(body);
+  state.w_WB = spin(body);
   return state;
 }
 

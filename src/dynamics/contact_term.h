@@ -7,28 +7,17 @@
 
 namespace blem_sim {
 
-/** Impulse of a contact at a relative velocity u, and how it falls with it: -d impulse/du = stiffness(), positive semidefinite. */
+/** Impulse of a contact at a relative velocity u, and how it falls with it: its stiffness -d impulse/du is positive semidefinite. */
 struct ConeResponse {
   enum class Kind { OPEN, STICK, SLIP } kind = Kind::OPEN;
   Vector3 impulse = Vector3::Zero();
-  // STICK: normal_gain along the normal, tangent_gain across. SLIP: normal_gain along the ridge n + mu t, tangent_gain along `side`.
+  // The stiffness. STICK: normal_gain along the normal, tangent_gain across. SLIP: normal_gain along the ridge n + mu t, tangent_gain along
+  // `side`.
   double normal_gain = 0, tangent_gain = 0;
   Vector3 axis = Vector3::Zero();  ///< the normal, or the ridge
   Vector3 side = Vector3::Zero();
 
-  Matrix3 stiffness() const {
-    Matrix3 k = Matrix3::Zero();
-    if (kind == Kind::OPEN) return k;
-    if (kind == Kind::STICK) {
-      k.noalias() = (normal_gain - tangent_gain) * axis * axis.transpose();
-      k.diagonal().array() += tangent_gain;
-    } else {
-      k.noalias() = normal_gain * axis * axis.transpose();
-      k += tangent_gain * side * side.transpose();
-    }
-    return k;
-  }
-  /** s' stiffness() s */
+  /** s' stiffness s */
   double curvature(const Vector3& s) const {
     const double along = axis.dot(s);
     if (kind == Kind::STICK) return normal_gain * along * along + tangent_gain * (s.squaredNorm() - along * along);

@@ -1,5 +1,3 @@
-#include <Eigen/Cholesky>
-
 #include "island_problem.h"
 #include "tree_factor.h"
 
@@ -30,54 +28,43 @@ bool IslandProblem::solveTrees() {
   return true;
 }
 
-// A mimic's row and column go to its master; what is left of them is an identity.
-void IslandProblem::foldDense(Eigen::Ref<Eigen::MatrixXd> h) const {
-  h.triangularView<Eigen::StrictlyUpper>() = h.transpose();
-  for (const MimicFold& m : mimics) {
-    const int d = space_->dense_index[m.dof], master = space_->dense_index[m.master];
-    h.row(master) += m.multiplier * h.row(d);
-    h.col(master) += m.multiplier * h.col(d);
-    h.row(d).setZero();
-    h.col(d).setZero();
-    h(d, d) = 1;
-  }
-}
-
-bool IslandProblem::solveDense() {
+bool IslandProblem::solveBlocks() {
   SolverSpace& s = *space_;
-  Eigen::Ref<Eigen::MatrixXd> h = dense_.topLeftCorner(dense_size_, dense_size_);
-  Eigen::Ref<Eigen::VectorXd> x = dense_vector_.head(dense_size_);
+  Eigen::Ref<Eigen::VectorXd> x = block_vector_.head(matrix_.size());
+  const auto rowOf = [&](int tree, int dof) { return matrix_.offset(s.block[tree]) + s.block_row[dof]; };
   for (const int tree : trees) {
     const ForestTree& t = forest_->trees()[tree];
+    BlockMatrix::Block h = matrix_.diagonal(s.block[tree]);
     for (int k = t.first_dof; k < t.dof_end; ++k) {
-      const int row = s.dense_index[k];
       const double* packed = s.hessian.data() + forest_->rowStart(k);
-      for (int e = 0; e < forest_->rowLength(k); ++e) h(row, s.dense_index[forest_->columns(k)[e]]) += packed[e];
-      x[row] = -s.gradient[k];
+      for (int e = 0; e < forest_->rowLength(k); ++e) h(s.block_row[k], s.block_row[forest_->columns(k)[e]]) += packed[e];
+      x[rowOf(tree, k)] = -s.gradient[k];
     }
   }
-  if (!mimics.empty()) foldDense(h);
-  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>, Eigen::Lower> llt(h);
-  if (llt.info() != Eigen::Success) return false;
-  llt.solveInPlace(x);
+  for (const MimicFold& m : mimics)
+    matrix_.fold(s.block[forest_->nodes()[forest_->nodeOfDof(m.dof)].tree], s.block_row[m.dof], s.block_row[m.master], m.multiplier);
+  if (!matrix_.factor()) return false;
+  matrix_.solve(x);
   for (const int tree : trees) {
     const ForestTree& t = forest_->trees()[tree];
-    for (int k = t.first_dof; k < t.dof_end; ++k) s.direction[k] = x[s.dense_index[k]];
+    for (int k = t.first_dof; k < t.dof_end; ++k) s.direction[k] = x[rowOf(tree, k)];
   }
   for (const MimicFold& m : mimics) s.direction[m.dof] = m.multiplier * s.direction[m.master];
   return true;
 }
 
 // Slope of the objective at a along the direction, and its derivative.
-double IslandProblem::slope(double a, double* curvature) const {
+double IslandProblem::slope(double a, double* curvature) {
+  responses_at_ = a;
   double first = linear_ + a * quadratic_, second = quadratic_;
   for (const JointTerm& j : joints) {
     const double d = space_->direction[j.dof], v = space_->velocity[j.dof] + a * d;
     first -= j.impulse(v) * d;
     second += j.stiffness(v) * d * d;
   }
-  for (const ContactTerm& c : contacts) {
-    const ConeResponse response = c.respond(c.velocity + a * c.step);
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const ContactTerm& c = contacts[i];
+    const ConeResponse& response = responses_[i] = c.respond(c.velocity + a * c.step);
     first -= response.impulse.dot(c.step);
     second += response.curvature(c.step);
   }
@@ -150,6 +137,7 @@ double IslandProblem::take(double a) {
     }
   }
   for (ContactTerm& c : contacts) c.velocity += a * c.step;
+  responses_known_ = a == responses_at_;
   for (LoopTerm& loop : loops) loop.velocity += a * loop.step;
   return moved;
 }
@@ -158,12 +146,14 @@ bool IslandProblem::findDirection() {
   SolverSpace& s = *space_;
   for (const int tree : trees) treeHessian(tree);
   for (const JointTerm& j : joints) s.hessian[forest_->rowStart(j.dof) + forest_->rowLength(j.dof) - 1] += j.stiffness(s.velocity[j.dof]);
-  return coupled_ ? solveDense() : solveTrees();
+  return coupled_ ? solveBlocks() : solveTrees();
 }
 
 // Until the gradient is below `exactness` times the first one, or the tolerance.
 int IslandProblem::newton(const NewtonSettings& settings, double exactness, int max_iterations) {
   double enough = settings.gradient_tolerance;
+  responses_known_ = false;
+  responses_.resize(contacts.size());
   for (int iterations = 0;; ++iterations) {
     evaluate();
     gradient();

@@ -1,5 +1,7 @@
 #include "island_problem.h"
 
+#include <algorithm>
+
 namespace blem_sim {
 namespace {
 
@@ -8,13 +10,27 @@ Vector6 relativeTwist(const BodyPair& pair, const std::vector<Vector6>& twist) {
   return twist[pair.a] - moveTwist(twist[pair.b], -pair.shift);
 }
 
-/** Adds J' k J for a point: the 6 x 6 by which a spring at the point is felt. */
-void addPointStiffness(const Vector3& point, const Matrix3& k, Matrix6* out) {
-  const Matrix3 cross = crossMatrix(point), turned = cross * k;
-  out->topLeftCorner<3, 3>() += turned * cross.transpose();
+/** Adds the 6 x 6 by which a spring along one direction at a point is felt. */
+void addSpring(const Vector3& point, const Vector3& direction, double gain, Matrix6* out) {
+  const Vector6 wrench = wrenchOf(direction, point), scaled = gain * wrench;
+  out->noalias() += scaled * wrench.transpose();
+}
+
+/** Adds J' k J for a point, k being the response's stiffness: the 6 x 6 by which the contact is felt. */
+void addPointStiffness(const Vector3& point, const ConeResponse& response, Matrix6* out) {
+  if (response.kind == ConeResponse::Kind::SLIP) {
+    addSpring(point, response.axis, response.normal_gain, out);
+    addSpring(point, response.side, response.tangent_gain, out);
+    return;
+  }
+  const double gain = response.tangent_gain;
+  const Matrix3 turned = gain * crossMatrix(point);
+  out->topLeftCorner<3, 3>() -= gain * point * point.transpose();
   out->topRightCorner<3, 3>() += turned;
-  out->bottomLeftCorner<3, 3>() += turned.transpose();
-  out->bottomRightCorner<3, 3>() += k;
+  out->bottomLeftCorner<3, 3>() -= turned;
+  out->diagonal().head<3>().array() += gain * point.squaredNorm();
+  out->diagonal().tail<3>().array() += gain;
+  addSpring(point, response.axis, response.normal_gain - gain, out);
 }
 
 /** Twists about b's reference point to those about a's. */
@@ -32,7 +48,8 @@ void SolverSpace::resize(const Forest& forest) {
   for (auto* v : {&twist, &wrench}) v->resize(forest.nodes().size());
   stiffness.resize(forest.nodes().size());
   stiff.resize(forest.nodes().size());
-  dense_index.resize(forest.dofCount());
+  block.resize(forest.trees().size());
+  block_row.resize(forest.dofCount());
 }
 
 void IslandProblem::clear() {
@@ -50,20 +67,39 @@ void IslandProblem::start() {
   for (const MimicFold& m : mimics) s.velocity[m.dof] = m.multiplier * s.velocity[m.master];
   coupled_ = !mimics.empty() || !loops.empty();
   for (const ContactPatch& p : patches) coupled_ |= p.pair.b >= 0;
-  dense_size_ = 0;
   for (const int tree : trees) {
     const ForestTree& t = forest_->trees()[tree];
-    for (int k = t.first_dof; k < t.dof_end; ++k) {
-      s.dense_index[k] = dense_size_++;
+    for (int k = t.first_dof; k < t.dof_end; ++k)
       s.scale[k] = 1 / std::sqrt(motion_->mass[forest_->rowStart(k) + forest_->rowLength(k) - 1]);
-    }
     massTimes(*forest_, tree, *motion_, s.velocity, &s.mass_velocity);
   }
-  if (coupled_ && dense_.rows() < dense_size_) {
-    dense_.resize(dense_size_, dense_size_);
-    dense_vector_.resize(dense_size_);
-  }
+  if (coupled_) layBlocks();
   relativeSteps(s.velocity, true);
+}
+
+void IslandProblem::layBlocks() {
+  SolverSpace& s = *space_;
+  const auto treeOf = [&](int node) { return forest_->nodes()[node].tree; };
+  const auto placeOf = [&](int tree) { return static_cast<int>(std::lower_bound(trees.begin(), trees.end(), tree) - trees.begin()); };
+  tree_blocks_.reset(static_cast<int>(trees.size()));
+  for (const MimicFold& m : mimics)
+    tree_blocks_.join(placeOf(treeOf(forest_->nodeOfDof(m.dof))), placeOf(treeOf(forest_->nodeOfDof(m.master))));
+  block_sizes_.assign(tree_blocks_.number(), 0);
+  for (std::size_t i = 0; i < trees.size(); ++i) {
+    const ForestTree& t = forest_->trees()[trees[i]];
+    const int block = s.block[trees[i]] = tree_blocks_.islandOf(static_cast<int>(i));
+    for (int k = t.first_dof; k < t.dof_end; ++k) s.block_row[k] = block_sizes_[block]++;
+  }
+  matrix_.start(block_sizes_);
+  const auto couple = [&](const BodyPair& pair) {
+    if (pair.b < 0) return;
+    const int a = s.block[treeOf(pair.a)], b = s.block[treeOf(pair.b)];
+    if (a != b) matrix_.couple(a, b);
+  };
+  for (const ContactPatch& p : patches) couple(p.pair);
+  for (const BodyPair& pair : loop_pairs) couple(pair);
+  matrix_.analyse();
+  if (block_vector_.size() < matrix_.size()) block_vector_.resize(matrix_.size());
 }
 
 // Relative velocities of all contacts and loops for velocities v, kept as `velocity` or as `step`.
@@ -99,20 +135,35 @@ void IslandProblem::push(const BodyPair& pair, const Vector6& wrench, const Matr
   if (!stiffness) return;
   const Matrix6 x = shiftMatrix(pair.shift);
   stiffen(pair.b, x.transpose() * *stiffness * x);
-  coupleDense(pair, *stiffness * x);
+  coupleBlocks(pair, *stiffness * x);
 }
 
-void IslandProblem::coupleDense(const BodyPair& pair, const Matrix6& stiffness) {
-  const int last_a = forest_->nodes()[pair.a].last_dof, last_b = forest_->nodes()[pair.b].last_dof;
-  if (last_a < 0 || last_b < 0) return;
-  for (int e = 0; e < forest_->rowLength(last_a); ++e) {
-    const int k = forest_->columns(last_a)[e], r = space_->dense_index[k];
+void IslandProblem::coupleBlocks(const BodyPair& pair, const Matrix6& stiffness) {
+  const SolverSpace& s = *space_;
+  const ForestNode &a = forest_->nodes()[pair.a], &b = forest_->nodes()[pair.b];
+  if (a.last_dof < 0 || b.last_dof < 0) return;
+  const int block_a = s.block[a.tree], block_b = s.block[b.tree];
+  bool transposed = false;
+  BlockMatrix::Block block = block_a == block_b ? matrix_.diagonal(block_a) : matrix_.coupling(block_a, block_b, &transposed);
+  if (a.joint < 0 && b.joint < 0 && block_a != block_b) {  // free bodies: their subspaces are the axes
+    const int r = s.block_row[a.first_dof], c = s.block_row[b.first_dof];
+    if (transposed)
+      block.block<6, 6>(c, r) -= stiffness.transpose();
+    else
+      block.block<6, 6>(r, c) -= stiffness;
+    return;
+  }
+  for (int e = 0; e < forest_->rowLength(a.last_dof); ++e) {
+    const int k = forest_->columns(a.last_dof)[e], r = s.block_row[k];
     const Vector6 row = stiffness.transpose() * motion_->subspace[k];
-    for (int f = 0; f < forest_->rowLength(last_b); ++f) {
-      const int j = forest_->columns(last_b)[f], c = space_->dense_index[j];
+    for (int f = 0; f < forest_->rowLength(b.last_dof); ++f) {
+      const int j = forest_->columns(b.last_dof)[f], c = s.block_row[j];
       const double value = row.dot(motion_->subspace[j]);
-      // Only the lower triangle is kept; a dof that carries both gets both halves.
-      dense_(std::max(r, c), std::min(r, c)) -= r == c ? 2 * value : value;
+      // Of a diagonal block only the lower triangle is kept; a dof that carries both gets both halves.
+      if (block_a == block_b)
+        block(std::max(r, c), std::min(r, c)) -= r == c ? 2 * value : value;
+      else
+        (transposed ? block(c, r) : block(r, c)) -= value;
     }
   }
 }
@@ -123,11 +174,11 @@ void IslandProblem::evaluatePatch(const ContactPatch& patch) {
   bool stiff = false;
   for (int i = patch.first; i < patch.end; ++i) {
     ContactTerm& c = contacts[i];
-    const ConeResponse response = c.respond(c.velocity);
+    const ConeResponse response = responses_known_ ? responses_[i] : c.respond(c.velocity);
     c.impulse = response.impulse;
     if (response.kind == ConeResponse::Kind::OPEN) continue;
     wrench += wrenchOf(c.impulse, c.point);
-    addPointStiffness(c.point, response.stiffness(), &stiffness);
+    addPointStiffness(c.point, response, &stiffness);
     stiff = true;
   }
   push(patch.pair, wrench, stiff ? &stiffness : nullptr);
@@ -151,9 +202,10 @@ void IslandProblem::evaluate() {
       s.stiff[i] = 0;
     }
   }
-  if (coupled_) dense_.topLeftCorner(dense_size_, dense_size_).setZero();
+  if (coupled_) matrix_.setZero();
   for (const ContactPatch& p : patches) evaluatePatch(p);
   for (std::size_t l = 0; l < loops.size(); ++l) evaluateLoop(l);
+  responses_known_ = false;
 }
 
 void IslandProblem::gradient() {

@@ -5,8 +5,10 @@
 
 #include <vector>
 
+#include "block_matrix.h"
 #include "contact_term.h"
 #include "forest_motion.h"
+#include "islands.h"
 #include "joint_term.h"
 #include "loop_term.h"
 
@@ -55,7 +57,8 @@ struct SolverSpace {
   std::vector<Vector6> twist, wrench;  ///< per node
   std::vector<Matrix6> stiffness;      ///< per node
   std::vector<char> stiff;             ///< per node: stiffness is not zero
-  std::vector<int> dense_index;        ///< per dof: its row in the island's dense matrix
+  std::vector<int> block;              ///< per tree: its block in the island's matrix
+  std::vector<int> block_row;          ///< per dof: its row in that block
 
   void resize(const Forest& forest);
 };
@@ -85,14 +88,14 @@ class IslandProblem {
   void evaluateLoop(std::size_t index);
   void stiffen(int node, const Matrix6& stiffness);
   void push(const BodyPair& pair, const Vector6& wrench, const Matrix6* stiffness);
-  void coupleDense(const BodyPair& pair, const Matrix6& stiffness);
+  void layBlocks();
+  void coupleBlocks(const BodyPair& pair, const Matrix6& stiffness);
   void gradient();
   void treeHessian(int tree);
   // island_newton.cpp: the iteration
   bool solveTrees();
-  bool solveDense();
-  void foldDense(Eigen::Ref<Eigen::MatrixXd> h) const;
-  double slope(double a, double* curvature) const;
+  bool solveBlocks();
+  double slope(double a, double* curvature);
   double lineSearch();
   double gradientNorm() const;
   double imbalance() const;
@@ -107,12 +110,16 @@ class IslandProblem {
   const Forest* forest_ = nullptr;
   const ForestMotion* motion_ = nullptr;
   SolverSpace* space_ = nullptr;
-  bool coupled_ = false;  ///< two branches or two trees are tied: the Hessian is dense
-  int dense_size_ = 0;
-  double gradient_norm_ = 0;           ///< [sqrt(kg) m/s]
-  double linear_ = 0, quadratic_ = 0;  ///< of the kinetic part along the search direction
-  Eigen::MatrixXd dense_;
-  Eigen::VectorXd dense_vector_;
+  bool coupled_ = false;                 ///< two branches or two trees are tied: the Hessian is a matrix of blocks, one per tree
+  double gradient_norm_ = 0;             ///< [sqrt(kg) m/s]
+  std::vector<ConeResponse> responses_;  ///< of the contacts where the line search looked last
+  double responses_at_ = 0;              ///< how far along the direction that was
+  bool responses_known_ = false;         ///< and that is the present iterate
+  double linear_ = 0, quadratic_ = 0;    ///< of the kinetic part along the search direction
+  Islands tree_blocks_;                  ///< trees that mimic joints tie are one block
+  std::vector<int> block_sizes_;
+  BlockMatrix matrix_;
+  Eigen::VectorXd block_vector_;
 };
 
 }  // namespace blem_sim

@@ -109,14 +109,12 @@ double Scene::jointPosition(int joint) const {
 double Scene::jointVelocity(int joint) const {
   const JointSlot& slot = joints_[joint];
   if (!slot.joint || slot.spec.kind == JointKind::FIXED) return 0;
-  const BodyBits child = bits(slot.spec.child);
-  const bool grounded = slot.spec.parent == WORLD_BODY;
-  const BodyBits parent = grounded ? BodyBits{} : bits(slot.spec.parent);
-  const Vector3 axis = jointAxis(joint);
-  if (slot.spec.kind == JointKind::REVOLUTE) return axis.dot(child.spin() - parent.spin());
-  Vector3 relative = child.velocity() - parent.velocity();
-  if (!grounded) relative -= parent.spin().cross(child.com() - parent.com());
-  return axis.dot(relative);
+  const int child = slot.spec.child, parent = slot.spec.parent;
+  const bool grounded = parent == WORLD_BODY;
+  const Vector3 axis = jointAxis(joint), parent_spin = grounded ? Vector3(Vector3::Zero()) : spin(parent);
+  if (slot.spec.kind == JointKind::REVOLUTE) return axis.dot(spin(child) - parent_spin);
+  if (grounded) return axis.dot(velocity(child));
+  return axis.dot(velocity(child) - velocity(parent) - parent_spin.cross(com(child) - com(parent)));
 }
 
 double Scene::inverseInertia(int joint) const {
@@ -126,14 +124,19 @@ double Scene::inverseInertia(int joint) const {
   for (const int body : {slot.spec.child, slot.spec.parent}) {
     if (body == WORLD_BODY) continue;
     sum += slot.spec.kind == JointKind::PRISMATIC ? 1 / bodies_[body].spec.inertial.mass
-                                                  : axis.dot(inertiaInWorld(body, bits(body).rotation()).inverse() * axis);
+                                                  : axis.dot(inertiaInWorld(body, rotation(body)).inverse() * axis);
   }
   return sum;
 }
 
-void Scene::rememberPositions() {
-  for (std::size_t j = 0; j < joints_.size(); ++j)
-    if (joints_[j].joint) joints_[j].last_position = jointPosition(static_cast<int>(j));
+void Scene::readJoints(std::vector<JointState>* states) {
+  states->resize(joints_.size());
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    const int joint = static_cast<int>(j);
+    JointSlot& slot = joints_[j];
+    (*states)[j] = {jointPosition(joint), jointVelocity(joint), slot.last_effort};
+    if (slot.joint) slot.last_position = (*states)[j].position;
+  }
 }
 
 }  // namespace blem_sim

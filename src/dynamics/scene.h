@@ -79,6 +79,12 @@ class Scene {
 
   bool exists(int body) const { return body >= 0 && body < static_cast<int>(bodies_.size()) && bodies_[body].ode; }
   BodyBits bits(int body) const;
+  Vector3 com(int body) const { return fromOde(dBodyGetPosition(bodies_[body].ode)); }
+  Matrix3 rotation(int body) const { return rotationFromOde(dBodyGetRotation(bodies_[body].ode)); }
+  Vector3 velocity(int body) const { return fromOde(dBodyGetLinearVel(bodies_[body].ode)); }
+  Vector3 spin(int body) const { return fromOde(dBodyGetAngularVel(bodies_[body].ode)); }
+  /** Are position, turn and velocities finite? */
+  bool isFinite(int body) const;
   void setBits(int body, const BodyBits& bits);
   void bits(std::vector<BodyBits>* out) const;
   void setBits(const std::vector<BodyBits>& bits);
@@ -94,8 +100,8 @@ class Scene {
   double jointVelocity(int joint) const;
   /** Inverse inertia along the joint's axis of its two bodies alone, [1/(kg m^2) or 1/kg]: an upper bound of the articulated one. */
   double inverseInertia(int joint) const;
-  /** Notes at which turn each joint is. */
-  void rememberPositions();
+  /** States of all joints; notes at which turn each is. */
+  void readJoints(std::vector<JointState>* states);
 
  private:
   void createWorld();

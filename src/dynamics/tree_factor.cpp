@@ -16,9 +16,10 @@ bool factorTree(const Forest& forest, int tree, std::vector<double>* rows) {
     for (int e = 0; e < last; ++e) row[e] *= inverse;
     // The ancestor's row has the same columns as the beginning of this one.
     for (int i = 0; i < last; ++i) {
-      double* above = rows->data() + forest.rowStart(column[i]);
+      double* __restrict above = rows->data() + forest.rowStart(column[i]);
+      const double* __restrict own = row;
       const double factor = row[i];
-      for (int e = 0; e <= i; ++e) above[e] -= factor * row[e];
+      for (int e = 0; e <= i; ++e) above[e] -= factor * own[e];
     }
   }
   return true;

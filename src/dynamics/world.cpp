@@ -25,8 +25,7 @@ bool finite(const Scene& scene) {
   for (std::size_t b = 0; b < scene.bodies().size(); ++b) {
     const BodySlot& slot = scene.bodies()[b];
     if (!slot.ode) continue;
-    for (const double x : scene.bits(static_cast<int>(b)).numbers)
-      if (!std::isfinite(x)) return false;
+    if (!scene.isFinite(static_cast<int>(b))) return false;
     if (!slot.pending.force.allFinite() || !slot.pending.torque.allFinite()) return false;
   }
   return true;
@@ -70,15 +69,22 @@ struct World::Impl {
   std::unique_ptr<Stepper> stepper;
   SolveResult result;
   std::vector<BodyBits> start;
+  std::vector<JointState> joints;  ///< after the last step
+  bool joints_known = false;       ///< nobody has moved a body or changed a joint since
 };
 
 World::World(const Vector3& gravity, const SolverSettings& settings) : impl_(std::make_unique<Impl>(gravity, settings)) {}
 World::~World() = default;
 
 int World::addBody(const BodySpec& spec) { return impl_->scene.addBody(spec); }
-int World::addJoint(const JointSpec& spec, double position) { return impl_->scene.addJoint(spec, position); }
+
+int World::addJoint(const JointSpec& spec, double position) {
+  impl_->joints_known = false;
+  return impl_->scene.addJoint(spec, position);
+}
 
 void World::removeBody(int body) {
+  impl_->joints_known = false;
   if (impl_->scene.exists(body)) impl_->scene.removeBody(body);
 }
 
@@ -90,14 +96,19 @@ const JointSpec& World::jointSpec(int joint) const { return impl_->scene.joints(
 BodyState World::bodyState(int body) const { return impl_->scene.exists(body) ? impl_->scene.bodyState(body) : BodyState(); }
 
 void World::setBodyState(int body, const BodyState& state) {
+  impl_->joints_known = false;
   if (impl_->scene.exists(body)) impl_->scene.setBodyState(body, state);
 }
 
 JointState World::jointState(int joint) const {
+  if (impl_->joints_known) return impl_->joints[joint];
   return {impl_->scene.jointPosition(joint), impl_->scene.jointVelocity(joint), impl_->scene.joints()[joint].last_effort};
 }
 
-void World::resetJointPosition(int joint, double position) { impl_->scene.joints()[joint].last_position = position; }
+void World::resetJointPosition(int joint, double position) {
+  impl_->joints_known = false;
+  impl_->scene.joints()[joint].last_position = position;
+}
 
 const Vector3& World::gravity() const { return impl_->scene.gravity(); }
 void World::setGravity(const Vector3& gravity) { impl_->scene.setGravity(gravity); }
@@ -106,7 +117,7 @@ void World::applyWrench(int body, const Wrench& wrench, const Vector3& point) {
   if (!impl_->scene.exists(body)) return;
   Wrench& pending = impl_->scene.bodies()[body].pending;
   pending.force += wrench.force;
-  pending.torque += wrench.torque + (point - impl_->scene.bits(body).com()).cross(wrench.force);
+  pending.torque += wrench.torque + (point - impl_->scene.com(body)).cross(wrench.force);
 }
 
 const SolveResult& World::step(double dt, const std::vector<ContactConstraint>& contacts, const std::vector<JointDrive>& drives) {
@@ -114,11 +125,13 @@ const SolveResult& World::step(double dt, const std::vector<ContactConstraint>& 
   assert(static_cast<int>(drives.size()) == jointCount());
   Impl& impl = *impl_;
   const StepInput input{dt, contacts, drives};
+  impl.joints_known = false;
   impl.scene.bits(&impl.start);
   impl.result.finite = impl.advance(input);
   if (impl.result.finite) {
-    impl.scene.rememberPositions();
     for (std::size_t j = 0; j < drives.size(); ++j) impl.scene.joints()[j].last_effort = impl.result.joint_efforts[j];
+    impl.scene.readJoints(&impl.joints);
+    impl.joints_known = true;
   } else {
     impl.result.contact_forces.assign(contacts.size(), Vector3::Zero());
     impl.result.joint_wrenches.assign(drives.size(), Wrench());
@@ -134,9 +147,9 @@ double World::kineticEnergy() const {
   double energy = 0;
   for (int b = 0; b < bodyCount(); ++b) {
     if (!impl_->scene.exists(b)) continue;
-    const BodyBits bits = impl_->scene.bits(b);
-    energy += 0.5 * bodySpec(b).inertial.mass * bits.velocity().squaredNorm();
-    energy += 0.5 * bits.spin().dot(impl_->scene.inertiaInWorld(b, bits.rotation()) * bits.spin());
+    const Vector3 spin = impl_->scene.spin(b);
+    energy += 0.5 * bodySpec(b).inertial.mass * impl_->scene.velocity(b).squaredNorm();
+    energy += 0.5 * spin.dot(impl_->scene.inertiaInWorld(b, impl_->scene.rotation(b)) * spin);
   }
   return energy;
 }
@@ -144,7 +157,7 @@ double World::kineticEnergy() const {
 double World::potentialEnergy() const {
   double energy = 0;
   for (int b = 0; b < bodyCount(); ++b)
-    if (impl_->scene.exists(b)) energy -= bodySpec(b).inertial.mass * gravity().dot(impl_->scene.bits(b).com());
+    if (impl_->scene.exists(b)) energy -= bodySpec(b).inertial.mass * gravity().dot(impl_->scene.com(b));
   return energy;
 }
 
@@ -163,6 +176,7 @@ void World::save(WorldState* state) const {
 }
 
 void World::restore(const WorldState& state) {
+  impl_->joints_known = false;
   StateReader reader(state);
   restoreScene(&impl_->scene, &reader);
   impl_->stepper->restore(impl_->scene, &reader);

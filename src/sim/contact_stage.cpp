@@ -105,7 +105,7 @@ void ContactStage::broadPhase(const SimulatedWorld& world, double dt) {
   moveColliders(world, dt);
   search_.pairs.clear();
   for (const ColliderPair& pair :
-       blem_sim::broadPhase(world.colliders, search_.motion, world.filter, BASE_MARGIN, std::numeric_limits<double>::infinity())) {
+       pair_search_.find(world.colliders, search_.motion, world.filter, BASE_MARGIN, std::numeric_limits<double>::infinity())) {
     if (world.disabled_pairs.count({pair.a, pair.b}) > 0) continue;
     search_.pairs.push_back({pair.a, pair.b, pair.margin, knownMargin(world.colliders[pair.a], world.colliders[pair.b], pair.margin)});
   }

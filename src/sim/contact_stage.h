@@ -94,6 +94,7 @@ class ContactStage {
   ReductionMemory memory_;
   bool known_ = false;
   std::vector<double> arms_;  ///< [m] by collider: farthest point of its geometry from the body's centre of mass
+  BroadPhase pair_search_;
   Search search_, current_search_;
   PairSearches searches_;
   std::vector<ContactManifold> found_, current_, reduced_;

@@ -6,9 +6,12 @@
 namespace blem_sim {
 namespace {
 
-/** [J] kinetic, of rotors too, and potential. */
-double mechanicalEnergy(const World& world) {
-  double energy = world.kineticEnergy() + world.potentialEnergy();
+/** [J] kinetic and potential. */
+double bodiesEnergy(const World& world) { return world.kineticEnergy() + world.potentialEnergy(); }
+
+/** [J] that of the bodies, given, and of rotors. */
+double mechanicalEnergy(const World& world, double bodies) {
+  double energy = bodies;
   for (int joint = 0; joint < world.jointCount(); ++joint) {
     const double armature = world.jointSpec(joint).armature;
     if (armature > 0) energy += 0.5 * armature * std::pow(world.jointState(joint).velocity, 2);
@@ -63,7 +66,8 @@ double largestRestitution(const ContactStage& contacts, const std::vector<Vector
 }  // namespace
 
 void EnergyBalance::start(const World& world) {
-  energy_ = mechanicalEnergy(world);
+  bodies_ = bodiesEnergy(world);
+  energy_ = mechanicalEnergy(world, bodies_);
   joints_.resize(world.jointCount());
   for (int joint = 0; joint < world.jointCount(); ++joint) joints_[joint] = world.jointState(joint);
 }
@@ -82,7 +86,8 @@ double EnergyBalance::takeWork(const World& world, double dt) {
 
 double EnergyBalance::addSolve(const World& world, double dt, const ContactStage& contacts, const std::vector<Vector3>& forces,
                                const std::vector<BodyState>& before, const std::vector<BodyState>& after) {
-  const double energy = mechanicalEnergy(world);
+  bodies_ = bodiesEnergy(world);
+  const double energy = mechanicalEnergy(world, bodies_);
   const double rise =
       energy - energy_ + gravityLag(world, dt, before, after) + springEnergyRise(contacts, before, after) - takeWork(world, dt);
   energy_ = energy;

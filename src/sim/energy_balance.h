@@ -28,6 +28,9 @@ class EnergyBalance {
   double addSolve(const World& world, double dt, const ContactStage& contacts, const std::vector<Vector3>& forces,
                   const std::vector<BodyState>& before, const std::vector<BodyState>& after);
 
+  /** [J] kinetic and potential energy of the bodies, as of the last start or solve. */
+  double energyOfBodies() const { return bodies_; }
+
   /** No impact is to bounce. */
   void clear() { bounce_ = 0; }
   void append(std::vector<double>* numbers) const { numbers->push_back(bounce_); }
@@ -37,7 +40,8 @@ class EnergyBalance {
   /** [J] done by motors and joint friction since the last time. */
   double takeWork(const World& world, double dt);
 
-  double energy_ = 0;               // [J]
+  double bodies_ = 0;               // [J] without rotors
+  double energy_ = 0;               // [J] with them
   std::vector<JointState> joints_;  // after the last solve
   double bounce_ = 0;               // [J] at most, that the next solve may give back
 };

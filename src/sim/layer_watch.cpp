@@ -29,7 +29,7 @@ LayerEventReport goneEvent(const std::pair<int, int>& pair, double time) {
 }  // namespace
 
 void LayerWatch::look(const std::vector<ContactManifold>& manifolds, double time, std::vector<LayerEventReport>* events) {
-  std::vector<std::pair<int, int>> outside;
+  next_outside_.clear();
   auto known = outside_.begin();
   // Both are sorted: what was outside and has no contacts any more comes before the next manifold.
   const auto tellGoneBefore = [&](const std::pair<int, int>* pair) {
@@ -41,11 +41,11 @@ void LayerWatch::look(const std::vector<ContactManifold>& manifolds, double time
     const bool was_outside = known != outside_.end() && *known == pair;
     if (was_outside) ++known;
     const LayerEventReport event = eventOf(manifold, time);
-    if (event.outside) outside.push_back(pair);
+    if (event.outside) next_outside_.push_back(pair);
     if (event.outside != was_outside) events->push_back(event);
   }
   tellGoneBefore(nullptr);
-  outside_ = std::move(outside);
+  std::swap(outside_, next_outside_);
 }
 
 void LayerWatch::append(std::vector<std::uint64_t>* words) const {

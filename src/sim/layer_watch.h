@@ -22,7 +22,8 @@ class LayerWatch {
   bool read(const std::uint64_t** words, const std::uint64_t* end);
 
  private:
-  std::vector<std::pair<int, int>> outside_;  // sorted
+  std::vector<std::pair<int, int>> outside_;       // sorted
+  std::vector<std::pair<int, int>> next_outside_;  // work space of look
 };
 
 }  // namespace blem_sim

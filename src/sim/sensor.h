@@ -25,8 +25,11 @@ struct StepContext {
 class Sensor {
  public:
   virtual ~Sensor() = default;
-  /** @param period [s] since the last reading */
-  virtual SensorReading read(const StepContext& step, double period) = 0;
+  /**
+   * @param period [s] since the last reading
+   * @param out overwritten; if it holds a reading of this sensor already, its memory is used again
+   */
+  virtual void read(const StepContext& step, double period, SensorReading* out) = 0;
   /** Forgets what it remembers (a drifting bias), without touching the random numbers. */
   virtual void reset() {}
   /** What it remembers. */
@@ -39,6 +42,12 @@ class Sensor {
  protected:
   RandomNumbers random_;
 };
+
+/** The alternative that a sensor fills; what it held before stays in it. */
+template <typename Reading>
+Reading& readingIn(SensorReading* out) {
+  return std::holds_alternative<Reading>(*out) ? std::get<Reading>(*out) : out->emplace<Reading>();
+}
 
 std::unique_ptr<Sensor> makeForceTorqueSensor(const SimulatedWorld& world, const SensorInfo& info);
 std::unique_ptr<Sensor> makeImuSensor(const SimulatedWorld& world, const SensorInfo& info);

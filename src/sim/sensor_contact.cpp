@@ -9,8 +9,10 @@ class ContactSensor : public Sensor {
   ContactSensor(const SimulatedWorld& world, const SensorInfo& info)
       : robot_(world.robots[info.robot]), link_(robot_.description->linkIndex(info.config.link)) {}
 
-  SensorReading read(const StepContext& step, double) override {
-    ContactReading reading;
+  void read(const StepContext& step, double, SensorReading* out) override {
+    ContactReading& reading = readingIn<ContactReading>(out);
+    reading.contacts.clear();
+    reading.total = Wrench();
     reading.link_body = robot_.bodies[robot_.lumped->link_placement[link_].body];
     // Contact points and forces belong to the start of the step.
     const Vector3 p_WL = step.world.linkPose(robot_, link_, step.bodies_before).translation();
@@ -23,7 +25,6 @@ class ContactSensor : public Sensor {
       reading.total.force += force;
       reading.total.torque += (contact.point - p_WL).cross(force);
     }
-    return reading;
   }
 
  private:

@@ -17,7 +17,7 @@ class ForceTorqueSensor : public Sensor {
     sign_ = info.config.measure == "child_to_parent" ? -1 : 1;
   }
 
-  SensorReading read(const StepContext& step, double) override {
+  void read(const StepContext& step, double, SensorReading* out) override {
     const Wrench& about_joint = step.joint_wrenches[world_joint_];
     // Newton-Euler's configuration is that at the start of the step.
     const Pose X_WP = step.world.linkPose(robot_, parent_link_, step.bodies_before);
@@ -25,7 +25,7 @@ class ForceTorqueSensor : public Sensor {
     const Pose X_WC = step.world.linkPose(robot_, child_link_, step.bodies_before);
     const Vector3 torque = about_joint.torque + (X_WJ.translation() - X_WC.translation()).cross(about_joint.force);
     const Matrix3 R_WA = info_.config.frame == "parent" ? X_WP.linear() : info_.config.frame == "sensor" ? X_WJ.linear() : X_WC.linear();
-    ForceTorqueReading reading;
+    ForceTorqueReading& reading = readingIn<ForceTorqueReading>(out);
     reading.force = sign_ * (R_WA.transpose() * about_joint.force);
     reading.torque = sign_ * (R_WA.transpose() * torque);
     reading.frame_id = info_.frame_id;
@@ -33,7 +33,6 @@ class ForceTorqueSensor : public Sensor {
       reading.force += info_.config.noise_stddev * random_.gaussianVector();
       reading.torque += info_.config.noise_stddev * random_.gaussianVector();
     }
-    return reading;
   }
 
  private:

@@ -9,13 +9,13 @@ class ImuSensor : public Sensor {
   ImuSensor(const SimulatedWorld& world, const SensorInfo& info)
       : config_(info.config), frame_(world, world.robots[info.robot], info.config.link, info.config.X_LS) {}
 
-  SensorReading read(const StepContext& step, double period) override {
+  void read(const StepContext& step, double period, SensorReading* out) override {
     const MountedFrame::Motion before = frame_.motion(step.bodies_before), after = frame_.motion(step.bodies);
     const Vector3 specific_force = (after.v_WS - before.v_WS) / step.dt - step.world.world.gravity();
     // A difference of velocities belongs to the middle of the step, and so do the axes it is seen in.
     const Quaternion end(after.X_WS.linear());
     const Quaternion middle = Quaternion(before.X_WS.linear()).slerp(0.5, end);
-    ImuReading reading;
+    ImuReading& reading = readingIn<ImuReading>(out);
     reading.orientation = end.normalized();
     reading.angular_velocity = end.conjugate() * after.w_WS;
     reading.linear_acceleration = middle.conjugate() * specific_force;
@@ -23,7 +23,6 @@ class ImuSensor : public Sensor {
     reading.gyro_stddev = config_.gyro_stddev;
     addNoise(config_.accel_stddev, config_.accel_bias_stddev, period, &accel_bias_, &reading.linear_acceleration);
     addNoise(config_.gyro_stddev, config_.gyro_bias_stddev, period, &gyro_bias_, &reading.angular_velocity);
-    return reading;
   }
 
   void reset() override { accel_bias_ = gyro_bias_ = Vector3::Zero(); }

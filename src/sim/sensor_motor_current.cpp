@@ -10,14 +10,15 @@ class MotorCurrentSensor : public Sensor {
     for (const std::string& joint : robot_.joint_names) torque_constants_.push_back(torqueConstant(info.config, joint));
   }
 
-  SensorReading read(const StepContext& step, double) override {
-    MotorCurrentReading reading;
+  void read(const StepContext& step, double, SensorReading* out) override {
+    MotorCurrentReading& reading = readingIn<MotorCurrentReading>(out);
     reading.joints = robot_.joint_names;
+    reading.efforts.clear();
+    reading.currents.clear();
     for (std::size_t i = 0; i < robot_.joints.size(); ++i) {
       reading.efforts.push_back(step.joints[robot_.joints[i]].effort);
       reading.currents.push_back(reading.efforts.back() / torque_constants_[i]);
     }
-    return reading;
   }
 
  private:

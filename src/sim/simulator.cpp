@@ -41,6 +41,7 @@ Simulator::Impl::Impl(const SimulationConfig& config, const UriResolver& resolve
     sensors_.push_back(makeSensor(world_, sensor));
     sensor_periods_.push_back(stepsPerReading(sensor.config.rate, config_.time_step));
   }
+  spare_readings_.resize(sensors_.size());
   seedSensors();
   initial_state_ = world_.world.save();
   reportWithoutStep();

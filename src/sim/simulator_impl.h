@@ -69,6 +69,7 @@ struct Simulator::Impl {
   EnergyBalance energy_balance_;
   std::vector<std::unique_ptr<Sensor>> sensors_;
   std::vector<std::uint64_t> sensor_periods_;  ///< [steps]
+  std::vector<SensorReading> spare_readings_;  ///< [sensors] whose memory the next reading uses
   WorldState initial_state_;
 
   std::uint64_t step_count_ = 0;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "simulator_impl.h"
 #include "step_prediction.h"
@@ -61,6 +62,7 @@ void Simulator::Impl::startStep() {
   substeps_ = Substeps();
   report_.status = STEP_OK;
   report_.profile = StepProfile();
+  for (SensorSample& sample : report_.samples) spare_readings_[sample.sensor] = std::move(sample.reading);
   report_.samples.clear();
   report_.layer_events.clear();
   report_.energy_gained = 0;
@@ -207,7 +209,8 @@ void Simulator::Impl::readSensors() {
   for (std::size_t i = 0; i < sensors_.size(); ++i) {
     if (step_count_ % sensor_periods_[i] != 0) continue;
     const double period = static_cast<double>(sensor_periods_[i]) * config_.time_step;
-    report_.samples.push_back({static_cast<int>(i), sensors_[i]->read(context, period)});
+    sensors_[i]->read(context, period, &spare_readings_[i]);
+    report_.samples.push_back({static_cast<int>(i), std::move(spare_readings_[i])});
   }
 }
 
@@ -215,10 +218,11 @@ void Simulator::Impl::report() {
   const StageTimer timer(&report_.profile, Stage::REPORT);
   report_.step = step_count_;
   report_.time = time();
+  report_.searched_pairs = static_cast<int>(contacts_.watched().size());
   report_.substeps = substeps_.count();
   report_.redone_solves = substeps_.redone();
   if (report_.substeps > 1) report_.status |= STEP_SHORTENED;
-  report_.energy = world_.world.kineticEnergy() + world_.world.potentialEnergy();
+  report_.energy = energy_balance_.energyOfBodies();
   std::swap(report_.contacts, contact_reports_);
   report_.bodies = bodies_;
   report_.joints = joints_;

@@ -20,7 +20,8 @@ struct Scene {
   }
   std::vector<std::pair<int, int>> pairs(const CollisionFilter& filter = {}, double base = 0.001, double max = 0.1) const {
     std::vector<std::pair<int, int>> out;
-    for (const ColliderPair& p : broadPhase(colliders, motion, filter, base, max)) out.emplace_back(p.a, p.b);
+    BroadPhase search;
+    for (const ColliderPair& p : search.find(colliders, motion, filter, base, max)) out.emplace_back(p.a, p.b);
     return out;
   }
 };
@@ -39,7 +40,7 @@ TEST(BroadPhase, NothingThatNarrowPhaseFindsIsMissed) {
     for (int i = 0; i < 30; ++i) {
       scene.add(shapes[i % 3], makePose(random.point(0.4), random.point(3)), i % 7 == 0 ? -1 : i, i, random.uniform(0, 0.02));
     }
-    const std::vector<ColliderPair> found = broadPhase(scene.colliders, scene.motion, {}, 0.001, 0.015);
+    const std::vector<ColliderPair> found = BroadPhase().find(scene.colliders, scene.motion, {}, 0.001, 0.015);
     std::size_t next = 0;
     for (int a = 0; a < static_cast<int>(scene.colliders.size()); ++a) {
       for (int b = a + 1; b < static_cast<int>(scene.colliders.size()); ++b) {
@@ -79,9 +80,9 @@ TEST(BroadPhase, MarginFollowsTheMotionUpToItsBound) {
   scene.add(box(), makePose({0, 0, 0}), 0, 0, 0.01);
   scene.add(box(), makePose({0.125, 0, 0}), 1, 1, 0.02);
   ASSERT_EQ(scene.pairs(), (Pairs{{0, 1}}));
-  EXPECT_DOUBLE_EQ(broadPhase(scene.colliders, scene.motion, {}, 0.001, 0.1)[0].margin, 0.03);
+  EXPECT_DOUBLE_EQ(BroadPhase().find(scene.colliders, scene.motion, {}, 0.001, 0.1)[0].margin, 0.03);
   EXPECT_TRUE(scene.pairs({}, 0.001, 0.02).empty());
-  EXPECT_DOUBLE_EQ(broadPhase(scene.colliders, scene.motion, {}, 0.04, 0.1)[0].margin, 0.04);
+  EXPECT_DOUBLE_EQ(BroadPhase().find(scene.colliders, scene.motion, {}, 0.04, 0.1)[0].margin, 0.04);
 }
 
 TEST(BroadPhase, StateThatIsNotFiniteIsLeftOut) {

@@ -19,6 +19,7 @@ class CollisionFilter {
  public:
   /** Colliders of one model touch each other only if this is on (robots; default off). */
   void setSelfCollision(int model, bool on);
+  bool selfCollides(int model) const { return self_colliding_models_.count(model) > 0; }
   /** Two bodies that never touch: neighbours at a joint, listed pairs. Order does not matter. */
   void disableBodies(int body_a, int body_b);
   bool allows(const Collider& a, const Collider& b) const;
@@ -34,11 +35,35 @@ struct ColliderMotion {
   double reach = 0;  ///< [m] bound on how far any of its points moves in the coming step
 };
 
-/**
- * Pairs whose layers may come within reach, sorted by (a, b): sweep along the axis of largest spread over world boxes. A pair's margin is
- * min(max_margin, max(base_margin, reach_a + reach_b)).
- */
-std::vector<ColliderPair> broadPhase(const std::vector<Collider>& colliders, const std::vector<ColliderMotion>& motion,
-                                     const CollisionFilter& filter, double base_margin, double max_margin);
+/** What the search for pairs works in; used again, so that a warm search allocates nothing. */
+class BroadPhase {
+ public:
+  /**
+   * Pairs whose layers may come within reach, sorted by (a, b): sweep along the axis of largest spread over world boxes. A pair's margin
+   * is min(max_margin, max(base_margin, reach_a + reach_b)).
+   * @return lives until the next search
+   */
+  const std::vector<ColliderPair>& find(const std::vector<Collider>& colliders, const std::vector<ColliderMotion>& motion,
+                                        const CollisionFilter& filter, double base_margin, double max_margin);
+
+ private:
+  /** A collider in the sweep: its box in the world, and how much farther it may matter. */
+  struct SweepBox {
+    int collider;
+    int model;             // whose other colliders it never touches, -1: none
+    Vector3 lower, upper;  // [m] world, without the layer
+    double reach;          // [m] layer and this collider's share of the margin, at most
+  };
+  struct SweepStart {
+    double at;  // [m] along the axis
+    int box;
+  };
+  class Search;
+
+  std::vector<int> half_spaces_;
+  std::vector<SweepBox> boxes_;
+  std::vector<SweepStart> starts_;
+  std::vector<ColliderPair> pairs_;
+};
 
 }  // namespace blem_sim

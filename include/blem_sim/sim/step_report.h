@@ -97,7 +97,8 @@ struct StepReport {
   double dt = 0;
   std::uint32_t status = STEP_OK;
   int substeps = 1;
-  int redone_solves = 0;  ///< solves thrown away because they used up a layer, and made again shorter
+  int redone_solves = 0;   ///< solves thrown away because they used up a layer, and made again shorter
+  int searched_pairs = 0;  ///< of colliders, after the step: those whose contacts were looked for
   int raw_contacts = 0, reduced_contacts = 0;
   double max_depth = 0, max_of_layer = 0;  ///< over this step's contacts
   int deepest_a = -1, deepest_b = -1;      ///< colliders

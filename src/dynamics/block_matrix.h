@@ -1,0 +1,69 @@
+// A symmetric positive definite matrix of blocks, few of which are coupled, and its Cholesky factor.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace blem_sim {
+
+/**
+ * Use: start, couple, analyse; then setZero, fill, factor, solve as often as wished. Blocks are eliminated in an order of least degree
+ * [Tinney and Walker 1967], which only decides what it costs. A pattern no larger than an earlier one allocates nothing.
+ */
+class BlockMatrix {
+ public:
+  using Block = Eigen::Map<Eigen::MatrixXd>;
+
+  /** Begins a pattern of blocks, none of them coupled. */
+  void start(const std::vector<int>& sizes);
+  /** Two different blocks that are coupled. */
+  void couple(int a, int b);
+  /** Chooses the order and makes room for what elimination fills in. */
+  void analyse();
+
+  void setZero();
+  /** Only its lower triangle counts. */
+  Block diagonal(int block);
+  /** The block of rows `a` and columns `b`, which are coupled, or, if `transposed` says so, of rows b and columns a. */
+  Block coupling(int a, int b, bool* transposed);
+  /** Adds `factor` times row and column `from` of a block to `to`, everywhere, and leaves an identity there. */
+  void fold(int block, int from, int to, double factor);
+  /** Row of the whole vector where a block begins. */
+  int offset(int block) const { return offsets_[block]; }
+  int size() const { return size_; }
+
+  /** @return false if the matrix is not positive definite */
+  bool factor();
+  /** Solves in place. Precondition: factor */
+  void solve(Eigen::Ref<Eigen::VectorXd> x) const;
+
+ private:
+  struct Column {
+    int block = 0, size = 0;   // eliminated here
+    int offset = 0;            // of the block in a vector
+    std::size_t diagonal = 0;  // in values_
+    int first = 0, end = 0;    // of its entries below the diagonal
+  };
+  struct Entry {
+    int column = 0;         // where its row's block is eliminated
+    std::size_t value = 0;  // in values_
+  };
+  void eliminate(int block);
+  void place();
+  int degree(int block) const;
+  Block entryBlock(const Column& column, const Entry& entry);
+  Eigen::Map<const Eigen::MatrixXd> entryBlock(const Column& column, const Entry& entry) const;
+  Entry* find(int row, int column);
+  bool factorColumn(const Column& column);
+  void subtractOuter(const Column& column);
+
+  int size_ = 0;
+  std::vector<int> sizes_, offsets_, degrees_, neighbours_;
+  std::vector<char> adjacent_;  // block by block
+  std::vector<int> position_;   // per block: its column, -1 while it is not eliminated
+  std::vector<Column> columns_;
+  std::vector<Entry> entries_;
+  std::vector<double> values_;
+};
+
+}  // namespace blem_sim

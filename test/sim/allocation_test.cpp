@@ -1,0 +1,69 @@
+// Once warm, a step of the simulator asks the heap for nothing, but for the search for contacts and their reduction.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <cstdlib>
+
+#include "simulation_scene.h"
+
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)
+
+namespace {
+std::atomic<long> allocations{0};
+}
+
+// Stands before glibc's own in this program, so that Eigen's allocations are seen like those of new.
+extern "C" void* __libc_malloc(std::size_t size);
+extern "C" void* malloc(std::size_t size) {
+  ++allocations;
+  return __libc_malloc(size);
+}
+
+namespace blem_sim {
+namespace {
+
+constexpr int WARM_UP = 300, WATCHED = 500;  // [steps]
+constexpr int OF_REDUCTION = 1;              // allocations of the reduction in a step without contacts: it counts them by model
+
+SensorConfig sensorOf(SensorType type) {
+  SensorConfig sensor;
+  sensor.name = "sensor" + std::to_string(static_cast<int>(type));
+  sensor.type = type;
+  sensor.link = "arm";
+  sensor.joint = "hinge";
+  return sensor;
+}
+
+/** A motor driven arm with every kind of sensor, and a ball beside it that falls past. */
+SimulationConfig busyScene() {
+  SimulationConfig config;
+  RobotConfig arm = robot("arm_with_a_name_too_long_for_a_short_string", pendulumUrdf(), true);
+  arm.gains["default"] = {300, 10, 20, 100};
+  for (const SensorType type :
+       {SensorType::FORCE_TORQUE, SensorType::IMU, SensorType::CONTACT, SensorType::TILT, SensorType::MOTOR_CURRENT})
+    arm.sensors.push_back(sensorOf(type));
+  config.robots = {arm};
+  config.objects = {box("falling", Vector3::Constant(0.1), 1, Vector3(3, 0, 100))};
+  return config;
+}
+
+long allocationsOf(Simulator* simulator) {
+  const long before = allocations;
+  simulator->step();
+  return allocations - before;
+}
+
+TEST(StepAllocation, NoneInAWarmStepWithoutContacts) {
+  Simulator simulator(busyScene(), UriResolver());
+  for (int i = 0; i < WARM_UP; ++i) simulator.step();
+  long allocated = 0;
+  for (int i = 0; i < WATCHED; ++i) allocated += allocationsOf(&simulator);
+  EXPECT_EQ(simulator.report().samples.size(), 5u);
+  EXPECT_LE(allocated, WATCHED * OF_REDUCTION);
+}
+
+}  // namespace
+}  // namespace blem_sim
+
+#endif
