@@ -9,9 +9,11 @@ if(benchmark_FOUND)
   add_long_run(solver_benchmark ${PROJECT_SOURCE_DIR}/benchmark/solver_benchmark.cpp ${PROJECT_SOURCE_DIR}/test/soak/hubo_stand.cpp)
   add_long_run(contact_benchmark ${PROJECT_SOURCE_DIR}/benchmark/contact_benchmark.cpp ${PROJECT_SOURCE_DIR}/benchmark/contact_scenes.cpp
     ${PROJECT_SOURCE_DIR}/benchmark/plain_tree.cpp)
+  add_long_run(load_benchmark ${PROJECT_SOURCE_DIR}/benchmark/load_benchmark.cpp)
   target_link_libraries(solver_benchmark benchmark::benchmark)
   target_link_libraries(contact_benchmark benchmark::benchmark)
-  add_custom_target(benchmarks DEPENDS solver_benchmark contact_benchmark)
+  target_link_libraries(load_benchmark benchmark::benchmark PkgConfig::TBB)
+  add_custom_target(benchmarks DEPENDS solver_benchmark contact_benchmark load_benchmark)
 endif()
 
 # The peers of the comparison, as Debian packages them.
