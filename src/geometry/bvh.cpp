@@ -17,9 +17,9 @@ constexpr float INFINITE = std::numeric_limits<float>::infinity();
 
 /** Axis-aligned float box; the fourth places are not its own. */
 struct FloatBox {
-  Eigen::Array4f lower = Eigen::Array4f::Constant(INFINITE);
-  Eigen::Array4f upper = Eigen::Array4f::Constant(-INFINITE);
+  Eigen::Array4f lower, upper;
 
+  static FloatBox nothing() { return {Eigen::Array4f::Constant(INFINITE), Eigen::Array4f::Constant(-INFINITE)}; }
   void extend(const FloatBox& other) {
     lower = lower.min(other.lower);
     upper = upper.max(other.upper);
@@ -81,9 +81,9 @@ class Primitive {
   FloatBox box_;
 };
 
-std::vector<Primitive> primitivesOf(const TriangleMesh& mesh) {
-  std::vector<Primitive> primitives(mesh.elements.size());
-  tbb::parallel_for(std::size_t{0}, primitives.size(), [&](std::size_t i) {
+std::unique_ptr<Primitive[]> primitivesOf(const TriangleMesh& mesh) {
+  std::unique_ptr<Primitive[]> primitives(new Primitive[mesh.elements.size()]);
+  tbb::parallel_for(std::size_t{0}, mesh.elements.size(), [&](std::size_t i) {
     const Vector3i& e = mesh.elements[i];
     primitives[i].set(mesh.vertices[e[0]], mesh.vertices[e[1]], mesh.vertices[e[2]], static_cast<std::uint32_t>(i));
   });
@@ -125,6 +125,8 @@ struct Split {
 
 /** What lies in the bins of one axis. */
 struct Bins {
+  Bins() { boxes.fill(FloatBox::nothing()); }
+
   std::array<FloatBox, BINS> boxes;
   std::array<std::uint32_t, BINS> counts{};
 
@@ -142,7 +144,7 @@ struct Bins {
       n += counts[i] > 0;
     }
     std::array<float, BINS> right_cost;
-    FloatBox right, left;
+    FloatBox right = FloatBox::nothing(), left = right;
     std::uint32_t right_count = 0, left_count = 0;
     for (int i = n - 1; i > 0; --i) {
       right.extend(boxes[filled[i]]);
@@ -191,11 +193,11 @@ Primitive* partitioned(const Run& run, const FloatBox& middles) {
 /** Makes the subtrees of runs, large ones by several threads; which ones does not show in the tree. */
 class Builder {
  public:
-  Builder(std::vector<Primitive>* primitives, int leaf_size)
-      : primitives_(*primitives), leaf_size_(static_cast<std::size_t>(std::max(1, leaf_size))) {}
+  Builder(Primitive* begin, Primitive* end, int leaf_size)
+      : all_{begin, end, 0}, leaf_size_(static_cast<std::size_t>(std::max(1, leaf_size))) {}
 
   std::vector<Bvh::Node> build() {
-    const Part root = partOf({primitives_.data(), primitives_.data() + primitives_.size(), 0});
+    const Part root = partOf(all_);
     std::vector<Bvh::Node> nodes(1 + root.below());
     place(root, 0, 1, &nodes);
     return nodes;
@@ -215,7 +217,7 @@ class Builder {
 
   /** Fills in the node of a run. @return where its right side begins, null for a leaf */
   Primitive* split(const Run& run, Bvh::Node* node) const {
-    FloatBox box, middles;
+    FloatBox box = FloatBox::nothing(), middles = box;
     for (const Primitive* p = run.begin; p != run.end; ++p) {
       box.extend(p->box());
       const Eigen::Array4f middle = p->middle();
@@ -224,7 +226,7 @@ class Builder {
     }
     node->lower = box.lower.head<3>();
     node->upper = box.upper.head<3>();
-    node->first = static_cast<std::uint32_t>(run.begin - primitives_.data());
+    node->first = static_cast<std::uint32_t>(run.begin - all_.begin);
     node->count = static_cast<std::uint32_t>(run.size());
     if (run.size() <= leaf_size_) return nullptr;
     node->count = 0;
@@ -291,7 +293,7 @@ class Builder {
                          [&] { place(*part.right, below + 1, below + 2 + part.left->below(), nodes); });
   }
 
-  std::vector<Primitive>& primitives_;
+  const Run all_;
   const std::size_t leaf_size_;
 };
 
@@ -299,10 +301,10 @@ class Builder {
 
 Bvh::Bvh(const TriangleMesh& mesh, int leaf_size) {
   if (mesh.elements.empty()) return;
-  std::vector<Primitive> primitives = primitivesOf(mesh);
-  nodes_ = Builder(&primitives, leaf_size).build();
-  order_.reserve(primitives.size());
-  for (const Primitive& p : primitives) order_.push_back(p.element());
+  const std::unique_ptr<Primitive[]> primitives = primitivesOf(mesh);
+  nodes_ = Builder(primitives.get(), primitives.get() + mesh.elements.size(), leaf_size).build();
+  order_.resize(mesh.elements.size());
+  tbb::parallel_for(std::size_t{0}, order_.size(), [&](std::size_t i) { order_[i] = primitives[i].element(); });
 }
 
 }  // namespace blem_sim

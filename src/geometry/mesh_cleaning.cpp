@@ -49,9 +49,10 @@ std::uint64_t elementHash(const Vector3i& sorted_corners) {
 
 /** Drops elements that repeat an earlier one, either winding. @return how many */
 int dropRepeated(std::vector<Vector3i>* elements) {
+  std::vector<Vector3i> keys(elements->size());
+  tbb::parallel_for(std::size_t{0}, keys.size(), [&](std::size_t i) { keys[i] = sorted((*elements)[i]); });
   const std::vector<int> first = firstEquals(
-      static_cast<int>(elements->size()), [&](int i) { return elementHash(sorted((*elements)[i])); },
-      [&](int i, int j) { return sorted((*elements)[i]) == sorted((*elements)[j]); });
+      static_cast<int>(keys.size()), [&](int i) { return elementHash(keys[i]); }, [&](int i, int j) { return keys[i] == keys[j]; });
   std::size_t kept = 0;
   for (std::size_t i = 0; i < elements->size(); ++i) {
     if (first[i] == static_cast<int>(i)) (*elements)[kept++] = (*elements)[i];

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "grouped.h"
 #include "sides_by_vertex.h"
 
 namespace blem_sim {
@@ -93,16 +94,13 @@ void MeshTopology::findEdges(const TriangleMesh& mesh) {
 }
 
 void MeshTopology::findRings(int vertex_count) {
-  vertex_edge_begin.assign(vertex_count + 1, 0);
-  for (const std::array<int, 2>& edge : edges) {
-    for (const int vertex : edge) ++vertex_edge_begin[vertex + 1];
-  }
-  accumulate(&vertex_edge_begin);
-  vertex_edges.resize(vertex_edge_begin.back());
-  std::vector<int> next(vertex_edge_begin.begin(), vertex_edge_begin.end() - 1);
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    for (const int vertex : edges[i]) vertex_edges[next[vertex]++] = static_cast<int>(i);
-  }
+  const auto visitEnds = [this](int edge, auto&& visit) {
+    for (const int vertex : edges[edge]) visit(vertex, edge);
+  };
+  vertex_edge_begin = grouped(static_cast<int>(edges.size()), vertex_count, visitEnds, [this](std::size_t count) {
+    vertex_edges.resize(count);
+    return vertex_edges.data();
+  });
 }
 
 bool MeshTopology::isFlat(const TriangleMesh& mesh, int edge) const {
