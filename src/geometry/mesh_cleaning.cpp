@@ -117,34 +117,28 @@ std::vector<Vector3i> usableElements(const TriangleMesh& soup, RepeatedIndices r
   return usable;
 }
 
-/** For each place the first one that equals it. */
-std::vector<int> firstAt(const std::vector<Vector3>& vertices, const std::vector<int>& places) {
+/** For each vertex the first one at exactly its position; what is not finite is alone. */
+std::vector<int> firstAt(const std::vector<Vector3>& vertices) {
   return firstEquals(
-      static_cast<int>(places.size()), [&](int i) { return placeHash(vertices[places[i]]); },
-      [&](int i, int j) { return vertices[places[i]] == vertices[places[j]]; });
+      static_cast<int>(vertices.size()),
+      [&](int i) { return isFinite(vertices[i]) ? placeHash(vertices[i]) : hashedOn(0, static_cast<std::uint64_t>(i)); },
+      [&](int i, int j) { return i == j || vertices[i] == vertices[j]; });
 }
 
 /** Lets equal positions share the vertex there that is used first. */
 void weld(const std::vector<Vector3>& vertices, std::vector<Vector3i>* elements, MeshReport* report) {
-  std::vector<int> used;
-  used.reserve(vertices.size());
-  std::vector<int> welded(vertices.size(), NONE);
-  for (const Vector3i& e : *elements) {
+  const std::vector<int> first = firstAt(vertices);
+  std::vector<int> used_at(vertices.size(), NONE);
+  std::vector<std::uint8_t> used(vertices.size(), 0);
+  for (Vector3i& e : *elements) {
     for (int k = 0; k < 3; ++k) {
-      if (welded[e[k]] != NONE) continue;
-      welded[e[k]] = e[k];
-      used.push_back(e[k]);
+      int& shared = used_at[first[e[k]]];
+      if (shared == NONE) shared = e[k];
+      report->welded += shared != e[k] && !used[e[k]];
+      used[e[k]] = 1;
+      e[k] = shared;
     }
   }
-  const std::vector<int> first = firstAt(vertices, used);
-  for (std::size_t i = 0; i < used.size(); ++i) {
-    welded[used[i]] = used[first[i]];
-    report->welded += first[i] != static_cast<int>(i);
-  }
-  tbb::parallel_for(std::size_t{0}, elements->size(), [&](std::size_t i) {
-    Vector3i& e = (*elements)[i];
-    e = {welded[e[0]], welded[e[1]], welded[e[2]]};
-  });
 }
 
 /** Drops the vertices that no element uses; the others keep their order. */
@@ -199,22 +193,18 @@ TriangleMesh pointCloudMesh(const std::vector<Vector3>& points, MeshReport* repo
   MeshReport unwanted;
   if (!report) report = &unwanted;
   clearCounts(report);
-  std::vector<int> finite;
-  finite.reserve(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (isFinite(points[i])) finite.push_back(static_cast<int>(i));
-  }
-  report->nonfinite = static_cast<int>(points.size() - finite.size());
-  const std::vector<int> first = firstAt(points, finite);
+  const std::vector<int> first = firstAt(points);
   TriangleMesh mesh;
-  for (std::size_t i = 0; i < finite.size(); ++i) {
-    if (first[i] != static_cast<int>(i)) {
+  for (int i = 0; i < static_cast<int>(points.size()); ++i) {
+    if (!isFinite(points[i])) {
+      ++report->nonfinite;
+    } else if (first[i] != i) {
       ++report->welded;
-      continue;
+    } else {
+      const int vertex = static_cast<int>(mesh.vertices.size());
+      mesh.vertices.push_back(points[i]);
+      mesh.elements.emplace_back(vertex, vertex, vertex);
     }
-    const int vertex = static_cast<int>(mesh.vertices.size());
-    mesh.vertices.push_back(points[finite[i]]);
-    mesh.elements.emplace_back(vertex, vertex, vertex);
   }
   mesh.vertices.shrink_to_fit();
   mesh.elements.shrink_to_fit();
