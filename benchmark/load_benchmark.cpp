@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <memory>
 
 #include "blem_sim/contact/collider.h"
 #include "blem_sim/geometry/mesh_mending.h"
