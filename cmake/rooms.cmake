@@ -8,6 +8,7 @@ function(blem_sim_room room)
 endfunction()
 
 blem_sim_room(geometry Eigen3::Eigen)
+target_link_libraries(blem_sim_geometry PRIVATE PkgConfig::TBB)
 blem_sim_room(model blem_sim_geometry)
 target_include_directories(blem_sim_model SYSTEM PRIVATE ${PCL_INCLUDE_DIRS} ${ASSIMP_INCLUDE_DIRS})
 target_link_libraries(blem_sim_model PRIVATE PkgConfig::URDFDOM PkgConfig::CONSOLE_BRIDGE PkgConfig::TINYXML2 assimp fmt::fmt

@@ -1,12 +1,17 @@
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
+
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
-#include <tuple>
+#include <functional>
 #include <utility>
 
 #include "blem_sim/geometry/triangle_mesh.h"
+#include "first_equals.h"
 #include "place_hash.h"
+#include "sides_by_vertex.h"
 
 namespace blem_sim {
 namespace {
@@ -14,149 +19,146 @@ namespace {
 constexpr double MAX_COORDINATE = 1e30;
 /** A triangle lower than this part of its longest side has no area but rounding. */
 constexpr double MIN_RELATIVE_HEIGHT = 1e-12;
+constexpr int NONE = -1;
 
 bool isFinite(const Vector3& v) { return (v.array().abs() <= MAX_COORDINATE).all(); }
 
 bool hasArea(const Vector3& a, const Vector3& b, const Vector3& c) {
   const Vector3 ab = b - a, bc = c - b, ca = a - c;
-  const double longest = std::sqrt(std::max({ab.squaredNorm(), bc.squaredNorm(), ca.squaredNorm()}));
+  const double longest2 = std::max({ab.squaredNorm(), bc.squaredNorm(), ca.squaredNorm()});
+  // Nearly all, by far: without a root or a quotient.
+  constexpr double PLENTY = 1e4 * MIN_RELATIVE_HEIGHT * MIN_RELATIVE_HEIGHT, SMALL = 1e-60, LARGE = 1e60;
+  if (longest2 > SMALL && longest2 < LARGE && ab.cross(ca).squaredNorm() > PLENTY * longest2 * longest2) return true;
+  const double longest = std::sqrt(longest2);
   // Of unit size before the product, which would lose a triangle of 1e-100 m or 1e100 m.
   return longest > 0 && (ab / longest).cross(ca / longest).norm() > MIN_RELATIVE_HEIGHT;
 }
 
-/** Finds, for a position, the first vertex there. Open addressing; -0.0 is 0.0. */
-class PositionIndex {
- public:
-  explicit PositionIndex(const std::vector<Vector3>& vertices) : vertices_(vertices) {
-    std::size_t slots = 16;
-    while (slots < 2 * vertices.size()) slots *= 2;
-    slots_.assign(slots, EMPTY);
-  }
-
-  int firstAt(int vertex) {
-    const std::size_t mask = slots_.size() - 1;
-    for (std::size_t slot = placeHash(vertices_[vertex]) & mask;; slot = (slot + 1) & mask) {
-      if (slots_[slot] == EMPTY) return slots_[slot] = vertex;
-      if (vertices_[slots_[slot]] == vertices_[vertex]) return slots_[slot];
-    }
-  }
-
- private:
-  static constexpr int EMPTY = -1;
-
-  const std::vector<Vector3>& vertices_;
-  std::vector<int> slots_;
-};
-
-/** Indices of `count` items grouped by a key in [0, keys), each group in the items' order: a counting sort. */
-template <typename Key>
-std::vector<int> groupedBy(int count, int keys, Key&& key) {
-  std::vector<int> start(keys + 1, 0), grouped(count);
-  for (int i = 0; i < count; ++i) ++start[key(i) + 1];
-  for (int k = 0; k < keys; ++k) start[k + 1] += start[k];
-  for (int i = 0; i < count; ++i) grouped[start[key(i)]++] = i;
-  return grouped;
-}
-
 /** The vertices in ascending order; a segment's third index repeats the higher one, whichever was repeated. */
 Vector3i sorted(const Vector3i& e) {
-  const int low = e.minCoeff(), high = e.maxCoeff();
-  for (int k = 0; k < 3; ++k) {
-    if (e[k] != low && e[k] != high) return {low, e[k], high};
-  }
-  return {low, high, high};
+  const int low = std::min({e[0], e[1], e[2]}), high = std::max({e[0], e[1], e[2]});
+  const int middle = e[0] ^ e[1] ^ e[2] ^ low ^ high;
+  return {low, middle == low ? high : middle, high};
 }
 
-/** Which elements repeat an earlier one, either winding. */
-std::vector<bool> repeats(const std::vector<Vector3i>& elements, int vertex_count) {
-  const int count = static_cast<int>(elements.size());
-  std::vector<Vector3i> keys(count);
-  std::transform(elements.begin(), elements.end(), keys.begin(), sorted);
-  std::vector<int> order = groupedBy(count, vertex_count, [&](int i) { return keys[i][0]; });
-  std::vector<bool> repeated(count, false);
-  const auto before = [&](int i, int j) { return std::make_tuple(keys[i][1], keys[i][2], i) < std::make_tuple(keys[j][1], keys[j][2], j); };
-  for (int begin = 0, end = 0; begin < count; begin = end) {
-    while (end < count && keys[order[end]][0] == keys[order[begin]][0]) ++end;
-    std::sort(order.begin() + begin, order.begin() + end, before);
-    for (int i = begin + 1; i < end; ++i) repeated[order[i]] = keys[order[i]] == keys[order[i - 1]];
+std::uint64_t elementHash(const Vector3i& sorted_corners) {
+  std::uint64_t h = 0;
+  for (int k = 0; k < 3; ++k) h = hashedOn(h, static_cast<std::uint64_t>(sorted_corners[k]));
+  return h;
+}
+
+/** Drops elements that repeat an earlier one, either winding. @return how many */
+int dropRepeated(std::vector<Vector3i>* elements) {
+  std::vector<Vector3i> keys(elements->size());
+  tbb::parallel_for(std::size_t{0}, keys.size(), [&](std::size_t i) { keys[i] = sorted((*elements)[i]); });
+  const std::vector<int> first = firstEquals(
+      static_cast<int>(keys.size()), [&](int i) { return elementHash(keys[i]); }, [&](int i, int j) { return keys[i] == keys[j]; });
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < elements->size(); ++i) {
+    if (first[i] == static_cast<int>(i)) (*elements)[kept++] = (*elements)[i];
   }
-  return repeated;
+  const int dropped = static_cast<int>(elements->size() - kept);
+  elements->resize(kept);
+  return dropped;
 }
 
 /** Counts the edges of triangles by how many triangles they have. */
 void countEdges(const TriangleMesh& mesh, MeshReport* report) {
-  std::vector<std::pair<int, int>> edges;
-  edges.reserve(3 * mesh.elements.size());
-  for (int i = 0; i < static_cast<int>(mesh.elements.size()); ++i) {
-    if (!mesh.isTriangle(i)) continue;
-    const Vector3i& e = mesh.elements[i];
-    for (int k = 0; k < 3; ++k) edges.push_back(std::minmax({e[k], e[(k + 1) % 3]}));
-  }
-  const int count = static_cast<int>(edges.size());
-  const std::vector<int> order = groupedBy(count, static_cast<int>(mesh.vertices.size()), [&](int i) { return edges[i].first; });
-  report->open_edges = report->nonmanifold_edges = 0;
-  std::vector<int> ends;
-  for (int begin = 0, end = 0; begin < count; begin = end) {
-    ends.clear();
-    for (; end < count && edges[order[end]].first == edges[order[begin]].first; ++end) ends.push_back(edges[order[end]].second);
-    std::sort(ends.begin(), ends.end());
-    for (auto it = ends.begin(); it != ends.end();) {
-      const auto next = std::upper_bound(it, ends.end(), *it);
-      if (next - it == 1) ++report->open_edges;
-      if (next - it > 2) ++report->nonmanifold_edges;
-      it = next;
-    }
-  }
-  report->closed = count > 0 && report->open_edges == 0 && report->nonmanifold_edges == 0;
+  struct Counts {
+    int edges = 0, open = 0, nonmanifold = 0;
+    Counts operator+(const Counts& other) const { return {edges + other.edges, open + other.open, nonmanifold + other.nonmanifold}; }
+  };
+  const SidesByVertex by_vertex(mesh);
+  const auto isOfTriangle = [&](const Side& side) { return mesh.isTriangle(side.element()); };
+  const Counts counts = tbb::parallel_reduce(
+      tbb::blocked_range<int>(0, static_cast<int>(mesh.vertices.size())), Counts(),
+      [&](const tbb::blocked_range<int>& range, Counts sum) {
+        for (int v = range.begin(); v < range.end(); ++v) {
+          visitEdges(by_vertex, v, [&](const Side* first, const Side* last) {
+            const auto triangles = report->segments > 0 ? std::count_if(first, last, isOfTriangle) : last - first;
+            sum.edges += triangles > 0;
+            sum.open += triangles == 1;
+            sum.nonmanifold += triangles > 2;
+          });
+        }
+        return sum;
+      },
+      std::plus<Counts>());
+  report->open_edges = counts.open;
+  report->nonmanifold_edges = counts.nonmanifold;
+  report->closed = counts.edges > 0 && counts.open == 0 && counts.nonmanifold == 0;
 }
 
-/** Drops the elements whose indices or coordinates cannot be used. */
-std::vector<Vector3i> usableElements(const TriangleMesh& soup, MeshReport* report) {
-  std::vector<Vector3i> usable;
-  usable.reserve(soup.elements.size());
+enum class Fate : std::uint8_t { KEPT, INVALID, NONFINITE, DEGENERATE };
+
+/** Drops the elements whose indices or coordinates cannot be used, and those without area. */
+std::vector<Vector3i> usableElements(const TriangleMesh& soup, RepeatedIndices repeated, MeshReport* report) {
   const int vertex_count = static_cast<int>(soup.vertices.size());
-  for (const Vector3i& e : soup.elements) {
-    if (e.minCoeff() < 0 || e.maxCoeff() >= vertex_count) {
-      ++report->invalid;
-    } else if (!isFinite(soup.vertices[e[0]]) || !isFinite(soup.vertices[e[1]]) || !isFinite(soup.vertices[e[2]])) {
-      ++report->nonfinite;
-    } else {
-      usable.push_back(e);
-    }
+  // Triangles are told from segments by the file's own indices: after welding a collapsed triangle would look like a segment.
+  const bool segments_allowed = repeated == RepeatedIndices::ARE_SEGMENTS_AND_POINTS;
+  const auto fateOf = [&](const Vector3i& e) {
+    if (e.minCoeff() < 0 || e.maxCoeff() >= vertex_count) return Fate::INVALID;
+    const Vector3 &a = soup.vertices[e[0]], &b = soup.vertices[e[1]], &c = soup.vertices[e[2]];
+    if (!isFinite(a) || !isFinite(b) || !isFinite(c)) return Fate::NONFINITE;
+    const bool is_triangle = e[0] != e[1] && e[1] != e[2] && e[2] != e[0];
+    return (is_triangle ? hasArea(a, b, c) : segments_allowed) ? Fate::KEPT : Fate::DEGENERATE;
+  };
+  std::vector<Fate> fates(soup.elements.size());
+  tbb::parallel_for(std::size_t{0}, fates.size(), [&](std::size_t i) { fates[i] = fateOf(soup.elements[i]); });
+  const auto count = [&](Fate fate) { return static_cast<int>(std::count(fates.begin(), fates.end(), fate)); };
+  report->invalid = count(Fate::INVALID);
+  report->nonfinite = count(Fate::NONFINITE);
+  report->degenerate = count(Fate::DEGENERATE);
+  std::vector<Vector3i> usable;
+  usable.reserve(static_cast<std::size_t>(count(Fate::KEPT)));
+  for (std::size_t i = 0; i < fates.size(); ++i) {
+    if (fates[i] == Fate::KEPT) usable.push_back(soup.elements[i]);
   }
   return usable;
 }
 
-/** Lets equal positions share the first vertex there. */
+/** For each vertex the first one at exactly its position; what is not finite is alone. */
+std::vector<int> firstAt(const std::vector<Vector3>& vertices) {
+  return firstEquals(
+      static_cast<int>(vertices.size()),
+      [&](int i) { return isFinite(vertices[i]) ? placeHash(vertices[i]) : hashedOn(0, static_cast<std::uint64_t>(i)); },
+      [&](int i, int j) { return i == j || vertices[i] == vertices[j]; });
+}
+
+/** Lets equal positions share the vertex there that is used first. */
 void weld(const std::vector<Vector3>& vertices, std::vector<Vector3i>* elements, MeshReport* report) {
-  constexpr int UNSEEN = -1;
-  std::vector<int> first_at(vertices.size(), UNSEEN);
-  PositionIndex index(vertices);
+  const std::vector<int> first = firstAt(vertices);
+  std::vector<int> used_at(vertices.size(), NONE);
+  std::vector<std::uint8_t> used(vertices.size(), 0);
   for (Vector3i& e : *elements) {
     for (int k = 0; k < 3; ++k) {
-      int& first = first_at[e[k]];
-      if (first == UNSEEN) {
-        first = index.firstAt(e[k]);
-        if (first != e[k]) ++report->welded;
-      }
-      e[k] = first;
+      int& shared = used_at[first[e[k]]];
+      if (shared == NONE) shared = e[k];
+      report->welded += shared != e[k] && !used[e[k]];
+      used[e[k]] = 1;
+      e[k] = shared;
     }
   }
 }
 
 /** Drops the vertices that no element uses; the others keep their order. */
 TriangleMesh withoutUnusedVertices(const std::vector<Vector3>& vertices, std::vector<Vector3i> elements) {
-  std::vector<int> new_index(vertices.size(), 0);
+  std::vector<int> new_index(vertices.size(), NONE);
   for (const Vector3i& e : elements) {
-    for (int k = 0; k < 3; ++k) new_index[e[k]] = 1;
+    for (int k = 0; k < 3; ++k) new_index[e[k]] = 0;
   }
   TriangleMesh mesh;
+  mesh.vertices.reserve(vertices.size() - static_cast<std::size_t>(std::count(new_index.begin(), new_index.end(), NONE)));
   for (std::size_t i = 0; i < vertices.size(); ++i) {
-    if (new_index[i] == 0) continue;
+    if (new_index[i] == NONE) continue;
     new_index[i] = static_cast<int>(mesh.vertices.size());
     mesh.vertices.push_back(vertices[i]);
   }
-  for (Vector3i& e : elements) e = {new_index[e[0]], new_index[e[1]], new_index[e[2]]};
+  tbb::parallel_for(std::size_t{0}, elements.size(), [&](std::size_t i) {
+    Vector3i& e = elements[i];
+    e = {new_index[e[0]], new_index[e[1]], new_index[e[2]]};
+  });
+  elements.shrink_to_fit();
   mesh.elements = std::move(elements);
   return mesh;
 }
@@ -179,28 +181,9 @@ TriangleMesh cleanMesh(const TriangleMesh& soup, MeshReport* report, RepeatedInd
   MeshReport unwanted;
   if (!report) report = &unwanted;
   clearCounts(report);
-  std::vector<Vector3i> elements = usableElements(soup, report);
-
-  // Triangles are told from segments by the file's own indices: after welding a collapsed triangle would look like a segment.
-  const bool segments_allowed = repeated == RepeatedIndices::ARE_SEGMENTS_AND_POINTS;
-  const auto isDegenerate = [&](const Vector3i& e) {
-    const bool is_triangle = e[0] != e[1] && e[1] != e[2] && e[2] != e[0];
-    return is_triangle ? !hasArea(soup.vertices[e[0]], soup.vertices[e[1]], soup.vertices[e[2]]) : !segments_allowed;
-  };
-  const auto with_area_end = std::remove_if(elements.begin(), elements.end(), isDegenerate);
-  report->degenerate = static_cast<int>(elements.end() - with_area_end);
-  elements.erase(with_area_end, elements.end());
-
+  std::vector<Vector3i> elements = usableElements(soup, repeated, report);
   weld(soup.vertices, &elements, report);
-
-  const std::vector<bool> repeats_earlier = repeats(elements, static_cast<int>(soup.vertices.size()));
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < elements.size(); ++i) {
-    if (!repeats_earlier[i]) elements[kept++] = elements[i];
-  }
-  report->duplicate = static_cast<int>(elements.size() - kept);
-  elements.resize(kept);
-
+  report->duplicate = dropRepeated(&elements);
   TriangleMesh mesh = withoutUnusedVertices(soup.vertices, std::move(elements));
   describeResult(mesh, report);
   return mesh;
@@ -210,12 +193,12 @@ TriangleMesh pointCloudMesh(const std::vector<Vector3>& points, MeshReport* repo
   MeshReport unwanted;
   if (!report) report = &unwanted;
   clearCounts(report);
+  const std::vector<int> first = firstAt(points);
   TriangleMesh mesh;
-  PositionIndex index(points);
   for (int i = 0; i < static_cast<int>(points.size()); ++i) {
     if (!isFinite(points[i])) {
       ++report->nonfinite;
-    } else if (index.firstAt(i) != i) {
+    } else if (first[i] != i) {
       ++report->welded;
     } else {
       const int vertex = static_cast<int>(mesh.vertices.size());
@@ -223,6 +206,8 @@ TriangleMesh pointCloudMesh(const std::vector<Vector3>& points, MeshReport* repo
       mesh.elements.emplace_back(vertex, vertex, vertex);
     }
   }
+  mesh.vertices.shrink_to_fit();
+  mesh.elements.shrink_to_fit();
   describeResult(mesh, report);
   return mesh;
 }

@@ -1,5 +1,7 @@
 #include "mesh_planes.h"
 
+#include <tbb/parallel_for.h>
+
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <algorithm>
@@ -59,6 +61,8 @@ class PlaneFinder {
     numberPatches();
     addOutlines();
     for (const int edge : rough_edges_) patches_[patch_of_[faceOf(edge)]].rough = true;
+    if (std::none_of(patches_.begin(), patches_.end(), [this](const Patch& patch) { return patch.rough && mayBePlane(patch); }))
+      return false;
     for (std::size_t i = 0; i < patch_of_.size(); ++i) addFace(static_cast<int>(i));
     for (Patch& patch : patches_) fit(&patch);
     measureDeviations();
@@ -100,8 +104,18 @@ class PlaneFinder {
     return bend <= MIN_CREASE ? Bend::CREASE : Bend::SHARP;
   }
 
+  /** Where two faces meet. */
+  void findBends() {
+    tbb::parallel_for(0, static_cast<int>(topology_.edges.size()), [this](int edge) {
+      const int begin = topology_.edge_face_begin[edge];
+      if (topology_.edge_flat[edge] || topology_.edge_face_begin[edge + 1] - begin != 2) return;
+      bends_[edge] = bendOf(edge, topology_.edge_faces[begin], topology_.edge_faces[begin + 1]);
+    });
+  }
+
   /** Starts from the flat patches of the topology. */
   void joinFaces() {
+    findBends();
     for (int edge = 0; edge < static_cast<int>(topology_.edges.size()); ++edge) {
       const int begin = topology_.edge_face_begin[edge], end = topology_.edge_face_begin[edge + 1];
       if (topology_.edge_flat[edge] || end - begin < 2) continue;
@@ -109,7 +123,7 @@ class PlaneFinder {
       for (int i = begin; i < end; ++i) {
         for (int j = i + 1; j < end; ++j) {
           const int face = topology_.edge_faces[i], other = topology_.edge_faces[j];
-          const Bend bend = bendOf(edge, face, other);
+          const Bend bend = end - begin == 2 ? bends_[edge] : bendOf(edge, face, other);
           bends_[edge] = std::max(bends_[edge], bend);
           if (bend != Bend::SMOOTH) continue;
           smooth = true;
@@ -194,10 +208,18 @@ class PlaneFinder {
     }
   }
 
+  static bool isDoubtful(const Patch& patch) { return patch.doubtful > MAX_DOUBTFUL * patch.outline; }
+  static bool hasEdges(const Patch& patch) { return patch.blunt <= MAX_BLUNT * patch.outline; }
+
+  /** Before its plane is known; but for patches that are flat to the last bit. */
+  bool mayBePlane(const Patch& patch) const {
+    return !isDoubtful(patch) && (patch.faces >= MANY_FACES || !noise_.empty() || hasEdges(patch));
+  }
+
   static bool isPlane(const Patch& patch) {
     if (patch.deviation > PLANE_DEVIATION || MIN_WIDTH * patch.deviation > patch.width) return false;
-    if (patch.doubtful > MAX_DOUBTFUL * patch.outline) return false;
-    const bool has_edges = MIN_WIDTH_OF_FEW * patch.deviation <= patch.width && patch.blunt <= MAX_BLUNT * patch.outline;
+    if (isDoubtful(patch)) return false;
+    const bool has_edges = MIN_WIDTH_OF_FEW * patch.deviation <= patch.width && hasEdges(patch);
     return patch.faces >= MANY_FACES || patch.deviation <= patch.noise || has_edges;
   }
 

@@ -1,13 +1,21 @@
 #include "blem_sim/geometry/mesh_topology.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
+
+#include "grouped.h"
+#include "sides_by_vertex.h"
 
 namespace blem_sim {
 namespace {
 
 /** A triangle lower than this part of its longest side is its sides: its normal would be rounding, and its inside is as near as they. */
 constexpr double MIN_RELATIVE_HEIGHT = 1e-10;
+
+/** Cosine of a bend that is one without a closer look: FLAT_SINE and the rounding of a needle's normal are far below it. */
+constexpr double CLEARLY_BENT = 1 - 1e-8;
 
 /** Unit normal, from the two shorter sides, which give the better one of a needle; zero without area. */
 Vector3 unitNormal(const Vector3& a, const Vector3& b, const Vector3& c) {
@@ -19,35 +27,6 @@ Vector3 unitNormal(const Vector3& a, const Vector3& b, const Vector3& c) {
   return has_area ? Vector3(n / norm) : Vector3(Vector3::Zero());
 }
 
-/** Turns counts at [i + 1] into the beginnings of groups. */
-void accumulate(std::vector<int>* counts) {
-  for (std::size_t i = 1; i < counts->size(); ++i) (*counts)[i] += (*counts)[i - 1];
-}
-
-/** Sides of all elements, 3 * element + k, grouped by their lower vertex and sorted by the higher one: (higher vertex << 32) | side. */
-struct SidesByVertex {
-  std::vector<int> begin;
-  std::vector<std::uint64_t> sides;
-
-  explicit SidesByVertex(const TriangleMesh& mesh) : begin(mesh.vertices.size() + 1, 0) {
-    const auto forEachSide = [&mesh](auto&& visit) {
-      for (std::size_t i = 0; i < mesh.elements.size(); ++i) {
-        const Vector3i& e = mesh.elements[i];
-        for (int k = 0; k < 3; ++k) {
-          const int from = e[k], to = e[(k + 1) % 3];
-          if (from != to) visit(std::min(from, to), static_cast<std::uint64_t>(std::max(from, to)) << 32 | (3 * i + k));
-        }
-      }
-    };
-    forEachSide([this](int vertex, std::uint64_t) { ++begin[vertex + 1]; });
-    accumulate(&begin);
-    sides.resize(begin.back());
-    std::vector<int> next(begin.begin(), begin.end() - 1);
-    forEachSide([this, &next](int vertex, std::uint64_t side) { sides[next[vertex]++] = side; });
-    for (std::size_t v = 0; v + 1 < begin.size(); ++v) std::sort(sides.begin() + begin[v], sides.begin() + begin[v + 1]);
-  }
-};
-
 int root(std::vector<int>& parent, int i) {
   while (parent[i] != i) i = parent[i] = parent[parent[i]];
   return i;
@@ -56,13 +35,22 @@ int root(std::vector<int>& parent, int i) {
 }  // namespace
 
 MeshTopology::MeshTopology(const TriangleMesh& mesh) {
-  normals.reserve(mesh.elements.size());
-  for (const Vector3i& e : mesh.elements) normals.push_back(unitNormal(mesh.vertices[e[0]], mesh.vertices[e[1]], mesh.vertices[e[2]]));
+  normals.resize(mesh.elements.size());
+  tbb::parallel_for(std::size_t{0}, normals.size(), [&](std::size_t i) {
+    const Vector3i& e = mesh.elements[i];
+    normals[i] = unitNormal(mesh.vertices[e[0]], mesh.vertices[e[1]], mesh.vertices[e[2]]);
+  });
   findEdges(mesh);
   findRings(static_cast<int>(mesh.vertices.size()));
   findFlatness(mesh);
   findPatches();
   findOwners(mesh);
+}
+
+std::size_t MeshTopology::bytes() const {
+  const auto of = [](const auto&... arrays) { return ((arrays.capacity() * sizeof(arrays[0])) + ...); };
+  return of(edges, edge_face_begin, edge_faces, vertex_edge_begin, vertex_edges, element_edges, normals, edge_flat, vertex_flat,
+            vertex_straight, patch, owned_);
 }
 
 Vector3 MeshTopology::inward(const TriangleMesh& mesh, int edge, int face) const {
@@ -73,44 +61,56 @@ Vector3 MeshTopology::inward(const TriangleMesh& mesh, int edge, int face) const
 }
 
 void MeshTopology::findEdges(const TriangleMesh& mesh) {
-  element_edges.assign(mesh.elements.size(), {NO_EDGE, NO_EDGE, NO_EDGE});
   const SidesByVertex by_vertex(mesh);
-  edges.reserve(by_vertex.sides.size() / 2);
-  edge_face_begin.reserve(by_vertex.sides.size() / 2 + 1);
-  edge_faces.reserve(by_vertex.sides.size());
-  for (int v = 0; v < static_cast<int>(mesh.vertices.size()); ++v) {
-    for (int i = by_vertex.begin[v]; i < by_vertex.begin[v + 1]; ++i) {
-      const int other = static_cast<int>(by_vertex.sides[i] >> 32);
-      if (i == by_vertex.begin[v] || edges.back()[1] != other) {
-        edges.push_back({v, other});
-        edge_face_begin.push_back(static_cast<int>(edge_faces.size()));
+  const int vertices = static_cast<int>(mesh.vertices.size());
+  const auto isOfFace = [this](const Side& side) { return isFace(side.element()); };
+  // Where the edges of a vertex begin, and their faces: first how many there are.
+  std::vector<int> edge_begin(vertices + 1, 0), face_begin(vertices + 1, 0);
+  tbb::parallel_for(0, vertices, [&](int v) {
+    visitEdges(by_vertex, v, [&](const Side* first, const Side* last) {
+      ++edge_begin[v + 1];
+      face_begin[v + 1] += static_cast<int>(std::count_if(first, last, isOfFace));
+    });
+  });
+  accumulate(&edge_begin);
+  accumulate(&face_begin);
+  element_edges.assign(mesh.elements.size(), {NO_EDGE, NO_EDGE, NO_EDGE});
+  edges.resize(edge_begin.back());
+  edge_face_begin.resize(edges.size() + 1);
+  edge_face_begin.back() = face_begin.back();
+  edge_faces.resize(face_begin.back());
+  tbb::parallel_for(0, vertices, [&](int v) {
+    int edge = edge_begin[v], face = face_begin[v];
+    visitEdges(by_vertex, v, [&](const Side* first, const Side* last) {
+      edges[edge] = {v, first->higher()};
+      edge_face_begin[edge] = face;
+      for (const Side* side = first; side != last; ++side) {
+        element_edges[side->element()][side->corner()] = edge;
+        if (isOfFace(*side)) edge_faces[face++] = side->element();
       }
-      const std::uint32_t side = static_cast<std::uint32_t>(by_vertex.sides[i]);
-      const int element = static_cast<int>(side / 3);
-      element_edges[element][side % 3] = static_cast<int>(edges.size()) - 1;
-      if (isFace(element)) edge_faces.push_back(element);
-    }
-  }
-  edge_face_begin.push_back(static_cast<int>(edge_faces.size()));
+      ++edge;
+    });
+  });
 }
 
 void MeshTopology::findRings(int vertex_count) {
-  vertex_edge_begin.assign(vertex_count + 1, 0);
-  for (const std::array<int, 2>& edge : edges) {
-    for (const int vertex : edge) ++vertex_edge_begin[vertex + 1];
-  }
-  accumulate(&vertex_edge_begin);
-  vertex_edges.resize(vertex_edge_begin.back());
-  std::vector<int> next(vertex_edge_begin.begin(), vertex_edge_begin.end() - 1);
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    for (const int vertex : edges[i]) vertex_edges[next[vertex]++] = static_cast<int>(i);
-  }
+  const auto visitEnds = [this](int edge, auto&& visit) {
+    for (const int vertex : edges[edge]) visit(vertex, edge);
+  };
+  vertex_edge_begin = grouped(static_cast<int>(edges.size()), vertex_count, visitEnds, [this](std::size_t count) {
+    vertex_edges.resize(count);
+    return vertex_edges.data();
+  });
 }
 
 bool MeshTopology::isFlat(const TriangleMesh& mesh, int edge) const {
   const int begin = edge_face_begin[edge], end = edge_face_begin[edge + 1];
   if (end - begin < 2) return false;
   // Faces may be there more than once, but all must lie on the two halves of one plane, some on each.
+  const Vector3& first_normal = normals[edge_faces[begin]];
+  for (int i = begin + 1; i < end; ++i) {
+    if (std::abs(first_normal.dot(normals[edge_faces[i]])) < CLEARLY_BENT) return false;
+  }
   const Vector3 first = inward(mesh, edge, edge_faces[begin]);
   bool continued = false;
   for (int i = begin + 1; i < end; ++i) {
@@ -123,27 +123,26 @@ bool MeshTopology::isFlat(const TriangleMesh& mesh, int edge) const {
 }
 
 bool MeshTopology::isStraight(const TriangleMesh& mesh, int vertex) const {
+  const auto begin = vertex_edges.begin() + vertex_edge_begin[vertex], end = vertex_edges.begin() + vertex_edge_begin[vertex + 1];
+  if (std::count_if(begin, end, [this](int edge) { return edge_flat[edge] == 0; }) != 2) return false;
   Vector3 sum = Vector3::Zero();
-  int sharp = 0;
-  for (int i = vertex_edge_begin[vertex]; i < vertex_edge_begin[vertex + 1]; ++i) {
-    const int edge = vertex_edges[i];
-    if (edge_flat[edge]) continue;
-    sum += (mesh.vertices[edges[edge][edges[edge][0] == vertex]] - mesh.vertices[vertex]).normalized();
-    ++sharp;
+  for (auto edge = begin; edge != end; ++edge) {
+    if (edge_flat[*edge]) continue;
+    sum += (mesh.vertices[edges[*edge][edges[*edge][0] == vertex]] - mesh.vertices[vertex]).normalized();
   }
-  return sharp == 2 && sum.norm() <= FLAT_SINE;
+  return sum.norm() <= FLAT_SINE;
 }
 
 void MeshTopology::findFlatness(const TriangleMesh& mesh) {
   edge_flat.resize(edges.size());
-  for (std::size_t i = 0; i < edges.size(); ++i) edge_flat[i] = isFlat(mesh, static_cast<int>(i));
+  tbb::parallel_for(std::size_t{0}, edges.size(), [&](std::size_t i) { edge_flat[i] = isFlat(mesh, static_cast<int>(i)); });
   vertex_flat.resize(mesh.vertices.size());
   vertex_straight.resize(mesh.vertices.size());
-  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+  tbb::parallel_for(std::size_t{0}, mesh.vertices.size(), [&](std::size_t v) {
     const auto begin = vertex_edges.begin() + vertex_edge_begin[v], end = vertex_edges.begin() + vertex_edge_begin[v + 1];
     vertex_flat[v] = begin != end && std::all_of(begin, end, [this](int edge) { return edge_flat[edge] != 0; });
     vertex_straight[v] = isStraight(mesh, static_cast<int>(v));
-  }
+  });
 }
 
 void MeshTopology::findPatches() {

@@ -1,4 +1,4 @@
-// A hash of a position.
+// Hashes of positions and indices.
 #pragma once
 
 #include <cstdint>
@@ -8,6 +8,12 @@
 
 namespace blem_sim {
 
+/** The hash `h`, with some more bits in it. */
+inline std::uint64_t hashedOn(std::uint64_t h, std::uint64_t bits) {
+  h = (h ^ bits) * 0x9E3779B97F4A7C15u;
+  return h ^ h >> 32;
+}
+
 /** Of its bits; -0.0 is 0.0. */
 inline std::uint64_t placeHash(const Vector3& v) {
   std::uint64_t h = 0;
@@ -15,8 +21,7 @@ inline std::uint64_t placeHash(const Vector3& v) {
     const double x = v[k] + 0.0;  // makes -0.0 positive
     std::uint64_t bits;
     std::memcpy(&bits, &x, sizeof bits);
-    h = (h ^ bits) * 0x9E3779B97F4A7C15u;
-    h ^= h >> 32;
+    h = hashedOn(h, bits);
   }
   return h;
 }

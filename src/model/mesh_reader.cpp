@@ -51,6 +51,8 @@ class SoupBuilder {
  private:
   void appendMesh(const aiMesh& mesh, const Matrix4& X_MN) {
     const int first = static_cast<int>(soup_.mesh.vertices.size());
+    makeRoom(mesh.mNumVertices, &soup_.mesh.vertices);
+    makeRoom(mesh.mNumFaces, &soup_.mesh.elements);
     const bool moved = X_MN != Matrix4::Identity();
     for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
       const Vector3 p(mesh.mVertices[v].x, mesh.mVertices[v].y, mesh.mVertices[v].z);
@@ -60,10 +62,18 @@ class SoupBuilder {
     for (unsigned f = 0; f < mesh.mNumFaces; ++f) appendFace(mesh.mFaces[f], first, mirrored);
   }
 
+  /** For so many more, without another copy where many small meshes follow each other. */
+  template <typename T>
+  static void makeRoom(std::size_t more, std::vector<T>* items) {
+    const std::size_t needed = items->size() + more;
+    if (needed > items->capacity()) items->reserve(std::max(needed, 2 * items->capacity()));
+  }
+
   /** Polygon, triangle, line or point. A mirroring node turns the winding, so that outside stays outside. */
   void appendFace(const aiFace& face, int first, bool mirrored) {
-    std::vector<int> corners;
-    for (unsigned c = 0; c < face.mNumIndices; ++c) corners.push_back(first + static_cast<int>(face.mIndices[c]));
+    std::vector<int>& corners = corners_;
+    corners.assign(face.mIndices, face.mIndices + face.mNumIndices);
+    for (int& corner : corners) corner += first;
     if (mirrored) std::reverse(corners.begin(), corners.end());
     if (corners.size() > 3) {
       ++polygons_;
@@ -85,6 +95,7 @@ class SoupBuilder {
 
   const aiScene& scene_;
   SurfaceSoup& soup_;
+  std::vector<int> corners_;  // of the face at hand
   std::size_t polygons_ = 0;
 };
 
@@ -120,6 +131,7 @@ SurfaceSoup readMesh(const std::string& file, const std::string& extension) {
     const std::string reason = scene ? "it holds no mesh" : oneLine(importer.GetErrorString());
     throw InputError(fmt::format("{}: not a readable {} mesh: {}; export it again", file, extension, reason));
   }
+  std::string().swap(bytes);  // the scene has its own copy
   if (extension == "ply") checkPlyArrived(file, announced, *scene);
   checkIndices(file, *scene);
   SoupBuilder builder(*scene, &soup);

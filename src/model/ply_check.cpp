@@ -73,10 +73,13 @@ bool addHeaderRow(const std::string& line, Header* header) {
 }
 
 Header readHeader(const std::string& file, const std::string& bytes) {
-  std::istringstream stream(bytes);
   std::string line;
+  std::size_t at = 0;
   const auto next = [&] {
-    if (!std::getline(stream, line)) throw InputError(file + ": not a PLY file: its header has no 'end_header'; write the file anew");
+    if (at == bytes.size()) throw InputError(file + ": not a PLY file: its header has no 'end_header'; write the file anew");
+    const std::size_t end = std::min(bytes.find('\n', at), bytes.size());
+    line = bytes.substr(at, end - at);
+    at = std::min(end + 1, bytes.size());
     if (!line.empty() && line.back() == '\r') line.pop_back();
   };
   next();
@@ -85,7 +88,7 @@ Header readHeader(const std::string& file, const std::string& bytes) {
   for (next(); line != "end_header"; next())
     if (!addHeaderRow(line, &header))
       throw InputError(fmt::format("{}: PLY header: '{}' is not understood; write the file anew", file, oneLine(line)));
-  header.data = static_cast<std::size_t>(std::max<std::streamoff>(0, stream.tellg()));
+  header.data = at;
   if (header.format.empty()) throw InputError(file + ": PLY header: no format; write the file anew");
   return header;
 }

@@ -75,10 +75,11 @@ void joinCloud(double max_edge, SurfaceSoup* soup, MeshReport* report) {
                                       points.points, grid ? "the pixel grid" : "greedy projection", max_edge));
 }
 
-/** cleanMesh, with what was already left out counted in. */
-TriangleMesh cleanSoup(const SurfaceSoup& soup, MeshReport* report) {
+/** cleanMesh, with what was already left out counted in. The soup is given up. */
+TriangleMesh cleanSoup(SurfaceSoup&& soup, MeshReport* report) {
   const MeshReport before = *report;
   TriangleMesh cleaned = cleanMesh(soup.mesh, report);
+  soup.mesh = TriangleMesh();
   report->nonfinite += before.nonfinite;
   report->welded += before.welded;
   report->degenerate += soup.collapsed;
@@ -119,7 +120,7 @@ LoadedSurface loadSurface(const std::string& file, const Vector3& scale, const C
   surface.report.notes = soup.notes;
   const bool points = wantsPoints(soup, cloud.as);
   if (!points && soup.mesh.elements.empty()) joinCloud(cloud.max_edge, &soup, &surface.report);
-  TriangleMesh cleaned = points ? pointCloudMesh(soup.mesh.vertices, &surface.report) : cleanSoup(soup, &surface.report);
+  TriangleMesh cleaned = points ? pointCloudMesh(soup.mesh.vertices, &surface.report) : cleanSoup(std::move(soup), &surface.report);
   if (!points && mending == Mending::ON) cleaned = mended(cleaned, &surface.report);
   if (points) {
     surface.radius = surface.report.boundary_width = cloud.point_radius;

@@ -13,7 +13,8 @@ namespace blem_sim {
  * Features of a TriangleMesh: its vertices, its edges (each once, with any number of incident faces: none for a segment, one on a border,
  * two inside a surface, more where a soup is not a manifold) and its faces (elements with area). Nothing is assumed of winding.
  * A feature is flat, and owns nothing, where it lies inside a plane: an edge whose faces continue each other, a vertex with flat edges
- * only. Nor does a vertex inside a straight edge, whose parts speak for it. Precondition: indices in range; coincident vertices are one, as
+ * only. Nor does a vertex inside a straight edge, whose parts speak for it. Made by the threads there are, whose number does not show.
+ * Precondition: indices in range; coincident vertices are one, as
  * cleanMesh leaves them (else neighbours are not seen: more features, none lost).
  */
 struct MeshTopology {
@@ -44,6 +45,8 @@ struct MeshTopology {
   /** Bits k of the vertices / edges that it asks for. */
   std::uint8_t ownedVertices(int element) const { return owned_[element] & 7; }
   std::uint8_t ownedEdges(int element) const { return owned_[element] >> 3; }
+
+  std::size_t bytes() const;  ///< of memory
 
   /** Unit direction in the face's plane, square to the edge, into the face. @param face one of the edge's faces */
   Vector3 inward(const TriangleMesh& mesh, int edge, int face) const;

@@ -26,6 +26,7 @@ struct TriangleMesh {
     return e[0] != e[1] && e[1] != e[2] && e[2] != e[0];
   }
   Box bounds() const;
+  std::size_t bytes() const { return vertices.capacity() * sizeof(Vector3) + elements.capacity() * sizeof(Vector3i); }  ///< of memory
 };
 
 /** What became of one mesh or cloud when it was loaded; published as it stands in the load report. */

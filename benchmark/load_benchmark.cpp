@@ -1,0 +1,169 @@
+// Loading a surface of about a million triangles: every stage alone, welding + topology + tree together, and whole files, on one thread and
+// on two. Wall and processor time, the least of some repetitions; counters: triangles and bytes that stay per triangle. Arguments: Google
+// Benchmark's.
+#include <benchmark/benchmark.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <memory>
+
+#include "blem_sim/contact/collider.h"
+#include "blem_sim/geometry/mesh_mending.h"
+#include "blem_sim/model/loaders.h"
+#include "geometry/random_shapes.h"
+
+namespace blem_sim {
+namespace {
+
+constexpr int CELLS = 708, REPETITIONS = 5;  // 1,002,528 triangles
+constexpr double SIZE = 3, NOISE = 2.5e-4;   // [m]
+
+/** An open grid with noise: nothing in it is flat, nothing has to be mended. */
+const TriangleMesh& terrain() {
+  static const TriangleMesh mesh = [] {
+    RandomShapes random(5);
+    TriangleMesh grid = gridMesh(SIZE, SIZE, CELLS, CELLS);
+    for (Vector3& v : grid.vertices) v.z() = random.uniform(-NOISE, NOISE);
+    return grid;
+  }();
+  return mesh;
+}
+
+/** The same as an STL has it: every triangle with corners of its own. */
+const TriangleMesh& soup() {
+  static const TriangleMesh mesh = [] {
+    TriangleMesh soup;
+    for (const Vector3i& e : terrain().elements) {
+      const int first = static_cast<int>(soup.vertices.size());
+      for (int k = 0; k < 3; ++k) soup.vertices.push_back(terrain().vertices[e[k]]);
+      soup.elements.emplace_back(first, first + 1, first + 2);
+    }
+    return soup;
+  }();
+  return mesh;
+}
+
+template <typename T>
+void put(std::ofstream* stream, const T& value) {
+  stream->write(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+void writePly(const std::string& file) {
+  std::ofstream stream(file, std::ios::binary);
+  stream << "ply\nformat binary_little_endian 1.0\nelement vertex " << terrain().vertices.size()
+         << "\nproperty float x\nproperty float y\nproperty float z\nelement face " << terrain().elements.size()
+         << "\nproperty list uchar int vertex_indices\nend_header\n";
+  for (const Vector3& v : terrain().vertices)
+    for (int k = 0; k < 3; ++k) put(&stream, static_cast<float>(v[k]));
+  for (const Vector3i& e : terrain().elements) {
+    put(&stream, std::uint8_t{3});
+    for (int k = 0; k < 3; ++k) put(&stream, static_cast<std::int32_t>(e[k]));
+  }
+}
+
+void writeStl(const std::string& file) {
+  std::ofstream stream(file, std::ios::binary);
+  stream << std::string(80, ' ');
+  put(&stream, static_cast<std::uint32_t>(terrain().elements.size()));
+  for (const Vector3i& e : terrain().elements) {
+    for (int k = 0; k < 3; ++k) put(&stream, 0.0f);
+    for (int corner = 0; corner < 3; ++corner)
+      for (int k = 0; k < 3; ++k) put(&stream, static_cast<float>(terrain().vertices[e[corner]][k]));
+    put(&stream, std::uint16_t{0});
+  }
+}
+
+/** A file that goes with the program. */
+class TemporaryFile {
+ public:
+  TemporaryFile(const std::string& name, void (*write)(const std::string&))
+      : path_((std::filesystem::temp_directory_path() / ("blem_sim_" + name)).string()) {
+    write(path_);
+  }
+  ~TemporaryFile() { std::filesystem::remove(path_); }
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+std::size_t bytes(const CollisionGeometry& geometry) {
+  return geometry.mesh().bytes() + geometry.topology().bytes() + geometry.bvh().bytes() + geometry.owners().capacity();
+}
+
+void weldTopologyTree(const TriangleMesh& given) {
+  const TriangleMesh mesh = cleanMesh(given, nullptr);
+  const MeshTopology topology(mesh);
+  const Bvh tree(mesh);
+  benchmark::DoNotOptimize(tree.nodes().data());
+}
+
+/** One row per number of threads. */
+void add(const std::string& name, std::function<void()> work) {
+  for (const int threads : {1, 2}) {
+    benchmark::RegisterBenchmark(("loading/" + name + "/threads:" + std::to_string(threads)).c_str(),
+                                 [work, threads](benchmark::State& state) {
+                                   tbb::task_arena arena(threads);
+                                   for (auto _ : state) arena.execute(work);
+                                   state.counters["triangles"] = static_cast<double>(terrain().elements.size());
+                                 })
+        ->Unit(benchmark::kMillisecond)
+        ->Iterations(1)
+        ->Repetitions(REPETITIONS)
+        ->ReportAggregatesOnly()
+        ->ComputeStatistics("least", [](const std::vector<double>& v) { return *std::min_element(v.begin(), v.end()); })
+        ->MeasureProcessCPUTime()
+        ->UseRealTime();
+  }
+}
+
+void addFile(const std::string& name, const std::string& file) {
+  add(name + "_to_ready", [file] { CollisionGeometry(loadSurface(file).mesh); });
+  add(name + "_read_and_mended", [file] { loadSurface(file); });
+  add(name + "_as_it_is", [file] { loadSurface(file, Vector3::Ones(), {}, Mending::OFF); });
+}
+
+/** What stays, per triangle, on a closed surface (the grid has half as many vertices as triangles too). */
+void addMemory() {
+  benchmark::RegisterBenchmark("loading/memory",
+                               [](benchmark::State& state) {
+                                 const auto mesh = std::make_shared<const TriangleMesh>(cleanMesh(terrain(), nullptr));
+                                 const double triangles = static_cast<double>(mesh->elements.size());
+                                 for (auto _ : state) {
+                                   const CollisionGeometry geometry(mesh);
+                                   state.counters["bytes_per_triangle"] = static_cast<double>(bytes(geometry)) / triangles;
+                                   state.counters["of_mesh"] = static_cast<double>(geometry.mesh().bytes()) / triangles;
+                                   state.counters["of_topology"] = static_cast<double>(geometry.topology().bytes()) / triangles;
+                                   state.counters["of_tree"] = static_cast<double>(geometry.bvh().bytes()) / triangles;
+                                 }
+                               })
+      ->Unit(benchmark::kMillisecond)
+      ->Iterations(1);
+}
+
+}  // namespace
+}  // namespace blem_sim
+
+int main(int argc, char** argv) {
+  using namespace blem_sim;
+  const TemporaryFile ply("terrain.ply", writePly), stl("terrain.stl", writeStl);
+  add("weld_topology_tree", [] { weldTopologyTree(terrain()); });
+  add("weld_topology_tree_of_soup", [] { weldTopologyTree(soup()); });
+  add("weld", [] { cleanMesh(terrain(), nullptr); });
+  add("weld_soup", [] { cleanMesh(soup(), nullptr); });
+  add("mend", [] { mendMesh(terrain(), nullptr); });
+  add("topology", [] { MeshTopology topology(terrain()); });
+  add("tree", [] { Bvh tree(terrain()); });
+  add("collision_geometry", [] { CollisionGeometry(std::make_shared<const TriangleMesh>(terrain())); });
+  addFile("ply", ply.path());
+  addFile("stl", stl.path());
+  addMemory();
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
+}

@@ -1,0 +1,128 @@
+// Loading by one thread and by several gives the same bits.
+#include <gtest/gtest.h>
+#include <tbb/task_arena.h>
+
+#include <cstring>
+#include <map>
+
+#include "blem_sim/geometry/bvh.h"
+#include "blem_sim/geometry/mesh_mending.h"
+#include "blem_sim/geometry/mesh_topology.h"
+#include "first_equals.h"
+#include "grouped.h"
+#include "random_shapes.h"
+
+namespace blem_sim {
+namespace {
+
+/** Triangles with corners of their own, in no order, some of them twice; enough of them for several threads to share. */
+TriangleMesh largeSoup() {
+  RandomShapes random(11);
+  TriangleMesh grid = gridMesh(1, 1, 150, 150);
+  for (Vector3& v : grid.vertices) v.z() = random.integer(0, 3) == 0 ? 0 : random.uniform(-1e-3, 1e-3);
+  std::vector<Vector3i> elements = grid.elements;
+  for (int i = 0; i < 500; ++i) elements.push_back(elements[random.integer(0, static_cast<int>(elements.size()) - 1)]);
+  for (std::size_t i = elements.size() - 1; i > 0; --i) std::swap(elements[i], elements[random.integer(0, static_cast<int>(i))]);
+  TriangleMesh soup;
+  for (const Vector3i& e : elements) {
+    const int first = static_cast<int>(soup.vertices.size());
+    for (int k = 0; k < 3; ++k) soup.vertices.push_back(grid.vertices[e[k]]);
+    soup.elements.emplace_back(first, first + 1, first + 2);
+  }
+  return soup;
+}
+
+struct Loaded {
+  TriangleMesh mesh;
+  MeshTopology topology;
+  Bvh tree;
+  MeshReport report;
+};
+
+Loaded loaded(const TriangleMesh& soup, int threads) {
+  Loaded result;
+  tbb::task_arena arena(threads);
+  arena.execute([&] {
+    result.mesh = mendMesh(cleanMesh(soup, &result.report), &result.report);
+    result.topology = MeshTopology(result.mesh);
+    result.tree = Bvh(result.mesh);
+  });
+  return result;
+}
+
+template <typename T>
+bool sameBits(const std::vector<T>& a, const std::vector<T>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+}
+
+TEST(Threads, NumberDoesNotShowInMeshTopologyAndTree) {
+  const TriangleMesh soup = largeSoup();
+  const Loaded one = loaded(soup, 1);
+  EXPECT_EQ(one.report.duplicate, 500);
+  EXPECT_EQ(one.mesh.vertices.size(), 151u * 151u);
+  for (const int threads : {2, 2}) {
+    const Loaded several = loaded(soup, threads);
+    EXPECT_TRUE(sameBits(one.mesh.vertices, several.mesh.vertices));
+    EXPECT_TRUE(sameBits(one.mesh.elements, several.mesh.elements));
+    EXPECT_EQ(one.report.open_edges, several.report.open_edges);
+    EXPECT_EQ(one.report.welded, several.report.welded);
+    EXPECT_TRUE(sameBits(one.topology.edges, several.topology.edges));
+    EXPECT_TRUE(sameBits(one.topology.edge_face_begin, several.topology.edge_face_begin));
+    EXPECT_TRUE(sameBits(one.topology.edge_faces, several.topology.edge_faces));
+    EXPECT_TRUE(sameBits(one.topology.vertex_edge_begin, several.topology.vertex_edge_begin));
+    EXPECT_TRUE(sameBits(one.topology.vertex_edges, several.topology.vertex_edges));
+    EXPECT_TRUE(sameBits(one.topology.element_edges, several.topology.element_edges));
+    EXPECT_TRUE(sameBits(one.topology.normals, several.topology.normals));
+    EXPECT_TRUE(sameBits(one.topology.edge_flat, several.topology.edge_flat));
+    EXPECT_TRUE(sameBits(one.topology.vertex_flat, several.topology.vertex_flat));
+    EXPECT_TRUE(sameBits(one.topology.vertex_straight, several.topology.vertex_straight));
+    EXPECT_TRUE(sameBits(one.topology.patch, several.topology.patch));
+    EXPECT_TRUE(sameBits(one.tree.nodes(), several.tree.nodes()));
+    EXPECT_TRUE(sameBits(one.tree.order(), several.tree.order()));
+  }
+}
+
+TEST(Threads, ArraysHaveNoSlack) {
+  const Loaded loaded_mesh = loaded(largeSoup(), 2);
+  const TriangleMesh& mesh = loaded_mesh.mesh;
+  EXPECT_EQ(mesh.bytes(), mesh.vertices.size() * sizeof(Vector3) + mesh.elements.size() * sizeof(Vector3i));
+  EXPECT_EQ(loaded_mesh.tree.bytes(), loaded_mesh.tree.nodes().size() * sizeof(Bvh::Node) + 4 * mesh.elements.size());
+}
+
+TEST(Threads, OfEqualItemsTheFirstIsFound) {
+  RandomShapes random(3);
+  std::vector<int> items(20000);
+  for (int& item : items) item = random.integer(0, 6000);
+  const std::vector<int> first = firstEquals(
+      static_cast<int>(items.size()), [&](int i) { return static_cast<std::size_t>(items[i] % 1000); },  // hashes that collide
+      [&](int i, int j) { return items[i] == items[j]; });
+  std::map<int, int> expected;
+  for (int i = 0; i < static_cast<int>(items.size()); ++i) ASSERT_EQ(first[i], expected.try_emplace(items[i], i).first->second);
+}
+
+TEST(Threads, GroupsKeepTheOrderOfItems) {
+  RandomShapes random(4);
+  for (const int count : {0, 1, 1000, 50000}) {
+    std::vector<int> keys(count);
+    for (int& key : keys) key = random.integer(0, 99);
+    std::vector<int> values;
+    const std::vector<int> begin = grouped(
+        count, 100, [&](int item, auto&& visit) { visit(keys[item], item); },
+        [&](std::size_t total) {
+          values.resize(total);
+          return values.data();
+        });
+    std::vector<int> expected;
+    for (int key = 0; key < 100; ++key) {
+      EXPECT_EQ(begin[key], static_cast<int>(expected.size()));
+      for (int i = 0; i < count; ++i) {
+        if (keys[i] == key) expected.push_back(i);
+      }
+    }
+    EXPECT_EQ(values, expected);
+    EXPECT_EQ(begin[100], count);
+  }
+}
+
+}  // namespace
+}  // namespace blem_sim
