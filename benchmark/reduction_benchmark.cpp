@@ -26,7 +26,7 @@ namespace blem_sim {
 namespace {
 
 constexpr int CALLS = 400, STEPS = 2, WARM_UP = 20;  // two buffers of contacts, as in the simulation
-constexpr double MOTION = 1e-5;  // [m] from step to step
+constexpr double MOTION = 1e-5;                      // [m] from step to step
 
 struct Patch {
   const char* name;

@@ -21,11 +21,12 @@ bool coincide(const Contact& a, const Contact& b) {
 /** Contacts by the cell of space that they lie in. */
 class Cells {
  public:
-  explicit Cells(std::size_t contacts) {
+  /** Empties them, with room for so many. */
+  void clear(std::size_t contacts) {
     std::size_t size = 16;
     while (size < 2 * contacts) size *= 2;
     heads_.assign(size, NONE);
-    next_.reserve(contacts);
+    next_.clear();
   }
 
   void add(const Vector3& point) {
@@ -66,14 +67,22 @@ class Cells {
   std::vector<std::uint32_t> heads_, next_;
 };
 
-/** Of every id the best, sorted by id. */
-std::vector<Contact> bestOfEachId(const std::vector<Contact>& contacts) {
+// Kept between calls.
+struct Buffers {
   std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
-  order.reserve(contacts.size());
+  std::vector<Contact> best;
+  Cells cells;
+  std::vector<Vector3> firsts;  // places of the contacts that each of the merged ones began with
+};
+
+/** Of every id the best, sorted by id: buffers->best. */
+void findBestOfEachId(const std::vector<Contact>& contacts, Buffers* buffers) {
+  auto& order = buffers->order;
+  order.clear();
   for (std::size_t i = 0; i < contacts.size(); ++i) order.emplace_back(contacts[i].id, i);
   std::sort(order.begin(), order.end());
-  std::vector<Contact> best;
-  best.reserve(contacts.size());
+  std::vector<Contact>& best = buffers->best;
+  best.clear();
   for (const auto& [id, i] : order) {
     if (best.empty() || best.back().id != id) {
       best.push_back(contacts[i]);
@@ -81,22 +90,22 @@ std::vector<Contact> bestOfEachId(const std::vector<Contact>& contacts) {
       best.back() = contacts[i];
     }
   }
-  return best;
 }
 
 }  // namespace
 
 void mergeContacts(std::vector<Contact>* contacts) {
-  const std::vector<Contact> sorted = bestOfEachId(*contacts);
+  thread_local Buffers buffers;
+  findBestOfEachId(*contacts, &buffers);
   contacts->clear();
-  Cells cells(sorted.size());
-  std::vector<Vector3> firsts;  // places of the contacts that each of the merged ones began with
-  for (const Contact& contact : sorted) {
+  buffers.firsts.clear();
+  buffers.cells.clear(buffers.best.size());
+  for (const Contact& contact : buffers.best) {
     bool merged = false;
-    cells.visitNear(contact.point, [&](std::uint32_t i) {
+    buffers.cells.visitNear(contact.point, [&](std::uint32_t i) {
       Contact& other = (*contacts)[i];
       Contact first = other;
-      first.point = firsts[i];
+      first.point = buffers.firsts[i];
       if (!coincide(first, contact)) return false;
       if (contact.depth > other.depth) {
         const std::uint64_t id = other.id;
@@ -106,8 +115,8 @@ void mergeContacts(std::vector<Contact>* contacts) {
       return merged = true;
     });
     if (merged) continue;
-    cells.add(contact.point);
-    firsts.push_back(contact.point);
+    buffers.cells.add(contact.point);
+    buffers.firsts.push_back(contact.point);
     contacts->push_back(contact);
   }
 }

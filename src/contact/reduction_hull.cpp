@@ -16,7 +16,7 @@ namespace blem_sim {
 namespace {
 
 constexpr double STAIR = 1e-3;      // [m] parallel patches with this much air between their heights are two patches
-constexpr std::size_t CROWD = 400;  // more than this many contacts are thinned before the choice, to save time,
+constexpr std::size_t CROWD = 100;  // more than this many contacts are thinned before the choice, to save time,
 constexpr int FEW = 100;            // if no more than this many are chosen
 
 struct Buffers {

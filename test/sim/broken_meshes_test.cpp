@@ -18,7 +18,8 @@ namespace {
 constexpr double LAYER = 0.0025;  // [m]
 constexpr double CRACKS = 1e-5;   // [m] in each coordinate
 constexpr int CUBES = 10;
-constexpr double SECONDS = SANITIZED ? 2 : 10;
+// A cube that rocks on cracks of 10 um may take 20 s to come to rest.
+constexpr double SECONDS = SANITIZED ? 2 : 30;
 
 /** What a stack does in its last second. */
 struct Stack {
