@@ -105,6 +105,8 @@ int main(int argc, char** argv) {
   add("contacts/hubo_on_10k", [] { return huboOnTerrain(10000); });
   add("contacts/hubo_on_100k", [] { return huboOnTerrain(100000); });
   add("contacts/hubo_on_1M", [] { return huboOnTerrain(1000000); });
+  add("contacts/hubo_on_4M", [] { return huboOnTerrain(4000000); });
+  add("contacts/hubo_on_1M_points", [] { return huboOnTerrain(2000000, true); });
   add("contacts/cube_on_1M", [] { return cubeOnTerrain(1000000); });
   add("contacts/mug_on_fractal_500k", [] { return mugOnFractalTerrain(500000); });
   add("contacts/mug_beside_mug", [] { return mugBesideMug(); });

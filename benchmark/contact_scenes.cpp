@@ -43,6 +43,12 @@ TriangleMesh noisyGrid(int triangles, const std::vector<Box>& raised) {
   return mesh;
 }
 
+TriangleMesh pointsOf(TriangleMesh mesh) {
+  mesh.elements.clear();
+  for (int i = 0; i < static_cast<int>(mesh.vertices.size()); ++i) mesh.elements.push_back({i, i, i});
+  return mesh;
+}
+
 Box boundsOf(const TriangleMesh& mesh, const Pose& X) {
   Box box;
   for (const Vector3& v : mesh.vertices) box.extend(X * v);
@@ -76,7 +82,7 @@ TriangleMesh loadedMesh(const char* file) { return *loadSurface(*sharedData(file
 
 }  // namespace
 
-std::unique_ptr<ContactScene> huboOnTerrain(int triangles) {
+std::unique_ptr<ContactScene> huboOnTerrain(int triangles, bool points) {
   if (!sharedData("robots/klampt/huboplus/huboplus.urdf")) return nullptr;
   auto scene = std::make_unique<ContactScene>();
   scene->name = "hubo on " + std::to_string(triangles);
@@ -85,7 +91,8 @@ std::unique_ptr<ContactScene> huboOnTerrain(int triangles) {
   for (const PosedLink& link : links)
     if (link.name.find("Hand") != std::string::npos || link.name.find("Finger") != std::string::npos)
       raised.push_back(boundsOf(*link.mesh, link.X_WL));
-  scene->standing = makeCollider(noisyGrid(triangles, raised), 0);
+  const TriangleMesh terrain = noisyGrid(triangles, raised);
+  scene->standing = makeCollider(points ? pointsOf(terrain) : terrain, 0);
   std::vector<Pose> poses;
   std::vector<Vector3> middles;
   for (const PosedLink& link : links) {

@@ -23,9 +23,9 @@ constexpr double SCENE_SPEED = 0.1;
 
 /**
  * Hubo, 57 links, standing on a grid of 3 m x 3 m with noise of 0.5 mm from lowest to highest, raised under its hands; r 2.5 mm.
- * @param triangles of the grid, about. Null without the shared data.
+ * @param triangles of the grid, about @param points the grid's vertices alone, half as many. Null without the shared data.
  */
-std::unique_ptr<ContactScene> huboOnTerrain(int triangles);
+std::unique_ptr<ContactScene> huboOnTerrain(int triangles, bool points = false);
 /** A cube of 12 triangles on the same grid. */
 std::unique_ptr<ContactScene> cubeOnTerrain(int triangles);
 /** A mug of 22,300 triangles upright on a fractal terrain, split to about `triangles`. Null without the shared data. */
