@@ -110,11 +110,11 @@ void dropLeading(const MeshPair& pair, double margin, CandidateLists* lists) {
       if (vector3(near.ring_directions[i]).dot(d) > limit) return true;
     return false;
   };
-  const auto first = std::remove_if(lists->vertex_vertex.begin(), lists->vertex_vertex.end(), [&](const Candidate& c) {
+  const auto first = std::remove_if(lists->pairs.vertex_vertex.begin(), lists->pairs.vertex_vertex.end(), [&](const Candidate& c) {
     const Vector3 d = vector3(lists->near[0].vertices.records[c.b]) - pair.X_FM * vector3(lists->near[1].vertices.records[c.a]);
     return leads(true, c.a, pair.X_FM.linear().transpose() * d) || leads(false, c.b, -d);
   });
-  lists->vertex_vertex.erase(first, lists->vertex_vertex.end());
+  lists->pairs.vertex_vertex.erase(first, lists->pairs.vertex_vertex.end());
 }
 
 }  // namespace
@@ -157,12 +157,21 @@ void NearFeatures::clear() {
   ring_directions.clear();
 }
 
-void CandidateLists::clear() {
-  for (NearFeatures& features : near) features.clear();
+void CandidatePairs::clear() {
   for (Candidates* candidates :
        {&vertex_face[0], &vertex_face[1], &vertex_edge[0], &vertex_edge[1], &edge_face[0], &edge_face[1], &edge_edge, &vertex_vertex}) {
     candidates->clear();
   }
+}
+
+std::size_t CandidatePairs::contacts() const {
+  return vertex_face[0].size() + vertex_face[1].size() + vertex_edge[0].size() + vertex_edge[1].size() + edge_edge.size() +
+         vertex_vertex.size();
+}
+
+void CandidateLists::clear() {
+  for (NearFeatures& features : near) features.clear();
+  pairs.clear();
 }
 
 // Room only grows: nothing is cleared that is overwritten.
@@ -194,34 +203,51 @@ void findCandidates(const MeshPair& pair, double margin, CandidateSearchBuffers*
   kernels::LeafHits& hits = buffers->hits;
   search.forEachLeafPair([&](LeafFeatures& m, LeafFeatures& f) {
     kernels.leafContacts(m.turned, f.shapes, reach, &hits);
-    Search::append(hits.vertex_face, hits.vertex_faces, &lists->vertex_face[1], [&](auto i, auto j) -> Candidate {
+    Search::append(hits.vertex_face, hits.vertex_faces, &lists->pairs.vertex_face[1], [&](auto i, auto j) -> Candidate {
       return {search.vertex(true, &m, i), search.face(false, &f, j)};
     });
-    Search::append(hits.vertex_edge, hits.vertex_edges, &lists->vertex_edge[1], [&](auto i, auto j) -> Candidate {
+    Search::append(hits.vertex_edge, hits.vertex_edges, &lists->pairs.vertex_edge[1], [&](auto i, auto j) -> Candidate {
       return {search.vertex(true, &m, i), search.edge(false, &f, j)};
     });
-    Search::append(hits.vertex_vertex, hits.vertex_vertices, &lists->vertex_vertex, [&](auto i, auto j) -> Candidate {
+    Search::append(hits.vertex_vertex, hits.vertex_vertices, &lists->pairs.vertex_vertex, [&](auto i, auto j) -> Candidate {
       return {search.vertex(true, &m, i), search.vertex(false, &f, j)};
     });
-    Search::append(hits.edge_edge, hits.edge_edges, &lists->edge_edge, [&](auto i, auto j) -> Candidate {
+    Search::append(hits.edge_edge, hits.edge_edges, &lists->pairs.edge_edge, [&](auto i, auto j) -> Candidate {
       return {search.edge(true, &m, i), search.edge(false, &f, j)};
     });
-    Search::append(hits.edge_vertex, hits.edge_vertices, &lists->vertex_edge[0], [&](auto i, auto j) -> Candidate {
+    Search::append(hits.edge_vertex, hits.edge_vertices, &lists->pairs.vertex_edge[0], [&](auto i, auto j) -> Candidate {
       return {search.vertex(false, &f, j), search.edge(true, &m, i)};
     });
-    Search::append(hits.face_vertex, hits.face_vertices, &lists->vertex_face[0], [&](auto i, auto j) -> Candidate {
+    Search::append(hits.face_vertex, hits.face_vertices, &lists->pairs.vertex_face[0], [&](auto i, auto j) -> Candidate {
       return {search.vertex(false, &f, j), search.face(true, &m, i)};
     });
     if (!boxesWithin(m.turned, f.shapes, reach.margin)) return;
     kernels.leafCrossings(m.turned, f.shapes, reach, &hits);
-    Search::append(hits.edge_face, hits.edge_faces, &lists->edge_face[1], [&](auto i, auto j) -> Candidate {
+    Search::append(hits.edge_face, hits.edge_faces, &lists->pairs.edge_face[1], [&](auto i, auto j) -> Candidate {
       return {search.edge(true, &m, i), search.face(false, &f, j)};
     });
-    Search::append(hits.face_edge, hits.face_edges, &lists->edge_face[0], [&](auto i, auto j) -> Candidate {
+    Search::append(hits.face_edge, hits.face_edges, &lists->pairs.edge_face[0], [&](auto i, auto j) -> Candidate {
       return {search.edge(false, &f, j), search.face(true, &m, i)};
     });
   });
   dropLeading(pair, margin, lists);
+}
+
+void findNearest(const CandidateLists& lists, const TurnedFeatures& turned, double range, double margin, CandidatePairs* nearest) {
+  const kernels::Kernels& kernels = kernels::kernels();
+  const auto keep = [&](auto kernel, const auto* a, const auto* b, const std::vector<Candidate>& from, std::vector<Candidate>* to) {
+    to->resize(from.size());
+    to->resize(kernel(a, b, from.data(), static_cast<std::uint32_t>(from.size()), {range, margin}, to->data()));
+  };
+  const NearFeatures &fixed = lists.near[0], &moving = lists.near[1];
+  const auto &fixed_vertices = fixed.vertices.records, &moving_vertices = turned.vertices[1];
+  const CandidatePairs& all = lists.pairs;
+  keep(kernels.nearVertexFaces, moving_vertices.data(), fixed.faces.records.data(), all.vertex_face[1], &nearest->vertex_face[1]);
+  keep(kernels.nearVertexFaces, turned.vertices[0].data(), moving.faces.records.data(), all.vertex_face[0], &nearest->vertex_face[0]);
+  keep(kernels.nearVertexEdges, moving_vertices.data(), fixed.edges.records.data(), all.vertex_edge[1], &nearest->vertex_edge[1]);
+  keep(kernels.nearVertexEdges, fixed_vertices.data(), turned.edges[1].data(), all.vertex_edge[0], &nearest->vertex_edge[0]);
+  keep(kernels.nearEdgeEdges, turned.edges[1].data(), fixed.edges.records.data(), all.edge_edge, &nearest->edge_edge);
+  keep(kernels.nearVertexVertices, moving_vertices.data(), fixed_vertices.data(), all.vertex_vertex, &nearest->vertex_vertex);
 }
 
 }  // namespace blem_sim

@@ -64,11 +64,18 @@ struct NearFeatures {
 
 /** Pairs of features, in an order that the meshes alone decide. An index [moves] tells whether the feature named first is the moving
  * mesh's; Candidate::a is that one's. */
-struct CandidateLists {
+struct CandidatePairs {
   using Candidates = std::vector<kernels::Candidate>;
-  NearFeatures near[2];  ///< [1] of the moving mesh, [0] of the fixed one
   Candidates vertex_face[2], vertex_edge[2], edge_face[2];
   Candidates edge_edge, vertex_vertex;  ///< a is the moving mesh's
+
+  void clear();
+  std::size_t contacts() const;  ///< how many candidates for contacts
+};
+
+struct CandidateLists {
+  NearFeatures near[2];  ///< [1] of the moving mesh, [0] of the fixed one
+  CandidatePairs pairs;
 
   void clear();
 };
@@ -100,5 +107,11 @@ struct CandidateSearchBuffers {
  * mesh near the other has moved by more than `margin` [m] against it. Overwrites the lists.
  */
 void findCandidates(const MeshPair& pair, double margin, CandidateSearchBuffers* buffers, CandidateLists* lists);
+
+/**
+ * Of the candidates for contacts those that can have one within `range` while no point moves by more than `margin` [m], in their order.
+ * @param turned of these lists at the pose at hand
+ */
+void findNearest(const CandidateLists& lists, const TurnedFeatures& turned, double range, double margin, CandidatePairs* nearest);
 
 }  // namespace blem_sim

@@ -14,8 +14,11 @@ using kernels::Candidate;
 using kernels::Vec4;
 
 // A list is made for so many steps of the present motion: longer ones cost more in every step, shorter ones are made anew too often.
-constexpr double MARGIN_STEPS = 16, FEWEST_STEPS = 3;
-constexpr double LEAST_MARGIN = 0.02, MOST_MARGIN = 0.6;  // of the range
+constexpr double MARGIN_STEPS = 20, FEWEST_STEPS = 3;
+// Of long lists those that matter for so few steps are listed again.
+constexpr double NEAREST_STEPS = 4;
+constexpr std::size_t FEW_CANDIDATES = 200;
+constexpr double LEAST_MARGIN = 0.02, MOST_MARGIN = 0.8;  // of the range
 constexpr double FIRST_MARGIN = 0.1;                      // of the range, where the motion is not known yet
 /** What a distance may be wrong by [m]: float boxes, rounding. */
 constexpr double DISTANCE_ROUNDING = 1e-7;
@@ -67,11 +70,11 @@ class PlanesBelow {
 /** Turns candidates into contacts. */
 class Evaluation {
  public:
-  Evaluation(const MeshPair& pair, CandidateLists* lists, ContactSearchBuffers* buffers, FoundContacts* found)
-      : pair_(pair), lists_(*lists), buffers_(*buffers), found_(*found), exact_(pair, &found->close), fades_(pair, lists) {}
+  /** @param pairs of the lists, all or those that matter; the features of the lists must have been turned */
+  Evaluation(const MeshPair& pair, CandidateLists* lists, const CandidatePairs& pairs, ContactSearchBuffers* buffers, FoundContacts* found)
+      : pair_(pair), lists_(*lists), pairs_(pairs), buffers_(*buffers), found_(*found), exact_(pair, &found->close), fades_(pair, lists) {}
 
   void findContacts() {
-    buffers_.turned.turn(lists_, pair_.X_FM);
     const auto& vertices = buffers_.turned.vertices;
     const auto& edges = buffers_.turned.edges;
     for (const bool moves : {true, false}) {
@@ -86,7 +89,7 @@ class Evaluation {
   void findCrossings() {
     buffers_.turned.turnForCrossings(lists_, pair_.X_FM);
     for (const bool moves : {true, false}) {
-      const std::vector<Candidate>& candidates = lists_.edge_face[moves];
+      const std::vector<Candidate>& candidates = pairs_.edge_face[moves];
       const auto& edges = lists_.near[moves].edges;
       const auto& turned = buffers_.turned.edges[moves];
       const auto& faces = lists_.near[!moves].faces;
@@ -111,7 +114,7 @@ class Evaluation {
   }
 
   void vertexFaces(bool moves) {
-    const std::vector<Candidate>& candidates = lists_.vertex_face[moves];
+    const std::vector<Candidate>& candidates = pairs_.vertex_face[moves];
     const auto& vertices = lists_.near[moves].vertices;
     const auto& faces = lists_.near[!moves].faces;
     auto& hits = buffers_.vertex_faces;
@@ -171,7 +174,7 @@ class Evaluation {
   }
 
   void edgeEdges(const kernels::EdgeRecord* moving, const kernels::EdgeRecord* fixed) {
-    const std::vector<Candidate>& candidates = lists_.edge_edge;
+    const std::vector<Candidate>& candidates = pairs_.edge_edge;
     auto& hits = buffers_.edge_edges;
     hits.resize(std::max(hits.size(), candidates.size()));
     const std::uint32_t count = kernels::kernels().edgeEdges(moving, fixed, candidates.data(), candidates.size(), pair_.range, hits.data());
@@ -197,7 +200,7 @@ class Evaluation {
   }
 
   void vertexEdges(bool moves, const Vec4* vertices, const kernels::EdgeRecord* edges) {
-    const std::vector<Candidate>& candidates = lists_.vertex_edge[moves];
+    const std::vector<Candidate>& candidates = pairs_.vertex_edge[moves];
     forEachHit(candidates,
                kernels::kernels().vertexEdges(vertices, edges, candidates.data(), candidates.size(), pair_.range, room(candidates)),
                [&](const Candidate& c) {
@@ -206,7 +209,7 @@ class Evaluation {
   }
 
   void vertexVertices(const Vec4* moving, const Vec4* fixed) {
-    const std::vector<Candidate>& candidates = lists_.vertex_vertex;
+    const std::vector<Candidate>& candidates = pairs_.vertex_vertex;
     forEachHit(candidates,
                kernels::kernels().vertexVertices(moving, fixed, candidates.data(), candidates.size(), pair_.range, room(candidates)),
                [&](const Candidate& c) { exact_.vertexVertex(lists_.near[1].vertices.names[c.a], lists_.near[0].vertices.names[c.b]); });
@@ -214,6 +217,7 @@ class Evaluation {
 
   const MeshPair& pair_;
   CandidateLists& lists_;
+  const CandidatePairs& pairs_;
   ContactSearchBuffers& buffers_;
   FoundContacts& found_;
   ExactTests exact_;
@@ -232,9 +236,9 @@ class ContactSearch {
   void run(bool keeps) {
     const bool apart = memory_.visited && motion_ + DISTANCE_ROUNDING < memory_.distance;
     refreshLists(keeps ? chooseMargin() : 0);
-    Evaluation evaluation(pair_, &memory_.lists, &buffers_, &found_);
-    evaluation.findContacts();
-    if (!apart) evaluation.findCrossings();
+    buffers_.turned.turn(memory_.lists, pair_.X_FM);
+    Evaluation(pair_, &memory_.lists, nearestPairs(), &buffers_, &found_).findContacts();
+    if (!apart) Evaluation(pair_, &memory_.lists, memory_.lists.pairs, &buffers_, &found_).findCrossings();
     memory_.visited = keeps;
     memory_.X_FM = pair_.X_FM;
     memory_.distance = found_.crossings.empty() ? leastGap() : 0;
@@ -242,7 +246,7 @@ class ContactSearch {
 
  private:
   void forget() {
-    memory_.visited = false;
+    memory_.visited = memory_.lists_origin.known = memory_.nearest_origin.known = false;
     memory_.moving = pair_.moving.identity;
     memory_.fixed = pair_.fixed.identity;
   }
@@ -253,15 +257,29 @@ class ContactSearch {
     return std::clamp(MARGIN_STEPS * motion_, LEAST_MARGIN * pair_.range, MOST_MARGIN * pair_.range);
   }
 
+  bool isGood(const ListOrigin& origin) const {
+    if (!origin.known) return false;
+    const double motion = largestMotion(region_, pair_.X_FM, origin.X_FM);
+    return motion <= origin.margin && pair_.range + motion <= origin.range + origin.margin;
+  }
+
   void refreshLists(double margin) {
-    if (memory_.visited) {
-      const double motion = largestMotion(region_, pair_.X_FM, memory_.X_FM_lists);
-      if (motion <= memory_.margin && pair_.range + motion <= memory_.range + memory_.margin) return;
-    }
+    if (isGood(memory_.lists_origin)) return;
     findCandidates(pair_, margin, &buffers_.search, &memory_.lists);
-    memory_.X_FM_lists = pair_.X_FM;
-    memory_.range = pair_.range;
-    memory_.margin = margin;
+    memory_.lists_origin = {true, pair_.X_FM, pair_.range, margin};
+    memory_.nearest_origin.known = false;
+  }
+
+  /** The candidates to test, good lists given. */
+  const CandidatePairs& nearestPairs() {
+    const double margin = NEAREST_STEPS * motion_;
+    const bool pays = memory_.lists.pairs.contacts() > FEW_CANDIDATES && 2 * margin < memory_.lists_origin.margin;
+    if (isGood(memory_.nearest_origin)) return memory_.nearest;
+    if (!pays) return memory_.lists.pairs;
+    const double least = 0.25 * LEAST_MARGIN * pair_.range;
+    memory_.nearest_origin = {true, pair_.X_FM, pair_.range, std::max(margin, least)};
+    findNearest(memory_.lists, buffers_.turned, pair_.range, memory_.nearest_origin.margin, &memory_.nearest);
+    return memory_.nearest;
   }
 
   double leastGap() const {

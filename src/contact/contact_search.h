@@ -18,14 +18,20 @@ struct FoundContacts {
   void clear();
 };
 
+/** Where a list of candidates was made: it is good while no point near the other mesh is farther than the margin from where it was. */
+struct ListOrigin {
+  bool known = false;
+  Pose X_FM = Pose::Identity();
+  double range = 0, margin = 0;  ///< [m]
+};
+
 /** What is kept of a pair of meshes from search to search; it saves time and changes no result. */
 struct ContactSearchMemory {
   std::uint64_t moving = 0, fixed = 0;  ///< whose
-  CandidateLists lists;
-  /** The lists are good while no point near the other mesh is farther than `margin` [m] from where it was at this pose. */
-  Pose X_FM_lists = Pose::Identity();
-  double range = 0, margin = 0;  ///< [m] of the lists
-  bool visited = false;          ///< there are lists, and a last search
+  CandidateLists lists;                 ///< for many steps
+  CandidatePairs nearest;               ///< those of them that matter for a few
+  ListOrigin lists_origin, nearest_origin;
+  bool visited = false;
   Pose X_FM = Pose::Identity();  ///< at the last search
   double distance = 0;           ///< [m] of the meshes then, at least; 0 if they crossed
 };

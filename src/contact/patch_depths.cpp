@@ -21,10 +21,21 @@ double PatchDepths::interpolatedDepth(const Facet& facet, const PlanePoint& p) {
   return (1 - weight_b) * facet.a.depth + weight_b * facet.b.depth;
 }
 
-// How far p lies inside the facet's sides; negative outside.
-double PatchDepths::insideBy(const Facet& f, const PlanePoint& p) {
-  const auto from_side = [&p](const PlanePoint& a, const PlanePoint& b) { return cross(a, b, p) / std::max(distance(a, b), 1e-300); };
-  return std::min({from_side(f.a, f.b), from_side(f.b, f.c), from_side(f.c, f.a)});
+PatchDepths::Facet::Facet(const PlanePoint& first_corner, const PlanePoint& second_corner, const PlanePoint& third_corner)
+    : a(first_corner), b(second_corner), c(third_corner) {
+  const PlanePoint* const corners[4] = {&a, &b, &c, &a};
+  for (int side = 0; side < 3; ++side) {
+    const double length = std::max(distance(*corners[side], *corners[side + 1]), 1e-300);
+    side_x[side] = (corners[side + 1]->x - corners[side]->x) / length;
+    side_y[side] = (corners[side + 1]->y - corners[side]->y) / length;
+  }
+}
+
+double PatchDepths::Facet::insideBy(const PlanePoint& p) const {
+  const auto from_side = [&](const PlanePoint& corner, int side) {
+    return side_x[side] * (p.y - corner.y) - side_y[side] * (p.x - corner.x);
+  };
+  return std::min({from_side(a, 0), from_side(b, 1), from_side(c, 2)});
 }
 
 void PatchDepths::hand(int point, Facet* facet) {
@@ -39,7 +50,7 @@ void PatchDepths::distribute(int first, std::size_t first_facet) {
     std::size_t best = first_facet;
     double most = -std::numeric_limits<double>::infinity();
     for (std::size_t facet = first_facet; facet < open_.size() && most < 0; ++facet) {
-      const double inside = insideBy(open_[facet], p);
+      const double inside = open_[facet].insideBy(p);
       if (inside <= most) continue;
       best = facet;
       most = inside;
@@ -63,14 +74,14 @@ void PatchDepths::distributeOnSegments(const Facet& parent, const PlanePoint& at
 // Opens the three triangles (two segments) into which p splits a facet; those without area are left out.
 void PatchDepths::split(const Facet& facet, const PlanePoint& p) {
   if (facet.isSegment()) {
-    open_.push_back({facet.a, p, p});
-    open_.push_back({p, facet.b, facet.b});
+    open_.emplace_back(facet.a, p, p);
+    open_.emplace_back(p, facet.b, facet.b);
     return;
   }
   const PlanePoint corners[4] = {facet.a, facet.b, facet.c, facet.a};
   for (int side = 0; side < 3; ++side) {
     const PlanePoint &from = corners[side], &to = corners[side + 1];
-    if (cross(from, to, p) > FLATNESS * distance(from, to)) open_.push_back({from, to, p});
+    if (cross(from, to, p) > FLATNESS * distance(from, to)) open_.emplace_back(from, to, p);
   }
 }
 
@@ -102,8 +113,8 @@ void PatchDepths::keepDeeper(const std::vector<Contact>& contacts, const std::ve
   points_ = points;
   // The triangles of a fan around the first corner; a hull without area is one segment.
   open_.clear();
-  if (corners.size() <= 2) open_.push_back({corners.front(), corners.back(), corners.back()});
-  for (std::size_t i = 1; i + 1 < corners.size(); ++i) open_.push_back({corners[0], corners[i], corners[i + 1]});
+  if (corners.size() <= 2) open_.emplace_back(corners.front(), corners.back(), corners.back());
+  for (std::size_t i = 1; i + 1 < corners.size(); ++i) open_.emplace_back(corners[0], corners[i], corners[i + 1]);
   double shallowest = corners[0].depth;
   corner_contacts_.clear();
   for (const PlanePoint& corner : corners) {

@@ -41,12 +41,15 @@ class PatchDepths {
  private:
   /** Points that lie over one triangle of kept points (a segment if c is b). */
   struct Facet {
-    PlanePoint a, b, c;
-    int first = NO_POINT;  // of the list of its points
+    Facet(const PlanePoint& a, const PlanePoint& b, const PlanePoint& c);
     bool isSegment() const { return b.contact == c.contact; }
+    /** How far p lies inside the sides; negative outside. */
+    double insideBy(const PlanePoint& p) const;
+    PlanePoint a, b, c;
+    int first = NO_POINT;         // of the list of its points
+    double side_x[3], side_y[3];  // unit, along the sides from a, b, c
   };
   static double interpolatedDepth(const Facet& facet, const PlanePoint& p);
-  static double insideBy(const Facet& facet, const PlanePoint& p);
   /** Of the points of a facet only those stay that are above it. @return the highest */
   int highest(const std::vector<Contact>& contacts, Facet* facet);
   void split(const Facet& facet, const PlanePoint& p);

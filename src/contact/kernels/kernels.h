@@ -23,6 +23,17 @@ struct Kernels {
   /** The same of edges that pass through faces. */
   void (*leafCrossings)(const LeafShapes& a, const LeafShapes& b, const LeafReach& reach, LeafHits* hits);
 
+  /** Copies, in order, the candidates that can have a contact within the range while no point moves by more than the margin. @return their
+   * number */
+  std::uint32_t (*nearVertexFaces)(const Vec4* a, const FaceRecord* b, const Candidate* in, std::uint32_t count, const Reach& reach,
+                                   Candidate* out);
+  std::uint32_t (*nearEdgeEdges)(const EdgeRecord* a, const EdgeRecord* b, const Candidate* in, std::uint32_t count, const Reach& reach,
+                                 Candidate* out);
+  std::uint32_t (*nearVertexEdges)(const Vec4* a, const EdgeRecord* b, const Candidate* in, std::uint32_t count, const Reach& reach,
+                                   Candidate* out);
+  std::uint32_t (*nearVertexVertices)(const Vec4* a, const Vec4* b, const Candidate* in, std::uint32_t count, const Reach& reach,
+                                      Candidate* out);
+
   /** Candidates with a contact within `range`, and those that need a closer look. @return number of hits */
   std::uint32_t (*vertexFaces)(const Vec4* a, const FaceRecord* b, const Candidate* candidates, std::uint32_t count, double range,
                                VertexFaceHit* hits);

@@ -332,6 +332,74 @@ void turnLeaf(const LeafShapes& in, const Motion& motion, LeafShapes* out) {
   turnRows(in.vertices, in.vertex_count, R, t, out->vertices);
 }
 
+// ---- what can have a contact soon: as for leaves, in double
+
+template <typename Test>
+inline std::uint32_t copied(const Candidate* in, std::uint32_t count, Candidate* out, Test&& test) {
+  std::uint32_t kept = 0;
+  forEachHit(in, count, test, [&](std::uint32_t i, int) { out[kept++] = in[i]; });
+  return kept;
+}
+
+std::uint32_t nearVertexFaces(const Vec4* a, const FaceRecord* b, const Candidate* in, std::uint32_t count, const Reach& reach,
+                              Candidate* out) {
+  const double range = reach.range + reach.margin, beside = reach.margin + 3 * CLOSED;
+  return copied(in, count, out, [&](const Batch& batch) {
+    const Vectors p = batch.points(a, batch.of_a).v;
+    const Doubles most = range - absolute(above(p, batch.field(b, batch.of_b, &FaceRecord::plane)));
+    const unsigned near = bitsOf(most >= 0);
+    return near == 0 ? 0 : near & bitsOf(insideSides(batch, b, p) >= -(most / FADE_SLOPE + beside));
+  });
+}
+
+/** Are both ends of an edge, seen from the start of another, farther than the limit inside a face of that one? */
+inline Mask liesInside(const Vectors& first, const Vectors& second, const Vectors& inward, double limit) {
+  return minimum(dot(inward, first), dot(inward, second)) > limit;
+}
+
+std::uint32_t nearEdgeEdges(const EdgeRecord* a, const EdgeRecord* b, const Candidate* in, std::uint32_t count, const Reach& reach,
+                            Candidate* out) {
+  const double range = reach.range + reach.margin, limit = deepestInside(range) + reach.margin;
+  return copied(in, count, out, [&](const Batch& batch) {
+    const Rows start_a = batch.field(a, batch.of_a, &EdgeRecord::start), start_b = batch.field(b, batch.of_b, &EdgeRecord::start);
+    const Vectors p = batch.field(a, batch.of_a, &EdgeRecord::along).v, q = batch.field(b, batch.of_b, &EdgeRecord::along).v;
+    const Vectors r = start_b.v - start_a.v, back = start_a.v - start_b.v;
+    Mask inside{};
+    for (int k = 0; k < 2; ++k) {
+      inside |= liesInside(r, r + q, batch.inward(a, batch.of_a, k).v, limit);
+      inside |= liesInside(back, back + p, batch.inward(b, batch.of_b, k).v, limit);
+    }
+    const unsigned crosswise = ~bitsOf(inside) & ALL_LANES;
+    if (crosswise == 0) return 0u;
+    const Doubles pp = start_a.w, qq = start_b.w, pq = dot(p, q), pr = dot(p, r), qr = dot(q, r), denominator = pp * qq - pq * pq;
+    const Doubles first = denominator > 0 ? clampedToUnit((pr * qq - pq * qr) / denominator) : Doubles{};
+    const Doubles t = clampedToUnit((pq * first - qr) / qq), s = clampedToUnit((pq * t + pr) / pp);
+    const Vectors d = r + t * q - s * p;
+    return crosswise & ~bitsOf(dot(d, d) > range * range);
+  });
+}
+
+std::uint32_t nearVertexEdges(const Vec4* a, const EdgeRecord* b, const Candidate* in, std::uint32_t count, const Reach& reach,
+                              Candidate* out) {
+  const double range = reach.range + reach.margin, limit = 2 * CONE_SLACK * range + reach.margin + CLOSED;
+  return copied(in, count, out, [&](const Batch& batch) {
+    const Rows start = batch.field(b, batch.of_b, &EdgeRecord::start);
+    const Vectors along = batch.field(b, batch.of_b, &EdgeRecord::along).v, r = batch.points(a, batch.of_a).v - start.v;
+    const Vectors d = r - clampedToUnit(dot(r, along) / start.w) * along;
+    const Mask inside = (dot(batch.inward(b, batch.of_b, 0).v, r) > limit) | (dot(batch.inward(b, batch.of_b, 1).v, r) > limit);
+    return ~bitsOf(inside | (dot(d, d) > range * range));
+  });
+}
+
+std::uint32_t nearVertexVertices(const Vec4* a, const Vec4* b, const Candidate* in, std::uint32_t count, const Reach& reach,
+                                 Candidate* out) {
+  const double range = reach.range + reach.margin;
+  return copied(in, count, out, [&](const Batch& batch) {
+    const Vectors d = batch.points(a, batch.of_a).v - batch.points(b, batch.of_b).v;
+    return bitsOf(dot(d, d) <= range * range);
+  });
+}
+
 // ---- what has a contact
 
 /** Offset from the foot on an edge, which may lie beyond its ends, and where that foot is as part of the edge. */
@@ -459,5 +527,8 @@ std::uint32_t edgeFaces(const EdgeRecord* a, const FaceRecord* b, const Candidat
 }  // namespace
 }  // namespace blem_sim::kernels
 
-#define BLEM_SIM_KERNEL_TABLE(name) \
-  { name, turnPoints, turnEdges, turnLeaf, leafContacts, leafCrossings, vertexFaces, edgeEdges, vertexEdges, vertexVertices, edgeFaces }
+#define BLEM_SIM_KERNEL_TABLE(name)                                                                                      \
+  {                                                                                                                      \
+    name, turnPoints, turnEdges, turnLeaf, leafContacts, leafCrossings, nearVertexFaces, nearEdgeEdges, nearVertexEdges, \
+        nearVertexVertices, vertexFaces, edgeEdges, vertexEdges, vertexVertices, edgeFaces                               \
+  }

@@ -53,6 +53,12 @@ struct LeafReach {
   float inside;  ///< both ends of an edge may lie so far inside a face of the other one
 };
 
+/** How near candidates must be [m]. */
+struct Reach {
+  double range;   ///< of contacts
+  double margin;  ///< that points may move
+};
+
 /** Features of one leaf by their bits, near a feature of another. */
 struct LeafHit {
   std::uint32_t feature;  ///< of the first leaf
