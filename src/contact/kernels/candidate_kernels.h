@@ -1,0 +1,269 @@
+// Candidates, several at once, in double. Included by kernels_code.h only.
+#pragma once
+
+#include "../tolerances.h"
+#include "lanes.h"
+
+namespace blem_sim::kernels {
+namespace {
+
+constexpr unsigned ALL_LANES = (1u << LANES) - 1;
+
+/** Which candidates the lanes hold: behind the last one it is repeated, and masked. */
+struct Batch {
+  Batch(const Candidate* candidates, std::uint32_t first, std::uint32_t count) {
+    for (int i = 0; i < LANES; ++i) {
+      const std::uint32_t at = first + i < count ? first + i : count - 1;
+      of_a[i] = candidates[at].a;
+      of_b[i] = candidates[at].b;
+    }
+    const std::uint32_t left = count - first;
+    valid = left >= LANES ? ALL_LANES : (1u << left) - 1;
+  }
+
+  Rows points(const Vec4* from, const std::uint32_t (&index)[LANES]) const {
+    const Vec4* at[LANES];
+    for (int i = 0; i < LANES; ++i) at[i] = &from[index[i]];
+    return gathered(reinterpret_cast<const Vec4* const(&)[LANES]>(at));
+  }
+  template <typename Record>
+  Rows field(const Record* from, const std::uint32_t (&index)[LANES], const Vec4 Record::*member) const {
+    const Vec4* at[LANES];
+    for (int i = 0; i < LANES; ++i) at[i] = &(from[index[i]].*member);
+    return gathered(reinterpret_cast<const Vec4* const(&)[LANES]>(at));
+  }
+  Rows side(const FaceRecord* from, int k) const {
+    const Vec4* at[LANES];
+    for (int i = 0; i < LANES; ++i) at[i] = &from[of_b[i]].sides[k];
+    return gathered(reinterpret_cast<const Vec4* const(&)[LANES]>(at));
+  }
+  Rows inward(const EdgeRecord* from, const std::uint32_t (&index)[LANES], int k) const {
+    const Vec4* at[LANES];
+    for (int i = 0; i < LANES; ++i) at[i] = &from[index[i]].inward[k];
+    return gathered(reinterpret_cast<const Vec4* const(&)[LANES]>(at));
+  }
+
+  std::uint32_t of_a[LANES], of_b[LANES];
+  unsigned valid;
+};
+
+/** Calls test(batch) for all; where its bits are set, take(candidate's index, lane). */
+template <typename Test, typename Take>
+inline void forEachHit(const Candidate* candidates, std::uint32_t count, Test&& test, Take&& take) {
+  for (std::uint32_t first = 0; first < count; first += LANES) {
+    const Batch batch(candidates, first, count);
+    for (unsigned bits = test(batch) & batch.valid; bits != 0; bits &= bits - 1) {
+      const int lane = __builtin_ctz(bits);
+      take(first + lane, lane);
+    }
+  }
+}
+
+template <typename Test>
+inline std::uint32_t listed(const Candidate* candidates, std::uint32_t count, std::uint32_t* hits, Test&& test) {
+  std::uint32_t found = 0;
+  forEachHit(candidates, count, test, [&](std::uint32_t i, int) { hits[found++] = i; });
+  return found;
+}
+
+/** Height over the plane, or inside the side. */
+inline Doubles above(const Vectors& p, const Rows& plane) { return dot(p, plane.v) - plane.w; }
+
+inline Doubles insideSides(const Batch& batch, const FaceRecord* faces, const Vectors& p) {
+  return minimum(minimum(above(p, batch.side(faces, 0)), above(p, batch.side(faces, 1))), above(p, batch.side(faces, 2)));
+}
+
+// ---- what can have a contact soon: as for leaves, in double
+
+template <typename Test>
+inline std::uint32_t copied(const Candidate* in, std::uint32_t count, Candidate* out, Test&& test) {
+  std::uint32_t kept = 0;
+  forEachHit(in, count, test, [&](std::uint32_t i, int) { out[kept++] = in[i]; });
+  return kept;
+}
+
+std::uint32_t nearVertexFaces(const Vec4* a, const FaceRecord* b, const Candidate* in, std::uint32_t count, const Reach& reach,
+                              Candidate* out) {
+  const double range = reach.range + reach.margin, beside = reach.margin + 3 * CLOSED;
+  return copied(in, count, out, [&](const Batch& batch) {
+    const Vectors p = batch.points(a, batch.of_a).v;
+    const Doubles most = range - absolute(above(p, batch.field(b, batch.of_b, &FaceRecord::plane)));
+    const unsigned near = bitsOf(most >= 0);
+    return near == 0 ? 0 : near & bitsOf(insideSides(batch, b, p) >= -(most / FADE_SLOPE + beside));
+  });
+}
+
+/** Are both ends of an edge, seen from the start of another, farther than the limit inside a face of that one? */
+inline Mask liesInside(const Vectors& first, const Vectors& second, const Vectors& inward, double limit) {
+  return minimum(dot(inward, first), dot(inward, second)) > limit;
+}
+
+std::uint32_t nearEdgeEdges(const EdgeRecord* a, const EdgeRecord* b, const Candidate* in, std::uint32_t count, const Reach& reach,
+                            Candidate* out) {
+  const double range = reach.range + reach.margin, limit = deepestInside(range) + reach.margin;
+  return copied(in, count, out, [&](const Batch& batch) {
+    const Rows start_a = batch.field(a, batch.of_a, &EdgeRecord::start), start_b = batch.field(b, batch.of_b, &EdgeRecord::start);
+    const Vectors p = batch.field(a, batch.of_a, &EdgeRecord::along).v, q = batch.field(b, batch.of_b, &EdgeRecord::along).v;
+    const Vectors r = start_b.v - start_a.v, back = start_a.v - start_b.v;
+    Mask inside{};
+    for (int k = 0; k < 2; ++k) {
+      inside |= liesInside(r, r + q, batch.inward(a, batch.of_a, k).v, limit);
+      inside |= liesInside(back, back + p, batch.inward(b, batch.of_b, k).v, limit);
+    }
+    const unsigned crosswise = ~bitsOf(inside) & ALL_LANES;
+    if (crosswise == 0) return 0u;
+    const Doubles pp = start_a.w, qq = start_b.w, pq = dot(p, q), pr = dot(p, r), qr = dot(q, r), denominator = pp * qq - pq * pq;
+    const Doubles first = denominator > 0 ? clampedToUnit((pr * qq - pq * qr) / denominator) : Doubles{};
+    const Doubles t = clampedToUnit((pq * first - qr) / qq), s = clampedToUnit((pq * t + pr) / pp);
+    const Vectors d = r + t * q - s * p;
+    return crosswise & ~bitsOf(dot(d, d) > range * range);
+  });
+}
+
+std::uint32_t nearVertexEdges(const Vec4* a, const EdgeRecord* b, const Candidate* in, std::uint32_t count, const Reach& reach,
+                              Candidate* out) {
+  const double range = reach.range + reach.margin, limit = 2 * CONE_SLACK * range + reach.margin + CLOSED;
+  return copied(in, count, out, [&](const Batch& batch) {
+    const Rows start = batch.field(b, batch.of_b, &EdgeRecord::start);
+    const Vectors along = batch.field(b, batch.of_b, &EdgeRecord::along).v, r = batch.points(a, batch.of_a).v - start.v;
+    const Vectors d = r - clampedToUnit(dot(r, along) / start.w) * along;
+    const Mask inside = (dot(batch.inward(b, batch.of_b, 0).v, r) > limit) | (dot(batch.inward(b, batch.of_b, 1).v, r) > limit);
+    return ~bitsOf(inside | (dot(d, d) > range * range));
+  });
+}
+
+std::uint32_t nearVertexVertices(const Vec4* a, const Vec4* b, const Candidate* in, std::uint32_t count, const Reach& reach,
+                                 Candidate* out) {
+  const double range = reach.range + reach.margin;
+  return copied(in, count, out, [&](const Batch& batch) {
+    const Vectors d = batch.points(a, batch.of_a).v - batch.points(b, batch.of_b).v;
+    return bitsOf(dot(d, d) <= range * range);
+  });
+}
+
+// ---- what has a contact
+
+/** Offset from the foot on an edge, which may lie beyond its ends, and where that foot is as part of the edge. */
+struct EdgeOffset {
+  Vectors d;
+  Doubles part;
+};
+
+inline EdgeOffset offsetFrom(const Rows& start, const Vectors& along, const Vectors& p) {
+  const Vectors r = p - start.v;
+  const Doubles part = dot(r, along) / start.w;
+  return {r - part * along, part};
+}
+
+std::uint32_t vertexFaces(const Vec4* a, const FaceRecord* b, const Candidate* candidates, std::uint32_t count, double range,
+                          VertexFaceHit* hits) {
+  std::uint32_t found = 0;
+  double heights[LANES];
+  unsigned plain = 0, beside = 0, near_border = 0;
+  forEachHit(
+      candidates, count,
+      [&](const Batch& batch) {
+        const Vectors p = batch.points(a, batch.of_a).v;
+        const Doubles height = above(p, batch.field(b, batch.of_b, &FaceRecord::plane)), most = range - absolute(height);
+        const unsigned near = bitsOf(most >= 0);
+        if (near == 0) return 0u;
+        const Doubles inside = insideSides(batch, b, p);
+        __builtin_memcpy(heights, &height, sizeof heights);
+        plain = bitsOf((inside >= 0) & (absolute(height) > TOUCH));
+        beside = bitsOf(inside < -2 * CLOSED);
+        near_border = bitsOf(inside < NEAR_BORDER);
+        return near & bitsOf(inside >= -(most / FADE_SLOPE + 2 * CLOSED));
+      },
+      [&](std::uint32_t i, int lane) {
+        hits[found++] = {i, (plain >> lane & 1) != 0, (beside >> lane & 1) != 0, (near_border >> lane & 1) != 0, heights[lane]};
+      });
+  return found;
+}
+
+/** How far a part of an edge times n2 lies beyond its ends. */
+inline Doubles beyondEnds(Doubles part, Doubles n2) { return maximum(maximum(-part, part - n2), Doubles{}); }
+
+std::uint32_t edgeEdges(const EdgeRecord* a, const EdgeRecord* b, const Candidate* candidates, std::uint32_t count, double range,
+                        EdgeEdgeHit* hits) {
+  const double most = range / FADE_SLOPE;
+  std::uint32_t found = 0;
+  double part_a[LANES], part_b[LANES], gaps[LANES], normals[3][LANES];
+  unsigned plain = 0, near_border = 0;
+  forEachHit(
+      candidates, count,
+      [&](const Batch& batch) {
+        const Rows start_a = batch.field(a, batch.of_a, &EdgeRecord::start), start_b = batch.field(b, batch.of_b, &EdgeRecord::start);
+        const Rows along_a = batch.field(a, batch.of_a, &EdgeRecord::along), along_b = batch.field(b, batch.of_b, &EdgeRecord::along);
+        const Vectors &p = along_a.v, &q = along_b.v, r = start_b.v - start_a.v, n = cross(p, q);
+        const Doubles pp = start_a.w, qq = start_b.w, n2 = dot(n, n), rn = dot(r, n);
+        const Doubles s = dot(cross(r, q), n), t = dot(cross(r, p), n), over_s = beyondEnds(s, n2), over_t = beyondEnds(t, n2);
+        const Doubles most2 = most * most * n2 * n2;
+        const unsigned near = bitsOf((rn * rn <= range * range * n2) & (n2 > MIN_EDGE_SINE * MIN_EDGE_SINE * pp * qq) &
+                                     (over_s * over_s * pp <= most2) & (over_t * over_t * qq <= most2));
+        if (near == 0) return 0u;
+        const Doubles norm = squareRoot(n2), gap = absolute(rn) / norm;
+        const Vectors normal = (rn > 0 ? all(-1) : all(1)) / norm * n;
+        const Mask touch = gap <= TOUCH;
+        Mask allowed = dot(batch.inward(b, batch.of_b, 0).v, normal) <= EDGE_CONE_SLACK;
+        allowed &= dot(batch.inward(b, batch.of_b, 1).v, normal) <= EDGE_CONE_SLACK;
+        allowed &= dot(batch.inward(a, batch.of_a, 0).v, normal) >= -EDGE_CONE_SLACK;
+        allowed &= dot(batch.inward(a, batch.of_a, 1).v, normal) >= -EDGE_CONE_SLACK;
+        plain = bitsOf((over_s == 0) & (over_t == 0) & ~touch & (along_a.w + along_b.w == 0));
+        const Doubles border2 = NEAR_BORDER * NEAR_BORDER * n2 * n2, end_s = minimum(s, n2 - s), end_t = minimum(t, n2 - t);
+        near_border = bitsOf((end_s * end_s * pp < border2) | (end_t * end_t * qq < border2));
+        const Doubles foot_s = s / n2, foot_t = t / n2;
+        __builtin_memcpy(part_a, &foot_s, sizeof part_a);
+        __builtin_memcpy(part_b, &foot_t, sizeof part_b);
+        __builtin_memcpy(gaps, &gap, sizeof gaps);
+        __builtin_memcpy(normals[0], &normal.x, sizeof normals[0]);
+        __builtin_memcpy(normals[1], &normal.y, sizeof normals[1]);
+        __builtin_memcpy(normals[2], &normal.z, sizeof normals[2]);
+        return near & bitsOf(allowed | touch);
+      },
+      [&](std::uint32_t i, int lane) {
+        hits[found++] = {i,
+                         (plain >> lane & 1) != 0,
+                         (near_border >> lane & 1) != 0,
+                         part_a[lane],
+                         part_b[lane],
+                         gaps[lane],
+                         {normals[0][lane], normals[1][lane], normals[2][lane]}};
+      });
+  return found;
+}
+
+std::uint32_t vertexEdges(const Vec4* a, const EdgeRecord* b, const Candidate* candidates, std::uint32_t count, double range,
+                          std::uint32_t* hits) {
+  return listed(candidates, count, hits, [&](const Batch& batch) {
+    const Rows start = batch.field(b, batch.of_b, &EdgeRecord::start);
+    const EdgeOffset offset = offsetFrom(start, batch.field(b, batch.of_b, &EdgeRecord::along).v, batch.points(a, batch.of_a).v);
+    const Doubles d2 = dot(offset.d, offset.d), over = beyondEnds(offset.part, all(1));
+    const unsigned near = bitsOf((d2 <= range * range) & (over * over * start.w <= 4 * CLOSED * CLOSED));
+    if (near == 0) return 0u;
+    const Doubles limit = 2 * CONE_SLACK * squareRoot(d2) + 2 * TOUCH;
+    return near &
+           bitsOf((dot(batch.inward(b, batch.of_b, 0).v, offset.d) <= limit) & (dot(batch.inward(b, batch.of_b, 1).v, offset.d) <= limit));
+  });
+}
+
+std::uint32_t vertexVertices(const Vec4* a, const Vec4* b, const Candidate* candidates, std::uint32_t count, double range,
+                             std::uint32_t* hits) {
+  return listed(candidates, count, hits, [&](const Batch& batch) {
+    const Vectors d = batch.points(a, batch.of_a).v - batch.points(b, batch.of_b).v;
+    return bitsOf(dot(d, d) <= range * range);
+  });
+}
+
+std::uint32_t edgeFaces(const EdgeRecord* a, const FaceRecord* b, const Candidate* candidates, std::uint32_t count, std::uint32_t* hits) {
+  return listed(candidates, count, hits, [&](const Batch& batch) {
+    const Vectors start = batch.field(a, batch.of_a, &EdgeRecord::start).v, along = batch.field(a, batch.of_a, &EdgeRecord::along).v;
+    const Rows plane = batch.field(b, batch.of_b, &FaceRecord::plane);
+    const Doubles first = above(start, plane), second = above(start + along, plane);
+    const unsigned through = bitsOf((minimum(first, second) < -TOUCH) & (maximum(first, second) > TOUCH));
+    if (through == 0) return 0u;
+    return through & bitsOf(insideSides(batch, b, start + first / (first - second) * along) >= -2 * CLOSED);
+  });
+}
+
+}  // namespace
+}  // namespace blem_sim::kernels
