@@ -8,10 +8,9 @@
 namespace blem_sim {
 namespace {
 
-/** The point of side k of the face that is closest to q; mesh's frame. */
-Vector3 closestOnSide(const MeshSide& side, int face, int k, const Vector3& q) {
-  const Vector3i& e = side.mesh.elements[face];
-  const Vector3 &start = side.mesh.vertices[e[k]], along = side.mesh.vertices[e[(k + 1) % 3]] - start;
+/** The point of side k that is closest to q; mesh's frame. */
+Vector3 closestOnSide(const FaceBorders& borders, int k, const Vector3& q) {
+  const Vector3 &start = borders.corners[k], along = borders.corners[(k + 1) % 3] - start;
   return start + std::clamp((q - start).dot(along) / along.squaredNorm(), 0.0, 1.0) * along;
 }
 
@@ -20,9 +19,7 @@ Vector3 closestOnSide(const MeshSide& side, int face, int k, const Vector3& q) {
 bool BorderFades::find(bool vertex_moves, std::uint32_t vertex, std::uint32_t face, const Vector3& p, double height, double most,
                        BorderFade* out) {
   NearFeatures& near = lists_.near[!vertex_moves];
-  const MeshSide& side = pair_.side(!vertex_moves);
   const kernels::FaceRecord& record = near.faces.records[face];
-  const int element = near.faces.names[face];
   double outside[3];
   bool is_outside = false;
   for (int k = 0; k < 3; ++k) {
@@ -32,7 +29,7 @@ bool BorderFades::find(bool vertex_moves, std::uint32_t vertex, std::uint32_t fa
     is_outside = true;
   }
   if (!is_outside) return false;
-  const FaceBorders& borders = near.borders(side, face);
+  const FaceBorders& borders = near.borders(pair_.side(!vertex_moves), face);
   const Vector3 normal = vector3(record.plane), down = height > 0 ? Vector3(-normal) : normal;
   bool fades = false;
   for (int k = 0; k < 3; ++k) {
@@ -41,15 +38,14 @@ bool BorderFades::find(bool vertex_moves, std::uint32_t vertex, std::uint32_t fa
     // Beyond a flat side the plane goes on, and is asked there.
     if (kind == FaceBorders::FLAT) return false;
     fades = fades || kind == FaceBorders::RISING ||
-            (kind == FaceBorders::FALLING &&
-             leaves(vertex_moves, vertex, side.topology.element_edges[element][k], down, vector3(record.sides[k])));
+            (kind == FaceBorders::FALLING && leaves(vertex_moves, vertex, near.faces.names[face], k, down, vector3(record.sides[k])));
   }
   if (!fades) return false;
   const Vector3 projection = p - height * normal;
   double nearest2 = std::numeric_limits<double>::infinity();
   for (int k = 0; k < 3; ++k) {
     if (outside[k] <= 0) continue;
-    const Vector3 foot = closestOnSide(side, element, k, projection);
+    const Vector3 foot = closestOnSide(borders, k, projection);
     const double distance2 = (projection - foot).squaredNorm();
     if (distance2 >= nearest2) continue;
     nearest2 = distance2;
@@ -62,11 +58,9 @@ bool BorderFades::find(bool vertex_moves, std::uint32_t vertex, std::uint32_t fa
 
 /** Does nothing take over where the vertex leaves over a border behind which the surface falls? isTakenOver in a few products: over such a
  * border the partner allows the vertex's own contact. @param down, inward face's mesh's frame */
-bool BorderFades::leaves(bool vertex_moves, std::uint32_t vertex, int border, const Vector3& down, const Vector3& inward) {
+bool BorderFades::leaves(bool vertex_moves, std::uint32_t vertex, int face, int k, const Vector3& down, const Vector3& inward) {
   const MeshSide &side = pair_.side(vertex_moves), &partner = pair_.side(!vertex_moves);
   NearFeatures& near = lists_.near[vertex_moves];
-  const int name = near.vertices.names[vertex];
-  if (side.topology.vertex_straight[name]) return false;
   const Matrix3 R_PS = vertex_moves ? Matrix3(pair_.X_FM.linear()) : Matrix3(pair_.X_FM.linear().transpose());
   const Vector3 own_down = R_PS.transpose() * down, own_aside = R_PS.transpose() * inward;
   bool leads_down = false;
@@ -77,7 +71,10 @@ bool BorderFades::leaves(bool vertex_moves, std::uint32_t vertex, int border, co
     if (sine <= CONE_SLACK) continue;
     leads_down = true;
     const bool flat = near.ring_directions[i].w != 0;
-    if (!flat && sine <= NEAR_SUCCESSOR * (sine * sine + aside * aside)) return !isTakenOver({side, partner, name, border, R_PS, own_down});
+    if (!flat && sine <= NEAR_SUCCESSOR * (sine * sine + aside * aside)) {
+      const int border = partner.topology.element_edges[face][k];
+      return !isTakenOver({side, partner, near.vertices.names[vertex], border, R_PS, own_down});
+    }
   }
   return leads_down;
 }

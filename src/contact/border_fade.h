@@ -29,7 +29,7 @@ class BorderFades {
   bool find(bool vertex_moves, std::uint32_t vertex, std::uint32_t face, const Vector3& p, double height, double most, BorderFade* out);
 
  private:
-  bool leaves(bool vertex_moves, std::uint32_t vertex, int border, const Vector3& down, const Vector3& inward);
+  bool leaves(bool vertex_moves, std::uint32_t vertex, int face, int k, const Vector3& down, const Vector3& inward);
 
   const MeshPair& pair_;
   CandidateLists& lists_;

@@ -126,6 +126,7 @@ const FaceBorders& NearFeatures::borders(const MeshSide& side, std::uint32_t fac
   const int name = faces.names[face];
   const Vector3& normal = side.topology.normals[name];
   for (int k = 0; k < 3; ++k) {
+    found.corners[k] = side.mesh.vertices[side.mesh.elements[name][k]];
     found.kinds[0][k] = borderKind(side, name, k, -normal);
     found.kinds[1][k] = borderKind(side, name, k, normal);
   }

@@ -26,7 +26,7 @@ struct FeatureRecords {
   }
 };
 
-/** What lies behind the sides of a face, seen from above its plane [1] and from below [0]. */
+/** The sides of a face: what lies behind them, seen from above its plane [1] and from below [0]. */
 struct FaceBorders {
   enum Kind : std::uint8_t {
     UNKNOWN,
@@ -36,6 +36,7 @@ struct FaceBorders {
     RISING
   };
   Kind kinds[2][3] = {{UNKNOWN}};
+  Vector3 corners[3];  ///< side k goes from corner k to the next; mesh's frame
 };
 
 /** Directions of the edges at a vertex: a run of NearFeatures::ring_directions. */
