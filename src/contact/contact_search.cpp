@@ -18,9 +18,9 @@ constexpr double MARGIN_STEPS = 20, FEWEST_STEPS = 3;
 // Of long lists those that matter for so few steps are listed again.
 constexpr double NEAREST_STEPS = 4;
 constexpr std::size_t FEW_CANDIDATES = 200;
-constexpr double LEAST_MARGIN = 0.02, MOST_MARGIN = 0.8;  // of the range
-constexpr double FIRST_MARGIN = 0.1;                      // of the range, where the motion is not known yet
-/** What a distance may be wrong by [m]: float boxes, rounding. */
+constexpr double LEAST_MARGIN = 0.02, MOST_MARGIN = 0.8, LEAST_NEAREST_MARGIN = 0.005;  // of the range
+constexpr double FIRST_MARGIN = 0.1;                                                    // of the range, where the motion is not known yet
+/** What a distance may be wrong by [m]. */
 constexpr double DISTANCE_ROUNDING = 1e-7;
 
 /** What of the moving mesh's frame is near the fixed mesh: its box there, where the other's box is, both wider by the range. */
@@ -148,12 +148,7 @@ class Evaluation {
     const Vector3 p = vector3(moves ? buffers_.turned.vertices[1][c.a] : lists_.near[0].vertices.records[c.a]);
     const Vector3 up = pair_.turned(vector3(faces.records[c.b].plane), !moves), foot = p - hit.height * up;
     const Vector3 normal = (hit.height > 0) == moves ? up : Vector3(-up);
-    std::vector<FeatureContact>& out = hit.near_border ? found_.close : found_.plain;
-    if (moves) {
-      out.push_back({vertex, patch, p, foot, normal, std::abs(hit.height)});
-    } else {
-      out.push_back({patch, vertex, foot, p, normal, std::abs(hit.height)});
-    }
+    (hit.near_border ? found_.close : found_.plain).push_back(featureContact(moves, vertex, patch, p, foot, normal, std::abs(hit.height)));
   }
 
   void addFading(bool moves, const Candidate& c, double height) {
@@ -166,11 +161,7 @@ class Evaluation {
     if (distance <= TOUCH || gap > pair_.range) return;
     const Feature vertex{FeatureKind::VERTEX, lists_.near[moves].vertices.names[c.a]},
         patch{FeatureKind::FACE, lists_.near[!moves].patches[c.b]};
-    if (moves) {
-      found_.close.push_back({vertex, patch, p, fade.foot, d / distance, gap});
-    } else {
-      found_.close.push_back({patch, vertex, fade.foot, p, d / distance, gap});
-    }
+    found_.close.push_back(featureContact(moves, vertex, patch, p, fade.foot, d / distance, gap));
   }
 
   void edgeEdges(const kernels::EdgeRecord* moving, const kernels::EdgeRecord* fixed) {
@@ -272,13 +263,11 @@ class ContactSearch {
 
   /** The candidates to test, good lists given. */
   const CandidatePairs& nearestPairs() {
-    const double margin = NEAREST_STEPS * motion_;
-    const bool pays = memory_.lists.pairs.contacts() > FEW_CANDIDATES && 2 * margin < memory_.lists_origin.margin;
     if (isGood(memory_.nearest_origin)) return memory_.nearest;
-    if (!pays) return memory_.lists.pairs;
-    const double least = 0.25 * LEAST_MARGIN * pair_.range;
-    memory_.nearest_origin = {true, pair_.X_FM, pair_.range, std::max(margin, least)};
-    findNearest(memory_.lists, buffers_.turned, pair_.range, memory_.nearest_origin.margin, &memory_.nearest);
+    const double margin = std::max(NEAREST_STEPS * motion_, LEAST_NEAREST_MARGIN * pair_.range);
+    if (memory_.lists.pairs.contacts() <= FEW_CANDIDATES || 2 * margin >= memory_.lists_origin.margin) return memory_.lists.pairs;
+    findNearest(memory_.lists, buffers_.turned, pair_.range, margin, &memory_.nearest);
+    memory_.nearest_origin = {true, pair_.X_FM, pair_.range, margin};
     return memory_.nearest;
   }
 

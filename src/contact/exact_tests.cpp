@@ -9,15 +9,6 @@
 
 namespace blem_sim {
 
-void ExactTests::add(bool first_moves, const Feature& first, const Feature& second, const Vector3& point_first, const Vector3& point_second,
-                     const Vector3& normal, double gap) {
-  if (first_moves) {
-    contacts_.push_back({first, second, point_first, point_second, normal, gap});
-  } else {
-    contacts_.push_back({second, first, point_second, point_first, normal, gap});
-  }
-}
-
 // ---- a vertex over a face
 
 bool ExactTests::vertexFace(bool vertex_moves, int name, int element) {
@@ -33,7 +24,7 @@ bool ExactTests::vertexFace(bool vertex_moves, int name, int element) {
     if (!reachesOver(vertex_moves, name, p, face)) return true;
     normal = vertex_moves ? towardsMoving(pair_, normal, vertex, patch, p) : towardsMoving(pair_, normal, patch, vertex, p);
   }
-  add(vertex_moves, vertex, patch, p, p - height * face.normal, normal, std::abs(height));
+  contacts_.push_back(featureContact(vertex_moves, vertex, patch, p, p - height * face.normal, normal, std::abs(height)));
   return true;
 }
 
@@ -83,7 +74,7 @@ void ExactTests::edgeEdge(int moving, int fixed, const kernels::EdgeRecord& reco
   Vector3 normal = feet.offset < 0 ? Vector3(-feet.axis) : feet.axis;
   const double gap = std::abs(feet.offset);
   if (gap <= TOUCH) normal = towardsMoving(pair_, normal, m, f, feet.point_q);
-  if (gap <= pair_.range && conesAllow(m, f, normal, EDGE_CONE_SLACK)) add(true, m, f, feet.point_p, feet.point_q, normal, gap);
+  if (gap <= pair_.range && conesAllow(m, f, normal, EDGE_CONE_SLACK)) contacts_.push_back({m, f, feet.point_p, feet.point_q, normal, gap});
 }
 
 void ExactTests::addFadingEdges(const Feature& m, const Feature& f, const EdgesBeyond& edges, bool cones_known) {
@@ -97,7 +88,7 @@ void ExactTests::addFadingEdges(const Feature& m, const Feature& f, const EdgesB
   };
   const bool fades = leaves(edges.end_p, true, m.index, f.index, R_FM_, -(R_FM_.transpose() * edges.normal)) ||
                      leaves(edges.end_q, false, f.index, m.index, R_FM_.transpose(), edges.normal);
-  if (fades) add(true, m, f, edges.point_p, edges.point_q, d / distance, gap);
+  if (fades) contacts_.push_back({m, f, edges.point_p, edges.point_q, d / distance, gap});
 }
 
 // ---- vertex and edge, vertex and vertex: where each is the other's local minimum
@@ -127,7 +118,7 @@ void ExactTests::addLocalMinimum(const Feature& m, const Feature& f, const Vecto
   const Vector3 d = point_M - point_F;
   const double gap = d.norm();
   const Vector3 normal = gap > TOUCH ? Vector3(d / gap) : touchNormal(pair_, m, f, point_F, along);
-  if (conesAllow(m, f, normal, CONE_SLACK)) add(true, m, f, point_M, point_F, normal, gap);
+  if (conesAllow(m, f, normal, CONE_SLACK)) contacts_.push_back({m, f, point_M, point_F, normal, gap});
 }
 
 bool ExactTests::conesAllow(const Feature& m, const Feature& f, const Vector3& normal, double slack) const {

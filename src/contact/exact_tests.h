@@ -31,8 +31,6 @@ class ExactTests {
   void addLocalMinimum(const Feature& m, const Feature& f, const Vector3& point_M, const Vector3& point_F, const Vector3& along);
   /** Does neither surface come closer to the other beside its feature? */
   bool conesAllow(const Feature& m, const Feature& f, const Vector3& normal, double slack) const;
-  void add(bool first_moves, const Feature& first, const Feature& second, const Vector3& point_first, const Vector3& point_second,
-           const Vector3& normal, double gap);
   Vector3 position(bool moves, int vertex) const { return pair_.placed(pair_.side(moves).mesh.vertices[vertex], moves); }
 
   const MeshPair& pair_;

@@ -111,7 +111,7 @@ EdgeRecord edgeRecord(const MeshSide& side, int edge) {
 
 /** What is held of the leaf; else it takes the place, of its few, that was used longest ago. */
 LeafFeatures& LeafMemory::find(Table* table, const MeshSide& side, std::uint32_t leaf, std::uint64_t search) {
-  Place* const first = &(*table)[(leaf + 0x9E3779B9u * side.identity) % (CAPACITY / WAYS) * WAYS];
+  Place* const first = &table->places[(leaf + 0x9E3779B9u * side.identity) % (CAPACITY / WAYS) * WAYS];
   Place* place = first;
   for (Place* each = first; each != first + WAYS; ++each) {
     if (each->geometry == side.identity && each->leaf == leaf) {
@@ -120,12 +120,24 @@ LeafFeatures& LeafMemory::find(Table* table, const MeshSide& side, std::uint32_t
     }
     if (each->search < place->search) place = each;
   }
+  if (place->search == search) return findCrowdedOut(table, side, leaf, search);
   if (!place->features) place->features = std::make_unique<LeafFeatures>();
   place->geometry = side.identity;
   place->leaf = leaf;
   place->search = search;
   describe(side, leaf, place->features.get());
   return *place->features;
+}
+
+LeafFeatures& LeafMemory::findCrowdedOut(Table* table, const MeshSide& side, std::uint32_t leaf, std::uint64_t search) {
+  if (table->crowded_search != search) table->crowded_out.clear();
+  table->crowded_search = search;
+  std::unique_ptr<LeafFeatures>& features = table->crowded_out[leaf];
+  if (!features) {
+    features = std::make_unique<LeafFeatures>();
+    describe(side, leaf, features.get());
+  }
+  return *features;
 }
 
 LeafFeatures& LeafMemory::standing(const MeshSide& side, std::uint32_t leaf, std::uint64_t search) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -45,11 +46,17 @@ class LeafMemory {
     std::uint64_t search = 0;  // the last one that asked
     std::unique_ptr<LeafFeatures> features;
   };
-  using Table = std::vector<Place>;
   static constexpr std::size_t CAPACITY = 4096, WAYS = 4;  // of each table; places that a leaf may have
+  struct Table {
+    std::vector<Place> places = std::vector<Place>(CAPACITY);
+    // Leaves of the search at hand whose places others of its leaves hold: a search must not lose where it put a feature.
+    std::map<std::uint32_t, std::unique_ptr<LeafFeatures>> crowded_out;
+    std::uint64_t crowded_search = 0;
+  };
   static LeafFeatures& find(Table* table, const MeshSide& side, std::uint32_t leaf, std::uint64_t search);
+  static LeafFeatures& findCrowdedOut(Table* table, const MeshSide& side, std::uint32_t leaf, std::uint64_t search);
 
-  Table standing_ = Table(CAPACITY), moving_ = Table(CAPACITY);
+  Table standing_, moving_;
 };
 
 }  // namespace blem_sim

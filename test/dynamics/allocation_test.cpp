@@ -1,23 +1,11 @@
 // Once warm, a step of the articulated stepper asks the heap for nothing.
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstdlib>
-
 #include "analytic_contacts.h"
 
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)
 
-namespace {
-std::atomic<long> allocations{0};
-}
-
-// Stands before glibc's own in this program, so that Eigen's allocations are seen like those of new.
-extern "C" void* __libc_malloc(std::size_t size);
-extern "C" void* malloc(std::size_t size) {
-  ++allocations;
-  return __libc_malloc(size);
-}
+#include "support/counted_allocations.h"
 
 namespace blem_sim {
 namespace {

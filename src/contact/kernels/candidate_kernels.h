@@ -22,29 +22,29 @@ struct Batch {
   }
 
   Rows points(const Vec4* from, const std::uint32_t (&index)[LANES]) const {
-    const Vec4* at[LANES];
-    for (int i = 0; i < LANES; ++i) at[i] = &from[index[i]];
-    return gathered(reinterpret_cast<const Vec4* const(&)[LANES]>(at));
+    return rows(index, [from](std::uint32_t i) { return &from[i]; });
   }
   template <typename Record>
   Rows field(const Record* from, const std::uint32_t (&index)[LANES], const Vec4 Record::*member) const {
-    const Vec4* at[LANES];
-    for (int i = 0; i < LANES; ++i) at[i] = &(from[index[i]].*member);
-    return gathered(reinterpret_cast<const Vec4* const(&)[LANES]>(at));
+    return rows(index, [=](std::uint32_t i) { return &(from[i].*member); });
   }
   Rows side(const FaceRecord* from, int k) const {
-    const Vec4* at[LANES];
-    for (int i = 0; i < LANES; ++i) at[i] = &from[of_b[i]].sides[k];
-    return gathered(reinterpret_cast<const Vec4* const(&)[LANES]>(at));
+    return rows(of_b, [=](std::uint32_t i) { return &from[i].sides[k]; });
   }
   Rows inward(const EdgeRecord* from, const std::uint32_t (&index)[LANES], int k) const {
-    const Vec4* at[LANES];
-    for (int i = 0; i < LANES; ++i) at[i] = &from[index[i]].inward[k];
-    return gathered(reinterpret_cast<const Vec4* const(&)[LANES]>(at));
+    return rows(index, [=](std::uint32_t i) { return &from[i].inward[k]; });
   }
 
   std::uint32_t of_a[LANES], of_b[LANES];
   unsigned valid;
+
+ private:
+  template <typename Address>
+  static Rows rows(const std::uint32_t (&index)[LANES], Address&& address) {
+    const Vec4* at[LANES];
+    for (int i = 0; i < LANES; ++i) at[i] = address(index[i]);
+    return gathered(at);
+  }
 };
 
 /** Calls test(batch) for all; where its bits are set, take(candidate's index, lane). */

@@ -7,7 +7,7 @@
 
 namespace blem_sim::kernels {
 
-/** One set of kernels. Arrays of hits must have room for as many as there are candidates, and for one vector more. */
+/** One set of kernels. Arrays of hits must have room for as many as there are candidates. */
 struct Kernels {
   const char* name;  ///< "avx512", "avx2", "baseline"
 

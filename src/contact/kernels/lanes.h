@@ -93,11 +93,11 @@ struct Rows {
   Doubles w;
 };
 
-inline Rows gathered(const Vec4* const (&from)[LANES]) {
+inline Rows gathered(const Vec4* const* from) {
   Rows rows;
 #if defined(__AVX512F__)
   // Lanes 0 to 3 with 4 to 7 behind them, then turned four by four.
-  const auto pair = [&from](int i) {
+  const auto pair = [from](int i) {
     return _mm512_insertf64x4(_mm512_castpd256_pd512(_mm256_load_pd(&from[i]->x)), _mm256_load_pd(&from[i + 4]->x), 1);
   };
   const __m512d a = pair(0), b = pair(1), c = pair(2), d = pair(3);
