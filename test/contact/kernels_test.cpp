@@ -77,6 +77,16 @@ Found found(const Kernels& set, const Features& in) {
   addHits(set.vertexEdges(in.vertices.data(), in.edges.data(), candidates, CANDIDATES, 3 * RANGE, hits.data()));
   addHits(set.vertexVertices(in.vertices.data(), in.vertices.data(), candidates, CANDIDATES, RANGE, hits.data()));
   addHits(set.edgeFaces(in.edges.data(), in.faces.data(), candidates, CANDIDATES, hits.data()));
+  std::vector<Candidate> near(CANDIDATES);
+  const auto addNear = [&](std::uint32_t count) {
+    add(count);
+    for (std::uint32_t i = 0; i < count; ++i) out.indices.insert(out.indices.end(), {near[i].a, near[i].b});
+  };
+  const Reach reach{RANGE, 0.1};
+  addNear(set.nearVertexFaces(in.vertices.data(), in.faces.data(), candidates, CANDIDATES, reach, near.data()));
+  addNear(set.nearEdgeEdges(in.edges.data(), in.edges.data(), candidates, CANDIDATES, reach, near.data()));
+  addNear(set.nearVertexEdges(in.vertices.data(), in.edges.data(), candidates, CANDIDATES, reach, near.data()));
+  addNear(set.nearVertexVertices(in.vertices.data(), in.vertices.data(), candidates, CANDIDATES, reach, near.data()));
   const Motion motion = motionOf(makePose({0.1, -0.2, 0.3}, {0.4, 0.5, -0.6}));
   std::vector<EdgeRecord> turned(FEATURES);
   set.turnEdges(in.edges.data(), FEATURES, motion, turned.data());
