@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "blem_sim/geometry/input_error.h"
-#include "kernels/records.h"
+#include "kernels/kernels.h"
 
 namespace blem_sim {
 namespace {
@@ -40,6 +40,7 @@ SurfaceProperties combineSurfaces(const SurfaceProperties& a, const SurfacePrope
 
 CollisionGeometry::CollisionGeometry(std::shared_ptr<const TriangleMesh> mesh) : mesh_(std::move(mesh)) {
   if (!mesh_ || mesh_->elements.empty()) throw InputError("collision geometry: the mesh has no element; leave the collider out");
+  kernels::kernels();  // bad settings are told here, not in a step
   topology_ = MeshTopology(*mesh_);
   bvh_ = Bvh(*mesh_, kernels::MAX_LEAF_ELEMENTS);
   static std::atomic<std::uint64_t> last_identity{0};

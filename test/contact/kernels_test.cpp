@@ -3,6 +3,7 @@
 
 #include <cstring>
 
+#include "blem_sim/geometry/input_error.h"
 #include "geometry/random_shapes.h"
 #include "kernels/kernels.h"
 #include "vectors.h"
@@ -161,6 +162,12 @@ TEST(Kernels, AllInstructionSetsListTheSameCandidates) {
     EXPECT_GT(baseline.size(), 30u);
     for (const Kernels* set : availableKernels()) EXPECT_EQ(leafHits(*set, a, b), baseline) << set->name;
   }
+}
+
+TEST(Kernels, AreChosenByName) {
+  EXPECT_EQ(&kernelsNamed(nullptr), availableKernels().front());
+  EXPECT_STREQ(kernelsNamed("baseline").name, "baseline");
+  EXPECT_THROW(kernelsNamed("avx1024"), InputError);
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 #include <cstdlib>
 #include <string>
 
+#include "blem_sim/geometry/input_error.h"
+
 namespace blem_sim::kernels {
 
 extern const Kernels BASELINE;
@@ -27,13 +29,18 @@ const std::vector<const Kernels*>& availableKernels() {
   return available;
 }
 
+const Kernels& kernelsNamed(const char* name) {
+  if (!name || !*name) return *availableKernels().front();
+  std::string names;
+  for (const Kernels* each : availableKernels()) {
+    if (std::string(name) == each->name) return *each;
+    names += (names.empty() ? "" : ", ") + std::string(each->name);
+  }
+  throw InputError("BLEM_SIM_KERNELS: '" + std::string(name) + "' does not run here; take one of " + names);
+}
+
 const Kernels& kernels() {
-  static const Kernels& chosen = [&]() -> const Kernels& {
-    const char* forced = std::getenv("BLEM_SIM_KERNELS");
-    for (const Kernels* each : availableKernels())
-      if (forced && std::string(forced) == each->name) return *each;
-    return *availableKernels().front();
-  }();
+  static const Kernels& chosen = kernelsNamed(std::getenv("BLEM_SIM_KERNELS"));
   return chosen;
 }
 

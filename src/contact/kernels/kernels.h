@@ -49,8 +49,12 @@ struct Kernels {
                              std::uint32_t* hits);
 };
 
-/** The fastest set that this machine runs; $BLEM_SIM_KERNELS (avx512, avx2, baseline) forces another one that it runs. */
+/** The fastest set that this machine runs; $BLEM_SIM_KERNELS (avx512, avx2, baseline) forces another one.
+ * @throws InputError the first time, if that one does not run here: geometry asks when it is made */
 const Kernels& kernels();
+
+/** The set of that name; the fastest for none. @throws InputError if it does not run here */
+const Kernels& kernelsNamed(const char* name);
 
 /** Sets that this machine runs, fastest first; the last one is "baseline". */
 const std::vector<const Kernels*>& availableKernels();
