@@ -15,6 +15,8 @@ using kernels::LeafHit;
 
 /** Rounding of float coordinates and of what is reckoned with them, relative to the largest one. */
 constexpr double FLOAT_ROUNDING = 1e-6;
+/** And of directions: unit vectors, and products of edges relative to their lengths. */
+constexpr double FLOAT_TURN = 1e-5;
 
 class Search {
  public:
@@ -33,10 +35,11 @@ class Search {
   }
 
   /** With room for the rounding of floats. */
-  kernels::LeafReach leafReach(double margin) const {
+  kernels::LeafReach leafReach(const ListMargin& margin) const {
     const double largest = std::max(pair_.fixed.bounds.min().cwiseAbs().maxCoeff(), pair_.fixed.bounds.max().cwiseAbs().maxCoeff());
-    const double wider = margin + FLOAT_ROUNDING * (largest + reach_) + 3 * CLOSED;
-    return {static_cast<float>(reach_ - margin + wider), static_cast<float>(wider), static_cast<float>(deepestInside(reach_) + wider)};
+    const double wider = margin.motion + FLOAT_ROUNDING * (largest + reach_) + 3 * CLOSED;
+    return {static_cast<float>(reach_ - margin.motion + wider), static_cast<float>(wider), static_cast<float>(margin.turn + FLOAT_TURN),
+            static_cast<float>(deepestInside(reach_) + wider)};
   }
 
   // Where a feature of a leaf is among the near ones of its mesh.
@@ -197,9 +200,9 @@ void TurnedFeatures::turn(const CandidateLists& lists, const Pose& X_FM) {
 
 void TurnedFeatures::turnForCrossings(const CandidateLists& lists, const Pose& X_FM) { turnEdges(false, lists, motionOf(X_FM.inverse())); }
 
-void findCandidates(const MeshPair& pair, double margin, CandidateSearchBuffers* buffers, CandidateLists* lists) {
+void findCandidates(const MeshPair& pair, const ListMargin& margin, CandidateSearchBuffers* buffers, CandidateLists* lists) {
   const kernels::Kernels& kernels = kernels::kernels();
-  Search search(pair, pair.range + margin, buffers, lists);
+  Search search(pair, pair.range + margin.motion, buffers, lists);
   const kernels::LeafReach reach = search.leafReach(margin);
   kernels::LeafHits& hits = buffers->hits;
   search.forEachLeafPair([&](LeafFeatures& m, LeafFeatures& f) {
@@ -231,14 +234,15 @@ void findCandidates(const MeshPair& pair, double margin, CandidateSearchBuffers*
       return {search.edge(false, &f, j), search.face(true, &m, i)};
     });
   });
-  dropLeading(pair, margin, lists);
+  dropLeading(pair, margin.motion, lists);
 }
 
-void findNearest(const CandidateLists& lists, const TurnedFeatures& turned, double range, double margin, CandidatePairs* nearest) {
+void findNearest(const CandidateLists& lists, const TurnedFeatures& turned, double range, const ListMargin& margin,
+                 CandidatePairs* nearest) {
   const kernels::Kernels& kernels = kernels::kernels();
   const auto keep = [&](auto kernel, const auto* a, const auto* b, const std::vector<Candidate>& from, std::vector<Candidate>* to) {
     to->resize(from.size());
-    to->resize(kernel(a, b, from.data(), static_cast<std::uint32_t>(from.size()), {range, margin}, to->data()));
+    to->resize(kernel(a, b, from.data(), static_cast<std::uint32_t>(from.size()), {range, margin.motion, margin.turn}, to->data()));
   };
   const NearFeatures &fixed = lists.near[0], &moving = lists.near[1];
   const auto &fixed_vertices = fixed.vertices.records, &moving_vertices = turned.vertices[1];

@@ -96,6 +96,12 @@ struct TurnedFeatures {
   void turnEdges(bool moves, const CandidateLists& lists, const kernels::Motion& motion);
 };
 
+/** For how much motion of one mesh against the other lists of candidates are good. */
+struct ListMargin {
+  double motion = 0;  ///< [m] of any point of either mesh near the other
+  double turn = 0;    ///< of unit vectors: length of the difference
+};
+
 /** What a search for candidates works in. */
 struct CandidateSearchBuffers {
   LeafMemory leaves;
@@ -105,14 +111,16 @@ struct CandidateSearchBuffers {
 
 /**
  * Candidates for every contact within pair.range and every crossing that there is at the pair's pose, or at one where no point of either
- * mesh near the other has moved by more than `margin` [m] against it. Overwrites the lists.
+ * mesh near the other has moved, and no direction has turned, by more than the margin against it. Overwrites the lists.
  */
-void findCandidates(const MeshPair& pair, double margin, CandidateSearchBuffers* buffers, CandidateLists* lists);
+void findCandidates(const MeshPair& pair, const ListMargin& margin, CandidateSearchBuffers* buffers, CandidateLists* lists);
 
 /**
- * Of the candidates for contacts those that can have one within `range` while no point moves by more than `margin` [m], in their order.
+ * Of the candidates for contacts those that can have one within `range` [m] while nothing moves or turns by more than the margin, in their
+ * order.
  * @param turned of these lists at the pose at hand
  */
-void findNearest(const CandidateLists& lists, const TurnedFeatures& turned, double range, double margin, CandidatePairs* nearest);
+void findNearest(const CandidateLists& lists, const TurnedFeatures& turned, double range, const ListMargin& margin,
+                 CandidatePairs* nearest);
 
 }  // namespace blem_sim

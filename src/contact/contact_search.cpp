@@ -20,6 +20,8 @@ constexpr double NEAREST_STEPS = 4;
 constexpr std::size_t FEW_CANDIDATES = 200;
 constexpr double LEAST_MARGIN = 0.02, MOST_MARGIN = 0.8, LEAST_NEAREST_MARGIN = 0.005;  // of the range
 constexpr double FIRST_MARGIN = 0.1;                                                    // of the range, where the motion is not known yet
+// The same of directions.
+constexpr double LEAST_TURN = 0.005, LEAST_NEAREST_TURN = 0.001, FIRST_TURN = 0.05;
 /** What a distance may be wrong by [m]. */
 constexpr double DISTANCE_ROUNDING = 1e-7;
 
@@ -42,6 +44,9 @@ double largestMotion(const Box& region, const Pose& X, const Pose& Y) {
     largest2 = std::max(largest2, (turn * region.corner(static_cast<Box::CornerType>(corner)) + shift).squaredNorm());
   return std::sqrt(largest2);
 }
+
+/** How far the end of a unit vector moves at most from one orientation to the other. */
+double largestTurn(const Pose& X, const Pose& Y) { return (X.linear() - Y.linear()).norm() / std::sqrt(2.0); }
 
 /** The planes that vertices lie over. */
 class PlanesBelow {
@@ -221,12 +226,12 @@ class ContactSearch {
   ContactSearch(const MeshPair& pair, ContactSearchMemory* memory, ContactSearchBuffers* buffers, FoundContacts* found)
       : pair_(pair), memory_(*memory), buffers_(*buffers), found_(*found), region_(commonRegion(pair)) {
     if (memory->moving != pair.moving.identity || memory->fixed != pair.fixed.identity) forget();
-    motion_ = memory_.visited ? largestMotion(region_, pair.X_FM, memory_.X_FM) : 0;
+    if (memory_.visited) motion_ = {largestMotion(region_, pair.X_FM, memory_.X_FM), largestTurn(pair.X_FM, memory_.X_FM)};
   }
 
   void run(bool keeps) {
-    const bool apart = memory_.visited && motion_ + DISTANCE_ROUNDING < memory_.distance;
-    refreshLists(keeps ? chooseMargin() : 0);
+    const bool apart = memory_.visited && motion_.motion + DISTANCE_ROUNDING < memory_.distance;
+    refreshLists(keeps ? chooseMargin() : ListMargin());
     buffers_.turned.turn(memory_.lists, pair_.X_FM);
     Evaluation(pair_, &memory_.lists, nearestPairs(), &buffers_, &found_).findContacts();
     if (!apart) Evaluation(pair_, &memory_.lists, memory_.lists.pairs, &buffers_, &found_).findCrossings();
@@ -242,19 +247,21 @@ class ContactSearch {
     memory_.fixed = pair_.fixed.identity;
   }
 
-  double chooseMargin() const {
-    if (!memory_.visited) return FIRST_MARGIN * pair_.range;
-    if (FEWEST_STEPS * motion_ > MOST_MARGIN * pair_.range) return 0;
-    return std::clamp(MARGIN_STEPS * motion_, LEAST_MARGIN * pair_.range, MOST_MARGIN * pair_.range);
+  ListMargin chooseMargin() const {
+    if (!memory_.visited) return {FIRST_MARGIN * pair_.range, FIRST_TURN};
+    if (FEWEST_STEPS * motion_.motion > MOST_MARGIN * pair_.range) return {};
+    return {std::clamp(MARGIN_STEPS * motion_.motion, LEAST_MARGIN * pair_.range, MOST_MARGIN * pair_.range),
+            std::max(MARGIN_STEPS * motion_.turn, LEAST_TURN)};
   }
 
   bool isGood(const ListOrigin& origin) const {
     if (!origin.known) return false;
     const double motion = largestMotion(region_, pair_.X_FM, origin.X_FM);
-    return motion <= origin.margin && pair_.range + motion <= origin.range + origin.margin;
+    return motion <= origin.margin.motion && pair_.range + motion <= origin.range + origin.margin.motion &&
+           largestTurn(pair_.X_FM, origin.X_FM) <= origin.margin.turn;
   }
 
-  void refreshLists(double margin) {
+  void refreshLists(const ListMargin& margin) {
     if (isGood(memory_.lists_origin)) return;
     findCandidates(pair_, margin, &buffers_.search, &memory_.lists);
     memory_.lists_origin = {true, pair_.X_FM, pair_.range, margin};
@@ -264,8 +271,10 @@ class ContactSearch {
   /** The candidates to test, good lists given. */
   const CandidatePairs& nearestPairs() {
     if (isGood(memory_.nearest_origin)) return memory_.nearest;
-    const double margin = std::max(NEAREST_STEPS * motion_, LEAST_NEAREST_MARGIN * pair_.range);
-    if (memory_.lists.pairs.contacts() <= FEW_CANDIDATES || 2 * margin >= memory_.lists_origin.margin) return memory_.lists.pairs;
+    const ListMargin margin{std::max(NEAREST_STEPS * motion_.motion, LEAST_NEAREST_MARGIN * pair_.range),
+                            std::max(NEAREST_STEPS * motion_.turn, LEAST_NEAREST_TURN)};
+    if (memory_.lists.pairs.contacts() <= FEW_CANDIDATES || 2 * margin.motion >= memory_.lists_origin.margin.motion)
+      return memory_.lists.pairs;
     findNearest(memory_.lists, buffers_.turned, pair_.range, margin, &memory_.nearest);
     memory_.nearest_origin = {true, pair_.X_FM, pair_.range, margin};
     return memory_.nearest;
@@ -283,7 +292,7 @@ class ContactSearch {
   ContactSearchBuffers& buffers_;
   FoundContacts& found_;
   const Box region_;
-  double motion_ = 0;  // [m] since the last search
+  ListMargin motion_;  // since the last search
 };
 
 }  // namespace

@@ -18,11 +18,12 @@ struct FoundContacts {
   void clear();
 };
 
-/** Where a list of candidates was made: it is good while no point near the other mesh is farther than the margin from where it was. */
+/** Where a list of candidates was made: it is good while the meshes have not moved against each other by more than the margin. */
 struct ListOrigin {
   bool known = false;
   Pose X_FM = Pose::Identity();
-  double range = 0, margin = 0;  ///< [m]
+  double range = 0;  ///< [m]
+  ListMargin margin;
 };
 
 /** What is kept of a pair of meshes from search to search; it saves time and changes no result. */

@@ -62,13 +62,13 @@ void ExactTests::edgeEdge(int moving, int fixed, const kernels::EdgeRecord& reco
   LinePair lines;
   if (!lines.find(p0, p1, q0, q1, pair_.range, pair_.range / FADE_SLOPE)) return;
   const Feature m{FeatureKind::EDGE, moving}, f{FeatureKind::EDGE, fixed};
-  const bool few_faces = record_m.along.w == 0 && record_f.along.w == 0;
+  const bool cones_known = record_m.along.w == 0 && record_f.along.w == 0 && lines.rn * lines.rn > TOUCH * TOUCH * lines.n2;
   EdgePair feet;
   if (!findEdgePair(lines, p0, q0, &feet)) {
     if (liesInside(record_m, record_f, pair_.range) || liesInside(record_f, record_m, pair_.range)) return;
     EdgesBeyond beyond;
     findEdgesBeyond(lines, p0, q0, &beyond);
-    addFadingEdges(m, f, beyond, few_faces);
+    addFadingEdges(m, f, beyond, cones_known);
     return;
   }
   Vector3 normal = feet.offset < 0 ? Vector3(-feet.axis) : feet.axis;

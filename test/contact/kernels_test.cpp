@@ -83,7 +83,7 @@ Found found(const Kernels& set, const Features& in) {
     add(count);
     for (std::uint32_t i = 0; i < count; ++i) out.indices.insert(out.indices.end(), {near[i].a, near[i].b});
   };
-  const Reach reach{RANGE, 0.1};
+  const Reach reach{RANGE, 0.1, 0.02};
   addNear(set.nearVertexFaces(in.vertices.data(), in.faces.data(), candidates, CANDIDATES, reach, near.data()));
   addNear(set.nearEdgeEdges(in.edges.data(), in.edges.data(), candidates, CANDIDATES, reach, near.data()));
   addNear(set.nearVertexEdges(in.vertices.data(), in.edges.data(), candidates, CANDIDATES, reach, near.data()));
@@ -137,8 +137,8 @@ std::vector<std::uint32_t> leafHits(const Kernels& set, const LeafShapes& a, con
   LeafShapes turned = a;
   set.turnLeaf(a, motionOf(makePose({0.01, 0.02, -0.03}, {0.1, 0.2, 0.3})), &turned);
   LeafHits hits;
-  set.leafContacts(turned, b, {0.5f, 0.1f, 0.2f}, &hits);
-  set.leafCrossings(turned, b, {0.5f, 0.1f, 0.2f}, &hits);
+  set.leafContacts(turned, b, {0.5f, 0.1f, 0.02f, 0.2f}, &hits);
+  set.leafCrossings(turned, b, {0.5f, 0.1f, 0.02f, 0.2f}, &hits);
   std::vector<std::uint32_t> out;
   const auto add = [&out](const LeafHit* from, int count) {
     out.push_back(count);

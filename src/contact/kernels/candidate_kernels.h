@@ -2,6 +2,7 @@
 #pragma once
 
 #include "../tolerances.h"
+#include "edge_cones.h"
 #include "lanes.h"
 
 namespace blem_sim::kernels {
@@ -116,7 +117,12 @@ std::uint32_t nearEdgeEdges(const EdgeRecord* a, const EdgeRecord* b, const Cand
     const Doubles first = denominator > 0 ? clampedToUnit((pr * qq - pq * qr) / denominator) : Doubles{};
     const Doubles t = clampedToUnit((pq * first - qr) / qq), s = clampedToUnit((pq * t + pr) / pp);
     const Vectors d = r + t * q - s * p;
-    return crosswise & ~bitsOf(dot(d, d) > range * range);
+    const unsigned near = crosswise & ~bitsOf(dot(d, d) > range * range);
+    if (near == 0) return 0u;
+    const Vectors n = cross(p, q);
+    return near &
+           bitsOf(conesMayAllow(n, coneBound(dot(n, n), pp * qq, reach.turn), batch.inward(a, batch.of_a, 0).v,
+                                batch.inward(a, batch.of_a, 1).v, batch.inward(b, batch.of_b, 0).v, batch.inward(b, batch.of_b, 1).v));
   });
 }
 

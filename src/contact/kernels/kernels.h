@@ -17,14 +17,14 @@ struct Kernels {
 
   void (*turnLeaf)(const LeafShapes& in, const Motion& motion, LeafShapes* out);  ///< all but the box
 
-  /** Pairs of features of two leaves that can have a contact within the range while no point moves by more than the margin; conservative,
-   * if the reach has room for the rounding of floats. */
+  /** Pairs of features of two leaves that can have a contact within the range while nothing moves or turns by more than it says;
+   * conservative, if the reach has room for the rounding of floats. */
   void (*leafContacts)(const LeafShapes& a, const LeafShapes& b, const LeafReach& reach, LeafHits* hits);
   /** The same of edges that pass through faces. */
   void (*leafCrossings)(const LeafShapes& a, const LeafShapes& b, const LeafReach& reach, LeafHits* hits);
 
-  /** Copies, in order, the candidates that can have a contact within the range while no point moves by more than the margin. @return their
-   * number */
+  /** Copies, in order, the candidates that can have a contact within the range while nothing moves or turns by more than the reach says.
+   * @return their number */
   std::uint32_t (*nearVertexFaces)(const Vec4* a, const FaceRecord* b, const Candidate* in, std::uint32_t count, const Reach& reach,
                                    Candidate* out);
   std::uint32_t (*nearEdgeEdges)(const EdgeRecord* a, const EdgeRecord* b, const Candidate* in, std::uint32_t count, const Reach& reach,

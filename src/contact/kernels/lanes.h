@@ -75,11 +75,25 @@ inline Doubles squareRoot(Doubles v) {
 #endif
 }
 
+inline Floats squareRoot(Floats v) {
+#if defined(__AVX512F__)
+  return reinterpret_cast<Floats>(_mm512_sqrt_ps(reinterpret_cast<__m512>(v)));
+#elif defined(__AVX2__)
+  return reinterpret_cast<Floats>(_mm256_sqrt_ps(reinterpret_cast<__m256>(v)));
+#elif defined(__x86_64__)
+  return reinterpret_cast<Floats>(_mm_sqrt_ps(reinterpret_cast<__m128>(v)));
+#else
+  for (int i = 0; i < FLOAT_LANES; ++i) v[i] = __builtin_sqrtf(v[i]);
+  return v;
+#endif
+}
+
 inline Doubles minimum(Doubles a, Doubles b) { return a < b ? a : b; }
 inline Doubles maximum(Doubles a, Doubles b) { return a > b ? a : b; }
 inline Doubles absolute(Doubles a) { return a < 0 ? -a : a; }
 inline Doubles clampedToUnit(Doubles a) { return minimum(maximum(a, Doubles{}), all(1)); }
 inline Floats maximum(Floats a, Floats b) { return a > b ? a : b; }
+inline Floats minimum(Floats a, Floats b) { return a < b ? a : b; }
 
 inline Doubles dot(const Vectors& a, const Vectors& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 inline Vectors cross(const Vectors& a, const Vectors& b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }

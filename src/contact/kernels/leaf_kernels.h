@@ -2,6 +2,7 @@
 #pragma once
 
 #include "../tolerances.h"
+#include "edge_cones.h"
 #include "lanes.h"
 
 namespace blem_sim::kernels {
@@ -12,7 +13,6 @@ struct FloatVectors {
 };
 
 inline Floats absolute(Floats a) { return a < 0 ? -a : a; }
-inline Floats minimum(Floats a, Floats b) { return a < b ? a : b; }
 inline Floats clampedToUnit(Floats a) { return minimum(maximum(a, Floats{}), allFloats(1)); }
 inline Floats dot(const FloatVectors& a, const FloatVectors& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 inline FloatVectors operator+(const FloatVectors& a, const FloatVectors& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
@@ -96,6 +96,10 @@ inline FloatMask reachesOut(const FloatVectors& start, const FloatVectors& end, 
   return minimum(inward.above(start), inward.above(end)) <= limit;
 }
 
+inline FloatVectors cross(const FloatVectors& a, const FloatVectors& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
 inline FloatMask mayTouch(const FloatEdge& a, const FloatEdge& b, const LeafReach& reach) {
   const FloatVectors &p = a.along, &q = b.along, end_a = a.start + p, end_b = b.start + q, r = b.start - a.start;
   FloatMask may = reachesOut(b.start, end_b, a.inward[0], reach.inside) & reachesOut(b.start, end_b, a.inward[1], reach.inside);
@@ -106,7 +110,11 @@ inline FloatMask mayTouch(const FloatEdge& a, const FloatEdge& b, const LeafReac
   const Floats first = denominator > 0 ? clampedToUnit((pr * qq - pq * qr) / denominator) : Floats{};
   const Floats t = clampedToUnit((pq * first - qr) / qq), s = clampedToUnit((pq * t + pr) / pp);
   const FloatVectors d = r + t * q - s * p;
-  return may & ~(dot(d, d) > reach.range * reach.range);
+  may &= ~(dot(d, d) > reach.range * reach.range);
+  if (bitsOf(may) == 0) return may;
+  const FloatVectors n = cross(p, q);
+  const Floats bound = coneBound(dot(n, n), pp * qq, reach.turn);
+  return may & conesMayAllow(n, bound, a.inward[0].normal, a.inward[1].normal, b.inward[0].normal, b.inward[1].normal);
 }
 
 /** Only an edge with ends on both sides of a plane, inside some part of the face, passes through it. */

@@ -50,6 +50,7 @@ struct alignas(64) LeafShapes {
 struct LeafReach {
   float range;   ///< of contacts, and the margin
   float margin;  ///< that points may move
+  float turn;    ///< that unit vectors may turn (length of the difference)
   float inside;  ///< both ends of an edge may lie so far inside a face of the other one
 };
 
@@ -57,6 +58,7 @@ struct LeafReach {
 struct Reach {
   double range;   ///< of contacts
   double margin;  ///< that points may move
+  double turn;    ///< that unit vectors may turn (length of the difference)
 };
 
 /** Features of one leaf by their bits, near a feature of another. */

@@ -1,0 +1,29 @@
+// May the common perpendicular of two edges point out of all their faces? Of lanes of floats or doubles. Included by the kernels only.
+#pragma once
+
+#include "../tolerances.h"
+#include "lanes.h"
+
+namespace blem_sim::kernels {
+namespace {
+
+/** How far n, the product of two edges, may reach into a face of either while unit vectors turn by no more than `turn`: n by that part of
+ * twice the product of their lengths, once for itself and once for its own length; the faces by that part of n.
+ * @param n2 its square @param pp_qq product of the squared lengths of the edges */
+template <typename Lanes, typename Number>
+inline Lanes coneBound(Lanes n2, Lanes pp_qq, Number turn) {
+  constexpr Number slack = static_cast<Number>(1.001 * EDGE_CONE_SLACK);
+  return (slack + turn) * squareRoot(n2) + 2 * turn * squareRoot(pp_qq);
+}
+
+/** The contact's normal is n or -n, from b to a: which, is not asked. */
+template <typename V, typename Lanes>
+inline auto conesMayAllow(const V& n, Lanes bound, const V& a0, const V& a1, const V& b0, const V& b1) {
+  const Lanes into_a0 = dot(a0, n), into_a1 = dot(a1, n), into_b0 = dot(b0, n), into_b1 = dot(b1, n);
+  const Lanes most = maximum(maximum(into_b0, into_b1), -minimum(into_a0, into_a1));
+  const Lanes least = minimum(minimum(into_b0, into_b1), -maximum(into_a0, into_a1));
+  return (most <= bound) | (least >= -bound);
+}
+
+}  // namespace
+}  // namespace blem_sim::kernels
