@@ -35,8 +35,8 @@ bool BorderFades::find(bool vertex_moves, std::uint32_t vertex, std::uint32_t fa
   for (int k = 0; k < 3; ++k) {
     if (outside[k] <= 0) continue;
     const FaceBorders::Kind kind = borders.kinds[height > 0][k];
-    // Beyond a flat side the plane goes on, and is asked there.
-    if (kind == FaceBorders::FLAT) return false;
+    // Beyond a flat side the plane goes on, and is asked there; beyond a round one the edge is.
+    if (kind == FaceBorders::FLAT || kind == FaceBorders::ROUND) return false;
     fades = fades || kind == FaceBorders::RISING ||
             (kind == FaceBorders::FALLING && leaves(vertex_moves, vertex, near.faces.names[face], k, down, vector3(record.sides[k])));
   }

@@ -94,7 +94,8 @@ FaceBorders::Kind borderKind(const MeshSide& side, int face, int k, const Vector
   const int edge = side.topology.element_edges[face][k];
   if (side.topology.edge_flat[edge]) return FaceBorders::FLAT;
   const double rise = neighbourSlope(side, face, edge, up);
-  return rise > NEAR_SUCCESSOR ? FaceBorders::RISING : rise > CONE_SLACK ? FaceBorders::TURNING : FaceBorders::FALLING;
+  if (rise > CONE_SLACK) return rise > NEAR_SUCCESSOR ? FaceBorders::RISING : FaceBorders::TURNING;
+  return isRoundEdge(side, edge) ? FaceBorders::ROUND : FaceBorders::FALLING;
 }
 
 bool boxesWithin(const kernels::LeafShapes& a, const kernels::LeafShapes& b, float reach) {
@@ -103,7 +104,7 @@ bool boxesWithin(const kernels::LeafShapes& a, const kernels::LeafShapes& b, flo
   return within;
 }
 
-/** Drops pairs of vertices one of which has an edge that leads towards the other, however they move by the margin: they have no contact. */
+/** Drops pairs of vertices each of which has an edge that leads towards the other, however they move by the margin: they have no contact. */
 void dropLeading(const MeshPair& pair, double margin, CandidateLists* lists) {
   const double limit = CONE_SLACK * (pair.range + margin) + margin;
   const auto leads = [&](bool moves, std::uint32_t vertex, const Vector3& d) {
@@ -115,7 +116,7 @@ void dropLeading(const MeshPair& pair, double margin, CandidateLists* lists) {
   };
   const auto first = std::remove_if(lists->pairs.vertex_vertex.begin(), lists->pairs.vertex_vertex.end(), [&](const Candidate& c) {
     const Vector3 d = vector3(lists->near[0].vertices.records[c.b]) - pair.X_FM * vector3(lists->near[1].vertices.records[c.a]);
-    return leads(true, c.a, pair.X_FM.linear().transpose() * d) || leads(false, c.b, -d);
+    return leads(true, c.a, pair.X_FM.linear().transpose() * d) && leads(false, c.b, -d);
   });
   lists->pairs.vertex_vertex.erase(first, lists->pairs.vertex_vertex.end());
 }

@@ -31,6 +31,7 @@ struct FaceBorders {
   enum Kind : std::uint8_t {
     UNKNOWN,
     FLAT,     ///< the plane goes on
+    ROUND,    ///< it falls, by so little that the edge and the face behind it take over whatever leaves
     FALLING,  ///< nothing rises out of the plane
     TURNING,  ///< something rises by so little that it takes a contact over that leaves
     RISING

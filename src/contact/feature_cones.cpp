@@ -57,6 +57,22 @@ bool edgeConeAllows(const MeshSide& side, int edge, const Vector3& direction, do
   return allows;
 }
 
+bool isRoundEdge(const MeshSide& side, int edge) {
+  const MeshTopology& topology = side.topology;
+  const int begin = topology.edge_face_begin[edge];
+  if (topology.edge_flat[edge] || topology.edge_face_begin[edge + 1] - begin != 2) return false;
+  const Vector3 first = topology.inward(side.mesh, edge, topology.edge_faces[begin]);
+  return first.dot(topology.inward(side.mesh, edge, topology.edge_faces[begin + 1])) <= -ROUND_COSINE;
+}
+
+bool isRoundVertex(const MeshSide& side, int vertex, const Vector3& direction) {
+  const MeshTopology& topology = side.topology;
+  const auto begin = topology.vertex_edges.begin() + topology.vertex_edge_begin[vertex];
+  return std::all_of(begin, topology.vertex_edges.begin() + topology.vertex_edge_begin[vertex + 1], [&](int edge) {
+    return topology.edge_flat[edge] || (isRoundEdge(side, edge) && edgeLean(side, edge).dot(direction) <= 0);
+  });
+}
+
 double edgeSlope(const MeshSide& side, int edge, const Vector3& direction) {
   double slope = -1;
   forEachFaceDirection(side, edge, [&](const Vector3& u) { slope = std::max(slope, u.dot(direction)); });

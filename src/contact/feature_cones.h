@@ -13,6 +13,12 @@ bool vertexConeAllows(const MeshSide& side, int vertex, const Vector3& direction
 /** The same for the faces of an edge. */
 bool edgeConeAllows(const MeshSide& side, int edge, const Vector3& direction, double slack);
 
+/** Do the two faces of an edge, which is not flat, go over into each other (ROUND_COSINE)? */
+bool isRoundEdge(const MeshSide& side, int edge);
+
+/** Is the surface around a vertex convex as seen from `direction` (mesh's frame, not unit), with round or flat edges only? */
+bool isRoundVertex(const MeshSide& side, int vertex, const Vector3& direction);
+
 /** A contact that takes over where another leaves is no farther from it than this part of its length. */
 constexpr double NEAR_SUCCESSOR = 0.01;
 

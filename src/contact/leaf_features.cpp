@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "feature_cones.h"
 #include "vectors.h"
 
 namespace blem_sim {
@@ -97,7 +98,7 @@ EdgeRecord edgeRecord(const MeshSide& side, int edge) {
   const int begin = topology.edge_face_begin[edge], count = topology.edge_face_begin[edge + 1] - begin;
   const Vector3 &start = side.mesh.vertices[ends[0]], along = side.mesh.vertices[ends[1]] - start;
   const double length2 = along.squaredNorm(), length = std::sqrt(length2);
-  EdgeRecord record{vec4(start, length2), vec4(along, count > 2), {}};
+  EdgeRecord record{vec4(start, length2), vec4(along, count > 2 ? 1 : isRoundEdge(side, edge) ? -1 : 0), {}};
   for (int k = 0; k < std::min(count, 2); ++k) {
     const int face = topology.edge_faces[begin + k];
     // By the face's own winding: does the edge run along its side, or against it?

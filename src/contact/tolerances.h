@@ -19,6 +19,9 @@ constexpr double FADE_SLOPE = 2;
 /** How far inside a face beside its edge an edge's fading contact may lie, as part of the range: a fifth of it deep it has faded by then.
  */
 constexpr double FADED = 0.1;
+/** Faces whose planes differ by no more than this (cosine of 0.2 rad) go over into each other: a vertex that leaves one over such a convex
+ * border belongs to the edge, then to the other face, however it is shaped itself. */
+constexpr double ROUND_COSINE = 0.98;
 /** Contacts closer than this [m], with normals closer than this (sine), are one. */
 constexpr double MERGE_DISTANCE = 0.2e-6, MERGE_SINE = 1e-3;
 /** A contact farther [m] than this from the border of its face and from the ends of its edges shares its place with no other. */

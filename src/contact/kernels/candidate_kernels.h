@@ -214,7 +214,7 @@ std::uint32_t edgeEdges(const EdgeRecord* a, const EdgeRecord* b, const Candidat
         allowed &= dot(batch.inward(b, batch.of_b, 1).v, normal) <= EDGE_CONE_SLACK;
         allowed &= dot(batch.inward(a, batch.of_a, 0).v, normal) >= -EDGE_CONE_SLACK;
         allowed &= dot(batch.inward(a, batch.of_a, 1).v, normal) >= -EDGE_CONE_SLACK;
-        plain = bitsOf((over_s == 0) & (over_t == 0) & ~touch & (along_a.w + along_b.w == 0));
+        plain = bitsOf((over_s == 0) & (over_t == 0) & ~touch & (maximum(along_a.w, along_b.w) <= 0));
         const Doubles border2 = NEAR_BORDER * NEAR_BORDER * n2 * n2, end_s = minimum(s, n2 - s), end_t = minimum(t, n2 - t);
         near_border = bitsOf((end_s * end_s * pp < border2) | (end_t * end_t * qq < border2));
         const Doubles foot_s = s / n2, foot_t = t / n2;
@@ -242,11 +242,15 @@ std::uint32_t vertexEdges(const Vec4* a, const EdgeRecord* b, const Candidate* c
                           std::uint32_t* hits) {
   return listed(candidates, count, hits, [&](const Batch& batch) {
     const Rows start = batch.field(b, batch.of_b, &EdgeRecord::start);
-    const EdgeOffset offset = offsetFrom(start, batch.field(b, batch.of_b, &EdgeRecord::along).v, batch.points(a, batch.of_a).v);
-    const Doubles d2 = dot(offset.d, offset.d), over = beyondEnds(offset.part, all(1));
-    const unsigned near = bitsOf((d2 <= range * range) & (over * over * start.w <= 4 * CLOSED * CLOSED));
+    const Rows along = batch.field(b, batch.of_b, &EdgeRecord::along);
+    const EdgeOffset offset = offsetFrom(start, along.v, batch.points(a, batch.of_a).v);
+    const Doubles d2 = dot(offset.d, offset.d), over = beyondEnds(offset.part, all(1)), distance = squareRoot(d2);
+    // Beyond the ends of round edges contacts fade.
+    const Doubles most = along.w < 0 ? (range - distance) / FADE_SLOPE : Doubles{};
+    const Doubles beyond = maximum(most, Doubles{}) + 2 * CLOSED;
+    const unsigned near = bitsOf((d2 <= range * range) & (over * over * start.w <= beyond * beyond));
     if (near == 0) return 0u;
-    const Doubles limit = 2 * CONE_SLACK * squareRoot(d2) + 2 * TOUCH;
+    const Doubles limit = 2 * CONE_SLACK * distance + 2 * TOUCH;
     return near &
            bitsOf((dot(batch.inward(b, batch.of_b, 0).v, offset.d) <= limit) & (dot(batch.inward(b, batch.of_b, 1).v, offset.d) <= limit));
   });

@@ -18,7 +18,7 @@ struct FaceRecord {
 /** An edge in some frame. */
 struct EdgeRecord {
   Vec4 start;      ///< its first vertex; w: squared length
-  Vec4 along;      ///< to its second vertex; w: 1 if it has more faces than `inward` tells
+  Vec4 along;      ///< to its second vertex; w: 1 if it has more faces than `inward` tells, -1 if it is round (ROUND_COSINE)
   Vec4 inward[2];  ///< unit, square to it, into its first and second face; zero where there is none
 };
 
