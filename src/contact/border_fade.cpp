@@ -34,11 +34,11 @@ bool BorderFades::find(bool vertex_moves, std::uint32_t vertex, std::uint32_t fa
   bool fades = false;
   for (int k = 0; k < 3; ++k) {
     if (outside[k] <= 0) continue;
-    const FaceBorders::Kind kind = borders.kinds[height > 0][k];
+    const BorderKind kind = borders.kinds[height > 0][k];
     // Beyond a flat side the plane goes on, and is asked there; beyond a round one the edge is.
-    if (kind == FaceBorders::FLAT || kind == FaceBorders::ROUND) return false;
-    fades = fades || kind == FaceBorders::RISING ||
-            (kind == FaceBorders::FALLING && leaves(vertex_moves, vertex, near.faces.names[face], k, down, vector3(record.sides[k])));
+    if (kind == BorderKind::FLAT || kind == BorderKind::ROUND) return false;
+    fades = fades || kind == BorderKind::RISING ||
+            (kind == BorderKind::FALLING && leaves(vertex_moves, vertex, near.faces.names[face], k, down, vector3(record.sides[k])));
   }
   if (!fades) return false;
   const Vector3 projection = p - height * normal;

@@ -51,7 +51,10 @@ class Search {
   }
   std::uint32_t face(bool moves, LeafFeatures* leaf, std::uint32_t i) {
     NearFeatures& near = lists_.near[moves];
-    if (leaf->face_slots[i] == LeafFeatures::NO_SLOT) near.patches.push_back(pair_.side(moves).topology.patch[leaf->faces[i]]);
+    if (leaf->face_slots[i] == LeafFeatures::NO_SLOT) {
+      near.patches.push_back(pair_.side(moves).topology.patch[leaf->faces[i]]);
+      near.open.push_back(leaf->shapes.open[i]);
+    }
     return slot(moves, &leaf->face_slots[i], &near.faces, leaf->faces[i], faceRecord);
   }
 
@@ -79,32 +82,14 @@ class Search {
   const std::uint64_t search_;
 };
 
-/** How steeply (sine) the face's neighbours over an edge rise out of its plane towards `up`, the mesh's frame; negative where they fall. */
-double neighbourSlope(const MeshSide& side, int face, int edge, const Vector3& up) {
-  double slope = -1;
-  for (int i = side.topology.edge_face_begin[edge]; i < side.topology.edge_face_begin[edge + 1]; ++i) {
-    const int neighbour = side.topology.edge_faces[i];
-    if (side.topology.patch[neighbour] == side.topology.patch[face]) continue;
-    slope = std::max(slope, side.topology.inward(side.mesh, edge, neighbour).dot(up));
-  }
-  return slope;
-}
-
-FaceBorders::Kind borderKind(const MeshSide& side, int face, int k, const Vector3& up) {
-  const int edge = side.topology.element_edges[face][k];
-  if (side.topology.edge_flat[edge]) return FaceBorders::FLAT;
-  const double rise = neighbourSlope(side, face, edge, up);
-  if (rise > CONE_SLACK) return rise > NEAR_SUCCESSOR ? FaceBorders::RISING : FaceBorders::TURNING;
-  return isRoundEdge(side, edge) ? FaceBorders::ROUND : FaceBorders::FALLING;
-}
-
 bool boxesWithin(const kernels::LeafShapes& a, const kernels::LeafShapes& b, float reach) {
   bool within = true;
   for (int k = 0; k < 3; ++k) within = within && a.lower[k] <= b.upper[k] + reach && b.lower[k] <= a.upper[k] + reach;
   return within;
 }
 
-/** Drops pairs of vertices each of which has an edge that leads towards the other, however they move by the margin: they have no contact. */
+/** Drops pairs of vertices each of which has an edge that leads towards the other, however they move by the margin: they have no contact.
+ */
 void dropLeading(const MeshPair& pair, double margin, CandidateLists* lists) {
   const double limit = CONE_SLACK * (pair.range + margin) + margin;
   const auto leads = [&](bool moves, std::uint32_t vertex, const Vector3& d) {
@@ -126,13 +111,12 @@ void dropLeading(const MeshPair& pair, double margin, CandidateLists* lists) {
 const FaceBorders& NearFeatures::borders(const MeshSide& side, std::uint32_t face) {
   if (borders_.size() < faces.names.size()) borders_.resize(faces.names.size());
   FaceBorders& found = borders_[face];
-  if (found.kinds[0][0] != FaceBorders::UNKNOWN) return found;
+  if (found.known) return found;
+  found.known = true;
   const int name = faces.names[face];
-  const Vector3& normal = side.topology.normals[name];
   for (int k = 0; k < 3; ++k) {
     found.corners[k] = side.mesh.vertices[side.mesh.elements[name][k]];
-    found.kinds[0][k] = borderKind(side, name, k, -normal);
-    found.kinds[1][k] = borderKind(side, name, k, normal);
+    for (const bool above : {false, true}) found.kinds[above][k] = borderKind(side, name, k, above);
   }
   return found;
 }
@@ -157,6 +141,7 @@ void NearFeatures::clear() {
   edges.clear();
   faces.clear();
   patches.clear();
+  open.clear();
   borders_.clear();
   rings_.clear();
   ring_directions.clear();
@@ -241,15 +226,22 @@ void findCandidates(const MeshPair& pair, const ListMargin& margin, CandidateSea
 void findNearest(const CandidateLists& lists, const TurnedFeatures& turned, double range, const ListMargin& margin,
                  CandidatePairs* nearest) {
   const kernels::Kernels& kernels = kernels::kernels();
+  const kernels::Reach reach{range, margin.motion, margin.turn};
   const auto keep = [&](auto kernel, const auto* a, const auto* b, const std::vector<Candidate>& from, std::vector<Candidate>* to) {
     to->resize(from.size());
-    to->resize(kernel(a, b, from.data(), static_cast<std::uint32_t>(from.size()), {range, margin.motion, margin.turn}, to->data()));
+    to->resize(kernel(a, b, from.data(), static_cast<std::uint32_t>(from.size()), reach, to->data()));
   };
-  const NearFeatures &fixed = lists.near[0], &moving = lists.near[1];
+  const NearFeatures& fixed = lists.near[0];
   const auto &fixed_vertices = fixed.vertices.records, &moving_vertices = turned.vertices[1];
   const CandidatePairs& all = lists.pairs;
-  keep(kernels.nearVertexFaces, moving_vertices.data(), fixed.faces.records.data(), all.vertex_face[1], &nearest->vertex_face[1]);
-  keep(kernels.nearVertexFaces, turned.vertices[0].data(), moving.faces.records.data(), all.vertex_face[0], &nearest->vertex_face[0]);
+  for (const bool moves : {true, false}) {
+    const NearFeatures& partner = lists.near[!moves];
+    const auto nearVertexFaces = [&](const auto* a, const auto* b, auto&&... rest) {
+      return kernels.nearVertexFaces(a, b, partner.open.data(), rest...);
+    };
+    keep(nearVertexFaces, turned.vertices[moves].data(), partner.faces.records.data(), all.vertex_face[moves],
+         &nearest->vertex_face[moves]);
+  }
   keep(kernels.nearVertexEdges, moving_vertices.data(), fixed.edges.records.data(), all.vertex_edge[1], &nearest->vertex_edge[1]);
   keep(kernels.nearVertexEdges, fixed_vertices.data(), turned.edges[1].data(), all.vertex_edge[0], &nearest->vertex_edge[0]);
   keep(kernels.nearEdgeEdges, turned.edges[1].data(), fixed.edges.records.data(), all.edge_edge, &nearest->edge_edge);

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "border_kind.h"
 #include "kernels/kernels.h"
 #include "leaf_features.h"
 #include "mesh_pair.h"
@@ -28,15 +29,8 @@ struct FeatureRecords {
 
 /** The sides of a face: what lies behind them, seen from above its plane [1] and from below [0]. */
 struct FaceBorders {
-  enum Kind : std::uint8_t {
-    UNKNOWN,
-    FLAT,     ///< the plane goes on
-    ROUND,    ///< it falls, by so little that the edge and the face behind it take over whatever leaves
-    FALLING,  ///< nothing rises out of the plane
-    TURNING,  ///< something rises by so little that it takes a contact over that leaves
-    RISING
-  };
-  Kind kinds[2][3] = {{UNKNOWN}};
+  bool known = false;
+  BorderKind kinds[2][3];
   Vector3 corners[3];  ///< side k goes from corner k to the next; mesh's frame
 };
 
@@ -50,7 +44,8 @@ struct NearFeatures {
   FeatureRecords<kernels::Vec4> vertices;
   FeatureRecords<kernels::EdgeRecord> edges;
   FeatureRecords<kernels::FaceRecord> faces;
-  std::vector<int> patches;  ///< of the faces
+  std::vector<int> patches;              ///< of the faces
+  std::vector<kernels::OpenSides> open;  ///< of the faces
 
   /** What few candidates ask for, worked out when the first one does. @param side the mesh */
   const FaceBorders& borders(const MeshSide& side, std::uint32_t face);

@@ -124,8 +124,9 @@ class Evaluation {
     const auto& faces = lists_.near[!moves].faces;
     auto& hits = buffers_.vertex_faces;
     hits.resize(std::max(hits.size(), candidates.size()));
-    const std::uint32_t count = kernels::kernels().vertexFaces(buffers_.turned.vertices[moves].data(), faces.records.data(),
-                                                               candidates.data(), candidates.size(), pair_.range, hits.data());
+    const std::uint32_t count =
+        kernels::kernels().vertexFaces(buffers_.turned.vertices[moves].data(), faces.records.data(), lists_.near[!moves].open.data(),
+                                       candidates.data(), candidates.size(), pair_.range, hits.data());
     const std::vector<int>& patches = lists_.near[!moves].patches;
     PlanesBelow below(&buffers_.planes_below, &buffers_.last_plane, vertices.names.size());
     for (std::uint32_t i = 0; i < count; ++i) {

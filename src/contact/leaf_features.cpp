@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "border_kind.h"
 #include "feature_cones.h"
 #include "vectors.h"
 
@@ -35,6 +36,7 @@ void describeFace(const MeshSide& side, int element, LeafFeatures* leaf) {
   leaf->faces[i] = element;
   placePlane(record.plane, record.plane.w, i, shapes.planes);
   for (int k = 0; k < 3; ++k) placePlane(record.sides[k], record.sides[k].w, i, shapes.sides[k]);
+  shapes.open[i] = openSides(side, element);
 }
 
 void describeEdge(const MeshSide& side, int edge, LeafFeatures* leaf) {

@@ -20,6 +20,7 @@ struct Features {
   std::vector<Vec4> vertices;
   std::vector<EdgeRecord> edges;
   std::vector<FaceRecord> faces;
+  std::vector<OpenSides> open;
   std::vector<Candidate> candidates;
 };
 
@@ -39,6 +40,7 @@ Features randomFeatures() {
       face.sides[k] = vec4(side, side.dot(t[k]));
     }
     out.faces.push_back(face);
+    out.open.push_back(random.integer(0, 63));
   }
   for (std::uint32_t i = 0; i < CANDIDATES; ++i)
     out.candidates.push_back(
@@ -57,7 +59,7 @@ Found found(const Kernels& set, const Features& in) {
   const auto add = [&](std::uint32_t count) { out.counts.push_back(count); };
   const Candidate* candidates = in.candidates.data();
   std::vector<VertexFaceHit> vertex_faces(CANDIDATES);
-  add(set.vertexFaces(in.vertices.data(), in.faces.data(), candidates, CANDIDATES, RANGE, vertex_faces.data()));
+  add(set.vertexFaces(in.vertices.data(), in.faces.data(), in.open.data(), candidates, CANDIDATES, RANGE, vertex_faces.data()));
   for (std::uint32_t i = 0; i < out.counts.back(); ++i) {
     const VertexFaceHit& hit = vertex_faces[i];
     out.indices.insert(out.indices.end(), {hit.candidate, hit.is_plain, hit.is_beside, hit.near_border});
@@ -84,7 +86,7 @@ Found found(const Kernels& set, const Features& in) {
     for (std::uint32_t i = 0; i < count; ++i) out.indices.insert(out.indices.end(), {near[i].a, near[i].b});
   };
   const Reach reach{RANGE, 0.1, 0.02};
-  addNear(set.nearVertexFaces(in.vertices.data(), in.faces.data(), candidates, CANDIDATES, reach, near.data()));
+  addNear(set.nearVertexFaces(in.vertices.data(), in.faces.data(), in.open.data(), candidates, CANDIDATES, reach, near.data()));
   addNear(set.nearEdgeEdges(in.edges.data(), in.edges.data(), candidates, CANDIDATES, reach, near.data()));
   addNear(set.nearVertexEdges(in.vertices.data(), in.edges.data(), candidates, CANDIDATES, reach, near.data()));
   addNear(set.nearVertexVertices(in.vertices.data(), in.vertices.data(), candidates, CANDIDATES, reach, near.data()));
@@ -121,6 +123,7 @@ LeafShapes randomLeaf(std::uint64_t seed) {
     for (std::size_t i = 0; i < count; ++i) from[i] = static_cast<float>(random.uniform(-1, 1));
   };
   fill(&leaf.planes[0][0], sizeof leaf.planes / sizeof(float));
+  for (OpenSides& open : leaf.open) open = random.integer(0, 63);
   fill(&leaf.sides[0][0][0], sizeof leaf.sides / sizeof(float));
   fill(&leaf.starts[0][0], sizeof leaf.starts / sizeof(float));
   fill(&leaf.alongs[0][0], sizeof leaf.alongs / sizeof(float));

@@ -3,6 +3,7 @@
 
 #include "../tolerances.h"
 #include "edge_cones.h"
+#include "face_sides.h"
 #include "lanes.h"
 
 namespace blem_sim::kernels {
@@ -34,6 +35,12 @@ struct Batch {
   }
   Rows inward(const EdgeRecord* from, const std::uint32_t (&index)[LANES], int k) const {
     return rows(index, [=](std::uint32_t i) { return &from[i].inward[k]; });
+  }
+
+  Mask open(const OpenSides* from) const {
+    Mask sides;
+    for (int i = 0; i < LANES; ++i) sides[i] = from[of_b[i]];
+    return sides;
   }
 
   std::uint32_t of_a[LANES], of_b[LANES];
@@ -70,9 +77,13 @@ inline std::uint32_t listed(const Candidate* candidates, std::uint32_t count, st
 /** Height over the plane, or inside the side. */
 inline Doubles above(const Vectors& p, const Rows& plane) { return dot(p, plane.v) - plane.w; }
 
-inline Doubles insideSides(const Batch& batch, const FaceRecord* faces, const Vectors& p) {
-  return minimum(minimum(above(p, batch.side(faces, 0)), above(p, batch.side(faces, 1))), above(p, batch.side(faces, 2)));
-}
+struct InsideSides {
+  InsideSides(const Batch& batch, const FaceRecord* faces, const Vectors& p)
+      : of{above(p, batch.side(faces, 0)), above(p, batch.side(faces, 1)), above(p, batch.side(faces, 2))} {}
+  Doubles least() const { return minimum(minimum(of[0], of[1]), of[2]); }
+
+  const Doubles of[3];
+};
 
 // ---- what can have a contact soon: as for leaves, in double
 
@@ -83,14 +94,15 @@ inline std::uint32_t copied(const Candidate* in, std::uint32_t count, Candidate*
   return kept;
 }
 
-std::uint32_t nearVertexFaces(const Vec4* a, const FaceRecord* b, const Candidate* in, std::uint32_t count, const Reach& reach,
-                              Candidate* out) {
+std::uint32_t nearVertexFaces(const Vec4* a, const FaceRecord* b, const OpenSides* open, const Candidate* in, std::uint32_t count,
+                              const Reach& reach, Candidate* out) {
   const double range = reach.range + reach.margin, beside = reach.margin + 3 * CLOSED;
   return copied(in, count, out, [&](const Batch& batch) {
     const Vectors p = batch.points(a, batch.of_a).v;
-    const Doubles most = range - absolute(above(p, batch.field(b, batch.of_b, &FaceRecord::plane)));
+    const Doubles height = above(p, batch.field(b, batch.of_b, &FaceRecord::plane)), most = range - absolute(height);
     const unsigned near = bitsOf(most >= 0);
-    return near == 0 ? 0 : near & bitsOf(insideSides(batch, b, p) >= -(most / FADE_SLOPE + beside));
+    if (near == 0) return 0u;
+    return near & bitsOf(isOverOrFades(InsideSides(batch, b, p).of, openSides(batch.open(open), height, reach.margin), most, beside));
   });
 }
 
@@ -161,8 +173,8 @@ inline EdgeOffset offsetFrom(const Rows& start, const Vectors& along, const Vect
   return {r - part * along, part};
 }
 
-std::uint32_t vertexFaces(const Vec4* a, const FaceRecord* b, const Candidate* candidates, std::uint32_t count, double range,
-                          VertexFaceHit* hits) {
+std::uint32_t vertexFaces(const Vec4* a, const FaceRecord* b, const OpenSides* open, const Candidate* candidates, std::uint32_t count,
+                          double range, VertexFaceHit* hits) {
   std::uint32_t found = 0;
   double heights[LANES];
   unsigned plain = 0, beside = 0, near_border = 0;
@@ -173,12 +185,13 @@ std::uint32_t vertexFaces(const Vec4* a, const FaceRecord* b, const Candidate* c
         const Doubles height = above(p, batch.field(b, batch.of_b, &FaceRecord::plane)), most = range - absolute(height);
         const unsigned near = bitsOf(most >= 0);
         if (near == 0) return 0u;
-        const Doubles inside = insideSides(batch, b, p);
+        const InsideSides sides(batch, b, p);
+        const Doubles inside = sides.least();
         __builtin_memcpy(heights, &height, sizeof heights);
         plain = bitsOf((inside >= 0) & (absolute(height) > TOUCH));
         beside = bitsOf(inside < -2 * CLOSED);
         near_border = bitsOf(inside < NEAR_BORDER);
-        return near & bitsOf(inside >= -(most / FADE_SLOPE + 2 * CLOSED));
+        return near & bitsOf(isOverOrFades(sides.of, openSides(batch.open(open), height, 0.0), most, 2 * CLOSED));
       },
       [&](std::uint32_t i, int lane) {
         hits[found++] = {i, (plain >> lane & 1) != 0, (beside >> lane & 1) != 0, (near_border >> lane & 1) != 0, heights[lane]};
@@ -271,7 +284,7 @@ std::uint32_t edgeFaces(const EdgeRecord* a, const FaceRecord* b, const Candidat
     const Doubles first = above(start, plane), second = above(start + along, plane);
     const unsigned through = bitsOf((minimum(first, second) < -TOUCH) & (maximum(first, second) > TOUCH));
     if (through == 0) return 0u;
-    return through & bitsOf(insideSides(batch, b, start + first / (first - second) * along) >= -2 * CLOSED);
+    return through & bitsOf(InsideSides(batch, b, start + first / (first - second) * along).least() >= -2 * CLOSED);
   });
 }
 

@@ -25,8 +25,8 @@ struct Kernels {
 
   /** Copies, in order, the candidates that can have a contact within the range while nothing moves or turns by more than the reach says.
    * @return their number */
-  std::uint32_t (*nearVertexFaces)(const Vec4* a, const FaceRecord* b, const Candidate* in, std::uint32_t count, const Reach& reach,
-                                   Candidate* out);
+  std::uint32_t (*nearVertexFaces)(const Vec4* a, const FaceRecord* b, const OpenSides* open, const Candidate* in, std::uint32_t count,
+                                   const Reach& reach, Candidate* out);
   std::uint32_t (*nearEdgeEdges)(const EdgeRecord* a, const EdgeRecord* b, const Candidate* in, std::uint32_t count, const Reach& reach,
                                  Candidate* out);
   std::uint32_t (*nearVertexEdges)(const Vec4* a, const EdgeRecord* b, const Candidate* in, std::uint32_t count, const Reach& reach,
@@ -35,8 +35,8 @@ struct Kernels {
                                       Candidate* out);
 
   /** Candidates with a contact within `range`, and those that need a closer look. @return number of hits */
-  std::uint32_t (*vertexFaces)(const Vec4* a, const FaceRecord* b, const Candidate* candidates, std::uint32_t count, double range,
-                               VertexFaceHit* hits);
+  std::uint32_t (*vertexFaces)(const Vec4* a, const FaceRecord* b, const OpenSides* open, const Candidate* candidates, std::uint32_t count,
+                               double range, VertexFaceHit* hits);
   std::uint32_t (*edgeEdges)(const EdgeRecord* a, const EdgeRecord* b, const Candidate* candidates, std::uint32_t count, double range,
                              EdgeEdgeHit* hits);
   /** Indices of candidates that need a closer look. @return their number */

@@ -3,6 +3,7 @@
 
 #include "../tolerances.h"
 #include "edge_cones.h"
+#include "face_sides.h"
 #include "lanes.h"
 
 namespace blem_sim::kernels {
@@ -48,13 +49,17 @@ inline FloatPlane onePlane(const float (*from)[CAPACITY], std::uint32_t i) {
 
 struct FloatFace {
   FloatPlane plane, sides[3];
+  FloatMask open;
 };
 inline FloatFace severalFaces(const LeafShapes& leaf, std::uint32_t first) {
   return {severalPlanes(leaf.planes, first),
-          {severalPlanes(leaf.sides[0], first), severalPlanes(leaf.sides[1], first), severalPlanes(leaf.sides[2], first)}};
+          {severalPlanes(leaf.sides[0], first), severalPlanes(leaf.sides[1], first), severalPlanes(leaf.sides[2], first)},
+          *reinterpret_cast<const FloatMask*>(&leaf.open[first])};
 }
 inline FloatFace oneFace(const LeafShapes& leaf, std::uint32_t i) {
-  return {onePlane(leaf.planes, i), {onePlane(leaf.sides[0], i), onePlane(leaf.sides[1], i), onePlane(leaf.sides[2], i)}};
+  return {onePlane(leaf.planes, i),
+          {onePlane(leaf.sides[0], i), onePlane(leaf.sides[1], i), onePlane(leaf.sides[2], i)},
+          leaf.open[i] - FloatMask{}};
 }
 
 struct FloatEdge {
@@ -73,9 +78,9 @@ inline FloatEdge oneEdge(const LeafShapes& leaf, std::uint32_t i) {
 // Moved by no more than the margin, heights and distances change by no more than it: so the tests are the exact ones, that much wider.
 
 inline FloatMask mayTouch(const FloatVectors& p, const FloatFace& face, const LeafReach& reach) {
-  const Floats most = reach.range - absolute(face.plane.above(p));
-  const Floats inside = minimum(minimum(face.sides[0].above(p), face.sides[1].above(p)), face.sides[2].above(p));
-  return (most >= 0) & (inside >= -(most / static_cast<float>(FADE_SLOPE) + reach.margin));
+  const Floats height = face.plane.above(p), most = reach.range - absolute(height);
+  const Floats inside[3] = {face.sides[0].above(p), face.sides[1].above(p), face.sides[2].above(p)};
+  return (most >= 0) & isOverOrFades(inside, openSides(face.open, height, reach.margin), most, reach.margin);
 }
 
 /** A vertex has a contact with an edge only where it lies over neither of the edge's faces. */
@@ -233,6 +238,7 @@ void turnLeaf(const LeafShapes& in, const Motion& motion, LeafShapes* out) {
   out->vertex_count = in.vertex_count;
   turnPlanes(in.planes, in.face_count, R, t, out->planes);
   for (int k = 0; k < 3; ++k) turnPlanes(in.sides[k], in.face_count, R, t, out->sides[k]);
+  __builtin_memcpy(out->open, in.open, sizeof in.open);
   turnRows(in.starts, in.edge_count, R, t, out->starts);
   turnRows(in.alongs, in.edge_count, R, none, out->alongs);
   for (int k = 0; k < 2; ++k) turnPlanes(in.inwards[k], in.edge_count, R, t, out->inwards[k]);

@@ -15,6 +15,10 @@ struct FaceRecord {
   Vec4 sides[3];  ///< unit, in the plane, square to side k and into the face; offset
 };
 
+/** Over which of its sides k a vertex's contact with a face may fade, instead of being taken over by what lies behind: bits k for vertices
+ * above its plane, 3 + k for those below. */
+using OpenSides = std::int32_t;
+
 /** An edge in some frame. */
 struct EdgeRecord {
   Vec4 start;      ///< its first vertex; w: squared length
@@ -39,6 +43,7 @@ constexpr int MAX_LEAF_ELEMENTS = 8, MAX_LEAF_FACES = 16, MAX_LEAF_EDGES = 32, M
 struct alignas(64) LeafShapes {
   float planes[4][MAX_LEAF_FACES];    ///< FaceRecord::plane
   float sides[3][4][MAX_LEAF_FACES];  ///< FaceRecord::sides
+  OpenSides open[MAX_LEAF_FACES];
   float starts[3][MAX_LEAF_EDGES], alongs[3][MAX_LEAF_EDGES];
   float inwards[2][4][MAX_LEAF_EDGES];  ///< EdgeRecord::inward; offset of the edge along it
   float vertices[3][MAX_LEAF_VERTICES];
