@@ -88,22 +88,22 @@ bool boxesWithin(const kernels::LeafShapes& a, const kernels::LeafShapes& b, flo
   return within;
 }
 
-/** Drops pairs of vertices each of which has an edge that leads towards the other, however they move by the margin: they have no contact.
- */
-void dropLeading(const MeshPair& pair, double margin, CandidateLists* lists) {
+/** Drops pairs of vertices that have no contact, however they move by the margin [m]: those that lead towards each other, or where one does
+ * and the other, nearer than its surroundings, is not round. */
+void dropLeading(const MeshPair& pair, double margin, NearFeatures (&near)[2], std::vector<Candidate>* vertices) {
   const double limit = CONE_SLACK * (pair.range + margin) + margin;
-  const auto leads = [&](bool moves, std::uint32_t vertex, const Vector3& d) {
-    NearFeatures& near = lists->near[moves];
-    const VertexRing ring = near.ring(pair.side(moves), vertex);
+  const auto leads = [&](const NearFeatures& features, const VertexRing& ring, const Vector3& d) {
     for (std::uint32_t i = ring.begin; i < ring.end; ++i)
-      if (vector3(near.ring_directions[i]).dot(d) > limit) return true;
+      if (vector3(features.ring_directions[i]).dot(d) > limit) return true;
     return false;
   };
-  const auto first = std::remove_if(lists->pairs.vertex_vertex.begin(), lists->pairs.vertex_vertex.end(), [&](const Candidate& c) {
-    const Vector3 d = vector3(lists->near[0].vertices.records[c.b]) - pair.X_FM * vector3(lists->near[1].vertices.records[c.a]);
-    return leads(true, c.a, pair.X_FM.linear().transpose() * d) && leads(false, c.b, -d);
-  });
-  lists->pairs.vertex_vertex.erase(first, lists->pairs.vertex_vertex.end());
+  const auto hasNone = [&](const Candidate& c) {
+    const Vector3 d = vector3(near[0].vertices.records[c.b]) - pair.X_FM * vector3(near[1].vertices.records[c.a]);
+    const VertexRing moving = near[1].ring(pair.moving, c.a), fixed = near[0].ring(pair.fixed, c.b);
+    const bool moving_leads = leads(near[1], moving, pair.X_FM.linear().transpose() * d), fixed_leads = leads(near[0], fixed, -d);
+    return moving_leads ? fixed_leads || !fixed.round : fixed_leads && !moving.round;
+  };
+  vertices->erase(std::remove_if(vertices->begin(), vertices->end(), hasNone), vertices->end());
 }
 
 }  // namespace
@@ -128,9 +128,11 @@ const VertexRing& NearFeatures::ring(const MeshSide& side, std::uint32_t vertex)
   const MeshTopology& topology = side.topology;
   const int name = vertices.names[vertex];
   found.begin = static_cast<std::uint32_t>(ring_directions.size());
+  found.round = true;
   for (int i = topology.vertex_edge_begin[name]; i < topology.vertex_edge_begin[name + 1]; ++i) {
     const int edge = topology.vertex_edges[i], other = topology.edges[edge][topology.edges[edge][0] == name];
     ring_directions.push_back(vec4((side.mesh.vertices[other] - side.mesh.vertices[name]).normalized(), topology.edge_flat[edge]));
+    found.round = found.round && (topology.edge_flat[edge] || isRoundEdge(side, edge));
   }
   found.end = static_cast<std::uint32_t>(ring_directions.size());
   return found;
@@ -220,22 +222,22 @@ void findCandidates(const MeshPair& pair, const ListMargin& margin, CandidateSea
       return {search.edge(false, &f, j), search.face(true, &m, i)};
     });
   });
-  dropLeading(pair, margin.motion, lists);
+  dropLeading(pair, margin.motion, lists->near, &lists->pairs.vertex_vertex);
 }
 
-void findNearest(const CandidateLists& lists, const TurnedFeatures& turned, double range, const ListMargin& margin,
+void findNearest(const MeshPair& pair, const TurnedFeatures& turned, const ListMargin& margin, CandidateLists* lists,
                  CandidatePairs* nearest) {
   const kernels::Kernels& kernels = kernels::kernels();
-  const kernels::Reach reach{range, margin.motion, margin.turn};
+  const kernels::Reach reach{pair.range, margin.motion, margin.turn};
   const auto keep = [&](auto kernel, const auto* a, const auto* b, const std::vector<Candidate>& from, std::vector<Candidate>* to) {
     to->resize(from.size());
     to->resize(kernel(a, b, from.data(), static_cast<std::uint32_t>(from.size()), reach, to->data()));
   };
-  const NearFeatures& fixed = lists.near[0];
+  const NearFeatures& fixed = lists->near[0];
   const auto &fixed_vertices = fixed.vertices.records, &moving_vertices = turned.vertices[1];
-  const CandidatePairs& all = lists.pairs;
+  const CandidatePairs& all = lists->pairs;
   for (const bool moves : {true, false}) {
-    const NearFeatures& partner = lists.near[!moves];
+    const NearFeatures& partner = lists->near[!moves];
     const auto nearVertexFaces = [&](const auto* a, const auto* b, auto&&... rest) {
       return kernels.nearVertexFaces(a, b, partner.open.data(), rest...);
     };
@@ -246,6 +248,7 @@ void findNearest(const CandidateLists& lists, const TurnedFeatures& turned, doub
   keep(kernels.nearVertexEdges, fixed_vertices.data(), turned.edges[1].data(), all.vertex_edge[0], &nearest->vertex_edge[0]);
   keep(kernels.nearEdgeEdges, turned.edges[1].data(), fixed.edges.records.data(), all.edge_edge, &nearest->edge_edge);
   keep(kernels.nearVertexVertices, moving_vertices.data(), fixed_vertices.data(), all.vertex_vertex, &nearest->vertex_vertex);
+  dropLeading(pair, margin.motion, lists->near, &nearest->vertex_vertex);
 }
 
 }  // namespace blem_sim

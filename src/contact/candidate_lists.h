@@ -34,9 +34,10 @@ struct FaceBorders {
   Vector3 corners[3];  ///< side k goes from corner k to the next; mesh's frame
 };
 
-/** Directions of the edges at a vertex: a run of NearFeatures::ring_directions. */
+/** The edges at a vertex: their directions are a run of NearFeatures::ring_directions. */
 struct VertexRing {
   std::uint32_t begin = 0, end = 0;
+  bool round = false;  ///< flat and round edges only
 };
 
 /** The features of one mesh that appear in candidates. */
@@ -112,11 +113,11 @@ struct CandidateSearchBuffers {
 void findCandidates(const MeshPair& pair, const ListMargin& margin, CandidateSearchBuffers* buffers, CandidateLists* lists);
 
 /**
- * Of the candidates for contacts those that can have one within `range` [m] while nothing moves or turns by more than the margin, in their
+ * Of the candidates for contacts those that can have one within pair.range while nothing moves or turns by more than the margin, in their
  * order.
- * @param turned of these lists at the pose at hand
+ * @param turned of these lists at the pair's pose
  */
-void findNearest(const CandidateLists& lists, const TurnedFeatures& turned, double range, const ListMargin& margin,
+void findNearest(const MeshPair& pair, const TurnedFeatures& turned, const ListMargin& margin, CandidateLists* lists,
                  CandidatePairs* nearest);
 
 }  // namespace blem_sim

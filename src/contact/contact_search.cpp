@@ -201,7 +201,8 @@ class Evaluation {
     forEachHit(candidates,
                kernels::kernels().vertexEdges(vertices, edges, candidates.data(), candidates.size(), pair_.range, room(candidates)),
                [&](const Candidate& c) {
-                 exact_.vertexEdge(moves, lists_.near[moves].vertices.names[c.a], lists_.near[!moves].edges.names[c.b]);
+                 exact_.vertexEdge(moves, lists_.near[moves].vertices.names[c.a], lists_.near[!moves].edges.names[c.b],
+                                   vector3(vertices[c.a]), edges[c.b]);
                });
   }
 
@@ -276,7 +277,7 @@ class ContactSearch {
                             std::max(NEAREST_STEPS * motion_.turn, LEAST_NEAREST_TURN)};
     if (memory_.lists.pairs.contacts() <= FEW_CANDIDATES || 2 * margin.motion >= memory_.lists_origin.margin.motion)
       return memory_.lists.pairs;
-    findNearest(memory_.lists, buffers_.turned, pair_.range, margin, &memory_.nearest);
+    findNearest(pair_, buffers_.turned, margin, &memory_.lists, &memory_.nearest);
     memory_.nearest_origin = {true, pair_.X_FM, pair_.range, margin};
     return memory_.nearest;
   }

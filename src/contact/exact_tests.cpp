@@ -93,11 +93,10 @@ void ExactTests::addFadingEdges(const Feature& m, const Feature& f, const EdgesB
 
 // ---- vertex and edge, vertex and vertex: where each is the other's local minimum, and around round edges and vertices
 
-void ExactTests::vertexEdge(bool vertex_moves, int vertex, int edge) {
-  const std::array<int, 2>& ends = pair_.side(!vertex_moves).topology.edges[edge];
-  const Vector3 p = position(vertex_moves, vertex), q = position(!vertex_moves, ends[0]), along = position(!vertex_moves, ends[1]) - q;
+void ExactTests::vertexEdge(bool vertex_moves, int vertex, int edge, const Vector3& p, const kernels::EdgeRecord& record) {
+  if (record.along.w < 0 && addAtRoundEdge(vertex_moves, vertex, edge, p, record)) return;
+  const Vector3 q = vector3(record.start), along = vector3(record.along);
   const double length2 = along.squaredNorm(), part = (p - q).dot(along);
-  if (isRoundEdge(pair_.side(!vertex_moves), edge) && addAtRoundEdge(vertex_moves, vertex, edge, p, q, along)) return;
   if (!edge_pair_detail::isInside(part, length2, length2)) return;
   const Vector3 foot = q + part / length2 * along;
   if ((p - foot).squaredNorm() > pair_.range * pair_.range) return;
@@ -108,18 +107,20 @@ void ExactTests::vertexEdge(bool vertex_moves, int vertex, int edge) {
   }
 }
 
-/** Beyond its ends, but for round ones, which take over, the contact fades. @param p, start, along the vertex and the edge in frame F
- * @return false if they touch */
-bool ExactTests::addAtRoundEdge(bool vertex_moves, int vertex, int edge, const Vector3& p, const Vector3& start, const Vector3& along) {
-  const MeshSide& side = pair_.side(!vertex_moves);
+/** Beyond its ends, but for round ones, which take over, the contact fades. @return false if they touch */
+bool ExactTests::addAtRoundEdge(bool vertex_moves, int vertex, int edge, const Vector3& p, const kernels::EdgeRecord& record) {
+  const Vector3 start = vector3(record.start), along = vector3(record.along);
   const double length2 = along.squaredNorm(), part = (p - start).dot(along) / length2, clamped = std::clamp(part, 0.0, 1.0);
   const Vector3 foot = start + clamped * along, d = p - foot;
   const double distance = d.norm(), gap = distance + FADE_SLOPE * std::abs(part - clamped) * std::sqrt(length2);
   if (distance <= TOUCH) return false;
   if (gap > pair_.range) return true;
-  const Vector3 towards_vertex = vertex_moves ? d : Vector3(R_FM_.transpose() * d);
-  if (part != clamped && isRoundVertex(side, side.topology.edges[edge][part > 1], towards_vertex)) return true;
-  if (!edgeConeAllows(side, edge, towards_vertex / distance, CONE_SLACK)) return true;
+  for (const kernels::Vec4& inward : record.inward)
+    if (vector3(inward).dot(d) > CONE_SLACK * distance) return true;
+  if (part != clamped) {
+    const MeshSide& side = pair_.side(!vertex_moves);
+    if (isRoundVertex(side, side.topology.edges[edge][part > 1], vertex_moves ? d : Vector3(R_FM_.transpose() * d))) return true;
+  }
   contacts_.push_back(featureContact(vertex_moves, {FeatureKind::VERTEX, vertex}, {FeatureKind::EDGE, edge}, p, foot,
                                      (vertex_moves ? 1 : -1) / distance * d, gap));
   return true;
@@ -131,17 +132,13 @@ void ExactTests::vertexVertex(int moving, int fixed) {
   const double gap = d.norm();
   if (gap > pair_.range) return;
   const Feature m{FeatureKind::VERTEX, moving}, f{FeatureKind::VERTEX, fixed};
-  if (gap > TOUCH && (roundVertexAllows(false, fixed, d) || roundVertexAllows(true, moving, -(R_FM_.transpose() * d)))) {
-    contacts_.push_back({m, f, p, q, d / gap, gap});
-  } else {
-    addLocalMinimum(m, f, p, q, Vector3::Zero());
-  }
-}
-
-/** Is a point in that direction from a round vertex nearest to it? @param d mesh's frame */
-bool ExactTests::roundVertexAllows(bool moves, int vertex, const Vector3& d) const {
-  const MeshSide& side = pair_.side(moves);
-  return vertexConeAllows(side, vertex, d.normalized(), CONE_SLACK) && isRoundVertex(side, vertex, d);
+  if (gap <= TOUCH) return addLocalMinimum(m, f, p, q, Vector3::Zero());
+  const Vector3 normal = d / gap, inverse = -(R_FM_.transpose() * normal);
+  const bool f_allows = vertexConeAllows(pair_.fixed, fixed, normal, CONE_SLACK),
+             m_allows = vertexConeAllows(pair_.moving, moving, inverse, CONE_SLACK);
+  const bool nearest = (f_allows && m_allows) || (f_allows && isRoundVertex(pair_.fixed, fixed, normal)) ||
+                       (m_allows && isRoundVertex(pair_.moving, moving, inverse));
+  if (nearest) contacts_.push_back({m, f, p, q, normal, gap});
 }
 
 /** @param along direction of the edge, to which the normal is square; zero if there is none */

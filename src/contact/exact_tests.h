@@ -21,16 +21,16 @@ class ExactTests {
   /** @param record_m, record_f of the two edges in frame F; their cones are known to allow the contact but where they touch, or have more
    * than two faces */
   void edgeEdge(int moving, int fixed, const kernels::EdgeRecord& record_m, const kernels::EdgeRecord& record_f);
-  /** Where each is the other's local minimum; at a round edge wherever the vertex is nearer to it than to its faces. */
-  void vertexEdge(bool vertex_moves, int vertex, int edge);
+  /** @param p, record the vertex and the edge in frame F. Where each is the other's local minimum; at a round edge wherever the vertex is
+   * nearer to it than to its faces. */
+  void vertexEdge(bool vertex_moves, int vertex, int edge, const Vector3& p, const kernels::EdgeRecord& record);
   void vertexVertex(int moving, int fixed);
 
  private:
   bool reachesOver(bool vertex_moves, int vertex, const Vector3& p, const FaceShape& face) const;
   void addFadingEdges(const Feature& m, const Feature& f, const EdgesBeyond& edges, bool cones_known);
-  bool addAtRoundEdge(bool vertex_moves, int vertex, int edge, const Vector3& p, const Vector3& start, const Vector3& along);
+  bool addAtRoundEdge(bool vertex_moves, int vertex, int edge, const Vector3& p, const kernels::EdgeRecord& record);
   void addLocalMinimum(const Feature& m, const Feature& f, const Vector3& point_M, const Vector3& point_F, const Vector3& along);
-  bool roundVertexAllows(bool moves, int vertex, const Vector3& d) const;
   /** Does neither surface come closer to the other beside its feature? */
   bool conesAllow(const Feature& m, const Feature& f, const Vector3& normal, double slack) const;
   Vector3 position(bool moves, int vertex) const { return pair_.placed(pair_.side(moves).mesh.vertices[vertex], moves); }

@@ -8,14 +8,10 @@
 namespace blem_sim {
 namespace {
 
-template <typename Visit>
-void forEachEdgeDirection(const MeshSide& side, int vertex, Visit&& visit) {
-  const MeshTopology& topology = side.topology;
-  for (int i = topology.vertex_edge_begin[vertex]; i < topology.vertex_edge_begin[vertex + 1]; ++i) {
-    const std::array<int, 2>& edge = topology.edges[topology.vertex_edges[i]];
-    const int other = edge[0] == vertex ? edge[1] : edge[0];
-    visit(Vector3(side.mesh.vertices[other] - side.mesh.vertices[vertex]));
-  }
+/** From the vertex, one of its ends, along the edge; mesh's frame. */
+Vector3 edgeDirection(const MeshSide& side, int vertex, int edge) {
+  const std::array<int, 2>& ends = side.topology.edges[edge];
+  return side.mesh.vertices[ends[ends[0] == vertex]] - side.mesh.vertices[vertex];
 }
 
 template <typename Visit>
@@ -43,12 +39,13 @@ Vector3 leanBetween(const MeshPair& pair, const Feature& m, const Feature& f) {
 }  // namespace
 
 bool vertexConeAllows(const MeshSide& side, int vertex, const Vector3& direction, double slack) {
-  bool allows = true;
-  forEachEdgeDirection(side, vertex, [&](const Vector3& w) {
+  const MeshTopology& topology = side.topology;
+  const auto begin = topology.vertex_edges.begin() + topology.vertex_edge_begin[vertex];
+  return std::none_of(begin, topology.vertex_edges.begin() + topology.vertex_edge_begin[vertex + 1], [&](int edge) {
+    const Vector3 w = edgeDirection(side, vertex, edge);
     const double along = w.dot(direction);
-    allows = allows && !(along > 0 && along * along > slack * slack * w.squaredNorm());
+    return along > 0 && along * along > slack * slack * w.squaredNorm();
   });
-  return allows;
 }
 
 bool edgeConeAllows(const MeshSide& side, int edge, const Vector3& direction, double slack) {
@@ -92,8 +89,8 @@ bool isTakenOver(const LeavingVertex& leaving) {
   };
   bool goes_on = partnerAllows(leaving.normal, CONE_SLACK);
   for (int i = topology.vertex_edge_begin[leaving.vertex]; i < topology.vertex_edge_begin[leaving.vertex + 1]; ++i) {
-    const int edge = topology.vertex_edges[i], other = topology.edges[edge][topology.edges[edge][0] == leaving.vertex];
-    const Vector3 w = side.mesh.vertices[other] - side.mesh.vertices[leaving.vertex];
+    const int edge = topology.vertex_edges[i];
+    const Vector3 w = edgeDirection(side, leaving.vertex, edge);
     const double down = w.dot(leaving.normal), aside = w.dot(across), length2 = w.squaredNorm();
     if (down <= 0 || down * down <= CONE_SLACK * CONE_SLACK * length2) continue;
     goes_on = false;
@@ -107,8 +104,10 @@ bool isTakenOver(const LeavingVertex& leaving) {
 }
 
 Vector3 vertexLean(const MeshSide& side, int vertex) {
+  const MeshTopology& topology = side.topology;
   Vector3 lean = Vector3::Zero();
-  forEachEdgeDirection(side, vertex, [&lean](const Vector3& w) { lean += w.normalized(); });
+  for (int i = topology.vertex_edge_begin[vertex]; i < topology.vertex_edge_begin[vertex + 1]; ++i)
+    lean += edgeDirection(side, vertex, topology.vertex_edges[i]).normalized();
   return lean;
 }
 
