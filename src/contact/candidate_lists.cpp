@@ -101,7 +101,8 @@ void dropLeading(const MeshPair& pair, double margin, NearFeatures (&near)[2], s
     const Vector3 d = vector3(near[0].vertices.records[c.b]) - pair.X_FM * vector3(near[1].vertices.records[c.a]);
     const VertexRing moving = near[1].ring(pair.moving, c.a), fixed = near[0].ring(pair.fixed, c.b);
     const bool moving_leads = leads(near[1], moving, pair.X_FM.linear().transpose() * d), fixed_leads = leads(near[0], fixed, -d);
-    return moving_leads ? fixed_leads || !fixed.round : fixed_leads && !moving.round;
+    if (moving_leads && fixed_leads) return true;
+    return (moving_leads && !near[0].isRound(pair.fixed, c.b)) || (fixed_leads && !near[1].isRound(pair.moving, c.a));
   };
   vertices->erase(std::remove_if(vertices->begin(), vertices->end(), hasNone), vertices->end());
 }
@@ -128,14 +129,20 @@ const VertexRing& NearFeatures::ring(const MeshSide& side, std::uint32_t vertex)
   const MeshTopology& topology = side.topology;
   const int name = vertices.names[vertex];
   found.begin = static_cast<std::uint32_t>(ring_directions.size());
-  found.round = true;
   for (int i = topology.vertex_edge_begin[name]; i < topology.vertex_edge_begin[name + 1]; ++i) {
     const int edge = topology.vertex_edges[i], other = topology.edges[edge][topology.edges[edge][0] == name];
     ring_directions.push_back(vec4((side.mesh.vertices[other] - side.mesh.vertices[name]).normalized(), topology.edge_flat[edge]));
-    found.round = found.round && (topology.edge_flat[edge] || isRoundEdge(side, edge));
   }
   found.end = static_cast<std::uint32_t>(ring_directions.size());
   return found;
+}
+
+bool NearFeatures::isRound(const MeshSide& side, std::uint32_t vertex) const {
+  const MeshTopology& topology = side.topology;
+  const int name = vertices.names[vertex];
+  const auto begin = topology.vertex_edges.begin() + topology.vertex_edge_begin[name];
+  return std::all_of(begin, topology.vertex_edges.begin() + topology.vertex_edge_begin[name + 1],
+                     [&](int edge) { return topology.edge_flat[edge] || isRoundEdge(side, edge); });
 }
 
 void NearFeatures::clear() {
@@ -195,34 +202,32 @@ void findCandidates(const MeshPair& pair, const ListMargin& margin, CandidateSea
   kernels::LeafHits& hits = buffers->hits;
   search.forEachLeafPair([&](LeafFeatures& m, LeafFeatures& f) {
     kernels.leafContacts(m.turned, f.shapes, reach, &hits);
-    Search::append(hits.vertex_face, hits.vertex_faces, &lists->pairs.vertex_face[1], [&](auto i, auto j) -> Candidate {
-      return {search.vertex(true, &m, i), search.face(false, &f, j)};
-    });
-    Search::append(hits.vertex_edge, hits.vertex_edges, &lists->pairs.vertex_edge[1], [&](auto i, auto j) -> Candidate {
-      return {search.vertex(true, &m, i), search.edge(false, &f, j)};
-    });
+    for (const bool moves : {true, false}) {
+      LeafFeatures &own = moves ? m : f, &partner = moves ? f : m;
+      Search::append(hits.vertex_face[!moves], hits.vertex_faces[!moves], &lists->pairs.vertex_face[moves],
+                     [&](auto i, auto j) -> Candidate {
+                       return {search.vertex(moves, &own, i), search.face(!moves, &partner, j)};
+                     });
+      Search::append(hits.vertex_edge[!moves], hits.vertex_edges[!moves], &lists->pairs.vertex_edge[moves],
+                     [&](auto i, auto j) -> Candidate {
+                       return {search.vertex(moves, &own, i), search.edge(!moves, &partner, j)};
+                     });
+    }
     Search::append(hits.vertex_vertex, hits.vertex_vertices, &lists->pairs.vertex_vertex, [&](auto i, auto j) -> Candidate {
       return {search.vertex(true, &m, i), search.vertex(false, &f, j)};
     });
     Search::append(hits.edge_edge, hits.edge_edges, &lists->pairs.edge_edge, [&](auto i, auto j) -> Candidate {
       return {search.edge(true, &m, i), search.edge(false, &f, j)};
     });
-    Search::append(hits.edge_vertex, hits.edge_vertices, &lists->pairs.vertex_edge[0], [&](auto i, auto j) -> Candidate {
-      return {search.vertex(false, &f, j), search.edge(true, &m, i)};
-    });
-    Search::append(hits.face_vertex, hits.face_vertices, &lists->pairs.vertex_face[0], [&](auto i, auto j) -> Candidate {
-      return {search.vertex(false, &f, j), search.face(true, &m, i)};
-    });
     if (!boxesWithin(m.turned, f.shapes, reach.margin)) return;
     kernels.leafCrossings(m.turned, f.shapes, reach, &hits);
-    Search::append(hits.edge_face, hits.edge_faces, &lists->pairs.edge_face[1], [&](auto i, auto j) -> Candidate {
-      return {search.edge(true, &m, i), search.face(false, &f, j)};
-    });
-    Search::append(hits.face_edge, hits.face_edges, &lists->pairs.edge_face[0], [&](auto i, auto j) -> Candidate {
-      return {search.edge(false, &f, j), search.face(true, &m, i)};
-    });
+    for (const bool moves : {true, false}) {
+      Search::append(hits.edge_face[!moves], hits.edge_faces[!moves], &lists->pairs.edge_face[moves], [&](auto i, auto j) -> Candidate {
+        return {search.edge(moves, moves ? &m : &f, i), search.face(!moves, moves ? &f : &m, j)};
+      });
+    }
   });
-  dropLeading(pair, margin.motion, lists->near, &lists->pairs.vertex_vertex);
+  if (margin.motion > 0) dropLeading(pair, margin.motion, lists->near, &lists->pairs.vertex_vertex);
 }
 
 void findNearest(const MeshPair& pair, const TurnedFeatures& turned, const ListMargin& margin, CandidateLists* lists,

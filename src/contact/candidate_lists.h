@@ -34,10 +34,9 @@ struct FaceBorders {
   Vector3 corners[3];  ///< side k goes from corner k to the next; mesh's frame
 };
 
-/** The edges at a vertex: their directions are a run of NearFeatures::ring_directions. */
+/** Directions of the edges at a vertex: a run of NearFeatures::ring_directions. */
 struct VertexRing {
   std::uint32_t begin = 0, end = 0;
-  bool round = false;  ///< flat and round edges only
 };
 
 /** The features of one mesh that appear in candidates. */
@@ -51,7 +50,8 @@ struct NearFeatures {
   /** What few candidates ask for, worked out when the first one does. @param side the mesh */
   const FaceBorders& borders(const MeshSide& side, std::uint32_t face);
   const VertexRing& ring(const MeshSide& side, std::uint32_t vertex);
-  std::vector<kernels::Vec4> ring_directions;  ///< unit, mesh's frame; w: 1 if the edge is flat
+  bool isRound(const MeshSide& side, std::uint32_t vertex) const;  ///< flat and round edges only
+  std::vector<kernels::Vec4> ring_directions;                      ///< unit, mesh's frame; w: 1 if the edge is flat
 
   void clear();
 

@@ -11,6 +11,7 @@
 namespace blem_sim {
 namespace {
 
+using kernels::EdgeCone;
 using kernels::EdgeRecord;
 using kernels::FaceRecord;
 using kernels::LeafShapes;
@@ -52,6 +53,26 @@ void describeEdge(const MeshSide& side, int edge, LeafFeatures* leaf) {
   }
 }
 
+/** Of the edges described so far. */
+EdgeCone edgeCone(const LeafShapes& shapes) {
+  constexpr double ANY = 4;
+  constexpr int CAPACITY = kernels::MAX_LEAF_EDGES;
+  Vector3 middles[CAPACITY], axis = Vector3::Zero();
+  double spread = 0, halves[CAPACITY];
+  const auto row = [](const float(*rows)[CAPACITY], std::uint32_t i) { return Vector3(rows[0][i], rows[1][i], rows[2][i]); };
+  for (std::uint32_t i = 0; i < shapes.edge_count; ++i) {
+    // Of a normal that points out of both faces the middle is square to the edge and to this.
+    const Vector3 across = row(shapes.inwards[0], i) - row(shapes.inwards[1], i);
+    middles[i] = row(shapes.alongs, i).cross(across).normalized();
+    halves[i] = across.norm() > 1.01 ? std::acos(std::min(0.5 * across.norm(), 1.0)) : ANY;
+    axis += axis.dot(middles[i]) < 0 ? Vector3(-middles[i]) : middles[i];
+  }
+  axis.normalize();
+  for (std::uint32_t i = 0; i < shapes.edge_count; ++i)
+    spread = std::max(spread, std::acos(std::min(std::abs(axis.dot(middles[i])), 1.0)) + halves[i]);
+  return {{static_cast<float>(axis.x()), static_cast<float>(axis.y()), static_cast<float>(axis.z())}, static_cast<float>(spread)};
+}
+
 void describe(const MeshSide& side, std::uint32_t index, LeafFeatures* leaf) {
   const Bvh::Node& node = side.bvh.nodes()[index];
   assert(node.count <= kernels::MAX_LEAF_ELEMENTS);
@@ -71,6 +92,7 @@ void describe(const MeshSide& side, std::uint32_t index, LeafFeatures* leaf) {
       place(vertexRecord(side, leaf->vertices[v]), v, shapes.vertices);
     }
   }
+  shapes.edge_cone = edgeCone(shapes);
 }
 
 void forgetSlots(LeafFeatures* leaf) {

@@ -123,6 +123,7 @@ LeafShapes randomLeaf(std::uint64_t seed) {
     for (std::size_t i = 0; i < count; ++i) from[i] = static_cast<float>(random.uniform(-1, 1));
   };
   fill(&leaf.planes[0][0], sizeof leaf.planes / sizeof(float));
+  leaf.edge_cone = {{0, 0.6f, 0.8f}, 1};
   for (OpenSides& open : leaf.open) open = random.integer(0, 63);
   fill(&leaf.sides[0][0][0], sizeof leaf.sides / sizeof(float));
   fill(&leaf.starts[0][0], sizeof leaf.starts / sizeof(float));
@@ -147,14 +148,13 @@ std::vector<std::uint32_t> leafHits(const Kernels& set, const LeafShapes& a, con
     out.push_back(count);
     for (int i = 0; i < count; ++i) out.insert(out.end(), {from[i].feature, from[i].bits});
   };
-  add(hits.vertex_face, hits.vertex_faces);
-  add(hits.vertex_edge, hits.vertex_edges);
   add(hits.vertex_vertex, hits.vertex_vertices);
   add(hits.edge_edge, hits.edge_edges);
-  add(hits.edge_vertex, hits.edge_vertices);
-  add(hits.edge_face, hits.edge_faces);
-  add(hits.face_vertex, hits.face_vertices);
-  add(hits.face_edge, hits.face_edges);
+  for (int order = 0; order < 2; ++order) {
+    add(hits.vertex_face[order], hits.vertex_faces[order]);
+    add(hits.vertex_edge[order], hits.vertex_edges[order]);
+    add(hits.edge_face[order], hits.edge_faces[order]);
+  }
   return out;
 }
 

@@ -56,12 +56,6 @@ inline FloatFace severalFaces(const LeafShapes& leaf, std::uint32_t first) {
           {severalPlanes(leaf.sides[0], first), severalPlanes(leaf.sides[1], first), severalPlanes(leaf.sides[2], first)},
           *reinterpret_cast<const FloatMask*>(&leaf.open[first])};
 }
-inline FloatFace oneFace(const LeafShapes& leaf, std::uint32_t i) {
-  return {onePlane(leaf.planes, i),
-          {onePlane(leaf.sides[0], i), onePlane(leaf.sides[1], i), onePlane(leaf.sides[2], i)},
-          leaf.open[i] - FloatMask{}};
-}
-
 struct FloatEdge {
   FloatVectors start, along;
   FloatPlane inward[2];
@@ -110,16 +104,17 @@ inline FloatMask mayTouch(const FloatEdge& a, const FloatEdge& b, const LeafReac
   FloatMask may = reachesOut(b.start, end_b, a.inward[0], reach.inside) & reachesOut(b.start, end_b, a.inward[1], reach.inside);
   may &= reachesOut(a.start, end_a, b.inward[0], reach.inside) & reachesOut(a.start, end_a, b.inward[1], reach.inside);
   if (bitsOf(may) == 0) return may;
+  const Floats pp = dot(p, p), qq = dot(q, q);
+  const FloatVectors n = cross(p, q);
+  may &= conesMayAllow(n, coneBound(dot(n, n), pp * qq, reach.turn), a.inward[0].normal, a.inward[1].normal, b.inward[0].normal,
+                       b.inward[1].normal);
+  if (bitsOf(may) == 0) return may;
   // Closest points of the segments [Ericson 2005, 5.1.9].
-  const Floats pp = dot(p, p), qq = dot(q, q), pq = dot(p, q), pr = dot(p, r), qr = dot(q, r), denominator = pp * qq - pq * pq;
+  const Floats pq = dot(p, q), pr = dot(p, r), qr = dot(q, r), denominator = pp * qq - pq * pq;
   const Floats first = denominator > 0 ? clampedToUnit((pr * qq - pq * qr) / denominator) : Floats{};
   const Floats t = clampedToUnit((pq * first - qr) / qq), s = clampedToUnit((pq * t + pr) / pp);
   const FloatVectors d = r + t * q - s * p;
-  may &= ~(dot(d, d) > reach.range * reach.range);
-  if (bitsOf(may) == 0) return may;
-  const FloatVectors n = cross(p, q);
-  const Floats bound = coneBound(dot(n, n), pp * qq, reach.turn);
-  return may & conesMayAllow(n, bound, a.inward[0].normal, a.inward[1].normal, b.inward[0].normal, b.inward[1].normal);
+  return may & ~(dot(d, d) > reach.range * reach.range);
 }
 
 /** Only an edge with ends on both sides of a plane, inside some part of the face, passes through it. */
@@ -144,68 +139,83 @@ inline void append(std::uint32_t feature, std::uint32_t bits, LeafHit* hits, int
   *count += bits != 0;
 }
 
-/** May a segment, or a point, be within reach of the leaf's box? */
-inline bool isNear(const LeafShapes& leaf, const float* p, const float* q, float reach) {
-  bool near = true;
-  for (int k = 0; k < 3; ++k) {
-    const float low = p[k] < q[k] ? p[k] : q[k], high = p[k] < q[k] ? q[k] : p[k];
-    near &= (low <= leaf.upper[k] + reach) & (high >= leaf.lower[k] - reach);
-  }
-  return near;
+template <typename Visit>
+inline void forEachBit(std::uint32_t bits, Visit&& visit) {
+  for (; bits != 0; bits &= bits - 1) visit(static_cast<std::uint32_t>(__builtin_ctz(bits)));
 }
 
-inline bool vertexIsNear(const LeafShapes& a, std::uint32_t i, const LeafShapes& b, float reach) {
-  const float p[3] = {a.vertices[0][i], a.vertices[1][i], a.vertices[2][i]};
-  return isNear(b, p, p, reach);
+/** Which of some points, or of segments between low and high, are within reach of the leaf's box? */
+inline FloatMask isNear(const LeafShapes& leaf, const FloatVectors& low, const FloatVectors& high, float reach) {
+  return (low.x <= leaf.upper[0] + reach) & (high.x >= leaf.lower[0] - reach) & (low.y <= leaf.upper[1] + reach) &
+         (high.y >= leaf.lower[1] - reach) & (low.z <= leaf.upper[2] + reach) & (high.z >= leaf.lower[2] - reach);
 }
 
-inline bool edgeIsNear(const LeafShapes& a, std::uint32_t i, const LeafShapes& b, float reach) {
-  const float p[3] = {a.starts[0][i], a.starts[1][i], a.starts[2][i]};
-  const float q[3] = {p[0] + a.alongs[0][i], p[1] + a.alongs[1][i], p[2] + a.alongs[2][i]};
-  return isNear(b, p, q, reach);
+inline std::uint32_t verticesNear(const LeafShapes& a, const LeafShapes& b, float reach) {
+  return bitsWhere(a.vertex_count, [&](std::uint32_t i) {
+    const FloatVectors p = several(a.vertices, i);
+    return isNear(b, p, p, reach);
+  });
+}
+
+inline std::uint32_t edgesNear(const LeafShapes& a, const LeafShapes& b, float reach) {
+  return bitsWhere(a.edge_count, [&](std::uint32_t i) {
+    const FloatVectors p = several(a.starts, i), q = p + several(a.alongs, i);
+    return isNear(b, {minimum(p.x, q.x), minimum(p.y, q.y), minimum(p.z, q.z)}, {maximum(p.x, q.x), maximum(p.y, q.y), maximum(p.z, q.z)},
+                  reach);
+  });
+}
+
+/** May edges of the two leaves have a common perpendicular that points out of the faces of both? */
+inline bool mayShareNormal(const EdgeCone& a, const EdgeCone& b, float turn) {
+  constexpr float slack = static_cast<float>(2 * 1.001 * EDGE_CONE_SLACK + 1e-4), right_angle = 1.5707f;
+  const float angle = a.spread + b.spread + slack + 1.1f * turn;
+  const float cosine = a.axis[0] * b.axis[0] + a.axis[1] * b.axis[1] + a.axis[2] * b.axis[2];
+  return angle >= right_angle || (cosine < 0 ? -cosine : cosine) >= __builtin_cosf(angle);
+}
+
+/** The vertices of one leaf, by their bits, at the faces and edges of another. */
+inline void findAtVertices(const LeafShapes& a, std::uint32_t vertices, const LeafShapes& b, const LeafReach& reach, int order,
+                           LeafHits* hits) {
+  hits->vertex_faces[order] = hits->vertex_edges[order] = 0;
+  forEachBit(vertices, [&](std::uint32_t i) {
+    const FloatVectors p = one(a.vertices, i);
+    const std::uint32_t faces = bitsWhere(b.face_count, [&](auto j) { return mayTouch(p, severalFaces(b, j), reach); });
+    append(i, faces, hits->vertex_face[order], &hits->vertex_faces[order]);
+    const std::uint32_t edges = bitsWhere(b.edge_count, [&](auto j) { return mayTouch(p, severalEdges(b, j), reach); });
+    append(i, edges, hits->vertex_edge[order], &hits->vertex_edges[order]);
+  });
 }
 
 void leafContacts(const LeafShapes& a, const LeafShapes& b, const LeafReach& reach, LeafHits* hits) {
-  hits->vertex_faces = hits->vertex_edges = hits->vertex_vertices = hits->edge_edges = hits->edge_vertices = hits->face_vertices = 0;
-  const auto vertices = [&](auto&& test) { return bitsWhere(b.vertex_count, [&](auto j) { return test(several(b.vertices, j)); }); };
-  const auto edges = [&](auto&& test) { return bitsWhere(b.edge_count, [&](auto j) { return test(severalEdges(b, j)); }); };
-  const auto faces = [&](auto&& test) { return bitsWhere(b.face_count, [&](auto j) { return test(severalFaces(b, j)); }); };
-  for (std::uint32_t i = 0; i < a.vertex_count; ++i) {
-    if (!vertexIsNear(a, i, b, reach.range)) continue;
+  const std::uint32_t near_a = verticesNear(a, b, reach.range), near_b = verticesNear(b, a, reach.range);
+  findAtVertices(a, near_a, b, reach, 0, hits);
+  findAtVertices(b, near_b, a, reach, 1, hits);
+  hits->vertex_vertices = hits->edge_edges = 0;
+  forEachBit(near_b == 0 ? 0 : near_a, [&](std::uint32_t i) {
     const FloatVectors p = one(a.vertices, i);
-    append(i, faces([&](const FloatFace& face) { return mayTouch(p, face, reach); }), hits->vertex_face, &hits->vertex_faces);
-    append(i, edges([&](const FloatEdge& edge) { return mayTouch(p, edge, reach); }), hits->vertex_edge, &hits->vertex_edges);
-    append(i, vertices([&](const FloatVectors& q) { return mayTouch(p, q, reach); }), hits->vertex_vertex, &hits->vertex_vertices);
-  }
-  // Are vertices of b near a at all?
-  bool vertices_near = false;
-  for (std::uint32_t j = 0; j < b.vertex_count; ++j) vertices_near |= vertexIsNear(b, j, a, reach.range);
-  for (std::uint32_t i = 0; i < a.edge_count; ++i) {
-    if (!edgeIsNear(a, i, b, reach.range)) continue;
+    const std::uint32_t vertices = bitsWhere(b.vertex_count, [&](auto j) { return mayTouch(p, several(b.vertices, j), reach); });
+    append(i, vertices, hits->vertex_vertex, &hits->vertex_vertices);
+  });
+  if (!mayShareNormal(a.edge_cone, b.edge_cone, reach.turn)) return;
+  forEachBit(edgesNear(a, b, reach.range), [&](std::uint32_t i) {
     const FloatEdge edge = oneEdge(a, i);
-    append(i, edges([&](const FloatEdge& other) { return mayTouch(edge, other, reach); }), hits->edge_edge, &hits->edge_edges);
-    if (!vertices_near) continue;
-    append(i, vertices([&](const FloatVectors& q) { return mayTouch(q, edge, reach); }), hits->edge_vertex, &hits->edge_vertices);
-  }
-  for (std::uint32_t i = 0; vertices_near && i < a.face_count; ++i) {
-    const FloatFace face = oneFace(a, i);
-    append(i, vertices([&](const FloatVectors& q) { return mayTouch(q, face, reach); }), hits->face_vertex, &hits->face_vertices);
-  }
+    const std::uint32_t edges = bitsWhere(b.edge_count, [&](auto j) { return mayTouch(edge, severalEdges(b, j), reach); });
+    append(i, edges, hits->edge_edge, &hits->edge_edges);
+  });
+}
+
+inline void findCrossings(const LeafShapes& a, const LeafShapes& b, const LeafReach& reach, int order, LeafHits* hits) {
+  hits->edge_faces[order] = 0;
+  forEachBit(edgesNear(a, b, reach.margin), [&](std::uint32_t i) {
+    const FloatEdge edge = oneEdge(a, i);
+    const std::uint32_t faces = bitsWhere(b.face_count, [&](auto j) { return mayCross(edge, severalFaces(b, j), reach); });
+    append(i, faces, hits->edge_face[order], &hits->edge_faces[order]);
+  });
 }
 
 void leafCrossings(const LeafShapes& a, const LeafShapes& b, const LeafReach& reach, LeafHits* hits) {
-  hits->edge_faces = hits->face_edges = 0;
-  for (std::uint32_t i = 0; i < a.edge_count; ++i) {
-    if (!edgeIsNear(a, i, b, reach.margin)) continue;
-    const FloatEdge edge = oneEdge(a, i);
-    append(i, bitsWhere(b.face_count, [&](auto j) { return mayCross(edge, severalFaces(b, j), reach); }), hits->edge_face,
-           &hits->edge_faces);
-  }
-  for (std::uint32_t i = 0; i < a.face_count; ++i) {
-    const FloatFace face = oneFace(a, i);
-    append(i, bitsWhere(b.edge_count, [&](auto j) { return mayCross(severalEdges(b, j), face, reach); }), hits->face_edge,
-           &hits->face_edges);
-  }
+  findCrossings(a, b, reach, 0, hits);
+  findCrossings(b, a, reach, 1, hits);
 }
 
 template <int CAPACITY>
@@ -238,6 +248,9 @@ void turnLeaf(const LeafShapes& in, const Motion& motion, LeafShapes* out) {
   out->vertex_count = in.vertex_count;
   turnPlanes(in.planes, in.face_count, R, t, out->planes);
   for (int k = 0; k < 3; ++k) turnPlanes(in.sides[k], in.face_count, R, t, out->sides[k]);
+  for (int k = 0; k < 3; ++k)
+    out->edge_cone.axis[k] = R[3 * k] * in.edge_cone.axis[0] + R[3 * k + 1] * in.edge_cone.axis[1] + R[3 * k + 2] * in.edge_cone.axis[2];
+  out->edge_cone.spread = in.edge_cone.spread;
   __builtin_memcpy(out->open, in.open, sizeof in.open);
   turnRows(in.starts, in.edge_count, R, t, out->starts);
   turnRows(in.alongs, in.edge_count, R, none, out->alongs);

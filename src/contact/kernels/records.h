@@ -39,6 +39,12 @@ struct Candidate {
 /** Elements of a leaf; room for their features, in whole vectors. */
 constexpr int MAX_LEAF_ELEMENTS = 8, MAX_LEAF_FACES = 16, MAX_LEAF_EDGES = 32, MAX_LEAF_VERTICES = 32;
 
+/** All directions, but for their signs, that a contact's normal at some edge of a leaf may have, without slack. */
+struct EdgeCone {
+  float axis[3];  ///< unit
+  float spread;   ///< [rad] of a normal from the axis; at least pi/2: any
+};
+
 /** Features of a leaf in float, a coordinate after the other, in some frame. */
 struct alignas(64) LeafShapes {
   float planes[4][MAX_LEAF_FACES];    ///< FaceRecord::plane
@@ -47,6 +53,7 @@ struct alignas(64) LeafShapes {
   float starts[3][MAX_LEAF_EDGES], alongs[3][MAX_LEAF_EDGES];
   float inwards[2][4][MAX_LEAF_EDGES];  ///< EdgeRecord::inward; offset of the edge along it
   float vertices[3][MAX_LEAF_VERTICES];
+  EdgeCone edge_cone;
   float lower[3], upper[3];  ///< box of all its elements
   std::uint32_t face_count, edge_count, vertex_count;
 };
@@ -68,16 +75,15 @@ struct Reach {
 
 /** Features of one leaf by their bits, near a feature of another. */
 struct LeafHit {
-  std::uint32_t feature;  ///< of the first leaf
-  std::uint32_t bits;     ///< of the second one's features
+  std::uint32_t feature, bits;
 };
 
-/** Pairs of features of two leaves that may have a contact, or a crossing: first the moving mesh's kind, then the fixed one's. */
+/** Pairs of features of two leaves that may have a contact, or a crossing. [0]: the first kind is the first leaf's, bits are the second
+ * one's; [1]: the other way round. */
 struct LeafHits {
-  LeafHit vertex_face[MAX_LEAF_VERTICES], vertex_edge[MAX_LEAF_VERTICES], vertex_vertex[MAX_LEAF_VERTICES];
-  LeafHit edge_edge[MAX_LEAF_EDGES], edge_vertex[MAX_LEAF_EDGES], edge_face[MAX_LEAF_EDGES];
-  LeafHit face_vertex[MAX_LEAF_FACES], face_edge[MAX_LEAF_FACES];
-  int vertex_faces, vertex_edges, vertex_vertices, edge_edges, edge_vertices, edge_faces, face_vertices, face_edges;
+  LeafHit vertex_face[2][MAX_LEAF_VERTICES], vertex_edge[2][MAX_LEAF_VERTICES], edge_face[2][MAX_LEAF_EDGES];
+  LeafHit vertex_vertex[MAX_LEAF_VERTICES], edge_edge[MAX_LEAF_EDGES];
+  int vertex_faces[2], vertex_edges[2], edge_faces[2], vertex_vertices, edge_edges;
 };
 
 /** A vertex near a face. */
