@@ -168,32 +168,36 @@ std::size_t CandidatePairs::contacts() const {
          vertex_vertex.size();
 }
 
+std::size_t CandidatePairs::crossings() const { return edge_face[0].size() + edge_face[1].size(); }
+
 void CandidateLists::clear() {
   for (NearFeatures& features : near) features.clear();
   pairs.clear();
 }
 
-// Room only grows: nothing is cleared that is overwritten.
-void TurnedFeatures::turnVertices(bool moves, const CandidateLists& lists, const kernels::Motion& motion) {
-  const auto& records = lists.near[moves].vertices.records;
-  if (vertices[moves].size() < records.size()) vertices[moves].resize(records.size());
-  kernels::kernels().turnPoints(records.data(), records.size(), motion, vertices[moves].data());
+namespace {
+
+/** Room only grows: nothing is cleared that is overwritten. */
+template <typename Record>
+void turn(void (*kernel)(const Record*, std::uint32_t, const kernels::Motion&, Record*), const std::vector<Record>& in,
+          const kernels::Motion& motion, std::vector<Record>* out) {
+  if (out->size() < in.size()) out->resize(in.size());
+  kernel(in.data(), static_cast<std::uint32_t>(in.size()), motion, out->data());
 }
 
-void TurnedFeatures::turnEdges(bool moves, const CandidateLists& lists, const kernels::Motion& motion) {
-  const auto& records = lists.near[moves].edges.records;
-  if (edges[moves].size() < records.size()) edges[moves].resize(records.size());
-  kernels::kernels().turnEdges(records.data(), records.size(), motion, edges[moves].data());
-}
+}  // namespace
 
-void TurnedFeatures::turn(const CandidateLists& lists, const Pose& X_FM) {
+void TurnedFeatures::turnForContacts(const CandidateLists& lists, const Pose& X_FM) {
+  const kernels::Kernels& kernels = kernels::kernels();
   const kernels::Motion to_fixed = motionOf(X_FM);
-  turnVertices(true, lists, to_fixed);
-  turnVertices(false, lists, motionOf(X_FM.inverse()));
-  turnEdges(true, lists, to_fixed);
+  turn(kernels.turnPoints, lists.near[1].vertices.records, to_fixed, &vertices[1]);
+  turn(kernels.turnPoints, lists.near[0].vertices.records, motionOf(X_FM.inverse()), &vertices[0]);
+  turn(kernels.turnEdges, lists.near[1].edges.records, to_fixed, &edges);
 }
 
-void TurnedFeatures::turnForCrossings(const CandidateLists& lists, const Pose& X_FM) { turnEdges(false, lists, motionOf(X_FM.inverse())); }
+void TurnedFeatures::turnForCrossings(const CandidateLists& lists, const Pose& X_FM) {
+  turn(kernels::kernels().turnFaces, lists.near[1].faces.records, motionOf(X_FM), &faces);
+}
 
 void findCandidates(const MeshPair& pair, const ListMargin& margin, CandidateSearchBuffers* buffers, CandidateLists* lists) {
   const kernels::Kernels& kernels = kernels::kernels();
@@ -230,30 +234,43 @@ void findCandidates(const MeshPair& pair, const ListMargin& margin, CandidateSea
   if (margin.motion > 0) dropLeading(pair, margin.motion, lists->near, &lists->pairs.vertex_vertex);
 }
 
+namespace {
+
+template <typename Kernel, typename First, typename Second>
+void keep(Kernel&& kernel, const std::vector<First>& a, const std::vector<Second>& b, const kernels::Reach& reach,
+          const std::vector<Candidate>& from, std::vector<Candidate>* to) {
+  to->resize(from.size());
+  to->resize(kernel(a.data(), b.data(), from.data(), static_cast<std::uint32_t>(from.size()), reach, to->data()));
+}
+
+}  // namespace
+
 void findNearest(const MeshPair& pair, const TurnedFeatures& turned, const ListMargin& margin, CandidateLists* lists,
                  CandidatePairs* nearest) {
   const kernels::Kernels& kernels = kernels::kernels();
   const kernels::Reach reach{pair.range, margin.motion, margin.turn};
-  const auto keep = [&](auto kernel, const auto* a, const auto* b, const std::vector<Candidate>& from, std::vector<Candidate>* to) {
-    to->resize(from.size());
-    to->resize(kernel(a, b, from.data(), static_cast<std::uint32_t>(from.size()), reach, to->data()));
-  };
   const NearFeatures& fixed = lists->near[0];
-  const auto &fixed_vertices = fixed.vertices.records, &moving_vertices = turned.vertices[1];
   const CandidatePairs& all = lists->pairs;
   for (const bool moves : {true, false}) {
     const NearFeatures& partner = lists->near[!moves];
     const auto nearVertexFaces = [&](const auto* a, const auto* b, auto&&... rest) {
       return kernels.nearVertexFaces(a, b, partner.open.data(), rest...);
     };
-    keep(nearVertexFaces, turned.vertices[moves].data(), partner.faces.records.data(), all.vertex_face[moves],
-         &nearest->vertex_face[moves]);
+    keep(nearVertexFaces, turned.vertices[moves], partner.faces.records, reach, all.vertex_face[moves], &nearest->vertex_face[moves]);
   }
-  keep(kernels.nearVertexEdges, moving_vertices.data(), fixed.edges.records.data(), all.vertex_edge[1], &nearest->vertex_edge[1]);
-  keep(kernels.nearVertexEdges, fixed_vertices.data(), turned.edges[1].data(), all.vertex_edge[0], &nearest->vertex_edge[0]);
-  keep(kernels.nearEdgeEdges, turned.edges[1].data(), fixed.edges.records.data(), all.edge_edge, &nearest->edge_edge);
-  keep(kernels.nearVertexVertices, moving_vertices.data(), fixed_vertices.data(), all.vertex_vertex, &nearest->vertex_vertex);
+  keep(kernels.nearVertexEdges, turned.vertices[1], fixed.edges.records, reach, all.vertex_edge[1], &nearest->vertex_edge[1]);
+  keep(kernels.nearVertexEdges, fixed.vertices.records, turned.edges, reach, all.vertex_edge[0], &nearest->vertex_edge[0]);
+  keep(kernels.nearEdgeEdges, turned.edges, fixed.edges.records, reach, all.edge_edge, &nearest->edge_edge);
+  keep(kernels.nearVertexVertices, turned.vertices[1], fixed.vertices.records, reach, all.vertex_vertex, &nearest->vertex_vertex);
   dropLeading(pair, margin.motion, lists->near, &nearest->vertex_vertex);
+}
+
+void findNearestCrossings(const TurnedFeatures& turned, const ListMargin& margin, const CandidateLists& lists, CandidatePairs* nearest) {
+  const auto nearEdgeFaces = kernels::kernels().nearEdgeFaces;
+  const kernels::Reach reach{0, margin.motion, margin.turn};
+  const CandidatePairs& all = lists.pairs;
+  keep(nearEdgeFaces, turned.edges, lists.near[0].faces.records, reach, all.edge_face[1], &nearest->edge_face[1]);
+  keep(nearEdgeFaces, lists.near[0].edges.records, turned.faces, reach, all.edge_face[0], &nearest->edge_face[0]);
 }
 
 }  // namespace blem_sim

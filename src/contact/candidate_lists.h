@@ -68,7 +68,8 @@ struct CandidatePairs {
   Candidates edge_edge, vertex_vertex;  ///< a is the moving mesh's
 
   void clear();
-  std::size_t contacts() const;  ///< how many candidates for contacts
+  std::size_t contacts() const;   ///< how many candidates for contacts
+  std::size_t crossings() const;  ///< and for crossings
 };
 
 struct CandidateLists {
@@ -78,19 +79,16 @@ struct CandidateLists {
   void clear();
 };
 
-/** The features of lists in the other mesh's frame. */
+/** Features of lists in the other mesh's frame. */
 struct TurnedFeatures {
-  std::vector<kernels::Vec4> vertices[2];
-  std::vector<kernels::EdgeRecord> edges[2];
+  std::vector<kernels::Vec4> vertices[2];  ///< as NearFeatures
+  std::vector<kernels::EdgeRecord> edges;  ///< of the moving mesh
+  std::vector<kernels::FaceRecord> faces;  ///< of the moving mesh
 
   /** Those that candidates for contacts are tested with. @param X_FM of the pair */
-  void turn(const CandidateLists& lists, const Pose& X_FM);
+  void turnForContacts(const CandidateLists& lists, const Pose& X_FM);
   /** And those for crossings. */
   void turnForCrossings(const CandidateLists& lists, const Pose& X_FM);
-
- private:
-  void turnVertices(bool moves, const CandidateLists& lists, const kernels::Motion& motion);
-  void turnEdges(bool moves, const CandidateLists& lists, const kernels::Motion& motion);
 };
 
 /** For how much motion of one mesh against the other lists of candidates are good. */
@@ -119,5 +117,7 @@ void findCandidates(const MeshPair& pair, const ListMargin& margin, CandidateSea
  */
 void findNearest(const MeshPair& pair, const TurnedFeatures& turned, const ListMargin& margin, CandidateLists* lists,
                  CandidatePairs* nearest);
+/** The same of those for crossings. @param turned for crossings */
+void findNearestCrossings(const TurnedFeatures& turned, const ListMargin& margin, const CandidateLists& lists, CandidatePairs* nearest);
 
 }  // namespace blem_sim

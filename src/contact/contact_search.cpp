@@ -85,23 +85,22 @@ class Evaluation {
     for (const bool moves : {true, false}) {
       vertexFaces(moves);
       vertexEdges(moves, moves ? vertices[1].data() : lists_.near[0].vertices.records.data(),
-                  moves ? lists_.near[0].edges.records.data() : edges[1].data());
+                  moves ? lists_.near[0].edges.records.data() : edges.data());
     }
-    edgeEdges(edges[1].data(), lists_.near[0].edges.records.data());
+    edgeEdges(edges.data(), lists_.near[0].edges.records.data());
     vertexVertices(vertices[1].data(), lists_.near[0].vertices.records.data());
   }
 
   void findCrossings() {
-    buffers_.turned.turnForCrossings(lists_, pair_.X_FM);
+    const TurnedFeatures& turned = buffers_.turned;
     for (const bool moves : {true, false}) {
       const std::vector<Candidate>& candidates = pairs_.edge_face[moves];
-      const auto& edges = lists_.near[moves].edges;
-      const auto& turned = buffers_.turned.edges[moves];
-      const auto& faces = lists_.near[!moves].faces;
+      const auto& edges = moves ? turned.edges : lists_.near[0].edges.records;
+      const auto& faces = moves ? lists_.near[0].faces.records : turned.faces;
       forEachHit(candidates,
-                 kernels::kernels().edgeFaces(turned.data(), faces.records.data(), candidates.data(), candidates.size(), room(candidates)),
+                 kernels::kernels().edgeFaces(edges.data(), faces.data(), candidates.data(), candidates.size(), room(candidates)),
                  [&](const Candidate& c) {
-                   const Crossing crossing{moves, edges.names[c.a], faces.names[c.b]};
+                   const Crossing crossing{moves, lists_.near[moves].edges.names[c.a], lists_.near[!moves].faces.names[c.b]};
                    if (crosses(pair_, crossing)) found_.crossings.push_back(crossing);
                  });
     }
@@ -234,9 +233,12 @@ class ContactSearch {
   void run(bool keeps) {
     const bool apart = memory_.visited && motion_.motion + DISTANCE_ROUNDING < memory_.distance;
     refreshLists(keeps ? chooseMargin() : ListMargin());
-    buffers_.turned.turn(memory_.lists, pair_.X_FM);
+    buffers_.turned.turnForContacts(memory_.lists, pair_.X_FM);
     Evaluation(pair_, &memory_.lists, nearestPairs(), &buffers_, &found_).findContacts();
-    if (!apart) Evaluation(pair_, &memory_.lists, memory_.lists.pairs, &buffers_, &found_).findCrossings();
+    if (!apart) {
+      buffers_.turned.turnForCrossings(memory_.lists, pair_.X_FM);
+      Evaluation(pair_, &memory_.lists, nearestCrossings(), &buffers_, &found_).findCrossings();
+    }
     memory_.visited = keeps;
     memory_.X_FM = pair_.X_FM;
     memory_.distance = found_.crossings.empty() ? leastGap() : 0;
@@ -244,7 +246,7 @@ class ContactSearch {
 
  private:
   void forget() {
-    memory_.visited = memory_.lists_origin.known = memory_.nearest_origin.known = false;
+    memory_.visited = memory_.lists_origin.known = memory_.nearest_origin.known = memory_.crossings_origin.known = false;
     memory_.moving = pair_.moving.identity;
     memory_.fixed = pair_.fixed.identity;
   }
@@ -267,18 +269,33 @@ class ContactSearch {
     if (isGood(memory_.lists_origin)) return;
     findCandidates(pair_, margin, &buffers_.search, &memory_.lists);
     memory_.lists_origin = {true, pair_.X_FM, pair_.range, margin};
-    memory_.nearest_origin.known = false;
+    memory_.nearest_origin.known = memory_.crossings_origin.known = false;
+  }
+
+  /** For how much motion the nearest candidates are listed. */
+  ListMargin nearestMargin() const {
+    return {std::max(NEAREST_STEPS * motion_.motion, LEAST_NEAREST_MARGIN * pair_.range),
+            std::max(NEAREST_STEPS * motion_.turn, LEAST_NEAREST_TURN)};
+  }
+
+  bool isWorthShortening(std::size_t candidates) const {
+    return candidates > FEW_CANDIDATES && 2 * nearestMargin().motion < memory_.lists_origin.margin.motion;
   }
 
   /** The candidates to test, good lists given. */
   const CandidatePairs& nearestPairs() {
     if (isGood(memory_.nearest_origin)) return memory_.nearest;
-    const ListMargin margin{std::max(NEAREST_STEPS * motion_.motion, LEAST_NEAREST_MARGIN * pair_.range),
-                            std::max(NEAREST_STEPS * motion_.turn, LEAST_NEAREST_TURN)};
-    if (memory_.lists.pairs.contacts() <= FEW_CANDIDATES || 2 * margin.motion >= memory_.lists_origin.margin.motion)
-      return memory_.lists.pairs;
-    findNearest(pair_, buffers_.turned, margin, &memory_.lists, &memory_.nearest);
-    memory_.nearest_origin = {true, pair_.X_FM, pair_.range, margin};
+    if (!isWorthShortening(memory_.lists.pairs.contacts())) return memory_.lists.pairs;
+    findNearest(pair_, buffers_.turned, nearestMargin(), &memory_.lists, &memory_.nearest);
+    memory_.nearest_origin = {true, pair_.X_FM, pair_.range, nearestMargin()};
+    return memory_.nearest;
+  }
+
+  const CandidatePairs& nearestCrossings() {
+    if (isGood(memory_.crossings_origin)) return memory_.nearest;
+    if (!isWorthShortening(memory_.lists.pairs.crossings())) return memory_.lists.pairs;
+    findNearestCrossings(buffers_.turned, nearestMargin(), memory_.lists, &memory_.nearest);
+    memory_.crossings_origin = {true, pair_.X_FM, pair_.range, nearestMargin()};
     return memory_.nearest;
   }
 

@@ -31,7 +31,7 @@ struct ContactSearchMemory {
   std::uint64_t moving = 0, fixed = 0;  ///< whose
   CandidateLists lists;                 ///< for many steps
   CandidatePairs nearest;               ///< those of them that matter for a few
-  ListOrigin lists_origin, nearest_origin;
+  ListOrigin lists_origin, nearest_origin, crossings_origin;
   bool visited = false;
   Pose X_FM = Pose::Identity();  ///< at the last search
   double distance = 0;           ///< [m] of the meshes then, at least; 0 if they crossed

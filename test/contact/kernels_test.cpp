@@ -87,6 +87,7 @@ Found found(const Kernels& set, const Features& in) {
   };
   const Reach reach{RANGE, 0.1, 0.02};
   addNear(set.nearVertexFaces(in.vertices.data(), in.faces.data(), in.open.data(), candidates, CANDIDATES, reach, near.data()));
+  addNear(set.nearEdgeFaces(in.edges.data(), in.faces.data(), candidates, CANDIDATES, reach, near.data()));
   addNear(set.nearEdgeEdges(in.edges.data(), in.edges.data(), candidates, CANDIDATES, reach, near.data()));
   addNear(set.nearVertexEdges(in.vertices.data(), in.edges.data(), candidates, CANDIDATES, reach, near.data()));
   addNear(set.nearVertexVertices(in.vertices.data(), in.vertices.data(), candidates, CANDIDATES, reach, near.data()));
@@ -95,6 +96,11 @@ Found found(const Kernels& set, const Features& in) {
   set.turnEdges(in.edges.data(), FEATURES, motion, turned.data());
   for (const EdgeRecord& edge : turned)
     for (const Vec4& v : {edge.start, edge.along, edge.inward[0], edge.inward[1]})
+      out.numbers.insert(out.numbers.end(), {v.x, v.y, v.z, v.w});
+  std::vector<FaceRecord> turned_faces(FEATURES);
+  set.turnFaces(in.faces.data(), FEATURES, motion, turned_faces.data());
+  for (const FaceRecord& face : turned_faces)
+    for (const Vec4& v : {face.plane, face.sides[0], face.sides[1], face.sides[2]})
       out.numbers.insert(out.numbers.end(), {v.x, v.y, v.z, v.w});
   return out;
 }

@@ -14,6 +14,7 @@ struct Kernels {
   /** out[i] = motion of in[i]; w is kept. */
   void (*turnPoints)(const Vec4* in, std::uint32_t count, const Motion& motion, Vec4* out);
   void (*turnEdges)(const EdgeRecord* in, std::uint32_t count, const Motion& motion, EdgeRecord* out);
+  void (*turnFaces)(const FaceRecord* in, std::uint32_t count, const Motion& motion, FaceRecord* out);
 
   void (*turnLeaf)(const LeafShapes& in, const Motion& motion, LeafShapes* out);  ///< all but the box
 
@@ -33,6 +34,10 @@ struct Kernels {
                                    Candidate* out);
   std::uint32_t (*nearVertexVertices)(const Vec4* a, const Vec4* b, const Candidate* in, std::uint32_t count, const Reach& reach,
                                       Candidate* out);
+
+  /** The same of edges that may pass through faces; the range is not asked. */
+  std::uint32_t (*nearEdgeFaces)(const EdgeRecord* a, const FaceRecord* b, const Candidate* in, std::uint32_t count, const Reach& reach,
+                                 Candidate* out);
 
   /** Candidates with a contact within `range`, and those that need a closer look. @return number of hits */
   std::uint32_t (*vertexFaces)(const Vec4* a, const FaceRecord* b, const OpenSides* open, const Candidate* candidates, std::uint32_t count,

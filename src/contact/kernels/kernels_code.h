@@ -39,11 +39,23 @@ void turnEdges(const EdgeRecord* in, std::uint32_t count, const Motion& motion, 
   }
 }
 
+void turnFaces(const FaceRecord* in, std::uint32_t count, const Motion& motion, FaceRecord* out) {
+  const Turn turn(motion);
+  const auto plane = [&](const Vec4& from, Vec4* to) {
+    turn.direction(from, to);
+    to->w += motion.t[0] * to->x + motion.t[1] * to->y + motion.t[2] * to->z;
+  };
+  for (std::uint32_t i = 0; i < count; ++i) {
+    plane(in[i].plane, &out[i].plane);
+    for (int k = 0; k < 3; ++k) plane(in[i].sides[k], &out[i].sides[k]);
+  }
+}
+
 }  // namespace
 }  // namespace blem_sim::kernels
 
-#define BLEM_SIM_KERNEL_TABLE(name)                                                                                      \
-  {                                                                                                                      \
-    name, turnPoints, turnEdges, turnLeaf, leafContacts, leafCrossings, nearVertexFaces, nearEdgeEdges, nearVertexEdges, \
-        nearVertexVertices, vertexFaces, edgeEdges, vertexEdges, vertexVertices, edgeFaces                               \
+#define BLEM_SIM_KERNEL_TABLE(name)                                                                                                 \
+  {                                                                                                                                 \
+    name, turnPoints, turnEdges, turnFaces, turnLeaf, leafContacts, leafCrossings, nearVertexFaces, nearEdgeEdges, nearVertexEdges, \
+        nearVertexVertices, nearEdgeFaces, vertexFaces, edgeEdges, vertexEdges, vertexVertices, edgeFaces                           \
   }
