@@ -15,6 +15,7 @@ using kernels::Vec4;
 
 // A list is made for so many steps of the present motion: longer ones cost more in every step, shorter ones are made anew too often.
 constexpr double MARGIN_STEPS = 20, FEWEST_STEPS = 3;
+constexpr double LEAST_PART = 0.7;  // of MARGIN_STEPS, see partOf
 // Of long lists those that matter for so few steps are listed again.
 constexpr double NEAREST_STEPS = 4;
 constexpr std::size_t FEW_CANDIDATES = 200;
@@ -47,6 +48,13 @@ double largestMotion(const Box& region, const Pose& X, const Pose& Y) {
 
 /** How far the end of a unit vector moves at most from one orientation to the other. */
 double largestTurn(const Pose& X, const Pose& Y) { return (X.linear() - Y.linear()).norm() / std::sqrt(2.0); }
+
+/** A number from LEAST_PART to 1 that is another for every pose: pairs that set out together shall not all need new lists in one step. */
+double partOf(const Pose& X) {
+  constexpr double GRAIN = 1e-7;  // [m]
+  const double grains = X.translation().sum() / GRAIN;
+  return LEAST_PART + (1 - LEAST_PART) * (grains - std::floor(grains));
+}
 
 /** The planes that vertices lie over. */
 class PlanesBelow {
@@ -254,8 +262,9 @@ class ContactSearch {
   ListMargin chooseMargin() const {
     if (!memory_.visited) return {FIRST_MARGIN * pair_.range, FIRST_TURN};
     if (FEWEST_STEPS * motion_.motion > MOST_MARGIN * pair_.range) return {};
-    return {std::clamp(MARGIN_STEPS * motion_.motion, LEAST_MARGIN * pair_.range, MOST_MARGIN * pair_.range),
-            std::max(MARGIN_STEPS * motion_.turn, LEAST_TURN)};
+    const double steps = MARGIN_STEPS * partOf(pair_.X_FM);
+    return {std::clamp(steps * motion_.motion, LEAST_MARGIN * pair_.range, MOST_MARGIN * pair_.range),
+            std::max(steps * motion_.turn, LEAST_TURN)};
   }
 
   bool isGood(const ListOrigin& origin) const {
