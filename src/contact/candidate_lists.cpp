@@ -29,15 +29,14 @@ class Search {
   template <typename Visit>
   void forEachLeafPair(Visit&& visit) {
     const auto matters = [this](std::uint32_t m, std::uint32_t f) { return (pair_.moving.owners[m] | pair_.fixed.owners[f]) != 0; };
-    visitLeafPairsIf(pair_.moving.bvh, pair_.fixed.bvh, pair_.X_FM, reach_, matters, [&](std::uint32_t m, std::uint32_t f) {
+    visitLeafPairsIf(pair_.moving.bvh, pair_.fixed.bvh, pair_.X_FM, reach_ + rounding(), matters, [&](std::uint32_t m, std::uint32_t f) {
       visit(buffers_.leaves.moving(pair_.moving, m, search_, motion_), buffers_.leaves.standing(pair_.fixed, f, search_));
     });
   }
 
   /** With room for the rounding of floats. */
   kernels::LeafReach leafReach(const ListMargin& margin) const {
-    const double largest = std::max(pair_.fixed.bounds.min().cwiseAbs().maxCoeff(), pair_.fixed.bounds.max().cwiseAbs().maxCoeff());
-    const double wider = margin.motion + FLOAT_ROUNDING * (largest + reach_) + 3 * CLOSED;
+    const double wider = margin.motion + rounding();
     return {static_cast<float>(reach_ - margin.motion + wider), static_cast<float>(wider), static_cast<float>(margin.turn + FLOAT_TURN),
             static_cast<float>(deepestInside(reach_) + wider)};
   }
@@ -68,6 +67,11 @@ class Search {
   }
 
  private:
+  double rounding() const {
+    const double largest = std::max(pair_.fixed.bounds.min().cwiseAbs().maxCoeff(), pair_.fixed.bounds.max().cwiseAbs().maxCoeff());
+    return FLOAT_ROUNDING * (largest + reach_) + 3 * CLOSED;
+  }
+
   template <typename Record>
   std::uint32_t slot(bool moves, std::uint32_t* slot, FeatureRecords<Record>* features, int name, Record (*record)(const MeshSide&, int)) {
     if (*slot == LeafFeatures::NO_SLOT) *slot = features->add(record(pair_.side(moves), name), name);
@@ -81,12 +85,6 @@ class Search {
   CandidateLists& lists_;
   const std::uint64_t search_;
 };
-
-bool boxesWithin(const kernels::LeafShapes& a, const kernels::LeafShapes& b, float reach) {
-  bool within = true;
-  for (int k = 0; k < 3; ++k) within = within && a.lower[k] <= b.upper[k] + reach && b.lower[k] <= a.upper[k] + reach;
-  return within;
-}
 
 /** Drops pairs of vertices that have no contact, however they move by the margin [m]: those that lead towards each other, or where one does
  * and the other, nearer than its surroundings, is not round. */
@@ -168,8 +166,6 @@ std::size_t CandidatePairs::contacts() const {
          vertex_vertex.size();
 }
 
-std::size_t CandidatePairs::crossings() const { return edge_face[0].size() + edge_face[1].size(); }
-
 void CandidateLists::clear() {
   for (NearFeatures& features : near) features.clear();
   pairs.clear();
@@ -196,6 +192,7 @@ void TurnedFeatures::turnForContacts(const CandidateLists& lists, const Pose& X_
 }
 
 void TurnedFeatures::turnForCrossings(const CandidateLists& lists, const Pose& X_FM) {
+  turn(kernels::kernels().turnEdges, lists.near[1].edges.records, motionOf(X_FM), &edges);
   turn(kernels::kernels().turnFaces, lists.near[1].faces.records, motionOf(X_FM), &faces);
 }
 
@@ -223,15 +220,22 @@ void findCandidates(const MeshPair& pair, const ListMargin& margin, CandidateSea
     Search::append(hits.edge_edge, hits.edge_edges, &lists->pairs.edge_edge, [&](auto i, auto j) -> Candidate {
       return {search.edge(true, &m, i), search.edge(false, &f, j)};
     });
-    if (!boxesWithin(m.turned, f.shapes, reach.margin)) return;
-    kernels.leafCrossings(m.turned, f.shapes, reach, &hits);
+  });
+  if (margin.motion > 0) dropLeading(pair, margin.motion, lists->near, &lists->pairs.vertex_vertex);
+}
+
+void findCrossingCandidates(const MeshPair& pair, const ListMargin& margin, CandidateSearchBuffers* buffers, CandidateLists* lists) {
+  Search search(pair, margin.motion, buffers, lists);
+  const kernels::LeafReach reach = search.leafReach(margin);
+  kernels::LeafHits& hits = buffers->hits;
+  search.forEachLeafPair([&](LeafFeatures& m, LeafFeatures& f) {
+    kernels::kernels().leafCrossings(m.turned, f.shapes, reach, &hits);
     for (const bool moves : {true, false}) {
       Search::append(hits.edge_face[!moves], hits.edge_faces[!moves], &lists->pairs.edge_face[moves], [&](auto i, auto j) -> Candidate {
         return {search.edge(moves, moves ? &m : &f, i), search.face(!moves, moves ? &f : &m, j)};
       });
     }
   });
-  if (margin.motion > 0) dropLeading(pair, margin.motion, lists->near, &lists->pairs.vertex_vertex);
 }
 
 namespace {
@@ -263,14 +267,6 @@ void findNearest(const MeshPair& pair, const TurnedFeatures& turned, const ListM
   keep(kernels.nearEdgeEdges, turned.edges, fixed.edges.records, reach, all.edge_edge, &nearest->edge_edge);
   keep(kernels.nearVertexVertices, turned.vertices[1], fixed.vertices.records, reach, all.vertex_vertex, &nearest->vertex_vertex);
   dropLeading(pair, margin.motion, lists->near, &nearest->vertex_vertex);
-}
-
-void findNearestCrossings(const TurnedFeatures& turned, const ListMargin& margin, const CandidateLists& lists, CandidatePairs* nearest) {
-  const auto nearEdgeFaces = kernels::kernels().nearEdgeFaces;
-  const kernels::Reach reach{0, margin.motion, margin.turn};
-  const CandidatePairs& all = lists.pairs;
-  keep(nearEdgeFaces, turned.edges, lists.near[0].faces.records, reach, all.edge_face[1], &nearest->edge_face[1]);
-  keep(nearEdgeFaces, lists.near[0].edges.records, turned.faces, reach, all.edge_face[0], &nearest->edge_face[0]);
 }
 
 }  // namespace blem_sim

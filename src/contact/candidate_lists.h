@@ -68,8 +68,7 @@ struct CandidatePairs {
   Candidates edge_edge, vertex_vertex;  ///< a is the moving mesh's
 
   void clear();
-  std::size_t contacts() const;   ///< how many candidates for contacts
-  std::size_t crossings() const;  ///< and for crossings
+  std::size_t contacts() const;  ///< how many candidates for contacts
 };
 
 struct CandidateLists {
@@ -87,7 +86,7 @@ struct TurnedFeatures {
 
   /** Those that candidates for contacts are tested with. @param X_FM of the pair */
   void turnForContacts(const CandidateLists& lists, const Pose& X_FM);
-  /** And those for crossings. */
+  /** Those that candidates for crossings are tested with. */
   void turnForCrossings(const CandidateLists& lists, const Pose& X_FM);
 };
 
@@ -105,10 +104,12 @@ struct CandidateSearchBuffers {
 };
 
 /**
- * Candidates for every contact within pair.range and every crossing that there is at the pair's pose, or at one where no point of either
- * mesh near the other has moved, and no direction has turned, by more than the margin against it. Overwrites the lists.
+ * Candidates for every contact within pair.range that there is at the pair's pose, or at one where no point of either mesh near the other
+ * has moved, and no direction has turned, by more than the margin against it. Overwrites the lists.
  */
 void findCandidates(const MeshPair& pair, const ListMargin& margin, CandidateSearchBuffers* buffers, CandidateLists* lists);
+/** The same for every crossing. */
+void findCrossingCandidates(const MeshPair& pair, const ListMargin& margin, CandidateSearchBuffers* buffers, CandidateLists* lists);
 
 /**
  * Of the candidates for contacts those that can have one within pair.range while nothing moves or turns by more than the margin, in their
@@ -117,7 +118,5 @@ void findCandidates(const MeshPair& pair, const ListMargin& margin, CandidateSea
  */
 void findNearest(const MeshPair& pair, const TurnedFeatures& turned, const ListMargin& margin, CandidateLists* lists,
                  CandidatePairs* nearest);
-/** The same of those for crossings. @param turned for crossings */
-void findNearestCrossings(const TurnedFeatures& turned, const ListMargin& margin, const CandidateLists& lists, CandidatePairs* nearest);
 
 }  // namespace blem_sim

@@ -244,8 +244,10 @@ class ContactSearch {
     buffers_.turned.turnForContacts(memory_.lists, pair_.X_FM);
     Evaluation(pair_, &memory_.lists, nearestPairs(), &buffers_, &found_).findContacts();
     if (!apart) {
-      buffers_.turned.turnForCrossings(memory_.lists, pair_.X_FM);
-      Evaluation(pair_, &memory_.lists, nearestCrossings(), &buffers_, &found_).findCrossings();
+      refreshCrossingLists(keeps ? nearestMargin() : ListMargin());
+      CandidateLists& lists = memory_.crossing_lists;
+      buffers_.turned.turnForCrossings(lists, pair_.X_FM);
+      Evaluation(pair_, &lists, lists.pairs, &buffers_, &found_).findCrossings();
     }
     memory_.visited = keeps;
     memory_.X_FM = pair_.X_FM;
@@ -278,7 +280,13 @@ class ContactSearch {
     if (isGood(memory_.lists_origin)) return;
     findCandidates(pair_, margin, &buffers_.search, &memory_.lists);
     memory_.lists_origin = {true, pair_.X_FM, pair_.range, margin};
-    memory_.nearest_origin.known = memory_.crossings_origin.known = false;
+    memory_.nearest_origin.known = false;
+  }
+
+  void refreshCrossingLists(const ListMargin& margin) {
+    if (isGood(memory_.crossings_origin)) return;
+    findCrossingCandidates(pair_, margin, &buffers_.search, &memory_.crossing_lists);
+    memory_.crossings_origin = {true, pair_.X_FM, pair_.range, margin};
   }
 
   /** For how much motion the nearest candidates are listed. */
@@ -287,24 +295,13 @@ class ContactSearch {
             std::max(NEAREST_STEPS * motion_.turn, LEAST_NEAREST_TURN)};
   }
 
-  bool isWorthShortening(std::size_t candidates) const {
-    return candidates > FEW_CANDIDATES && 2 * nearestMargin().motion < memory_.lists_origin.margin.motion;
-  }
-
   /** The candidates to test, good lists given. */
   const CandidatePairs& nearestPairs() {
     if (isGood(memory_.nearest_origin)) return memory_.nearest;
-    if (!isWorthShortening(memory_.lists.pairs.contacts())) return memory_.lists.pairs;
+    if (memory_.lists.pairs.contacts() <= FEW_CANDIDATES || 2 * nearestMargin().motion >= memory_.lists_origin.margin.motion)
+      return memory_.lists.pairs;
     findNearest(pair_, buffers_.turned, nearestMargin(), &memory_.lists, &memory_.nearest);
     memory_.nearest_origin = {true, pair_.X_FM, pair_.range, nearestMargin()};
-    return memory_.nearest;
-  }
-
-  const CandidatePairs& nearestCrossings() {
-    if (isGood(memory_.crossings_origin)) return memory_.nearest;
-    if (!isWorthShortening(memory_.lists.pairs.crossings())) return memory_.lists.pairs;
-    findNearestCrossings(buffers_.turned, nearestMargin(), memory_.lists, &memory_.nearest);
-    memory_.crossings_origin = {true, pair_.X_FM, pair_.range, nearestMargin()};
     return memory_.nearest;
   }
 

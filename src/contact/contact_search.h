@@ -31,6 +31,7 @@ struct ContactSearchMemory {
   std::uint64_t moving = 0, fixed = 0;  ///< whose
   CandidateLists lists;                 ///< for many steps
   CandidatePairs nearest;               ///< those of them that matter for a few
+  CandidateLists crossing_lists;        ///< only where the meshes may have met
   ListOrigin lists_origin, nearest_origin, crossings_origin;
   bool visited = false;
   Pose X_FM = Pose::Identity();  ///< at the last search

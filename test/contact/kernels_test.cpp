@@ -87,7 +87,6 @@ Found found(const Kernels& set, const Features& in) {
   };
   const Reach reach{RANGE, 0.1, 0.02};
   addNear(set.nearVertexFaces(in.vertices.data(), in.faces.data(), in.open.data(), candidates, CANDIDATES, reach, near.data()));
-  addNear(set.nearEdgeFaces(in.edges.data(), in.faces.data(), candidates, CANDIDATES, reach, near.data()));
   addNear(set.nearEdgeEdges(in.edges.data(), in.edges.data(), candidates, CANDIDATES, reach, near.data()));
   addNear(set.nearVertexEdges(in.vertices.data(), in.edges.data(), candidates, CANDIDATES, reach, near.data()));
   addNear(set.nearVertexVertices(in.vertices.data(), in.vertices.data(), candidates, CANDIDATES, reach, near.data()));

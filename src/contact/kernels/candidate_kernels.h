@@ -159,22 +159,6 @@ std::uint32_t nearVertexVertices(const Vec4* a, const Vec4* b, const Candidate* 
   });
 }
 
-std::uint32_t nearEdgeFaces(const EdgeRecord* a, const FaceRecord* b, const Candidate* in, std::uint32_t count, const Reach& reach,
-                            Candidate* out) {
-  return copied(in, count, out, [&](const Batch& batch) {
-    const Vectors start = batch.field(a, batch.of_a, &EdgeRecord::start).v;
-    const Vectors end = start + batch.field(a, batch.of_a, &EdgeRecord::along).v;
-    const Rows plane = batch.field(b, batch.of_b, &FaceRecord::plane);
-    const Doubles first = above(start, plane), second = above(end, plane);
-    const unsigned through = bitsOf((minimum(first, second) <= reach.margin) & (maximum(first, second) >= -reach.margin));
-    if (through == 0) return 0u;
-    const InsideSides of_start(batch, b, start), of_end(batch, b, end);
-    Mask inside = maximum(of_start.of[0], of_end.of[0]) >= -(reach.margin + 3 * CLOSED);
-    for (int k = 1; k < 3; ++k) inside &= maximum(of_start.of[k], of_end.of[k]) >= -(reach.margin + 3 * CLOSED);
-    return through & bitsOf(inside);
-  });
-}
-
 // ---- what has a contact
 
 /** Offset from the foot on an edge, which may lie beyond its ends, and where that foot is as part of the edge. */

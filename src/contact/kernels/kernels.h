@@ -35,10 +35,6 @@ struct Kernels {
   std::uint32_t (*nearVertexVertices)(const Vec4* a, const Vec4* b, const Candidate* in, std::uint32_t count, const Reach& reach,
                                       Candidate* out);
 
-  /** The same of edges that may pass through faces; the range is not asked. */
-  std::uint32_t (*nearEdgeFaces)(const EdgeRecord* a, const FaceRecord* b, const Candidate* in, std::uint32_t count, const Reach& reach,
-                                 Candidate* out);
-
   /** Candidates with a contact within `range`, and those that need a closer look. @return number of hits */
   std::uint32_t (*vertexFaces)(const Vec4* a, const FaceRecord* b, const OpenSides* open, const Candidate* candidates, std::uint32_t count,
                                double range, VertexFaceHit* hits);

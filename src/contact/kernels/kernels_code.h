@@ -57,5 +57,5 @@ void turnFaces(const FaceRecord* in, std::uint32_t count, const Motion& motion, 
 #define BLEM_SIM_KERNEL_TABLE(name)                                                                                                 \
   {                                                                                                                                 \
     name, turnPoints, turnEdges, turnFaces, turnLeaf, leafContacts, leafCrossings, nearVertexFaces, nearEdgeEdges, nearVertexEdges, \
-        nearVertexVertices, nearEdgeFaces, vertexFaces, edgeEdges, vertexEdges, vertexVertices, edgeFaces                           \
+        nearVertexVertices, vertexFaces, edgeEdges, vertexEdges, vertexVertices, edgeFaces                                          \
   }
