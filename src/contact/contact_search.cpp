@@ -14,7 +14,7 @@ using kernels::Candidate;
 using kernels::Vec4;
 
 // A list is made for so many steps of the present motion: longer ones cost more in every step, shorter ones are made anew too often.
-constexpr double MARGIN_STEPS = 20, FEWEST_STEPS = 3;
+constexpr double MARGIN_STEPS = 14, FEWEST_STEPS = 3;
 constexpr double LEAST_PART = 0.7;  // of MARGIN_STEPS, see partOf
 // Of long lists those that matter for so few steps are listed again.
 constexpr double NEAREST_STEPS = 4;
