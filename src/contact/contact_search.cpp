@@ -18,6 +18,8 @@ constexpr double MARGIN_STEPS = 14, FEWEST_STEPS = 3;
 constexpr double LEAST_PART = 0.7;  // of MARGIN_STEPS, see partOf
 // Of long lists those that matter for so few steps are listed again.
 constexpr double NEAREST_STEPS = 4;
+// Candidates for crossings are listed for so many.
+constexpr double CROSSING_STEPS = 8;
 constexpr std::size_t FEW_CANDIDATES = 200;
 constexpr double LEAST_MARGIN = 0.02, MOST_MARGIN = 0.8, LEAST_NEAREST_MARGIN = 0.005;  // of the range
 constexpr double FIRST_MARGIN = 0.1;                                                    // of the range, where the motion is not known yet
@@ -244,7 +246,7 @@ class ContactSearch {
     buffers_.turned.turnForContacts(memory_.lists, pair_.X_FM);
     Evaluation(pair_, &memory_.lists, nearestPairs(), &buffers_, &found_).findContacts();
     if (!apart) {
-      refreshCrossingLists(keeps ? nearestMargin() : ListMargin());
+      refreshCrossingLists(keeps ? marginOf(CROSSING_STEPS) : ListMargin());
       CandidateLists& lists = memory_.crossing_lists;
       buffers_.turned.turnForCrossings(lists, pair_.X_FM);
       Evaluation(pair_, &lists, lists.pairs, &buffers_, &found_).findCrossings();
@@ -289,19 +291,19 @@ class ContactSearch {
     memory_.crossings_origin = {true, pair_.X_FM, pair_.range, margin};
   }
 
-  /** For how much motion the nearest candidates are listed. */
-  ListMargin nearestMargin() const {
-    return {std::max(NEAREST_STEPS * motion_.motion, LEAST_NEAREST_MARGIN * pair_.range),
-            std::max(NEAREST_STEPS * motion_.turn, LEAST_NEAREST_TURN)};
+  /** For so many steps of the present motion. */
+  ListMargin marginOf(double steps) const {
+    return {std::max(steps * motion_.motion, LEAST_NEAREST_MARGIN * pair_.range), std::max(steps * motion_.turn, LEAST_NEAREST_TURN)};
   }
 
   /** The candidates to test, good lists given. */
   const CandidatePairs& nearestPairs() {
     if (isGood(memory_.nearest_origin)) return memory_.nearest;
-    if (memory_.lists.pairs.contacts() <= FEW_CANDIDATES || 2 * nearestMargin().motion >= memory_.lists_origin.margin.motion)
+    const ListMargin margin = marginOf(NEAREST_STEPS);
+    if (memory_.lists.pairs.contacts() <= FEW_CANDIDATES || 2 * margin.motion >= memory_.lists_origin.margin.motion)
       return memory_.lists.pairs;
-    findNearest(pair_, buffers_.turned, nearestMargin(), &memory_.lists, &memory_.nearest);
-    memory_.nearest_origin = {true, pair_.X_FM, pair_.range, nearestMargin()};
+    findNearest(pair_, buffers_.turned, margin, &memory_.lists, &memory_.nearest);
+    memory_.nearest_origin = {true, pair_.X_FM, pair_.range, margin};
     return memory_.nearest;
   }
 
