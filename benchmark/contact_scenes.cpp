@@ -46,12 +46,10 @@ TriangleMesh noisyGrid(int triangles) {
   return mesh;
 }
 
-/** In [-1, 1), the same for a place of the grid however large that is [Steele, Lea, Flood 2014: SplitMix64's mixing]. */
+/** In [-1, 1), the same for a place of the grid however large that is. */
 double noiseAt(int i, int j) {
-  auto bits = static_cast<std::uint64_t>(i + 100000) * 1000003 + static_cast<std::uint64_t>(j + 100000);
-  bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9ULL;
-  bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebULL;
-  return static_cast<double>((bits ^ (bits >> 31)) >> 11) * 0x1p-52 - 1;
+  const std::int64_t row = i, column = j;
+  return RandomShapes(static_cast<std::uint64_t>(row * 1000003 + column)).uniform(-1, 1);
 }
 
 /** About as many triangles as asked for, `cell` [m] wide: the middle of a larger one is a smaller one, to the last bit. */
@@ -124,18 +122,18 @@ std::unique_ptr<ContactScene> huboOn(TriangleMesh terrain, bool points) {
   return scene;
 }
 
-std::unique_ptr<ContactScene> cubeOn(TriangleMesh terrain) {
+std::unique_ptr<ContactScene> boxOn(TriangleMesh terrain, const Vector3& size) {
   auto scene = std::make_unique<ContactScene>();
-  scene->name = "cube on " + std::to_string(terrain.elements.size());
+  scene->name = "box on " + std::to_string(terrain.elements.size());
   scene->standing = makeCollider(std::move(terrain), 0);
-  scene->moving = {makeCollider(boxMesh(Vector3::Constant(0.1)), LAYER)};
-  scene->pose = [](int collider, int step) {
-    return moved(makePose({0.01, 0.02, 0.05 + NOISE + CLEARANCE}), Vector3::Zero(), collider, step);
-  };
+  scene->moving = {makeCollider(boxMesh(size), LAYER)};
+  const Vector3 centre(0.01, 0.02, 0.5 * size.z() + NOISE + CLEARANCE);
+  scene->pose = [centre](int collider, int step) { return moved(makePose(centre), Vector3::Zero(), collider, step); };
   return scene;
 }
 
-constexpr double HUBO_CELL = 0.01, CUBE_CELL = 0.0075;  // [m]
+constexpr double HUBO_CELL = 0.01, CUBE_CELL = 0.0075, SLAB_CELL = 0.01;  // [m]
+const Vector3 CUBE = Vector3::Constant(0.1);                              // [m]
 
 bool haveHubo() { return sharedData("robots/klampt/huboplus/huboplus.urdf").has_value(); }
 
@@ -149,9 +147,15 @@ std::unique_ptr<ContactScene> huboOnGrowingTerrain(int triangles) {
   return haveHubo() ? huboOn(growingGrid(triangles, HUBO_CELL), false) : nullptr;
 }
 
-std::unique_ptr<ContactScene> cubeOnTerrain(int triangles) { return cubeOn(noisyGrid(triangles)); }
+std::unique_ptr<ContactScene> cubeOnTerrain(int triangles) { return boxOn(noisyGrid(triangles), CUBE); }
 
-std::unique_ptr<ContactScene> cubeOnGrowingTerrain(int triangles) { return cubeOn(growingGrid(triangles, CUBE_CELL)); }
+std::unique_ptr<ContactScene> cubeOnGrowingTerrain(int triangles) { return boxOn(growingGrid(triangles, CUBE_CELL), CUBE); }
+
+std::unique_ptr<ContactScene> slabOnTerrain(int contacts) {
+  const double cells = std::sqrt(contacts), beside = 10;
+  const Vector3 slab(SLAB_CELL * cells, SLAB_CELL * cells, 0.05);
+  return boxOn(growingGrid(static_cast<int>(2 * (cells + beside) * (cells + beside)), SLAB_CELL), slab);
+}
 
 std::unique_ptr<ContactScene> mugOnFractalTerrain(int triangles) {
   if (!sharedData(MUG) || !sharedData(FRACTAL)) return nullptr;

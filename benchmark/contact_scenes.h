@@ -33,6 +33,8 @@ std::unique_ptr<ContactScene> cubeOnTerrain(int triangles);
 std::unique_ptr<ContactScene> huboOnGrowingTerrain(int triangles);
 /** A cube of 12 triangles on the same, 7.5 mm from vertex to vertex. */
 std::unique_ptr<ContactScene> cubeOnGrowingTerrain(int triangles);
+/** A slab of 12 triangles on the same, as wide as it must be for about so many contacts. */
+std::unique_ptr<ContactScene> slabOnTerrain(int contacts);
 /** A mug of 22,300 triangles upright on a fractal terrain, split to about `triangles`. Null without the shared data. */
 std::unique_ptr<ContactScene> mugOnFractalTerrain(int triangles);
 /** Two such mugs side by side, 2 mm apart, r 5 mm in all. */
