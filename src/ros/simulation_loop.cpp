@@ -22,7 +22,9 @@ SimulationLoop::SimulationLoop(Simulator* simulator)
       paused_(simulator->config().paused) {}
 
 void SimulationLoop::publish(const StepReport& report) {
+  const StepPacer::Clock::time_point start = StepPacer::Clock::now();
   for (const auto& publisher : publishers_) publisher->publish(report);
+  publish_seconds_ += std::chrono::duration<double>(StepPacer::Clock::now() - start).count();
 }
 
 bool SimulationLoop::step() {

@@ -37,6 +37,9 @@ class SimulationLoop {
   /** An environment was loaded or unloaded. */
   void geometryChanged();
 
+  /** [s] wall time that publishing took in this thread since the start. */
+  double publishSeconds() const { return publish_seconds_; }
+
  private:
   /** False if the state stopped being finite: the simulation is paused then. */
   bool step();
@@ -47,6 +50,7 @@ class SimulationLoop {
   StepPacer pacer_;
   Outbox outbox_;
   bool paused_;
+  double publish_seconds_ = 0;
 };
 
 }  // namespace blem_sim

@@ -56,7 +56,7 @@ struct SimulationNode::Impl {
     loop.add(std::make_unique<GeometryMarkerPublisher>(private_node, simulator));
     loop.add(std::make_unique<LoadReportPublisher>(private_node, simulator));
     loop.add(std::make_unique<StatePublisher>(private_node, simulator));
-    loop.add(std::make_unique<StepReportPublisher>(private_node, simulator));
+    loop.add(std::make_unique<StepReportPublisher>(private_node, &loop));
     auto diagnostics_publisher = std::make_unique<DiagnosticsPublisher>(node, private_node, simulator);
     diagnostics = diagnostics_publisher.get();
     loop.add(std::move(diagnostics_publisher));
