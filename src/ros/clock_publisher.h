@@ -4,6 +4,7 @@
 #include <rosgraph_msgs/Clock.h>
 
 #include "greeting_publisher.h"
+#include "message_pool.h"
 #include "publish_schedule.h"
 #include "step_publisher.h"
 
@@ -18,6 +19,7 @@ class ClockPublisher : public StepPublisher {
 
  private:
   GreetingPublisher<rosgraph_msgs::Clock> publisher_;
+  MessagePool<rosgraph_msgs::Clock> messages_;
   PublishSchedule schedule_;
   bool published_ = false;
   ros::Time last_;

@@ -13,6 +13,12 @@
 
 namespace blem_sim {
 
+/** [s] that publishing took in the stepping thread since the start. */
+struct PublishingTime {
+  double wall = 0;
+  double processor = 0;  ///< without waiting, and without what other threads and programs take
+};
+
 class SimulationLoop {
  public:
   explicit SimulationLoop(Simulator* simulator);
@@ -37,8 +43,7 @@ class SimulationLoop {
   /** An environment was loaded or unloaded. */
   void geometryChanged();
 
-  /** [s] wall time that publishing took in this thread since the start. */
-  double publishSeconds() const { return publish_seconds_; }
+  const PublishingTime& publishingTime() const { return publishing_time_; }
 
  private:
   /** False if the state stopped being finite: the simulation is paused then. */
@@ -50,7 +55,7 @@ class SimulationLoop {
   StepPacer pacer_;
   Outbox outbox_;
   bool paused_;
-  double publish_seconds_ = 0;
+  PublishingTime publishing_time_;
 };
 
 }  // namespace blem_sim

@@ -57,7 +57,7 @@ struct SimulationNode::Impl {
     loop.add(std::make_unique<LoadReportPublisher>(private_node, simulator));
     loop.add(std::make_unique<StatePublisher>(private_node, simulator));
     loop.add(std::make_unique<StepReportPublisher>(private_node, &loop));
-    auto diagnostics_publisher = std::make_unique<DiagnosticsPublisher>(node, private_node, simulator);
+    auto diagnostics_publisher = std::make_unique<DiagnosticsPublisher>(node, private_node, &loop);
     diagnostics = diagnostics_publisher.get();
     loop.add(std::move(diagnostics_publisher));
     loop.add(std::make_unique<ClockPublisher>(node, simulator.config().rates.clock));

@@ -52,8 +52,8 @@ void StepReportPublisher::publish(const StepReport& report) {
   }
   // Up to the step before; this one's messages are still going out.
   message.stages.emplace_back("publish");
-  message.stage_seconds.push_back((loop_.publishSeconds() - published_) / statistics.steps);
-  published_ = loop_.publishSeconds();
+  message.stage_seconds.push_back((loop_.publishingTime().wall - published_) / statistics.steps);
+  published_ = loop_.publishingTime().wall;
   publisher_.publish(message);
 }
 
