@@ -47,8 +47,9 @@ def rows(folder, name):
     if not path.exists():
         print("plot_results: %s is not there" % path.name)
         return None
-    with open(str(path)) as stream:
-        return [Row(fields) for fields in csv.DictReader(stream) if fields["error_occurred"] != "true"]
+    lines = path.read_text().splitlines()
+    begin = next((i for i, line in enumerate(lines) if line.startswith("name,")), len(lines))  # Google Benchmark's own words go before
+    return [Row(fields) for fields in csv.DictReader(lines[begin:]) if fields["error_occurred"] != "true"]
 
 
 def label_bars(axes, bars, texts):
@@ -138,8 +139,8 @@ def draw_scaling(folder):
     triangles.annotate("asked: less than 1.5", (1e3, 1.5), xytext=(0, 4), textcoords="offset points", color="#c0504d", fontsize=8)
     triangles.set(xscale="log", ylim=(0, 1.8), xlabel="triangles of the environment, same footprint", ylabel="time over the smallest one's",
                   title="Contact generation")
-    for row_x in (contacts, bodies):
-        row_x.set(xscale="log", yscale="log")
+    for axes in (contacts, bodies):
+        axes.set(xscale="log", yscale="log")
     found = [row for row in table if row.parts[1] == "contacts"]
     for key, label, style in (("real_time", "generation, with memory", {"color": OURS}), ("fresh_us", "generation, without", {"color": FRESH}),
                               ("reduction_us", "reduction to 20", {"color": "#e0883a"})):
@@ -153,11 +154,13 @@ def draw_scaling(folder):
     proportional(bodies, found, "size", "real_time")
     bodies.set(xlabel="cubes on a plane", ylabel="time per step [us]", title="Bodies, whole step")
     found = [row for row in table if row.parts[1] == "threads"]
-    stacked(threads, ["%d" % row["size"] for row in found], found, "real_time", vertical=True)
+    stacked(threads, ["%d" % row["size"] for row in found], found, "real_time")
     threads.set(xlabel="threads, 40 stacks of three cubes", ylabel="wall time per step [us]", title="Threads")
     threads.grid(axis="x", visible=False)
-    for axes in (triangles, contacts, bodies, threads):
+    threads.set_xlim(-0.5, len(found) + 0.1)  # room for the legend
+    for axes in (triangles, contacts, bodies):
         axes.legend(fontsize=8)
+    threads.legend(*(part[::-1] for part in threads.get_legend_handles_labels()), fontsize=8, loc="center right")
     figure.tight_layout()
     return figure
 
@@ -167,18 +170,18 @@ def proportional(axes, found, x, y):
     axes.plot([row[x] for row in found], [last[y] * row[x] / last[x] for row in found], color="#c9c9c9", lw=1, ls="--", label="proportional")
 
 
-def stacked(axes, labels, table, total, vertical=False):
+def stacked(axes, labels, table, total):
     """Stages of whole steps on top of each other; what no stage says is the others'."""
     base = [0.0] * len(table)
     for stage, colour in STAGES:
         if stage == "others":
             values = [max(0.0, row[total] - below) for row, below in zip(table, base)]
+        elif stage + "_us" in table[0]:
+            values = [row[stage + "_us"] for row in table]
         else:
-            values = [row.get(stage + "_us", 0.0) for row in table]
-        (axes.bar(labels, values, 0.55, bottom=base, color=colour, label=stage.replace("_", " ")) if vertical else
-         axes.barh(labels, values, 0.6, left=base, color=colour, label=stage.replace("_", " ")))
+            continue
+        axes.bar(labels, values, 0.5, bottom=base, color=colour, label=stage.replace("_", " "))
         base = [below + value for below, value in zip(base, values)]
-    return base
 
 
 def draw_scenes(folder):

@@ -9,7 +9,8 @@ namespace {
 constexpr int QUEUE_SIZE = 1000;
 }  // namespace
 
-ClockPublisher::ClockPublisher(ros::NodeHandle node, double rate) : publisher_(&node, "/clock", QUEUE_SIZE), schedule_(rate) {}
+ClockPublisher::ClockPublisher(ros::NodeHandle node, double rate, StepSender* sender)
+    : publisher_(&node, "/clock", QUEUE_SIZE), schedule_(rate), sender_(sender) {}
 
 void ClockPublisher::publish(const StepReport& report) {
   const ros::Time now = toStamp(report.time);
@@ -17,7 +18,7 @@ void ClockPublisher::publish(const StepReport& report) {
   if (!schedule_.due(report.time)) return;
   const auto message = messages_.spare();
   message->clock = now;
-  publisher_.publish(message);
+  sender_->add([this, message] { publisher_.publish(message); });
   published_ = true;
   last_ = now;
 }

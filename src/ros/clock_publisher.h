@@ -7,13 +7,14 @@
 #include "message_pool.h"
 #include "publish_schedule.h"
 #include "step_publisher.h"
+#include "step_sender.h"
 
 namespace blem_sim {
 
 /** /clock: strictly increasing stamps until time is restarted. A node that starts during a pause is told the time. */
 class ClockPublisher : public StepPublisher {
  public:
-  ClockPublisher(ros::NodeHandle node, double rate);
+  ClockPublisher(ros::NodeHandle node, double rate, StepSender* sender);
   void publish(const StepReport& report) override;
   void timeRestarted() override;
 
@@ -21,6 +22,7 @@ class ClockPublisher : public StepPublisher {
   GreetingPublisher<rosgraph_msgs::Clock> publisher_;
   MessagePool<rosgraph_msgs::Clock> messages_;
   PublishSchedule schedule_;
+  StepSender* sender_;
   bool published_ = false;
   ros::Time last_;
 };

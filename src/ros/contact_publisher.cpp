@@ -1,6 +1,7 @@
 #include "contact_publisher.h"
 
 #include <visualization_msgs/MarkerArray.h>
+#include <boost/make_shared.hpp>
 
 #include <algorithm>
 #include <utility>
@@ -56,10 +57,11 @@ void ContactPublisher::publish(const StepReport& report) {
   publisher_.publish(toContactArray(simulator_, report));
 }
 
-ContactMarkerPublisher::ContactMarkerPublisher(ros::NodeHandle private_node, const Simulator& simulator)
+ContactMarkerPublisher::ContactMarkerPublisher(ros::NodeHandle private_node, const Simulator& simulator, StepSender* sender)
     : simulator_(simulator),
       schedule_(simulator.config().rates.markers),
-      publisher_(private_node.advertise<MarkerArray>("contact_markers", QUEUE_SIZE)) {
+      publisher_(private_node.advertise<MarkerArray>("contact_markers", QUEUE_SIZE)),
+      sender_(sender) {
   const double weight = totalWeight(simulator);
   metres_per_newton_ = weight > 0 ? LENGTH_OF_WEIGHT / weight : 0;
 }
@@ -67,7 +69,8 @@ ContactMarkerPublisher::ContactMarkerPublisher(ros::NodeHandle private_node, con
 void ContactMarkerPublisher::publish(const StepReport& report) {
   if (!schedule_.due(report.time) || publisher_.getNumSubscribers() == 0) return;
   const ros::Time stamp = toStamp(report.time);
-  MarkerArray array;
+  const auto message = boost::make_shared<MarkerArray>();
+  MarkerArray& array = *message;
   array.markers.reserve(1 + std::max(report.contacts.size(), arrows_));
   Marker points = makeMarker("points", 0, Marker::SPHERE_LIST, stamp);
   points.scale.x = points.scale.y = points.scale.z = POINT_SIZE;
@@ -98,7 +101,7 @@ void ContactMarkerPublisher::publish(const StepReport& report) {
     array.markers.push_back(gone);
   }
   arrows_ = arrows;
-  publisher_.publish(array);
+  sender_->add([this, message] { publisher_.publish(message); });
 }
 
 }  // namespace blem_sim

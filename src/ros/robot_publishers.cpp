@@ -9,8 +9,8 @@ namespace {
 constexpr int QUEUE_SIZE = 100;
 }
 
-JointStatePublisher::JointStatePublisher(ros::NodeHandle node, const Simulator& simulator)
-    : simulator_(simulator), schedule_(simulator.config().rates.joint_state) {
+JointStatePublisher::JointStatePublisher(ros::NodeHandle node, const Simulator& simulator, StepSender* sender)
+    : simulator_(simulator), schedule_(simulator.config().rates.joint_state), sender_(sender) {
   for (const RobotInfo& robot : simulator.robots()) {
     ros::NodeHandle robot_node(node, robot.name_space);
     publishers_.emplace_back(&robot_node, "joint_states", QUEUE_SIZE);
@@ -35,7 +35,7 @@ void JointStatePublisher::publish(const StepReport& report) {
       message->velocity[i] = state.velocity;
       message->effort[i] = state.effort;
     }
-    publishers_[robot].publish(message);
+    sender_->add([this, robot, message] { publishers_[robot].publish(message); });
   }
 }
 

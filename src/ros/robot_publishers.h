@@ -12,19 +12,21 @@
 #include "message_pool.h"
 #include "publish_schedule.h"
 #include "step_publisher.h"
+#include "step_sender.h"
 
 namespace blem_sim {
 
 /** `joint_states` in each robot's namespace: position, velocity and effort of every movable joint. Told late subscribers. */
 class JointStatePublisher : public StepPublisher {
  public:
-  JointStatePublisher(ros::NodeHandle node, const Simulator& simulator);
+  JointStatePublisher(ros::NodeHandle node, const Simulator& simulator, StepSender* sender);
   void publish(const StepReport& report) override;
   void timeRestarted() override { schedule_.restart(); }
 
  private:
   const Simulator& simulator_;
   PublishSchedule schedule_;
+  StepSender* sender_;
   std::vector<GreetingPublisher<sensor_msgs::JointState>> publishers_;  // per robot
   std::vector<MessagePool<sensor_msgs::JointState>> messages_;          // per robot, names filled in once
 };

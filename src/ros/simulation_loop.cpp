@@ -6,7 +6,6 @@
 
 #include <algorithm>
 
-#include "poll_rounds.h"
 #include "status_text.h"
 
 namespace blem_sim {
@@ -34,11 +33,8 @@ SimulationLoop::SimulationLoop(Simulator* simulator)
 void SimulationLoop::publish(const StepReport& report) {
   const StepPacer::Clock::time_point start = StepPacer::Clock::now();
   const double processor_start = threadSeconds();
-  {
-    // One hand-over for all messages of a step: else the poll thread, woken by the first, is in the way of the others.
-    const auto lock = PollRounds::instance().betweenHandOvers();
-    for (const auto& publisher : publishers_) publisher->publish(report);
-  }
+  for (const auto& publisher : publishers_) publisher->publish(report);
+  sender_.send();
   publishing_time_.processor += threadSeconds() - processor_start;
   publishing_time_.wall += std::chrono::duration<double>(StepPacer::Clock::now() - start).count();
 }
@@ -81,10 +77,15 @@ std::uint32_t SimulationLoop::stepPaused(std::uint32_t count) {
   while (made < count && finite && ros::ok()) {
     finite = step();
     ++made;
-    if (made % STEPS_PER_FLUSH == 0) outbox_.flush();
+    if (made % STEPS_PER_FLUSH == 0) flush();
   }
-  outbox_.flush();
+  flush();
   return made;
+}
+
+void SimulationLoop::flush() {
+  sender_.drain();
+  outbox_.flush();
 }
 
 void SimulationLoop::resetSimulation() {
