@@ -195,7 +195,7 @@ def draw_scenes(folder):
     bars = factors.barh(labels, values, 0.6, color=[OURS if value >= 1 else "#c0504d" for value in values])
     label_bars(factors, bars, ["%.3g" % value for value in values])
     factors.axvline(1, color="#404040", lw=1)
-    factors.set(xscale="log", xlabel="real-time factor, one thread (1: as fast as the world)")
+    factors.set(xscale="log", xlim=(0.01, 30), xlabel="real-time factor, one thread (1: as fast as the world)")
     factors.invert_yaxis()
     for row, label in zip(table, labels):
         base, used = 0.0, 0.0
