@@ -90,7 +90,7 @@ def draw_contacts(folder):
     bars_by_scene(axes, [SCENES.get(row.parts[1], row.parts[1]) for row in table], shown)
     axes.set_xlabel("processor time per step [us], mean; ratios to contact generation with memory")
     axes.set_title("Contacts of moving bodies: between a plain tree and the kernels alone", loc="left")
-    axes.margins(x=0.18)
+    axes.margins(x=0.24)
     axes.legend(loc="upper center", bbox_to_anchor=(0.45, -0.1), ncol=2)
     return figure
 

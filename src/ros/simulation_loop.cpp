@@ -89,6 +89,7 @@ void SimulationLoop::flush() {
 }
 
 void SimulationLoop::resetSimulation() {
+  sender_.drain();  // what was before goes out before what is told directly
   simulator_->resetSimulation();
   for (const auto& publisher : publishers_) publisher->timeRestarted();
   publish(simulator_->report());
