@@ -30,15 +30,35 @@ Pose moved(const Pose& X, const Vector3& middle, int collider, int step) {
   return about * oscillation(collider, step) * about.inverse() * X;
 }
 
-TriangleMesh noisyGrid(int triangles, const std::vector<Box>& raised) {
-  RandomShapes random(5);
-  const int cells = static_cast<int>(std::lround(std::sqrt(0.5 * triangles)));
-  TriangleMesh mesh = gridMesh(SIZE, SIZE, cells, cells);
-  for (Vector3& v : mesh.vertices) {
-    v.z() = random.uniform(-NOISE, NOISE);
+void raise(const std::vector<Box>& raised, TriangleMesh* mesh) {
+  for (Vector3& v : mesh->vertices) {
     for (const Box& patch : raised)
       if ((v.head<2>().array() > patch.min().head<2>().array()).all() && (v.head<2>().array() < patch.max().head<2>().array()).all())
         v.z() += patch.min().z() - NOISE - CLEARANCE;
+  }
+}
+
+TriangleMesh noisyGrid(int triangles) {
+  RandomShapes random(5);
+  const int cells = static_cast<int>(std::lround(std::sqrt(0.5 * triangles)));
+  TriangleMesh mesh = gridMesh(SIZE, SIZE, cells, cells);
+  for (Vector3& v : mesh.vertices) v.z() = random.uniform(-NOISE, NOISE);
+  return mesh;
+}
+
+/** In [-1, 1), the same for a place of the grid however large that is. */
+double noiseAt(int i, int j) {
+  const std::int64_t row = i, column = j;
+  return RandomShapes(static_cast<std::uint64_t>(row * 1000003 + column)).uniform(-1, 1);
+}
+
+/** About as many triangles as asked for, `cell` [m] wide: the middle of a larger one is a smaller one, to the last bit. */
+TriangleMesh growingGrid(int triangles, double cell) {
+  const int cells = 2 * static_cast<int>(std::lround(0.5 * std::sqrt(0.5 * triangles)));
+  TriangleMesh mesh = gridMesh(cells, cells, cells, cells);
+  for (Vector3& v : mesh.vertices) {
+    const int i = static_cast<int>(std::lround(v.x())), j = static_cast<int>(std::lround(v.y()));
+    v = {cell * i, cell * j, NOISE * noiseAt(i, j)};
   }
   return mesh;
 }
@@ -80,19 +100,17 @@ std::vector<PosedLink> huboLinks() {
 
 TriangleMesh loadedMesh(const char* file) { return *loadSurface(*sharedData(file), Vector3::Ones(), CloudOptions()).mesh; }
 
-}  // namespace
-
-std::unique_ptr<ContactScene> huboOnTerrain(int triangles, bool points) {
-  if (!sharedData("robots/klampt/huboplus/huboplus.urdf")) return nullptr;
+/** @param terrain raised under the hands here; @param points its vertices alone */
+std::unique_ptr<ContactScene> huboOn(TriangleMesh terrain, bool points) {
   auto scene = std::make_unique<ContactScene>();
-  scene->name = "hubo on " + std::to_string(triangles);
+  scene->name = "hubo on " + std::to_string(terrain.elements.size());
   const std::vector<PosedLink> links = huboLinks();
   std::vector<Box> raised;
   for (const PosedLink& link : links)
     if (link.name.find("Hand") != std::string::npos || link.name.find("Finger") != std::string::npos)
       raised.push_back(boundsOf(*link.mesh, link.X_WL));
-  const TriangleMesh terrain = noisyGrid(triangles, raised);
-  scene->standing = makeCollider(points ? pointsOf(terrain) : terrain, 0);
+  raise(raised, &terrain);
+  scene->standing = makeCollider(points ? pointsOf(std::move(terrain)) : std::move(terrain), 0);
   std::vector<Pose> poses;
   std::vector<Vector3> middles;
   for (const PosedLink& link : links) {
@@ -104,15 +122,39 @@ std::unique_ptr<ContactScene> huboOnTerrain(int triangles, bool points) {
   return scene;
 }
 
-std::unique_ptr<ContactScene> cubeOnTerrain(int triangles) {
+std::unique_ptr<ContactScene> boxOn(TriangleMesh terrain, const Vector3& size) {
   auto scene = std::make_unique<ContactScene>();
-  scene->name = "cube on " + std::to_string(triangles);
-  scene->standing = makeCollider(noisyGrid(triangles, {}), 0);
-  scene->moving = {makeCollider(boxMesh(Vector3::Constant(0.1)), LAYER)};
-  scene->pose = [](int collider, int step) {
-    return moved(makePose({0.01, 0.02, 0.05 + NOISE + CLEARANCE}), Vector3::Zero(), collider, step);
-  };
+  scene->name = "box on " + std::to_string(terrain.elements.size());
+  scene->standing = makeCollider(std::move(terrain), 0);
+  scene->moving = {makeCollider(boxMesh(size), LAYER)};
+  const Vector3 centre(0.01, 0.02, 0.5 * size.z() + NOISE + CLEARANCE);
+  scene->pose = [centre](int collider, int step) { return moved(makePose(centre), Vector3::Zero(), collider, step); };
   return scene;
+}
+
+constexpr double HUBO_CELL = 0.01, CUBE_CELL = 0.0075, SLAB_CELL = 0.01;  // [m]
+const Vector3 CUBE = Vector3::Constant(0.1);                              // [m]
+
+bool haveHubo() { return sharedData("robots/klampt/huboplus/huboplus.urdf").has_value(); }
+
+}  // namespace
+
+std::unique_ptr<ContactScene> huboOnTerrain(int triangles, bool points) {
+  return haveHubo() ? huboOn(noisyGrid(triangles), points) : nullptr;
+}
+
+std::unique_ptr<ContactScene> huboOnGrowingTerrain(int triangles) {
+  return haveHubo() ? huboOn(growingGrid(triangles, HUBO_CELL), false) : nullptr;
+}
+
+std::unique_ptr<ContactScene> cubeOnTerrain(int triangles) { return boxOn(noisyGrid(triangles), CUBE); }
+
+std::unique_ptr<ContactScene> cubeOnGrowingTerrain(int triangles) { return boxOn(growingGrid(triangles, CUBE_CELL), CUBE); }
+
+std::unique_ptr<ContactScene> slabOnTerrain(int contacts) {
+  const double cells = std::sqrt(contacts), beside = 10;
+  const Vector3 slab(SLAB_CELL * cells, SLAB_CELL * cells, 0.05);
+  return boxOn(growingGrid(static_cast<int>(2 * (cells + beside) * (cells + beside)), SLAB_CELL), slab);
 }
 
 std::unique_ptr<ContactScene> mugOnFractalTerrain(int triangles) {
@@ -143,6 +185,7 @@ std::unique_ptr<ContactScene> mugBesideMug() {
   const TriangleMesh mug = loadedMesh(MUG);
   scene->standing = makeCollider(mug, LAYER);
   scene->moving = {makeCollider(mug, LAYER)};
+  scene->approach = -Vector3::UnitY();
   const Pose X = makePose({0, mug.bounds().sizes().y() + 0.002, 0});
   const Vector3 middle = mug.bounds().center();
   scene->pose = [X, middle](int, int step) {

@@ -16,6 +16,7 @@ struct ContactScene {
   Collider standing;
   std::vector<Collider> moving;
   std::function<Pose(int collider, int step)> pose;  ///< in the standing one's frame
+  Vector3 approach = -Vector3::UnitZ();              ///< unit, that frame: the way from the moving bodies to the standing one
 };
 
 /** [m/s] of the moving bodies; every one oscillates by itself at 5 Hz. */
@@ -28,6 +29,12 @@ constexpr double SCENE_SPEED = 0.1;
 std::unique_ptr<ContactScene> huboOnTerrain(int triangles, bool points = false);
 /** A cube of 12 triangles on the same grid. */
 std::unique_ptr<ContactScene> cubeOnTerrain(int triangles);
+/** Hubo on such noise, 10 mm from vertex to vertex, on a terrain that grows outward with the triangles: the same contacts on each. */
+std::unique_ptr<ContactScene> huboOnGrowingTerrain(int triangles);
+/** A cube of 12 triangles on the same, 7.5 mm from vertex to vertex. */
+std::unique_ptr<ContactScene> cubeOnGrowingTerrain(int triangles);
+/** A slab of 12 triangles on the same, as wide as it must be for about so many contacts. */
+std::unique_ptr<ContactScene> slabOnTerrain(int contacts);
 /** A mug of 22,300 triangles upright on a fractal terrain, split to about `triangles`. Null without the shared data. */
 std::unique_ptr<ContactScene> mugOnFractalTerrain(int triangles);
 /** Two such mugs side by side, 2 mm apart, r 5 mm in all. */

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "blem_sim/geometry/input_error.h"
+#include "growing_scenes.h"
 #include "sim/simulation_scene.h"
 #include "soak/figures.h"
 #include "soak/heap.h"
@@ -33,20 +34,6 @@ SimulationConfig stackOfCubes(int cubes) {
   for (int i = 0; i < cubes; ++i)
     config.objects.push_back(
         box("cube" + std::to_string(i), Vector3::Constant(0.1), 1, Vector3(0, 0, 0.05 + (i + 1) * layers + i * 0.1 + 0.01 * (i + 1))));
-  return config;
-}
-
-/** Stacks of three cubes on one ground, each an island of its own. */
-SimulationConfig manyStacks(int stacks, int threads) {
-  SimulationConfig config = stackOfCubes(0);
-  config.environments = {ground(20)};
-  config.solver.threads = threads;
-  for (int i = 0; i < stacks; ++i) {
-    for (int level = 0; level < 3; ++level) {
-      const Vector3 centre(0.5 * (i % 8) - 2, 0.5 * (i / 8) - 2, 0.055 + 0.105 * level);
-      config.objects.push_back(box("cube" + std::to_string(3 * i + level), Vector3::Constant(0.1), 1, centre));
-    }
-  }
   return config;
 }
 
@@ -137,7 +124,7 @@ int main(int argc, char** argv) {
   add({"ten_cubes", [] { return stackOfCubes(10); }, 500, 2000, ""});
   add({"heap_of_30", [] { return heapOfCubes(1, {}); }, 0, 3000, ""});
   for (const int threads : {1, 2})
-    add({"40_stacks/threads:" + std::to_string(threads), [threads] { return manyStacks(40, threads); }, 500, 500, ""});
+    add({"40_stacks/threads:" + std::to_string(threads), [threads] { return stacksOfThree(40, threads); }, 500, 500, ""});
   if (argc == 2) {
     addPrepared(argv[1], "hubo_plane", 500, 2000);
     addPrepared(argv[1], "hubo_plane_sway", 500, 2000);

@@ -1,22 +1,14 @@
 // Bullet's GImpact meshes, with the engine's own defaults.
 #include <BulletCollision/Gimpact/btGImpactCollisionAlgorithm.h>
 #include <BulletCollision/Gimpact/btGImpactShape.h>
-#include <btBulletDynamicsCommon.h>
 
+#include "../peers/bullet_mesh.h"
 #include "engine.h"
 
 namespace blem_sim {
 namespace {
 
-btVector3 toBullet(const Vector3& v) { return {static_cast<btScalar>(v.x()), static_cast<btScalar>(v.y()), static_cast<btScalar>(v.z())}; }
 Vector3 fromBullet(const btVector3& v) { return {v.x(), v.y(), v.z()}; }
-
-std::unique_ptr<btTriangleMesh> bulletMesh(const TriangleMesh& mesh) {
-  auto out = std::make_unique<btTriangleMesh>();
-  for (const Vector3i& e : mesh.elements)
-    out->addTriangle(toBullet(mesh.vertices[e[0]]), toBullet(mesh.vertices[e[1]]), toBullet(mesh.vertices[e[2]]));
-  return out;
-}
 
 class Bullet : public Engine {
  public:

@@ -1,25 +1,9 @@
 // ODE as Gazebo classic uses it for meshes: OPCODE trimesh against trimesh, contact joints, the engine's own defaults.
-#include <ode/ode.h>
-
+#include "../peers/ode_mesh.h"
 #include "engine.h"
 
 namespace blem_sim {
 namespace {
-
-/** Mesh data must outlive the geoms made of them. */
-struct OdeMesh {
-  explicit OdeMesh(const TriangleMesh& mesh) : data(dGeomTriMeshDataCreate()) {
-    for (const Vector3& v : mesh.vertices) vertices.insert(vertices.end(), {v.x(), v.y(), v.z()});
-    for (const Vector3i& e : mesh.elements)
-      for (int k = 0; k < 3; ++k) indices.push_back(static_cast<dTriIndex>(e[k]));
-    dGeomTriMeshDataBuildDouble(data, vertices.data(), 3 * sizeof(double), static_cast<int>(mesh.vertices.size()), indices.data(),
-                                static_cast<int>(indices.size()), 3 * sizeof(dTriIndex));
-  }
-  ~OdeMesh() { dGeomTriMeshDataDestroy(data); }
-  std::vector<double> vertices;
-  std::vector<dTriIndex> indices;
-  dTriMeshDataID data;
-};
 
 class Ode : public Engine {
  public:
@@ -89,8 +73,7 @@ class Ode : public Engine {
 };
 
 std::unique_ptr<Engine> make(const StackScene& scene, bool quick) {
-  static const bool initialised = dInitODE2(0) != 0;  // for the rest of the program
-  return initialised ? std::make_unique<Ode>(scene, quick) : nullptr;
+  return initialiseOde() ? std::make_unique<Ode>(scene, quick) : nullptr;
 }
 
 }  // namespace

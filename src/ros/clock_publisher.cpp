@@ -9,16 +9,18 @@ namespace {
 constexpr int QUEUE_SIZE = 1000;
 }  // namespace
 
-ClockPublisher::ClockPublisher(ros::NodeHandle node, double rate) : publisher_(&node, "/clock", QUEUE_SIZE), schedule_(rate) {}
+ClockPublisher::ClockPublisher(ros::NodeHandle node, double rate, StepSender* sender)
+    : publisher_(&node, "/clock", QUEUE_SIZE), schedule_(rate), sender_(sender) {}
 
 void ClockPublisher::publish(const StepReport& report) {
-  rosgraph_msgs::Clock message;
-  message.clock = toStamp(report.time);
-  if (published_ && message.clock <= last_) return;
+  const ros::Time now = toStamp(report.time);
+  if (published_ && now <= last_) return;
   if (!schedule_.due(report.time)) return;
-  publisher_.publish(message);
+  const auto message = messages_.spare();
+  message->clock = now;
+  sender_->add([this, message] { publisher_.publish(message); });
   published_ = true;
-  last_ = message.clock;
+  last_ = now;
 }
 
 void ClockPublisher::timeRestarted() {

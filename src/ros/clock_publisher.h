@@ -4,21 +4,25 @@
 #include <rosgraph_msgs/Clock.h>
 
 #include "greeting_publisher.h"
+#include "message_pool.h"
 #include "publish_schedule.h"
 #include "step_publisher.h"
+#include "step_sender.h"
 
 namespace blem_sim {
 
 /** /clock: strictly increasing stamps until time is restarted. A node that starts during a pause is told the time. */
 class ClockPublisher : public StepPublisher {
  public:
-  ClockPublisher(ros::NodeHandle node, double rate);
+  ClockPublisher(ros::NodeHandle node, double rate, StepSender* sender);
   void publish(const StepReport& report) override;
   void timeRestarted() override;
 
  private:
   GreetingPublisher<rosgraph_msgs::Clock> publisher_;
+  MessagePool<rosgraph_msgs::Clock> messages_;
   PublishSchedule schedule_;
+  StepSender* sender_;
   bool published_ = false;
   ros::Time last_;
 };

@@ -1,8 +1,10 @@
 #include "contact_publisher.h"
 
 #include <visualization_msgs/MarkerArray.h>
+#include <boost/make_shared.hpp>
 
 #include <algorithm>
+#include <utility>
 
 #include "contact_colour.h"
 #include "contact_messages.h"
@@ -55,10 +57,11 @@ void ContactPublisher::publish(const StepReport& report) {
   publisher_.publish(toContactArray(simulator_, report));
 }
 
-ContactMarkerPublisher::ContactMarkerPublisher(ros::NodeHandle private_node, const Simulator& simulator)
+ContactMarkerPublisher::ContactMarkerPublisher(ros::NodeHandle private_node, const Simulator& simulator, StepSender* sender)
     : simulator_(simulator),
       schedule_(simulator.config().rates.markers),
-      publisher_(private_node.advertise<MarkerArray>("contact_markers", QUEUE_SIZE)) {
+      publisher_(private_node.advertise<MarkerArray>("contact_markers", QUEUE_SIZE)),
+      sender_(sender) {
   const double weight = totalWeight(simulator);
   metres_per_newton_ = weight > 0 ? LENGTH_OF_WEIGHT / weight : 0;
 }
@@ -66,7 +69,9 @@ ContactMarkerPublisher::ContactMarkerPublisher(ros::NodeHandle private_node, con
 void ContactMarkerPublisher::publish(const StepReport& report) {
   if (!schedule_.due(report.time) || publisher_.getNumSubscribers() == 0) return;
   const ros::Time stamp = toStamp(report.time);
-  MarkerArray array;
+  const auto message = boost::make_shared<MarkerArray>();
+  MarkerArray& array = *message;
+  array.markers.reserve(1 + std::max(report.contacts.size(), arrows_));
   Marker points = makeMarker("points", 0, Marker::SPHERE_LIST, stamp);
   points.scale.x = points.scale.y = points.scale.z = POINT_SIZE;
   int arrows = 0;
@@ -79,24 +84,24 @@ void ContactMarkerPublisher::publish(const StepReport& report) {
     const double length = std::min(LONGEST_ARROW, metres_per_newton_ * force.norm());
     if (length < SHORTEST_ARROW) continue;
     const Vector3 along = length * force.normalized();
-    Marker arrow = makeMarker("forces", arrows++, Marker::ARROW, stamp);
+    array.markers.push_back(makeMarker("forces", arrows++, Marker::ARROW, stamp));
+    Marker& arrow = array.markers.back();
     arrow.scale.x = SHAFT_SIZE;
     arrow.scale.y = HEAD_SIZE;
     arrow.scale.z = std::min(2 * HEAD_SIZE, 0.5 * length);
     arrow.color = colour;
     arrow.points = {toPoint(contact.point), toPoint(contact.point + along)};
-    array.markers.push_back(arrow);
   }
   // A list without points is an error to rviz, so an empty one is taken away like the arrows of before.
   if (points.points.empty()) points.action = Marker::DELETE;
-  array.markers.push_back(points);
+  array.markers.push_back(std::move(points));
   for (std::size_t old = arrows; old < arrows_; ++old) {
     Marker gone = makeMarker("forces", static_cast<int>(old), Marker::ARROW, stamp);
     gone.action = Marker::DELETE;
     array.markers.push_back(gone);
   }
   arrows_ = arrows;
-  publisher_.publish(array);
+  sender_->add([this, message] { publisher_.publish(message); });
 }
 
 }  // namespace blem_sim

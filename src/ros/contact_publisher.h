@@ -4,6 +4,7 @@
 
 #include "publish_schedule.h"
 #include "step_publisher.h"
+#include "step_sender.h"
 
 namespace blem_sim {
 
@@ -28,7 +29,7 @@ class ContactMarkerPublisher : public StepPublisher {
  public:
   static constexpr double LENGTH_OF_WEIGHT = 0.8;  // [m]
   static constexpr double LONGEST_ARROW = 0.25;    // [m]
-  ContactMarkerPublisher(ros::NodeHandle private_node, const Simulator& simulator);
+  ContactMarkerPublisher(ros::NodeHandle private_node, const Simulator& simulator, StepSender* sender);
   void publish(const StepReport& report) override;
   void timeRestarted() override { schedule_.restart(); }
 
@@ -36,6 +37,7 @@ class ContactMarkerPublisher : public StepPublisher {
   const Simulator& simulator_;
   PublishSchedule schedule_;
   ros::Publisher publisher_;
+  StepSender* sender_;
   double metres_per_newton_;
   std::size_t arrows_ = 0;  // shown now
 };

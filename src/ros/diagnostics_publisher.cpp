@@ -22,8 +22,8 @@ std::string joined(const std::vector<std::string>& texts) {
 
 }  // namespace
 
-DiagnosticsPublisher::DiagnosticsPublisher(ros::NodeHandle node, ros::NodeHandle private_node, const Simulator& simulator)
-    : simulator_(simulator), updater_(node, private_node), next_(std::chrono::steady_clock::now()) {
+DiagnosticsPublisher::DiagnosticsPublisher(ros::NodeHandle node, ros::NodeHandle private_node, SimulationLoop* loop)
+    : loop_(*loop), simulator_(loop->simulator()), updater_(node, private_node), next_(std::chrono::steady_clock::now()) {
   updater_.setHardwareID("none");
   updater_.add("simulation speed", [this](DiagnosticStatusWrapper& status) { describeSpeed(status); });
   updater_.add("contacts", [this](DiagnosticStatusWrapper& status) { describeContacts(status); });
@@ -42,6 +42,9 @@ void DiagnosticsPublisher::serve(bool paused) {
   next_ = std::max(next_ + std::chrono::seconds(1), now);
   paused_ = paused;
   statistics_ = collector_.take();
+  const PublishingTime published = loop_.publishingTime();
+  publishing_time_ = {published.wall - published_.wall, published.processor - published_.processor};
+  published_ = published;
   energy_gained_ += statistics_.energy_gained;
   contacts_left_ += statistics_.contacts_left;
   updater_.force_update();
@@ -71,6 +74,8 @@ void DiagnosticsPublisher::describeSpeed(DiagnosticStatusWrapper& status) const 
   for (std::size_t i = 0; i < statistics_.stage_seconds.size(); ++i) {
     status.addf(std::string("stage ") + STAGE_NAMES[i] + " [ms]", "%.4f", 1e3 * statistics_.stage_seconds[i] / steps);
   }
+  status.addf("publishing [ms]", "%.4f", 1e3 * publishing_time_.wall / steps);
+  status.addf("publishing, processor time [ms]", "%.4f", 1e3 * publishing_time_.processor / steps);
 }
 
 void DiagnosticsPublisher::describeContacts(DiagnosticStatusWrapper& status) const {

@@ -4,6 +4,7 @@
 
 #include <chrono>
 
+#include "simulation_loop.h"
 #include "step_publisher.h"
 #include "step_statistics.h"
 
@@ -12,7 +13,7 @@ namespace blem_sim {
 /** /diagnostics once per second of wall time, also while paused: speed, contacts and what to change. */
 class DiagnosticsPublisher : public StepPublisher {
  public:
-  DiagnosticsPublisher(ros::NodeHandle node, ros::NodeHandle private_node, const Simulator& simulator);
+  DiagnosticsPublisher(ros::NodeHandle node, ros::NodeHandle private_node, SimulationLoop* loop);
   void publish(const StepReport& report) override { collector_.add(report); }
   void timeRestarted() override;
   void resumed() override { collector_.resume(); }
@@ -23,11 +24,13 @@ class DiagnosticsPublisher : public StepPublisher {
   void describeSpeed(diagnostic_updater::DiagnosticStatusWrapper& status) const;
   void describeContacts(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 
+  const SimulationLoop& loop_;
   const Simulator& simulator_;
   diagnostic_updater::Updater updater_;
   StepStatisticsCollector collector_;
-  StepStatistics statistics_;  // of the last second
-  double energy_gained_ = 0;   // [J] since time started, until the last second
+  StepStatistics statistics_;                   // of the last second
+  PublishingTime published_, publishing_time_;  // at the last look; of the last second
+  double energy_gained_ = 0;                    // [J] since time started, until the last second
   std::uint64_t contacts_left_ = 0;
   bool paused_ = false;
   std::chrono::steady_clock::time_point next_;

@@ -33,20 +33,20 @@ class GreetingPublisher {
     const std::shared_ptr<State> state = state_;
     const auto greet = [state](const ros::SingleSubscriberPublisher& subscriber) {
       const std::lock_guard<std::mutex> lock(state->mutex);
-      if (state->published && PollRounds::instance().count() > state->round) subscriber.publish(state->message);
+      if (state->message && PollRounds::instance().count() > state->round) subscriber.publish(*state->message);
     };
     ros::AdvertiseOptions options = ros::AdvertiseOptions::create<Message>(topic, queue_size, greet, ros::SubscriberStatusCallback(),
                                                                            ros::VoidConstPtr(), immediateQueue());
     publisher_ = node->advertise(options);
   }
 
-  void publish(const Message& message) {
+  /** @param message not to be changed any more while others hold it */
+  void publish(const boost::shared_ptr<Message>& message) {
     const auto lock_round = PollRounds::instance().betweenHandOvers();
     {
       const std::lock_guard<std::mutex> lock(state_->mutex);
       state_->message = message;
       state_->round = PollRounds::instance().count();
-      state_->published = true;
     }
     publisher_.publish(message);
   }
@@ -54,15 +54,14 @@ class GreetingPublisher {
   /** There is no last message any more. */
   void forget() {
     const std::lock_guard<std::mutex> lock(state_->mutex);
-    state_->published = false;
+    state_->message.reset();
   }
 
  private:
   struct State {
     std::mutex mutex;
-    Message message;
-    std::uint64_t round = 0;  ///< the last one before it was published
-    bool published = false;
+    boost::shared_ptr<const Message> message;  ///< the last one, or none
+    std::uint64_t round = 0;                   ///< the last one before it was published
   };
 
   static ImmediateQueue* immediateQueue() {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <ros/console.h>
+#include <boost/make_shared.hpp>
 
 #include "conversions.h"
 #include "status_text.h"
@@ -38,9 +39,9 @@ void LayerEventPublisher::timeRestarted() {
 
 void LayerEventPublisher::publish(const StepReport& report) {
   for (const LayerEventReport& event : report.layer_events) {
-    const LayerEvent message = toMessage(simulator_, event);
+    const auto message = boost::make_shared<LayerEvent>(toMessage(simulator_, event));
     publisher_.publish(message);
-    if (message.outside) warn(message, event.time);
+    if (message->outside) warn(*message, event.time);
   }
 }
 

@@ -23,8 +23,8 @@ class PollRounds {
   void watchEnd();
 
   /** Keeps the poll thread from handing messages over while it lives. Given up after 100 ms: a poll thread that shuts roscpp down does so
-   *  in the middle of a round and does not come back. */
-  std::unique_lock<std::timed_mutex> betweenHandOvers() { return {mutex_, std::chrono::milliseconds(100)}; }
+   *  in the middle of a round and does not come back. A thread may ask for it again while it has it. */
+  std::unique_lock<std::recursive_timed_mutex> betweenHandOvers() { return {mutex_, std::chrono::milliseconds(100)}; }
   /** Rounds so far. To be asked between hand-overs, or in the poll thread. */
   std::uint64_t count() const { return count_; }
 
@@ -33,7 +33,7 @@ class PollRounds {
   void begin();
   void end();
 
-  std::timed_mutex mutex_;
+  std::recursive_timed_mutex mutex_;
   std::atomic<std::uint64_t> count_{0};
   std::atomic<bool> both_ends_{false};
   std::once_flag end_watched_;

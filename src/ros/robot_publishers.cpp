@@ -9,8 +9,8 @@ namespace {
 constexpr int QUEUE_SIZE = 100;
 }
 
-JointStatePublisher::JointStatePublisher(ros::NodeHandle node, const Simulator& simulator)
-    : simulator_(simulator), schedule_(simulator.config().rates.joint_state) {
+JointStatePublisher::JointStatePublisher(ros::NodeHandle node, const Simulator& simulator, StepSender* sender)
+    : simulator_(simulator), schedule_(simulator.config().rates.joint_state), sender_(sender) {
   for (const RobotInfo& robot : simulator.robots()) {
     ros::NodeHandle robot_node(node, robot.name_space);
     publishers_.emplace_back(&robot_node, "joint_states", QUEUE_SIZE);
@@ -19,23 +19,23 @@ JointStatePublisher::JointStatePublisher(ros::NodeHandle node, const Simulator& 
     message.position.resize(robot.joints.size());
     message.velocity.resize(robot.joints.size());
     message.effort.resize(robot.joints.size());
-    messages_.push_back(message);
+    messages_.emplace_back(message);
   }
 }
 
 void JointStatePublisher::publish(const StepReport& report) {
   if (!schedule_.due(report.time)) return;
   for (std::size_t robot = 0; robot < publishers_.size(); ++robot) {
-    sensor_msgs::JointState& message = messages_[robot];
-    message.header.stamp = toStamp(report.time);
+    const auto message = messages_[robot].spare();
+    message->header.stamp = toStamp(report.time);
     const std::vector<int>& joints = simulator_.robots()[robot].joints;
     for (std::size_t i = 0; i < joints.size(); ++i) {
       const JointState& state = report.joints[joints[i]];
-      message.position[i] = state.position;
-      message.velocity[i] = state.velocity;
-      message.effort[i] = state.effort;
+      message->position[i] = state.position;
+      message->velocity[i] = state.velocity;
+      message->effort[i] = state.effort;
     }
-    publishers_[robot].publish(message);
+    sender_->add([this, robot, message] { publishers_[robot].publish(message); });
   }
 }
 
@@ -52,13 +52,13 @@ void OdometryPublisher::publish(const StepReport& report) {
   for (std::size_t i = 0; i < publishers_.size(); ++i) {
     const RobotInfo& robot = simulator_.robots()[i];
     const LinkMotion root = linkMotion(simulator_, report, robot, robot.description->root);
-    nav_msgs::Odometry message;
-    message.header.stamp = toStamp(report.time);
-    message.header.frame_id = WORLD_FRAME;
-    message.child_frame_id = robot.root_link;
-    message.pose.pose = toPose(root.X_WL);
+    const auto message = messages_.spare();
+    message->header.stamp = toStamp(report.time);
+    message->header.frame_id = WORLD_FRAME;
+    message->child_frame_id = robot.root_link;
+    message->pose.pose = toPose(root.X_WL);
     const Matrix3 R_LW = root.X_WL.linear().transpose();
-    message.twist.twist = toTwist(R_LW * root.v_WL, R_LW * root.w_WL);
+    message->twist.twist = toTwist(R_LW * root.v_WL, R_LW * root.w_WL);
     publishers_[i].publish(message);
   }
 }
@@ -68,14 +68,15 @@ TransformPublisher::TransformPublisher(ros::NodeHandle node, const Simulator& si
 
 void TransformPublisher::publish(const StepReport& report) {
   if (!schedule_.due(report.time)) return;
-  tf2_msgs::TFMessage message;
+  const auto message = messages_.spare();
+  message->transforms.clear();
   const auto add = [&](const std::string& frame, const Pose& X_WF) {
     geometry_msgs::TransformStamped transform;
     transform.header.stamp = toStamp(report.time);
     transform.header.frame_id = WORLD_FRAME;
     transform.child_frame_id = frame;
     transform.transform = toTransform(X_WF);
-    message.transforms.push_back(transform);
+    message->transforms.push_back(transform);
   };
   for (const RobotInfo& robot : simulator_.robots()) {
     if (robot.root_link != WORLD_FRAME) add(robot.root_link, linkMotion(simulator_, report, robot, robot.description->root).X_WL);
@@ -83,7 +84,7 @@ void TransformPublisher::publish(const StepReport& report) {
   for (const ModelInfo& model : simulator_.models()) {
     if (model.kind == ModelKind::OBJECT && model.alive) add(model.name, bodyMotion(simulator_, report, model.bodies.front()).X_WL);
   }
-  if (!message.transforms.empty()) publisher_.publish(message);
+  if (!message->transforms.empty()) publisher_.publish(message);
 }
 
 }  // namespace blem_sim

@@ -9,23 +9,26 @@
 #include <vector>
 
 #include "greeting_publisher.h"
+#include "message_pool.h"
 #include "publish_schedule.h"
 #include "step_publisher.h"
+#include "step_sender.h"
 
 namespace blem_sim {
 
 /** `joint_states` in each robot's namespace: position, velocity and effort of every movable joint. Told late subscribers. */
 class JointStatePublisher : public StepPublisher {
  public:
-  JointStatePublisher(ros::NodeHandle node, const Simulator& simulator);
+  JointStatePublisher(ros::NodeHandle node, const Simulator& simulator, StepSender* sender);
   void publish(const StepReport& report) override;
   void timeRestarted() override { schedule_.restart(); }
 
  private:
   const Simulator& simulator_;
   PublishSchedule schedule_;
+  StepSender* sender_;
   std::vector<GreetingPublisher<sensor_msgs::JointState>> publishers_;  // per robot
-  std::vector<sensor_msgs::JointState> messages_;                       // per robot, names filled in once
+  std::vector<MessagePool<sensor_msgs::JointState>> messages_;          // per robot, names filled in once
 };
 
 /** `odom` in each robot's namespace: ground truth of the root link, twist in its own axes. Told late subscribers. */
@@ -39,6 +42,7 @@ class OdometryPublisher : public StepPublisher {
   const Simulator& simulator_;
   PublishSchedule schedule_;
   std::vector<GreetingPublisher<nav_msgs::Odometry>> publishers_;  // per robot
+  MessagePool<nav_msgs::Odometry> messages_;
 };
 
 /**
@@ -55,6 +59,7 @@ class TransformPublisher : public StepPublisher {
   const Simulator& simulator_;
   PublishSchedule schedule_;
   GreetingPublisher<tf2_msgs::TFMessage> publisher_;
+  MessagePool<tf2_msgs::TFMessage> messages_;
 };
 
 }  // namespace blem_sim

@@ -5,6 +5,7 @@
 #include <ros/names.h>
 #include <sensor_msgs/Imu.h>
 #include <tf2_msgs/TFMessage.h>
+#include <boost/make_shared.hpp>
 
 #include <set>
 
@@ -30,45 +31,53 @@ struct ReadingPublisher {
   const StepReport& report;
   const SensorInfo& sensor;
   const ros::Publisher& publisher;
+  StepSender* sender;
   std_msgs::Header header;
 
+  template <typename Message>
+  void send(const boost::shared_ptr<Message>& message) const {
+    sender->add([&publisher = publisher, message] { publisher.publish(message); });
+  }
+
   void operator()(const ForceTorqueReading& reading) const {
-    geometry_msgs::WrenchStamped message;
-    message.header = header;
-    if (!reading.frame_id.empty()) message.header.frame_id = reading.frame_id;
-    message.wrench = toWrench(reading.force, reading.torque);
-    publisher.publish(message);
+    const auto message = boost::make_shared<geometry_msgs::WrenchStamped>();
+    message->header = header;
+    if (!reading.frame_id.empty()) message->header.frame_id = reading.frame_id;
+    message->wrench = toWrench(reading.force, reading.torque);
+    send(message);
   }
 
   void operator()(const ImuReading& reading) const {
-    sensor_msgs::Imu message;
-    message.header = header;
-    message.orientation = toQuaternion(reading.orientation);
-    message.angular_velocity = toVector3(reading.angular_velocity);
-    message.linear_acceleration = toVector3(reading.linear_acceleration);
-    setVariance(&message.angular_velocity_covariance, reading.gyro_stddev);
-    setVariance(&message.linear_acceleration_covariance, reading.accel_stddev);
-    publisher.publish(message);
+    const auto message = boost::make_shared<sensor_msgs::Imu>();
+    message->header = header;
+    message->orientation = toQuaternion(reading.orientation);
+    message->angular_velocity = toVector3(reading.angular_velocity);
+    message->linear_acceleration = toVector3(reading.linear_acceleration);
+    setVariance(&message->angular_velocity_covariance, reading.gyro_stddev);
+    setVariance(&message->linear_acceleration_covariance, reading.accel_stddev);
+    send(message);
   }
 
-  void operator()(const ContactReading& reading) const { publisher.publish(toContactsState(simulator, report, sensor, reading)); }
+  void operator()(const ContactReading& reading) const {
+    send(boost::make_shared<ContactsState>(toContactsState(simulator, report, sensor, reading)));
+  }
 
   void operator()(const TiltReading& reading) const {
-    sensor_msgs::Imu message;
-    message.header = header;
-    message.orientation = toQuaternion(reading.orientation);
-    message.angular_velocity = toVector3(reading.angular_velocity);
-    message.linear_acceleration_covariance[0] = -1;  // sensor_msgs: not measured
-    publisher.publish(message);
+    const auto message = boost::make_shared<sensor_msgs::Imu>();
+    message->header = header;
+    message->orientation = toQuaternion(reading.orientation);
+    message->angular_velocity = toVector3(reading.angular_velocity);
+    message->linear_acceleration_covariance[0] = -1;  // sensor_msgs: not measured
+    send(message);
   }
 
   void operator()(const MotorCurrentReading& reading) const {
-    MotorCurrents message;
-    message.header = header;
-    message.name = reading.joints;
-    message.effort = reading.efforts;
-    message.current = reading.currents;
-    publisher.publish(message);
+    const auto message = boost::make_shared<MotorCurrents>();
+    message->header = header;
+    message->name = reading.joints;
+    message->effort = reading.efforts;
+    message->current = reading.currents;
+    send(message);
   }
 };
 
@@ -93,7 +102,8 @@ bool sitsAskew(const SensorConfig& sensor) {
 
 }  // namespace
 
-SensorPublisher::SensorPublisher(ros::NodeHandle node, const Simulator& simulator) : simulator_(simulator), node_(node) {
+SensorPublisher::SensorPublisher(ros::NodeHandle node, const Simulator& simulator, StepSender* sender)
+    : simulator_(simulator), sender_(sender), node_(node) {
   std::set<std::string> topics;
   for (const SensorInfo& sensor : simulator.sensors()) {
     const SensorConfig& config = sensor.config;
@@ -135,7 +145,7 @@ void SensorPublisher::publish(const StepReport& report) {
     std_msgs::Header header;
     header.stamp = toStamp(report.time);
     header.frame_id = frames_[sample.sensor];
-    std::visit(ReadingPublisher{simulator_, report, simulator_.sensors()[sample.sensor], publisher, header}, sample.reading);
+    std::visit(ReadingPublisher{simulator_, report, simulator_.sensors()[sample.sensor], publisher, sender_, header}, sample.reading);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "step_publisher.h"
+#include "step_sender.h"
 
 namespace blem_sim {
 
@@ -12,13 +13,14 @@ namespace blem_sim {
 class SensorPublisher : public StepPublisher {
  public:
   /** @throws InputError: a sensor's topic is no valid ROS name, or two sensors share one */
-  SensorPublisher(ros::NodeHandle node, const Simulator& simulator);
+  SensorPublisher(ros::NodeHandle node, const Simulator& simulator, StepSender* sender);
   void publish(const StepReport& report) override;
 
  private:
   void publishMountings();
 
   const Simulator& simulator_;
+  StepSender* sender_;
   ros::NodeHandle node_;
   std::vector<ros::Publisher> publishers_;  // per sensor
   std::vector<std::string> frames_;         // per sensor: frame_id of its messages

@@ -2,6 +2,7 @@
 
 #include <ros/console.h>
 #include <ros/init.h>
+#include <time.h>
 
 #include <algorithm>
 
@@ -14,6 +15,14 @@ namespace {
 constexpr double LONGEST_WAIT = 0.05;  // [s]
 // Steps made without a look at the sockets; below the publishers' queue lengths, so that no message of a batch is dropped.
 constexpr std::uint32_t STEPS_PER_FLUSH = 50;
+
+/** [s] of processor time of this thread. */
+double threadSeconds() {
+  timespec t;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
 }  // namespace
 
 SimulationLoop::SimulationLoop(Simulator* simulator)
@@ -22,7 +31,12 @@ SimulationLoop::SimulationLoop(Simulator* simulator)
       paused_(simulator->config().paused) {}
 
 void SimulationLoop::publish(const StepReport& report) {
+  const StepPacer::Clock::time_point start = StepPacer::Clock::now();
+  const double processor_start = threadSeconds();
   for (const auto& publisher : publishers_) publisher->publish(report);
+  sender_.send();
+  publishing_time_.processor += threadSeconds() - processor_start;
+  publishing_time_.wall += std::chrono::duration<double>(StepPacer::Clock::now() - start).count();
 }
 
 bool SimulationLoop::step() {
@@ -63,13 +77,19 @@ std::uint32_t SimulationLoop::stepPaused(std::uint32_t count) {
   while (made < count && finite && ros::ok()) {
     finite = step();
     ++made;
-    if (made % STEPS_PER_FLUSH == 0) outbox_.flush();
+    if (made % STEPS_PER_FLUSH == 0) flush();
   }
-  outbox_.flush();
+  flush();
   return made;
 }
 
+void SimulationLoop::flush() {
+  sender_.drain();
+  outbox_.flush();
+}
+
 void SimulationLoop::resetSimulation() {
+  sender_.drain();  // what was before goes out before what is told directly
   simulator_->resetSimulation();
   for (const auto& publisher : publishers_) publisher->timeRestarted();
   publish(simulator_->report());

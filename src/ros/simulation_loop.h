@@ -10,8 +10,15 @@
 #include "outbox.h"
 #include "step_pacer.h"
 #include "step_publisher.h"
+#include "step_sender.h"
 
 namespace blem_sim {
+
+/** [s] that publishing took in the stepping thread since the start. */
+struct PublishingTime {
+  double wall = 0;
+  double processor = 0;  ///< without waiting, and without what other threads and programs take
+};
 
 class SimulationLoop {
  public:
@@ -37,16 +44,25 @@ class SimulationLoop {
   /** An environment was loaded or unloaded. */
   void geometryChanged();
 
+  /** What publishers of every step send their messages with. */
+  StepSender* sender() { return &sender_; }
+
+  const PublishingTime& publishingTime() const { return publishing_time_; }
+
  private:
   /** False if the state stopped being finite: the simulation is paused then. */
   bool step();
   void publish(const StepReport& report);
+  /** Sees the messages off that were published so far. */
+  void flush();
 
   Simulator* simulator_;
   std::vector<std::unique_ptr<StepPublisher>> publishers_;
   StepPacer pacer_;
   Outbox outbox_;
   bool paused_;
+  PublishingTime publishing_time_;
+  StepSender sender_;  // last: its messages need the publishers
 };
 
 }  // namespace blem_sim

@@ -10,9 +10,10 @@ namespace {
 constexpr int QUEUE_SIZE = 100;
 }
 
-StepReportPublisher::StepReportPublisher(ros::NodeHandle private_node, const Simulator& simulator)
-    : simulator_(simulator),
-      schedule_(simulator.config().rates.step_report),
+StepReportPublisher::StepReportPublisher(ros::NodeHandle private_node, SimulationLoop* loop)
+    : loop_(*loop),
+      simulator_(loop->simulator()),
+      schedule_(simulator_.config().rates.step_report),
       publisher_(private_node.advertise<StepReportMessage>("step_report", QUEUE_SIZE)) {}
 
 void StepReportPublisher::timeRestarted() {
@@ -49,6 +50,10 @@ void StepReportPublisher::publish(const StepReport& report) {
     message.stages.emplace_back(STAGE_NAMES[i]);
     message.stage_seconds.push_back(statistics.stage_seconds[i] / statistics.steps);
   }
+  // Up to the step before; this one's messages are still going out.
+  message.stages.emplace_back("publish");
+  message.stage_seconds.push_back((loop_.publishingTime().wall - published_) / statistics.steps);
+  published_ = loop_.publishingTime().wall;
   publisher_.publish(message);
 }
 

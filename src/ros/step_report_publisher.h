@@ -3,24 +3,27 @@
 #include <ros/node_handle.h>
 
 #include "publish_schedule.h"
+#include "simulation_loop.h"
 #include "step_publisher.h"
 #include "step_statistics.h"
 
 namespace blem_sim {
 
-/** `~step_report`: status bits, real-time factor, contacts, time per stage since the last one. */
+/** `~step_report`: status bits, real-time factor, contacts, time per stage since the last one, publishing included. */
 class StepReportPublisher : public StepPublisher {
  public:
-  StepReportPublisher(ros::NodeHandle private_node, const Simulator& simulator);
+  StepReportPublisher(ros::NodeHandle private_node, SimulationLoop* loop);
   void publish(const StepReport& report) override;
   void timeRestarted() override;
   void resumed() override { collector_.resume(); }
 
  private:
+  const SimulationLoop& loop_;
   const Simulator& simulator_;
   PublishSchedule schedule_;
   ros::Publisher publisher_;
   StepStatisticsCollector collector_;
+  double published_ = 0;  // [s] loop's publishing time at the last report
 };
 
 }  // namespace blem_sim

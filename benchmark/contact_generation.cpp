@@ -1,0 +1,61 @@
+#include "contact_generation.h"
+
+#include "blem_sim/contact/narrow_phase.h"
+#include "plain_tree.h"
+
+namespace blem_sim {
+
+std::vector<int> sampledSteps() {
+  constexpr int SAMPLES = 10, PERIOD = 200;  // one oscillation
+  std::vector<int> steps;
+  for (int i = 0; i < SAMPLES; ++i) steps.push_back(i * PERIOD / SAMPLES);
+  return steps;
+}
+
+Generation generate(const ContactScene& scene, bool remembers, int steps) {
+  std::vector<NarrowPhaseMemory> memories(scene.moving.size());
+  std::vector<Pose> poses(scene.moving.size());
+  ContactManifold manifold;
+  Generation out;
+  double total = 0;
+  for (int step = -1; step < steps; ++step) {
+    for (std::size_t i = 0; i < scene.moving.size(); ++i) poses[i] = scene.pose(static_cast<int>(i), step);
+    std::size_t contacts = 0;
+    const double start = threadSeconds();
+    out.times.start();
+    for (std::size_t i = 0; i < scene.moving.size(); ++i) {
+      narrowPhase(scene.moving[i], poses[i], scene.standing, Pose::Identity(), 0, &manifold, nullptr, remembers ? &memories[i] : nullptr);
+      contacts += manifold.contacts.size();
+    }
+    out.times.stop();
+    if (step < 0) {
+      out.times = StepTimes();
+      continue;
+    }
+    total += threadSeconds() - start;
+    out.contacts += static_cast<double>(contacts) / steps;
+  }
+  out.mean = 1e6 * total / steps;
+  return out;
+}
+
+PairSearch searchPlainly(const ContactScene& scene) {
+  const PlainTree standing(scene.standing.geometry->mesh());
+  std::vector<std::unique_ptr<PlainTree>> moving;
+  for (const Collider& collider : scene.moving) moving.push_back(std::make_unique<PlainTree>(collider.geometry->mesh()));
+  std::vector<std::pair<int, int>> pairs;
+  std::size_t found = 0;
+  const std::vector<int> steps = sampledSteps();
+  const double start = threadSeconds();
+  for (const int step : steps) {
+    for (std::size_t i = 0; i < moving.size(); ++i) {
+      const double range = scene.moving[i].radius + scene.standing.radius;
+      PlainTree::trianglePairs(*moving[i], standing, scene.pose(static_cast<int>(i), step), range, &pairs);
+      found += pairs.size();
+    }
+  }
+  const double count = static_cast<double>(steps.size());
+  return {1e6 * (threadSeconds() - start) / count, static_cast<double>(found) / count};
+}
+
+}  // namespace blem_sim

@@ -1,0 +1,179 @@
+#include "known_pairs.h"
+
+#include <algorithm>
+
+#include "contact_search.h"
+
+namespace blem_sim {
+namespace {
+
+using kernels::Candidate;
+using Candidates = CandidatePairs::Candidates;
+
+constexpr int REPEATS = 50;
+
+/** The moving mesh is the one with fewer elements, as in the narrow phase. */
+MeshPair pairOf(const Collider& a, const Pose& X_WA, const Collider& standing) {
+  const bool a_moves = a.geometry->mesh().elements.size() <= standing.geometry->mesh().elements.size();
+  const double layer = a.radius + standing.radius;
+  return {MeshSide(a_moves ? *a.geometry : *standing.geometry), MeshSide(a_moves ? *standing.geometry : *a.geometry),
+          a_moves ? X_WA : X_WA.inverse(), layer, layer};
+}
+
+/** Which pairs of features have a contact. Every pair is known once: a contact with a plane by one of its faces. */
+class KnownContacts {
+ public:
+  explicit KnownContacts(const FoundContacts& found) {
+    for (const auto* contacts : {&found.plain, &found.close})
+      for (const FeatureContact& c : *contacts)
+        if (!c.pierced) unseen_.push_back(contactId(c.moving, c.fixed));
+    std::sort(unseen_.begin(), unseen_.end());
+    unseen_.erase(std::unique(unseen_.begin(), unseen_.end()), unseen_.end());
+    seen_.resize(unseen_.size());
+  }
+  /** True the first time that a known pair is asked for. */
+  bool take(const Feature& moving, const Feature& fixed) {
+    const auto at = std::lower_bound(unseen_.begin(), unseen_.end(), contactId(moving, fixed));
+    if (at == unseen_.end() || *at != contactId(moving, fixed) || seen_[at - unseen_.begin()]) return false;
+    return seen_[at - unseen_.begin()] = true;
+  }
+
+ private:
+  std::vector<std::uint64_t> unseen_;
+  std::vector<bool> seen_;
+};
+
+/** Drops the records that no candidate names, so that they lie as close as they can; `indices` are told where theirs went. */
+template <typename Record>
+void compact(const std::vector<std::uint32_t*>& indices, FeatureRecords<Record>* features) {
+  constexpr std::uint32_t NOWHERE = 0xFFFFFFFF;
+  std::vector<std::uint32_t> place(features->names.size(), NOWHERE);
+  FeatureRecords<Record> kept;
+  for (std::uint32_t* index : indices) {
+    if (place[*index] == NOWHERE) place[*index] = kept.add(features->records[*index], features->names[*index]);
+    *index = place[*index];
+  }
+  *features = std::move(kept);
+}
+
+/** The pairs of features of two meshes that have a contact, and the kernels on them. */
+class KnownPairs {
+ public:
+  KnownPairs(const MeshPair& pair, ContactSearchBuffers* buffers) : X_FM_(pair.X_FM), range_(pair.range) {
+    FoundContacts found;
+    searchContacts(pair, nullptr, buffers, &found);
+    findCandidates(pair, 0, &buffers->search, &lists_);
+    dropUnknown(KnownContacts(found));
+    compactFeatures();
+    vertex_faces_.resize(size());
+    edge_edges_.resize(size());
+    others_.resize(size());
+  }
+
+  std::size_t size() const { return lists_.pairs.contacts(); }
+
+  /** @return hits */
+  std::uint32_t run() {
+    if (size() == 0) return 0;
+    turned_.turn(lists_, X_FM_);
+    const kernels::Kernels& k = kernels::kernels();
+    const CandidatePairs& pairs = lists_.pairs;
+    const auto count = [](const Candidates& candidates) { return static_cast<std::uint32_t>(candidates.size()); };
+    const NearFeatures& fixed = lists_.near[0];
+    const kernels::Vec4 *moving_vertices = turned_.vertices[1].data(), *fixed_vertices = fixed.vertices.records.data();
+    const kernels::EdgeRecord *moving_edges = turned_.edges[1].data(), *fixed_edges = fixed.edges.records.data();
+    std::uint32_t hits = 0;
+    for (const bool moves : {true, false}) {
+      const Candidates &faces = pairs.vertex_face[moves], &edges = pairs.vertex_edge[moves];
+      hits += k.vertexFaces(turned_.vertices[moves].data(), lists_.near[!moves].faces.records.data(), faces.data(), count(faces), range_,
+                            vertex_faces_.data());
+      hits += k.vertexEdges(moves ? moving_vertices : fixed_vertices, moves ? fixed_edges : moving_edges, edges.data(), count(edges),
+                            range_, others_.data());
+    }
+    hits += k.edgeEdges(moving_edges, fixed_edges, pairs.edge_edge.data(), count(pairs.edge_edge), range_, edge_edges_.data());
+    hits +=
+        k.vertexVertices(moving_vertices, fixed_vertices, pairs.vertex_vertex.data(), count(pairs.vertex_vertex), range_, others_.data());
+    return hits;
+  }
+
+ private:
+  void dropUnknown(KnownContacts known) {
+    const auto drop = [&](Candidates* candidates, auto&& feature_a, auto&& feature_b, bool a_moves) {
+      const auto unknown = [&](const Candidate& c) {
+        const Feature a = feature_a(c.a), b = feature_b(c.b);
+        return !(a_moves ? known.take(a, b) : known.take(b, a));
+      };
+      candidates->erase(std::remove_if(candidates->begin(), candidates->end(), unknown), candidates->end());
+    };
+    const auto vertexOf = [this](bool moves) {
+      return [this, moves](std::uint32_t i) { return Feature{FeatureKind::VERTEX, lists_.near[moves].vertices.names[i]}; };
+    };
+    const auto edgeOf = [this](bool moves) {
+      return [this, moves](std::uint32_t i) { return Feature{FeatureKind::EDGE, lists_.near[moves].edges.names[i]}; };
+    };
+    const auto patchOf = [this](bool moves) {
+      return [this, moves](std::uint32_t i) { return Feature{FeatureKind::FACE, lists_.near[moves].patches[i]}; };
+    };
+    for (const bool moves : {true, false}) {
+      drop(&lists_.pairs.vertex_face[moves], vertexOf(moves), patchOf(!moves), moves);
+      drop(&lists_.pairs.vertex_edge[moves], vertexOf(moves), edgeOf(!moves), moves);
+      lists_.pairs.edge_face[moves].clear();
+    }
+    drop(&lists_.pairs.edge_edge, edgeOf(true), edgeOf(false), true);
+    drop(&lists_.pairs.vertex_vertex, vertexOf(true), vertexOf(false), true);
+  }
+
+  void compactFeatures() {
+    CandidatePairs& pairs = lists_.pairs;
+    std::vector<std::uint32_t*> vertices[2], edges[2], faces[2];
+    const auto note = [](Candidates* candidates, std::vector<std::uint32_t*>* as, std::vector<std::uint32_t*>* bs) {
+      for (Candidate& c : *candidates) {
+        as->push_back(&c.a);
+        bs->push_back(&c.b);
+      }
+    };
+    for (const bool moves : {true, false}) {
+      note(&pairs.vertex_face[moves], &vertices[moves], &faces[!moves]);
+      note(&pairs.vertex_edge[moves], &vertices[moves], &edges[!moves]);
+    }
+    note(&pairs.edge_edge, &edges[1], &edges[0]);
+    note(&pairs.vertex_vertex, &vertices[1], &vertices[0]);
+    for (const bool moves : {true, false}) {
+      compact(vertices[moves], &lists_.near[moves].vertices);
+      compact(edges[moves], &lists_.near[moves].edges);
+      compact(faces[moves], &lists_.near[moves].faces);
+    }
+  }
+
+  const Pose X_FM_;
+  const double range_;
+  CandidateLists lists_;
+  TurnedFeatures turned_;
+  std::vector<kernels::VertexFaceHit> vertex_faces_;
+  std::vector<kernels::EdgeEdgeHit> edge_edges_;
+  std::vector<std::uint32_t> others_;
+};
+
+}  // namespace
+
+PairSearch runKernelsOnKnownPairs(const ContactScene& scene) {
+  const std::vector<int> steps = sampledSteps();
+  const double count = static_cast<double>(steps.size());
+  ContactSearchBuffers buffers;
+  PairSearch out;
+  for (const int step : steps) {
+    std::vector<KnownPairs> pairs;
+    for (std::size_t i = 0; i < scene.moving.size(); ++i) {
+      pairs.emplace_back(pairOf(scene.moving[i], scene.pose(static_cast<int>(i), step), scene.standing), &buffers);
+      out.pairs += static_cast<double>(pairs.back().size()) / count;
+    }
+    for (KnownPairs& each : pairs) each.run();
+    const double start = threadSeconds();
+    for (int repeat = 0; repeat < REPEATS; ++repeat)
+      for (KnownPairs& each : pairs) each.run();
+    out.microseconds += 1e6 * (threadSeconds() - start) / REPEATS / count;
+  }
+  return out;
+}
+
+}  // namespace blem_sim
