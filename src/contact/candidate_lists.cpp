@@ -48,7 +48,7 @@ class Search {
   }
   std::uint32_t face(bool moves, LeafFeatures* leaf, std::uint32_t i) {
     NearFeatures& near = lists_.near[moves];
-    if (leaf->face_slots[i] == LeafFeatures::NO_SLOT) near.patches.push_back(pair_.side(moves).topology.patch[leaf->faces[i]]);
+    if (leaf->face_slots[i] == LeafFeatures::NO_SLOT) near.patches.push_back(pair_.side(moves).topology.patchOf(leaf->faces[i]));
     return slot(moves, &leaf->face_slots[i], &near.faces, leaf->faces[i], faceRecord);
   }
 
@@ -79,17 +79,16 @@ class Search {
 /** How steeply (sine) the face's neighbours over an edge rise out of its plane towards `up`, the mesh's frame; negative where they fall. */
 double neighbourSlope(const MeshSide& side, int face, int edge, const Vector3& up) {
   double slope = -1;
-  for (int i = side.topology.edge_face_begin[edge]; i < side.topology.edge_face_begin[edge + 1]; ++i) {
-    const int neighbour = side.topology.edge_faces[i];
-    if (side.topology.patch[neighbour] == side.topology.patch[face]) continue;
+  for (const int neighbour : side.topology.facesOf(edge)) {
+    if (side.topology.patchOf(neighbour) == side.topology.patchOf(face)) continue;
     slope = std::max(slope, side.topology.inward(side.mesh, edge, neighbour).dot(up));
   }
   return slope;
 }
 
 FaceBorders::Kind borderKind(const MeshSide& side, int face, int k, const Vector3& up) {
-  const int edge = side.topology.element_edges[face][k];
-  if (side.topology.edge_flat[edge]) return FaceBorders::FLAT;
+  const int edge = side.topology.edgeOf(face, k);
+  if (side.topology.isFlatEdge(edge)) return FaceBorders::FLAT;
   const double rise = neighbourSlope(side, face, edge, up);
   return rise > NEAR_SUCCESSOR ? FaceBorders::RISING : rise > CONE_SLACK ? FaceBorders::TURNING : FaceBorders::FALLING;
 }
@@ -124,7 +123,7 @@ const FaceBorders& NearFeatures::borders(const MeshSide& side, std::uint32_t fac
   FaceBorders& found = borders_[face];
   if (found.kinds[0][0] != FaceBorders::UNKNOWN) return found;
   const int name = faces.names[face];
-  const Vector3& normal = side.topology.normals[name];
+  const Vector3 normal = MeshTopology::normal(side.mesh, name);
   for (int k = 0; k < 3; ++k) {
     found.corners[k] = side.mesh.vertices[side.mesh.elements[name][k]];
     found.kinds[0][k] = borderKind(side, name, k, -normal);
@@ -140,9 +139,9 @@ const VertexRing& NearFeatures::ring(const MeshSide& side, std::uint32_t vertex)
   const MeshTopology& topology = side.topology;
   const int name = vertices.names[vertex];
   found.begin = static_cast<std::uint32_t>(ring_directions.size());
-  for (int i = topology.vertex_edge_begin[name]; i < topology.vertex_edge_begin[name + 1]; ++i) {
-    const int edge = topology.vertex_edges[i], other = topology.edges[edge][topology.edges[edge][0] == name];
-    ring_directions.push_back(vec4((side.mesh.vertices[other] - side.mesh.vertices[name]).normalized(), topology.edge_flat[edge]));
+  for (const int edge : topology.edgesOf(name)) {
+    const int other = topology.otherEnd(side.mesh, edge, name);
+    ring_directions.push_back(vec4((side.mesh.vertices[other] - side.mesh.vertices[name]).normalized(), topology.isFlatEdge(edge)));
   }
   found.end = static_cast<std::uint32_t>(ring_directions.size());
   return found;

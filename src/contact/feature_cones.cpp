@@ -10,20 +10,15 @@ namespace {
 
 template <typename Visit>
 void forEachEdgeDirection(const MeshSide& side, int vertex, Visit&& visit) {
-  const MeshTopology& topology = side.topology;
-  for (int i = topology.vertex_edge_begin[vertex]; i < topology.vertex_edge_begin[vertex + 1]; ++i) {
-    const std::array<int, 2>& edge = topology.edges[topology.vertex_edges[i]];
-    const int other = edge[0] == vertex ? edge[1] : edge[0];
+  for (const int edge : side.topology.edgesOf(vertex)) {
+    const int other = side.topology.otherEnd(side.mesh, edge, vertex);
     visit(Vector3(side.mesh.vertices[other] - side.mesh.vertices[vertex]));
   }
 }
 
 template <typename Visit>
 void forEachFaceDirection(const MeshSide& side, int edge, Visit&& visit) {
-  const MeshTopology& topology = side.topology;
-  for (int i = topology.edge_face_begin[edge]; i < topology.edge_face_begin[edge + 1]; ++i) {
-    visit(topology.inward(side.mesh, edge, topology.edge_faces[i]));
-  }
+  for (const int face : side.topology.facesOf(edge)) visit(side.topology.inward(side.mesh, edge, face));
 }
 
 /** A direction summed from neighbours means nothing below this. */
@@ -66,8 +61,8 @@ double edgeSlope(const MeshSide& side, int edge, const Vector3& direction) {
 bool isTakenOver(const LeavingVertex& leaving) {
   const MeshSide& side = leaving.side;
   const MeshTopology& topology = side.topology;
-  if (topology.vertex_straight[leaving.vertex]) return true;
-  const std::array<int, 2>& ends = leaving.partner.topology.edges[leaving.edge];
+  if (topology.isStraightVertex(leaving.vertex)) return true;
+  const std::array<int, 2> ends = leaving.partner.topology.ends(leaving.partner.mesh, leaving.edge);
   const Vector3 along =
       leaving.R_PS.transpose() * (leaving.partner.mesh.vertices[ends[1]] - leaving.partner.mesh.vertices[ends[0]]).normalized();
   const Vector3 across = leaving.normal.cross(along);
@@ -75,15 +70,15 @@ bool isTakenOver(const LeavingVertex& leaving) {
     return edgeConeAllows(leaving.partner, leaving.edge, -(leaving.R_PS * normal), slack);
   };
   bool goes_on = partnerAllows(leaving.normal, CONE_SLACK);
-  for (int i = topology.vertex_edge_begin[leaving.vertex]; i < topology.vertex_edge_begin[leaving.vertex + 1]; ++i) {
-    const int edge = topology.vertex_edges[i], other = topology.edges[edge][topology.edges[edge][0] == leaving.vertex];
+  for (const int edge : topology.edgesOf(leaving.vertex)) {
+    const int other = topology.otherEnd(side.mesh, edge, leaving.vertex);
     const Vector3 w = side.mesh.vertices[other] - side.mesh.vertices[leaving.vertex];
     const double down = w.dot(leaving.normal), aside = w.dot(across), length2 = w.squaredNorm();
     if (down <= 0 || down * down <= CONE_SLACK * CONE_SLACK * length2) continue;
     goes_on = false;
     // Its foot lies so far from the vertex, as part of the contact's length.
     const double span2 = down * down + aside * aside, jump = down * std::sqrt(length2) / span2;
-    if (topology.edge_flat[edge] || jump > NEAR_SUCCESSOR) continue;
+    if (topology.isFlatEdge(edge) || jump > NEAR_SUCCESSOR) continue;
     const Vector3 normal = (leaving.normal * std::abs(aside) - across * (aside > 0 ? down : -down)) / std::sqrt(span2);
     if (edgeSlope(side, edge, normal) <= EDGE_CONE_SLACK && partnerAllows(normal, EDGE_CONE_SLACK)) return true;
   }
