@@ -91,10 +91,6 @@ class TemporaryFile {
   std::string path_;
 };
 
-std::size_t bytes(const CollisionGeometry& geometry) {
-  return geometry.mesh().bytes() + geometry.topology().bytes() + geometry.bvh().bytes() + geometry.owners().capacity();
-}
-
 void weldTopologyTree(const TriangleMesh& given) {
   const TriangleMesh mesh = cleanMesh(given, nullptr);
   const MeshTopology topology(mesh);
@@ -122,27 +118,41 @@ void add(const std::string& name, std::function<void()> work) {
 }
 
 void addFile(const std::string& name, const std::string& file) {
-  add(name + "_to_ready", [file] { CollisionGeometry(loadSurface(file).mesh); });
+  add(name + "_to_ready", [file] {
+    const LoadedSurface surface = loadSurface(file);
+    CollisionGeometry(surface.mesh, surface.topology);
+  });
   add(name + "_read_and_mended", [file] { loadSurface(file); });
   add(name + "_as_it_is", [file] { loadSurface(file, Vector3::Ones(), {}, Mending::OFF); });
 }
 
-/** What stays, per triangle, on a closed surface (the grid has half as many vertices as triangles too). */
-void addMemory() {
-  benchmark::RegisterBenchmark("loading/memory",
-                               [](benchmark::State& state) {
-                                 const auto mesh = std::make_shared<const TriangleMesh>(cleanMesh(terrain(), nullptr));
+/** What stays, per triangle, by parts. */
+void addMemory(const std::string& name, const std::function<TriangleMesh()>& surface) {
+  benchmark::RegisterBenchmark(("loading/memory_" + name).c_str(),
+                               [surface](benchmark::State& state) {
+                                 const auto mesh = std::make_shared<const TriangleMesh>(surface());
                                  const double triangles = static_cast<double>(mesh->elements.size());
                                  for (auto _ : state) {
                                    const CollisionGeometry geometry(mesh);
-                                   state.counters["bytes_per_triangle"] = static_cast<double>(bytes(geometry)) / triangles;
-                                   state.counters["of_mesh"] = static_cast<double>(geometry.mesh().bytes()) / triangles;
-                                   state.counters["of_topology"] = static_cast<double>(geometry.topology().bytes()) / triangles;
-                                   state.counters["of_tree"] = static_cast<double>(geometry.bvh().bytes()) / triangles;
+                                   const auto count = [&](const char* part, std::size_t bytes) {
+                                     state.counters[part] = static_cast<double>(bytes) / triangles;
+                                   };
+                                   count("bytes_per_triangle", geometry.bytes());
+                                   count("of_mesh", geometry.mesh().bytes());
+                                   count("of_topology", geometry.topology().bytes());
+                                   count("of_tree", geometry.bvh().bytes() + geometry.owners().capacity());
                                  }
+                                 state.counters["triangles"] = triangles;
                                })
       ->Unit(benchmark::kMillisecond)
       ->Iterations(1);
+}
+
+TriangleMesh roughBall() {
+  RandomShapes random(6);
+  TriangleMesh ball = icosphereMesh(1, 8);
+  for (Vector3& v : ball.vertices) v *= 1 + random.uniform(-NOISE, NOISE);
+  return ball;
 }
 
 }  // namespace
@@ -150,7 +160,8 @@ void addMemory() {
 
 int main(int argc, char** argv) {
   using namespace blem_sim;
-  const TemporaryFile ply("terrain.ply", writePly), stl("terrain.stl", writeStl);
+  const TemporaryFile ply_file("terrain.ply", writePly), stl_file("terrain.stl", writeStl);
+  const std::string ply = ply_file.path(), stl = stl_file.path();
   add("weld_topology_tree", [] { weldTopologyTree(terrain()); });
   add("weld_topology_tree_of_soup", [] { weldTopologyTree(soup()); });
   add("weld", [] { cleanMesh(terrain(), nullptr); });
@@ -159,9 +170,12 @@ int main(int argc, char** argv) {
   add("topology", [] { MeshTopology topology(terrain()); });
   add("tree", [] { Bvh tree(terrain()); });
   add("collision_geometry", [] { CollisionGeometry(std::make_shared<const TriangleMesh>(terrain())); });
-  addFile("ply", ply.path());
-  addFile("stl", stl.path());
-  addMemory();
+  addFile("ply", ply);
+  addFile("stl", stl);
+  addMemory("terrain", [] { return cleanMesh(terrain(), nullptr); });
+  addMemory("ball", [] { return cleanMesh(roughBall(), nullptr); });
+  addMemory("gridded_box", [] { return cleanMesh(subdivided(boxMesh({1, 1, 1}), 8), nullptr); });
+  addMemory("ply", [ply] { return *loadSurface(ply).mesh; });
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
   benchmark::RunSpecifiedBenchmarks();

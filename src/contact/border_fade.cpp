@@ -72,7 +72,7 @@ bool BorderFades::leaves(bool vertex_moves, std::uint32_t vertex, int face, int 
     leads_down = true;
     const bool flat = near.ring_directions[i].w != 0;
     if (!flat && sine <= NEAR_SUCCESSOR * (sine * sine + aside * aside)) {
-      const int border = partner.topology.element_edges[face][k];
+      const int border = partner.topology.edgeOf(face, k);
       return !isTakenOver({side, partner, near.vertices.names[vertex], border, R_PS, own_down});
     }
   }

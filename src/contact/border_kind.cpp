@@ -10,9 +10,8 @@ namespace {
 /** How steeply (sine) the face's neighbours over an edge rise out of its plane towards `up`, the mesh's frame; negative where they fall. */
 double neighbourSlope(const MeshSide& side, int face, int edge, const Vector3& up) {
   double slope = -1;
-  for (int i = side.topology.edge_face_begin[edge]; i < side.topology.edge_face_begin[edge + 1]; ++i) {
-    const int neighbour = side.topology.edge_faces[i];
-    if (side.topology.patch[neighbour] == side.topology.patch[face]) continue;
+  for (const int neighbour : side.topology.facesOf(edge)) {
+    if (side.topology.patchOf(neighbour) == side.topology.patchOf(face)) continue;
     slope = std::max(slope, side.topology.inward(side.mesh, edge, neighbour).dot(up));
   }
   return slope;
@@ -21,9 +20,9 @@ double neighbourSlope(const MeshSide& side, int face, int edge, const Vector3& u
 }  // namespace
 
 BorderKind borderKind(const MeshSide& side, int face, int k, bool above) {
-  const int edge = side.topology.element_edges[face][k];
-  if (side.topology.edge_flat[edge]) return BorderKind::FLAT;
-  const Vector3& normal = side.topology.normals[face];
+  const int edge = side.topology.edgeOf(face, k);
+  if (side.topology.isFlatEdge(edge)) return BorderKind::FLAT;
+  const Vector3 normal = MeshTopology::normal(side.mesh, face);
   const double rise = neighbourSlope(side, face, edge, above ? normal : Vector3(-normal));
   if (rise > CONE_SLACK) return rise > NEAR_SUCCESSOR ? BorderKind::RISING : BorderKind::TURNING;
   return isRoundEdge(side, edge) ? BorderKind::ROUND : BorderKind::FALLING;

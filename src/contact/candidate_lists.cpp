@@ -51,7 +51,7 @@ class Search {
   std::uint32_t face(bool moves, LeafFeatures* leaf, std::uint32_t i) {
     NearFeatures& near = lists_.near[moves];
     if (leaf->face_slots[i] == LeafFeatures::NO_SLOT) {
-      near.patches.push_back(pair_.side(moves).topology.patch[leaf->faces[i]]);
+      near.patches.push_back(pair_.side(moves).topology.patchOf(leaf->faces[i]));
       near.open.push_back(leaf->shapes.open[i]);
     }
     return slot(moves, &leaf->face_slots[i], &near.faces, leaf->faces[i], faceRecord);
@@ -127,20 +127,17 @@ const VertexRing& NearFeatures::ring(const MeshSide& side, std::uint32_t vertex)
   const MeshTopology& topology = side.topology;
   const int name = vertices.names[vertex];
   found.begin = static_cast<std::uint32_t>(ring_directions.size());
-  for (int i = topology.vertex_edge_begin[name]; i < topology.vertex_edge_begin[name + 1]; ++i) {
-    const int edge = topology.vertex_edges[i], other = topology.edges[edge][topology.edges[edge][0] == name];
-    ring_directions.push_back(vec4((side.mesh.vertices[other] - side.mesh.vertices[name]).normalized(), topology.edge_flat[edge]));
+  for (const int edge : topology.edgesOf(name)) {
+    const int other = topology.otherEnd(side.mesh, edge, name);
+    ring_directions.push_back(vec4((side.mesh.vertices[other] - side.mesh.vertices[name]).normalized(), topology.isFlatEdge(edge)));
   }
   found.end = static_cast<std::uint32_t>(ring_directions.size());
   return found;
 }
 
 bool NearFeatures::isRound(const MeshSide& side, std::uint32_t vertex) const {
-  const MeshTopology& topology = side.topology;
-  const int name = vertices.names[vertex];
-  const auto begin = topology.vertex_edges.begin() + topology.vertex_edge_begin[name];
-  return std::all_of(begin, topology.vertex_edges.begin() + topology.vertex_edge_begin[name + 1],
-                     [&](int edge) { return topology.edge_flat[edge] || isRoundEdge(side, edge); });
+  const VertexEdges edges = side.topology.edgesOf(vertices.names[vertex]);
+  return std::all_of(edges.begin(), edges.end(), [&](int edge) { return side.topology.isFlatEdge(edge) || isRoundEdge(side, edge); });
 }
 
 void NearFeatures::clear() {

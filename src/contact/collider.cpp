@@ -38,10 +38,11 @@ SurfaceProperties combineSurfaces(const SurfaceProperties& a, const SurfacePrope
   return pair;
 }
 
-CollisionGeometry::CollisionGeometry(std::shared_ptr<const TriangleMesh> mesh) : mesh_(std::move(mesh)) {
+CollisionGeometry::CollisionGeometry(std::shared_ptr<const TriangleMesh> mesh, std::shared_ptr<const MeshTopology> topology)
+    : mesh_(std::move(mesh)), topology_(std::move(topology)) {
   if (!mesh_ || mesh_->elements.empty()) throw InputError("collision geometry: the mesh has no element; leave the collider out");
   kernels::kernels();  // bad settings are told here, not in a step
-  topology_ = MeshTopology(*mesh_);
+  if (!topology_) topology_ = std::make_shared<const MeshTopology>(*mesh_);
   bvh_ = Bvh(*mesh_, kernels::MAX_LEAF_ELEMENTS);
   static std::atomic<std::uint64_t> last_identity{0};
   identity_ = ++last_identity;
@@ -60,9 +61,13 @@ void CollisionGeometry::findOwners() {
     }
     for (std::uint32_t i = nodes[n].first; i < nodes[n].first + nodes[n].count; ++i) {
       const int element = static_cast<int>(bvh_.order()[i]);
-      owners_[n] |= topology_.ownedVertices(element) != 0 || topology_.ownedEdges(element) != 0;
+      owners_[n] |= topology_->ownedVertices(element) != 0 || topology_->ownedEdges(element) != 0;
     }
   }
+}
+
+std::size_t CollisionGeometry::bytes() const {
+  return isHalfSpace() ? 0 : mesh_->bytes() + topology_->bytes() + bvh_.bytes() + owners_.capacity();
 }
 
 std::shared_ptr<const CollisionGeometry> CollisionGeometry::halfSpace(const Vector3& normal, double offset) {

@@ -17,7 +17,7 @@ bool crosses(const MeshPair& pair, const Crossing& crossing) {
   const bool edge_moves = crossing.edge_of_moving;
   const MeshSide& edge_side = pair.side(edge_moves);
   const FaceShape face = faceShape(pair, !edge_moves, crossing.face);
-  const std::array<int, 2>& ends = edge_side.topology.edges[crossing.edge];
+  const std::array<int, 2> ends = edge_side.topology.ends(edge_side.mesh, crossing.edge);
   const Vector3 p = pair.placed(edge_side.mesh.vertices[ends[0]], edge_moves),
                 q = pair.placed(edge_side.mesh.vertices[ends[1]], edge_moves);
   const double height_p = face.normal.dot(p - face.corners[0]), height_q = face.normal.dot(q - face.corners[0]);

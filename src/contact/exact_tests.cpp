@@ -17,7 +17,7 @@ bool ExactTests::vertexFace(bool vertex_moves, int name, int element) {
   const double height = face.normal.dot(p - face.corners[0]);
   if (!holdsProjection(face, p)) return false;
   if (std::abs(height) > pair_.range) return true;
-  const Feature vertex{FeatureKind::VERTEX, name}, patch{FeatureKind::FACE, pair_.side(!vertex_moves).topology.patch[element]};
+  const Feature vertex{FeatureKind::VERTEX, name}, patch{FeatureKind::FACE, pair_.side(!vertex_moves).topology.patchOf(element)};
   // From fixed to moving: towards the vertex if it is the moving mesh's.
   Vector3 normal = (height > 0) == vertex_moves ? face.normal : Vector3(-face.normal);
   if (std::abs(height) <= TOUCH) {
@@ -31,7 +31,7 @@ bool ExactTests::vertexFace(bool vertex_moves, int name, int element) {
 /** Where a vertex touches a face's border: does its surface extend over the face, or only beside it? */
 bool ExactTests::reachesOver(bool vertex_moves, int vertex, const Vector3& p, const FaceShape& face) const {
   const MeshSide &vertex_side = pair_.side(vertex_moves), &face_side = pair_.side(!vertex_moves);
-  if (vertex_side.topology.vertex_edge_begin[vertex] == vertex_side.topology.vertex_edge_begin[vertex + 1]) return true;
+  if (vertex_side.topology.edgesOf(vertex).empty()) return true;
   bool reaches = true;
   forEachBorderAt(pair_, face, !vertex_moves, p, [&](int border, int border_face) {
     Vector3 inward = pair_.turned(face_side.topology.inward(face_side.mesh, border, border_face), !vertex_moves);
@@ -84,7 +84,7 @@ void ExactTests::addFadingEdges(const Feature& m, const Feature& f, const EdgesB
   if (!cones_known && !conesAllow(m, f, edges.normal, EDGE_CONE_SLACK)) return;
   const auto leaves = [&](int end, bool moves, int edge, int partner, const Matrix3& R_PS, const Vector3& normal) {
     const MeshSide& side = pair_.side(moves);
-    return end >= 0 && !isTakenOver({side, pair_.side(!moves), side.topology.edges[edge][end], partner, R_PS, normal});
+    return end >= 0 && !isTakenOver({side, pair_.side(!moves), side.topology.ends(side.mesh, edge)[end], partner, R_PS, normal});
   };
   const bool fades = leaves(edges.end_p, true, m.index, f.index, R_FM_, -(R_FM_.transpose() * edges.normal)) ||
                      leaves(edges.end_q, false, f.index, m.index, R_FM_.transpose(), edges.normal);
@@ -119,7 +119,7 @@ bool ExactTests::addAtRoundEdge(bool vertex_moves, int vertex, int edge, const V
     if (vector3(inward).dot(d) > CONE_SLACK * distance) return true;
   if (part != clamped) {
     const MeshSide& side = pair_.side(!vertex_moves);
-    if (isRoundVertex(side, side.topology.edges[edge][part > 1], vertex_moves ? d : Vector3(R_FM_.transpose() * d))) return true;
+    if (isRoundVertex(side, side.topology.ends(side.mesh, edge)[part > 1], vertex_moves ? d : Vector3(R_FM_.transpose() * d))) return true;
   }
   contacts_.push_back(featureContact(vertex_moves, {FeatureKind::VERTEX, vertex}, {FeatureKind::EDGE, edge}, p, foot,
                                      (vertex_moves ? 1 : -1) / distance * d, gap));

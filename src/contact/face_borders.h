@@ -18,7 +18,7 @@ inline int cornerAt(const FaceShape& face, const Vector3& p) {
 /** Is p within CLOSED of the edge? */
 inline bool liesOn(const MeshPair& pair, bool edge_moves, int edge, const Vector3& p) {
   const MeshSide& side = pair.side(edge_moves);
-  const std::array<int, 2>& ends = side.topology.edges[edge];
+  const std::array<int, 2> ends = side.topology.ends(side.mesh, edge);
   const Vector3 q = pair.placed(side.mesh.vertices[ends[0]], edge_moves), along = pair.placed(side.mesh.vertices[ends[1]], edge_moves) - q;
   const double length2 = along.squaredNorm(), part = std::min(std::max((p - q).dot(along), 0.0), length2);
   return (p - q - part / length2 * along).squaredNorm() <= CLOSED * CLOSED;
@@ -26,9 +26,9 @@ inline bool liesOn(const MeshPair& pair, bool edge_moves, int edge, const Vector
 
 template <typename Visit>
 void visitIfBorder(const MeshTopology& topology, int edge, int patch, Visit&& visit) {
-  if (topology.edge_flat[edge]) return;
-  for (int i = topology.edge_face_begin[edge]; i < topology.edge_face_begin[edge + 1]; ++i) {
-    if (topology.patch[topology.edge_faces[i]] == patch) return visit(edge, topology.edge_faces[i]);
+  if (topology.isFlatEdge(edge)) return;
+  for (const int face : topology.facesOf(edge)) {
+    if (topology.patchOf(face) == patch) return visit(edge, face);
   }
 }
 
@@ -42,18 +42,18 @@ void forEachBorderAt(const MeshPair& pair, const FaceShape& face, bool face_move
   const MeshTopology& topology = side.topology;
   const auto forEachEdgeAt = [&](int k, auto&& visit_edge) {
     const int vertex = side.mesh.elements[face.element][k];
-    for (int i = topology.vertex_edge_begin[vertex]; i < topology.vertex_edge_begin[vertex + 1]; ++i) visit_edge(topology.vertex_edges[i]);
+    for (const int edge : topology.edgesOf(vertex)) visit_edge(edge);
   };
   const int corner = cornerAt(face, p);
   if (corner >= 0) {
     // The plane's borders there may belong to its other faces.
-    forEachEdgeAt(corner, [&](int edge) { visitIfBorder(topology, edge, topology.patch[face.element], visit); });
+    forEachEdgeAt(corner, [&](int edge) { visitIfBorder(topology, edge, topology.patchOf(face.element), visit); });
     return;
   }
   // A border that p lies on need not be a side of this face where two sides meet at a small angle, but it ends at one of its corners.
   for (int k = 0; k < 3; ++k) {
     forEachEdgeAt(k, [&](int edge) {
-      if (liesOn(pair, face_moves, edge, p)) visitIfBorder(topology, edge, topology.patch[face.element], visit);
+      if (liesOn(pair, face_moves, edge, p)) visitIfBorder(topology, edge, topology.patchOf(face.element), visit);
     });
   }
 }
@@ -67,20 +67,18 @@ bool forEachNeighbourAt(const MeshPair& pair, const FaceShape& face, bool face_m
   const MeshSide& side = pair.side(face_moves);
   const MeshTopology& topology = side.topology;
   const auto visitFacesOf = [&](int edge) {
-    for (int i = topology.edge_face_begin[edge]; i < topology.edge_face_begin[edge + 1]; ++i) {
-      const int neighbour = topology.edge_faces[i];
-      if (topology.patch[neighbour] == topology.patch[face.element]) continue;
+    for (const int neighbour : topology.facesOf(edge)) {
+      if (topology.patchOf(neighbour) == topology.patchOf(face.element)) continue;
       const Vector3i& v = side.mesh.elements[neighbour];
       const Vector3 middle = (side.mesh.vertices[v[0]] + side.mesh.vertices[v[1]] + side.mesh.vertices[v[2]]) / 3;
-      visit(pair.placed(middle, face_moves) - p, pair.turned(topology.normals[neighbour], face_moves));
+      visit(pair.placed(middle, face_moves) - p, pair.turned(MeshTopology::normal(side.mesh, neighbour), face_moves));
     }
   };
   const int corner = face_borders_detail::cornerAt(face, p);
   if (corner >= 0) {
     const int vertex = side.mesh.elements[face.element][corner];
-    const auto begin = topology.vertex_edges.begin() + topology.vertex_edge_begin[vertex];
-    std::for_each(begin, topology.vertex_edges.begin() + topology.vertex_edge_begin[vertex + 1], visitFacesOf);
-    return !topology.vertex_flat[vertex];
+    for (const int edge : topology.edgesOf(vertex)) visitFacesOf(edge);
+    return !topology.isFlatVertex(vertex);
   }
   bool at_border = false;
   forEachBorderAt(pair, face, face_moves, p, [&](int edge, int) {

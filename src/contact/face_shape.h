@@ -24,7 +24,7 @@ inline FaceShape faceShape(const MeshPair& pair, bool face_moves, int element) {
   FaceShape shape;
   shape.element = element;
   for (int k = 0; k < 3; ++k) shape.corners[k] = pair.placed(side.mesh.vertices[side.mesh.elements[element][k]], face_moves);
-  shape.normal = pair.turned(side.topology.normals[element], face_moves);
+  shape.normal = pair.turned(MeshTopology::normal(side.mesh, element), face_moves);
   for (int k = 0; k < 3; ++k) {
     const Vector3 along = shape.corners[NEXT[k]] - shape.corners[k];
     shape.inward[k] = shape.normal.cross(along);

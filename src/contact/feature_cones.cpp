@@ -10,16 +10,12 @@ namespace {
 
 /** From the vertex, one of its ends, along the edge; mesh's frame. */
 Vector3 edgeDirection(const MeshSide& side, int vertex, int edge) {
-  const std::array<int, 2>& ends = side.topology.edges[edge];
-  return side.mesh.vertices[ends[ends[0] == vertex]] - side.mesh.vertices[vertex];
+  return side.mesh.vertices[side.topology.otherEnd(side.mesh, edge, vertex)] - side.mesh.vertices[vertex];
 }
 
 template <typename Visit>
 void forEachFaceDirection(const MeshSide& side, int edge, Visit&& visit) {
-  const MeshTopology& topology = side.topology;
-  for (int i = topology.edge_face_begin[edge]; i < topology.edge_face_begin[edge + 1]; ++i) {
-    visit(topology.inward(side.mesh, edge, topology.edge_faces[i]));
-  }
+  for (const int face : side.topology.facesOf(edge)) visit(side.topology.inward(side.mesh, edge, face));
 }
 
 /** A direction summed from neighbours means nothing below this. */
@@ -39,9 +35,8 @@ Vector3 leanBetween(const MeshPair& pair, const Feature& m, const Feature& f) {
 }  // namespace
 
 bool vertexConeAllows(const MeshSide& side, int vertex, const Vector3& direction, double slack) {
-  const MeshTopology& topology = side.topology;
-  const auto begin = topology.vertex_edges.begin() + topology.vertex_edge_begin[vertex];
-  return std::none_of(begin, topology.vertex_edges.begin() + topology.vertex_edge_begin[vertex + 1], [&](int edge) {
+  const VertexEdges edges = side.topology.edgesOf(vertex);
+  return std::none_of(edges.begin(), edges.end(), [&](int edge) {
     const Vector3 w = edgeDirection(side, vertex, edge);
     const double along = w.dot(direction);
     return along > 0 && along * along > slack * slack * w.squaredNorm();
@@ -55,18 +50,15 @@ bool edgeConeAllows(const MeshSide& side, int edge, const Vector3& direction, do
 }
 
 bool isRoundEdge(const MeshSide& side, int edge) {
-  const MeshTopology& topology = side.topology;
-  const int begin = topology.edge_face_begin[edge];
-  if (topology.edge_flat[edge] || topology.edge_face_begin[edge + 1] - begin != 2) return false;
-  const Vector3 first = topology.inward(side.mesh, edge, topology.edge_faces[begin]);
-  return first.dot(topology.inward(side.mesh, edge, topology.edge_faces[begin + 1])) <= -ROUND_COSINE;
+  const EdgeFaces faces = side.topology.facesOf(edge);
+  if (side.topology.isFlatEdge(edge) || faces.size() != 2) return false;
+  return side.topology.inward(side.mesh, edge, faces[0]).dot(side.topology.inward(side.mesh, edge, faces[1])) <= -ROUND_COSINE;
 }
 
 bool isRoundVertex(const MeshSide& side, int vertex, const Vector3& direction) {
-  const MeshTopology& topology = side.topology;
-  const auto begin = topology.vertex_edges.begin() + topology.vertex_edge_begin[vertex];
-  return std::all_of(begin, topology.vertex_edges.begin() + topology.vertex_edge_begin[vertex + 1], [&](int edge) {
-    return topology.edge_flat[edge] || (isRoundEdge(side, edge) && edgeLean(side, edge).dot(direction) <= 0);
+  const VertexEdges edges = side.topology.edgesOf(vertex);
+  return std::all_of(edges.begin(), edges.end(), [&](int edge) {
+    return side.topology.isFlatEdge(edge) || (isRoundEdge(side, edge) && edgeLean(side, edge).dot(direction) <= 0);
   });
 }
 
@@ -79,8 +71,8 @@ double edgeSlope(const MeshSide& side, int edge, const Vector3& direction) {
 bool isTakenOver(const LeavingVertex& leaving) {
   const MeshSide& side = leaving.side;
   const MeshTopology& topology = side.topology;
-  if (topology.vertex_straight[leaving.vertex]) return true;
-  const std::array<int, 2>& ends = leaving.partner.topology.edges[leaving.edge];
+  if (topology.isStraightVertex(leaving.vertex)) return true;
+  const std::array<int, 2> ends = leaving.partner.topology.ends(leaving.partner.mesh, leaving.edge);
   const Vector3 along =
       leaving.R_PS.transpose() * (leaving.partner.mesh.vertices[ends[1]] - leaving.partner.mesh.vertices[ends[0]]).normalized();
   const Vector3 across = leaving.normal.cross(along);
@@ -88,15 +80,14 @@ bool isTakenOver(const LeavingVertex& leaving) {
     return edgeConeAllows(leaving.partner, leaving.edge, -(leaving.R_PS * normal), slack);
   };
   bool goes_on = partnerAllows(leaving.normal, CONE_SLACK);
-  for (int i = topology.vertex_edge_begin[leaving.vertex]; i < topology.vertex_edge_begin[leaving.vertex + 1]; ++i) {
-    const int edge = topology.vertex_edges[i];
+  for (const int edge : topology.edgesOf(leaving.vertex)) {
     const Vector3 w = edgeDirection(side, leaving.vertex, edge);
     const double down = w.dot(leaving.normal), aside = w.dot(across), length2 = w.squaredNorm();
     if (down <= 0 || down * down <= CONE_SLACK * CONE_SLACK * length2) continue;
     goes_on = false;
     // Its foot lies so far from the vertex, as part of the contact's length.
     const double span2 = down * down + aside * aside, jump = down * std::sqrt(length2) / span2;
-    if (topology.edge_flat[edge] || jump > NEAR_SUCCESSOR) continue;
+    if (topology.isFlatEdge(edge) || jump > NEAR_SUCCESSOR) continue;
     const Vector3 normal = (leaving.normal * std::abs(aside) - across * (aside > 0 ? down : -down)) / std::sqrt(span2);
     if (edgeSlope(side, edge, normal) <= EDGE_CONE_SLACK && partnerAllows(normal, EDGE_CONE_SLACK)) return true;
   }
@@ -104,10 +95,8 @@ bool isTakenOver(const LeavingVertex& leaving) {
 }
 
 Vector3 vertexLean(const MeshSide& side, int vertex) {
-  const MeshTopology& topology = side.topology;
   Vector3 lean = Vector3::Zero();
-  for (int i = topology.vertex_edge_begin[vertex]; i < topology.vertex_edge_begin[vertex + 1]; ++i)
-    lean += edgeDirection(side, vertex, topology.vertex_edges[i]).normalized();
+  for (const int edge : side.topology.edgesOf(vertex)) lean += edgeDirection(side, vertex, edge).normalized();
   return lean;
 }
 

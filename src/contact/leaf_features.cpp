@@ -85,7 +85,7 @@ void describe(const MeshSide& side, std::uint32_t index, LeafFeatures* leaf) {
     const int element = static_cast<int>(side.bvh.order()[i]);
     if (side.topology.isFace(element)) describeFace(side, element, leaf);
     for (int k = 0; k < 3; ++k) {
-      if (side.topology.ownsEdge(element, k)) describeEdge(side, side.topology.element_edges[element][k], leaf);
+      if (side.topology.ownsEdge(element, k)) describeEdge(side, side.topology.edgeOf(element, k), leaf);
       if (!side.topology.ownsVertex(element, k)) continue;
       const std::uint32_t v = shapes.vertex_count++;
       leaf->vertices[v] = side.mesh.elements[element][k];
@@ -105,7 +105,7 @@ void forgetSlots(LeafFeatures* leaf) {
 
 FaceRecord faceRecord(const MeshSide& side, int element) {
   const Vector3i& e = side.mesh.elements[element];
-  const Vector3& normal = side.topology.normals[element];
+  const Vector3 normal = MeshTopology::normal(side.mesh, element);
   FaceRecord record;
   record.plane = vec4(normal, normal.dot(side.mesh.vertices[e[0]]));
   for (int k = 0; k < 3; ++k) {
@@ -118,18 +118,18 @@ FaceRecord faceRecord(const MeshSide& side, int element) {
 
 EdgeRecord edgeRecord(const MeshSide& side, int edge) {
   const MeshTopology& topology = side.topology;
-  const std::array<int, 2>& ends = topology.edges[edge];
-  const int begin = topology.edge_face_begin[edge], count = topology.edge_face_begin[edge + 1] - begin;
+  const std::array<int, 2> ends = topology.ends(side.mesh, edge);
+  const EdgeFaces faces = topology.facesOf(edge);
   const Vector3 &start = side.mesh.vertices[ends[0]], along = side.mesh.vertices[ends[1]] - start;
   const double length2 = along.squaredNorm(), length = std::sqrt(length2);
-  EdgeRecord record{vec4(start, length2), vec4(along, count > 2 ? 1 : isRoundEdge(side, edge) ? -1 : 0), {}};
-  for (int k = 0; k < std::min(count, 2); ++k) {
-    const int face = topology.edge_faces[begin + k];
+  EdgeRecord record{vec4(start, length2), vec4(along, faces.size() > 2 ? 1 : isRoundEdge(side, edge) ? -1 : 0), {}};
+  for (int k = 0; k < std::min(faces.size(), 2); ++k) {
+    const int face = faces[k];
     // By the face's own winding: does the edge run along its side, or against it?
     const Vector3i& e = side.mesh.elements[face];
     const bool forward =
         (e[0] == ends[0] && e[1] == ends[1]) || (e[1] == ends[0] && e[2] == ends[1]) || (e[2] == ends[0] && e[0] == ends[1]);
-    record.inward[k] = vec4(topology.normals[face].cross(along) / (forward ? length : -length), 0);
+    record.inward[k] = vec4(MeshTopology::normal(side.mesh, face).cross(along) / (forward ? length : -length), 0);
   }
   return record;
 }

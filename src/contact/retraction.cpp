@@ -68,14 +68,14 @@ class Retraction {
   static void forEachBorderNear(const MeshSide& side, int face, Visit&& visit) {
     const MeshTopology& topology = side.topology;
     const auto isBorder = [&topology, face](int edge) {
-      const auto begin = topology.edge_faces.begin() + topology.edge_face_begin[edge];
-      return !topology.edge_flat[edge] && std::any_of(begin, topology.edge_faces.begin() + topology.edge_face_begin[edge + 1],
-                                                      [&](int other) { return topology.patch[other] == topology.patch[face]; });
+      if (topology.isFlatEdge(edge)) return false;
+      const EdgeFaces faces = topology.facesOf(edge);
+      return std::any_of(faces.begin(), faces.end(), [&](int other) { return topology.patchOf(other) == topology.patchOf(face); });
     };
     for (int k = 0; k < 3; ++k) {
       const int vertex = side.mesh.elements[face][k];
-      for (int i = topology.vertex_edge_begin[vertex]; i < topology.vertex_edge_begin[vertex + 1]; ++i) {
-        if (isBorder(topology.vertex_edges[i])) visit(topology.vertex_edges[i]);
+      for (const int edge : topology.edgesOf(vertex)) {
+        if (isBorder(edge)) visit(edge);
       }
     }
   }
@@ -86,9 +86,9 @@ class Retraction {
   }
 
   FeatureContact byEnd(const Crossing& crossing, const MeshSide& edge_side, const MeshSide& face_side) const {
-    const std::array<int, 2>& ends = edge_side.topology.edges[crossing.edge];
+    const std::array<int, 2> ends = edge_side.topology.ends(edge_side.mesh, crossing.edge);
     const Vector3 p0 = position(edge_side, ends[0]), p1 = position(edge_side, ends[1]);
-    Vector3 normal = face_side.topology.normals[crossing.face];
+    Vector3 normal = MeshTopology::normal(face_side.mesh, crossing.face);
     if (&face_side == &pair_.moving) normal = pair_.X_FM.linear() * normal;
     const Vector3 corner = position(face_side, face_side.mesh.elements[crossing.face][0]);
     const double h0 = normal.dot(p0 - corner), h1 = normal.dot(p1 - corner);
@@ -101,14 +101,15 @@ class Retraction {
     const Vector3 out = (first ? p0 : p1) - through;
     const Vector3 end = through + out * std::min(1.0, longest_ / out.norm());
     const Vector3 foot = end - normal * normal.dot(end - through);
-    const Feature vertex{FeatureKind::VERTEX, ends[first ? 0 : 1]}, patch{FeatureKind::FACE, face_side.topology.patch[crossing.face]};
+    const Feature vertex{FeatureKind::VERTEX, ends[first ? 0 : 1]}, patch{FeatureKind::FACE, face_side.topology.patchOf(crossing.face)};
     const double gap = -std::abs(normal.dot(end - through));
     if (crossing.edge_of_moving) return {vertex, patch, end, foot, normal, gap, true};
     return {patch, vertex, foot, end, normal, gap, true};
   }
 
   bool overEdges(int m, int f, FeatureContact* out) const {
-    const std::array<int, 2>&ends_m = pair_.moving.topology.edges[m], &ends_f = pair_.fixed.topology.edges[f];
+    const std::array<int, 2> ends_m = pair_.moving.topology.ends(pair_.moving.mesh, m),
+                             ends_f = pair_.fixed.topology.ends(pair_.fixed.mesh, f);
     EdgePair feet;
     if (!findEdgePair(position(pair_.moving, ends_m[0]), position(pair_.moving, ends_m[1]), position(pair_.fixed, ends_f[0]),
                       position(pair_.fixed, ends_f[1]), longest_, &feet)) {

@@ -90,7 +90,7 @@ class Matcher {
  private:
   static constexpr double SAME = 1e-9;  // [m] partners as near as each other
 
-  bool mayJoin(int vertex, int other) const { return vertex == other || !areNeighbours(topology_, vertex, other); }
+  bool mayJoin(int vertex, int other) const { return vertex == other || !areNeighbours(mesh_, topology_, vertex, other); }
 
   void add(int e, int f) {
     const Border &first = borders_[e], &second = borders_[f];
@@ -120,8 +120,8 @@ std::vector<Border> bordersOf(const TriangleMesh& mesh, const MeshTopology& topo
     if (!topology.isFace(static_cast<int>(face))) continue;
     const Vector3i& corners = mesh.elements[face];
     for (int side = 0; side < 3; ++side) {
-      const int edge = topology.element_edges[face][side];
-      if (topology.edge_face_begin[edge + 1] - topology.edge_face_begin[edge] != 1) continue;
+      const int edge = topology.edgeOf(static_cast<int>(face), side);
+      if (topology.facesOf(edge).size() != 1) continue;
       const int a = corners[side], b = corners[(side + 1) % 3];
       const double length = (mesh.vertices[b] - mesh.vertices[a]).norm();
       borders.push_back({static_cast<int>(face), side, a, b, length, topology.inward(mesh, edge, static_cast<int>(face)), corners});
@@ -140,10 +140,9 @@ bool mayContinue(const Border& e, const Border& f) {
 
 double reachOf(const Border& e, const Border& f) { return std::min(CRACK_WIDTH, REACH_OF_LENGTH * std::min(e.length, f.length)); }
 
-bool areNeighbours(const MeshTopology& topology, int vertex, int other) {
-  const auto begin = topology.vertex_edges.begin();
-  return std::any_of(begin + topology.vertex_edge_begin[vertex], begin + topology.vertex_edge_begin[vertex + 1],
-                     [&](int edge) { return topology.edges[edge][0] == other || topology.edges[edge][1] == other; });
+bool areNeighbours(const TriangleMesh& mesh, const MeshTopology& topology, int vertex, int other) {
+  const VertexEdges edges = topology.edgesOf(vertex);
+  return std::any_of(edges.begin(), edges.end(), [&](int edge) { return topology.otherEnd(mesh, edge, vertex) == other; });
 }
 
 VertexClusters::VertexClusters(int vertices) : parent_(vertices) { std::iota(parent_.begin(), parent_.end(), 0); }

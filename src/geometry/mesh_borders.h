@@ -26,7 +26,7 @@ bool mayContinue(const Border& e, const Border& f);
 double reachOf(const Border& e, const Border& f);
 
 /** Are they ends of one edge of the mesh? */
-bool areNeighbours(const MeshTopology& topology, int vertex, int other);
+bool areNeighbours(const TriangleMesh& mesh, const MeshTopology& topology, int vertex, int other);
 
 /** Sets of vertices that become one, at the mean of their places. */
 class VertexClusters {

@@ -65,18 +65,22 @@ bool closeCracks(const MeshTopology& topology, TriangleMesh* mesh, std::vector<d
 
 }  // namespace
 
-TriangleMesh mendMesh(const TriangleMesh& mesh, MeshReport* report, MeshMending* what) {
+TriangleMesh mendMesh(const TriangleMesh& mesh, MeshReport* report, MeshMending* what, MeshTopology* topology) {
   MeshReport unwanted_report;
   MeshMending unwanted;
   if (!report) report = &unwanted_report;
   if (!what) what = &unwanted;
   *what = MeshMending();
   TriangleMesh mended = mesh;
-  MeshTopology topology(mesh);
+  MeshTopology unwanted_topology;
+  if (!topology) topology = &unwanted_topology;
+  *topology = MeshTopology(mesh);
   std::vector<double> noise;
-  if (closeCracks(topology, &mended, &noise, report, what)) topology = MeshTopology(mended);
-  flattenPlanes(topology, noise, &mended, what);
-  if (what->flattened > 0) report->extents = mended.bounds();
+  if (closeCracks(*topology, &mended, &noise, report, what)) *topology = MeshTopology(mended);
+  flattenPlanes(*topology, noise, &mended, what);
+  if (what->flattened == 0) return mended;
+  report->extents = mended.bounds();
+  if (topology != &unwanted_topology) *topology = MeshTopology(mended);
   return mended;
 }
 

@@ -52,7 +52,9 @@ struct Patch {
 class PlaneFinder {
  public:
   PlaneFinder(const MeshTopology& topology, const TriangleMesh& mesh, const std::vector<double>& noise)
-      : topology_(topology), mesh_(mesh), noise_(noise), parent_(topology.patch), bends_(topology.edges.size(), Bend::NONE) {}
+      : topology_(topology), mesh_(mesh), noise_(noise), parent_(mesh.elements.size()), bends_(topology.edgeCount(), Bend::NONE) {
+    for (std::size_t i = 0; i < parent_.size(); ++i) parent_[i] = topology.patchOf(static_cast<int>(i));
+  }
 
   /** @return false if nothing is to be done */
   bool find() {
@@ -81,7 +83,7 @@ class PlaneFinder {
  private:
   enum class Bend : std::uint8_t { NONE, SMOOTH, DOUBTFUL, CREASE, SHARP };
 
-  int faceOf(int edge) const { return topology_.edge_faces[topology_.edge_face_begin[edge]]; }
+  int faceOf(int edge) const { return topology_.facesOf(edge)[0]; }
 
   int root(int i) {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
@@ -89,13 +91,13 @@ class PlaneFinder {
   }
 
   double height(int edge, int face, const Vector3& inward) const {
-    const std::array<int, 2>& ends = topology_.edges[edge];
-    const int opposite = mesh_.elements[face].sum() - ends[0] - ends[1];
-    return (mesh_.vertices[opposite] - mesh_.vertices[ends[0]]).dot(inward);
+    const auto [start, end] = topology_.ends(mesh_, edge);
+    const int opposite = mesh_.elements[face].sum() - start - end;
+    return (mesh_.vertices[opposite] - mesh_.vertices[start]).dot(inward);
   }
 
   Bend bendOf(int edge, int face, int other) const {
-    if (std::abs(topology_.normals[face].dot(topology_.normals[other])) < std::cos(MIN_CREASE)) return Bend::SHARP;
+    if (std::abs(MeshTopology::normal(mesh_, face).dot(MeshTopology::normal(mesh_, other))) < std::cos(MIN_CREASE)) return Bend::SHARP;
     const Vector3 u = topology_.inward(mesh_, edge, face), v = topology_.inward(mesh_, edge, other);
     if (u.dot(v) > 0) return Bend::SHARP;
     const double bend = (u + v).norm(), noise = BEND_HEIGHT / std::min(height(edge, face, u), height(edge, other, v));
@@ -106,24 +108,24 @@ class PlaneFinder {
 
   /** Where two faces meet. */
   void findBends() {
-    tbb::parallel_for(0, static_cast<int>(topology_.edges.size()), [this](int edge) {
-      const int begin = topology_.edge_face_begin[edge];
-      if (topology_.edge_flat[edge] || topology_.edge_face_begin[edge + 1] - begin != 2) return;
-      bends_[edge] = bendOf(edge, topology_.edge_faces[begin], topology_.edge_faces[begin + 1]);
+    tbb::parallel_for(0, topology_.edgeCount(), [this](int edge) {
+      const EdgeFaces faces = topology_.facesOf(edge);
+      if (topology_.isFlatEdge(edge) || faces.size() != 2) return;
+      bends_[edge] = bendOf(edge, faces[0], faces[1]);
     });
   }
 
   /** Starts from the flat patches of the topology. */
   void joinFaces() {
     findBends();
-    for (int edge = 0; edge < static_cast<int>(topology_.edges.size()); ++edge) {
-      const int begin = topology_.edge_face_begin[edge], end = topology_.edge_face_begin[edge + 1];
-      if (topology_.edge_flat[edge] || end - begin < 2) continue;
+    for (int edge = 0; edge < topology_.edgeCount(); ++edge) {
+      const EdgeFaces faces = topology_.facesOf(edge);
+      if (topology_.isFlatEdge(edge) || faces.size() < 2) continue;
       bool smooth = false;
-      for (int i = begin; i < end; ++i) {
-        for (int j = i + 1; j < end; ++j) {
-          const int face = topology_.edge_faces[i], other = topology_.edge_faces[j];
-          const Bend bend = end - begin == 2 ? bends_[edge] : bendOf(edge, face, other);
+      for (int i = 0; i < faces.size(); ++i) {
+        for (int j = i + 1; j < faces.size(); ++j) {
+          const int face = faces[i], other = faces[j];
+          const Bend bend = faces.size() == 2 ? bends_[edge] : bendOf(edge, face, other);
           bends_[edge] = std::max(bends_[edge], bend);
           if (bend != Bend::SMOOTH) continue;
           smooth = true;
@@ -131,7 +133,7 @@ class PlaneFinder {
           parent_[std::max(a, b)] = std::min(a, b);
         }
       }
-      if (smooth && end - begin == 2) rough_edges_.push_back(edge);
+      if (smooth && faces.size() == 2) rough_edges_.push_back(edge);
     }
   }
 
@@ -156,17 +158,17 @@ class PlaneFinder {
 
   /** How much of a patch's outline is crease or border, and how much might be the way a curved surface goes on. */
   void addOutlines() {
-    for (int edge = 0; edge < static_cast<int>(topology_.edges.size()); ++edge) {
-      const int begin = topology_.edge_face_begin[edge], end = topology_.edge_face_begin[edge + 1];
-      if (topology_.edge_flat[edge] || begin == end) continue;
-      const auto first = topology_.edge_faces.begin() + begin, last = topology_.edge_faces.begin() + end;
-      const int patch = patch_of_[*first];
-      const bool inside = end - begin > 1 && std::all_of(first, last, [&](int face) { return patch_of_[face] == patch; });
+    for (int edge = 0; edge < topology_.edgeCount(); ++edge) {
+      const EdgeFaces faces = topology_.facesOf(edge);
+      if (topology_.isFlatEdge(edge) || faces.size() == 0) continue;
+      const int patch = patch_of_[faces[0]];
+      const bool inside = faces.size() > 1 && std::all_of(faces.begin(), faces.end(), [&](int face) { return patch_of_[face] == patch; });
       if (inside) continue;
-      const double length = (mesh_.vertices[topology_.edges[edge][1]] - mesh_.vertices[topology_.edges[edge][0]]).norm();
-      for (auto face = first; face != last; ++face) {
-        if (patch_of_[*face] == NO_PATCH) continue;
-        Patch& own = patches_[patch_of_[*face]];
+      const auto [start, end] = topology_.ends(mesh_, edge);
+      const double length = (mesh_.vertices[end] - mesh_.vertices[start]).norm();
+      for (const int face : faces) {
+        if (patch_of_[face] == NO_PATCH) continue;
+        Patch& own = patches_[patch_of_[face]];
         own.outline += length;
         if (bends_[edge] == Bend::DOUBTFUL) own.doubtful += length;
         if (bends_[edge] != Bend::SHARP) own.blunt += length;

@@ -27,10 +27,11 @@ double signedVolume(const TriangleMesh& mesh) {
 std::string whyNot(const TriangleMesh& mesh, const MeshTopology& topology, double volume) {
   for (int e = 0; e < static_cast<int>(mesh.elements.size()); ++e)
     if (!mesh.isTriangle(e) || !topology.isFace(e)) return "it has segments or points";
-  std::vector<int> forward(topology.edges.size()), backward(topology.edges.size());
+  std::vector<int> forward(topology.edgeCount()), backward(topology.edgeCount());
   for (std::size_t e = 0; e < mesh.elements.size(); ++e)
-    for (int k = 0; k < 3; ++k) ++(mesh.elements[e][k] < mesh.elements[e][(k + 1) % 3] ? forward : backward)[topology.element_edges[e][k]];
-  for (std::size_t edge = 0; edge < topology.edges.size(); ++edge) {
+    for (int k = 0; k < 3; ++k)
+      ++(mesh.elements[e][k] < mesh.elements[e][(k + 1) % 3] ? forward : backward)[topology.edgeOf(static_cast<int>(e), k)];
+  for (int edge = 0; edge < topology.edgeCount(); ++edge) {
     if (forward[edge] + backward[edge] != 2) return "it is open or not a manifold";
     if (forward[edge] != 1) return "it is not wound consistently";
   }
@@ -39,13 +40,8 @@ std::string whyNot(const TriangleMesh& mesh, const MeshTopology& topology, doubl
 
 class Shrinking {
  public:
-  Shrinking(const TriangleMesh& mesh, const MeshTopology& topology, double r, double outward)
-      : mesh_(mesh),
-        r_(r),
-        outward_(outward),
-        normals_(topology.normals),
-        part_(mesh.vertices.size(), 1),
-        crossed_before_(mesh.elements.size(), false) {
+  Shrinking(const TriangleMesh& mesh, double r, double outward)
+      : mesh_(mesh), r_(r), outward_(outward), part_(mesh.vertices.size(), 1), crossed_before_(mesh.elements.size(), false) {
     findMoves();
     findTriangles();
     for (const int triangle : crossingTriangles(mesh_)) crossed_before_[triangle] = true;
@@ -75,12 +71,13 @@ class Shrinking {
     std::vector<Matrix3> square(mesh_.vertices.size(), Matrix3::Zero());
     std::vector<Vector3> sum(mesh_.vertices.size(), Vector3::Zero());
     for (std::size_t e = 0; e < mesh_.elements.size(); ++e) {
+      const Vector3 normal = MeshTopology::normal(mesh_, static_cast<int>(e));
       for (int k = 0; k < 3; ++k) {
         const Vector3i& v = mesh_.elements[e];
         const Vector3 a = mesh_.vertices[v[(k + 1) % 3]] - mesh_.vertices[v[k]], b = mesh_.vertices[v[(k + 2) % 3]] - mesh_.vertices[v[k]];
         const double angle = std::atan2(a.cross(b).norm(), a.dot(b));
-        square[v[k]] += angle * normals_[e] * normals_[e].transpose();
-        sum[v[k]] -= angle * outward_ * r_ * normals_[e];
+        square[v[k]] += angle * normal * normal.transpose();
+        sum[v[k]] -= angle * outward_ * r_ * normal;
       }
     }
     moves_.resize(mesh_.vertices.size());
@@ -119,7 +116,8 @@ class Shrinking {
     std::vector<int> turned;
     for (std::size_t e = 0; e < mesh_.elements.size(); ++e) {
       const Vector3 normal = areaNormal(shrunk, mesh_.elements[e]);
-      if (!(normal.dot(normals_[e]) > LEAST_COSINE * normal.norm())) turned.push_back(static_cast<int>(e));
+      if (!(normal.dot(MeshTopology::normal(mesh_, static_cast<int>(e))) > LEAST_COSINE * normal.norm()))
+        turned.push_back(static_cast<int>(e));
     }
     return turned;
   }
@@ -178,7 +176,7 @@ class Shrinking {
     for (std::size_t v = 0; v < moves_.size(); ++v) {
       ++(part_[v] == 1 ? what->moved : what->held_back);
       for (const int t : triangles_of_[v]) {
-        const double outside = r_ + outward_ * normals_[t].dot(part_[v] * moves_[v]);
+        const double outside = r_ + outward_ * MeshTopology::normal(mesh_, t).dot(part_[v] * moves_[v]);
         what->excess = std::max(what->excess, outside);
         what->shortfall = std::max(what->shortfall, -outside);
       }
@@ -187,7 +185,6 @@ class Shrinking {
 
   const TriangleMesh& mesh_;
   const double r_, outward_;  // -1: the winding shows inwards
-  const std::vector<Vector3>& normals_;
   std::vector<double> part_;  // of its move, per vertex
   std::vector<char> crossed_before_;
   std::vector<Vector3> moves_;
@@ -205,7 +202,7 @@ TriangleMesh shrinkMesh(const TriangleMesh& mesh, double r, MeshShrinking* what)
     what->excess = r;
     return mesh;
   }
-  return Shrinking(mesh, topology, r, volume > 0 ? 1 : -1).run(what);
+  return Shrinking(mesh, r, volume > 0 ? 1 : -1).run(what);
 }
 
 }  // namespace blem_sim

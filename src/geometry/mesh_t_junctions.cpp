@@ -90,8 +90,8 @@ class OverlapFinder {
 /** What overlaps ask for. */
 class OverlapJoiner {
  public:
-  OverlapJoiner(const OverlapFinder& finder, const MeshTopology& topology, VertexClusters* clusters)
-      : finder_(finder), topology_(topology), clusters_(*clusters) {}
+  OverlapJoiner(const TriangleMesh& mesh, const OverlapFinder& finder, const MeshTopology& topology, VertexClusters* clusters)
+      : mesh_(mesh), finder_(finder), topology_(topology), clusters_(*clusters) {}
 
   /** A vertex that lies on a border is joined with its end, or splits it; else nothing. @return joined */
   bool lay(int vertex, const Border& border, double reach) {
@@ -99,7 +99,7 @@ class OverlapJoiner {
     if (vertex == border.a || vertex == border.b || finder_.distance(vertex, border, &parameter) > reach) return false;
     for (const int end : {border.a, border.b}) {
       const double apart = (finder_.place(vertex) - finder_.place(end)).norm();
-      if (apart > reach || areNeighbours(topology_, vertex, end)) continue;
+      if (apart > reach || areNeighbours(mesh_, topology_, vertex, end)) continue;
       clusters_.join(vertex, end);
       return true;
     }
@@ -110,6 +110,7 @@ class OverlapJoiner {
   std::vector<EdgeSplit> splits;
 
  private:
+  const TriangleMesh& mesh_;
   const OverlapFinder& finder_;
   const MeshTopology& topology_;
   VertexClusters& clusters_;
@@ -159,7 +160,7 @@ std::vector<EdgeSplit> joinOverlapping(const TriangleMesh& mesh, const MeshTopol
   if (borders.empty()) return {};
   OverlapFinder finder(mesh, borders);
   finder.find();
-  OverlapJoiner joiner(finder, topology, clusters);
+  OverlapJoiner joiner(mesh, finder, topology, clusters);
   for (const Overlap& overlap : finder.overlaps()) {
     if (!finder.isNearest(overlap)) continue;
     const Border &e = borders[overlap.e], &f = borders[overlap.f];

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "grouped.h"
 #include "sides_by_vertex.h"
@@ -35,86 +36,117 @@ int root(std::vector<int>& parent, int i) {
 }  // namespace
 
 MeshTopology::MeshTopology(const TriangleMesh& mesh) {
-  normals.resize(mesh.elements.size());
-  tbb::parallel_for(std::size_t{0}, normals.size(), [&](std::size_t i) {
-    const Vector3i& e = mesh.elements[i];
-    normals[i] = unitNormal(mesh.vertices[e[0]], mesh.vertices[e[1]], mesh.vertices[e[2]]);
-  });
-  findEdges(mesh);
-  findRings(static_cast<int>(mesh.vertices.size()));
-  findFlatness(mesh);
-  findPatches();
+  const std::vector<Vector3> normals = findFaces(mesh);
+  const int vertices = static_cast<int>(mesh.vertices.size());
+  {
+    const SidesByVertex by_vertex(mesh);
+    findEdges(by_vertex, vertices);
+    findRings(by_vertex, vertices);
+  }
+  findFlatness(mesh, normals);
+  findPatches(static_cast<int>(mesh.elements.size()));
   findOwners(mesh);
+}
+
+Vector3 MeshTopology::normal(const TriangleMesh& mesh, int element) {
+  const Vector3i& e = mesh.elements[element];
+  return unitNormal(mesh.vertices[e[0]], mesh.vertices[e[1]], mesh.vertices[e[2]]);
 }
 
 std::size_t MeshTopology::bytes() const {
   const auto of = [](const auto&... arrays) { return ((arrays.capacity() * sizeof(arrays[0])) + ...); };
-  return of(edges, edge_face_begin, edge_faces, vertex_edge_begin, vertex_edges, element_edges, normals, edge_flat, vertex_flat,
-            vertex_straight, patch, owned_);
+  return of(edge_sides_, many_faces_, higher_begin_, lower_begin_, lower_edges_, element_edges_, vertex_kinds_, patches_, owned_);
 }
 
-Vector3 MeshTopology::inward(const TriangleMesh& mesh, int edge, int face) const {
-  const int start = edges[edge][0], end = edges[edge][1];
+EdgeFaces MeshTopology::facesOf(int edge) const {
+  const EdgeSides& sides = edge_sides_[edge];
+  const std::uint32_t other = sides.other >> 2;
+  if (sides.other & MANY) return {&many_faces_[other + 1], many_faces_[other]};
+  return {static_cast<int>(sides.side >> 2), static_cast<int>(other), other == NO_FACE ? 0 : other == NO_SECOND ? 1 : 2};
+}
+
+Vector3 MeshTopology::inward(const TriangleMesh& mesh, int edge, int face, const Vector3& face_normal) const {
+  const auto [start, end] = ends(mesh, edge);
   const int opposite = mesh.elements[face].sum() - start - end;
-  const Vector3 across = normals[face].cross(mesh.vertices[end] - mesh.vertices[start]).normalized();
+  const Vector3 across = face_normal.cross(mesh.vertices[end] - mesh.vertices[start]).normalized();
   return across.dot(mesh.vertices[opposite] - mesh.vertices[start]) < 0 ? Vector3(-across) : across;
 }
 
-void MeshTopology::findEdges(const TriangleMesh& mesh) {
-  const SidesByVertex by_vertex(mesh);
-  const int vertices = static_cast<int>(mesh.vertices.size());
+/** @return the normals, while they are at hand */
+std::vector<Vector3> MeshTopology::findFaces(const TriangleMesh& mesh) {
+  std::vector<Vector3> normals(mesh.elements.size());
+  owned_.resize(mesh.elements.size());
+  tbb::parallel_for(std::size_t{0}, normals.size(), [&](std::size_t i) {
+    normals[i] = normal(mesh, static_cast<int>(i));
+    owned_[i] = normals[i].isZero(0) ? 0 : FACE;
+  });
+  return normals;
+}
+
+void MeshTopology::findEdges(const SidesByVertex& by_vertex, int vertex_count) {
   const auto isOfFace = [this](const Side& side) { return isFace(side.element()); };
-  // Where the edges of a vertex begin, and their faces: first how many there are.
-  std::vector<int> edge_begin(vertices + 1, 0), face_begin(vertices + 1, 0);
-  tbb::parallel_for(0, vertices, [&](int v) {
+  const auto facesAmong = [&](const Side* first, const Side* last) { return static_cast<int>(std::count_if(first, last, isOfFace)); };
+  // Where the edges of a vertex begin, and the lists of many faces: first how long they are.
+  std::vector<int> many_begin(vertex_count + 1, 0);
+  higher_begin_.assign(vertex_count + 1, 0);
+  tbb::parallel_for(0, vertex_count, [&](int v) {
     visitEdges(by_vertex, v, [&](const Side* first, const Side* last) {
-      ++edge_begin[v + 1];
-      face_begin[v + 1] += static_cast<int>(std::count_if(first, last, isOfFace));
+      ++higher_begin_[v + 1];
+      const int faces = last - first > 2 ? facesAmong(first, last) : 0;
+      if (faces > 2) many_begin[v + 1] += 1 + faces;
     });
   });
-  accumulate(&edge_begin);
-  accumulate(&face_begin);
-  element_edges.assign(mesh.elements.size(), {NO_EDGE, NO_EDGE, NO_EDGE});
-  edges.resize(edge_begin.back());
-  edge_face_begin.resize(edges.size() + 1);
-  edge_face_begin.back() = face_begin.back();
-  edge_faces.resize(face_begin.back());
-  tbb::parallel_for(0, vertices, [&](int v) {
-    int edge = edge_begin[v], face = face_begin[v];
+  accumulate(&higher_begin_);
+  accumulate(&many_begin);
+  element_edges_.assign(owned_.size(), {NO_EDGE, NO_EDGE, NO_EDGE});
+  edge_sides_.resize(higher_begin_.back());
+  many_faces_.resize(many_begin.back());
+  tbb::parallel_for(0, vertex_count, [&](int v) {
+    int edge = higher_begin_[v], many = many_begin[v];
     visitEdges(by_vertex, v, [&](const Side* first, const Side* last) {
-      edges[edge] = {v, first->higher()};
-      edge_face_begin[edge] = face;
-      for (const Side* side = first; side != last; ++side) {
-        element_edges[side->element()][side->corner()] = edge;
-        if (isOfFace(*side)) edge_faces[face++] = side->element();
+      for (const Side* side = first; side != last; ++side) element_edges_[side->element()][side->corner()] = edge;
+      const Side* const face = std::find_if(first, last, isOfFace);
+      const Side* const second = face == last ? last : std::find_if(face + 1, last, isOfFace);
+      const Side& teller = face == last ? *first : *face;
+      const int faces = second == last ? 0 : facesAmong(first, last);
+      const std::uint32_t other = faces > 2        ? static_cast<std::uint32_t>(many)
+                                  : face == last   ? NO_FACE
+                                  : second == last ? NO_SECOND
+                                                   : static_cast<std::uint32_t>(second->element());
+      edge_sides_[edge++] = {static_cast<std::uint32_t>(teller.element()) << 2 | static_cast<std::uint32_t>(teller.corner()),
+                             other << 2 | (faces > 2 ? MANY : 0)};
+      if (faces <= 2) return;
+      many_faces_[many++] = faces;
+      for (const Side* side = face; side != last; ++side) {
+        if (isOfFace(*side)) many_faces_[many++] = side->element();
       }
-      ++edge;
     });
   });
 }
 
-void MeshTopology::findRings(int vertex_count) {
-  const auto visitEnds = [this](int edge, auto&& visit) {
-    for (const int vertex : edges[edge]) visit(vertex, edge);
+void MeshTopology::findRings(const SidesByVertex& by_vertex, int vertex_count) {
+  const auto visitHigherEnds = [&](int v, auto&& visit) {
+    int edge = higher_begin_[v];
+    visitEdges(by_vertex, v, [&](const Side* first, const Side*) { visit(first->higher(), edge++); });
   };
-  vertex_edge_begin = grouped(static_cast<int>(edges.size()), vertex_count, visitEnds, [this](std::size_t count) {
-    vertex_edges.resize(count);
-    return vertex_edges.data();
+  lower_begin_ = grouped(vertex_count, vertex_count, visitHigherEnds, [this](std::size_t count) {
+    lower_edges_.resize(count);
+    return lower_edges_.data();
   });
 }
 
-bool MeshTopology::isFlat(const TriangleMesh& mesh, int edge) const {
-  const int begin = edge_face_begin[edge], end = edge_face_begin[edge + 1];
-  if (end - begin < 2) return false;
+bool MeshTopology::isFlat(const TriangleMesh& mesh, int edge, const std::vector<Vector3>& normals) const {
+  const EdgeFaces faces = facesOf(edge);
+  if (faces.size() < 2) return false;
   // Faces may be there more than once, but all must lie on the two halves of one plane, some on each.
-  const Vector3& first_normal = normals[edge_faces[begin]];
-  for (int i = begin + 1; i < end; ++i) {
-    if (std::abs(first_normal.dot(normals[edge_faces[i]])) < CLEARLY_BENT) return false;
+  const Vector3& first_normal = normals[faces[0]];
+  for (int i = 1; i < faces.size(); ++i) {
+    if (std::abs(first_normal.dot(normals[faces[i]])) < CLEARLY_BENT) return false;
   }
-  const Vector3 first = inward(mesh, edge, edge_faces[begin]);
+  const Vector3 first = inward(mesh, edge, faces[0], first_normal);
   bool continued = false;
-  for (int i = begin + 1; i < end; ++i) {
-    const Vector3 u = inward(mesh, edge, edge_faces[i]);
+  for (int i = 1; i < faces.size(); ++i) {
+    const Vector3 u = inward(mesh, edge, faces[i], normals[faces[i]]);
     const bool opposite = u.dot(first) < 0;
     if ((opposite ? Vector3(u + first) : Vector3(u - first)).norm() > FLAT_SINE) return false;
     continued = continued || opposite;
@@ -123,48 +155,50 @@ bool MeshTopology::isFlat(const TriangleMesh& mesh, int edge) const {
 }
 
 bool MeshTopology::isStraight(const TriangleMesh& mesh, int vertex) const {
-  const auto begin = vertex_edges.begin() + vertex_edge_begin[vertex], end = vertex_edges.begin() + vertex_edge_begin[vertex + 1];
-  if (std::count_if(begin, end, [this](int edge) { return edge_flat[edge] == 0; }) != 2) return false;
+  const VertexEdges around = edgesOf(vertex);
+  if (std::count_if(around.begin(), around.end(), [this](int edge) { return !isFlatEdge(edge); }) != 2) return false;
   Vector3 sum = Vector3::Zero();
-  for (auto edge = begin; edge != end; ++edge) {
-    if (edge_flat[*edge]) continue;
-    sum += (mesh.vertices[edges[*edge][edges[*edge][0] == vertex]] - mesh.vertices[vertex]).normalized();
+  for (const int edge : around) {
+    if (!isFlatEdge(edge)) sum += (mesh.vertices[otherEnd(mesh, edge, vertex)] - mesh.vertices[vertex]).normalized();
   }
   return sum.norm() <= FLAT_SINE;
 }
 
-void MeshTopology::findFlatness(const TriangleMesh& mesh) {
-  edge_flat.resize(edges.size());
-  tbb::parallel_for(std::size_t{0}, edges.size(), [&](std::size_t i) { edge_flat[i] = isFlat(mesh, static_cast<int>(i)); });
-  vertex_flat.resize(mesh.vertices.size());
-  vertex_straight.resize(mesh.vertices.size());
+void MeshTopology::findFlatness(const TriangleMesh& mesh, const std::vector<Vector3>& normals) {
+  tbb::parallel_for(0, edgeCount(), [&](int edge) {
+    if (isFlat(mesh, edge, normals)) edge_sides_[edge].other |= FLAT;
+  });
+  vertex_kinds_.resize(mesh.vertices.size());
   tbb::parallel_for(std::size_t{0}, mesh.vertices.size(), [&](std::size_t v) {
-    const auto begin = vertex_edges.begin() + vertex_edge_begin[v], end = vertex_edges.begin() + vertex_edge_begin[v + 1];
-    vertex_flat[v] = begin != end && std::all_of(begin, end, [this](int edge) { return edge_flat[edge] != 0; });
-    vertex_straight[v] = isStraight(mesh, static_cast<int>(v));
+    const int vertex = static_cast<int>(v);
+    const VertexEdges around = edgesOf(vertex);
+    const bool flat = !around.empty() && std::all_of(around.begin(), around.end(), [this](int edge) { return isFlatEdge(edge); });
+    vertex_kinds_[v] = (flat ? FLAT_VERTEX : 0) | (isStraight(mesh, vertex) ? STRAIGHT_VERTEX : 0);
   });
 }
 
-void MeshTopology::findPatches() {
-  patch.resize(normals.size());
-  for (std::size_t i = 0; i < patch.size(); ++i) patch[i] = static_cast<int>(i);
-  for (std::size_t edge = 0; edge < edges.size(); ++edge) {
-    if (!edge_flat[edge]) continue;
-    for (int i = edge_face_begin[edge] + 1; i < edge_face_begin[edge + 1]; ++i) {
-      const int a = root(patch, edge_faces[i - 1]), b = root(patch, edge_faces[i]);
-      patch[std::max(a, b)] = std::min(a, b);
+void MeshTopology::findPatches(int element_count) {
+  const auto isFlatOne = [](const EdgeSides& sides) { return (sides.other & FLAT) != 0; };
+  if (std::none_of(edge_sides_.begin(), edge_sides_.end(), isFlatOne)) return;
+  patches_.resize(element_count);
+  std::iota(patches_.begin(), patches_.end(), 0);
+  for (int edge = 0; edge < edgeCount(); ++edge) {
+    if (!isFlatEdge(edge)) continue;
+    const EdgeFaces faces = facesOf(edge);
+    for (int i = 1; i < faces.size(); ++i) {
+      const int a = root(patches_, faces[i - 1]), b = root(patches_, faces[i]);
+      patches_[std::max(a, b)] = std::min(a, b);
     }
   }
-  for (std::size_t i = 0; i < patch.size(); ++i) patch[i] = root(patch, static_cast<int>(i));
+  for (int i = 0; i < element_count; ++i) patches_[i] = root(patches_, i);
 }
 
 void MeshTopology::findOwners(const TriangleMesh& mesh) {
-  std::vector<std::uint8_t> vertex_taken = vertex_flat, edge_taken = edge_flat;
-  for (std::size_t v = 0; v < vertex_taken.size(); ++v) vertex_taken[v] |= vertex_straight[v];
-  owned_.assign(mesh.elements.size(), 0);
+  std::vector<std::uint8_t> vertex_taken = vertex_kinds_, edge_taken(edge_sides_.size());
+  for (int edge = 0; edge < edgeCount(); ++edge) edge_taken[edge] = isFlatEdge(edge);
   for (std::size_t i = 0; i < mesh.elements.size(); ++i) {
     for (int k = 0; k < 3; ++k) {
-      const int vertex = mesh.elements[i][k], edge = element_edges[i][k];
+      const int vertex = mesh.elements[i][k], edge = element_edges_[i][k];
       if (!vertex_taken[vertex]) owned_[i] |= 1 << k;
       vertex_taken[vertex] = true;
       if (edge == NO_EDGE) continue;

@@ -11,6 +11,9 @@
 namespace blem_sim {
 namespace {
 
+/** Parts of a load that lie behind when these stages begin, about. */
+constexpr double CLEANING_FRACTION = 0.35, MENDING_FRACTION = 0.5;
+
 using Reader = SurfaceSoup (*)(const std::string& file, const std::string& extension);
 
 /** One row per kind of file. */
@@ -87,10 +90,10 @@ TriangleMesh cleanSoup(SurfaceSoup&& soup, MeshReport* report) {
 }
 
 /** mendMesh, told in words. */
-TriangleMesh mended(const TriangleMesh& cleaned, MeshReport* report) {
+TriangleMesh mended(const TriangleMesh& cleaned, MeshReport* report, MeshTopology* topology) {
   constexpr double MICRO = 1e-6;
   MeshMending what;
-  TriangleMesh mesh = mendMesh(cleaned, report, &what);
+  TriangleMesh mesh = mendMesh(cleaned, report, &what, topology);
   if (what.cracks > 0) report->notes.push_back(fmt::format("{} cracks up to {:.3g} um closed", what.cracks, what.widest_crack / MICRO));
   if (what.split_edges > 0) report->notes.push_back(fmt::format("{} edges split at T-junctions", what.split_edges));
   if (what.flattened > 0)
@@ -110,8 +113,13 @@ void noteDropped(MeshReport* report) {
 
 }  // namespace
 
-LoadedSurface loadSurface(const std::string& file, const Vector3& scale, const CloudOptions& cloud, Mending mending) {
+LoadedSurface loadSurface(const std::string& file, const Vector3& scale, const CloudOptions& cloud, Mending mending,
+                          const LoadProgress& progress) {
   checkOptions(file, scale, cloud);
+  const auto enter = [&](const char* stage, double fraction) {
+    if (progress) progress(fmt::format("{} {}", stage, std::filesystem::path(file).filename().string()), fraction);
+  };
+  enter("reading", 0);
   SurfaceSoup soup = readSurface(file);
   scaleSoup(scale, &soup.mesh);
   LoadedSurface surface;
@@ -119,9 +127,18 @@ LoadedSurface loadSurface(const std::string& file, const Vector3& scale, const C
   surface.report.source = file;
   surface.report.notes = soup.notes;
   const bool points = wantsPoints(soup, cloud.as);
-  if (!points && soup.mesh.elements.empty()) joinCloud(cloud.max_edge, &soup, &surface.report);
+  if (!points && soup.mesh.elements.empty()) {
+    enter("joining the points of", CLEANING_FRACTION);
+    joinCloud(cloud.max_edge, &soup, &surface.report);
+  }
+  enter("cleaning", CLEANING_FRACTION);
   TriangleMesh cleaned = points ? pointCloudMesh(soup.mesh.vertices, &surface.report) : cleanSoup(std::move(soup), &surface.report);
-  if (!points && mending == Mending::ON) cleaned = mended(cleaned, &surface.report);
+  if (!points && mending == Mending::ON) {
+    enter("mending", MENDING_FRACTION);
+    const auto topology = std::make_shared<MeshTopology>();
+    cleaned = mended(cleaned, &surface.report, topology.get());
+    surface.topology = topology;
+  }
   if (points) {
     surface.radius = surface.report.boundary_width = cloud.point_radius;
     surface.report.notes.push_back(fmt::format("simulated as points of radius {} m", cloud.point_radius));

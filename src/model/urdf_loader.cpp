@@ -123,8 +123,11 @@ std::vector<JointModel> parentsFirst(const std::vector<JointModel>& joints, std:
   return sorted;
 }
 
-void readLinks(const urdf::ModelInterface& model, const UrdfOutline& outline, CollisionShapeReader* shapes, RobotModel* robot) {
+void readLinks(const urdf::ModelInterface& model, const UrdfOutline& outline, const LoadProgress& progress, CollisionShapeReader* shapes,
+               RobotModel* robot) {
   for (const std::string& name : outline.links) {
+    const double read = static_cast<double>(robot->links.size()) / static_cast<double>(outline.links.size());
+    if (progress) progress(fmt::format("reading link '{}'", name), (1 - TREE_FRACTION) * read);
     const urdf::LinkConstSharedPtr given = model.getLink(name);
     LinkModel link;
     link.name = name;
@@ -150,7 +153,7 @@ void addNotes(RobotModel* robot) {
 }  // namespace
 
 RobotModel loadUrdf(const std::string& xml, const std::string& source, const UriResolver& resolver, const std::string& base,
-                    Mending mending) {
+                    Mending mending, const LoadProgress& progress) {
   const UrdfOutline outline = checkUrdf(xml, source);
   const urdf::ModelInterfaceSharedPtr model = parseQuietly(xml, source);
   RobotModel robot;
@@ -158,7 +161,7 @@ RobotModel loadUrdf(const std::string& xml, const std::string& source, const Uri
   robot.source = source;
   robot.notes = outline.notes;
   CollisionShapeReader shapes(resolver, base, mending);
-  readLinks(*model, outline, &shapes, &robot);
+  readLinks(*model, outline, progress, &shapes, &robot);
   robot.root = robot.linkIndex(model->getRoot()->name);
   std::vector<JointModel> joints;
   for (const std::string& name : outline.joints) joints.push_back(toJoint(*model->getJoint(name), robot));
@@ -167,9 +170,9 @@ RobotModel loadUrdf(const std::string& xml, const std::string& source, const Uri
   return robot;
 }
 
-RobotModel loadUrdfFile(const std::string& file, const UriResolver& resolver, Mending mending) {
+RobotModel loadUrdfFile(const std::string& file, const UriResolver& resolver, Mending mending, const LoadProgress& progress) {
   const std::string base = std::filesystem::absolute(file).parent_path().string();
-  return loadUrdf(readBytes(file), file, resolver, base, mending);
+  return loadUrdf(readBytes(file), file, resolver, base, mending, progress);
 }
 
 }  // namespace blem_sim

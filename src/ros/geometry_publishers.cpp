@@ -55,6 +55,7 @@ LoadReportEntry toEntry(const MeshReport& report) {
     entry.extents_max = toPoint(report.extents.max());
   }
   entry.boundary_width = report.boundary_width;
+  entry.bytes = report.bytes;
   entry.notes = report.notes;
   return entry;
 }

@@ -23,6 +23,11 @@ namespace blem_sim {
 
 namespace {
 
+/** Long loads in the node's log. */
+LoadLog consoleLog() {
+  return {[](const std::string& line) { ROS_INFO("%s", line.c_str()); }};
+}
+
 ros::NodeHandle nodeOn(ros::CallbackQueue* callbacks, const std::string& name) {
   ros::NodeHandle node(name);
   node.setCallbackQueue(callbacks);
@@ -36,7 +41,7 @@ struct SimulationNode::Impl {
   ros::CallbackQueue callbacks;
   ros::NodeHandle node = nodeOn(&callbacks, "");
   ros::NodeHandle private_node = nodeOn(&callbacks, "~");
-  Simulator simulator{readParameters(private_node), UriResolver()};
+  Simulator simulator{readParameters(private_node), UriResolver(), consoleLog()};
   SimulationLoop loop{&simulator};
   DiagnosticsPublisher* diagnostics = nullptr;
   std::unique_ptr<RobotCommands> commands;

@@ -26,6 +26,7 @@ void SimulatedWorld::addCollider(Collider collider, double width, const SurfaceP
   collider.surface = surface;
   report.name = collider.name;
   report.boundary_width = width;
+  report.bytes = collider.geometry->bytes();
   load_report.push_back(std::move(report));
   colliders.push_back(std::move(collider));
 }

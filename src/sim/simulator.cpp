@@ -29,10 +29,10 @@ int indexOf(const std::vector<Named>& items, const std::string& name) {
 
 }  // namespace
 
-Simulator::Impl::Impl(const SimulationConfig& config, const UriResolver& resolver)
+Simulator::Impl::Impl(const SimulationConfig& config, const UriResolver& resolver, LoadLog log)
     : config_((check(config), config)),
       world_(config.gravity, config.solver),
-      builder_(config.contact, config.base_directory, resolver),
+      builder_(config.contact, config.base_directory, resolver, std::move(log)),
       contacts_(config.contact, config.solver.threads) {
   for (const EnvironmentConfig& environment : config_.environments) builder_.addEnvironment(environment, &world_);
   for (const RobotConfig& robot : config_.robots) builder_.addRobot(robot, &world_);
@@ -65,7 +65,8 @@ void Simulator::Impl::unloadEnvironment(const std::string& name) {
   contacts_.forget();
 }
 
-Simulator::Simulator(const SimulationConfig& config, const UriResolver& resolver) : impl_(std::make_unique<Impl>(config, resolver)) {}
+Simulator::Simulator(const SimulationConfig& config, const UriResolver& resolver, LoadLog log)
+    : impl_(std::make_unique<Impl>(config, resolver, std::move(log))) {}
 Simulator::~Simulator() = default;
 
 const StepReport& Simulator::step() { return impl_->step(); }

@@ -15,7 +15,7 @@
 namespace blem_sim {
 
 struct Simulator::Impl {
-  Impl(const SimulationConfig& config, const UriResolver& resolver);
+  Impl(const SimulationConfig& config, const UriResolver& resolver, LoadLog log);
 
   // One step, stage by stage: simulator_step.cpp.
   const StepReport& step();

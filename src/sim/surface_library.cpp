@@ -21,21 +21,23 @@ std::string wordsFor(const MeshShrinking& what, double r) {
 
 }  // namespace
 
-SharedSurface SurfaceLibrary::load(const std::string& file, const Vector3& scale, const CloudOptions& cloud) {
+SharedSurface SurfaceLibrary::load(const std::string& file, const Vector3& scale, const CloudOptions& cloud, const LoadProgress& progress) {
   const std::string key = fmt::format("{}|{} {} {}|{} {} {}", file, scale.x(), scale.y(), scale.z(), static_cast<int>(cloud.as),
                                       cloud.point_radius, cloud.max_edge);
   Entry& entry = files_[key];
   if (const auto held = entry.geometry.lock()) return {held, entry.radius, entry.report};
-  const LoadedSurface surface = loadSurface(file, scale, cloud, mending_);
-  const auto made = geometry(surface.mesh);
+  const LoadedSurface surface = loadSurface(file, scale, cloud, mending_, progress);
+  progress("topology and tree of " + surface.report.name, 1 - TREE_FRACTION);
+  const auto made = geometry(surface.mesh, surface.topology);
   entry = {made, surface.radius, surface.report};
   return {made, surface.radius, surface.report};
 }
 
-std::shared_ptr<const CollisionGeometry> SurfaceLibrary::geometry(const std::shared_ptr<const TriangleMesh>& mesh) {
+std::shared_ptr<const CollisionGeometry> SurfaceLibrary::geometry(const std::shared_ptr<const TriangleMesh>& mesh,
+                                                                  const std::shared_ptr<const MeshTopology>& topology) {
   std::weak_ptr<const CollisionGeometry>& held = meshes_[mesh.get()];
   if (auto known = held.lock()) return known;
-  const auto made = std::make_shared<const CollisionGeometry>(mesh);
+  const auto made = std::make_shared<const CollisionGeometry>(mesh, topology);
   held = made;
   return made;
 }

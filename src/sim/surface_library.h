@@ -24,8 +24,10 @@ class SurfaceLibrary {
  public:
   explicit SurfaceLibrary(Mending mending = Mending::ON) : mending_(mending) {}
   /** @throws InputError as loadSurface does */
-  SharedSurface load(const std::string& file, const Vector3& scale, const CloudOptions& cloud);
-  std::shared_ptr<const CollisionGeometry> geometry(const std::shared_ptr<const TriangleMesh>& mesh);
+  SharedSurface load(const std::string& file, const Vector3& scale, const CloudOptions& cloud, const LoadProgress& progress);
+  /** @param topology of the mesh, if it is at hand */
+  std::shared_ptr<const CollisionGeometry> geometry(const std::shared_ptr<const TriangleMesh>& mesh,
+                                                    const std::shared_ptr<const MeshTopology>& topology = nullptr);
   /**
    * The geometry, moved inwards by its boundary width if the settings ask for it.
    * @param own_radius [m] > 0 if it is its own boundary: then it stays @param report notes what was done and where it could not be

@@ -4,6 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <climits>
+#include <set>
 
 #include "blem_sim/geometry/input_error.h"
 #include "contact_settings.h"
@@ -40,6 +41,22 @@ bool floorInertia(double radius, MassProperties* properties) {
 
 std::string words(const Vector3& v) { return fmt::format("[{:.4g}, {:.4g}, {:.4g}]", v.x(), v.y(), v.z()); }
 
+/** How large the colliders from `first` on are, the last ones that the load report has; what several of them share counts once. */
+std::string sizeOf(const SimulatedWorld& world, std::size_t first) {
+  constexpr double MEGA = 1e6;
+  const MeshReport* report = world.load_report.data() + world.load_report.size() - (world.colliders.size() - first);
+  std::set<const CollisionGeometry*> counted;
+  std::size_t triangles = 0, points = 0, bytes = 0;
+  for (std::size_t i = first; i < world.colliders.size(); ++i, ++report) {
+    if (!counted.insert(world.colliders[i].geometry.get()).second) continue;
+    triangles += static_cast<std::size_t>(report->triangles);
+    points += static_cast<std::size_t>(report->points);
+    bytes += report->bytes;
+  }
+  const std::string words = fmt::format("{} triangles, {:.1f} MB", triangles, static_cast<double>(bytes) / MEGA);
+  return points > 0 ? fmt::format("{} points, {}", points, words) : words;
+}
+
 int addFreeBody(const std::string& name, const MassProperties& inertial, const ObjectConfig& config, SimulatedWorld* world) {
   BodySpec spec;
   spec.name = name;
@@ -56,9 +73,10 @@ int addFreeBody(const std::string& name, const MassProperties& inertial, const O
 
 }  // namespace
 
-SharedSurface WorldBuilder::load(const std::string& uri, const Vector3& scale, const CloudOptions& cloud, const std::string& where) {
+SharedSurface WorldBuilder::load(const std::string& uri, const Vector3& scale, const CloudOptions& cloud, const std::string& where,
+                                 LoadWatch* watch) {
   try {
-    return surfaces_.load(resolver_.resolve(uri, base_directory_), scale, cloud);
+    return surfaces_.load(resolver_.resolve(uri, base_directory_), scale, cloud, watch->progress());
   } catch (const InputError& error) {
     throw InputError(where + ": " + error.what());
   }
@@ -67,6 +85,7 @@ SharedSurface WorldBuilder::load(const std::string& uri, const Vector3& scale, c
 void WorldBuilder::addEnvironment(const EnvironmentConfig& config, SimulatedWorld* world) {
   world->checkNewName(config.name, "environments");
   const std::string where = "environments: " + config.name;
+  LoadWatch watch(log_, config.name);
   SharedSurface surface;
   if (config.plane) {
     const Vector3 normal = config.plane->head<3>();
@@ -75,7 +94,7 @@ void WorldBuilder::addEnvironment(const EnvironmentConfig& config, SimulatedWorl
     surface.geometry = CollisionGeometry::halfSpace(normal, (*config.plane)[3]);
     surface.report.source = fmt::format("half-space below the plane {} . x = {:g}", words(normal), (*config.plane)[3]);
   } else if (!config.uri.empty()) {
-    surface = load(config.uri, config.scale, config.cloud, where);
+    surface = load(config.uri, config.scale, config.cloud, where, &watch);
   } else if (!config.topic.empty()) {
     throw InputError(where + ": topic: live clouds are not simulated; save the cloud as .pcd or .ply and give its uri");
   } else {
@@ -86,11 +105,13 @@ void WorldBuilder::addEnvironment(const EnvironmentConfig& config, SimulatedWorl
   collider.name = config.name;
   collider.model = world->addModel(config.name, ModelKind::ENVIRONMENT, INT_MAX);
   collider.X_BC = config.X_WE;
+  if (settings.shrink) watch.enter("shrinking", 1 - TREE_FRACTION);
   collider.geometry = surfaces_.fitted(surface.geometry, settings, surface.radius, &surface.report);
   world->addCollider(collider, surface.radius > 0 ? surface.radius : settings.boundary_width, settings.surface, surface.report);
+  watch.loaded(sizeOf(*world, world->colliders.size() - 1));
 }
 
-std::shared_ptr<const RobotModel> WorldBuilder::description(const RobotConfig& config) {
+std::shared_ptr<const RobotModel> WorldBuilder::description(const RobotConfig& config, LoadWatch* watch) {
   const bool text = !config.urdf_xml.empty();
   if (!text && config.urdf.empty()) {
     throw InputError(
@@ -101,33 +122,42 @@ std::shared_ptr<const RobotModel> WorldBuilder::description(const RobotConfig& c
   std::weak_ptr<const RobotModel>& held = descriptions_[key];
   if (auto known = held.lock()) return known;
   const std::string source = config.description_param.empty() ? "robots: " + config.name : config.description_param;
-  const auto model = std::make_shared<const RobotModel>(text ? loadUrdf(key, source, resolver_, base_directory_, contact_.mending)
-                                                             : loadUrdfFile(key, resolver_, contact_.mending));
+  const auto model =
+      std::make_shared<const RobotModel>(text ? loadUrdf(key, source, resolver_, base_directory_, contact_.mending, watch->progress())
+                                              : loadUrdfFile(key, resolver_, contact_.mending, watch->progress()));
   held = model;
   return model;
 }
 
 void WorldBuilder::addRobot(const RobotConfig& config, SimulatedWorld* world) {
   world->checkNewName(config.name, "robots");
-  RobotBuilder(config, contact_, description(config)).addTo(world, &surfaces_);
+  LoadWatch watch(log_, config.name);
+  const std::size_t first = world->colliders.size();
+  RobotBuilder builder(config, contact_, description(config, &watch));
+  watch.enter("topology and trees of its links", 1 - TREE_FRACTION);
+  builder.addTo(world, &surfaces_);
+  watch.loaded(sizeOf(*world, first));
 }
 
 void WorldBuilder::addObject(const ObjectConfig& config, SimulatedWorld* world) {
   world->checkNewName(config.name, "objects");
   if (!config.linear_velocity.allFinite() || !config.angular_velocity.allFinite())
     throw InputError(fmt::format("objects: {}: velocity: numbers must be finite", config.name));
+  LoadWatch watch(log_, config.name);
+  const std::size_t first = world->colliders.size();
   if (config.urdf.empty())
-    addMeshObject(config, world);
+    addMeshObject(config, &watch, world);
   else
-    addUrdfObject(config, world);
+    addUrdfObject(config, &watch, world);
+  watch.loaded(sizeOf(*world, first));
 }
 
-void WorldBuilder::addMeshObject(const ObjectConfig& config, SimulatedWorld* world) {
+void WorldBuilder::addMeshObject(const ObjectConfig& config, LoadWatch* watch, SimulatedWorld* world) {
   const std::string where = "objects: " + config.name;
   if (config.uri.empty()) throw InputError(where + ": nothing to load; give a uri or a urdf");
   if (!config.mass || !(*config.mass > 0) || !std::isfinite(*config.mass))
     throw InputError(where + ": mass: needs a finite number of kg above 0");
-  SharedSurface surface = load(config.uri, config.scale, config.cloud, where);
+  SharedSurface surface = load(config.uri, config.scale, config.cloud, where, watch);
   const ContactSettings settings = contactSettings(contact_.boundary_width, contact_, {&config.contact});
   const double width = surface.radius > 0 ? surface.radius : settings.boundary_width;
 
@@ -150,14 +180,16 @@ void WorldBuilder::addMeshObject(const ObjectConfig& config, SimulatedWorld* wor
   collider.model = world->addModel(config.name, ModelKind::OBJECT, config.max_contacts.value_or(contact_.max_contacts_per_object));
   collider.body = body;
   collider.X_BC = config.X_OM;
+  if (settings.shrink) watch->enter("shrinking", 1 - TREE_FRACTION);
   collider.geometry = surfaces_.fitted(surface.geometry, settings, surface.radius, &surface.report);
   world->addCollider(collider, width, settings.surface, surface.report);
   world->models.back().bodies = {body};
 }
 
-void WorldBuilder::addUrdfObject(const ObjectConfig& config, SimulatedWorld* world) {
+void WorldBuilder::addUrdfObject(const ObjectConfig& config, LoadWatch* watch, SimulatedWorld* world) {
   const std::string where = "objects: " + config.name;
-  const RobotModel model = loadUrdfFile(resolver_.resolve(config.urdf, base_directory_), resolver_, contact_.mending);
+  const RobotModel model = loadUrdfFile(resolver_.resolve(config.urdf, base_directory_), resolver_, contact_.mending, watch->progress());
+  watch->enter("topology and trees of its links", 1 - TREE_FRACTION);
   const LumpedRobot lumped = lumpFixedJoints(model, {}, false);
   if (lumped.bodies.size() != 1)
     throw InputError(fmt::format("{}: urdf: {} has {} bodies that move against each other; load it under robots", where, model.source,

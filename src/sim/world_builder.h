@@ -7,6 +7,7 @@
 
 #include "blem_sim/model/loaders.h"
 #include "blem_sim/sim/config.h"
+#include "load_watch.h"
 #include "simulated_world.h"
 #include "surface_library.h"
 
@@ -16,22 +17,27 @@ namespace blem_sim {
 class WorldBuilder {
  public:
   /** @param base_directory that relative files are meant against */
-  WorldBuilder(const ContactConfig& contact, std::string base_directory, const UriResolver& resolver)
-      : contact_(contact), base_directory_(std::move(base_directory)), resolver_(resolver), surfaces_(contact.mending) {}
+  WorldBuilder(const ContactConfig& contact, std::string base_directory, const UriResolver& resolver, LoadLog log)
+      : contact_(contact),
+        base_directory_(std::move(base_directory)),
+        resolver_(resolver),
+        log_(std::move(log)),
+        surfaces_(contact.mending) {}
 
   void addEnvironment(const EnvironmentConfig& config, SimulatedWorld* world);
   void addRobot(const RobotConfig& config, SimulatedWorld* world);
   void addObject(const ObjectConfig& config, SimulatedWorld* world);
 
  private:
-  void addMeshObject(const ObjectConfig& config, SimulatedWorld* world);
-  void addUrdfObject(const ObjectConfig& config, SimulatedWorld* world);
-  SharedSurface load(const std::string& uri, const Vector3& scale, const CloudOptions& cloud, const std::string& where);
-  std::shared_ptr<const RobotModel> description(const RobotConfig& config);
+  void addMeshObject(const ObjectConfig& config, LoadWatch* watch, SimulatedWorld* world);
+  void addUrdfObject(const ObjectConfig& config, LoadWatch* watch, SimulatedWorld* world);
+  SharedSurface load(const std::string& uri, const Vector3& scale, const CloudOptions& cloud, const std::string& where, LoadWatch* watch);
+  std::shared_ptr<const RobotModel> description(const RobotConfig& config, LoadWatch* watch);
 
   const ContactConfig contact_;
   const std::string base_directory_;
   const UriResolver resolver_;
+  const LoadLog log_;
   SurfaceLibrary surfaces_;
   std::map<std::string, std::weak_ptr<const RobotModel>> descriptions_;  ///< by file or text
 };

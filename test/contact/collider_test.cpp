@@ -36,7 +36,7 @@ TEST(CombineSurfaces, LargerRestitutionSpringsInSeries) {
 TEST(CollisionGeometry, MeshAndHalfSpace) {
   const CollisionGeometry box(std::make_shared<TriangleMesh>(boxMesh({1, 2, 3})));
   EXPECT_FALSE(box.isHalfSpace());
-  EXPECT_EQ(box.topology().edges.size(), 18u);
+  EXPECT_EQ(box.topology().edgeCount(), 18);
   EXPECT_FALSE(box.bvh().empty());
   EXPECT_TRUE(box.bounds().max().isApprox(Vector3(0.5, 1, 1.5)));
   const auto half_space = CollisionGeometry::halfSpace({0, 0, 2}, 0.1);

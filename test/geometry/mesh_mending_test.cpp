@@ -33,7 +33,9 @@ struct Mended {
 
 int ridges(const TriangleMesh& mesh) {
   const MeshTopology topology(mesh);
-  return static_cast<int>(std::count(topology.edge_flat.begin(), topology.edge_flat.end(), 0));
+  int bent = 0;
+  for (int edge = 0; edge < topology.edgeCount(); ++edge) bent += !topology.isFlatEdge(edge);
+  return bent;
 }
 
 double distanceFromBox(const Vector3& p, double half) { return std::abs(p.cwiseAbs().maxCoeff() - half); }
@@ -121,10 +123,11 @@ TEST(MeshMending, TJunctionsAreSplit) {
   EXPECT_TRUE(mended.report.closed);
   EXPECT_EQ(mended.mesh.vertices, mended.cleaned.vertices);
   const MeshTopology topology(mended.mesh);
-  for (std::size_t i = 0; i < topology.edges.size(); ++i) {
-    const Vector3 middle = 0.5 * (mended.mesh.vertices[topology.edges[i][0]] + mended.mesh.vertices[topology.edges[i][1]]);
+  for (int i = 0; i < topology.edgeCount(); ++i) {
+    const auto [start, end] = topology.ends(mended.mesh, i);
+    const Vector3 middle = 0.5 * (mended.mesh.vertices[start] + mended.mesh.vertices[end]);
     const bool on_edge = (middle.array().abs() > 0.05 - 1e-9).count() == 2;
-    EXPECT_EQ(topology.edge_flat[i] == 0, on_edge);
+    EXPECT_EQ(!topology.isFlatEdge(i), on_edge);
   }
 }
 
@@ -148,10 +151,11 @@ TEST(MeshMending, CrackedTJunctionsAreClosed) {
     EXPECT_EQ(mended.what.planes, 6);
     for (const Vector3& p : mended.mesh.vertices) EXPECT_LE(distanceFromBox(p, 0.05), MOST);
     const MeshTopology topology(mended.mesh);
-    for (std::size_t k = 0; k < topology.edges.size(); ++k) {
-      const Vector3 middle = 0.5 * (mended.mesh.vertices[topology.edges[k][0]] + mended.mesh.vertices[topology.edges[k][1]]);
+    for (int k = 0; k < topology.edgeCount(); ++k) {
+      const auto [start, end] = topology.ends(mended.mesh, k);
+      const Vector3 middle = 0.5 * (mended.mesh.vertices[start] + mended.mesh.vertices[end]);
       if ((middle.array().abs() > 0.0499).count() < 2) {
-        EXPECT_TRUE(topology.edge_flat[k]) << i << " " << middle.transpose();
+        EXPECT_TRUE(topology.isFlatEdge(k)) << i << " " << middle.transpose();
       }
     }
   }

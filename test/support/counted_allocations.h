@@ -1,16 +1,26 @@
 // Counts what a test program asks the heap for. Included by one file of a program, where glibc is without the sanitizers' heap.
 #pragma once
 
+#include <malloc.h>
+
 #include <atomic>
 #include <cstdlib>
 
 namespace {
 std::atomic<long> allocations{0};
-}
+std::atomic<long> held_bytes{0};  // of what was asked for and not given back, as malloc rounds it up
+}  // namespace
 
-// Stands before glibc's own in this program, so that Eigen's allocations are seen like those of new.
+// Stand before glibc's own in this program, so that Eigen's allocations are seen like those of new.
 extern "C" void* __libc_malloc(std::size_t size);
+extern "C" void __libc_free(void* memory);
 extern "C" void* malloc(std::size_t size) {
   ++allocations;
-  return __libc_malloc(size);
+  void* const memory = __libc_malloc(size);
+  held_bytes += static_cast<long>(malloc_usable_size(memory));
+  return memory;
+}
+extern "C" void free(void* memory) {
+  held_bytes -= static_cast<long>(malloc_usable_size(memory));
+  __libc_free(memory);
 }

@@ -29,13 +29,14 @@ SurfaceProperties combineSurfaces(const SurfaceProperties& a, const SurfacePrope
 /** Geometry that contact searches, shared by all its copies: a mesh with its topology and tree, or a half-space. Immutable. */
 class CollisionGeometry {
  public:
-  explicit CollisionGeometry(std::shared_ptr<const TriangleMesh> mesh);
+  /** @param topology of the mesh, if it is at hand */
+  explicit CollisionGeometry(std::shared_ptr<const TriangleMesh> mesh, std::shared_ptr<const MeshTopology> topology = nullptr);
   /** The solid half-space normal . x <= offset; normal is made unit. */
   static std::shared_ptr<const CollisionGeometry> halfSpace(const Vector3& normal, double offset);
 
   bool isHalfSpace() const { return mesh_ == nullptr; }
   const TriangleMesh& mesh() const { return *mesh_; }
-  const MeshTopology& topology() const { return topology_; }
+  const MeshTopology& topology() const { return *topology_; }
   const Bvh& bvh() const { return bvh_; }
   /** Per node of the tree: does an element below it own a vertex or an edge? Two that own nothing have no contact. */
   const std::vector<std::uint8_t>& owners() const { return owners_; }
@@ -44,13 +45,14 @@ class CollisionGeometry {
   const Box& bounds() const { return bounds_; }  ///< [m], geometry frame; unbounded below for a half-space
   const Vector3& planeNormal() const { return normal_; }
   double planeOffset() const { return offset_; }
+  std::size_t bytes() const;  ///< of memory: mesh, topology, tree
 
  private:
   CollisionGeometry() = default;
   void findOwners();
 
   std::shared_ptr<const TriangleMesh> mesh_;
-  MeshTopology topology_;
+  std::shared_ptr<const MeshTopology> topology_;
   Bvh bvh_;
   std::vector<std::uint8_t> owners_;
   std::uint64_t identity_ = 0;

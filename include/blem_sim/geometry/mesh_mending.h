@@ -1,6 +1,7 @@
 // Closes cracks and flattens nearly planar patches, so that contact does not depend on how a mesh is broken.
 #pragma once
 
+#include "blem_sim/geometry/mesh_topology.h"
 #include "blem_sim/geometry/triangle_mesh.h"
 
 namespace blem_sim {
@@ -36,7 +37,8 @@ constexpr double PLANE_DEVIATION = 2e-5;
  * What is whole and flat (MeshTopology::FLAT_SINE), or curved, comes back bit-identical. Deterministic; the surface does not depend on the
  * order of vertices and triangles but for rounding.
  * @param report of cleanMesh: counts and extents are brought up to date; may be null @param what may be null
+ * @param topology of what comes back, which mending has at hand; may be null
  */
-TriangleMesh mendMesh(const TriangleMesh& mesh, MeshReport* report, MeshMending* what = nullptr);
+TriangleMesh mendMesh(const TriangleMesh& mesh, MeshReport* report, MeshMending* what = nullptr, MeshTopology* topology = nullptr);
 
 }  // namespace blem_sim

@@ -47,6 +47,7 @@ struct MeshReport {
   bool closed = false;             ///< every edge has two triangles
   Box extents;                     ///< [m], mesh frame, after cleaning and mending
   double boundary_width = 0;       ///< [m] r that contact uses
+  std::size_t bytes = 0;           ///< of memory that its geometry takes, shared by all that use the same
   std::vector<std::string> notes;  ///< what was done, in words
 };
 

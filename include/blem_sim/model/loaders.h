@@ -1,10 +1,13 @@
 // The doors of the model room: URIs, meshes, clouds, URDF. Each throws InputError with one line: file, field, cure.
 #pragma once
 
+#include <functional>
 #include <map>
+#include <memory>
 #include <string>
 
 #include "blem_sim/geometry/input_error.h"
+#include "blem_sim/geometry/mesh_topology.h"
 #include "blem_sim/model/robot_model.h"
 
 namespace blem_sim {
@@ -35,10 +38,17 @@ struct CloudOptions {
 /** Are meshes for contact mended after cleaning (mendMesh), or taken as they are? */
 enum class Mending { ON, OFF };
 
+/** Called when a stage of a load begins, with its name and the part of the load that lies behind, 0 to 1. */
+using LoadProgress = std::function<void(const std::string& stage, double fraction)>;
+
+/** Part of a load that topology and tree take, about, which are made of what a loader gives. */
+constexpr double TREE_FRACTION = 0.3;
+
 /** A mesh or a cloud as contact wants it. */
 struct LoadedSurface {
-  std::shared_ptr<const TriangleMesh> mesh;  ///< scaled, cleaned, mended, mesh frame
-  double radius = 0;                         ///< [m] > 0 for clouds as points: their boundary
+  std::shared_ptr<const TriangleMesh> mesh;      ///< scaled, cleaned, mended, mesh frame
+  std::shared_ptr<const MeshTopology> topology;  ///< of the mesh, if mending has found it; else null
+  double radius = 0;                             ///< [m] > 0 for clouds as points: their boundary
   MeshReport report;
 };
 
@@ -48,19 +58,22 @@ struct LoadedSurface {
  * COLLADA as in rviz and MoveIt: <unit meter> is applied, <up_axis> is not, so that x, y, z of the file stay x, y, z of the link.
  * A PCD's VIEWPOINT is not applied either; the report says so.
  * @param file resolved path @param scale factors per axis, none zero @param cloud for files of points, or a mesh's vertices as points
+ * @param progress may be empty
  * @throws InputError: missing, unreadable, truncated, damaged, empty after cleaning, unknown extension.
  */
 LoadedSurface loadSurface(const std::string& file, const Vector3& scale = Vector3::Ones(), const CloudOptions& cloud = {},
-                          Mending mending = Mending::ON);
+                          Mending mending = Mending::ON, const LoadProgress& progress = {});
 
 /**
  * Parses URDF text. Limits of 1e6 and more mean none. What is not simulated (safety_controller, gazebo, transmission ...) is noted.
- * @param source for messages; @param base directory for relative mesh paths. @throws InputError
+ * @param source for messages; @param base directory for relative mesh paths. @param progress told link by link; may be empty
+ * @throws InputError
  */
 RobotModel loadUrdf(const std::string& xml, const std::string& source, const UriResolver& resolver, const std::string& base = "",
-                    Mending mending = Mending::ON);
+                    Mending mending = Mending::ON, const LoadProgress& progress = {});
 
 /** Reads the file and parses it. */
-RobotModel loadUrdfFile(const std::string& file, const UriResolver& resolver, Mending mending = Mending::ON);
+RobotModel loadUrdfFile(const std::string& file, const UriResolver& resolver, Mending mending = Mending::ON,
+                        const LoadProgress& progress = {});
 
 }  // namespace blem_sim

@@ -53,6 +53,12 @@ struct JointCommandMessage {
   std::vector<double> positions, velocities, efforts;
 };
 
+/** Where long loads tell how far they are, and how large what they have loaded is: which models, stages, seconds, triangles, memory. */
+struct LoadLog {
+  std::function<void(const std::string& line)> tell;  ///< also called by a thread of its own, never by two at once; may be empty
+  double interval = 1;                                ///< [s] between lines; what takes less than that is not told
+};
+
 /** Everything a simulation needs to replay bit for bit: world, motors, trajectories, sensors, random generators, contact memory. */
 struct SimulationState {
   std::uint64_t step = 0;
@@ -68,7 +74,7 @@ struct SimulationState {
  */
 class Simulator {
  public:
-  Simulator(const SimulationConfig& config, const UriResolver& resolver);
+  Simulator(const SimulationConfig& config, const UriResolver& resolver, LoadLog log = {});
   ~Simulator();
   Simulator(const Simulator&) = delete;
   Simulator& operator=(const Simulator&) = delete;

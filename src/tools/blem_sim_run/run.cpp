@@ -109,7 +109,8 @@ void writeReport(const RunOptions& options, const RunRecord& record, const RunTi
 
 bool run(const RunOptions& options) {
   const SimulationConfig config = readConfig(options);
-  Simulator simulator(config, UriResolver(options.packages));
+  const LoadLog log{[](const std::string& line) { std::fprintf(stderr, "blem_sim_run: %s\n", line.c_str()); }};
+  Simulator simulator(config, UriResolver(options.packages), log);
   std::vector<std::string> notes = simulator.notes();
   if (!options.load_state.empty()) simulator.restore(loadState(options.load_state));
   if (!options.trajectory.empty()) commandTrajectory(options.trajectory, &simulator, &notes);

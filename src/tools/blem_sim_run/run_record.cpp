@@ -175,6 +175,7 @@ void RunRecord::writeLoadReport(JsonWriter& json) const {
     json.key("source").value(mesh.source);
     json.key("triangles").value(mesh.triangles);
     json.key("points").value(mesh.points);
+    json.key("bytes").value(static_cast<std::uint64_t>(mesh.bytes));
     json.key("degenerate").value(mesh.degenerate);
     json.key("duplicate").value(mesh.duplicate);
     json.key("nonfinite").value(mesh.nonfinite);
