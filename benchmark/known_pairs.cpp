@@ -62,7 +62,7 @@ class KnownPairs {
   KnownPairs(const MeshPair& pair, ContactSearchBuffers* buffers) : X_FM_(pair.X_FM), range_(pair.range) {
     FoundContacts found;
     searchContacts(pair, nullptr, buffers, &found);
-    findCandidates(pair, 0, &buffers->search, &lists_);
+    findCandidates(pair, {}, &buffers->search, &lists_);
     dropUnknown(KnownContacts(found));
     compactFeatures();
     vertex_faces_.resize(size());
@@ -75,18 +75,18 @@ class KnownPairs {
   /** @return hits */
   std::uint32_t run() {
     if (size() == 0) return 0;
-    turned_.turn(lists_, X_FM_);
+    turned_.turnForContacts(lists_, X_FM_);
     const kernels::Kernels& k = kernels::kernels();
     const CandidatePairs& pairs = lists_.pairs;
     const auto count = [](const Candidates& candidates) { return static_cast<std::uint32_t>(candidates.size()); };
     const NearFeatures& fixed = lists_.near[0];
     const kernels::Vec4 *moving_vertices = turned_.vertices[1].data(), *fixed_vertices = fixed.vertices.records.data();
-    const kernels::EdgeRecord *moving_edges = turned_.edges[1].data(), *fixed_edges = fixed.edges.records.data();
+    const kernels::EdgeRecord *moving_edges = turned_.edges.data(), *fixed_edges = fixed.edges.records.data();
     std::uint32_t hits = 0;
     for (const bool moves : {true, false}) {
       const Candidates &faces = pairs.vertex_face[moves], &edges = pairs.vertex_edge[moves];
-      hits += k.vertexFaces(turned_.vertices[moves].data(), lists_.near[!moves].faces.records.data(), faces.data(), count(faces), range_,
-                            vertex_faces_.data());
+      hits += k.vertexFaces(turned_.vertices[moves].data(), lists_.near[!moves].faces.records.data(), lists_.near[!moves].open.data(),
+                            faces.data(), count(faces), range_, vertex_faces_.data());
       hits += k.vertexEdges(moves ? moving_vertices : fixed_vertices, moves ? fixed_edges : moving_edges, edges.data(), count(edges),
                             range_, others_.data());
     }
@@ -117,7 +117,6 @@ class KnownPairs {
     for (const bool moves : {true, false}) {
       drop(&lists_.pairs.vertex_face[moves], vertexOf(moves), patchOf(!moves), moves);
       drop(&lists_.pairs.vertex_edge[moves], vertexOf(moves), edgeOf(!moves), moves);
-      lists_.pairs.edge_face[moves].clear();
     }
     drop(&lists_.pairs.edge_edge, edgeOf(true), edgeOf(false), true);
     drop(&lists_.pairs.vertex_vertex, vertexOf(true), vertexOf(false), true);
