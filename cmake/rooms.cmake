@@ -28,8 +28,9 @@ if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
 endif()
 
 # Square roots and comparisons as vector code; changes no result, only what becomes of errno and the flags of exceptions.
-set_source_files_properties(${PROJECT_SOURCE_DIR}/src/contact/reduction_lanes.cpp PROPERTIES COMPILE_OPTIONS
-  "-fno-math-errno;-fno-trapping-math")
+foreach(lanes contact/reduction_lanes dynamics/contact_lanes dynamics/joint_lanes)
+  set_source_files_properties(${PROJECT_SOURCE_DIR}/src/${lanes}.cpp PROPERTIES COMPILE_OPTIONS "-fno-math-errno;-fno-trapping-math")
+endforeach()
 blem_sim_room(dynamics blem_sim_contact blem_sim_model)
 target_link_libraries(blem_sim_dynamics PRIVATE PkgConfig::ODE PkgConfig::TBB)
 blem_sim_room(sim blem_sim_dynamics)

@@ -95,7 +95,7 @@ void ArticulatedStepper::readEdits(const Scene& scene) {
     readTree(forest_, scene, tree, &motion_);
     placeBodies(forest_, tree, &motion_);
     computeInertias(forest_, tree, &motion_);
-    takeMomentum(forest_, tree, &motion_, &space_.mass_velocity);
+    takeMomentum(forest_, tree, &motion_, &space_);
   }
 }
 
@@ -168,7 +168,7 @@ void ArticulatedStepper::solveIsland(const Scene& scene, const StepInput& input,
   for (const int tree : problem.trees) change = std::max(change, correctProducts(forest_, tree, input.dt, &motion_, &space_));
   if (change <= SAME_PRODUCTS) return;
   const int iterations = island->report.iterations;
-  island->report = problem.solve(forest_, motion_, newton, &space_);
+  island->report = problem.solveAgain(newton);
   island->report.iterations += iterations;
 }
 

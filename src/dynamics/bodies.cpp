@@ -60,11 +60,17 @@ BodyBits Scene::bits(int body) const {
 
 bool Scene::isFinite(int body) const {
   const dBodyID ode = bodies_[body].ode;
-  const auto finite = [](const dReal* numbers, int count) {
-    return std::all_of(numbers, numbers + count, [](double x) { return std::isfinite(x); });
+  // A number that is not finite times zero is not a number, and so is every sum of it.
+  double zero = 0;
+  const auto add = [&zero](const dReal* numbers, int count) {
+    for (int i = 0; i < count; ++i) zero += 0 * numbers[i];
   };
-  return finite(dBodyGetPosition(ode), 3) && finite(dBodyGetQuaternion(ode), 4) && finite(dBodyGetRotation(ode), 12) &&
-         finite(dBodyGetLinearVel(ode), 3) && finite(dBodyGetAngularVel(ode), 3);
+  add(dBodyGetPosition(ode), 3);
+  add(dBodyGetQuaternion(ode), 4);
+  add(dBodyGetRotation(ode), 12);
+  add(dBodyGetLinearVel(ode), 3);
+  add(dBodyGetAngularVel(ode), 3);
+  return zero == 0;
 }
 
 void Scene::setBits(int body, const BodyBits& bits) {

@@ -32,6 +32,7 @@ void Forest::build(const Scene& scene) {
   dof_node_.clear();
   columns_.clear();
   row_start_.assign(1, 0);
+  row_length_.clear();
   body_node_.assign(bodies, -1);
   std::vector<bool> carried(bodies, false);
   for (const JointSlot& slot : scene.joints())
@@ -101,8 +102,10 @@ void Forest::addDofs(ForestNode* node, int index) {
   for (int d = 0; d < node->dofs; ++d) {
     const int dof = dofCount(), before = node->last_dof;
     if (before >= 0)
-      for (int e = row_start_[before]; e < row_start_[before + 1]; ++e) columns_.push_back(columns_[e]);
+      for (int e = 0; e < row_length_[before]; ++e) columns_.push_back(columns_[row_start_[before] + e]);
     columns_.push_back(dof);
+    row_length_.push_back(static_cast<int>(columns_.size()) - row_start_.back());
+    while (columns_.size() % ROW_UNIT != 0) columns_.push_back(-1);
     row_start_.push_back(static_cast<int>(columns_.size()));
     dof_node_.push_back(index);
     node->last_dof = dof;

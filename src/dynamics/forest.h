@@ -51,7 +51,8 @@ struct LoopClosure {
 
 /**
  * Matrices over the dofs of the forest that couple a dof only with its ancestors are stored as packed rows: row k holds its columns from
- * the root to k itself, so that an ancestor's row has the same columns as the beginning of a descendant's.
+ * the root to k itself, so that an ancestor's row has the same columns as the beginning of a descendant's. Room is left at a row's end up
+ * to a multiple of ROW_UNIT.
  */
 class Forest {
  public:
@@ -66,8 +67,11 @@ class Forest {
   int nodeOfBody(int body) const { return body_node_[body]; }
   int nodeOfDof(int dof) const { return dof_node_[dof]; }
 
+  static constexpr int ROW_UNIT = 4;
   int rowStart(int dof) const { return row_start_[dof]; }
-  int rowLength(int dof) const { return row_start_[dof + 1] - row_start_[dof]; }
+  int rowLength(int dof) const { return row_length_[dof]; }
+  int rowEnd(int dof) const { return row_start_[dof + 1]; }  ///< with the room left
+  int diagonal(int dof) const { return row_start_[dof] + row_length_[dof] - 1; }
   /** Columns of packed row `dof`: dofs from the root to it. */
   const int* columns(int dof) const { return columns_.data() + row_start_[dof]; }
   int entryCount() const { return row_start_.back(); }
@@ -83,7 +87,7 @@ class Forest {
   std::vector<MimicRelation> mimics_;
   std::vector<LoopClosure> loops_;
   std::vector<int> body_node_, dof_node_;
-  std::vector<int> row_start_, columns_;
+  std::vector<int> row_start_, row_length_, columns_;
 };
 
 }  // namespace blem_sim

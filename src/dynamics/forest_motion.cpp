@@ -1,7 +1,5 @@
 #include "forest_motion.h"
 
-#include "joint_motion.h"
-
 namespace blem_sim {
 namespace {
 
@@ -10,30 +8,18 @@ Vector6 jointTwist(JointKind kind, const Vector3& axis_W, const Vector3& origin)
   return kind == JointKind::REVOLUTE ? spatial(axis_W, origin.cross(axis_W)) : spatial(Vector3::Zero(), axis_W);
 }
 
-Pose jointFrame(const ForestNode& node, const ForestMotion& motion) {
-  if (node.parent < 0) return node.X_PJ;
-  Pose X_WP = Pose::Identity();
-  X_WP.linear() = motion.rotation[node.parent];
-  X_WP.translation() = motion.origin[node.parent];
-  return X_WP * node.X_PJ;
-}
-
 }  // namespace
-
-Vector3 jointOrigin(const Forest& forest, int node, const ForestMotion& motion) {
-  return jointFrame(forest.nodes()[node], motion).translation();
-}
 
 void ForestMotion::resize(const Forest& forest) {
   const std::size_t nodes = forest.nodes().size(), dofs = forest.dofCount(), trees = forest.trees().size();
-  for (auto* v : {&origin, &com}) v->resize(nodes);
-  for (auto* v : {&twist, &node_twist, &node_force, &drift}) v->resize(nodes);
+  for (auto* v : {&origin, &com, &joint_origin, &joint_axis}) v->resize(nodes);
+  for (auto* v : {&twist, &node_twist, &node_force, &node_change, &drift}) v->resize(nodes);
   for (auto* v : {&inertia, &composite}) v->resize(nodes);
   rotation.resize(nodes);
   position.resize(nodes);
   subspace.resize(dofs);
   for (auto* v : {&velocity, &change, &next_velocity, &products, &applied}) v->setZero(dofs);
-  mass.resize(forest.entryCount());
+  mass.assign(forest.entryCount(), 0);
   reference.resize(trees);
   momentum.assign(trees, Vector6::Zero());
   tree_com.resize(trees);
@@ -44,9 +30,19 @@ void placeBodies(const Forest& forest, int tree, ForestMotion* motion) {
   for (int i = t.first_node; i < t.node_end; ++i) {
     const ForestNode& node = forest.nodes()[i];
     if (node.joint < 0) continue;
-    const Pose X_WB = jointFrame(node, *motion) * jointMotion(node.kind, node.axis, motion->position[i]) * node.X_JC;
-    motion->rotation[i] = X_WB.linear();
-    motion->origin[i] = X_WB.translation();
+    const bool held = node.parent < 0;
+    Matrix3 R_WJ = node.X_PJ.linear();
+    Vector3 p_WJ = node.X_PJ.translation();
+    if (!held) {
+      R_WJ = motion->rotation[node.parent] * R_WJ;
+      p_WJ = motion->origin[node.parent] + motion->rotation[node.parent] * p_WJ;
+    }
+    motion->joint_origin[i] = p_WJ;
+    motion->joint_axis[i] = R_WJ * node.axis;
+    if (node.kind == JointKind::PRISMATIC) p_WJ += motion->position[i] * motion->joint_axis[i];
+    if (node.kind == JointKind::REVOLUTE) R_WJ *= Eigen::AngleAxisd(motion->position[i], node.axis).toRotationMatrix();
+    motion->rotation[i] = R_WJ * node.X_JC.linear();
+    motion->origin[i] = p_WJ + R_WJ * node.X_JC.translation();
   }
 }
 
@@ -62,9 +58,8 @@ void computeInertias(const Forest& forest, int tree, ForestMotion* motion) {
     motion->inertia[i] = motion->composite[i] = SpatialInertia(node.inertial, motion->rotation[i], motion->com[i]);
     if (node.joint < 0)
       for (int d = 0; d < 6; ++d) motion->subspace[node.first_dof + d] = Vector6::Unit(d);
-    if (node.dofs != 1) continue;
-    const Pose X_WJ = jointFrame(node, *motion);
-    motion->subspace[node.first_dof] = jointTwist(node.kind, X_WJ.linear() * node.axis, X_WJ.translation() - reference);
+    if (node.dofs == 1)
+      motion->subspace[node.first_dof] = jointTwist(node.kind, motion->joint_axis[i], motion->joint_origin[i] - reference);
   }
   for (int i = t.node_end - 1; i > t.first_node; --i) motion->composite[forest.nodes()[i].parent].add(motion->composite[i]);
   const SpatialInertia& whole = motion->composite[t.first_node];
@@ -81,100 +76,88 @@ void computeInertias(const Forest& forest, int tree, ForestMotion* motion) {
   computeTwists(forest, tree, *motion, motion->velocity, &motion->twist);
 }
 
+void computeTwist(const Forest& forest, int node, const ForestMotion& motion, const Eigen::VectorXd& velocity,
+                  std::vector<Vector6>* twist) {
+  const ForestNode& n = forest.nodes()[node];
+  Vector6& v = (*twist)[node];
+  if (n.joint < 0) {
+    v = velocity.segment<6>(n.first_dof);
+    return;
+  }
+  if (n.parent < 0)
+    v.setZero();
+  else
+    v = (*twist)[n.parent];
+  if (n.dofs == 1) v += motion.subspace[n.first_dof] * velocity[n.first_dof];
+}
+
 void computeTwists(const Forest& forest, int tree, const ForestMotion& motion, const Eigen::VectorXd& velocity,
                    std::vector<Vector6>* twist) {
   const ForestTree& t = forest.trees()[tree];
-  for (int i = t.first_node; i < t.node_end; ++i) {
-    const ForestNode& node = forest.nodes()[i];
-    Vector6& v = (*twist)[i];
-    if (node.joint < 0) {
-      v = velocity.segment<6>(node.first_dof);
-      continue;
-    }
-    if (node.parent < 0)
-      v.setZero();
-    else
-      v = (*twist)[node.parent];
-    if (node.dofs == 1) v += motion.subspace[node.first_dof] * velocity[node.first_dof];
-  }
-}
-
-void computeForces(const Forest& forest, int tree, const Eigen::VectorXd& velocity, const Eigen::VectorXd* acceleration,
-                   ForestMotion* motion) {
-  const ForestTree& t = forest.trees()[tree];
-  std::vector<Vector6>&twist = motion->node_twist, &force = motion->node_force;
-  computeTwists(forest, tree, *motion, velocity, &twist);
-  // First the nodes' accelerations, in `force`.
-  for (int i = t.first_node; i < t.node_end; ++i) {
-    const ForestNode& node = forest.nodes()[i];
-    Vector6& a = force[i];
-    if (node.parent < 0)
-      a.setZero();
-    else
-      a = force[node.parent];
-    if (node.joint < 0) {
-      if (acceleration) a = acceleration->segment<6>(node.first_dof);
-      // The velocity of a moving centre of mass is given; that of the body's point at the reference is another one.
-      a.tail<3>() -= angular(twist[i]).cross(linear(twist[i]));
-    } else if (node.dofs == 1) {
-      const Vector6& s = motion->subspace[node.first_dof];
-      if (node.parent >= 0) a += crossMotion(twist[node.parent], s * velocity[node.first_dof]);
-      if (acceleration) a += s * (*acceleration)[node.first_dof];
-    }
-  }
-  for (int i = t.first_node; i < t.node_end; ++i) {
-    if (!acceleration) motion->drift[i] = force[i];
-    force[i] = motion->inertia[i].times(force[i]) + crossForce(twist[i], motion->inertia[i].times(twist[i]));
-  }
+  for (int i = t.first_node; i < t.node_end; ++i) computeTwist(forest, i, motion, velocity, twist);
 }
 
 void computeProducts(const Forest& forest, int tree, const Eigen::VectorXd& velocity, ForestMotion* motion) {
   const ForestTree& t = forest.trees()[tree];
-  computeForces(forest, tree, velocity, nullptr, motion);
+  std::vector<Vector6>&twist = motion->node_twist, &force = motion->node_force;
+  computeTwists(forest, tree, *motion, velocity, &twist);
+  for (int i = t.first_node; i < t.node_end; ++i) {
+    const ForestNode& node = forest.nodes()[i];
+    Vector6& drift = motion->drift[i];
+    if (node.parent < 0)
+      drift.setZero();
+    else
+      drift = motion->drift[node.parent];
+    // The velocity of a moving centre of mass is given; that of the body's point at the reference is another one.
+    if (node.joint < 0)
+      drift.tail<3>() = -angular(twist[i]).cross(linear(twist[i]));
+    else if (node.dofs == 1 && node.parent >= 0)
+      drift += crossMotion(twist[node.parent], motion->subspace[node.first_dof] * velocity[node.first_dof]);
+    force[i] = motion->inertia[i].times(drift) + crossForce(twist[i], motion->inertia[i].times(twist[i]));
+  }
   motion->products.segment(t.first_dof, t.dofCount()).setZero();
-  addProjected(forest, tree, *motion, 1, &motion->node_force, &motion->products);
+  addProjected(forest, tree, *motion, 1, &force, &motion->products);
 }
 
 void computeApplied(const Forest& forest, const Scene& scene, int tree, ForestMotion* motion) {
   const ForestTree& t = forest.trees()[tree];
+  const Vector3& gravity = scene.gravity();
+  bool pushed = false;
   for (int i = t.first_node; i < t.node_end; ++i) {
     const ForestNode& node = forest.nodes()[i];
     const Wrench& pending = scene.bodies()[node.body].pending;
-    const Vector3 force = node.inertial.mass * scene.gravity() + pending.force;
-    motion->node_force[i] = spatial(motion->com[i].cross(force) + pending.torque, force);
+    pushed |= !pending.force.isZero(0) || !pending.torque.isZero(0);
+    if (node.dofs == 0) continue;
+    const SpatialInertia& whole = motion->composite[i];
+    const Vector6 weight = spatial(whole.first_moment.cross(gravity), whole.mass * gravity);
+    if (node.joint < 0)
+      motion->applied.segment<6>(node.first_dof) = weight;
+    else
+      motion->applied[node.first_dof] = motion->subspace[node.first_dof].dot(weight);
   }
-  motion->applied.segment(t.first_dof, t.dofCount()).setZero();
+  if (!pushed) return;
+  for (int i = t.first_node; i < t.node_end; ++i) {
+    const Wrench& pending = scene.bodies()[forest.nodes()[i].body].pending;
+    motion->node_force[i] = spatial(motion->com[i].cross(pending.force) + pending.torque, pending.force);
+  }
   addProjected(forest, tree, *motion, 1, &motion->node_force, &motion->applied);
 }
 
-void massTimes(const Forest& forest, int tree, const ForestMotion& motion, const Eigen::VectorXd& v, Eigen::VectorXd* out) {
-  const ForestTree& t = forest.trees()[tree];
-  out->segment(t.first_dof, t.dofCount()).setZero();
-  for (int k = t.first_dof; k < t.dof_end; ++k) {
-    const int* column = forest.columns(k);
-    const double* row = motion.mass.data() + forest.rowStart(k);
-    const int last = forest.rowLength(k) - 1;
-    double sum = row[last] * v[k];
-    for (int e = 0; e < last; ++e) {
-      sum += row[e] * v[column[e]];
-      (*out)[column[e]] += row[e] * v[k];
-    }
-    (*out)[k] += sum;
-  }
+void addProjectedNode(const Forest& forest, int node, const ForestMotion& motion, double sign, std::vector<Vector6>* wrench,
+                      Eigen::VectorXd* out) {
+  const ForestNode& n = forest.nodes()[node];
+  const Vector6& w = (*wrench)[node];
+  if (n.joint < 0)
+    out->segment<6>(n.first_dof) += sign * w;
+  else if (n.dofs == 1)
+    (*out)[n.first_dof] += sign * motion.subspace[n.first_dof].dot(w);
+  if (n.parent >= 0) (*wrench)[n.parent] += w;
 }
 
 void addProjected(const Forest& forest, int tree, const ForestMotion& motion, double sign, std::vector<Vector6>* wrench,
                   Eigen::VectorXd* out) {
   const ForestTree& t = forest.trees()[tree];
-  for (int i = t.node_end - 1; i >= t.first_node; --i) {
-    const ForestNode& node = forest.nodes()[i];
-    const Vector6& w = (*wrench)[i];
-    if (node.joint < 0)
-      out->segment<6>(node.first_dof) += sign * w;
-    else if (node.dofs == 1)
-      (*out)[node.first_dof] += sign * motion.subspace[node.first_dof].dot(w);
-    if (node.parent >= 0) (*wrench)[node.parent] += w;
-  }
+  for (int i = t.node_end - 1; i >= t.first_node; --i) addProjectedNode(forest, i, motion, sign, wrench, out);
 }
 
 void readTree(const Forest& forest, const Scene& scene, int tree, ForestMotion* motion) {

@@ -19,7 +19,9 @@ struct ForestMotion {
   std::vector<Vector3> com;       ///< about the reference point
   std::vector<Vector6> twist;     ///< at the start of the step
   std::vector<SpatialInertia> inertia;
-  std::vector<double> position;  ///< of its joint
+  std::vector<double> position;       ///< of its joint
+  std::vector<Vector3> joint_origin;  ///< of the frame of the joint that moves it, in the world
+  std::vector<Vector3> joint_axis;    ///< in the world
   // Per dof.
   std::vector<Vector6> subspace;  ///< twist of unit velocity
   Eigen::VectorXd velocity;       ///< start of the step
@@ -28,7 +30,7 @@ struct ForestMotion {
   Eigen::VectorXd products;       ///< velocity products: what M dv/dt lacks to the forces
   Eigen::VectorXd applied;        ///< gravity and outside wrenches
   // Per packed entry.
-  std::vector<double> mass;  ///< joint space inertia
+  std::vector<double> mass;  ///< joint space inertia; zero where room is left
   // Per tree.
   std::vector<Vector3> reference;
   std::vector<Vector6> momentum;  ///< of a free tree, carried from step to step
@@ -36,7 +38,7 @@ struct ForestMotion {
 
   // Work space, per node.
   std::vector<Vector6> drift;  ///< acceleration that goes with node_twist and constant velocities of the dofs, of computeProducts
-  std::vector<Vector6> node_twist, node_force;
+  std::vector<Vector6> node_twist, node_force, node_change;
   std::vector<SpatialInertia> composite;
 
   void resize(const Forest& forest);
@@ -48,25 +50,25 @@ void placeBodies(const Forest& forest, int tree, ForestMotion* motion);
 /** Motion subspaces, inertias and the mass matrix of a tree, and its twists; bodies must be placed. */
 void computeInertias(const Forest& forest, int tree, ForestMotion* motion);
 
+/** Twist of a node for given velocities of the dofs, its parent's being known. */
+void computeTwist(const Forest& forest, int node, const ForestMotion& motion, const Eigen::VectorXd& velocity, std::vector<Vector6>* twist);
+
 /** Twists of a tree's nodes for given velocities of its dofs. */
 void computeTwists(const Forest& forest, int tree, const ForestMotion& motion, const Eigen::VectorXd& velocity,
                    std::vector<Vector6>* twist);
 
-/** Wrenches that move the nodes with the given velocities and accelerations (null: none), in node_force; without gravity. */
-void computeForces(const Forest& forest, int tree, const Eigen::VectorXd& velocity, const Eigen::VectorXd* acceleration,
-                   ForestMotion* motion);
-
-/** Where the joint that moves a node has its frame, in the world. */
-Vector3 jointOrigin(const Forest& forest, int node, const ForestMotion& motion);
-
-/** Fills products, for the given velocities at the present poses. */
+/**
+ * Fills products, for the given velocities at the present poses. node_twist and drift are left, and in node_force the wrench that moves all
+ * that a node carries, itself included, while the velocities of the dofs are constant; without gravity.
+ */
 void computeProducts(const Forest& forest, int tree, const Eigen::VectorXd& velocity, ForestMotion* motion);
 
 /** Fills applied: gravity and the bodies' pending wrenches. */
 void computeApplied(const Forest& forest, const Scene& scene, int tree, ForestMotion* motion);
 
-/** out = M v on the dofs of a tree. */
-void massTimes(const Forest& forest, int tree, const ForestMotion& motion, const Eigen::VectorXd& v, Eigen::VectorXd* out);
+/** Adds S' w of a node to its dofs of `out`, and w to its parent's wrench. */
+void addProjectedNode(const Forest& forest, int node, const ForestMotion& motion, double sign, std::vector<Vector6>* wrench,
+                      Eigen::VectorXd* out);
 
 /** Adds S' w along the tree to the dofs of `out`; the nodes' wrenches are summed towards the root in place. */
 void addProjected(const Forest& forest, int tree, const ForestMotion& motion, double sign, std::vector<Vector6>* wrench,

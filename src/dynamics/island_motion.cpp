@@ -38,7 +38,10 @@ void followMomentum(const Forest& forest, int tree, const Vector3& target, Fores
   const ForestTree& t = forest.trees()[tree];
   const Vector3 shift = target - (motion->reference[tree] + motion->tree_com[tree]);
   motion->reference[tree] += shift;
-  for (int i = t.first_node; i < t.node_end; ++i) motion->origin[i] += shift;
+  for (int i = t.first_node; i < t.node_end; ++i) {
+    motion->origin[i] += shift;
+    motion->joint_origin[i] += shift;
+  }
 }
 
 // Wrenches on the nodes from contacts, and from loops whose joints' wrenches are noted on the way, about the trees' reference points.
@@ -61,11 +64,11 @@ void addReactions(const Forest& forest, const IslandProblem& problem, const Fore
 
 }  // namespace
 
-void takeMomentum(const Forest& forest, int tree, ForestMotion* motion, Eigen::VectorXd* scratch) {
+void takeMomentum(const Forest& forest, int tree, ForestMotion* motion, SolverSpace* space) {
   const ForestTree& t = forest.trees()[tree];
   if (!t.free) return;
-  massTimes(forest, tree, *motion, motion->velocity, scratch);
-  motion->momentum[tree] = scratch->segment<6>(t.first_dof);
+  multiply(forest, tree, motion->mass, motion->velocity, &space->mass_velocity, &space->paths);
+  motion->momentum[tree] = space->mass_velocity.segment<6>(t.first_dof);
 }
 
 void setFreeMomentum(const Forest& forest, const Scene& scene, int tree, double dt, ForestMotion* motion, SolverSpace* space) {
@@ -74,7 +77,7 @@ void setFreeMomentum(const Forest& forest, const Scene& scene, int tree, double 
   computeApplied(forest, scene, tree, motion);
   space->direction.segment(first, count) = motion->velocity.segment(first, count) + 0.5 * motion->change.segment(first, count);
   computeProducts(forest, tree, space->direction, motion);
-  massTimes(forest, tree, *motion, motion->velocity, &space->free_momentum);
+  multiply(forest, tree, motion->mass, motion->velocity, &space->free_momentum, &space->paths);
   if (t.free) space->free_momentum.segment<6>(first) = motion->momentum[tree];
   for (int k = first; k < t.dof_end; ++k) {
     space->free_momentum[k] += dt * (motion->applied[k] - productsShare(t, k) * motion->products[k]);
@@ -111,19 +114,24 @@ void computeWrenches(const Forest& forest, const Scene& scene, const IslandProbl
   addReactions(forest, problem, *motion, dt, &reaction, wrenches);
   for (const int tree : problem.trees) {
     const ForestTree& t = forest.trees()[tree];
-    const int first = t.first_dof, count = t.dofCount();
-    space->direction.segment(first, count) = 0.5 * (motion->velocity.segment(first, count) + motion->next_velocity.segment(first, count));
-    space->gradient.segment(first, count) = (motion->next_velocity.segment(first, count) - motion->velocity.segment(first, count)) / dt;
-    computeForces(forest, tree, space->direction, &space->gradient, motion);
+    space->gradient.segment(t.first_dof, t.dofCount()) =
+        (motion->next_velocity.segment(t.first_dof, t.dofCount()) - motion->velocity.segment(t.first_dof, t.dofCount())) / dt;
+    for (int i = t.first_node; i < t.node_end; ++i) computeTwist(forest, i, *motion, space->gradient, &motion->node_change);
     for (int i = t.node_end - 1; i >= t.first_node; --i) {
       const ForestNode& node = forest.nodes()[i];
       const Wrench& pending = scene.bodies()[node.body].pending;
       const Vector3 outside = node.inertial.mass * scene.gravity() + pending.force;
-      Vector6& through = motion->node_force[i];
-      through -= reaction[i] + spatial(motion->com[i].cross(outside) + pending.torque, outside);
-      if (node.parent >= 0) motion->node_force[node.parent] += through;
+      // Through the joint, less the velocity products of what it carries, which are summed already.
+      Vector6& through = motion->node_change[i];
+      through = motion->inertia[i].times(through) - reaction[i];
+      through -= spatial(motion->com[i].cross(outside) + pending.torque, outside);
+    }
+    for (int i = t.node_end - 1; i >= t.first_node; --i) {
+      const ForestNode& node = forest.nodes()[i];
+      const Vector6& through = motion->node_change[i];
+      if (node.parent >= 0) motion->node_change[node.parent] += through;
       if (node.joint < 0) continue;
-      const Vector6 at_origin = moveWrench(through, motion->reference[tree] - jointOrigin(forest, i, *motion));
+      const Vector6 at_origin = moveWrench(through + motion->node_force[i], motion->reference[tree] - motion->joint_origin[i]);
       (*wrenches)[node.joint] = {linear(at_origin), angular(at_origin)};
     }
   }

@@ -7,8 +7,8 @@
 
 namespace blem_sim {
 
-/** The momentum of a free tree that was just read: that of its velocities. @param scratch over the forest's dofs */
-void takeMomentum(const Forest& forest, int tree, ForestMotion* motion, Eigen::VectorXd* scratch);
+/** The momentum of a free tree that was just read: that of its velocities. */
+void takeMomentum(const Forest& forest, int tree, ForestMotion* motion, SolverSpace* space);
 
 /**
  * Fills space->free_momentum, M v*, and the first guess of the velocities. A free root's rows carry its momentum from step to step, so that

@@ -1,5 +1,5 @@
+#include <algorithm>
 #include "island_problem.h"
-#include "tree_factor.h"
 
 namespace blem_sim {
 namespace {
@@ -12,93 +12,71 @@ constexpr double INEXACT = 0.02;
 constexpr int SOFT_STAGES = 2;
 constexpr double CONTACT_SOFTNESS[SOFT_STAGES] = {1000, 30};
 constexpr double JOINT_SOFTNESS[SOFT_STAGES] = {10, 3};
-constexpr int FIRST_ITERATIONS = 4;  // of the hard problem, before the soft ones are asked
-constexpr double NO_STEP = 1e-16;    // [rad/s or m/s] largest change of a velocity that is none
+constexpr int FIRST_ITERATIONS = 4;     // of the hard problem, before the soft ones are asked
+constexpr double CHORD_PROGRESS = 0.1;  // a factor that is not made anew must have reduced the gradient to this
+constexpr double NO_STEP = 1e-16;       // [rad/s or m/s] largest change of a velocity that is none
 
 }  // namespace
 
-bool IslandProblem::solveTrees() {
-  SolverSpace& s = *space_;
-  for (const int tree : trees) {
-    const ForestTree& t = forest_->trees()[tree];
-    for (int k = t.first_dof; k < t.dof_end; ++k) s.direction[k] = -s.gradient[k];
-    if (!factorTree(*forest_, tree, &s.hessian)) return false;
-    solveTree(*forest_, tree, s.hessian, &s.direction);
-  }
-  return true;
+void IslandProblem::evaluateGradient() {
+  evaluate();
+  gradient();
+  foldGradient();
 }
 
-bool IslandProblem::solveBlocks() {
-  SolverSpace& s = *space_;
-  Eigen::Ref<Eigen::VectorXd> x = block_vector_.head(matrix_.size());
-  const auto rowOf = [&](int tree, int dof) { return matrix_.offset(s.block[tree]) + s.block_row[dof]; };
-  for (const int tree : trees) {
-    const ForestTree& t = forest_->trees()[tree];
-    BlockMatrix::Block h = matrix_.diagonal(s.block[tree]);
-    for (int k = t.first_dof; k < t.dof_end; ++k) {
-      const double* packed = s.hessian.data() + forest_->rowStart(k);
-      for (int e = 0; e < forest_->rowLength(k); ++e) h(s.block_row[k], s.block_row[forest_->columns(k)[e]]) += packed[e];
-      x[rowOf(tree, k)] = -s.gradient[k];
-    }
-  }
-  for (const MimicFold& m : mimics)
-    matrix_.fold(s.block[forest_->nodes()[forest_->nodeOfDof(m.dof)].tree], s.block_row[m.dof], s.block_row[m.master], m.multiplier);
-  if (!matrix_.factor()) return false;
-  matrix_.solve(x);
-  for (const int tree : trees) {
-    const ForestTree& t = forest_->trees()[tree];
-    for (int k = t.first_dof; k < t.dof_end; ++k) s.direction[k] = x[rowOf(tree, k)];
-  }
-  for (const MimicFold& m : mimics) s.direction[m.dof] = m.multiplier * s.direction[m.master];
-  return true;
+// First step: as if contacts, friction and limits went on as they were when the last step ended, linear though they are not.
+void IslandProblem::predict() {
+  expect(contact_blocks_.data(), contact_blocks_.data() + contact_blocks_.size());
+  for (std::size_t b = 0; b < joint_blocks_.size(); ++b)
+    expect(joints.data() + b * LANES, std::min<int>(LANES, static_cast<int>(joints.size() - b * LANES)), &joint_blocks_[b]);
+  responses_known_ = true;
+  evaluateGradient();
+  if (!factor()) return;
+  findDirection();
+  setDirection();
+  move(1);
+  responses_known_ = false;
+}
+
+// What moving along the direction changes.
+void IslandProblem::setDirection() {
+  for (const int tree : trees) multiply(*forest_, tree, motion_->mass, space_->direction, &space_->mass_direction, &space_->paths);
+  setSteps(space_->direction);
 }
 
 // Slope of the objective at a along the direction, and its derivative.
-double IslandProblem::slope(double a, double* curvature) {
-  responses_at_ = a;
-  double first = linear_ + a * quadratic_, second = quadratic_;
-  for (const JointTerm& j : joints) {
-    const double d = space_->direction[j.dof], v = space_->velocity[j.dof] + a * d;
-    first -= j.impulse(v) * d;
-    second += j.stiffness(v) * d * d;
-  }
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const ContactTerm& c = contacts[i];
-    const ConeResponse& response = responses_[i] = c.respond(c.velocity + a * c.step);
-    first -= response.impulse.dot(c.step);
-    second += response.curvature(c.step);
-  }
+PotentialSlope IslandProblem::slope(double a) {
+  PotentialSlope slope = respond(a);
+  slope.first += linear_ + a * quadratic_;
+  slope.second += quadratic_;
   for (const LoopTerm& loop : loops) {
     for (int r = 0; r < 6; ++r) {
       const double d = loop.step[r], v = loop.velocity[r] + a * d;
-      first -= loop.impulse(r, v) * d;
-      second += loop.stiffness(r, v) * d * d;
+      slope.first -= loop.impulse(r, v) * d;
+      slope.second += loop.stiffness(r, v) * d * d;
     }
   }
-  *curvature = second;
-  return first;
+  return slope;
 }
 
 double IslandProblem::lineSearch() {
-  SolverSpace& s = *space_;
+  const SolverSpace& s = *space_;
+  setDirection();
   linear_ = quadratic_ = 0;
   double start = 0;
   for (const int tree : trees) {
-    massTimes(*forest_, tree, *motion_, s.direction, &s.mass_direction);
     const ForestTree& t = forest_->trees()[tree];
-    for (int k = t.first_dof; k < t.dof_end; ++k) {
-      quadratic_ += s.direction[k] * s.mass_direction[k];
-      linear_ += s.direction[k] * (s.mass_velocity[k] - s.free_momentum[k]);
-      start += s.direction[k] * s.gradient[k];
-    }
+    const auto part = [&](const Eigen::VectorXd& v) { return v.segment(t.first_dof, t.dofCount()); };
+    quadratic_ += part(s.direction).dot(part(s.mass_direction));
+    linear_ += part(s.direction).dot(part(s.mass_velocity) - part(s.free_momentum));
+    start += part(s.direction).dot(part(s.gradient));
   }
-  relativeSteps(s.direction, false);
-  double low = 0, high = -1, a = 1, curvature;
+  double low = 0, high = -1, a = 1;
   for (int it = 0; it < MAX_LINE_SEARCH; ++it) {
-    const double here = slope(a, &curvature);
-    if (std::abs(here) <= LINE_SEARCH_SLOPE * std::abs(start)) break;
-    (here < 0 ? low : high) = a;
-    double next = a - here / curvature;
+    const PotentialSlope here = slope(a);
+    if (std::abs(here.first) <= LINE_SEARCH_SLOPE * std::abs(start)) break;
+    (here.first < 0 ? low : high) = a;
+    double next = a - here.first / here.second;
     if (high > 0 && !(next > low && next < high)) next = 0.5 * (low + high);
     if (high < 0 && !(next > low)) next = 2 * a;
     if (next == a) break;
@@ -125,7 +103,7 @@ double IslandProblem::imbalance() const {
 }
 
 // Moves by a along the direction. Returns the largest change of a velocity.
-double IslandProblem::take(double a) {
+double IslandProblem::move(double a) {
   SolverSpace& s = *space_;
   double moved = 0;
   for (const int tree : trees) {
@@ -136,55 +114,58 @@ double IslandProblem::take(double a) {
       moved = std::max(moved, std::abs(a * s.direction[k]));
     }
   }
-  for (ContactTerm& c : contacts) c.velocity += a * c.step;
-  responses_known_ = a == responses_at_;
+  take(a, contact_blocks_.data(), contact_blocks_.data() + contact_blocks_.size());
+  for (JointBlock& b : joint_blocks_)
+    for (int lane = 0; lane < LANES; ++lane) b.velocity[lane] += a * b.step[lane];
   for (LoopTerm& loop : loops) loop.velocity += a * loop.step;
+  responses_known_ = a == responses_at_;
   return moved;
-}
-
-bool IslandProblem::findDirection() {
-  SolverSpace& s = *space_;
-  for (const int tree : trees) treeHessian(tree);
-  for (const JointTerm& j : joints) s.hessian[forest_->rowStart(j.dof) + forest_->rowLength(j.dof) - 1] += j.stiffness(s.velocity[j.dof]);
-  return coupled_ ? solveBlocks() : solveTrees();
 }
 
 // Until the gradient is below `exactness` times the first one, or the tolerance.
 int IslandProblem::newton(const NewtonSettings& settings, double exactness, int max_iterations) {
-  double enough = settings.gradient_tolerance;
-  responses_known_ = false;
-  responses_.resize(contacts.size());
+  double enough = settings.gradient_tolerance, last = INFINITY;
   for (int iterations = 0;; ++iterations) {
-    evaluate();
-    gradient();
-    for (const MimicFold& m : mimics) {
-      space_->gradient[m.master] += m.multiplier * space_->gradient[m.dof];
-      space_->gradient[m.dof] = 0;
-    }
+    evaluateGradient();
     gradient_norm_ = gradientNorm();
     if (iterations == 0) enough = std::max(enough, exactness * gradient_norm_);
-    if (gradient_norm_ <= enough || iterations >= max_iterations || !findDirection()) return iterations;
-    if (take(lineSearch()) < NO_STEP) return iterations + 1;
+    if (gradient_norm_ <= enough || iterations >= max_iterations) return iterations;
+    const bool keeps = gradient_norm_ < CHORD_PROGRESS * last && isFactorCurrent();
+    if (!keeps && !factor()) return iterations;
+    last = gradient_norm_;
+    findDirection();
+    if (move(lineSearch()) < NO_STEP) return iterations + 1;
   }
 }
 
+void IslandProblem::setJoints() {
+  for (std::size_t b = 0; b < joint_blocks_.size(); ++b)
+    for (std::size_t lane = 0, j = b * LANES; lane < LANES; ++lane, ++j)
+      setLane(j < joints.size() ? &joints[j] : nullptr, static_cast<int>(lane), &joint_blocks_[b]);
+}
+
 void IslandProblem::soften(double contact, double joint) {
-  for (ContactTerm& c : contacts) c.rho = contact * c.stiffest_rho;
+  factored_ = base_known_ = responses_known_ = false;
+  for (const ContactPatch& p : patches)
+    for (int b = p.first_block, i = p.first; b < p.block_end; ++b, i += LANES)
+      blem_sim::soften(&contacts[i], p.end - i, contact, &contact_blocks_[b]);
   for (JointTerm& j : joints) j.softness = joint;
+  setJoints();
   for (LoopTerm& loop : loops) loop.drive.softness = joint;
 }
 
 void IslandProblem::remember() {
-  for (ContactTerm& c : contacts) c.remember();
+  responses_known_ = false;
+  blem_sim::remember(contact_blocks_.data(), contact_blocks_.data() + contact_blocks_.size());
   for (JointTerm& j : joints) j.remember(space_->velocity[j.dof]);
+  setJoints();
   for (LoopTerm& loop : loops) loop.remember();
 }
 
 void IslandProblem::assess(NewtonReport* report) const {
-  report->contact_residual = report->joint_creep = 0;
   report->imbalance = imbalance();
-  for (const ContactTerm& c : contacts) report->contact_residual = std::max(report->contact_residual, c.residual());
-  for (const JointTerm& j : joints) report->joint_creep = std::max(report->joint_creep, j.creep(space_->velocity[j.dof]));
+  report->contact_residual = residual(contact_blocks_.data(), contact_blocks_.data() + contact_blocks_.size());
+  report->joint_creep = creep(joint_blocks_.data(), joint_blocks_.data() + joint_blocks_.size());
   for (const LoopTerm& loop : loops) report->joint_creep = std::max(report->joint_creep, loop.creep());
 }
 
@@ -202,10 +183,21 @@ NewtonReport IslandProblem::solve(const Forest& forest, const ForestMotion& moti
   motion_ = &motion;
   space_ = space;
   start();
+  soften(1, 1);
+  evaluateGradient();
+  const bool solved = gradientNorm() <= settings.gradient_tolerance;
+  if (!solved) predict();
+  NewtonReport report = iterate(settings);
+  if (!solved) ++report.iterations;
+  return report;
+}
+
+NewtonReport IslandProblem::solveAgain(const NewtonSettings& settings) { return iterate(settings); }
+
+NewtonReport IslandProblem::iterate(const NewtonSettings& settings) {
   NewtonReport report;
   const auto left = [&] { return settings.max_iterations - report.iterations; };
   // Most steps are like the one before: the hard problem is solved in a few iterations. Where it is not, soft ones lead to it.
-  soften(1, 1);
   report.iterations = newton(settings, 0, FIRST_ITERATIONS);
   if (report.iterations == FIRST_ITERATIONS) {
     for (int stage = 0; stage < SOFT_STAGES; ++stage) {
@@ -226,6 +218,7 @@ NewtonReport IslandProblem::solve(const Forest& forest, const ForestMotion& moti
   }
   assess(&report);
   readMimics();
+  readTerms();
   return report;
 }
 

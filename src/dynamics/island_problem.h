@@ -6,11 +6,12 @@
 #include <vector>
 
 #include "block_matrix.h"
-#include "contact_term.h"
+#include "contact_lanes.h"
 #include "forest_motion.h"
 #include "islands.h"
-#include "joint_term.h"
+#include "joint_lanes.h"
 #include "loop_term.h"
+#include "tree_rows.h"
 
 namespace blem_sim {
 
@@ -25,6 +26,7 @@ struct BodyPair {
 struct ContactPatch {
   BodyPair pair;
   int first = 0, end = 0;
+  int first_block = 0, block_end = 0;  ///< of the problem's blocks, while it is solved
 };
 
 /** v[dof] = multiplier * v[master], kept exactly: the column of dof is folded into that of its master. */
@@ -53,10 +55,13 @@ struct NewtonReport {
 struct SolverSpace {
   Eigen::VectorXd free_momentum;  ///< M v*
   Eigen::VectorXd velocity, mass_velocity, gradient, direction, mass_direction, scale;
-  std::vector<double> hessian;         ///< packed rows
+  TreeFactor hessian;        ///< its factor, in the end
+  std::vector<double> base;  ///< packed rows of live dofs: what idle ones leave of M once eliminated
+  TreePaths paths;
   std::vector<Vector6> twist, wrench;  ///< per node
   std::vector<Matrix6> stiffness;      ///< per node
   std::vector<char> stiff;             ///< per node: stiffness is not zero
+  std::vector<char> live;              ///< per node: contacts, loops or mimic joints act on it or on what it carries
   std::vector<int> block;              ///< per tree: its block in the island's matrix
   std::vector<int> block_row;          ///< per dof: its row in that block
 
@@ -78,45 +83,70 @@ class IslandProblem {
   void clear();
   /** Solves for space->velocity, which holds the first guess. The terms hold the reactions afterwards. */
   NewtonReport solve(const Forest& forest, const ForestMotion& motion, const NewtonSettings& settings, SolverSpace* space);
+  /** Goes on from there after space->free_momentum has changed a little. */
+  NewtonReport solveAgain(const NewtonSettings& settings);
 
  private:
-  // island_problem.cpp: the objective's gradient and Hessian
+  // island_problem.cpp: the objective's gradient
   void start();
-  void relativeSteps(const Eigen::VectorXd& v, bool as_velocity);
+  void findLive();
+  void fillBlocks();
+  void readTerms();
+  void setSteps(const Eigen::VectorXd& v);
+  PotentialSlope respond(double a);
   void evaluate();
-  void evaluatePatch(const ContactPatch& patch);
-  void evaluateLoop(std::size_t index);
-  void stiffen(int node, const Matrix6& stiffness);
-  void push(const BodyPair& pair, const Vector6& wrench, const Matrix6* stiffness);
-  void layBlocks();
-  void coupleBlocks(const BodyPair& pair, const Matrix6& stiffness);
+  void push(const BodyPair& pair, const Vector6& wrench);
   void gradient();
-  void treeHessian(int tree);
+  void foldGradient();
+  // island_hessian.cpp: its Hessian and what is solved with it
+  void layBlocks();
+  void stiffen(int node, const Matrix6& stiffness);
+  void stiffenPair(const BodyPair& pair, const Matrix6& stiffness);
+  void coupleBlocks(const BodyPair& pair, const Matrix6& stiffness);
+  void addStiffness();
+  void pushStiffness();
+  bool isIdle(int dof) const;
+  bool isBaseCurrent() const;
+  bool eliminateIdle();
+  void fillMatrix();
+  bool factor();
+  bool isFactorCurrent() const;
+  void solveBlocks();
+  void findDirection();
   // island_newton.cpp: the iteration
-  bool solveTrees();
-  bool solveBlocks();
-  double slope(double a, double* curvature);
+  void evaluateGradient();
+  void predict();
+  void setDirection();
+  PotentialSlope slope(double a);
   double lineSearch();
   double gradientNorm() const;
   double imbalance() const;
-  double take(double a);
-  bool findDirection();
+  double move(double a);
   int newton(const NewtonSettings& settings, double exactness, int max_iterations);
+  void setJoints();
   void soften(double contact, double joint);
   void remember();
   void assess(NewtonReport* report) const;
   void readMimics();
+  NewtonReport iterate(const NewtonSettings& settings);
 
   const Forest* forest_ = nullptr;
   const ForestMotion* motion_ = nullptr;
   SolverSpace* space_ = nullptr;
-  bool coupled_ = false;                 ///< two branches or two trees are tied: the Hessian is a matrix of blocks, one per tree
-  double gradient_norm_ = 0;             ///< [sqrt(kg) m/s]
-  std::vector<ConeResponse> responses_;  ///< of the contacts where the line search looked last
-  double responses_at_ = 0;              ///< how far along the direction that was
-  bool responses_known_ = false;         ///< and that is the present iterate
-  double linear_ = 0, quadratic_ = 0;    ///< of the kinetic part along the search direction
-  Islands tree_blocks_;                  ///< trees that mimic joints tie are one block
+  bool coupled_ = false;                      ///< two branches or two trees are tied: the Hessian is a matrix of blocks, one per tree
+  std::vector<int> live_nodes_;               ///< ascending
+  std::vector<int> live_dofs_;                ///< ascending
+  std::vector<int> idle_dofs_;                ///< ascending: the others, which are eliminated once and for all iterations
+  double gradient_norm_ = 0;                  ///< [sqrt(kg) m/s]
+  std::vector<ContactBlock> contact_blocks_;  ///< responses: where the line search looked last
+  std::vector<JointBlock> joint_blocks_;      ///< likewise
+  double responses_at_ = 0;                   ///< how far along the direction that was
+  bool responses_known_ = false;              ///< and that is the present iterate
+  double linear_ = 0, quadratic_ = 0;         ///< of the kinetic part along the search direction
+  // What the factor at hand, and the elimination of idle dofs, were made with: kinds of contacts and stiffnesses of joints, lane by lane.
+  bool factored_ = false, base_known_ = false;
+  std::vector<double> factored_kinds_, factored_joints_, base_joints_;
+  Islands tree_blocks_;  ///< trees that mimic joints tie are one block
   std::vector<int> block_sizes_;
   BlockMatrix matrix_;
   Eigen::VectorXd block_vector_;

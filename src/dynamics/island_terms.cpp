@@ -11,7 +11,7 @@ constexpr double JOINT_PROXIMAL = 1e-3;    // gain of friction and limits = iner
 constexpr double LOOP_PROXIMAL = 1e-4;     // rho = this * inverse inertia
 constexpr double IMMOVABLE = 1e-12;        // [1/kg or 1/(kg m^2)]
 
-double massEntry(const TermSource& s, int dof) { return s.motion.mass[s.forest.rowStart(dof) + s.forest.rowLength(dof) - 1]; }
+double massEntry(const TermSource& s, int dof) { return s.motion.mass[s.forest.diagonal(dof)]; }
 
 // Speed that just reaches a bound, or leads back to it at a bounded speed.
 double allowedSpeed(const TermSource& s, double room) {

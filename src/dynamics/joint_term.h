@@ -6,8 +6,14 @@
 
 namespace blem_sim {
 
+struct JointResponse {
+  double impulse = 0, stiffness = 0;  ///< the second: -d impulse / dv >= 0
+};
+
 /** Units for a revolute joint; a prismatic one has N s and m/s. */
 struct JointTerm {
+  static constexpr double STICKING = 1 - 1e-9;  ///< of the bound: friction that was remembered below it had stuck
+
   int dof = -1;           ///< of the forest
   int joint = -1;         ///< of the world
   double motor_gain = 0;  ///< D [N m s^2/rad]: impulse D (motor_velocity - v), within +-motor_bound
@@ -40,6 +46,26 @@ struct JointTerm {
     if (lowerImpulse(v) > 0) sum += limit_gain / softness;
     if (upperImpulse(v) > 0) sum += limit_gain / softness;
     return sum;
+  }
+
+  /** The same, friction and limits being extended linearly from where the proximal point's impulses belong to. */
+  JointResponse expect(double v) const {
+    JointResponse out{motorImpulse(v) - viscous * v + dry_previous, viscous};
+    const auto add = [&](double gain, double speed) {
+      out.impulse -= gain * speed;
+      out.stiffness += gain;
+    };
+    if (std::abs(motor_gain * (motor_velocity - v)) < motor_bound) out.stiffness += motor_gain;
+    if (std::abs(dry_previous) < STICKING * dry_bound) add(dry_gain / softness, v);
+    if (lower_previous > 0) {
+      out.impulse += lower_previous;
+      add(limit_gain / softness, v - lower_velocity);
+    }
+    if (upper_previous > 0) {
+      out.impulse -= upper_previous;
+      add(limit_gain / softness, v - upper_velocity);
+    }
+    return out;
   }
 
   /** Speed [rad/s or m/s] by which friction that sticks still creeps, or a limit that pushes is still missed. */

@@ -10,34 +10,44 @@ namespace blem_sim {
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-inline Vector6 spatial(const Vector3& angular, const Vector3& linear) {
+// Number by number: these are the innermost loops, and small blocks of a vector are slow to put together.
+inline Vector6 spatial(const Vector3& a, const Vector3& l) {
   Vector6 out;
-  out << angular, linear;
+  for (int i = 0; i < 3; ++i) {
+    out[i] = a[i];
+    out[3 + i] = l[i];
+  }
   return out;
 }
-inline Vector3 angular(const Vector6& v) { return v.head<3>(); }
-inline Vector3 linear(const Vector6& v) { return v.tail<3>(); }
+inline Vector3 angular(const Vector6& v) { return {v[0], v[1], v[2]}; }
+inline Vector3 linear(const Vector6& v) { return {v[3], v[4], v[5]}; }
+inline Vector3 crossProduct(const Vector3& a, const Vector3& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+inline Vector3 sum(const Vector3& a, const Vector3& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
 
 /** Velocity of a point that a twist carries along. */
-inline Vector3 velocityAt(const Vector6& twist, const Vector3& point) { return linear(twist) + angular(twist).cross(point); }
+inline Vector3 velocityAt(const Vector6& twist, const Vector3& point) { return sum(linear(twist), crossProduct(angular(twist), point)); }
 
 /** Wrench of a force at a point. */
-inline Vector6 wrenchOf(const Vector3& force, const Vector3& point) { return spatial(point.cross(force), force); }
+inline Vector6 wrenchOf(const Vector3& force, const Vector3& point) { return spatial(crossProduct(point, force), force); }
 
 /** The same wrench about another reference point. @param shift from the new reference point to the old one */
-inline Vector6 moveWrench(const Vector6& w, const Vector3& shift) { return spatial(angular(w) + shift.cross(linear(w)), linear(w)); }
+inline Vector6 moveWrench(const Vector6& w, const Vector3& shift) {
+  return spatial(sum(angular(w), crossProduct(shift, linear(w))), linear(w));
+}
 
 /** The same twist about another reference point. @param shift from the old reference point to the new one */
 inline Vector6 moveTwist(const Vector6& v, const Vector3& shift) { return spatial(angular(v), velocityAt(v, shift)); }
 
 /** Rate of change of the twist w when carried along by v. */
 inline Vector6 crossMotion(const Vector6& v, const Vector6& w) {
-  return spatial(angular(v).cross(angular(w)), angular(v).cross(linear(w)) + linear(v).cross(angular(w)));
+  return spatial(crossProduct(angular(v), angular(w)), sum(crossProduct(angular(v), linear(w)), crossProduct(linear(v), angular(w))));
 }
 
 /** Rate of change of the momentum f when carried along by v. */
 inline Vector6 crossForce(const Vector6& v, const Vector6& f) {
-  return spatial(angular(v).cross(angular(f)) + linear(v).cross(linear(f)), angular(v).cross(linear(f)));
+  return spatial(sum(crossProduct(angular(v), angular(f)), crossProduct(linear(v), linear(f))), crossProduct(angular(v), linear(f)));
 }
 
 inline Matrix3 crossMatrix(const Vector3& v) {
@@ -67,7 +77,13 @@ struct SpatialInertia {
   }
   /** Momentum (angular about the reference point, linear) of a body that moves with twist v. */
   Vector6 times(const Vector6& v) const {
-    return spatial(rotational * angular(v) + first_moment.cross(linear(v)), mass * linear(v) - first_moment.cross(angular(v)));
+    const Vector3 w = angular(v), l = linear(v), hl = crossProduct(first_moment, l), hw = crossProduct(first_moment, w);
+    Vector6 out;
+    for (int i = 0; i < 3; ++i) {
+      out[i] = rotational(i, 0) * w[0] + rotational(i, 1) * w[1] + rotational(i, 2) * w[2] + hl[i];
+      out[3 + i] = mass * l[i] - hw[i];
+    }
+    return out;
   }
 };
 

@@ -147,9 +147,9 @@ double World::kineticEnergy() const {
   double energy = 0;
   for (int b = 0; b < bodyCount(); ++b) {
     if (!impl_->scene.exists(b)) continue;
-    const Vector3 spin = impl_->scene.spin(b);
+    const Vector3 spin_B = impl_->scene.rotation(b).transpose() * impl_->scene.spin(b);
     energy += 0.5 * bodySpec(b).inertial.mass * impl_->scene.velocity(b).squaredNorm();
-    energy += 0.5 * spin.dot(impl_->scene.inertiaInWorld(b, impl_->scene.rotation(b)) * spin);
+    energy += 0.5 * spin_B.dot(bodySpec(b).inertial.inertia * spin_B);
   }
   return energy;
 }

@@ -1,0 +1,61 @@
+// Contacts of the step problem while it is iterated: Coulomb's cone with a proximal point, four contacts at a time.
+#pragma once
+
+#include <vector>
+
+#include "contact_term.h"
+#include "lanes.h"
+#include "spatial.h"
+
+namespace blem_sim {
+
+/** Four contacts of one patch. What a contact answers to a velocity falls with it: its stiffness -d impulse/du is positive semidefinite. */
+struct ContactBlock {
+  static constexpr double OPEN = 0, STICK = 1, SLIP = 2;
+
+  VectorLanes point, normal;
+  Lanes friction, compliance, inverse_mass, target;
+  Lanes rho;                                         ///< proximal weight [m/s per N s]
+  Lanes inverse_rho, inverse_normal, inverse_ridge;  ///< of rho, compliance + rho, compliance + rho + friction^2 rho
+  VectorLanes previous;                              ///< [N s] impulse of the proximal point
+  Lanes slip;                                        ///< [m/s] |u_t| there: De Saxce's term
+  VectorLanes velocity;                              ///< [m/s] relative, mean over the step, at the present iterate
+  VectorLanes step;                                  ///< its change along the search direction
+  // The response where it was asked for last. The stiffness of one that sticks: normal_gain along its axis, the normal, tangent_gain
+  // across. Of one that slips: normal_gain along its axis, the ridge n + mu t of the cone, tangent_gain along `side`.
+  Lanes kind, normal_gain, tangent_gain;
+  VectorLanes impulse, axis, side;
+};
+
+/** Slope of the contacts' potential along the steps, and its derivative. */
+struct PotentialSlope {
+  double first = 0, second = 0;
+};
+
+/** A lane's contact from a term; null: a contact that never acts. */
+void setLane(const ContactTerm* term, int lane, ContactBlock* block);
+/** What the iteration has found of a lane's contact. */
+void readLane(const ContactBlock& block, int lane, ContactTerm* term);
+
+/** Proximal weights `softness` times the terms' own. @param terms of the block's lanes; those that are left never act */
+void soften(const ContactTerm* terms, int count, double softness, ContactBlock* block);
+
+/** The response at the velocity that the proximal point's impulse belongs to, extended linearly to the present velocity. */
+void expect(ContactBlock* begin, ContactBlock* end);
+/** The responses at velocity + a step. */
+PotentialSlope respond(double a, ContactBlock* begin, ContactBlock* end);
+
+/** Sum of the impulses' wrenches about the points' origin. */
+Vector6 wrenchOf(const ContactBlock* begin, const ContactBlock* end);
+/** Sum of J' k J, k being the responses' stiffnesses: the 6 x 6 by which the patch is felt. @return false if no contact acts */
+bool stiffnessOf(const ContactBlock* begin, const ContactBlock* end, Matrix6* out);
+/** The steps of the points that a twist carries along. */
+void setSteps(const Vector6& twist, ContactBlock* begin, ContactBlock* end);
+/** velocity += a step */
+void take(double a, ContactBlock* begin, ContactBlock* end);
+/** Takes the present iterate as the next proximal point. */
+void remember(ContactBlock* begin, ContactBlock* end);
+/** [N s] by how much impulses miss Coulomb's law: distance to their own projection after a step against the velocity; the worst. */
+double residual(const ContactBlock* begin, const ContactBlock* end);
+
+}  // namespace blem_sim

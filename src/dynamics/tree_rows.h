@@ -1,0 +1,40 @@
+// Packed matrices along a tree: products, and factorisation without fill-in [Featherstone 2008, 6.5], H = L' L, dof by dof, descendants
+// first.
+#pragma once
+
+#include <vector>
+
+#include "forest.h"
+
+namespace blem_sim {
+
+/** Work space: values along the path from the root to the dof at hand, each tree in its own part. */
+struct TreePaths {
+  std::vector<double> values, sums;
+  std::vector<int> dofs;
+
+  void resize(const Forest& forest);
+};
+
+/** A factor, or the beginning of one. */
+struct TreeFactor {
+  std::vector<double> rows;     ///< of an eliminated dof: that of L, zero on the diagonal and in the room behind it
+  std::vector<double> inverse;  ///< per dof: of the diagonal of L; 0: not eliminated
+
+  void resize(const Forest& forest);
+};
+
+/** out = M v on the dofs of a tree. @param rows zero in the room at their ends */
+void multiply(const Forest& forest, int tree, const std::vector<double>& rows, const Eigen::VectorXd& v, Eigen::VectorXd* out,
+              TreePaths* paths);
+
+/** Eliminates a dof: its ancestors' rows lose what it takes. @return false if H is not positive definite */
+bool eliminate(const Forest& forest, int dof, TreeFactor* factor);
+
+/** What the eliminated dofs of a tree take from the right-hand side x. */
+void reduce(const Forest& forest, int tree, const TreeFactor& factor, Eigen::VectorXd* x, TreePaths* paths);
+
+/** The solution on the eliminated dofs, x holding that of the others. */
+void substitute(const Forest& forest, int tree, const TreeFactor& factor, Eigen::VectorXd* x, TreePaths* paths);
+
+}  // namespace blem_sim
