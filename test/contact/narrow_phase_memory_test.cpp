@@ -82,6 +82,14 @@ TEST(NarrowPhaseMemory, MarginsMayChange) {
   EXPECT_GT(follow(cube, hills, 300, wandering({0, 0, 0.027}, 0.003, 0.01), margin).contacts, 300u);
 }
 
+/** Little moves, but edges turn until others of them have contacts. */
+TEST(NarrowPhaseMemory, TurningOnTheSpot) {
+  RandomShapes random(10);
+  const Collider hills = makeCollider(hillMesh(random, 0.02, 40, 0.0001), 0), chip = makeCollider(hillMesh(random, 0.003, 6, 0.0001), R);
+  const auto path = [](int step) { return makePose({0, 0, 0.0008}, {0, 0, 0.0003 * step * step}); };
+  EXPECT_GT(follow(chip, hills, 100, path, noMargin).contacts, 300u);
+}
+
 TEST(NarrowPhaseMemory, FarFromTheOriginToo) {
   RandomShapes random(8);
   TriangleMesh far = hillMesh(random, 0.3, 40, 0.001);
