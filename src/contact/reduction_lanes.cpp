@@ -1,16 +1,6 @@
 #include "reduction_lanes.h"
 
-// Compiled for several processors, chosen when the program starts. None may fuse a product into a sum (-ffp-contract=off).
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define BLEM_SIM_LANES __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
-#define BLEM_SIM_LANES
-#endif
-#if defined(__GNUC__)
-#define BLEM_SIM_INLINE inline __attribute__((always_inline))
-#else
-#define BLEM_SIM_INLINE inline
-#endif
+#include "instruction_sets.h"
 
 namespace blem_sim {
 
