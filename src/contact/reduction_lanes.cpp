@@ -16,7 +16,7 @@ BLEM_SIM_INLINE float wrenchComponent(const WrenchDirections& w, const WrenchPoi
   const float gz = w.force[2][d] + w.torque[0][d] * p.x[1] - w.torque[1][d] * p.x[0];
   const float along = gx * p.n[0] + gy * p.n[1] + gz * p.n[2];
   const float rest = gx * gx + gy * gy + gz * gz - along * along;
-  return along + CHOICE_FRICTION * __builtin_sqrtf(rest > 0 ? rest : 0) - p.handicap;
+  return along + CHOICE_FRICTION * __builtin_sqrtf(rest > 0 ? rest : 0);
 }
 
 BLEM_SIM_INLINE float cellComponent(const CellDirections& c, const WrenchPoint& p, int d) {
@@ -24,27 +24,45 @@ BLEM_SIM_INLINE float cellComponent(const CellDirections& c, const WrenchPoint& 
          c.normal[2][d] * p.n[2] - p.handicap;
 }
 
-}  // namespace
+BLEM_SIM_INLINE void raiseExtreme(float component, int point, int d, WrenchExtremes* extremes) {
+  const bool larger = component > extremes->value[d];
+  extremes->value[d] = larger ? component : extremes->value[d];
+  extremes->point[d] = larger ? point : extremes->point[d];
+}
 
-BLEM_SIM_LANES void findWrenchExtremes(const WrenchDirections& directions, const WrenchPoint* points, int count, WrenchExtremes* extremes) {
+BLEM_SIM_INLINE void clearExtremes(WrenchExtremes* extremes) {
   for (int d = 0; d < WRENCH_DIRECTIONS; ++d) {
-    extremes->value[d] = wrenchComponent(directions, points[0], d);
+    extremes->value[d] = -__builtin_inff();
     extremes->point[d] = 0;
   }
-  for (int i = 1; i < count; ++i) {
+}
+
+}  // namespace
+
+BLEM_SIM_LANES void findWrenches(const WrenchDirections& directions, const WrenchPoint* points, int count, WrenchComponents* components,
+                                 WrenchExtremes* extremes) {
+  clearExtremes(extremes);
+  for (int i = 0; i < count; ++i) {
     const WrenchPoint point = points[i];
+    float* values = components[i].value;
     for (int d = 0; d < WRENCH_DIRECTIONS; ++d) {
       const float component = wrenchComponent(directions, point, d);
-      const bool larger = component > extremes->value[d];
-      extremes->value[d] = larger ? component : extremes->value[d];
-      extremes->point[d] = larger ? i : extremes->point[d];
+      values[d] = component;
+      raiseExtreme(component - point.handicap, i, d, extremes);
     }
   }
 }
 
-BLEM_SIM_LANES WrenchLack addWrenches(const WrenchDirections& directions, const WrenchPoint& point, const WrenchExtremes& extremes,
-                                      float* reached) {
-  const WrenchPoint p = point;
+BLEM_SIM_LANES void findWrenchExtremes(const WrenchComponents* components, const WrenchPoint* points, int count, WrenchExtremes* extremes) {
+  clearExtremes(extremes);
+  for (int i = 0; i < count; ++i) {
+    const float handicap = points[i].handicap;
+    for (int d = 0; d < WRENCH_DIRECTIONS; ++d) raiseExtreme(components[i].value[d] - handicap, i, d, extremes);
+  }
+}
+
+BLEM_SIM_LANES WrenchLack addWrenches(const WrenchComponents& components, float handicap, const WrenchExtremes& extremes,
+                                      WrenchComponents* reached) {
   float most[LANES];
   int where[LANES];
   for (int lane = 0; lane < LANES; ++lane) {
@@ -54,9 +72,9 @@ BLEM_SIM_LANES WrenchLack addWrenches(const WrenchDirections& directions, const 
   for (int block = 0; block < WRENCH_DIRECTIONS; block += LANES) {
     for (int lane = 0; lane < LANES; ++lane) {
       const int d = block + lane;
-      const float component = wrenchComponent(directions, p, d);
-      reached[d] = component > reached[d] ? component : reached[d];
-      const float lack = extremes.value[d] - reached[d];
+      const float component = components.value[d] - handicap, before = reached->value[d], now = component > before ? component : before;
+      reached->value[d] = now;
+      const float lack = extremes.value[d] - now;
       const bool more = lack > most[lane];
       most[lane] = more ? lack : most[lane];
       where[lane] = more ? d : where[lane];

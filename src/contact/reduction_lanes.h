@@ -26,17 +26,26 @@ struct alignas(64) WrenchExtremes {
   int point[WRENCH_DIRECTIONS];
 };
 
-/** Largest components of the wrenches (f, x f) with f in the friction cone, of unit normal force, over all points. Precondition: count > 0.
- */
-void findWrenchExtremes(const WrenchDirections& directions, const WrenchPoint* points, int count, WrenchExtremes* extremes);
+/** Of one point, by direction. */
+struct alignas(64) WrenchComponents {
+  float value[WRENCH_DIRECTIONS];
+};
+
+/** Largest components of the wrenches (f, x f) with f in the friction cone, of unit normal force, without handicaps: into
+ * components[count]; and the extremes over all points, less their handicaps. Precondition: count > 0. */
+void findWrenches(const WrenchDirections& directions, const WrenchPoint* points, int count, WrenchComponents* components,
+                  WrenchExtremes* extremes);
+
+/** The extremes alone, when handicaps have changed. */
+void findWrenchExtremes(const WrenchComponents* components, const WrenchPoint* points, int count, WrenchExtremes* extremes);
 
 struct WrenchLack {
   float most;
   int direction;
 };
 
-/** Raises `reached`, by direction, to what this point adds. @return where most is lacking of the extremes */
-WrenchLack addWrenches(const WrenchDirections& directions, const WrenchPoint& point, const WrenchExtremes& extremes, float* reached);
+/** Raises `reached`, by direction, to what a point with these components adds. @return where most is lacking of the extremes */
+WrenchLack addWrenches(const WrenchComponents& components, float handicap, const WrenchExtremes& extremes, WrenchComponents* reached);
 
 /** Weights of places and normals, by direction, in a cell of alike normals. */
 struct alignas(64) CellDirections {

@@ -69,34 +69,38 @@ class Choice {
   void start(const std::vector<Contact>& contacts, const std::vector<int>& candidates, const PatchScale& scale) {
     points_.clear();
     for (const int candidate : candidates) points_.push_back(wrenchPoint(contacts[candidate], scale));
-    findWrenchExtremes(directions_, points_.data(), static_cast<int>(points_.size()), &extremes_);
+    if (components_.size() < points_.size()) components_.resize(points_.size());
+    findWrenches(directions_, points_.data(), static_cast<int>(points_.size()), components_.data(), &extremes_);
   }
 
   /** From now on depth counts too. */
   void countDepth(const std::vector<Contact>& contacts, const std::vector<int>& candidates) {
     for (std::size_t i = 0; i < candidates.size(); ++i)
       points_[i].handicap -= static_cast<float>(std::max(0.0, contacts[candidates[i]].depth) / DEPTH_SCALE);
-    findWrenchExtremes(directions_, points_.data(), static_cast<int>(points_.size()), &extremes_);
+    findWrenchExtremes(components_.data(), points_.data(), static_cast<int>(points_.size()), &extremes_);
   }
 
   /** Adds to `chosen`, indices of candidates, the extreme ones of the directions that lack most, until k are chosen or nothing lacks.
    * @return what still lacks most */
   float addExtremes(int k, std::vector<int>* chosen) {
-    std::fill(std::begin(reached_), std::end(reached_), -std::numeric_limits<float>::infinity());
+    std::fill(std::begin(reached_.value), std::end(reached_.value), -std::numeric_limits<float>::infinity());
     WrenchLack lack{};
-    for (const int candidate : *chosen) lack = addWrenches(directions_, points_[candidate], extremes_, reached_);
+    for (const int candidate : *chosen) lack = add(candidate);
     while (lack.most > NOTHING_LACKS && static_cast<int>(chosen->size()) < k) {
       chosen->push_back(extremes_.point[lack.direction]);
-      lack = addWrenches(directions_, points_[chosen->back()], extremes_, reached_);
+      lack = add(chosen->back());
     }
     return lack.most;
   }
 
  private:
+  WrenchLack add(int candidate) { return addWrenches(components_[candidate], points_[candidate].handicap, extremes_, &reached_); }
+
   const WrenchDirections directions_ = makeDirections();
   std::vector<WrenchPoint> points_;
+  std::vector<WrenchComponents> components_;  // of the points; not fewer
   WrenchExtremes extremes_;
-  alignas(64) float reached_[WRENCH_DIRECTIONS];
+  WrenchComponents reached_;
 };
 
 // Indices of those candidates that were chosen before; none if they are too many. Both are sorted by id.
