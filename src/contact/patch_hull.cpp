@@ -1,9 +1,8 @@
 #include "patch_hull.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
+#include <numeric>
 
 #include "contact_order.h"
 #include "patch_depths.h"
@@ -15,7 +14,7 @@ namespace blem_sim {
 namespace {
 
 struct Buffers {
-  std::vector<PlanePlace> places;
+  PlanePlaces places;
   std::vector<int> outside;
   std::vector<PlanePoint> points, half, hull, ring, corners;
   PatchDepths depths;
@@ -29,67 +28,49 @@ bool planePointBefore(const std::vector<Contact>& contacts, const PlanePoint& a,
   return a.contact != b.contact && contactBefore(contacts[a.contact], contacts[b.contact]);
 }
 
-PlanePoint pointOf(const PlanePlace& place, int contact) { return {place.x, place.y, place.depth, contact, NO_POINT}; }
-
-// The extremes of the places in eight directions, counter-clockwise.
-std::array<PlanePoint, OCTAGON_SIDES> octagonOf(const std::vector<Contact>& contacts, const std::vector<PlanePlace>& places,
-                                                const int* members) {
-  std::array<PlanePoint, OCTAGON_SIDES> corners;
-  double most[OCTAGON_SIDES];
-  std::fill(std::begin(most), std::end(most), -std::numeric_limits<double>::infinity());
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    const double x = places[i].x, y = places[i].y;
-    const double along[OCTAGON_SIDES] = {x, x + y, y, y - x, -x, -x - y, -y, x - y};
-    int reached = 0;
-    for (int d = 0; d < OCTAGON_SIDES; ++d) reached |= along[d] >= most[d];
-    if (!reached) continue;
-    const PlanePoint point = pointOf(places[i], members[i]);
-    for (int d = 0; d < OCTAGON_SIDES; ++d) {
-      if (along[d] < most[d] || (along[d] == most[d] && !planePointBefore(contacts, point, corners[d]))) continue;
-      corners[d] = point;
-      most[d] = along[d];
-    }
-  }
-  return corners;
-}
-
-// Indices of the places to look at: others lie inside the octagon of extremes and are no deeper than any of its corners, so convex
-// combinations of those imply them. Saves most of the sorting of large patches.
-void findOuter(const std::vector<Contact>& contacts, const int* members, Buffers* buffers) {
-  constexpr std::size_t WORTHWHILE = 50;
-  const std::vector<PlanePlace>& places = buffers->places;
+// Indices of the places that may be corners: others lie inside the octagon of extremes. Saves most of the sorting of large patches.
+void findOuter(Buffers* buffers) {
+  constexpr int WORTHWHILE = 16;
+  const std::vector<double>&x = buffers->places.x, &y = buffers->places.y;
+  const int count = static_cast<int>(x.size());
   std::vector<int>& outside = buffers->outside;
-  outside.resize(places.size());
-  for (std::size_t i = 0; i < places.size(); ++i) outside[i] = static_cast<int>(i);
-  if (places.size() < WORTHWHILE) return;
-  const std::array<PlanePoint, OCTAGON_SIDES> corners = octagonOf(contacts, places, members);
-  if (corners[0].contact == corners[4].contact) return;  // all at one place
-  double shallowest = corners[0].depth;
+  outside.resize(count);
+  std::iota(outside.begin(), outside.end(), 0);
+  if (count < WORTHWHILE) return;
+  OctagonExtremes extremes;
+  findOctagon(x.data(), y.data(), count, &extremes);
   Octagon octagon;
+  int sides = 0;
   for (int d = 0; d < OCTAGON_SIDES; ++d) {
-    const PlanePoint &from = corners[d], &to = corners[(d + 1) % OCTAGON_SIDES];
-    shallowest = std::min(shallowest, from.depth);
-    octagon.x[d] = from.x;
-    octagon.y[d] = from.y;
-    octagon.dx[d] = to.x - from.x;
-    octagon.dy[d] = to.y - from.y;
-    octagon.limit[d] = from.contact == to.contact ? -1 : FLATNESS * distance(from, to);
+    const int from = extremes.point[d], to = extremes.point[(d + 1) % OCTAGON_SIDES];
+    octagon.x[d] = x[from];
+    octagon.y[d] = y[from];
+    octagon.dx[d] = x[to] - x[from];
+    octagon.dy[d] = y[to] - y[from];
+    octagon.limit[d] = from == to ? -1 : FLATNESS * std::sqrt(octagon.dx[d] * octagon.dx[d] + octagon.dy[d] * octagon.dy[d]);
+    sides += from != to;
   }
-  outside.resize(findOutside(octagon, shallowest + DEPTH_TIE, places.data(), static_cast<int>(places.size()), outside.data()));
+  if (sides < 3) return;  // all at one place, or in a line
+  outside.resize(findOutside(octagon, x.data(), y.data(), count, outside.data()));
 }
 
-// The points of the members in the plane, sorted, of those at one place the deepest.
+// Where the members lie in the plane; the outer ones as points, sorted, of those at one place the deepest.
 void project(const std::vector<Contact>& contacts, const int* begin, const int* end, const Vector3& normal, Buffers* buffers) {
   const PlaneAxes axes = axesAcross(normal);
-  buffers->places.resize(end - begin);
-  for (const int* member = begin; member != end; ++member) {
-    const Contact& contact = contacts[*member];
-    buffers->places[member - begin] = {axes.u.dot(contact.point), axes.v.dot(contact.point), contact.depth};
+  PlanePlaces& places = buffers->places;
+  places.x.resize(end - begin);
+  places.y.resize(end - begin);
+  places.depth.resize(end - begin);
+  for (std::size_t i = 0; i < places.x.size(); ++i) {
+    const Contact& contact = contacts[begin[i]];
+    places.x[i] = axes.u.dot(contact.point);
+    places.y[i] = axes.v.dot(contact.point);
+    places.depth[i] = contact.depth;
   }
-  findOuter(contacts, begin, buffers);
+  findOuter(buffers);
   std::vector<PlanePoint>& points = buffers->points;
   points.clear();
-  for (const int i : buffers->outside) points.push_back(pointOf(buffers->places[i], begin[i]));
+  for (const int i : buffers->outside) points.push_back({places.x[i], places.y[i], places.depth[i], begin[i]});
   std::sort(points.begin(), points.end(), [&](const PlanePoint& a, const PlanePoint& b) { return planePointBefore(contacts, a, b); });
   const auto samePlace = [](const PlanePoint& a, const PlanePoint& b) {
     return std::abs(a.x - b.x) <= FLATNESS && std::abs(a.y - b.y) <= FLATNESS && b.depth <= a.depth + DEPTH_TIE;
@@ -149,6 +130,8 @@ void appendProminent(const std::vector<PlanePoint>& chain, std::size_t from, std
 // The hull without corners that stand out less than FLATNESS: decided from the whole hull, since along a side noise decides what comes
 // first in any order, and a chain thinned on the way can lose a true corner.
 void findCorners(Buffers* buffers) {
+  buffers->corners = buffers->points;
+  if (buffers->points.size() <= 2) return;
   convexHull(buffers);
   const std::vector<PlanePoint>& hull = buffers->hull;
   buffers->corners = hull;
@@ -167,13 +150,9 @@ void patchHull(const std::vector<Contact>& contacts, const int* begin, const int
   static thread_local Buffers buffers;
   if (end - begin == 1) return kept->push_back(*begin);
   project(contacts, begin, end, normal, &buffers);
-  if (buffers.points.size() <= 2) {
-    for (const PlanePoint& p : buffers.points) kept->push_back(p.contact);
-    return;
-  }
   findCorners(&buffers);
   for (const PlanePoint& corner : buffers.corners) kept->push_back(corner.contact);
-  buffers.depths.keepDeeper(contacts, buffers.corners, &buffers.points, kept);
+  buffers.depths.keepDeeper(contacts, begin, buffers.places, buffers.corners, kept);
 }
 
 }  // namespace blem_sim

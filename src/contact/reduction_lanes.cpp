@@ -119,17 +119,102 @@ BLEM_SIM_LANES int keepExtremePoints(const CellPoints& points, int count, int* a
   return size;
 }
 
-BLEM_SIM_LANES int findOutside(const Octagon& octagon, double depth, const PlanePlace* points, int count, int* found) {
-  int size = 0;
+BLEM_SIM_LANES void findOctagon(const double* x, const double* y, int count, OctagonExtremes* extremes) {
+  // 0.1234 rad and every half of a right angle on.
+  constexpr double ALONG_X[OCTAGON_SIDES] = {0.99239582,  0.61469396,  -0.12308735, -0.78876576,
+                                             -0.99239582, -0.61469396, 0.12308735,  0.78876576};
+  constexpr double ALONG_Y[OCTAGON_SIDES] = {0.12308735,  0.78876576,  0.99239582,  0.61469396,
+                                             -0.12308735, -0.78876576, -0.99239582, -0.61469396};
+  double value[OCTAGON_SIDES];
+  long point[OCTAGON_SIDES];
+  for (int d = 0; d < OCTAGON_SIDES; ++d) {
+    value[d] = -__builtin_inf();
+    point[d] = 0;
+  }
   for (int i = 0; i < count; ++i) {
-    const PlanePlace p = points[i];
-    int outside = p.depth > depth;
-    for (int s = 0; s < OCTAGON_SIDES; ++s)
-      outside |= octagon.dx[s] * (p.y - octagon.y[s]) - octagon.dy[s] * (p.x - octagon.x[s]) <= octagon.limit[s];
-    found[size] = i;
-    size += outside;
+    const double px = x[i], py = y[i];
+    for (int d = 0; d < OCTAGON_SIDES; ++d) {
+      const double along = ALONG_X[d] * px + ALONG_Y[d] * py;
+      const bool farther = along > value[d];
+      value[d] = farther ? along : value[d];
+      point[d] = farther ? i : point[d];
+    }
+  }
+  for (int d = 0; d < OCTAGON_SIDES; ++d) {
+    extremes->value[d] = value[d];
+    extremes->point[d] = static_cast<int>(point[d]);
+  }
+}
+
+BLEM_SIM_LANES int findOutside(const Octagon& octagon, const double* x, const double* y, int count, int* found) {
+  constexpr int BLOCK = 64;
+  int size = 0;
+  for (int first = 0; first < count; first += BLOCK) {
+    const int some = count - first < BLOCK ? count - first : BLOCK;
+    double least[BLOCK];  // that a point is inside by, more than it must
+    for (int i = 0; i < BLOCK; ++i) least[i] = __builtin_inf();
+    for (int s = 0; s < OCTAGON_SIDES; ++s) {
+      const double dx = octagon.dx[s], dy = octagon.dy[s], sx = octagon.x[s], sy = octagon.y[s], limit = octagon.limit[s];
+      for (int i = 0; i < some; ++i) {
+        const double inside = dx * (y[first + i] - sy) - dy * (x[first + i] - sx) - limit;
+        least[i] = inside < least[i] ? inside : least[i];
+      }
+    }
+    for (int i = 0; i < some; ++i) {
+      found[size] = first + i;
+      size += least[i] <= 0;
+    }
   }
   return size;
+}
+
+namespace {
+
+// Right angles from the x-axis, on the unit circle of the sum norm: as good as angles to tell what comes first.
+BLEM_SIM_INLINE double angleOf(double dx, double dy) {
+  const double around = (dx < 0 ? -dx : dx) + (dy < 0 ? -dy : dy), part = dy / (around > 0 ? around : 1);
+  return dx < 0 ? 2 - part : (dy < 0 ? 4 + part : part);
+}
+
+BLEM_SIM_INLINE double angleFrom(double from, double least, double angle) {
+  const double relative = angle - from;
+  return relative < least ? relative + 4 : (relative >= least + 4 ? relative - 4 : relative);
+}
+
+}  // namespace
+
+void Fan::start(double middle_x, double middle_y, bool closed) {
+  x = middle_x;
+  y = middle_y;
+  least = closed ? 0 : -1;
+  sides.clear();
+}
+
+void Fan::addSide(double to_x, double to_y) {
+  const double angle = angleOf(to_x - x, to_y - y);
+  if (sides.empty()) from = angle;
+  sides.push_back(angleFrom(from, least, angle));
+}
+
+BLEM_SIM_LANES void findSectors(const Fan& fan, const double* x, const double* y, int count, int* sectors) {
+  constexpr int BLOCK = 64;
+  const double middle_x = fan.x, middle_y = fan.y, from = fan.from, least = fan.least;
+  const double* sides = fan.sides.data();
+  const int side_count = static_cast<int>(fan.sides.size());
+  for (int first = 0; first < count; first += BLOCK) {
+    const int some = count - first < BLOCK ? count - first : BLOCK;
+    double angles[BLOCK];
+    long passed[BLOCK];
+    for (int i = 0; i < some; ++i) {
+      angles[i] = angleFrom(from, least, angleOf(x[first + i] - middle_x, y[first + i] - middle_y));
+      passed[i] = 0;
+    }
+    for (int s = 1; s < side_count; ++s) {
+      const double side = sides[s];
+      for (int i = 0; i < some; ++i) passed[i] += angles[i] >= side ? 1 : 0;
+    }
+    for (int i = 0; i < some; ++i) sectors[first + i] = static_cast<int>(passed[i]);
+  }
 }
 
 }  // namespace blem_sim

@@ -1,8 +1,7 @@
 // The reduction's loops over all contacts, in plain arrays that compilers turn into vector code; the same bits on every processor.
 #pragma once
 
-#include <array>
-#include <cstddef>
+#include <vector>
 
 namespace blem_sim {
 
@@ -71,17 +70,43 @@ int raiseCellExtremes(const CellPoints& points, int count, int* raising);
 /** Leaves those of the points that are extreme in a direction of their cell. @return how many */
 int keepExtremePoints(const CellPoints& points, int count, int* among);
 
-/** A point in a plane. */
-struct PlanePlace {
-  double x, y, depth;
+/** Points of a flat patch, seen along its normal, coordinate by coordinate. */
+struct PlanePlaces {
+  std::vector<double> x, y, depth;
 };
 
-/** A line through `from` along (dx, dy): what lies more than `limit` / length to its left is inside. */
-struct alignas(64) Octagon {
+/** Of points in a plane, by direction, which lies farthest out. */
+struct OctagonExtremes {
+  double value[OCTAGON_SIDES];
+  int point[OCTAGON_SIDES];
+};
+
+/** The farthest of the points in eight directions, counter-clockwise; no mesh has sides across them. */
+void findOctagon(const double* x, const double* y, int count, OctagonExtremes* extremes);
+
+/** Lines through (x, y) along (dx, dy): what lies more than `limit` / length to their left is inside. */
+struct Octagon {
   double x[OCTAGON_SIDES], y[OCTAGON_SIDES], dx[OCTAGON_SIDES], dy[OCTAGON_SIDES], limit[OCTAGON_SIDES];
 };
 
-/** Indices of the points that are not inside all sides or deeper than `depth`, ascending, into found[count]. @return how many */
-int findOutside(const Octagon& octagon, double depth, const PlanePlace* points, int count, int* found);
+/** Indices of the points that are not inside all sides, ascending, into found[count]. @return how many */
+int findOutside(const Octagon& octagon, const double* x, const double* y, int count, int* found);
+
+/** Triangles around a point, counter-clockwise. Keeps its memory. */
+class Fan {
+ public:
+  /** @param closed whether the last triangle borders on the first */
+  void start(double x, double y, bool closed);
+  /** The first side of the next triangle goes to (x, y). */
+  void addSide(double x, double y);
+
+  double x = 0, y = 0;
+  double from = 0;            ///< the first side's angle, in right angles, as unit circles of the sum norm count them
+  double least = 0;           ///< other angles are counted from it on, from `from`
+  std::vector<double> sides;  ///< angles, counted so, ascending
+};
+
+/** The triangle's index in whose angle each point lies, or the nearest if there is none: into sectors[count]. */
+void findSectors(const Fan& fan, const double* x, const double* y, int count, int* sectors);
 
 }  // namespace blem_sim
