@@ -16,6 +16,7 @@ namespace {
 struct Buffers {
   PlanePlaces places;
   std::vector<int> outside;
+  std::vector<double> hull_x, hull_y;
   std::vector<PlanePoint> points, half, hull, ring, corners;
   PatchDepths depths;
 };
@@ -96,19 +97,18 @@ void convexHull(Buffers* buffers) {
 }
 
 // The two corners farthest from each other, ascending: they stand out whatever lies along the sides.
-std::pair<std::size_t, std::size_t> farthestPair(const std::vector<PlanePoint>& hull) {
-  std::pair<std::size_t, std::size_t> farthest = {0, 0};
-  double most = -1;
+std::pair<std::size_t, std::size_t> farthestPair(const std::vector<PlanePoint>& hull, Buffers* buffers) {
+  constexpr std::size_t ROOM = 7;
+  std::vector<double>&x = buffers->hull_x, &y = buffers->hull_y;
+  x.resize(hull.size() + ROOM);
+  y.resize(hull.size() + ROOM);
   for (std::size_t i = 0; i < hull.size(); ++i) {
-    for (std::size_t j = i + 1; j < hull.size(); ++j) {
-      const double dx = hull[j].x - hull[i].x, dy = hull[j].y - hull[i].y, length2 = dx * dx + dy * dy;
-      if (length2 > most) {
-        most = length2;
-        farthest = {i, j};
-      }
-    }
+    x[i] = hull[i].x;
+    y[i] = hull[i].y;
   }
-  return farthest;
+  int pair[2];
+  findFarthestPair(x.data(), y.data(), static_cast<int>(hull.size()), pair);
+  return {pair[0], pair[1]};
 }
 
 // Appends chain[from] and those of the corners up to, and without, chain[to] that stand out from the chords. [Douglas 1973]
@@ -136,7 +136,7 @@ void findCorners(Buffers* buffers) {
   const std::vector<PlanePoint>& hull = buffers->hull;
   buffers->corners = hull;
   if (hull.size() <= 2) return;
-  const auto [first, second] = farthestPair(hull);
+  const auto [first, second] = farthestPair(hull, buffers);
   buffers->ring.assign(hull.begin() + first, hull.end());
   buffers->ring.insert(buffers->ring.end(), hull.begin(), hull.begin() + first + 1);
   buffers->corners.clear();

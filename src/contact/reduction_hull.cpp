@@ -22,7 +22,8 @@ constexpr int FEW = 100;            // if no more than this many are chosen
 
 struct Buffers {
   NormalCells cells;
-  std::vector<std::pair<double, int>> heights;
+  std::vector<double> heights;
+  std::vector<std::pair<double, int>> stairs;
   std::vector<int> candidates, chosen;
 };
 
@@ -31,24 +32,31 @@ Buffers& threadBuffers() {
   return buffers;
 }
 
+// Whether parallel patches lie among these: then some gap between one height and the next is wider than STAIR.
+bool mayHaveStairs(const std::vector<double>& heights) {
+  const auto [lowest, highest] = std::minmax_element(heights.begin(), heights.end());
+  const double low = *lowest, high = *highest;
+  if (high - low <= STAIR) return false;
+  // One that is within STAIR of both leaves no such gap on either side.
+  return std::none_of(heights.begin(), heights.end(), [&](double height) { return height - low <= STAIR && high - height <= STAIR; });
+}
+
 // Appends the hull of every patch among contacts of one cell. Reorders the members.
 void keepHullsOfCell(const std::vector<Contact>& contacts, int* begin, int* end, const Vector3& normal, Buffers* buffers,
                      std::vector<int>* kept) {
-  double lowest = normal.dot(contacts[*begin].point), highest = lowest;
-  for (const int* member = begin; member != end; ++member) {
-    const double height = normal.dot(contacts[*member].point);
-    lowest = std::min(lowest, height);
-    highest = std::max(highest, height);
-  }
-  if (highest - lowest <= STAIR) return patchHull(contacts, begin, end, normal, kept);
-  std::vector<std::pair<double, int>>& heights = buffers->heights;
+  if (end - begin == 1) return kept->push_back(*begin);
+  std::vector<double>& heights = buffers->heights;
   heights.clear();
-  for (const int* member = begin; member != end; ++member) heights.emplace_back(normal.dot(contacts[*member].point), *member);
-  std::sort(heights.begin(), heights.end());
+  for (const int* member = begin; member != end; ++member) heights.push_back(normal.dot(contacts[*member].point));
+  if (!mayHaveStairs(heights)) return patchHull(contacts, begin, end, normal, kept);
+  std::vector<std::pair<double, int>>& stairs = buffers->stairs;
+  stairs.clear();
+  for (const int* member = begin; member != end; ++member) stairs.emplace_back(heights[member - begin], *member);
+  std::sort(stairs.begin(), stairs.end());
   int* patch = begin;
-  for (std::size_t i = 0; i < heights.size(); ++i) {
-    begin[i] = heights[i].second;
-    if (i + 1 < heights.size() && heights[i + 1].first - heights[i].first <= STAIR) continue;
+  for (std::size_t i = 0; i < stairs.size(); ++i) {
+    begin[i] = stairs[i].second;
+    if (i + 1 < stairs.size() && stairs[i + 1].first - stairs[i].first <= STAIR) continue;
     int* patch_end = begin + i + 1;
     patchHull(contacts, patch, patch_end, normal, kept);
     patch = patch_end;

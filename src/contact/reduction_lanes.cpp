@@ -24,16 +24,29 @@ BLEM_SIM_INLINE float cellComponent(const CellDirections& c, const WrenchPoint& 
          c.normal[2][d] * p.n[2] - p.handicap;
 }
 
-BLEM_SIM_INLINE void raiseExtreme(float component, int point, int d, WrenchExtremes* extremes) {
-  const bool larger = component > extremes->value[d];
-  extremes->value[d] = larger ? component : extremes->value[d];
-  extremes->point[d] = larger ? point : extremes->point[d];
-}
+// Explicit vectors where compilers would branch on what is larger.
+typedef float Floats __attribute__((vector_size(4 * LANES), may_alias));
+typedef int Ints __attribute__((vector_size(4 * LANES), may_alias));
+
+BLEM_SIM_INLINE Floats& block(float* values, int d) { return *reinterpret_cast<Floats*>(values + d); }
+BLEM_SIM_INLINE const Floats& block(const float* values, int d) { return *reinterpret_cast<const Floats*>(values + d); }
+BLEM_SIM_INLINE Ints& block(int* values, int d) { return *reinterpret_cast<Ints*>(values + d); }
 
 BLEM_SIM_INLINE void clearExtremes(WrenchExtremes* extremes) {
   for (int d = 0; d < WRENCH_DIRECTIONS; ++d) {
     extremes->value[d] = -__builtin_inff();
     extremes->point[d] = 0;
+  }
+}
+
+BLEM_SIM_INLINE void raiseExtremes(const WrenchComponents& components, float handicap, int point, WrenchExtremes* extremes) {
+  for (int d = 0; d < WRENCH_DIRECTIONS; d += LANES) {
+    Floats& value = block(extremes->value, d);
+    Ints& index = block(extremes->point, d);
+    const Floats component = block(components.value, d) - handicap;
+    const Ints larger = component > value;
+    value = larger ? component : value;
+    index = larger ? point - Ints{} : index;
   }
 }
 
@@ -45,40 +58,29 @@ BLEM_SIM_LANES void findWrenches(const WrenchDirections& directions, const Wrenc
   for (int i = 0; i < count; ++i) {
     const WrenchPoint point = points[i];
     float* values = components[i].value;
-    for (int d = 0; d < WRENCH_DIRECTIONS; ++d) {
-      const float component = wrenchComponent(directions, point, d);
-      values[d] = component;
-      raiseExtreme(component - point.handicap, i, d, extremes);
-    }
+    for (int d = 0; d < WRENCH_DIRECTIONS; ++d) values[d] = wrenchComponent(directions, point, d);
+    raiseExtremes(components[i], point.handicap, i, extremes);
   }
 }
 
 BLEM_SIM_LANES void findWrenchExtremes(const WrenchComponents* components, const WrenchPoint* points, int count, WrenchExtremes* extremes) {
   clearExtremes(extremes);
-  for (int i = 0; i < count; ++i) {
-    const float handicap = points[i].handicap;
-    for (int d = 0; d < WRENCH_DIRECTIONS; ++d) raiseExtreme(components[i].value[d] - handicap, i, d, extremes);
-  }
+  for (int i = 0; i < count; ++i) raiseExtremes(components[i], points[i].handicap, i, extremes);
 }
 
 BLEM_SIM_LANES WrenchLack addWrenches(const WrenchComponents& components, float handicap, const WrenchExtremes& extremes,
                                       WrenchComponents* reached) {
-  float most[LANES];
-  int where[LANES];
-  for (int lane = 0; lane < LANES; ++lane) {
-    most[lane] = -1;
-    where[lane] = 0;
-  }
-  for (int block = 0; block < WRENCH_DIRECTIONS; block += LANES) {
-    for (int lane = 0; lane < LANES; ++lane) {
-      const int d = block + lane;
-      const float component = components.value[d] - handicap, before = reached->value[d], now = component > before ? component : before;
-      reached->value[d] = now;
-      const float lack = extremes.value[d] - now;
-      const bool more = lack > most[lane];
-      most[lane] = more ? lack : most[lane];
-      where[lane] = more ? d : where[lane];
-    }
+  Floats most = -1 - Floats{};
+  Ints where = {}, here;
+  for (int lane = 0; lane < LANES; ++lane) here[lane] = lane;
+  for (int d = 0; d < WRENCH_DIRECTIONS; d += LANES) {
+    const Floats component = block(components.value, d) - handicap;
+    Floats& now = block(reached->value, d);
+    now = component > now ? component : now;
+    const Floats lack = block(extremes.value, d) - now;
+    const Ints more = lack > most;
+    most = more ? lack : most;
+    where = more ? here + d : where;
   }
   WrenchLack worst{most[0], where[0]};
   for (int lane = 1; lane < LANES; ++lane) {
@@ -166,6 +168,37 @@ BLEM_SIM_LANES int findOutside(const Octagon& octagon, const double* x, const do
     }
   }
   return size;
+}
+
+BLEM_SIM_LANES void findFarthestPair(double* x, double* y, int count, int pair[2]) {
+  constexpr int BLOCK = 8;
+  for (int i = 0; i < BLOCK - 1; ++i) {
+    x[count + i] = x[0];
+    y[count + i] = y[0];
+  }
+  double most = -1;
+  pair[0] = pair[1] = 0;
+  for (int i = 0; i < count; ++i) {
+    const double px = x[i], py = y[i];
+    double farthest[BLOCK] = {};
+    for (int first = i + 1; first < count; first += BLOCK) {
+      for (int lane = 0; lane < BLOCK; ++lane) {
+        const double dx = x[first + lane] - px, dy = y[first + lane] - py, length2 = dx * dx + dy * dy;
+        farthest[lane] = length2 > farthest[lane] ? length2 : farthest[lane];
+      }
+    }
+    double longest = 0;
+    for (const double each : farthest) longest = each > longest ? each : longest;
+    if (longest <= most) continue;
+    for (int j = i + 1; j < count; ++j) {
+      const double dx = x[j] - px, dy = y[j] - py;
+      if (dx * dx + dy * dy != longest) continue;
+      most = longest;
+      pair[0] = i;
+      pair[1] = j;
+      break;
+    }
+  }
 }
 
 namespace {
