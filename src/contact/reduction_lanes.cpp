@@ -24,69 +24,63 @@ BLEM_SIM_INLINE float cellComponent(const CellDirections& c, const WrenchPoint& 
          c.normal[2][d] * p.n[2] - p.handicap;
 }
 
-// Explicit vectors where compilers would branch on what is larger.
-typedef float Floats __attribute__((vector_size(4 * LANES), may_alias));
-typedef int Ints __attribute__((vector_size(4 * LANES), may_alias));
-
-BLEM_SIM_INLINE Floats& block(float* values, int d) { return *reinterpret_cast<Floats*>(values + d); }
-BLEM_SIM_INLINE const Floats& block(const float* values, int d) { return *reinterpret_cast<const Floats*>(values + d); }
-BLEM_SIM_INLINE Ints& block(int* values, int d) { return *reinterpret_cast<Ints*>(values + d); }
-
-BLEM_SIM_INLINE void clearExtremes(WrenchExtremes* extremes) {
+BLEM_SIM_INLINE void raise(const WrenchComponents& components, float handicap, WrenchComponents* to) {
   for (int d = 0; d < WRENCH_DIRECTIONS; ++d) {
-    extremes->value[d] = -__builtin_inff();
-    extremes->point[d] = 0;
+    const float component = components.value[d] - handicap;
+    to->value[d] = component > to->value[d] ? component : to->value[d];
   }
 }
 
-BLEM_SIM_INLINE void raiseExtremes(const WrenchComponents& components, float handicap, int point, WrenchExtremes* extremes) {
-  for (int d = 0; d < WRENCH_DIRECTIONS; d += LANES) {
-    Floats& value = block(extremes->value, d);
-    Ints& index = block(extremes->point, d);
-    const Floats component = block(components.value, d) - handicap;
-    const Ints larger = component > value;
-    value = larger ? component : value;
-    index = larger ? point - Ints{} : index;
-  }
+BLEM_SIM_INLINE void clear(WrenchComponents* components) {
+  for (int d = 0; d < WRENCH_DIRECTIONS; ++d) components->value[d] = -__builtin_inff();
 }
 
 }  // namespace
 
 BLEM_SIM_LANES void findWrenches(const WrenchDirections& directions, const WrenchPoint* points, int count, WrenchComponents* components,
-                                 WrenchExtremes* extremes) {
-  clearExtremes(extremes);
+                                 WrenchComponents* extremes) {
+  clear(extremes);
   for (int i = 0; i < count; ++i) {
     const WrenchPoint point = points[i];
     float* values = components[i].value;
     for (int d = 0; d < WRENCH_DIRECTIONS; ++d) values[d] = wrenchComponent(directions, point, d);
-    raiseExtremes(components[i], point.handicap, i, extremes);
+    raise(components[i], point.handicap, extremes);
   }
 }
 
-BLEM_SIM_LANES void findWrenchExtremes(const WrenchComponents* components, const WrenchPoint* points, int count, WrenchExtremes* extremes) {
-  clearExtremes(extremes);
-  for (int i = 0; i < count; ++i) raiseExtremes(components[i], points[i].handicap, i, extremes);
+BLEM_SIM_LANES void findWrenchExtremes(const WrenchComponents* components, const WrenchPoint* points, int count,
+                                       WrenchComponents* extremes) {
+  clear(extremes);
+  for (int i = 0; i < count; ++i) raise(components[i], points[i].handicap, extremes);
 }
 
-BLEM_SIM_LANES WrenchLack addWrenches(const WrenchComponents& components, float handicap, const WrenchExtremes& extremes,
-                                      WrenchComponents* reached) {
-  Floats most = -1 - Floats{};
-  Ints where = {}, here;
-  for (int lane = 0; lane < LANES; ++lane) here[lane] = lane;
+BLEM_SIM_LANES float addWrenches(const WrenchComponents& components, float handicap, const WrenchComponents& extremes,
+                                 WrenchComponents* reached) {
+  raise(components, handicap, reached);
+  float most[LANES] = {};
   for (int d = 0; d < WRENCH_DIRECTIONS; d += LANES) {
-    const Floats component = block(components.value, d) - handicap;
-    Floats& now = block(reached->value, d);
-    now = component > now ? component : now;
-    const Floats lack = block(extremes.value, d) - now;
-    const Ints more = lack > most;
-    most = more ? lack : most;
-    where = more ? here + d : where;
+    for (int lane = 0; lane < LANES; ++lane) {
+      const float lack = extremes.value[d + lane] - reached->value[d + lane];
+      most[lane] = lack > most[lane] ? lack : most[lane];
+    }
   }
-  WrenchLack worst{most[0], where[0]};
-  for (int lane = 1; lane < LANES; ++lane) {
-    if (most[lane] > worst.most || (most[lane] == worst.most && where[lane] < worst.direction)) worst = {most[lane], where[lane]};
-  }
+  float worst = 0;
+  for (const float each : most) worst = each > worst ? each : worst;
   return worst;
+}
+
+BLEM_SIM_LANES int firstLacking(const WrenchComponents& extremes, const WrenchComponents& reached, float lack) {
+  int first[LANES];
+  for (int lane = 0; lane < LANES; ++lane) first[lane] = WRENCH_DIRECTIONS;
+  for (int d = WRENCH_DIRECTIONS - LANES; d >= 0; d -= LANES) {
+    for (int lane = 0; lane < LANES; ++lane) {
+      const bool lacks = extremes.value[d + lane] - reached.value[d + lane] == lack;
+      first[lane] = lacks ? d + lane : first[lane];
+    }
+  }
+  int direction = WRENCH_DIRECTIONS;
+  for (const int each : first) direction = each < direction ? each : direction;
+  return direction;
 }
 
 BLEM_SIM_LANES int raiseCellExtremes(const CellPoints& points, int count, int* raising) {

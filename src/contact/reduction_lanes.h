@@ -19,32 +19,24 @@ struct WrenchPoint {
   float x[3], n[3], handicap;
 };
 
-/** By direction: a largest component of wrenches, and the first point that has it. */
-struct alignas(64) WrenchExtremes {
-  float value[WRENCH_DIRECTIONS];
-  int point[WRENCH_DIRECTIONS];
-};
-
-/** Of one point, by direction. */
+/** Of one point's wrenches, or the largest of several, by direction. */
 struct alignas(64) WrenchComponents {
   float value[WRENCH_DIRECTIONS];
 };
 
 /** Largest components of the wrenches (f, x f) with f in the friction cone, of unit normal force, without handicaps: into
- * components[count]; and the extremes over all points, less their handicaps. Precondition: count > 0. */
+ * components[count]; and the largest of all points, less their handicaps. */
 void findWrenches(const WrenchDirections& directions, const WrenchPoint* points, int count, WrenchComponents* components,
-                  WrenchExtremes* extremes);
+                  WrenchComponents* extremes);
 
 /** The extremes alone, when handicaps have changed. */
-void findWrenchExtremes(const WrenchComponents* components, const WrenchPoint* points, int count, WrenchExtremes* extremes);
+void findWrenchExtremes(const WrenchComponents* components, const WrenchPoint* points, int count, WrenchComponents* extremes);
 
-struct WrenchLack {
-  float most;
-  int direction;
-};
+/** Raises `reached` to what a point with these components adds. @return what is lacking most of the extremes, in some direction */
+float addWrenches(const WrenchComponents& components, float handicap, const WrenchComponents& extremes, WrenchComponents* reached);
 
-/** Raises `reached`, by direction, to what a point with these components adds. @return where most is lacking of the extremes */
-WrenchLack addWrenches(const WrenchComponents& components, float handicap, const WrenchExtremes& extremes, WrenchComponents* reached);
+/** The first direction in which so much is lacking; WRENCH_DIRECTIONS if there is none. */
+int firstLacking(const WrenchComponents& extremes, const WrenchComponents& reached, float lack);
 
 /** Weights of places and normals, by direction, in a cell of alike normals. */
 struct alignas(64) CellDirections {

@@ -84,23 +84,29 @@ class Choice {
    * @return what still lacks most */
   float addExtremes(int k, std::vector<int>* chosen) {
     std::fill(std::begin(reached_.value), std::end(reached_.value), -std::numeric_limits<float>::infinity());
-    WrenchLack lack{};
+    float lack = 0;
     for (const int candidate : *chosen) lack = add(candidate);
-    while (lack.most > NOTHING_LACKS && static_cast<int>(chosen->size()) < k) {
-      chosen->push_back(extremes_.point[lack.direction]);
+    while (lack > NOTHING_LACKS && static_cast<int>(chosen->size()) < k) {
+      chosen->push_back(extremeAlong(firstLacking(extremes_, reached_, lack)));
       lack = add(chosen->back());
     }
-    return lack.most;
+    return lack;
   }
 
  private:
-  WrenchLack add(int candidate) { return addWrenches(components_[candidate], points_[candidate].handicap, extremes_, &reached_); }
+  float add(int candidate) { return addWrenches(components_[candidate], points_[candidate].handicap, extremes_, &reached_); }
+
+  /** The first candidate that is extreme in a direction. */
+  int extremeAlong(int direction) const {
+    int first = 0;
+    while (components_[first].value[direction] - points_[first].handicap != extremes_.value[direction]) ++first;
+    return first;
+  }
 
   const WrenchDirections directions_ = makeDirections();
   std::vector<WrenchPoint> points_;
   std::vector<WrenchComponents> components_;  // of the points; not fewer
-  WrenchExtremes extremes_;
-  WrenchComponents reached_;
+  WrenchComponents extremes_, reached_;
 };
 
 // Indices of those candidates that were chosen before; none if they are too many. Both are sorted by id.
