@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "contact_order.h"
 #include "patch_depths.h"
@@ -16,7 +17,6 @@ namespace {
 struct Buffers {
   PlanePlaces places;
   std::vector<int> outside;
-  std::vector<double> hull_x, hull_y;
   std::vector<PlanePoint> points, half, hull, ring, corners;
   PatchDepths depths;
 };
@@ -96,19 +96,27 @@ void convexHull(Buffers* buffers) {
   buffers->hull.insert(buffers->hull.end(), buffers->half.begin(), buffers->half.end() - 1);
 }
 
-// The two corners farthest from each other, ascending: they stand out whatever lies along the sides.
-std::pair<std::size_t, std::size_t> farthestPair(const std::vector<PlanePoint>& hull, Buffers* buffers) {
-  constexpr std::size_t ROOM = 7;
-  std::vector<double>&x = buffers->hull_x, &y = buffers->hull_y;
-  x.resize(hull.size() + ROOM);
-  y.resize(hull.size() + ROOM);
+std::size_t farthestFrom(const std::vector<PlanePoint>& hull, std::size_t from) {
+  std::size_t farthest = from;
+  double most = 0;
   for (std::size_t i = 0; i < hull.size(); ++i) {
-    x[i] = hull[i].x;
-    y[i] = hull[i].y;
+    const double dx = hull[i].x - hull[from].x, dy = hull[i].y - hull[from].y, length2 = dx * dx + dy * dy;
+    if (length2 <= most) continue;
+    most = length2;
+    farthest = i;
   }
-  int pair[2];
-  findFarthestPair(x.data(), y.data(), static_cast<int>(hull.size()), pair);
-  return {pair[0], pair[1]};
+  return farthest;
+}
+
+// Two corners, ascending, each the farthest from the other: they stand out whatever lies along the sides.
+std::pair<std::size_t, std::size_t> farthestPair(const std::vector<PlanePoint>& hull) {
+  std::size_t one = farthestFrom(hull, 0), other = farthestFrom(hull, one);
+  for (;;) {
+    const std::size_t next = farthestFrom(hull, other);
+    if (distance(hull[other], hull[next]) <= distance(hull[other], hull[one])) break;
+    one = std::exchange(other, next);
+  }
+  return {std::min(one, other), std::max(one, other)};
 }
 
 // Appends chain[from] and those of the corners up to, and without, chain[to] that stand out from the chords. [Douglas 1973]
@@ -136,7 +144,7 @@ void findCorners(Buffers* buffers) {
   const std::vector<PlanePoint>& hull = buffers->hull;
   buffers->corners = hull;
   if (hull.size() <= 2) return;
-  const auto [first, second] = farthestPair(hull, buffers);
+  const auto [first, second] = farthestPair(hull);
   buffers->ring.assign(hull.begin() + first, hull.end());
   buffers->ring.insert(buffers->ring.end(), hull.begin(), hull.begin() + first + 1);
   buffers->corners.clear();

@@ -7,7 +7,6 @@ namespace blem_sim {
 namespace {
 
 constexpr float CHOICE_FRICTION = 0.5f;  // of the cones that are compared; the choice hardly depends on it
-constexpr int LANES = 16;
 
 // With g the direction seen by a force at x, the largest component along direction d is g.n + mu |g - (g.n) n|.
 BLEM_SIM_INLINE float wrenchComponent(const WrenchDirections& w, const WrenchPoint& p, int d) {
@@ -29,6 +28,24 @@ BLEM_SIM_INLINE void raise(const WrenchComponents& components, float handicap, W
     const float component = components.value[d] - handicap;
     to->value[d] = component > to->value[d] ? component : to->value[d];
   }
+}
+
+// Folds the values in halves: loops of known length, which need no order of their own.
+template <int HALF>
+BLEM_SIM_INLINE void fold(float* values) {
+  for (int i = 0; i < HALF; ++i) values[i] = values[i + HALF] > values[i] ? values[i + HALF] : values[i];
+}
+
+BLEM_SIM_INLINE float largest(float (&values)[WRENCH_DIRECTIONS]) {
+  static_assert(WRENCH_DIRECTIONS == 256, "folded to 16");
+  fold<128>(values);
+  fold<64>(values);
+  fold<32>(values);
+  fold<16>(values);
+  fold<8>(values);
+  fold<4>(values);
+  const float a = values[0] > values[1] ? values[0] : values[1], b = values[2] > values[3] ? values[2] : values[3];
+  return a > b ? a : b;
 }
 
 BLEM_SIM_INLINE void clear(WrenchComponents* components) {
@@ -57,30 +74,17 @@ BLEM_SIM_LANES void findWrenchExtremes(const WrenchComponents* components, const
 BLEM_SIM_LANES float addWrenches(const WrenchComponents& components, float handicap, const WrenchComponents& extremes,
                                  WrenchComponents* reached) {
   raise(components, handicap, reached);
-  float most[LANES] = {};
-  for (int d = 0; d < WRENCH_DIRECTIONS; d += LANES) {
-    for (int lane = 0; lane < LANES; ++lane) {
-      const float lack = extremes.value[d + lane] - reached->value[d + lane];
-      most[lane] = lack > most[lane] ? lack : most[lane];
-    }
-  }
-  float worst = 0;
-  for (const float each : most) worst = each > worst ? each : worst;
-  return worst;
+  float lacks[WRENCH_DIRECTIONS];
+  for (int d = 0; d < WRENCH_DIRECTIONS; ++d) lacks[d] = extremes.value[d] - reached->value[d];
+  return largest(lacks);
 }
 
 BLEM_SIM_LANES int firstLacking(const WrenchComponents& extremes, const WrenchComponents& reached, float lack) {
-  int first[LANES];
-  for (int lane = 0; lane < LANES; ++lane) first[lane] = WRENCH_DIRECTIONS;
-  for (int d = WRENCH_DIRECTIONS - LANES; d >= 0; d -= LANES) {
-    for (int lane = 0; lane < LANES; ++lane) {
-      const bool lacks = extremes.value[d + lane] - reached.value[d + lane] == lack;
-      first[lane] = lacks ? d + lane : first[lane];
-    }
-  }
-  int direction = WRENCH_DIRECTIONS;
-  for (const int each : first) direction = each < direction ? each : direction;
-  return direction;
+  // Counted back from the end, as floats, so that one maximum serves both.
+  float left[WRENCH_DIRECTIONS];
+  for (int d = 0; d < WRENCH_DIRECTIONS; ++d)
+    left[d] = extremes.value[d] - reached.value[d] == lack ? static_cast<float>(WRENCH_DIRECTIONS - d) : 0;
+  return WRENCH_DIRECTIONS - static_cast<int>(largest(left));
 }
 
 BLEM_SIM_LANES int raiseCellExtremes(const CellPoints& points, int count, int* raising) {
@@ -162,37 +166,6 @@ BLEM_SIM_LANES int findOutside(const Octagon& octagon, const double* x, const do
     }
   }
   return size;
-}
-
-BLEM_SIM_LANES void findFarthestPair(double* x, double* y, int count, int pair[2]) {
-  constexpr int BLOCK = 8;
-  for (int i = 0; i < BLOCK - 1; ++i) {
-    x[count + i] = x[0];
-    y[count + i] = y[0];
-  }
-  double most = -1;
-  pair[0] = pair[1] = 0;
-  for (int i = 0; i < count; ++i) {
-    const double px = x[i], py = y[i];
-    double farthest[BLOCK] = {};
-    for (int first = i + 1; first < count; first += BLOCK) {
-      for (int lane = 0; lane < BLOCK; ++lane) {
-        const double dx = x[first + lane] - px, dy = y[first + lane] - py, length2 = dx * dx + dy * dy;
-        farthest[lane] = length2 > farthest[lane] ? length2 : farthest[lane];
-      }
-    }
-    double longest = 0;
-    for (const double each : farthest) longest = each > longest ? each : longest;
-    if (longest <= most) continue;
-    for (int j = i + 1; j < count; ++j) {
-      const double dx = x[j] - px, dy = y[j] - py;
-      if (dx * dx + dy * dy != longest) continue;
-      most = longest;
-      pair[0] = i;
-      pair[1] = j;
-      break;
-    }
-  }
 }
 
 namespace {

@@ -84,10 +84,6 @@ struct Octagon {
 /** Indices of the points that are not inside all sides, ascending, into found[count]. @return how many */
 int findOutside(const Octagon& octagon, const double* x, const double* y, int count, int* found);
 
-/** The two points farthest from each other, ascending; of equal ones the first pair. Precondition: count > 0; room for count + 7 in x and
- * y. */
-void findFarthestPair(double* x, double* y, int count, int pair[2]);
-
 /** Triangles around a point, counter-clockwise. Keeps its memory. */
 class Fan {
  public:
