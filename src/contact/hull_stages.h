@@ -15,9 +15,10 @@ struct ThinnedContacts {
   std::vector<int> kept;  ///< indices
 };
 
-/** Leaves out what the corners of flat patches imply. @return false if some contact is not finite or its normal not unit: nothing is done
+/** Leaves out what the corners of flat patches imply; of patches that have more than k corners, nothing. @return false if some contact is
+ * not finite or its normal not unit: nothing is done
  */
-bool thinToHulls(const std::vector<Contact>& contacts, ThinnedContacts* thinned);
+bool thinToHulls(const std::vector<Contact>& contacts, int k, ThinnedContacts* thinned);
 
 /** What is kept, or k of it that span the wrenches best. @param reduced overwritten; sorted by id */
 void chooseFromHulls(const std::vector<Contact>& contacts, const ThinnedContacts& thinned, int k, const ContactIds& chosen_before,

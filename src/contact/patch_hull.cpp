@@ -16,7 +16,8 @@ namespace {
 
 struct Buffers {
   PlanePlaces places;
-  std::vector<int> outside;
+  std::vector<int> farthest, outside;
+  PlaneExtremes extremes;
   std::vector<PlanePoint> points, half, hull, ring, corners;
   PatchDepths depths;
 };
@@ -29,33 +30,21 @@ bool planePointBefore(const std::vector<Contact>& contacts, const PlanePoint& a,
   return a.contact != b.contact && contactBefore(contacts[a.contact], contacts[b.contact]);
 }
 
-// Indices of the places that may be corners: others lie inside the octagon of extremes. Saves most of the sorting of large patches.
-void findOuter(Buffers* buffers) {
-  constexpr int WORTHWHILE = 16;
-  const std::vector<double>&x = buffers->places.x, &y = buffers->places.y;
-  const int count = static_cast<int>(x.size());
-  std::vector<int>& outside = buffers->outside;
-  outside.resize(count);
-  std::iota(outside.begin(), outside.end(), 0);
-  if (count < WORTHWHILE) return;
-  OctagonExtremes extremes;
-  findOctagon(x.data(), y.data(), count, &extremes);
-  Octagon octagon;
-  int sides = 0;
-  for (int d = 0; d < OCTAGON_SIDES; ++d) {
-    const int from = extremes.point[d], to = extremes.point[(d + 1) % OCTAGON_SIDES];
-    octagon.x[d] = x[from];
-    octagon.y[d] = y[from];
-    octagon.dx[d] = x[to] - x[from];
-    octagon.dy[d] = y[to] - y[from];
-    octagon.limit[d] = from == to ? -1 : FLATNESS * std::sqrt(octagon.dx[d] * octagon.dx[d] + octagon.dy[d] * octagon.dy[d]);
-    sides += from != to;
-  }
-  if (sides < 3) return;  // all at one place, or in a line
-  outside.resize(findOutside(octagon, x.data(), y.data(), count, outside.data()));
+// No mesh has sides across them.
+const PlaneDirections& planeDirections() {
+  static const PlaneDirections directions = [] {
+    constexpr double FIRST = 0.1234;  // [rad]
+    PlaneDirections made;
+    for (int d = 0; d < PLANE_DIRECTIONS; ++d) {
+      made.x[d] = std::cos(FIRST + 2 * M_PI * d / PLANE_DIRECTIONS);
+      made.y[d] = std::sin(FIRST + 2 * M_PI * d / PLANE_DIRECTIONS);
+    }
+    return made;
+  }();
+  return directions;
 }
 
-// Where the members lie in the plane; the outer ones as points, sorted, of those at one place the deepest.
+// Where the members lie in the plane, and which of them are farthest out.
 void project(const std::vector<Contact>& contacts, const int* begin, const int* end, const Vector3& normal, Buffers* buffers) {
   const PlaneAxes axes = axesAcross(normal);
   PlanePlaces& places = buffers->places;
@@ -68,10 +57,66 @@ void project(const std::vector<Contact>& contacts, const int* begin, const int* 
     places.y[i] = axes.v.dot(contact.point);
     places.depth[i] = contact.depth;
   }
-  findOuter(buffers);
+  std::vector<int>& farthest = buffers->farthest;
+  farthest.resize(places.x.size());
+  const int count = static_cast<int>(places.x.size());
+  farthest.resize(findFarthest(planeDirections(), places.x.data(), places.y.data(), count, &buffers->extremes, farthest.data()));
+}
+
+// The first place that is farthest along a direction.
+int farthestAlong(int direction, const Buffers& buffers) {
+  const PlanePlaces& places = buffers.places;
+  return *std::find_if(buffers.farthest.begin(), buffers.farthest.end(), [&](int i) {
+    return planeDirections().along(direction, places.x[i], places.y[i]) == buffers.extremes.value[direction];
+  });
+}
+
+// Whether the hull surely has more corners than that: so many extremes apart from each other follow around it.
+bool hasMoreCorners(int than, const Buffers& buffers) {
+  constexpr double APART = 1e-6;  // [m]
+  if (static_cast<int>(buffers.farthest.size()) <= than) return false;
+  const std::vector<double>&x = buffers.places.x, &y = buffers.places.y;
+  int corners = 0;
+  for (int d = 0, last = farthestAlong(PLANE_DIRECTIONS - 1, buffers); d < PLANE_DIRECTIONS; ++d) {
+    const int next = farthestAlong(d, buffers);
+    corners += std::abs(x[next] - x[last]) + std::abs(y[next] - y[last]) > APART;
+    last = next;
+  }
+  return corners > than;
+}
+
+// Indices of the places that may be corners: others lie inside the octagon of extremes. Saves most of the sorting of large patches.
+void findOuter(Buffers* buffers) {
+  constexpr int WORTHWHILE = 16;
+  const std::vector<double>&x = buffers->places.x, &y = buffers->places.y;
+  const int count = static_cast<int>(x.size());
+  std::vector<int>& outside = buffers->outside;
+  outside.resize(count);
+  std::iota(outside.begin(), outside.end(), 0);
+  if (count < WORTHWHILE) return;
+  int corners[OCTAGON_SIDES];
+  for (int d = 0; d < OCTAGON_SIDES; ++d) corners[d] = farthestAlong(d * (PLANE_DIRECTIONS / OCTAGON_SIDES), *buffers);
+  Octagon octagon;
+  int sides = 0;
+  for (int d = 0; d < OCTAGON_SIDES; ++d) {
+    const int from = corners[d], to = corners[(d + 1) % OCTAGON_SIDES];
+    octagon.x[d] = x[from];
+    octagon.y[d] = y[from];
+    octagon.dx[d] = x[to] - x[from];
+    octagon.dy[d] = y[to] - y[from];
+    octagon.limit[d] = from == to ? -1 : FLATNESS * std::sqrt(octagon.dx[d] * octagon.dx[d] + octagon.dy[d] * octagon.dy[d]);
+    sides += from != to;
+  }
+  if (sides < 3) return;  // all at one place, or in a line
+  outside.resize(findOutside(octagon, x.data(), y.data(), count, outside.data()));
+}
+
+// The outer places as points, sorted, of those at one place the deepest.
+void sortOuter(const std::vector<Contact>& contacts, const int* members, Buffers* buffers) {
+  const PlanePlaces& places = buffers->places;
   std::vector<PlanePoint>& points = buffers->points;
   points.clear();
-  for (const int i : buffers->outside) points.push_back({places.x[i], places.y[i], places.depth[i], begin[i]});
+  for (const int i : buffers->outside) points.push_back({places.x[i], places.y[i], places.depth[i], members[i]});
   std::sort(points.begin(), points.end(), [&](const PlanePoint& a, const PlanePoint& b) { return planePointBefore(contacts, a, b); });
   const auto samePlace = [](const PlanePoint& a, const PlanePoint& b) {
     return std::abs(a.x - b.x) <= FLATNESS && std::abs(a.y - b.y) <= FLATNESS && b.depth <= a.depth + DEPTH_TIE;
@@ -154,10 +199,17 @@ void findCorners(Buffers* buffers) {
 
 }  // namespace
 
-void patchHull(const std::vector<Contact>& contacts, const int* begin, const int* end, const Vector3& normal, std::vector<int>* kept) {
+void patchHull(const std::vector<Contact>& contacts, const int* begin, const int* end, const Vector3& normal, int most,
+               std::vector<int>* kept) {
   static thread_local Buffers buffers;
   if (end - begin == 1) return kept->push_back(*begin);
   project(contacts, begin, end, normal, &buffers);
+  if (hasMoreCorners(most, buffers)) {
+    kept->insert(kept->end(), begin, end);
+    return;
+  }
+  findOuter(&buffers);
+  sortOuter(contacts, begin, &buffers);
   findCorners(&buffers);
   for (const PlanePoint& corner : buffers.corners) kept->push_back(corner.contact);
   buffers.depths.keepDeeper(contacts, begin, buffers.places, buffers.corners, kept);

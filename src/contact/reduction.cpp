@@ -124,7 +124,7 @@ bool hasPierced(const std::vector<Contact>& contacts) {
 int prepare(const ContactManifold& manifold, int limit, const Reduction& method, const ContactIds& chosen_before, Buffers* buffers,
             ThinnedContacts* thinned, std::vector<Contact>* reduced) {
   const bool in_steps = method.reduce == static_cast<ReduceFunction>(reduceHull) && !hasPierced(manifold.contacts);
-  if (in_steps && thinToHulls(manifold.contacts, thinned)) return std::min(limit, static_cast<int>(thinned->kept.size()));
+  if (in_steps && thinToHulls(manifold.contacts, limit, thinned)) return std::min(limit, static_cast<int>(thinned->kept.size()));
   thinned->kept.clear();
   reduceContacts(manifold.contacts, limit, method, chosen_before, buffers, reduced);
   return static_cast<int>(reduced->size());

@@ -42,13 +42,13 @@ bool mayHaveStairs(const std::vector<double>& heights) {
 }
 
 // Appends the hull of every patch among contacts of one cell. Reorders the members.
-void keepHullsOfCell(const std::vector<Contact>& contacts, int* begin, int* end, const Vector3& normal, Buffers* buffers,
+void keepHullsOfCell(const std::vector<Contact>& contacts, int* begin, int* end, const Vector3& normal, int k, Buffers* buffers,
                      std::vector<int>* kept) {
   if (end - begin == 1) return kept->push_back(*begin);
   std::vector<double>& heights = buffers->heights;
   heights.clear();
   for (const int* member = begin; member != end; ++member) heights.push_back(normal.dot(contacts[*member].point));
-  if (!mayHaveStairs(heights)) return patchHull(contacts, begin, end, normal, kept);
+  if (!mayHaveStairs(heights)) return patchHull(contacts, begin, end, normal, k, kept);
   std::vector<std::pair<double, int>>& stairs = buffers->stairs;
   stairs.clear();
   for (const int* member = begin; member != end; ++member) stairs.emplace_back(heights[member - begin], *member);
@@ -58,13 +58,13 @@ void keepHullsOfCell(const std::vector<Contact>& contacts, int* begin, int* end,
     begin[i] = stairs[i].second;
     if (i + 1 < stairs.size() && stairs[i + 1].first - stairs[i].first <= STAIR) continue;
     int* patch_end = begin + i + 1;
-    patchHull(contacts, patch, patch_end, normal, kept);
+    patchHull(contacts, patch, patch_end, normal, k, kept);
     patch = patch_end;
   }
 }
 
 // All contacts, but of each patch of equal normals its hull; where normals are too many for patches to matter, all of them.
-void keepPatchHulls(const std::vector<Contact>& contacts, Buffers* buffers, std::vector<int>* kept) {
+void keepPatchHulls(const std::vector<Contact>& contacts, int k, Buffers* buffers, std::vector<int>* kept) {
   NormalCells& cells = buffers->cells;
   if (!cells.group(contacts)) {
     kept->resize(contacts.size());
@@ -73,7 +73,7 @@ void keepPatchHulls(const std::vector<Contact>& contacts, Buffers* buffers, std:
   }
   kept->clear();
   for (int cell = 0; cell < cells.count(); ++cell)
-    keepHullsOfCell(contacts, cells.begin(cell), cells.end(cell), cells.normal(cell), buffers, kept);
+    keepHullsOfCell(contacts, cells.begin(cell), cells.end(cell), cells.normal(cell), k, buffers, kept);
 }
 
 const std::vector<int>& choose(const std::vector<Contact>& contacts, const ThinnedContacts& thinned, int k, const ContactIds& chosen_before,
@@ -89,10 +89,10 @@ const std::vector<int>& choose(const std::vector<Contact>& contacts, const Thinn
 
 }  // namespace
 
-bool thinToHulls(const std::vector<Contact>& contacts, ThinnedContacts* thinned) {
+bool thinToHulls(const std::vector<Contact>& contacts, int k, ThinnedContacts* thinned) {
   bool ready = true;
   thinned->scale = PatchScale(contacts, &ready);
-  if (ready) keepPatchHulls(contacts, &threadBuffers(), &thinned->kept);
+  if (ready) keepPatchHulls(contacts, k, &threadBuffers(), &thinned->kept);
   return ready;
 }
 
@@ -107,11 +107,11 @@ void chooseFromHulls(const std::vector<Contact>& contacts, const ThinnedContacts
 
 void reduceHull(const std::vector<Contact>& contacts, int k, const ContactIds& chosen_before, std::vector<Contact>* reduced) {
   static thread_local ThinnedContacts thinned;
-  if (thinToHulls(contacts, &thinned)) return chooseFromHulls(contacts, thinned, k, chosen_before, reduced);
+  if (thinToHulls(contacts, k, &thinned)) return chooseFromHulls(contacts, thinned, k, chosen_before, reduced);
   static thread_local std::vector<Contact> usable;
   usable = contacts;
   makeUsable(usable);
-  thinToHulls(usable, &thinned);
+  thinToHulls(usable, k, &thinned);
   chooseFromHulls(usable, thinned, k, chosen_before, reduced);
 }
 

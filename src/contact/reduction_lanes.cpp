@@ -119,31 +119,25 @@ BLEM_SIM_LANES int keepExtremePoints(const CellPoints& points, int count, int* a
   return size;
 }
 
-BLEM_SIM_LANES void findOctagon(const double* x, const double* y, int count, OctagonExtremes* extremes) {
-  // 0.1234 rad and every half of a right angle on.
-  constexpr double ALONG_X[OCTAGON_SIDES] = {0.99239582,  0.61469396,  -0.12308735, -0.78876576,
-                                             -0.99239582, -0.61469396, 0.12308735,  0.78876576};
-  constexpr double ALONG_Y[OCTAGON_SIDES] = {0.12308735,  0.78876576,  0.99239582,  0.61469396,
-                                             -0.12308735, -0.78876576, -0.99239582, -0.61469396};
-  double value[OCTAGON_SIDES];
-  long point[OCTAGON_SIDES];
-  for (int d = 0; d < OCTAGON_SIDES; ++d) {
-    value[d] = -__builtin_inf();
-    point[d] = 0;
-  }
+BLEM_SIM_LANES int findFarthest(const PlaneDirections& directions, const double* x, const double* y, int count, PlaneExtremes* extremes,
+                                int* found) {
+  for (int d = 0; d < PLANE_DIRECTIONS; ++d) extremes->value[d] = -__builtin_inf();
   for (int i = 0; i < count; ++i) {
     const double px = x[i], py = y[i];
-    for (int d = 0; d < OCTAGON_SIDES; ++d) {
-      const double along = ALONG_X[d] * px + ALONG_Y[d] * py;
-      const bool farther = along > value[d];
-      value[d] = farther ? along : value[d];
-      point[d] = farther ? i : point[d];
+    for (int d = 0; d < PLANE_DIRECTIONS; ++d) {
+      const double along = directions.along(d, px, py);
+      extremes->value[d] = along > extremes->value[d] ? along : extremes->value[d];
     }
   }
-  for (int d = 0; d < OCTAGON_SIDES; ++d) {
-    extremes->value[d] = value[d];
-    extremes->point[d] = static_cast<int>(point[d]);
+  int size = 0;
+  for (int i = 0; i < count; ++i) {
+    const double px = x[i], py = y[i];
+    long extreme = 0;
+    for (int d = 0; d < PLANE_DIRECTIONS; ++d) extreme |= directions.along(d, px, py) == extremes->value[d];
+    found[size] = i;
+    size += extreme != 0;
   }
+  return size;
 }
 
 BLEM_SIM_LANES int findOutside(const Octagon& octagon, const double* x, const double* y, int count, int* found) {

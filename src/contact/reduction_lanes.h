@@ -7,6 +7,7 @@ namespace blem_sim {
 
 constexpr int WRENCH_DIRECTIONS = 256;  // more cost time, fewer leave extremes unseen
 constexpr int CELL_DIRECTIONS = 16;
+constexpr int PLANE_DIRECTIONS = 32;
 constexpr int OCTAGON_SIDES = 8;
 
 /** Directions in the space of wrenches: force and torque parts by axis. */
@@ -67,14 +68,17 @@ struct PlanePlaces {
   std::vector<double> x, y, depth;
 };
 
-/** Of points in a plane, by direction, which lies farthest out. */
-struct OctagonExtremes {
-  double value[OCTAGON_SIDES];
-  int point[OCTAGON_SIDES];
+/** Directions in a plane, and the farthest that points reach along them. */
+struct alignas(64) PlaneDirections {
+  double x[PLANE_DIRECTIONS], y[PLANE_DIRECTIONS];
+  double along(int d, double px, double py) const { return x[d] * px + y[d] * py; }
+};
+struct alignas(64) PlaneExtremes {
+  double value[PLANE_DIRECTIONS];
 };
 
-/** The farthest of the points in eight directions, counter-clockwise; no mesh has sides across them. */
-void findOctagon(const double* x, const double* y, int count, OctagonExtremes* extremes);
+/** Indices of the points that are farthest along some direction, ascending, into found[count]. @return how many */
+int findFarthest(const PlaneDirections& directions, const double* x, const double* y, int count, PlaneExtremes* extremes, int* found);
 
 /** Lines through (x, y) along (dx, dy): what lies more than `limit` / length to their left is inside. */
 struct Octagon {

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "contact_order.h"
+#include "overtaken.h"
 #include "reduction_lanes.h"
 
 namespace blem_sim {
@@ -66,9 +67,11 @@ int deepest(const std::vector<Contact>& contacts, const std::vector<int>& candid
 
 class Choice {
  public:
-  void start(const std::vector<Contact>& contacts, const std::vector<int>& candidates, const PatchScale& scale) {
+  /** Candidates that cannot be extreme are left out. */
+  void start(const std::vector<Contact>& contacts, const PatchScale& scale, const ContactIds& chosen_before, std::vector<int>* candidates) {
     points_.clear();
-    for (const int candidate : candidates) points_.push_back(wrenchPoint(contacts[candidate], scale));
+    for (const int candidate : *candidates) points_.push_back(wrenchPoint(contacts[candidate], scale));
+    dropOvertaken(contacts, chosen_before, candidates, &points_);
     if (components_.size() < points_.size()) components_.resize(points_.size());
     findWrenches(directions_, points_.data(), static_cast<int>(points_.size()), components_.data(), &extremes_);
   }
@@ -145,8 +148,8 @@ void chooseSpanningContacts(const std::vector<Contact>& contacts, const std::vec
   static thread_local Choice choice;
   static thread_local std::vector<int> continued;
   sortCanonically(contacts, candidates);
+  choice.start(contacts, scale, chosen_before, candidates);
   const int deep = deepest(contacts, *candidates, scale);
-  choice.start(contacts, *candidates, scale);
 
   findContinued(contacts, *candidates, k, chosen_before, &continued);
   float lack = std::numeric_limits<float>::infinity();
