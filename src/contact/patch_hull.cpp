@@ -30,22 +30,32 @@ bool planePointBefore(const std::vector<Contact>& contacts, const PlanePoint& a,
   return a.contact != b.contact && contactBefore(contacts[a.contact], contacts[b.contact]);
 }
 
+// The octagon's directions come first, the others between them after those. @return the index of the d-th, counter-clockwise
+int inOrder(int d) {
+  constexpr int BETWEEN = PLANE_DIRECTIONS / OCTAGON_SIDES - 1;
+  const int side = d / (BETWEEN + 1), after = d % (BETWEEN + 1);
+  return after == 0 ? side : OCTAGON_SIDES + side * BETWEEN + after - 1;
+}
+
 // No mesh has sides across them.
 const PlaneDirections& planeDirections() {
   static const PlaneDirections directions = [] {
     constexpr double FIRST = 0.1234;  // [rad]
     PlaneDirections made;
     for (int d = 0; d < PLANE_DIRECTIONS; ++d) {
-      made.x[d] = std::cos(FIRST + 2 * M_PI * d / PLANE_DIRECTIONS);
-      made.y[d] = std::sin(FIRST + 2 * M_PI * d / PLANE_DIRECTIONS);
+      made.x[inOrder(d)] = std::cos(FIRST + 2 * M_PI * d / PLANE_DIRECTIONS);
+      made.y[inOrder(d)] = std::sin(FIRST + 2 * M_PI * d / PLANE_DIRECTIONS);
     }
     return made;
   }();
   return directions;
 }
 
+// Whether it is worth a look if a patch has more corners than that: large ones are mostly inside.
+bool mayHaveMore(int corners, int members) { return corners < std::min(members, PLANE_DIRECTIONS) && members < 20 * corners; }
+
 // Where the members lie in the plane, and which of them are farthest out.
-void project(const std::vector<Contact>& contacts, const int* begin, const int* end, const Vector3& normal, Buffers* buffers) {
+void project(const std::vector<Contact>& contacts, const int* begin, const int* end, const Vector3& normal, int most, Buffers* buffers) {
   const PlaneAxes axes = axesAcross(normal);
   PlanePlaces& places = buffers->places;
   places.x.resize(end - begin);
@@ -60,7 +70,8 @@ void project(const std::vector<Contact>& contacts, const int* begin, const int* 
   std::vector<int>& farthest = buffers->farthest;
   farthest.resize(places.x.size());
   const int count = static_cast<int>(places.x.size());
-  farthest.resize(findFarthest(planeDirections(), places.x.data(), places.y.data(), count, &buffers->extremes, farthest.data()));
+  const auto find = mayHaveMore(most, count) ? findFarthest : findFarthestOfOctagon;
+  farthest.resize(find(planeDirections(), places.x.data(), places.y.data(), count, &buffers->extremes, farthest.data()));
 }
 
 // The first place that is farthest along a direction.
@@ -74,11 +85,11 @@ int farthestAlong(int direction, const Buffers& buffers) {
 // Whether the hull surely has more corners than that: so many extremes apart from each other follow around it.
 bool hasMoreCorners(int than, const Buffers& buffers) {
   constexpr double APART = 1e-6;  // [m]
-  if (static_cast<int>(buffers.farthest.size()) <= than) return false;
+  if (!mayHaveMore(than, static_cast<int>(buffers.places.x.size())) || static_cast<int>(buffers.farthest.size()) <= than) return false;
   const std::vector<double>&x = buffers.places.x, &y = buffers.places.y;
   int corners = 0;
-  for (int d = 0, last = farthestAlong(PLANE_DIRECTIONS - 1, buffers); d < PLANE_DIRECTIONS; ++d) {
-    const int next = farthestAlong(d, buffers);
+  for (int d = 0, last = farthestAlong(inOrder(PLANE_DIRECTIONS - 1), buffers); d < PLANE_DIRECTIONS; ++d) {
+    const int next = farthestAlong(inOrder(d), buffers);
     corners += std::abs(x[next] - x[last]) + std::abs(y[next] - y[last]) > APART;
     last = next;
   }
@@ -95,7 +106,7 @@ void findOuter(Buffers* buffers) {
   std::iota(outside.begin(), outside.end(), 0);
   if (count < WORTHWHILE) return;
   int corners[OCTAGON_SIDES];
-  for (int d = 0; d < OCTAGON_SIDES; ++d) corners[d] = farthestAlong(d * (PLANE_DIRECTIONS / OCTAGON_SIDES), *buffers);
+  for (int d = 0; d < OCTAGON_SIDES; ++d) corners[d] = farthestAlong(d, *buffers);
   Octagon octagon;
   int sides = 0;
   for (int d = 0; d < OCTAGON_SIDES; ++d) {
@@ -203,7 +214,7 @@ void patchHull(const std::vector<Contact>& contacts, const int* begin, const int
                std::vector<int>* kept) {
   static thread_local Buffers buffers;
   if (end - begin == 1) return kept->push_back(*begin);
-  project(contacts, begin, end, normal, &buffers);
+  project(contacts, begin, end, normal, most, &buffers);
   if (hasMoreCorners(most, buffers)) {
     kept->insert(kept->end(), begin, end);
     return;

@@ -111,7 +111,9 @@ void reduceHull(const std::vector<Contact>& contacts, int k, const ContactIds& c
   static thread_local std::vector<Contact> usable;
   usable = contacts;
   makeUsable(usable);
-  thinToHulls(usable, k, &thinned);
+  bool ready = true;
+  thinned.scale = PatchScale(usable, &ready);
+  keepPatchHulls(usable, k, &threadBuffers(), &thinned.kept);
   chooseFromHulls(usable, thinned, k, chosen_before, reduced);
 }
 

@@ -119,25 +119,45 @@ BLEM_SIM_LANES int keepExtremePoints(const CellPoints& points, int count, int* a
   return size;
 }
 
-BLEM_SIM_LANES int findFarthest(const PlaneDirections& directions, const double* x, const double* y, int count, PlaneExtremes* extremes,
-                                int* found) {
-  for (int d = 0; d < PLANE_DIRECTIONS; ++d) extremes->value[d] = -__builtin_inf();
+namespace {
+
+template <int DIRECTIONS>
+BLEM_SIM_INLINE int farthestOf(const PlaneDirections& directions, const double* x, const double* y, int count, PlaneExtremes* extremes,
+                               int* found) {
+  for (int d = 0; d < DIRECTIONS; ++d) extremes->value[d] = -__builtin_inf();
+  int raising = 0;
   for (int i = 0; i < count; ++i) {
     const double px = x[i], py = y[i];
-    for (int d = 0; d < PLANE_DIRECTIONS; ++d) {
-      const double along = directions.along(d, px, py);
-      extremes->value[d] = along > extremes->value[d] ? along : extremes->value[d];
+    long raises = 0;
+    for (int d = 0; d < DIRECTIONS; ++d) {
+      const double along = directions.along(d, px, py), before = extremes->value[d];
+      raises |= along >= before;
+      extremes->value[d] = along > before ? along : before;
     }
+    found[raising] = i;
+    raising += raises != 0;
   }
   int size = 0;
-  for (int i = 0; i < count; ++i) {
-    const double px = x[i], py = y[i];
+  for (int r = 0; r < raising; ++r) {
+    const double px = x[found[r]], py = y[found[r]];
     long extreme = 0;
-    for (int d = 0; d < PLANE_DIRECTIONS; ++d) extreme |= directions.along(d, px, py) == extremes->value[d];
-    found[size] = i;
+    for (int d = 0; d < DIRECTIONS; ++d) extreme |= directions.along(d, px, py) == extremes->value[d];
+    found[size] = found[r];
     size += extreme != 0;
   }
   return size;
+}
+
+}  // namespace
+
+BLEM_SIM_LANES int findFarthest(const PlaneDirections& directions, const double* x, const double* y, int count, PlaneExtremes* extremes,
+                                int* found) {
+  return farthestOf<PLANE_DIRECTIONS>(directions, x, y, count, extremes, found);
+}
+
+BLEM_SIM_LANES int findFarthestOfOctagon(const PlaneDirections& directions, const double* x, const double* y, int count,
+                                         PlaneExtremes* extremes, int* found) {
+  return farthestOf<OCTAGON_SIDES>(directions, x, y, count, extremes, found);
 }
 
 BLEM_SIM_LANES int findOutside(const Octagon& octagon, const double* x, const double* y, int count, int* found) {

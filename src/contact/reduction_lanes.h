@@ -79,6 +79,9 @@ struct alignas(64) PlaneExtremes {
 
 /** Indices of the points that are farthest along some direction, ascending, into found[count]. @return how many */
 int findFarthest(const PlaneDirections& directions, const double* x, const double* y, int count, PlaneExtremes* extremes, int* found);
+/** The same along the first OCTAGON_SIDES directions alone. */
+int findFarthestOfOctagon(const PlaneDirections& directions, const double* x, const double* y, int count, PlaneExtremes* extremes,
+                          int* found);
 
 /** Lines through (x, y) along (dx, dy): what lies more than `limit` / length to their left is inside. */
 struct Octagon {
