@@ -58,19 +58,6 @@ TEST_P(Budgets, HoldWithMoreManifoldsThanContactsAllowed) {
   EXPECT_EQ(contactsOf(1, manifolds, robot, world), 4);
 }
 
-// What is left out for a budget's sake does not cost anything twice: each manifold is chosen from as if its share were its budget.
-TEST(HullBudget, IsSharedOutBeforeTheChoice) {
-  std::vector<ContactManifold> manifolds = {manifoldOf(0, 1, noisyPatch(90, 5)), manifoldOf(0, 2, noisyPatch(90, 6))};
-  const std::vector<ContactManifold> all = manifolds;
-  ReductionMemory memory;
-  reduceAll(manifolds, {1, 1}, {0, 0}, {{INT_MAX}, {30}}, *findReduction("hull"), &memory);
-  for (int m = 0; m < 2; ++m) {
-    const Contacts alone = reducedBy(*findReduction("hull"), all[m].contacts, 15);
-    ASSERT_EQ(manifolds[m].contacts.size(), 15u);
-    for (int i = 0; i < 15; ++i) EXPECT_EQ(manifolds[m].contacts[i].id, alone[i].id) << m;
-  }
-}
-
 TEST(HullBudget, CountsWhatHullsNeedAndNoMore) {
   std::vector<ContactManifold> manifolds = {manifoldOf(0, 1, flatPatch(300, {0, 0, 1}, {0, 0, 0})), manifoldOf(0, 2, noisyPatch(90, 6))};
   const std::size_t corners = reducedBy(*findReduction("hull"), manifolds[0].contacts, 40).size();
