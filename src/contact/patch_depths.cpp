@@ -2,163 +2,143 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "contact_order.h"
 
 namespace blem_sim {
 
-double PatchDepths::interpolatedDepth(const Facet& facet, const PlanePoint& p) {
-  const double area = cross(facet.a, facet.b, facet.c);
-  if (area > 0) {
-    const double weight_a = std::clamp(cross(facet.b, facet.c, p) / area, 0.0, 1.0);
-    const double weight_b = std::clamp(cross(facet.c, facet.a, p) / area, 0.0, 1.0 - weight_a);
-    return weight_a * facet.a.depth + weight_b * facet.b.depth + (1 - weight_a - weight_b) * facet.c.depth;
-  }
-  const double along = (p.x - facet.a.x) * (facet.b.x - facet.a.x) + (p.y - facet.a.y) * (facet.b.y - facet.a.y);
-  const double length = distance(facet.a, facet.b);
-  const double weight_b = length > 0 ? std::clamp(along / (length * length), 0.0, 1.0) : 0.0;
-  return (1 - weight_b) * facet.a.depth + weight_b * facet.b.depth;
-}
-
 PatchDepths::Facet::Facet(const PlanePoint& first_corner, const PlanePoint& second_corner, const PlanePoint& third_corner)
     : a(first_corner), b(second_corner), c(third_corner) {
-  const PlanePoint* const corners[4] = {&a, &b, &c, &a};
-  for (int side = 0; side < 3; ++side) {
-    const double length = std::max(distance(*corners[side], *corners[side + 1]), 1e-300);
-    side_x[side] = (corners[side + 1]->x - corners[side]->x) / length;
-    side_y[side] = (corners[side + 1]->y - corners[side]->y) / length;
-  }
+  const double area = cross(a, b, c);
+  per_area = area > 0 ? 1 / area : 0;
 }
 
-double PatchDepths::Facet::insideBy(const PlanePoint& p) const {
-  const auto from_side = [&](const PlanePoint& corner, int side) {
-    return side_x[side] * (p.y - corner.y) - side_y[side] * (p.x - corner.x);
-  };
-  return std::min({from_side(a, 0), from_side(b, 1), from_side(c, 2)});
+double PatchDepths::Facet::depthAt(const PlanePoint& p) const {
+  if (per_area > 0) {
+    const double weight_a = std::clamp(cross(b, c, p) * per_area, 0.0, 1.0);
+    const double weight_b = std::clamp(cross(c, a, p) * per_area, 0.0, 1.0 - weight_a);
+    return weight_a * a.depth + weight_b * b.depth + (1 - weight_a - weight_b) * c.depth;
+  }
+  const double along = (p.x - a.x) * (b.x - a.x) + (p.y - a.y) * (b.y - a.y), length = distance(a, b);
+  const double weight_b = length > 0 ? std::clamp(along / (length * length), 0.0, 1.0) : 0.0;
+  return (1 - weight_b) * a.depth + weight_b * b.depth;
 }
 
-void PatchDepths::hand(int point, Facet* facet) {
-  (*points_)[point].next = facet->first;
-  facet->first = point;
-}
+PlanePoint PatchDepths::pointAt(int place) const { return {places_->x[place], places_->y[place], places_->depth[place], members_[place]}; }
 
-// Hands each point of a list to the facet, of the last ones, that holds it, or misses it by least.
-void PatchDepths::distribute(int first, std::size_t first_facet) {
-  for (int point = first; point != NO_POINT;) {
-    const PlanePoint p = (*points_)[point];
-    std::size_t best = first_facet;
-    double most = -std::numeric_limits<double>::infinity();
-    for (std::size_t facet = first_facet; facet < open_.size() && most < 0; ++facet) {
-      const double inside = open_[facet].insideBy(p);
-      if (inside <= most) continue;
-      best = facet;
-      most = inside;
-    }
-    hand(point, &open_[best]);
-    point = p.next;
+int PatchDepths::deepestPlace() const {
+  const std::vector<double>& depth = places_->depth;
+  int best = 0;
+  for (int i = 1; i < static_cast<int>(depth.size()); ++i) {
+    if (depth[i] < depth[best]) continue;
+    if (depth[i] > depth[best] || contactBefore((*contacts_)[members_[i]], (*contacts_)[members_[best]])) best = i;
   }
-}
-
-// On a segment: which half a point is in.
-void PatchDepths::distributeOnSegments(const Facet& parent, const PlanePoint& at, int first, std::size_t first_facet) {
-  const double dx = parent.b.x - parent.a.x, dy = parent.b.y - parent.a.y;
-  for (int point = first; point != NO_POINT;) {
-    const PlanePoint p = (*points_)[point];
-    const bool before = (p.x - at.x) * dx + (p.y - at.y) * dy < 0;
-    hand(point, &open_[first_facet + (before ? 0 : 1)]);
-    point = p.next;
-  }
-}
-
-// Opens the three triangles (two segments) into which p splits a facet; those without area are left out.
-void PatchDepths::split(const Facet& facet, const PlanePoint& p) {
-  if (facet.isSegment()) {
-    open_.emplace_back(facet.a, p, p);
-    open_.emplace_back(p, facet.b, facet.b);
-    return;
-  }
-  const PlanePoint corners[4] = {facet.a, facet.b, facet.c, facet.a};
-  for (int side = 0; side < 3; ++side) {
-    const PlanePoint &from = corners[side], &to = corners[side + 1];
-    if (cross(from, to, p) > FLATNESS * distance(from, to)) open_.emplace_back(from, to, p);
-  }
-}
-
-int PatchDepths::highest(const std::vector<Contact>& contacts, Facet* facet) {
-  int best = NO_POINT, above = NO_POINT;
-  double most = DEPTH_TIE;
-  for (int point = facet->first; point != NO_POINT;) {
-    PlanePoint& p = (*points_)[point];
-    const int next = p.next;
-    const double excess = p.depth - interpolatedDepth(*facet, p);
-    if (excess > DEPTH_TIE) {
-      p.next = above;
-      above = point;
-      const bool higher =
-          best == NO_POINT || excess > most || (excess == most && contactBefore(contacts[p.contact], contacts[(*points_)[best].contact]));
-      if (higher) {
-        most = excess;
-        best = point;
-      }
-    }
-    point = next;
-  }
-  facet->first = above;
   return best;
 }
 
-void PatchDepths::keepDeeper(const std::vector<Contact>& contacts, const std::vector<PlanePoint>& corners, std::vector<PlanePoint>* points,
-                             std::vector<int>* kept) {
-  points_ = points;
-  // The triangles of a fan around the first corner; a hull without area is one segment.
-  open_.clear();
-  if (corners.size() <= 2) open_.emplace_back(corners.front(), corners.back(), corners.back());
-  for (std::size_t i = 1; i + 1 < corners.size(); ++i) open_.emplace_back(corners[0], corners[i], corners[i + 1]);
-  double shallowest = corners[0].depth;
-  corner_contacts_.clear();
-  for (const PlanePoint& corner : corners) {
-    shallowest = std::min(shallowest, corner.depth);
-    corner_contacts_.push_back(corner.contact);
+void PatchDepths::openFan(const std::vector<PlanePoint>& corners, const PlanePoint& deepest, std::vector<int>* kept) {
+  const auto deepest_corner =
+      std::max_element(corners.begin(), corners.end(), [](const PlanePoint& p, const PlanePoint& q) { return p.depth < q.depth; });
+  bool around_deepest = deepest.depth > deepest_corner->depth + DEPTH_TIE;
+  for (std::size_t i = 0; i < corners.size() && around_deepest; ++i) {
+    const PlanePoint &from = corners[i], &to = corners[(i + 1) % corners.size()];
+    around_deepest = cross(from, to, deepest) > FLATNESS * distance(from, to);
   }
-  std::sort(corner_contacts_.begin(), corner_contacts_.end());
-  int rest = NO_POINT;
-  for (std::size_t i = 0; i < points->size(); ++i) {
-    PlanePoint& p = (*points)[i];
-    const bool is_corner = std::binary_search(corner_contacts_.begin(), corner_contacts_.end(), p.contact);
-    if (p.depth <= shallowest + DEPTH_TIE || is_corner) continue;
-    p.next = rest;
-    rest = static_cast<int>(i);
-  }
-  distribute(rest, 0);
+  const PlanePoint& middle = around_deepest ? deepest : *deepest_corner;
+  if (around_deepest) kept->push_back(deepest.contact);
+  ring_.assign(deepest_corner + 1, corners.end());
+  ring_.insert(ring_.end(), corners.begin(), deepest_corner);
+  if (around_deepest) ring_.insert(ring_.end(), {*deepest_corner, ring_.front()});
+  for (std::size_t i = 0; i + 1 < ring_.size(); ++i) open_.emplace_back(middle, ring_[i], ring_[i + 1]);
+  fan_.start(middle.x, middle.y, around_deepest);
+  for (std::size_t i = 0; i + 1 < ring_.size(); ++i) fan_.addSide(ring_[i].x, ring_[i].y);
+}
 
+void PatchDepths::handToFan(double shallowest) {
+  const int count = static_cast<int>(places_->x.size());
+  sectors_.resize(count);
+  findSectors(fan_, places_->x.data(), places_->y.data(), count, sectors_.data());
+  for (int i = 0; i < count; ++i) {
+    if (places_->depth[i] > shallowest + DEPTH_TIE) hand(i, pointAt(i), &open_[sectors_[i]]);
+  }
+}
+
+void PatchDepths::hand(int place, const PlanePoint& point, Facet* facet) {
+  const double excess = point.depth - facet->depthAt(point);
+  if (excess <= DEPTH_TIE) return;
+  next_[place] = facet->first;
+  facet->first = place;
+  const bool higher =
+      excess > facet->most || (excess == facet->most && contactBefore((*contacts_)[point.contact], (*contacts_)[members_[facet->highest]]));
+  if (!higher) return;
+  facet->highest = place;
+  facet->most = excess;
+}
+
+void PatchDepths::raise(const Facet& facet, std::vector<int>* kept) {
+  const PlanePoint top = pointAt(facet.highest);
+  kept->push_back(top.contact);
+  if (!facet.isSegment()) return raiseTriangle(facet, top, kept);
+  const std::size_t half = open_.size();
+  open_.emplace_back(facet.a, top, top);
+  open_.emplace_back(top, facet.b, facet.b);
+  const double dx = facet.b.x - facet.a.x, dy = facet.b.y - facet.a.y;
+  for (int place = facet.first, next; place != NO_PLACE; place = next) {
+    next = next_[place];
+    const PlanePoint p = pointAt(place);
+    if (place != facet.highest) hand(place, p, &open_[half + ((p.x - top.x) * dx + (p.y - top.y) * dy < 0 ? 0 : 1)]);
+  }
+}
+
+void PatchDepths::raiseTriangle(const Facet& facet, const PlanePoint& top, std::vector<int>* kept) {
+  // Pieces opposite to c, a, b; those without area are left out, and their places belong to the neighbour on their side of the spoke.
+  const PlanePoint corners[4] = {facet.a, facet.b, facet.c, facet.a};
+  int pieces[3] = {NO_PLACE, NO_PLACE, NO_PLACE}, last = NO_PLACE;
+  for (int side = 0; side < 3; ++side) {
+    const PlanePoint &from = corners[side], &to = corners[side + 1];
+    if (cross(from, to, top) <= FLATNESS * distance(from, to)) continue;
+    pieces[side] = last = static_cast<int>(open_.size());
+    open_.emplace_back(from, to, top);
+  }
+  for (int place = facet.first, next; place != NO_PLACE; place = next) {
+    next = next_[place];
+    if (place == facet.highest) continue;
+    const PlanePoint p = pointAt(place);
+    // On the top of a sliver's corner: places can only be told apart by keeping them.
+    if (last == NO_PLACE) {
+      kept->push_back(p.contact);
+      continue;
+    }
+    const bool left[3] = {cross(top, corners[0], p) >= 0, cross(top, corners[1], p) >= 0, cross(top, corners[2], p) >= 0};
+    const int side = left[0] && !left[1] ? 0 : (left[1] && !left[2] ? 1 : 2);
+    int piece = pieces[side];
+    if (piece == NO_PLACE) piece = pieces[left[(side + 2) % 3] ? (side + 2) % 3 : (side + 1) % 3];
+    hand(place, p, &open_[piece == NO_PLACE ? last : piece]);
+  }
+}
+
+void PatchDepths::keepDeeper(const std::vector<Contact>& contacts, const int* members, const PlanePlaces& places,
+                             const std::vector<PlanePoint>& corners, std::vector<int>* kept) {
+  contacts_ = &contacts;
+  members_ = members;
+  places_ = &places;
+  const auto shallowest =
+      std::min_element(corners.begin(), corners.end(), [](const PlanePoint& p, const PlanePoint& q) { return p.depth < q.depth; });
+  const PlanePoint deepest = pointAt(deepestPlace());
+  if (deepest.depth <= shallowest->depth + DEPTH_TIE) return;
+  next_.resize(places.x.size());
+  open_.clear();
+  if (corners.size() > 2) {
+    openFan(corners, deepest, kept);
+    handToFan(shallowest->depth);
+  } else {
+    open_.emplace_back(corners.front(), corners.back(), corners.back());
+    for (int i = 0; i < static_cast<int>(places.x.size()); ++i) hand(i, pointAt(i), &open_.front());
+  }
   while (!open_.empty()) {
-    Facet facet = open_.back();
+    const Facet facet = open_.back();
     open_.pop_back();
-    const int top = highest(contacts, &facet);
-    if (top == NO_POINT) continue;
-    const PlanePoint p = (*points)[top];
-    kept->push_back(p.contact);
-    // The rest of the list, without the top.
-    int above = NO_POINT;
-    for (int point = facet.first; point != NO_POINT;) {
-      const int next = (*points)[point].next;
-      if (point != top) {
-        (*points)[point].next = above;
-        above = point;
-      }
-      point = next;
-    }
-    const std::size_t pieces = open_.size();
-    split(facet, p);
-    if (open_.size() == pieces) {
-      // The point sits on a corner of a sliver: the rest can only be told apart by keeping it.
-      for (int point = above; point != NO_POINT; point = (*points)[point].next) kept->push_back((*points)[point].contact);
-    } else if (facet.isSegment()) {
-      distributeOnSegments(facet, p, above, pieces);
-    } else {
-      distribute(above, pieces);
-    }
+    if (facet.highest != NO_PLACE) raise(facet, kept);
   }
 }
 

@@ -6,17 +6,17 @@
 
 #include "blem_sim/contact/manifold.h"
 #include "patch_frame.h"
+#include "reduction_lanes.h"
 
 namespace blem_sim {
 
 /** [m] A corner that stands out less is none: where vertices coincide, merging moves points about. */
 constexpr double FLATNESS = 1e-7;
-constexpr int NO_POINT = -1;
 
-/** A contact seen along the normal; points form lists. */
+/** A contact seen along the normal. */
 struct PlanePoint {
   double x, y, depth;
-  int contact, next;
+  int contact;
 };
 
 /** Twice the area of a triangle, positive if counter-clockwise. */
@@ -34,32 +34,42 @@ inline double distance(const PlanePoint& a, const PlanePoint& b) {
 class PatchDepths {
  public:
   /** Appends the contacts that the interpolation was raised to.
-   * @param corners of the hull of the points, counter-clockwise @param points their lists are overwritten */
-  void keepDeeper(const std::vector<Contact>& contacts, const std::vector<PlanePoint>& corners, std::vector<PlanePoint>* points,
-                  std::vector<int>* kept);
+   * @param members contacts of the places, by their index @param corners of the hull of the places, counter-clockwise */
+  void keepDeeper(const std::vector<Contact>& contacts, const int* members, const PlanePlaces& places,
+                  const std::vector<PlanePoint>& corners, std::vector<int>* kept);
 
  private:
-  /** Points that lie over one triangle of kept points (a segment if c is b). */
+  static constexpr int NO_PLACE = -1;
+
+  /** A triangle of kept points, a segment if c is b, and the places in it that are above it. */
   struct Facet {
     Facet(const PlanePoint& a, const PlanePoint& b, const PlanePoint& c);
     bool isSegment() const { return b.contact == c.contact; }
-    /** How far p lies inside the sides; negative outside. */
-    double insideBy(const PlanePoint& p) const;
+    double depthAt(const PlanePoint& p) const;
     PlanePoint a, b, c;
-    int first = NO_POINT;         // of the list of its points
-    double side_x[3], side_y[3];  // unit, along the sides from a, b, c
+    double per_area;  // 0 if there is none: then it is a segment, too
+    int first = NO_PLACE, highest = NO_PLACE;
+    double most = 0;  // [m] that the highest is above it
   };
-  static double interpolatedDepth(const Facet& facet, const PlanePoint& p);
-  /** Of the points of a facet only those stay that are above it. @return the highest */
-  int highest(const std::vector<Contact>& contacts, Facet* facet);
-  void split(const Facet& facet, const PlanePoint& p);
-  void distribute(int first, std::size_t first_facet);
-  void distributeOnSegments(const Facet& parent, const PlanePoint& at, int first, std::size_t first_facet);
-  void hand(int point, Facet* facet);
 
-  std::vector<PlanePoint>* points_ = nullptr;
+  PlanePoint pointAt(int place) const;
+  int deepestPlace() const;
+  /** Opens triangles from one point to all sides: the deepest if no corner is as deep, else the deepest corner. */
+  void openFan(const std::vector<PlanePoint>& corners, const PlanePoint& deepest, std::vector<int>* kept);
+  void handToFan(double shallowest);
+  /** Puts a place onto the facet's list if it is above it. */
+  void hand(int place, const PlanePoint& point, Facet* facet);
+  /** Raises a facet to its highest place: opens the facets that it falls into, and hands them its places. */
+  void raise(const Facet& facet, std::vector<int>* kept);
+  void raiseTriangle(const Facet& facet, const PlanePoint& top, std::vector<int>* kept);
+
+  const std::vector<Contact>* contacts_ = nullptr;
+  const int* members_ = nullptr;
+  const PlanePlaces* places_ = nullptr;
+  Fan fan_;
   std::vector<Facet> open_;
-  std::vector<int> corner_contacts_;
+  std::vector<PlanePoint> ring_;
+  std::vector<int> next_, sectors_;  // by place
 };
 
 }  // namespace blem_sim

@@ -28,6 +28,7 @@ inline PlaneAxes axesAcross(const Vector3& normal) {
 /** What some contacts span. */
 class PatchScale {
  public:
+  PatchScale() = default;
   /** @param ready whether they are all finite, with unit normals; else there is no scale */
   PatchScale(const std::vector<Contact>& contacts, bool* ready);
 

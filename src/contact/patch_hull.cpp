@@ -1,9 +1,9 @@
 #include "patch_hull.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
+#include <numeric>
+#include <utility>
 
 #include "contact_order.h"
 #include "patch_depths.h"
@@ -15,8 +15,9 @@ namespace blem_sim {
 namespace {
 
 struct Buffers {
-  std::vector<PlanePlace> places;
-  std::vector<int> outside;
+  PlanePlaces places;
+  std::vector<int> farthest, outside;
+  PlaneExtremes extremes;
   std::vector<PlanePoint> points, half, hull, ring, corners;
   PatchDepths depths;
 };
@@ -29,67 +30,104 @@ bool planePointBefore(const std::vector<Contact>& contacts, const PlanePoint& a,
   return a.contact != b.contact && contactBefore(contacts[a.contact], contacts[b.contact]);
 }
 
-PlanePoint pointOf(const PlanePlace& place, int contact) { return {place.x, place.y, place.depth, contact, NO_POINT}; }
+// The octagon's directions come first, the others between them after those. @return the index of the d-th, counter-clockwise
+int inOrder(int d) {
+  constexpr int BETWEEN = PLANE_DIRECTIONS / OCTAGON_SIDES - 1;
+  const int side = d / (BETWEEN + 1), after = d % (BETWEEN + 1);
+  return after == 0 ? side : OCTAGON_SIDES + side * BETWEEN + after - 1;
+}
 
-// The extremes of the places in eight directions, counter-clockwise.
-std::array<PlanePoint, OCTAGON_SIDES> octagonOf(const std::vector<Contact>& contacts, const std::vector<PlanePlace>& places,
-                                                const int* members) {
-  std::array<PlanePoint, OCTAGON_SIDES> corners;
-  double most[OCTAGON_SIDES];
-  std::fill(std::begin(most), std::end(most), -std::numeric_limits<double>::infinity());
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    const double x = places[i].x, y = places[i].y;
-    const double along[OCTAGON_SIDES] = {x, x + y, y, y - x, -x, -x - y, -y, x - y};
-    int reached = 0;
-    for (int d = 0; d < OCTAGON_SIDES; ++d) reached |= along[d] >= most[d];
-    if (!reached) continue;
-    const PlanePoint point = pointOf(places[i], members[i]);
-    for (int d = 0; d < OCTAGON_SIDES; ++d) {
-      if (along[d] < most[d] || (along[d] == most[d] && !planePointBefore(contacts, point, corners[d]))) continue;
-      corners[d] = point;
-      most[d] = along[d];
+// No mesh has sides across them.
+const PlaneDirections& planeDirections() {
+  static const PlaneDirections directions = [] {
+    constexpr double FIRST = 0.1234;  // [rad]
+    PlaneDirections made;
+    for (int d = 0; d < PLANE_DIRECTIONS; ++d) {
+      made.x[inOrder(d)] = std::cos(FIRST + 2 * M_PI * d / PLANE_DIRECTIONS);
+      made.y[inOrder(d)] = std::sin(FIRST + 2 * M_PI * d / PLANE_DIRECTIONS);
     }
-  }
-  return corners;
+    return made;
+  }();
+  return directions;
 }
 
-// Indices of the places to look at: others lie inside the octagon of extremes and are no deeper than any of its corners, so convex
-// combinations of those imply them. Saves most of the sorting of large patches.
-void findOuter(const std::vector<Contact>& contacts, const int* members, Buffers* buffers) {
-  constexpr std::size_t WORTHWHILE = 50;
-  const std::vector<PlanePlace>& places = buffers->places;
-  std::vector<int>& outside = buffers->outside;
-  outside.resize(places.size());
-  for (std::size_t i = 0; i < places.size(); ++i) outside[i] = static_cast<int>(i);
-  if (places.size() < WORTHWHILE) return;
-  const std::array<PlanePoint, OCTAGON_SIDES> corners = octagonOf(contacts, places, members);
-  if (corners[0].contact == corners[4].contact) return;  // all at one place
-  double shallowest = corners[0].depth;
-  Octagon octagon;
-  for (int d = 0; d < OCTAGON_SIDES; ++d) {
-    const PlanePoint &from = corners[d], &to = corners[(d + 1) % OCTAGON_SIDES];
-    shallowest = std::min(shallowest, from.depth);
-    octagon.x[d] = from.x;
-    octagon.y[d] = from.y;
-    octagon.dx[d] = to.x - from.x;
-    octagon.dy[d] = to.y - from.y;
-    octagon.limit[d] = from.contact == to.contact ? -1 : FLATNESS * distance(from, to);
-  }
-  outside.resize(findOutside(octagon, shallowest + DEPTH_TIE, places.data(), static_cast<int>(places.size()), outside.data()));
-}
+// Whether it is worth a look if a patch has more corners than that: large ones are mostly inside.
+bool mayHaveMore(int corners, int members) { return corners < std::min(members, PLANE_DIRECTIONS) && members < 20 * corners; }
 
-// The points of the members in the plane, sorted, of those at one place the deepest.
-void project(const std::vector<Contact>& contacts, const int* begin, const int* end, const Vector3& normal, Buffers* buffers) {
+// Where the members lie in the plane, and which of them are farthest out.
+void project(const std::vector<Contact>& contacts, const int* begin, const int* end, const Vector3& normal, int most, Buffers* buffers) {
   const PlaneAxes axes = axesAcross(normal);
-  buffers->places.resize(end - begin);
-  for (const int* member = begin; member != end; ++member) {
-    const Contact& contact = contacts[*member];
-    buffers->places[member - begin] = {axes.u.dot(contact.point), axes.v.dot(contact.point), contact.depth};
+  PlanePlaces& places = buffers->places;
+  places.x.resize(end - begin);
+  places.y.resize(end - begin);
+  places.depth.resize(end - begin);
+  for (std::size_t i = 0; i < places.x.size(); ++i) {
+    const Contact& contact = contacts[begin[i]];
+    places.x[i] = axes.u.dot(contact.point);
+    places.y[i] = axes.v.dot(contact.point);
+    places.depth[i] = contact.depth;
   }
-  findOuter(contacts, begin, buffers);
+  std::vector<int>& farthest = buffers->farthest;
+  farthest.resize(places.x.size());
+  const int count = static_cast<int>(places.x.size());
+  const auto find = mayHaveMore(most, count) ? findFarthest : findFarthestOfOctagon;
+  farthest.resize(find(planeDirections(), places.x.data(), places.y.data(), count, &buffers->extremes, farthest.data()));
+}
+
+// The first place that is farthest along a direction.
+int farthestAlong(int direction, const Buffers& buffers) {
+  const PlanePlaces& places = buffers.places;
+  return *std::find_if(buffers.farthest.begin(), buffers.farthest.end(), [&](int i) {
+    return planeDirections().along(direction, places.x[i], places.y[i]) == buffers.extremes.value[direction];
+  });
+}
+
+// Whether the hull surely has more corners than that: so many extremes apart from each other follow around it.
+bool hasMoreCorners(int than, const Buffers& buffers) {
+  constexpr double APART = 1e-6;  // [m]
+  if (!mayHaveMore(than, static_cast<int>(buffers.places.x.size())) || static_cast<int>(buffers.farthest.size()) <= than) return false;
+  const std::vector<double>&x = buffers.places.x, &y = buffers.places.y;
+  int corners = 0;
+  for (int d = 0, last = farthestAlong(inOrder(PLANE_DIRECTIONS - 1), buffers); d < PLANE_DIRECTIONS; ++d) {
+    const int next = farthestAlong(inOrder(d), buffers);
+    corners += std::abs(x[next] - x[last]) + std::abs(y[next] - y[last]) > APART;
+    last = next;
+  }
+  return corners > than;
+}
+
+// Indices of the places that may be corners: others lie inside the octagon of extremes. Saves most of the sorting of large patches.
+void findOuter(Buffers* buffers) {
+  constexpr int WORTHWHILE = 16;
+  const std::vector<double>&x = buffers->places.x, &y = buffers->places.y;
+  const int count = static_cast<int>(x.size());
+  std::vector<int>& outside = buffers->outside;
+  outside.resize(count);
+  std::iota(outside.begin(), outside.end(), 0);
+  if (count < WORTHWHILE) return;
+  int corners[OCTAGON_SIDES];
+  for (int d = 0; d < OCTAGON_SIDES; ++d) corners[d] = farthestAlong(d, *buffers);
+  Octagon octagon;
+  int sides = 0;
+  for (int d = 0; d < OCTAGON_SIDES; ++d) {
+    const int from = corners[d], to = corners[(d + 1) % OCTAGON_SIDES];
+    octagon.x[d] = x[from];
+    octagon.y[d] = y[from];
+    octagon.dx[d] = x[to] - x[from];
+    octagon.dy[d] = y[to] - y[from];
+    octagon.limit[d] = from == to ? -1 : FLATNESS * std::sqrt(octagon.dx[d] * octagon.dx[d] + octagon.dy[d] * octagon.dy[d]);
+    sides += from != to;
+  }
+  if (sides < 3) return;  // all at one place, or in a line
+  outside.resize(findOutside(octagon, x.data(), y.data(), count, outside.data()));
+}
+
+// The outer places as points, sorted, of those at one place the deepest.
+void sortOuter(const std::vector<Contact>& contacts, const int* members, Buffers* buffers) {
+  const PlanePlaces& places = buffers->places;
   std::vector<PlanePoint>& points = buffers->points;
   points.clear();
-  for (const int i : buffers->outside) points.push_back(pointOf(buffers->places[i], begin[i]));
+  for (const int i : buffers->outside) points.push_back({places.x[i], places.y[i], places.depth[i], members[i]});
   std::sort(points.begin(), points.end(), [&](const PlanePoint& a, const PlanePoint& b) { return planePointBefore(contacts, a, b); });
   const auto samePlace = [](const PlanePoint& a, const PlanePoint& b) {
     return std::abs(a.x - b.x) <= FLATNESS && std::abs(a.y - b.y) <= FLATNESS && b.depth <= a.depth + DEPTH_TIE;
@@ -114,20 +152,27 @@ void convexHull(Buffers* buffers) {
   buffers->hull.insert(buffers->hull.end(), buffers->half.begin(), buffers->half.end() - 1);
 }
 
-// The two corners farthest from each other, ascending: they stand out whatever lies along the sides.
-std::pair<std::size_t, std::size_t> farthestPair(const std::vector<PlanePoint>& hull) {
-  std::pair<std::size_t, std::size_t> farthest = {0, 0};
-  double most = -1;
+std::size_t farthestFrom(const std::vector<PlanePoint>& hull, std::size_t from) {
+  std::size_t farthest = from;
+  double most = 0;
   for (std::size_t i = 0; i < hull.size(); ++i) {
-    for (std::size_t j = i + 1; j < hull.size(); ++j) {
-      const double dx = hull[j].x - hull[i].x, dy = hull[j].y - hull[i].y, length2 = dx * dx + dy * dy;
-      if (length2 > most) {
-        most = length2;
-        farthest = {i, j};
-      }
-    }
+    const double dx = hull[i].x - hull[from].x, dy = hull[i].y - hull[from].y, length2 = dx * dx + dy * dy;
+    if (length2 <= most) continue;
+    most = length2;
+    farthest = i;
   }
   return farthest;
+}
+
+// Two corners, ascending, each the farthest from the other: they stand out whatever lies along the sides.
+std::pair<std::size_t, std::size_t> farthestPair(const std::vector<PlanePoint>& hull) {
+  std::size_t one = farthestFrom(hull, 0), other = farthestFrom(hull, one);
+  for (;;) {
+    const std::size_t next = farthestFrom(hull, other);
+    if (distance(hull[other], hull[next]) <= distance(hull[other], hull[one])) break;
+    one = std::exchange(other, next);
+  }
+  return {std::min(one, other), std::max(one, other)};
 }
 
 // Appends chain[from] and those of the corners up to, and without, chain[to] that stand out from the chords. [Douglas 1973]
@@ -149,6 +194,8 @@ void appendProminent(const std::vector<PlanePoint>& chain, std::size_t from, std
 // The hull without corners that stand out less than FLATNESS: decided from the whole hull, since along a side noise decides what comes
 // first in any order, and a chain thinned on the way can lose a true corner.
 void findCorners(Buffers* buffers) {
+  buffers->corners = buffers->points;
+  if (buffers->points.size() <= 2) return;
   convexHull(buffers);
   const std::vector<PlanePoint>& hull = buffers->hull;
   buffers->corners = hull;
@@ -163,17 +210,20 @@ void findCorners(Buffers* buffers) {
 
 }  // namespace
 
-void patchHull(const std::vector<Contact>& contacts, const int* begin, const int* end, const Vector3& normal, std::vector<int>* kept) {
+void patchHull(const std::vector<Contact>& contacts, const int* begin, const int* end, const Vector3& normal, int most,
+               std::vector<int>* kept) {
   static thread_local Buffers buffers;
   if (end - begin == 1) return kept->push_back(*begin);
-  project(contacts, begin, end, normal, &buffers);
-  if (buffers.points.size() <= 2) {
-    for (const PlanePoint& p : buffers.points) kept->push_back(p.contact);
+  project(contacts, begin, end, normal, most, &buffers);
+  if (hasMoreCorners(most, buffers)) {
+    kept->insert(kept->end(), begin, end);
     return;
   }
+  findOuter(&buffers);
+  sortOuter(contacts, begin, &buffers);
   findCorners(&buffers);
   for (const PlanePoint& corner : buffers.corners) kept->push_back(corner.contact);
-  buffers.depths.keepDeeper(contacts, buffers.corners, &buffers.points, kept);
+  buffers.depths.keepDeeper(contacts, begin, buffers.places, buffers.corners, kept);
 }
 
 }  // namespace blem_sim

@@ -13,7 +13,9 @@ namespace blem_sim {
  * combination of kept ones' or weaker, so no wrench is lost [Hauser 2013, 5].
  * What is kept depends on the set of members only, not on their order.
  * @param begin, end members, indices of contacts; at least one
+ * @param most patches with surely more corners than this are not worth their hull: all their members are kept
  */
-void patchHull(const std::vector<Contact>& contacts, const int* begin, const int* end, const Vector3& normal, std::vector<int>* kept);
+void patchHull(const std::vector<Contact>& contacts, const int* begin, const int* end, const Vector3& normal, int most,
+               std::vector<int>* kept);
 
 }  // namespace blem_sim

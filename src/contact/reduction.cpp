@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "contact_order.h"
+#include "hull_stages.h"
 
 namespace blem_sim {
 
@@ -13,7 +14,9 @@ namespace {
 // Kept between calls.
 struct Buffers {
   std::vector<Contact> sound, pierced, more, again;
-  std::vector<int> limits, touching, counts, shares;
+  std::vector<ThinnedContacts> thinned;  // manifold by manifold
+  std::vector<int> limits, sizes;        // manifold by manifold: how many may be kept, and would be
+  std::vector<int> touching, counts, shares;
   std::vector<std::pair<int, int>> of_models;    // (model, manifold)
   std::vector<std::pair<long, int>> remainders;  // negative, so that the largest comes first
 };
@@ -65,14 +68,14 @@ void fairShares(int k, Buffers* buffers) {
 using ModelManifold = std::vector<std::pair<int, int>>::const_iterator;
 
 // Where a model has more contacts than its k, lowers the limits of its manifolds to their shares.
-void applyBudget(const std::vector<ContactManifold>& reduced, ModelManifold begin, ModelManifold end, int k, Buffers* buffers) {
+void applyBudget(ModelManifold begin, ModelManifold end, int k, Buffers* buffers) {
   std::vector<int>&limits = buffers->limits, &touching = buffers->touching;
   touching.clear();
   buffers->counts.clear();
   int total = 0;
   for (ModelManifold of_model = begin; of_model != end; ++of_model) {
     const int m = of_model->second;
-    const int count = std::min(limits[m], static_cast<int>(reduced[m].contacts.size()));
+    const int count = std::min(limits[m], buffers->sizes[m]);
     if (count == 0) continue;
     touching.push_back(m);
     buffers->counts.push_back(count);
@@ -84,18 +87,18 @@ void applyBudget(const std::vector<ContactManifold>& reduced, ModelManifold begi
 }
 
 // Lowers limits until every model keeps to its budget.
-void applyBudgets(const std::vector<ContactManifold>& reduced, const std::vector<int>& model_a, const std::vector<int>& model_b,
-                  const std::vector<ContactBudget>& budgets, Buffers* buffers) {
+void applyBudgets(const std::vector<int>& model_a, const std::vector<int>& model_b, const std::vector<ContactBudget>& budgets,
+                  Buffers* buffers) {
   std::vector<std::pair<int, int>>& of_models = buffers->of_models;
   of_models.clear();
-  for (int m = 0; m < static_cast<int>(reduced.size()); ++m) {
+  for (int m = 0; m < static_cast<int>(model_a.size()); ++m) {
     of_models.push_back({model_a[m], m});
     if (model_b[m] != model_a[m]) of_models.push_back({model_b[m], m});
   }
   std::sort(of_models.begin(), of_models.end());
   for (ModelManifold begin = of_models.begin(), end = begin; begin != of_models.end(); begin = end) {
     while (end != of_models.end() && end->first == begin->first) ++end;
-    applyBudget(reduced, begin, end, budgets[begin->first].max_contacts, buffers);
+    applyBudget(begin, end, budgets[begin->first].max_contacts, buffers);
   }
 }
 
@@ -103,6 +106,40 @@ int countContacts(const std::vector<ContactManifold>& manifolds) {
   int count = 0;
   for (const ContactManifold& manifold : manifolds) count += static_cast<int>(manifold.contacts.size());
   return count;
+}
+
+void copyAllButContacts(const ContactManifold& from, ContactManifold* to) {
+  to->a = from.a;
+  to->b = from.b;
+  to->layer = from.layer;
+  to->pierced = from.pierced;
+}
+
+bool hasPierced(const std::vector<Contact>& contacts) {
+  return std::any_of(contacts.begin(), contacts.end(), [](const Contact& c) { return c.pierced; });
+}
+
+// One manifold before budgets are shared out. `hull` alone can tell what it would keep before it chooses; others, and pierced contacts, are
+// reduced to the limit, and again if it is lowered. @return how many would be kept
+int prepare(const ContactManifold& manifold, int limit, const Reduction& method, const ContactIds& chosen_before, Buffers* buffers,
+            ThinnedContacts* thinned, std::vector<Contact>* reduced) {
+  const bool in_steps = method.reduce == static_cast<ReduceFunction>(reduceHull) && !hasPierced(manifold.contacts);
+  if (in_steps && thinToHulls(manifold.contacts, limit, thinned)) return std::min(limit, static_cast<int>(thinned->kept.size()));
+  thinned->kept.clear();
+  reduceContacts(manifold.contacts, limit, method, chosen_before, buffers, reduced);
+  return static_cast<int>(reduced->size());
+}
+
+void finish(const ContactManifold& manifold, int limit, const Reduction& method, const ContactIds& chosen_before,
+            const ThinnedContacts& thinned, Buffers* buffers, std::vector<Contact>* reduced) {
+  if (!thinned.kept.empty()) {
+    if (limit > 0) return chooseFromHulls(manifold.contacts, thinned, limit, chosen_before, reduced);
+    return reduced->clear();
+  }
+  if (limit >= static_cast<int>(reduced->size())) return;
+  buffers->again = *reduced;
+  reduced->clear();
+  if (limit > 0) reduceContacts(buffers->again, limit, method, chosen_before, buffers, reduced);
 }
 
 }  // namespace
@@ -136,27 +173,21 @@ int reduceManifolds(const std::vector<ContactManifold>& manifolds, const std::ve
   const bool all = method.reduce == reduceNone;
   const int count = static_cast<int>(manifolds.size());
   buffers.limits.resize(count);
+  buffers.sizes.resize(count);
+  if (static_cast<int>(buffers.thinned.size()) < count) buffers.thinned.resize(count);
   reduced->resize(count);
   for (int m = 0; m < count; ++m) {
-    ContactManifold& kept = (*reduced)[m];
-    kept.a = manifolds[m].a;
-    kept.b = manifolds[m].b;
-    kept.layer = manifolds[m].layer;
-    kept.pierced = manifolds[m].pierced;
+    copyAllButContacts(manifolds[m], &(*reduced)[m]);
     buffers.limits[m] = all ? INT_MAX : std::min(budgets[model_a[m]].max_contacts, budgets[model_b[m]].max_contacts);
-    reduceContacts(manifolds[m].contacts, buffers.limits[m], method, memory->of(manifolds[m]), &buffers, &kept.contacts);
+    buffers.sizes[m] =
+        prepare(manifolds[m], buffers.limits[m], method, memory->of(manifolds[m]), &buffers, &buffers.thinned[m], &(*reduced)[m].contacts);
   }
-  if (all) return countContacts(manifolds) - countContacts(*reduced);
-
-  applyBudgets(*reduced, model_a, model_b, budgets, &buffers);
-  for (int m = 0; m < count; ++m) {
-    std::vector<Contact>& kept = (*reduced)[m].contacts;
-    if (buffers.limits[m] >= static_cast<int>(kept.size())) continue;
-    buffers.again = kept;
-    kept.clear();
-    if (buffers.limits[m] > 0) reduceContacts(buffers.again, buffers.limits[m], method, memory->of(manifolds[m]), &buffers, &kept);
+  if (!all) {
+    applyBudgets(model_a, model_b, budgets, &buffers);
+    for (int m = 0; m < count; ++m)
+      finish(manifolds[m], buffers.limits[m], method, memory->of(manifolds[m]), buffers.thinned[m], &buffers, &(*reduced)[m].contacts);
+    memory->remember(*reduced);
   }
-  memory->remember(*reduced);
   return countContacts(manifolds) - countContacts(*reduced);
 }
 

@@ -7,6 +7,7 @@
 #include "blem_sim/contact/reduction.h"
 #include "contact_order.h"
 #include "crowd.h"
+#include "hull_stages.h"
 #include "normal_cells.h"
 #include "patch_hull.h"
 #include "wrench_choice.h"
@@ -20,78 +21,100 @@ constexpr std::size_t CROWD = 100;  // more than this many contacts are thinned 
 constexpr int FEW = 100;            // if no more than this many are chosen
 
 struct Buffers {
-  std::vector<Contact> usable;
   NormalCells cells;
-  std::vector<std::pair<double, int>> heights;
-  std::vector<int> kept, candidates, chosen;
+  std::vector<double> heights;
+  std::vector<std::pair<double, int>> stairs;
+  std::vector<int> candidates, chosen;
 };
 
+Buffers& threadBuffers() {
+  static thread_local Buffers buffers;
+  return buffers;
+}
+
+// Whether parallel patches lie among these: then some gap between one height and the next is wider than STAIR.
+bool mayHaveStairs(const std::vector<double>& heights) {
+  const auto [lowest, highest] = std::minmax_element(heights.begin(), heights.end());
+  const double low = *lowest, high = *highest;
+  if (high - low <= STAIR) return false;
+  // One that is within STAIR of both leaves no such gap on either side.
+  return std::none_of(heights.begin(), heights.end(), [&](double height) { return height - low <= STAIR && high - height <= STAIR; });
+}
+
 // Appends the hull of every patch among contacts of one cell. Reorders the members.
-void keepHullsOfCell(const std::vector<Contact>& contacts, int* begin, int* end, const Vector3& normal, Buffers* buffers) {
-  double lowest = normal.dot(contacts[*begin].point), highest = lowest;
-  for (const int* member = begin; member != end; ++member) {
-    const double height = normal.dot(contacts[*member].point);
-    lowest = std::min(lowest, height);
-    highest = std::max(highest, height);
-  }
-  if (highest - lowest <= STAIR) return patchHull(contacts, begin, end, normal, &buffers->kept);
-  std::vector<std::pair<double, int>>& heights = buffers->heights;
+void keepHullsOfCell(const std::vector<Contact>& contacts, int* begin, int* end, const Vector3& normal, int k, Buffers* buffers,
+                     std::vector<int>* kept) {
+  if (end - begin == 1) return kept->push_back(*begin);
+  std::vector<double>& heights = buffers->heights;
   heights.clear();
-  for (const int* member = begin; member != end; ++member) heights.emplace_back(normal.dot(contacts[*member].point), *member);
-  std::sort(heights.begin(), heights.end());
+  for (const int* member = begin; member != end; ++member) heights.push_back(normal.dot(contacts[*member].point));
+  if (!mayHaveStairs(heights)) return patchHull(contacts, begin, end, normal, k, kept);
+  std::vector<std::pair<double, int>>& stairs = buffers->stairs;
+  stairs.clear();
+  for (const int* member = begin; member != end; ++member) stairs.emplace_back(heights[member - begin], *member);
+  std::sort(stairs.begin(), stairs.end());
   int* patch = begin;
-  for (std::size_t i = 0; i < heights.size(); ++i) {
-    begin[i] = heights[i].second;
-    if (i + 1 < heights.size() && heights[i + 1].first - heights[i].first <= STAIR) continue;
+  for (std::size_t i = 0; i < stairs.size(); ++i) {
+    begin[i] = stairs[i].second;
+    if (i + 1 < stairs.size() && stairs[i + 1].first - stairs[i].first <= STAIR) continue;
     int* patch_end = begin + i + 1;
-    patchHull(contacts, patch, patch_end, normal, &buffers->kept);
+    patchHull(contacts, patch, patch_end, normal, k, kept);
     patch = patch_end;
   }
 }
 
 // All contacts, but of each patch of equal normals its hull; where normals are too many for patches to matter, all of them.
-void keepPatchHulls(const std::vector<Contact>& contacts, Buffers* buffers) {
-  if (!buffers->cells.group(contacts)) {
-    buffers->kept.resize(contacts.size());
-    std::iota(buffers->kept.begin(), buffers->kept.end(), 0);
+void keepPatchHulls(const std::vector<Contact>& contacts, int k, Buffers* buffers, std::vector<int>* kept) {
+  NormalCells& cells = buffers->cells;
+  if (!cells.group(contacts)) {
+    kept->resize(contacts.size());
+    std::iota(kept->begin(), kept->end(), 0);
     return;
   }
-  buffers->kept.clear();
-  for (int cell = 0; cell < buffers->cells.count(); ++cell)
-    keepHullsOfCell(contacts, buffers->cells.begin(cell), buffers->cells.end(cell), buffers->cells.normal(cell), buffers);
+  kept->clear();
+  for (int cell = 0; cell < cells.count(); ++cell)
+    keepHullsOfCell(contacts, cells.begin(cell), cells.end(cell), cells.normal(cell), k, buffers, kept);
 }
 
-const std::vector<int>& choose(const std::vector<Contact>& contacts, const PatchScale& scale, int k, const ContactIds& chosen_before,
+const std::vector<int>& choose(const std::vector<Contact>& contacts, const ThinnedContacts& thinned, int k, const ContactIds& chosen_before,
                                Buffers* buffers) {
-  if (buffers->kept.size() > CROWD && k <= FEW) {
-    thinCrowd(contacts, scale, buffers->kept, chosen_before, &buffers->candidates);
+  if (thinned.kept.size() > CROWD && k <= FEW) {
+    thinCrowd(contacts, thinned.scale, thinned.kept, chosen_before, &buffers->candidates);
   } else {
-    buffers->candidates = buffers->kept;
+    buffers->candidates = thinned.kept;
   }
-  chooseSpanningContacts(contacts, buffers->kept, scale, k, chosen_before, &buffers->candidates, &buffers->chosen);
+  chooseSpanningContacts(contacts, thinned.kept, thinned.scale, k, chosen_before, &buffers->candidates, &buffers->chosen);
   return buffers->chosen;
-}
-
-void reduceUsable(const std::vector<Contact>& usable, const PatchScale& scale, int k, const ContactIds& chosen_before, Buffers* buffers,
-                  std::vector<Contact>* reduced) {
-  keepPatchHulls(usable, buffers);
-  const bool few = static_cast<int>(buffers->kept.size()) <= k;
-  const std::vector<int>& kept = few ? buffers->kept : choose(usable, scale, k, chosen_before, buffers);
-  reduced->clear();
-  for (const int i : kept) reduced->push_back(usable[i]);
-  std::sort(reduced->begin(), reduced->end(), contactBefore);
 }
 
 }  // namespace
 
-void reduceHull(const std::vector<Contact>& contacts, int k, const ContactIds& chosen_before, std::vector<Contact>* reduced) {
-  static thread_local Buffers buffers;
+bool thinToHulls(const std::vector<Contact>& contacts, int k, ThinnedContacts* thinned) {
   bool ready = true;
-  const PatchScale scale(contacts, &ready);
-  if (ready) return reduceUsable(contacts, scale, k, chosen_before, &buffers, reduced);
-  buffers.usable = contacts;
-  makeUsable(buffers.usable);
-  reduceUsable(buffers.usable, PatchScale(buffers.usable, &ready), k, chosen_before, &buffers, reduced);
+  thinned->scale = PatchScale(contacts, &ready);
+  if (ready) keepPatchHulls(contacts, k, &threadBuffers(), &thinned->kept);
+  return ready;
+}
+
+void chooseFromHulls(const std::vector<Contact>& contacts, const ThinnedContacts& thinned, int k, const ContactIds& chosen_before,
+                     std::vector<Contact>* reduced) {
+  const bool few = static_cast<int>(thinned.kept.size()) <= k;
+  const std::vector<int>& chosen = few ? thinned.kept : choose(contacts, thinned, k, chosen_before, &threadBuffers());
+  reduced->clear();
+  for (const int i : chosen) reduced->push_back(contacts[i]);
+  std::sort(reduced->begin(), reduced->end(), contactBefore);
+}
+
+void reduceHull(const std::vector<Contact>& contacts, int k, const ContactIds& chosen_before, std::vector<Contact>* reduced) {
+  static thread_local ThinnedContacts thinned;
+  if (thinToHulls(contacts, k, &thinned)) return chooseFromHulls(contacts, thinned, k, chosen_before, reduced);
+  static thread_local std::vector<Contact> usable;
+  usable = contacts;
+  makeUsable(usable);
+  bool ready = true;
+  thinned.scale = PatchScale(usable, &ready);
+  keepPatchHulls(usable, k, &threadBuffers(), &thinned.kept);
+  chooseFromHulls(usable, thinned, k, chosen_before, reduced);
 }
 
 void reduceHull(std::vector<Contact>& contacts, int k, const ContactIds& chosen_before) {

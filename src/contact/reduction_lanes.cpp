@@ -1,23 +1,12 @@
 #include "reduction_lanes.h"
 
-// Compiled for several processors, chosen when the program starts. None may fuse a product into a sum (-ffp-contract=off).
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define BLEM_SIM_LANES __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
-#define BLEM_SIM_LANES
-#endif
-#if defined(__GNUC__)
-#define BLEM_SIM_INLINE inline __attribute__((always_inline))
-#else
-#define BLEM_SIM_INLINE inline
-#endif
+#include "instruction_sets.h"
 
 namespace blem_sim {
 
 namespace {
 
 constexpr float CHOICE_FRICTION = 0.5f;  // of the cones that are compared; the choice hardly depends on it
-constexpr int LANES = 16;
 
 // With g the direction seen by a force at x, the largest component along direction d is g.n + mu |g - (g.n) n|.
 BLEM_SIM_INLINE float wrenchComponent(const WrenchDirections& w, const WrenchPoint& p, int d) {
@@ -26,7 +15,7 @@ BLEM_SIM_INLINE float wrenchComponent(const WrenchDirections& w, const WrenchPoi
   const float gz = w.force[2][d] + w.torque[0][d] * p.x[1] - w.torque[1][d] * p.x[0];
   const float along = gx * p.n[0] + gy * p.n[1] + gz * p.n[2];
   const float rest = gx * gx + gy * gy + gz * gz - along * along;
-  return along + CHOICE_FRICTION * __builtin_sqrtf(rest > 0 ? rest : 0) - p.handicap;
+  return along + CHOICE_FRICTION * __builtin_sqrtf(rest > 0 ? rest : 0);
 }
 
 BLEM_SIM_INLINE float cellComponent(const CellDirections& c, const WrenchPoint& p, int d) {
@@ -34,49 +23,68 @@ BLEM_SIM_INLINE float cellComponent(const CellDirections& c, const WrenchPoint& 
          c.normal[2][d] * p.n[2] - p.handicap;
 }
 
-}  // namespace
-
-BLEM_SIM_LANES void findWrenchExtremes(const WrenchDirections& directions, const WrenchPoint* points, int count, WrenchExtremes* extremes) {
+BLEM_SIM_INLINE void raise(const WrenchComponents& components, float handicap, WrenchComponents* to) {
   for (int d = 0; d < WRENCH_DIRECTIONS; ++d) {
-    extremes->value[d] = wrenchComponent(directions, points[0], d);
-    extremes->point[d] = 0;
-  }
-  for (int i = 1; i < count; ++i) {
-    const WrenchPoint point = points[i];
-    for (int d = 0; d < WRENCH_DIRECTIONS; ++d) {
-      const float component = wrenchComponent(directions, point, d);
-      const bool larger = component > extremes->value[d];
-      extremes->value[d] = larger ? component : extremes->value[d];
-      extremes->point[d] = larger ? i : extremes->point[d];
-    }
+    const float component = components.value[d] - handicap;
+    to->value[d] = component > to->value[d] ? component : to->value[d];
   }
 }
 
-BLEM_SIM_LANES WrenchLack addWrenches(const WrenchDirections& directions, const WrenchPoint& point, const WrenchExtremes& extremes,
-                                      float* reached) {
-  const WrenchPoint p = point;
-  float most[LANES];
-  int where[LANES];
-  for (int lane = 0; lane < LANES; ++lane) {
-    most[lane] = -1;
-    where[lane] = 0;
+// Folds the values in halves: loops of known length, which need no order of their own.
+template <int HALF>
+BLEM_SIM_INLINE void fold(float* values) {
+  for (int i = 0; i < HALF; ++i) values[i] = values[i + HALF] > values[i] ? values[i + HALF] : values[i];
+}
+
+BLEM_SIM_INLINE float largest(float (&values)[WRENCH_DIRECTIONS]) {
+  static_assert(WRENCH_DIRECTIONS == 256, "folded to 16");
+  fold<128>(values);
+  fold<64>(values);
+  fold<32>(values);
+  fold<16>(values);
+  fold<8>(values);
+  fold<4>(values);
+  const float a = values[0] > values[1] ? values[0] : values[1], b = values[2] > values[3] ? values[2] : values[3];
+  return a > b ? a : b;
+}
+
+BLEM_SIM_INLINE void clear(WrenchComponents* components) {
+  for (int d = 0; d < WRENCH_DIRECTIONS; ++d) components->value[d] = -__builtin_inff();
+}
+
+}  // namespace
+
+BLEM_SIM_LANES void findWrenches(const WrenchDirections& directions, const WrenchPoint* points, int count, WrenchComponents* components,
+                                 WrenchComponents* extremes) {
+  clear(extremes);
+  for (int i = 0; i < count; ++i) {
+    const WrenchPoint point = points[i];
+    float* values = components[i].value;
+    for (int d = 0; d < WRENCH_DIRECTIONS; ++d) values[d] = wrenchComponent(directions, point, d);
+    raise(components[i], point.handicap, extremes);
   }
-  for (int block = 0; block < WRENCH_DIRECTIONS; block += LANES) {
-    for (int lane = 0; lane < LANES; ++lane) {
-      const int d = block + lane;
-      const float component = wrenchComponent(directions, p, d);
-      reached[d] = component > reached[d] ? component : reached[d];
-      const float lack = extremes.value[d] - reached[d];
-      const bool more = lack > most[lane];
-      most[lane] = more ? lack : most[lane];
-      where[lane] = more ? d : where[lane];
-    }
-  }
-  WrenchLack worst{most[0], where[0]};
-  for (int lane = 1; lane < LANES; ++lane) {
-    if (most[lane] > worst.most || (most[lane] == worst.most && where[lane] < worst.direction)) worst = {most[lane], where[lane]};
-  }
-  return worst;
+}
+
+BLEM_SIM_LANES void findWrenchExtremes(const WrenchComponents* components, const WrenchPoint* points, int count,
+                                       WrenchComponents* extremes) {
+  clear(extremes);
+  for (int i = 0; i < count; ++i) raise(components[i], points[i].handicap, extremes);
+}
+
+BLEM_SIM_LANES float addWrenches(const WrenchComponents& components, float handicap, const WrenchComponents& extremes,
+                                 WrenchComponents* reached) {
+  raise(components, handicap, reached);
+  float lacks[WRENCH_DIRECTIONS];
+  for (int d = 0; d < WRENCH_DIRECTIONS; ++d) lacks[d] = extremes.value[d] - reached->value[d];
+  return largest(lacks);
+}
+
+BLEM_SIM_LANES int firstLacking(const WrenchComponents& extremes, const WrenchComponents& reached, float lack) {
+  // Counted back from the end, as floats, so that one maximum serves both.
+  float left[WRENCH_DIRECTIONS];
+  for (int d = 0; d < WRENCH_DIRECTIONS; ++d)
+    left[d] = extremes.value[d] - reached.value[d] == lack ? static_cast<float>(WRENCH_DIRECTIONS - d) : 0;
+  return WRENCH_DIRECTIONS - static_cast<int>(largest(left));
 }
 
 BLEM_SIM_LANES int raiseCellExtremes(const CellPoints& points, int count, int* raising) {
@@ -111,17 +119,116 @@ BLEM_SIM_LANES int keepExtremePoints(const CellPoints& points, int count, int* a
   return size;
 }
 
-BLEM_SIM_LANES int findOutside(const Octagon& octagon, double depth, const PlanePlace* points, int count, int* found) {
-  int size = 0;
+namespace {
+
+template <int DIRECTIONS>
+BLEM_SIM_INLINE int farthestOf(const PlaneDirections& directions, const double* x, const double* y, int count, PlaneExtremes* extremes,
+                               int* found) {
+  for (int d = 0; d < DIRECTIONS; ++d) extremes->value[d] = -__builtin_inf();
+  int raising = 0;
   for (int i = 0; i < count; ++i) {
-    const PlanePlace p = points[i];
-    int outside = p.depth > depth;
-    for (int s = 0; s < OCTAGON_SIDES; ++s)
-      outside |= octagon.dx[s] * (p.y - octagon.y[s]) - octagon.dy[s] * (p.x - octagon.x[s]) <= octagon.limit[s];
-    found[size] = i;
-    size += outside;
+    const double px = x[i], py = y[i];
+    long raises = 0;
+    for (int d = 0; d < DIRECTIONS; ++d) {
+      const double along = directions.along(d, px, py), before = extremes->value[d];
+      raises |= along >= before;
+      extremes->value[d] = along > before ? along : before;
+    }
+    found[raising] = i;
+    raising += raises != 0;
+  }
+  int size = 0;
+  for (int r = 0; r < raising; ++r) {
+    const double px = x[found[r]], py = y[found[r]];
+    long extreme = 0;
+    for (int d = 0; d < DIRECTIONS; ++d) extreme |= directions.along(d, px, py) == extremes->value[d];
+    found[size] = found[r];
+    size += extreme != 0;
   }
   return size;
+}
+
+}  // namespace
+
+BLEM_SIM_LANES int findFarthest(const PlaneDirections& directions, const double* x, const double* y, int count, PlaneExtremes* extremes,
+                                int* found) {
+  return farthestOf<PLANE_DIRECTIONS>(directions, x, y, count, extremes, found);
+}
+
+BLEM_SIM_LANES int findFarthestOfOctagon(const PlaneDirections& directions, const double* x, const double* y, int count,
+                                         PlaneExtremes* extremes, int* found) {
+  return farthestOf<OCTAGON_SIDES>(directions, x, y, count, extremes, found);
+}
+
+BLEM_SIM_LANES int findOutside(const Octagon& octagon, const double* x, const double* y, int count, int* found) {
+  constexpr int BLOCK = 64;
+  int size = 0;
+  for (int first = 0; first < count; first += BLOCK) {
+    const int some = count - first < BLOCK ? count - first : BLOCK;
+    double least[BLOCK];  // that a point is inside by, more than it must
+    for (int i = 0; i < BLOCK; ++i) least[i] = __builtin_inf();
+    for (int s = 0; s < OCTAGON_SIDES; ++s) {
+      const double dx = octagon.dx[s], dy = octagon.dy[s], sx = octagon.x[s], sy = octagon.y[s], limit = octagon.limit[s];
+      for (int i = 0; i < some; ++i) {
+        const double inside = dx * (y[first + i] - sy) - dy * (x[first + i] - sx) - limit;
+        least[i] = inside < least[i] ? inside : least[i];
+      }
+    }
+    for (int i = 0; i < some; ++i) {
+      found[size] = first + i;
+      size += least[i] <= 0;
+    }
+  }
+  return size;
+}
+
+namespace {
+
+// Right angles from the x-axis, on the unit circle of the sum norm: as good as angles to tell what comes first.
+BLEM_SIM_INLINE double angleOf(double dx, double dy) {
+  const double around = (dx < 0 ? -dx : dx) + (dy < 0 ? -dy : dy), part = dy / (around > 0 ? around : 1);
+  return dx < 0 ? 2 - part : (dy < 0 ? 4 + part : part);
+}
+
+BLEM_SIM_INLINE double angleFrom(double from, double least, double angle) {
+  const double relative = angle - from;
+  return relative < least ? relative + 4 : (relative >= least + 4 ? relative - 4 : relative);
+}
+
+}  // namespace
+
+void Fan::start(double middle_x, double middle_y, bool closed) {
+  x = middle_x;
+  y = middle_y;
+  least = closed ? 0 : -1;
+  sides.clear();
+}
+
+void Fan::addSide(double to_x, double to_y) {
+  const double angle = angleOf(to_x - x, to_y - y);
+  if (sides.empty()) from = angle;
+  sides.push_back(angleFrom(from, least, angle));
+}
+
+BLEM_SIM_LANES void findSectors(const Fan& fan, const double* x, const double* y, int count, int* sectors) {
+  constexpr int BLOCK = 64;
+  const double middle_x = fan.x, middle_y = fan.y, from = fan.from, least = fan.least;
+  const double* sides = fan.sides.data();
+  const int side_count = static_cast<int>(fan.sides.size());
+  for (int first = 0; first < count; first += BLOCK) {
+    const int some = count - first < BLOCK ? count - first : BLOCK;
+    double angles[BLOCK];
+    long passed[BLOCK];
+    for (int i = 0; i < some; ++i) {
+      angles[i] = angleFrom(from, least, angleOf(x[first + i] - middle_x, y[first + i] - middle_y));
+      passed[i] = 0;
+    }
+    for (int s = 1; s < side_count; ++s) {
+      const double side = sides[s];
+      for (int i = 0; i < some; ++i) passed[i] += angles[i] >= side ? 1 : 0;
+    }
+    for (int i = 0; i < some; ++i) sectors[first + i] = static_cast<int>(passed[i]);
+  }
 }
 
 }  // namespace blem_sim

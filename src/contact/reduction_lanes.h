@@ -1,13 +1,13 @@
 // The reduction's loops over all contacts, in plain arrays that compilers turn into vector code; the same bits on every processor.
 #pragma once
 
-#include <array>
-#include <cstddef>
+#include <vector>
 
 namespace blem_sim {
 
 constexpr int WRENCH_DIRECTIONS = 256;  // more cost time, fewer leave extremes unseen
 constexpr int CELL_DIRECTIONS = 16;
+constexpr int PLANE_DIRECTIONS = 32;
 constexpr int OCTAGON_SIDES = 8;
 
 /** Directions in the space of wrenches: force and torque parts by axis. */
@@ -20,23 +20,24 @@ struct WrenchPoint {
   float x[3], n[3], handicap;
 };
 
-/** By direction: a largest component of wrenches, and the first point that has it. */
-struct alignas(64) WrenchExtremes {
+/** Of one point's wrenches, or the largest of several, by direction. */
+struct alignas(64) WrenchComponents {
   float value[WRENCH_DIRECTIONS];
-  int point[WRENCH_DIRECTIONS];
 };
 
-/** Largest components of the wrenches (f, x f) with f in the friction cone, of unit normal force, over all points. Precondition: count > 0.
- */
-void findWrenchExtremes(const WrenchDirections& directions, const WrenchPoint* points, int count, WrenchExtremes* extremes);
+/** Largest components of the wrenches (f, x f) with f in the friction cone, of unit normal force, without handicaps: into
+ * components[count]; and the largest of all points, less their handicaps. */
+void findWrenches(const WrenchDirections& directions, const WrenchPoint* points, int count, WrenchComponents* components,
+                  WrenchComponents* extremes);
 
-struct WrenchLack {
-  float most;
-  int direction;
-};
+/** The extremes alone, when handicaps have changed. */
+void findWrenchExtremes(const WrenchComponents* components, const WrenchPoint* points, int count, WrenchComponents* extremes);
 
-/** Raises `reached`, by direction, to what this point adds. @return where most is lacking of the extremes */
-WrenchLack addWrenches(const WrenchDirections& directions, const WrenchPoint& point, const WrenchExtremes& extremes, float* reached);
+/** Raises `reached` to what a point with these components adds. @return what is lacking most of the extremes, in some direction */
+float addWrenches(const WrenchComponents& components, float handicap, const WrenchComponents& extremes, WrenchComponents* reached);
+
+/** The first direction in which so much is lacking; WRENCH_DIRECTIONS if there is none. */
+int firstLacking(const WrenchComponents& extremes, const WrenchComponents& reached, float lack);
 
 /** Weights of places and normals, by direction, in a cell of alike normals. */
 struct alignas(64) CellDirections {
@@ -62,17 +63,49 @@ int raiseCellExtremes(const CellPoints& points, int count, int* raising);
 /** Leaves those of the points that are extreme in a direction of their cell. @return how many */
 int keepExtremePoints(const CellPoints& points, int count, int* among);
 
-/** A point in a plane. */
-struct PlanePlace {
-  double x, y, depth;
+/** Points of a flat patch, seen along its normal, coordinate by coordinate. */
+struct PlanePlaces {
+  std::vector<double> x, y, depth;
 };
 
-/** A line through `from` along (dx, dy): what lies more than `limit` / length to its left is inside. */
-struct alignas(64) Octagon {
+/** Directions in a plane, and the farthest that points reach along them. */
+struct alignas(64) PlaneDirections {
+  double x[PLANE_DIRECTIONS], y[PLANE_DIRECTIONS];
+  double along(int d, double px, double py) const { return x[d] * px + y[d] * py; }
+};
+struct alignas(64) PlaneExtremes {
+  double value[PLANE_DIRECTIONS];
+};
+
+/** Indices of the points that are farthest along some direction, ascending, into found[count]. @return how many */
+int findFarthest(const PlaneDirections& directions, const double* x, const double* y, int count, PlaneExtremes* extremes, int* found);
+/** The same along the first OCTAGON_SIDES directions alone. */
+int findFarthestOfOctagon(const PlaneDirections& directions, const double* x, const double* y, int count, PlaneExtremes* extremes,
+                          int* found);
+
+/** Lines through (x, y) along (dx, dy): what lies more than `limit` / length to their left is inside. */
+struct Octagon {
   double x[OCTAGON_SIDES], y[OCTAGON_SIDES], dx[OCTAGON_SIDES], dy[OCTAGON_SIDES], limit[OCTAGON_SIDES];
 };
 
-/** Indices of the points that are not inside all sides or deeper than `depth`, ascending, into found[count]. @return how many */
-int findOutside(const Octagon& octagon, double depth, const PlanePlace* points, int count, int* found);
+/** Indices of the points that are not inside all sides, ascending, into found[count]. @return how many */
+int findOutside(const Octagon& octagon, const double* x, const double* y, int count, int* found);
+
+/** Triangles around a point, counter-clockwise. Keeps its memory. */
+class Fan {
+ public:
+  /** @param closed whether the last triangle borders on the first */
+  void start(double x, double y, bool closed);
+  /** The first side of the next triangle goes to (x, y). */
+  void addSide(double x, double y);
+
+  double x = 0, y = 0;
+  double from = 0;            ///< the first side's angle, in right angles, as unit circles of the sum norm count them
+  double least = 0;           ///< other angles are counted from it on, from `from`
+  std::vector<double> sides;  ///< angles, counted so, ascending
+};
+
+/** The triangle's index in whose angle each point lies, or the nearest if there is none: into sectors[count]. */
+void findSectors(const Fan& fan, const double* x, const double* y, int count, int* sectors);
 
 }  // namespace blem_sim

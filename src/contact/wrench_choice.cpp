@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "contact_order.h"
+#include "overtaken.h"
 #include "reduction_lanes.h"
 
 namespace blem_sim {
@@ -66,37 +67,49 @@ int deepest(const std::vector<Contact>& contacts, const std::vector<int>& candid
 
 class Choice {
  public:
-  void start(const std::vector<Contact>& contacts, const std::vector<int>& candidates, const PatchScale& scale) {
+  /** Candidates that cannot be extreme are left out. */
+  void start(const std::vector<Contact>& contacts, const PatchScale& scale, const ContactIds& chosen_before, std::vector<int>* candidates) {
     points_.clear();
-    for (const int candidate : candidates) points_.push_back(wrenchPoint(contacts[candidate], scale));
-    findWrenchExtremes(directions_, points_.data(), static_cast<int>(points_.size()), &extremes_);
+    for (const int candidate : *candidates) points_.push_back(wrenchPoint(contacts[candidate], scale));
+    dropOvertaken(contacts, chosen_before, candidates, &points_);
+    if (components_.size() < points_.size()) components_.resize(points_.size());
+    findWrenches(directions_, points_.data(), static_cast<int>(points_.size()), components_.data(), &extremes_);
   }
 
   /** From now on depth counts too. */
   void countDepth(const std::vector<Contact>& contacts, const std::vector<int>& candidates) {
     for (std::size_t i = 0; i < candidates.size(); ++i)
       points_[i].handicap -= static_cast<float>(std::max(0.0, contacts[candidates[i]].depth) / DEPTH_SCALE);
-    findWrenchExtremes(directions_, points_.data(), static_cast<int>(points_.size()), &extremes_);
+    findWrenchExtremes(components_.data(), points_.data(), static_cast<int>(points_.size()), &extremes_);
   }
 
   /** Adds to `chosen`, indices of candidates, the extreme ones of the directions that lack most, until k are chosen or nothing lacks.
    * @return what still lacks most */
   float addExtremes(int k, std::vector<int>* chosen) {
-    std::fill(std::begin(reached_), std::end(reached_), -std::numeric_limits<float>::infinity());
-    WrenchLack lack{};
-    for (const int candidate : *chosen) lack = addWrenches(directions_, points_[candidate], extremes_, reached_);
-    while (lack.most > NOTHING_LACKS && static_cast<int>(chosen->size()) < k) {
-      chosen->push_back(extremes_.point[lack.direction]);
-      lack = addWrenches(directions_, points_[chosen->back()], extremes_, reached_);
+    std::fill(std::begin(reached_.value), std::end(reached_.value), -std::numeric_limits<float>::infinity());
+    float lack = 0;
+    for (const int candidate : *chosen) lack = add(candidate);
+    while (lack > NOTHING_LACKS && static_cast<int>(chosen->size()) < k) {
+      chosen->push_back(extremeAlong(firstLacking(extremes_, reached_, lack)));
+      lack = add(chosen->back());
     }
-    return lack.most;
+    return lack;
   }
 
  private:
+  float add(int candidate) { return addWrenches(components_[candidate], points_[candidate].handicap, extremes_, &reached_); }
+
+  /** The first candidate that is extreme in a direction. */
+  int extremeAlong(int direction) const {
+    int first = 0;
+    while (components_[first].value[direction] - points_[first].handicap != extremes_.value[direction]) ++first;
+    return first;
+  }
+
   const WrenchDirections directions_ = makeDirections();
   std::vector<WrenchPoint> points_;
-  WrenchExtremes extremes_;
-  alignas(64) float reached_[WRENCH_DIRECTIONS];
+  std::vector<WrenchComponents> components_;  // of the points; not fewer
+  WrenchComponents extremes_, reached_;
 };
 
 // Indices of those candidates that were chosen before; none if they are too many. Both are sorted by id.
@@ -135,8 +148,8 @@ void chooseSpanningContacts(const std::vector<Contact>& contacts, const std::vec
   static thread_local Choice choice;
   static thread_local std::vector<int> continued;
   sortCanonically(contacts, candidates);
+  choice.start(contacts, scale, chosen_before, candidates);
   const int deep = deepest(contacts, *candidates, scale);
-  choice.start(contacts, *candidates, scale);
 
   findContinued(contacts, *candidates, k, chosen_before, &continued);
   float lack = std::numeric_limits<float>::infinity();

@@ -58,6 +58,17 @@ TEST_P(Budgets, HoldWithMoreManifoldsThanContactsAllowed) {
   EXPECT_EQ(contactsOf(1, manifolds, robot, world), 4);
 }
 
+TEST(HullBudget, CountsWhatHullsNeedAndNoMore) {
+  std::vector<ContactManifold> manifolds = {manifoldOf(0, 1, flatPatch(300, {0, 0, 1}, {0, 0, 0})), manifoldOf(0, 2, noisyPatch(90, 6))};
+  const std::size_t corners = reducedBy(*findReduction("hull"), manifolds[0].contacts, 40).size();
+  ASSERT_LT(corners, 20u);
+  ReductionMemory memory;
+  reduceAll(manifolds, {1, 1}, {0, 0}, {{INT_MAX}, {40}}, *findReduction("hull"), &memory);
+  const double share = 40.0 * corners / (corners + 40);  // of what it asks for, as the noisy one asks for 40
+  EXPECT_NEAR(static_cast<double>(manifolds[0].contacts.size()), share, 1);
+  EXPECT_EQ(manifolds[0].contacts.size() + manifolds[1].contacts.size(), 40u);
+}
+
 TEST_P(Budgets, ChoosePiercedContactsLast) {
   if (method().reduce == reduceNone) return;  // has no choice
   Contacts contacts = noisyPatch(300);

@@ -325,6 +325,53 @@ TEST(ReduceHull, SpansTheWrenchesOfANoisyPatch) {
   }
 }
 
+// A tilted patch: what does not touch yet counts less by its gap, and most of it nowhere at all.
+TEST(ReduceHull, KeepsTheExtremesOfWhatHardlyTouches) {
+  Noise noise(41);
+  for (int trial = 0; trial < 30; ++trial) {
+    Contacts all = noisyPatch(95, 300 + trial);
+    const double slope = 2e-3 * std::pow(10, noise());
+    for (Contact& c : all) c.depth = slope * (c.point.x() - 0.03) + 1e-5 * noise();
+    const auto reach = [](const Contacts& contacts, const Vector3& a, const Vector3& b) {
+      double most = -std::numeric_limits<double>::infinity();
+      for (const Contact& c : contacts) most = std::max(most, support({c}, a, b) - 5000 * std::max(0.0, -c.depth));
+      return most;
+    };
+    const Contacts reduced = reducedBy(*findReduction("hull"), all, 60);
+    double sum = 0, level = 0;
+    for (int d = 0; d < 300; ++d) {
+      const Vector3 a(noise(), noise(), noise()), b(Vector3(noise(), noise(), noise()) / 0.05);
+      sum += reach(all, a, b) - reach(reduced, a, b);
+      level += std::abs(reach(all, a, b));
+    }
+    EXPECT_LT(sum, 0.03 * level) << trial;
+  }
+}
+
+// A wheel with more corners than may be kept: no hull, and still as good a choice as any.
+TEST(ReduceHull, SpansAPatchOfManyCorners) {
+  Noise noise(42);
+  Contacts all;
+  for (int i = 0; i < 90; ++i) {
+    const double angle = 2 * M_PI * i / 90, radius = i % 3 ? 0.05 : 0.03;
+    all.push_back(makeContact({radius * std::cos(angle), radius * std::sin(angle), 0}, {0, 0, 1}, 1e-3, i));
+  }
+  const Contacts reduced = reducedBy(*findReduction("hull"), all, 20);
+  EXPECT_EQ(reduced.size(), 20u);
+  EXPECT_LT(supportError(all, reduced).mean, 0.01);
+}
+
+// Vertices that coincide but for rounding are one corner, however many they are.
+TEST(ReduceHull, KeepsFourCornersOfManyVerticesEach) {
+  Noise noise(43);
+  Contacts all;
+  for (int i = 0; i < 80; ++i) {
+    const Vector3 corner(0.05 * (i % 4 / 2), 0.05 * (i % 2), 0);
+    all.push_back(makeContact(corner + 1e-8 * Vector3(noise(), noise(), 0), {0, 0, 1}, 1e-3, i));
+  }
+  EXPECT_EQ(reducedBy(*findReduction("hull"), all, 7).size(), 4u);
+}
+
 TEST(ReduceKmeans, AveragesWhatBelongsTogether) {
   Contacts contacts;
   for (int i = 0; i < 10; ++i) {

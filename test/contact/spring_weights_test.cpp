@@ -42,6 +42,36 @@ TEST(SpringWeights, HoldWhateverTheTessellation) {
   EXPECT_NEAR(totalWeight(coarse), totalWeight(contacts), 0.1);
 }
 
+/** What spring_weights.cpp says, contact by contact and with the library's exponential. */
+double weightByDefinition(const std::vector<Contact>& contacts, std::size_t i) {
+  constexpr int DIRECTIONS = 32;
+  double share = 0;
+  for (int m = 0; m < DIRECTIONS; ++m) {
+    const double z = (2.0 * m + 1) / DIRECTIONS - 1, r = std::sqrt(1 - z * z), angle = 2.39996322972865332 * m;
+    const auto height = [&](const Contact& c) {
+      return (Vector3(r * std::cos(angle), r * std::sin(angle), z).dot(c.point) + 20 * c.depth) / 0.005;
+    };
+    double all = 0;
+    for (const Contact& c : contacts)
+      all += std::max(0.0, 1 - (c.normal_BA - contacts[i].normal_BA).norm() / 0.5) * std::exp(height(c) - height(contacts[i]));
+    share += 1 / all / DIRECTIONS;
+  }
+  return std::min(5 * share, 1.0);
+}
+
+TEST(SpringWeights, AreWhatTheirDefinitionSays) {
+  std::vector<Contact> contacts = noisyPatch(30);
+  for (const Contact& c : flatPatch(20, {0.2, 0.1, 1}, {0.03, 0, 0})) contacts.push_back(c);
+  weighSprings(contacts);
+  double least = 1;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const double expected = weightByDefinition(contacts, i);
+    EXPECT_NEAR(contacts[i].weight, std::max(expected, 1e-6), 1e-12) << i;
+    least = std::min(least, expected);
+  }
+  EXPECT_LT(least, 0.1);  // else they are hardly weighed
+}
+
 TEST(SpringWeights, OfSidesOfACornerAreTheirOwn) {
   std::vector<Contact> contacts;
   for (int axis = 0; axis < 3; ++axis) {

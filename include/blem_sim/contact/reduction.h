@@ -80,9 +80,10 @@ struct ContactBudget {
 };
 
 /**
- * Reduces every manifold so that the contacts of each model sum to at most its k: each manifold is reduced by `method` first with the
- * smaller k of its two models; where a model still has too many, its manifolds share k in proportion to what they have, each at
- * least one (3 if it has them, and k allows). Pierced contacts are kept out of the choice while others exist.
+ * Reduces every manifold so that the contacts of each model sum to at most its k: each manifold asks for what `method` would keep with the
+ * smaller k of its two models; where a model has too many then, its manifolds share k in proportion to what they ask for, each at
+ * least one (3 if it has them, and k allows). `hull` chooses once, when shares are known; others, and pierced contacts, are reduced again.
+ * Pierced contacts are kept out of the choice while others exist.
  * @param manifolds before reduction, sorted by (a, b)
  * @param model_a, model_b models of the two colliders of each manifold, indices into budgets
  * @param memory of the last reduction, overwritten by this one's

@@ -1,0 +1,27 @@
+// The reduction "hull" in its two steps, so that budgets can be shared out in between.
+#pragma once
+
+#include <vector>
+
+#include "blem_sim/contact/manifold.h"
+#include "blem_sim/contact/reduction.h"
+#include "patch_frame.h"
+
+namespace blem_sim {
+
+/** What of some contacts says all that the others say. */
+struct ThinnedContacts {
+  PatchScale scale;
+  std::vector<int> kept;  ///< indices
+};
+
+/** Leaves out what the corners of flat patches imply; of patches that have more than k corners, nothing. @return false if some contact is
+ * not finite or its normal not unit: nothing is done
+ */
+bool thinToHulls(const std::vector<Contact>& contacts, int k, ThinnedContacts* thinned);
+
+/** What is kept, or k of it that span the wrenches best. @param reduced overwritten; sorted by id */
+void chooseFromHulls(const std::vector<Contact>& contacts, const ThinnedContacts& thinned, int k, const ContactIds& chosen_before,
+                     std::vector<Contact>* reduced);
+
+}  // namespace blem_sim

@@ -1,0 +1,63 @@
+#include "overtaken.h"
+
+#include <cmath>
+
+namespace blem_sim {
+
+namespace {
+
+constexpr int PIVOTS = 7;
+// A largest component changes by no more than these times the way to another place [radii], and to another normal: both stem from
+// |g.n + mu |g - (g.n) n|| <= sqrt(1 + mu^2) |g|, with mu 0.5, |g| <= sqrt(2), and angles up to pi / 2 times their chords.
+constexpr float PER_PLACE = 1.12f, PER_NORMAL = 2.49f;
+constexpr float ROUNDING = 1e-3f;
+
+float distance(const float (&a)[3], const float (&b)[3]) {
+  const float x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
+  return std::sqrt(x * x + y * y + z * z);
+}
+
+// The farthest along every axis, both ways, handicaps counted, and the one with the least handicap: they exceed most of those that can be.
+void findPivots(const std::vector<WrenchPoint>& points, WrenchPoint* pivots) {
+  float most[PIVOTS];
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const WrenchPoint& p = points[i];
+    const float along[PIVOTS] = {p.x[0], -p.x[0], p.x[1], -p.x[1], p.x[2], -p.x[2], 0};
+    for (int d = 0; d < PIVOTS; ++d) {
+      const float reach = along[d] - p.handicap;
+      if (i > 0 && reach <= most[d]) continue;
+      most[d] = reach;
+      pivots[d] = p;
+    }
+  }
+}
+
+bool isOvertaken(const WrenchPoint& point, const WrenchPoint* pivots) {
+  for (int d = 0; d < PIVOTS; ++d) {
+    const float lead = point.handicap - pivots[d].handicap - ROUNDING;
+    if (lead > 0 && lead > PER_PLACE * distance(point.x, pivots[d].x) + PER_NORMAL * distance(point.n, pivots[d].n)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+void dropOvertaken(const std::vector<Contact>& contacts, const ContactIds& spared, std::vector<int>* candidates,
+                   std::vector<WrenchPoint>* points) {
+  WrenchPoint pivots[PIVOTS];
+  findPivots(*points, pivots);
+  std::size_t left = 0;
+  auto spare = spared.begin();
+  for (std::size_t i = 0; i < candidates->size(); ++i) {
+    const std::uint64_t id = contacts[(*candidates)[i]].id;
+    while (spare != spared.end() && *spare < id) ++spare;
+    const bool is_spared = spare != spared.end() && *spare == id;
+    if (!is_spared && isOvertaken((*points)[i], pivots)) continue;
+    (*candidates)[left] = (*candidates)[i];
+    (*points)[left++] = (*points)[i];
+  }
+  candidates->resize(left);
+  points->resize(left);
+}
+
+}  // namespace blem_sim
