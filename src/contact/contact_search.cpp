@@ -246,7 +246,7 @@ class ContactSearch {
     buffers_.turned.turnForContacts(memory_.lists, pair_.X_FM);
     Evaluation(pair_, &memory_.lists, nearestPairs(), &buffers_, &found_).findContacts();
     if (!apart) {
-      refreshCrossingLists(keeps ? marginOf(CROSSING_STEPS) : ListMargin());
+      refreshCrossingLists(keeps && !isFast() ? marginOf(CROSSING_STEPS) : ListMargin());
       CandidateLists& lists = memory_.crossing_lists;
       buffers_.turned.turnForCrossings(lists, pair_.X_FM);
       Evaluation(pair_, &lists, lists.pairs, &buffers_, &found_).findCrossings();
@@ -263,9 +263,12 @@ class ContactSearch {
     memory_.fixed = pair_.fixed.identity;
   }
 
+  /** Too fast for lists to last. */
+  bool isFast() const { return FEWEST_STEPS * motion_.motion > MOST_MARGIN * pair_.range; }
+
   ListMargin chooseMargin() const {
     if (!memory_.visited) return {FIRST_MARGIN * pair_.range, FIRST_TURN};
-    if (FEWEST_STEPS * motion_.motion > MOST_MARGIN * pair_.range) return {};
+    if (isFast()) return {};
     const double steps = MARGIN_STEPS * partOf(pair_.X_FM);
     return {std::clamp(steps * motion_.motion, LEAST_MARGIN * pair_.range, MOST_MARGIN * pair_.range),
             std::max(steps * motion_.turn, LEAST_TURN)};
@@ -293,7 +296,8 @@ class ContactSearch {
 
   /** For so many steps of the present motion. */
   ListMargin marginOf(double steps) const {
-    return {std::max(steps * motion_.motion, LEAST_NEAREST_MARGIN * pair_.range), std::max(steps * motion_.turn, LEAST_NEAREST_TURN)};
+    return {std::clamp(steps * motion_.motion, LEAST_NEAREST_MARGIN * pair_.range, MOST_MARGIN * pair_.range),
+            std::max(steps * motion_.turn, LEAST_NEAREST_TURN)};
   }
 
   /** The candidates to test, good lists given. */
