@@ -45,15 +45,21 @@ class KnownContacts {
 
 /** Drops the records that no candidate names, so that they lie as close as they can; `indices` are told where theirs went. */
 template <typename Record>
-void compact(const std::vector<std::uint32_t*>& indices, FeatureRecords<Record>* features) {
+void compact(const std::vector<std::uint32_t*>& indices, FeatureRecords<Record>* features,
+             std::vector<kernels::OpenSides>* open = nullptr) {
   constexpr std::uint32_t NOWHERE = 0xFFFFFFFF;
   std::vector<std::uint32_t> place(features->names.size(), NOWHERE);
   FeatureRecords<Record> kept;
+  std::vector<kernels::OpenSides> kept_open;
   for (std::uint32_t* index : indices) {
-    if (place[*index] == NOWHERE) place[*index] = kept.add(features->records[*index], features->names[*index]);
+    if (place[*index] == NOWHERE) {
+      place[*index] = kept.add(features->records[*index], features->names[*index]);
+      if (open) kept_open.push_back((*open)[*index]);
+    }
     *index = place[*index];
   }
   *features = std::move(kept);
+  if (open) *open = std::move(kept_open);
 }
 
 /** The pairs of features of two meshes that have a contact, and the kernels on them. */
@@ -140,7 +146,7 @@ class KnownPairs {
     for (const bool moves : {true, false}) {
       compact(vertices[moves], &lists_.near[moves].vertices);
       compact(edges[moves], &lists_.near[moves].edges);
-      compact(faces[moves], &lists_.near[moves].faces);
+      compact(faces[moves], &lists_.near[moves].faces, &lists_.near[moves].open);
     }
   }
 
