@@ -48,7 +48,8 @@ class GreetingPublisher {
       state_->message = message;
       state_->round = PollRounds::instance().count();
     }
-    publisher_.publish(message);
+    // As a value: a shared one is not queued where only this program listens, and who links in this round would miss it.
+    publisher_.publish(*message);
   }
 
   /** There is no last message any more. */
