@@ -1,22 +1,11 @@
 // The contacts of two meshes, from lists of candidates that are kept while they are good.
 #pragma once
 
-#include <vector>
-
 #include "candidate_lists.h"
-#include "edge_crossing.h"
+#include "contact_evaluation.h"
 #include "mesh_pair.h"
 
 namespace blem_sim {
-
-/** What a search finds. */
-struct FoundContacts {
-  std::vector<FeatureContact> plain;  ///< each in a place of its own
-  std::vector<FeatureContact> close;  ///< some may be in one place, or have one name
-  std::vector<Crossing> crossings;
-
-  void clear();
-};
 
 /** Where a list of candidates was made: it is good while the meshes have not moved against each other by more than the margin. */
 struct ListOrigin {
@@ -41,11 +30,7 @@ struct ContactSearchMemory {
 /** What searches of one thread work in. */
 struct ContactSearchBuffers {
   CandidateSearchBuffers search;
-  TurnedFeatures turned;
-  std::vector<kernels::VertexFaceHit> vertex_faces;
-  std::vector<kernels::EdgeEdgeHit> edge_edges;
-  std::vector<std::uint32_t> hits, last_plane;
-  std::vector<kernels::Candidate> planes_below;
+  EvaluationBuffers evaluation;
   ContactSearchMemory unknown;  ///< for searches without a memory
 };
 

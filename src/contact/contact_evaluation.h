@@ -1,0 +1,63 @@
+// Which candidates have a contact, or cross, and where.
+#pragma once
+
+#include <vector>
+
+#include "border_fade.h"
+#include "candidate_lists.h"
+#include "edge_crossing.h"
+#include "exact_tests.h"
+#include "mesh_pair.h"
+
+namespace blem_sim {
+
+/** What a search finds. */
+struct FoundContacts {
+  std::vector<FeatureContact> plain;  ///< each in a place of its own
+  std::vector<FeatureContact> close;  ///< some may be in one place, or have one name
+  std::vector<Crossing> crossings;
+
+  void clear();
+};
+
+/** What evaluations work in. */
+struct EvaluationBuffers {
+  TurnedFeatures turned;
+  std::vector<kernels::VertexFaceHit> vertex_faces;
+  std::vector<kernels::EdgeEdgeHit> edge_edges;
+  std::vector<std::uint32_t> hits, last_plane;
+  std::vector<kernels::Candidate> planes_below;
+};
+
+/** Turns candidates into contacts. */
+class Evaluation {
+ public:
+  /** @param pairs of the lists, all or those that matter; the features of the lists must have been turned */
+  Evaluation(const MeshPair& pair, CandidateLists* lists, const CandidatePairs& pairs, EvaluationBuffers* buffers, FoundContacts* found)
+      : pair_(pair), lists_(*lists), pairs_(pairs), buffers_(*buffers), found_(*found), exact_(pair, &found->close), fades_(pair, lists) {}
+
+  void findContacts();
+  void findCrossings();
+
+ private:
+  std::uint32_t* room(const std::vector<kernels::Candidate>& candidates);
+  template <typename Visit>
+  void forEachHit(const std::vector<kernels::Candidate>& candidates, std::uint32_t count, Visit&& visit) const;
+
+  void vertexFaces(bool moves);
+  void addPlain(bool moves, const kernels::Candidate& c, const kernels::VertexFaceHit& hit);
+  void addFading(bool moves, const kernels::Candidate& c, double height);
+  void edgeEdges(const kernels::EdgeRecord* moving, const kernels::EdgeRecord* fixed);
+  void vertexEdges(bool moves, const kernels::Vec4* vertices, const kernels::EdgeRecord* edges);
+  void vertexVertices(const kernels::Vec4* moving, const kernels::Vec4* fixed);
+
+  const MeshPair& pair_;
+  CandidateLists& lists_;
+  const CandidatePairs& pairs_;
+  EvaluationBuffers& buffers_;
+  FoundContacts& found_;
+  ExactTests exact_;
+  BorderFades fades_;
+};
+
+}  // namespace blem_sim
