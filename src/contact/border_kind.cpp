@@ -7,31 +7,41 @@
 namespace blem_sim {
 namespace {
 
-/** How steeply (sine) the face's neighbours over an edge rise out of its plane towards `up`, the mesh's frame; negative where they fall. */
-double neighbourSlope(const MeshSide& side, int face, int edge, const Vector3& up) {
-  double slope = -1;
-  for (const int neighbour : side.topology.facesOf(edge)) {
-    if (side.topology.patchOf(neighbour) == side.topology.patchOf(face)) continue;
-    slope = std::max(slope, side.topology.inward(side.mesh, edge, neighbour).dot(up));
+/** How steeply (sine) the face's neighbours over an edge rise out of its plane; negative where they fall. */
+struct NeighbourSlopes {
+  NeighbourSlopes(const MeshSide& side, int face, int edge) {
+    const Vector3 normal = MeshTopology::normal(side.mesh, face);
+    for (const int neighbour : side.topology.facesOf(edge)) {
+      if (side.topology.patchOf(neighbour) == side.topology.patchOf(face)) continue;
+      const double slope = side.topology.inward(side.mesh, edge, neighbour).dot(normal);
+      above = std::max(above, slope);
+      below = std::max(below, -slope);
+    }
   }
-  return slope;
-}
+  double above = -1, below = -1;  ///< seen from there
+};
+
+bool rises(double slope) { return slope > CONE_SLACK; }
 
 }  // namespace
 
 BorderKind borderKind(const MeshSide& side, int face, int k, bool above) {
   const int edge = side.topology.edgeOf(face, k);
   if (side.topology.isFlatEdge(edge)) return BorderKind::FLAT;
-  const Vector3 normal = MeshTopology::normal(side.mesh, face);
-  const double rise = neighbourSlope(side, face, edge, above ? normal : Vector3(-normal));
-  if (rise > CONE_SLACK) return rise > NEAR_SUCCESSOR ? BorderKind::RISING : BorderKind::TURNING;
+  const NeighbourSlopes slopes(side, face, edge);
+  const double slope = above ? slopes.above : slopes.below;
+  if (rises(slope)) return slope > NEAR_SUCCESSOR ? BorderKind::RISING : BorderKind::TURNING;
   return isRoundEdge(side, edge) ? BorderKind::ROUND : BorderKind::FALLING;
 }
 
 kernels::OpenSides openSides(const MeshSide& side, int face) {
   kernels::OpenSides open = 0;
   for (int k = 0; k < 3; ++k) {
-    for (const bool above : {true, false}) open |= (borderKind(side, face, k, above) > BorderKind::ROUND) << (above ? k : 3 + k);
+    const int edge = side.topology.edgeOf(face, k);
+    if (side.topology.isFlatEdge(edge)) continue;
+    const NeighbourSlopes slopes(side, face, edge);
+    const bool sharp = !isRoundEdge(side, edge);
+    open |= (rises(slopes.above) || sharp) << k | (rises(slopes.below) || sharp) << (3 + k);
   }
   return open;
 }

@@ -1,6 +1,7 @@
 #include "candidate_lists.h"
 
 #include <algorithm>
+#include <cstddef>
 
 #include "blem_sim/geometry/bvh_traversal.h"
 #include "feature_cones.h"
@@ -28,10 +29,12 @@ class Search {
   /** Calls visit(moving leaf, fixed leaf) for the leaves within reach. */
   template <typename Visit>
   void forEachLeafPair(Visit&& visit) {
-    const auto matters = [this](std::uint32_t m, std::uint32_t f) { return (pair_.moving.owners[m] | pair_.fixed.owners[f]) != 0; };
-    visitLeafPairsIf(pair_.moving.bvh, pair_.fixed.bvh, pair_.X_FM, reach_ + rounding(), matters, [&](std::uint32_t m, std::uint32_t f) {
-      visit(buffers_.leaves.moving(pair_.moving, m, search_, motion_), buffers_.leaves.standing(pair_.fixed, f, search_));
-    });
+    findLeafPairs();
+    const std::vector<CandidateSearchBuffers::FoundPair>& pairs = buffers_.found_pairs;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      if (i + 1 < pairs.size()) prefetch(pairs[i + 1], pairs[i]);
+      visit(*pairs[i].moving, *pairs[i].fixed);
+    }
   }
 
   /** With room for the rounding of floats. */
@@ -42,19 +45,15 @@ class Search {
   }
 
   // Where a feature of a leaf is among the near ones of its mesh.
-  std::uint32_t vertex(bool moves, LeafFeatures* leaf, std::uint32_t i) {
-    return slot(moves, &leaf->vertex_slots[i], &lists_.near[moves].vertices, leaf->vertices[i], vertexRecord);
-  }
-  std::uint32_t edge(bool moves, LeafFeatures* leaf, std::uint32_t i) {
-    return slot(moves, &leaf->edge_slots[i], &lists_.near[moves].edges, leaf->edges[i], edgeRecord);
-  }
+  std::uint32_t vertex(bool moves, LeafFeatures* leaf, std::uint32_t i) { return slot(&leaf->vertices, i, &lists_.near[moves].vertices); }
+  std::uint32_t edge(bool moves, LeafFeatures* leaf, std::uint32_t i) { return slot(&leaf->edges, i, &lists_.near[moves].edges); }
   std::uint32_t face(bool moves, LeafFeatures* leaf, std::uint32_t i) {
     NearFeatures& near = lists_.near[moves];
-    if (leaf->face_slots[i] == LeafFeatures::NO_SLOT) {
-      near.patches.push_back(pair_.side(moves).topology.patchOf(leaf->faces[i]));
-      near.open.push_back(leaf->shapes.open[i]);
+    if (leaf->faces.slots[i] == LeafFeatures::NO_SLOT) {
+      near.patches.push_back(leaf->patches[i]);
+      near.open.push_back(leaf->shapes.faces.open[i]);
     }
-    return slot(moves, &leaf->face_slots[i], &near.faces, leaf->faces[i], faceRecord);
+    return slot(&leaf->faces, i, &near.faces);
   }
 
   /** Appends visit(i, j) for the features i of the moving leaf and j of the fixed one. */
@@ -72,10 +71,36 @@ class Search {
     return FLOAT_ROUNDING * (largest + reach_) + 3 * CLOSED;
   }
 
-  template <typename Record>
-  std::uint32_t slot(bool moves, std::uint32_t* slot, FeatureRecords<Record>* features, int name, Record (*record)(const MeshSide&, int)) {
-    if (*slot == LeafFeatures::NO_SLOT) *slot = features->add(record(pair_.side(moves), name), name);
-    return *slot;
+  void findLeafPairs() {
+    const auto matters = [this](std::uint32_t m, std::uint32_t f) { return (pair_.moving.owners[m] | pair_.fixed.owners[f]) != 0; };
+    buffers_.leaf_pairs.clear();
+    visitLeafPairsIf(pair_.moving.bvh, pair_.fixed.bvh, pair_.X_FM, reach_ + rounding(), matters, [this](std::uint32_t m, std::uint32_t f) {
+      buffers_.leaf_pairs.push_back({m, f});
+    });
+    buffers_.found_pairs.clear();
+    for (const auto& [m, f] : buffers_.leaf_pairs) {
+      buffers_.found_pairs.push_back(
+          {&buffers_.leaves.moving(pair_.moving, m, search_, motion_), &buffers_.leaves.standing(pair_.fixed, f, search_)});
+    }
+  }
+
+  /** Leaves that are new lie far away in memory. */
+  static void prefetch(const CandidateSearchBuffers::FoundPair& next, const CandidateSearchBuffers::FoundPair& now) {
+    if (next.moving != now.moving) prefetch(*next.moving->turned);
+    if (next.fixed != now.fixed) prefetch(next.fixed->shapes);
+  }
+  static void prefetch(const kernels::LeafShapes& shapes) {
+    constexpr std::size_t LINE = 64;
+    const char* const begin = reinterpret_cast<const char*>(&shapes);
+    const std::size_t used = offsetof(kernels::LeafShapes, edges) + sizeof(kernels::LeafEdges);
+    for (std::size_t at = 0; at < used; at += LINE) __builtin_prefetch(begin + at);
+  }
+
+  template <typename Record, int CAPACITY>
+  static std::uint32_t slot(LeafFeatures::Kind<Record, CAPACITY>* kind, std::uint32_t i, FeatureRecords<Record>* features) {
+    std::uint32_t& slot = kind->slots[i];
+    if (slot == LeafFeatures::NO_SLOT) slot = features->add(kind->records[i], kind->names[i]);
+    return slot;
   }
 
   const MeshPair& pair_;
@@ -199,7 +224,7 @@ void findCandidates(const MeshPair& pair, const ListMargin& margin, CandidateSea
   const kernels::LeafReach reach = search.leafReach(margin);
   kernels::LeafHits& hits = buffers->hits;
   search.forEachLeafPair([&](LeafFeatures& m, LeafFeatures& f) {
-    kernels.leafContacts(m.turned, f.shapes, reach, &hits);
+    kernels.leafContacts(*m.turned, f.shapes, reach, &hits);
     for (const bool moves : {true, false}) {
       LeafFeatures &own = moves ? m : f, &partner = moves ? f : m;
       Search::append(hits.vertex_face[!moves], hits.vertex_faces[!moves], &lists->pairs.vertex_face[moves],
@@ -218,7 +243,7 @@ void findCandidates(const MeshPair& pair, const ListMargin& margin, CandidateSea
       return {search.edge(true, &m, i), search.edge(false, &f, j)};
     });
   });
-  if (margin.motion > 0) dropLeading(pair, margin.motion, lists->near, &lists->pairs.vertex_vertex);
+  dropLeading(pair, margin.motion, lists->near, &lists->pairs.vertex_vertex);
 }
 
 void findCrossingCandidates(const MeshPair& pair, const ListMargin& margin, CandidateSearchBuffers* buffers, CandidateLists* lists) {
@@ -226,7 +251,7 @@ void findCrossingCandidates(const MeshPair& pair, const ListMargin& margin, Cand
   const kernels::LeafReach reach = search.leafReach(margin);
   kernels::LeafHits& hits = buffers->hits;
   search.forEachLeafPair([&](LeafFeatures& m, LeafFeatures& f) {
-    kernels::kernels().leafCrossings(m.turned, f.shapes, reach, &hits);
+    kernels::kernels().leafCrossings(*m.turned, f.shapes, reach, &hits);
     for (const bool moves : {true, false}) {
       Search::append(hits.edge_face[!moves], hits.edge_faces[!moves], &lists->pairs.edge_face[moves], [&](auto i, auto j) -> Candidate {
         return {search.edge(moves, moves ? &m : &f, i), search.face(!moves, moves ? &f : &m, j)};

@@ -98,7 +98,15 @@ struct ListMargin {
 
 /** What a search for candidates works in. */
 struct CandidateSearchBuffers {
+  struct LeafPair {
+    std::uint32_t moving, fixed;  ///< nodes
+  };
+  struct FoundPair {
+    LeafFeatures *moving, *fixed;
+  };
   LeafMemory leaves;
+  std::vector<LeafPair> leaf_pairs;
+  std::vector<FoundPair> found_pairs;
   kernels::LeafHits hits;
   std::uint64_t searches = 0;
 };

@@ -17,58 +17,64 @@ using kernels::FaceRecord;
 using kernels::LeafShapes;
 using kernels::Vec4;
 
+/** Writes coordinates, rounded to float, to column i of a block's rows. */
 template <int CAPACITY>
-void place(const Vec4& v, std::uint32_t i, float (*rows)[CAPACITY]) {
+void place(const Vec4& v, std::uint32_t i, float (&rows)[3][CAPACITY]) {
   rows[0][i] = static_cast<float>(v.x);
   rows[1][i] = static_cast<float>(v.y);
   rows[2][i] = static_cast<float>(v.z);
 }
 
 template <int CAPACITY>
-void placePlane(const Vec4& plane, double offset, std::uint32_t i, float (*rows)[CAPACITY]) {
-  place(plane, i, rows);
+void placePlane(const Vec4& plane, double offset, std::uint32_t i, float (&rows)[4][CAPACITY]) {
+  rows[0][i] = static_cast<float>(plane.x);
+  rows[1][i] = static_cast<float>(plane.y);
+  rows[2][i] = static_cast<float>(plane.z);
   rows[3][i] = static_cast<float>(offset);
 }
 
 void describeFace(const MeshSide& side, int element, LeafFeatures* leaf) {
-  LeafShapes& shapes = leaf->shapes;
-  const std::uint32_t i = shapes.face_count++;
   const FaceRecord record = faceRecord(side, element);
-  leaf->faces[i] = element;
-  placePlane(record.plane, record.plane.w, i, shapes.planes);
-  for (int k = 0; k < 3; ++k) placePlane(record.sides[k], record.sides[k].w, i, shapes.sides[k]);
-  shapes.open[i] = openSides(side, element);
+  const std::uint32_t i = leaf->faces.add(element, record);
+  leaf->patches[i] = side.topology.patchOf(element);
+  kernels::LeafFaces& faces = leaf->shapes.faces;
+  placePlane(record.plane, record.plane.w, i, faces.planes);
+  for (int k = 0; k < 3; ++k) placePlane(record.sides[k], record.sides[k].w, i, faces.sides[k]);
+  faces.open[i] = openSides(side, element);
 }
 
 void describeEdge(const MeshSide& side, int edge, LeafFeatures* leaf) {
-  LeafShapes& shapes = leaf->shapes;
-  const std::uint32_t i = shapes.edge_count++;
   const EdgeRecord record = edgeRecord(side, edge);
-  leaf->edges[i] = edge;
-  place(record.start, i, shapes.starts);
-  place(record.along, i, shapes.alongs);
+  const std::uint32_t index = leaf->edges.add(edge, record), i = index % kernels::LEAF_BLOCK;
+  kernels::LeafEdges& edges = leaf->shapes.edges[index / kernels::LEAF_BLOCK];
+  place(record.start, i, edges.starts);
+  place(record.along, i, edges.alongs);
+  edges.per_length2[i] = static_cast<float>(1 / record.start.w);
   for (int k = 0; k < 2; ++k) {
     const Vec4 &u = record.inward[k], &p = record.start;
-    placePlane(u, u.x * p.x + u.y * p.y + u.z * p.z, i, shapes.inwards[k]);
+    placePlane(u, u.x * p.x + u.y * p.y + u.z * p.z, i, edges.inwards[k]);
   }
 }
 
-/** Of the edges described so far. */
-EdgeCone edgeCone(const LeafShapes& shapes) {
+void describeVertex(const MeshSide& side, int vertex, LeafFeatures* leaf) {
+  const Vec4 record = vertexRecord(side, vertex);
+  const std::uint32_t i = leaf->vertices.add(vertex, record);
+  place(record, i % kernels::LEAF_BLOCK, leaf->shapes.vertices[i / kernels::LEAF_BLOCK].points);
+}
+
+EdgeCone edgeCone(const std::vector<EdgeRecord>& edges) {
   constexpr double ANY = 4;
-  constexpr int CAPACITY = kernels::MAX_LEAF_EDGES;
-  Vector3 middles[CAPACITY], axis = Vector3::Zero();
-  double spread = 0, halves[CAPACITY];
-  const auto row = [](const float(*rows)[CAPACITY], std::uint32_t i) { return Vector3(rows[0][i], rows[1][i], rows[2][i]); };
-  for (std::uint32_t i = 0; i < shapes.edge_count; ++i) {
+  Vector3 middles[kernels::MAX_LEAF_FEATURES], axis = Vector3::Zero();
+  double spread = 0, halves[kernels::MAX_LEAF_FEATURES];
+  for (std::size_t i = 0; i < edges.size(); ++i) {
     // Of a normal that points out of both faces the middle is square to the edge and to this.
-    const Vector3 across = row(shapes.inwards[0], i) - row(shapes.inwards[1], i);
-    middles[i] = row(shapes.alongs, i).cross(across).normalized();
+    const Vector3 across = vector3(edges[i].inward[0]) - vector3(edges[i].inward[1]);
+    middles[i] = vector3(edges[i].along).cross(across).normalized();
     halves[i] = across.norm() > 1.01 ? std::acos(std::min(0.5 * across.norm(), 1.0)) : ANY;
     axis += axis.dot(middles[i]) < 0 ? Vector3(-middles[i]) : middles[i];
   }
   axis.normalize();
-  for (std::uint32_t i = 0; i < shapes.edge_count; ++i)
+  for (std::size_t i = 0; i < edges.size(); ++i)
     spread = std::max(spread, std::acos(std::min(std::abs(axis.dot(middles[i])), 1.0)) + halves[i]);
   return {{static_cast<float>(axis.x()), static_cast<float>(axis.y()), static_cast<float>(axis.z())}, static_cast<float>(spread)};
 }
@@ -77,6 +83,9 @@ void describe(const MeshSide& side, std::uint32_t index, LeafFeatures* leaf) {
   const Bvh::Node& node = side.bvh.nodes()[index];
   assert(node.count <= kernels::MAX_LEAF_ELEMENTS);
   leaf->search = 0;
+  leaf->vertices.clear();
+  leaf->faces.clear();
+  leaf->edges.clear();
   LeafShapes& shapes = leaf->shapes;
   shapes = LeafShapes{};
   Eigen::Map<Eigen::Vector3f>(shapes.lower) = node.lower;
@@ -86,19 +95,19 @@ void describe(const MeshSide& side, std::uint32_t index, LeafFeatures* leaf) {
     if (side.topology.isFace(element)) describeFace(side, element, leaf);
     for (int k = 0; k < 3; ++k) {
       if (side.topology.ownsEdge(element, k)) describeEdge(side, side.topology.edgeOf(element, k), leaf);
-      if (!side.topology.ownsVertex(element, k)) continue;
-      const std::uint32_t v = shapes.vertex_count++;
-      leaf->vertices[v] = side.mesh.elements[element][k];
-      place(vertexRecord(side, leaf->vertices[v]), v, shapes.vertices);
+      if (side.topology.ownsVertex(element, k)) describeVertex(side, side.mesh.elements[element][k], leaf);
     }
   }
-  shapes.edge_cone = edgeCone(shapes);
+  shapes.vertex_count = static_cast<std::uint32_t>(leaf->vertices.records.size());
+  shapes.face_count = static_cast<std::uint32_t>(leaf->faces.records.size());
+  shapes.edge_count = static_cast<std::uint32_t>(leaf->edges.records.size());
+  shapes.edge_cone = edgeCone(leaf->edges.records);
 }
 
 void forgetSlots(LeafFeatures* leaf) {
-  std::fill_n(leaf->face_slots, leaf->shapes.face_count, LeafFeatures::NO_SLOT);
-  std::fill_n(leaf->edge_slots, leaf->shapes.edge_count, LeafFeatures::NO_SLOT);
-  std::fill_n(leaf->vertex_slots, leaf->shapes.vertex_count, LeafFeatures::NO_SLOT);
+  std::fill_n(leaf->vertices.slots, leaf->shapes.vertex_count, LeafFeatures::NO_SLOT);
+  std::fill_n(leaf->faces.slots, leaf->shapes.face_count, LeafFeatures::NO_SLOT);
+  std::fill_n(leaf->edges.slots, leaf->shapes.edge_count, LeafFeatures::NO_SLOT);
 }
 
 }  // namespace
@@ -177,7 +186,9 @@ LeafFeatures& LeafMemory::moving(const MeshSide& side, std::uint32_t leaf, std::
   if (found.search == search) return found;
   found.search = search;
   forgetSlots(&found);
-  kernels::kernels().turnLeaf(found.shapes, motion, &found.turned);
+  if (!found.turned) found.turned = std::make_unique<LeafShapes>();
+  LeafShapes& turned = *found.turned;
+  kernels::kernels().turnLeaf(found.shapes, motion, &turned);
   const LeafShapes& shapes = found.shapes;
   for (int k = 0; k < 3; ++k) {
     double centre = motion.t[k], half = 0;
@@ -185,8 +196,8 @@ LeafFeatures& LeafMemory::moving(const MeshSide& side, std::uint32_t leaf, std::
       centre += motion.R[3 * k + j] * 0.5 * (static_cast<double>(shapes.lower[j]) + shapes.upper[j]);
       half += std::abs(motion.R[3 * k + j]) * 0.5 * (static_cast<double>(shapes.upper[j]) - shapes.lower[j]);
     }
-    found.turned.lower[k] = static_cast<float>(centre - half);
-    found.turned.upper[k] = static_cast<float>(centre + half);
+    turned.lower[k] = static_cast<float>(centre - half);
+    turned.upper[k] = static_cast<float>(centre + half);
   }
   return found;
 }

@@ -13,15 +13,31 @@ namespace blem_sim {
 
 /** The features that the elements of one leaf own: its faces, and those of its edges and vertices that no other element asks for. */
 struct LeafFeatures {
-  std::uint64_t search = 0;  ///< the last search that came here: slots and a moving leaf's turned shapes are of it
-  int faces[kernels::MAX_LEAF_FACES], edges[kernels::MAX_LEAF_EDGES], vertices[kernels::MAX_LEAF_VERTICES];  ///< names in the mesh
-  kernels::LeafShapes shapes;                                                                                ///< in the mesh's frame
+  /** Features of one kind: what they are in the mesh, and where the search put them. */
+  template <typename Record, int CAPACITY>
+  struct Kind {
+    std::uint32_t slots[CAPACITY];  ///< NO_SLOT: nowhere yet
+    int names[CAPACITY];            ///< in the mesh
+    std::vector<Record> records;    ///< mesh's frame
 
-  /** Where the search put a feature; NO_SLOT: nowhere yet. */
+    void clear() { records.clear(); }
+    /** @return its index */
+    std::uint32_t add(int name, const Record& record) {
+      const std::uint32_t i = static_cast<std::uint32_t>(records.size());
+      names[i] = name;
+      records.push_back(record);
+      return i;
+    }
+  };
   static constexpr std::uint32_t NO_SLOT = 0xFFFFFFFF;
-  std::uint32_t face_slots[kernels::MAX_LEAF_FACES], edge_slots[kernels::MAX_LEAF_EDGES], vertex_slots[kernels::MAX_LEAF_VERTICES];
 
-  kernels::LeafShapes turned;  ///< of a moving leaf, in the frame of the search
+  std::uint64_t search = 0;    ///< the last search that came here: slots and a moving leaf's turned shapes are of it
+  kernels::LeafShapes shapes;  ///< in the mesh's frame
+  Kind<kernels::Vec4, kernels::MAX_LEAF_FEATURES> vertices;
+  Kind<kernels::FaceRecord, kernels::MAX_LEAF_ELEMENTS> faces;
+  Kind<kernels::EdgeRecord, kernels::MAX_LEAF_FEATURES> edges;
+  int patches[kernels::MAX_LEAF_ELEMENTS];      ///< of the faces
+  std::unique_ptr<kernels::LeafShapes> turned;  ///< of a moving leaf, in the frame of the search
 };
 
 kernels::FaceRecord faceRecord(const MeshSide& side, int element);

@@ -127,14 +127,20 @@ LeafShapes randomLeaf(std::uint64_t seed) {
   const auto fill = [&](float* from, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) from[i] = static_cast<float>(random.uniform(-1, 1));
   };
-  fill(&leaf.planes[0][0], sizeof leaf.planes / sizeof(float));
+  const auto fillRows = [&](auto& rows) { fill(reinterpret_cast<float*>(&rows), sizeof rows / sizeof(float)); };
+  fillRows(leaf.faces.planes);
   leaf.edge_cone = {{0, 0.6f, 0.8f}, 1};
-  for (OpenSides& open : leaf.open) open = random.integer(0, 63);
-  fill(&leaf.sides[0][0][0], sizeof leaf.sides / sizeof(float));
-  fill(&leaf.starts[0][0], sizeof leaf.starts / sizeof(float));
-  fill(&leaf.alongs[0][0], sizeof leaf.alongs / sizeof(float));
-  fill(&leaf.inwards[0][0][0], sizeof leaf.inwards / sizeof(float));
-  fill(&leaf.vertices[0][0], sizeof leaf.vertices / sizeof(float));
+  for (OpenSides& open : leaf.faces.open) open = random.integer(0, 63);
+  fillRows(leaf.faces.sides);
+  for (LeafEdges& edges : leaf.edges) {
+    fillRows(edges.starts);
+    fillRows(edges.alongs);
+    fillRows(edges.inwards);
+    for (int i = 0; i < LEAF_BLOCK; ++i)
+      edges.per_length2[i] =
+          1 / (edges.alongs[0][i] * edges.alongs[0][i] + edges.alongs[1][i] * edges.alongs[1][i] + edges.alongs[2][i] * edges.alongs[2][i]);
+  }
+  for (LeafVertices& vertices : leaf.vertices) fillRows(vertices.points);
   for (int k = 0; k < 3; ++k) {
     leaf.lower[k] = -2;
     leaf.upper[k] = 2;

@@ -19,8 +19,8 @@ TEST(LeafMemory, OneSearchLosesNoLeaf) {
   for (const std::uint64_t search : {1, 2}) {
     for (const std::uint32_t leaf : leaves) {
       LeafFeatures& features = memory.standing(side, leaf, search);
-      ASSERT_EQ(features.face_slots[0], LeafFeatures::NO_SLOT);
-      features.face_slots[0] = leaf;
+      ASSERT_EQ(features.faces.slots[0], LeafFeatures::NO_SLOT);
+      features.faces.slots[0] = leaf;
     }
     for (const std::uint32_t leaf : leaves) ASSERT_EQ(memory.standing(side, leaf, search).face_slots[0], leaf);
   }

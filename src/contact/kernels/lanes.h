@@ -26,13 +26,20 @@ typedef double Doubles __attribute__((vector_size(8 * LANES)));
 typedef long Mask __attribute__((vector_size(8 * LANES)));
 typedef float Floats __attribute__((vector_size(4 * FLOAT_LANES)));
 typedef int FloatMask __attribute__((vector_size(4 * FLOAT_LANES)));
+// Where there are never more than eight.
+constexpr int FEW_LANES = FLOAT_LANES < 8 ? FLOAT_LANES : 8;
+typedef float FewFloats __attribute__((vector_size(4 * FEW_LANES)));
+typedef int FewMask __attribute__((vector_size(4 * FEW_LANES)));
 
 struct Vectors {
   Doubles x, y, z;
 };
 
 inline Doubles all(double value) { return value - Doubles{}; }
-inline Floats allFloats(float value) { return value - Floats{}; }
+template <typename Lanes>
+inline Lanes allOf(float value) {
+  return value - Lanes{};
+}
 
 inline unsigned bitsOf(Mask mask) {
 #if defined(__AVX512F__)
@@ -61,6 +68,10 @@ inline unsigned bitsOf(FloatMask mask) {
   return bits;
 #endif
 }
+
+#if defined(__AVX512F__)
+inline unsigned bitsOf(FewMask mask) { return _mm256_movepi32_mask(reinterpret_cast<__m256i>(mask)); }
+#endif
 
 inline Doubles squareRoot(Doubles v) {
 #if defined(__AVX512F__)
@@ -94,6 +105,13 @@ inline Doubles absolute(Doubles a) { return a < 0 ? -a : a; }
 inline Doubles clampedToUnit(Doubles a) { return minimum(maximum(a, Doubles{}), all(1)); }
 inline Floats maximum(Floats a, Floats b) { return a > b ? a : b; }
 inline Floats minimum(Floats a, Floats b) { return a < b ? a : b; }
+inline Floats absolute(Floats a) { return a < 0 ? -a : a; }
+inline Floats clampedToUnit(Floats a) { return minimum(maximum(a, Floats{}), allOf<Floats>(1)); }
+#if defined(__AVX512F__)
+inline FewFloats maximum(FewFloats a, FewFloats b) { return a > b ? a : b; }
+inline FewFloats minimum(FewFloats a, FewFloats b) { return a < b ? a : b; }
+inline FewFloats absolute(FewFloats a) { return a < 0 ? -a : a; }
+#endif
 
 inline Doubles dot(const Vectors& a, const Vectors& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 inline Vectors cross(const Vectors& a, const Vectors& b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }

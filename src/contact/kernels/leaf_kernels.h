@@ -9,80 +9,125 @@
 namespace blem_sim::kernels {
 namespace {
 
-struct FloatVectors {
-  Floats x, y, z;
+/** Coordinates of several features, or of one in all lanes. */
+template <typename Lanes>
+struct LeafVectors {
+  Lanes x, y, z;
+
+  template <int CAPACITY>
+  static LeafVectors several(const float (&from)[3][CAPACITY], std::uint32_t first) {
+    return {row(&from[0][first]), row(&from[1][first]), row(&from[2][first])};
+  }
+  template <int CAPACITY>
+  static LeafVectors one(const float (&from)[3][CAPACITY], std::uint32_t i) {
+    return {allOf<Lanes>(from[0][i]), allOf<Lanes>(from[1][i]), allOf<Lanes>(from[2][i])};
+  }
+  static Lanes row(const float* from) { return *reinterpret_cast<const Lanes*>(from); }
 };
 
-inline Floats absolute(Floats a) { return a < 0 ? -a : a; }
-inline Floats clampedToUnit(Floats a) { return minimum(maximum(a, Floats{}), allFloats(1)); }
-inline Floats dot(const FloatVectors& a, const FloatVectors& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-inline FloatVectors operator+(const FloatVectors& a, const FloatVectors& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-inline FloatVectors operator-(const FloatVectors& a, const FloatVectors& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-inline FloatVectors operator*(Floats s, const FloatVectors& a) { return {s * a.x, s * a.y, s * a.z}; }
-
-inline Floats row(const float* from) { return *reinterpret_cast<const Floats*>(from); }
-
-/** Coordinates of several features, or of one in all lanes. */
-template <int CAPACITY>
-inline FloatVectors several(const float (*from)[CAPACITY], std::uint32_t first) {
-  return {row(&from[0][first]), row(&from[1][first]), row(&from[2][first])};
+template <typename Lanes>
+inline Lanes dot(const LeafVectors<Lanes>& a, const LeafVectors<Lanes>& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
 }
-template <int CAPACITY>
-inline FloatVectors one(const float (*from)[CAPACITY], std::uint32_t i) {
-  return {allFloats(from[0][i]), allFloats(from[1][i]), allFloats(from[2][i])};
+template <typename Lanes>
+inline LeafVectors<Lanes> operator+(const LeafVectors<Lanes>& a, const LeafVectors<Lanes>& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+template <typename Lanes>
+inline LeafVectors<Lanes> operator-(const LeafVectors<Lanes>& a, const LeafVectors<Lanes>& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+template <typename Lanes>
+inline LeafVectors<Lanes> operator*(Lanes s, const LeafVectors<Lanes>& a) {
+  return {s * a.x, s * a.y, s * a.z};
 }
 
 /** Planes, by their normal and offset: several, or one in all lanes. */
-struct FloatPlane {
-  FloatVectors normal;
-  Floats offset;
-  Floats above(const FloatVectors& p) const { return dot(normal, p) - offset; }
+template <typename Lanes>
+struct LeafPlanes {
+  LeafVectors<Lanes> normal;
+  Lanes offset;
+
+  template <int CAPACITY>
+  static LeafPlanes several(const float (&from)[4][CAPACITY], std::uint32_t first) {
+    const auto row = [&](int k) { return LeafVectors<Lanes>::row(&from[k][first]); };
+    return {{row(0), row(1), row(2)}, row(3)};
+  }
+  template <int CAPACITY>
+  static LeafPlanes one(const float (&from)[4][CAPACITY], std::uint32_t i) {
+    const auto all = [&](int k) { return allOf<Lanes>(from[k][i]); };
+    return {{all(0), all(1), all(2)}, all(3)};
+  }
+  Lanes above(const LeafVectors<Lanes>& p) const { return dot(normal, p) - offset; }
 };
-template <int CAPACITY>
-inline FloatPlane severalPlanes(const float (*from)[CAPACITY], std::uint32_t first) {
-  return {several(from, first), row(&from[3][first])};
+
+using FloatVectors = LeafVectors<Floats>;
+using FloatPlanes = LeafPlanes<Floats>;
+using FewVectors = LeafVectors<FewFloats>;
+using FewPlanes = LeafPlanes<FewFloats>;
+
+struct FewFaces {
+  FewFaces(const LeafFaces& faces, std::uint32_t first)
+      : plane(FewPlanes::several(faces.planes, first)),
+        sides{FewPlanes::several(faces.sides[0], first), FewPlanes::several(faces.sides[1], first),
+              FewPlanes::several(faces.sides[2], first)},
+        open(*reinterpret_cast<const FewMask*>(&faces.open[first])) {}
+  FewPlanes plane, sides[3];
+  FewMask open;
+};
+
+/** Which block holds feature i of a leaf. */
+template <typename Block>
+inline const Block& blockOf(const Block (&blocks)[LEAF_BLOCKS], std::uint32_t i) {
+  return blocks[i / LEAF_BLOCK];
 }
-template <int CAPACITY>
-inline FloatPlane onePlane(const float (*from)[CAPACITY], std::uint32_t i) {
-  return {one(from, i), allFloats(from[3][i])};
+template <typename Block>
+inline Block& blockOf(Block (&blocks)[LEAF_BLOCKS], std::uint32_t i) {
+  return blocks[i / LEAF_BLOCK];
 }
 
-struct FloatFace {
-  FloatPlane plane, sides[3];
-  FloatMask open;
-};
-inline FloatFace severalFaces(const LeafShapes& leaf, std::uint32_t first) {
-  return {severalPlanes(leaf.planes, first),
-          {severalPlanes(leaf.sides[0], first), severalPlanes(leaf.sides[1], first), severalPlanes(leaf.sides[2], first)},
-          *reinterpret_cast<const FloatMask*>(&leaf.open[first])};
+template <typename Lanes>
+inline LeafVectors<Lanes> oneVertex(const LeafShapes& leaf, std::uint32_t i) {
+  return LeafVectors<Lanes>::one(blockOf(leaf.vertices, i).points, i % LEAF_BLOCK);
 }
+inline FloatVectors severalVertices(const LeafShapes& leaf, std::uint32_t first) {
+  return FloatVectors::several(blockOf(leaf.vertices, first).points, first % LEAF_BLOCK);
+}
+
 struct FloatEdge {
   FloatVectors start, along;
-  FloatPlane inward[2];
+  FloatPlanes inward[2];
 };
-inline FloatEdge severalEdges(const LeafShapes& leaf, std::uint32_t first) {
-  return {several(leaf.starts, first),
-          several(leaf.alongs, first),
-          {severalPlanes(leaf.inwards[0], first), severalPlanes(leaf.inwards[1], first)}};
+inline FloatEdge oneEdge(const LeafShapes& leaf, std::uint32_t index) {
+  const LeafEdges& edges = blockOf(leaf.edges, index);
+  const std::uint32_t i = index % LEAF_BLOCK;
+  return {FloatVectors::one(edges.starts, i),
+          FloatVectors::one(edges.alongs, i),
+          {FloatPlanes::one(edges.inwards[0], i), FloatPlanes::one(edges.inwards[1], i)}};
 }
-inline FloatEdge oneEdge(const LeafShapes& leaf, std::uint32_t i) {
-  return {one(leaf.starts, i), one(leaf.alongs, i), {onePlane(leaf.inwards[0], i), onePlane(leaf.inwards[1], i)}};
+inline FloatEdge severalEdges(const LeafEdges& edges, std::uint32_t first) {
+  return {FloatVectors::several(edges.starts, first),
+          FloatVectors::several(edges.alongs, first),
+          {FloatPlanes::several(edges.inwards[0], first), FloatPlanes::several(edges.inwards[1], first)}};
 }
 
 // Moved by no more than the margin, heights and distances change by no more than it: so the tests are the exact ones, that much wider.
 
-inline FloatMask mayTouch(const FloatVectors& p, const FloatFace& face, const LeafReach& reach) {
-  const Floats height = face.plane.above(p), most = reach.range - absolute(height);
-  const Floats inside[3] = {face.sides[0].above(p), face.sides[1].above(p), face.sides[2].above(p)};
+inline FewMask mayTouch(const FewVectors& p, const FewFaces& face, const LeafReach& reach) {
+  const FewFloats height = face.plane.above(p), most = reach.range - absolute(height);
+  const FewFloats inside[3] = {face.sides[0].above(p), face.sides[1].above(p), face.sides[2].above(p)};
   return (most >= 0) & isOverOrFades(inside, openSides(face.open, height, reach.margin), most, reach.margin);
 }
 
 /** A vertex has a contact with an edge only where it lies over neither of the edge's faces. */
-inline FloatMask mayTouch(const FloatVectors& p, const FloatEdge& edge, const LeafReach& reach) {
-  const FloatVectors r = p - edge.start;
-  const FloatVectors d = r - clampedToUnit(dot(r, edge.along) / dot(edge.along, edge.along)) * edge.along;
+inline FloatMask mayTouch(const FloatVectors& p, const LeafEdges& edges, std::uint32_t first, const LeafReach& reach) {
   const float limit = static_cast<float>(2 * CONE_SLACK) * reach.range + reach.margin;
-  return (edge.inward[0].above(p) <= limit) & (edge.inward[1].above(p) <= limit) & ~(dot(d, d) > reach.range * reach.range);
+  const FloatMask beside =
+      (FloatPlanes::several(edges.inwards[0], first).above(p) <= limit) & (FloatPlanes::several(edges.inwards[1], first).above(p) <= limit);
+  if (bitsOf(beside) == 0) return beside;
+  const FloatVectors along = FloatVectors::several(edges.alongs, first), r = p - FloatVectors::several(edges.starts, first);
+  const FloatVectors d = r - clampedToUnit(dot(r, along) * FloatVectors::row(&edges.per_length2[first])) * along;
+  return beside & ~(dot(d, d) > reach.range * reach.range);
 }
 
 inline FloatMask mayTouch(const FloatVectors& p, const FloatVectors& q, const LeafReach& reach) {
@@ -91,7 +136,7 @@ inline FloatMask mayTouch(const FloatVectors& p, const FloatVectors& q, const Le
 }
 
 /** Are not both ends of an edge too far inside a face of the other? */
-inline FloatMask reachesOut(const FloatVectors& start, const FloatVectors& end, const FloatPlane& inward, float limit) {
+inline FloatMask reachesOut(const FloatVectors& start, const FloatVectors& end, const FloatPlanes& inward, float limit) {
   return minimum(inward.above(start), inward.above(end)) <= limit;
 }
 
@@ -118,20 +163,25 @@ inline FloatMask mayTouch(const FloatEdge& a, const FloatEdge& b, const LeafReac
 }
 
 /** Only an edge with ends on both sides of a plane, inside some part of the face, passes through it. */
-inline FloatMask mayCross(const FloatEdge& edge, const FloatFace& face, const LeafReach& reach) {
-  const FloatVectors end = edge.start + edge.along;
-  const Floats first = face.plane.above(edge.start), second = face.plane.above(end);
-  FloatMask may = (minimum(first, second) <= reach.margin) & (maximum(first, second) >= -reach.margin);
-  for (const FloatPlane& side : face.sides) may &= maximum(side.above(edge.start), side.above(end)) >= -reach.margin;
+inline FewMask mayCross(const FewVectors& start, const FewVectors& end, const FewFaces& face, const LeafReach& reach) {
+  const FewFloats first = face.plane.above(start), second = face.plane.above(end);
+  FewMask may = (minimum(first, second) <= reach.margin) & (maximum(first, second) >= -reach.margin);
+  for (const FewPlanes& side : face.sides) may &= maximum(side.above(start), side.above(end)) >= -reach.margin;
   return may;
 }
 
-/** Bits of the features for which test(first of some lanes) holds. */
-template <typename Test>
+/** Bits of the features for which test(first of so many lanes) holds. */
+template <int LANES_AT_ONCE = FLOAT_LANES, typename Test>
 inline std::uint32_t bitsWhere(std::uint32_t count, Test&& test) {
   std::uint32_t bits = 0;
-  for (std::uint32_t first = 0; first < count; first += FLOAT_LANES) bits |= bitsOf(test(first)) << first;
+  for (std::uint32_t first = 0; first < count; first += LANES_AT_ONCE) bits |= bitsOf(test(first)) << first;
   return count < 32 ? bits & ((1u << count) - 1) : bits;
+}
+
+/** The same of edges: test(block, first in it). */
+template <typename Test>
+inline std::uint32_t edgesWhere(const LeafShapes& leaf, Test&& test) {
+  return bitsWhere(leaf.edge_count, [&](std::uint32_t i) { return test(blockOf(leaf.edges, i), i % LEAF_BLOCK); });
 }
 
 inline void append(std::uint32_t feature, std::uint32_t bits, LeafHit* hits, int* count) {
@@ -152,14 +202,14 @@ inline FloatMask isNear(const LeafShapes& leaf, const FloatVectors& low, const F
 
 inline std::uint32_t verticesNear(const LeafShapes& a, const LeafShapes& b, float reach) {
   return bitsWhere(a.vertex_count, [&](std::uint32_t i) {
-    const FloatVectors p = several(a.vertices, i);
+    const FloatVectors p = severalVertices(a, i);
     return isNear(b, p, p, reach);
   });
 }
 
 inline std::uint32_t edgesNear(const LeafShapes& a, const LeafShapes& b, float reach) {
-  return bitsWhere(a.edge_count, [&](std::uint32_t i) {
-    const FloatVectors p = several(a.starts, i), q = p + several(a.alongs, i);
+  return edgesWhere(a, [&](const LeafEdges& edges, std::uint32_t i) {
+    const FloatVectors p = FloatVectors::several(edges.starts, i), q = p + FloatVectors::several(edges.alongs, i);
     return isNear(b, {minimum(p.x, q.x), minimum(p.y, q.y), minimum(p.z, q.z)}, {maximum(p.x, q.x), maximum(p.y, q.y), maximum(p.z, q.z)},
                   reach);
   });
@@ -178,10 +228,11 @@ inline void findAtVertices(const LeafShapes& a, std::uint32_t vertices, const Le
                            LeafHits* hits) {
   hits->vertex_faces[order] = hits->vertex_edges[order] = 0;
   forEachBit(vertices, [&](std::uint32_t i) {
-    const FloatVectors p = one(a.vertices, i);
-    const std::uint32_t faces = bitsWhere(b.face_count, [&](auto j) { return mayTouch(p, severalFaces(b, j), reach); });
+    const FewVectors q = oneVertex<FewFloats>(a, i);
+    const std::uint32_t faces = bitsWhere<FEW_LANES>(b.face_count, [&](auto j) { return mayTouch(q, FewFaces(b.faces, j), reach); });
     append(i, faces, hits->vertex_face[order], &hits->vertex_faces[order]);
-    const std::uint32_t edges = bitsWhere(b.edge_count, [&](auto j) { return mayTouch(p, severalEdges(b, j), reach); });
+    const FloatVectors p = oneVertex<Floats>(a, i);
+    const std::uint32_t edges = edgesWhere(b, [&](const LeafEdges& block, auto j) { return mayTouch(p, block, j, reach); });
     append(i, edges, hits->vertex_edge[order], &hits->vertex_edges[order]);
   });
 }
@@ -192,14 +243,15 @@ void leafContacts(const LeafShapes& a, const LeafShapes& b, const LeafReach& rea
   findAtVertices(b, near_b, a, reach, 1, hits);
   hits->vertex_vertices = hits->edge_edges = 0;
   forEachBit(near_b == 0 ? 0 : near_a, [&](std::uint32_t i) {
-    const FloatVectors p = one(a.vertices, i);
-    const std::uint32_t vertices = bitsWhere(b.vertex_count, [&](auto j) { return mayTouch(p, several(b.vertices, j), reach); });
+    const FloatVectors p = oneVertex<Floats>(a, i);
+    const std::uint32_t vertices = bitsWhere(b.vertex_count, [&](auto j) { return mayTouch(p, severalVertices(b, j), reach); });
     append(i, vertices, hits->vertex_vertex, &hits->vertex_vertices);
   });
   if (!mayShareNormal(a.edge_cone, b.edge_cone, reach.turn)) return;
   forEachBit(edgesNear(a, b, reach.range), [&](std::uint32_t i) {
     const FloatEdge edge = oneEdge(a, i);
-    const std::uint32_t edges = bitsWhere(b.edge_count, [&](auto j) { return mayTouch(edge, severalEdges(b, j), reach); });
+    const std::uint32_t edges =
+        edgesWhere(b, [&](const LeafEdges& block, auto j) { return mayTouch(edge, severalEdges(block, j), reach); });
     append(i, edges, hits->edge_edge, &hits->edge_edges);
   });
 }
@@ -207,8 +259,10 @@ void leafContacts(const LeafShapes& a, const LeafShapes& b, const LeafReach& rea
 inline void findCrossings(const LeafShapes& a, const LeafShapes& b, const LeafReach& reach, int order, LeafHits* hits) {
   hits->edge_faces[order] = 0;
   forEachBit(edgesNear(a, b, reach.margin), [&](std::uint32_t i) {
-    const FloatEdge edge = oneEdge(a, i);
-    const std::uint32_t faces = bitsWhere(b.face_count, [&](auto j) { return mayCross(edge, severalFaces(b, j), reach); });
+    const LeafEdges& edges = blockOf(a.edges, i);
+    const FewVectors start = FewVectors::one(edges.starts, i % LEAF_BLOCK), end = start + FewVectors::one(edges.alongs, i % LEAF_BLOCK);
+    const std::uint32_t faces =
+        bitsWhere<FEW_LANES>(b.face_count, [&](auto j) { return mayCross(start, end, FewFaces(b.faces, j), reach); });
     append(i, faces, hits->edge_face[order], &hits->edge_faces[order]);
   });
 }
@@ -218,44 +272,75 @@ void leafCrossings(const LeafShapes& a, const LeafShapes& b, const LeafReach& re
   findCrossings(b, a, reach, 1, hits);
 }
 
-template <int CAPACITY>
-inline void turnRows(const float (*in)[CAPACITY], std::uint32_t count, const float* R, const float* t, float (*out)[CAPACITY]) {
-  for (std::uint32_t first = 0; first < count; first += FLOAT_LANES) {
-    const FloatVectors v = several(in, first);
-    for (int k = 0; k < 3; ++k)
-      *reinterpret_cast<Floats*>(&out[k][first]) = R[3 * k] * v.x + R[3 * k + 1] * v.y + R[3 * k + 2] * v.z + t[k];
-  }
-}
+/** Rows of vectors with a motion. */
+template <typename Lanes>
+struct LeafTurn {
+  float R[9], t[3];
 
-/** Normals turn; an offset grows by what the translation is along the normal. */
-template <int CAPACITY>
-inline void turnPlanes(const float (*in)[CAPACITY], std::uint32_t count, const float* R, const float* t, float (*out)[CAPACITY]) {
-  const float none[3] = {0, 0, 0};
-  turnRows(in, count, R, none, out);
-  for (std::uint32_t first = 0; first < count; first += FLOAT_LANES) {
-    const FloatVectors n = several(out, first);
-    *reinterpret_cast<Floats*>(&out[3][first]) = row(&in[3][first]) + t[0] * n.x + t[1] * n.y + t[2] * n.z;
+  template <int CAPACITY>
+  void directions(const float (&in)[3][CAPACITY], float (&out)[3][CAPACITY]) const {
+    rows(&in[0][0], CAPACITY, {}, &out[0][0]);
   }
+  template <int CAPACITY>
+  void points(const float (&in)[3][CAPACITY], float (&out)[3][CAPACITY]) const {
+    rows(&in[0][0], CAPACITY, {t[0], t[1], t[2]}, &out[0][0]);
+  }
+  /** Normals turn; an offset grows by what the translation is along the normal. */
+  template <int CAPACITY>
+  void planes(const float (&in)[4][CAPACITY], float (&out)[4][CAPACITY]) const {
+    rows(&in[0][0], CAPACITY, {}, &out[0][0]);
+    for (int i = 0; i < CAPACITY; i += COUNT) {
+      const auto row = [&](int k) { return LeafVectors<Lanes>::row(&out[k][i]); };
+      *reinterpret_cast<Lanes*>(&out[3][i]) = LeafVectors<Lanes>::row(&in[3][i]) + t[0] * row(0) + t[1] * row(1) + t[2] * row(2);
+    }
+  }
+
+ private:
+  static constexpr int COUNT = sizeof(Lanes) / sizeof(float);
+  struct Shift {
+    float x, y, z;
+  };
+  void rows(const float* in, int capacity, const Shift& shift, float* out) const {
+    const float by[3] = {shift.x, shift.y, shift.z};
+    for (int i = 0; i < capacity; i += COUNT) {
+      const auto row = [&](int k) { return LeafVectors<Lanes>::row(&in[k * capacity + i]); };
+      const Lanes x = row(0), y = row(1), z = row(2);
+      for (int k = 0; k < 3; ++k)
+        *reinterpret_cast<Lanes*>(&out[k * capacity + i]) = R[3 * k] * x + R[3 * k + 1] * y + R[3 * k + 2] * z + by[k];
+    }
+  }
+};
+
+template <typename Lanes>
+inline LeafTurn<Lanes> turnOf(const Motion& motion) {
+  LeafTurn<Lanes> turn;
+  for (int i = 0; i < 9; ++i) turn.R[i] = static_cast<float>(motion.R[i]);
+  for (int i = 0; i < 3; ++i) turn.t[i] = static_cast<float>(motion.t[i]);
+  return turn;
 }
 
 void turnLeaf(const LeafShapes& in, const Motion& motion, LeafShapes* out) {
-  float R[9], t[3];
-  const float none[3] = {0, 0, 0};
-  for (int i = 0; i < 9; ++i) R[i] = static_cast<float>(motion.R[i]);
-  for (int i = 0; i < 3; ++i) t[i] = static_cast<float>(motion.t[i]);
+  const LeafTurn<Floats> turn = turnOf<Floats>(motion);
+  const LeafTurn<FewFloats> turn_few = turnOf<FewFloats>(motion);
   out->face_count = in.face_count;
   out->edge_count = in.edge_count;
   out->vertex_count = in.vertex_count;
-  turnPlanes(in.planes, in.face_count, R, t, out->planes);
-  for (int k = 0; k < 3; ++k) turnPlanes(in.sides[k], in.face_count, R, t, out->sides[k]);
-  for (int k = 0; k < 3; ++k)
-    out->edge_cone.axis[k] = R[3 * k] * in.edge_cone.axis[0] + R[3 * k + 1] * in.edge_cone.axis[1] + R[3 * k + 2] * in.edge_cone.axis[2];
+  const float(&axis)[3] = in.edge_cone.axis;
+  for (int k = 0; k < 3; ++k) out->edge_cone.axis[k] = turn.R[3 * k] * axis[0] + turn.R[3 * k + 1] * axis[1] + turn.R[3 * k + 2] * axis[2];
   out->edge_cone.spread = in.edge_cone.spread;
-  __builtin_memcpy(out->open, in.open, sizeof in.open);
-  turnRows(in.starts, in.edge_count, R, t, out->starts);
-  turnRows(in.alongs, in.edge_count, R, none, out->alongs);
-  for (int k = 0; k < 2; ++k) turnPlanes(in.inwards[k], in.edge_count, R, t, out->inwards[k]);
-  turnRows(in.vertices, in.vertex_count, R, t, out->vertices);
+  turn_few.planes(in.faces.planes, out->faces.planes);
+  for (int k = 0; k < 3; ++k) turn_few.planes(in.faces.sides[k], out->faces.sides[k]);
+  __builtin_memcpy(out->faces.open, in.faces.open, sizeof in.faces.open);
+  for (std::uint32_t first = 0; first < in.vertex_count; first += LEAF_BLOCK)
+    turn.points(blockOf(in.vertices, first).points, blockOf(out->vertices, first).points);
+  for (std::uint32_t first = 0; first < in.edge_count; first += LEAF_BLOCK) {
+    const LeafEdges& from = blockOf(in.edges, first);
+    LeafEdges& to = blockOf(out->edges, first);
+    for (int k = 0; k < 2; ++k) turn.planes(from.inwards[k], to.inwards[k]);
+    turn.points(from.starts, to.starts);
+    turn.directions(from.alongs, to.alongs);
+    __builtin_memcpy(to.per_length2, from.per_length2, sizeof from.per_length2);
+  }
 }
 
 }  // namespace

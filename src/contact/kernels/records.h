@@ -36,8 +36,9 @@ struct Candidate {
   std::uint32_t a, b;
 };
 
-/** Elements of a leaf; room for their features, in whole vectors. */
-constexpr int MAX_LEAF_ELEMENTS = 8, MAX_LEAF_FACES = 16, MAX_LEAF_EDGES = 32, MAX_LEAF_VERTICES = 32;
+/** Elements of a leaf; room for their features, in blocks of so many side by side. */
+constexpr int MAX_LEAF_ELEMENTS = 8, LEAF_BLOCK = 16, LEAF_BLOCKS = 2, MAX_LEAF_FEATURES = LEAF_BLOCKS * LEAF_BLOCK;
+static_assert(3 * MAX_LEAF_ELEMENTS <= MAX_LEAF_FEATURES, "each element may own three edges and three vertices");
 
 /** All directions, but for their signs, that a contact's normal at some edge of a leaf may have, without slack. */
 struct EdgeCone {
@@ -45,17 +46,28 @@ struct EdgeCone {
   float spread;   ///< [rad] of a normal from the axis; at least pi/2: any
 };
 
-/** Features of a leaf in float, a coordinate after the other, in some frame. */
-struct alignas(64) LeafShapes {
-  float planes[4][MAX_LEAF_FACES];    ///< FaceRecord::plane
-  float sides[3][4][MAX_LEAF_FACES];  ///< FaceRecord::sides
-  OpenSides open[MAX_LEAF_FACES];
-  float starts[3][MAX_LEAF_EDGES], alongs[3][MAX_LEAF_EDGES];
-  float inwards[2][4][MAX_LEAF_EDGES];  ///< EdgeRecord::inward; offset of the edge along it
-  float vertices[3][MAX_LEAF_VERTICES];
-  EdgeCone edge_cone;
-  float lower[3], upper[3];  ///< box of all its elements
+// Features of a leaf in float, a coordinate after the other, in some frame. What is read together lies together: leaves are many.
+
+struct alignas(64) LeafVertices {
+  float points[3][LEAF_BLOCK];
+};
+struct alignas(64) LeafFaces {
+  float planes[4][MAX_LEAF_ELEMENTS];    ///< FaceRecord::plane
+  float sides[3][4][MAX_LEAF_ELEMENTS];  ///< FaceRecord::sides
+  OpenSides open[MAX_LEAF_ELEMENTS];
+};
+struct alignas(64) LeafEdges {
+  float inwards[2][4][LEAF_BLOCK];  ///< EdgeRecord::inward; offset of the edge along it
+  float starts[3][LEAF_BLOCK], alongs[3][LEAF_BLOCK];
+  float per_length2[LEAF_BLOCK];  ///< one over the squared length
+};
+struct LeafShapes {
   std::uint32_t face_count, edge_count, vertex_count;
+  float lower[3], upper[3];  ///< box of all its elements
+  EdgeCone edge_cone;
+  LeafVertices vertices[LEAF_BLOCKS];
+  LeafFaces faces;
+  LeafEdges edges[LEAF_BLOCKS];
 };
 
 /** What a search for candidates asks [m]. */
@@ -81,8 +93,8 @@ struct LeafHit {
 /** Pairs of features of two leaves that may have a contact, or a crossing. [0]: the first kind is the first leaf's, bits are the second
  * one's; [1]: the other way round. */
 struct LeafHits {
-  LeafHit vertex_face[2][MAX_LEAF_VERTICES], vertex_edge[2][MAX_LEAF_VERTICES], edge_face[2][MAX_LEAF_EDGES];
-  LeafHit vertex_vertex[MAX_LEAF_VERTICES], edge_edge[MAX_LEAF_EDGES];
+  LeafHit vertex_face[2][MAX_LEAF_FEATURES], vertex_edge[2][MAX_LEAF_FEATURES], edge_face[2][MAX_LEAF_FEATURES];
+  LeafHit vertex_vertex[MAX_LEAF_FEATURES], edge_edge[MAX_LEAF_FEATURES];
   int vertex_faces[2], vertex_edges[2], edge_faces[2], vertex_vertices, edge_edges;
 };
 
