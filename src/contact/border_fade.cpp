@@ -29,12 +29,12 @@ bool BorderFades::find(bool vertex_moves, std::uint32_t vertex, std::uint32_t fa
     is_outside = true;
   }
   if (!is_outside) return false;
-  const FaceBorders& borders = near.borders(pair_.side(!vertex_moves), face);
+  const FaceBorders& borders = near.bordersOf(pair_.side(!vertex_moves), face);
   const Vector3 normal = vector3(record.plane), down = height > 0 ? Vector3(-normal) : normal;
   bool fades = false;
   for (int k = 0; k < 3; ++k) {
     if (outside[k] <= 0) continue;
-    const BorderKind kind = borders.kinds[height > 0][k];
+    const BorderKind kind = borders.kinds.of[height > 0][k];
     // Beyond a flat side the plane goes on, and is asked there; beyond a round one the edge is.
     if (kind == BorderKind::FLAT || kind == BorderKind::ROUND) return false;
     fades = fades || kind == BorderKind::RISING ||

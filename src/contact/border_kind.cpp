@@ -7,42 +7,37 @@
 namespace blem_sim {
 namespace {
 
-/** How steeply (sine) the face's neighbours over an edge rise out of its plane; negative where they fall. */
-struct NeighbourSlopes {
-  NeighbourSlopes(const MeshSide& side, int face, int edge) {
-    const Vector3 normal = MeshTopology::normal(side.mesh, face);
+/** Seen from where `slope` is positive: how steeply (sine) the steepest of a face's neighbours over an edge rises out of its plane. */
+BorderKind kindOf(const MeshSide& side, int edge, double slope) {
+  if (slope > CONE_SLACK) return slope > NEAR_SUCCESSOR ? BorderKind::RISING : BorderKind::TURNING;
+  return isRoundEdge(side, edge) ? BorderKind::ROUND : BorderKind::FALLING;
+}
+
+}  // namespace
+
+BorderKinds borderKinds(const MeshSide& side, int face) {
+  BorderKinds kinds;
+  const Vector3 normal = MeshTopology::normal(side.mesh, face);
+  for (int k = 0; k < 3; ++k) {
+    const int edge = side.topology.edgeOf(face, k);
+    kinds.of[0][k] = kinds.of[1][k] = BorderKind::FLAT;
+    if (side.topology.isFlatEdge(edge)) continue;
+    double above = -1, below = -1;
     for (const int neighbour : side.topology.facesOf(edge)) {
       if (side.topology.patchOf(neighbour) == side.topology.patchOf(face)) continue;
       const double slope = side.topology.inward(side.mesh, edge, neighbour).dot(normal);
       above = std::max(above, slope);
       below = std::max(below, -slope);
     }
+    kinds.of[1][k] = kindOf(side, edge, above);
+    kinds.of[0][k] = kindOf(side, edge, below);
   }
-  double above = -1, below = -1;  ///< seen from there
-};
-
-bool rises(double slope) { return slope > CONE_SLACK; }
-
-}  // namespace
-
-BorderKind borderKind(const MeshSide& side, int face, int k, bool above) {
-  const int edge = side.topology.edgeOf(face, k);
-  if (side.topology.isFlatEdge(edge)) return BorderKind::FLAT;
-  const NeighbourSlopes slopes(side, face, edge);
-  const double slope = above ? slopes.above : slopes.below;
-  if (rises(slope)) return slope > NEAR_SUCCESSOR ? BorderKind::RISING : BorderKind::TURNING;
-  return isRoundEdge(side, edge) ? BorderKind::ROUND : BorderKind::FALLING;
+  return kinds;
 }
 
-kernels::OpenSides openSides(const MeshSide& side, int face) {
+kernels::OpenSides openSides(const BorderKinds& kinds) {
   kernels::OpenSides open = 0;
-  for (int k = 0; k < 3; ++k) {
-    const int edge = side.topology.edgeOf(face, k);
-    if (side.topology.isFlatEdge(edge)) continue;
-    const NeighbourSlopes slopes(side, face, edge);
-    const bool sharp = !isRoundEdge(side, edge);
-    open |= (rises(slopes.above) || sharp) << k | (rises(slopes.below) || sharp) << (3 + k);
-  }
+  for (int k = 0; k < 3; ++k) open |= (kinds.of[1][k] > BorderKind::ROUND) << k | (kinds.of[0][k] > BorderKind::ROUND) << (3 + k);
   return open;
 }
 

@@ -14,10 +14,14 @@ enum class BorderKind : std::uint8_t {
   RISING
 };
 
-/** Of the element's side k (corners k and k + 1). @param above from where the normal of its winding points to */
-BorderKind borderKind(const MeshSide& side, int face, int k, bool above);
+/** Of the sides of a face: seen from above its plane, where the normal of its winding points to, [1], and from below [0]; side k goes from
+ * corner k to the next. */
+struct BorderKinds {
+  BorderKind of[2][3];
+};
+BorderKinds borderKinds(const MeshSide& side, int face);
 
 /** Over which sides contacts may fade: neither over flat nor over round ones. */
-kernels::OpenSides openSides(const MeshSide& side, int face);
+kernels::OpenSides openSides(const BorderKinds& kinds);
 
 }  // namespace blem_sim

@@ -52,6 +52,7 @@ class Search {
     if (leaf->faces.slots[i] == LeafFeatures::NO_SLOT) {
       near.patches.push_back(leaf->patches[i]);
       near.open.push_back(leaf->shapes.faces.open[i]);
+      near.borders.push_back(leaf->borders[i]);
     }
     return slot(&leaf->faces, i, &near.faces);
   }
@@ -92,7 +93,8 @@ class Search {
   static void prefetch(const kernels::LeafShapes& shapes) {
     constexpr std::size_t LINE = 64;
     const char* const begin = reinterpret_cast<const char*>(&shapes);
-    const std::size_t used = offsetof(kernels::LeafShapes, edges) + sizeof(kernels::LeafEdges);
+    const std::size_t used =
+        offsetof(kernels::LeafShapes, edges) + (shapes.edge_count > kernels::LEAF_BLOCK ? 2 : 1) * sizeof(kernels::LeafEdges);
     for (std::size_t at = 0; at < used; at += LINE) __builtin_prefetch(begin + at);
   }
 
@@ -132,16 +134,13 @@ void dropLeading(const MeshPair& pair, double margin, NearFeatures (&near)[2], s
 
 }  // namespace
 
-const FaceBorders& NearFeatures::borders(const MeshSide& side, std::uint32_t face) {
-  if (borders_.size() < faces.names.size()) borders_.resize(faces.names.size());
-  FaceBorders& found = borders_[face];
+const FaceBorders& NearFeatures::bordersOf(const MeshSide& side, std::uint32_t face) {
+  if (known_borders_.size() < faces.names.size()) known_borders_.resize(faces.names.size());
+  FaceBorders& found = known_borders_[face];
   if (found.known) return found;
   found.known = true;
-  const int name = faces.names[face];
-  for (int k = 0; k < 3; ++k) {
-    found.corners[k] = side.mesh.vertices[side.mesh.elements[name][k]];
-    for (const bool above : {false, true}) found.kinds[above][k] = borderKind(side, name, k, above);
-  }
+  found.kinds = borders[face];
+  for (int k = 0; k < 3; ++k) found.corners[k] = side.mesh.vertices[side.mesh.elements[faces.names[face]][k]];
   return found;
 }
 
@@ -171,7 +170,8 @@ void NearFeatures::clear() {
   faces.clear();
   patches.clear();
   open.clear();
-  borders_.clear();
+  borders.clear();
+  known_borders_.clear();
   rings_.clear();
   ring_directions.clear();
 }

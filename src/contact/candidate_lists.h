@@ -27,10 +27,10 @@ struct FeatureRecords {
   }
 };
 
-/** The sides of a face: what lies behind them, seen from above its plane [1] and from below [0]. */
+/** The sides of a face and what lies behind them. */
 struct FaceBorders {
   bool known = false;
-  BorderKind kinds[2][3];
+  BorderKinds kinds;
   Vector3 corners[3];  ///< side k goes from corner k to the next; mesh's frame
 };
 
@@ -46,9 +46,10 @@ struct NearFeatures {
   FeatureRecords<kernels::FaceRecord> faces;
   std::vector<int> patches;              ///< of the faces
   std::vector<kernels::OpenSides> open;  ///< of the faces
+  std::vector<BorderKinds> borders;      ///< of the faces
 
   /** What few candidates ask for, worked out when the first one does. @param side the mesh */
-  const FaceBorders& borders(const MeshSide& side, std::uint32_t face);
+  const FaceBorders& bordersOf(const MeshSide& side, std::uint32_t face);
   const VertexRing& ring(const MeshSide& side, std::uint32_t vertex);
   bool isRound(const MeshSide& side, std::uint32_t vertex) const;  ///< flat and round edges only
   std::vector<kernels::Vec4> ring_directions;                      ///< unit, mesh's frame; w: 1 if the edge is flat
@@ -56,7 +57,7 @@ struct NearFeatures {
   void clear();
 
  private:
-  std::vector<FaceBorders> borders_;
+  std::vector<FaceBorders> known_borders_;
   std::vector<VertexRing> rings_;
 };
 

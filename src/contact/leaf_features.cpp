@@ -40,7 +40,8 @@ void describeFace(const MeshSide& side, int element, LeafFeatures* leaf) {
   kernels::LeafFaces& faces = leaf->shapes.faces;
   placePlane(record.plane, record.plane.w, i, faces.planes);
   for (int k = 0; k < 3; ++k) placePlane(record.sides[k], record.sides[k].w, i, faces.sides[k]);
-  faces.open[i] = openSides(side, element);
+  leaf->borders[i] = borderKinds(side, element);
+  faces.open[i] = openSides(leaf->borders[i]);
 }
 
 void describeEdge(const MeshSide& side, int edge, LeafFeatures* leaf) {
@@ -145,22 +146,20 @@ EdgeRecord edgeRecord(const MeshSide& side, int edge) {
 
 /** What is held of the leaf; else it takes the place, of its few, that was used longest ago. */
 LeafFeatures& LeafMemory::find(Table* table, const MeshSide& side, std::uint32_t leaf, std::uint64_t search) {
-  Place* const first = &table->places[(leaf + 0x9E3779B9u * side.identity) % (CAPACITY / WAYS) * WAYS];
-  Place* place = first;
-  for (Place* each = first; each != first + WAYS; ++each) {
-    if (each->geometry == side.identity && each->leaf == leaf) {
-      each->search = search;
-      return *each->features;
-    }
-    if (each->search < place->search) place = each;
+  const std::uint64_t key = keyOf(side, leaf);
+  Set& set = table->sets[(leaf + 0x9E3779B9u * side.identity) % (CAPACITY / WAYS)];
+  std::size_t oldest = 0;
+  for (std::size_t way = 0; way < WAYS; ++way)
+    if (set.keys[way] == key) return *set.features[way];
+  for (std::size_t way = 0; way < WAYS; ++way) {
+    if (!set.features[way] || set.features[way]->search < set.features[oldest]->search) oldest = way;
+    if (!set.features[way]) break;
   }
-  if (place->search == search) return findCrowdedOut(table, side, leaf, search);
-  if (!place->features) place->features = std::make_unique<LeafFeatures>();
-  place->geometry = side.identity;
-  place->leaf = leaf;
-  place->search = search;
-  describe(side, leaf, place->features.get());
-  return *place->features;
+  if (!set.features[oldest]) set.features[oldest] = std::make_unique<LeafFeatures>();
+  if (set.features[oldest]->search == search) return findCrowdedOut(table, side, leaf, search);
+  set.keys[oldest] = key;
+  describe(side, leaf, set.features[oldest].get());
+  return *set.features[oldest];
 }
 
 LeafFeatures& LeafMemory::findCrowdedOut(Table* table, const MeshSide& side, std::uint32_t leaf, std::uint64_t search) {

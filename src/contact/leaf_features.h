@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "border_kind.h"
 #include "kernels/kernels.h"
 #include "mesh_pair.h"
 
@@ -36,8 +37,9 @@ struct LeafFeatures {
   Kind<kernels::Vec4, kernels::MAX_LEAF_FEATURES> vertices;
   Kind<kernels::FaceRecord, kernels::MAX_LEAF_ELEMENTS> faces;
   Kind<kernels::EdgeRecord, kernels::MAX_LEAF_FEATURES> edges;
-  int patches[kernels::MAX_LEAF_ELEMENTS];      ///< of the faces
-  std::unique_ptr<kernels::LeafShapes> turned;  ///< of a moving leaf, in the frame of the search
+  int patches[kernels::MAX_LEAF_ELEMENTS];          ///< of the faces
+  BorderKinds borders[kernels::MAX_LEAF_ELEMENTS];  ///< of the faces
+  std::unique_ptr<kernels::LeafShapes> turned;      ///< of a moving leaf, in the frame of the search
 };
 
 kernels::FaceRecord faceRecord(const MeshSide& side, int element);
@@ -56,19 +58,19 @@ class LeafMemory {
   LeafFeatures& moving(const MeshSide& side, std::uint32_t leaf, std::uint64_t search, const kernels::Motion& motion);
 
  private:
-  struct Place {
-    std::uint64_t geometry = 0;  // whose leaf; 0: nobody's
-    std::uint32_t leaf = 0;
-    std::uint64_t search = 0;  // the last one that asked
-    std::unique_ptr<LeafFeatures> features;
-  };
   static constexpr std::size_t CAPACITY = 4096, WAYS = 4;  // of each table; places that a leaf may have
+  /** A line of memory: which leaves are held, and where. */
+  struct alignas(64) Set {
+    std::uint64_t keys[WAYS] = {};  // keyOf; 0: nobody's
+    std::unique_ptr<LeafFeatures> features[WAYS];
+  };
   struct Table {
-    std::vector<Place> places = std::vector<Place>(CAPACITY);
+    std::vector<Set> sets = std::vector<Set>(CAPACITY / WAYS);
     // Leaves of the search at hand whose places others of its leaves hold: a search must not lose where it put a feature.
     std::map<std::uint32_t, std::unique_ptr<LeafFeatures>> crowded_out;
     std::uint64_t crowded_search = 0;
   };
+  static std::uint64_t keyOf(const MeshSide& side, std::uint32_t leaf) { return side.identity << 32 | leaf; }
   static LeafFeatures& find(Table* table, const MeshSide& side, std::uint32_t leaf, std::uint64_t search);
   static LeafFeatures& findCrowdedOut(Table* table, const MeshSide& side, std::uint32_t leaf, std::uint64_t search);
 

@@ -20,26 +20,19 @@ constexpr int LANES = 4;
 #else
 constexpr int LANES = 2;
 #endif
-constexpr int FLOAT_LANES = 2 * LANES;
+constexpr int FLOAT_LANES = LANES < 4 ? 2 * LANES : 8;  // a leaf has few features of a kind
 
 typedef double Doubles __attribute__((vector_size(8 * LANES)));
 typedef long Mask __attribute__((vector_size(8 * LANES)));
 typedef float Floats __attribute__((vector_size(4 * FLOAT_LANES)));
 typedef int FloatMask __attribute__((vector_size(4 * FLOAT_LANES)));
-// Where there are never more than eight.
-constexpr int FEW_LANES = FLOAT_LANES < 8 ? FLOAT_LANES : 8;
-typedef float FewFloats __attribute__((vector_size(4 * FEW_LANES)));
-typedef int FewMask __attribute__((vector_size(4 * FEW_LANES)));
 
 struct Vectors {
   Doubles x, y, z;
 };
 
 inline Doubles all(double value) { return value - Doubles{}; }
-template <typename Lanes>
-inline Lanes allOf(float value) {
-  return value - Lanes{};
-}
+inline Floats allFloats(float value) { return value - Floats{}; }
 
 inline unsigned bitsOf(Mask mask) {
 #if defined(__AVX512F__)
@@ -57,7 +50,7 @@ inline unsigned bitsOf(Mask mask) {
 
 inline unsigned bitsOf(FloatMask mask) {
 #if defined(__AVX512F__)
-  return _mm512_movepi32_mask(reinterpret_cast<__m512i>(mask));
+  return _mm256_movepi32_mask(reinterpret_cast<__m256i>(mask));
 #elif defined(__AVX2__)
   return static_cast<unsigned>(_mm256_movemask_ps(reinterpret_cast<__m256>(mask)));
 #elif defined(__x86_64__)
@@ -68,10 +61,6 @@ inline unsigned bitsOf(FloatMask mask) {
   return bits;
 #endif
 }
-
-#if defined(__AVX512F__)
-inline unsigned bitsOf(FewMask mask) { return _mm256_movepi32_mask(reinterpret_cast<__m256i>(mask)); }
-#endif
 
 inline Doubles squareRoot(Doubles v) {
 #if defined(__AVX512F__)
@@ -87,9 +76,7 @@ inline Doubles squareRoot(Doubles v) {
 }
 
 inline Floats squareRoot(Floats v) {
-#if defined(__AVX512F__)
-  return reinterpret_cast<Floats>(_mm512_sqrt_ps(reinterpret_cast<__m512>(v)));
-#elif defined(__AVX2__)
+#if defined(__AVX2__)
   return reinterpret_cast<Floats>(_mm256_sqrt_ps(reinterpret_cast<__m256>(v)));
 #elif defined(__x86_64__)
   return reinterpret_cast<Floats>(_mm_sqrt_ps(reinterpret_cast<__m128>(v)));
@@ -106,12 +93,7 @@ inline Doubles clampedToUnit(Doubles a) { return minimum(maximum(a, Doubles{}), 
 inline Floats maximum(Floats a, Floats b) { return a > b ? a : b; }
 inline Floats minimum(Floats a, Floats b) { return a < b ? a : b; }
 inline Floats absolute(Floats a) { return a < 0 ? -a : a; }
-inline Floats clampedToUnit(Floats a) { return minimum(maximum(a, Floats{}), allOf<Floats>(1)); }
-#if defined(__AVX512F__)
-inline FewFloats maximum(FewFloats a, FewFloats b) { return a > b ? a : b; }
-inline FewFloats minimum(FewFloats a, FewFloats b) { return a < b ? a : b; }
-inline FewFloats absolute(FewFloats a) { return a < 0 ? -a : a; }
-#endif
+inline Floats clampedToUnit(Floats a) { return minimum(maximum(a, Floats{}), allFloats(1)); }
 
 inline Doubles dot(const Vectors& a, const Vectors& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 inline Vectors cross(const Vectors& a, const Vectors& b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }

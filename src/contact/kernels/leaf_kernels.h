@@ -9,71 +9,47 @@
 namespace blem_sim::kernels {
 namespace {
 
-/** Coordinates of several features, or of one in all lanes. */
-template <typename Lanes>
-struct LeafVectors {
-  Lanes x, y, z;
+inline Floats row(const float* from) { return *reinterpret_cast<const Floats*>(from); }
 
-  template <int CAPACITY>
-  static LeafVectors several(const float (&from)[3][CAPACITY], std::uint32_t first) {
+/** Coordinates of several features, or of one in all lanes. */
+struct FloatVectors {
+  Floats x, y, z;
+
+  static FloatVectors several(const float (&from)[3][LEAF_BLOCK], std::uint32_t first) {
     return {row(&from[0][first]), row(&from[1][first]), row(&from[2][first])};
   }
-  template <int CAPACITY>
-  static LeafVectors one(const float (&from)[3][CAPACITY], std::uint32_t i) {
-    return {allOf<Lanes>(from[0][i]), allOf<Lanes>(from[1][i]), allOf<Lanes>(from[2][i])};
+  static FloatVectors one(const float (&from)[3][LEAF_BLOCK], std::uint32_t i) {
+    return {allFloats(from[0][i]), allFloats(from[1][i]), allFloats(from[2][i])};
   }
-  static Lanes row(const float* from) { return *reinterpret_cast<const Lanes*>(from); }
 };
 
-template <typename Lanes>
-inline Lanes dot(const LeafVectors<Lanes>& a, const LeafVectors<Lanes>& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-template <typename Lanes>
-inline LeafVectors<Lanes> operator+(const LeafVectors<Lanes>& a, const LeafVectors<Lanes>& b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-template <typename Lanes>
-inline LeafVectors<Lanes> operator-(const LeafVectors<Lanes>& a, const LeafVectors<Lanes>& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-template <typename Lanes>
-inline LeafVectors<Lanes> operator*(Lanes s, const LeafVectors<Lanes>& a) {
-  return {s * a.x, s * a.y, s * a.z};
-}
+inline Floats dot(const FloatVectors& a, const FloatVectors& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline FloatVectors operator+(const FloatVectors& a, const FloatVectors& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+inline FloatVectors operator-(const FloatVectors& a, const FloatVectors& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+inline FloatVectors operator*(Floats s, const FloatVectors& a) { return {s * a.x, s * a.y, s * a.z}; }
 
 /** Planes, by their normal and offset: several, or one in all lanes. */
-template <typename Lanes>
-struct LeafPlanes {
-  LeafVectors<Lanes> normal;
-  Lanes offset;
+struct FloatPlanes {
+  FloatVectors normal;
+  Floats offset;
 
-  template <int CAPACITY>
-  static LeafPlanes several(const float (&from)[4][CAPACITY], std::uint32_t first) {
-    const auto row = [&](int k) { return LeafVectors<Lanes>::row(&from[k][first]); };
-    return {{row(0), row(1), row(2)}, row(3)};
+  static FloatPlanes several(const float (&from)[4][LEAF_BLOCK], std::uint32_t first) {
+    return {{row(&from[0][first]), row(&from[1][first]), row(&from[2][first])}, row(&from[3][first])};
   }
-  template <int CAPACITY>
-  static LeafPlanes one(const float (&from)[4][CAPACITY], std::uint32_t i) {
-    const auto all = [&](int k) { return allOf<Lanes>(from[k][i]); };
-    return {{all(0), all(1), all(2)}, all(3)};
+  static FloatPlanes one(const float (&from)[4][LEAF_BLOCK], std::uint32_t i) {
+    return {{allFloats(from[0][i]), allFloats(from[1][i]), allFloats(from[2][i])}, allFloats(from[3][i])};
   }
-  Lanes above(const LeafVectors<Lanes>& p) const { return dot(normal, p) - offset; }
+  Floats above(const FloatVectors& p) const { return dot(normal, p) - offset; }
 };
 
-using FloatVectors = LeafVectors<Floats>;
-using FloatPlanes = LeafPlanes<Floats>;
-using FewVectors = LeafVectors<FewFloats>;
-using FewPlanes = LeafPlanes<FewFloats>;
-
-struct FewFaces {
-  FewFaces(const LeafFaces& faces, std::uint32_t first)
-      : plane(FewPlanes::several(faces.planes, first)),
-        sides{FewPlanes::several(faces.sides[0], first), FewPlanes::several(faces.sides[1], first),
-              FewPlanes::several(faces.sides[2], first)},
-        open(*reinterpret_cast<const FewMask*>(&faces.open[first])) {}
-  FewPlanes plane, sides[3];
-  FewMask open;
+struct FloatFaces {
+  FloatFaces(const LeafFaces& faces, std::uint32_t first)
+      : plane(FloatPlanes::several(faces.planes, first)),
+        sides{FloatPlanes::several(faces.sides[0], first), FloatPlanes::several(faces.sides[1], first),
+              FloatPlanes::several(faces.sides[2], first)},
+        open(*reinterpret_cast<const FloatMask*>(&faces.open[first])) {}
+  FloatPlanes plane, sides[3];
+  FloatMask open;
 };
 
 /** Which block holds feature i of a leaf. */
@@ -86,9 +62,8 @@ inline Block& blockOf(Block (&blocks)[LEAF_BLOCKS], std::uint32_t i) {
   return blocks[i / LEAF_BLOCK];
 }
 
-template <typename Lanes>
-inline LeafVectors<Lanes> oneVertex(const LeafShapes& leaf, std::uint32_t i) {
-  return LeafVectors<Lanes>::one(blockOf(leaf.vertices, i).points, i % LEAF_BLOCK);
+inline FloatVectors oneVertex(const LeafShapes& leaf, std::uint32_t i) {
+  return FloatVectors::one(blockOf(leaf.vertices, i).points, i % LEAF_BLOCK);
 }
 inline FloatVectors severalVertices(const LeafShapes& leaf, std::uint32_t first) {
   return FloatVectors::several(blockOf(leaf.vertices, first).points, first % LEAF_BLOCK);
@@ -113,9 +88,9 @@ inline FloatEdge severalEdges(const LeafEdges& edges, std::uint32_t first) {
 
 // Moved by no more than the margin, heights and distances change by no more than it: so the tests are the exact ones, that much wider.
 
-inline FewMask mayTouch(const FewVectors& p, const FewFaces& face, const LeafReach& reach) {
-  const FewFloats height = face.plane.above(p), most = reach.range - absolute(height);
-  const FewFloats inside[3] = {face.sides[0].above(p), face.sides[1].above(p), face.sides[2].above(p)};
+inline FloatMask mayTouch(const FloatVectors& p, const FloatFaces& face, const LeafReach& reach) {
+  const Floats height = face.plane.above(p), most = reach.range - absolute(height);
+  const Floats inside[3] = {face.sides[0].above(p), face.sides[1].above(p), face.sides[2].above(p)};
   return (most >= 0) & isOverOrFades(inside, openSides(face.open, height, reach.margin), most, reach.margin);
 }
 
@@ -126,7 +101,7 @@ inline FloatMask mayTouch(const FloatVectors& p, const LeafEdges& edges, std::ui
       (FloatPlanes::several(edges.inwards[0], first).above(p) <= limit) & (FloatPlanes::several(edges.inwards[1], first).above(p) <= limit);
   if (bitsOf(beside) == 0) return beside;
   const FloatVectors along = FloatVectors::several(edges.alongs, first), r = p - FloatVectors::several(edges.starts, first);
-  const FloatVectors d = r - clampedToUnit(dot(r, along) * FloatVectors::row(&edges.per_length2[first])) * along;
+  const FloatVectors d = r - clampedToUnit(dot(r, along) * row(&edges.per_length2[first])) * along;
   return beside & ~(dot(d, d) > reach.range * reach.range);
 }
 
@@ -163,18 +138,18 @@ inline FloatMask mayTouch(const FloatEdge& a, const FloatEdge& b, const LeafReac
 }
 
 /** Only an edge with ends on both sides of a plane, inside some part of the face, passes through it. */
-inline FewMask mayCross(const FewVectors& start, const FewVectors& end, const FewFaces& face, const LeafReach& reach) {
-  const FewFloats first = face.plane.above(start), second = face.plane.above(end);
-  FewMask may = (minimum(first, second) <= reach.margin) & (maximum(first, second) >= -reach.margin);
-  for (const FewPlanes& side : face.sides) may &= maximum(side.above(start), side.above(end)) >= -reach.margin;
+inline FloatMask mayCross(const FloatVectors& start, const FloatVectors& end, const FloatFaces& face, const LeafReach& reach) {
+  const Floats first = face.plane.above(start), second = face.plane.above(end);
+  FloatMask may = (minimum(first, second) <= reach.margin) & (maximum(first, second) >= -reach.margin);
+  for (const FloatPlanes& side : face.sides) may &= maximum(side.above(start), side.above(end)) >= -reach.margin;
   return may;
 }
 
-/** Bits of the features for which test(first of so many lanes) holds. */
-template <int LANES_AT_ONCE = FLOAT_LANES, typename Test>
+/** Bits of the features for which test(first of some lanes) holds. */
+template <typename Test>
 inline std::uint32_t bitsWhere(std::uint32_t count, Test&& test) {
   std::uint32_t bits = 0;
-  for (std::uint32_t first = 0; first < count; first += LANES_AT_ONCE) bits |= bitsOf(test(first)) << first;
+  for (std::uint32_t first = 0; first < count; first += FLOAT_LANES) bits |= bitsOf(test(first)) << first;
   return count < 32 ? bits & ((1u << count) - 1) : bits;
 }
 
@@ -228,10 +203,9 @@ inline void findAtVertices(const LeafShapes& a, std::uint32_t vertices, const Le
                            LeafHits* hits) {
   hits->vertex_faces[order] = hits->vertex_edges[order] = 0;
   forEachBit(vertices, [&](std::uint32_t i) {
-    const FewVectors q = oneVertex<FewFloats>(a, i);
-    const std::uint32_t faces = bitsWhere<FEW_LANES>(b.face_count, [&](auto j) { return mayTouch(q, FewFaces(b.faces, j), reach); });
+    const FloatVectors p = oneVertex(a, i);
+    const std::uint32_t faces = bitsWhere(b.face_count, [&](auto j) { return mayTouch(p, FloatFaces(b.faces, j), reach); });
     append(i, faces, hits->vertex_face[order], &hits->vertex_faces[order]);
-    const FloatVectors p = oneVertex<Floats>(a, i);
     const std::uint32_t edges = edgesWhere(b, [&](const LeafEdges& block, auto j) { return mayTouch(p, block, j, reach); });
     append(i, edges, hits->vertex_edge[order], &hits->vertex_edges[order]);
   });
@@ -243,7 +217,7 @@ void leafContacts(const LeafShapes& a, const LeafShapes& b, const LeafReach& rea
   findAtVertices(b, near_b, a, reach, 1, hits);
   hits->vertex_vertices = hits->edge_edges = 0;
   forEachBit(near_b == 0 ? 0 : near_a, [&](std::uint32_t i) {
-    const FloatVectors p = oneVertex<Floats>(a, i);
+    const FloatVectors p = oneVertex(a, i);
     const std::uint32_t vertices = bitsWhere(b.vertex_count, [&](auto j) { return mayTouch(p, severalVertices(b, j), reach); });
     append(i, vertices, hits->vertex_vertex, &hits->vertex_vertices);
   });
@@ -260,9 +234,9 @@ inline void findCrossings(const LeafShapes& a, const LeafShapes& b, const LeafRe
   hits->edge_faces[order] = 0;
   forEachBit(edgesNear(a, b, reach.margin), [&](std::uint32_t i) {
     const LeafEdges& edges = blockOf(a.edges, i);
-    const FewVectors start = FewVectors::one(edges.starts, i % LEAF_BLOCK), end = start + FewVectors::one(edges.alongs, i % LEAF_BLOCK);
-    const std::uint32_t faces =
-        bitsWhere<FEW_LANES>(b.face_count, [&](auto j) { return mayCross(start, end, FewFaces(b.faces, j), reach); });
+    const FloatVectors start = FloatVectors::one(edges.starts, i % LEAF_BLOCK),
+                       end = start + FloatVectors::one(edges.alongs, i % LEAF_BLOCK);
+    const std::uint32_t faces = bitsWhere(b.face_count, [&](auto j) { return mayCross(start, end, FloatFaces(b.faces, j), reach); });
     append(i, faces, hits->edge_face[order], &hits->edge_faces[order]);
   });
 }
@@ -272,64 +246,48 @@ void leafCrossings(const LeafShapes& a, const LeafShapes& b, const LeafReach& re
   findCrossings(b, a, reach, 1, hits);
 }
 
-/** Rows of vectors with a motion. */
-template <typename Lanes>
+/** A motion of rows of vectors. */
 struct LeafTurn {
-  float R[9], t[3];
-
-  template <int CAPACITY>
-  void directions(const float (&in)[3][CAPACITY], float (&out)[3][CAPACITY]) const {
-    rows(&in[0][0], CAPACITY, {}, &out[0][0]);
+  explicit LeafTurn(const Motion& motion) {
+    for (int i = 0; i < 9; ++i) R[i] = static_cast<float>(motion.R[i]);
+    for (int i = 0; i < 3; ++i) t[i] = static_cast<float>(motion.t[i]);
   }
-  template <int CAPACITY>
-  void points(const float (&in)[3][CAPACITY], float (&out)[3][CAPACITY]) const {
-    rows(&in[0][0], CAPACITY, {t[0], t[1], t[2]}, &out[0][0]);
+
+  void points(const float (&in)[3][LEAF_BLOCK], float (&out)[3][LEAF_BLOCK]) const { turn(in, t, out); }
+  template <int ROWS>
+  void directions(const float (&in)[ROWS][LEAF_BLOCK], float (&out)[ROWS][LEAF_BLOCK]) const {
+    const float none[3] = {0, 0, 0};
+    turn(in, none, out);
   }
   /** Normals turn; an offset grows by what the translation is along the normal. */
-  template <int CAPACITY>
-  void planes(const float (&in)[4][CAPACITY], float (&out)[4][CAPACITY]) const {
-    rows(&in[0][0], CAPACITY, {}, &out[0][0]);
-    for (int i = 0; i < CAPACITY; i += COUNT) {
-      const auto row = [&](int k) { return LeafVectors<Lanes>::row(&out[k][i]); };
-      *reinterpret_cast<Lanes*>(&out[3][i]) = LeafVectors<Lanes>::row(&in[3][i]) + t[0] * row(0) + t[1] * row(1) + t[2] * row(2);
-    }
+  void planes(const float (&in)[4][LEAF_BLOCK], float (&out)[4][LEAF_BLOCK]) const {
+    directions(in, out);
+    for (int i = 0; i < LEAF_BLOCK; i += FLOAT_LANES)
+      *reinterpret_cast<Floats*>(&out[3][i]) = row(&in[3][i]) + t[0] * row(&out[0][i]) + t[1] * row(&out[1][i]) + t[2] * row(&out[2][i]);
   }
 
+  float R[9], t[3];
+
  private:
-  static constexpr int COUNT = sizeof(Lanes) / sizeof(float);
-  struct Shift {
-    float x, y, z;
-  };
-  void rows(const float* in, int capacity, const Shift& shift, float* out) const {
-    const float by[3] = {shift.x, shift.y, shift.z};
-    for (int i = 0; i < capacity; i += COUNT) {
-      const auto row = [&](int k) { return LeafVectors<Lanes>::row(&in[k * capacity + i]); };
-      const Lanes x = row(0), y = row(1), z = row(2);
-      for (int k = 0; k < 3; ++k)
-        *reinterpret_cast<Lanes*>(&out[k * capacity + i]) = R[3 * k] * x + R[3 * k + 1] * y + R[3 * k + 2] * z + by[k];
+  template <int ROWS>
+  void turn(const float (&in)[ROWS][LEAF_BLOCK], const float* shift, float (&out)[ROWS][LEAF_BLOCK]) const {
+    for (int i = 0; i < LEAF_BLOCK; i += FLOAT_LANES) {
+      const Floats x = row(&in[0][i]), y = row(&in[1][i]), z = row(&in[2][i]);
+      for (int k = 0; k < 3; ++k) *reinterpret_cast<Floats*>(&out[k][i]) = R[3 * k] * x + R[3 * k + 1] * y + R[3 * k + 2] * z + shift[k];
     }
   }
 };
 
-template <typename Lanes>
-inline LeafTurn<Lanes> turnOf(const Motion& motion) {
-  LeafTurn<Lanes> turn;
-  for (int i = 0; i < 9; ++i) turn.R[i] = static_cast<float>(motion.R[i]);
-  for (int i = 0; i < 3; ++i) turn.t[i] = static_cast<float>(motion.t[i]);
-  return turn;
-}
-
 void turnLeaf(const LeafShapes& in, const Motion& motion, LeafShapes* out) {
-  const LeafTurn<Floats> turn = turnOf<Floats>(motion);
-  const LeafTurn<FewFloats> turn_few = turnOf<FewFloats>(motion);
+  const LeafTurn turn(motion);
   out->face_count = in.face_count;
   out->edge_count = in.edge_count;
   out->vertex_count = in.vertex_count;
   const float(&axis)[3] = in.edge_cone.axis;
   for (int k = 0; k < 3; ++k) out->edge_cone.axis[k] = turn.R[3 * k] * axis[0] + turn.R[3 * k + 1] * axis[1] + turn.R[3 * k + 2] * axis[2];
   out->edge_cone.spread = in.edge_cone.spread;
-  turn_few.planes(in.faces.planes, out->faces.planes);
-  for (int k = 0; k < 3; ++k) turn_few.planes(in.faces.sides[k], out->faces.sides[k]);
+  turn.planes(in.faces.planes, out->faces.planes);
+  for (int k = 0; k < 3; ++k) turn.planes(in.faces.sides[k], out->faces.sides[k]);
   __builtin_memcpy(out->faces.open, in.faces.open, sizeof in.faces.open);
   for (std::uint32_t first = 0; first < in.vertex_count; first += LEAF_BLOCK)
     turn.points(blockOf(in.vertices, first).points, blockOf(out->vertices, first).points);

@@ -37,8 +37,8 @@ struct Candidate {
 };
 
 /** Elements of a leaf; room for their features, in blocks of so many side by side. */
-constexpr int MAX_LEAF_ELEMENTS = 8, LEAF_BLOCK = 16, LEAF_BLOCKS = 2, MAX_LEAF_FEATURES = LEAF_BLOCKS * LEAF_BLOCK;
-static_assert(3 * MAX_LEAF_ELEMENTS <= MAX_LEAF_FEATURES, "each element may own three edges and three vertices");
+constexpr int MAX_LEAF_ELEMENTS = 8, LEAF_BLOCK = 8, LEAF_BLOCKS = 3, MAX_LEAF_FEATURES = LEAF_BLOCKS * LEAF_BLOCK;
+static_assert(MAX_LEAF_ELEMENTS <= LEAF_BLOCK && 3 * MAX_LEAF_ELEMENTS <= MAX_LEAF_FEATURES, "elements own up to three edges and vertices");
 
 /** All directions, but for their signs, that a contact's normal at some edge of a leaf may have, without slack. */
 struct EdgeCone {
@@ -48,20 +48,20 @@ struct EdgeCone {
 
 // Features of a leaf in float, a coordinate after the other, in some frame. What is read together lies together: leaves are many.
 
-struct alignas(64) LeafVertices {
+struct alignas(32) LeafVertices {
   float points[3][LEAF_BLOCK];
 };
-struct alignas(64) LeafFaces {
-  float planes[4][MAX_LEAF_ELEMENTS];    ///< FaceRecord::plane
-  float sides[3][4][MAX_LEAF_ELEMENTS];  ///< FaceRecord::sides
-  OpenSides open[MAX_LEAF_ELEMENTS];
+struct alignas(32) LeafFaces {
+  float planes[4][LEAF_BLOCK];    ///< FaceRecord::plane
+  float sides[3][4][LEAF_BLOCK];  ///< FaceRecord::sides
+  OpenSides open[LEAF_BLOCK];
 };
-struct alignas(64) LeafEdges {
+struct alignas(32) LeafEdges {
   float inwards[2][4][LEAF_BLOCK];  ///< EdgeRecord::inward; offset of the edge along it
   float starts[3][LEAF_BLOCK], alongs[3][LEAF_BLOCK];
   float per_length2[LEAF_BLOCK];  ///< one over the squared length
 };
-struct LeafShapes {
+struct alignas(64) LeafShapes {
   std::uint32_t face_count, edge_count, vertex_count;
   float lower[3], upper[3];  ///< box of all its elements
   EdgeCone edge_cone;
