@@ -7,6 +7,7 @@
 #include "feature_cones.h"
 #include "tolerances.h"
 #include "vectors.h"
+#include "vertex_cone.h"
 
 namespace blem_sim {
 namespace {
@@ -159,10 +160,7 @@ const VertexRing& NearFeatures::ring(const MeshSide& side, std::uint32_t vertex)
   return found;
 }
 
-bool NearFeatures::isRound(const MeshSide& side, std::uint32_t vertex) const {
-  const VertexEdges edges = side.topology.edgesOf(vertices.names[vertex]);
-  return std::all_of(edges.begin(), edges.end(), [&](int edge) { return side.topology.isFlatEdge(edge) || isRoundEdge(side, edge); });
-}
+bool NearFeatures::isRound(const MeshSide& side, std::uint32_t vertex) const { return hasRoundEdgesOnly(side, vertices.names[vertex]); }
 
 void NearFeatures::clear() {
   vertices.clear();

@@ -7,6 +7,7 @@
 #include "border_kind.h"
 #include "feature_cones.h"
 #include "vectors.h"
+#include "vertex_cone.h"
 
 namespace blem_sim {
 namespace {
@@ -31,6 +32,14 @@ void placePlane(const Vec4& plane, double offset, std::uint32_t i, float (&rows)
   rows[1][i] = static_cast<float>(plane.y);
   rows[2][i] = static_cast<float>(plane.z);
   rows[3][i] = static_cast<float>(offset);
+}
+
+void placeCone(const kernels::VertexCone& cone, std::uint32_t i, kernels::LeafCones* cones) {
+  for (int k = 0; k < 3; ++k) cones->axes[k][i] = cone.axis[k];
+  cones->up[i] = cone.up;
+  cones->down[i] = cone.down;
+  cones->per_slack[i] = cone.per_slack;
+  cones->round[i] = -static_cast<std::int32_t>(cone.is_round);
 }
 
 void describeFace(const MeshSide& side, int element, LeafFeatures* leaf) {
@@ -60,7 +69,9 @@ void describeEdge(const MeshSide& side, int edge, LeafFeatures* leaf) {
 void describeVertex(const MeshSide& side, int vertex, LeafFeatures* leaf) {
   const Vec4 record = vertexRecord(side, vertex);
   const std::uint32_t i = leaf->vertices.add(vertex, record);
-  place(record, i % kernels::LEAF_BLOCK, leaf->shapes.vertices[i / kernels::LEAF_BLOCK].points);
+  const std::uint32_t block = i / kernels::LEAF_BLOCK, column = i % kernels::LEAF_BLOCK;
+  place(record, column, leaf->shapes.vertices[block].points);
+  placeCone(vertexCone(side, vertex), column, &leaf->shapes.cones[block]);
 }
 
 EdgeCone edgeCone(const std::vector<EdgeRecord>& edges) {

@@ -141,6 +141,13 @@ LeafShapes randomLeaf(std::uint64_t seed) {
           1 / (edges.alongs[0][i] * edges.alongs[0][i] + edges.alongs[1][i] * edges.alongs[1][i] + edges.alongs[2][i] * edges.alongs[2][i]);
   }
   for (LeafVertices& vertices : leaf.vertices) fillRows(vertices.points);
+  for (LeafCones& cones : leaf.cones) {
+    fillRows(cones.axes);
+    fillRows(cones.up);
+    fillRows(cones.down);
+    std::fill_n(cones.per_slack, LEAF_BLOCK, 1.5f);
+    for (std::int32_t& round : cones.round) round = -random.integer(0, 1);
+  }
   for (int k = 0; k < 3; ++k) {
     leaf.lower[k] = -2;
     leaf.upper[k] = 2;

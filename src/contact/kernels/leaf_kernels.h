@@ -105,9 +105,28 @@ inline FloatMask mayTouch(const FloatVectors& p, const LeafEdges& edges, std::ui
   return beside & ~(dot(d, d) > reach.range * reach.range);
 }
 
-inline FloatMask mayTouch(const FloatVectors& p, const FloatVectors& q, const LeafReach& reach) {
-  const FloatVectors d = p - q;
-  return dot(d, d) <= reach.range * reach.range;
+/** May no edge of these vertices lead towards what lies that way? @param d from the vertices, d2 its square @param slack [m] */
+inline FloatMask mayBeNearest(const FloatVectors& axis, Floats up, Floats down, Floats per_slack, const FloatVectors& d, Floats d2,
+                              float slack) {
+  const Floats along = dot(axis, d), most = per_slack * slack + absolute(along) * (along > 0 ? up : down);
+  return (most >= 0) & (d2 - along * along <= most * most);
+}
+
+/** Vertex i of one leaf and several of another: where each is the nearest of its surface, or one is and it is round. */
+inline FloatMask mayTouch(const LeafShapes& a, std::uint32_t i, const LeafShapes& b, std::uint32_t first, const LeafReach& reach) {
+  const FloatVectors d = oneVertex(a, i) - severalVertices(b, first), back = {-d.x, -d.y, -d.z};
+  const Floats d2 = dot(d, d);
+  const FloatMask near = d2 <= reach.range * reach.range;
+  if (bitsOf(near) == 0) return near;
+  const float slack = static_cast<float>(CONE_SLACK) * reach.range + reach.margin;
+  const LeafCones &one = blockOf(a.cones, i), &several = blockOf(b.cones, first);
+  const std::uint32_t k = i % LEAF_BLOCK, j = first % LEAF_BLOCK;
+  const FloatMask a_may = mayBeNearest(FloatVectors::one(one.axes, k), allFloats(one.up[k]), allFloats(one.down[k]),
+                                       allFloats(one.per_slack[k]), back, d2, slack);
+  const FloatMask b_may = mayBeNearest(FloatVectors::several(several.axes, j), row(&several.up[j]), row(&several.down[j]),
+                                       row(&several.per_slack[j]), d, d2, slack);
+  const FloatMask b_round = *reinterpret_cast<const FloatMask*>(&several.round[j]);
+  return near & ((a_may & b_may) | (b_may & b_round) | (a_may & one.round[k]));
 }
 
 /** Are not both ends of an edge too far inside a face of the other? */
@@ -217,8 +236,7 @@ void leafContacts(const LeafShapes& a, const LeafShapes& b, const LeafReach& rea
   findAtVertices(b, near_b, a, reach, 1, hits);
   hits->vertex_vertices = hits->edge_edges = 0;
   forEachBit(near_b == 0 ? 0 : near_a, [&](std::uint32_t i) {
-    const FloatVectors p = oneVertex(a, i);
-    const std::uint32_t vertices = bitsWhere(b.vertex_count, [&](auto j) { return mayTouch(p, severalVertices(b, j), reach); });
+    const std::uint32_t vertices = bitsWhere(b.vertex_count, [&](auto j) { return mayTouch(a, i, b, j, reach); });
     append(i, vertices, hits->vertex_vertex, &hits->vertex_vertices);
   });
   if (!mayShareNormal(a.edge_cone, b.edge_cone, reach.turn)) return;
@@ -289,8 +307,13 @@ void turnLeaf(const LeafShapes& in, const Motion& motion, LeafShapes* out) {
   turn.planes(in.faces.planes, out->faces.planes);
   for (int k = 0; k < 3; ++k) turn.planes(in.faces.sides[k], out->faces.sides[k]);
   __builtin_memcpy(out->faces.open, in.faces.open, sizeof in.faces.open);
-  for (std::uint32_t first = 0; first < in.vertex_count; first += LEAF_BLOCK)
+  for (std::uint32_t first = 0; first < in.vertex_count; first += LEAF_BLOCK) {
     turn.points(blockOf(in.vertices, first).points, blockOf(out->vertices, first).points);
+    const LeafCones& from = blockOf(in.cones, first);
+    LeafCones& to = blockOf(out->cones, first);
+    to = from;
+    turn.directions(from.axes, to.axes);
+  }
   for (std::uint32_t first = 0; first < in.edge_count; first += LEAF_BLOCK) {
     const LeafEdges& from = blockOf(in.edges, first);
     LeafEdges& to = blockOf(out->edges, first);

@@ -46,10 +46,23 @@ struct EdgeCone {
   float spread;   ///< [rad] of a normal from the axis; at least pi/2: any
 };
 
+/** All directions that lead away from a vertex between its edges, so that it is nearest: no farther from the axis than `up` times the part
+ * along it, or `down` times the part against it, and, with slack, `per_slack` times that. Negative: none. */
+struct VertexCone {
+  float axis[3];  ///< unit
+  float up, down, per_slack;
+  bool is_round;  ///< flat and round edges only (ROUND_COSINE)
+};
+
 // Features of a leaf in float, a coordinate after the other, in some frame. What is read together lies together: leaves are many.
 
 struct alignas(32) LeafVertices {
   float points[3][LEAF_BLOCK];
+};
+/** VertexCone */
+struct alignas(32) LeafCones {
+  float axes[3][LEAF_BLOCK], up[LEAF_BLOCK], down[LEAF_BLOCK], per_slack[LEAF_BLOCK];
+  std::int32_t round[LEAF_BLOCK];  ///< -1 if it is
 };
 struct alignas(32) LeafFaces {
   float planes[4][LEAF_BLOCK];    ///< FaceRecord::plane
@@ -68,6 +81,7 @@ struct alignas(64) LeafShapes {
   LeafVertices vertices[LEAF_BLOCKS];
   LeafFaces faces;
   LeafEdges edges[LEAF_BLOCKS];
+  LeafCones cones[LEAF_BLOCKS];  ///< of the vertices
 };
 
 /** What a search for candidates asks [m]. */

@@ -1,0 +1,15 @@
+// Where a vertex can be the nearest point of its surface.
+#pragma once
+
+#include "kernels/records.h"
+#include "mesh_pair.h"
+
+namespace blem_sim {
+
+/** Holds every direction, in the mesh's frame, that vertexConeAllows. */
+kernels::VertexCone vertexCone(const MeshSide& side, int vertex);
+
+/** Does it have flat and round edges only? */
+bool hasRoundEdgesOnly(const MeshSide& side, int vertex);
+
+}  // namespace blem_sim
