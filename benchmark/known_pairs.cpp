@@ -16,17 +16,22 @@ constexpr int REPEATS = 50;
 MeshPair pairOf(const Collider& a, const Pose& X_WA, const Collider& standing) {
   const bool a_moves = a.geometry->mesh().elements.size() <= standing.geometry->mesh().elements.size();
   const double layer = a.radius + standing.radius;
-  return {MeshSide(a_moves ? *a.geometry : *standing.geometry), MeshSide(a_moves ? *standing.geometry : *a.geometry),
-          a_moves ? X_WA : X_WA.inverse(), layer, layer};
+  return {MeshSide(a_moves ? *a.geometry : *standing.geometry),
+          MeshSide(a_moves ? *standing.geometry : *a.geometry),
+          a_moves ? X_WA : X_WA.inverse(),
+          layer,
+          layer,
+          {},
+          Pose::Identity()};
 }
 
 /** Which pairs of features have a contact. Every pair is known once: a contact with a plane by one of its faces. */
 class KnownContacts {
  public:
   explicit KnownContacts(const FoundContacts& found) {
-    for (const auto* contacts : {&found.plain, &found.close})
-      for (const FeatureContact& c : *contacts)
-        if (!c.pierced) unseen_.push_back(contactId(c.moving, c.fixed));
+    // The moving mesh is A.
+    for (std::uint32_t i = 0; i < found.plain_count; ++i) unseen_.push_back(found.plain[i].id);
+    for (const FeatureContact& c : found.close) unseen_.push_back(contactId(c.moving, c.fixed));
     std::sort(unseen_.begin(), unseen_.end());
     unseen_.erase(std::unique(unseen_.begin(), unseen_.end()), unseen_.end());
     seen_.resize(unseen_.size());
@@ -92,7 +97,7 @@ class KnownPairs {
     for (const bool moves : {true, false}) {
       const Candidates &faces = pairs.vertex_face[moves], &edges = pairs.vertex_edge[moves];
       hits += k.vertexFaces(turned_.vertices[moves].data(), lists_.near[!moves].faces.records.data(), lists_.near[!moves].open.data(),
-                            faces.data(), count(faces), range_, vertex_faces_.data());
+                            faces.data(), count(faces), range_, nullptr, vertex_faces_.data());
       hits += k.vertexEdges(moves ? moving_vertices : fixed_vertices, moves ? fixed_edges : moving_edges, edges.data(), count(edges),
                             range_, others_.data());
     }

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "vectors.h"
+#include "world_contact.h"
 
 namespace blem_sim {
 namespace {
@@ -11,36 +13,31 @@ namespace {
 using kernels::Candidate;
 using kernels::Vec4;
 
-/** The planes that vertices lie over. */
-class PlanesBelow {
- public:
-  explicit PlanesBelow(std::vector<kernels::Candidate>* runs, std::vector<std::uint32_t>* last, std::size_t vertices)
-      : entries_(*runs), last_(*last) {
-    entries_.clear();
-    last_.assign(vertices, NONE);
-  }
-  void add(std::uint32_t vertex, int patch) {
-    entries_.push_back({static_cast<std::uint32_t>(patch), last_[vertex]});
-    last_[vertex] = static_cast<std::uint32_t>(entries_.size()) - 1;
-  }
-  bool has(std::uint32_t vertex, int patch) const {
-    for (std::uint32_t i = last_[vertex]; i != NONE; i = entries_[i].b)
-      if (entries_[i].a == static_cast<std::uint32_t>(patch)) return true;
-    return false;
-  }
+constexpr std::uint32_t NONE = 0xFFFFFFFF;
 
- private:
-  static constexpr std::uint32_t NONE = 0xFFFFFFFF;
-  std::vector<kernels::Candidate>& entries_;  // a: patch; b: the entry before of the same vertex
-  std::vector<std::uint32_t>& last_;
-};
+template <typename Items>
+void makeRoom(std::size_t size, Items* items) {
+  if (items->size() < size) items->resize(size);
+}
+
+kernels::ContactRow rowOf(const Contact& contact) {
+  const Vector3 &p = contact.point, &n = contact.normal_BA;
+  return {{p.x(), p.y(), p.z()}, {n.x(), n.y(), n.z()}, contact.depth, contact.id};
+}
 
 }  // namespace
 
 void FoundContacts::clear() {
-  plain.clear();
+  plain_count = 0;
   close.clear();
   crossings.clear();
+}
+
+double FoundContacts::leastGap(const MeshPair& pair) const {
+  double least = pair.range;
+  for (std::uint32_t i = 0; i < plain_count; ++i) least = std::min(least, pair.layer - plain[i].depth);
+  for (const FeatureContact& c : close) least = std::min(least, c.gap);
+  return least;
 }
 
 void Evaluation::findContacts() {
@@ -70,7 +67,7 @@ void Evaluation::findCrossings() {
 }
 
 std::uint32_t* Evaluation::room(const std::vector<Candidate>& candidates) {
-  buffers_.hits.resize(std::max(buffers_.hits.size(), candidates.size()));
+  makeRoom(candidates.size(), &buffers_.hits);
   return buffers_.hits.data();
 }
 
@@ -79,43 +76,67 @@ void Evaluation::forEachHit(const std::vector<Candidate>& candidates, std::uint3
   for (std::uint32_t i = 0; i < count; ++i) visit(candidates[buffers_.hits[i]]);
 }
 
-void Evaluation::vertexFaces(bool moves) {
+kernels::ContactPlace Evaluation::place(bool vertices_move) const {
+  const ContactRoles& roles = pair_.roles;
+  const Feature vertex{FeatureKind::VERTEX, 0}, face{FeatureKind::FACE, 0};
+  const bool vertices_are_a = vertices_move == roles.first_is_a;
+  return {(vertices_move ? buffers_.turned.vertices[1] : lists_.near[0].vertices.records).data(),
+          lists_.near[vertices_move].vertices.names.data(),
+          lists_.near[!vertices_move].patches.data(),
+          !vertices_move,
+          vertices_are_a,
+          motionOf(pair_.X_FM),
+          motionOf(pair_.X_WF),
+          roles.r_a + roles.r_b,
+          0.5 * (roles.r_b - roles.r_a),
+          vertices_are_a ? contactId(vertex, face) : contactId(face, vertex)};
+}
+
+/** @return how many need a closer look; the plain ones are written */
+std::uint32_t Evaluation::findVertexFaces(bool moves) {
   const std::vector<Candidate>& candidates = pairs_.vertex_face[moves];
-  const auto& vertices = lists_.near[moves].vertices;
-  const auto& faces = lists_.near[!moves].faces;
-  auto& hits = buffers_.vertex_faces;
-  hits.resize(std::max(hits.size(), candidates.size()));
+  makeRoom(candidates.size(), &buffers_.vertex_faces);
+  makeRoom(candidates.size(), &buffers_.over);
+  makeRoom(found_.plain_count + candidates.size(), &found_.plain);
+  kernels::PlainContacts plain{place(moves), found_.plain.data() + found_.plain_count, buffers_.over.data(), 0};
   const std::uint32_t count =
-      kernels::kernels().vertexFaces(buffers_.turned.vertices[moves].data(), faces.records.data(), lists_.near[!moves].open.data(),
-                                     candidates.data(), candidates.size(), pair_.range, hits.data());
-  const std::vector<int>& patches = lists_.near[!moves].patches;
-  PlanesBelow below(&buffers_.planes_below, &buffers_.last_plane, vertices.names.size());
+      kernels::kernels().vertexFaces(buffers_.turned.vertices[moves].data(), lists_.near[!moves].faces.records.data(),
+                                     lists_.near[!moves].open.data(), candidates.data(), static_cast<std::uint32_t>(candidates.size()),
+                                     pair_.range, found_.crossings.empty() ? &plain : nullptr, buffers_.vertex_faces.data());
+  found_.plain_count += plain.count;
+  buffers_.over_count = plain.count;
+  return count;
+}
+
+void Evaluation::vertexFaces(bool moves) {
+  const std::uint32_t count = findVertexFaces(moves);
+  const std::vector<Candidate>& candidates = pairs_.vertex_face[moves];
+  const auto &vertices = lists_.near[moves].vertices.names, &faces = lists_.near[!moves].faces.names;
+  auto& hits = buffers_.vertex_faces;
   for (std::uint32_t i = 0; i < count; ++i) {
     kernels::VertexFaceHit& hit = hits[i];
     const Candidate& c = candidates[hit.candidate];
-    if (!hit.is_plain) {
-      hit.is_beside = hit.is_beside || !exact_.vertexFace(moves, vertices.names[c.a], faces.names[c.b]);
-      if (hit.is_beside) continue;
+    if (hit.is_plain) {
+      addPlain(moves, c, hit.height);
     } else {
-      addPlain(moves, c, hit);
+      hit.is_beside = hit.is_beside || !exact_.vertexFace(moves, vertices[c.a], faces[c.b]);
     }
-    below.add(c.a, patches[c.b]);
+    if (!hit.is_beside) buffers_.over[buffers_.over_count++] = c;
   }
-  // Beside one face of a plane but over another it does not fade.
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const Candidate& c = candidates[hits[i].candidate];
-    if (hits[i].is_beside && !below.has(c.a, patches[c.b])) addFading(moves, c, hits[i].height);
-  }
+  buffers_.fading.clear();
+  for (std::uint32_t i = 0; i < count; ++i)
+    if (hits[i].is_beside) addFading(moves, candidates[hits[i].candidate], hits[i].height);
+  dropCovered(moves);
 }
 
-void Evaluation::addPlain(bool moves, const Candidate& c, const kernels::VertexFaceHit& hit) {
+void Evaluation::addPlain(bool moves, const Candidate& c, double height) {
   const auto& faces = lists_.near[!moves].faces;
   const Feature vertex{FeatureKind::VERTEX, lists_.near[moves].vertices.names[c.a]},
       patch{FeatureKind::FACE, lists_.near[!moves].patches[c.b]};
   const Vector3 p = vector3(moves ? buffers_.turned.vertices[1][c.a] : lists_.near[0].vertices.records[c.a]);
-  const Vector3 up = pair_.turned(vector3(faces.records[c.b].plane), !moves), foot = p - hit.height * up;
-  const Vector3 normal = (hit.height > 0) == moves ? up : Vector3(-up);
-  (hit.near_border ? found_.close : found_.plain).push_back(featureContact(moves, vertex, patch, p, foot, normal, std::abs(hit.height)));
+  const Vector3 up = pair_.turned(vector3(faces.records[c.b].plane), !moves), foot = p - height * up;
+  const Vector3 normal = (height > 0) == moves ? up : Vector3(-up);
+  found_.close.push_back(featureContact(moves, vertex, patch, p, foot, normal, std::abs(height)));
 }
 
 void Evaluation::addFading(bool moves, const Candidate& c, double height) {
@@ -129,12 +150,35 @@ void Evaluation::addFading(bool moves, const Candidate& c, double height) {
   const Feature vertex{FeatureKind::VERTEX, lists_.near[moves].vertices.names[c.a]},
       patch{FeatureKind::FACE, lists_.near[!moves].patches[c.b]};
   found_.close.push_back(featureContact(moves, vertex, patch, p, fade.foot, d / distance, gap));
+  buffers_.fading.push_back({c.a, patch.index, NONE, false});
+}
+
+/** What lies beside one face of a plane but over another does not fade. */
+void Evaluation::dropCovered(bool moves) {
+  auto& fading = buffers_.fading;
+  auto& last = buffers_.last_fading;
+  if (fading.empty()) return;
+  if (last.size() < lists_.near[moves].vertices.names.size()) last.resize(lists_.near[moves].vertices.names.size(), NONE);
+  for (std::uint32_t i = 0; i < fading.size(); ++i) fading[i].before = std::exchange(last[fading[i].vertex], i);
+  const std::vector<int>& patches = lists_.near[!moves].patches;
+  for (std::uint32_t i = 0; i < buffers_.over_count; ++i) {
+    const Candidate& c = buffers_.over[i];
+    for (std::uint32_t at = last[c.a]; at != NONE; at = fading[at].before)
+      fading[at].is_covered = fading[at].is_covered || fading[at].patch == patches[c.b];
+  }
+  std::size_t kept = found_.close.size() - fading.size();
+  for (std::size_t i = 0, from = kept; i < fading.size(); ++i, ++from) {
+    last[fading[i].vertex] = NONE;
+    if (!fading[i].is_covered) found_.close[kept++] = found_.close[from];
+  }
+  found_.close.erase(found_.close.begin() + static_cast<std::ptrdiff_t>(kept), found_.close.end());
 }
 
 void Evaluation::edgeEdges(const kernels::EdgeRecord* moving, const kernels::EdgeRecord* fixed) {
   const std::vector<Candidate>& candidates = pairs_.edge_edge;
   auto& hits = buffers_.edge_edges;
-  hits.resize(std::max(hits.size(), candidates.size()));
+  makeRoom(candidates.size(), &hits);
+  makeRoom(found_.plain_count + candidates.size(), &found_.plain);
   const std::uint32_t count = kernels::kernels().edgeEdges(moving, fixed, candidates.data(), candidates.size(), pair_.range, hits.data());
   for (std::uint32_t i = 0; i < count; ++i) {
     const kernels::EdgeEdgeHit& hit = hits[i];
@@ -147,13 +191,17 @@ void Evaluation::edgeEdges(const kernels::EdgeRecord* moving, const kernels::Edg
     const auto foot = [](const kernels::EdgeRecord& edge, double part) {
       return Vector3(vector3(edge.start) + part * vector3(edge.along));
     };
-    (hit.near_border ? found_.close : found_.plain)
-        .push_back({{FeatureKind::EDGE, m},
-                    {FeatureKind::EDGE, f},
-                    foot(moving[c.a], hit.part_a),
-                    foot(fixed[c.b], hit.part_b),
-                    Vector3(hit.normal[0], hit.normal[1], hit.normal[2]),
-                    hit.gap});
+    const FeatureContact contact{{FeatureKind::EDGE, m},
+                                 {FeatureKind::EDGE, f},
+                                 foot(moving[c.a], hit.part_a),
+                                 foot(fixed[c.b], hit.part_b),
+                                 Vector3(hit.normal[0], hit.normal[1], hit.normal[2]),
+                                 hit.gap};
+    if (hit.near_border || !found_.crossings.empty()) {
+      found_.close.push_back(contact);
+    } else {
+      found_.plain[found_.plain_count++] = rowOf(worldContact(pair_, contact));
+    }
   }
 }
 

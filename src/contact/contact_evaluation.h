@@ -13,20 +13,33 @@ namespace blem_sim {
 
 /** What a search finds. */
 struct FoundContacts {
-  std::vector<FeatureContact> plain;  ///< each in a place of its own
-  std::vector<FeatureContact> close;  ///< some may be in one place, or have one name
+  std::vector<kernels::ContactRow> plain;  ///< each in a place of its own; none where meshes cross
+  std::uint32_t plain_count = 0;           ///< of them
+  std::vector<FeatureContact> close;       ///< some may be in one place, or have one name
   std::vector<Crossing> crossings;
 
   void clear();
+  double leastGap(const MeshPair& pair) const;  ///< [m]; the pair's range if there is none
 };
 
-/** What evaluations work in. */
+/** A vertex beside a face of a plane, whose contact fades. */
+struct FadingVertex {
+  std::uint32_t vertex;
+  int patch;
+  std::uint32_t before;  ///< another one of this vertex
+  bool is_covered;       ///< it lies over the plane elsewhere
+};
+
+/** What evaluations work in: room that only grows. */
 struct EvaluationBuffers {
   TurnedFeatures turned;
   std::vector<kernels::VertexFaceHit> vertex_faces;
   std::vector<kernels::EdgeEdgeHit> edge_edges;
-  std::vector<std::uint32_t> hits, last_plane;
-  std::vector<kernels::Candidate> planes_below;
+  std::vector<std::uint32_t> hits;
+  std::vector<kernels::Candidate> over;    ///< vertices over faces
+  std::uint32_t over_count = 0;            ///< of them
+  std::vector<FadingVertex> fading;        ///< whose contacts are the last close ones
+  std::vector<std::uint32_t> last_fading;  ///< of each vertex; none between evaluations
 };
 
 /** Turns candidates into contacts. */
@@ -36,6 +49,7 @@ class Evaluation {
   Evaluation(const MeshPair& pair, CandidateLists* lists, const CandidatePairs& pairs, EvaluationBuffers* buffers, FoundContacts* found)
       : pair_(pair), lists_(*lists), pairs_(pairs), buffers_(*buffers), found_(*found), exact_(pair, &found->close), fades_(pair, lists) {}
 
+  /** Where meshes cross, which must be known before, all contacts are close ones. */
   void findContacts();
   void findCrossings();
 
@@ -45,8 +59,11 @@ class Evaluation {
   void forEachHit(const std::vector<kernels::Candidate>& candidates, std::uint32_t count, Visit&& visit) const;
 
   void vertexFaces(bool moves);
-  void addPlain(bool moves, const kernels::Candidate& c, const kernels::VertexFaceHit& hit);
+  std::uint32_t findVertexFaces(bool moves);
+  kernels::ContactPlace place(bool vertices_move) const;
+  void addPlain(bool moves, const kernels::Candidate& c, double height);
   void addFading(bool moves, const kernels::Candidate& c, double height);
+  void dropCovered(bool moves);
   void edgeEdges(const kernels::EdgeRecord* moving, const kernels::EdgeRecord* fixed);
   void vertexEdges(bool moves, const kernels::Vec4* vertices, const kernels::EdgeRecord* edges);
   void vertexVertices(const kernels::Vec4* moving, const kernels::Vec4* fixed);

@@ -62,18 +62,18 @@ class ContactSearch {
 
   void run(bool keeps) {
     const bool apart = memory_.visited && motion_.motion + DISTANCE_ROUNDING < memory_.distance;
-    refreshLists(keeps ? chooseMargin() : ListMargin());
-    buffers_.evaluation.turned.turnForContacts(memory_.lists, pair_.X_FM);
-    Evaluation(pair_, &memory_.lists, nearestPairs(), &buffers_.evaluation, &found_).findContacts();
     if (!apart) {
       refreshCrossingLists(keeps && !isFast() ? marginOf(CROSSING_STEPS) : ListMargin());
       CandidateLists& lists = memory_.crossing_lists;
       buffers_.evaluation.turned.turnForCrossings(lists, pair_.X_FM);
       Evaluation(pair_, &lists, lists.pairs, &buffers_.evaluation, &found_).findCrossings();
     }
+    refreshLists(keeps ? chooseMargin() : ListMargin());
+    buffers_.evaluation.turned.turnForContacts(memory_.lists, pair_.X_FM);
+    Evaluation(pair_, &memory_.lists, nearestPairs(), &buffers_.evaluation, &found_).findContacts();
     memory_.visited = keeps;
     memory_.X_FM = pair_.X_FM;
-    memory_.distance = found_.crossings.empty() ? leastGap() : 0;
+    memory_.distance = found_.crossings.empty() ? found_.leastGap(pair_) : 0;
   }
 
  private:
@@ -129,13 +129,6 @@ class ContactSearch {
     findNearest(pair_, buffers_.evaluation.turned, margin, &memory_.lists, &memory_.nearest);
     memory_.nearest_origin = {true, pair_.X_FM, pair_.range, margin};
     return memory_.nearest;
-  }
-
-  double leastGap() const {
-    double least = pair_.range;
-    for (const FeatureContact& c : found_.plain) least = std::min(least, c.gap);
-    for (const FeatureContact& c : found_.close) least = std::min(least, c.gap);
-    return least;
   }
 
   const MeshPair& pair_;

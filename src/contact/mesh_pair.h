@@ -42,6 +42,12 @@ struct MeshSide {
   std::uint64_t identity;  ///< of the geometry, its own for as long as the program runs
 };
 
+/** Which of the two meshes is A, and how thick their layers are. */
+struct ContactRoles {
+  bool first_is_a = true;   ///< the moving one, or the mesh on a half-space
+  double r_a = 0, r_b = 0;  ///< [m]
+};
+
 /** The moving mesh M, the one with fewer elements, is seen from the frame F of the other, fixed one: near the geometry wherever the pair is
  * in the world. */
 struct MeshPair {
@@ -49,6 +55,8 @@ struct MeshPair {
   Pose X_FM;
   double layer;  ///< [m] rA + rB
   double range;  ///< [m] contacts within this distance of the bare meshes: layer + margin
+  ContactRoles roles;
+  Pose X_WF = Pose::Identity();
 
   const MeshSide& side(bool moves) const { return moves ? moving : fixed; }
   /** Direction and point of either mesh in frame F. */

@@ -4,32 +4,10 @@
 #include "contact_search.h"
 #include "merge_contacts.h"
 #include "retraction.h"
+#include "world_contact.h"
 
 namespace blem_sim {
 namespace {
-
-/** Witness points to a contact: its place is the middle of the overlap of the layers [Hauser 2013, 3.2]. */
-Contact makeContact(const Vector3& point_A, const Vector3& point_B, const Vector3& normal_BA, double gap, double r_a, double r_b) {
-  Contact contact;
-  contact.point = 0.5 * (point_A + point_B) + 0.5 * (r_b - r_a) * normal_BA;
-  contact.normal_BA = normal_BA;
-  contact.depth = r_a + r_b - gap;
-  return contact;
-}
-
-/** Order of the pair: which of the two roles (moving or fixed, mesh or half-space) A plays. */
-struct Roles {
-  bool first_is_a;  ///< moving, or the mesh on a half-space
-  double r_a, r_b;
-
-  Contact contact(const Feature& first, const Feature& second, const Vector3& point_first, const Vector3& point_second,
-                  const Vector3& normal, double gap) const {
-    Contact out = first_is_a ? makeContact(point_first, point_second, normal, gap, r_a, r_b)
-                             : makeContact(point_second, point_first, -normal, gap, r_a, r_b);
-    out.id = first_is_a ? contactId(first, second) : contactId(second, first);
-    return out;
-  }
-};
 
 /** What a thread's searches work in. */
 struct Buffers {
@@ -38,44 +16,45 @@ struct Buffers {
   std::vector<Contact> close;
 };
 
-void convert(const std::vector<FeatureContact>& found, const Roles& roles, const Pose& X_WF, std::vector<Contact>* out) {
-  for (const FeatureContact& c : found) {
-    Contact contact = roles.contact(c.moving, c.fixed, c.point_M, c.point_F, c.normal, c.gap);
-    contact.point = X_WF * contact.point;
-    contact.normal_BA = X_WF.linear() * contact.normal_BA;
-    contact.pierced = c.pierced;
-    out->push_back(contact);
-  }
+void append(const kernels::ContactRow& row, std::vector<Contact>* out) {
+  Contact contact;
+  contact.point = Vector3(row.point[0], row.point[1], row.point[2]);
+  contact.normal_BA = Vector3(row.normal[0], row.normal[1], row.normal[2]);
+  contact.depth = row.depth;
+  contact.id = row.id;
+  out->push_back(contact);
 }
 
 void meshMesh(const Collider& a, const Pose& X_WA, const Collider& b, const Pose& X_WB, double range, const Pose* X_AB_apart,
               ContactSearchMemory* memory, ContactManifold* out) {
   const bool a_moves = a.geometry->mesh().elements.size() <= b.geometry->mesh().elements.size();
   const Pose &X_WM = a_moves ? X_WA : X_WB, &X_WF = a_moves ? X_WB : X_WA;
-  const MeshPair pair{MeshSide(a_moves ? *a.geometry : *b.geometry), MeshSide(a_moves ? *b.geometry : *a.geometry), X_WF.inverse() * X_WM,
-                      a.radius + b.radius, range};
+  const MeshPair pair{MeshSide(a_moves ? *a.geometry : *b.geometry),
+                      MeshSide(a_moves ? *b.geometry : *a.geometry),
+                      X_WF.inverse() * X_WM,
+                      a.radius + b.radius,
+                      range,
+                      {a_moves, a.radius, b.radius},
+                      X_WF};
   thread_local Buffers buffers;
   FoundContacts& found = buffers.found;
   searchContacts(pair, memory, &buffers.search, &found);
   out->pierced = !found.crossings.empty();
   if (out->pierced) {
-    found.close.insert(found.close.end(), found.plain.begin(), found.plain.end());
-    found.plain.clear();
     Pose X_FM_apart;
     if (X_AB_apart) X_FM_apart = a_moves ? X_AB_apart->inverse() : *X_AB_apart;
     addRetractions(pair, X_AB_apart ? &X_FM_apart : nullptr, found.crossings, &found.close);
   }
-  const Roles roles{a_moves, a.radius, b.radius};
-  convert(found.plain, roles, X_WF, &out->contacts);
+  for (std::size_t i = 0; i < found.plain_count; ++i) append(found.plain[i], &out->contacts);
   buffers.close.clear();
-  convert(found.close, roles, X_WF, &buffers.close);
+  for (const FeatureContact& contact : found.close) buffers.close.push_back(worldContact(pair, contact));
   mergeContacts(&buffers.close);
   out->contacts.insert(out->contacts.end(), buffers.close.begin(), buffers.close.end());
 }
 
 /** Vertices of the mesh near or below the plane; however deep, each knows its way out. */
-void meshHalfSpace(const Collider& mesh, const Pose& X_WM, const Collider& half_space, const Pose& X_WH, double range, const Roles& roles,
-                   ContactManifold* out) {
+void meshHalfSpace(const Collider& mesh, const Pose& X_WM, const Collider& half_space, const Pose& X_WH, double range,
+                   const ContactRoles& roles, ContactManifold* out) {
   const MeshSide side(*mesh.geometry);
   const Pose X_MH = X_WM.inverse() * X_WH;
   const Vector3 normal = X_MH.linear() * half_space.geometry->planeNormal();
@@ -91,7 +70,7 @@ void meshHalfSpace(const Collider& mesh, const Pose& X_WM, const Collider& half_
         const double height = normal.dot(p) - offset;
         if (height > range) continue;
         out->contacts.push_back(
-            roles.contact({FeatureKind::VERTEX, vertex}, {FeatureKind::HALF_SPACE, 0}, p, p - height * normal, normal, height));
+            contactOf(roles, {FeatureKind::VERTEX, vertex}, {FeatureKind::HALF_SPACE, 0}, p, p - height * normal, normal, height));
       }
     }
   });

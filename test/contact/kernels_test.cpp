@@ -7,6 +7,7 @@
 #include "geometry/random_shapes.h"
 #include "kernels/kernels.h"
 #include "vectors.h"
+#include "world_contact.h"
 
 namespace blem_sim {
 namespace {
@@ -48,6 +49,37 @@ Features randomFeatures() {
   return out;
 }
 
+/** Vertices and faces as one set finds them, the features being those of either mesh. */
+struct PlainVertexFaces {
+  PlainVertexFaces(const Kernels& set, const Features& in, bool faces_move, bool takes_plain)
+      : X_FM(makePose({0.1, -0.2, 0.3}, {0.4, 0.5, -0.6})),
+        X_WF(makePose({-3, 2, 1}, {0.7, -0.2, 0.1})),
+        hits(CANDIDATES),
+        rows(CANDIDATES),
+        pairs(CANDIDATES) {
+    for (const Vec4& p : in.vertices) placed.push_back(faces_move ? vec4(X_FM * vector3(p), 0) : p);
+    for (std::uint32_t i = 0; i < FEATURES; ++i) names.push_back(static_cast<int>(1000 + i));
+    const Feature vertex{FeatureKind::VERTEX, 0}, face{FeatureKind::FACE, 0};
+    // The vertices are A's: the moving mesh is A unless its faces are asked.
+    plain = {{placed.data(), names.data(), names.data(), faces_move, true, motionOf(X_FM), motionOf(X_WF), RADIUS_A + RADIUS_B,
+              0.5 * (RADIUS_B - RADIUS_A), contactId(vertex, face)},
+             rows.data(),
+             pairs.data(),
+             0};
+    hits.resize(set.vertexFaces(in.vertices.data(), in.faces.data(), in.open.data(), in.candidates.data(), CANDIDATES, RANGE,
+                                takes_plain ? &plain : nullptr, hits.data()));
+  }
+
+  static constexpr double RADIUS_A = 0.2, RADIUS_B = 0.1;
+  Pose X_FM, X_WF;
+  std::vector<Vec4> placed;
+  std::vector<int> names;
+  std::vector<VertexFaceHit> hits;
+  std::vector<ContactRow> rows;
+  std::vector<Candidate> pairs;
+  PlainContacts plain;
+};
+
 /** What one set finds, as bytes. */
 struct Found {
   std::vector<std::uint32_t> counts, indices;
@@ -58,12 +90,22 @@ Found found(const Kernels& set, const Features& in) {
   Found out;
   const auto add = [&](std::uint32_t count) { out.counts.push_back(count); };
   const Candidate* candidates = in.candidates.data();
-  std::vector<VertexFaceHit> vertex_faces(CANDIDATES);
-  add(set.vertexFaces(in.vertices.data(), in.faces.data(), in.open.data(), candidates, CANDIDATES, RANGE, vertex_faces.data()));
-  for (std::uint32_t i = 0; i < out.counts.back(); ++i) {
-    const VertexFaceHit& hit = vertex_faces[i];
-    out.indices.insert(out.indices.end(), {hit.candidate, hit.is_plain, hit.is_beside, hit.near_border});
-    out.numbers.push_back(hit.height);
+  for (const bool faces_move : {false, true}) {
+    const PlainVertexFaces found(set, in, faces_move, true);
+    add(found.plain.count);
+    add(static_cast<std::uint32_t>(found.hits.size()));
+    for (const VertexFaceHit& hit : found.hits) {
+      out.indices.insert(out.indices.end(), {hit.candidate, hit.is_plain, hit.is_beside, hit.near_border});
+      out.numbers.push_back(hit.height);
+    }
+    for (std::uint32_t i = 0; i < found.plain.count; ++i) {
+      const ContactRow& row = found.rows[i];
+      out.indices.insert(out.indices.end(), {found.pairs[i].a, found.pairs[i].b});
+      out.numbers.insert(out.numbers.end(), row.point, row.point + 3);
+      out.numbers.insert(out.numbers.end(), row.normal, row.normal + 3);
+      out.numbers.push_back(row.depth);
+      out.indices.insert(out.indices.end(), {static_cast<std::uint32_t>(row.id >> 32), static_cast<std::uint32_t>(row.id)});
+    }
   }
   std::vector<EdgeEdgeHit> edge_edges(CANDIDATES);
   add(set.edgeEdges(in.edges.data(), in.edges.data(), candidates, CANDIDATES, RANGE, edge_edges.data()));
@@ -115,6 +157,45 @@ TEST(Kernels, AllInstructionSetsFindTheSame) {
     EXPECT_EQ(each.indices, baseline.indices);
     ASSERT_EQ(each.numbers.size(), baseline.numbers.size());
     EXPECT_EQ(std::memcmp(each.numbers.data(), baseline.numbers.data(), sizeof(double) * each.numbers.size()), 0);
+  }
+}
+
+TEST(Kernels, PlainContactsAreThoseMadeOneByOne) {
+  const Features in = randomFeatures();
+  for (const bool faces_move : {false, true}) {
+    SCOPED_TRACE(faces_move);
+    const PlainVertexFaces written(*availableKernels().front(), in, faces_move, true),
+        all(*availableKernels().front(), in, faces_move, false);
+    std::uint32_t count = 0, close = 0;
+    for (const VertexFaceHit& hit : all.hits) {
+      if (!hit.is_plain || hit.near_border) {
+        ++close;
+        continue;
+      }
+      const Candidate& c = in.candidates[hit.candidate];
+      const Vector3 p = vector3(all.placed[c.a]), plane = vector3(in.faces[c.b].plane),
+                    up = faces_move ? Vector3(all.X_FM.linear() * plane) : plane;
+      // From the faces' mesh, which is B, to the vertices'.
+      const ContactRoles roles{true, all.RADIUS_A, all.RADIUS_B};
+      Contact one = contactOf(roles, {FeatureKind::VERTEX, all.names[c.a]}, {FeatureKind::FACE, all.names[c.b]}, p, p - hit.height * up,
+                              hit.height > 0 ? up : Vector3(-up), std::abs(hit.height));
+      one.point = all.X_WF * one.point;
+      one.normal_BA = all.X_WF.linear() * one.normal_BA;
+      ASSERT_LT(count, written.plain.count);
+      const ContactRow& row = written.rows[count];
+      EXPECT_EQ(row.id, one.id);
+      EXPECT_EQ(row.depth, one.depth);
+      for (int k = 0; k < 3; ++k) {
+        EXPECT_EQ(row.point[k], one.point[k]);
+        EXPECT_EQ(row.normal[k], one.normal_BA[k]);
+      }
+      EXPECT_EQ(written.pairs[count].a, c.a);
+      EXPECT_EQ(written.pairs[count].b, c.b);
+      ++count;
+    }
+    EXPECT_EQ(count, written.plain.count);
+    EXPECT_GT(count, 5u);
+    EXPECT_EQ(close, written.hits.size());
   }
 }
 

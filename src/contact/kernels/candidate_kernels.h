@@ -2,58 +2,14 @@
 #pragma once
 
 #include "../tolerances.h"
+#include "batch.h"
 #include "edge_cones.h"
 #include "face_sides.h"
 #include "lanes.h"
+#include "plain_contacts.h"
 
 namespace blem_sim::kernels {
 namespace {
-
-constexpr unsigned ALL_LANES = (1u << LANES) - 1;
-
-/** Which candidates the lanes hold: behind the last one it is repeated, and masked. */
-struct Batch {
-  Batch(const Candidate* candidates, std::uint32_t first, std::uint32_t count) {
-    for (int i = 0; i < LANES; ++i) {
-      const std::uint32_t at = first + i < count ? first + i : count - 1;
-      of_a[i] = candidates[at].a;
-      of_b[i] = candidates[at].b;
-    }
-    const std::uint32_t left = count - first;
-    valid = left >= LANES ? ALL_LANES : (1u << left) - 1;
-  }
-
-  Rows points(const Vec4* from, const std::uint32_t (&index)[LANES]) const {
-    return rows(index, [from](std::uint32_t i) { return &from[i]; });
-  }
-  template <typename Record>
-  Rows field(const Record* from, const std::uint32_t (&index)[LANES], const Vec4 Record::*member) const {
-    return rows(index, [=](std::uint32_t i) { return &(from[i].*member); });
-  }
-  Rows side(const FaceRecord* from, int k) const {
-    return rows(of_b, [=](std::uint32_t i) { return &from[i].sides[k]; });
-  }
-  Rows inward(const EdgeRecord* from, const std::uint32_t (&index)[LANES], int k) const {
-    return rows(index, [=](std::uint32_t i) { return &from[i].inward[k]; });
-  }
-
-  Mask open(const OpenSides* from) const {
-    Mask sides;
-    for (int i = 0; i < LANES; ++i) sides[i] = from[of_b[i]];
-    return sides;
-  }
-
-  std::uint32_t of_a[LANES], of_b[LANES];
-  unsigned valid;
-
- private:
-  template <typename Address>
-  static Rows rows(const std::uint32_t (&index)[LANES], Address&& address) {
-    const Vec4* at[LANES];
-    for (int i = 0; i < LANES; ++i) at[i] = address(index[i]);
-    return gathered(at);
-  }
-};
 
 /** Calls test(batch) for all; where its bits are set, take(candidate's index, lane). */
 template <typename Test, typename Take>
@@ -174,28 +130,29 @@ inline EdgeOffset offsetFrom(const Rows& start, const Vectors& along, const Vect
 }
 
 std::uint32_t vertexFaces(const Vec4* a, const FaceRecord* b, const OpenSides* open, const Candidate* candidates, std::uint32_t count,
-                          double range, VertexFaceHit* hits) {
+                          double range, PlainContacts* plain, VertexFaceHit* hits) {
   std::uint32_t found = 0;
-  double heights[LANES];
-  unsigned plain = 0, beside = 0, near_border = 0;
-  forEachHit(
-      candidates, count,
-      [&](const Batch& batch) {
-        const Vectors p = batch.points(a, batch.of_a).v;
-        const Doubles height = above(p, batch.field(b, batch.of_b, &FaceRecord::plane)), most = range - absolute(height);
-        const unsigned near = bitsOf(most >= 0);
-        if (near == 0) return 0u;
-        const InsideSides sides(batch, b, p);
-        const Doubles inside = sides.least();
-        __builtin_memcpy(heights, &height, sizeof heights);
-        plain = bitsOf((inside >= 0) & (absolute(height) > TOUCH));
-        beside = bitsOf(inside < -2 * CLOSED);
-        near_border = bitsOf(inside < NEAR_BORDER);
-        return near & bitsOf(isOverOrFades(sides.of, openSides(batch.open(open), height, 0.0), most, 2 * CLOSED));
-      },
-      [&](std::uint32_t i, int lane) {
-        hits[found++] = {i, (plain >> lane & 1) != 0, (beside >> lane & 1) != 0, (near_border >> lane & 1) != 0, heights[lane]};
-      });
+  for (std::uint32_t first = 0; first < count; first += LANES) {
+    const Batch batch(candidates, first, count);
+    const Vectors p = batch.points(a, batch.of_a).v;
+    const Rows plane = batch.field(b, batch.of_b, &FaceRecord::plane);
+    const Doubles height = above(p, plane), most = range - absolute(height);
+    const unsigned near = bitsOf(most >= 0) & batch.valid;
+    if (near == 0) continue;
+    const InsideSides sides(batch, b, p);
+    const Doubles inside = sides.least();
+    const unsigned is_hit = near & bitsOf(isOverOrFades(sides.of, openSides(batch.open(open), height, 0.0), most, 2 * CLOSED));
+    const unsigned is_plain = bitsOf((inside >= 0) & (absolute(height) > TOUCH)), is_beside = bitsOf(inside < -2 * CLOSED),
+                   near_border = bitsOf(inside < NEAR_BORDER), is_clear = plain ? is_hit & is_plain & ~near_border : 0;
+    if (is_clear) appendPlain(batch, p, plane.v, height, is_clear, plain);
+    double heights[LANES];
+    __builtin_memcpy(heights, &height, sizeof heights);
+    for (unsigned bits = is_hit & ~is_clear; bits != 0; bits &= bits - 1) {
+      const int lane = __builtin_ctz(bits);
+      hits[found++] = {first + lane, (is_plain >> lane & 1) != 0, (is_beside >> lane & 1) != 0, (near_border >> lane & 1) != 0,
+                       heights[lane]};
+    }
+  }
   return found;
 }
 

@@ -35,9 +35,10 @@ struct Kernels {
   std::uint32_t (*nearVertexVertices)(const Vec4* a, const Vec4* b, const Candidate* in, std::uint32_t count, const Reach& reach,
                                       Candidate* out);
 
-  /** Candidates with a contact within `range`, and those that need a closer look. @return number of hits */
+  /** Candidates with a contact within `range`, and those that need a closer look.
+   * @param plain takes those that are plain and not near a border, instead of the hits; null: nothing does @return number of hits */
   std::uint32_t (*vertexFaces)(const Vec4* a, const FaceRecord* b, const OpenSides* open, const Candidate* candidates, std::uint32_t count,
-                               double range, VertexFaceHit* hits);
+                               double range, PlainContacts* plain, VertexFaceHit* hits);
   std::uint32_t (*edgeEdges)(const EdgeRecord* a, const EdgeRecord* b, const Candidate* candidates, std::uint32_t count, double range,
                              EdgeEdgeHit* hits);
   /** Indices of candidates that need a closer look. @return their number */

@@ -121,6 +121,35 @@ struct VertexFaceHit {
   double height;     ///< [m]
 };
 
+/** A contact as it is handed on. */
+struct ContactRow {
+  double point[3];   ///< [m] world
+  double normal[3];  ///< unit, world, from B to A
+  double depth;      ///< [m]
+  std::uint64_t id;  ///< contactId
+};
+
+/** What the contacts of vertices of one mesh with faces of the other are in the world. */
+struct ContactPlace {
+  const Vec4* vertices;     ///< in frame F
+  const int* vertex_names;  ///< as the vertices
+  const int* face_names;    ///< as the faces
+  bool faces_move;          ///< their records are in the moving mesh's frame
+  bool vertices_are_a;      ///< A is the mesh of the vertices
+  Motion X_FM, X_WF;
+  double layer;         ///< [m] rA + rB
+  double shift;         ///< [m] (rB - rA) / 2
+  std::uint64_t kinds;  ///< contactId of features 0
+};
+
+/** Where kernels write contacts that need no closer look. Room for as many as there are candidates. */
+struct PlainContacts {
+  ContactPlace place;
+  ContactRow* rows;
+  Candidate* pairs;     ///< whose they are
+  std::uint32_t count;  ///< so far; they are appended
+};
+
 /** Two edges near each other whose common perpendicular points out of their faces. */
 struct EdgeEdgeHit {
   std::uint32_t candidate;

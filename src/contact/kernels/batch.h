@@ -1,0 +1,56 @@
+// As many candidates as there are lanes. Included by the kernels only.
+#pragma once
+
+#include "lanes.h"
+
+namespace blem_sim::kernels {
+namespace {
+
+constexpr unsigned ALL_LANES = (1u << LANES) - 1;
+
+/** Which candidates the lanes hold: behind the last one it is repeated, and masked. */
+struct Batch {
+  Batch(const Candidate* candidates, std::uint32_t first, std::uint32_t count) {
+    for (int i = 0; i < LANES; ++i) {
+      const std::uint32_t at = first + i < count ? first + i : count - 1;
+      of_a[i] = candidates[at].a;
+      of_b[i] = candidates[at].b;
+    }
+    const std::uint32_t left = count - first;
+    valid = left >= LANES ? ALL_LANES : (1u << left) - 1;
+  }
+
+  Rows points(const Vec4* from, const std::uint32_t (&index)[LANES]) const {
+    return rows(index, [from](std::uint32_t i) { return &from[i]; });
+  }
+  template <typename Record>
+  Rows field(const Record* from, const std::uint32_t (&index)[LANES], const Vec4 Record::*member) const {
+    return rows(index, [=](std::uint32_t i) { return &(from[i].*member); });
+  }
+  Rows side(const FaceRecord* from, int k) const {
+    return rows(of_b, [=](std::uint32_t i) { return &from[i].sides[k]; });
+  }
+  Rows inward(const EdgeRecord* from, const std::uint32_t (&index)[LANES], int k) const {
+    return rows(index, [=](std::uint32_t i) { return &from[i].inward[k]; });
+  }
+
+  Mask open(const OpenSides* from) const {
+    Mask sides;
+    for (int i = 0; i < LANES; ++i) sides[i] = from[of_b[i]];
+    return sides;
+  }
+
+  std::uint32_t of_a[LANES], of_b[LANES];
+  unsigned valid;
+
+ private:
+  template <typename Address>
+  static Rows rows(const std::uint32_t (&index)[LANES], Address&& address) {
+    const Vec4* at[LANES];
+    for (int i = 0; i < LANES; ++i) at[i] = address(index[i]);
+    return gathered(at);
+  }
+};
+
+}  // namespace
+}  // namespace blem_sim::kernels
