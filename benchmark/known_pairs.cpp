@@ -73,7 +73,9 @@ class KnownPairs {
   KnownPairs(const MeshPair& pair, ContactSearchBuffers* buffers) : X_FM_(pair.X_FM), range_(pair.range) {
     FoundContacts found;
     searchContacts(pair, nullptr, buffers, &found);
-    findCandidates(pair, {}, &buffers->search, &lists_);
+    CandidateListing listing;
+    findCandidates(pair, {}, &buffers->search, &listing);
+    lists_ = std::move(listing.lists);
     dropUnknown(KnownContacts(found));
     compactFeatures();
     vertex_faces_.resize(size());

@@ -1,9 +1,7 @@
 #include "candidate_lists.h"
 
 #include <algorithm>
-#include <cstddef>
 
-#include "blem_sim/geometry/bvh_traversal.h"
 #include "feature_cones.h"
 #include "tolerances.h"
 #include "vectors.h"
@@ -13,106 +11,6 @@ namespace blem_sim {
 namespace {
 
 using kernels::Candidate;
-using kernels::LeafHit;
-
-/** Rounding of float coordinates and of what is reckoned with them, relative to the largest one. */
-constexpr double FLOAT_ROUNDING = 1e-6;
-/** And of directions: unit vectors, and products of edges relative to their lengths. */
-constexpr double FLOAT_TURN = 1e-5;
-
-class Search {
- public:
-  Search(const MeshPair& pair, double reach, CandidateSearchBuffers* buffers, CandidateLists* lists)
-      : pair_(pair), motion_(motionOf(pair.X_FM)), reach_(reach), buffers_(*buffers), lists_(*lists), search_(++buffers->searches) {
-    lists->clear();
-  }
-
-  /** Calls visit(moving leaf, fixed leaf) for the leaves within reach. */
-  template <typename Visit>
-  void forEachLeafPair(Visit&& visit) {
-    findLeafPairs();
-    const std::vector<CandidateSearchBuffers::FoundPair>& pairs = buffers_.found_pairs;
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-      if (i + 1 < pairs.size()) prefetch(pairs[i + 1], pairs[i]);
-      visit(*pairs[i].moving, *pairs[i].fixed);
-    }
-  }
-
-  /** With room for the rounding of floats. */
-  kernels::LeafReach leafReach(const ListMargin& margin) const {
-    const double wider = margin.motion + rounding();
-    return {static_cast<float>(reach_ - margin.motion + wider), static_cast<float>(wider), static_cast<float>(margin.turn + FLOAT_TURN),
-            static_cast<float>(deepestInside(reach_) + wider)};
-  }
-
-  // Where a feature of a leaf is among the near ones of its mesh.
-  std::uint32_t vertex(bool moves, LeafFeatures* leaf, std::uint32_t i) { return slot(&leaf->vertices, i, &lists_.near[moves].vertices); }
-  std::uint32_t edge(bool moves, LeafFeatures* leaf, std::uint32_t i) { return slot(&leaf->edges, i, &lists_.near[moves].edges); }
-  std::uint32_t face(bool moves, LeafFeatures* leaf, std::uint32_t i) {
-    NearFeatures& near = lists_.near[moves];
-    if (leaf->faces.slots[i] == LeafFeatures::NO_SLOT) {
-      near.patches.push_back(leaf->patches[i]);
-      near.open.push_back(leaf->shapes.faces.open[i]);
-      near.borders.push_back(leaf->borders[i]);
-    }
-    return slot(&leaf->faces, i, &near.faces);
-  }
-
-  /** Appends visit(i, j) for the features i of the moving leaf and j of the fixed one. */
-  template <typename Visit>
-  static void append(const LeafHit* hits, int count, std::vector<Candidate>* candidates, Visit&& visit) {
-    for (int h = 0; h < count; ++h) {
-      for (std::uint32_t bits = hits[h].bits; bits != 0; bits &= bits - 1)
-        candidates->push_back(visit(hits[h].feature, static_cast<std::uint32_t>(__builtin_ctz(bits))));
-    }
-  }
-
- private:
-  double rounding() const {
-    const double largest = std::max(pair_.fixed.bounds.min().cwiseAbs().maxCoeff(), pair_.fixed.bounds.max().cwiseAbs().maxCoeff());
-    return FLOAT_ROUNDING * (largest + reach_) + 3 * CLOSED;
-  }
-
-  void findLeafPairs() {
-    const auto matters = [this](std::uint32_t m, std::uint32_t f) { return (pair_.moving.owners[m] | pair_.fixed.owners[f]) != 0; };
-    buffers_.leaf_pairs.clear();
-    visitLeafPairsIf(pair_.moving.bvh, pair_.fixed.bvh, pair_.X_FM, reach_ + rounding(), matters, [this](std::uint32_t m, std::uint32_t f) {
-      buffers_.leaf_pairs.push_back({m, f});
-    });
-    buffers_.found_pairs.clear();
-    for (const auto& [m, f] : buffers_.leaf_pairs) {
-      buffers_.found_pairs.push_back(
-          {&buffers_.leaves.moving(pair_.moving, m, search_, motion_), &buffers_.leaves.standing(pair_.fixed, f, search_)});
-    }
-  }
-
-  /** Leaves that are new lie far away in memory. */
-  static void prefetch(const CandidateSearchBuffers::FoundPair& next, const CandidateSearchBuffers::FoundPair& now) {
-    if (next.moving != now.moving) prefetch(*next.moving->turned);
-    if (next.fixed != now.fixed) prefetch(next.fixed->shapes);
-  }
-  static void prefetch(const kernels::LeafShapes& shapes) {
-    constexpr std::size_t LINE = 64;
-    const char* const begin = reinterpret_cast<const char*>(&shapes);
-    const std::size_t used =
-        offsetof(kernels::LeafShapes, edges) + (shapes.edge_count > kernels::LEAF_BLOCK ? 2 : 1) * sizeof(kernels::LeafEdges);
-    for (std::size_t at = 0; at < used; at += LINE) __builtin_prefetch(begin + at);
-  }
-
-  template <typename Record, int CAPACITY>
-  static std::uint32_t slot(LeafFeatures::Kind<Record, CAPACITY>* kind, std::uint32_t i, FeatureRecords<Record>* features) {
-    std::uint32_t& slot = kind->slots[i];
-    if (slot == LeafFeatures::NO_SLOT) slot = features->add(kind->records[i], kind->names[i]);
-    return slot;
-  }
-
-  const MeshPair& pair_;
-  const kernels::Motion motion_;
-  const double reach_;
-  CandidateSearchBuffers& buffers_;
-  CandidateLists& lists_;
-  const std::uint64_t search_;
-};
 
 /** Drops pairs of vertices that have no contact, however they move by the margin [m]: those that lead towards each other, or where one does
  * and the other, nearer than its surroundings, is not round. */
@@ -161,6 +59,12 @@ const VertexRing& NearFeatures::ring(const MeshSide& side, std::uint32_t vertex)
 }
 
 bool NearFeatures::isRound(const MeshSide& side, std::uint32_t vertex) const { return hasRoundEdgesOnly(side, vertices.names[vertex]); }
+
+void NearFeatures::addFaceOf(const LeafFeatures& leaf, std::uint32_t i) {
+  patches.push_back(leaf.patches[i]);
+  open.push_back(leaf.shapes.faces.open[i]);
+  borders.push_back(leaf.borders[i]);
+}
 
 void NearFeatures::clear() {
   vertices.clear();
@@ -214,48 +118,6 @@ void TurnedFeatures::turnForContacts(const CandidateLists& lists, const Pose& X_
 void TurnedFeatures::turnForCrossings(const CandidateLists& lists, const Pose& X_FM) {
   turn(kernels::kernels().turnEdges, lists.near[1].edges.records, motionOf(X_FM), &edges);
   turn(kernels::kernels().turnFaces, lists.near[1].faces.records, motionOf(X_FM), &faces);
-}
-
-void findCandidates(const MeshPair& pair, const ListMargin& margin, CandidateSearchBuffers* buffers, CandidateLists* lists) {
-  const kernels::Kernels& kernels = kernels::kernels();
-  Search search(pair, pair.range + margin.motion, buffers, lists);
-  const kernels::LeafReach reach = search.leafReach(margin);
-  kernels::LeafHits& hits = buffers->hits;
-  search.forEachLeafPair([&](LeafFeatures& m, LeafFeatures& f) {
-    kernels.leafContacts(*m.turned, f.shapes, reach, &hits);
-    for (const bool moves : {true, false}) {
-      LeafFeatures &own = moves ? m : f, &partner = moves ? f : m;
-      Search::append(hits.vertex_face[!moves], hits.vertex_faces[!moves], &lists->pairs.vertex_face[moves],
-                     [&](auto i, auto j) -> Candidate {
-                       return {search.vertex(moves, &own, i), search.face(!moves, &partner, j)};
-                     });
-      Search::append(hits.vertex_edge[!moves], hits.vertex_edges[!moves], &lists->pairs.vertex_edge[moves],
-                     [&](auto i, auto j) -> Candidate {
-                       return {search.vertex(moves, &own, i), search.edge(!moves, &partner, j)};
-                     });
-    }
-    Search::append(hits.vertex_vertex, hits.vertex_vertices, &lists->pairs.vertex_vertex, [&](auto i, auto j) -> Candidate {
-      return {search.vertex(true, &m, i), search.vertex(false, &f, j)};
-    });
-    Search::append(hits.edge_edge, hits.edge_edges, &lists->pairs.edge_edge, [&](auto i, auto j) -> Candidate {
-      return {search.edge(true, &m, i), search.edge(false, &f, j)};
-    });
-  });
-  dropLeading(pair, margin.motion, lists->near, &lists->pairs.vertex_vertex);
-}
-
-void findCrossingCandidates(const MeshPair& pair, const ListMargin& margin, CandidateSearchBuffers* buffers, CandidateLists* lists) {
-  Search search(pair, margin.motion, buffers, lists);
-  const kernels::LeafReach reach = search.leafReach(margin);
-  kernels::LeafHits& hits = buffers->hits;
-  search.forEachLeafPair([&](LeafFeatures& m, LeafFeatures& f) {
-    kernels::kernels().leafCrossings(*m.turned, f.shapes, reach, &hits);
-    for (const bool moves : {true, false}) {
-      Search::append(hits.edge_face[!moves], hits.edge_faces[!moves], &lists->pairs.edge_face[moves], [&](auto i, auto j) -> Candidate {
-        return {search.edge(moves, moves ? &m : &f, i), search.face(!moves, moves ? &f : &m, j)};
-      });
-    }
-  });
 }
 
 namespace {

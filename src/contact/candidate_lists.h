@@ -1,4 +1,4 @@
-// Which features of two meshes may have a contact: found by their trees, good for as long as nothing has moved by more than a margin.
+// Which features of two meshes may have a contact, good for as long as nothing has moved by more than a margin.
 #pragma once
 
 #include <vector>
@@ -54,6 +54,7 @@ struct NearFeatures {
   bool isRound(const MeshSide& side, std::uint32_t vertex) const;  ///< flat and round edges only
   std::vector<kernels::Vec4> ring_directions;                      ///< unit, mesh's frame; w: 1 if the edge is flat
 
+  void addFaceOf(const LeafFeatures& leaf, std::uint32_t i);  ///< what goes with faces
   void clear();
 
  private:
@@ -96,29 +97,6 @@ struct ListMargin {
   double motion = 0;  ///< [m] of any point of either mesh near the other
   double turn = 0;    ///< of unit vectors: length of the difference
 };
-
-/** What a search for candidates works in. */
-struct CandidateSearchBuffers {
-  struct LeafPair {
-    std::uint32_t moving, fixed;  ///< nodes
-  };
-  struct FoundPair {
-    LeafFeatures *moving, *fixed;
-  };
-  LeafMemory leaves;
-  std::vector<LeafPair> leaf_pairs;
-  std::vector<FoundPair> found_pairs;
-  kernels::LeafHits hits;
-  std::uint64_t searches = 0;
-};
-
-/**
- * Candidates for every contact within pair.range that there is at the pair's pose, or at one where no point of either mesh near the other
- * has moved, and no direction has turned, by more than the margin against it. Overwrites the lists.
- */
-void findCandidates(const MeshPair& pair, const ListMargin& margin, CandidateSearchBuffers* buffers, CandidateLists* lists);
-/** The same for every crossing. */
-void findCrossingCandidates(const MeshPair& pair, const ListMargin& margin, CandidateSearchBuffers* buffers, CandidateLists* lists);
 
 /**
  * Of the candidates for contacts those that can have one within pair.range while nothing moves or turns by more than the margin, in their

@@ -9,6 +9,9 @@ namespace {
 // A list is made for so many steps of the present motion: longer ones cost more in every step, shorter ones are made anew too often.
 constexpr double MARGIN_STEPS = 14, FEWEST_STEPS = 3;
 constexpr double LEAST_PART = 0.7;  // of MARGIN_STEPS, see partOf
+// Where there are not few pairs of leaves the next list is made in so many parts, in as many steps before it is needed.
+constexpr double PARTS = 3;
+constexpr std::size_t FEW_LEAF_PAIRS = 64;
 // Of long lists those that matter for so few steps are listed again.
 constexpr double NEAREST_STEPS = 4;
 // Candidates for crossings are listed for so many.
@@ -63,14 +66,15 @@ class ContactSearch {
   void run(bool keeps) {
     const bool apart = memory_.visited && motion_.motion + DISTANCE_ROUNDING < memory_.distance;
     if (!apart) {
-      refreshCrossingLists(keeps && !isFast() ? marginOf(CROSSING_STEPS) : ListMargin());
-      CandidateLists& lists = memory_.crossing_lists;
+      refreshCrossings(keeps && !isFast() ? marginOf(CROSSING_STEPS) : ListMargin());
+      CandidateLists& lists = memory_.crossings.lists;
       buffers_.evaluation.turned.turnForCrossings(lists, pair_.X_FM);
       Evaluation(pair_, &lists, lists.pairs, &buffers_.evaluation, &found_).findCrossings();
     }
     refreshLists(keeps ? chooseMargin() : ListMargin());
-    buffers_.evaluation.turned.turnForContacts(memory_.lists, pair_.X_FM);
-    Evaluation(pair_, &memory_.lists, nearestPairs(), &buffers_.evaluation, &found_).findContacts();
+    CandidateLists& lists = memory_.listing.lists;
+    buffers_.evaluation.turned.turnForContacts(lists, pair_.X_FM);
+    Evaluation(pair_, &lists, nearestPairs(), &buffers_.evaluation, &found_).findContacts();
     memory_.visited = keeps;
     memory_.X_FM = pair_.X_FM;
     memory_.distance = found_.crossings.empty() ? found_.leastGap(pair_) : 0;
@@ -78,7 +82,8 @@ class ContactSearch {
 
  private:
   void forget() {
-    memory_.visited = memory_.lists_origin.known = memory_.nearest_origin.known = memory_.crossings_origin.known = false;
+    memory_.visited = memory_.nearest_origin.known = false;
+    memory_.listing.origin.known = memory_.next.origin.known = memory_.crossings.origin.known = false;
     memory_.moving = pair_.moving.identity;
     memory_.fixed = pair_.fixed.identity;
   }
@@ -102,16 +107,38 @@ class ContactSearch {
   }
 
   void refreshLists(const ListMargin& margin) {
-    if (isGood(memory_.lists_origin)) return;
-    findCandidates(pair_, margin, &buffers_.search, &memory_.lists);
-    memory_.lists_origin = {true, pair_.X_FM, pair_.range, margin};
-    memory_.nearest_origin.known = false;
+    if (isGood(memory_.listing.origin)) return makeNext(margin);
+    if (isGood(memory_.next.origin)) {
+      findMoreCandidates(pair_, memory_.next.left(), &buffers_.search, &memory_.next);
+      std::swap(memory_.listing, memory_.next);
+    } else {
+      findCandidates(pair_, margin, &buffers_.search, &memory_.listing);
+    }
+    memory_.next.origin.known = memory_.nearest_origin.known = false;
   }
 
-  void refreshCrossingLists(const ListMargin& margin) {
-    if (isGood(memory_.crossings_origin)) return;
-    findCrossingCandidates(pair_, margin, &buffers_.search, &memory_.crossing_lists);
-    memory_.crossings_origin = {true, pair_.X_FM, pair_.range, margin};
+  /** Where the list at hand is nearly used up the next one is begun, a part of it in every step. */
+  void makeNext(const ListMargin& margin) {
+    CandidateListing& next = memory_.next;
+    if (next.isComplete() || memory_.listing.pairs.size() < FEW_LEAF_PAIRS) return;
+    const double steps = stepsLeft(memory_.listing.origin);
+    if (!next.origin.known) {
+      if (steps >= PARTS) return;
+      beginCandidates(pair_, margin, &buffers_.search, &next);
+    }
+    const double parts = std::clamp(steps, 1.0, PARTS);
+    findMoreCandidates(pair_, static_cast<std::size_t>(std::ceil(static_cast<double>(next.left()) / parts)), &buffers_.search, &next);
+  }
+
+  /** For how many steps of the present motion lists of that origin are good. */
+  double stepsLeft(const ListOrigin& origin) const {
+    const double motion = origin.margin.motion - largestMotion(region_, pair_.X_FM, origin.X_FM);
+    const double turn = origin.margin.turn - largestTurn(pair_.X_FM, origin.X_FM);
+    return std::floor(std::min(motion / motion_.motion, turn / motion_.turn));
+  }
+
+  void refreshCrossings(const ListMargin& margin) {
+    if (!isGood(memory_.crossings.origin)) findCrossingCandidates(pair_, margin, &buffers_.search, &memory_.crossings);
   }
 
   /** For so many steps of the present motion. */
@@ -124,9 +151,9 @@ class ContactSearch {
   const CandidatePairs& nearestPairs() {
     if (isGood(memory_.nearest_origin)) return memory_.nearest;
     const ListMargin margin = marginOf(NEAREST_STEPS);
-    if (memory_.lists.pairs.contacts() <= FEW_CANDIDATES || 2 * margin.motion >= memory_.lists_origin.margin.motion)
-      return memory_.lists.pairs;
-    findNearest(pair_, buffers_.evaluation.turned, margin, &memory_.lists, &memory_.nearest);
+    CandidateListing& listing = memory_.listing;
+    if (listing.lists.pairs.contacts() <= FEW_CANDIDATES || 2 * margin.motion >= listing.origin.margin.motion) return listing.lists.pairs;
+    findNearest(pair_, buffers_.evaluation.turned, margin, &listing.lists, &memory_.nearest);
     memory_.nearest_origin = {true, pair_.X_FM, pair_.range, margin};
     return memory_.nearest;
   }

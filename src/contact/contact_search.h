@@ -1,27 +1,20 @@
 // The contacts of two meshes, from lists of candidates that are kept while they are good.
 #pragma once
 
-#include "candidate_lists.h"
+#include "candidate_search.h"
 #include "contact_evaluation.h"
 #include "mesh_pair.h"
 
 namespace blem_sim {
 
-/** Where a list of candidates was made: it is good while the meshes have not moved against each other by more than the margin. */
-struct ListOrigin {
-  bool known = false;
-  Pose X_FM = Pose::Identity();
-  double range = 0;  ///< [m]
-  ListMargin margin;
-};
-
 /** What is kept of a pair of meshes from search to search; it saves time and changes no result. */
 struct ContactSearchMemory {
   std::uint64_t moving = 0, fixed = 0;  ///< whose
-  CandidateLists lists;                 ///< for many steps
-  CandidatePairs nearest;               ///< those of them that matter for a few
-  CandidateLists crossing_lists;        ///< only where the meshes may have met
-  ListOrigin lists_origin, nearest_origin, crossings_origin;
+  CandidateListing listing;             ///< for many steps
+  CandidateListing next;                ///< what takes its place, made a part at a time
+  CandidatePairs nearest;               ///< those of the listing that matter for a few steps
+  ListOrigin nearest_origin;
+  CandidateListing crossings;  ///< only where the meshes may have met
   bool visited = false;
   Pose X_FM = Pose::Identity();  ///< at the last search
   double distance = 0;           ///< [m] of the meshes then, at least; 0 if they crossed

@@ -116,12 +116,6 @@ void describe(const MeshSide& side, std::uint32_t index, LeafFeatures* leaf) {
   shapes.edge_cone = edgeCone(leaf->edges.records);
 }
 
-void forgetSlots(LeafFeatures* leaf) {
-  std::fill_n(leaf->vertices.slots, leaf->shapes.vertex_count, LeafFeatures::NO_SLOT);
-  std::fill_n(leaf->faces.slots, leaf->shapes.face_count, LeafFeatures::NO_SLOT);
-  std::fill_n(leaf->edges.slots, leaf->shapes.edge_count, LeafFeatures::NO_SLOT);
-}
-
 }  // namespace
 
 FaceRecord faceRecord(const MeshSide& side, int element) {
@@ -186,7 +180,7 @@ LeafFeatures& LeafMemory::findCrowdedOut(Table* table, const MeshSide& side, std
 
 LeafFeatures& LeafMemory::standing(const MeshSide& side, std::uint32_t leaf, std::uint64_t search) {
   LeafFeatures& found = find(&standing_, side, leaf, search);
-  if (found.search != search) forgetSlots(&found);
+  if (found.search != search) found.index = LeafFeatures::NO_INDEX;
   found.search = search;
   return found;
 }
@@ -195,7 +189,7 @@ LeafFeatures& LeafMemory::moving(const MeshSide& side, std::uint32_t leaf, std::
   LeafFeatures& found = find(&moving_, side, leaf, search);
   if (found.search == search) return found;
   found.search = search;
-  forgetSlots(&found);
+  found.index = LeafFeatures::NO_INDEX;
   if (!found.turned) found.turned = std::make_unique<LeafShapes>();
   LeafShapes& turned = *found.turned;
   kernels::kernels().turnLeaf(found.shapes, motion, &turned);

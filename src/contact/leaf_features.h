@@ -14,12 +14,11 @@ namespace blem_sim {
 
 /** The features that the elements of one leaf own: its faces, and those of its edges and vertices that no other element asks for. */
 struct LeafFeatures {
-  /** Features of one kind: what they are in the mesh, and where the search put them. */
+  /** Features of one kind. */
   template <typename Record, int CAPACITY>
   struct Kind {
-    std::uint32_t slots[CAPACITY];  ///< NO_SLOT: nowhere yet
-    int names[CAPACITY];            ///< in the mesh
-    std::vector<Record> records;    ///< mesh's frame
+    int names[CAPACITY];          ///< in the mesh
+    std::vector<Record> records;  ///< mesh's frame
 
     void clear() { records.clear(); }
     /** @return its index */
@@ -30,9 +29,10 @@ struct LeafFeatures {
       return i;
     }
   };
-  static constexpr std::uint32_t NO_SLOT = 0xFFFFFFFF;
+  static constexpr std::uint32_t NO_INDEX = 0xFFFFFFFF;
 
-  std::uint64_t search = 0;    ///< the last search that came here: slots and a moving leaf's turned shapes are of it
+  std::uint64_t search = 0;    ///< the last search that came here: the index and a moving leaf's turned shapes are of it
+  std::uint32_t index;         ///< what that search calls it; NO_INDEX: nothing yet
   kernels::LeafShapes shapes;  ///< in the mesh's frame
   Kind<kernels::Vec4, kernels::MAX_LEAF_FEATURES> vertices;
   Kind<kernels::FaceRecord, kernels::MAX_LEAF_ELEMENTS> faces;
@@ -66,7 +66,7 @@ class LeafMemory {
   };
   struct Table {
     std::vector<Set> sets = std::vector<Set>(CAPACITY / WAYS);
-    // Leaves of the search at hand whose places others of its leaves hold: a search must not lose where it put a feature.
+    // Leaves of the search at hand whose places others of its leaves hold: what a search has found stays until it ends.
     std::map<std::uint32_t, std::unique_ptr<LeafFeatures>> crowded_out;
     std::uint64_t crowded_search = 0;
   };

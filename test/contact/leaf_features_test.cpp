@@ -7,7 +7,7 @@
 namespace blem_sim {
 namespace {
 
-// A search that comes to more leaves than are kept must still find where it put a feature: else one vertex would count as two.
+// A search that comes to more leaves than are kept must still know which it has seen: else one vertex would count as two.
 TEST(LeafMemory, OneSearchLosesNoLeaf) {
   const Collider plane = makeCollider(gridMesh(1, 1, 200, 200), 0);
   const MeshSide side(*plane.geometry);
@@ -19,10 +19,10 @@ TEST(LeafMemory, OneSearchLosesNoLeaf) {
   for (const std::uint64_t search : {1, 2}) {
     for (const std::uint32_t leaf : leaves) {
       LeafFeatures& features = memory.standing(side, leaf, search);
-      ASSERT_EQ(features.faces.slots[0], LeafFeatures::NO_SLOT);
-      features.faces.slots[0] = leaf;
+      ASSERT_EQ(features.index, LeafFeatures::NO_INDEX);
+      features.index = leaf;
     }
-    for (const std::uint32_t leaf : leaves) ASSERT_EQ(memory.standing(side, leaf, search).face_slots[0], leaf);
+    for (const std::uint32_t leaf : leaves) ASSERT_EQ(memory.standing(side, leaf, search).index, leaf);
   }
 }
 

@@ -1,0 +1,232 @@
+#include "candidate_search.h"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "blem_sim/geometry/bvh_traversal.h"
+#include "tolerances.h"
+#include "vectors.h"
+
+namespace blem_sim {
+namespace {
+
+using kernels::Candidate;
+using kernels::LeafHit;
+
+/** Rounding of float coordinates and of what is reckoned with them, relative to the largest one. */
+constexpr double FLOAT_ROUNDING = 1e-6;
+/** And of directions: unit vectors, and products of edges relative to their lengths. */
+constexpr double FLOAT_TURN = 1e-5;
+constexpr std::uint32_t NOWHERE = 0xFFFFFFFF;
+
+/** The pair as it was where the listing began. */
+MeshPair pairAt(const MeshPair& pair, const ListOrigin& origin) {
+  MeshPair then = pair;
+  then.X_FM = origin.X_FM;
+  then.range = origin.range;
+  return then;
+}
+
+/** A leaf of the listing, with its features. */
+struct LeafInUse {
+  LeafFeatures& features;
+  std::uint32_t slots;
+};
+
+/** Works on a listing. */
+class Search {
+ public:
+  /** @param reach [m] of leaves */
+  Search(const MeshPair& pair, double reach, CandidateSearchBuffers* buffers, CandidateListing* listing)
+      : pair_(pairAt(pair, listing->origin)),
+        motion_(motionOf(pair_.X_FM)),
+        reach_(reach),
+        buffers_(*buffers),
+        listing_(*listing),
+        search_(++buffers->searches) {
+    for (const bool moves : {true, false}) buffers_.found[moves].assign(listing_.leaves[moves].size(), nullptr);
+  }
+
+  void findLeafPairs() {
+    const auto matters = [this](std::uint32_t m, std::uint32_t f) { return (pair_.moving.owners[m] | pair_.fixed.owners[f]) != 0; };
+    visitLeafPairsIf(pair_.moving.bvh, pair_.fixed.bvh, pair_.X_FM, reach_ + rounding(), matters, [this](std::uint32_t m, std::uint32_t f) {
+      listing_.pairs.push_back({use(true, m), use(false, f)});
+    });
+  }
+
+  /** Calls visit(moving leaf, fixed leaf) for the next pairs of leaves. */
+  template <typename Visit>
+  void forEachLeafPair(std::size_t count, Visit&& visit) {
+    const std::size_t end = std::min(listing_.done + count, listing_.pairs.size());
+    for (std::size_t& i = listing_.done; i < end; ++i) {
+      const CandidateListing::LeafPair& pair = listing_.pairs[i];
+      const LeafInUse moving = leaf(true, pair.moving), fixed = leaf(false, pair.fixed);
+      if (i + 1 < end) prefetch(listing_.pairs[i + 1], pair);
+      visit(moving, fixed);
+    }
+  }
+
+  /** With room for the rounding of floats. */
+  kernels::LeafReach leafReach() const {
+    const ListMargin& margin = listing_.origin.margin;
+    const double wider = margin.motion + rounding();
+    return {static_cast<float>(reach_ - margin.motion + wider), static_cast<float>(wider), static_cast<float>(margin.turn + FLOAT_TURN),
+            static_cast<float>(deepestInside(reach_) + wider)};
+  }
+
+  // Where a feature of a leaf is among the near ones of its mesh.
+  std::uint32_t vertex(bool moves, const LeafInUse& leaf, std::uint32_t i) {
+    return place(leaf.slots + i, leaf.features.vertices, i, &listing_.lists.near[moves].vertices);
+  }
+  std::uint32_t face(bool moves, const LeafInUse& leaf, std::uint32_t i) {
+    NearFeatures& near = listing_.lists.near[moves];
+    const std::uint32_t found = place(leaf.slots + leaf.features.shapes.vertex_count + i, leaf.features.faces, i, &near.faces);
+    if (found == near.patches.size()) near.addFaceOf(leaf.features, i);
+    return found;
+  }
+  std::uint32_t edge(bool moves, const LeafInUse& leaf, std::uint32_t i) {
+    const kernels::LeafShapes& shapes = leaf.features.shapes;
+    return place(leaf.slots + shapes.vertex_count + shapes.face_count + i, leaf.features.edges, i, &listing_.lists.near[moves].edges);
+  }
+
+  /** Appends visit(i, j) for the features i of the moving leaf and j of the fixed one. */
+  template <typename Visit>
+  static void append(const LeafHit* hits, int count, std::vector<Candidate>* candidates, Visit&& visit) {
+    for (int h = 0; h < count; ++h) {
+      for (std::uint32_t bits = hits[h].bits; bits != 0; bits &= bits - 1)
+        candidates->push_back(visit(hits[h].feature, static_cast<std::uint32_t>(__builtin_ctz(bits))));
+    }
+  }
+
+ private:
+  double rounding() const {
+    const double largest = std::max(pair_.fixed.bounds.min().cwiseAbs().maxCoeff(), pair_.fixed.bounds.max().cwiseAbs().maxCoeff());
+    return FLOAT_ROUNDING * (largest + reach_) + 3 * CLOSED;
+  }
+
+  LeafFeatures& find(bool moves, std::uint32_t node) {
+    return moves ? buffers_.leaves.moving(pair_.moving, node, search_, motion_) : buffers_.leaves.standing(pair_.fixed, node, search_);
+  }
+
+  /** Index of the node among the listing's leaves. */
+  std::uint32_t use(bool moves, std::uint32_t node) {
+    LeafFeatures& features = find(moves, node);
+    if (features.index != LeafFeatures::NO_INDEX) return features.index;
+    std::vector<CandidateListing::Leaf>& leaves = listing_.leaves[moves];
+    features.index = static_cast<std::uint32_t>(leaves.size());
+    const kernels::LeafShapes& shapes = features.shapes;
+    const std::size_t slots = listing_.slots.size();
+    leaves.push_back({node, static_cast<std::uint32_t>(slots)});
+    listing_.slots.resize(slots + shapes.vertex_count + shapes.face_count + shapes.edge_count, NOWHERE);
+    buffers_.found[moves].push_back(&features);
+    return features.index;
+  }
+
+  LeafInUse leaf(bool moves, std::uint32_t index) {
+    LeafFeatures*& found = buffers_.found[moves][index];
+    const CandidateListing::Leaf& leaf = listing_.leaves[moves][index];
+    if (!found) found = &find(moves, leaf.node);
+    return {*found, leaf.slots};
+  }
+
+  /** Leaves that are new lie far away in memory. */
+  void prefetch(const CandidateListing::LeafPair& next, const CandidateListing::LeafPair& now) const {
+    const LeafFeatures *const moving = buffers_.found[1][next.moving], *const fixed = buffers_.found[0][next.fixed];
+    if (next.moving != now.moving && moving) prefetch(*moving->turned);
+    if (next.fixed != now.fixed && fixed) prefetch(fixed->shapes);
+  }
+  static void prefetch(const kernels::LeafShapes& shapes) {
+    constexpr std::size_t LINE = 64;
+    const char* const begin = reinterpret_cast<const char*>(&shapes);
+    for (std::size_t at = 0; at < offsetof(kernels::LeafShapes, edges) + sizeof(kernels::LeafEdges); at += LINE)
+      __builtin_prefetch(begin + at);
+  }
+
+  template <typename Record, int CAPACITY>
+  std::uint32_t place(std::uint32_t slot, const LeafFeatures::Kind<Record, CAPACITY>& kind, std::uint32_t i,
+                      FeatureRecords<Record>* features) {
+    std::uint32_t& place = listing_.slots[slot];
+    if (place == NOWHERE) place = features->add(kind.records[i], kind.names[i]);
+    return place;
+  }
+
+  const MeshPair pair_;
+  const kernels::Motion motion_;
+  const double reach_;
+  CandidateSearchBuffers& buffers_;
+  CandidateListing& listing_;
+  const std::uint64_t search_;
+};
+
+void clear(const MeshPair& pair, const ListMargin& margin, CandidateListing* listing) {
+  listing->lists.clear();
+  listing->origin = {true, pair.X_FM, pair.range, margin};
+  for (std::vector<CandidateListing::Leaf>& leaves : listing->leaves) leaves.clear();
+  listing->slots.clear();
+  listing->pairs.clear();
+  listing->done = 0;
+}
+
+double reachOf(const ListOrigin& origin) { return origin.range + origin.margin.motion; }
+
+void find(std::size_t leaf_pairs, Search* search, CandidateSearchBuffers* buffers, CandidatePairs* pairs) {
+  const kernels::Kernels& kernels = kernels::kernels();
+  const kernels::LeafReach reach = search->leafReach();
+  kernels::LeafHits& hits = buffers->hits;
+  search->forEachLeafPair(leaf_pairs, [&](const LeafInUse& m, const LeafInUse& f) {
+    kernels.leafContacts(*m.features.turned, f.features.shapes, reach, &hits);
+    for (const bool moves : {true, false}) {
+      const LeafInUse &own = moves ? m : f, &partner = moves ? f : m;
+      Search::append(hits.vertex_face[!moves], hits.vertex_faces[!moves], &pairs->vertex_face[moves], [&](auto i, auto j) -> Candidate {
+        return {search->vertex(moves, own, i), search->face(!moves, partner, j)};
+      });
+      Search::append(hits.vertex_edge[!moves], hits.vertex_edges[!moves], &pairs->vertex_edge[moves], [&](auto i, auto j) -> Candidate {
+        return {search->vertex(moves, own, i), search->edge(!moves, partner, j)};
+      });
+    }
+    Search::append(hits.vertex_vertex, hits.vertex_vertices, &pairs->vertex_vertex, [&](auto i, auto j) -> Candidate {
+      return {search->vertex(true, m, i), search->vertex(false, f, j)};
+    });
+    Search::append(hits.edge_edge, hits.edge_edges, &pairs->edge_edge, [&](auto i, auto j) -> Candidate {
+      return {search->edge(true, m, i), search->edge(false, f, j)};
+    });
+  });
+}
+
+}  // namespace
+
+void findCandidates(const MeshPair& pair, const ListMargin& margin, CandidateSearchBuffers* buffers, CandidateListing* listing) {
+  clear(pair, margin, listing);
+  Search search(pair, reachOf(listing->origin), buffers, listing);
+  search.findLeafPairs();
+  find(listing->pairs.size(), &search, buffers, &listing->lists.pairs);
+}
+
+void beginCandidates(const MeshPair& pair, const ListMargin& margin, CandidateSearchBuffers* buffers, CandidateListing* listing) {
+  clear(pair, margin, listing);
+  Search(pair, reachOf(listing->origin), buffers, listing).findLeafPairs();
+}
+
+void findMoreCandidates(const MeshPair& pair, std::size_t leaf_pairs, CandidateSearchBuffers* buffers, CandidateListing* listing) {
+  Search search(pair, reachOf(listing->origin), buffers, listing);
+  find(leaf_pairs, &search, buffers, &listing->lists.pairs);
+}
+
+void findCrossingCandidates(const MeshPair& pair, const ListMargin& margin, CandidateSearchBuffers* buffers, CandidateListing* listing) {
+  clear(pair, margin, listing);
+  Search search(pair, margin.motion, buffers, listing);
+  search.findLeafPairs();
+  const kernels::LeafReach reach = search.leafReach();
+  kernels::LeafHits& hits = buffers->hits;
+  search.forEachLeafPair(listing->pairs.size(), [&](const LeafInUse& m, const LeafInUse& f) {
+    kernels::kernels().leafCrossings(*m.features.turned, f.features.shapes, reach, &hits);
+    for (const bool moves : {true, false}) {
+      Search::append(hits.edge_face[!moves], hits.edge_faces[!moves], &listing->lists.pairs.edge_face[moves],
+                     [&](auto i, auto j) -> Candidate {
+                       return {search.edge(moves, moves ? m : f, i), search.face(!moves, moves ? f : m, j)};
+                     });
+    }
+  });
+}
+
+}  // namespace blem_sim

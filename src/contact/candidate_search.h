@@ -1,0 +1,61 @@
+// How candidates are found: by the trees of two meshes.
+#pragma once
+
+#include <vector>
+
+#include "candidate_lists.h"
+#include "leaf_features.h"
+
+namespace blem_sim {
+
+/** Where a list of candidates was made: it is good while the meshes have not moved against each other by more than the margin. */
+struct ListOrigin {
+  bool known = false;
+  Pose X_FM = Pose::Identity();
+  double range = 0;  ///< [m]
+  ListMargin margin;
+};
+
+/** Lists and how far they are made. */
+struct CandidateListing {
+  CandidateLists lists;
+  ListOrigin origin;
+
+  /** A leaf near the other mesh, and the first of its slots: where its vertices, then its faces and edges, are among the near features. */
+  struct Leaf {
+    std::uint32_t node, slots;
+  };
+  struct LeafPair {
+    std::uint32_t moving, fixed;  ///< of the leaves
+  };
+  std::vector<Leaf> leaves[2];  ///< [1] of the moving mesh, [0] of the fixed one
+  std::vector<std::uint32_t> slots;
+  std::vector<LeafPair> pairs;
+  std::size_t done = 0;  ///< of the pairs
+
+  std::size_t left() const { return pairs.size() - done; }
+  bool isComplete() const { return origin.known && left() == 0; }
+};
+
+/** What searches for candidates work in. */
+struct CandidateSearchBuffers {
+  LeafMemory leaves;
+  std::vector<LeafFeatures*> found[2];  ///< of the listing's leaves; null: not looked at yet
+  kernels::LeafHits hits;
+  std::uint64_t searches = 0;
+};
+
+/**
+ * Candidates for every contact within pair.range that there is at the pair's pose, or at one where no point of either mesh near the other
+ * has moved, and no direction has turned, by more than the margin against it. Overwrites the listing.
+ */
+void findCandidates(const MeshPair& pair, const ListMargin& margin, CandidateSearchBuffers* buffers, CandidateListing* listing);
+/** The same for every crossing. */
+void findCrossingCandidates(const MeshPair& pair, const ListMargin& margin, CandidateSearchBuffers* buffers, CandidateListing* listing);
+
+/** findCandidates in parts: the first finds the pairs of leaves, for the pair's pose, the next ones look at so many of them. @param pair
+ * the same, at any pose */
+void beginCandidates(const MeshPair& pair, const ListMargin& margin, CandidateSearchBuffers* buffers, CandidateListing* listing);
+void findMoreCandidates(const MeshPair& pair, std::size_t leaf_pairs, CandidateSearchBuffers* buffers, CandidateListing* listing);
+
+}  // namespace blem_sim
