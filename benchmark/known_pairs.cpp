@@ -74,7 +74,7 @@ class KnownPairs {
     FoundContacts found;
     searchContacts(pair, nullptr, buffers, &found);
     CandidateListing listing;
-    findCandidates(pair, {}, &buffers->search, &listing);
+    findCandidates(pair, CandidateKind::CONTACTS, {}, &buffers->search, &listing);
     lists_ = std::move(listing.lists);
     dropUnknown(KnownContacts(found));
     compactFeatures();

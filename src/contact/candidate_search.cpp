@@ -36,11 +36,10 @@ struct LeafInUse {
 /** Works on a listing. */
 class Search {
  public:
-  /** @param reach [m] of leaves */
-  Search(const MeshPair& pair, double reach, CandidateSearchBuffers* buffers, CandidateListing* listing)
+  Search(const MeshPair& pair, CandidateSearchBuffers* buffers, CandidateListing* listing)
       : pair_(pairAt(pair, listing->origin)),
         motion_(motionOf(pair_.X_FM)),
-        reach_(reach),
+        reach_((listing->kind == CandidateKind::CONTACTS ? pair_.range : 0) + listing->origin.margin.motion),
         buffers_(*buffers),
         listing_(*listing),
         search_(++buffers->searches) {
@@ -54,6 +53,21 @@ class Search {
     });
   }
 
+  void lookAt(std::size_t leaf_pairs) {
+    const kernels::Kernels& kernels = kernels::kernels();
+    const kernels::LeafReach reach = leafReach();
+    const bool contacts = listing_.kind == CandidateKind::CONTACTS;
+    forEachLeafPair(leaf_pairs, [&](const LeafInUse& m, const LeafInUse& f) {
+      (contacts ? kernels.leafContacts : kernels.leafCrossings)(*m.features.turned, f.features.shapes, reach, &buffers_.hits);
+      if (contacts) {
+        appendContacts(m, f);
+      } else {
+        appendCrossings(m, f);
+      }
+    });
+  }
+
+ private:
   /** Calls visit(moving leaf, fixed leaf) for the next pairs of leaves. */
   template <typename Visit>
   void forEachLeafPair(std::size_t count, Visit&& visit) {
@@ -98,7 +112,35 @@ class Search {
     }
   }
 
- private:
+  void appendContacts(const LeafInUse& m, const LeafInUse& f) {
+    const kernels::LeafHits& hits = buffers_.hits;
+    CandidatePairs& pairs = listing_.lists.pairs;
+    for (const bool moves : {true, false}) {
+      const LeafInUse &own = moves ? m : f, &partner = moves ? f : m;
+      append(hits.vertex_face[!moves], hits.vertex_faces[!moves], &pairs.vertex_face[moves], [&](auto i, auto j) -> Candidate {
+        return {vertex(moves, own, i), face(!moves, partner, j)};
+      });
+      append(hits.vertex_edge[!moves], hits.vertex_edges[!moves], &pairs.vertex_edge[moves], [&](auto i, auto j) -> Candidate {
+        return {vertex(moves, own, i), edge(!moves, partner, j)};
+      });
+    }
+    append(hits.vertex_vertex, hits.vertex_vertices, &pairs.vertex_vertex, [&](auto i, auto j) -> Candidate {
+      return {vertex(true, m, i), vertex(false, f, j)};
+    });
+    append(hits.edge_edge, hits.edge_edges, &pairs.edge_edge, [&](auto i, auto j) -> Candidate {
+      return {edge(true, m, i), edge(false, f, j)};
+    });
+  }
+
+  void appendCrossings(const LeafInUse& m, const LeafInUse& f) {
+    const kernels::LeafHits& hits = buffers_.hits;
+    for (const bool moves : {true, false}) {
+      append(hits.edge_face[!moves], hits.edge_faces[!moves], &listing_.lists.pairs.edge_face[moves], [&](auto i, auto j) -> Candidate {
+        return {edge(moves, moves ? m : f, i), face(!moves, moves ? f : m, j)};
+      });
+    }
+  }
+
   double rounding() const {
     const double largest = std::max(pair_.fixed.bounds.min().cwiseAbs().maxCoeff(), pair_.fixed.bounds.max().cwiseAbs().maxCoeff());
     return FLOAT_ROUNDING * (largest + reach_) + 3 * CLOSED;
@@ -158,7 +200,8 @@ class Search {
   const std::uint64_t search_;
 };
 
-void clear(const MeshPair& pair, const ListMargin& margin, CandidateListing* listing) {
+void clear(const MeshPair& pair, CandidateKind kind, const ListMargin& margin, CandidateListing* listing) {
+  listing->kind = kind;
   listing->lists.clear();
   listing->origin = {true, pair.X_FM, pair.range, margin};
   for (std::vector<CandidateListing::Leaf>& leaves : listing->leaves) leaves.clear();
@@ -167,66 +210,24 @@ void clear(const MeshPair& pair, const ListMargin& margin, CandidateListing* lis
   listing->done = 0;
 }
 
-double reachOf(const ListOrigin& origin) { return origin.range + origin.margin.motion; }
-
-void find(std::size_t leaf_pairs, Search* search, CandidateSearchBuffers* buffers, CandidatePairs* pairs) {
-  const kernels::Kernels& kernels = kernels::kernels();
-  const kernels::LeafReach reach = search->leafReach();
-  kernels::LeafHits& hits = buffers->hits;
-  search->forEachLeafPair(leaf_pairs, [&](const LeafInUse& m, const LeafInUse& f) {
-    kernels.leafContacts(*m.features.turned, f.features.shapes, reach, &hits);
-    for (const bool moves : {true, false}) {
-      const LeafInUse &own = moves ? m : f, &partner = moves ? f : m;
-      Search::append(hits.vertex_face[!moves], hits.vertex_faces[!moves], &pairs->vertex_face[moves], [&](auto i, auto j) -> Candidate {
-        return {search->vertex(moves, own, i), search->face(!moves, partner, j)};
-      });
-      Search::append(hits.vertex_edge[!moves], hits.vertex_edges[!moves], &pairs->vertex_edge[moves], [&](auto i, auto j) -> Candidate {
-        return {search->vertex(moves, own, i), search->edge(!moves, partner, j)};
-      });
-    }
-    Search::append(hits.vertex_vertex, hits.vertex_vertices, &pairs->vertex_vertex, [&](auto i, auto j) -> Candidate {
-      return {search->vertex(true, m, i), search->vertex(false, f, j)};
-    });
-    Search::append(hits.edge_edge, hits.edge_edges, &pairs->edge_edge, [&](auto i, auto j) -> Candidate {
-      return {search->edge(true, m, i), search->edge(false, f, j)};
-    });
-  });
-}
-
 }  // namespace
 
-void findCandidates(const MeshPair& pair, const ListMargin& margin, CandidateSearchBuffers* buffers, CandidateListing* listing) {
-  clear(pair, margin, listing);
-  Search search(pair, reachOf(listing->origin), buffers, listing);
+void findCandidates(const MeshPair& pair, CandidateKind kind, const ListMargin& margin, CandidateSearchBuffers* buffers,
+                    CandidateListing* listing) {
+  clear(pair, kind, margin, listing);
+  Search search(pair, buffers, listing);
   search.findLeafPairs();
-  find(listing->pairs.size(), &search, buffers, &listing->lists.pairs);
+  search.lookAt(listing->pairs.size());
 }
 
-void beginCandidates(const MeshPair& pair, const ListMargin& margin, CandidateSearchBuffers* buffers, CandidateListing* listing) {
-  clear(pair, margin, listing);
-  Search(pair, reachOf(listing->origin), buffers, listing).findLeafPairs();
+void beginCandidates(const MeshPair& pair, CandidateKind kind, const ListMargin& margin, CandidateSearchBuffers* buffers,
+                     CandidateListing* listing) {
+  clear(pair, kind, margin, listing);
+  Search(pair, buffers, listing).findLeafPairs();
 }
 
 void findMoreCandidates(const MeshPair& pair, std::size_t leaf_pairs, CandidateSearchBuffers* buffers, CandidateListing* listing) {
-  Search search(pair, reachOf(listing->origin), buffers, listing);
-  find(leaf_pairs, &search, buffers, &listing->lists.pairs);
-}
-
-void findCrossingCandidates(const MeshPair& pair, const ListMargin& margin, CandidateSearchBuffers* buffers, CandidateListing* listing) {
-  clear(pair, margin, listing);
-  Search search(pair, margin.motion, buffers, listing);
-  search.findLeafPairs();
-  const kernels::LeafReach reach = search.leafReach();
-  kernels::LeafHits& hits = buffers->hits;
-  search.forEachLeafPair(listing->pairs.size(), [&](const LeafInUse& m, const LeafInUse& f) {
-    kernels::kernels().leafCrossings(*m.features.turned, f.features.shapes, reach, &hits);
-    for (const bool moves : {true, false}) {
-      Search::append(hits.edge_face[!moves], hits.edge_faces[!moves], &listing->lists.pairs.edge_face[moves],
-                     [&](auto i, auto j) -> Candidate {
-                       return {search.edge(moves, moves ? m : f, i), search.face(!moves, moves ? f : m, j)};
-                     });
-    }
-  });
+  Search(pair, buffers, listing).lookAt(leaf_pairs);
 }
 
 }  // namespace blem_sim

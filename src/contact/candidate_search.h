@@ -16,8 +16,12 @@ struct ListOrigin {
   ListMargin margin;
 };
 
+/** What pairs of features are candidates for. */
+enum class CandidateKind { CONTACTS, CROSSINGS };
+
 /** Lists and how far they are made. */
 struct CandidateListing {
+  CandidateKind kind = CandidateKind::CONTACTS;
   CandidateLists lists;
   ListOrigin origin;
 
@@ -46,16 +50,16 @@ struct CandidateSearchBuffers {
 };
 
 /**
- * Candidates for every contact within pair.range that there is at the pair's pose, or at one where no point of either mesh near the other
- * has moved, and no direction has turned, by more than the margin against it. Overwrites the listing.
+ * Candidates for every contact within pair.range, or for every crossing, that there is at the pair's pose, or at one where no point of
+ * either mesh near the other has moved, and no direction has turned, by more than the margin against it. Overwrites the listing.
  */
-void findCandidates(const MeshPair& pair, const ListMargin& margin, CandidateSearchBuffers* buffers, CandidateListing* listing);
-/** The same for every crossing. */
-void findCrossingCandidates(const MeshPair& pair, const ListMargin& margin, CandidateSearchBuffers* buffers, CandidateListing* listing);
+void findCandidates(const MeshPair& pair, CandidateKind kind, const ListMargin& margin, CandidateSearchBuffers* buffers,
+                    CandidateListing* listing);
 
 /** findCandidates in parts: the first finds the pairs of leaves, for the pair's pose, the next ones look at so many of them. @param pair
  * the same, at any pose */
-void beginCandidates(const MeshPair& pair, const ListMargin& margin, CandidateSearchBuffers* buffers, CandidateListing* listing);
+void beginCandidates(const MeshPair& pair, CandidateKind kind, const ListMargin& margin, CandidateSearchBuffers* buffers,
+                     CandidateListing* listing);
 void findMoreCandidates(const MeshPair& pair, std::size_t leaf_pairs, CandidateSearchBuffers* buffers, CandidateListing* listing);
 
 }  // namespace blem_sim

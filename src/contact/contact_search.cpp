@@ -7,7 +7,7 @@ namespace blem_sim {
 namespace {
 
 // A list is made for so many steps of the present motion: longer ones cost more in every step, shorter ones are made anew too often.
-constexpr double MARGIN_STEPS = 14, FEWEST_STEPS = 3;
+constexpr double MARGIN_STEPS = 18, FEWEST_STEPS = 3;
 constexpr double LEAST_PART = 0.7;  // of MARGIN_STEPS, see partOf
 // Where there are not few pairs of leaves the next list is made in so many parts, in as many steps before it is needed.
 constexpr double PARTS = 3;
@@ -15,7 +15,7 @@ constexpr std::size_t FEW_LEAF_PAIRS = 64;
 // Of long lists those that matter for so few steps are listed again.
 constexpr double NEAREST_STEPS = 4;
 // Candidates for crossings are listed for so many.
-constexpr double CROSSING_STEPS = 8;
+constexpr double CROSSING_STEPS = 10;
 constexpr std::size_t FEW_CANDIDATES = 200;
 constexpr double LEAST_MARGIN = 0.02, MOST_MARGIN = 0.8, LEAST_NEAREST_MARGIN = 0.005;  // of the range
 constexpr double FIRST_MARGIN = 0.1;                                                    // of the range, where the motion is not known yet
@@ -66,13 +66,13 @@ class ContactSearch {
   void run(bool keeps) {
     const bool apart = memory_.visited && motion_.motion + DISTANCE_ROUNDING < memory_.distance;
     if (!apart) {
-      refreshCrossings(keeps && !isFast() ? marginOf(CROSSING_STEPS) : ListMargin());
-      CandidateLists& lists = memory_.crossings.lists;
+      refresh(CandidateKind::CROSSINGS, keeps && !isFast() ? marginOf(CROSSING_STEPS) : ListMargin(), &memory_.crossings);
+      CandidateLists& lists = memory_.crossings.now.lists;
       buffers_.evaluation.turned.turnForCrossings(lists, pair_.X_FM);
       Evaluation(pair_, &lists, lists.pairs, &buffers_.evaluation, &found_).findCrossings();
     }
-    refreshLists(keeps ? chooseMargin() : ListMargin());
-    CandidateLists& lists = memory_.listing.lists;
+    refresh(CandidateKind::CONTACTS, keeps ? chooseMargin() : ListMargin(), &memory_.contacts);
+    CandidateLists& lists = memory_.contacts.now.lists;
     buffers_.evaluation.turned.turnForContacts(lists, pair_.X_FM);
     Evaluation(pair_, &lists, nearestPairs(), &buffers_.evaluation, &found_).findContacts();
     memory_.visited = keeps;
@@ -83,7 +83,7 @@ class ContactSearch {
  private:
   void forget() {
     memory_.visited = memory_.nearest_origin.known = false;
-    memory_.listing.origin.known = memory_.next.origin.known = memory_.crossings.origin.known = false;
+    for (KeptListing* kept : {&memory_.contacts, &memory_.crossings}) kept->now.origin.known = kept->next.origin.known = false;
     memory_.moving = pair_.moving.identity;
     memory_.fixed = pair_.fixed.identity;
   }
@@ -106,28 +106,27 @@ class ContactSearch {
            largestTurn(pair_.X_FM, origin.X_FM) <= origin.margin.turn;
   }
 
-  void refreshLists(const ListMargin& margin) {
-    if (isGood(memory_.listing.origin)) return makeNext(margin);
-    if (isGood(memory_.next.origin)) {
-      findMoreCandidates(pair_, memory_.next.left(), &buffers_.search, &memory_.next);
-      std::swap(memory_.listing, memory_.next);
+  void refresh(CandidateKind kind, const ListMargin& margin, KeptListing* kept) {
+    if (isGood(kept->now.origin)) return makeNext(kind, margin, stepsLeft(kept->now.origin), kept);
+    if (isGood(kept->next.origin)) {
+      findMoreCandidates(pair_, kept->next.left(), &buffers_.search, &kept->next);
+      std::swap(kept->now, kept->next);
     } else {
-      findCandidates(pair_, margin, &buffers_.search, &memory_.listing);
+      findCandidates(pair_, kind, margin, &buffers_.search, &kept->now);
     }
-    memory_.next.origin.known = memory_.nearest_origin.known = false;
+    kept->next.origin.known = false;
+    if (kind == CandidateKind::CONTACTS) memory_.nearest_origin.known = false;
   }
 
-  /** Where the list at hand is nearly used up the next one is begun, a part of it in every step. */
-  void makeNext(const ListMargin& margin) {
-    CandidateListing& next = memory_.next;
-    if (next.isComplete() || memory_.listing.pairs.size() < FEW_LEAF_PAIRS) return;
-    const double steps = stepsLeft(memory_.listing.origin);
-    if (!next.origin.known) {
-      if (steps >= PARTS) return;
-      beginCandidates(pair_, margin, &buffers_.search, &next);
+  /** What takes a list's place is made a part at a time while it is good. @param steps until then */
+  void makeNext(CandidateKind kind, const ListMargin& margin, double steps, KeptListing* kept) {
+    CandidateListing& next = kept->next;
+    if (isGood(next.origin)) {
+      const double part = std::ceil(static_cast<double>(next.left()) / std::clamp(1 + steps, 1.0, PARTS));
+      if (next.left() > 0) findMoreCandidates(pair_, static_cast<std::size_t>(part), &buffers_.search, &next);
+    } else if (steps <= PARTS && memory_.contacts.now.pairs.size() > FEW_LEAF_PAIRS) {
+      beginCandidates(pair_, kind, margin, &buffers_.search, &next);
     }
-    const double parts = std::clamp(steps, 1.0, PARTS);
-    findMoreCandidates(pair_, static_cast<std::size_t>(std::ceil(static_cast<double>(next.left()) / parts)), &buffers_.search, &next);
   }
 
   /** For how many steps of the present motion lists of that origin are good. */
@@ -135,10 +134,6 @@ class ContactSearch {
     const double motion = origin.margin.motion - largestMotion(region_, pair_.X_FM, origin.X_FM);
     const double turn = origin.margin.turn - largestTurn(pair_.X_FM, origin.X_FM);
     return std::floor(std::min(motion / motion_.motion, turn / motion_.turn));
-  }
-
-  void refreshCrossings(const ListMargin& margin) {
-    if (!isGood(memory_.crossings.origin)) findCrossingCandidates(pair_, margin, &buffers_.search, &memory_.crossings);
   }
 
   /** For so many steps of the present motion. */
@@ -151,7 +146,7 @@ class ContactSearch {
   const CandidatePairs& nearestPairs() {
     if (isGood(memory_.nearest_origin)) return memory_.nearest;
     const ListMargin margin = marginOf(NEAREST_STEPS);
-    CandidateListing& listing = memory_.listing;
+    CandidateListing& listing = memory_.contacts.now;
     if (listing.lists.pairs.contacts() <= FEW_CANDIDATES || 2 * margin.motion >= listing.origin.margin.motion) return listing.lists.pairs;
     findNearest(pair_, buffers_.evaluation.turned, margin, &listing.lists, &memory_.nearest);
     memory_.nearest_origin = {true, pair_.X_FM, pair_.range, margin};

@@ -7,14 +7,18 @@
 
 namespace blem_sim {
 
+/** A listing, and what takes its place, made a part at a time. */
+struct KeptListing {
+  CandidateListing now, next;
+};
+
 /** What is kept of a pair of meshes from search to search; it saves time and changes no result. */
 struct ContactSearchMemory {
   std::uint64_t moving = 0, fixed = 0;  ///< whose
-  CandidateListing listing;             ///< for many steps
-  CandidateListing next;                ///< what takes its place, made a part at a time
-  CandidatePairs nearest;               ///< those of the listing that matter for a few steps
+  KeptListing contacts;                 ///< for many steps
+  CandidatePairs nearest;               ///< those of its candidates that matter for a few
   ListOrigin nearest_origin;
-  CandidateListing crossings;  ///< only where the meshes may have met
+  KeptListing crossings;  ///< only where the meshes may have met
   bool visited = false;
   Pose X_FM = Pose::Identity();  ///< at the last search
   double distance = 0;           ///< [m] of the meshes then, at least; 0 if they crossed
