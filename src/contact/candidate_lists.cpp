@@ -107,20 +107,7 @@ void dropLeading(const MeshPair& pair, double margin, NearFeatures (&near)[2], s
 
 }  // namespace
 
-const FaceBorders& NearFeatures::borders(const MeshSide& side, std::uint32_t face) {
-  if (borders_.size() < faces.names.size()) borders_.resize(faces.names.size());
-  FaceBorders& found = borders_[face];
-  if (found.known) return found;
-  found.known = true;
-  const int name = faces.names[face];
-  for (int k = 0; k < 3; ++k) {
-    found.corners[k] = side.mesh.vertices[side.mesh.elements[name][k]];
-    for (const bool above : {false, true}) found.kinds[above][k] = borderKind(side, name, k, above);
-  }
-  return found;
-}
-
-const VertexRing& NearFeatures::ring(const MeshSide& side, std::uint32_t vertex) {
+VertexRing& NearFeatures::ring(const MeshSide& side, std::uint32_t vertex) {
   if (rings_.size() < vertices.names.size()) rings_.resize(vertices.names.size());
   VertexRing& found = rings_[vertex];
   if (found.end != 0) return found;
@@ -135,9 +122,14 @@ const VertexRing& NearFeatures::ring(const MeshSide& side, std::uint32_t vertex)
   return found;
 }
 
-bool NearFeatures::isRound(const MeshSide& side, std::uint32_t vertex) const {
-  const VertexEdges edges = side.topology.edgesOf(vertices.names[vertex]);
-  return std::all_of(edges.begin(), edges.end(), [&](int edge) { return side.topology.isFlatEdge(edge) || isRoundEdge(side, edge); });
+bool NearFeatures::isRound(const MeshSide& side, std::uint32_t vertex) {
+  VertexRing& found = ring(side, vertex);
+  if (found.shape == VertexRing::UNKNOWN) {
+    const VertexEdges edges = side.topology.edgesOf(vertices.names[vertex]);
+    const auto isSmooth = [&](int edge) { return side.topology.isFlatEdge(edge) || isRoundEdge(side, edge); };
+    found.shape = std::all_of(edges.begin(), edges.end(), isSmooth) ? VertexRing::ROUND : VertexRing::SHARP;
+  }
+  return found.shape == VertexRing::ROUND;
 }
 
 void NearFeatures::clear() {
@@ -146,7 +138,6 @@ void NearFeatures::clear() {
   faces.clear();
   patches.clear();
   open.clear();
-  borders_.clear();
   rings_.clear();
   ring_directions.clear();
 }

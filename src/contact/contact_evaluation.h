@@ -33,6 +33,7 @@ struct FadingVertex {
 /** What evaluations work in: room that only grows. */
 struct EvaluationBuffers {
   TurnedFeatures turned;
+  SurroundingsMemory surroundings;
   std::vector<kernels::VertexFaceHit> vertex_faces;
   std::vector<kernels::EdgeEdgeHit> edge_edges;
   std::vector<std::uint32_t> hits;
@@ -47,7 +48,13 @@ class Evaluation {
  public:
   /** @param pairs of the lists, all or those that matter; the features of the lists must have been turned */
   Evaluation(const MeshPair& pair, CandidateLists* lists, const CandidatePairs& pairs, EvaluationBuffers* buffers, FoundContacts* found)
-      : pair_(pair), lists_(*lists), pairs_(pairs), buffers_(*buffers), found_(*found), exact_(pair, &found->close), fades_(pair, lists) {}
+      : pair_(pair),
+        lists_(*lists),
+        pairs_(pairs),
+        buffers_(*buffers),
+        found_(*found),
+        exact_(pair, &buffers->surroundings, &found->close),
+        fades_(pair, lists, &buffers->surroundings) {}
 
   /** Where meshes cross, which must be known before, all contacts are close ones. */
   void findContacts();

@@ -1,0 +1,92 @@
+// What lies around the vertices, edges and faces that were asked about lately: directions, so that no search works them out anew.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "border_kind.h"
+#include "mesh_pair.h"
+
+namespace blem_sim {
+
+/** An edge from one of its ends; the mesh's frame. */
+struct EdgeFromVertex {
+  Vector3 along;      ///< [m] to its other end
+  double length2;     ///< [m^2]
+  Vector3 direction;  ///< unit
+  int edge, faces;    ///< name; how many faces it has
+  bool is_flat;
+  bool is_round;      ///< isRoundEdge
+  Vector3 inward[2];  ///< unit, into its first two faces
+};
+
+/** The edges at a vertex, ascending. */
+struct EdgesAtVertex {
+  const EdgeFromVertex* first;
+  int count;
+  const EdgeFromVertex* begin() const { return first; }
+  const EdgeFromVertex* end() const { return first + count; }
+};
+
+struct EdgeSurroundings {
+  Vector3 direction;  ///< unit, from its lower vertex to the higher one
+  Vector3 inward[2];  ///< unit, into its first two faces
+  int faces;          ///< how many it has
+};
+
+/** What lies behind the sides of a face, seen from above its plane [1] and from below [0]. */
+struct FaceSurroundings {
+  BorderKind kinds[2][3];
+};
+
+/** Of any meshes, for one thread. What is kept changes no result. */
+class SurroundingsMemory {
+ public:
+  // Good until the next question of the same kind.
+  EdgesAtVertex ofVertex(const MeshSide& side, int vertex);
+  const EdgeSurroundings& ofEdge(const MeshSide& side, int edge);
+  const FaceSurroundings& ofFace(const MeshSide& side, int face);
+
+ private:
+  static constexpr int MAX_EDGES = 10;
+  struct VertexEdgesKept {
+    int count;
+    std::array<EdgeFromVertex, MAX_EDGES> edges;
+  };
+  /** A feature has one place, which the last one that came there holds. */
+  template <typename Item>
+  struct Table {
+    struct Place {
+      std::uint64_t geometry = 0;  // whose; 0: nobody's
+      int name = 0;
+      Item item;
+    };
+    static constexpr std::size_t CAPACITY = 4096;
+    std::vector<Place> places;
+
+    /** @param known whether the item is the feature's: else it shall become so */
+    Item& find(const MeshSide& side, int name, bool* known) {
+      if (places.empty()) places.resize(CAPACITY);
+      Place& place = places[(static_cast<std::uint64_t>(name) + 0x9E3779B9 * side.identity) % CAPACITY];
+      *known = place.geometry == side.identity && place.name == name;
+      place.geometry = side.identity;
+      place.name = name;
+      return place.item;
+    }
+  };
+
+  Table<VertexEdgesKept> vertices_;
+  Table<EdgeSurroundings> edges_;
+  Table<FaceSurroundings> faces_;
+  std::vector<EdgeFromVertex> many_;  // of a vertex that has more than a place holds
+};
+
+/** Does the surface at the vertex lead nowhere along `direction`? No edge there has a larger part of it than `slack` (sine).
+ *  @param direction unit, the mesh's frame, towards the other mesh */
+bool vertexConeAllows(const EdgesAtVertex& edges, const Vector3& direction, double slack);
+
+/** Is the surface around a vertex convex as seen from `direction` (mesh's frame, not unit), with round or flat edges only? */
+bool isRoundVertex(const EdgesAtVertex& edges, const Vector3& direction);
+
+}  // namespace blem_sim
