@@ -33,12 +33,11 @@ bool BorderFades::find(bool vertex_moves, std::uint32_t vertex, std::uint32_t fa
   if (!is_outside) return false;
   const MeshSide& side = pair_.side(!vertex_moves);
   const int name = near.faces.names[face];
-  const FaceSurroundings& around = surroundings_.ofFace(side, name);
   const Vector3 normal = vector3(record.plane), down = height > 0 ? Vector3(-normal) : normal;
   bool fades = false;
   for (int k = 0; k < 3; ++k) {
     if (outside[k] <= 0) continue;
-    const BorderKind kind = around.kinds[height > 0][k];
+    const BorderKind kind = surroundings_.border(side, name, k, height > 0);
     // Beyond a flat side the plane goes on, and is asked there; beyond a round one the edge is.
     if (kind == BorderKind::FLAT || kind == BorderKind::ROUND) return false;
     fades = fades || kind == BorderKind::RISING ||

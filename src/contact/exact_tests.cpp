@@ -123,7 +123,7 @@ bool ExactTests::addAtRoundEdge(bool vertex_moves, int vertex, int edge, const V
   if (part != clamped) {
     const MeshSide& side = pair_.side(!vertex_moves);
     const EdgesAtVertex edges = surroundings_.ofVertex(side, side.topology.ends(side.mesh, edge)[part > 1]);
-    if (isRoundVertex(edges, vertex_moves ? d : Vector3(R_FM_.transpose() * d))) return true;
+    if (isRoundVertex(side, edges, vertex_moves ? d : Vector3(R_FM_.transpose() * d), &surroundings_)) return true;
   }
   contacts_.push_back(featureContact(vertex_moves, {FeatureKind::VERTEX, vertex}, {FeatureKind::EDGE, edge}, p, foot,
                                      (vertex_moves ? 1 : -1) / distance * d, gap));
@@ -140,9 +140,10 @@ void ExactTests::vertexVertex(int moving, int fixed) {
   const Vector3 normal = d / gap, inverse = -(R_FM_.transpose() * normal);
   // Allowed, and round besides.
   const auto cone = [&](bool moves, int vertex, const Vector3& direction) {
-    const EdgesAtVertex edges = surroundings_.ofVertex(pair_.side(moves), vertex);
+    const MeshSide& side = pair_.side(moves);
+    const EdgesAtVertex edges = surroundings_.ofVertex(side, vertex);
     const bool allows = vertexConeAllows(edges, direction, CONE_SLACK);
-    return std::make_pair(allows, allows && isRoundVertex(edges, direction));
+    return std::make_pair(allows, allows && isRoundVertex(side, edges, direction, &surroundings_));
   };
   const auto [f_allows, f_round] = cone(false, fixed, normal);
   const auto [m_allows, m_round] = cone(true, moving, inverse);

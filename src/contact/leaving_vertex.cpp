@@ -8,8 +8,9 @@ namespace blem_sim {
 namespace {
 
 /** edgeSlope. */
-double slopeOf(const MeshSide& side, const EdgeFromVertex& edge, const Vector3& direction) {
-  if (edge.faces > 2) return edgeSlope(side, edge.edge, direction);
+double slopeOf(const MeshSide& side, int name, const Vector3& direction, SurroundingsMemory* surroundings) {
+  const EdgeSurroundings& edge = surroundings->ofEdge(side, name);
+  if (edge.faces > 2) return edgeSlope(side, name, direction);
   double slope = -1;
   for (int k = 0; k < edge.faces; ++k) slope = std::max(slope, edge.inward[k].dot(direction));
   return slope;
@@ -34,7 +35,7 @@ bool isTakenOver(const LeavingVertex& leaving, SurroundingsMemory* surroundings)
     const double span2 = down * down + aside * aside, jump = down * std::sqrt(length2) / span2;
     if (edge.is_flat || jump > NEAR_SUCCESSOR) continue;
     const Vector3 normal = (leaving.normal * std::abs(aside) - across * (aside > 0 ? down : -down)) / std::sqrt(span2);
-    if (slopeOf(side, edge, normal) <= EDGE_CONE_SLACK && partnerAllows(normal, EDGE_CONE_SLACK)) return true;
+    if (slopeOf(side, edge.edge, normal, surroundings) <= EDGE_CONE_SLACK && partnerAllows(normal, EDGE_CONE_SLACK)) return true;
   }
   return goes_on;
 }

@@ -7,12 +7,6 @@
 namespace blem_sim {
 namespace {
 
-void findInward(const MeshSide& side, int edge, int* count, Vector3 (&inward)[2]) {
-  const EdgeFaces faces = side.topology.facesOf(edge);
-  *count = faces.size();
-  for (int k = 0; k < std::min(*count, 2); ++k) inward[k] = side.topology.inward(side.mesh, edge, faces[k]);
-}
-
 EdgeFromVertex edgeFrom(const MeshSide& side, int vertex, int edge) {
   EdgeFromVertex out;
   out.along = side.mesh.vertices[side.topology.otherEnd(side.mesh, edge, vertex)] - side.mesh.vertices[vertex];
@@ -20,8 +14,6 @@ EdgeFromVertex edgeFrom(const MeshSide& side, int vertex, int edge) {
   out.direction = out.along.normalized();
   out.edge = edge;
   out.is_flat = side.topology.isFlatEdge(edge);
-  findInward(side, edge, &out.faces, out.inward);
-  out.is_round = !out.is_flat && out.faces == 2 && isRound(out.inward[0], out.inward[1]);
   return out;
 }
 
@@ -45,17 +37,22 @@ const EdgeSurroundings& SurroundingsMemory::ofEdge(const MeshSide& side, int edg
   if (known) return out;
   const std::array<int, 2> ends = side.topology.ends(side.mesh, edge);
   out.direction = (side.mesh.vertices[ends[1]] - side.mesh.vertices[ends[0]]).normalized();
-  findInward(side, edge, &out.faces, out.inward);
+  const EdgeFaces faces = side.topology.facesOf(edge);
+  out.faces = faces.size();
+  for (int k = 0; k < std::min(out.faces, 2); ++k) out.inward[k] = side.topology.inward(side.mesh, edge, faces[k]);
+  out.is_round = !side.topology.isFlatEdge(edge) && out.faces == 2 && isRound(out.inward[0], out.inward[1]);
   return out;
 }
 
-const FaceSurroundings& SurroundingsMemory::ofFace(const MeshSide& side, int face) {
+BorderKind SurroundingsMemory::border(const MeshSide& side, int face, int k, bool above) {
   bool known;
-  FaceSurroundings& out = faces_.find(side, face, &known);
-  if (known) return out;
-  for (int k = 0; k < 3; ++k)
-    for (const bool above : {false, true}) out.kinds[above][k] = borderKind(side, face, k, above);
-  return out;
+  FaceBorders& out = faces_.find(side, face, &known);
+  if (!known) out.known[0] = out.known[1] = 0;
+  if ((out.known[above] >> k & 1) == 0) {
+    out.known[above] |= 1 << k;
+    out.kinds[above][k] = borderKind(side, face, k, above);
+  }
+  return out.kinds[above][k];
 }
 
 bool vertexConeAllows(const EdgesAtVertex& edges, const Vector3& direction, double slack) {
@@ -65,11 +62,11 @@ bool vertexConeAllows(const EdgesAtVertex& edges, const Vector3& direction, doub
   });
 }
 
-bool isRoundVertex(const EdgesAtVertex& edges, const Vector3& direction) {
-  return std::all_of(edges.begin(), edges.end(), [&](const EdgeFromVertex& edge) {
-    if (edge.is_flat) return true;
-    const Vector3 lean = edge.inward[0] + edge.inward[1];
-    return edge.is_round && lean.dot(direction) <= 0;
+bool isRoundVertex(const MeshSide& side, const EdgesAtVertex& edges, const Vector3& direction, SurroundingsMemory* surroundings) {
+  return std::all_of(edges.begin(), edges.end(), [&](const EdgeFromVertex& each) {
+    if (each.is_flat) return true;
+    const EdgeSurroundings& edge = surroundings->ofEdge(side, each.edge);
+    return edge.is_round && Vector3(edge.inward[0] + edge.inward[1]).dot(direction) <= 0;
   });
 }
 

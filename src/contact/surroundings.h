@@ -15,10 +15,8 @@ struct EdgeFromVertex {
   Vector3 along;      ///< [m] to its other end
   double length2;     ///< [m^2]
   Vector3 direction;  ///< unit
-  int edge, faces;    ///< name; how many faces it has
+  int edge;           ///< name
   bool is_flat;
-  bool is_round;      ///< isRoundEdge
-  Vector3 inward[2];  ///< unit, into its first two faces
 };
 
 /** The edges at a vertex, ascending. */
@@ -33,11 +31,7 @@ struct EdgeSurroundings {
   Vector3 direction;  ///< unit, from its lower vertex to the higher one
   Vector3 inward[2];  ///< unit, into its first two faces
   int faces;          ///< how many it has
-};
-
-/** What lies behind the sides of a face, seen from above its plane [1] and from below [0]. */
-struct FaceSurroundings {
-  BorderKind kinds[2][3];
+  bool is_round;      ///< isRoundEdge
 };
 
 /** Of any meshes, for one thread. What is kept changes no result. */
@@ -46,7 +40,7 @@ class SurroundingsMemory {
   // Good until the next question of the same kind.
   EdgesAtVertex ofVertex(const MeshSide& side, int vertex);
   const EdgeSurroundings& ofEdge(const MeshSide& side, int edge);
-  const FaceSurroundings& ofFace(const MeshSide& side, int face);
+  BorderKind border(const MeshSide& side, int face, int k, bool above);  ///< borderKind
 
  private:
   static constexpr int MAX_EDGES = 10;
@@ -54,15 +48,19 @@ class SurroundingsMemory {
     int count;
     std::array<EdgeFromVertex, MAX_EDGES> edges;
   };
+  /** Seen from above a face [1] and from below [0]. */
+  struct FaceBorders {
+    std::uint8_t known[2];  // bits k
+    BorderKind kinds[2][3];
+  };
   /** A feature has one place, which the last one that came there holds. */
-  template <typename Item>
+  template <typename Item, std::size_t CAPACITY>
   struct Table {
     struct Place {
       std::uint64_t geometry = 0;  // whose; 0: nobody's
       int name = 0;
       Item item;
     };
-    static constexpr std::size_t CAPACITY = 4096;
     std::vector<Place> places;
 
     /** @param known whether the item is the feature's: else it shall become so */
@@ -76,9 +74,9 @@ class SurroundingsMemory {
     }
   };
 
-  Table<VertexEdgesKept> vertices_;
-  Table<EdgeSurroundings> edges_;
-  Table<FaceSurroundings> faces_;
+  Table<VertexEdgesKept, 4096> vertices_;
+  Table<EdgeSurroundings, 8192> edges_;
+  Table<FaceBorders, 16384> faces_;
   std::vector<EdgeFromVertex> many_;  // of a vertex that has more than a place holds
 };
 
@@ -87,6 +85,6 @@ class SurroundingsMemory {
 bool vertexConeAllows(const EdgesAtVertex& edges, const Vector3& direction, double slack);
 
 /** Is the surface around a vertex convex as seen from `direction` (mesh's frame, not unit), with round or flat edges only? */
-bool isRoundVertex(const EdgesAtVertex& edges, const Vector3& direction);
+bool isRoundVertex(const MeshSide& side, const EdgesAtVertex& edges, const Vector3& direction, SurroundingsMemory* surroundings);
 
 }  // namespace blem_sim
