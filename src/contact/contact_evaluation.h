@@ -15,6 +15,7 @@ namespace blem_sim {
 struct FoundContacts {
   std::vector<kernels::ContactRow> plain;  ///< each in a place of its own; none where meshes cross
   std::uint32_t plain_count = 0;           ///< of them
+  double deepest_plain = 0;                ///< [m] their largest depth
   std::vector<FeatureContact> close;       ///< some may be in one place, or have one name
   std::vector<Crossing> crossings;
 
