@@ -3,14 +3,16 @@
 #include <algorithm>
 
 #include "feature_cones.h"
+#include "leaving_vertex.h"
 #include "vectors.h"
 
 namespace blem_sim {
 namespace {
 
-/** The point of side k that is closest to q; mesh's frame. */
-Vector3 closestOnSide(const FaceBorders& borders, int k, const Vector3& q) {
-  const Vector3 &start = borders.corners[k], along = borders.corners[(k + 1) % 3] - start;
+/** The point of a face's side k that is closest to q; mesh's frame. */
+Vector3 closestOnSide(const MeshSide& side, int face, int k, const Vector3& q) {
+  const Vector3i& corners = side.mesh.elements[face];
+  const Vector3 &start = side.mesh.vertices[corners[k]], along = side.mesh.vertices[corners[(k + 1) % 3]] - start;
   return start + std::clamp((q - start).dot(along) / along.squaredNorm(), 0.0, 1.0) * along;
 }
 
@@ -18,7 +20,7 @@ Vector3 closestOnSide(const FaceBorders& borders, int k, const Vector3& q) {
 
 bool BorderFades::find(bool vertex_moves, std::uint32_t vertex, std::uint32_t face, const Vector3& p, double height, double most,
                        BorderFade* out) {
-  NearFeatures& near = lists_.near[!vertex_moves];
+  const NearFeatures& near = lists_.near[!vertex_moves];
   const kernels::FaceRecord& record = near.faces.records[face];
   double outside[3];
   bool is_outside = false;
@@ -29,23 +31,24 @@ bool BorderFades::find(bool vertex_moves, std::uint32_t vertex, std::uint32_t fa
     is_outside = true;
   }
   if (!is_outside) return false;
-  const FaceBorders& borders = near.bordersOf(pair_.side(!vertex_moves), face);
+  const MeshSide& side = pair_.side(!vertex_moves);
+  const int name = near.faces.names[face];
   const Vector3 normal = vector3(record.plane), down = height > 0 ? Vector3(-normal) : normal;
   bool fades = false;
   for (int k = 0; k < 3; ++k) {
     if (outside[k] <= 0) continue;
-    const BorderKind kind = borders.kinds.of[height > 0][k];
+    const BorderKind kind = near.borders[face].of[height > 0][k];
     // Beyond a flat side the plane goes on, and is asked there; beyond a round one the edge is.
     if (kind == BorderKind::FLAT || kind == BorderKind::ROUND) return false;
     fades = fades || kind == BorderKind::RISING ||
-            (kind == BorderKind::FALLING && leaves(vertex_moves, vertex, near.faces.names[face], k, down, vector3(record.sides[k])));
+            (kind == BorderKind::FALLING && leaves(vertex_moves, vertex, name, k, down, vector3(record.sides[k])));
   }
   if (!fades) return false;
   const Vector3 projection = p - height * normal;
   double nearest2 = std::numeric_limits<double>::infinity();
   for (int k = 0; k < 3; ++k) {
     if (outside[k] <= 0) continue;
-    const Vector3 foot = closestOnSide(borders, k, projection);
+    const Vector3 foot = closestOnSide(side, name, k, projection);
     const double distance2 = (projection - foot).squaredNorm();
     if (distance2 >= nearest2) continue;
     nearest2 = distance2;
@@ -60,20 +63,17 @@ bool BorderFades::find(bool vertex_moves, std::uint32_t vertex, std::uint32_t fa
  * border the partner allows the vertex's own contact. @param down, inward face's mesh's frame */
 bool BorderFades::leaves(bool vertex_moves, std::uint32_t vertex, int face, int k, const Vector3& down, const Vector3& inward) {
   const MeshSide &side = pair_.side(vertex_moves), &partner = pair_.side(!vertex_moves);
-  NearFeatures& near = lists_.near[vertex_moves];
+  const int vertex_name = lists_.near[vertex_moves].vertices.names[vertex];
   const Matrix3 R_PS = vertex_moves ? Matrix3(pair_.X_FM.linear()) : Matrix3(pair_.X_FM.linear().transpose());
   const Vector3 own_down = R_PS.transpose() * down, own_aside = R_PS.transpose() * inward;
   bool leads_down = false;
-  const VertexRing ring = near.ring(side, vertex);
-  for (std::uint32_t i = ring.begin; i < ring.end; ++i) {
-    const Vector3 w = vector3(near.ring_directions[i]);
-    const double sine = w.dot(own_down), aside = w.dot(own_aside);
+  for (const EdgeFromVertex& around : surroundings_.ofVertex(side, vertex_name)) {
+    const double sine = around.direction.dot(own_down), aside = around.direction.dot(own_aside);
     if (sine <= CONE_SLACK) continue;
     leads_down = true;
-    const bool flat = near.ring_directions[i].w != 0;
-    if (!flat && sine <= NEAR_SUCCESSOR * (sine * sine + aside * aside)) {
+    if (!around.is_flat && sine <= NEAR_SUCCESSOR * (sine * sine + aside * aside)) {
       const int border = partner.topology.edgeOf(face, k);
-      return !isTakenOver({side, partner, near.vertices.names[vertex], border, R_PS, own_down});
+      return !isTakenOver({side, partner, vertex_name, border, R_PS, own_down}, &surroundings_);
     }
   }
   return leads_down;

@@ -5,6 +5,7 @@
 
 #include "candidate_lists.h"
 #include "mesh_pair.h"
+#include "surroundings.h"
 
 namespace blem_sim {
 
@@ -20,7 +21,8 @@ struct BorderFade {
  */
 class BorderFades {
  public:
-  BorderFades(const MeshPair& pair, CandidateLists* lists) : pair_(pair), lists_(*lists) {}
+  BorderFades(const MeshPair& pair, const CandidateLists* lists, SurroundingsMemory* surroundings)
+      : pair_(pair), lists_(*lists), surroundings_(*surroundings) {}
 
   /**
    * @param vertex, face of the lists @param p the vertex in the face's mesh's frame @param height [m] of p over the face's plane
@@ -32,7 +34,8 @@ class BorderFades {
   bool leaves(bool vertex_moves, std::uint32_t vertex, int face, int k, const Vector3& down, const Vector3& inward);
 
   const MeshPair& pair_;
-  CandidateLists& lists_;
+  const CandidateLists& lists_;
+  SurroundingsMemory& surroundings_;
 };
 
 }  // namespace blem_sim

@@ -33,17 +33,7 @@ void dropLeading(const MeshPair& pair, double margin, NearFeatures (&near)[2], s
 
 }  // namespace
 
-const FaceBorders& NearFeatures::bordersOf(const MeshSide& side, std::uint32_t face) {
-  if (known_borders_.size() < faces.names.size()) known_borders_.resize(faces.names.size());
-  FaceBorders& found = known_borders_[face];
-  if (found.known) return found;
-  found.known = true;
-  found.kinds = borders[face];
-  for (int k = 0; k < 3; ++k) found.corners[k] = side.mesh.vertices[side.mesh.elements[faces.names[face]][k]];
-  return found;
-}
-
-const VertexRing& NearFeatures::ring(const MeshSide& side, std::uint32_t vertex) {
+VertexRing& NearFeatures::ring(const MeshSide& side, std::uint32_t vertex) {
   if (rings_.size() < vertices.names.size()) rings_.resize(vertices.names.size());
   VertexRing& found = rings_[vertex];
   if (found.end != 0) return found;
@@ -58,7 +48,12 @@ const VertexRing& NearFeatures::ring(const MeshSide& side, std::uint32_t vertex)
   return found;
 }
 
-bool NearFeatures::isRound(const MeshSide& side, std::uint32_t vertex) const { return hasRoundEdgesOnly(side, vertices.names[vertex]); }
+bool NearFeatures::isRound(const MeshSide& side, std::uint32_t vertex) {
+  VertexRing& found = ring(side, vertex);
+  if (found.shape == VertexRing::UNKNOWN)
+    found.shape = hasRoundEdgesOnly(side, vertices.names[vertex]) ? VertexRing::ROUND : VertexRing::SHARP;
+  return found.shape == VertexRing::ROUND;
+}
 
 void NearFeatures::addFaceOf(const LeafFeatures& leaf, std::uint32_t i) {
   patches.push_back(leaf.patches[i]);
@@ -73,7 +68,6 @@ void NearFeatures::clear() {
   patches.clear();
   open.clear();
   borders.clear();
-  known_borders_.clear();
   rings_.clear();
   ring_directions.clear();
 }

@@ -3,7 +3,6 @@
 
 #include <vector>
 
-#include "border_kind.h"
 #include "kernels/kernels.h"
 #include "leaf_features.h"
 #include "mesh_pair.h"
@@ -27,16 +26,10 @@ struct FeatureRecords {
   }
 };
 
-/** The sides of a face and what lies behind them. */
-struct FaceBorders {
-  bool known = false;
-  BorderKinds kinds;
-  Vector3 corners[3];  ///< side k goes from corner k to the next; mesh's frame
-};
-
 /** Directions of the edges at a vertex: a run of NearFeatures::ring_directions. */
 struct VertexRing {
   std::uint32_t begin = 0, end = 0;
+  enum : std::uint8_t { UNKNOWN, ROUND, SHARP } shape = UNKNOWN;  ///< round: flat and round edges only
 };
 
 /** The features of one mesh that appear in candidates. */
@@ -49,16 +42,14 @@ struct NearFeatures {
   std::vector<BorderKinds> borders;      ///< of the faces
 
   /** What few candidates ask for, worked out when the first one does. @param side the mesh */
-  const FaceBorders& bordersOf(const MeshSide& side, std::uint32_t face);
-  const VertexRing& ring(const MeshSide& side, std::uint32_t vertex);
-  bool isRound(const MeshSide& side, std::uint32_t vertex) const;  ///< flat and round edges only
-  std::vector<kernels::Vec4> ring_directions;                      ///< unit, mesh's frame; w: 1 if the edge is flat
+  VertexRing& ring(const MeshSide& side, std::uint32_t vertex);
+  bool isRound(const MeshSide& side, std::uint32_t vertex);  ///< flat and round edges only
+  std::vector<kernels::Vec4> ring_directions;                ///< unit, mesh's frame; w: 1 if the edge is flat
 
   void addFaceOf(const LeafFeatures& leaf, std::uint32_t i);  ///< what goes with faces
   void clear();
 
  private:
-  std::vector<FaceBorders> known_borders_;
   std::vector<VertexRing> rings_;
 };
 

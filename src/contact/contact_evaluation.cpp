@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "vectors.h"
@@ -29,13 +30,13 @@ kernels::ContactRow rowOf(const Contact& contact) {
 
 void FoundContacts::clear() {
   plain_count = 0;
+  deepest_plain = -std::numeric_limits<double>::infinity();
   close.clear();
   crossings.clear();
 }
 
 double FoundContacts::leastGap(const MeshPair& pair) const {
-  double least = pair.range;
-  for (std::uint32_t i = 0; i < plain_count; ++i) least = std::min(least, pair.layer - plain[i].depth);
+  double least = std::min(pair.range, pair.layer - deepest_plain);
   for (const FeatureContact& c : close) least = std::min(least, c.gap);
   return least;
 }
@@ -98,12 +99,13 @@ std::uint32_t Evaluation::findVertexFaces(bool moves) {
   makeRoom(candidates.size(), &buffers_.vertex_faces);
   makeRoom(candidates.size(), &buffers_.over);
   makeRoom(found_.plain_count + candidates.size(), &found_.plain);
-  kernels::PlainContacts plain{place(moves), found_.plain.data() + found_.plain_count, buffers_.over.data(), 0};
+  kernels::PlainContacts plain{place(moves), found_.plain.data() + found_.plain_count, buffers_.over.data(), 0, found_.deepest_plain};
   const std::uint32_t count =
       kernels::kernels().vertexFaces(buffers_.turned.vertices[moves].data(), lists_.near[!moves].faces.records.data(),
                                      lists_.near[!moves].open.data(), candidates.data(), static_cast<std::uint32_t>(candidates.size()),
                                      pair_.range, found_.crossings.empty() ? &plain : nullptr, buffers_.vertex_faces.data());
   found_.plain_count += plain.count;
+  found_.deepest_plain = plain.deepest;
   buffers_.over_count = plain.count;
   return count;
 }
@@ -200,7 +202,8 @@ void Evaluation::edgeEdges(const kernels::EdgeRecord* moving, const kernels::Edg
     if (hit.near_border || !found_.crossings.empty()) {
       found_.close.push_back(contact);
     } else {
-      found_.plain[found_.plain_count++] = rowOf(worldContact(pair_, contact));
+      found_.plain[found_.plain_count] = rowOf(worldContact(pair_, contact));
+      found_.deepest_plain = std::max(found_.deepest_plain, found_.plain[found_.plain_count++].depth);
     }
   }
 }

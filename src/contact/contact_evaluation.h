@@ -15,6 +15,7 @@ namespace blem_sim {
 struct FoundContacts {
   std::vector<kernels::ContactRow> plain;  ///< each in a place of its own; none where meshes cross
   std::uint32_t plain_count = 0;           ///< of them
+  double deepest_plain = 0;                ///< [m] their largest depth
   std::vector<FeatureContact> close;       ///< some may be in one place, or have one name
   std::vector<Crossing> crossings;
 
@@ -33,6 +34,7 @@ struct FadingVertex {
 /** What evaluations work in: room that only grows. */
 struct EvaluationBuffers {
   TurnedFeatures turned;
+  SurroundingsMemory surroundings;
   std::vector<kernels::VertexFaceHit> vertex_faces;
   std::vector<kernels::EdgeEdgeHit> edge_edges;
   std::vector<std::uint32_t> hits;
@@ -47,7 +49,13 @@ class Evaluation {
  public:
   /** @param pairs of the lists, all or those that matter; the features of the lists must have been turned */
   Evaluation(const MeshPair& pair, CandidateLists* lists, const CandidatePairs& pairs, EvaluationBuffers* buffers, FoundContacts* found)
-      : pair_(pair), lists_(*lists), pairs_(pairs), buffers_(*buffers), found_(*found), exact_(pair, &found->close), fades_(pair, lists) {}
+      : pair_(pair),
+        lists_(*lists),
+        pairs_(pairs),
+        buffers_(*buffers),
+        found_(*found),
+        exact_(pair, &buffers->surroundings, &found->close),
+        fades_(pair, lists, &buffers->surroundings) {}
 
   /** Where meshes cross, which must be known before, all contacts are close ones. */
   void findContacts();

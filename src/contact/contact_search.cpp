@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace blem_sim {
 namespace {
@@ -107,7 +108,10 @@ class ContactSearch {
   }
 
   void refresh(CandidateKind kind, const ListMargin& margin, KeptListing* kept) {
-    if (isGood(kept->now.origin)) return makeNext(kind, margin, stepsLeft(kept->now.origin), kept);
+    if (isGood(kept->now.origin)) {
+      if (!isFast()) makeNext(kind, margin, kept);
+      return;
+    }
     if (isGood(kept->next.origin)) {
       findMoreCandidates(pair_, kept->next.left(), &buffers_.search, &kept->next);
       std::swap(kept->now, kept->next);
@@ -118,8 +122,9 @@ class ContactSearch {
     if (kind == CandidateKind::CONTACTS) memory_.nearest_origin.known = false;
   }
 
-  /** What takes a list's place is made a part at a time while it is good. @param steps until then */
-  void makeNext(CandidateKind kind, const ListMargin& margin, double steps, KeptListing* kept) {
+  /** What takes a list's place is made a part at a time, in the last steps that it is good for. */
+  void makeNext(CandidateKind kind, const ListMargin& margin, KeptListing* kept) {
+    const double steps = stepsLeft(kept->now.origin);
     CandidateListing& next = kept->next;
     if (isGood(next.origin)) {
       const double part = std::ceil(static_cast<double>(next.left()) / std::clamp(1 + steps, 1.0, PARTS));
@@ -131,9 +136,11 @@ class ContactSearch {
 
   /** For how many steps of the present motion lists of that origin are good. */
   double stepsLeft(const ListOrigin& origin) const {
-    const double motion = origin.margin.motion - largestMotion(region_, pair_.X_FM, origin.X_FM);
-    const double turn = origin.margin.turn - largestTurn(pair_.X_FM, origin.X_FM);
-    return std::floor(std::min(motion / motion_.motion, turn / motion_.turn));
+    const auto steps = [](double left, double step) {
+      return step > 0 ? std::floor(left / step) : std::numeric_limits<double>::infinity();
+    };
+    return std::min(steps(origin.margin.motion - largestMotion(region_, pair_.X_FM, origin.X_FM), motion_.motion),
+                    steps(origin.margin.turn - largestTurn(pair_.X_FM, origin.X_FM), motion_.turn));
   }
 
   /** For so many steps of the present motion. */

@@ -5,6 +5,7 @@
 #include "edge_pair.h"
 #include "face_borders.h"
 #include "feature_cones.h"
+#include "leaving_vertex.h"
 #include "vectors.h"
 
 namespace blem_sim {
@@ -32,11 +33,12 @@ bool ExactTests::vertexFace(bool vertex_moves, int name, int element) {
 bool ExactTests::reachesOver(bool vertex_moves, int vertex, const Vector3& p, const FaceShape& face) const {
   const MeshSide &vertex_side = pair_.side(vertex_moves), &face_side = pair_.side(!vertex_moves);
   if (vertex_side.topology.edgesOf(vertex).empty()) return true;
+  const EdgesAtVertex edges = surroundings_.ofVertex(vertex_side, vertex);
   bool reaches = true;
   forEachBorderAt(pair_, face, !vertex_moves, p, [&](int border, int border_face) {
     Vector3 inward = pair_.turned(face_side.topology.inward(face_side.mesh, border, border_face), !vertex_moves);
     if (vertex_moves) inward = R_FM_.transpose() * inward;
-    reaches = reaches && !vertexConeAllows(vertex_side, vertex, inward, CONE_SLACK);
+    reaches = reaches && !vertexConeAllows(edges, inward, CONE_SLACK);
   });
   return reaches;
 }
@@ -84,7 +86,8 @@ void ExactTests::addFadingEdges(const Feature& m, const Feature& f, const EdgesB
   if (!cones_known && !conesAllow(m, f, edges.normal, EDGE_CONE_SLACK)) return;
   const auto leaves = [&](int end, bool moves, int edge, int partner, const Matrix3& R_PS, const Vector3& normal) {
     const MeshSide& side = pair_.side(moves);
-    return end >= 0 && !isTakenOver({side, pair_.side(!moves), side.topology.ends(side.mesh, edge)[end], partner, R_PS, normal});
+    return end >= 0 &&
+           !isTakenOver({side, pair_.side(!moves), side.topology.ends(side.mesh, edge)[end], partner, R_PS, normal}, &surroundings_);
   };
   const bool fades = leaves(edges.end_p, true, m.index, f.index, R_FM_, -(R_FM_.transpose() * edges.normal)) ||
                      leaves(edges.end_q, false, f.index, m.index, R_FM_.transpose(), edges.normal);
@@ -119,7 +122,8 @@ bool ExactTests::addAtRoundEdge(bool vertex_moves, int vertex, int edge, const V
     if (vector3(inward).dot(d) > CONE_SLACK * distance) return true;
   if (part != clamped) {
     const MeshSide& side = pair_.side(!vertex_moves);
-    if (isRoundVertex(side, side.topology.ends(side.mesh, edge)[part > 1], vertex_moves ? d : Vector3(R_FM_.transpose() * d))) return true;
+    const EdgesAtVertex edges = surroundings_.ofVertex(side, side.topology.ends(side.mesh, edge)[part > 1]);
+    if (isRoundVertex(side, edges, vertex_moves ? d : Vector3(R_FM_.transpose() * d), &surroundings_)) return true;
   }
   contacts_.push_back(featureContact(vertex_moves, {FeatureKind::VERTEX, vertex}, {FeatureKind::EDGE, edge}, p, foot,
                                      (vertex_moves ? 1 : -1) / distance * d, gap));
@@ -134,10 +138,16 @@ void ExactTests::vertexVertex(int moving, int fixed) {
   const Feature m{FeatureKind::VERTEX, moving}, f{FeatureKind::VERTEX, fixed};
   if (gap <= TOUCH) return addLocalMinimum(m, f, p, q, Vector3::Zero());
   const Vector3 normal = d / gap, inverse = -(R_FM_.transpose() * normal);
-  const bool f_allows = vertexConeAllows(pair_.fixed, fixed, normal, CONE_SLACK),
-             m_allows = vertexConeAllows(pair_.moving, moving, inverse, CONE_SLACK);
-  const bool nearest = (f_allows && m_allows) || (f_allows && isRoundVertex(pair_.fixed, fixed, normal)) ||
-                       (m_allows && isRoundVertex(pair_.moving, moving, inverse));
+  // Allowed, and round besides.
+  const auto cone = [&](bool moves, int vertex, const Vector3& direction) {
+    const MeshSide& side = pair_.side(moves);
+    const EdgesAtVertex edges = surroundings_.ofVertex(side, vertex);
+    const bool allows = vertexConeAllows(edges, direction, CONE_SLACK);
+    return std::make_pair(allows, allows && isRoundVertex(side, edges, direction, &surroundings_));
+  };
+  const auto [f_allows, f_round] = cone(false, fixed, normal);
+  const auto [m_allows, m_round] = cone(true, moving, inverse);
+  const bool nearest = (f_allows && m_allows) || f_round || m_round;
   if (nearest) contacts_.push_back({m, f, p, q, normal, gap});
 }
 
@@ -150,11 +160,13 @@ void ExactTests::addLocalMinimum(const Feature& m, const Feature& f, const Vecto
 }
 
 bool ExactTests::conesAllow(const Feature& m, const Feature& f, const Vector3& normal, double slack) const {
-  const auto allows = [slack](const MeshSide& side, const Feature& feature, const Vector3& direction) {
-    return feature.kind == FeatureKind::VERTEX ? vertexConeAllows(side, feature.index, direction, slack)
-                                               : edgeConeAllows(side, feature.index, direction, slack);
-  };
-  return allows(pair_.fixed, f, normal) && allows(pair_.moving, m, -(R_FM_.transpose() * normal));
+  return coneAllows(false, f, normal, slack) && coneAllows(true, m, -(R_FM_.transpose() * normal), slack);
+}
+
+bool ExactTests::coneAllows(bool moves, const Feature& feature, const Vector3& direction, double slack) const {
+  const MeshSide& side = pair_.side(moves);
+  return feature.kind == FeatureKind::VERTEX ? vertexConeAllows(surroundings_.ofVertex(side, feature.index), direction, slack)
+                                             : edgeConeAllows(side, feature.index, direction, slack, &surroundings_);
 }
 
 }  // namespace blem_sim

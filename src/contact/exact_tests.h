@@ -6,6 +6,7 @@
 #include "face_shape.h"
 #include "kernels/records.h"
 #include "mesh_pair.h"
+#include "surroundings.h"
 
 namespace blem_sim {
 
@@ -14,7 +15,8 @@ struct EdgesBeyond;
 /** Appends the contact of a pair of features, if they have one, to a list. */
 class ExactTests {
  public:
-  ExactTests(const MeshPair& pair, std::vector<FeatureContact>* contacts) : pair_(pair), R_FM_(pair.X_FM.linear()), contacts_(*contacts) {}
+  ExactTests(const MeshPair& pair, SurroundingsMemory* surroundings, std::vector<FeatureContact>* contacts)
+      : pair_(pair), R_FM_(pair.X_FM.linear()), surroundings_(*surroundings), contacts_(*contacts) {}
 
   /** @param face element of the other mesh @return false if the vertex projects beside the face by more than CLOSED */
   bool vertexFace(bool vertex_moves, int vertex, int face);
@@ -33,10 +35,12 @@ class ExactTests {
   void addLocalMinimum(const Feature& m, const Feature& f, const Vector3& point_M, const Vector3& point_F, const Vector3& along);
   /** Does neither surface come closer to the other beside its feature? */
   bool conesAllow(const Feature& m, const Feature& f, const Vector3& normal, double slack) const;
+  bool coneAllows(bool moves, const Feature& feature, const Vector3& direction, double slack) const;
   Vector3 position(bool moves, int vertex) const { return pair_.placed(pair_.side(moves).mesh.vertices[vertex], moves); }
 
   const MeshPair& pair_;
   const Matrix3 R_FM_;
+  SurroundingsMemory& surroundings_;
   std::vector<FeatureContact>& contacts_;
 };
 

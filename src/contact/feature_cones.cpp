@@ -34,15 +34,6 @@ Vector3 leanBetween(const MeshPair& pair, const Feature& m, const Feature& f) {
 
 }  // namespace
 
-bool vertexConeAllows(const MeshSide& side, int vertex, const Vector3& direction, double slack) {
-  const VertexEdges edges = side.topology.edgesOf(vertex);
-  return std::none_of(edges.begin(), edges.end(), [&](int edge) {
-    const Vector3 w = edgeDirection(side, vertex, edge);
-    const double along = w.dot(direction);
-    return along > 0 && along * along > slack * slack * w.squaredNorm();
-  });
-}
-
 bool edgeConeAllows(const MeshSide& side, int edge, const Vector3& direction, double slack) {
   bool allows = true;
   forEachFaceDirection(side, edge, [&](const Vector3& u) { allows = allows && u.dot(direction) <= slack; });
@@ -52,46 +43,13 @@ bool edgeConeAllows(const MeshSide& side, int edge, const Vector3& direction, do
 bool isRoundEdge(const MeshSide& side, int edge) {
   const EdgeFaces faces = side.topology.facesOf(edge);
   if (side.topology.isFlatEdge(edge) || faces.size() != 2) return false;
-  return side.topology.inward(side.mesh, edge, faces[0]).dot(side.topology.inward(side.mesh, edge, faces[1])) <= -ROUND_COSINE;
-}
-
-bool isRoundVertex(const MeshSide& side, int vertex, const Vector3& direction) {
-  const VertexEdges edges = side.topology.edgesOf(vertex);
-  return std::all_of(edges.begin(), edges.end(), [&](int edge) {
-    return side.topology.isFlatEdge(edge) || (isRoundEdge(side, edge) && edgeLean(side, edge).dot(direction) <= 0);
-  });
+  return isRound(side.topology.inward(side.mesh, edge, faces[0]), side.topology.inward(side.mesh, edge, faces[1]));
 }
 
 double edgeSlope(const MeshSide& side, int edge, const Vector3& direction) {
   double slope = -1;
   forEachFaceDirection(side, edge, [&](const Vector3& u) { slope = std::max(slope, u.dot(direction)); });
   return slope;
-}
-
-bool isTakenOver(const LeavingVertex& leaving) {
-  const MeshSide& side = leaving.side;
-  const MeshTopology& topology = side.topology;
-  if (topology.isStraightVertex(leaving.vertex)) return true;
-  const std::array<int, 2> ends = leaving.partner.topology.ends(leaving.partner.mesh, leaving.edge);
-  const Vector3 along =
-      leaving.R_PS.transpose() * (leaving.partner.mesh.vertices[ends[1]] - leaving.partner.mesh.vertices[ends[0]]).normalized();
-  const Vector3 across = leaving.normal.cross(along);
-  const auto partnerAllows = [&leaving](const Vector3& normal, double slack) {
-    return edgeConeAllows(leaving.partner, leaving.edge, -(leaving.R_PS * normal), slack);
-  };
-  bool goes_on = partnerAllows(leaving.normal, CONE_SLACK);
-  for (const int edge : topology.edgesOf(leaving.vertex)) {
-    const Vector3 w = edgeDirection(side, leaving.vertex, edge);
-    const double down = w.dot(leaving.normal), aside = w.dot(across), length2 = w.squaredNorm();
-    if (down <= 0 || down * down <= CONE_SLACK * CONE_SLACK * length2) continue;
-    goes_on = false;
-    // Its foot lies so far from the vertex, as part of the contact's length.
-    const double span2 = down * down + aside * aside, jump = down * std::sqrt(length2) / span2;
-    if (topology.isFlatEdge(edge) || jump > NEAR_SUCCESSOR) continue;
-    const Vector3 normal = (leaving.normal * std::abs(aside) - across * (aside > 0 ? down : -down)) / std::sqrt(span2);
-    if (edgeSlope(side, edge, normal) <= EDGE_CONE_SLACK && partnerAllows(normal, EDGE_CONE_SLACK)) return true;
-  }
-  return goes_on;
 }
 
 Vector3 vertexLean(const MeshSide& side, int vertex) {

@@ -6,36 +6,18 @@
 
 namespace blem_sim {
 
-/** Does the surface at the vertex lead nowhere along `direction`? No edge there has a larger part of it than `slack` (sine).
+/** Does the surface at the edge lead nowhere along `direction`? None of its faces has a larger part of it than `slack` (sine).
  *  @param direction unit, the mesh's frame, towards the other mesh */
-bool vertexConeAllows(const MeshSide& side, int vertex, const Vector3& direction, double slack);
-
-/** The same for the faces of an edge. */
 bool edgeConeAllows(const MeshSide& side, int edge, const Vector3& direction, double slack);
 
 /** Do the two faces of an edge, which is not flat, go over into each other (ROUND_COSINE)? */
 bool isRoundEdge(const MeshSide& side, int edge);
 
-/** Is the surface around a vertex convex as seen from `direction` (mesh's frame, not unit), with round or flat edges only? */
-bool isRoundVertex(const MeshSide& side, int vertex, const Vector3& direction);
+/** Do two faces of an edge go over into each other? By the unit directions into them. */
+inline bool isRound(const Vector3& inward, const Vector3& other) { return inward.dot(other) <= -ROUND_COSINE; }
 
 /** A contact that takes over where another leaves is no farther from it than this part of its length. */
 constexpr double NEAR_SUCCESSOR = 0.01;
-
-/** A vertex whose contact with an edge of the other mesh, or with a plane that ends there, leaves over that edge. */
-struct LeavingVertex {
-  const MeshSide &side, &partner;
-  int vertex, edge;  ///< of `side`, of `partner`
-  Matrix3 R_PS;      ///< directions of side's frame in partner's
-  Vector3 normal;    ///< unit, side's frame, towards the partner, square to the edge
-};
-
-/**
- * Does another contact take over where it leaves? The vertex's own with the edge, where no edge at the vertex leads towards the partner;
- * else that of such an edge with the partner's, if it is there and not far: a plane's inner edges have none, nor have edges whose contact
- * would point into a face.
- */
-bool isTakenOver(const LeavingVertex& leaving);
 
 /** Largest part (sine) along `direction` (unit, mesh's frame) of the faces of an edge: how steeply its surface goes that way; -1 without
  * faces. */

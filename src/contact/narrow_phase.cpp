@@ -17,12 +17,11 @@ struct Buffers {
 };
 
 void append(const kernels::ContactRow& row, std::vector<Contact>* out) {
-  Contact contact;
+  Contact& contact = out->emplace_back();
   contact.point = Vector3(row.point[0], row.point[1], row.point[2]);
   contact.normal_BA = Vector3(row.normal[0], row.normal[1], row.normal[2]);
   contact.depth = row.depth;
   contact.id = row.id;
-  out->push_back(contact);
 }
 
 void meshMesh(const Collider& a, const Pose& X_WA, const Collider& b, const Pose& X_WB, double range, const Pose* X_AB_apart,

@@ -65,7 +65,8 @@ struct PlainVertexFaces {
               0.5 * (RADIUS_B - RADIUS_A), contactId(vertex, face)},
              rows.data(),
              pairs.data(),
-             0};
+             0,
+             -1};
     hits.resize(set.vertexFaces(in.vertices.data(), in.faces.data(), in.open.data(), in.candidates.data(), CANDIDATES, RANGE,
                                 takes_plain ? &plain : nullptr, hits.data()));
   }

@@ -11,13 +11,14 @@ constexpr unsigned ALL_LANES = (1u << LANES) - 1;
 /** Which candidates the lanes hold: behind the last one it is repeated, and masked. */
 struct Batch {
   Batch(const Candidate* candidates, std::uint32_t first, std::uint32_t count) {
-    for (int i = 0; i < LANES; ++i) {
-      const std::uint32_t at = first + i < count ? first + i : count - 1;
-      of_a[i] = candidates[at].a;
-      of_b[i] = candidates[at].b;
-    }
     const std::uint32_t left = count - first;
-    valid = left >= LANES ? ALL_LANES : (1u << left) - 1;
+    if (left >= LANES) {
+      valid = ALL_LANES;
+      take(candidates + first, [](int i) { return i; });
+    } else {
+      valid = (1u << left) - 1;
+      take(candidates + first, [left](int i) { return static_cast<std::uint32_t>(i) < left ? i : left - 1; });
+    }
   }
 
   Rows points(const Vec4* from, const std::uint32_t (&index)[LANES]) const {
@@ -44,6 +45,13 @@ struct Batch {
   unsigned valid;
 
  private:
+  template <typename Place>
+  void take(const Candidate* from, Place&& place) {
+    for (int i = 0; i < LANES; ++i) {
+      of_a[i] = from[place(i)].a;
+      of_b[i] = from[place(i)].b;
+    }
+  }
   template <typename Address>
   static Rows rows(const std::uint32_t (&index)[LANES], Address&& address) {
     const Vec4* at[LANES];

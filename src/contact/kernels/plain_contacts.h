@@ -28,18 +28,20 @@ inline void appendPlain(const Batch& batch, const Vectors& p, const Vectors& nor
   const Doubles sign = to_a ? all(1) : all(-1);
   const Vectors foot = at - height * up, n = sign * up, middle = all(0.5) * (at + foot) + all(place.shift) * n;
   const Vectors point = turnedPoint(place.X_WF, middle), normal_BA = turnedDirection(place.X_WF, n);
-  const Doubles columns[] = {point.x, point.y, point.z, normal_BA.x, normal_BA.y, normal_BA.z, place.layer - absolute(height)};
-  double numbers[7][LANES];
-  __builtin_memcpy(numbers, columns, sizeof numbers);
+  const Doubles depth = place.layer - absolute(height);
+  alignas(64) double rows[LANES][8];
+  const Doubles columns[] = {point.x, point.y, point.z, normal_BA.x, normal_BA.y, normal_BA.z, depth, {}};
+  transposed(columns, rows);
   for (; bits != 0; bits &= bits - 1) {
     const int lane = __builtin_ctz(bits);
     const Candidate pair{batch.of_a[lane], batch.of_b[lane]};
     const auto vertex = static_cast<std::uint64_t>(place.vertex_names[pair.a]), face = static_cast<std::uint64_t>(place.face_names[pair.b]);
-    out->pairs[out->count] = pair;
-    out->rows[out->count++] = {{numbers[0][lane], numbers[1][lane], numbers[2][lane]},
-                               {numbers[3][lane], numbers[4][lane], numbers[5][lane]},
-                               numbers[6][lane],
-                               place.kinds | (place.vertices_are_a ? vertex << 32 | face : face << 32 | vertex)};
+    ContactRow& row = out->rows[out->count];
+    static_assert(sizeof(ContactRow) == sizeof rows[0], "seven numbers and the id");
+    __builtin_memcpy(&row, rows[lane], sizeof row);
+    row.id = place.kinds | (place.vertices_are_a ? vertex << 32 | face : face << 32 | vertex);
+    out->deepest = rows[lane][6] > out->deepest ? rows[lane][6] : out->deepest;
+    out->pairs[out->count++] = pair;
   }
 }
 

@@ -122,7 +122,7 @@ struct VertexFaceHit {
 };
 
 /** A contact as it is handed on. */
-struct ContactRow {
+struct alignas(64) ContactRow {
   double point[3];   ///< [m] world
   double normal[3];  ///< unit, world, from B to A
   double depth;      ///< [m]
@@ -148,6 +148,7 @@ struct PlainContacts {
   ContactRow* rows;
   Candidate* pairs;     ///< whose they are
   std::uint32_t count;  ///< so far; they are appended
+  double deepest;       ///< [m] their largest depth so far
 };
 
 /** Two edges near each other whose common perpendicular points out of their faces. */

@@ -1,0 +1,51 @@
+#include "leaving_vertex.h"
+
+#include <cmath>
+
+#include "feature_cones.h"
+
+namespace blem_sim {
+namespace {
+
+/** edgeSlope. */
+double slopeOf(const MeshSide& side, int name, const Vector3& direction, SurroundingsMemory* surroundings) {
+  const EdgeSurroundings& edge = surroundings->ofEdge(side, name);
+  if (edge.faces > 2) return edgeSlope(side, name, direction);
+  double slope = -1;
+  for (int k = 0; k < edge.faces; ++k) slope = std::max(slope, edge.inward[k].dot(direction));
+  return slope;
+}
+
+}  // namespace
+
+bool isTakenOver(const LeavingVertex& leaving, SurroundingsMemory* surroundings) {
+  const MeshSide& side = leaving.side;
+  if (side.topology.isStraightVertex(leaving.vertex)) return true;
+  const Vector3 along = leaving.R_PS.transpose() * surroundings->ofEdge(leaving.partner, leaving.edge).direction;
+  const Vector3 across = leaving.normal.cross(along);
+  const auto partnerAllows = [&](const Vector3& normal, double slack) {
+    return edgeConeAllows(leaving.partner, leaving.edge, -(leaving.R_PS * normal), slack, surroundings);
+  };
+  bool goes_on = partnerAllows(leaving.normal, CONE_SLACK);
+  for (const EdgeFromVertex& edge : surroundings->ofVertex(side, leaving.vertex)) {
+    const double down = edge.along.dot(leaving.normal), aside = edge.along.dot(across), length2 = edge.length2;
+    if (down <= 0 || down * down <= CONE_SLACK * CONE_SLACK * length2) continue;
+    goes_on = false;
+    // Its foot lies so far from the vertex, as part of the contact's length.
+    const double span2 = down * down + aside * aside, jump = down * std::sqrt(length2) / span2;
+    if (edge.is_flat || jump > NEAR_SUCCESSOR) continue;
+    const Vector3 normal = (leaving.normal * std::abs(aside) - across * (aside > 0 ? down : -down)) / std::sqrt(span2);
+    if (slopeOf(side, edge.edge, normal, surroundings) <= EDGE_CONE_SLACK && partnerAllows(normal, EDGE_CONE_SLACK)) return true;
+  }
+  return goes_on;
+}
+
+bool edgeConeAllows(const MeshSide& side, int edge, const Vector3& direction, double slack, SurroundingsMemory* surroundings) {
+  const EdgeSurroundings& around = surroundings->ofEdge(side, edge);
+  if (around.faces > 2) return edgeConeAllows(side, edge, direction, slack);
+  bool allows = true;
+  for (int k = 0; k < around.faces; ++k) allows = allows && around.inward[k].dot(direction) <= slack;
+  return allows;
+}
+
+}  // namespace blem_sim

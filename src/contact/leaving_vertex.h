@@ -1,0 +1,27 @@
+// A vertex whose contact leaves over an edge of the other mesh: does another take over?
+#pragma once
+
+#include "surroundings.h"
+
+namespace blem_sim {
+
+/** A vertex whose contact with an edge of the other mesh, or with a plane that ends there, leaves over that edge. */
+struct LeavingVertex {
+  const MeshSide &side, &partner;
+  int vertex, edge;  ///< of `side`, of `partner`
+  Matrix3 R_PS;      ///< directions of side's frame in partner's
+  Vector3 normal;    ///< unit, side's frame, towards the partner, square to the edge
+};
+
+/**
+ * Does another contact take over where it leaves? The vertex's own with the edge, where no edge at the vertex leads towards the partner;
+ * else that of such an edge with the partner's, if it is there and not far: a plane's inner edges have none, nor have edges whose contact
+ * would point into a face.
+ */
+bool isTakenOver(const LeavingVertex& leaving, SurroundingsMemory* surroundings);
+
+/** Does the surface at an edge lead nowhere along `direction`? None of its faces has a larger part of it than `slack` (sine).
+ * @param direction unit, the mesh's frame, towards the other mesh */
+bool edgeConeAllows(const MeshSide& side, int edge, const Vector3& direction, double slack, SurroundingsMemory* surroundings);
+
+}  // namespace blem_sim

@@ -1,0 +1,82 @@
+// What lies around the vertices and edges that were asked about lately: directions, so that no search works them out anew.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "mesh_pair.h"
+
+namespace blem_sim {
+
+/** An edge from one of its ends; the mesh's frame. */
+struct EdgeFromVertex {
+  Vector3 along;      ///< [m] to its other end
+  double length2;     ///< [m^2]
+  Vector3 direction;  ///< unit
+  int edge;           ///< name
+  bool is_flat;
+};
+
+/** The edges at a vertex, ascending. */
+struct EdgesAtVertex {
+  const EdgeFromVertex* first;
+  int count;
+  const EdgeFromVertex* begin() const { return first; }
+  const EdgeFromVertex* end() const { return first + count; }
+};
+
+struct EdgeSurroundings {
+  Vector3 direction;  ///< unit, from its lower vertex to the higher one
+  Vector3 inward[2];  ///< unit, into its first two faces
+  int faces;          ///< how many it has
+  bool is_round;      ///< isRoundEdge
+};
+
+/** Of any meshes, for one thread. What is kept changes no result. */
+class SurroundingsMemory {
+ public:
+  // Good until the next question of the same kind.
+  EdgesAtVertex ofVertex(const MeshSide& side, int vertex);
+  const EdgeSurroundings& ofEdge(const MeshSide& side, int edge);
+
+ private:
+  static constexpr int MAX_EDGES = 10;
+  struct VertexEdgesKept {
+    int count;
+    std::array<EdgeFromVertex, MAX_EDGES> edges;
+  };
+  /** A feature has one place, which the last one that came there holds. */
+  template <typename Item, std::size_t CAPACITY>
+  struct Table {
+    struct Place {
+      std::uint64_t geometry = 0;  // whose; 0: nobody's
+      int name = 0;
+      Item item;
+    };
+    std::vector<Place> places;
+
+    /** @param known whether the item is the feature's: else it shall become so */
+    Item& find(const MeshSide& side, int name, bool* known) {
+      if (places.empty()) places.resize(CAPACITY);
+      Place& place = places[(static_cast<std::uint64_t>(name) + 0x9E3779B9 * side.identity) % CAPACITY];
+      *known = place.geometry == side.identity && place.name == name;
+      place.geometry = side.identity;
+      place.name = name;
+      return place.item;
+    }
+  };
+
+  Table<VertexEdgesKept, 4096> vertices_;
+  Table<EdgeSurroundings, 8192> edges_;
+  std::vector<EdgeFromVertex> many_;  // of a vertex that has more than a place holds
+};
+
+/** Does the surface at the vertex lead nowhere along `direction`? No edge there has a larger part of it than `slack` (sine).
+ *  @param direction unit, the mesh's frame, towards the other mesh */
+bool vertexConeAllows(const EdgesAtVertex& edges, const Vector3& direction, double slack);
+
+/** Is the surface around a vertex convex as seen from `direction` (mesh's frame, not unit), with round or flat edges only? */
+bool isRoundVertex(const MeshSide& side, const EdgesAtVertex& edges, const Vector3& direction, SurroundingsMemory* surroundings);
+
+}  // namespace blem_sim
