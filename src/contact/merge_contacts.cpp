@@ -13,8 +13,9 @@ bool keptBefore(const Contact& a, const Contact& b) {
   return key(a) < key(b);
 }
 
-bool coincide(const Contact& a, const Contact& b) {
-  return a.pierced == b.pierced && (a.point - b.point).squaredNorm() <= MERGE_DISTANCE * MERGE_DISTANCE &&
+/** @param place of a, instead of its own */
+bool coincide(const Contact& a, const Vector3& place, const Contact& b) {
+  return a.pierced == b.pierced && (place - b.point).squaredNorm() <= MERGE_DISTANCE * MERGE_DISTANCE &&
          (a.normal_BA - b.normal_BA).squaredNorm() <= MERGE_SINE * MERGE_SINE;
 }
 
@@ -70,7 +71,8 @@ class Cells {
 // Kept between calls.
 struct Buffers {
   std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
-  std::vector<Contact> best;
+  std::vector<std::uint32_t> best;
+  std::vector<Contact> merged;
   Cells cells;
   std::vector<Vector3> firsts;  // places of the contacts that each of the merged ones began with
 };
@@ -81,13 +83,13 @@ void findBestOfEachId(const std::vector<Contact>& contacts, Buffers* buffers) {
   order.clear();
   for (std::size_t i = 0; i < contacts.size(); ++i) order.emplace_back(contacts[i].id, i);
   std::sort(order.begin(), order.end());
-  std::vector<Contact>& best = buffers->best;
+  std::vector<std::uint32_t>& best = buffers->best;
   best.clear();
   for (const auto& [id, i] : order) {
-    if (best.empty() || best.back().id != id) {
-      best.push_back(contacts[i]);
-    } else if (keptBefore(contacts[i], best.back())) {
-      best.back() = contacts[i];
+    if (best.empty() || contacts[best.back()].id != id) {
+      best.push_back(i);
+    } else if (keptBefore(contacts[i], contacts[best.back()])) {
+      best.back() = i;
     }
   }
 }
@@ -95,30 +97,32 @@ void findBestOfEachId(const std::vector<Contact>& contacts, Buffers* buffers) {
 }  // namespace
 
 void mergeContacts(std::vector<Contact>* contacts) {
-  thread_local Buffers buffers;
+  thread_local Buffers thread_buffers;
+  Buffers& buffers = thread_buffers;
   findBestOfEachId(*contacts, &buffers);
-  contacts->clear();
+  std::vector<Contact>& merged = buffers.merged;
+  merged.clear();
   buffers.firsts.clear();
   buffers.cells.clear(buffers.best.size());
-  for (const Contact& contact : buffers.best) {
-    bool merged = false;
+  for (const std::uint32_t index : buffers.best) {
+    const Contact& contact = (*contacts)[index];
+    bool is_merged = false;
     buffers.cells.visitNear(contact.point, [&](std::uint32_t i) {
-      Contact& other = (*contacts)[i];
-      Contact first = other;
-      first.point = buffers.firsts[i];
-      if (!coincide(first, contact)) return false;
+      Contact& other = merged[i];
+      if (!coincide(other, buffers.firsts[i], contact)) return false;
       if (contact.depth > other.depth) {
         const std::uint64_t id = other.id;
         other = contact;
         other.id = id;
       }
-      return merged = true;
+      return is_merged = true;
     });
-    if (merged) continue;
+    if (is_merged) continue;
     buffers.cells.add(contact.point);
     buffers.firsts.push_back(contact.point);
-    contacts->push_back(contact);
+    merged.push_back(contact);
   }
+  contacts->assign(merged.begin(), merged.end());
 }
 
 }  // namespace blem_sim
