@@ -1,7 +1,7 @@
 #include "merge_contacts.h"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <tuple>
 
 namespace blem_sim {
@@ -31,7 +31,7 @@ class Cells {
   }
 
   void add(const Vector3& point) {
-    std::uint32_t& head = heads_[slot(cell(point, Vector3::Zero()))];
+    std::uint32_t& head = heads_[slot(cell(point / SIZE))];
     next_.push_back(head);
     head = static_cast<std::uint32_t>(next_.size()) - 1;
   }
@@ -39,11 +39,11 @@ class Cells {
   /** Calls visit(index) for every contact within MERGE_DISTANCE of the point, and others, until it returns true. */
   template <typename Visit>
   void visitNear(const Vector3& point, Visit&& visit) const {
-    const Eigen::Matrix<std::int64_t, 3, 1> low = cell(point, Vector3::Constant(-MERGE_DISTANCE)),
-                                            high = cell(point, Vector3::Constant(MERGE_DISTANCE));
-    for (std::int64_t x = low.x(); x <= high.x(); ++x) {
-      for (std::int64_t y = low.y(); y <= high.y(); ++y) {
-        for (std::int64_t z = low.z(); z <= high.z(); ++z) {
+    const Vector3 place = point / SIZE, reach = Vector3::Constant(MERGE_DISTANCE / SIZE);
+    const Cell low = cell(place - reach), high = cell(place + reach);
+    for (std::int64_t x = low[0]; x <= high[0]; ++x) {
+      for (std::int64_t y = low[1]; y <= high[1]; ++y) {
+        for (std::int64_t z = low[2]; z <= high[2]; ++z) {
           for (std::uint32_t i = heads_[slot({x, y, z})]; i != NONE; i = next_[i])
             if (visit(i)) return;
         }
@@ -52,16 +52,23 @@ class Cells {
   }
 
  private:
+  using Cell = std::array<std::int64_t, 3>;
   static constexpr std::uint32_t NONE = 0xFFFFFFFF;
   static constexpr double SIZE = 64 * MERGE_DISTANCE;  // few points are that near a border
 
-  static Eigen::Matrix<std::int64_t, 3, 1> cell(const Vector3& point, const Vector3& offset) {
-    return ((point + offset) / SIZE).array().floor().cast<std::int64_t>();
+  /** @param place in cells */
+  static Cell cell(const Vector3& place) {
+    // std::floor is a call where the instruction set has none.
+    const auto floor = [](double value) {
+      const auto towards_zero = static_cast<std::int64_t>(value);
+      return towards_zero - (value < static_cast<double>(towards_zero));
+    };
+    return {floor(place.x()), floor(place.y()), floor(place.z())};
   }
-  std::size_t slot(const Eigen::Matrix<std::int64_t, 3, 1>& cell) const {
-    const std::uint64_t mixed = static_cast<std::uint64_t>(cell.x()) * 0x9E3779B97F4A7C15u +
-                                static_cast<std::uint64_t>(cell.y()) * 0xC2B2AE3D27D4EB4Fu +
-                                static_cast<std::uint64_t>(cell.z()) * 0x165667B19E3779F9u;
+  std::size_t slot(const Cell& cell) const {
+    const std::uint64_t mixed = static_cast<std::uint64_t>(cell[0]) * 0x9E3779B97F4A7C15u +
+                                static_cast<std::uint64_t>(cell[1]) * 0xC2B2AE3D27D4EB4Fu +
+                                static_cast<std::uint64_t>(cell[2]) * 0x165667B19E3779F9u;
     return (mixed ^ mixed >> 32) & (heads_.size() - 1);
   }
 
