@@ -30,7 +30,7 @@ class KnownContacts {
  public:
   explicit KnownContacts(const FoundContacts& found) {
     // The moving mesh is A.
-    for (std::uint32_t i = 0; i < found.plain_count; ++i) unseen_.push_back(found.plain[i].id);
+    for (const Contact& c : *found.plain) unseen_.push_back(c.id);
     for (const FeatureContact& c : found.close) unseen_.push_back(contactId(c.moving, c.fixed));
     std::sort(unseen_.begin(), unseen_.end());
     unseen_.erase(std::unique(unseen_.begin(), unseen_.end()), unseen_.end());
@@ -71,7 +71,9 @@ void compact(const std::vector<std::uint32_t*>& indices, FeatureRecords<Record>*
 class KnownPairs {
  public:
   KnownPairs(const MeshPair& pair, ContactSearchBuffers* buffers) : X_FM_(pair.X_FM), range_(pair.range) {
+    std::vector<Contact> plain;
     FoundContacts found;
+    found.plain = &plain;
     searchContacts(pair, nullptr, buffers, &found);
     CandidateListing listing;
     findCandidates(pair, CandidateKind::CONTACTS, {}, &buffers->search, &listing);

@@ -64,7 +64,7 @@ bool BorderFades::find(bool vertex_moves, std::uint32_t vertex, std::uint32_t fa
 bool BorderFades::leaves(bool vertex_moves, std::uint32_t vertex, int face, int k, const Vector3& down, const Vector3& inward) {
   const MeshSide &side = pair_.side(vertex_moves), &partner = pair_.side(!vertex_moves);
   const int vertex_name = lists_.near[vertex_moves].vertices.names[vertex];
-  const Matrix3 R_PS = vertex_moves ? Matrix3(pair_.X_FM.linear()) : Matrix3(pair_.X_FM.linear().transpose());
+  const Matrix3& R_PS = vertex_moves ? R_FM_ : R_MF_;
   const Vector3 own_down = R_PS.transpose() * down, own_aside = R_PS.transpose() * inward;
   bool leads_down = false;
   for (const EdgeFromVertex& around : surroundings_.ofVertex(side, vertex_name)) {

@@ -22,7 +22,7 @@ struct BorderFade {
 class BorderFades {
  public:
   BorderFades(const MeshPair& pair, const CandidateLists* lists, SurroundingsMemory* surroundings)
-      : pair_(pair), lists_(*lists), surroundings_(*surroundings) {}
+      : pair_(pair), lists_(*lists), surroundings_(*surroundings), R_FM_(pair.X_FM.linear()), R_MF_(R_FM_.transpose()) {}
 
   /**
    * @param vertex, face of the lists @param p the vertex in the face's mesh's frame @param height [m] of p over the face's plane
@@ -36,6 +36,7 @@ class BorderFades {
   const MeshPair& pair_;
   const CandidateLists& lists_;
   SurroundingsMemory& surroundings_;
+  const Matrix3 R_FM_, R_MF_;
 };
 
 }  // namespace blem_sim

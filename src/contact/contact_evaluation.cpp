@@ -15,21 +15,17 @@ using kernels::Candidate;
 using kernels::Vec4;
 
 constexpr std::uint32_t NONE = 0xFFFFFFFF;
+/** Candidates that are tested before their contacts are read: those lie in the cache then. */
+constexpr std::uint32_t BLOCK = 256;
 
 template <typename Items>
 void makeRoom(std::size_t size, Items* items) {
   if (items->size() < size) items->resize(size);
 }
 
-kernels::ContactRow rowOf(const Contact& contact) {
-  const Vector3 &p = contact.point, &n = contact.normal_BA;
-  return {{p.x(), p.y(), p.z()}, {n.x(), n.y(), n.z()}, contact.depth, contact.id};
-}
-
 }  // namespace
 
 void FoundContacts::clear() {
-  plain_count = 0;
   deepest_plain = -std::numeric_limits<double>::infinity();
   close.clear();
   crossings.clear();
@@ -96,17 +92,26 @@ kernels::ContactPlace Evaluation::place(bool vertices_move) const {
 /** @return how many need a closer look; the plain ones are written */
 std::uint32_t Evaluation::findVertexFaces(bool moves) {
   const std::vector<Candidate>& candidates = pairs_.vertex_face[moves];
-  makeRoom(candidates.size(), &buffers_.vertex_faces);
-  makeRoom(candidates.size(), &buffers_.over);
-  makeRoom(found_.plain_count + candidates.size(), &found_.plain);
-  kernels::PlainContacts plain{place(moves), found_.plain.data() + found_.plain_count, buffers_.over.data(), 0, found_.deepest_plain};
-  const std::uint32_t count =
-      kernels::kernels().vertexFaces(buffers_.turned.vertices[moves].data(), lists_.near[!moves].faces.records.data(),
-                                     lists_.near[!moves].open.data(), candidates.data(), static_cast<std::uint32_t>(candidates.size()),
-                                     pair_.range, found_.crossings.empty() ? &plain : nullptr, buffers_.vertex_faces.data());
-  found_.plain_count += plain.count;
+  const auto total = static_cast<std::uint32_t>(candidates.size());
+  makeRoom(total, &buffers_.vertex_faces);
+  makeRoom(total, &buffers_.over);
+  makeRoom(BLOCK, &buffers_.rows);
+  buffers_.over_count = 0;
+  kernels::PlainContacts plain{place(moves), buffers_.rows.data(), buffers_.over.data(), 0, found_.deepest_plain};
+  std::uint32_t count = 0;
+  for (std::uint32_t first = 0; first < total; first += BLOCK) {
+    kernels::VertexFaceHit* const hits = buffers_.vertex_faces.data() + count;
+    plain.pairs = buffers_.over.data() + buffers_.over_count;
+    plain.count = 0;
+    const std::uint32_t found = kernels::kernels().vertexFaces(
+        buffers_.turned.vertices[moves].data(), lists_.near[!moves].faces.records.data(), lists_.near[!moves].open.data(),
+        candidates.data() + first, std::min(BLOCK, total - first), pair_.range, found_.crossings.empty() ? &plain : nullptr, hits);
+    for (std::uint32_t i = 0; i < found; ++i) hits[i].candidate += first;
+    count += found;
+    buffers_.over_count += plain.count;
+    appendContacts(buffers_.rows.data(), plain.count, found_.plain);
+  }
   found_.deepest_plain = plain.deepest;
-  buffers_.over_count = plain.count;
   return count;
 }
 
@@ -180,7 +185,6 @@ void Evaluation::edgeEdges(const kernels::EdgeRecord* moving, const kernels::Edg
   const std::vector<Candidate>& candidates = pairs_.edge_edge;
   auto& hits = buffers_.edge_edges;
   makeRoom(candidates.size(), &hits);
-  makeRoom(found_.plain_count + candidates.size(), &found_.plain);
   const std::uint32_t count = kernels::kernels().edgeEdges(moving, fixed, candidates.data(), candidates.size(), pair_.range, hits.data());
   for (std::uint32_t i = 0; i < count; ++i) {
     const kernels::EdgeEdgeHit& hit = hits[i];
@@ -202,8 +206,8 @@ void Evaluation::edgeEdges(const kernels::EdgeRecord* moving, const kernels::Edg
     if (hit.near_border || !found_.crossings.empty()) {
       found_.close.push_back(contact);
     } else {
-      found_.plain[found_.plain_count] = rowOf(worldContact(pair_, contact));
-      found_.deepest_plain = std::max(found_.deepest_plain, found_.plain[found_.plain_count++].depth);
+      found_.plain->push_back(worldContact(pair_, contact));
+      found_.deepest_plain = std::max(found_.deepest_plain, found_.plain->back().depth);
     }
   }
 }

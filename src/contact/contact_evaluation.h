@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "blem_sim/contact/manifold.h"
 #include "border_fade.h"
 #include "candidate_lists.h"
 #include "edge_crossing.h"
@@ -13,13 +14,12 @@ namespace blem_sim {
 
 /** What a search finds. */
 struct FoundContacts {
-  std::vector<kernels::ContactRow> plain;  ///< each in a place of its own; none where meshes cross
-  std::uint32_t plain_count = 0;           ///< of them
-  double deepest_plain = 0;                ///< [m] their largest depth
-  std::vector<FeatureContact> close;       ///< some may be in one place, or have one name
+  std::vector<Contact>* plain = nullptr;  ///< appended; in the world; each in a place of its own; none where meshes cross
+  double deepest_plain = 0;               ///< [m] their largest depth
+  std::vector<FeatureContact> close;      ///< some may be in one place, or have one name
   std::vector<Crossing> crossings;
 
-  void clear();
+  void clear();                                 ///< all but `plain`
   double leastGap(const MeshPair& pair) const;  ///< [m]; the pair's range if there is none
 };
 
@@ -35,6 +35,7 @@ struct FadingVertex {
 struct EvaluationBuffers {
   TurnedFeatures turned;
   SurroundingsMemory surroundings;
+  std::vector<kernels::ContactRow> rows;
   std::vector<kernels::VertexFaceHit> vertex_faces;
   std::vector<kernels::EdgeEdgeHit> edge_edges;
   std::vector<std::uint32_t> hits;

@@ -8,9 +8,9 @@ namespace blem_sim {
 /** A vertex whose contact with an edge of the other mesh, or with a plane that ends there, leaves over that edge. */
 struct LeavingVertex {
   const MeshSide &side, &partner;
-  int vertex, edge;  ///< of `side`, of `partner`
-  Matrix3 R_PS;      ///< directions of side's frame in partner's
-  Vector3 normal;    ///< unit, side's frame, towards the partner, square to the edge
+  int vertex, edge;     ///< of `side`, of `partner`
+  const Matrix3& R_PS;  ///< directions of side's frame in partner's
+  Vector3 normal;       ///< unit, side's frame, towards the partner, square to the edge
 };
 
 /**

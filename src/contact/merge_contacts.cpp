@@ -1,7 +1,7 @@
 #include "merge_contacts.h"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <tuple>
 
 namespace blem_sim {
@@ -13,8 +13,9 @@ bool keptBefore(const Contact& a, const Contact& b) {
   return key(a) < key(b);
 }
 
-bool coincide(const Contact& a, const Contact& b) {
-  return a.pierced == b.pierced && (a.point - b.point).squaredNorm() <= MERGE_DISTANCE * MERGE_DISTANCE &&
+/** @param place of a, instead of its own */
+bool coincide(const Contact& a, const Vector3& place, const Contact& b) {
+  return a.pierced == b.pierced && (place - b.point).squaredNorm() <= MERGE_DISTANCE * MERGE_DISTANCE &&
          (a.normal_BA - b.normal_BA).squaredNorm() <= MERGE_SINE * MERGE_SINE;
 }
 
@@ -30,7 +31,7 @@ class Cells {
   }
 
   void add(const Vector3& point) {
-    std::uint32_t& head = heads_[slot(cell(point, Vector3::Zero()))];
+    std::uint32_t& head = heads_[slot(cell(point / SIZE))];
     next_.push_back(head);
     head = static_cast<std::uint32_t>(next_.size()) - 1;
   }
@@ -38,11 +39,11 @@ class Cells {
   /** Calls visit(index) for every contact within MERGE_DISTANCE of the point, and others, until it returns true. */
   template <typename Visit>
   void visitNear(const Vector3& point, Visit&& visit) const {
-    const Eigen::Matrix<std::int64_t, 3, 1> low = cell(point, Vector3::Constant(-MERGE_DISTANCE)),
-                                            high = cell(point, Vector3::Constant(MERGE_DISTANCE));
-    for (std::int64_t x = low.x(); x <= high.x(); ++x) {
-      for (std::int64_t y = low.y(); y <= high.y(); ++y) {
-        for (std::int64_t z = low.z(); z <= high.z(); ++z) {
+    const Vector3 place = point / SIZE, reach = Vector3::Constant(MERGE_DISTANCE / SIZE);
+    const Cell low = cell(place - reach), high = cell(place + reach);
+    for (std::int64_t x = low[0]; x <= high[0]; ++x) {
+      for (std::int64_t y = low[1]; y <= high[1]; ++y) {
+        for (std::int64_t z = low[2]; z <= high[2]; ++z) {
           for (std::uint32_t i = heads_[slot({x, y, z})]; i != NONE; i = next_[i])
             if (visit(i)) return;
         }
@@ -51,16 +52,23 @@ class Cells {
   }
 
  private:
+  using Cell = std::array<std::int64_t, 3>;
   static constexpr std::uint32_t NONE = 0xFFFFFFFF;
   static constexpr double SIZE = 64 * MERGE_DISTANCE;  // few points are that near a border
 
-  static Eigen::Matrix<std::int64_t, 3, 1> cell(const Vector3& point, const Vector3& offset) {
-    return ((point + offset) / SIZE).array().floor().cast<std::int64_t>();
+  /** @param place in cells */
+  static Cell cell(const Vector3& place) {
+    // std::floor is a call where the instruction set has none.
+    const auto floor = [](double value) {
+      const auto towards_zero = static_cast<std::int64_t>(value);
+      return towards_zero - (value < static_cast<double>(towards_zero));
+    };
+    return {floor(place.x()), floor(place.y()), floor(place.z())};
   }
-  std::size_t slot(const Eigen::Matrix<std::int64_t, 3, 1>& cell) const {
-    const std::uint64_t mixed = static_cast<std::uint64_t>(cell.x()) * 0x9E3779B97F4A7C15u +
-                                static_cast<std::uint64_t>(cell.y()) * 0xC2B2AE3D27D4EB4Fu +
-                                static_cast<std::uint64_t>(cell.z()) * 0x165667B19E3779F9u;
+  std::size_t slot(const Cell& cell) const {
+    const std::uint64_t mixed = static_cast<std::uint64_t>(cell[0]) * 0x9E3779B97F4A7C15u +
+                                static_cast<std::uint64_t>(cell[1]) * 0xC2B2AE3D27D4EB4Fu +
+                                static_cast<std::uint64_t>(cell[2]) * 0x165667B19E3779F9u;
     return (mixed ^ mixed >> 32) & (heads_.size() - 1);
   }
 
@@ -70,7 +78,8 @@ class Cells {
 // Kept between calls.
 struct Buffers {
   std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
-  std::vector<Contact> best;
+  std::vector<std::uint32_t> best;
+  std::vector<Contact> merged;
   Cells cells;
   std::vector<Vector3> firsts;  // places of the contacts that each of the merged ones began with
 };
@@ -81,13 +90,13 @@ void findBestOfEachId(const std::vector<Contact>& contacts, Buffers* buffers) {
   order.clear();
   for (std::size_t i = 0; i < contacts.size(); ++i) order.emplace_back(contacts[i].id, i);
   std::sort(order.begin(), order.end());
-  std::vector<Contact>& best = buffers->best;
+  std::vector<std::uint32_t>& best = buffers->best;
   best.clear();
   for (const auto& [id, i] : order) {
-    if (best.empty() || best.back().id != id) {
-      best.push_back(contacts[i]);
-    } else if (keptBefore(contacts[i], best.back())) {
-      best.back() = contacts[i];
+    if (best.empty() || contacts[best.back()].id != id) {
+      best.push_back(i);
+    } else if (keptBefore(contacts[i], contacts[best.back()])) {
+      best.back() = i;
     }
   }
 }
@@ -95,30 +104,32 @@ void findBestOfEachId(const std::vector<Contact>& contacts, Buffers* buffers) {
 }  // namespace
 
 void mergeContacts(std::vector<Contact>* contacts) {
-  thread_local Buffers buffers;
+  thread_local Buffers thread_buffers;
+  Buffers& buffers = thread_buffers;
   findBestOfEachId(*contacts, &buffers);
-  contacts->clear();
+  std::vector<Contact>& merged = buffers.merged;
+  merged.clear();
   buffers.firsts.clear();
   buffers.cells.clear(buffers.best.size());
-  for (const Contact& contact : buffers.best) {
-    bool merged = false;
+  for (const std::uint32_t index : buffers.best) {
+    const Contact& contact = (*contacts)[index];
+    bool is_merged = false;
     buffers.cells.visitNear(contact.point, [&](std::uint32_t i) {
-      Contact& other = (*contacts)[i];
-      Contact first = other;
-      first.point = buffers.firsts[i];
-      if (!coincide(first, contact)) return false;
+      Contact& other = merged[i];
+      if (!coincide(other, buffers.firsts[i], contact)) return false;
       if (contact.depth > other.depth) {
         const std::uint64_t id = other.id;
         other = contact;
         other.id = id;
       }
-      return merged = true;
+      return is_merged = true;
     });
-    if (merged) continue;
+    if (is_merged) continue;
     buffers.cells.add(contact.point);
     buffers.firsts.push_back(contact.point);
-    contacts->push_back(contact);
+    merged.push_back(contact);
   }
+  contacts->assign(merged.begin(), merged.end());
 }
 
 }  // namespace blem_sim

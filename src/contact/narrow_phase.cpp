@@ -16,14 +16,6 @@ struct Buffers {
   std::vector<Contact> close;
 };
 
-void append(const kernels::ContactRow& row, std::vector<Contact>* out) {
-  Contact& contact = out->emplace_back();
-  contact.point = Vector3(row.point[0], row.point[1], row.point[2]);
-  contact.normal_BA = Vector3(row.normal[0], row.normal[1], row.normal[2]);
-  contact.depth = row.depth;
-  contact.id = row.id;
-}
-
 void meshMesh(const Collider& a, const Pose& X_WA, const Collider& b, const Pose& X_WB, double range, const Pose* X_AB_apart,
               ContactSearchMemory* memory, ContactManifold* out) {
   const bool a_moves = a.geometry->mesh().elements.size() <= b.geometry->mesh().elements.size();
@@ -37,6 +29,7 @@ void meshMesh(const Collider& a, const Pose& X_WA, const Collider& b, const Pose
                       X_WF};
   thread_local Buffers buffers;
   FoundContacts& found = buffers.found;
+  found.plain = &out->contacts;
   searchContacts(pair, memory, &buffers.search, &found);
   out->pierced = !found.crossings.empty();
   if (out->pierced) {
@@ -44,7 +37,6 @@ void meshMesh(const Collider& a, const Pose& X_WA, const Collider& b, const Pose
     if (X_AB_apart) X_FM_apart = a_moves ? X_AB_apart->inverse() : *X_AB_apart;
     addRetractions(pair, X_AB_apart ? &X_FM_apart : nullptr, found.crossings, &found.close);
   }
-  for (std::size_t i = 0; i < found.plain_count; ++i) append(found.plain[i], &out->contacts);
   buffers.close.clear();
   for (const FeatureContact& contact : found.close) buffers.close.push_back(worldContact(pair, contact));
   mergeContacts(&buffers.close);

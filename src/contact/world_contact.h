@@ -1,7 +1,10 @@
 // From the witness points of two features to the contact that is handed on.
 #pragma once
 
+#include <vector>
+
 #include "blem_sim/contact/manifold.h"
+#include "kernels/records.h"
 #include "mesh_pair.h"
 
 namespace blem_sim {
@@ -16,6 +19,17 @@ inline Contact contactOf(const ContactRoles& roles, const Feature& first, const 
   contact.depth = roles.r_a + roles.r_b - gap;
   contact.id = roles.first_is_a ? contactId(first, second) : contactId(second, first);
   return contact;
+}
+
+/** What kernels wrote. */
+inline void appendContacts(const kernels::ContactRow* rows, std::uint32_t count, std::vector<Contact>* out) {
+  for (const kernels::ContactRow* row = rows; row != rows + count; ++row) {
+    Contact& contact = out->emplace_back();
+    contact.point = Vector3(row->point[0], row->point[1], row->point[2]);
+    contact.normal_BA = Vector3(row->normal[0], row->normal[1], row->normal[2]);
+    contact.depth = row->depth;
+    contact.id = row->id;
+  }
 }
 
 /** A contact of a pair in the world. */

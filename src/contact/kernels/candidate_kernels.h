@@ -141,10 +141,12 @@ std::uint32_t vertexFaces(const Vec4* a, const FaceRecord* b, const OpenSides* o
     if (near == 0) continue;
     const InsideSides sides(batch, b, p);
     const Doubles inside = sides.least();
-    const unsigned is_hit = near & bitsOf(isOverOrFades(sides.of, openSides(batch.open(open), height, 0.0), most, 2 * CLOSED));
-    const unsigned is_plain = bitsOf((inside >= 0) & (absolute(height) > TOUCH)), is_beside = bitsOf(inside < -2 * CLOSED),
-                   near_border = bitsOf(inside < NEAR_BORDER), is_clear = plain ? is_hit & is_plain & ~near_border : 0;
+    const unsigned is_plain = bitsOf((inside >= 0) & (absolute(height) > TOUCH)), near_border = bitsOf(inside < NEAR_BORDER),
+                   is_clear = plain ? near & is_plain & ~near_border : 0;
     if (is_clear) appendPlain(batch, p, plane.v, height, is_clear, plain);
+    if (is_clear == near) continue;
+    const unsigned is_hit = near & bitsOf(isOverOrFades(sides.of, openSides(batch.open(open), height, 0.0), most, 2 * CLOSED)),
+                   is_beside = bitsOf(inside < -2 * CLOSED);
     double heights[LANES];
     __builtin_memcpy(heights, &height, sizeof heights);
     for (unsigned bits = is_hit & ~is_clear; bits != 0; bits &= bits - 1) {
