@@ -27,9 +27,10 @@ MeshPair pairAt(const MeshPair& pair, const ListOrigin& origin) {
   return then;
 }
 
-/** A leaf of the listing, with its features. */
+/** A leaf of the listing, its features and their shapes in the fixed mesh's frame. */
 struct LeafInUse {
-  LeafFeatures& features;
+  const LeafFeatures& features;
+  const kernels::LeafShapes& shapes;
   std::uint32_t slots;
 };
 
@@ -58,7 +59,7 @@ class Search {
     const kernels::LeafReach reach = leafReach();
     const bool contacts = listing_.kind == CandidateKind::CONTACTS;
     forEachLeafPair(leaf_pairs, [&](const LeafInUse& m, const LeafInUse& f) {
-      (contacts ? kernels.leafContacts : kernels.leafCrossings)(*m.features.turned, f.features.shapes, reach, &buffers_.hits);
+      (contacts ? kernels.leafContacts : kernels.leafCrossings)(m.shapes, f.shapes, reach, &buffers_.hits);
       if (contacts) {
         appendContacts(m, f);
       } else {
@@ -146,36 +147,45 @@ class Search {
     return FLOAT_ROUNDING * (largest + reach_) + 3 * CLOSED;
   }
 
-  LeafFeatures& find(bool moves, std::uint32_t node) {
-    return moves ? buffers_.leaves.moving(pair_.moving, node, search_, motion_) : buffers_.leaves.standing(pair_.fixed, node, search_);
-  }
+  LeafFeatures& find(bool moves, std::uint32_t node) { return buffers_.leaves.find(pair_.side(moves), node, search_); }
 
   /** Index of the node among the listing's leaves. */
   std::uint32_t use(bool moves, std::uint32_t node) {
     LeafFeatures& features = find(moves, node);
-    if (features.index != LeafFeatures::NO_INDEX) return features.index;
+    std::uint32_t& index = features.index[moves];
+    if (index != LeafFeatures::NO_INDEX) return index;
     std::vector<CandidateListing::Leaf>& leaves = listing_.leaves[moves];
-    features.index = static_cast<std::uint32_t>(leaves.size());
+    index = static_cast<std::uint32_t>(leaves.size());
     const kernels::LeafShapes& shapes = features.shapes;
     const std::size_t slots = listing_.slots.size();
     leaves.push_back({node, static_cast<std::uint32_t>(slots)});
     listing_.slots.resize(slots + shapes.vertex_count + shapes.face_count + shapes.edge_count, NOWHERE);
-    buffers_.found[moves].push_back(&features);
-    return features.index;
+    buffers_.found[moves].push_back(nullptr);
+    return index;
   }
 
   LeafInUse leaf(bool moves, std::uint32_t index) {
     LeafFeatures*& found = buffers_.found[moves][index];
     const CandidateListing::Leaf& leaf = listing_.leaves[moves][index];
-    if (!found) found = &find(moves, leaf.node);
-    return {*found, leaf.slots};
+    if (!found) {
+      found = &find(moves, leaf.node);
+      if (moves) turnLeaf(found->shapes, motion_, turned(index));
+    }
+    return {*found, moves ? *turned(index) : found->shapes, leaf.slots};
+  }
+
+  /** Room for the shapes of a moving leaf. */
+  kernels::LeafShapes* turned(std::uint32_t index) {
+    std::vector<std::unique_ptr<kernels::LeafShapes>>& all = buffers_.turned;
+    if (all.size() <= index) all.resize(index + 1);
+    if (!all[index]) all[index] = std::make_unique<kernels::LeafShapes>();
+    return all[index].get();
   }
 
   /** Leaves that are new lie far away in memory. */
-  void prefetch(const CandidateListing::LeafPair& next, const CandidateListing::LeafPair& now) const {
-    const LeafFeatures *const moving = buffers_.found[1][next.moving], *const fixed = buffers_.found[0][next.fixed];
-    if (next.moving != now.moving && moving) prefetch(*moving->turned);
-    if (next.fixed != now.fixed && fixed) prefetch(fixed->shapes);
+  void prefetch(const CandidateListing::LeafPair& next, const CandidateListing::LeafPair& now) {
+    if (next.moving != now.moving) prefetch(leaf(true, next.moving).shapes);
+    if (next.fixed != now.fixed) prefetch(leaf(false, next.fixed).shapes);
   }
   static void prefetch(const kernels::LeafShapes& shapes) {
     constexpr std::size_t LINE = 64;

@@ -1,6 +1,7 @@
 // How candidates are found: by the trees of two meshes.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "candidate_lists.h"
@@ -44,7 +45,8 @@ struct CandidateListing {
 /** What searches for candidates work in. */
 struct CandidateSearchBuffers {
   LeafMemory leaves;
-  std::vector<LeafFeatures*> found[2];  ///< of the listing's leaves; null: not looked at yet
+  std::vector<LeafFeatures*> found[2];                       ///< of the listing's leaves; null: not looked at yet
+  std::vector<std::unique_ptr<kernels::LeafShapes>> turned;  ///< of the moving ones that were found
   kernels::LeafHits hits;
   std::uint64_t searches = 0;
 };

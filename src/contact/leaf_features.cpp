@@ -149,28 +149,41 @@ EdgeRecord edgeRecord(const MeshSide& side, int edge) {
   return record;
 }
 
+void turnLeaf(const LeafShapes& shapes, const kernels::Motion& motion, LeafShapes* out) {
+  kernels::kernels().turnLeaf(shapes, motion, out);
+  for (int k = 0; k < 3; ++k) {
+    double centre = motion.t[k], half = 0;
+    for (int j = 0; j < 3; ++j) {
+      centre += motion.R[3 * k + j] * 0.5 * (static_cast<double>(shapes.lower[j]) + shapes.upper[j]);
+      half += std::abs(motion.R[3 * k + j]) * 0.5 * (static_cast<double>(shapes.upper[j]) - shapes.lower[j]);
+    }
+    out->lower[k] = static_cast<float>(centre - half);
+    out->upper[k] = static_cast<float>(centre + half);
+  }
+}
+
 /** What is held of the leaf; else it takes the place, of its few, that was used longest ago. */
-LeafFeatures& LeafMemory::find(Table* table, const MeshSide& side, std::uint32_t leaf, std::uint64_t search) {
+LeafFeatures& LeafMemory::findKept(const MeshSide& side, std::uint32_t leaf, std::uint64_t search) {
   const std::uint64_t key = keyOf(side, leaf);
-  Set& set = table->sets[(leaf + 0x9E3779B9u * side.identity) % (CAPACITY / WAYS)];
-  std::size_t oldest = 0;
+  Set& set = sets_[key * 0x9E3779B97F4A7C15u >> (64 - SET_BITS)];
   for (std::size_t way = 0; way < WAYS; ++way)
     if (set.keys[way] == key) return *set.features[way];
+  std::size_t oldest = 0;
   for (std::size_t way = 0; way < WAYS; ++way) {
     if (!set.features[way] || set.features[way]->search < set.features[oldest]->search) oldest = way;
     if (!set.features[way]) break;
   }
   if (!set.features[oldest]) set.features[oldest] = std::make_unique<LeafFeatures>();
-  if (set.features[oldest]->search == search) return findCrowdedOut(table, side, leaf, search);
+  if (set.features[oldest]->search == search) return findCrowdedOut(side, leaf, search);
   set.keys[oldest] = key;
   describe(side, leaf, set.features[oldest].get());
   return *set.features[oldest];
 }
 
-LeafFeatures& LeafMemory::findCrowdedOut(Table* table, const MeshSide& side, std::uint32_t leaf, std::uint64_t search) {
-  if (table->crowded_search != search) table->crowded_out.clear();
-  table->crowded_search = search;
-  std::unique_ptr<LeafFeatures>& features = table->crowded_out[leaf];
+LeafFeatures& LeafMemory::findCrowdedOut(const MeshSide& side, std::uint32_t leaf, std::uint64_t search) {
+  if (crowded_search_ != search) crowded_out_.clear();
+  crowded_search_ = search;
+  std::unique_ptr<LeafFeatures>& features = crowded_out_[keyOf(side, leaf)];
   if (!features) {
     features = std::make_unique<LeafFeatures>();
     describe(side, leaf, features.get());
@@ -178,31 +191,10 @@ LeafFeatures& LeafMemory::findCrowdedOut(Table* table, const MeshSide& side, std
   return *features;
 }
 
-LeafFeatures& LeafMemory::standing(const MeshSide& side, std::uint32_t leaf, std::uint64_t search) {
-  LeafFeatures& found = find(&standing_, side, leaf, search);
-  if (found.search != search) found.index = LeafFeatures::NO_INDEX;
+LeafFeatures& LeafMemory::find(const MeshSide& side, std::uint32_t leaf, std::uint64_t search) {
+  LeafFeatures& found = findKept(side, leaf, search);
+  if (found.search != search) found.index[0] = found.index[1] = LeafFeatures::NO_INDEX;
   found.search = search;
-  return found;
-}
-
-LeafFeatures& LeafMemory::moving(const MeshSide& side, std::uint32_t leaf, std::uint64_t search, const kernels::Motion& motion) {
-  LeafFeatures& found = find(&moving_, side, leaf, search);
-  if (found.search == search) return found;
-  found.search = search;
-  found.index = LeafFeatures::NO_INDEX;
-  if (!found.turned) found.turned = std::make_unique<LeafShapes>();
-  LeafShapes& turned = *found.turned;
-  kernels::kernels().turnLeaf(found.shapes, motion, &turned);
-  const LeafShapes& shapes = found.shapes;
-  for (int k = 0; k < 3; ++k) {
-    double centre = motion.t[k], half = 0;
-    for (int j = 0; j < 3; ++j) {
-      centre += motion.R[3 * k + j] * 0.5 * (static_cast<double>(shapes.lower[j]) + shapes.upper[j]);
-      half += std::abs(motion.R[3 * k + j]) * 0.5 * (static_cast<double>(shapes.upper[j]) - shapes.lower[j]);
-    }
-    turned.lower[k] = static_cast<float>(centre - half);
-    turned.upper[k] = static_cast<float>(centre + half);
-  }
   return found;
 }
 

@@ -31,15 +31,14 @@ struct LeafFeatures {
   };
   static constexpr std::uint32_t NO_INDEX = 0xFFFFFFFF;
 
-  std::uint64_t search = 0;    ///< the last search that came here: the index and a moving leaf's turned shapes are of it
-  std::uint32_t index;         ///< what that search calls it; NO_INDEX: nothing yet
+  std::uint64_t search = 0;  ///< the last search that came here
+  std::uint32_t index[2];  ///< what that search calls it, as a leaf of the moving mesh [1] and of the fixed one [0]; NO_INDEX: nothing yet
   kernels::LeafShapes shapes;  ///< in the mesh's frame
   Kind<kernels::Vec4, kernels::MAX_LEAF_FEATURES> vertices;
   Kind<kernels::FaceRecord, kernels::MAX_LEAF_ELEMENTS> faces;
   Kind<kernels::EdgeRecord, kernels::MAX_LEAF_FEATURES> edges;
   int patches[kernels::MAX_LEAF_ELEMENTS];          ///< of the faces
   BorderKinds borders[kernels::MAX_LEAF_ELEMENTS];  ///< of the faces
-  std::unique_ptr<kernels::LeafShapes> turned;      ///< of a moving leaf, in the frame of the search
 };
 
 kernels::FaceRecord faceRecord(const MeshSide& side, int element);
@@ -49,32 +48,30 @@ inline kernels::Vec4 vertexRecord(const MeshSide& side, int vertex) {
   return {p.x(), p.y(), p.z(), 0};
 }
 
+/** Shapes of a leaf after a motion. */
+void turnLeaf(const kernels::LeafShapes& shapes, const kernels::Motion& motion, kernels::LeafShapes* out);
+
 /** Leaves that were looked at lately. What is kept changes no result. */
 class LeafMemory {
  public:
-  /** Leaf of a mesh that stands. */
-  LeafFeatures& standing(const MeshSide& side, std::uint32_t leaf, std::uint64_t search);
-  /** Leaf of a mesh that moves: turned once per search. */
-  LeafFeatures& moving(const MeshSide& side, std::uint32_t leaf, std::uint64_t search, const kernels::Motion& motion);
+  /** @return what stays until the search ends */
+  LeafFeatures& find(const MeshSide& side, std::uint32_t leaf, std::uint64_t search);
 
  private:
-  static constexpr std::size_t CAPACITY = 4096, WAYS = 4;  // of each table; places that a leaf may have
-  /** A line of memory: which leaves are held, and where. */
+  static constexpr std::size_t SET_BITS = 11, WAYS = 8;  // 16,384 leaves; places that a leaf may have
+  /** Which leaves are held, and where. */
   struct alignas(64) Set {
     std::uint64_t keys[WAYS] = {};  // keyOf; 0: nobody's
     std::unique_ptr<LeafFeatures> features[WAYS];
   };
-  struct Table {
-    std::vector<Set> sets = std::vector<Set>(CAPACITY / WAYS);
-    // Leaves of the search at hand whose places others of its leaves hold: what a search has found stays until it ends.
-    std::map<std::uint32_t, std::unique_ptr<LeafFeatures>> crowded_out;
-    std::uint64_t crowded_search = 0;
-  };
   static std::uint64_t keyOf(const MeshSide& side, std::uint32_t leaf) { return side.identity << 32 | leaf; }
-  static LeafFeatures& find(Table* table, const MeshSide& side, std::uint32_t leaf, std::uint64_t search);
-  static LeafFeatures& findCrowdedOut(Table* table, const MeshSide& side, std::uint32_t leaf, std::uint64_t search);
+  LeafFeatures& findKept(const MeshSide& side, std::uint32_t leaf, std::uint64_t search);
+  LeafFeatures& findCrowdedOut(const MeshSide& side, std::uint32_t leaf, std::uint64_t search);
 
-  Table standing_, moving_;
+  std::vector<Set> sets_ = std::vector<Set>(1u << SET_BITS);
+  // Leaves of the search at hand whose places others of its leaves hold.
+  std::map<std::uint64_t, std::unique_ptr<LeafFeatures>> crowded_out_;
+  std::uint64_t crowded_search_ = 0;
 };
 
 }  // namespace blem_sim
