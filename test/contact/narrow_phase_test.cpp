@@ -5,6 +5,7 @@
 
 #include "blem_sim/contact/reduction.h"
 #include "contact_shapes.h"
+#include "mesh_pair.h"
 
 namespace blem_sim {
 namespace {
@@ -213,6 +214,29 @@ TEST(NarrowPhase, SlidingOverATessellatedPlaneKeepsTheIds) {
     if (step == 0) first = ids;
     EXPECT_EQ(ids, first);
   }
+}
+
+/** A plane with a notch: over one of its faces, beside another across the notch, where nothing but this takes over. */
+TEST(NarrowPhase, AVertexOverAPlaneDoesNotFadeBesideAnotherOfItsFaces) {
+  TriangleMesh plane;
+  const double xs[] = {-0.05, 0, 0.001, 0.05}, ys[] = {-0.05, 0, 0.1};
+  for (const double y : ys)
+    for (const double x : xs) plane.vertices.emplace_back(x, y, 0);
+  for (const int corner : {0, 1, 2, 4, 6}) {
+    plane.elements.emplace_back(corner, corner + 1, corner + 5);
+    plane.elements.emplace_back(corner, corner + 5, corner + 4);
+  }
+  const Vector3 tip(0.0012, 0.02, 0.0005);
+  const TriangleMesh blade{{tip, tip + Vector3(0, 0.004, -0.0004), tip + Vector3(0, 0.004, 0.002)}, {{0, 1, 2}}};
+  const Collider a = makeCollider(blade, 0.002), b = makeCollider(plane, 0.002);
+  const ContactManifold manifold = contactsOf(a, Pose::Identity(), b, Pose::Identity());
+  int of_tip = 0;
+  for (const Contact& c : manifold.contacts) {
+    if (c.id >> 30 != contactId({FeatureKind::VERTEX, 0}, {FeatureKind::FACE, 0}) >> 30) continue;
+    ++of_tip;
+    EXPECT_NEAR(c.depth, 0.0035, 1e-12);
+  }
+  EXPECT_EQ(of_tip, 1);
 }
 
 }  // namespace
