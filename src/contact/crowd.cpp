@@ -7,6 +7,7 @@
 #include <iterator>
 #include <limits>
 
+#include "id_filter.h"
 #include "reduction_lanes.h"
 
 namespace blem_sim {
@@ -76,23 +77,6 @@ class CoarseCells {
   std::array<std::int16_t, NUMBERS * NUMBERS * NUMBERS> numbers_;
   std::vector<int> keys_;
   std::vector<CellDirections> directions_;
-};
-
-/** Ids, most of which can be told from others without a search. */
-class IdFilter {
- public:
-  explicit IdFilter(const ContactIds& ids) : ids_(ids) {
-    bits_.fill(0);
-    for (const std::uint64_t id : ids) bits_[slot(id) / 64] |= std::uint64_t{1} << slot(id) % 64;
-  }
-  bool has(std::uint64_t id) const {
-    return (bits_[slot(id) / 64] >> slot(id) % 64 & 1) && std::binary_search(ids_.begin(), ids_.end(), id);
-  }
-
- private:
-  static std::uint64_t slot(std::uint64_t id) { return id * 0x9E3779B97F4A7C15ull >> 52; }
-  const ContactIds& ids_;
-  std::array<std::uint64_t, 64> bits_;
 };
 
 struct Buffers {

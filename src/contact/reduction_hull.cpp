@@ -6,6 +6,7 @@
 
 #include "blem_sim/contact/reduction.h"
 #include "contact_order.h"
+#include "continued_choice.h"
 #include "crowd.h"
 #include "hull_stages.h"
 #include "normal_cells.h"
@@ -78,6 +79,7 @@ void keepPatchHulls(const std::vector<Contact>& contacts, int k, Buffers* buffer
 
 const std::vector<int>& choose(const std::vector<Contact>& contacts, const ThinnedContacts& thinned, int k, const ContactIds& chosen_before,
                                Buffers* buffers) {
+  if (surelyGoesOn(contacts, thinned.kept, thinned.scale, k, chosen_before, &buffers->chosen)) return buffers->chosen;
   if (thinned.kept.size() > CROWD && k <= FEW) {
     thinCrowd(contacts, thinned.scale, thinned.kept, chosen_before, &buffers->candidates);
   } else {

@@ -121,29 +121,46 @@ BLEM_SIM_LANES int keepExtremePoints(const CellPoints& points, int count, int* a
 
 namespace {
 
-template <int DIRECTIONS>
-BLEM_SIM_INLINE int farthestOf(const PlaneDirections& directions, const double* x, const double* y, int count, PlaneExtremes* extremes,
-                               int* found) {
-  for (int d = 0; d < DIRECTIONS; ++d) extremes->value[d] = -__builtin_inf();
-  int raising = 0;
-  for (int i = 0; i < count; ++i) {
-    const double px = x[i], py = y[i];
-    long raises = 0;
-    for (int d = 0; d < DIRECTIONS; ++d) {
-      const double along = directions.along(d, px, py), before = extremes->value[d];
-      raises |= along >= before;
-      extremes->value[d] = along > before ? along : before;
+constexpr int LANES = 32;  // points at once: so many are kept as vectors, few would be turned into single numbers
+
+// Of the points in every lane the largest, then the largest of the lanes.
+BLEM_SIM_INLINE double largestAlong(double dx, double dy, const double* x, const double* y, int count) {
+  double most[LANES];
+  for (int lane = 0; lane < LANES; ++lane) most[lane] = -__builtin_inf();
+  int first = 0;
+  for (; first + LANES <= count; first += LANES) {
+    for (int lane = 0; lane < LANES; ++lane) {
+      const double along = dx * x[first + lane] + dy * y[first + lane];
+      most[lane] = along > most[lane] ? along : most[lane];
     }
-    found[raising] = i;
-    raising += raises != 0;
   }
+  for (int i = first; i < count; ++i) {
+    const double along = dx * x[i] + dy * y[i];
+    most[0] = along > most[0] ? along : most[0];
+  }
+  for (int half = LANES / 2; half > 0; half /= 2) {
+    for (int lane = 0; lane < half; ++lane) most[lane] = most[lane + half] > most[lane] ? most[lane + half] : most[lane];
+  }
+  return most[0];
+}
+
+BLEM_SIM_INLINE int farthestOf(int direction_count, const PlaneDirections& directions, const double* x, const double* y, int count,
+                               PlaneExtremes* extremes, int* found) {
+  constexpr int BLOCK = 64;
+  for (int d = 0; d < direction_count; ++d) extremes->value[d] = largestAlong(directions.x[d], directions.y[d], x, y, count);
   int size = 0;
-  for (int r = 0; r < raising; ++r) {
-    const double px = x[found[r]], py = y[found[r]];
-    long extreme = 0;
-    for (int d = 0; d < DIRECTIONS; ++d) extreme |= directions.along(d, px, py) == extremes->value[d];
-    found[size] = found[r];
-    size += extreme != 0;
+  for (int first = 0; first < count; first += BLOCK) {
+    const int some = count - first < BLOCK ? count - first : BLOCK;
+    long extreme[BLOCK];
+    for (int i = 0; i < BLOCK; ++i) extreme[i] = 0;
+    for (int d = 0; d < direction_count; ++d) {
+      const double dx = directions.x[d], dy = directions.y[d], value = extremes->value[d];
+      for (int i = 0; i < some; ++i) extreme[i] |= dx * x[first + i] + dy * y[first + i] == value ? 1 : 0;
+    }
+    for (int i = 0; i < some; ++i) {
+      found[size] = first + i;
+      size += extreme[i] != 0;
+    }
   }
   return size;
 }
@@ -152,12 +169,12 @@ BLEM_SIM_INLINE int farthestOf(const PlaneDirections& directions, const double* 
 
 BLEM_SIM_LANES int findFarthest(const PlaneDirections& directions, const double* x, const double* y, int count, PlaneExtremes* extremes,
                                 int* found) {
-  return farthestOf<PLANE_DIRECTIONS>(directions, x, y, count, extremes, found);
+  return farthestOf(PLANE_DIRECTIONS, directions, x, y, count, extremes, found);
 }
 
 BLEM_SIM_LANES int findFarthestOfOctagon(const PlaneDirections& directions, const double* x, const double* y, int count,
                                          PlaneExtremes* extremes, int* found) {
-  return farthestOf<OCTAGON_SIDES>(directions, x, y, count, extremes, found);
+  return farthestOf(OCTAGON_SIDES, directions, x, y, count, extremes, found);
 }
 
 BLEM_SIM_LANES int findOutside(const Octagon& octagon, const double* x, const double* y, int count, int* found) {
