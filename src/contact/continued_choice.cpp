@@ -1,68 +1,62 @@
 #include "continued_choice.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "id_filter.h"
+#include "reduction_lanes.h"
 #include "wrench_bounds.h"
 
 namespace blem_sim {
 
 namespace {
 
-constexpr double MOST_LACK = GOOD_ENOUGH - ROUNDING;  // of a unit force
-constexpr double FARTHEST = 1000;                     // [unit forces] larger handicaps are rounded by more than ROUNDING
-
-/** Where a contact pushes, in radii, and how much less its wrenches count, in unit forces. */
-struct Push {
-  Vector3 x, n;
-  double handicap;
-};
-
-Push pushOf(const Contact& contact, const PatchScale& scale) {
-  return {scale.lever(contact.point), contact.normal_BA, std::max(0.0, -contact.depth) * PER_GAP};
-}
+constexpr float MOST_LACK = GOOD_ENOUGH - ROUNDING;  // of a unit force
+constexpr float FARTHEST = 1000;                     // [unit forces] larger handicaps are rounded by more than ROUNDING
 
 // A largest component is a convex function of place: between two places it is no larger than the weighted mean of theirs.
-bool addsLittleBetween(const Push& push, const Push& a, const Push& b) {
-  const Vector3 way = b.x - a.x, from_a = push.x - a.x;
-  const double length2 = way.squaredNorm(), t = length2 > 0 ? std::clamp(from_a.dot(way) / length2, 0.0, 1.0) : 0.0;
-  const double aside = (from_a - t * way).norm(), tilt = (1 - t) * (push.n - a.n).norm() + t * (push.n - b.n).norm();
-  return PER_PLACE * aside + PER_NORMAL * tilt + (1 - t) * a.handicap + t * b.handicap - push.handicap <= MOST_LACK;
-}
-
-bool addsLittleBeside(const Push& push, const Push& other) {
-  const double room = MOST_LACK + push.handicap - other.handicap;
-  if (room < 0 || PER_PLACE * PER_PLACE * (push.x - other.x).squaredNorm() > room * room) return false;
-  return PER_PLACE * (push.x - other.x).norm() + PER_NORMAL * (push.n - other.n).norm() <= room;
+bool addsLittleBetween(const WrenchPoint& point, const WrenchPoint& a, const WrenchPoint& b) {
+  float along = 0, length2 = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    along += (point.x[axis] - a.x[axis]) * (b.x[axis] - a.x[axis]);
+    length2 += (b.x[axis] - a.x[axis]) * (b.x[axis] - a.x[axis]);
+  }
+  const float t = length2 > 0 ? std::clamp(along / length2, 0.0f, 1.0f) : 0.0f;
+  float between[3];
+  for (int axis = 0; axis < 3; ++axis) between[axis] = a.x[axis] + t * (b.x[axis] - a.x[axis]);
+  const float tilt = (1 - t) * distance(point.n, a.n) + t * distance(point.n, b.n);
+  const float lead = (1 - t) * a.handicap + t * b.handicap - point.handicap;
+  return PER_PLACE * distance(point.x, between) + PER_NORMAL * tilt + lead <= MOST_LACK;
 }
 
 /** Contacts chosen before among the members. */
 struct Before {
   std::vector<int> places;  // in the list of members, ascending
-  std::vector<Push> pushes;
+  std::vector<WrenchPoint> points;
+  WrenchPointRows rows;  // the same
 
   /** @return false if they are not k */
   bool find(const std::vector<Contact>& contacts, const std::vector<int>& members, const PatchScale& scale, int k, const ContactIds& ids) {
     if (static_cast<int>(ids.size()) != k) return false;
     const IdFilter filter(ids);
     places.clear();
-    pushes.clear();
+    points.clear();
+    rows.clear();
     for (int m = 0; m < static_cast<int>(members.size()); ++m) {
       const Contact& contact = contacts[members[m]];
       if (!filter.has(contact.id)) continue;
       places.push_back(m);
-      pushes.push_back(pushOf(contact, scale));
+      points.push_back(wrenchPoint(contact, scale));
+      rows.add(points.back());
     }
     return static_cast<int>(places.size()) == k;
   }
 
-  bool span(const Push& push, std::size_t following) const {
-    const Push &next = pushes[following % pushes.size()], &last = pushes[(following + pushes.size() - 1) % pushes.size()];
-    if (push.handicap > FARTHEST) return false;
-    return addsLittleBetween(push, last, next) ||
-           std::any_of(pushes.begin(), pushes.end(), [&](const Push& other) { return addsLittleBeside(push, other); });
+  /** @param following of the points, the first that comes after this one */
+  bool span(const WrenchPoint& point, std::size_t following) const {
+    if (point.handicap > FARTHEST) return false;
+    const WrenchPoint &next = points[following % points.size()], &last = points[(following + points.size() - 1) % points.size()];
+    return addsLittleBetween(point, last, next) || addsLittleBeside(rows, point, MOST_LACK);
   }
 };
 
@@ -83,7 +77,7 @@ bool surelyGoesOn(const std::vector<Contact>& contacts, const std::vector<int>& 
   for (int m = 0; m < static_cast<int>(members.size()); ++m) {
     if (following < before.places.size() && before.places[following] == m) {
       ++following;
-    } else if (!before.span(pushOf(contacts[members[m]], scale), following)) {
+    } else if (!before.span(wrenchPoint(contacts[members[m]], scale), following)) {
       return false;
     }
   }

@@ -17,9 +17,11 @@ class IdFilter {
     bits_.fill(0);
     for (const std::uint64_t id : ids) bits_[slot(id) / 64] |= std::uint64_t{1} << slot(id) % 64;
   }
-  bool has(std::uint64_t id) const {
-    return (bits_[slot(id) / 64] >> slot(id) % 64 & 1) && std::binary_search(ids_.begin(), ids_.end(), id);
-  }
+  bool has(std::uint64_t id) const { return mayHave(bits_.data(), id) && std::binary_search(ids_.begin(), ids_.end(), id); }
+
+  const std::uint64_t* bits() const { return bits_.data(); }
+  /** False if it surely has not. @param bits of a filter */
+  static bool mayHave(const std::uint64_t* bits, std::uint64_t id) { return bits[slot(id) / 64] >> slot(id) % 64 & 1; }
 
  private:
   static std::uint64_t slot(std::uint64_t id) { return id * 0x9E3779B97F4A7C15ull >> 52; }

@@ -1,7 +1,5 @@
 #include "overtaken.h"
 
-#include <cmath>
-
 #include "wrench_bounds.h"
 
 namespace blem_sim {
@@ -9,11 +7,6 @@ namespace blem_sim {
 namespace {
 
 constexpr int PIVOTS = 7;
-
-float distance(const float (&a)[3], const float (&b)[3]) {
-  const float x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
-  return std::sqrt(x * x + y * y + z * z);
-}
 
 // The farthest along every axis, both ways, handicaps counted, and the one with the least handicap: they exceed most of those that can be.
 void findPivots(const std::vector<WrenchPoint>& points, WrenchPoint* pivots) {

@@ -32,6 +32,8 @@ class PatchScale {
   /** @param ready whether they are all finite, with unit normals; else there is no scale */
   PatchScale(const std::vector<Contact>& contacts, bool* ready);
 
+  const Vector3& centre() const { return centre_; }  ///< [m]
+  double perRadius() const { return per_radius_; }   ///< [1/m]
   /** A point from the middle, in radii. */
   Vector3 lever(const Vector3& point) const { return (point - centre_) * per_radius_; }
   double depth() const { return depth_; }  ///< [m] of the deepest

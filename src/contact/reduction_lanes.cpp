@@ -1,6 +1,7 @@
 #include "reduction_lanes.h"
 
 #include "instruction_sets.h"
+#include "wrench_bounds.h"
 
 namespace blem_sim {
 
@@ -54,6 +55,37 @@ BLEM_SIM_INLINE void clear(WrenchComponents* components) {
 
 }  // namespace
 
+void WrenchPointRows::clear() {
+  for (int axis = 0; axis < 3; ++axis) {
+    x[axis].clear();
+    n[axis].clear();
+  }
+  handicap.clear();
+}
+
+void WrenchPointRows::add(const WrenchPoint& point) {
+  for (int axis = 0; axis < 3; ++axis) {
+    x[axis].push_back(point.x[axis]);
+    n[axis].push_back(point.n[axis]);
+  }
+  handicap.push_back(point.handicap);
+}
+
+BLEM_SIM_LANES bool addsLittleBeside(const WrenchPointRows& points, const WrenchPoint& point, float most) {
+  const float *px = points.x[0].data(), *py = points.x[1].data(), *pz = points.x[2].data();
+  const float *nx = points.n[0].data(), *ny = points.n[1].data(), *nz = points.n[2].data(), *handicap = points.handicap.data();
+  const WrenchPoint p = point;
+  const int count = static_cast<int>(points.handicap.size());
+  int little = 0;
+  for (int i = 0; i < count; ++i) {
+    const float dx = p.x[0] - px[i], dy = p.x[1] - py[i], dz = p.x[2] - pz[i];
+    const float tx = p.n[0] - nx[i], ty = p.n[1] - ny[i], tz = p.n[2] - nz[i];
+    const float way = __builtin_sqrtf(dx * dx + dy * dy + dz * dz), tilt = __builtin_sqrtf(tx * tx + ty * ty + tz * tz);
+    little |= PER_PLACE * way + PER_NORMAL * tilt + handicap[i] - p.handicap <= most ? 1 : 0;
+  }
+  return little != 0;
+}
+
 BLEM_SIM_LANES void findWrenches(const WrenchDirections& directions, const WrenchPoint* points, int count, WrenchComponents* components,
                                  WrenchComponents* extremes) {
   clear(extremes);
@@ -87,20 +119,38 @@ BLEM_SIM_LANES int firstLacking(const WrenchComponents& extremes, const WrenchCo
   return WRENCH_DIRECTIONS - static_cast<int>(largest(left));
 }
 
+namespace {
+
+typedef float Floats __attribute__((vector_size(32)));  // wider ones would be taken apart where processors have none
+typedef long Halves __attribute__((vector_size(32)));   // two comparisons each
+
+// Raises a part of the extremes. @return which of them the point reaches
+BLEM_SIM_INLINE Halves raiseSome(const CellDirections& c, const WrenchPoint& p, int first, float* extremes) {
+  const auto at = [first](const float* numbers) {
+    Floats floats;
+    __builtin_memcpy(&floats, numbers + first, sizeof(floats));
+    return floats;
+  };
+  const Floats component = at(c.place[0]) * p.x[0] + at(c.place[1]) * p.x[1] + at(c.place[2]) * p.x[2] + at(c.normal[0]) * p.n[0] +
+                           at(c.normal[1]) * p.n[1] + at(c.normal[2]) * p.n[2] - p.handicap;
+  const Floats before = at(extremes), after = component > before ? component : before;
+  __builtin_memcpy(extremes + first, &after, sizeof(after));
+  return reinterpret_cast<Halves>(component >= before);
+}
+
+}  // namespace
+
 BLEM_SIM_LANES int raiseCellExtremes(const CellPoints& points, int count, int* raising) {
+  constexpr int SOME = sizeof(Floats) / sizeof(float);
+  static_assert(CELL_DIRECTIONS == 2 * SOME, "in two parts");
   int size = 0;
   for (int i = 0; i < count; ++i) {
-    const WrenchPoint point = points.points[i];
+    const WrenchPoint& point = points.points[i];
     const CellDirections& directions = points.directions[points.cells[i]];
-    float* value = points.extremes[points.cells[i]].value;
-    int raises = 0;
-    for (int d = 0; d < CELL_DIRECTIONS; ++d) {
-      const float component = cellComponent(directions, point, d);
-      raises |= component >= value[d];
-      value[d] = component > value[d] ? component : value[d];
-    }
+    float* extremes = points.extremes[points.cells[i]].value;
+    const Halves raises = raiseSome(directions, point, 0, extremes) | raiseSome(directions, point, SOME, extremes);
     raising[size] = i;
-    size += raises;
+    size += (raises[0] | raises[1] | raises[2] | raises[3]) != 0;
   }
   return size;
 }
@@ -121,46 +171,29 @@ BLEM_SIM_LANES int keepExtremePoints(const CellPoints& points, int count, int* a
 
 namespace {
 
-constexpr int LANES = 32;  // points at once: so many are kept as vectors, few would be turned into single numbers
-
-// Of the points in every lane the largest, then the largest of the lanes.
-BLEM_SIM_INLINE double largestAlong(double dx, double dy, const double* x, const double* y, int count) {
-  double most[LANES];
-  for (int lane = 0; lane < LANES; ++lane) most[lane] = -__builtin_inf();
-  int first = 0;
-  for (; first + LANES <= count; first += LANES) {
-    for (int lane = 0; lane < LANES; ++lane) {
-      const double along = dx * x[first + lane] + dy * y[first + lane];
-      most[lane] = along > most[lane] ? along : most[lane];
+template <int DIRECTIONS>
+BLEM_SIM_INLINE int farthestOf(const PlaneDirections& directions, const double* x, const double* y, int count, PlaneExtremes* extremes,
+                               int* found) {
+  for (int d = 0; d < DIRECTIONS; ++d) extremes->value[d] = -__builtin_inf();
+  int raising = 0;
+  for (int i = 0; i < count; ++i) {
+    const double px = x[i], py = y[i];
+    long raises = 0;
+    for (int d = 0; d < DIRECTIONS; ++d) {
+      const double along = directions.along(d, px, py), before = extremes->value[d];
+      raises |= along >= before;
+      extremes->value[d] = along > before ? along : before;
     }
+    found[raising] = i;
+    raising += raises != 0;
   }
-  for (int i = first; i < count; ++i) {
-    const double along = dx * x[i] + dy * y[i];
-    most[0] = along > most[0] ? along : most[0];
-  }
-  for (int half = LANES / 2; half > 0; half /= 2) {
-    for (int lane = 0; lane < half; ++lane) most[lane] = most[lane + half] > most[lane] ? most[lane + half] : most[lane];
-  }
-  return most[0];
-}
-
-BLEM_SIM_INLINE int farthestOf(int direction_count, const PlaneDirections& directions, const double* x, const double* y, int count,
-                               PlaneExtremes* extremes, int* found) {
-  constexpr int BLOCK = 64;
-  for (int d = 0; d < direction_count; ++d) extremes->value[d] = largestAlong(directions.x[d], directions.y[d], x, y, count);
   int size = 0;
-  for (int first = 0; first < count; first += BLOCK) {
-    const int some = count - first < BLOCK ? count - first : BLOCK;
-    long extreme[BLOCK];
-    for (int i = 0; i < BLOCK; ++i) extreme[i] = 0;
-    for (int d = 0; d < direction_count; ++d) {
-      const double dx = directions.x[d], dy = directions.y[d], value = extremes->value[d];
-      for (int i = 0; i < some; ++i) extreme[i] |= dx * x[first + i] + dy * y[first + i] == value ? 1 : 0;
-    }
-    for (int i = 0; i < some; ++i) {
-      found[size] = first + i;
-      size += extreme[i] != 0;
-    }
+  for (int r = 0; r < raising; ++r) {
+    const double px = x[found[r]], py = y[found[r]];
+    long extreme = 0;
+    for (int d = 0; d < DIRECTIONS; ++d) extreme |= directions.along(d, px, py) == extremes->value[d];
+    found[size] = found[r];
+    size += extreme != 0;
   }
   return size;
 }
@@ -169,12 +202,12 @@ BLEM_SIM_INLINE int farthestOf(int direction_count, const PlaneDirections& direc
 
 BLEM_SIM_LANES int findFarthest(const PlaneDirections& directions, const double* x, const double* y, int count, PlaneExtremes* extremes,
                                 int* found) {
-  return farthestOf(PLANE_DIRECTIONS, directions, x, y, count, extremes, found);
+  return farthestOf<PLANE_DIRECTIONS>(directions, x, y, count, extremes, found);
 }
 
 BLEM_SIM_LANES int findFarthestOfOctagon(const PlaneDirections& directions, const double* x, const double* y, int count,
                                          PlaneExtremes* extremes, int* found) {
-  return farthestOf(OCTAGON_SIDES, directions, x, y, count, extremes, found);
+  return farthestOf<OCTAGON_SIDES>(directions, x, y, count, extremes, found);
 }
 
 BLEM_SIM_LANES int findOutside(const Octagon& octagon, const double* x, const double* y, int count, int* found) {
