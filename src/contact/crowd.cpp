@@ -100,7 +100,8 @@ struct Reading {
 
 // Points of the members as wrenchPoint has them, the keys of the cells of their normals, and those that may be spared. @return how many
 // those are
-BLEM_SIM_LANES int readMembers(const Reading& reading, WrenchPoint* points, int* keys, int* spared) {
+BLEM_SIM_LANES int readMembers(const Reading& given, WrenchPoint* points, int* keys, int* spared) {
+  const Reading reading = given;
   typedef float Floats __attribute__((vector_size(16)));
   typedef int Ints __attribute__((vector_size(16)));
   static_assert(sizeof(WrenchPoint) == 2 * sizeof(Floats), "numbers in the order of rows");
@@ -114,9 +115,10 @@ BLEM_SIM_LANES int readMembers(const Reading& reading, WrenchPoint* points, int*
     ContactRow row;
     readRow(contact, &row);
     const Doubles second = row.second * gaps;
-    const Floats floats[2] = {__builtin_convertvector((row.first - middle) * scale, Floats),
-                              __builtin_convertvector(second > least ? second : least, Floats)};
-    std::memcpy(&points[m], floats, sizeof(floats));
+    const Floats first_floats = __builtin_convertvector((row.first - middle) * scale, Floats);
+    const Floats second_floats = __builtin_convertvector(second > least ? second : least, Floats);
+    std::memcpy(&points[m], &first_floats, sizeof(Floats));
+    std::memcpy(reinterpret_cast<char*>(&points[m]) + sizeof(Floats), &second_floats, sizeof(Floats));
     const Ints first_cells = __builtin_convertvector(row.first * Doubles{0, 0, 0, PER_UNIT} + MIDDLE, Ints);
     const Ints second_cells = __builtin_convertvector(row.second * Doubles{PER_UNIT, PER_UNIT, 0, 0} + MIDDLE, Ints);
     keys[m] = (first_cells[3] * NUMBERS + second_cells[0]) * NUMBERS + second_cells[1];

@@ -124,18 +124,19 @@ namespace {
 typedef float Floats __attribute__((vector_size(32)));  // wider ones would be taken apart where processors have none
 typedef long Halves __attribute__((vector_size(32)));   // two comparisons each
 
-// Raises a part of the extremes. @return which of them the point reaches
-BLEM_SIM_INLINE Halves raiseSome(const CellDirections& c, const WrenchPoint& p, int first, float* extremes) {
-  const auto at = [first](const float* numbers) {
-    Floats floats;
-    __builtin_memcpy(&floats, numbers + first, sizeof(floats));
-    return floats;
-  };
-  const Floats component = at(c.place[0]) * p.x[0] + at(c.place[1]) * p.x[1] + at(c.place[2]) * p.x[2] + at(c.normal[0]) * p.n[0] +
-                           at(c.normal[1]) * p.n[1] + at(c.normal[2]) * p.n[2] - p.handicap;
-  const Floats before = at(extremes), after = component > before ? component : before;
-  __builtin_memcpy(extremes + first, &after, sizeof(after));
-  return reinterpret_cast<Halves>(component >= before);
+// Raises a part of the extremes, and adds which of them the point reaches.
+BLEM_SIM_INLINE void raiseSome(const CellDirections& c, const WrenchPoint& p, int first, float* extremes, Halves* reached) {
+  Floats place[3], normal[3], before;
+  for (int axis = 0; axis < 3; ++axis) {
+    __builtin_memcpy(&place[axis], c.place[axis] + first, sizeof(Floats));
+    __builtin_memcpy(&normal[axis], c.normal[axis] + first, sizeof(Floats));
+  }
+  __builtin_memcpy(&before, extremes + first, sizeof(Floats));
+  const Floats component =
+      place[0] * p.x[0] + place[1] * p.x[1] + place[2] * p.x[2] + normal[0] * p.n[0] + normal[1] * p.n[1] + normal[2] * p.n[2] - p.handicap;
+  const Floats after = component > before ? component : before;
+  __builtin_memcpy(extremes + first, &after, sizeof(Floats));
+  *reached |= reinterpret_cast<Halves>(component >= before);
 }
 
 }  // namespace
@@ -148,7 +149,9 @@ BLEM_SIM_LANES int raiseCellExtremes(const CellPoints& points, int count, int* r
     const WrenchPoint& point = points.points[i];
     const CellDirections& directions = points.directions[points.cells[i]];
     float* extremes = points.extremes[points.cells[i]].value;
-    const Halves raises = raiseSome(directions, point, 0, extremes) | raiseSome(directions, point, SOME, extremes);
+    Halves raises = {};
+    raiseSome(directions, point, 0, extremes, &raises);
+    raiseSome(directions, point, SOME, extremes, &raises);
     raising[size] = i;
     size += (raises[0] | raises[1] | raises[2] | raises[3]) != 0;
   }

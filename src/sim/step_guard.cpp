@@ -23,11 +23,11 @@ Pose motionOf(int body, const std::vector<BodyState>& before, const std::vector<
   return body == WORLD_BODY ? Pose::Identity() : after[body].X_WB * before[body].X_WB.inverse();
 }
 
-/** [m] Largest extent of the contacts of two colliders. */
+/** [m] Largest extent of the contacts of two colliders; infinite if nothing bounds it. */
 double extent(const Collider& a, const Collider& b) {
   double least = std::numeric_limits<double>::infinity();
   for (const Collider* collider : {&a, &b})
-    if (!collider->geometry->isHalfSpace()) least = std::min(least, collider->geometry->bounds().diagonal().norm());
+    if (collider->geometry && !collider->geometry->isHalfSpace()) least = std::min(least, collider->geometry->bounds().diagonal().norm());
   return least + 2 * (a.radius + b.radius) + BEYOND;
 }
 
