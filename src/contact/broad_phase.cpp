@@ -92,19 +92,20 @@ class BroadPhase::Search {
     std::vector<SweepStart>& starts = space_.starts_;
     starts.clear();
     for (std::size_t i = 0; i < space_.boxes_.size(); ++i)
-      starts.push_back({space_.boxes_[i].lower[axis] - space_.boxes_[i].reach, static_cast<int>(i)});
+      starts.push_back({space_.boxes_[i].lower[axis] - space_.boxes_[i].reach, static_cast<int>(i), space_.boxes_[i].model});
     // Boxes are in the order of their colliders.
     std::sort(starts.begin(), starts.end(),
               [](const SweepStart& p, const SweepStart& q) { return p.at < q.at || (p.at == q.at && p.box < q.box); });
     for (std::size_t i = 0; i < starts.size(); ++i) {
       const SweepBox& box = space_.boxes_[starts[i].box];
       const double end = box.upper[axis] + box.reach;
-      for (std::size_t j = i + 1; j < starts.size() && starts[j].at <= end; ++j) meet(box, space_.boxes_[starts[j].box]);
+      for (std::size_t j = i + 1; j < starts.size() && starts[j].at <= end; ++j) {
+        if (box.model < 0 || starts[j].model != box.model) meet(box, space_.boxes_[starts[j].box]);
+      }
     }
   }
 
   void meet(const SweepBox& box, const SweepBox& other) {
-    if (box.model >= 0 && box.model == other.model) return;
     const Vector3 gap = (box.lower - other.upper).cwiseMax(other.lower - box.upper).cwiseMax(0.0);
     const double furthest = range(box.collider, other.collider);
     if (gap.squaredNorm() > furthest * furthest) return;

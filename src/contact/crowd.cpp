@@ -4,9 +4,13 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <iterator>
 #include <limits>
 
+#include "contact_row.h"
+#include "id_filter.h"
+#include "instruction_sets.h"
 #include "reduction_lanes.h"
 
 namespace blem_sim {
@@ -58,42 +62,71 @@ class CoarseCells {
     directions_.clear();
   }
 
-  int of(const Vector3& normal) {
-    const auto number = [](double part) { return static_cast<int>(part * PER_UNIT + (PER_UNIT + 0.5)); };
-    const int i = number(normal.x()), j = number(normal.y()), k = number(normal.z());
-    const int key = (i * NUMBERS + j) * NUMBERS + k;
-    if (numbers_[key] < 0) {
-      numbers_[key] = static_cast<std::int16_t>(keys_.size());
-      keys_.push_back(key);
-      directions_.push_back(directionsAcross(Vector3(i - PER_UNIT, j - PER_UNIT, k - PER_UNIT).normalized()));
+  /** Turns the keys of cells into their numbers. */
+  void number(std::vector<int>* keys) {
+    const std::int16_t* numbers = numbers_.data();
+    int* all = keys->data();
+    for (std::size_t i = 0; i < keys->size(); ++i) {
+      if (numbers[all[i]] < 0) add(all[i]);
+      all[i] = numbers[all[i]];
     }
-    return numbers_[key];
   }
 
   const std::vector<CellDirections>& directions() const { return directions_; }
 
  private:
+  void add(int key) {
+    numbers_[key] = static_cast<std::int16_t>(keys_.size());
+    keys_.push_back(key);
+    const Vector3 cell(key / (NUMBERS * NUMBERS), key / NUMBERS % NUMBERS, key % NUMBERS);
+    directions_.push_back(directionsAcross((cell - Vector3::Constant(PER_UNIT)).normalized()));
+  }
+
   std::array<std::int16_t, NUMBERS * NUMBERS * NUMBERS> numbers_;
   std::vector<int> keys_;
   std::vector<CellDirections> directions_;
 };
 
-/** Ids, most of which can be told from others without a search. */
-class IdFilter {
- public:
-  explicit IdFilter(const ContactIds& ids) : ids_(ids) {
-    bits_.fill(0);
-    for (const std::uint64_t id : ids) bits_[slot(id) / 64] |= std::uint64_t{1} << slot(id) % 64;
-  }
-  bool has(std::uint64_t id) const {
-    return (bits_[slot(id) / 64] >> slot(id) % 64 & 1) && std::binary_search(ids_.begin(), ids_.end(), id);
-  }
-
- private:
-  static std::uint64_t slot(std::uint64_t id) { return id * 0x9E3779B97F4A7C15ull >> 52; }
-  const ContactIds& ids_;
-  std::array<std::uint64_t, 64> bits_;
+/** What of the members is read, contact by contact, and what goes with it. */
+struct Reading {
+  const Contact* contacts;
+  const int* members;
+  int count;
+  const double* centre;  // [m]
+  double per_radius;     // [1/m]
+  double deep;           // [m] members as deep may be spared, as those among these bits of an IdFilter
+  const std::uint64_t* spared_bits;
 };
+
+// Points of the members as wrenchPoint has them, the keys of the cells of their normals, and those that may be spared. @return how many
+// those are
+BLEM_SIM_LANES int readMembers(const Reading& given, WrenchPoint* points, int* keys, int* spared) {
+  const Reading reading = given;
+  typedef float Floats __attribute__((vector_size(16)));
+  typedef int Ints __attribute__((vector_size(16)));
+  static_assert(sizeof(WrenchPoint) == 2 * sizeof(Floats), "numbers in the order of rows");
+  constexpr double MIDDLE = PER_UNIT + 0.5;
+  const double s = reading.per_radius;
+  const Doubles middle = {reading.centre[0], reading.centre[1], reading.centre[2], 0}, scale = {s, s, s, 1};
+  const Doubles gaps = {1, 1, -PER_GAP, 0}, least = {-2, -2, 0, 0};  // handicaps are never negative
+  int size = 0;
+  for (int m = 0; m < reading.count; ++m) {
+    const Contact& contact = reading.contacts[reading.members[m]];
+    ContactRow row;
+    readRow(contact, &row);
+    const Doubles second = row.second * gaps;
+    const Floats first_floats = __builtin_convertvector((row.first - middle) * scale, Floats);
+    const Floats second_floats = __builtin_convertvector(second > least ? second : least, Floats);
+    std::memcpy(&points[m], &first_floats, sizeof(Floats));
+    std::memcpy(reinterpret_cast<char*>(&points[m]) + sizeof(Floats), &second_floats, sizeof(Floats));
+    const Ints first_cells = __builtin_convertvector(row.first * Doubles{0, 0, 0, PER_UNIT} + MIDDLE, Ints);
+    const Ints second_cells = __builtin_convertvector(row.second * Doubles{PER_UNIT, PER_UNIT, 0, 0} + MIDDLE, Ints);
+    keys[m] = (first_cells[3] * NUMBERS + second_cells[0]) * NUMBERS + second_cells[1];
+    spared[size] = m;
+    size += static_cast<int>(contact.depth >= reading.deep) | static_cast<int>(IdFilter::mayHave(reading.spared_bits, contact.id));
+  }
+  return size;
+}
 
 struct Buffers {
   CoarseCells cells;
@@ -102,23 +135,23 @@ struct Buffers {
   std::vector<CellExtremes> extremes;
 };
 
-// Points and cells of the members, and which are to be kept whatever else is.
-void fill(const std::vector<Contact>& contacts, const PatchScale& scale, const std::vector<int>& members, const ContactIds& spared,
+void read(const std::vector<Contact>& contacts, const PatchScale& scale, const std::vector<int>& members, const ContactIds& spared,
           Buffers* buffers) {
   const IdFilter filter(spared);
-  const int count = static_cast<int>(members.size());
-  buffers->cells.clear();
-  buffers->spared.clear();
   buffers->points.resize(members.size());
   buffers->cell_of.resize(members.size());
-  WrenchPoint* points = buffers->points.data();
-  int* cell_of = buffers->cell_of.data();
-  for (int m = 0; m < count; ++m) {
+  buffers->spared.resize(members.size());
+  const Reading reading{contacts.data(),       members.data(),    static_cast<int>(members.size()),
+                        scale.centre().data(), scale.perRadius(), scale.depth() - DEPTH_TIE,
+                        filter.bits()};
+  buffers->spared.resize(readMembers(reading, buffers->points.data(), buffers->cell_of.data(), buffers->spared.data()));
+  const auto is_not = [&](int m) {
     const Contact& contact = contacts[members[m]];
-    points[m] = wrenchPoint(contact, scale);
-    cell_of[m] = buffers->cells.of(contact.normal_BA);
-    if (scale.isDeepest(contact) || filter.has(contact.id)) buffers->spared.push_back(m);
-  }
+    return !scale.isDeepest(contact) && !filter.has(contact.id);
+  };
+  buffers->spared.erase(std::remove_if(buffers->spared.begin(), buffers->spared.end(), is_not), buffers->spared.end());
+  buffers->cells.clear();
+  buffers->cells.number(&buffers->cell_of);
 }
 
 // Indices of the members that are extreme in their cells, ascending.
@@ -136,8 +169,9 @@ void findExtreme(Buffers* buffers) {
 
 void thinCrowd(const std::vector<Contact>& contacts, const PatchScale& scale, const std::vector<int>& members, const ContactIds& spared,
                std::vector<int>* kept) {
-  static thread_local Buffers buffers;
-  fill(contacts, scale, members, spared, &buffers);
+  static thread_local Buffers thread_buffers;
+  Buffers& buffers = thread_buffers;
+  read(contacts, scale, members, spared, &buffers);
   findExtreme(&buffers);
   kept->clear();
   std::set_union(buffers.extreme.begin(), buffers.extreme.end(), buffers.spared.begin(), buffers.spared.end(), std::back_inserter(*kept));

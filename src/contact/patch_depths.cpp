@@ -7,25 +7,6 @@
 
 namespace blem_sim {
 
-PatchDepths::Facet::Facet(const PlanePoint& first_corner, const PlanePoint& second_corner, const PlanePoint& third_corner)
-    : a(first_corner), b(second_corner), c(third_corner) {
-  const double area = cross(a, b, c);
-  per_area = area > 0 ? 1 / area : 0;
-}
-
-double PatchDepths::Facet::depthAt(const PlanePoint& p) const {
-  if (per_area > 0) {
-    const double weight_a = std::clamp(cross(b, c, p) * per_area, 0.0, 1.0);
-    const double weight_b = std::clamp(cross(c, a, p) * per_area, 0.0, 1.0 - weight_a);
-    return weight_a * a.depth + weight_b * b.depth + (1 - weight_a - weight_b) * c.depth;
-  }
-  const double along = (p.x - a.x) * (b.x - a.x) + (p.y - a.y) * (b.y - a.y), length = distance(a, b);
-  const double weight_b = length > 0 ? std::clamp(along / (length * length), 0.0, 1.0) : 0.0;
-  return (1 - weight_b) * a.depth + weight_b * b.depth;
-}
-
-PlanePoint PatchDepths::pointAt(int place) const { return {places_->x[place], places_->y[place], places_->depth[place], members_[place]}; }
-
 int PatchDepths::deepestPlace() const {
   const std::vector<double>& depth = places_->depth;
   int best = 0;

@@ -1,6 +1,7 @@
 // Contacts of a flat patch that are deeper than its corners tell.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -43,16 +44,29 @@ class PatchDepths {
 
   /** A triangle of kept points, a segment if c is b, and the places in it that are above it. */
   struct Facet {
-    Facet(const PlanePoint& a, const PlanePoint& b, const PlanePoint& c);
+    Facet(const PlanePoint& first_corner, const PlanePoint& second_corner, const PlanePoint& third_corner)
+        : a(first_corner), b(second_corner), c(third_corner) {
+      const double area = cross(a, b, c);
+      per_area = area > 0 ? 1 / area : 0;
+    }
     bool isSegment() const { return b.contact == c.contact; }
-    double depthAt(const PlanePoint& p) const;
+    double depthAt(const PlanePoint& p) const {
+      if (per_area > 0) {
+        const double weight_a = std::clamp(cross(b, c, p) * per_area, 0.0, 1.0);
+        const double weight_b = std::clamp(cross(c, a, p) * per_area, 0.0, 1.0 - weight_a);
+        return weight_a * a.depth + weight_b * b.depth + (1 - weight_a - weight_b) * c.depth;
+      }
+      const double along = (p.x - a.x) * (b.x - a.x) + (p.y - a.y) * (b.y - a.y), length = distance(a, b);
+      const double weight_b = length > 0 ? std::clamp(along / (length * length), 0.0, 1.0) : 0.0;
+      return (1 - weight_b) * a.depth + weight_b * b.depth;
+    }
     PlanePoint a, b, c;
     double per_area;  // 0 if there is none: then it is a segment, too
     int first = NO_PLACE, highest = NO_PLACE;
     double most = 0;  // [m] that the highest is above it
   };
 
-  PlanePoint pointAt(int place) const;
+  PlanePoint pointAt(int place) const { return {places_->x[place], places_->y[place], places_->depth[place], members_[place]}; }
   int deepestPlace() const;
   /** Opens triangles from one point to all sides: the deepest if no corner is as deep, else the deepest corner. */
   void openFan(const std::vector<PlanePoint>& corners, const PlanePoint& deepest, std::vector<int>* kept);

@@ -1,8 +1,9 @@
 #include "patch_frame.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
+
+#include "contact_row.h"
 
 namespace blem_sim {
 
@@ -11,31 +12,39 @@ namespace {
 constexpr double SMALLEST = 1e-6;  // [m] radius
 constexpr double UNIT = 1.9e-14;   // squares of lengths are 1 within it
 
+// The least and the largest numbers of the contacts. @return whether all are finite, with unit normals
+BLEM_SIM_LANES bool findSpan(const Contact* contacts, std::size_t count, ContactRow* lowest, ContactRow* highest) {
+  constexpr double INFINITE = std::numeric_limits<double>::infinity();
+  ContactRow low{Doubles{} + INFINITE, Doubles{} + INFINITE}, high{-low.first, -low.second};
+  Doubles nothing = {};  // 0 while all are finite
+  int unready = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    ContactRow row;
+    readRow(contacts[i], &row);
+    low.first = row.first < low.first ? row.first : low.first;
+    high.first = row.first > high.first ? row.first : high.first;
+    high.second = row.second > high.second ? row.second : high.second;
+    nothing += 0 * row.first + 0 * row.second;
+    const double* n = contacts[i].normal_BA.data();
+    const double excess = n[0] * n[0] + n[1] * n[1] + n[2] * n[2] - 1;
+    unready |= !((excess < 0 ? -excess : excess) <= UNIT);
+  }
+  *lowest = low;
+  *highest = high;
+  for (int i = 0; i < 4; ++i) unready |= !(nothing[i] == 0);
+  return !unready;
+}
+
 }  // namespace
 
 PatchScale::PatchScale(const std::vector<Contact>& contacts, bool* ready) {
-  constexpr double INFINITE = std::numeric_limits<double>::infinity();
-  double low[3] = {INFINITE, INFINITE, INFINITE}, high[3] = {-INFINITE, -INFINITE, -INFINITE}, deepest = -INFINITE;
-  int unready = 0;
-  double nothing = 0;  // not a number if any place or depth is none, or infinite
-  for (const Contact& contact : contacts) {
-    const double x = contact.point.x(), y = contact.point.y(), z = contact.point.z(), depth = contact.depth;
-    nothing += 0 * x + 0 * y + 0 * z + 0 * depth;
-    unready |= !(std::abs(contact.normal_BA.squaredNorm() - 1) <= UNIT);
-    low[0] = std::min(low[0], x);
-    low[1] = std::min(low[1], y);
-    low[2] = std::min(low[2], z);
-    high[0] = std::max(high[0], x);
-    high[1] = std::max(high[1], y);
-    high[2] = std::max(high[2], z);
-    deepest = std::max(deepest, depth);
-  }
-  *ready = !unready && nothing == 0;
+  ContactRow low, high;
+  *ready = findSpan(contacts.data(), contacts.size(), &low, &high);
   if (!*ready || contacts.empty()) return;
-  const Vector3 lowest(low[0], low[1], low[2]), highest(high[0], high[1], high[2]);
+  const Vector3 lowest(low.first[0], low.first[1], low.first[2]), highest(high.first[0], high.first[1], high.first[2]);
   centre_ = 0.5 * (lowest + highest);
   per_radius_ = 1 / std::max(0.5 * (highest - lowest).norm(), SMALLEST);
-  depth_ = deepest;
+  depth_ = high.second[2];
 }
 
 }  // namespace blem_sim

@@ -32,15 +32,18 @@ class PatchScale {
   /** @param ready whether they are all finite, with unit normals; else there is no scale */
   PatchScale(const std::vector<Contact>& contacts, bool* ready);
 
+  const Vector3& centre() const { return centre_; }  ///< [m]
+  double perRadius() const { return per_radius_; }   ///< [1/m]
   /** A point from the middle, in radii. */
   Vector3 lever(const Vector3& point) const { return (point - centre_) * per_radius_; }
+  double depth() const { return depth_; }  ///< [m] of the deepest
   /** Whether none is deeper, but for rounding. */
   bool isDeepest(const Contact& contact) const { return contact.depth >= depth_ - DEPTH_TIE; }
 
  private:
   Vector3 centre_ = Vector3::Zero();
   double per_radius_ = 0;  // [1/m]
-  double depth_ = 0;       // [m] of the deepest
+  double depth_ = 0;
 };
 
 inline WrenchPoint wrenchPoint(const Contact& contact, const PatchScale& scale) {

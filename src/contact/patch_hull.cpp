@@ -14,6 +14,8 @@ namespace blem_sim {
 
 namespace {
 
+constexpr int WORTHWHILE = 40;  // places: of fewer, none are sorted out before the hull
+
 struct Buffers {
   PlanePlaces places;
   std::vector<int> farthest, outside;
@@ -54,24 +56,30 @@ const PlaneDirections& planeDirections() {
 // Whether it is worth a look if a patch has more corners than that: large ones are mostly inside.
 bool mayHaveMore(int corners, int members) { return corners < std::min(members, PLANE_DIRECTIONS) && members < 20 * corners; }
 
-// Where the members lie in the plane, and which of them are farthest out.
-void project(const std::vector<Contact>& contacts, const int* begin, const int* end, const Vector3& normal, int most, Buffers* buffers) {
+// Where the members lie in the plane.
+void project(const std::vector<Contact>& contacts, const int* begin, const int* end, const Vector3& normal, PlanePlaces* places) {
   const PlaneAxes axes = axesAcross(normal);
-  PlanePlaces& places = buffers->places;
-  places.x.resize(end - begin);
-  places.y.resize(end - begin);
-  places.depth.resize(end - begin);
-  for (std::size_t i = 0; i < places.x.size(); ++i) {
+  places->x.resize(end - begin);
+  places->y.resize(end - begin);
+  places->depth.resize(end - begin);
+  for (std::size_t i = 0; i < places->x.size(); ++i) {
     const Contact& contact = contacts[begin[i]];
-    places.x[i] = axes.u.dot(contact.point);
-    places.y[i] = axes.v.dot(contact.point);
-    places.depth[i] = contact.depth;
+    places->x[i] = axes.u.dot(contact.point);
+    places->y[i] = axes.v.dot(contact.point);
+    places->depth[i] = contact.depth;
   }
-  std::vector<int>& farthest = buffers->farthest;
-  farthest.resize(places.x.size());
+}
+
+// Which places are farthest out, along the octagon's directions at least; few places need none.
+void findExtremes(int most, Buffers* buffers) {
+  const PlanePlaces& places = buffers->places;
   const int count = static_cast<int>(places.x.size());
-  const auto find = mayHaveMore(most, count) ? findFarthest : findFarthestOfOctagon;
-  farthest.resize(find(planeDirections(), places.x.data(), places.y.data(), count, &buffers->extremes, farthest.data()));
+  const bool all_directions = mayHaveMore(most, count);
+  if (!all_directions && count < WORTHWHILE) return;
+  buffers->farthest.resize(count);
+  const auto find = all_directions ? findFarthest : findFarthestOfOctagon;
+  const int found = find(planeDirections(), places.x.data(), places.y.data(), count, &buffers->extremes, buffers->farthest.data());
+  buffers->farthest.resize(found);
 }
 
 // The first place that is farthest along a direction.
@@ -98,7 +106,6 @@ bool hasMoreCorners(int than, const Buffers& buffers) {
 
 // Indices of the places that may be corners: others lie inside the octagon of extremes. Saves most of the sorting of large patches.
 void findOuter(Buffers* buffers) {
-  constexpr int WORTHWHILE = 16;
   const std::vector<double>&x = buffers->places.x, &y = buffers->places.y;
   const int count = static_cast<int>(x.size());
   std::vector<int>& outside = buffers->outside;
@@ -177,6 +184,7 @@ std::pair<std::size_t, std::size_t> farthestPair(const std::vector<PlanePoint>& 
 
 // Appends chain[from] and those of the corners up to, and without, chain[to] that stand out from the chords. [Douglas 1973]
 void appendProminent(const std::vector<PlanePoint>& chain, std::size_t from, std::size_t to, std::vector<PlanePoint>* corners) {
+  if (to == from + 1) return corners->push_back(chain[from]);
   std::size_t farthest = from;
   double most = FLATNESS * distance(chain[from], chain[to]);
   for (std::size_t i = from + 1; i < to; ++i) {
@@ -214,7 +222,8 @@ void patchHull(const std::vector<Contact>& contacts, const int* begin, const int
                std::vector<int>* kept) {
   static thread_local Buffers buffers;
   if (end - begin == 1) return kept->push_back(*begin);
-  project(contacts, begin, end, normal, most, &buffers);
+  project(contacts, begin, end, normal, &buffers.places);
+  findExtremes(most, &buffers);
   if (hasMoreCorners(most, buffers)) {
     kept->insert(kept->end(), begin, end);
     return;
@@ -223,6 +232,7 @@ void patchHull(const std::vector<Contact>& contacts, const int* begin, const int
   sortOuter(contacts, begin, &buffers);
   findCorners(&buffers);
   for (const PlanePoint& corner : buffers.corners) kept->push_back(corner.contact);
+  if (buffers.corners.size() == buffers.places.x.size()) return;  // no other
   buffers.depths.keepDeeper(contacts, begin, buffers.places, buffers.corners, kept);
 }
 

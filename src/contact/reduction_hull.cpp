@@ -6,6 +6,7 @@
 
 #include "blem_sim/contact/reduction.h"
 #include "contact_order.h"
+#include "continued_choice.h"
 #include "crowd.h"
 #include "hull_stages.h"
 #include "normal_cells.h"
@@ -41,10 +42,9 @@ bool mayHaveStairs(const std::vector<double>& heights) {
   return std::none_of(heights.begin(), heights.end(), [&](double height) { return height - low <= STAIR && high - height <= STAIR; });
 }
 
-// Appends the hull of every patch among contacts of one cell. Reorders the members.
+// Appends the hull of every patch among contacts of one cell, two at least. Reorders the members.
 void keepHullsOfCell(const std::vector<Contact>& contacts, int* begin, int* end, const Vector3& normal, int k, Buffers* buffers,
                      std::vector<int>* kept) {
-  if (end - begin == 1) return kept->push_back(*begin);
   std::vector<double>& heights = buffers->heights;
   heights.clear();
   for (const int* member = begin; member != end; ++member) heights.push_back(normal.dot(contacts[*member].point));
@@ -72,19 +72,24 @@ void keepPatchHulls(const std::vector<Contact>& contacts, int k, Buffers* buffer
     return;
   }
   kept->clear();
-  for (int cell = 0; cell < cells.count(); ++cell)
-    keepHullsOfCell(contacts, cells.begin(cell), cells.end(cell), cells.normal(cell), k, buffers, kept);
+  for (int cell = 0; cell < cells.count(); ++cell) {
+    if (cells.end(cell) - cells.begin(cell) == 1) {
+      kept->push_back(*cells.begin(cell));
+    } else {
+      keepHullsOfCell(contacts, cells.begin(cell), cells.end(cell), cells.normal(cell), k, buffers, kept);
+    }
+  }
 }
 
-const std::vector<int>& choose(const std::vector<Contact>& contacts, const ThinnedContacts& thinned, int k, const ContactIds& chosen_before,
-                               Buffers* buffers) {
+void choose(const std::vector<Contact>& contacts, const ThinnedContacts& thinned, int k, const ContactIds& chosen_before,
+            Buffers* buffers) {
   if (thinned.kept.size() > CROWD && k <= FEW) {
     thinCrowd(contacts, thinned.scale, thinned.kept, chosen_before, &buffers->candidates);
   } else {
+    if (surelyGoesOn(contacts, thinned.kept, thinned.scale, k, chosen_before, &buffers->chosen)) return;
     buffers->candidates = thinned.kept;
   }
   chooseSpanningContacts(contacts, thinned.kept, thinned.scale, k, chosen_before, &buffers->candidates, &buffers->chosen);
-  return buffers->chosen;
 }
 
 }  // namespace
@@ -99,10 +104,15 @@ bool thinToHulls(const std::vector<Contact>& contacts, int k, ThinnedContacts* t
 void chooseFromHulls(const std::vector<Contact>& contacts, const ThinnedContacts& thinned, int k, const ContactIds& chosen_before,
                      std::vector<Contact>* reduced) {
   const bool few = static_cast<int>(thinned.kept.size()) <= k;
-  const std::vector<int>& chosen = few ? thinned.kept : choose(contacts, thinned, k, chosen_before, &threadBuffers());
+  Buffers& buffers = threadBuffers();
+  if (few) {
+    buffers.chosen = thinned.kept;
+  } else {
+    choose(contacts, thinned, k, chosen_before, &buffers);
+  }
+  sortCanonically(contacts, &buffers.chosen);
   reduced->clear();
-  for (const int i : chosen) reduced->push_back(contacts[i]);
-  std::sort(reduced->begin(), reduced->end(), contactBefore);
+  for (const int i : buffers.chosen) reduced->push_back(contacts[i]);
 }
 
 void reduceHull(const std::vector<Contact>& contacts, int k, const ContactIds& chosen_before, std::vector<Contact>* reduced) {

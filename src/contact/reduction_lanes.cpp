@@ -1,6 +1,7 @@
 #include "reduction_lanes.h"
 
 #include "instruction_sets.h"
+#include "wrench_bounds.h"
 
 namespace blem_sim {
 
@@ -54,6 +55,37 @@ BLEM_SIM_INLINE void clear(WrenchComponents* components) {
 
 }  // namespace
 
+void WrenchPointRows::clear() {
+  for (int axis = 0; axis < 3; ++axis) {
+    x[axis].clear();
+    n[axis].clear();
+  }
+  handicap.clear();
+}
+
+void WrenchPointRows::add(const WrenchPoint& point) {
+  for (int axis = 0; axis < 3; ++axis) {
+    x[axis].push_back(point.x[axis]);
+    n[axis].push_back(point.n[axis]);
+  }
+  handicap.push_back(point.handicap);
+}
+
+BLEM_SIM_LANES bool addsLittleBeside(const WrenchPointRows& points, const WrenchPoint& point, float most) {
+  const float *px = points.x[0].data(), *py = points.x[1].data(), *pz = points.x[2].data();
+  const float *nx = points.n[0].data(), *ny = points.n[1].data(), *nz = points.n[2].data(), *handicap = points.handicap.data();
+  const WrenchPoint p = point;
+  const int count = static_cast<int>(points.handicap.size());
+  int little = 0;
+  for (int i = 0; i < count; ++i) {
+    const float dx = p.x[0] - px[i], dy = p.x[1] - py[i], dz = p.x[2] - pz[i];
+    const float tx = p.n[0] - nx[i], ty = p.n[1] - ny[i], tz = p.n[2] - nz[i];
+    const float way = __builtin_sqrtf(dx * dx + dy * dy + dz * dz), tilt = __builtin_sqrtf(tx * tx + ty * ty + tz * tz);
+    little |= PER_PLACE * way + PER_NORMAL * tilt + handicap[i] - p.handicap <= most ? 1 : 0;
+  }
+  return little != 0;
+}
+
 BLEM_SIM_LANES void findWrenches(const WrenchDirections& directions, const WrenchPoint* points, int count, WrenchComponents* components,
                                  WrenchComponents* extremes) {
   clear(extremes);
@@ -87,20 +119,41 @@ BLEM_SIM_LANES int firstLacking(const WrenchComponents& extremes, const WrenchCo
   return WRENCH_DIRECTIONS - static_cast<int>(largest(left));
 }
 
+namespace {
+
+typedef float Floats __attribute__((vector_size(32)));  // wider ones would be taken apart where processors have none
+typedef long Halves __attribute__((vector_size(32)));   // two comparisons each
+
+// Raises a part of the extremes, and adds which of them the point reaches.
+BLEM_SIM_INLINE void raiseSome(const CellDirections& c, const WrenchPoint& p, int first, float* extremes, Halves* reached) {
+  Floats place[3], normal[3], before;
+  for (int axis = 0; axis < 3; ++axis) {
+    __builtin_memcpy(&place[axis], c.place[axis] + first, sizeof(Floats));
+    __builtin_memcpy(&normal[axis], c.normal[axis] + first, sizeof(Floats));
+  }
+  __builtin_memcpy(&before, extremes + first, sizeof(Floats));
+  const Floats component =
+      place[0] * p.x[0] + place[1] * p.x[1] + place[2] * p.x[2] + normal[0] * p.n[0] + normal[1] * p.n[1] + normal[2] * p.n[2] - p.handicap;
+  const Floats after = component > before ? component : before;
+  __builtin_memcpy(extremes + first, &after, sizeof(Floats));
+  *reached |= reinterpret_cast<Halves>(component >= before);
+}
+
+}  // namespace
+
 BLEM_SIM_LANES int raiseCellExtremes(const CellPoints& points, int count, int* raising) {
+  constexpr int SOME = sizeof(Floats) / sizeof(float);
+  static_assert(CELL_DIRECTIONS == 2 * SOME, "in two parts");
   int size = 0;
   for (int i = 0; i < count; ++i) {
-    const WrenchPoint point = points.points[i];
+    const WrenchPoint& point = points.points[i];
     const CellDirections& directions = points.directions[points.cells[i]];
-    float* value = points.extremes[points.cells[i]].value;
-    int raises = 0;
-    for (int d = 0; d < CELL_DIRECTIONS; ++d) {
-      const float component = cellComponent(directions, point, d);
-      raises |= component >= value[d];
-      value[d] = component > value[d] ? component : value[d];
-    }
+    float* extremes = points.extremes[points.cells[i]].value;
+    Halves raises = {};
+    raiseSome(directions, point, 0, extremes, &raises);
+    raiseSome(directions, point, SOME, extremes, &raises);
     raising[size] = i;
-    size += raises;
+    size += (raises[0] | raises[1] | raises[2] | raises[3]) != 0;
   }
   return size;
 }

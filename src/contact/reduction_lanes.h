@@ -16,9 +16,19 @@ struct alignas(64) WrenchDirections {
 };
 
 /** Where a contact pushes, lengths in a patch's radius; every wrench of it counts less by the handicap, in unit forces. */
-struct WrenchPoint {
+struct alignas(32) WrenchPoint {
   float x[3], n[3], handicap;
 };
+
+/** Many of them, coordinate by coordinate. */
+struct WrenchPointRows {
+  void clear();
+  void add(const WrenchPoint& point);
+  std::vector<float> x[3], n[3], handicap;
+};
+
+/** Whether some of the points is so near that `point` exceeds its wrenches by no more than `most` in any direction. */
+bool addsLittleBeside(const WrenchPointRows& points, const WrenchPoint& point, float most);
 
 /** Of one point's wrenches, or the largest of several, by direction. */
 struct alignas(64) WrenchComponents {

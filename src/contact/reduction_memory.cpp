@@ -18,7 +18,8 @@ void ReductionMemory::remember(const std::vector<ContactManifold>& manifolds) {
     choices_[m].b = manifolds[m].b;
     choices_[m].ids.clear();
     for (const Contact& contact : manifolds[m].contacts) choices_[m].ids.push_back(contact.id);
-    std::sort(choices_[m].ids.begin(), choices_[m].ids.end());
+    // Most methods sort by id.
+    if (!std::is_sorted(choices_[m].ids.begin(), choices_[m].ids.end())) std::sort(choices_[m].ids.begin(), choices_[m].ids.end());
   }
 }
 

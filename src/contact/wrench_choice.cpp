@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "contact_order.h"
+#include "continued_choice.h"
 #include "overtaken.h"
 #include "reduction_lanes.h"
 
@@ -16,9 +17,6 @@ namespace {
 // [m] Once no wrench lacks, depth counts too, a unit force per this depth.
 constexpr double DEPTH_SCALE = 1e-3;
 constexpr float NOTHING_LACKS = 1e-6f;  // of a unit force
-// What an earlier choice may lack beyond a fresh one, in the direction that lacks most, of a unit force; and [m] in depth.
-constexpr float GOOD_ENOUGH = 0.05f;
-constexpr double DEEP_ENOUGH = 1e-6;
 
 double nextUniform(std::uint64_t& state) {  // splitmix64
   std::uint64_t z = (state += 0x9E3779B97F4A7C15ull);

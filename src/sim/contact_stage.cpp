@@ -25,6 +25,9 @@ constexpr double SEPARATION_SPEED = 0.1;  // [m/s]
 constexpr double SEPARATION_RATE = 1e4;   // [1/s]
 constexpr double APART = 0.25;            // of the layer: what crossed is sound again when its deepest contact uses up less
 
+// Of a recovery in a saved state.
+constexpr std::size_t WORDS = 3, NUMBERS = 16;
+
 double knownMargin(const Collider& a, const Collider& b, double margin) {
   const double layer = a.radius + b.radius;
   const bool guarded = layer > 0 && !a.geometry->isHalfSpace() && !b.geometry->isHalfSpace();
@@ -81,7 +84,7 @@ const Reduction* reductionNamed(const std::string& name) {
 ContactStage::ContactStage(const ContactConfig& config, int threads)
     : config_(config), method_(reductionNamed(config.reduction)), searches_(threads) {}
 
-void ContactStage::moveColliders(const SimulatedWorld& world, double dt) {
+void ContactStage::moveColliders(const SimulatedWorld& world, const std::vector<BodyState>& bodies, double dt) {
   const std::vector<Collider>& colliders = world.colliders;
   for (std::size_t i = arms_.size(); i < colliders.size(); ++i) {
     const int body = colliders[i].body;
@@ -95,14 +98,14 @@ void ContactStage::moveColliders(const SimulatedWorld& world, double dt) {
       motion[i] = {colliders[i].X_BC, 0};
       continue;
     }
-    const BodyState state = world.world.bodyState(colliders[i].body);
+    const BodyState& state = bodies[colliders[i].body];
     const double speed = state.v_WCom.norm() + state.w_WB.norm() * arms_[i];
     motion[i] = {state.X_WB * colliders[i].X_BC, REACH_FACTOR * speed * dt + fall};
   }
 }
 
-void ContactStage::broadPhase(const SimulatedWorld& world, double dt) {
-  moveColliders(world, dt);
+void ContactStage::broadPhase(const SimulatedWorld& world, const std::vector<BodyState>& bodies, double dt) {
+  moveColliders(world, bodies, dt);
   search_.pairs.clear();
   for (const ColliderPair& pair :
        pair_search_.find(world.colliders, search_.motion, world.filter, BASE_MARGIN, std::numeric_limits<double>::infinity())) {
@@ -160,19 +163,23 @@ void ContactStage::appendRecoveries(std::vector<double>* numbers, std::vector<st
   words->push_back(current_search_.recoveries.size());
   for (const Recovery& recovery : current_search_.recoveries) {
     for (const int word : {recovery.a, recovery.b, static_cast<int>(recovery.known)}) words->push_back(static_cast<std::uint64_t>(word));
-    numbers->insert(numbers->end(), recovery.X_AB.matrix().data(), recovery.X_AB.matrix().data() + 16);
+    numbers->insert(numbers->end(), recovery.X_AB.matrix().data(), recovery.X_AB.matrix().data() + NUMBERS);
   }
 }
 
-void ContactStage::readRecoveries(const double** numbers, const std::uint64_t** words) {
-  current_search_.recoveries.resize(*(*words)++);
-  for (Recovery& recovery : current_search_.recoveries) {
-    recovery.a = static_cast<int>(*(*words)++);
-    recovery.b = static_cast<int>(*(*words)++);
-    recovery.known = *(*words)++ != 0;
-    std::copy(*numbers, *numbers + 16, recovery.X_AB.matrix().data());
-    *numbers += 16;
+bool ContactStage::readRecoveries(const std::uint64_t* words, const std::uint64_t* words_end, const std::vector<double>& numbers,
+                                  std::vector<Recovery>* recoveries) {
+  const auto count = static_cast<std::size_t>(words_end - words) / WORDS;
+  if (static_cast<std::size_t>(words_end - words) != 1 + WORDS * count || *words++ != count) return false;
+  if (numbers.size() < NUMBERS * count) return false;
+  const double* pose = numbers.data() + (numbers.size() - NUMBERS * count);
+  for (std::size_t i = 0; i < count; ++i, words += WORDS, pose += NUMBERS) {
+    Recovery recovery{static_cast<int>(words[0]), static_cast<int>(words[1]), words[2] != 0, Pose()};
+    std::copy(pose, pose + NUMBERS, recovery.X_AB.matrix().data());
+    if (recovery.X_AB.matrix().row(3) != Eigen::RowVector4d(0, 0, 0, 1)) return false;  // the numbers are others'
+    recoveries->push_back(recovery);
   }
+  return true;
 }
 
 int ContactStage::rawContacts() const {

@@ -1,6 +1,7 @@
 // From body poses to what the solver takes: broad phase, narrow phase, reduction.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "blem_sim/contact/broad_phase.h"
@@ -42,8 +43,8 @@ class ContactStage {
   /** @param threads that search pairs at once; the result is the same for any number */
   ContactStage(const ContactConfig& config, int threads);
 
-  /** Pairs that may touch within the coming step of length dt [s]. */
-  void broadPhase(const SimulatedWorld& world, double dt);
+  /** Pairs that may touch within the coming step of length dt [s]. @param bodies their states at hand, by slot */
+  void broadPhase(const SimulatedWorld& world, const std::vector<BodyState>& bodies, double dt);
   /** Their manifolds: found(). */
   void narrowPhase(const SimulatedWorld& world);
   /** What was found is the state the next solve starts from. */
@@ -70,9 +71,12 @@ class ContactStage {
    */
   const std::vector<Recovery>& recoveries() const { return current_search_.recoveries; }
   void forgetRecoveries() { current_search_.recoveries.clear(); }
-  /** recoveries() as numbers and words, for save and restore. */
+  void setRecoveries(std::vector<Recovery> recoveries) { current_search_.recoveries = std::move(recoveries); }
+  /** recoveries() as numbers and words, for save: the last ones of a state. */
   void appendRecoveries(std::vector<double>* numbers, std::vector<std::uint64_t>* words) const;
-  void readRecoveries(const double** numbers, const std::uint64_t** words);
+  /** Reads what appendRecoveries wrote at the end of a state's numbers, and in the words up to its end. @return false if it is not whole */
+  static bool readRecoveries(const std::uint64_t* words, const std::uint64_t* words_end, const std::vector<double>& numbers,
+                             std::vector<Recovery>* recoveries);
   int rawContacts() const;
   /** A model has as many contacts as it may, and others were left out. */
   bool budgetUsedUp() const { return budget_used_up_; }
@@ -83,7 +87,7 @@ class ContactStage {
     std::vector<WatchedPair> pairs;
     std::vector<Recovery> recoveries;
   };
-  void moveColliders(const SimulatedWorld& world, double dt);
+  void moveColliders(const SimulatedWorld& world, const std::vector<BodyState>& bodies, double dt);
   /** Where a pair was last apart, as far as the accepted state knows. */
   Recovery lastApart(int a, int b) const;
   void keepWhatWasFound(std::size_t pairs);

@@ -36,19 +36,32 @@ bool recovers(const ContactStage& contacts, const SolvedContact& contact) {
                      [&contact](const Recovery& r) { return r.a == contact.collider_a && r.b == contact.collider_b; });
 }
 
-Vector3 displacement(const Vector3& point, int body, const std::vector<BodyState>& before, const std::vector<BodyState>& after) {
-  if (body == WORLD_BODY) return Vector3::Zero();
-  return after[body].X_WB * (before[body].X_WB.inverse() * point) - point;
-}
+/** How points of bodies were moved; contacts of one body follow on each other. */
+class Displacements {
+ public:
+  Displacements(const std::vector<BodyState>& before, const std::vector<BodyState>& after) : before_(before), after_(after) {}
+
+  Vector3 of(const Vector3& point, int body) {
+    if (body == WORLD_BODY) return Vector3::Zero();
+    if (body != last_) X_BW_before_ = before_[body].X_WB.inverse();
+    last_ = body;
+    return after_[body].X_WB * (X_BW_before_ * point) - point;
+  }
+
+ private:
+  const std::vector<BodyState>&before_, &after_;
+  int last_ = WORLD_BODY;
+  Pose X_BW_before_;
+};
 
 /** [J] by which the energy in springs of compliant contacts rises; the springs that part crossed meshes are none. */
 double springEnergyRise(const ContactStage& contacts, const std::vector<BodyState>& before, const std::vector<BodyState>& after) {
   double rise = 0;
+  Displacements a(before, after), b(before, after);
   for (std::size_t i = 0; i < contacts.constraints().size(); ++i) {
     const ContactConstraint& contact = contacts.constraints()[i];
     if (!std::isfinite(contact.stiffness) || !std::isfinite(contact.damping) || recovers(contacts, contacts.solved()[i])) continue;
-    const Vector3 apart =
-        displacement(contact.point, contact.body_a, before, after) - displacement(contact.point, contact.body_b, before, after);
+    const Vector3 apart = a.of(contact.point, contact.body_a) - b.of(contact.point, contact.body_b);
     const double depth_before = std::max(0.0, contact.depth);
     const double depth_after = std::max(0.0, contact.depth - contact.normal_BA.dot(apart));
     rise += 0.5 * contact.stiffness * (depth_after * depth_after - depth_before * depth_before);

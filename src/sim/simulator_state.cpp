@@ -76,7 +76,9 @@ void Simulator::Impl::restore(const SimulationState& state) {
   const std::uint64_t *words = state.words.data() + sensors_.size() + 1, *words_end = state.words.data() + state.words.size();
   ReductionMemory memory;
   LayerWatch layer_watch;
-  if (!memory.read(&words, words_end) || !layer_watch.read(&words, words_end))
+  std::vector<Recovery> recoveries;
+  if (!memory.read(&words, words_end) || !layer_watch.read(&words, words_end) ||
+      !ContactStage::readRecoveries(words, words_end, state.numbers, &recoveries))
     throw InputError("restore: the state is cut short; save it again");
   contacts_.memory() = std::move(memory);
   layer_watch_ = std::move(layer_watch);
@@ -88,7 +90,7 @@ void Simulator::Impl::restore(const SimulationState& state) {
     sensors_[i]->restore(&cursor);
     sensors_[i]->random().setState(state.words[i + 1]);
   }
-  contacts_.readRecoveries(&cursor, &words);
+  contacts_.setRecoveries(std::move(recoveries));
   step_count_ = state.step;
   stopped_ = state.words[0] != 0;
   contacts_.forget();

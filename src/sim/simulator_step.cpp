@@ -103,7 +103,7 @@ void Simulator::Impl::broadPhase() {
   const StageTimer timer(&report_.profile, Stage::BROAD_PHASE);
   // The next solve goes on with the rest of the step, or with the next one.
   const double left = substeps_.fractionAfter();
-  contacts_.broadPhase(world_, (left > 0 ? left : 1) * config_.time_step);
+  contacts_.broadPhase(world_, bodies_, (left > 0 ? left : 1) * config_.time_step);
 }
 
 void Simulator::Impl::narrowPhase() {

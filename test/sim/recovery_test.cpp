@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "blem_sim/geometry/input_error.h"
 #include "simulation_scene.h"
 
 namespace blem_sim {
@@ -168,6 +169,26 @@ TEST(Recovery, IsPartOfTheState) {
   EXPECT_EQ(other.stateHash(), end);
   simulator.resetSimulation();
   EXPECT_EQ(simulator.stateHash(), Simulator(plateThroughSheet(), UriResolver()).stateHash());
+}
+
+TEST(Recovery, StateCutShortIsRefused) {
+  Simulator simulator(plateThroughSheet(), UriResolver());
+  stepFor(&simulator, 0.02);
+  const SimulationState whole = simulator.save();
+  Simulator other(plateThroughSheet(), UriResolver());
+  const std::uint64_t untouched = other.stateHash();
+  for (const auto& [words, numbers] : {std::pair<int, int>{1, 0}, {3, 0}, {0, 1}, {0, 16}, {3, 16}}) {
+    SimulationState cut = whole;
+    cut.words.resize(cut.words.size() - words);
+    cut.numbers.resize(cut.numbers.size() - numbers);
+    try {
+      other.restore(cut);
+      ADD_FAILURE() << "taken without its last " << words << " words and " << numbers << " numbers";
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("cut short"), std::string::npos) << error.what();
+    }
+    EXPECT_EQ(other.stateHash(), untouched);
+  }
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "step_guard.h"
 
 #include <algorithm>
+#include <memory>
 
 #include "simulation_scene.h"
 
@@ -70,7 +71,14 @@ class UsesUpLayer : public testing::Test {
   }
 
   bool check(const std::vector<ContactManifold>& then, const std::vector<ContactManifold>& now) {
-    return usesUpLayer(colliders_, then, now, before_, after_);
+    const bool unbounded = usesUpLayer(colliders_, then, now, before_, after_);
+    std::vector<Collider> bounded = colliders_;
+    for (Collider& collider : bounded) {
+      collider.geometry = std::make_shared<const CollisionGeometry>(std::make_shared<const TriangleMesh>(boxMesh(Vector3::Constant(0.1))));
+      collider.radius = 0.005;
+    }
+    EXPECT_EQ(usesUpLayer(bounded, then, now, before_, after_), unbounded);
+    return unbounded;
   }
 
   std::vector<Collider> colliders_;

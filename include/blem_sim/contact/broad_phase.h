@@ -55,8 +55,8 @@ class BroadPhase {
     double reach;          // [m] layer and this collider's share of the margin, at most
   };
   struct SweepStart {
-    double at;  // [m] along the axis
-    int box;
+    double at;       // [m] along the axis
+    int box, model;  // as in the box
   };
   class Search;
 
