@@ -4,7 +4,6 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <cstring>
 
 #include "contact_motion.h"
 #include "island_motion.h"
@@ -81,10 +80,8 @@ void ArticulatedStepper::rebuild(const Scene& scene) {
 
 bool ArticulatedStepper::isOurs(const Scene& scene, int tree) const {
   const ForestTree& t = forest_.trees()[tree];
-  for (int i = t.first_node; i < t.node_end; ++i) {
-    const BodyBits bits = scene.bits(forest_.nodes()[i].body);
-    if (std::memcmp(bits.numbers, written_[i].numbers, sizeof bits.numbers) != 0) return false;
-  }
+  for (int i = t.first_node; i < t.node_end; ++i)
+    if (!scene.hasBits(forest_.nodes()[i].body, written_[i])) return false;
   return true;
 }
 
@@ -193,7 +190,12 @@ void ArticulatedStepper::readContacts(const StepInput& input, const Island& isla
 void ArticulatedStepper::readJoints(const StepInput& input, const Island& island, SolveResult* result) {
   const IslandProblem& problem = island.problem;
   const auto read = [&](const JointTerm& j, double v) {
-    memory_.joints[j.joint] = {j.dryImpulse(v) / input.dt, j.lowerImpulse(v) / input.dt, j.upperImpulse(v) / input.dt};
+    JointRecord& record = memory_.joints[j.joint];
+    const double last = record.dry, bound = j.dry_bound / input.dt;
+    record.dry = j.dryImpulse(v) / input.dt;
+    record.lower = j.lowerImpulse(v) / input.dt;
+    record.upper = j.upperImpulse(v) / input.dt;
+    record.dry_change = std::abs(record.dry) < bound && std::abs(last) < bound ? record.dry - last : 0;
     result->joint_efforts[j.joint] = input.drives[j.joint].effort + (j.motorImpulse(v) + j.dryImpulse(v) - j.viscous * v) / input.dt;
   };
   for (const JointTerm& j : problem.joints) read(j, space_.velocity[j.dof]);
@@ -238,10 +240,7 @@ void ArticulatedStepper::noteWritten(const Scene& scene, int tree) {
 }
 
 void ArticulatedStepper::writeScene(Scene* scene) {
-  for (int tree = 0; tree < static_cast<int>(forest_.trees().size()); ++tree) {
-    writeTree(forest_, tree, motion_, scene);
-    noteWritten(*scene, tree);
-  }
+  for (int tree = 0; tree < static_cast<int>(forest_.trees().size()); ++tree) writeTree(forest_, tree, motion_, scene, &written_);
 }
 
 // Islands share nothing that they write, so their order does not matter.

@@ -2,6 +2,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "blem_sim/geometry/input_error.h"
 #include "scene.h"
@@ -47,6 +48,19 @@ void Scene::createBody(BodySlot* slot) {
   dBodySetFiniteRotationMode(slot->ode, 1);
 }
 
+void BodyBits::set(const Vector3& com, const Matrix3& R, const Vector3& velocity, const Vector3& spin) {
+  const Quaternion q = Quaternion(R).normalized();
+  double* to = numbers;
+  for (int i = 0; i < 3; ++i) *to++ = com[i];
+  for (const double x : {q.w(), q.x(), q.y(), q.z()}) *to++ = x;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) *to++ = R(row, column);
+    *to++ = 0;
+  }
+  for (int i = 0; i < 3; ++i) *to++ = velocity[i];
+  for (int i = 0; i < 3; ++i) *to++ = spin[i];
+}
+
 BodyBits Scene::bits(int body) const {
   const dBodyID ode = bodies_[body].ode;
   BodyBits out;
@@ -58,19 +72,25 @@ BodyBits Scene::bits(int body) const {
   return out;
 }
 
-bool Scene::isFinite(int body) const {
+bool Scene::hasBits(int body, const BodyBits& bits) const {
   const dBodyID ode = bodies_[body].ode;
-  // A number that is not finite times zero is not a number, and so is every sum of it.
-  double zero = 0;
-  const auto add = [&zero](const dReal* numbers, int count) {
-    for (int i = 0; i < count; ++i) zero += 0 * numbers[i];
+  const double* known = bits.numbers;
+  // Few bodies are touched by others, so that all is compared before anything is asked.
+  std::uint64_t differs = 0;
+  const auto compare = [&](const dReal* numbers, int count) {
+    for (int i = 0; i < count; ++i) {
+      std::uint64_t one, other;
+      std::memcpy(&one, numbers + i, sizeof one);
+      std::memcpy(&other, known++, sizeof other);
+      differs |= one ^ other;
+    }
   };
-  add(dBodyGetPosition(ode), 3);
-  add(dBodyGetQuaternion(ode), 4);
-  add(dBodyGetRotation(ode), 12);
-  add(dBodyGetLinearVel(ode), 3);
-  add(dBodyGetAngularVel(ode), 3);
-  return zero == 0;
+  compare(dBodyGetPosition(ode), 3);
+  compare(dBodyGetQuaternion(ode), 4);
+  compare(dBodyGetRotation(ode), 12);
+  compare(dBodyGetLinearVel(ode), 3);
+  compare(dBodyGetAngularVel(ode), 3);
+  return differs == 0;
 }
 
 void Scene::setBits(int body, const BodyBits& bits) {

@@ -9,14 +9,13 @@ struct PointMotion {
 
 PointMotion pointMotion(const Scene& scene, int body, const Vector3& point) {
   if (body == WORLD_BODY) return {};
-  const BodyBits b = scene.bits(body);
   const BodySlot& slot = scene.bodies()[body];
-  const Vector3 arm = point - b.com();
+  const Vector3 arm = point - scene.com(body);
   PointMotion motion;
-  motion.velocity = b.velocity() + b.spin().cross(arm);
+  motion.velocity = scene.velocity(body) + scene.spin(body).cross(arm);
   motion.acceleration = scene.gravity() + slot.pending.force / slot.spec.inertial.mass;
   if (!slot.pending.torque.isZero(0))
-    motion.acceleration += (scene.inertiaInWorld(body, b.rotation()).inverse() * slot.pending.torque).cross(arm);
+    motion.acceleration += (scene.inertiaInWorld(body, scene.rotation(body)).inverse() * slot.pending.torque).cross(arm);
   return motion;
 }
 

@@ -1,5 +1,7 @@
 #include "forest_motion.h"
 
+#include "lanes.h"
+
 namespace blem_sim {
 namespace {
 
@@ -25,7 +27,7 @@ void ForestMotion::resize(const Forest& forest) {
   tree_com.resize(trees);
 }
 
-void placeBodies(const Forest& forest, int tree, ForestMotion* motion) {
+BLEM_SIM_LANES void placeBodies(const Forest& forest, int tree, ForestMotion* motion) {
   const ForestTree& t = forest.trees()[tree];
   for (int i = t.first_node; i < t.node_end; ++i) {
     const ForestNode& node = forest.nodes()[i];
@@ -46,7 +48,7 @@ void placeBodies(const Forest& forest, int tree, ForestMotion* motion) {
   }
 }
 
-void computeInertias(const Forest& forest, int tree, ForestMotion* motion) {
+BLEM_SIM_LANES void computeInertias(const Forest& forest, int tree, ForestMotion* motion) {
   const ForestTree& t = forest.trees()[tree];
   const ForestNode& root = forest.nodes()[t.first_node];
   Vector3& reference = motion->reference[tree];
@@ -91,13 +93,13 @@ void computeTwist(const Forest& forest, int node, const ForestMotion& motion, co
   if (n.dofs == 1) v += motion.subspace[n.first_dof] * velocity[n.first_dof];
 }
 
-void computeTwists(const Forest& forest, int tree, const ForestMotion& motion, const Eigen::VectorXd& velocity,
-                   std::vector<Vector6>* twist) {
+BLEM_SIM_LANES void computeTwists(const Forest& forest, int tree, const ForestMotion& motion, const Eigen::VectorXd& velocity,
+                                  std::vector<Vector6>* twist) {
   const ForestTree& t = forest.trees()[tree];
   for (int i = t.first_node; i < t.node_end; ++i) computeTwist(forest, i, motion, velocity, twist);
 }
 
-void computeProducts(const Forest& forest, int tree, const Eigen::VectorXd& velocity, ForestMotion* motion) {
+BLEM_SIM_LANES void computeProducts(const Forest& forest, int tree, const Eigen::VectorXd& velocity, ForestMotion* motion) {
   const ForestTree& t = forest.trees()[tree];
   std::vector<Vector6>&twist = motion->node_twist, &force = motion->node_force;
   computeTwists(forest, tree, *motion, velocity, &twist);
@@ -178,16 +180,13 @@ void readTree(const Forest& forest, const Scene& scene, int tree, ForestMotion* 
   motion->change.segment(t.first_dof, t.dofCount()).setZero();
 }
 
-void writeTree(const Forest& forest, int tree, const ForestMotion& motion, Scene* scene) {
+void writeTree(const Forest& forest, int tree, const ForestMotion& motion, Scene* scene, std::vector<BodyBits>* written) {
   const ForestTree& t = forest.trees()[tree];
   for (int i = t.first_node; i < t.node_end; ++i) {
-    const ForestNode& node = forest.nodes()[i];
-    BodyState body;
-    body.X_WB.linear() = motion.rotation[i];
-    body.X_WB.translation() = motion.origin[i];
-    body.w_WB = angular(motion.twist[i]);
-    body.v_WCom = velocityAt(motion.twist[i], motion.com[i]);
-    scene->setBodyState(node.body, body);
+    BodyBits& bits = (*written)[i];
+    bits.set(motion.reference[tree] + motion.com[i], motion.rotation[i], velocityAt(motion.twist[i], motion.com[i]),
+             angular(motion.twist[i]));
+    scene->setBits(forest.nodes()[i].body, bits);
   }
 }
 

@@ -77,7 +77,7 @@ void addProjected(const Forest& forest, int tree, const ForestMotion& motion, do
 /** Positions, velocities and a free root's pose from the bodies of the scene, which somebody else has set. */
 void readTree(const Forest& forest, const Scene& scene, int tree, ForestMotion* motion);
 
-/** Sets the bodies of the scene to the motion at hand. */
-void writeTree(const Forest& forest, int tree, const ForestMotion& motion, Scene* scene);
+/** Sets the bodies of the scene to the motion at hand. @param written per node, what they were given, out */
+void writeTree(const Forest& forest, int tree, const ForestMotion& motion, Scene* scene, std::vector<BodyBits>* written);
 
 }  // namespace blem_sim

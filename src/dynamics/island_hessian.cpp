@@ -119,40 +119,6 @@ void IslandProblem::pushStiffness() {
   }
 }
 
-bool IslandProblem::isIdle(int dof) const { return !space_->live[forest_->nodeOfDof(dof)]; }
-
-bool IslandProblem::isBaseCurrent() const {
-  if (!base_known_) return false;
-  const double* known = base_joints_.data();
-  for (const JointBlock& b : joint_blocks_)
-    for (int lane = 0; lane < LANES; ++lane, ++known)
-      if (b.stiffness[lane] != *known && isIdle(b.dof[lane])) return false;
-  return true;
-}
-
-// Rows of idle dofs become those of the factor; what is left of M on the live ones is kept as `base`.
-bool IslandProblem::eliminateIdle() {
-  SolverSpace& s = *space_;
-  base_joints_.clear();
-  const auto copyRow = [&](const std::vector<double>& from, int k, std::vector<double>* to) {
-    std::copy(from.begin() + forest_->rowStart(k), from.begin() + forest_->rowEnd(k), to->begin() + forest_->rowStart(k));
-  };
-  for (const std::vector<int>* dofs : {&idle_dofs_, &live_dofs_})
-    for (const int k : *dofs) copyRow(motion_->mass, k, &s.hessian.rows);
-  for (const JointBlock& b : joint_blocks_) {
-    for (int lane = 0; lane < LANES; ++lane) {
-      base_joints_.push_back(b.stiffness[lane]);
-      if (b.dof[lane] >= 0 && isIdle(b.dof[lane])) s.hessian.rows[forest_->diagonal(b.dof[lane])] += b.stiffness[lane];
-    }
-  }
-  for (auto k = idle_dofs_.rbegin(); k != idle_dofs_.rend(); ++k)
-    if (!eliminate(*forest_, *k, &s.hessian)) return false;
-  for (const int k : live_dofs_) copyRow(s.hessian.rows, k, &s.base);
-  for (const int k : live_dofs_) s.hessian.inverse[k] = 0;
-  base_known_ = true;
-  return true;
-}
-
 void IslandProblem::fillMatrix() {
   const SolverSpace& s = *space_;
   for (const int k : live_dofs_) {
@@ -168,14 +134,15 @@ void IslandProblem::fillMatrix() {
 bool IslandProblem::factor() {
   SolverSpace& s = *space_;
   factored_ = false;
-  if (!isBaseCurrent() && !eliminateIdle()) return false;
+  const double* base = s.idle.rows.data();
   for (const int k : live_dofs_)
-    std::copy(s.base.begin() + forest_->rowStart(k), s.base.begin() + forest_->rowEnd(k), s.hessian.rows.begin() + forest_->rowStart(k));
+    std::copy(base + forest_->rowStart(k), base + forest_->rowEnd(k), s.hessian.rows.data() + forest_->rowStart(k));
   factored_joints_.clear();
-  for (const JointBlock& b : joint_blocks_) {
+  for (int b = 0; b < live_joint_blocks_; ++b) {
     for (int lane = 0; lane < LANES; ++lane) {
-      factored_joints_.push_back(b.stiffness[lane]);
-      if (b.dof[lane] >= 0 && !isIdle(b.dof[lane])) s.hessian.rows[forest_->diagonal(b.dof[lane])] += b.stiffness[lane];
+      const JointBlock& block = joint_blocks_[b];
+      factored_joints_.push_back(block.stiffness[lane]);
+      if (block.dof[lane] >= 0) s.hessian.rows[forest_->diagonal(block.dof[lane])] += block.stiffness[lane];
     }
   }
   factored_kinds_.clear();
@@ -198,9 +165,9 @@ bool IslandProblem::isFactorCurrent() const {
   for (const ContactBlock& b : contact_blocks_)
     for (int lane = 0; lane < LANES; ++lane)
       if (b.kind[lane] != *kind++) return false;
-  for (const JointBlock& b : joint_blocks_)
+  for (int b = 0; b < live_joint_blocks_; ++b)
     for (int lane = 0; lane < LANES; ++lane)
-      if (b.stiffness[lane] != *stiffness++) return false;
+      if (joint_blocks_[b].stiffness[lane] != *stiffness++) return false;
   return true;
 }
 
@@ -220,13 +187,12 @@ void IslandProblem::solveBlocks() {
 
 void IslandProblem::findDirection() {
   SolverSpace& s = *space_;
+  for (const int k : live_dofs_) s.direction[k] = -s.gradient[k];
+  if (coupled_) return solveBlocks();
   for (const int tree : trees) {
-    const ForestTree& t = forest_->trees()[tree];
-    s.direction.segment(t.first_dof, t.dofCount()) = -s.gradient.segment(t.first_dof, t.dofCount());
     reduce(*forest_, tree, s.hessian, &s.direction, &s.paths);
+    substitute(*forest_, tree, s.hessian, &s.direction, &s.paths);
   }
-  if (coupled_) solveBlocks();
-  for (const int tree : trees) substitute(*forest_, tree, s.hessian, &s.direction, &s.paths);
 }
 
 }  // namespace blem_sim

@@ -77,7 +77,8 @@ void setFreeMomentum(const Forest& forest, const Scene& scene, int tree, double 
   computeApplied(forest, scene, tree, motion);
   space->direction.segment(first, count) = motion->velocity.segment(first, count) + 0.5 * motion->change.segment(first, count);
   computeProducts(forest, tree, space->direction, motion);
-  multiply(forest, tree, motion->mass, motion->velocity, &space->free_momentum, &space->paths);
+  multiply(forest, tree, motion->mass, motion->velocity, &space->mass_velocity, &space->paths);
+  space->free_momentum.segment(first, count) = space->mass_velocity.segment(first, count);
   if (t.free) space->free_momentum.segment<6>(first) = motion->momentum[tree];
   for (int k = first; k < t.dof_end; ++k) {
     space->free_momentum[k] += dt * (motion->applied[k] - productsShare(t, k) * motion->products[k]);

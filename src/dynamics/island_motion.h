@@ -11,8 +11,9 @@ namespace blem_sim {
 void takeMomentum(const Forest& forest, int tree, ForestMotion* motion, SolverSpace* space);
 
 /**
- * Fills space->free_momentum, M v*, and the first guess of the velocities. A free root's rows carry its momentum from step to step, so that
- * none is lost to the change of the mass matrix; velocity products are those of the middle of the step, guessed from the last one.
+ * Fills space->free_momentum, M v*, the first guess of the velocities, and M times them, space->mass_velocity. A free root's rows carry its
+ * momentum from step to step, so that none is lost to the change of the mass matrix; velocity products are those of the middle of the step,
+ * guessed from the last one.
  */
 void setFreeMomentum(const Forest& forest, const Scene& scene, int tree, double dt, ForestMotion* motion, SolverSpace* space);
 

@@ -12,7 +12,8 @@ constexpr double INEXACT = 0.02;
 constexpr int SOFT_STAGES = 2;
 constexpr double CONTACT_SOFTNESS[SOFT_STAGES] = {1000, 30};
 constexpr double JOINT_SOFTNESS[SOFT_STAGES] = {10, 3};
-constexpr int FIRST_ITERATIONS = 4;     // of the hard problem, before the soft ones are asked
+constexpr int FIRST_ITERATIONS = 4;     // of the hard problem; those after them must lead somewhere, or the soft ones are asked
+constexpr double FIRST_PROGRESS = 0.1;  // an iteration that leads somewhere reduces the gradient to this
 constexpr double CHORD_PROGRESS = 0.1;  // a factor that is not made anew must have reduced the gradient to this
 constexpr double NO_STEP = 1e-16;       // [rad/s or m/s] largest change of a velocity that is none
 
@@ -28,8 +29,9 @@ void IslandProblem::evaluateGradient() {
 void IslandProblem::predict() {
   expect(contact_blocks_.data(), contact_blocks_.data() + contact_blocks_.size());
   for (std::size_t b = 0; b < joint_blocks_.size(); ++b)
-    expect(joints.data() + b * LANES, std::min<int>(LANES, static_cast<int>(joints.size() - b * LANES)), &joint_blocks_[b]);
+    for (int lane = 0; lane < LANES; ++lane) expect(termOf(static_cast<int>(b), lane), lane, &joint_blocks_[b]);
   responses_known_ = true;
+  if (!anchor()) return;
   evaluateGradient();
   if (!factor()) return;
   findDirection();
@@ -40,8 +42,9 @@ void IslandProblem::predict() {
 
 // What moving along the direction changes.
 void IslandProblem::setDirection() {
-  for (const int tree : trees) multiply(*forest_, tree, motion_->mass, space_->direction, &space_->mass_direction, &space_->paths);
-  setSteps(space_->direction);
+  SolverSpace& s = *space_;
+  for (const int tree : trees) multiply(*forest_, tree, s.idle.rows, s.direction, &s.mass_direction, &s.paths, &s.live);
+  setSteps(s.direction);
 }
 
 // Slope of the objective at a along the direction, and its derivative.
@@ -64,12 +67,10 @@ double IslandProblem::lineSearch() {
   setDirection();
   linear_ = quadratic_ = 0;
   double start = 0;
-  for (const int tree : trees) {
-    const ForestTree& t = forest_->trees()[tree];
-    const auto part = [&](const Eigen::VectorXd& v) { return v.segment(t.first_dof, t.dofCount()); };
-    quadratic_ += part(s.direction).dot(part(s.mass_direction));
-    linear_ += part(s.direction).dot(part(s.mass_velocity) - part(s.free_momentum));
-    start += part(s.direction).dot(part(s.gradient));
+  for (const int k : live_dofs_) {
+    quadratic_ += s.direction[k] * s.mass_direction[k];
+    linear_ += s.direction[k] * s.kinetic[k];
+    start += s.direction[k] * s.gradient[k];
   }
   double low = 0, high = -1, a = 1;
   for (int it = 0; it < MAX_LINE_SEARCH; ++it) {
@@ -85,11 +86,9 @@ double IslandProblem::lineSearch() {
   return a;
 }
 
-double IslandProblem::gradientNorm() const {
+double IslandProblem::gradientNorm(const std::vector<int>& dofs) const {
   double worst = 0;
-  for (const int tree : trees)
-    for (int k = forest_->trees()[tree].first_dof; k < forest_->trees()[tree].dof_end; ++k)
-      worst = std::max(worst, std::abs(space_->gradient[k]) * space_->scale[k]);
+  for (const int k : dofs) worst = std::max(worst, std::abs(space_->gradient[k]) * space_->scale[k]);
   return worst;
 }
 
@@ -106,51 +105,56 @@ double IslandProblem::imbalance() const {
 double IslandProblem::move(double a) {
   SolverSpace& s = *space_;
   double moved = 0;
-  for (const int tree : trees) {
-    const ForestTree& t = forest_->trees()[tree];
-    for (int k = t.first_dof; k < t.dof_end; ++k) {
-      s.velocity[k] += a * s.direction[k];
-      s.mass_velocity[k] += a * s.mass_direction[k];
-      moved = std::max(moved, std::abs(a * s.direction[k]));
-    }
+  for (const int k : live_dofs_) {
+    s.velocity[k] += a * s.direction[k];
+    s.kinetic[k] += a * s.mass_direction[k];
+    moved = std::max(moved, std::abs(a * s.direction[k]));
   }
   take(a, contact_blocks_.data(), contact_blocks_.data() + contact_blocks_.size());
-  for (JointBlock& b : joint_blocks_)
-    for (int lane = 0; lane < LANES; ++lane) b.velocity[lane] += a * b.step[lane];
+  for (int b = 0; b < live_joint_blocks_; ++b)
+    for (int lane = 0; lane < LANES; ++lane) joint_blocks_[b].velocity[lane] += a * joint_blocks_[b].step[lane];
   for (LoopTerm& loop : loops) loop.velocity += a * loop.step;
   responses_known_ = a == responses_at_;
   return moved;
 }
 
-// Until the gradient is below `exactness` times the first one, or the tolerance.
-int IslandProblem::newton(const NewtonSettings& settings, double exactness, int max_iterations) {
+// Until the gradient is below `exactness` times the first one, or the tolerance; or, `patience` iterations having passed, one of them does
+// not lead on. All velocities are known afterwards. Joints that stray are iterated from then on; if all were woken, whoever has patience
+// begins again.
+int IslandProblem::newton(const NewtonSettings& settings, double exactness, int max_iterations, int patience) {
   double enough = settings.gradient_tolerance, last = INFINITY;
   for (int iterations = 0;; ++iterations) {
+    if (!anchored_) {
+      respondIdle();
+      if (!anchor()) return iterations;
+    }
     evaluateGradient();
-    gradient_norm_ = gradientNorm();
+    gradient_norm_ = gradientNorm(live_dofs_);
     if (iterations == 0) enough = std::max(enough, exactness * gradient_norm_);
-    if (gradient_norm_ <= enough || iterations >= max_iterations) return iterations;
+    const bool over = iterations >= max_iterations || (iterations >= patience && gradient_norm_ > FIRST_PROGRESS * last);
+    if (gradient_norm_ <= enough || over) {
+      if (settle(enough) || over || (strayed_ && patience < max_iterations)) return iterations;
+      last = INFINITY;
+      continue;
+    }
     const bool keeps = gradient_norm_ < CHORD_PROGRESS * last && isFactorCurrent();
-    if (!keeps && !factor()) return iterations;
+    const bool factored = keeps || factor();
     last = gradient_norm_;
-    findDirection();
-    if (move(lineSearch()) < NO_STEP) return iterations + 1;
+    if (factored) findDirection();
+    if (!factored || move(lineSearch()) < NO_STEP) {
+      settle(enough);
+      return factored ? iterations + 1 : iterations;
+    }
   }
 }
 
-void IslandProblem::setJoints() {
-  for (std::size_t b = 0; b < joint_blocks_.size(); ++b)
-    for (std::size_t lane = 0, j = b * LANES; lane < LANES; ++lane, ++j)
-      setLane(j < joints.size() ? &joints[j] : nullptr, static_cast<int>(lane), &joint_blocks_[b]);
-}
-
 void IslandProblem::soften(double contact, double joint) {
-  factored_ = base_known_ = responses_known_ = false;
+  factored_ = responses_known_ = false;
   for (const ContactPatch& p : patches)
     for (int b = p.first_block, i = p.first; b < p.block_end; ++b, i += LANES)
       blem_sim::soften(&contacts[i], p.end - i, contact, &contact_blocks_[b]);
-  for (JointTerm& j : joints) j.softness = joint;
-  setJoints();
+  joint_softness_ = joint;
+  softenJoints();
   for (LoopTerm& loop : loops) loop.drive.softness = joint;
 }
 
@@ -183,23 +187,43 @@ NewtonReport IslandProblem::solve(const Forest& forest, const ForestMotion& moti
   motion_ = &motion;
   space_ = space;
   start();
-  soften(1, 1);
-  evaluateGradient();
-  const bool solved = gradientNorm() <= settings.gradient_tolerance;
-  if (!solved) predict();
-  NewtonReport report = iterate(settings);
-  if (!solved) ++report.iterations;
+  NewtonReport report;
+  if (isSolved(settings.gradient_tolerance)) {
+    finish(settings, &report);
+    return report;
+  }
+  keepFirst();
+  predict();
+  report = iterate(settings);
+  ++report.iterations;
   return report;
 }
 
-NewtonReport IslandProblem::solveAgain(const NewtonSettings& settings) { return iterate(settings); }
+NewtonReport IslandProblem::solveAgain(const NewtonSettings& settings) {
+  SolverSpace& s = *space_;
+  for (const std::vector<int>* dofs : {&live_dofs_, &idle_dofs_})
+    for (const int k : *dofs) s.kinetic[k] = s.mass_velocity[k] - s.free_momentum[k];
+  keepFirst();
+  return iterate(settings);
+}
 
 NewtonReport IslandProblem::iterate(const NewtonSettings& settings) {
   NewtonReport report;
   const auto left = [&] { return settings.max_iterations - report.iterations; };
   // Most steps are like the one before: the hard problem is solved in a few iterations. Where it is not, soft ones lead to it.
-  report.iterations = newton(settings, 0, FIRST_ITERATIONS);
-  if (report.iterations == FIRST_ITERATIONS) {
+  // Where idle joints stray, or are not known to do right, all are live, and everything is begun again.
+  bool solved = false;
+  for (;;) {
+    strayed_ = false;
+    const int iterations = newton(settings, 0, left(), FIRST_ITERATIONS);
+    report.iterations += iterations;
+    solved = gradient_norm_ <= settings.gradient_tolerance || iterations < FIRST_ITERATIONS;
+    if (idle_dofs_.empty() ? !strayed_ : solved) break;
+    for (const int k : idle_dofs_) wake(forest_->nodeOfDof(k));
+    rewind();
+    predict();
+  }
+  if (!solved) {
     for (int stage = 0; stage < SOFT_STAGES; ++stage) {
       soften(CONTACT_SOFTNESS[stage], JOINT_SOFTNESS[stage]);
       report.iterations += newton(settings, INEXACT, left());
@@ -208,18 +232,23 @@ NewtonReport IslandProblem::iterate(const NewtonSettings& settings) {
     soften(1, 1);
     report.iterations += newton(settings, INEXACT, left());
   }
+  finish(settings, &report);
+  return report;
+}
+
+void IslandProblem::finish(const NewtonSettings& settings, NewtonReport* report) {
   for (int outer = 1; outer < settings.max_outer; ++outer) {
-    assess(&report);
-    const bool lawful = report.contact_residual <= settings.contact_tolerance && report.joint_creep <= settings.joint_tolerance;
+    assess(report);
+    const bool lawful = report->contact_residual <= settings.contact_tolerance && report->joint_creep <= settings.joint_tolerance;
     const bool exact = gradient_norm_ <= settings.gradient_tolerance;
-    if ((lawful && exact) || left() <= 0) break;
+    const int left = settings.max_iterations - report->iterations;
+    if ((lawful && exact) || left <= 0) break;
     if (!lawful) remember();
-    report.iterations += newton(settings, lawful ? 0 : INEXACT, left());
+    report->iterations += newton(settings, lawful ? 0 : INEXACT, left);
   }
-  assess(&report);
+  assess(report);
   readMimics();
   readTerms();
-  return report;
 }
 
 }  // namespace blem_sim

@@ -13,9 +13,11 @@ Vector6 relativeTwist(const BodyPair& pair, const std::vector<Vector6>& twist) {
 }  // namespace
 
 void SolverSpace::resize(const Forest& forest) {
-  for (auto* v : {&free_momentum, &velocity, &mass_velocity, &gradient, &direction, &mass_direction, &scale}) v->setZero(forest.dofCount());
+  for (auto* v : {&free_momentum, &velocity, &mass_velocity, &gradient, &direction, &mass_direction, &scale, &kinetic, &anchor, &idle_pull,
+                  &first_velocity, &first_kinetic})
+    v->setZero(forest.dofCount());
+  idle.resize(forest);
   hessian.resize(forest);
-  base.assign(forest.entryCount(), 0);
   paths.resize(forest);
   for (auto* v : {&twist, &wrench}) v->resize(forest.nodes().size());
   stiffness.resize(forest.nodes().size());
@@ -41,17 +43,27 @@ void IslandProblem::start() {
   for (const ContactPatch& p : patches) coupled_ |= p.pair.b >= 0;
   for (const int tree : trees) {
     const ForestTree& t = forest_->trees()[tree];
-    for (int k = t.first_dof; k < t.dof_end; ++k) s.scale[k] = 1 / std::sqrt(motion_->mass[forest_->diagonal(k)]);
-    multiply(*forest_, tree, motion_->mass, s.velocity, &s.mass_velocity, &s.paths);
+    if (!mimics.empty()) multiply(*forest_, tree, motion_->mass, s.velocity, &s.mass_velocity, &s.paths);
+    for (int k = t.first_dof; k < t.dof_end; ++k) {
+      s.scale[k] = 1 / std::sqrt(motion_->mass[forest_->diagonal(k)]);
+      s.kinetic[k] = s.mass_velocity[k] - s.free_momentum[k];
+    }
   }
   findLive();
-  factored_ = base_known_ = false;
+  woken_ = false;
+  begin();
+}
+
+// From the velocities at hand, with the live nodes at hand, on the hard problem.
+void IslandProblem::begin() {
+  factored_ = base_known_ = anchored_ = false;
+  listLive();
   if (coupled_) layBlocks();
   fillBlocks();
-  setSteps(s.velocity);
+  setSteps(space_->velocity);
   take(1, contact_blocks_.data(), contact_blocks_.data() + contact_blocks_.size());
-  for (JointBlock& b : joint_blocks_) std::copy_n(b.step, LANES, b.velocity);
   for (LoopTerm& loop : loops) loop.velocity = loop.step;
+  soften(1, 1);
 }
 
 // Contacts and joints of the terms, four by four; the contacts' velocities begin with what the bodies' paths bend apart.
@@ -66,8 +78,6 @@ void IslandProblem::fillBlocks() {
     }
     p.block_end = static_cast<int>(contact_blocks_.size());
   }
-  joint_blocks_.resize((joints.size() + LANES - 1) / LANES);
-  setJoints();
 }
 
 // What was found, back to the terms.
@@ -77,48 +87,16 @@ void IslandProblem::readTerms() {
       readLane(contact_blocks_[p.first_block + (i - p.first) / LANES], (i - p.first) % LANES, &contacts[i]);
 }
 
-// Nodes that something acts on, and those that carry them: what the others take from the Hessian does not change from iterate to iterate.
-void IslandProblem::findLive() {
-  SolverSpace& s = *space_;
-  live_nodes_.clear();
-  live_dofs_.clear();
-  idle_dofs_.clear();
-  for (const int tree : trees) {
-    const ForestTree& t = forest_->trees()[tree];
-    std::fill(s.live.begin() + t.first_node, s.live.begin() + t.node_end, 0);
-  }
-  const auto wake = [&](int node) {
-    for (; node >= 0 && !s.live[node]; node = forest_->nodes()[node].parent) s.live[node] = 1;
-  };
-  for (const ContactPatch& p : patches) {
-    wake(p.pair.a);
-    wake(p.pair.b);
-  }
-  for (const BodyPair& pair : loop_pairs) {
-    wake(pair.a);
-    wake(pair.b);
-  }
-  for (const MimicFold& m : mimics) {
-    wake(forest_->nodeOfDof(m.dof));
-    wake(forest_->nodeOfDof(m.master));
-  }
-  for (const int tree : trees) {
-    const ForestTree& t = forest_->trees()[tree];
-    for (int i = t.first_node; i < t.node_end; ++i) {
-      const ForestNode& node = forest_->nodes()[i];
-      if (s.live[i]) live_nodes_.push_back(i);
-      for (int d = 0; d < node.dofs; ++d) (s.live[i] ? live_dofs_ : idle_dofs_).push_back(node.first_dof + d);
-    }
-  }
-}
-
-// Of all contacts, joints and loops, for a change v of the velocities.
+// Of all contacts, live joints and loops, for a change v of the velocities.
 void IslandProblem::setSteps(const Eigen::VectorXd& v) {
   for (const int i : live_nodes_) computeTwist(*forest_, i, *motion_, v, &space_->twist);
   for (const ContactPatch& p : patches)
     blem_sim::setSteps(relativeTwist(p.pair, space_->twist), contact_blocks_.data() + p.first_block, contact_blocks_.data() + p.block_end);
-  for (JointBlock& b : joint_blocks_)
-    for (int lane = 0; lane < LANES; ++lane) b.step[lane] = b.dof[lane] >= 0 ? v[b.dof[lane]] : 0;
+  for (int b = 0; b < live_joint_blocks_; ++b)
+    for (int lane = 0; lane < LANES; ++lane) {
+      JointBlock& block = joint_blocks_[b];
+      block.step[lane] = block.dof[lane] >= 0 ? v[block.dof[lane]] : 0;
+    }
   for (std::size_t l = 0; l < loops.size(); ++l) loops[l].step = loops[l].basis.transpose() * relativeTwist(loop_pairs[l], space_->twist);
 }
 
@@ -137,10 +115,10 @@ void IslandProblem::evaluate() {
   for (std::size_t l = 0; l < loops.size(); ++l) push(loop_pairs[l], loops[l].basis * loops[l].impulses());
 }
 
-// Of contacts and joints, at velocity + a step.
+// Of contacts and live joints, at velocity + a step.
 PotentialSlope IslandProblem::respond(double a) {
   PotentialSlope slope = blem_sim::respond(a, contact_blocks_.data(), contact_blocks_.data() + contact_blocks_.size());
-  blem_sim::respond(a, joint_blocks_.data(), joint_blocks_.data() + joint_blocks_.size(), &slope.first, &slope.second);
+  blem_sim::respond(a, joint_blocks_.data(), joint_blocks_.data() + live_joint_blocks_, &slope.first, &slope.second);
   responses_at_ = a;
   responses_known_ = a == 0;
   return slope;
@@ -148,15 +126,13 @@ PotentialSlope IslandProblem::respond(double a) {
 
 void IslandProblem::gradient() {
   SolverSpace& s = *space_;
-  for (const int tree : trees) {
-    const ForestTree& t = forest_->trees()[tree];
-    s.gradient.segment(t.first_dof, t.dofCount()) =
-        s.mass_velocity.segment(t.first_dof, t.dofCount()) - s.free_momentum.segment(t.first_dof, t.dofCount());
-  }
+  for (const int k : live_dofs_) s.gradient[k] = s.kinetic[k];
   for (auto i = live_nodes_.rbegin(); i != live_nodes_.rend(); ++i) addProjectedNode(*forest_, *i, *motion_, -1, &s.wrench, &s.gradient);
-  for (const JointBlock& b : joint_blocks_)
-    for (int lane = 0; lane < LANES; ++lane)
-      if (b.dof[lane] >= 0) s.gradient[b.dof[lane]] -= b.impulse[lane];
+  for (int b = 0; b < live_joint_blocks_; ++b)
+    for (int lane = 0; lane < LANES; ++lane) {
+      const JointBlock& block = joint_blocks_[b];
+      if (block.dof[lane] >= 0) s.gradient[block.dof[lane]] -= block.impulse[lane];
+    }
 }
 
 void IslandProblem::foldGradient() {

@@ -55,8 +55,13 @@ struct NewtonReport {
 struct SolverSpace {
   Eigen::VectorXd free_momentum;  ///< M v*
   Eigen::VectorXd velocity, mass_velocity, gradient, direction, mass_direction, scale;
-  TreeFactor hessian;        ///< its factor, in the end
-  std::vector<double> base;  ///< packed rows of live dofs: what idle ones leave of M once eliminated
+  /// M (v - v*). While a problem is iterated: on live dofs, with all that idle ones add as they follow; else on all dofs.
+  Eigen::VectorXd kinetic;
+  Eigen::VectorXd first_velocity, first_kinetic;  ///< where the iteration began
+  Eigen::VectorXd anchor;                         ///< the velocities from where idle dofs follow
+  Eigen::VectorXd idle_pull;                      ///< the right-hand side there, reduced: by it idle dofs move if live ones do not
+  TreeFactor idle;                                ///< of idle dofs; the rows of live ones hold what is left of M, the base of their Hessian
+  TreeFactor hessian;                             ///< of live dofs, in the end
   TreePaths paths;
   std::vector<Vector6> twist, wrench;  ///< per node
   std::vector<Matrix6> stiffness;      ///< per node
@@ -81,7 +86,7 @@ class IslandProblem {
   std::vector<double> mimic_impulses;  ///< after solve: by which each mimic's dof follows its master
 
   void clear();
-  /** Solves for space->velocity, which holds the first guess. The terms hold the reactions afterwards. */
+  /** Solves for space->velocity, which holds the first guess, space->mass_velocity M times it. The terms hold the reactions afterwards. */
   NewtonReport solve(const Forest& forest, const ForestMotion& motion, const NewtonSettings& settings, SolverSpace* space);
   /** Goes on from there after space->free_momentum has changed a little. */
   NewtonReport solveAgain(const NewtonSettings& settings);
@@ -89,7 +94,7 @@ class IslandProblem {
  private:
   // island_problem.cpp: the objective's gradient
   void start();
-  void findLive();
+  void begin();
   void fillBlocks();
   void readTerms();
   void setSteps(const Eigen::VectorXd& v);
@@ -98,6 +103,26 @@ class IslandProblem {
   void push(const BodyPair& pair, const Vector6& wrench);
   void gradient();
   void foldGradient();
+  // island_idle.cpp: what need not be iterated
+  void findLive();
+  void wake(int node);
+  void listLive();
+  void orderJoints();
+  const JointTerm* termOf(int block, int lane) const;
+  void setJoints();
+  void softenJoints();
+  void respondIdle();
+  bool isIdle(int dof) const;
+  template <typename Visit>
+  void forIdleJoints(const Visit& visit);
+  bool isSolved(double tolerance);
+  bool isBaseCurrent();
+  bool eliminateIdle();
+  bool anchor();
+  double followIdle();
+  bool settle(double enough);
+  void keepFirst();
+  void rewind();
   // island_hessian.cpp: its Hessian and what is solved with it
   void layBlocks();
   void stiffen(int node, const Matrix6& stiffness);
@@ -105,9 +130,6 @@ class IslandProblem {
   void coupleBlocks(const BodyPair& pair, const Matrix6& stiffness);
   void addStiffness();
   void pushStiffness();
-  bool isIdle(int dof) const;
-  bool isBaseCurrent() const;
-  bool eliminateIdle();
   void fillMatrix();
   bool factor();
   bool isFactorCurrent() const;
@@ -119,25 +141,31 @@ class IslandProblem {
   void setDirection();
   PotentialSlope slope(double a);
   double lineSearch();
-  double gradientNorm() const;
+  double gradientNorm(const std::vector<int>& dofs) const;
   double imbalance() const;
   double move(double a);
-  int newton(const NewtonSettings& settings, double exactness, int max_iterations);
-  void setJoints();
+  int newton(const NewtonSettings& settings, double exactness, int max_iterations, int patience = 1 << 30);
   void soften(double contact, double joint);
   void remember();
   void assess(NewtonReport* report) const;
   void readMimics();
   NewtonReport iterate(const NewtonSettings& settings);
+  void finish(const NewtonSettings& settings, NewtonReport* report);
 
   const Forest* forest_ = nullptr;
   const ForestMotion* motion_ = nullptr;
   SolverSpace* space_ = nullptr;
-  bool coupled_ = false;                      ///< two branches or two trees are tied: the Hessian is a matrix of blocks, one per tree
-  std::vector<int> live_nodes_;               ///< ascending
-  std::vector<int> live_dofs_;                ///< ascending
-  std::vector<int> idle_dofs_;                ///< ascending: the others, which are eliminated once and for all iterations
-  double gradient_norm_ = 0;                  ///< [sqrt(kg) m/s]
+  bool coupled_ = false;          ///< two branches or two trees are tied: the Hessian is a matrix of blocks, one per tree
+  std::vector<int> live_nodes_;   ///< ascending
+  std::vector<int> live_dofs_;    ///< ascending
+  std::vector<int> idle_dofs_;    ///< ascending: the others, which follow: eliminated once and for all iterations
+  std::vector<int> joint_order_;  ///< of the blocks' lanes: index of the term, -1 none; live ones first, in blocks of their own
+  int live_joint_blocks_ = 0;
+  double joint_softness_ = 1;  ///< of live joints; idle ones are never softened
+  bool anchored_ = false;      ///< idle dofs follow from `anchor`; their velocities are not yet known
+  bool strayed_ = false;       ///< so many joints have left the piece of their response that they were on, that all were woken
+  bool woken_ = false;         ///< joints have left the piece of their response that they were on, once in this solve
+  double gradient_norm_ = 0;   ///< [sqrt(kg) m/s]
   std::vector<ContactBlock> contact_blocks_;  ///< responses: where the line search looked last
   std::vector<JointBlock> joint_blocks_;      ///< likewise
   double responses_at_ = 0;                   ///< how far along the direction that was

@@ -8,8 +8,9 @@ namespace {
 
 constexpr double CONTACT_PROXIMAL = 1e-4;  // rho = this * inverse mass at the contact: smaller is stiffer and needs more Newton iterations
 constexpr double JOINT_PROXIMAL = 1e-3;    // gain of friction and limits = inertia / this
-constexpr double LOOP_PROXIMAL = 1e-4;     // rho = this * inverse inertia
-constexpr double IMMOVABLE = 1e-12;        // [1/kg or 1/(kg m^2)]
+constexpr double DRY_MOMENTUM = 0.9;  // share of its last change that stuck friction is expected to change by: all of it would never settle
+constexpr double LOOP_PROXIMAL = 1e-4;  // rho = this * inverse inertia
+constexpr double IMMOVABLE = 1e-12;     // [1/kg or 1/(kg m^2)]
 
 double massEntry(const TermSource& s, int dof) { return s.motion.mass[s.forest.diagonal(dof)]; }
 
@@ -35,7 +36,8 @@ JointTerm driveTerm(const TermSource& s, int joint, double q, double inertia) {
   if (drive.dry_friction > 0) {
     term.dry_gain = inertia / JOINT_PROXIMAL;
     term.dry_bound = dt * drive.dry_friction;
-    term.dry_previous = dt * memory.dry;
+    // What stuck goes on to change as it did, so that it need not creep to do so.
+    term.dry_previous = std::clamp(dt * (memory.dry + DRY_MOMENTUM * memory.dry_change), -term.dry_bound, term.dry_bound);
   }
   if (std::isfinite(spec.lower) || std::isfinite(spec.upper)) {
     term.limit_gain = inertia / JOINT_PROXIMAL;

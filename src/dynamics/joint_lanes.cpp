@@ -21,13 +21,10 @@ void setLane(const JointTerm* term, int lane, JointBlock* b) {
   b->upper_previous[lane] = t.upper_previous;
 }
 
-void expect(const JointTerm* terms, int count, JointBlock* b) {
-  for (int lane = 0; lane < count; ++lane) {
-    const JointResponse response = terms[lane].expect(b->velocity[lane]);
-    b->impulse[lane] = response.impulse;
-    b->stiffness[lane] = response.stiffness;
-  }
-  for (int lane = count; lane < LANES; ++lane) b->impulse[lane] = b->stiffness[lane] = 0;
+void expect(const JointTerm* term, int lane, JointBlock* b) {
+  const JointResponse response = term ? term->expect(b->velocity[lane]) : JointResponse();
+  b->impulse[lane] = response.impulse;
+  b->stiffness[lane] = response.stiffness;
 }
 
 BLEM_SIM_LANES void respond(double a, JointBlock* begin, JointBlock* end, double* first, double* second) {

@@ -19,8 +19,8 @@ struct JointBlock {
 
 /** A lane's joint from a term; null: none, which never acts. Terms that were softened or that remembered must be set again. */
 void setLane(const JointTerm* term, int lane, JointBlock* block);
-/** JointTerm::expect at the present velocities. */
-void expect(const JointTerm* terms, int count, JointBlock* block);
+/** JointTerm::expect at a lane's present velocity; null: no joint. */
+void expect(const JointTerm* term, int lane, JointBlock* block);
 /** Impulses and stiffnesses at velocity + a step. first, second: their slope along the step and its derivative are added */
 void respond(double a, JointBlock* begin, JointBlock* end, double* first, double* second);
 /** JointTerm::creep, the worst. */

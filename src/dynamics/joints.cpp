@@ -30,6 +30,9 @@ int Scene::addJoint(const JointSpec& spec, double position) {
   slot.child_assembled = bits(spec.child);
   if (spec.parent != WORLD_BODY) slot.parent_assembled = bits(spec.parent);
   slot.assembled_position = slot.last_position = position;
+  slot.assembled_turn = slot.child_assembled.turn();
+  if (spec.parent != WORLD_BODY) slot.assembled_turn = slot.parent_assembled.turn().conjugate() * slot.assembled_turn;
+  slot.parent_axis = spec.X_PJ.linear() * slot.spec.axis;
   createJoint(&slot);
   orderJoints();
   return static_cast<int>(joints_.size()) - 1;
@@ -98,11 +101,19 @@ Vector3 Scene::jointOrigin(int joint, const std::vector<BodyBits>& bits) const {
   return parent.com() + parent.rotation() * (p_PJ - bodies_[spec.parent].spec.inertial.com);
 }
 
+// Since it was assembled. The same as ODE's, which goes a longer way.
+double Scene::hingeAngle(const JointSlot& slot) const {
+  Quaternion turn = quaternionFromOde(dBodyGetQuaternion(bodies_[slot.spec.child].ode));
+  if (slot.spec.parent != WORLD_BODY) turn = quaternionFromOde(dBodyGetQuaternion(bodies_[slot.spec.parent].ode)).conjugate() * turn;
+  turn = turn * slot.assembled_turn.conjugate();
+  return 2 * std::atan2(slot.parent_axis.dot(turn.vec()), turn.w());
+}
+
 double Scene::jointPosition(int joint) const {
   const JointSlot& slot = joints_[joint];
   if (!slot.joint || slot.spec.kind == JointKind::FIXED) return 0;
   if (slot.spec.kind == JointKind::PRISMATIC) return slot.assembled_position + dJointGetSliderPosition(slot.joint);
-  const double one_turn = slot.assembled_position + dJointGetHingeAngle(slot.joint);
+  const double one_turn = slot.assembled_position + hingeAngle(slot);
   return one_turn + 2 * M_PI * std::round((slot.last_position - one_turn) / (2 * M_PI));
 }
 
@@ -111,7 +122,11 @@ double Scene::jointVelocity(int joint) const {
   if (!slot.joint || slot.spec.kind == JointKind::FIXED) return 0;
   const int child = slot.spec.child, parent = slot.spec.parent;
   const bool grounded = parent == WORLD_BODY;
-  const Vector3 axis = jointAxis(joint), parent_spin = grounded ? Vector3(Vector3::Zero()) : spin(parent);
+  Vector3 axis = slot.parent_axis, parent_spin = Vector3::Zero();
+  if (!grounded) {
+    axis = rotation(parent) * axis;
+    parent_spin = spin(parent);
+  }
   if (slot.spec.kind == JointKind::REVOLUTE) return axis.dot(spin(child) - parent_spin);
   if (grounded) return axis.dot(velocity(child));
   return axis.dot(velocity(child) - velocity(parent) - parent_spin.cross(com(child) - com(parent)));

@@ -12,6 +12,7 @@
 namespace blem_sim {
 
 inline Vector3 fromOde(const dReal* v) { return {v[0], v[1], v[2]}; }
+inline Quaternion quaternionFromOde(const dReal* q) { return {q[0], q[1], q[2], q[3]}; }
 inline Matrix3 rotationFromOde(const dReal* R) {
   Matrix3 out;
   out << R[0], R[1], R[2], R[4], R[5], R[6], R[8], R[9], R[10];
@@ -27,6 +28,9 @@ struct BodyBits {
   Matrix3 rotation() const { return rotationFromOde(numbers + 7); }
   Vector3 velocity() const { return fromOde(numbers + 19); }
   Vector3 spin() const { return fromOde(numbers + 22); }
+  Quaternion turn() const { return quaternionFromOde(numbers + 3); }
+  /** @param R orthonormal */
+  void set(const Vector3& com, const Matrix3& R, const Vector3& velocity, const Vector3& spin);
 };
 
 struct BodySlot {
@@ -42,6 +46,8 @@ struct JointSlot {
   dJointFeedback joint_feedback = {}, motor_feedback = {};
   BodyBits child_assembled = {}, parent_assembled = {};  ///< where the bodies stood when ODE took the joint's geometry
   double assembled_position = 0;                         ///< q there, where ODE's own coordinate is 0
+  Quaternion assembled_turn = Quaternion::Identity();    ///< of the child against the parent there
+  Vector3 parent_axis = Vector3::UnitZ();                ///< in the parent's frame
   double last_position = 0;                              ///< q at the end of the last step: which turn it is
   double last_effort = 0;                                ///< along the axis in the last step
   bool in_tree = true;                                   ///< false: closes a loop
@@ -79,12 +85,12 @@ class Scene {
 
   bool exists(int body) const { return body >= 0 && body < static_cast<int>(bodies_.size()) && bodies_[body].ode; }
   BodyBits bits(int body) const;
+  /** Is the body's state the same to the last bit? */
+  bool hasBits(int body, const BodyBits& bits) const;
   Vector3 com(int body) const { return fromOde(dBodyGetPosition(bodies_[body].ode)); }
   Matrix3 rotation(int body) const { return rotationFromOde(dBodyGetRotation(bodies_[body].ode)); }
   Vector3 velocity(int body) const { return fromOde(dBodyGetLinearVel(bodies_[body].ode)); }
   Vector3 spin(int body) const { return fromOde(dBodyGetAngularVel(bodies_[body].ode)); }
-  /** Are position, turn and velocities finite? */
-  bool isFinite(int body) const;
   void setBits(int body, const BodyBits& bits);
   void bits(std::vector<BodyBits>* out) const;
   void setBits(const std::vector<BodyBits>& bits);
@@ -104,6 +110,7 @@ class Scene {
   void readJoints(std::vector<JointState>* states);
 
  private:
+  double hingeAngle(const JointSlot& slot) const;
   void createWorld();
   void createBody(BodySlot* slot);
   void createJoint(JointSlot* slot);

@@ -22,7 +22,7 @@ void StepMemory::save(const Scene& scene, StateWriter* writer) const {
   // A joint that was added since the last step has nothing to remember.
   for (std::size_t j = 0; j < scene.joints().size(); ++j) {
     const JointRecord record = j < joints.size() ? joints[j] : JointRecord();
-    for (const double x : {record.dry, record.lower, record.upper}) writer->number(x);
+    for (const double x : {record.dry, record.lower, record.upper, record.dry_change}) writer->number(x);
     if (!scene.joints()[j].in_tree) writer->numbers(record.loop.data(), 6);
   }
 }
@@ -37,7 +37,7 @@ void StepMemory::restore(const Scene& scene, StateReader* reader) {
   }
   resize(scene);
   for (std::size_t j = 0; j < joints.size(); ++j) {
-    for (double* x : {&joints[j].dry, &joints[j].lower, &joints[j].upper}) *x = reader->number();
+    for (double* x : {&joints[j].dry, &joints[j].lower, &joints[j].upper, &joints[j].dry_change}) *x = reader->number();
     if (!scene.joints()[j].in_tree) reader->numbers(joints[j].loop.data(), 6);
   }
 }

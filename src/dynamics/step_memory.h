@@ -20,6 +20,7 @@ struct ContactRecord {
 /** [N m or N] */
 struct JointRecord {
   double dry = 0, lower = 0, upper = 0;
+  double dry_change = 0;           ///< of dry friction that stuck, in the last step
   Vector6 loop = Vector6::Zero();  ///< of a joint that closes a loop: along its forbidden directions
 };
 

@@ -45,7 +45,7 @@ void TreeFactor::resize(const Forest& forest) {
 }
 
 BLEM_SIM_LANES void multiply(const Forest& forest, int tree, const std::vector<double>& rows, const Eigen::VectorXd& v,
-                             Eigen::VectorXd* out, TreePaths* paths) {
+                             Eigen::VectorXd* out, TreePaths* paths, const std::vector<char>* chosen) {
   const ForestTree& t = forest.trees()[tree];
   clear(forest, tree, &paths->values);
   clear(forest, tree, &paths->sums);
@@ -59,6 +59,7 @@ BLEM_SIM_LANES void multiply(const Forest& forest, int tree, const std::vector<d
     }
   };
   for (int k = t.first_dof; k < t.dof_end; ++k) {
+    if (chosen && !(*chosen)[forest.nodeOfDof(k)]) continue;
     const double* row = rows.data() + forest.rowStart(k);
     const int length = forest.rowLength(k);
     leave(length - 1);

@@ -24,9 +24,12 @@ struct TreeFactor {
   void resize(const Forest& forest);
 };
 
-/** out = M v on the dofs of a tree. @param rows zero in the room at their ends */
+/**
+ * out = M v on the dofs of a tree.
+ * @param rows zero in the room at their ends; chosen: per node, those whose dofs are meant, their ancestors among them; null: all
+ */
 void multiply(const Forest& forest, int tree, const std::vector<double>& rows, const Eigen::VectorXd& v, Eigen::VectorXd* out,
-              TreePaths* paths);
+              TreePaths* paths, const std::vector<char>* chosen = nullptr);
 
 /** Eliminates a dof: its ancestors' rows lose what it takes. @return false if H is not positive definite */
 bool eliminate(const Forest& forest, int dof, TreeFactor* factor);
