@@ -1,5 +1,7 @@
 #include "forest_motion.h"
 
+#include <algorithm>
+
 namespace blem_sim {
 namespace {
 
