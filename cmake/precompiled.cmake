@@ -1,4 +1,4 @@
-# Headers of other projects that most files read, read once per kind of target: about a third of what a release build computes.
+# Headers of other projects that most files read, read once per kind of target: a quarter to a third of what a file costs to compile.
 # Off unless asked for: ccache keeps nothing that is built with them, and builds without show what a file forgets to include
 # (so does test/structure/includes_test.py). CMake has them since 3.16.
 option(BLEM_SIM_PRECOMPILED_HEADERS "Precompile headers of other projects; for a machine without ccache" OFF)
