@@ -4,20 +4,25 @@ function(blem_sim_room room)
   add_library(blem_sim_${room} ${sources})
   target_include_directories(blem_sim_${room} PUBLIC ${PROJECT_SOURCE_DIR}/include PRIVATE ${PROJECT_SOURCE_DIR}/src/${room})
   target_link_libraries(blem_sim_${room} PUBLIC ${ARGN})
-  set_target_properties(blem_sim_${room} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  # No macro of a room's own: what is precompiled for one serves the others.
+  set_target_properties(blem_sim_${room} PROPERTIES POSITION_INDEPENDENT_CODE ON DEFINE_SYMBOL "")
 endfunction()
 
 blem_sim_room(geometry Eigen3::Eigen)
 target_link_libraries(blem_sim_geometry PRIVATE PkgConfig::TBB)
+blem_sim_precompile(blem_sim_geometry ${common_headers})
 blem_sim_room(model blem_sim_geometry)
+blem_sim_precompiled_as(blem_sim_model blem_sim_geometry)
 target_include_directories(blem_sim_model SYSTEM PRIVATE ${PCL_INCLUDE_DIRS} ${ASSIMP_INCLUDE_DIRS})
 target_link_libraries(blem_sim_model PRIVATE PkgConfig::URDFDOM PkgConfig::CONSOLE_BRIDGE PkgConfig::TINYXML2 assimp fmt::fmt
   ${PCL_COMMON_LIBRARIES} ${PCL_IO_LIBRARIES} ${PCL_FEATURES_LIBRARIES} ${PCL_SEARCH_LIBRARIES} ${PCL_SURFACE_LIBRARIES})
 blem_sim_room(contact blem_sim_geometry)
+blem_sim_precompiled_as(blem_sim_contact blem_sim_geometry)
 
 # The kernels of the contact search, one source for several instruction sets; the fastest that the machine has is chosen when it runs.
 set(kernels ${PROJECT_SOURCE_DIR}/src/contact/kernels)
 target_sources(blem_sim_contact PRIVATE ${kernels}/kernels.cpp ${kernels}/kernels_baseline.cpp)
+set_source_files_properties(${kernels}/kernels_avx2.cpp ${kernels}/kernels_avx512.cpp PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   target_sources(blem_sim_contact PRIVATE ${kernels}/kernels_avx2.cpp ${kernels}/kernels_avx512.cpp)
   set_source_files_properties(${kernels}/kernels_avx2.cpp PROPERTIES COMPILE_OPTIONS "-mavx2")
@@ -29,9 +34,13 @@ endif()
 
 # Square roots and comparisons as vector code; changes no result, only what becomes of errno and the flags of exceptions.
 foreach(lanes contact/reduction_lanes dynamics/contact_lanes dynamics/joint_lanes)
-  set_source_files_properties(${PROJECT_SOURCE_DIR}/src/${lanes}.cpp PROPERTIES COMPILE_OPTIONS "-fno-math-errno;-fno-trapping-math")
+  # Without precompiled headers, which bring their own options.
+  set_source_files_properties(${PROJECT_SOURCE_DIR}/src/${lanes}.cpp PROPERTIES COMPILE_OPTIONS "-fno-math-errno;-fno-trapping-math"
+    SKIP_PRECOMPILE_HEADERS ON)
 endforeach()
 blem_sim_room(dynamics blem_sim_contact blem_sim_model)
+blem_sim_precompiled_as(blem_sim_dynamics blem_sim_geometry)
 target_link_libraries(blem_sim_dynamics PRIVATE PkgConfig::ODE PkgConfig::TBB)
 blem_sim_room(sim blem_sim_dynamics)
+blem_sim_precompiled_as(blem_sim_sim blem_sim_geometry)
 target_link_libraries(blem_sim_sim PUBLIC yaml-cpp fmt::fmt PRIVATE PkgConfig::TBB)

@@ -3,6 +3,7 @@ blem_sim_room(ros blem_sim_sim)
 add_dependencies(blem_sim_ros ${PROJECT_NAME}_generate_messages_cpp)
 target_include_directories(blem_sim_ros SYSTEM PUBLIC ${CATKIN_DEVEL_PREFIX}/include ${catkin_INCLUDE_DIRS})
 target_link_libraries(blem_sim_ros PUBLIC ${catkin_LIBRARIES})
+blem_sim_precompile(blem_sim_ros ${common_headers} ${ros_headers})
 
 add_executable(blem_sim_node ${PROJECT_SOURCE_DIR}/src/ros_node/blem_sim_node.cpp)
 target_include_directories(blem_sim_node PRIVATE ${PROJECT_SOURCE_DIR}/src/ros)

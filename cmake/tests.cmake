@@ -20,8 +20,18 @@ foreach(room ${tested_rooms})
     target_link_libraries(test_${room} blem_sim_${room} ${room_libraries} GTest::gtest GTest::gtest_main Threads::Threads)
     target_compile_definitions(test_${room} PRIVATE BLEM_SIM_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
     add_test(NAME ${room} COMMAND test_${room})
+    list(APPEND unit_tests test_${room})
+    # Those of model and ros have flags of their own: of PCL, of the messages.
+    if(room STREQUAL ros)
+      blem_sim_precompile(test_${room} ${common_headers} ${ros_headers} <gtest/gtest.h>)
+    elseif(room STREQUAL geometry OR room STREQUAL model)
+      blem_sim_precompile(test_${room} ${common_headers} <gtest/gtest.h>)
+    else()
+      blem_sim_precompiled_as(test_${room} test_geometry)
+    endif()
   endif()
 endforeach()
+add_custom_target(unit_tests DEPENDS ${unit_tests})
 
 # The long runs that show what must hold; scripts/validate_solver and scripts/validate_contacts build and run them, scripts/test does not.
 function(add_long_run name)

@@ -1,6 +1,7 @@
 #include "border_fade.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "feature_cones.h"
 #include "leaving_vertex.h"

@@ -1,5 +1,7 @@
 #include "forest_motion.h"
 
+#include <algorithm>
+
 #include "lanes.h"
 
 namespace blem_sim {

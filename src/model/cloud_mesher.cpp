@@ -4,6 +4,7 @@
 #include <pcl/search/kdtree.h>
 #include <pcl/surface/gp3.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "quiet_pcl.h"

@@ -1,5 +1,6 @@
 #include <tinyxml2.h>
 
+#include <cstdint>
 #include <map>
 #include <sstream>
 

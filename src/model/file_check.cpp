@@ -1,5 +1,6 @@
 #include "file_check.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>

@@ -1,6 +1,7 @@
 #include <pcl/PCLPointCloud2.h>
 #include <pcl/io/pcd_io.h>
 
+#include <cstdint>
 #include <cstring>
 
 #include <fmt/format.h>

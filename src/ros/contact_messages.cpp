@@ -1,5 +1,6 @@
 #include "contact_messages.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <map>
 #include <utility>

@@ -2,6 +2,7 @@
 
 #include <ros/poll_manager.h>
 
+#include <algorithm>
 #include <chrono>
 
 namespace blem_sim {

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <climits>
+#include <cmath>
 #include <set>
 
 #include "blem_sim/geometry/input_error.h"

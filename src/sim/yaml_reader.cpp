@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "blem_sim/geometry/input_error.h"
 #include "nearest_name.h"

@@ -1,6 +1,7 @@
 // Contacts as patches, curves and crowds, for the tests of their reduction.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <utility>

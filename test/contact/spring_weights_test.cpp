@@ -1,6 +1,8 @@
 // A patch is as stiff whatever it is made of.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "contact_patches.h"
 
 namespace blem_sim {

@@ -1,6 +1,7 @@
 // Contacts of boxes written down directly, for tests of the solver that do not depend on any contact generation.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 

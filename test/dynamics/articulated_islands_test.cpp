@@ -1,6 +1,7 @@
 // The articulated stepper where trees meet: loops, threads, edits from outside; and what it tells of its own solve.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "analytic_contacts.h"

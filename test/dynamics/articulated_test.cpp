@@ -1,6 +1,7 @@
 // The articulated stepper on its own ground: trees, islands, mimic joints; and against world_step from the same state.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "analytic_contacts.h"

@@ -1,6 +1,8 @@
 // What sticks to something that turns stays where it is on it.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "analytic_contacts.h"
 
 namespace blem_sim {

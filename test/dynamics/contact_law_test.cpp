@@ -1,6 +1,8 @@
 // Friction, restitution and compliance of contacts against theory.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "analytic_contacts.h"
 #include "contact_law.h"
 

@@ -1,6 +1,8 @@
 // Motors and joint friction against theory.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "analytic_contacts.h"
 
 namespace blem_sim {

@@ -1,6 +1,8 @@
 // Joints: kinematics, limits, wrenches.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "analytic_contacts.h"
 #include "blem_sim/geometry/input_error.h"
 

@@ -1,6 +1,8 @@
 // Mimic joints: kinematics under load, reaction on the master, a grasp.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "analytic_contacts.h"
 
 namespace blem_sim {

@@ -1,6 +1,8 @@
 // Free bodies: flight, spin, wrenches from outside.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "analytic_contacts.h"
 
 namespace blem_sim {

@@ -1,6 +1,8 @@
 // Boxes at rest on each other: drift and sag against theory.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "analytic_contacts.h"
 
 namespace blem_sim {

@@ -1,5 +1,6 @@
 #include "soak/world_figures.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 

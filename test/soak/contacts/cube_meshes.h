@@ -1,6 +1,8 @@
 // One cube of 10 cm, centred, in the triangles of different makers.
 #pragma once
 
+#include <cmath>
+
 #include "geometry/gridded_box.h"
 #include "geometry/random_shapes.h"
 #include "support/broken_meshes.h"

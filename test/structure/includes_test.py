@@ -1,0 +1,67 @@
+"""Every file includes what it uses of the headers that some builds precompile (cmake/precompiled.cmake), by itself or by headers of ours."""
+import pathlib
+import re
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)
+COMMENT = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"', re.DOTALL)
+
+# What a file says -> the headers that give it.
+PROVIDERS = {
+    r"\bEigen::|\bVector3\b": ["Eigen/"],
+    r"\bstd::(?:sort|stable_sort|max|min|clamp|find_if|any_of|all_of|none_of|lower_bound|upper_bound|fill|copy|transform|count_if|"
+    r"reverse|unique|max_element|min_element|nth_element|equal|lexicographical_compare)\(": ["algorithm"],
+    r"\bstd::array<": ["array"],
+    r"\bstd::(?:sqrt|abs|sin|cos|atan2|hypot|floor|ceil|isfinite|isnan|pow|exp)\(": ["cmath"],
+    r"\bu?int(?:8|16|32|64)_t\b": ["cstdint"],
+    r"\bstd::function<": ["functional"],
+    r"\bstd::numeric_limits<": ["limits"],
+    r"\bstd::(?:multi)?map<": ["map"],
+    r"\bstd::(?:unique_ptr|shared_ptr|make_unique|make_shared|weak_ptr)\b": ["memory"],
+    r"\bstd::(?:iota|accumulate|partial_sum)\(": ["numeric"],
+    r"\bstd::(?:multi)?set<": ["set"],
+    r"\bstd::(?:string|to_string)\b": ["string"],
+    r"\bstd::vector<": ["vector"],
+    r"^TEST(?:_F|_P)?\(": ["gtest/gtest.h"],
+    r"\bros::(?:NodeHandle|Publisher|Subscriber|ServiceServer)\b": ["ros/"],
+    r"\bROS_(?:INFO|WARN|ERROR)": ["ros/console.h"],
+    r"\bboost::make_shared\b": ["boost/make_shared.hpp"],
+}
+FOLDERS = ("include", "src", "test")
+
+
+def included(path, seen):
+    """Names of all headers that a file includes, those of our own headers too."""
+    names = set()
+    for name in INCLUDE.findall(path.read_text()):
+        names.add(name)
+        room = path.relative_to(ROOT).parts
+        places = [path.parent, ROOT / "include", ROOT / "test", ROOT / "src" / "ros"] + [ROOT / "src" / part for part in room[1:2]]
+        for own in (place / name for place in places):
+            if own.is_file() and own not in seen:
+                seen.add(own)
+                names |= included(own, seen)
+    return names
+
+
+def missing(text, names):
+    """Headers that `text` needs and that are not among the names it includes."""
+    code = COMMENT.sub(" ", text)
+    return [headers[0] for pattern, headers in PROVIDERS.items()
+            if re.search(pattern, code, re.MULTILINE) and not any(name.startswith(header) for name in names for header in headers)]
+
+
+def test_files_include_what_they_use():
+    wrong = []
+    for folder in FOLDERS:
+        for path in sorted((ROOT / folder).rglob("*")):
+            if path.suffix in (".h", ".cpp"):
+                wrong += ["%s uses <%s>" % (path.relative_to(ROOT), header) for header in missing(path.read_text(), included(path, {path}))]
+    assert not wrong, "\n".join(wrong)
+
+
+def test_the_rule_sees_what_is_missing():
+    assert missing("std::vector<int> a;", {"string"}) == ["vector"]
+    assert missing("std::vector<int> a;", {"vector"}) == []
+    assert missing("// std::vector<int>", set()) == []
+    assert missing("TEST(A, b) {}", {"vector"}) == ["gtest/gtest.h"]
