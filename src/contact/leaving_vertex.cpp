@@ -1,5 +1,6 @@
 #include "leaving_vertex.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "feature_cones.h"

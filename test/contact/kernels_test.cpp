@@ -1,6 +1,7 @@
 // Every instruction set gives the same bits.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 
 #include "blem_sim/geometry/input_error.h"

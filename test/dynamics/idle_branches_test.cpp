@@ -53,7 +53,9 @@ struct Hanger {
       EXPECT_NEAR(result.joint_wrenches[j].torque.dot(axes[j]), result.joint_efforts[j], 1e-6) << j;
       EXPECT_LE(std::abs(friction), FRICTION * (1 + 1e-12)) << j;
       const bool slip = std::abs(v) > 1e-6;
-      if (slip) EXPECT_NEAR(friction, v > 0 ? -FRICTION : FRICTION, 1e-9) << j;
+      if (slip) {
+        EXPECT_NEAR(friction, v > 0 ? -FRICTION : FRICTION, 1e-9) << j;
+      }
       changes += slip != slips[j];
       slips[j] = slip;
     }
