@@ -10,8 +10,8 @@ namespace {
 // A list is made for so many steps of the present motion: longer ones cost more in every step, shorter ones are made anew too often.
 constexpr double MARGIN_STEPS = 18, FEWEST_STEPS = 3;
 constexpr double LEAST_PART = 0.7;  // of MARGIN_STEPS, see partOf
-// Where there are not few pairs of leaves the next list is made in so many parts, in as many steps before it is needed.
-constexpr double PARTS = 3;
+// Where there are not few pairs of leaves the next list is made in so many parts, in as many steps before it is needed, if it lasts.
+constexpr double PARTS = 3, LASTING_STEPS = 8;
 constexpr std::size_t FEW_LEAF_PAIRS = 64;
 // Of long lists those that matter for so few steps are listed again.
 constexpr double NEAREST_STEPS = 4;
@@ -129,10 +129,13 @@ class ContactSearch {
     if (isGood(next.origin)) {
       const double part = std::ceil(static_cast<double>(next.left()) / std::clamp(1 + steps, 1.0, PARTS));
       if (next.left() > 0) findMoreCandidates(pair_, static_cast<std::size_t>(part), &buffers_.search, &next);
-    } else if (steps <= PARTS && memory_.contacts.now.pairs.size() > FEW_LEAF_PAIRS) {
+    } else if (steps <= PARTS && memory_.contacts.now.pairs.size() > FEW_LEAF_PAIRS && lasts(margin)) {
       beginCandidates(pair_, kind, margin, &buffers_.search, &next);
     }
   }
+
+  /** Is a list of that margin good for much longer than it takes to make it? */
+  bool lasts(const ListMargin& margin) const { return LASTING_STEPS * motion_.motion <= margin.motion; }
 
   /** For how many steps of the present motion lists of that origin are good. */
   double stepsLeft(const ListOrigin& origin) const {
