@@ -63,6 +63,13 @@ TEST(CandidateSearch, InPartsAsAtOnce) {
       findCandidates(pairOf(hills, ball, other.inverse()), CandidateKind::CONTACTS, margin, &buffers, &between);
     }
     EXPECT_EQ(namesOf(parts.lists), namesOf(whole.lists));
+    for (const bool moves : {true, false}) {
+      const NearFeatures &near = parts.lists.near[moves], &expected = whole.lists.near[moves];
+      EXPECT_EQ(near.vertices.names, expected.vertices.names);
+      EXPECT_EQ(near.edges.names, expected.edges.names);
+      EXPECT_EQ(near.faces.names, expected.faces.names);
+      EXPECT_EQ(near.patches, expected.patches);
+    }
   }
 }
 
