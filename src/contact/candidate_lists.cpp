@@ -18,7 +18,7 @@ void dropLeading(const MeshPair& pair, double margin, NearFeatures (&near)[2], s
   const double limit = CONE_SLACK * (pair.range + margin) + margin;
   const auto leads = [&](const NearFeatures& features, const VertexRing& ring, const Vector3& d) {
     for (std::uint32_t i = ring.begin; i < ring.end; ++i)
-      if (vector3(features.ring_directions[i]).dot(d) > limit) return true;
+      if (features.ring_directions[i].dot(d) > limit) return true;
     return false;
   };
   const auto hasNone = [&](const Candidate& c) {
@@ -42,7 +42,7 @@ VertexRing& NearFeatures::ring(const MeshSide& side, std::uint32_t vertex) {
   found.begin = static_cast<std::uint32_t>(ring_directions.size());
   for (const int edge : topology.edgesOf(name)) {
     const int other = topology.otherEnd(side.mesh, edge, name);
-    ring_directions.push_back(vec4((side.mesh.vertices[other] - side.mesh.vertices[name]).normalized(), topology.isFlatEdge(edge)));
+    ring_directions.push_back((side.mesh.vertices[other] - side.mesh.vertices[name]).normalized());
   }
   found.end = static_cast<std::uint32_t>(ring_directions.size());
   return found;

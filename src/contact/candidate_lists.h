@@ -44,7 +44,7 @@ struct NearFeatures {
   /** What few candidates ask for, worked out when the first one does. @param side the mesh */
   VertexRing& ring(const MeshSide& side, std::uint32_t vertex);
   bool isRound(const MeshSide& side, std::uint32_t vertex);  ///< flat and round edges only
-  std::vector<kernels::Vec4> ring_directions;                ///< unit, mesh's frame; w: 1 if the edge is flat
+  std::vector<Vector3> ring_directions;                      ///< unit, mesh's frame
 
   void addFaceOf(const LeafFeatures& leaf, std::uint32_t i);  ///< what goes with faces
   void clear();

@@ -46,12 +46,6 @@ bool isRoundEdge(const MeshSide& side, int edge) {
   return isRound(side.topology.inward(side.mesh, edge, faces[0]), side.topology.inward(side.mesh, edge, faces[1]));
 }
 
-double edgeSlope(const MeshSide& side, int edge, const Vector3& direction) {
-  double slope = -1;
-  forEachFaceDirection(side, edge, [&](const Vector3& u) { slope = std::max(slope, u.dot(direction)); });
-  return slope;
-}
-
 Vector3 vertexLean(const MeshSide& side, int vertex) {
   Vector3 lean = Vector3::Zero();
   for (const int edge : side.topology.edgesOf(vertex)) lean += edgeDirection(side, vertex, edge).normalized();

@@ -19,10 +19,6 @@ inline bool isRound(const Vector3& inward, const Vector3& other) { return inward
 /** A contact that takes over where another leaves is no farther from it than this part of its length. */
 constexpr double NEAR_SUCCESSOR = 0.01;
 
-/** Largest part (sine) along `direction` (unit, mesh's frame) of the faces of an edge: how steeply its surface goes that way; -1 without
- * faces. */
-double edgeSlope(const MeshSide& side, int edge, const Vector3& direction);
-
 /** Sum of the unit directions from the vertex into the surface (edges) / from the edge into its faces; mesh's frame. */
 Vector3 vertexLean(const MeshSide& side, int vertex);
 Vector3 edgeLean(const MeshSide& side, int edge);

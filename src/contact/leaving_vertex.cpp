@@ -8,12 +8,11 @@
 namespace blem_sim {
 namespace {
 
-/** edgeSlope. */
-double slopeOf(const MeshSide& side, int name, const Vector3& direction, SurroundingsMemory* surroundings) {
-  const EdgeSurroundings& edge = surroundings->ofEdge(side, name);
-  if (edge.faces > 2) return edgeSlope(side, name, direction);
+/** Largest part (sine) along `direction` (unit, mesh's frame) of the faces of an edge: how steeply its surface goes that way; -1 without
+ * faces. */
+double slopeOf(const MeshSide& side, int edge, const Vector3& direction, SurroundingsMemory* surroundings) {
   double slope = -1;
-  for (int k = 0; k < edge.faces; ++k) slope = std::max(slope, edge.inward[k].dot(direction));
+  forEachInward(side, edge, surroundings, [&](const Vector3& u) { slope = std::max(slope, u.dot(direction)); });
   return slope;
 }
 
@@ -42,10 +41,8 @@ bool isTakenOver(const LeavingVertex& leaving, SurroundingsMemory* surroundings)
 }
 
 bool edgeConeAllows(const MeshSide& side, int edge, const Vector3& direction, double slack, SurroundingsMemory* surroundings) {
-  const EdgeSurroundings& around = surroundings->ofEdge(side, edge);
-  if (around.faces > 2) return edgeConeAllows(side, edge, direction, slack);
   bool allows = true;
-  for (int k = 0; k < around.faces; ++k) allows = allows && around.inward[k].dot(direction) <= slack;
+  forEachInward(side, edge, surroundings, [&](const Vector3& u) { allows = allows && u.dot(direction) <= slack; });
   return allows;
 }
 

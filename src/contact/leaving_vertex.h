@@ -20,8 +20,7 @@ struct LeavingVertex {
  */
 bool isTakenOver(const LeavingVertex& leaving, SurroundingsMemory* surroundings);
 
-/** Does the surface at an edge lead nowhere along `direction`? None of its faces has a larger part of it than `slack` (sine).
- * @param direction unit, the mesh's frame, towards the other mesh */
+/** edgeConeAllows of feature_cones.h, by directions that are kept. */
 bool edgeConeAllows(const MeshSide& side, int edge, const Vector3& direction, double slack, SurroundingsMemory* surroundings);
 
 }  // namespace blem_sim

@@ -1,6 +1,7 @@
 // What lies around the vertices and edges that were asked about lately: directions, so that no search works them out anew.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -71,6 +72,16 @@ class SurroundingsMemory {
   Table<EdgeSurroundings, 8192> edges_;
   std::vector<EdgeFromVertex> many_;  // of a vertex that has more than a place holds
 };
+
+/** Calls visit(unit direction from the edge into a face) for all its faces; mesh's frame. */
+template <typename Visit>
+void forEachInward(const MeshSide& side, int edge, SurroundingsMemory* surroundings, Visit&& visit) {
+  const EdgeSurroundings& around = surroundings->ofEdge(side, edge);
+  for (int k = 0; k < std::min(around.faces, 2); ++k) visit(around.inward[k]);
+  if (around.faces <= 2) return;
+  const EdgeFaces faces = side.topology.facesOf(edge);
+  for (int k = 2; k < around.faces; ++k) visit(side.topology.inward(side.mesh, edge, faces[k]));
+}
 
 /** Does the surface at the vertex lead nowhere along `direction`? No edge there has a larger part of it than `slack` (sine).
  *  @param direction unit, the mesh's frame, towards the other mesh */

@@ -97,6 +97,12 @@ void IslandProblem::respondIdle() {
 }
 
 template <typename Visit>
+void IslandProblem::forDofs(const Visit& visit) const {
+  for (const std::vector<int>* dofs : {&live_dofs_, &idle_dofs_})
+    for (const int k : *dofs) visit(k);
+}
+
+template <typename Visit>
 void IslandProblem::forIdleJoints(const Visit& visit) {
   for (std::size_t b = live_joint_blocks_; b < joint_blocks_.size(); ++b)
     for (int lane = 0; lane < LANES; ++lane)
@@ -155,12 +161,10 @@ bool IslandProblem::anchor() {
   if (!isBaseCurrent() && !eliminateIdle()) return false;
   anchored_ = true;
   if (idle_dofs_.empty()) return true;
-  for (const std::vector<int>* dofs : {&live_dofs_, &idle_dofs_}) {
-    for (const int k : *dofs) {
-      s.anchor[k] = s.velocity[k];
-      s.idle_pull[k] = -s.kinetic[k];
-    }
-  }
+  forDofs([&](int k) {
+    s.anchor[k] = s.velocity[k];
+    s.idle_pull[k] = -s.kinetic[k];
+  });
   forIdleJoints([&](JointBlock* b, int lane, int dof) { s.idle_pull[dof] += b->impulse[lane]; });
   for (const int tree : trees) reduce(*forest_, tree, s.idle, &s.idle_pull, &s.paths);
   for (const int k : live_dofs_) s.kinetic[k] = -s.idle_pull[k];
@@ -186,8 +190,7 @@ double IslandProblem::followIdle() {
   });
   respondIdle();
   forIdleJoints([&](JointBlock* b, int lane, int dof) { s.gradient[dof] = s.kinetic[dof] - b->impulse[lane]; });
-  for (const std::vector<int>* dofs : {&live_dofs_, &idle_dofs_})
-    for (const int k : *dofs) s.mass_velocity[k] = s.free_momentum[k] + s.kinetic[k];
+  forDofs([&](int k) { s.mass_velocity[k] = s.free_momentum[k] + s.kinetic[k]; });
   return gradientNorm(idle_dofs_);
 }
 
@@ -212,23 +215,19 @@ bool IslandProblem::settle(double enough) {
 
 void IslandProblem::keepFirst() {
   SolverSpace& s = *space_;
-  for (const std::vector<int>* dofs : {&live_dofs_, &idle_dofs_}) {
-    for (const int k : *dofs) {
-      s.first_velocity[k] = s.velocity[k];
-      s.first_kinetic[k] = s.kinetic[k];
-    }
-  }
+  forDofs([&s](int k) {
+    s.first_velocity[k] = s.velocity[k];
+    s.first_kinetic[k] = s.kinetic[k];
+  });
 }
 
 // Back to where the iteration began: where idle joints led by leaving their pieces is no place to go on from.
 void IslandProblem::rewind() {
   SolverSpace& s = *space_;
-  for (const std::vector<int>* dofs : {&live_dofs_, &idle_dofs_}) {
-    for (const int k : *dofs) {
-      s.velocity[k] = s.first_velocity[k];
-      s.kinetic[k] = s.first_kinetic[k];
-    }
-  }
+  forDofs([&s](int k) {
+    s.velocity[k] = s.first_velocity[k];
+    s.kinetic[k] = s.first_kinetic[k];
+  });
   begin();
 }
 

@@ -115,6 +115,8 @@ class IslandProblem {
   bool isIdle(int dof) const;
   template <typename Visit>
   void forIdleJoints(const Visit& visit);
+  template <typename Visit>
+  void forDofs(const Visit& visit) const;
   bool isSolved(double tolerance);
   bool isBaseCurrent();
   bool eliminateIdle();
