@@ -1,6 +1,7 @@
 // What a search remembers saves time and changes nothing.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 #include <functional>
 
@@ -73,6 +74,18 @@ TEST(NarrowPhaseMemory, CrossingsAreFoundAndLost) {
     EXPECT_TRUE(found.crossed);
     EXPECT_TRUE(found.apart);
   }
+}
+
+/** The only contact is that of two edges, well away from their ends, until they pass through each other. */
+TEST(NarrowPhaseMemory, EdgesThatMeetAreFound) {
+  TriangleMesh ridge = boxMesh({0.02, 0.1, 0.02});
+  for (Vector3& v : ridge.vertices) v = makePose(Vector3::Zero(), {0, M_PI / 4, 0}) * v;
+  const Collider below = makeCollider(ridge, 0), above = makeCollider(boxMesh({0.1, 0.02, 0.02}), R);
+  const double touch = 0.02 * std::sqrt(2.0);
+  const auto path = [&](int step) { return makePose({0.001, 0.002, touch + 0.001 - 3e-4 * step}, {M_PI / 4, 0, 0}); };
+  const Followed found = follow(above, below, 8, path, noMargin);
+  EXPECT_TRUE(found.crossed);
+  EXPECT_TRUE(found.apart);
 }
 
 TEST(NarrowPhaseMemory, MarginsMayChange) {
