@@ -2,19 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace blem_sim {
 namespace {
 
 // A list is made for so many steps of the present motion: longer ones cost more in every step, shorter ones are made anew too often.
-constexpr double MARGIN_STEPS = 18, FEWEST_STEPS = 3;
+constexpr double MARGIN_STEPS = 15, FEWEST_STEPS = 3;
 constexpr double LEAST_PART = 0.7;  // of MARGIN_STEPS, see partOf
 // Where there are not few pairs of leaves the next list is made in so many parts, in as many steps before it is needed, if it lasts.
-constexpr double PARTS = 3, LASTING_STEPS = 8;
-constexpr std::size_t FEW_LEAF_PAIRS = 64;
+constexpr std::size_t PARTS = 4, FEW_LEAF_PAIRS = 64;
+constexpr double LASTING_STEPS = 8;
+// A list is made for a pose ahead, so much of its margin away on the way of the pair, at most.
+constexpr double AHEAD = 0.8, AHEAD_AT_MOST = 0.95;
 // Of long lists those that matter for so few steps are listed again.
-constexpr double NEAREST_STEPS = 4;
+constexpr double NEAREST_STEPS = 3;
 // Candidates for crossings are listed for so many.
 constexpr double CROSSING_STEPS = 10;
 constexpr std::size_t FEW_CANDIDATES = 200;
@@ -61,7 +62,9 @@ class ContactSearch {
   ContactSearch(const MeshPair& pair, ContactSearchMemory* memory, ContactSearchBuffers* buffers, FoundContacts* found)
       : pair_(pair), memory_(*memory), buffers_(*buffers), found_(*found), region_(commonRegion(pair)) {
     if (memory->moving != pair.moving.identity || memory->fixed != pair.fixed.identity) forget();
-    if (memory_.visited) motion_ = {largestMotion(region_, pair.X_FM, memory_.X_FM), largestTurn(pair.X_FM, memory_.X_FM)};
+    if (!memory_.visited) return;
+    motion_ = {largestMotion(region_, pair.X_FM, memory_.X_FM), largestTurn(pair.X_FM, memory_.X_FM)};
+    memory_.motion.add(memory_.X_FM, pair.X_FM, middle());
   }
 
   void run(bool keeps) {
@@ -74,8 +77,9 @@ class ContactSearch {
     }
     refresh(CandidateKind::CONTACTS, keeps ? chooseMargin() : ListMargin(), &memory_.contacts);
     CandidateLists& lists = memory_.contacts.now.lists;
+    const CandidatePairs& pairs = nearestPairs();
     buffers_.evaluation.turned.turnForContacts(lists, pair_.X_FM);
-    Evaluation(pair_, &lists, nearestPairs(), &buffers_.evaluation, &found_).findContacts();
+    Evaluation(pair_, &lists, pairs, &buffers_.evaluation, &found_).findContacts();
     memory_.visited = keeps;
     memory_.X_FM = pair_.X_FM;
     memory_.distance = found_.crossings.empty() ? found_.leastGap(pair_) : 0;
@@ -84,6 +88,7 @@ class ContactSearch {
  private:
   void forget() {
     memory_.visited = memory_.nearest_origin.known = false;
+    memory_.motion = SteadyMotion();
     for (KeptListing* kept : {&memory_.contacts, &memory_.crossings}) kept->now.origin.known = kept->next.origin.known = false;
     memory_.moving = pair_.moving.identity;
     memory_.fixed = pair_.fixed.identity;
@@ -100,50 +105,58 @@ class ContactSearch {
             std::max(steps * motion_.turn, LEAST_TURN)};
   }
 
-  bool isGood(const ListOrigin& origin) const {
-    if (!origin.known) return false;
-    const double motion = largestMotion(region_, pair_.X_FM, origin.X_FM);
+  Vector3 middle() const { return pair_.moving.bounds.center(); }
+
+  bool isGood(const ListOrigin& origin) const { return origin.known && isGoodAt(pair_.X_FM, origin); }
+
+  bool isGoodAt(const Pose& X_FM, const ListOrigin& origin) const {
+    const double motion = largestMotion(region_, X_FM, origin.X_FM);
     return motion <= origin.margin.motion && pair_.range + motion <= origin.range + origin.margin.motion &&
-           largestTurn(pair_.X_FM, origin.X_FM) <= origin.margin.turn;
+           largestTurn(X_FM, origin.X_FM) <= origin.margin.turn;
   }
 
+  /** The pair where a list of that margin is best made: so far ahead on its way that the list is good from now on until long after. */
+  MeshPair ahead(const ListMargin& margin) const {
+    MeshPair ahead = pair_;
+    const double steps = motion_.motion > 0 ? std::min(AHEAD * margin.motion / motion_.motion, MARGIN_STEPS) : 0;
+    const Pose X_FM = memory_.motion.after(steps, pair_.X_FM, middle());
+    const ListMargin nearer{AHEAD_AT_MOST * margin.motion, AHEAD_AT_MOST * margin.turn};
+    if (isGoodAt(X_FM, {true, pair_.X_FM, pair_.range, nearer})) ahead.X_FM = X_FM;
+    return ahead;
+  }
+
+  /** Leaves a list that is good; what takes its place is made a part at a time, in the last steps that it is good for. */
   void refresh(CandidateKind kind, const ListMargin& margin, KeptListing* kept) {
-    if (isGood(kept->now.origin)) {
-      if (!isFast()) makeNext(kind, margin, kept);
-      return;
+    CandidateListing& next = kept->next;
+    const bool good = isGood(kept->now.origin), next_is_good = isGood(next.origin);
+    if (good && next_is_good && next.left() > 0) {
+      findMoreCandidates(pair_, (next.pairs.size() + PARTS - 1) / PARTS, &buffers_.search, &next);
+    } else if (next_is_good) {
+      findMoreCandidates(pair_, next.left(), &buffers_.search, &next);
+      replace(kind, kept);
+    } else if (!good) {
+      findCandidates(ahead(margin), kind, margin, &buffers_.search, &next);
+      replace(kind, kept);
+    } else if (memory_.contacts.now.pairs.size() > FEW_LEAF_PAIRS && lasts(margin) && endsSoon(kept->now.origin)) {
+      beginCandidates(ahead(margin), kind, margin, &buffers_.search, &next);
     }
-    if (isGood(kept->next.origin)) {
-      findMoreCandidates(pair_, kept->next.left(), &buffers_.search, &kept->next);
-      std::swap(kept->now, kept->next);
-    } else {
-      findCandidates(pair_, kind, margin, &buffers_.search, &kept->now);
-    }
+  }
+
+  void replace(CandidateKind kind, KeptListing* kept) {
+    std::swap(kept->now, kept->next);
     kept->next.origin.known = false;
     if (kind == CandidateKind::CONTACTS) memory_.nearest_origin.known = false;
-  }
-
-  /** What takes a list's place is made a part at a time, in the last steps that it is good for. */
-  void makeNext(CandidateKind kind, const ListMargin& margin, KeptListing* kept) {
-    const double steps = stepsLeft(kept->now.origin);
-    CandidateListing& next = kept->next;
-    if (isGood(next.origin)) {
-      const double part = std::ceil(static_cast<double>(next.left()) / std::clamp(1 + steps, 1.0, PARTS));
-      if (next.left() > 0) findMoreCandidates(pair_, static_cast<std::size_t>(part), &buffers_.search, &next);
-    } else if (steps <= PARTS && memory_.contacts.now.pairs.size() > FEW_LEAF_PAIRS && lasts(margin)) {
-      beginCandidates(pair_, kind, margin, &buffers_.search, &next);
-    }
   }
 
   /** Is a list of that margin good for much longer than it takes to make it? */
   bool lasts(const ListMargin& margin) const { return LASTING_STEPS * motion_.motion <= margin.motion; }
 
-  /** For how many steps of the present motion lists of that origin are good. */
-  double stepsLeft(const ListOrigin& origin) const {
-    const auto steps = [](double left, double step) {
-      return step > 0 ? std::floor(left / step) : std::numeric_limits<double>::infinity();
-    };
-    return std::min(steps(origin.margin.motion - largestMotion(region_, pair_.X_FM, origin.X_FM), motion_.motion),
-                    steps(origin.margin.turn - largestTurn(pair_.X_FM, origin.X_FM), motion_.turn));
+  /** Will lists of that origin be good for no longer than it takes to make the next one, if the pair goes on to leave it as it does? */
+  bool endsSoon(const ListOrigin& origin) const {
+    constexpr double STEPS = PARTS + 1;
+    const auto ends = [](double before, double now, double margin) { return now > before && now + STEPS * (now - before) > margin; };
+    return ends(largestMotion(region_, memory_.X_FM, origin.X_FM), largestMotion(region_, pair_.X_FM, origin.X_FM), origin.margin.motion) ||
+           ends(largestTurn(memory_.X_FM, origin.X_FM), largestTurn(pair_.X_FM, origin.X_FM), origin.margin.turn);
   }
 
   /** For so many steps of the present motion. */
@@ -156,10 +169,12 @@ class ContactSearch {
   const CandidatePairs& nearestPairs() {
     if (isGood(memory_.nearest_origin)) return memory_.nearest;
     const ListMargin margin = marginOf(NEAREST_STEPS);
-    CandidateListing& listing = memory_.contacts.now;
-    if (listing.lists.pairs.contacts() <= FEW_CANDIDATES || 2 * margin.motion >= listing.origin.margin.motion) return listing.lists.pairs;
-    findNearest(pair_, buffers_.evaluation.turned, margin, &listing.lists, &memory_.nearest);
-    memory_.nearest_origin = {true, pair_.X_FM, pair_.range, margin};
+    CandidateListing& all = memory_.contacts.now;
+    if (all.lists.pairs.contacts() <= FEW_CANDIDATES || 2 * margin.motion >= all.origin.margin.motion) return all.lists.pairs;
+    const MeshPair ahead = this->ahead(margin);
+    buffers_.evaluation.turned.turnForContacts(all.lists, ahead.X_FM);
+    findNearest(ahead, buffers_.evaluation.turned, margin, &all.lists, &memory_.nearest);
+    memory_.nearest_origin = {true, ahead.X_FM, pair_.range, margin};
     return memory_.nearest;
   }
 

@@ -4,6 +4,7 @@
 #include "candidate_search.h"
 #include "contact_evaluation.h"
 #include "mesh_pair.h"
+#include "steady_motion.h"
 
 namespace blem_sim {
 
@@ -21,6 +22,7 @@ struct ContactSearchMemory {
   KeptListing crossings;  ///< only where the meshes may have met
   bool visited = false;
   Pose X_FM = Pose::Identity();  ///< at the last search
+  SteadyMotion motion;           ///< of the moving mesh
   double distance = 0;           ///< [m] of the meshes then, at least; 0 if they crossed
 };
 

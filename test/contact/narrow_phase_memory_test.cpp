@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <functional>
+#include <vector>
 
 #include "contact_shapes.h"
 
@@ -64,6 +65,23 @@ TEST(NarrowPhaseMemory, ContactsAreTheSameBits) {
     EXPECT_GT(follow(ball, hills, 300, wandering({0, 0, 0.0215}, 0.003, speed), noMargin).contacts, 300u);
     EXPECT_GT(follow(soup, cube, 300, wandering({0.02, 0.01, 0.03}, 0.01, speed), noMargin).contacts, 300u);
   }
+}
+
+TEST(NarrowPhaseMemory, JerksAreNoSurprise) {
+  RandomShapes random(9);
+  const Collider hills = makeCollider(hillMesh(random, 0.3, 60, 0.001), 0), ball = makeCollider(icosphereMesh(0.02, 3), R);
+  std::vector<Pose> path = {makePose({0, 0, 0.0215})};
+  // The same way for some steps, then, up to ten thousand times slower or faster, another.
+  for (int jerk = 0; jerk < 80; ++jerk) {
+    const double speed = 3e-4 * std::pow(10, random.uniform(-4, 0));
+    const Vector3 shift = speed * Vector3(random.uniform(-1, 1), random.uniform(-1, 1), 0);
+    for (int step = 0; step < 2 + jerk % 9; ++step) path.push_back(Eigen::Translation3d(shift) * path.back());
+  }
+  const int steps = static_cast<int>(path.size());
+  EXPECT_GT(follow(
+                ball, hills, steps, [&](int step) { return path[step]; }, noMargin)
+                .contacts,
+            300u);
 }
 
 TEST(NarrowPhaseMemory, CrossingsAreFoundAndLost) {
