@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <limits>
 #include <memory>
 
 #include "blem_sim/contact/collider.h"
@@ -98,6 +99,18 @@ void weldTopologyTree(const TriangleMesh& given) {
   benchmark::DoNotOptimize(tree.nodes().data());
 }
 
+/** A table has the same columns in every row. @param kept null: nothing */
+void count(benchmark::State* state, std::size_t triangles, const CollisionGeometry* kept) {
+  const auto perTriangle = [&](const char* part, std::size_t bytes) {
+    state->counters[part] = kept ? static_cast<double>(bytes) / static_cast<double>(triangles) : std::numeric_limits<double>::quiet_NaN();
+  };
+  perTriangle("bytes_per_triangle", kept ? kept->bytes() : 0);
+  perTriangle("of_mesh", kept ? kept->mesh().bytes() : 0);
+  perTriangle("of_topology", kept ? kept->topology().bytes() : 0);
+  perTriangle("of_tree", kept ? kept->bvh().bytes() + kept->owners().capacity() : 0);
+  state->counters["triangles"] = static_cast<double>(triangles);
+}
+
 /** One row per number of threads. */
 void add(const std::string& name, std::function<void()> work) {
   for (const int threads : {1, 2}) {
@@ -105,7 +118,7 @@ void add(const std::string& name, std::function<void()> work) {
                                  [work, threads](benchmark::State& state) {
                                    tbb::task_arena arena(threads);
                                    for (auto _ : state) arena.execute(work);
-                                   state.counters["triangles"] = static_cast<double>(terrain().elements.size());
+                                   count(&state, terrain().elements.size(), nullptr);
                                  })
         ->Unit(benchmark::kMillisecond)
         ->Iterations(1)
@@ -131,18 +144,9 @@ void addMemory(const std::string& name, const std::function<TriangleMesh()>& sur
   benchmark::RegisterBenchmark(("loading/memory_" + name).c_str(),
                                [surface](benchmark::State& state) {
                                  const auto mesh = std::make_shared<const TriangleMesh>(surface());
-                                 const double triangles = static_cast<double>(mesh->elements.size());
-                                 for (auto _ : state) {
-                                   const CollisionGeometry geometry(mesh);
-                                   const auto count = [&](const char* part, std::size_t bytes) {
-                                     state.counters[part] = static_cast<double>(bytes) / triangles;
-                                   };
-                                   count("bytes_per_triangle", geometry.bytes());
-                                   count("of_mesh", geometry.mesh().bytes());
-                                   count("of_topology", geometry.topology().bytes());
-                                   count("of_tree", geometry.bvh().bytes() + geometry.owners().capacity());
-                                 }
-                                 state.counters["triangles"] = triangles;
+                                 std::unique_ptr<CollisionGeometry> geometry;
+                                 for (auto _ : state) geometry = std::make_unique<CollisionGeometry>(mesh);
+                                 count(&state, mesh->elements.size(), geometry.get());
                                })
       ->Unit(benchmark::kMillisecond)
       ->Iterations(1);
