@@ -133,7 +133,7 @@ std::unique_ptr<ContactScene> boxOn(TriangleMesh terrain, const Vector3& size) {
 }
 
 constexpr double HUBO_CELL = 0.01, CUBE_CELL = 0.0075, SLAB_CELL = 0.01;  // [m]
-const Vector3 CUBE = Vector3::Constant(0.1);                              // [m]
+const Vector3 CUBE = Vector3::Constant(0.183);                            // [m]
 
 bool haveHubo() { return sharedData("robots/klampt/huboplus/huboplus.urdf").has_value(); }
 
