@@ -167,17 +167,14 @@ void ContactStage::appendRecoveries(std::vector<double>* numbers, std::vector<st
   }
 }
 
-bool ContactStage::readRecoveries(const std::uint64_t* words, const std::uint64_t* words_end, const std::vector<double>& numbers,
-                                  std::vector<Recovery>* recoveries) {
+bool ContactStage::readRecoveries(const std::uint64_t* words, const std::uint64_t* words_end, NumberReader* reader) {
   const auto count = static_cast<std::size_t>(words_end - words) / WORDS;
   if (static_cast<std::size_t>(words_end - words) != 1 + WORDS * count || *words++ != count) return false;
-  if (numbers.size() < NUMBERS * count) return false;
-  const double* pose = numbers.data() + (numbers.size() - NUMBERS * count);
-  for (std::size_t i = 0; i < count; ++i, words += WORDS, pose += NUMBERS) {
+  forgetRecoveries();
+  for (std::size_t i = 0; i < count; ++i, words += WORDS) {
     Recovery recovery{static_cast<int>(words[0]), static_cast<int>(words[1]), words[2] != 0, Pose()};
-    std::copy(pose, pose + NUMBERS, recovery.X_AB.matrix().data());
-    if (recovery.X_AB.matrix().row(3) != Eigen::RowVector4d(0, 0, 0, 1)) return false;  // the numbers are others'
-    recoveries->push_back(recovery);
+    reader->numbers(recovery.X_AB.matrix().data(), NUMBERS);
+    current_search_.recoveries.push_back(recovery);
   }
   return true;
 }

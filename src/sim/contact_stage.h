@@ -8,6 +8,7 @@
 #include "blem_sim/contact/manifold.h"
 #include "blem_sim/contact/reduction.h"
 #include "blem_sim/dynamics/world.h"
+#include "number_reader.h"
 #include "pair_searches.h"
 #include "simulated_world.h"
 
@@ -71,12 +72,10 @@ class ContactStage {
    */
   const std::vector<Recovery>& recoveries() const { return current_search_.recoveries; }
   void forgetRecoveries() { current_search_.recoveries.clear(); }
-  void setRecoveries(std::vector<Recovery> recoveries) { current_search_.recoveries = std::move(recoveries); }
   /** recoveries() as numbers and words, for save: the last ones of a state. */
   void appendRecoveries(std::vector<double>* numbers, std::vector<std::uint64_t>* words) const;
-  /** Reads what appendRecoveries wrote at the end of a state's numbers, and in the words up to its end. @return false if it is not whole */
-  static bool readRecoveries(const std::uint64_t* words, const std::uint64_t* words_end, const std::vector<double>& numbers,
-                             std::vector<Recovery>* recoveries);
+  /** Reads what appendRecoveries wrote, in the words up to their end. @return false if they are not whole */
+  bool readRecoveries(const std::uint64_t* words, const std::uint64_t* words_end, NumberReader* reader);
   int rawContacts() const;
   /** A model has as many contacts as it may, and others were left out. */
   bool budgetUsedUp() const { return budget_used_up_; }

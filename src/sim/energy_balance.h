@@ -5,6 +5,7 @@
 
 #include "blem_sim/dynamics/world.h"
 #include "contact_stage.h"
+#include "number_reader.h"
 
 namespace blem_sim {
 
@@ -34,7 +35,7 @@ class EnergyBalance {
   /** No impact is to bounce. */
   void clear() { bounce_ = 0; }
   void append(std::vector<double>* numbers) const { numbers->push_back(bounce_); }
-  void read(const double** numbers) { bounce_ = *(*numbers)++; }
+  void read(NumberReader* reader) { bounce_ = reader->number(); }
 
  private:
   /** [J] done by motors and joint friction since the last time. */

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "number_reader.h"
+
 namespace blem_sim {
 namespace {
 
@@ -90,12 +92,12 @@ void JointMotor::append(std::vector<double>* numbers) const {
   spline_.append(numbers);
 }
 
-void JointMotor::read(const double** cursor) {
-  velocity_only_ = *(*cursor)++ != 0;
-  velocity_target_ = *(*cursor)++;
-  added_effort_ = *(*cursor)++;
-  integral_ = *(*cursor)++;
-  spline_.read(cursor);
+void JointMotor::read(NumberReader* reader) {
+  velocity_only_ = reader->number() != 0;
+  velocity_target_ = reader->number();
+  added_effort_ = reader->number();
+  integral_ = reader->number();
+  spline_.read(reader);
 }
 
 }  // namespace blem_sim

@@ -44,7 +44,7 @@ class JointMotor {
 
   const MotorSettings& settings() const { return settings_; }
   void append(std::vector<double>* numbers) const;
-  void read(const double** cursor);
+  void read(NumberReader* reader);
 
  private:
   MotorSettings settings_;

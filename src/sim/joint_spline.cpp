@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "blem_sim/sim/trajectory.h"
+#include "number_reader.h"
 
 namespace blem_sim {
 
@@ -120,12 +121,15 @@ void JointSpline::append(std::vector<double>* numbers) const {
                     {knot.time, knot.position, knot.velocity, knot.acceleration, knot.effort, static_cast<double>(knot.order)});
 }
 
-void JointSpline::read(const double** cursor) {
-  knots_.resize(static_cast<std::size_t>(*(*cursor)++));
+void JointSpline::read(NumberReader* reader) {
+  constexpr std::size_t NUMBERS = 6;
+  const double count = reader->number();
+  if (!(count >= 1 && count <= static_cast<double>(reader->left() / NUMBERS))) NumberReader::refuse();
+  knots_.resize(static_cast<std::size_t>(count));
   for (Knot& knot : knots_) {
-    const double* numbers = *cursor;
+    double numbers[NUMBERS];
+    reader->numbers(numbers, NUMBERS);
     knot = {numbers[0], numbers[1], numbers[2], numbers[3], numbers[4], static_cast<int>(numbers[5])};
-    *cursor += 6;
   }
 }
 

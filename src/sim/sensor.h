@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "blem_sim/sim/step_report.h"
+#include "number_reader.h"
 #include "random_numbers.h"
 #include "simulated_world.h"
 
@@ -34,7 +35,7 @@ class Sensor {
   virtual void reset() {}
   /** What it remembers. */
   virtual void append(std::vector<double>* numbers) const {}
-  virtual void restore(const double** cursor) {}
+  virtual void restore(NumberReader* reader) {}
 
   RandomNumbers& random() { return random_; }
   const RandomNumbers& random() const { return random_; }

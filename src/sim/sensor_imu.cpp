@@ -29,9 +29,8 @@ class ImuSensor : public Sensor {
   void append(std::vector<double>* numbers) const override {
     for (const Vector3* bias : {&accel_bias_, &gyro_bias_}) numbers->insert(numbers->end(), bias->data(), bias->data() + 3);
   }
-  void restore(const double** cursor) override {
-    for (Vector3* bias : {&accel_bias_, &gyro_bias_})
-      for (int i = 0; i < 3; ++i) (*bias)[i] = *(*cursor)++;
+  void restore(NumberReader* reader) override {
+    for (Vector3* bias : {&accel_bias_, &gyro_bias_}) reader->numbers(bias->data(), 3);
   }
 
  private:

@@ -50,7 +50,9 @@ struct Simulator::Impl {
   // simulator_state.cpp
   std::string layout() const;
   SimulationState save() const;
+  /** A state that is refused changes nothing. */
   void restore(const SimulationState& state);
+  void read(const SimulationState& state);
   void resetWorld();
   void seedSensors();
 

@@ -1,8 +1,8 @@
 // Save, restore, reset, hash.
 #include <cstring>
-#include <utility>
 
 #include "blem_sim/geometry/input_error.h"
+#include "number_reader.h"
 #include "simulator_impl.h"
 
 namespace blem_sim {
@@ -71,30 +71,34 @@ SimulationState Simulator::Impl::save() const {
 }
 
 void Simulator::Impl::restore(const SimulationState& state) {
-  if (state.layout != layout() || state.words.size() < sensors_.size() + 4)
+  if (state.layout != layout())
     throw InputError("restore: the state belongs to other models; restore it where the same models, joints and environments are loaded");
-  const std::uint64_t *words = state.words.data() + sensors_.size() + 1, *words_end = state.words.data() + state.words.size();
-  ReductionMemory memory;
-  LayerWatch layer_watch;
-  std::vector<Recovery> recoveries;
-  if (!memory.read(&words, words_end) || !layer_watch.read(&words, words_end) ||
-      !ContactStage::readRecoveries(words, words_end, state.numbers, &recoveries))
-    throw InputError("restore: the state is cut short; save it again");
-  contacts_.memory() = std::move(memory);
-  layer_watch_ = std::move(layer_watch);
-  world_.world.restore(state.world);
-  const double* cursor = state.numbers.data();
-  energy_balance_.read(&cursor);
-  for (JointMotor& motor : world_.motors) motor.read(&cursor);
-  for (std::size_t i = 0; i < sensors_.size(); ++i) {
-    sensors_[i]->restore(&cursor);
-    sensors_[i]->random().setState(state.words[i + 1]);
+  const SimulationState before = save();
+  try {
+    read(state);
+  } catch (const InputError&) {
+    read(before);
+    throw;
   }
-  contacts_.setRecoveries(std::move(recoveries));
-  step_count_ = state.step;
-  stopped_ = state.words[0] != 0;
   contacts_.forget();
   reportWithoutStep();
+}
+
+void Simulator::Impl::read(const SimulationState& state) {
+  world_.world.restore(state.world);
+  NumberReader reader(state.numbers);
+  energy_balance_.read(&reader);
+  for (JointMotor& motor : world_.motors) motor.read(&reader);
+  for (const auto& sensor : sensors_) sensor->restore(&reader);
+  if (state.words.size() < 1 + sensors_.size()) NumberReader::refuse();
+  for (std::size_t i = 0; i < sensors_.size(); ++i) sensors_[i]->random().setState(state.words[i + 1]);
+  const std::uint64_t *words = state.words.data() + sensors_.size() + 1, *words_end = state.words.data() + state.words.size();
+  if (!contacts_.memory().read(&words, words_end) || !layer_watch_.read(&words, words_end) ||
+      !contacts_.readRecoveries(words, words_end, &reader))
+    NumberReader::refuse();
+  reader.finish();
+  step_count_ = state.step;
+  stopped_ = state.words[0] != 0;
 }
 
 void Simulator::Impl::resetWorld() {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "number_reader.h"
 #include "simulation_scene.h"
 
 namespace blem_sim {
@@ -112,9 +113,9 @@ TEST(JointMotor, StateGoesThroughNumbers) {
   std::vector<double> numbers;
   motor.append(&numbers);
   JointMotor copy(settings(MotorLaw::PID, {100, 10, 2}), 0);
-  const double* cursor = numbers.data();
-  copy.read(&cursor);
-  EXPECT_EQ(cursor, numbers.data() + numbers.size());
+  NumberReader reader(numbers);
+  copy.read(&reader);
+  EXPECT_EQ(reader.left(), 0u);
   for (JointMotor* m : {&motor, &copy}) m->sample(DT, DT);
   EXPECT_EQ(motor.drive({0.1, 0.1, 0}).effort, copy.drive({0.1, 0.1, 0}).effort);
   copy.reset();

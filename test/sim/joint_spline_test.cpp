@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "blem_sim/sim/trajectory.h"
+#include "number_reader.h"
 
 namespace blem_sim {
 namespace {
@@ -171,14 +172,14 @@ TEST(JointSpline, EffortIsInterpolatedAndHeld) {
 TEST(JointSpline, SavedAndReadItIsTheSame) {
   JointSpline first(0.3), second(0);
   first.splice(0.1, 0.1, {cubic(1, 1, 2), quintic(3, -1, 0.1, 0.7)}, false);
-  std::vector<double> numbers = {42};
+  std::vector<double> numbers;
   first.append(&numbers);
   second.append(&numbers);
-  const double* cursor = numbers.data() + 1;
+  NumberReader reader(numbers);
   JointSpline read_first, read_second(7);
-  read_first.read(&cursor);
-  read_second.read(&cursor);
-  EXPECT_EQ(cursor, numbers.data() + numbers.size());
+  read_first.read(&reader);
+  read_second.read(&reader);
+  EXPECT_EQ(reader.left(), 0u);
   for (double t = 0; t < 4; t += 0.037) {
     EXPECT_EQ(read_first.sample(t).position, first.sample(t).position);
     EXPECT_EQ(read_first.sample(t).acceleration, first.sample(t).acceleration);

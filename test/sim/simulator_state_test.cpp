@@ -70,6 +70,36 @@ TEST(SimulatorState, RefusesAStateOfOtherModels) {
   EXPECT_EQ(other.stateHash(), before);
 }
 
+/** Whatever is missing at the end, of the dynamics' state or of the rest, it is said, and nothing is taken. */
+TEST(SimulatorState, RefusesAStateThatIsCutShort) {
+  Simulator simulator(busyScene(), UriResolver()), other(busyScene(), UriResolver());
+  stepFor(&simulator, 0.25);
+  const SimulationState whole = simulator.save();
+  const std::uint64_t untouched = other.stateHash();
+  const auto expectRefused = [&](const SimulationState& cut) {
+    EXPECT_THROW(other.restore(cut), InputError);
+    EXPECT_EQ(other.stateHash(), untouched);
+  };
+  for (SimulationState cut = whole; !cut.numbers.empty();) {
+    cut.numbers.pop_back();
+    expectRefused(cut);
+  }
+  for (SimulationState cut = whole; !cut.words.empty();) {
+    cut.words.pop_back();
+    expectRefused(cut);
+  }
+  for (const std::size_t left : {std::size_t{0}, whole.world.numbers.size() / 2, whole.world.numbers.size() - 1}) {
+    SimulationState cut = whole;
+    cut.world.numbers.resize(left);
+    expectRefused(cut);
+  }
+  SimulationState longer = whole;
+  longer.numbers.push_back(0);
+  expectRefused(longer);
+  other.restore(whole);
+  EXPECT_EQ(other.stateHash(), simulator.stateHash());
+}
+
 TEST(SimulatorState, ResetWorldKeepsTimeResetSimulationStartsAgain) {
   Simulator simulator(busyScene(), UriResolver());
   const std::uint64_t fresh = simulator.stateHash();

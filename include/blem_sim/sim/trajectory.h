@@ -8,6 +8,8 @@
 
 namespace blem_sim {
 
+class NumberReader;
+
 struct TrajectoryPoint {
   double time_from_start = 0;         ///< [s], strictly increasing
   std::vector<double> positions;      ///< one per joint
@@ -51,7 +53,7 @@ class JointSpline {
   double endTime() const;
   /** State as numbers, for save and restore. */
   void append(std::vector<double>* numbers) const;
-  void read(const double** cursor);
+  void read(NumberReader* reader);
 
  private:
   std::vector<Knot> knots_;
