@@ -44,7 +44,7 @@ class Search {
         buffers_(*buffers),
         listing_(*listing),
         search_(++buffers->searches) {
-    for (const bool moves : {true, false}) buffers_.found[moves].assign(listing_.leaves[moves].size(), nullptr);
+    for (const bool moves : {true, false}) buffers_.found[moves].assign(listing_.leaves[moves].size(), {});
   }
 
   void findLeafPairs() {
@@ -86,7 +86,7 @@ class Search {
     const ListMargin& margin = listing_.origin.margin;
     const double wider = margin.motion + rounding();
     return {static_cast<float>(reach_ - margin.motion + wider), static_cast<float>(wider), static_cast<float>(margin.turn + FLOAT_TURN),
-            static_cast<float>(deepestInside(reach_) + wider)};
+            static_cast<float>(deepestInside(reach_) + wider), static_cast<float>(rounding())};
   }
 
   // Where a feature of a leaf is among the near ones of its mesh.
@@ -151,6 +151,12 @@ class Search {
 
   /** Index of the node among the listing's leaves. */
   std::uint32_t use(bool moves, std::uint32_t node) {
+    LeafUsed& last = last_[moves];
+    if (last.node != node) last = {node, indexOf(moves, node)};
+    return last.index;
+  }
+
+  std::uint32_t indexOf(bool moves, std::uint32_t node) {
     LeafFeatures& features = find(moves, node);
     std::uint32_t& index = features.index[moves];
     if (index != LeafFeatures::NO_INDEX) return index;
@@ -160,25 +166,26 @@ class Search {
     const std::size_t slots = listing_.slots.size();
     leaves.push_back({node, static_cast<std::uint32_t>(slots)});
     listing_.slots.resize(slots + shapes.vertex_count + shapes.face_count + shapes.edge_count, NOWHERE);
-    buffers_.found[moves].push_back(nullptr);
+    buffers_.found[moves].push_back({&features, nullptr});
     return index;
   }
 
   LeafInUse leaf(bool moves, std::uint32_t index) {
-    LeafFeatures*& found = buffers_.found[moves][index];
+    FoundLeaf& found = buffers_.found[moves][index];
     const CandidateListing::Leaf& leaf = listing_.leaves[moves][index];
-    if (!found) {
-      found = &find(moves, leaf.node);
-      if (moves) turnLeaf(found->shapes, motion_, turned(index));
+    if (!found.shapes) {
+      if (!found.features) found.features = &find(moves, leaf.node);
+      found.shapes = moves ? turned(found.features->shapes, index) : &found.features->shapes;
     }
-    return {*found, moves ? *turned(index) : found->shapes, leaf.slots};
+    return {*found.features, *found.shapes, leaf.slots};
   }
 
-  /** Room for the shapes of a moving leaf. */
-  kernels::LeafShapes* turned(std::uint32_t index) {
+  /** The shapes of a moving leaf in the fixed mesh's frame. */
+  const kernels::LeafShapes* turned(const kernels::LeafShapes& shapes, std::uint32_t index) {
     std::vector<std::unique_ptr<kernels::LeafShapes>>& all = buffers_.turned;
     if (all.size() <= index) all.resize(index + 1);
     if (!all[index]) all[index] = std::make_unique<kernels::LeafShapes>();
+    kernels::kernels().turnLeaf(shapes, motion_, all[index].get());
     return all[index].get();
   }
 
@@ -190,7 +197,7 @@ class Search {
   static void prefetch(const kernels::LeafShapes& shapes) {
     constexpr std::size_t LINE = 64;
     const char* const begin = reinterpret_cast<const char*>(&shapes);
-    for (std::size_t at = 0; at < offsetof(kernels::LeafShapes, edges) + sizeof(kernels::LeafEdges); at += LINE)
+    for (std::size_t at = 0; at < offsetof(kernels::LeafShapes, vertices) + sizeof(kernels::LeafVertices); at += LINE)
       __builtin_prefetch(begin + at);
   }
 
@@ -208,6 +215,9 @@ class Search {
   CandidateSearchBuffers& buffers_;
   CandidateListing& listing_;
   const std::uint64_t search_;
+  struct LeafUsed {
+    std::uint32_t node = NOWHERE, index = NOWHERE;
+  } last_[2];
 };
 
 void clear(const MeshPair& pair, CandidateKind kind, const ListMargin& margin, CandidateListing* listing) {

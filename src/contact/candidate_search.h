@@ -42,11 +42,17 @@ struct CandidateListing {
   bool isComplete() const { return origin.known && left() == 0; }
 };
 
+/** A leaf of a listing. */
+struct FoundLeaf {
+  LeafFeatures* features = nullptr;             ///< null: not found yet
+  const kernels::LeafShapes* shapes = nullptr;  ///< in the fixed mesh's frame; null: not looked at yet
+};
+
 /** What searches for candidates work in. */
 struct CandidateSearchBuffers {
   LeafMemory leaves;
-  std::vector<LeafFeatures*> found[2];                       ///< of the listing's leaves; null: not looked at yet
-  std::vector<std::unique_ptr<kernels::LeafShapes>> turned;  ///< of the moving ones that were found
+  std::vector<FoundLeaf> found[2];                           ///< of the listing's leaves
+  std::vector<std::unique_ptr<kernels::LeafShapes>> turned;  ///< of the moving ones that were looked at
   kernels::LeafHits hits;
   std::uint64_t searches = 0;
 };
