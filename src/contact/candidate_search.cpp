@@ -41,6 +41,7 @@ class Search {
       : pair_(pairAt(pair, listing->origin)),
         motion_(motionOf(pair_.X_FM)),
         reach_((listing->kind == CandidateKind::CONTACTS ? pair_.range : 0) + listing->origin.margin.motion),
+        rounding_(findRounding()),
         buffers_(*buffers),
         listing_(*listing),
         search_(++buffers->searches) {
@@ -49,7 +50,7 @@ class Search {
 
   void findLeafPairs() {
     const auto matters = [this](std::uint32_t m, std::uint32_t f) { return (pair_.moving.owners[m] | pair_.fixed.owners[f]) != 0; };
-    visitLeafPairsIf(pair_.moving.bvh, pair_.fixed.bvh, pair_.X_FM, reach_ + rounding(), matters, [this](std::uint32_t m, std::uint32_t f) {
+    visitLeafPairsIf(pair_.moving.bvh, pair_.fixed.bvh, pair_.X_FM, reach_ + rounding_, matters, [this](std::uint32_t m, std::uint32_t f) {
       listing_.pairs.push_back({use(true, m), use(false, f)});
     });
   }
@@ -84,9 +85,9 @@ class Search {
   /** With room for the rounding of floats. */
   kernels::LeafReach leafReach() const {
     const ListMargin& margin = listing_.origin.margin;
-    const double wider = margin.motion + rounding();
+    const double wider = margin.motion + rounding_;
     return {static_cast<float>(reach_ - margin.motion + wider), static_cast<float>(wider), static_cast<float>(margin.turn + FLOAT_TURN),
-            static_cast<float>(deepestInside(reach_) + wider), static_cast<float>(rounding())};
+            static_cast<float>(deepestInside(reach_) + wider), static_cast<float>(rounding_)};
   }
 
   // Where a feature of a leaf is among the near ones of its mesh.
@@ -142,9 +143,11 @@ class Search {
     }
   }
 
-  double rounding() const {
-    const double largest = std::max(pair_.fixed.bounds.min().cwiseAbs().maxCoeff(), pair_.fixed.bounds.max().cwiseAbs().maxCoeff());
-    return FLOAT_ROUNDING * (largest + reach_) + 3 * CLOSED;
+  /** Of coordinates in either frame [m]. */
+  double findRounding() const {
+    const auto largest = [](const Box& box) { return std::max(box.min().cwiseAbs().maxCoeff(), box.max().cwiseAbs().maxCoeff()); };
+    const double shift = pair_.X_FM.translation().cwiseAbs().maxCoeff();
+    return FLOAT_ROUNDING * (std::max(largest(pair_.fixed.bounds), largest(pair_.moving.bounds) + shift) + reach_) + 3 * CLOSED;
   }
 
   LeafFeatures& find(bool moves, std::uint32_t node) { return buffers_.leaves.find(pair_.side(moves), node, search_); }
@@ -211,7 +214,7 @@ class Search {
 
   const MeshPair pair_;
   const kernels::Motion motion_;
-  const double reach_;
+  const double reach_, rounding_;
   CandidateSearchBuffers& buffers_;
   CandidateListing& listing_;
   const std::uint64_t search_;

@@ -173,5 +173,26 @@ TEST(CandidateCompleteness, ListsHoldEveryContact) {
   EXPECT_GT(contacts, samples(6000));
 }
 
+// A large mesh in a frame far away, a small one that is looked at in its own: coordinates are rounded as the larger ones are.
+TEST(CandidateCompleteness, LargeMovingMeshesAreRoundedAsSuch) {
+  RandomShapes random(13);
+  const Collider ball = makeCollider(icosphereMesh(0.05, 2), 0.5 * LAYER), large = makeCollider(boxMesh({4, 4, 4}), 0.5 * LAYER);
+  CandidateSearchBuffers buffers;
+  CandidateListing listing;
+  for (int i = 0; i < samples(300); ++i) {
+    // The ball's lowest vertex, at a height just within the layer over some place of the box's upper face.
+    const Pose X_BM = random.pose(1);
+    const std::vector<Vector3>& vertices = ball.geometry->mesh().vertices;
+    const Vector3 up = X_BM.linear().col(2);
+    const Vector3& lowest =
+        *std::min_element(vertices.begin(), vertices.end(), [&](const Vector3& p, const Vector3& q) { return p.dot(up) < q.dot(up); });
+    const Vector3 place(random.uniform(-1.9, 1.9), random.uniform(-1.9, 1.9), 2 + LAYER - 1e-9);
+    Pose X_FM = X_BM;
+    X_FM.translation() = lowest - X_FM.linear() * place;
+    findCandidates(pairOf(large, ball, X_FM), CandidateKind::CONTACTS, {}, &buffers, &listing);
+    ASSERT_FALSE(listing.lists.pairs.vertex_face[0].empty()) << i;
+  }
+}
+
 }  // namespace
 }  // namespace blem_sim
