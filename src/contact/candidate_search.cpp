@@ -192,16 +192,17 @@ class Search {
     return all[index].get();
   }
 
-  /** Leaves that are new lie far away in memory. */
   void prefetch(const CandidateListing::LeafPair& next, const CandidateListing::LeafPair& now) {
-    if (next.moving != now.moving) prefetch(leaf(true, next.moving).shapes);
-    if (next.fixed != now.fixed) prefetch(leaf(false, next.fixed).shapes);
+    if (next.moving != now.moving) prefetch(true, next.moving);
+    if (next.fixed != now.fixed) prefetch(false, next.fixed);
   }
-  static void prefetch(const kernels::LeafShapes& shapes) {
-    constexpr std::size_t LINE = 64;
-    const char* const begin = reinterpret_cast<const char*>(&shapes);
-    for (std::size_t at = 0; at < offsetof(kernels::LeafShapes, vertices) + sizeof(kernels::LeafVertices); at += LINE)
-      __builtin_prefetch(begin + at);
+  /** Leaves that are new lie far away in memory; of others only what is always asked does. */
+  void prefetch(bool moves, std::uint32_t index) {
+    using Shapes = kernels::LeafShapes;
+    constexpr std::size_t LINE = 64, FEW = offsetof(Shapes, faces), MOST = offsetof(Shapes, edges) + sizeof(kernels::LeafEdges);
+    const std::size_t size = buffers_.found[moves][index].shapes ? FEW : MOST;
+    const char* const begin = reinterpret_cast<const char*>(&leaf(moves, index).shapes);
+    for (std::size_t at = 0; at < size; at += LINE) __builtin_prefetch(begin + at);
   }
 
   template <typename Record, int CAPACITY>
