@@ -67,6 +67,7 @@ class Search {
         appendCrossings(m, f);
       }
     });
+    copyNew();
   }
 
  private:
@@ -92,17 +93,16 @@ class Search {
 
   // Where a feature of a leaf is among the near ones of its mesh.
   std::uint32_t vertex(bool moves, const LeafInUse& leaf, std::uint32_t i) {
-    return place(leaf.slots + i, leaf.features.vertices, i, &listing_.lists.near[moves].vertices);
+    return place(leaf, leaf.slots + i, i, listing_.lists.near[moves].vertices, &buffers_.new_features[moves].vertices);
   }
   std::uint32_t face(bool moves, const LeafInUse& leaf, std::uint32_t i) {
-    NearFeatures& near = listing_.lists.near[moves];
-    const std::uint32_t found = place(leaf.slots + leaf.features.shapes.vertex_count + i, leaf.features.faces, i, &near.faces);
-    if (found == near.patches.size()) near.addFaceOf(leaf.features, i);
-    return found;
+    return place(leaf, leaf.slots + leaf.features.shapes.vertex_count + i, i, listing_.lists.near[moves].faces,
+                 &buffers_.new_features[moves].faces);
   }
   std::uint32_t edge(bool moves, const LeafInUse& leaf, std::uint32_t i) {
     const kernels::LeafShapes& shapes = leaf.features.shapes;
-    return place(leaf.slots + shapes.vertex_count + shapes.face_count + i, leaf.features.edges, i, &listing_.lists.near[moves].edges);
+    return place(leaf, leaf.slots + shapes.vertex_count + shapes.face_count + i, i, listing_.lists.near[moves].edges,
+                 &buffers_.new_features[moves].edges);
   }
 
   /** Appends visit(i, j) for the features i of the moving leaf and j of the fixed one. */
@@ -205,12 +205,30 @@ class Search {
     for (std::size_t at = 0; at < size; at += LINE) __builtin_prefetch(begin + at);
   }
 
-  template <typename Record, int CAPACITY>
-  std::uint32_t place(std::uint32_t slot, const LeafFeatures::Kind<Record, CAPACITY>& kind, std::uint32_t i,
-                      FeatureRecords<Record>* features) {
+  template <typename Record>
+  std::uint32_t place(const LeafInUse& leaf, std::uint32_t slot, std::uint32_t i, const FeatureRecords<Record>& features,
+                      std::vector<LeafFeature>* added) {
     std::uint32_t& place = listing_.slots[slot];
-    if (place == NOWHERE) place = features->add(kind.records[i], kind.names[i]);
+    if (place == NOWHERE) {
+      place = static_cast<std::uint32_t>(features.names.size() + added->size());
+      added->push_back({&leaf.features, i});
+    }
     return place;
+  }
+
+  /** Copies what was placed, at once: records lie far away in memory, and so they are fetched side by side. */
+  void copyNew() {
+    for (const bool moves : {true, false}) {
+      NearFeatures& near = listing_.lists.near[moves];
+      NewFeatures& added = buffers_.new_features[moves];
+      for (const LeafFeature& v : added.vertices) near.vertices.add(v.leaf->vertices.records[v.i], v.leaf->vertices.names[v.i]);
+      for (const LeafFeature& e : added.edges) near.edges.add(e.leaf->edges.records[e.i], e.leaf->edges.names[e.i]);
+      for (const LeafFeature& f : added.faces) {
+        near.faces.add(f.leaf->faces.records[f.i], f.leaf->faces.names[f.i]);
+        near.addFaceOf(*f.leaf, f.i);
+      }
+      added.clear();
+    }
   }
 
   const MeshPair pair_;
