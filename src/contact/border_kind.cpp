@@ -36,9 +36,16 @@ BorderKinds borderKinds(const MeshSide& side, int face) {
 }
 
 kernels::OpenSides openSides(const BorderKinds& kinds) {
-  kernels::OpenSides open = 0;
-  for (int k = 0; k < 3; ++k) open |= (kinds.of[1][k] > BorderKind::ROUND) << k | (kinds.of[0][k] > BorderKind::ROUND) << (3 + k);
-  return open;
+  const auto from = [](const BorderKind(&of)[3]) {
+    int open = 0;
+    bool fades = false;
+    for (int k = 0; k < 3; ++k) {
+      open |= (of[k] > BorderKind::ROUND) << k;
+      fades = fades || of[k] == BorderKind::FALLING || of[k] == BorderKind::RISING;
+    }
+    return fades ? open : 0;
+  };
+  return from(kinds.of[1]) | from(kinds.of[0]) << 3;
 }
 
 }  // namespace blem_sim

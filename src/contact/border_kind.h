@@ -21,7 +21,7 @@ struct BorderKinds {
 };
 BorderKinds borderKinds(const MeshSide& side, int face);
 
-/** Over which sides contacts may fade: neither over flat nor over round ones. */
+/** Over which sides contacts may fade: neither over flat nor over round ones, and over turning ones only where another one lets them. */
 kernels::OpenSides openSides(const BorderKinds& kinds);
 
 }  // namespace blem_sim

@@ -41,15 +41,16 @@ class Search {
       : pair_(pairAt(pair, listing->origin)),
         motion_(motionOf(pair_.X_FM)),
         reach_((listing->kind == CandidateKind::CONTACTS ? pair_.range : 0) + listing->origin.margin.motion),
+        rounding_(findRounding()),
         buffers_(*buffers),
         listing_(*listing),
         search_(++buffers->searches) {
-    for (const bool moves : {true, false}) buffers_.found[moves].assign(listing_.leaves[moves].size(), nullptr);
+    for (const bool moves : {true, false}) buffers_.found[moves].assign(listing_.leaves[moves].size(), {});
   }
 
   void findLeafPairs() {
     const auto matters = [this](std::uint32_t m, std::uint32_t f) { return (pair_.moving.owners[m] | pair_.fixed.owners[f]) != 0; };
-    visitLeafPairsIf(pair_.moving.bvh, pair_.fixed.bvh, pair_.X_FM, reach_ + rounding(), matters, [this](std::uint32_t m, std::uint32_t f) {
+    visitLeafPairsIf(pair_.moving.bvh, pair_.fixed.bvh, pair_.X_FM, reach_ + rounding_, matters, [this](std::uint32_t m, std::uint32_t f) {
       listing_.pairs.push_back({use(true, m), use(false, f)});
     });
   }
@@ -66,6 +67,7 @@ class Search {
         appendCrossings(m, f);
       }
     });
+    copyNew();
   }
 
  private:
@@ -84,24 +86,23 @@ class Search {
   /** With room for the rounding of floats. */
   kernels::LeafReach leafReach() const {
     const ListMargin& margin = listing_.origin.margin;
-    const double wider = margin.motion + rounding();
+    const double wider = margin.motion + rounding_;
     return {static_cast<float>(reach_ - margin.motion + wider), static_cast<float>(wider), static_cast<float>(margin.turn + FLOAT_TURN),
-            static_cast<float>(deepestInside(reach_) + wider)};
+            static_cast<float>(deepestInside(reach_) + wider), static_cast<float>(rounding_)};
   }
 
   // Where a feature of a leaf is among the near ones of its mesh.
   std::uint32_t vertex(bool moves, const LeafInUse& leaf, std::uint32_t i) {
-    return place(leaf.slots + i, leaf.features.vertices, i, &listing_.lists.near[moves].vertices);
+    return place(leaf, leaf.slots + i, i, listing_.lists.near[moves].vertices, &buffers_.new_features[moves].vertices);
   }
   std::uint32_t face(bool moves, const LeafInUse& leaf, std::uint32_t i) {
-    NearFeatures& near = listing_.lists.near[moves];
-    const std::uint32_t found = place(leaf.slots + leaf.features.shapes.vertex_count + i, leaf.features.faces, i, &near.faces);
-    if (found == near.patches.size()) near.addFaceOf(leaf.features, i);
-    return found;
+    return place(leaf, leaf.slots + leaf.features.shapes.vertex_count + i, i, listing_.lists.near[moves].faces,
+                 &buffers_.new_features[moves].faces);
   }
   std::uint32_t edge(bool moves, const LeafInUse& leaf, std::uint32_t i) {
     const kernels::LeafShapes& shapes = leaf.features.shapes;
-    return place(leaf.slots + shapes.vertex_count + shapes.face_count + i, leaf.features.edges, i, &listing_.lists.near[moves].edges);
+    return place(leaf, leaf.slots + shapes.vertex_count + shapes.face_count + i, i, listing_.lists.near[moves].edges,
+                 &buffers_.new_features[moves].edges);
   }
 
   /** Appends visit(i, j) for the features i of the moving leaf and j of the fixed one. */
@@ -142,15 +143,23 @@ class Search {
     }
   }
 
-  double rounding() const {
-    const double largest = std::max(pair_.fixed.bounds.min().cwiseAbs().maxCoeff(), pair_.fixed.bounds.max().cwiseAbs().maxCoeff());
-    return FLOAT_ROUNDING * (largest + reach_) + 3 * CLOSED;
+  /** Of coordinates in either frame [m]. */
+  double findRounding() const {
+    const auto largest = [](const Box& box) { return std::max(box.min().cwiseAbs().maxCoeff(), box.max().cwiseAbs().maxCoeff()); };
+    const double shift = pair_.X_FM.translation().cwiseAbs().maxCoeff();
+    return FLOAT_ROUNDING * (std::max(largest(pair_.fixed.bounds), largest(pair_.moving.bounds) + shift) + reach_) + 3 * CLOSED;
   }
 
   LeafFeatures& find(bool moves, std::uint32_t node) { return buffers_.leaves.find(pair_.side(moves), node, search_); }
 
   /** Index of the node among the listing's leaves. */
   std::uint32_t use(bool moves, std::uint32_t node) {
+    LeafUsed& last = last_[moves];
+    if (last.node != node) last = {node, indexOf(moves, node)};
+    return last.index;
+  }
+
+  std::uint32_t indexOf(bool moves, std::uint32_t node) {
     LeafFeatures& features = find(moves, node);
     std::uint32_t& index = features.index[moves];
     if (index != LeafFeatures::NO_INDEX) return index;
@@ -160,54 +169,77 @@ class Search {
     const std::size_t slots = listing_.slots.size();
     leaves.push_back({node, static_cast<std::uint32_t>(slots)});
     listing_.slots.resize(slots + shapes.vertex_count + shapes.face_count + shapes.edge_count, NOWHERE);
-    buffers_.found[moves].push_back(nullptr);
+    buffers_.found[moves].push_back({&features, nullptr});
     return index;
   }
 
   LeafInUse leaf(bool moves, std::uint32_t index) {
-    LeafFeatures*& found = buffers_.found[moves][index];
+    FoundLeaf& found = buffers_.found[moves][index];
     const CandidateListing::Leaf& leaf = listing_.leaves[moves][index];
-    if (!found) {
-      found = &find(moves, leaf.node);
-      if (moves) turnLeaf(found->shapes, motion_, turned(index));
+    if (!found.shapes) {
+      if (!found.features) found.features = &find(moves, leaf.node);
+      found.shapes = moves ? turned(found.features->shapes, index) : &found.features->shapes;
     }
-    return {*found, moves ? *turned(index) : found->shapes, leaf.slots};
+    return {*found.features, *found.shapes, leaf.slots};
   }
 
-  /** Room for the shapes of a moving leaf. */
-  kernels::LeafShapes* turned(std::uint32_t index) {
+  /** The shapes of a moving leaf in the fixed mesh's frame. */
+  const kernels::LeafShapes* turned(const kernels::LeafShapes& shapes, std::uint32_t index) {
     std::vector<std::unique_ptr<kernels::LeafShapes>>& all = buffers_.turned;
     if (all.size() <= index) all.resize(index + 1);
     if (!all[index]) all[index] = std::make_unique<kernels::LeafShapes>();
+    kernels::kernels().turnLeaf(shapes, motion_, all[index].get());
     return all[index].get();
   }
 
-  /** Leaves that are new lie far away in memory. */
   void prefetch(const CandidateListing::LeafPair& next, const CandidateListing::LeafPair& now) {
-    if (next.moving != now.moving) prefetch(leaf(true, next.moving).shapes);
-    if (next.fixed != now.fixed) prefetch(leaf(false, next.fixed).shapes);
+    if (next.moving != now.moving) prefetch(true, next.moving);
+    if (next.fixed != now.fixed) prefetch(false, next.fixed);
   }
-  static void prefetch(const kernels::LeafShapes& shapes) {
-    constexpr std::size_t LINE = 64;
-    const char* const begin = reinterpret_cast<const char*>(&shapes);
-    for (std::size_t at = 0; at < offsetof(kernels::LeafShapes, edges) + sizeof(kernels::LeafEdges); at += LINE)
-      __builtin_prefetch(begin + at);
+  /** Leaves that are new lie far away in memory; of others only what is always asked does. */
+  void prefetch(bool moves, std::uint32_t index) {
+    using Shapes = kernels::LeafShapes;
+    constexpr std::size_t LINE = 64, FEW = offsetof(Shapes, faces), MOST = offsetof(Shapes, edges) + sizeof(kernels::LeafEdges);
+    const std::size_t size = buffers_.found[moves][index].shapes ? FEW : MOST;
+    const char* const begin = reinterpret_cast<const char*>(&leaf(moves, index).shapes);
+    for (std::size_t at = 0; at < size; at += LINE) __builtin_prefetch(begin + at);
   }
 
-  template <typename Record, int CAPACITY>
-  std::uint32_t place(std::uint32_t slot, const LeafFeatures::Kind<Record, CAPACITY>& kind, std::uint32_t i,
-                      FeatureRecords<Record>* features) {
+  template <typename Record>
+  std::uint32_t place(const LeafInUse& leaf, std::uint32_t slot, std::uint32_t i, const FeatureRecords<Record>& features,
+                      std::vector<LeafFeature>* added) {
     std::uint32_t& place = listing_.slots[slot];
-    if (place == NOWHERE) place = features->add(kind.records[i], kind.names[i]);
+    if (place == NOWHERE) {
+      place = static_cast<std::uint32_t>(features.names.size() + added->size());
+      added->push_back({&leaf.features, i});
+    }
     return place;
+  }
+
+  /** Copies what was placed, at once: records lie far away in memory, and so they are fetched side by side. */
+  void copyNew() {
+    for (const bool moves : {true, false}) {
+      NearFeatures& near = listing_.lists.near[moves];
+      NewFeatures& added = buffers_.new_features[moves];
+      for (const LeafFeature& v : added.vertices) near.vertices.add(v.leaf->vertices.records[v.i], v.leaf->vertices.names[v.i]);
+      for (const LeafFeature& e : added.edges) near.edges.add(e.leaf->edges.records[e.i], e.leaf->edges.names[e.i]);
+      for (const LeafFeature& f : added.faces) {
+        near.faces.add(f.leaf->faces.records[f.i], f.leaf->faces.names[f.i]);
+        near.addFaceOf(*f.leaf, f.i);
+      }
+      added.clear();
+    }
   }
 
   const MeshPair pair_;
   const kernels::Motion motion_;
-  const double reach_;
+  const double reach_, rounding_;
   CandidateSearchBuffers& buffers_;
   CandidateListing& listing_;
   const std::uint64_t search_;
+  struct LeafUsed {
+    std::uint32_t node = NOWHERE, index = NOWHERE;
+  } last_[2];
 };
 
 void clear(const MeshPair& pair, CandidateKind kind, const ListMargin& margin, CandidateListing* listing) {

@@ -42,11 +42,33 @@ struct CandidateListing {
   bool isComplete() const { return origin.known && left() == 0; }
 };
 
+/** A leaf of a listing. */
+struct FoundLeaf {
+  LeafFeatures* features = nullptr;             ///< null: not found yet
+  const kernels::LeafShapes* shapes = nullptr;  ///< in the fixed mesh's frame; null: not looked at yet
+};
+
+struct LeafFeature {
+  const LeafFeatures* leaf;
+  std::uint32_t i;  ///< of its features of a kind
+};
+
+/** Features of one mesh that are near and not copied yet. */
+struct NewFeatures {
+  std::vector<LeafFeature> vertices, faces, edges;
+  void clear() {
+    vertices.clear();
+    faces.clear();
+    edges.clear();
+  }
+};
+
 /** What searches for candidates work in. */
 struct CandidateSearchBuffers {
   LeafMemory leaves;
-  std::vector<LeafFeatures*> found[2];                       ///< of the listing's leaves; null: not looked at yet
-  std::vector<std::unique_ptr<kernels::LeafShapes>> turned;  ///< of the moving ones that were found
+  std::vector<FoundLeaf> found[2];                           ///< of the listing's leaves
+  std::vector<std::unique_ptr<kernels::LeafShapes>> turned;  ///< of the moving ones that were looked at
+  NewFeatures new_features[2];                               ///< [1] of the moving mesh, [0] of the fixed one
   kernels::LeafHits hits;
   std::uint64_t searches = 0;
 };

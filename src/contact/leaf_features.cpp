@@ -6,6 +6,7 @@
 
 #include "border_kind.h"
 #include "feature_cones.h"
+#include "leaf_region.h"
 #include "vectors.h"
 #include "vertex_cone.h"
 
@@ -58,12 +59,12 @@ void describeEdge(const MeshSide& side, int edge, LeafFeatures* leaf) {
   const std::uint32_t index = leaf->edges.add(edge, record), i = index % kernels::LEAF_BLOCK;
   kernels::LeafEdges& edges = leaf->shapes.edges[index / kernels::LEAF_BLOCK];
   place(record.start, i, edges.starts);
-  place(record.along, i, edges.alongs);
-  edges.per_length2[i] = static_cast<float>(1 / record.start.w);
-  for (int k = 0; k < 2; ++k) {
-    const Vec4 &u = record.inward[k], &p = record.start;
-    placePlane(u, u.x * p.x + u.y * p.y + u.z * p.z, i, edges.inwards[k]);
-  }
+  for (int k = 0; k < 2; ++k) place(record.inward[k], i, edges.inwards[k]);
+  const Vector3 along = vector3(record.along);
+  const double length = std::sqrt(record.start.w), fold = (vector3(record.inward[0]) + vector3(record.inward[1])).norm();
+  place(vec4(along / length, 0), i, edges.directions);
+  edges.lengths[i] = static_cast<float>(length);
+  edges.folds[i] = static_cast<float>(record.along.w < 0 ? -fold : fold);
 }
 
 void describeVertex(const MeshSide& side, int vertex, LeafFeatures* leaf) {
@@ -71,7 +72,9 @@ void describeVertex(const MeshSide& side, int vertex, LeafFeatures* leaf) {
   const std::uint32_t i = leaf->vertices.add(vertex, record);
   const std::uint32_t block = i / kernels::LEAF_BLOCK, column = i % kernels::LEAF_BLOCK;
   place(record, column, leaf->shapes.vertices[block].points);
-  placeCone(vertexCone(side, vertex), column, &leaf->shapes.cones[block]);
+  const kernels::VertexCone cone = vertexCone(side, vertex);
+  placeCone(cone, column, &leaf->shapes.cones[block]);
+  leaf->shapes.nearest |= static_cast<std::uint32_t>(cone.up >= 0 || cone.down >= 0) << i;
 }
 
 EdgeCone edgeCone(const std::vector<EdgeRecord>& edges) {
@@ -88,7 +91,9 @@ EdgeCone edgeCone(const std::vector<EdgeRecord>& edges) {
   axis.normalize();
   for (std::size_t i = 0; i < edges.size(); ++i)
     spread = std::max(spread, std::acos(std::min(std::abs(axis.dot(middles[i])), 1.0)) + halves[i]);
-  return {{static_cast<float>(axis.x()), static_cast<float>(axis.y()), static_cast<float>(axis.z())}, static_cast<float>(spread)};
+  spread = std::min(spread, M_PI_2);
+  const auto number = [](double value) { return static_cast<float>(value); };
+  return {{number(axis.x()), number(axis.y()), number(axis.z())}, number(std::cos(spread)), number(std::sin(spread))};
 }
 
 void describe(const MeshSide& side, std::uint32_t index, LeafFeatures* leaf) {
@@ -100,8 +105,6 @@ void describe(const MeshSide& side, std::uint32_t index, LeafFeatures* leaf) {
   leaf->edges.clear();
   LeafShapes& shapes = leaf->shapes;
   shapes = LeafShapes{};
-  Eigen::Map<Eigen::Vector3f>(shapes.lower) = node.lower;
-  Eigen::Map<Eigen::Vector3f>(shapes.upper) = node.upper;
   for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
     const int element = static_cast<int>(side.bvh.order()[i]);
     if (side.topology.isFace(element)) describeFace(side, element, leaf);
@@ -114,6 +117,7 @@ void describe(const MeshSide& side, std::uint32_t index, LeafFeatures* leaf) {
   shapes.face_count = static_cast<std::uint32_t>(leaf->faces.records.size());
   shapes.edge_count = static_cast<std::uint32_t>(leaf->edges.records.size());
   shapes.edge_cone = edgeCone(leaf->edges.records);
+  shapes.region = leafRegion(side, node, *leaf);
 }
 
 }  // namespace
@@ -147,19 +151,6 @@ EdgeRecord edgeRecord(const MeshSide& side, int edge) {
     record.inward[k] = vec4(MeshTopology::normal(side.mesh, face).cross(along) / (forward ? length : -length), 0);
   }
   return record;
-}
-
-void turnLeaf(const LeafShapes& shapes, const kernels::Motion& motion, LeafShapes* out) {
-  kernels::kernels().turnLeaf(shapes, motion, out);
-  for (int k = 0; k < 3; ++k) {
-    double centre = motion.t[k], half = 0;
-    for (int j = 0; j < 3; ++j) {
-      centre += motion.R[3 * k + j] * 0.5 * (static_cast<double>(shapes.lower[j]) + shapes.upper[j]);
-      half += std::abs(motion.R[3 * k + j]) * 0.5 * (static_cast<double>(shapes.upper[j]) - shapes.lower[j]);
-    }
-    out->lower[k] = static_cast<float>(centre - half);
-    out->upper[k] = static_cast<float>(centre + half);
-  }
 }
 
 /** What is held of the leaf; else it takes the place, of its few, that was used longest ago. */

@@ -48,9 +48,6 @@ inline kernels::Vec4 vertexRecord(const MeshSide& side, int vertex) {
   return {p.x(), p.y(), p.z(), 0};
 }
 
-/** Shapes of a leaf after a motion. */
-void turnLeaf(const kernels::LeafShapes& shapes, const kernels::Motion& motion, kernels::LeafShapes* out);
-
 /** Leaves that were looked at lately. What is kept changes no result. */
 class LeafMemory {
  public:

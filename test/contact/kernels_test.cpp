@@ -212,16 +212,15 @@ LeafShapes randomLeaf(std::uint64_t seed) {
   };
   const auto fillRows = [&](auto& rows) { fill(reinterpret_cast<float*>(&rows), sizeof rows / sizeof(float)); };
   fillRows(leaf.faces.planes);
-  leaf.edge_cone = {{0, 0.6f, 0.8f}, 1};
+  leaf.edge_cone = {{0, 0.6f, 0.8f}, 0.54f, 0.84f};
   for (OpenSides& open : leaf.faces.open) open = random.integer(0, 63);
   fillRows(leaf.faces.sides);
   for (LeafEdges& edges : leaf.edges) {
     fillRows(edges.starts);
-    fillRows(edges.alongs);
     fillRows(edges.inwards);
-    for (int i = 0; i < LEAF_BLOCK; ++i)
-      edges.per_length2[i] =
-          1 / (edges.alongs[0][i] * edges.alongs[0][i] + edges.alongs[1][i] * edges.alongs[1][i] + edges.alongs[2][i] * edges.alongs[2][i]);
+    fillRows(edges.directions);
+    std::fill_n(edges.lengths, LEAF_BLOCK, 0.8f);
+    fillRows(edges.folds);
   }
   for (LeafVertices& vertices : leaf.vertices) fillRows(vertices.points);
   for (LeafCones& cones : leaf.cones) {
@@ -231,10 +230,8 @@ LeafShapes randomLeaf(std::uint64_t seed) {
     std::fill_n(cones.per_slack, LEAF_BLOCK, 1.5f);
     for (std::int32_t& round : cones.round) round = -random.integer(0, 1);
   }
-  for (int k = 0; k < 3; ++k) {
-    leaf.lower[k] = -2;
-    leaf.upper[k] = 2;
-  }
+  leaf.region = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0, 0, 0}, {1, 1, 1}, 0.6f, 0.5f, 1.3f};
+  leaf.nearest = 0x7F;
   return leaf;
 }
 
@@ -242,8 +239,8 @@ std::vector<std::uint32_t> leafHits(const Kernels& set, const LeafShapes& a, con
   LeafShapes turned = a;
   set.turnLeaf(a, motionOf(makePose({0.01, 0.02, -0.03}, {0.1, 0.2, 0.3})), &turned);
   LeafHits hits;
-  set.leafContacts(turned, b, {0.5f, 0.1f, 0.02f, 0.2f}, &hits);
-  set.leafCrossings(turned, b, {0.5f, 0.1f, 0.02f, 0.2f}, &hits);
+  set.leafContacts(turned, b, {0.5f, 0.1f, 0.02f, 0.2f, 1e-6f}, &hits);
+  set.leafCrossings(turned, b, {0.5f, 0.1f, 0.02f, 0.2f, 1e-6f}, &hits);
   std::vector<std::uint32_t> out;
   const auto add = [&out](const LeafHit* from, int count) {
     out.push_back(count);

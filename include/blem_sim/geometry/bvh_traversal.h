@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "blem_sim/geometry/bvh.h"
@@ -16,33 +17,55 @@ constexpr double ROUNDING = 16 * std::numeric_limits<double>::epsilon();
 inline Vector3 centre(const Bvh::Node& node) { return 0.5 * (node.lower.cast<double>() + node.upper.cast<double>()); }
 inline Vector3 halfExtents(const Bvh::Node& node) { return 0.5 * (node.upper.cast<double>() - node.lower.cast<double>()); }
 
-/** A box given by its centre and its half extents. */
-struct CentredBox {
-  Vector3 centre, half;
+/** Four numbers that any instruction set takes at once; the last one means nothing. */
+struct FloatBox {
+  Eigen::Array4f lower, upper;
 };
 
-/** A's frame seen from B, with |R|, which turns half extents. */
-struct FrameChange {
-  explicit FrameChange(const Pose& X_BA) : R_BA(X_BA.linear()), abs_R_BA(R_BA.cwiseAbs()), p_BA(X_BA.translation()) {}
+inline FloatBox boxOf(const Bvh::Node& node) {
+  static_assert(sizeof(Bvh::Node) == 8 * sizeof(float));
+  FloatBox box;
+  std::memcpy(box.lower.data(), reinterpret_cast<const char*>(&node), sizeof box.lower);
+  std::memcpy(box.upper.data(), reinterpret_cast<const char*>(&node) + 3 * sizeof(float), sizeof box.upper);
+  return box;
+}
 
-  /** Box in B's axes that holds the node's box, widened by what rounding can lose. */
-  CentredBox bound(const Bvh::Node& node) const {
-    const Vector3 c = centre(node), h = halfExtents(node);
-    const Vector3 turned = abs_R_BA * h;
-    return {R_BA * c + p_BA, turned + ROUNDING * (turned + abs_R_BA * c.cwiseAbs() + p_BA.cwiseAbs())};
+/** A's frame seen from B. */
+class FrameChange {
+ public:
+  explicit FrameChange(const Pose& X_BA) {
+    for (int k = 0; k < 3; ++k) axes_[k] << X_BA.linear().col(k).array(), 0;
+    shift_ << X_BA.translation().array(), 0;
   }
 
-  Matrix3 R_BA, abs_R_BA;
-  Vector3 p_BA;
+  /** Box in B's axes that holds the node's box, widened by what rounding can lose. */
+  FloatBox bound(const Bvh::Node& node) const {
+    const Vector3 c = centre(node), h = halfExtents(node);
+    const Eigen::Array4d x = axes_[0] * c.x(), y = axes_[1] * c.y(), z = axes_[2] * c.z(), middle = x + y + z + shift_;
+    const Eigen::Array4d half = axes_[0].abs() * h.x() + axes_[1].abs() * h.y() + axes_[2].abs() * h.z();
+    const Eigen::Array4d wider = half + FLOAT_ROUNDING * (half + x.abs() + y.abs() + z.abs() + shift_.abs());
+    return {(middle - wider).cast<float>(), (middle + wider).cast<float>()};
+  }
+
+ private:
+  static constexpr double FLOAT_ROUNDING = 2 * std::numeric_limits<float>::epsilon();
+  Eigen::Array4d axes_[3], shift_;
 };
 
-/** May the two boxes be within margin? Never false by rounding. */
-inline bool mayBeWithin(const CentredBox& a, const Bvh::Node& b, double margin) {
-  const Vector3 b_centre = centre(b);
-  const Vector3 reach = a.half + halfExtents(b) + ROUNDING * b_centre.cwiseAbs();
-  const Vector3 gap = ((a.centre - b_centre).cwiseAbs() - reach).cwiseMax(0.0);
-  return gap.squaredNorm() <= margin * margin * (1 + ROUNDING);
-}
+/** May boxes be within a margin? Never false by rounding. */
+class WithinMargin {
+ public:
+  explicit WithinMargin(double margin)
+      : most2_(static_cast<float>(margin * margin * (1 + FLOAT_ROUNDING)) + std::numeric_limits<float>::min()) {}
+  bool mayHold(const FloatBox& a, const FloatBox& b) const {
+    const Eigen::Array4f gap = (a.lower - b.upper).max(b.lower - a.upper).max(0.0f), gap2 = gap * gap;
+    return gap2[0] + gap2[1] + gap2[2] <= most2_;
+  }
+
+ private:
+  static constexpr double FLOAT_ROUNDING = 16 * std::numeric_limits<float>::epsilon();
+  float most2_;
+};
 
 inline float size(const Bvh::Node& node) { return (node.upper - node.lower).sum(); }
 
@@ -77,23 +100,26 @@ void visitLeafPairsIf(const Bvh& a, const Bvh& b, const Pose& X_BA, double margi
   if (a.empty() || b.empty() || margin < 0) return;
   struct Pair {
     std::uint32_t a, b;
-    CentredBox box_a;  // of a, in B's frame: turned once when a is opened, kept while b is
+    FloatBox box_a;  // of a, in B's frame: turned once when a is opened, kept while b is
   };
   const FrameChange change(X_BA);
+  const WithinMargin near(margin);
   std::array<Pair, 2 * Bvh::MAX_DEPTH + 1> stack;
   int depth = 0;
-  stack[depth++] = {0, 0, change.bound(a.nodes()[0])};
+  const auto push = [&](std::uint32_t node_a, std::uint32_t node_b, const FloatBox& box_a) {
+    if (near.mayHold(box_a, boxOf(b.nodes()[node_b])) && matters(node_a, node_b)) stack[depth++] = {node_a, node_b, box_a};
+  };
+  push(0, 0, change.bound(a.nodes()[0]));
   while (depth > 0) {
     const Pair pair = stack[--depth];
     const Bvh::Node& node_a = a.nodes()[pair.a];
     const Bvh::Node& node_b = b.nodes()[pair.b];
-    if (!matters(pair.a, pair.b) || !mayBeWithin(pair.box_a, node_b, margin)) continue;
     if (node_a.isLeaf() && node_b.isLeaf()) {
       visit(pair.a, pair.b);
     } else if (descendsFirst(node_a, node_b)) {
-      for (const std::uint32_t child : {node_a.first + 1, node_a.first}) stack[depth++] = {child, pair.b, change.bound(a.nodes()[child])};
+      for (const std::uint32_t child : {node_a.first + 1, node_a.first}) push(child, pair.b, change.bound(a.nodes()[child]));
     } else {
-      for (const std::uint32_t child : {node_b.first + 1, node_b.first}) stack[depth++] = {pair.a, child, pair.box_a};
+      for (const std::uint32_t child : {node_b.first + 1, node_b.first}) push(pair.a, child, pair.box_a);
     }
   }
 }

@@ -16,7 +16,7 @@ struct Kernels {
   void (*turnEdges)(const EdgeRecord* in, std::uint32_t count, const Motion& motion, EdgeRecord* out);
   void (*turnFaces)(const FaceRecord* in, std::uint32_t count, const Motion& motion, FaceRecord* out);
 
-  void (*turnLeaf)(const LeafShapes& in, const Motion& motion, LeafShapes* out);  ///< all but the box
+  void (*turnLeaf)(const LeafShapes& in, const Motion& motion, LeafShapes* out);
 
   /** Pairs of features of two leaves that can have a contact within the range while nothing moves or turns by more than it says;
    * conservative, if the reach has room for the rounding of floats. */

@@ -42,8 +42,8 @@ static_assert(MAX_LEAF_ELEMENTS <= LEAF_BLOCK && 3 * MAX_LEAF_ELEMENTS <= MAX_LE
 
 /** All directions, but for their signs, that a contact's normal at some edge of a leaf may have, without slack. */
 struct EdgeCone {
-  float axis[3];  ///< unit
-  float spread;   ///< [rad] of a normal from the axis; at least pi/2: any
+  float axis[3];       ///< unit
+  float cosine, sine;  ///< of the widest angle of a normal from the axis; 0, 1: any
 };
 
 /** All directions that lead away from a vertex between its edges, so that it is nearest: no farther from the axis than `up` times the part
@@ -52,6 +52,14 @@ struct VertexCone {
   float axis[3];  ///< unit
   float up, down, per_slack;
   bool is_round;  ///< flat and round edges only (ROUND_COSINE)
+};
+
+/** Where what has a contact with a leaf's features may lie: above or below its box, and beside it by so much. */
+struct LeafRegion {
+  float axes[3][3];            ///< unit, square to each other; the last one leads up
+  float middle[3], halves[3];  ///< of the box of all elements along the axes [m]
+  float beside, fall;          ///< how far beside: that part of the range, less that part of the height
+  float edge_beside;           ///< edges with edges: this part of the range, less the height
 };
 
 // Features of a leaf in float, a coordinate after the other, in some frame. What is read together lies together: leaves are many.
@@ -70,14 +78,15 @@ struct alignas(32) LeafFaces {
   OpenSides open[LEAF_BLOCK];
 };
 struct alignas(32) LeafEdges {
-  float inwards[2][4][LEAF_BLOCK];  ///< EdgeRecord::inward; offset of the edge along it
-  float starts[3][LEAF_BLOCK], alongs[3][LEAF_BLOCK];
-  float per_length2[LEAF_BLOCK];  ///< one over the squared length
+  float starts[3][LEAF_BLOCK], inwards[2][3][LEAF_BLOCK];  ///< EdgeRecord::inward
+  float directions[3][LEAF_BLOCK], lengths[LEAF_BLOCK];    ///< unit; [m]
+  float folds[LEAF_BLOCK];  ///< length of the sum of EdgeRecord::inward; less than 0 if the edge is round (ROUND_COSINE)
 };
 struct alignas(64) LeafShapes {
   std::uint32_t face_count, edge_count, vertex_count;
-  float lower[3], upper[3];  ///< box of all its elements
   EdgeCone edge_cone;
+  LeafRegion region;
+  std::uint32_t nearest;  ///< bits of the vertices that can be the nearest of their surface: those with a VertexCone
   LeafVertices vertices[LEAF_BLOCKS];
   LeafFaces faces;
   LeafEdges edges[LEAF_BLOCKS];
@@ -86,10 +95,11 @@ struct alignas(64) LeafShapes {
 
 /** What a search for candidates asks [m]. */
 struct LeafReach {
-  float range;   ///< of contacts, and the margin
-  float margin;  ///< that points may move
-  float turn;    ///< that unit vectors may turn (length of the difference)
-  float inside;  ///< both ends of an edge may lie so far inside a face of the other one
+  float range;     ///< of contacts, and the margin
+  float margin;    ///< that points may move
+  float turn;      ///< that unit vectors may turn (length of the difference)
+  float inside;    ///< both ends of an edge may lie so far inside a face of the other one
+  float rounding;  ///< that coordinates may be wrong by; part of range, margin and inside
 };
 
 /** How near candidates must be [m]. */

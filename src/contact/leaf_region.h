@@ -1,0 +1,11 @@
+// Where what has a contact with the features of a leaf may lie.
+#pragma once
+
+#include "leaf_features.h"
+
+namespace blem_sim {
+
+/** @param leaf its faces, edges and vertices, with their shapes */
+kernels::LeafRegion leafRegion(const MeshSide& side, const Bvh::Node& node, const LeafFeatures& leaf);
+
+}  // namespace blem_sim
