@@ -28,9 +28,9 @@ MeshPair pairOf(const Collider& a, const Pose& X_WA, const Collider& standing) {
 /** Which pairs of features have a contact. Every pair is known once: a contact with a plane by one of its faces. */
 class KnownContacts {
  public:
-  explicit KnownContacts(const FoundContacts& found) {
+  KnownContacts(const std::vector<Contact>& plain, const FoundContacts& found) {
     // The moving mesh is A.
-    for (const Contact& c : *found.plain) unseen_.push_back(c.id);
+    for (const Contact& c : plain) unseen_.push_back(c.id);
     for (const FeatureContact& c : found.close) unseen_.push_back(contactId(c.moving, c.fixed));
     std::sort(unseen_.begin(), unseen_.end());
     unseen_.erase(std::unique(unseen_.begin(), unseen_.end()), unseen_.end());
@@ -73,12 +73,13 @@ class KnownPairs {
   KnownPairs(const MeshPair& pair, ContactSearchBuffers* buffers) : X_FM_(pair.X_FM), range_(pair.range) {
     std::vector<Contact> plain;
     FoundContacts found;
-    found.plain = &plain;
+    found.plain.begin(&plain);
     searchContacts(pair, nullptr, buffers, &found);
+    found.plain.end();
     CandidateListing listing;
     findCandidates(pair, CandidateKind::CONTACTS, {}, &buffers->search, &listing);
     lists_ = std::move(listing.lists);
-    dropUnknown(KnownContacts(found));
+    dropUnknown(KnownContacts(plain, found));
     compactFeatures();
     vertex_faces_.resize(size());
     edge_edges_.resize(size());

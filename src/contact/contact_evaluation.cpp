@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "vectors.h"
-#include "world_contact.h"
 
 namespace blem_sim {
 namespace {
@@ -15,8 +14,8 @@ using kernels::Candidate;
 using kernels::Vec4;
 
 constexpr std::uint32_t NONE = 0xFFFFFFFF;
-/** Candidates that are tested before their contacts are read: those lie in the cache then. */
-constexpr std::uint32_t BLOCK = 256;
+/** Candidates that are tested at once: there is room for contacts of all. */
+constexpr std::uint32_t BLOCK = 64;
 
 template <typename Items>
 void makeRoom(std::size_t size, Items* items) {
@@ -94,13 +93,13 @@ std::uint32_t Evaluation::findVertexFaces(bool moves) {
   const std::vector<Candidate>& candidates = pairs_.vertex_face[moves];
   const auto total = static_cast<std::uint32_t>(candidates.size());
   makeRoom(total, &buffers_.vertex_faces);
-  makeRoom(total, &buffers_.over);
-  makeRoom(BLOCK, &buffers_.rows);
+  makeRoom(total + 1, &buffers_.over);
   buffers_.over_count = 0;
-  kernels::PlainContacts plain{place(moves), buffers_.rows.data(), buffers_.over.data(), 0, found_.deepest_plain};
+  kernels::PlainContacts plain{place(moves), nullptr, nullptr, 0, found_.deepest_plain};
   std::uint32_t count = 0;
   for (std::uint32_t first = 0; first < total; first += BLOCK) {
     kernels::VertexFaceHit* const hits = buffers_.vertex_faces.data() + count;
+    plain.rows = found_.plain.rows(BLOCK + 1);
     plain.pairs = buffers_.over.data() + buffers_.over_count;
     plain.count = 0;
     const std::uint32_t found = kernels::kernels().vertexFaces(
@@ -109,7 +108,7 @@ std::uint32_t Evaluation::findVertexFaces(bool moves) {
     for (std::uint32_t i = 0; i < found; ++i) hits[i].candidate += first;
     count += found;
     buffers_.over_count += plain.count;
-    appendContacts(buffers_.rows.data(), plain.count, found_.plain);
+    found_.plain.advance(plain.count);
   }
   found_.deepest_plain = plain.deepest;
   return count;
@@ -143,7 +142,7 @@ void Evaluation::addPlain(bool moves, const Candidate& c, double height) {
   const Vector3 p = vector3(moves ? buffers_.turned.vertices[1][c.a] : lists_.near[0].vertices.records[c.a]);
   const Vector3 up = pair_.turned(vector3(faces.records[c.b].plane), !moves), foot = p - height * up;
   const Vector3 normal = (height > 0) == moves ? up : Vector3(-up);
-  found_.close.push_back(featureContact(moves, vertex, patch, p, foot, normal, std::abs(height)));
+  addContact(moves, vertex, patch, p, foot, normal, std::abs(height), &found_.close);
 }
 
 void Evaluation::addFading(bool moves, const Candidate& c, double height) {
@@ -156,7 +155,7 @@ void Evaluation::addFading(bool moves, const Candidate& c, double height) {
   if (distance <= TOUCH || gap > pair_.range) return;
   const Feature vertex{FeatureKind::VERTEX, lists_.near[moves].vertices.names[c.a]},
       patch{FeatureKind::FACE, lists_.near[!moves].patches[c.b]};
-  found_.close.push_back(featureContact(moves, vertex, patch, p, fade.foot, d / distance, gap));
+  addContact(moves, vertex, patch, p, fade.foot, d / distance, gap, &found_.close);
   buffers_.fading.push_back({c.a, patch.index, NONE, false});
 }
 
@@ -206,8 +205,10 @@ void Evaluation::edgeEdges(const kernels::EdgeRecord* moving, const kernels::Edg
     if (hit.near_border || !found_.crossings.empty()) {
       found_.close.push_back(contact);
     } else {
-      found_.plain->push_back(worldContact(pair_, contact));
-      found_.deepest_plain = std::max(found_.deepest_plain, found_.plain->back().depth);
+      Contact* const plain = found_.plain.room(1);
+      placeInWorld(pair_, contact, plain);
+      found_.plain.advance(1);
+      found_.deepest_plain = std::max(found_.deepest_plain, plain->depth);
     }
   }
 }

@@ -3,20 +3,20 @@
 
 #include <vector>
 
-#include "blem_sim/contact/manifold.h"
 #include "border_fade.h"
 #include "candidate_lists.h"
 #include "edge_crossing.h"
 #include "exact_tests.h"
 #include "mesh_pair.h"
+#include "world_contact.h"
 
 namespace blem_sim {
 
 /** What a search finds. */
 struct FoundContacts {
-  std::vector<Contact>* plain = nullptr;  ///< appended; in the world; each in a place of its own; none where meshes cross
-  double deepest_plain = 0;               ///< [m] their largest depth
-  std::vector<FeatureContact> close;      ///< some may be in one place, or have one name
+  ContactWriter plain;                ///< in the world; each in a place of its own; none where meshes cross
+  double deepest_plain = 0;           ///< [m] their largest depth
+  std::vector<FeatureContact> close;  ///< some may be in one place, or have one name
   std::vector<Crossing> crossings;
 
   void clear();                                 ///< all but `plain`
@@ -35,7 +35,6 @@ struct FadingVertex {
 struct EvaluationBuffers {
   TurnedFeatures turned;
   SurroundingsMemory surroundings;
-  std::vector<kernels::ContactRow> rows;
   std::vector<kernels::VertexFaceHit> vertex_faces;
   std::vector<kernels::EdgeEdgeHit> edge_edges;
   std::vector<std::uint32_t> hits;

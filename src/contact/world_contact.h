@@ -1,6 +1,7 @@
 // From the witness points of two features to the contact that is handed on.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "blem_sim/contact/manifold.h"
@@ -21,24 +22,45 @@ inline Contact contactOf(const ContactRoles& roles, const Feature& first, const 
   return contact;
 }
 
-/** What kernels wrote. */
-inline void appendContacts(const kernels::ContactRow* rows, std::uint32_t count, std::vector<Contact>* out) {
-  for (const kernels::ContactRow* row = rows; row != rows + count; ++row) {
-    Contact& contact = out->emplace_back();
-    contact.point = Vector3(row->point[0], row->point[1], row->point[2]);
-    contact.normal_BA = Vector3(row->normal[0], row->normal[1], row->normal[2]);
-    contact.depth = row->depth;
-    contact.id = row->id;
-  }
+/** A contact of a pair in the world. */
+inline void placeInWorld(const MeshPair& pair, const FeatureContact& c, Contact* out) {
+  const Contact contact = contactOf(pair.roles, c.moving, c.fixed, c.point_M, c.point_F, c.normal, c.gap);
+  out->point = pair.X_WF * contact.point;
+  out->normal_BA = pair.X_WF.linear() * contact.normal_BA;
+  out->depth = contact.depth;
+  out->id = contact.id;
+  out->weight = 1;
+  out->pierced = c.pierced;
 }
 
-/** A contact of a pair in the world. */
-inline Contact worldContact(const MeshPair& pair, const FeatureContact& c) {
-  Contact contact = contactOf(pair.roles, c.moving, c.fixed, c.point_M, c.point_F, c.normal, c.gap);
-  contact.point = pair.X_WF * contact.point;
-  contact.normal_BA = pair.X_WF.linear() * contact.normal_BA;
-  contact.pierced = c.pierced;
-  return contact;
-}
+static_assert(offsetof(Contact, point) == offsetof(kernels::ContactRow, point) &&
+                  offsetof(Contact, normal_BA) == offsetof(kernels::ContactRow, normal) &&
+                  offsetof(Contact, depth) == offsetof(kernels::ContactRow, depth) &&
+                  offsetof(Contact, id) == offsetof(kernels::ContactRow, id) &&
+                  offsetof(Contact, weight) == offsetof(kernels::ContactRow, weight) &&
+                  offsetof(Contact, pierced) == offsetof(kernels::ContactRow, pierced) && sizeof(Contact) == sizeof(kernels::ContactRow),
+              "kernels write contacts as they are");
+
+/** A list of contacts that is written anew, over those that it holds: none is made only to be overwritten. */
+class ContactWriter {
+ public:
+  void begin(std::vector<Contact>* contacts) {
+    contacts_ = contacts;
+    count_ = 0;
+  }
+  /** For so many more; whoever takes it writes every number. */
+  Contact* room(std::size_t more) {
+    if (contacts_->size() < count_ + more) contacts_->resize(count_ + more);
+    return contacts_->data() + count_;
+  }
+  kernels::ContactRow* rows(std::size_t more) { return reinterpret_cast<kernels::ContactRow*>(room(more)); }
+  /** So many were written. */
+  void advance(std::size_t written) { count_ += written; }
+  void end() { contacts_->resize(count_); }
+
+ private:
+  std::vector<Contact>* contacts_ = nullptr;
+  std::size_t count_ = 0;
+};
 
 }  // namespace blem_sim

@@ -1,6 +1,7 @@
 // Every instruction set gives the same bits.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -56,8 +57,8 @@ struct PlainVertexFaces {
       : X_FM(makePose({0.1, -0.2, 0.3}, {0.4, 0.5, -0.6})),
         X_WF(makePose({-3, 2, 1}, {0.7, -0.2, 0.1})),
         hits(CANDIDATES),
-        rows(CANDIDATES),
-        pairs(CANDIDATES) {
+        rows(CANDIDATES + 1),
+        pairs(CANDIDATES + 1) {
     for (const Vec4& p : in.vertices) placed.push_back(faces_move ? vec4(X_FM * vector3(p), 0) : p);
     for (std::uint32_t i = 0; i < FEATURES; ++i) names.push_back(static_cast<int>(1000 + i));
     const Feature vertex{FeatureKind::VERTEX, 0}, face{FeatureKind::FACE, 0};
@@ -169,6 +170,7 @@ TEST(Kernels, PlainContactsAreThoseMadeOneByOne) {
     const PlainVertexFaces written(*availableKernels().front(), in, faces_move, true),
         all(*availableKernels().front(), in, faces_move, false);
     std::uint32_t count = 0, close = 0;
+    double deepest = -1;
     for (const VertexFaceHit& hit : all.hits) {
       if (!hit.is_plain || hit.near_border) {
         ++close;
@@ -185,8 +187,11 @@ TEST(Kernels, PlainContactsAreThoseMadeOneByOne) {
       one.normal_BA = all.X_WF.linear() * one.normal_BA;
       ASSERT_LT(count, written.plain.count);
       const ContactRow& row = written.rows[count];
+      deepest = std::max(deepest, one.depth);
       EXPECT_EQ(row.id, one.id);
       EXPECT_EQ(row.depth, one.depth);
+      EXPECT_EQ(row.weight, one.weight);
+      EXPECT_EQ(row.pierced, 0u);
       for (int k = 0; k < 3; ++k) {
         EXPECT_EQ(row.point[k], one.point[k]);
         EXPECT_EQ(row.normal[k], one.normal_BA[k]);
@@ -196,6 +201,7 @@ TEST(Kernels, PlainContactsAreThoseMadeOneByOne) {
       ++count;
     }
     EXPECT_EQ(count, written.plain.count);
+    EXPECT_EQ(written.plain.deepest, deepest);
     EXPECT_GT(count, 5u);
     EXPECT_EQ(close, written.hits.size());
   }

@@ -132,6 +132,7 @@ inline EdgeOffset offsetFrom(const Rows& start, const Vectors& along, const Vect
 std::uint32_t vertexFaces(const Vec4* a, const FaceRecord* b, const OpenSides* open, const Candidate* candidates, std::uint32_t count,
                           double range, PlainContacts* plain, VertexFaceHit* hits) {
   std::uint32_t found = 0;
+  Doubles deepest = all(plain ? plain->deepest : 0);
   for (std::uint32_t first = 0; first < count; first += LANES) {
     const Batch batch(candidates, first, count);
     const Vectors p = batch.points(a, batch.of_a).v;
@@ -141,9 +142,13 @@ std::uint32_t vertexFaces(const Vec4* a, const FaceRecord* b, const OpenSides* o
     if (near == 0) continue;
     const InsideSides sides(batch, b, p);
     const Doubles inside = sides.least();
+    const Mask clear = (inside >= NEAR_BORDER) & (absolute(height) > TOUCH) & (most >= 0);
     const unsigned is_plain = bitsOf((inside >= 0) & (absolute(height) > TOUCH)), near_border = bitsOf(inside < NEAR_BORDER),
-                   is_clear = plain ? near & is_plain & ~near_border : 0;
-    if (is_clear) appendPlain(batch, p, plane.v, height, is_clear, plain);
+                   is_clear = plain ? bitsOf(clear) & batch.valid : 0;
+    if (is_clear) {
+      const Doubles depth = appendPlain(batch, p, plane.v, height, is_clear, plain);
+      deepest = maximum(deepest, clear ? depth : deepest);
+    }
     if (is_clear == near) continue;
     const unsigned is_hit = near & bitsOf(isOverOrFades(sides.of, openSides(batch.open(open), height, 0.0), most, 2 * CLOSED)),
                    is_beside = bitsOf(inside < -2 * CLOSED);
@@ -155,6 +160,7 @@ std::uint32_t vertexFaces(const Vec4* a, const FaceRecord* b, const OpenSides* o
                        heights[lane]};
     }
   }
+  for (int i = 0; plain && i < LANES; ++i) plain->deepest = deepest[i] > plain->deepest ? deepest[i] : plain->deepest;
   return found;
 }
 

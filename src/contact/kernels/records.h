@@ -121,12 +121,14 @@ struct VertexFaceHit {
   double height;     ///< [m]
 };
 
-/** A contact as it is handed on. */
-struct alignas(64) ContactRow {
+/** A Contact, number by number. */
+struct ContactRow {
   double point[3];   ///< [m] world
   double normal[3];  ///< unit, world, from B to A
   double depth;      ///< [m]
   std::uint64_t id;  ///< contactId
+  double weight;
+  std::uint64_t pierced;
 };
 
 /** What the contacts of vertices of one mesh with faces of the other are in the world. */
@@ -142,7 +144,7 @@ struct ContactPlace {
   std::uint64_t kinds;  ///< contactId of features 0
 };
 
-/** Where kernels write contacts that need no closer look. Room for as many as there are candidates. */
+/** Where kernels write contacts that need no closer look. Room for one more than there are candidates. */
 struct PlainContacts {
   ContactPlace place;
   ContactRow* rows;
