@@ -25,13 +25,14 @@ class BorderFades {
       : pair_(pair), lists_(*lists), surroundings_(*surroundings), R_FM_(pair.X_FM.linear()), R_MF_(R_FM_.transpose()) {}
 
   /**
-   * @param vertex, face of the lists @param p the vertex in the face's mesh's frame @param height [m] of p over the face's plane
-   * @return false if p projects into the plane, has a successor, or has lost more than `most` [m]
+   * @param c vertex and face of the lists @param hit theirs @param p the vertex in the face's mesh's frame
+   * @return false if p projects into the plane, or has a successor
    */
-  bool find(bool vertex_moves, std::uint32_t vertex, std::uint32_t face, const Vector3& p, double height, double most, BorderFade* out);
+  bool find(bool vertex_moves, const kernels::Candidate& c, const kernels::VertexFaceHit& hit, const Vector3& p, BorderFade* out);
 
  private:
-  bool leaves(bool vertex_moves, std::uint32_t vertex, int face, int k, const Vector3& down, const Vector3& inward);
+  bool fades(bool vertex_moves, const kernels::Candidate& c, const kernels::VertexFaceHit& hit);
+  bool leaves(bool vertex_moves, const kernels::Candidate& c, int k, bool is_above);
 
   const MeshPair& pair_;
   const CandidateLists& lists_;

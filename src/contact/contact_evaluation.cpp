@@ -131,7 +131,7 @@ void Evaluation::vertexFaces(bool moves) {
   }
   buffers_.fading.clear();
   for (std::uint32_t i = 0; i < count; ++i)
-    if (hits[i].is_beside) addFading(moves, candidates[hits[i].candidate], hits[i].height);
+    if (hits[i].is_beside) addFading(moves, candidates[hits[i].candidate], hits[i]);
   dropCovered(moves);
 }
 
@@ -145,10 +145,9 @@ void Evaluation::addPlain(bool moves, const Candidate& c, double height) {
   addContact(moves, vertex, patch, p, foot, normal, std::abs(height), &found_.close);
 }
 
-void Evaluation::addFading(bool moves, const Candidate& c, double height) {
+void Evaluation::addFading(bool moves, const Candidate& c, const kernels::VertexFaceHit& hit) {
   BorderFade fade;
-  const double most = pair_.range - std::abs(height);
-  if (!fades_.find(moves, c.a, c.b, vector3(buffers_.turned.vertices[moves][c.a]), height, most, &fade)) return;
+  if (!fades_.find(moves, c, hit, vector3(buffers_.turned.vertices[moves][c.a]), &fade)) return;
   const Vector3 p = vector3(moves ? buffers_.turned.vertices[1][c.a] : lists_.near[0].vertices.records[c.a]);
   const Vector3 d = moves ? Vector3(p - fade.foot) : Vector3(fade.foot - p);
   const double distance = d.norm(), gap = distance + fade.lost;
@@ -156,7 +155,10 @@ void Evaluation::addFading(bool moves, const Candidate& c, double height) {
   const Feature vertex{FeatureKind::VERTEX, lists_.near[moves].vertices.names[c.a]},
       patch{FeatureKind::FACE, lists_.near[!moves].patches[c.b]};
   addContact(moves, vertex, patch, p, fade.foot, d / distance, gap, &found_.close);
-  buffers_.fading.push_back({c.a, patch.index, NONE, false});
+  FadingVertex& fading = buffers_.fading.emplace_back();
+  fading.vertex = c.a;
+  fading.patch = patch.index;
+  fading.is_covered = false;
 }
 
 /** What lies beside one face of a plane but over another does not fade. */

@@ -70,7 +70,7 @@ class Evaluation {
   std::uint32_t findVertexFaces(bool moves);
   kernels::ContactPlace place(bool vertices_move) const;
   void addPlain(bool moves, const kernels::Candidate& c, double height);
-  void addFading(bool moves, const kernels::Candidate& c, double height);
+  void addFading(bool moves, const kernels::Candidate& c, const kernels::VertexFaceHit& hit);
   void dropCovered(bool moves);
   void edgeEdges(const kernels::EdgeRecord* moving, const kernels::EdgeRecord* fixed);
   void vertexEdges(bool moves, const kernels::Vec4* vertices, const kernels::EdgeRecord* edges);

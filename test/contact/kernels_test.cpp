@@ -98,7 +98,7 @@ Found found(const Kernels& set, const Features& in) {
     add(found.plain.count);
     add(static_cast<std::uint32_t>(found.hits.size()));
     for (const VertexFaceHit& hit : found.hits) {
-      out.indices.insert(out.indices.end(), {hit.candidate, hit.is_plain, hit.is_beside, hit.near_border});
+      out.indices.insert(out.indices.end(), {hit.candidate, hit.is_plain, hit.is_beside, hit.near_border, hit.outside});
       out.numbers.push_back(hit.height);
     }
     for (std::uint32_t i = 0; i < found.plain.count; ++i) {

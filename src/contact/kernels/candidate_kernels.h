@@ -152,12 +152,14 @@ std::uint32_t vertexFaces(const Vec4* a, const FaceRecord* b, const OpenSides* o
     if (is_clear == near) continue;
     const unsigned is_hit = near & bitsOf(isOverOrFades(sides.of, openSides(batch.open(open), height, 0.0), most, 2 * CLOSED)),
                    is_beside = bitsOf(inside < -2 * CLOSED);
+    const unsigned outside[3] = {bitsOf(sides.of[0] < 0), bitsOf(sides.of[1] < 0), bitsOf(sides.of[2] < 0)};
     double heights[LANES];
     __builtin_memcpy(heights, &height, sizeof heights);
     for (unsigned bits = is_hit & ~is_clear; bits != 0; bits &= bits - 1) {
       const int lane = __builtin_ctz(bits);
+      const auto over = static_cast<std::uint8_t>((outside[0] >> lane & 1) | (outside[1] >> lane & 1) << 1 | (outside[2] >> lane & 1) << 2);
       hits[found++] = {first + lane, (is_plain >> lane & 1) != 0, (is_beside >> lane & 1) != 0, (near_border >> lane & 1) != 0,
-                       heights[lane]};
+                       over,         heights[lane]};
     }
   }
   for (int i = 0; plain && i < LANES; ++i) plain->deepest = deepest[i] > plain->deepest ? deepest[i] : plain->deepest;

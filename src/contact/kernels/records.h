@@ -118,7 +118,9 @@ struct VertexFaceHit {
   bool is_plain;     ///< over the face's inside and not touching: a contact as it stands
   bool is_beside;    ///< outside the face
   bool near_border;  ///< and close enough to its border that another may lie in the same place
-  double height;     ///< [m]
+  /** Bits k: it lies outside side k of the face. */
+  std::uint8_t outside;
+  double height;  ///< [m] over the face's plane
 };
 
 /** A Contact, number by number. */
