@@ -1,43 +1,11 @@
 #include "border_fade.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "feature_cones.h"
 #include "leaving_vertex.h"
 #include "vectors.h"
 
 namespace blem_sim {
-namespace {
 
-/** The point of a face's side k that is closest to q; mesh's frame. */
-Vector3 closestOnSide(const MeshSide& side, int face, int k, const Vector3& q) {
-  const Vector3i& corners = side.mesh.elements[face];
-  const Vector3 &start = side.mesh.vertices[corners[k]], along = side.mesh.vertices[corners[(k + 1) % 3]] - start;
-  return start + std::clamp((q - start).dot(along) / along.squaredNorm(), 0.0, 1.0) * along;
-}
-
-}  // namespace
-
-bool BorderFades::find(bool vertex_moves, const kernels::Candidate& c, const kernels::VertexFaceHit& hit, const Vector3& p,
-                       BorderFade* out) {
-  if (!fades(vertex_moves, c, hit)) return false;
-  const NearFeatures& near = lists_.near[!vertex_moves];
-  const Vector3 projection = p - hit.height * vector3(near.faces.records[c.b].plane);
-  double nearest2 = std::numeric_limits<double>::infinity();
-  for (unsigned sides = hit.outside; sides != 0; sides &= sides - 1) {
-    const Vector3 foot = closestOnSide(pair_.side(!vertex_moves), near.faces.names[c.b], __builtin_ctz(sides), projection);
-    const double distance2 = (projection - foot).squaredNorm();
-    if (distance2 >= nearest2) continue;
-    nearest2 = distance2;
-    out->foot = foot;
-  }
-  out->lost = FADE_SLOPE * std::sqrt(nearest2);
-  out->foot = pair_.placed(out->foot, !vertex_moves);
-  return true;
-}
-
-/** Is there a side behind which nothing takes over, and none behind which the plane, or a round edge, is asked instead? */
 bool BorderFades::fades(bool vertex_moves, const kernels::Candidate& c, const kernels::VertexFaceHit& hit) {
   const NearFeatures& near = lists_.near[!vertex_moves];
   const BorderKind* const kinds = near.borders[c.b].of[hit.height > 0];

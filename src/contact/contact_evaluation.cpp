@@ -129,9 +129,8 @@ void Evaluation::vertexFaces(bool moves) {
     }
     if (!hit.is_beside) buffers_.over[buffers_.over_count++] = c;
   }
-  buffers_.fading.clear();
-  for (std::uint32_t i = 0; i < count; ++i)
-    if (hits[i].is_beside) addFading(moves, candidates[hits[i].candidate], hits[i]);
+  lookAtSides(moves, count);
+  addFading(moves);
   dropCovered(moves);
 }
 
@@ -145,20 +144,48 @@ void Evaluation::addPlain(bool moves, const Candidate& c, double height) {
   addContact(moves, vertex, patch, p, foot, normal, std::abs(height), &found_.close);
 }
 
-void Evaluation::addFading(bool moves, const Candidate& c, const kernels::VertexFaceHit& hit) {
-  BorderFade fade;
-  if (!fades_.find(moves, c, hit, vector3(buffers_.turned.vertices[moves][c.a]), &fade)) return;
-  const Vector3 p = vector3(moves ? buffers_.turned.vertices[1][c.a] : lists_.near[0].vertices.records[c.a]);
-  const Vector3 d = moves ? Vector3(p - fade.foot) : Vector3(fade.foot - p);
-  const double distance = d.norm(), gap = distance + fade.lost;
-  if (distance <= TOUCH || gap > pair_.range) return;
-  const Feature vertex{FeatureKind::VERTEX, lists_.near[moves].vertices.names[c.a]},
-      patch{FeatureKind::FACE, lists_.near[!moves].patches[c.b]};
-  addContact(moves, vertex, patch, p, fade.foot, d / distance, gap, &found_.close);
-  FadingVertex& fading = buffers_.fading.emplace_back();
-  fading.vertex = c.a;
-  fading.patch = patch.index;
-  fading.is_covered = false;
+/** Lists the sides over which contacts fade. */
+void Evaluation::lookAtSides(bool moves, std::uint32_t hits) {
+  buffers_.beside.clear();
+  buffers_.sides.clear();
+  const MeshSide& side = pair_.side(!moves);
+  for (std::uint32_t i = 0; i < hits; ++i) {
+    const kernels::VertexFaceHit& hit = buffers_.vertex_faces[i];
+    const Candidate& c = pairs_.vertex_face[moves][hit.candidate];
+    if (!hit.is_beside || !fades_.fades(moves, c, hit)) continue;
+    const Vector3i& corners = side.mesh.elements[lists_.near[!moves].faces.names[c.b]];
+    for (unsigned outside = hit.outside; outside != 0; outside &= outside - 1) {
+      const int k = __builtin_ctz(outside);
+      const Vector3 &start = side.mesh.vertices[corners[k]], along = side.mesh.vertices[corners[NEXT[k]]] - start;
+      buffers_.beside.push_back(c);
+      buffers_.sides.push_back({vec4(start, 0), vec4(along, 0)});
+    }
+  }
+}
+
+/** Of each vertex with a face: at the nearest of the sides. */
+void Evaluation::addFading(bool moves) {
+  const std::vector<Candidate>& beside = buffers_.beside;
+  makeRoom(beside.size(), &buffers_.feet);
+  kernels::kernels().sideFeet(place(moves), buffers_.turned.vertices[moves].data(), lists_.near[!moves].faces.records.data(),
+                              buffers_.sides.data(), beside.data(), static_cast<std::uint32_t>(beside.size()), buffers_.feet.data());
+  buffers_.fading.clear();
+  const auto& vertices = (moves ? buffers_.turned.vertices[1] : lists_.near[0].vertices.records);
+  for (std::size_t i = 0, next; i < beside.size(); i = next) {
+    const kernels::SideFoot* nearest = &buffers_.feet[i];
+    const Candidate& c = beside[i];
+    for (next = i + 1; next < beside.size() && beside[next].a == c.a && beside[next].b == c.b; ++next)
+      if (buffers_.feet[next].lost < nearest->lost) nearest = &buffers_.feet[next];
+    const double gap = nearest->distance + nearest->lost;
+    if (nearest->distance <= TOUCH || gap > pair_.range) continue;
+    const int patch = lists_.near[!moves].patches[c.b];
+    addContact(moves, {FeatureKind::VERTEX, lists_.near[moves].vertices.names[c.a]}, {FeatureKind::FACE, patch}, vector3(vertices[c.a]),
+               Vector3(nearest->point), Vector3(nearest->normal), gap, &found_.close);
+    FadingVertex& fading = buffers_.fading.emplace_back();
+    fading.vertex = c.a;
+    fading.patch = patch;
+    fading.is_covered = false;
+  }
 }
 
 /** What lies beside one face of a plane but over another does not fade. */

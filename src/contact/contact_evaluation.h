@@ -40,6 +40,9 @@ struct EvaluationBuffers {
   std::vector<std::uint32_t> hits;
   std::vector<kernels::Candidate> over;    ///< vertices over faces
   std::uint32_t over_count = 0;            ///< of them
+  std::vector<kernels::Candidate> beside;  ///< vertices and faces, once for each side that they lie outside of
+  std::vector<kernels::BesideSide> sides;  ///< as they
+  std::vector<kernels::SideFoot> feet;     ///< as they
   std::vector<FadingVertex> fading;        ///< whose contacts are the last close ones
   std::vector<std::uint32_t> last_fading;  ///< of each vertex; none between evaluations
 };
@@ -67,10 +70,11 @@ class Evaluation {
   void forEachHit(const std::vector<kernels::Candidate>& candidates, std::uint32_t count, Visit&& visit) const;
 
   void vertexFaces(bool moves);
+  void lookAtSides(bool moves, std::uint32_t hits);
   std::uint32_t findVertexFaces(bool moves);
   kernels::ContactPlace place(bool vertices_move) const;
   void addPlain(bool moves, const kernels::Candidate& c, double height);
-  void addFading(bool moves, const kernels::Candidate& c, const kernels::VertexFaceHit& hit);
+  void addFading(bool moves);
   void dropCovered(bool moves);
   void edgeEdges(const kernels::EdgeRecord* moving, const kernels::EdgeRecord* fixed);
   void vertexEdges(bool moves, const kernels::Vec4* vertices, const kernels::EdgeRecord* edges);

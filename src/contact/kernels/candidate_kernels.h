@@ -30,9 +30,6 @@ inline std::uint32_t listed(const Candidate* candidates, std::uint32_t count, st
   return found;
 }
 
-/** Height over the plane, or inside the side. */
-inline Doubles above(const Vectors& p, const Rows& plane) { return dot(p, plane.v) - plane.w; }
-
 struct InsideSides {
   InsideSides(const Batch& batch, const FaceRecord* faces, const Vectors& p)
       : of{above(p, batch.side(faces, 0)), above(p, batch.side(faces, 1)), above(p, batch.side(faces, 2))} {}

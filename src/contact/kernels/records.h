@@ -133,7 +133,7 @@ struct ContactRow {
   std::uint64_t pierced;
 };
 
-/** What the contacts of vertices of one mesh with faces of the other are in the world. */
+/** Where the contacts of vertices of one mesh with faces of the other are. */
 struct ContactPlace {
   const Vec4* vertices;     ///< in frame F
   const int* vertex_names;  ///< as the vertices
@@ -153,6 +153,19 @@ struct PlainContacts {
   Candidate* pairs;     ///< whose they are
   std::uint32_t count;  ///< so far; they are appended
   double deepest;       ///< [m] their largest depth so far
+};
+
+/** A side of a face beside which a vertex lies; the face's mesh's frame. */
+struct BesideSide {
+  Vec4 start, along;  ///< its corner, to the next one
+};
+
+/** Where a vertex's contact with a face's side is. */
+struct SideFoot {
+  double point[3];   ///< [m] of the face; frame F
+  double normal[3];  ///< unit, frame F, from the fixed mesh to the moving one
+  double distance;   ///< [m] of the vertex
+  double lost;       ///< [m] of depth, since the vertex lies beside the face
 };
 
 /** Two edges near each other whose common perpendicular points out of their faces. */
