@@ -81,7 +81,7 @@ class KnownPairs {
     lists_ = std::move(listing.lists);
     dropUnknown(KnownContacts(plain, found));
     compactFeatures();
-    vertex_faces_.resize(size());
+    vertex_faces_.resize(size() + 1);
     edge_edges_.resize(size());
     others_.resize(size());
   }

@@ -11,7 +11,7 @@ bool BorderFades::fades(bool vertex_moves, const kernels::Candidate& c, const ke
   const BorderKind* const kinds = near.borders[c.b].of[hit.height > 0];
   bool fades = false;
   unsigned falling = 0;
-  for (unsigned sides = hit.outside; sides != 0; sides &= sides - 1) {
+  for (unsigned sides = hit.bits & kernels::VertexFaceHit::OUTSIDE; sides != 0; sides &= sides - 1) {
     const BorderKind kind = kinds[__builtin_ctz(sides)];
     if (kind == BorderKind::FLAT || kind == BorderKind::ROUND) return false;
     fades = fades || kind == BorderKind::RISING;

@@ -12,6 +12,7 @@ namespace {
 
 using kernels::Candidate;
 using kernels::Vec4;
+using kernels::VertexFaceHit;
 
 constexpr std::uint32_t NONE = 0xFFFFFFFF;
 /** Candidates that are tested at once: there is room for contacts of all. */
@@ -92,13 +93,13 @@ kernels::ContactPlace Evaluation::place(bool vertices_move) const {
 std::uint32_t Evaluation::findVertexFaces(bool moves) {
   const std::vector<Candidate>& candidates = pairs_.vertex_face[moves];
   const auto total = static_cast<std::uint32_t>(candidates.size());
-  makeRoom(total, &buffers_.vertex_faces);
+  makeRoom(total + 1, &buffers_.vertex_faces);
   makeRoom(total + 1, &buffers_.over);
   buffers_.over_count = 0;
   kernels::PlainContacts plain{place(moves), nullptr, nullptr, 0, found_.deepest_plain};
   std::uint32_t count = 0;
   for (std::uint32_t first = 0; first < total; first += BLOCK) {
-    kernels::VertexFaceHit* const hits = buffers_.vertex_faces.data() + count;
+    VertexFaceHit* const hits = buffers_.vertex_faces.data() + count;
     plain.rows = found_.plain.rows(BLOCK + 1);
     plain.pairs = buffers_.over.data() + buffers_.over_count;
     plain.count = 0;
@@ -120,14 +121,14 @@ void Evaluation::vertexFaces(bool moves) {
   const auto &vertices = lists_.near[moves].vertices.names, &faces = lists_.near[!moves].faces.names;
   auto& hits = buffers_.vertex_faces;
   for (std::uint32_t i = 0; i < count; ++i) {
-    kernels::VertexFaceHit& hit = hits[i];
+    VertexFaceHit& hit = hits[i];
     const Candidate& c = candidates[hit.candidate];
-    if (hit.is_plain) {
+    if (hit.has(VertexFaceHit::PLAIN)) {
       addPlain(moves, c, hit.height);
-    } else {
-      hit.is_beside = hit.is_beside || !exact_.vertexFace(moves, vertices[c.a], faces[c.b]);
+    } else if (!hit.has(VertexFaceHit::BESIDE) && !exact_.vertexFace(moves, vertices[c.a], faces[c.b])) {
+      hit.bits |= VertexFaceHit::BESIDE;
     }
-    if (!hit.is_beside) buffers_.over[buffers_.over_count++] = c;
+    if (!hit.has(VertexFaceHit::BESIDE)) buffers_.over[buffers_.over_count++] = c;
   }
   lookAtSides(moves, count);
   addFading(moves);
@@ -150,11 +151,11 @@ void Evaluation::lookAtSides(bool moves, std::uint32_t hits) {
   buffers_.sides.clear();
   const MeshSide& side = pair_.side(!moves);
   for (std::uint32_t i = 0; i < hits; ++i) {
-    const kernels::VertexFaceHit& hit = buffers_.vertex_faces[i];
+    const VertexFaceHit& hit = buffers_.vertex_faces[i];
     const Candidate& c = pairs_.vertex_face[moves][hit.candidate];
-    if (!hit.is_beside || !fades_.fades(moves, c, hit)) continue;
+    if (!hit.has(VertexFaceHit::BESIDE) || !fades_.fades(moves, c, hit)) continue;
     const Vector3i& corners = side.mesh.elements[lists_.near[!moves].faces.names[c.b]];
-    for (unsigned outside = hit.outside; outside != 0; outside &= outside - 1) {
+    for (unsigned outside = hit.bits & VertexFaceHit::OUTSIDE; outside != 0; outside &= outside - 1) {
       const int k = __builtin_ctz(outside);
       const Vector3 &start = side.mesh.vertices[corners[k]], along = side.mesh.vertices[corners[NEXT[k]]] - start;
       buffers_.beside.push_back(c);
@@ -196,17 +197,18 @@ void Evaluation::dropCovered(bool moves) {
   if (last.size() < lists_.near[moves].vertices.names.size()) last.resize(lists_.near[moves].vertices.names.size(), NONE);
   for (std::uint32_t i = 0; i < fading.size(); ++i) fading[i].before = std::exchange(last[fading[i].vertex], i);
   const std::vector<int>& patches = lists_.near[!moves].patches;
+  bool is_any_covered = false;
   for (std::uint32_t i = 0; i < buffers_.over_count; ++i) {
     const Candidate& c = buffers_.over[i];
     for (std::uint32_t at = last[c.a]; at != NONE; at = fading[at].before)
-      fading[at].is_covered = fading[at].is_covered || fading[at].patch == patches[c.b];
+      if (fading[at].patch == patches[c.b]) fading[at].is_covered = is_any_covered = true;
   }
+  for (const FadingVertex& each : fading) last[each.vertex] = NONE;
+  if (!is_any_covered) return;
   std::size_t kept = found_.close.size() - fading.size();
-  for (std::size_t i = 0, from = kept; i < fading.size(); ++i, ++from) {
-    last[fading[i].vertex] = NONE;
+  for (std::size_t i = 0, from = kept; i < fading.size(); ++i, ++from)
     if (!fading[i].is_covered) found_.close[kept++] = found_.close[from];
-  }
-  found_.close.erase(found_.close.begin() + static_cast<std::ptrdiff_t>(kept), found_.close.end());
+  found_.close.resize(kept);
 }
 
 void Evaluation::edgeEdges(const kernels::EdgeRecord* moving, const kernels::EdgeRecord* fixed) {

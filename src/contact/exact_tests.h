@@ -31,6 +31,7 @@ class ExactTests {
  private:
   bool reachesOver(bool vertex_moves, int vertex, const Vector3& p, const FaceShape& face) const;
   void addFadingEdges(const Feature& m, const Feature& f, const EdgesBeyond& edges, bool cones_known);
+  bool leadsTo(bool vertex_moves, int vertex, const Vector3& d, double distance2) const;
   bool addAtRoundEdge(bool vertex_moves, int vertex, int edge, const Vector3& p, const kernels::EdgeRecord& record);
   void addLocalMinimum(const Feature& m, const Feature& f, const Vector3& point_M, const Vector3& point_F, const Vector3& along);
   /** Does neither surface come closer to the other beside its feature? */

@@ -10,13 +10,17 @@
 
 namespace blem_sim {
 
-/** Its place is the middle of the overlap of the layers [Hauser 2013, 3.2]; in the frame of the points. @param normal from second to first
- */
+/** The middle of the overlap of the layers [Hauser 2013, 3.2]. @param p, q witness points @param normal from B to A */
+inline Vector3 placeOf(const ContactRoles& roles, const Vector3& p, const Vector3& q, const Vector3& normal) {
+  return 0.5 * (p + q) + 0.5 * (roles.r_b - roles.r_a) * normal;
+}
+
+/** In the frame of the points. @param normal from second to first */
 inline Contact contactOf(const ContactRoles& roles, const Feature& first, const Feature& second, const Vector3& point_first,
                          const Vector3& point_second, const Vector3& normal, double gap) {
   Contact contact;
   contact.normal_BA = roles.first_is_a ? normal : Vector3(-normal);
-  contact.point = 0.5 * (point_first + point_second) + 0.5 * (roles.r_b - roles.r_a) * contact.normal_BA;
+  contact.point = placeOf(roles, point_first, point_second, contact.normal_BA);
   contact.depth = roles.r_a + roles.r_b - gap;
   contact.id = roles.first_is_a ? contactId(first, second) : contactId(second, first);
   return contact;
@@ -24,11 +28,12 @@ inline Contact contactOf(const ContactRoles& roles, const Feature& first, const 
 
 /** A contact of a pair in the world. */
 inline void placeInWorld(const MeshPair& pair, const FeatureContact& c, Contact* out) {
-  const Contact contact = contactOf(pair.roles, c.moving, c.fixed, c.point_M, c.point_F, c.normal, c.gap);
-  out->point = pair.X_WF * contact.point;
-  out->normal_BA = pair.X_WF.linear() * contact.normal_BA;
-  out->depth = contact.depth;
-  out->id = contact.id;
+  const ContactRoles& roles = pair.roles;
+  const Vector3 normal = roles.first_is_a ? c.normal : Vector3(-c.normal);
+  out->point = pair.X_WF * placeOf(roles, c.point_M, c.point_F, normal);
+  out->normal_BA = pair.X_WF.linear() * normal;
+  out->depth = roles.r_a + roles.r_b - c.gap;
+  out->id = roles.first_is_a ? contactId(c.moving, c.fixed) : contactId(c.fixed, c.moving);
   out->weight = 1;
   out->pierced = c.pierced;
 }

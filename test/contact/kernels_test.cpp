@@ -56,7 +56,7 @@ struct PlainVertexFaces {
   PlainVertexFaces(const Kernels& set, const Features& in, bool faces_move, bool takes_plain)
       : X_FM(makePose({0.1, -0.2, 0.3}, {0.4, 0.5, -0.6})),
         X_WF(makePose({-3, 2, 1}, {0.7, -0.2, 0.1})),
-        hits(CANDIDATES),
+        hits(CANDIDATES + 1),
         rows(CANDIDATES + 1),
         pairs(CANDIDATES + 1) {
     for (const Vec4& p : in.vertices) placed.push_back(faces_move ? vec4(X_FM * vector3(p), 0) : p);
@@ -98,7 +98,7 @@ Found found(const Kernels& set, const Features& in) {
     add(found.plain.count);
     add(static_cast<std::uint32_t>(found.hits.size()));
     for (const VertexFaceHit& hit : found.hits) {
-      out.indices.insert(out.indices.end(), {hit.candidate, hit.is_plain, hit.is_beside, hit.near_border, hit.outside});
+      out.indices.insert(out.indices.end(), {hit.candidate, hit.bits});
       out.numbers.push_back(hit.height);
     }
     for (std::uint32_t i = 0; i < found.plain.count; ++i) {
@@ -172,7 +172,7 @@ TEST(Kernels, PlainContactsAreThoseMadeOneByOne) {
     std::uint32_t count = 0, close = 0;
     double deepest = -1;
     for (const VertexFaceHit& hit : all.hits) {
-      if (!hit.is_plain || hit.near_border) {
+      if (!hit.has(VertexFaceHit::PLAIN) || hit.has(VertexFaceHit::NEAR_BORDER)) {
         ++close;
         continue;
       }

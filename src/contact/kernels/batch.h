@@ -48,6 +48,7 @@ struct Batch {
   unsigned valid;
 
  private:
+
   template <typename Place>
   void take(const Candidate* from, Place&& place) {
     for (int i = 0; i < LANES; ++i) {

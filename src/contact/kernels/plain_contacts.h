@@ -16,6 +16,12 @@ inline Vectors turnedPoint(const Motion& X, const Vectors& p) {
   return {row(0), row(1), row(2)};
 }
 
+/** ContactRow::weight and what follows. */
+constexpr struct {
+  double weight;
+  std::uint64_t pierced;
+} UNWEIGHED = {1, 0};
+
 /** contactId of the lanes' vertices and faces. */
 inline Mask idsOf(const Batch& batch, const ContactPlace& place) {
   Mask vertices, faces;
@@ -44,10 +50,8 @@ inline Doubles appendPlain(const Batch& batch, const Vectors& p, const Vectors& 
   double* rows[LANES];
   std::uint32_t count = out->count;
   for (int i = 0; i < LANES; ++i) {
-    ContactRow& row = out->rows[count];
-    row.weight = 1;
-    row.pierced = 0;
-    rows[i] = row.point;
+    rows[i] = out->rows[count].point;
+    __builtin_memcpy(&out->rows[count].weight, &UNWEIGHED, sizeof UNWEIGHED);
     out->pairs[count] = {batch.of_a[i], batch.of_b[i]};
     count += bits >> i & 1;
   }

@@ -114,13 +114,16 @@ struct LeafHits {
 
 /** A vertex near a face. */
 struct VertexFaceHit {
-  std::uint32_t candidate;
-  bool is_plain;     ///< over the face's inside and not touching: a contact as it stands
-  bool is_beside;    ///< outside the face
-  bool near_border;  ///< and close enough to its border that another may lie in the same place
-  /** Bits k: it lies outside side k of the face. */
-  std::uint8_t outside;
+  enum : std::uint32_t {
+    OUTSIDE = 7,      ///< bits k: it lies outside side k of the face
+    PLAIN = 8,        ///< over the face's inside and not touching: a contact as it stands
+    BESIDE = 16,      ///< outside the face
+    NEAR_BORDER = 32  ///< or over it and so close to its border that another may lie in the same place
+  };
+  std::uint32_t candidate, bits;
   double height;  ///< [m] over the face's plane
+
+  bool has(std::uint32_t bit) const { return (bits & bit) != 0; }
 };
 
 /** A Contact, number by number. */
