@@ -27,17 +27,16 @@ void makeRoom(std::size_t size, Items* items) {
 
 void FoundContacts::clear() {
   deepest_plain = -std::numeric_limits<double>::infinity();
-  close.clear();
+  close.begin(false);
   crossings.clear();
 }
 
 double FoundContacts::leastGap(const MeshPair& pair) const {
-  double least = std::min(pair.range, pair.layer - deepest_plain);
-  for (const FeatureContact& c : close) least = std::min(least, c.gap);
-  return least;
+  return std::min({pair.range, pair.layer - deepest_plain, close.leastGap(pair.layer)});
 }
 
 void Evaluation::findContacts() {
+  found_.close.begin(!found_.crossings.empty());
   const auto& vertices = buffers_.turned.vertices;
   const auto& edges = buffers_.turned.edges;
   for (const bool moves : {true, false}) {
@@ -142,7 +141,7 @@ void Evaluation::addPlain(bool moves, const Candidate& c, double height) {
   const Vector3 p = vector3(moves ? buffers_.turned.vertices[1][c.a] : lists_.near[0].vertices.records[c.a]);
   const Vector3 up = pair_.turned(vector3(faces.records[c.b].plane), !moves), foot = p - height * up;
   const Vector3 normal = (height > 0) == moves ? up : Vector3(-up);
-  addContact(moves, vertex, patch, p, foot, normal, std::abs(height), &found_.close);
+  found_.close.add(pair_, moves, vertex, patch, p, foot, normal, std::abs(height));
 }
 
 /** Lists the sides over which contacts fade. */
@@ -180,8 +179,8 @@ void Evaluation::addFading(bool moves) {
     const double gap = nearest->distance + nearest->lost;
     if (nearest->distance <= TOUCH || gap > pair_.range) continue;
     const int patch = lists_.near[!moves].patches[c.b];
-    addContact(moves, {FeatureKind::VERTEX, lists_.near[moves].vertices.names[c.a]}, {FeatureKind::FACE, patch}, vector3(vertices[c.a]),
-               Vector3(nearest->point), Vector3(nearest->normal), gap, &found_.close);
+    found_.close.add(pair_, moves, {FeatureKind::VERTEX, lists_.near[moves].vertices.names[c.a]}, {FeatureKind::FACE, patch},
+                     vector3(vertices[c.a]), Vector3(nearest->point), Vector3(nearest->normal), gap);
     FadingVertex& fading = buffers_.fading.emplace_back();
     fading.vertex = c.a;
     fading.patch = patch;
@@ -205,10 +204,7 @@ void Evaluation::dropCovered(bool moves) {
   }
   for (const FadingVertex& each : fading) last[each.vertex] = NONE;
   if (!is_any_covered) return;
-  std::size_t kept = found_.close.size() - fading.size();
-  for (std::size_t i = 0, from = kept; i < fading.size(); ++i, ++from)
-    if (!fading[i].is_covered) found_.close[kept++] = found_.close[from];
-  found_.close.resize(kept);
+  found_.close.keepOfLast(fading.size(), [&](std::size_t i) { return !fading[i].is_covered; });
 }
 
 void Evaluation::edgeEdges(const kernels::EdgeRecord* moving, const kernels::EdgeRecord* fixed) {
@@ -227,17 +223,12 @@ void Evaluation::edgeEdges(const kernels::EdgeRecord* moving, const kernels::Edg
     const auto foot = [](const kernels::EdgeRecord& edge, double part) {
       return Vector3(vector3(edge.start) + part * vector3(edge.along));
     };
-    const FeatureContact contact{{FeatureKind::EDGE, m},
-                                 {FeatureKind::EDGE, f},
-                                 foot(moving[c.a], hit.part_a),
-                                 foot(fixed[c.b], hit.part_b),
-                                 Vector3(hit.normal[0], hit.normal[1], hit.normal[2]),
-                                 hit.gap};
+    const Vector3 point_m = foot(moving[c.a], hit.part_a), point_f = foot(fixed[c.b], hit.part_b), normal(hit.normal);
     if (hit.near_border || !found_.crossings.empty()) {
-      found_.close.push_back(contact);
+      found_.close.add(pair_, true, {FeatureKind::EDGE, m}, {FeatureKind::EDGE, f}, point_m, point_f, normal, hit.gap);
     } else {
       Contact* const plain = found_.plain.room(1);
-      placeInWorld(pair_, contact, plain);
+      placeInWorld(pair_, true, {FeatureKind::EDGE, m}, {FeatureKind::EDGE, f}, point_m, point_f, normal, hit.gap, plain);
       found_.plain.advance(1);
       found_.deepest_plain = std::max(found_.deepest_plain, plain->depth);
     }

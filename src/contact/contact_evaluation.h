@@ -5,18 +5,18 @@
 
 #include "border_fade.h"
 #include "candidate_lists.h"
+#include "close_contacts.h"
 #include "edge_crossing.h"
 #include "exact_tests.h"
 #include "mesh_pair.h"
-#include "world_contact.h"
 
 namespace blem_sim {
 
 /** What a search finds. */
 struct FoundContacts {
-  ContactWriter plain;                ///< in the world; each in a place of its own; none where meshes cross
-  double deepest_plain = 0;           ///< [m] their largest depth
-  std::vector<FeatureContact> close;  ///< some may be in one place, or have one name
+  ContactWriter plain;       ///< in the world; each in a place of its own; none where meshes cross
+  double deepest_plain = 0;  ///< [m] their largest depth
+  CloseContacts close;
   std::vector<Crossing> crossings;
 
   void clear();                                 ///< all but `plain`

@@ -25,7 +25,7 @@ bool ExactTests::vertexFace(bool vertex_moves, int name, int element) {
     if (!reachesOver(vertex_moves, name, p, face)) return true;
     normal = vertex_moves ? towardsMoving(pair_, normal, vertex, patch, p) : towardsMoving(pair_, normal, patch, vertex, p);
   }
-  addContact(vertex_moves, vertex, patch, p, p - height * face.normal, normal, std::abs(height), &contacts_);
+  contacts_.add(pair_, vertex_moves, vertex, patch, p, p - height * face.normal, normal, std::abs(height));
   return true;
 }
 
@@ -76,7 +76,7 @@ void ExactTests::edgeEdge(int moving, int fixed, const kernels::EdgeRecord& reco
   Vector3 normal = feet.offset < 0 ? Vector3(-feet.axis) : feet.axis;
   const double gap = std::abs(feet.offset);
   if (gap <= TOUCH) normal = towardsMoving(pair_, normal, m, f, feet.point_q);
-  if (gap <= pair_.range && conesAllow(m, f, normal, EDGE_CONE_SLACK)) addContact(m, f, feet.point_p, feet.point_q, normal, gap, &contacts_);
+  if (gap <= pair_.range && conesAllow(m, f, normal, EDGE_CONE_SLACK)) contacts_.add(pair_, true, m, f, feet.point_p, feet.point_q, normal, gap);
 }
 
 void ExactTests::addFadingEdges(const Feature& m, const Feature& f, const EdgesBeyond& edges, bool cones_known) {
@@ -91,7 +91,7 @@ void ExactTests::addFadingEdges(const Feature& m, const Feature& f, const EdgesB
   };
   const bool fades = leaves(edges.end_p, true, m.index, f.index, R_FM_, -(R_FM_.transpose() * edges.normal)) ||
                      leaves(edges.end_q, false, f.index, m.index, R_FM_.transpose(), edges.normal);
-  if (fades) addContact(m, f, edges.point_p, edges.point_q, d / distance, gap, &contacts_);
+  if (fades) contacts_.add(pair_, true, m, f, edges.point_p, edges.point_q, d / distance, gap);
 }
 
 // ---- vertex and edge, vertex and vertex: where each is the other's local minimum, and around round edges and vertices
@@ -140,8 +140,7 @@ bool ExactTests::addAtRoundEdge(bool vertex_moves, int vertex, int edge, const V
     const EdgesAtVertex edges = surroundings_.ofVertex(side, side.topology.ends(side.mesh, edge)[part > 1]);
     if (isRoundVertex(side, edges, vertex_moves ? d : Vector3(R_FM_.transpose() * d), &surroundings_)) return true;
   }
-  addContact(vertex_moves, {FeatureKind::VERTEX, vertex}, {FeatureKind::EDGE, edge}, p, foot, (vertex_moves ? 1 : -1) / distance * d, gap,
-             &contacts_);
+  contacts_.add(pair_, vertex_moves, {FeatureKind::VERTEX, vertex}, {FeatureKind::EDGE, edge}, p, foot, (vertex_moves ? 1 : -1) / distance * d, gap);
   return true;
 }
 
@@ -163,7 +162,7 @@ void ExactTests::vertexVertex(int moving, int fixed) {
   const auto [f_allows, f_round] = cone(false, fixed, normal);
   const auto [m_allows, m_round] = cone(true, moving, inverse);
   const bool nearest = (f_allows && m_allows) || f_round || m_round;
-  if (nearest) addContact(m, f, p, q, normal, gap, &contacts_);
+  if (nearest) contacts_.add(pair_, true, m, f, p, q, normal, gap);
 }
 
 /** @param along direction of the edge, to which the normal is square; zero if there is none */
@@ -171,7 +170,7 @@ void ExactTests::addLocalMinimum(const Feature& m, const Feature& f, const Vecto
   const Vector3 d = point_M - point_F;
   const double gap = d.norm();
   const Vector3 normal = gap > TOUCH ? Vector3(d / gap) : touchNormal(pair_, m, f, point_F, along);
-  if (conesAllow(m, f, normal, CONE_SLACK)) addContact(m, f, point_M, point_F, normal, gap, &contacts_);
+  if (conesAllow(m, f, normal, CONE_SLACK)) contacts_.add(pair_, true, m, f, point_M, point_F, normal, gap);
 }
 
 bool ExactTests::conesAllow(const Feature& m, const Feature& f, const Vector3& normal, double slack) const {

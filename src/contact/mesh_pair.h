@@ -73,26 +73,4 @@ struct FeatureContact {
   bool pierced = false;
 };
 
-/** Appends a contact, number by number: what is made elsewhere and copied waits for its parts. */
-inline void addContact(const Feature& moving, const Feature& fixed, const Vector3& point_M, const Vector3& point_F, const Vector3& normal,
-                       double gap, std::vector<FeatureContact>* contacts) {
-  FeatureContact& contact = contacts->emplace_back();
-  contact.moving = moving;
-  contact.fixed = fixed;
-  contact.point_M = point_M;
-  contact.point_F = point_F;
-  contact.normal = normal;
-  contact.gap = gap;
-}
-
-/** The contact of a feature with one of the other mesh, whichever of them moves. */
-inline void addContact(bool first_moves, const Feature& first, const Feature& second, const Vector3& point_first,
-                       const Vector3& point_second, const Vector3& normal, double gap, std::vector<FeatureContact>* contacts) {
-  if (first_moves) {
-    addContact(first, second, point_first, point_second, normal, gap, contacts);
-  } else {
-    addContact(second, first, point_second, point_first, normal, gap, contacts);
-  }
-}
-
 }  // namespace blem_sim

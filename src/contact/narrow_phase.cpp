@@ -13,7 +13,6 @@ namespace {
 struct Buffers {
   ContactSearchBuffers search;
   FoundContacts found;
-  std::vector<Contact> close;
 };
 
 void meshMesh(const Collider& a, const Pose& X_WA, const Collider& b, const Pose& X_WB, double range, const Pose* X_AB_apart,
@@ -29,19 +28,17 @@ void meshMesh(const Collider& a, const Pose& X_WA, const Collider& b, const Pose
                       X_WF};
   thread_local Buffers buffers;
   FoundContacts& found = buffers.found;
-  found.plain.begin(&out->contacts);
+  found.plain.overwrite(&out->contacts);
   searchContacts(pair, memory, &buffers.search, &found);
   out->pierced = !found.crossings.empty();
   if (out->pierced) {
     Pose X_FM_apart;
     if (X_AB_apart) X_FM_apart = a_moves ? X_AB_apart->inverse() : *X_AB_apart;
-    addRetractions(pair, X_AB_apart ? &X_FM_apart : nullptr, found.crossings, &found.close);
+    addRetractions(pair, X_AB_apart ? &X_FM_apart : nullptr, found.crossings, &found.close.witnessed());
   }
-  const std::size_t close = found.close.size();
-  if (buffers.close.size() < close) buffers.close.resize(close);
-  for (std::size_t i = 0; i < close; ++i) placeInWorld(pair, found.close[i], &buffers.close[i]);
-  found.plain.advance(mergeContacts(buffers.close.data(), close, found.plain.room(close)));
-  found.plain.end();
+  const ContactWriter& close = found.close.placed(pair);
+  found.plain.advance(mergeContacts(close.begin(), close.size(), found.plain.room(close.size())));
+  found.plain.finish();
 }
 
 /** Vertices of the mesh near or below the plane; however deep, each knows its way out. */

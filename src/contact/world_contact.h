@@ -26,16 +26,17 @@ inline Contact contactOf(const ContactRoles& roles, const Feature& first, const 
   return contact;
 }
 
-/** A contact of a pair in the world. */
-inline void placeInWorld(const MeshPair& pair, const FeatureContact& c, Contact* out) {
+/** A contact of a pair in the world. @param normal from the fixed mesh to the moving one, as the points in frame F */
+inline void placeInWorld(const MeshPair& pair, bool first_moves, const Feature& first, const Feature& second, const Vector3& point_first,
+                         const Vector3& point_second, const Vector3& normal, double gap, Contact* out) {
   const ContactRoles& roles = pair.roles;
-  const Vector3 normal = roles.first_is_a ? c.normal : Vector3(-c.normal);
-  out->point = pair.X_WF * placeOf(roles, c.point_M, c.point_F, normal);
-  out->normal_BA = pair.X_WF.linear() * normal;
-  out->depth = roles.r_a + roles.r_b - c.gap;
-  out->id = roles.first_is_a ? contactId(c.moving, c.fixed) : contactId(c.fixed, c.moving);
+  const Vector3 normal_BA = roles.first_is_a ? normal : Vector3(-normal);
+  out->point = pair.X_WF * placeOf(roles, point_first, point_second, normal_BA);
+  out->normal_BA = pair.X_WF.linear() * normal_BA;
+  out->depth = roles.r_a + roles.r_b - gap;
+  out->id = first_moves == roles.first_is_a ? contactId(first, second) : contactId(second, first);
   out->weight = 1;
-  out->pierced = c.pierced;
+  out->pierced = false;
 }
 
 static_assert(offsetof(Contact, point) == offsetof(kernels::ContactRow, point) &&
@@ -49,7 +50,7 @@ static_assert(offsetof(Contact, point) == offsetof(kernels::ContactRow, point) &
 /** A list of contacts that is written anew, over those that it holds: none is made only to be overwritten. */
 class ContactWriter {
  public:
-  void begin(std::vector<Contact>* contacts) {
+  void overwrite(std::vector<Contact>* contacts) {
     contacts_ = contacts;
     count_ = 0;
   }
@@ -61,7 +62,14 @@ class ContactWriter {
   kernels::ContactRow* rows(std::size_t more) { return reinterpret_cast<kernels::ContactRow*>(room(more)); }
   /** So many were written. */
   void advance(std::size_t written) { count_ += written; }
-  void end() { contacts_->resize(count_); }
+  /** So many of the last are none. */
+  void retreat(std::size_t dropped) { count_ -= dropped; }
+  /** The list is what was written. */
+  void finish() { contacts_->resize(count_); }
+
+  std::size_t size() const { return count_; }
+  const Contact* begin() const { return contacts_ ? contacts_->data() : nullptr; }
+  const Contact* end() const { return begin() + count_; }
 
  private:
   std::vector<Contact>* contacts_ = nullptr;
