@@ -98,13 +98,14 @@ std::uint32_t Evaluation::findVertexFaces(bool moves) {
   kernels::PlainContacts plain{place(moves), nullptr, nullptr, 0, found_.deepest_plain};
   std::uint32_t count = 0;
   for (std::uint32_t first = 0; first < total; first += BLOCK) {
+    const std::uint32_t size = std::min(BLOCK, total - first);
     VertexFaceHit* const hits = buffers_.vertex_faces.data() + count;
-    plain.rows = found_.plain.rows(BLOCK + 1);
+    plain.rows = found_.plain.rows(size + 1);
     plain.pairs = buffers_.over.data() + buffers_.over_count;
     plain.count = 0;
     const std::uint32_t found = kernels::kernels().vertexFaces(
         buffers_.turned.vertices[moves].data(), lists_.near[!moves].faces.records.data(), lists_.near[!moves].open.data(),
-        candidates.data() + first, std::min(BLOCK, total - first), pair_.range, found_.crossings.empty() ? &plain : nullptr, hits);
+        candidates.data() + first, size, pair_.range, found_.crossings.empty() ? &plain : nullptr, hits);
     for (std::uint32_t i = 0; i < found; ++i) hits[i].candidate += first;
     count += found;
     buffers_.over_count += plain.count;
@@ -115,6 +116,7 @@ std::uint32_t Evaluation::findVertexFaces(bool moves) {
 }
 
 void Evaluation::vertexFaces(bool moves) {
+  if (pairs_.vertex_face[moves].empty()) return;
   const std::uint32_t count = findVertexFaces(moves);
   const std::vector<Candidate>& candidates = pairs_.vertex_face[moves];
   const auto &vertices = lists_.near[moves].vertices.names, &faces = lists_.near[!moves].faces.names;
@@ -130,6 +132,7 @@ void Evaluation::vertexFaces(bool moves) {
     if (!hit.has(VertexFaceHit::BESIDE)) buffers_.over[buffers_.over_count++] = c;
   }
   lookAtSides(moves, count);
+  if (buffers_.beside.empty()) return;
   addFading(moves);
   dropCovered(moves);
 }
@@ -192,7 +195,6 @@ void Evaluation::addFading(bool moves) {
 void Evaluation::dropCovered(bool moves) {
   auto& fading = buffers_.fading;
   auto& last = buffers_.last_fading;
-  if (fading.empty()) return;
   if (last.size() < lists_.near[moves].vertices.names.size()) last.resize(lists_.near[moves].vertices.names.size(), NONE);
   for (std::uint32_t i = 0; i < fading.size(); ++i) fading[i].before = std::exchange(last[fading[i].vertex], i);
   const std::vector<int>& patches = lists_.near[!moves].patches;
