@@ -159,9 +159,11 @@ void Evaluation::lookAtSides(bool moves, std::uint32_t hits) {
     const Vector3i& corners = side.mesh.elements[lists_.near[!moves].faces.names[c.b]];
     for (unsigned outside = hit.bits & VertexFaceHit::OUTSIDE; outside != 0; outside &= outside - 1) {
       const int k = __builtin_ctz(outside);
-      const Vector3 &start = side.mesh.vertices[corners[k]], along = side.mesh.vertices[corners[NEXT[k]]] - start;
+      const Vector3 &start = side.mesh.vertices[corners[k]], &end = side.mesh.vertices[corners[NEXT[k]]];
       buffers_.beside.push_back(c);
-      buffers_.sides.push_back({vec4(start, 0), vec4(along, 0)});
+      kernels::BesideSide& added = buffers_.sides.emplace_back();
+      added.start.x = start.x(), added.start.y = start.y(), added.start.z = start.z();
+      added.along.x = end.x() - start.x(), added.along.y = end.y() - start.y(), added.along.z = end.z() - start.z();
     }
   }
 }

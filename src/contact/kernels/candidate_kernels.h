@@ -152,6 +152,7 @@ std::uint32_t vertexFaces(const Vec4* a, const FaceRecord* b, const OpenSides* o
       const Doubles depth = appendPlain(batch, p, plane.v, height, is_clear, plain);
       deepest = maximum(deepest, clear ? depth : deepest);
     }
+    if (is_clear == near) continue;
     const Mask over = isOverOrFades(sides.of, openSides(batch.open(open), height, 0.0), most, 2 * CLOSED);
     const Mask bits = vertexFaceBits(sides, inside, (inside >= 0) & ~touches);
     const unsigned is_hit = near & ~is_clear & bitsOf(over);
