@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -32,6 +33,20 @@ class CloseContacts {
       witnessed_.push_back({second, first, point_second, point_first, normal, gap});
     }
   }
+
+  /** One that is in the world already. */
+  void addPlaced(const Vector3& point, const Vector3& normal_BA, double depth, std::uint64_t id) {
+    Contact& contact = *placed_.room(1);
+    contact.point = point;
+    contact.normal_BA = normal_BA;
+    contact.depth = depth;
+    contact.id = id;
+    contact.weight = 1;
+    contact.pierced = false;
+    placed_.advance(1);
+  }
+
+  bool keepsWitnesses() const { return keeps_witnesses_; }
 
   /** Of the last contacts, so many, those stay for which is_kept(index among them). */
   template <typename IsKept>

@@ -85,7 +85,8 @@ kernels::ContactPlace Evaluation::place(bool vertices_move) const {
           motionOf(pair_.X_WF),
           roles.r_a + roles.r_b,
           0.5 * (roles.r_b - roles.r_a),
-          vertices_are_a ? contactId(vertex, face) : contactId(face, vertex)};
+          vertices_are_a ? contactId(vertex, face) : contactId(face, vertex),
+          found_.close.keepsWitnesses()};
 }
 
 /** @return how many need a closer look; the plain ones are written */
@@ -184,8 +185,13 @@ void Evaluation::addFading(bool moves) {
     const double gap = nearest->distance + nearest->lost;
     if (nearest->distance <= TOUCH || gap > pair_.range) continue;
     const int patch = lists_.near[!moves].patches[c.b];
-    found_.close.add(pair_, moves, {FeatureKind::VERTEX, lists_.near[moves].vertices.names[c.a]}, {FeatureKind::FACE, patch},
-                     vector3(vertices[c.a]), Vector3(nearest->point), Vector3(nearest->normal), gap);
+    const Feature vertex{FeatureKind::VERTEX, lists_.near[moves].vertices.names[c.a]}, face{FeatureKind::FACE, patch};
+    const Vector3 point(nearest->point), normal(nearest->normal);
+    if (found_.close.keepsWitnesses()) {
+      found_.close.add(pair_, moves, vertex, face, vector3(vertices[c.a]), point, normal, gap);
+    } else {
+      found_.close.addPlaced(point, normal, pair_.layer - gap, contactId(pair_.roles, moves, vertex, face));
+    }
     FadingVertex& fading = buffers_.fading.emplace_back();
     fading.vertex = c.a;
     fading.patch = patch;

@@ -26,6 +26,11 @@ inline Contact contactOf(const ContactRoles& roles, const Feature& first, const 
   return contact;
 }
 
+/** Of a feature and one of the other mesh, whichever of them moves. */
+inline std::uint64_t contactId(const ContactRoles& roles, bool first_moves, const Feature& first, const Feature& second) {
+  return first_moves == roles.first_is_a ? contactId(first, second) : contactId(second, first);
+}
+
 /** A contact of a pair in the world. @param normal from the fixed mesh to the moving one, as the points in frame F */
 inline void placeInWorld(const MeshPair& pair, bool first_moves, const Feature& first, const Feature& second, const Vector3& point_first,
                          const Vector3& point_second, const Vector3& normal, double gap, Contact* out) {
@@ -34,7 +39,7 @@ inline void placeInWorld(const MeshPair& pair, bool first_moves, const Feature& 
   out->point = pair.X_WF * placeOf(roles, point_first, point_second, normal_BA);
   out->normal_BA = pair.X_WF.linear() * normal_BA;
   out->depth = roles.r_a + roles.r_b - gap;
-  out->id = first_moves == roles.first_is_a ? contactId(first, second) : contactId(second, first);
+  out->id = contactId(roles, first_moves, first, second);
   out->weight = 1;
   out->pierced = false;
 }

@@ -64,7 +64,7 @@ struct PlainVertexFaces {
     const Feature vertex{FeatureKind::VERTEX, 0}, face{FeatureKind::FACE, 0};
     // The vertices are A's: the moving mesh is A unless its faces are asked.
     plain = {{placed.data(), names.data(), names.data(), faces_move, true, motionOf(X_FM), motionOf(X_WF), RADIUS_A + RADIUS_B,
-              0.5 * (RADIUS_B - RADIUS_A), contactId(vertex, face)},
+              0.5 * (RADIUS_B - RADIUS_A), contactId(vertex, face), false},
              rows.data(),
              pairs.data(),
              0,

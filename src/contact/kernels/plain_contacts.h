@@ -16,6 +16,16 @@ inline Vectors turnedPoint(const Motion& X, const Vectors& p) {
   return {row(0), row(1), row(2)};
 }
 
+/** A contact's place and normal in the world. */
+struct WorldContacts {
+  Vectors point, normal;
+};
+/** @param at, foot in frame F, as the normal, from B to A */
+inline WorldContacts inWorld(const ContactPlace& place, const Vectors& at, const Vectors& foot, const Vectors& normal) {
+  const Vectors middle = all(0.5) * (at + foot) + all(place.shift) * normal;
+  return {turnedPoint(place.X_WF, middle), turnedDirection(place.X_WF, normal)};
+}
+
 /** ContactRow::weight and what follows. */
 constexpr struct {
   double weight;
@@ -44,8 +54,7 @@ inline Doubles appendPlain(const Batch& batch, const Vectors& p, const Vectors& 
   }
   const Mask to_a = place.vertices_are_a ? height > 0 : height <= 0;
   const Doubles sign = to_a ? all(1) : all(-1);
-  const Vectors foot = at - height * up, n = sign * up, middle = all(0.5) * (at + foot) + all(place.shift) * n;
-  const Vectors point = turnedPoint(place.X_WF, middle), normal_BA = turnedDirection(place.X_WF, n);
+  const auto [point, normal_BA] = inWorld(place, at, at - height * up, sign * up);
   const Doubles depth = place.layer - absolute(height);
   double* rows[LANES];
   std::uint32_t count = out->count;

@@ -147,6 +147,7 @@ struct ContactPlace {
   double layer;         ///< [m] rA + rB
   double shift;         ///< [m] (rB - rA) / 2
   std::uint64_t kinds;  ///< contactId of features 0
+  bool keeps_feet;      ///< witness points are asked for
 };
 
 /** Where kernels write contacts that need no closer look. Room for one more than there are candidates. */
@@ -163,10 +164,10 @@ struct BesideSide {
   Vec4 start, along;  ///< its corner, to the next one
 };
 
-/** Where a vertex's contact with a face's side is. */
+/** A vertex's contact with a face's side: as a Contact; where witness points are asked for, the foot on the side, in frame F. */
 struct SideFoot {
-  double point[3];   ///< [m] of the face; frame F
-  double normal[3];  ///< unit, frame F, from the fixed mesh to the moving one
+  double point[3];   ///< [m]
+  double normal[3];  ///< unit; in frame F from the fixed mesh to the moving one
   double distance;   ///< [m] of the vertex
   double lost;       ///< [m] of depth, since the vertex lies beside the face
 };

@@ -21,19 +21,23 @@ void sideFeet(const ContactPlace& place, const Vec4* vertices, const FaceRecord*
     const Vectors p = batch.points(vertices, batch.of_a).v;
     const Rows plane = batch.field(faces, batch.of_b, &FaceRecord::plane);
     const Vectors projection = p - above(p, plane) * plane.v;
-    Vectors foot = closestOnSide(batch.field(sides, index, &BesideSide::start), batch.field(sides, index, &BesideSide::along), projection);
+    Vectors at = p,
+            foot = closestOnSide(batch.field(sides, index, &BesideSide::start), batch.field(sides, index, &BesideSide::along), projection);
     const Vectors beside = projection - foot;
     const Doubles lost = FADE_SLOPE * squareRoot(dot(beside, beside));
-    Vectors d = p - foot;
     if (place.faces_move) {
+      at = batch.points(place.vertices, batch.of_a).v;
       foot = turnedPoint(place.X_FM, foot);
-      d = foot - batch.points(place.vertices, batch.of_a).v;
     }
+    const bool from_foot = place.keeps_feet ? !place.faces_move : place.vertices_are_a;
+    const Vectors d = from_foot ? at - foot : foot - at;
     const Doubles distance = squareRoot(dot(d, d));
+    const Vectors normal{d.x / distance, d.y / distance, d.z / distance};
+    const auto [point, direction] = place.keeps_feet ? WorldContacts{foot, normal} : inWorld(place, at, foot, normal);
     double* rows[LANES];
-    SideFoot last[LANES];
-    for (int i = 0; i < LANES; ++i) rows[i] = first + i < count ? feet[first + i].point : last[i].point;
-    transposed({foot.x, foot.y, foot.z, d.x / distance, d.y / distance, d.z / distance, distance, lost}, rows);
+    SideFoot behind_last;
+    for (int i = 0; i < LANES; ++i) rows[i] = first + i < count ? feet[first + i].point : behind_last.point;
+    transposed({point.x, point.y, point.z, direction.x, direction.y, direction.z, distance, lost}, rows);
   }
 }
 
