@@ -132,7 +132,7 @@ void Evaluation::vertexFaces(bool moves) {
     }
     if (!hit.has(VertexFaceHit::BESIDE)) buffers_.over[buffers_.over_count++] = c;
   }
-  lookAtSides(moves, count);
+  listFadingSides(moves, count);
   if (buffers_.beside.empty()) return;
   addFading(moves);
   dropCovered(moves);
@@ -148,8 +148,8 @@ void Evaluation::addPlain(bool moves, const Candidate& c, double height) {
   found_.close.add(pair_, moves, vertex, patch, p, foot, normal, std::abs(height));
 }
 
-/** Lists the sides over which contacts fade. */
-void Evaluation::lookAtSides(bool moves, std::uint32_t hits) {
+/** Of the hits that fade, those sides that their vertices lie outside of. */
+void Evaluation::listFadingSides(bool moves, std::uint32_t hits) {
   buffers_.beside.clear();
   buffers_.sides.clear();
   const MeshSide& side = pair_.side(!moves);

@@ -70,7 +70,7 @@ class Evaluation {
   void forEachHit(const std::vector<kernels::Candidate>& candidates, std::uint32_t count, Visit&& visit) const;
 
   void vertexFaces(bool moves);
-  void lookAtSides(bool moves, std::uint32_t hits);
+  void listFadingSides(bool moves, std::uint32_t hits);
   std::uint32_t findVertexFaces(bool moves);
   kernels::ContactPlace place(bool vertices_move) const;
   void addPlain(bool moves, const kernels::Candidate& c, double height);

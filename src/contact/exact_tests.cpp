@@ -76,7 +76,8 @@ void ExactTests::edgeEdge(int moving, int fixed, const kernels::EdgeRecord& reco
   Vector3 normal = feet.offset < 0 ? Vector3(-feet.axis) : feet.axis;
   const double gap = std::abs(feet.offset);
   if (gap <= TOUCH) normal = towardsMoving(pair_, normal, m, f, feet.point_q);
-  if (gap <= pair_.range && conesAllow(m, f, normal, EDGE_CONE_SLACK)) contacts_.add(pair_, true, m, f, feet.point_p, feet.point_q, normal, gap);
+  if (gap <= pair_.range && conesAllow(m, f, normal, EDGE_CONE_SLACK))
+    contacts_.add(pair_, true, m, f, feet.point_p, feet.point_q, normal, gap);
 }
 
 void ExactTests::addFadingEdges(const Feature& m, const Feature& f, const EdgesBeyond& edges, bool cones_known) {
@@ -112,8 +113,8 @@ void ExactTests::vertexEdge(bool vertex_moves, int vertex, int edge, const Vecto
   }
 }
 
-/** Does the surface at the vertex surely lead towards the edge, so that the vertex is no local minimum? Most are told by this, without a unit
- * vector. @param d from the edge to the vertex, frame F @param distance2 its square */
+/** Does the surface at the vertex surely lead towards the edge, so that the vertex is no local minimum? Most are told by this, without a
+ * unit vector. @param d from the edge to the vertex, frame F @param distance2 its square */
 bool ExactTests::leadsTo(bool vertex_moves, int vertex, const Vector3& d, double distance2) const {
   if (distance2 <= TOUCH * TOUCH) return false;
   constexpr double SURE = 1.001 * CONE_SLACK;
@@ -140,7 +141,8 @@ bool ExactTests::addAtRoundEdge(bool vertex_moves, int vertex, int edge, const V
     const EdgesAtVertex edges = surroundings_.ofVertex(side, side.topology.ends(side.mesh, edge)[part > 1]);
     if (isRoundVertex(side, edges, vertex_moves ? d : Vector3(R_FM_.transpose() * d), &surroundings_)) return true;
   }
-  contacts_.add(pair_, vertex_moves, {FeatureKind::VERTEX, vertex}, {FeatureKind::EDGE, edge}, p, foot, (vertex_moves ? 1 : -1) / distance * d, gap);
+  contacts_.add(pair_, vertex_moves, {FeatureKind::VERTEX, vertex}, {FeatureKind::EDGE, edge}, p, foot,
+                (vertex_moves ? 1 : -1) / distance * d, gap);
   return true;
 }
 

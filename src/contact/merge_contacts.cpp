@@ -56,7 +56,7 @@ class Cells {
     std::uint32_t next;
   };
   static constexpr std::uint32_t NONE = 0xFFFFFFFF;
-  static constexpr double SIZE = 64 * MERGE_DISTANCE;     // few points are that near a border
+  static constexpr double SIZE = 64 * MERGE_DISTANCE;             // few points are that near a border
   static constexpr double REACH = 1.001 * MERGE_DISTANCE / SIZE;  // in cells, with room for rounding
 
   /** @param place in cells */

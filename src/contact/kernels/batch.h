@@ -48,7 +48,6 @@ struct Batch {
   unsigned valid;
 
  private:
-
   template <typename Place>
   void take(const Candidate* from, Place&& place) {
     for (int i = 0; i < LANES; ++i) {
