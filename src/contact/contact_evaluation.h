@@ -16,7 +16,7 @@ namespace blem_sim {
 struct FoundContacts {
   ContactWriter plain;       ///< in the world; each in a place of its own; none where meshes cross
   double deepest_plain = 0;  ///< [m] their largest depth
-  CloseContacts close;
+  CloseContacts close;       ///< the others
   std::vector<Crossing> crossings;
 
   void clear();                                 ///< all but `plain`
