@@ -28,10 +28,10 @@ MeshPair pairOf(const Collider& a, const Pose& X_WA, const Collider& standing) {
 /** Which pairs of features have a contact. Every pair is known once: a contact with a plane by one of its faces. */
 class KnownContacts {
  public:
-  explicit KnownContacts(const FoundContacts& found) {
+  KnownContacts(const std::vector<Contact>& plain, const ContactWriter& close) {
     // The moving mesh is A.
-    for (const Contact& c : *found.plain) unseen_.push_back(c.id);
-    for (const FeatureContact& c : found.close) unseen_.push_back(contactId(c.moving, c.fixed));
+    for (const Contact& c : plain) unseen_.push_back(c.id);
+    for (const Contact& c : close) unseen_.push_back(c.id);
     std::sort(unseen_.begin(), unseen_.end());
     unseen_.erase(std::unique(unseen_.begin(), unseen_.end()), unseen_.end());
     seen_.resize(unseen_.size());
@@ -73,14 +73,15 @@ class KnownPairs {
   KnownPairs(const MeshPair& pair, ContactSearchBuffers* buffers) : X_FM_(pair.X_FM), range_(pair.range) {
     std::vector<Contact> plain;
     FoundContacts found;
-    found.plain = &plain;
+    found.plain.overwrite(&plain);
     searchContacts(pair, nullptr, buffers, &found);
+    found.plain.finish();
     CandidateListing listing;
     findCandidates(pair, CandidateKind::CONTACTS, {}, &buffers->search, &listing);
     lists_ = std::move(listing.lists);
-    dropUnknown(KnownContacts(found));
+    dropUnknown(KnownContacts(plain, found.close.placed(pair)));
     compactFeatures();
-    vertex_faces_.resize(size());
+    vertex_faces_.resize(size() + 1);
     edge_edges_.resize(size());
     others_.resize(size());
   }

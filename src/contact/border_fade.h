@@ -9,12 +9,6 @@
 
 namespace blem_sim {
 
-/** Where a contact that fades is. */
-struct BorderFade {
-  Vector3 foot;  ///< closest point of the face, on its plane's border; frame F
-  double lost;   ///< [m] of depth
-};
-
 /**
  * Vertices beside faces, by the records of lists of candidates. Over a border that is convex an exact successor is there (vertex-edge,
  * edge-edge) unless the vertex's own surface comes closer to the plane away from it; over a concave border there is none.
@@ -24,14 +18,12 @@ class BorderFades {
   BorderFades(const MeshPair& pair, const CandidateLists* lists, SurroundingsMemory* surroundings)
       : pair_(pair), lists_(*lists), surroundings_(*surroundings), R_FM_(pair.X_FM.linear()), R_MF_(R_FM_.transpose()) {}
 
-  /**
-   * @param vertex, face of the lists @param p the vertex in the face's mesh's frame @param height [m] of p over the face's plane
-   * @return false if p projects into the plane, has a successor, or has lost more than `most` [m]
-   */
-  bool find(bool vertex_moves, std::uint32_t vertex, std::uint32_t face, const Vector3& p, double height, double most, BorderFade* out);
+  /** Does nothing take over behind one of the sides that the vertex lies outside of, and is neither the plane, behind one of them, nor a
+   * round edge asked instead? @param c vertex and face of the lists @param hit theirs */
+  bool fades(bool vertex_moves, const kernels::Candidate& c, const kernels::VertexFaceHit& hit);
 
  private:
-  bool leaves(bool vertex_moves, std::uint32_t vertex, int face, int k, const Vector3& down, const Vector3& inward);
+  bool leaves(bool vertex_moves, const kernels::Candidate& c, int k, bool is_above);
 
   const MeshPair& pair_;
   const CandidateLists& lists_;

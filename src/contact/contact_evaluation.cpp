@@ -6,17 +6,17 @@
 #include <utility>
 
 #include "vectors.h"
-#include "world_contact.h"
 
 namespace blem_sim {
 namespace {
 
 using kernels::Candidate;
 using kernels::Vec4;
+using kernels::VertexFaceHit;
 
 constexpr std::uint32_t NONE = 0xFFFFFFFF;
-/** Candidates that are tested before their contacts are read: those lie in the cache then. */
-constexpr std::uint32_t BLOCK = 256;
+/** Candidates that are tested at once: there is room for contacts of all. */
+constexpr std::uint32_t BLOCK = 64;
 
 template <typename Items>
 void makeRoom(std::size_t size, Items* items) {
@@ -27,17 +27,16 @@ void makeRoom(std::size_t size, Items* items) {
 
 void FoundContacts::clear() {
   deepest_plain = -std::numeric_limits<double>::infinity();
-  close.clear();
+  close.begin(false);
   crossings.clear();
 }
 
 double FoundContacts::leastGap(const MeshPair& pair) const {
-  double least = std::min(pair.range, pair.layer - deepest_plain);
-  for (const FeatureContact& c : close) least = std::min(least, c.gap);
-  return least;
+  return std::min({pair.range, pair.layer - deepest_plain, close.leastGap(pair.layer)});
 }
 
 void Evaluation::findContacts() {
+  found_.close.begin(!found_.crossings.empty());
   const auto& vertices = buffers_.turned.vertices;
   const auto& edges = buffers_.turned.edges;
   for (const bool moves : {true, false}) {
@@ -86,53 +85,56 @@ kernels::ContactPlace Evaluation::place(bool vertices_move) const {
           motionOf(pair_.X_WF),
           roles.r_a + roles.r_b,
           0.5 * (roles.r_b - roles.r_a),
-          vertices_are_a ? contactId(vertex, face) : contactId(face, vertex)};
+          vertices_are_a ? contactId(vertex, face) : contactId(face, vertex),
+          found_.close.keepsWitnesses()};
 }
 
 /** @return how many need a closer look; the plain ones are written */
 std::uint32_t Evaluation::findVertexFaces(bool moves) {
   const std::vector<Candidate>& candidates = pairs_.vertex_face[moves];
   const auto total = static_cast<std::uint32_t>(candidates.size());
-  makeRoom(total, &buffers_.vertex_faces);
-  makeRoom(total, &buffers_.over);
-  makeRoom(BLOCK, &buffers_.rows);
+  makeRoom(total + 1, &buffers_.vertex_faces);
+  makeRoom(total + 1, &buffers_.over);
   buffers_.over_count = 0;
-  kernels::PlainContacts plain{place(moves), buffers_.rows.data(), buffers_.over.data(), 0, found_.deepest_plain};
+  kernels::PlainContacts plain{place(moves), nullptr, nullptr, 0, found_.deepest_plain};
   std::uint32_t count = 0;
   for (std::uint32_t first = 0; first < total; first += BLOCK) {
-    kernels::VertexFaceHit* const hits = buffers_.vertex_faces.data() + count;
+    const std::uint32_t size = std::min(BLOCK, total - first);
+    VertexFaceHit* const hits = buffers_.vertex_faces.data() + count;
+    plain.rows = found_.plain.rows(size + 1);
     plain.pairs = buffers_.over.data() + buffers_.over_count;
     plain.count = 0;
     const std::uint32_t found = kernels::kernels().vertexFaces(
         buffers_.turned.vertices[moves].data(), lists_.near[!moves].faces.records.data(), lists_.near[!moves].open.data(),
-        candidates.data() + first, std::min(BLOCK, total - first), pair_.range, found_.crossings.empty() ? &plain : nullptr, hits);
+        candidates.data() + first, size, pair_.range, found_.crossings.empty() ? &plain : nullptr, hits);
     for (std::uint32_t i = 0; i < found; ++i) hits[i].candidate += first;
     count += found;
     buffers_.over_count += plain.count;
-    appendContacts(buffers_.rows.data(), plain.count, found_.plain);
+    found_.plain.advance(plain.count);
   }
   found_.deepest_plain = plain.deepest;
   return count;
 }
 
 void Evaluation::vertexFaces(bool moves) {
+  if (pairs_.vertex_face[moves].empty()) return;
   const std::uint32_t count = findVertexFaces(moves);
   const std::vector<Candidate>& candidates = pairs_.vertex_face[moves];
   const auto &vertices = lists_.near[moves].vertices.names, &faces = lists_.near[!moves].faces.names;
   auto& hits = buffers_.vertex_faces;
   for (std::uint32_t i = 0; i < count; ++i) {
-    kernels::VertexFaceHit& hit = hits[i];
+    VertexFaceHit& hit = hits[i];
     const Candidate& c = candidates[hit.candidate];
-    if (hit.is_plain) {
+    if (hit.has(VertexFaceHit::PLAIN)) {
       addPlain(moves, c, hit.height);
-    } else {
-      hit.is_beside = hit.is_beside || !exact_.vertexFace(moves, vertices[c.a], faces[c.b]);
+    } else if (!hit.has(VertexFaceHit::BESIDE) && !exact_.vertexFace(moves, vertices[c.a], faces[c.b])) {
+      hit.bits |= VertexFaceHit::BESIDE;
     }
-    if (!hit.is_beside) buffers_.over[buffers_.over_count++] = c;
+    if (!hit.has(VertexFaceHit::BESIDE)) buffers_.over[buffers_.over_count++] = c;
   }
-  buffers_.fading.clear();
-  for (std::uint32_t i = 0; i < count; ++i)
-    if (hits[i].is_beside) addFading(moves, candidates[hits[i].candidate], hits[i].height);
+  listFadingSides(moves, count);
+  if (buffers_.beside.empty()) return;
+  addFading(moves);
   dropCovered(moves);
 }
 
@@ -143,42 +145,76 @@ void Evaluation::addPlain(bool moves, const Candidate& c, double height) {
   const Vector3 p = vector3(moves ? buffers_.turned.vertices[1][c.a] : lists_.near[0].vertices.records[c.a]);
   const Vector3 up = pair_.turned(vector3(faces.records[c.b].plane), !moves), foot = p - height * up;
   const Vector3 normal = (height > 0) == moves ? up : Vector3(-up);
-  found_.close.push_back(featureContact(moves, vertex, patch, p, foot, normal, std::abs(height)));
+  found_.close.add(pair_, moves, vertex, patch, p, foot, normal, std::abs(height));
 }
 
-void Evaluation::addFading(bool moves, const Candidate& c, double height) {
-  BorderFade fade;
-  const double most = pair_.range - std::abs(height);
-  if (!fades_.find(moves, c.a, c.b, vector3(buffers_.turned.vertices[moves][c.a]), height, most, &fade)) return;
-  const Vector3 p = vector3(moves ? buffers_.turned.vertices[1][c.a] : lists_.near[0].vertices.records[c.a]);
-  const Vector3 d = moves ? Vector3(p - fade.foot) : Vector3(fade.foot - p);
-  const double distance = d.norm(), gap = distance + fade.lost;
-  if (distance <= TOUCH || gap > pair_.range) return;
-  const Feature vertex{FeatureKind::VERTEX, lists_.near[moves].vertices.names[c.a]},
-      patch{FeatureKind::FACE, lists_.near[!moves].patches[c.b]};
-  found_.close.push_back(featureContact(moves, vertex, patch, p, fade.foot, d / distance, gap));
-  buffers_.fading.push_back({c.a, patch.index, NONE, false});
+/** Of the hits that fade, those sides that their vertices lie outside of. */
+void Evaluation::listFadingSides(bool moves, std::uint32_t hits) {
+  buffers_.beside.clear();
+  buffers_.sides.clear();
+  const MeshSide& side = pair_.side(!moves);
+  for (std::uint32_t i = 0; i < hits; ++i) {
+    const VertexFaceHit& hit = buffers_.vertex_faces[i];
+    const Candidate& c = pairs_.vertex_face[moves][hit.candidate];
+    if (!hit.has(VertexFaceHit::BESIDE) || !fades_.fades(moves, c, hit)) continue;
+    const Vector3i& corners = side.mesh.elements[lists_.near[!moves].faces.names[c.b]];
+    for (unsigned outside = hit.bits & VertexFaceHit::OUTSIDE; outside != 0; outside &= outside - 1) {
+      const int k = __builtin_ctz(outside);
+      const Vector3 &start = side.mesh.vertices[corners[k]], &end = side.mesh.vertices[corners[NEXT[k]]];
+      buffers_.beside.push_back(c);
+      kernels::BesideSide& added = buffers_.sides.emplace_back();
+      added.start.x = start.x(), added.start.y = start.y(), added.start.z = start.z();
+      added.along.x = end.x() - start.x(), added.along.y = end.y() - start.y(), added.along.z = end.z() - start.z();
+    }
+  }
+}
+
+/** Of each vertex with a face: at the nearest of the sides. */
+void Evaluation::addFading(bool moves) {
+  const std::vector<Candidate>& beside = buffers_.beside;
+  makeRoom(beside.size(), &buffers_.feet);
+  kernels::kernels().sideFeet(place(moves), buffers_.turned.vertices[moves].data(), lists_.near[!moves].faces.records.data(),
+                              buffers_.sides.data(), beside.data(), static_cast<std::uint32_t>(beside.size()), buffers_.feet.data());
+  buffers_.fading.clear();
+  const auto& vertices = (moves ? buffers_.turned.vertices[1] : lists_.near[0].vertices.records);
+  for (std::size_t i = 0, next; i < beside.size(); i = next) {
+    const kernels::SideFoot* nearest = &buffers_.feet[i];
+    const Candidate& c = beside[i];
+    for (next = i + 1; next < beside.size() && beside[next].a == c.a && beside[next].b == c.b; ++next)
+      if (buffers_.feet[next].lost < nearest->lost) nearest = &buffers_.feet[next];
+    const double gap = nearest->distance + nearest->lost;
+    if (nearest->distance <= TOUCH || gap > pair_.range) continue;
+    const int patch = lists_.near[!moves].patches[c.b];
+    const Feature vertex{FeatureKind::VERTEX, lists_.near[moves].vertices.names[c.a]}, face{FeatureKind::FACE, patch};
+    const Vector3 point(nearest->point), normal(nearest->normal);
+    if (found_.close.keepsWitnesses()) {
+      found_.close.add(pair_, moves, vertex, face, vector3(vertices[c.a]), point, normal, gap);
+    } else {
+      found_.close.addPlaced(point, normal, pair_.layer - gap, contactId(pair_.roles, moves, vertex, face));
+    }
+    FadingVertex& fading = buffers_.fading.emplace_back();
+    fading.vertex = c.a;
+    fading.patch = patch;
+    fading.is_covered = false;
+  }
 }
 
 /** What lies beside one face of a plane but over another does not fade. */
 void Evaluation::dropCovered(bool moves) {
   auto& fading = buffers_.fading;
   auto& last = buffers_.last_fading;
-  if (fading.empty()) return;
   if (last.size() < lists_.near[moves].vertices.names.size()) last.resize(lists_.near[moves].vertices.names.size(), NONE);
   for (std::uint32_t i = 0; i < fading.size(); ++i) fading[i].before = std::exchange(last[fading[i].vertex], i);
   const std::vector<int>& patches = lists_.near[!moves].patches;
+  bool is_any_covered = false;
   for (std::uint32_t i = 0; i < buffers_.over_count; ++i) {
     const Candidate& c = buffers_.over[i];
     for (std::uint32_t at = last[c.a]; at != NONE; at = fading[at].before)
-      fading[at].is_covered = fading[at].is_covered || fading[at].patch == patches[c.b];
+      if (fading[at].patch == patches[c.b]) fading[at].is_covered = is_any_covered = true;
   }
-  std::size_t kept = found_.close.size() - fading.size();
-  for (std::size_t i = 0, from = kept; i < fading.size(); ++i, ++from) {
-    last[fading[i].vertex] = NONE;
-    if (!fading[i].is_covered) found_.close[kept++] = found_.close[from];
-  }
-  found_.close.erase(found_.close.begin() + static_cast<std::ptrdiff_t>(kept), found_.close.end());
+  for (const FadingVertex& each : fading) last[each.vertex] = NONE;
+  if (!is_any_covered) return;
+  found_.close.keepOfLast(fading.size(), [&](std::size_t i) { return !fading[i].is_covered; });
 }
 
 void Evaluation::edgeEdges(const kernels::EdgeRecord* moving, const kernels::EdgeRecord* fixed) {
@@ -197,17 +233,14 @@ void Evaluation::edgeEdges(const kernels::EdgeRecord* moving, const kernels::Edg
     const auto foot = [](const kernels::EdgeRecord& edge, double part) {
       return Vector3(vector3(edge.start) + part * vector3(edge.along));
     };
-    const FeatureContact contact{{FeatureKind::EDGE, m},
-                                 {FeatureKind::EDGE, f},
-                                 foot(moving[c.a], hit.part_a),
-                                 foot(fixed[c.b], hit.part_b),
-                                 Vector3(hit.normal[0], hit.normal[1], hit.normal[2]),
-                                 hit.gap};
+    const Vector3 point_m = foot(moving[c.a], hit.part_a), point_f = foot(fixed[c.b], hit.part_b), normal(hit.normal);
     if (hit.near_border || !found_.crossings.empty()) {
-      found_.close.push_back(contact);
+      found_.close.add(pair_, true, {FeatureKind::EDGE, m}, {FeatureKind::EDGE, f}, point_m, point_f, normal, hit.gap);
     } else {
-      found_.plain->push_back(worldContact(pair_, contact));
-      found_.deepest_plain = std::max(found_.deepest_plain, found_.plain->back().depth);
+      Contact* const plain = found_.plain.room(1);
+      placeInWorld(pair_, true, {FeatureKind::EDGE, m}, {FeatureKind::EDGE, f}, point_m, point_f, normal, hit.gap, plain);
+      found_.plain.advance(1);
+      found_.deepest_plain = std::max(found_.deepest_plain, plain->depth);
     }
   }
 }

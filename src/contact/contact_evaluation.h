@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "blem_sim/contact/manifold.h"
 #include "border_fade.h"
 #include "candidate_lists.h"
+#include "close_contacts.h"
 #include "edge_crossing.h"
 #include "exact_tests.h"
 #include "mesh_pair.h"
@@ -14,9 +14,9 @@ namespace blem_sim {
 
 /** What a search finds. */
 struct FoundContacts {
-  std::vector<Contact>* plain = nullptr;  ///< appended; in the world; each in a place of its own; none where meshes cross
-  double deepest_plain = 0;               ///< [m] their largest depth
-  std::vector<FeatureContact> close;      ///< some may be in one place, or have one name
+  ContactWriter plain;       ///< in the world; each in a place of its own; none where meshes cross
+  double deepest_plain = 0;  ///< [m] their largest depth
+  CloseContacts close;       ///< the others
   std::vector<Crossing> crossings;
 
   void clear();                                 ///< all but `plain`
@@ -35,12 +35,14 @@ struct FadingVertex {
 struct EvaluationBuffers {
   TurnedFeatures turned;
   SurroundingsMemory surroundings;
-  std::vector<kernels::ContactRow> rows;
   std::vector<kernels::VertexFaceHit> vertex_faces;
   std::vector<kernels::EdgeEdgeHit> edge_edges;
   std::vector<std::uint32_t> hits;
   std::vector<kernels::Candidate> over;    ///< vertices over faces
   std::uint32_t over_count = 0;            ///< of them
+  std::vector<kernels::Candidate> beside;  ///< vertices and faces, once for each side that they lie outside of
+  std::vector<kernels::BesideSide> sides;  ///< as they
+  std::vector<kernels::SideFoot> feet;     ///< as they
   std::vector<FadingVertex> fading;        ///< whose contacts are the last close ones
   std::vector<std::uint32_t> last_fading;  ///< of each vertex; none between evaluations
 };
@@ -68,10 +70,11 @@ class Evaluation {
   void forEachHit(const std::vector<kernels::Candidate>& candidates, std::uint32_t count, Visit&& visit) const;
 
   void vertexFaces(bool moves);
+  void listFadingSides(bool moves, std::uint32_t hits);
   std::uint32_t findVertexFaces(bool moves);
   kernels::ContactPlace place(bool vertices_move) const;
   void addPlain(bool moves, const kernels::Candidate& c, double height);
-  void addFading(bool moves, const kernels::Candidate& c, double height);
+  void addFading(bool moves);
   void dropCovered(bool moves);
   void edgeEdges(const kernels::EdgeRecord* moving, const kernels::EdgeRecord* fixed);
   void vertexEdges(bool moves, const kernels::Vec4* vertices, const kernels::EdgeRecord* edges);

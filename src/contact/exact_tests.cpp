@@ -25,7 +25,7 @@ bool ExactTests::vertexFace(bool vertex_moves, int name, int element) {
     if (!reachesOver(vertex_moves, name, p, face)) return true;
     normal = vertex_moves ? towardsMoving(pair_, normal, vertex, patch, p) : towardsMoving(pair_, normal, patch, vertex, p);
   }
-  contacts_.push_back(featureContact(vertex_moves, vertex, patch, p, p - height * face.normal, normal, std::abs(height)));
+  contacts_.add(pair_, vertex_moves, vertex, patch, p, p - height * face.normal, normal, std::abs(height));
   return true;
 }
 
@@ -76,7 +76,8 @@ void ExactTests::edgeEdge(int moving, int fixed, const kernels::EdgeRecord& reco
   Vector3 normal = feet.offset < 0 ? Vector3(-feet.axis) : feet.axis;
   const double gap = std::abs(feet.offset);
   if (gap <= TOUCH) normal = towardsMoving(pair_, normal, m, f, feet.point_q);
-  if (gap <= pair_.range && conesAllow(m, f, normal, EDGE_CONE_SLACK)) contacts_.push_back({m, f, feet.point_p, feet.point_q, normal, gap});
+  if (gap <= pair_.range && conesAllow(m, f, normal, EDGE_CONE_SLACK))
+    contacts_.add(pair_, true, m, f, feet.point_p, feet.point_q, normal, gap);
 }
 
 void ExactTests::addFadingEdges(const Feature& m, const Feature& f, const EdgesBeyond& edges, bool cones_known) {
@@ -91,7 +92,7 @@ void ExactTests::addFadingEdges(const Feature& m, const Feature& f, const EdgesB
   };
   const bool fades = leaves(edges.end_p, true, m.index, f.index, R_FM_, -(R_FM_.transpose() * edges.normal)) ||
                      leaves(edges.end_q, false, f.index, m.index, R_FM_.transpose(), edges.normal);
-  if (fades) contacts_.push_back({m, f, edges.point_p, edges.point_q, d / distance, gap});
+  if (fades) contacts_.add(pair_, true, m, f, edges.point_p, edges.point_q, d / distance, gap);
 }
 
 // ---- vertex and edge, vertex and vertex: where each is the other's local minimum, and around round edges and vertices
@@ -102,12 +103,27 @@ void ExactTests::vertexEdge(bool vertex_moves, int vertex, int edge, const Vecto
   const double length2 = along.squaredNorm(), part = (p - q).dot(along);
   if (!edge_pair_detail::isInside(part, length2, length2)) return;
   const Vector3 foot = q + part / length2 * along;
-  if ((p - foot).squaredNorm() > pair_.range * pair_.range) return;
+  const Vector3 d = p - foot;
+  const double distance2 = d.squaredNorm();
+  if (distance2 > pair_.range * pair_.range || leadsTo(vertex_moves, vertex, d, distance2)) return;
   if (vertex_moves) {
     addLocalMinimum({FeatureKind::VERTEX, vertex}, {FeatureKind::EDGE, edge}, p, foot, along);
   } else {
     addLocalMinimum({FeatureKind::EDGE, edge}, {FeatureKind::VERTEX, vertex}, foot, p, along);
   }
+}
+
+/** Does the surface at the vertex surely lead towards the edge, so that the vertex is no local minimum? Most are told by this, without a
+ * unit vector. @param d from the edge to the vertex, frame F @param distance2 its square */
+bool ExactTests::leadsTo(bool vertex_moves, int vertex, const Vector3& d, double distance2) const {
+  if (distance2 <= TOUCH * TOUCH) return false;
+  constexpr double SURE = 1.001 * CONE_SLACK;
+  const Vector3 towards = vertex_moves ? Vector3(-(R_FM_.transpose() * d)) : Vector3(-d);
+  const EdgesAtVertex edges = surroundings_.ofVertex(pair_.side(vertex_moves), vertex);
+  return std::any_of(edges.begin(), edges.end(), [&](const EdgeFromVertex& edge) {
+    const double along = edge.along.dot(towards);
+    return along > 0 && along * along > SURE * SURE * edge.length2 * distance2;
+  });
 }
 
 /** Beyond its ends, but for round ones, which take over, the contact fades. @return false if they touch */
@@ -125,8 +141,8 @@ bool ExactTests::addAtRoundEdge(bool vertex_moves, int vertex, int edge, const V
     const EdgesAtVertex edges = surroundings_.ofVertex(side, side.topology.ends(side.mesh, edge)[part > 1]);
     if (isRoundVertex(side, edges, vertex_moves ? d : Vector3(R_FM_.transpose() * d), &surroundings_)) return true;
   }
-  contacts_.push_back(featureContact(vertex_moves, {FeatureKind::VERTEX, vertex}, {FeatureKind::EDGE, edge}, p, foot,
-                                     (vertex_moves ? 1 : -1) / distance * d, gap));
+  contacts_.add(pair_, vertex_moves, {FeatureKind::VERTEX, vertex}, {FeatureKind::EDGE, edge}, p, foot,
+                (vertex_moves ? 1 : -1) / distance * d, gap);
   return true;
 }
 
@@ -148,7 +164,7 @@ void ExactTests::vertexVertex(int moving, int fixed) {
   const auto [f_allows, f_round] = cone(false, fixed, normal);
   const auto [m_allows, m_round] = cone(true, moving, inverse);
   const bool nearest = (f_allows && m_allows) || f_round || m_round;
-  if (nearest) contacts_.push_back({m, f, p, q, normal, gap});
+  if (nearest) contacts_.add(pair_, true, m, f, p, q, normal, gap);
 }
 
 /** @param along direction of the edge, to which the normal is square; zero if there is none */
@@ -156,7 +172,7 @@ void ExactTests::addLocalMinimum(const Feature& m, const Feature& f, const Vecto
   const Vector3 d = point_M - point_F;
   const double gap = d.norm();
   const Vector3 normal = gap > TOUCH ? Vector3(d / gap) : touchNormal(pair_, m, f, point_F, along);
-  if (conesAllow(m, f, normal, CONE_SLACK)) contacts_.push_back({m, f, point_M, point_F, normal, gap});
+  if (conesAllow(m, f, normal, CONE_SLACK)) contacts_.add(pair_, true, m, f, point_M, point_F, normal, gap);
 }
 
 bool ExactTests::conesAllow(const Feature& m, const Feature& f, const Vector3& normal, double slack) const {

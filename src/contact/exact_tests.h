@@ -1,8 +1,7 @@
 // One pair of features at a time: what the kernels cannot tell, since it touches, has left its face or edge, or asks for neighbourhoods.
 #pragma once
 
-#include <vector>
-
+#include "close_contacts.h"
 #include "face_shape.h"
 #include "kernels/records.h"
 #include "mesh_pair.h"
@@ -15,7 +14,7 @@ struct EdgesBeyond;
 /** Appends the contact of a pair of features, if they have one, to a list. */
 class ExactTests {
  public:
-  ExactTests(const MeshPair& pair, SurroundingsMemory* surroundings, std::vector<FeatureContact>* contacts)
+  ExactTests(const MeshPair& pair, SurroundingsMemory* surroundings, CloseContacts* contacts)
       : pair_(pair), R_FM_(pair.X_FM.linear()), surroundings_(*surroundings), contacts_(*contacts) {}
 
   /** @param face element of the other mesh @return false if the vertex projects beside the face by more than CLOSED */
@@ -31,6 +30,7 @@ class ExactTests {
  private:
   bool reachesOver(bool vertex_moves, int vertex, const Vector3& p, const FaceShape& face) const;
   void addFadingEdges(const Feature& m, const Feature& f, const EdgesBeyond& edges, bool cones_known);
+  bool leadsTo(bool vertex_moves, int vertex, const Vector3& d, double distance2) const;
   bool addAtRoundEdge(bool vertex_moves, int vertex, int edge, const Vector3& p, const kernels::EdgeRecord& record);
   void addLocalMinimum(const Feature& m, const Feature& f, const Vector3& point_M, const Vector3& point_F, const Vector3& along);
   /** Does neither surface come closer to the other beside its feature? */
@@ -41,7 +41,7 @@ class ExactTests {
   const MeshPair& pair_;
   const Matrix3 R_FM_;
   SurroundingsMemory& surroundings_;
-  std::vector<FeatureContact>& contacts_;
+  CloseContacts& contacts_;
 };
 
 }  // namespace blem_sim

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <tuple>
+#include <utility>
+#include <vector>
 
 namespace blem_sim {
 namespace {
@@ -19,7 +22,7 @@ bool coincide(const Contact& a, const Vector3& place, const Contact& b) {
          (a.normal_BA - b.normal_BA).squaredNorm() <= MERGE_SINE * MERGE_SINE;
 }
 
-/** Contacts by the cell of space that they lie in. */
+/** The places of contacts, by the cell of space that they lie in. */
 class Cells {
  public:
   /** Empties them, with room for so many. */
@@ -27,34 +30,34 @@ class Cells {
     std::size_t size = 16;
     while (size < 2 * contacts) size *= 2;
     heads_.assign(size, NONE);
-    next_.clear();
+    entries_.clear();
   }
 
-  void add(const Vector3& point) {
-    std::uint32_t& head = heads_[slot(cell(point / SIZE))];
-    next_.push_back(head);
-    head = static_cast<std::uint32_t>(next_.size()) - 1;
-  }
-
-  /** Calls visit(index) for every contact within MERGE_DISTANCE of the point, and others, until it returns true. */
+  /**
+   * Calls visit(index, place) for every place within MERGE_DISTANCE of the point, and others, until it returns true; adds the point if it
+   * never does. @return whether it did
+   */
   template <typename Visit>
-  void visitNear(const Vector3& point, Visit&& visit) const {
-    const Vector3 place = point / SIZE, reach = Vector3::Constant(MERGE_DISTANCE / SIZE);
-    const Cell low = cell(place - reach), high = cell(place + reach);
-    for (std::int64_t x = low[0]; x <= high[0]; ++x) {
-      for (std::int64_t y = low[1]; y <= high[1]; ++y) {
-        for (std::int64_t z = low[2]; z <= high[2]; ++z) {
-          for (std::uint32_t i = heads_[slot({x, y, z})]; i != NONE; i = next_[i])
-            if (visit(i)) return;
-        }
-      }
-    }
+  bool visitNearOrAdd(const Vector3& point, Visit&& visit) {
+    const Vector3 place = point * (1 / SIZE);
+    const Cell own = cell(place);
+    const std::size_t own_slot = slot(own);
+    if (visitAll(own_slot, visit)) return true;
+    if (!isInside(place, own) && visitNeighbours(place, own, visit)) return true;
+    entries_.push_back({point, heads_[own_slot]});
+    heads_[own_slot] = static_cast<std::uint32_t>(entries_.size()) - 1;
+    return false;
   }
 
  private:
   using Cell = std::array<std::int64_t, 3>;
+  struct Entry {
+    Vector3 place;
+    std::uint32_t next;
+  };
   static constexpr std::uint32_t NONE = 0xFFFFFFFF;
-  static constexpr double SIZE = 64 * MERGE_DISTANCE;  // few points are that near a border
+  static constexpr double SIZE = 64 * MERGE_DISTANCE;             // few points are that near a border
+  static constexpr double REACH = 1.001 * MERGE_DISTANCE / SIZE;  // in cells, with room for rounding
 
   /** @param place in cells */
   static Cell cell(const Vector3& place) {
@@ -65,6 +68,15 @@ class Cells {
     };
     return {floor(place.x()), floor(place.y()), floor(place.z())};
   }
+  /** Is all within reach in the same cell? */
+  static bool isInside(const Vector3& place, const Cell& cell) {
+    bool inside = true;
+    for (int k = 0; k < 3; ++k) {
+      const double part = place[k] - static_cast<double>(cell[k]);
+      inside &= (part > REACH) & (part < 1 - REACH);
+    }
+    return inside;
+  }
   std::size_t slot(const Cell& cell) const {
     const std::uint64_t mixed = static_cast<std::uint64_t>(cell[0]) * 0x9E3779B97F4A7C15u +
                                 static_cast<std::uint64_t>(cell[1]) * 0xC2B2AE3D27D4EB4Fu +
@@ -72,29 +84,82 @@ class Cells {
     return (mixed ^ mixed >> 32) & (heads_.size() - 1);
   }
 
-  std::vector<std::uint32_t> heads_, next_;
+  template <typename Visit>
+  bool visitAll(std::size_t slot, Visit&& visit) const {
+    for (std::uint32_t i = heads_[slot]; i != NONE; i = entries_[i].next)
+      if (visit(i, entries_[i].place)) return true;
+    return false;
+  }
+
+  template <typename Visit>
+  bool visitNeighbours(const Vector3& place, const Cell& own, Visit&& visit) const {
+    const Vector3 reach = Vector3::Constant(REACH);
+    const Cell low = cell(place - reach), high = cell(place + reach);
+    for (std::int64_t x = low[0]; x <= high[0]; ++x) {
+      for (std::int64_t y = low[1]; y <= high[1]; ++y) {
+        for (std::int64_t z = low[2]; z <= high[2]; ++z) {
+          const Cell each = {x, y, z};
+          if (each != own && visitAll(slot(each), visit)) return true;
+        }
+      }
+    }
+    return false;
+  }
+
+  std::vector<std::uint32_t> heads_;
+  std::vector<Entry> entries_;
 };
+
+/** A contact's id and index. */
+struct Key {
+  std::uint64_t id;
+  std::uint32_t index;
+};
+
+/** Sorts by id, then by index, which ascends. Digit by digit, since comparing is hard to foresee; only bits that differ. */
+void sortById(std::vector<Key>* keys, std::vector<Key>* room) {
+  constexpr std::size_t FEW = 32;
+  constexpr int DIGIT = 6;
+  if (keys->size() <= FEW) {
+    std::sort(keys->begin(), keys->end(), [](const Key& a, const Key& b) { return a.id != b.id ? a.id < b.id : a.index < b.index; });
+    return;
+  }
+  std::uint64_t different = 0;
+  for (const Key& key : *keys) different |= key.id ^ keys->front().id;
+  room->resize(keys->size());
+  while (different != 0) {
+    const int shift = __builtin_ctzll(different);
+    const auto digit = [shift](const Key& key) { return key.id >> shift & ((1 << DIGIT) - 1); };
+    std::uint32_t ends[1 << DIGIT] = {};
+    for (const Key& key : *keys) ++ends[digit(key)];
+    std::uint32_t end = 0;
+    for (std::uint32_t& each : ends) end += std::exchange(each, end);
+    for (const Key& key : *keys) (*room)[ends[digit(key)]++] = key;
+    keys->swap(*room);
+    different &= ~(((std::uint64_t{1} << DIGIT) - 1) << shift);
+  }
+}
 
 // Kept between calls.
 struct Buffers {
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> order;
+  std::vector<Key> keys, room;
   std::vector<std::uint32_t> best;
-  std::vector<Contact> merged;
-  Cells cells;
-  std::vector<Vector3> firsts;  // places of the contacts that each of the merged ones began with
+  Cells cells;  // places of the contacts that each of the merged ones began with
 };
 
 /** Of every id the best, sorted by id: buffers->best. */
-void findBestOfEachId(const std::vector<Contact>& contacts, Buffers* buffers) {
-  auto& order = buffers->order;
-  order.clear();
-  for (std::size_t i = 0; i < contacts.size(); ++i) order.emplace_back(contacts[i].id, i);
-  std::sort(order.begin(), order.end());
+void findBestOfEachId(const Contact* contacts, std::size_t count, Buffers* buffers) {
+  std::vector<Key>& keys = buffers->keys;
+  keys.resize(count);
+  for (std::uint32_t i = 0; i < count; ++i) keys[i] = {contacts[i].id, i};
+  sortById(&keys, &buffers->room);
   std::vector<std::uint32_t>& best = buffers->best;
   best.clear();
-  for (const auto& [id, i] : order) {
-    if (best.empty() || contacts[best.back()].id != id) {
+  std::uint64_t last = 0;
+  for (const auto& [id, i] : keys) {
+    if (best.empty() || id != last) {
       best.push_back(i);
+      last = id;
     } else if (keptBefore(contacts[i], contacts[best.back()])) {
       best.back() = i;
     }
@@ -103,33 +168,27 @@ void findBestOfEachId(const std::vector<Contact>& contacts, Buffers* buffers) {
 
 }  // namespace
 
-void mergeContacts(std::vector<Contact>* contacts) {
-  thread_local Buffers thread_buffers;
-  Buffers& buffers = thread_buffers;
-  findBestOfEachId(*contacts, &buffers);
-  std::vector<Contact>& merged = buffers.merged;
-  merged.clear();
-  buffers.firsts.clear();
+std::size_t mergeContacts(const Contact* contacts, std::size_t count, Contact* merged) {
+  if (count == 0) return 0;
+  thread_local Buffers buffers;
+  findBestOfEachId(contacts, count, &buffers);
   buffers.cells.clear(buffers.best.size());
+  std::size_t left = 0;
   for (const std::uint32_t index : buffers.best) {
-    const Contact& contact = (*contacts)[index];
-    bool is_merged = false;
-    buffers.cells.visitNear(contact.point, [&](std::uint32_t i) {
+    const Contact& contact = contacts[index];
+    const bool is_merged = buffers.cells.visitNearOrAdd(contact.point, [&](std::uint32_t i, const Vector3& place) {
       Contact& other = merged[i];
-      if (!coincide(other, buffers.firsts[i], contact)) return false;
+      if (!coincide(other, place, contact)) return false;
       if (contact.depth > other.depth) {
         const std::uint64_t id = other.id;
         other = contact;
         other.id = id;
       }
-      return is_merged = true;
+      return true;
     });
-    if (is_merged) continue;
-    buffers.cells.add(contact.point);
-    buffers.firsts.push_back(contact.point);
-    merged.push_back(contact);
+    if (!is_merged) merged[left++] = contact;
   }
-  contacts->assign(merged.begin(), merged.end());
+  return left;
 }
 
 }  // namespace blem_sim

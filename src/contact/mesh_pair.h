@@ -73,11 +73,4 @@ struct FeatureContact {
   bool pierced = false;
 };
 
-/** The contact of a feature with one of the other mesh, whichever of them moves. */
-inline FeatureContact featureContact(bool first_moves, const Feature& first, const Feature& second, const Vector3& point_first,
-                                     const Vector3& point_second, const Vector3& normal, double gap) {
-  if (first_moves) return {first, second, point_first, point_second, normal, gap};
-  return {second, first, point_second, point_first, normal, gap};
-}
-
 }  // namespace blem_sim

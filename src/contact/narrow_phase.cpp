@@ -13,7 +13,6 @@ namespace {
 struct Buffers {
   ContactSearchBuffers search;
   FoundContacts found;
-  std::vector<Contact> close;
 };
 
 void meshMesh(const Collider& a, const Pose& X_WA, const Collider& b, const Pose& X_WB, double range, const Pose* X_AB_apart,
@@ -29,18 +28,17 @@ void meshMesh(const Collider& a, const Pose& X_WA, const Collider& b, const Pose
                       X_WF};
   thread_local Buffers buffers;
   FoundContacts& found = buffers.found;
-  found.plain = &out->contacts;
+  found.plain.overwrite(&out->contacts);
   searchContacts(pair, memory, &buffers.search, &found);
   out->pierced = !found.crossings.empty();
   if (out->pierced) {
     Pose X_FM_apart;
     if (X_AB_apart) X_FM_apart = a_moves ? X_AB_apart->inverse() : *X_AB_apart;
-    addRetractions(pair, X_AB_apart ? &X_FM_apart : nullptr, found.crossings, &found.close);
+    addRetractions(pair, X_AB_apart ? &X_FM_apart : nullptr, found.crossings, &found.close.witnessed());
   }
-  buffers.close.clear();
-  for (const FeatureContact& contact : found.close) buffers.close.push_back(worldContact(pair, contact));
-  mergeContacts(&buffers.close);
-  out->contacts.insert(out->contacts.end(), buffers.close.begin(), buffers.close.end());
+  const ContactWriter& close = found.close.placed(pair);
+  found.plain.advance(mergeContacts(close.begin(), close.size(), found.plain.room(close.size())));
+  found.plain.finish();
 }
 
 /** Vertices of the mesh near or below the plane; however deep, each knows its way out. */
@@ -50,6 +48,8 @@ void meshHalfSpace(const Collider& mesh, const Pose& X_WM, const Collider& half_
   const Pose X_MH = X_WM.inverse() * X_WH;
   const Vector3 normal = X_MH.linear() * half_space.geometry->planeNormal();
   const double offset = half_space.geometry->planeOffset() + normal.dot(X_MH.translation());
+  thread_local std::vector<Contact> found;
+  found.clear();
   visitLeavesBelowPlane(side.bvh, normal, offset, range, [&](std::uint32_t leaf) {
     const Bvh::Node& node = side.bvh.nodes()[leaf];
     for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
@@ -60,12 +60,13 @@ void meshHalfSpace(const Collider& mesh, const Pose& X_WM, const Collider& half_
         const Vector3& p = side.mesh.vertices[vertex];
         const double height = normal.dot(p) - offset;
         if (height > range) continue;
-        out->contacts.push_back(
+        found.push_back(
             contactOf(roles, {FeatureKind::VERTEX, vertex}, {FeatureKind::HALF_SPACE, 0}, p, p - height * normal, normal, height));
       }
     }
   });
-  mergeContacts(&out->contacts);
+  out->contacts.resize(found.size());
+  out->contacts.resize(mergeContacts(found.data(), found.size(), out->contacts.data()));
   for (Contact& contact : out->contacts) {
     contact.point = X_WM * contact.point;
     contact.normal_BA = X_WM.linear() * contact.normal_BA;
@@ -87,10 +88,10 @@ void narrowPhase(const Collider& a, const Pose& X_WA, const Collider& b, const P
                  const Pose* X_AB_apart, NarrowPhaseMemory* memory) {
   out->layer = a.radius + b.radius;
   out->pierced = false;
-  out->contacts.clear();
   const double range = out->layer + margin;
-  if (a.geometry->isHalfSpace() && b.geometry->isHalfSpace()) return;
-  if (b.geometry->isHalfSpace()) {
+  if (a.geometry->isHalfSpace() && b.geometry->isHalfSpace()) {
+    out->contacts.clear();
+  } else if (b.geometry->isHalfSpace()) {
     meshHalfSpace(a, X_WA, b, X_WB, range, {true, a.radius, b.radius}, out);
   } else if (a.geometry->isHalfSpace()) {
     meshHalfSpace(b, X_WB, a, X_WA, range, {false, a.radius, b.radius}, out);

@@ -1,6 +1,7 @@
 // From the witness points of two features to the contact that is handed on.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "blem_sim/contact/manifold.h"
@@ -9,36 +10,75 @@
 
 namespace blem_sim {
 
-/** Its place is the middle of the overlap of the layers [Hauser 2013, 3.2]; in the frame of the points. @param normal from second to first
- */
+/** The middle of the overlap of the layers [Hauser 2013, 3.2]. @param p, q witness points @param normal from B to A */
+inline Vector3 placeOf(const ContactRoles& roles, const Vector3& p, const Vector3& q, const Vector3& normal) {
+  return 0.5 * (p + q) + 0.5 * (roles.r_b - roles.r_a) * normal;
+}
+
+/** In the frame of the points. @param normal from second to first */
 inline Contact contactOf(const ContactRoles& roles, const Feature& first, const Feature& second, const Vector3& point_first,
                          const Vector3& point_second, const Vector3& normal, double gap) {
   Contact contact;
   contact.normal_BA = roles.first_is_a ? normal : Vector3(-normal);
-  contact.point = 0.5 * (point_first + point_second) + 0.5 * (roles.r_b - roles.r_a) * contact.normal_BA;
+  contact.point = placeOf(roles, point_first, point_second, contact.normal_BA);
   contact.depth = roles.r_a + roles.r_b - gap;
   contact.id = roles.first_is_a ? contactId(first, second) : contactId(second, first);
   return contact;
 }
 
-/** What kernels wrote. */
-inline void appendContacts(const kernels::ContactRow* rows, std::uint32_t count, std::vector<Contact>* out) {
-  for (const kernels::ContactRow* row = rows; row != rows + count; ++row) {
-    Contact& contact = out->emplace_back();
-    contact.point = Vector3(row->point[0], row->point[1], row->point[2]);
-    contact.normal_BA = Vector3(row->normal[0], row->normal[1], row->normal[2]);
-    contact.depth = row->depth;
-    contact.id = row->id;
-  }
+/** Of a feature and one of the other mesh, whichever of them moves. */
+inline std::uint64_t contactId(const ContactRoles& roles, bool first_moves, const Feature& first, const Feature& second) {
+  return first_moves == roles.first_is_a ? contactId(first, second) : contactId(second, first);
 }
 
-/** A contact of a pair in the world. */
-inline Contact worldContact(const MeshPair& pair, const FeatureContact& c) {
-  Contact contact = contactOf(pair.roles, c.moving, c.fixed, c.point_M, c.point_F, c.normal, c.gap);
-  contact.point = pair.X_WF * contact.point;
-  contact.normal_BA = pair.X_WF.linear() * contact.normal_BA;
-  contact.pierced = c.pierced;
-  return contact;
+/** A contact of a pair in the world. @param normal from the fixed mesh to the moving one, as the points in frame F */
+inline void placeInWorld(const MeshPair& pair, bool first_moves, const Feature& first, const Feature& second, const Vector3& point_first,
+                         const Vector3& point_second, const Vector3& normal, double gap, Contact* out) {
+  const ContactRoles& roles = pair.roles;
+  const Vector3 normal_BA = roles.first_is_a ? normal : Vector3(-normal);
+  out->point = pair.X_WF * placeOf(roles, point_first, point_second, normal_BA);
+  out->normal_BA = pair.X_WF.linear() * normal_BA;
+  out->depth = roles.r_a + roles.r_b - gap;
+  out->id = contactId(roles, first_moves, first, second);
+  out->weight = 1;
+  out->pierced = false;
 }
+
+static_assert(offsetof(Contact, point) == offsetof(kernels::ContactRow, point) &&
+                  offsetof(Contact, normal_BA) == offsetof(kernels::ContactRow, normal) &&
+                  offsetof(Contact, depth) == offsetof(kernels::ContactRow, depth) &&
+                  offsetof(Contact, id) == offsetof(kernels::ContactRow, id) &&
+                  offsetof(Contact, weight) == offsetof(kernels::ContactRow, weight) &&
+                  offsetof(Contact, pierced) == offsetof(kernels::ContactRow, pierced) && sizeof(Contact) == sizeof(kernels::ContactRow),
+              "kernels write contacts as they are");
+
+/** A list of contacts that is written anew, over those that it holds: none is made only to be overwritten. */
+class ContactWriter {
+ public:
+  void overwrite(std::vector<Contact>* contacts) {
+    contacts_ = contacts;
+    count_ = 0;
+  }
+  /** For so many more; whoever takes it writes every number. */
+  Contact* room(std::size_t more) {
+    if (contacts_->size() < count_ + more) contacts_->resize(count_ + more);
+    return contacts_->data() + count_;
+  }
+  kernels::ContactRow* rows(std::size_t more) { return reinterpret_cast<kernels::ContactRow*>(room(more)); }
+  /** So many were written. */
+  void advance(std::size_t written) { count_ += written; }
+  /** So many of the last are none. */
+  void retreat(std::size_t dropped) { count_ -= dropped; }
+  /** The list is what was written. */
+  void finish() { contacts_->resize(count_); }
+
+  std::size_t size() const { return count_; }
+  const Contact* begin() const { return contacts_ ? contacts_->data() : nullptr; }
+  const Contact* end() const { return begin() + count_; }
+
+ private:
+  std::vector<Contact>* contacts_ = nullptr;
+  std::size_t count_ = 0;
+};
 
 }  // namespace blem_sim

@@ -1,6 +1,7 @@
 // Every instruction set gives the same bits.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -55,15 +56,15 @@ struct PlainVertexFaces {
   PlainVertexFaces(const Kernels& set, const Features& in, bool faces_move, bool takes_plain)
       : X_FM(makePose({0.1, -0.2, 0.3}, {0.4, 0.5, -0.6})),
         X_WF(makePose({-3, 2, 1}, {0.7, -0.2, 0.1})),
-        hits(CANDIDATES),
-        rows(CANDIDATES),
-        pairs(CANDIDATES) {
+        hits(CANDIDATES + 1),
+        rows(CANDIDATES + 1),
+        pairs(CANDIDATES + 1) {
     for (const Vec4& p : in.vertices) placed.push_back(faces_move ? vec4(X_FM * vector3(p), 0) : p);
     for (std::uint32_t i = 0; i < FEATURES; ++i) names.push_back(static_cast<int>(1000 + i));
     const Feature vertex{FeatureKind::VERTEX, 0}, face{FeatureKind::FACE, 0};
     // The vertices are A's: the moving mesh is A unless its faces are asked.
     plain = {{placed.data(), names.data(), names.data(), faces_move, true, motionOf(X_FM), motionOf(X_WF), RADIUS_A + RADIUS_B,
-              0.5 * (RADIUS_B - RADIUS_A), contactId(vertex, face)},
+              0.5 * (RADIUS_B - RADIUS_A), contactId(vertex, face), false},
              rows.data(),
              pairs.data(),
              0,
@@ -97,7 +98,7 @@ Found found(const Kernels& set, const Features& in) {
     add(found.plain.count);
     add(static_cast<std::uint32_t>(found.hits.size()));
     for (const VertexFaceHit& hit : found.hits) {
-      out.indices.insert(out.indices.end(), {hit.candidate, hit.is_plain, hit.is_beside, hit.near_border});
+      out.indices.insert(out.indices.end(), {hit.candidate, hit.bits});
       out.numbers.push_back(hit.height);
     }
     for (std::uint32_t i = 0; i < found.plain.count; ++i) {
@@ -169,8 +170,9 @@ TEST(Kernels, PlainContactsAreThoseMadeOneByOne) {
     const PlainVertexFaces written(*availableKernels().front(), in, faces_move, true),
         all(*availableKernels().front(), in, faces_move, false);
     std::uint32_t count = 0, close = 0;
+    double deepest = -1;
     for (const VertexFaceHit& hit : all.hits) {
-      if (!hit.is_plain || hit.near_border) {
+      if (!hit.has(VertexFaceHit::PLAIN) || hit.has(VertexFaceHit::NEAR_BORDER)) {
         ++close;
         continue;
       }
@@ -185,8 +187,11 @@ TEST(Kernels, PlainContactsAreThoseMadeOneByOne) {
       one.normal_BA = all.X_WF.linear() * one.normal_BA;
       ASSERT_LT(count, written.plain.count);
       const ContactRow& row = written.rows[count];
+      deepest = std::max(deepest, one.depth);
       EXPECT_EQ(row.id, one.id);
       EXPECT_EQ(row.depth, one.depth);
+      EXPECT_EQ(row.weight, one.weight);
+      EXPECT_EQ(row.pierced, 0u);
       for (int k = 0; k < 3; ++k) {
         EXPECT_EQ(row.point[k], one.point[k]);
         EXPECT_EQ(row.normal[k], one.normal_BA[k]);
@@ -196,6 +201,7 @@ TEST(Kernels, PlainContactsAreThoseMadeOneByOne) {
       ++count;
     }
     EXPECT_EQ(count, written.plain.count);
+    EXPECT_EQ(written.plain.deepest, deepest);
     EXPECT_GT(count, 5u);
     EXPECT_EQ(close, written.hits.size());
   }

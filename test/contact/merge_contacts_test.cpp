@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <vector>
+
 #include "geometry/random_shapes.h"
 
 namespace blem_sim {
@@ -19,11 +22,16 @@ Contact makeContact(std::uint64_t id, const Vector3& point, const Vector3& norma
 
 const Vector3 UP = Vector3::UnitZ();
 
+std::vector<Contact> merged(const std::vector<Contact>& contacts) {
+  std::vector<Contact> out(contacts.size());
+  out.resize(mergeContacts(contacts.data(), contacts.size(), out.data()));
+  return out;
+}
+
 TEST(MergeContacts, CoincidentOnesBecomeTheDeepestUnderTheSmallestId) {
-  std::vector<Contact> contacts = {makeContact(9, {0, 0, 0}, UP, 0.1), makeContact(4, {1e-7, 0, 0}, UP, 0.3),
-                                   makeContact(7, {0, 1e-7, 0}, UP, 0.2), makeContact(5, {0, 0, 0}, Vector3::UnitX(), 0.1),
-                                   makeContact(6, {1e-6, 0, 0}, UP, 0.1)};
-  mergeContacts(&contacts);
+  const std::vector<Contact> contacts =
+      merged({makeContact(9, {0, 0, 0}, UP, 0.1), makeContact(4, {1e-7, 0, 0}, UP, 0.3), makeContact(7, {0, 1e-7, 0}, UP, 0.2),
+              makeContact(5, {0, 0, 0}, Vector3::UnitX(), 0.1), makeContact(6, {1e-6, 0, 0}, UP, 0.1)});
   ASSERT_EQ(contacts.size(), 3u);
   EXPECT_EQ(contacts[0].id, 4u);
   EXPECT_EQ(contacts[0].depth, 0.3);
@@ -32,12 +40,29 @@ TEST(MergeContacts, CoincidentOnesBecomeTheDeepestUnderTheSmallestId) {
 }
 
 TEST(MergeContacts, OneIdIsOneContact) {
-  std::vector<Contact> contacts = {makeContact(3, {0, 0, 0}, UP, 0.1), makeContact(3, {1, 0, 0}, UP, 0.2),
-                                   makeContact(8, {2, 0, 0}, UP, 0.2), makeContact(8, {2, 0, 0}, -UP, 0.1, true)};
-  mergeContacts(&contacts);
+  const std::vector<Contact> contacts = merged({makeContact(3, {0, 0, 0}, UP, 0.1), makeContact(3, {1, 0, 0}, UP, 0.2),
+                                                makeContact(8, {2, 0, 0}, UP, 0.2), makeContact(8, {2, 0, 0}, -UP, 0.1, true)});
   ASSERT_EQ(contacts.size(), 2u);
   EXPECT_EQ(contacts[0].depth, 0.2);
   EXPECT_TRUE(contacts[1].pierced);
+}
+
+TEST(MergeContacts, AreSortedById) {
+  RandomShapes random(5);
+  for (const int count : {7, 400}) {
+    std::vector<Contact> contacts;
+    std::vector<std::uint64_t> ids;
+    for (int i = 0; i < count; ++i) {
+      // Names differ in few bits of their features, and in all.
+      ids.push_back(i % 2 == 0 ? random.bits() : random.bits() & 0x80000007000000FFu);
+      contacts.push_back(makeContact(ids.back(), {0.01 * i, 0, 0}, UP, 0.1));
+    }
+    std::sort(ids.begin(), ids.end());
+    ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+    contacts = merged(contacts);
+    ASSERT_EQ(contacts.size(), ids.size());
+    for (std::size_t i = 0; i < ids.size(); ++i) EXPECT_EQ(contacts[i].id, ids[i]);
+  }
 }
 
 TEST(MergeContacts, OrderDoesNotMatter) {
@@ -48,8 +73,8 @@ TEST(MergeContacts, OrderDoesNotMatter) {
                                    random.uniform(0, 1)));
   }
   std::vector<Contact> reversed(contacts.rbegin(), contacts.rend());
-  mergeContacts(&contacts);
-  mergeContacts(&reversed);
+  contacts = merged(contacts);
+  reversed = merged(reversed);
   ASSERT_EQ(contacts.size(), reversed.size());
   EXPECT_LE(contacts.size(), 64u * 3);
   for (std::size_t i = 0; i < contacts.size(); ++i) {

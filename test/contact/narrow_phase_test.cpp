@@ -37,6 +37,33 @@ TEST(NarrowPhase, AlignedCubesHaveFourContacts) {
   }
 }
 
+TEST(NarrowPhase, WhatAManifoldHeldDoesNotMatter) {
+  RandomShapes random(2);
+  const Collider hills = makeCollider(hillMesh(random, 0.4, 20, 0.001), 0.002), ground = makeHalfSpace(Vector3::UnitZ(), 0);
+  const Pose above = at(0, 0, EDGE / 2 + 0.002), crossing = at(0, 0, EDGE / 2 - 0.002);
+  for (const Collider* standing : {&hills, &ground}) {
+    for (const Pose& X_WA : {above, crossing}) {
+      const ContactManifold fresh = contactsOf(cube(0.003), X_WA, *standing, Pose::Identity());
+      EXPECT_FALSE(fresh.contacts.empty());
+      for (const std::size_t held : {3, 5000}) {
+        Contact other;
+        other.weight = 0.5;
+        other.pierced = true;
+        ContactManifold manifold;
+        manifold.contacts.assign(held, other);
+        narrowPhase(cube(0.003), X_WA, *standing, Pose::Identity(), 0, &manifold);
+        ASSERT_EQ(manifold.contacts.size(), fresh.contacts.size());
+        for (std::size_t i = 0; i < fresh.contacts.size(); ++i) {
+          EXPECT_EQ(manifold.contacts[i].id, fresh.contacts[i].id);
+          EXPECT_EQ(manifold.contacts[i].point, fresh.contacts[i].point);
+          EXPECT_EQ(manifold.contacts[i].weight, 1);
+          EXPECT_EQ(manifold.contacts[i].pierced, fresh.contacts[i].pierced);
+        }
+      }
+    }
+  }
+}
+
 TEST(NarrowPhase, CubesSlightlyOffHaveFourCorners) {
   for (const double offset : {1e-6, 1e-5, 1e-3}) {
     ContactManifold manifold = contactsOf(cube(0.0025), at(offset, 0.7 * offset, EDGE + 0.004), cube(0.0025), Pose::Identity());

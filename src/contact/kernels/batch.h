@@ -8,6 +8,9 @@ namespace {
 
 constexpr unsigned ALL_LANES = (1u << LANES) - 1;
 
+/** Height over the plane, or inside the side. */
+inline Doubles above(const Vectors& p, const Rows& plane) { return dot(p, plane.v) - plane.w; }
+
 /** Which candidates the lanes hold: behind the last one it is repeated, and masked. */
 struct Batch {
   Batch(const Candidate* candidates, std::uint32_t first, std::uint32_t count) {

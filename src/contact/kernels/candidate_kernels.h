@@ -30,9 +30,6 @@ inline std::uint32_t listed(const Candidate* candidates, std::uint32_t count, st
   return found;
 }
 
-/** Height over the plane, or inside the side. */
-inline Doubles above(const Vectors& p, const Rows& plane) { return dot(p, plane.v) - plane.w; }
-
 struct InsideSides {
   InsideSides(const Batch& batch, const FaceRecord* faces, const Vectors& p)
       : of{above(p, batch.side(faces, 0)), above(p, batch.side(faces, 1)), above(p, batch.side(faces, 2))} {}
@@ -129,9 +126,17 @@ inline EdgeOffset offsetFrom(const Rows& start, const Vectors& along, const Vect
   return {r - part * along, part};
 }
 
+/** VertexFaceHit::bits */
+inline Mask vertexFaceBits(const InsideSides& sides, Doubles inside, Mask plain) {
+  const auto bit = [](Mask is, long value) { return is & value; };
+  return bit(sides.of[0] < 0, 1) | bit(sides.of[1] < 0, 2) | bit(sides.of[2] < 0, 4) | bit(plain, VertexFaceHit::PLAIN) |
+         bit(inside < -2 * CLOSED, VertexFaceHit::BESIDE) | bit(inside < NEAR_BORDER, VertexFaceHit::NEAR_BORDER);
+}
+
 std::uint32_t vertexFaces(const Vec4* a, const FaceRecord* b, const OpenSides* open, const Candidate* candidates, std::uint32_t count,
                           double range, PlainContacts* plain, VertexFaceHit* hits) {
   std::uint32_t found = 0;
+  Doubles deepest = all(plain ? plain->deepest : 0);
   for (std::uint32_t first = 0; first < count; first += LANES) {
     const Batch batch(candidates, first, count);
     const Vectors p = batch.points(a, batch.of_a).v;
@@ -141,20 +146,23 @@ std::uint32_t vertexFaces(const Vec4* a, const FaceRecord* b, const OpenSides* o
     if (near == 0) continue;
     const InsideSides sides(batch, b, p);
     const Doubles inside = sides.least();
-    const unsigned is_plain = bitsOf((inside >= 0) & (absolute(height) > TOUCH)), near_border = bitsOf(inside < NEAR_BORDER),
-                   is_clear = plain ? near & is_plain & ~near_border : 0;
-    if (is_clear) appendPlain(batch, p, plane.v, height, is_clear, plain);
+    const Mask touches = absolute(height) <= TOUCH, clear = (inside >= NEAR_BORDER) & ~touches & (most >= 0);
+    const unsigned is_clear = plain ? bitsOf(clear) & batch.valid : 0;
+    if (is_clear) {
+      const Doubles depth = appendPlain(batch, p, plane.v, height, is_clear, plain);
+      deepest = maximum(deepest, clear ? depth : deepest);
+    }
     if (is_clear == near) continue;
-    const unsigned is_hit = near & bitsOf(isOverOrFades(sides.of, openSides(batch.open(open), height, 0.0), most, 2 * CLOSED)),
-                   is_beside = bitsOf(inside < -2 * CLOSED);
-    double heights[LANES];
-    __builtin_memcpy(heights, &height, sizeof heights);
-    for (unsigned bits = is_hit & ~is_clear; bits != 0; bits &= bits - 1) {
-      const int lane = __builtin_ctz(bits);
-      hits[found++] = {first + lane, (is_plain >> lane & 1) != 0, (is_beside >> lane & 1) != 0, (near_border >> lane & 1) != 0,
-                       heights[lane]};
+    const Mask over = isOverOrFades(sides.of, openSides(batch.open(open), height, 0.0), most, 2 * CLOSED);
+    const Mask bits = vertexFaceBits(sides, inside, (inside >= 0) & ~touches);
+    const unsigned is_hit = near & ~is_clear & bitsOf(over);
+    // Which lanes have one is hard to foresee: every one writes, the next one over it if it has none.
+    for (int i = 0; i < LANES; ++i) {
+      hits[found] = {first + i, static_cast<std::uint32_t>(bits[i]), height[i]};
+      found += is_hit >> i & 1;
     }
   }
+  for (int i = 0; plain && i < LANES; ++i) plain->deepest = deepest[i] > plain->deepest ? deepest[i] : plain->deepest;
   return found;
 }
 

@@ -35,10 +35,13 @@ struct Kernels {
   std::uint32_t (*nearVertexVertices)(const Vec4* a, const Vec4* b, const Candidate* in, std::uint32_t count, const Reach& reach,
                                       Candidate* out);
 
-  /** Candidates with a contact within `range`, and those that need a closer look.
+  /** Candidates with a contact within `range`, and those that need a closer look. Room for one more hit than candidates.
    * @param plain takes those that are plain and not near a border, instead of the hits; null: nothing does @return number of hits */
   std::uint32_t (*vertexFaces)(const Vec4* a, const FaceRecord* b, const OpenSides* open, const Candidate* candidates, std::uint32_t count,
                                double range, PlainContacts* plain, VertexFaceHit* hits);
+  /** The contacts of vertices with sides of faces. @param vertices in the faces' mesh's frame @param sides as the pairs */
+  void (*sideFeet)(const ContactPlace& place, const Vec4* vertices, const FaceRecord* faces, const BesideSide* sides,
+                   const Candidate* pairs, std::uint32_t count, SideFoot* feet);
   std::uint32_t (*edgeEdges)(const EdgeRecord* a, const EdgeRecord* b, const Candidate* candidates, std::uint32_t count, double range,
                              EdgeEdgeHit* hits);
   /** Indices of candidates that need a closer look. @return their number */

@@ -6,6 +6,7 @@
 #include "kernels.h"
 #include "lanes.h"
 #include "leaf_kernels.h"
+#include "side_feet.h"
 
 namespace blem_sim::kernels {
 namespace {
@@ -57,5 +58,5 @@ void turnFaces(const FaceRecord* in, std::uint32_t count, const Motion& motion, 
 #define BLEM_SIM_KERNEL_TABLE(name)                                                                                                 \
   {                                                                                                                                 \
     name, turnPoints, turnEdges, turnFaces, turnLeaf, leafContacts, leafCrossings, nearVertexFaces, nearEdgeEdges, nearVertexEdges, \
-        nearVertexVertices, vertexFaces, edgeEdges, vertexEdges, vertexVertices, edgeFaces                                          \
+        nearVertexVertices, vertexFaces, sideFeet, edgeEdges, vertexEdges, vertexVertices, edgeFaces                                \
   }

@@ -142,8 +142,8 @@ inline Rows gathered(const Vec4* const* from) {
   return rows;
 }
 
-/** Turns eight columns of lanes into as many rows of eight numbers as there are lanes. */
-inline void transposed(const Doubles (&columns)[8], double (*rows)[8]) {
+/** Turns eight columns of lanes into as many rows of eight numbers as there are lanes, written one after the other. */
+inline void transposed(const Doubles (&columns)[8], double* const (&rows)[LANES]) {
 #if defined(__AVX512F__)
   const auto column = [&columns](int i) { return reinterpret_cast<__m512d>(columns[i]); };
   // Pairs of columns, then of pairs, then of those: in each 128 bits, two lanes further on, four.
@@ -152,16 +152,18 @@ inline void transposed(const Doubles (&columns)[8], double (*rows)[8]) {
     low[i] = _mm512_unpacklo_pd(column(2 * i), column(2 * i + 1));
     high[i] = _mm512_unpackhi_pd(column(2 * i), column(2 * i + 1));
   }
-  const auto store = [rows](const __m512d(&pairs)[4], int first) {
+  __m512d turned[8];
+  const auto turn = [&turned](const __m512d(&pairs)[4], int first) {
     const __m512d a = _mm512_shuffle_f64x2(pairs[0], pairs[1], 0x88), b = _mm512_shuffle_f64x2(pairs[2], pairs[3], 0x88);
     const __m512d c = _mm512_shuffle_f64x2(pairs[0], pairs[1], 0xDD), d = _mm512_shuffle_f64x2(pairs[2], pairs[3], 0xDD);
-    _mm512_storeu_pd(rows[first], _mm512_shuffle_f64x2(a, b, 0x88));
-    _mm512_storeu_pd(rows[first + 4], _mm512_shuffle_f64x2(a, b, 0xDD));
-    _mm512_storeu_pd(rows[first + 2], _mm512_shuffle_f64x2(c, d, 0x88));
-    _mm512_storeu_pd(rows[first + 6], _mm512_shuffle_f64x2(c, d, 0xDD));
+    turned[first] = _mm512_shuffle_f64x2(a, b, 0x88);
+    turned[first + 4] = _mm512_shuffle_f64x2(a, b, 0xDD);
+    turned[first + 2] = _mm512_shuffle_f64x2(c, d, 0x88);
+    turned[first + 6] = _mm512_shuffle_f64x2(c, d, 0xDD);
   };
-  store(low, 0);
-  store(high, 1);
+  turn(low, 0);
+  turn(high, 1);
+  for (int lane = 0; lane < LANES; ++lane) _mm512_storeu_pd(rows[lane], turned[lane]);
 #else
   for (int lane = 0; lane < LANES; ++lane)
     for (int i = 0; i < 8; ++i) rows[lane][i] = columns[i][lane];

@@ -16,8 +16,36 @@ inline Vectors turnedPoint(const Motion& X, const Vectors& p) {
   return {row(0), row(1), row(2)};
 }
 
-/** @param p as the faces are @param bits of the lanes that have a contact */
-inline void appendPlain(const Batch& batch, const Vectors& p, const Vectors& normal, Doubles height, unsigned bits, PlainContacts* out) {
+/** A contact's place and normal in the world. */
+struct WorldContacts {
+  Vectors point, normal;
+};
+/** @param at, foot in frame F, as the normal, from B to A */
+inline WorldContacts inWorld(const ContactPlace& place, const Vectors& at, const Vectors& foot, const Vectors& normal) {
+  const Vectors middle = all(0.5) * (at + foot) + all(place.shift) * normal;
+  return {turnedPoint(place.X_WF, middle), turnedDirection(place.X_WF, normal)};
+}
+
+/** ContactRow::weight and what follows. */
+constexpr struct {
+  double weight;
+  std::uint64_t pierced;
+} UNWEIGHED = {1, 0};
+
+/** contactId of the lanes' vertices and faces. */
+inline Mask idsOf(const Batch& batch, const ContactPlace& place) {
+  Mask vertices, faces;
+  for (int i = 0; i < LANES; ++i) {
+    vertices[i] = place.vertex_names[batch.of_a[i]];
+    faces[i] = place.face_names[batch.of_b[i]];
+  }
+  const Mask names = place.vertices_are_a ? vertices << 32 | faces : faces << 32 | vertices;
+  return names | static_cast<long>(place.kinds);
+}
+
+/** Writes a row for every lane; where its bit is not set the next one is written over it.
+ * @param p as the faces are @param bits of the lanes that have a contact @return depths */
+inline Doubles appendPlain(const Batch& batch, const Vectors& p, const Vectors& normal, Doubles height, unsigned bits, PlainContacts* out) {
   const ContactPlace& place = out->place;
   Vectors at = p, up = normal;
   if (place.faces_move) {
@@ -26,23 +54,20 @@ inline void appendPlain(const Batch& batch, const Vectors& p, const Vectors& nor
   }
   const Mask to_a = place.vertices_are_a ? height > 0 : height <= 0;
   const Doubles sign = to_a ? all(1) : all(-1);
-  const Vectors foot = at - height * up, n = sign * up, middle = all(0.5) * (at + foot) + all(place.shift) * n;
-  const Vectors point = turnedPoint(place.X_WF, middle), normal_BA = turnedDirection(place.X_WF, n);
+  const auto [point, normal_BA] = inWorld(place, at, at - height * up, sign * up);
   const Doubles depth = place.layer - absolute(height);
-  alignas(64) double rows[LANES][8];
-  const Doubles columns[] = {point.x, point.y, point.z, normal_BA.x, normal_BA.y, normal_BA.z, depth, {}};
-  transposed(columns, rows);
-  for (; bits != 0; bits &= bits - 1) {
-    const int lane = __builtin_ctz(bits);
-    const Candidate pair{batch.of_a[lane], batch.of_b[lane]};
-    const auto vertex = static_cast<std::uint64_t>(place.vertex_names[pair.a]), face = static_cast<std::uint64_t>(place.face_names[pair.b]);
-    ContactRow& row = out->rows[out->count];
-    static_assert(sizeof(ContactRow) == sizeof rows[0], "seven numbers and the id");
-    __builtin_memcpy(&row, rows[lane], sizeof row);
-    row.id = place.kinds | (place.vertices_are_a ? vertex << 32 | face : face << 32 | vertex);
-    out->deepest = rows[lane][6] > out->deepest ? rows[lane][6] : out->deepest;
-    out->pairs[out->count++] = pair;
+  double* rows[LANES];
+  std::uint32_t count = out->count;
+  for (int i = 0; i < LANES; ++i) {
+    rows[i] = out->rows[count].point;
+    __builtin_memcpy(&out->rows[count].weight, &UNWEIGHED, sizeof UNWEIGHED);
+    out->pairs[count] = {batch.of_a[i], batch.of_b[i]};
+    count += bits >> i & 1;
   }
+  out->count = count;
+  transposed({point.x, point.y, point.z, normal_BA.x, normal_BA.y, normal_BA.z, depth, reinterpret_cast<Doubles>(idsOf(batch, place))},
+             rows);
+  return depth;
 }
 
 }  // namespace

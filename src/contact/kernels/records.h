@@ -124,22 +124,29 @@ struct LeafHits {
 
 /** A vertex near a face. */
 struct VertexFaceHit {
-  std::uint32_t candidate;
-  bool is_plain;     ///< over the face's inside and not touching: a contact as it stands
-  bool is_beside;    ///< outside the face
-  bool near_border;  ///< and close enough to its border that another may lie in the same place
-  double height;     ///< [m]
+  enum : std::uint32_t {
+    OUTSIDE = 7,      ///< bits k: it lies outside side k of the face
+    PLAIN = 8,        ///< over the face's inside and not touching: a contact as it stands
+    BESIDE = 16,      ///< outside the face
+    NEAR_BORDER = 32  ///< or over it and so close to its border that another may lie in the same place
+  };
+  std::uint32_t candidate, bits;
+  double height;  ///< [m] over the face's plane
+
+  bool has(std::uint32_t bit) const { return (bits & bit) != 0; }
 };
 
-/** A contact as it is handed on. */
-struct alignas(64) ContactRow {
+/** A Contact, number by number. */
+struct ContactRow {
   double point[3];   ///< [m] world
   double normal[3];  ///< unit, world, from B to A
   double depth;      ///< [m]
   std::uint64_t id;  ///< contactId
+  double weight;
+  std::uint64_t pierced;
 };
 
-/** What the contacts of vertices of one mesh with faces of the other are in the world. */
+/** Where the contacts of vertices of one mesh with faces of the other are. */
 struct ContactPlace {
   const Vec4* vertices;     ///< in frame F
   const int* vertex_names;  ///< as the vertices
@@ -150,15 +157,29 @@ struct ContactPlace {
   double layer;         ///< [m] rA + rB
   double shift;         ///< [m] (rB - rA) / 2
   std::uint64_t kinds;  ///< contactId of features 0
+  bool keeps_feet;      ///< witness points are asked for
 };
 
-/** Where kernels write contacts that need no closer look. Room for as many as there are candidates. */
+/** Where kernels write contacts that need no closer look. Room for one more than there are candidates. */
 struct PlainContacts {
   ContactPlace place;
   ContactRow* rows;
   Candidate* pairs;     ///< whose they are
   std::uint32_t count;  ///< so far; they are appended
   double deepest;       ///< [m] their largest depth so far
+};
+
+/** A side of a face beside which a vertex lies; the face's mesh's frame. */
+struct BesideSide {
+  Vec4 start, along;  ///< its corner, to the next one
+};
+
+/** A vertex's contact with a face's side: as a Contact; where witness points are asked for, the foot on the side, in frame F. */
+struct SideFoot {
+  double point[3];   ///< [m]
+  double normal[3];  ///< unit; in frame F from the fixed mesh to the moving one
+  double distance;   ///< [m] of the vertex
+  double lost;       ///< [m] of depth, since the vertex lies beside the face
 };
 
 /** Two edges near each other whose common perpendicular points out of their faces. */

@@ -1,0 +1,45 @@
+// Vertices beside faces: where on a side of the face the contact is. Included by the kernels only.
+#pragma once
+
+#include "plain_contacts.h"
+
+namespace blem_sim::kernels {
+namespace {
+
+/** The closest point of the side to the vertex's projection into the face's plane. */
+inline Vectors closestOnSide(const Rows& start, const Rows& along, const Vectors& projection) {
+  const Doubles part = clampedToUnit(dot(projection - start.v, along.v) / dot(along.v, along.v));
+  return start.v + part * along.v;
+}
+
+void sideFeet(const ContactPlace& place, const Vec4* vertices, const FaceRecord* faces, const BesideSide* sides, const Candidate* pairs,
+              std::uint32_t count, SideFoot* feet) {
+  for (std::uint32_t first = 0; first < count; first += LANES) {
+    const Batch batch(pairs, first, count);
+    std::uint32_t index[LANES];
+    for (int i = 0; i < LANES; ++i) index[i] = first + i < count ? first + i : count - 1;
+    const Vectors p = batch.points(vertices, batch.of_a).v;
+    const Rows plane = batch.field(faces, batch.of_b, &FaceRecord::plane);
+    const Vectors projection = p - above(p, plane) * plane.v;
+    Vectors at = p,
+            foot = closestOnSide(batch.field(sides, index, &BesideSide::start), batch.field(sides, index, &BesideSide::along), projection);
+    const Vectors beside = projection - foot;
+    const Doubles lost = FADE_SLOPE * squareRoot(dot(beside, beside));
+    if (place.faces_move) {
+      at = batch.points(place.vertices, batch.of_a).v;
+      foot = turnedPoint(place.X_FM, foot);
+    }
+    const bool from_foot = place.keeps_feet ? !place.faces_move : place.vertices_are_a;
+    const Vectors d = from_foot ? at - foot : foot - at;
+    const Doubles distance = squareRoot(dot(d, d));
+    const Vectors normal{d.x / distance, d.y / distance, d.z / distance};
+    const auto [point, direction] = place.keeps_feet ? WorldContacts{foot, normal} : inWorld(place, at, foot, normal);
+    double* rows[LANES];
+    SideFoot behind_last;
+    for (int i = 0; i < LANES; ++i) rows[i] = first + i < count ? feet[first + i].point : behind_last.point;
+    transposed({point.x, point.y, point.z, direction.x, direction.y, direction.z, distance, lost}, rows);
+  }
+}
+
+}  // namespace
+}  // namespace blem_sim::kernels
