@@ -14,7 +14,7 @@ namespace blem_sim {
 namespace {
 
 // Contacts exist before touch, so that none appears with a force: at rest within this of the layer, sooner at speed.
-constexpr double BASE_MARGIN = 0.001;  // [m]
+constexpr double BASE_MARGIN = 0.0005;  // [m]
 // What is farther than this is not looked at: before it comes close, the step guard ends the substep.
 constexpr double LEAST_MAX_MARGIN = 0.005;  // [m], or
 constexpr double MAX_MARGIN_OF_LAYER = 2;   // layers
