@@ -12,10 +12,11 @@ constexpr double INEXACT = 0.02;
 constexpr int SOFT_STAGES = 2;
 constexpr double CONTACT_SOFTNESS[SOFT_STAGES] = {1000, 30};
 constexpr double JOINT_SOFTNESS[SOFT_STAGES] = {10, 3};
-constexpr int FIRST_ITERATIONS = 4;     // of the hard problem; those after them must lead somewhere, or the soft ones are asked
-constexpr double FIRST_PROGRESS = 0.1;  // an iteration that leads somewhere reduces the gradient to this
-constexpr double CHORD_PROGRESS = 0.1;  // a factor that is not made anew must have reduced the gradient to this
-constexpr double NO_STEP = 1e-16;       // [rad/s or m/s] largest change of a velocity that is none
+constexpr int FIRST_ITERATIONS = 4;         // of the hard problem; those after them must lead somewhere, or the soft ones are asked
+constexpr double FIRST_PROGRESS = 0.1;      // an iteration that leads somewhere reduces the gradient to this
+constexpr double CHORD_PROGRESS = 0.1;      // a factor that is not made anew must have reduced the gradient to this
+constexpr int EASY = 10, ENOUGH_LEFT = 20;  // iterations of a proximal step whose slips are mixed, and of those that are left then
+constexpr double NO_STEP = 1e-16;           // [rad/s or m/s] largest change of a velocity that is none
 
 }  // namespace
 
@@ -160,7 +161,7 @@ void IslandProblem::soften(double contact, double joint) {
 
 void IslandProblem::remember() {
   responses_known_ = false;
-  blem_sim::remember(contact_blocks_.data(), contact_blocks_.data() + contact_blocks_.size());
+  slip_mixing_.remember(contact_blocks_.data(), contact_blocks_.data() + contact_blocks_.size());
   for (JointTerm& j : joints) j.remember(space_->velocity[j.dof]);
   setJoints();
   for (LoopTerm& loop : loops) loop.remember();
@@ -227,6 +228,7 @@ NewtonReport IslandProblem::iterate(const NewtonSettings& settings) {
     for (int stage = 0; stage < SOFT_STAGES; ++stage) {
       soften(CONTACT_SOFTNESS[stage], JOINT_SOFTNESS[stage]);
       report.iterations += newton(settings, INEXACT, left());
+      slip_mixing_.start(contact_blocks_.size() * LANES);
       remember();
     }
     soften(1, 1);
@@ -237,14 +239,19 @@ NewtonReport IslandProblem::iterate(const NewtonSettings& settings) {
 }
 
 void IslandProblem::finish(const NewtonSettings& settings, NewtonReport* report) {
+  int last = settings.max_iterations;
   for (int outer = 1; outer < settings.max_outer; ++outer) {
     assess(report);
     const bool lawful = report->contact_residual <= settings.contact_tolerance && report->joint_creep <= settings.joint_tolerance;
     const bool exact = gradient_norm_ <= settings.gradient_tolerance;
     const int left = settings.max_iterations - report->iterations;
     if ((lawful && exact) || left <= 0) break;
+    // What may be the last step is not led beyond what was found.
+    const bool mixes = outer > 1 && last <= EASY && left >= ENOUGH_LEFT && outer + 1 < settings.max_outer;
+    if (!mixes) slip_mixing_.start(contact_blocks_.size() * LANES);
     if (!lawful) remember();
-    report->iterations += newton(settings, lawful ? 0 : INEXACT, left);
+    last = newton(settings, lawful ? 0 : INEXACT, left);
+    report->iterations += last;
   }
   assess(report);
   readMimics();

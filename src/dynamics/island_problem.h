@@ -11,6 +11,7 @@
 #include "islands.h"
 #include "joint_lanes.h"
 #include "loop_term.h"
+#include "slip_mixing.h"
 #include "tree_rows.h"
 
 namespace blem_sim {
@@ -170,9 +171,10 @@ class IslandProblem {
   double gradient_norm_ = 0;   ///< [sqrt(kg) m/s]
   std::vector<ContactBlock> contact_blocks_;  ///< responses: where the line search looked last
   std::vector<JointBlock> joint_blocks_;      ///< likewise
-  double responses_at_ = 0;                   ///< how far along the direction that was
-  bool responses_known_ = false;              ///< and that is the present iterate
-  double linear_ = 0, quadratic_ = 0;         ///< of the kinetic part along the search direction
+  SlipMixing slip_mixing_;
+  double responses_at_ = 0;            ///< how far along the direction that was
+  bool responses_known_ = false;       ///< and that is the present iterate
+  double linear_ = 0, quadratic_ = 0;  ///< of the kinetic part along the search direction
   // What the factor at hand, and the elimination of idle dofs, were made with: kinds of contacts and stiffnesses of joints, lane by lane.
   bool factored_ = false, base_known_ = false;
   std::vector<double> factored_kinds_, factored_joints_, base_joints_;

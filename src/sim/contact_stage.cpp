@@ -8,17 +8,18 @@
 #include "blem_sim/contact/narrow_phase.h"
 #include "blem_sim/contact/reduction.h"
 #include "blem_sim/geometry/input_error.h"
+#include "meeting_speed.h"
 
 namespace blem_sim {
 namespace {
 
 // Contacts exist before touch, so that none appears with a force: at rest within this of the layer, sooner at speed.
-constexpr double BASE_MARGIN = 0.001;  // [m]
+constexpr double BASE_MARGIN = 0.0005;  // [m]
 // What is farther than this is not looked at: before it comes close, the step guard ends the substep.
 constexpr double LEAST_MAX_MARGIN = 0.005;  // [m], or
 constexpr double MAX_MARGIN_OF_LAYER = 2;   // layers
 constexpr double UNGUARDED_MARGIN = 0.1;    // [m] where there is no layer, and over half-spaces: 66 m/s at 1 ms
-// Forces may speed a body up during the step; its margin covers this times its present motion.
+// Forces may speed a body up during the step; a margin covers this times the present motion.
 constexpr double REACH_FACTOR = 1.5;
 // Pierced contacts part at this speed; what weighs on them slows them down by its weight over this rate times the lighter model's mass.
 constexpr double SEPARATION_SPEED = 0.1;  // [m/s]
@@ -27,12 +28,6 @@ constexpr double APART = 0.25;            // of the layer: what crossed is sound
 
 // Of a recovery in a saved state.
 constexpr std::size_t WORDS = 3, NUMBERS = 16;
-
-double knownMargin(const Collider& a, const Collider& b, double margin) {
-  const double layer = a.radius + b.radius;
-  const bool guarded = layer > 0 && !a.geometry->isHalfSpace() && !b.geometry->isHalfSpace();
-  return std::min(margin, guarded ? std::max(LEAST_MAX_MARGIN, MAX_MARGIN_OF_LAYER * layer) : UNGUARDED_MARGIN);
-}
 
 /** Farthest corner of the geometry's box from the body's centre of mass. */
 double armOf(const Collider& collider, const Vector3& com) {
@@ -104,13 +99,25 @@ void ContactStage::moveColliders(const SimulatedWorld& world, const std::vector<
   }
 }
 
+/** WatchedPair::known: by how far two colliders can approach each other; bodies that move together have little. */
+double ContactStage::knownMargin(const SimulatedWorld& world, const std::vector<BodyState>& bodies, const ColliderPair& pair,
+                                 double dt) const {
+  const Collider &a = world.colliders[pair.a], &b = world.colliders[pair.b];
+  const double layer = a.radius + b.radius;
+  const bool guarded = layer > 0 && !a.geometry->isHalfSpace() && !b.geometry->isHalfSpace();
+  const double most = std::min(pair.margin, guarded ? std::max(LEAST_MAX_MARGIN, MAX_MARGIN_OF_LAYER * layer) : UNGUARDED_MARGIN);
+  if (most <= BASE_MARGIN) return most;
+  const double speed = meetingSpeed(world, bodies, search_.motion, pair.a, pair.b, layer + pair.margin);
+  return std::clamp(REACH_FACTOR * speed * dt, BASE_MARGIN, most);
+}
+
 void ContactStage::broadPhase(const SimulatedWorld& world, const std::vector<BodyState>& bodies, double dt) {
   moveColliders(world, bodies, dt);
   search_.pairs.clear();
   for (const ColliderPair& pair :
        pair_search_.find(world.colliders, search_.motion, world.filter, BASE_MARGIN, std::numeric_limits<double>::infinity())) {
     if (world.disabled_pairs.count({pair.a, pair.b}) > 0) continue;
-    search_.pairs.push_back({pair.a, pair.b, pair.margin, knownMargin(world.colliders[pair.a], world.colliders[pair.b], pair.margin)});
+    search_.pairs.push_back({pair.a, pair.b, pair.margin, knownMargin(world, bodies, pair, dt)});
   }
 }
 

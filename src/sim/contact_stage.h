@@ -87,6 +87,7 @@ class ContactStage {
     std::vector<Recovery> recoveries;
   };
   void moveColliders(const SimulatedWorld& world, const std::vector<BodyState>& bodies, double dt);
+  double knownMargin(const SimulatedWorld& world, const std::vector<BodyState>& bodies, const ColliderPair& pair, double dt) const;
   /** Where a pair was last apart, as far as the accepted state knows. */
   Recovery lastApart(int a, int b) const;
   void keepWhatWasFound(std::size_t pairs);
