@@ -49,6 +49,11 @@ double largestMotion(const Box& region, const Pose& X, const Pose& Y) {
 /** How far the end of a unit vector moves at most from one orientation to the other. */
 double largestTurn(const Pose& X, const Pose& Y) { return (X.linear() - Y.linear()).norm() / std::sqrt(2.0); }
 
+/** Are lists of that origin good for the range where nothing has moved and turned farther than so from there? */
+bool isGoodFor(const ListOrigin& origin, double range, double motion, double turn) {
+  return motion <= origin.margin.motion && range + motion <= origin.range + origin.margin.motion && turn <= origin.margin.turn;
+}
+
 /** A number from LEAST_PART to 1 that is another for every pose: pairs that set out together shall not all need new lists in one step. */
 double partOf(const Pose& X) {
   constexpr double GRAIN = 1e-7;  // [m]
@@ -110,9 +115,7 @@ class ContactSearch {
   bool isGood(const ListOrigin& origin) const { return origin.known && isGoodAt(pair_.X_FM, origin); }
 
   bool isGoodAt(const Pose& X_FM, const ListOrigin& origin) const {
-    const double motion = largestMotion(region_, X_FM, origin.X_FM);
-    return motion <= origin.margin.motion && pair_.range + motion <= origin.range + origin.margin.motion &&
-           largestTurn(X_FM, origin.X_FM) <= origin.margin.turn;
+    return isGoodFor(origin, pair_.range, largestMotion(region_, X_FM, origin.X_FM), largestTurn(X_FM, origin.X_FM));
   }
 
   /** The pair where a list of that margin is best made: so far ahead on its way that the list is good from now on until long after. */
@@ -188,9 +191,30 @@ class ContactSearch {
 
 }  // namespace
 
+namespace {
+
+/** Has a pair without candidates surely moved by so little that it has none still? What moves most of all that there is tells. */
+bool staysEmpty(const MeshPair& pair, const ContactSearchMemory& memory) {
+  const CandidateListing& list = memory.contacts.now;
+  const ListOrigin& origin = list.origin;
+  if (memory.moving != pair.moving.identity || memory.fixed != pair.fixed.identity || !memory.visited || !origin.known) return false;
+  if (list.lists.pairs.contacts() > 0) return false;
+  const Box& bounds = pair.moving.bounds;
+  const Vector3 middle = bounds.center();
+  const double reach = 0.5 * bounds.diagonal().norm() + std::sqrt(3.0) * pair.range, turn = largestTurn(pair.X_FM, origin.X_FM),
+               motion = (pair.X_FM * middle - origin.X_FM * middle).norm() + reach * turn;
+  return isGoodFor(origin, pair.range, motion, turn);
+}
+
+}  // namespace
+
 void searchContacts(const MeshPair& pair, ContactSearchMemory* memory, ContactSearchBuffers* buffers, FoundContacts* found) {
   found->clear();
-  if (!memory) {
+  if (memory && staysEmpty(pair, *memory)) {
+    memory->X_FM = pair.X_FM;
+    memory->motion = SteadyMotion();
+    memory->distance = pair.range;
+  } else if (!memory) {
     buffers->unknown.moving = 0;
     ContactSearch(pair, &buffers->unknown, buffers, found).run(false);
   } else {
