@@ -4,6 +4,7 @@
 #include "../tolerances.h"
 #include "batch.h"
 #include "edge_cones.h"
+#include "edge_sides.h"
 #include "face_sides.h"
 #include "lanes.h"
 #include "plain_contacts.h"
@@ -93,13 +94,19 @@ std::uint32_t nearEdgeEdges(const EdgeRecord* a, const EdgeRecord* b, const Cand
 
 std::uint32_t nearVertexEdges(const Vec4* a, const EdgeRecord* b, const Candidate* in, std::uint32_t count, const Reach& reach,
                               Candidate* out) {
-  const double range = reach.range + reach.margin, limit = 2 * CONE_SLACK * range + reach.margin + CLOSED;
+  const double range = reach.range + reach.margin, margin = reach.margin + 3 * CLOSED, limit = 2 * CONE_SLACK * range + margin;
   return copied(in, count, out, [&](const Batch& batch) {
     const Rows start = batch.field(b, batch.of_b, &EdgeRecord::start);
-    const Vectors along = batch.field(b, batch.of_b, &EdgeRecord::along).v, r = batch.points(a, batch.of_a).v - start.v;
-    const Vectors d = r - clampedToUnit(dot(r, along) / start.w) * along;
-    const Mask inside = (dot(batch.inward(b, batch.of_b, 0).v, r) > limit) | (dot(batch.inward(b, batch.of_b, 1).v, r) > limit);
-    return ~bitsOf(inside | (dot(d, d) > range * range));
+    const Vectors r = batch.points(a, batch.of_a).v - start.v;
+    const Vectors u = batch.inward(b, batch.of_b, 0).v, v = batch.inward(b, batch.of_b, 1).v, both = u + v;
+    const Doubles inside = dot(u, r), also = dot(v, r);
+    const unsigned beside = bitsOf(maximum(inside, also) <= limit);
+    if (beside == 0) return 0u;
+    const Rows along = batch.field(b, batch.of_b, &EdgeRecord::along);
+    const Doubles part = dot(r, along.v) / start.w, length = squareRoot(start.w);
+    const Vectors d = r - part * along.v;
+    const AtEdge<Doubles> vertex{{inside, also}, squareRoot(dot(d, d)), maximum(-part, part - 1) * length};
+    return beside & bitsOf(isAtEdge(vertex, squareRoot(dot(both, both)), along.w < 0, range, margin, 3 * CLOSED));
   });
 }
 
