@@ -118,14 +118,14 @@ using NamedContact = std::tuple<int, int, int, int, double>;
 std::vector<NamedContact> contactsOf(const MeshPair& pair, CandidateLists* lists, const CandidatePairs& pairs, EvaluationBuffers* buffers) {
   std::vector<Contact> plain;
   FoundContacts found;
-  found.plain = &plain;
+  found.plain.overwrite(&plain);
   found.clear();
   buffers->turned.turnForContacts(*lists, pair.X_FM);
   // As if the meshes crossed: then none is plain, and all say whose they are.
   found.crossings.push_back({});
   Evaluation(pair, lists, pairs, buffers, &found).findContacts();
   std::vector<NamedContact> out;
-  for (const FeatureContact& c : found.close)
+  for (const FeatureContact& c : found.close.witnessed())
     out.emplace_back(static_cast<int>(c.moving.kind), c.moving.index, static_cast<int>(c.fixed.kind), c.fixed.index, c.gap);
   std::sort(out.begin(), out.end());
   return out;
