@@ -84,6 +84,16 @@ TEST(NarrowPhaseMemory, JerksAreNoSurprise) {
             300u);
 }
 
+/** Pairs that had no candidates for a while. */
+TEST(NarrowPhaseMemory, FromAfarByTurningAndByJumping) {
+  const Collider ground = makeCollider(gridMesh(2, 2, 20, 20), 0), pole = makeCollider(boxMesh({1, 0.01, 0.01}), R),
+                 cube = makeCollider(boxMesh(Vector3::Constant(0.05)), R);
+  const auto tilting = [](int step) { return makePose({0, 0, 0.02}, {0, 2e-4 * step, 0}); };
+  EXPECT_GT(follow(pole, ground, 150, tilting, noMargin).contacts, 10u);
+  const auto jumping = [](int step) { return makePose({1e-6 * step, 0, step < 20 ? 0.03 : 0.022}); };
+  EXPECT_TRUE(follow(cube, ground, 25, jumping, noMargin).crossed);
+}
+
 TEST(NarrowPhaseMemory, CrossingsAreFoundAndLost) {
   RandomShapes random(6);
   const Collider hills = makeCollider(hillMesh(random, 0.3, 60, 0.001), 0), ball = makeCollider(icosphereMesh(0.02, 3), R);
