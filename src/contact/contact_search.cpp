@@ -193,12 +193,13 @@ class ContactSearch {
 
 namespace {
 
-/** Has a pair without candidates surely moved by so little that it has none still? What moves most of all that there is tells. */
+/** Has a pair that was apart and without candidates surely moved by so little that it is so still? What moves most of all that there is
+ * tells. Apart by more than the margin when last seen, it did not cross where the list was made. */
 bool staysEmpty(const MeshPair& pair, const ContactSearchMemory& memory) {
   const CandidateListing& list = memory.contacts.now;
   const ListOrigin& origin = list.origin;
   if (memory.moving != pair.moving.identity || memory.fixed != pair.fixed.identity || !memory.visited || !origin.known) return false;
-  if (list.lists.pairs.contacts() > 0) return false;
+  if (list.lists.pairs.contacts() > 0 || memory.distance <= origin.margin.motion) return false;
   const Box& bounds = pair.moving.bounds;
   const Vector3 middle = bounds.center();
   const double reach = 0.5 * bounds.diagonal().norm() + std::sqrt(3.0) * pair.range, turn = largestTurn(pair.X_FM, origin.X_FM),
