@@ -99,7 +99,7 @@ void ContactStage::moveColliders(const SimulatedWorld& world, const std::vector<
   }
 }
 
-/** WatchedPair::known: by how far two colliders can approach each other; bodies that move together have little. */
+/** WatchedPair::known: by how far two colliders can approach each other, moving on as they do, or if one of them is stopped dead. */
 double ContactStage::knownMargin(const SimulatedWorld& world, const std::vector<BodyState>& bodies, const ColliderPair& pair,
                                  double dt) const {
   const Collider &a = world.colliders[pair.a], &b = world.colliders[pair.b];
@@ -108,7 +108,8 @@ double ContactStage::knownMargin(const SimulatedWorld& world, const std::vector<
   const double most = std::min(pair.margin, guarded ? std::max(LEAST_MAX_MARGIN, MAX_MARGIN_OF_LAYER * layer) : UNGUARDED_MARGIN);
   if (most <= BASE_MARGIN) return most;
   const double speed = meetingSpeed(world, bodies, search_.motion, pair.a, pair.b, layer + pair.margin);
-  return std::clamp(REACH_FACTOR * speed * dt, BASE_MARGIN, most);
+  const double alone = std::max(search_.motion[pair.a].reach, search_.motion[pair.b].reach) / REACH_FACTOR;
+  return std::clamp(std::max(REACH_FACTOR * speed * dt, alone), BASE_MARGIN, most);
 }
 
 void ContactStage::broadPhase(const SimulatedWorld& world, const std::vector<BodyState>& bodies, double dt) {

@@ -20,8 +20,8 @@ SimulationConfig twoCubes(double gap, const Vector3& velocity_a, const Vector3& 
   return config;
 }
 
-TEST(KnownContacts, ThingsThatMoveTogetherAreNoNearerThanAtRest) {
-  Simulator simulator(twoCubes(0.002, Vector3(0, 8, 0), Vector3(0, 8, 0)), UriResolver());
+TEST(KnownContacts, ThingsThatMoveTogetherAreFar) {
+  Simulator simulator(twoCubes(0.002, Vector3(0, 1, 0), Vector3(0, 1, 0)), UriResolver());
   for (int i = 0; i < 10; ++i) {
     const StepReport& report = simulator.step();
     EXPECT_EQ(report.searched_pairs, 1);
@@ -42,6 +42,22 @@ TEST(KnownContacts, ThingsThatMeetAreKnownBeforeTheyTouch) {
     EXPECT_GT(before_touch, 0) << speed;
     EXPECT_LT(deepest, 1e-9) << speed;
     EXPECT_GT(bodyOf(simulator, "b").v_WCom.x(), 0.3 * speed);
+  }
+}
+
+TEST(KnownContacts, WhatIsStoppedDeadIsKnownToWhatFollows) {
+  for (const double speed : {2.0, 4.0, 6.0}) {
+    SimulationConfig config = twoCubes(0.001, Vector3(speed, 0, 0), Vector3(speed, 0, 0));
+    config.objects.push_back(box("wall", Vector3::Constant(0.1), 1e4, Vector3(2 * (0.1 + LAYER) + 0.02, 0, 5)));
+    Simulator simulator(config, UriResolver());
+    double deepest = 0;
+    for (int i = 0; i < 30; ++i) {
+      const StepReport& report = simulator.step();
+      EXPECT_EQ(report.redone_solves, 0) << speed;
+      deepest = std::max(deepest, report.max_of_layer);
+    }
+    EXPECT_LT(bodyOf(simulator, "a").v_WCom.x(), 0.1 * speed);
+    EXPECT_LT(deepest, 0.01) << speed;
   }
 }
 
