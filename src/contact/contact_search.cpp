@@ -20,7 +20,10 @@ constexpr double NEAREST_STEPS = 3;
 constexpr double CROSSING_STEPS = 10;
 constexpr std::size_t FEW_CANDIDATES = 200;
 constexpr double LEAST_MARGIN = 0.02, MOST_MARGIN = 0.8, LEAST_NEAREST_MARGIN = 0.005;  // of the range
-constexpr double FIRST_MARGIN = 0.1;                                                    // of the range, where the motion is not known yet
+// Lists of fast bodies grow faster than their margins where there are many pairs of leaves.
+constexpr std::size_t MANY_LEAF_PAIRS = 4000;
+constexpr double MOST_MARGIN_OF_MANY = 0.3;
+constexpr double FIRST_MARGIN = 0.1;  // of the range, where the motion is not known yet
 // The same of directions.
 constexpr double LEAST_TURN = 0.005, LEAST_NEAREST_TURN = 0.001, FIRST_TURN = 0.05;
 /** What a distance may be wrong by [m]. */
@@ -105,9 +108,12 @@ class ContactSearch {
   ListMargin chooseMargin() const {
     if (!memory_.visited) return {FIRST_MARGIN * pair_.range, FIRST_TURN};
     if (isFast()) return {};
-    const double steps = MARGIN_STEPS * partOf(pair_.X_FM);
-    return {std::clamp(steps * motion_.motion, LEAST_MARGIN * pair_.range, MOST_MARGIN * pair_.range),
-            std::max(steps * motion_.turn, LEAST_TURN)};
+    const bool many = memory_.contacts.now.pairs.size() > MANY_LEAF_PAIRS;
+    const double most = (many ? MOST_MARGIN_OF_MANY : MOST_MARGIN) * pair_.range;
+    // Turning is allowed for as long as moving.
+    double steps = MARGIN_STEPS * partOf(pair_.X_FM);
+    if (steps * motion_.motion > most) steps = most / motion_.motion;
+    return {std::max(steps * motion_.motion, LEAST_MARGIN * pair_.range), std::max(steps * motion_.turn, LEAST_TURN)};
   }
 
   Vector3 middle() const { return pair_.moving.bounds.center(); }
