@@ -106,7 +106,8 @@ class Search {
                  &buffers_.new_features[moves].edges);
   }
 
-  /** Appends visit(i, j) for the features i of the moving leaf and j of the fixed one. */
+  /** Appends visit(i, j) for the features i of the moving leaf and j of the fixed one: in place, for a copy of both numbers at once would
+   * wait until each is written. */
   template <typename Visit>
   static void append(const LeafHit* hits, int count, std::vector<Candidate>* candidates, Visit&& visit) {
     for (int h = 0; h < count; ++h) {

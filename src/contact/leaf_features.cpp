@@ -125,7 +125,6 @@ void describe(const MeshSide& side, std::uint32_t index, KeptLeaf* kept) {
   if (!kept->features) kept->features = std::make_unique<LeafFeatures>();
   describe(side, index, kept->features.get());
   const LeafShapes& shapes = kept->features->shapes;
-  kept->search = 0;
   kept->feature_count = shapes.vertex_count + shapes.face_count + shapes.edge_count;
 }
 
@@ -166,9 +165,9 @@ EdgeRecord edgeRecord(const MeshSide& side, int edge) {
 KeptLeaf& LeafMemory::findKept(const MeshSide& side, std::uint32_t leaf, std::uint64_t search) {
   const std::uint64_t key = keyOf(side, leaf);
   Set& set = sets_[key * 0x9E3779B97F4A7C15u >> (64 - SET_BITS)];
-  std::size_t oldest = 0;
   for (std::size_t way = 0; way < WAYS; ++way)
     if (set.keys[way] == key) return set.leaves[way];
+  std::size_t oldest = 0;
   for (std::size_t way = 1; way < WAYS; ++way)
     if (set.leaves[way].search < set.leaves[oldest].search) oldest = way;
   if (set.leaves[oldest].search == search) return findCrowdedOut(side, leaf, search);
