@@ -51,7 +51,8 @@ class Search {
   void findLeafPairs() {
     const auto matters = [this](std::uint32_t m, std::uint32_t f) { return (pair_.moving.owners[m] | pair_.fixed.owners[f]) != 0; };
     visitLeafPairsIf(pair_.moving.bvh, pair_.fixed.bvh, pair_.X_FM, reach_ + rounding_, matters, [this](std::uint32_t m, std::uint32_t f) {
-      listing_.pairs.push_back({use(true, m), use(false, f)});
+      const std::uint32_t moving = use(true, m), fixed = use(false, f);
+      listing_.pairs.emplace_back() = {moving, fixed};
     });
   }
 
@@ -105,12 +106,13 @@ class Search {
                  &buffers_.new_features[moves].edges);
   }
 
-  /** Appends visit(i, j) for the features i of the moving leaf and j of the fixed one. */
+  /** Appends visit(i, j) for the features i of the moving leaf and j of the fixed one: in place, for a copy of both numbers at once would
+   * wait until each is written. */
   template <typename Visit>
   static void append(const LeafHit* hits, int count, std::vector<Candidate>* candidates, Visit&& visit) {
     for (int h = 0; h < count; ++h) {
       for (std::uint32_t bits = hits[h].bits; bits != 0; bits &= bits - 1)
-        candidates->push_back(visit(hits[h].feature, static_cast<std::uint32_t>(__builtin_ctz(bits))));
+        candidates->emplace_back() = visit(hits[h].feature, static_cast<std::uint32_t>(__builtin_ctz(bits)));
     }
   }
 
@@ -150,7 +152,7 @@ class Search {
     return FLOAT_ROUNDING * (std::max(largest(pair_.fixed.bounds), largest(pair_.moving.bounds) + shift) + reach_) + 3 * CLOSED;
   }
 
-  LeafFeatures& find(bool moves, std::uint32_t node) { return buffers_.leaves.find(pair_.side(moves), node, search_); }
+  KeptLeaf& find(bool moves, std::uint32_t node) { return buffers_.leaves.find(pair_.side(moves), node, search_); }
 
   /** Index of the node among the listing's leaves. */
   std::uint32_t use(bool moves, std::uint32_t node) {
@@ -160,16 +162,15 @@ class Search {
   }
 
   std::uint32_t indexOf(bool moves, std::uint32_t node) {
-    LeafFeatures& features = find(moves, node);
-    std::uint32_t& index = features.index[moves];
-    if (index != LeafFeatures::NO_INDEX) return index;
+    KeptLeaf& found = find(moves, node);
+    std::uint32_t& index = found.index[moves];
+    if (index != KeptLeaf::NO_INDEX) return index;
     std::vector<CandidateListing::Leaf>& leaves = listing_.leaves[moves];
     index = static_cast<std::uint32_t>(leaves.size());
-    const kernels::LeafShapes& shapes = features.shapes;
     const std::size_t slots = listing_.slots.size();
     leaves.push_back({node, static_cast<std::uint32_t>(slots)});
-    listing_.slots.resize(slots + shapes.vertex_count + shapes.face_count + shapes.edge_count, NOWHERE);
-    buffers_.found[moves].push_back({&features, nullptr});
+    listing_.slots.resize(slots + found.feature_count, NOWHERE);
+    buffers_.found[moves].push_back({found.features.get(), nullptr});
     return index;
   }
 
@@ -177,7 +178,7 @@ class Search {
     FoundLeaf& found = buffers_.found[moves][index];
     const CandidateListing::Leaf& leaf = listing_.leaves[moves][index];
     if (!found.shapes) {
-      if (!found.features) found.features = &find(moves, leaf.node);
+      if (!found.features) found.features = find(moves, leaf.node).features.get();
       found.shapes = moves ? turned(found.features->shapes, index) : &found.features->shapes;
     }
     return {*found.features, *found.shapes, leaf.slots};
@@ -211,7 +212,7 @@ class Search {
     std::uint32_t& place = listing_.slots[slot];
     if (place == NOWHERE) {
       place = static_cast<std::uint32_t>(features.names.size() + added->size());
-      added->push_back({&leaf.features, i});
+      added->emplace_back() = {&leaf.features, i};
     }
     return place;
   }

@@ -99,7 +99,6 @@ EdgeCone edgeCone(const std::vector<EdgeRecord>& edges) {
 void describe(const MeshSide& side, std::uint32_t index, LeafFeatures* leaf) {
   const Bvh::Node& node = side.bvh.nodes()[index];
   assert(node.count <= kernels::MAX_LEAF_ELEMENTS);
-  leaf->search = 0;
   leaf->vertices.clear();
   leaf->faces.clear();
   leaf->edges.clear();
@@ -113,11 +112,20 @@ void describe(const MeshSide& side, std::uint32_t index, LeafFeatures* leaf) {
       if (side.topology.ownsVertex(element, k)) describeVertex(side, side.mesh.elements[element][k], leaf);
     }
   }
-  shapes.vertex_count = static_cast<std::uint32_t>(leaf->vertices.records.size());
-  shapes.face_count = static_cast<std::uint32_t>(leaf->faces.records.size());
-  shapes.edge_count = static_cast<std::uint32_t>(leaf->edges.records.size());
+  Eigen::Map<Eigen::Vector3f>(shapes.middle) = 0.5f * (node.lower + node.upper);
+  Eigen::Map<Eigen::Vector3f>(shapes.halves) = 0.5f * (node.upper - node.lower);
+  shapes.vertex_count = static_cast<std::uint16_t>(leaf->vertices.records.size());
+  shapes.face_count = static_cast<std::uint16_t>(leaf->faces.records.size());
+  shapes.edge_count = static_cast<std::uint16_t>(leaf->edges.records.size());
   shapes.edge_cone = edgeCone(leaf->edges.records);
   shapes.region = leafRegion(side, node, *leaf);
+}
+
+void describe(const MeshSide& side, std::uint32_t index, KeptLeaf* kept) {
+  if (!kept->features) kept->features = std::make_unique<LeafFeatures>();
+  describe(side, index, kept->features.get());
+  const LeafShapes& shapes = kept->features->shapes;
+  kept->feature_count = shapes.vertex_count + shapes.face_count + shapes.edge_count;
 }
 
 }  // namespace
@@ -154,37 +162,31 @@ EdgeRecord edgeRecord(const MeshSide& side, int edge) {
 }
 
 /** What is held of the leaf; else it takes the place, of its few, that was used longest ago. */
-LeafFeatures& LeafMemory::findKept(const MeshSide& side, std::uint32_t leaf, std::uint64_t search) {
+KeptLeaf& LeafMemory::findKept(const MeshSide& side, std::uint32_t leaf, std::uint64_t search) {
   const std::uint64_t key = keyOf(side, leaf);
   Set& set = sets_[key * 0x9E3779B97F4A7C15u >> (64 - SET_BITS)];
   for (std::size_t way = 0; way < WAYS; ++way)
-    if (set.keys[way] == key) return *set.features[way];
+    if (set.keys[way] == key) return set.leaves[way];
   std::size_t oldest = 0;
-  for (std::size_t way = 0; way < WAYS; ++way) {
-    if (!set.features[way] || set.features[way]->search < set.features[oldest]->search) oldest = way;
-    if (!set.features[way]) break;
-  }
-  if (!set.features[oldest]) set.features[oldest] = std::make_unique<LeafFeatures>();
-  if (set.features[oldest]->search == search) return findCrowdedOut(side, leaf, search);
+  for (std::size_t way = 1; way < WAYS; ++way)
+    if (set.leaves[way].search < set.leaves[oldest].search) oldest = way;
+  if (set.leaves[oldest].search == search) return findCrowdedOut(side, leaf, search);
   set.keys[oldest] = key;
-  describe(side, leaf, set.features[oldest].get());
-  return *set.features[oldest];
+  describe(side, leaf, &set.leaves[oldest]);
+  return set.leaves[oldest];
 }
 
-LeafFeatures& LeafMemory::findCrowdedOut(const MeshSide& side, std::uint32_t leaf, std::uint64_t search) {
+KeptLeaf& LeafMemory::findCrowdedOut(const MeshSide& side, std::uint32_t leaf, std::uint64_t search) {
   if (crowded_search_ != search) crowded_out_.clear();
   crowded_search_ = search;
-  std::unique_ptr<LeafFeatures>& features = crowded_out_[keyOf(side, leaf)];
-  if (!features) {
-    features = std::make_unique<LeafFeatures>();
-    describe(side, leaf, features.get());
-  }
-  return *features;
+  KeptLeaf& kept = crowded_out_[keyOf(side, leaf)];
+  if (!kept.features) describe(side, leaf, &kept);
+  return kept;
 }
 
-LeafFeatures& LeafMemory::find(const MeshSide& side, std::uint32_t leaf, std::uint64_t search) {
-  LeafFeatures& found = findKept(side, leaf, search);
-  if (found.search != search) found.index[0] = found.index[1] = LeafFeatures::NO_INDEX;
+KeptLeaf& LeafMemory::find(const MeshSide& side, std::uint32_t leaf, std::uint64_t search) {
+  KeptLeaf& found = findKept(side, leaf, search);
+  if (found.search != search) found.index[0] = found.index[1] = KeptLeaf::NO_INDEX;
   found.search = search;
   return found;
 }

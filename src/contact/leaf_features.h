@@ -29,10 +29,6 @@ struct LeafFeatures {
       return i;
     }
   };
-  static constexpr std::uint32_t NO_INDEX = 0xFFFFFFFF;
-
-  std::uint64_t search = 0;  ///< the last search that came here
-  std::uint32_t index[2];  ///< what that search calls it, as a leaf of the moving mesh [1] and of the fixed one [0]; NO_INDEX: nothing yet
   kernels::LeafShapes shapes;  ///< in the mesh's frame
   Kind<kernels::Vec4, kernels::MAX_LEAF_FEATURES> vertices;
   Kind<kernels::FaceRecord, kernels::MAX_LEAF_ELEMENTS> faces;
@@ -48,26 +44,36 @@ inline kernels::Vec4 vertexRecord(const MeshSide& side, int vertex) {
   return {p.x(), p.y(), p.z(), 0};
 }
 
+/** A leaf that is held, and what searches want to know without a look at its features. */
+struct KeptLeaf {
+  static constexpr std::uint32_t NO_INDEX = 0xFFFFFFFF;
+
+  std::unique_ptr<LeafFeatures> features;
+  std::uint64_t search = 0;  ///< the last one that came here
+  std::uint32_t index[2];  ///< what that search calls it, as a leaf of the moving mesh [1] and of the fixed one [0]; NO_INDEX: nothing yet
+  std::uint32_t feature_count = 0;  ///< vertices, faces and edges
+};
+
 /** Leaves that were looked at lately. What is kept changes no result. */
 class LeafMemory {
  public:
   /** @return what stays until the search ends */
-  LeafFeatures& find(const MeshSide& side, std::uint32_t leaf, std::uint64_t search);
+  KeptLeaf& find(const MeshSide& side, std::uint32_t leaf, std::uint64_t search);
 
  private:
   static constexpr std::size_t SET_BITS = 11, WAYS = 8;  // 16,384 leaves; places that a leaf may have
   /** Which leaves are held, and where. */
   struct alignas(64) Set {
     std::uint64_t keys[WAYS] = {};  // keyOf; 0: nobody's
-    std::unique_ptr<LeafFeatures> features[WAYS];
+    KeptLeaf leaves[WAYS];
   };
   static std::uint64_t keyOf(const MeshSide& side, std::uint32_t leaf) { return side.identity << 32 | leaf; }
-  LeafFeatures& findKept(const MeshSide& side, std::uint32_t leaf, std::uint64_t search);
-  LeafFeatures& findCrowdedOut(const MeshSide& side, std::uint32_t leaf, std::uint64_t search);
+  KeptLeaf& findKept(const MeshSide& side, std::uint32_t leaf, std::uint64_t search);
+  KeptLeaf& findCrowdedOut(const MeshSide& side, std::uint32_t leaf, std::uint64_t search);
 
   std::vector<Set> sets_ = std::vector<Set>(1u << SET_BITS);
   // Leaves of the search at hand whose places others of its leaves hold.
-  std::map<std::uint64_t, std::unique_ptr<LeafFeatures>> crowded_out_;
+  std::map<std::uint64_t, KeptLeaf> crowded_out_;
   std::uint64_t crowded_search_ = 0;
 };
 

@@ -236,6 +236,7 @@ LeafShapes randomLeaf(std::uint64_t seed) {
     std::fill_n(cones.per_slack, LEAF_BLOCK, 1.5f);
     for (std::int32_t& round : cones.round) round = -random.integer(0, 1);
   }
+  std::fill_n(leaf.halves, 3, 1.0f);
   leaf.region = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0, 0, 0}, {1, 1, 1}, 0.6f, 0.5f, 1.3f};
   leaf.nearest = 0x7F;
   return leaf;

@@ -18,9 +18,9 @@ TEST(LeafMemory, OneSearchLosesNoLeaf) {
   LeafMemory memory;
   for (const std::uint64_t search : {1, 2}) {
     for (const std::uint32_t leaf : leaves) {
-      LeafFeatures& features = memory.find(side, leaf, search);
-      ASSERT_EQ(features.index[1], LeafFeatures::NO_INDEX);
-      features.index[1] = leaf;
+      KeptLeaf& found = memory.find(side, leaf, search);
+      ASSERT_EQ(found.index[1], KeptLeaf::NO_INDEX);
+      found.index[1] = leaf;
     }
     for (const std::uint32_t leaf : leaves) ASSERT_EQ(memory.find(side, leaf, search).index[1], leaf);
   }

@@ -29,19 +29,43 @@ inline std::uint32_t verticesNear(const LeafShapes& a, const LeafShapes& b, cons
   });
 }
 
+/** Edges by their middles and what leads from there to their ends [m]. */
+struct FloatSegments {
+  FloatSegments(const LeafEdges& edges, std::uint32_t first)
+      : half(0.5f * row(&edges.lengths[first]) * FloatVectors::several(edges.directions, first)),
+        middle(FloatVectors::several(edges.starts, first) + half) {}
+  FloatVectors half, middle;
+};
+
+/** Do the boxes of edges come so near the leaf's? */
+inline FloatMask areNear(const LeafShapes& leaf, const FloatSegments& edges, float reach) {
+  const auto outside = [&](Floats middle, Floats half, int k) {
+    return absolute(middle - leaf.middle[k]) - absolute(half) - leaf.halves[k];
+  };
+  return maximum(maximum(outside(edges.middle.x, edges.half.x, 0), outside(edges.middle.y, edges.half.y, 1)),
+                 outside(edges.middle.z, edges.half.z, 2)) <= reach;
+}
+
 /** How far edges lie outside the box, along each axis [m]. */
-inline FloatVectors outsideOf(const LeafRegion& region, const LeafEdges& edges, std::uint32_t first) {
-  const FloatVectors half = 0.5f * row(&edges.lengths[first]) * FloatVectors::several(edges.directions, first);
-  const FloatVectors middle = outsideOf(region, alongAxes(region, FloatVectors::several(edges.starts, first) + half)),
-                     along = alongAxes(region, half);
+inline FloatVectors outsideOf(const LeafRegion& region, const FloatSegments& edges) {
+  const FloatVectors middle = outsideOf(region, alongAxes(region, edges.middle)), along = alongAxes(region, edges.half);
   return {middle.x - absolute(along.x), middle.y - absolute(along.y), middle.z - absolute(along.z)};
+}
+
+/** Edges of a that come so near b's box, and of whose way outside along the axes of its region the test holds. */
+template <typename Test>
+inline std::uint32_t edgesNear(const LeafShapes& a, const LeafShapes& b, float reach, Test&& test) {
+  return edgesWhere(a, [&](const LeafEdges& block, std::uint32_t i) {
+    const FloatSegments edges(block, i);
+    const FloatMask near = areNear(b, edges, reach);
+    return bitsOf(near) == 0 ? near : near & test(outsideOf(b.region, edges));
+  });
 }
 
 /** Edges of a that may have a contact with an edge of b. */
 inline std::uint32_t edgesNear(const LeafShapes& a, const LeafShapes& b, const LeafReach& reach) {
   const float most = b.region.edge_beside * reach.range + reach.margin;
-  return edgesWhere(a, [&](const LeafEdges& edges, std::uint32_t i) {
-    const FloatVectors outside = outsideOf(b.region, edges, i);
+  return edgesNear(a, b, reach.range, [&](const FloatVectors& outside) {
     // Feet that leave both edges lie the more beside each other the less they lie above.
     const Floats beside = minimum(most - maximum(outside.z, Floats{}), allFloats(reach.range)) + reach.margin;
     return maximum(maximum(outside.x, outside.y) - beside, outside.z - reach.range) <= 0;
@@ -50,10 +74,7 @@ inline std::uint32_t edgesNear(const LeafShapes& a, const LeafShapes& b, const L
 
 /** Edges of a that come within the margin of b's box. */
 inline std::uint32_t edgesAtBox(const LeafShapes& a, const LeafShapes& b, float margin) {
-  return edgesWhere(a, [&](const LeafEdges& edges, std::uint32_t i) {
-    const FloatVectors outside = outsideOf(b.region, edges, i);
-    return maximum(maximum(outside.x, outside.y), outside.z) <= margin;
-  });
+  return edgesNear(a, b, margin, [&](const FloatVectors& outside) { return maximum(maximum(outside.x, outside.y), outside.z) <= margin; });
 }
 
 }  // namespace

@@ -29,6 +29,15 @@ struct LeafTurn {
   void direction(const float (&in)[3], float (&out)[3]) const {
     for (int k = 0; k < 3; ++k) out[k] = R[3 * k] * in[0] + R[3 * k + 1] * in[1] + R[3 * k + 2] * in[2];
   }
+  /** The box around the box where it comes to lie. */
+  void box(const LeafShapes& in, LeafShapes* out) const {
+    const auto size = [](float value) { return value < 0 ? -value : value; };
+    for (int k = 0; k < 3; ++k) {
+      const float* const r = &R[3 * k];
+      out->middle[k] = r[0] * in.middle[0] + r[1] * in.middle[1] + r[2] * in.middle[2] + t[k];
+      out->halves[k] = size(r[0]) * in.halves[0] + size(r[1]) * in.halves[1] + size(r[2]) * in.halves[2];
+    }
+  }
   void region(const LeafRegion& in, LeafRegion* out) const {
     *out = in;
     for (int k = 0; k < 3; ++k) {
@@ -58,6 +67,7 @@ void turnLeaf(const LeafShapes& in, const Motion& motion, LeafShapes* out) {
   out->edge_cone = in.edge_cone;
   turn.direction(in.edge_cone.axis, out->edge_cone.axis);
   turn.region(in.region, &out->region);
+  turn.box(in, out);
   out->nearest = in.nearest;
   turn.planes(in.faces.planes, out->faces.planes);
   for (int k = 0; k < 3; ++k) turn.planes(in.faces.sides[k], out->faces.sides[k]);

@@ -83,7 +83,8 @@ struct alignas(32) LeafEdges {
   float folds[LEAF_BLOCK];  ///< length of the sum of EdgeRecord::inward; less than 0 if the edge is round (ROUND_COSINE)
 };
 struct alignas(64) LeafShapes {
-  std::uint32_t face_count, edge_count, vertex_count;
+  std::uint16_t face_count, edge_count, vertex_count;
+  float middle[3], halves[3];  ///< [m] of a box around all elements
   EdgeCone edge_cone;
   LeafRegion region;
   std::uint32_t nearest;  ///< bits of the vertices that can be the nearest of their surface: those with a VertexCone
