@@ -7,7 +7,7 @@ namespace {
 constexpr int MAX_LINE_SEARCH = 30;
 constexpr double LINE_SEARCH_SLOPE = 1e-3;  // of the first slope: where the search is near enough to its minimum
 // Of the first gradient of a proximal step: the next step changes the problem again, so this one need not be solved to the last digit.
-constexpr double INEXACT = 0.02;
+constexpr double INEXACT = 0.02, INEXACT_MIXED = 1e-4;  // mixed slips begin far away: a miss that is to lead on must not be the rest
 // Proximal weights of the first steps against the last one's: soft contacts and soft joint friction find who sticks in few iterations.
 constexpr int SOFT_STAGES = 2;
 constexpr double CONTACT_SOFTNESS[SOFT_STAGES] = {1000, 30};
@@ -250,7 +250,7 @@ void IslandProblem::finish(const NewtonSettings& settings, NewtonReport* report)
     const bool mixes = outer > 1 && last <= EASY && left >= ENOUGH_LEFT && outer + 1 < settings.max_outer;
     if (!mixes) slip_mixing_.start(contact_blocks_.size() * LANES);
     if (!lawful) remember();
-    last = newton(settings, lawful ? 0 : INEXACT, left);
+    last = newton(settings, lawful ? 0 : mixes ? INEXACT_MIXED : INEXACT, left);
     report->iterations += last;
   }
   assess(report);
