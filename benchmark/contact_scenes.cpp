@@ -132,8 +132,8 @@ std::unique_ptr<ContactScene> boxOn(TriangleMesh terrain, const Vector3& size) {
   return scene;
 }
 
-constexpr double HUBO_CELL = 0.01, CUBE_CELL = 0.0075, SLAB_CELL = 0.01;  // [m]
-const Vector3 CUBE = Vector3::Constant(0.183);                            // [m]
+constexpr double HUBO_CELL = 0.01, CUBE_CELL = 0.0075, SLAB_CELL = 0.01;             // [m]
+const Vector3 CUBE = Vector3::Constant(0.183), SMALL_CUBE = Vector3::Constant(0.1);  // [m]
 
 bool haveHubo() { return sharedData("robots/klampt/huboplus/huboplus.urdf").has_value(); }
 
@@ -149,7 +149,7 @@ std::unique_ptr<ContactScene> huboOnGrowingTerrain(int triangles) {
 
 std::unique_ptr<ContactScene> cubeOnTerrain(int triangles) { return boxOn(noisyGrid(triangles), CUBE); }
 
-std::unique_ptr<ContactScene> cubeOnGrowingTerrain(int triangles) { return boxOn(growingGrid(triangles, CUBE_CELL), CUBE); }
+std::unique_ptr<ContactScene> cubeOnGrowingTerrain(int triangles) { return boxOn(growingGrid(triangles, CUBE_CELL), SMALL_CUBE); }
 
 std::unique_ptr<ContactScene> slabOnTerrain(int contacts) {
   const double cells = std::sqrt(contacts), beside = 10;

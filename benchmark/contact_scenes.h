@@ -31,7 +31,7 @@ std::unique_ptr<ContactScene> huboOnTerrain(int triangles, bool points = false);
 std::unique_ptr<ContactScene> cubeOnTerrain(int triangles);
 /** Hubo on such noise, 10 mm from vertex to vertex, on a terrain that grows outward with the triangles: the same contacts on each. */
 std::unique_ptr<ContactScene> huboOnGrowingTerrain(int triangles);
-/** A cube of 12 triangles on the same, 7.5 mm from vertex to vertex. */
+/** A cube of 12 triangles, 10 cm wide, on the same, 7.5 mm from vertex to vertex. */
 std::unique_ptr<ContactScene> cubeOnGrowingTerrain(int triangles);
 /** A slab of 12 triangles on the same, as wide as it must be for about so many contacts. */
 std::unique_ptr<ContactScene> slabOnTerrain(int contacts);

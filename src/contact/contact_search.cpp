@@ -13,7 +13,7 @@ constexpr double LEAST_PART = 0.7;  // of MARGIN_STEPS, see partOf
 constexpr std::size_t PARTS = 4, FEW_LEAF_PAIRS = 64;
 constexpr double LASTING_STEPS = 8;
 // A list is made for a pose ahead, so much of its margin away on the way of the pair, at most.
-constexpr double AHEAD = 0.8, AHEAD_AT_MOST = 0.95;
+constexpr double AHEAD = 0.9, AHEAD_AT_MOST = 0.98;
 // Of long lists those that matter for so few steps are listed again.
 constexpr double NEAREST_STEPS = 3;
 // Candidates for crossings are listed for so many.
