@@ -52,6 +52,11 @@ double largestMotion(const Box& region, const Pose& X, const Pose& Y) {
 /** How far the end of a unit vector moves at most from one orientation to the other. */
 double largestTurn(const Pose& X, const Pose& Y) { return (X.linear() - Y.linear()).norm() / std::sqrt(2.0); }
 
+/** Is it of these two meshes? */
+bool isOf(const ContactSearchMemory& memory, const MeshPair& pair) {
+  return memory.moving == pair.moving.identity && memory.fixed == pair.fixed.identity;
+}
+
 /** Are lists of that origin good for the range where nothing has moved and turned farther than so from there? */
 bool isGoodFor(const ListOrigin& origin, double range, double motion, double turn) {
   return motion <= origin.margin.motion && range + motion <= origin.range + origin.margin.motion && turn <= origin.margin.turn;
@@ -69,7 +74,7 @@ class ContactSearch {
  public:
   ContactSearch(const MeshPair& pair, ContactSearchMemory* memory, ContactSearchBuffers* buffers, FoundContacts* found)
       : pair_(pair), memory_(*memory), buffers_(*buffers), found_(*found), region_(commonRegion(pair)) {
-    if (memory->moving != pair.moving.identity || memory->fixed != pair.fixed.identity) forget();
+    if (!isOf(*memory, pair)) forget();
     if (!memory_.visited) return;
     motion_ = {largestMotion(region_, pair.X_FM, memory_.X_FM), largestTurn(pair.X_FM, memory_.X_FM)};
     memory_.motion.add(memory_.X_FM, pair.X_FM, middle());
@@ -195,16 +200,12 @@ class ContactSearch {
   ListMargin motion_;  // since the last search
 };
 
-}  // namespace
-
-namespace {
-
 /** Has a pair that was apart and without candidates surely moved by so little that it is so still? What moves most of all that there is
  * tells. Apart by more than the margin when last seen, it did not cross where the list was made. */
 bool staysEmpty(const MeshPair& pair, const ContactSearchMemory& memory) {
   const CandidateListing& list = memory.contacts.now;
   const ListOrigin& origin = list.origin;
-  if (memory.moving != pair.moving.identity || memory.fixed != pair.fixed.identity || !memory.visited || !origin.known) return false;
+  if (!isOf(memory, pair) || !memory.visited || !origin.known) return false;
   if (list.lists.pairs.contacts() > 0 || memory.distance <= origin.margin.motion) return false;
   const Box& bounds = pair.moving.bounds;
   const Vector3 middle = bounds.center();
