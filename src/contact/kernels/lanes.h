@@ -27,9 +27,13 @@ typedef long Mask __attribute__((vector_size(8 * LANES)));
 typedef float Floats __attribute__((vector_size(4 * FLOAT_LANES)));
 typedef int FloatMask __attribute__((vector_size(4 * FLOAT_LANES)));
 
-struct Vectors {
-  Doubles x, y, z;
+/** Coordinates of as many vectors as there are lanes. */
+template <typename Lanes>
+struct VectorsOf {
+  Lanes x, y, z;
 };
+using Vectors = VectorsOf<Doubles>;
+using FloatVectors = VectorsOf<Floats>;
 
 inline Doubles all(double value) { return value - Doubles{}; }
 inline Floats allFloats(float value) { return value - Floats{}; }
@@ -95,11 +99,26 @@ inline Floats minimum(Floats a, Floats b) { return a < b ? a : b; }
 inline Floats absolute(Floats a) { return a < 0 ? -a : a; }
 inline Floats clampedToUnit(Floats a) { return minimum(maximum(a, Floats{}), allFloats(1)); }
 
-inline Doubles dot(const Vectors& a, const Vectors& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-inline Vectors cross(const Vectors& a, const Vectors& b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
-inline Vectors operator+(const Vectors& a, const Vectors& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-inline Vectors operator-(const Vectors& a, const Vectors& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-inline Vectors operator*(Doubles s, const Vectors& a) { return {s * a.x, s * a.y, s * a.z}; }
+template <typename Lanes>
+inline Lanes dot(const VectorsOf<Lanes>& a, const VectorsOf<Lanes>& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+template <typename Lanes>
+inline VectorsOf<Lanes> cross(const VectorsOf<Lanes>& a, const VectorsOf<Lanes>& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+template <typename Lanes>
+inline VectorsOf<Lanes> operator+(const VectorsOf<Lanes>& a, const VectorsOf<Lanes>& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+template <typename Lanes>
+inline VectorsOf<Lanes> operator-(const VectorsOf<Lanes>& a, const VectorsOf<Lanes>& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+template <typename Lanes>
+inline VectorsOf<Lanes> operator*(Lanes s, const VectorsOf<Lanes>& a) {
+  return {s * a.x, s * a.y, s * a.z};
+}
 
 /** Four vectors from as many Vec4 as there are lanes. */
 struct Rows {

@@ -21,12 +21,11 @@ inline FloatMask mayTouch(const FloatVectors& p, const FloatFaces& face, const L
 }
 
 inline FloatMask mayTouch(const FloatVectors& p, const LeafEdges& edges, std::uint32_t first, const LeafReach& reach) {
-  const FloatVectors r = p - FloatVectors::several(edges.starts, first);
-  const Floats inside = dot(FloatVectors::several(edges.inwards[0], first), r),
-               also = dot(FloatVectors::several(edges.inwards[1], first), r);
+  const FloatVectors r = p - severalVectors(edges.starts, first);
+  const Floats inside = dot(severalVectors(edges.inwards[0], first), r), also = dot(severalVectors(edges.inwards[1], first), r);
   const FloatMask beside = maximum(inside, also) <= static_cast<float>(2 * CONE_SLACK) * reach.range + reach.margin;
   if (bitsOf(beside) == 0) return beside;
-  const FloatVectors direction = FloatVectors::several(edges.directions, first);
+  const FloatVectors direction = severalVectors(edges.directions, first);
   const Floats along = dot(r, direction), fold = row(&edges.folds[first]);
   const FloatVectors d = r - along * direction;
   const AtEdge<Floats> vertex{{inside, also}, squareRoot(dot(d, d)), maximum(-along, along - row(&edges.lengths[first]))};
@@ -49,10 +48,10 @@ inline FloatMask mayTouch(const LeafShapes& a, std::uint32_t i, const LeafShapes
   const float slack = static_cast<float>(CONE_SLACK) * reach.range + reach.margin;
   const LeafCones &one = blockOf(a.cones, i), &several = blockOf(b.cones, first);
   const std::uint32_t k = i % LEAF_BLOCK, j = first % LEAF_BLOCK;
-  const FloatMask a_may = mayBeNearest(FloatVectors::one(one.axes, k), allFloats(one.up[k]), allFloats(one.down[k]),
-                                       allFloats(one.per_slack[k]), back, d2, slack);
-  const FloatMask b_may = mayBeNearest(FloatVectors::several(several.axes, j), row(&several.up[j]), row(&several.down[j]),
-                                       row(&several.per_slack[j]), d, d2, slack);
+  const FloatMask a_may =
+      mayBeNearest(oneVector(one.axes, k), allFloats(one.up[k]), allFloats(one.down[k]), allFloats(one.per_slack[k]), back, d2, slack);
+  const FloatMask b_may =
+      mayBeNearest(severalVectors(several.axes, j), row(&several.up[j]), row(&several.down[j]), row(&several.per_slack[j]), d, d2, slack);
   const FloatMask b_round = maskRow(&several.round[j]);
   return near & ((a_may & b_may) | (b_may & b_round) | (a_may & one.round[k]));
 }

@@ -10,21 +10,12 @@ inline Floats row(const float* from) { return *reinterpret_cast<const Floats*>(f
 inline FloatMask maskRow(const std::int32_t* from) { return *reinterpret_cast<const FloatMask*>(from); }
 
 /** Coordinates of several features, or of one in all lanes. */
-struct FloatVectors {
-  Floats x, y, z;
-
-  static FloatVectors several(const float (&from)[3][LEAF_BLOCK], std::uint32_t first) {
-    return {row(&from[0][first]), row(&from[1][first]), row(&from[2][first])};
-  }
-  static FloatVectors one(const float (&from)[3][LEAF_BLOCK], std::uint32_t i) {
-    return {allFloats(from[0][i]), allFloats(from[1][i]), allFloats(from[2][i])};
-  }
-};
-
-inline Floats dot(const FloatVectors& a, const FloatVectors& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-inline FloatVectors operator+(const FloatVectors& a, const FloatVectors& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-inline FloatVectors operator-(const FloatVectors& a, const FloatVectors& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-inline FloatVectors operator*(Floats s, const FloatVectors& a) { return {s * a.x, s * a.y, s * a.z}; }
+inline FloatVectors severalVectors(const float (&from)[3][LEAF_BLOCK], std::uint32_t first) {
+  return {row(&from[0][first]), row(&from[1][first]), row(&from[2][first])};
+}
+inline FloatVectors oneVector(const float (&from)[3][LEAF_BLOCK], std::uint32_t i) {
+  return {allFloats(from[0][i]), allFloats(from[1][i]), allFloats(from[2][i])};
+}
 
 /** Planes, by their normal and offset: several, or one in all lanes. */
 struct FloatPlanes {
@@ -39,10 +30,6 @@ struct FloatPlanes {
   }
   Floats above(const FloatVectors& p) const { return dot(normal, p) - offset; }
 };
-
-inline FloatVectors cross(const FloatVectors& a, const FloatVectors& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
 
 struct FloatFaces {
   FloatFaces(const LeafFaces& faces, std::uint32_t first)
@@ -65,10 +52,10 @@ inline Block& blockOf(Block (&blocks)[LEAF_BLOCKS], std::uint32_t i) {
 }
 
 inline FloatVectors oneVertex(const LeafShapes& leaf, std::uint32_t i) {
-  return FloatVectors::one(blockOf(leaf.vertices, i).points, i % LEAF_BLOCK);
+  return oneVector(blockOf(leaf.vertices, i).points, i % LEAF_BLOCK);
 }
 inline FloatVectors severalVertices(const LeafShapes& leaf, std::uint32_t first) {
-  return FloatVectors::several(blockOf(leaf.vertices, first).points, first % LEAF_BLOCK);
+  return severalVectors(blockOf(leaf.vertices, first).points, first % LEAF_BLOCK);
 }
 
 struct FloatEdge {
@@ -77,14 +64,14 @@ struct FloatEdge {
 inline FloatEdge oneEdge(const LeafShapes& leaf, std::uint32_t index) {
   const LeafEdges& edges = blockOf(leaf.edges, index);
   const std::uint32_t i = index % LEAF_BLOCK;
-  return {FloatVectors::one(edges.starts, i),
-          allFloats(edges.lengths[i]) * FloatVectors::one(edges.directions, i),
-          {FloatVectors::one(edges.inwards[0], i), FloatVectors::one(edges.inwards[1], i)}};
+  return {oneVector(edges.starts, i),
+          allFloats(edges.lengths[i]) * oneVector(edges.directions, i),
+          {oneVector(edges.inwards[0], i), oneVector(edges.inwards[1], i)}};
 }
 inline FloatEdge severalEdges(const LeafEdges& edges, std::uint32_t first) {
-  return {FloatVectors::several(edges.starts, first),
-          row(&edges.lengths[first]) * FloatVectors::several(edges.directions, first),
-          {FloatVectors::several(edges.inwards[0], first), FloatVectors::several(edges.inwards[1], first)}};
+  return {severalVectors(edges.starts, first),
+          row(&edges.lengths[first]) * severalVectors(edges.directions, first),
+          {severalVectors(edges.inwards[0], first), severalVectors(edges.inwards[1], first)}};
 }
 
 /** Bits of the features for which test(first of some lanes) holds. */

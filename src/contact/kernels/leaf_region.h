@@ -32,8 +32,8 @@ inline std::uint32_t verticesNear(const LeafShapes& a, const LeafShapes& b, cons
 /** Edges by their middles and what leads from there to their ends [m]. */
 struct FloatSegments {
   FloatSegments(const LeafEdges& edges, std::uint32_t first)
-      : half(0.5f * row(&edges.lengths[first]) * FloatVectors::several(edges.directions, first)),
-        middle(FloatVectors::several(edges.starts, first) + half) {}
+      : half(0.5f * row(&edges.lengths[first]) * severalVectors(edges.directions, first)),
+        middle(severalVectors(edges.starts, first) + half) {}
   FloatVectors half, middle;
 };
 
