@@ -11,57 +11,94 @@ constexpr unsigned ALL_LANES = (1u << LANES) - 1;
 /** Height over the plane, or inside the side. */
 inline Doubles above(const Vectors& p, const Rows& plane) { return dot(p, plane.v) - plane.w; }
 
-/** Which candidates the lanes hold: behind the last one it is repeated, and masked. */
-struct Batch {
-  Batch(const Candidate* candidates, std::uint32_t first, std::uint32_t count) {
-    const std::uint32_t left = count - first;
-    if (left >= LANES) {
-      valid = ALL_LANES;
-      take(candidates + first, [](int i) { return i; });
-    } else {
-      valid = (1u << left) - 1;
-      take(candidates + first, [left](int i) { return static_cast<std::uint32_t>(i) < left ? i : left - 1; });
-    }
-  }
+/** Which of a candidate's features. */
+using Which = std::uint32_t Candidate::*;
+constexpr Which OF_A = &Candidate::a, OF_B = &Candidate::b;
 
-  Rows points(const Vec4* from, const std::uint32_t (&index)[LANES]) const {
-    return rows(index, [from](std::uint32_t i) { return &from[i]; });
+/** Which candidates the lanes hold: behind the last one it is repeated, and masked. */
+class Batch {
+ public:
+  Batch(const Candidate* candidates, std::uint32_t first, std::uint32_t count) : lanes(candidates + first), valid(ALL_LANES) {
+    const std::uint32_t left = count - first;
+    if (left >= LANES) return;
+    for (std::uint32_t i = 0; i < LANES; ++i) padded_[i] = lanes[i < left ? i : left - 1];
+    lanes = padded_;
+    valid = (1u << left) - 1;
+  }
+  Batch(const Batch&) = delete;
+  Batch& operator=(const Batch&) = delete;
+
+  Rows points(const Vec4* from, Which of) const {
+    return rows(of, [from](std::uint32_t i) { return &from[i]; });
   }
   template <typename Record>
-  Rows field(const Record* from, const std::uint32_t (&index)[LANES], const Vec4 Record::*member) const {
-    return rows(index, [=](std::uint32_t i) { return &(from[i].*member); });
+  Rows field(const Record* from, Which of, const Vec4 Record::*member) const {
+    return rows(of, [=](std::uint32_t i) { return &(from[i].*member); });
   }
   Rows side(const FaceRecord* from, int k) const {
-    return rows(of_b, [=](std::uint32_t i) { return &from[i].sides[k]; });
+    return rows(OF_B, [=](std::uint32_t i) { return &from[i].sides[k]; });
   }
-  Rows inward(const EdgeRecord* from, const std::uint32_t (&index)[LANES], int k) const {
-    return rows(index, [=](std::uint32_t i) { return &from[i].inward[k]; });
+  Rows inward(const EdgeRecord* from, Which of, int k) const {
+    return rows(of, [=](std::uint32_t i) { return &from[i].inward[k]; });
+  }
+  Mask numbers(const std::int32_t* from, Which of) const {
+    Mask numbers;
+    for (int i = 0; i < LANES; ++i) numbers[i] = from[lanes[i].*of];
+    return numbers;
   }
 
-  Mask open(const OpenSides* from) const {
-    Mask sides;
-    for (int i = 0; i < LANES; ++i) sides[i] = from[of_b[i]];
-    return sides;
+  /** Have all lanes the same feature b? */
+  bool hasOneB() const {
+    static_assert(sizeof(Candidate) == sizeof(Mask) / LANES, "a candidate is as wide as a lane");
+    constexpr Candidate ONLY_B{0, 0xFFFFFFFF};
+    Mask pairs;
+    long first, only_b;
+    __builtin_memcpy(&pairs, lanes, sizeof pairs);
+    __builtin_memcpy(&first, lanes, sizeof first);
+    __builtin_memcpy(&only_b, &ONLY_B, sizeof only_b);
+    return bitsOf(((pairs ^ first) & only_b) != 0) == 0;
   }
 
-  std::uint32_t of_a[LANES], of_b[LANES];
+  const Candidate* lanes;
   unsigned valid;
 
  private:
-  template <typename Place>
-  void take(const Candidate* from, Place&& place) {
-    for (int i = 0; i < LANES; ++i) {
-      of_a[i] = from[place(i)].a;
-      of_b[i] = from[place(i)].b;
-    }
-  }
   template <typename Address>
-  static Rows rows(const std::uint32_t (&index)[LANES], Address&& address) {
+  Rows rows(Which of, Address&& address) const {
     const Vec4* at[LANES];
-    for (int i = 0; i < LANES; ++i) at[i] = address(index[i]);
+    for (int i = 0; i < LANES; ++i) at[i] = address(lanes[i].*of);
     return gathered(at);
   }
+
+  Candidate padded_[LANES];
 };
+
+/** The lanes' features b, each its own. */
+struct EachFace {
+  Rows plane() const { return batch.field(faces, OF_B, &FaceRecord::plane); }
+  Rows side(int k) const { return batch.side(faces, k); }
+  Mask numbers(const std::int32_t* from) const { return batch.numbers(from, OF_B); }
+
+  const Batch& batch;
+  const FaceRecord* faces;
+};
+
+/** One face in all lanes. */
+struct OneFace {
+  Rows plane() const { return everywhere(face.plane); }
+  Rows side(int k) const { return everywhere(face.sides[k]); }
+  Mask numbers(const std::int32_t* from) const { return from[index] - Mask{}; }
+
+  const FaceRecord& face;
+  std::uint32_t index;
+};
+
+/** Calls visit with the lanes' faces. @return what it returns */
+template <typename Visit>
+inline auto withFaces(const Batch& batch, const FaceRecord* faces, Visit&& visit) {
+  const std::uint32_t first = batch.lanes[0].b;
+  return batch.hasOneB() ? visit(OneFace{faces[first], first}) : visit(EachFace{batch, faces});
+}
 
 }  // namespace
 }  // namespace blem_sim::kernels

@@ -32,8 +32,8 @@ inline std::uint32_t listed(const Candidate* candidates, std::uint32_t count, st
 }
 
 struct InsideSides {
-  InsideSides(const Batch& batch, const FaceRecord* faces, const Vectors& p)
-      : of{above(p, batch.side(faces, 0)), above(p, batch.side(faces, 1)), above(p, batch.side(faces, 2))} {}
+  template <typename Faces>
+  InsideSides(const Faces& faces, const Vectors& p) : of{above(p, faces.side(0)), above(p, faces.side(1)), above(p, faces.side(2))} {}
   Doubles least() const { return minimum(minimum(of[0], of[1]), of[2]); }
 
   const Doubles of[3];
@@ -52,11 +52,13 @@ std::uint32_t nearVertexFaces(const Vec4* a, const FaceRecord* b, const OpenSide
                               const Reach& reach, Candidate* out) {
   const double range = reach.range + reach.margin, beside = reach.margin + 3 * CLOSED;
   return copied(in, count, out, [&](const Batch& batch) {
-    const Vectors p = batch.points(a, batch.of_a).v;
-    const Doubles height = above(p, batch.field(b, batch.of_b, &FaceRecord::plane)), most = range - absolute(height);
-    const unsigned near = bitsOf(most >= 0);
-    if (near == 0) return 0u;
-    return near & bitsOf(isOverOrFades(InsideSides(batch, b, p).of, openSides(batch.open(open), height, reach.margin), most, beside));
+    const Vectors p = batch.points(a, OF_A).v;
+    return withFaces(batch, b, [&](const auto& faces) {
+      const Doubles height = above(p, faces.plane()), most = range - absolute(height);
+      const unsigned near = bitsOf(most >= 0);
+      if (near == 0) return 0u;
+      return near & bitsOf(isOverOrFades(InsideSides(faces, p).of, openSides(faces.numbers(open), height, reach.margin), most, beside));
+    });
   });
 }
 
@@ -69,13 +71,13 @@ std::uint32_t nearEdgeEdges(const EdgeRecord* a, const EdgeRecord* b, const Cand
                             Candidate* out) {
   const double range = reach.range + reach.margin, limit = deepestInside(range) + reach.margin;
   return copied(in, count, out, [&](const Batch& batch) {
-    const Rows start_a = batch.field(a, batch.of_a, &EdgeRecord::start), start_b = batch.field(b, batch.of_b, &EdgeRecord::start);
-    const Vectors p = batch.field(a, batch.of_a, &EdgeRecord::along).v, q = batch.field(b, batch.of_b, &EdgeRecord::along).v;
+    const Rows start_a = batch.field(a, OF_A, &EdgeRecord::start), start_b = batch.field(b, OF_B, &EdgeRecord::start);
+    const Vectors p = batch.field(a, OF_A, &EdgeRecord::along).v, q = batch.field(b, OF_B, &EdgeRecord::along).v;
     const Vectors r = start_b.v - start_a.v, back = start_a.v - start_b.v;
     Mask inside{};
     for (int k = 0; k < 2; ++k) {
-      inside |= liesInside(r, r + q, batch.inward(a, batch.of_a, k).v, limit);
-      inside |= liesInside(back, back + p, batch.inward(b, batch.of_b, k).v, limit);
+      inside |= liesInside(r, r + q, batch.inward(a, OF_A, k).v, limit);
+      inside |= liesInside(back, back + p, batch.inward(b, OF_B, k).v, limit);
     }
     const unsigned crosswise = ~bitsOf(inside) & ALL_LANES;
     if (crosswise == 0) return 0u;
@@ -86,9 +88,8 @@ std::uint32_t nearEdgeEdges(const EdgeRecord* a, const EdgeRecord* b, const Cand
     const unsigned near = crosswise & ~bitsOf(dot(d, d) > range * range);
     if (near == 0) return 0u;
     const Vectors n = cross(p, q);
-    return near &
-           bitsOf(conesMayAllow(n, coneBound(dot(n, n), pp * qq, reach.turn), batch.inward(a, batch.of_a, 0).v,
-                                batch.inward(a, batch.of_a, 1).v, batch.inward(b, batch.of_b, 0).v, batch.inward(b, batch.of_b, 1).v));
+    return near & bitsOf(conesMayAllow(n, coneBound(dot(n, n), pp * qq, reach.turn), batch.inward(a, OF_A, 0).v, batch.inward(a, OF_A, 1).v,
+                                       batch.inward(b, OF_B, 0).v, batch.inward(b, OF_B, 1).v));
   });
 }
 
@@ -96,13 +97,13 @@ std::uint32_t nearVertexEdges(const Vec4* a, const EdgeRecord* b, const Candidat
                               Candidate* out) {
   const double range = reach.range + reach.margin, margin = reach.margin + 3 * CLOSED, limit = 2 * CONE_SLACK * range + margin;
   return copied(in, count, out, [&](const Batch& batch) {
-    const Rows start = batch.field(b, batch.of_b, &EdgeRecord::start);
-    const Vectors r = batch.points(a, batch.of_a).v - start.v;
-    const Vectors u = batch.inward(b, batch.of_b, 0).v, v = batch.inward(b, batch.of_b, 1).v, both = u + v;
+    const Rows start = batch.field(b, OF_B, &EdgeRecord::start);
+    const Vectors r = batch.points(a, OF_A).v - start.v;
+    const Vectors u = batch.inward(b, OF_B, 0).v, v = batch.inward(b, OF_B, 1).v, both = u + v;
     const Doubles inside = dot(u, r), also = dot(v, r);
     const unsigned beside = bitsOf(maximum(inside, also) <= limit);
     if (beside == 0) return 0u;
-    const Rows along = batch.field(b, batch.of_b, &EdgeRecord::along);
+    const Rows along = batch.field(b, OF_B, &EdgeRecord::along);
     const Doubles part = dot(r, along.v) / start.w, length = squareRoot(start.w);
     const Vectors d = r - part * along.v;
     const AtEdge<Doubles> vertex{{inside, also}, squareRoot(dot(d, d)), maximum(-part, part - 1) * length};
@@ -114,7 +115,7 @@ std::uint32_t nearVertexVertices(const Vec4* a, const Vec4* b, const Candidate* 
                                  Candidate* out) {
   const double range = reach.range + reach.margin;
   return copied(in, count, out, [&](const Batch& batch) {
-    const Vectors d = batch.points(a, batch.of_a).v - batch.points(b, batch.of_b).v;
+    const Vectors d = batch.points(a, OF_A).v - batch.points(b, OF_B).v;
     return bitsOf(dot(d, d) <= range * range);
   });
 }
@@ -146,28 +147,30 @@ std::uint32_t vertexFaces(const Vec4* a, const FaceRecord* b, const OpenSides* o
   Doubles deepest = all(plain ? plain->deepest : 0);
   for (std::uint32_t first = 0; first < count; first += LANES) {
     const Batch batch(candidates, first, count);
-    const Vectors p = batch.points(a, batch.of_a).v;
-    const Rows plane = batch.field(b, batch.of_b, &FaceRecord::plane);
-    const Doubles height = above(p, plane), most = range - absolute(height);
-    const unsigned near = bitsOf(most >= 0) & batch.valid;
-    if (near == 0) continue;
-    const InsideSides sides(batch, b, p);
-    const Doubles inside = sides.least();
-    const Mask touches = absolute(height) <= TOUCH, clear = (inside >= NEAR_BORDER) & ~touches & (most >= 0);
-    const unsigned is_clear = plain ? bitsOf(clear) & batch.valid : 0;
-    if (is_clear) {
-      const Doubles depth = appendPlain(batch, p, plane.v, height, is_clear, plain);
-      deepest = maximum(deepest, clear ? depth : deepest);
-    }
-    if (is_clear == near) continue;
-    const Mask over = isOverOrFades(sides.of, openSides(batch.open(open), height, 0.0), most, 2 * CLOSED);
-    const Mask bits = vertexFaceBits(sides, inside, (inside >= 0) & ~touches);
-    const unsigned is_hit = near & ~is_clear & bitsOf(over);
-    // Which lanes have one is hard to foresee: every one writes, the next one over it if it has none.
-    for (int i = 0; i < LANES; ++i) {
-      hits[found] = {first + i, static_cast<std::uint32_t>(bits[i]), height[i]};
-      found += is_hit >> i & 1;
-    }
+    withFaces(batch, b, [&](const auto& faces) {
+      const Vectors p = batch.points(a, OF_A).v;
+      const Rows plane = faces.plane();
+      const Doubles height = above(p, plane), most = range - absolute(height);
+      const unsigned near = bitsOf(most >= 0) & batch.valid;
+      if (near == 0) return;
+      const InsideSides sides(faces, p);
+      const Doubles inside = sides.least();
+      const Mask touches = absolute(height) <= TOUCH, clear = (inside >= NEAR_BORDER) & ~touches & (most >= 0);
+      const unsigned is_clear = plain ? bitsOf(clear) & batch.valid : 0;
+      if (is_clear) {
+        const Doubles depth = appendPlain(batch, faces, p, plane.v, height, is_clear, plain);
+        deepest = maximum(deepest, clear ? depth : deepest);
+      }
+      if (is_clear == near) return;
+      const Mask over = isOverOrFades(sides.of, openSides(faces.numbers(open), height, 0.0), most, 2 * CLOSED);
+      const Mask bits = vertexFaceBits(sides, inside, (inside >= 0) & ~touches);
+      const unsigned is_hit = near & ~is_clear & bitsOf(over);
+      // Which lanes have one is hard to foresee: every one writes, the next one over it if it has none.
+      for (int i = 0; i < LANES; ++i) {
+        hits[found] = {first + i, static_cast<std::uint32_t>(bits[i]), height[i]};
+        found += is_hit >> i & 1;
+      }
+    });
   }
   for (int i = 0; plain && i < LANES; ++i) plain->deepest = deepest[i] > plain->deepest ? deepest[i] : plain->deepest;
   return found;
@@ -185,8 +188,8 @@ std::uint32_t edgeEdges(const EdgeRecord* a, const EdgeRecord* b, const Candidat
   forEachHit(
       candidates, count,
       [&](const Batch& batch) {
-        const Rows start_a = batch.field(a, batch.of_a, &EdgeRecord::start), start_b = batch.field(b, batch.of_b, &EdgeRecord::start);
-        const Rows along_a = batch.field(a, batch.of_a, &EdgeRecord::along), along_b = batch.field(b, batch.of_b, &EdgeRecord::along);
+        const Rows start_a = batch.field(a, OF_A, &EdgeRecord::start), start_b = batch.field(b, OF_B, &EdgeRecord::start);
+        const Rows along_a = batch.field(a, OF_A, &EdgeRecord::along), along_b = batch.field(b, OF_B, &EdgeRecord::along);
         const Vectors &p = along_a.v, &q = along_b.v, r = start_b.v - start_a.v, n = cross(p, q);
         const Doubles pp = start_a.w, qq = start_b.w, n2 = dot(n, n), rn = dot(r, n);
         const Doubles s = dot(cross(r, q), n), t = dot(cross(r, p), n), over_s = beyondEnds(s, n2), over_t = beyondEnds(t, n2);
@@ -197,10 +200,10 @@ std::uint32_t edgeEdges(const EdgeRecord* a, const EdgeRecord* b, const Candidat
         const Doubles norm = squareRoot(n2), gap = absolute(rn) / norm;
         const Vectors normal = (rn > 0 ? all(-1) : all(1)) / norm * n;
         const Mask touch = gap <= TOUCH;
-        Mask allowed = dot(batch.inward(b, batch.of_b, 0).v, normal) <= EDGE_CONE_SLACK;
-        allowed &= dot(batch.inward(b, batch.of_b, 1).v, normal) <= EDGE_CONE_SLACK;
-        allowed &= dot(batch.inward(a, batch.of_a, 0).v, normal) >= -EDGE_CONE_SLACK;
-        allowed &= dot(batch.inward(a, batch.of_a, 1).v, normal) >= -EDGE_CONE_SLACK;
+        Mask allowed = dot(batch.inward(b, OF_B, 0).v, normal) <= EDGE_CONE_SLACK;
+        allowed &= dot(batch.inward(b, OF_B, 1).v, normal) <= EDGE_CONE_SLACK;
+        allowed &= dot(batch.inward(a, OF_A, 0).v, normal) >= -EDGE_CONE_SLACK;
+        allowed &= dot(batch.inward(a, OF_A, 1).v, normal) >= -EDGE_CONE_SLACK;
         plain = bitsOf((over_s == 0) & (over_t == 0) & ~touch & (maximum(along_a.w, along_b.w) <= 0));
         const Doubles border2 = NEAR_BORDER * NEAR_BORDER * n2 * n2, end_s = minimum(s, n2 - s), end_t = minimum(t, n2 - t);
         near_border = bitsOf((end_s * end_s * pp < border2) | (end_t * end_t * qq < border2));
@@ -228,9 +231,9 @@ std::uint32_t edgeEdges(const EdgeRecord* a, const EdgeRecord* b, const Candidat
 std::uint32_t vertexEdges(const Vec4* a, const EdgeRecord* b, const Candidate* candidates, std::uint32_t count, double range,
                           std::uint32_t* hits) {
   return listed(candidates, count, hits, [&](const Batch& batch) {
-    const Rows start = batch.field(b, batch.of_b, &EdgeRecord::start);
-    const Rows along = batch.field(b, batch.of_b, &EdgeRecord::along);
-    const EdgeOffset offset = offsetFrom(start, along.v, batch.points(a, batch.of_a).v);
+    const Rows start = batch.field(b, OF_B, &EdgeRecord::start);
+    const Rows along = batch.field(b, OF_B, &EdgeRecord::along);
+    const EdgeOffset offset = offsetFrom(start, along.v, batch.points(a, OF_A).v);
     const Doubles d2 = dot(offset.d, offset.d), over = beyondEnds(offset.part, all(1)), distance = squareRoot(d2);
     // Beyond the ends of round edges contacts fade.
     const Doubles most = along.w < 0 ? (range - distance) / FADE_SLOPE : Doubles{};
@@ -238,27 +241,28 @@ std::uint32_t vertexEdges(const Vec4* a, const EdgeRecord* b, const Candidate* c
     const unsigned near = bitsOf((d2 <= range * range) & (over * over * start.w <= beyond * beyond));
     if (near == 0) return 0u;
     const Doubles limit = 2 * CONE_SLACK * distance + 2 * TOUCH;
-    return near &
-           bitsOf((dot(batch.inward(b, batch.of_b, 0).v, offset.d) <= limit) & (dot(batch.inward(b, batch.of_b, 1).v, offset.d) <= limit));
+    return near & bitsOf((dot(batch.inward(b, OF_B, 0).v, offset.d) <= limit) & (dot(batch.inward(b, OF_B, 1).v, offset.d) <= limit));
   });
 }
 
 std::uint32_t vertexVertices(const Vec4* a, const Vec4* b, const Candidate* candidates, std::uint32_t count, double range,
                              std::uint32_t* hits) {
   return listed(candidates, count, hits, [&](const Batch& batch) {
-    const Vectors d = batch.points(a, batch.of_a).v - batch.points(b, batch.of_b).v;
+    const Vectors d = batch.points(a, OF_A).v - batch.points(b, OF_B).v;
     return bitsOf(dot(d, d) <= range * range);
   });
 }
 
 std::uint32_t edgeFaces(const EdgeRecord* a, const FaceRecord* b, const Candidate* candidates, std::uint32_t count, std::uint32_t* hits) {
   return listed(candidates, count, hits, [&](const Batch& batch) {
-    const Vectors start = batch.field(a, batch.of_a, &EdgeRecord::start).v, along = batch.field(a, batch.of_a, &EdgeRecord::along).v;
-    const Rows plane = batch.field(b, batch.of_b, &FaceRecord::plane);
-    const Doubles first = above(start, plane), second = above(start + along, plane);
-    const unsigned through = bitsOf((minimum(first, second) < -TOUCH) & (maximum(first, second) > TOUCH));
-    if (through == 0) return 0u;
-    return through & bitsOf(InsideSides(batch, b, start + first / (first - second) * along).least() >= -2 * CLOSED);
+    const Vectors start = batch.field(a, OF_A, &EdgeRecord::start).v, along = batch.field(a, OF_A, &EdgeRecord::along).v;
+    return withFaces(batch, b, [&](const auto& faces) {
+      const Rows plane = faces.plane();
+      const Doubles first = above(start, plane), second = above(start + along, plane);
+      const unsigned through = bitsOf((minimum(first, second) < -TOUCH) & (maximum(first, second) > TOUCH));
+      if (through == 0) return 0u;
+      return through & bitsOf(InsideSides(faces, start + first / (first - second) * along).least() >= -2 * CLOSED);
+    });
   });
 }
 

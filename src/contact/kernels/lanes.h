@@ -126,6 +126,8 @@ struct Rows {
   Doubles w;
 };
 
+inline Rows everywhere(const Vec4& one) { return {{all(one.x), all(one.y), all(one.z)}, all(one.w)}; }
+
 inline Rows gathered(const Vec4* const* from) {
   Rows rows;
 #if defined(__AVX512F__)
@@ -161,8 +163,9 @@ inline Rows gathered(const Vec4* const* from) {
   return rows;
 }
 
-/** Turns eight columns of lanes into as many rows of eight numbers as there are lanes, written one after the other. */
-inline void transposed(const Doubles (&columns)[8], double* const (&rows)[LANES]) {
+/** Turns eight columns of lanes into as many rows of eight numbers as there are lanes, written one after the other to row(lane). */
+template <typename Row>
+inline void transposed(const Doubles (&columns)[8], Row&& row) {
 #if defined(__AVX512F__)
   const auto column = [&columns](int i) { return reinterpret_cast<__m512d>(columns[i]); };
   // Pairs of columns, then of pairs, then of those: in each 128 bits, two lanes further on, four.
@@ -182,10 +185,12 @@ inline void transposed(const Doubles (&columns)[8], double* const (&rows)[LANES]
   };
   turn(low, 0);
   turn(high, 1);
-  for (int lane = 0; lane < LANES; ++lane) _mm512_storeu_pd(rows[lane], turned[lane]);
+  for (int lane = 0; lane < LANES; ++lane) _mm512_storeu_pd(row(lane), turned[lane]);
 #else
-  for (int lane = 0; lane < LANES; ++lane)
-    for (int i = 0; i < 8; ++i) rows[lane][i] = columns[i][lane];
+  for (int lane = 0; lane < LANES; ++lane) {
+    double* const to = row(lane);
+    for (int i = 0; i < 8; ++i) to[i] = columns[i][lane];
+  }
 #endif
 }
 

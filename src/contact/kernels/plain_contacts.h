@@ -33,40 +33,40 @@ constexpr struct {
 } UNWEIGHED = {1, 0};
 
 /** contactId of the lanes' vertices and faces. */
-inline Mask idsOf(const Batch& batch, const ContactPlace& place) {
-  Mask vertices, faces;
-  for (int i = 0; i < LANES; ++i) {
-    vertices[i] = place.vertex_names[batch.of_a[i]];
-    faces[i] = place.face_names[batch.of_b[i]];
-  }
-  const Mask names = place.vertices_are_a ? vertices << 32 | faces : faces << 32 | vertices;
+template <typename Faces>
+inline Mask idsOf(const Batch& batch, const Faces& faces, const ContactPlace& place) {
+  const Mask vertex = batch.numbers(place.vertex_names, OF_A), face = faces.numbers(place.face_names);
+  const Mask names = place.vertices_are_a ? vertex << 32 | face : face << 32 | vertex;
   return names | static_cast<long>(place.kinds);
 }
 
 /** Writes a row for every lane; where its bit is not set the next one is written over it.
  * @param p as the faces are @param bits of the lanes that have a contact @return depths */
-inline Doubles appendPlain(const Batch& batch, const Vectors& p, const Vectors& normal, Doubles height, unsigned bits, PlainContacts* out) {
+template <typename Faces>
+inline Doubles appendPlain(const Batch& batch, const Faces& faces, const Vectors& p, const Vectors& normal, Doubles height, unsigned bits,
+                           PlainContacts* out) {
   const ContactPlace& place = out->place;
   Vectors at = p, up = normal;
   if (place.faces_move) {
-    at = batch.points(place.vertices, batch.of_a).v;
+    at = batch.points(place.vertices, OF_A).v;
     up = turnedDirection(place.X_FM, normal);
   }
   const Mask to_a = place.vertices_are_a ? height > 0 : height <= 0;
   const Doubles sign = to_a ? all(1) : all(-1);
   const auto [point, normal_BA] = inWorld(place, at, at - height * up, sign * up);
   const Doubles depth = place.layer - absolute(height);
-  double* rows[LANES];
   std::uint32_t count = out->count;
-  for (int i = 0; i < LANES; ++i) {
-    rows[i] = out->rows[count].point;
-    __builtin_memcpy(&out->rows[count].weight, &UNWEIGHED, sizeof UNWEIGHED);
-    out->pairs[count] = {batch.of_a[i], batch.of_b[i]};
-    count += bits >> i & 1;
-  }
+  const auto next = [&](int lane) {
+    ContactRow& row = out->rows[count];
+    __builtin_memcpy(&row.weight, &UNWEIGHED, sizeof UNWEIGHED);
+    out->pairs[count] = batch.lanes[lane];
+    count += bits >> lane & 1;
+    return row.point;
+  };
+  transposed(
+      {point.x, point.y, point.z, normal_BA.x, normal_BA.y, normal_BA.z, depth, reinterpret_cast<Doubles>(idsOf(batch, faces, place))},
+      next);
   out->count = count;
-  transposed({point.x, point.y, point.z, normal_BA.x, normal_BA.y, normal_BA.z, depth, reinterpret_cast<Doubles>(idsOf(batch, place))},
-             rows);
   return depth;
 }
 

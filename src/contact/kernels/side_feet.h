@@ -16,17 +16,20 @@ void sideFeet(const ContactPlace& place, const Vec4* vertices, const FaceRecord*
               std::uint32_t count, SideFoot* feet) {
   for (std::uint32_t first = 0; first < count; first += LANES) {
     const Batch batch(pairs, first, count);
-    std::uint32_t index[LANES];
-    for (int i = 0; i < LANES; ++i) index[i] = first + i < count ? first + i : count - 1;
-    const Vectors p = batch.points(vertices, batch.of_a).v;
-    const Rows plane = batch.field(faces, batch.of_b, &FaceRecord::plane);
+    const Vectors p = batch.points(vertices, OF_A).v;
+    const Rows plane = batch.field(faces, OF_B, &FaceRecord::plane);
     const Vectors projection = p - above(p, plane) * plane.v;
-    Vectors at = p,
-            foot = closestOnSide(batch.field(sides, index, &BesideSide::start), batch.field(sides, index, &BesideSide::along), projection);
+    const Vec4 *starts[LANES], *alongs[LANES];
+    for (int i = 0; i < LANES; ++i) {
+      const BesideSide& side = sides[first + i < count ? first + i : count - 1];
+      starts[i] = &side.start;
+      alongs[i] = &side.along;
+    }
+    Vectors at = p, foot = closestOnSide(gathered(starts), gathered(alongs), projection);
     const Vectors beside = projection - foot;
     const Doubles lost = FADE_SLOPE * squareRoot(dot(beside, beside));
     if (place.faces_move) {
-      at = batch.points(place.vertices, batch.of_a).v;
+      at = batch.points(place.vertices, OF_A).v;
       foot = turnedPoint(place.X_FM, foot);
     }
     const bool from_foot = place.keeps_feet ? !place.faces_move : place.vertices_are_a;
@@ -34,10 +37,9 @@ void sideFeet(const ContactPlace& place, const Vec4* vertices, const FaceRecord*
     const Doubles distance = squareRoot(dot(d, d));
     const Vectors normal{d.x / distance, d.y / distance, d.z / distance};
     const auto [point, direction] = place.keeps_feet ? WorldContacts{foot, normal} : inWorld(place, at, foot, normal);
-    double* rows[LANES];
     SideFoot behind_last;
-    for (int i = 0; i < LANES; ++i) rows[i] = first + i < count ? feet[first + i].point : behind_last.point;
-    transposed({point.x, point.y, point.z, direction.x, direction.y, direction.z, distance, lost}, rows);
+    transposed({point.x, point.y, point.z, direction.x, direction.y, direction.z, distance, lost},
+               [&](int lane) { return first + lane < count ? feet[first + lane].point : behind_last.point; });
   }
 }
 
