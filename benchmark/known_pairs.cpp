@@ -96,13 +96,13 @@ class KnownPairs {
     const CandidatePairs& pairs = lists_.pairs;
     const auto count = [](const Candidates& candidates) { return static_cast<std::uint32_t>(candidates.size()); };
     const NearFeatures& fixed = lists_.near[0];
-    const kernels::Vec4 *moving_vertices = turned_.vertices[1].data(), *fixed_vertices = fixed.vertices.records.data();
+    const kernels::Vec4 *moving_vertices = turned_.vertices.data(), *fixed_vertices = fixed.vertices.records.data();
     const kernels::EdgeRecord *moving_edges = turned_.edges.data(), *fixed_edges = fixed.edges.records.data();
     std::uint32_t hits = 0;
     for (const bool moves : {true, false}) {
       const Candidates &faces = pairs.vertex_face[moves], &edges = pairs.vertex_edge[moves];
-      hits += k.vertexFaces(turned_.vertices[moves].data(), lists_.near[!moves].faces.records.data(), lists_.near[!moves].open.data(),
-                            faces.data(), count(faces), range_, nullptr, vertex_faces_.data());
+      hits += k.vertexFaces(turned_.nearFaces(lists_, moves, X_FM_), lists_.near[!moves].faces.records.data(),
+                            lists_.near[!moves].open.data(), faces.data(), count(faces), range_, nullptr, vertex_faces_.data());
       hits += k.vertexEdges(moves ? moving_vertices : fixed_vertices, moves ? fixed_edges : moving_edges, edges.data(), count(edges),
                             range_, others_.data());
     }

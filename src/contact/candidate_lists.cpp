@@ -101,11 +101,14 @@ void turn(void (*kernel)(const Record*, std::uint32_t, const kernels::Motion&, R
 
 }  // namespace
 
+kernels::NearVertices TurnedFeatures::nearFaces(const CandidateLists& lists, bool moves, const Pose& X_FM) const {
+  return {moves ? vertices.data() : lists.near[0].vertices.records.data(), !moves, motionOf(X_FM.inverse())};
+}
+
 void TurnedFeatures::turnForContacts(const CandidateLists& lists, const Pose& X_FM) {
   const kernels::Kernels& kernels = kernels::kernels();
   const kernels::Motion to_fixed = motionOf(X_FM);
-  turn(kernels.turnPoints, lists.near[1].vertices.records, to_fixed, &vertices[1]);
-  turn(kernels.turnPoints, lists.near[0].vertices.records, motionOf(X_FM.inverse()), &vertices[0]);
+  turn(kernels.turnPoints, lists.near[1].vertices.records, to_fixed, &vertices);
   turn(kernels.turnEdges, lists.near[1].edges.records, to_fixed, &edges);
 }
 
@@ -116,11 +119,16 @@ void TurnedFeatures::turnForCrossings(const CandidateLists& lists, const Pose& X
 
 namespace {
 
+/** Keeps what the kernel copies. */
+template <typename Kernel>
+void keep(Kernel&& kernel, const kernels::Reach& reach, const std::vector<Candidate>& from, std::vector<Candidate>* to) {
+  to->resize(from.size());
+  to->resize(kernel(from.data(), static_cast<std::uint32_t>(from.size()), reach, to->data()));
+}
 template <typename Kernel, typename First, typename Second>
 void keep(Kernel&& kernel, const std::vector<First>& a, const std::vector<Second>& b, const kernels::Reach& reach,
           const std::vector<Candidate>& from, std::vector<Candidate>* to) {
-  to->resize(from.size());
-  to->resize(kernel(a.data(), b.data(), from.data(), static_cast<std::uint32_t>(from.size()), reach, to->data()));
+  keep([&](auto&&... rest) { return kernel(a.data(), b.data(), rest...); }, reach, from, to);
 }
 
 }  // namespace
@@ -133,15 +141,14 @@ void findNearest(const MeshPair& pair, const TurnedFeatures& turned, const ListM
   const CandidatePairs& all = lists->pairs;
   for (const bool moves : {true, false}) {
     const NearFeatures& partner = lists->near[!moves];
-    const auto nearVertexFaces = [&](const auto* a, const auto* b, auto&&... rest) {
-      return kernels.nearVertexFaces(a, b, partner.open.data(), rest...);
-    };
-    keep(nearVertexFaces, turned.vertices[moves], partner.faces.records, reach, all.vertex_face[moves], &nearest->vertex_face[moves]);
+    const kernels::NearVertices vertices = turned.nearFaces(*lists, moves, pair.X_FM);
+    keep([&](auto&&... rest) { return kernels.nearVertexFaces(vertices, partner.faces.records.data(), partner.open.data(), rest...); },
+         reach, all.vertex_face[moves], &nearest->vertex_face[moves]);
   }
-  keep(kernels.nearVertexEdges, turned.vertices[1], fixed.edges.records, reach, all.vertex_edge[1], &nearest->vertex_edge[1]);
+  keep(kernels.nearVertexEdges, turned.vertices, fixed.edges.records, reach, all.vertex_edge[1], &nearest->vertex_edge[1]);
   keep(kernels.nearVertexEdges, fixed.vertices.records, turned.edges, reach, all.vertex_edge[0], &nearest->vertex_edge[0]);
   keep(kernels.nearEdgeEdges, turned.edges, fixed.edges.records, reach, all.edge_edge, &nearest->edge_edge);
-  keep(kernels.nearVertexVertices, turned.vertices[1], fixed.vertices.records, reach, all.vertex_vertex, &nearest->vertex_vertex);
+  keep(kernels.nearVertexVertices, turned.vertices, fixed.vertices.records, reach, all.vertex_vertex, &nearest->vertex_vertex);
   dropLeading(pair, margin.motion, lists->near, &nearest->vertex_vertex);
 }
 

@@ -73,7 +73,7 @@ struct CandidateLists {
 
 /** Features of lists in the other mesh's frame. */
 struct TurnedFeatures {
-  std::vector<kernels::Vec4> vertices[2];  ///< as NearFeatures
+  std::vector<kernels::Vec4> vertices;     ///< of the moving mesh
   std::vector<kernels::EdgeRecord> edges;  ///< of the moving mesh
   std::vector<kernels::FaceRecord> faces;  ///< of the moving mesh
 
@@ -81,6 +81,9 @@ struct TurnedFeatures {
   void turnForContacts(const CandidateLists& lists, const Pose& X_FM);
   /** Those that candidates for crossings are tested with. */
   void turnForCrossings(const CandidateLists& lists, const Pose& X_FM);
+
+  /** The vertices of the moving mesh, or of the fixed one, near the other's faces, for kernels. */
+  kernels::NearVertices nearFaces(const CandidateLists& lists, bool moves, const Pose& X_FM) const;
 };
 
 /** For how much motion of one mesh against the other lists of candidates are good. */

@@ -41,11 +41,11 @@ void Evaluation::findContacts() {
   const auto& edges = buffers_.turned.edges;
   for (const bool moves : {true, false}) {
     vertexFaces(moves);
-    vertexEdges(moves, moves ? vertices[1].data() : lists_.near[0].vertices.records.data(),
+    vertexEdges(moves, moves ? vertices.data() : lists_.near[0].vertices.records.data(),
                 moves ? lists_.near[0].edges.records.data() : edges.data());
   }
   edgeEdges(edges.data(), lists_.near[0].edges.records.data());
-  vertexVertices(vertices[1].data(), lists_.near[0].vertices.records.data());
+  vertexVertices(vertices.data(), lists_.near[0].vertices.records.data());
 }
 
 void Evaluation::findCrossings() {
@@ -76,10 +76,7 @@ kernels::ContactPlace Evaluation::place(bool vertices_move) const {
   const ContactRoles& roles = pair_.roles;
   const Feature vertex{FeatureKind::VERTEX, 0}, face{FeatureKind::FACE, 0};
   const bool vertices_are_a = vertices_move == roles.first_is_a;
-  return {(vertices_move ? buffers_.turned.vertices[1] : lists_.near[0].vertices.records).data(),
-          lists_.near[vertices_move].vertices.names.data(),
-          lists_.near[!vertices_move].patches.data(),
-          !vertices_move,
+  return {lists_.near[!vertices_move].patches.data(),
           vertices_are_a,
           motionOf(pair_.X_FM),
           motionOf(pair_.X_WF),
@@ -96,6 +93,7 @@ std::uint32_t Evaluation::findVertexFaces(bool moves) {
   makeRoom(total + 1, &buffers_.vertex_faces);
   makeRoom(total + 1, &buffers_.over);
   buffers_.over_count = 0;
+  const kernels::NearVertices vertices = buffers_.turned.nearFaces(lists_, moves, pair_.X_FM);
   kernels::PlainContacts plain{place(moves), nullptr, nullptr, 0, found_.deepest_plain};
   std::uint32_t count = 0;
   for (std::uint32_t first = 0; first < total; first += BLOCK) {
@@ -104,9 +102,9 @@ std::uint32_t Evaluation::findVertexFaces(bool moves) {
     plain.rows = found_.plain.rows(size + 1);
     plain.pairs = buffers_.over.data() + buffers_.over_count;
     plain.count = 0;
-    const std::uint32_t found = kernels::kernels().vertexFaces(
-        buffers_.turned.vertices[moves].data(), lists_.near[!moves].faces.records.data(), lists_.near[!moves].open.data(),
-        candidates.data() + first, size, pair_.range, found_.crossings.empty() ? &plain : nullptr, hits);
+    const std::uint32_t found =
+        kernels::kernels().vertexFaces(vertices, lists_.near[!moves].faces.records.data(), lists_.near[!moves].open.data(),
+                                       candidates.data() + first, size, pair_.range, found_.crossings.empty() ? &plain : nullptr, hits);
     for (std::uint32_t i = 0; i < found; ++i) hits[i].candidate += first;
     count += found;
     buffers_.over_count += plain.count;
@@ -142,7 +140,7 @@ void Evaluation::addPlain(bool moves, const Candidate& c, double height) {
   const auto& faces = lists_.near[!moves].faces;
   const Feature vertex{FeatureKind::VERTEX, lists_.near[moves].vertices.names[c.a]},
       patch{FeatureKind::FACE, lists_.near[!moves].patches[c.b]};
-  const Vector3 p = vector3(moves ? buffers_.turned.vertices[1][c.a] : lists_.near[0].vertices.records[c.a]);
+  const Vector3 p = vector3(moves ? buffers_.turned.vertices[c.a] : lists_.near[0].vertices.records[c.a]);
   const Vector3 up = pair_.turned(vector3(faces.records[c.b].plane), !moves), foot = p - height * up;
   const Vector3 normal = (height > 0) == moves ? up : Vector3(-up);
   found_.close.add(pair_, moves, vertex, patch, p, foot, normal, std::abs(height));
@@ -173,10 +171,10 @@ void Evaluation::listFadingSides(bool moves, std::uint32_t hits) {
 void Evaluation::addFading(bool moves) {
   const std::vector<Candidate>& beside = buffers_.beside;
   makeRoom(beside.size(), &buffers_.feet);
-  kernels::kernels().sideFeet(place(moves), buffers_.turned.vertices[moves].data(), lists_.near[!moves].faces.records.data(),
+  kernels::kernels().sideFeet(place(moves), buffers_.turned.nearFaces(lists_, moves, pair_.X_FM), lists_.near[!moves].faces.records.data(),
                               buffers_.sides.data(), beside.data(), static_cast<std::uint32_t>(beside.size()), buffers_.feet.data());
   buffers_.fading.clear();
-  const auto& vertices = (moves ? buffers_.turned.vertices[1] : lists_.near[0].vertices.records);
+  const auto& vertices = (moves ? buffers_.turned.vertices : lists_.near[0].vertices.records);
   for (std::size_t i = 0, next; i < beside.size(); i = next) {
     const kernels::SideFoot* nearest = &buffers_.feet[i];
     const Candidate& c = beside[i];

@@ -41,7 +41,7 @@ kernels::FaceRecord faceRecord(const MeshSide& side, int element);
 kernels::EdgeRecord edgeRecord(const MeshSide& side, int edge);
 inline kernels::Vec4 vertexRecord(const MeshSide& side, int vertex) {
   const Vector3& p = side.mesh.vertices[vertex];
-  return {p.x(), p.y(), p.z(), 0};
+  return {p.x(), p.y(), p.z(), kernels::nameBits(vertex)};
 }
 
 /** A leaf that is held, and what searches want to know without a look at its features. */

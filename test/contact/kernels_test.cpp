@@ -21,6 +21,7 @@ constexpr double RANGE = 0.3;
 
 struct Features {
   std::vector<Vec4> vertices;
+  std::vector<int> names;  // as the vertices and the faces
   std::vector<EdgeRecord> edges;
   std::vector<FaceRecord> faces;
   std::vector<OpenSides> open;
@@ -33,7 +34,8 @@ Features randomFeatures() {
   for (std::uint32_t i = 0; i < FEATURES; ++i) {
     const Triangle t = random.triangle(1);
     const Vector3 along = t[1] - t[0], normal = along.cross(t[2] - t[0]).normalized();
-    out.vertices.push_back(vec4(random.point(1), 0));
+    out.names.push_back(static_cast<int>(1000 + i));
+    out.vertices.push_back(vec4(random.point(1), nameBits(out.names.back())));
     const auto inward = [&](double sign) { return vec4(sign * (normal + random.point(3)).cross(along).normalized(), 0); };
     out.edges.push_back({vec4(t[0], along.squaredNorm()), vec4(along, i % 7 == 0), {inward(1), inward(-1)}});
     FaceRecord face;
@@ -55,28 +57,27 @@ Features randomFeatures() {
 struct PlainVertexFaces {
   PlainVertexFaces(const Kernels& set, const Features& in, bool faces_move, bool takes_plain)
       : X_FM(makePose({0.1, -0.2, 0.3}, {0.4, 0.5, -0.6})),
+        vertices{in.vertices.data(), faces_move, motionOf(X_FM.inverse())},
         X_WF(makePose({-3, 2, 1}, {0.7, -0.2, 0.1})),
         hits(CANDIDATES + 1),
         rows(CANDIDATES + 1),
         pairs(CANDIDATES + 1) {
-    for (const Vec4& p : in.vertices) placed.push_back(faces_move ? vec4(X_FM * vector3(p), 0) : p);
-    for (std::uint32_t i = 0; i < FEATURES; ++i) names.push_back(static_cast<int>(1000 + i));
     const Feature vertex{FeatureKind::VERTEX, 0}, face{FeatureKind::FACE, 0};
     // The vertices are A's: the moving mesh is A unless its faces are asked.
-    plain = {{placed.data(), names.data(), names.data(), faces_move, true, motionOf(X_FM), motionOf(X_WF), RADIUS_A + RADIUS_B,
-              0.5 * (RADIUS_B - RADIUS_A), contactId(vertex, face), false},
+    plain = {{in.names.data(), true, motionOf(X_FM), motionOf(X_WF), RADIUS_A + RADIUS_B, 0.5 * (RADIUS_B - RADIUS_A),
+              contactId(vertex, face), false},
              rows.data(),
              pairs.data(),
              0,
              -1};
-    hits.resize(set.vertexFaces(in.vertices.data(), in.faces.data(), in.open.data(), in.candidates.data(), CANDIDATES, RANGE,
+    hits.resize(set.vertexFaces(vertices, in.faces.data(), in.open.data(), in.candidates.data(), CANDIDATES, RANGE,
                                 takes_plain ? &plain : nullptr, hits.data()));
   }
 
   static constexpr double RADIUS_A = 0.2, RADIUS_B = 0.1;
-  Pose X_FM, X_WF;
-  std::vector<Vec4> placed;
-  std::vector<int> names;
+  Pose X_FM;
+  NearVertices vertices;
+  Pose X_WF;
   std::vector<VertexFaceHit> hits;
   std::vector<ContactRow> rows;
   std::vector<Candidate> pairs;
@@ -131,7 +132,10 @@ Found found(const Kernels& set, const Features& in) {
     for (std::uint32_t i = 0; i < count; ++i) out.indices.insert(out.indices.end(), {near[i].a, near[i].b});
   };
   const Reach reach{RANGE, 0.1, 0.02};
-  addNear(set.nearVertexFaces(in.vertices.data(), in.faces.data(), in.open.data(), candidates, CANDIDATES, reach, near.data()));
+  for (const bool faces_move : {false, true}) {
+    const NearVertices vertices{in.vertices.data(), faces_move, motionOf(makePose({0.1, -0.2, 0.3}, {0.4, 0.5, -0.6}))};
+    addNear(set.nearVertexFaces(vertices, in.faces.data(), in.open.data(), candidates, CANDIDATES, reach, near.data()));
+  }
   addNear(set.nearEdgeEdges(in.edges.data(), in.edges.data(), candidates, CANDIDATES, reach, near.data()));
   addNear(set.nearVertexEdges(in.vertices.data(), in.edges.data(), candidates, CANDIDATES, reach, near.data()));
   addNear(set.nearVertexVertices(in.vertices.data(), in.vertices.data(), candidates, CANDIDATES, reach, near.data()));
@@ -177,11 +181,11 @@ TEST(Kernels, PlainContactsAreThoseMadeOneByOne) {
         continue;
       }
       const Candidate& c = in.candidates[hit.candidate];
-      const Vector3 p = vector3(all.placed[c.a]), plane = vector3(in.faces[c.b].plane),
+      const Vector3 p = vector3(in.vertices[c.a]), plane = vector3(in.faces[c.b].plane),
                     up = faces_move ? Vector3(all.X_FM.linear() * plane) : plane;
       // From the faces' mesh, which is B, to the vertices'.
       const ContactRoles roles{true, all.RADIUS_A, all.RADIUS_B};
-      Contact one = contactOf(roles, {FeatureKind::VERTEX, all.names[c.a]}, {FeatureKind::FACE, all.names[c.b]}, p, p - hit.height * up,
+      Contact one = contactOf(roles, {FeatureKind::VERTEX, in.names[c.a]}, {FeatureKind::FACE, in.names[c.b]}, p, p - hit.height * up,
                               hit.height > 0 ? up : Vector3(-up), std::abs(hit.height));
       one.point = all.X_WF * one.point;
       one.normal_BA = all.X_WF.linear() * one.normal_BA;

@@ -30,8 +30,7 @@ struct SidesAndVertices {
     for (std::uint32_t i = 0; i < COUNT; ++i) {
       const Triangle t = random.triangle(1);
       const Vector3 normal = (t[1] - t[0]).cross(t[2] - t[0]).normalized(), p = random.point(1);
-      vertices.push_back(vec4(p, 0));
-      placed.push_back(vec4(faces_move ? Vector3(X_FM * p) : p, 0));
+      placed.push_back(vec4(faces_move ? Vector3(X_FM * p) : p, nameBits(i)));
       faces.push_back({vec4(normal, normal.dot(t[0])), {}});
       sides.push_back({vec4(t[0], 0), vec4(t[1] - t[0], 0)});
       pairs.push_back({i, i});
@@ -40,25 +39,16 @@ struct SidesAndVertices {
 
   std::vector<SideFoot> feet(const Kernels& set, bool keeps_feet) const {
     // The vertices are A's: the moving mesh is A unless its faces are asked.
-    const ContactPlace place{placed.data(),
-                             nullptr,
-                             nullptr,
-                             faces_move,
-                             true,
-                             motionOf(X_FM),
-                             motionOf(X_WF),
-                             RADIUS_A + RADIUS_B,
-                             0.5 * (RADIUS_B - RADIUS_A),
-                             0,
-                             keeps_feet};
+    const ContactPlace place{nullptr, true,      motionOf(X_FM), motionOf(X_WF), RADIUS_A + RADIUS_B, 0.5 * (RADIUS_B - RADIUS_A),
+                             0,       keeps_feet};
     std::vector<SideFoot> out(COUNT);
-    set.sideFeet(place, vertices.data(), faces.data(), sides.data(), pairs.data(), COUNT, out.data());
+    set.sideFeet(place, {placed.data(), faces_move, motionOf(X_FM.inverse())}, faces.data(), sides.data(), pairs.data(), COUNT, out.data());
     return out;
   }
 
   bool faces_move;
   Pose X_FM, X_WF;
-  std::vector<Vec4> vertices, placed;  // in the faces' mesh's frame, in frame F
+  std::vector<Vec4> placed;  // vertices in frame F
   std::vector<FaceRecord> faces;
   std::vector<BesideSide> sides;
   std::vector<Candidate> pairs;
@@ -70,8 +60,9 @@ TEST(SideFeet, AreTheClosestPointsOfTheSides) {
     const std::vector<SideFoot> feet = in.feet(*availableKernels().front(), true);
     int ends = 0;
     for (std::uint32_t i = 0; i < COUNT; ++i) {
-      const Vector3 p = vector3(in.vertices[i]), normal = vector3(in.faces[i].plane), start = vector3(in.sides[i].start),
-                    along = vector3(in.sides[i].along), projection = p - (normal.dot(p) - in.faces[i].plane.w) * normal;
+      const Vector3 placed = vector3(in.placed[i]), p = faces_move ? Vector3(in.X_FM.inverse() * placed) : placed,
+                    normal = vector3(in.faces[i].plane), start = vector3(in.sides[i].start), along = vector3(in.sides[i].along),
+                    projection = p - (normal.dot(p) - in.faces[i].plane.w) * normal;
       const double part = std::clamp((projection - start).dot(along) / along.squaredNorm(), 0.0, 1.0);
       const Vector3 foot = start + part * along, foot_F = faces_move ? Vector3(in.X_FM * foot) : foot;
       ends += part == 0 || part == 1;

@@ -48,11 +48,11 @@ inline std::uint32_t copied(const Candidate* in, std::uint32_t count, Candidate*
   return kept;
 }
 
-std::uint32_t nearVertexFaces(const Vec4* a, const FaceRecord* b, const OpenSides* open, const Candidate* in, std::uint32_t count,
+std::uint32_t nearVertexFaces(const NearVertices& a, const FaceRecord* b, const OpenSides* open, const Candidate* in, std::uint32_t count,
                               const Reach& reach, Candidate* out) {
   const double range = reach.range + reach.margin, beside = reach.margin + 3 * CLOSED;
   return copied(in, count, out, [&](const Batch& batch) {
-    const Vectors p = batch.points(a, OF_A).v;
+    const Vectors p = VertexLanes(batch, a).seen;
     return withFaces(batch, b, [&](const auto& faces) {
       const Doubles height = above(p, faces.plane()), most = range - absolute(height);
       const unsigned near = bitsOf(most >= 0);
@@ -141,14 +141,15 @@ inline Mask vertexFaceBits(const InsideSides& sides, Doubles inside, Mask plain)
          bit(inside < -2 * CLOSED, VertexFaceHit::BESIDE) | bit(inside < NEAR_BORDER, VertexFaceHit::NEAR_BORDER);
 }
 
-std::uint32_t vertexFaces(const Vec4* a, const FaceRecord* b, const OpenSides* open, const Candidate* candidates, std::uint32_t count,
-                          double range, PlainContacts* plain, VertexFaceHit* hits) {
+std::uint32_t vertexFaces(const NearVertices& a, const FaceRecord* b, const OpenSides* open, const Candidate* candidates,
+                          std::uint32_t count, double range, PlainContacts* plain, VertexFaceHit* hits) {
   std::uint32_t found = 0;
   Doubles deepest = all(plain ? plain->deepest : 0);
   for (std::uint32_t first = 0; first < count; first += LANES) {
     const Batch batch(candidates, first, count);
     withFaces(batch, b, [&](const auto& faces) {
-      const Vectors p = batch.points(a, OF_A).v;
+      const VertexLanes vertices(batch, a);
+      const Vectors& p = vertices.seen;
       const Rows plane = faces.plane();
       const Doubles height = above(p, plane), most = range - absolute(height);
       const unsigned near = bitsOf(most >= 0) & batch.valid;
@@ -158,7 +159,7 @@ std::uint32_t vertexFaces(const Vec4* a, const FaceRecord* b, const OpenSides* o
       const Mask touches = absolute(height) <= TOUCH, clear = (inside >= NEAR_BORDER) & ~touches & (most >= 0);
       const unsigned is_clear = plain ? bitsOf(clear) & batch.valid : 0;
       if (is_clear) {
-        const Doubles depth = appendPlain(batch, faces, p, plane.v, height, is_clear, plain);
+        const Doubles depth = appendPlain(batch, faces, vertices, plane.v, height, is_clear, plain);
         deepest = maximum(deepest, clear ? depth : deepest);
       }
       if (is_clear == near) return;

@@ -26,8 +26,8 @@ struct Kernels {
 
   /** Copies, in order, the candidates that can have a contact within the range while nothing moves or turns by more than the reach says.
    * @return their number */
-  std::uint32_t (*nearVertexFaces)(const Vec4* a, const FaceRecord* b, const OpenSides* open, const Candidate* in, std::uint32_t count,
-                                   const Reach& reach, Candidate* out);
+  std::uint32_t (*nearVertexFaces)(const NearVertices& a, const FaceRecord* b, const OpenSides* open, const Candidate* in,
+                                   std::uint32_t count, const Reach& reach, Candidate* out);
   std::uint32_t (*nearEdgeEdges)(const EdgeRecord* a, const EdgeRecord* b, const Candidate* in, std::uint32_t count, const Reach& reach,
                                  Candidate* out);
   std::uint32_t (*nearVertexEdges)(const Vec4* a, const EdgeRecord* b, const Candidate* in, std::uint32_t count, const Reach& reach,
@@ -37,10 +37,10 @@ struct Kernels {
 
   /** Candidates with a contact within `range`, and those that need a closer look. Room for one more hit than candidates.
    * @param plain takes those that are plain and not near a border, instead of the hits; null: nothing does @return number of hits */
-  std::uint32_t (*vertexFaces)(const Vec4* a, const FaceRecord* b, const OpenSides* open, const Candidate* candidates, std::uint32_t count,
-                               double range, PlainContacts* plain, VertexFaceHit* hits);
-  /** The contacts of vertices with sides of faces. @param vertices in the faces' mesh's frame @param sides as the pairs */
-  void (*sideFeet)(const ContactPlace& place, const Vec4* vertices, const FaceRecord* faces, const BesideSide* sides,
+  std::uint32_t (*vertexFaces)(const NearVertices& a, const FaceRecord* b, const OpenSides* open, const Candidate* candidates,
+                               std::uint32_t count, double range, PlainContacts* plain, VertexFaceHit* hits);
+  /** The contacts of vertices with sides of faces. @param sides as the pairs */
+  void (*sideFeet)(const ContactPlace& place, const NearVertices& vertices, const FaceRecord* faces, const BesideSide* sides,
                    const Candidate* pairs, std::uint32_t count, SideFoot* feet);
   std::uint32_t (*edgeEdges)(const EdgeRecord* a, const EdgeRecord* b, const Candidate* candidates, std::uint32_t count, double range,
                              EdgeEdgeHit* hits);

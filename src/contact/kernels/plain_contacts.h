@@ -16,6 +16,23 @@ inline Vectors turnedPoint(const Motion& X, const Vectors& p) {
   return {row(0), row(1), row(2)};
 }
 
+/** The lanes' vertices: where they are, and as the faces see them. */
+struct VertexLanes {
+  VertexLanes(const Batch& batch, const NearVertices& vertices) : VertexLanes(batch.points(vertices.records, OF_A), vertices) {}
+
+  const Vectors at;  ///< in frame F
+  const Mask names;
+  const bool faces_move;
+  const Vectors seen;  ///< in the faces' mesh's frame
+
+ private:
+  VertexLanes(const Rows& rows, const NearVertices& vertices)
+      : at(rows.v),
+        names(reinterpret_cast<Mask>(rows.w)),
+        faces_move(vertices.faces_move),
+        seen(vertices.faces_move ? turnedPoint(vertices.X_MF, rows.v) : rows.v) {}
+};
+
 /** A contact's place and normal in the world. */
 struct WorldContacts {
   Vectors point, normal;
@@ -34,23 +51,19 @@ constexpr struct {
 
 /** contactId of the lanes' vertices and faces. */
 template <typename Faces>
-inline Mask idsOf(const Batch& batch, const Faces& faces, const ContactPlace& place) {
-  const Mask vertex = batch.numbers(place.vertex_names, OF_A), face = faces.numbers(place.face_names);
+inline Mask idsOf(const VertexLanes& vertices, const Faces& faces, const ContactPlace& place) {
+  const Mask vertex = vertices.names, face = faces.numbers(place.face_names);
   const Mask names = place.vertices_are_a ? vertex << 32 | face : face << 32 | vertex;
   return names | static_cast<long>(place.kinds);
 }
 
 /** Writes a row for every lane; where its bit is not set the next one is written over it.
- * @param p as the faces are @param bits of the lanes that have a contact @return depths */
+ * @param bits of the lanes that have a contact @return depths */
 template <typename Faces>
-inline Doubles appendPlain(const Batch& batch, const Faces& faces, const Vectors& p, const Vectors& normal, Doubles height, unsigned bits,
-                           PlainContacts* out) {
+inline Doubles appendPlain(const Batch& batch, const Faces& faces, const VertexLanes& vertices, const Vectors& normal, Doubles height,
+                           unsigned bits, PlainContacts* out) {
   const ContactPlace& place = out->place;
-  Vectors at = p, up = normal;
-  if (place.faces_move) {
-    at = batch.points(place.vertices, OF_A).v;
-    up = turnedDirection(place.X_FM, normal);
-  }
+  const Vectors &at = vertices.at, up = vertices.faces_move ? turnedDirection(place.X_FM, normal) : normal;
   const Mask to_a = place.vertices_are_a ? height > 0 : height <= 0;
   const Doubles sign = to_a ? all(1) : all(-1);
   const auto [point, normal_BA] = inWorld(place, at, at - height * up, sign * up);
@@ -64,7 +77,7 @@ inline Doubles appendPlain(const Batch& batch, const Faces& faces, const Vectors
     return row.point;
   };
   transposed(
-      {point.x, point.y, point.z, normal_BA.x, normal_BA.y, normal_BA.z, depth, reinterpret_cast<Doubles>(idsOf(batch, faces, place))},
+      {point.x, point.y, point.z, normal_BA.x, normal_BA.y, normal_BA.z, depth, reinterpret_cast<Doubles>(idsOf(vertices, faces, place))},
       next);
   out->count = count;
   return depth;

@@ -9,6 +9,13 @@ struct alignas(32) Vec4 {
   double x, y, z, w;
 };
 
+/** What the w of a vertex holds: its name's bits. */
+inline double nameBits(std::int64_t name) {
+  double bits;
+  __builtin_memcpy(&bits, &name, sizeof bits);
+  return bits;
+}
+
 /** A face in some frame: signed heights over its plane and inside its three sides, all in metres, as normal . p - offset. */
 struct FaceRecord {
   Vec4 plane;     ///< unit normal, offset
@@ -147,13 +154,17 @@ struct ContactRow {
   std::uint64_t pierced;
 };
 
+/** Vertices of one mesh near faces of the other. */
+struct NearVertices {
+  const Vec4* records;  ///< in frame F; w: nameBits
+  bool faces_move;      ///< their records are in the moving mesh's frame
+  Motion X_MF;          ///< asked if they are
+};
+
 /** Where the contacts of vertices of one mesh with faces of the other are. */
 struct ContactPlace {
-  const Vec4* vertices;     ///< in frame F
-  const int* vertex_names;  ///< as the vertices
-  const int* face_names;    ///< as the faces
-  bool faces_move;          ///< their records are in the moving mesh's frame
-  bool vertices_are_a;      ///< A is the mesh of the vertices
+  const int* face_names;  ///< as the faces
+  bool vertices_are_a;    ///< A is the mesh of the vertices
   Motion X_FM, X_WF;
   double layer;         ///< [m] rA + rB
   double shift;         ///< [m] (rB - rA) / 2

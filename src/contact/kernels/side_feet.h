@@ -12,11 +12,12 @@ inline Vectors closestOnSide(const Rows& start, const Rows& along, const Vectors
   return start.v + part * along.v;
 }
 
-void sideFeet(const ContactPlace& place, const Vec4* vertices, const FaceRecord* faces, const BesideSide* sides, const Candidate* pairs,
-              std::uint32_t count, SideFoot* feet) {
+void sideFeet(const ContactPlace& place, const NearVertices& vertices, const FaceRecord* faces, const BesideSide* sides,
+              const Candidate* pairs, std::uint32_t count, SideFoot* feet) {
   for (std::uint32_t first = 0; first < count; first += LANES) {
     const Batch batch(pairs, first, count);
-    const Vectors p = batch.points(vertices, OF_A).v;
+    const VertexLanes lanes(batch, vertices);
+    const Vectors &at = lanes.at, &p = lanes.seen;
     const Rows plane = batch.field(faces, OF_B, &FaceRecord::plane);
     const Vectors projection = p - above(p, plane) * plane.v;
     const Vec4 *starts[LANES], *alongs[LANES];
@@ -25,14 +26,11 @@ void sideFeet(const ContactPlace& place, const Vec4* vertices, const FaceRecord*
       starts[i] = &side.start;
       alongs[i] = &side.along;
     }
-    Vectors at = p, foot = closestOnSide(gathered(starts), gathered(alongs), projection);
+    Vectors foot = closestOnSide(gathered(starts), gathered(alongs), projection);
     const Vectors beside = projection - foot;
     const Doubles lost = FADE_SLOPE * squareRoot(dot(beside, beside));
-    if (place.faces_move) {
-      at = batch.points(place.vertices, OF_A).v;
-      foot = turnedPoint(place.X_FM, foot);
-    }
-    const bool from_foot = place.keeps_feet ? !place.faces_move : place.vertices_are_a;
+    if (vertices.faces_move) foot = turnedPoint(place.X_FM, foot);
+    const bool from_foot = place.keeps_feet ? !vertices.faces_move : place.vertices_are_a;
     const Vectors d = from_foot ? at - foot : foot - at;
     const Doubles distance = squareRoot(dot(d, d));
     const Vectors normal{d.x / distance, d.y / distance, d.z / distance};
