@@ -166,6 +166,7 @@ std::uint32_t vertexFaces(const NearVertices& a, const FaceRecord* b, const Open
       const Mask over = isOverOrFades(sides.of, openSides(faces.numbers(open), height, 0.0), most, 2 * CLOSED);
       const Mask bits = vertexFaceBits(sides, inside, (inside >= 0) & ~touches);
       const unsigned is_hit = near & ~is_clear & bitsOf(over);
+      if (is_hit == 0) return;
       // Which lanes have one is hard to foresee: every one writes, the next one over it if it has none.
       for (int i = 0; i < LANES; ++i) {
         hits[found] = {first + i, static_cast<std::uint32_t>(bits[i]), height[i]};

@@ -92,7 +92,7 @@ inline Floats squareRoot(Floats v) {
 
 inline Doubles minimum(Doubles a, Doubles b) { return a < b ? a : b; }
 inline Doubles maximum(Doubles a, Doubles b) { return a > b ? a : b; }
-inline Doubles absolute(Doubles a) { return a < 0 ? -a : a; }
+inline Doubles absolute(Doubles a) { return reinterpret_cast<Doubles>(reinterpret_cast<Mask>(a) & 0x7FFFFFFFFFFFFFFF); }
 inline Doubles clampedToUnit(Doubles a) { return minimum(maximum(a, Doubles{}), all(1)); }
 inline Floats maximum(Floats a, Floats b) { return a > b ? a : b; }
 inline Floats minimum(Floats a, Floats b) { return a < b ? a : b; }

@@ -68,18 +68,18 @@ inline Doubles appendPlain(const Batch& batch, const Faces& faces, const VertexL
   const Doubles sign = to_a ? all(1) : all(-1);
   const auto [point, normal_BA] = inWorld(place, at, at - height * up, sign * up);
   const Doubles depth = place.layer - absolute(height);
-  std::uint32_t count = out->count;
-  const auto next = [&](int lane) {
-    ContactRow& row = out->rows[count];
-    __builtin_memcpy(&row.weight, &UNWEIGHED, sizeof UNWEIGHED);
-    out->pairs[count] = batch.lanes[lane];
-    count += bits >> lane & 1;
-    return row.point;
-  };
-  transposed(
-      {point.x, point.y, point.z, normal_BA.x, normal_BA.y, normal_BA.z, depth, reinterpret_cast<Doubles>(idsOf(vertices, faces, place))},
-      next);
-  out->count = count;
+  const Doubles ids = reinterpret_cast<Doubles>(idsOf(vertices, faces, place));
+  ContactRow* row = out->rows + out->count;
+  Candidate* pair = out->pairs + out->count;
+  transposed({point.x, point.y, point.z, normal_BA.x, normal_BA.y, normal_BA.z, depth, ids}, [&, lanes = batch.lanes](int lane) {
+    double* const now = row->point;
+    __builtin_memcpy(&row->weight, &UNWEIGHED, sizeof UNWEIGHED);
+    *pair = lanes[lane];
+    row += bits >> lane & 1;
+    pair += bits >> lane & 1;
+    return now;
+  });
+  out->count = static_cast<std::uint32_t>(row - out->rows);
   return depth;
 }
 
