@@ -5,6 +5,7 @@
 
 #include "kernels/kernels.h"
 #include "leaf_features.h"
+#include "list_margin.h"
 #include "mesh_pair.h"
 
 namespace blem_sim {
@@ -81,12 +82,6 @@ struct TurnedFeatures {
   void turnForContacts(const CandidateLists& lists, const Pose& X_FM);
   /** Those that candidates for crossings are tested with. */
   void turnForCrossings(const CandidateLists& lists, const Pose& X_FM);
-};
-
-/** For how much motion of one mesh against the other lists of candidates are good. */
-struct ListMargin {
-  double motion = 0;  ///< [m] of any point of either mesh near the other
-  double turn = 0;    ///< of unit vectors: length of the difference
 };
 
 /**
