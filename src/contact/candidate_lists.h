@@ -5,6 +5,7 @@
 
 #include "kernels/kernels.h"
 #include "leaf_features.h"
+#include "list_margin.h"
 #include "mesh_pair.h"
 
 namespace blem_sim {
@@ -84,12 +85,6 @@ struct TurnedFeatures {
 
   /** The vertices of the moving mesh, or of the fixed one, near the other's faces, for kernels. */
   kernels::NearVertices nearFaces(const CandidateLists& lists, bool moves, const Pose& X_FM) const;
-};
-
-/** For how much motion of one mesh against the other lists of candidates are good. */
-struct ListMargin {
-  double motion = 0;  ///< [m] of any point of either mesh near the other
-  double turn = 0;    ///< of unit vectors: length of the difference
 };
 
 /**

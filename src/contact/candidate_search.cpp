@@ -88,8 +88,16 @@ class Search {
   kernels::LeafReach leafReach() const {
     const ListMargin& margin = listing_.origin.margin;
     const double wider = margin.motion + rounding_;
-    return {static_cast<float>(reach_ - margin.motion + wider), static_cast<float>(wider), static_cast<float>(margin.turn + FLOAT_TURN),
-            static_cast<float>(deepestInside(reach_) + wider), static_cast<float>(rounding_)};
+    kernels::LeafReach reach{static_cast<float>(reach_ + rounding_),
+                             static_cast<float>(wider),
+                             static_cast<float>(margin.turn + FLOAT_TURN),
+                             static_cast<float>(deepestInside(reach_) + wider),
+                             static_cast<float>(rounding_),
+                             {}};
+    const Matrix3 ways = margin.ways.isZero(0) ? Matrix3(margin.motion * Matrix3::Identity()) : margin.ways;
+    for (int i = 0; i < 3; ++i)
+      for (int k = 0; k < 3; ++k) reach.ways[i][k] = static_cast<float>((1 + FLOAT_TURN) * ways(i, k));
+    return reach;
   }
 
   // Where a feature of a leaf is among the near ones of its mesh.

@@ -9,14 +9,6 @@
 
 namespace blem_sim {
 
-/** Where a list of candidates was made: it is good while the meshes have not moved against each other by more than the margin. */
-struct ListOrigin {
-  bool known = false;
-  Pose X_FM = Pose::Identity();
-  double range = 0;  ///< [m]
-  ListMargin margin;
-};
-
 /** What pairs of features are candidates for. */
 enum class CandidateKind { CONTACTS, CROSSINGS };
 

@@ -6,20 +6,24 @@
 namespace blem_sim {
 namespace {
 
-// A list is made for so many steps of the present motion: longer ones cost more in every step, shorter ones are made anew too often.
-constexpr double MARGIN_STEPS = 15, FEWEST_STEPS = 3;
-constexpr double LEAST_PART = 0.7;  // of MARGIN_STEPS, see partOf
+// A list is made for so many steps of the present motion, unless it is known how lists of the pair grow, see cheapestSteps.
+constexpr double MARGIN_STEPS = 15, FEWEST_STEPS = 3, MOST_STEPS = 50;
+constexpr double LEAST_PART = 0.7;  // of those, see partOf
+// What the making of a list takes per pair of leaves, and per candidate, in candidates that findNearest looks at, and the steps that its
+// choice lasts.
+constexpr double LEAF_PAIR_COST = 40, CANDIDATE_COST = 8, CHOICE_STEPS = 5;
 // Where there are not few pairs of leaves the next list is made in so many parts, in as many steps before it is needed, if it lasts.
 constexpr std::size_t PARTS = 4, FEW_LEAF_PAIRS = 64;
 constexpr double LASTING_STEPS = 8;
-// A list is made for a pose ahead, so much of its margin away on the way of the pair, at most.
-constexpr double AHEAD = 0.9, AHEAD_AT_MOST = 0.98;
+// A list is made for a pose ahead, so much of its margin away on the way of the pair, and so many steps, at most.
+constexpr double AHEAD = 0.9, AHEAD_AT_MOST = 0.98, AHEAD_STEPS = 25;
 // Of long lists those that matter for so few steps are listed again.
 constexpr double NEAREST_STEPS = 3;
 // Candidates for crossings are listed for so many.
 constexpr double CROSSING_STEPS = 10;
 constexpr std::size_t FEW_CANDIDATES = 200;
 constexpr double LEAST_MARGIN = 0.02, MOST_MARGIN = 0.8, LEAST_NEAREST_MARGIN = 0.005;  // of the range
+constexpr double MOST_KNOWN_MARGIN = 1.6;                                               // where it is known how lists grow
 // Lists of fast bodies grow faster than their margins where there are many pairs of leaves.
 constexpr std::size_t MANY_LEAF_PAIRS = 4000;
 constexpr double MOST_MARGIN_OF_MANY = 0.3;
@@ -29,37 +33,9 @@ constexpr double LEAST_TURN = 0.005, LEAST_NEAREST_TURN = 0.001, FIRST_TURN = 0.
 /** What a distance may be wrong by [m]. */
 constexpr double DISTANCE_ROUNDING = 1e-7;
 
-/** What of the moving mesh's frame is near the fixed mesh: its box there, where the other's box is, both wider by the range. */
-Box commonRegion(const MeshPair& pair) {
-  const Pose X_MF = pair.X_FM.inverse();
-  const Box& fixed = pair.fixed.bounds;
-  const Vector3 half = X_MF.linear().cwiseAbs() * (0.5 * fixed.sizes()) + Vector3::Constant(2 * pair.range), centre = X_MF * fixed.center();
-  const Vector3 wider = Vector3::Constant(pair.range);
-  return Box(centre - half, centre + half).intersection(Box(pair.moving.bounds.min() - wider, pair.moving.bounds.max() + wider));
-}
-
-/** How far [m] a point of the region moves at most from one pose to the other: a convex function of place. */
-double largestMotion(const Box& region, const Pose& X, const Pose& Y) {
-  if (region.isEmpty()) return 0;
-  const Matrix3 turn = X.linear() - Y.linear();
-  const Vector3 shift = X.translation() - Y.translation();
-  double largest2 = 0;
-  for (int corner = 0; corner < 8; ++corner)
-    largest2 = std::max(largest2, (turn * region.corner(static_cast<Box::CornerType>(corner)) + shift).squaredNorm());
-  return std::sqrt(largest2);
-}
-
-/** How far the end of a unit vector moves at most from one orientation to the other. */
-double largestTurn(const Pose& X, const Pose& Y) { return (X.linear() - Y.linear()).norm() / std::sqrt(2.0); }
-
 /** Is it of these two meshes? */
 bool isOf(const ContactSearchMemory& memory, const MeshPair& pair) {
   return memory.moving == pair.moving.identity && memory.fixed == pair.fixed.identity;
-}
-
-/** Are lists of that origin good for the range where nothing has moved and turned farther than so from there? */
-bool isGoodFor(const ListOrigin& origin, double range, double motion, double turn) {
-  return motion <= origin.margin.motion && range + motion <= origin.range + origin.margin.motion && turn <= origin.margin.turn;
 }
 
 /** A number from LEAST_PART to 1 that is another for every pose: pairs that set out together shall not all need new lists in one step. */
@@ -73,22 +49,22 @@ double partOf(const Pose& X) {
 class ContactSearch {
  public:
   ContactSearch(const MeshPair& pair, ContactSearchMemory* memory, ContactSearchBuffers* buffers, FoundContacts* found)
-      : pair_(pair), memory_(*memory), buffers_(*buffers), found_(*found), region_(commonRegion(pair)) {
+      : pair_(pair), memory_(*memory), buffers_(*buffers), found_(*found), region_(pair) {
     if (!isOf(*memory, pair)) forget();
     if (!memory_.visited) return;
-    motion_ = {largestMotion(region_, pair.X_FM, memory_.X_FM), largestTurn(pair.X_FM, memory_.X_FM)};
+    motion_ = {region_.largestMotion(pair.X_FM, memory_.X_FM), largestTurn(pair.X_FM, memory_.X_FM)};
     memory_.motion.add(memory_.X_FM, pair.X_FM, middle());
   }
 
   void run(bool keeps) {
     const bool apart = memory_.visited && motion_.motion + DISTANCE_ROUNDING < memory_.distance;
     if (!apart) {
-      refresh(CandidateKind::CROSSINGS, keeps && !isFast() ? marginOf(CROSSING_STEPS) : ListMargin(), &memory_.crossings);
+      refresh(CandidateKind::CROSSINGS, keeps, &memory_.crossings);
       CandidateLists& lists = memory_.crossings.now.lists;
       buffers_.evaluation.turned.turnForCrossings(lists, pair_.X_FM);
       Evaluation(pair_, &lists, lists.pairs, &buffers_.evaluation, &found_).findCrossings();
     }
-    refresh(CandidateKind::CONTACTS, keeps ? chooseMargin() : ListMargin(), &memory_.contacts);
+    refresh(CandidateKind::CONTACTS, keeps, &memory_.contacts);
     CandidateLists& lists = memory_.contacts.now.lists;
     const CandidatePairs& pairs = nearestPairs();
     buffers_.evaluation.turned.turnForContacts(lists, pair_.X_FM);
@@ -102,6 +78,7 @@ class ContactSearch {
   void forget() {
     memory_.visited = memory_.nearest_origin.known = false;
     memory_.motion = SteadyMotion();
+    memory_.growth = 0;
     for (KeptListing* kept : {&memory_.contacts, &memory_.crossings}) kept->now.origin.known = kept->next.origin.known = false;
     memory_.moving = pair_.moving.identity;
     memory_.fixed = pair_.fixed.identity;
@@ -110,48 +87,64 @@ class ContactSearch {
   /** Too fast for lists to last. */
   bool isFast() const { return FEWEST_STEPS * motion_.motion > MOST_MARGIN * pair_.range; }
 
-  ListMargin chooseMargin() const {
+  ListMargin contactMargin() const {
     if (!memory_.visited) return {FIRST_MARGIN * pair_.range, FIRST_TURN};
-    if (isFast()) return {};
-    const bool many = memory_.contacts.now.pairs.size() > MANY_LEAF_PAIRS;
-    const double most = (many ? MOST_MARGIN_OF_MANY : MOST_MARGIN) * pair_.range;
+    const bool known = memory_.growth > 0, many = memory_.contacts.now.pairs.size() > MANY_LEAF_PAIRS;
+    const double most = (many ? MOST_MARGIN_OF_MANY : known ? MOST_KNOWN_MARGIN : MOST_MARGIN) * pair_.range;
     // Turning is allowed for as long as moving.
-    double steps = MARGIN_STEPS * partOf(pair_.X_FM);
+    double steps = (known ? cheapestSteps() : MARGIN_STEPS) * partOf(pair_.X_FM);
     if (steps * motion_.motion > most) steps = most / motion_.motion;
     return {std::max(steps * motion_.motion, LEAST_MARGIN * pair_.range), std::max(steps * motion_.turn, LEAST_TURN)};
+  }
+
+  /** Longer lists are made less often, but what they hold more is looked at whenever the nearest are chosen: of both together the least. A
+   * list of margin m lasts 2 m / motion steps; it takes some cost anyway and some more in proportion to m. */
+  double cheapestSteps() const {
+    if (motion_.motion <= 0) return MOST_STEPS;
+    const CandidateListing& list = memory_.contacts.now;
+    const double nearby = list.lists.pairs.contacts() - memory_.growth * list.origin.margin.motion;
+    const double anyway = LEAF_PAIR_COST * list.pairs.size() + CANDIDATE_COST * std::max(nearby, 0.0);
+    const double margin = std::sqrt(0.5 * anyway * motion_.motion * CHOICE_STEPS / memory_.growth);
+    return std::clamp(margin / motion_.motion, FEWEST_STEPS, MOST_STEPS);
+  }
+
+  ListMargin crossingMargin() const {
+    const NearRegion::Motions step = memory_.visited ? region_.motions(pair_.X_FM, memory_.X_FM) : NearRegion::Motions::Zero();
+    return marginAlong(step, CROSSING_STEPS, LEAST_NEAREST_MARGIN * pair_.range);
   }
 
   Vector3 middle() const { return pair_.moving.bounds.center(); }
 
   bool isGood(const ListOrigin& origin) const { return origin.known && isGoodAt(pair_.X_FM, origin); }
 
-  bool isGoodAt(const Pose& X_FM, const ListOrigin& origin) const {
-    return isGoodFor(origin, pair_.range, largestMotion(region_, X_FM, origin.X_FM), largestTurn(X_FM, origin.X_FM));
-  }
+  bool isGoodAt(const Pose& X_FM, const ListOrigin& origin) const { return region_.used(origin, X_FM, pair_.range) <= 1; }
 
   /** The pair where a list of that margin is best made: so far ahead on its way that the list is good from now on until long after. */
   MeshPair ahead(const ListMargin& margin) const {
     MeshPair ahead = pair_;
-    const double steps = motion_.motion > 0 ? std::min(AHEAD * margin.motion / motion_.motion, MARGIN_STEPS) : 0;
+    const double steps = motion_.motion > 0 ? std::min(AHEAD * margin.motion / motion_.motion, AHEAD_STEPS) : 0;
     const Pose X_FM = memory_.motion.after(steps, pair_.X_FM, middle());
-    const ListMargin nearer{AHEAD_AT_MOST * margin.motion, AHEAD_AT_MOST * margin.turn};
+    const ListMargin nearer{AHEAD_AT_MOST * margin.motion, AHEAD_AT_MOST * margin.turn, AHEAD_AT_MOST * margin.ways};
     if (isGoodAt(X_FM, {true, pair_.X_FM, pair_.range, nearer})) ahead.X_FM = X_FM;
     return ahead;
   }
 
   /** Leaves a list that is good; what takes its place is made a part at a time, in the last steps that it is good for. */
-  void refresh(CandidateKind kind, const ListMargin& margin, KeptListing* kept) {
+  void refresh(CandidateKind kind, bool keeps, KeptListing* kept) {
     CandidateListing& next = kept->next;
     const bool good = isGood(kept->now.origin), next_is_good = isGood(next.origin);
-    if (good && next_is_good && next.left() > 0) {
-      findMoreCandidates(pair_, (next.pairs.size() + PARTS - 1) / PARTS, &buffers_.search, &next);
-    } else if (next_is_good) {
-      findMoreCandidates(pair_, next.left(), &buffers_.search, &next);
-      replace(kind, kept);
-    } else if (!good) {
+    if (next_is_good) {
+      const bool waits = good && next.left() > 0;
+      findMoreCandidates(pair_, waits ? (next.pairs.size() + PARTS - 1) / PARTS : next.left(), &buffers_.search, &next);
+      if (!waits) replace(kind, kept);
+      return;
+    }
+    if (good && (memory_.contacts.now.pairs.size() <= FEW_LEAF_PAIRS || !endsSoon(kept->now.origin))) return;
+    const ListMargin margin = !keeps || isFast() ? ListMargin() : kind == CandidateKind::CONTACTS ? contactMargin() : crossingMargin();
+    if (!good) {
       findCandidates(ahead(margin), kind, margin, &buffers_.search, &next);
       replace(kind, kept);
-    } else if (memory_.contacts.now.pairs.size() > FEW_LEAF_PAIRS && lasts(margin) && endsSoon(kept->now.origin)) {
+    } else if (lasts(margin)) {
       beginCandidates(ahead(margin), kind, margin, &buffers_.search, &next);
     }
   }
@@ -168,9 +161,8 @@ class ContactSearch {
   /** Will lists of that origin be good for no longer than it takes to make the next one, if the pair goes on to leave it as it does? */
   bool endsSoon(const ListOrigin& origin) const {
     constexpr double STEPS = PARTS + 1;
-    const auto ends = [](double before, double now, double margin) { return now > before && now + STEPS * (now - before) > margin; };
-    return ends(largestMotion(region_, memory_.X_FM, origin.X_FM), largestMotion(region_, pair_.X_FM, origin.X_FM), origin.margin.motion) ||
-           ends(largestTurn(memory_.X_FM, origin.X_FM), largestTurn(pair_.X_FM, origin.X_FM), origin.margin.turn);
+    const double before = region_.used(origin, memory_.X_FM, pair_.range), now = region_.used(origin, pair_.X_FM, pair_.range);
+    return now > before && now + STEPS * (now - before) > 1;
   }
 
   /** For so many steps of the present motion. */
@@ -189,6 +181,8 @@ class ContactSearch {
     buffers_.evaluation.turned.turnForContacts(all.lists, ahead.X_FM);
     findNearest(ahead, buffers_.evaluation.turned, margin, &all.lists, &memory_.nearest);
     memory_.nearest_origin = {true, ahead.X_FM, pair_.range, margin};
+    const double more = static_cast<double>(all.lists.pairs.contacts() - memory_.nearest.contacts());
+    memory_.growth = std::max(more, 1.0) / (all.origin.margin.motion - margin.motion);
     return memory_.nearest;
   }
 
@@ -196,7 +190,7 @@ class ContactSearch {
   ContactSearchMemory& memory_;
   ContactSearchBuffers& buffers_;
   FoundContacts& found_;
-  const Box region_;
+  const NearRegion region_;
   ListMargin motion_;  // since the last search
 };
 
@@ -211,7 +205,7 @@ bool staysEmpty(const MeshPair& pair, const ContactSearchMemory& memory) {
   const Vector3 middle = bounds.center();
   const double reach = 0.5 * bounds.diagonal().norm() + std::sqrt(3.0) * pair.range, turn = largestTurn(pair.X_FM, origin.X_FM),
                motion = (pair.X_FM * middle - origin.X_FM * middle).norm() + reach * turn;
-  return isGoodFor(origin, pair.range, motion, turn);
+  return usedMargin(origin, pair.range, motion, turn) <= 1;
 }
 
 }  // namespace

@@ -19,6 +19,7 @@ struct ContactSearchMemory {
   KeptListing contacts;                 ///< for many steps
   CandidatePairs nearest;               ///< those of its candidates that matter for a few
   ListOrigin nearest_origin;
+  double growth = 0;      ///< [1/m] of lists of candidates with their margins; 0: not known
   KeptListing crossings;  ///< only where the meshes may have met
   bool visited = false;
   Pose X_FM = Pose::Identity();  ///< at the last search

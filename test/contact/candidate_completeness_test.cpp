@@ -1,4 +1,5 @@
-// Lists hold every contact: those of all pairs of features are those of the candidates, wherever the pair has moved within the margin.
+// Lists hold every contact and every crossing: those of all pairs of features are those of the candidates, wherever the pair has moved
+// within the margin.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -110,6 +111,8 @@ CandidateLists everything(const MeshPair& pair, LeafMemory* leaves) {
   lists.pairs.vertex_edge[0] = allPairs(f.vertices, m.edges);
   lists.pairs.edge_edge = allPairs(m.edges, f.edges);
   lists.pairs.vertex_vertex = allPairs(m.vertices, f.vertices);
+  lists.pairs.edge_face[1] = allPairs(m.edges, f.faces);
+  lists.pairs.edge_face[0] = allPairs(f.edges, m.faces);
   return lists;
 }
 
@@ -131,6 +134,29 @@ std::vector<NamedContact> contactsOf(const MeshPair& pair, CandidateLists* lists
   return out;
 }
 
+using NamedCrossing = std::tuple<bool, int, int>;
+
+std::vector<NamedCrossing> crossingsOf(const MeshPair& pair, CandidateLists* lists, EvaluationBuffers* buffers) {
+  FoundContacts found;
+  buffers->turned.turnForCrossings(*lists, pair.X_FM);
+  Evaluation(pair, lists, lists->pairs, buffers, &found).findCrossings();
+  std::vector<NamedCrossing> out;
+  for (const Crossing& c : found.crossings) out.emplace_back(c.edge_of_moving, c.edge, c.face);
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+/** Some vertex of one is that near [m] some vertex of the other. */
+Pose someMeeting(RandomShapes& random, const Shape& a, const Shape& b, double distance) {
+  Pose X = random.pose(1);
+  const auto someVertex = [&](const Shape& shape) {
+    const std::vector<Vector3>& vertices = shape.collider.geometry->mesh().vertices;
+    return vertices[random.integer(0, vertices.size() - 1)];
+  };
+  X.translation() += someVertex(b) + random.point(distance) - X * someVertex(a);
+  return X;
+}
+
 /** Within half the margin each. */
 Pose movedALittle(RandomShapes& random, const Pose& X, const ListMargin& margin) {
   const Vector3 turn = random.point(1).normalized() * random.uniform(0, 0.5 * margin.motion / SIZE);
@@ -148,13 +174,7 @@ TEST(CandidateCompleteness, ListsHoldEveryContact) {
   for (int i = 0; i < samples(120); ++i) {
     const Shape &a = shapes[random.integer(0, shapes.size() - 1)], &b = shapes[random.integer(0, shapes.size() - 1)];
     SCOPED_TRACE(a.name + " at " + b.name + ", pose " + std::to_string(i));
-    // Some vertex of one is near some vertex of the other.
-    Pose X = random.pose(1);
-    const auto someVertex = [&](const Shape& shape) {
-      const std::vector<Vector3>& vertices = shape.collider.geometry->mesh().vertices;
-      return vertices[random.integer(0, vertices.size() - 1)];
-    };
-    X.translation() += someVertex(b) + random.point(1.5 * LAYER) - X * someVertex(a);
+    const Pose X = someMeeting(random, a, b, 1.5 * LAYER);
     const double part = i % 4 == 0 ? 0 : std::pow(10, random.uniform(-3, -0.5));
     const ListMargin margin{part * LAYER, part * LAYER / SIZE};
     findCandidates(pairOf(a.collider, b.collider, X), CandidateKind::CONTACTS, margin, &buffers, &listing);
@@ -171,6 +191,40 @@ TEST(CandidateCompleteness, ListsHoldEveryContact) {
   }
   RecordProperty("contacts", static_cast<int>(contacts));
   EXPECT_GT(contacts, samples(6000));
+}
+
+TEST(CandidateCompleteness, ListsHoldEveryCrossing) {
+  const std::vector<Shape> shapes = makeShapes();
+  RandomShapes random(14);
+  CandidateSearchBuffers buffers;
+  EvaluationBuffers evaluation;
+  CandidateListing listing;
+  std::size_t crossings = 0, poses = 0;
+  for (int i = 0; i < samples(120); ++i) {
+    const Shape &a = shapes[random.integer(0, shapes.size() - 1)], &b = shapes[random.integer(0, shapes.size() - 1)];
+    SCOPED_TRACE(a.name + " at " + b.name + ", pose " + std::to_string(i));
+    const Pose X = someMeeting(random, a, b, 0.1 * LAYER);
+    const MeshPair pair = pairOf(a.collider, b.collider, X);
+    // It slides along, and turns about some axis through its middle, not at all or as fast.
+    const double step = LAYER * std::pow(10, random.uniform(-4, -2)), steps = 10;
+    const Vector3 shift = step * random.point(1).normalized(), turn = (i % 2) * step / SIZE * random.point(1).normalized();
+    const auto after = [&](double count) { return makePose(count * shift) * X * makePose(Vector3::Zero(), count * turn); };
+    const ListMargin margin = marginAlong(NearRegion(pair).motions(X, after(-1)), steps, 0.01 * step);
+    findCandidates(pair, CandidateKind::CROSSINGS, margin, &buffers, &listing);
+    LeafMemory leaves;
+    CandidateLists all = everything(pair, &leaves);
+    for (int move = 0; move < 4; ++move) {
+      const Pose Y = makePose(random.point(0.04 * steps * step)) * after(random.uniform(-steps, steps));
+      const MeshPair moved = pairOf(a.collider, b.collider, Y);
+      if (NearRegion(moved).used(listing.origin, Y, LAYER) > 1) continue;
+      const std::vector<NamedCrossing> expected = crossingsOf(moved, &all, &evaluation);
+      ASSERT_EQ(crossingsOf(moved, &listing.lists, &evaluation), expected);
+      crossings += expected.size();
+      ++poses;
+    }
+  }
+  EXPECT_GT(crossings, samples(2000));
+  EXPECT_GT(poses, samples(240));
 }
 
 // A large mesh in a frame far away, a small one that is looked at in its own: coordinates are rounded as the larger ones are.

@@ -80,8 +80,9 @@ inline FloatMask mayTouch(const FloatEdge& a, const FloatEdge& b, const LeafReac
 
 /** Only an edge with ends on both sides of a plane, inside some part of the face, passes through it. */
 inline FloatMask mayCross(const FloatVectors& start, const FloatVectors& end, const FloatFaces& face, const LeafReach& reach) {
-  const Floats first = face.plane.above(start), second = face.plane.above(end);
-  FloatMask may = (minimum(first, second) <= reach.margin) & (maximum(first, second) >= -reach.margin);
+  const Floats first = face.plane.above(start), second = face.plane.above(end), margin = motionAlong(reach, face.plane.normal);
+  FloatMask may = (minimum(first, second) <= margin) & (maximum(first, second) >= -margin);
+  if (bitsOf(may) == 0) return may;
   for (const FloatPlanes& side : face.sides) may &= maximum(side.above(start), side.above(end)) >= -reach.margin;
   return may;
 }
@@ -145,7 +146,7 @@ void leafContacts(const LeafShapes& a, const LeafShapes& b, const LeafReach& rea
 
 inline void findCrossings(const LeafShapes& a, const LeafShapes& b, const LeafReach& reach, int order, LeafHits* hits) {
   hits->edge_faces[order] = 0;
-  forEachBit(edgesAtBox(a, b, reach.margin), [&](std::uint32_t i) {
+  forEachBit(edgesAtBox(a, b, reach), [&](std::uint32_t i) {
     const FloatEdge edge = oneEdge(a, i);
     const FloatVectors start = edge.start, end = start + edge.along;
     const std::uint32_t faces = bitsWhere(b.face_count, [&](auto j) { return mayCross(start, end, FloatFaces(b.faces, j), reach); });

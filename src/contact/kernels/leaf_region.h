@@ -72,9 +72,24 @@ inline std::uint32_t edgesNear(const LeafShapes& a, const LeafShapes& b, const L
   });
 }
 
+/** How far [m] points may move along a unit vector, or several, with room for rounding. */
+template <typename Number>
+inline Number motionAlong(const LeafReach& reach, Number x, Number y, Number z) {
+  Number along = reach.rounding - Number{};
+  for (const float(&way)[3] : reach.ways) {
+    const Number part = way[0] * x + way[1] * y + way[2] * z;
+    along += part < 0 ? -part : part;
+  }
+  return along;
+}
+inline Floats motionAlong(const LeafReach& reach, const FloatVectors& v) { return motionAlong(reach, v.x, v.y, v.z); }
+
 /** Edges of a that come within the margin of b's box. */
-inline std::uint32_t edgesAtBox(const LeafShapes& a, const LeafShapes& b, float margin) {
-  return edgesNear(a, b, margin, [&](const FloatVectors& outside) { return maximum(maximum(outside.x, outside.y), outside.z) <= margin; });
+inline std::uint32_t edgesAtBox(const LeafShapes& a, const LeafShapes& b, const LeafReach& reach) {
+  const auto along = [&](const float(&axis)[3]) { return motionAlong(reach, axis[0], axis[1], axis[2]); };
+  const float x = along(b.region.axes[0]), y = along(b.region.axes[1]), z = along(b.region.axes[2]);
+  return edgesNear(a, b, reach.margin,
+                   [&](const FloatVectors& outside) { return maximum(maximum(outside.x - x, outside.y - y), outside.z - z) <= 0; });
 }
 
 }  // namespace

@@ -108,6 +108,8 @@ struct LeafReach {
   float turn;      ///< that unit vectors may turn (length of the difference)
   float inside;    ///< both ends of an edge may lie so far inside a face of the other one
   float rounding;  ///< that coordinates may be wrong by; part of range, margin and inside
+  /** For crossings: rows square to each other; no point moves along any of them by more than its length, but for the rounding. */
+  float ways[3][3];
 };
 
 /** How near candidates must be [m]. */
