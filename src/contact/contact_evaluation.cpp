@@ -16,7 +16,7 @@ using kernels::VertexFaceHit;
 
 constexpr std::uint32_t NONE = 0xFFFFFFFF;
 /** Candidates that are tested at once: there is room for contacts of all. */
-constexpr std::uint32_t BLOCK = 64;
+constexpr std::uint32_t BLOCK = 256;
 
 template <typename Items>
 void makeRoom(std::size_t size, Items* items) {

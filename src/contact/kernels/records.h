@@ -17,7 +17,7 @@ inline double nameBits(std::int64_t name) {
 }
 
 /** A face in some frame: signed heights over its plane and inside its three sides, all in metres, as normal . p - offset. */
-struct FaceRecord {
+struct alignas(64) FaceRecord {
   Vec4 plane;     ///< unit normal, offset
   Vec4 sides[3];  ///< unit, in the plane, square to side k and into the face; offset
 };
@@ -27,7 +27,7 @@ struct FaceRecord {
 using OpenSides = std::int32_t;
 
 /** An edge in some frame. */
-struct EdgeRecord {
+struct alignas(64) EdgeRecord {
   Vec4 start;      ///< its first vertex; w: squared length
   Vec4 along;      ///< to its second vertex; w: 1 if it has more faces than `inward` tells, -1 if it is round (ROUND_COSINE)
   Vec4 inward[2];  ///< unit, square to it, into its first and second face; zero where there is none
