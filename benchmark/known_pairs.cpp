@@ -82,7 +82,7 @@ class KnownPairs {
     dropUnknown(KnownContacts(plain, found.close.placed(pair)));
     compactFeatures();
     vertex_faces_.resize(size() + 1);
-    edge_edges_.resize(size());
+    edge_edges_.resize(size() + 1);
     others_.resize(size());
   }
 
@@ -106,7 +106,7 @@ class KnownPairs {
       hits += k.vertexEdges(moves ? moving_vertices : fixed_vertices, moves ? fixed_edges : moving_edges, edges.data(), count(edges),
                             range_, others_.data());
     }
-    hits += k.edgeEdges(moving_edges, fixed_edges, pairs.edge_edge.data(), count(pairs.edge_edge), range_, edge_edges_.data());
+    hits += k.edgeEdges(moving_edges, fixed_edges, pairs.edge_edge.data(), count(pairs.edge_edge), range_, nullptr, edge_edges_.data());
     hits +=
         k.vertexVertices(moving_vertices, fixed_vertices, pairs.vertex_vertex.data(), count(pairs.vertex_vertex), range_, others_.data());
     return hits;

@@ -110,13 +110,6 @@ Found found(const Kernels& set, const Features& in) {
       out.indices.insert(out.indices.end(), {static_cast<std::uint32_t>(row.id >> 32), static_cast<std::uint32_t>(row.id)});
     }
   }
-  std::vector<EdgeEdgeHit> edge_edges(CANDIDATES);
-  add(set.edgeEdges(in.edges.data(), in.edges.data(), candidates, CANDIDATES, RANGE, edge_edges.data()));
-  for (std::uint32_t i = 0; i < out.counts.back(); ++i) {
-    const EdgeEdgeHit& hit = edge_edges[i];
-    out.indices.insert(out.indices.end(), {hit.candidate, hit.is_plain, hit.near_border});
-    out.numbers.insert(out.numbers.end(), {hit.part_a, hit.part_b, hit.gap, hit.normal[0], hit.normal[1], hit.normal[2]});
-  }
   std::vector<std::uint32_t> hits(CANDIDATES);
   const auto addHits = [&](std::uint32_t count) {
     add(count);

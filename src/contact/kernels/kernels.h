@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "records.h"
+#include "edge_records.h"
 
 namespace blem_sim::kernels {
 
@@ -42,8 +42,13 @@ struct Kernels {
   /** The contacts of vertices with sides of faces. @param vertices in the faces' mesh's frame @param sides as the pairs */
   void (*sideFeet)(const ContactPlace& place, const Vec4* vertices, const FaceRecord* faces, const BesideSide* sides,
                    const Candidate* pairs, std::uint32_t count, SideFoot* feet);
+  /** As vertexFaces. */
   std::uint32_t (*edgeEdges)(const EdgeRecord* a, const EdgeRecord* b, const Candidate* candidates, std::uint32_t count, double range,
-                             EdgeEdgeHit* hits);
+                             PlainEdges* plain, EdgeEdgeHit* hits);
+  /** Of candidates that are not plain: those with a contact within `range` if nothing takes over, or that need a closer look. Room for one
+   * more hit than candidates. */
+  std::uint32_t (*fadingEdges)(const EdgeRecord* a, const EdgeRecord* b, const Candidate* candidates, std::uint32_t count, double range,
+                               FadingEdgesHit* hits);
   /** Indices of candidates that need a closer look. @return their number */
   std::uint32_t (*vertexEdges)(const Vec4* a, const EdgeRecord* b, const Candidate* candidates, std::uint32_t count, double range,
                                std::uint32_t* hits);

@@ -3,6 +3,7 @@
 #pragma GCC diagnostic ignored "-Wpsabi"
 
 #include "candidate_kernels.h"
+#include "edge_kernels.h"
 #include "kernels.h"
 #include "lanes.h"
 #include "leaf_kernels.h"
@@ -58,5 +59,5 @@ void turnFaces(const FaceRecord* in, std::uint32_t count, const Motion& motion, 
 #define BLEM_SIM_KERNEL_TABLE(name)                                                                                                 \
   {                                                                                                                                 \
     name, turnPoints, turnEdges, turnFaces, turnLeaf, leafContacts, leafCrossings, nearVertexFaces, nearEdgeEdges, nearVertexEdges, \
-        nearVertexVertices, vertexFaces, sideFeet, edgeEdges, vertexEdges, vertexVertices, edgeFaces                                \
+        nearVertexVertices, vertexFaces, sideFeet, edgeEdges, fadingEdges, vertexEdges, vertexVertices, edgeFaces                   \
   }
