@@ -281,12 +281,18 @@ void Evaluation::fadingEdges(const kernels::EdgeRecord* moving, const kernels::E
 
 void Evaluation::vertexEdges(bool moves, const Vec4* vertices, const kernels::EdgeRecord* edges) {
   const std::vector<Candidate>& candidates = pairs_.vertex_edge[moves];
-  forEachHit(candidates,
-             kernels::kernels().vertexEdges(vertices, edges, candidates.data(), candidates.size(), pair_.range, room(candidates)),
-             [&](const Candidate& c) {
-               exact_.vertexEdge(moves, lists_.near[moves].vertices.names[c.a], lists_.near[!moves].edges.names[c.b],
-                                 vector3(vertices[c.a]), edges[c.b]);
-             });
+  const auto total = static_cast<std::uint32_t>(candidates.size());
+  makeRoom(total, &buffers_.vertex_edges);
+  const kernels::VertexEdgeHit* const hits = buffers_.vertex_edges.data();
+  const std::uint32_t count =
+      kernels::kernels().vertexEdges(vertices, edges, candidates.data(), total, pair_.range, buffers_.vertex_edges.data());
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Candidate& c = candidates[hits[i].candidate];
+    const int vertex = lists_.near[moves].vertices.names[c.a];
+    const bool is_round = edges[c.b].along.w < 0;
+    if (!is_round && exact_.leadsTo(moves, vertex, Vector3(hits[i].offset))) continue;
+    exact_.vertexEdge(moves, vertex, lists_.near[!moves].edges.names[c.b], vector3(vertices[c.a]), edges[c.b]);
+  }
 }
 
 void Evaluation::vertexVertices(const Vec4* moving, const Vec4* fixed) {

@@ -36,6 +36,7 @@ struct EvaluationBuffers {
   TurnedFeatures turned;
   SurroundingsMemory surroundings;
   std::vector<kernels::VertexFaceHit> vertex_faces;
+  std::vector<kernels::VertexEdgeHit> vertex_edges;
   std::vector<kernels::EdgeEdgeHit> edge_edges;
   std::vector<kernels::Candidate> edges_left;  ///< those that are not plain
   std::vector<kernels::FadingEdgesHit> fading_edges;

@@ -5,6 +5,7 @@
 #include "edge_pair.h"
 #include "face_borders.h"
 #include "feature_cones.h"
+#include "kernels/kernels.h"
 #include "leaving_vertex.h"
 #include "vectors.h"
 
@@ -82,8 +83,7 @@ void ExactTests::vertexEdge(bool vertex_moves, int vertex, int edge, const Vecto
   if (!edge_pair_detail::isInside(part, length2, length2)) return;
   const Vector3 foot = q + part / length2 * along;
   const Vector3 d = p - foot;
-  const double distance2 = d.squaredNorm();
-  if (distance2 > pair_.range * pair_.range || leadsTo(vertex_moves, vertex, d, distance2)) return;
+  if (d.squaredNorm() > pair_.range * pair_.range) return;
   if (vertex_moves) {
     addLocalMinimum({FeatureKind::VERTEX, vertex}, {FeatureKind::EDGE, edge}, p, foot, along);
   } else {
@@ -91,17 +91,13 @@ void ExactTests::vertexEdge(bool vertex_moves, int vertex, int edge, const Vecto
   }
 }
 
-/** Does the surface at the vertex surely lead towards the edge, so that the vertex is no local minimum? Most are told by this, without a
- * unit vector. @param d from the edge to the vertex, frame F @param distance2 its square */
-bool ExactTests::leadsTo(bool vertex_moves, int vertex, const Vector3& d, double distance2) const {
+bool ExactTests::leadsTo(bool vertex_moves, int vertex, const Vector3& d) const {
+  const double distance2 = d.squaredNorm();
   if (distance2 <= TOUCH * TOUCH) return false;
   constexpr double SURE = 1.001 * CONE_SLACK;
   const Vector3 towards = vertex_moves ? Vector3(-(R_FM_.transpose() * d)) : Vector3(-d);
   const EdgesAtVertex edges = surroundings_.ofVertex(pair_.side(vertex_moves), vertex);
-  return std::any_of(edges.begin(), edges.end(), [&](const EdgeFromVertex& edge) {
-    const double along = edge.along.dot(towards);
-    return along > 0 && along * along > SURE * SURE * edge.length2 * distance2;
-  });
+  return kernels::kernels().leadTo(edges.blocks, edges.block_count, towards.data(), SURE * SURE * distance2);
 }
 
 /** Beyond its ends, but for round ones, which take over, the contact fades. @return false if they touch */

@@ -21,6 +21,9 @@ class ExactTests {
   void edgeEdge(int moving, int fixed, const kernels::EdgeRecord& record_m, const kernels::EdgeRecord& record_f);
   /** Where a foot lies beyond an end. @param hit of the two edges, the moving one named first */
   void fadingEdges(int moving, int fixed, const kernels::FadingEdgesHit& hit);
+  /** Does the surface at the vertex surely lead towards the edge, so that the vertex is no local minimum? Most are told by this, without a
+   * foot on the edge. @param d from the edge's line to the vertex, frame F */
+  bool leadsTo(bool vertex_moves, int vertex, const Vector3& d) const;
   /** @param p, record the vertex and the edge in frame F. Where each is the other's local minimum; at a round edge wherever the vertex is
    * nearer to it than to its faces. */
   void vertexEdge(bool vertex_moves, int vertex, int edge, const Vector3& p, const kernels::EdgeRecord& record);
@@ -28,7 +31,6 @@ class ExactTests {
 
  private:
   bool reachesOver(bool vertex_moves, int vertex, const Vector3& p, const FaceShape& face) const;
-  bool leadsTo(bool vertex_moves, int vertex, const Vector3& d, double distance2) const;
   bool addAtRoundEdge(bool vertex_moves, int vertex, int edge, const Vector3& p, const kernels::EdgeRecord& record);
   void addLocalMinimum(const Feature& m, const Feature& f, const Vector3& point_M, const Vector3& point_F, const Vector3& along);
   /** Does neither surface come closer to the other beside its feature? */

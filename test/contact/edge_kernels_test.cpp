@@ -174,5 +174,46 @@ TEST(EdgeKernels, AllInstructionSetsFindTheSame) {
   }
 }
 
+TEST(EdgeKernels, EdgesAroundAVertexLeadAsTheirDirectionsSay) {
+  RandomShapes random(37);
+  constexpr double NEAR = 0.01;
+  int downs = 0, nears = 0, towards = 0;
+  for (int i = 0; i < 600; ++i) {
+    const int count = i % 20;
+    std::vector<EdgeDirections> blocks(directionBlocks(count), EdgeDirections{});
+    const Vector3 down = random.point(1).normalized(), aside = down.cross(random.point(1)).normalized();
+    LeadingEdges expected{false, false};
+    const double least = random.uniform(0, 0.9);
+    bool leads = false;
+    for (int k = 0; k < count; ++k) {
+      // Few lead down, some of them hardly.
+      Vector3 direction = random.point(1).normalized();
+      if (direction.dot(down) > 0) direction -= random.uniform(0.9, 1.5) * direction.dot(down) * down;
+      direction.normalize();
+      const bool is_flat = random.integer(0, 3) == 0;
+      EdgeDirections& block = blocks[k / DIRECTION_BLOCK];
+      const int lane = k % DIRECTION_BLOCK;
+      block.x[lane] = direction.x(), block.y[lane] = direction.y(), block.z[lane] = direction.z();
+      block.near[lane] = is_flat ? -1 : NEAR;
+      const double sine = direction.dot(down), beside = direction.dot(aside);
+      expected.down = expected.down || sine > CONE_SLACK;
+      expected.near = expected.near || (sine > CONE_SLACK && !is_flat && sine <= NEAR * (sine * sine + beside * beside));
+      leads = leads || direction.dot(aside) > least;
+    }
+    downs += expected.down, nears += expected.near, towards += leads;
+    for (const Kernels* set : availableKernels()) {
+      SCOPED_TRACE(set->name);
+      const LeadingEdges found = set->leadingEdges(blocks.data(), static_cast<int>(blocks.size()), down.data(), aside.data());
+      EXPECT_EQ(found.down, expected.down);
+      EXPECT_EQ(found.near, expected.near);
+      EXPECT_EQ(set->leadTo(blocks.data(), static_cast<int>(blocks.size()), aside.data(), least * least), leads);
+    }
+  }
+  for (const int often : {downs, nears, towards}) {
+    EXPECT_GT(often, 20);
+    EXPECT_LT(often, 580);
+  }
+}
+
 }  // namespace
 }  // namespace blem_sim

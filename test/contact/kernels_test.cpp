@@ -115,7 +115,12 @@ Found found(const Kernels& set, const Features& in) {
     add(count);
     out.indices.insert(out.indices.end(), hits.begin(), hits.begin() + count);
   };
-  addHits(set.vertexEdges(in.vertices.data(), in.edges.data(), candidates, CANDIDATES, 3 * RANGE, hits.data()));
+  std::vector<VertexEdgeHit> vertex_edges(CANDIDATES);
+  add(set.vertexEdges(in.vertices.data(), in.edges.data(), candidates, CANDIDATES, 3 * RANGE, vertex_edges.data()));
+  for (std::uint32_t i = 0; i < out.counts.back(); ++i) {
+    out.indices.push_back(vertex_edges[i].candidate);
+    out.numbers.insert(out.numbers.end(), vertex_edges[i].offset, vertex_edges[i].offset + 3);
+  }
   addHits(set.vertexVertices(in.vertices.data(), in.vertices.data(), candidates, CANDIDATES, RANGE, hits.data()));
   addHits(set.edgeFaces(in.edges.data(), in.faces.data(), candidates, CANDIDATES, hits.data()));
   std::vector<Candidate> near(CANDIDATES);

@@ -121,18 +121,6 @@ std::uint32_t nearVertexVertices(const Vec4* a, const Vec4* b, const Candidate* 
 
 // ---- what has a contact
 
-/** Offset from the foot on an edge, which may lie beyond its ends, and where that foot is as part of the edge. */
-struct EdgeOffset {
-  Vectors d;
-  Doubles part;
-};
-
-inline EdgeOffset offsetFrom(const Rows& start, const Vectors& along, const Vectors& p) {
-  const Vectors r = p - start.v;
-  const Doubles part = dot(r, along) / start.w;
-  return {r - part * along, part};
-}
-
 /** VertexFaceHit::bits */
 inline Mask vertexFaceBits(const InsideSides& sides, Doubles inside, Mask plain) {
   const auto bit = [](Mask is, long value) { return is & value; };
@@ -175,24 +163,6 @@ std::uint32_t vertexFaces(const Vec4* a, const FaceRecord* b, const OpenSides* o
 
 /** How far a part of an edge times n2 lies beyond its ends. */
 inline Doubles beyondEnds(Doubles part, Doubles n2) { return maximum(maximum(-part, part - n2), Doubles{}); }
-
-std::uint32_t vertexEdges(const Vec4* a, const EdgeRecord* b, const Candidate* candidates, std::uint32_t count, double range,
-                          std::uint32_t* hits) {
-  return listed(candidates, count, hits, [&](const Batch& batch) {
-    const Rows start = batch.field(b, batch.of_b, &EdgeRecord::start);
-    const Rows along = batch.field(b, batch.of_b, &EdgeRecord::along);
-    const EdgeOffset offset = offsetFrom(start, along.v, batch.points(a, batch.of_a).v);
-    const Doubles d2 = dot(offset.d, offset.d), over = beyondEnds(offset.part, all(1)), distance = squareRoot(d2);
-    // Beyond the ends of round edges contacts fade.
-    const Doubles most = along.w < 0 ? (range - distance) / FADE_SLOPE : Doubles{};
-    const Doubles beyond = maximum(most, Doubles{}) + 2 * CLOSED;
-    const unsigned near = bitsOf((d2 <= range * range) & (over * over * start.w <= beyond * beyond));
-    if (near == 0) return 0u;
-    const Doubles limit = 2 * CONE_SLACK * distance + 2 * TOUCH;
-    return near &
-           bitsOf((dot(batch.inward(b, batch.of_b, 0).v, offset.d) <= limit) & (dot(batch.inward(b, batch.of_b, 1).v, offset.d) <= limit));
-  });
-}
 
 std::uint32_t vertexVertices(const Vec4* a, const Vec4* b, const Candidate* candidates, std::uint32_t count, double range,
                              std::uint32_t* hits) {

@@ -1,4 +1,4 @@
-// What the kernels find where edges meet edges: plain numbers, the same for every instruction set.
+// What the kernels find near edges: plain numbers, the same for every instruction set.
 #pragma once
 
 #include "records.h"
@@ -40,6 +40,12 @@ struct FadingEdgesHit {
   double point_a[3], point_b[3];  ///< [m] witness points
   double distance, gap;           ///< [m] of these; and with the depth that is lost beyond the ends
   double normal[3];               ///< unit, from b to a, square to both edges
+};
+
+/** A vertex near an edge, over none of its first two faces. */
+struct VertexEdgeHit {
+  std::uint32_t candidate;
+  double offset[3];  ///< [m] of the vertex from the edge's line
 };
 
 }  // namespace blem_sim::kernels
