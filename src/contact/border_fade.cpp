@@ -1,6 +1,6 @@
 #include "border_fade.h"
 
-#include "feature_cones.h"
+#include "kernels/kernels.h"
 #include "leaving_vertex.h"
 #include "vectors.h"
 
@@ -30,17 +30,10 @@ bool BorderFades::leaves(bool vertex_moves, const kernels::Candidate& c, int k, 
   const Vector3 normal = vector3(record.plane), inward = vector3(record.sides[k]), down = is_above ? Vector3(-normal) : normal;
   const Matrix3& R_PS = vertex_moves ? R_FM_ : R_MF_;
   const Vector3 own_down = R_PS.transpose() * down, own_aside = R_PS.transpose() * inward;
-  bool leads_down = false;
-  for (const EdgeFromVertex& around : surroundings_.ofVertex(side, vertex_name)) {
-    const double sine = around.direction.dot(own_down), aside = around.direction.dot(own_aside);
-    if (sine <= CONE_SLACK) continue;
-    leads_down = true;
-    if (!around.is_flat && sine <= NEAR_SUCCESSOR * (sine * sine + aside * aside)) {
-      const int border = partner.topology.edgeOf(face, k);
-      return !isTakenOver({side, partner, vertex_name, border, R_PS, own_down}, &surroundings_);
-    }
-  }
-  return leads_down;
+  const EdgesAtVertex edges = surroundings_.ofVertex(side, vertex_name);
+  const kernels::LeadingEdges leading = kernels::kernels().leadingEdges(edges.blocks, edges.block_count, own_down.data(), own_aside.data());
+  if (!leading.near) return leading.down;
+  return !isTakenOver({side, partner, vertex_name, partner.topology.edgeOf(face, k), R_PS, own_down}, &surroundings_);
 }
 
 }  // namespace blem_sim

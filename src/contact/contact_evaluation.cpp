@@ -215,42 +215,82 @@ void Evaluation::dropCovered(bool moves) {
   found_.close.keepOfLast(fading.size(), [&](std::size_t i) { return !fading[i].is_covered; });
 }
 
-void Evaluation::edgeEdges(const kernels::EdgeRecord* moving, const kernels::EdgeRecord* fixed) {
+/** @return how many need a closer look; the plain ones are written */
+std::uint32_t Evaluation::findEdgeEdges(const kernels::EdgeRecord* moving, const kernels::EdgeRecord* fixed) {
   const std::vector<Candidate>& candidates = pairs_.edge_edge;
-  auto& hits = buffers_.edge_edges;
-  makeRoom(candidates.size(), &hits);
-  const std::uint32_t count = kernels::kernels().edgeEdges(moving, fixed, candidates.data(), candidates.size(), pair_.range, hits.data());
+  const auto total = static_cast<std::uint32_t>(candidates.size());
+  const ContactRoles& roles = pair_.roles;
+  const Feature edge{FeatureKind::EDGE, 0};
+  makeRoom(total + 1, &buffers_.edge_edges);
+  kernels::PlainEdges plain{{lists_.near[1].edges.names.data(), lists_.near[0].edges.names.data(), roles.first_is_a, motionOf(pair_.X_WF),
+                             roles.r_a + roles.r_b, 0.5 * (roles.r_b - roles.r_a), contactId(edge, edge)},
+                            nullptr,
+                            0,
+                            found_.deepest_plain};
+  std::uint32_t count = 0;
+  for (std::uint32_t first = 0; first < total; first += BLOCK) {
+    const std::uint32_t size = std::min(BLOCK, total - first);
+    kernels::EdgeEdgeHit* const hits = buffers_.edge_edges.data() + count;
+    plain.rows = found_.plain.rows(size + 1);
+    plain.count = 0;
+    const std::uint32_t found = kernels::kernels().edgeEdges(moving, fixed, candidates.data() + first, size, pair_.range,
+                                                             found_.crossings.empty() ? &plain : nullptr, hits);
+    for (std::uint32_t i = 0; i < found; ++i) hits[i].candidate += first;
+    count += found;
+    found_.plain.advance(plain.count);
+  }
+  found_.deepest_plain = plain.deepest;
+  return count;
+}
+
+void Evaluation::edgeEdges(const kernels::EdgeRecord* moving, const kernels::EdgeRecord* fixed) {
+  if (pairs_.edge_edge.empty()) return;
+  const std::uint32_t count = findEdgeEdges(moving, fixed);
+  buffers_.edges_left.clear();
   for (std::uint32_t i = 0; i < count; ++i) {
-    const kernels::EdgeEdgeHit& hit = hits[i];
-    const Candidate& c = candidates[hit.candidate];
-    const int m = lists_.near[1].edges.names[c.a], f = lists_.near[0].edges.names[c.b];
+    const kernels::EdgeEdgeHit& hit = buffers_.edge_edges[i];
+    const Candidate& c = pairs_.edge_edge[hit.candidate];
     if (!hit.is_plain) {
-      exact_.edgeEdge(m, f, moving[c.a], fixed[c.b]);
+      buffers_.edges_left.push_back(c);
       continue;
     }
-    const auto foot = [](const kernels::EdgeRecord& edge, double part) {
-      return Vector3(vector3(edge.start) + part * vector3(edge.along));
-    };
-    const Vector3 point_m = foot(moving[c.a], hit.part_a), point_f = foot(fixed[c.b], hit.part_b), normal(hit.normal);
-    if (hit.near_border || !found_.crossings.empty()) {
-      found_.close.add(pair_, true, {FeatureKind::EDGE, m}, {FeatureKind::EDGE, f}, point_m, point_f, normal, hit.gap);
+    const Feature m{FeatureKind::EDGE, lists_.near[1].edges.names[c.a]}, f{FeatureKind::EDGE, lists_.near[0].edges.names[c.b]};
+    found_.close.add(pair_, true, m, f, Vector3(hit.point_a), Vector3(hit.point_b), Vector3(hit.normal), hit.gap);
+  }
+  fadingEdges(moving, fixed);
+}
+
+void Evaluation::fadingEdges(const kernels::EdgeRecord* moving, const kernels::EdgeRecord* fixed) {
+  const std::vector<Candidate>& left = buffers_.edges_left;
+  const auto total = static_cast<std::uint32_t>(left.size());
+  makeRoom(total + 1, &buffers_.fading_edges);
+  const std::uint32_t count = kernels::kernels().fadingEdges(moving, fixed, left.data(), total, pair_.range, buffers_.fading_edges.data());
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const kernels::FadingEdgesHit& hit = buffers_.fading_edges[i];
+    const Candidate& c = left[hit.candidate];
+    const int m = lists_.near[1].edges.names[c.a], f = lists_.near[0].edges.names[c.b];
+    if (hit.is_inside) {
+      exact_.edgeEdge(m, f, moving[c.a], fixed[c.b]);
     } else {
-      Contact* const plain = found_.plain.room(1);
-      placeInWorld(pair_, true, {FeatureKind::EDGE, m}, {FeatureKind::EDGE, f}, point_m, point_f, normal, hit.gap, plain);
-      found_.plain.advance(1);
-      found_.deepest_plain = std::max(found_.deepest_plain, plain->depth);
+      exact_.fadingEdges(m, f, hit);
     }
   }
 }
 
 void Evaluation::vertexEdges(bool moves, const Vec4* vertices, const kernels::EdgeRecord* edges) {
   const std::vector<Candidate>& candidates = pairs_.vertex_edge[moves];
-  forEachHit(candidates,
-             kernels::kernels().vertexEdges(vertices, edges, candidates.data(), candidates.size(), pair_.range, room(candidates)),
-             [&](const Candidate& c) {
-               exact_.vertexEdge(moves, lists_.near[moves].vertices.names[c.a], lists_.near[!moves].edges.names[c.b],
-                                 vector3(vertices[c.a]), edges[c.b]);
-             });
+  const auto total = static_cast<std::uint32_t>(candidates.size());
+  makeRoom(total, &buffers_.vertex_edges);
+  const kernels::VertexEdgeHit* const hits = buffers_.vertex_edges.data();
+  const std::uint32_t count =
+      kernels::kernels().vertexEdges(vertices, edges, candidates.data(), total, pair_.range, buffers_.vertex_edges.data());
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const Candidate& c = candidates[hits[i].candidate];
+    const int vertex = lists_.near[moves].vertices.names[c.a];
+    const bool is_round = edges[c.b].along.w < 0;
+    if (!is_round && exact_.leadsTo(moves, vertex, Vector3(hits[i].offset))) continue;
+    exact_.vertexEdge(moves, vertex, lists_.near[!moves].edges.names[c.b], vector3(vertices[c.a]), edges[c.b]);
+  }
 }
 
 void Evaluation::vertexVertices(const Vec4* moving, const Vec4* fixed) {

@@ -36,7 +36,10 @@ struct EvaluationBuffers {
   TurnedFeatures turned;
   SurroundingsMemory surroundings;
   std::vector<kernels::VertexFaceHit> vertex_faces;
+  std::vector<kernels::VertexEdgeHit> vertex_edges;
   std::vector<kernels::EdgeEdgeHit> edge_edges;
+  std::vector<kernels::Candidate> edges_left;  ///< those that are not plain
+  std::vector<kernels::FadingEdgesHit> fading_edges;
   std::vector<std::uint32_t> hits;
   std::vector<kernels::Candidate> over;    ///< vertices over faces
   std::uint32_t over_count = 0;            ///< of them
@@ -76,6 +79,8 @@ class Evaluation {
   void addPlain(bool moves, const kernels::Candidate& c, double height);
   void addFading(bool moves);
   void dropCovered(bool moves);
+  std::uint32_t findEdgeEdges(const kernels::EdgeRecord* moving, const kernels::EdgeRecord* fixed);
+  void fadingEdges(const kernels::EdgeRecord* moving, const kernels::EdgeRecord* fixed);
   void edgeEdges(const kernels::EdgeRecord* moving, const kernels::EdgeRecord* fixed);
   void vertexEdges(bool moves, const kernels::Vec4* vertices, const kernels::EdgeRecord* edges);
   void vertexVertices(const kernels::Vec4* moving, const kernels::Vec4* fixed);

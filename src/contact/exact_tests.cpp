@@ -5,6 +5,7 @@
 #include "edge_pair.h"
 #include "face_borders.h"
 #include "feature_cones.h"
+#include "kernels/kernels.h"
 #include "leaving_vertex.h"
 #include "vectors.h"
 
@@ -45,34 +46,11 @@ bool ExactTests::reachesOver(bool vertex_moves, int vertex, const Vector3& p, co
 
 // ---- edge and edge
 
-namespace {
-
-/** Do both ends of an edge lie farther inside a face of the other edge than a contact within range could? Of its first two faces. */
-bool liesInside(const kernels::EdgeRecord& edge, const kernels::EdgeRecord& other, double range) {
-  const Vector3 p = vector3(other.start) - vector3(edge.start), q = p + vector3(other.along);
-  bool inside = false;
-  for (const kernels::Vec4& inward : edge.inward)
-    inside = inside || std::min(vector3(inward).dot(p), vector3(inward).dot(q)) > deepestInside(range);
-  return inside;
-}
-
-}  // namespace
-
 void ExactTests::edgeEdge(int moving, int fixed, const kernels::EdgeRecord& record_m, const kernels::EdgeRecord& record_f) {
-  const Vector3 p0 = vector3(record_m.start), p1 = p0 + vector3(record_m.along), q0 = vector3(record_f.start),
-                q1 = q0 + vector3(record_f.along);
-  LinePair lines;
-  if (!lines.find(p0, p1, q0, q1, pair_.range, pair_.range / FADE_SLOPE)) return;
-  const Feature m{FeatureKind::EDGE, moving}, f{FeatureKind::EDGE, fixed};
-  const bool cones_known = record_m.along.w <= 0 && record_f.along.w <= 0 && lines.rn * lines.rn > TOUCH * TOUCH * lines.n2;
+  const Vector3 p = vector3(record_m.start), q = vector3(record_f.start);
   EdgePair feet;
-  if (!findEdgePair(lines, p0, q0, &feet)) {
-    if (liesInside(record_m, record_f, pair_.range) || liesInside(record_f, record_m, pair_.range)) return;
-    EdgesBeyond beyond;
-    findEdgesBeyond(lines, p0, q0, &beyond);
-    addFadingEdges(m, f, beyond, cones_known);
-    return;
-  }
+  if (!findEdgePair(p, p + vector3(record_m.along), q, q + vector3(record_f.along), pair_.range, &feet)) return;
+  const Feature m{FeatureKind::EDGE, moving}, f{FeatureKind::EDGE, fixed};
   Vector3 normal = feet.offset < 0 ? Vector3(-feet.axis) : feet.axis;
   const double gap = std::abs(feet.offset);
   if (gap <= TOUCH) normal = towardsMoving(pair_, normal, m, f, feet.point_q);
@@ -80,19 +58,20 @@ void ExactTests::edgeEdge(int moving, int fixed, const kernels::EdgeRecord& reco
     contacts_.add(pair_, true, m, f, feet.point_p, feet.point_q, normal, gap);
 }
 
-void ExactTests::addFadingEdges(const Feature& m, const Feature& f, const EdgesBeyond& edges, bool cones_known) {
-  const Vector3 d = edges.point_p - edges.point_q;
-  const double distance = d.norm(), gap = distance + FADE_SLOPE * edges.beyond;
-  if (distance <= TOUCH || gap > pair_.range) return;
-  if (!cones_known && !conesAllow(m, f, edges.normal, EDGE_CONE_SLACK)) return;
+void ExactTests::fadingEdges(int moving, int fixed, const kernels::FadingEdgesHit& hit) {
+  const Feature m{FeatureKind::EDGE, moving}, f{FeatureKind::EDGE, fixed};
+  const Vector3 axis(hit.normal);
+  if (!hit.cones_known && !conesAllow(m, f, axis, EDGE_CONE_SLACK)) return;
   const auto leaves = [&](int end, bool moves, int edge, int partner, const Matrix3& R_PS, const Vector3& normal) {
     const MeshSide& side = pair_.side(moves);
     return end >= 0 &&
            !isTakenOver({side, pair_.side(!moves), side.topology.ends(side.mesh, edge)[end], partner, R_PS, normal}, &surroundings_);
   };
-  const bool fades = leaves(edges.end_p, true, m.index, f.index, R_FM_, -(R_FM_.transpose() * edges.normal)) ||
-                     leaves(edges.end_q, false, f.index, m.index, R_FM_.transpose(), edges.normal);
-  if (fades) contacts_.add(pair_, true, m, f, edges.point_p, edges.point_q, d / distance, gap);
+  const bool fades = leaves(hit.end_a, true, moving, fixed, R_FM_, -(R_FM_.transpose() * axis)) ||
+                     leaves(hit.end_b, false, fixed, moving, R_FM_.transpose(), axis);
+  if (!fades) return;
+  const Vector3 point_m(hit.point_a), point_f(hit.point_b);
+  contacts_.add(pair_, true, m, f, point_m, point_f, (point_m - point_f) / hit.distance, hit.gap);
 }
 
 // ---- vertex and edge, vertex and vertex: where each is the other's local minimum, and around round edges and vertices
@@ -104,8 +83,7 @@ void ExactTests::vertexEdge(bool vertex_moves, int vertex, int edge, const Vecto
   if (!edge_pair_detail::isInside(part, length2, length2)) return;
   const Vector3 foot = q + part / length2 * along;
   const Vector3 d = p - foot;
-  const double distance2 = d.squaredNorm();
-  if (distance2 > pair_.range * pair_.range || leadsTo(vertex_moves, vertex, d, distance2)) return;
+  if (d.squaredNorm() > pair_.range * pair_.range) return;
   if (vertex_moves) {
     addLocalMinimum({FeatureKind::VERTEX, vertex}, {FeatureKind::EDGE, edge}, p, foot, along);
   } else {
@@ -113,17 +91,13 @@ void ExactTests::vertexEdge(bool vertex_moves, int vertex, int edge, const Vecto
   }
 }
 
-/** Does the surface at the vertex surely lead towards the edge, so that the vertex is no local minimum? Most are told by this, without a
- * unit vector. @param d from the edge to the vertex, frame F @param distance2 its square */
-bool ExactTests::leadsTo(bool vertex_moves, int vertex, const Vector3& d, double distance2) const {
+bool ExactTests::leadsTo(bool vertex_moves, int vertex, const Vector3& d) const {
+  const double distance2 = d.squaredNorm();
   if (distance2 <= TOUCH * TOUCH) return false;
   constexpr double SURE = 1.001 * CONE_SLACK;
   const Vector3 towards = vertex_moves ? Vector3(-(R_FM_.transpose() * d)) : Vector3(-d);
   const EdgesAtVertex edges = surroundings_.ofVertex(pair_.side(vertex_moves), vertex);
-  return std::any_of(edges.begin(), edges.end(), [&](const EdgeFromVertex& edge) {
-    const double along = edge.along.dot(towards);
-    return along > 0 && along * along > SURE * SURE * edge.length2 * distance2;
-  });
+  return kernels::kernels().leadTo(edges.blocks, edges.block_count, towards.data(), SURE * SURE * distance2);
 }
 
 /** Beyond its ends, but for round ones, which take over, the contact fades. @return false if they touch */

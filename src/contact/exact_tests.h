@@ -3,13 +3,11 @@
 
 #include "close_contacts.h"
 #include "face_shape.h"
-#include "kernels/records.h"
+#include "kernels/edge_records.h"
 #include "mesh_pair.h"
 #include "surroundings.h"
 
 namespace blem_sim {
-
-struct EdgesBeyond;
 
 /** Appends the contact of a pair of features, if they have one, to a list. */
 class ExactTests {
@@ -19,9 +17,13 @@ class ExactTests {
 
   /** @param face element of the other mesh @return false if the vertex projects beside the face by more than CLOSED */
   bool vertexFace(bool vertex_moves, int vertex, int face);
-  /** @param record_m, record_f of the two edges in frame F; their cones are known to allow the contact but where they touch, or have more
-   * than two faces */
+  /** Where their feet lie inside both. @param record_m, record_f of the two edges in frame F */
   void edgeEdge(int moving, int fixed, const kernels::EdgeRecord& record_m, const kernels::EdgeRecord& record_f);
+  /** Where a foot lies beyond an end. @param hit of the two edges, the moving one named first */
+  void fadingEdges(int moving, int fixed, const kernels::FadingEdgesHit& hit);
+  /** Does the surface at the vertex surely lead towards the edge, so that the vertex is no local minimum? Most are told by this, without a
+   * foot on the edge. @param d from the edge's line to the vertex, frame F */
+  bool leadsTo(bool vertex_moves, int vertex, const Vector3& d) const;
   /** @param p, record the vertex and the edge in frame F. Where each is the other's local minimum; at a round edge wherever the vertex is
    * nearer to it than to its faces. */
   void vertexEdge(bool vertex_moves, int vertex, int edge, const Vector3& p, const kernels::EdgeRecord& record);
@@ -29,8 +31,6 @@ class ExactTests {
 
  private:
   bool reachesOver(bool vertex_moves, int vertex, const Vector3& p, const FaceShape& face) const;
-  void addFadingEdges(const Feature& m, const Feature& f, const EdgesBeyond& edges, bool cones_known);
-  bool leadsTo(bool vertex_moves, int vertex, const Vector3& d, double distance2) const;
   bool addAtRoundEdge(bool vertex_moves, int vertex, int edge, const Vector3& p, const kernels::EdgeRecord& record);
   void addLocalMinimum(const Feature& m, const Feature& f, const Vector3& point_M, const Vector3& point_F, const Vector3& along);
   /** Does neither surface come closer to the other beside its feature? */

@@ -1,11 +1,11 @@
 #include "merge_contacts.h"
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <tuple>
-#include <utility>
 #include <vector>
+
+#include "id_order.h"
 
 namespace blem_sim {
 namespace {
@@ -110,60 +110,29 @@ class Cells {
   std::vector<Entry> entries_;
 };
 
-/** A contact's id and index. */
-struct Key {
-  std::uint64_t id;
-  std::uint32_t index;
-};
-
-/** Sorts by id, then by index, which ascends. Digit by digit, since comparing is hard to foresee; only bits that differ. */
-void sortById(std::vector<Key>* keys, std::vector<Key>* room) {
-  constexpr std::size_t FEW = 32;
-  constexpr int DIGIT = 6;
-  if (keys->size() <= FEW) {
-    std::sort(keys->begin(), keys->end(), [](const Key& a, const Key& b) { return a.id != b.id ? a.id < b.id : a.index < b.index; });
-    return;
-  }
-  std::uint64_t different = 0;
-  for (const Key& key : *keys) different |= key.id ^ keys->front().id;
-  room->resize(keys->size());
-  while (different != 0) {
-    const int shift = __builtin_ctzll(different);
-    const auto digit = [shift](const Key& key) { return key.id >> shift & ((1 << DIGIT) - 1); };
-    std::uint32_t ends[1 << DIGIT] = {};
-    for (const Key& key : *keys) ++ends[digit(key)];
-    std::uint32_t end = 0;
-    for (std::uint32_t& each : ends) end += std::exchange(each, end);
-    for (const Key& key : *keys) (*room)[ends[digit(key)]++] = key;
-    keys->swap(*room);
-    different &= ~(((std::uint64_t{1} << DIGIT) - 1) << shift);
-  }
-}
-
 // Kept between calls.
 struct Buffers {
-  std::vector<Key> keys, room;
+  IdOrder by_id;
   std::vector<std::uint32_t> best;
   Cells cells;  // places of the contacts that each of the merged ones began with
 };
 
 /** Of every id the best, sorted by id: buffers->best. */
 void findBestOfEachId(const Contact* contacts, std::size_t count, Buffers* buffers) {
-  std::vector<Key>& keys = buffers->keys;
-  keys.resize(count);
-  for (std::uint32_t i = 0; i < count; ++i) keys[i] = {contacts[i].id, i};
-  sortById(&keys, &buffers->room);
   std::vector<std::uint32_t>& best = buffers->best;
-  best.clear();
+  best.resize(count);
+  std::size_t left = 0;
   std::uint64_t last = 0;
-  for (const auto& [id, i] : keys) {
-    if (best.empty() || id != last) {
-      best.push_back(i);
+  for (const std::uint32_t i : buffers->by_id.of(contacts, count)) {
+    const std::uint64_t id = contacts[i].id;
+    if (left == 0 || id != last) {
+      best[left++] = i;
       last = id;
-    } else if (keptBefore(contacts[i], contacts[best.back()])) {
-      best.back() = i;
+    } else if (keptBefore(contacts[i], contacts[best[left - 1]])) {
+      best[left - 1] = i;
     }
   }
+  best.resize(left);
 }
 
 }  // namespace

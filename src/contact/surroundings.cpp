@@ -11,10 +11,20 @@ EdgeFromVertex edgeFrom(const MeshSide& side, int vertex, int edge) {
   EdgeFromVertex out;
   out.along = side.mesh.vertices[side.topology.otherEnd(side.mesh, edge, vertex)] - side.mesh.vertices[vertex];
   out.length2 = out.along.squaredNorm();
-  out.direction = out.along.normalized();
   out.edge = edge;
   out.is_flat = side.topology.isFlatEdge(edge);
   return out;
+}
+
+/** @param blocks room for all */
+void writeDirections(const EdgeFromVertex* edges, int count, kernels::EdgeDirections* blocks) {
+  constexpr int SIZE = kernels::DIRECTION_BLOCK;
+  for (int i = 0; i < (count + SIZE - 1) / SIZE * SIZE; ++i) {
+    const Vector3 direction = i < count ? edges[i].along.normalized() : Vector3(Vector3::Zero());
+    kernels::EdgeDirections& block = blocks[i / SIZE];
+    block.x[i % SIZE] = direction.x(), block.y[i % SIZE] = direction.y(), block.z[i % SIZE] = direction.z();
+    block.near[i % SIZE] = i < count && !edges[i].is_flat ? NEAR_SUCCESSOR : -1;
+  }
 }
 
 }  // namespace
@@ -22,13 +32,19 @@ EdgeFromVertex edgeFrom(const MeshSide& side, int vertex, int edge) {
 EdgesAtVertex SurroundingsMemory::ofVertex(const MeshSide& side, int vertex) {
   bool known;
   VertexEdgesKept& kept = vertices_.find(side, vertex, &known);
-  if (known && kept.count <= MAX_EDGES) return {kept.edges.data(), kept.count};
+  if (known && kept.count <= MAX_EDGES) return {kept.edges.data(), kept.count, kept.blocks.data(), kernels::directionBlocks(kept.count)};
   const VertexEdges edges = side.topology.edgesOf(vertex);
   kept.count = edges.size();
-  if (kept.count > MAX_EDGES) many_.resize(kept.count);
-  EdgeFromVertex* const out = kept.count > MAX_EDGES ? many_.data() : kept.edges.data();
+  const bool many = kept.count > MAX_EDGES;
+  if (many) {
+    many_.resize(kept.count);
+    many_blocks_.resize(kernels::directionBlocks(kept.count));
+  }
+  EdgeFromVertex* const out = many ? many_.data() : kept.edges.data();
+  kernels::EdgeDirections* const blocks = many ? many_blocks_.data() : kept.blocks.data();
   for (int i = 0; i < kept.count; ++i) out[i] = edgeFrom(side, vertex, edges[i]);
-  return {out, kept.count};
+  writeDirections(out, kept.count, blocks);
+  return {out, kept.count, blocks, kernels::directionBlocks(kept.count)};
 }
 
 const EdgeSurroundings& SurroundingsMemory::ofEdge(const MeshSide& side, int edge) {

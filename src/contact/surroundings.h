@@ -6,16 +6,16 @@
 #include <cstdint>
 #include <vector>
 
+#include "kernels/edge_directions.h"
 #include "mesh_pair.h"
 
 namespace blem_sim {
 
 /** An edge from one of its ends; the mesh's frame. */
 struct EdgeFromVertex {
-  Vector3 along;      ///< [m] to its other end
-  double length2;     ///< [m^2]
-  Vector3 direction;  ///< unit
-  int edge;           ///< name
+  Vector3 along;   ///< [m] to its other end
+  double length2;  ///< [m^2]
+  int edge;        ///< name
   bool is_flat;
 };
 
@@ -23,6 +23,8 @@ struct EdgeFromVertex {
 struct EdgesAtVertex {
   const EdgeFromVertex* first;
   int count;
+  const kernels::EdgeDirections* blocks;  ///< theirs
+  int block_count;
   const EdgeFromVertex* begin() const { return first; }
   const EdgeFromVertex* end() const { return first + count; }
 };
@@ -45,6 +47,7 @@ class SurroundingsMemory {
   static constexpr int MAX_EDGES = 10;
   struct VertexEdgesKept {
     int count;
+    std::array<kernels::EdgeDirections, kernels::directionBlocks(MAX_EDGES)> blocks;
     std::array<EdgeFromVertex, MAX_EDGES> edges;
   };
   /** A feature has one place, which the last one that came there holds. */
@@ -71,6 +74,7 @@ class SurroundingsMemory {
   Table<VertexEdgesKept, 4096> vertices_;
   Table<EdgeSurroundings, 8192> edges_;
   std::vector<EdgeFromVertex> many_;  // of a vertex that has more than a place holds
+  std::vector<kernels::EdgeDirections> many_blocks_;
 };
 
 /** Calls visit(unit direction from the edge into a face) for all its faces; mesh's frame. */

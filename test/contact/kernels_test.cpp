@@ -111,19 +111,17 @@ Found found(const Kernels& set, const Features& in) {
       out.indices.insert(out.indices.end(), {static_cast<std::uint32_t>(row.id >> 32), static_cast<std::uint32_t>(row.id)});
     }
   }
-  std::vector<EdgeEdgeHit> edge_edges(CANDIDATES);
-  add(set.edgeEdges(in.edges.data(), in.edges.data(), candidates, CANDIDATES, RANGE, edge_edges.data()));
-  for (std::uint32_t i = 0; i < out.counts.back(); ++i) {
-    const EdgeEdgeHit& hit = edge_edges[i];
-    out.indices.insert(out.indices.end(), {hit.candidate, hit.is_plain, hit.near_border});
-    out.numbers.insert(out.numbers.end(), {hit.part_a, hit.part_b, hit.gap, hit.normal[0], hit.normal[1], hit.normal[2]});
-  }
   std::vector<std::uint32_t> hits(CANDIDATES);
   const auto addHits = [&](std::uint32_t count) {
     add(count);
     out.indices.insert(out.indices.end(), hits.begin(), hits.begin() + count);
   };
-  addHits(set.vertexEdges(in.vertices.data(), in.edges.data(), candidates, CANDIDATES, 3 * RANGE, hits.data()));
+  std::vector<VertexEdgeHit> vertex_edges(CANDIDATES);
+  add(set.vertexEdges(in.vertices.data(), in.edges.data(), candidates, CANDIDATES, 3 * RANGE, vertex_edges.data()));
+  for (std::uint32_t i = 0; i < out.counts.back(); ++i) {
+    out.indices.push_back(vertex_edges[i].candidate);
+    out.numbers.insert(out.numbers.end(), vertex_edges[i].offset, vertex_edges[i].offset + 3);
+  }
   addHits(set.vertexVertices(in.vertices.data(), in.vertices.data(), candidates, CANDIDATES, RANGE, hits.data()));
   addHits(set.edgeFaces(in.edges.data(), in.faces.data(), candidates, CANDIDATES, hits.data()));
   std::vector<Candidate> near(CANDIDATES);

@@ -122,18 +122,6 @@ std::uint32_t nearVertexVertices(const Vec4* a, const Vec4* b, const Candidate* 
 
 // ---- what has a contact
 
-/** Offset from the foot on an edge, which may lie beyond its ends, and where that foot is as part of the edge. */
-struct EdgeOffset {
-  Vectors d;
-  Doubles part;
-};
-
-inline EdgeOffset offsetFrom(const Rows& start, const Vectors& along, const Vectors& p) {
-  const Vectors r = p - start.v;
-  const Doubles part = dot(r, along) / start.w;
-  return {r - part * along, part};
-}
-
 /** VertexFaceHit::bits */
 inline Mask vertexFaceBits(const InsideSides& sides, Doubles inside, Mask plain) {
   const auto bit = [](Mask is, long value) { return is & value; };
@@ -180,72 +168,6 @@ std::uint32_t vertexFaces(const NearVertices& a, const FaceRecord* b, const Open
 
 /** How far a part of an edge times n2 lies beyond its ends. */
 inline Doubles beyondEnds(Doubles part, Doubles n2) { return maximum(maximum(-part, part - n2), Doubles{}); }
-
-std::uint32_t edgeEdges(const EdgeRecord* a, const EdgeRecord* b, const Candidate* candidates, std::uint32_t count, double range,
-                        EdgeEdgeHit* hits) {
-  const double most = range / FADE_SLOPE;
-  std::uint32_t found = 0;
-  double part_a[LANES], part_b[LANES], gaps[LANES], normals[3][LANES];
-  unsigned plain = 0, near_border = 0;
-  forEachHit(
-      candidates, count,
-      [&](const Batch& batch) {
-        const Rows start_a = batch.field(a, OF_A, &EdgeRecord::start), start_b = batch.field(b, OF_B, &EdgeRecord::start);
-        const Rows along_a = batch.field(a, OF_A, &EdgeRecord::along), along_b = batch.field(b, OF_B, &EdgeRecord::along);
-        const Vectors &p = along_a.v, &q = along_b.v, r = start_b.v - start_a.v, n = cross(p, q);
-        const Doubles pp = start_a.w, qq = start_b.w, n2 = dot(n, n), rn = dot(r, n);
-        const Doubles s = dot(cross(r, q), n), t = dot(cross(r, p), n), over_s = beyondEnds(s, n2), over_t = beyondEnds(t, n2);
-        const Doubles most2 = most * most * n2 * n2;
-        const unsigned near = bitsOf((rn * rn <= range * range * n2) & (n2 > MIN_EDGE_SINE * MIN_EDGE_SINE * pp * qq) &
-                                     (over_s * over_s * pp <= most2) & (over_t * over_t * qq <= most2));
-        if (near == 0) return 0u;
-        const Doubles norm = squareRoot(n2), gap = absolute(rn) / norm;
-        const Vectors normal = (rn > 0 ? all(-1) : all(1)) / norm * n;
-        const Mask touch = gap <= TOUCH;
-        Mask allowed = dot(batch.inward(b, OF_B, 0).v, normal) <= EDGE_CONE_SLACK;
-        allowed &= dot(batch.inward(b, OF_B, 1).v, normal) <= EDGE_CONE_SLACK;
-        allowed &= dot(batch.inward(a, OF_A, 0).v, normal) >= -EDGE_CONE_SLACK;
-        allowed &= dot(batch.inward(a, OF_A, 1).v, normal) >= -EDGE_CONE_SLACK;
-        plain = bitsOf((over_s == 0) & (over_t == 0) & ~touch & (maximum(along_a.w, along_b.w) <= 0));
-        const Doubles border2 = NEAR_BORDER * NEAR_BORDER * n2 * n2, end_s = minimum(s, n2 - s), end_t = minimum(t, n2 - t);
-        near_border = bitsOf((end_s * end_s * pp < border2) | (end_t * end_t * qq < border2));
-        const Doubles foot_s = s / n2, foot_t = t / n2;
-        __builtin_memcpy(part_a, &foot_s, sizeof part_a);
-        __builtin_memcpy(part_b, &foot_t, sizeof part_b);
-        __builtin_memcpy(gaps, &gap, sizeof gaps);
-        __builtin_memcpy(normals[0], &normal.x, sizeof normals[0]);
-        __builtin_memcpy(normals[1], &normal.y, sizeof normals[1]);
-        __builtin_memcpy(normals[2], &normal.z, sizeof normals[2]);
-        return near & bitsOf(allowed | touch);
-      },
-      [&](std::uint32_t i, int lane) {
-        hits[found++] = {i,
-                         (plain >> lane & 1) != 0,
-                         (near_border >> lane & 1) != 0,
-                         part_a[lane],
-                         part_b[lane],
-                         gaps[lane],
-                         {normals[0][lane], normals[1][lane], normals[2][lane]}};
-      });
-  return found;
-}
-
-std::uint32_t vertexEdges(const Vec4* a, const EdgeRecord* b, const Candidate* candidates, std::uint32_t count, double range,
-                          std::uint32_t* hits) {
-  return listed(candidates, count, hits, [&](const Batch& batch) {
-    const Rows start = batch.field(b, OF_B, &EdgeRecord::start);
-    const Rows along = batch.field(b, OF_B, &EdgeRecord::along);
-    const EdgeOffset offset = offsetFrom(start, along.v, batch.points(a, OF_A).v);
-    const Doubles d2 = dot(offset.d, offset.d), over = beyondEnds(offset.part, all(1)), distance = squareRoot(d2);
-    // Beyond the ends of round edges contacts fade.
-    const Doubles most = along.w < 0 ? (range - distance) / FADE_SLOPE : Doubles{};
-    const Doubles beyond = maximum(most, Doubles{}) + 2 * CLOSED;
-    const unsigned near = bitsOf((d2 <= range * range) & (over * over * start.w <= beyond * beyond));
-    if (near == 0) return 0u;
-    const Doubles limit = 2 * CONE_SLACK * distance + 2 * TOUCH;
-    return near & bitsOf((dot(batch.inward(b, OF_B, 0).v, offset.d) <= limit) & (dot(batch.inward(b, OF_B, 1).v, offset.d) <= limit));
-  });
-}
 
 std::uint32_t vertexVertices(const Vec4* a, const Vec4* b, const Candidate* candidates, std::uint32_t count, double range,
                              std::uint32_t* hits) {

@@ -3,7 +3,8 @@
 
 #include <vector>
 
-#include "records.h"
+#include "edge_directions.h"
+#include "edge_records.h"
 
 namespace blem_sim::kernels {
 
@@ -42,13 +43,23 @@ struct Kernels {
   /** The contacts of vertices with sides of faces. @param sides as the pairs */
   void (*sideFeet)(const ContactPlace& place, const NearVertices& vertices, const FaceRecord* faces, const BesideSide* sides,
                    const Candidate* pairs, std::uint32_t count, SideFoot* feet);
+  /** As vertexFaces. */
   std::uint32_t (*edgeEdges)(const EdgeRecord* a, const EdgeRecord* b, const Candidate* candidates, std::uint32_t count, double range,
-                             EdgeEdgeHit* hits);
-  /** Indices of candidates that need a closer look. @return their number */
+                             PlainEdges* plain, EdgeEdgeHit* hits);
+  /** Of candidates that are not plain: those with a contact within `range` if nothing takes over, or that need a closer look. Room for one
+   * more hit than candidates. */
+  std::uint32_t (*fadingEdges)(const EdgeRecord* a, const EdgeRecord* b, const Candidate* candidates, std::uint32_t count, double range,
+                               FadingEdgesHit* hits);
+  /** Candidates that need a closer look. @return their number */
   std::uint32_t (*vertexEdges)(const Vec4* a, const EdgeRecord* b, const Candidate* candidates, std::uint32_t count, double range,
-                               std::uint32_t* hits);
+                               VertexEdgeHit* hits);
+  /** The same; their indices. */
   std::uint32_t (*vertexVertices)(const Vec4* a, const Vec4* b, const Candidate* candidates, std::uint32_t count, double range,
                                   std::uint32_t* hits);
+  /** Of a vertex's edges, in so many blocks. @param down, aside unit, three numbers each, as the edges */
+  LeadingEdges (*leadingEdges)(const EdgeDirections* blocks, int count, const double* down, const double* aside);
+  /** Has one of them a part along `towards` whose square is larger than `least2`? */
+  bool (*leadTo)(const EdgeDirections* blocks, int count, const double* towards, double least2);
   /** Edges that pass through a face's plane where the face may be. */
   std::uint32_t (*edgeFaces)(const EdgeRecord* a, const FaceRecord* b, const Candidate* candidates, std::uint32_t count,
                              std::uint32_t* hits);

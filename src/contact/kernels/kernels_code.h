@@ -3,10 +3,12 @@
 #pragma GCC diagnostic ignored "-Wpsabi"
 
 #include "candidate_kernels.h"
+#include "edge_kernels.h"
 #include "kernels.h"
 #include "lanes.h"
 #include "leaf_kernels.h"
 #include "side_feet.h"
+#include "vertex_kernels.h"
 
 namespace blem_sim::kernels {
 namespace {
@@ -55,8 +57,8 @@ void turnFaces(const FaceRecord* in, std::uint32_t count, const Motion& motion, 
 }  // namespace
 }  // namespace blem_sim::kernels
 
-#define BLEM_SIM_KERNEL_TABLE(name)                                                                                                 \
-  {                                                                                                                                 \
-    name, turnPoints, turnEdges, turnFaces, turnLeaf, leafContacts, leafCrossings, nearVertexFaces, nearEdgeEdges, nearVertexEdges, \
-        nearVertexVertices, vertexFaces, sideFeet, edgeEdges, vertexEdges, vertexVertices, edgeFaces                                \
+#define BLEM_SIM_KERNEL_TABLE(name)                                                                                                     \
+  {                                                                                                                                     \
+    name, turnPoints, turnEdges, turnFaces, turnLeaf, leafContacts, leafCrossings, nearVertexFaces, nearEdgeEdges, nearVertexEdges,     \
+        nearVertexVertices, vertexFaces, sideFeet, edgeEdges, fadingEdges, vertexEdges, vertexVertices, leadingEdges, leadTo, edgeFaces \
   }

@@ -49,6 +49,22 @@ constexpr struct {
   std::uint64_t pierced;
 } UNWEIGHED = {1, 0};
 
+/** Writes a row for every lane; where its bit is not set the next one is written over it. @param bits of the lanes that have a contact
+ * @param also is called with every lane and whether it has one @return the last row's end */
+template <typename Also>
+inline ContactRow* appendRows(const WorldContacts& contacts, Doubles depth, Mask ids, unsigned bits, ContactRow* row, Also&& also) {
+  const auto& [point, normal] = contacts;
+  transposed({point.x, point.y, point.z, normal.x, normal.y, normal.z, depth, reinterpret_cast<Doubles>(ids)}, [&](int lane) {
+    double* const now = row->point;
+    __builtin_memcpy(&row->weight, &UNWEIGHED, sizeof UNWEIGHED);
+    const unsigned has_one = bits >> lane & 1;
+    also(lane, has_one);
+    row += has_one;
+    return now;
+  });
+  return row;
+}
+
 /** contactId of the lanes' vertices and faces. */
 template <typename Faces>
 inline Mask idsOf(const VertexLanes& vertices, const Faces& faces, const ContactPlace& place) {
@@ -57,29 +73,22 @@ inline Mask idsOf(const VertexLanes& vertices, const Faces& faces, const Contact
   return names | static_cast<long>(place.kinds);
 }
 
-/** Writes a row for every lane; where its bit is not set the next one is written over it.
- * @param bits of the lanes that have a contact @return depths */
+/** @param bits of the lanes that have a contact @return depths */
 template <typename Faces>
 inline Doubles appendPlain(const Batch& batch, const Faces& faces, const VertexLanes& vertices, const Vectors& normal, Doubles height,
                            unsigned bits, PlainContacts* out) {
   const ContactPlace& place = out->place;
   const Vectors &at = vertices.at, up = vertices.faces_move ? turnedDirection(place.X_FM, normal) : normal;
   const Mask to_a = place.vertices_are_a ? height > 0 : height <= 0;
-  const Doubles sign = to_a ? all(1) : all(-1);
-  const auto [point, normal_BA] = inWorld(place, at, at - height * up, sign * up);
-  const Doubles depth = place.layer - absolute(height);
-  const Doubles ids = reinterpret_cast<Doubles>(idsOf(vertices, faces, place));
-  ContactRow* row = out->rows + out->count;
+  const Doubles sign = to_a ? all(1) : all(-1), depth = place.layer - absolute(height);
+  const WorldContacts contacts = inWorld(place, at, at - height * up, sign * up);
   Candidate* pair = out->pairs + out->count;
-  transposed({point.x, point.y, point.z, normal_BA.x, normal_BA.y, normal_BA.z, depth, ids}, [&, lanes = batch.lanes](int lane) {
-    double* const now = row->point;
-    __builtin_memcpy(&row->weight, &UNWEIGHED, sizeof UNWEIGHED);
-    *pair = lanes[lane];
-    row += bits >> lane & 1;
-    pair += bits >> lane & 1;
-    return now;
-  });
-  out->count = static_cast<std::uint32_t>(row - out->rows);
+  const ContactRow* const end = appendRows(contacts, depth, idsOf(vertices, faces, place), bits, out->rows + out->count,
+                                           [&pair, lanes = batch.lanes](int lane, unsigned has_one) {
+                                             *pair = lanes[lane];
+                                             pair += has_one;
+                                           });
+  out->count = static_cast<std::uint32_t>(end - out->rows);
   return depth;
 }
 

@@ -196,14 +196,4 @@ struct SideFoot {
   double lost;       ///< [m] of depth, since the vertex lies beside the face
 };
 
-/** Two edges near each other whose common perpendicular points out of their faces. */
-struct EdgeEdgeHit {
-  std::uint32_t candidate;
-  bool is_plain;          ///< feet inside both, not touching
-  bool near_border;       ///< and close to an end
-  double part_a, part_b;  ///< of the edges, where the feet are
-  double gap;             ///< [m]
-  double normal[3];       ///< unit, from b to a
-};
-
 }  // namespace blem_sim::kernels

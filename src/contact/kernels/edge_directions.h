@@ -1,0 +1,22 @@
+// Edges around one vertex, side by side: plain numbers, the same for every instruction set.
+#pragma once
+
+namespace blem_sim::kernels {
+
+constexpr int DIRECTION_BLOCK = 8;
+/** How many blocks hold so many edges. */
+constexpr int directionBlocks(int edges) { return (edges + DIRECTION_BLOCK - 1) / DIRECTION_BLOCK; }
+
+/** Unit directions of some edges from the vertex; zero behind the last. */
+struct alignas(64) EdgeDirections {
+  double x[DIRECTION_BLOCK], y[DIRECTION_BLOCK], z[DIRECTION_BLOCK];
+  double near[DIRECTION_BLOCK];  ///< NEAR_SUCCESSOR; -1 of flat edges, whose contacts take nothing over
+};
+
+/** Where the surface at a vertex leads. */
+struct LeadingEdges {
+  bool down;  ///< some edge leads down, by a larger part (sine) than CONE_SLACK
+  bool near;  ///< such a one, not flat, whose contact with an edge square to `aside` may be there and near: what takes over is to be asked
+};
+
+}  // namespace blem_sim::kernels

@@ -1,0 +1,51 @@
+// What the kernels find near edges: plain numbers, the same for every instruction set.
+#pragma once
+
+#include "records.h"
+
+namespace blem_sim::kernels {
+
+/** Where the contacts of two meshes' edges are. */
+struct EdgePlace {
+  const int *names_a, *names_b;  ///< of the edges
+  bool first_is_a;               ///< A is the mesh of the edges named first
+  Motion X_WF;
+  double layer;         ///< [m] rA + rB
+  double shift;         ///< [m] (rB - rA) / 2
+  std::uint64_t kinds;  ///< contactId of edges 0
+};
+
+/** Where kernels write contacts of edges that need no closer look. Room for one more than there are candidates. */
+struct PlainEdges {
+  EdgePlace place;
+  ContactRow* rows;
+  std::uint32_t count;  ///< so far; they are appended
+  double deepest;       ///< [m] their largest depth so far
+};
+
+/** Two edges near each other whose common perpendicular points out of their faces. In the frame of the records. */
+struct EdgeEdgeHit {
+  std::uint32_t candidate;
+  bool is_plain;                             ///< feet inside both, not touching; else nothing is told but the candidate
+  double point_a[3], point_b[3], normal[3];  ///< witness points [m]; unit, from b to a
+  double gap;                                ///< [m]
+};
+
+/** Two such edges that are not plain. */
+struct FadingEdgesHit {
+  std::uint32_t candidate;
+  bool is_inside;                 ///< the feet lie inside both, but for CLOSED, and more is to be asked: nothing else is told
+  bool cones_known;               ///< whether the normal is known to point into none of their faces
+  std::int32_t end_a, end_b;      ///< end beyond which the foot lies, 0 or 1; -1 if it lies inside
+  double point_a[3], point_b[3];  ///< [m] witness points
+  double distance, gap;           ///< [m] of these; and with the depth that is lost beyond the ends
+  double normal[3];               ///< unit, from b to a, square to both edges
+};
+
+/** A vertex near an edge, over none of its first two faces. */
+struct VertexEdgeHit {
+  std::uint32_t candidate;
+  double offset[3];  ///< [m] of the vertex from the edge's line
+};
+
+}  // namespace blem_sim::kernels

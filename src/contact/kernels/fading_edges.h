@@ -1,0 +1,115 @@
+// Edges whose feet lie beyond an end of one or both, several pairs at once. Included by the kernels only.
+#pragma once
+
+#include "candidate_kernels.h"
+
+namespace blem_sim::kernels {
+namespace {
+
+/** The edges of a batch of candidates. */
+struct EdgeBatch {
+  EdgeBatch(const Batch& batch, const EdgeRecord* a, const EdgeRecord* b)
+      : start_a(batch.field(a, OF_A, &EdgeRecord::start)),
+        start_b(batch.field(b, OF_B, &EdgeRecord::start)),
+        along_a(batch.field(a, OF_A, &EdgeRecord::along)),
+        along_b(batch.field(b, OF_B, &EdgeRecord::along)),
+        between(start_b.v - start_a.v) {}
+  void takeInwards(const Batch& batch, const EdgeRecord* a, const EdgeRecord* b) {
+    for (int k = 0; k < 2; ++k) {
+      inward_a[k] = batch.inward(a, OF_A, k).v;
+      inward_b[k] = batch.inward(b, OF_B, k).v;
+    }
+  }
+
+  const Rows start_a, start_b, along_a, along_b;
+  const Vectors between;  ///< from start to start
+  Vectors inward_a[2], inward_b[2];
+};
+
+/** Where edges have their contacts. */
+struct EdgeFeet {
+  Vectors point_a, point_b, normal;  ///< the normal from b to a, square to both
+  Doubles distance, gap;             ///< [m] of the points; and with the depth that is lost beyond the ends
+};
+
+/** As findEdgePair of edge_pair.h, but of feet outside. */
+struct EdgesBeyond {
+  EdgesBeyond(const EdgeBatch& edges, double range) {
+    const Vectors &p0 = edges.start_a.v, &q0 = edges.start_b.v, r = edges.between;
+    const Vectors p = p0 + edges.along_a.v - p0, q = q0 + edges.along_b.v - q0, n = cross(p, q);
+    const Doubles n2 = dot(n, n), rn = dot(r, n), p2 = dot(p, p), q2 = dot(q, q);
+    const Doubles s = dot(cross(r, q), n), t = dot(cross(r, p), n), over_s = beyondEnds(s, n2), over_t = beyondEnds(t, n2);
+    const double most = range / FADE_SLOPE;
+    const Doubles most2 = most * most * n2 * n2, over_p2 = over_s * over_s * p2, over_q2 = over_t * over_t * q2;
+    const Mask near =
+        (rn * rn <= range * range * n2) & (n2 > MIN_EDGE_SINE * MIN_EDGE_SINE * p2 * q2) & (over_p2 <= most2) & (over_q2 <= most2);
+    const Doubles closed2 = CLOSED * CLOSED * n2 * n2;
+    const Mask inside = near & (over_p2 <= closed2) & (over_q2 <= closed2);
+    is_inside = bitsOf(inside);
+    cones_known = bitsOf((maximum(edges.along_a.w, edges.along_b.w) <= 0) & (rn * rn > TOUCH * TOUCH * n2));
+    feet.normal = (rn > 0 ? all(-1) : all(1)) / squareRoot(n2) * n;
+    // Clamped one after the other: exact where one foot lies inside.
+    feet.point_a = p0 + clampedToUnit(s / n2) * p;
+    feet.point_b = q0 + clampedToUnit(dot(feet.point_a - q0, q) / q2) * q;
+    feet.point_a = p0 + clampedToUnit(dot(feet.point_b - p0, p) / p2) * p;
+    const Vectors d = feet.point_a - feet.point_b;
+    feet.distance = squareRoot(dot(d, d));
+    feet.gap = feet.distance + FADE_SLOPE * (squareRoot(maximum(over_p2, over_q2)) / n2);
+    fades = bitsOf(near & ~inside & ~lieInside(edges, range) & (feet.distance > TOUCH) & (feet.gap <= range));
+    const Mask none = Mask{} - 1;
+    end_a = over_s == 0 ? none : s > 0 ? Mask{} + 1 : Mask{};
+    end_b = over_t == 0 ? none : t > 0 ? Mask{} + 1 : Mask{};
+  }
+
+  /** Do both ends of an edge lie farther inside a face of the other edge than a contact within range could? Of its first two faces. */
+  static Mask lieInside(const EdgeBatch& edges, double range) {
+    const double limit = deepestInside(range);
+    const Vectors &there = edges.between, back = edges.start_a.v - edges.start_b.v;
+    Mask inside{};
+    for (int k = 0; k < 2; ++k) {
+      inside |= liesInside(there, there + edges.along_b.v, edges.inward_a[k], limit);
+      inside |= liesInside(back, back + edges.along_a.v, edges.inward_b[k], limit);
+    }
+    return inside;
+  }
+
+  unsigned fades;                   ///< contacts, if nothing takes over where they end
+  unsigned is_inside, cones_known;  ///< as FadingEdgesHit
+  Mask end_a, end_b;                ///< as there
+  EdgeFeet feet;
+};
+
+/** Writes a hit for every lane; where its bit is not set the next one is written over it. @return how many there are now */
+inline std::uint32_t appendHits(std::uint32_t first, const EdgesBeyond& edges, unsigned bits, std::uint32_t found, FadingEdgesHit* hits) {
+  const EdgeFeet& feet = edges.feet;
+  transposed({feet.point_a.x, feet.point_a.y, feet.point_a.z, feet.point_b.x, feet.point_b.y, feet.point_b.z, feet.distance, feet.gap},
+             [&](int lane) {
+               FadingEdgesHit& hit = hits[found];
+               hit.candidate = first + lane;
+               hit.is_inside = edges.is_inside >> lane & 1;
+               hit.cones_known = edges.cones_known >> lane & 1;
+               hit.end_a = static_cast<std::int32_t>(edges.end_a[lane]);
+               hit.end_b = static_cast<std::int32_t>(edges.end_b[lane]);
+               hit.normal[0] = feet.normal.x[lane], hit.normal[1] = feet.normal.y[lane], hit.normal[2] = feet.normal.z[lane];
+               found += bits >> lane & 1;
+               return hit.point_a;
+             });
+  return found;
+}
+
+std::uint32_t fadingEdges(const EdgeRecord* a, const EdgeRecord* b, const Candidate* candidates, std::uint32_t count, double range,
+                          FadingEdgesHit* hits) {
+  std::uint32_t found = 0;
+  for (std::uint32_t first = 0; first < count; first += LANES) {
+    const Batch batch(candidates, first, count);
+    EdgeBatch edges(batch, a, b);
+    edges.takeInwards(batch, a, b);
+    const EdgesBeyond beyond(edges, range);
+    const unsigned bits = (beyond.fades | beyond.is_inside) & batch.valid;
+    if (bits != 0) found = appendHits(first, beyond, bits, found, hits);
+  }
+  return found;
+}
+
+}  // namespace
+}  // namespace blem_sim::kernels

@@ -1,0 +1,85 @@
+// What the edges around a vertex say, and vertices near edges, in double. Included by kernels_code.h only.
+#pragma once
+
+#include "candidate_kernels.h"
+#include "edge_directions.h"
+#include "edge_records.h"
+
+namespace blem_sim::kernels {
+namespace {
+
+/** Calls visit(directions, their first lane in the block) for all edges. */
+template <typename Visit>
+inline void forEachDirections(const EdgeDirections* blocks, int count, Visit&& visit) {
+  static_assert(DIRECTION_BLOCK % LANES == 0);
+  const auto lanes = [](const double* from) { return *reinterpret_cast<const Doubles*>(from); };
+  for (const EdgeDirections* block = blocks; block != blocks + count; ++block)
+    for (int i = 0; i < DIRECTION_BLOCK; i += LANES)
+      visit(Vectors{lanes(block->x + i), lanes(block->y + i), lanes(block->z + i)}, lanes(block->near + i));
+}
+
+inline Vectors allOf(const double* v) { return {all(v[0]), all(v[1]), all(v[2])}; }
+
+LeadingEdges leadingEdges(const EdgeDirections* blocks, int count, const double* down, const double* aside) {
+  const Vectors downs = allOf(down), asides = allOf(aside);
+  Mask leads{}, is_near{};
+  forEachDirections(blocks, count, [&](const Vectors& direction, Doubles near) {
+    const Doubles sine = dot(direction, downs), beside = dot(direction, asides);
+    const Mask is_down = sine > CONE_SLACK;
+    leads |= is_down;
+    is_near |= is_down & (sine <= near * (sine * sine + beside * beside));
+  });
+  return {bitsOf(leads) != 0, bitsOf(is_near) != 0};
+}
+
+bool leadTo(const EdgeDirections* blocks, int count, const double* towards, double least2) {
+  const Vectors to = allOf(towards);
+  Mask leads{};
+  forEachDirections(blocks, count, [&](const Vectors& direction, Doubles) {
+    const Doubles part = dot(direction, to);
+    leads |= (part > 0) & (part * part > least2);
+  });
+  return bitsOf(leads) != 0;
+}
+
+/** Offset from the foot on an edge, which may lie beyond its ends, and where that foot is as part of the edge. */
+struct EdgeOffset {
+  Vectors d;
+  Doubles part;
+};
+
+inline EdgeOffset offsetFrom(const Rows& start, const Vectors& along, const Vectors& p) {
+  const Vectors r = p - start.v;
+  const Doubles part = dot(r, along) / start.w;
+  return {r - part * along, part};
+}
+
+std::uint32_t vertexEdges(const Vec4* a, const EdgeRecord* b, const Candidate* candidates, std::uint32_t count, double range,
+                          VertexEdgeHit* hits) {
+  std::uint32_t found = 0;
+  double offsets[3][LANES];
+  const auto test = [&](const Batch& batch) {
+    const Rows start = batch.field(b, OF_B, &EdgeRecord::start);
+    const Rows along = batch.field(b, OF_B, &EdgeRecord::along);
+    const EdgeOffset offset = offsetFrom(start, along.v, batch.points(a, OF_A).v);
+    const Doubles d2 = dot(offset.d, offset.d), over = beyondEnds(offset.part, all(1)), distance = squareRoot(d2);
+    // Beyond the ends of round edges contacts fade.
+    const Doubles most = along.w < 0 ? (range - distance) / FADE_SLOPE : Doubles{};
+    const Doubles beyond = maximum(most, Doubles{}) + 2 * CLOSED;
+    const unsigned near = bitsOf((d2 <= range * range) & (over * over * start.w <= beyond * beyond));
+    if (near == 0) return 0u;
+    const Doubles limit = 2 * CONE_SLACK * distance + 2 * TOUCH;
+    __builtin_memcpy(offsets[0], &offset.d.x, sizeof offsets[0]);
+    __builtin_memcpy(offsets[1], &offset.d.y, sizeof offsets[1]);
+    __builtin_memcpy(offsets[2], &offset.d.z, sizeof offsets[2]);
+    return near &
+           bitsOf((dot(batch.inward(b, OF_B, 0).v, offset.d) <= limit) & (dot(batch.inward(b, OF_B, 1).v, offset.d) <= limit));
+  };
+  forEachHit(candidates, count, test, [&](std::uint32_t i, int lane) {
+    hits[found++] = {i, {offsets[0][lane], offsets[1][lane], offsets[2][lane]}};
+  });
+  return found;
+}
+
+}  // namespace
+}  // namespace blem_sim::kernels
