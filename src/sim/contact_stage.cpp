@@ -230,11 +230,14 @@ void ContactStage::addConstraints(const SimulatedWorld& world, const ContactMani
     constraints_.push_back(constraint);
     solved_.push_back({manifold.a, manifold.b, manifold.layer, contact.pierced, 0});
   }
-  if (recovers || !isCompliant(surface)) return;
+  if (!recovers && isCompliant(surface)) addStops(world, all, surface.friction);
+}
+
+void ContactStage::addStops(const SimulatedWorld& world, const ContactManifold& all, double friction) {
   const double stop = LayerStops::STOP * all.layer;
   for (const Contact& contact : stops_.choose(all, *method_)) {
     ContactConstraint constraint = constraintOf(world, all, contact);
-    constraint.friction = surface.friction;
+    constraint.friction = friction;
     constraint.id = stopId(constraint.id);
     constraints_.push_back(constraint);
     solved_.push_back({all.a, all.b, all.layer, false, stop});

@@ -97,6 +97,7 @@ class ContactStage {
   Recovery lastApart(int a, int b) const;
   void keepWhatWasFound(std::size_t pairs);
   void addConstraints(const SimulatedWorld& world, const ContactManifold& all, ContactManifold& manifold);
+  void addStops(const SimulatedWorld& world, const ContactManifold& all, double friction);
 
   const ContactConfig config_;
   const Reduction* method_;
