@@ -71,7 +71,7 @@ TEST_P(LayerStop, DepthAtRestIsTheSpringsUpToTheStopAndNoMoreBeyond) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Steppers, LayerStop, testing::Values("articulated", "world_step"));
+INSTANTIATE_TEST_SUITE_P(Steppers, LayerStop, testing::Values("articulated", "world_step", "quick_step"));
 
 TEST(LayerStops, RestIsAsExactAsThatOfRigidContacts) {
   Simulator simulator(softCube(10 * BEARS / G), UriResolver());
