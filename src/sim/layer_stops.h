@@ -12,13 +12,12 @@ namespace blem_sim {
 /**
  * Rigid contacts below the springs of compliant surfaces, where STOP of the layer is used up: a contact answers f = k depth+ - d v+ up to
  * there, and does not go deeper whatever the force. They are chosen from all contacts that are so deep, before reduction and beside the
- * budgets: at most MOST per pair, as many as it has freedoms. What reduction left out would sink through the layer, since in a jam a model
- * may have fewer contacts than places that bear.
+ * budgets, at most MOST per pair: in a jam a model may have more places that bear than contacts, and those left out would sink in turn.
  */
 class LayerStops {
  public:
   static constexpr double STOP = 0.8;  ///< of the layer
-  static constexpr double SEEN = 0.6;  ///< of the layer: what is less deep cannot get there in one solve that the step guard accepts
+  static constexpr double SEEN = 0.6;  ///< of the layer: what is less deep gets to 0.9 at most in one solve that the step guard accepts
   static constexpr int MOST = 6;       ///< of a pair
 
   /** Before the first pair of a reduction. */
