@@ -50,6 +50,18 @@ std::uint64_t contactId(const ContactManifold& manifold, const Contact& contact)
   return mixed(contact.id + mixed((static_cast<std::uint64_t>(manifold.a) << 32) + static_cast<std::uint64_t>(manifold.b) + 1));
 }
 
+/** Rigid, without friction. */
+ContactConstraint constraintOf(const SimulatedWorld& world, const ContactManifold& manifold, const Contact& contact) {
+  ContactConstraint constraint;
+  constraint.body_a = world.colliders[manifold.a].body;
+  constraint.body_b = world.colliders[manifold.b].body;
+  constraint.point = contact.point;
+  constraint.normal_BA = contact.normal_BA;
+  constraint.depth = contact.depth;
+  constraint.id = contactId(manifold, contact);
+  return constraint;
+}
+
 /** [kg] of all that moves with the collider. */
 double massOf(const SimulatedWorld& world, const Collider& collider) {
   if (collider.body == WORLD_BODY) return std::numeric_limits<double>::infinity();
@@ -59,11 +71,22 @@ double massOf(const SimulatedWorld& world, const Collider& collider) {
   return mass;
 }
 
+/** A stop below a contact's spring, where it has one, is another contact. */
+std::uint64_t stopId(std::uint64_t id) { return mixed(id); }
+
+bool isCompliant(const SurfaceProperties& surface) { return std::isfinite(surface.stiffness) && std::isfinite(surface.damping); }
+
 /** Where meshes cross, contacts may contradict each other: a damper that lets go at SEPARATION_SPEED, and never bounces. */
 void separate(double mass, double layer, ContactConstraint* contact) {
   contact->damping = SEPARATION_RATE * mass;
   contact->stiffness = SEPARATION_SPEED * contact->damping / std::max(layer, contact->depth);
   contact->restitution = 0;
+}
+
+int countContacts(const std::vector<ContactManifold>& manifolds) {
+  int count = 0;
+  for (const ContactManifold& manifold : manifolds) count += static_cast<int>(manifold.contacts.size());
+  return count;
 }
 
 const Reduction* reductionNamed(const std::string& name) {
@@ -175,44 +198,49 @@ void ContactStage::appendRecoveries(std::vector<double>* numbers, std::vector<st
   }
 }
 
-bool ContactStage::readRecoveries(const std::uint64_t* words, const std::uint64_t* words_end, NumberReader* reader) {
-  const auto count = static_cast<std::size_t>(words_end - words) / WORDS;
-  if (static_cast<std::size_t>(words_end - words) != 1 + WORDS * count || *words++ != count) return false;
+bool ContactStage::readRecoveries(const std::uint64_t** words, const std::uint64_t* words_end, NumberReader* reader) {
+  if (*words == words_end) return false;
+  const std::uint64_t count = *(*words)++;
+  if (static_cast<std::uint64_t>(words_end - *words) / WORDS < count) return false;
   forgetRecoveries();
-  for (std::size_t i = 0; i < count; ++i, words += WORDS) {
-    Recovery recovery{static_cast<int>(words[0]), static_cast<int>(words[1]), words[2] != 0, Pose()};
+  for (std::uint64_t i = 0; i < count; ++i, *words += WORDS) {
+    Recovery recovery{static_cast<int>((*words)[0]), static_cast<int>((*words)[1]), (*words)[2] != 0, Pose()};
     reader->numbers(recovery.X_AB.matrix().data(), NUMBERS);
     current_search_.recoveries.push_back(recovery);
   }
   return true;
 }
 
-int ContactStage::rawContacts() const {
-  int count = 0;
-  for (const ContactManifold& manifold : current_) count += static_cast<int>(manifold.contacts.size());
-  return count;
-}
+int ContactStage::rawContacts() const { return countContacts(current_); }
+int ContactStage::reducedContacts() const { return countContacts(reduced_); }
 
-void ContactStage::addConstraints(const SimulatedWorld& world, ContactManifold& manifold) {
+/** @param all contacts of the pair, of which the manifold's were kept */
+void ContactStage::addConstraints(const SimulatedWorld& world, const ContactManifold& all, ContactManifold& manifold) {
   const Collider &a = world.colliders[manifold.a], &b = world.colliders[manifold.b];
   const SurfaceProperties surface = combineSurfaces(a.surface, b.surface, config_.friction_rule);
   if (std::isfinite(surface.stiffness) || std::isfinite(surface.damping)) weighSprings(manifold.contacts);
   const bool recovers = findPair(current_search_.recoveries, manifold.a, manifold.b) != nullptr;
   for (const Contact& contact : manifold.contacts) {
-    ContactConstraint constraint;
-    constraint.body_a = a.body;
-    constraint.body_b = b.body;
-    constraint.point = contact.point;
-    constraint.normal_BA = contact.normal_BA;
-    constraint.depth = contact.depth;
+    ContactConstraint constraint = constraintOf(world, manifold, contact);
     constraint.friction = surface.friction;
     constraint.restitution = surface.restitution;
     constraint.stiffness = contact.weight * surface.stiffness;
     constraint.damping = contact.weight * surface.damping;
     if (recovers && contact.depth > 0) separate(std::min(massOf(world, a), massOf(world, b)), manifold.layer, &constraint);
-    constraint.id = contactId(manifold, contact);
     constraints_.push_back(constraint);
-    solved_.push_back({manifold.a, manifold.b, manifold.layer, contact.pierced});
+    solved_.push_back({manifold.a, manifold.b, manifold.layer, contact.pierced, 0});
+  }
+  if (!recovers && isCompliant(surface)) addStops(world, all, surface.friction);
+}
+
+void ContactStage::addStops(const SimulatedWorld& world, const ContactManifold& all, double friction) {
+  const double stop = LayerStops::STOP * all.layer;
+  for (const Contact& contact : stops_.choose(all, *method_)) {
+    ContactConstraint constraint = constraintOf(world, all, contact);
+    constraint.friction = friction;
+    constraint.id = stopId(constraint.id);
+    constraints_.push_back(constraint);
+    solved_.push_back({all.a, all.b, all.layer, false, stop});
   }
 }
 
@@ -226,13 +254,15 @@ void ContactStage::reduction(const SimulatedWorld& world) {
   const int left_out = reduceManifolds(current_, model_a_, model_b_, world.budgets, *method_, &memory_, &reduced_);
   constraints_.clear();
   solved_.clear();
+  stops_.start();
   contacts_of_model_.assign(world.models.size(), 0);
   for (std::size_t m = 0; m < reduced_.size(); ++m) {
-    addConstraints(world, reduced_[m]);
+    addConstraints(world, current_[m], reduced_[m]);
     const int count = static_cast<int>(reduced_[m].contacts.size());
     contacts_of_model_[model_a_[m]] += count;
     if (model_b_[m] != model_a_[m]) contacts_of_model_[model_b_[m]] += count;
   }
+  stops_.remember();
   budget_used_up_ = false;
   for (std::size_t model = 0; model < contacts_of_model_.size(); ++model)
     budget_used_up_ = budget_used_up_ || (left_out > 0 && contacts_of_model_[model] >= world.budgets[model].max_contacts);

@@ -8,6 +8,7 @@
 #include "blem_sim/contact/manifold.h"
 #include "blem_sim/contact/reduction.h"
 #include "blem_sim/dynamics/world.h"
+#include "layer_stops.h"
 #include "number_reader.h"
 #include "pair_searches.h"
 #include "simulated_world.h"
@@ -19,6 +20,7 @@ struct SolvedContact {
   int collider_a, collider_b;
   double layer;  ///< [m] rA + rB
   bool pierced;
+  double stop;  ///< [m] depth at which it begins, of a layer's stop; else 0
 };
 
 /** Two colliders that may meet in the coming step. */
@@ -52,11 +54,13 @@ class ContactStage {
   void accept();
   /** After bodies or geometry changed other than by a step: no contact is known. */
   void forget() { known_ = false; }
-  /** What the last reduction chose; the only thing that outlives a step here, beside what the state tells. */
+  /** What the last reduction chose; the only thing that outlives a step here, with the stops, beside what the state tells. */
   ReductionMemory& memory() { return memory_; }
   const ReductionMemory& memory() const { return memory_; }
+  LayerStops& stops() { return stops_; }
+  const LayerStops& stops() const { return stops_; }
   bool known() const { return known_; }
-  /** At most k contacts per model out of current(), as constraints. */
+  /** At most k contacts per model out of current(), as constraints, and the stops below soft ones. */
   void reduction(const SimulatedWorld& world);
 
   const std::vector<ContactManifold>& found() const { return found_; }      ///< sorted by (a, b), none empty
@@ -72,11 +76,12 @@ class ContactStage {
    */
   const std::vector<Recovery>& recoveries() const { return current_search_.recoveries; }
   void forgetRecoveries() { current_search_.recoveries.clear(); }
-  /** recoveries() as numbers and words, for save: the last ones of a state. */
+  /** recoveries() as numbers and words, for save: the last numbers of a state. */
   void appendRecoveries(std::vector<double>* numbers, std::vector<std::uint64_t>* words) const;
-  /** Reads what appendRecoveries wrote, in the words up to their end. @return false if they are not whole */
-  bool readRecoveries(const std::uint64_t* words, const std::uint64_t* words_end, NumberReader* reader);
+  /** Reads what appendRecoveries wrote and moves the cursor behind its words. @return false if they are not whole */
+  bool readRecoveries(const std::uint64_t** words, const std::uint64_t* words_end, NumberReader* reader);
   int rawContacts() const;
+  int reducedContacts() const;  ///< without stops
   /** A model has as many contacts as it may, and others were left out. */
   bool budgetUsedUp() const { return budget_used_up_; }
 
@@ -91,11 +96,13 @@ class ContactStage {
   /** Where a pair was last apart, as far as the accepted state knows. */
   Recovery lastApart(int a, int b) const;
   void keepWhatWasFound(std::size_t pairs);
-  void addConstraints(const SimulatedWorld& world, ContactManifold& manifold);
+  void addConstraints(const SimulatedWorld& world, const ContactManifold& all, ContactManifold& manifold);
+  void addStops(const SimulatedWorld& world, const ContactManifold& all, double friction);
 
   const ContactConfig config_;
   const Reduction* method_;
   ReductionMemory memory_;
+  LayerStops stops_;
   bool known_ = false;
   std::vector<double> arms_;  ///< [m] by collider: farthest point of its geometry from the body's centre of mass
   BroadPhase pair_search_;

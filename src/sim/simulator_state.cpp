@@ -66,6 +66,7 @@ SimulationState Simulator::Impl::save() const {
   contacts_.memory().append(&state.words);
   layer_watch_.append(&state.words);
   contacts_.appendRecoveries(&state.numbers, &state.words);
+  contacts_.stops().append(&state.words);
   state.layout = layout();
   return state;
 }
@@ -94,7 +95,7 @@ void Simulator::Impl::read(const SimulationState& state) {
   for (std::size_t i = 0; i < sensors_.size(); ++i) sensors_[i]->random().setState(state.words[i + 1]);
   const std::uint64_t *words = state.words.data() + sensors_.size() + 1, *words_end = state.words.data() + state.words.size();
   if (!contacts_.memory().read(&words, words_end) || !layer_watch_.read(&words, words_end) ||
-      !contacts_.readRecoveries(words, words_end, &reader))
+      !contacts_.readRecoveries(&words, words_end, &reader) || !contacts_.stops().read(words, words_end))
     NumberReader::refuse();
   reader.finish();
   step_count_ = state.step;
@@ -107,6 +108,7 @@ void Simulator::Impl::resetWorld() {
   for (const auto& sensor : sensors_) sensor->reset();
   stopped_ = false;
   contacts_.memory().clear();
+  contacts_.stops().clear();
   contacts_.forgetRecoveries();
   layer_watch_.clear();
   energy_balance_.clear();

@@ -178,7 +178,7 @@ void Simulator::Impl::recordSaturation() {
 // Speculative contacts that did not act are left out.
 void Simulator::Impl::recordContacts() {
   report_.raw_contacts = contacts_.rawContacts();
-  report_.reduced_contacts = static_cast<int>(contacts_.constraints().size());
+  report_.reduced_contacts = contacts_.reducedContacts();
   report_.max_depth = report_.max_of_layer = 0;
   report_.deepest_a = report_.deepest_b = -1;
   contact_reports_.clear();
@@ -187,9 +187,9 @@ void Simulator::Impl::recordContacts() {
     const SolvedContact& solved = contacts_.solved()[i];
     const Vector3& force = solved_->contact_forces[i];
     if (constraint.depth < 0 && force.isZero(0)) continue;
-    const double of_layer = solved.layer > 0 ? std::max(0.0, constraint.depth) / solved.layer : 0;
+    const double depth = constraint.depth + solved.stop, of_layer = solved.layer > 0 ? std::max(0.0, depth) / solved.layer : 0;
     contact_reports_.push_back({solved.collider_a, solved.collider_b, constraint.body_a, constraint.body_b, constraint.point,
-                                constraint.normal_BA, constraint.depth, of_layer, force, solved.pierced});
+                                constraint.normal_BA, depth, of_layer, force, solved.pierced});
   }
   if (!contacts_.recoveries().empty()) report_.status |= CONTACT_UNRELIABLE;
   for (const ContactManifold& manifold : contacts_.current()) {

@@ -66,6 +66,17 @@ TEST(StepAllocation, NoneInAWarmStepOfAStack) {
   EXPECT_EQ(simulator.report().reduced_contacts, 8);
 }
 
+TEST(StepAllocation, NoneInAWarmStepOnUsedUpLayers) {
+  SimulationConfig config = busyScene();
+  config.environments = {ground()};
+  config.objects = {box("heavy", Vector3::Constant(0.1), 100, Vector3(0.5, 0, 0.0525))};
+  config.objects[0].contact.stiffness = 1e4;
+  config.objects[0].contact.damping = 200;
+  Simulator simulator(config, UriResolver());
+  EXPECT_EQ(allocationsOfWarmSteps(&simulator), 0);
+  EXPECT_EQ(simulator.report().contacts.size(), 8u);
+}
+
 }  // namespace
 }  // namespace blem_sim
 

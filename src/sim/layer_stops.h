@@ -1,0 +1,44 @@
+// Once most of a soft layer is used up, the rigid bodies below it bear.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "blem_sim/contact/manifold.h"
+#include "blem_sim/contact/reduction.h"
+
+namespace blem_sim {
+
+/**
+ * Rigid contacts below the springs of compliant surfaces, where STOP of the layer is used up: a contact answers f = k depth+ - d v+ up to
+ * there, and does not go deeper whatever the force. They are chosen from all contacts that are so deep, before reduction and beside the
+ * budgets, at most MOST per pair: in a jam a model may have more places that bear than contacts, and those left out would sink in turn.
+ */
+class LayerStops {
+ public:
+  static constexpr double STOP = 0.8;  ///< of the layer
+  static constexpr double SEEN = 0.6;  ///< of the layer: what is less deep gets to 0.9 at most in one solve that the step guard accepts
+  static constexpr int MOST = 6;       ///< of a pair
+
+  /** Before the first pair of a reduction. */
+  void start() { count_ = 0; }
+  /** Stops of the next pair, in the order (a, b): its contacts with depths [m] beyond the stop. @param manifold before reduction */
+  const std::vector<Contact>& choose(const ContactManifold& manifold, const Reduction& method);
+  /** After the last pair: choices of this reduction are what the next one goes on with. */
+  void remember();
+
+  void clear();
+  /** What was chosen as words, for save: none if there are no stops. */
+  void append(std::vector<std::uint64_t>* words) const;
+  /** Reads what append wrote, up to the end. @return false if it is something else */
+  bool read(const std::uint64_t* words, const std::uint64_t* end);
+
+ private:
+  ReductionMemory memory_;
+  bool any_ = false;                    // in the memory
+  std::vector<Contact> deep_;           // of the pair at hand
+  std::vector<ContactManifold> stops_;  // pair by pair; beyond count_ there is only memory to be used again
+  std::size_t count_ = 0;
+};
+
+}  // namespace blem_sim
