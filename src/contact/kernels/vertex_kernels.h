@@ -72,8 +72,7 @@ std::uint32_t vertexEdges(const Vec4* a, const EdgeRecord* b, const Candidate* c
     __builtin_memcpy(offsets[0], &offset.d.x, sizeof offsets[0]);
     __builtin_memcpy(offsets[1], &offset.d.y, sizeof offsets[1]);
     __builtin_memcpy(offsets[2], &offset.d.z, sizeof offsets[2]);
-    return near &
-           bitsOf((dot(batch.inward(b, OF_B, 0).v, offset.d) <= limit) & (dot(batch.inward(b, OF_B, 1).v, offset.d) <= limit));
+    return near & bitsOf((dot(batch.inward(b, OF_B, 0).v, offset.d) <= limit) & (dot(batch.inward(b, OF_B, 1).v, offset.d) <= limit));
   };
   forEachHit(candidates, count, test, [&](std::uint32_t i, int lane) {
     hits[found++] = {i, {offsets[0][lane], offsets[1][lane], offsets[2][lane]}};
