@@ -18,6 +18,9 @@ enum class BorderKind : std::uint8_t {
  * corner k to the next. */
 struct BorderKinds {
   BorderKind of[2][3];
+
+  /** Does the plane go on beside the face? */
+  bool goesOn() const { return of[0][0] == BorderKind::FLAT || of[0][1] == BorderKind::FLAT || of[0][2] == BorderKind::FLAT; }
 };
 BorderKinds borderKinds(const MeshSide& side, int face);
 

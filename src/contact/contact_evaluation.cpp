@@ -193,6 +193,7 @@ void Evaluation::addFading(bool moves) {
     FadingVertex& fading = buffers_.fading.emplace_back();
     fading.vertex = c.a;
     fading.patch = patch;
+    fading.goes_on = lists_.near[!moves].borders[c.b].goesOn();
     fading.is_covered = false;
   }
 }
@@ -202,7 +203,13 @@ void Evaluation::dropCovered(bool moves) {
   auto& fading = buffers_.fading;
   auto& last = buffers_.last_fading;
   if (last.size() < lists_.near[moves].vertices.names.size()) last.resize(lists_.near[moves].vertices.names.size(), NONE);
-  for (std::uint32_t i = 0; i < fading.size(); ++i) fading[i].before = std::exchange(last[fading[i].vertex], i);
+  bool may_be_covered = false;
+  for (std::uint32_t i = 0; i < fading.size(); ++i) {
+    if (!fading[i].goes_on) continue;
+    fading[i].before = std::exchange(last[fading[i].vertex], i);
+    may_be_covered = true;
+  }
+  if (!may_be_covered) return;
   const std::vector<int>& patches = lists_.near[!moves].patches;
   bool is_any_covered = false;
   for (std::uint32_t i = 0; i < buffers_.over_count; ++i) {

@@ -28,7 +28,8 @@ struct FadingVertex {
   std::uint32_t vertex;
   int patch;
   std::uint32_t before;  ///< another one of this vertex
-  bool is_covered;       ///< it lies over the plane elsewhere
+  bool goes_on;          ///< the plane has other faces
+  bool is_covered;       ///< it lies over one of them
 };
 
 /** What evaluations work in: room that only grows. */

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "feature_cones.h"
+#include "kernels/kernels.h"
 
 namespace blem_sim {
 namespace {
@@ -26,18 +27,21 @@ bool isTakenOver(const LeavingVertex& leaving, SurroundingsMemory* surroundings)
   const auto partnerAllows = [&](const Vector3& normal, double slack) {
     return edgeConeAllows(leaving.partner, leaving.edge, -(leaving.R_PS * normal), slack, surroundings);
   };
-  bool goes_on = partnerAllows(leaving.normal, CONE_SLACK);
-  for (const EdgeFromVertex& edge : surroundings->ofVertex(side, leaving.vertex)) {
+  const EdgesAtVertex edges = surroundings->ofVertex(side, leaving.vertex);
+  const kernels::LeadingEdges leading =
+      kernels::kernels().leadingEdges(edges.blocks, edges.block_count, leaving.normal.data(), across.data());
+  if (!leading.down) return partnerAllows(leaving.normal, CONE_SLACK);
+  if (!leading.near) return false;
+  for (const EdgeFromVertex& edge : edges) {
     const double down = edge.along.dot(leaving.normal), aside = edge.along.dot(across), length2 = edge.length2;
-    if (down <= 0 || down * down <= CONE_SLACK * CONE_SLACK * length2) continue;
-    goes_on = false;
-    // Its foot lies so far from the vertex, as part of the contact's length.
-    const double span2 = down * down + aside * aside, jump = down * std::sqrt(length2) / span2;
-    if (edge.is_flat || jump > NEAR_SUCCESSOR) continue;
+    if (edge.is_flat || down <= 0 || down * down <= CONE_SLACK * CONE_SLACK * length2) continue;
+    // Its foot lies farther from the vertex than a successor, as part of the contact's length?
+    const double span2 = down * down + aside * aside;
+    if (down * down * length2 > NEAR_SUCCESSOR * NEAR_SUCCESSOR * span2 * span2) continue;
     const Vector3 normal = (leaving.normal * std::abs(aside) - across * (aside > 0 ? down : -down)) / std::sqrt(span2);
     if (slopeOf(side, edge.edge, normal, surroundings) <= EDGE_CONE_SLACK && partnerAllows(normal, EDGE_CONE_SLACK)) return true;
   }
-  return goes_on;
+  return false;
 }
 
 bool edgeConeAllows(const MeshSide& side, int edge, const Vector3& direction, double slack, SurroundingsMemory* surroundings) {

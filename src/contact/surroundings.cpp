@@ -32,7 +32,7 @@ void writeDirections(const EdgeFromVertex* edges, int count, kernels::EdgeDirect
 EdgesAtVertex SurroundingsMemory::ofVertex(const MeshSide& side, int vertex) {
   bool known;
   VertexEdgesKept& kept = vertices_.find(side, vertex, &known);
-  if (known && kept.count <= MAX_EDGES) return {kept.edges.data(), kept.count, kept.blocks.data(), kernels::directionBlocks(kept.count)};
+  if (known && kept.count <= MAX_EDGES) return {kept.edges.data(), kept.count, &kept.block, kernels::directionBlocks(kept.count)};
   const VertexEdges edges = side.topology.edgesOf(vertex);
   kept.count = edges.size();
   const bool many = kept.count > MAX_EDGES;
@@ -41,7 +41,7 @@ EdgesAtVertex SurroundingsMemory::ofVertex(const MeshSide& side, int vertex) {
     many_blocks_.resize(kernels::directionBlocks(kept.count));
   }
   EdgeFromVertex* const out = many ? many_.data() : kept.edges.data();
-  kernels::EdgeDirections* const blocks = many ? many_blocks_.data() : kept.blocks.data();
+  kernels::EdgeDirections* const blocks = many ? many_blocks_.data() : &kept.block;
   for (int i = 0; i < kept.count; ++i) out[i] = edgeFrom(side, vertex, edges[i]);
   writeDirections(out, kept.count, blocks);
   return {out, kept.count, blocks, kernels::directionBlocks(kept.count)};

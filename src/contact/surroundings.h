@@ -44,11 +44,11 @@ class SurroundingsMemory {
   const EdgeSurroundings& ofEdge(const MeshSide& side, int edge);
 
  private:
-  static constexpr int MAX_EDGES = 10;
+  static constexpr int MAX_EDGES = kernels::DIRECTION_BLOCK;
   struct VertexEdgesKept {
     int count;
-    std::array<kernels::EdgeDirections, kernels::directionBlocks(MAX_EDGES)> blocks;
     std::array<EdgeFromVertex, MAX_EDGES> edges;
+    kernels::EdgeDirections block;
   };
   /** A feature has one place, which the last one that came there holds. */
   template <typename Item, std::size_t CAPACITY>
