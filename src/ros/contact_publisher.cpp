@@ -101,7 +101,7 @@ void ContactMarkerPublisher::publish(const StepReport& report) {
     array.markers.push_back(gone);
   }
   arrows_ = arrows;
-  sender_->add([this, message] { publisher_.publish(message); });
+  sender_->add(&publisher_, message);
 }
 
 }  // namespace blem_sim

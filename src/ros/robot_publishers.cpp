@@ -35,7 +35,7 @@ void JointStatePublisher::publish(const StepReport& report) {
       message->velocity[i] = state.velocity;
       message->effort[i] = state.effort;
     }
-    sender_->add([this, robot, message] { publishers_[robot].publish(message); });
+    sender_->add(&publishers_[robot], message);
   }
 }
 

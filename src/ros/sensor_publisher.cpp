@@ -30,13 +30,13 @@ struct ReadingPublisher {
   const Simulator& simulator;
   const StepReport& report;
   const SensorInfo& sensor;
-  const ros::Publisher& publisher;
+  ros::Publisher* publisher;
   StepSender* sender;
   std_msgs::Header header;
 
   template <typename Message>
   void send(const boost::shared_ptr<Message>& message) const {
-    sender->add([&publisher = publisher, message] { publisher.publish(message); });
+    sender->add(publisher, message);
   }
 
   void operator()(const ForceTorqueReading& reading) const {
@@ -140,12 +140,12 @@ void SensorPublisher::publishMountings() {
 
 void SensorPublisher::publish(const StepReport& report) {
   for (const SensorSample& sample : report.samples) {
-    const ros::Publisher& publisher = publishers_[sample.sensor];
+    ros::Publisher& publisher = publishers_[sample.sensor];
     if (publisher.getNumSubscribers() == 0) continue;
     std_msgs::Header header;
     header.stamp = toStamp(report.time);
     header.frame_id = frames_[sample.sensor];
-    std::visit(ReadingPublisher{simulator_, report, simulator_.sensors()[sample.sensor], publisher, sender_, header}, sample.reading);
+    std::visit(ReadingPublisher{simulator_, report, simulator_.sensors()[sample.sensor], &publisher, sender_, header}, sample.reading);
   }
 }
 
