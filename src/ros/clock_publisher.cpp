@@ -18,7 +18,7 @@ void ClockPublisher::publish(const StepReport& report) {
   if (!schedule_.due(report.time)) return;
   const auto message = messages_.spare();
   message->clock = now;
-  sender_->add([this, message] { publisher_.publish(message); });
+  sender_->add(&publisher_, message);
   published_ = true;
   last_ = now;
 }

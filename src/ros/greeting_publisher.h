@@ -1,7 +1,6 @@
 // Publishers whose late subscribers learn the last message, also during a pause.
 #pragma once
 
-#include <ros/callback_queue_interface.h>
 #include <ros/node_handle.h>
 #include <ros/single_subscriber_publisher.h>
 
@@ -9,16 +8,10 @@
 #include <mutex>
 #include <string>
 
+#include "immediate_queue.h"
 #include "poll_rounds.h"
 
 namespace blem_sim {
-
-/** Runs callbacks at once, in the poll thread. */
-class ImmediateQueue : public ros::CallbackQueueInterface {
- public:
-  void addCallback(const ros::CallbackInterfacePtr& callback, std::uint64_t) override { callback->call(); }
-  void removeByID(std::uint64_t) override {}
-};
 
 /**
  * A publisher that gives a new subscriber the last message. roscpp's own latching does so a moment after the connection, and so gives a
@@ -36,7 +29,7 @@ class GreetingPublisher {
       if (state->message && PollRounds::instance().count() > state->round) subscriber.publish(*state->message);
     };
     ros::AdvertiseOptions options = ros::AdvertiseOptions::create<Message>(topic, queue_size, greet, ros::SubscriberStatusCallback(),
-                                                                           ros::VoidConstPtr(), immediateQueue());
+                                                                           ros::VoidConstPtr(), ImmediateQueue::instance());
     publisher_ = node->advertise(options);
   }
 
@@ -64,11 +57,6 @@ class GreetingPublisher {
     boost::shared_ptr<const Message> message;  ///< the last one, or none
     std::uint64_t round = 0;                   ///< the last one before it was published
   };
-
-  static ImmediateQueue* immediateQueue() {
-    static ImmediateQueue queue;
-    return &queue;
-  }
 
   std::shared_ptr<State> state_;
   ros::Publisher publisher_;

@@ -28,8 +28,8 @@ LayerEvent toMessage(const Simulator& simulator, const LayerEventReport& event) 
 
 }  // namespace
 
-LayerEventPublisher::LayerEventPublisher(ros::NodeHandle private_node, const Simulator& simulator)
-    : simulator_(simulator), publisher_(&private_node, "layer_events", UNBOUNDED_QUEUE) {}
+LayerEventPublisher::LayerEventPublisher(ros::NodeHandle private_node, const Simulator& simulator, StepSender* sender)
+    : simulator_(simulator), sender_(sender), publisher_(&private_node, "layer_events", UNBOUNDED_QUEUE) {}
 
 void LayerEventPublisher::timeRestarted() {
   publisher_.forget();
@@ -40,7 +40,7 @@ void LayerEventPublisher::timeRestarted() {
 void LayerEventPublisher::publish(const StepReport& report) {
   for (const LayerEventReport& event : report.layer_events) {
     const auto message = boost::make_shared<LayerEvent>(toMessage(simulator_, event));
-    publisher_.publish(message);
+    sender_->add(&publisher_, message);
     if (message->outside) warn(*message, event.time);
   }
 }

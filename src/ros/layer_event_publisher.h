@@ -5,6 +5,7 @@
 
 #include "greeting_publisher.h"
 #include "step_publisher.h"
+#include "step_sender.h"
 
 namespace blem_sim {
 
@@ -15,7 +16,7 @@ namespace blem_sim {
 class LayerEventPublisher : public StepPublisher {
  public:
   static constexpr double WARNING_PERIOD = 1;  // [s] simulated
-  LayerEventPublisher(ros::NodeHandle private_node, const Simulator& simulator);
+  LayerEventPublisher(ros::NodeHandle private_node, const Simulator& simulator, StepSender* sender);
   void publish(const StepReport& report) override;
   void timeRestarted() override;
 
@@ -23,6 +24,7 @@ class LayerEventPublisher : public StepPublisher {
   void warn(const LayerEvent& event, double time);
 
   const Simulator& simulator_;
+  StepSender* sender_;
   GreetingPublisher<LayerEvent> publisher_;
   double next_warning_ = 0;  // [s] simulated
   unsigned unsaid_ = 0;      // since the last warning

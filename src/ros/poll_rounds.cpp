@@ -1,6 +1,9 @@
 #include "poll_rounds.h"
 
+#include <ros/init.h>
 #include <ros/poll_manager.h>
+
+#include <chrono>
 
 namespace blem_sim {
 
@@ -18,6 +21,10 @@ void PollRounds::watchEnd() {
     ros::PollManager::instance()->addPollThreadListener([this] { end(); });
     both_ends_ = true;
   });
+}
+
+std::unique_lock<std::recursive_timed_mutex> PollRounds::betweenHandOvers() {
+  return {mutex_, std::chrono::milliseconds(ros::isShuttingDown() ? 0 : 100)};
 }
 
 void PollRounds::begin() {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <atomic>
-#include <chrono>
 #include <cstdint>
 #include <mutex>
 
@@ -22,9 +21,9 @@ class PollRounds {
   /** Call once roscpp has started. */
   void watchEnd();
 
-  /** Keeps the poll thread from handing messages over while it lives. Given up after 100 ms: a poll thread that shuts roscpp down does so
-   *  in the middle of a round and does not come back. A thread may ask for it again while it has it. */
-  std::unique_lock<std::recursive_timed_mutex> betweenHandOvers() { return {mutex_, std::chrono::milliseconds(100)}; }
+  /** Keeps the poll thread from handing messages over while it lives. Given up after 100 ms, and at once while roscpp shuts down: the
+   *  poll thread does so in the middle of a round and does not come back. A thread may ask for it again while it has it. */
+  std::unique_lock<std::recursive_timed_mutex> betweenHandOvers();
   /** Rounds so far. To be asked between hand-overs, or in the poll thread. */
   std::uint64_t count() const { return count_; }
 

@@ -35,12 +35,12 @@ void JointStatePublisher::publish(const StepReport& report) {
       message->velocity[i] = state.velocity;
       message->effort[i] = state.effort;
     }
-    sender_->add([this, robot, message] { publishers_[robot].publish(message); });
+    sender_->add(&publishers_[robot], message);
   }
 }
 
-OdometryPublisher::OdometryPublisher(ros::NodeHandle node, const Simulator& simulator)
-    : simulator_(simulator), schedule_(simulator.config().rates.odom) {
+OdometryPublisher::OdometryPublisher(ros::NodeHandle node, const Simulator& simulator, StepSender* sender)
+    : simulator_(simulator), schedule_(simulator.config().rates.odom), sender_(sender) {
   for (const RobotInfo& robot : simulator.robots()) {
     ros::NodeHandle robot_node(node, robot.name_space);
     publishers_.emplace_back(&robot_node, "odom", QUEUE_SIZE);
@@ -59,12 +59,12 @@ void OdometryPublisher::publish(const StepReport& report) {
     message->pose.pose = toPose(root.X_WL);
     const Matrix3 R_LW = root.X_WL.linear().transpose();
     message->twist.twist = toTwist(R_LW * root.v_WL, R_LW * root.w_WL);
-    publishers_[i].publish(message);
+    sender_->add(&publishers_[i], message);
   }
 }
 
-TransformPublisher::TransformPublisher(ros::NodeHandle node, const Simulator& simulator)
-    : simulator_(simulator), schedule_(simulator.config().rates.tf), publisher_(&node, "/tf", QUEUE_SIZE) {}
+TransformPublisher::TransformPublisher(ros::NodeHandle node, const Simulator& simulator, StepSender* sender)
+    : simulator_(simulator), schedule_(simulator.config().rates.tf), sender_(sender), publisher_(&node, "/tf", QUEUE_SIZE) {}
 
 void TransformPublisher::publish(const StepReport& report) {
   if (!schedule_.due(report.time)) return;
@@ -84,7 +84,7 @@ void TransformPublisher::publish(const StepReport& report) {
   for (const ModelInfo& model : simulator_.models()) {
     if (model.kind == ModelKind::OBJECT && model.alive) add(model.name, bodyMotion(simulator_, report, model.bodies.front()).X_WL);
   }
-  if (!message->transforms.empty()) publisher_.publish(message);
+  if (!message->transforms.empty()) sender_->add(&publisher_, message);
 }
 
 }  // namespace blem_sim

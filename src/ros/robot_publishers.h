@@ -34,13 +34,14 @@ class JointStatePublisher : public StepPublisher {
 /** `odom` in each robot's namespace: ground truth of the root link, twist in its own axes. Told late subscribers. */
 class OdometryPublisher : public StepPublisher {
  public:
-  OdometryPublisher(ros::NodeHandle node, const Simulator& simulator);
+  OdometryPublisher(ros::NodeHandle node, const Simulator& simulator, StepSender* sender);
   void publish(const StepReport& report) override;
   void timeRestarted() override { schedule_.restart(); }
 
  private:
   const Simulator& simulator_;
   PublishSchedule schedule_;
+  StepSender* sender_;
   std::vector<GreetingPublisher<nav_msgs::Odometry>> publishers_;  // per robot
   MessagePool<nav_msgs::Odometry> messages_;
 };
@@ -51,13 +52,14 @@ class OdometryPublisher : public StepPublisher {
  */
 class TransformPublisher : public StepPublisher {
  public:
-  TransformPublisher(ros::NodeHandle node, const Simulator& simulator);
+  TransformPublisher(ros::NodeHandle node, const Simulator& simulator, StepSender* sender);
   void publish(const StepReport& report) override;
   void timeRestarted() override { schedule_.restart(); }
 
  private:
   const Simulator& simulator_;
   PublishSchedule schedule_;
+  StepSender* sender_;
   GreetingPublisher<tf2_msgs::TFMessage> publisher_;
   MessagePool<tf2_msgs::TFMessage> messages_;
 };

@@ -1,9 +1,6 @@
 #include "sensor_publisher.h"
 
-#include <blem_sim/MotorCurrents.h>
-#include <geometry_msgs/WrenchStamped.h>
 #include <ros/names.h>
-#include <sensor_msgs/Imu.h>
 #include <tf2_msgs/TFMessage.h>
 #include <boost/make_shared.hpp>
 
@@ -30,68 +27,68 @@ struct ReadingPublisher {
   const Simulator& simulator;
   const StepReport& report;
   const SensorInfo& sensor;
-  const ros::Publisher& publisher;
+  const std::string& frame_id;
+  SensorMessages* messages;
+  ListenedPublisher* publisher;
   StepSender* sender;
-  std_msgs::Header header;
 
   template <typename Message>
-  void send(const boost::shared_ptr<Message>& message) const {
-    sender->add([&publisher = publisher, message] { publisher.publish(message); });
+  boost::shared_ptr<Message> startedFrom(MessagePool<Message>* pool) const {
+    const boost::shared_ptr<Message> message = pool->spare();
+    message->header.stamp = toStamp(report.time);
+    message->header.frame_id = frame_id;
+    return message;
   }
 
   void operator()(const ForceTorqueReading& reading) const {
-    const auto message = boost::make_shared<geometry_msgs::WrenchStamped>();
-    message->header = header;
+    const auto message = startedFrom(&messages->wrenches);
     if (!reading.frame_id.empty()) message->header.frame_id = reading.frame_id;
     message->wrench = toWrench(reading.force, reading.torque);
-    send(message);
+    sender->add(publisher, message);
   }
 
   void operator()(const ImuReading& reading) const {
-    const auto message = boost::make_shared<sensor_msgs::Imu>();
-    message->header = header;
+    const auto message = startedFrom(&messages->imus);
     message->orientation = toQuaternion(reading.orientation);
     message->angular_velocity = toVector3(reading.angular_velocity);
     message->linear_acceleration = toVector3(reading.linear_acceleration);
     setVariance(&message->angular_velocity_covariance, reading.gyro_stddev);
     setVariance(&message->linear_acceleration_covariance, reading.accel_stddev);
-    send(message);
+    sender->add(publisher, message);
   }
 
   void operator()(const ContactReading& reading) const {
-    send(boost::make_shared<ContactsState>(toContactsState(simulator, report, sensor, reading)));
+    sender->add(publisher, boost::make_shared<ContactsState>(toContactsState(simulator, report, sensor, reading)));
   }
 
   void operator()(const TiltReading& reading) const {
-    const auto message = boost::make_shared<sensor_msgs::Imu>();
-    message->header = header;
+    const auto message = startedFrom(&messages->imus);
     message->orientation = toQuaternion(reading.orientation);
     message->angular_velocity = toVector3(reading.angular_velocity);
     message->linear_acceleration_covariance[0] = -1;  // sensor_msgs: not measured
-    send(message);
+    sender->add(publisher, message);
   }
 
   void operator()(const MotorCurrentReading& reading) const {
-    const auto message = boost::make_shared<MotorCurrents>();
-    message->header = header;
+    const auto message = startedFrom(&messages->currents);
     message->name = reading.joints;
     message->effort = reading.efforts;
     message->current = reading.currents;
-    send(message);
+    sender->add(publisher, message);
   }
 };
 
-ros::Publisher advertise(ros::NodeHandle& node, SensorType type, const std::string& topic) {
+ListenedPublisher advertise(ros::NodeHandle* node, SensorType type, const std::string& topic) {
   switch (type) {
     case SensorType::FORCE_TORQUE:
-      return node.advertise<geometry_msgs::WrenchStamped>(topic, QUEUE_SIZE);
+      return ListenedPublisher::advertise<geometry_msgs::WrenchStamped>(node, topic, QUEUE_SIZE);
     case SensorType::IMU:
     case SensorType::TILT:
-      return node.advertise<sensor_msgs::Imu>(topic, QUEUE_SIZE);
+      return ListenedPublisher::advertise<sensor_msgs::Imu>(node, topic, QUEUE_SIZE);
     case SensorType::CONTACT:
-      return node.advertise<ContactsState>(topic, QUEUE_SIZE);
+      return ListenedPublisher::advertise<ContactsState>(node, topic, QUEUE_SIZE);
     case SensorType::MOTOR_CURRENT:
-      return node.advertise<MotorCurrents>(topic, QUEUE_SIZE);
+      return ListenedPublisher::advertise<MotorCurrents>(node, topic, QUEUE_SIZE);
   }
   throw InputError("sensor topic " + topic + ": this type of sensor has no message");
 }
@@ -116,9 +113,10 @@ SensorPublisher::SensorPublisher(ros::NodeHandle node, const Simulator& simulato
     if (!topics.insert(robot_node.resolveName(topic)).second) {
       throw InputError("sensors: " + config.name + ": another sensor publishes on " + robot_node.resolveName(topic) + "; set topic");
     }
-    publishers_.push_back(advertise(robot_node, config.type, topic));
+    publishers_.push_back(advertise(&robot_node, config.type, topic));
     frames_.push_back(sitsAskew(config) ? config.name + "_frame" : sensor.frame_id);
   }
+  messages_.resize(publishers_.size());
   publishMountings();
 }
 
@@ -140,12 +138,11 @@ void SensorPublisher::publishMountings() {
 
 void SensorPublisher::publish(const StepReport& report) {
   for (const SensorSample& sample : report.samples) {
-    const ros::Publisher& publisher = publishers_[sample.sensor];
-    if (publisher.getNumSubscribers() == 0) continue;
-    std_msgs::Header header;
-    header.stamp = toStamp(report.time);
-    header.frame_id = frames_[sample.sensor];
-    std::visit(ReadingPublisher{simulator_, report, simulator_.sensors()[sample.sensor], publisher, sender_, header}, sample.reading);
+    ListenedPublisher& publisher = publishers_[sample.sensor];
+    if (!publisher.listened()) continue;
+    std::visit(ReadingPublisher{simulator_, report, simulator_.sensors()[sample.sensor], frames_[sample.sensor], &messages_[sample.sensor],
+                                &publisher, sender_},
+               sample.reading);
   }
 }
 

@@ -1,13 +1,26 @@
 #pragma once
 
+#include <blem_sim/MotorCurrents.h>
+#include <geometry_msgs/WrenchStamped.h>
 #include <ros/node_handle.h>
+#include <sensor_msgs/Imu.h>
 
+#include <string>
 #include <vector>
 
+#include "listened_publisher.h"
+#include "message_pool.h"
 #include "step_publisher.h"
 #include "step_sender.h"
 
 namespace blem_sim {
+
+/** Messages of one sensor: those of its type are used. */
+struct SensorMessages {
+  MessagePool<geometry_msgs::WrenchStamped> wrenches;
+  MessagePool<sensor_msgs::Imu> imus;
+  MessagePool<MotorCurrents> currents;
+};
 
 /** One topic per sensor, in its robot's namespace; a sensor's rate was kept when it was sampled. */
 class SensorPublisher : public StepPublisher {
@@ -22,9 +35,10 @@ class SensorPublisher : public StepPublisher {
   const Simulator& simulator_;
   StepSender* sender_;
   ros::NodeHandle node_;
-  std::vector<ros::Publisher> publishers_;  // per sensor
-  std::vector<std::string> frames_;         // per sensor: frame_id of its messages
-  ros::Publisher mountings_;                // /tf_static of sensors that sit askew in their link
+  std::vector<ListenedPublisher> publishers_;  // per sensor
+  std::vector<SensorMessages> messages_;       // per sensor
+  std::vector<std::string> frames_;            // per sensor: frame_id of its messages
+  ros::Publisher mountings_;                   // /tf_static of sensors that sit askew in their link
 };
 
 }  // namespace blem_sim

@@ -52,15 +52,15 @@ struct SimulationNode::Impl {
   void addPublishers() {
     // The clock goes last: whoever wakes by it finds the messages of that time on their way.
     loop.add(std::make_unique<JointStatePublisher>(node, simulator, loop.sender()));
-    loop.add(std::make_unique<TransformPublisher>(node, simulator));
-    loop.add(std::make_unique<OdometryPublisher>(node, simulator));
+    loop.add(std::make_unique<TransformPublisher>(node, simulator, loop.sender()));
+    loop.add(std::make_unique<OdometryPublisher>(node, simulator, loop.sender()));
     loop.add(std::make_unique<SensorPublisher>(node, simulator, loop.sender()));
-    loop.add(std::make_unique<ContactPublisher>(private_node, simulator));
+    loop.add(std::make_unique<ContactPublisher>(private_node, simulator, loop.sender()));
     loop.add(std::make_unique<ContactMarkerPublisher>(private_node, simulator, loop.sender()));
-    loop.add(std::make_unique<LayerEventPublisher>(private_node, simulator));
+    loop.add(std::make_unique<LayerEventPublisher>(private_node, simulator, loop.sender()));
     loop.add(std::make_unique<GeometryMarkerPublisher>(private_node, simulator));
     loop.add(std::make_unique<LoadReportPublisher>(private_node, simulator));
-    loop.add(std::make_unique<StatePublisher>(private_node, simulator));
+    loop.add(std::make_unique<StatePublisher>(private_node, simulator, loop.sender()));
     loop.add(std::make_unique<StepReportPublisher>(private_node, &loop));
     auto diagnostics_publisher = std::make_unique<DiagnosticsPublisher>(node, private_node, &loop);
     diagnostics = diagnostics_publisher.get();

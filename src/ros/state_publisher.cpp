@@ -2,6 +2,7 @@
 
 #include <blem_sim/LinkStates.h>
 #include <blem_sim/ModelStates.h>
+#include <boost/make_shared.hpp>
 
 #include "conversions.h"
 #include "link_motion.h"
@@ -21,40 +22,41 @@ void append(const std::string& name, const LinkMotion& motion, States* states) {
 
 }  // namespace
 
-StatePublisher::StatePublisher(ros::NodeHandle private_node, const Simulator& simulator)
+StatePublisher::StatePublisher(ros::NodeHandle private_node, const Simulator& simulator, StepSender* sender)
     : simulator_(simulator),
       schedule_(simulator.config().rates.link_states),
-      links_(private_node.advertise<LinkStates>("link_states", QUEUE_SIZE)),
-      models_(private_node.advertise<ModelStates>("model_states", QUEUE_SIZE)) {}
+      links_(ListenedPublisher::advertise<LinkStates>(&private_node, "link_states", QUEUE_SIZE)),
+      models_(ListenedPublisher::advertise<ModelStates>(&private_node, "model_states", QUEUE_SIZE)),
+      sender_(sender) {}
 
 void StatePublisher::publish(const StepReport& report) {
   if (!schedule_.due(report.time)) return;
-  if (links_.getNumSubscribers() > 0) publishLinks(report);
-  if (models_.getNumSubscribers() > 0) publishModels(report);
+  if (links_.listened()) publishLinks(report);
+  if (models_.listened()) publishModels(report);
 }
 
 void StatePublisher::publishLinks(const StepReport& report) {
-  LinkStates message;
+  const auto message = boost::make_shared<LinkStates>();
   for (const RobotInfo& robot : simulator_.robots()) {
     const int links = static_cast<int>(robot.description->links.size());
     for (int link = 0; link < links; ++link) {
-      append(robot.name + "::" + robot.description->links[link].name, linkMotion(simulator_, report, robot, link), &message);
+      append(robot.name + "::" + robot.description->links[link].name, linkMotion(simulator_, report, robot, link), message.get());
     }
   }
   for (const ModelInfo& model : simulator_.models()) {
     if (model.kind != ModelKind::OBJECT || !model.alive) continue;
-    for (const int body : model.bodies) append(simulator_.bodyName(body), bodyMotion(simulator_, report, body), &message);
+    for (const int body : model.bodies) append(simulator_.bodyName(body), bodyMotion(simulator_, report, body), message.get());
   }
-  links_.publish(message);
+  sender_->add(&links_, message);
 }
 
 void StatePublisher::publishModels(const StepReport& report) {
-  ModelStates message;
+  const auto message = boost::make_shared<ModelStates>();
   const int models = static_cast<int>(simulator_.models().size());
   for (int model = 0; model < models; ++model) {
-    if (simulator_.models()[model].alive) append(simulator_.models()[model].name, modelMotion(simulator_, report, model), &message);
+    if (simulator_.models()[model].alive) append(simulator_.models()[model].name, modelMotion(simulator_, report, model), message.get());
   }
-  models_.publish(message);
+  sender_->add(&models_, message);
 }
 
 }  // namespace blem_sim

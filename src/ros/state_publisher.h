@@ -2,8 +2,10 @@
 
 #include <ros/node_handle.h>
 
+#include "listened_publisher.h"
 #include "publish_schedule.h"
 #include "step_publisher.h"
+#include "step_sender.h"
 
 namespace blem_sim {
 
@@ -11,7 +13,7 @@ namespace blem_sim {
  * subscribers. */
 class StatePublisher : public StepPublisher {
  public:
-  StatePublisher(ros::NodeHandle private_node, const Simulator& simulator);
+  StatePublisher(ros::NodeHandle private_node, const Simulator& simulator, StepSender* sender);
   void publish(const StepReport& report) override;
   void timeRestarted() override { schedule_.restart(); }
 
@@ -21,7 +23,8 @@ class StatePublisher : public StepPublisher {
 
   const Simulator& simulator_;
   PublishSchedule schedule_;
-  ros::Publisher links_, models_;
+  ListenedPublisher links_, models_;
+  StepSender* sender_;
 };
 
 }  // namespace blem_sim

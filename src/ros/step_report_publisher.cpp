@@ -1,5 +1,7 @@
 #include "step_report_publisher.h"
 
+#include <boost/make_shared.hpp>
+
 #include "conversions.h"
 #include "status_text.h"
 #include "step_report_message.h"
@@ -14,7 +16,8 @@ StepReportPublisher::StepReportPublisher(ros::NodeHandle private_node, Simulatio
     : loop_(*loop),
       simulator_(loop->simulator()),
       schedule_(simulator_.config().rates.step_report),
-      publisher_(private_node.advertise<StepReportMessage>("step_report", QUEUE_SIZE)) {}
+      publisher_(private_node.advertise<StepReportMessage>("step_report", QUEUE_SIZE)),
+      sender_(loop->sender()) {}
 
 void StepReportPublisher::timeRestarted() {
   schedule_.restart();
@@ -26,7 +29,8 @@ void StepReportPublisher::publish(const StepReport& report) {
   collector_.add(report);
   if (!schedule_.due(report.time)) return;
   const StepStatistics statistics = collector_.take();
-  StepReportMessage message;
+  const auto sent = boost::make_shared<StepReportMessage>();
+  StepReportMessage& message = *sent;
   message.header.stamp = toStamp(report.time);
   message.step = report.step;
   message.steps = statistics.steps;
@@ -54,7 +58,7 @@ void StepReportPublisher::publish(const StepReport& report) {
   message.stages.emplace_back("publish");
   message.stage_seconds.push_back((loop_.publishingTime().wall - published_) / statistics.steps);
   published_ = loop_.publishingTime().wall;
-  publisher_.publish(message);
+  sender_->add(&publisher_, sent);
 }
 
 }  // namespace blem_sim

@@ -22,6 +22,7 @@ class StepReportPublisher : public StepPublisher {
   const Simulator& simulator_;
   PublishSchedule schedule_;
   ros::Publisher publisher_;
+  StepSender* sender_;
   StepStatisticsCollector collector_;
   double published_ = 0;  // [s] loop's publishing time at the last report
 };

@@ -63,6 +63,15 @@ class TopicsTest(unittest.TestCase):
         self.assertAlmostEqual(messages[-1].linear_acceleration_covariance[4], 1e-4, delta=1e-9)
         self.assertAlmostEqual(messages[-1].angular_velocity_covariance[8], 4e-6, delta=1e-12)
 
+    def test_sensors_are_published_while_somebody_listens(self):
+        last = self.record("/imu", Imu, 20)[-1]
+        later = rospy.get_time() + 1
+        wait_until(lambda: rospy.get_time() > later, "a second to pass")
+        again = self.record("/imu", Imu, 20)
+        # Every publication counts one on, also one that nobody hears: 200 in that second.
+        self.assertLess(again[0].header.seq - last.header.seq, 100)
+        self.assertEqual(again[-1].header.seq - again[0].header.seq, len(again) - 1)
+
     def test_contact_sensor(self):
         messages = self.record("/base_contact", ContactsState, 50)
         self.assert_rate(stamps(messages), 50)
