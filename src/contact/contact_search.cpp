@@ -6,7 +6,7 @@
 namespace blem_sim {
 namespace {
 
-// A list is made for so many steps of the present motion, unless it is known how lists of the pair grow, see cheapestSteps.
+// A list is made for so many steps of the present motion, or for what is cheapest if it is known how lists of the pair grow.
 constexpr double MARGIN_STEPS = 15, FEWEST_STEPS = 3, MOST_STEPS = 50;
 constexpr double LEAST_PART = 0.7;  // of those, see partOf
 // What the making of a list takes per pair of leaves, and per candidate, in candidates that findNearest looks at, and the steps that its
@@ -89,7 +89,7 @@ class ContactSearch {
 
   ListMargin contactMargin() const {
     if (!memory_.visited) return {FIRST_MARGIN * pair_.range, FIRST_TURN};
-    const bool known = memory_.growth > 0, many = memory_.contacts.now.pairs.size() > MANY_LEAF_PAIRS;
+    const bool many = memory_.contacts.now.pairs.size() > MANY_LEAF_PAIRS, known = memory_.growth > 0 && !many;
     const double most = (many ? MOST_MARGIN_OF_MANY : known ? MOST_KNOWN_MARGIN : MOST_MARGIN) * pair_.range;
     // Turning is allowed for as long as moving.
     double steps = (known ? cheapestSteps() : MARGIN_STEPS) * partOf(pair_.X_FM);

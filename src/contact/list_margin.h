@@ -1,6 +1,8 @@
 // For how much motion of one mesh against the other lists of candidates are good.
 #pragma once
 
+#include <cmath>
+
 #include "mesh_pair.h"
 
 namespace blem_sim {
