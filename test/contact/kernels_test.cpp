@@ -17,6 +17,7 @@ namespace {
 using namespace kernels;
 
 constexpr std::uint32_t FEATURES = 61, CANDIDATES = 997;  // no whole number of vectors
+constexpr std::uint32_t RUN = 20;
 constexpr double RANGE = 0.3;
 
 struct Features {
@@ -47,9 +48,12 @@ Features randomFeatures() {
     out.faces.push_back(face);
     out.open.push_back(random.integer(0, 63));
   }
-  for (std::uint32_t i = 0; i < CANDIDATES; ++i)
-    out.candidates.push_back(
-        {static_cast<std::uint32_t>(random.integer(0, FEATURES - 1)), static_cast<std::uint32_t>(random.integer(0, FEATURES - 1))});
+  const auto any = [&] { return static_cast<std::uint32_t>(random.integer(0, FEATURES - 1)); };
+  // Every other run is of one feature b, as vertices over a large face are.
+  for (std::uint32_t i = 0; i < CANDIDATES; ++i) {
+    const std::uint32_t run = i / RUN;
+    out.candidates.push_back({any(), run % 2 ? any() : run % FEATURES});
+  }
   return out;
 }
 

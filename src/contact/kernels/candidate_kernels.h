@@ -150,11 +150,10 @@ std::uint32_t vertexFaces(const NearVertices& a, const FaceRecord* b, const Open
         const Doubles depth = appendPlain(batch, faces, vertices, plane.v, height, is_clear, plain);
         deepest = maximum(deepest, clear ? depth : deepest);
       }
-      if (is_clear == near) return;
+      if (is_clear == batch.valid) return;
       const Mask over = isOverOrFades(sides.of, openSides(faces.numbers(open), height, 0.0), most, 2 * CLOSED);
       const Mask bits = vertexFaceBits(sides, inside, (inside >= 0) & ~touches);
       const unsigned is_hit = near & ~is_clear & bitsOf(over);
-      if (is_hit == 0) return;
       // Which lanes have one is hard to foresee: every one writes, the next one over it if it has none.
       for (int i = 0; i < LANES; ++i) {
         hits[found] = {first + i, static_cast<std::uint32_t>(bits[i]), height[i]};
