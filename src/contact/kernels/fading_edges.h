@@ -8,12 +8,13 @@ namespace {
 
 /** The edges of a batch of candidates. */
 struct EdgeBatch {
-  EdgeBatch(const Batch& batch, const EdgeRecord* a, const EdgeRecord* b)
-      : start_a(batch.field(a, OF_A, &EdgeRecord::start)),
-        start_b(batch.field(b, OF_B, &EdgeRecord::start)),
-        along_a(batch.field(a, OF_A, &EdgeRecord::along)),
-        along_b(batch.field(b, OF_B, &EdgeRecord::along)),
-        between(start_b.v - start_a.v) {}
+  EdgeBatch(const Batch& batch, const EdgeRecord* a, const EdgeRecord* b) {
+    start_a = batch.field(a, OF_A, &EdgeRecord::start);
+    start_b = batch.field(b, OF_B, &EdgeRecord::start);
+    along_a = batch.field(a, OF_A, &EdgeRecord::along);
+    along_b = batch.field(b, OF_B, &EdgeRecord::along);
+    between = start_b.v - start_a.v;
+  }
   void takeInwards(const Batch& batch, const EdgeRecord* a, const EdgeRecord* b) {
     for (int k = 0; k < 2; ++k) {
       inward_a[k] = batch.inward(a, OF_A, k).v;
@@ -21,8 +22,8 @@ struct EdgeBatch {
     }
   }
 
-  const Rows start_a, start_b, along_a, along_b;
-  const Vectors between;  ///< from start to start
+  Rows start_a, start_b, along_a, along_b;
+  Vectors between;  ///< from start to start
   Vectors inward_a[2], inward_b[2];
 };
 
