@@ -34,6 +34,8 @@ struct FadingVertex {
 
 /** What evaluations work in: room that only grows. */
 struct EvaluationBuffers {
+  static constexpr std::uint32_t BLOCK = 256;  ///< candidates that are tested at once: there is room for contacts of all
+
   TurnedFeatures turned;
   SurroundingsMemory surroundings;
   std::vector<kernels::VertexFaceHit> vertex_faces;
@@ -49,6 +51,11 @@ struct EvaluationBuffers {
   std::vector<kernels::SideFoot> feet;     ///< as they
   std::vector<FadingVertex> fading;        ///< whose contacts are the last close ones
   std::vector<std::uint32_t> last_fading;  ///< of each vertex; none between evaluations
+
+  template <typename Items>
+  static void makeRoom(std::size_t size, Items* items) {
+    if (items->size() < size) items->resize(size);
+  }
 };
 
 /** Turns candidates into contacts. */

@@ -1,4 +1,5 @@
 // Soft layers that are nearly used up: a spring up to the stop, and no deeper whatever the load.
+#include <algorithm>
 #include <cmath>
 
 #include "layer_stops.h"
