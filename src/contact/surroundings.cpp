@@ -30,6 +30,7 @@ void writeDirections(const EdgeFromVertex* edges, int count, kernels::EdgeDirect
 }  // namespace
 
 EdgesAtVertex SurroundingsMemory::ofVertex(const MeshSide& side, int vertex) {
+  if (side.topology.edgeCount() == 0) return {};  // points
   bool known;
   VertexEdgesKept& kept = vertices_.find(side, vertex, &known);
   if (known && kept.count <= MAX_EDGES) return {kept.edges.data(), kept.count, &kept.block, kernels::directionBlocks(kept.count)};
