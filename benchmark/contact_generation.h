@@ -13,7 +13,6 @@ namespace blem_sim {
 /** Contacts of every moving collider in every step, processor time. */
 struct Generation {
   StepTimes times;
-  double mean = 0;      ///< [us] per step
   double contacts = 0;  ///< per step, mean
 };
 

@@ -67,11 +67,11 @@ void run(benchmark::State& state, MakeScene make, const PeerRow& row) {
     const PairSearch peer = timed(*ours.scene, row);
     state.SetIterationTime(1e-6 * peer.microseconds);
     state.counters["found"] = peer.pairs;
-    state.counters["mean_us"] = ours.coherent.mean;
-    state.counters["fresh_us"] = ours.fresh.mean;
+    state.counters["mean_us"] = ours.coherent.times.mean();
+    state.counters["fresh_us"] = ours.fresh.times.mean();
     state.counters["contacts"] = ours.coherent.contacts;
-    state.counters["peer_over_mean"] = peer.microseconds / ours.coherent.mean;
-    state.counters["peer_over_fresh"] = peer.microseconds / ours.fresh.mean;
+    state.counters["peer_over_mean"] = peer.microseconds / ours.coherent.times.mean();
+    state.counters["peer_over_fresh"] = peer.microseconds / ours.fresh.times.mean();
   }
   state.SetLabel(row.computes);
 }

@@ -116,8 +116,8 @@ double reductionTime(const ContactScene& scene, int k) {
 Sample generated(const ContactScene& scene, bool reduces) {
   const Generation fresh = generate(scene, false, STEPS), coherent = generate(scene, true, STEPS);
   Sample sample;
-  sample.mean = sample.narrow_phase = coherent.mean;
-  sample.fresh = fresh.mean;
+  sample.mean = sample.narrow_phase = coherent.times.mean();
+  sample.fresh = fresh.times.mean();
   sample.contacts = coherent.contacts;
   if (reduces) sample.reduction = reductionTime(scene, 20);
   return sample;

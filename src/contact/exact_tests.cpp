@@ -136,9 +136,11 @@ void ExactTests::vertexVertex(int moving, int fixed) {
     return std::make_pair(allows, allows && isRoundVertex(side, edges, direction, &surroundings_));
   };
   const auto [f_allows, f_round] = cone(false, fixed, normal);
-  const auto [m_allows, m_round] = cone(true, moving, inverse);
-  const bool nearest = (f_allows && m_allows) || f_round || m_round;
-  if (nearest) contacts_.add(pair_, true, m, f, p, q, normal, gap);
+  if (!f_round) {
+    const auto [m_allows, m_round] = cone(true, moving, inverse);
+    if (!m_round && !(f_allows && m_allows)) return;
+  }
+  contacts_.add(pair_, true, m, f, p, q, normal, gap);
 }
 
 /** @param along direction of the edge, to which the normal is square; zero if there is none */

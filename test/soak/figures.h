@@ -83,6 +83,11 @@ class StepTimes {
     return sorted[static_cast<std::size_t>(fraction * static_cast<double>(sorted.size() - 1))];
   }
   double median() const { return quantile(0.5); }
+  double mean() const {
+    double total = 0;
+    for (const double each : microseconds_) total += each;
+    return total / static_cast<double>(microseconds_.size());
+  }
   double worst() const { return quantile(1); }
   bool empty() const { return microseconds_.empty(); }
   void print(const std::string& name) const {
