@@ -11,8 +11,6 @@ namespace {
 using kernels::Candidate;
 using kernels::Vec4;
 
-constexpr std::uint32_t BLOCK = EvaluationBuffers::BLOCK;
-
 }  // namespace
 
 void FoundContacts::clear() {
@@ -65,29 +63,18 @@ void Evaluation::forEachHit(const std::vector<Candidate>& candidates, std::uint3
 /** @return how many need a closer look; the plain ones are written */
 std::uint32_t Evaluation::findEdgeEdges(const kernels::EdgeRecord* moving, const kernels::EdgeRecord* fixed) {
   const std::vector<Candidate>& candidates = pairs_.edge_edge;
-  const auto total = static_cast<std::uint32_t>(candidates.size());
   const ContactRoles& roles = pair_.roles;
   const Feature edge{FeatureKind::EDGE, 0};
-  EvaluationBuffers::makeRoom(total + 1, &buffers_.edge_edges);
   kernels::PlainEdges plain{{lists_.near[1].edges.names.data(), lists_.near[0].edges.names.data(), roles.first_is_a, motionOf(pair_.X_WF),
                              roles.r_a + roles.r_b, 0.5 * (roles.r_b - roles.r_a), contactId(edge, edge)},
                             nullptr,
                             0,
                             found_.deepest_plain};
-  std::uint32_t count = 0;
-  for (std::uint32_t first = 0; first < total; first += BLOCK) {
-    const std::uint32_t size = std::min(BLOCK, total - first);
-    kernels::EdgeEdgeHit* const hits = buffers_.edge_edges.data() + count;
-    plain.rows = found_.plain.rows(size + 1);
-    plain.count = 0;
-    const std::uint32_t found = kernels::kernels().edgeEdges(moving, fixed, candidates.data() + first, size, pair_.range,
-                                                             found_.crossings.empty() ? &plain : nullptr, hits);
-    for (std::uint32_t i = 0; i < found; ++i) hits[i].candidate += first;
-    count += found;
-    found_.plain.advance(plain.count);
-  }
-  found_.deepest_plain = plain.deepest;
-  return count;
+  return testBlocks(candidates.size(), &buffers_.edge_edges, &plain,
+                    [&](std::uint32_t first, std::uint32_t size, kernels::EdgeEdgeHit* hits) {
+                      return kernels::kernels().edgeEdges(moving, fixed, candidates.data() + first, size, pair_.range,
+                                                          found_.crossings.empty() ? &plain : nullptr, hits);
+                    });
 }
 
 void Evaluation::edgeEdges(const kernels::EdgeRecord* moving, const kernels::EdgeRecord* fixed) {

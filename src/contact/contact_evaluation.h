@@ -1,6 +1,7 @@
 // Which candidates have a contact, or cross, and where.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "border_fade.h"
@@ -77,6 +78,9 @@ class Evaluation {
 
  private:
   std::uint32_t* room(const std::vector<kernels::Candidate>& candidates);
+  /** Calls test(first candidate, how many, hits) for blocks of them, which writes to plain. @return how many hits there are in all */
+  template <typename Hit, typename Plain, typename Test>
+  std::uint32_t testBlocks(std::size_t candidates, std::vector<Hit>* hits, Plain* plain, Test&& test);
   template <typename Visit>
   void forEachHit(const std::vector<kernels::Candidate>& candidates, std::uint32_t count, Visit&& visit) const;
 
@@ -101,5 +105,25 @@ class Evaluation {
   ExactTests exact_;
   BorderFades fades_;
 };
+
+template <typename Hit, typename Plain, typename Test>
+std::uint32_t Evaluation::testBlocks(std::size_t candidates, std::vector<Hit>* hits, Plain* plain, Test&& test) {
+  constexpr std::uint32_t BLOCK = EvaluationBuffers::BLOCK;
+  const auto total = static_cast<std::uint32_t>(candidates);
+  EvaluationBuffers::makeRoom(total + 1, hits);
+  std::uint32_t count = 0;
+  for (std::uint32_t first = 0; first < total; first += BLOCK) {
+    const std::uint32_t size = std::min(BLOCK, total - first);
+    Hit* const block = hits->data() + count;
+    plain->rows = found_.plain.rows(size + 1);
+    plain->count = 0;
+    const std::uint32_t found = test(first, size, block);
+    for (std::uint32_t i = 0; i < found; ++i) block[i].candidate += first;
+    count += found;
+    found_.plain.advance(plain->count);
+  }
+  found_.deepest_plain = plain->deepest;
+  return count;
+}
 
 }  // namespace blem_sim

@@ -19,7 +19,7 @@ EdgeFromVertex edgeFrom(const MeshSide& side, int vertex, int edge) {
 /** @param blocks room for all */
 void writeDirections(const EdgeFromVertex* edges, int count, kernels::EdgeDirections* blocks) {
   constexpr int SIZE = kernels::DIRECTION_BLOCK;
-  for (int i = 0; i < (count + SIZE - 1) / SIZE * SIZE; ++i) {
+  for (int i = 0; i < kernels::directionBlocks(count) * SIZE; ++i) {
     const Vector3 direction = i < count ? edges[i].along.normalized() : Vector3(Vector3::Zero());
     kernels::EdgeDirections& block = blocks[i / SIZE];
     block.x[i % SIZE] = direction.x(), block.y[i % SIZE] = direction.y(), block.z[i % SIZE] = direction.z();

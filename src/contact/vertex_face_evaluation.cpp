@@ -1,5 +1,4 @@
 // Evaluation of vertices over faces, or little beside them.
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -13,7 +12,6 @@ using kernels::Candidate;
 using kernels::VertexFaceHit;
 
 constexpr std::uint32_t NONE = 0xFFFFFFFF;
-constexpr std::uint32_t BLOCK = EvaluationBuffers::BLOCK;
 
 }  // namespace
 
@@ -34,29 +32,19 @@ kernels::ContactPlace Evaluation::place(bool vertices_move) const {
 /** @return how many need a closer look; the plain ones are written */
 std::uint32_t Evaluation::findVertexFaces(bool moves) {
   const std::vector<Candidate>& candidates = pairs_.vertex_face[moves];
-  const auto total = static_cast<std::uint32_t>(candidates.size());
-  EvaluationBuffers::makeRoom(total + 1, &buffers_.vertex_faces);
-  EvaluationBuffers::makeRoom(total + 1, &buffers_.over);
+  EvaluationBuffers::makeRoom(candidates.size() + 1, &buffers_.over);
   buffers_.over_count = 0;
   const kernels::NearVertices vertices = buffers_.turned.nearFaces(lists_, moves, pair_.X_FM);
+  const NearFeatures& partner = lists_.near[!moves];
   kernels::PlainContacts plain{place(moves), nullptr, nullptr, 0, found_.deepest_plain};
-  std::uint32_t count = 0;
-  for (std::uint32_t first = 0; first < total; first += BLOCK) {
-    const std::uint32_t size = std::min(BLOCK, total - first);
-    VertexFaceHit* const hits = buffers_.vertex_faces.data() + count;
-    plain.rows = found_.plain.rows(size + 1);
+  return testBlocks(candidates.size(), &buffers_.vertex_faces, &plain, [&](std::uint32_t first, std::uint32_t size, VertexFaceHit* hits) {
     plain.pairs = buffers_.over.data() + buffers_.over_count;
-    plain.count = 0;
     const std::uint32_t found =
-        kernels::kernels().vertexFaces(vertices, lists_.near[!moves].faces.records.data(), lists_.near[!moves].open.data(),
-                                       candidates.data() + first, size, pair_.range, found_.crossings.empty() ? &plain : nullptr, hits);
-    for (std::uint32_t i = 0; i < found; ++i) hits[i].candidate += first;
-    count += found;
+        kernels::kernels().vertexFaces(vertices, partner.faces.records.data(), partner.open.data(), candidates.data() + first, size,
+                                       pair_.range, found_.crossings.empty() ? &plain : nullptr, hits);
     buffers_.over_count += plain.count;
-    found_.plain.advance(plain.count);
-  }
-  found_.deepest_plain = plain.deepest;
-  return count;
+    return found;
+  });
 }
 
 void Evaluation::vertexFaces(bool moves) {

@@ -161,7 +161,7 @@ std::uint32_t vertexFaces(const NearVertices& a, const FaceRecord* b, const Open
       }
     });
   }
-  for (int i = 0; plain && i < LANES; ++i) plain->deepest = deepest[i] > plain->deepest ? deepest[i] : plain->deepest;
+  raiseDeepest(deepest, plain);
   return found;
 }
 

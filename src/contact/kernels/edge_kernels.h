@@ -45,12 +45,11 @@ inline Mask conesAllow(const EdgeBatch& edges, const Vectors& normal) {
 inline Doubles appendEdges(const Batch& batch, const EdgeFeet& feet, unsigned bits, PlainEdges* out) {
   const EdgePlace& place = out->place;
   const Vectors normal_BA = all(place.first_is_a ? 1 : -1) * feet.normal;
-  const Vectors middle = all(0.5) * (feet.point_a + feet.point_b) + all(place.shift) * normal_BA;
   const Doubles depth = place.layer - feet.gap;
   const Mask first = batch.numbers(place.names_a, OF_A), second = batch.numbers(place.names_b, OF_B);
   const Mask ids = (place.first_is_a ? first << 32 | second : second << 32 | first) | static_cast<long>(place.kinds);
-  const ContactRow* const end = appendRows({turnedPoint(place.X_WF, middle), turnedDirection(place.X_WF, normal_BA)}, depth, ids, bits,
-                                           out->rows + out->count, [](int, unsigned) {});
+  const ContactRow* const end =
+      appendRows(inWorld(place, feet.point_a, feet.point_b, normal_BA), depth, ids, bits, out->rows + out->count, [](int, unsigned) {});
   out->count = static_cast<std::uint32_t>(end - out->rows);
   return depth;
 }
@@ -100,7 +99,7 @@ std::uint32_t edgeEdges(const EdgeRecord* a, const EdgeRecord* b, const Candidat
     }
     found = appendHits(first, feet, bitsOf(stands), hit & ~is_clear, found, hits);
   }
-  for (int i = 0; plain && i < LANES; ++i) plain->deepest = deepest[i] > plain->deepest ? deepest[i] : plain->deepest;
+  raiseDeepest(deepest, plain);
   return found;
 }
 

@@ -37,8 +37,9 @@ struct VertexLanes {
 struct WorldContacts {
   Vectors point, normal;
 };
-/** @param at, foot in frame F, as the normal, from B to A */
-inline WorldContacts inWorld(const ContactPlace& place, const Vectors& at, const Vectors& foot, const Vectors& normal) {
+/** @param place ContactPlace or EdgePlace @param at, foot in frame F, as the normal, from B to A */
+template <typename Place>
+inline WorldContacts inWorld(const Place& place, const Vectors& at, const Vectors& foot, const Vectors& normal) {
   const Vectors middle = all(0.5) * (at + foot) + all(place.shift) * normal;
   return {turnedPoint(place.X_WF, middle), turnedDirection(place.X_WF, normal)};
 }
@@ -63,6 +64,12 @@ inline ContactRow* appendRows(const WorldContacts& contacts, Doubles depth, Mask
     return now;
   });
   return row;
+}
+
+/** @param plain null: nothing is raised */
+template <typename Plain>
+inline void raiseDeepest(Doubles deepest, Plain* plain) {
+  for (int i = 0; plain && i < LANES; ++i) plain->deepest = deepest[i] > plain->deepest ? deepest[i] : plain->deepest;
 }
 
 /** contactId of the lanes' vertices and faces. */
