@@ -25,7 +25,6 @@ bool BorderFades::fades(bool vertex_moves, const kernels::Candidate& c, const ke
  * border the partner allows the vertex's own contact. @param k the side */
 bool BorderFades::leaves(bool vertex_moves, const kernels::Candidate& c, int k, bool is_above) {
   const MeshSide &side = pair_.side(vertex_moves), &partner = pair_.side(!vertex_moves);
-  if (side.topology.edgeCount() == 0) return false;  // a point leads nowhere
   const int vertex_name = lists_.near[vertex_moves].vertices.names[c.a], face = lists_.near[!vertex_moves].faces.names[c.b];
   const kernels::FaceRecord& record = lists_.near[!vertex_moves].faces.records[c.b];
   const Vector3 normal = vector3(record.plane), inward = vector3(record.sides[k]), down = is_above ? Vector3(-normal) : normal;
