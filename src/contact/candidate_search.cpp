@@ -1,6 +1,7 @@
 #include "candidate_search.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 #include "blem_sim/geometry/bvh_traversal.h"
@@ -188,8 +189,16 @@ class Search {
     if (!found.shapes) {
       if (!found.features) found.features = find(moves, leaf.node).features.get();
       found.shapes = moves ? turned(found.features->shapes, index) : &found.features->shapes;
+      if (!moves) addNormals(found.shapes->region);
     }
     return {*found.features, *found.shapes, leaf.slots};
+  }
+
+  /** Directions within an angle of an axis are in a ball. */
+  void addNormals(const kernels::LeafRegion& region) {
+    const double lean = region.lean;
+    const Vector3 up(region.axes[2][0], region.axes[2][1], region.axes[2][2]);
+    listing_.normals.add(std::sqrt(std::max(1 - lean * lean, 0.0)) * up, lean);
   }
 
   /** The shapes of a moving leaf in the fixed mesh's frame. */
@@ -259,6 +268,7 @@ void clear(const MeshPair& pair, CandidateKind kind, const ListMargin& margin, C
   listing->slots.clear();
   listing->pairs.clear();
   listing->done = 0;
+  listing->normals = DirectionBall();
 }
 
 }  // namespace

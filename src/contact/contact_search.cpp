@@ -57,8 +57,7 @@ class ContactSearch {
   }
 
   void run(bool keeps) {
-    const bool apart = memory_.visited && motion_.motion + DISTANCE_ROUNDING < memory_.distance;
-    if (!apart) {
+    if (!staysApart()) {
       refresh(CandidateKind::CROSSINGS, keeps, &memory_.crossings);
       CandidateLists& lists = memory_.crossings.now.lists;
       buffers_.evaluation.turned.turnForCrossings(lists, pair_.X_FM);
@@ -75,6 +74,16 @@ class ContactSearch {
   }
 
  private:
+  /** Have the meshes surely not come to cross since they were apart? What is nearest on the straight way of the points near the fixed mesh
+   * lies along a normal of that one, so their distance shrinks by no more than what they move along its normals there. */
+  bool staysApart() const {
+    if (!memory_.visited) return false;
+    if (motion_.motion + DISTANCE_ROUNDING < memory_.distance) return true;
+    const CandidateListing& list = memory_.contacts.now;
+    if (!isGood(list.origin) || !isGoodAt(memory_.X_FM, list.origin)) return false;
+    return region_.largestMotion(pair_.X_FM, memory_.X_FM, list.normals) + DISTANCE_ROUNDING < std::min(memory_.distance, pair_.range);
+  }
+
   void forget() {
     memory_.visited = memory_.nearest_origin.known = false;
     memory_.motion = SteadyMotion();
