@@ -62,6 +62,7 @@ class Search {
     const kernels::LeafReach reach = leafReach();
     const bool contacts = listing_.kind == CandidateKind::CONTACTS;
     forEachLeafPair(leaf_pairs, [&](const LeafInUse& m, const LeafInUse& f) {
+      addNormals(f.shapes.region);
       (contacts ? kernels.leafContacts : kernels.leafCrossings)(m.shapes, f.shapes, reach, &buffers_.hits);
       if (contacts) {
         appendContacts(m, f);
@@ -189,7 +190,6 @@ class Search {
     if (!found.shapes) {
       if (!found.features) found.features = find(moves, leaf.node).features.get();
       found.shapes = moves ? turned(found.features->shapes, index) : &found.features->shapes;
-      if (!moves) addNormals(found.shapes->region);
     }
     return {*found.features, *found.shapes, leaf.slots};
   }

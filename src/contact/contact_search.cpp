@@ -17,8 +17,8 @@ constexpr std::size_t PARTS = 4, FEW_LEAF_PAIRS = 64;
 constexpr double LASTING_STEPS = 8;
 // A list is made for a pose ahead, so much of its margin away on the way of the pair, and so many steps, at most.
 constexpr double AHEAD = 0.9, AHEAD_AT_MOST = 0.98, AHEAD_STEPS = 25;
-// Of long lists those that matter for so few steps are listed again.
-constexpr double NEAREST_STEPS = 3;
+// Of long lists those that matter for so few steps are listed again, or for what is cheapest if it is known how lists of the pair grow.
+constexpr double NEAREST_STEPS = 3, FEWEST_NEAREST_STEPS = 2, MOST_NEAREST_STEPS = 8;
 // Candidates for crossings are listed for so many.
 constexpr double CROSSING_STEPS = 10;
 constexpr std::size_t FEW_CANDIDATES = 200;
@@ -180,10 +180,18 @@ class ContactSearch {
             std::max(steps * motion_.turn, LEAST_NEAREST_TURN)};
   }
 
+  /** The steps that the nearest are chosen for: for more there are more to test, for fewer all are looked at more often. To look at one
+   * takes about as long as to test it; a choice of margin m lasts 2 m / motion steps. */
+  double nearestSteps() const {
+    const double all = memory_.contacts.now.lists.pairs.contacts(), more_per_step = memory_.growth * motion_.motion;
+    if (more_per_step <= 0) return NEAREST_STEPS;
+    return std::clamp(std::sqrt(0.5 * all / more_per_step), FEWEST_NEAREST_STEPS, MOST_NEAREST_STEPS);
+  }
+
   /** The candidates to test, good lists given. */
   const CandidatePairs& nearestPairs() {
     if (isGood(memory_.nearest_origin)) return memory_.nearest;
-    const ListMargin margin = marginOf(NEAREST_STEPS);
+    const ListMargin margin = marginOf(nearestSteps());
     CandidateListing& all = memory_.contacts.now;
     if (all.lists.pairs.contacts() <= FEW_CANDIDATES || 2 * margin.motion >= all.origin.margin.motion) return all.lists.pairs;
     const MeshPair ahead = this->ahead(margin);
