@@ -102,6 +102,10 @@ void describe(const MeshSide& side, std::uint32_t index, SurroundingsMemory* sur
   leaf->vertices.clear();
   leaf->faces.clear();
   leaf->edges.clear();
+  // For what most leaves own: grown step by step it takes a fifth of all the time here.
+  leaf->vertices.records.reserve(node.count);
+  leaf->faces.records.reserve(node.count);
+  leaf->edges.records.reserve(2 * node.count);
   LeafShapes& shapes = leaf->shapes;
   shapes = LeafShapes{};
   for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
