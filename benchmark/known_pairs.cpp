@@ -103,7 +103,7 @@ class KnownPairs {
     for (const bool moves : {true, false}) {
       const Candidates &faces = pairs.vertex_face[moves], &edges = pairs.vertex_edge[moves];
       hits += k.vertexFaces(turned_.nearFaces(lists_, moves, X_FM_), lists_.near[!moves].faces.records.data(),
-                            lists_.near[!moves].open.data(), faces.data(), count(faces), range_, nullptr, vertex_faces_.data());
+                            lists_.near[!moves].open.data(), faces.data(), count(faces), nullptr, range_, nullptr, vertex_faces_.data());
       hits += k.vertexEdges(moves ? moving_vertices : fixed_vertices, moves ? fixed_edges : moving_edges, edges.data(), count(edges),
                             range_, vertex_edges_.data());
     }

@@ -77,6 +77,7 @@ void CandidatePairs::clear() {
        {&vertex_face[0], &vertex_face[1], &vertex_edge[0], &vertex_edge[1], &edge_face[0], &edge_face[1], &edge_edge, &vertex_vertex}) {
     candidates->clear();
   }
+  for (std::vector<std::uint8_t>& each : inner) each.clear();
 }
 
 std::size_t CandidatePairs::contacts() const {
@@ -102,7 +103,7 @@ void turn(void (*kernel)(const Record*, std::uint32_t, const kernels::Motion&, R
 }  // namespace
 
 kernels::NearVertices TurnedFeatures::nearFaces(const CandidateLists& lists, bool moves, const Pose& X_FM) const {
-  return {moves ? vertices.data() : lists.near[0].vertices.records.data(), !moves, motionOf(X_FM.inverse())};
+  return {moves ? vertices.data() : lists.near[0].vertices.records.data(), !moves, motionOf(X_FM.inverse()), motionOf(X_FM)};
 }
 
 void TurnedFeatures::turnForContacts(const CandidateLists& lists, const Pose& X_FM) {
@@ -142,8 +143,13 @@ void findNearest(const MeshPair& pair, const TurnedFeatures& turned, const ListM
   for (const bool moves : {true, false}) {
     const NearFeatures& partner = lists->near[!moves];
     const kernels::NearVertices vertices = turned.nearFaces(*lists, moves, pair.X_FM);
-    keep([&](auto&&... rest) { return kernels.nearVertexFaces(vertices, partner.faces.records.data(), partner.open.data(), rest...); },
-         reach, all.vertex_face[moves], &nearest->vertex_face[moves]);
+    nearest->inner[moves].resize(all.vertex_face[moves].size());
+    keep(
+        [&](auto&&... rest) {
+          return kernels.nearVertexFaces(vertices, partner.faces.records.data(), partner.open.data(), rest...,
+                                         nearest->inner[moves].data());
+        },
+        reach, all.vertex_face[moves], &nearest->vertex_face[moves]);
   }
   keep(kernels.nearVertexEdges, turned.vertices, fixed.edges.records, reach, all.vertex_edge[1], &nearest->vertex_edge[1]);
   keep(kernels.nearVertexEdges, fixed.vertices.records, turned.edges, reach, all.vertex_edge[0], &nearest->vertex_edge[0]);

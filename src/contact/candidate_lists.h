@@ -59,6 +59,9 @@ struct NearFeatures {
 struct CandidatePairs {
   using Candidates = std::vector<kernels::Candidate>;
   Candidates vertex_face[2], vertex_edge[2], edge_face[2];
+  /** As vertex_face: 1 where the vertex is surely over its face, not near a border, while the list is good; empty where that is not known
+   */
+  std::vector<std::uint8_t> inner[2];
   Candidates edge_edge, vertex_vertex;  ///< a is the moving mesh's
 
   void clear();

@@ -35,13 +35,14 @@ std::uint32_t Evaluation::findVertexFaces(bool moves) {
   EvaluationBuffers::makeRoom(candidates.size() + 1, &buffers_.over);
   buffers_.over_count = 0;
   const kernels::NearVertices vertices = buffers_.turned.nearFaces(lists_, moves, pair_.X_FM);
+  const std::vector<std::uint8_t>& inner = pairs_.inner[moves];
   const NearFeatures& partner = lists_.near[!moves];
   kernels::PlainContacts plain{place(moves), nullptr, nullptr, 0, found_.deepest_plain};
   return testBlocks(candidates.size(), &buffers_.vertex_faces, &plain, [&](std::uint32_t first, std::uint32_t size, VertexFaceHit* hits) {
     plain.pairs = buffers_.over.data() + buffers_.over_count;
-    const std::uint32_t found =
-        kernels::kernels().vertexFaces(vertices, partner.faces.records.data(), partner.open.data(), candidates.data() + first, size,
-                                       pair_.range, found_.crossings.empty() ? &plain : nullptr, hits);
+    const std::uint32_t found = kernels::kernels().vertexFaces(
+        vertices, partner.faces.records.data(), partner.open.data(), candidates.data() + first, size,
+        inner.empty() ? nullptr : inner.data() + first, pair_.range, found_.crossings.empty() ? &plain : nullptr, hits);
     buffers_.over_count += plain.count;
     return found;
   });

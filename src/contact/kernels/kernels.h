@@ -26,9 +26,9 @@ struct Kernels {
   void (*leafCrossings)(const LeafShapes& a, const LeafShapes& b, const LeafReach& reach, LeafHits* hits);
 
   /** Copies, in order, the candidates that can have a contact within the range while nothing moves or turns by more than the reach says.
-   * @return their number */
+   * @param inner as them: 1 where the vertex stays over its face and away from its border, else 0 @return their number */
   std::uint32_t (*nearVertexFaces)(const NearVertices& a, const FaceRecord* b, const OpenSides* open, const Candidate* in,
-                                   std::uint32_t count, const Reach& reach, Candidate* out);
+                                   std::uint32_t count, const Reach& reach, Candidate* out, std::uint8_t* inner);
   std::uint32_t (*nearEdgeEdges)(const EdgeRecord* a, const EdgeRecord* b, const Candidate* in, std::uint32_t count, const Reach& reach,
                                  Candidate* out);
   std::uint32_t (*nearVertexEdges)(const Vec4* a, const EdgeRecord* b, const Candidate* in, std::uint32_t count, const Reach& reach,
@@ -37,9 +37,10 @@ struct Kernels {
                                       Candidate* out);
 
   /** Candidates with a contact within `range`, and those that need a closer look. Room for one more hit than candidates.
+   * @param inner as of nearVertexFaces, which changes no contact; null: not known
    * @param plain takes those that are plain and not near a border, instead of the hits; null: nothing does @return number of hits */
   std::uint32_t (*vertexFaces)(const NearVertices& a, const FaceRecord* b, const OpenSides* open, const Candidate* candidates,
-                               std::uint32_t count, double range, PlainContacts* plain, VertexFaceHit* hits);
+                               std::uint32_t count, const std::uint8_t* inner, double range, PlainContacts* plain, VertexFaceHit* hits);
   /** The contacts of vertices with sides of faces. @param sides as the pairs */
   void (*sideFeet)(const ContactPlace& place, const NearVertices& vertices, const FaceRecord* faces, const BesideSide* sides,
                    const Candidate* pairs, std::uint32_t count, SideFoot* feet);

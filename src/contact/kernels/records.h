@@ -160,7 +160,7 @@ struct ContactRow {
 struct NearVertices {
   const Vec4* records;  ///< in frame F; w: nameBits
   bool faces_move;      ///< their records are in the moving mesh's frame
-  Motion X_MF;          ///< asked only then
+  Motion X_MF, X_FM;    ///< asked only then
 };
 
 /** Where the contacts of vertices of one mesh with faces of the other are. */

@@ -16,8 +16,7 @@ void sideFeet(const ContactPlace& place, const NearVertices& vertices, const Fac
               const Candidate* pairs, std::uint32_t count, SideFoot* feet) {
   for (std::uint32_t first = 0; first < count; first += LANES) {
     const Batch batch(pairs, first, count);
-    const VertexLanes lanes(batch, vertices);
-    const Vectors &at = lanes.at, &p = lanes.seen;
+    const Vectors at = batch.points(vertices.records, OF_A).v, p = seenByFaces(vertices, at);
     const Rows plane = batch.field(faces, OF_B, &FaceRecord::plane);
     const Vectors projection = p - above(p, plane) * plane.v;
     const Vec4 *starts[LANES], *alongs[LANES];
