@@ -27,7 +27,7 @@ struct FoundContacts {
 /** A vertex beside a face of a plane, whose contact fades. */
 struct FadingVertex {
   std::uint32_t vertex;
-  int patch;
+  std::uint32_t face;
   std::uint32_t before;  ///< another one of this vertex
   bool goes_on;          ///< the plane has other faces
   bool is_covered;       ///< it lies over one of them
@@ -45,8 +45,8 @@ struct EvaluationBuffers {
   std::vector<kernels::Candidate> edges_left;  ///< those that are not plain
   std::vector<kernels::FadingEdgesHit> fading_edges;
   std::vector<std::uint32_t> hits;
-  std::vector<kernels::Candidate> over;    ///< vertices over faces
-  std::uint32_t over_count = 0;            ///< of them
+  std::vector<kernels::Candidate> over;    ///< vertices over faces beside which they may fade, or so near a border that they were asked
+  std::vector<kernels::Candidate> asked;   ///< vertices that may be over such faces
   std::vector<kernels::Candidate> beside;  ///< vertices and faces, once for each side that they lie outside of
   std::vector<kernels::BesideSide> sides;  ///< as they
   std::vector<kernels::SideFoot> feet;     ///< as they
@@ -91,6 +91,9 @@ class Evaluation {
   void addPlain(bool moves, const kernels::Candidate& c, double height);
   void addFading(bool moves);
   void dropCovered(bool moves);
+  void listCovering(bool moves);
+  template <typename Visit>
+  void forEachBeside(bool moves, const kernels::Candidate& c, Visit&& visit);
   std::uint32_t findEdgeEdges(const kernels::EdgeRecord* moving, const kernels::EdgeRecord* fixed);
   void fadingEdges(const kernels::EdgeRecord* moving, const kernels::EdgeRecord* fixed);
   void edgeEdges(const kernels::EdgeRecord* moving, const kernels::EdgeRecord* fixed);

@@ -32,19 +32,14 @@ kernels::ContactPlace Evaluation::place(bool vertices_move) const {
 /** @return how many need a closer look; the plain ones are written */
 std::uint32_t Evaluation::findVertexFaces(bool moves) {
   const std::vector<Candidate>& candidates = pairs_.vertex_face[moves];
-  EvaluationBuffers::makeRoom(candidates.size() + 1, &buffers_.over);
-  buffers_.over_count = 0;
   const kernels::NearVertices vertices = buffers_.turned.nearFaces(lists_, moves, pair_.X_FM);
   const std::vector<std::uint8_t>& inner = pairs_.inner[moves];
   const NearFeatures& partner = lists_.near[!moves];
-  kernels::PlainContacts plain{place(moves), nullptr, nullptr, 0, found_.deepest_plain};
+  kernels::PlainContacts plain{place(moves), nullptr, 0, found_.deepest_plain};
   return testBlocks(candidates.size(), &buffers_.vertex_faces, &plain, [&](std::uint32_t first, std::uint32_t size, VertexFaceHit* hits) {
-    plain.pairs = buffers_.over.data() + buffers_.over_count;
-    const std::uint32_t found = kernels::kernels().vertexFaces(
-        vertices, partner.faces.records.data(), partner.open.data(), candidates.data() + first, size,
-        inner.empty() ? nullptr : inner.data() + first, pair_.range, found_.crossings.empty() ? &plain : nullptr, hits);
-    buffers_.over_count += plain.count;
-    return found;
+    return kernels::kernels().vertexFaces(vertices, partner.faces.records.data(), partner.open.data(), candidates.data() + first, size,
+                                          inner.empty() ? nullptr : inner.data() + first, pair_.range,
+                                          found_.crossings.empty() ? &plain : nullptr, hits);
   });
 }
 
@@ -54,15 +49,19 @@ void Evaluation::vertexFaces(bool moves) {
   const std::vector<Candidate>& candidates = pairs_.vertex_face[moves];
   const auto &vertices = lists_.near[moves].vertices.names, &faces = lists_.near[!moves].faces.names;
   auto& hits = buffers_.vertex_faces;
+  buffers_.over.clear();
   for (std::uint32_t i = 0; i < count; ++i) {
     VertexFaceHit& hit = hits[i];
     const Candidate& c = candidates[hit.candidate];
     if (hit.has(VertexFaceHit::PLAIN)) {
       addPlain(moves, c, hit.height);
-    } else if (!hit.has(VertexFaceHit::BESIDE) && !exact_.vertexFace(moves, vertices[c.a], faces[c.b])) {
-      hit.bits |= VertexFaceHit::BESIDE;
+    } else if (!hit.has(VertexFaceHit::BESIDE)) {
+      if (exact_.vertexFace(moves, vertices[c.a], faces[c.b])) {
+        buffers_.over.push_back(c);
+      } else {
+        hit.bits |= VertexFaceHit::BESIDE;
+      }
     }
-    if (!hit.has(VertexFaceHit::BESIDE)) buffers_.over[buffers_.over_count++] = c;
   }
   listFadingSides(moves, count);
   if (buffers_.beside.empty()) return;
@@ -126,7 +125,7 @@ void Evaluation::addFading(bool moves) {
     }
     FadingVertex& fading = buffers_.fading.emplace_back();
     fading.vertex = c.a;
-    fading.patch = patch;
+    fading.face = c.b;
     fading.goes_on = lists_.near[!moves].borders[c.b].goesOn();
     fading.is_covered = false;
   }
@@ -144,16 +143,43 @@ void Evaluation::dropCovered(bool moves) {
     may_be_covered = true;
   }
   if (!may_be_covered) return;
-  const std::vector<int>& patches = lists_.near[!moves].patches;
+  listCovering(moves);
   bool is_any_covered = false;
-  for (std::uint32_t i = 0; i < buffers_.over_count; ++i) {
-    const Candidate& c = buffers_.over[i];
-    for (std::uint32_t at = last[c.a]; at != NONE; at = fading[at].before)
-      if (fading[at].patch == patches[c.b]) fading[at].is_covered = is_any_covered = true;
+  for (const Candidate& c : buffers_.over) {
+    forEachBeside(moves, c, [&](FadingVertex* each) { each->is_covered = is_any_covered = true; });
   }
   for (const FadingVertex& each : fading) last[each.vertex] = NONE;
   if (!is_any_covered) return;
   found_.close.keepOfLast(fading.size(), [&](std::size_t i) { return !fading[i].is_covered; });
+}
+
+/** Of vertices whose contacts may be covered, the plain ones with other faces of the same plane. */
+void Evaluation::listCovering(bool moves) {
+  auto& asked = buffers_.asked;
+  asked.clear();
+  for (const Candidate& c : pairs_.vertex_face[moves]) {
+    bool is_asked = false;
+    forEachBeside(moves, c, [&](FadingVertex*) { is_asked = true; });
+    if (is_asked) asked.push_back(c);
+  }
+  EvaluationBuffers::makeRoom(asked.size() + 1, &buffers_.vertex_faces);
+  VertexFaceHit* const hits = buffers_.vertex_faces.data();
+  const NearFeatures& partner = lists_.near[!moves];
+  const std::uint32_t count = kernels::kernels().vertexFaces(buffers_.turned.nearFaces(lists_, moves, pair_.X_FM),
+                                                             partner.faces.records.data(), partner.open.data(), asked.data(),
+                                                             static_cast<std::uint32_t>(asked.size()), nullptr, pair_.range, nullptr, hits);
+  for (std::uint32_t i = 0; i < count; ++i)
+    if (hits[i].has(VertexFaceHit::PLAIN)) buffers_.over.push_back(asked[hits[i].candidate]);
+}
+
+/** Calls visit for the contacts that fade beside other faces of the candidate's plane. */
+template <typename Visit>
+void Evaluation::forEachBeside(bool moves, const Candidate& c, Visit&& visit) {
+  const std::vector<int>& patches = lists_.near[!moves].patches;
+  for (std::uint32_t at = buffers_.last_fading[c.a]; at != NONE; at = buffers_.fading[at].before) {
+    FadingVertex& each = buffers_.fading[at];
+    if (each.face != c.b && patches[each.face] == patches[c.b]) visit(&each);
+  }
 }
 
 }  // namespace blem_sim

@@ -65,14 +65,12 @@ struct PlainVertexFaces {
         vertices{in.vertices.data(), faces_move, motionOf(X_FM.inverse()), motionOf(X_FM)},
         X_WF(makePose({-3, 2, 1}, {0.7, -0.2, 0.1})),
         hits(CANDIDATES + 1),
-        rows(CANDIDATES + 1),
-        pairs(CANDIDATES + 1) {
+        rows(CANDIDATES + 1) {
     const Feature vertex{FeatureKind::VERTEX, 0}, face{FeatureKind::FACE, 0};
     // The vertices are A's: the moving mesh is A unless its faces are asked.
     plain = {{in.names.data(), true, motionOf(X_FM), motionOf(X_WF), RADIUS_A + RADIUS_B, 0.5 * (RADIUS_B - RADIUS_A),
               contactId(vertex, face), false},
              rows.data(),
-             pairs.data(),
              0,
              -1};
     hits.resize(set.vertexFaces(vertices, in.faces.data(), in.open.data(), in.candidates.data(),
@@ -86,7 +84,6 @@ struct PlainVertexFaces {
   Pose X_WF;
   std::vector<VertexFaceHit> hits;
   std::vector<ContactRow> rows;
-  std::vector<Candidate> pairs;
   PlainContacts plain;
 };
 
@@ -110,7 +107,6 @@ Found found(const Kernels& set, const Features& in) {
     }
     for (std::uint32_t i = 0; i < found.plain.count; ++i) {
       const ContactRow& row = found.rows[i];
-      out.indices.insert(out.indices.end(), {found.pairs[i].a, found.pairs[i].b});
       out.numbers.insert(out.numbers.end(), row.point, row.point + 3);
       out.numbers.insert(out.numbers.end(), row.normal, row.normal + 3);
       out.numbers.push_back(row.depth);
@@ -207,8 +203,6 @@ TEST(Kernels, PlainContactsAreThoseMadeOneByOne) {
         EXPECT_NEAR(row.point[k], one.point[k], 1e-15);
         EXPECT_EQ(row.normal[k], one.normal_BA[k]);
       }
-      EXPECT_EQ(written.pairs[count].a, c.a);
-      EXPECT_EQ(written.pairs[count].b, c.b);
       ++count;
     }
     EXPECT_EQ(count, written.plain.count);

@@ -218,7 +218,7 @@ class VertexFaceTest {
   [[gnu::always_inline]] unsigned append(const Batch& batch, const Faces& faces, const Rows& vertices, const Plane& plane, Doubles height,
                                          Mask is) {
     const unsigned bits = bitsOf(is) & batch.valid;
-    const Doubles depth = appendPlain(batch, faces, vertices, planes_.upInWorld(plane), height, bits, plain_);
+    const Doubles depth = appendPlain(faces, vertices, planes_.upInWorld(plane), height, bits, plain_);
     deepest_ = maximum(deepest_, is ? depth : deepest_);
     return bits;
   }

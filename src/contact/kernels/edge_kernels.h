@@ -48,8 +48,7 @@ inline Doubles appendEdges(const Batch& batch, const EdgeFeet& feet, unsigned bi
   const Doubles depth = place.layer - feet.gap;
   const Mask first = batch.numbers(place.names_a, OF_A), second = batch.numbers(place.names_b, OF_B);
   const Mask ids = (place.first_is_a ? first << 32 | second : second << 32 | first) | static_cast<long>(place.kinds);
-  const ContactRow* const end =
-      appendRows(inWorld(place, feet.point_a, feet.point_b, normal_BA), depth, ids, bits, out->rows + out->count, [](int, unsigned) {});
+  const ContactRow* const end = appendRows(inWorld(place, feet.point_a, feet.point_b, normal_BA), depth, ids, bits, out->rows + out->count);
   out->count = static_cast<std::uint32_t>(end - out->rows);
   return depth;
 }

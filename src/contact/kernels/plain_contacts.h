@@ -56,25 +56,13 @@ constexpr struct {
 } UNWEIGHED = {1, 0};
 
 /** Writes a row for every lane; where its bit is not set the next one is written over it. @param bits of the lanes that have a contact
- * @param also is called with every lane and whether it has one @return the last row's end */
-template <typename Also>
-inline ContactRow* appendRows(const WorldContacts& contacts, Doubles depth, Mask ids, unsigned bits, ContactRow* row, Also&& also) {
+ * @return the last row's end */
+inline ContactRow* appendRows(const WorldContacts& contacts, Doubles depth, Mask ids, unsigned bits, ContactRow* row) {
   const auto& [point, normal] = contacts;
-  const Doubles columns[] = {point.x, point.y, point.z, normal.x, normal.y, normal.z, depth, reinterpret_cast<Doubles>(ids)};
-  if (bits == ALL_LANES) {
-    transposed(columns, [&](int lane) {
-      __builtin_memcpy(&row[lane].weight, &UNWEIGHED, sizeof UNWEIGHED);
-      also(lane, 1);
-      return row[lane].point;
-    });
-    return row + LANES;
-  }
-  transposed(columns, [&](int lane) {
+  transposed({point.x, point.y, point.z, normal.x, normal.y, normal.z, depth, reinterpret_cast<Doubles>(ids)}, [&](int lane) {
     double* const now = row->point;
     __builtin_memcpy(&row->weight, &UNWEIGHED, sizeof UNWEIGHED);
-    const unsigned has_one = bits >> lane & 1;
-    also(lane, has_one);
-    row += has_one;
+    row += bits >> lane & 1;
     return now;
   });
   return row;
@@ -96,20 +84,15 @@ inline Mask idsOf(const Rows& vertices, const Faces& faces, const ContactPlace& 
 
 /** @param up the faces' normals @param bits of the lanes that have a contact @return depths */
 template <typename Faces, typename Lanes>
-[[gnu::always_inline]] inline Doubles appendPlain(const Batch& batch, const Faces& faces, const Rows& vertices,
-                                                  const VectorsOf<Lanes>& up_W, Doubles height, unsigned bits, PlainContacts* out) {
+[[gnu::always_inline]] inline Doubles appendPlain(const Faces& faces, const Rows& vertices, const VectorsOf<Lanes>& up_W, Doubles height,
+                                                  unsigned bits, PlainContacts* out) {
   const ContactPlace& place = out->place;
   const Mask to_a = place.vertices_are_a ? height > 0 : height <= 0;
   const Doubles sign = to_a ? all(1) : all(-1), depth = place.layer - absolute(height), beside = sign * place.shift - 0.5 * height;
   const Vectors at = turnedPoint(place.X_WF, vertices.v);
   const WorldContacts contacts{{at.x + beside * up_W.x, at.y + beside * up_W.y, at.z + beside * up_W.z},
                                {sign * up_W.x, sign * up_W.y, sign * up_W.z}};
-  Candidate* pair = out->pairs + out->count;
-  const ContactRow* const end = appendRows(contacts, depth, idsOf(vertices, faces, place), bits, out->rows + out->count,
-                                           [&pair, lanes = batch.lanes](int lane, unsigned has_one) {
-                                             *pair = lanes[lane];
-                                             pair += has_one;
-                                           });
+  const ContactRow* const end = appendRows(contacts, depth, idsOf(vertices, faces, place), bits, out->rows + out->count);
   out->count = static_cast<std::uint32_t>(end - out->rows);
   return depth;
 }

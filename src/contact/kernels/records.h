@@ -178,7 +178,6 @@ struct ContactPlace {
 struct PlainContacts {
   ContactPlace place;
   ContactRow* rows;
-  Candidate* pairs;     ///< whose they are
   std::uint32_t count;  ///< so far; they are appended
   double deepest;       ///< [m] their largest depth so far
 };
