@@ -8,14 +8,14 @@ namespace blem_sim {
 namespace {
 
 /** Seen from where `slope` is positive: how steeply (sine) the steepest of a face's neighbours over an edge rises out of its plane. */
-BorderKind kindOf(const MeshSide& side, int edge, double slope) {
+BorderKind kindOf(bool is_round, double slope) {
   if (slope > CONE_SLACK) return slope > NEAR_SUCCESSOR ? BorderKind::RISING : BorderKind::TURNING;
-  return isRoundEdge(side, edge) ? BorderKind::ROUND : BorderKind::FALLING;
+  return is_round ? BorderKind::ROUND : BorderKind::FALLING;
 }
 
 }  // namespace
 
-BorderKinds borderKinds(const MeshSide& side, int face) {
+BorderKinds borderKinds(const MeshSide& side, int face, SurroundingsMemory* surroundings) {
   BorderKinds kinds;
   const Vector3 normal = MeshTopology::normal(side.mesh, face);
   for (int k = 0; k < 3; ++k) {
@@ -23,14 +23,17 @@ BorderKinds borderKinds(const MeshSide& side, int face) {
     kinds.of[0][k] = kinds.of[1][k] = BorderKind::FLAT;
     if (side.topology.isFlatEdge(edge)) continue;
     double above = -1, below = -1;
-    for (const int neighbour : side.topology.facesOf(edge)) {
-      if (side.topology.patchOf(neighbour) == side.topology.patchOf(face)) continue;
-      const double slope = side.topology.inward(side.mesh, edge, neighbour).dot(normal);
+    const EdgeFaces faces = side.topology.facesOf(edge);
+    const int* neighbour = faces.begin();
+    forEachInward(side, edge, surroundings, [&](const Vector3& inward) {
+      if (side.topology.patchOf(*neighbour++) == side.topology.patchOf(face)) return;
+      const double slope = inward.dot(normal);
       above = std::max(above, slope);
       below = std::max(below, -slope);
-    }
-    kinds.of[1][k] = kindOf(side, edge, above);
-    kinds.of[0][k] = kindOf(side, edge, below);
+    });
+    const bool is_round = surroundings->ofEdge(side, edge).is_round;
+    kinds.of[1][k] = kindOf(is_round, above);
+    kinds.of[0][k] = kindOf(is_round, below);
   }
   return kinds;
 }

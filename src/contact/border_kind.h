@@ -3,6 +3,7 @@
 
 #include "kernels/records.h"
 #include "mesh_pair.h"
+#include "surroundings.h"
 
 namespace blem_sim {
 
@@ -22,7 +23,7 @@ struct BorderKinds {
   /** Does the plane go on beside the face? */
   bool goesOn() const { return of[0][0] == BorderKind::FLAT || of[0][1] == BorderKind::FLAT || of[0][2] == BorderKind::FLAT; }
 };
-BorderKinds borderKinds(const MeshSide& side, int face);
+BorderKinds borderKinds(const MeshSide& side, int face, SurroundingsMemory* surroundings);
 
 /** Over which sides contacts may fade: neither over flat nor over round ones, and over turning ones only where another one lets them. */
 kernels::OpenSides openSides(const BorderKinds& kinds);

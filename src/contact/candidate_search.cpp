@@ -1,6 +1,7 @@
 #include "candidate_search.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 #include "blem_sim/geometry/bvh_traversal.h"
@@ -61,6 +62,7 @@ class Search {
     const kernels::LeafReach reach = leafReach();
     const bool contacts = listing_.kind == CandidateKind::CONTACTS;
     forEachLeafPair(leaf_pairs, [&](const LeafInUse& m, const LeafInUse& f) {
+      addNormals(f.shapes.region);
       (contacts ? kernels.leafContacts : kernels.leafCrossings)(m.shapes, f.shapes, reach, &buffers_.hits);
       if (contacts) {
         appendContacts(m, f);
@@ -192,6 +194,13 @@ class Search {
     return {*found.features, *found.shapes, leaf.slots};
   }
 
+  /** Directions within an angle of an axis are in a ball. */
+  void addNormals(const kernels::LeafRegion& region) {
+    const double lean = region.lean;
+    const Vector3 up(region.axes[2][0], region.axes[2][1], region.axes[2][2]);
+    listing_.normals.add(std::sqrt(std::max(1 - lean * lean, 0.0)) * up, lean);
+  }
+
   /** The shapes of a moving leaf in the fixed mesh's frame. */
   const kernels::LeafShapes* turned(const kernels::LeafShapes& shapes, std::uint32_t index) {
     std::vector<std::unique_ptr<kernels::LeafShapes>>& all = buffers_.turned;
@@ -259,6 +268,7 @@ void clear(const MeshPair& pair, CandidateKind kind, const ListMargin& margin, C
   listing->slots.clear();
   listing->pairs.clear();
   listing->done = 0;
+  listing->normals = DirectionBall();
 }
 
 }  // namespace

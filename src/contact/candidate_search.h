@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "candidate_lists.h"
+#include "direction_ball.h"
 #include "leaf_features.h"
 
 namespace blem_sim {
@@ -28,7 +29,8 @@ struct CandidateListing {
   std::vector<Leaf> leaves[2];  ///< [1] of the moving mesh, [0] of the fixed one
   std::vector<std::uint32_t> slots;
   std::vector<LeafPair> pairs;
-  std::size_t done = 0;  ///< of the pairs
+  std::size_t done = 0;   ///< of the pairs
+  DirectionBall normals;  ///< of the fixed mesh where it is near the moving one: of those leaves that were looked at
 
   std::size_t left() const { return pairs.size() - done; }
   bool isComplete() const { return origin.known && left() == 0; }

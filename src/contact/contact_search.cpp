@@ -17,8 +17,8 @@ constexpr std::size_t PARTS = 4, FEW_LEAF_PAIRS = 64;
 constexpr double LASTING_STEPS = 8;
 // A list is made for a pose ahead, so much of its margin away on the way of the pair, and so many steps, at most.
 constexpr double AHEAD = 0.9, AHEAD_AT_MOST = 0.98, AHEAD_STEPS = 25;
-// Of long lists those that matter for so few steps are listed again.
-constexpr double NEAREST_STEPS = 3;
+// Of long lists those that matter for so few steps are listed again, or for what is cheapest if it is known how lists of the pair grow.
+constexpr double NEAREST_STEPS = 3, FEWEST_NEAREST_STEPS = 2, MOST_NEAREST_STEPS = 8;
 // Candidates for crossings are listed for so many.
 constexpr double CROSSING_STEPS = 10;
 constexpr std::size_t FEW_CANDIDATES = 200;
@@ -57,8 +57,7 @@ class ContactSearch {
   }
 
   void run(bool keeps) {
-    const bool apart = memory_.visited && motion_.motion + DISTANCE_ROUNDING < memory_.distance;
-    if (!apart) {
+    if (!staysApart()) {
       refresh(CandidateKind::CROSSINGS, keeps, &memory_.crossings);
       CandidateLists& lists = memory_.crossings.now.lists;
       buffers_.evaluation.turned.turnForCrossings(lists, pair_.X_FM);
@@ -75,6 +74,16 @@ class ContactSearch {
   }
 
  private:
+  /** Have the meshes surely not come to cross since they were apart? What is nearest on the straight way of the points near the fixed mesh
+   * lies along a normal of that one, so their distance shrinks by no more than what they move along its normals there. */
+  bool staysApart() const {
+    if (!memory_.visited) return false;
+    if (motion_.motion + DISTANCE_ROUNDING < memory_.distance) return true;
+    const CandidateListing& list = memory_.contacts.now;
+    if (!isGood(list.origin) || !isGoodAt(memory_.X_FM, list.origin)) return false;
+    return region_.largestMotion(pair_.X_FM, memory_.X_FM, list.normals) + DISTANCE_ROUNDING < std::min(memory_.distance, pair_.range);
+  }
+
   void forget() {
     memory_.visited = memory_.nearest_origin.known = false;
     memory_.motion = SteadyMotion();
@@ -171,10 +180,18 @@ class ContactSearch {
             std::max(steps * motion_.turn, LEAST_NEAREST_TURN)};
   }
 
+  /** The steps that the nearest are chosen for: for more there are more to test, for fewer all are looked at more often. To look at one
+   * takes about as long as to test it; a choice of margin m lasts 2 m / motion steps. */
+  double nearestSteps() const {
+    const double all = memory_.contacts.now.lists.pairs.contacts(), more_per_step = memory_.growth * motion_.motion;
+    if (more_per_step <= 0) return NEAREST_STEPS;
+    return std::clamp(std::sqrt(0.5 * all / more_per_step), FEWEST_NEAREST_STEPS, MOST_NEAREST_STEPS);
+  }
+
   /** The candidates to test, good lists given. */
   const CandidatePairs& nearestPairs() {
     if (isGood(memory_.nearest_origin)) return memory_.nearest;
-    const ListMargin margin = marginOf(NEAREST_STEPS);
+    const ListMargin margin = marginOf(nearestSteps());
     CandidateListing& all = memory_.contacts.now;
     if (all.lists.pairs.contacts() <= FEW_CANDIDATES || 2 * margin.motion >= all.origin.margin.motion) return all.lists.pairs;
     const MeshPair ahead = this->ahead(margin);

@@ -43,19 +43,19 @@ void placeCone(const kernels::VertexCone& cone, std::uint32_t i, kernels::LeafCo
   cones->round[i] = -static_cast<std::int32_t>(cone.is_round);
 }
 
-void describeFace(const MeshSide& side, int element, LeafFeatures* leaf) {
+void describeFace(const MeshSide& side, int element, SurroundingsMemory* surroundings, LeafFeatures* leaf) {
   const FaceRecord record = faceRecord(side, element);
   const std::uint32_t i = leaf->faces.add(element, record);
   leaf->patches[i] = side.topology.patchOf(element);
   kernels::LeafFaces& faces = leaf->shapes.faces;
   placePlane(record.plane, record.plane.w, i, faces.planes);
   for (int k = 0; k < 3; ++k) placePlane(record.sides[k], record.sides[k].w, i, faces.sides[k]);
-  leaf->borders[i] = borderKinds(side, element);
+  leaf->borders[i] = borderKinds(side, element, surroundings);
   faces.open[i] = openSides(leaf->borders[i]);
 }
 
-void describeEdge(const MeshSide& side, int edge, LeafFeatures* leaf) {
-  const EdgeRecord record = edgeRecord(side, edge);
+void describeEdge(const MeshSide& side, int edge, SurroundingsMemory* surroundings, LeafFeatures* leaf) {
+  const EdgeRecord record = edgeRecord(side, edge, surroundings);
   const std::uint32_t index = leaf->edges.add(edge, record), i = index % kernels::LEAF_BLOCK;
   kernels::LeafEdges& edges = leaf->shapes.edges[index / kernels::LEAF_BLOCK];
   place(record.start, i, edges.starts);
@@ -67,12 +67,12 @@ void describeEdge(const MeshSide& side, int edge, LeafFeatures* leaf) {
   edges.folds[i] = static_cast<float>(record.along.w < 0 ? -fold : fold);
 }
 
-void describeVertex(const MeshSide& side, int vertex, LeafFeatures* leaf) {
+void describeVertex(const MeshSide& side, int vertex, SurroundingsMemory* surroundings, LeafFeatures* leaf) {
   const Vec4 record = vertexRecord(side, vertex);
   const std::uint32_t i = leaf->vertices.add(vertex, record);
   const std::uint32_t block = i / kernels::LEAF_BLOCK, column = i % kernels::LEAF_BLOCK;
   place(record, column, leaf->shapes.vertices[block].points);
-  const kernels::VertexCone cone = vertexCone(side, vertex);
+  const kernels::VertexCone cone = vertexCone(side, vertex, surroundings);
   placeCone(cone, column, &leaf->shapes.cones[block]);
   leaf->shapes.nearest |= static_cast<std::uint32_t>(cone.up >= 0 || cone.down >= 0) << i;
 }
@@ -96,7 +96,7 @@ EdgeCone edgeCone(const std::vector<EdgeRecord>& edges) {
   return {{number(axis.x()), number(axis.y()), number(axis.z())}, number(std::cos(spread)), number(std::sin(spread))};
 }
 
-void describe(const MeshSide& side, std::uint32_t index, LeafFeatures* leaf) {
+void describe(const MeshSide& side, std::uint32_t index, SurroundingsMemory* surroundings, LeafFeatures* leaf) {
   const Bvh::Node& node = side.bvh.nodes()[index];
   assert(node.count <= kernels::MAX_LEAF_ELEMENTS);
   leaf->vertices.clear();
@@ -106,10 +106,10 @@ void describe(const MeshSide& side, std::uint32_t index, LeafFeatures* leaf) {
   shapes = LeafShapes{};
   for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
     const int element = static_cast<int>(side.bvh.order()[i]);
-    if (side.topology.isFace(element)) describeFace(side, element, leaf);
+    if (side.topology.isFace(element)) describeFace(side, element, surroundings, leaf);
     for (int k = 0; k < 3; ++k) {
-      if (side.topology.ownsEdge(element, k)) describeEdge(side, side.topology.edgeOf(element, k), leaf);
-      if (side.topology.ownsVertex(element, k)) describeVertex(side, side.mesh.elements[element][k], leaf);
+      if (side.topology.ownsEdge(element, k)) describeEdge(side, side.topology.edgeOf(element, k), surroundings, leaf);
+      if (side.topology.ownsVertex(element, k)) describeVertex(side, side.mesh.elements[element][k], surroundings, leaf);
     }
   }
   Eigen::Map<Eigen::Vector3f>(shapes.middle) = 0.5f * (node.lower + node.upper);
@@ -121,9 +121,9 @@ void describe(const MeshSide& side, std::uint32_t index, LeafFeatures* leaf) {
   shapes.region = leafRegion(side, node, *leaf);
 }
 
-void describe(const MeshSide& side, std::uint32_t index, KeptLeaf* kept) {
+void describe(const MeshSide& side, std::uint32_t index, SurroundingsMemory* surroundings, KeptLeaf* kept) {
   if (!kept->features) kept->features = std::make_unique<LeafFeatures>();
-  describe(side, index, kept->features.get());
+  describe(side, index, surroundings, kept->features.get());
   const LeafShapes& shapes = kept->features->shapes;
   kept->feature_count = shapes.vertex_count + shapes.face_count + shapes.edge_count;
 }
@@ -143,13 +143,13 @@ FaceRecord faceRecord(const MeshSide& side, int element) {
   return record;
 }
 
-EdgeRecord edgeRecord(const MeshSide& side, int edge) {
+EdgeRecord edgeRecord(const MeshSide& side, int edge, SurroundingsMemory* surroundings) {
   const MeshTopology& topology = side.topology;
   const std::array<int, 2> ends = topology.ends(side.mesh, edge);
   const EdgeFaces faces = topology.facesOf(edge);
   const Vector3 &start = side.mesh.vertices[ends[0]], along = side.mesh.vertices[ends[1]] - start;
   const double length2 = along.squaredNorm(), length = std::sqrt(length2);
-  EdgeRecord record{vec4(start, length2), vec4(along, faces.size() > 2 ? 1 : isRoundEdge(side, edge) ? -1 : 0), {}};
+  EdgeRecord record{vec4(start, length2), vec4(along, faces.size() > 2 ? 1 : surroundings->ofEdge(side, edge).is_round ? -1 : 0), {}};
   for (int k = 0; k < std::min(faces.size(), 2); ++k) {
     const int face = faces[k];
     // By the face's own winding: does the edge run along its side, or against it?
@@ -172,7 +172,7 @@ KeptLeaf& LeafMemory::findKept(const MeshSide& side, std::uint32_t leaf, std::ui
     if (set.leaves[way].search < set.leaves[oldest].search) oldest = way;
   if (set.leaves[oldest].search == search) return findCrowdedOut(side, leaf, search);
   set.keys[oldest] = key;
-  describe(side, leaf, &set.leaves[oldest]);
+  describe(side, leaf, &surroundings_, &set.leaves[oldest]);
   return set.leaves[oldest];
 }
 
@@ -180,7 +180,7 @@ KeptLeaf& LeafMemory::findCrowdedOut(const MeshSide& side, std::uint32_t leaf, s
   if (crowded_search_ != search) crowded_out_.clear();
   crowded_search_ = search;
   KeptLeaf& kept = crowded_out_[keyOf(side, leaf)];
-  if (!kept.features) describe(side, leaf, &kept);
+  if (!kept.features) describe(side, leaf, &surroundings_, &kept);
   return kept;
 }
 

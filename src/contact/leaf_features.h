@@ -9,6 +9,7 @@
 #include "border_kind.h"
 #include "kernels/kernels.h"
 #include "mesh_pair.h"
+#include "surroundings.h"
 
 namespace blem_sim {
 
@@ -38,7 +39,7 @@ struct LeafFeatures {
 };
 
 kernels::FaceRecord faceRecord(const MeshSide& side, int element);
-kernels::EdgeRecord edgeRecord(const MeshSide& side, int edge);
+kernels::EdgeRecord edgeRecord(const MeshSide& side, int edge, SurroundingsMemory* surroundings);
 inline kernels::Vec4 vertexRecord(const MeshSide& side, int vertex) {
   const Vector3& p = side.mesh.vertices[vertex];
   return {p.x(), p.y(), p.z(), kernels::nameBits(vertex)};
@@ -72,6 +73,7 @@ class LeafMemory {
   KeptLeaf& findCrowdedOut(const MeshSide& side, std::uint32_t leaf, std::uint64_t search);
 
   std::vector<Set> sets_ = std::vector<Set>(1u << SET_BITS);
+  SurroundingsMemory surroundings_;
   // Leaves of the search at hand whose places others of its leaves hold.
   std::map<std::uint64_t, KeptLeaf> crowded_out_;
   std::uint64_t crowded_search_ = 0;

@@ -58,8 +58,8 @@ class Directions {
   void write(kernels::LeafRegion* region) const {
     const double angle = angle_ + ANGLE_SLACK, of_edges = edges_ + EDGE_SLACK;
     const bool anywhere = angle > WIDE;
+    region->lean = anywhere ? 1 : static_cast<float>(std::sin(angle));
     // No contact is longer than the range; one that fades is the shorter the farther beside.
-    region->beside = anywhere ? 2 : static_cast<float>((fades_ ? 1 / FADE_SLOPE : 0) + std::sin(angle));
     region->fall = anywhere || fades_ ? 1 / FADE_SLOPE : 0;
     region->edge_beside = of_edges > WIDE ? 2 : static_cast<float>(1 + std::sin(of_edges));
   }

@@ -46,6 +46,13 @@ NearRegion::Motions NearRegion::motions(const Pose& X, const Pose& Y) const {
   return ((X.linear() - Y.linear()) * corners_).colwise() + (X.translation() - Y.translation());
 }
 
+double NearRegion::largestMotion(const Pose& X, const Pose& Y, const DirectionBall& directions) const {
+  const Motions all = motions(X, Y);
+  double most = 0;
+  for (int i = 0; i < all.cols(); ++i) most = std::max(most, directions.most(all.col(i)));
+  return most;
+}
+
 double NearRegion::used(const ListOrigin& origin, const Pose& X_FM, double range) const {
   const Matrix3& ways = origin.margin.ways;
   if (ways.isZero(0)) return usedMargin(origin, range, largestMotion(X_FM, origin.X_FM), largestTurn(X_FM, origin.X_FM));

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "direction_ball.h"
 #include "mesh_pair.h"
 
 namespace blem_sim {
@@ -42,6 +43,8 @@ class NearRegion {
   Motions motions(const Pose& X, const Pose& Y) const;
   /** How far [m] a point moves at most from one pose to the other. */
   double largestMotion(const Pose& X, const Pose& Y) const { return std::sqrt(motions(X, Y).colwise().squaredNorm().maxCoeff()); }
+  /** The same along some directions only, or against them. */
+  double largestMotion(const Pose& X, const Pose& Y, const DirectionBall& directions) const;
   /** How much of a list's margin is used up at a pose, for contacts within the range: more than 1 where it is not good. */
   double used(const ListOrigin& origin, const Pose& X_FM, double range) const;
 

@@ -12,8 +12,15 @@ namespace {
 /** Sum of the normals of the faces around; any direction if there is none. */
 Vector3 axisOf(const MeshSide& side, int vertex) {
   Vector3 sum = Vector3::Zero();
-  for (const int edge : side.topology.edgesOf(vertex))
-    for (const int face : side.topology.facesOf(edge)) sum += MeshTopology::normal(side.mesh, face);
+  for (const int edge : side.topology.edgesOf(vertex)) {
+    const int other = side.topology.otherEnd(side.mesh, edge, vertex);
+    for (const int face : side.topology.facesOf(edge)) {
+      // Each face once, at that edge of both that leaves the vertex by the face's winding.
+      const Vector3i& e = side.mesh.elements[face];
+      const int k = e[0] == vertex ? 1 : e[1] == vertex ? 2 : 0;
+      if (e[k] == other) sum += MeshTopology::normal(side.mesh, face);
+    }
+  }
   const double norm = sum.norm();
   return norm > 0 ? Vector3(sum / norm) : Vector3::UnitZ();
 }
@@ -25,10 +32,11 @@ bool hasRoundEdgesOnly(const MeshSide& side, int vertex) {
   return std::all_of(edges.begin(), edges.end(), [&](int edge) { return side.topology.isFlatEdge(edge) || isRoundEdge(side, edge); });
 }
 
-kernels::VertexCone vertexCone(const MeshSide& side, int vertex) {
+kernels::VertexCone vertexCone(const MeshSide& side, int vertex, SurroundingsMemory* surroundings) {
   constexpr double ANY = 1e6, ROUNDING = 0.002, LEAST_COSINE = 0.15;  // of half the widest gap between edges, seen along the axis
   const Vector3 axis = axisOf(side, vertex), x = axis.unitOrthogonal(), y = axis.cross(x);
   double up = -ANY, down = -ANY, least_across = 1;
+  bool is_round = true;
   thread_local std::vector<double> angles;
   angles.clear();
   for (const int edge : side.topology.edgesOf(vertex)) {
@@ -38,13 +46,14 @@ kernels::VertexCone vertexCone(const MeshSide& side, int vertex) {
     down = std::max(down, along / across);
     least_across = std::min(least_across, across);
     angles.push_back(std::atan2(w.dot(y), w.dot(x)));
+    is_round = is_round && (side.topology.isFlatEdge(edge) || surroundings->ofEdge(side, edge).is_round);
   }
   std::sort(angles.begin(), angles.end());
   double gap = angles.empty() ? 2 * M_PI : angles.front() + 2 * M_PI - angles.back();
   for (std::size_t i = 1; i < angles.size(); ++i) gap = std::max(gap, angles[i] - angles[i - 1]);
   const double cosine = std::cos(std::min(0.5 * gap, M_PI));
   const auto number = [](double value) { return static_cast<float>(value); };
-  kernels::VertexCone cone{{number(axis.x()), number(axis.y()), number(axis.z())}, 0, 0, 0, hasRoundEdgesOnly(side, vertex)};
+  kernels::VertexCone cone{{number(axis.x()), number(axis.y()), number(axis.z())}, 0, 0, 0, is_round};
   if (cosine < LEAST_COSINE) {
     cone.up = cone.down = cone.per_slack = number(ANY);
     return cone;

@@ -3,11 +3,12 @@
 
 #include "kernels/records.h"
 #include "mesh_pair.h"
+#include "surroundings.h"
 
 namespace blem_sim {
 
 /** Holds every direction, in the mesh's frame, that vertexConeAllows. */
-kernels::VertexCone vertexCone(const MeshSide& side, int vertex);
+kernels::VertexCone vertexCone(const MeshSide& side, int vertex, SurroundingsMemory* surroundings);
 
 /** Does it have flat and round edges only? */
 bool hasRoundEdgesOnly(const MeshSide& side, int vertex);

@@ -116,6 +116,19 @@ TEST(NarrowPhaseMemory, EdgesThatMeetAreFound) {
   EXPECT_TRUE(found.apart);
 }
 
+/** Along a floor that it does not come nearer to, farther in every step than it is above it, a cube runs into a step of the floor. */
+TEST(NarrowPhaseMemory, WhatSlidesIntoAStepIsFound) {
+  TriangleMesh floor = gridMesh(0.3, 0.3, 60, 60);
+  for (Vector3& v : floor.vertices) v.z() = v.x() > 0.101 ? 0.004 : 0;
+  const Collider ground = makeCollider(floor, 0), cube = makeCollider(boxMesh(Vector3::Constant(0.05)), 0.0005);
+  for (const double speed : {1e-4, 2e-4, 5e-4}) {
+    const auto path = [=](int step) { return makePose({0.06 + speed * step, 0, 0.02505}); };
+    const Followed found = follow(cube, ground, static_cast<int>(0.025 / speed), path, noMargin);
+    EXPECT_TRUE(found.crossed);
+    EXPECT_TRUE(found.apart);
+  }
+}
+
 TEST(NarrowPhaseMemory, MarginsMayChange) {
   RandomShapes random(7);
   const Collider hills = makeCollider(hillMesh(random, 0.3, 60, 0.001), 0), cube = makeCollider(boxMesh(Vector3::Constant(0.05)), R);

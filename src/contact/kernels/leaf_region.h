@@ -21,7 +21,7 @@ inline FloatVectors outsideOf(const LeafRegion& region, const FloatVectors& p) {
 /** Vertices of a that may have a contact with a vertex, edge or face of b as those allow it. */
 inline std::uint32_t verticesNear(const LeafShapes& a, const LeafShapes& b, const LeafReach& reach) {
   const LeafRegion& region = b.region;
-  const float most = region.beside * reach.range + (1 + region.fall) * reach.margin;
+  const float most = (region.lean + region.fall) * reach.range + (1 + region.fall) * reach.margin;
   return bitsWhere(a.vertex_count, [&](std::uint32_t i) {
     const FloatVectors outside = outsideOf(region, alongAxes(region, severalVertices(a, i)));
     const Floats beside = most - region.fall * maximum(outside.z, Floats{});

@@ -65,7 +65,8 @@ struct VertexCone {
 struct LeafRegion {
   float axes[3][3];            ///< unit, square to each other; the last one leads up
   float middle[3], halves[3];  ///< of the box of all elements along the axes [m]
-  float beside, fall;          ///< how far beside: that part of the range, less that part of the height
+  float lean;                  ///< sine of the widest angle of a contact's direction, but for its sign, from `up`; 1: any direction
+  float fall;                  ///< how far beside: both these parts of the range, less this one of the height
   float edge_beside;           ///< edges with edges: this part of the range, less the height
 };
 
