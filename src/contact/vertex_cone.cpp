@@ -18,12 +18,13 @@ Vector3 axisOf(const MeshSide& side, int vertex) {
   return norm > 0 ? Vector3(sum / norm) : Vector3::UnitZ();
 }
 
-}  // namespace
-
+/** Does it have flat and round edges only? */
 bool hasRoundEdgesOnly(const MeshSide& side, int vertex) {
   const VertexEdges edges = side.topology.edgesOf(vertex);
   return std::all_of(edges.begin(), edges.end(), [&](int edge) { return side.topology.isFlatEdge(edge) || isRoundEdge(side, edge); });
 }
+
+}  // namespace
 
 kernels::VertexCone vertexCone(const MeshSide& side, int vertex) {
   constexpr double ANY = 1e6, ROUNDING = 0.002, LEAST_COSINE = 0.15;  // of half the widest gap between edges, seen along the axis
