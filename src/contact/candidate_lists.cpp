@@ -20,7 +20,7 @@ class LeadingVertices {
         lists_(lists),
         surroundings_(*surroundings),
         R_MF_(pair.X_FM.linear().transpose()),
-        limit_(margin.motion + margin.turn * pair.range + 2 * (CONE_SLACK * pair.range + TOUCH)) {}
+        limit_(margin.motion + (margin.turn + 2 * CONE_SLACK) * (pair.range + margin.motion) + 2 * TOUCH) {}
 
   /** Near edges that are not round. */
   void dropFrom(bool moves, const std::vector<Vec4>& vertices, const std::vector<EdgeRecord>& edges, std::vector<Candidate>* candidates) {
