@@ -7,6 +7,7 @@
 #include "leaf_features.h"
 #include "list_margin.h"
 #include "mesh_pair.h"
+#include "surroundings.h"
 
 namespace blem_sim {
 
@@ -27,12 +28,6 @@ struct FeatureRecords {
   }
 };
 
-/** Directions of the edges at a vertex: a run of NearFeatures::ring_directions. */
-struct VertexRing {
-  std::uint32_t begin = 0, end = 0;
-  enum : std::uint8_t { UNKNOWN, ROUND, SHARP } shape = UNKNOWN;  ///< round: flat and round edges only
-};
-
 /** The features of one mesh that appear in candidates. */
 struct NearFeatures {
   FeatureRecords<kernels::Vec4> vertices;
@@ -42,16 +37,8 @@ struct NearFeatures {
   std::vector<kernels::OpenSides> open;  ///< of the faces
   std::vector<BorderKinds> borders;      ///< of the faces
 
-  /** What few candidates ask for, worked out when the first one does. @param side the mesh */
-  VertexRing& ring(const MeshSide& side, std::uint32_t vertex);
-  bool isRound(const MeshSide& side, std::uint32_t vertex);  ///< flat and round edges only
-  std::vector<Vector3> ring_directions;                      ///< unit, mesh's frame
-
   void addFaceOf(const LeafFeatures& leaf, std::uint32_t i);  ///< what goes with faces
   void clear();
-
- private:
-  std::vector<VertexRing> rings_;
 };
 
 /** Pairs of features, in an order that the meshes alone decide. An index [moves] tells whether the feature named first is the moving
@@ -94,8 +81,9 @@ struct TurnedFeatures {
  * Of the candidates for contacts those that can have one within pair.range while nothing moves or turns by more than the margin, in their
  * order.
  * @param turned of these lists at the pair's pose
+ * @return how many are near, with those that can have none since a vertex leads towards the other feature
  */
-void findNearest(const MeshPair& pair, const TurnedFeatures& turned, const ListMargin& margin, CandidateLists* lists,
-                 CandidatePairs* nearest);
+std::size_t findNearest(const MeshPair& pair, const TurnedFeatures& turned, const ListMargin& margin, const CandidateLists& lists,
+                        SurroundingsMemory* surroundings, CandidatePairs* nearest);
 
 }  // namespace blem_sim

@@ -43,6 +43,7 @@ struct EvaluationBuffers {
   std::vector<kernels::VertexEdgeHit> vertex_edges;
   std::vector<kernels::EdgeEdgeHit> edge_edges;
   std::vector<kernels::Candidate> edges_left;  ///< those that are not plain
+  std::uint32_t edges_left_count = 0;          ///< of them
   std::vector<kernels::FadingEdgesHit> fading_edges;
   std::vector<std::uint32_t> hits;
   std::vector<kernels::Candidate> over;    ///< vertices over faces beside which they may fade, or so near a border that they were asked

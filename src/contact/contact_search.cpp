@@ -196,9 +196,10 @@ class ContactSearch {
     if (all.lists.pairs.contacts() <= FEW_CANDIDATES || 2 * margin.motion >= all.origin.margin.motion) return all.lists.pairs;
     const MeshPair ahead = this->ahead(margin);
     buffers_.evaluation.turned.turnForContacts(all.lists, ahead.X_FM);
-    findNearest(ahead, buffers_.evaluation.turned, margin, &all.lists, &memory_.nearest);
+    const std::size_t near =
+        findNearest(ahead, buffers_.evaluation.turned, margin, all.lists, &buffers_.evaluation.surroundings, &memory_.nearest);
     memory_.nearest_origin = {true, ahead.X_FM, pair_.range, margin};
-    const double more = static_cast<double>(all.lists.pairs.contacts() - memory_.nearest.contacts());
+    const double more = static_cast<double>(all.lists.pairs.contacts() - near);
     memory_.growth = std::max(more, 1.0) / (all.origin.margin.motion - margin.motion);
     return memory_.nearest;
   }

@@ -50,13 +50,21 @@ struct EdgesNearEdges {
 /** What one set finds. */
 struct Found {
   Found(const Kernels& set, const EdgesNearEdges& in, bool first_is_a, bool takes_plain)
-      : hits(CANDIDATES + 1), fading(CANDIDATES + 1), rows(CANDIDATES + 1), plain{in.place(first_is_a), rows.data(), 0, -1} {
+      : hits(CANDIDATES + 1),
+        left(CANDIDATES + 1),
+        fading(CANDIDATES + 1),
+        rows(CANDIDATES + 1),
+        plain{in.place(first_is_a), rows.data(), 0, -1} {
     const EdgeRecord* const records = in.records.data();
-    hits.resize(set.edgeEdges(records, records, in.candidates.data(), CANDIDATES, RANGE, takes_plain ? &plain : nullptr, hits.data()));
+    LeftEdges to_left{left.data(), 0};
+    hits.resize(
+        set.edgeEdges(records, records, in.candidates.data(), CANDIDATES, RANGE, takes_plain ? &plain : nullptr, &to_left, hits.data()));
+    left.resize(to_left.count);
     rows.resize(plain.count);
     fading.resize(set.fadingEdges(records, records, in.candidates.data(), CANDIDATES, RANGE, fading.data()));
   }
   std::vector<EdgeEdgeHit> hits;
+  std::vector<Candidate> left;
   std::vector<FadingEdgesHit> fading;
   std::vector<ContactRow> rows;
   PlainEdges plain;
@@ -77,7 +85,7 @@ TEST(EdgeKernels, PlainContactsAreThoseMadeOneByOne) {
     for (const EdgeEdgeHit& hit : all.hits) {
       const bool again = close < written.hits.size() && written.hits[close].candidate == hit.candidate;
       close += again;
-      if (!hit.is_plain || again) continue;
+      if (again) continue;
       const Candidate& c = in.candidates[hit.candidate];
       const Vector3 point_a(hit.point_a), point_b(hit.point_b), normal(hit.normal);
       EXPECT_NEAR((point_a - point_b - hit.gap * normal).norm(), 0, 1e-13);
@@ -97,6 +105,7 @@ TEST(EdgeKernels, PlainContactsAreThoseMadeOneByOne) {
     }
     EXPECT_EQ(count, written.rows.size());
     EXPECT_EQ(close, written.hits.size());
+    EXPECT_GT(all.left.size(), 5u);
     EXPECT_EQ(written.plain.deepest, deepest);
     EXPECT_GT(count, 5u);
   }
@@ -153,10 +162,10 @@ TEST(EdgeKernels, AllInstructionSetsFindTheSame) {
       for (std::size_t i = 0; i < each.hits.size(); ++i) {
         const EdgeEdgeHit &a = each.hits[i], &b = baseline.hits[i];
         EXPECT_EQ(a.candidate, b.candidate);
-        EXPECT_EQ(a.is_plain, b.is_plain);
-        EXPECT_TRUE(!a.is_plain || (same(a.point_a, b.point_a, 3) && same(a.point_b, b.point_b, 3) && same(a.normal, b.normal, 3) &&
-                                    same(&a.gap, &b.gap, 1)));
+        EXPECT_TRUE(same(a.point_a, b.point_a, 3) && same(a.point_b, b.point_b, 3) && same(a.normal, b.normal, 3) && a.gap == b.gap);
       }
+      ASSERT_EQ(each.left.size(), baseline.left.size());
+      EXPECT_EQ(std::memcmp(each.left.data(), baseline.left.data(), sizeof(Candidate) * each.left.size()), 0);
       ASSERT_EQ(each.rows.size(), baseline.rows.size());
       for (std::size_t i = 0; i < each.rows.size(); ++i) EXPECT_TRUE(same(each.rows[i].point, baseline.rows[i].point, 10));
       EXPECT_EQ(each.plain.deepest, baseline.plain.deepest);

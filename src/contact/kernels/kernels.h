@@ -44,10 +44,10 @@ struct Kernels {
   /** The contacts of vertices with sides of faces. @param sides as the pairs */
   void (*sideFeet)(const ContactPlace& place, const NearVertices& vertices, const FaceRecord* faces, const BesideSide* sides,
                    const Candidate* pairs, std::uint32_t count, SideFoot* feet);
-  /** As vertexFaces. */
+  /** As vertexFaces. @param left takes those that are not plain */
   std::uint32_t (*edgeEdges)(const EdgeRecord* a, const EdgeRecord* b, const Candidate* candidates, std::uint32_t count, double range,
-                             PlainEdges* plain, EdgeEdgeHit* hits);
-  /** Of candidates that are not plain: those with a contact within `range` if nothing takes over, or that need a closer look. Room for one
+                             PlainEdges* plain, LeftEdges* left, EdgeEdgeHit* hits);
+  /** Of those that are not plain: candidates with a contact within `range` if nothing takes over, or that need a closer look. Room for one
    * more hit than candidates. */
   std::uint32_t (*fadingEdges)(const EdgeRecord* a, const EdgeRecord* b, const Candidate* candidates, std::uint32_t count, double range,
                                FadingEdgesHit* hits);
