@@ -8,7 +8,7 @@
 namespace blem_sim {
 namespace {
 
-constexpr double WIDTH = 64 * MERGE_DISTANCE;             // few places are that near a border
+constexpr double WIDTH = 16 * MERGE_DISTANCE;             // thin, yet seldom with two within reach
 constexpr double REACH = 1.001 * MERGE_DISTANCE / WIDTH;  // in slabs, with room for rounding
 
 /** The whole number nearest to a value, but for a constant: hashes ask for no more. */
