@@ -1,6 +1,8 @@
 #include "candidate_lists.h"
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 #include "tolerances.h"
 #include "vectors.h"
@@ -134,6 +136,22 @@ void TurnedFeatures::turnForContacts(const CandidateLists& lists, const Pose& X_
 void TurnedFeatures::turnForCrossings(const CandidateLists& lists, const Pose& X_FM) {
   turn(kernels::kernels().turnEdges, lists.near[1].edges.records, motionOf(X_FM), &edges);
   turn(kernels::kernels().turnFaces, lists.near[1].faces.records, motionOf(X_FM), &faces);
+}
+
+void groupByFaces(const MeshPair& pair, CandidateLists* lists, CandidatePairs* room) {
+  constexpr std::size_t FEW_FACES = 256;
+  for (const bool moves : {true, false}) {
+    if (pair.side(!moves).mesh.elements.size() > FEW_FACES) continue;
+    const std::vector<int>& faces = lists->near[!moves].faces.names;
+    CandidatePairs::Candidates &candidates = lists->pairs.vertex_face[moves], &grouped = room->vertex_face[moves];
+    std::array<std::uint32_t, FEW_FACES> places{};
+    for (const Candidate& c : candidates) ++places[faces[c.b]];
+    std::uint32_t end = 0;
+    for (std::uint32_t& place : places) end += std::exchange(place, end);
+    grouped.resize(candidates.size());
+    for (const Candidate& c : candidates) grouped[places[faces[c.b]]++] = c;
+    candidates.swap(grouped);
+  }
 }
 
 namespace {

@@ -77,6 +77,10 @@ struct TurnedFeatures {
   kernels::NearVertices nearFaces(const CandidateLists& lists, bool moves, const Pose& X_FM) const;
 };
 
+/** Puts candidates of vertices with the same face one after the other, in the order of the faces, where a mesh has so few that each is near
+ * many vertices. @param room overwritten */
+void groupByFaces(const MeshPair& pair, CandidateLists* lists, CandidatePairs* room);
+
 /**
  * Of the candidates for contacts those that can have one within pair.range while nothing moves or turns by more than the margin, in their
  * order.

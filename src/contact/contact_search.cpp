@@ -161,7 +161,9 @@ class ContactSearch {
   void replace(CandidateKind kind, KeptListing* kept) {
     std::swap(kept->now, kept->next);
     kept->next.origin.known = false;
-    if (kind == CandidateKind::CONTACTS) memory_.nearest_origin.known = false;
+    if (kind != CandidateKind::CONTACTS) return;
+    memory_.nearest_origin.known = false;
+    groupByFaces(pair_, &kept->now.lists, &memory_.nearest);
   }
 
   /** Is a list of that margin good for much longer than it takes to make it? */

@@ -186,9 +186,12 @@ class VertexFaceTest {
 
   /** Of any. Which lanes have what is hard to foresee: it does not branch. @param first the batch's first candidate */
   void test(const Batch& batch, std::uint32_t first) {
+    withFaces(batch, faces_, [&](const auto& faces) { test(batch, faces, first); });
+  }
+  template <typename Faces>
+  void test(const Batch& batch, const Faces& faces, std::uint32_t first) {
     const Rows vertices = batch.points(vertices_.records, OF_A);
-    const EachFace faces{batch, faces_};
-    const auto plane = planes_.of(faces);
+    const auto& plane = planes_.of(faces);
     const Doubles height = plane.height(vertices.v), most = range_ - absolute(height);
     const InsideSides sides(faces, seenByFaces(vertices_, vertices.v));
     const Doubles inside = sides.least();
