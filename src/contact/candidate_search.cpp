@@ -18,7 +18,7 @@ using kernels::LeafHit;
 constexpr double FLOAT_ROUNDING = 1e-6;
 /** And of directions: unit vectors, and products of edges relative to their lengths. */
 constexpr double FLOAT_TURN = 1e-5;
-constexpr std::uint32_t NOWHERE = 0xFFFFFFFF;
+constexpr std::uint32_t NOWHERE = CandidateListing::NOWHERE;
 
 /** The pair as it was where the listing began. */
 MeshPair pairAt(const MeshPair& pair, const ListOrigin& origin) {
@@ -177,21 +177,25 @@ class Search {
     if (index != KeptLeaf::NO_INDEX) return index;
     std::vector<CandidateListing::Leaf>& leaves = listing_.leaves[moves];
     index = static_cast<std::uint32_t>(leaves.size());
-    const std::size_t slots = listing_.slots.size();
-    leaves.push_back({node, static_cast<std::uint32_t>(slots)});
-    listing_.slots.resize(slots + found.feature_count, NOWHERE);
-    buffers_.found[moves].push_back({found.features.get(), nullptr});
+    leaves.push_back({node});
+    buffers_.found[moves].push_back({&found, nullptr});
     return index;
   }
 
   LeafInUse leaf(bool moves, std::uint32_t index) {
     FoundLeaf& found = buffers_.found[moves][index];
-    const CandidateListing::Leaf& leaf = listing_.leaves[moves][index];
-    if (!found.shapes) {
-      if (!found.features) found.features = find(moves, leaf.node).features.get();
-      found.shapes = moves ? turned(found.features->shapes, index) : &found.features->shapes;
-    }
-    return {*found.features, *found.shapes, leaf.slots};
+    CandidateListing::Leaf& leaf = listing_.leaves[moves][index];
+    if (!found.shapes) lookAt(moves, index, &found, &leaf);
+    return {*found.kept->features, *found.shapes, leaf.slots};
+  }
+
+  void lookAt(bool moves, std::uint32_t index, FoundLeaf* found, CandidateListing::Leaf* leaf) {
+    if (!found->kept) found->kept = &find(moves, leaf->node);
+    const kernels::LeafShapes& shapes = buffers_.leaves.describe(pair_.side(moves), leaf->node, found->kept).shapes;
+    found->shapes = moves ? turned(shapes, index) : &shapes;
+    if (leaf->slots != NOWHERE) return;
+    leaf->slots = static_cast<std::uint32_t>(listing_.slots.size());
+    listing_.slots.resize(leaf->slots + found->kept->feature_count, NOWHERE);
   }
 
   /** Directions within an angle of an axis are in a ball. */

@@ -19,9 +19,10 @@ struct CandidateListing {
   CandidateLists lists;
   ListOrigin origin;
 
+  static constexpr std::uint32_t NOWHERE = 0xFFFFFFFF;
   /** A leaf near the other mesh, and the first of its slots: where its vertices, then its faces and edges, are among the near features. */
   struct Leaf {
-    std::uint32_t node, slots;
+    std::uint32_t node, slots = NOWHERE;  ///< slots from when it is looked at
   };
   struct LeafPair {
     std::uint32_t moving, fixed;  ///< of the leaves
@@ -38,7 +39,7 @@ struct CandidateListing {
 
 /** A leaf of a listing. */
 struct FoundLeaf {
-  LeafFeatures* features = nullptr;             ///< null: not found yet
+  KeptLeaf* kept = nullptr;                     ///< null: not found yet
   const kernels::LeafShapes* shapes = nullptr;  ///< in the fixed mesh's frame; null: not looked at yet
 };
 

@@ -16,14 +16,14 @@ constexpr double LEAF_PAIR_COST = 40, CANDIDATE_COST = 8, CHOICE_STEPS = 5;
 constexpr std::size_t PARTS = 4, FEW_LEAF_PAIRS = 64;
 constexpr double LASTING_STEPS = 8;
 // A list is made for a pose ahead, so much of its margin away on the way of the pair, and so many steps, at most.
-constexpr double AHEAD = 0.9, AHEAD_AT_MOST = 0.98, AHEAD_STEPS = 25;
+constexpr double AHEAD = 0.9, AHEAD_AT_MOST = 0.98, AHEAD_STEPS = 16;
 // Of long lists those that matter for so few steps are listed again, or for what is cheapest if it is known how lists of the pair grow.
 constexpr double NEAREST_STEPS = 3, FEWEST_NEAREST_STEPS = 2, MOST_NEAREST_STEPS = 8;
 // Candidates for crossings are listed for so many.
 constexpr double CROSSING_STEPS = 10;
 constexpr std::size_t FEW_CANDIDATES = 200;
 constexpr double LEAST_MARGIN = 0.02, MOST_MARGIN = 0.8, LEAST_NEAREST_MARGIN = 0.005;  // of the range
-constexpr double MOST_KNOWN_MARGIN = 1.6;                                               // where it is known how lists grow
+constexpr double MOST_KNOWN_MARGIN = 2.2;                                               // where it is known how lists grow
 // Lists of fast bodies grow faster than their margins where there are many pairs of leaves.
 constexpr std::size_t MANY_LEAF_PAIRS = 4000;
 constexpr double MOST_MARGIN_OF_MANY = 0.3;

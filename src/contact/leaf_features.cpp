@@ -121,13 +121,6 @@ void describe(const MeshSide& side, std::uint32_t index, SurroundingsMemory* sur
   shapes.region = leafRegion(side, node, *leaf);
 }
 
-void describe(const MeshSide& side, std::uint32_t index, SurroundingsMemory* surroundings, KeptLeaf* kept) {
-  if (!kept->features) kept->features = std::make_unique<LeafFeatures>();
-  describe(side, index, surroundings, kept->features.get());
-  const LeafShapes& shapes = kept->features->shapes;
-  kept->feature_count = shapes.vertex_count + shapes.face_count + shapes.edge_count;
-}
-
 }  // namespace
 
 FaceRecord faceRecord(const MeshSide& side, int element) {
@@ -172,16 +165,14 @@ KeptLeaf& LeafMemory::findKept(const MeshSide& side, std::uint32_t leaf, std::ui
     if (set.leaves[way].search < set.leaves[oldest].search) oldest = way;
   if (set.leaves[oldest].search == search) return findCrowdedOut(side, leaf, search);
   set.keys[oldest] = key;
-  describe(side, leaf, &surroundings_, &set.leaves[oldest]);
+  set.leaves[oldest].is_described = false;
   return set.leaves[oldest];
 }
 
 KeptLeaf& LeafMemory::findCrowdedOut(const MeshSide& side, std::uint32_t leaf, std::uint64_t search) {
   if (crowded_search_ != search) crowded_out_.clear();
   crowded_search_ = search;
-  KeptLeaf& kept = crowded_out_[keyOf(side, leaf)];
-  if (!kept.features) describe(side, leaf, &surroundings_, &kept);
-  return kept;
+  return crowded_out_[keyOf(side, leaf)];
 }
 
 KeptLeaf& LeafMemory::find(const MeshSide& side, std::uint32_t leaf, std::uint64_t search) {
@@ -189,6 +180,16 @@ KeptLeaf& LeafMemory::find(const MeshSide& side, std::uint32_t leaf, std::uint64
   if (found.search != search) found.index[0] = found.index[1] = KeptLeaf::NO_INDEX;
   found.search = search;
   return found;
+}
+
+const LeafFeatures& LeafMemory::describe(const MeshSide& side, std::uint32_t leaf, KeptLeaf* found) {
+  if (found->is_described) return *found->features;
+  if (!found->features) found->features = std::make_unique<LeafFeatures>();
+  blem_sim::describe(side, leaf, &surroundings_, found->features.get());
+  const LeafShapes& shapes = found->features->shapes;
+  found->feature_count = shapes.vertex_count + shapes.face_count + shapes.edge_count;
+  found->is_described = true;
+  return *found->features;
 }
 
 }  // namespace blem_sim

@@ -45,21 +45,24 @@ inline kernels::Vec4 vertexRecord(const MeshSide& side, int vertex) {
   return {p.x(), p.y(), p.z(), kernels::nameBits(vertex)};
 }
 
-/** A leaf that is held, and what searches want to know without a look at its features. */
+/** A leaf that has a place, and what searches want to know without a look at its features. */
 struct KeptLeaf {
   static constexpr std::uint32_t NO_INDEX = 0xFFFFFFFF;
 
-  std::unique_ptr<LeafFeatures> features;
-  std::uint64_t search = 0;  ///< the last one that came here
+  std::unique_ptr<LeafFeatures> features;  ///< the leaf's once it is described
+  std::uint64_t search = 0;                ///< the last one that came here
   std::uint32_t index[2];  ///< what that search calls it, as a leaf of the moving mesh [1] and of the fixed one [0]; NO_INDEX: nothing yet
   std::uint32_t feature_count = 0;  ///< vertices, faces and edges
+  bool is_described = false;
 };
 
 /** Leaves that were looked at lately. What is kept changes no result. */
 class LeafMemory {
  public:
-  /** @return what stays until the search ends */
+  /** @return the leaf's place until the search ends */
   KeptLeaf& find(const MeshSide& side, std::uint32_t leaf, std::uint64_t search);
+  /** What was found is described, if it is not yet. */
+  const LeafFeatures& describe(const MeshSide& side, std::uint32_t leaf, KeptLeaf* found);
 
  private:
   static constexpr std::size_t SET_BITS = 11, WAYS = 8;  // 16,384 leaves; places that a leaf may have

@@ -80,7 +80,7 @@ NearFeatures allFeatures(const MeshSide& side, LeafMemory* leaves) {
   NearFeatures all;
   for (std::uint32_t node = 0; node < side.bvh.nodes().size(); ++node) {
     if (!side.bvh.nodes()[node].isLeaf()) continue;
-    const LeafFeatures& leaf = *leaves->find(side, node, 1).features;
+    const LeafFeatures& leaf = leaves->describe(side, node, &leaves->find(side, node, 1));
     const auto add = [](const auto& kind, auto* to) {
       for (std::size_t i = 0; i < kind.records.size(); ++i) to->add(kind.records[i], kind.names[i]);
     };

@@ -1,13 +1,16 @@
 // What is kept of leaves.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "contact_shapes.h"
 #include "leaf_features.h"
 
 namespace blem_sim {
 namespace {
 
-// A search that comes to more leaves than are kept must still know which it has seen: else one vertex would count as two.
+// A search that comes to more leaves than are kept must still know which it has seen: else one vertex would count as two. Who takes a
+// place is not taken for who had it before.
 TEST(LeafMemory, OneSearchLosesNoLeaf) {
   const Collider plane = makeCollider(gridMesh(1, 1, 300, 300), 0);
   const MeshSide side(*plane.geometry);
@@ -21,8 +24,14 @@ TEST(LeafMemory, OneSearchLosesNoLeaf) {
       KeptLeaf& found = memory.find(side, leaf, search);
       ASSERT_EQ(found.index[1], KeptLeaf::NO_INDEX);
       found.index[1] = leaf;
+      memory.describe(side, leaf, &found);
     }
-    for (const std::uint32_t leaf : leaves) ASSERT_EQ(memory.find(side, leaf, search).index[1], leaf);
+    for (const std::uint32_t leaf : leaves) {
+      KeptLeaf& found = memory.find(side, leaf, search);
+      ASSERT_EQ(found.index[1], leaf);
+      ASSERT_EQ(memory.describe(side, leaf, &found).faces.names[0], static_cast<int>(side.bvh.order()[side.bvh.nodes()[leaf].first]));
+    }
+    std::reverse(leaves.begin(), leaves.end());
   }
 }
 
