@@ -21,7 +21,7 @@ constexpr double AHEAD = 0.9, AHEAD_AT_MOST = 0.98, AHEAD_STEPS = 16;
 constexpr double NEAREST_STEPS = 3, FEWEST_NEAREST_STEPS = 2, MOST_NEAREST_STEPS = 8;
 // Candidates for crossings are listed for so many.
 constexpr double CROSSING_STEPS = 10;
-constexpr std::size_t FEW_CANDIDATES = 200;
+constexpr std::size_t FEW_CANDIDATES = 50;
 constexpr double LEAST_MARGIN = 0.02, MOST_MARGIN = 0.8, LEAST_NEAREST_MARGIN = 0.005;  // of the range
 constexpr double MOST_KNOWN_MARGIN = 2.2;                                               // where it is known how lists grow
 // Lists of fast bodies grow faster than their margins where there are many pairs of leaves.

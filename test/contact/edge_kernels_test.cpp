@@ -27,13 +27,16 @@ struct EdgesNearEdges {
     for (std::uint32_t i = 0; i < EDGES; ++i) {
       const Triangle t = random.triangle(1);
       const Vector3 along = t[1] - t[0];
-      const auto inward = [&] { return vec4(random.point(3).cross(along).normalized(), 0); };
-      records.push_back({vec4(t[0], along.squaredNorm()), vec4(along, i % 7 == 0), {inward(), inward()}});
+      const auto inward = [&](int k) { return vec4(random.point(3).cross(along).normalized(), nameBits(vertexAt(i, k))); };
+      records.push_back({vec4(t[0], along.squaredNorm()), vec4(along, i % 7 == 0), {inward(0), inward(1)}});
       names.push_back(static_cast<int>(1000 + i));
     }
 
     for (std::uint32_t i = 0; i < CANDIDATES; ++i) candidates.push_back({i / EDGES, i % EDGES});
   }
+
+  /** @param end -1: none */
+  static int vertexAt(std::uint32_t edge, int end) { return end < 0 ? -1 : static_cast<int>(3000 + 2 * edge) + end; }
 
   EdgePlace place(bool first_is_a) const {
     const Feature edge{FeatureKind::EDGE, 0};
@@ -134,8 +137,8 @@ TEST(EdgeKernels, FadingContactsAreWhereTheEdgesAreClosest) {
                  t = (q - p).cross(along_p).dot(across) / across.squaredNorm();
     const auto end = [](double part) { return part < 0 ? 0 : part > 1 ? 1 : -1; };
     const auto past = [](double part, const Vector3& along) { return std::max({-part, part - 1, 0.0}) * along.norm(); };
-    EXPECT_EQ(hit.end_a, end(s));
-    EXPECT_EQ(hit.end_b, end(t));
+    EXPECT_EQ(hit.end_a, in.vertexAt(c.a, end(s)));
+    EXPECT_EQ(hit.end_b, in.vertexAt(c.b, end(t)));
     EXPECT_NEAR(hit.gap - hit.distance, FADE_SLOPE * std::max(past(s, along_p), past(t, along_q)), 1e-9);
     const bool both = hit.end_a >= 0 && hit.end_b >= 0;
     (both ? beyond_both : beyond_one) += 1;

@@ -42,7 +42,7 @@ struct FadingEdgesHit {
   std::uint32_t candidate;
   bool is_inside;                 ///< the feet lie inside both, but for CLOSED, and more is to be asked: nothing else is told
   bool cones_known;               ///< whether the normal is known to point into none of their faces
-  std::int32_t end_a, end_b;      ///< end beyond which the foot lies, 0 or 1; -1 if it lies inside
+  std::int32_t end_a, end_b;      ///< the vertex at the end beyond which the foot lies; -1 if it lies inside
   double point_a[3], point_b[3];  ///< [m] witness points
   double distance, gap;           ///< [m] of these; and with the depth that is lost beyond the ends
   double normal[3];               ///< unit, from b to a, square to both edges

@@ -9,11 +9,16 @@ struct alignas(32) Vec4 {
   double x, y, z, w;
 };
 
-/** What the w of a vertex holds: its name's bits. */
+/** What the w of a vertex holds, and of an edge for its ends: a name's bits. */
 inline double nameBits(std::int64_t name) {
   double bits;
   __builtin_memcpy(&bits, &name, sizeof bits);
   return bits;
+}
+inline std::int64_t nameOf(double bits) {
+  std::int64_t name;
+  __builtin_memcpy(&name, &bits, sizeof name);
+  return name;
 }
 
 /** A face in some frame: signed heights over its plane and inside its three sides, all in metres, as normal . p - offset. */
@@ -30,7 +35,7 @@ using OpenSides = std::int32_t;
 struct alignas(64) EdgeRecord {
   Vec4 start;      ///< its first vertex; w: squared length
   Vec4 along;      ///< to its second vertex; w: 1 if it has more faces than `inward` tells, -1 if it is round (ROUND_COSINE)
-  Vec4 inward[2];  ///< unit, square to it, into its first and second face; zero where there is none
+  Vec4 inward[2];  ///< unit, square to it, into its first and second face; zero where there is none; w: nameBits of its vertices
 };
 
 /** A rigid motion: rotation by rows, then translation. */
