@@ -68,6 +68,7 @@ void NearFeatures::clear() {
   patches.clear();
   open.clear();
   borders.clear();
+  fading.clear();
   rings_.clear();
   ring_directions.clear();
 }

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "fading_records.h"
 #include "kernels/kernels.h"
 #include "leaf_features.h"
 #include "list_margin.h"
@@ -41,6 +42,7 @@ struct NearFeatures {
   std::vector<int> patches;              ///< of the faces
   std::vector<kernels::OpenSides> open;  ///< of the faces
   std::vector<BorderKinds> borders;      ///< of the faces
+  FadingRecords fading;
 
   /** What few candidates ask for, worked out when the first one does. @param side the mesh */
   VertexRing& ring(const MeshSide& side, std::uint32_t vertex);
