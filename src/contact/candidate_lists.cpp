@@ -90,6 +90,7 @@ void NearFeatures::clear() {
   patches.clear();
   open.clear();
   borders.clear();
+  fading.clear();
 }
 
 void CandidatePairs::clear() {

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "fading_records.h"
 #include "kernels/kernels.h"
 #include "leaf_features.h"
 #include "list_margin.h"
@@ -36,6 +37,7 @@ struct NearFeatures {
   std::vector<int> patches;              ///< of the faces
   std::vector<kernels::OpenSides> open;  ///< of the faces
   std::vector<BorderKinds> borders;      ///< of the faces
+  FadingRecords fading;
 
   void addFaceOf(const LeafFeatures& leaf, std::uint32_t i);  ///< what goes with faces
   void clear();

@@ -46,6 +46,7 @@ std::uint32_t Evaluation::findVertexFaces(bool moves) {
 void Evaluation::vertexFaces(bool moves) {
   if (pairs_.vertex_face[moves].empty()) return;
   const std::uint32_t count = findVertexFaces(moves);
+  if (count == 0) return;
   const std::vector<Candidate>& candidates = pairs_.vertex_face[moves];
   const auto &vertices = lists_.near[moves].vertices.names, &faces = lists_.near[!moves].faces.names;
   auto& hits = buffers_.vertex_faces;
@@ -63,8 +64,8 @@ void Evaluation::vertexFaces(bool moves) {
       }
     }
   }
-  listFadingSides(moves, count);
-  if (buffers_.beside.empty()) return;
+  fades_.list(moves, candidates.data(), hits.data(), count, &buffers_.leaving, &buffers_.fading);
+  if (buffers_.fading.pairs.empty()) return;
   addFading(moves);
   dropCovered(moves);
 }
@@ -79,78 +80,43 @@ void Evaluation::addPlain(bool moves, const Candidate& c, double height) {
   found_.close.add(pair_, moves, vertex, patch, p, foot, normal, std::abs(height));
 }
 
-/** Of the hits that fade, those sides that their vertices lie outside of. */
-void Evaluation::listFadingSides(bool moves, std::uint32_t hits) {
-  buffers_.beside.clear();
-  buffers_.sides.clear();
-  const MeshSide& side = pair_.side(!moves);
-  for (std::uint32_t i = 0; i < hits; ++i) {
-    const VertexFaceHit& hit = buffers_.vertex_faces[i];
-    const Candidate& c = pairs_.vertex_face[moves][hit.candidate];
-    if (!hit.has(VertexFaceHit::BESIDE) || !fades_.fades(moves, c, hit)) continue;
-    const Vector3i& corners = side.mesh.elements[lists_.near[!moves].faces.names[c.b]];
-    for (unsigned outside = hit.bits & VertexFaceHit::OUTSIDE; outside != 0; outside &= outside - 1) {
-      const int k = __builtin_ctz(outside);
-      const Vector3 &start = side.mesh.vertices[corners[k]], &end = side.mesh.vertices[corners[NEXT[k]]];
-      buffers_.beside.push_back(c);
-      kernels::BesideSide& added = buffers_.sides.emplace_back();
-      added.start.x = start.x(), added.start.y = start.y(), added.start.z = start.z();
-      added.along.x = end.x() - start.x(), added.along.y = end.y() - start.y(), added.along.z = end.z() - start.z();
-    }
-  }
-}
-
-/** Of each vertex with a face: at the nearest of the sides. */
+/** Of each vertex with a face: at the nearest of the sides. Of the pairs stay those that have a contact. */
 void Evaluation::addFading(bool moves) {
-  const std::vector<Candidate>& beside = buffers_.beside;
-  EvaluationBuffers::makeRoom(beside.size(), &buffers_.feet);
-  kernels::kernels().sideFeet(place(moves), buffers_.turned.nearFaces(lists_, moves, pair_.X_FM), lists_.near[!moves].faces.records.data(),
-                              buffers_.sides.data(), beside.data(), static_cast<std::uint32_t>(beside.size()), buffers_.feet.data());
-  buffers_.fading.clear();
-  const auto& vertices = (moves ? buffers_.turned.vertices : lists_.near[0].vertices.records);
-  for (std::size_t i = 0, next; i < beside.size(); i = next) {
-    const kernels::SideFoot* nearest = &buffers_.feet[i];
-    const Candidate& c = beside[i];
-    for (next = i + 1; next < beside.size() && beside[next].a == c.a && beside[next].b == c.b; ++next)
-      if (buffers_.feet[next].lost < nearest->lost) nearest = &buffers_.feet[next];
-    const double gap = nearest->distance + nearest->lost;
-    if (nearest->distance <= TOUCH || gap > pair_.range) continue;
-    const int patch = lists_.near[!moves].patches[c.b];
-    const Feature vertex{FeatureKind::VERTEX, lists_.near[moves].vertices.names[c.a]}, face{FeatureKind::FACE, patch};
-    const Vector3 point(nearest->point), normal(nearest->normal);
-    if (found_.close.keepsWitnesses()) {
-      found_.close.add(pair_, moves, vertex, face, vector3(vertices[c.a]), point, normal, gap);
-    } else {
-      found_.close.addPlaced(point, normal, pair_.layer - gap, contactId(pair_.roles, moves, vertex, face));
-    }
-    FadingVertex& fading = buffers_.fading.emplace_back();
-    fading.vertex = c.a;
-    fading.face = c.b;
-    fading.goes_on = lists_.near[!moves].borders[c.b].goesOn();
-    fading.is_covered = false;
+  std::vector<Candidate>& pairs = buffers_.fading.pairs;
+  const std::size_t size = pairs.size();
+  pairs.resize(size + 1);
+  const bool keeps_feet = found_.close.keepsWitnesses();
+  if (keeps_feet) EvaluationBuffers::makeRoom(size + 1, &buffers_.feet);
+  EvaluationBuffers::makeRoom(size + 1, &buffers_.may_be_covered);
+  const NearFeatures& partner = lists_.near[!moves];
+  kernels::ContactRow* const rows = keeps_feet ? buffers_.feet.data() : found_.close.rows(size + 1);
+  kernels::FadingContacts out{pairs.data(), rows, buffers_.may_be_covered.data(), 0};
+  pairs.resize(kernels::kernels().sideFeet(place(moves), buffers_.turned.nearFaces(lists_, moves, pair_.X_FM), partner.faces.records.data(),
+                                           partner.fading.corners(), buffers_.fading.sides.data(), static_cast<std::uint32_t>(size),
+                                           pair_.range, &out));
+  buffers_.may_be_covered.resize(out.within_count);
+  if (!keeps_feet) return found_.close.advance(pairs.size());
+  const auto& vertices = moves ? buffers_.turned.vertices : lists_.near[0].vertices.records;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const Candidate& c = pairs[i];
+    found_.close.add(pair_, moves, {FeatureKind::VERTEX, lists_.near[moves].vertices.names[c.a]}, {FeatureKind::FACE, partner.patches[c.b]},
+                     vector3(vertices[c.a]), Vector3(rows[i].point), Vector3(rows[i].normal), rows[i].depth);
   }
 }
 
 /** What lies beside one face of a plane but over another does not fade. */
 void Evaluation::dropCovered(bool moves) {
-  auto& fading = buffers_.fading;
+  if (buffers_.may_be_covered.empty()) return;
+  const std::vector<Candidate>& pairs = buffers_.fading.pairs;
   auto& last = buffers_.last_fading;
-  if (last.size() < lists_.near[moves].vertices.names.size()) last.resize(lists_.near[moves].vertices.names.size(), NONE);
-  bool may_be_covered = false;
-  for (std::uint32_t i = 0; i < fading.size(); ++i) {
-    if (!fading[i].goes_on) continue;
-    fading[i].before = std::exchange(last[fading[i].vertex], i);
-    may_be_covered = true;
-  }
-  if (!may_be_covered) return;
+  EvaluationBuffers::makeRoom(lists_.near[moves].vertices.names.size(), &last, NONE);
+  buffers_.covers.assign(pairs.size(), {NONE, false});
+  for (const std::uint32_t i : buffers_.may_be_covered) buffers_.covers[i].before = std::exchange(last[pairs[i].a], i);
   listCovering(moves);
   bool is_any_covered = false;
-  for (const Candidate& c : buffers_.over) {
-    forEachBeside(moves, c, [&](FadingVertex* each) { each->is_covered = is_any_covered = true; });
-  }
-  for (const FadingVertex& each : fading) last[each.vertex] = NONE;
-  if (!is_any_covered) return;
-  found_.close.keepOfLast(fading.size(), [&](std::size_t i) { return !fading[i].is_covered; });
+  for (const Candidate& c : buffers_.over) forEachBeside(moves, c, [&](FadingCover* cover) { cover->is_covered = is_any_covered = true; });
+  for (const std::uint32_t i : buffers_.may_be_covered) last[pairs[i].a] = NONE;
+  if (is_any_covered) found_.close.keepOfLast(pairs.size(), [&](std::size_t i) { return !buffers_.covers[i].is_covered; });
 }
 
 /** Of vertices whose contacts may be covered, the plain ones with other faces of the same plane. */
@@ -159,7 +125,7 @@ void Evaluation::listCovering(bool moves) {
   asked.clear();
   for (const Candidate& c : pairs_.vertex_face[moves]) {
     bool is_asked = false;
-    forEachBeside(moves, c, [&](FadingVertex*) { is_asked = true; });
+    forEachBeside(moves, c, [&](FadingCover*) { is_asked = true; });
     if (is_asked) asked.push_back(c);
   }
   EvaluationBuffers::makeRoom(asked.size() + 1, &buffers_.vertex_faces);
@@ -176,9 +142,9 @@ void Evaluation::listCovering(bool moves) {
 template <typename Visit>
 void Evaluation::forEachBeside(bool moves, const Candidate& c, Visit&& visit) {
   const std::vector<int>& patches = lists_.near[!moves].patches;
-  for (std::uint32_t at = buffers_.last_fading[c.a]; at != NONE; at = buffers_.fading[at].before) {
-    FadingVertex& each = buffers_.fading[at];
-    if (each.face != c.b && patches[each.face] == patches[c.b]) visit(&each);
+  for (std::uint32_t at = buffers_.last_fading[c.a]; at != NONE; at = buffers_.covers[at].before) {
+    const std::uint32_t face = buffers_.fading.pairs[at].b;
+    if (face != c.b && patches[face] == patches[c.b]) visit(&buffers_.covers[at]);
   }
 }
 

@@ -41,9 +41,11 @@ struct Kernels {
    * @param plain takes those that are plain and not near a border, instead of the hits; null: nothing does @return number of hits */
   std::uint32_t (*vertexFaces)(const NearVertices& a, const FaceRecord* b, const OpenSides* open, const Candidate* candidates,
                                std::uint32_t count, const std::uint8_t* inner, double range, PlainContacts* plain, VertexFaceHit* hits);
-  /** The contacts of vertices with sides of faces. @param sides as the pairs */
-  void (*sideFeet)(const ContactPlace& place, const NearVertices& vertices, const FaceRecord* faces, const BesideSide* sides,
-                   const Candidate* pairs, std::uint32_t count, SideFoot* feet);
+  /** The contacts within `range` of vertices with the nearest of those sides of faces that they lie outside of. Where witness points are
+   * asked for a row has the foot on the side and the normal from the fixed mesh to the moving one, in frame F, and the gap as its depth.
+   * @param sides as the pairs @return how many */
+  std::uint32_t (*sideFeet)(const ContactPlace& place, const NearVertices& vertices, const FaceRecord* faces, const FaceCorners* corners,
+                            const BesideSides* sides, std::uint32_t count, double range, FadingContacts* out);
   /** As vertexFaces. @param left takes those that are not plain */
   std::uint32_t (*edgeEdges)(const EdgeRecord* a, const EdgeRecord* b, const Candidate* candidates, std::uint32_t count, double range,
                              PlainEdges* plain, LeftEdges* left, EdgeEdgeHit* hits);
@@ -59,6 +61,10 @@ struct Kernels {
                                   std::uint32_t* hits);
   /** Of a vertex's edges, in so many blocks. @param down, aside unit, three numbers each, as the edges */
   LeadingEdges (*leadingEdges)(const EdgeDirections* blocks, int count, const double* down, const double* aside);
+  /** Where the edges of vertices lead that leave faces over their sides: down, to the face, and aside, into it.
+   * @param directions of all vertices @param to_vertices turns directions of the faces */
+  void (*leadingAtSides)(const EdgeDirections* directions, const FaceRecord* faces, const Motion& to_vertices, const Candidate* pairs,
+                         const LeavingSide* sides, std::uint32_t count, LeadingEdges* leading);
   /** Has one of them a part along `towards` whose square is larger than `least2`? */
   bool (*leadTo)(const EdgeDirections* blocks, int count, const double* towards, double least2);
   /** Edges that pass through a face's plane where the face may be. */

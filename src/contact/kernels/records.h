@@ -188,17 +188,24 @@ struct PlainContacts {
   double deepest;       ///< [m] their largest depth so far
 };
 
-/** A side of a face beside which a vertex lies; the face's mesh's frame. */
-struct BesideSide {
-  Vec4 start, along;  ///< its corner, to the next one
+/** Corners of a face; its mesh's frame. Side k goes from corner k to the next. */
+struct FaceCorners {
+  Vec4 of[3];
 };
 
-/** A vertex's contact with a face's side: as a Contact; where witness points are asked for, the foot on the side, in frame F. */
-struct SideFoot {
-  double point[3];   ///< [m]
-  double normal[3];  ///< unit; in frame F from the fixed mesh to the moving one
-  double distance;   ///< [m] of the vertex
-  double lost;       ///< [m] of depth, since the vertex lies beside the face
+/** A face beside which a vertex lies. */
+struct BesideSides {
+  std::uint32_t outside;  ///< bits k: outside its side k; not none
+  std::uint32_t face;     ///< among FaceCorners
+  double reach;           ///< [m] farther beside the face the vertex lies over no other face of the plane
+};
+
+/** Where kernels write contacts that fade. Room for one more of each than there are pairs. */
+struct FadingContacts {
+  Candidate* pairs;       ///< vertices and faces that they lie beside; then those that have a contact
+  ContactRow* rows;       ///< of those
+  std::uint32_t* within;  ///< indices of those within the face's reach
+  std::uint32_t within_count;
 };
 
 }  // namespace blem_sim::kernels
