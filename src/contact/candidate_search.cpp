@@ -62,7 +62,6 @@ class Search {
     const kernels::LeafReach reach = leafReach();
     const bool contacts = listing_.kind == CandidateKind::CONTACTS;
     forEachLeafPair(leaf_pairs, [&](const LeafInUse& m, const LeafInUse& f) {
-      addNormals(f.shapes.region);
       (contacts ? kernels.leafContacts : kernels.leafCrossings)(m.shapes, f.shapes, reach, &buffers_.hits);
       if (contacts) {
         appendContacts(m, f);
@@ -71,6 +70,7 @@ class Search {
       }
     });
     copyNew();
+    if (contacts && listing_.origin.margin.motion > 0) addNormals();
   }
 
  private:
@@ -178,31 +178,27 @@ class Search {
     std::vector<CandidateListing::Leaf>& leaves = listing_.leaves[moves];
     index = static_cast<std::uint32_t>(leaves.size());
     leaves.push_back({node});
-    buffers_.found[moves].push_back({&found, nullptr});
+    buffers_.found[moves].push_back({found.is_described ? &describe(moves, &found, &leaves.back()) : nullptr, nullptr});
     return index;
   }
 
   LeafInUse leaf(bool moves, std::uint32_t index) {
     FoundLeaf& found = buffers_.found[moves][index];
     CandidateListing::Leaf& leaf = listing_.leaves[moves][index];
-    if (!found.shapes) lookAt(moves, index, &found, &leaf);
-    return {*found.kept->features, *found.shapes, leaf.slots};
+    if (!found.shapes) {
+      if (!found.features) found.features = &describe(moves, &find(moves, leaf.node), &leaf);
+      found.shapes = moves ? turned(found.features->shapes, index) : &found.features->shapes;
+    }
+    return {*found.features, *found.shapes, leaf.slots};
   }
 
-  void lookAt(bool moves, std::uint32_t index, FoundLeaf* found, CandidateListing::Leaf* leaf) {
-    if (!found->kept) found->kept = &find(moves, leaf->node);
-    const kernels::LeafShapes& shapes = buffers_.leaves.describe(pair_.side(moves), leaf->node, found->kept).shapes;
-    found->shapes = moves ? turned(shapes, index) : &shapes;
-    if (leaf->slots != NOWHERE) return;
-    leaf->slots = static_cast<std::uint32_t>(listing_.slots.size());
-    listing_.slots.resize(leaf->slots + found->kept->feature_count, NOWHERE);
-  }
-
-  /** Directions within an angle of an axis are in a ball. */
-  void addNormals(const kernels::LeafRegion& region) {
-    const double lean = region.lean;
-    const Vector3 up(region.axes[2][0], region.axes[2][1], region.axes[2][2]);
-    listing_.normals.add(std::sqrt(std::max(1 - lean * lean, 0.0)) * up, lean);
+  const LeafFeatures& describe(bool moves, KeptLeaf* kept, CandidateListing::Leaf* leaf) {
+    const LeafFeatures& features = buffers_.leaves.describe(pair_.side(moves), leaf->node, kept);
+    if (leaf->slots == NOWHERE) {
+      leaf->slots = static_cast<std::uint32_t>(listing_.slots.size());
+      listing_.slots.resize(leaf->slots + kept->feature_count, NOWHERE);
+    }
+    return features;
   }
 
   /** The shapes of a moving leaf in the fixed mesh's frame. */
@@ -250,6 +246,17 @@ class Search {
         near.addFaceOf(*f.leaf, f.i);
       }
       added.clear();
+    }
+  }
+
+  /** Of the fixed leaves that were looked at: directions within an angle of an axis are in a ball. */
+  void addNormals() {
+    for (const FoundLeaf& found : buffers_.found[false]) {
+      if (!found.shapes) continue;
+      const kernels::LeafRegion& region = found.shapes->region;
+      const double lean = region.lean;
+      const Vector3 up(region.axes[2][0], region.axes[2][1], region.axes[2][2]);
+      listing_.normals.add(std::sqrt(std::max(1 - lean * lean, 0.0)) * up, lean);
     }
   }
 

@@ -22,7 +22,7 @@ struct CandidateListing {
   static constexpr std::uint32_t NOWHERE = 0xFFFFFFFF;
   /** A leaf near the other mesh, and the first of its slots: where its vertices, then its faces and edges, are among the near features. */
   struct Leaf {
-    std::uint32_t node, slots = NOWHERE;  ///< slots from when it is looked at
+    std::uint32_t node, slots = NOWHERE;  ///< slots from when it is described
   };
   struct LeafPair {
     std::uint32_t moving, fixed;  ///< of the leaves
@@ -31,7 +31,7 @@ struct CandidateListing {
   std::vector<std::uint32_t> slots;
   std::vector<LeafPair> pairs;
   std::size_t done = 0;   ///< of the pairs
-  DirectionBall normals;  ///< of the fixed mesh where it is near the moving one: of those leaves that were looked at
+  DirectionBall normals;  ///< of the fixed mesh where it is near the moving one, of a list for contacts that lasts
 
   std::size_t left() const { return pairs.size() - done; }
   bool isComplete() const { return origin.known && left() == 0; }
@@ -39,7 +39,7 @@ struct CandidateListing {
 
 /** A leaf of a listing. */
 struct FoundLeaf {
-  KeptLeaf* kept = nullptr;                     ///< null: not found yet
+  const LeafFeatures* features = nullptr;       ///< null: not found or not described yet
   const kernels::LeafShapes* shapes = nullptr;  ///< in the fixed mesh's frame; null: not looked at yet
 };
 

@@ -183,14 +183,12 @@ KeptLeaf& LeafMemory::find(const MeshSide& side, std::uint32_t leaf, std::uint64
   return found;
 }
 
-const LeafFeatures& LeafMemory::describe(const MeshSide& side, std::uint32_t leaf, KeptLeaf* found) {
-  if (found->is_described) return *found->features;
+void LeafMemory::describeAnew(const MeshSide& side, std::uint32_t leaf, KeptLeaf* found) {
   if (!found->features) found->features = std::make_unique<LeafFeatures>();
   blem_sim::describe(side, leaf, &surroundings_, found->features.get());
   const LeafShapes& shapes = found->features->shapes;
   found->feature_count = shapes.vertex_count + shapes.face_count + shapes.edge_count;
   found->is_described = true;
-  return *found->features;
 }
 
 }  // namespace blem_sim

@@ -62,7 +62,10 @@ class LeafMemory {
   /** @return the leaf's place until the search ends */
   KeptLeaf& find(const MeshSide& side, std::uint32_t leaf, std::uint64_t search);
   /** What was found is described, if it is not yet. */
-  const LeafFeatures& describe(const MeshSide& side, std::uint32_t leaf, KeptLeaf* found);
+  const LeafFeatures& describe(const MeshSide& side, std::uint32_t leaf, KeptLeaf* found) {
+    if (!found->is_described) describeAnew(side, leaf, found);
+    return *found->features;
+  }
 
  private:
   static constexpr std::size_t SET_BITS = 11, WAYS = 8;  // 16,384 leaves; places that a leaf may have
@@ -72,6 +75,7 @@ class LeafMemory {
     KeptLeaf leaves[WAYS];
   };
   static std::uint64_t keyOf(const MeshSide& side, std::uint32_t leaf) { return side.identity << 32 | leaf; }
+  void describeAnew(const MeshSide& side, std::uint32_t leaf, KeptLeaf* found);
   KeptLeaf& findKept(const MeshSide& side, std::uint32_t leaf, std::uint64_t search);
   KeptLeaf& findCrowdedOut(const MeshSide& side, std::uint32_t leaf, std::uint64_t search);
 
