@@ -47,10 +47,10 @@ struct EvaluationBuffers {
   std::vector<kernels::Candidate> asked;  ///< vertices that may be over such faces
   LeavingBuffers leaving;
   BesideFaces fading;
-  std::vector<kernels::ContactRow> feet;      ///< as the pairs that fade
-  std::vector<std::uint32_t> may_be_covered;  ///< of those with a contact, the last close ones
-  std::vector<FadingCover> covers;            ///< as these
-  std::vector<std::uint32_t> last_fading;     ///< of each vertex; none between evaluations
+  std::vector<kernels::ContactRow> feet;             ///< as the pairs that fade
+  std::vector<kernels::FadingContact> asked_fading;  ///< those that may be covered
+  std::vector<FadingCover> covers;                   ///< as these
+  std::vector<std::uint32_t> last_fading;            ///< of each vertex; none between evaluations
 
   template <typename Items, typename... Item>
   static void makeRoom(std::size_t size, Items* items, const Item&... filled_with) {
@@ -87,8 +87,9 @@ class Evaluation {
   std::uint32_t findVertexFaces(bool moves);
   kernels::ContactPlace place(bool vertices_move) const;
   void addPlain(bool moves, const kernels::Candidate& c, double height);
-  void addFading(bool moves);
-  void dropCovered(bool moves);
+  std::uint32_t addFading(bool moves);
+  void addFeet(bool moves);
+  void dropCovered(bool moves, std::uint32_t count);
   void listCovering(bool moves);
   template <typename Visit>
   void forEachBeside(bool moves, const kernels::Candidate& c, Visit&& visit);

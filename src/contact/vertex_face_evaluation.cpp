@@ -66,8 +66,7 @@ void Evaluation::vertexFaces(bool moves) {
   }
   fades_.list(moves, candidates.data(), hits.data(), count, &buffers_.leaving, &buffers_.fading);
   if (buffers_.fading.pairs.empty()) return;
-  addFading(moves);
-  dropCovered(moves);
+  dropCovered(moves, addFading(moves));
 }
 
 void Evaluation::addPlain(bool moves, const Candidate& c, double height) {
@@ -80,43 +79,57 @@ void Evaluation::addPlain(bool moves, const Candidate& c, double height) {
   found_.close.add(pair_, moves, vertex, patch, p, foot, normal, std::abs(height));
 }
 
-/** Of each vertex with a face: at the nearest of the sides. Of the pairs stay those that have a contact. */
-void Evaluation::addFading(bool moves) {
-  std::vector<Candidate>& pairs = buffers_.fading.pairs;
-  const std::size_t size = pairs.size();
-  pairs.resize(size + 1);
+/** Of each vertex with a face: at the nearest of the sides. */
+std::uint32_t Evaluation::addFading(bool moves) {
+  const auto size = static_cast<std::uint32_t>(buffers_.fading.pairs.size());
   const bool keeps_feet = found_.close.keepsWitnesses();
   if (keeps_feet) EvaluationBuffers::makeRoom(size + 1, &buffers_.feet);
-  EvaluationBuffers::makeRoom(size + 1, &buffers_.may_be_covered);
+  buffers_.asked_fading.resize(size);
   const NearFeatures& partner = lists_.near[!moves];
-  kernels::ContactRow* const rows = keeps_feet ? buffers_.feet.data() : found_.close.rows(size + 1);
-  kernels::FadingContacts out{pairs.data(), rows, buffers_.may_be_covered.data(), 0};
-  pairs.resize(kernels::kernels().sideFeet(place(moves), buffers_.turned.nearFaces(lists_, moves, pair_.X_FM), partner.faces.records.data(),
-                                           partner.fading.corners(), buffers_.fading.sides.data(), static_cast<std::uint32_t>(size),
-                                           pair_.range, &out));
-  buffers_.may_be_covered.resize(out.within_count);
-  if (!keeps_feet) return found_.close.advance(pairs.size());
+  kernels::FadingContacts out{keeps_feet ? buffers_.feet.data() : found_.close.rows(size + 1), buffers_.asked_fading.data(), 0};
+  const std::uint32_t count = kernels::kernels().sideFeet(
+      place(moves), buffers_.turned.nearFaces(lists_, moves, pair_.X_FM), partner.faces.records.data(), partner.fading.corners(),
+      buffers_.fading.sides.data(), buffers_.fading.pairs.data(), size, pair_.range, &out);
+  buffers_.asked_fading.resize(out.asked_count);
+  if (keeps_feet) {
+    addFeet(moves);
+  } else {
+    found_.close.advance(count);
+  }
+  return count;
+}
+
+void Evaluation::addFeet(bool moves) {
   const auto& vertices = moves ? buffers_.turned.vertices : lists_.near[0].vertices.records;
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const Candidate& c = pairs[i];
-    found_.close.add(pair_, moves, {FeatureKind::VERTEX, lists_.near[moves].vertices.names[c.a]}, {FeatureKind::FACE, partner.patches[c.b]},
-                     vector3(vertices[c.a]), Vector3(rows[i].point), Vector3(rows[i].normal), rows[i].depth);
+  for (const kernels::FadingContact& each : buffers_.asked_fading) {
+    const Candidate& c = buffers_.fading.pairs[each.pair];
+    const kernels::ContactRow& foot = buffers_.feet[each.row];
+    found_.close.add(pair_, moves, {FeatureKind::VERTEX, lists_.near[moves].vertices.names[c.a]},
+                     {FeatureKind::FACE, lists_.near[!moves].patches[c.b]}, vector3(vertices[c.a]), Vector3(foot.point),
+                     Vector3(foot.normal), foot.depth);
   }
 }
 
-/** What lies beside one face of a plane but over another does not fade. */
-void Evaluation::dropCovered(bool moves) {
-  if (buffers_.may_be_covered.empty()) return;
+/** What lies beside one face of a plane but over another does not fade. @param count the last contacts fade */
+void Evaluation::dropCovered(bool moves, std::uint32_t count) {
+  const auto& asked = buffers_.asked_fading;
+  if (asked.empty()) return;
   const std::vector<Candidate>& pairs = buffers_.fading.pairs;
   auto& last = buffers_.last_fading;
+  auto& covers = buffers_.covers;
   EvaluationBuffers::makeRoom(lists_.near[moves].vertices.names.size(), &last, NONE);
-  buffers_.covers.assign(pairs.size(), {NONE, false});
-  for (const std::uint32_t i : buffers_.may_be_covered) buffers_.covers[i].before = std::exchange(last[pairs[i].a], i);
+  covers.resize(asked.size());
+  for (std::uint32_t i = 0; i < asked.size(); ++i) covers[i] = {std::exchange(last[pairs[asked[i].pair].a], i), false};
   listCovering(moves);
   bool is_any_covered = false;
   for (const Candidate& c : buffers_.over) forEachBeside(moves, c, [&](FadingCover* cover) { cover->is_covered = is_any_covered = true; });
-  for (const std::uint32_t i : buffers_.may_be_covered) last[pairs[i].a] = NONE;
-  if (is_any_covered) found_.close.keepOfLast(pairs.size(), [&](std::size_t i) { return !buffers_.covers[i].is_covered; });
+  for (const kernels::FadingContact& each : asked) last[pairs[each.pair].a] = NONE;
+  if (!is_any_covered) return;
+  std::size_t next = 0;
+  found_.close.keepOfLast(count, [&](std::size_t i) {
+    if (next == asked.size() || asked[next].row != i) return true;
+    return !covers[next++].is_covered;
+  });
 }
 
 /** Of vertices whose contacts may be covered, the plain ones with other faces of the same plane. */
@@ -143,7 +156,7 @@ template <typename Visit>
 void Evaluation::forEachBeside(bool moves, const Candidate& c, Visit&& visit) {
   const std::vector<int>& patches = lists_.near[!moves].patches;
   for (std::uint32_t at = buffers_.last_fading[c.a]; at != NONE; at = buffers_.covers[at].before) {
-    const std::uint32_t face = buffers_.fading.pairs[at].b;
+    const std::uint32_t face = buffers_.fading.pairs[buffers_.asked_fading[at].pair].b;
     if (face != c.b && patches[face] == patches[c.b]) visit(&buffers_.covers[at]);
   }
 }

@@ -65,33 +65,30 @@ struct SidesAndVertices {
 
 /** What a set finds. */
 struct Feet {
-  Feet(const Kernels& set, const SidesAndVertices& in, bool keeps_feet) : pairs(in.pairs), rows(COUNT + 1), within(COUNT + 1) {
-    pairs.resize(COUNT + 1);
-    FadingContacts out{pairs.data(), rows.data(), within.data(), 0};
-    count = set.sideFeet(in.place(keeps_feet), {in.placed.data(), in.faces_move, motionOf(in.X_FM.inverse())}, in.faces.data(),
-                         in.corners.data(), in.sides.data(), COUNT, RANGE, &out);
-    pairs.resize(count);
+  Feet(const Kernels& set, const SidesAndVertices& in, bool keeps_feet) : rows(COUNT + 1), asked(COUNT) {
+    FadingContacts out{rows.data(), asked.data(), 0};
+    count = set.sideFeet(in.place(keeps_feet), {in.placed.data(), in.faces_move, motionOf(in.X_FM.inverse()), motionOf(in.X_FM)},
+                         in.faces.data(), in.corners.data(), in.sides.data(), in.pairs.data(), COUNT, RANGE, &out);
     rows.resize(count);
-    within.resize(out.within_count);
+    asked.resize(out.asked_count);
   }
 
-  std::vector<Candidate> pairs;
   std::vector<ContactRow> rows;
-  std::vector<std::uint32_t> within;
+  std::vector<FadingContact> asked;
   std::uint32_t count;
 };
 
 TEST(SideFeet, AreTheClosestPointsOfTheNearestSides) {
   for (const bool faces_move : {false, true}) {
     const SidesAndVertices in(faces_move);
-    const Feet feet(*availableKernels().front(), in, true);
+    const Feet feet(*availableKernels().front(), in, true), contacts(*availableKernels().front(), in, false);
     std::uint32_t found = 0, ends = 0;
-    std::vector<std::uint32_t> within;
+    std::uint32_t within = 0;
     for (std::uint32_t i = 0; i < COUNT; ++i) {
       const Vector3 placed = vector3(in.placed[i]), p = faces_move ? Vector3(in.X_FM.inverse() * placed) : placed,
                     normal = vector3(in.faces[i].plane), projection = p - (normal.dot(p) - in.faces[i].plane.w) * normal;
       double beside = 1e9, part = 0;
-      Vector3 foot;
+      Vector3 foot = Vector3::Zero();
       for (int k = 0; k < 3; ++k) {
         if ((in.sides[i].outside >> k & 1) == 0) continue;
         const Vector3 start = vector3(in.corners[i].of[k]), along = vector3(in.corners[i].of[(k + 1) % 3]) - start;
@@ -105,10 +102,14 @@ TEST(SideFeet, AreTheClosestPointsOfTheNearestSides) {
       const double gap = (p - foot).norm() + FADE_SLOPE * beside;
       if (gap > RANGE) continue;
       ends += part == 0 || part == 1;
-      if (beside <= in.sides[i].reach) within.push_back(found);
-      ASSERT_LT(found, feet.count);
-      EXPECT_EQ(feet.pairs[found].a, i);
-      EXPECT_EQ(feet.pairs[found].b, i);
+      if (beside <= in.sides[i].reach) {
+        ASSERT_LT(within, contacts.asked.size());
+        EXPECT_EQ(contacts.asked[within].row, found);
+        EXPECT_EQ(contacts.asked[within++].pair, i);
+      }
+      ASSERT_LT(found, feet.asked.size());
+      EXPECT_EQ(feet.asked[found].row, found);
+      EXPECT_EQ(feet.asked[found].pair, i);
       const ContactRow& row = feet.rows[found++];
       const Vector3 foot_F = faces_move ? Vector3(in.X_FM * foot) : foot, from_fixed = (faces_move ? -1 : 1) * (placed - foot_F);
       EXPECT_NEAR((Vector3(row.point) - foot_F).norm(), 0, 1e-13);
@@ -116,13 +117,13 @@ TEST(SideFeet, AreTheClosestPointsOfTheNearestSides) {
       EXPECT_NEAR(row.depth, gap, 1e-13);
     }
     EXPECT_EQ(found, feet.count);
-    EXPECT_EQ(within, feet.within);
+    EXPECT_EQ(within, contacts.asked.size());
     EXPECT_GT(found, 15u);
     EXPECT_LT(found, COUNT);
     EXPECT_GT(ends, 2u);
     EXPECT_LT(ends, found);
-    EXPECT_GT(within.size(), 3u);
-    EXPECT_LT(within.size(), found);
+    EXPECT_GT(within, 3u);
+    EXPECT_LT(within, found);
   }
 }
 
@@ -136,11 +137,10 @@ TEST(SideFeet, ContactsAreThoseMadeOneByOne) {
     const MeshPair pair{
         MeshSide(geometry), MeshSide(geometry), in.X_FM, RADIUS_A + RADIUS_B, 1, {!faces_move, RADIUS_A, RADIUS_B}, in.X_WF};
     for (std::uint32_t i = 0; i < feet.count; ++i) {
-      const int vertex = static_cast<int>(feet.pairs[i].a);
+      const std::uint32_t pair_index = feet.asked[i].pair;
       Contact one;
-      placeInWorld(pair, !faces_move, {FeatureKind::VERTEX, vertex}, {FeatureKind::FACE, in.patches[feet.pairs[i].b]},
-                   vector3(in.placed[feet.pairs[i].a]), Vector3(feet.rows[i].point), Vector3(feet.rows[i].normal), feet.rows[i].depth,
-                   &one);
+      placeInWorld(pair, !faces_move, {FeatureKind::VERTEX, static_cast<int>(pair_index)}, {FeatureKind::FACE, in.patches[pair_index]},
+                   vector3(in.placed[pair_index]), Vector3(feet.rows[i].point), Vector3(feet.rows[i].normal), feet.rows[i].depth, &one);
       EXPECT_EQ(std::memcmp(&contacts.rows[i], &one, sizeof(double[7])), 0);
       EXPECT_EQ(contacts.rows[i].id, one.id);
       EXPECT_EQ(contacts.rows[i].weight, 1);
@@ -158,9 +158,9 @@ TEST(SideFeet, AllInstructionSetsFindTheSame) {
         SCOPED_TRACE(set->name);
         const Feet each(*set, in, keeps_feet);
         ASSERT_EQ(each.count, baseline.count);
-        EXPECT_EQ(each.within, baseline.within);
+        ASSERT_EQ(each.asked.size(), baseline.asked.size());
         EXPECT_EQ(std::memcmp(each.rows.data(), baseline.rows.data(), each.count * sizeof(ContactRow)), 0);
-        EXPECT_EQ(std::memcmp(each.pairs.data(), baseline.pairs.data(), each.count * sizeof(Candidate)), 0);
+        EXPECT_EQ(std::memcmp(each.asked.data(), baseline.asked.data(), each.asked.size() * sizeof(FadingContact)), 0);
       }
     }
   }

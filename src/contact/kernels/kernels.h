@@ -45,7 +45,7 @@ struct Kernels {
    * asked for a row has the foot on the side and the normal from the fixed mesh to the moving one, in frame F, and the gap as its depth.
    * @param sides as the pairs @return how many */
   std::uint32_t (*sideFeet)(const ContactPlace& place, const NearVertices& vertices, const FaceRecord* faces, const FaceCorners* corners,
-                            const BesideSides* sides, std::uint32_t count, double range, FadingContacts* out);
+                            const BesideSides* sides, const Candidate* pairs, std::uint32_t count, double range, FadingContacts* out);
   /** As vertexFaces. @param left takes those that are not plain */
   std::uint32_t (*edgeEdges)(const EdgeRecord* a, const EdgeRecord* b, const Candidate* candidates, std::uint32_t count, double range,
                              PlainEdges* plain, LeftEdges* left, EdgeEdgeHit* hits);

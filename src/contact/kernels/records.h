@@ -200,12 +200,16 @@ struct BesideSides {
   double reach;           ///< [m] farther beside the face the vertex lies over no other face of the plane
 };
 
-/** Where kernels write contacts that fade. Room for one more of each than there are pairs. */
+/** The row of a contact that fades, and whose it is. */
+struct FadingContact {
+  std::uint32_t row, pair;
+};
+
+/** Where kernels write contacts that fade. Room for one more row than there are pairs. */
 struct FadingContacts {
-  Candidate* pairs;       ///< vertices and faces that they lie beside; then those that have a contact
-  ContactRow* rows;       ///< of those
-  std::uint32_t* within;  ///< indices of those within the face's reach
-  std::uint32_t within_count;
+  ContactRow* rows;
+  FadingContact* asked;  ///< those within the face's reach; where witness points are asked for, all
+  std::uint32_t asked_count;
 };
 
 }  // namespace blem_sim::kernels

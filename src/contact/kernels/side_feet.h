@@ -59,12 +59,11 @@ inline Doubles reaches(const BesideSides* sides, std::uint32_t count) {
 }
 
 std::uint32_t sideFeet(const ContactPlace& place, const NearVertices& vertices, const FaceRecord* faces, const FaceCorners* corners,
-                       const BesideSides* sides, std::uint32_t count, double range, FadingContacts* out) {
-  Candidate* pair = out->pairs;
+                       const BesideSides* sides, const Candidate* pairs, std::uint32_t count, double range, FadingContacts* out) {
   ContactRow* row = out->rows;
-  std::uint32_t* within = out->within;
+  out->asked_count = 0;
   for (std::uint32_t first = 0; first < count; first += LANES) {
-    const Batch batch(out->pairs, first, count);
+    const Batch batch(pairs, first, count);
     const Rows points = batch.points(vertices.records, OF_A);
     const Vectors &at = points.v, p = seenByFaces(vertices, at);
     const Rows plane = batch.field(faces, OF_B, &FaceRecord::plane);
@@ -77,15 +76,12 @@ std::uint32_t sideFeet(const ContactPlace& place, const NearVertices& vertices, 
     const WorldContacts contacts = place.keeps_feet ? WorldContacts{foot, normal} : inWorld(place, at, foot, normal);
     const unsigned bits = bitsOf((distance > TOUCH) & (gap <= range)) & batch.valid,
                    near = bits & bitsOf(lost <= FADE_SLOPE * reaches(sides + first, count - first));
-    row = appendRows(contacts, place.keeps_feet ? gap : place.layer - gap, idsOf(points, EachFace{batch, faces}, place), bits, row);
-    for (int i = 0; i < LANES; ++i) {
-      *pair = batch.lanes[i];
-      *within = static_cast<std::uint32_t>(pair - out->pairs);
-      pair += bits >> i & 1;
-      within += near >> i & 1;
+    for (unsigned asked = place.keeps_feet ? bits : near; asked != 0; asked &= asked - 1) {
+      const int lane = __builtin_ctz(asked), before = __builtin_popcount(bits & ((1u << lane) - 1));
+      out->asked[out->asked_count++] = {static_cast<std::uint32_t>(row - out->rows + before), first + lane};
     }
+    row = appendRows(contacts, place.keeps_feet ? gap : place.layer - gap, idsOf(points, EachFace{batch, faces}, place), bits, row);
   }
-  out->within_count = static_cast<std::uint32_t>(within - out->within);
   return static_cast<std::uint32_t>(row - out->rows);
 }
 
