@@ -83,6 +83,7 @@ class KnownPairs {
     compactFeatures();
     vertex_faces_.resize(size() + 1);
     edge_edges_.resize(size() + 1);
+    edges_left_.resize(size() + 1);
     vertex_edges_.resize(size());
     others_.resize(size());
   }
@@ -103,11 +104,14 @@ class KnownPairs {
     for (const bool moves : {true, false}) {
       const Candidates &faces = pairs.vertex_face[moves], &edges = pairs.vertex_edge[moves];
       hits += k.vertexFaces(turned_.nearFaces(lists_, moves, X_FM_), lists_.near[!moves].faces.records.data(),
-                            lists_.near[!moves].open.data(), faces.data(), count(faces), range_, nullptr, vertex_faces_.data());
+                            lists_.near[!moves].open.data(), faces.data(), count(faces), nullptr, range_, nullptr, vertex_faces_.data());
       hits += k.vertexEdges(moves ? moving_vertices : fixed_vertices, moves ? fixed_edges : moving_edges, edges.data(), count(edges),
                             range_, vertex_edges_.data());
     }
-    hits += k.edgeEdges(moving_edges, fixed_edges, pairs.edge_edge.data(), count(pairs.edge_edge), range_, nullptr, edge_edges_.data());
+    kernels::LeftEdges left{edges_left_.data(), 0};
+    hits +=
+        k.edgeEdges(moving_edges, fixed_edges, pairs.edge_edge.data(), count(pairs.edge_edge), range_, nullptr, &left, edge_edges_.data());
+    hits += left.count;
     hits +=
         k.vertexVertices(moving_vertices, fixed_vertices, pairs.vertex_vertex.data(), count(pairs.vertex_vertex), range_, others_.data());
     return hits;
@@ -167,6 +171,7 @@ class KnownPairs {
   TurnedFeatures turned_;
   std::vector<kernels::VertexFaceHit> vertex_faces_;
   std::vector<kernels::EdgeEdgeHit> edge_edges_;
+  Candidates edges_left_;
   std::vector<kernels::VertexEdgeHit> vertex_edges_;
   std::vector<std::uint32_t> others_;
 };

@@ -7,21 +7,28 @@
 namespace blem_sim {
 namespace {
 
-/** Seen from where `slope` is positive: how steeply (sine) the steepest of a face's neighbours over an edge rises out of its plane. */
-BorderKind kindOf(bool is_round, double slope) {
-  if (slope > CONE_SLACK) return slope > NEAR_SUCCESSOR ? BorderKind::RISING : BorderKind::TURNING;
-  return is_round ? BorderKind::ROUND : BorderKind::FALLING;
+/** @param slope seen from where it is positive: how steeply (sine) the steepest of a face's neighbours over an edge rises out of its plane
+ */
+void addSide(bool is_round, int k, double slope, BorderKinds::Seen* seen) {
+  const auto bit = static_cast<std::uint8_t>(1 << k);
+  if (slope > NEAR_SUCCESSOR) {
+    seen->rising |= bit;
+  } else if (slope <= CONE_SLACK) {
+    (is_round ? seen->round : seen->falling) |= bit;
+  }
 }
 
 }  // namespace
 
 BorderKinds borderKinds(const MeshSide& side, int face, SurroundingsMemory* surroundings) {
-  BorderKinds kinds;
+  BorderKinds kinds{};
   const Vector3 normal = MeshTopology::normal(side.mesh, face);
   for (int k = 0; k < 3; ++k) {
     const int edge = side.topology.edgeOf(face, k);
-    kinds.of[0][k] = kinds.of[1][k] = BorderKind::FLAT;
-    if (side.topology.isFlatEdge(edge)) continue;
+    if (side.topology.isFlatEdge(edge)) {
+      for (BorderKinds::Seen& seen : kinds.seen) seen.flat |= static_cast<std::uint8_t>(1 << k);
+      continue;
+    }
     double above = -1, below = -1;
     const EdgeFaces faces = side.topology.facesOf(edge);
     const int* neighbour = faces.begin();
@@ -32,23 +39,17 @@ BorderKinds borderKinds(const MeshSide& side, int face, SurroundingsMemory* surr
       below = std::max(below, -slope);
     });
     const bool is_round = surroundings->ofEdge(side, edge).is_round;
-    kinds.of[1][k] = kindOf(is_round, above);
-    kinds.of[0][k] = kindOf(is_round, below);
+    addSide(is_round, k, above, &kinds.seen[1]);
+    addSide(is_round, k, below, &kinds.seen[0]);
   }
   return kinds;
 }
 
 kernels::OpenSides openSides(const BorderKinds& kinds) {
-  const auto from = [](const BorderKind(&of)[3]) {
-    int open = 0;
-    bool fades = false;
-    for (int k = 0; k < 3; ++k) {
-      open |= (of[k] > BorderKind::ROUND) << k;
-      fades = fades || of[k] == BorderKind::FALLING || of[k] == BorderKind::RISING;
-    }
-    return fades ? open : 0;
+  const auto from = [](const BorderKinds::Seen& seen) {
+    return (seen.falling | seen.rising) != 0 ? kernels::VertexFaceHit::OUTSIDE & ~(seen.flat | seen.round) : 0;
   };
-  return from(kinds.of[1]) | from(kinds.of[0]) << 3;
+  return static_cast<kernels::OpenSides>(from(kinds.seen[1]) | from(kinds.seen[0]) << 3);
 }
 
 }  // namespace blem_sim

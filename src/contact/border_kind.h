@@ -7,21 +7,15 @@
 
 namespace blem_sim {
 
-enum class BorderKind : std::uint8_t {
-  FLAT,     ///< the plane goes on
-  ROUND,    ///< it falls, by so little that the edge and the face behind it take over whatever leaves
-  FALLING,  ///< nothing rises out of the plane
-  TURNING,  ///< something rises by so little that it takes a contact over that leaves
-  RISING
-};
-
-/** Of the sides of a face: seen from above its plane, where the normal of its winding points to, [1], and from below [0]; side k goes from
- * corner k to the next. */
+/** Of the sides of a face, seen from above its plane, where the normal of its winding points to, [1], and from below [0]. Bits k; side k
+ * goes from corner k to the next. Of the other sides something rises so little that it takes a contact over that leaves. */
 struct BorderKinds {
-  BorderKind of[2][3];
-
-  /** Does the plane go on beside the face? */
-  bool goesOn() const { return of[0][0] == BorderKind::FLAT || of[0][1] == BorderKind::FLAT || of[0][2] == BorderKind::FLAT; }
+  struct Seen {
+    std::uint8_t flat;     ///< the plane goes on
+    std::uint8_t round;    ///< it falls, by so little that the edge and the face behind it take over whatever leaves
+    std::uint8_t falling;  ///< nothing rises out of the plane
+    std::uint8_t rising;   ///< something rises, and takes nothing over
+  } seen[2];
 };
 BorderKinds borderKinds(const MeshSide& side, int face, SurroundingsMemory* surroundings);
 

@@ -1,59 +1,81 @@
 #include "candidate_lists.h"
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
-#include "feature_cones.h"
 #include "tolerances.h"
 #include "vectors.h"
-#include "vertex_cone.h"
 
 namespace blem_sim {
 namespace {
 
 using kernels::Candidate;
+using kernels::EdgeRecord;
+using kernels::Vec4;
 
-/** Drops pairs of vertices that have no contact, however they move by the margin [m]: those that lead towards each other, or where one does
- * and the other, nearer than its surroundings, is not round. */
-void dropLeading(const MeshPair& pair, double margin, NearFeatures (&near)[2], std::vector<Candidate>* vertices) {
-  const double limit = CONE_SLACK * (pair.range + margin) + margin;
-  const auto leads = [&](const NearFeatures& features, const VertexRing& ring, const Vector3& d) {
-    for (std::uint32_t i = ring.begin; i < ring.end; ++i)
-      if (features.ring_directions[i].dot(d) > limit) return true;
-    return false;
-  };
-  const auto hasNone = [&](const Candidate& c) {
-    const Vector3 d = vector3(near[0].vertices.records[c.b]) - pair.X_FM * vector3(near[1].vertices.records[c.a]);
-    const VertexRing moving = near[1].ring(pair.moving, c.a), fixed = near[0].ring(pair.fixed, c.b);
-    const bool moving_leads = leads(near[1], moving, pair.X_FM.linear().transpose() * d), fixed_leads = leads(near[0], fixed, -d);
-    if (moving_leads && fixed_leads) return true;
-    return (moving_leads && !near[0].isRound(pair.fixed, c.b)) || (fixed_leads && !near[1].isRound(pair.moving, c.a));
-  };
-  vertices->erase(std::remove_if(vertices->begin(), vertices->end(), hasNone), vertices->end());
-}
+/** Drops what has no contact since the surface at a vertex leads towards the other mesh, however the pair moves by a margin. */
+class LeadingVertices {
+ public:
+  LeadingVertices(const MeshPair& pair, const ListMargin& margin, const CandidateLists& lists, SurroundingsMemory* surroundings)
+      : pair_(pair),
+        lists_(lists),
+        surroundings_(*surroundings),
+        R_MF_(pair.X_FM.linear().transpose()),
+        limit_(margin.motion + (margin.turn + 2 * CONE_SLACK) * (pair.range + margin.motion) + 2 * TOUCH) {}
+
+  /** Near edges that are not round. */
+  void dropFrom(bool moves, const std::vector<Vec4>& vertices, const std::vector<EdgeRecord>& edges, std::vector<Candidate>* candidates) {
+    drop(candidates, [&](const Candidate& c) {
+      const EdgeRecord& edge = edges[c.b];
+      if (edge.along.w < 0) return false;
+      const Vector3 along = vector3(edge.along), back = vector3(edge.start) - vector3(vertices[c.a]);
+      return leads(moves, c.a, back - back.dot(along) / edge.start.w * along);
+    });
+  }
+
+  /** Near vertices: both lead, or one does and the other, nearer than its surroundings, is not round. */
+  void dropFrom(const std::vector<Vec4>& moving, const std::vector<Vec4>& fixed, std::vector<Candidate>* candidates) {
+    drop(candidates, [&](const Candidate& c) {
+      const Vector3 d = vector3(fixed[c.b]) - vector3(moving[c.a]);
+      const bool moving_leads = leads(true, c.a, d), fixed_leads = leads(false, c.b, -d);
+      return (moving_leads || fixed_leads) && (moving_leads || !isRound(true, c.a)) && (fixed_leads || !isRound(false, c.b));
+    });
+  }
+
+ private:
+  template <typename HasNone>
+  static void drop(std::vector<Candidate>* candidates, HasNone&& has_none) {
+    candidates->erase(std::remove_if(candidates->begin(), candidates->end(), has_none), candidates->end());
+  }
+
+  EdgesAtVertex edgesOf(bool moves, std::uint32_t vertex) {
+    return surroundings_.ofVertex(pair_.side(moves), lists_.near[moves].vertices.names[vertex]);
+  }
+
+  /** @param d [m] from the vertex to the other mesh, frame F: it changes by no more than the motion, and with the turn */
+  bool leads(bool moves, std::uint32_t vertex, const Vector3& d) {
+    const Vector3 towards = moves ? Vector3(R_MF_ * d) : d;
+    const EdgesAtVertex edges = edgesOf(moves, vertex);
+    return kernels::kernels().leadTo(edges.blocks, edges.block_count, towards.data(), limit_ * limit_);
+  }
+
+  /** Has it flat and round edges only? */
+  bool isRound(bool moves, std::uint32_t vertex) {
+    const EdgesAtVertex edges = edgesOf(moves, vertex);
+    return std::all_of(edges.begin(), edges.end(), [&](const EdgeFromVertex& edge) {
+      return edge.is_flat || surroundings_.ofEdge(pair_.side(moves), edge.edge).is_round;
+    });
+  }
+
+  const MeshPair& pair_;
+  const CandidateLists& lists_;
+  SurroundingsMemory& surroundings_;
+  const Matrix3 R_MF_;
+  const double limit_;  // [m] along an edge
+};
 
 }  // namespace
-
-VertexRing& NearFeatures::ring(const MeshSide& side, std::uint32_t vertex) {
-  if (rings_.size() < vertices.names.size()) rings_.resize(vertices.names.size());
-  VertexRing& found = rings_[vertex];
-  if (found.end != 0) return found;
-  const MeshTopology& topology = side.topology;
-  const int name = vertices.names[vertex];
-  found.begin = static_cast<std::uint32_t>(ring_directions.size());
-  for (const int edge : topology.edgesOf(name)) {
-    const int other = topology.otherEnd(side.mesh, edge, name);
-    ring_directions.push_back((side.mesh.vertices[other] - side.mesh.vertices[name]).normalized());
-  }
-  found.end = static_cast<std::uint32_t>(ring_directions.size());
-  return found;
-}
-
-bool NearFeatures::isRound(const MeshSide& side, std::uint32_t vertex) {
-  VertexRing& found = ring(side, vertex);
-  if (found.shape == VertexRing::UNKNOWN)
-    found.shape = hasRoundEdgesOnly(side, vertices.names[vertex]) ? VertexRing::ROUND : VertexRing::SHARP;
-  return found.shape == VertexRing::ROUND;
-}
 
 void NearFeatures::addFaceOf(const LeafFeatures& leaf, std::uint32_t i) {
   patches.push_back(leaf.patches[i]);
@@ -68,8 +90,7 @@ void NearFeatures::clear() {
   patches.clear();
   open.clear();
   borders.clear();
-  rings_.clear();
-  ring_directions.clear();
+  fading.clear();
 }
 
 void CandidatePairs::clear() {
@@ -77,6 +98,7 @@ void CandidatePairs::clear() {
        {&vertex_face[0], &vertex_face[1], &vertex_edge[0], &vertex_edge[1], &edge_face[0], &edge_face[1], &edge_edge, &vertex_vertex}) {
     candidates->clear();
   }
+  for (std::vector<std::uint8_t>& each : inner) each.clear();
 }
 
 std::size_t CandidatePairs::contacts() const {
@@ -102,7 +124,7 @@ void turn(void (*kernel)(const Record*, std::uint32_t, const kernels::Motion&, R
 }  // namespace
 
 kernels::NearVertices TurnedFeatures::nearFaces(const CandidateLists& lists, bool moves, const Pose& X_FM) const {
-  return {moves ? vertices.data() : lists.near[0].vertices.records.data(), !moves, motionOf(X_FM.inverse())};
+  return {moves ? vertices.data() : lists.near[0].vertices.records.data(), !moves, motionOf(X_FM.inverse()), motionOf(X_FM)};
 }
 
 void TurnedFeatures::turnForContacts(const CandidateLists& lists, const Pose& X_FM) {
@@ -115,6 +137,22 @@ void TurnedFeatures::turnForContacts(const CandidateLists& lists, const Pose& X_
 void TurnedFeatures::turnForCrossings(const CandidateLists& lists, const Pose& X_FM) {
   turn(kernels::kernels().turnEdges, lists.near[1].edges.records, motionOf(X_FM), &edges);
   turn(kernels::kernels().turnFaces, lists.near[1].faces.records, motionOf(X_FM), &faces);
+}
+
+void groupByFaces(const MeshPair& pair, CandidateLists* lists, CandidatePairs* room) {
+  constexpr std::size_t FEW_FACES = 256;
+  for (const bool moves : {true, false}) {
+    if (pair.side(!moves).mesh.elements.size() > FEW_FACES) continue;
+    const std::vector<int>& faces = lists->near[!moves].faces.names;
+    CandidatePairs::Candidates &candidates = lists->pairs.vertex_face[moves], &grouped = room->vertex_face[moves];
+    std::array<std::uint32_t, FEW_FACES> places{};
+    for (const Candidate& c : candidates) ++places[faces[c.b]];
+    std::uint32_t end = 0;
+    for (std::uint32_t& place : places) end += std::exchange(place, end);
+    grouped.resize(candidates.size());
+    for (const Candidate& c : candidates) grouped[places[faces[c.b]]++] = c;
+    candidates.swap(grouped);
+  }
 }
 
 namespace {
@@ -133,23 +171,33 @@ void keep(Kernel&& kernel, const std::vector<First>& a, const std::vector<Second
 
 }  // namespace
 
-void findNearest(const MeshPair& pair, const TurnedFeatures& turned, const ListMargin& margin, CandidateLists* lists,
-                 CandidatePairs* nearest) {
+std::size_t findNearest(const MeshPair& pair, const TurnedFeatures& turned, const ListMargin& margin, const CandidateLists& lists,
+                        SurroundingsMemory* surroundings, CandidatePairs* nearest) {
   const kernels::Kernels& kernels = kernels::kernels();
   const kernels::Reach reach{pair.range, margin.motion, margin.turn};
-  const NearFeatures& fixed = lists->near[0];
-  const CandidatePairs& all = lists->pairs;
+  const NearFeatures& fixed = lists.near[0];
+  const CandidatePairs& all = lists.pairs;
   for (const bool moves : {true, false}) {
-    const NearFeatures& partner = lists->near[!moves];
-    const kernels::NearVertices vertices = turned.nearFaces(*lists, moves, pair.X_FM);
-    keep([&](auto&&... rest) { return kernels.nearVertexFaces(vertices, partner.faces.records.data(), partner.open.data(), rest...); },
-         reach, all.vertex_face[moves], &nearest->vertex_face[moves]);
+    const NearFeatures& partner = lists.near[!moves];
+    const kernels::NearVertices vertices = turned.nearFaces(lists, moves, pair.X_FM);
+    nearest->inner[moves].resize(all.vertex_face[moves].size());
+    keep(
+        [&](auto&&... rest) {
+          return kernels.nearVertexFaces(vertices, partner.faces.records.data(), partner.open.data(), rest...,
+                                         nearest->inner[moves].data());
+        },
+        reach, all.vertex_face[moves], &nearest->vertex_face[moves]);
   }
   keep(kernels.nearVertexEdges, turned.vertices, fixed.edges.records, reach, all.vertex_edge[1], &nearest->vertex_edge[1]);
   keep(kernels.nearVertexEdges, fixed.vertices.records, turned.edges, reach, all.vertex_edge[0], &nearest->vertex_edge[0]);
   keep(kernels.nearEdgeEdges, turned.edges, fixed.edges.records, reach, all.edge_edge, &nearest->edge_edge);
   keep(kernels.nearVertexVertices, turned.vertices, fixed.vertices.records, reach, all.vertex_vertex, &nearest->vertex_vertex);
-  dropLeading(pair, margin.motion, lists->near, &nearest->vertex_vertex);
+  const std::size_t near = nearest->contacts();
+  LeadingVertices leading(pair, margin, lists, surroundings);
+  leading.dropFrom(true, turned.vertices, fixed.edges.records, &nearest->vertex_edge[1]);
+  leading.dropFrom(false, fixed.vertices.records, turned.edges, &nearest->vertex_edge[0]);
+  leading.dropFrom(turned.vertices, fixed.vertices.records, &nearest->vertex_vertex);
+  return near;
 }
 
 }  // namespace blem_sim

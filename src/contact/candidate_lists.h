@@ -3,10 +3,12 @@
 
 #include <vector>
 
+#include "fading_records.h"
 #include "kernels/kernels.h"
 #include "leaf_features.h"
 #include "list_margin.h"
 #include "mesh_pair.h"
+#include "surroundings.h"
 
 namespace blem_sim {
 
@@ -27,12 +29,6 @@ struct FeatureRecords {
   }
 };
 
-/** Directions of the edges at a vertex: a run of NearFeatures::ring_directions. */
-struct VertexRing {
-  std::uint32_t begin = 0, end = 0;
-  enum : std::uint8_t { UNKNOWN, ROUND, SHARP } shape = UNKNOWN;  ///< round: flat and round edges only
-};
-
 /** The features of one mesh that appear in candidates. */
 struct NearFeatures {
   FeatureRecords<kernels::Vec4> vertices;
@@ -41,17 +37,10 @@ struct NearFeatures {
   std::vector<int> patches;              ///< of the faces
   std::vector<kernels::OpenSides> open;  ///< of the faces
   std::vector<BorderKinds> borders;      ///< of the faces
-
-  /** What few candidates ask for, worked out when the first one does. @param side the mesh */
-  VertexRing& ring(const MeshSide& side, std::uint32_t vertex);
-  bool isRound(const MeshSide& side, std::uint32_t vertex);  ///< flat and round edges only
-  std::vector<Vector3> ring_directions;                      ///< unit, mesh's frame
+  FadingRecords fading;
 
   void addFaceOf(const LeafFeatures& leaf, std::uint32_t i);  ///< what goes with faces
   void clear();
-
- private:
-  std::vector<VertexRing> rings_;
 };
 
 /** Pairs of features, in an order that the meshes alone decide. An index [moves] tells whether the feature named first is the moving
@@ -59,6 +48,9 @@ struct NearFeatures {
 struct CandidatePairs {
   using Candidates = std::vector<kernels::Candidate>;
   Candidates vertex_face[2], vertex_edge[2], edge_face[2];
+  /** As vertex_face: 1 where the vertex is surely over its face, not near a border, while the list is good; empty where that is not known
+   */
+  std::vector<std::uint8_t> inner[2];
   Candidates edge_edge, vertex_vertex;  ///< a is the moving mesh's
 
   void clear();
@@ -87,12 +79,17 @@ struct TurnedFeatures {
   kernels::NearVertices nearFaces(const CandidateLists& lists, bool moves, const Pose& X_FM) const;
 };
 
+/** Puts candidates of vertices with the same face one after the other, in the order of the faces, where a mesh has so few that each is near
+ * many vertices. @param room overwritten */
+void groupByFaces(const MeshPair& pair, CandidateLists* lists, CandidatePairs* room);
+
 /**
  * Of the candidates for contacts those that can have one within pair.range while nothing moves or turns by more than the margin, in their
  * order.
  * @param turned of these lists at the pair's pose
+ * @return how many are near, with those that can have none since a vertex leads towards the other feature
  */
-void findNearest(const MeshPair& pair, const TurnedFeatures& turned, const ListMargin& margin, CandidateLists* lists,
-                 CandidatePairs* nearest);
+std::size_t findNearest(const MeshPair& pair, const TurnedFeatures& turned, const ListMargin& margin, const CandidateLists& lists,
+                        SurroundingsMemory* surroundings, CandidatePairs* nearest);
 
 }  // namespace blem_sim

@@ -34,17 +34,9 @@ class CloseContacts {
     }
   }
 
-  /** One that is in the world already. */
-  void addPlaced(const Vector3& point, const Vector3& normal_BA, double depth, std::uint64_t id) {
-    Contact& contact = *placed_.room(1);
-    contact.point = point;
-    contact.normal_BA = normal_BA;
-    contact.depth = depth;
-    contact.id = id;
-    contact.weight = 1;
-    contact.pierced = false;
-    placed_.advance(1);
-  }
+  // Those that are in the world already, where no witnesses are kept: room for so many, and how many were written there.
+  kernels::ContactRow* rows(std::size_t more) { return placed_.rows(more); }
+  void advance(std::size_t written) { placed_.advance(written); }
 
   bool keepsWitnesses() const { return keeps_witnesses_; }
 

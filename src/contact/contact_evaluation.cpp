@@ -60,7 +60,7 @@ void Evaluation::forEachHit(const std::vector<Candidate>& candidates, std::uint3
   for (std::uint32_t i = 0; i < count; ++i) visit(candidates[buffers_.hits[i]]);
 }
 
-/** @return how many need a closer look; the plain ones are written */
+/** @return how many plain ones need a closer look; the others are written, those that are not plain are left */
 std::uint32_t Evaluation::findEdgeEdges(const kernels::EdgeRecord* moving, const kernels::EdgeRecord* fixed) {
   const std::vector<Candidate>& candidates = pairs_.edge_edge;
   const ContactRoles& roles = pair_.roles;
@@ -70,24 +70,23 @@ std::uint32_t Evaluation::findEdgeEdges(const kernels::EdgeRecord* moving, const
                             nullptr,
                             0,
                             found_.deepest_plain};
-  return testBlocks(candidates.size(), &buffers_.edge_edges, &plain,
-                    [&](std::uint32_t first, std::uint32_t size, kernels::EdgeEdgeHit* hits) {
-                      return kernels::kernels().edgeEdges(moving, fixed, candidates.data() + first, size, pair_.range,
-                                                          found_.crossings.empty() ? &plain : nullptr, hits);
-                    });
+  EvaluationBuffers::makeRoom(candidates.size() + 1, &buffers_.edges_left);
+  kernels::LeftEdges left{buffers_.edges_left.data(), 0};
+  const std::uint32_t count =
+      testBlocks(candidates.size(), &buffers_.edge_edges, &plain, [&](std::uint32_t first, std::uint32_t size, kernels::EdgeEdgeHit* hits) {
+        return kernels::kernels().edgeEdges(moving, fixed, candidates.data() + first, size, pair_.range,
+                                            found_.crossings.empty() ? &plain : nullptr, &left, hits);
+      });
+  buffers_.edges_left_count = left.count;
+  return count;
 }
 
 void Evaluation::edgeEdges(const kernels::EdgeRecord* moving, const kernels::EdgeRecord* fixed) {
   if (pairs_.edge_edge.empty()) return;
   const std::uint32_t count = findEdgeEdges(moving, fixed);
-  buffers_.edges_left.clear();
   for (std::uint32_t i = 0; i < count; ++i) {
     const kernels::EdgeEdgeHit& hit = buffers_.edge_edges[i];
     const Candidate& c = pairs_.edge_edge[hit.candidate];
-    if (!hit.is_plain) {
-      buffers_.edges_left.push_back(c);
-      continue;
-    }
     const Feature m{FeatureKind::EDGE, lists_.near[1].edges.names[c.a]}, f{FeatureKind::EDGE, lists_.near[0].edges.names[c.b]};
     found_.close.add(pair_, true, m, f, Vector3(hit.point_a), Vector3(hit.point_b), Vector3(hit.normal), hit.gap);
   }
@@ -96,7 +95,7 @@ void Evaluation::edgeEdges(const kernels::EdgeRecord* moving, const kernels::Edg
 
 void Evaluation::fadingEdges(const kernels::EdgeRecord* moving, const kernels::EdgeRecord* fixed) {
   const std::vector<Candidate>& left = buffers_.edges_left;
-  const auto total = static_cast<std::uint32_t>(left.size());
+  const std::uint32_t total = buffers_.edges_left_count;
   EvaluationBuffers::makeRoom(total + 1, &buffers_.fading_edges);
   const std::uint32_t count = kernels::kernels().fadingEdges(moving, fixed, left.data(), total, pair_.range, buffers_.fading_edges.data());
   for (std::uint32_t i = 0; i < count; ++i) {

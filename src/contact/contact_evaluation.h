@@ -24,13 +24,10 @@ struct FoundContacts {
   double leastGap(const MeshPair& pair) const;  ///< [m]; the pair's range if there is none
 };
 
-/** A vertex beside a face of a plane, whose contact fades. */
-struct FadingVertex {
-  std::uint32_t vertex;
-  int patch;
-  std::uint32_t before;  ///< another one of this vertex
-  bool goes_on;          ///< the plane has other faces
-  bool is_covered;       ///< it lies over one of them
+/** Of a contact that fades. */
+struct FadingCover {
+  std::uint32_t before;  ///< another one of its vertex
+  bool is_covered;       ///< the vertex lies over another face of the plane
 };
 
 /** What evaluations work in: room that only grows. */
@@ -43,19 +40,21 @@ struct EvaluationBuffers {
   std::vector<kernels::VertexEdgeHit> vertex_edges;
   std::vector<kernels::EdgeEdgeHit> edge_edges;
   std::vector<kernels::Candidate> edges_left;  ///< those that are not plain
+  std::uint32_t edges_left_count = 0;          ///< of them
   std::vector<kernels::FadingEdgesHit> fading_edges;
   std::vector<std::uint32_t> hits;
-  std::vector<kernels::Candidate> over;    ///< vertices over faces
-  std::uint32_t over_count = 0;            ///< of them
-  std::vector<kernels::Candidate> beside;  ///< vertices and faces, once for each side that they lie outside of
-  std::vector<kernels::BesideSide> sides;  ///< as they
-  std::vector<kernels::SideFoot> feet;     ///< as they
-  std::vector<FadingVertex> fading;        ///< whose contacts are the last close ones
-  std::vector<std::uint32_t> last_fading;  ///< of each vertex; none between evaluations
+  std::vector<kernels::Candidate> over;   ///< vertices over faces beside which they may fade, or so near a border that they were asked
+  std::vector<kernels::Candidate> asked;  ///< vertices that may be over such faces
+  LeavingBuffers leaving;
+  BesideFaces fading;
+  std::vector<kernels::ContactRow> feet;             ///< as the pairs that fade
+  std::vector<kernels::FadingContact> asked_fading;  ///< those that may be covered
+  std::vector<FadingCover> covers;                   ///< as these
+  std::vector<std::uint32_t> last_fading;            ///< of each vertex; none between evaluations
 
-  template <typename Items>
-  static void makeRoom(std::size_t size, Items* items) {
-    if (items->size() < size) items->resize(size);
+  template <typename Items, typename... Item>
+  static void makeRoom(std::size_t size, Items* items, const Item&... filled_with) {
+    if (items->size() < size) items->resize(size, filled_with...);
   }
 };
 
@@ -85,12 +84,15 @@ class Evaluation {
   void forEachHit(const std::vector<kernels::Candidate>& candidates, std::uint32_t count, Visit&& visit) const;
 
   void vertexFaces(bool moves);
-  void listFadingSides(bool moves, std::uint32_t hits);
   std::uint32_t findVertexFaces(bool moves);
   kernels::ContactPlace place(bool vertices_move) const;
   void addPlain(bool moves, const kernels::Candidate& c, double height);
-  void addFading(bool moves);
-  void dropCovered(bool moves);
+  std::uint32_t addFading(bool moves);
+  void addFeet(bool moves);
+  void dropCovered(bool moves, std::uint32_t count);
+  void listCovering(bool moves);
+  template <typename Visit>
+  void forEachBeside(bool moves, const kernels::Candidate& c, Visit&& visit);
   std::uint32_t findEdgeEdges(const kernels::EdgeRecord* moving, const kernels::EdgeRecord* fixed);
   void fadingEdges(const kernels::EdgeRecord* moving, const kernels::EdgeRecord* fixed);
   void edgeEdges(const kernels::EdgeRecord* moving, const kernels::EdgeRecord* fixed);

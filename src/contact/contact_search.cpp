@@ -21,7 +21,7 @@ constexpr double AHEAD = 0.9, AHEAD_AT_MOST = 0.98, AHEAD_STEPS = 16;
 constexpr double NEAREST_STEPS = 3, FEWEST_NEAREST_STEPS = 2, MOST_NEAREST_STEPS = 8;
 // Candidates for crossings are listed for so many.
 constexpr double CROSSING_STEPS = 10;
-constexpr std::size_t FEW_CANDIDATES = 200;
+constexpr std::size_t FEW_CANDIDATES = 50;
 constexpr double LEAST_MARGIN = 0.02, MOST_MARGIN = 0.8, LEAST_NEAREST_MARGIN = 0.005;  // of the range
 constexpr double MOST_KNOWN_MARGIN = 2.2;                                               // where it is known how lists grow
 // Lists of fast bodies grow faster than their margins where there are many pairs of leaves.
@@ -161,7 +161,9 @@ class ContactSearch {
   void replace(CandidateKind kind, KeptListing* kept) {
     std::swap(kept->now, kept->next);
     kept->next.origin.known = false;
-    if (kind == CandidateKind::CONTACTS) memory_.nearest_origin.known = false;
+    if (kind != CandidateKind::CONTACTS) return;
+    memory_.nearest_origin.known = false;
+    groupByFaces(pair_, &kept->now.lists, &memory_.nearest);
   }
 
   /** Is a list of that margin good for much longer than it takes to make it? */
@@ -196,9 +198,10 @@ class ContactSearch {
     if (all.lists.pairs.contacts() <= FEW_CANDIDATES || 2 * margin.motion >= all.origin.margin.motion) return all.lists.pairs;
     const MeshPair ahead = this->ahead(margin);
     buffers_.evaluation.turned.turnForContacts(all.lists, ahead.X_FM);
-    findNearest(ahead, buffers_.evaluation.turned, margin, &all.lists, &memory_.nearest);
+    const std::size_t near =
+        findNearest(ahead, buffers_.evaluation.turned, margin, all.lists, &buffers_.evaluation.surroundings, &memory_.nearest);
     memory_.nearest_origin = {true, ahead.X_FM, pair_.range, margin};
-    const double more = static_cast<double>(all.lists.pairs.contacts() - memory_.nearest.contacts());
+    const double more = static_cast<double>(all.lists.pairs.contacts() - near);
     memory_.growth = std::max(more, 1.0) / (all.origin.margin.motion - margin.motion);
     return memory_.nearest;
   }

@@ -62,13 +62,11 @@ void ExactTests::fadingEdges(int moving, int fixed, const kernels::FadingEdgesHi
   const Feature m{FeatureKind::EDGE, moving}, f{FeatureKind::EDGE, fixed};
   const Vector3 axis(hit.normal);
   if (!hit.cones_known && !conesAllow(m, f, axis, EDGE_CONE_SLACK)) return;
-  const auto leaves = [&](int end, bool moves, int edge, int partner, const Matrix3& R_PS, const Vector3& normal) {
-    const MeshSide& side = pair_.side(moves);
-    return end >= 0 &&
-           !isTakenOver({side, pair_.side(!moves), side.topology.ends(side.mesh, edge)[end], partner, R_PS, normal}, &surroundings_);
+  const auto leaves = [&](int vertex, bool moves, int partner, const Matrix3& R_PS, const Vector3& normal) {
+    return !isTakenOver({pair_.side(moves), pair_.side(!moves), vertex, partner, R_PS, normal}, &surroundings_);
   };
-  const bool fades = leaves(hit.end_a, true, moving, fixed, R_FM_, -(R_FM_.transpose() * axis)) ||
-                     leaves(hit.end_b, false, fixed, moving, R_FM_.transpose(), axis);
+  const bool fades = (hit.end_a >= 0 && leaves(hit.end_a, true, fixed, R_FM_, -(R_FM_.transpose() * axis))) ||
+                     (hit.end_b >= 0 && leaves(hit.end_b, false, moving, R_FM_.transpose(), axis));
   if (!fades) return;
   const Vector3 point_m(hit.point_a), point_f(hit.point_b);
   contacts_.add(pair_, true, m, f, point_m, point_f, (point_m - point_f) / hit.distance, hit.gap);
@@ -112,7 +110,7 @@ bool ExactTests::addAtRoundEdge(bool vertex_moves, int vertex, int edge, const V
     if (vector3(inward).dot(d) > CONE_SLACK * distance) return true;
   if (part != clamped) {
     const MeshSide& side = pair_.side(!vertex_moves);
-    const EdgesAtVertex edges = surroundings_.ofVertex(side, side.topology.ends(side.mesh, edge)[part > 1]);
+    const EdgesAtVertex edges = surroundings_.ofVertex(side, static_cast<int>(kernels::nameOf(record.inward[part > 1].w)));
     if (isRoundVertex(side, edges, vertex_moves ? d : Vector3(R_FM_.transpose() * d), &surroundings_)) return true;
   }
   contacts_.add(pair_, vertex_moves, {FeatureKind::VERTEX, vertex}, {FeatureKind::EDGE, edge}, p, foot,

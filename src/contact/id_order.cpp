@@ -1,7 +1,6 @@
 #include "id_order.h"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 namespace blem_sim {
@@ -9,72 +8,61 @@ namespace {
 
 int widthOf(std::uint64_t value) { return value == 0 ? 0 : 64 - __builtin_clzll(value); }
 
-std::uint64_t maskOf(int bits) { return (std::uint64_t{1} << bits) - 1; }
-
 }  // namespace
 
-const std::vector<std::uint32_t>& IdOrder::of(const Contact* contacts, std::size_t count) {
-  order_.resize(count);
-  if (pack(contacts, count)) {
-    sortKeys();
-    for (std::size_t i = 0; i < count; ++i) order_[i] = static_cast<std::uint32_t>(keys_[i] & maskOf(index_bits_));
-  } else {
-    std::iota(order_.begin(), order_.end(), 0u);
-    std::sort(order_.begin(), order_.end(), [contacts](std::uint32_t a, std::uint32_t b) {
-      return contacts[a].id != contacts[b].id ? contacts[a].id < contacts[b].id : a < b;
-    });
-  }
-  return order_;
-}
-
-/** @return false if ids and indices need more bits than a key has */
-bool IdOrder::pack(const Contact* contacts, std::size_t count) {
-  keys_.resize(count);
+const std::vector<IdOrder::Entry>& IdOrder::of(const Contact* contacts, std::size_t count) {
+  entries_.resize(count);
   std::uint64_t different = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    keys_[i] = contacts[i].id;
-    different |= keys_[i] ^ keys_[0];
+    entries_[i] = {contacts[i].id, static_cast<std::uint32_t>(i)};
+    different |= contacts[i].id ^ contacts[0].id;
   }
-  // The fields of contactId, each with the bits that it needs.
-  const int a_bits = widthOf(different >> 32 & maskOf(30)), kind_bits = widthOf(different >> 30 & 3),
-            b_bits = widthOf(different & maskOf(30));
-  index_bits_ = widthOf(count);
-  key_bits_ = 2 + a_bits + kind_bits + b_bits;
-  if (key_bits_ + index_bits_ > 64) return false;
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::uint64_t id = keys_[i];
-    std::uint64_t key = id >> 62;
-    key = key << a_bits | (id >> 32 & maskOf(a_bits));
-    key = key << kind_bits | (id >> 30 & maskOf(kind_bits));
-    key = key << b_bits | (id & maskOf(b_bits));
-    keys_[i] = key << index_bits_ | i;
+  sortByFirstFeature(different);
+  if (!insertAll()) {
+    std::sort(entries_.begin(), entries_.end(),
+              [](const Entry& a, const Entry& b) { return a.id != b.id ? a.id < b.id : a.index < b.index; });
   }
-  return true;
+  return entries_;
 }
 
-/** Digit by digit, since comparing is hard to foresee; they are in the order of their indices already. */
-void IdOrder::sortKeys() {
+/** Digit by digit, since comparing is hard to foresee. @param different bits in which ids differ */
+void IdOrder::sortByFirstFeature(std::uint64_t different) {
   constexpr std::size_t FEW = 32;
-  constexpr int DIGIT = 7, DIGITS = (64 + DIGIT - 1) / DIGIT, VALUES = 1 << DIGIT;
-  if (keys_.size() <= FEW) {
-    std::sort(keys_.begin(), keys_.end());
-    return;
-  }
-  room_.resize(keys_.size());
-  const int digits = (key_bits_ + DIGIT - 1) / DIGIT;
-  std::uint32_t ends[DIGITS][VALUES];
-  std::fill_n(&ends[0][0], digits * VALUES, 0u);
-  for (const std::uint64_t key : keys_) {
-    std::uint64_t left = key >> index_bits_;
-    for (int i = 0; i < digits; ++i, left >>= DIGIT) ++ends[i][left & (VALUES - 1)];
-  }
-  for (int i = 0; i < digits; ++i) {
-    const int shift = index_bits_ + i * DIGIT;
+  constexpr int LONGEST_DIGIT = 9;
+  if (entries_.size() <= FEW) return;
+  // The fields of contactId: kind, then number.
+  const int number_bits = widthOf(different >> 32 & 0x3FFFFFFF), bits = number_bits + 2;
+  const std::uint64_t number_mask = (std::uint64_t{1} << number_bits) - 1;
+  const int digits = (bits + LONGEST_DIGIT - 1) / LONGEST_DIGIT, digit_bits = (bits + digits - 1) / digits;
+  const std::size_t values = std::size_t{1} << digit_bits;
+  room_.resize(entries_.size());
+  for (int shift = 0; shift < bits; shift += digit_bits) {
+    const auto digit = [=](const Entry& entry) {
+      return (entry.id >> 62 << number_bits | (entry.id >> 32 & number_mask)) >> shift & (values - 1);
+    };
+    std::uint32_t ends[1 << LONGEST_DIGIT];
+    std::fill_n(ends, values, 0u);
+    for (const Entry& entry : entries_) ++ends[digit(entry)];
     std::uint32_t end = 0;
-    for (std::uint32_t& each : ends[i]) end += std::exchange(each, end);
-    for (const std::uint64_t key : keys_) room_[ends[i][key >> shift & (VALUES - 1)]++] = key;
-    keys_.swap(room_);
+    for (std::size_t value = 0; value < values; ++value) end += std::exchange(ends[value], end);
+    for (const Entry& entry : entries_) room_[ends[digit(entry)]++] = entry;
+    entries_.swap(room_);
   }
+}
+
+/** For entries that are nearly sorted. @return false if they are not, and it gave up */
+bool IdOrder::insertAll() {
+  std::size_t moves_left = 8 * entries_.size();
+  for (std::size_t i = 1; i < entries_.size(); ++i) {
+    if (entries_[i - 1].id <= entries_[i].id) continue;
+    const Entry entry = entries_[i];
+    std::size_t place = i;
+    for (; place > 0 && entries_[place - 1].id > entry.id; --place) entries_[place] = entries_[place - 1];
+    entries_[place] = entry;
+    if (i - place > moves_left) return false;
+    moves_left -= i - place;
+  }
+  return true;
 }
 
 }  // namespace blem_sim

@@ -12,17 +12,19 @@ namespace blem_sim {
 /** Sorts contacts by id; room that is kept between calls. */
 class IdOrder {
  public:
-  /** Their indices by id, those of one id ascending. Good until the next call. */
-  const std::vector<std::uint32_t>& of(const Contact* contacts, std::size_t count);
+  struct Entry {
+    std::uint64_t id;
+    std::uint32_t index;  ///< of the contact
+  };
+
+  /** By id, those of one id by index. Good until the next call. */
+  const std::vector<Entry>& of(const Contact* contacts, std::size_t count);
 
  private:
-  bool pack(const Contact* contacts, std::size_t count);
-  void sortKeys();
+  void sortByFirstFeature(std::uint64_t different);
+  bool insertAll();
 
-  // Ids with as few bits as tell them apart, each with its contact's index below.
-  std::vector<std::uint64_t> keys_, room_;
-  int key_bits_ = 0, index_bits_ = 0;
-  std::vector<std::uint32_t> order_;
+  std::vector<Entry> entries_, room_;
 };
 
 }  // namespace blem_sim

@@ -155,6 +155,7 @@ EdgeRecord edgeRecord(const MeshSide& side, int edge, SurroundingsMemory* surrou
         (e[0] == ends[0] && e[1] == ends[1]) || (e[1] == ends[0] && e[2] == ends[1]) || (e[2] == ends[0] && e[0] == ends[1]);
     record.inward[k] = vec4(MeshTopology::normal(side.mesh, face).cross(along) / (forward ? length : -length), 0);
   }
+  for (int k = 0; k < 2; ++k) record.inward[k].w = kernels::nameBits(ends[k]);
   return record;
 }
 

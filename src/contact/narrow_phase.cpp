@@ -13,7 +13,14 @@ namespace {
 struct Buffers {
   ContactSearchBuffers search;
   FoundContacts found;
+  std::vector<Contact> below_plane;
+  ContactMerge merge;
 };
+
+Buffers& threadBuffers() {
+  thread_local Buffers buffers;
+  return buffers;
+}
 
 void meshMesh(const Collider& a, const Pose& X_WA, const Collider& b, const Pose& X_WB, double range, const Pose* X_AB_apart,
               ContactSearchMemory* memory, ContactManifold* out) {
@@ -26,7 +33,7 @@ void meshMesh(const Collider& a, const Pose& X_WA, const Collider& b, const Pose
                       range,
                       {a_moves, a.radius, b.radius},
                       X_WF};
-  thread_local Buffers buffers;
+  Buffers& buffers = threadBuffers();
   FoundContacts& found = buffers.found;
   found.plain.overwrite(&out->contacts);
   searchContacts(pair, memory, &buffers.search, &found);
@@ -37,7 +44,7 @@ void meshMesh(const Collider& a, const Pose& X_WA, const Collider& b, const Pose
     addRetractions(pair, X_AB_apart ? &X_FM_apart : nullptr, found.crossings, &found.close.witnessed());
   }
   const ContactWriter& close = found.close.placed(pair);
-  found.plain.advance(mergeContacts(close.begin(), close.size(), found.plain.room(close.size())));
+  found.plain.advance(buffers.merge.run(close.begin(), close.size(), found.plain.room(close.size())));
   found.plain.finish();
 }
 
@@ -48,7 +55,8 @@ void meshHalfSpace(const Collider& mesh, const Pose& X_WM, const Collider& half_
   const Pose X_MH = X_WM.inverse() * X_WH;
   const Vector3 normal = X_MH.linear() * half_space.geometry->planeNormal();
   const double offset = half_space.geometry->planeOffset() + normal.dot(X_MH.translation());
-  thread_local std::vector<Contact> found;
+  Buffers& buffers = threadBuffers();
+  std::vector<Contact>& found = buffers.below_plane;
   found.clear();
   visitLeavesBelowPlane(side.bvh, normal, offset, range, [&](std::uint32_t leaf) {
     const Bvh::Node& node = side.bvh.nodes()[leaf];
@@ -66,7 +74,7 @@ void meshHalfSpace(const Collider& mesh, const Pose& X_WM, const Collider& half_
     }
   });
   out->contacts.resize(found.size());
-  out->contacts.resize(mergeContacts(found.data(), found.size(), out->contacts.data()));
+  out->contacts.resize(buffers.merge.run(found.data(), found.size(), out->contacts.data()));
   for (Contact& contact : out->contacts) {
     contact.point = X_WM * contact.point;
     contact.normal_BA = X_WM.linear() * contact.normal_BA;

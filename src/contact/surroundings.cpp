@@ -61,6 +61,13 @@ const EdgeSurroundings& SurroundingsMemory::ofEdge(const MeshSide& side, int edg
   return out;
 }
 
+const PlaneReach& SurroundingsMemory::ofFace(const MeshSide& side, int face) {
+  bool known;
+  PlaneReach& out = faces_.find(side, face, &known);
+  if (!known) out = planeReach(side, face);
+  return out;
+}
+
 bool vertexConeAllows(const EdgesAtVertex& edges, const Vector3& direction, double slack) {
   return std::none_of(edges.begin(), edges.end(), [&](const EdgeFromVertex& edge) {
     const double along = edge.along.dot(direction);

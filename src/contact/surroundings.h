@@ -8,6 +8,7 @@
 
 #include "kernels/edge_directions.h"
 #include "mesh_pair.h"
+#include "plane_reach.h"
 
 namespace blem_sim {
 
@@ -42,6 +43,7 @@ class SurroundingsMemory {
   // Good until the next question of the same kind.
   EdgesAtVertex ofVertex(const MeshSide& side, int vertex);
   const EdgeSurroundings& ofEdge(const MeshSide& side, int edge);
+  const PlaneReach& ofFace(const MeshSide& side, int face);
 
  private:
   static constexpr int MAX_EDGES = kernels::DIRECTION_BLOCK;
@@ -58,11 +60,10 @@ class SurroundingsMemory {
       int name = 0;
       Item item;
     };
-    std::vector<Place> places;
+    std::vector<Place> places = std::vector<Place>(CAPACITY);
 
     /** @param known whether the item is the feature's: else it shall become so */
     Item& find(const MeshSide& side, int name, bool* known) {
-      if (places.empty()) places.resize(CAPACITY);
       Place& place = places[(static_cast<std::uint64_t>(name) + 0x9E3779B9 * side.identity) % CAPACITY];
       *known = place.geometry == side.identity && place.name == name;
       place.geometry = side.identity;
@@ -73,6 +74,7 @@ class SurroundingsMemory {
 
   Table<VertexEdgesKept, 4096> vertices_;
   Table<EdgeSurroundings, 8192> edges_;
+  Table<PlaneReach, 1024> faces_;
   std::vector<EdgeFromVertex> many_;  // of a vertex that has more than a place holds
   std::vector<kernels::EdgeDirections> many_blocks_;
 };

@@ -27,11 +27,6 @@ Vector3 axisOf(const MeshSide& side, int vertex) {
 
 }  // namespace
 
-bool hasRoundEdgesOnly(const MeshSide& side, int vertex) {
-  const VertexEdges edges = side.topology.edgesOf(vertex);
-  return std::all_of(edges.begin(), edges.end(), [&](int edge) { return side.topology.isFlatEdge(edge) || isRoundEdge(side, edge); });
-}
-
 kernels::VertexCone vertexCone(const MeshSide& side, int vertex, SurroundingsMemory* surroundings) {
   constexpr double ANY = 1e6, ROUNDING = 0.002, LEAST_COSINE = 0.15;  // of half the widest gap between edges, seen along the axis
   const Vector3 axis = axisOf(side, vertex), x = axis.unitOrthogonal(), y = axis.cross(x);

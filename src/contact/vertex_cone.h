@@ -10,7 +10,4 @@ namespace blem_sim {
 /** Holds every direction, in the mesh's frame, that vertexConeAllows. */
 kernels::VertexCone vertexCone(const MeshSide& side, int vertex, SurroundingsMemory* surroundings);
 
-/** Does it have flat and round edges only? */
-bool hasRoundEdgesOnly(const MeshSide& side, int vertex);
-
 }  // namespace blem_sim

@@ -32,41 +32,41 @@ kernels::ContactPlace Evaluation::place(bool vertices_move) const {
 /** @return how many need a closer look; the plain ones are written */
 std::uint32_t Evaluation::findVertexFaces(bool moves) {
   const std::vector<Candidate>& candidates = pairs_.vertex_face[moves];
-  EvaluationBuffers::makeRoom(candidates.size() + 1, &buffers_.over);
-  buffers_.over_count = 0;
   const kernels::NearVertices vertices = buffers_.turned.nearFaces(lists_, moves, pair_.X_FM);
+  const std::vector<std::uint8_t>& inner = pairs_.inner[moves];
   const NearFeatures& partner = lists_.near[!moves];
-  kernels::PlainContacts plain{place(moves), nullptr, nullptr, 0, found_.deepest_plain};
+  kernels::PlainContacts plain{place(moves), nullptr, 0, found_.deepest_plain};
   return testBlocks(candidates.size(), &buffers_.vertex_faces, &plain, [&](std::uint32_t first, std::uint32_t size, VertexFaceHit* hits) {
-    plain.pairs = buffers_.over.data() + buffers_.over_count;
-    const std::uint32_t found =
-        kernels::kernels().vertexFaces(vertices, partner.faces.records.data(), partner.open.data(), candidates.data() + first, size,
-                                       pair_.range, found_.crossings.empty() ? &plain : nullptr, hits);
-    buffers_.over_count += plain.count;
-    return found;
+    return kernels::kernels().vertexFaces(vertices, partner.faces.records.data(), partner.open.data(), candidates.data() + first, size,
+                                          inner.empty() ? nullptr : inner.data() + first, pair_.range,
+                                          found_.crossings.empty() ? &plain : nullptr, hits);
   });
 }
 
 void Evaluation::vertexFaces(bool moves) {
   if (pairs_.vertex_face[moves].empty()) return;
   const std::uint32_t count = findVertexFaces(moves);
+  if (count == 0) return;
   const std::vector<Candidate>& candidates = pairs_.vertex_face[moves];
   const auto &vertices = lists_.near[moves].vertices.names, &faces = lists_.near[!moves].faces.names;
   auto& hits = buffers_.vertex_faces;
+  buffers_.over.clear();
   for (std::uint32_t i = 0; i < count; ++i) {
     VertexFaceHit& hit = hits[i];
     const Candidate& c = candidates[hit.candidate];
     if (hit.has(VertexFaceHit::PLAIN)) {
       addPlain(moves, c, hit.height);
-    } else if (!hit.has(VertexFaceHit::BESIDE) && !exact_.vertexFace(moves, vertices[c.a], faces[c.b])) {
-      hit.bits |= VertexFaceHit::BESIDE;
+    } else if (!hit.has(VertexFaceHit::BESIDE)) {
+      if (exact_.vertexFace(moves, vertices[c.a], faces[c.b])) {
+        buffers_.over.push_back(c);
+      } else {
+        hit.bits |= VertexFaceHit::BESIDE;
+      }
     }
-    if (!hit.has(VertexFaceHit::BESIDE)) buffers_.over[buffers_.over_count++] = c;
   }
-  listFadingSides(moves, count);
-  if (buffers_.beside.empty()) return;
-  addFading(moves);
-  dropCovered(moves);
+  fades_.list(moves, candidates.data(), hits.data(), count, &buffers_.leaving, &buffers_.fading);
+  if (buffers_.fading.pairs.empty()) return;
+  dropCovered(moves, addFading(moves));
 }
 
 void Evaluation::addPlain(bool moves, const Candidate& c, double height) {
@@ -79,80 +79,86 @@ void Evaluation::addPlain(bool moves, const Candidate& c, double height) {
   found_.close.add(pair_, moves, vertex, patch, p, foot, normal, std::abs(height));
 }
 
-/** Of the hits that fade, those sides that their vertices lie outside of. */
-void Evaluation::listFadingSides(bool moves, std::uint32_t hits) {
-  buffers_.beside.clear();
-  buffers_.sides.clear();
-  const MeshSide& side = pair_.side(!moves);
-  for (std::uint32_t i = 0; i < hits; ++i) {
-    const VertexFaceHit& hit = buffers_.vertex_faces[i];
-    const Candidate& c = pairs_.vertex_face[moves][hit.candidate];
-    if (!hit.has(VertexFaceHit::BESIDE) || !fades_.fades(moves, c, hit)) continue;
-    const Vector3i& corners = side.mesh.elements[lists_.near[!moves].faces.names[c.b]];
-    for (unsigned outside = hit.bits & VertexFaceHit::OUTSIDE; outside != 0; outside &= outside - 1) {
-      const int k = __builtin_ctz(outside);
-      const Vector3 &start = side.mesh.vertices[corners[k]], &end = side.mesh.vertices[corners[NEXT[k]]];
-      buffers_.beside.push_back(c);
-      kernels::BesideSide& added = buffers_.sides.emplace_back();
-      added.start.x = start.x(), added.start.y = start.y(), added.start.z = start.z();
-      added.along.x = end.x() - start.x(), added.along.y = end.y() - start.y(), added.along.z = end.z() - start.z();
-    }
-  }
-}
-
 /** Of each vertex with a face: at the nearest of the sides. */
-void Evaluation::addFading(bool moves) {
-  const std::vector<Candidate>& beside = buffers_.beside;
-  EvaluationBuffers::makeRoom(beside.size(), &buffers_.feet);
-  kernels::kernels().sideFeet(place(moves), buffers_.turned.nearFaces(lists_, moves, pair_.X_FM), lists_.near[!moves].faces.records.data(),
-                              buffers_.sides.data(), beside.data(), static_cast<std::uint32_t>(beside.size()), buffers_.feet.data());
-  buffers_.fading.clear();
-  const auto& vertices = (moves ? buffers_.turned.vertices : lists_.near[0].vertices.records);
-  for (std::size_t i = 0, next; i < beside.size(); i = next) {
-    const kernels::SideFoot* nearest = &buffers_.feet[i];
-    const Candidate& c = beside[i];
-    for (next = i + 1; next < beside.size() && beside[next].a == c.a && beside[next].b == c.b; ++next)
-      if (buffers_.feet[next].lost < nearest->lost) nearest = &buffers_.feet[next];
-    const double gap = nearest->distance + nearest->lost;
-    if (nearest->distance <= TOUCH || gap > pair_.range) continue;
-    const int patch = lists_.near[!moves].patches[c.b];
-    const Feature vertex{FeatureKind::VERTEX, lists_.near[moves].vertices.names[c.a]}, face{FeatureKind::FACE, patch};
-    const Vector3 point(nearest->point), normal(nearest->normal);
-    if (found_.close.keepsWitnesses()) {
-      found_.close.add(pair_, moves, vertex, face, vector3(vertices[c.a]), point, normal, gap);
-    } else {
-      found_.close.addPlaced(point, normal, pair_.layer - gap, contactId(pair_.roles, moves, vertex, face));
-    }
-    FadingVertex& fading = buffers_.fading.emplace_back();
-    fading.vertex = c.a;
-    fading.patch = patch;
-    fading.goes_on = lists_.near[!moves].borders[c.b].goesOn();
-    fading.is_covered = false;
+std::uint32_t Evaluation::addFading(bool moves) {
+  const auto size = static_cast<std::uint32_t>(buffers_.fading.pairs.size());
+  const bool keeps_feet = found_.close.keepsWitnesses();
+  if (keeps_feet) EvaluationBuffers::makeRoom(size + 1, &buffers_.feet);
+  buffers_.asked_fading.resize(size);
+  const NearFeatures& partner = lists_.near[!moves];
+  kernels::FadingContacts out{keeps_feet ? buffers_.feet.data() : found_.close.rows(size + 1), buffers_.asked_fading.data(), 0};
+  const std::uint32_t count = kernels::kernels().sideFeet(
+      place(moves), buffers_.turned.nearFaces(lists_, moves, pair_.X_FM), partner.faces.records.data(), partner.fading.corners(),
+      buffers_.fading.sides.data(), buffers_.fading.pairs.data(), size, pair_.range, &out);
+  buffers_.asked_fading.resize(out.asked_count);
+  if (keeps_feet) {
+    addFeet(moves);
+  } else {
+    found_.close.advance(count);
+  }
+  return count;
+}
+
+void Evaluation::addFeet(bool moves) {
+  const auto& vertices = moves ? buffers_.turned.vertices : lists_.near[0].vertices.records;
+  for (const kernels::FadingContact& each : buffers_.asked_fading) {
+    const Candidate& c = buffers_.fading.pairs[each.pair];
+    const kernels::ContactRow& foot = buffers_.feet[each.row];
+    found_.close.add(pair_, moves, {FeatureKind::VERTEX, lists_.near[moves].vertices.names[c.a]},
+                     {FeatureKind::FACE, lists_.near[!moves].patches[c.b]}, vector3(vertices[c.a]), Vector3(foot.point),
+                     Vector3(foot.normal), foot.depth);
   }
 }
 
-/** What lies beside one face of a plane but over another does not fade. */
-void Evaluation::dropCovered(bool moves) {
-  auto& fading = buffers_.fading;
+/** What lies beside one face of a plane but over another does not fade. @param count the last contacts fade */
+void Evaluation::dropCovered(bool moves, std::uint32_t count) {
+  const auto& asked = buffers_.asked_fading;
+  if (asked.empty()) return;
+  const std::vector<Candidate>& pairs = buffers_.fading.pairs;
   auto& last = buffers_.last_fading;
-  if (last.size() < lists_.near[moves].vertices.names.size()) last.resize(lists_.near[moves].vertices.names.size(), NONE);
-  bool may_be_covered = false;
-  for (std::uint32_t i = 0; i < fading.size(); ++i) {
-    if (!fading[i].goes_on) continue;
-    fading[i].before = std::exchange(last[fading[i].vertex], i);
-    may_be_covered = true;
-  }
-  if (!may_be_covered) return;
-  const std::vector<int>& patches = lists_.near[!moves].patches;
+  auto& covers = buffers_.covers;
+  EvaluationBuffers::makeRoom(lists_.near[moves].vertices.names.size(), &last, NONE);
+  covers.resize(asked.size());
+  for (std::uint32_t i = 0; i < asked.size(); ++i) covers[i] = {std::exchange(last[pairs[asked[i].pair].a], i), false};
+  listCovering(moves);
   bool is_any_covered = false;
-  for (std::uint32_t i = 0; i < buffers_.over_count; ++i) {
-    const Candidate& c = buffers_.over[i];
-    for (std::uint32_t at = last[c.a]; at != NONE; at = fading[at].before)
-      if (fading[at].patch == patches[c.b]) fading[at].is_covered = is_any_covered = true;
-  }
-  for (const FadingVertex& each : fading) last[each.vertex] = NONE;
+  for (const Candidate& c : buffers_.over) forEachBeside(moves, c, [&](FadingCover* cover) { cover->is_covered = is_any_covered = true; });
+  for (const kernels::FadingContact& each : asked) last[pairs[each.pair].a] = NONE;
   if (!is_any_covered) return;
-  found_.close.keepOfLast(fading.size(), [&](std::size_t i) { return !fading[i].is_covered; });
+  std::size_t next = 0;
+  found_.close.keepOfLast(count, [&](std::size_t i) {
+    if (next == asked.size() || asked[next].row != i) return true;
+    return !covers[next++].is_covered;
+  });
+}
+
+/** Of vertices whose contacts may be covered, the plain ones with other faces of the same plane. */
+void Evaluation::listCovering(bool moves) {
+  auto& asked = buffers_.asked;
+  asked.clear();
+  for (const Candidate& c : pairs_.vertex_face[moves]) {
+    bool is_asked = false;
+    forEachBeside(moves, c, [&](FadingCover*) { is_asked = true; });
+    if (is_asked) asked.push_back(c);
+  }
+  EvaluationBuffers::makeRoom(asked.size() + 1, &buffers_.vertex_faces);
+  VertexFaceHit* const hits = buffers_.vertex_faces.data();
+  const NearFeatures& partner = lists_.near[!moves];
+  const std::uint32_t count = kernels::kernels().vertexFaces(buffers_.turned.nearFaces(lists_, moves, pair_.X_FM),
+                                                             partner.faces.records.data(), partner.open.data(), asked.data(),
+                                                             static_cast<std::uint32_t>(asked.size()), nullptr, pair_.range, nullptr, hits);
+  for (std::uint32_t i = 0; i < count; ++i)
+    if (hits[i].has(VertexFaceHit::PLAIN)) buffers_.over.push_back(asked[hits[i].candidate]);
+}
+
+/** Calls visit for the contacts that fade beside other faces of the candidate's plane. */
+template <typename Visit>
+void Evaluation::forEachBeside(bool moves, const Candidate& c, Visit&& visit) {
+  const std::vector<int>& patches = lists_.near[!moves].patches;
+  for (std::uint32_t at = buffers_.last_fading[c.a]; at != NONE; at = buffers_.covers[at].before) {
+    const std::uint32_t face = buffers_.fading.pairs[buffers_.asked_fading[at].pair].b;
+    if (face != c.b && patches[face] == patches[c.b]) visit(&buffers_.covers[at]);
+  }
 }
 
 }  // namespace blem_sim

@@ -184,13 +184,41 @@ TEST(CandidateCompleteness, ListsHoldEveryContact) {
       const MeshPair pair = pairOf(a.collider, b.collider, movedALittle(random, X, margin));
       const std::vector<NamedContact> expected = contactsOf(pair, &all, all.pairs, &evaluation);
       ASSERT_EQ(contactsOf(pair, &listing.lists, listing.lists.pairs, &evaluation), expected);
-      findNearest(pair, evaluation.turned, {0.2 * margin.motion, 0.2 * margin.turn}, &listing.lists, &nearest);
+      findNearest(pair, evaluation.turned, {0.2 * margin.motion, 0.2 * margin.turn}, listing.lists, &evaluation.surroundings, &nearest);
       ASSERT_EQ(contactsOf(pair, &listing.lists, nearest, &evaluation), expected);
       contacts += expected.size();
     }
   }
   RecordProperty("contacts", static_cast<int>(contacts));
   EXPECT_GT(contacts, samples(6000));
+}
+
+TEST(CandidateCompleteness, NearestHoldEveryContact) {
+  const std::vector<Shape> shapes = makeShapes();
+  RandomShapes random(15);
+  EvaluationBuffers evaluation;
+  CandidatePairs nearest;
+  std::size_t contacts = 0, leading = 0;
+  for (int i = 0; i < samples(60); ++i) {
+    const Shape &a = shapes[random.integer(0, shapes.size() - 1)], &b = shapes[random.integer(0, shapes.size() - 1)];
+    SCOPED_TRACE(a.name + " at " + b.name + ", pose " + std::to_string(i));
+    const Pose X = someMeeting(random, a, b, 1.5 * LAYER);
+    const double part = std::pow(10, random.uniform(-3, -1));
+    const ListMargin margin{part * LAYER, part * LAYER / SIZE};
+    const MeshPair pair = pairOf(a.collider, b.collider, X);
+    LeafMemory leaves;
+    CandidateLists all = everything(pair, &leaves);
+    evaluation.turned.turnForContacts(all, X);
+    leading += findNearest(pair, evaluation.turned, margin, all, &evaluation.surroundings, &nearest) - nearest.contacts();
+    for (int move = 0; move < 4; ++move) {
+      const MeshPair moved = pairOf(a.collider, b.collider, movedALittle(random, X, margin));
+      const std::vector<NamedContact> expected = contactsOf(moved, &all, all.pairs, &evaluation);
+      ASSERT_EQ(contactsOf(moved, &all, nearest, &evaluation), expected);
+      contacts += expected.size();
+    }
+  }
+  EXPECT_GT(contacts, samples(4000));
+  EXPECT_GT(leading, samples(4000));
 }
 
 TEST(CandidateCompleteness, ListsHoldEveryCrossing) {

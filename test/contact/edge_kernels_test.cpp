@@ -27,13 +27,16 @@ struct EdgesNearEdges {
     for (std::uint32_t i = 0; i < EDGES; ++i) {
       const Triangle t = random.triangle(1);
       const Vector3 along = t[1] - t[0];
-      const auto inward = [&] { return vec4(random.point(3).cross(along).normalized(), 0); };
-      records.push_back({vec4(t[0], along.squaredNorm()), vec4(along, i % 7 == 0), {inward(), inward()}});
+      const auto inward = [&](int k) { return vec4(random.point(3).cross(along).normalized(), nameBits(vertexAt(i, k))); };
+      records.push_back({vec4(t[0], along.squaredNorm()), vec4(along, i % 7 == 0), {inward(0), inward(1)}});
       names.push_back(static_cast<int>(1000 + i));
     }
 
     for (std::uint32_t i = 0; i < CANDIDATES; ++i) candidates.push_back({i / EDGES, i % EDGES});
   }
+
+  /** @param end -1: none */
+  static int vertexAt(std::uint32_t edge, int end) { return end < 0 ? -1 : static_cast<int>(3000 + 2 * edge) + end; }
 
   EdgePlace place(bool first_is_a) const {
     const Feature edge{FeatureKind::EDGE, 0};
@@ -50,13 +53,21 @@ struct EdgesNearEdges {
 /** What one set finds. */
 struct Found {
   Found(const Kernels& set, const EdgesNearEdges& in, bool first_is_a, bool takes_plain)
-      : hits(CANDIDATES + 1), fading(CANDIDATES + 1), rows(CANDIDATES + 1), plain{in.place(first_is_a), rows.data(), 0, -1} {
+      : hits(CANDIDATES + 1),
+        left(CANDIDATES + 1),
+        fading(CANDIDATES + 1),
+        rows(CANDIDATES + 1),
+        plain{in.place(first_is_a), rows.data(), 0, -1} {
     const EdgeRecord* const records = in.records.data();
-    hits.resize(set.edgeEdges(records, records, in.candidates.data(), CANDIDATES, RANGE, takes_plain ? &plain : nullptr, hits.data()));
+    LeftEdges to_left{left.data(), 0};
+    hits.resize(
+        set.edgeEdges(records, records, in.candidates.data(), CANDIDATES, RANGE, takes_plain ? &plain : nullptr, &to_left, hits.data()));
+    left.resize(to_left.count);
     rows.resize(plain.count);
     fading.resize(set.fadingEdges(records, records, in.candidates.data(), CANDIDATES, RANGE, fading.data()));
   }
   std::vector<EdgeEdgeHit> hits;
+  std::vector<Candidate> left;
   std::vector<FadingEdgesHit> fading;
   std::vector<ContactRow> rows;
   PlainEdges plain;
@@ -77,7 +88,7 @@ TEST(EdgeKernels, PlainContactsAreThoseMadeOneByOne) {
     for (const EdgeEdgeHit& hit : all.hits) {
       const bool again = close < written.hits.size() && written.hits[close].candidate == hit.candidate;
       close += again;
-      if (!hit.is_plain || again) continue;
+      if (again) continue;
       const Candidate& c = in.candidates[hit.candidate];
       const Vector3 point_a(hit.point_a), point_b(hit.point_b), normal(hit.normal);
       EXPECT_NEAR((point_a - point_b - hit.gap * normal).norm(), 0, 1e-13);
@@ -97,6 +108,7 @@ TEST(EdgeKernels, PlainContactsAreThoseMadeOneByOne) {
     }
     EXPECT_EQ(count, written.rows.size());
     EXPECT_EQ(close, written.hits.size());
+    EXPECT_GT(all.left.size(), 5u);
     EXPECT_EQ(written.plain.deepest, deepest);
     EXPECT_GT(count, 5u);
   }
@@ -125,8 +137,8 @@ TEST(EdgeKernels, FadingContactsAreWhereTheEdgesAreClosest) {
                  t = (q - p).cross(along_p).dot(across) / across.squaredNorm();
     const auto end = [](double part) { return part < 0 ? 0 : part > 1 ? 1 : -1; };
     const auto past = [](double part, const Vector3& along) { return std::max({-part, part - 1, 0.0}) * along.norm(); };
-    EXPECT_EQ(hit.end_a, end(s));
-    EXPECT_EQ(hit.end_b, end(t));
+    EXPECT_EQ(hit.end_a, in.vertexAt(c.a, end(s)));
+    EXPECT_EQ(hit.end_b, in.vertexAt(c.b, end(t)));
     EXPECT_NEAR(hit.gap - hit.distance, FADE_SLOPE * std::max(past(s, along_p), past(t, along_q)), 1e-9);
     const bool both = hit.end_a >= 0 && hit.end_b >= 0;
     (both ? beyond_both : beyond_one) += 1;
@@ -153,10 +165,10 @@ TEST(EdgeKernels, AllInstructionSetsFindTheSame) {
       for (std::size_t i = 0; i < each.hits.size(); ++i) {
         const EdgeEdgeHit &a = each.hits[i], &b = baseline.hits[i];
         EXPECT_EQ(a.candidate, b.candidate);
-        EXPECT_EQ(a.is_plain, b.is_plain);
-        EXPECT_TRUE(!a.is_plain || (same(a.point_a, b.point_a, 3) && same(a.point_b, b.point_b, 3) && same(a.normal, b.normal, 3) &&
-                                    same(&a.gap, &b.gap, 1)));
+        EXPECT_TRUE(same(a.point_a, b.point_a, 3) && same(a.point_b, b.point_b, 3) && same(a.normal, b.normal, 3) && a.gap == b.gap);
       }
+      ASSERT_EQ(each.left.size(), baseline.left.size());
+      EXPECT_EQ(std::memcmp(each.left.data(), baseline.left.data(), sizeof(Candidate) * each.left.size()), 0);
       ASSERT_EQ(each.rows.size(), baseline.rows.size());
       for (std::size_t i = 0; i < each.rows.size(); ++i) EXPECT_TRUE(same(each.rows[i].point, baseline.rows[i].point, 10));
       EXPECT_EQ(each.plain.deepest, baseline.plain.deepest);

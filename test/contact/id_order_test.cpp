@@ -26,7 +26,12 @@ TEST(IdOrder, IsThatOfIdsThenOfIndices) {
       std::vector<std::uint32_t> expected(count);
       std::iota(expected.begin(), expected.end(), 0u);
       std::stable_sort(expected.begin(), expected.end(), [&](std::uint32_t a, std::uint32_t b) { return contacts[a].id < contacts[b].id; });
-      EXPECT_EQ(order.of(contacts.data(), count), expected);
+      const std::vector<IdOrder::Entry>& entries = order.of(contacts.data(), count);
+      ASSERT_EQ(entries.size(), count);
+      for (std::size_t i = 0; i < count; ++i) {
+        EXPECT_EQ(entries[i].index, expected[i]);
+        EXPECT_EQ(entries[i].id, contacts[expected[i]].id);
+      }
     }
   }
 }

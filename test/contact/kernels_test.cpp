@@ -59,22 +59,22 @@ Features randomFeatures() {
 
 /** Vertices and faces as one set finds them, the features being those of either mesh. */
 struct PlainVertexFaces {
-  PlainVertexFaces(const Kernels& set, const Features& in, bool faces_move, bool takes_plain)
-      : X_FM(makePose({0.1, -0.2, 0.3}, {0.4, 0.5, -0.6})),
-        vertices{in.vertices.data(), faces_move, motionOf(X_FM.inverse())},
+  PlainVertexFaces(const Kernels& set, const Features& in, bool faces_move, bool takes_plain, const std::vector<std::uint8_t>& inner = {},
+                   const Pose& X_FM = makePose({0.1, -0.2, 0.3}, {0.4, 0.5, -0.6}))
+      : X_FM(X_FM),
+        vertices{in.vertices.data(), faces_move, motionOf(X_FM.inverse()), motionOf(X_FM)},
         X_WF(makePose({-3, 2, 1}, {0.7, -0.2, 0.1})),
         hits(CANDIDATES + 1),
-        rows(CANDIDATES + 1),
-        pairs(CANDIDATES + 1) {
+        rows(CANDIDATES + 1) {
     const Feature vertex{FeatureKind::VERTEX, 0}, face{FeatureKind::FACE, 0};
     // The vertices are A's: the moving mesh is A unless its faces are asked.
     plain = {{in.names.data(), true, motionOf(X_FM), motionOf(X_WF), RADIUS_A + RADIUS_B, 0.5 * (RADIUS_B - RADIUS_A),
               contactId(vertex, face), false},
              rows.data(),
-             pairs.data(),
              0,
              -1};
-    hits.resize(set.vertexFaces(vertices, in.faces.data(), in.open.data(), in.candidates.data(), CANDIDATES, RANGE,
+    hits.resize(set.vertexFaces(vertices, in.faces.data(), in.open.data(), in.candidates.data(),
+                                static_cast<std::uint32_t>(in.candidates.size()), inner.empty() ? nullptr : inner.data(), RANGE,
                                 takes_plain ? &plain : nullptr, hits.data()));
   }
 
@@ -84,7 +84,6 @@ struct PlainVertexFaces {
   Pose X_WF;
   std::vector<VertexFaceHit> hits;
   std::vector<ContactRow> rows;
-  std::vector<Candidate> pairs;
   PlainContacts plain;
 };
 
@@ -108,7 +107,6 @@ Found found(const Kernels& set, const Features& in) {
     }
     for (std::uint32_t i = 0; i < found.plain.count; ++i) {
       const ContactRow& row = found.rows[i];
-      out.indices.insert(out.indices.end(), {found.pairs[i].a, found.pairs[i].b});
       out.numbers.insert(out.numbers.end(), row.point, row.point + 3);
       out.numbers.insert(out.numbers.end(), row.normal, row.normal + 3);
       out.numbers.push_back(row.depth);
@@ -134,9 +132,12 @@ Found found(const Kernels& set, const Features& in) {
     for (std::uint32_t i = 0; i < count; ++i) out.indices.insert(out.indices.end(), {near[i].a, near[i].b});
   };
   const Reach reach{RANGE, 0.1, 0.02};
+  std::vector<std::uint8_t> inner(CANDIDATES);
   for (const bool faces_move : {false, true}) {
-    const NearVertices vertices{in.vertices.data(), faces_move, motionOf(makePose({0.1, -0.2, 0.3}, {0.4, 0.5, -0.6}))};
-    addNear(set.nearVertexFaces(vertices, in.faces.data(), in.open.data(), candidates, CANDIDATES, reach, near.data()));
+    const Motion X_MF = motionOf(makePose({0.1, -0.2, 0.3}, {0.4, 0.5, -0.6}));
+    const NearVertices vertices{in.vertices.data(), faces_move, X_MF, X_MF};
+    addNear(set.nearVertexFaces(vertices, in.faces.data(), in.open.data(), candidates, CANDIDATES, reach, near.data(), inner.data()));
+    out.indices.insert(out.indices.end(), inner.begin(), inner.begin() + out.counts.back());
   }
   addNear(set.nearEdgeEdges(in.edges.data(), in.edges.data(), candidates, CANDIDATES, reach, near.data()));
   addNear(set.nearVertexEdges(in.vertices.data(), in.edges.data(), candidates, CANDIDATES, reach, near.data()));
@@ -199,17 +200,59 @@ TEST(Kernels, PlainContactsAreThoseMadeOneByOne) {
       EXPECT_EQ(row.weight, one.weight);
       EXPECT_EQ(row.pierced, 0u);
       for (int k = 0; k < 3; ++k) {
-        EXPECT_EQ(row.point[k], one.point[k]);
+        EXPECT_NEAR(row.point[k], one.point[k], 1e-15);
         EXPECT_EQ(row.normal[k], one.normal_BA[k]);
       }
-      EXPECT_EQ(written.pairs[count].a, c.a);
-      EXPECT_EQ(written.pairs[count].b, c.b);
       ++count;
     }
     EXPECT_EQ(count, written.plain.count);
     EXPECT_EQ(written.plain.deepest, deepest);
     EXPECT_GT(count, 5u);
     EXPECT_EQ(close, written.hits.size());
+  }
+}
+
+/** Those that can have a contact, the flagged ones first, and their flags. */
+std::vector<std::uint8_t> sortByFlags(const NearVertices& vertices, const Reach& reach, Features* features) {
+  const Kernels& set = *availableKernels().front();
+  std::vector<Candidate> near(CANDIDATES);
+  std::vector<std::uint8_t> inner(CANDIDATES);
+  for (int pass = 0; pass < 2; ++pass) {
+    std::vector<Candidate>& all = features->candidates;
+    const std::uint32_t count = set.nearVertexFaces(vertices, features->faces.data(), features->open.data(), all.data(),
+                                                    static_cast<std::uint32_t>(all.size()), reach, near.data(), inner.data());
+    inner.resize(count);
+    all.clear();
+    for (const int flag : {1, 0})
+      for (std::uint32_t i = 0; i < count; ++i)
+        if (inner[i] == flag) all.push_back(near[i]);
+  }
+  return inner;
+}
+
+TEST(Kernels, VerticesThatAreSurelyInsideNeedNoTest) {
+  constexpr double MARGIN = 0.02;
+  const Pose X_FM = makePose({0.1, -0.2, 0.3}, {0.4, 0.5, -0.6});
+  for (const bool faces_move : {false, true}) {
+    SCOPED_TRACE(faces_move);
+    Features in = randomFeatures();
+    const NearVertices vertices{in.vertices.data(), faces_move, motionOf(X_FM.inverse()), motionOf(X_FM)};
+    const std::vector<std::uint8_t> inner = sortByFlags(vertices, {RANGE, MARGIN, 0}, &in);
+    const auto flagged = std::count(inner.begin(), inner.end(), 1);
+    EXPECT_TRUE(std::is_sorted(inner.rbegin(), inner.rend()));
+    ASSERT_GE(flagged, 24);
+    ASSERT_LT(flagged + 8u, inner.size());
+    RandomShapes random(3);
+    for (int i = 0; i < 20; ++i) {
+      const Pose moved = Eigen::Translation3d(0.999 * MARGIN * random.point(1).normalized()) * X_FM;
+      const PlainVertexFaces with(*availableKernels().front(), in, faces_move, true, inner, moved),
+          without(*availableKernels().front(), in, faces_move, true, {}, moved);
+      ASSERT_EQ(with.plain.count, without.plain.count);
+      EXPECT_GT(with.plain.count, 10u);
+      EXPECT_EQ(std::memcmp(with.rows.data(), without.rows.data(), with.plain.count * sizeof(ContactRow)), 0);
+      EXPECT_EQ(with.hits.size(), without.hits.size());
+      EXPECT_EQ(with.plain.deepest, without.plain.deepest);
+    }
   }
 }
 

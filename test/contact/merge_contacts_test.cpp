@@ -24,7 +24,8 @@ const Vector3 UP = Vector3::UnitZ();
 
 std::vector<Contact> merged(const std::vector<Contact>& contacts) {
   std::vector<Contact> out(contacts.size());
-  out.resize(mergeContacts(contacts.data(), contacts.size(), out.data()));
+  ContactMerge merge;
+  out.resize(merge.run(contacts.data(), contacts.size(), out.data()));
   return out;
 }
 

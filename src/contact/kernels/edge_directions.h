@@ -1,6 +1,8 @@
 // Edges around one vertex, side by side: plain numbers, the same for every instruction set.
 #pragma once
 
+#include <cstdint>
+
 namespace blem_sim::kernels {
 
 constexpr int DIRECTION_BLOCK = 8;
@@ -17,6 +19,14 @@ struct alignas(64) EdgeDirections {
 struct LeadingEdges {
   bool down;  ///< some edge leads down, by a larger part (sine) than CONE_SLACK
   bool near;  ///< such a one, not flat, whose contact with an edge square to `aside` may be there and near: what takes over is to be asked
+};
+
+/** A vertex of some pair that leaves a face over one of its sides. */
+struct LeavingSide {
+  std::uint32_t pair;
+  std::uint16_t side;
+  bool is_above;                ///< the vertex is over the face, not under it
+  std::uint32_t first, blocks;  ///< of the vertex's EdgeDirections
 };
 
 }  // namespace blem_sim::kernels

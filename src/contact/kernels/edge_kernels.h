@@ -48,21 +48,17 @@ inline Doubles appendEdges(const Batch& batch, const EdgeFeet& feet, unsigned bi
   const Doubles depth = place.layer - feet.gap;
   const Mask first = batch.numbers(place.names_a, OF_A), second = batch.numbers(place.names_b, OF_B);
   const Mask ids = (place.first_is_a ? first << 32 | second : second << 32 | first) | static_cast<long>(place.kinds);
-  const ContactRow* const end =
-      appendRows(inWorld(place, feet.point_a, feet.point_b, normal_BA), depth, ids, bits, out->rows + out->count, [](int, unsigned) {});
+  const ContactRow* const end = appendRows(inWorld(place, feet.point_a, feet.point_b, normal_BA), depth, ids, bits, out->rows + out->count);
   out->count = static_cast<std::uint32_t>(end - out->rows);
   return depth;
 }
 
-/** A hit for each bit: the plain ones as they are, the others by name. @return how many there are now */
-inline std::uint32_t appendHits(std::uint32_t first, const EdgeFeet& feet, unsigned plain, unsigned bits, std::uint32_t found,
-                                EdgeEdgeHit* hits) {
+/** @param bits of the lanes that have a hit @return how many there are now */
+inline std::uint32_t appendHits(std::uint32_t first, const EdgeFeet& feet, unsigned bits, std::uint32_t found, EdgeEdgeHit* hits) {
   for (; bits != 0; bits &= bits - 1) {
     const int i = __builtin_ctz(bits);
     EdgeEdgeHit& hit = hits[found++];
     hit.candidate = first + i;
-    hit.is_plain = plain >> i & 1;
-    if (!hit.is_plain) continue;
     const auto write = [i](const Vectors& v, double* out) { out[0] = v.x[i], out[1] = v.y[i], out[2] = v.z[i]; };
     write(feet.point_a, hit.point_a);
     write(feet.point_b, hit.point_b);
@@ -72,8 +68,16 @@ inline std::uint32_t appendHits(std::uint32_t first, const EdgeFeet& feet, unsig
   return found;
 }
 
+/** Copies a candidate for every lane; where its bit is not set the next one is written over it. */
+inline void appendLeft(const Batch& batch, unsigned bits, LeftEdges* left) {
+  for (int i = 0; i < LANES; ++i) {
+    left->pairs[left->count] = batch.lanes[i];
+    left->count += bits >> i & 1;
+  }
+}
+
 std::uint32_t edgeEdges(const EdgeRecord* a, const EdgeRecord* b, const Candidate* candidates, std::uint32_t count, double range,
-                        PlainEdges* plain, EdgeEdgeHit* hits) {
+                        PlainEdges* plain, LeftEdges* left, EdgeEdgeHit* hits) {
   std::uint32_t found = 0;
   Doubles deepest = all(plain ? plain->deepest : 0);
   for (std::uint32_t first = 0; first < count; first += LANES) {
@@ -97,7 +101,9 @@ std::uint32_t edgeEdges(const EdgeRecord* a, const EdgeRecord* b, const Candidat
       const Doubles depth = appendEdges(batch, feet, is_clear, plain);
       deepest = maximum(deepest, clear ? depth : deepest);
     }
-    found = appendHits(first, feet, bitsOf(stands), hit & ~is_clear, found, hits);
+    const unsigned is_plain = hit & bitsOf(stands);
+    found = appendHits(first, feet, is_plain & ~is_clear, found, hits);
+    appendLeft(batch, hit & ~is_plain, left);
   }
   raiseDeepest(deepest, plain);
   return found;

@@ -23,20 +23,26 @@ struct PlainEdges {
   double deepest;       ///< [m] their largest depth so far
 };
 
-/** Two edges near each other whose common perpendicular points out of their faces. In the frame of the records. */
+/** Where kernels copy candidates that are not plain. Room for one more than there are candidates. */
+struct LeftEdges {
+  Candidate* pairs;
+  std::uint32_t count;  ///< so far; they are appended
+};
+
+/** Two edges near each other, feet inside both, not touching, whose common perpendicular points out of their faces. In the frame of the
+ * records. */
 struct EdgeEdgeHit {
   std::uint32_t candidate;
-  bool is_plain;                             ///< feet inside both, not touching; else nothing is told but the candidate
   double point_a[3], point_b[3], normal[3];  ///< witness points [m]; unit, from b to a
   double gap;                                ///< [m]
 };
 
-/** Two such edges that are not plain. */
+/** Two edges that are not plain. */
 struct FadingEdgesHit {
   std::uint32_t candidate;
   bool is_inside;                 ///< the feet lie inside both, but for CLOSED, and more is to be asked: nothing else is told
   bool cones_known;               ///< whether the normal is known to point into none of their faces
-  std::int32_t end_a, end_b;      ///< end beyond which the foot lies, 0 or 1; -1 if it lies inside
+  std::int32_t end_a, end_b;      ///< the vertex at the end beyond which the foot lies; -1 if it lies inside
   double point_a[3], point_b[3];  ///< [m] witness points
   double distance, gap;           ///< [m] of these; and with the depth that is lost beyond the ends
   double normal[3];               ///< unit, from b to a, square to both edges

@@ -17,14 +17,16 @@ struct EdgeBatch {
   }
   void takeInwards(const Batch& batch, const EdgeRecord* a, const EdgeRecord* b) {
     for (int k = 0; k < 2; ++k) {
-      inward_a[k] = batch.inward(a, OF_A, k).v;
-      inward_b[k] = batch.inward(b, OF_B, k).v;
+      const Rows into_a = batch.inward(a, OF_A, k), into_b = batch.inward(b, OF_B, k);
+      inward_a[k] = into_a.v, end_a[k] = reinterpret_cast<Mask>(into_a.w);
+      inward_b[k] = into_b.v, end_b[k] = reinterpret_cast<Mask>(into_b.w);
     }
   }
 
   Rows start_a, start_b, along_a, along_b;
   Vectors between;  ///< from start to start
   Vectors inward_a[2], inward_b[2];
+  Mask end_a[2], end_b[2];  ///< names of their vertices
 };
 
 /** Where edges have their contacts. */
@@ -58,8 +60,8 @@ struct EdgesBeyond {
     feet.gap = feet.distance + FADE_SLOPE * (squareRoot(maximum(over_p2, over_q2)) / n2);
     fades = bitsOf(near & ~inside & ~lieInside(edges, range) & (feet.distance > TOUCH) & (feet.gap <= range));
     const Mask none = Mask{} - 1;
-    end_a = over_s == 0 ? none : s > 0 ? Mask{} + 1 : Mask{};
-    end_b = over_t == 0 ? none : t > 0 ? Mask{} + 1 : Mask{};
+    end_a = over_s == 0 ? none : s > 0 ? edges.end_a[1] : edges.end_a[0];
+    end_b = over_t == 0 ? none : t > 0 ? edges.end_b[1] : edges.end_b[0];
   }
 
   /** Do both ends of an edge lie farther inside a face of the other edge than a contact within range could? Of its first two faces. */

@@ -26,9 +26,9 @@ struct Kernels {
   void (*leafCrossings)(const LeafShapes& a, const LeafShapes& b, const LeafReach& reach, LeafHits* hits);
 
   /** Copies, in order, the candidates that can have a contact within the range while nothing moves or turns by more than the reach says.
-   * @return their number */
+   * @param inner as them: 1 where the vertex stays over its face and away from its border, else 0 @return their number */
   std::uint32_t (*nearVertexFaces)(const NearVertices& a, const FaceRecord* b, const OpenSides* open, const Candidate* in,
-                                   std::uint32_t count, const Reach& reach, Candidate* out);
+                                   std::uint32_t count, const Reach& reach, Candidate* out, std::uint8_t* inner);
   std::uint32_t (*nearEdgeEdges)(const EdgeRecord* a, const EdgeRecord* b, const Candidate* in, std::uint32_t count, const Reach& reach,
                                  Candidate* out);
   std::uint32_t (*nearVertexEdges)(const Vec4* a, const EdgeRecord* b, const Candidate* in, std::uint32_t count, const Reach& reach,
@@ -37,16 +37,19 @@ struct Kernels {
                                       Candidate* out);
 
   /** Candidates with a contact within `range`, and those that need a closer look. Room for one more hit than candidates.
+   * @param inner as of nearVertexFaces, which changes no contact; null: not known
    * @param plain takes those that are plain and not near a border, instead of the hits; null: nothing does @return number of hits */
   std::uint32_t (*vertexFaces)(const NearVertices& a, const FaceRecord* b, const OpenSides* open, const Candidate* candidates,
-                               std::uint32_t count, double range, PlainContacts* plain, VertexFaceHit* hits);
-  /** The contacts of vertices with sides of faces. @param sides as the pairs */
-  void (*sideFeet)(const ContactPlace& place, const NearVertices& vertices, const FaceRecord* faces, const BesideSide* sides,
-                   const Candidate* pairs, std::uint32_t count, SideFoot* feet);
-  /** As vertexFaces. */
+                               std::uint32_t count, const std::uint8_t* inner, double range, PlainContacts* plain, VertexFaceHit* hits);
+  /** The contacts within `range` of vertices with the nearest of those sides of faces that they lie outside of. Where witness points are
+   * asked for a row has the foot on the side and the normal from the fixed mesh to the moving one, in frame F, and the gap as its depth.
+   * @param sides as the pairs @return how many */
+  std::uint32_t (*sideFeet)(const ContactPlace& place, const NearVertices& vertices, const FaceRecord* faces, const FaceCorners* corners,
+                            const BesideSides* sides, const Candidate* pairs, std::uint32_t count, double range, FadingContacts* out);
+  /** As vertexFaces. @param left takes those that are not plain */
   std::uint32_t (*edgeEdges)(const EdgeRecord* a, const EdgeRecord* b, const Candidate* candidates, std::uint32_t count, double range,
-                             PlainEdges* plain, EdgeEdgeHit* hits);
-  /** Of candidates that are not plain: those with a contact within `range` if nothing takes over, or that need a closer look. Room for one
+                             PlainEdges* plain, LeftEdges* left, EdgeEdgeHit* hits);
+  /** Of those that are not plain: candidates with a contact within `range` if nothing takes over, or that need a closer look. Room for one
    * more hit than candidates. */
   std::uint32_t (*fadingEdges)(const EdgeRecord* a, const EdgeRecord* b, const Candidate* candidates, std::uint32_t count, double range,
                                FadingEdgesHit* hits);
@@ -58,6 +61,10 @@ struct Kernels {
                                   std::uint32_t* hits);
   /** Of a vertex's edges, in so many blocks. @param down, aside unit, three numbers each, as the edges */
   LeadingEdges (*leadingEdges)(const EdgeDirections* blocks, int count, const double* down, const double* aside);
+  /** Where the edges of vertices lead that leave faces over their sides: down, to the face, and aside, into it.
+   * @param directions of all vertices @param to_vertices turns directions of the faces */
+  void (*leadingAtSides)(const EdgeDirections* directions, const FaceRecord* faces, const Motion& to_vertices, const Candidate* pairs,
+                         const LeavingSide* sides, std::uint32_t count, LeadingEdges* leading);
   /** Has one of them a part along `towards` whose square is larger than `least2`? */
   bool (*leadTo)(const EdgeDirections* blocks, int count, const double* towards, double least2);
   /** Edges that pass through a face's plane where the face may be. */

@@ -57,8 +57,9 @@ void turnFaces(const FaceRecord* in, std::uint32_t count, const Motion& motion, 
 }  // namespace
 }  // namespace blem_sim::kernels
 
-#define BLEM_SIM_KERNEL_TABLE(name)                                                                                                     \
-  {                                                                                                                                     \
-    name, turnPoints, turnEdges, turnFaces, turnLeaf, leafContacts, leafCrossings, nearVertexFaces, nearEdgeEdges, nearVertexEdges,     \
-        nearVertexVertices, vertexFaces, sideFeet, edgeEdges, fadingEdges, vertexEdges, vertexVertices, leadingEdges, leadTo, edgeFaces \
+#define BLEM_SIM_KERNEL_TABLE(name)                                                                                                   \
+  {                                                                                                                                   \
+    name, turnPoints, turnEdges, turnFaces, turnLeaf, leafContacts, leafCrossings, nearVertexFaces, nearEdgeEdges, nearVertexEdges,   \
+        nearVertexVertices, vertexFaces, sideFeet, edgeEdges, fadingEdges, vertexEdges, vertexVertices, leadingEdges, leadingAtSides, \
+        leadTo, edgeFaces                                                                                                             \
   }

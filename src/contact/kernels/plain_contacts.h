@@ -7,7 +7,8 @@ namespace blem_sim::kernels {
 namespace {
 
 // Sums in the order of Eigen's, which turns the contacts that come one by one: the same bits.
-inline Vectors turnedDirection(const Motion& X, const Vectors& d) {
+template <typename Lanes>
+inline VectorsOf<Lanes> turnedDirection(const Motion& X, const VectorsOf<Lanes>& d) {
   const double* const R = X.R;
   return {R[0] * d.x + R[1] * d.y + R[2] * d.z, R[3] * d.x + R[4] * d.y + R[5] * d.z, R[6] * d.x + (R[7] * d.y + R[8] * d.z)};
 }
@@ -16,21 +17,25 @@ inline Vectors turnedPoint(const Motion& X, const Vectors& p) {
   return {row(0), row(1), row(2)};
 }
 
-/** The lanes' vertices: where they are, and as the faces see them. */
-struct VertexLanes {
-  VertexLanes(const Batch& batch, const NearVertices& vertices) : VertexLanes(batch.points(vertices.records, OF_A), vertices) {}
+/** In the mesh's frame of the faces. @param at in frame F */
+inline Vectors seenByFaces(const NearVertices& vertices, const Vectors& at) {
+  return vertices.faces_move ? turnedPoint(vertices.X_MF, at) : at;
+}
 
-  const Vectors at;  ///< in frame F
-  const Mask names;
-  const bool faces_move;
-  const Vectors seen;  ///< in the faces' mesh's frame
+/** A face's plane in frame F: of lanes, or of one face. */
+template <typename Lanes>
+struct PlaneInF {
+  /** @param normal, offset in the face's mesh's frame */
+  PlaneInF(const NearVertices& vertices, const VectorsOf<Lanes>& normal, Lanes offset) : up(normal), offset(offset) {
+    if (!vertices.faces_move) return;
+    const double* const t = vertices.X_FM.t;
+    up = turnedDirection(vertices.X_FM, normal);
+    this->offset = offset + (t[0] * up.x + t[1] * up.y + t[2] * up.z);
+  }
+  Doubles height(const Vectors& at) const { return at.x * up.x + at.y * up.y + at.z * up.z - offset; }
 
- private:
-  VertexLanes(const Rows& rows, const NearVertices& vertices)
-      : at(rows.v),
-        names(reinterpret_cast<Mask>(rows.w)),
-        faces_move(vertices.faces_move),
-        seen(vertices.faces_move ? turnedPoint(vertices.X_MF, rows.v) : rows.v) {}
+  VectorsOf<Lanes> up;  ///< unit
+  Lanes offset;
 };
 
 /** A contact's place and normal in the world. */
@@ -51,16 +56,13 @@ constexpr struct {
 } UNWEIGHED = {1, 0};
 
 /** Writes a row for every lane; where its bit is not set the next one is written over it. @param bits of the lanes that have a contact
- * @param also is called with every lane and whether it has one @return the last row's end */
-template <typename Also>
-inline ContactRow* appendRows(const WorldContacts& contacts, Doubles depth, Mask ids, unsigned bits, ContactRow* row, Also&& also) {
+ * @return the last row's end */
+inline ContactRow* appendRows(const WorldContacts& contacts, Doubles depth, Mask ids, unsigned bits, ContactRow* row) {
   const auto& [point, normal] = contacts;
   transposed({point.x, point.y, point.z, normal.x, normal.y, normal.z, depth, reinterpret_cast<Doubles>(ids)}, [&](int lane) {
     double* const now = row->point;
     __builtin_memcpy(&row->weight, &UNWEIGHED, sizeof UNWEIGHED);
-    const unsigned has_one = bits >> lane & 1;
-    also(lane, has_one);
-    row += has_one;
+    row += bits >> lane & 1;
     return now;
   });
   return row;
@@ -74,30 +76,56 @@ inline void raiseDeepest(Doubles deepest, Plain* plain) {
 
 /** contactId of the lanes' vertices and faces. */
 template <typename Faces>
-inline Mask idsOf(const VertexLanes& vertices, const Faces& faces, const ContactPlace& place) {
-  const Mask vertex = vertices.names, face = faces.numbers(place.face_names);
+inline Mask idsOf(const Rows& vertices, const Faces& faces, const ContactPlace& place) {
+  const Mask vertex = reinterpret_cast<Mask>(vertices.w), face = faces.numbers(place.face_names);
   const Mask names = place.vertices_are_a ? vertex << 32 | face : face << 32 | vertex;
   return names | static_cast<long>(place.kinds);
 }
 
-/** @param bits of the lanes that have a contact @return depths */
-template <typename Faces>
-inline Doubles appendPlain(const Batch& batch, const Faces& faces, const VertexLanes& vertices, const Vectors& normal, Doubles height,
-                           unsigned bits, PlainContacts* out) {
+/** @param up the faces' normals @param bits of the lanes that have a contact @return depths */
+template <typename Faces, typename Lanes>
+[[gnu::always_inline]] inline Doubles appendPlain(const Faces& faces, const Rows& vertices, const VectorsOf<Lanes>& up_W, Doubles height,
+                                                  unsigned bits, PlainContacts* out) {
   const ContactPlace& place = out->place;
-  const Vectors &at = vertices.at, up = vertices.faces_move ? turnedDirection(place.X_FM, normal) : normal;
   const Mask to_a = place.vertices_are_a ? height > 0 : height <= 0;
-  const Doubles sign = to_a ? all(1) : all(-1), depth = place.layer - absolute(height);
-  const WorldContacts contacts = inWorld(place, at, at - height * up, sign * up);
-  Candidate* pair = out->pairs + out->count;
-  const ContactRow* const end = appendRows(contacts, depth, idsOf(vertices, faces, place), bits, out->rows + out->count,
-                                           [&pair, lanes = batch.lanes](int lane, unsigned has_one) {
-                                             *pair = lanes[lane];
-                                             pair += has_one;
-                                           });
+  const Doubles sign = to_a ? all(1) : all(-1), depth = place.layer - absolute(height), beside = sign * place.shift - 0.5 * height;
+  const Vectors at = turnedPoint(place.X_WF, vertices.v);
+  const WorldContacts contacts{{at.x + beside * up_W.x, at.y + beside * up_W.y, at.z + beside * up_W.z},
+                               {sign * up_W.x, sign * up_W.y, sign * up_W.z}};
+  const ContactRow* const end = appendRows(contacts, depth, idsOf(vertices, faces, place), bits, out->rows + out->count);
   out->count = static_cast<std::uint32_t>(end - out->rows);
   return depth;
 }
+
+/** What vertices ask of faces in frame F and in the world; of one face in all lanes it is kept. */
+class FacePlanes {
+ public:
+  FacePlanes(const NearVertices& vertices, const PlainContacts* plain)
+      : vertices_(vertices), X_WF_(plain ? plain->place.X_WF : vertices.X_FM) {}
+
+  PlaneInF<Doubles> of(const EachFace& faces) const {
+    const Rows plane = faces.plane();
+    return {vertices_, plane.v, plane.w};
+  }
+  const PlaneInF<double>& of(const OneFace& faces) {
+    if (index_ != faces.index) {
+      const Vec4& plane = faces.face.plane;
+      plane_ = {vertices_, {plane.x, plane.y, plane.z}, plane.w};
+      up_W_ = turnedDirection(X_WF_, plane_.up);
+      index_ = faces.index;
+    }
+    return plane_;
+  }
+  Vectors upInWorld(const PlaneInF<Doubles>& plane) const { return turnedDirection(X_WF_, plane.up); }
+  const VectorsOf<double>& upInWorld(const PlaneInF<double>&) const { return up_W_; }
+
+ private:
+  const NearVertices& vertices_;
+  const Motion& X_WF_;
+  std::uint32_t index_ = 0xFFFFFFFF;  ///< whose the others are
+  PlaneInF<double> plane_{vertices_, {}, 0};
+  VectorsOf<double> up_W_{};
+};
 
 }  // namespace
 }  // namespace blem_sim::kernels

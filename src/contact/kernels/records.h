@@ -9,11 +9,16 @@ struct alignas(32) Vec4 {
   double x, y, z, w;
 };
 
-/** What the w of a vertex holds: its name's bits. */
+/** What the w of a vertex holds, and of an edge for its ends: a name's bits. */
 inline double nameBits(std::int64_t name) {
   double bits;
   __builtin_memcpy(&bits, &name, sizeof bits);
   return bits;
+}
+inline std::int64_t nameOf(double bits) {
+  std::int64_t name;
+  __builtin_memcpy(&name, &bits, sizeof name);
+  return name;
 }
 
 /** A face in some frame: signed heights over its plane and inside its three sides, all in metres, as normal . p - offset. */
@@ -30,7 +35,7 @@ using OpenSides = std::int32_t;
 struct alignas(64) EdgeRecord {
   Vec4 start;      ///< its first vertex; w: squared length
   Vec4 along;      ///< to its second vertex; w: 1 if it has more faces than `inward` tells, -1 if it is round (ROUND_COSINE)
-  Vec4 inward[2];  ///< unit, square to it, into its first and second face; zero where there is none
+  Vec4 inward[2];  ///< unit, square to it, into its first and second face; zero where there is none; w: nameBits of its vertices
 };
 
 /** A rigid motion: rotation by rows, then translation. */
@@ -161,7 +166,7 @@ struct ContactRow {
 struct NearVertices {
   const Vec4* records;  ///< in frame F; w: nameBits
   bool faces_move;      ///< their records are in the moving mesh's frame
-  Motion X_MF;          ///< asked only then
+  Motion X_MF, X_FM;    ///< asked only then
 };
 
 /** Where the contacts of vertices of one mesh with faces of the other are. */
@@ -179,22 +184,32 @@ struct ContactPlace {
 struct PlainContacts {
   ContactPlace place;
   ContactRow* rows;
-  Candidate* pairs;     ///< whose they are
   std::uint32_t count;  ///< so far; they are appended
   double deepest;       ///< [m] their largest depth so far
 };
 
-/** A side of a face beside which a vertex lies; the face's mesh's frame. */
-struct BesideSide {
-  Vec4 start, along;  ///< its corner, to the next one
+/** Corners of a face; its mesh's frame. Side k goes from corner k to the next. */
+struct FaceCorners {
+  Vec4 of[3];
 };
 
-/** A vertex's contact with a face's side: as a Contact; where witness points are asked for, the foot on the side, in frame F. */
-struct SideFoot {
-  double point[3];   ///< [m]
-  double normal[3];  ///< unit; in frame F from the fixed mesh to the moving one
-  double distance;   ///< [m] of the vertex
-  double lost;       ///< [m] of depth, since the vertex lies beside the face
+/** A face beside which a vertex lies. */
+struct BesideSides {
+  std::uint32_t outside;  ///< bits k: outside its side k; not none
+  std::uint32_t face;     ///< among FaceCorners
+  double reach;           ///< [m] farther beside the face the vertex lies over no other face of the plane
+};
+
+/** The row of a contact that fades, and whose it is. */
+struct FadingContact {
+  std::uint32_t row, pair;
+};
+
+/** Where kernels write contacts that fade. Room for one more row than there are pairs. */
+struct FadingContacts {
+  ContactRow* rows;
+  FadingContact* asked;  ///< those within the face's reach; where witness points are asked for, all
+  std::uint32_t asked_count;
 };
 
 }  // namespace blem_sim::kernels

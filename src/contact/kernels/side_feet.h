@@ -1,4 +1,4 @@
-// Vertices beside faces: where on a side of the face the contact is. Included by the kernels only.
+// Vertices beside faces: where on the faces' sides their contacts are. Included by the kernels only.
 #pragma once
 
 #include "plain_contacts.h"
@@ -7,38 +7,82 @@ namespace blem_sim::kernels {
 namespace {
 
 /** The closest point of the side to the vertex's projection into the face's plane. */
-inline Vectors closestOnSide(const Rows& start, const Rows& along, const Vectors& projection) {
-  const Doubles part = clampedToUnit(dot(projection - start.v, along.v) / dot(along.v, along.v));
-  return start.v + part * along.v;
+inline Vectors closestOnSide(const Vectors& start, const Vectors& end, const Vectors& projection) {
+  const Vectors along = end - start;
+  const Doubles part = clampedToUnit(dot(projection - start, along) / dot(along, along));
+  return start + part * along;
 }
 
-void sideFeet(const ContactPlace& place, const NearVertices& vertices, const FaceRecord* faces, const BesideSide* sides,
-              const Candidate* pairs, std::uint32_t count, SideFoot* feet) {
+inline Vectors chosen(Mask first, const Vectors& a, const Vectors& b) { return {first ? a.x : b.x, first ? a.y : b.y, first ? a.z : b.z}; }
+
+/** Where contacts are, and the depth [m] that they lose there, since the vertices lie beside their faces. */
+struct FeetOnSides {
+  Vectors foot;
+  Doubles lost;
+};
+
+/** Of each lane: on the nearest of the sides. @param projection of the vertex into the face's plane */
+inline FeetOnSides nearestFeet(const BesideSides* sides, std::uint32_t count, const FaceCorners* corners, const Vectors& projection) {
+  constexpr int NEXT[] = {1, 2, 0};
+  FeetOnSides nearest{{}, all(__builtin_inf())};
+  const FaceCorners* faces[LANES];
+  std::uint32_t left[LANES], more;
+  for (std::uint32_t i = 0; i < LANES; ++i) {
+    const BesideSides& side = sides[i < count ? i : 0];
+    faces[i] = &corners[side.face];
+    left[i] = side.outside;
+  }
+  do {
+    more = 0;
+    const Vec4 *starts[LANES], *ends[LANES];
+    for (int i = 0; i < LANES; ++i) {
+      const int k = __builtin_ctz(left[i]);
+      starts[i] = &faces[i]->of[k];
+      ends[i] = &faces[i]->of[NEXT[k]];
+      const std::uint32_t others = left[i] & (left[i] - 1);
+      if (others != 0) left[i] = others;  // else its last side is asked again
+      more |= others;
+    }
+    const Vectors foot = closestOnSide(gathered(starts).v, gathered(ends).v, projection), beside = projection - foot;
+    const Doubles lost = FADE_SLOPE * squareRoot(dot(beside, beside));
+    const Mask nearer = lost < nearest.lost;
+    nearest = {chosen(nearer, foot, nearest.foot), nearer ? lost : nearest.lost};
+  } while (more != 0);
+  return nearest;
+}
+
+/** Of each lane, how far beside its face the plane goes on [m]. */
+inline Doubles reaches(const BesideSides* sides, std::uint32_t count) {
+  Doubles reach;
+  for (std::uint32_t i = 0; i < LANES; ++i) reach[i] = sides[i < count ? i : 0].reach;
+  return reach;
+}
+
+std::uint32_t sideFeet(const ContactPlace& place, const NearVertices& vertices, const FaceRecord* faces, const FaceCorners* corners,
+                       const BesideSides* sides, const Candidate* pairs, std::uint32_t count, double range, FadingContacts* out) {
+  ContactRow* row = out->rows;
+  out->asked_count = 0;
   for (std::uint32_t first = 0; first < count; first += LANES) {
     const Batch batch(pairs, first, count);
-    const VertexLanes lanes(batch, vertices);
-    const Vectors &at = lanes.at, &p = lanes.seen;
+    const Rows points = batch.points(vertices.records, OF_A);
+    const Vectors &at = points.v, p = seenByFaces(vertices, at);
     const Rows plane = batch.field(faces, OF_B, &FaceRecord::plane);
-    const Vectors projection = p - above(p, plane) * plane.v;
-    const Vec4 *starts[LANES], *alongs[LANES];
-    for (int i = 0; i < LANES; ++i) {
-      const BesideSide& side = sides[first + i < count ? first + i : count - 1];
-      starts[i] = &side.start;
-      alongs[i] = &side.along;
-    }
-    Vectors foot = closestOnSide(gathered(starts), gathered(alongs), projection);
-    const Vectors beside = projection - foot;
-    const Doubles lost = FADE_SLOPE * squareRoot(dot(beside, beside));
+    auto [foot, lost] = nearestFeet(sides + first, count - first, corners, p - above(p, plane) * plane.v);
     if (vertices.faces_move) foot = turnedPoint(place.X_FM, foot);
     const bool from_foot = place.keeps_feet ? !vertices.faces_move : place.vertices_are_a;
     const Vectors d = from_foot ? at - foot : foot - at;
-    const Doubles distance = squareRoot(dot(d, d));
+    const Doubles distance = squareRoot(dot(d, d)), gap = distance + lost;
     const Vectors normal{d.x / distance, d.y / distance, d.z / distance};
-    const auto [point, direction] = place.keeps_feet ? WorldContacts{foot, normal} : inWorld(place, at, foot, normal);
-    SideFoot behind_last;
-    transposed({point.x, point.y, point.z, direction.x, direction.y, direction.z, distance, lost},
-               [&](int lane) { return first + lane < count ? feet[first + lane].point : behind_last.point; });
+    const WorldContacts contacts = place.keeps_feet ? WorldContacts{foot, normal} : inWorld(place, at, foot, normal);
+    const unsigned bits = bitsOf((distance > TOUCH) & (gap <= range)) & batch.valid,
+                   near = bits & bitsOf(lost <= FADE_SLOPE * reaches(sides + first, count - first));
+    for (unsigned asked = place.keeps_feet ? bits : near; asked != 0; asked &= asked - 1) {
+      const int lane = __builtin_ctz(asked), before = __builtin_popcount(bits & ((1u << lane) - 1));
+      out->asked[out->asked_count++] = {static_cast<std::uint32_t>(row - out->rows + before), first + lane};
+    }
+    row = appendRows(contacts, place.keeps_feet ? gap : place.layer - gap, idsOf(points, EachFace{batch, faces}, place), bits, row);
   }
+  return static_cast<std::uint32_t>(row - out->rows);
 }
 
 }  // namespace

@@ -32,6 +32,26 @@ LeadingEdges leadingEdges(const EdgeDirections* blocks, int count, const double*
   return {bitsOf(leads) != 0, bitsOf(is_near) != 0};
 }
 
+void leadingAtSides(const EdgeDirections* directions, const FaceRecord* faces, const Motion& to_vertices, const Candidate* pairs,
+                    const LeavingSide* sides, std::uint32_t count, LeadingEdges* leading) {
+  for (std::uint32_t first = 0; first < count; first += LANES) {
+    const Vec4 *planes[LANES], *inward[LANES];
+    for (std::uint32_t i = 0; i < LANES; ++i) {
+      const LeavingSide& side = sides[first + i < count ? first + i : first];
+      const FaceRecord& face = faces[pairs[side.pair].b];
+      planes[i] = &face.plane;
+      inward[i] = &face.sides[side.side];
+    }
+    const Vectors up = turnedDirection(to_vertices, gathered(planes).v), aside = turnedDirection(to_vertices, gathered(inward).v);
+    for (std::uint32_t i = 0; i < LANES && first + i < count; ++i) {
+      const LeavingSide& side = sides[first + i];
+      const double sign = side.is_above ? -1 : 1, down[] = {sign * up.x[i], sign * up.y[i], sign * up.z[i]},
+                   beside[] = {aside.x[i], aside.y[i], aside.z[i]};
+      leading[first + i] = leadingEdges(directions + side.first, static_cast<int>(side.blocks), down, beside);
+    }
+  }
+}
+
 bool leadTo(const EdgeDirections* blocks, int count, const double* towards, double least2) {
   const Vectors to = allOf(towards);
   Mask leads{};
