@@ -57,7 +57,7 @@ class ContactSearch {
   }
 
   void run(bool keeps) {
-    if (!staysApart()) {
+    if (haveEdges() && !staysApart()) {
       refresh(CandidateKind::CROSSINGS, keeps, &memory_.crossings);
       CandidateLists& lists = memory_.crossings.now.lists;
       buffers_.evaluation.turned.turnForCrossings(lists, pair_.X_FM);
@@ -74,6 +74,9 @@ class ContactSearch {
   }
 
  private:
+  /** What has none, as points, crosses nothing. */
+  bool haveEdges() const { return pair_.moving.topology.edgeCount() > 0 && pair_.fixed.topology.edgeCount() > 0; }
+
   /** Have the meshes surely not come to cross since they were apart? What is nearest on the straight way of the points near the fixed mesh
    * lies along a normal of that one, so their distance shrinks by no more than what they move along its normals there. */
   bool staysApart() const {
