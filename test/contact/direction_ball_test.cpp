@@ -36,7 +36,9 @@ TEST(DirectionBall, HoldsWhatWasAdded) {
 // Whatever can be nearest something near lies along one of them.
 TEST(DirectionBall, HoldsTheNormalsOfAListing) {
   RandomShapes random(4);
-  const Collider hills = makeCollider(hillMesh(random, 0.1, 60, 0.0001), 0), cube = makeCollider(boxMesh(Vector3::Constant(0.02)), 0.002);
+  TriangleMesh plain_and_hills = hillMesh(random, 0.1, 60, 0.0001);
+  for (Vector3& v : plain_and_hills.vertices) v.z() *= v.x() < 0 ? 0.01 : 1;
+  const Collider hills = makeCollider(plain_and_hills, 0), cube = makeCollider(boxMesh(Vector3::Constant(0.02)), 0.002);
   const MeshPair pair{MeshSide(*cube.geometry), MeshSide(*hills.geometry), makePose({0, 0, 0.0105}), 0.002, 0.002, {}};
   CandidateSearchBuffers buffers;
   CandidateListing listing;
