@@ -15,15 +15,16 @@ std::vector<int> sampledSteps() {
 Generation generate(const ContactScene& scene, bool remembers, int steps) {
   std::vector<NarrowPhaseMemory> memories(scene.moving.size());
   std::vector<Pose> poses(scene.moving.size());
-  ContactManifold manifold;
+  std::vector<ContactManifold> manifolds(scene.moving.size());  // of each pair its own, as a simulation keeps them
   Generation out;
   for (int step = -1; step < steps; ++step) {
     for (std::size_t i = 0; i < scene.moving.size(); ++i) poses[i] = scene.pose(static_cast<int>(i), step);
     std::size_t contacts = 0;
     out.times.start();
     for (std::size_t i = 0; i < scene.moving.size(); ++i) {
-      narrowPhase(scene.moving[i], poses[i], scene.standing, Pose::Identity(), 0, &manifold, nullptr, remembers ? &memories[i] : nullptr);
-      contacts += manifold.contacts.size();
+      narrowPhase(scene.moving[i], poses[i], scene.standing, Pose::Identity(), 0, &manifolds[i], nullptr,
+                  remembers ? &memories[i] : nullptr);
+      contacts += manifolds[i].contacts.size();
     }
     out.times.stop();
     if (step < 0) {

@@ -45,9 +45,9 @@ BorderKinds borderKinds(const MeshSide& side, int face, SurroundingsMemory* surr
   return kinds;
 }
 
-kernels::OpenSides openSides(const BorderKinds& kinds) {
-  const auto from = [](const BorderKinds::Seen& seen) {
-    return (seen.falling | seen.rising) != 0 ? kernels::VertexFaceHit::OUTSIDE & ~(seen.flat | seen.round) : 0;
+kernels::OpenSides openSides(const BorderKinds& kinds, bool to_points) {
+  const auto from = [to_points](const BorderKinds::Seen& seen) {
+    return ((to_points ? 0 : seen.falling) | seen.rising) != 0 ? kernels::VertexFaceHit::OUTSIDE & ~(seen.flat | seen.round) : 0;
   };
   return static_cast<kernels::OpenSides>(from(kinds.seen[1]) | from(kinds.seen[0]) << 3);
 }

@@ -19,7 +19,8 @@ struct BorderKinds {
 };
 BorderKinds borderKinds(const MeshSide& side, int face, SurroundingsMemory* surroundings);
 
-/** Over which sides contacts may fade: neither over flat nor over round ones, and over turning ones only where another one lets them. */
-kernels::OpenSides openSides(const BorderKinds& kinds);
+/** Over which sides contacts may fade: neither over flat nor over round ones, and over turning ones only where another one lets them.
+ * @param to_points of vertices without edges alone: no surface of theirs leads on where a border falls */
+kernels::OpenSides openSides(const BorderKinds& kinds, bool to_points = false);
 
 }  // namespace blem_sim

@@ -77,9 +77,9 @@ class LeadingVertices {
 
 }  // namespace
 
-void NearFeatures::addFaceOf(const LeafFeatures& leaf, std::uint32_t i) {
+void NearFeatures::addFaceOf(const LeafFeatures& leaf, std::uint32_t i, bool near_points) {
   patches.push_back(leaf.patches[i]);
-  open.push_back(leaf.shapes.faces.open[i]);
+  open.push_back(near_points ? openSides(leaf.borders[i], true) : leaf.shapes.faces.open[i]);
   borders.push_back(leaf.borders[i]);
 }
 

@@ -39,7 +39,7 @@ struct NearFeatures {
   std::vector<BorderKinds> borders;      ///< of the faces
   FadingRecords fading;
 
-  void addFaceOf(const LeafFeatures& leaf, std::uint32_t i);  ///< what goes with faces
+  void addFaceOf(const LeafFeatures& leaf, std::uint32_t i, bool near_points);  ///< what goes with faces
   void clear();
 };
 

@@ -238,12 +238,13 @@ class Search {
   void copyNew() {
     for (const bool moves : {true, false}) {
       NearFeatures& near = listing_.lists.near[moves];
+      const bool near_points = pair_.side(!moves).topology.edgeCount() == 0;
       NewFeatures& added = buffers_.new_features[moves];
       for (const LeafFeature& v : added.vertices) near.vertices.add(v.leaf->vertices.records[v.i], v.leaf->vertices.names[v.i]);
       for (const LeafFeature& e : added.edges) near.edges.add(e.leaf->edges.records[e.i], e.leaf->edges.names[e.i]);
       for (const LeafFeature& f : added.faces) {
         near.faces.add(f.leaf->faces.records[f.i], f.leaf->faces.names[f.i]);
-        near.addFaceOf(*f.leaf, f.i);
+        near.addFaceOf(*f.leaf, f.i, near_points);
       }
       added.clear();
     }
