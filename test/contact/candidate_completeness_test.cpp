@@ -87,7 +87,7 @@ NearFeatures allFeatures(const MeshSide& side, LeafMemory* leaves) {
     add(leaf.vertices, &all.vertices);
     add(leaf.edges, &all.edges);
     add(leaf.faces, &all.faces);
-    for (std::uint32_t i = 0; i < leaf.faces.records.size(); ++i) all.addFaceOf(leaf, i);
+    for (std::uint32_t i = 0; i < leaf.faces.records.size(); ++i) all.addFaceOf(leaf, i, false);
   }
   std::fill(all.open.begin(), all.open.end(), ALL_SIDES);
   return all;
