@@ -45,11 +45,15 @@ BorderKinds borderKinds(const MeshSide& side, int face, SurroundingsMemory* surr
   return kinds;
 }
 
-kernels::OpenSides openSides(const BorderKinds& kinds, bool to_points) {
-  const auto from = [to_points](const BorderKinds::Seen& seen) {
-    return ((to_points ? 0 : seen.falling) | seen.rising) != 0 ? kernels::VertexFaceHit::OUTSIDE & ~(seen.flat | seen.round) : 0;
+kernels::OpenSides openSides(const BorderKinds& kinds) {
+  const auto from = [](const BorderKinds::Seen& seen, unsigned letting) {
+    return letting != 0 ? kernels::VertexFaceHit::OUTSIDE & ~(seen.flat | seen.round) : 0;
   };
-  return static_cast<kernels::OpenSides>(from(kinds.seen[1]) | from(kinds.seen[0]) << 3);
+  const auto of = [&](std::uint8_t BorderKinds::Seen::*also) {
+    const auto seenFrom = [&](const BorderKinds::Seen& seen) { return from(seen, seen.rising | seen.*also); };
+    return seenFrom(kinds.seen[1]) | seenFrom(kinds.seen[0]) << 3;
+  };
+  return static_cast<kernels::OpenSides>(of(&BorderKinds::Seen::falling) | of(&BorderKinds::Seen::rising) << kernels::OPEN_TO_POINTS);
 }
 
 }  // namespace blem_sim

@@ -19,8 +19,8 @@ struct BorderKinds {
 };
 BorderKinds borderKinds(const MeshSide& side, int face, SurroundingsMemory* surroundings);
 
-/** Over which sides contacts may fade: neither over flat nor over round ones, and over turning ones only where another one lets them.
- * @param to_points of vertices without edges alone: no surface of theirs leads on where a border falls */
-kernels::OpenSides openSides(const BorderKinds& kinds, bool to_points = false);
+/** Over which sides contacts may fade: neither over flat nor over round ones, and over turning ones only where another one lets them. Of
+ * points without edges none does where a border falls: no surface of theirs leads on. */
+kernels::OpenSides openSides(const BorderKinds& kinds);
 
 }  // namespace blem_sim

@@ -79,7 +79,7 @@ class LeadingVertices {
 
 void NearFeatures::addFaceOf(const LeafFeatures& leaf, std::uint32_t i, bool near_points) {
   patches.push_back(leaf.patches[i]);
-  open.push_back(near_points ? openSides(leaf.borders[i], true) : leaf.shapes.faces.open[i]);
+  open.push_back(leaf.shapes.faces.open[i] >> (near_points ? kernels::OPEN_TO_POINTS : 0));
   borders.push_back(leaf.borders[i]);
 }
 

@@ -35,6 +35,8 @@ struct LeafInUse {
   std::uint32_t slots;
 };
 
+bool isPoints(const MeshSide& side) { return side.topology.edgeCount() == 0; }
+
 /** Works on a listing. */
 class Search {
  public:
@@ -95,6 +97,7 @@ class Search {
                              static_cast<float>(margin.turn + FLOAT_TURN),
                              static_cast<float>(deepestInside(reach_) + wider),
                              static_cast<float>(rounding_),
+                             isPoints(pair_.moving) || isPoints(pair_.fixed) ? kernels::OPEN_TO_POINTS : 0,
                              {}};
     const Matrix3 ways = margin.ways.isZero(0) ? Matrix3(margin.motion * Matrix3::Identity()) : margin.ways;
     for (int i = 0; i < 3; ++i)
@@ -238,7 +241,7 @@ class Search {
   void copyNew() {
     for (const bool moves : {true, false}) {
       NearFeatures& near = listing_.lists.near[moves];
-      const bool near_points = pair_.side(!moves).topology.edgeCount() == 0;
+      const bool near_points = isPoints(pair_.side(!moves));
       NewFeatures& added = buffers_.new_features[moves];
       for (const LeafFeature& v : added.vertices) near.vertices.add(v.leaf->vertices.records[v.i], v.leaf->vertices.names[v.i]);
       for (const LeafFeature& e : added.edges) near.edges.add(e.leaf->edges.records[e.i], e.leaf->edges.names[e.i]);

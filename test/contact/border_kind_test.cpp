@@ -15,8 +15,7 @@ TEST(OpenSides, FallAwayFromSurfacesOnly) {
   const MeshSide side(*box.geometry);
   SurroundingsMemory surroundings;
   for (int face = 0; face < 12; ++face) {
-    const BorderKinds kinds = borderKinds(side, face, &surroundings);
-    const kernels::OpenSides open = openSides(kinds), to_points = openSides(kinds, true);
+    const kernels::OpenSides open = openSides(borderKinds(side, face, &surroundings)), to_points = open >> kernels::OPEN_TO_POINTS;
     EXPECT_EQ(__builtin_popcount(open & ABOVE), 2) << face;
     EXPECT_EQ(__builtin_popcount(open & BELOW), 2) << face;
     EXPECT_EQ(to_points & ABOVE, 0) << face;

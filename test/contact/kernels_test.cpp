@@ -294,7 +294,7 @@ LeafShapes randomLeaf(std::uint64_t seed) {
 std::vector<std::uint32_t> leafHits(const Kernels& set, const LeafShapes& a, const LeafShapes& b) {
   LeafShapes turned = a;
   set.turnLeaf(a, motionOf(makePose({0.01, 0.02, -0.03}, {0.1, 0.2, 0.3})), &turned);
-  const LeafReach reach{0.5f, 0.1f, 0.02f, 0.2f, 1e-6f, {{0.06f, 0.08f, 0}, {-0.04f, 0.03f, 0}, {0, 0, 0.01f}}};
+  const LeafReach reach{0.5f, 0.1f, 0.02f, 0.2f, 1e-6f, 0, {{0.06f, 0.08f, 0}, {-0.04f, 0.03f, 0}, {0, 0, 0.01f}}};
   LeafHits hits;
   set.leafContacts(turned, b, reach, &hits);
   set.leafCrossings(turned, b, reach, &hits);

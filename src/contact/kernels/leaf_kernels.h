@@ -17,7 +17,7 @@ namespace {
 inline FloatMask mayTouch(const FloatVectors& p, const FloatFaces& face, const LeafReach& reach) {
   const Floats height = face.plane.above(p), most = reach.range - absolute(height);
   const Floats inside[3] = {face.sides[0].above(p), face.sides[1].above(p), face.sides[2].above(p)};
-  return (most >= 0) & isOverOrFades(inside, openSides(face.open, height, reach.margin), most, reach.margin);
+  return (most >= 0) & isOverOrFades(inside, openSides(face.open >> reach.open_shift, height, reach.margin), most, reach.margin);
 }
 
 inline FloatMask mayTouch(const FloatVectors& p, const LeafEdges& edges, std::uint32_t first, const LeafReach& reach) {

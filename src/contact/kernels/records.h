@@ -28,8 +28,9 @@ struct alignas(64) FaceRecord {
 };
 
 /** Over which of its sides k a vertex's contact with a face may fade, instead of being taken over by what lies behind: bits k for vertices
- * above its plane, 3 + k for those below. */
+ * above its plane, 3 + k for those below; from OPEN_TO_POINTS on the same for points, which have no edges. */
 using OpenSides = std::int32_t;
+constexpr int OPEN_TO_POINTS = 6;
 
 /** An edge in some frame. */
 struct alignas(64) EdgeRecord {
@@ -114,6 +115,7 @@ struct LeafReach {
   float turn;      ///< that unit vectors may turn (length of the difference)
   float inside;    ///< both ends of an edge may lie so far inside a face of the other one
   float rounding;  ///< that coordinates may be wrong by; part of range, margin and inside
+  int open_shift;  ///< OPEN_TO_POINTS where one of the meshes has no edges, else 0
   /** For crossings: rows square to each other; no point moves along any of them by more than its length, but for the rounding. */
   float ways[3][3];
 };
