@@ -7,7 +7,7 @@
 
 namespace blem_sim {
 
-/** A direction that no mesh has: few contacts share a place along it. Not longer than 1. */
+/** A direction that no mesh has: few contacts share a place along it. Unit, but for 1e-5. */
 inline const Vector3 UNCOMMON_DIRECTION(0.5773, 0.6411, 0.5057);
 
 /** Total order: by id, then point, normal, depth, trust. Precondition: finite. */

@@ -3,6 +3,7 @@
 
 #include "edge_records.h"
 #include "fading_edges.h"
+#include "plain_contacts.h"
 
 namespace blem_sim::kernels {
 namespace {

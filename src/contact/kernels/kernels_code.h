@@ -8,6 +8,7 @@
 #include "lanes.h"
 #include "leaf_kernels.h"
 #include "side_feet.h"
+#include "vertex_face_kernels.h"
 #include "vertex_kernels.h"
 
 namespace blem_sim::kernels {
