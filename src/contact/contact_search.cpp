@@ -14,11 +14,12 @@ constexpr double LEAST_PART = 0.7;  // of those, see partOf
 constexpr double LEAF_PAIR_COST = 40, CANDIDATE_COST = 8, CHOICE_STEPS = 5;
 // Where there are not few pairs of leaves the next list is made in so many parts, in as many steps before it is needed, if it lasts.
 constexpr std::size_t PARTS = 4, FEW_LEAF_PAIRS = 64;
-constexpr double LASTING_STEPS = 8;
+constexpr double LASTING_STEPS = 5;
 // A list is made for a pose ahead, so much of its margin away on the way of the pair, and so many steps, at most.
 constexpr double AHEAD = 0.9, AHEAD_AT_MOST = 0.98, AHEAD_STEPS = 16;
 // Of long lists those that matter for so few steps are listed again, or for what is cheapest if it is known how lists of the pair grow.
 constexpr double NEAREST_STEPS = 3, FEWEST_NEAREST_STEPS = 2, MOST_NEAREST_STEPS = 8;
+constexpr double MOST_NEAREST_PART = 0.4;  // of a list's margin
 // Candidates for crossings are listed for so many.
 constexpr double CROSSING_STEPS = 10;
 constexpr std::size_t FEW_CANDIDATES = 50;
@@ -186,11 +187,15 @@ class ContactSearch {
   }
 
   /** The steps that the nearest are chosen for: for more there are more to test, for fewer all are looked at more often. To look at one
-   * takes about as long as to test it; a choice of margin m lasts 2 m / motion steps. */
+   * takes about as long as to test it; a choice of margin m lasts 2 m / motion steps. Few enough for a choice, if the list's margin is not
+   * too small for any. */
   double nearestSteps() const {
-    const double all = memory_.contacts.now.lists.pairs.contacts(), more_per_step = memory_.growth * motion_.motion;
+    const CandidateListing& list = memory_.contacts.now;
+    const double all = list.lists.pairs.contacts(), more_per_step = memory_.growth * motion_.motion;
     if (more_per_step <= 0) return NEAREST_STEPS;
-    return std::clamp(std::sqrt(0.5 * all / more_per_step), FEWEST_NEAREST_STEPS, MOST_NEAREST_STEPS);
+    const double worth = MOST_NEAREST_PART * list.origin.margin.motion / motion_.motion;
+    const double most = std::clamp(worth, FEWEST_NEAREST_STEPS, MOST_NEAREST_STEPS);
+    return std::clamp(std::sqrt(0.5 * all / more_per_step), FEWEST_NEAREST_STEPS, most);
   }
 
   /** The candidates to test, good lists given. */
@@ -198,7 +203,7 @@ class ContactSearch {
     if (isGood(memory_.nearest_origin)) return memory_.nearest;
     const ListMargin margin = marginOf(nearestSteps());
     CandidateListing& all = memory_.contacts.now;
-    if (all.lists.pairs.contacts() <= FEW_CANDIDATES || 2 * margin.motion >= all.origin.margin.motion) return all.lists.pairs;
+    if (all.lists.pairs.contacts() <= FEW_CANDIDATES || margin.motion >= 0.5 * all.origin.margin.motion) return all.lists.pairs;
     const MeshPair ahead = this->ahead(margin);
     buffers_.evaluation.turned.turnForContacts(all.lists, ahead.X_FM);
     const std::size_t near =
