@@ -11,7 +11,7 @@ constexpr double MARGIN_STEPS = 15, FEWEST_STEPS = 3, MOST_STEPS = 50;
 constexpr double LEAST_PART = 0.7;  // of those, see partOf
 // What the making of a list takes per pair of leaves, and per candidate, in candidates that findNearest looks at, and the steps that its
 // choice lasts.
-constexpr double LEAF_PAIR_COST = 40, CANDIDATE_COST = 8, CHOICE_STEPS = 5;
+constexpr double LEAF_PAIR_COST = 40, CANDIDATE_COST = 8, CHOICE_STEPS = 8;
 // Where there are not few pairs of leaves the next list is made in so many parts, in as many steps before it is needed, if it lasts.
 constexpr std::size_t PARTS = 4, FEW_LEAF_PAIRS = 64;
 constexpr double LASTING_STEPS = 5;
