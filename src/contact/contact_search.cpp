@@ -20,7 +20,7 @@ constexpr double AHEAD = 0.9, AHEAD_AT_MOST = 0.98, AHEAD_STEPS = 16;
 // Of long lists those that matter for so few steps are listed again, or for what is cheapest if it is known how lists of the pair grow.
 constexpr double NEAREST_STEPS = 3, FEWEST_NEAREST_STEPS = 2, MOST_NEAREST_STEPS = 8;
 constexpr double MOST_NEAREST_PART = 0.4;  // of a list's margin
-// Candidates for crossings are listed for so many.
+// Candidates for crossings are listed for so many, or for what fits into the largest margin.
 constexpr double CROSSING_STEPS = 10;
 constexpr std::size_t FEW_CANDIDATES = 50;
 constexpr double LEAST_MARGIN = 0.02, MOST_MARGIN = 0.8, LEAST_NEAREST_MARGIN = 0.005;  // of the range
@@ -100,10 +100,15 @@ class ContactSearch {
   /** Too fast for lists to last. */
   bool isFast() const { return FEWEST_STEPS * motion_.motion > MOST_MARGIN * pair_.range; }
 
+  /** Has the list so many pairs of leaves that lists grow faster than their margins? */
+  bool areMany() const { return memory_.contacts.now.pairs.size() > MANY_LEAF_PAIRS; }
+  /** [m], where it is not known how they grow. */
+  double mostMargin() const { return (areMany() ? MOST_MARGIN_OF_MANY : MOST_MARGIN) * pair_.range; }
+
   ListMargin contactMargin() const {
     if (!memory_.visited) return {FIRST_MARGIN * pair_.range, FIRST_TURN};
-    const bool many = memory_.contacts.now.pairs.size() > MANY_LEAF_PAIRS, known = memory_.growth > 0 && !many;
-    const double most = (many ? MOST_MARGIN_OF_MANY : known ? MOST_KNOWN_MARGIN : MOST_MARGIN) * pair_.range;
+    const bool known = memory_.growth > 0 && !areMany();
+    const double most = known ? MOST_KNOWN_MARGIN * pair_.range : mostMargin();
     // Turning is allowed for as long as moving.
     double steps = (known ? cheapestSteps() : MARGIN_STEPS) * partOf(pair_.X_FM);
     if (steps * motion_.motion > most) steps = most / motion_.motion;
@@ -123,7 +128,8 @@ class ContactSearch {
 
   ListMargin crossingMargin() const {
     const NearRegion::Motions step = memory_.visited ? region_.motions(pair_.X_FM, memory_.X_FM) : NearRegion::Motions::Zero();
-    return marginAlong(step, CROSSING_STEPS, LEAST_NEAREST_MARGIN * pair_.range);
+    const double steps = CROSSING_STEPS * motion_.motion > mostMargin() ? mostMargin() / motion_.motion : CROSSING_STEPS;
+    return marginAlong(step, steps, LEAST_NEAREST_MARGIN * pair_.range);
   }
 
   Vector3 middle() const { return pair_.moving.bounds.center(); }
