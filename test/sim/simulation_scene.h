@@ -2,6 +2,7 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -14,27 +15,34 @@ namespace blem_sim {
 
 constexpr double G = 9.81;  // [m/s^2], the default configuration's
 
-/** Writes a mesh (or points) as a file and names it. */
-inline std::string meshFile(const std::string& name, const TriangleMesh& mesh) {
+/** Writes a file of that name and tells its path; whole at once, since tests that run beside this one ask for the same. */
+template <typename Write>
+std::string sceneFile(const std::string& name, Write&& write) {
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "blem_sim_scene";
   std::filesystem::create_directories(folder);
-  const std::string file = (folder / (name + ".off")).string();
-  std::ofstream out(file);
-  out << std::setprecision(17) << "OFF\n" << mesh.vertices.size() << " " << mesh.elements.size() << " 0\n";
-  for (const Vector3& v : mesh.vertices) out << v.x() << " " << v.y() << " " << v.z() << "\n";
-  for (const Vector3i& e : mesh.elements) out << "3 " << e[0] << " " << e[1] << " " << e[2] << "\n";
+  const std::string file = (folder / name).string(), draft = file + "." + std::to_string(getpid());
+  {
+    std::ofstream out(draft);
+    write(out);
+  }
+  std::filesystem::rename(draft, file);
   return file;
 }
 
+inline std::string meshFile(const std::string& name, const TriangleMesh& mesh) {
+  return sceneFile(name + ".off", [&](std::ofstream& out) {
+    out << std::setprecision(17) << "OFF\n" << mesh.vertices.size() << " " << mesh.elements.size() << " 0\n";
+    for (const Vector3& v : mesh.vertices) out << v.x() << " " << v.y() << " " << v.z() << "\n";
+    for (const Vector3i& e : mesh.elements) out << "3 " << e[0] << " " << e[1] << " " << e[2] << "\n";
+  });
+}
+
 inline std::string pointsFile(const std::string& name, const std::vector<Vector3>& points) {
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "blem_sim_scene";
-  std::filesystem::create_directories(folder);
-  const std::string file = (folder / (name + ".pcd")).string();
-  std::ofstream out(file);
-  out << "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH " << points.size()
-      << "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " << points.size() << "\nDATA ascii\n";
-  for (const Vector3& p : points) out << p.x() << " " << p.y() << " " << p.z() << "\n";
-  return file;
+  return sceneFile(name + ".pcd", [&](std::ofstream& out) {
+    out << "VERSION .7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\nWIDTH " << points.size()
+        << "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " << points.size() << "\nDATA ascii\n";
+    for (const Vector3& p : points) out << p.x() << " " << p.y() << " " << p.z() << "\n";
+  });
 }
 
 /** A mesh of two triangles at z = 0. */
