@@ -33,7 +33,7 @@ if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
 endif()
 
 # Square roots and comparisons as vector code; changes no result, only what becomes of errno and the flags of exceptions.
-foreach(lanes contact/reduction_lanes dynamics/contact_lanes dynamics/joint_lanes)
+foreach(lanes contact/reduction_lanes dynamics/contact_lanes dynamics/joint_lanes dynamics/sweep_lanes)
   # Without precompiled headers, which bring their own options.
   set_source_files_properties(${PROJECT_SOURCE_DIR}/src/${lanes}.cpp PROPERTIES COMPILE_OPTIONS "-fno-math-errno;-fno-trapping-math"
     SKIP_PRECOMPILE_HEADERS ON)

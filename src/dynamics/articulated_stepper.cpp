@@ -157,6 +157,7 @@ void ArticulatedStepper::solveIsland(const Scene& scene, const StepInput& input,
   IslandProblem& problem = island->problem;
   for (const int tree : problem.trees) setFreeMomentum(forest_, scene, tree, input.dt, &motion_, &space_);
   makeTerms({scene, forest_, motion_, input, settings_, memory_}, island);
+  problem.up = -scene.gravity();
   addEfforts(input, problem, &space_);
   const NewtonSettings newton;
   island->report = problem.solve(forest_, motion_, newton, &space_);

@@ -34,6 +34,7 @@ void IslandProblem::layBlocks() {
   for (const ContactPatch& p : patches) couple(p.pair);
   for (const BodyPair& pair : loop_pairs) couple(pair);
   matrix_.analyse();
+  laid_ = true;
   if (block_vector_.size() < matrix_.size()) block_vector_.resize(matrix_.size());
 }
 
@@ -134,6 +135,7 @@ void IslandProblem::fillMatrix() {
 bool IslandProblem::factor() {
   SolverSpace& s = *space_;
   factored_ = false;
+  if (coupled_ && !laid_) layBlocks();
   const double* base = s.idle.rows.data();
   for (const int k : live_dofs_)
     std::copy(base + forest_->rowStart(k), base + forest_->rowEnd(k), s.hessian.rows.data() + forest_->rowStart(k));

@@ -96,19 +96,6 @@ void IslandProblem::respondIdle() {
   blem_sim::respond(0, joint_blocks_.data() + live_joint_blocks_, joint_blocks_.data() + joint_blocks_.size(), &first, &second);
 }
 
-template <typename Visit>
-void IslandProblem::forDofs(const Visit& visit) const {
-  for (const std::vector<int>* dofs : {&live_dofs_, &idle_dofs_})
-    for (const int k : *dofs) visit(k);
-}
-
-template <typename Visit>
-void IslandProblem::forIdleJoints(const Visit& visit) {
-  for (std::size_t b = live_joint_blocks_; b < joint_blocks_.size(); ++b)
-    for (int lane = 0; lane < LANES; ++lane)
-      if (joint_blocks_[b].dof[lane] >= 0) visit(&joint_blocks_[b], lane, joint_blocks_[b].dof[lane]);
-}
-
 // Do the velocities at hand solve the problem? Idle dofs first: they cost least.
 bool IslandProblem::isSolved(double tolerance) {
   SolverSpace& s = *space_;
@@ -206,10 +193,9 @@ bool IslandProblem::settle(double enough) {
   for (const int k : idle_dofs_)
     if (strayed_ || strays(k)) wake(forest_->nodeOfDof(k));
   woken_ = true;
-  base_known_ = factored_ = responses_known_ = false;
+  base_known_ = factored_ = responses_known_ = laid_ = false;
   listLive();
   softenJoints();
-  if (coupled_) layBlocks();
   return false;
 }
 

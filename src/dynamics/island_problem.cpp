@@ -56,9 +56,8 @@ void IslandProblem::start() {
 
 // From the velocities at hand, with the live nodes at hand, on the hard problem.
 void IslandProblem::begin() {
-  factored_ = base_known_ = anchored_ = false;
+  factored_ = base_known_ = anchored_ = laid_ = false;
   listLive();
-  if (coupled_) layBlocks();
   fillBlocks();
   setSteps(space_->velocity);
   take(1, contact_blocks_.data(), contact_blocks_.data() + contact_blocks_.size());

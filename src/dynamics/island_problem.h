@@ -6,8 +6,10 @@
 #include <vector>
 
 #include "block_matrix.h"
+#include "body_pair.h"
 #include "contact_lanes.h"
 #include "forest_motion.h"
+#include "island_sweeps.h"
 #include "islands.h"
 #include "joint_lanes.h"
 #include "loop_term.h"
@@ -15,26 +17,6 @@
 #include "tree_rows.h"
 
 namespace blem_sim {
-
-/** Two nodes that act on each other. */
-struct BodyPair {
-  int a = -1;                       ///< node; wrenches are on it, about its tree's reference point
-  int b = -1;                       ///< node, -1: the static world
-  Vector3 shift = Vector3::Zero();  ///< from a's reference point to b's
-};
-
-/** Contacts of one pair, consecutive among the problem's contacts. */
-struct ContactPatch {
-  BodyPair pair;
-  int first = 0, end = 0;
-  int first_block = 0, block_end = 0;  ///< of the problem's blocks, while it is solved
-};
-
-/** v[dof] = multiplier * v[master], kept exactly: the column of dof is folded into that of its master. */
-struct MimicFold {
-  int dof, master;
-  double multiplier;
-};
 
 struct NewtonSettings {
   int max_iterations = 100;           ///< over all proximal steps
@@ -74,6 +56,26 @@ struct SolverSpace {
   void resize(const Forest& forest);
 };
 
+/** [J] Of the contacts' impulses, at the mean of the velocities with and without them. */
+struct ContactWork {
+  double gained = 0;     ///< by the bodies, without correcting depth
+  double exchanged = 0;  ///< sum without signs
+  double change = 0;     ///< impulses times what they change of the velocities
+};
+
+/** What was found, to come back to. */
+struct KeptSolution {
+  std::vector<double> velocity;  ///< of the trees' dofs in turn
+  std::vector<Vector3> impulses;
+  std::vector<JointTerm> joints;
+  std::vector<LoopTerm> loops;
+
+  void take(const Eigen::VectorXd& v, const std::vector<int>& trees, const Forest& forest, const std::vector<ContactTerm>& contacts,
+            const std::vector<JointTerm>& joint_terms, const std::vector<LoopTerm>& loop_terms);
+  void put(const std::vector<int>& trees, const Forest& forest, Eigen::VectorXd* v, std::vector<ContactTerm>* contacts,
+           std::vector<JointTerm>* joint_terms, std::vector<LoopTerm>* loop_terms) const;
+};
+
 /** One island: trees that something ties together. Used again from step to step, so that it need not allocate. */
 class IslandProblem {
  public:
@@ -85,6 +87,7 @@ class IslandProblem {
   std::vector<BodyPair> loop_pairs;  ///< of each loop, a the child
   std::vector<MimicFold> mimics;
   std::vector<double> mimic_impulses;  ///< after solve: by which each mimic's dof follows its master
+  Vector3 up = Vector3::Zero();        ///< against gravity; zero without
 
   void clear();
   /** Solves for space->velocity, which holds the first guess, space->mass_velocity M times it. The terms hold the reactions afterwards. */
@@ -154,6 +157,23 @@ class IslandProblem {
   void readMimics();
   NewtonReport iterate(const NewtonSettings& settings);
   void finish(const NewtonSettings& settings, NewtonReport* report);
+  // island_heap.cpp: many bodies that push each other, and what the iteration did not solve
+  bool isSwept() const;
+  bool isHeap() const;
+  SweepProblem sweepProblem() const;
+  double largestImpulse() const;
+  bool isTrouble(const NewtonReport& report) const;
+  void takeFirstVelocity();
+  void adoptImpulses();
+  ContactWork contactWork();
+  bool sweepFrom(bool previous, int most, double enough, SweepReport* report);
+  void adoptSwept();
+  void finishSwept(NewtonReport* report);
+  bool polish(const NewtonSettings& settings, NewtonReport* report);
+  bool solveResting(const NewtonSettings& settings, NewtonReport* report);
+  NewtonReport solveHeap(const NewtonSettings& settings);
+  void sweepAndPolish(const NewtonSettings& settings, NewtonReport* report);
+  void recover(NewtonReport* report);
 
   const Forest* forest_ = nullptr;
   const ForestMotion* motion_ = nullptr;
@@ -172,6 +192,8 @@ class IslandProblem {
   std::vector<ContactBlock> contact_blocks_;  ///< responses: where the line search looked last
   std::vector<JointBlock> joint_blocks_;      ///< likewise
   SlipMixing slip_mixing_;
+  IslandSweeps sweeps_;
+  KeptSolution kept_;
   double responses_at_ = 0;            ///< how far along the direction that was
   bool responses_known_ = false;       ///< and that is the present iterate
   double linear_ = 0, quadratic_ = 0;  ///< of the kinetic part along the search direction
@@ -180,8 +202,22 @@ class IslandProblem {
   std::vector<double> factored_kinds_, factored_joints_, base_joints_;
   Islands tree_blocks_;  ///< trees that mimic joints tie are one block
   std::vector<int> block_sizes_;
+  bool laid_ = false;  ///< the matrix has a block for every pair that is tied
   BlockMatrix matrix_;
   Eigen::VectorXd block_vector_;
 };
+
+template <typename Visit>
+void IslandProblem::forDofs(const Visit& visit) const {
+  for (const std::vector<int>* dofs : {&live_dofs_, &idle_dofs_})
+    for (const int k : *dofs) visit(k);
+}
+
+template <typename Visit>
+void IslandProblem::forIdleJoints(const Visit& visit) {
+  for (std::size_t b = live_joint_blocks_; b < joint_blocks_.size(); ++b)
+    for (int lane = 0; lane < LANES; ++lane)
+      if (joint_blocks_[b].dof[lane] >= 0) visit(&joint_blocks_[b], lane, joint_blocks_[b].dof[lane]);
+}
 
 }  // namespace blem_sim

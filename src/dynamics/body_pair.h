@@ -1,0 +1,28 @@
+// What of an island acts on what: pairs of bodies, the contacts between them, joints that follow others.
+#pragma once
+
+#include "spatial.h"
+
+namespace blem_sim {
+
+/** Two nodes that act on each other. */
+struct BodyPair {
+  int a = -1;                       ///< node; wrenches are on it, about its tree's reference point
+  int b = -1;                       ///< node, -1: the static world
+  Vector3 shift = Vector3::Zero();  ///< from a's reference point to b's
+};
+
+/** Contacts of one pair, consecutive among the problem's contacts. */
+struct ContactPatch {
+  BodyPair pair;
+  int first = 0, end = 0;
+  int first_block = 0, block_end = 0;  ///< of the problem's blocks, while it is solved
+};
+
+/** v[dof] = multiplier * v[master], kept exactly: the column of dof is folded into that of its master. */
+struct MimicFold {
+  int dof, master;
+  double multiplier;
+};
+
+}  // namespace blem_sim

@@ -1,0 +1,233 @@
+// What sweeps are for: many bodies that push each other, and islands that Newton's method did not solve.
+#include <algorithm>
+#include <cmath>
+
+#include "island_problem.h"
+
+namespace blem_sim {
+namespace {
+
+constexpr int FEW = 4;                  // trees: from here on sweeps take the place of the soft stages,
+constexpr int HEAP = 12;                // and from here on of the first iterations too
+constexpr double RESTING = 1e-6;        // [sqrt(kg) m/s] first gradient below which a heap is like in the step before
+constexpr int RESTING_ITERATIONS = 15;  // for a heap at rest
+// Sweeps of a heap that tumbles end when they change impulses by less than this share of the largest; of a quiet one they are what brings it to rest.
+constexpr double TUMBLES = 1e-2, SWEPT = 1e-3;
+constexpr int SWEEPS = 60, SAFE_SWEEPS = 200;
+// Softness of contacts while a quiet heap is polished: stiffer ones change their kinds too often.
+constexpr double POLISH_SOFTNESS = 300, KEPT_SOFTNESS = 100, INEXACT = 0.02;
+constexpr int POLISH_WORK = 6000, FEWEST_POLISHES = 12, MOST_POLISHES = 40;  // iterations times trees
+constexpr double BALANCED = 1e-4;            // [rad/s or m/s] what a polished step may miss momentum's balance by
+constexpr double TROUBLE = 1e-3;             // [rad/s or m/s] what an iterated one may, before sweeps are asked
+constexpr double RESIDUAL_IS_TROUBLE = 0.01;  // of the largest impulse
+constexpr int MOTOR_ROUNDS = 4;
+constexpr double FREE_ENERGY = 1e-9, GAIN_OF_MOTION = 1e-6;  // [J], and of the work that contacts exchange: what sweeps may gain
+
+}  // namespace
+
+void KeptSolution::take(const Eigen::VectorXd& v, const std::vector<int>& trees, const Forest& forest,
+                        const std::vector<ContactTerm>& contacts, const std::vector<JointTerm>& joint_terms,
+                        const std::vector<LoopTerm>& loop_terms) {
+  velocity.clear();
+  impulses.clear();
+  for (const int tree : trees)
+    for (int k = forest.trees()[tree].first_dof; k < forest.trees()[tree].dof_end; ++k) velocity.push_back(v[k]);
+  for (const ContactTerm& c : contacts) impulses.push_back(c.impulse);
+  joints = joint_terms;
+  loops = loop_terms;
+}
+
+void KeptSolution::put(const std::vector<int>& trees, const Forest& forest, Eigen::VectorXd* v, std::vector<ContactTerm>* contacts,
+                       std::vector<JointTerm>* joint_terms, std::vector<LoopTerm>* loop_terms) const {
+  const double* next = velocity.data();
+  for (const int tree : trees)
+    for (int k = forest.trees()[tree].first_dof; k < forest.trees()[tree].dof_end; ++k) (*v)[k] = *next++;
+  for (std::size_t i = 0; i < impulses.size(); ++i) (*contacts)[i].impulse = impulses[i];
+  *joint_terms = joints;
+  *loop_terms = loops;
+}
+
+bool IslandProblem::isSwept() const {
+  return static_cast<int>(trees.size()) >= FEW && loops.empty() && mimics.empty() && joints.empty();
+}
+
+bool IslandProblem::isHeap() const { return isSwept() && static_cast<int>(trees.size()) >= HEAP; }
+
+SweepProblem IslandProblem::sweepProblem() const {
+  return {*forest_, *motion_, trees, patches, contacts, joints, loops, loop_pairs, mimics, space_->free_momentum, up};
+}
+
+double IslandProblem::largestImpulse() const {
+  double largest = 0;
+  for (const ContactTerm& c : contacts) largest = std::max(largest, c.impulse.squaredNorm());
+  return std::sqrt(largest);
+}
+
+bool IslandProblem::isTrouble(const NewtonReport& report) const {
+  return !(report.imbalance <= TROUBLE) || !(report.joint_creep <= RESIDUAL_IS_TROUBLE) ||
+         !(report.contact_residual <= RESIDUAL_IS_TROUBLE * largestImpulse());
+}
+
+void IslandProblem::takeFirstVelocity() {
+  SolverSpace& s = *space_;
+  forDofs([&s](int k) { s.velocity[k] = s.first_velocity[k]; });
+}
+
+// The velocities and the terms' impulses at hand become the iterate. The imbalance is what motors and friction miss then.
+void IslandProblem::adoptImpulses() {
+  SolverSpace& s = *space_;
+  for (const int tree : trees) {
+    multiply(*forest_, tree, motion_->mass, s.velocity, &s.mass_velocity, &s.paths);
+    const ForestTree& t = forest_->trees()[tree];
+    for (int k = t.first_dof; k < t.dof_end; ++k) s.kinetic[k] = s.mass_velocity[k] - s.free_momentum[k];
+  }
+  begin();
+  for (const ContactPatch& p : patches)
+    for (int i = p.first; i < p.end; ++i)
+      for (int axis = 0; axis < 3; ++axis)
+        contact_blocks_[p.first_block + (i - p.first) / LANES].impulse[axis][(i - p.first) % LANES] = contacts[i].impulse[axis];
+  blem_sim::remember(contact_blocks_.data(), contact_blocks_.data() + contact_blocks_.size());
+  double first = 0, second = 0;
+  blem_sim::respond(0, joint_blocks_.data(), joint_blocks_.data() + joint_blocks_.size(), &first, &second);
+  responses_known_ = true;
+  evaluateGradient();
+  for (const int k : idle_dofs_) s.gradient[k] = s.kinetic[k];
+  forIdleJoints([&](JointBlock* b, int lane, int dof) { s.gradient[dof] -= b->impulse[lane]; });
+  gradient_norm_ = std::max(gradientNorm(live_dofs_), gradientNorm(idle_dofs_));
+}
+
+// Kinetic energy that the contacts' impulses add to that of free motion, beyond what correcting depth takes: exact ones take some.
+// Precondition: adoptImpulses.
+ContactWork IslandProblem::contactWork() {
+  ContactWork work;
+  sweeps_.freeVelocity(&space_->direction);
+  setSteps(space_->direction);
+  for (const ContactPatch& p : patches) {
+    for (int i = p.first; i < p.end; ++i) {
+      const ContactBlock& b = contact_blocks_[p.first_block + (i - p.first) / LANES];
+      const int lane = (i - p.first) % LANES;
+      for (int axis = 0; axis < 3; ++axis) {
+        const double g = b.impulse[axis][lane], after = b.velocity[axis][lane], free = b.step[axis][lane] + contacts[i].bend[axis];
+        work.gained += 0.5 * g * (after + free) - g * std::max(0.0, contacts[i].target) * contacts[i].normal[axis];
+        work.exchanged += 0.5 * std::abs(g * (after + free));
+        work.change += g * (after - free);
+      }
+    }
+  }
+  return work;
+}
+
+bool IslandProblem::sweepFrom(bool previous, int most, double enough, SweepReport* report) {
+  SolverSpace& s = *space_;
+  const SweepProblem problem = sweepProblem();
+  if (!sweeps_.load(problem, previous, &s.velocity)) return false;
+  *report = sweeps_.sweep(most, enough, &s.velocity);
+  for (int round = 1; round < MOTOR_ROUNDS && !sweeps_.motorsAgree(s.velocity); ++round) {
+    sweeps_.read(s.velocity, &contacts, &joints, &loops);
+    for (ContactTerm& c : contacts) c.previous = c.impulse;
+    if (!sweeps_.load(problem, true, &s.velocity)) return false;
+    report->sweeps += sweeps_.sweep(most, enough, &s.velocity).sweeps;
+  }
+  return true;
+}
+
+void IslandProblem::adoptSwept() {
+  sweeps_.read(space_->velocity, &contacts, &joints, &loops);
+  adoptImpulses();
+  const ContactWork work = contactWork();
+  const double bound = FREE_ENERGY + GAIN_OF_MOTION * work.exchanged;
+  if (work.gained <= bound) return;
+  // Impulses a times as large gain a (first + a second): a is led to where that is nothing.
+  const double second = 0.5 * work.change, first = work.gained - second;
+  sweeps_.scale(second > 0 ? std::clamp(-first / second, 0.0, 1.0) : 0, &space_->velocity);
+  sweeps_.read(space_->velocity, &contacts, &joints, &loops);
+  adoptImpulses();
+}
+
+void IslandProblem::finishSwept(NewtonReport* report) {
+  const int iterations = report->iterations;
+  assess(report);
+  report->iterations = iterations;
+  readMimics();
+  readTerms();
+}
+
+// A heap that is nearly at rest, from what the sweeps found: exact, where it succeeds.
+bool IslandProblem::polish(const NewtonSettings& settings, NewtonReport* report) {
+  NewtonReport swept, polished;
+  assess(&swept);
+  NewtonSettings few = settings;
+  few.max_iterations = std::clamp(POLISH_WORK / static_cast<int>(trees.size()), FEWEST_POLISHES, MOST_POLISHES);
+  soften(POLISH_SOFTNESS, 1);
+  predict();
+  polished.iterations = 1 + newton(few, INEXACT, few.max_iterations);
+  slip_mixing_.start(contact_blocks_.size() * LANES);
+  remember();
+  soften(KEPT_SOFTNESS, 1);
+  polished.iterations += newton(few, INEXACT, std::max(0, few.max_iterations - polished.iterations));
+  finish(few, &polished);
+  const int iterations = report->iterations + polished.iterations;
+  const bool better = polished.imbalance <= BALANCED && polished.contact_residual < swept.contact_residual;
+  if (better) *report = polished;
+  report->iterations = iterations;
+  return better;
+}
+
+// A heap like in the step before: its impulses and velocities are near already.
+bool IslandProblem::solveResting(const NewtonSettings& settings, NewtonReport* report) {
+  NewtonSettings few = settings;
+  few.max_iterations = RESTING_ITERATIONS;
+  predict();
+  report->iterations = 1 + newton(few, 0, few.max_iterations);
+  if (!(gradient_norm_ <= INEXACT * RESTING)) return false;
+  finish(few, report);
+  return report->imbalance <= BALANCED && !isTrouble(*report);
+}
+
+NewtonReport IslandProblem::solveHeap(const NewtonSettings& settings) {
+  NewtonReport report;
+  if (gradient_norm_ <= RESTING && solveResting(settings, &report)) return report;
+  sweepAndPolish(settings, &report);
+  return report;
+}
+
+void IslandProblem::sweepAndPolish(const NewtonSettings& settings, NewtonReport* report) {
+  SolverSpace& s = *space_;
+  takeFirstVelocity();
+  const SweepProblem problem = sweepProblem();
+  if (!sweeps_.load(problem, true, &s.velocity)) return;
+  const bool quiet = sweeps_.sweep(1, 0, &s.velocity).first_change <= TUMBLES;
+  report->iterations += 1 + sweeps_.sweep(SWEEPS, quiet ? 0 : SWEPT, &s.velocity).sweeps;
+  adoptSwept();
+  if (quiet || !isHeap()) {
+    if (polish(settings, report)) return;
+    sweeps_.scale(1, &s.velocity);
+    adoptSwept();
+  }
+  finishSwept(report);
+}
+
+// Sweeps that begin where the last step ended, or at nothing: what they find balances momentum, and gains no energy.
+void IslandProblem::recover(NewtonReport* report) {
+  SolverSpace& s = *space_;
+  NewtonReport swept;
+  SweepReport sweeps;
+  kept_.take(s.velocity, trees, *forest_, contacts, joints, loops);
+  takeFirstVelocity();
+  const bool found = sweepFrom(true, SAFE_SWEEPS, SWEPT, &sweeps);
+  if (found) {
+    adoptSwept();
+    finishSwept(&swept);
+  }
+  const bool better = found && (!(report->imbalance <= TROUBLE) || swept.contact_residual < report->contact_residual);
+  if (better) {
+    swept.iterations = report->iterations + sweeps.sweeps;
+    *report = swept;
+    return;
+  }
+  kept_.put(trees, *forest_, &s.velocity, &contacts, &joints, &loops);
+  adoptImpulses();
+  finishSwept(report);
+}
+
+}  // namespace blem_sim

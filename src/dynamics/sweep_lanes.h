@@ -1,0 +1,69 @@
+// Contacts while they are swept: impulses improved one contact after the other, four patches at a time, each between bodies of its own.
+#pragma once
+
+#include "contact_term.h"
+#include "lanes.h"
+#include "spatial.h"
+
+namespace blem_sim {
+
+using TwistLanes = double[6][LANES];
+
+/** One contact of each of four patches: what stays while they are swept. */
+struct SweepContact {
+  VectorLanes point;             ///< about the reference point of the patch's first body
+  VectorLanes axis[3];           ///< the normal, and two directions across it
+  Lanes friction, compliance, target;
+  Lanes offset[2];               ///< [m/s] across the normal: what the bodies' paths bend apart
+  Lanes normal_gain;             ///< [kg] of the normal row, compliance included
+  Lanes mixed[2];                ///< [1/kg] by which a push moves the point across
+  Lanes tangent[3];              ///< [1/kg] response across: 11, 12, 22
+  Lanes tangent_inverse[3];      ///< [kg] its inverse: 11, 12, 22
+  Lanes slide_gain;              ///< [kg] inverse of the largest response across
+};
+
+/** What changes: impulses along the axes [N s]. */
+struct SweepImpulse {
+  VectorLanes now;     ///< those found
+  VectorLanes change;  ///< by the last sweep
+  VectorLanes search;  ///< along which the conjugate steps lead
+};
+
+/** Four patches at most, no body in two of them. Lanes without a patch have contacts that never act. */
+struct SweepGroup {
+  int patch[LANES];             ///< -1: none
+  int first = 0, end = 0;       ///< contacts: as many as the largest patch has
+  double response[21][LANES];   ///< of the relative twist to a wrench, about the first body's reference point; lower triangle by rows
+};
+
+/** A lane's contact from a term; null: one that never acts. */
+void setLane(const ContactTerm* term, int lane, SweepContact* contact, SweepImpulse* impulse);
+/** Gains of the contacts, once all their lanes and the group's responses are set. */
+void setGains(const SweepGroup& group, SweepContact* begin, SweepContact* end);
+/** Impulse of a lane's contact, world axes. */
+Vector3 readLane(const SweepContact& contact, const SweepImpulse& impulse, int lane);
+
+/** Sum of the impulses' wrenches, about the patches' reference points. */
+void wrenchOf(const SweepContact* begin, const SweepContact* end, const SweepImpulse* impulse, TwistLanes* wrench);
+
+/** What a sweep over contacts has done. */
+struct SweepChange {
+  double squared = 0;   ///< [N^2 s^2] sum of the changes' squares
+  double largest = 0;   ///< [N^2 s^2] square of the largest change of one contact
+  double impulse = 0;   ///< [N^2 s^2] square of the largest impulse
+};
+
+/**
+ * Visits the contacts in turn: the push that ends the approach, then friction on Coulomb's cone.
+ * @param twist relative, at the present impulses
+ * @param wrench by which impulses were changed, out
+ */
+void sweep(const SweepGroup& group, const SweepContact* begin, const SweepContact* end, SweepImpulse* impulse,
+           const TwistLanes& twist, TwistLanes* wrench, SweepChange* change);
+
+/** Impulses move on by `share` of the last search direction, which the last changes join. */
+void moveOn(double share, SweepImpulse* begin, SweepImpulse* end);
+/** Impulses times a factor. */
+void scale(double factor, SweepImpulse* begin, SweepImpulse* end);
+
+}  // namespace blem_sim
