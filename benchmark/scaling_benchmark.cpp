@@ -21,6 +21,7 @@ namespace blem_sim {
 namespace {
 
 constexpr int ROUNDS = 7, STEPS = 200;  // one oscillation of the contact scenes
+constexpr int MANY = 1000;              // bodies
 
 /** Means over a round [us]; NaN: not part of it. */
 struct Sample {
@@ -153,22 +154,23 @@ double wallSeconds() { return std::chrono::duration<double>(std::chrono::steady_
 /** @param clock [s] that the step is timed by; its stages are wall time */
 Point wholeStep(const std::string& name, int size, const SimulationConfig& config, double (*clock)()) {
   return {name + std::to_string(size), static_cast<double>(size), [=]() -> std::function<Sample()> {
-            constexpr int WARM_UP = 400;
+            // Of large scenes fewer steps say as much.
+            const int warm_up = size < MANY ? 400 : 150, steps = size < MANY ? STEPS : 20;
             const auto simulator = std::make_shared<Simulator>(config, UriResolver(sharedPackages()));
-            for (int i = 0; i < WARM_UP; ++i) simulator->step();
-            return [simulator, clock] {
+            for (int i = 0; i < warm_up; ++i) simulator->step();
+            return [simulator, clock, steps] {
               StepProfile profile;
               double contacts = 0;
               const double start = clock();
-              for (int i = 0; i < STEPS; ++i) {
+              for (int i = 0; i < steps; ++i) {
                 const StepReport& report = simulator->step();
                 for (std::size_t s = 0; s < profile.seconds.size(); ++s) profile.seconds[s] += report.profile.seconds[s];
                 contacts += report.raw_contacts;
               }
-              const auto mean = [&](Stage stage) { return 1e6 * profile.seconds[static_cast<int>(stage)] / STEPS; };
+              const auto mean = [&](Stage stage) { return 1e6 * profile.seconds[static_cast<int>(stage)] / steps; };
               Sample sample;
-              sample.mean = 1e6 * (clock() - start) / STEPS;
-              sample.contacts = contacts / STEPS;
+              sample.mean = 1e6 * (clock() - start) / steps;
+              sample.contacts = contacts / steps;
               sample.narrow_phase = mean(Stage::NARROW_PHASE);
               sample.reduction = mean(Stage::REDUCTION);
               sample.solve = mean(Stage::SOLVE);
@@ -179,7 +181,7 @@ Point wholeStep(const std::string& name, int size, const SimulationConfig& confi
 
 Curve bodies() {
   Curve curve;
-  for (const int size : {1, 2, 5, 10, 20, 50, 100})
+  for (const int size : {1, 2, 5, 10, 20, 50, 100, 1000, 3000, 10000})
     curve.points.push_back(wholeStep("bodies/cubes/", size, cubesOnGround(size), threadSeconds));
   return curve;
 }

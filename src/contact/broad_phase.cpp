@@ -1,10 +1,15 @@
 #include "blem_sim/contact/broad_phase.h"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
 namespace blem_sim {
 namespace {
+
+constexpr std::size_t SWEPT_AT_ONCE = 64;  // boxes: so few need no cells
+constexpr double CELL_OF_BOX = 2;          // cells are so many times as wide as the median box
+constexpr int LARGE = 16;                  // cells that a box may cover
 
 Vector3 halfExtents(const Box& box) { return 0.5 * (box.max() - box.min()); }
 
@@ -35,13 +40,19 @@ class BroadPhase::Search {
     space_.half_spaces_.clear();
     space_.boxes_.clear();
     space_.pairs_.clear();
+    space_.compared_ = 0;
     for (int i = 0; i < static_cast<int>(colliders_.size()); ++i) {
       if (colliders_[i].enabled && colliders_[i].geometry) enter(i);
     }
     for (const int half_space : space_.half_spaces_) {
       for (const SweepBox& box : space_.boxes_) meetHalfSpace(half_space, box);
     }
-    sweep();
+    if (space_.boxes_.size() < SWEPT_AT_ONCE) {
+      sortStarts(spread(0));
+      sweep();
+    } else {
+      sweepCells();
+    }
     std::sort(space_.pairs_.begin(), space_.pairs_.end(),
               [](const ColliderPair& p, const ColliderPair& q) { return std::tie(p.a, p.b) < std::tie(q.a, q.b); });
   }
@@ -74,38 +85,139 @@ class BroadPhase::Search {
     if (height <= range(half_space, i)) add(half_space, i);
   }
 
-  /** Axis along which the boxes' centres are spread most. */
-  int sweepAxis() const {
+  /** The axis along which the boxes' centres are spread most, if rank is 0; that of the next spread, if it is 1, 2. */
+  int spread(int rank) const {
     Vector3 sum = Vector3::Zero(), sum_of_squares = Vector3::Zero();
     for (const SweepBox& box : space_.boxes_) {
       const Vector3 centre = 0.5 * (box.lower + box.upper);
       sum += centre;
       sum_of_squares += centre.cwiseAbs2();
     }
-    int axis = 0;
-    (sum_of_squares - sum.cwiseAbs2() / std::max<double>(1, space_.boxes_.size())).maxCoeff(&axis);
-    return axis;
+    const Vector3 spread = sum_of_squares - sum.cwiseAbs2() / std::max<double>(1, space_.boxes_.size());
+    int axes[] = {0, 1, 2};
+    std::stable_sort(axes, axes + 3, [&](int a, int b) { return spread[a] > spread[b]; });
+    return axes[rank];
   }
 
-  void sweep() {
-    const int axis = sweepAxis();
+  static double begin(const SweepBox& box, int axis) { return box.lower[axis] - box.reach; }
+  static double end(const SweepBox& box, int axis) { return box.upper[axis] + box.reach; }
+
+  void sortStarts(int axis) {
+    axis_ = axis;
     std::vector<SweepStart>& starts = space_.starts_;
     starts.clear();
     for (std::size_t i = 0; i < space_.boxes_.size(); ++i)
-      starts.push_back({space_.boxes_[i].lower[axis] - space_.boxes_[i].reach, static_cast<int>(i), space_.boxes_[i].model});
+      starts.push_back({begin(space_.boxes_[i], axis), static_cast<int>(i), space_.boxes_[i].model});
     // Boxes are in the order of their colliders.
     std::sort(starts.begin(), starts.end(),
               [](const SweepStart& p, const SweepStart& q) { return p.at < q.at || (p.at == q.at && p.box < q.box); });
+  }
+
+  void sweep() {
+    const std::vector<SweepStart>& starts = space_.starts_;
     for (std::size_t i = 0; i < starts.size(); ++i) {
       const SweepBox& box = space_.boxes_[starts[i].box];
-      const double end = box.upper[axis] + box.reach;
-      for (std::size_t j = i + 1; j < starts.size() && starts[j].at <= end; ++j) {
-        if (box.model < 0 || starts[j].model != box.model) meet(box, space_.boxes_[starts[j].box]);
+      const double to = end(box, axis_);
+      for (std::size_t j = i + 1; j < starts.size() && starts[j].at <= to; ++j) meetStart(box, starts[j]);
+    }
+  }
+
+  void meetStart(const SweepBox& box, const SweepStart& other) {
+    if (box.model < 0 || other.model != box.model) meet(box, space_.boxes_[other.box]);
+  }
+
+  // Boxes beside each other along two axes are never compared; those of many cells are, with whatever overlaps them along one axis.
+  void sweepCells() {
+    for (int i = 0; i < 2; ++i) {
+      cell_axes_[i] = spread(i);
+      widths_[i] = CELL_OF_BOX * medianSize(cell_axes_[i]);
+    }
+    axis_ = spread(2);
+    space_.large_.assign(space_.boxes_.size(), 0);
+    space_.entries_.clear();
+    space_.entries_.reserve(4 * space_.boxes_.size());
+    bool some_large = false;
+    for (std::size_t i = 0; i < space_.boxes_.size(); ++i) some_large |= !enterCells(static_cast<int>(i));
+    if (some_large) sweepLarge();
+    std::vector<CellEntry>& entries = space_.entries_;
+    std::sort(entries.begin(), entries.end(),
+              [](const CellEntry& p, const CellEntry& q) { return std::tie(p.cell, p.at, p.box) < std::tie(q.cell, q.at, q.box); });
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      const SweepBox& box = space_.boxes_[entries[i].box];
+      const double to = end(box, axis_);
+      for (std::size_t j = i + 1; j < entries.size() && entries[j].cell == entries[i].cell && entries[j].at <= to; ++j) {
+        const SweepBox& other = space_.boxes_[entries[j].box];
+        if ((box.model < 0 || other.model != box.model) && firstCommonCell(box, other) == entries[i].cell) meet(box, other);
       }
     }
   }
 
+  double medianSize(int axis) {
+    std::vector<double>& sizes = space_.sizes_;
+    sizes.clear();
+    for (const SweepBox& box : space_.boxes_) sizes.push_back(end(box, axis) - begin(box, axis));
+    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+    std::nth_element(sizes.begin(), middle, sizes.end());
+    return *middle;
+  }
+
+  /** Monotonic in the place; what is beyond the last cell is in it. */
+  std::int64_t cellAt(double place, int i) const {
+    constexpr double LAST = 1e9;
+    return static_cast<std::int64_t>(std::floor(std::clamp(place / widths_[i], -LAST, LAST)));
+  }
+
+  static std::uint64_t cellOf(std::int64_t first, std::int64_t second) {
+    return (static_cast<std::uint64_t>(first) << 32) ^ (static_cast<std::uint64_t>(second) & 0xffffffffu);
+  }
+
+  /** Of two boxes that overlap along the cells' axes: where they meet is decided in one cell alone. */
+  std::uint64_t firstCommonCell(const SweepBox& box, const SweepBox& other) const {
+    const auto first = [&](int i) { return cellAt(std::max(begin(box, cell_axes_[i]), begin(other, cell_axes_[i])), i); };
+    return cellOf(first(0), first(1));
+  }
+
+  /** False for a box of too many cells, or where cells have no width. */
+  bool enterCells(int i) {
+    const SweepBox& box = space_.boxes_[i];
+    std::int64_t first[2], last[2];
+    for (int k = 0; k < 2; ++k) {
+      if (!(widths_[k] > 0)) return !(space_.large_[i] = 1);
+      first[k] = cellAt(begin(box, cell_axes_[k]), k);
+      last[k] = cellAt(end(box, cell_axes_[k]), k);
+    }
+    if ((last[0] - first[0] + 1) * (last[1] - first[1] + 1) > LARGE) return !(space_.large_[i] = 1);
+    for (std::int64_t x = first[0]; x <= last[0]; ++x)
+      for (std::int64_t y = first[1]; y <= last[1]; ++y) space_.entries_.push_back({cellOf(x, y), begin(box, axis_), i});
+    return true;
+  }
+
+  // Each large box with all that starts after it, each other one with the large ones that do.
+  void sweepLarge() {
+    const int third_axis = axis_;
+    sortStarts(cell_axes_[0]);
+    const std::vector<SweepStart>& starts = space_.starts_;
+    std::vector<int>& large_starts = space_.large_starts_;
+    large_starts.clear();
+    for (std::size_t i = 0; i < starts.size(); ++i)
+      if (space_.large_[starts[i].box]) large_starts.push_back(static_cast<int>(i));
+    std::size_t next_large = 0;
+    for (std::size_t i = 0; i < starts.size(); ++i) {
+      const SweepBox& box = space_.boxes_[starts[i].box];
+      const double to = end(box, axis_);
+      if (space_.large_[starts[i].box]) {
+        ++next_large;
+        for (std::size_t j = i + 1; j < starts.size() && starts[j].at <= to; ++j) meetStart(box, starts[j]);
+      } else {
+        for (std::size_t j = next_large; j < large_starts.size() && starts[large_starts[j]].at <= to; ++j)
+          meetStart(box, starts[large_starts[j]]);
+      }
+    }
+    axis_ = third_axis;
+  }
+
   void meet(const SweepBox& box, const SweepBox& other) {
+    ++space_.compared_;
     const Vector3 gap = (box.lower - other.upper).cwiseMax(other.lower - box.upper).cwiseMax(0.0);
     const double furthest = range(box.collider, other.collider);
     if (gap.squaredNorm() > furthest * furthest) return;
@@ -117,6 +229,9 @@ class BroadPhase::Search {
   const std::vector<ColliderMotion>& motion_;
   const CollisionFilter& filter_;
   const double base_margin_, max_margin_;
+  int axis_ = 0;  // of the sweep
+  int cell_axes_[2] = {0, 0};
+  double widths_[2] = {0, 0};  // [m] of cells along their axes
 };
 
 void CollisionFilter::setSelfCollision(int model, bool on) {

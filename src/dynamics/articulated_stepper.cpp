@@ -21,8 +21,9 @@ constexpr std::uint64_t NO_MORE_TREES = ~0ull;
 /** An island with what belongs to it in this step. */
 struct Island {
   IslandProblem problem;
-  std::vector<int> contacts;     ///< of the step's input
-  std::vector<double> approach;  ///< [m/s] of each of them, to be remembered
+  std::vector<int> contacts;       ///< of the step's input
+  std::vector<int> mimics, loops;  ///< of the forest's
+  std::vector<double> approach;    ///< [m/s] of each of them, to be remembered
   NewtonReport report;
 };
 
@@ -114,12 +115,16 @@ void ArticulatedStepper::findIslands(const Scene& scene, const std::vector<Conta
   island_count_ = islands_.number();
   if (static_cast<int>(islands_of_step_.size()) < island_count_) islands_of_step_.resize(island_count_);
   for (int i = 0; i < island_count_; ++i) {
-    islands_of_step_[i].problem.clear();
-    islands_of_step_[i].contacts.clear();
-    islands_of_step_[i].approach.clear();
+    Island& island = islands_of_step_[i];
+    island.problem.clear();
+    for (auto* list : {&island.contacts, &island.mimics, &island.loops}) list->clear();
+    island.approach.clear();
   }
   for (std::size_t t = 0; t < forest_.trees().size(); ++t)
     islands_of_step_[islands_.islandOf(static_cast<int>(t))].problem.trees.push_back(static_cast<int>(t));
+  const auto islandOfNode = [&](int node) { return &islands_of_step_[islands_.islandOf(treeOfNode(node))]; };
+  for (std::size_t m = 0; m < forest_.mimics().size(); ++m) islandOfNode(forest_.mimics()[m].node)->mimics.push_back(static_cast<int>(m));
+  for (std::size_t l = 0; l < forest_.loops().size(); ++l) islandOfNode(forest_.loops()[l].child)->loops.push_back(static_cast<int>(l));
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const ContactConstraint& c = contacts[i];
     if (!isUsable(scene, c) || !isMoved(c)) continue;
@@ -134,15 +139,13 @@ void ArticulatedStepper::makeTerms(const TermSource& source, Island* island) {
     for (int i = forest_.trees()[tree].first_node; i < forest_.trees()[tree].node_end; ++i)
       if (forest_.nodes()[i].dofs == 1) problem.joints.push_back(jointTerm(source, i));
   }
-  const auto contains = [&](int node) {
-    return std::binary_search(problem.trees.begin(), problem.trees.end(), forest_.nodes()[node].tree);
-  };
-  for (const MimicRelation& m : forest_.mimics())
-    if (contains(m.node)) problem.mimics.push_back({forest_.nodes()[m.node].first_dof, forest_.nodes()[m.master].first_dof, m.multiplier});
-  for (std::size_t l = 0; l < forest_.loops().size(); ++l) {
-    if (!contains(forest_.loops()[l].child)) continue;
+  for (const int index : island->mimics) {
+    const MimicRelation& m = forest_.mimics()[index];
+    problem.mimics.push_back({forest_.nodes()[m.node].first_dof, forest_.nodes()[m.master].first_dof, m.multiplier});
+  }
+  for (const int l : island->loops) {
     BodyPair pair;
-    problem.loops.push_back(loopTerm(source, static_cast<int>(l), &pair));
+    problem.loops.push_back(loopTerm(source, l, &pair));
     problem.loop_pairs.push_back(pair);
   }
   for (const int index : island->contacts) {
@@ -200,20 +203,15 @@ void ArticulatedStepper::readJoints(const StepInput& input, const Island& island
     result->joint_efforts[j.joint] = input.drives[j.joint].effort + (j.motorImpulse(v) + j.dryImpulse(v) - j.viscous * v) / input.dt;
   };
   for (const JointTerm& j : problem.joints) read(j, space_.velocity[j.dof]);
-  std::size_t next_loop = 0, next_mimic = 0;
-  const auto contains = [&](int node) {
-    return std::binary_search(problem.trees.begin(), problem.trees.end(), forest_.nodes()[node].tree);
-  };
-  for (std::size_t l = 0; l < forest_.loops().size(); ++l) {
-    if (!contains(forest_.loops()[l].child)) continue;
-    const LoopTerm& loop = problem.loops[next_loop++];
-    memory_.joints[forest_.loops()[l].joint].loop = loop.impulses() / input.dt;
+  for (std::size_t l = 0; l < island.loops.size(); ++l) {
+    const LoopTerm& loop = problem.loops[l];
+    memory_.joints[forest_.loops()[island.loops[l]].joint].loop = loop.impulses() / input.dt;
     if (loop.rows < 6) read(loop.drive, loop.velocity[5]);
   }
   // A mimic joint feels its master's pull, the master its reaction.
-  for (const MimicRelation& m : forest_.mimics()) {
-    if (!contains(m.node)) continue;
-    const double effort = problem.mimic_impulses[next_mimic++] / input.dt;
+  for (std::size_t i = 0; i < island.mimics.size(); ++i) {
+    const MimicRelation& m = forest_.mimics()[island.mimics[i]];
+    const double effort = problem.mimic_impulses[i] / input.dt;
     result->joint_efforts[forest_.nodes()[m.node].joint] += effort;
     result->joint_efforts[forest_.nodes()[m.master].joint] -= m.multiplier * effort;
   }
@@ -233,6 +231,7 @@ void ArticulatedStepper::remember(const StepInput& input, const SolveResult& res
   }
   std::sort(next_contacts_.begin(), next_contacts_.end(), [](const ContactRecord& a, const ContactRecord& b) { return a.id < b.id; });
   memory_.contacts.swap(next_contacts_);
+  memory_.index();
 }
 
 void ArticulatedStepper::noteWritten(const Scene& scene, int tree) {

@@ -2,27 +2,14 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <cmath>
+
+#include "free_blocks.h"
 
 namespace blem_sim {
 namespace {
 
-constexpr int FREE = 6;  // dofs of a free body, by far the most frequent block
 using FreeBlock = Eigen::Matrix<double, FREE, FREE>;
 using FreeMap = Eigen::Map<FreeBlock>;
-
-bool factorFree(double* values) {
-  FreeMap a(values);
-  for (int k = 0; k < FREE; ++k) {
-    if (!(a(k, k) > 0)) return false;
-    a(k, k) = std::sqrt(a(k, k));
-    const double inverse = 1 / a(k, k);
-    for (int i = k + 1; i < FREE; ++i) a(i, k) *= inverse;
-    for (int j = k + 1; j < FREE; ++j)
-      for (int i = j; i < FREE; ++i) a(i, j) -= a(i, k) * a(j, k);
-  }
-  return true;
-}
 
 /** Rows of a block below the diagonal times the inverse of the diagonal's transposed factor. */
 template <typename Rows, typename Factor>
@@ -43,69 +30,73 @@ void BlockMatrix::start(const std::vector<int>& sizes) {
     offsets_.push_back(size_);
     size_ += size;
   }
-  adjacent_.assign(sizes_.size() * sizes_.size(), 0);
+  couplings_.clear();
 }
 
-void BlockMatrix::couple(int a, int b) { adjacent_[a * sizes_.size() + b] = adjacent_[b * sizes_.size() + a] = 1; }
-
-int BlockMatrix::degree(int block) const {
-  int degree = 0;
-  const char* row = adjacent_.data() + block * sizes_.size();
-  for (std::size_t other = 0; other < sizes_.size(); ++other)
-    if (row[other] && position_[other] < 0) degree += sizes_[other];
-  return degree;
-}
-
-void BlockMatrix::eliminate(int block) {
-  Column column;
-  column.block = block;
-  column.size = sizes_[block];
-  column.offset = offsets_[block];
-  column.first = static_cast<int>(entries_.size());
-  position_[block] = static_cast<int>(columns_.size());
-  neighbours_.clear();
-  const std::size_t count = sizes_.size();
-  for (std::size_t other = 0; other < count; ++other)
-    if (adjacent_[block * count + other] && position_[other] < 0) neighbours_.push_back(static_cast<int>(other));
-  for (const int other : neighbours_) entries_.push_back({other, 0});
-  column.end = static_cast<int>(entries_.size());
-  columns_.push_back(column);
-  for (const int a : neighbours_)
-    for (const int b : neighbours_)
-      if (a != b) adjacent_[a * count + b] = 1;
-  for (const int other : neighbours_) degrees_[other] = degree(other);
-}
+void BlockMatrix::couple(int a, int b) { couplings_.emplace_back(a, b); }
 
 void BlockMatrix::analyse() {
-  const int count = static_cast<int>(sizes_.size());
-  position_.assign(count, -1);
-  columns_.clear();
-  entries_.clear();
-  degrees_.resize(count);
-  for (int block = 0; block < count; ++block) degrees_[block] = degree(block);
-  for (int k = 0; k < count; ++k) {
-    int least = -1;
-    for (int block = 0; block < count; ++block)
-      if (position_[block] < 0 && (least < 0 || degrees_[block] <= degrees_[least])) least = block;
-    eliminate(least);
-  }
+  if (sizes_ == analysed_sizes_ && couplings_ == analysed_couplings_) return;
+  analysed_sizes_ = sizes_;
+  analysed_couplings_ = couplings_;
+  eliminateAll();
+  sortEntries();
   place();
 }
 
-void BlockMatrix::place() {
+void BlockMatrix::eliminateAll() {
+  order_.start(sizes_);
+  for (const auto& [a, b] : couplings_) order_.couple(a, b);
+  position_.resize(sizes_.size());
+  columns_.clear();
+  entries_.clear();
+  while (!order_.finished()) {
+    Column column;
+    column.block = order_.next(&neighbours_);
+    column.size = sizes_[column.block];
+    column.offset = offsets_[column.block];
+    column.first = static_cast<int>(entries_.size());
+    position_[column.block] = static_cast<int>(columns_.size());
+    for (const int other : neighbours_) entries_.push_back({other, 0});
+    column.end = static_cast<int>(entries_.size());
+    columns_.push_back(column);
+  }
   for (Entry& entry : entries_) entry.column = position_[entry.column];
-  std::size_t next = 0;
+}
+
+// Each column's entries in the order of elimination: transposed once, and back.
+void BlockMatrix::sortEntries() {
+  const int count = static_cast<int>(columns_.size());
+  row_start_.assign(count + 1, 0);
+  for (const Entry& entry : entries_) ++row_start_[entry.column + 1];
+  for (int row = 0; row < count; ++row) row_start_[row + 1] += row_start_[row];
+  row_columns_.resize(entries_.size());
+  filled_.assign(row_start_.begin(), row_start_.end());
+  for (int column = 0; column < count; ++column)
+    for (int e = columns_[column].first; e < columns_[column].end; ++e) row_columns_[filled_[entries_[e].column]++] = column;
+  for (int column = 0; column < count; ++column) filled_[column] = columns_[column].first;
+  for (int row = 0; row < count; ++row)
+    for (int i = row_start_[row]; i < row_start_[row + 1]; ++i) entries_[filled_[row_columns_[i]]++].column = row;
+}
+
+void BlockMatrix::place() {
+  std::size_t next = 0, most = 0;
+  rows_.resize(entries_.size());
   for (Column& column : columns_) {
-    std::sort(entries_.begin() + column.first, entries_.begin() + column.end,
-              [](const Entry& p, const Entry& q) { return p.column < q.column; });
     column.diagonal = next;
+    column.free = column.size == FREE;
     next += static_cast<std::size_t>(column.size) * column.size;
+    most = std::max(most, static_cast<std::size_t>(column.end - column.first));
     for (int e = column.first; e < column.end; ++e) {
+      const Column& row = columns_[entries_[e].column];
+      column.free = column.free && row.size == FREE;
+      rows_[e] = row.offset;
       entries_[e].value = next;
-      next += static_cast<std::size_t>(column.size) * columns_[entries_[e].column].size;
+      next += static_cast<std::size_t>(column.size) * row.size;
     }
   }
   values_.resize(next);
+  targets_.resize(most);
 }
 
 void BlockMatrix::setZero() { std::fill(values_.begin(), values_.end(), 0.0); }
@@ -165,32 +156,48 @@ bool BlockMatrix::factorColumn(const Column& column) {
     Block d(diagonal, column.size, column.size);
     if (Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>, Eigen::Lower>(d).info() != Eigen::Success) return false;
   }
+  if (column.free) {
+    divideFree(diagonal, column.end - column.first, diagonal + FREE_BLOCK);
+    return true;
+  }
   for (int e = column.first; e < column.end; ++e) {
     if (column.size == FREE && columns_[entries_[e].column].size == FREE)
-      divide(FreeMap(values_.data() + entries_[e].value), FreeMap(diagonal));
+      divideFree(diagonal, 1, values_.data() + entries_[e].value);
     else
       divide(entryBlock(column, entries_[e]), Block(diagonal, column.size, column.size));
   }
   return true;
 }
 
+// Where the blocks begin that the neighbours from entry e on share with that of e.
+void BlockMatrix::findTargets(const Column& column, int e) {
+  const Column& target = columns_[entries_[e].column];
+  targets_[0] = target.diagonal;
+  int slot = target.first;
+  for (int f = e + 1; f < column.end; ++f) {
+    while (entries_[slot].column != entries_[f].column) ++slot;
+    targets_[f - e] = entries_[slot].value;
+  }
+}
+
 // What the column's elimination takes from the blocks that its neighbours share.
 void BlockMatrix::subtractOuter(const Column& column) {
+  double* values = values_.data();
   for (int e = column.first; e < column.end; ++e) {
-    const Column& target = columns_[entries_[e].column];
-    int slot = target.first;
+    findTargets(column, e);
+    const double* own = values + entries_[e].value;
+    if (column.free) {
+      subtractFree(own, own, column.end - e, targets_.data(), values);
+      continue;
+    }
+    const int size = columns_[entries_[e].column].size;
     for (int f = e; f < column.end; ++f) {
-      std::size_t at = target.diagonal;
-      if (f > e) {
-        while (entries_[slot].column != entries_[f].column) ++slot;
-        at = entries_[slot].value;
-      }
       const int rows = columns_[entries_[f].column].size;
-      double* values = values_.data();
-      if (column.size == FREE && target.size == FREE && rows == FREE)
-        FreeMap(values + at).noalias() -= FreeMap(values + entries_[f].value) * FreeMap(values + entries_[e].value).transpose();
+      const std::size_t at = targets_[f - e];
+      if (column.size == FREE && size == FREE && rows == FREE)
+        subtractFree(own, values + entries_[f].value, 1, &at, values);
       else
-        Block(values + at, rows, target.size).noalias() -= entryBlock(column, entries_[f]) * entryBlock(column, entries_[e]).transpose();
+        Block(values + at, rows, size).noalias() -= entryBlock(column, entries_[f]) * entryBlock(column, entries_[e]).transpose();
     }
   }
 }
@@ -204,22 +211,35 @@ bool BlockMatrix::factor() {
   return true;
 }
 
+void BlockMatrix::forward(const Column& column, Eigen::Ref<Eigen::VectorXd> x) const {
+  const double* diagonal = values_.data() + column.diagonal;
+  if (column.free) {
+    const int count = column.end - column.first;
+    return forwardFree(diagonal, diagonal + FREE_BLOCK, count, rows_.data() + column.first, x.data() + column.offset, x.data());
+  }
+  auto own = x.segment(column.offset, column.size);
+  Eigen::Map<const Eigen::MatrixXd>(diagonal, column.size, column.size).triangularView<Eigen::Lower>().solveInPlace(own);
+  for (int e = column.first; e < column.end; ++e)
+    x.segment(rows_[e], columns_[entries_[e].column].size) -= entryBlock(column, entries_[e]).lazyProduct(own);
+}
+
+void BlockMatrix::backward(const Column& column, Eigen::Ref<Eigen::VectorXd> x) const {
+  const double* diagonal = values_.data() + column.diagonal;
+  if (column.free) {
+    const int count = column.end - column.first;
+    return backwardFree(diagonal, diagonal + FREE_BLOCK, count, rows_.data() + column.first, x.data() + column.offset, x.data());
+  }
+  auto own = x.segment(column.offset, column.size);
+  for (int e = column.first; e < column.end; ++e)
+    own -= entryBlock(column, entries_[e]).transpose().lazyProduct(x.segment(rows_[e], columns_[entries_[e].column].size));
+  Eigen::Map<const Eigen::MatrixXd>(diagonal, column.size, column.size).transpose().triangularView<Eigen::Upper>().solveInPlace(own);
+}
+
 void BlockMatrix::solve(Eigen::Ref<Eigen::VectorXd> x) const {
-  const auto part = [&x](const Column& column) { return x.segment(column.offset, column.size); };
-  const auto factorOf = [this](const Column& c) { return Eigen::Map<const Eigen::MatrixXd>(values_.data() + c.diagonal, c.size, c.size); };
-  for (const Column& column : columns_) {
-    if (column.size == 0) continue;
-    auto own = part(column);
-    factorOf(column).triangularView<Eigen::Lower>().solveInPlace(own);
-    for (int e = column.first; e < column.end; ++e) part(columns_[entries_[e].column]) -= entryBlock(column, entries_[e]).lazyProduct(own);
-  }
-  for (auto column = columns_.rbegin(); column != columns_.rend(); ++column) {
-    if (column->size == 0) continue;
-    auto own = part(*column);
-    for (int e = column->first; e < column->end; ++e)
-      own -= entryBlock(*column, entries_[e]).transpose().lazyProduct(part(columns_[entries_[e].column]));
-    factorOf(*column).transpose().triangularView<Eigen::Upper>().solveInPlace(own);
-  }
+  for (const Column& column : columns_)
+    if (column.size > 0) forward(column, x);
+  for (auto column = columns_.rbegin(); column != columns_.rend(); ++column)
+    if (column->size > 0) backward(*column, x);
 }
 
 }  // namespace blem_sim

@@ -2,13 +2,17 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <utility>
 #include <vector>
+
+#include "elimination_order.h"
 
 namespace blem_sim {
 
 /**
  * Use: start, couple, analyse; then setZero, fill, factor, solve as often as wished. Blocks are eliminated in an order of least degree
- * [Tinney and Walker 1967], which only decides what it costs. A pattern no larger than an earlier one allocates nothing.
+ * (EliminationOrder), which only decides what it costs; a pattern told as the last one was needs no analysis. A pattern no larger than an
+ * earlier one allocates nothing.
  */
 class BlockMatrix {
  public:
@@ -41,29 +45,41 @@ class BlockMatrix {
   struct Column {
     int block = 0, size = 0;   // eliminated here
     int offset = 0;            // of the block in a vector
-    std::size_t diagonal = 0;  // in values_
+    std::size_t diagonal = 0;  // in values_, followed by those of its entries
     int first = 0, end = 0;    // of its entries below the diagonal
+    bool free = false;         // it and all its entries are of free bodies
   };
   struct Entry {
     int column = 0;         // where its row's block is eliminated
     std::size_t value = 0;  // in values_
   };
-  void eliminate(int block);
+  void eliminateAll();
+  void sortEntries();
   void place();
-  int degree(int block) const;
   Block entryBlock(const Column& column, const Entry& entry);
   Eigen::Map<const Eigen::MatrixXd> entryBlock(const Column& column, const Entry& entry) const;
   Entry* find(int row, int column);
   bool factorColumn(const Column& column);
+  void findTargets(const Column& column, int e);
   void subtractOuter(const Column& column);
+  void forward(const Column& column, Eigen::Ref<Eigen::VectorXd> x) const;
+  void backward(const Column& column, Eigen::Ref<Eigen::VectorXd> x) const;
 
   int size_ = 0;
-  std::vector<int> sizes_, offsets_, degrees_, neighbours_;
-  std::vector<char> adjacent_;  // block by block
-  std::vector<int> position_;   // per block: its column, -1 while it is not eliminated
+  std::vector<int> sizes_, offsets_;
+  std::vector<std::pair<int, int>> couplings_;  // as they were told
+  // What the columns at hand were made for.
+  std::vector<int> analysed_sizes_;
+  std::vector<std::pair<int, int>> analysed_couplings_;
+  EliminationOrder order_;
+  std::vector<int> neighbours_;                        // of the block that is eliminated
+  std::vector<int> row_start_, row_columns_, filled_;  // the entries row by row, while they are sorted
+  std::vector<int> position_;                          // per block: its column
   std::vector<Column> columns_;
   std::vector<Entry> entries_;
+  std::vector<int> rows_;  // per entry: where its row's block begins in a vector
   std::vector<double> values_;
+  std::vector<std::size_t> targets_;  // in values_: what an entry's outer products are taken from
 };
 
 }  // namespace blem_sim

@@ -34,11 +34,10 @@ void Forest::build(const Scene& scene) {
   row_start_.assign(1, 0);
   row_length_.clear();
   body_node_.assign(bodies, -1);
-  std::vector<bool> carried(bodies, false);
-  for (const JointSlot& slot : scene.joints())
-    if (slot.joint && slot.in_tree && slot.spec.parent != WORLD_BODY) carried[slot.spec.child] = true;
+  findJoints(scene);
+  const auto carried = [&](int body) { return body_joint_[body] >= 0 && scene.joints()[body_joint_[body]].spec.parent != WORLD_BODY; };
   for (int body = 0; body < bodies; ++body)
-    if (scene.exists(body) && !carried[body]) addTree(scene, body);
+    if (scene.exists(body) && !carried(body)) addTree(scene, body);
   findMimics(scene);
   for (std::size_t j = 0; j < scene.joints().size(); ++j) {
     const JointSlot& slot = scene.joints()[j];
@@ -55,10 +54,22 @@ void Forest::build(const Scene& scene) {
   }
 }
 
+void Forest::findJoints(const Scene& scene) {
+  body_joint_.assign(scene.bodies().size(), -1);
+  first_joint_.assign(scene.bodies().size(), -1);
+  next_joint_.assign(scene.joints().size(), -1);
+  for (int j = static_cast<int>(scene.joints().size()) - 1; j >= 0; --j) {
+    const JointSlot& slot = scene.joints()[j];
+    if (!slot.joint || !slot.in_tree) continue;
+    body_joint_[slot.spec.child] = j;
+    if (slot.spec.parent == WORLD_BODY) continue;
+    next_joint_[j] = first_joint_[slot.spec.parent];
+    first_joint_[slot.spec.parent] = j;
+  }
+}
+
 void Forest::addTree(const Scene& scene, int root) {
-  int joint = -1;
-  for (std::size_t j = 0; j < scene.joints().size(); ++j)
-    if (scene.joints()[j].joint && scene.joints()[j].in_tree && scene.joints()[j].spec.child == root) joint = static_cast<int>(j);
+  const int joint = body_joint_[root];
   ForestTree tree;
   tree.first_node = static_cast<int>(nodes_.size());
   tree.first_dof = dofCount();
@@ -90,10 +101,7 @@ void Forest::addNode(const Scene& scene, int body, int parent, int joint) {
   addDofs(&node, index);
   body_node_[body] = index;
   nodes_.push_back(node);
-  for (std::size_t j = 0; j < scene.joints().size(); ++j) {
-    const JointSlot& slot = scene.joints()[j];
-    if (slot.joint && slot.in_tree && slot.spec.parent == body) addNode(scene, slot.spec.child, index, static_cast<int>(j));
-  }
+  for (int j = first_joint_[body]; j >= 0; j = next_joint_[j]) addNode(scene, scene.joints()[j].spec.child, index, j);
 }
 
 void Forest::addDofs(ForestNode* node, int index) {

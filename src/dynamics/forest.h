@@ -81,12 +81,14 @@ class Forest {
   void addNode(const Scene& scene, int body, int parent, int joint);
   void addDofs(ForestNode* node, int index);
   void findMimics(const Scene& scene);
+  void findJoints(const Scene& scene);
 
   std::vector<ForestNode> nodes_;
   std::vector<ForestTree> trees_;
   std::vector<MimicRelation> mimics_;
   std::vector<LoopClosure> loops_;
   std::vector<int> body_node_, dof_node_;
+  std::vector<int> body_joint_, first_joint_, next_joint_;  // while it is built: of a tree, by child, by parent and one after another
   std::vector<int> row_start_, row_length_, columns_;
 };
 

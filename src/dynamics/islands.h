@@ -15,7 +15,7 @@ class Islands {
   int islandOf(int tree) const { return island_[tree]; }
 
  private:
-  int root(int tree) const;
+  int root(int tree);
 
   std::vector<int> parent_, island_;
 };

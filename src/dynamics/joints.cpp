@@ -34,7 +34,7 @@ int Scene::addJoint(const JointSpec& spec, double position) {
   if (spec.parent != WORLD_BODY) slot.assembled_turn = slot.parent_assembled.turn().conjugate() * slot.assembled_turn;
   slot.parent_axis = spec.X_PJ.linear() * slot.spec.axis;
   createJoint(&slot);
-  orderJoints();
+  placeInTree(static_cast<int>(joints_.size()) - 1);
   return static_cast<int>(joints_.size()) - 1;
 }
 

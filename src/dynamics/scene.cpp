@@ -59,7 +59,7 @@ void Scene::removeBody(int body) {
   dBodyDestroy(bodies_[body].ode);
   bodies_[body].ode = nullptr;
   bodies_[body].pending = Wrench();
-  orderJoints();
+  findTrees();
 }
 
 void Scene::rebuild(const std::vector<BodyBits>& state) {
@@ -77,30 +77,52 @@ void Scene::rebuild(const std::vector<BodyBits>& state) {
   setBits(state);
 }
 
-void Scene::orderJoints() {
+// A joint whose child hangs on something already, or on what hangs on the child, closes a loop.
+void Scene::placeInTree(int joint) {
+  JointSlot& slot = joints_[joint];
+  tree_parent_.resize(bodies_.size(), WORLD_BODY);
+  has_parent_.resize(bodies_.size(), 0);
+  bool loop = has_parent_[slot.spec.child] != 0;
+  for (int b = slot.spec.parent; b != WORLD_BODY && !loop; b = tree_parent_[b]) loop = b == slot.spec.child;
+  slot.in_tree = !loop;
   ++structure_;
-  const int body_count = static_cast<int>(bodies_.size());
-  std::vector<int> parent(body_count, WORLD_BODY), depth(body_count, 0);
-  std::vector<bool> has_parent(body_count, false);
+  ordered_ = false;
+  if (loop) return;
+  has_parent_[slot.spec.child] = 1;
+  tree_parent_[slot.spec.child] = slot.spec.parent;
+}
+
+void Scene::findTrees() {
+  ++structure_;
+  ordered_ = false;
+  tree_parent_.clear();
+  has_parent_.clear();
+  for (int j = 0; j < static_cast<int>(joints_.size()); ++j)
+    if (joints_[j].joint) placeInTree(j);
+}
+
+const std::vector<int>& Scene::leavesFirst() const {
+  if (!ordered_) orderJoints();
+  return leaves_first_;
+}
+
+void Scene::orderJoints() const {
+  ordered_ = true;
   leaves_first_.clear();
-  for (int j = 0; j < static_cast<int>(joints_.size()); ++j) {
-    JointSlot& slot = joints_[j];
-    if (!slot.joint) continue;
-    bool loop = has_parent[slot.spec.child];
-    for (int b = slot.spec.parent; b != WORLD_BODY && !loop; b = parent[b]) loop = b == slot.spec.child;
-    slot.in_tree = !loop;
-    if (loop) continue;
-    has_parent[slot.spec.child] = true;
-    parent[slot.spec.child] = slot.spec.parent;
-    leaves_first_.push_back(j);
+  for (int j = 0; j < static_cast<int>(joints_.size()); ++j)
+    if (joints_[j].joint && joints_[j].in_tree) leaves_first_.push_back(j);
+  // Joints between a body and the root of its tree.
+  constexpr int UNKNOWN = -1;
+  depth_.assign(has_parent_.size(), UNKNOWN);
+  std::vector<int> way;
+  for (const int joint : leaves_first_) {
+    int body = joints_[joint].spec.child;
+    for (; body != WORLD_BODY && depth_[body] == UNKNOWN; body = has_parent_[body] ? tree_parent_[body] : WORLD_BODY) way.push_back(body);
+    for (int above = body == WORLD_BODY ? 0 : depth_[body]; !way.empty(); way.pop_back())
+      depth_[way.back()] = has_parent_[way.back()] ? ++above : above;
   }
-  for (int b = 0; b < body_count; ++b)
-    for (int a = b; has_parent[a]; a = parent[a]) {
-      ++depth[b];
-      if (parent[a] == WORLD_BODY) break;
-    }
   std::stable_sort(leaves_first_.begin(), leaves_first_.end(),
-                   [&](int a, int b) { return depth[joints_[a].spec.child] > depth[joints_[b].spec.child]; });
+                   [&](int a, int b) { return depth_[joints_[a].spec.child] > depth_[joints_[b].spec.child]; });
 }
 
 void Scene::bits(std::vector<BodyBits>* out) const {

@@ -75,7 +75,7 @@ class Scene {
   std::deque<JointSlot>& joints() { return joints_; }
   const std::deque<JointSlot>& joints() const { return joints_; }
   /** Joints of the kinematic trees, a body's own joint after those of its children. */
-  const std::vector<int>& leavesFirst() const { return leaves_first_; }
+  const std::vector<int>& leavesFirst() const;
 
   /** Counts the changes of which bodies and joints there are. */
   std::uint64_t structure() const { return structure_; }
@@ -115,7 +115,9 @@ class Scene {
   void createBody(BodySlot* slot);
   void createJoint(JointSlot* slot);
   void createMotor(JointSlot* slot, dBodyID child, dBodyID parent, const Vector3& axis);
-  void orderJoints();
+  void placeInTree(int joint);
+  void findTrees();
+  void orderJoints() const;
 
   OdeLibrary library_;
   SolverSettings settings_;
@@ -125,7 +127,11 @@ class Scene {
   dJointGroupID contact_group_ = nullptr;
   std::vector<BodySlot> bodies_;
   std::deque<JointSlot> joints_;  ///< a deque, as ODE holds pointers to the feedbacks
-  std::vector<int> leaves_first_;
+  std::vector<int> tree_parent_;  ///< per body: what its joint of a tree hangs it on, WORLD_BODY too
+  std::vector<char> has_parent_;  ///< per body: it has such a joint
+  // Caches of what the joints tell, made when somebody asks.
+  mutable bool ordered_ = true;
+  mutable std::vector<int> leaves_first_, depth_;
   std::uint64_t structure_ = 0;
 };
 

@@ -5,8 +5,21 @@
 namespace blem_sim {
 
 const ContactRecord* StepMemory::find(std::uint64_t id) const {
-  const auto it = std::lower_bound(contacts.begin(), contacts.end(), id, [](const ContactRecord& c, std::uint64_t i) { return c.id < i; });
-  return it != contacts.end() && it->id == id ? &*it : nullptr;
+  if (contacts.empty()) return nullptr;
+  const std::size_t bucket = id >> shift_;
+  const auto end = contacts.begin() + first_[bucket + 1];
+  const auto it =
+      std::lower_bound(contacts.begin() + first_[bucket], end, id, [](const ContactRecord& c, std::uint64_t i) { return c.id < i; });
+  return it != end && it->id == id ? &*it : nullptr;
+}
+
+// Ids of the simulator's contacts are spread evenly, so that a bucket holds one or none.
+void StepMemory::index() {
+  std::size_t buckets = 2;
+  for (shift_ = 63; buckets < 2 * contacts.size(); buckets *= 2) --shift_;
+  first_.assign(buckets + 1, 0);
+  for (const ContactRecord& c : contacts) ++first_[(c.id >> shift_) + 1];
+  for (std::size_t b = 0; b < buckets; ++b) first_[b + 1] += first_[b];
 }
 
 void StepMemory::resize(const Scene& scene) { joints.resize(scene.joints().size()); }
@@ -35,6 +48,7 @@ void StepMemory::restore(const Scene& scene, StateReader* reader) {
     c.slip = reader->number();
     c.approach = reader->number();
   }
+  index();
   resize(scene);
   for (std::size_t j = 0; j < joints.size(); ++j) {
     for (double* x : {&joints[j].dry, &joints[j].lower, &joints[j].upper, &joints[j].dry_change}) *x = reader->number();

@@ -25,14 +25,19 @@ struct JointRecord {
 };
 
 struct StepMemory {
-  std::vector<ContactRecord> contacts;  ///< sorted by id
+  std::vector<ContactRecord> contacts;  ///< sorted by id; index() after they were changed
   std::vector<JointRecord> joints;      ///< one per joint slot
 
   /** Null if there was no such contact in the last step. */
   const ContactRecord* find(std::uint64_t id) const;
+  void index();
   void resize(const Scene& scene);
   void save(const Scene& scene, StateWriter* writer) const;
   void restore(const Scene& scene, StateReader* reader);
+
+ private:
+  int shift_ = 63;          // bits of an id below those that choose its bucket
+  std::vector<int> first_;  // per bucket, as many as there are records or up to four times so: its first record
 };
 
 }  // namespace blem_sim

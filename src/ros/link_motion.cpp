@@ -1,5 +1,7 @@
 #include "link_motion.h"
 
+#include <algorithm>
+
 namespace blem_sim {
 
 namespace {
@@ -20,7 +22,7 @@ LinkMotion linkMotion(const Simulator& simulator, const StepReport& report, cons
   const int body = robot.bodies[placement.body];
   if (body != WORLD_BODY) return frameMotion(simulator, report, body, placement.X_BL);
   LinkMotion fixed;
-  fixed.X_WL = simulator.linkPose(simulator.robotIndex(robot.name), link);
+  fixed.X_WL = robot.X_WR * placement.X_BL;
   return fixed;
 }
 
@@ -31,14 +33,16 @@ LinkMotion bodyMotion(const Simulator& simulator, const StepReport& report, int 
 LinkMotion modelMotion(const Simulator& simulator, const StepReport& report, int model) {
   const ModelInfo& info = simulator.models()[model];
   if (info.kind == ModelKind::ROBOT) {
-    const RobotInfo& robot = simulator.robots()[simulator.robotIndex(info.name)];
-    return linkMotion(simulator, report, robot, robot.description->root);
+    const auto robot = std::partition_point(simulator.robots().begin(), simulator.robots().end(),
+                                            [model](const RobotInfo& other) { return other.model < model; });
+    return linkMotion(simulator, report, *robot, robot->description->root);
   }
   if (info.kind == ModelKind::OBJECT) return bodyMotion(simulator, report, info.bodies.front());
+  // Robots and colliders come in the order of their models; an environment has one collider.
   LinkMotion environment;
-  for (const Collider& collider : simulator.colliders()) {
-    if (collider.model == model) environment.X_WL = collider.X_BC;
-  }
+  const auto collider = std::partition_point(simulator.colliders().begin(), simulator.colliders().end(),
+                                             [model](const Collider& other) { return other.model < model; });
+  environment.X_WL = collider->X_BC;
   return environment;
 }
 

@@ -6,6 +6,7 @@
 
 #include "blem_sim/geometry/input_error.h"
 #include "config_sections.h"
+#include "scene_limits.h"
 
 namespace blem_sim {
 
@@ -29,6 +30,10 @@ PublishRates readRates(YamlReader& reader) {
 template <typename Model, typename Read>
 std::vector<Model> readModels(YamlReader& root, const std::string& key, std::set<std::string>* names, Read read) {
   std::vector<Model> models;
+  // Before any of them is read.
+  const YAML::Node list = root.node(key);
+  if (list.IsDefined() && list.size() > MOST_MODELS)
+    root.refuse(key, fmt::format("{} entries are more than the {} that are simulated; give fewer", list.size(), MOST_MODELS));
   root.forEachItem(key, [&](YamlReader& reader) {
     Model model = read(reader);
     if (!names->insert(model.name).second)

@@ -18,7 +18,9 @@ int SimulatedWorld::addModel(const std::string& name, ModelKind kind, int max_co
   model.kind = kind;
   models.push_back(model);
   budgets.push_back({max_contacts});
-  return static_cast<int>(models.size()) - 1;
+  const int index = static_cast<int>(models.size()) - 1;
+  model_named_[name] = index;
+  return index;
 }
 
 void SimulatedWorld::addCollider(Collider collider, double width, const SurfaceProperties& surface, MeshReport report) {
@@ -32,9 +34,8 @@ void SimulatedWorld::addCollider(Collider collider, double width, const SurfaceP
 }
 
 int SimulatedWorld::modelIndex(const std::string& name) const {
-  for (std::size_t i = 0; i < models.size(); ++i)
-    if (models[i].alive && models[i].name == name) return static_cast<int>(i);
-  return -1;
+  const auto known = model_named_.find(name);
+  return known != model_named_.end() && models[known->second].alive ? known->second : -1;
 }
 
 Pose SimulatedWorld::linkPose(const RobotInfo& robot, int link) const {

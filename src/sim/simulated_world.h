@@ -1,6 +1,7 @@
 // Everything a simulation is made of once it is built: the world, its models, and what can touch.
 #pragma once
 
+#include <map>
 #include <set>
 #include <string>
 #include <utility>
@@ -42,6 +43,9 @@ struct SimulatedWorld {
   Pose linkPose(const RobotInfo& robot, int link, const std::vector<BodyState>& bodies) const;
   /** State of every body slot. */
   void bodyStates(std::vector<BodyState>* out) const;
+
+ private:
+  std::map<std::string, int> model_named_;  ///< the last one that was added of each name
 };
 
 }  // namespace blem_sim

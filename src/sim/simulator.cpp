@@ -1,10 +1,13 @@
 #include "blem_sim/sim/simulator.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "blem_sim/geometry/input_error.h"
 #include "nearest_name.h"
+#include "scene_limits.h"
 #include "simulator_impl.h"
 
 namespace blem_sim {
@@ -13,6 +16,10 @@ namespace {
 void check(const SimulationConfig& config) {
   if (!(config.time_step > 0) || !std::isfinite(config.time_step))
     throw InputError("time_step: needs a finite number of seconds above 0, such as 0.001");
+  const std::size_t models = config.environments.size() + config.robots.size() + config.objects.size();
+  if (models > MOST_MODELS)
+    throw InputError(fmt::format("objects: {} environments, robots and objects are more than the {} that are simulated; give fewer", models,
+                                 MOST_MODELS));
   if (!config.gravity.allFinite()) throw InputError("gravity: needs three finite numbers, such as [0, 0, -9.81]");
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <set>
 #include <utility>
 #include <vector>
@@ -39,12 +40,15 @@ struct ColliderMotion {
 class BroadPhase {
  public:
   /**
-   * Pairs whose layers may come within reach, sorted by (a, b): sweep along the axis of largest spread over world boxes. A pair's margin
-   * is min(max_margin, max(base_margin, reach_a + reach_b)).
+   * Pairs whose layers may come within reach, sorted by (a, b): a sweep along one axis over world boxes, from 64 boxes on within cells of
+   * the two other axes, so that the cost grows with the number of boxes. A pair's margin is
+   * min(max_margin, max(base_margin, reach_a + reach_b)).
    * @return lives until the next search
    */
   const std::vector<ColliderPair>& find(const std::vector<Collider>& colliders, const std::vector<ColliderMotion>& motion,
                                         const CollisionFilter& filter, double base_margin, double max_margin);
+  /** How many pairs of boxes the last search compared. */
+  std::int64_t compared() const { return compared_; }
 
  private:
   /** A collider in the sweep: its box in the world, and how much farther it may matter. */
@@ -58,11 +62,22 @@ class BroadPhase {
     double at;       // [m] along the axis
     int box, model;  // as in the box
   };
+  /** A box in a cell of the two axes of largest spread. */
+  struct CellEntry {
+    std::uint64_t cell;
+    double at;  // [m] where it starts along the third axis
+    int box;
+  };
   class Search;
 
   std::vector<int> half_spaces_;
   std::vector<SweepBox> boxes_;
   std::vector<SweepStart> starts_;
+  std::vector<CellEntry> entries_;
+  std::vector<double> sizes_;      // [m] of boxes along an axis
+  std::vector<int> large_starts_;  // of starts_: boxes of so many cells that they are swept by themselves
+  std::int64_t compared_ = 0;
+  std::vector<char> large_;  // box by box
   std::vector<ColliderPair> pairs_;
 };
 

@@ -1,0 +1,213 @@
+// Heaps in a bin beside Bullet: cubes of twelve triangles (there boxes), exact spheres. Both take turns in one run, so that ratios mean
+// more than times. Processor time of the stepping thread, of stages too. Arguments: --seconds=S simulated (4 if not given), then Google
+// Benchmark's: --benchmark_filter='cubes/(30|100)/' chooses sizes.
+#include <benchmark/benchmark.h>
+
+#include <array>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <string>
+
+#include "bullet_heap.h"
+#include "soak/figures.h"
+#include "soak/heap.h"
+#include "support/shared_packages.h"
+
+namespace blem_sim {
+namespace {
+
+constexpr int SEED = 1, TURN = 50;  // [steps] of one engine before it is the other's turn
+constexpr std::size_t STAGES = static_cast<std::size_t>(Stage::COUNT);
+double seconds_simulated = 4;
+
+/** What both engines are to run. */
+struct Heap {
+  std::string name;
+  int count;
+  SimulationConfig (*config)(int count, int seed, const SolverSettings& solver);
+  HeapScene (*scene)(int count);
+};
+
+HeapScene cubes(int count) {
+  HeapScene scene;
+  scene.size = 0.1;
+  scene.mass = 1;
+  scene.friction = 0.5;
+  scene.bin_width = heapBinWidth(count);
+  scene.bin_height = heapBinHeight(count);
+  scene.poses = heapPoses(count, SEED);
+  return scene;
+}
+
+HeapScene spheres(int count) {
+  HeapScene scene;
+  scene.spheres = true;
+  scene.size = 2 * POURED_RADIUS;
+  scene.mass = POURED_MASS;
+  scene.friction = 0.5;
+  scene.bin_width = pouredBinWidth(count);
+  scene.bin_height = pouredBinHeight(count);
+  scene.poses = pouredPoses(count, SEED);
+  return scene;
+}
+
+/** [us] of each step of one thing. */
+class Times {
+ public:
+  void add(double seconds) { all_.push_back(1e6 * seconds); }
+  double mean(double from = 0, double to = 1) const {
+    const auto begin = static_cast<std::size_t>(from * all_.size()), end = static_cast<std::size_t>(to * all_.size());
+    double total = 0;
+    for (std::size_t i = begin; i < end; ++i) total += all_[i];
+    return total / static_cast<double>(end - begin);
+  }
+  double quantile(double fraction) const {
+    std::vector<double> sorted = all_;
+    std::sort(sorted.begin(), sorted.end());
+    return sorted[static_cast<std::size_t>(fraction * static_cast<double>(sorted.size() - 1))];
+  }
+
+ private:
+  std::vector<double> all_;
+};
+
+/** What a run showed. */
+struct Figures {
+  Times step, bullet;
+  std::array<Times, STAGES> stages;
+  Times residual_of_force;  // in millionths
+  double trouble = 0, crossing = 0, shortened = 0, deepest = 0, gained = 0, bullet_deepest = 0;
+  void add(const StepReport& report) {
+    for (std::size_t s = 0; s < STAGES; ++s) stages[s].add(report.profile.seconds[s]);
+    trouble += report.status & SOLVER_TROUBLE ? 1 : 0;
+    crossing += report.status & CONTACT_UNRELIABLE ? 1 : 0;
+    shortened += report.substeps > 1 ? 1 : 0;
+    deepest = std::max(deepest, report.max_of_layer);
+    gained = std::max(gained, report.energy_gained);
+    double largest = 0;
+    for (const ContactReport& contact : report.contacts) largest = std::max(largest, contact.force.norm());
+    if (largest > 0) residual_of_force.add(report.solver_residual / largest);
+  }
+};
+
+Figures run(Simulator* simulator, BulletHeap* bullet) {
+  Figures figures;
+  const int steps = static_cast<int>(std::lround(seconds_simulated / simulator->config().time_step));
+  for (int done = 0; done < steps; done += TURN) {
+    const int turn = std::min(TURN, steps - done);
+    for (int i = 0; i < turn; ++i) {
+      const double start = threadSeconds();
+      const StepReport& report = simulator->step();
+      figures.step.add(threadSeconds() - start);
+      figures.add(report);
+    }
+    for (int i = 0; bullet && i < turn; ++i) {
+      const double start = threadSeconds();
+      bullet->step();
+      figures.bullet.add(threadSeconds() - start);
+      figures.bullet_deepest = std::max(figures.bullet_deepest, bullet->deepest());
+    }
+  }
+  return figures;
+}
+
+double fastest(const Simulator& simulator) {
+  double fastest = 0;
+  for (const BodyState& body : simulator.report().bodies) fastest = std::max(fastest, body.v_WCom.norm());
+  return fastest;
+}
+
+/** Bodies that are not in the bin any more. */
+int lost(const Simulator& simulator, double width) {
+  int lost = 0;
+  for (const BodyState& body : simulator.report().bodies) {
+    const Vector3& p = body.X_WB.translation();
+    lost += p.z() < 0 || std::max(std::abs(p.x()), std::abs(p.y())) > 0.5 * width ? 1 : 0;
+  }
+  return lost;
+}
+
+void count(const Heap& heap, const Figures& figures, const Simulator& simulator, const BulletHeap* bullet, benchmark::State* state) {
+  auto& counters = state->counters;
+  const double steps = seconds_simulated / simulator.config().time_step;
+  const auto add = [&](const std::string& name, const Times& times) {
+    counters[name + "_mean_us"] = times.mean();
+    counters[name + "_p99_us"] = times.quantile(0.99);
+    counters[name + "_max_us"] = times.quantile(1);
+  };
+  add("step", figures.step);
+  for (std::size_t s = 0; s < STAGES; ++s) add(STAGE_NAMES[s], figures.stages[s]);
+  const Times& solve = figures.stages[static_cast<std::size_t>(Stage::SOLVE)];
+  counters["last_quarter_over_first"] = figures.step.mean(0.75, 1) / figures.step.mean(0, 0.25);
+  counters["solve_last_quarter_over_first"] = solve.mean(0.75, 1) / solve.mean(0, 0.25);
+  counters["trouble_share"] = figures.trouble / steps;
+  counters["crossing_steps"] = figures.crossing;
+  counters["shortened_steps"] = figures.shortened;
+  counters["residual_of_force_p999"] = 1e-6 * figures.residual_of_force.quantile(0.999);
+  counters["residual_of_force_worst"] = 1e-6 * figures.residual_of_force.quantile(1);
+  counters["deepest_of_layer"] = figures.deepest;
+  counters["energy_gained_J"] = figures.gained;
+  counters["speed_at_end"] = fastest(simulator);
+  counters["lost"] = lost(simulator, heap.scene(heap.count).bin_width);
+  counters["bullet_mean_us"] = bullet ? figures.bullet.mean() : NAN;
+  counters["bullet_p99_us"] = bullet ? figures.bullet.quantile(0.99) : NAN;
+  counters["bullet_deepest_mm"] = 1e3 * figures.bullet_deepest;
+  counters["bullet_speed_at_end"] = bullet ? bullet->fastest() : NAN;
+  counters["solve_over_bullet"] = bullet ? solve.mean() / figures.bullet.mean() : NAN;
+  counters["step_over_bullet"] = bullet ? figures.step.mean() / figures.bullet.mean() : NAN;
+  // Growth against the heap of 100 of this run.
+  static double solve_of_100 = NAN, step_of_100 = NAN;
+  if (heap.name == "cubes" && heap.count == 100) {
+    solve_of_100 = solve.mean();
+    step_of_100 = figures.step.mean();
+  }
+  counters["solve_over_100"] = solve.mean() / solve_of_100;
+  counters["step_over_100"] = figures.step.mean() / step_of_100;
+}
+
+void measure(const Heap& heap, benchmark::State& state) {
+  Simulator simulator(heap.config(heap.count, SEED, {}), UriResolver(sharedPackages()));
+  const std::unique_ptr<BulletHeap> bullet = makeBulletHeap(heap.scene(heap.count));
+  Figures figures;
+  for (auto _ : state) {
+    figures = run(&simulator, bullet.get());
+    state.SetIterationTime(1e-6 * figures.step.mean());
+  }
+  count(heap, figures, simulator, bullet.get(), &state);
+}
+
+void add(const Heap& heap) {
+  benchmark::RegisterBenchmark(("heaps/" + heap.name + "/" + std::to_string(heap.count)).c_str(),
+                               [heap](benchmark::State& state) { measure(heap, state); })
+      ->Iterations(1)
+      ->UseManualTime()
+      ->Unit(benchmark::kMicrosecond);
+}
+
+/** Takes --seconds=S out of the arguments. */
+void takeSeconds(int* argc, char** argv) {
+  static const char OPTION[] = "--seconds=";
+  int kept = 1;
+  for (int i = 1; i < *argc; ++i) {
+    if (std::strncmp(argv[i], OPTION, sizeof(OPTION) - 1) == 0)
+      seconds_simulated = std::atof(argv[i] + sizeof(OPTION) - 1);
+    else
+      argv[kept++] = argv[i];
+  }
+  *argc = kept;
+}
+
+}  // namespace
+}  // namespace blem_sim
+
+int main(int argc, char** argv) {
+  using namespace blem_sim;
+  takeSeconds(&argc, argv);
+  for (const int size : {30, 100, 300, 1000}) add({"cubes", size, heapInBin, cubes});
+  add({"spheres", 1000, spheresInBin, spheres});
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
+}

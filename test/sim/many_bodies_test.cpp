@@ -1,0 +1,88 @@
+// Scenes of thousands of bodies: they load, step and are told apart without anything that grows faster than their number.
+#include <gtest/gtest.h>
+
+#include "blem_sim/geometry/input_error.h"
+#include "simulation_scene.h"
+
+namespace blem_sim {
+namespace {
+
+constexpr double APART = 0.3;  // [m]
+
+/** Cubes of 0.1 m in a square, just above one ground of two triangles. */
+SimulationConfig cubesApart(int count) {
+  SimulationConfig config;
+  int row = 1;
+  while (row * row < count) ++row;
+  config.environments = {ground(APART * (row + 2))};
+  ObjectConfig cube = box("cube", Vector3::Constant(0.1), 1, Vector3::Zero());
+  for (int i = 0; i < count; ++i) {
+    cube.name = "cube" + std::to_string(i);
+    cube.X_WO = makePose(Vector3(APART * (i % row - 0.5 * row), APART * (i / row - 0.5 * row), 0.0527));
+    config.objects.push_back(cube);
+  }
+  return config;
+}
+
+TEST(ManyBodies, ThreeThousandCubesApartRest) {
+  constexpr int CUBES = 3000;
+  Simulator simulator(cubesApart(CUBES), UriResolver());
+  stepFor(&simulator, 0.05);
+  const StepReport& report = simulator.report();
+  EXPECT_EQ(report.status, static_cast<std::uint32_t>(STEP_OK));
+  EXPECT_EQ(report.searched_pairs, CUBES);
+  EXPECT_EQ(report.reduced_contacts, 4 * CUBES);
+  double fastest = 0, lowest = 1, highest = 0;
+  for (const BodyState& body : report.bodies) {
+    fastest = std::max(fastest, body.v_WCom.norm());
+    lowest = std::min(lowest, body.X_WB.translation().z());
+    highest = std::max(highest, body.X_WB.translation().z());
+  }
+  EXPECT_LT(fastest, 1e-6);
+  EXPECT_NEAR(lowest, 0.0525, 1e-5);
+  EXPECT_NEAR(highest, 0.0525, 1e-5);
+}
+
+TEST(ManyBodies, ModelsAreFoundByNameWhateverTheirNumber) {
+  constexpr int CUBES = 2000;
+  Simulator simulator(cubesApart(CUBES), UriResolver());
+  EXPECT_EQ(simulator.modelIndex("ground"), 0);
+  for (int i = 0; i < CUBES; ++i) EXPECT_EQ(simulator.modelIndex("cube" + std::to_string(i)), i + 1);
+  EXPECT_EQ(simulator.modelIndex("cube2000"), -1);
+  simulator.unloadEnvironment("ground");
+  EXPECT_EQ(simulator.modelIndex("ground"), -1);
+  simulator.loadEnvironment(ground());
+  EXPECT_EQ(simulator.modelIndex("ground"), CUBES + 1);
+}
+
+TEST(ManyBodies, MoreModelsThanAreSimulatedAreRefusedInOneLine) {
+  SimulationConfig config;
+  config.objects.resize(1000000);
+  try {
+    Simulator simulator(config, UriResolver());
+    FAIL() << "a million objects were taken";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "objects: 1000000 environments, robots and objects are more than the 100000 that are simulated; give fewer");
+  }
+}
+
+// Meshes cross from the start: the step says so, stays finite, and what crossed comes apart at a bounded speed.
+TEST(ManyBodies, HundredsStartedInsideEachOtherComeApart) {
+  SimulationConfig config;
+  config.environments = {ground(8)};
+  for (int i = 0; i < 200; ++i)
+    config.objects.push_back(
+        box("cube" + std::to_string(i), Vector3::Constant(0.1), 1, Vector3(0.03 * (i % 6), 0.03 * (i / 6 % 6), 0.06 + 0.03 * (i / 36))));
+  Simulator simulator(config, UriResolver());
+  double fastest = 0;
+  for (int k = 0; k < 10; ++k) {
+    const StepReport& report = simulator.step();
+    EXPECT_TRUE(report.status & CONTACT_UNRELIABLE);
+    ASSERT_FALSE(report.status & STATE_NOT_FINITE);
+    for (const BodyState& body : report.bodies) fastest = std::max(fastest, body.v_WCom.norm());
+  }
+  EXPECT_LT(fastest, 10);
+}
+
+}  // namespace
+}  // namespace blem_sim
