@@ -10,9 +10,11 @@
 namespace blem_sim {
 namespace {
 
-constexpr double ENERGY_MISS = 1e-6;  // relative, over a step: raise it for less work; what is missed is put right in any case
+constexpr double ENERGY_MISS = 1e-5;  // relative, over a step: raise it for less work; what is missed is put right in any case
+constexpr double TOO_INEXACT = 1e-3;   // likewise: no longer the same motion
 constexpr double SUB_STEP_TURN = 0.5;  // [rad] of the fastest body in the first try's sub-steps
 constexpr int MAX_SUB_STEPS = 64;
+constexpr double FASTER = 4;  // by no more than this is kinetic energy between bodies put right
 constexpr double RIGID_TURN = 0.02;  // [rad] about a principal axis in one of a rigid body's sub-steps
 constexpr int MAX_RIGID_TURNS = 256;
 
@@ -40,6 +42,12 @@ Eigen::Vector4d turnRate(const Vector3& spin, const Eigen::Vector4d& turn) {
   Eigen::Vector4d rate;
   rate << 0.5 * (turn[3] * spin + crossProduct(spin, v)), -0.5 * spin.dot(v);
   return rate;
+}
+
+/** As many as the order of the method asks for, where it shows already. */
+int moreSteps(int steps, double miss) {
+  const double more = steps * std::clamp(std::pow(miss / ENERGY_MISS, 0.25), 1.25, 4.0) + 1;
+  return more < MAX_SUB_STEPS ? static_cast<int>(more) : MAX_SUB_STEPS;
 }
 
 void normalise(Eigen::Vector4d* turn) { *turn /= turn->norm(); }
@@ -241,19 +249,19 @@ FreeMotionReport FreeMotion::follow(const Forest& forest, int tree, double dt, c
   }
   const double first = energy(forest, tree);
   double wanted = first;
-  for (int steps = firstSteps(forest, tree, dt);; steps = std::min(2 * steps, MAX_SUB_STEPS)) {
+  for (int steps = firstSteps(forest, tree, dt);; steps = moreSteps(steps, report.miss)) {
     run(forest, tree, dt, steps, motion, velocity);
     report.evaluations += 4 * steps;
     wanted = first + work(forest, tree);
     report.miss = std::abs(energy(forest, tree) - wanted) / first;
     if (report.miss <= ENERGY_MISS || steps == MAX_SUB_STEPS) break;
   }
-  if (!std::isfinite(report.miss)) {
+  report.followed = report.miss <= TOO_INEXACT;
+  if (!report.followed) {
     goStraight(forest, tree, dt, motion, velocity);
-    report.miss = 1;
     wanted = first;
   }
-  correct(forest, tree, wanted);
+  correct(forest, tree, wanted, report.followed);
   leaveFrame(forest, tree, dt, motion);
   return report;
 }
@@ -274,7 +282,7 @@ void FreeMotion::goStraight(const Forest& forest, int tree, double dt, const For
 }
 
 // A free tree's momenta by moving all of it; the energy by faster or slower joints, which is the same way at another speed.
-void FreeMotion::correct(const Forest& forest, int tree, double energy_wanted) {
+void FreeMotion::correct(const Forest& forest, int tree, double energy_wanted, bool followed) {
   const ForestTree& t = forest.trees()[tree];
   Vector6 locked = Vector6::Zero();
   double locked_energy = 0;
@@ -293,10 +301,10 @@ void FreeMotion::correct(const Forest& forest, int tree, double energy_wanted) {
     at_.velocity.segment<6>(t.first_dof) += turnAbout(spin, com) + spatial(Vector3::Zero(), linear(missing) / whole.mass);
     computeTwists(forest, tree, at_, at_.velocity, &at_.twist);
   }
-  if (std::any_of(held.begin() + t.first_dof, held.begin() + t.dof_end, [](char h) { return h != 0; })) return;
-  const double ratio = (energy_wanted - locked_energy) / (energy(forest, tree) - locked_energy);
-  if (!(ratio > 0.25 && ratio < 4)) return;
-  const double speed = std::sqrt(ratio);
+  if (followed && std::any_of(held.begin() + t.first_dof, held.begin() + t.dof_end, [](char h) { return h != 0; })) return;
+  const double inner = energy(forest, tree) - locked_energy, ratio = (energy_wanted - locked_energy) / inner;
+  if (!(inner > 0)) return;
+  const double speed = std::sqrt(std::clamp(ratio, 0.0, FASTER));
   at_.velocity.segment(t.first_dof, t.dofCount()) *= speed;
   if (t.free) at_.velocity.segment<6>(t.first_dof) += (1 - speed) * locked;
   computeTwists(forest, tree, at_, at_.velocity, &at_.twist);

@@ -7,8 +7,9 @@ namespace blem_sim {
 
 /** How well a free motion was followed. */
 struct FreeMotionReport {
-  double miss = 0;      ///< of kinetic energy, relative, before it was put right
-  int evaluations = 0;  ///< of a tree's accelerations
+  double miss = 0;       ///< of kinetic energy, relative, before it was put right
+  bool followed = true;  ///< with as many sub-steps as are allowed at most; if not, energy is still none too much
+  int evaluations = 0;   ///< of a tree's accelerations
 };
 
 /**
@@ -53,7 +54,7 @@ class FreeMotion {
   void run(const Forest& forest, int tree, double dt, int steps, const ForestMotion& motion, const Eigen::VectorXd& velocity);
   double energy(const Forest& forest, int tree) const;
   double work(const Forest& forest, int tree) const;
-  void correct(const Forest& forest, int tree, double energy);
+  void correct(const Forest& forest, int tree, double energy_wanted, bool followed);
   void leaveFrame(const Forest& forest, int tree, double dt, const ForestMotion& motion);
   void turnRigid(const Forest& forest, int tree, double dt, const ForestMotion& motion);
   void start(const Forest& forest, int tree, const ForestMotion& motion, const Eigen::VectorXd& velocity);

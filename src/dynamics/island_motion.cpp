@@ -12,11 +12,10 @@ double productsShare(const ForestTree& tree, int dof) { return tree.free && dof 
 
 // Change of the velocities by velocity products in a step, over the velocities: beyond, a tree is fast. One that nothing drives or touches
 // has an energy to keep.
-constexpr double FAST_ALONE = 1e-3, FAST = 0.02;
+constexpr double FAST_ALONE = 1e-4, FAST = 0.005;
 // Trees in loops, and those with mimic joints, are solved with their products whatever their speed; beyond this they are no longer right.
 constexpr double TOO_FAST = 0.3;
-constexpr double TOO_INEXACT = 1e-3;  // of kinetic energy that was missed on the way, relative
-constexpr double HOLDS = 0.5;         // of a dof's inertia: a joint that answers more stiffly keeps its velocity on the way
+constexpr double HOLDS = 0.5;  // of a dof's inertia: a joint that answers more stiffly keeps its velocity on the way
 
 // Change of the velocities of a tree by its velocity products in a step, over the velocities in the frame of its centre of mass; in the
 // norm of the energy, each dof's inertia taken alone.
@@ -184,7 +183,7 @@ bool followFast(const Forest& forest, const IslandProblem& problem, double dt, c
   for (const int tree : problem.trees) {
     followed &= motion.pace[tree] != Pace::TOO_FAST;
     if (!isFast(motion, tree)) continue;
-    followed &= way->follow(forest, tree, dt, motion, space.velocity, space.mass_velocity).miss <= TOO_INEXACT;
+    followed &= way->follow(forest, tree, dt, motion, space.velocity, space.mass_velocity).followed;
   }
   return followed;
 }
