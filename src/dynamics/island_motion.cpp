@@ -13,12 +13,13 @@ double productsShare(const ForestTree& tree, int dof) { return tree.free && dof 
 // Change of the velocities by velocity products in a step, over the velocities: beyond, a tree is fast. One that nothing drives or touches
 // has an energy to keep.
 constexpr double FAST_ALONE = 1e-4, FAST = 0.005;
+constexpr double SMALL_TURN = 0.05;  // [rad] of a free root in a step: beyond, products of the step's start are not those of its end
 // Trees in loops, and those with mimic joints, are solved with their products whatever their speed; beyond this they are no longer right.
 constexpr double TOO_FAST = 0.3;
 constexpr double HOLDS = 0.5;  // of a dof's inertia: a joint that answers more stiffly keeps its velocity on the way
 
 // Change of the velocities of a tree by its velocity products in a step, over the velocities in the frame of its centre of mass; in the
-// norm of the energy, each dof's inertia taken alone.
+// norm of the energy, each dof's inertia taken alone; the more, the further the root turns.
 double turning(const Forest& forest, int tree, double dt, const ForestMotion& motion, const SolverSpace& space) {
   const ForestTree& t = forest.trees()[tree];
   double change = 0, energy = 0;
@@ -27,9 +28,10 @@ double turning(const Forest& forest, int tree, double dt, const ForestMotion& mo
     energy += motion.velocity[k] * space.mass_velocity[k];
   }
   if (!(change > 0)) return 0;
-  double inner = energy;
-  if (t.free) inner -= space.mass_velocity.segment<3>(t.first_dof + 3).squaredNorm() / motion.composite[t.first_node].mass;
-  return dt * std::sqrt(change / std::max(inner, 1e-12 * energy));
+  if (!t.free) return dt * std::sqrt(change / energy);
+  const double inner = energy - space.mass_velocity.segment<3>(t.first_dof + 3).squaredNorm() / motion.composite[t.first_node].mass;
+  const double turn = dt * motion.velocity.segment<3>(t.first_dof).norm();
+  return dt * std::sqrt(change / std::max(inner, 1e-12 * energy)) * std::max(1.0, turn / SMALL_TURN);
 }
 
 bool isFast(const ForestMotion& motion, int tree) { return motion.pace[tree] == Pace::FAST; }

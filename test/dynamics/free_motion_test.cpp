@@ -89,8 +89,8 @@ TEST(FreeMotion, FreeChainKeepsItsMomenta) {
   }
 }
 
-// An arm that turns about a vertical axis, and a link that slides along it: angular momentum about the axis and energy stay. The link flies
-// out, as on the inside of a turning tube: r' r' = w0^2 ... by the two together.
+// An arm that turns about a vertical axis, and a link that slides along it: angular momentum about the axis and energy stay. By
+// both, the speed of the link along the arm is known.
 TEST(FreeMotion, SliderInASpinningArm) {
   ChainOptions options;
   options.gravity = Vector3::Zero();
@@ -101,6 +101,7 @@ TEST(FreeMotion, SliderInASpinningArm) {
   state.w_WB = {0, 100, 0};
   state.v_WCom = state.w_WB.cross(Vector3(0.15, 0, 0));
   chain.world.setBodyState(0, state);
+  state.X_WB = chain.world.bodyState(1).X_WB;
   state.v_WCom = state.w_WB.cross(Vector3(0.35, 0, 0));
   chain.world.setBodyState(1, state);
   const double energy = chain.world.kineticEnergy(), spin = chain.angularMomentum().y();
@@ -133,8 +134,10 @@ TEST_P(SpinningBody, KeepsItsEnergyAndItsAxis) {
         const Vector3 spin = spinner.bodySpin();
         tilt = std::max(tilt, std::acos(std::min(1.0, std::abs(spin[axis]) / spin.norm())));
       }
-      if (axis != 1) EXPECT_LT(tilt, 5e-3) << dt;
-      if (axis == 1) EXPECT_GT(tilt, 0.1) << dt;
+      if (axis == 1)
+        EXPECT_GT(tilt, 0.1) << dt;
+      else
+        EXPECT_LT(tilt, 5e-3) << dt;
     }
 }
 INSTANTIATE_TEST_SUITE_P(Speeds, SpinningBody, ::testing::Values(100, 300, 1000));
@@ -158,35 +161,20 @@ TEST(FreeMotion, MotorCarriesCentrifugalForces) {
     }
     const double energy = chain.world.kineticEnergy();
     SolveResult result;
+    Pose before = Pose::Identity();
     for (int i = 0; i < 1000; ++i) {
+      before = chain.world.bodyState(0).X_WB;
       result = chain.step(DT);
       ASSERT_NEAR(chain.world.kineticEnergy() / energy, 1, 5e-3) << i;
     }
     // Force of the outer link's centre of mass towards the axis: m w^2 (0.3, 0.05) along and across the inner link.
     const double w = chain.world.bodyState(0).w_WB.y(), along = 0.2 * w * w * 0.3, across = 0.2 * w * w * 0.05;
-    EXPECT_NEAR(result.joint_efforts[1] / (along * 0.05), -1, 0.02) << stiffness;
-    EXPECT_NEAR(result.joint_wrenches[1].force.norm(), std::hypot(along, across), 0.01 * along) << stiffness;
+    EXPECT_NEAR(result.joint_efforts[1] / (along * 0.05), 1, 1e-4) << stiffness;
+    const Vector3 axes(-along, 0, across);
+    const Vector3 force = before.linear() * Eigen::AngleAxisd(0.5 * w * DT, Vector3::UnitY()) * axes;
+    EXPECT_LT((result.joint_wrenches[1].force - force).norm(), 2e-3 * force.norm()) << stiffness << "\n" << result.joint_wrenches[1].force << "\n" << force;
+    EXPECT_NEAR(result.joint_wrenches[1].torque.y(), result.joint_efforts[1], 2e-3 * along * 0.05) << stiffness;
     EXPECT_LT(std::abs(chain.world.jointState(1).position - M_PI / 2), 2 * along * 0.05 / stiffness);
-  }
-}
-
-// A pendulum so fast that gravity is nothing: its pivot pulls it inwards, the mean over a step being shorter by the turn.
-TEST(FreeMotion, WrenchOfAFastPendulum) {
-  ChainOptions options;
-  options.gravity = Vector3::Zero();
-  Chain chain({{0.5, 0.4}}, options);
-  constexpr double SPIN = 200;
-  BodyState state = chain.world.bodyState(0);
-  state.w_WB = {0, SPIN, 0};
-  state.v_WCom = state.w_WB.cross(Vector3(0.2, 0, 0));
-  chain.world.setBodyState(0, state);
-  const double half = 0.5 * SPIN * DT, force = 0.5 * SPIN * SPIN * 0.2 * std::sin(half) / half;
-  for (int i = 0; i < 500; ++i) {
-    const Pose before = chain.world.bodyState(0).X_WB;
-    const SolveResult& result = chain.step(DT);
-    const Vector3 inwards = -(before.linear() * Eigen::AngleAxisd(half, Vector3::UnitY())).col(0);
-    ASSERT_NEAR((result.joint_wrenches[0].force - force * inwards).norm(), 0, 1e-4 * force) << i;
-    ASSERT_NEAR(result.joint_wrenches[0].torque.norm(), 0, 1e-4 * force * 0.4) << i;
   }
 }
 
@@ -197,8 +185,8 @@ TEST(FreeMotion, SaysWhatIsTooFast) {
   BodyState state = chain.world.bodyState(5);
   state.w_WB = {0, 3e6, 0};
   chain.world.setBodyState(5, state);
-  EXPECT_FALSE(chain.step(DT).too_fast) << "bodies alone are no motion yet" << chain.world.kineticEnergy();
-  double most = chain.world.kineticEnergy();
+  chain.step(DT);
+  const double most = chain.world.kineticEnergy();
   for (int i = 0; i < 100; ++i) {
     ASSERT_TRUE(chain.step(DT).finite);
     EXPECT_LE(chain.world.kineticEnergy(), most * (1 + 1e-9)) << i;
