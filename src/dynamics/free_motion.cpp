@@ -1,22 +1,20 @@
 #include "free_motion.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "lanes.h"
+#include "rigid_turn.h"
 
 namespace blem_sim {
 namespace {
 
-constexpr double ENERGY_MISS = 1e-5;  // relative, over a step: raise it for less work; what is missed is put right in any case
+constexpr double ENERGY_MISS = 1e-5;   // relative, over a step: raise it for less work; what is missed is put right in any case
 constexpr double TOO_INEXACT = 1e-3;   // likewise: no longer the same motion
 constexpr double SUB_STEP_TURN = 0.5;  // [rad] of the fastest body in the first try's sub-steps
 constexpr int MAX_SUB_STEPS = 64;
 constexpr double FASTER = 4;  // by no more than this is kinetic energy between bodies put right
-constexpr double RIGID_TURN = 0.02;  // [rad] about a principal axis in one of a rigid body's sub-steps
-constexpr int MAX_RIGID_TURNS = 256;
 
 Matrix6 matrixOf(const SpatialInertia& inertia) {
   Matrix6 m;
@@ -245,6 +243,7 @@ FreeMotionReport FreeMotion::follow(const Forest& forest, int tree, double dt, c
   start(forest, tree, motion, velocity);
   if (t.free && t.dofCount() == 6) {
     turnRigid(forest, tree, dt, motion);
+    leaveFrame(forest, tree, dt, motion);
     return report;
   }
   const double first = energy(forest, tree);
@@ -257,32 +256,33 @@ FreeMotionReport FreeMotion::follow(const Forest& forest, int tree, double dt, c
     if (report.miss <= ENERGY_MISS || steps == MAX_SUB_STEPS) break;
   }
   report.followed = report.miss <= TOO_INEXACT;
-  if (!report.followed) {
-    goStraight(forest, tree, dt, motion, velocity);
-    wanted = first;
-  }
-  correct(forest, tree, wanted, report.followed);
+  if (report.followed)
+    correct(forest, tree, wanted);
+  else
+    wait(forest, tree, dt, motion, velocity);
   leaveFrame(forest, tree, dt, motion);
   return report;
 }
 
-// Where sub-steps led nowhere: as if the velocities of the dofs were constant.
-void FreeMotion::goStraight(const Forest& forest, int tree, double dt, const ForestMotion& motion, const Eigen::VectorXd& velocity) {
+// Where sub-steps lead nowhere: the tree keeps its shape for this step, turns as one body, and its joints lose half their speed. Momenta
+// are kept, energy is lost.
+void FreeMotion::wait(const Forest& forest, int tree, double dt, const ForestMotion& motion, const Eigen::VectorXd& velocity) {
   const ForestTree& t = forest.trees()[tree];
   start(forest, tree, motion, velocity);
-  for (int i = t.first_node; i < t.node_end; ++i)
-    if (forest.nodes()[i].dofs == 1) at_.position[i] += dt * at_.velocity[forest.nodes()[i].first_dof];
-  RootPose root{Eigen::Vector4d::UnitW(), Vector3::Zero()};
   if (t.free) {
-    const Vector3 spin = at_.velocity.segment<3>(t.first_dof);
-    const Matrix3 turn = Eigen::AngleAxisd(dt * spin.norm(), spin.stableNormalized()).toRotationMatrix();
-    root = {Quaternion(Matrix3(turn * motion.rotation[t.first_node])).coeffs(), motion.origin[t.first_node]};
+    const Vector3& com = motion.tree_com[tree];
+    const Vector6 first = at_.velocity.segment<6>(t.first_dof);
+    const Vector6 inner = first - turnAbout(centralInertia(motion.composite[t.first_node]).llt().solve(spin_[tree]), com);
+    const Matrix3 turn = turnRigid(forest, tree, dt, motion);
+    const Vector3 spin = turn * angular(inner), at_com = turn * velocityAt(inner, com);
+    at_.velocity.segment<6>(t.first_dof) += 0.5 * (turnAbout(spin, com) + spatial(Vector3::Zero(), at_com));
   }
-  place(forest, tree, root);
+  for (int k = t.free ? t.first_dof + 6 : t.first_dof; k < t.dof_end; ++k) at_.velocity[k] *= 0.5;
+  computeTwists(forest, tree, at_, at_.velocity, &at_.twist);
 }
 
 // A free tree's momenta by moving all of it; the energy by faster or slower joints, which is the same way at another speed.
-void FreeMotion::correct(const Forest& forest, int tree, double energy_wanted, bool followed) {
+void FreeMotion::correct(const Forest& forest, int tree, double energy_wanted) {
   const ForestTree& t = forest.trees()[tree];
   Vector6 locked = Vector6::Zero();
   double locked_energy = 0;
@@ -301,7 +301,7 @@ void FreeMotion::correct(const Forest& forest, int tree, double energy_wanted, b
     at_.velocity.segment<6>(t.first_dof) += turnAbout(spin, com) + spatial(Vector3::Zero(), linear(missing) / whole.mass);
     computeTwists(forest, tree, at_, at_.velocity, &at_.twist);
   }
-  if (followed && std::any_of(held.begin() + t.first_dof, held.begin() + t.dof_end, [](char h) { return h != 0; })) return;
+  if (std::any_of(held.begin() + t.first_dof, held.begin() + t.dof_end, [](char h) { return h != 0; })) return;
   const double inner = energy(forest, tree) - locked_energy, ratio = (energy_wanted - locked_energy) / inner;
   if (!(inner > 0)) return;
   const double speed = std::sqrt(std::clamp(ratio, 0.0, FASTER));
@@ -330,46 +330,17 @@ void FreeMotion::leaveFrame(const Forest& forest, int tree, double dt, const For
   }
 }
 
-// H = sum of L_i^2 / 2 I_i = L^2 / 2 I_middle + two parts that are turns about principal axes; the first one commutes with the others.
-void FreeMotion::turnRigid(const Forest& forest, int tree, double dt, const ForestMotion& motion) {
+// As one body.
+Matrix3 FreeMotion::turnRigid(const Forest& forest, int tree, double dt, const ForestMotion& motion) {
   const ForestTree& t = forest.trees()[tree];
-  const Eigen::SelfAdjointEigenSolver<Matrix3> principal(centralInertia(motion.composite[t.first_node]));
-  const Vector3 inertia = principal.eigenvalues();
-  Matrix3 axes = principal.eigenvectors();
-  if (axes.determinant() < 0) axes.col(0) = -axes.col(0);
-  const Vector3& L = spin_[tree];
-  Vector3 body = axes.transpose() * L;
-  const double rate_x = 1 / inertia[0] - 1 / inertia[1], rate_z = 1 / inertia[2] - 1 / inertia[1];
-  const double turns = std::ceil(dt * L.norm() * std::max(std::abs(rate_x), std::abs(rate_z)) / RIGID_TURN);
-  const int steps = turns < MAX_RIGID_TURNS ? std::max(1, static_cast<int>(turns)) : MAX_RIGID_TURNS;
-  Quaternion turn = Quaternion::Identity();
-  const auto turnBy = [&](int axis, double angle) {
-    const double c = std::cos(0.5 * angle), s = std::sin(0.5 * angle), cos = c * c - s * s, sin = 2 * s * c;
-    const int y = (axis + 1) % 3, z = (axis + 2) % 3;
-    const double by = body[y], bz = body[z];
-    body[y] = cos * by + sin * bz;
-    body[z] = cos * bz - sin * by;
-    Quaternion step(c, 0, 0, 0);
-    step.vec()[axis] = s;
-    turn = turn * step;
-  };
-  const double h = dt / steps;
-  for (int i = 0; i < steps; ++i) {
-    turnBy(0, 0.5 * h * rate_x * body[0]);
-    turnBy(2, h * rate_z * body[2]);
-    turnBy(0, 0.5 * h * rate_x * body[0]);
-  }
-  const double angle = dt * L.norm() / inertia[1];
-  const Quaternion about_momentum(Eigen::AngleAxisd(angle, L.stableNormalized()));
-  const Matrix3 end = about_momentum.toRotationMatrix() * axes * turn.normalized().toRotationMatrix();
-  const Matrix3 whole_turn = end * axes.transpose();
-  const Vector3 spin = end * (end.transpose() * L).cwiseQuotient(inertia), com = motion.reference[tree] + motion.tree_com[tree];
+  const RigidTurn way = turnFreely(centralInertia(motion.composite[t.first_node]), spin_[tree], dt);
+  const Vector3 com = motion.reference[tree] + motion.tree_com[tree];
+  at_.velocity.segment<6>(t.first_dof) = turnAbout(way.spin, motion.tree_com[tree]);
   RootPose root;
-  root.turn = Quaternion(Matrix3(whole_turn * motion.rotation[t.first_node])).normalized().coeffs();
-  root.origin = com + whole_turn * (motion.origin[t.first_node] - com);
-  at_.velocity.segment<6>(t.first_dof) = turnAbout(spin, motion.tree_com[tree]);
+  root.turn = Quaternion(Matrix3(way.turn * motion.rotation[t.first_node])).normalized().coeffs();
+  root.origin = com + way.turn * (motion.origin[t.first_node] - com);
   place(forest, tree, root);
-  leaveFrame(forest, tree, dt, motion);
+  return way.turn;
 }
 
 void FreeMotion::takeEnd(const Forest& forest, int tree, ForestMotion* motion) const {

@@ -8,7 +8,7 @@ namespace blem_sim {
 /** How well a free motion was followed. */
 struct FreeMotionReport {
   double miss = 0;       ///< of kinetic energy, relative, before it was put right
-  bool followed = true;  ///< with as many sub-steps as are allowed at most; if not, energy is still none too much
+  bool followed = true;  ///< with as many sub-steps as are allowed at most; if not, energy is lost
   int evaluations = 0;   ///< of a tree's accelerations
 };
 
@@ -54,11 +54,11 @@ class FreeMotion {
   void run(const Forest& forest, int tree, double dt, int steps, const ForestMotion& motion, const Eigen::VectorXd& velocity);
   double energy(const Forest& forest, int tree) const;
   double work(const Forest& forest, int tree) const;
-  void correct(const Forest& forest, int tree, double energy_wanted, bool followed);
+  void correct(const Forest& forest, int tree, double energy_wanted);
   void leaveFrame(const Forest& forest, int tree, double dt, const ForestMotion& motion);
-  void turnRigid(const Forest& forest, int tree, double dt, const ForestMotion& motion);
+  Matrix3 turnRigid(const Forest& forest, int tree, double dt, const ForestMotion& motion);
   void start(const Forest& forest, int tree, const ForestMotion& motion, const Eigen::VectorXd& velocity);
-  void goStraight(const Forest& forest, int tree, double dt, const ForestMotion& motion, const Eigen::VectorXd& velocity);
+  void wait(const Forest& forest, int tree, double dt, const ForestMotion& motion, const Eigen::VectorXd& velocity);
   int firstSteps(const Forest& forest, int tree, double dt) const;
 
   ForestMotion at_;  ///< at the instant at hand; the reference is that of the step's start, a free tree's centre of mass stands still

@@ -179,6 +179,8 @@ double correctProducts(const Forest& forest, int tree, double dt, ForestMotion* 
 
 bool followFast(const Forest& forest, const IslandProblem& problem, double dt, const ForestMotion& motion, const SolverSpace& space,
                 FreeMotion* way) {
+  const auto turns = [&](int tree) { return motion.pace[tree] != Pace::SLOW; };
+  if (std::none_of(problem.trees.begin(), problem.trees.end(), turns)) return true;
   bool followed = true;
   for (const JointTerm& j : problem.joints)
     way->held[j.dof] = j.stiffness(space.velocity[j.dof]) > HOLDS * motion.mass[forest.diagonal(j.dof)];
