@@ -25,6 +25,7 @@ struct Island {
   std::vector<int> mimics, loops;  ///< of the forest's
   std::vector<double> approach;    ///< [m/s] of each of them, to be remembered
   NewtonReport report;
+  bool followed = true;  ///< no tree was too fast
 };
 
 class ArticulatedStepper : public Stepper {
@@ -44,7 +45,7 @@ class ArticulatedStepper : public Stepper {
   bool isMoved(const ContactConstraint& contact) const;
   void makeTerms(const TermSource& source, Island* island);
   void solveIsland(const Scene& scene, const StepInput& input, Island* island);
-  void finishIsland(const Scene& scene, const StepInput& input, const Island& island, SolveResult* result);
+  void finishIsland(const Scene& scene, const StepInput& input, Island* island, SolveResult* result);
   template <typename Work>
   void forEachIsland(const Work& work);
   void report(double dt, SolveResult* result) const;
@@ -59,6 +60,7 @@ class ArticulatedStepper : public Stepper {
   std::uint64_t structure_ = 0;  ///< Scene::structure() that the forest was built for
   Forest forest_;
   ForestMotion motion_;
+  FreeMotion way_;  ///< of fast trees
   StepMemory memory_;
   std::vector<BodyBits> written_;  ///< per node: what the scene was given last
   SolverSpace space_;
@@ -73,6 +75,7 @@ void ArticulatedStepper::rebuild(const Scene& scene) {
   structure_ = scene.structure();
   forest_.build(scene);
   motion_.resize(forest_);
+  way_.resize(forest_);
   space_.resize(forest_);
   memory_.resize(scene);
   written_.resize(forest_.nodes().size());
@@ -158,7 +161,7 @@ void ArticulatedStepper::makeTerms(const TermSource& source, Island* island) {
 
 void ArticulatedStepper::solveIsland(const Scene& scene, const StepInput& input, Island* island) {
   IslandProblem& problem = island->problem;
-  for (const int tree : problem.trees) setFreeMomentum(forest_, scene, tree, input.dt, &motion_, &space_);
+  for (const int tree : problem.trees) setFreeMomentum(forest_, scene, input, !island->contacts.empty(), tree, &motion_, &space_);
   makeTerms({scene, forest_, motion_, input, settings_, memory_}, island);
   problem.up = -scene.gravity();
   addEfforts(input, problem, &space_);
@@ -173,15 +176,17 @@ void ArticulatedStepper::solveIsland(const Scene& scene, const StepInput& input,
   island->report.iterations += iterations;
 }
 
-void ArticulatedStepper::finishIsland(const Scene& scene, const StepInput& input, const Island& island, SolveResult* result) {
-  readContacts(input, island, result);
-  readJoints(input, island, result);
-  for (const int tree : island.problem.trees) {
+void ArticulatedStepper::finishIsland(const Scene& scene, const StepInput& input, Island* island, SolveResult* result) {
+  const IslandProblem& problem = island->problem;
+  readContacts(input, *island, result);
+  readJoints(input, *island, result);
+  for (const int tree : problem.trees) {
     const ForestTree& t = forest_.trees()[tree];
     motion_.next_velocity.segment(t.first_dof, t.dofCount()) = space_.velocity.segment(t.first_dof, t.dofCount());
   }
-  computeWrenches(forest_, scene, island.problem, input.dt, &motion_, &space_, &result->joint_wrenches);
-  advanceIsland(forest_, island.problem, input.dt, &motion_, space_);
+  island->followed = followFast(forest_, problem, input.dt, motion_, space_, &way_);
+  computeWrenches(forest_, scene, problem, input.dt, way_, &motion_, &space_, &result->joint_wrenches);
+  advanceIsland(forest_, problem, input.dt, way_, &motion_, space_);
 }
 
 void ArticulatedStepper::readContacts(const StepInput& input, const Island& island, SolveResult* result) const {
@@ -255,9 +260,11 @@ void ArticulatedStepper::forEachIsland(const Work& work) {
 
 void ArticulatedStepper::report(double dt, SolveResult* result) const {
   result->residual = result->creep = 0;
+  result->too_fast = false;
   result->iterations = result->lcp_errors = 0;
   for (int i = 0; i < island_count_; ++i) {
     const NewtonReport& report = islands_of_step_[i].report;
+    result->too_fast |= !islands_of_step_[i].followed;
     result->residual = std::max(result->residual, report.contact_residual / dt);
     result->creep = std::max({result->creep, report.joint_creep, report.imbalance});
     result->iterations += report.iterations;
@@ -275,7 +282,7 @@ void ArticulatedStepper::step(Scene* scene, const StepInput& input, SolveResult*
   // Nothing was changed yet: a step that broke down leaves everything as it was.
   result->finite = (space_.velocity.array().abs() < FASTEST).all();
   if (!result->finite) return;
-  forEachIsland([&](Island* island) { finishIsland(*scene, input, *island, result); });
+  forEachIsland([&](Island* island) { finishIsland(*scene, input, island, result); });
   report(input.dt, result);
   remember(input, *result);
   writeScene(scene);

@@ -22,11 +22,12 @@ void ForestMotion::resize(const Forest& forest) {
   rotation.resize(nodes);
   position.resize(nodes);
   subspace.resize(dofs);
-  for (auto* v : {&velocity, &change, &next_velocity, &products, &applied}) v->setZero(dofs);
+  for (auto* v : {&velocity, &change, &next_velocity, &products, &applied, &owed}) v->setZero(dofs);
   mass.assign(forest.entryCount(), 0);
   reference.resize(trees);
   momentum.assign(trees, Vector6::Zero());
   tree_com.resize(trees);
+  pace.assign(trees, Pace::SLOW);
 }
 
 BLEM_SIM_LANES void placeBodies(const Forest& forest, int tree, ForestMotion* motion) {
@@ -50,21 +51,27 @@ BLEM_SIM_LANES void placeBodies(const Forest& forest, int tree, ForestMotion* mo
   }
 }
 
-BLEM_SIM_LANES void computeInertias(const Forest& forest, int tree, ForestMotion* motion) {
+BLEM_SIM_LANES void computeBodies(const Forest& forest, int tree, ForestMotion* motion) {
   const ForestTree& t = forest.trees()[tree];
-  const ForestNode& root = forest.nodes()[t.first_node];
-  Vector3& reference = motion->reference[tree];
-  reference = motion->origin[t.first_node];
-  if (t.free) reference += motion->rotation[t.first_node] * root.inertial.com;
+  const Vector3& reference = motion->reference[tree];
   for (int i = t.first_node; i < t.node_end; ++i) {
     const ForestNode& node = forest.nodes()[i];
     motion->com[i] = motion->origin[i] - reference + motion->rotation[i] * node.inertial.com;
-    motion->inertia[i] = motion->composite[i] = SpatialInertia(node.inertial, motion->rotation[i], motion->com[i]);
+    motion->inertia[i] = SpatialInertia(node.inertial, motion->rotation[i], motion->com[i]);
     if (node.joint < 0)
       for (int d = 0; d < 6; ++d) motion->subspace[node.first_dof + d] = Vector6::Unit(d);
     if (node.dofs == 1)
       motion->subspace[node.first_dof] = jointTwist(node.kind, motion->joint_axis[i], motion->joint_origin[i] - reference);
   }
+}
+
+BLEM_SIM_LANES void computeInertias(const Forest& forest, int tree, ForestMotion* motion) {
+  const ForestTree& t = forest.trees()[tree];
+  Vector3& reference = motion->reference[tree];
+  reference = motion->origin[t.first_node];
+  if (t.free) reference += motion->rotation[t.first_node] * forest.nodes()[t.first_node].inertial.com;
+  computeBodies(forest, tree, motion);
+  for (int i = t.first_node; i < t.node_end; ++i) motion->composite[i] = motion->inertia[i];
   for (int i = t.node_end - 1; i > t.first_node; --i) motion->composite[forest.nodes()[i].parent].add(motion->composite[i]);
   const SpatialInertia& whole = motion->composite[t.first_node];
   motion->tree_com[tree] = whole.first_moment / whole.mass;
@@ -180,6 +187,7 @@ void readTree(const Forest& forest, const Scene& scene, int tree, ForestMotion* 
     }
   }
   motion->change.segment(t.first_dof, t.dofCount()).setZero();
+  motion->owed.segment(t.first_dof, t.dofCount()).setZero();
 }
 
 void writeTree(const Forest& forest, int tree, const ForestMotion& motion, Scene* scene, std::vector<BodyBits>* written) {

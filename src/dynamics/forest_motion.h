@@ -7,6 +7,13 @@
 
 namespace blem_sim {
 
+/** How far velocity products turn the velocities of a tree in a step. */
+enum class Pace : char {
+  SLOW,
+  FAST,     ///< they are none; the free motion is followed along its way (free_motion.h)
+  TOO_FAST  ///< they are taken as those of a slow tree, with which they are no longer right
+};
+
 /**
  * Where bodies are and how they move. World axes; everything of a tree about its reference point, which stands still during a step: a
  * free root's centre of mass at its start, else the root's origin. The six velocities of a free root are its spin and the velocity of its
@@ -29,12 +36,14 @@ struct ForestMotion {
   Eigen::VectorXd next_velocity;  ///< end of the step
   Eigen::VectorXd products;       ///< velocity products: what M dv/dt lacks to the forces
   Eigen::VectorXd applied;        ///< gravity and outside wrenches
+  Eigen::VectorXd owed;           ///< [N m s or N s] what dofs took on their free way to keep their velocities; the next step's to supply
   // Per packed entry.
   std::vector<double> mass;  ///< joint space inertia; zero where room is left
   // Per tree.
   std::vector<Vector3> reference;
   std::vector<Vector6> momentum;  ///< of a free tree, carried from step to step
   std::vector<Vector3> tree_com;  ///< about the reference point, at the start of the step
+  std::vector<Pace> pace;         ///< in this step
 
   // Work space, per node.
   std::vector<Vector6> drift;  ///< acceleration that goes with node_twist and constant velocities of the dofs, of computeProducts
@@ -47,7 +56,10 @@ struct ForestMotion {
 /** Places the bodies of a tree for the joint positions at hand; a free root stands where motion says. */
 void placeBodies(const Forest& forest, int tree, ForestMotion* motion);
 
-/** Motion subspaces, inertias and the mass matrix of a tree, and its twists; bodies must be placed. */
+/** Centres of mass, inertias and motion subspaces about the reference point at hand; bodies must be placed. */
+void computeBodies(const Forest& forest, int tree, ForestMotion* motion);
+
+/** The reference point, all that computeBodies fills, and the mass matrix of a tree, and its twists; bodies must be placed. */
 void computeInertias(const Forest& forest, int tree, ForestMotion* motion);
 
 /** Twist of a node for given velocities of the dofs, its parent's being known. */

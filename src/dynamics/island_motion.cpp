@@ -10,6 +10,49 @@ namespace {
 // steps, half a step beside the poses where the mass matrix holds.
 double productsShare(const ForestTree& tree, int dof) { return tree.free && dof < tree.first_dof + 6 ? 0.5 : 1; }
 
+// Change of the velocities by velocity products in a step, over the velocities: beyond, a tree is fast. One that nothing drives or touches
+// has an energy to keep.
+constexpr double FAST_ALONE = 1e-4, FAST = 0.005;
+constexpr double SMALL_TURN = 0.05;  // [rad] of a free root in a step: beyond, products of the step's start are not those of its end
+// Trees in loops, and those with mimic joints, are solved with their products whatever their speed; beyond this they are no longer right.
+constexpr double TOO_FAST = 0.3;
+constexpr double HOLDS = 0.5;  // of a dof's inertia: a joint that answers more stiffly keeps its velocity on the way
+
+// Change of the velocities of a tree by its velocity products in a step, over the velocities in the frame of its centre of mass; in the
+// norm of the energy, each dof's inertia taken alone; the more, the further the root turns.
+double turning(const Forest& forest, int tree, double dt, const ForestMotion& motion, const SolverSpace& space) {
+  const ForestTree& t = forest.trees()[tree];
+  double change = 0, energy = 0;
+  for (int k = t.first_dof; k < t.dof_end; ++k) {
+    change += motion.products[k] * motion.products[k] / motion.mass[forest.diagonal(k)];
+    energy += motion.velocity[k] * space.mass_velocity[k];
+  }
+  if (!(change > 0)) return 0;
+  if (!t.free) return dt * std::sqrt(change / energy);
+  const double inner = energy - space.mass_velocity.segment<3>(t.first_dof + 3).squaredNorm() / motion.composite[t.first_node].mass;
+  const double turn = dt * motion.velocity.segment<3>(t.first_dof).norm();
+  return dt * std::sqrt(change / std::max(inner, 1e-12 * energy)) * std::max(1.0, turn / SMALL_TURN);
+}
+
+bool isFast(const ForestMotion& motion, int tree) { return motion.pace[tree] == Pace::FAST; }
+
+bool isDriven(const Forest& forest, int tree, const StepInput& input) {
+  const ForestTree& t = forest.trees()[tree];
+  return std::any_of(forest.nodes().begin() + t.first_node, forest.nodes().begin() + t.node_end, [&](const ForestNode& n) {
+    if (n.dofs != 1) return false;
+    const JointDrive& d = input.drives[n.joint];
+    return d.effort != 0 || d.stiffness > 0 || d.damping > 0 || d.dry_friction > 0 || d.viscous_friction > 0;
+  });
+}
+
+bool isTied(const Forest& forest, int tree) {
+  const auto belongs = [&](int node) { return node >= 0 && forest.nodes()[node].tree == tree; };
+  const auto& mimics = forest.mimics();
+  const auto& loops = forest.loops();
+  return std::any_of(mimics.begin(), mimics.end(), [&](const MimicRelation& m) { return belongs(m.node) || belongs(m.master); }) ||
+         std::any_of(loops.begin(), loops.end(), [&](const LoopClosure& l) { return belongs(l.child) || belongs(l.parent); });
+}
+
 void turn(double dt, const Vector3& spin, Matrix3* R) {
   const double angle = dt * spin.norm();
   if (!(angle > 0)) return;
@@ -62,6 +105,28 @@ void addReactions(const Forest& forest, const IslandProblem& problem, const Fore
   }
 }
 
+// Of momenta at the start and at the end; forces act at the middle of the way. What acts on the nodes is used up.
+void addFastWrenches(const Forest& forest, const Scene& scene, int tree, double dt, const FreeMotion& way, const ForestMotion& motion,
+                     std::vector<Vector6>* on_node, std::vector<Wrench>* wrenches) {
+  const ForestTree& t = forest.trees()[tree];
+  for (int i = t.node_end - 1; i >= t.first_node; --i) {
+    const ForestNode& node = forest.nodes()[i];
+    const Wrench& pending = scene.bodies()[node.body].pending;
+    const Vector3 middle = way.middleCom(i, motion), force = node.inertial.mass * scene.gravity() + pending.force;
+    Vector6& through = (*on_node)[i];
+    through = moveWrench(through, middle - motion.com[i]);
+    through += spatial(middle.cross(force) + pending.torque, force);
+    through = way.momentumRate(forest, i, dt, motion) - through;
+  }
+  for (int i = t.node_end - 1; i >= t.first_node; --i) {
+    const ForestNode& node = forest.nodes()[i];
+    if (node.parent >= 0) (*on_node)[node.parent] += (*on_node)[i];
+    if (node.joint < 0) continue;
+    const Vector6 at_origin = moveWrench((*on_node)[i], motion.reference[tree] - way.middleJoint(i, motion));
+    (*wrenches)[node.joint] = {linear(at_origin), angular(at_origin)};
+  }
+}
+
 }  // namespace
 
 void takeMomentum(const Forest& forest, int tree, ForestMotion* motion, SolverSpace* space) {
@@ -71,17 +136,23 @@ void takeMomentum(const Forest& forest, int tree, ForestMotion* motion, SolverSp
   motion->momentum[tree] = space->mass_velocity.segment<6>(t.first_dof);
 }
 
-void setFreeMomentum(const Forest& forest, const Scene& scene, int tree, double dt, ForestMotion* motion, SolverSpace* space) {
+void setFreeMomentum(const Forest& forest, const Scene& scene, const StepInput& input, bool touched, int tree, ForestMotion* motion,
+                     SolverSpace* space) {
   const ForestTree& t = forest.trees()[tree];
   const int first = t.first_dof, count = t.dofCount();
   computeApplied(forest, scene, tree, motion);
   space->direction.segment(first, count) = motion->velocity.segment(first, count) + 0.5 * motion->change.segment(first, count);
   computeProducts(forest, tree, space->direction, motion);
   multiply(forest, tree, motion->mass, motion->velocity, &space->mass_velocity, &space->paths);
+  const double fast = turning(forest, tree, input.dt, *motion, *space);
+  const bool known = fast > FAST || (fast > FAST_ALONE && !touched && !isDriven(forest, tree, input));
+  motion->pace[tree] = !known ? Pace::SLOW : !isTied(forest, tree) ? Pace::FAST : fast > TOO_FAST ? Pace::TOO_FAST : Pace::SLOW;
+  if (isFast(*motion, tree)) motion->products.segment(first, count).setZero();
   space->free_momentum.segment(first, count) = space->mass_velocity.segment(first, count);
   if (t.free) space->free_momentum.segment<6>(first) = motion->momentum[tree];
   for (int k = first; k < t.dof_end; ++k) {
-    space->free_momentum[k] += dt * (motion->applied[k] - productsShare(t, k) * motion->products[k]);
+    space->free_momentum[k] += input.dt * (motion->applied[k] - productsShare(t, k) * motion->products[k]);
+    space->free_momentum[k] -= motion->owed[k];
     space->velocity[k] = motion->velocity[k];
   }
 }
@@ -91,6 +162,7 @@ void addEfforts(const StepInput& input, const IslandProblem& problem, SolverSpac
 }
 
 double correctProducts(const Forest& forest, int tree, double dt, ForestMotion* motion, SolverSpace* space) {
+  if (isFast(*motion, tree)) return 0;
   const ForestTree& t = forest.trees()[tree];
   const int first = t.first_dof, count = t.dofCount();
   space->gradient.segment(first, count) = motion->products.segment(first, count);
@@ -105,8 +177,23 @@ double correctProducts(const Forest& forest, int tree, double dt, ForestMotion* 
   return worst;
 }
 
-void computeWrenches(const Forest& forest, const Scene& scene, const IslandProblem& problem, double dt, ForestMotion* motion,
-                     SolverSpace* space, std::vector<Wrench>* wrenches) {
+bool followFast(const Forest& forest, const IslandProblem& problem, double dt, const ForestMotion& motion, const SolverSpace& space,
+                FreeMotion* way) {
+  const auto turns = [&](int tree) { return motion.pace[tree] != Pace::SLOW; };
+  if (std::none_of(problem.trees.begin(), problem.trees.end(), turns)) return true;
+  bool followed = true;
+  for (const JointTerm& j : problem.joints)
+    way->held[j.dof] = j.stiffness(space.velocity[j.dof]) > HOLDS * motion.mass[forest.diagonal(j.dof)];
+  for (const int tree : problem.trees) {
+    followed &= motion.pace[tree] != Pace::TOO_FAST;
+    if (!isFast(motion, tree)) continue;
+    followed &= way->follow(forest, tree, dt, motion, space.velocity, space.mass_velocity).followed;
+  }
+  return followed;
+}
+
+void computeWrenches(const Forest& forest, const Scene& scene, const IslandProblem& problem, double dt, const FreeMotion& way,
+                     ForestMotion* motion, SolverSpace* space, std::vector<Wrench>* wrenches) {
   std::vector<Vector6>& reaction = space->wrench;
   for (const int tree : problem.trees) {
     const ForestTree& t = forest.trees()[tree];
@@ -115,6 +202,10 @@ void computeWrenches(const Forest& forest, const Scene& scene, const IslandProbl
   addReactions(forest, problem, *motion, dt, &reaction, wrenches);
   for (const int tree : problem.trees) {
     const ForestTree& t = forest.trees()[tree];
+    if (isFast(*motion, tree)) {
+      addFastWrenches(forest, scene, tree, dt, way, *motion, &reaction, wrenches);
+      continue;
+    }
     space->gradient.segment(t.first_dof, t.dofCount()) =
         (motion->next_velocity.segment(t.first_dof, t.dofCount()) - motion->velocity.segment(t.first_dof, t.dofCount())) / dt;
     for (int i = t.first_node; i < t.node_end; ++i) computeTwist(forest, i, *motion, space->gradient, &motion->node_change);
@@ -138,12 +229,20 @@ void computeWrenches(const Forest& forest, const Scene& scene, const IslandProbl
   }
 }
 
-void advanceIsland(const Forest& forest, const IslandProblem& problem, double dt, ForestMotion* motion, const SolverSpace& space) {
+void advanceIsland(const Forest& forest, const IslandProblem& problem, double dt, const FreeMotion& way, ForestMotion* motion,
+                   const SolverSpace& space) {
   const bool flies = problem.contacts.empty() && problem.loops.empty();
   for (const int tree : problem.trees) {
     const ForestTree& t = forest.trees()[tree];
     if (t.free) motion->momentum[tree] = space.mass_velocity.segment<6>(t.first_dof) + 0.5 * dt * motion->products.segment<6>(t.first_dof);
-    integrate(forest, tree, dt, motion);
+    if (isFast(*motion, tree)) {
+      motion->change.segment(t.first_dof, t.dofCount()) = -motion->velocity.segment(t.first_dof, t.dofCount());
+      way.takeEnd(forest, tree, motion);
+      motion->change.segment(t.first_dof, t.dofCount()) += motion->velocity.segment(t.first_dof, t.dofCount());
+    } else {
+      motion->owed.segment(t.first_dof, t.dofCount()).setZero();
+      integrate(forest, tree, dt, motion);
+    }
   }
   for (const MimicRelation& m : forest.mimics())
     if (std::binary_search(problem.trees.begin(), problem.trees.end(), forest.nodes()[m.node].tree))
@@ -155,7 +254,7 @@ void advanceIsland(const Forest& forest, const IslandProblem& problem, double dt
     placeBodies(forest, tree, motion);
     computeInertias(forest, tree, motion);
     if (!t.free) continue;
-    if (flies && t.node_end - t.first_node > 1) followMomentum(forest, tree, com, motion);
+    if (flies && !isFast(*motion, tree) && t.node_end - t.first_node > 1) followMomentum(forest, tree, com, motion);
     motion->momentum[tree] = moveWrench(motion->momentum[tree], reference - motion->reference[tree]);
   }
 }
@@ -168,6 +267,7 @@ void saveTree(const Forest& forest, int tree, const ForestMotion& motion, StateW
   writer->numbers(motion.position.data() + t.first_node, t.node_end - t.first_node);
   writer->numbers(motion.velocity.data() + t.first_dof, t.dofCount());
   writer->numbers(motion.change.data() + t.first_dof, t.dofCount());
+  writer->numbers(motion.owed.data() + t.first_dof, t.dofCount());
 }
 
 void restoreTree(const Forest& forest, int tree, ForestMotion* motion, StateReader* reader) {
@@ -178,6 +278,7 @@ void restoreTree(const Forest& forest, int tree, ForestMotion* motion, StateRead
   reader->numbers(motion->position.data() + t.first_node, t.node_end - t.first_node);
   reader->numbers(motion->velocity.data() + t.first_dof, t.dofCount());
   reader->numbers(motion->change.data() + t.first_dof, t.dofCount());
+  reader->numbers(motion->owed.data() + t.first_dof, t.dofCount());
   placeBodies(forest, tree, motion);
   computeInertias(forest, tree, motion);
 }

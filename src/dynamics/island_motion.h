@@ -1,7 +1,7 @@
 // What happens to an island's trees before and after its problem is solved.
 #pragma once
 
-#include "forest_motion.h"
+#include "free_motion.h"
 #include "island_problem.h"
 #include "stepper.h"
 
@@ -13,9 +13,16 @@ void takeMomentum(const Forest& forest, int tree, ForestMotion* motion, SolverSp
 /**
  * Fills space->free_momentum, M v*, the first guess of the velocities, and M times them, space->mass_velocity. A free root's rows carry its
  * momentum from step to step, so that none is lost to the change of the mass matrix; velocity products are those of the middle of the step,
- * guessed from the last one.
+ * guessed from the last one. Where they change the velocities by too much for one guess, the tree is fast: they act on its way instead,
+ * after the solve.
+ * @param touched contacts act on the tree's island
  */
-void setFreeMomentum(const Forest& forest, const Scene& scene, int tree, double dt, ForestMotion* motion, SolverSpace* space);
+void setFreeMomentum(const Forest& forest, const Scene& scene, const StepInput& input, bool touched, int tree, ForestMotion* motion,
+                     SolverSpace* space);
+
+/** Follows the free motion of fast trees from the velocities that were solved. @return false if one was too fast to be followed */
+bool followFast(const Forest& forest, const IslandProblem& problem, double dt, const ForestMotion& motion, const SolverSpace& space,
+                FreeMotion* way);
 
 /** Adds the efforts given in advance. */
 void addEfforts(const StepInput& input, const IslandProblem& problem, SolverSpace* space);
@@ -23,12 +30,14 @@ void addEfforts(const StepInput& input, const IslandProblem& problem, SolverSpac
 /** Takes the velocity products at the middle of the step that was solved. @return [sqrt(kg) m/s] by how much the free momentum changed */
 double correctProducts(const Forest& forest, int tree, double dt, ForestMotion* motion, SolverSpace* space);
 
-/** What each joint's child feels from the parent: Newton-Euler backwards over the step, about the joint frame's origin at its start. */
-void computeWrenches(const Forest& forest, const Scene& scene, const IslandProblem& problem, double dt, ForestMotion* motion,
-                     SolverSpace* space, std::vector<Wrench>* wrenches);
+/** What each joint's child feels from the parent: Newton-Euler backwards over the step, about the joint frame's origin at its start, of a
+ *  fast tree at its middle. */
+void computeWrenches(const Forest& forest, const Scene& scene, const IslandProblem& problem, double dt, const FreeMotion& way,
+                     ForestMotion* motion, SolverSpace* space, std::vector<Wrench>* wrenches);
 
 /** Moves the trees to the end of the step. */
-void advanceIsland(const Forest& forest, const IslandProblem& problem, double dt, ForestMotion* motion, const SolverSpace& space);
+void advanceIsland(const Forest& forest, const IslandProblem& problem, double dt, const FreeMotion& way, ForestMotion* motion,
+                   const SolverSpace& space);
 
 void saveTree(const Forest& forest, int tree, const ForestMotion& motion, StateWriter* writer);
 void restoreTree(const Forest& forest, int tree, ForestMotion* motion, StateReader* reader);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "analytic_contacts.h"
+#include "support/chains.h"
 
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)
 
@@ -49,6 +50,18 @@ struct BusyWorld {
   int steps = 0;
   long allocated = 0;
 };
+
+TEST(Allocation, NoneWhereFastTreesAreFollowed) {
+  Chain chain(taper(6, {1, 0.3}, {0.02, 0.05}));
+  Spinner spinner(1, 100);
+  long before = 0;
+  for (int i = 0; i < 1000; ++i) {
+    if (i == 200) before = allocations;
+    chain.step(1e-3);
+    spinner.world.step(1e-3, {}, {});
+  }
+  EXPECT_EQ(allocations, before);
+}
 
 TEST(Allocation, NoneInAWarmStep) {
   BusyWorld busy;

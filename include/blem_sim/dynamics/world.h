@@ -93,7 +93,8 @@ struct SolveResult {
   double creep = 0;     ///< [rad/s or m/s] by how much velocities miss momentum's balance, sticking joints, limits or loops; worst
   int iterations = 0;   ///< of the solver, over all islands
   int lcp_errors = 0;   ///< the complementarity solver complained; the step was redone with more CFM
-  bool finite = true;   ///< step gave a finite state; if not, bodies stay as before it and nothing else here means anything
+  bool too_fast = false;  ///< joints or bodies turned too far in the step for their free motion to be followed: shorten dt
+  bool finite = true;     ///< step gave a finite state; if not, bodies stay as before it and nothing else here means anything
 };
 
 /** Everything a world needs to replay bit for bit. */
