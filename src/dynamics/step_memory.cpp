@@ -17,7 +17,6 @@ void StepMemory::save(const Scene& scene, StateWriter* writer) const {
     writer->word(c.id);
     writer->vector(c.force);
     writer->number(c.slip);
-    writer->number(c.approach);
   }
   // A joint that was added since the last step has nothing to remember.
   for (std::size_t j = 0; j < scene.joints().size(); ++j) {
@@ -33,7 +32,6 @@ void StepMemory::restore(const Scene& scene, StateReader* reader) {
     c.id = reader->word();
     c.force = reader->vector();
     c.slip = reader->number();
-    c.approach = reader->number();
   }
   resize(scene);
   for (std::size_t j = 0; j < joints.size(); ++j) {
