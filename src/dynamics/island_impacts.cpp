@@ -8,11 +8,11 @@ namespace {
 
 // An impact bounces that is faster than what a contact at rest gains in some steps: of gravity, and of the forces that press it.
 constexpr double REST_STEPS = 2;
-constexpr double REST_SPEED = 1e-3;    // [m/s] and than this
-constexpr int MAX_ROUNDS = 100;        // a row of as many touching bodies passes an impact on
-constexpr int MAX_SWEEPS = 100;        // of the contacts that meet in a round
-constexpr int MAX_WORK = 100000;       // contacts visited, over all sweeps of a step
-constexpr double EXACTNESS = 1e-11;    // of the largest speed: changes of velocity at which a sweep is the last
+constexpr double REST_SPEED = 1e-3;  // [m/s] and than this
+constexpr int MAX_ROUNDS = 100;      // a row of as many touching bodies passes an impact on
+constexpr int MAX_SWEEPS = 100;      // of the contacts that meet in a round
+constexpr int MAX_WORK = 100000;     // contacts visited, over all sweeps of a step
+constexpr double EXACTNESS = 1e-11;  // of the largest speed: changes of velocity at which a sweep is the last
 
 Vector6 relativeTwist(const BodyPair& pair, const std::vector<Vector6>& twist) {
   if (pair.b < 0) return twist[pair.a];
@@ -152,8 +152,7 @@ void IslandImpacts::scale(double factor, Meeting* first, Meeting* end) {
   for (Meeting* m = first; m != end; ++m) push(factor * m->impulse, m);
 }
 
-// The plastic impact of a group, with friction, by sweeps; all impulses are then scaled to what takes the most energy away, so that it is
-// an exact plastic impact along their sum, however many sweeps there were. @return [J] lost
+// The plastic impact of a group, with friction, by sweeps. @return [J] lost, never below 0
 double IslandImpacts::compress(Meeting* first, Meeting* end) {
   double fastest = 0;
   for (Meeting* m = first; m != end; ++m) {
@@ -183,7 +182,9 @@ double IslandImpacts::compress(Meeting* first, Meeting* end) {
     if (change <= EXACTNESS * fastest) break;
   }
   sums(&along, &square);
-  const double best = along > 0 && square > 0 ? along / square : 0;
+  if (along >= 0.5 * square) return along - 0.5 * square;
+  // Friction, whose bounds went on shrinking, has added energy: as much along the same impulses as takes most of it away.
+  const double best = along > 0 ? along / square : 0;
   scale(best, first, end);
   return best * along - 0.5 * best * best * square;
 }
@@ -196,6 +197,8 @@ void IslandImpacts::expand(Meeting* first, Meeting* end, double lost) {
     bouncers_[m->bouncer].impulse += m->impulse;
     if (m->impulse[0] > 0) largest = std::max(largest, m->restitution);
     m->before = rows_.velocity(m->row, space_->velocity);
+  }
+  for (Meeting* m = first; m != end; ++m) {
     const double given_back = m->restitution * m->impulse[0];
     m->impulse.setZero();
     push({given_back, 0, 0}, m);

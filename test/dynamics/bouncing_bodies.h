@@ -101,7 +101,8 @@ class BouncingBodies {
       for (std::size_t w = 0; w < walls.size(); ++w) {
         const double gap = walls[w].normal.dot(at[i]) - walls[w].offset - balls[i].radius;
         const Vector3 point = at[i] - balls[i].radius * walls[w].normal;
-        if (gap < margin) contacts.push_back(contactOf(balls[i].body, WORLD_BODY, point, walls[w].normal, -gap, surface_, number(w) << 32 | i));
+        if (gap < margin)
+          contacts.push_back(contactOf(balls[i].body, WORLD_BODY, point, walls[w].normal, -gap, surface_, number(w) << 32 | i));
       }
       for (std::size_t j = i + 1; j < balls.size(); ++j) {
         if (balls[i].body == balls[j].body || (balls[i].radius == 0 && balls[j].radius == 0)) continue;
@@ -135,7 +136,8 @@ inline EnergyRun followEnergy(BouncingBodies* scene, double dt, int steps) {
   for (int i = 0; i < steps && run.finite; ++i) {
     const SolveResult& result = scene->step(dt);
     run.finite = result.finite;
-    const bool flies = std::all_of(result.contact_forces.begin(), result.contact_forces.end(), [](const Vector3& f) { return f.isZero(0); });
+    const bool flies =
+        std::all_of(result.contact_forces.begin(), result.contact_forces.end(), [](const Vector3& f) { return f.isZero(0); });
     const double next = scene->energy(dt);
     run.worst = std::max(run.worst, next - energy);
     if (flies) run.worst_flight = std::max(run.worst_flight, std::abs(next - energy));
@@ -144,10 +146,13 @@ inline EnergyRun followEnergy(BouncingBodies* scene, double dt, int steps) {
   return run;
 }
 
-/** Turns and spins a body at random. */
+/** Turns, throws and spins a body at random. */
 inline void toss(BouncingBodies* scene, int body, std::mt19937* random, double speed, double spin) {
-  std::uniform_real_distribution<double> any(-1, 1);
-  const auto vector = [&](double size) { const double x = any(*random), y = any(*random); return Vector3(size * x, size * y, size * any(*random)); };
+  const auto any = [&] { return 2 * static_cast<double>((*random)()) / 0x1p32 - 1; };
+  const auto vector = [&](double size) {
+    const double x = any(), y = any(), z = any();
+    return Vector3(size * x, size * y, size * z);
+  };
   BodyState state = scene->world.bodyState(body);
   const Vector3 turn = vector(M_PI);
   state.X_WB.linear() = Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
@@ -155,5 +160,83 @@ inline void toss(BouncingBodies* scene, int body, std::mt19937* random, double s
   state.w_WB = vector(spin);
   scene->world.setBodyState(body, state);
 }
+
+/** A cube above a plane. */
+inline void tossCube(BouncingBodies* scene, int seed) {
+  std::mt19937 random(seed);
+  scene->walls = {{Vector3::UnitZ(), 0}};
+  toss(scene, scene->addBox(1, {0.1, 0.1, 0.1}, {0, 0, 0.3}), &random, 1, 10);
+}
+
+/** Two cubes and a ball in a pit. */
+inline void tossThree(BouncingBodies* scene, int seed) {
+  std::mt19937 random(seed);
+  const Vector3 x = Vector3::UnitX(), y = Vector3::UnitY();
+  scene->walls = {{Vector3::UnitZ(), 0}, {x, -0.15}, {-x, -0.15}, {y, -0.15}, {-y, -0.15}};
+  for (int i = 0; i < 3; ++i) {
+    const Vector3 centre(0, 0, 0.3 + 0.15 * i);
+    toss(scene, i == 1 ? scene->addSphere(0.5, 0.05, centre) : scene->addBox(1, {0.1, 0.1, 0.1}, centre, 0.02), &random, 1, 10);
+  }
+}
+
+/** A rod of 30 cm above a plane. */
+inline void tossRod(BouncingBodies* scene, int seed) {
+  std::mt19937 random(seed);
+  scene->walls = {{Vector3::UnitZ(), 0}};
+  toss(scene, scene->addBox(0.2, {0.3, 0.02, 0.02}, {0, 0, 0.3}), &random, 1, 10);
+}
+
+/** A tree of three bodies and two hinges without motors above a plane. */
+inline void tossTree(BouncingBodies* scene, int seed) {
+  std::mt19937 random(seed);
+  scene->walls = {{Vector3::UnitZ(), 0}};
+  const Vector3 root(0, 0, 0.5);
+  const int torso = scene->addBox(1, {0.1, 0.1, 0.1}, root);
+  toss(scene, torso, &random, 1, 6);
+  const BodyState state = scene->world.bodyState(torso);
+  BodyState straight = state;
+  straight.X_WB = makePose(root);
+  scene->world.setBodyState(torso, straight);
+  const int arm = scene->addBox(0.3, {0.2, 0.04, 0.04}, {0.15, 0, 0.5}), hand = scene->addBox(0.1, {0.04, 0.2, 0.04}, {0.25, 0.1, 0.5});
+  scene->hinge(torso, arm, {0.05, 0, 0.5}, Vector3::UnitY());
+  scene->hinge(arm, hand, {0.25, 0, 0.5}, Vector3::UnitZ());
+  for (const int body : {torso, arm, hand})
+    scene->setVelocity(body, state.v_WCom + state.w_WB.cross(scene->world.bodyState(body).X_WB.translation() - root), state.w_WB);
+}
+
+/** Newton's: equal balls that hang side by side, some of them swung. */
+struct Cradle {
+  static constexpr int BALLS = 5;
+  static constexpr double ANGLE = 0.4, LENGTH = 0.5, RADIUS = 0.02;  // [rad], [m]
+
+  /** @param gap [m] between balls that hang */
+  Cradle(int swung, double gap, double friction = 0) : scene({0, 0, -9.81}, elastic(friction)) {
+    for (int i = 0; i < BALLS; ++i) {
+      const Vector3 hook((2 * RADIUS + gap) * i, 0, LENGTH);
+      scene.addSphere(0.1, RADIUS, hook - LENGTH * Vector3::UnitZ());
+      scene.hinge(WORLD_BODY, i, hook, Vector3::UnitY());
+      if (i >= swung) continue;
+      BodyState state = scene.world.bodyState(i);
+      state.X_WB.linear() = Eigen::AngleAxisd(ANGLE, Vector3::UnitY()).toRotationMatrix();
+      state.X_WB.translation() = hook - LENGTH * state.X_WB.linear().col(2);
+      scene.world.setBodyState(i, state);
+      scene.world.resetJointPosition(i, ANGLE);
+    }
+  }
+  static Surface elastic(double friction) {
+    Surface surface;
+    surface.restitution = 1;
+    surface.friction = friction;
+    return surface;
+  }
+  /** Half a period. */
+  void swing(double dt) {
+    const double seconds = M_PI * std::sqrt(LENGTH / 9.81 * (1 + 0.4 * RADIUS * RADIUS / (LENGTH * LENGTH))) * (1 + ANGLE * ANGLE / 16);
+    for (int i = 0; i < std::lround(seconds / dt); ++i) scene.step(dt);
+  }
+  double angle(int ball) const { return scene.world.jointState(ball).position; }
+
+  BouncingBodies scene;
+};
 
 }  // namespace blem_sim
