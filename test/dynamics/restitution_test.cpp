@@ -34,7 +34,8 @@ struct Law {
 
 class Bounces : public ::testing::TestWithParam<Law> {};
 
-// 1e-6 J: a corner that a body rolls over is lifted that much by straight steps along its arc.
+// 1e-5 J: between bounces the solve steps straight along the arc of a corner that is rolled over, and takes friction at the step's end
+// while slip turns round; it does so without restitution, too.
 TEST_P(Bounces, NeverGain) {
   for (void (*const toss)(BouncingBodies*, int) : {tossCube, tossThree}) {
     for (int seed = 0; seed < 2; ++seed) {
@@ -42,9 +43,9 @@ TEST_P(Bounces, NeverGain) {
       toss(&scene, seed);
       const EnergyRun run = followEnergy(&scene, DT, 3000);
       ASSERT_TRUE(run.finite);
-      EXPECT_LT(run.worst, 1e-6);
+      EXPECT_LT(run.worst, 1e-5);
       EXPECT_LT(run.end, run.start * (1 + 1e-9));
-      if (GetParam().restitution < 1) EXPECT_LT(run.end, 0.9 * run.start);
+      EXPECT_TRUE(GetParam().restitution == 1 || run.end < 0.9 * run.start);
     }
   }
 }
