@@ -63,10 +63,9 @@ void IslandImpacts::begin(const TermSource& s, const std::vector<int>& contacts,
     for (int i = patch.first; i < patch.end; ++i) {
       const ContactConstraint& c = s.input.contacts[contacts[i]];
       if (!bounces(c, problem.contacts[i])) continue;
-      Bouncer bouncer{};
+      Bouncer bouncer;
       bouncer.contact = i;
       bouncer.pair = &patch.pair;
-      bouncer.row = -1;
       bouncer.restitution = c.restitution;
       bouncer.depth = c.depth;
       bouncers_.push_back(bouncer);

@@ -33,13 +33,13 @@ class IslandImpacts {
  private:
   /** A contact that has restitution. */
   struct Bouncer {
-    int contact;  ///< of the problem
-    const BodyPair* pair;
+    int contact = 0;  ///< of the problem
+    const BodyPair* pair = nullptr;
     int row = -1;  ///< of rows_, once it has met
-    double restitution;
-    double depth;                       ///< [m]
-    double kick;                        ///< [m/s] of its normal velocity by half of the step's forces
-    double slowest;                     ///< [m/s] closing speed below which nothing bounces
+    double restitution = 0;
+    double depth = 0;                   ///< [m]
+    double kick = 0;                    ///< [m/s] of its normal velocity by half of the step's forces
+    double slowest = 0;                 ///< [m/s] closing speed below which nothing bounces
     double speed = 0;                   ///< [m/s] along the normal, at present
     Vector3 impulse = Vector3::Zero();  ///< [N s] so far, along the row's directions
   };
