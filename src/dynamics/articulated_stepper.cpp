@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "contact_motion.h"
+#include "island_impacts.h"
 #include "island_motion.h"
 #include "island_terms.h"
 #include "islands.h"
@@ -23,7 +24,7 @@ struct Island {
   IslandProblem problem;
   std::vector<int> contacts;       ///< of the step's input
   std::vector<int> mimics, loops;  ///< of the forest's
-  std::vector<double> approach;    ///< [m/s] of each of them, to be remembered
+  IslandImpacts impacts;
   NewtonReport report;
   bool followed = true;  ///< no tree was too fast
 };
@@ -44,6 +45,7 @@ class ArticulatedStepper : public Stepper {
   void findIslands(const Scene& scene, const std::vector<ContactConstraint>& contacts);
   bool isMoved(const ContactConstraint& contact) const;
   void makeTerms(const TermSource& source, Island* island);
+  NewtonReport solveTwice(double dt, IslandProblem* problem);
   void solveIsland(const Scene& scene, const StepInput& input, Island* island);
   void finishIsland(const Scene& scene, const StepInput& input, Island* island, SolveResult* result);
   template <typename Work>
@@ -64,6 +66,7 @@ class ArticulatedStepper : public Stepper {
   StepMemory memory_;
   std::vector<BodyBits> written_;  ///< per node: what the scene was given last
   SolverSpace space_;
+  ImpactSpace impact_space_;
   Islands islands_;
   std::vector<Island> islands_of_step_;
   int island_count_ = 0;
@@ -77,6 +80,7 @@ void ArticulatedStepper::rebuild(const Scene& scene) {
   motion_.resize(forest_);
   way_.resize(forest_);
   space_.resize(forest_);
+  impact_space_.resize(forest_);
   memory_.resize(scene);
   written_.resize(forest_.nodes().size());
   for (BodyBits& bits : written_) bits.numbers[0] = NAN;
@@ -121,7 +125,6 @@ void ArticulatedStepper::findIslands(const Scene& scene, const std::vector<Conta
     Island& island = islands_of_step_[i];
     island.problem.clear();
     for (auto* list : {&island.contacts, &island.mimics, &island.loops}) list->clear();
-    island.approach.clear();
   }
   for (std::size_t t = 0; t < forest_.trees().size(); ++t)
     islands_of_step_[islands_.islandOf(static_cast<int>(t))].problem.trees.push_back(static_cast<int>(t));
@@ -151,29 +154,33 @@ void ArticulatedStepper::makeTerms(const TermSource& source, Island* island) {
     problem.loops.push_back(loopTerm(source, l, &pair));
     problem.loop_pairs.push_back(pair);
   }
-  for (const int index : island->contacts) {
-    double approach = 0;
-    addContact(source, source.input.contacts[index], &problem, &approach);
-    island->approach.push_back(approach);
-  }
+  for (const int index : island->contacts) addContact(source, source.input.contacts[index], &problem);
   weighContacts(source, &problem);
+}
+
+// With velocity products at the middle of the step, where the first guess of it was not good enough.
+NewtonReport ArticulatedStepper::solveTwice(double dt, IslandProblem* problem) {
+  const NewtonSettings newton;
+  NewtonReport report = problem->solve(forest_, motion_, newton, &space_);
+  double change = 0;
+  for (const int tree : problem->trees) change = std::max(change, correctProducts(forest_, tree, dt, &motion_, &space_));
+  if (change <= SAME_PRODUCTS) return report;
+  const int iterations = report.iterations;
+  report = problem->solveAgain(newton);
+  report.iterations += iterations;
+  return report;
 }
 
 void ArticulatedStepper::solveIsland(const Scene& scene, const StepInput& input, Island* island) {
   IslandProblem& problem = island->problem;
+  const TermSource source{scene, forest_, motion_, input, settings_, memory_};
   for (const int tree : problem.trees) setFreeMomentum(forest_, scene, input, !island->contacts.empty(), tree, &motion_, &space_);
-  makeTerms({scene, forest_, motion_, input, settings_, memory_}, island);
+  makeTerms(source, island);
   problem.up = -scene.gravity();
   addEfforts(input, problem, &space_);
-  const NewtonSettings newton;
-  island->report = problem.solve(forest_, motion_, newton, &space_);
-  // Velocity products at the middle of the step, where the first guess of it was not good enough.
-  double change = 0;
-  for (const int tree : problem.trees) change = std::max(change, correctProducts(forest_, tree, input.dt, &motion_, &space_));
-  if (change <= SAME_PRODUCTS) return;
-  const int iterations = island->report.iterations;
-  island->report = problem.solveAgain(newton);
-  island->report.iterations += iterations;
+  const bool leaps = island->impacts.happen(source, island->contacts, problem, &impact_space_, &space_);
+  island->report = solveTwice(input.dt, &problem);
+  if (leaps) island->impacts.addTo(&problem);
 }
 
 void ArticulatedStepper::finishIsland(const Scene& scene, const StepInput& input, Island* island, SolveResult* result) {
@@ -187,6 +194,7 @@ void ArticulatedStepper::finishIsland(const Scene& scene, const StepInput& input
   island->followed = followFast(forest_, problem, input.dt, motion_, space_, &way_);
   computeWrenches(forest_, scene, problem, input.dt, way_, &motion_, &space_, &result->joint_wrenches);
   advanceIsland(forest_, problem, input.dt, way_, &motion_, space_);
+  island->impacts.takeFrom(forest_, problem.trees, &motion_.change);
 }
 
 void ArticulatedStepper::readContacts(const StepInput& input, const Island& island, SolveResult* result) const {
@@ -227,11 +235,12 @@ void ArticulatedStepper::remember(const StepInput& input, const SolveResult& res
   for (int n = 0; n < island_count_; ++n) {
     const Island& island = islands_of_step_[n];
     for (std::size_t i = 0; i < island.contacts.size(); ++i) {
-      const int index = island.contacts[i];
-      const Vector3& force = result.contact_forces[index];
-      const bool pushes = input.contacts[index].normal_BA.dot(force) > 0;
-      if (pushes)
-        next_contacts_.push_back({input.contacts[index].id, force, island.problem.contacts[i].slipVelocity().norm(), island.approach[i]});
+      const ContactConstraint& c = input.contacts[island.contacts[i]];
+      // What was an impact's does not last.
+      Vector3 force = result.contact_forces[island.contacts[i]];
+      if (island.impacts.any()) force -= termSign(c) / input.dt * island.impacts.impulse(i);
+      const bool pushes = c.normal_BA.dot(force) > 0;
+      if (pushes) next_contacts_.push_back({c.id, force, island.problem.contacts[i].slipVelocity().norm()});
     }
   }
   std::sort(next_contacts_.begin(), next_contacts_.end(), [](const ContactRecord& a, const ContactRecord& b) { return a.id < b.id; });

@@ -14,16 +14,6 @@ Vector3 tangential(const Vector3& v, const Vector3& normal) { return v - normal 
 
 bool compliant(const ContactConstraint& c) { return std::isfinite(c.stiffness) && std::isfinite(c.damping) && c.stiffness + c.damping > 0; }
 
-void setSurface(const ContactConstraint& c, double dt, double softness, const SolverSettings& settings, NormalRow* row) {
-  row->compliance = softness;
-  const double gap_speed = c.depth / dt;
-  row->speed = c.depth <= 0 ? gap_speed : std::min(settings.correction_fraction * gap_speed, settings.max_correction_speed);
-  if (!compliant(c)) return;
-  // f = k depth+ - d v+ with depth+ = depth - dt v+.
-  row->compliance = std::max(softness, 1 / (dt * c.stiffness + c.damping));
-  if (c.depth > 0) row->speed = std::min(1.0, dt * c.stiffness * row->compliance) * gap_speed;
-}
-
 // A step of free motion keeps v^2/2 + a x - a dt v/2 constant; e^2 of it, taken at the surface, is what is left after an impact. So e = 1
 // neither gains nor loses height, wherever in the step the impact falls and however deep it was noticed.
 double impactSpeed(double closing, double acceleration, double depth, double dt) {
@@ -83,10 +73,21 @@ void addMemo(const ContactConstraint& contact, const ContactRows& rows, const Ve
   if (push > 0) memos->push_back({contact.id, force - push * contact.normal_BA, rows.approach});
 }
 
+NormalRow surfaceRow(const ContactConstraint& c, double dt, double softness, const SolverSettings& settings) {
+  NormalRow row;
+  row.compliance = softness;
+  const double gap_speed = c.depth / dt;
+  row.speed = c.depth <= 0 ? gap_speed : std::min(settings.correction_fraction * gap_speed, settings.max_correction_speed);
+  if (!compliant(c)) return row;
+  // f = k depth+ - d v+ with depth+ = depth - dt v+.
+  row.compliance = std::max(softness, 1 / (dt * c.stiffness + c.damping));
+  if (c.depth > 0) row.speed = std::min(1.0, dt * c.stiffness * row.compliance) * gap_speed;
+  return row;
+}
+
 NormalRow normalRow(const ContactConstraint& contact, const ContactMotion& motion, double approach, double dt, double softness,
                     const SolverSettings& settings) {
-  NormalRow row;
-  setSurface(contact, dt, softness, settings, &row);
+  NormalRow row = surfaceRow(contact, dt, softness, settings);
   setRestitution(contact, motion, approach, dt, &row);
   return row;
 }

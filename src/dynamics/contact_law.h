@@ -39,6 +39,9 @@ struct NormalRow {
   double approach = 0;    ///< [m/s] to be remembered if the contact pushes in this step
 };
 
+/** Without restitution. @param softness [m/s per N] least compliance that the solver needs */
+NormalRow surfaceRow(const ContactConstraint& contact, double dt, double softness, const SolverSettings& settings);
+
 /** @param approach [m/s] remembered of the last step, 0 if none; softness [m/s per N] least compliance that the solver needs */
 NormalRow normalRow(const ContactConstraint& contact, const ContactMotion& motion, double approach, double dt, double softness,
                     const SolverSettings& settings);

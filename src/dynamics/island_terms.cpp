@@ -1,6 +1,5 @@
 #include "island_terms.h"
 
-#include "contact_motion.h"
 #include "joint_motion.h"
 
 namespace blem_sim {
@@ -179,7 +178,7 @@ LoopTerm loopTerm(const TermSource& s, int index, BodyPair* pair) {
   return term;
 }
 
-void addContact(const TermSource& s, const ContactConstraint& c, IslandProblem* problem, double* approach) {
+void addContact(const TermSource& s, const ContactConstraint& c, IslandProblem* problem) {
   const bool grounded = c.body_a == WORLD_BODY;
   const int a = s.forest.nodeOfBody(grounded ? c.body_b : c.body_a);
   const int b = grounded || c.body_b == WORLD_BODY ? -1 : s.forest.nodeOfBody(c.body_b);
@@ -190,8 +189,7 @@ void addContact(const TermSource& s, const ContactConstraint& c, IslandProblem* 
     problem->patches.push_back(patch);
   }
   const ContactRecord* record = s.memory.find(c.id);
-  const ContactMotion motion = c.restitution > 0 ? contactMotion(s.scene, c) : ContactMotion();
-  const NormalRow row = normalRow(c, motion, record ? record->approach : 0, s.input.dt, 0, s.settings);
+  const NormalRow row = surfaceRow(c, s.input.dt, 0, s.settings);
   ContactTerm term;
   term.point = c.point - s.motion.reference[s.forest.nodes()[a].tree];
   term.normal = termSign(c) * c.normal_BA;
@@ -205,7 +203,6 @@ void addContact(const TermSource& s, const ContactConstraint& c, IslandProblem* 
     term.previous = termSign(c) * s.input.dt * record->force;
     term.slip = record->slip;
   }
-  *approach = row.approach;
   problem->contacts.push_back(term);
   problem->patches.back().end = static_cast<int>(problem->contacts.size());
 }

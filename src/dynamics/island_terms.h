@@ -23,8 +23,8 @@ JointTerm jointTerm(const TermSource& source, int node);
 /** @param index of the loop in the forest; pair: child and parent */
 LoopTerm loopTerm(const TermSource& source, int index, BodyPair* pair);
 
-/** Adds a usable contact to the problem, to the last patch if it is of the same pair. @param approach [m/s] to be remembered, out */
-void addContact(const TermSource& source, const ContactConstraint& contact, IslandProblem* problem, double* approach);
+/** Adds a usable contact to the problem, to the last patch if it is of the same pair. */
+void addContact(const TermSource& source, const ContactConstraint& contact, IslandProblem* problem);
 
 /** Proximal weights of the patches' contacts, once all are added. */
 void weighContacts(const TermSource& source, IslandProblem* problem);

@@ -30,7 +30,6 @@ void StepMemory::save(const Scene& scene, StateWriter* writer) const {
     writer->word(c.id);
     writer->vector(c.force);
     writer->number(c.slip);
-    writer->number(c.approach);
   }
   // A joint that was added since the last step has nothing to remember.
   for (std::size_t j = 0; j < scene.joints().size(); ++j) {
@@ -46,7 +45,6 @@ void StepMemory::restore(const Scene& scene, StateReader* reader) {
     c.id = reader->word();
     c.force = reader->vector();
     c.slip = reader->number();
-    c.approach = reader->number();
   }
   index();
   resize(scene);

@@ -14,7 +14,6 @@ struct ContactRecord {
   std::uint64_t id = 0;
   Vector3 force = Vector3::Zero();  ///< [N] on A, world axes
   double slip = 0;                  ///< [m/s]
-  double approach = 0;              ///< [m/s] closing speed of an impact that landed and is still to bounce
 };
 
 /** [N m or N] */

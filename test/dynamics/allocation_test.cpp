@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "analytic_contacts.h"
+#include "bouncing_bodies.h"
 #include "support/chains.h"
 
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)
@@ -61,6 +62,30 @@ TEST(Allocation, NoneWhereFastTreesAreFollowed) {
     spinner.world.step(1e-3, {}, {});
   }
   EXPECT_EQ(allocations, before);
+}
+
+// A row of balls between walls, and a pendulum that they hit.
+TEST(Allocation, NoneInAWarmStepOfBounces) {
+  Surface surface;
+  surface.restitution = 1, surface.friction = 0;
+  BouncingBodies scene(Vector3::Zero(), surface);
+  scene.walls = {{Vector3::UnitX(), -0.5}, {-Vector3::UnitX(), -0.5}};
+  for (int i = 0; i < 6; ++i) scene.addSphere(1 + i, 0.03, {-0.4 + 0.1 * i, 0.001 * i, 0});
+  scene.setVelocity(0, {2, 0, 0}, Vector3::Zero());
+  scene.addSphere(1, 0.03, {0.3, 0, 0});
+  scene.hinge(WORLD_BODY, 6, {0.3, 0, 0.4}, Vector3::UnitY());
+  const std::vector<JointDrive> drives(1);
+  long allocated = 0, impacts = 0;
+  for (int i = 0; i < 4000; ++i) {
+    scene.findContacts(1e-3);
+    const long before = allocations;
+    const SolveResult& result = scene.world.step(1e-3, scene.contacts, drives);
+    if (i < 1000) continue;
+    allocated += allocations - before;
+    for (const Vector3& force : result.contact_forces) impacts += !force.isZero(0);
+  }
+  EXPECT_GT(impacts, 5);
+  EXPECT_EQ(allocated, 0);
 }
 
 TEST(Allocation, NoneInAWarmStep) {

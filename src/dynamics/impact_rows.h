@@ -1,0 +1,77 @@
+// What impulses at contacts do to the velocities of trees at once, motors and joint friction being no impulses.
+#pragma once
+
+#include <vector>
+
+#include "contact_term.h"
+#include "forest_motion.h"
+#include "island_problem.h"
+#include "tree_rows.h"
+
+namespace blem_sim {
+
+/** Vectors over the forest that impacts are reckoned in, each island in its own trees. */
+struct ImpactSpace {
+  Eigen::VectorXd velocity;  ///< with half of the step's forces: that of the moment when impacts happen
+  Eigen::VectorXd leap;      ///< by how much impacts have changed it
+  Eigen::VectorXd momentum;  ///< the mass matrix times that: the sum of impulses
+  Eigen::VectorXd column;    ///< work space
+  TreeFactor factor;         ///< of the mass matrix
+  TreePaths paths;
+  std::vector<Vector6> twist;  ///< per node
+
+  void resize(const Forest& forest);
+};
+
+/** Factors the mass matrix of a tree. Precondition: it is positive definite. */
+void factorMass(const Forest& forest, int tree, const ForestMotion& motion, ImpactSpace* space);
+
+/** space->column = M^-1 space->column on a factored tree. */
+void solveMass(const Forest& forest, int tree, ImpactSpace* space);
+
+/**
+ * Contacts as three directions each, the normal first, along which their bodies' points move against each other (A against B) and impulses
+ * act on A. Used again from step to step, so that it need not allocate.
+ */
+class ImpactRows {
+ public:
+  void clear();
+  bool empty() const { return contacts_.empty(); }
+  /** Precondition: the trees of both nodes are factored. @return index of the contact here */
+  int add(const Forest& forest, const ForestMotion& motion, const BodyPair& pair, const ContactTerm& term, ImpactSpace* space);
+
+  /** [m/s] for given velocities of the dofs. */
+  Vector3 velocity(int contact, const Eigen::VectorXd& v) const;
+  /** Changes velocities by what an impulse [N s] does to them. */
+  void push(int contact, const Vector3& impulse, Eigen::VectorXd* v) const;
+  /** Adds the impulse to momenta. */
+  void addMomentum(int contact, const Vector3& impulse, Eigen::VectorXd* momentum) const;
+  /** World axes. */
+  Vector3 inWorld(int contact, const Vector3& impulse) const { return contacts_[contact].basis * impulse; }
+
+  /** [1/kg] along the normal; 0 if nothing can move there. */
+  double inverseMass(int contact) const { return contacts_[contact].normal; }
+  /** [1/kg] largest across it. */
+  double inverseMassAcross(int contact) const { return contacts_[contact].across; }
+
+ private:
+  struct Side {
+    int first_dof = 0, dofs = 0;
+    int rows = 0;  ///< where three rows of J begin, and behind them three columns of M^-1 J', one after the other
+  };
+  struct Entry {
+    Matrix3 basis;  ///< columns: normal and two tangents
+    Side sides[2];
+    int side_count = 0;
+    double normal = 0, across = 0;
+  };
+  void addSide(const Forest& forest, int tree, Entry* entry);
+  void fill(const Forest& forest, const ForestMotion& motion, int node, const Vector3& shift, const Vector3& point, double sign,
+            const Entry& entry);
+  void respond(const Forest& forest, int tree, const Side& side, ImpactSpace* space);
+
+  std::vector<Entry> contacts_;
+  std::vector<double> numbers_;
+};
+
+}  // namespace blem_sim
