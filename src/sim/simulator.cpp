@@ -33,7 +33,8 @@ Simulator::Impl::Impl(const SimulationConfig& config, const UriResolver& resolve
     : config_((check(config), config)),
       world_(config.gravity, config.solver),
       builder_(config.contact, config.base_directory, resolver, std::move(log)),
-      contacts_(config.contact, config.solver.threads) {
+      contacts_(config.contact, config.solver.threads),
+      energy_balance_(config.solver) {
   for (const EnvironmentConfig& environment : config_.environments) builder_.addEnvironment(environment, &world_);
   for (const RobotConfig& robot : config_.robots) builder_.addRobot(robot, &world_);
   for (const ObjectConfig& object : config_.objects) builder_.addObject(object, &world_);

@@ -94,6 +94,8 @@ struct SolveResult {
   int iterations = 0;   ///< of the solver, over all islands
   int lcp_errors = 0;   ///< the complementarity solver complained; the step was redone with more CFM
   bool finite = true;   ///< step gave a finite state; if not, bodies stay as before it and nothing else here means anything
+  /** A motion was too fast for the step: velocity products changed too much within it. */
+  bool too_fast = false;
 };
 
 /** Everything a world needs to replay bit for bit. */
