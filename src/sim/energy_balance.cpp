@@ -58,7 +58,7 @@ EnergyGain EnergyBalance::addSolve(const World& world, double dt, const ContactS
   EnergyGain gain;
   for (const Book& book : books_) {
     gain.total += std::max(0.0, book.rise - book.held);
-    if (book.rise - book.held - book.on_purpose > FLOOR + RELATIVE * book.moved) gain.beyond_bound = true;
+    if (book.rise - book.held - book.on_purpose > FLOOR * std::min(1.0, book.mass) + RELATIVE * book.moved) gain.beyond_bound = true;
   }
   holdBack();
   return gain;
@@ -100,6 +100,7 @@ void EnergyBalance::bookBodies(const World& world, double dt, const std::vector<
     book.rise += kinetic_rise - work;
     book.moved += kinetic + std::abs(work);
     book.held += held_[b];
+    book.mass += body.mass;
   }
 }
 

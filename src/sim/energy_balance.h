@@ -21,13 +21,14 @@ struct EnergyGain {
  * the work of motors and joint friction. Contacts may only take from it. Each island has a book of its own: bodies that joints, mimic
  * joints, loops or contacts with a force tie together.
  *
- * What contacts do on purpose is work as well: they correct depth, and part meshes that cross, at a bounded speed. An island may gain
- * FLOOR + RELATIVE times what moves in it: kinetic energy, weights times their ways, work of motors and energy of springs.
+ * What contacts do on purpose is work as well: they correct depth, and part meshes that cross, at a bounded speed. Beyond that an island
+ * may gain FLOOR, less where it weighs less than 1 kg, and RELATIVE times what moves in it: kinetic energy, weights times their ways, work
+ * of motors and energy of springs.
  */
 class EnergyBalance {
  public:
-  static constexpr double FLOOR = 1e-6;     ///< [J]
-  static constexpr double RELATIVE = 1e-5;  ///< in a solve
+  static constexpr double FLOOR = 1e-6;     ///< [J], or [J/kg] below 1 kg: a speed of 1.4 mm/s out of rest
+  static constexpr double RELATIVE = 1e-5;  ///< in a solve: 1 % in a thousand of them
 
   explicit EnergyBalance(const SolverSettings& settings) : settings_(settings) {}
 
@@ -54,6 +55,7 @@ class EnergyBalance {
   /** Of an island, at its least body. */
   struct Book {
     double rise = 0;         // [J] of all energies, less the work of motors and joint friction
+    double mass = 0;         // [kg]
     double moved = 0;        // [J] what moved, without sign
     double on_purpose = 0;   // [J] work of contacts that correct depth
     double held = 0;         // [J] that the solve before took, and that may bounce now
