@@ -25,8 +25,11 @@ class Fields {
   void atLeastOne(const char* field, int value) const {
     if (value < 1) throw InputError(fmt::format("{}{}: is {}; give it a whole number of at least 1", where_, field, value));
   }
+  void finite(const char* field, bool is_finite) const {
+    if (!is_finite) throw InputError(fmt::format("{}{}: is not finite; give it finite numbers", where_, field));
+  }
   void pose(const char* field, const Pose& X) const {
-    if (!X.matrix().allFinite()) throw InputError(fmt::format("{}{}: is not finite; give it finite numbers", where_, field));
+    finite(field, X.matrix().allFinite());
     if (!X.linear().isUnitary(1e-6) || X.linear().determinant() < 0)
       throw InputError(fmt::format("{}{}: is no rotation; give it orthogonal unit axes, right-handed", where_, field));
   }
@@ -93,6 +96,8 @@ void checkObject(const ObjectConfig& object) {
   fields.pose("mesh_pose", object.X_OM);
   fields.scale(object.scale);
   fields.number("mass", object.mass, NumberRange::positive());
+  if (object.com) fields.finite("com", object.com->allFinite());
+  if (object.inertia) fields.finite("inertia", object.inertia->allFinite());
   fields.overrides(object.contact);
   if (object.max_contacts) fields.atLeastOne("max_contacts", *object.max_contacts);
 }

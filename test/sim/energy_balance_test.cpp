@@ -100,11 +100,12 @@ TEST(EnergyBalance, ReadsWhatItWrote) {
     NumberReader reader(bad);
     EXPECT_THROW(balance.read(&reader), InputError);
   }
-  NumberReader reader({2, 0.5, 0});
+  const std::vector<double> held = {2, 0.5, 0};
+  NumberReader reader(held);
   balance.read(&reader);
   numbers.clear();
   balance.append(&numbers);
-  EXPECT_EQ(numbers, (std::vector<double>{2, 0.5, 0}));
+  EXPECT_EQ(numbers, held);
 }
 
 /** Every bit that was set in so long. */
