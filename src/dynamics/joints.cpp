@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "blem_sim/geometry/input_error.h"
+#include "input_check.h"
 #include "scene.h"
 
 namespace blem_sim {
@@ -23,6 +24,7 @@ void check(const JointSpec& spec, const Scene& scene, std::size_t joint_count) {
 
 int Scene::addJoint(const JointSpec& spec, double position) {
   check(spec, *this, joints_.size());
+  checkJointNumbers(spec, position);
   joints_.emplace_back();
   JointSlot& slot = joints_.back();
   slot.spec = spec;

@@ -3,6 +3,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "input_check.h"
 #include "lanes.h"
 #include "scene.h"
 #include "stepper.h"
@@ -10,17 +11,6 @@
 
 namespace blem_sim {
 namespace {
-
-bool finite(const ContactConstraint& c) {
-  return c.point.allFinite() && c.normal_BA.allFinite() && std::isfinite(c.depth) && c.friction >= 0 && c.restitution >= 0 &&
-         c.stiffness >= 0 && c.damping >= 0;
-}
-
-bool finite(const JointDrive& d) {
-  return std::isfinite(d.effort) && std::isfinite(d.stiffness) && std::isfinite(d.damping) && std::isfinite(d.target_position) &&
-         std::isfinite(d.target_velocity) && !std::isnan(d.max_effort) && std::isfinite(d.dry_friction) &&
-         std::isfinite(d.viscous_friction);
-}
 
 // All at once, four sums that need not wait for each other: a number that is not finite times zero is not a number, and so is every sum.
 BLEM_SIM_LANES bool finite(const std::vector<BodyBits>& bodies) {
@@ -33,11 +23,12 @@ BLEM_SIM_LANES bool finite(const std::vector<BodyBits>& bodies) {
   return sum(zero) == 0;
 }
 
-bool finite(const Scene& scene, const StepInput& input, const std::vector<BodyBits>& bodies) {
+bool isSound(const Scene& scene, const StepInput& input, const std::vector<BodyBits>& bodies) {
+  if (!(input.dt > 0) || !std::isfinite(input.dt)) return false;
   for (const ContactConstraint& c : input.contacts)
-    if (!finite(c)) return false;
+    if (!isSound(c)) return false;
   for (const JointDrive& d : input.drives)
-    if (!finite(d)) return false;
+    if (!isSound(d)) return false;
   for (const BodySlot& slot : scene.bodies())
     if (!slot.pending.force.allFinite() || !slot.pending.torque.allFinite()) return false;
   return scene.gravity().allFinite() && finite(bodies);
@@ -50,7 +41,7 @@ struct World::Impl {
 
   /** False if the step broke down; the scene is then as it was. */
   bool advance(const StepInput& input) {
-    if (!finite(scene, input, start)) return false;
+    if (!isSound(scene, input, start)) return false;
     result.finite = true;
     try {
       stepper->step(&scene, input, &result);
@@ -126,7 +117,6 @@ void World::applyWrench(int body, const Wrench& wrench, const Vector3& point) {
 }
 
 const SolveResult& World::step(double dt, const std::vector<ContactConstraint>& contacts, const std::vector<JointDrive>& drives) {
-  assert(dt > 0);
   assert(static_cast<int>(drives.size()) == jointCount());
   Impl& impl = *impl_;
   const StepInput input{dt, contacts, drives};

@@ -83,7 +83,7 @@ void DiagnosticsPublisher::describeContacts(DiagnosticStatusWrapper& status) con
   const std::uint32_t bits = statistics_.status;
   if ((bits & STATE_NOT_FINITE) != 0) {
     status.summary(DiagnosticStatus::ERROR, joined(statusAdvice(STATE_NOT_FINITE)));
-  } else if ((bits & (CONTACT_UNRELIABLE | SOLVER_TROUBLE | STEP_SHORTENED)) != 0) {
+  } else if ((bits & (CONTACT_UNRELIABLE | SOLVER_TROUBLE | STEP_SHORTENED | ENERGY_GAINED | MOTION_TOO_FAST)) != 0) {
     status.summary(DiagnosticStatus::WARN, joined(statusAdvice(bits)));
   } else {
     const std::string advice = joined(statusAdvice(bits));

@@ -20,6 +20,9 @@ constexpr Advice ADVICE[] = {
     {STATE_NOT_FINITE,
      "a state stopped being finite and the simulation was paused: lower time_step or gains, then reset_world and unpause_physics"},
     {EFFORT_SATURATED, "a motor is at its effort limit: raise effort_limits or move more slowly"},
+    {ENERGY_GAINED,
+     "bodies gained energy out of nothing: lower time_step; where motors or bounces drive it, softer gains or a lower restitution"},
+    {MOTION_TOO_FAST, "a motion was too fast for the step: lower time_step"},
 };
 
 }  // namespace

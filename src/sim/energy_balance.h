@@ -4,17 +4,34 @@
 #include <vector>
 
 #include "blem_sim/dynamics/world.h"
+#include "body_islands.h"
 #include "contact_stage.h"
 #include "number_reader.h"
 
 namespace blem_sim {
 
+/** [J] that came out of nothing in a solve. */
+struct EnergyGain {
+  double total = 0;           ///< sum over islands
+  bool beyond_bound = false;  ///< of an island, without what contacts do on purpose
+};
+
 /**
  * Books, solve by solve, the kinetic energy of bodies and rotors, the potential energy and what springs of compliant contacts hold, against
- * the work of motors and joint friction. Contacts may only take from it.
+ * the work of motors and joint friction. Contacts may only take from it. Each island has a book of its own: bodies that joints, mimic
+ * joints, loops or contacts with a force tie together.
+ *
+ * What contacts do on purpose is work as well: they correct depth, and part meshes that cross, at a bounded speed. Beyond that an island
+ * may gain FLOOR, less where it weighs less than 1 kg, and RELATIVE times what moves in it: kinetic energy, weights times their ways, work
+ * of motors and energy of springs.
  */
 class EnergyBalance {
  public:
+  static constexpr double FLOOR = 1e-6;     ///< [J], or [J/kg] below 1 kg: a speed of 1.4 mm/s out of rest
+  static constexpr double RELATIVE = 1e-5;  ///< in a solve: 1 % in a thousand of them
+
+  explicit EnergyBalance(const SolverSettings& settings) : settings_(settings) {}
+
   /** At the start of a step; bodies may have been moved since the last one. */
   void start(const World& world);
   /**
@@ -23,28 +40,55 @@ class EnergyBalance {
    * @param contacts it was made with
    * @param forces [N] of those contacts
    * @param before, after bodies at its start and end
-   * @return [J] gained by it out of nothing, never below 0. An impact's energy that is to bounce is held back from one solve to the next:
-   * as much of what the solve before took as the largest restitution gives back
+   * @return never below 0. An impact's energy that is still to bounce is held back from one solve to the next: of what the solve before
+   * took, as much as the largest restitution gives back
    */
-  double addSolve(const World& world, double dt, const ContactStage& contacts, const std::vector<Vector3>& forces,
-                  const std::vector<BodyState>& before, const std::vector<BodyState>& after);
-
-  /** [J] kinetic and potential energy of the bodies, as of the last start or solve. */
-  double energyOfBodies() const { return bodies_; }
+  EnergyGain addSolve(const World& world, double dt, const ContactStage& contacts, const std::vector<Vector3>& forces,
+                      const std::vector<BodyState>& before, const std::vector<BodyState>& after);
 
   /** No impact is to bounce. */
-  void clear() { bounce_ = 0; }
-  void append(std::vector<double>* numbers) const { numbers->push_back(bounce_); }
-  void read(NumberReader* reader) { bounce_ = reader->number(); }
+  void clear() { held_.assign(held_.size(), 0); }
+  void append(std::vector<double>* numbers) const;
+  void read(NumberReader* reader);
 
  private:
-  /** [J] done by motors and joint friction since the last time. */
-  double takeWork(const World& world, double dt);
+  /** Of an island, at its least body. */
+  struct Book {
+    double rise = 0;         // [J] of all energies, less the work of motors and joint friction
+    double mass = 0;         // [kg]
+    double moved = 0;        // [J] what moved, without sign
+    double on_purpose = 0;   // [J] work of contacts that correct depth
+    double held = 0;         // [J] that the solve before took, and that may bounce now
+    double restitution = 0;  // largest of contacts that pushed
+    double approach = 0;     // [J] work that impacts took
+  };
+  /** A contact that landed and has not left yet. */
+  struct Landing {
+    int body;
+    double approach;  // [J] work that it took
+    double left;      // part of its bounce that is still to come
+  };
 
-  double bodies_ = 0;               // [J] without rotors
-  double energy_ = 0;               // [J] with them
+  void tie(const World& world, const ContactStage& contacts, const std::vector<Vector3>& forces);
+  void bookBodies(const World& world, double dt, const std::vector<BodyState>& before, const std::vector<BodyState>& after);
+  void bookJoints(const World& world, double dt);
+  void bookSprings(const ContactStage& contacts, const std::vector<BodyState>& before, const std::vector<BodyState>& after);
+  void bookContacts(double dt, const ContactStage& contacts, const std::vector<Vector3>& forces, const std::vector<BodyState>& before,
+                    const std::vector<BodyState>& after);
+  void holdBack();
+  Book& bookOf(const ContactConstraint& contact);
+  /** [m/s] of A's point against B's along the normal. */
+  double normalSpeed(const ContactConstraint& contact, const std::vector<BodyState>& states) const;
+
+  SolverSettings settings_;
   std::vector<JointState> joints_;  // after the last solve
-  double bounce_ = 0;               // [J] at most, that the next solve may give back
+  std::vector<double> held_;        // [J] by body: what its contacts may give back in the next solve; empty: none
+
+  // Of the solve at hand.
+  BodyIslands islands_;
+  std::vector<Book> books_;
+  std::vector<Vector3> coms_;  // [m] of bodies at its start, world axes
+  std::vector<Landing> landings_;
 };
 
 }  // namespace blem_sim

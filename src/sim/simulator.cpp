@@ -6,22 +6,12 @@
 #include <cmath>
 
 #include "blem_sim/geometry/input_error.h"
+#include "config_check.h"
 #include "nearest_name.h"
-#include "scene_limits.h"
 #include "simulator_impl.h"
 
 namespace blem_sim {
 namespace {
-
-void check(const SimulationConfig& config) {
-  if (!(config.time_step > 0) || !std::isfinite(config.time_step))
-    throw InputError("time_step: needs a finite number of seconds above 0, such as 0.001");
-  const std::size_t models = config.environments.size() + config.robots.size() + config.objects.size();
-  if (models > MOST_MODELS)
-    throw InputError(fmt::format("objects: {} environments, robots and objects are more than the {} that are simulated; give fewer", models,
-                                 MOST_MODELS));
-  if (!config.gravity.allFinite()) throw InputError("gravity: needs three finite numbers, such as [0, 0, -9.81]");
-}
 
 std::uint64_t stepsPerReading(double rate, double time_step) {
   if (!(rate > 0)) return 1;
@@ -37,10 +27,11 @@ int indexOf(const std::vector<Named>& items, const std::string& name) {
 }  // namespace
 
 Simulator::Impl::Impl(const SimulationConfig& config, const UriResolver& resolver, LoadLog log)
-    : config_((check(config), config)),
+    : config_((checkConfig(config), config)),
       world_(config.gravity, config.solver),
       builder_(config.contact, config.base_directory, resolver, std::move(log)),
-      contacts_(config.contact, config.solver.threads) {
+      contacts_(config.contact, config.solver.threads),
+      energy_balance_(config.solver) {
   for (const EnvironmentConfig& environment : config_.environments) builder_.addEnvironment(environment, &world_);
   for (const RobotConfig& robot : config_.robots) builder_.addRobot(robot, &world_);
   for (const ObjectConfig& object : config_.objects) builder_.addObject(object, &world_);
@@ -101,6 +92,7 @@ void Simulator::commandJoints(int robot, const JointCommandMessage& command) { i
 JointSample Simulator::desiredState(int robot, int joint) const { return impl_->desiredState(robots().at(robot).joints.at(joint)); }
 
 void Simulator::loadEnvironment(const EnvironmentConfig& environment) {
+  checkEnvironment(environment);
   impl_->builder_.addEnvironment(environment, &impl_->world_);
   impl_->contacts_.forget();
 }

@@ -34,6 +34,7 @@ struct Simulator::Impl {
   void acceptSubstep();
   void recordContacts();
   void recordSolve();
+  void recordEnergy();
   void recordSaturation();
   const StepReport& stop();
   void findFirstContacts();

@@ -149,8 +149,7 @@ void Simulator::Impl::acceptSubstep() {
   recordSaturation();
   recordContacts();
   layer_watch_.look(contacts_.current(), substepTime(), &report_.layer_events);
-  report_.energy_gained +=
-      energy_balance_.addSolve(world_.world, substepLength(), contacts_, solved_->contact_forces, bodies_before_substep_, bodies_);
+  recordEnergy();
   contacts_.accept();
   substeps_.accept();
 }
@@ -160,9 +159,17 @@ void Simulator::Impl::recordSolve() {
   for (const Vector3& force : solved_->contact_forces) largest = std::max(largest, force.norm());
   if (solved_->lcp_errors > 0 || solved_->residual > RESIDUAL_IS_TROUBLE * largest || solved_->creep > CREEP_IS_TROUBLE)
     report_.status |= SOLVER_TROUBLE;
+  if (solved_->too_fast) report_.status |= MOTION_TOO_FAST;
   report_.solver_residual = std::max(report_.solver_residual, solved_->residual);
   report_.solver_creep = std::max(report_.solver_creep, solved_->creep);
   report_.solver_iterations += solved_->iterations;
+}
+
+void Simulator::Impl::recordEnergy() {
+  const EnergyGain gain =
+      energy_balance_.addSolve(world_.world, substepLength(), contacts_, solved_->contact_forces, bodies_before_substep_, bodies_);
+  report_.energy_gained += gain.total;
+  if (gain.beyond_bound) report_.status |= ENERGY_GAINED;
 }
 
 void Simulator::Impl::recordSaturation() {
@@ -222,7 +229,7 @@ void Simulator::Impl::report() {
   report_.substeps = substeps_.count();
   report_.redone_solves = substeps_.redone();
   if (report_.substeps > 1) report_.status |= STEP_SHORTENED;
-  report_.energy = energy_balance_.energyOfBodies();
+  report_.energy = world_.world.kineticEnergy() + world_.world.potentialEnergy();
   std::swap(report_.contacts, contact_reports_);
   report_.bodies = bodies_;
   report_.joints = joints_;

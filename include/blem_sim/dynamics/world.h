@@ -138,7 +138,7 @@ class World {
   /** Adds an outside wrench for the next step only: force [N] and torque [N m] in world axes, at a point of the world. */
   void applyWrench(int body, const Wrench& wrench, const Vector3& point);
 
-  /** Advances by dt [s] > 0. @param drives one per joint slot. */
+  /** Advances by dt [s] > 0. @param drives one per joint slot. With numbers that are none or out of range the result is not finite. */
   const SolveResult& step(double dt, const std::vector<ContactConstraint>& contacts, const std::vector<JointDrive>& drives);
 
   double kineticEnergy() const;    ///< [J]

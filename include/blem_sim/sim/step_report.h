@@ -26,6 +26,9 @@ enum StepStatus : std::uint32_t {
   STATE_NOT_FINITE = 1u << 4,  ///< a body's state is NaN or infinite; the last finite state was restored and the simulation is stopped
   EFFORT_SATURATED = 1u << 5,  ///< a motor ran into its effort limit. Raise effort_limits, or a slower motion
   JOINT_LIMIT_HIT = 1u << 6,   ///< a joint is at its limit
+  ENERGY_GAINED = 1u << 7,     ///< an island of bodies gained more energy out of nothing than EnergyBalance's bound. Smaller time_step;
+                               ///< softer motors, or a lower restitution, if they are what drives it
+  MOTION_TOO_FAST = 1u << 8,   ///< a motion was too fast for the step: velocity products changed too much within it. Smaller time_step
 };
 /** Names in the report and in messages, in bit order. */
 extern const std::vector<std::string> STEP_STATUS_NAMES;
@@ -104,7 +107,8 @@ struct StepReport {
   int deepest_a = -1, deepest_b = -1;      ///< colliders
   double energy = 0;                       ///< [J] kinetic + potential
   /** [J] by which energy (bodies, rotors, springs of compliant contacts) rose in this step beyond the work of motors and joint friction
-   *  (effort times joint motion); 0 where it fell, which contacts may make it do. Integration errors of order dt count. */
+   *  (effort times joint motion): the sum over islands, so that none's gain is hidden by another's loss, which contacts may cause.
+   *  Corrections of depth count, and integration errors of order dt. */
   double energy_gained = 0;
   double solver_residual = 0;  ///< [N] worst over the step: SolveResult::residual
   double solver_creep = 0;     ///< [rad/s or m/s] worst over the step: SolveResult::creep

@@ -1,0 +1,115 @@
+// Runs a random scene for a second and says what must not be.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <string>
+
+#include "soak/figures.h"
+#include "support/random_scene.h"
+
+namespace blem_sim {
+
+constexpr int STATUS_BITS = 9;
+
+/** Plain, so that a process can hand it to another. */
+struct SceneOutcome {
+  std::uint64_t seed = 0;
+  char failure[32] = "";   ///< its kind, empty if there is none
+  char details[160] = "";  ///< in words
+  int steps = 0;
+  std::array<int, STATUS_BITS> bits{};  ///< steps with each
+  double worst_step = 0;                ///< [s] processor time of the slowest
+  double gained = 0;                    ///< [J] in all, told or not
+  double of_energy = 0;                 ///< the same, of the largest energy that moved
+
+  bool failed() const { return failure[0] != 0; }
+  void fail(const std::string& kind, const std::string& words) {
+    if (failed()) return;
+    std::snprintf(failure, sizeof failure, "%s", kind.c_str());
+    std::snprintf(details, sizeof details, "%s", words.c_str());
+  }
+};
+
+/** Watches the steps of one scene. */
+class SceneWatch {
+ public:
+  SceneWatch(const RandomScene& scene, const Simulator& simulator, SceneOutcome* outcome)
+      : scene_(scene), simulator_(simulator), outcome_(*outcome) {
+    start_ = simulator.report().energy + lag(simulator.report());
+    for (const BodyState& body : simulator.report().bodies) above_.push_back(body.X_WB.translation().z() > scene.floor);
+  }
+
+  void look(const StepReport& report, double seconds) {
+    ++outcome_.steps;
+    for (int bit = 0; bit < STATUS_BITS; ++bit) outcome_.bits[bit] += (report.status >> bit) & 1;
+    told_ = told_ | report.status;
+    outcome_.worst_step = std::max(outcome_.worst_step, seconds);
+    outcome_.gained += report.energy_gained;
+    if (report.status & STATE_NOT_FINITE) outcome_.fail("not finite", fmt::format("at {:.3f} s", report.time));
+    lookAtEnergy(report);
+    lookAtFloor(report);
+  }
+  /** [J] the larger of what moves and what fell since the start. */
+  double scale() const { return scale_; }
+
+ private:
+  // Where nothing drives, energy is at most what it was and what the steps said.
+  void lookAtEnergy(const StepReport& report) {
+    const double rise = report.energy - start_;
+    if (!std::isfinite(rise)) return;
+    scale_ = std::max({scale_, simulator_.world().kineticEnergy(), std::abs(rise)});
+    const double unsaid = rise - outcome_.gained - lag(report);
+    if (scene_.passive && unsaid > 1e-3 * scale_ + 1e-6)
+      outcome_.fail("energy unsaid", fmt::format("{:.3g} J at {:.3f} s", unsaid, report.time));
+  }
+  /** [J] by which energy is not known: what bodies fall in half a step, whose length changes where it is shortened. */
+  double lag(const StepReport& report) const {
+    double energy = 0;
+    for (std::size_t b = 0; b < report.bodies.size(); ++b)
+      energy += report.dt * simulator_.world().bodySpec(static_cast<int>(b)).inertial.mass *
+                std::abs(simulator_.gravity().dot(report.bodies[b].v_WCom));
+    return energy;
+  }
+  void lookAtFloor(const StepReport& report) {
+    if (told_ & (CONTACT_UNRELIABLE | STATE_NOT_FINITE)) return;
+    for (const ModelInfo& model : simulator_.models()) {
+      if (model.kind != ModelKind::OBJECT) continue;
+      const int body = model.bodies[0];
+      const double height = report.bodies[body].X_WB.translation().z();
+      if (above_[body] && height < scene_.floor)
+        outcome_.fail("through the floor",
+                      fmt::format("{} at {:.3f} s, speed {:.3g} m/s", model.name, report.time, report.bodies[body].v_WCom.norm()));
+    }
+  }
+
+  const RandomScene& scene_;
+  const Simulator& simulator_;
+  SceneOutcome& outcome_;
+  std::vector<bool> above_;
+  std::uint32_t told_ = 0;
+  double start_ = 0, scale_ = 0;
+};
+
+/** @param duration [s] simulated @param out told step by step */
+inline void runRandomScene(std::uint64_t seed, double duration, SceneOutcome* out) {
+  SceneOutcome& outcome = *out;
+  outcome.seed = seed;
+  const RandomScene scene = randomScene(seed);
+  Simulator simulator(scene.config, UriResolver());
+  for (std::size_t i = 0; i < scene.commands.size(); ++i)
+    if (!scene.commands[i].joints.empty()) simulator.commandJoints(static_cast<int>(i), scene.commands[i]);
+  SceneWatch watch(scene, simulator, &outcome);
+  const long steps = std::lround(duration / scene.config.time_step);
+  for (long i = 0; i < steps && !outcome.failed(); ++i) {
+    const double start = threadSeconds();
+    const StepReport& report = simulator.step();
+    watch.look(report, threadSeconds() - start);
+    outcome.of_energy = outcome.gained / std::max(watch.scale(), 1e-9);
+  }
+}
+
+}  // namespace blem_sim
