@@ -252,7 +252,7 @@ FreeMotionReport FreeMotion::follow(const Forest& forest, int tree, double dt, c
     run(forest, tree, dt, steps, motion, velocity);
     report.evaluations += 4 * steps;
     wanted = first + work(forest, tree);
-    report.miss = std::abs(energy(forest, tree) - wanted) / first;
+    report.miss = first > 0 ? std::abs(energy(forest, tree) - wanted) / first : 0;
     if (report.miss <= ENERGY_MISS || steps == MAX_SUB_STEPS) break;
   }
   report.followed = report.miss <= TOO_INEXACT;

@@ -32,6 +32,9 @@ class FreeMotion {
   FreeMotionReport follow(const Forest& forest, int tree, double dt, const ForestMotion& motion, const Eigen::VectorXd& velocity,
                           const Eigen::VectorXd& mass_velocity);
 
+  /** [N m s or N s] what a held dof took to keep its velocity; 0 for the others. */
+  double owed(int dof) const { return owed_[dof]; }
+
   /** Of the end of the way: positions, velocities of the dofs, owed impulses, a free root's pose. Then placeBodies, computeInertias. */
   void takeEnd(const Forest& forest, int tree, ForestMotion* motion) const;
 

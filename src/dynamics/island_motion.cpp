@@ -192,6 +192,16 @@ bool followFast(const Forest& forest, const IslandProblem& problem, double dt, c
   return followed;
 }
 
+void shiftOwed(const Forest& forest, const IslandProblem& problem, double dt, const ForestMotion& motion, const SolverSpace& space,
+               const FreeMotion& way, std::vector<double>* efforts) {
+  for (const JointTerm& j : problem.joints) {
+    const bool fast = isFast(motion, forest.nodes()[forest.nodeOfDof(j.dof)].tree);
+    const double before = motion.owed[j.dof], after = fast ? way.owed(j.dof) : 0, v = space.velocity[j.dof];
+    const bool stopped = j.lowerImpulse(v) > 0 || j.upperImpulse(v) > 0;
+    if ((before != 0 || after != 0) && !stopped) (*efforts)[j.joint] += (after - before) / dt;
+  }
+}
+
 void computeWrenches(const Forest& forest, const Scene& scene, const IslandProblem& problem, double dt, const FreeMotion& way,
                      ForestMotion* motion, SolverSpace* space, std::vector<Wrench>* wrenches) {
   std::vector<Vector6>& reaction = space->wrench;
