@@ -181,7 +181,6 @@ void ArticulatedStepper::finishIsland(const Scene& scene, const StepInput& input
     motion_.next_velocity.segment(t.first_dof, t.dofCount()) = space_.velocity.segment(t.first_dof, t.dofCount());
   }
   island->followed = followFast(forest_, problem, input.dt, motion_, space_, &way_);
-  shiftOwed(forest_, problem, input.dt, motion_, space_, way_, &result->joint_efforts);
   computeWrenches(forest_, scene, problem, input.dt, way_, &motion_, &space_, &result->joint_wrenches);
   advanceIsland(forest_, problem, input.dt, way_, &motion_, space_);
 }

@@ -53,6 +53,15 @@ bool isTied(const Forest& forest, int tree) {
          std::any_of(loops.begin(), loops.end(), [&](const LoopClosure& l) { return belongs(l.child) || belongs(l.parent); });
 }
 
+// Joints that answer stiffly keep their velocity on the way, as far as motor, friction and limits reach.
+void setHold(const JointTerm& joint, double velocity, double inertia, FreeMotion* way) {
+  const bool holds = joint.stiffness(velocity) > HOLDS * inertia;
+  const double reach = (joint.motor_gain > 0 ? joint.motor_bound : 0) + joint.dry_bound;
+  way->held[joint.dof] = holds;
+  way->most[joint.dof] = joint.lowerImpulse(velocity) > 0 ? INFINITY : reach;
+  way->least[joint.dof] = joint.upperImpulse(velocity) > 0 ? -INFINITY : -reach;
+}
+
 void turn(double dt, const Vector3& spin, Matrix3* R) {
   const double angle = dt * spin.norm();
   if (!(angle > 0)) return;
@@ -182,24 +191,13 @@ bool followFast(const Forest& forest, const IslandProblem& problem, double dt, c
   const auto turns = [&](int tree) { return motion.pace[tree] != Pace::SLOW; };
   if (std::none_of(problem.trees.begin(), problem.trees.end(), turns)) return true;
   bool followed = true;
-  for (const JointTerm& j : problem.joints)
-    way->held[j.dof] = j.stiffness(space.velocity[j.dof]) > HOLDS * motion.mass[forest.diagonal(j.dof)];
+  for (const JointTerm& j : problem.joints) setHold(j, space.velocity[j.dof], motion.mass[forest.diagonal(j.dof)], way);
   for (const int tree : problem.trees) {
     followed &= motion.pace[tree] != Pace::TOO_FAST;
     if (!isFast(motion, tree)) continue;
     followed &= way->follow(forest, tree, dt, motion, space.velocity, space.mass_velocity).followed;
   }
   return followed;
-}
-
-void shiftOwed(const Forest& forest, const IslandProblem& problem, double dt, const ForestMotion& motion, const SolverSpace& space,
-               const FreeMotion& way, std::vector<double>* efforts) {
-  for (const JointTerm& j : problem.joints) {
-    const bool fast = isFast(motion, forest.nodes()[forest.nodeOfDof(j.dof)].tree);
-    const double before = motion.owed[j.dof], after = fast ? way.owed(j.dof) : 0, v = space.velocity[j.dof];
-    const bool stopped = j.lowerImpulse(v) > 0 || j.upperImpulse(v) > 0;
-    if ((before != 0 || after != 0) && !stopped) (*efforts)[j.joint] += (after - before) / dt;
-  }
 }
 
 void computeWrenches(const Forest& forest, const Scene& scene, const IslandProblem& problem, double dt, const FreeMotion& way,

@@ -30,10 +30,6 @@ void addEfforts(const StepInput& input, const IslandProblem& problem, SolverSpac
 /** Takes the velocity products at the middle of the step that was solved. @return [sqrt(kg) m/s] by how much the free momentum changed */
 double correctProducts(const Forest& forest, int tree, double dt, ForestMotion* motion, SolverSpace* space);
 
-/** Efforts of joints are what acted in this step: without what was owed from the last one, with what was taken on the way. */
-void shiftOwed(const Forest& forest, const IslandProblem& problem, double dt, const ForestMotion& motion, const SolverSpace& space,
-               const FreeMotion& way, std::vector<double>* efforts);
-
 /** What each joint's child feels from the parent: Newton-Euler backwards over the step, about the joint frame's origin at its start, of a
  *  fast tree at its middle. */
 void computeWrenches(const Forest& forest, const Scene& scene, const IslandProblem& problem, double dt, const FreeMotion& way,
