@@ -61,6 +61,7 @@ void FreeMotion::resize(const Forest& forest) {
   for (auto* v : {&start_position_, &lack_, &inverse_}) v->assign(dofs, 0);
   for (auto* v : {&start_velocity_, &rate_, &sum_position_, &sum_velocity_, &effort_, &sum_effort_, &owed_}) v->setZero(dofs);
   held.assign(dofs, 0);
+  for (auto* v : {&least, &most}) v->assign(dofs, 0);
   drift_.assign(trees, Vector3::Zero());
   spin_.assign(trees, Vector3::Zero());
 }
@@ -223,6 +224,18 @@ double FreeMotion::work(const Forest& forest, int tree) const {
   return sum;
 }
 
+// Of joints that would have to supply more than they can; those that are near it follow at the next try.
+bool FreeMotion::letGo(const Forest& forest, int tree) {
+  const ForestTree& t = forest.trees()[tree];
+  bool some = false;
+  for (int k = t.first_dof; k < t.dof_end; ++k) {
+    if (!held[k] || (owed_[k] >= least[k] && owed_[k] <= most[k])) continue;
+    held[k] = 0;
+    some = true;
+  }
+  return some;
+}
+
 int FreeMotion::firstSteps(const Forest& forest, int tree, double dt) const {
   const ForestTree& t = forest.trees()[tree];
   double fastest = 0;
@@ -251,8 +264,12 @@ FreeMotionReport FreeMotion::follow(const Forest& forest, int tree, double dt, c
   for (int steps = firstSteps(forest, tree, dt);; steps = moreSteps(steps, report.miss)) {
     run(forest, tree, dt, steps, motion, velocity);
     report.evaluations += 4 * steps;
+    if (letGo(forest, tree)) {
+      run(forest, tree, dt, steps, motion, velocity);
+      report.evaluations += 4 * steps;
+    }
     wanted = first + work(forest, tree);
-    report.miss = std::abs(energy(forest, tree) - wanted) / first;
+    report.miss = first > 0 ? std::abs(energy(forest, tree) - wanted) / first : 0;
     if (report.miss <= ENERGY_MISS || steps == MAX_SUB_STEPS) break;
   }
   report.followed = report.miss <= TOO_INEXACT;

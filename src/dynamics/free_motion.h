@@ -22,8 +22,10 @@ class FreeMotion {
  public:
   void resize(const Forest& forest);
 
-  /** Per dof: it keeps its velocity on the way. To be set before `follow`. */
+  /** Per dof: it keeps its velocity on the way. To be set before `follow`, which lets go of those that cannot. */
   std::vector<char> held;
+  /** Per dof [N m s or N s]: what it can supply at least and at most to do so. */
+  std::vector<double> least, most;
 
   /**
    * Follows a tree from its present poses.
@@ -54,6 +56,7 @@ class FreeMotion {
   void run(const Forest& forest, int tree, double dt, int steps, const ForestMotion& motion, const Eigen::VectorXd& velocity);
   double energy(const Forest& forest, int tree) const;
   double work(const Forest& forest, int tree) const;
+  bool letGo(const Forest& forest, int tree);
   void correct(const Forest& forest, int tree, double energy_wanted);
   void leaveFrame(const Forest& forest, int tree, double dt, const ForestMotion& motion);
   Matrix3 turnRigid(const Forest& forest, int tree, double dt, const ForestMotion& motion);

@@ -11,8 +11,8 @@ namespace {
 double productsShare(const ForestTree& tree, int dof) { return tree.free && dof < tree.first_dof + 6 ? 0.5 : 1; }
 
 // Change of the velocities by velocity products in a step, over the velocities: beyond, a tree is fast. One that nothing drives or touches
-// has an energy to keep.
-constexpr double FAST_ALONE = 1e-4, FAST = 0.005;
+// has an energy to keep; where motors act against contacts, forces of both sides are best found together with the products.
+constexpr double FAST_ALONE = 1e-4, FAST = 0.005, FAST_AT_WORK = 0.1;
 constexpr double SMALL_TURN = 0.05;  // [rad] of a free root in a step: beyond, products of the step's start are not those of its end
 // Trees in loops, and those with mimic joints, are solved with their products whatever their speed; beyond this they are no longer right.
 constexpr double TOO_FAST = 0.3;
@@ -51,6 +51,22 @@ bool isTied(const Forest& forest, int tree) {
   const auto& loops = forest.loops();
   return std::any_of(mimics.begin(), mimics.end(), [&](const MimicRelation& m) { return belongs(m.node) || belongs(m.master); }) ||
          std::any_of(loops.begin(), loops.end(), [&](const LoopClosure& l) { return belongs(l.child) || belongs(l.parent); });
+}
+
+Pace paceOf(const Forest& forest, const StepInput& input, bool touched, int tree, double turning) {
+  if (isTied(forest, tree)) return turning > TOO_FAST ? Pace::TOO_FAST : Pace::SLOW;
+  const bool driven = isDriven(forest, tree, input);
+  const double fast = !touched && !driven ? FAST_ALONE : touched && driven ? FAST_AT_WORK : FAST;
+  return turning > fast ? Pace::FAST : Pace::SLOW;
+}
+
+// Joints that answer stiffly keep their velocity on the way, as far as motor, friction and limits reach.
+void setHold(const JointTerm& joint, double velocity, double inertia, FreeMotion* way) {
+  const bool holds = joint.stiffness(velocity) > HOLDS * inertia;
+  const double reach = (joint.motor_gain > 0 ? joint.motor_bound : 0) + joint.dry_bound;
+  way->held[joint.dof] = holds;
+  way->most[joint.dof] = joint.lowerImpulse(velocity) > 0 ? INFINITY : reach;
+  way->least[joint.dof] = joint.upperImpulse(velocity) > 0 ? -INFINITY : -reach;
 }
 
 void turn(double dt, const Vector3& spin, Matrix3* R) {
@@ -145,8 +161,7 @@ void setFreeMomentum(const Forest& forest, const Scene& scene, const StepInput& 
   computeProducts(forest, tree, space->direction, motion);
   multiply(forest, tree, motion->mass, motion->velocity, &space->mass_velocity, &space->paths);
   const double fast = turning(forest, tree, input.dt, *motion, *space);
-  const bool known = fast > FAST || (fast > FAST_ALONE && !touched && !isDriven(forest, tree, input));
-  motion->pace[tree] = !known ? Pace::SLOW : !isTied(forest, tree) ? Pace::FAST : fast > TOO_FAST ? Pace::TOO_FAST : Pace::SLOW;
+  motion->pace[tree] = fast > FAST_ALONE ? paceOf(forest, input, touched, tree, fast) : Pace::SLOW;
   if (isFast(*motion, tree)) motion->products.segment(first, count).setZero();
   space->free_momentum.segment(first, count) = space->mass_velocity.segment(first, count);
   if (t.free) space->free_momentum.segment<6>(first) = motion->momentum[tree];
@@ -182,8 +197,7 @@ bool followFast(const Forest& forest, const IslandProblem& problem, double dt, c
   const auto turns = [&](int tree) { return motion.pace[tree] != Pace::SLOW; };
   if (std::none_of(problem.trees.begin(), problem.trees.end(), turns)) return true;
   bool followed = true;
-  for (const JointTerm& j : problem.joints)
-    way->held[j.dof] = j.stiffness(space.velocity[j.dof]) > HOLDS * motion.mass[forest.diagonal(j.dof)];
+  for (const JointTerm& j : problem.joints) setHold(j, space.velocity[j.dof], motion.mass[forest.diagonal(j.dof)], way);
   for (const int tree : problem.trees) {
     followed &= motion.pace[tree] != Pace::TOO_FAST;
     if (!isFast(motion, tree)) continue;

@@ -33,11 +33,11 @@ inline BodySpec rod(const ChainLink& link) {
 }
 
 struct ChainOptions {
-  bool held = true;            ///< by the world, with a joint
-  bool alternates = false;     ///< axes in turn y and z of the links, else all y
-  double fold = 0;             ///< [rad] of every second link against the others
-  double bend = 0;             ///< [rad] of each link against the one before
-  int slider = -1;             ///< joint that is prismatic, along its link
+  bool held = true;         ///< by the world, with a joint
+  bool alternates = false;  ///< axes in turn y and z of the links, else all y
+  double fold = 0;          ///< [rad] of every second link against the others
+  double bend = 0;          ///< [rad] of each link against the one before
+  int slider = -1;          ///< joint that is prismatic, along its link
   Vector3 gravity{0, 0, -9.81};
 };
 

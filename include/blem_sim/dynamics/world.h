@@ -89,10 +89,10 @@ struct SolveResult {
   std::vector<Wrench> joint_wrenches;   ///< what the child feels from the parent, world axes, about the joint frame's origin at the
                                         ///< start of the step; from motion (Newton-Euler over the step), not from a residual
   std::vector<double> joint_efforts;    ///< [N m or N] motor and friction along the axis
-  double residual = 0;  ///< [N] by how much contact forces miss Coulomb's law, worst contact; 0 where a stepper does not know it
-  double creep = 0;     ///< [rad/s or m/s] by how much velocities miss momentum's balance, sticking joints, limits or loops; worst
-  int iterations = 0;   ///< of the solver, over all islands
-  int lcp_errors = 0;   ///< the complementarity solver complained; the step was redone with more CFM
+  double residual = 0;    ///< [N] by how much contact forces miss Coulomb's law, worst contact; 0 where a stepper does not know it
+  double creep = 0;       ///< [rad/s or m/s] by how much velocities miss momentum's balance, sticking joints, limits or loops; worst
+  int iterations = 0;     ///< of the solver, over all islands
+  int lcp_errors = 0;     ///< the complementarity solver complained; the step was redone with more CFM
   bool too_fast = false;  ///< joints or bodies turned too far in the step for their free motion to be followed: shorten dt
   bool finite = true;     ///< step gave a finite state; if not, bodies stay as before it and nothing else here means anything
 };
