@@ -1,6 +1,8 @@
 // Energy out of nothing, island by island: books of hand-made solves, then scenes that must not set the bit.
 #include "energy_balance.h"
 
+#include <cmath>
+
 #include "simulation_scene.h"
 
 namespace blem_sim {

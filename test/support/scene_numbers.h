@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 
+#include "blem_sim/geometry/types.h"
 #include "random_numbers.h"
 
 namespace blem_sim {
