@@ -95,7 +95,7 @@ class BroadPhase::Search {
     }
     const Vector3 spread = sum_of_squares - sum.cwiseAbs2() / std::max<double>(1, space_.boxes_.size());
     int axes[] = {0, 1, 2};
-    std::stable_sort(axes, axes + 3, [&](int a, int b) { return spread[a] > spread[b]; });
+    std::sort(axes, axes + 3, [&](int a, int b) { return spread[a] > spread[b] || (spread[a] == spread[b] && a < b); });
     return axes[rank];
   }
 
