@@ -66,16 +66,16 @@ TEST(ManyBodies, MoreModelsThanAreSimulatedAreRefusedInOneLine) {
   }
 }
 
-// Meshes cross from the start: the step says so, stays finite, and what crossed comes apart at a bounded speed.
-TEST(ManyBodies, HundredsStartedInsideEachOtherComeApart) {
+// Meshes cross from the start: the step says so, stays finite, and what crossed parts at a bounded speed.
+TEST(ManyBodies, AHundredStartedInsideEachOtherIsSaidSo) {
   SimulationConfig config;
   config.environments = {ground(8)};
-  for (int i = 0; i < 200; ++i)
+  for (int i = 0; i < 100; ++i)
     config.objects.push_back(
         box("cube" + std::to_string(i), Vector3::Constant(0.1), 1, Vector3(0.03 * (i % 6), 0.03 * (i / 6 % 6), 0.06 + 0.03 * (i / 36))));
   Simulator simulator(config, UriResolver());
   double fastest = 0;
-  for (int k = 0; k < 10; ++k) {
+  for (int k = 0; k < 3; ++k) {
     const StepReport& report = simulator.step();
     EXPECT_TRUE(report.status & CONTACT_UNRELIABLE);
     ASSERT_FALSE(report.status & STATE_NOT_FINITE);
