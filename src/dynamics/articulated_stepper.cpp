@@ -4,6 +4,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "contact_motion.h"
 #include "island_impacts.h"
@@ -17,6 +18,7 @@ namespace {
 constexpr double FASTEST = 1e100;       // [m/s or rad/s]: beyond, ODE could not normalise what it is given
 constexpr double SAME_PRODUCTS = 1e-9;  // [sqrt(kg) m/s] change of the free momentum that needs no second pass
 
+constexpr double LIGHT = 0.01;  // [kg]
 constexpr std::uint64_t NO_MORE_TREES = ~0ull;
 
 /** An island with what belongs to it in this step. */
@@ -45,6 +47,7 @@ class ArticulatedStepper : public Stepper {
   void findIslands(const Scene& scene, const std::vector<ContactConstraint>& contacts);
   bool isMoved(const ContactConstraint& contact) const;
   void makeTerms(const TermSource& source, Island* island);
+  NewtonSettings settingsFor(const IslandProblem& problem) const;
   NewtonReport solveTwice(double dt, IslandProblem* problem);
   void solveIsland(const Scene& scene, const StepInput& input, Island* island);
   void finishIsland(const Scene& scene, const StepInput& input, Island* island, SolveResult* result);
@@ -158,9 +161,19 @@ void ArticulatedStepper::makeTerms(const TermSource& source, Island* island) {
   weighContacts(source, &problem);
 }
 
+// What is light is solved to tolerances of its own: those of ordinary things would let it creep.
+NewtonSettings ArticulatedStepper::settingsFor(const IslandProblem& problem) const {
+  NewtonSettings settings;
+  double lightest = LIGHT;
+  for (const int tree : problem.trees) lightest = std::min(lightest, motion_.composite[forest_.trees()[tree].first_node].mass);
+  settings.contact_tolerance *= lightest / LIGHT;
+  settings.gradient_tolerance *= std::sqrt(lightest / LIGHT);
+  return settings;
+}
+
 // With velocity products at the middle of the step, where the first guess of it was not good enough.
 NewtonReport ArticulatedStepper::solveTwice(double dt, IslandProblem* problem) {
-  const NewtonSettings newton;
+  const NewtonSettings newton = settingsFor(*problem);
   NewtonReport report = problem->solve(forest_, motion_, newton, &space_);
   double change = 0;
   for (const int tree : problem->trees) change = std::max(change, correctProducts(forest_, tree, dt, &motion_, &space_));

@@ -7,19 +7,21 @@
 namespace blem_sim {
 namespace {
 
-constexpr int FEW = 4;                  // trees: from here on sweeps take the place of the soft stages,
-constexpr int HEAP = 12;                // and from here on of the first iterations too
-constexpr double RESTING = 1e-6;        // [sqrt(kg) m/s] first gradient below which a heap is like in the step before
+constexpr int HEAP = 32;                // free bodies: from here on sweeps come before the iteration
+constexpr int TOWER = 150;              // most trees of an island that is polished because sweeps did not arrive
+constexpr double RESTING = 1e4;         // times the gradient's tolerance: first gradient of a heap that is like in the step before
 constexpr int RESTING_ITERATIONS = 15;  // for a heap at rest
-// Sweeps of a heap that tumbles end when they change impulses by less than this share of the largest; of a quiet one they are what brings it to rest.
+// Sweeps of a heap that tumbles end when they change impulses by less than this share of the largest; of a quiet one they are what brings
+// it to rest.
 constexpr double TUMBLES = 1e-2, SWEPT = 1e-3;
-constexpr int SWEEPS = 60, SAFE_SWEEPS = 200;
+constexpr int SWEEPS = 60, MOST_SWEEPS = 240;
 // Softness of contacts while a quiet heap is polished: stiffer ones change their kinds too often.
 constexpr double POLISH_SOFTNESS = 300, KEPT_SOFTNESS = 100, INEXACT = 0.02;
-constexpr int POLISH_WORK = 6000, FEWEST_POLISHES = 12, MOST_POLISHES = 40;  // iterations times trees
-constexpr double BALANCED = 1e-4;            // [rad/s or m/s] what a polished step may miss momentum's balance by
-constexpr double TROUBLE = 1e-3;             // [rad/s or m/s] what an iterated one may, before sweeps are asked
+constexpr int POLISH_WORK = 6000, FEWEST_POLISHES = 12, MOST_POLISHES = 60;  // iterations times trees
+constexpr double BALANCED = 1e-5;             // [rad/s or m/s] what a polished step may miss momentum's balance by
+constexpr double TROUBLE = 1e-5;              // [rad/s or m/s] what an iterated one may, before sweeps are asked
 constexpr double RESIDUAL_IS_TROUBLE = 0.01;  // of the largest impulse
+constexpr double CREEP_IS_TROUBLE = 0.01;     // [rad/s or m/s]
 constexpr int MOTOR_ROUNDS = 4;
 constexpr double FREE_ENERGY = 1e-9, GAIN_OF_MOTION = 1e-6;  // [J], and of the work that contacts exchange: what sweeps may gain
 
@@ -47,11 +49,7 @@ void KeptSolution::put(const std::vector<int>& trees, const Forest& forest, Eige
   *loop_terms = loops;
 }
 
-bool IslandProblem::isSwept() const {
-  return static_cast<int>(trees.size()) >= FEW && loops.empty() && mimics.empty() && joints.empty();
-}
-
-bool IslandProblem::isHeap() const { return isSwept() && static_cast<int>(trees.size()) >= HEAP; }
+bool IslandProblem::isHeap() const { return static_cast<int>(trees.size()) >= HEAP && loops.empty() && mimics.empty() && joints.empty(); }
 
 SweepProblem IslandProblem::sweepProblem() const {
   return {*forest_, *motion_, trees, patches, contacts, joints, loops, loop_pairs, mimics, space_->free_momentum, up};
@@ -63,9 +61,11 @@ double IslandProblem::largestImpulse() const {
   return std::sqrt(largest);
 }
 
-bool IslandProblem::isTrouble(const NewtonReport& report) const {
-  return !(report.imbalance <= TROUBLE) || !(report.joint_creep <= RESIDUAL_IS_TROUBLE) ||
-         !(report.contact_residual <= RESIDUAL_IS_TROUBLE * largestImpulse());
+// How far a solution is from a good one: beyond 1 in imbalance, in creep or in what contacts miss. Infinite if it is not a number.
+double IslandProblem::faults(const NewtonReport& report) const {
+  const double contact = report.contact_residual > 0 ? report.contact_residual / (RESIDUAL_IS_TROUBLE * largestImpulse()) : 0;
+  const double worst = std::max({report.imbalance / TROUBLE, report.joint_creep / CREEP_IS_TROUBLE, contact});
+  return std::isfinite(report.imbalance + report.joint_creep + report.contact_residual) ? worst : INFINITY;
 }
 
 void IslandProblem::takeFirstVelocity() {
@@ -179,14 +179,14 @@ bool IslandProblem::solveResting(const NewtonSettings& settings, NewtonReport* r
   few.max_iterations = RESTING_ITERATIONS;
   predict();
   report->iterations = 1 + newton(few, 0, few.max_iterations);
-  if (!(gradient_norm_ <= INEXACT * RESTING)) return false;
+  if (!(gradient_norm_ <= INEXACT * RESTING * settings.gradient_tolerance)) return false;
   finish(few, report);
-  return report->imbalance <= BALANCED && !isTrouble(*report);
+  return report->imbalance <= BALANCED && faults(*report) <= 1;
 }
 
 NewtonReport IslandProblem::solveHeap(const NewtonSettings& settings) {
   NewtonReport report;
-  if (gradient_norm_ <= RESTING && solveResting(settings, &report)) return report;
+  if (gradient_norm_ <= RESTING * settings.gradient_tolerance && solveResting(settings, &report)) return report;
   sweepAndPolish(settings, &report);
   return report;
 }
@@ -197,9 +197,14 @@ void IslandProblem::sweepAndPolish(const NewtonSettings& settings, NewtonReport*
   const SweepProblem problem = sweepProblem();
   if (!sweeps_.load(problem, true, &s.velocity)) return;
   const bool quiet = sweeps_.sweep(1, 0, &s.velocity).first_change <= TUMBLES;
-  report->iterations += 1 + sweeps_.sweep(SWEEPS, quiet ? 0 : SWEPT, &s.velocity).sweeps;
+  const SweepReport swept = sweeps_.sweep(quiet ? SWEEPS : MOST_SWEEPS, quiet ? 0 : SWEPT, &s.velocity);
+  report->iterations += 1 + swept.sweeps;
   adoptSwept();
-  if (quiet || !isHeap()) {
+  NewtonReport found;
+  assess(&found);
+  const bool exact = found.contact_residual <= settings.contact_tolerance && gradient_norm_ <= settings.gradient_tolerance;
+  // Sweeps that did not arrive have a long way to go: towers.
+  if (!exact && (quiet || (swept.last_change > SWEPT && static_cast<int>(trees.size()) <= TOWER))) {
     if (polish(settings, report)) return;
     sweeps_.scale(1, &s.velocity);
     adoptSwept();
@@ -210,16 +215,17 @@ void IslandProblem::sweepAndPolish(const NewtonSettings& settings, NewtonReport*
 // Sweeps that begin where the last step ended, or at nothing: what they find balances momentum, and gains no energy.
 void IslandProblem::recover(NewtonReport* report) {
   SolverSpace& s = *space_;
+  const double kept_faults = faults(*report);
   NewtonReport swept;
   SweepReport sweeps;
   kept_.take(s.velocity, trees, *forest_, contacts, joints, loops);
   takeFirstVelocity();
-  const bool found = sweepFrom(true, SAFE_SWEEPS, SWEPT, &sweeps);
+  const bool found = sweepFrom(true, MOST_SWEEPS, SWEPT, &sweeps);
   if (found) {
     adoptSwept();
     finishSwept(&swept);
   }
-  const bool better = found && (!(report->imbalance <= TROUBLE) || swept.contact_residual < report->contact_residual);
+  const bool better = found && faults(swept) < kept_faults;
   if (better) {
     swept.iterations = report->iterations + sweeps.sweeps;
     *report = swept;

@@ -16,7 +16,7 @@ constexpr int FIRST_ITERATIONS = 4;         // of the hard problem; those after 
 constexpr double FIRST_PROGRESS = 0.1;      // an iteration that leads somewhere reduces the gradient to this
 constexpr double CHORD_PROGRESS = 0.1;      // a factor that is not made anew must have reduced the gradient to this
 constexpr int EASY = 10, ENOUGH_LEFT = 20;  // iterations of a proximal step whose slips are mixed, and of those that are left then
-constexpr double HEAP_TOLERANCE = 1e-8;     // [sqrt(kg) m/s] gradient of a heap that goes on as it did
+constexpr double HEAP_TOLERANCE = 100;      // times the gradient's tolerance: of a heap that goes on as it did
 constexpr double NO_STEP = 1e-16;           // [rad/s or m/s] largest change of a velocity that is none
 
 }  // namespace
@@ -190,7 +190,7 @@ NewtonReport IslandProblem::solve(const Forest& forest, const ForestMotion& moti
   space_ = space;
   start();
   NewtonReport report;
-  if (isSolved(isHeap() ? HEAP_TOLERANCE : settings.gradient_tolerance)) {
+  if (isSolved(isHeap() ? HEAP_TOLERANCE * settings.gradient_tolerance : settings.gradient_tolerance)) {
     finish(settings, &report);
     return report;
   }
@@ -202,7 +202,7 @@ NewtonReport IslandProblem::solve(const Forest& forest, const ForestMotion& moti
     report = iterate(settings);
     ++report.iterations;
   }
-  if (isTrouble(report)) recover(&report);
+  if (faults(report) > 1) recover(&report);
   return report;
 }
 
@@ -212,7 +212,7 @@ NewtonReport IslandProblem::solveAgain(const NewtonSettings& settings) {
     for (const int k : *dofs) s.kinetic[k] = s.mass_velocity[k] - s.free_momentum[k];
   keepFirst();
   NewtonReport report = isHeap() ? solveHeap(settings) : iterate(settings);
-  if (isTrouble(report)) recover(&report);
+  if (faults(report) > 1) recover(&report);
   return report;
 }
 
@@ -231,10 +231,6 @@ NewtonReport IslandProblem::iterate(const NewtonSettings& settings) {
     for (const int k : idle_dofs_) wake(forest_->nodeOfDof(k));
     rewind();
     predict();
-  }
-  if (!solved && isSwept()) {
-    sweepAndPolish(settings, &report);
-    return report;
   }
   if (!solved) {
     for (int stage = 0; stage < SOFT_STAGES; ++stage) {

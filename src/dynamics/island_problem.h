@@ -158,11 +158,10 @@ class IslandProblem {
   NewtonReport iterate(const NewtonSettings& settings);
   void finish(const NewtonSettings& settings, NewtonReport* report);
   // island_heap.cpp: many bodies that push each other, and what the iteration did not solve
-  bool isSwept() const;
   bool isHeap() const;
   SweepProblem sweepProblem() const;
   double largestImpulse() const;
-  bool isTrouble(const NewtonReport& report) const;
+  double faults(const NewtonReport& report) const;
   void takeFirstVelocity();
   void adoptImpulses();
   ContactWork contactWork();

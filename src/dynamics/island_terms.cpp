@@ -6,6 +6,7 @@ namespace blem_sim {
 namespace {
 
 constexpr double CONTACT_PROXIMAL = 1e-4;  // rho = this * inverse mass at the contact: smaller is stiffer and needs more Newton iterations
+constexpr double HEAVIEST = 1e4;           // contacts are no softer than those of a mass this many times below the heaviest tree
 constexpr double JOINT_PROXIMAL = 1e-3;    // gain of friction and limits = inertia / this
 constexpr double DRY_MOMENTUM = 0.9;  // share of its last change that stuck friction is expected to change by: all of it would never settle
 constexpr double LOOP_PROXIMAL = 1e-4;  // rho = this * inverse inertia
@@ -208,6 +209,8 @@ void addContact(const TermSource& s, const ContactConstraint& c, IslandProblem* 
 }
 
 void weighContacts(const TermSource& s, IslandProblem* problem) {
+  double heaviest = 0;
+  for (const int tree : problem->trees) heaviest = std::max(heaviest, s.motion.composite[s.forest.trees()[tree].first_node].mass);
   for (const ContactPatch& patch : problem->patches) {
     Vector3 middle = Vector3::Zero();
     for (int i = patch.first; i < patch.end; ++i) middle += problem->contacts[i].point;
@@ -216,7 +219,7 @@ void weighContacts(const TermSource& s, IslandProblem* problem) {
     if (patch.pair.b >= 0) inverse += inverseMass(s, patch.pair.b, middle - patch.pair.shift);
     for (int i = patch.first; i < patch.end; ++i) {
       problem->contacts[i].inverse_mass = inverse;
-      problem->contacts[i].stiffest_rho = CONTACT_PROXIMAL * inverse;
+      problem->contacts[i].stiffest_rho = CONTACT_PROXIMAL * std::min(inverse, HEAVIEST / heaviest);
     }
   }
 }

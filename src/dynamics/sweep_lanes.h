@@ -11,15 +11,15 @@ using TwistLanes = double[6][LANES];
 
 /** One contact of each of four patches: what stays while they are swept. */
 struct SweepContact {
-  VectorLanes point;             ///< about the reference point of the patch's first body
-  VectorLanes axis[3];           ///< the normal, and two directions across it
+  VectorLanes point;    ///< about the reference point of the patch's first body
+  VectorLanes axis[3];  ///< the normal, and two directions across it
   Lanes friction, compliance, target;
-  Lanes offset[2];               ///< [m/s] across the normal: what the bodies' paths bend apart
-  Lanes normal_gain;             ///< [kg] of the normal row, compliance included
-  Lanes mixed[2];                ///< [1/kg] by which a push moves the point across
-  Lanes tangent[3];              ///< [1/kg] response across: 11, 12, 22
-  Lanes tangent_inverse[3];      ///< [kg] its inverse: 11, 12, 22
-  Lanes slide_gain;              ///< [kg] inverse of the largest response across
+  Lanes offset[2];           ///< [m/s] across the normal: what the bodies' paths bend apart
+  Lanes normal_gain;         ///< [kg] of the normal row, compliance included
+  Lanes mixed[2];            ///< [1/kg] by which a push moves the point across
+  Lanes tangent[3];          ///< [1/kg] response across: 11, 12, 22
+  Lanes tangent_inverse[3];  ///< [kg] its inverse: 11, 12, 22
+  Lanes slide_gain;          ///< [kg] inverse of the largest response across
 };
 
 /** What changes: impulses along the axes [N s]. */
@@ -31,9 +31,9 @@ struct SweepImpulse {
 
 /** Four patches at most, no body in two of them. Lanes without a patch have contacts that never act. */
 struct SweepGroup {
-  int patch[LANES];             ///< -1: none
-  int first = 0, end = 0;       ///< contacts: as many as the largest patch has
-  double response[21][LANES];   ///< of the relative twist to a wrench, about the first body's reference point; lower triangle by rows
+  int patch[LANES];            ///< -1: none
+  int first = 0, end = 0;      ///< contacts: as many as the largest patch has
+  double response[21][LANES];  ///< of the relative twist to a wrench, about the first body's reference point; lower triangle by rows
 };
 
 /** A lane's contact from a term; null: one that never acts. */
@@ -48,9 +48,9 @@ void wrenchOf(const SweepContact* begin, const SweepContact* end, const SweepImp
 
 /** What a sweep over contacts has done. */
 struct SweepChange {
-  double squared = 0;   ///< [N^2 s^2] sum of the changes' squares
-  double largest = 0;   ///< [N^2 s^2] square of the largest change of one contact
-  double impulse = 0;   ///< [N^2 s^2] square of the largest impulse
+  double squared = 0;  ///< [N^2 s^2] sum of the changes' squares
+  double largest = 0;  ///< [N^2 s^2] square of the largest change of one contact
+  double impulse = 0;  ///< [N^2 s^2] square of the largest impulse
 };
 
 /**
@@ -58,8 +58,8 @@ struct SweepChange {
  * @param twist relative, at the present impulses
  * @param wrench by which impulses were changed, out
  */
-void sweep(const SweepGroup& group, const SweepContact* begin, const SweepContact* end, SweepImpulse* impulse,
-           const TwistLanes& twist, TwistLanes* wrench, SweepChange* change);
+void sweep(const SweepGroup& group, const SweepContact* begin, const SweepContact* end, SweepImpulse* impulse, const TwistLanes& twist,
+           TwistLanes* wrench, SweepChange* change);
 
 /** Impulses move on by `share` of the last search direction, which the last changes join. */
 void moveOn(double share, SweepImpulse* begin, SweepImpulse* end);

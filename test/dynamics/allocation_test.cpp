@@ -88,6 +88,30 @@ TEST(Allocation, NoneInAWarmStepOfBounces) {
   EXPECT_EQ(allocated, 0);
 }
 
+// Many bodies are swept: a tower that is kicked again and again.
+TEST(Allocation, NoneInAWarmStepOfAHeap) {
+  constexpr int CUBES = 40;
+  World world({0, 0, -9.81}, {});
+  for (int i = 0; i < CUBES; ++i) world.addBody(boxBody("cube", 1, CUBE, {0, 0, 0.05 + 0.1 * i}));
+  std::vector<ContactConstraint> contacts;
+  contacts.reserve(8 * CUBES);
+  long allocated = 0, iterations = 0;
+  for (int k = 0; k < 60; ++k) {
+    contacts.clear();
+    boxOnPlane(world, 0, CUBE, Vector3::UnitZ(), 0, {}, &contacts);
+    for (int i = 1; i < CUBES; ++i) boxOnBox(world, i, CUBE, i - 1, CUBE, {}, &contacts);
+    for (int i = 0; k % 20 == 0 && i < CUBES; ++i)
+      world.applyWrench(i, {{i % 2 ? 30.0 : -30.0, 0, 0}, Vector3::Zero()}, world.bodyState(i).X_WB.translation());
+    const long before = allocations;
+    const SolveResult& result = world.step(1e-3, contacts, {});
+    if (k < 40) continue;
+    allocated += allocations - before;
+    iterations += result.iterations;
+  }
+  EXPECT_GT(iterations, 60);
+  EXPECT_EQ(allocated, 0);
+}
+
 TEST(Allocation, NoneInAWarmStep) {
   BusyWorld busy;
   for (int i = 0; i < 300; ++i) ASSERT_TRUE(busy.step().finite);

@@ -1,0 +1,117 @@
+// Heaps, towers and mass ratios: what many bodies that push each other do, from any start, without a word of trouble.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "soak/heap.h"
+
+namespace blem_sim {
+namespace {
+
+/** What was seen of some steps. */
+struct Seen {
+  int trouble = 0;     ///< steps that said SOLVER_TROUBLE
+  double gained = 0;   ///< [J] most in a step
+  double speed = 0;    ///< [m/s] at the end, fastest body
+  double deepest = 0;  ///< of the layers
+  std::uint32_t status = 0;
+};
+
+Seen run(Simulator* simulator, double seconds) {
+  Seen seen;
+  const long steps = std::lround(seconds / simulator->config().time_step);
+  for (long i = 0; i < steps; ++i) {
+    const StepReport& report = simulator->step();
+    seen.trouble += (report.status & SOLVER_TROUBLE) != 0;
+    seen.gained = std::max(seen.gained, report.energy_gained);
+    seen.deepest = std::max(seen.deepest, report.max_of_layer);
+    seen.status |= report.status;
+  }
+  for (const BodyState& body : simulator->report().bodies) seen.speed = std::max(seen.speed, body.v_WCom.norm());
+  return seen;
+}
+
+SimulationConfig tower(int cubes) {
+  SimulationConfig config;
+  config.environments = {ground()};
+  for (int i = 0; i < cubes; ++i)
+    config.objects.push_back(box("cube" + std::to_string(i), Vector3::Constant(0.1), 1, {0, 0, 0.055 + 0.105 * i}));
+  return config;
+}
+
+TEST(Heaps, SixtyCubesTumbleWithoutTrouble) {
+  Simulator simulator(heapInBin(60, 1, SolverSettings()), UriResolver());
+  const Seen seen = run(&simulator, 0.6);
+  EXPECT_EQ(seen.trouble, 0);
+  EXPECT_FALSE(seen.status & (STATE_NOT_FINITE | CONTACT_UNRELIABLE));
+  EXPECT_LT(seen.deepest, 0.25);
+}
+
+// What is gained below the bound of ENERGY_GAINED corrects depth.
+TEST(Heaps, PouredSpheresGainNoEnergy) {
+  Simulator simulator(spheresInBin(64, 3, SolverSettings()), UriResolver());
+  const Seen seen = run(&simulator, 0.6);
+  EXPECT_EQ(seen.trouble, 0);
+  EXPECT_FALSE(seen.status & (STATE_NOT_FINITE | CONTACT_UNRELIABLE | ENERGY_GAINED));
+  EXPECT_LT(seen.gained, 3e-6);
+}
+
+TEST(Heaps, TowersOfTwentyAndThirtyRest) {
+  for (const int cubes : {20, 30}) {
+    Simulator simulator(tower(cubes), UriResolver());
+    const Seen seen = run(&simulator, 2);
+    EXPECT_EQ(seen.trouble, 0) << cubes;
+    EXPECT_LT(seen.speed, 1e-6) << cubes;
+    EXPECT_LT(seen.gained, 1e-6) << cubes;
+  }
+}
+
+TEST(Heaps, AThousandTonsRestOnAKilogram) {
+  SimulationConfig config = tower(2);
+  config.objects[1].mass = 1e6;
+  Simulator simulator(config, UriResolver());
+  const Seen seen = run(&simulator, 1);
+  EXPECT_EQ(seen.trouble, 0);
+  EXPECT_LT(seen.speed, 1e-6);
+  // Layers of 2.5 mm: of the ground none, of each cube on either side.
+  EXPECT_NEAR(bodyOf(simulator, "cube1").X_WB.translation().z(), 0.05 + 0.1 + 3 * 0.0025, 1e-5);
+}
+
+TEST(Heaps, SizesFromAMillimetreToAHundredMetresRest) {
+  for (const double size : {1e-3, 1e-2, 10.0, 100.0}) {
+    SimulationConfig config;
+    config.environments = {ground(1000)};
+    config.contact.boundary_width = 0.025 * size;
+    for (int i = 0; i < 3; ++i)
+      config.objects.push_back(
+          box("cube" + std::to_string(i), Vector3::Constant(size), 1000 * size * size * size, {0, 0, (0.55 + 1.06 * i) * size}));
+    Simulator simulator(config, UriResolver());
+    EXPECT_LT(run(&simulator, size > 1 ? 4 : 0.5).speed, 1e-6 * size) << size;
+  }
+}
+
+TEST(Heaps, AreTheSameOnOneThreadAndTwo) {
+  std::uint64_t hashes[2];
+  for (const int threads : {1, 2}) {
+    SolverSettings solver;
+    solver.threads = threads;
+    Simulator simulator(heapInBin(40, 2, solver), UriResolver());
+    run(&simulator, 0.4);
+    hashes[threads - 1] = simulator.stateHash();
+  }
+  EXPECT_EQ(hashes[0], hashes[1]);
+}
+
+TEST(Heaps, ReplayFromAStateSavedWhileTheyTumble) {
+  Simulator simulator(heapInBin(40, 2, SolverSettings()), UriResolver());
+  run(&simulator, 0.3);
+  const SimulationState state = simulator.save();
+  run(&simulator, 0.1);
+  const std::uint64_t hash = simulator.stateHash();
+  simulator.restore(state);
+  run(&simulator, 0.1);
+  EXPECT_EQ(simulator.stateHash(), hash);
+}
+
+}  // namespace
+}  // namespace blem_sim
