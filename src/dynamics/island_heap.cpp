@@ -18,36 +18,13 @@ constexpr int SWEEPS = 60, MOST_SWEEPS = 240;
 // Softness of contacts while a quiet heap is polished: stiffer ones change their kinds too often.
 constexpr double POLISH_SOFTNESS = 300, KEPT_SOFTNESS = 100, INEXACT = 0.02;
 constexpr int POLISH_WORK = 6000, FEWEST_POLISHES = 12, MOST_POLISHES = 60;  // iterations times trees
-constexpr double BALANCED = 1e-5;             // [rad/s or m/s] what a polished step may miss momentum's balance by
-constexpr double TROUBLE = 1e-5;              // [rad/s or m/s] what an iterated one may, before sweeps are asked
-constexpr double RESIDUAL_IS_TROUBLE = 0.01;  // of the largest impulse
-constexpr double CREEP_IS_TROUBLE = 0.01;     // [rad/s or m/s]
-constexpr int MOTOR_ROUNDS = 4;
+constexpr double BALANCED = 1e-5;                                            // [rad/s or m/s] what a step may miss momentum's balance by
+constexpr double RESIDUAL_IS_TROUBLE = 0.01;                                 // of the largest impulse
+constexpr double CREEP_IS_TROUBLE = 0.01;                                    // [rad/s or m/s]
+constexpr int MOTOR_ROUNDS = 4;                                              // of finding which motors are at their bounds
 constexpr double FREE_ENERGY = 1e-9, GAIN_OF_MOTION = 1e-6;  // [J], and of the work that contacts exchange: what sweeps may gain
 
 }  // namespace
-
-void KeptSolution::take(const Eigen::VectorXd& v, const std::vector<int>& trees, const Forest& forest,
-                        const std::vector<ContactTerm>& contacts, const std::vector<JointTerm>& joint_terms,
-                        const std::vector<LoopTerm>& loop_terms) {
-  velocity.clear();
-  impulses.clear();
-  for (const int tree : trees)
-    for (int k = forest.trees()[tree].first_dof; k < forest.trees()[tree].dof_end; ++k) velocity.push_back(v[k]);
-  for (const ContactTerm& c : contacts) impulses.push_back(c.impulse);
-  joints = joint_terms;
-  loops = loop_terms;
-}
-
-void KeptSolution::put(const std::vector<int>& trees, const Forest& forest, Eigen::VectorXd* v, std::vector<ContactTerm>* contacts,
-                       std::vector<JointTerm>* joint_terms, std::vector<LoopTerm>* loop_terms) const {
-  const double* next = velocity.data();
-  for (const int tree : trees)
-    for (int k = forest.trees()[tree].first_dof; k < forest.trees()[tree].dof_end; ++k) (*v)[k] = *next++;
-  for (std::size_t i = 0; i < impulses.size(); ++i) (*contacts)[i].impulse = impulses[i];
-  *joint_terms = joints;
-  *loop_terms = loops;
-}
 
 bool IslandProblem::isHeap() const { return static_cast<int>(trees.size()) >= HEAP && loops.empty() && mimics.empty() && joints.empty(); }
 
@@ -64,7 +41,7 @@ double IslandProblem::largestImpulse() const {
 // How far a solution is from a good one: beyond 1 in imbalance, in creep or in what contacts miss. Infinite if it is not a number.
 double IslandProblem::faults(const NewtonReport& report) const {
   const double contact = report.contact_residual > 0 ? report.contact_residual / (RESIDUAL_IS_TROUBLE * largestImpulse()) : 0;
-  const double worst = std::max({report.imbalance / TROUBLE, report.joint_creep / CREEP_IS_TROUBLE, contact});
+  const double worst = std::max({report.imbalance / BALANCED, report.joint_creep / CREEP_IS_TROUBLE, contact});
   return std::isfinite(report.imbalance + report.joint_creep + report.contact_residual) ? worst : INFINITY;
 }
 
@@ -117,16 +94,17 @@ ContactWork IslandProblem::contactWork() {
   return work;
 }
 
-bool IslandProblem::sweepFrom(bool previous, int most, double enough, SweepReport* report) {
+bool IslandProblem::sweepFrom(SweepStart start, SweepReport* report) {
   SolverSpace& s = *space_;
+  takeFirstVelocity();
   const SweepProblem problem = sweepProblem();
-  if (!sweeps_.load(problem, previous, &s.velocity)) return false;
-  *report = sweeps_.sweep(most, enough, &s.velocity);
+  if (!sweeps_.load(problem, start, &s.velocity)) return false;
+  *report = sweeps_.sweep(MOST_SWEEPS, SWEPT, &s.velocity);
   for (int round = 1; round < MOTOR_ROUNDS && !sweeps_.motorsAgree(s.velocity); ++round) {
     sweeps_.read(s.velocity, &contacts, &joints, &loops);
     for (ContactTerm& c : contacts) c.previous = c.impulse;
-    if (!sweeps_.load(problem, true, &s.velocity)) return false;
-    report->sweeps += sweeps_.sweep(most, enough, &s.velocity).sweeps;
+    if (!sweeps_.load(problem, SweepStart::PREVIOUS, &s.velocity)) return false;
+    report->sweeps += sweeps_.sweep(MOST_SWEEPS, SWEPT, &s.velocity).sweeps;
   }
   return true;
 }
@@ -195,7 +173,7 @@ void IslandProblem::sweepAndPolish(const NewtonSettings& settings, NewtonReport*
   SolverSpace& s = *space_;
   takeFirstVelocity();
   const SweepProblem problem = sweepProblem();
-  if (!sweeps_.load(problem, true, &s.velocity)) return;
+  if (!sweeps_.load(problem, SweepStart::PREVIOUS, &s.velocity)) return;
   const bool quiet = sweeps_.sweep(1, 0, &s.velocity).first_change <= TUMBLES;
   const SweepReport swept = sweeps_.sweep(quiet ? SWEEPS : MOST_SWEEPS, quiet ? 0 : SWEPT, &s.velocity);
   report->iterations += 1 + swept.sweeps;
@@ -212,24 +190,23 @@ void IslandProblem::sweepAndPolish(const NewtonSettings& settings, NewtonReport*
   finishSwept(report);
 }
 
-// Sweeps that begin where the last step ended, or at nothing: what they find balances momentum, and gains no energy.
+// Sweeps that begin where the last step ended, or at nothing: what they find balances momentum, and adds no energy to free motion. Of
+// that and of what was found before, the one of the smallest faults is taken.
 void IslandProblem::recover(NewtonReport* report) {
   SolverSpace& s = *space_;
-  const double kept_faults = faults(*report);
-  NewtonReport swept;
-  SweepReport sweeps;
+  double least = faults(*report);
   kept_.take(s.velocity, trees, *forest_, contacts, joints, loops);
-  takeFirstVelocity();
-  const bool found = sweepFrom(true, MOST_SWEEPS, SWEPT, &sweeps);
-  if (found) {
+  for (const SweepStart start : {SweepStart::PREVIOUS, SweepStart::NOTHING}) {
+    NewtonReport swept;
+    SweepReport sweeps;
+    if (!sweepFrom(start, &sweeps)) break;
+    report->iterations += sweeps.sweeps;
     adoptSwept();
     finishSwept(&swept);
-  }
-  const bool better = found && faults(swept) < kept_faults;
-  if (better) {
-    swept.iterations = report->iterations + sweeps.sweeps;
-    *report = swept;
-    return;
+    const double left = faults(swept);
+    if (left < least) kept_.take(s.velocity, trees, *forest_, contacts, joints, loops);
+    least = std::min(least, left);
+    if (least <= 1) break;
   }
   kept_.put(trees, *forest_, &s.velocity, &contacts, &joints, &loops);
   adoptImpulses();

@@ -12,6 +12,7 @@
 #include "island_sweeps.h"
 #include "islands.h"
 #include "joint_lanes.h"
+#include "kept_solution.h"
 #include "loop_term.h"
 #include "slip_mixing.h"
 #include "tree_rows.h"
@@ -61,19 +62,6 @@ struct ContactWork {
   double gained = 0;     ///< by the bodies, without correcting depth
   double exchanged = 0;  ///< sum without signs
   double change = 0;     ///< impulses times what they change of the velocities
-};
-
-/** What was found, to come back to. */
-struct KeptSolution {
-  std::vector<double> velocity;  ///< of the trees' dofs in turn
-  std::vector<Vector3> impulses;
-  std::vector<JointTerm> joints;
-  std::vector<LoopTerm> loops;
-
-  void take(const Eigen::VectorXd& v, const std::vector<int>& trees, const Forest& forest, const std::vector<ContactTerm>& contacts,
-            const std::vector<JointTerm>& joint_terms, const std::vector<LoopTerm>& loop_terms);
-  void put(const std::vector<int>& trees, const Forest& forest, Eigen::VectorXd* v, std::vector<ContactTerm>* contacts,
-           std::vector<JointTerm>* joint_terms, std::vector<LoopTerm>* loop_terms) const;
 };
 
 /** One island: trees that something ties together. Used again from step to step, so that it need not allocate. */
@@ -165,7 +153,7 @@ class IslandProblem {
   void takeFirstVelocity();
   void adoptImpulses();
   ContactWork contactWork();
-  bool sweepFrom(bool previous, int most, double enough, SweepReport* report);
+  bool sweepFrom(SweepStart start, SweepReport* report);
   void adoptSwept();
   void finishSwept(NewtonReport* report);
   bool polish(const NewtonSettings& settings, NewtonReport* report);

@@ -25,18 +25,18 @@ void IslandSweeps::push(const Pair& pair, const Vector6& wrench, Eigen::VectorXd
   if (pair.pair.b >= 0) response_.push(pair.b, -moveWrench(wrench, -pair.pair.shift), velocity);
 }
 
-bool IslandSweeps::load(const SweepProblem& problem, bool from_previous, Eigen::VectorXd* velocity) {
+bool IslandSweeps::load(const SweepProblem& problem, SweepStart start, Eigen::VectorXd* velocity) {
   problem_.emplace(problem);
   if (!loadResponse(problem, *velocity)) return false;
   pairs_.clear();
   for (const ContactPatch& patch : problem.patches)
     pairs_.push_back({patch.pair, response_.side(patch.pair.a), response_.side(patch.pair.b)});
-  loadJoints(from_previous);
-  loadLoops(from_previous);
+  loadJoints(start);
+  loadLoops(start);
   orderPatches(problem.up);
   colourPatches();
   layGroups();
-  loadContacts(from_previous);
+  loadContacts(start);
   findVelocity(velocity);
   search_.assign(dofs_.size(), 0);
   return true;

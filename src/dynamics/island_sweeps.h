@@ -28,6 +28,9 @@ struct SweepProblem {
   Vector3 up;                            ///< against gravity; zero without
 };
 
+/** Where sweeps begin: at the terms' previous impulses, or at none. */
+enum class SweepStart { PREVIOUS, NOTHING };
+
 struct SweepReport {
   int sweeps = 0;
   double first_change = 0;  ///< largest change of an impulse in the first sweep, over the largest impulse
@@ -37,11 +40,11 @@ struct SweepReport {
 class IslandSweeps {
  public:
   /**
-   * Takes a problem: the terms' previous impulses, or none, are where the sweeps begin.
+   * Takes a problem.
    * @param velocity by dof, of the start of the step: by it motors are thought to be saturated or not; out: that of the impulses
    * @return false if a mass matrix is not positive definite
    */
-  bool load(const SweepProblem& problem, bool from_previous, Eigen::VectorXd* velocity);
+  bool load(const SweepProblem& problem, SweepStart start, Eigen::VectorXd* velocity);
   /** Sweeps until the largest change of an impulse is below `enough` of the largest impulse, at most `most` times. */
   SweepReport sweep(int most, double enough, Eigen::VectorXd* velocity);
   /** Do motors that answer linearly stay within their efforts at a velocity, and only those? */
@@ -75,12 +78,12 @@ class IslandSweeps {
   };
   static Motor motorAt(const JointTerm& joint, double velocity);
   bool loadResponse(const SweepProblem& problem, const Eigen::VectorXd& velocity);
-  void loadJoints(bool from_previous);
-  void loadLoops(bool from_previous);
+  void loadJoints(SweepStart start);
+  void loadLoops(SweepStart start);
   void orderPatches(const Vector3& up);
   void colourPatches();
   void layGroups();
-  void loadContacts(bool from_previous);
+  void loadContacts(SweepStart start);
   void findVelocity(Eigen::VectorXd* velocity);
   Vector6 relativeTwist(const Pair& pair, const Eigen::VectorXd& velocity) const;
   void push(const Pair& pair, const Vector6& wrench, Eigen::VectorXd* velocity) const;

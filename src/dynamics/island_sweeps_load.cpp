@@ -49,7 +49,7 @@ bool IslandSweeps::loadResponse(const SweepProblem& problem, const Eigen::Vector
   return response_.factor(gains_);
 }
 
-void IslandSweeps::loadJoints(bool from_previous) {
+void IslandSweeps::loadJoints(SweepStart start) {
   joint_rows_.clear();
   for (std::size_t i = 0; i < problem_->joints.size(); ++i) {
     const JointTerm& j = problem_->joints[i];
@@ -60,14 +60,14 @@ void IslandSweeps::loadJoints(bool from_previous) {
     row.unit = response_.unitOf(problem_->forest.nodeOfDof(j.dof));
     row.column = response_.column(j.dof);
     row.response = response_.entry(row.column, response_.units()[row.unit].rowOf(j.dof));
-    row.dry = from_previous ? j.dry_previous : 0;
-    row.lower = from_previous ? j.lower_previous : 0;
-    row.upper = from_previous ? j.upper_previous : 0;
+    row.dry = start == SweepStart::PREVIOUS ? j.dry_previous : 0;
+    row.lower = start == SweepStart::PREVIOUS ? j.lower_previous : 0;
+    row.upper = start == SweepStart::PREVIOUS ? j.upper_previous : 0;
     if (row.response > 0) joint_rows_.push_back(row);
   }
 }
 
-void IslandSweeps::loadLoops(bool from_previous) {
+void IslandSweeps::loadLoops(SweepStart start) {
   loop_pairs_.clear();
   loop_rows_.clear();
   for (std::size_t l = 0; l < problem_->loops.size(); ++l) {
@@ -89,12 +89,12 @@ void IslandSweeps::loadLoops(bool from_previous) {
     for (int r = 0; r < 6; ++r)
       if (r >= loop.rows || !std::isfinite(loop.rho[r])) row.inverse.row(r).setZero();
     row.axis_response = along(5, 5);
-    row.impulse = from_previous ? loop.previous : Vector6::Zero();
+    row.impulse = start == SweepStart::PREVIOUS ? loop.previous : Vector6::Zero();
     if (loop.rows < 6) row.impulse[5] = 0;
     row.motor = 0;
-    row.dry = from_previous ? loop.drive.dry_previous : 0;
-    row.lower = from_previous ? loop.drive.lower_previous : 0;
-    row.upper = from_previous ? loop.drive.upper_previous : 0;
+    row.dry = start == SweepStart::PREVIOUS ? loop.drive.dry_previous : 0;
+    row.lower = start == SweepStart::PREVIOUS ? loop.drive.lower_previous : 0;
+    row.upper = start == SweepStart::PREVIOUS ? loop.drive.upper_previous : 0;
     loop_rows_.push_back(row);
   }
 }
@@ -162,7 +162,7 @@ void IslandSweeps::layGroups() {
   changes_.resize(groups_.size());
 }
 
-void IslandSweeps::loadContacts(bool from_previous) {
+void IslandSweeps::loadContacts(SweepStart start) {
   for (SweepGroup& group : groups_) {
     for (int lane = 0; lane < LANES; ++lane) {
       const int p = group.patch[lane];
@@ -178,7 +178,7 @@ void IslandSweeps::loadContacts(bool from_previous) {
     }
     setGains(group, contacts_.data() + group.first, contacts_.data() + group.end);
   }
-  if (!from_previous) blem_sim::scale(0, impulses_.data(), impulses_.data() + impulses_.size());
+  if (start == SweepStart::NOTHING) blem_sim::scale(0, impulses_.data(), impulses_.data() + impulses_.size());
 }
 
 }  // namespace blem_sim
