@@ -13,7 +13,7 @@ constexpr double RESTING = 1e4;         // times the gradient's tolerance: first
 constexpr int RESTING_ITERATIONS = 15;  // for a heap at rest
 // Sweeps of a heap that tumbles end when they change impulses by less than this share of the largest; of a quiet one they are what brings
 // it to rest.
-constexpr double TUMBLES = 1e-2, SWEPT = 1e-3;
+constexpr double TUMBLES = 1e-2, SWEPT = 1e-3, RECOVERED = 1e-7;
 constexpr int SWEEPS = 60, MOST_SWEEPS = 240;
 // Softness of contacts while a quiet heap is polished: stiffer ones change their kinds too often.
 constexpr double POLISH_SOFTNESS = 300, KEPT_SOFTNESS = 100, INEXACT = 0.02;
@@ -99,12 +99,12 @@ bool IslandProblem::sweepFrom(SweepStart start, SweepReport* report) {
   takeFirstVelocity();
   const SweepProblem problem = sweepProblem();
   if (!sweeps_.load(problem, start, &s.velocity)) return false;
-  *report = sweeps_.sweep(MOST_SWEEPS, SWEPT, &s.velocity);
+  *report = sweeps_.sweep(MOST_SWEEPS, RECOVERED, &s.velocity);
   for (int round = 1; round < MOTOR_ROUNDS && !sweeps_.motorsAgree(s.velocity); ++round) {
     sweeps_.read(s.velocity, &contacts, &joints, &loops);
     for (ContactTerm& c : contacts) c.previous = c.impulse;
     if (!sweeps_.load(problem, SweepStart::PREVIOUS, &s.velocity)) return false;
-    report->sweeps += sweeps_.sweep(MOST_SWEEPS, SWEPT, &s.velocity).sweeps;
+    report->sweeps += sweeps_.sweep(MOST_SWEEPS, RECOVERED, &s.velocity).sweeps;
   }
   return true;
 }
