@@ -1,6 +1,8 @@
 // Chains and spinning bodies that nothing drives, against what theory keeps: energy and momenta. The long ones are in test/soak.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "support/chains.h"
 
 namespace blem_sim {

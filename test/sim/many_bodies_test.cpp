@@ -1,6 +1,8 @@
 // Scenes of thousands of bodies: they load, step and are told apart without anything that grows faster than their number.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "blem_sim/geometry/input_error.h"
 #include "simulation_scene.h"
 

@@ -1,4 +1,6 @@
 // Bounces through the whole simulation: a cradle of exact spheres, turning cubes of triangles, and the energy that a step says it gained.
+#include <algorithm>
+#include <cmath>
 #include <random>
 
 #include "simulation_scene.h"
