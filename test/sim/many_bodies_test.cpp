@@ -5,6 +5,7 @@
 
 #include "blem_sim/geometry/input_error.h"
 #include "simulation_scene.h"
+#include "support/sanitizers.h"
 
 namespace blem_sim {
 namespace {
@@ -27,7 +28,7 @@ SimulationConfig cubesApart(int count) {
 }
 
 TEST(ManyBodies, ThreeThousandCubesApartRest) {
-  constexpr int CUBES = 3000;
+  constexpr int CUBES = SANITIZED ? 300 : 3000;
   Simulator simulator(cubesApart(CUBES), UriResolver());
   stepFor(&simulator, 0.05);
   const StepReport& report = simulator.report();
@@ -72,7 +73,7 @@ TEST(ManyBodies, MoreModelsThanAreSimulatedAreRefusedInOneLine) {
 TEST(ManyBodies, AHundredStartedInsideEachOtherIsSaidSo) {
   SimulationConfig config;
   config.environments = {ground(8)};
-  for (int i = 0; i < 100; ++i)
+  for (int i = 0; i < (SANITIZED ? 30 : 100); ++i)
     config.objects.push_back(
         box("cube" + std::to_string(i), Vector3::Constant(0.1), 1, Vector3(0.03 * (i % 6), 0.03 * (i / 6 % 6), 0.06 + 0.03 * (i / 36))));
   Simulator simulator(config, UriResolver());
