@@ -171,7 +171,7 @@ class BroadPhase::Search {
     return (static_cast<std::uint64_t>(first) << 32) ^ (static_cast<std::uint64_t>(second) & 0xffffffffu);
   }
 
-  /** Of two boxes that overlap along the cells' axes: where they meet is decided in one cell alone. */
+  /** Two boxes that share several cells are a pair in one of them only. */
   std::uint64_t firstCommonCell(const SweepBox& box, const SweepBox& other) const {
     const auto first = [&](int i) { return cellAt(std::max(begin(box, cell_axes_[i]), begin(other, cell_axes_[i])), i); };
     return cellOf(first(0), first(1));

@@ -18,7 +18,7 @@ namespace {
 constexpr double FASTEST = 1e100;       // [m/s or rad/s]: beyond, ODE could not normalise what it is given
 constexpr double SAME_PRODUCTS = 1e-9;  // [sqrt(kg) m/s] change of the free momentum that needs no second pass
 
-constexpr double LIGHT = 0.01;  // [kg]
+constexpr double LIGHT = 0.01;  // [kg] mass of the lightest tree of an island, below which tolerances shrink
 constexpr std::uint64_t NO_MORE_TREES = ~0ull;
 
 /** An island with what belongs to it in this step. */
@@ -161,7 +161,7 @@ void ArticulatedStepper::makeTerms(const TermSource& source, Island* island) {
   weighContacts(source, &problem);
 }
 
-// What is light is solved to tolerances of its own: those of ordinary things would let it creep.
+// Tolerances shrink with the lightest tree, below 10 g: those of heavier trees would let it creep.
 NewtonSettings ArticulatedStepper::settingsFor(const IslandProblem& problem) const {
   NewtonSettings settings;
   double lightest = LIGHT;
@@ -249,7 +249,7 @@ void ArticulatedStepper::remember(const StepInput& input, const SolveResult& res
     const Island& island = islands_of_step_[n];
     for (std::size_t i = 0; i < island.contacts.size(); ++i) {
       const ContactConstraint& c = input.contacts[island.contacts[i]];
-      // What was an impact's does not last.
+      // The impulse of an impact does not go on in the next step.
       Vector3 force = result.contact_forces[island.contacts[i]];
       if (island.impacts.any()) force -= termSign(c) / input.dt * island.impacts.impulse(i);
       const bool pushes = c.normal_BA.dot(force) > 0;

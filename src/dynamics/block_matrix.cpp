@@ -169,7 +169,7 @@ bool BlockMatrix::factorColumn(const Column& column) {
   return true;
 }
 
-// Where the blocks begin that the neighbours from entry e on share with that of e.
+// Places of the blocks that the neighbour of entry e shares with those of the entries from e on.
 void BlockMatrix::findTargets(const Column& column, int e) {
   const Column& target = columns_[entries_[e].column];
   targets_[0] = target.diagonal;

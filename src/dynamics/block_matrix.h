@@ -68,7 +68,7 @@ class BlockMatrix {
   int size_ = 0;
   std::vector<int> sizes_, offsets_;
   std::vector<std::pair<int, int>> couplings_;  // as they were told
-  // What the columns at hand were made for.
+  // Pattern that the columns at hand were made for.
   std::vector<int> analysed_sizes_;
   std::vector<std::pair<int, int>> analysed_couplings_;
   EliminationOrder order_;

@@ -1,4 +1,4 @@
-// What of an island acts on what: pairs of bodies, the contacts between them, joints that follow others.
+// Pairs of bodies of an island, the contacts between them, and joints that follow others.
 #pragma once
 
 #include "spatial.h"

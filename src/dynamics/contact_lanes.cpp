@@ -3,37 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#if defined(__GNUC__)
-#define BLEM_SIM_INLINE inline __attribute__((always_inline))
-#else
-#define BLEM_SIM_INLINE inline
-#endif
+#include "lane_vectors.h"
 
 namespace blem_sim {
 namespace {
 
 constexpr double NO_FRICTION = 1e-9;   // of the push: below, the direction of friction is made of rounding errors
 constexpr double STICKING = 1 - 1e-9;  // of friction's bound: what was remembered below it had stuck
-
-struct Triple {
-  double x, y, z;
-};
-BLEM_SIM_INLINE Triple at(const VectorLanes& v, int lane) { return {v[0][lane], v[1][lane], v[2][lane]}; }
-BLEM_SIM_INLINE void put(const Triple& v, int lane, VectorLanes* out) {
-  (*out)[0][lane] = v.x;
-  (*out)[1][lane] = v.y;
-  (*out)[2][lane] = v.z;
-}
-BLEM_SIM_INLINE Triple operator+(const Triple& a, const Triple& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-BLEM_SIM_INLINE Triple operator-(const Triple& a, const Triple& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-BLEM_SIM_INLINE Triple operator*(double s, const Triple& a) { return {s * a.x, s * a.y, s * a.z}; }
-BLEM_SIM_INLINE double dot(const Triple& a, const Triple& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-BLEM_SIM_INLINE Triple cross(const Triple& a, const Triple& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-BLEM_SIM_INLINE Triple either(bool first, const Triple& a, const Triple& b) {
-  return {first ? a.x : b.x, first ? a.y : b.y, first ? a.z : b.z};
-}
 
 /** Slope and curvature of a contact's potential along its step. */
 struct LaneSlope {

@@ -107,7 +107,7 @@ void FreeMotion::articulate(const Forest& forest, int node) {
   articulated_[n.parent].noalias() -= pull * scaled.transpose();
 }
 
-// Of all dofs, and what those that are held need.
+// Accelerations of all dofs, and the efforts that held joints need.
 BLEM_SIM_LANES void FreeMotion::accelerate(const Forest& forest, int tree) {
   const ForestTree& t = forest.trees()[tree];
   for (int i = t.first_node; i < t.node_end; ++i) {
@@ -224,7 +224,7 @@ double FreeMotion::work(const Forest& forest, int tree) const {
   return sum;
 }
 
-// Of joints that would have to supply more than they can; those that are near it follow at the next try.
+// Joints that would have to supply more than they can are held no longer; those near their bounds may follow at the next try.
 bool FreeMotion::letGo(const Forest& forest, int tree) {
   const ForestTree& t = forest.trees()[tree];
   bool some = false;

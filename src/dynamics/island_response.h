@@ -52,7 +52,6 @@ class IslandResponse {
 
   int unitOf(int node) const;
   const std::vector<ResponseUnit>& units() const { return units_; }
-  int unitCount() const { return unit_count_; }
   /** Number of free bodies and units, and which of them a side belongs to. */
   int movers() const { return static_cast<int>(free_.size()) + unit_count_; }
   int moverOf(const ResponseSide& side) const;

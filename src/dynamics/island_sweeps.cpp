@@ -51,31 +51,46 @@ void IslandSweeps::findVelocity(Eigen::VectorXd* velocity) {
     for (int lane = 0; lane < LANES; ++lane)
       if (group.patch[lane] >= 0) push(pairs_[group.patch[lane]], columnOf(wrench, lane), velocity);
   }
-  for (const JointRow& row : joint_rows_) response_.push(row.unit, row.column, row.dry + row.lower - row.upper, velocity);
+  for (const JointRow& row : joint_rows_) response_.push(row.unit, row.column, row.axis.sum(), velocity);
   for (std::size_t l = 0; l < loop_rows_.size(); ++l) {
     const LoopRow& row = loop_rows_[l];
     Vector6 impulse = row.impulse;
-    if (problem_->loops[l].rows < 6) impulse[5] = row.motor + row.dry + row.lower - row.upper;
+    if (problem_->loops[l].rows < 6) impulse[5] = row.axis.sum();
     push(loop_pairs_[l], problem_->loops[l].basis * impulse, velocity);
   }
 }
 
+double IslandSweeps::AxisRow::visit(const JointTerm& joint, double v, double change) {
+  const double gain = 1 / response;
+  const auto set = [&](double* impulse, double sign, double now) {
+    const double by = sign * (now - *impulse);
+    *impulse = now;
+    change += by;
+    v += response * by;
+  };
+  if (joint.dry_bound > 0) set(&dry, 1, std::clamp(dry - gain * v, -joint.dry_bound, joint.dry_bound));
+  if (joint.limit_gain > 0) {
+    set(&lower, 1, std::max(0.0, lower + gain * (joint.lower_velocity - v)));
+    set(&upper, -1, std::max(0.0, upper + gain * (v - joint.upper_velocity)));
+  }
+  return change;
+}
+
+double IslandSweeps::AxisRow::visitMotor(const JointTerm& joint, double v) {
+  const double gain = joint.motor_gain, before = motor;
+  if (!(gain > 0)) return 0;
+  const double wanted = motor + (gain * (joint.motor_velocity - v) - motor) / (1 + gain * response);
+  motor = std::clamp(wanted, -joint.motor_bound, joint.motor_bound);
+  return motor - before;
+}
+
+void IslandSweeps::AxisRow::scale(double factor) {
+  for (double* impulse : {&motor, &dry, &lower, &upper}) *impulse *= factor;
+}
+
 void IslandSweeps::sweepJoints(Eigen::VectorXd* velocity) {
   for (JointRow& row : joint_rows_) {
-    const JointTerm& j = problem_->joints[row.term];
-    const double gain = 1 / row.response;
-    double v = (*velocity)[row.dof], change = 0;
-    const auto set = [&](double* impulse, double sign, double now) {
-      const double by = sign * (now - *impulse);
-      *impulse = now;
-      change += by;
-      v += row.response * by;
-    };
-    if (j.dry_bound > 0) set(&row.dry, 1, std::clamp(row.dry - gain * v, -j.dry_bound, j.dry_bound));
-    if (j.limit_gain > 0) {
-      set(&row.lower, 1, std::max(0.0, row.lower + gain * (j.lower_velocity - v)));
-      set(&row.upper, -1, std::max(0.0, row.upper + gain * (v - j.upper_velocity)));
-    }
+    const double change = row.axis.visit(problem_->joints[row.term], (*velocity)[row.dof]);
     if (change != 0) response_.push(row.unit, row.column, change, velocity);
   }
 }
@@ -87,26 +102,10 @@ void IslandSweeps::sweepLoops(Eigen::VectorXd* velocity) {
     const Vector6 forbidden = row.inverse * (loop.target - loop.basis.transpose() * relativeTwist(loop_pairs_[l], *velocity));
     row.impulse += forbidden;
     push(loop_pairs_[l], loop.basis * forbidden, velocity);
-    if (loop.rows == 6 || !(row.axis_response > 0)) continue;
-    const JointTerm& j = loop.drive;
-    double v = (loop.basis.transpose() * relativeTwist(loop_pairs_[l], *velocity))[5], change = 0;
-    const double gain = 1 / row.axis_response;
-    const auto set = [&](double* impulse, double sign, double now) {
-      const double by = sign * (now - *impulse);
-      *impulse = now;
-      change += by;
-      v += row.axis_response * by;
-    };
-    const double stiffness = j.motor_gain;
-    if (stiffness > 0) {
-      const double wanted = row.motor + (stiffness * (j.motor_velocity - v) - row.motor) / (1 + stiffness * row.axis_response);
-      set(&row.motor, 1, std::clamp(wanted, -j.motor_bound, j.motor_bound));
-    }
-    if (j.dry_bound > 0) set(&row.dry, 1, std::clamp(row.dry - gain * v, -j.dry_bound, j.dry_bound));
-    if (j.limit_gain > 0) {
-      set(&row.lower, 1, std::max(0.0, row.lower + gain * (j.lower_velocity - v)));
-      set(&row.upper, -1, std::max(0.0, row.upper + gain * (v - j.upper_velocity)));
-    }
+    if (loop.rows == 6 || !(row.axis.response > 0)) continue;
+    const double v = (loop.basis.transpose() * relativeTwist(loop_pairs_[l], *velocity))[5];
+    const double by_motor = row.axis.visitMotor(loop.drive, v);
+    const double change = row.axis.visit(loop.drive, v + row.axis.response * by_motor, by_motor);
     push(loop_pairs_[l], change * loop.basis.col(5), velocity);
   }
 }
@@ -200,11 +199,10 @@ SweepReport IslandSweeps::sweep(int most, double enough, Eigen::VectorXd* veloci
 
 void IslandSweeps::scale(double factor, Eigen::VectorXd* velocity) {
   blem_sim::scale(factor, impulses_.data(), impulses_.data() + impulses_.size());
-  for (JointRow& row : joint_rows_)
-    for (double* impulse : {&row.dry, &row.lower, &row.upper}) *impulse *= factor;
+  for (JointRow& row : joint_rows_) row.axis.scale(factor);
   for (LoopRow& row : loop_rows_) {
     row.impulse *= factor;
-    for (double* impulse : {&row.motor, &row.dry, &row.lower, &row.upper}) *impulse *= factor;
+    row.axis.scale(factor);
   }
   findVelocity(velocity);
 }
@@ -221,20 +219,20 @@ void IslandSweeps::read(const Eigen::VectorXd& velocity, std::vector<ContactTerm
       }
     }
   }
-  const auto adopt = [](double dry, double lower, double upper, double v, JointTerm* j) {
-    j->dry_previous = dry + j->dry_gain / j->softness * v;
+  const auto adopt = [](const AxisRow& row, double v, JointTerm* j) {
+    j->dry_previous = row.dry + j->dry_gain / j->softness * v;
     const double gain = j->limit_gain / j->softness;
-    j->lower_previous = lower > 0 ? lower - gain * (j->lower_velocity - v) : 0;
-    j->upper_previous = upper > 0 ? upper - gain * (v - j->upper_velocity) : 0;
+    j->lower_previous = row.lower > 0 ? row.lower - gain * (j->lower_velocity - v) : 0;
+    j->upper_previous = row.upper > 0 ? row.upper - gain * (v - j->upper_velocity) : 0;
   };
-  for (const JointRow& row : joint_rows_) adopt(row.dry, row.lower, row.upper, velocity[row.dof], &(*joints)[row.term]);
+  for (const JointRow& row : joint_rows_) adopt(row.axis, velocity[row.dof], &(*joints)[row.term]);
   for (std::size_t l = 0; l < loop_rows_.size(); ++l) {
     LoopTerm& loop = (*loops)[l];
     const LoopRow& row = loop_rows_[l];
     const Vector6 v = loop.basis.transpose() * relativeTwist(loop_pairs_[l], velocity);
     for (int r = 0; r < loop.rows; ++r)
       if (std::isfinite(loop.rho[r])) loop.previous[r] = row.impulse[r] - (loop.target[r] - v[r]) / loop.rho[r];
-    if (loop.rows < 6) adopt(row.dry, row.lower, row.upper, v[5], &loop.drive);
+    if (loop.rows < 6) adopt(row.axis, v[5], &loop.drive);
   }
 }
 

@@ -64,17 +64,29 @@ class IslandSweeps {
     BodyPair pair;
     ResponseSide a, b;
   };
+  /** Impulses along the axis of a joint. */
+  struct AxisRow {
+    double response = 0;  // [1/kg or 1/(kg m^2)] of the joint's velocity
+    double motor = 0, dry = 0, lower = 0, upper = 0;
+
+    AxisRow() = default;
+    AxisRow(const JointTerm& joint, double axis_response, SweepStart start);
+    double sum() const { return motor + dry + lower - upper; }
+    void scale(double factor);
+    /** Visits friction and limits at a velocity. @return `change` and by how much their sum has changed */
+    double visit(const JointTerm& joint, double v, double change = 0);
+    /** Change of the impulse of a motor that is not folded into the mass matrix. */
+    double visitMotor(const JointTerm& joint, double v);
+  };
   struct JointRow {
     int term, unit, dof;
     std::size_t column;
-    double response;
-    double dry, lower, upper;
+    AxisRow axis;
   };
   struct LoopRow {
-    Matrix6 inverse;       // of the forbidden rows' response
-    double axis_response;  // along the free axis
-    Vector6 impulse;       // of forbidden rows
-    double motor, dry, lower, upper;
+    Matrix6 inverse;  // of the forbidden rows' response
+    Vector6 impulse;  // of forbidden rows
+    AxisRow axis;     // the free one
   };
   static Motor motorAt(const JointTerm& joint, double velocity);
   bool loadResponse(const SweepProblem& problem, const Eigen::VectorXd& velocity);

@@ -49,6 +49,13 @@ bool IslandSweeps::loadResponse(const SweepProblem& problem, const Eigen::Vector
   return response_.factor(gains_);
 }
 
+IslandSweeps::AxisRow::AxisRow(const JointTerm& joint, double axis_response, SweepStart start) : response(axis_response) {
+  if (start == SweepStart::NOTHING) return;
+  dry = joint.dry_previous;
+  lower = joint.lower_previous;
+  upper = joint.upper_previous;
+}
+
 void IslandSweeps::loadJoints(SweepStart start) {
   joint_rows_.clear();
   for (std::size_t i = 0; i < problem_->joints.size(); ++i) {
@@ -59,11 +66,8 @@ void IslandSweeps::loadJoints(SweepStart start) {
     row.dof = j.dof;
     row.unit = response_.unitOf(problem_->forest.nodeOfDof(j.dof));
     row.column = response_.column(j.dof);
-    row.response = response_.entry(row.column, response_.units()[row.unit].rowOf(j.dof));
-    row.dry = start == SweepStart::PREVIOUS ? j.dry_previous : 0;
-    row.lower = start == SweepStart::PREVIOUS ? j.lower_previous : 0;
-    row.upper = start == SweepStart::PREVIOUS ? j.upper_previous : 0;
-    if (row.response > 0) joint_rows_.push_back(row);
+    row.axis = AxisRow(j, response_.entry(row.column, response_.units()[row.unit].rowOf(j.dof)), start);
+    if (row.axis.response > 0) joint_rows_.push_back(row);
   }
 }
 
@@ -88,13 +92,9 @@ void IslandSweeps::loadLoops(SweepStart start) {
     row.inverse = forbidden.inverse();
     for (int r = 0; r < 6; ++r)
       if (r >= loop.rows || !std::isfinite(loop.rho[r])) row.inverse.row(r).setZero();
-    row.axis_response = along(5, 5);
     row.impulse = start == SweepStart::PREVIOUS ? loop.previous : Vector6::Zero();
     if (loop.rows < 6) row.impulse[5] = 0;
-    row.motor = 0;
-    row.dry = start == SweepStart::PREVIOUS ? loop.drive.dry_previous : 0;
-    row.lower = start == SweepStart::PREVIOUS ? loop.drive.lower_previous : 0;
-    row.upper = start == SweepStart::PREVIOUS ? loop.drive.upper_previous : 0;
+    row.axis = AxisRow(loop.drive, along(5, 5), start);
     loop_rows_.push_back(row);
   }
 }

@@ -3,25 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#if defined(__GNUC__)
-#define BLEM_SIM_INLINE inline __attribute__((always_inline))
-#else
-#define BLEM_SIM_INLINE inline
-#endif
+#include "lane_vectors.h"
 
 namespace blem_sim {
 namespace {
-
-struct Triple {
-  double x, y, z;
-};
-BLEM_SIM_INLINE Triple at(const VectorLanes& v, int lane) { return {v[0][lane], v[1][lane], v[2][lane]}; }
-BLEM_SIM_INLINE Triple operator+(const Triple& a, const Triple& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-BLEM_SIM_INLINE Triple operator*(double s, const Triple& a) { return {s * a.x, s * a.y, s * a.z}; }
-BLEM_SIM_INLINE double dot(const Triple& a, const Triple& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-BLEM_SIM_INLINE Triple cross(const Triple& a, const Triple& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
 
 /** A lane's relative twist or wrench. */
 struct Six {
