@@ -1,7 +1,8 @@
 // Heaps in a bin beside Bullet: cubes of twelve triangles (there boxes), exact spheres. Both take turns in one run, so that ratios mean
-// more than times. Processor time of the stepping thread, of stages too. Arguments: --seconds=S simulated (4 if not given), then Google
-// Benchmark's: --benchmark_filter='cubes/(30|100)/' chooses sizes.
+// more than times. Processor time of the stepping thread, of stages too. One island on one thread and on two, in turns, by the wall's
+// clock. Arguments: --seconds=S simulated (4 if not given), then Google Benchmark's: --benchmark_filter='cubes/(30|100)/' chooses sizes.
 #include <benchmark/benchmark.h>
+#include <time.h>
 
 #include <array>
 #include <cstdlib>
@@ -185,6 +186,40 @@ void add(const Heap& heap) {
       ->Unit(benchmark::kMicrosecond);
 }
 
+double wallSeconds() {
+  timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+/** Mean time of a step of some [us]. */
+double meanOfTurn(Simulator* simulator, int steps) {
+  const double start = wallSeconds();
+  for (int i = 0; i < steps; ++i) simulator->step();
+  return 1e6 * (wallSeconds() - start) / steps;
+}
+
+/** The same heap on one thread and on two. */
+void compareThreads(int count, benchmark::State& state) {
+  std::unique_ptr<Simulator> simulators[2];
+  for (const int threads : {1, 2}) {
+    SolverSettings solver;
+    solver.threads = threads;
+    simulators[threads - 1] = std::make_unique<Simulator>(heapInBin(count, SEED, solver), UriResolver(sharedPackages()));
+  }
+  const int turns = static_cast<int>(std::lround(seconds_simulated / simulators[0]->config().time_step)) / TURN;
+  double mean[2] = {};
+  for (auto _ : state) {
+    for (int turn = 0; turn < turns; ++turn)
+      for (int i = 0; i < 2; ++i) mean[i] += meanOfTurn(simulators[i].get(), TURN) / turns;
+    state.SetIterationTime(1e-6 * mean[1]);
+  }
+  state.counters["one_thread_mean_us"] = mean[0];
+  state.counters["two_threads_mean_us"] = mean[1];
+  state.counters["speed_up"] = mean[0] / mean[1];
+  state.counters["same_hash"] = simulators[0]->stateHash() == simulators[1]->stateHash() ? 1 : 0;
+}
+
 /** Takes --seconds=S out of the arguments. */
 void takeSeconds(int* argc, char** argv) {
   static const char OPTION[] = "--seconds=";
@@ -206,6 +241,12 @@ int main(int argc, char** argv) {
   takeSeconds(&argc, argv);
   for (const int size : {30, 100, 300, 1000}) add({"cubes", size, heapInBin, cubes});
   add({"spheres", 1000, spheresInBin, spheres});
+  for (const int size : {100, 300, 1000})
+    benchmark::RegisterBenchmark(("heaps/threads/" + std::to_string(size)).c_str(),
+                                 [size](benchmark::State& state) { compareThreads(size, state); })
+        ->Iterations(1)
+        ->UseManualTime()
+        ->Unit(benchmark::kMicrosecond);
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
   benchmark::RunSpecifiedBenchmarks();

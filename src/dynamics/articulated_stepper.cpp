@@ -18,7 +18,8 @@ namespace {
 constexpr double FASTEST = 1e100;       // [m/s or rad/s]: beyond, ODE could not normalise what it is given
 constexpr double SAME_PRODUCTS = 1e-9;  // [sqrt(kg) m/s] change of the free momentum that needs no second pass
 
-constexpr double LIGHT = 0.01;  // [kg] mass of the lightest tree of an island, below which tolerances shrink
+constexpr std::size_t SHARED = 300;  // contacts of an island that threads share
+constexpr double LIGHT = 0.01;       // [kg] mass of the lightest tree of an island, below which tolerances shrink
 constexpr std::uint64_t NO_MORE_TREES = ~0ull;
 
 /** An island with what belongs to it in this step. */
@@ -168,6 +169,7 @@ NewtonSettings ArticulatedStepper::settingsFor(const IslandProblem& problem) con
   for (const int tree : problem.trees) lightest = std::min(lightest, motion_.composite[forest_.trees()[tree].first_node].mass);
   settings.contact_tolerance *= lightest / LIGHT;
   settings.gradient_tolerance *= std::sqrt(lightest / LIGHT);
+  settings.helpers = problem.contacts.size() >= SHARED ? settings_.threads - 1 : 0;
   return settings;
 }
 
@@ -273,7 +275,8 @@ void ArticulatedStepper::writeScene(Scene* scene) {
 // Islands share nothing that they write, so their order does not matter.
 template <typename Work>
 void ArticulatedStepper::forEachIsland(const Work& work) {
-  if (settings_.threads == 1 || island_count_ == 1) {
+  const bool alone = island_count_ == 1 && islands_of_step_[0].contacts.size() < SHARED;
+  if (settings_.threads == 1 || alone) {
     for (int i = 0; i < island_count_; ++i) work(&islands_of_step_[i]);
   } else {
     arena_.execute([&] { tbb::parallel_for(0, island_count_, [&](int i) { work(&islands_of_step_[i]); }); });

@@ -11,6 +11,9 @@ namespace {
 using FreeBlock = Eigen::Matrix<double, FREE, FREE>;
 using FreeMap = Eigen::Map<FreeBlock>;
 
+constexpr int ENTRIES_AT_ONCE = 6;  // of a column, that a thread takes at least
+constexpr int MOST_CHUNKS = 8;
+
 /** Rows of a block below the diagonal times the inverse of the diagonal's transposed factor. */
 template <typename Rows, typename Factor>
 void divide(Rows&& rows, const Factor& l) {
@@ -80,13 +83,14 @@ void BlockMatrix::sortEntries() {
 }
 
 void BlockMatrix::place() {
-  std::size_t next = 0, most = 0;
+  std::size_t next = 0;
+  most_entries_ = 0;
   rows_.resize(entries_.size());
   for (Column& column : columns_) {
     column.diagonal = next;
     column.free = column.size == FREE;
     next += static_cast<std::size_t>(column.size) * column.size;
-    most = std::max(most, static_cast<std::size_t>(column.end - column.first));
+    most_entries_ = std::max(most_entries_, static_cast<std::size_t>(column.end - column.first));
     for (int e = column.first; e < column.end; ++e) {
       const Column& row = columns_[entries_[e].column];
       column.free = column.free && row.size == FREE;
@@ -96,7 +100,7 @@ void BlockMatrix::place() {
     }
   }
   values_.resize(next);
-  targets_.resize(most);
+  targets_.resize(MOST_CHUNKS * most_entries_);
 }
 
 void BlockMatrix::setZero() { std::fill(values_.begin(), values_.end(), 0.0); }
@@ -170,43 +174,46 @@ bool BlockMatrix::factorColumn(const Column& column) {
 }
 
 // Places of the blocks that the neighbour of entry e shares with those of the entries from e on.
-void BlockMatrix::findTargets(const Column& column, int e) {
+void BlockMatrix::findTargets(const Column& column, int e, std::size_t* targets) const {
   const Column& target = columns_[entries_[e].column];
-  targets_[0] = target.diagonal;
+  targets[0] = target.diagonal;
   int slot = target.first;
   for (int f = e + 1; f < column.end; ++f) {
     while (entries_[slot].column != entries_[f].column) ++slot;
-    targets_[f - e] = entries_[slot].value;
+    targets[f - e] = entries_[slot].value;
   }
 }
 
-// What the column's elimination takes from the blocks that its neighbours share.
-void BlockMatrix::subtractOuter(const Column& column) {
+// What the column's elimination takes from the blocks that the neighbour of entry e shares with those of the entries from e on.
+void BlockMatrix::subtractOuter(const Column& column, int e, std::size_t* targets) {
   double* values = values_.data();
-  for (int e = column.first; e < column.end; ++e) {
-    findTargets(column, e);
-    const double* own = values + entries_[e].value;
-    if (column.free) {
-      subtractFree(own, own, column.end - e, targets_.data(), values);
-      continue;
-    }
-    const int size = columns_[entries_[e].column].size;
-    for (int f = e; f < column.end; ++f) {
-      const int rows = columns_[entries_[f].column].size;
-      const std::size_t at = targets_[f - e];
-      if (column.size == FREE && size == FREE && rows == FREE)
-        subtractFree(own, values + entries_[f].value, 1, &at, values);
-      else
-        Block(values + at, rows, size).noalias() -= entryBlock(column, entries_[f]) * entryBlock(column, entries_[e]).transpose();
-    }
+  findTargets(column, e, targets);
+  const double* own = values + entries_[e].value;
+  if (column.free) return subtractFree(own, own, column.end - e, targets, values);
+  const int size = columns_[entries_[e].column].size;
+  for (int f = e; f < column.end; ++f) {
+    const int rows = columns_[entries_[f].column].size;
+    const std::size_t at = targets[f - e];
+    if (column.size == FREE && size == FREE && rows == FREE)
+      subtractFree(own, values + entries_[f].value, 1, &at, values);
+    else
+      Block(values + at, rows, size).noalias() -= entryBlock(column, entries_[f]) * entryBlock(column, entries_[e]).transpose();
   }
 }
 
-bool BlockMatrix::factor() {
+// Entries take from blocks of their own. The first ones take from most, so chunks are every so manieth entry.
+void BlockMatrix::subtractAllOuter(const Column& column, Team* team) {
+  const int chunks = std::clamp((column.end - column.first) / ENTRIES_AT_ONCE, 1, MOST_CHUNKS);
+  team->forChunks(chunks, [&](int chunk) {
+    for (int e = column.first + chunk; e < column.end; e += chunks) subtractOuter(column, e, targets_.data() + chunk * most_entries_);
+  });
+}
+
+bool BlockMatrix::factor(Team* team) {
   for (const Column& column : columns_) {
     if (column.size == 0) continue;
     if (!factorColumn(column)) return false;
-    subtractOuter(column);
+    subtractAllOuter(column, team);
   }
   return true;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "elimination_order.h"
+#include "team.h"
 
 namespace blem_sim {
 
@@ -36,8 +37,8 @@ class BlockMatrix {
   int offset(int block) const { return offsets_[block]; }
   int size() const { return size_; }
 
-  /** @return false if the matrix is not positive definite */
-  bool factor();
+  /** @param team shares what is taken from blocks. @return false if the matrix is not positive definite */
+  bool factor(Team* team);
   /** Solves in place. Precondition: factor */
   void solve(Eigen::Ref<Eigen::VectorXd> x) const;
 
@@ -60,8 +61,9 @@ class BlockMatrix {
   Eigen::Map<const Eigen::MatrixXd> entryBlock(const Column& column, const Entry& entry) const;
   Entry* find(int row, int column);
   bool factorColumn(const Column& column);
-  void findTargets(const Column& column, int e);
-  void subtractOuter(const Column& column);
+  void findTargets(const Column& column, int e, std::size_t* targets) const;
+  void subtractOuter(const Column& column, int e, std::size_t* targets);
+  void subtractAllOuter(const Column& column, Team* team);
   void forward(const Column& column, Eigen::Ref<Eigen::VectorXd> x) const;
   void backward(const Column& column, Eigen::Ref<Eigen::VectorXd> x) const;
 
@@ -79,7 +81,8 @@ class BlockMatrix {
   std::vector<Entry> entries_;
   std::vector<int> rows_;  // per entry: where its row's block begins in a vector
   std::vector<double> values_;
-  std::vector<std::size_t> targets_;  // in values_: what an entry's outer products are taken from
+  std::size_t most_entries_ = 0;      // of a column
+  std::vector<std::size_t> targets_;  // in values_: what an entry's outer products are taken from; for each chunk of entries
 };
 
 }  // namespace blem_sim

@@ -29,7 +29,7 @@ constexpr double FREE_ENERGY = 1e-9, GAIN_OF_MOTION = 1e-6;  // [J], and of the 
 bool IslandProblem::isHeap() const { return static_cast<int>(trees.size()) >= HEAP && loops.empty() && mimics.empty() && joints.empty(); }
 
 SweepProblem IslandProblem::sweepProblem() const {
-  return {*forest_, *motion_, trees, patches, contacts, joints, loops, loop_pairs, mimics, space_->free_momentum, up};
+  return {*forest_, *motion_, trees, patches, contacts, joints, loops, loop_pairs, mimics, space_->free_momentum, up, team_.get()};
 }
 
 double IslandProblem::largestImpulse() const {

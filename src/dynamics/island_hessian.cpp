@@ -89,10 +89,14 @@ void IslandProblem::coupleBlocks(const BodyPair& pair, const Matrix6& stiffness)
 void IslandProblem::addStiffness() {
   for (const int i : live_nodes_) space_->stiff[i] = 0;
   if (coupled_) matrix_.setZero();
-  Matrix6 stiffness;
-  for (const ContactPatch& p : patches)
-    if (stiffnessOf(contact_blocks_.data() + p.first_block, contact_blocks_.data() + p.block_end, &stiffness))
-      stiffenPair(p.pair, stiffness);
+  patch_stiffness_.resize(patches.size());
+  patch_is_stiff_.resize(patches.size());
+  const ContactBlock* blocks = contact_blocks_.data();
+  forPatches([&](std::size_t p) {
+    patch_is_stiff_[p] = stiffnessOf(blocks + patches[p].first_block, blocks + patches[p].block_end, &patch_stiffness_[p]);
+  });
+  for (std::size_t p = 0; p < patches.size(); ++p)
+    if (patch_is_stiff_[p]) stiffenPair(patches[p].pair, patch_stiffness_[p]);
   for (std::size_t l = 0; l < loops.size(); ++l) {
     Vector6 gain;
     for (int r = 0; r < 6; ++r) gain[r] = loops[l].stiffness(r, loops[l].velocity[r]);
@@ -153,7 +157,7 @@ bool IslandProblem::factor() {
   pushStiffness();
   if (coupled_) {
     fillMatrix();
-    return factored_ = matrix_.factor();
+    return factored_ = matrix_.factor(team_.get());
   }
   for (auto k = live_dofs_.rbegin(); k != live_dofs_.rend(); ++k)
     if (!eliminate(*forest_, *k, &s.hessian)) return false;

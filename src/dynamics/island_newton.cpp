@@ -29,7 +29,7 @@ void IslandProblem::evaluateGradient() {
 
 // First step: as if contacts, friction and limits went on as they were when the last step ended, linear though they are not.
 void IslandProblem::predict() {
-  expect(contact_blocks_.data(), contact_blocks_.data() + contact_blocks_.size());
+  forContactRanges([](std::size_t, ContactBlock* first, ContactBlock* end) { expect(first, end); });
   for (std::size_t b = 0; b < joint_blocks_.size(); ++b)
     for (int lane = 0; lane < LANES; ++lane) expect(termOf(static_cast<int>(b), lane), lane, &joint_blocks_[b]);
   responses_known_ = true;
@@ -112,7 +112,7 @@ double IslandProblem::move(double a) {
     s.kinetic[k] += a * s.mass_direction[k];
     moved = std::max(moved, std::abs(a * s.direction[k]));
   }
-  take(a, contact_blocks_.data(), contact_blocks_.data() + contact_blocks_.size());
+  takeSteps(a);
   for (int b = 0; b < live_joint_blocks_; ++b)
     for (int lane = 0; lane < LANES; ++lane) joint_blocks_[b].velocity[lane] += a * joint_blocks_[b].step[lane];
   for (LoopTerm& loop : loops) loop.velocity += a * loop.step;
@@ -152,9 +152,11 @@ int IslandProblem::newton(const NewtonSettings& settings, double exactness, int 
 
 void IslandProblem::soften(double contact, double joint) {
   factored_ = responses_known_ = false;
-  for (const ContactPatch& p : patches)
+  forPatches([&](std::size_t index) {
+    const ContactPatch& p = patches[index];
     for (int b = p.first_block, i = p.first; b < p.block_end; ++b, i += LANES)
       blem_sim::soften(&contacts[i], p.end - i, contact, &contact_blocks_[b]);
+  });
   joint_softness_ = joint;
   softenJoints();
   for (LoopTerm& loop : loops) loop.drive.softness = joint;
@@ -188,6 +190,12 @@ NewtonReport IslandProblem::solve(const Forest& forest, const ForestMotion& moti
   forest_ = &forest;
   motion_ = &motion;
   space_ = space;
+  NewtonReport report;
+  team_->with(settings.helpers, [&] { report = solveFirst(settings); });
+  return report;
+}
+
+NewtonReport IslandProblem::solveFirst(const NewtonSettings& settings) {
   start();
   NewtonReport report;
   if (isSolved(isHeap() ? HEAP_TOLERANCE * settings.gradient_tolerance : settings.gradient_tolerance)) {
@@ -211,8 +219,11 @@ NewtonReport IslandProblem::solveAgain(const NewtonSettings& settings) {
   for (const std::vector<int>* dofs : {&live_dofs_, &idle_dofs_})
     for (const int k : *dofs) s.kinetic[k] = s.mass_velocity[k] - s.free_momentum[k];
   keepFirst();
-  NewtonReport report = isHeap() ? solveHeap(settings) : iterate(settings);
-  if (faults(report) > 1) recover(&report);
+  NewtonReport report;
+  team_->with(settings.helpers, [&] {
+    report = isHeap() ? solveHeap(settings) : iterate(settings);
+    if (faults(report) > 1) recover(&report);
+  });
   return report;
 }
 

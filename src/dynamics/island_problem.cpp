@@ -26,6 +26,10 @@ void SolverSpace::resize(const Forest& forest) {
   block_row.resize(forest.dofCount());
 }
 
+void IslandProblem::takeSteps(double a) {
+  forContactRanges([a](std::size_t, ContactBlock* first, ContactBlock* end) { take(a, first, end); });
+}
+
 void IslandProblem::clear() {
   trees.clear();
   joints.clear();
@@ -60,7 +64,7 @@ void IslandProblem::begin() {
   listLive();
   fillBlocks();
   setSteps(space_->velocity);
-  take(1, contact_blocks_.data(), contact_blocks_.data() + contact_blocks_.size());
+  takeSteps(1);
   for (LoopTerm& loop : loops) loop.velocity = loop.step;
   soften(1, 1);
 }
@@ -89,8 +93,10 @@ void IslandProblem::readTerms() {
 // Of all contacts, live joints and loops, for a change v of the velocities.
 void IslandProblem::setSteps(const Eigen::VectorXd& v) {
   for (const int i : live_nodes_) computeTwist(*forest_, i, *motion_, v, &space_->twist);
-  for (const ContactPatch& p : patches)
+  forPatches([&](std::size_t index) {
+    const ContactPatch& p = patches[index];
     blem_sim::setSteps(relativeTwist(p.pair, space_->twist), contact_blocks_.data() + p.first_block, contact_blocks_.data() + p.block_end);
+  });
   for (int b = 0; b < live_joint_blocks_; ++b)
     for (int lane = 0; lane < LANES; ++lane) {
       JointBlock& block = joint_blocks_[b];
@@ -109,14 +115,23 @@ void IslandProblem::evaluate() {
   SolverSpace& s = *space_;
   if (!responses_known_) respond(0);
   for (const int i : live_nodes_) s.wrench[i].setZero();
-  for (const ContactPatch& p : patches)
-    push(p.pair, wrenchOf(contact_blocks_.data() + p.first_block, contact_blocks_.data() + p.block_end));
+  patch_wrenches_.resize(patches.size());
+  forPatches([&](std::size_t p) {
+    patch_wrenches_[p] = wrenchOf(contact_blocks_.data() + patches[p].first_block, contact_blocks_.data() + patches[p].block_end);
+  });
+  for (std::size_t p = 0; p < patches.size(); ++p) push(patches[p].pair, patch_wrenches_[p]);
   for (std::size_t l = 0; l < loops.size(); ++l) push(loop_pairs[l], loops[l].basis * loops[l].impulses());
 }
 
 // Of contacts and live joints, at velocity + a step.
 PotentialSlope IslandProblem::respond(double a) {
-  PotentialSlope slope = blem_sim::respond(a, contact_blocks_.data(), contact_blocks_.data() + contact_blocks_.size());
+  slopes_.assign(contact_blocks_.size() / BLOCKS_AT_ONCE + 1, PotentialSlope());
+  forContactRanges([&](std::size_t range, ContactBlock* first, ContactBlock* end) { slopes_[range] = blem_sim::respond(a, first, end); });
+  PotentialSlope slope = slopes_[0];
+  for (std::size_t range = 1; range < slopes_.size(); ++range) {
+    slope.first += slopes_[range].first;
+    slope.second += slopes_[range].second;
+  }
   blem_sim::respond(a, joint_blocks_.data(), joint_blocks_.data() + live_joint_blocks_, &slope.first, &slope.second);
   responses_at_ = a;
   responses_known_ = a == 0;

@@ -3,6 +3,7 @@
 // by Newton's method with a line search. Every reaction is minus a gradient. See docs/solver.md.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "block_matrix.h"
@@ -15,6 +16,7 @@
 #include "kept_solution.h"
 #include "loop_term.h"
 #include "slip_mixing.h"
+#include "team.h"
 #include "tree_rows.h"
 
 namespace blem_sim {
@@ -25,6 +27,7 @@ struct NewtonSettings {
   double gradient_tolerance = 1e-10;  ///< [sqrt(kg) m/s]
   double contact_tolerance = 1e-7;    ///< [N s]
   double joint_tolerance = 1e-7;      ///< [rad/s or m/s]
+  int helpers = 0;                    ///< threads that take part in the loops of one island, beside the caller
 };
 
 /** What a solve needed and how good it is. */
@@ -84,7 +87,13 @@ class IslandProblem {
   NewtonReport solveAgain(const NewtonSettings& settings);
 
  private:
+  static constexpr std::size_t BLOCKS_AT_ONCE = 128, PATCHES_AT_ONCE = 64;  ///< what a thread takes at once: some microseconds
   // island_problem.cpp: the objective's gradient
+  template <typename Visit>
+  void forContactRanges(const Visit& visit);
+  template <typename Visit>
+  void forPatches(const Visit& visit);
+  void takeSteps(double a);
   void start();
   void begin();
   void fillBlocks();
@@ -130,6 +139,7 @@ class IslandProblem {
   void solveBlocks();
   void findDirection();
   // island_newton.cpp: the iteration
+  NewtonReport solveFirst(const NewtonSettings& settings);
   void evaluateGradient();
   void predict();
   void setDirection();
@@ -176,8 +186,13 @@ class IslandProblem {
   bool strayed_ = false;       ///< so many joints have left the piece of their response that they were on, that all were woken
   bool woken_ = false;         ///< joints have left the piece of their response that they were on, once in this solve
   double gradient_norm_ = 0;   ///< [sqrt(kg) m/s]
+  std::unique_ptr<Team> team_ = std::make_unique<Team>();
   std::vector<ContactBlock> contact_blocks_;  ///< responses: where the line search looked last
-  std::vector<JointBlock> joint_blocks_;      ///< likewise
+  std::vector<PotentialSlope> slopes_;        ///< by range of contact blocks
+  std::vector<Vector6> patch_wrenches_;
+  std::vector<Matrix6> patch_stiffness_;
+  std::vector<char> patch_is_stiff_;
+  std::vector<JointBlock> joint_blocks_;  ///< likewise
   SlipMixing slip_mixing_;
   IslandSweeps sweeps_;
   KeptSolution kept_;
@@ -193,6 +208,22 @@ class IslandProblem {
   BlockMatrix matrix_;
   Eigen::VectorXd block_vector_;
 };
+
+/** Contact blocks, which threads share: visit(index of the range, first, end). */
+template <typename Visit>
+void IslandProblem::forContactRanges(const Visit& visit) {
+  ContactBlock* blocks = contact_blocks_.data();
+  team_->forRanges(0, contact_blocks_.size(), BLOCKS_AT_ONCE,
+                   [&](std::size_t first, std::size_t end) { visit(first / BLOCKS_AT_ONCE, blocks + first, blocks + end); });
+}
+
+/** Patches, which threads share. */
+template <typename Visit>
+void IslandProblem::forPatches(const Visit& visit) {
+  team_->forRanges(0, patches.size(), PATCHES_AT_ONCE, [&](std::size_t first, std::size_t end) {
+    for (std::size_t p = first; p < end; ++p) visit(p);
+  });
+}
 
 template <typename Visit>
 void IslandProblem::forDofs(const Visit& visit) const {

@@ -10,6 +10,7 @@
 #include "joint_term.h"
 #include "loop_term.h"
 #include "sweep_lanes.h"
+#include "team.h"
 
 namespace blem_sim {
 
@@ -26,6 +27,7 @@ struct SweepProblem {
   const std::vector<MimicFold>& mimics;
   const Eigen::VectorXd& free_momentum;  ///< by dof
   Vector3 up;                            ///< against gravity; zero without
+  Team* team;                            ///< shares the loops
 };
 
 /** Where sweeps begin: at the terms' previous impulses, or at none. */
@@ -104,7 +106,9 @@ class IslandSweeps {
   void gather(const Pair& pair, int lane, const Eigen::VectorXd& velocity, TwistLanes* twist) const;
   void scatter(const Pair& pair, int lane, const TwistLanes& wrench, Eigen::VectorXd* velocity) const;
   void sweepGroup(std::size_t group, Eigen::VectorXd* velocity);
+  void sweepColour(std::size_t colour, Eigen::VectorXd* velocity);
   void plainSweep(Eigen::VectorXd* velocity);
+  void noteVelocity(const Eigen::VectorXd& velocity);
   void moveOn(double share, Eigen::VectorXd* velocity);
 
   std::optional<SweepProblem> problem_;
@@ -118,6 +122,7 @@ class IslandSweeps {
   std::vector<std::uint64_t> used_colours_;  // by mover
   std::vector<int> by_colour_, chosen_;
   std::vector<SweepGroup> groups_;
+  std::vector<std::size_t> group_start_;  // by colour
   std::vector<SweepContact> contacts_;
   std::vector<SweepImpulse> impulses_;
   std::vector<SweepChange> changes_;  // by group

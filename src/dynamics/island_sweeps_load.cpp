@@ -131,6 +131,7 @@ void IslandSweeps::colourPatches() {
 
 void IslandSweeps::layGroups() {
   groups_.clear();
+  group_start_.assign(1, 0);
   std::size_t count = 0;
   colour_start_.assign(COLOURS + 2, 0);
   for (const int p : order_) ++colour_start_[colour_[p] + 1];
@@ -156,6 +157,7 @@ void IslandSweeps::layGroups() {
       group.end = static_cast<int>(count);
       groups_.push_back(group);
     }
+    group_start_.push_back(groups_.size());
   }
   contacts_.resize(count);
   impulses_.resize(count);

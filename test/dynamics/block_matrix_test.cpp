@@ -2,6 +2,7 @@
 #include "block_matrix.h"
 
 #include <gtest/gtest.h>
+#include <tbb/task_arena.h>
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -61,7 +62,7 @@ struct RandomMatrix {
     Eigen::VectorXd right(matrix.size());
     for (double& x : right) x = uniform();
     Eigen::VectorXd x = right;
-    ASSERT_TRUE(matrix.factor());
+    ASSERT_TRUE(matrix.factor(&team));
     matrix.solve(x);
     EXPECT_LT((x - dense.llt().solve(right)).lpNorm<Eigen::Infinity>(), 1e-14);
   }
@@ -71,6 +72,7 @@ struct RandomMatrix {
   Couplings couplings;
   BlockMatrix matrix;
   Eigen::MatrixXd dense;
+  Team team;
 };
 
 TEST(BlockMatrix, SolvesLikeADenseOne) {
@@ -173,27 +175,46 @@ TEST(BlockMatrix, SolvesAHeapOfAThousandBodies) {
   constexpr int BLOCKS = 1000;
   const Couplings couplings = heapOf(BLOCKS);
   BlockMatrix matrix;
+  Team team;
   for (int round = 0; round < 2; ++round) {  // the same pattern again
     matrix.start(std::vector<int>(BLOCKS, 6));
     for (const auto& [a, b] : couplings) matrix.couple(a, b);
     matrix.analyse();
     const Eigen::VectorXd expected = Eigen::VectorXd::LinSpaced(matrix.size(), -1, 1);
     Eigen::VectorXd x = fillHeap(couplings, BLOCKS, 100, expected, &matrix);
-    ASSERT_TRUE(matrix.factor());
+    ASSERT_TRUE(matrix.factor(&team));
     matrix.solve(x);
     EXPECT_LT((x - expected).lpNorm<Eigen::Infinity>(), 1e-13);
   }
 }
 
+TEST(BlockMatrix, HasTheSameFactorForAnyNumberOfThreads) {
+  constexpr int BLOCKS = 300;
+  const Couplings couplings = heapOf(BLOCKS);
+  Eigen::VectorXd solved[2];
+  for (const int helpers : {0, 1}) {
+    BlockMatrix matrix;
+    Team team;
+    matrix.start(std::vector<int>(BLOCKS, 6));
+    for (const auto& [a, b] : couplings) matrix.couple(a, b);
+    matrix.analyse();
+    solved[helpers] = fillHeap(couplings, BLOCKS, 100, Eigen::VectorXd::LinSpaced(matrix.size(), -1, 1), &matrix);
+    tbb::task_arena(2).execute([&] { team.with(helpers, [&] { ASSERT_TRUE(matrix.factor(&team)); }); });
+    matrix.solve(solved[helpers]);
+  }
+  EXPECT_EQ(solved[0], solved[1]);
+}
+
 TEST(BlockMatrix, AnalysesAnotherPatternOfAsManyBlocks) {
   BlockMatrix matrix;
+  Team team;
   for (const Couplings& couplings : {Couplings{{1, 0}}, Couplings{{2, 0}}, Couplings{{2, 1}, {1, 0}}, Couplings{}}) {
     matrix.start({6, 6, 6});
     for (const auto& [a, b] : couplings) matrix.couple(a, b);
     matrix.analyse();
     const Eigen::VectorXd expected = Eigen::VectorXd::LinSpaced(matrix.size(), -1, 1);
     Eigen::VectorXd x = fillHeap(couplings, 3, 100, expected, &matrix);
-    ASSERT_TRUE(matrix.factor());
+    ASSERT_TRUE(matrix.factor(&team));
     matrix.solve(x);
     EXPECT_LT((x - expected).lpNorm<Eigen::Infinity>(), 1e-14);
   }
@@ -217,7 +238,7 @@ TEST(BlockMatrix, FoldsARowAndColumnIntoAnother) {
 TEST(BlockMatrix, SaysThatItIsNotPositiveDefinite) {
   RandomMatrix random(1, 5);
   random.matrix.diagonal(2)(3, 3) = -1;
-  EXPECT_FALSE(random.matrix.factor());
+  EXPECT_FALSE(random.matrix.factor(&random.team));
 }
 
 }  // namespace
