@@ -200,5 +200,20 @@ TEST(JointExpectation, IsTheLineThroughTheProximalPoint) {
   EXPECT_DOUBLE_EQ(term.expect(0.2).stiffness, 10);
 }
 
+TEST_F(Lane, WithoutAContactNeverActsHoweverFast) {
+  const ContactTerm terms[LANES - 1] = {contact(), contact(), contact()};
+  for (const double speed : {0.5, 2.0, 1e3}) {
+    ContactBlock b = block(terms);
+    Vector6 twist = Vector6::Zero();
+    twist.tail<3>() = Vector3(0.6, 0, -0.8) * speed;
+    setSteps(twist, &b, &b + 1);
+    take(1, &b, &b + 1);
+    respond(0, &b, &b + 1);
+    EXPECT_EQ(b.kind[LANES - 1], ContactBlock::OPEN) << speed;
+    EXPECT_EQ(at(b.impulse, LANES - 1), Vector3::Zero()) << speed;
+    EXPECT_EQ(b.tangent_gain[LANES - 1], 0) << speed;
+  }
+}
+
 }  // namespace
 }  // namespace blem_sim
