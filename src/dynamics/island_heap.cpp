@@ -7,12 +7,13 @@
 namespace blem_sim {
 namespace {
 
-constexpr int HEAP = 8;             // free bodies: from here on what tumbles is swept
-constexpr int LARGE_HEAP = 32;      // from here on sweeps come first; below they take the place of soft contacts
-constexpr int TOWER = 150;          // most trees of an island that is polished because sweeps did not arrive
-constexpr double TURNS = 0.5;       // [rad/s] fastest turning of a heap that stands, slides or lands flat: Newton's method solves it
-constexpr int FIRST_ITERATIONS = 4; // of a small heap that tumbles; those after them must lead somewhere, or it is swept
-constexpr double SETTLED = 1e-4;    // of the largest impulse: by how much the last proximal step of a heap may change one
+constexpr int HEAP = 4;              // free bodies: from here on what tumbles is swept
+constexpr int LARGE_HEAP = 32;       // from here on sweeps come first; below they take the place of soft contacts
+constexpr int TOWER = 150;           // most trees of an island that is polished because sweeps did not arrive
+constexpr double TURNS = 0.03;       // [rad/s] fastest turning of a heap that stands, slides or lands flat: Newton's method solves it
+constexpr int FIRST_ITERATIONS = 4;  // of a small heap that tumbles; those after them must lead somewhere, or it is swept
+constexpr int FEW_ITERATIONS = 30;   // of it in all
+constexpr double SETTLED = 1e-4;     // of the largest impulse: by how much the last proximal step of a heap may change one
 // Sweeps of a heap that tumbles end when they change impulses by less than this share of the largest; of a quiet one they are what brings
 // it to rest.
 constexpr double TUMBLES = 1e-2, SWEPT = 1e-3, RECOVERED = 1e-7;
@@ -153,7 +154,8 @@ bool IslandProblem::polish(const NewtonSettings& settings, NewtonReport* report)
   return better;
 }
 
-// Does no body turn fast? Then hardly any contact changes its kind: a tower, a wall or a heap that has come to rest, or something that slides.
+// Does no body turn fast? Then hardly any contact changes its kind: a tower, a wall or a heap that has come to rest, or something that
+// slides.
 bool IslandProblem::turnsSlowly() const {
   double fastest = 0;
   for (const int tree : trees)
@@ -197,10 +199,12 @@ void IslandProblem::returnToBalanced(double least, NewtonReport* report) {
 
 // A few bodies, much as in the step before, although they tumble.
 bool IslandProblem::solveFew(const NewtonSettings& settings, NewtonReport* report) {
+  NewtonSettings few = settings;
+  few.max_iterations = FEW_ITERATIONS;
   predict();
-  report->iterations = 1 + newton(settings, 0, settings.max_iterations, FIRST_ITERATIONS);
-  if (gradient_norm_ > settings.gradient_tolerance) return false;
-  finish(settings, report);
+  report->iterations = 1 + newton(few, 0, few.max_iterations, FIRST_ITERATIONS);
+  if (gradient_norm_ > few.gradient_tolerance) return false;
+  finish(few, report);
   return faults(*report) <= 1;
 }
 
