@@ -7,10 +7,13 @@
 namespace blem_sim {
 namespace {
 
-constexpr int HEAP = 32;                // free bodies: from here on sweeps come before the iteration
-constexpr int TOWER = 150;              // most trees of an island that is polished because sweeps did not arrive
-constexpr double RESTING = 1e4;         // times the gradient's tolerance: first gradient of a heap that is like in the step before
-constexpr int RESTING_ITERATIONS = 15;  // for a heap at rest
+constexpr int HEAP = 4;              // free bodies: from here on what tumbles is swept
+constexpr int LARGE_HEAP = 32;       // from here on sweeps come first; below they take the place of soft contacts
+constexpr int TOWER = 150;           // most trees of an island that is polished because sweeps did not arrive
+constexpr double TURNS = 0.03;       // [rad/s] fastest turning of a heap that stands, slides or lands flat: Newton's method solves it
+constexpr int FIRST_ITERATIONS = 4;  // of a small heap that tumbles; those after them must lead somewhere, or it is swept
+constexpr int FEW_ITERATIONS = 30;   // of it in all
+constexpr double SETTLED = 1e-4;     // of the largest impulse: by how much the last proximal step of a heap may change one
 // Sweeps of a heap that tumbles end when they change impulses by less than this share of the largest; of a quiet one they are what brings
 // it to rest.
 constexpr double TUMBLES = 1e-2, SWEPT = 1e-3, RECOVERED = 1e-7;
@@ -151,20 +154,74 @@ bool IslandProblem::polish(const NewtonSettings& settings, NewtonReport* report)
   return better;
 }
 
-// A heap like in the step before: its impulses and velocities are near already.
-bool IslandProblem::solveResting(const NewtonSettings& settings, NewtonReport* report) {
+// Does no body turn fast? Then hardly any contact changes its kind: a tower, a wall or a heap that has come to rest, or something that
+// slides.
+bool IslandProblem::turnsSlowly() const {
+  double fastest = 0;
+  for (const int tree : trees)
+    fastest = std::max(fastest, space_->first_velocity.segment<3>(forest_->trees()[tree].first_dof).squaredNorm());
+  return fastest <= TURNS * TURNS;
+}
+
+// Whether impulses change no more from one proximal step to the next. Contacts that answer softly to a tower that leans miss Coulomb's
+// law by little each, but together they let it sway.
+bool IslandProblem::isSettled() const {
+  double change = 0, largest = 0;
+  for (const ContactBlock& b : contact_blocks_) {
+    for (int lane = 0; lane < LANES; ++lane) {
+      double changed = 0, impulse = 0;
+      for (int axis = 0; axis < 3; ++axis) {
+        const double g = b.impulse[axis][lane], by = g - b.previous[axis][lane];
+        changed += by * by;
+        impulse += g * g;
+      }
+      change = std::max(change, changed);
+      largest = std::max(largest, impulse);
+    }
+  }
+  return change <= SETTLED * SETTLED * largest;
+}
+
+// Proximal steps of a heap may be cut short at any iterate. Of those that balanced momentum the best is kept.
+void IslandProblem::keepBalanced(const NewtonReport& report, double* least) {
+  if (!isHeap() || !(report.imbalance <= BALANCED) || !(report.contact_residual < *least)) return;
+  *least = report.contact_residual;
+  readTerms();
+  kept_.take(space_->velocity, trees, *forest_, contacts, joints, loops);
+}
+
+void IslandProblem::returnToBalanced(double least, NewtonReport* report) {
+  if (report->imbalance <= BALANCED || !std::isfinite(least)) return;
+  kept_.put(trees, *forest_, &space_->velocity, &contacts, &joints, &loops);
+  adoptImpulses();
+  assess(report);
+}
+
+// A few bodies, much as in the step before, although they tumble.
+bool IslandProblem::solveFew(const NewtonSettings& settings, NewtonReport* report) {
   NewtonSettings few = settings;
-  few.max_iterations = RESTING_ITERATIONS;
+  few.max_iterations = FEW_ITERATIONS;
   predict();
-  report->iterations = 1 + newton(few, 0, few.max_iterations);
-  if (!(gradient_norm_ <= INEXACT * RESTING * settings.gradient_tolerance)) return false;
+  report->iterations = 1 + newton(few, 0, few.max_iterations, FIRST_ITERATIONS);
+  if (gradient_norm_ > few.gradient_tolerance) return false;
   finish(few, report);
-  return report->imbalance <= BALANCED && faults(*report) <= 1;
+  return faults(*report) <= 1;
+}
+
+bool IslandProblem::solveStanding(const NewtonSettings& settings, NewtonReport* report) {
+  predict();
+  *report = iterate(settings);
+  ++report->iterations;
+  return faults(*report) <= 1;
 }
 
 NewtonReport IslandProblem::solveHeap(const NewtonSettings& settings) {
   NewtonReport report;
-  if (gradient_norm_ <= RESTING * settings.gradient_tolerance && solveResting(settings, &report)) return report;
+  if (turnsSlowly()) {
+    if (solveStanding(settings, &report)) return report;
+  } else if (static_cast<int>(trees.size()) < LARGE_HEAP) {
+    if (solveFew(settings, &report)) return report;
+  }
   sweepAndPolish(settings, &report);
   return report;
 }

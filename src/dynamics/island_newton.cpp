@@ -259,9 +259,12 @@ NewtonReport IslandProblem::iterate(const NewtonSettings& settings) {
 
 void IslandProblem::finish(const NewtonSettings& settings, NewtonReport* report) {
   int last = settings.max_iterations;
+  double least = INFINITY;
   for (int outer = 1; outer < settings.max_outer; ++outer) {
     assess(report);
-    const bool lawful = report->contact_residual <= settings.contact_tolerance && report->joint_creep <= settings.joint_tolerance;
+    keepBalanced(*report, &least);
+    const bool lawful = report->contact_residual <= settings.contact_tolerance && report->joint_creep <= settings.joint_tolerance &&
+                        (!isHeap() || isSettled());
     const bool exact = gradient_norm_ <= settings.gradient_tolerance;
     const int left = settings.max_iterations - report->iterations;
     if ((lawful && exact) || left <= 0) break;
@@ -273,6 +276,7 @@ void IslandProblem::finish(const NewtonSettings& settings, NewtonReport* report)
     report->iterations += last;
   }
   assess(report);
+  returnToBalanced(least, report);
   readMimics();
   readTerms();
 }

@@ -167,7 +167,12 @@ class IslandProblem {
   void adoptSwept();
   void finishSwept(NewtonReport* report);
   bool polish(const NewtonSettings& settings, NewtonReport* report);
-  bool solveResting(const NewtonSettings& settings, NewtonReport* report);
+  bool turnsSlowly() const;
+  void keepBalanced(const NewtonReport& report, double* least);
+  void returnToBalanced(double least, NewtonReport* report);
+  bool isSettled() const;
+  bool solveFew(const NewtonSettings& settings, NewtonReport* report);
+  bool solveStanding(const NewtonSettings& settings, NewtonReport* report);
   NewtonReport solveHeap(const NewtonSettings& settings);
   void sweepAndPolish(const NewtonSettings& settings, NewtonReport* report);
   void recover(NewtonReport* report);

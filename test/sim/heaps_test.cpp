@@ -66,6 +66,29 @@ TEST(Heaps, TowersOfTwentyAndThirtyRest) {
   }
 }
 
+TEST(Heaps, ATowerOfAHundredThatLandsAtOnceRests) {
+  Simulator simulator(tower(100), UriResolver());
+  const Seen seen = run(&simulator, 0.5);
+  EXPECT_EQ(seen.trouble, 0);
+  EXPECT_FALSE(seen.status & ENERGY_GAINED);
+  EXPECT_LT(seen.speed, 1e-9);
+}
+
+TEST(Heaps, APyramidRests) {
+  constexpr int ROWS = 10;
+  SimulationConfig config;
+  config.environments = {ground()};
+  for (int row = 0; row < ROWS; ++row)
+    for (int i = 0; i < ROWS - row; ++i)
+      config.objects.push_back(box("cube" + std::to_string(config.objects.size()), Vector3::Constant(0.1), 1,
+                                   {0.11 * i + 0.055 * row - 0.5, 0, 0.055 + 0.106 * row}));
+  Simulator simulator(config, UriResolver());
+  const Seen seen = run(&simulator, 0.5);
+  EXPECT_EQ(seen.trouble, 0);
+  EXPECT_FALSE(seen.status & ENERGY_GAINED);
+  EXPECT_LT(seen.speed, 1e-9);
+}
+
 TEST(Heaps, AThousandTonsRestOnAKilogram) {
   SimulationConfig config = tower(2);
   config.objects[1].mass = 1e6;
