@@ -16,7 +16,7 @@ constexpr int FEW_ITERATIONS = 30;   // of it in all
 constexpr double SETTLED = 1e-4;     // of the largest impulse: by how much the last proximal step of a heap may change one
 // Sweeps of a heap that tumbles end when they change impulses by less than this share of the largest; of a quiet one they are what brings
 // it to rest.
-constexpr double TUMBLES = 1e-2, SWEPT = 1e-3, RECOVERED = 1e-7;
+constexpr double TUMBLES = 1e-2, SWEPT = 1e-3, SWEPT_FEW = 2e-5, RECOVERED = 1e-7;
 constexpr int SWEEPS = 60, MOST_SWEEPS = 240;
 // Softness of contacts while a quiet heap is polished: stiffer ones change their kinds too often.
 constexpr double POLISH_SOFTNESS = 300, KEPT_SOFTNESS = 100, INEXACT = 0.02;
@@ -231,8 +231,9 @@ void IslandProblem::sweepAndPolish(const NewtonSettings& settings, NewtonReport*
   takeFirstVelocity();
   const SweepProblem problem = sweepProblem();
   if (!sweeps_.load(problem, SweepStart::PREVIOUS, &s.velocity)) return;
+  const bool small = static_cast<int>(trees.size()) < LARGE_HEAP;
   const bool quiet = sweeps_.sweep(1, 0, &s.velocity).first_change <= TUMBLES;
-  const SweepReport swept = sweeps_.sweep(quiet ? SWEEPS : MOST_SWEEPS, quiet ? 0 : SWEPT, &s.velocity);
+  const SweepReport swept = sweeps_.sweep(quiet ? SWEEPS : MOST_SWEEPS, quiet ? 0 : small ? SWEPT_FEW : SWEPT, &s.velocity);
   report->iterations += 1 + swept.sweeps;
   adoptSwept();
   NewtonReport found;
