@@ -18,6 +18,9 @@ constexpr double SETTLED = 1e-4;     // of the largest impulse: by how much the 
 // it to rest.
 constexpr double TUMBLES = 1e-2, SWEPT = 1e-3, SWEPT_FEW = 2e-5, RECOVERED = 1e-7;
 constexpr int SWEEPS = 60, MOST_SWEEPS = 240;
+// Iterations of Newton's method on more than 150 bodies are dear, and fail where impulses change by more than this share of the largest:
+// first ones, and those that polish what was swept.
+constexpr double LIKE_BEFORE = 1e-5, NEARLY = 1e-4;
 // Softness of contacts while a quiet heap is polished: stiffer ones change their kinds too often.
 constexpr double POLISH_SOFTNESS = 300, KEPT_SOFTNESS = 100, INEXACT = 0.02;
 constexpr int POLISH_WORK = 6000, FEWEST_POLISHES = 12, MOST_POLISHES = 60;  // iterations times trees
@@ -215,10 +218,16 @@ bool IslandProblem::solveStanding(const NewtonSettings& settings, NewtonReport* 
   return faults(*report) <= 1;
 }
 
+// Do the last step's impulses nearly solve this one?
+bool IslandProblem::isLikeBefore() {
+  Eigen::VectorXd* velocity = &space_->direction;
+  return sweeps_.load(sweepProblem(), SweepStart::PREVIOUS, velocity) && sweeps_.sweep(1, 0, velocity).first_change <= LIKE_BEFORE;
+}
+
 NewtonReport IslandProblem::solveHeap(const NewtonSettings& settings) {
   NewtonReport report;
   if (turnsSlowly()) {
-    if (solveStanding(settings, &report)) return report;
+    if ((static_cast<int>(trees.size()) <= TOWER || isLikeBefore()) && solveStanding(settings, &report)) return report;
   } else if (static_cast<int>(trees.size()) < LARGE_HEAP) {
     if (solveFew(settings, &report)) return report;
   }
@@ -232,7 +241,8 @@ void IslandProblem::sweepAndPolish(const NewtonSettings& settings, NewtonReport*
   const SweepProblem problem = sweepProblem();
   if (!sweeps_.load(problem, SweepStart::PREVIOUS, &s.velocity)) return;
   const bool small = static_cast<int>(trees.size()) < LARGE_HEAP;
-  const bool quiet = sweeps_.sweep(1, 0, &s.velocity).first_change <= TUMBLES;
+  const double first_change = sweeps_.sweep(1, 0, &s.velocity).first_change;
+  const bool quiet = first_change <= TUMBLES, tower = static_cast<int>(trees.size()) <= TOWER;
   const SweepReport swept = sweeps_.sweep(quiet ? SWEEPS : MOST_SWEEPS, quiet ? 0 : small ? SWEPT_FEW : SWEPT, &s.velocity);
   report->iterations += 1 + swept.sweeps;
   adoptSwept();
@@ -240,7 +250,7 @@ void IslandProblem::sweepAndPolish(const NewtonSettings& settings, NewtonReport*
   assess(&found);
   const bool exact = found.contact_residual <= settings.contact_tolerance && gradient_norm_ <= settings.gradient_tolerance;
   // Sweeps that did not arrive have a long way to go: towers.
-  if (!exact && (quiet || (swept.last_change > SWEPT && static_cast<int>(trees.size()) <= TOWER))) {
+  if (!exact && (tower ? quiet || swept.last_change > SWEPT : first_change <= NEARLY)) {
     if (polish(settings, report)) return;
     sweeps_.scale(1, &s.velocity);
     adoptSwept();

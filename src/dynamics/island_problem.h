@@ -168,6 +168,7 @@ class IslandProblem {
   void finishSwept(NewtonReport* report);
   bool polish(const NewtonSettings& settings, NewtonReport* report);
   bool turnsSlowly() const;
+  bool isLikeBefore();
   void keepBalanced(const NewtonReport& report, double* least);
   void returnToBalanced(double least, NewtonReport* report);
   bool isSettled() const;
