@@ -47,8 +47,8 @@ void setLane(const ContactTerm* term, int lane, ContactBlock* b) {
   static const ContactTerm NEVER = [] {
     ContactTerm never;
     never.point = never.normal = Vector3::Zero();
-    never.friction = never.inverse_mass = 1;
-    never.target = -1;
+    never.inverse_mass = 1;
+    never.target = -1;  // without friction: it may not hold what is faster than that either
     return never;
   }();
   const ContactTerm& t = term ? *term : NEVER;
