@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "contact_motion.h"
+#include "contact_work.h"
 #include "island_impacts.h"
 #include "island_motion.h"
 #include "island_terms.h"
@@ -25,8 +26,9 @@ constexpr std::uint64_t NO_MORE_TREES = ~0ull;
 /** An island with what belongs to it in this step. */
 struct Island {
   IslandProblem problem;
-  std::vector<int> contacts;       ///< of the step's input
-  std::vector<int> mimics, loops;  ///< of the forest's
+  std::vector<int> contacts;          ///< of the step's input
+  std::vector<int> mimics, loops;     ///< of the forest's
+  std::vector<double> apparent_work;  ///< of the contacts [J]
   IslandImpacts impacts;
   NewtonReport report;
   bool followed = true;  ///< no tree was too fast
@@ -49,7 +51,9 @@ class ArticulatedStepper : public Stepper {
   bool isMoved(const ContactConstraint& contact) const;
   void makeTerms(const TermSource& source, Island* island);
   NewtonSettings settingsFor(const IslandProblem& problem) const;
+  bool leap(const TermSource& source, Island* island);
   NewtonReport solveTwice(double dt, IslandProblem* problem);
+  void reckonWork(bool leaps, Island* island);
   void solveIsland(const Scene& scene, const StepInput& input, Island* island);
   void finishIsland(const Scene& scene, const StepInput& input, Island* island, SolveResult* result);
   template <typename Work>
@@ -186,6 +190,30 @@ NewtonReport ArticulatedStepper::solveTwice(double dt, IslandProblem* problem) {
   return report;
 }
 
+// How fast a tree will be after an impact is not known before, so it is followed on its way as if it were fast. @return did anything meet?
+bool ArticulatedStepper::leap(const TermSource& source, Island* island) {
+  const IslandProblem& problem = island->problem;
+  if (!island->impacts.expect(source, island->contacts, problem)) return false;
+  for (const int tree : problem.trees) followAlone(forest_, source.input, tree, &motion_, &space_);
+  return island->impacts.happen(source, island->contacts, problem, &impact_space_, &space_);
+}
+
+// Precondition: solved, impacts not added yet.
+void ArticulatedStepper::reckonWork(bool leaps, Island* island) {
+  const IslandProblem& problem = island->problem;
+  if (leaps)
+    for (const int tree : problem.trees) computeTwists(forest_, tree, motion_, impact_space_.leap, &impact_space_.twist);
+  island->apparent_work.assign(problem.contacts.size(), 0);
+  for (const ContactPatch& patch : problem.patches) {
+    Vector6 before = relativeTwist(patch.pair, motion_.twist);
+    if (leaps) before += relativeTwist(patch.pair, impact_space_.twist);
+    for (int i = patch.first; i < patch.end; ++i) {
+      const ContactTerm& contact = problem.contacts[i];
+      if (!contact.impulse.isZero(0)) island->apparent_work[i] = apparentWork(contact, velocityAt(before, contact.point));
+    }
+  }
+}
+
 void ArticulatedStepper::solveIsland(const Scene& scene, const StepInput& input, Island* island) {
   IslandProblem& problem = island->problem;
   const TermSource source{scene, forest_, motion_, input, settings_, memory_};
@@ -193,8 +221,9 @@ void ArticulatedStepper::solveIsland(const Scene& scene, const StepInput& input,
   makeTerms(source, island);
   problem.up = -scene.gravity();
   addEfforts(input, problem, &space_);
-  const bool leaps = island->impacts.happen(source, island->contacts, problem, &impact_space_, &space_);
+  const bool leaps = leap(source, island);
   island->report = solveTwice(input.dt, &problem);
+  reckonWork(leaps, island);
   if (leaps) island->impacts.addTo(&problem);
 }
 
@@ -216,6 +245,7 @@ void ArticulatedStepper::readContacts(const StepInput& input, const Island& isla
   for (std::size_t i = 0; i < island.contacts.size(); ++i) {
     const ContactConstraint& c = input.contacts[island.contacts[i]];
     result->contact_forces[island.contacts[i]] = termSign(c) / input.dt * island.problem.contacts[i].impulse;
+    result->apparent_work[island.contacts[i]] = island.apparent_work[i];
   }
 }
 
@@ -301,6 +331,7 @@ void ArticulatedStepper::step(Scene* scene, const StepInput& input, SolveResult*
   readEdits(*scene);
   findIslands(*scene, input.contacts);
   result->contact_forces.assign(input.contacts.size(), Vector3::Zero());
+  result->apparent_work.assign(input.contacts.size(), 0);
   result->joint_efforts.assign(scene->joints().size(), 0);
   result->joint_wrenches.assign(scene->joints().size(), Wrench());
   forEachIsland([&](Island* island) { solveIsland(*scene, input, island); });

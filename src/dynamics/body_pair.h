@@ -1,6 +1,8 @@
 // Pairs of bodies of an island, the contacts between them, and joints that follow others.
 #pragma once
 
+#include <vector>
+
 #include "spatial.h"
 
 namespace blem_sim {
@@ -11,6 +13,12 @@ struct BodyPair {
   int b = -1;                       ///< node, -1: the static world
   Vector3 shift = Vector3::Zero();  ///< from a's reference point to b's
 };
+
+/** Of A against B, about a's reference point. @param twist per node */
+inline Vector6 relativeTwist(const BodyPair& pair, const std::vector<Vector6>& twist) {
+  if (pair.b < 0) return twist[pair.a];
+  return twist[pair.a] - moveTwist(twist[pair.b], -pair.shift);
+}
 
 /** Contacts of one pair, consecutive among the problem's contacts. */
 struct ContactPatch {

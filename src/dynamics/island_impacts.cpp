@@ -14,11 +14,6 @@ constexpr int MAX_SWEEPS = 100;      // of the contacts that meet in a round
 constexpr int MAX_WORK = 100000;     // contacts visited, over all sweeps of a step
 constexpr double EXACTNESS = 1e-11;  // of the largest speed: changes of velocity at which a sweep is the last
 
-Vector6 relativeTwist(const BodyPair& pair, const std::vector<Vector6>& twist) {
-  if (pair.b < 0) return twist[pair.a];
-  return twist[pair.a] - moveTwist(twist[pair.b], -pair.shift);
-}
-
 double normalSpeed(const BodyPair& pair, const ContactTerm& term, const std::vector<Vector6>& twist) {
   return term.normal.dot(velocityAt(relativeTwist(pair, twist), term.point));
 }
@@ -33,7 +28,8 @@ double slowestBounce(const TermSource& s, double kick) {
 }  // namespace
 
 // Velocities with half of the step's forces approach by no more than these times 4/3, then 5/3, if the bounds on rest are to be passed.
-bool IslandImpacts::mayMeet(const TermSource& s, const std::vector<int>& contacts, const IslandProblem& problem) const {
+bool IslandImpacts::expect(const TermSource& s, const std::vector<int>& contacts, const IslandProblem& problem) {
+  impulses_.clear();
   const double slowest = slowestBounce(s, 0);
   for (const ContactPatch& patch : problem.patches)
     for (int i = patch.first; i < patch.end; ++i) {
@@ -54,6 +50,9 @@ void IslandImpacts::begin(const TermSource& s, const std::vector<int>& contacts,
     const int first = t.first_dof, count = t.dofCount();
     factorMass(s.forest, tree, s.motion, space_);
     space_->column.segment(first, count) = 0.5 * (solver.free_momentum.segment(first, count) - solver.mass_velocity.segment(first, count));
+    // By what a slow step's momentum is beside its velocities, a fast one goes at once.
+    if (t.free && s.motion.pace[tree] == Pace::FAST)
+      space_->column.segment<6>(first) += 0.5 * (s.motion.momentum[tree] - solver.mass_velocity.segment<6>(first));
     solveMass(s.forest, tree, space_);
     space_->velocity.segment(first, count) = solver.velocity.segment(first, count) + space_->column.segment(first, count);
     space_->leap.segment(first, count).setZero();
@@ -222,8 +221,6 @@ void IslandImpacts::expand(Meeting* first, Meeting* end, double lost) {
 
 bool IslandImpacts::happen(const TermSource& s, const std::vector<int>& contacts, const IslandProblem& problem, ImpactSpace* space,
                            SolverSpace* solver) {
-  impulses_.clear();
-  if (!mayMeet(s, contacts, problem)) return false;
   space_ = space;
   begin(s, contacts, problem, *solver);
   for (int round = 0; round < MAX_ROUNDS && work_left_ > 0 && findMeetings(s, problem); ++round) {

@@ -11,12 +11,15 @@ namespace blem_sim {
 /** The impacts of one island in one step. Used again from step to step, so that it need not allocate. */
 class IslandImpacts {
  public:
+  /** Forgets those of the last step. @return may any contact with restitution meet within this one? */
+  bool expect(const TermSource& source, const std::vector<int>& contacts, const IslandProblem& problem);
   /**
    * Contacts with restitution that will meet within the step reflect velocities as often as it takes until none approaches any more, or
    * the bounds on work are reached; what then still approaches is left to the solve, where it does not bounce. No reflection adds kinetic
    * energy. If any happens, the free momentum of `solver` and its first guess of the velocities change by the impulses.
    * @param contacts of the step's input, those of the problem
    * @return did anything meet? If not, nothing was changed
+   * Precondition: expect() was true
    */
   bool happen(const TermSource& source, const std::vector<int>& contacts, const IslandProblem& problem, ImpactSpace* space,
               SolverSpace* solver);
@@ -51,7 +54,6 @@ class IslandImpacts {
     Vector3 impulse = Vector3::Zero();  ///< [N s] of the phase at hand
   };
 
-  bool mayMeet(const TermSource& source, const std::vector<int>& contacts, const IslandProblem& problem) const;
   void begin(const TermSource& source, const std::vector<int>& contacts, const IslandProblem& problem, const SolverSpace& solver);
   void setSpeeds(const Forest& forest, const ForestMotion& motion, const IslandProblem& problem, const Eigen::VectorXd& velocity);
   bool findMeetings(const TermSource& source, const IslandProblem& problem);

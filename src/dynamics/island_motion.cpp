@@ -10,8 +10,8 @@ namespace {
 // steps, half a step beside the poses where the mass matrix holds.
 double productsShare(const ForestTree& tree, int dof) { return tree.free && dof < tree.first_dof + 6 ? 0.5 : 1; }
 
-// Change of the velocities by velocity products in a step, over the velocities: beyond, a tree is fast. One that nothing drives or touches
-// has an energy to keep; where motors act against contacts, forces of both sides are best found together with the products.
+// Change of the velocities by velocity products in a step, over the velocities: beyond, a tree is fast. One that nothing drives has an
+// energy to keep; where motors act against contacts, forces of both sides are best found together with the products.
 constexpr double FAST_ALONE = 1e-4, FAST = 0.005, FAST_AT_WORK = 0.1;
 constexpr double SMALL_TURN = 0.05;  // [rad] of a free root in a step: beyond, products of the step's start are not those of its end
 // Trees in loops, and those with mimic joints, are solved with their products whatever their speed; beyond this they are no longer right.
@@ -56,7 +56,7 @@ bool isTied(const Forest& forest, int tree) {
 Pace paceOf(const Forest& forest, const StepInput& input, bool touched, int tree, double turning) {
   if (isTied(forest, tree)) return turning > TOO_FAST ? Pace::TOO_FAST : Pace::SLOW;
   const bool driven = isDriven(forest, tree, input);
-  const double fast = !touched && !driven ? FAST_ALONE : touched && driven ? FAST_AT_WORK : FAST;
+  const double fast = !driven ? FAST_ALONE : touched ? FAST_AT_WORK : FAST;
   return turning > fast ? Pace::FAST : Pace::SLOW;
 }
 
@@ -169,6 +169,16 @@ void setFreeMomentum(const Forest& forest, const Scene& scene, const StepInput& 
     space->free_momentum[k] += input.dt * (motion->applied[k] - productsShare(t, k) * motion->products[k]);
     space->free_momentum[k] -= motion->owed[k];
     space->velocity[k] = motion->velocity[k];
+  }
+}
+
+void followAlone(const Forest& forest, const StepInput& input, int tree, ForestMotion* motion, SolverSpace* space) {
+  if (motion->pace[tree] != Pace::SLOW || isTied(forest, tree) || isDriven(forest, tree, input)) return;
+  const ForestTree& t = forest.trees()[tree];
+  motion->pace[tree] = Pace::FAST;
+  for (int k = t.first_dof; k < t.dof_end; ++k) {
+    space->free_momentum[k] += input.dt * productsShare(t, k) * motion->products[k];
+    motion->products[k] = 0;
   }
 }
 

@@ -20,6 +20,9 @@ void takeMomentum(const Forest& forest, int tree, ForestMotion* motion, SolverSp
 void setFreeMomentum(const Forest& forest, const Scene& scene, const StepInput& input, bool touched, int tree, ForestMotion* motion,
                      SolverSpace* space);
 
+/** A tree that nothing drives or ties is fast in this step, whatever its speed. After setFreeMomentum, before the solve. */
+void followAlone(const Forest& forest, const StepInput& input, int tree, ForestMotion* motion, SolverSpace* space);
+
 /** Follows the free motion of fast trees from the velocities that were solved. @return false if one was too fast to be followed */
 bool followFast(const Forest& forest, const IslandProblem& problem, double dt, const ForestMotion& motion, const SolverSpace& space,
                 FreeMotion* way);

@@ -3,14 +3,6 @@
 #include <algorithm>
 
 namespace blem_sim {
-namespace {
-
-Vector6 relativeTwist(const BodyPair& pair, const std::vector<Vector6>& twist) {
-  if (pair.b < 0) return twist[pair.a];
-  return twist[pair.a] - moveTwist(twist[pair.b], -pair.shift);
-}
-
-}  // namespace
 
 void SolverSpace::resize(const Forest& forest) {
   for (auto* v : {&free_momentum, &velocity, &mass_velocity, &gradient, &direction, &mass_direction, &scale, &kinetic, &anchor, &idle_pull,

@@ -7,6 +7,7 @@
 #include "blem_sim/geometry/input_error.h"
 #include "config_sections.h"
 #include "scene_limits.h"
+#include "yaml_size.h"
 
 namespace blem_sim {
 
@@ -76,6 +77,7 @@ SimulationConfig loadConfigFile(const std::string& file) {
 
 YAML::Node loadYamlFile(const std::string& file) {
   try {
+    checkYamlSize(file);
     return YAML::LoadFile(file);
   } catch (const YAML::BadFile&) {
     throw InputError(fmt::format("{}: cannot be read; check the path", file));

@@ -26,6 +26,8 @@ constexpr double SEPARATION_SPEED = 0.1;  // [m/s]
 constexpr double SEPARATION_RATE = 1e4;   // [1/s]
 constexpr double APART = 0.25;            // of the layer: what crossed is sound again when its deepest contact uses up less
 
+constexpr int MOST_AT_ONE_PLACE = 8;  // pairs of a collider that are looked at, of those with what is at its very place
+
 // Of a recovery in a saved state.
 constexpr std::size_t WORDS = 3, NUMBERS = 16;
 
@@ -135,19 +137,38 @@ double ContactStage::knownMargin(const SimulatedWorld& world, const std::vector<
   return std::clamp(std::max(REACH_FACTOR * speed * dt, alone), BASE_MARGIN, most);
 }
 
+bool ContactStage::isAtOnePlace(const SimulatedWorld& world, int a, int b) const {
+  const auto boxOf = [&](int collider) -> const Box& { return world.colliders[collider].geometry->bounds(); };
+  for (const int collider : {a, b})
+    if (!world.colliders[collider].geometry || world.colliders[collider].geometry->isHalfSpace()) return false;
+  const Vector3 middle_a = search_.motion[a].X_WC * boxOf(a).center(), middle_b = search_.motion[b].X_WC * boxOf(b).center();
+  const double smaller = std::min(boxOf(a).diagonal().squaredNorm(), boxOf(b).diagonal().squaredNorm());
+  if ((middle_a - middle_b).squaredNorm() > 0.25 * smaller) return false;
+  return boxOf(a).contains(search_.motion[a].X_WC.inverse() * middle_b) && boxOf(b).contains(search_.motion[b].X_WC.inverse() * middle_a);
+}
+
 void ContactStage::broadPhase(const SimulatedWorld& world, const std::vector<BodyState>& bodies, double dt) {
   moveColliders(world, bodies, dt);
   search_.pairs.clear();
+  search_.left_out.clear();
+  at_one_place_.assign(world.colliders.size(), 0);
   for (const ColliderPair& pair :
        pair_search_.find(world.colliders, search_.motion, world.filter, BASE_MARGIN, std::numeric_limits<double>::infinity())) {
     if (world.disabled_pairs.count({pair.a, pair.b}) > 0) continue;
+    if (isAtOnePlace(world, pair.a, pair.b)) {
+      if (at_one_place_[pair.a] >= MOST_AT_ONE_PLACE || at_one_place_[pair.b] >= MOST_AT_ONE_PLACE) {
+        search_.left_out.push_back({pair.a, pair.b});
+        continue;
+      }
+      ++at_one_place_[pair.a], ++at_one_place_[pair.b];
+    }
     search_.pairs.push_back({pair.a, pair.b, pair.margin, knownMargin(world, bodies, pair, dt)});
   }
 }
 
 Recovery ContactStage::lastApart(int a, int b) const {
   if (const Recovery* recovery = findPair(current_search_.recoveries, a, b)) return *recovery;
-  if (!known_) return {a, b, false, Pose::Identity()};
+  if (!known_ || findPair(current_search_.left_out, a, b)) return {a, b, false, Pose::Identity()};
   return {a, b, true, current_search_.motion[a].X_WC.inverse() * current_search_.motion[b].X_WC};
 }
 
@@ -228,7 +249,7 @@ void ContactStage::addConstraints(const SimulatedWorld& world, const ContactMani
     constraint.damping = contact.weight * surface.damping;
     if (recovers && contact.depth > 0) separate(std::min(massOf(world, a), massOf(world, b)), manifold.layer, &constraint);
     constraints_.push_back(constraint);
-    solved_.push_back({manifold.a, manifold.b, manifold.layer, contact.pierced, 0});
+    solved_.push_back({manifold.a, manifold.b, manifold.layer, contact.pierced, 0, recovers});
   }
   if (!recovers && isCompliant(surface)) addStops(world, all, surface.friction);
 }
@@ -240,7 +261,7 @@ void ContactStage::addStops(const SimulatedWorld& world, const ContactManifold& 
     constraint.friction = friction;
     constraint.id = stopId(constraint.id);
     constraints_.push_back(constraint);
-    solved_.push_back({all.a, all.b, all.layer, false, stop});
+    solved_.push_back({all.a, all.b, all.layer, false, stop, false});
   }
 }
 

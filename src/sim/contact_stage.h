@@ -20,7 +20,8 @@ struct SolvedContact {
   int collider_a, collider_b;
   double layer;  ///< [m] rA + rB
   bool pierced;
-  double stop;  ///< [m] depth at which it begins, of a layer's stop; else 0
+  double stop;    ///< [m] depth at which it begins, of a layer's stop; else 0
+  bool recovers;  ///< of a pair of recoveries()
 };
 
 /** Two colliders that may meet in the coming step. */
@@ -28,6 +29,11 @@ struct WatchedPair {
   int a, b;
   double margin;  ///< [m] beyond the layers, within which they may meet at all
   double known;   ///< [m] beyond the layers, within which their contacts are known
+};
+
+/** Two colliders of a pair that is not looked at. */
+struct PairLeftOut {
+  int a, b;
 };
 
 /** A pair whose bare meshes cross, or did and are not apart yet. */
@@ -82,6 +88,11 @@ class ContactStage {
   bool readRecoveries(const std::uint64_t** words, const std::uint64_t* words_end, NumberReader* reader);
   int rawContacts() const;
   int reducedContacts() const;  ///< without stops
+  /**
+   * Where very many colliders are at one place, so that the middle of each one's box is in the other's, only some pairs of each are looked
+   * at: the others would take a time that grows as their number squared. Those of the accepted state, sorted by (a, b).
+   */
+  const std::vector<PairLeftOut>& leftOut() const { return current_search_.left_out; }
   /** A model has as many contacts as it may, and others were left out. */
   bool budgetUsedUp() const { return budget_used_up_; }
 
@@ -89,10 +100,12 @@ class ContactStage {
   struct Search {
     std::vector<ColliderMotion> motion;
     std::vector<WatchedPair> pairs;
+    std::vector<PairLeftOut> left_out;  // sorted by (a, b)
     std::vector<Recovery> recoveries;
   };
   void moveColliders(const SimulatedWorld& world, const std::vector<BodyState>& bodies, double dt);
   double knownMargin(const SimulatedWorld& world, const std::vector<BodyState>& bodies, const ColliderPair& pair, double dt) const;
+  bool isAtOnePlace(const SimulatedWorld& world, int a, int b) const;
   /** Where a pair was last apart, as far as the accepted state knows. */
   Recovery lastApart(int a, int b) const;
   void keepWhatWasFound(std::size_t pairs);
@@ -107,6 +120,7 @@ class ContactStage {
   std::vector<double> arms_;  ///< [m] by collider: farthest point of its geometry from the body's centre of mass
   BroadPhase pair_search_;
   Search search_, current_search_;
+  std::vector<int> at_one_place_;  // pairs of each collider that are
   PairSearches searches_;
   std::vector<ContactManifold> found_, current_, reduced_;
   std::vector<ContactManifold> spare_;  // only their memory

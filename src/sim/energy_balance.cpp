@@ -3,18 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "blem_sim/contact/collider_pairs.h"
-
 namespace blem_sim {
 namespace {
 
 double square(double x) { return x * x; }
 
 bool isCompliant(const ContactConstraint& c) { return std::isfinite(c.stiffness) && std::isfinite(c.damping); }
-
-bool recovers(const ContactStage& contacts, const SolvedContact& contact) {
-  return findPair(contacts.recoveries(), contact.collider_a, contact.collider_b) != nullptr;
-}
 
 /** [m/s] at which a contact that is too deep pushes on purpose. */
 double correctionSpeed(const ContactConstraint& c, bool recovers, double dt, const SolverSettings& settings) {
@@ -48,17 +42,19 @@ void EnergyBalance::start(const World& world) {
   for (int joint = 0; joint < world.jointCount(); ++joint) joints_[joint] = world.jointState(joint);
 }
 
-EnergyGain EnergyBalance::addSolve(const World& world, double dt, const ContactStage& contacts, const std::vector<Vector3>& forces,
+EnergyGain EnergyBalance::addSolve(const World& world, double dt, const ContactStage& contacts, const SolveResult& solved,
                                    const std::vector<BodyState>& before, const std::vector<BodyState>& after) {
-  tie(world, contacts, forces);
+  tie(world, contacts, solved.contact_forces);
   bookBodies(world, dt, before, after);
   bookJoints(world, dt);
   bookSprings(contacts, before, after);
-  bookContacts(dt, contacts, forces, before, after);
+  bookContacts(dt, contacts, solved, before, after);
   EnergyGain gain;
   for (const Book& book : books_) {
-    gain.total += std::max(0.0, book.rise - book.held);
-    if (book.rise - book.held - book.on_purpose > FLOOR * std::min(1.0, book.mass) + RELATIVE * book.moved) gain.beyond_bound = true;
+    const double rise = book.rise - book.held;
+    gain.total += std::max(0.0, rise);
+    gain.out_of_nothing += std::max(0.0, rise - book.on_purpose);
+    if (rise - book.on_purpose > FLOOR * std::min(1.0, book.mass) + RELATIVE * book.moved) gain.beyond_bound = true;
   }
   holdBack();
   return gain;
@@ -123,7 +119,7 @@ void EnergyBalance::bookSprings(const ContactStage& contacts, const std::vector<
   Displacements a(before, after), b(before, after);
   for (std::size_t i = 0; i < contacts.constraints().size(); ++i) {
     const ContactConstraint& contact = contacts.constraints()[i];
-    if (!isCompliant(contact) || recovers(contacts, contacts.solved()[i])) continue;
+    if (!isCompliant(contact) || contacts.solved()[i].recovers) continue;
     const Vector3 apart = a.of(contact.point, contact.body_a) - b.of(contact.point, contact.body_b);
     const double old_depth = std::max(0.0, contact.depth), depth = std::max(0.0, contact.depth - contact.normal_BA.dot(apart));
     Book& book = bookOf(contact);
@@ -140,18 +136,20 @@ double EnergyBalance::normalSpeed(const ContactConstraint& contact, const std::v
   return contact.normal_BA.dot(velocity(contact.body_a) - velocity(contact.body_b));
 }
 
-// Of a normal impulse's work at the mean velocity, half the loss of a departure that loads brake in this step is none that it makes.
-void EnergyBalance::bookContacts(double dt, const ContactStage& contacts, const std::vector<Vector3>& forces,
-                                 const std::vector<BodyState>& before, const std::vector<BodyState>& after) {
+// Where a stepper does not tell what only looks like work: half the loss of a departure that loads brake in this step.
+void EnergyBalance::bookContacts(double dt, const ContactStage& contacts, const SolveResult& solved, const std::vector<BodyState>& before,
+                                 const std::vector<BodyState>& after) {
+  const std::vector<Vector3>& forces = solved.contact_forces;
   landings_.clear();
   for (std::size_t i = 0; i < forces.size(); ++i) {
     if (forces[i].isZero(0)) continue;
     const ContactConstraint& contact = contacts.constraints()[i];
     const double impulse = dt * std::max(0.0, contact.normal_BA.dot(forces[i]));
     const double old_speed = normalSpeed(contact, before), speed = normalSpeed(contact, after);
-    const double correction = correctionSpeed(contact, recovers(contacts, contacts.solved()[i]), dt, settings_);
+    const double correction = correctionSpeed(contact, contacts.solved()[i].recovers, dt, settings_);
     Book& book = bookOf(contact);
-    book.on_purpose += impulse * (correction + 0.5 * std::max(0.0, std::max(0.0, old_speed) - std::max(0.0, speed)));
+    const double braked = 0.5 * impulse * std::max(0.0, std::max(0.0, old_speed) - std::max(0.0, speed));
+    book.on_purpose += impulse * correction + (solved.apparent_work.empty() ? braked : solved.apparent_work[i]);
     if (!(contact.restitution > 0) || old_speed >= 0) continue;
     book.restitution = std::max(book.restitution, contact.restitution);
     book.approach -= impulse * old_speed;

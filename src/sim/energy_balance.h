@@ -13,7 +13,8 @@ namespace blem_sim {
 /** [J] that came out of nothing in a solve. */
 struct EnergyGain {
   double total = 0;           ///< sum over islands
-  bool beyond_bound = false;  ///< of an island, without what contacts do on purpose
+  double out_of_nothing = 0;  ///< the same without what contacts do on purpose
+  bool beyond_bound = false;  ///< an island's out of nothing
 };
 
 /**
@@ -21,7 +22,8 @@ struct EnergyGain {
  * the work of motors and joint friction. Contacts may only take from it. Each island has a book of its own: bodies that joints, mimic
  * joints, loops or contacts with a force tie together.
  *
- * What contacts do on purpose is work as well: they correct depth, and part meshes that cross, at a bounded speed. Beyond that an island
+ * What contacts do on purpose is work as well: they correct depth, and part meshes that cross, at a bounded speed. What only looks like
+ * their work (SolveResult::apparent_work) counts with it. Beyond that an island
  * may gain FLOOR, less where it weighs less than 1 kg, and RELATIVE times what moves in it: kinetic energy, weights times their ways, work
  * of motors and energy of springs.
  */
@@ -38,12 +40,12 @@ class EnergyBalance {
    * After a solve that was accepted.
    * @param dt [s] its length
    * @param contacts it was made with
-   * @param forces [N] of those contacts
+   * @param solved forces of those contacts
    * @param before, after bodies at its start and end
    * @return never below 0. An impact's energy that is still to bounce is held back from one solve to the next: of what the solve before
    * took, as much as the largest restitution gives back
    */
-  EnergyGain addSolve(const World& world, double dt, const ContactStage& contacts, const std::vector<Vector3>& forces,
+  EnergyGain addSolve(const World& world, double dt, const ContactStage& contacts, const SolveResult& solved,
                       const std::vector<BodyState>& before, const std::vector<BodyState>& after);
 
   /** No impact is to bounce. */
@@ -57,7 +59,7 @@ class EnergyBalance {
     double rise = 0;         // [J] of all energies, less the work of motors and joint friction
     double mass = 0;         // [kg]
     double moved = 0;        // [J] what moved, without sign
-    double on_purpose = 0;   // [J] work of contacts that correct depth
+    double on_purpose = 0;   // [J] work of contacts that correct depth, and what only looks like work
     double held = 0;         // [J] that the solve before took, and that may bounce now
     double restitution = 0;  // largest of contacts that pushed
     double approach = 0;     // [J] work that impacts took
@@ -73,7 +75,7 @@ class EnergyBalance {
   void bookBodies(const World& world, double dt, const std::vector<BodyState>& before, const std::vector<BodyState>& after);
   void bookJoints(const World& world, double dt);
   void bookSprings(const ContactStage& contacts, const std::vector<BodyState>& before, const std::vector<BodyState>& after);
-  void bookContacts(double dt, const ContactStage& contacts, const std::vector<Vector3>& forces, const std::vector<BodyState>& before,
+  void bookContacts(double dt, const ContactStage& contacts, const SolveResult& solved, const std::vector<BodyState>& before,
                     const std::vector<BodyState>& after);
   void holdBack();
   Book& bookOf(const ContactConstraint& contact);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "blem_sim/sim/step_report.h"
+#include "link_contacts.h"
 #include "number_reader.h"
 #include "random_numbers.h"
 #include "simulated_world.h"
@@ -21,6 +22,7 @@ struct StepContext {
   const std::vector<JointState>& joints;        ///< at its end
   const std::vector<Wrench>& joint_wrenches;    ///< mean over the step, as SolveResult has them
   const std::vector<ContactReport>& contacts;
+  const LinkContacts& link_contacts;  ///< of these contacts, if a sensor that is read has readsContacts()
 };
 
 class Sensor {
@@ -31,6 +33,7 @@ class Sensor {
    * @param out overwritten; if it holds a reading of this sensor already, its memory is used again
    */
   virtual void read(const StepContext& step, double period, SensorReading* out) = 0;
+  virtual bool readsContacts() const { return false; }
   /** Forgets what it remembers (a drifting bias), without touching the random numbers. */
   virtual void reset() {}
   /** What it remembers. */

@@ -16,20 +16,17 @@ class ContactSensor : public Sensor {
     reading.link_body = robot_.bodies[robot_.lumped->link_placement[link_].body];
     // Contact points and forces belong to the start of the step.
     const Vector3 p_WL = step.world.linkPose(robot_, link_, step.bodies_before).translation();
-    for (std::size_t i = 0; i < step.contacts.size(); ++i) {
-      const ContactReport& contact = step.contacts[i];
-      const bool on_a = isLink(step.world.colliders[contact.collider_a]), on_b = isLink(step.world.colliders[contact.collider_b]);
-      if (!on_a && !on_b) continue;
-      const Vector3 force = on_a ? contact.force : Vector3(-contact.force);
-      reading.contacts.push_back(static_cast<int>(i));
+    for (const LinkContacts::Entry& entry : step.link_contacts.of(robot_.model, link_)) {
+      const ContactReport& contact = step.contacts[entry.contact];
+      const Vector3 force = entry.on_a ? contact.force : Vector3(-contact.force);
+      reading.contacts.push_back(entry.contact);
       reading.total.force += force;
       reading.total.torque += (contact.point - p_WL).cross(force);
     }
   }
+  bool readsContacts() const override { return true; }
 
  private:
-  bool isLink(const Collider& collider) const { return collider.model == robot_.model && collider.link == link_; }
-
   const RobotInfo robot_;
   const int link_;
 };

@@ -7,6 +7,7 @@
 #include "contact_stage.h"
 #include "energy_balance.h"
 #include "layer_watch.h"
+#include "link_contacts.h"
 #include "sensor.h"
 #include "simulated_world.h"
 #include "step_guard.h"
@@ -88,6 +89,7 @@ struct Simulator::Impl {
   std::vector<JointState> joints_;
   std::vector<Wrench> joint_wrenches_;  ///< mean over the step
   std::vector<ContactReport> contact_reports_;
+  LinkContacts link_contacts_;
   const SolveResult* solved_ = nullptr;
 };
 

@@ -65,7 +65,7 @@ void Simulator::Impl::startStep() {
   for (SensorSample& sample : report_.samples) spare_readings_[sample.sensor] = std::move(sample.reading);
   report_.samples.clear();
   report_.layer_events.clear();
-  report_.energy_gained = 0;
+  report_.energy_gained = report_.energy_out_of_nothing = 0;
   report_.solver_residual = report_.solver_creep = 0;
   report_.solver_iterations = 0;
   report_.dt = config_.time_step;
@@ -83,7 +83,8 @@ void Simulator::Impl::findFirstContacts() {
 
 void Simulator::Impl::planSubstep() {
   const StageTimer timer(&report_.profile, Stage::STEP_GUARD);
-  if (substeps_.isRedone()) return;
+  // Where so much crosses already that pairs are left out, shorter substeps would only cost time.
+  if (substeps_.isRedone() || !contacts_.leftOut().empty()) return;
   const double left = substeps_.fractionLeft() * config_.time_step;
   substeps_.plan(safeTime(world_, contacts_, bodies_, left) / left);
 }
@@ -130,7 +131,8 @@ bool Simulator::Impl::solve() {
 
 void Simulator::Impl::stepGuard() {
   const StageTimer timer(&report_.profile, Stage::STEP_GUARD);
-  if (substeps_.canHalve() && usesUpLayer(world_.colliders, contacts_.current(), contacts_.found(), bodies_before_substep_, bodies_)) {
+  if (substeps_.canHalve() && contacts_.leftOut().empty() &&
+      usesUpLayer(world_.colliders, contacts_.current(), contacts_.found(), bodies_before_substep_, bodies_)) {
     world_.world.restore(substep_start_);
     bodies_ = bodies_before_substep_;
     substeps_.halve();
@@ -166,9 +168,9 @@ void Simulator::Impl::recordSolve() {
 }
 
 void Simulator::Impl::recordEnergy() {
-  const EnergyGain gain =
-      energy_balance_.addSolve(world_.world, substepLength(), contacts_, solved_->contact_forces, bodies_before_substep_, bodies_);
+  const EnergyGain gain = energy_balance_.addSolve(world_.world, substepLength(), contacts_, *solved_, bodies_before_substep_, bodies_);
   report_.energy_gained += gain.total;
+  report_.energy_out_of_nothing += gain.out_of_nothing;
   if (gain.beyond_bound) report_.status |= ENERGY_GAINED;
 }
 
@@ -199,6 +201,7 @@ void Simulator::Impl::recordContacts() {
                                 constraint.normal_BA, depth, of_layer, force, solved.pierced});
   }
   if (!contacts_.recoveries().empty()) report_.status |= CONTACT_UNRELIABLE;
+  if (!contacts_.leftOut().empty()) report_.status |= CONTACT_UNRELIABLE | CONTACTS_REDUCED;
   for (const ContactManifold& manifold : contacts_.current()) {
     const double depth = manifold.maxDepth();
     if (manifold.layer > 0) report_.max_of_layer = std::max(report_.max_of_layer, depth / manifold.layer);
@@ -212,9 +215,13 @@ void Simulator::Impl::recordContacts() {
 void Simulator::Impl::readSensors() {
   const StageTimer timer(&report_.profile, Stage::SENSORS);
   jointStates(&joints_);
-  const StepContext context{world_, config_.time_step, bodies_before_, bodies_, joints_, joint_wrenches_, contact_reports_};
+  const auto due = [this](std::size_t i) { return step_count_ % sensor_periods_[i] == 0; };
+  bool contacts = false;
+  for (std::size_t i = 0; i < sensors_.size(); ++i) contacts = contacts || (due(i) && sensors_[i]->readsContacts());
+  if (contacts) link_contacts_.index(world_, contact_reports_);
+  const StepContext context{world_, config_.time_step, bodies_before_, bodies_, joints_, joint_wrenches_, contact_reports_, link_contacts_};
   for (std::size_t i = 0; i < sensors_.size(); ++i) {
-    if (step_count_ % sensor_periods_[i] != 0) continue;
+    if (!due(i)) continue;
     const double period = static_cast<double>(sensor_periods_[i]) * config_.time_step;
     sensors_[i]->read(context, period, &spare_readings_[i]);
     report_.samples.push_back({static_cast<int>(i), std::move(spare_readings_[i])});

@@ -1,6 +1,7 @@
 // Bodies that touch by balls fixed to them, between walls: bounces whose contacts are exact and do not depend on any contact generation.
 #pragma once
 
+#include <numeric>
 #include <random>
 #include <utility>
 #include <vector>
@@ -126,6 +127,7 @@ class BouncingBodies {
 struct EnergyRun {
   double start = 0, end = 0;
   double worst = 0;         ///< [J] largest rise in one step beyond what corrects depth
+  double worst_gain = 0;    ///< [J] the same, also beyond what only looks like work of contacts (SolveResult::apparent_work)
   double worst_flight = 0;  ///< [J] largest change in a step without any force: the error of integrating free motion
   bool finite = true;
 };
@@ -152,7 +154,9 @@ inline EnergyRun followEnergy(BouncingBodies* scene, double dt, int steps) {
     const bool flies =
         std::all_of(result.contact_forces.begin(), result.contact_forces.end(), [](const Vector3& f) { return f.isZero(0); });
     const double next = scene->energy(dt);
-    run.worst = std::max(run.worst, next - energy - correctionWork(*scene, result, dt));
+    const double rise = next - energy - correctionWork(*scene, result, dt);
+    run.worst = std::max(run.worst, rise);
+    run.worst_gain = std::max(run.worst_gain, rise - std::accumulate(result.apparent_work.begin(), result.apparent_work.end(), 0.0));
     if (flies) run.worst_flight = std::max(run.worst_flight, std::abs(next - energy));
     energy = run.end = next;
   }

@@ -336,5 +336,28 @@ TEST(NearestName, TakesTheFewestEdits) {
   EXPECT_EQ(nearestName("x", {}), "");
 }
 
+// Before a node is built, of which each takes kilobytes.
+TEST(ConfigFile, AMillionObjectsAreRefusedWhereTheyBecomeTooMany) {
+  const TemporaryFolder folder;
+  std::string text = "time_step: 0.001\nobjects:\n";
+  for (int i = 0; i < 1000000; ++i) text += "- {name: c, uri: a.off}\n";
+  const std::string file = folder.write("many.yaml", text);
+  EXPECT_EQ(refusal([&] { loadConfigFile(file); }),
+            file + ":100003: objects: has more than the 100000 entries that are simulated; give fewer");
+}
+
+TEST(ConfigFile, LongListsAreNamedWhereTheyAre) {
+  const TemporaryFolder folder;
+  std::string text = "robots: [{name: a}, {name: b, gains: [";
+  for (int i = 0; i < 100001; ++i) text += "1, ";
+  const std::string file = folder.write("deep.yaml", text + "1]}]\n");
+  EXPECT_EQ(refusal([&] { loadConfigFile(file); }),
+            file + ":1: robots[1].gains: has more than the 100000 entries that are simulated; give fewer");
+  std::string most = "objects: [";
+  for (int i = 0; i < 99999; ++i) most += "1, ";
+  const std::string taken = folder.write("most.yaml", most + "1]\n");
+  EXPECT_EQ(loadYamlFile(taken)["objects"].size(), 100000u);
+}
+
 }  // namespace
 }  // namespace blem_sim

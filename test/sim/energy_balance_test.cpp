@@ -43,6 +43,7 @@ TEST(EnergyBalance, OneBodysGainIsNotHiddenByAnothersLoss) {
   solve.after[0].v_WCom = {1, 0, 0};
   const EnergyGain gain = solve.gain();
   EXPECT_NEAR(gain.total, 1, 1e-12);
+  EXPECT_NEAR(gain.out_of_nothing, 1, 1e-12);
   EXPECT_TRUE(gain.beyond_bound);
 }
 
@@ -133,6 +134,18 @@ TEST(EnergyGainedBit, IsNotSetByAStackNorBySlidingNorByAFall) {
   config.objects[2].linear_velocity = {2, 0.5, 0};
   config.objects[3].angular_velocity = {5, 3, 1};
   EXPECT_EQ(statusOf(config, 1) & ENERGY_GAINED, 0u);
+}
+
+TEST(EnergyOutOfNothing, LeavesOutWhatCorrectingDepthTakes) {
+  Simulator simulator(onGround({box("deep", Vector3::Constant(0.1), 1, {0, 0, 0.0515})}), UriResolver());
+  double gained = 0, out_of_nothing = 0;
+  for (int i = 0; i < 300; ++i) {
+    const StepReport& report = simulator.step();
+    gained += report.energy_gained;
+    out_of_nothing += report.energy_out_of_nothing;
+  }
+  EXPECT_GT(gained, 0.5 * G * 0.001);  // lifted by a millimetre
+  EXPECT_LT(out_of_nothing, 1e-9);
 }
 
 TEST(EnergyGainedBit, IsNotSetByWhatContactsDoOnPurpose) {

@@ -87,5 +87,30 @@ TEST(ManyBodies, AHundredStartedInsideEachOtherIsSaidSo) {
   EXPECT_LT(fastest, 10);
 }
 
+// All in one place: finite, said so, and looked at within a bound that does not grow as the square of their number.
+TEST(ManyBodies, TwoHundredAtOnePlaceAreBounded) {
+  constexpr int CUBES = SANITIZED ? 60 : 200, MOST_PAIRS_OF_ONE = 8;
+  SimulationConfig config;
+  config.environments = {ground(8)};
+  for (int i = 0; i < CUBES; ++i) config.objects.push_back(box("cube" + std::to_string(i), Vector3::Constant(0.1), 1, {0, 0, 0.2}));
+  Simulator simulator(config, UriResolver());
+  for (int k = 0; k < 3; ++k) {
+    const StepReport& report = simulator.step();
+    EXPECT_TRUE(report.status & CONTACT_UNRELIABLE);
+    EXPECT_TRUE(report.status & CONTACTS_REDUCED);
+    ASSERT_FALSE(report.status & STATE_NOT_FINITE);
+    EXPECT_EQ(report.substeps + report.redone_solves, 1);
+    EXPECT_GT(report.searched_pairs, CUBES);
+    EXPECT_LE(report.searched_pairs, CUBES * MOST_PAIRS_OF_ONE / 2 + CUBES);
+    for (const BodyState& body : report.bodies) EXPECT_LT(body.v_WCom.norm(), 10);
+  }
+  const SimulationState saved = simulator.save();
+  simulator.step();
+  const std::uint64_t hash = simulator.stateHash();
+  simulator.restore(saved);
+  simulator.step();
+  EXPECT_EQ(simulator.stateHash(), hash);
+}
+
 }  // namespace
 }  // namespace blem_sim

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <random>
 #include <string>
+#include <vector>
 
 #include "sim/simulation_scene.h"
 
@@ -130,6 +131,48 @@ inline SimulationConfig spheresInBin(int count, int seed, const SolverSettings& 
     config.objects.push_back(sphere);
   }
   return config;
+}
+
+/** A shape and a mass that pieces of a pile have, and their friction 0.5. */
+struct PileShape {
+  const char* name;
+  TriangleMesh mesh;
+  double mass;  ///< [kg]
+};
+
+constexpr double PILE_LAYER = 0.001;  // [m] of small parts: each is so much larger on every side
+
+/** Small parts of these shapes in turn, at rest at the start, turned at random, over a bin a little wider than their columns. */
+inline SimulationConfig pileInBin(const std::vector<PileShape>& shapes, int count, double spacing, int seed, const SolverSettings& solver) {
+  SimulationConfig config;
+  config.solver = solver;
+  config.contact.boundary_width = PILE_LAYER;
+  config.contact.surface.friction = 0.5;
+  config.environments = {bin(spacing * heapColumns(count) + 0.01, 0.1 + spacing * (heapColumns(count) + 2))};
+  for (const Pose& X_WC : heapPoses(count, seed, spacing)) {
+    const PileShape& shape = shapes[config.objects.size() % shapes.size()];
+    ObjectConfig part;
+    part.name = "part" + std::to_string(config.objects.size());
+    part.uri = meshFile(shape.name, shape.mesh);
+    part.mass = shape.mass;
+    part.X_WO = X_WC;
+    config.objects.push_back(part);
+  }
+  return config;
+}
+
+/** Steel rods of 6 x 6 x 45 mm. */
+inline SimulationConfig rodsInBin(int count, int seed, const SolverSettings& solver) {
+  return pileInBin({{"pile_rod", boxMesh({0.006, 0.006, 0.045}), 0.0127}}, count, 0.05, seed, solver);
+}
+
+/** Blocks, hexagonal nuts, wedges and plates of 2 to 3 cm. */
+inline SimulationConfig partsInBin(int count, int seed, const SolverSettings& solver) {
+  const std::vector<PileShape> shapes = {{"pile_block", boxMesh({0.03, 0.02, 0.015}), 0.025},
+                                         {"pile_nut", cylinderMesh(0.012, 0.01, 6), 0.012},
+                                         {"pile_wedge", cylinderMesh(0.015, 0.02, 3), 0.01},
+                                         {"pile_plate", boxMesh({0.03, 0.03, 0.005}), 0.015}};
+  return pileInBin(shapes, count, 0.045, seed, solver);
 }
 
 }  // namespace blem_sim

@@ -89,6 +89,8 @@ struct SolveResult {
   std::vector<Wrench> joint_wrenches;   ///< what the child feels from the parent, world axes, about the joint frame's origin at the
                                         ///< start of the step; from motion (Newton-Euler over the step), not from a residual
   std::vector<double> joint_efforts;    ///< [N m or N] motor and friction along the axis
+  std::vector<double> apparent_work;    ///< [J] per contact: what departures and slips that loads end within the step, and bent paths,
+                                        ///< make look like work of the contact, at most; empty where a stepper does not know it
   double residual = 0;    ///< [N] by how much contact forces miss Coulomb's law, worst contact; 0 where a stepper does not know it
   double creep = 0;       ///< [rad/s or m/s] by how much velocities miss momentum's balance, sticking joints, limits or loops; worst
   int iterations = 0;     ///< of the solver, over all islands

@@ -110,6 +110,9 @@ struct StepReport {
    *  (effort times joint motion): the sum over islands, so that none's gain is hidden by another's loss, which contacts may cause.
    *  Corrections of depth count, and integration errors of order dt. */
   double energy_gained = 0;
+  /** [J] the part of energy_gained that nothing explains: without what contacts did on purpose (correcting depth, parting meshes that
+   *  cross) and without what only looks like their work. ENERGY_GAINED is set where an island's is beyond its bound. */
+  double energy_out_of_nothing = 0;
   double solver_residual = 0;  ///< [N] worst over the step: SolveResult::residual
   double solver_creep = 0;     ///< [rad/s or m/s] worst over the step: SolveResult::creep
   int solver_iterations = 0;   ///< over the step's solves
