@@ -13,8 +13,10 @@
 namespace blem_sim {
 namespace {
 
-// Contacts exist before touch, so that none appears with a force: at rest within this of the layer, sooner at speed.
-constexpr double BASE_MARGIN = 0.0005;  // [m]
+// Contacts exist before touch, so that none appears with a force: at rest within this of the layer, sooner at speed. Less between small
+// things: what lies around them would use up their budgets.
+constexpr double BASE_MARGIN = 0.0005;         // [m], or
+constexpr double BASE_MARGIN_OF_LENGTH = 0.1;  // of the shorter collider
 // What is farther than this is not looked at: before it comes close, the step guard ends the substep.
 constexpr double LEAST_MAX_MARGIN = 0.005;  // [m], or
 constexpr double MAX_MARGIN_OF_LAYER = 2;   // layers
@@ -39,6 +41,16 @@ double armOf(const Collider& collider, const Vector3& com) {
   for (int corner = 0; corner < 8; ++corner)
     arm = std::max(arm, (collider.X_BC * box.corner(static_cast<Box::CornerType>(corner)) - com).norm());
   return arm;
+}
+
+/** [m] of its box's longest edge, layers included. */
+double lengthOf(const Collider& collider) {
+  if (collider.geometry->isHalfSpace()) return std::numeric_limits<double>::infinity();
+  return collider.geometry->bounds().sizes().maxCoeff() + 2 * collider.radius;
+}
+
+double baseMargin(const Collider& a, const Collider& b) {
+  return std::min(BASE_MARGIN, BASE_MARGIN_OF_LENGTH * std::min(lengthOf(a), lengthOf(b)));
 }
 
 std::uint64_t mixed(std::uint64_t x) {  // splitmix64's finalizer [Steele 2014]
@@ -131,10 +143,11 @@ double ContactStage::knownMargin(const SimulatedWorld& world, const std::vector<
   const double layer = a.radius + b.radius;
   const bool guarded = layer > 0 && !a.geometry->isHalfSpace() && !b.geometry->isHalfSpace();
   const double most = std::min(pair.margin, guarded ? std::max(LEAST_MAX_MARGIN, MAX_MARGIN_OF_LAYER * layer) : UNGUARDED_MARGIN);
-  if (most <= BASE_MARGIN) return most;
+  const double base = baseMargin(a, b);
+  if (most <= base) return most;
   const double speed = meetingSpeed(world, bodies, search_.motion, pair.a, pair.b, layer + pair.margin);
   const double alone = std::max(search_.motion[pair.a].reach, search_.motion[pair.b].reach) / REACH_FACTOR;
-  return std::clamp(std::max(REACH_FACTOR * speed * dt, alone), BASE_MARGIN, most);
+  return std::clamp(std::max(REACH_FACTOR * speed * dt, alone), base, most);
 }
 
 bool ContactStage::isAtOnePlace(const SimulatedWorld& world, int a, int b) const {

@@ -100,8 +100,8 @@ TEST(Heaps, AThousandTonsRestOnAKilogram) {
   EXPECT_NEAR(bodyOf(simulator, "cube1").X_WB.translation().z(), 0.05 + 0.1 + 3 * 0.0025, 1e-5);
 }
 
-TEST(Heaps, SizesFromAMillimetreToAHundredMetresRest) {
-  for (const double size : {1e-3, 1e-2, 10.0, 100.0}) {
+TEST(Heaps, SizesFromATenthOfAMillimetreToAHundredMetresRest) {
+  for (const double size : {1e-4, 1e-3, 1e-2, 10.0, 100.0}) {
     SimulationConfig config;
     config.environments = {ground(1000)};
     config.contact.boundary_width = 0.025 * size;
