@@ -21,6 +21,7 @@ constexpr int SWEEPS = 60, MOST_SWEEPS = 240;
 // Iterations of Newton's method on more than 150 bodies are dear, and fail where impulses change by more than this share of the largest:
 // first ones, and those that polish what was swept.
 constexpr double LIKE_BEFORE = 1e-5, NEARLY = 1e-4;
+constexpr int STANDING_WORK = 20000;  // iterations times trees of a heap that stands
 // Softness of contacts while a quiet heap is polished: stiffer ones change their kinds too often.
 constexpr double POLISH_SOFTNESS = 300, KEPT_SOFTNESS = 100, INEXACT = 0.02;
 constexpr int POLISH_WORK = 6000, FEWEST_POLISHES = 12, MOST_POLISHES = 60;  // iterations times trees
@@ -212,8 +213,10 @@ bool IslandProblem::solveFew(const NewtonSettings& settings, NewtonReport* repor
 }
 
 bool IslandProblem::solveStanding(const NewtonSettings& settings, NewtonReport* report) {
+  NewtonSettings bounded = settings;
+  bounded.max_iterations = std::min(settings.max_iterations, STANDING_WORK / static_cast<int>(trees.size()));
   predict();
-  *report = iterate(settings);
+  *report = iterate(bounded);
   ++report->iterations;
   return faults(*report) <= 1;
 }
