@@ -74,7 +74,7 @@ struct ContactConstraint {
 
 struct SolverSettings {
   std::string stepper = "articulated";  ///< a name in stepperTable()
-  int threads = 1;                      ///< for `articulated`: islands at once; the result is the same for any number
+  int threads = 1;                      ///< for `articulated`: islands and the loops of large ones; the result is the same for any number
   int quick_step_iterations = 50;
   double cfm = 1e-6;                  ///< constraint force mixing of contacts in ODE's steppers
   double correction_fraction = 0.2;   ///< of a contact's depth removed per step, at most at max_correction_speed
