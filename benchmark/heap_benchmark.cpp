@@ -2,7 +2,6 @@
 // more than times. Processor time of the stepping thread, of stages too. One island on one thread and on two, in turns, by the wall's
 // clock. Arguments: --seconds=S simulated (4 if not given), then Google Benchmark's: --benchmark_filter='cubes/(30|100)/' chooses sizes.
 #include <benchmark/benchmark.h>
-#include <time.h>
 
 #include <array>
 #include <cstdlib>
@@ -178,21 +177,20 @@ void measure(const Heap& heap, benchmark::State& state) {
   count(heap, figures, simulator, bullet.get(), &state);
 }
 
-void add(const Heap& heap) {
-  benchmark::RegisterBenchmark(("heaps/" + heap.name + "/" + std::to_string(heap.count)).c_str(),
-                               [heap](benchmark::State& state) { measure(heap, state); })
+/** A row that is run once. */
+template <typename Run>
+void add(const std::string& name, int count, const Run& run) {
+  benchmark::RegisterBenchmark(("heaps/" + name + "/" + std::to_string(count)).c_str(), run)
       ->Iterations(1)
       ->UseManualTime()
       ->Unit(benchmark::kMicrosecond);
 }
 
-double wallSeconds() {
-  timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+void addBesideBullet(const Heap& heap) {
+  add(heap.name, heap.count, [heap](benchmark::State& state) { measure(heap, state); });
 }
 
-/** Mean time of a step of some [us]. */
+/** [us] wall time per step, mean over a turn. */
 double meanOfTurn(Simulator* simulator, int steps) {
   const double start = wallSeconds();
   for (int i = 0; i < steps; ++i) simulator->step();
@@ -239,14 +237,9 @@ void takeSeconds(int* argc, char** argv) {
 int main(int argc, char** argv) {
   using namespace blem_sim;
   takeSeconds(&argc, argv);
-  for (const int size : {30, 100, 300, 1000}) add({"cubes", size, heapInBin, cubes});
-  add({"spheres", 1000, spheresInBin, spheres});
-  for (const int size : {100, 300, 1000})
-    benchmark::RegisterBenchmark(("heaps/threads/" + std::to_string(size)).c_str(),
-                                 [size](benchmark::State& state) { compareThreads(size, state); })
-        ->Iterations(1)
-        ->UseManualTime()
-        ->Unit(benchmark::kMicrosecond);
+  for (const int size : {30, 100, 300, 1000}) addBesideBullet({"cubes", size, heapInBin, cubes});
+  addBesideBullet({"spheres", 1000, spheresInBin, spheres});
+  for (const int size : {100, 300, 1000}) add("threads", size, [size](benchmark::State& state) { compareThreads(size, state); });
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
   benchmark::RunSpecifiedBenchmarks();

@@ -3,7 +3,6 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -148,8 +147,6 @@ Curve contacts() {
 }
 
 // ---- whole steps
-
-double wallSeconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 /** @param clock [s] that the step is timed by; its stages are wall time */
 Point wholeStep(const std::string& name, int size, const SimulationConfig& config, double (*clock)()) {

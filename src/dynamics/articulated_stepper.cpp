@@ -190,7 +190,7 @@ NewtonReport ArticulatedStepper::solveTwice(double dt, IslandProblem* problem) {
   return report;
 }
 
-// How fast a tree will be after an impact is not known before, so it is followed on its way as if it were fast. @return did anything meet?
+// Trees that an impact meets are followed as if they were fast: their speed after it is not known yet. @return whether an impact happened
 bool ArticulatedStepper::leap(const TermSource& source, Island* island) {
   const IslandProblem& problem = island->problem;
   if (!island->impacts.expect(source, island->contacts, problem)) return false;

@@ -11,7 +11,7 @@ namespace {
 using FreeBlock = Eigen::Matrix<double, FREE, FREE>;
 using FreeMap = Eigen::Map<FreeBlock>;
 
-constexpr int ENTRIES_AT_ONCE = 6;  // of a column, that a thread takes at least
+constexpr int ENTRIES_AT_ONCE = 6;  // of a column: the fewest for which a chunk is worth a thread
 constexpr int MOST_CHUNKS = 8;
 
 /** Rows of a block below the diagonal times the inverse of the diagonal's transposed factor. */
@@ -173,7 +173,7 @@ bool BlockMatrix::factorColumn(const Column& column) {
   return true;
 }
 
-// Places of the blocks that the neighbour of entry e shares with those of the entries from e on.
+// Offsets in values_ of the blocks that couple the neighbour of entry e with those of the column's entries from e on.
 void BlockMatrix::findTargets(const Column& column, int e, std::size_t* targets) const {
   const Column& target = columns_[entries_[e].column];
   targets[0] = target.diagonal;
@@ -184,7 +184,7 @@ void BlockMatrix::findTargets(const Column& column, int e, std::size_t* targets)
   }
 }
 
-// What the column's elimination takes from the blocks that the neighbour of entry e shares with those of the entries from e on.
+// Subtracts entry e's outer products with the column's entries from e on from the blocks that couple their neighbours.
 void BlockMatrix::subtractOuter(const Column& column, int e, std::size_t* targets) {
   double* values = values_.data();
   findTargets(column, e, targets);
@@ -201,7 +201,8 @@ void BlockMatrix::subtractOuter(const Column& column, int e, std::size_t* target
   }
 }
 
-// Entries take from blocks of their own. The first ones take from most, so chunks are every so manieth entry.
+// No two entries change the same block, so threads share them. Early entries have the most products: a chunk takes entries in steps of
+// the number of chunks.
 void BlockMatrix::subtractAllOuter(const Column& column, Team* team) {
   const int chunks = std::clamp((column.end - column.first) / ENTRIES_AT_ONCE, 1, MOST_CHUNKS);
   team->forChunks(chunks, [&](int chunk) {

@@ -14,7 +14,7 @@ struct BodyPair {
   Vector3 shift = Vector3::Zero();  ///< from a's reference point to b's
 };
 
-/** Of A against B, about a's reference point. @param twist per node */
+/** Twist of node a against node b, about a's reference point. @param twist per node */
 inline Vector6 relativeTwist(const BodyPair& pair, const std::vector<Vector6>& twist) {
   if (pair.b < 0) return twist[pair.a];
   return twist[pair.a] - moveTwist(twist[pair.b], -pair.shift);

@@ -30,6 +30,12 @@ struct ContactBlock {
 /** Slope of the contacts' potential along the steps, and its derivative. */
 struct PotentialSlope {
   double first = 0, second = 0;
+
+  PotentialSlope& operator+=(const PotentialSlope& other) {
+    first += other.first;
+    second += other.second;
+    return *this;
+  }
 };
 
 /** A lane's contact from a term; null: a contact that never acts. */

@@ -5,7 +5,7 @@
 namespace blem_sim {
 namespace {
 
-// A spring's push at its departure is work. What rigid contacts end with is their target.
+// Rigid contacts end with their target. Compliant ones may end faster: their springs' push at a departure is real work.
 double lostDeparture(const ContactTerm& c, double before) {
   const double end = c.compliance > 0 ? c.normal.dot(c.velocity) : c.target;
   return std::max(0.0, before - std::max(0.0, end));

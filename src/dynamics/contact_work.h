@@ -1,4 +1,4 @@
-// What looks like work of a contact, and is none.
+// Apparent work: the part of a contact's work, as it is booked, that its law does not do.
 #pragma once
 
 #include "contact_term.h"
@@ -6,10 +6,10 @@
 namespace blem_sim {
 
 /**
- * [J] An impulse's work is that times the mean of the velocities at the step's start and end. Where loads end a departure or a slip within
- * the step, the contact acts only after they did, yet half of its impulse times what they were at the start is in that mean; and where what
- * sticks follows a path that bends, it is led back by as much as it went. So much a contact that holds to its law may seem to do, never
- * more: what it does beyond its law is not among this.
+ * [J] An impulse's work is booked as the impulse times the mean of the velocities at the step's start and end. Loads may end a departure or
+ * a slip within the step: the contact acts only afterwards, but half of its impulse times the velocity at the start is booked. A contact
+ * that sticks on a bent path is led back by the bend, which is booked too. The apparent work is the most that a contact which obeys its law
+ * can book in these ways. Work beyond the law is never part of it.
  * @param before [m/s] relative velocity at the start of the step, after impacts. Precondition: the contact was solved
  */
 double apparentWork(const ContactTerm& contact, const Vector3& before);

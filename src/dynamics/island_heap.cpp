@@ -1,4 +1,4 @@
-// What sweeps are for: many bodies that push each other, and islands that Newton's method did not solve.
+// Islands that are swept: many bodies that push each other, and islands that Newton's method did not solve.
 #include <algorithm>
 #include <cmath>
 
@@ -7,13 +7,12 @@
 namespace blem_sim {
 namespace {
 
-constexpr int HEAP = 4;              // free bodies: from here on what tumbles is swept
-constexpr int LARGE_HEAP = 32;       // from here on sweeps come first; below they take the place of soft contacts
-constexpr int TOWER = 150;           // most trees of an island that is polished because sweeps did not arrive
-constexpr double TURNS = 0.03;       // [rad/s] fastest turning of a heap that stands, slides or lands flat: Newton's method solves it
-constexpr int FIRST_ITERATIONS = 4;  // of a small heap that tumbles; those after them must lead somewhere, or it is swept
-constexpr int FEW_ITERATIONS = 30;   // of it in all
-constexpr double SETTLED = 1e-4;     // of the largest impulse: by how much the last proximal step of a heap may change one
+constexpr int HEAP = 4;             // fewest free bodies of an island that is swept while it tumbles
+constexpr int LARGE_HEAP = 32;      // fewest that are swept first; of fewer only if Newton's first iterations fail
+constexpr int TOWER = 150;          // most trees of an island that is polished because its sweeps did not converge
+constexpr double TURNS = 0.03;      // [rad/s] fastest turn of a heap that stands, slides or lands flat: Newton's method solves it
+constexpr int FEW_ITERATIONS = 30;  // most of Newton's method on a small heap that tumbles
+constexpr double SETTLED = 1e-4;    // of the largest impulse: by how much the last proximal step of a heap may change one
 // Sweeps of a heap that tumbles end when they change impulses by less than this share of the largest; of a quiet one they are what brings
 // it to rest.
 constexpr double TUMBLES = 1e-2, SWEPT = 1e-3, SWEPT_FEW = 2e-5, RECOVERED = 1e-7;
@@ -33,7 +32,9 @@ constexpr double FREE_ENERGY = 1e-9, GAIN_OF_MOTION = 1e-6;  // [J], and of the 
 
 }  // namespace
 
-bool IslandProblem::isHeap() const { return static_cast<int>(trees.size()) >= HEAP && loops.empty() && mimics.empty() && joints.empty(); }
+int IslandProblem::treeCount() const { return static_cast<int>(trees.size()); }
+
+bool IslandProblem::isHeap() const { return treeCount() >= HEAP && loops.empty() && mimics.empty() && joints.empty(); }
 
 SweepProblem IslandProblem::sweepProblem() const {
   return {*forest_, *motion_, trees, patches, contacts, joints, loops, loop_pairs, mimics, space_->free_momentum, up, team_.get()};
@@ -45,7 +46,7 @@ double IslandProblem::largestImpulse() const {
   return std::sqrt(largest);
 }
 
-// How far a solution is from a good one: beyond 1 in imbalance, in creep or in what contacts miss. Infinite if it is not a number.
+// Imbalance, creep and violation of Coulomb's law, the worst of them in units of its bound. Infinite if one is not a number.
 double IslandProblem::faults(const NewtonReport& report) const {
   const double contact = report.contact_residual > 0 ? report.contact_residual / (RESIDUAL_IS_TROUBLE * largestImpulse()) : 0;
   const double worst = std::max({report.imbalance / BALANCED, report.joint_creep / CREEP_IS_TROUBLE, contact});
@@ -57,7 +58,7 @@ void IslandProblem::takeFirstVelocity() {
   forDofs([&s](int k) { s.velocity[k] = s.first_velocity[k]; });
 }
 
-// The velocities and the terms' impulses at hand become the iterate. The imbalance is what motors and friction miss then.
+// The velocities and the terms' impulses at hand become the iterate. Its imbalance is that of motors and friction.
 void IslandProblem::adoptImpulses() {
   SolverSpace& s = *space_;
   for (const int tree : trees) {
@@ -80,7 +81,7 @@ void IslandProblem::adoptImpulses() {
   gradient_norm_ = std::max(gradientNorm(live_dofs_), gradientNorm(idle_dofs_));
 }
 
-// Kinetic energy that the contacts' impulses add to that of free motion, beyond what correcting depth takes: exact ones take some.
+// Kinetic energy that the contacts' impulses add to that of free motion, correction of depth left out. Exact impulses never add any.
 // Precondition: adoptImpulses.
 ContactWork IslandProblem::contactWork() {
   ContactWork work;
@@ -137,12 +138,12 @@ void IslandProblem::finishSwept(NewtonReport* report) {
   readTerms();
 }
 
-// A heap that is nearly at rest, from what the sweeps found: exact, where it succeeds.
+// Newton's method on a heap that is nearly at rest, from the swept impulses. @return whether its result is better and was taken
 bool IslandProblem::polish(const NewtonSettings& settings, NewtonReport* report) {
   NewtonReport swept, polished;
   assess(&swept);
   NewtonSettings few = settings;
-  few.max_iterations = std::clamp(POLISH_WORK / static_cast<int>(trees.size()), FEWEST_POLISHES, MOST_POLISHES);
+  few.max_iterations = std::clamp(POLISH_WORK / treeCount(), FEWEST_POLISHES, MOST_POLISHES);
   soften(POLISH_SOFTNESS, 1);
   predict();
   polished.iterations = 1 + newton(few, INEXACT, few.max_iterations);
@@ -158,8 +159,7 @@ bool IslandProblem::polish(const NewtonSettings& settings, NewtonReport* report)
   return better;
 }
 
-// Does no body turn fast? Then hardly any contact changes its kind: a tower, a wall or a heap that has come to rest, or something that
-// slides.
+// Contacts of a heap that turns slowly hardly ever change their kinds: a tower, a wall, a heap at rest, a stack that slides.
 bool IslandProblem::turnsSlowly() const {
   double fastest = 0;
   for (const int tree : trees)
@@ -167,8 +167,8 @@ bool IslandProblem::turnsSlowly() const {
   return fastest <= TURNS * TURNS;
 }
 
-// Whether impulses change no more from one proximal step to the next. Contacts that answer softly to a tower that leans miss Coulomb's
-// law by little each, but together they let it sway.
+// Impulses are settled when the last proximal step changed none of them by more than SETTLED. Residuals alone do not tell: each contact of
+// a tower that leans misses Coulomb's law by little, but together they let it sway.
 bool IslandProblem::isSettled() const {
   double change = 0, largest = 0;
   for (const ContactBlock& b : contact_blocks_) {
@@ -186,7 +186,7 @@ bool IslandProblem::isSettled() const {
   return change <= SETTLED * SETTLED * largest;
 }
 
-// Proximal steps of a heap may be cut short at any iterate. Of those that balanced momentum the best is kept.
+// The budget may end at any proximal step of a heap. Of the steps that balanced momentum the best one is kept.
 void IslandProblem::keepBalanced(const NewtonReport& report, double* least) {
   if (!isHeap() || !(report.imbalance <= BALANCED) || !(report.contact_residual < *least)) return;
   *least = report.contact_residual;
@@ -201,7 +201,7 @@ void IslandProblem::returnToBalanced(double least, NewtonReport* report) {
   assess(report);
 }
 
-// A few bodies, much as in the step before, although they tumble.
+// A few bodies that tumble, but move much as in the step before: Newton's hard problem alone, in few iterations.
 bool IslandProblem::solveFew(const NewtonSettings& settings, NewtonReport* report) {
   NewtonSettings few = settings;
   few.max_iterations = FEW_ITERATIONS;
@@ -214,14 +214,14 @@ bool IslandProblem::solveFew(const NewtonSettings& settings, NewtonReport* repor
 
 bool IslandProblem::solveStanding(const NewtonSettings& settings, NewtonReport* report) {
   NewtonSettings bounded = settings;
-  bounded.max_iterations = std::min(settings.max_iterations, STANDING_WORK / static_cast<int>(trees.size()));
+  bounded.max_iterations = std::min(settings.max_iterations, STANDING_WORK / treeCount());
   predict();
   *report = iterate(bounded);
   ++report->iterations;
   return faults(*report) <= 1;
 }
 
-// Do the last step's impulses nearly solve this one?
+// One sweep tells whether the last step's impulses nearly solve this one.
 bool IslandProblem::isLikeBefore() {
   Eigen::VectorXd* velocity = &space_->direction;
   return sweeps_.load(sweepProblem(), SweepStart::PREVIOUS, velocity) && sweeps_.sweep(1, 0, velocity).first_change <= LIKE_BEFORE;
@@ -230,8 +230,8 @@ bool IslandProblem::isLikeBefore() {
 NewtonReport IslandProblem::solveHeap(const NewtonSettings& settings) {
   NewtonReport report;
   if (turnsSlowly()) {
-    if ((static_cast<int>(trees.size()) <= TOWER || isLikeBefore()) && solveStanding(settings, &report)) return report;
-  } else if (static_cast<int>(trees.size()) < LARGE_HEAP) {
+    if ((treeCount() <= TOWER || isLikeBefore()) && solveStanding(settings, &report)) return report;
+  } else if (treeCount() < LARGE_HEAP) {
     if (solveFew(settings, &report)) return report;
   }
   sweepAndPolish(settings, &report);
@@ -243,16 +243,16 @@ void IslandProblem::sweepAndPolish(const NewtonSettings& settings, NewtonReport*
   takeFirstVelocity();
   const SweepProblem problem = sweepProblem();
   if (!sweeps_.load(problem, SweepStart::PREVIOUS, &s.velocity)) return;
-  const bool small = static_cast<int>(trees.size()) < LARGE_HEAP;
+  const bool small = treeCount() < LARGE_HEAP;
   const double first_change = sweeps_.sweep(1, 0, &s.velocity).first_change;
-  const bool quiet = first_change <= TUMBLES, tower = static_cast<int>(trees.size()) <= TOWER;
+  const bool quiet = first_change <= TUMBLES, tower = treeCount() <= TOWER;
   const SweepReport swept = sweeps_.sweep(quiet ? SWEEPS : MOST_SWEEPS, quiet ? 0 : small ? SWEPT_FEW : SWEPT, &s.velocity);
   report->iterations += 1 + swept.sweeps;
   adoptSwept();
   NewtonReport found;
   assess(&found);
   const bool exact = found.contact_residual <= settings.contact_tolerance && gradient_norm_ <= settings.gradient_tolerance;
-  // Sweeps that did not arrive have a long way to go: towers.
+  // Sweeps do not converge in towers, where a push has a long way to go.
   if (!exact && (tower ? quiet || swept.last_change > SWEPT : first_change <= NEARLY)) {
     if (polish(settings, report)) return;
     sweeps_.scale(1, &s.velocity);
@@ -261,8 +261,8 @@ void IslandProblem::sweepAndPolish(const NewtonSettings& settings, NewtonReport*
   finishSwept(report);
 }
 
-// Sweeps that begin where the last step ended, or at nothing: what they find balances momentum, and adds no energy to free motion. Of
-// that and of what was found before, the one of the smallest faults is taken.
+// Sweeps from the last step's impulses, and from none. Their results balance momentum and add no energy to free motion. The result of the
+// smallest faults is taken: one of theirs, or the one found before.
 void IslandProblem::recover(NewtonReport* report) {
   SolverSpace& s = *space_;
   double least = faults(*report);

@@ -12,7 +12,6 @@ constexpr double INEXACT = 0.02, INEXACT_MIXED = 1e-4;  // mixed slips begin far
 constexpr int SOFT_STAGES = 2;
 constexpr double CONTACT_SOFTNESS[SOFT_STAGES] = {1000, 30};
 constexpr double JOINT_SOFTNESS[SOFT_STAGES] = {10, 3};
-constexpr int FIRST_ITERATIONS = 4;         // of the hard problem; those after them must lead somewhere, or the soft ones are asked
 constexpr double FIRST_PROGRESS = 0.1;      // an iteration that leads somewhere reduces the gradient to this
 constexpr double CHORD_PROGRESS = 0.1;      // a factor that is not made anew must have reduced the gradient to this
 constexpr int EASY = 10, ENOUGH_LEFT = 20;  // iterations of a proximal step whose slips are mixed, and of those that are left then

@@ -120,10 +120,7 @@ PotentialSlope IslandProblem::respond(double a) {
   slopes_.assign(contact_blocks_.size() / BLOCKS_AT_ONCE + 1, PotentialSlope());
   forContactRanges([&](std::size_t range, ContactBlock* first, ContactBlock* end) { slopes_[range] = blem_sim::respond(a, first, end); });
   PotentialSlope slope = slopes_[0];
-  for (std::size_t range = 1; range < slopes_.size(); ++range) {
-    slope.first += slopes_[range].first;
-    slope.second += slopes_[range].second;
-  }
+  for (std::size_t range = 1; range < slopes_.size(); ++range) slope += slopes_[range];
   blem_sim::respond(a, joint_blocks_.data(), joint_blocks_.data() + live_joint_blocks_, &slope.first, &slope.second);
   responses_at_ = a;
   responses_known_ = a == 0;

@@ -87,7 +87,8 @@ class IslandProblem {
   NewtonReport solveAgain(const NewtonSettings& settings);
 
  private:
-  static constexpr std::size_t BLOCKS_AT_ONCE = 128, PATCHES_AT_ONCE = 64;  ///< what a thread takes at once: some microseconds
+  static constexpr std::size_t BLOCKS_AT_ONCE = 128, PATCHES_AT_ONCE = 64;  ///< sizes of chunks: some microseconds each
+  static constexpr int FIRST_ITERATIONS = 4;  ///< of the hard problem; each later one must lead on, or soft contacts or sweeps follow
   // island_problem.cpp: the objective's gradient
   template <typename Visit>
   void forContactRanges(const Visit& visit);
@@ -156,6 +157,7 @@ class IslandProblem {
   NewtonReport iterate(const NewtonSettings& settings);
   void finish(const NewtonSettings& settings, NewtonReport* report);
   // island_heap.cpp: many bodies that push each other, and what the iteration did not solve
+  int treeCount() const;
   bool isHeap() const;
   SweepProblem sweepProblem() const;
   double largestImpulse() const;
@@ -198,7 +200,7 @@ class IslandProblem {
   std::vector<Vector6> patch_wrenches_;
   std::vector<Matrix6> patch_stiffness_;
   std::vector<char> patch_is_stiff_;
-  std::vector<JointBlock> joint_blocks_;  ///< likewise
+  std::vector<JointBlock> joint_blocks_;  ///< likewise responses where the line search looked last
   SlipMixing slip_mixing_;
   IslandSweeps sweeps_;
   KeptSolution kept_;

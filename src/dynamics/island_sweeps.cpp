@@ -6,7 +6,7 @@
 namespace blem_sim {
 namespace {
 
-constexpr std::size_t GROUPS_AT_ONCE = 16, IMPULSES_AT_ONCE = 256, DOFS_AT_ONCE = 1024;  // what a thread takes: some microseconds
+constexpr std::size_t GROUPS_AT_ONCE = 16, IMPULSES_AT_ONCE = 256, DOFS_AT_ONCE = 1024;  // sizes of chunks: some microseconds each
 
 Vector6 columnOf(const TwistLanes& lanes, int lane) {
   Vector6 out;
@@ -44,7 +44,7 @@ bool IslandSweeps::load(const SweepProblem& problem, SweepStart start, Eigen::Ve
   return true;
 }
 
-// Of the impulses at hand.
+// The velocity that the impulses at hand make.
 void IslandSweeps::findVelocity(Eigen::VectorXd* velocity) {
   response_.freeVelocity(momentum_, velocity);
   TwistLanes wrench;
@@ -154,7 +154,7 @@ void IslandSweeps::sweepGroup(std::size_t index, Eigen::VectorXd* velocity) {
     if (group.patch[lane] >= 0) scatter(pairs_[group.patch[lane]], lane, wrench, velocity);
 }
 
-// Groups of one colour have no body in common: threads share them. Those of the last colour have, and are one thread's.
+// Groups of one colour have no body in common, so threads share them. Groups of the last colour may have: one thread sweeps them.
 void IslandSweeps::sweepColour(std::size_t colour, Eigen::VectorXd* velocity) {
   const std::size_t begin = group_start_[colour], end = group_start_[colour + 1];
   const bool shared = colour + 2 < group_start_.size();
@@ -181,7 +181,7 @@ void IslandSweeps::noteVelocity(const Eigen::VectorXd& velocity) {
   });
 }
 
-// Impulses and velocities move on by `share` of the last search direction, which what the last sweep changed joins.
+// Moves impulses and velocities by `share` of the last search direction. The next direction is that move and the last sweep's change.
 void IslandSweeps::moveOn(double share, Eigen::VectorXd* velocity) {
   problem_->team->forRanges(0, impulses_.size(), IMPULSES_AT_ONCE, [&](std::size_t first, std::size_t last) {
     blem_sim::moveOn(share, impulses_.data() + first, impulses_.data() + last);

@@ -7,7 +7,7 @@ namespace {
 
 constexpr int PATIENCE = 2000;  // looks at a loop before the processor is left to others
 
-/** What a thread does that has nothing to do for less than a microsecond. */
+/** A wait of microseconds: the thread looks again and again, and yields the processor only after PATIENCE looks. */
 class Wait {
  public:
   void once() {
@@ -35,7 +35,7 @@ void Team::dismiss(tbb::task_group* group) {
   gathered_ = false;
 }
 
-// What is offered is taken downwards, so that a thread that comes late finds nothing.
+// Chunks are taken from the last to the first: the counter of a loop that is done stays at zero, so a late thread takes nothing.
 bool Team::takeChunk() {
   int left = left_.load(std::memory_order_acquire);
   while (left > 0) {

@@ -28,7 +28,7 @@ constexpr double SEPARATION_SPEED = 0.1;  // [m/s]
 constexpr double SEPARATION_RATE = 1e4;   // [1/s]
 constexpr double APART = 0.25;            // of the layer: what crossed is sound again when its deepest contact uses up less
 
-constexpr int MOST_AT_ONE_PLACE = 8;  // pairs of a collider that are looked at, of those with what is at its very place
+constexpr int MOST_AT_ONE_PLACE = 8;  // pairs of a collider with others at its place (leftOut()) that are looked at
 
 // Of a recovery in a saved state.
 constexpr std::size_t WORDS = 3, NUMBERS = 16;

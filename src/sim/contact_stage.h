@@ -89,8 +89,8 @@ class ContactStage {
   int rawContacts() const;
   int reducedContacts() const;  ///< without stops
   /**
-   * Where very many colliders are at one place, so that the middle of each one's box is in the other's, only some pairs of each are looked
-   * at: the others would take a time that grows as their number squared. Those of the accepted state, sorted by (a, b).
+   * Pairs of the accepted state that were not looked at, sorted by (a, b). Two colliders are at one place if the middle of each one's box
+   * is in the other's; of such pairs only some of each collider are looked at, since their number grows as the colliders' number squared.
    */
   const std::vector<PairLeftOut>& leftOut() const { return current_search_.left_out; }
   /** A model has as many contacts as it may, and others were left out. */

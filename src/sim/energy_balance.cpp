@@ -136,7 +136,7 @@ double EnergyBalance::normalSpeed(const ContactConstraint& contact, const std::v
   return contact.normal_BA.dot(velocity(contact.body_a) - velocity(contact.body_b));
 }
 
-// Where a stepper does not tell what only looks like work: half the loss of a departure that loads brake in this step.
+// Apparent work of steppers that do not report it is taken as half the loss of a departure that loads brake in this step.
 void EnergyBalance::bookContacts(double dt, const ContactStage& contacts, const SolveResult& solved, const std::vector<BodyState>& before,
                                  const std::vector<BodyState>& after) {
   const std::vector<Vector3>& forces = solved.contact_forces;

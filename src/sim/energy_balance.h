@@ -1,4 +1,4 @@
-// Does energy come out of nothing?
+// Energy that comes out of nothing, island by island.
 #pragma once
 
 #include <vector>
@@ -13,8 +13,8 @@ namespace blem_sim {
 /** [J] that came out of nothing in a solve. */
 struct EnergyGain {
   double total = 0;           ///< sum over islands
-  double out_of_nothing = 0;  ///< the same without what contacts do on purpose
-  bool beyond_bound = false;  ///< an island's out of nothing
+  double out_of_nothing = 0;  ///< the same without work that contacts do on purpose, and without apparent work
+  bool beyond_bound = false;  ///< the part out of nothing exceeds its bound in some island
 };
 
 /**
@@ -22,10 +22,9 @@ struct EnergyGain {
  * the work of motors and joint friction. Contacts may only take from it. Each island has a book of its own: bodies that joints, mimic
  * joints, loops or contacts with a force tie together.
  *
- * What contacts do on purpose is work as well: they correct depth, and part meshes that cross, at a bounded speed. What only looks like
- * their work (SolveResult::apparent_work) counts with it. Beyond that an island
- * may gain FLOOR, less where it weighs less than 1 kg, and RELATIVE times what moves in it: kinetic energy, weights times their ways, work
- * of motors and energy of springs.
+ * Contacts do work on purpose: they correct depth, and part meshes that cross, at a bounded speed. Apparent work
+ * (SolveResult::apparent_work) counts with it. Beyond both an island may gain FLOOR, less where it weighs less than 1 kg, and RELATIVE
+ * times the energy that moves in it: kinetic energy, weights times their ways, work of motors and energy of springs.
  */
 class EnergyBalance {
  public:
@@ -59,7 +58,7 @@ class EnergyBalance {
     double rise = 0;         // [J] of all energies, less the work of motors and joint friction
     double mass = 0;         // [kg]
     double moved = 0;        // [J] what moved, without sign
-    double on_purpose = 0;   // [J] work of contacts that correct depth, and what only looks like work
+    double on_purpose = 0;   // [J] work of contacts that correct depth, and apparent work
     double held = 0;         // [J] that the solve before took, and that may bounce now
     double restitution = 0;  // largest of contacts that pushed
     double approach = 0;     // [J] work that impacts took

@@ -83,7 +83,7 @@ void Simulator::Impl::findFirstContacts() {
 
 void Simulator::Impl::planSubstep() {
   const StageTimer timer(&report_.profile, Stage::STEP_GUARD);
-  // Where so much crosses already that pairs are left out, shorter substeps would only cost time.
+  // Pairs are left out only where many bodies cross each other already: shorter substeps would cost time and keep nothing apart.
   if (substeps_.isRedone() || !contacts_.leftOut().empty()) return;
   const double left = substeps_.fractionLeft() * config_.time_step;
   substeps_.plan(safeTime(world_, contacts_, bodies_, left) / left);

@@ -1,4 +1,4 @@
-// What looks like work of a contact: departures and slips that loads end, bent paths; never what a contact does beyond its law.
+// Apparent work of contacts: departures and slips that loads end, and bent paths count; work beyond the contact's law does not.
 #include "contact_work.h"
 
 #include <gtest/gtest.h>
