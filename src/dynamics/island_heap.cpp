@@ -7,23 +7,21 @@
 namespace blem_sim {
 namespace {
 
-constexpr int HEAP = 4;             // fewest free bodies of an island that is swept while it tumbles
-constexpr int LARGE_HEAP = 32;      // fewest that are swept first; of fewer only if Newton's first iterations fail
-constexpr int TOWER = 150;          // most trees of an island that is polished because its sweeps did not converge
-constexpr double TURNS = 0.03;      // [rad/s] fastest turn of a heap that stands, slides or lands flat: Newton's method solves it
-constexpr int FEW_ITERATIONS = 30;  // most of Newton's method on a small heap that tumbles
-constexpr double SETTLED = 1e-4;    // of the largest impulse: by how much the last proximal step of a heap may change one
-// Sweeps of a heap that tumbles end when they change impulses by less than this share of the largest; of a quiet one they are what brings
-// it to rest.
-constexpr double TUMBLES = 1e-2, SWEPT = 1e-3, SWEPT_FEW = 2e-5, RECOVERED = 1e-7;
-constexpr int SWEEPS = 60, MOST_SWEEPS = 240;
-// Iterations of Newton's method on more than 150 bodies are dear, and fail where impulses change by more than this share of the largest:
-// first ones, and those that polish what was swept.
-constexpr double LIKE_BEFORE = 1e-5, NEARLY = 1e-4;
-constexpr int STANDING_WORK = 20000;  // iterations times trees of a heap that stands
+constexpr int HEAP = 4;         // fewest free bodies of an island that is swept while it tumbles
+constexpr int LARGE_HEAP = 32;  // fewest that are swept first; of fewer only if Newton's first iterations fail
+constexpr double TURNS = 0.03;  // [rad/s] fastest turn of a heap that stands, slides or lands flat: Newton's method solves it
+constexpr int FEW_ITERATIONS = 30, CROWD_ITERATIONS = 6;  // most of Newton's method on a small heap that tumbles, on a crowd at rest
+constexpr double SETTLED = 1e-4;  // of the largest impulse: by how much the last proximal step of a heap may change one
+// A heap tumbles if the first sweep changes impulses by more than this share of the largest. Sweeps end when they change impulses by less;
+// a quiet crowd sways for ever if they leave more.
+constexpr double TUMBLES = 1e-2, SWEPT = 1e-3, SWEPT_FEW = 2e-5, SWEPT_QUIET = 1e-5, RECOVERED = 1e-7;
+constexpr int FEW_SWEEPS = 60, MOST_SWEEPS = 240;
+// Newton's method on a crowd fails where one sweep changes impulses by more than this share of the largest: the hard problem, and
+// polishing.
+constexpr double LIKE_BEFORE = 1e-6, NEARLY = 1e-4;
 // Softness of contacts while a quiet heap is polished: stiffer ones change their kinds too often.
 constexpr double POLISH_SOFTNESS = 300, KEPT_SOFTNESS = 100, INEXACT = 0.02;
-constexpr int POLISH_WORK = 6000, FEWEST_POLISHES = 12, MOST_POLISHES = 60;  // iterations times trees
+constexpr int POLISH_WORK = 6000, FEWEST_POLISHES = 10, MOST_POLISHES = 60;  // iterations times trees
 constexpr double BALANCED = 1e-5;                                            // [rad/s or m/s] what a step may miss momentum's balance by
 constexpr double RESIDUAL_IS_TROUBLE = 0.01;                                 // of the largest impulse
 constexpr double CREEP_IS_TROUBLE = 0.01;                                    // [rad/s or m/s]
@@ -33,6 +31,8 @@ constexpr double FREE_ENERGY = 1e-9, GAIN_OF_MOTION = 1e-6;  // [J], and of the 
 }  // namespace
 
 int IslandProblem::treeCount() const { return static_cast<int>(trees.size()); }
+
+bool IslandProblem::isCrowd() const { return treeCount() > CROWD; }
 
 bool IslandProblem::isHeap() const { return treeCount() >= HEAP && loops.empty() && mimics.empty() && joints.empty(); }
 
@@ -201,22 +201,25 @@ void IslandProblem::returnToBalanced(double least, NewtonReport* report) {
   assess(report);
 }
 
-// A few bodies that tumble, but move much as in the step before: Newton's hard problem alone, in few iterations.
+bool IslandProblem::isExact(const NewtonSettings& settings, const NewtonReport& report) const {
+  return report.contact_residual <= settings.contact_tolerance && gradient_norm_ <= settings.gradient_tolerance;
+}
+
+// The hard problem alone, in few iterations: of a few bodies that tumble, but move much as in the step before, or of a crowd at rest. What
+// a crowd's iterations leave open would set it in motion again, so its result must be exact.
 bool IslandProblem::solveFew(const NewtonSettings& settings, NewtonReport* report) {
   NewtonSettings few = settings;
   few.max_iterations = FEW_ITERATIONS;
   predict();
-  report->iterations = 1 + newton(few, 0, few.max_iterations, FIRST_ITERATIONS);
+  report->iterations = 1 + newton(few, 0, isCrowd() ? CROWD_ITERATIONS : FEW_ITERATIONS, FIRST_ITERATIONS);
   if (gradient_norm_ > few.gradient_tolerance) return false;
   finish(few, report);
-  return faults(*report) <= 1;
+  return isCrowd() ? isExact(settings, *report) : faults(*report) <= 1;
 }
 
 bool IslandProblem::solveStanding(const NewtonSettings& settings, NewtonReport* report) {
-  NewtonSettings bounded = settings;
-  bounded.max_iterations = std::min(settings.max_iterations, STANDING_WORK / treeCount());
   predict();
-  *report = iterate(bounded);
+  *report = iterate(settings);
   ++report->iterations;
   return faults(*report) <= 1;
 }
@@ -227,14 +230,15 @@ bool IslandProblem::isLikeBefore() {
   return sweeps_.load(sweepProblem(), SweepStart::PREVIOUS, velocity) && sweeps_.sweep(1, 0, velocity).first_change <= LIKE_BEFORE;
 }
 
+// Newton's method where it succeeds and is worth its price. @return whether it did
+bool IslandProblem::solveWithoutSweeps(const NewtonSettings& settings, NewtonReport* report) {
+  if (!turnsSlowly()) return treeCount() < LARGE_HEAP && solveFew(settings, report);
+  return isCrowd() ? isLikeBefore() && solveFew(settings, report) : solveStanding(settings, report);
+}
+
 NewtonReport IslandProblem::solveHeap(const NewtonSettings& settings) {
   NewtonReport report;
-  if (turnsSlowly()) {
-    if ((treeCount() <= TOWER || isLikeBefore()) && solveStanding(settings, &report)) return report;
-  } else if (treeCount() < LARGE_HEAP) {
-    if (solveFew(settings, &report)) return report;
-  }
-  sweepAndPolish(settings, &report);
+  if (!solveWithoutSweeps(settings, &report)) sweepAndPolish(settings, &report);
   return report;
 }
 
@@ -243,17 +247,17 @@ void IslandProblem::sweepAndPolish(const NewtonSettings& settings, NewtonReport*
   takeFirstVelocity();
   const SweepProblem problem = sweepProblem();
   if (!sweeps_.load(problem, SweepStart::PREVIOUS, &s.velocity)) return;
-  const bool small = treeCount() < LARGE_HEAP;
   const double first_change = sweeps_.sweep(1, 0, &s.velocity).first_change;
-  const bool quiet = first_change <= TUMBLES, tower = treeCount() <= TOWER;
-  const SweepReport swept = sweeps_.sweep(quiet ? SWEEPS : MOST_SWEEPS, quiet ? 0 : small ? SWEPT_FEW : SWEPT, &s.velocity);
+  const bool quiet = first_change <= TUMBLES;
+  const SweepReport swept = quiet ? sweeps_.sweep(isCrowd() ? MOST_SWEEPS : FEW_SWEEPS, isCrowd() ? SWEPT_QUIET : 0, &s.velocity)
+                                  : sweeps_.sweep(MOST_SWEEPS, treeCount() < LARGE_HEAP ? SWEPT_FEW : SWEPT, &s.velocity);
   report->iterations += 1 + swept.sweeps;
   adoptSwept();
   NewtonReport found;
   assess(&found);
-  const bool exact = found.contact_residual <= settings.contact_tolerance && gradient_norm_ <= settings.gradient_tolerance;
   // Sweeps do not converge in towers, where a push has a long way to go.
-  if (!exact && (tower ? quiet || swept.last_change > SWEPT : first_change <= NEARLY)) {
+  const bool worthwhile = isCrowd() ? first_change <= NEARLY : quiet || swept.last_change > SWEPT;
+  if (worthwhile && !isExact(settings, found)) {
     if (polish(settings, report)) return;
     sweeps_.scale(1, &s.velocity);
     adoptSwept();

@@ -119,6 +119,12 @@ double IslandProblem::move(double a) {
   return moved;
 }
 
+// The factor at hand serves again while iterations lead on, unless something changed its kind. A crowd's factor is dear: it serves
+// nevertheless, once it has led on. @param last gradient of the last iteration, infinite before the first one
+bool IslandProblem::keepsFactor(double last) const {
+  return gradient_norm_ < CHORD_PROGRESS * last && (isFactorCurrent() || (isCrowd() && soft_ && factored_ && std::isfinite(last)));
+}
+
 // Until the gradient is below `exactness` times the first one, or the tolerance; or, `patience` iterations having passed, one of them does
 // not lead on. All velocities are known afterwards. Joints that stray are iterated from then on; if all were woken, whoever has patience
 // begins again.
@@ -138,8 +144,7 @@ int IslandProblem::newton(const NewtonSettings& settings, double exactness, int 
       last = INFINITY;
       continue;
     }
-    const bool keeps = gradient_norm_ < CHORD_PROGRESS * last && isFactorCurrent();
-    const bool factored = keeps || factor();
+    const bool factored = keepsFactor(last) || factor();
     last = gradient_norm_;
     if (factored) findDirection();
     if (!factored || move(lineSearch()) < NO_STEP) {
@@ -151,6 +156,7 @@ int IslandProblem::newton(const NewtonSettings& settings, double exactness, int 
 
 void IslandProblem::soften(double contact, double joint) {
   factored_ = responses_known_ = false;
+  soft_ = contact > 1;
   forPatches([&](std::size_t index) {
     const ContactPatch& p = patches[index];
     for (int b = p.first_block, i = p.first; b < p.block_end; ++b, i += LANES)
@@ -263,7 +269,7 @@ void IslandProblem::finish(const NewtonSettings& settings, NewtonReport* report)
     assess(report);
     keepBalanced(*report, &least);
     const bool lawful = report->contact_residual <= settings.contact_tolerance && report->joint_creep <= settings.joint_tolerance &&
-                        (!isHeap() || isSettled());
+                        (!isHeap() || isCrowd() || isSettled());
     const bool exact = gradient_norm_ <= settings.gradient_tolerance;
     const int left = settings.max_iterations - report->iterations;
     if ((lawful && exact) || left <= 0) break;

@@ -52,7 +52,7 @@ void IslandProblem::start() {
 
 // From the velocities at hand, with the live nodes at hand, on the hard problem.
 void IslandProblem::begin() {
-  factored_ = base_known_ = anchored_ = laid_ = false;
+  factored_ = base_known_ = anchored_ = laid_ = soft_ = false;
   listLive();
   fillBlocks();
   setSteps(space_->velocity);

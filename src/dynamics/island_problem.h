@@ -88,6 +88,7 @@ class IslandProblem {
 
  private:
   static constexpr std::size_t BLOCKS_AT_ONCE = 128, PATCHES_AT_ONCE = 64;  ///< sizes of chunks: some microseconds each
+  static constexpr int CROWD = 150;                                         ///< most trees of an island whose Hessian is cheap to factor
   static constexpr int FIRST_ITERATIONS = 4;  ///< of the hard problem; each later one must lead on, or soft contacts or sweeps follow
   // island_problem.cpp: the objective's gradient
   template <typename Visit>
@@ -137,6 +138,7 @@ class IslandProblem {
   void fillMatrix();
   bool factor();
   bool isFactorCurrent() const;
+  bool keepsFactor(double last) const;
   void solveBlocks();
   void findDirection();
   // island_newton.cpp: the iteration
@@ -158,6 +160,7 @@ class IslandProblem {
   void finish(const NewtonSettings& settings, NewtonReport* report);
   // island_heap.cpp: many bodies that push each other, and what the iteration did not solve
   int treeCount() const;
+  bool isCrowd() const;
   bool isHeap() const;
   SweepProblem sweepProblem() const;
   double largestImpulse() const;
@@ -175,7 +178,9 @@ class IslandProblem {
   void returnToBalanced(double least, NewtonReport* report);
   bool isSettled() const;
   bool solveFew(const NewtonSettings& settings, NewtonReport* report);
+  bool isExact(const NewtonSettings& settings, const NewtonReport& report) const;
   bool solveStanding(const NewtonSettings& settings, NewtonReport* report);
+  bool solveWithoutSweeps(const NewtonSettings& settings, NewtonReport* report);
   NewtonReport solveHeap(const NewtonSettings& settings);
   void sweepAndPolish(const NewtonSettings& settings, NewtonReport* report);
   void recover(NewtonReport* report);
@@ -208,6 +213,7 @@ class IslandProblem {
   bool responses_known_ = false;       ///< and that is the present iterate
   double linear_ = 0, quadratic_ = 0;  ///< of the kinetic part along the search direction
   // What the factor at hand, and the elimination of idle dofs, were made with: kinds of contacts and stiffnesses of joints, lane by lane.
+  bool soft_ = false;  ///< contacts are softened
   bool factored_ = false, base_known_ = false;
   std::vector<double> factored_kinds_, factored_joints_, base_joints_;
   Islands tree_blocks_;  ///< trees that mimic joints tie are one block

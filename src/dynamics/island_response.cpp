@@ -192,6 +192,14 @@ void IslandResponse::push(const ResponseSide& side, const Vector6& wrench, Eigen
     for (int r = 0; r < n; ++r) (*velocity)[unit.dofs[r]] += column[r] * wrench[d];
 }
 
+void IslandResponse::setLane(const ResponseSide& side, int lane, BodyLanes* bodies) const {
+  const FreeBody* body = side.node < 0 ? nullptr : &free_[side.base];
+  bodies->first_dof[lane] = body ? body->first_dof : -1;
+  bodies->inverse_mass[lane] = body ? body->inverse_mass : 0;
+  for (int r = 0, at = 0; r < 3; ++r)
+    for (int c = 0; c <= r; ++c, ++at) bodies->inverse_inertia[at][lane] = body ? body->inverse_inertia(r, c) : 0;
+}
+
 void IslandResponse::push(int unit, std::size_t column, double impulse, Eigen::VectorXd* velocity) const {
   const std::vector<int>& dofs = units_[unit].dofs;
   for (std::size_t r = 0; r < dofs.size(); ++r) (*velocity)[dofs[r]] += columns_[column + r] * impulse;

@@ -6,6 +6,7 @@
 
 #include "body_pair.h"
 #include "forest_motion.h"
+#include "sweep_lanes.h"
 
 namespace blem_sim {
 
@@ -58,16 +59,8 @@ class IslandResponse {
 
   Vector6 twist(const ResponseSide& side, const Eigen::VectorXd& velocity) const;
   void push(const ResponseSide& side, const Vector6& wrench, Eigen::VectorXd* velocity) const;
-  /** The same of a free body, torque about its centre of mass. @param velocity by dof */
-  void pushFree(const ResponseSide& side, const Vector3& torque, const Vector3& force, double* velocity) const {
-    const FreeBody& body = free_[side.base];
-    double* v = velocity + body.first_dof;
-    const Matrix3& inverse = body.inverse_inertia;
-    for (int i = 0; i < 3; ++i) {
-      v[i] += inverse(i, 0) * torque[0] + inverse(i, 1) * torque[1] + inverse(i, 2) * torque[2];
-      v[3 + i] += body.inverse_mass * force[i];
-    }
-  }
+  /** A free body, or the static world, as a lane of a group that is swept. */
+  void setLane(const ResponseSide& side, int lane, BodyLanes* bodies) const;
   /** A joint impulse on a dof whose column was made. */
   void push(int unit, std::size_t column, double impulse, Eigen::VectorXd* velocity) const;
   /** Of the relative twist to a wrench on a and its reaction on b, about a's reference point. */

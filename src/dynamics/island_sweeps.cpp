@@ -112,46 +112,26 @@ void IslandSweeps::sweepLoops(Eigen::VectorXd* velocity) {
   }
 }
 
-// The relative twist of a pair; of free bodies number by number, since this is the innermost loop beside the contacts.
-void IslandSweeps::gather(const Pair& pair, int lane, const Eigen::VectorXd& velocity, TwistLanes* twist) const {
-  if (pair.a.unit >= 0 || pair.b.unit >= 0) {
-    const Vector6 relative = relativeTwist(pair, velocity);
-    for (int i = 0; i < 6; ++i) (*twist)[i][lane] = relative[i];
-    return;
-  }
-  const double* a = velocity.data() + pair.a.first_dof;
-  for (int i = 0; i < 6; ++i) (*twist)[i][lane] = a[i];
-  if (pair.pair.b < 0) return;
-  const double* b = velocity.data() + pair.b.first_dof;
-  const Vector3& shift = pair.pair.shift;
-  for (int i = 0; i < 3; ++i) {
-    const int j = i == 2 ? 0 : i + 1, k = i == 0 ? 2 : i - 1;
-    (*twist)[i][lane] -= b[i];
-    (*twist)[3 + i][lane] -= b[3 + i] - (b[j] * shift[k] - b[k] * shift[j]);
-  }
-}
-
-void IslandSweeps::scatter(const Pair& pair, int lane, const TwistLanes& wrench, Eigen::VectorXd* velocity) const {
-  if (pair.a.unit >= 0 || pair.b.unit >= 0) return push(pair, columnOf(wrench, lane), velocity);
-  const Vector3 torque(wrench[0][lane], wrench[1][lane], wrench[2][lane]), force(wrench[3][lane], wrench[4][lane], wrench[5][lane]);
-  response_.pushFree(pair.a, torque, force, velocity->data());
-  if (pair.pair.b >= 0) response_.pushFree(pair.b, crossProduct(pair.pair.shift, force) - torque, -force, velocity->data());
-}
-
-void IslandSweeps::sweepGroup(std::size_t index, Eigen::VectorXd* velocity) {
+// A group in which a tree takes part.
+void IslandSweeps::sweepTrees(std::size_t index, Eigen::VectorXd* velocity) {
   const SweepGroup& group = groups_[index];
-  TwistLanes twist, wrench;
+  TwistLanes twist = {}, wrench;
   for (int lane = 0; lane < LANES; ++lane) {
-    const int p = group.patch[lane];
-    if (p < 0)
-      for (int i = 0; i < 6; ++i) twist[i][lane] = 0;
-    else
-      gather(pairs_[p], lane, *velocity, &twist);
+    if (group.patch[lane] < 0) continue;
+    const Vector6 relative = relativeTwist(pairs_[group.patch[lane]], *velocity);
+    for (int i = 0; i < 6; ++i) twist[i][lane] = relative[i];
   }
   blem_sim::sweep(group, contacts_.data() + group.first, contacts_.data() + group.end, impulses_.data() + group.first, twist, &wrench,
                   &changes_[index]);
   for (int lane = 0; lane < LANES; ++lane)
-    if (group.patch[lane] >= 0) scatter(pairs_[group.patch[lane]], lane, wrench, velocity);
+    if (group.patch[lane] >= 0) push(pairs_[group.patch[lane]], columnOf(wrench, lane), velocity);
+}
+
+void IslandSweeps::sweepGroup(std::size_t index, Eigen::VectorXd* velocity) {
+  const SweepGroup& group = groups_[index];
+  if (!group.free) return sweepTrees(index, velocity);
+  sweepFree(bodies_[index], contacts_.data() + group.first, contacts_.data() + group.end, impulses_.data() + group.first, velocity->data(),
+            &changes_[index]);
 }
 
 // Groups of one colour have no body in common, so threads share them. Groups of the last colour may have: one thread sweeps them.

@@ -98,13 +98,13 @@ class IslandSweeps {
   void colourPatches();
   void layGroups();
   void loadContacts(SweepStart start);
+  void loadBodies(SweepGroup* group, SweepBodies* bodies) const;
   void findVelocity(Eigen::VectorXd* velocity);
   Vector6 relativeTwist(const Pair& pair, const Eigen::VectorXd& velocity) const;
   void push(const Pair& pair, const Vector6& wrench, Eigen::VectorXd* velocity) const;
   void sweepJoints(Eigen::VectorXd* velocity);
   void sweepLoops(Eigen::VectorXd* velocity);
-  void gather(const Pair& pair, int lane, const Eigen::VectorXd& velocity, TwistLanes* twist) const;
-  void scatter(const Pair& pair, int lane, const TwistLanes& wrench, Eigen::VectorXd* velocity) const;
+  void sweepTrees(std::size_t group, Eigen::VectorXd* velocity);
   void sweepGroup(std::size_t group, Eigen::VectorXd* velocity);
   void sweepColour(std::size_t colour, Eigen::VectorXd* velocity);
   void plainSweep(Eigen::VectorXd* velocity);
@@ -122,6 +122,7 @@ class IslandSweeps {
   std::vector<std::uint64_t> used_colours_;  // by mover
   std::vector<int> by_colour_, chosen_;
   std::vector<SweepGroup> groups_;
+  std::vector<SweepBodies> bodies_;       // by group, of those that are free
   std::vector<std::size_t> group_start_;  // by colour
   std::vector<SweepContact> contacts_;
   std::vector<SweepImpulse> impulses_;

@@ -162,10 +162,26 @@ void IslandSweeps::layGroups() {
   contacts_.resize(count);
   impulses_.resize(count);
   changes_.resize(groups_.size());
+  bodies_.resize(groups_.size());
+}
+
+void IslandSweeps::loadBodies(SweepGroup* group, SweepBodies* bodies) const {
+  group->free = true;
+  for (int lane = 0; lane < LANES; ++lane) {
+    const int p = group->patch[lane];
+    const ResponseSide none, &a = p < 0 ? none : pairs_[p].a, &b = p < 0 ? none : pairs_[p].b;
+    group->free = group->free && a.unit < 0 && b.unit < 0;
+    if (!group->free) return;
+    response_.setLane(a, lane, &bodies->a);
+    response_.setLane(b, lane, &bodies->b);
+    for (int i = 0; i < 3; ++i) bodies->shift[i][lane] = p < 0 ? 0 : pairs_[p].pair.shift[i];
+  }
 }
 
 void IslandSweeps::loadContacts(SweepStart start) {
-  for (SweepGroup& group : groups_) {
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    SweepGroup& group = groups_[g];
+    loadBodies(&group, &bodies_[g]);
     for (int lane = 0; lane < LANES; ++lane) {
       const int p = group.patch[lane];
       Matrix6 response = Matrix6::Identity();

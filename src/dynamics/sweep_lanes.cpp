@@ -5,6 +5,8 @@
 
 #include "lane_vectors.h"
 
+#pragma GCC diagnostic ignored "-Wpsabi"  // of functions that are always inlined
+
 namespace blem_sim {
 namespace {
 
@@ -34,6 +36,108 @@ BLEM_SIM_INLINE Six respond(const double (&r)[21][LANES], int l, const Six& w) {
   v.linear.y = (r[10][l] * a.x + r[11][l] * a.y + r[12][l] * a.z) + (r[13][l] * f.x + r[14][l] * f.y + r[19][l] * f.z);
   v.linear.z = (r[15][l] * a.x + r[16][l] * a.y + r[17][l] * a.z) + (r[18][l] * f.x + r[19][l] * f.y + r[20][l] * f.z);
   return v;
+}
+
+/** A number of each lane. Compilers lower it to what the processor has. */
+using Four = double __attribute__((vector_size(8 * LANES), aligned(8), may_alias));
+
+BLEM_SIM_INLINE const Four& four(const Lanes& lanes) { return *reinterpret_cast<const Four*>(lanes); }
+BLEM_SIM_INLINE Four& four(Lanes& lanes) { return *reinterpret_cast<Four*>(lanes); }
+
+struct FourTriples {
+  Four x, y, z;
+};
+BLEM_SIM_INLINE FourTriples all(const VectorLanes& v) { return {four(v[0]), four(v[1]), four(v[2])}; }
+BLEM_SIM_INLINE Four dot(const FourTriples& a, const FourTriples& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+BLEM_SIM_INLINE FourTriples cross(const FourTriples& a, const FourTriples& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+BLEM_SIM_INLINE FourTriples operator+(const FourTriples& a, const FourTriples& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+BLEM_SIM_INLINE FourTriples operator-(const FourTriples& a, const FourTriples& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+BLEM_SIM_INLINE FourTriples operator-(const FourTriples& a) { return {-a.x, -a.y, -a.z}; }
+BLEM_SIM_INLINE FourTriples operator*(const Four& s, const FourTriples& a) { return {s * a.x, s * a.y, s * a.z}; }
+
+BLEM_SIM_INLINE Four squareRoot(const Four& x) {
+  Four root;
+  for (int lane = 0; lane < LANES; ++lane) root[lane] = __builtin_sqrt(x[lane]);
+  return root;
+}
+
+/** Angular and linear velocities of four bodies. */
+struct FourBodies {
+  FourTriples angular, linear;
+};
+
+BLEM_SIM_INLINE FourBodies gather(const double* const (&from)[LANES]) {
+  Four v[6];
+  for (int i = 0; i < 6; ++i) v[i] = Four{from[0][i], from[1][i], from[2][i], from[3][i]};
+  return {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
+}
+
+BLEM_SIM_INLINE void scatter(const FourBodies& v, double* const (&to)[LANES]) {
+  for (int lane = 0; lane < LANES; ++lane) {
+    double* out = to[lane];
+    out[0] = v.angular.x[lane];
+    out[1] = v.angular.y[lane];
+    out[2] = v.angular.z[lane];
+    out[3] = v.linear.x[lane];
+    out[4] = v.linear.y[lane];
+    out[5] = v.linear.z[lane];
+  }
+}
+
+/** Adds what a torque about the centres of mass and a force change. */
+BLEM_SIM_INLINE void push(const BodyLanes& body, const FourTriples& torque, const FourTriples& force, FourBodies* v) {
+  const auto& r = body.inverse_inertia;
+  const Four xx = four(r[0]), xy = four(r[1]), yy = four(r[2]), xz = four(r[3]), yz = four(r[4]), zz = four(r[5]);
+  v->angular.x += xx * torque.x + xy * torque.y + xz * torque.z;
+  v->angular.y += xy * torque.x + yy * torque.y + yz * torque.z;
+  v->angular.z += xz * torque.x + yz * torque.y + zz * torque.z;
+  v->linear = v->linear + four(body.inverse_mass) * force;
+}
+
+/** SweepChange by lane. */
+struct FourChanges {
+  Four squared = {}, largest = {}, strongest = {};
+
+  BLEM_SIM_INLINE void add(const Four& change, const Four& strength) {
+    squared += change;
+    largest = change > largest ? change : largest;
+    strongest = strength > strongest ? strength : strongest;
+  }
+  BLEM_SIM_INLINE void put(SweepChange* out) const {
+    out->squared = (squared[0] + squared[1]) + (squared[2] + squared[3]);
+    out->largest = std::max({largest[0], largest[1], largest[2], largest[3]});
+    out->impulse = std::max({strongest[0], strongest[1], strongest[2], strongest[3]});
+  }
+};
+
+/** Visits a contact of each lane, whose points have the relative velocity u. @return by how much the impulses were changed */
+BLEM_SIM_INLINE FourTriples visit(const SweepContact& c, const FourTriples& u, SweepImpulse* impulse, FourChanges* changes) {
+  const Four zero = {}, one = {1, 1, 1, 1};
+  const FourTriples n = all(c.axis[0]), s = all(c.axis[1]), t = all(c.axis[2]);
+  const Four g_n = four(impulse->now[0]), g_s = four(impulse->now[1]), g_t = four(impulse->now[2]);
+  const Four miss = dot(n, u) + four(c.compliance) * g_n - four(c.target);
+  const Four wanted = g_n - four(c.normal_gain) * miss, push = wanted > zero ? wanted : zero, pushed = push - g_n;
+  const Four u_s = dot(s, u) + four(c.offset[0]) + four(c.mixed[0]) * pushed;
+  const Four u_t = dot(t, u) + four(c.offset[1]) + four(c.mixed[1]) * pushed;
+  // Friction that sticks ends the slip. Where that is beyond the cone it is led against the slip, and back onto the cone.
+  const Four stick_s = g_s - (four(c.tangent_inverse[0]) * u_s + four(c.tangent_inverse[1]) * u_t);
+  const Four stick_t = g_t - (four(c.tangent_inverse[1]) * u_s + four(c.tangent_inverse[2]) * u_t);
+  const Four most = four(c.friction) * push;
+  const Four slide_s = g_s - four(c.slide_gain) * u_s, slide_t = g_t - four(c.slide_gain) * u_t;
+  const Four size = squareRoot(slide_s * slide_s + slide_t * slide_t), back = size > most ? most / size : one;
+  const auto sticks = stick_s * stick_s + stick_t * stick_t <= most * most;
+  const Four change_s = (sticks ? stick_s : back * slide_s) - g_s, change_t = (sticks ? stick_t : back * slide_t) - g_t;
+  const Four now_s = g_s + change_s, now_t = g_t + change_t;
+  four(impulse->now[0]) = push;
+  four(impulse->now[1]) = now_s;
+  four(impulse->now[2]) = now_t;
+  four(impulse->change[0]) = pushed;
+  four(impulse->change[1]) = change_s;
+  four(impulse->change[2]) = change_t;
+  changes->add(pushed * pushed + change_s * change_s + change_t * change_t, push * push + now_s * now_s + now_t * now_t);
+  return pushed * n + change_s * s + change_t * t;
 }
 
 }  // namespace
@@ -80,9 +184,6 @@ BLEM_SIM_LANES void setGains(const SweepGroup& group, SweepContact* begin, Sweep
       c->normal_gain[lane] = w_n > 0 ? 1 / w_n : 0;
       c->mixed[0][lane] = dot(s, by_n);
       c->mixed[1][lane] = dot(t, by_n);
-      c->tangent[0][lane] = w11;
-      c->tangent[1][lane] = w12;
-      c->tangent[2][lane] = w22;
       c->tangent_inverse[0][lane] = regular ? inverse * w22 : along;
       c->tangent_inverse[1][lane] = regular ? -inverse * w12 : 0;
       c->tangent_inverse[2][lane] = regular ? inverse * w11 : along;
@@ -110,58 +211,48 @@ BLEM_SIM_LANES void wrenchOf(const SweepContact* begin, const SweepContact* end,
   }
 }
 
-BLEM_SIM_LANES void sweep(const SweepGroup& group, const SweepContact* begin, const SweepContact* end, SweepImpulse* impulses,
+BLEM_SIM_LANES void sweep(const SweepGroup& group, const SweepContact* begin, const SweepContact* end, SweepImpulse* impulse,
                           const TwistLanes& start, TwistLanes* wrench, SweepChange* change) {
-  // Copies of its own, so that the compiler knows that nothing else is written through them.
-  Lanes squared = {}, largest = {}, strongest = {};
+  FourChanges changes;
   TwistLanes twist, given_so_far = {};
-  double response[21][LANES];
   for (int i = 0; i < 6; ++i)
     for (int lane = 0; lane < LANES; ++lane) twist[i][lane] = start[i][lane];
-  for (int i = 0; i < 21; ++i)
-    for (int lane = 0; lane < LANES; ++lane) response[i][lane] = group.response[i][lane];
-  SweepImpulse* __restrict impulse = impulses;
-  for (const SweepContact* __restrict c = begin; c != end; ++c, ++impulse) {
+  for (const SweepContact* c = begin; c != end; ++c, ++impulse) {
+    const FourTriples p = all(c->point), w = {four(twist[0]), four(twist[1]), four(twist[2])};
+    const FourTriples v = {four(twist[3]), four(twist[4]), four(twist[5])};
+    const FourTriples f = visit(*c, v + cross(w, p), impulse, &changes), m = cross(p, f);
     for (int lane = 0; lane < LANES; ++lane) {
-      const Triple p = at(c->point, lane), n = at(c->axis[0], lane), s = at(c->axis[1], lane), t = at(c->axis[2], lane);
-      const Six motion = at(twist, lane);
-      const Triple u = motion.linear + cross(motion.angular, p);
-      const double g_n = impulse->now[0][lane], g_s = impulse->now[1][lane], g_t = impulse->now[2][lane];
-      const double miss = dot(n, u) + c->compliance[lane] * g_n - c->target[lane];
-      const double wanted = g_n - c->normal_gain[lane] * miss, push = wanted > 0 ? wanted : 0, pushed = push - g_n;
-      const double u_s = dot(s, u) + c->offset[0][lane] + c->mixed[0][lane] * pushed;
-      const double u_t = dot(t, u) + c->offset[1][lane] + c->mixed[1][lane] * pushed;
-      // Friction that sticks ends the slip. Where that is beyond the cone it is led against the slip, and back onto the cone.
-      const double stick_s = g_s - (c->tangent_inverse[0][lane] * u_s + c->tangent_inverse[1][lane] * u_t);
-      const double stick_t = g_t - (c->tangent_inverse[1][lane] * u_s + c->tangent_inverse[2][lane] * u_t);
-      const double most = c->friction[lane] * push;
-      const double slide_s = g_s - c->slide_gain[lane] * u_s, slide_t = g_t - c->slide_gain[lane] * u_t;
-      const double size = __builtin_sqrt(slide_s * slide_s + slide_t * slide_t), back = size > most ? most / size : 1;
-      const bool sticks = stick_s * stick_s + stick_t * stick_t <= most * most;
-      const double change_s = (sticks ? stick_s : back * slide_s) - g_s, change_t = (sticks ? stick_t : back * slide_t) - g_t;
-      const Triple f = pushed * n + change_s * s + change_t * t;
-      const Six given = {cross(p, f), f};
+      const Six given = {{m.x[lane], m.y[lane], m.z[lane]}, {f.x[lane], f.y[lane], f.z[lane]}};
       add(given, lane, &given_so_far);
-      add(respond(response, lane, given), lane, &twist);
-      const double now_s = g_s + change_s, now_t = g_t + change_t;
-      impulse->now[0][lane] = push;
-      impulse->now[1][lane] = now_s;
-      impulse->now[2][lane] = now_t;
-      impulse->change[0][lane] = pushed;
-      impulse->change[1][lane] = change_s;
-      impulse->change[2][lane] = change_t;
-      const double here = pushed * pushed + change_s * change_s + change_t * change_t;
-      const double strength = push * push + now_s * now_s + now_t * now_t;
-      squared[lane] += here;
-      largest[lane] = here > largest[lane] ? here : largest[lane];
-      strongest[lane] = strength > strongest[lane] ? strength : strongest[lane];
+      add(respond(group.response, lane, given), lane, &twist);
     }
   }
   for (int i = 0; i < 6; ++i)
     for (int lane = 0; lane < LANES; ++lane) (*wrench)[i][lane] = given_so_far[i][lane];
-  change->squared = sum(squared);
-  change->largest = std::max({largest[0], largest[1], largest[2], largest[3]});
-  change->impulse = std::max({strongest[0], strongest[1], strongest[2], strongest[3]});
+  changes.put(change);
+}
+
+BLEM_SIM_LANES void sweepFree(const SweepBodies& bodies, const SweepContact* begin, const SweepContact* end, SweepImpulse* impulse,
+                              double* velocity, SweepChange* change) {
+  double nothing[6] = {};
+  double *of_a[LANES], *of_b[LANES];
+  for (int lane = 0; lane < LANES; ++lane) {
+    of_a[lane] = bodies.a.first_dof[lane] < 0 ? nothing : velocity + bodies.a.first_dof[lane];
+    of_b[lane] = bodies.b.first_dof[lane] < 0 ? nothing : velocity + bodies.b.first_dof[lane];
+  }
+  FourChanges changes;
+  FourBodies a = gather(of_a), b = gather(of_b);
+  const FourTriples shift = all(bodies.shift);
+  for (const SweepContact* c = begin; c != end; ++c, ++impulse) {
+    const FourTriples p_a = all(c->point), p_b = p_a - shift;
+    const FourTriples u = (a.linear + cross(a.angular, p_a)) - (b.linear + cross(b.angular, p_b));
+    const FourTriples f = visit(*c, u, impulse, &changes);
+    push(bodies.a, cross(p_a, f), f, &a);
+    push(bodies.b, cross(f, p_b), -f, &b);
+  }
+  scatter(a, of_a);
+  scatter(b, of_b);
+  changes.put(change);
 }
 
 BLEM_SIM_LANES void moveOn(double share, SweepImpulse* begin, SweepImpulse* end) {

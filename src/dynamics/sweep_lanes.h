@@ -17,8 +17,7 @@ struct SweepContact {
   Lanes offset[2];           ///< [m/s] across the normal: what the bodies' paths bend apart
   Lanes normal_gain;         ///< [kg] of the normal row, compliance included
   Lanes mixed[2];            ///< [1/kg] by which a push moves the point across
-  Lanes tangent[3];          ///< [1/kg] response across: 11, 12, 22
-  Lanes tangent_inverse[3];  ///< [kg] its inverse: 11, 12, 22
+  Lanes tangent_inverse[3];  ///< [kg] inverse of the response across: 11, 12, 22
   Lanes slide_gain;          ///< [kg] inverse of the largest response across
 };
 
@@ -33,7 +32,21 @@ struct SweepImpulse {
 struct SweepGroup {
   int patch[LANES];            ///< -1: none
   int first = 0, end = 0;      ///< contacts: as many as the largest patch has
+  bool free = false;           ///< all bodies are free, or the static world
   double response[21][LANES];  ///< of the relative twist to a wrench, about the first body's reference point; lower triangle by rows
+};
+
+/** Velocity of four bodies, and what changes it. Lanes of the static world, or without a patch, stay at zero. */
+struct BodyLanes {
+  int first_dof[LANES];              ///< -1: none
+  double inverse_inertia[6][LANES];  ///< [1/(kg m^2)] lower triangle by rows, world axes
+  Lanes inverse_mass;                ///< [1/kg]
+};
+
+/** Bodies of a group that are all free. */
+struct SweepBodies {
+  BodyLanes a, b;
+  VectorLanes shift;  ///< from a's reference point to b's
 };
 
 /** A lane's contact from a term; null: one that never acts. */
@@ -60,6 +73,10 @@ struct SweepChange {
  */
 void sweep(const SweepGroup& group, const SweepContact* begin, const SweepContact* end, SweepImpulse* impulse, const TwistLanes& twist,
            TwistLanes* wrench, SweepChange* change);
+
+/** The same with the bodies' velocities instead of twists and wrenches. @param velocity by dof: angular, then linear */
+void sweepFree(const SweepBodies& bodies, const SweepContact* begin, const SweepContact* end, SweepImpulse* impulse, double* velocity,
+               SweepChange* change);
 
 /** Impulses move on by `share` of the last search direction, which the last changes join. */
 void moveOn(double share, SweepImpulse* begin, SweepImpulse* end);
