@@ -10,7 +10,7 @@ namespace {
 constexpr int HEAP = 4;         // fewest free bodies of an island that is swept while it tumbles
 constexpr int LARGE_HEAP = 32;  // fewest that are swept first; of fewer only if Newton's first iterations fail
 constexpr double TURNS = 0.03;  // [rad/s] fastest turn of a heap that stands, slides or lands flat: Newton's method solves it
-constexpr int FEW_ITERATIONS = 30, CROWD_ITERATIONS = 6;  // most of Newton's method on a small heap that tumbles, on a crowd at rest
+constexpr int FEW_ITERATIONS = 30, CROWD_ITERATIONS = 8;  // most of Newton's method on a small heap that tumbles, on a crowd at rest
 constexpr double SETTLED = 1e-4;  // of the largest impulse: by how much the last proximal step of a heap may change one
 // A heap tumbles if the first sweep changes impulses by more than this share of the largest. Sweeps end when they change impulses by less;
 // a quiet crowd sways for ever if they leave more.
@@ -209,9 +209,9 @@ bool IslandProblem::isExact(const NewtonSettings& settings, const NewtonReport& 
 // a crowd's iterations leave open would set it in motion again, so its result must be exact.
 bool IslandProblem::solveFew(const NewtonSettings& settings, NewtonReport* report) {
   NewtonSettings few = settings;
-  few.max_iterations = FEW_ITERATIONS;
+  few.max_iterations = isCrowd() ? CROWD_ITERATIONS : FEW_ITERATIONS;
   predict();
-  report->iterations = 1 + newton(few, 0, isCrowd() ? CROWD_ITERATIONS : FEW_ITERATIONS, FIRST_ITERATIONS);
+  report->iterations = 1 + newton(few, 0, few.max_iterations, FIRST_ITERATIONS);
   if (gradient_norm_ > few.gradient_tolerance) return false;
   finish(few, report);
   return isCrowd() ? isExact(settings, *report) : faults(*report) <= 1;
