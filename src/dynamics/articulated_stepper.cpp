@@ -237,7 +237,7 @@ void ArticulatedStepper::finishIsland(const Scene& scene, const StepInput& input
   }
   island->followed = followFast(forest_, problem, input.dt, motion_, space_, &way_);
   computeWrenches(forest_, scene, problem, input.dt, way_, &motion_, &space_, &result->joint_wrenches);
-  advanceIsland(forest_, problem, input.dt, way_, &motion_, space_);
+  advanceIsland(forest_, problem, input.dt, way_, &motion_, &space_);
   island->impacts.takeFrom(forest_, problem.trees, &motion_.change);
 }
 

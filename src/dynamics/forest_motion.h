@@ -11,7 +11,7 @@ namespace blem_sim {
 enum class Pace : char {
   SLOW,
   FAST,     ///< they are none; the free motion is followed along its way (free_motion.h)
-  TOO_FAST  ///< they are taken as those of a slow tree, with which they are no longer right
+  TOO_FAST  ///< they are none; the tree is tied to others and cannot be followed, but gains no energy
 };
 
 /**

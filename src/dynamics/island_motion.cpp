@@ -14,8 +14,9 @@ double productsShare(const ForestTree& tree, int dof) { return tree.free && dof 
 // energy to keep; where motors act against contacts, forces of both sides are best found together with the products.
 constexpr double FAST_ALONE = 1e-4, FAST = 0.005, FAST_AT_WORK = 0.1;
 constexpr double SMALL_TURN = 0.05;  // [rad] of a free root in a step: beyond, products of the step's start are not those of its end
-// Trees in loops, and those with mimic joints, are solved with their products whatever their speed; beyond this they are no longer right.
-constexpr double TOO_FAST = 0.3;
+// Trees in loops, and those with mimic joints, are solved with their products. Beyond this the products would add energy without bound:
+// they are left out, and the trees are braked.
+constexpr double TOO_FAST = 0.1;
 constexpr double HOLDS = 0.5;  // of a dof's inertia: a joint that answers more stiffly keeps its velocity on the way
 
 // Change of the velocities of a tree by its velocity products in a step, over the velocities in the frame of its centre of mass; in the
@@ -143,6 +144,28 @@ void addFastWrenches(const Forest& forest, const Scene& scene, int tree, double 
   }
 }
 
+// The velocities of the solve, taken on to the end of the step without velocity products, may have more energy there. The island loses it:
+// all velocities shrink alike, so that mimic joints and loops keep their relations.
+void brake(const Forest& forest, const IslandProblem& problem, ForestMotion* motion, SolverSpace* space) {
+  const auto twiceEnergy = [&](const Eigen::VectorXd& velocity) {
+    double sum = 0;
+    for (const int tree : problem.trees) {
+      const ForestTree& t = forest.trees()[tree];
+      sum += velocity.segment(t.first_dof, t.dofCount()).dot(space->mass_velocity.segment(t.first_dof, t.dofCount()));
+    }
+    return sum;
+  };
+  const double solved = twiceEnergy(space->velocity);
+  for (const int tree : problem.trees) multiply(forest, tree, motion->mass, motion->velocity, &space->mass_velocity, &space->paths);
+  const double there = twiceEnergy(motion->velocity);
+  if (!(there > solved)) return;
+  for (const int tree : problem.trees) {
+    const ForestTree& t = forest.trees()[tree];
+    motion->velocity.segment(t.first_dof, t.dofCount()) *= std::sqrt(solved / there);
+    takeMomentum(forest, tree, motion, space);
+  }
+}
+
 }  // namespace
 
 void takeMomentum(const Forest& forest, int tree, ForestMotion* motion, SolverSpace* space) {
@@ -162,7 +185,7 @@ void setFreeMomentum(const Forest& forest, const Scene& scene, const StepInput& 
   multiply(forest, tree, motion->mass, motion->velocity, &space->mass_velocity, &space->paths);
   const double fast = turning(forest, tree, input.dt, *motion, *space);
   motion->pace[tree] = fast > FAST_ALONE ? paceOf(forest, input, touched, tree, fast) : Pace::SLOW;
-  if (isFast(*motion, tree)) motion->products.segment(first, count).setZero();
+  if (motion->pace[tree] != Pace::SLOW) motion->products.segment(first, count).setZero();
   space->free_momentum.segment(first, count) = space->mass_velocity.segment(first, count);
   if (t.free) space->free_momentum.segment<6>(first) = motion->momentum[tree];
   for (int k = first; k < t.dof_end; ++k) {
@@ -187,7 +210,7 @@ void addEfforts(const StepInput& input, const IslandProblem& problem, SolverSpac
 }
 
 double correctProducts(const Forest& forest, int tree, double dt, ForestMotion* motion, SolverSpace* space) {
-  if (isFast(*motion, tree)) return 0;
+  if (motion->pace[tree] != Pace::SLOW) return 0;
   const ForestTree& t = forest.trees()[tree];
   const int first = t.first_dof, count = t.dofCount();
   space->gradient.segment(first, count) = motion->products.segment(first, count);
@@ -254,11 +277,11 @@ void computeWrenches(const Forest& forest, const Scene& scene, const IslandProbl
 }
 
 void advanceIsland(const Forest& forest, const IslandProblem& problem, double dt, const FreeMotion& way, ForestMotion* motion,
-                   const SolverSpace& space) {
+                   SolverSpace* space) {
   const bool flies = problem.contacts.empty() && problem.loops.empty();
   for (const int tree : problem.trees) {
     const ForestTree& t = forest.trees()[tree];
-    if (t.free) motion->momentum[tree] = space.mass_velocity.segment<6>(t.first_dof) + 0.5 * dt * motion->products.segment<6>(t.first_dof);
+    if (t.free) motion->momentum[tree] = space->mass_velocity.segment<6>(t.first_dof) + 0.5 * dt * motion->products.segment<6>(t.first_dof);
     if (isFast(*motion, tree)) {
       motion->change.segment(t.first_dof, t.dofCount()) = -motion->velocity.segment(t.first_dof, t.dofCount());
       way.takeEnd(forest, tree, motion);
@@ -281,6 +304,8 @@ void advanceIsland(const Forest& forest, const IslandProblem& problem, double dt
     if (flies && !isFast(*motion, tree) && t.node_end - t.first_node > 1) followMomentum(forest, tree, com, motion);
     motion->momentum[tree] = moveWrench(motion->momentum[tree], reference - motion->reference[tree]);
   }
+  const auto tooFast = [&](int tree) { return motion->pace[tree] == Pace::TOO_FAST; };
+  if (std::any_of(problem.trees.begin(), problem.trees.end(), tooFast)) brake(forest, problem, motion, space);
 }
 
 void saveTree(const Forest& forest, int tree, const ForestMotion& motion, StateWriter* writer) {

@@ -38,9 +38,9 @@ double correctProducts(const Forest& forest, int tree, double dt, ForestMotion* 
 void computeWrenches(const Forest& forest, const Scene& scene, const IslandProblem& problem, double dt, const FreeMotion& way,
                      ForestMotion* motion, SolverSpace* space, std::vector<Wrench>* wrenches);
 
-/** Moves the trees to the end of the step. */
+/** Moves the trees to the end of the step. Islands with a tree that is too fast gain no energy on the way. */
 void advanceIsland(const Forest& forest, const IslandProblem& problem, double dt, const FreeMotion& way, ForestMotion* motion,
-                   const SolverSpace& space);
+                   SolverSpace* space);
 
 void saveTree(const Forest& forest, int tree, const ForestMotion& motion, StateWriter* writer);
 void restoreTree(const Forest& forest, int tree, ForestMotion* motion, StateReader* reader);

@@ -29,7 +29,7 @@ INSTANTIATE_TEST_SUITE_P(Groups, RandomScenes, ::testing::Range(0, GROUPS));
 class RandomScenesFound : public ::testing::TestWithParam<int> {};
 
 TEST_P(RandomScenesFound, AreSound) { expectSound(static_cast<std::uint64_t>(GetParam()), FOUND); }
-INSTANTIATE_TEST_SUITE_P(Seeds, RandomScenesFound, ::testing::Values(28, 52, 61, 74, 103, 163, 180, 236, 265));
+INSTANTIATE_TEST_SUITE_P(Seeds, RandomScenesFound, ::testing::Values(28, 52, 61, 74, 103, 163, 180, 236, 265, 5694, 8854));
 
 }  // namespace
 }  // namespace blem_sim
