@@ -183,6 +183,7 @@ class IslandProblem {
   bool solveWithoutSweeps(const NewtonSettings& settings, NewtonReport* report);
   NewtonReport solveHeap(const NewtonSettings& settings);
   void sweepAndPolish(const NewtonSettings& settings, NewtonReport* report);
+  void boundEnergy();
   void recover(NewtonReport* report);
 
   const Forest* forest_ = nullptr;
