@@ -34,6 +34,12 @@ struct Island {
   bool followed = true;  ///< no tree was too fast
 };
 
+// The last of several solves, with the iterations of all.
+NewtonReport afterAll(const NewtonReport& before, NewtonReport last) {
+  last.iterations += before.iterations;
+  return last;
+}
+
 class ArticulatedStepper : public Stepper {
  public:
   explicit ArticulatedStepper(const SolverSettings& settings)
@@ -52,7 +58,8 @@ class ArticulatedStepper : public Stepper {
   void makeTerms(const TermSource& source, Island* island);
   NewtonSettings settingsFor(const IslandProblem& problem) const;
   bool leap(const TermSource& source, Island* island);
-  NewtonReport solveTwice(double dt, IslandProblem* problem);
+  NewtonReport solveTwice(double dt, const NewtonSettings& newton, IslandProblem* problem);
+  NewtonReport solveBounded(double dt, IslandProblem* problem);
   void reckonWork(bool leaps, Island* island);
   void solveIsland(const Scene& scene, const StepInput& input, Island* island);
   void finishIsland(const Scene& scene, const StepInput& input, Island* island, SolveResult* result);
@@ -178,16 +185,17 @@ NewtonSettings ArticulatedStepper::settingsFor(const IslandProblem& problem) con
 }
 
 // With velocity products at the middle of the step, where the first guess of it was not good enough.
-NewtonReport ArticulatedStepper::solveTwice(double dt, IslandProblem* problem) {
-  const NewtonSettings newton = settingsFor(*problem);
-  NewtonReport report = problem->solve(forest_, motion_, newton, &space_);
+NewtonReport ArticulatedStepper::solveTwice(double dt, const NewtonSettings& newton, IslandProblem* problem) {
+  const NewtonReport first = problem->solve(forest_, motion_, newton, &space_);
   double change = 0;
   for (const int tree : problem->trees) change = std::max(change, correctProducts(forest_, tree, dt, &motion_, &space_));
-  if (change <= SAME_PRODUCTS) return report;
-  const int iterations = report.iterations;
-  report = problem->solveAgain(newton);
-  report.iterations += iterations;
-  return report;
+  return change <= SAME_PRODUCTS ? first : afterAll(first, problem->solveAgain(newton));
+}
+
+NewtonReport ArticulatedStepper::solveBounded(double dt, IslandProblem* problem) {
+  const NewtonSettings newton = settingsFor(*problem);
+  const NewtonReport report = solveTwice(dt, newton, problem);
+  return problem->correctsTooMuch(settings_.max_correction_speed) ? afterAll(report, problem->solveWithoutCorrection(newton)) : report;
 }
 
 // Trees that an impact meets are followed as if they were fast: their speed after it is not known yet. @return whether an impact happened
@@ -222,7 +230,7 @@ void ArticulatedStepper::solveIsland(const Scene& scene, const StepInput& input,
   problem.up = -scene.gravity();
   addEfforts(input, problem, &space_);
   const bool leaps = leap(source, island);
-  island->report = solveTwice(input.dt, &problem);
+  island->report = solveBounded(input.dt, &problem);
   reckonWork(leaps, island);
   if (leaps) island->impacts.addTo(&problem);
 }

@@ -265,31 +265,6 @@ void IslandProblem::sweepAndPolish(const NewtonSettings& settings, NewtonReport*
   finishSwept(report);
 }
 
-// The last resort where nothing found a solution: contacts that contradict each other may ask for any speed. All velocities shrink alike
-// until the island moves with no more energy than without contacts, or than contacts need that part at the fastest speed they aim at.
-void IslandProblem::boundEnergy() {
-  SolverSpace& s = *space_;
-  sweeps_.freeVelocity(&s.direction);
-  double free = 0, moves = 0, mass = 0, fastest = 0;
-  for (const int tree : trees) {
-    const ForestTree& t = forest_->trees()[tree];
-    multiply(*forest_, tree, motion_->mass, s.direction, &s.mass_direction, &s.paths);
-    free += s.direction.segment(t.first_dof, t.dofCount()).dot(s.mass_direction.segment(t.first_dof, t.dofCount()));
-    moves += s.velocity.segment(t.first_dof, t.dofCount()).dot(s.mass_velocity.segment(t.first_dof, t.dofCount()));
-    mass += motion_->composite[t.first_node].mass;
-  }
-  for (const ContactTerm& c : contacts) fastest = std::max(fastest, c.target);
-  const double most = free + mass * fastest * fastest;
-  if (moves <= most) return;
-  const double share = std::isfinite(moves) && std::isfinite(most) ? std::sqrt(most / moves) : 0;
-  for (const int tree : trees) {
-    for (int k = forest_->trees()[tree].first_dof; k < forest_->trees()[tree].dof_end; ++k) {
-      s.velocity[k] = share > 0 ? share * s.velocity[k] : 0;
-      s.mass_velocity[k] = share > 0 ? share * s.mass_velocity[k] : 0;
-    }
-  }
-}
-
 // Sweeps from the last step's impulses, and from none. Their results balance momentum and add no energy to free motion. The result of the
 // smallest faults is taken: one of theirs, or the one found before.
 void IslandProblem::recover(NewtonReport* report) {

@@ -85,6 +85,14 @@ class IslandProblem {
   NewtonReport solve(const Forest& forest, const ForestMotion& motion, const NewtonSettings& settings, SolverSpace* space);
   /** Goes on from there after space->free_momentum has changed a little. */
   NewtonReport solveAgain(const NewtonSettings& settings);
+  /**
+   * After solve. Overwrites space->mass_direction.
+   * @param speed [m/s] at which contacts correct depth at most
+   * @return whether they have added far more energy than moving the island at that speed takes
+   */
+  bool correctsTooMuch(double speed);
+  /** Goes on from there with contacts that correct no depth: they add no energy. */
+  NewtonReport solveWithoutCorrection(const NewtonSettings& settings);
 
  private:
   static constexpr std::size_t BLOCKS_AT_ONCE = 128, PATCHES_AT_ONCE = 64;  ///< sizes of chunks: some microseconds each
@@ -183,8 +191,12 @@ class IslandProblem {
   bool solveWithoutSweeps(const NewtonSettings& settings, NewtonReport* report);
   NewtonReport solveHeap(const NewtonSettings& settings);
   void sweepAndPolish(const NewtonSettings& settings, NewtonReport* report);
-  void boundEnergy();
   void recover(NewtonReport* report);
+  // island_bounds.cpp: bounds on the energy that contacts add
+  double mass() const;
+  double fastestTarget() const;
+  double kineticEnergy(const Eigen::VectorXd& velocity);
+  void boundEnergy();
 
   const Forest* forest_ = nullptr;
   const ForestMotion* motion_ = nullptr;
