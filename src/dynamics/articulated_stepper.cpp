@@ -195,7 +195,7 @@ NewtonReport ArticulatedStepper::solveTwice(double dt, const NewtonSettings& new
 NewtonReport ArticulatedStepper::solveBounded(double dt, IslandProblem* problem) {
   const NewtonSettings newton = settingsFor(*problem);
   const NewtonReport report = solveTwice(dt, newton, problem);
-  return problem->correctsTooMuch(settings_.max_correction_speed) ? afterAll(report, problem->solveWithoutCorrection(newton)) : report;
+  return problem->limitCorrections(settings_.max_correction_speed) ? afterAll(report, problem->solveAgain(newton)) : report;
 }
 
 // Trees that an impact meets are followed as if they were fast: their speed after it is not known yet. @return whether an impact happened

@@ -36,22 +36,39 @@ double IslandProblem::kineticEnergy(const Eigen::VectorXd& velocity) {
   return 0.5 * twice;
 }
 
-// Contacts that lead bodies apart need the energy of bodies that move at the contacts' targets. Those that contradict each other, or push
-// where joints give them hardly any lever, would add any amount.
-bool IslandProblem::correctsTooMuch(double speed) {
+// Where friction locks what they push, as in a groove, no force suffices contacts to correct depth: they only keep bodies from coming
+// closer. @return whether there is one
+bool IslandProblem::giveUpLocked() {
+  bool any = false;
+  for (ContactTerm& c : contacts) {
+    if (!(c.target > 0) || c.compliance > 0 || c.normal.dot(c.impulse) < hard_impulse) continue;
+    c.target = 0;
+    any = true;
+  }
+  return any;
+}
+
+// Contacts that lead bodies apart, and loops that close, need the energy of bodies that move at their targets. Those that hardly have a
+// lever, or leave bodies no other way, would add any amount. @return share of their targets that is to be reached
+double IslandProblem::affordableShare(double speed) {
   const double fastest = std::max(speed, fastestTarget()), enough = AT_TARGET * 0.5 * mass() * fastest * fastest;
   double work = 0;
   for (const ContactTerm& c : contacts) work += std::max(0.0, c.normal.dot(c.impulse)) * std::max(0.0, c.target);
-  if (!(work > enough)) return false;
+  for (const LoopTerm& loop : loops) work += loop.impulses().cwiseProduct(loop.target).cwiseMax(0.0).sum();
+  if (!(work > enough)) return 1;
   const double before = kineticEnergy(motion_->velocity), after = kineticEnergy(space_->velocity);
-  const double most = std::sqrt(before) + std::sqrt(enough);
-  return after > most * most && work > OF_CORRECTION * (after - before);
+  const double most = std::sqrt(before) + std::sqrt(enough), is = std::sqrt(after);
+  return is > most && work > OF_CORRECTION * (after - before) ? std::sqrt(enough) / is : 1;
 }
 
-NewtonReport IslandProblem::solveWithoutCorrection(const NewtonSettings& settings) {
-  for (ContactTerm& c : contacts) c.target = std::min(c.target, 0.0);
+bool IslandProblem::limitCorrections(double speed) {
+  const double share = affordableShare(speed);
+  const bool limited = giveUpLocked() || share < 1;
+  if (!limited) return false;
+  for (ContactTerm& c : contacts) c.target = std::min(c.target, share * c.target);
+  for (LoopTerm& loop : loops) loop.target *= share;
   begin();
-  return solveAgain(settings);
+  return true;
 }
 
 // The last resort where nothing found a solution: contacts that contradict each other may ask for any speed. All velocities shrink alike

@@ -3,6 +3,7 @@
 // by Newton's method with a line search. Every reaction is minus a gradient. See docs/solver.md.
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -79,6 +80,7 @@ class IslandProblem {
   std::vector<MimicFold> mimics;
   std::vector<double> mimic_impulses;  ///< after solve: by which each mimic's dof follows its master
   Vector3 up = Vector3::Zero();        ///< against gravity; zero without
+  double hard_impulse = INFINITY;      ///< [N s] a push that no load needs: it would make the whole island fast
 
   void clear();
   /** Solves for space->velocity, which holds the first guess, space->mass_velocity M times it. The terms hold the reactions afterwards. */
@@ -86,13 +88,12 @@ class IslandProblem {
   /** Goes on from there after space->free_momentum has changed a little. */
   NewtonReport solveAgain(const NewtonSettings& settings);
   /**
-   * After solve. Overwrites space->mass_direction.
+   * After solve: contacts and loops that contradict each other, or have added far more energy than moving the island at their speed takes,
+   * are to correct less. Overwrites space->mass_direction.
    * @param speed [m/s] at which contacts correct depth at most
-   * @return whether they have added far more energy than moving the island at that speed takes
+   * @return whether there were such: solveAgain solves the step with what is left of their corrections
    */
-  bool correctsTooMuch(double speed);
-  /** Goes on from there with contacts that correct no depth: they add no energy. */
-  NewtonReport solveWithoutCorrection(const NewtonSettings& settings);
+  bool limitCorrections(double speed);
 
  private:
   static constexpr std::size_t BLOCKS_AT_ONCE = 128, PATCHES_AT_ONCE = 64;  ///< sizes of chunks: some microseconds each
@@ -195,6 +196,8 @@ class IslandProblem {
   // island_bounds.cpp: bounds on the energy that contacts add
   double mass() const;
   double fastestTarget() const;
+  bool giveUpLocked();
+  double affordableShare(double speed);
   double kineticEnergy(const Eigen::VectorXd& velocity);
   void boundEnergy();
 

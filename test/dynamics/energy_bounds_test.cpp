@@ -1,6 +1,11 @@
 // Contacts that correct depth must not throw what they correct.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
 #include "analytic_contacts.h"
 
 namespace blem_sim {
@@ -47,6 +52,58 @@ TEST(EnergyBounds, ContactsThatContradictEachOtherDoNotThrow) {
   const int bar = world.addBody(boxBody("bar", 1, BAR, Vector3::Zero()));
   world.step(1e-3, {deepContact(bar, {0, 0, -0.01}, {0, 0, 1}, 1), deepContact(bar, {1e-3, 0, 0.01}, {0, 0, -1}, 2)}, {});
   EXPECT_LT(world.kineticEnergy(), boundOfEnergy());
+}
+
+/** Half the opening angle of a groove [rad], friction. */
+class Groove : public ::testing::TestWithParam<std::pair<double, double>> {};
+
+// Where friction locks a cube in a groove, any squeeze balances itself. Correcting depth must not build one up.
+TEST_P(Groove, SqueezesACubeByNoMoreThanItsWeightAsksFor) {
+  const auto [half, friction] = GetParam();
+  const Vector3 size(0.1, 0.1, 0.1), left(std::cos(half), 0, std::sin(half)), right(-left.x(), 0, left.z());
+  World world({0, 0, -9.81}, {});
+  const int cube = world.addBody(boxBody("cube", 1, size, {0, 0, 0.5}));
+  double force = 0;
+  for (int k = 0; k < 1000; ++k) {
+    std::vector<ContactConstraint> contacts;
+    boxOnPlane(world, cube, size, left, 0, {friction}, &contacts);
+    const std::size_t of_left = contacts.size();
+    boxOnPlane(world, cube, size, right, 0, {friction}, &contacts);
+    for (std::size_t i = of_left; i < contacts.size(); ++i) contacts[i].id += 1000;
+    const SolveResult& result = world.step(1e-3, contacts, {});
+    force = 0;
+    for (const Vector3& f : result.contact_forces) force = std::max(force, f.norm());
+  }
+  EXPECT_LT(force, 15 * 9.81);
+  EXPECT_LT(world.bodyState(cube).v_WCom.norm(), 1e-9);
+}
+INSTANTIATE_TEST_SUITE_P(Angles, Groove,
+                         ::testing::Values(std::pair(0.7, 0.0), std::pair(0.7, 0.3), std::pair(0.7, 1.0), std::pair(0.2, 0.3),
+                                           std::pair(0.2, 1.0), std::pair(0.05, 1.0)));
+
+// Two bars between two hinges, stretched: their middle has no lever along the bars, and weight pulls across them.
+TEST(EnergyBounds, AStretchedLoopKeepsStill) {
+  World world({0, 0, -9.81}, {});
+  const Vector3 bar(0.25, 0.02, 0.02);
+  const int one = world.addBody(boxBody("one", 1, bar, {0.125, 0, 0})), two = world.addBody(boxBody("two", 1, bar, {0.375, 0, 0}));
+  const auto hinge = [&world](int parent, int child, double x) {
+    JointSpec joint;
+    joint.parent = parent;
+    joint.child = child;
+    joint.axis = Vector3::UnitY();
+    joint.X_PJ = makePose({x, 0, 0});
+    world.addJoint(joint);
+  };
+  hinge(WORLD_BODY, one, 0);
+  hinge(one, two, 0.125);
+  hinge(WORLD_BODY, two, 0.5);
+  const std::vector<JointDrive> drives(3);
+  double most = 0;
+  for (int k = 0; k < 500; ++k) {
+    world.step(1e-3, {}, drives);
+    most = std::max(most, world.kineticEnergy());
+  }
+  EXPECT_LT(most, 2 * boundOfEnergy());
 }
 
 }  // namespace
