@@ -1,4 +1,4 @@
-// Bounds on the energy that contacts may add on purpose: by correcting depth, and where nothing solved the problem.
+// Bounds on what contacts may do on purpose: push and add energy by correcting depth, and move bodies where nothing solved the problem.
 #include <algorithm>
 #include <cmath>
 
@@ -7,16 +7,11 @@
 namespace blem_sim {
 namespace {
 
-constexpr double AT_TARGET = 4;         // times the energy of an island that moves as fast as its fastest target: what correcting may take
+constexpr double AT_TARGET = 4;         // times the energy of an island as fast as its fastest target: what correcting depth may take
+constexpr double HARD = 10;             // times the fastest correction of depth: a push that makes the whole island so fast is hard
 constexpr double OF_CORRECTION = 0.25;  // of a gain of energy: the least share of contacts that gained it by correcting depth
 
 }  // namespace
-
-double IslandProblem::mass() const {
-  double mass = 0;
-  for (const int tree : trees) mass += motion_->composite[forest_->trees()[tree].first_node].mass;
-  return mass;
-}
 
 double IslandProblem::fastestTarget() const {
   double fastest = 0;
@@ -27,21 +22,19 @@ double IslandProblem::fastestTarget() const {
 // [J] Overwrites space->mass_direction.
 double IslandProblem::kineticEnergy(const Eigen::VectorXd& velocity) {
   SolverSpace& s = *space_;
-  double twice = 0;
-  for (const int tree : trees) {
-    const ForestTree& t = forest_->trees()[tree];
-    multiply(*forest_, tree, motion_->mass, velocity, &s.mass_direction, &s.paths);
-    twice += velocity.segment(t.first_dof, t.dofCount()).dot(s.mass_direction.segment(t.first_dof, t.dofCount()));
-  }
-  return 0.5 * twice;
+  for (const int tree : trees) multiply(*forest_, tree, motion_->mass, velocity, &s.mass_direction, &s.paths);
+  return 0.5 * dotProduct(*forest_, trees, velocity, s.mass_direction);
 }
 
-// Where friction locks what they push, as in a groove, no force suffices contacts to correct depth: they only keep bodies from coming
+double IslandProblem::hardPush(double speed) const { return HARD * speed * mass; }
+
+// Contacts of a body that friction locks, as in a groove, correct depth by no force, however large: they only keep bodies from coming
 // closer. @return whether there is one
-bool IslandProblem::giveUpLocked() {
+bool IslandProblem::giveUpLocked(double speed) {
+  const double hard = hardPush(speed);
   bool any = false;
   for (ContactTerm& c : contacts) {
-    if (!(c.target > 0) || c.compliance > 0 || c.normal.dot(c.impulse) < hard_impulse) continue;
+    if (!(c.target > 0) || c.compliance > 0 || c.normal.dot(c.impulse) < hard) continue;
     c.target = 0;
     any = true;
   }
@@ -51,7 +44,7 @@ bool IslandProblem::giveUpLocked() {
 // Contacts that lead bodies apart, and loops that close, need the energy of bodies that move at their targets. Those that hardly have a
 // lever, or leave bodies no other way, would add any amount. @return share of their targets that is to be reached
 double IslandProblem::affordableShare(double speed) {
-  const double fastest = std::max(speed, fastestTarget()), enough = AT_TARGET * 0.5 * mass() * fastest * fastest;
+  const double fastest = std::max(speed, fastestTarget()), enough = AT_TARGET * 0.5 * mass * fastest * fastest;
   double work = 0;
   for (const ContactTerm& c : contacts) work += std::max(0.0, c.normal.dot(c.impulse)) * std::max(0.0, c.target);
   for (const LoopTerm& loop : loops) work += loop.impulses().cwiseProduct(loop.target).cwiseMax(0.0).sum();
@@ -63,7 +56,7 @@ double IslandProblem::affordableShare(double speed) {
 
 bool IslandProblem::limitCorrections(double speed) {
   const double share = affordableShare(speed);
-  const bool limited = giveUpLocked() || share < 1;
+  const bool limited = giveUpLocked(speed) || share < 1;
   if (!limited) return false;
   for (ContactTerm& c : contacts) c.target = std::min(c.target, share * c.target);
   for (LoopTerm& loop : loops) loop.target *= share;
@@ -77,7 +70,7 @@ void IslandProblem::boundEnergy() {
   SolverSpace& s = *space_;
   sweeps_.freeVelocity(&s.direction);
   const double fastest = fastestTarget();
-  const double most = kineticEnergy(s.direction) + 0.5 * mass() * fastest * fastest, moves = kineticEnergy(s.velocity);
+  const double most = kineticEnergy(s.direction) + 0.5 * mass * fastest * fastest, moves = kineticEnergy(s.velocity);
   if (moves <= most) return;
   const double share = std::isfinite(moves) && std::isfinite(most) ? std::sqrt(most / moves) : 0;
   for (const int tree : trees) {

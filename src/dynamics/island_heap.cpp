@@ -205,8 +205,8 @@ bool IslandProblem::isExact(const NewtonSettings& settings, const NewtonReport& 
   return report.contact_residual <= settings.contact_tolerance && gradient_norm_ <= settings.gradient_tolerance;
 }
 
-// The hard problem alone, in few iterations: of a few bodies that tumble, but move much as in the step before, or of a crowd at rest. What
-// a crowd's iterations leave open would set it in motion again, so its result must be exact.
+// The hard problem alone, in few iterations: of a few bodies that tumble, but move much as in the step before, or of a crowd at rest. A
+// crowd's result must be exact: the least imbalance would set it in motion again.
 bool IslandProblem::solveFew(const NewtonSettings& settings, NewtonReport* report) {
   NewtonSettings few = settings;
   few.max_iterations = isCrowd() ? CROWD_ITERATIONS : FEW_ITERATIONS;

@@ -147,17 +147,9 @@ void addFastWrenches(const Forest& forest, const Scene& scene, int tree, double 
 // The velocities of the solve, taken on to the end of the step without velocity products, may have more energy there. The island loses it:
 // all velocities shrink alike, so that mimic joints and loops keep their relations.
 void brake(const Forest& forest, const IslandProblem& problem, ForestMotion* motion, SolverSpace* space) {
-  const auto twiceEnergy = [&](const Eigen::VectorXd& velocity) {
-    double sum = 0;
-    for (const int tree : problem.trees) {
-      const ForestTree& t = forest.trees()[tree];
-      sum += velocity.segment(t.first_dof, t.dofCount()).dot(space->mass_velocity.segment(t.first_dof, t.dofCount()));
-    }
-    return sum;
-  };
-  const double solved = twiceEnergy(space->velocity);
+  const double solved = dotProduct(forest, problem.trees, space->velocity, space->mass_velocity);
   for (const int tree : problem.trees) multiply(forest, tree, motion->mass, motion->velocity, &space->mass_velocity, &space->paths);
-  const double there = twiceEnergy(motion->velocity);
+  const double there = dotProduct(forest, problem.trees, motion->velocity, space->mass_velocity);
   if (!(there > solved)) return;
   for (const int tree : problem.trees) {
     const ForestTree& t = forest.trees()[tree];

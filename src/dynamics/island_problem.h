@@ -3,7 +3,6 @@
 // by Newton's method with a line search. Every reaction is minus a gradient. See docs/solver.md.
 #pragma once
 
-#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -80,7 +79,7 @@ class IslandProblem {
   std::vector<MimicFold> mimics;
   std::vector<double> mimic_impulses;  ///< after solve: by which each mimic's dof follows its master
   Vector3 up = Vector3::Zero();        ///< against gravity; zero without
-  double hard_impulse = INFINITY;      ///< [N s] a push that no load needs: it would make the whole island fast
+  double mass = 0;                     ///< [kg] of all trees
 
   void clear();
   /** Solves for space->velocity, which holds the first guess, space->mass_velocity M times it. The terms hold the reactions afterwards. */
@@ -88,12 +87,14 @@ class IslandProblem {
   /** Goes on from there after space->free_momentum has changed a little. */
   NewtonReport solveAgain(const NewtonSettings& settings);
   /**
-   * After solve: contacts and loops that contradict each other, or have added far more energy than moving the island at their speed takes,
-   * are to correct less. Overwrites space->mass_direction.
+   * After solve: contacts and loops that have added far more energy than moving the island at their speed takes are to correct less,
+   * contacts that push hard nothing. Overwrites space->mass_direction.
    * @param speed [m/s] at which contacts correct depth at most
    * @return whether there were such: solveAgain solves the step with what is left of their corrections
    */
   bool limitCorrections(double speed);
+  /** [N s] A push that no load needs: it would make the whole island ten times as fast. @param speed [m/s] the same */
+  double hardPush(double speed) const;
 
  private:
   static constexpr std::size_t BLOCKS_AT_ONCE = 128, PATCHES_AT_ONCE = 64;  ///< sizes of chunks: some microseconds each
@@ -193,10 +194,9 @@ class IslandProblem {
   NewtonReport solveHeap(const NewtonSettings& settings);
   void sweepAndPolish(const NewtonSettings& settings, NewtonReport* report);
   void recover(NewtonReport* report);
-  // island_bounds.cpp: bounds on the energy that contacts add
-  double mass() const;
+  // island_bounds.cpp: bounds on what contacts do on purpose
   double fastestTarget() const;
-  bool giveUpLocked();
+  bool giveUpLocked(double speed);
   double affordableShare(double speed);
   double kineticEnergy(const Eigen::VectorXd& velocity);
   void boundEnergy();
@@ -228,8 +228,8 @@ class IslandProblem {
   double responses_at_ = 0;            ///< how far along the direction that was
   bool responses_known_ = false;       ///< and that is the present iterate
   double linear_ = 0, quadratic_ = 0;  ///< of the kinetic part along the search direction
+  bool soft_ = false;                  ///< contacts are softened
   // What the factor at hand, and the elimination of idle dofs, were made with: kinds of contacts and stiffnesses of joints, lane by lane.
-  bool soft_ = false;  ///< contacts are softened
   bool factored_ = false, base_known_ = false;
   std::vector<double> factored_kinds_, factored_joints_, base_joints_;
   Islands tree_blocks_;  ///< trees that mimic joints tie are one block

@@ -7,7 +7,6 @@ namespace {
 
 constexpr double CONTACT_PROXIMAL = 1e-4;  // rho = this * inverse mass at the contact: smaller is stiffer and needs more Newton iterations
 constexpr double HEAVIEST = 1e4;           // contacts are no softer than those of a mass this many times below the heaviest tree
-constexpr double HARD = 10;                // times the fastest correction of depth: an impulse that makes the whole island so fast is hard
 constexpr double JOINT_PROXIMAL = 1e-3;    // gain of friction and limits = inertia / this
 constexpr double DRY_MOMENTUM = 0.9;  // share of its last change that stuck friction is expected to change by: all of it would never settle
 constexpr double LOOP_PROXIMAL = 1e-4;  // rho = this * inverse inertia
@@ -210,13 +209,14 @@ void addContact(const TermSource& s, const ContactConstraint& c, IslandProblem* 
 }
 
 void weighContacts(const TermSource& s, IslandProblem* problem) {
-  double heaviest = 0, mass = 0;
+  double heaviest = 0;
+  problem->mass = 0;
   for (const int tree : problem->trees) {
     const double own = s.motion.composite[s.forest.trees()[tree].first_node].mass;
     heaviest = std::max(heaviest, own);
-    mass += own;
+    problem->mass += own;
   }
-  problem->hard_impulse = HARD * s.settings.max_correction_speed * mass;
+  const double hard = problem->hardPush(s.settings.max_correction_speed);
   for (const ContactPatch& patch : problem->patches) {
     Vector3 middle = Vector3::Zero();
     for (int i = patch.first; i < patch.end; ++i) middle += problem->contacts[i].point;
@@ -227,8 +227,8 @@ void weighContacts(const TermSource& s, IslandProblem* problem) {
       ContactTerm& c = problem->contacts[i];
       c.inverse_mass = inverse;
       c.stiffest_rho = CONTACT_PROXIMAL * std::min(inverse, HEAVIEST / heaviest);
-      // A blow does not go on, and what friction has locked need not.
-      if (c.normal.dot(c.previous) > problem->hard_impulse) c.previous.setZero();
+      // Blows do not go on, and a squeeze that friction has locked need not.
+      if (c.normal.dot(c.previous) > hard) c.previous.setZero();
     }
   }
 }

@@ -73,6 +73,15 @@ BLEM_SIM_LANES void multiply(const Forest& forest, int tree, const std::vector<d
   leave(0);
 }
 
+double dotProduct(const Forest& forest, const std::vector<int>& trees, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  double sum = 0;
+  for (const int tree : trees) {
+    const ForestTree& t = forest.trees()[tree];
+    sum += a.segment(t.first_dof, t.dofCount()).dot(b.segment(t.first_dof, t.dofCount()));
+  }
+  return sum;
+}
+
 BLEM_SIM_LANES bool eliminate(const Forest& forest, int dof, TreeFactor* factor) {
   const int* column = forest.columns(dof);
   double* row = factor->rows.data() + forest.rowStart(dof);

@@ -31,6 +31,9 @@ struct TreeFactor {
 void multiply(const Forest& forest, int tree, const std::vector<double>& rows, const Eigen::VectorXd& v, Eigen::VectorXd* out,
               TreePaths* paths, const std::vector<char>* chosen = nullptr);
 
+/** a . b on the dofs of some trees. */
+double dotProduct(const Forest& forest, const std::vector<int>& trees, const Eigen::VectorXd& a, const Eigen::VectorXd& b);
+
 /** Eliminates a dof: its ancestors' rows lose what it takes. @return false if H is not positive definite */
 bool eliminate(const Forest& forest, int dof, TreeFactor* factor);
 

@@ -93,26 +93,27 @@ struct Found {
   std::vector<double> numbers;
 };
 
+void addPlainVertexFaces(const Kernels& set, const Features& in, bool faces_move, Found* out) {
+  const PlainVertexFaces found(set, in, faces_move, true);
+  out->counts.insert(out->counts.end(), {found.plain.count, static_cast<std::uint32_t>(found.hits.size())});
+  for (const VertexFaceHit& hit : found.hits) {
+    out->indices.insert(out->indices.end(), {hit.candidate, hit.bits});
+    out->numbers.push_back(hit.height);
+  }
+  for (std::uint32_t i = 0; i < found.plain.count; ++i) {
+    const ContactRow& row = found.rows[i];
+    out->numbers.insert(out->numbers.end(), row.point, row.point + 3);
+    out->numbers.insert(out->numbers.end(), row.normal, row.normal + 3);
+    out->numbers.push_back(row.depth);
+    out->indices.insert(out->indices.end(), {static_cast<std::uint32_t>(row.id >> 32), static_cast<std::uint32_t>(row.id)});
+  }
+}
+
 Found found(const Kernels& set, const Features& in) {
   Found out;
   const auto add = [&](std::uint32_t count) { out.counts.push_back(count); };
   const Candidate* candidates = in.candidates.data();
-  for (const bool faces_move : {false, true}) {
-    const PlainVertexFaces found(set, in, faces_move, true);
-    add(found.plain.count);
-    add(static_cast<std::uint32_t>(found.hits.size()));
-    for (const VertexFaceHit& hit : found.hits) {
-      out.indices.insert(out.indices.end(), {hit.candidate, hit.bits});
-      out.numbers.push_back(hit.height);
-    }
-    for (std::uint32_t i = 0; i < found.plain.count; ++i) {
-      const ContactRow& row = found.rows[i];
-      out.numbers.insert(out.numbers.end(), row.point, row.point + 3);
-      out.numbers.insert(out.numbers.end(), row.normal, row.normal + 3);
-      out.numbers.push_back(row.depth);
-      out.indices.insert(out.indices.end(), {static_cast<std::uint32_t>(row.id >> 32), static_cast<std::uint32_t>(row.id)});
-    }
-  }
+  for (const bool faces_move : {false, true}) addPlainVertexFaces(set, in, faces_move, &out);
   std::vector<std::uint32_t> hits(CANDIDATES);
   const auto addHits = [&](std::uint32_t count) {
     add(count);

@@ -1,4 +1,4 @@
-// Contacts that correct depth must not throw what they correct.
+// Contacts and loops that correct depth and gaps must not throw what they correct, nor squeeze it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -57,7 +57,7 @@ TEST(EnergyBounds, ContactsThatContradictEachOtherDoNotThrow) {
 /** Half the opening angle of a groove [rad], friction. */
 class Groove : public ::testing::TestWithParam<std::pair<double, double>> {};
 
-// Where friction locks a cube in a groove, any squeeze balances itself. Correcting depth must not build one up.
+// A cube that friction locks in a groove is balanced under any squeeze. Correcting depth must not build one up.
 TEST_P(Groove, SqueezesACubeByNoMoreThanItsWeightAsksFor) {
   const auto [half, friction] = GetParam();
   const Vector3 size(0.1, 0.1, 0.1), left(std::cos(half), 0, std::sin(half)), right(-left.x(), 0, left.z());
