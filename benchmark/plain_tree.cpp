@@ -3,84 +3,82 @@
 #include <algorithm>
 #include <numeric>
 
-#include "blem_sim/geometry/closest_points.h"
-
 namespace blem_sim {
 namespace {
 
-constexpr int LEAF = 4;
+Box boxOf(const Triangle& t) { return Box(t[0].cwiseMin(t[1]).cwiseMin(t[2]), t[0].cwiseMax(t[1]).cwiseMax(t[2])); }
 
-Triangle corners(const TriangleMesh& mesh, int element) {
-  const Vector3i& e = mesh.elements[element];
-  return {mesh.vertices[e[0]], mesh.vertices[e[1]], mesh.vertices[e[2]]};
-}
+Triangle placed(const Pose& X, const Triangle& t) { return {X * t[0], X * t[1], X * t[2]}; }
 
-Box boxOf(const Triangle& t) {
-  Box box;
-  for (const Vector3& p : t) box.extend(p);
-  return box;
-}
-
-Box turned(const Box& box, const Pose& X) {
-  const Vector3 half = X.linear().cwiseAbs() * (0.5 * box.sizes()), centre = X * box.center();
+Box placed(const Pose& X, const Eigen::Matrix3d& of_half, const Box& box) {
+  const Vector3 half = of_half * (0.5 * box.sizes()), centre = X * box.center();
   return Box(centre - half, centre + half);
 }
 
-bool within(const Box& a, const Box& b, double range) { return a.squaredExteriorDistance(b) <= range * range; }
+bool within(const Box& a, const Box& b, double range) {
+  const Vector3 gap = (a.min() - b.max()).cwiseMax(b.min() - a.max()).cwiseMax(0.0);
+  return gap.squaredNorm() <= range * range;
+}
+
+/** Whether a triangle lies on one side of another's plane, farther than `range` [m] from it. */
+bool beyondPlane(const Triangle& t, const Triangle& plane, double range) {
+  const Vector3 normal = (plane[1] - plane[0]).cross(plane[2] - plane[0]);
+  const double a = normal.dot(t[0] - plane[0]), b = normal.dot(t[1] - plane[0]), c = normal.dot(t[2] - plane[0]);
+  const double gap = std::max(std::min({a, b, c}), -std::max({a, b, c}));
+  return gap > 0 && gap * gap > range * range * normal.squaredNorm();
+}
 
 }  // namespace
 
-PlainTree::PlainTree(const TriangleMesh& mesh) : mesh_(mesh), order_(mesh.elements.size()) {
+PlainTree::PlainTree(const TriangleMesh& mesh) : order_(mesh.elements.size()) {
   std::iota(order_.begin(), order_.end(), 0);
-  std::vector<Vector3> middles;
-  for (int i : order_) middles.push_back(boxOf(corners(mesh, i)).center());
-  build(0, static_cast<int>(order_.size()), &middles);
+  std::vector<Box> boxes;
+  for (const Vector3i& e : mesh.elements) boxes.push_back(boxOf({mesh.vertices[e[0]], mesh.vertices[e[1]], mesh.vertices[e[2]]}));
+  nodes_.reserve(2 * order_.size());
+  build(0, static_cast<int>(order_.size()), mesh, boxes);
+  for (const int i : order_) {
+    const Vector3i& e = mesh.elements[i];
+    triangles_.push_back({mesh.vertices[e[0]], mesh.vertices[e[1]], mesh.vertices[e[2]]});
+  }
 }
 
-int PlainTree::build(int first, int count, std::vector<Vector3>* middles) {
-  const int index = static_cast<int>(nodes_.size());
+void PlainTree::build(int first, int count, const TriangleMesh& mesh, const std::vector<Box>& boxes) {
+  const std::size_t index = nodes_.size();
   nodes_.emplace_back();
-  Box box;
-  for (int i = first; i < first + count; ++i) box.extend(boxOf(corners(mesh_, order_[i])));
-  nodes_[index].box = box;
-  nodes_[index].first = first;
-  nodes_[index].count = count;
-  if (count <= LEAF) return index;
+  for (int i = first; i < first + count; ++i) nodes_[index].box.extend(boxes[order_[i]]);
+  nodes_[index].triangle = first;
+  if (count == 1) return;
   Eigen::Index axis = 0;
-  box.sizes().maxCoeff(&axis);
-  const auto begin = order_.begin() + first, middle = begin + count / 2;
-  std::nth_element(begin, middle, begin + count, [&](int a, int b) { return (*middles)[a][axis] < (*middles)[b][axis]; });
-  const int left = build(first, count / 2, middles), right = build(first + count / 2, count - count / 2, middles);
-  nodes_[index].left = left;
-  nodes_[index].right = right;
-  return index;
+  nodes_[index].box.sizes().maxCoeff(&axis);
+  const auto begin = order_.begin() + first;
+  std::nth_element(begin, begin + count / 2, begin + count,
+                   [&](int a, int b) { return boxes[a].center()[axis] < boxes[b].center()[axis]; });
+  build(first, count / 2, mesh, boxes);
+  nodes_[index].right = static_cast<int>(nodes_.size());
+  build(first + count / 2, count - count / 2, mesh, boxes);
 }
 
 void PlainTree::trianglePairs(const PlainTree& a, const PlainTree& b, const Pose& X_BA, double range,
                               std::vector<std::pair<int, int>>* pairs) {
   pairs->clear();
+  const Eigen::Matrix3d of_half = X_BA.linear().cwiseAbs();
   std::vector<std::pair<int, int>> stack = {{0, 0}};
   while (!stack.empty()) {
     const auto [i, j] = stack.back();
     stack.pop_back();
     const Node &m = a.nodes_[i], &n = b.nodes_[j];
-    if (!within(turned(m.box, X_BA), n.box, range)) continue;
-    const bool open_m = m.left >= 0 && (n.left < 0 || m.box.sizes().sum() >= n.box.sizes().sum());
-    if (open_m) {
-      stack.insert(stack.end(), {{m.right, j}, {m.left, j}});
-    } else if (n.left >= 0) {
-      stack.insert(stack.end(), {{i, n.right}, {i, n.left}});
+    if (!within(placed(X_BA, of_half, m.box), n.box, range)) continue;
+    if (m.right > 0 && (n.right == 0 || m.size() >= n.size())) {
+      stack.emplace_back(m.right, j);
+      stack.emplace_back(i + 1, j);
+    } else if (n.right > 0) {
+      stack.emplace_back(i, n.right);
+      stack.emplace_back(i, j + 1);
     } else {
-      for (int k = m.first; k < m.first + m.count; ++k) {
-        Triangle t = corners(a.mesh_, a.order_[k]);
-        for (Vector3& p : t) p = X_BA * p;
-        const Box box = boxOf(t);
-        for (int l = n.first; l < n.first + n.count; ++l) {
-          const Triangle u = corners(b.mesh_, b.order_[l]);
-          if (within(box, boxOf(u), range) && closestTriangleTriangle(t, u).distance <= range)
-            pairs->emplace_back(a.order_[k], b.order_[l]);
-        }
-      }
+      const Triangle t = placed(X_BA, a.triangles_[m.triangle]), &u = b.triangles_[n.triangle];
+      if (within(boxOf(t), n.box, range) && !beyondPlane(t, u, range) && !beyondPlane(u, t, range) &&
+          closestTriangleTriangle(t, u).distance <= range)
+        pairs->emplace_back(a.order_[m.triangle], b.order_[n.triangle]);
     }
   }
 }

@@ -1,13 +1,15 @@
 // What contact generation is measured against: a plain binary tree of boxes in double, one triangle pair at a time.
 #pragma once
 
+#include <utility>
 #include <vector>
 
+#include "blem_sim/geometry/closest_points.h"
 #include "blem_sim/geometry/triangle_mesh.h"
 
 namespace blem_sim {
 
-/** Binary tree of axis-aligned boxes over the triangles of a mesh: halves at the median of the longest axis, leaves of four. */
+/** Binary tree of axis-aligned boxes over the triangles of a mesh: halves at the median of the longest axis, one triangle a leaf. */
 class PlainTree {
  public:
   explicit PlainTree(const TriangleMesh& mesh);
@@ -23,13 +25,14 @@ class PlainTree {
  private:
   struct Node {
     Box box;
-    int first = 0, count = 0;  ///< of a leaf, in order_
-    int left = -1, right = -1;
+    int right = 0;     ///< the left child is the next node; 0: a leaf
+    int triangle = 0;  ///< of a leaf: place in triangles_ and order_
+    double size() const { return box.sizes().sum(); }
   };
-  int build(int first, int count, std::vector<Vector3>* middles);
+  void build(int first, int count, const TriangleMesh& mesh, const std::vector<Box>& boxes);
 
-  const TriangleMesh& mesh_;
-  std::vector<int> order_;
+  std::vector<int> order_;           ///< element of the mesh by place
+  std::vector<Triangle> triangles_;  ///< corners by place
   std::vector<Node> nodes_;
 };
 
