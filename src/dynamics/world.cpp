@@ -106,6 +106,12 @@ void World::resetJointPosition(int joint, double position) {
   impl_->scene.joints()[joint].last_position = position;
 }
 
+void World::setJointEfforts(const std::vector<double>& efforts) {
+  for (std::size_t j = 0; j < efforts.size(); ++j) impl_->scene.joints()[j].last_effort = efforts[j];
+  if (!impl_->joints_known) return;
+  for (std::size_t j = 0; j < efforts.size(); ++j) impl_->joints[j].effort = efforts[j];
+}
+
 const Vector3& World::gravity() const { return impl_->scene.gravity(); }
 void World::setGravity(const Vector3& gravity) { impl_->scene.setGravity(gravity); }
 

@@ -41,10 +41,7 @@ ContactArray toContactArray(const Simulator& simulator, const StepReport& report
   return array;
 }
 
-ContactsState toContactsState(const Simulator& simulator, const StepReport& report, const SensorInfo& sensor,
-                              const ContactReading& reading) {
-  const RobotInfo& robot = simulator.robots()[sensor.robot];
-  const Vector3 p_WL = simulator.linkPose(sensor.robot, robot.description->linkIndex(sensor.config.link)).translation();
+ContactsState toContactsState(const Simulator& simulator, const StepReport& report, const ContactReading& reading) {
   const std::vector<Collider>& colliders = simulator.colliders();
   struct Pair {
     ContactState state;
@@ -52,20 +49,19 @@ ContactsState toContactsState(const Simulator& simulator, const StepReport& repo
     double max_of_layer = 0;
   };
   std::map<std::pair<int, int>, Pair> pairs;  // (own collider, other collider)
-  for (const int index : reading.contacts) {
-    const ContactReport& contact = report.contacts[index];
+  for (std::size_t i = 0; i < reading.contacts.size(); ++i) {
+    const ContactReport& contact = report.contacts[reading.contacts[i]];
+    const Wrench& wrench = reading.wrenches[i];
     const bool own_is_a = contact.body_a == reading.link_body;
-    const double side = own_is_a ? 1 : -1;  // report's force and normal are those of A
+    const double side = own_is_a ? 1 : -1;  // the report's normal is that of A
     Pair& pair =
         pairs[own_is_a ? std::make_pair(contact.collider_a, contact.collider_b) : std::make_pair(contact.collider_b, contact.collider_a)];
-    const Vector3 force = side * contact.force;
-    const Vector3 torque = (contact.point - p_WL).cross(force);
-    pair.state.wrenches.push_back(toWrench(force, torque));
+    pair.state.wrenches.push_back(toWrench(wrench.force, wrench.torque));
     pair.state.contact_positions.push_back(toVector3(contact.point));
     pair.state.contact_normals.push_back(toVector3(side * contact.normal_BA));
     pair.state.depths.push_back(contact.depth);
-    pair.total.force += force;
-    pair.total.torque += torque;
+    pair.total.force += wrench.force;
+    pair.total.torque += wrench.torque;
     pair.max_of_layer = std::max(pair.max_of_layer, contact.of_layer);
   }
   ContactsState message;

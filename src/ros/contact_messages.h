@@ -12,7 +12,6 @@ namespace blem_sim {
 ContactArray toContactArray(const Simulator& simulator, const StepReport& report);
 
 /** A contact sensor's reading: one state per pair of colliders, in the order of the colliders. */
-ContactsState toContactsState(const Simulator& simulator, const StepReport& report, const SensorInfo& sensor,
-                              const ContactReading& reading);
+ContactsState toContactsState(const Simulator& simulator, const StepReport& report, const ContactReading& reading);
 
 }  // namespace blem_sim

@@ -26,7 +26,6 @@ void setVariance(Covariance* covariance, double stddev) {
 struct ReadingPublisher {
   const Simulator& simulator;
   const StepReport& report;
-  const SensorInfo& sensor;
   const std::string& frame_id;
   SensorMessages* messages;
   ListenedPublisher* publisher;
@@ -58,7 +57,7 @@ struct ReadingPublisher {
   }
 
   void operator()(const ContactReading& reading) const {
-    sender->add(publisher, boost::make_shared<ContactsState>(toContactsState(simulator, report, sensor, reading)));
+    sender->add(publisher, boost::make_shared<ContactsState>(toContactsState(simulator, report, reading)));
   }
 
   void operator()(const TiltReading& reading) const {
@@ -140,8 +139,7 @@ void SensorPublisher::publish(const StepReport& report) {
   for (const SensorSample& sample : report.samples) {
     ListenedPublisher& publisher = publishers_[sample.sensor];
     if (!publisher.listened()) continue;
-    std::visit(ReadingPublisher{simulator_, report, simulator_.sensors()[sample.sensor], frames_[sample.sensor], &messages_[sample.sensor],
-                                &publisher, sender_},
+    std::visit(ReadingPublisher{simulator_, report, frames_[sample.sensor], &messages_[sample.sensor], &publisher, sender_},
                sample.reading);
   }
 }

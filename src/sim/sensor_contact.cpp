@@ -12,6 +12,7 @@ class ContactSensor : public Sensor {
   void read(const StepContext& step, double, SensorReading* out) override {
     ContactReading& reading = readingIn<ContactReading>(out);
     reading.contacts.clear();
+    reading.wrenches.clear();
     reading.total = Wrench();
     reading.link_body = robot_.bodies[robot_.lumped->link_placement[link_].body];
     // Contact points and forces belong to the start of the step.
@@ -19,9 +20,11 @@ class ContactSensor : public Sensor {
     for (const LinkContacts::Entry& entry : step.link_contacts.of(robot_.model, link_)) {
       const ContactReport& contact = step.contacts[entry.contact];
       const Vector3 force = entry.on_a ? contact.force : Vector3(-contact.force);
+      const Vector3 torque = (contact.point - p_WL).cross(force) + (entry.on_a ? contact.moment_a : contact.moment_b);
       reading.contacts.push_back(entry.contact);
+      reading.wrenches.push_back({force, torque});
       reading.total.force += force;
-      reading.total.torque += (contact.point - p_WL).cross(force);
+      reading.total.torque += torque;
     }
   }
   bool readsContacts() const override { return true; }

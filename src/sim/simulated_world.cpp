@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "blem_sim/geometry/input_error.h"
 
 namespace blem_sim {
@@ -48,6 +50,15 @@ Pose SimulatedWorld::linkPose(const RobotInfo& robot, int link, const std::vecto
   const LinkPlacement& placement = robot.lumped->link_placement[link];
   const int body = robot.bodies[placement.body];
   return (body == WORLD_BODY ? robot.X_WR : bodies[body].X_WB) * placement.X_BL;
+}
+
+Vector3 SimulatedWorld::linkOrigin(const Collider& collider, const std::vector<BodyState>& bodies) const {
+  if (collider.body == WORLD_BODY) return Vector3::Zero();
+  if (collider.link < 0) return bodies[collider.body].X_WB.translation();
+  // Robots come in the order of their models.
+  const auto robot =
+      std::partition_point(robots.begin(), robots.end(), [&](const RobotInfo& other) { return other.model < collider.model; });
+  return linkPose(*robot, collider.link, bodies).translation();
 }
 
 void SimulatedWorld::bodyStates(std::vector<BodyState>* out) const {

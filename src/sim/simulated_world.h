@@ -41,6 +41,8 @@ struct SimulatedWorld {
   Pose linkPose(const RobotInfo& robot, int link) const;
   /** Pose of a link in the world when the bodies have these states. */
   Pose linkPose(const RobotInfo& robot, int link, const std::vector<BodyState>& bodies) const;
+  /** [m] Origin, in the world, of the link that a collider is on when the bodies have these states; of the body where it is on no link. */
+  Vector3 linkOrigin(const Collider& collider, const std::vector<BodyState>& bodies) const;
   /** State of every body slot. */
   void bodyStates(std::vector<BodyState>* out) const;
 

@@ -8,6 +8,7 @@
 #include "energy_balance.h"
 #include "layer_watch.h"
 #include "link_contacts.h"
+#include "part_reports.h"
 #include "sensor.h"
 #include "simulated_world.h"
 #include "step_guard.h"
@@ -34,6 +35,8 @@ struct Simulator::Impl {
   void report();
   void acceptSubstep();
   void recordContacts();
+  /** A contact of the part at hand, with its moments: its links have moved on since the step began. */
+  ContactReport withMoments(ContactReport contact) const;
   void recordSolve();
   void recordEnergy();
   void recordSaturation();
@@ -87,8 +90,7 @@ struct Simulator::Impl {
   std::vector<BodyState> bodies_before_;  ///< at the start of the step
   std::vector<BodyState> bodies_before_substep_, bodies_;
   std::vector<JointState> joints_;
-  std::vector<Wrench> joint_wrenches_;  ///< mean over the step
-  std::vector<ContactReport> contact_reports_;
+  PartReports part_reports_;
   LinkContacts link_contacts_;
   const SolveResult* solved_ = nullptr;
 };

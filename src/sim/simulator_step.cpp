@@ -53,6 +53,7 @@ const StepReport& Simulator::Impl::step() {
     stepGuard();
   }
   ++step_count_;
+  if (substeps_.count() > 1) world_.world.setJointEfforts(part_reports_.efforts());
   readSensors();
   report();
   return report_;
@@ -69,7 +70,9 @@ void Simulator::Impl::startStep() {
   report_.solver_residual = report_.solver_creep = 0;
   report_.solver_iterations = 0;
   report_.dt = config_.time_step;
-  joint_wrenches_.assign(world_.world.jointCount(), Wrench());
+  report_.max_depth = report_.max_of_layer = 0;
+  report_.deepest_a = report_.deepest_b = -1;
+  part_reports_.startStep(world_.world.jointCount());
   world_.bodyStates(&bodies_before_);
   bodies_ = bodies_before_;
   energy_balance_.start(world_.world);
@@ -144,10 +147,8 @@ void Simulator::Impl::stepGuard() {
 void Simulator::Impl::acceptSubstep() {
   recordSolve();
   if (contacts_.budgetUsedUp()) report_.status |= CONTACTS_REDUCED;
-  for (std::size_t j = 0; j < joint_wrenches_.size(); ++j) {
-    joint_wrenches_[j].force += substeps_.fraction() * solved_->joint_wrenches[j].force;
-    joint_wrenches_[j].torque += substeps_.fraction() * solved_->joint_wrenches[j].torque;
-  }
+  part_reports_.startPart(substeps_.fraction());
+  part_reports_.addJoints(solved_->joint_wrenches, solved_->joint_efforts);
   recordSaturation();
   recordContacts();
   layer_watch_.look(contacts_.current(), substepTime(), &report_.layer_events);
@@ -188,17 +189,14 @@ void Simulator::Impl::recordSaturation() {
 void Simulator::Impl::recordContacts() {
   report_.raw_contacts = contacts_.rawContacts();
   report_.reduced_contacts = contacts_.reducedContacts();
-  report_.max_depth = report_.max_of_layer = 0;
-  report_.deepest_a = report_.deepest_b = -1;
-  contact_reports_.clear();
   for (std::size_t i = 0; i < contacts_.constraints().size(); ++i) {
     const ContactConstraint& constraint = contacts_.constraints()[i];
     const SolvedContact& solved = contacts_.solved()[i];
     const Vector3& force = solved_->contact_forces[i];
     if (constraint.depth < 0 && force.isZero(0)) continue;
     const double depth = constraint.depth + solved.stop, of_layer = solved.layer > 0 ? std::max(0.0, depth) / solved.layer : 0;
-    contact_reports_.push_back({solved.collider_a, solved.collider_b, constraint.body_a, constraint.body_b, constraint.point,
-                                constraint.normal_BA, depth, of_layer, force, solved.pierced});
+    part_reports_.addContact(constraint.id, withMoments({solved.collider_a, solved.collider_b, constraint.body_a, constraint.body_b,
+                                                         constraint.point, constraint.normal_BA, depth, of_layer, force, solved.pierced}));
   }
   if (!contacts_.recoveries().empty()) report_.status |= CONTACT_UNRELIABLE;
   if (!contacts_.leftOut().empty()) report_.status |= CONTACT_UNRELIABLE | CONTACTS_REDUCED;
@@ -212,14 +210,26 @@ void Simulator::Impl::recordContacts() {
   }
 }
 
+ContactReport Simulator::Impl::withMoments(ContactReport contact) const {
+  if (substeps_.count() == 0) return contact;
+  const auto travel = [&](int collider) -> Vector3 {
+    const Collider& on = world_.colliders[collider];
+    return world_.linkOrigin(on, bodies_before_substep_) - world_.linkOrigin(on, bodies_before_);
+  };
+  contact.moment_a = contact.force.cross(travel(contact.collider_a));
+  contact.moment_b = travel(contact.collider_b).cross(contact.force);
+  return contact;
+}
+
 void Simulator::Impl::readSensors() {
   const StageTimer timer(&report_.profile, Stage::SENSORS);
   jointStates(&joints_);
   const auto due = [this](std::size_t i) { return step_count_ % sensor_periods_[i] == 0; };
   bool contacts = false;
   for (std::size_t i = 0; i < sensors_.size(); ++i) contacts = contacts || (due(i) && sensors_[i]->readsContacts());
-  if (contacts) link_contacts_.index(world_, contact_reports_);
-  const StepContext context{world_, config_.time_step, bodies_before_, bodies_, joints_, joint_wrenches_, contact_reports_, link_contacts_};
+  if (contacts) link_contacts_.index(world_, part_reports_.contacts());
+  const StepContext context{
+      world_, config_.time_step, bodies_before_, bodies_, joints_, part_reports_.jointWrenches(), part_reports_.contacts(), link_contacts_};
   for (std::size_t i = 0; i < sensors_.size(); ++i) {
     if (!due(i)) continue;
     const double period = static_cast<double>(sensor_periods_[i]) * config_.time_step;
@@ -237,17 +247,14 @@ void Simulator::Impl::report() {
   report_.redone_solves = substeps_.redone();
   if (report_.substeps > 1) report_.status |= STEP_SHORTENED;
   report_.energy = world_.world.kineticEnergy() + world_.world.potentialEnergy();
-  std::swap(report_.contacts, contact_reports_);
+  part_reports_.takeContacts(&report_.contacts);
   report_.bodies = bodies_;
   report_.joints = joints_;
 }
 
 void Simulator::Impl::reportWithoutStep() {
   startStep();
-  contact_reports_.clear();
   report_.raw_contacts = report_.reduced_contacts = 0;
-  report_.max_depth = report_.max_of_layer = 0;
-  report_.deepest_a = report_.deepest_b = -1;
   jointStates(&joints_);
   report();
 }
@@ -261,7 +268,7 @@ bool Simulator::Impl::bodiesAreFinite() const {
 const StepReport& Simulator::Impl::stop() {
   stopped_ = true;
   report_.status |= STATE_NOT_FINITE;
-  contact_reports_.clear();
+  part_reports_.clearContacts();
   jointStates(&joints_);
   report();
   return report_;

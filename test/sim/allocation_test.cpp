@@ -77,6 +77,18 @@ TEST(StepAllocation, NoneInAWarmStepOnUsedUpLayers) {
   EXPECT_EQ(simulator.report().contacts.size(), 8u);
 }
 
+TEST(StepAllocation, NoneInAWarmStepMadeInParts) {
+  SimulationConfig config = busyScene();
+  config.environments = {ground(20)};
+  config.environments[0].contact.friction = 0;
+  config.objects = {box("gliding", Vector3::Constant(0.1), 1, Vector3(-5, 3, 0.0525))};
+  config.objects[0].linear_velocity = {6, 0, 0};
+  Simulator simulator(config, UriResolver());
+  EXPECT_EQ(allocationsOfWarmSteps(&simulator), 0);
+  EXPECT_GT(simulator.report().substeps, 1);
+  EXPECT_EQ(simulator.report().contacts.size(), 4u);
+}
+
 }  // namespace
 }  // namespace blem_sim
 

@@ -133,6 +133,8 @@ class World {
   JointState jointState(int joint) const;
   /** Tells the joint which position its bodies' poses stand for, after setBodyState; keeps count of full turns. */
   void resetJointPosition(int joint, double position);
+  /** For steps that are made of several of the world's: JointState::effort of every joint [N m or N], until the next step. */
+  void setJointEfforts(const std::vector<double>& efforts);
 
   const Vector3& gravity() const;
   void setGravity(const Vector3& gravity);

@@ -41,15 +41,21 @@ struct StepProfile {
   std::array<double, static_cast<int>(Stage::COUNT)> seconds{};
 };
 
-/** A contact that acted, for publishing. */
+/**
+ * A contact that acted in a step, for publishing: at the start of the step, or of its parts. Contacts of one identity that acted in
+ * several parts are one: the point is the mean weighted with the impulses, the normal that of the largest impulse.
+ */
 struct ContactReport {
   int collider_a, collider_b;
   int body_a, body_b;
   Vector3 point, normal_BA;         ///< world
-  double depth = 0;                 ///< [m]
+  double depth = 0;                 ///< [m] largest in the step
   double of_layer = 0;              ///< depth / (rA + rB); above 1 a bare mesh is pierced; 0 without a layer
-  Vector3 force = Vector3::Zero();  ///< [N] on A, world
+  Vector3 force = Vector3::Zero();  ///< [N] on A, world; mean over the step: times StepReport::dt it is the impulse
   bool pierced = false;
+  /** [N m] world. The mean torque on A about the origin of its link (an object's frame), which moves on from part to part, is
+   *  (point - that origin at the start of the step) x force + moment_a; that on B likewise, of -force. 0 in a step of one part. */
+  Vector3 moment_a = Vector3::Zero(), moment_b = Vector3::Zero();
 };
 
 /** The contacts of two colliders left their boundary layers, or came back. */
@@ -63,7 +69,7 @@ struct LayerEventReport {
 };
 
 struct ForceTorqueReading {
-  Vector3 force, torque;  ///< in the frame and of the sign the sensor's configuration asks for
+  Vector3 force, torque;  ///< means over the step, in the frame, as it begins, and of the sign the sensor's configuration asks for
   std::string frame_id;   ///< link whose axes (and, for the torque, whose joint frame origin) they are in
 };
 struct ImuReading {
@@ -73,9 +79,10 @@ struct ImuReading {
   double accel_stddev, gyro_stddev;
 };
 struct ContactReading {
-  std::vector<int> contacts;  ///< indices into StepReport::contacts
+  std::vector<int> contacts;     ///< indices into StepReport::contacts
+  std::vector<Wrench> wrenches;  ///< of each, on the link, world axes, about the link's origin where it acted; means over the step
   int link_body = -1;
-  Wrench total;  ///< on the link, world axes, about the link's origin
+  Wrench total;  ///< their sum
 };
 struct TiltReading {
   Quaternion orientation;
@@ -84,7 +91,7 @@ struct TiltReading {
 };
 struct MotorCurrentReading {
   std::vector<std::string> joints;
-  std::vector<double> efforts, currents;  ///< [N m or N], [A]
+  std::vector<double> efforts, currents;  ///< [N m or N], [A] means over the step
 };
 /** A new sensor is one alternative; the visits in blem_sim_run and in ros do not compile until they know it. */
 using SensorReading = std::variant<ForceTorqueReading, ImuReading, ContactReading, TiltReading, MotorCurrentReading>;
@@ -117,10 +124,10 @@ struct StepReport {
   double solver_creep = 0;     ///< [rad/s or m/s] worst over the step: SolveResult::creep
   int solver_iterations = 0;   ///< over the step's solves
   StepProfile profile;
-  std::vector<ContactReport> contacts;         ///< of the last solve of the step
+  std::vector<ContactReport> contacts;         ///< that acted in any part of the step
   std::vector<LayerEventReport> layer_events;  ///< in order of time, then of colliders
   std::vector<BodyState> bodies;               ///< one per body slot
-  std::vector<JointState> joints;              ///< one per joint slot
+  std::vector<JointState> joints;              ///< one per joint slot; efforts are means over the step
   std::vector<SensorSample> samples;           ///< those whose time has come
 };
 
