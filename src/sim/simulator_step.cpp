@@ -249,6 +249,7 @@ void Simulator::Impl::reportWithoutStep() {
   report_.max_depth = report_.max_of_layer = 0;
   report_.deepest_a = report_.deepest_b = -1;
   jointStates(&joints_);
+  if (stopped_) report_.status |= STATE_NOT_FINITE;
   report();
 }
 
