@@ -31,17 +31,20 @@ void ReductionMemory::append(std::vector<std::uint64_t>* words) const {
   }
 }
 
-bool ReductionMemory::read(const std::uint64_t** cursor, const std::uint64_t* end) {
+void ReductionMemory::forget(int collider) { removePairsOf(collider, &choices_); }
+
+bool ReductionMemory::read(const std::vector<Collider>& colliders, const std::uint64_t** cursor, const std::uint64_t* end) {
   const auto left = [&] { return static_cast<std::uint64_t>(end - *cursor); };
   choices_.clear();
   if (left() < 1) return false;
   for (std::uint64_t pairs = *(*cursor)++; pairs > 0; --pairs) {
     if (left() < 3 || left() - 3 < (*cursor)[2]) return false;
     const std::uint64_t *ids = *cursor + 3, *ids_end = ids + (*cursor)[2];
+    if (!isPair(colliders, (*cursor)[0], (*cursor)[1]) || !std::is_sorted(ids, ids_end)) return false;
     choices_.push_back({static_cast<int>((*cursor)[0]), static_cast<int>((*cursor)[1]), ContactIds(ids, ids_end)});
     *cursor = ids_end;
   }
-  return true;
+  return areSorted(choices_);
 }
 
 }  // namespace blem_sim

@@ -48,6 +48,8 @@ class ArticulatedStepper : public Stepper {
   void step(Scene* scene, const StepInput& input, SolveResult* result) override;
   void save(const Scene& scene, StateWriter* writer) const override;
   void restore(const Scene& scene, StateReader* reader) override;
+  bool agreesWith(const Scene& scene) const override;
+  void forgetContacts(const std::vector<std::uint64_t>& ids) override { memory_.forgetContacts(ids); }
 
  private:
   void rebuild(const Scene& scene);
@@ -368,10 +370,19 @@ void ArticulatedStepper::restore(const Scene& scene, StateReader* reader) {
   rebuild(scene);
   memory_.restore(scene, reader);
   for (BodyBits& bits : written_) bits.numbers[0] = NAN;
-  for (std::uint64_t tree = reader->word(); tree != NO_MORE_TREES; tree = reader->word()) {
+  std::uint64_t least = 0;
+  for (std::uint64_t tree = reader->word(); tree != NO_MORE_TREES; tree = reader->word(), ++least) {
+    if (tree < least || tree >= forest_.trees().size()) StateReader::refuse();
+    least = tree;
     restoreTree(forest_, static_cast<int>(tree), &motion_, reader);
     noteWritten(scene, static_cast<int>(tree));
   }
+}
+
+bool ArticulatedStepper::agreesWith(const Scene& scene) const {
+  for (int tree = 0; tree < static_cast<int>(forest_.trees().size()); ++tree)
+    if (isOurs(scene, tree) && !standsAt(forest_, tree, motion_, scene)) return false;
+  return true;
 }
 
 }  // namespace

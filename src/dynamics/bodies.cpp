@@ -27,9 +27,12 @@ int Scene::addBody(const BodySpec& spec) {
   BodySlot slot;
   slot.spec = spec;
   createBody(&slot);
-  bodies_.push_back(slot);
+  if (free_bodies_.empty()) free_bodies_.insert(static_cast<int>(bodies_.size()));
+  const int body = *free_bodies_.begin();
+  free_bodies_.erase(free_bodies_.begin());
+  if (body == static_cast<int>(bodies_.size())) bodies_.emplace_back();
+  bodies_[body] = slot;
   ++structure_;
-  const int body = static_cast<int>(bodies_.size()) - 1;
   BodyState state;
   state.X_WB = spec.X_WB;
   setBodyState(body, state);

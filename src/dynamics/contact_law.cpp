@@ -68,6 +68,11 @@ void ContactMemory::replace(std::vector<ContactMemo> memos) {
   std::stable_sort(memos_.begin(), memos_.end(), [](const ContactMemo& a, const ContactMemo& b) { return a.id < b.id; });
 }
 
+void ContactMemory::forget(const std::vector<std::uint64_t>& ids) {
+  const auto is_gone = [&](const ContactMemo& memo) { return std::binary_search(ids.begin(), ids.end(), memo.id); };
+  memos_.erase(std::remove_if(memos_.begin(), memos_.end(), is_gone), memos_.end());
+}
+
 void addMemo(const ContactConstraint& contact, const ContactRows& rows, const Vector3& force, std::vector<ContactMemo>* memos) {
   const double push = contact.normal_BA.dot(force);
   if (push > 0) memos->push_back({contact.id, force - push * contact.normal_BA, rows.approach});

@@ -20,6 +20,8 @@ class ContactMemory {
  public:
   const ContactMemo* find(std::uint64_t id) const;
   void replace(std::vector<ContactMemo> memos);
+  /** @param ids ascending */
+  void forget(const std::vector<std::uint64_t>& ids);
   const std::vector<ContactMemo>& memos() const { return memos_; }
 
  private:

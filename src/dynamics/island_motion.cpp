@@ -324,4 +324,16 @@ void restoreTree(const Forest& forest, int tree, ForestMotion* motion, StateRead
   computeInertias(forest, tree, motion);
 }
 
+bool standsAt(const Forest& forest, int tree, const ForestMotion& motion, const Scene& scene) {
+  constexpr double ROUNDING = 1e-6;  // of turns, of a metre, and of the way from the origin
+  const ForestTree& t = forest.trees()[tree];
+  for (int i = t.first_node; i < t.node_end; ++i) {
+    const int body = forest.nodes()[i].body;
+    const Vector3 com = scene.com(body), way = motion.reference[tree] + motion.com[i] - com;
+    if (!((motion.rotation[i] - scene.rotation(body)).cwiseAbs().maxCoeff() <= ROUNDING)) return false;
+    if (!(way.norm() <= ROUNDING * (1 + com.norm()))) return false;
+  }
+  return true;
+}
+
 }  // namespace blem_sim

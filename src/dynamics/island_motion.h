@@ -44,5 +44,7 @@ void advanceIsland(const Forest& forest, const IslandProblem& problem, double dt
 
 void saveTree(const Forest& forest, int tree, const ForestMotion& motion, StateWriter* writer);
 void restoreTree(const Forest& forest, int tree, ForestMotion* motion, StateReader* reader);
+/** Do the bodies of the scene stand where the tree has them, but for rounding? */
+bool standsAt(const Forest& forest, int tree, const ForestMotion& motion, const Scene& scene);
 
 }  // namespace blem_sim

@@ -10,23 +10,32 @@ namespace {
 
 constexpr int MOTOR_ROWS = 3;  // implicit PD, viscous friction, dry friction
 
-void check(const JointSpec& spec, const Scene& scene, std::size_t joint_count) {
+void check(const JointSpec& spec, const Scene& scene) {
   const std::string where = "joint '" + spec.name + "': ";
   if (!scene.exists(spec.child)) throw InputError(where + "child body does not exist; add it first");
   if (spec.parent != WORLD_BODY && !scene.exists(spec.parent)) throw InputError(where + "parent body does not exist; add it first");
   if (spec.parent == spec.child) throw InputError(where + "parent and child are the same body; correct one of them");
   if (!spec.axis.allFinite() || !(spec.axis.norm() > 0)) throw InputError(where + "axis has no direction; give it a unit vector");
   if (spec.lower > spec.upper) throw InputError(where + "lower limit is above the upper one; exchange them");
-  if (spec.mimic_joint >= static_cast<int>(joint_count)) throw InputError(where + "mimic joint does not exist; add it first");
+  const bool has_master =
+      spec.mimic_joint < static_cast<int>(scene.joints().size()) && (spec.mimic_joint < 0 || scene.joints()[spec.mimic_joint].joint);
+  if (!has_master) throw InputError(where + "mimic joint does not exist; add it first");
 }
 
 }  // namespace
 
 int Scene::addJoint(const JointSpec& spec, double position) {
-  check(spec, *this, joints_.size());
+  check(spec, *this);
   checkJointNumbers(spec, position);
-  joints_.emplace_back();
-  JointSlot& slot = joints_.back();
+  const bool is_new = free_joints_.empty();
+  const int joint = is_new ? static_cast<int>(joints_.size()) : *free_joints_.begin();
+  if (is_new)
+    joints_.emplace_back();
+  else
+    free_joints_.erase(free_joints_.begin());
+  JointSlot& slot = joints_[joint];
+  slot = JointSlot();
+  slot.occupant = ++joints_added_;
   slot.spec = spec;
   slot.spec.axis.normalize();
   slot.child_assembled = bits(spec.child);
@@ -36,8 +45,12 @@ int Scene::addJoint(const JointSpec& spec, double position) {
   if (spec.parent != WORLD_BODY) slot.assembled_turn = slot.parent_assembled.turn().conjugate() * slot.assembled_turn;
   slot.parent_axis = spec.X_PJ.linear() * slot.spec.axis;
   createJoint(&slot);
-  placeInTree(static_cast<int>(joints_.size()) - 1);
-  return static_cast<int>(joints_.size()) - 1;
+  // Which joint closes a loop is decided in the order of slots, whatever the order they came in.
+  if (is_new)
+    placeInTree(joint);
+  else
+    findTrees();
+  return joint;
 }
 
 void Scene::createJoint(JointSlot* slot) {

@@ -102,9 +102,10 @@ void MimicCoupling::save(StateWriter* writer) const {
   writer->numbers(inverse_.data(), inverse_.size());
 }
 
-void MimicCoupling::restore(StateReader* reader) {
-  f_.resize(reader->word());
-  const std::uint64_t rows = reader->word();
+void MimicCoupling::restore(std::size_t joints, StateReader* reader) {
+  const std::uint64_t relations = reader->word(), rows = reader->word();
+  if (relations > joints || (rows != 0 && rows != relations)) StateReader::refuse();
+  f_.resize(relations);
   inverse_.resize(rows, rows);
   reader->numbers(f_.data(), f_.size());
   reader->numbers(inverse_.data(), inverse_.size());

@@ -26,7 +26,8 @@ class MimicCoupling {
   const std::vector<double>& efforts() const { return efforts_; }
 
   void save(StateWriter* writer) const;
-  void restore(StateReader* reader);
+  /** @param joints of the scene: a state has no more relations */
+  void restore(std::size_t joints, StateReader* reader);
 
  private:
   struct Relation {

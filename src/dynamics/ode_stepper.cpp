@@ -79,11 +79,12 @@ class OdeStepper : public Stepper {
     solver_->save(writer);
     mimics_.save(writer);
   }
-  void restore(const Scene&, StateReader* reader) override {
+  void restore(const Scene& scene, StateReader* reader) override {
     restoreMemory(&memory_, reader);
     solver_->restore(reader);
-    mimics_.restore(reader);
+    mimics_.restore(scene.joints().size(), reader);
   }
+  void forgetContacts(const std::vector<std::uint64_t>& ids) override { memory_.forget(ids); }
 
  private:
   // A failed complementarity problem leaves its forces at 0: the step is done again, softer.

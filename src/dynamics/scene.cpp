@@ -50,16 +50,28 @@ void Scene::setGravity(const Vector3& gravity) {
 }
 
 void Scene::removeBody(int body) {
-  for (JointSlot& slot : joints_) {
-    if (!slot.joint || (slot.spec.child != body && slot.spec.parent != body)) continue;
-    dJointDestroy(slot.joint);
-    if (slot.motor) dJointDestroy(slot.motor);
-    slot.joint = slot.motor = nullptr;
-  }
+  for (int j = 0; j < static_cast<int>(joints_.size()); ++j)
+    if (joints_[j].joint && (joints_[j].spec.child == body || joints_[j].spec.parent == body)) removeJoint(j);
   dBodyDestroy(bodies_[body].ode);
   bodies_[body].ode = nullptr;
   bodies_[body].pending = Wrench();
+  free_bodies_.insert(body);
   findTrees();
+}
+
+// What is left of it in its slot ties nothing: other bodies and joints may come to have the indices that it names.
+void Scene::removeJoint(int joint) {
+  JointSlot& slot = joints_[joint];
+  dJointDestroy(slot.joint);
+  if (slot.motor) dJointDestroy(slot.motor);
+  slot.joint = slot.motor = nullptr;
+  slot.occupant = 0;
+  slot.spec.parent = WORLD_BODY;
+  slot.spec.mimic_joint = -1;
+  slot.last_position = slot.last_effort = 0;
+  for (JointSlot& other : joints_)
+    if (other.spec.mimic_joint == joint) other.spec.mimic_joint = -1;
+  free_joints_.insert(joint);
 }
 
 void Scene::rebuild(const std::vector<BodyBits>& state) {

@@ -3,7 +3,9 @@
 
 #include <ode/ode.h>
 
+#include <cstdint>
 #include <deque>
+#include <set>
 #include <vector>
 
 #include "blem_sim/dynamics/world.h"
@@ -51,9 +53,10 @@ struct JointSlot {
   double last_position = 0;                              ///< q at the end of the last step: which turn it is
   double last_effort = 0;                                ///< along the axis in the last step
   bool in_tree = true;                                   ///< false: closes a loop
+  std::uint64_t occupant = 0;                            ///< a number that no other joint of the scene ever has; 0 once removed
 };
 
-/** Bodies and joints. Indices are slots; removed ones stay empty. */
+/** Bodies and joints. Indices are slots; what is added takes the lowest that is empty. */
 class Scene {
  public:
   Scene(const Vector3& gravity, const SolverSettings& settings);
@@ -115,6 +118,7 @@ class Scene {
   void createBody(BodySlot* slot);
   void createJoint(JointSlot* slot);
   void createMotor(JointSlot* slot, dBodyID child, dBodyID parent, const Vector3& axis);
+  void removeJoint(int joint);
   void placeInTree(int joint);
   void findTrees();
   void orderJoints() const;
@@ -127,6 +131,8 @@ class Scene {
   dJointGroupID contact_group_ = nullptr;
   std::vector<BodySlot> bodies_;
   std::deque<JointSlot> joints_;  ///< a deque, as ODE holds pointers to the feedbacks
+  std::set<int> free_bodies_, free_joints_;
+  std::uint64_t joints_added_ = 0;
   std::vector<int> tree_parent_;  ///< per body: what its joint of a tree hangs it on, WORLD_BODY too
   std::vector<char> has_parent_;  ///< per body: it has such a joint
   // Caches of what the joints tell, made when somebody asks.

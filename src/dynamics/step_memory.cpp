@@ -22,7 +22,23 @@ void StepMemory::index() {
   for (std::size_t b = 0; b < buckets; ++b) first_[b + 1] += first_[b];
 }
 
-void StepMemory::resize(const Scene& scene) { joints.resize(scene.joints().size()); }
+bool StepMemory::knows(const Scene& scene, std::size_t joint) const {
+  return joint < joints.size() && occupants_[joint] == scene.joints()[joint].occupant;
+}
+
+void StepMemory::resize(const Scene& scene) {
+  for (std::size_t j = 0; j < joints.size(); ++j)
+    if (!knows(scene, j)) joints[j] = JointRecord();
+  joints.resize(scene.joints().size());
+  occupants_.clear();
+  for (const JointSlot& slot : scene.joints()) occupants_.push_back(slot.occupant);
+}
+
+void StepMemory::forgetContacts(const std::vector<std::uint64_t>& ids) {
+  const auto is_gone = [&](const ContactRecord& c) { return std::binary_search(ids.begin(), ids.end(), c.id); };
+  contacts.erase(std::remove_if(contacts.begin(), contacts.end(), is_gone), contacts.end());
+  index();
+}
 
 void StepMemory::save(const Scene& scene, StateWriter* writer) const {
   writer->word(contacts.size());
@@ -33,19 +49,21 @@ void StepMemory::save(const Scene& scene, StateWriter* writer) const {
   }
   // A joint that was added since the last step has nothing to remember.
   for (std::size_t j = 0; j < scene.joints().size(); ++j) {
-    const JointRecord record = j < joints.size() ? joints[j] : JointRecord();
+    const JointRecord record = knows(scene, j) ? joints[j] : JointRecord();
     for (const double x : {record.dry, record.lower, record.upper, record.dry_change}) writer->number(x);
     if (!scene.joints()[j].in_tree) writer->numbers(record.loop.data(), 6);
   }
 }
 
 void StepMemory::restore(const Scene& scene, StateReader* reader) {
-  contacts.resize(reader->word());
+  contacts.resize(reader->count(1, 4));
   for (ContactRecord& c : contacts) {
     c.id = reader->word();
     c.force = reader->vector();
     c.slip = reader->number();
   }
+  const auto follows = [](const ContactRecord& a, const ContactRecord& b) { return b.id < a.id; };
+  if (std::adjacent_find(contacts.begin(), contacts.end(), follows) != contacts.end()) StateReader::refuse();
   index();
   resize(scene);
   for (std::size_t j = 0; j < joints.size(); ++j) {

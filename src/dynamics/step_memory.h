@@ -30,13 +30,19 @@ struct StepMemory {
   /** Null if there was no such contact in the last step. */
   const ContactRecord* find(std::uint64_t id) const;
   void index();
+  /** A record per joint slot; that of a slot with another joint than before is empty. */
   void resize(const Scene& scene);
+  /** @param ids ascending */
+  void forgetContacts(const std::vector<std::uint64_t>& ids);
   void save(const Scene& scene, StateWriter* writer) const;
   void restore(const Scene& scene, StateReader* reader);
 
  private:
-  int shift_ = 63;          // bits of an id below those that choose its bucket
-  std::vector<int> first_;  // per bucket, as many as there are records or up to four times so: its first record
+  bool knows(const Scene& scene, std::size_t joint) const;
+
+  std::vector<std::uint64_t> occupants_;  // JointSlot::occupant that a record is of
+  int shift_ = 63;                        // bits of an id below those that choose its bucket
+  std::vector<int> first_;                // per bucket, as many as there are records or up to four times so: its first record
 };
 
 }  // namespace blem_sim

@@ -1,6 +1,7 @@
 // A stepper solves one step: given bodies, joints, contacts and drives, it moves the bodies. All steppers stand in one table.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -30,6 +31,10 @@ class Stepper {
   virtual void save(const Scene& scene, StateWriter* writer) const = 0;
   /** The scene is already restored. */
   virtual void restore(const Scene& scene, StateReader* reader) = 0;
+  /** After a restore: does what it remembers of bodies go with where they are? */
+  virtual bool agreesWith(const Scene&) const { return true; }
+  /** What it remembers of contacts with these ids is gone. @param ids ascending */
+  virtual void forgetContacts(const std::vector<std::uint64_t>& ids) = 0;
 };
 
 struct StepperRow {

@@ -1,5 +1,6 @@
 #include "blem_sim/dynamics/world.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 
@@ -8,6 +9,7 @@
 #include "scene.h"
 #include "stepper.h"
 #include "world_state.h"
+#include "world_state_check.h"
 
 namespace blem_sim {
 namespace {
@@ -174,6 +176,23 @@ void World::save(WorldState* state) const {
   StateWriter writer(state);
   saveScene(impl_->scene, &writer);
   impl_->stepper->save(impl_->scene, &writer);
+}
+
+void World::forgetContacts(std::vector<std::uint64_t> ids) {
+  std::sort(ids.begin(), ids.end());
+  impl_->stepper->forgetContacts(ids);
+}
+
+void World::restoreChecked(const WorldState& state) {
+  checkNumbers(impl_->scene, state);
+  const WorldState before = save();
+  try {
+    restore(state);
+    if (!impl_->stepper->agreesWith(impl_->scene)) StateReader::refuse();
+  } catch (...) {
+    restore(before);
+    throw;
+  }
 }
 
 void World::restore(const WorldState& state) {

@@ -9,10 +9,6 @@
 namespace blem_sim {
 namespace {
 
-[[noreturn]] void refuse() {
-  throw InputError("world state: it was not saved from a world with these bodies and joints; load it into the scene it came from");
-}
-
 std::uint64_t liveBodies(const Scene& scene) {
   return std::count_if(scene.bodies().begin(), scene.bodies().end(), [](const BodySlot& b) { return b.ode != nullptr; });
 }
@@ -22,6 +18,10 @@ std::uint64_t liveJoints(const Scene& scene) {
 }
 
 }  // namespace
+
+void StateReader::refuse() {
+  throw InputError("world state: it was not saved from a world with these bodies and joints; load it into the scene it came from");
+}
 
 double StateReader::number() {
   if (next_number_ >= state_.numbers.size()) refuse();
@@ -43,6 +43,13 @@ Vector3 StateReader::vector() {
 std::uint64_t StateReader::word() {
   if (next_word_ >= state_.words.size()) refuse();
   return state_.words[next_word_++];
+}
+
+std::size_t StateReader::count(std::size_t words_each, std::size_t numbers_each) {
+  const std::uint64_t items = word();
+  if (words_each > 0 && items > (state_.words.size() - next_word_) / words_each) refuse();
+  if (numbers_each > 0 && items > (state_.numbers.size() - next_number_) / numbers_each) refuse();
+  return static_cast<std::size_t>(items);
 }
 
 void StateReader::finish() const {
@@ -68,8 +75,8 @@ void saveScene(const Scene& scene, StateWriter* writer) {
 }
 
 void restoreScene(Scene* scene, StateReader* reader) {
-  if (reader->word() != liveBodies(*scene)) refuse();
-  if (reader->word() != liveJoints(*scene)) refuse();
+  if (reader->word() != liveBodies(*scene)) StateReader::refuse();
+  if (reader->word() != liveJoints(*scene)) StateReader::refuse();
   scene->setGravity(reader->vector());
   for (std::size_t b = 0; b < scene->bodies().size(); ++b) {
     BodySlot& slot = scene->bodies()[b];
@@ -97,14 +104,11 @@ void saveMemory(const ContactMemory& memory, StateWriter* writer) {
 }
 
 void restoreMemory(ContactMemory* memory, StateReader* reader) {
-  const std::uint64_t count = reader->word();
-  std::vector<ContactMemo> memos;
-  for (std::uint64_t i = 0; i < count; ++i) {
-    ContactMemo memo;
+  std::vector<ContactMemo> memos(reader->count(1, 4));
+  for (ContactMemo& memo : memos) {
     memo.id = reader->word();
     memo.friction = reader->vector();
     memo.approach = reader->number();
-    memos.push_back(memo);
   }
   memory->replace(std::move(memos));
 }

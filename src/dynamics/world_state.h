@@ -17,7 +17,7 @@ class StateWriter {
   WorldState* state_;
 };
 
-/** Reads in the order of writing; throws InputError where the state ends too early. */
+/** Reads in the order of writing; throws InputError where the state ends too early or cannot be of this world. */
 class StateReader {
  public:
   explicit StateReader(const WorldState& state) : state_(state) {}
@@ -25,6 +25,10 @@ class StateReader {
   void numbers(double* x, std::size_t count);
   Vector3 vector();
   std::uint64_t word();
+  /** A word that counts items of so many words and numbers each; refused if the rest of the state cannot hold them. */
+  std::size_t count(std::size_t words_each, std::size_t numbers_each);
+  /** Refuses the state: it is not of this world. */
+  [[noreturn]] static void refuse();
   /** Throws InputError unless everything was read. */
   void finish() const;
 

@@ -17,6 +17,7 @@ class DiagnosticsPublisher : public StepPublisher {
   void publish(const StepReport& report) override { collector_.add(report); }
   void timeRestarted() override;
   void resumed() override { collector_.resume(); }
+  void geometryChanged() override { collector_.forgetColliders(); }
   /** To be called often; publishes when a second has passed. */
   void serve(bool paused);
 

@@ -38,7 +38,7 @@ LinkMotion modelMotion(const Simulator& simulator, const StepReport& report, int
     return linkMotion(simulator, report, *robot, robot->description->root);
   }
   if (info.kind == ModelKind::OBJECT) return bodyMotion(simulator, report, info.bodies.front());
-  // Robots and colliders come in the order of their models; an environment has one collider.
+  // Robots and colliders come in the order of their models; an environment has one collider, and both its slots are the lowest free ones.
   LinkMotion environment;
   const auto collider = std::partition_point(simulator.colliders().begin(), simulator.colliders().end(),
                                              [model](const Collider& other) { return other.model < model; });

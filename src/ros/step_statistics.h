@@ -32,6 +32,8 @@ class StepStatisticsCollector {
   void add(const StepReport& report);
   /** Wall time that has passed since the last step does not count. */
   void resume() { last_ = Clock::now(); }
+  /** Colliders may be others now: the deepest contact so far has none. */
+  void forgetColliders() { statistics_.deepest_a = statistics_.deepest_b = -1; }
   /** What was collected; starts anew. */
   StepStatistics take();
 

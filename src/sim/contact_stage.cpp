@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "blem_sim/contact/collider_pairs.h"
 #include "blem_sim/contact/narrow_phase.h"
@@ -59,9 +60,9 @@ std::uint64_t mixed(std::uint64_t x) {  // splitmix64's finalizer [Steele 2014]
   return x ^ (x >> 31);
 }
 
-/** Identity of a contact among those of all pairs. */
-std::uint64_t contactId(const ContactManifold& manifold, const Contact& contact) {
-  return mixed(contact.id + mixed((static_cast<std::uint64_t>(manifold.a) << 32) + static_cast<std::uint64_t>(manifold.b) + 1));
+/** Identity of a contact of a pair among those of all pairs. */
+std::uint64_t contactId(int a, int b, std::uint64_t id) {
+  return mixed(id + mixed((static_cast<std::uint64_t>(a) << 32) + static_cast<std::uint64_t>(b) + 1));
 }
 
 /** Rigid, without friction. */
@@ -72,8 +73,14 @@ ContactConstraint constraintOf(const SimulatedWorld& world, const ContactManifol
   constraint.point = contact.point;
   constraint.normal_BA = contact.normal_BA;
   constraint.depth = contact.depth;
-  constraint.id = contactId(manifold, contact);
+  constraint.id = contactId(manifold.a, manifold.b, contact.id);
   return constraint;
+}
+
+bool isRigid(const Pose& X) {
+  constexpr double ROUNDING = 1e-6;
+  return (X.linear() * X.linear().transpose() - Matrix3::Identity()).cwiseAbs().maxCoeff() <= ROUNDING &&
+         X.matrix().row(3) == Eigen::RowVector4d(0, 0, 0, 1);
 }
 
 /** [kg] of all that moves with the collider. */
@@ -232,17 +239,39 @@ void ContactStage::appendRecoveries(std::vector<double>* numbers, std::vector<st
   }
 }
 
-bool ContactStage::readRecoveries(const std::uint64_t** words, const std::uint64_t* words_end, NumberReader* reader) {
+bool ContactStage::readRecoveries(const std::vector<Collider>& colliders, const std::uint64_t** words, const std::uint64_t* words_end,
+                                  NumberReader* reader, std::vector<Recovery>* recoveries) {
   if (*words == words_end) return false;
   const std::uint64_t count = *(*words)++;
   if (static_cast<std::uint64_t>(words_end - *words) / WORDS < count) return false;
-  forgetRecoveries();
   for (std::uint64_t i = 0; i < count; ++i, *words += WORDS) {
+    if (!isPair(colliders, (*words)[0], (*words)[1]) || (*words)[2] > 1) return false;
     Recovery recovery{static_cast<int>((*words)[0]), static_cast<int>((*words)[1]), (*words)[2] != 0, Pose()};
     reader->numbers(recovery.X_AB.matrix().data(), NUMBERS);
-    current_search_.recoveries.push_back(recovery);
+    if (!isRigid(recovery.X_AB)) return false;
+    recoveries->push_back(recovery);
   }
-  return true;
+  return areSorted(*recoveries);
+}
+
+std::vector<std::uint64_t> ContactStage::forgetCollider(int collider) {
+  std::vector<std::uint64_t> ids;
+  for (const ReductionMemory* memory : {&std::as_const(memory_), &stops_.memory()}) {
+    for (const ReductionMemory::Choice& choice : memory->choices()) {
+      if (choice.a != collider && choice.b != collider) continue;
+      for (const std::uint64_t id : choice.ids) {
+        const std::uint64_t known_as = contactId(choice.a, choice.b, id);
+        ids.push_back(memory == &memory_ ? known_as : stopId(known_as));
+      }
+    }
+  }
+  memory_.forget(collider);
+  stops_.forget(collider);
+  searches_.forget(collider);
+  removePairsOf(collider, &current_search_.recoveries);
+  arms_.clear();
+  known_ = false;
+  return ids;
 }
 
 int ContactStage::rawContacts() const { return countContacts(current_); }

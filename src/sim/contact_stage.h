@@ -81,11 +81,20 @@ class ContactStage {
    * than the layer is used up.
    */
   const std::vector<Recovery>& recoveries() const { return current_search_.recoveries; }
-  void forgetRecoveries() { current_search_.recoveries.clear(); }
+  void setRecoveries(std::vector<Recovery> recoveries) { current_search_.recoveries = std::move(recoveries); }
+  /**
+   * Forgets all that is remembered of a collider whose slot another one may take.
+   * @return ids of its contacts in the last step, as the world knows them, and others that it does not know
+   */
+  std::vector<std::uint64_t> forgetCollider(int collider);
   /** recoveries() as numbers and words, for save: the last numbers of a state. */
   void appendRecoveries(std::vector<double>* numbers, std::vector<std::uint64_t>* words) const;
-  /** Reads what appendRecoveries wrote and moves the cursor behind its words. @return false if they are not whole */
-  bool readRecoveries(const std::uint64_t** words, const std::uint64_t* words_end, NumberReader* reader);
+  /**
+   * Reads what appendRecoveries wrote and moves the cursor behind its words.
+   * @param colliders whose pairs they may be @return false if they are others, or not whole
+   */
+  static bool readRecoveries(const std::vector<Collider>& colliders, const std::uint64_t** words, const std::uint64_t* words_end,
+                             NumberReader* reader, std::vector<Recovery>* recoveries);
   int rawContacts() const;
   int reducedContacts() const;  ///< without stops
   /**

@@ -174,11 +174,14 @@ void EnergyBalance::append(std::vector<double>* numbers) const {
   if (any) numbers->insert(numbers->end(), held_.begin(), held_.end());
 }
 
-void EnergyBalance::read(NumberReader* reader) {
+void EnergyBalance::read(int bodies, NumberReader* reader) {
   const double count = reader->number();
-  if (!(count >= 0) || count > static_cast<double>(reader->left())) NumberReader::refuse();
+  if (count != 0 && count != bodies) NumberReader::refuse();
+  reader->require(static_cast<std::size_t>(count));
   held_.assign(static_cast<std::size_t>(count), 0);
   reader->numbers(held_.data(), held_.size());
+  if (std::any_of(held_.begin(), held_.end(), [](double held) { return held < 0; }))
+    NumberReader::refuseContent("energy is held back that is below 0");
 }
 
 }  // namespace blem_sim

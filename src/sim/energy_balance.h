@@ -50,7 +50,8 @@ class EnergyBalance {
   /** No impact is to bounce. */
   void clear() { held_.assign(held_.size(), 0); }
   void append(std::vector<double>* numbers) const;
-  void read(NumberReader* reader);
+  /** @param bodies of the world: of so many it holds back, or of none */
+  void read(int bodies, NumberReader* reader);
 
  private:
   /** Of an island, at its least body. */

@@ -93,7 +93,7 @@ void JointMotor::append(std::vector<double>* numbers) const {
 }
 
 void JointMotor::read(NumberReader* reader) {
-  velocity_only_ = reader->number() != 0;
+  velocity_only_ = reader->flag();
   velocity_target_ = reader->number();
   added_effort_ = reader->number();
   integral_ = reader->number();

@@ -129,8 +129,11 @@ void JointSpline::read(NumberReader* reader) {
   for (Knot& knot : knots_) {
     double numbers[NUMBERS];
     reader->numbers(numbers, NUMBERS);
+    if (numbers[5] != 1 && numbers[5] != 3 && numbers[5] != 5) NumberReader::refuseContent("a knot's order is none of 1, 3 and 5");
     knot = {numbers[0], numbers[1], numbers[2], numbers[3], numbers[4], static_cast<int>(numbers[5])};
   }
+  const auto earlier = [](const Knot& a, const Knot& b) { return a.time < b.time; };
+  if (!std::is_sorted(knots_.begin(), knots_.end(), earlier)) NumberReader::refuseContent("the times of a spline go back");
 }
 
 }  // namespace blem_sim

@@ -30,14 +30,19 @@ void LayerStops::clear() {
   any_ = false;
 }
 
+void LayerStops::forget(int collider) {
+  memory_.forget(collider);
+  any_ = !memory_.choices().empty();
+}
+
 void LayerStops::append(std::vector<std::uint64_t>* words) const {
   if (any_) memory_.append(words);
 }
 
-bool LayerStops::read(const std::uint64_t* words, const std::uint64_t* end) {
+bool LayerStops::read(const std::vector<Collider>& colliders, const std::uint64_t* words, const std::uint64_t* end) {
   clear();
   if (words == end) return true;
-  any_ = memory_.read(&words, end);
+  any_ = memory_.read(colliders, &words, end) && !memory_.choices().empty();
   return any_ && words == end;
 }
 

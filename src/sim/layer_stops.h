@@ -28,10 +28,14 @@ class LayerStops {
   void remember();
 
   void clear();
+  /** Forgets the pairs of a collider whose slot another one may take. */
+  void forget(int collider);
+  /** What was chosen in the last reduction, by pairs. */
+  const ReductionMemory& memory() const { return memory_; }
   /** What was chosen as words, for save: none if there are no stops. */
   void append(std::vector<std::uint64_t>* words) const;
-  /** Reads what append wrote, up to the end. @return false if it is something else */
-  bool read(const std::uint64_t* words, const std::uint64_t* end);
+  /** Reads what append wrote, up to the end. @param colliders whose pairs they may be @return false if it is something else */
+  bool read(const std::vector<Collider>& colliders, const std::uint64_t* words, const std::uint64_t* end);
 
  private:
   ReductionMemory memory_;

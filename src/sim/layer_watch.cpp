@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "blem_sim/contact/collider_pairs.h"
+
 namespace blem_sim {
 namespace {
 
@@ -56,13 +58,23 @@ void LayerWatch::append(std::vector<std::uint64_t>* words) const {
   }
 }
 
-bool LayerWatch::read(const std::uint64_t** words, const std::uint64_t* end) {
+void LayerWatch::forget(int collider) {
+  const auto has_it = [&](const std::pair<int, int>& pair) { return pair.first == collider || pair.second == collider; };
+  outside_.erase(std::remove_if(outside_.begin(), outside_.end(), has_it), outside_.end());
+}
+
+bool LayerWatch::read(const std::vector<Collider>& colliders, const std::uint64_t** words, const std::uint64_t* end) {
   const std::uint64_t* cursor = *words;
   if (cursor == end) return false;
   const std::uint64_t count = *cursor++;
   if (static_cast<std::uint64_t>(end - cursor) / 2 < count) return false;
-  outside_.clear();
-  for (std::uint64_t i = 0; i < count; ++i, cursor += 2) outside_.emplace_back(static_cast<int>(cursor[0]), static_cast<int>(cursor[1]));
+  std::vector<std::pair<int, int>> outside;
+  for (std::uint64_t i = 0; i < count; ++i, cursor += 2) {
+    if (!isPair(colliders, cursor[0], cursor[1])) return false;
+    outside.emplace_back(static_cast<int>(cursor[0]), static_cast<int>(cursor[1]));
+    if (i > 0 && outside[i] <= outside[i - 1]) return false;
+  }
+  outside_ = std::move(outside);
   *words = cursor;
   return true;
 }

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "blem_sim/contact/collider.h"
 #include "blem_sim/contact/manifold.h"
 #include "blem_sim/sim/step_report.h"
 
@@ -17,9 +18,14 @@ class LayerWatch {
   void look(const std::vector<ContactManifold>& manifolds, double time, std::vector<LayerEventReport>* events);
   /** Nobody is outside. */
   void clear() { outside_.clear(); }
+  /** Forgets the pairs of a collider whose slot another one may take; no event tells it. */
+  void forget(int collider);
   void append(std::vector<std::uint64_t>* words) const;
-  /** Reads what append wrote and moves the cursor behind it; false, and nothing changed, if the words end too early. */
-  bool read(const std::uint64_t** words, const std::uint64_t* end);
+  /**
+   * Reads what append wrote and moves the cursor behind it.
+   * @param colliders whose pairs they may be @return false, and nothing changed, if the words are others or end too early
+   */
+  bool read(const std::vector<Collider>& colliders, const std::uint64_t** words, const std::uint64_t* end);
 
  private:
   std::vector<std::pair<int, int>> outside_;       // sorted

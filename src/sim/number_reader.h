@@ -2,27 +2,37 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "blem_sim/geometry/input_error.h"
 
 namespace blem_sim {
 
-/** Reads in the order of writing; throws InputError where the numbers end too early. */
+/** Reads in the order of writing; throws InputError where the numbers end too early, are not finite, or cannot be. */
 class NumberReader {
  public:
   explicit NumberReader(const std::vector<double>& numbers) : next_(numbers.data()), end_(next_ + numbers.size()) {}
 
   std::size_t left() const { return static_cast<std::size_t>(end_ - next_); }
   double number() {
-    require(1);
-    return *next_++;
+    double number;
+    numbers(&number, 1);
+    return number;
   }
   void numbers(double* out, std::size_t count) {
     require(count);
-    std::copy_n(next_, count, out);
-    next_ += count;
+    for (const double* end = next_ + count; next_ != end; ++next_, ++out) {
+      if (!std::isfinite(*next_)) refuseContent("a number is not finite");
+      *out = *next_;
+    }
+  }
+  bool flag() {
+    const double number = this->number();
+    if (number != 0 && number != 1) refuseContent("a flag is neither 0 nor 1");
+    return number != 0;
   }
   /** Throws unless so many are left. */
   void require(std::size_t count) const {
@@ -33,6 +43,10 @@ class NumberReader {
     if (left() > 0) refuse();
   }
   [[noreturn]] static void refuse() { throw InputError("restore: the state is cut short, or not of these models; save it again"); }
+  /** @param what is wrong with it */
+  [[noreturn]] static void refuseContent(const char* what) {
+    throw InputError(std::string("restore: the state's content cannot be, ") + what + "; save it again");
+  }
 
  private:
   const double *next_, *end_;

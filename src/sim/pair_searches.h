@@ -6,6 +6,7 @@
 #include <functional>
 #include <vector>
 
+#include "blem_sim/contact/collider_pairs.h"
 #include "blem_sim/contact/narrow_phase.h"
 
 namespace blem_sim {
@@ -19,6 +20,8 @@ class PairSearches {
 
   /** Calls search(i, memory of pairs[i]) for all, in any order and at once. @param pairs sorted by (a, b) */
   void run(const std::vector<WatchedPair>& pairs, const std::function<void(std::size_t, NarrowPhaseMemory*)>& search);
+  /** Forgets the pairs of a collider whose slot another one may take. */
+  void forget(int collider) { removePairsOf(collider, &known_); }
 
  private:
   struct Known {

@@ -7,6 +7,21 @@
 #include "blem_sim/geometry/input_error.h"
 
 namespace blem_sim {
+namespace {
+
+/** The lowest free slot, else a new one at the end. */
+template <typename Item>
+int takeSlot(std::set<int>* free, std::vector<Item>* items) {
+  if (free->empty()) {
+    items->emplace_back();
+    return static_cast<int>(items->size()) - 1;
+  }
+  const int slot = *free->begin();
+  free->erase(free->begin());
+  return slot;
+}
+
+}  // namespace
 
 void SimulatedWorld::checkNewName(const std::string& name, const std::string& section) const {
   if (name.empty()) throw InputError(fmt::format("{}: an entry has no name; give it one", section));
@@ -18,26 +33,47 @@ int SimulatedWorld::addModel(const std::string& name, ModelKind kind, int max_co
   ModelInfo model;
   model.name = name;
   model.kind = kind;
-  models.push_back(model);
-  budgets.push_back({max_contacts});
-  const int index = static_cast<int>(models.size()) - 1;
+  const int index = takeSlot(&free_models_, &models);
+  budgets.resize(models.size());
+  models[index] = model;
+  budgets[index] = {max_contacts};
   model_named_[name] = index;
   return index;
 }
 
-void SimulatedWorld::addCollider(Collider collider, double width, const SurfaceProperties& surface, MeshReport report) {
+int SimulatedWorld::addCollider(Collider collider, double width, const SurfaceProperties& surface, MeshReport report) {
   collider.radius = width;
   collider.surface = surface;
   report.name = collider.name;
   report.boundary_width = width;
   report.bytes = collider.geometry->bytes();
   load_report.push_back(std::move(report));
-  colliders.push_back(std::move(collider));
+  const int index = takeSlot(&free_colliders_, &colliders);
+  colliders[index] = std::move(collider);
+  return index;
+}
+
+std::vector<int> SimulatedWorld::removeEnvironment(const std::string& name) {
+  const int model = modelIndex(name);
+  models[model].alive = false;
+  model_named_.erase(name);
+  free_models_.insert(model);
+  std::vector<int> removed;
+  for (std::size_t i = 0; i < colliders.size(); ++i) {
+    if (!colliders[i].enabled || colliders[i].model != model) continue;
+    colliders[i].enabled = false;
+    colliders[i].geometry.reset();
+    free_colliders_.insert(static_cast<int>(i));
+    removed.push_back(static_cast<int>(i));
+  }
+  const auto is_its = [&](const MeshReport& report) { return report.name == name; };
+  load_report.erase(std::remove_if(load_report.begin(), load_report.end(), is_its), load_report.end());
+  return removed;
 }
 
 int SimulatedWorld::modelIndex(const std::string& name) const {
   const auto known = model_named_.find(name);
-  return known != model_named_.end() && models[known->second].alive ? known->second : -1;
+  return known != model_named_.end() ? known->second : -1;
 }
 
 Pose SimulatedWorld::linkPose(const RobotInfo& robot, int link) const {

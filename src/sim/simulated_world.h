@@ -31,10 +31,12 @@ struct SimulatedWorld {
 
   /** @throws InputError if the name is empty or taken. @param section of the configuration, for the message */
   void checkNewName(const std::string& name, const std::string& section) const;
-  /** @param max_contacts its k @return its index */
+  /** What is added takes the lowest slot that is free. @param max_contacts its k @return its index */
   int addModel(const std::string& name, ModelKind kind, int max_contacts);
-  /** Adds a collider and its line in the load report. @param width [m] of the layer */
-  void addCollider(Collider collider, double width, const SurfaceProperties& surface, MeshReport report);
+  /** Adds a collider and its line in the load report. @param width [m] of the layer @return its index */
+  int addCollider(Collider collider, double width, const SurfaceProperties& surface, MeshReport report);
+  /** Precondition: there is such an environment. Its slots are free. @return those of its colliders */
+  std::vector<int> removeEnvironment(const std::string& name);
 
   int modelIndex(const std::string& name) const;  ///< among the living; -1 if there is none
   /** Pose of a link in the world now. */
@@ -47,7 +49,8 @@ struct SimulatedWorld {
   void bodyStates(std::vector<BodyState>* out) const;
 
  private:
-  std::map<std::string, int> model_named_;  ///< the last one that was added of each name
+  std::map<std::string, int> model_named_;  ///< the living
+  std::set<int> free_models_, free_colliders_;
 };
 
 }  // namespace blem_sim

@@ -50,17 +50,19 @@ void Simulator::Impl::unloadEnvironment(const std::string& name) {
   for (const ModelInfo& model : world_.models)
     if (model.alive && model.kind == ModelKind::ENVIRONMENT) environments.push_back(model.name);
   requireName(name, environments, "unload_environment", "environment");
-  const int index = world_.modelIndex(name);
-  world_.models[index].alive = false;
-  for (Collider& collider : world_.colliders) {
-    if (collider.model != index) continue;
-    collider.enabled = false;
-    collider.geometry.reset();
+  for (const int collider : world_.removeEnvironment(name)) {
+    layer_watch_.forget(collider);
+    world_.world.forgetContacts(contacts_.forgetCollider(collider));
   }
-  std::vector<MeshReport>& reports = world_.load_report;
-  reports.erase(std::remove_if(reports.begin(), reports.end(), [&](const MeshReport& report) { return report.name == name; }),
-                reports.end());
+  layout_.clear();
+  reportWithoutStep();
+}
+
+void Simulator::Impl::loadEnvironment(const EnvironmentConfig& environment) {
+  checkEnvironment(environment);
+  builder_.addEnvironment(environment, &world_);
   contacts_.forget();
+  layout_.clear();
 }
 
 Simulator::Simulator(const SimulationConfig& config, const UriResolver& resolver, LoadLog log)
@@ -91,12 +93,7 @@ void Simulator::commandTrajectory(int robot, const JointTrajectory& trajectory) 
 void Simulator::commandJoints(int robot, const JointCommandMessage& command) { impl_->commandJoints(robot, command); }
 JointSample Simulator::desiredState(int robot, int joint) const { return impl_->desiredState(robots().at(robot).joints.at(joint)); }
 
-void Simulator::loadEnvironment(const EnvironmentConfig& environment) {
-  checkEnvironment(environment);
-  impl_->builder_.addEnvironment(environment, &impl_->world_);
-  impl_->contacts_.forget();
-}
-
+void Simulator::loadEnvironment(const EnvironmentConfig& environment) { impl_->loadEnvironment(environment); }
 void Simulator::unloadEnvironment(const std::string& name) { impl_->unloadEnvironment(name); }
 
 }  // namespace blem_sim

@@ -53,14 +53,17 @@ struct Simulator::Impl {
   JointSample desiredState(int world_joint) const;
 
   // simulator_state.cpp
-  std::string layout() const;
+  /** What the next save writes, without a header. */
+  SimulationState content() const;
   SimulationState save() const;
   /** A state that is refused changes nothing. */
   void restore(const SimulationState& state);
-  void read(const SimulationState& state);
+  /** Made when somebody asks; models come and go seldom. */
+  const std::string& layout() const;
   void resetWorld();
   void seedSensors();
 
+  void loadEnvironment(const EnvironmentConfig& environment);
   void unloadEnvironment(const std::string& name);
 
   double time() const { return static_cast<double>(step_count_) * config_.time_step; }
@@ -78,6 +81,7 @@ struct Simulator::Impl {
   std::vector<std::uint64_t> sensor_periods_;  ///< [steps]
   std::vector<SensorReading> spare_readings_;  ///< [sensors] whose memory the next reading uses
   WorldState initial_state_;
+  mutable std::string layout_;  ///< empty: not known
 
   std::uint64_t step_count_ = 0;
   bool stopped_ = false;  ///< the state is not finite any more

@@ -1,9 +1,11 @@
 // Save, restore, reset, hash.
 #include <cstring>
+#include <utility>
 
-#include "blem_sim/geometry/input_error.h"
 #include "number_reader.h"
 #include "simulator_impl.h"
+#include "state_header.h"
+#include "state_layout.h"
 
 namespace blem_sim {
 namespace {
@@ -37,22 +39,73 @@ class Fnv1a {  // 64 bits [Fowler, Noll, Vo]
   std::uint64_t hash_ = 0xcbf29ce484222325u;
 };
 
-}  // namespace
-
-// Colliders are in it by their slots, as contacts are known by them.
-std::string Simulator::Impl::layout() const {
-  std::string layout;
-  for (const ModelInfo& model : world_.models)
-    if (model.alive) layout += model.name + ";";
-  for (int body = 0; body < world_.world.bodyCount(); ++body) layout += world_.world.bodySpec(body).name + ";";
-  for (int joint = 0; joint < world_.world.jointCount(); ++joint) layout += world_.world.jointSpec(joint).name + ";";
-  for (std::size_t i = 0; i < world_.colliders.size(); ++i)
-    if (world_.colliders[i].enabled) layout += std::to_string(i) + world_.colliders[i].name + ";";
-  for (const SensorInfo& sensor : world_.sensors) layout += sensor.config.name + ";";
-  return layout;
+// The names of a state's layout, in the order of its content. Colliders are in it by their slots, as contacts are known by them.
+std::string namesOf(const SimulatedWorld& world) {
+  std::string names;
+  for (const ModelInfo& model : world.models)
+    if (model.alive) names += model.name + ";";
+  for (int body = 0; body < world.world.bodyCount(); ++body) names += world.world.bodySpec(body).name + ";";
+  for (int joint = 0; joint < world.world.jointCount(); ++joint) names += world.world.jointSpec(joint).name + ";";
+  for (std::size_t i = 0; i < world.colliders.size(); ++i)
+    if (world.colliders[i].enabled) names += std::to_string(i) + world.colliders[i].name + ";";
+  for (const SensorInfo& sensor : world.sensors) names += sensor.config.name + ";";
+  return names;
 }
 
-SimulationState Simulator::Impl::save() const {
+/** All of a state but the world's, read and found sound, and not in force yet. */
+struct StateParts {
+  EnergyBalance energy_balance;
+  std::vector<JointMotor> motors;
+  std::vector<std::vector<double>> sensors;  // numbers of each
+  ReductionMemory choices;
+  LayerWatch layer_watch;
+  std::vector<Recovery> recoveries;
+  LayerStops stops;
+};
+
+/** The next numbers of the state, as many as the sensor has. */
+std::vector<double> numbersOf(const Sensor& sensor, NumberReader* reader) {
+  std::vector<double> numbers;
+  sensor.append(&numbers);
+  reader->numbers(numbers.data(), numbers.size());
+  return numbers;
+}
+
+/** Words of a state: whether the simulation has stopped, then of each sensor its random numbers, then those of contacts. */
+std::size_t contactWords(std::size_t sensors) { return 1 + sensors; }
+
+void readContacts(const SimulationState& state, const std::vector<Collider>& colliders, std::size_t first, NumberReader* reader,
+                  StateParts* parts) {
+  const std::uint64_t *words = state.words.data() + first, *end = state.words.data() + state.words.size();
+  if (!parts->choices.read(colliders, &words, end) || !parts->layer_watch.read(colliders, &words, end) ||
+      !ContactStage::readRecoveries(colliders, &words, end, reader, &parts->recoveries) || !parts->stops.read(colliders, words, end))
+    NumberReader::refuseContent("memories of contacts are of no pairs of these colliders");
+}
+
+/** @param parts as they are now, overwritten @throws InputError */
+void readParts(const SimulationState& state, const SimulatedWorld& world, const std::vector<std::unique_ptr<Sensor>>& sensors,
+               StateParts* parts) {
+  constexpr std::uint64_t MOST_STEPS = std::uint64_t{1} << 53;  // whose times are all different
+  if (state.step > MOST_STEPS) NumberReader::refuseContent("there are more steps than time can count");
+  const std::size_t contacts = contactWords(sensors.size());
+  if (state.words.size() < contacts) NumberReader::refuse();
+  if (state.words[0] > 1) NumberReader::refuseContent("a flag is neither 0 nor 1");
+  NumberReader reader(state.numbers);
+  parts->energy_balance.read(world.world.bodyCount(), &reader);
+  for (JointMotor& motor : parts->motors) motor.read(&reader);
+  for (const auto& sensor : sensors) parts->sensors.push_back(numbersOf(*sensor, &reader));
+  readContacts(state, world.colliders, contacts, &reader, parts);
+  reader.finish();
+}
+
+}  // namespace
+
+const std::string& Simulator::Impl::layout() const {
+  if (layout_.empty()) layout_ = layoutOf(config_, world_);
+  return layout_;
+}
+
+SimulationState Simulator::Impl::content() const {
   SimulationState state;
   state.step = step_count_;
   state.world = world_.world.save();
@@ -67,39 +120,38 @@ SimulationState Simulator::Impl::save() const {
   layer_watch_.append(&state.words);
   contacts_.appendRecoveries(&state.numbers, &state.words);
   contacts_.stops().append(&state.words);
+  return state;
+}
+
+SimulationState Simulator::Impl::save() const {
+  SimulationState state = content();
   state.layout = layout();
+  state.header = headerOf(state);
   return state;
 }
 
 void Simulator::Impl::restore(const SimulationState& state) {
-  if (state.layout != layout())
-    throw InputError("restore: the state belongs to other models; restore it where the same models, joints and environments are loaded");
-  const SimulationState before = save();
-  try {
-    read(state);
-  } catch (const InputError&) {
-    read(before);
-    throw;
-  }
-  contacts_.forget();
-  reportWithoutStep();
-}
-
-void Simulator::Impl::read(const SimulationState& state) {
-  world_.world.restore(state.world);
-  NumberReader reader(state.numbers);
-  energy_balance_.read(&reader);
-  for (JointMotor& motor : world_.motors) motor.read(&reader);
-  for (const auto& sensor : sensors_) sensor->restore(&reader);
-  if (state.words.size() < 1 + sensors_.size()) NumberReader::refuse();
-  for (std::size_t i = 0; i < sensors_.size(); ++i) sensors_[i]->random().setState(state.words[i + 1]);
-  const std::uint64_t *words = state.words.data() + sensors_.size() + 1, *words_end = state.words.data() + state.words.size();
-  if (!contacts_.memory().read(&words, words_end) || !layer_watch_.read(&words, words_end) ||
-      !contacts_.readRecoveries(&words, words_end, &reader) || !contacts_.stops().read(words, words_end))
-    NumberReader::refuse();
-  reader.finish();
+  checkHeader(state);
+  checkLayout(state.layout, layout());
+  StateParts parts{energy_balance_, world_.motors, {}, {}, {}, {}, {}};
+  readParts(state, world_, sensors_, &parts);
+  world_.world.restoreChecked(state.world);
+  // Nothing below throws.
   step_count_ = state.step;
   stopped_ = state.words[0] != 0;
+  energy_balance_ = std::move(parts.energy_balance);
+  world_.motors = std::move(parts.motors);
+  for (std::size_t i = 0; i < sensors_.size(); ++i) {
+    NumberReader reader(parts.sensors[i]);
+    sensors_[i]->restore(&reader);
+    sensors_[i]->random().setState(state.words[1 + i]);
+  }
+  contacts_.memory() = std::move(parts.choices);
+  contacts_.stops() = std::move(parts.stops);
+  contacts_.setRecoveries(std::move(parts.recoveries));
+  layer_watch_ = std::move(parts.layer_watch);
+  contacts_.forget();
+  reportWithoutStep();
 }
 
 void Simulator::Impl::resetWorld() {
@@ -109,7 +161,7 @@ void Simulator::Impl::resetWorld() {
   stopped_ = false;
   contacts_.memory().clear();
   contacts_.stops().clear();
-  contacts_.forgetRecoveries();
+  contacts_.setRecoveries({});
   layer_watch_.clear();
   energy_balance_.clear();
   contacts_.forget();
@@ -132,14 +184,14 @@ void Simulator::resetSimulation() {
 }
 
 std::uint64_t Simulator::stateHash() const {
-  const SimulationState state = impl_->save();
+  const SimulationState state = impl_->content();
   Fnv1a hash;
   hash.add(state.step);
   hash.add(state.world.numbers);
   hash.add(state.world.words);
   hash.add(state.numbers);
   hash.add(state.words);
-  hash.add(state.layout);
+  hash.add(namesOf(impl_->world_));
   return hash.value();
 }
 

@@ -256,6 +256,7 @@ void Simulator::Impl::reportWithoutStep() {
   startStep();
   report_.raw_contacts = report_.reduced_contacts = 0;
   jointStates(&joints_);
+  if (stopped_) report_.status |= STATE_NOT_FINITE;
   report();
 }
 

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+
 #include "blem_sim/geometry/mesh_shrinking.h"
 
 namespace blem_sim {
@@ -19,11 +22,30 @@ std::string wordsFor(const MeshShrinking& what, double r) {
   return what.excess > SAME || what.shortfall > SAME ? words : words + "; outer dimensions stay";
 }
 
+/** What nobody holds any more is forgotten once it is half of all, so that the cost per surface stays the same. */
+template <typename Map, typename Expired>
+void forgetExpired(Map* known, std::size_t* enough, const Expired& expired) {
+  constexpr std::size_t LEAST = 16;
+  if (known->size() < std::max(LEAST, *enough)) return;
+  for (auto it = known->begin(); it != known->end();) it = expired(it->second) ? known->erase(it) : std::next(it);
+  *enough = 2 * known->size();
+}
+
 }  // namespace
+
+std::size_t SurfaceLibrary::remembered() const { return files_.size() + meshes_.size() + shrunk_.size(); }
+
+void SurfaceLibrary::forgetWhatIsGone() {
+  const auto gone = [](const auto& entry) { return entry.geometry.expired(); };
+  forgetExpired(&files_, &enough_files_, gone);
+  forgetExpired(&shrunk_, &enough_shrunk_, gone);
+  forgetExpired(&meshes_, &enough_meshes_, [](const std::weak_ptr<const CollisionGeometry>& held) { return held.expired(); });
+}
 
 SharedSurface SurfaceLibrary::load(const std::string& file, const Vector3& scale, const CloudOptions& cloud, const LoadProgress& progress) {
   const std::string key = fmt::format("{}|{} {} {}|{} {} {}", file, scale.x(), scale.y(), scale.z(), static_cast<int>(cloud.as),
                                       cloud.point_radius, cloud.max_edge);
+  forgetWhatIsGone();
   Entry& entry = files_[key];
   if (const auto held = entry.geometry.lock()) return {held, entry.radius, entry.report};
   const LoadedSurface surface = loadSurface(file, scale, cloud, mending_, progress);

@@ -1,6 +1,7 @@
 // Surfaces that several models share: a mesh that 18 mugs use is read once and has one tree.
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <memory>
 #include <string>
@@ -35,7 +36,12 @@ class SurfaceLibrary {
   std::shared_ptr<const CollisionGeometry> fitted(const std::shared_ptr<const CollisionGeometry>& geometry, const ContactSettings& settings,
                                                   double own_radius, MeshReport* report);
 
+  /** How many surfaces it knows, those that nobody holds any more included: at most twice as many as are held, or 48. */
+  std::size_t remembered() const;
+
  private:
+  void forgetWhatIsGone();
+
   struct Shrunk {
     std::weak_ptr<const CollisionGeometry> original, geometry;
     std::string note;
@@ -49,6 +55,7 @@ class SurfaceLibrary {
   std::map<std::string, Entry> files_;
   std::map<std::pair<const CollisionGeometry*, double>, Shrunk> shrunk_;
   std::map<const TriangleMesh*, std::weak_ptr<const CollisionGeometry>> meshes_;  ///< a mesh lives as long as its geometry
+  std::size_t enough_files_ = 0, enough_shrunk_ = 0, enough_meshes_ = 0;          ///< to look for what is gone
 };
 
 }  // namespace blem_sim

@@ -43,13 +43,13 @@ bool floorInertia(double radius, MassProperties* properties) {
 
 std::string words(const Vector3& v) { return fmt::format("[{:.4g}, {:.4g}, {:.4g}]", v.x(), v.y(), v.z()); }
 
-/** How large the colliders from `first` on are, the last ones that the load report has; what several of them share counts once. */
-std::string sizeOf(const SimulatedWorld& world, std::size_t first) {
+/** How large these colliders are, the last ones that the load report has; what several of them share counts once. */
+std::string sizeOf(const SimulatedWorld& world, std::size_t first, std::size_t end) {
   constexpr double MEGA = 1e6;
-  const MeshReport* report = world.load_report.data() + world.load_report.size() - (world.colliders.size() - first);
+  const MeshReport* report = world.load_report.data() + world.load_report.size() - (end - first);
   std::set<const CollisionGeometry*> counted;
   std::size_t triangles = 0, points = 0, bytes = 0;
-  for (std::size_t i = first; i < world.colliders.size(); ++i, ++report) {
+  for (std::size_t i = first; i < end; ++i, ++report) {
     if (!counted.insert(world.colliders[i].geometry.get()).second) continue;
     triangles += static_cast<std::size_t>(report->triangles);
     points += static_cast<std::size_t>(report->points);
@@ -105,12 +105,13 @@ void WorldBuilder::addEnvironment(const EnvironmentConfig& config, SimulatedWorl
   const ContactSettings settings = contactSettings(0, contact_, {&config.contact});
   Collider collider;
   collider.name = config.name;
-  collider.model = world->addModel(config.name, ModelKind::ENVIRONMENT, INT_MAX);
   collider.X_BC = config.X_WE;
   if (settings.shrink) watch.enter("shrinking", 1 - TREE_FRACTION);
   collider.geometry = surfaces_.fitted(surface.geometry, settings, surface.radius, &surface.report);
-  world->addCollider(collider, surface.radius > 0 ? surface.radius : settings.boundary_width, settings.surface, surface.report);
-  watch.loaded(sizeOf(*world, world->colliders.size() - 1));
+  collider.model = world->addModel(config.name, ModelKind::ENVIRONMENT, INT_MAX);
+  const double width = surface.radius > 0 ? surface.radius : settings.boundary_width;
+  const int slot = world->addCollider(collider, width, settings.surface, surface.report);
+  watch.loaded(sizeOf(*world, slot, slot + 1));
 }
 
 std::shared_ptr<const RobotModel> WorldBuilder::description(const RobotConfig& config, LoadWatch* watch) {
@@ -138,7 +139,7 @@ void WorldBuilder::addRobot(const RobotConfig& config, SimulatedWorld* world) {
   RobotBuilder builder(config, contact_, description(config, &watch));
   watch.enter("topology and trees of its links", 1 - TREE_FRACTION);
   builder.addTo(world, &surfaces_);
-  watch.loaded(sizeOf(*world, first));
+  watch.loaded(sizeOf(*world, first, world->colliders.size()));
 }
 
 void WorldBuilder::addObject(const ObjectConfig& config, SimulatedWorld* world) {
@@ -151,7 +152,7 @@ void WorldBuilder::addObject(const ObjectConfig& config, SimulatedWorld* world) 
     addMeshObject(config, &watch, world);
   else
     addUrdfObject(config, &watch, world);
-  watch.loaded(sizeOf(*world, first));
+  watch.loaded(sizeOf(*world, first, world->colliders.size()));
 }
 
 void WorldBuilder::addMeshObject(const ObjectConfig& config, LoadWatch* watch, SimulatedWorld* world) {

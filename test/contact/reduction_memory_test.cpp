@@ -80,12 +80,13 @@ TEST(ReductionMemory, IsSavedAndReadBack) {
   std::vector<std::uint64_t> words = {42};
   memory.append(&words);
   const std::uint64_t* cursor = words.data() + 1;
-  ASSERT_TRUE(copy.read(&cursor, words.data() + words.size()));
+  const std::vector<Collider> colliders(10);
+  ASSERT_TRUE(copy.read(colliders, &cursor, words.data() + words.size()));
   EXPECT_EQ(cursor, words.data() + words.size());
   EXPECT_EQ(copy.of(rim(random, 0)), ids);
   words.pop_back();
   cursor = words.data() + 1;
-  EXPECT_FALSE(copy.read(&cursor, words.data() + words.size()));
+  EXPECT_FALSE(copy.read(colliders, &cursor, words.data() + words.size()));
 }
 
 }  // namespace

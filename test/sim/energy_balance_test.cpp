@@ -101,11 +101,11 @@ TEST(EnergyBalance, ReadsWhatItWrote) {
   EXPECT_EQ(numbers, std::vector<double>{0});
   for (const std::vector<double>& bad : {std::vector<double>{}, {2, 1}, {-1}, {NAN}, {1e300}}) {
     NumberReader reader(bad);
-    EXPECT_THROW(balance.read(&reader), InputError);
+    EXPECT_THROW(balance.read(2, &reader), InputError);
   }
   const std::vector<double> held = {2, 0.5, 0};
   NumberReader reader(held);
-  balance.read(&reader);
+  balance.read(2, &reader);
   numbers.clear();
   balance.append(&numbers);
   EXPECT_EQ(numbers, held);

@@ -130,14 +130,15 @@ TEST(LayerStops, GoOnWithWhatTheyChoseEvenIfRestored) {
   EXPECT_EQ(first.size(), static_cast<std::size_t>(LayerStops::MOST));
   const std::vector<std::uint64_t> words = wordsOf(stops);
   ASSERT_FALSE(words.empty());
-  ASSERT_TRUE(restored.read(words.data(), words.data() + words.size()));
+  const std::vector<Collider> colliders(10);
+  ASSERT_TRUE(restored.read(colliders, words.data(), words.data() + words.size()));
   EXPECT_EQ(wordsOf(restored), words);
   ContactManifold trembled = ringOf(40, STOP);
   for (int i = 0; i < 40; i += 3) trembled.contacts[i].point *= 1 + 5e-3;
   EXPECT_EQ(choose(&stops, trembled), first);
   EXPECT_EQ(choose(&restored, trembled), first);
   EXPECT_NE(choose(&other, trembled), first);
-  EXPECT_FALSE(restored.read(words.data(), words.data() + words.size() - 1));
+  EXPECT_FALSE(restored.read(colliders, words.data(), words.data() + words.size() - 1));
 }
 
 TEST(LayerStops, FrictionBelongsToAllThatIsBorne) {

@@ -58,13 +58,14 @@ TEST(LayerWatch, ReadsWhatItWroteAndNothingLess) {
   std::vector<std::uint64_t> words;
   watch.append(&words);
   LayerWatch other;
+  const std::vector<Collider> colliders(10);
   for (std::size_t size = 0; size < words.size(); ++size) {
     const std::uint64_t* cursor = words.data();
-    EXPECT_FALSE(other.read(&cursor, words.data() + size)) << size;
+    EXPECT_FALSE(other.read(colliders, &cursor, words.data() + size)) << size;
     EXPECT_EQ(cursor, words.data());
   }
   const std::uint64_t* cursor = words.data();
-  EXPECT_TRUE(other.read(&cursor, words.data() + words.size()));
+  EXPECT_TRUE(other.read(colliders, &cursor, words.data() + words.size()));
   EXPECT_EQ(cursor, words.data() + words.size());
   EXPECT_EQ(lookAt(&other, {}, 1).size(), 2u);
 }

@@ -71,7 +71,7 @@ struct Collider {
   std::shared_ptr<const CollisionGeometry> geometry;
   double radius = 0;  ///< [m] r, boundary width
   SurfaceProperties surface;
-  bool enabled = true;  ///< false: an unloaded slot, never collides
+  bool enabled = true;  ///< false: an unloaded slot, never collides; the next environment takes it
 };
 
 }  // namespace blem_sim

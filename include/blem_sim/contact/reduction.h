@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "blem_sim/contact/collider.h"
 #include "blem_sim/contact/manifold.h"
 
 namespace blem_sim {
@@ -54,17 +55,21 @@ class ReductionMemory {
   const ContactIds& of(const ContactManifold& manifold) const;
   void remember(const std::vector<ContactManifold>& manifolds);
   void clear() { choices_.clear(); }
+  /** Forgets the pairs of a collider whose slot another one may take. */
+  void forget(int collider);
   /** State as words, for save and restore. */
   void append(std::vector<std::uint64_t>* words) const;
-  /** @return false if the words up to `end` are none that append wrote */
-  bool read(const std::uint64_t** cursor, const std::uint64_t* end);
+  /** @param colliders whose pairs they may be @return false if the words up to `end` are none that append wrote */
+  bool read(const std::vector<Collider>& colliders, const std::uint64_t** cursor, const std::uint64_t* end);
 
- private:
   struct Choice {
     int a, b;
     ContactIds ids;
   };
-  std::vector<Choice> choices_;  // sorted by (a, b)
+  const std::vector<Choice>& choices() const { return choices_; }  ///< sorted by (a, b)
+
+ private:
+  std::vector<Choice> choices_;
 };
 
 /**

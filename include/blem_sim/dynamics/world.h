@@ -108,7 +108,7 @@ struct WorldState {
 
 /**
  * Bodies and joints in an ODE world. Deterministic: same calls, same bits. Not thread safe.
- * Indices returned by add functions stay valid until the thing is removed; a removed index is not given out again.
+ * Indices returned by add functions stay valid until the thing is removed; what is added next gets the lowest free index.
  */
 class World {
  public:
@@ -120,8 +120,10 @@ class World {
   int addBody(const BodySpec& spec);
   /** Precondition: parents' poses are consistent with X_PJ at the position given. @param position present q [rad or m] */
   int addJoint(const JointSpec& spec, double position = 0);
-  /** Takes a body and its joints out of the world. */
+  /** Takes a body and its joints out of the world; joints that mimic one of these are free then. */
   void removeBody(int body);
+  /** Contacts with these ids (ContactConstraint::id) are strangers in the next step. */
+  void forgetContacts(std::vector<std::uint64_t> ids);
 
   int bodyCount() const;  ///< slots, removed ones included
   int jointCount() const;
@@ -153,6 +155,12 @@ class World {
   void save(WorldState* state) const;
   /** Precondition: state was saved from a world with the same bodies and joints. */
   void restore(const WorldState& state);
+  /**
+   * The same for a state that comes from outside.
+   * @throws InputError in one line, nothing being changed: it is of other bodies or joints, is cut short, counts what it cannot hold, or
+   * its numbers cannot be those of bodies
+   */
+  void restoreChecked(const WorldState& state);
 
  private:
   struct Impl;

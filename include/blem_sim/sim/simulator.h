@@ -22,7 +22,7 @@ struct ModelInfo {
   ModelKind kind = ModelKind::OBJECT;
   std::vector<int> bodies;  ///< world bodies; [0] holds the root link
   std::vector<int> joints;  ///< world joints, movable ones, in the robot's order
-  bool alive = true;        ///< false once unloaded
+  bool alive = true;        ///< false: unloaded, and its slot is free
 };
 
 /** A robot as publishers and commands see it. */
@@ -59,13 +59,22 @@ struct LoadLog {
   double interval = 1;                                ///< [s] between lines; what takes less than that is not told
 };
 
+/** What a saved state says of itself; restore holds it against the content. */
+struct StateHeader {
+  std::uint64_t format = 0;    ///< a mark, and the version of what follows
+  std::uint64_t layout = 0;    ///< hash of SimulationState::layout
+  std::uint64_t length = 0;    ///< of the content, in words of 64 bits
+  std::uint64_t checksum = 0;  ///< of layout and content
+};
+
 /** Everything a simulation needs to replay bit for bit: world, motors, trajectories, sensors, random generators, contact memory. */
 struct SimulationState {
+  StateHeader header;
   std::uint64_t step = 0;
   WorldState world;
   std::vector<double> numbers;
   std::vector<std::uint64_t> words;
-  std::string layout;  ///< which models and joints it belongs to
+  std::string layout;  ///< what it belongs to: settings, models, bodies, joints, colliders, sensors; each with a hash of what it holds
 };
 
 /**
@@ -107,9 +116,14 @@ class Simulator {
   void commandJoints(int robot, const JointCommandMessage& command);
   JointSample desiredState(int robot, int joint) const;  ///< what the motor is told now; joint = index into joint_names
 
-  /** Adds static geometry between steps. @throws InputError if it cannot be loaded or the name is taken */
+  /** Adds static geometry between steps, in the lowest slots that are free. @throws InputError if it cannot be loaded or the name is taken
+   */
   void loadEnvironment(const EnvironmentConfig& environment);
-  /** @throws InputError if there is no such environment */
+  /**
+   * Takes it out with all that is remembered of its contacts. Its slots (indices of model and collider) are free for the next environment,
+   * so report() holds no contacts until the next step, and no layer event tells that its pairs are gone.
+   * @throws InputError if there is no such environment
+   */
   void unloadEnvironment(const std::string& name);
 
   /** Models back to where they started, at rest (objects at their configured velocity), commands and sensors cleared; time goes on. */
@@ -118,7 +132,11 @@ class Simulator {
   void resetSimulation();
 
   SimulationState save() const;
-  /** @throws InputError if the state belongs to other models */
+  /**
+   * Goes on from a saved state with the same bits.
+   * @throws InputError in one line, nothing being changed: the state is another version's, was changed or cut short after it was saved,
+   * belongs to other models or settings (it says which body's mass, joint's gains, collider's mesh), or holds what no simulation saves
+   */
   void restore(const SimulationState& state);
   /** 64-bit hash of all state that steps depend on. */
   std::uint64_t stateHash() const;

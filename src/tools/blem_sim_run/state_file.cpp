@@ -13,7 +13,7 @@ namespace blem_sim {
 namespace {
 
 // Little-endian 64-bit words throughout, so that a state goes from one machine to another.
-const char MAGIC[] = "blem_sim state 1\n";
+const char MAGIC[] = "blem_sim state 2\n";
 
 void putWord(std::ostream& stream, std::uint64_t word) {
   char bytes[8];
@@ -85,6 +85,8 @@ class StateReader {
 void saveState(const SimulationState& state, const std::string& file) {
   std::ofstream stream(file, std::ios::binary);
   stream.write(MAGIC, sizeof MAGIC - 1);
+  for (const std::uint64_t word : {state.header.format, state.header.layout, state.header.length, state.header.checksum})
+    putWord(stream, word);
   putWord(stream, state.layout.size());
   stream << state.layout;
   putWord(stream, state.step);
@@ -103,9 +105,12 @@ SimulationState loadState(const std::string& file) {
   buffer << stream.rdbuf();
   const std::string bytes = buffer.str();
   StateReader reader(bytes, file);
-  if (bytes.compare(0, sizeof MAGIC - 1, MAGIC) != 0) throw InputError(fmt::format("{}: is not a state that --save-state wrote", file));
+  if (bytes.compare(0, sizeof MAGIC - 1, MAGIC) != 0)
+    throw InputError(fmt::format("{}: is not a state that --save-state of this version wrote; save it again", file));
   reader.text(sizeof MAGIC - 1);
   SimulationState state;
+  for (std::uint64_t* word : {&state.header.format, &state.header.layout, &state.header.length, &state.header.checksum})
+    *word = reader.word();
   state.layout = reader.text(reader.word());
   state.step = reader.word();
   state.world.numbers = reader.numbers();

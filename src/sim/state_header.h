@@ -1,0 +1,14 @@
+// What a saved state says of itself.
+#pragma once
+
+#include "blem_sim/sim/simulator.h"
+
+namespace blem_sim {
+
+/** The header that goes with a content. */
+StateHeader headerOf(const SimulationState& state);
+
+/** @throws InputError in one line: another version's, cut short, or changed since it was saved */
+void checkHeader(const SimulationState& state);
+
+}  // namespace blem_sim
