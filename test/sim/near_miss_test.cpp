@@ -140,6 +140,30 @@ TEST(NearMiss, DescendingPastTheFarEdgeChangesNothing) {
       }
 }
 
+/** Over a narrow ridge on a falling path: gravity is all that there is. Steps that are made in parts fall less. */
+TEST(NearMiss, OnAFallingPathOnlyGravityActs) {
+  EnvironmentConfig ridge;
+  ridge.name = "ridge";
+  ridge.uri = meshFile("ridge", gridMesh(0.001, 0.6, 1, 1));
+  for (const double clearance : {1e-5, 1e-4, 5e-4})
+    for (const double speed : {1.0, 3.0, 10.0, 30.0})
+      for (const double dt : {0.001, 0.005}) {
+        SimulationConfig config;
+        config.time_step = dt;
+        config.environments = {ridge};
+        const double start = -0.08 - 0.37 * speed * dt, gone = (0.0506 - start) / speed;  // its last edge is above the ridge's then
+        const double steps = std::ceil(gone / dt), fallen = 0.5 * G * dt * dt * steps * (steps + 1);
+        config.objects = {flying("cube", {boxMesh(Vector3::Constant(0.1))}, {start, 0, 0.05 + LAYER + clearance + fallen}, speed)};
+        Simulator simulator(config, UriResolver());
+        for (int i = 1; i <= steps; ++i) {
+          simulator.step();
+          const Vector3 expected(speed, 0, -G * dt * i);
+          ASSERT_LT((bodyOf(simulator, "cube").v_WCom - expected).norm(), 1e-6 * speed)
+              << 1000 * clearance << " mm, " << speed << " m/s, dt " << dt << ", step " << i << " of " << steps;
+        }
+      }
+}
+
 /** A ball of 50 mm, a point with a layer. */
 ObjectConfig pointBall(const std::string& name, const Vector3& position, const Vector3& velocity) {
   ObjectConfig ball;
