@@ -25,6 +25,12 @@ inline std::uint64_t contactId(const Feature& a, const Feature& b) {
   return pack(a) << 32 | pack(b);
 }
 
+/** Its feature of A, or of B. */
+inline Feature featureOf(std::uint64_t id, bool of_a) {
+  const std::uint64_t packed = id >> (of_a ? 32 : 0) & 0xFFFFFFFF;
+  return {static_cast<FeatureKind>(packed >> 30), static_cast<int>(packed & ((1u << 30) - 1))};
+}
+
 /** One mesh of a pair. */
 struct MeshSide {
   explicit MeshSide(const CollisionGeometry& geometry)

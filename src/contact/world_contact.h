@@ -15,6 +15,11 @@ inline Vector3 placeOf(const ContactRoles& roles, const Vector3& p, const Vector
   return 0.5 * (p + q) + 0.5 * (roles.r_b - roles.r_a) * normal;
 }
 
+/** Point of A's bare mesh, or of B's, of radius r [m], at a contact. */
+inline Vector3 witnessOf(const Contact& contact, double radius, bool of_a) {
+  return contact.point + (of_a ? 1 : -1) * (radius - 0.5 * contact.depth) * contact.normal_BA;
+}
+
 /** In the frame of the points. @param normal from second to first */
 inline Contact contactOf(const ContactRoles& roles, const Feature& first, const Feature& second, const Vector3& point_first,
                          const Vector3& point_second, const Vector3& normal, double gap) {

@@ -198,6 +198,7 @@ void ContactStage::narrowPhase(const SimulatedWorld& world) {
   if (found_.size() < pairs) found_.resize(pairs);
   search_.recoveries.clear();
   for (const WatchedPair& pair : search_.pairs) search_.recoveries.push_back(lastApart(pair.a, pair.b));
+  search_.flush.watch(world.colliders, search_.pairs);
   searches_.run(search_.pairs, [&](std::size_t i, NarrowPhaseMemory* memory) {
     const WatchedPair& pair = search_.pairs[i];
     const Recovery& last = search_.recoveries[i];
@@ -205,6 +206,7 @@ void ContactStage::narrowPhase(const SimulatedWorld& world) {
                           pair.known, &found_[i], last.known ? &last.X_AB : nullptr, memory);
     found_[i].a = pair.a;
     found_[i].b = pair.b;
+    search_.flush.dropCovered(world.colliders, search_.motion, &found_[i]);
   });
   keepWhatWasFound(pairs);
 }
@@ -307,7 +309,10 @@ void ContactStage::addStops(const SimulatedWorld& world, const ContactManifold& 
   }
 }
 
-void ContactStage::reduction(const SimulatedWorld& world) {
+void ContactStage::reduction(const SimulatedWorld& world, const std::vector<BodyState>& bodies, double dt) {
+  meetings_.look(world, bodies, *this, current_search_.flush, dt);
+  meetings_.exchange(&current_);
+  for (ContactManifold& manifold : reduced_) manifold.contacts.clear();  // one that has none any more keeps none
   model_a_.clear();
   model_b_.clear();
   for (const ContactManifold& manifold : current_) {
@@ -329,6 +334,7 @@ void ContactStage::reduction(const SimulatedWorld& world) {
   budget_used_up_ = false;
   for (std::size_t model = 0; model < contacts_of_model_.size(); ++model)
     budget_used_up_ = budget_used_up_ || (left_out > 0 && contacts_of_model_[model] >= world.budgets[model].max_contacts);
+  meetings_.exchange(&current_);
 }
 
 }  // namespace blem_sim

@@ -8,6 +8,8 @@
 #include "blem_sim/contact/manifold.h"
 #include "blem_sim/contact/reduction.h"
 #include "blem_sim/dynamics/world.h"
+#include "contact_meetings.h"
+#include "flush_surfaces.h"
 #include "layer_stops.h"
 #include "number_reader.h"
 #include "pair_searches.h"
@@ -66,8 +68,12 @@ class ContactStage {
   LayerStops& stops() { return stops_; }
   const LayerStops& stops() const { return stops_; }
   bool known() const { return known_; }
-  /** At most k contacts per model out of current(), as constraints, and the stops below soft ones. */
-  void reduction(const SimulatedWorld& world);
+  /**
+   * At most k contacts per model out of current(), as constraints, and the stops below soft ones. Those before touch are the ones that will
+   * be met (ContactMeetings).
+   * @param bodies states at hand, by slot @param dt [s] of the solve
+   */
+  void reduction(const SimulatedWorld& world, const std::vector<BodyState>& bodies, double dt);
 
   const std::vector<ContactManifold>& found() const { return found_; }      ///< sorted by (a, b), none empty
   const std::vector<ContactManifold>& current() const { return current_; }  ///< of the accepted state, before reduction
@@ -111,6 +117,7 @@ class ContactStage {
     std::vector<WatchedPair> pairs;
     std::vector<PairLeftOut> left_out;  // sorted by (a, b)
     std::vector<Recovery> recoveries;
+    FlushSurfaces flush;
   };
   void moveColliders(const SimulatedWorld& world, const std::vector<BodyState>& bodies, double dt);
   double knownMargin(const SimulatedWorld& world, const std::vector<BodyState>& bodies, const ColliderPair& pair, double dt) const;
@@ -131,6 +138,7 @@ class ContactStage {
   Search search_, current_search_;
   std::vector<int> at_one_place_;  // pairs of each collider that are
   PairSearches searches_;
+  ContactMeetings meetings_;
   std::vector<ContactManifold> found_, current_, reduced_;
   std::vector<ContactManifold> spare_;  // only their memory
   std::vector<ContactConstraint> constraints_;

@@ -2,20 +2,10 @@
 
 #include <algorithm>
 
+#include "body_twist.h"
+
 namespace blem_sim {
 namespace {
-
-/** Velocity of the points of a collider's body. */
-struct Twist {
-  Vector3 centre = Vector3::Zero(), v = Vector3::Zero(), w = Vector3::Zero();
-  Vector3 at(const Vector3& p) const { return v + w.cross(p - centre); }
-};
-
-Twist twistOf(const SimulatedWorld& world, const std::vector<BodyState>& bodies, int collider) {
-  const int body = world.colliders[collider].body;
-  if (body == WORLD_BODY) return {};
-  return {bodies[body].X_WB * world.world.bodySpec(body).inertial.com, bodies[body].v_WCom, bodies[body].w_WB};
-}
 
 /** World box of a collider's geometry, grown by `margin` [m]; everything for a half-space. */
 Box boxOf(const Collider& collider, const Pose& X_WC, double margin) {
@@ -37,7 +27,7 @@ double meetingSpeed(const SimulatedWorld& world, const std::vector<BodyState>& b
   Vector3 towards = Vector3::Zero();  // the half-space's way in for A's points
   if (b.geometry->isHalfSpace()) towards = -(X_WB.linear() * b.geometry->planeNormal());
   if (a.geometry->isHalfSpace()) towards = X_WA.linear() * a.geometry->planeNormal();
-  const Twist twist_a = twistOf(world, bodies, collider_a), twist_b = twistOf(world, bodies, collider_b);
+  const BodyTwist twist_a = twistOf(world, bodies, collider_a), twist_b = twistOf(world, bodies, collider_b);
   double fastest = 0;
   for (int corner = 0; corner < 8; ++corner) {
     const Vector3 p = common.corner(static_cast<Box::CornerType>(corner)), v = twist_a.at(p) - twist_b.at(p);

@@ -117,7 +117,7 @@ void Simulator::Impl::narrowPhase() {
 
 void Simulator::Impl::reduction() {
   const StageTimer timer(&report_.profile, Stage::REDUCTION);
-  contacts_.reduction(world_);
+  contacts_.reduction(world_, bodies_, substepLength());
 }
 
 bool Simulator::Impl::solve() {

@@ -1,0 +1,28 @@
+// Environments that lie flush beside each other have the contacts of one mesh.
+#pragma once
+
+#include <vector>
+
+#include "blem_sim/contact/broad_phase.h"
+#include "blem_sim/contact/manifold.h"
+
+namespace blem_sim {
+
+struct WatchedPair;
+
+/** Which static colliders are near each moving one: where there are several, their surfaces may go over into each other. */
+class FlushSurfaces {
+ public:
+  /** @param pairs of the search at hand */
+  void watch(const std::vector<Collider>& colliders, const std::vector<WatchedPair>& pairs);
+  /** Takes from a pair's contacts with a static surface those that others cover (SurfaceCover). Thread safe. */
+  void dropCovered(const std::vector<Collider>& colliders, const std::vector<ColliderMotion>& motion, ContactManifold* manifold) const;
+
+ private:
+  struct Neighbour {
+    int moving, fixed;  // colliders
+  };
+  std::vector<Neighbour> neighbours_;  // of moving colliders with several, sorted
+};
+
+}  // namespace blem_sim
