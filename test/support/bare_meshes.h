@@ -100,12 +100,20 @@ struct Wall {
 /** How much of a body is behind a wall. */
 enum class Behind { NOTHING, SOME, ALL };
 
+/** What is beside a sheet is not behind it: it may have left it over its edge. */
+inline bool isBeside(const Wall& wall, const Box& bounds, const Vector3& p) {
+  return wall.planes.size() == 1 &&
+         (p.x() < bounds.min().x() || p.x() > bounds.max().x() || p.y() < bounds.min().y() || p.y() > bounds.max().y());
+}
+
 inline Behind behind(const Simulator& simulator, const Wall& wall, int collider) {
+  const Box& bounds = simulator.colliders()[wall.collider].geometry->bounds();
   const Pose X_WC = poseOf(simulator, wall.collider).inverse() * poseOf(simulator, collider);
   int count = 0, all = 0;
   for (const Vector3& v : simulator.colliders()[collider].geometry->mesh().vertices) {
     const Vector3 p = X_WC * v;
     ++all;
+    if (isBeside(wall, bounds, p)) continue;
     for (const auto& [normal, offset] : wall.planes) {
       if (!(normal.dot(p) > offset + 1e-9)) continue;
       ++count;
