@@ -51,3 +51,5 @@ file(GLOB soak_contacts_tests CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/test/soak/
 add_long_run(soak_contacts ${soak_contacts_tests})
 file(GLOB soak_scenes_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/test/soak/scenes/*.cpp)
 add_long_run(soak_scenes ${soak_scenes_sources})
+file(GLOB soak_throws_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/test/soak/throws/*.cpp)
+add_long_run(soak_throws ${soak_throws_sources})

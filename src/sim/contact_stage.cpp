@@ -138,7 +138,11 @@ void ContactStage::moveColliders(const SimulatedWorld& world, const std::vector<
       continue;
     }
     const BodyState& state = bodies[colliders[i].body];
-    const double speed = state.v_WCom.norm() + state.w_WB.norm() * arms_[i];
+    double speed = state.v_WCom.norm() + state.w_WB.norm() * arms_[i];
+    if (faster_) {
+      const BodyState& faster = (*faster_)[colliders[i].body];
+      speed = std::max(speed, faster.v_WCom.norm() + faster.w_WB.norm() * arms_[i]);
+    }
     motion[i] = {state.X_WB * colliders[i].X_BC, REACH_FACTOR * speed * dt + fall};
   }
 }
@@ -152,7 +156,8 @@ double ContactStage::knownMargin(const SimulatedWorld& world, const std::vector<
   const double most = std::min(pair.margin, guarded ? std::max(LEAST_MAX_MARGIN, MAX_MARGIN_OF_LAYER * layer) : UNGUARDED_MARGIN);
   const double base = baseMargin(a, b);
   if (most <= base) return most;
-  const double speed = meetingSpeed(world, bodies, search_.motion, pair.a, pair.b, layer + pair.margin);
+  double speed = meetingSpeed(world, bodies, search_.motion, pair.a, pair.b, layer + pair.margin);
+  if (faster_) speed = std::max(speed, meetingSpeed(world, *faster_, search_.motion, pair.a, pair.b, layer + pair.margin));
   const double alone = std::max(search_.motion[pair.a].reach, search_.motion[pair.b].reach) / REACH_FACTOR;
   return std::clamp(std::max(REACH_FACTOR * speed * dt, alone), base, most);
 }

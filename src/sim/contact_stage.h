@@ -56,6 +56,11 @@ class ContactStage {
 
   /** Pairs that may touch within the coming step of length dt [s]. @param bodies their states at hand, by slot */
   void broadPhase(const SimulatedWorld& world, const std::vector<BodyState>& bodies, double dt);
+  /**
+   * Bodies may become as fast as in these states, by slot, of the same poses: broadPhase reckons with the larger speed. They must live
+   * until told otherwise. Null: bodies go on as they do.
+   */
+  void foresee(const std::vector<BodyState>* faster) { faster_ = faster; }
   /** Their manifolds: found(). */
   void narrowPhase(const SimulatedWorld& world);
   /** What was found is the state the next solve starts from. */
@@ -80,6 +85,8 @@ class ContactStage {
   const std::vector<ContactConstraint>& constraints() const { return constraints_; }
   const std::vector<SolvedContact>& solved() const { return solved_; }
   const std::vector<WatchedPair>& watched() const { return current_search_.pairs; }  ///< of the accepted state
+  /** [m] by collider: farthest point of its geometry's box from the body's centre of mass; 0 for what is static. */
+  double arm(int collider) const { return arms_[collider]; }
   /** [colliders] of the accepted state: where they are, and how far they may move. */
   const std::vector<ColliderMotion>& motion() const { return current_search_.motion; }
   /**
@@ -133,7 +140,8 @@ class ContactStage {
   ReductionMemory memory_;
   LayerStops stops_;
   bool known_ = false;
-  std::vector<double> arms_;  ///< [m] by collider: farthest point of its geometry from the body's centre of mass
+  const std::vector<BodyState>* faster_ = nullptr;
+  std::vector<double> arms_;
   BroadPhase pair_search_;
   Search search_, current_search_;
   std::vector<int> at_one_place_;  // pairs of each collider that are

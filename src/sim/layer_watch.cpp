@@ -28,9 +28,18 @@ LayerEventReport goneEvent(const std::pair<int, int>& pair, double time) {
   return event;
 }
 
+/** @param manifold of the pair before it passed, or null */
+LayerEventReport passEvent(const std::pair<int, int>& pair, const ContactManifold* manifold, double time) {
+  LayerEventReport event = manifold ? eventOf(*manifold, time) : goneEvent(pair, time);
+  event.outside = event.pierced = true;
+  return event;
+}
+
 }  // namespace
 
-void LayerWatch::look(const std::vector<ContactManifold>& manifolds, double time, std::vector<LayerEventReport>* events) {
+void LayerWatch::look(const std::vector<ContactManifold>& manifolds, const std::vector<std::pair<int, int>>& passed, double time,
+                      std::vector<LayerEventReport>* events) {
+  const std::size_t first = events->size();
   next_outside_.clear();
   auto known = outside_.begin();
   // Both are sorted: what was outside and has no contacts any more comes before the next manifold.
@@ -48,6 +57,21 @@ void LayerWatch::look(const std::vector<ContactManifold>& manifolds, double time
   }
   tellGoneBefore(nullptr);
   std::swap(outside_, next_outside_);
+  if (!passed.empty()) addPassed(manifolds, passed, time, first, events);
+}
+
+/** @param first of the events of this look */
+void LayerWatch::addPassed(const std::vector<ContactManifold>& manifolds, const std::vector<std::pair<int, int>>& passed, double time,
+                           std::size_t first, std::vector<LayerEventReport>* events) {
+  for (const std::pair<int, int>& pair : passed) {
+    const auto at = std::lower_bound(outside_.begin(), outside_.end(), pair);
+    if (at != outside_.end() && *at == pair) continue;
+    outside_.insert(at, pair);
+    events->push_back(passEvent(pair, findPair(manifolds, pair.first, pair.second), time));
+  }
+  std::stable_sort(events->begin() + static_cast<std::ptrdiff_t>(first), events->end(), [](const auto& p, const auto& q) {
+    return std::make_pair(p.collider_a, p.collider_b) < std::make_pair(q.collider_a, q.collider_b);
+  });
 }
 
 void LayerWatch::append(std::vector<std::uint64_t>* words) const {

@@ -1,6 +1,7 @@
 // Which pairs of colliders are outside their boundary layers, and when that changes.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <utility>
 #include <vector>
@@ -14,8 +15,13 @@ namespace blem_sim {
 /** Remembers who is outside, so that every change is told once; part of the simulation's state. */
 class LayerWatch {
  public:
-  /** Appends what changed, in order of the pairs. @param manifolds of the state at `time` [s], sorted by (a, b) */
-  void look(const std::vector<ContactManifold>& manifolds, double time, std::vector<LayerEventReport>* events);
+  /**
+   * Appends what changed, in order of the pairs.
+   * @param manifolds of the state at `time` [s], sorted by (a, b)
+   * @param passed pairs that used up their layers on the way from there to the next state, whatever its contacts; sorted
+   */
+  void look(const std::vector<ContactManifold>& manifolds, const std::vector<std::pair<int, int>>& passed, double time,
+            std::vector<LayerEventReport>* events);
   /** Nobody is outside. */
   void clear() { outside_.clear(); }
   /** Forgets the pairs of a collider whose slot another one may take; no event tells it. */
@@ -28,6 +34,9 @@ class LayerWatch {
   bool read(const std::vector<Collider>& colliders, const std::uint64_t** words, const std::uint64_t* end);
 
  private:
+  void addPassed(const std::vector<ContactManifold>& manifolds, const std::vector<std::pair<int, int>>& passed, double time,
+                 std::size_t first, std::vector<LayerEventReport>* events);
+
   std::vector<std::pair<int, int>> outside_;       // sorted
   std::vector<std::pair<int, int>> next_outside_;  // work space of look
 };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "contact_stage.h"
@@ -12,6 +13,7 @@
 #include "sensor.h"
 #include "simulated_world.h"
 #include "step_guard.h"
+#include "sweep_guard.h"
 #include "world_builder.h"
 
 namespace blem_sim {
@@ -34,6 +36,9 @@ struct Simulator::Impl {
   void readSensors();
   void report();
   void acceptSubstep();
+  void redoSubstep(const std::vector<ClosePass>& close);
+  /** What bodies may become in the rest of the step, where a solve that was thrown away has shown it; else null. */
+  const std::vector<BodyState>* foreseen();
   void recordContacts();
   /** A contact of the part at hand, with its moments: its links have moved on since the step began. */
   ContactReport withMoments(ContactReport contact) const;
@@ -75,6 +80,7 @@ struct Simulator::Impl {
   SimulatedWorld world_;
   WorldBuilder builder_;
   ContactStage contacts_;
+  SweepGuard sweep_guard_;
   LayerWatch layer_watch_;
   EnergyBalance energy_balance_;
   std::vector<std::unique_ptr<Sensor>> sensors_;
@@ -93,6 +99,8 @@ struct Simulator::Impl {
   WorldState substep_start_;
   std::vector<BodyState> bodies_before_;  ///< at the start of the step
   std::vector<BodyState> bodies_before_substep_, bodies_;
+  std::vector<BodyState> foreseen_;  ///< velocities of the last solve that was thrown away, with the poses of bodies_; none if empty
+  std::vector<std::pair<int, int>> passed_;  ///< colliders, in the substep at hand
   std::vector<JointState> joints_;
   PartReports part_reports_;
   LinkContacts link_contacts_;

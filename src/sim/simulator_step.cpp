@@ -75,6 +75,7 @@ void Simulator::Impl::startStep() {
   part_reports_.startStep(world_.world.jointCount());
   world_.bodyStates(&bodies_before_);
   bodies_ = bodies_before_;
+  foreseen_.clear();
   energy_balance_.start(world_.world);
 }
 
@@ -89,7 +90,9 @@ void Simulator::Impl::planSubstep() {
   // Pairs are left out only where many bodies cross each other already: shorter substeps would cost time and keep nothing apart.
   if (substeps_.isRedone() || !contacts_.leftOut().empty()) return;
   const double left = substeps_.fractionLeft() * config_.time_step;
-  substeps_.plan(safeTime(world_, contacts_, bodies_, left) / left);
+  double safe = safeTime(world_, contacts_, bodies_, left);
+  if (const std::vector<BodyState>* faster = foreseen()) safe = safeTime(world_, contacts_, *faster, safe);
+  substeps_.plan(safe / left);
 }
 
 void Simulator::Impl::sampleCommands() {
@@ -107,6 +110,7 @@ void Simulator::Impl::broadPhase() {
   const StageTimer timer(&report_.profile, Stage::BROAD_PHASE);
   // The next solve goes on with the rest of the step, or with the next one.
   const double left = substeps_.fractionAfter();
+  contacts_.foresee(left > 0 ? foreseen() : nullptr);
   contacts_.broadPhase(world_, bodies_, (left > 0 ? left : 1) * config_.time_step);
 }
 
@@ -134,14 +138,38 @@ bool Simulator::Impl::solve() {
 
 void Simulator::Impl::stepGuard() {
   const StageTimer timer(&report_.profile, Stage::STEP_GUARD);
-  if (substeps_.canHalve() && contacts_.leftOut().empty() &&
-      usesUpLayer(world_.colliders, contacts_.current(), contacts_.found(), bodies_before_substep_, bodies_)) {
-    world_.world.restore(substep_start_);
-    bodies_ = bodies_before_substep_;
-    substeps_.halve();
-    return;
+  passed_.clear();
+  if (contacts_.leftOut().empty()) {
+    const std::vector<ClosePass>& close = sweep_guard_.look(world_, contacts_, bodies_before_substep_, bodies_);
+    if (substeps_.canRedo() &&
+        (!close.empty() || usesUpLayer(world_.colliders, contacts_.current(), contacts_.found(), bodies_before_substep_, bodies_))) {
+      redoSubstep(close);
+      return;
+    }
+    for (const ClosePass& pass : close)
+      if (pass.passed) passed_.emplace_back(pass.a, pass.b);
   }
   acceptSubstep();
+}
+
+/** Bodies go back to where the substep started; contacts are known as far as the solve has shown that bodies may get. */
+void Simulator::Impl::redoSubstep(const std::vector<ClosePass>& close) {
+  double part = 1;
+  for (const ClosePass& pass : close) part = std::min(part, pass.part);
+  foreseen_ = bodies_;
+  world_.world.restore(substep_start_);
+  bodies_ = bodies_before_substep_;
+  contacts_.foresee(foreseen());
+  contacts_.broadPhase(world_, bodies_, substeps_.fractionLeft() * config_.time_step);
+  contacts_.narrowPhase(world_);
+  contacts_.accept();
+  substeps_.redo(std::min(part, safeTime(world_, contacts_, foreseen_, substepLength()) / substepLength()));
+}
+
+const std::vector<BodyState>* Simulator::Impl::foreseen() {
+  if (foreseen_.empty()) return nullptr;
+  for (std::size_t body = 0; body < bodies_.size(); ++body) foreseen_[body].X_WB = bodies_[body].X_WB;
+  return &foreseen_;
 }
 
 void Simulator::Impl::acceptSubstep() {
@@ -151,7 +179,8 @@ void Simulator::Impl::acceptSubstep() {
   part_reports_.addJoints(solved_->joint_wrenches, solved_->joint_efforts);
   recordSaturation();
   recordContacts();
-  layer_watch_.look(contacts_.current(), substepTime(), &report_.layer_events);
+  if (!passed_.empty()) report_.status |= CONTACT_UNRELIABLE;
+  layer_watch_.look(contacts_.current(), passed_, substepTime(), &report_.layer_events);
   recordEnergy();
   contacts_.accept();
   substeps_.accept();

@@ -77,17 +77,17 @@ void Substeps::plan(double part) {
   size_ = std::clamp(static_cast<int>(std::floor(part * left)), 1, left);
 }
 
-void Substeps::halve() {
-  size_ /= 2;
+void Substeps::redo(double part) {
+  size_ = std::clamp(static_cast<int>(std::floor(part * size_)), 1, std::max(1, size_ / 2));
   ++redone_;
-  halved_ = true;
+  redone_at_hand_ = true;
 }
 
 void Substeps::accept() {
   done_ += size_;
   ++count_;
   size_ = std::min(size_, MAX_SUBSTEPS - done_);
-  halved_ = false;
+  redone_at_hand_ = false;
 }
 
 }  // namespace blem_sim

@@ -1,4 +1,4 @@
-// Was too much of a boundary layer used up by a step, though step_prediction.h saw no danger? Then it is made again in halves.
+// Was too much of a boundary layer used up by a step, though step_prediction.h saw no danger? Then it is made again, shorter.
 #pragma once
 
 #include <cstdint>
@@ -36,16 +36,18 @@ class Substeps {
   double fractionAfter() const { return static_cast<double>(MAX_SUBSTEPS - done_ - size_) / MAX_SUBSTEPS; }  ///< without it
   /** The next substep takes at most this part (0 to 1) of what is left, in whole ticks, at least one. */
   void plan(double part);
-  bool canHalve() const { return size_ > 1 && redone_ < MAX_REDONE; }
-  void halve();
+  bool canRedo() const { return redone_ < MAX_REDONE && (size_ > 1 || !redone_at_hand_); }
+  /** It is made again: of this part (0 to 1) of its length in whole ticks, of half of it at most, at least of one. One of one tick is made
+   *  again once: its contacts are known farther then. */
+  void redo(double part);
   void accept();
-  int count() const { return count_; }       ///< accepted so far
-  int redone() const { return redone_; }     ///< halved so far
-  bool isRedone() const { return halved_; }  ///< the substep at hand was halved: its length stands
+  int count() const { return count_; }               ///< accepted so far
+  int redone() const { return redone_; }             ///< thrown away so far
+  bool isRedone() const { return redone_at_hand_; }  ///< the substep at hand is made again: its length stands
 
  private:
   int size_ = MAX_SUBSTEPS, done_ = 0, count_ = 0, redone_ = 0;
-  bool halved_ = false;
+  bool redone_at_hand_ = false;
 };
 
 }  // namespace blem_sim

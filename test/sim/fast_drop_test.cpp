@@ -10,6 +10,7 @@ struct Drop {
   ThrowBody (*hit)();
   bool both_move = false;
   Vector3 spin = Vector3::Zero();
+  double at_rest = 0;
 };
 
 ThrowBody thinSheet() { return sheetHit(2, 1); }
@@ -24,14 +25,17 @@ std::vector<Drop> drops() {
           {"plate's edge on plate's edge", plateThrown, plateHit},
           {"cube against cube", cubeThrown, boxHit, true},
           {"spinning cube on sheet", cubeThrown, thinSheet, false, {60, 60, 53}},
-          {"spinning plate on plate", plateThrown, plateHit, false, {60, 60, 53}}};
+          {"spinning plate on plate", plateThrown, plateHit, false, {60, 60, 53}},
+          {"cube on box at rest", cubeThrown, boxHit, false, Vector3::Zero(), 0.1},
+          {"plate's edge on plate's edge at rest", plateThrown, plateHit, false, Vector3::Zero(), 0.1}};
 }
 
 TEST(FastDrop, NothingPasses) {
   for (const Drop& drop : drops()) {
     for (const double speed : {10.0, 20.0, 40.0}) {
       for (const auto& turn : THROWN_TURNS) {
-        ThrowScene scene{drop.thrown(), drop.hit(), speed, Vector3(turn[0], turn[1], turn[2]), drop.spin, Vector3::Zero(), drop.both_move};
+        ThrowScene scene{drop.thrown(), drop.hit(),      speed,          Vector3(turn[0], turn[1], turn[2]),
+                         drop.spin,     Vector3::Zero(), drop.both_move, drop.at_rest};
         const ThrowOutcome outcome = throwIt(scene, SolverSettings(), [](const auto& step) { step(); });
         SCOPED_TRACE(testing::Message() << drop.name << " " << speed << " m/s, turn " << scene.turn.transpose());
         EXPECT_FALSE(outcome.passed);

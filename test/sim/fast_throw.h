@@ -7,6 +7,7 @@
 
 #include "simulation_scene.h"
 #include "step_guard.h"
+#include "support/bare_meshes.h"
 
 namespace blem_sim {
 
@@ -14,7 +15,7 @@ namespace blem_sim {
 struct ThrowBody {
   std::string uri;
   double half_height = 0;  ///< [m] of its box, turned any way for what is thrown
-  double half_width = 0;   ///< [m] of a sheet: within it nothing may get below it; 0: not a sheet
+  double half_width = 0;   ///< [m] of a sheet: within it no centre may get below it; 0: not a sheet
 };
 
 struct ThrowScene {
@@ -24,10 +25,11 @@ struct ThrowScene {
   Vector3 spin = Vector3::Zero();    ///< [rad/s] of it
   Vector3 beside = Vector3::Zero();  ///< [m] by which it is thrown off the middle
   bool both_move = false;            ///< what is hit is free too, of the same mass, and comes up at half the speed
+  double at_rest = 0;                ///< [kg] of what is hit, free too and at rest; 0: it is not
 };
 
 struct ThrowOutcome {
-  bool passed = false;
+  bool passed = false;  ///< bare meshes crossed at the end of a step, or the centre of what is thrown went through the other mesh in one
   int pierced_steps = 0, most_substeps = 0, most_redone = 0, redone_steps = 0;
   double max_of_layer = 0;
 
@@ -69,12 +71,12 @@ inline SimulationConfig configOf(const ThrowScene& scene) {
   thrown.angular_velocity = scene.spin;
   thrown.linear_velocity = {0, 0, scene.both_move ? -scene.speed / 2 : -scene.speed};
   config.objects = {thrown};
-  if (scene.both_move) {
+  if (scene.both_move || scene.at_rest > 0) {
     ObjectConfig hit;
     hit.name = "hit";
     hit.uri = scene.hit.uri;
-    hit.mass = 1;
-    hit.linear_velocity = {0, 0, scene.speed / 2};
+    hit.mass = scene.both_move ? 1 : scene.at_rest;
+    hit.linear_velocity = {0, 0, scene.both_move ? scene.speed / 2 : 0};
     config.objects.push_back(hit);
   } else {
     EnvironmentConfig hit;
@@ -92,6 +94,8 @@ ThrowOutcome throwIt(const ThrowScene& scene, const SolverSettings& solver, Arou
   config.solver = solver;
   Simulator simulator(config, UriResolver());
   ThrowOutcome outcome;
+  const int thrown = colliderOf(simulator, "thrown"), hit = colliderOf(simulator, "hit");
+  CentrePath centre(thrown, hit);
   for (int i = 0; i < 40; ++i) {
     aroundStep([&simulator] { simulator.step(); });
     const StepReport& report = simulator.report();
@@ -103,6 +107,7 @@ ThrowOutcome throwIt(const ThrowScene& scene, const SolverSettings& solver, Arou
     EXPECT_FALSE(report.status & STATE_NOT_FINITE);
     const Vector3 p = bodyOf(simulator, "thrown").X_WB.translation();
     if (std::max(std::abs(p.x()), std::abs(p.y())) < scene.hit.half_width && p.z() < 0) outcome.passed = true;
+    outcome.passed = centre.goesThrough(simulator) || meshesCross(simulator, thrown, hit) || outcome.passed;
   }
   return outcome;
 }

@@ -11,7 +11,7 @@ namespace {
 TEST(Substeps, HalvesAtMostFourTimesAndEndsExactly) {
   Substeps substeps;
   EXPECT_EQ(substeps.fraction(), 1);
-  while (substeps.canHalve()) substeps.halve();
+  while (substeps.canRedo()) substeps.redo(1);
   EXPECT_EQ(substeps.fraction(), 1.0 / 16);
   while (!substeps.finished()) substeps.accept();
   EXPECT_EQ(substeps.count(), 16);
@@ -37,8 +37,8 @@ TEST(Substeps, CostOfAStepIsBoundedWhateverIsAskedFor) {
   int solves = 0;
   for (; !substeps.finished(); ++solves) {
     if (!substeps.isRedone()) substeps.plan(0.3);
-    if (substeps.canHalve()) {
-      substeps.halve();
+    if (substeps.canRedo()) {
+      substeps.redo(1);
     } else {
       substeps.accept();
     }

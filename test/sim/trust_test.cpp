@@ -1,5 +1,6 @@
 // What tells whether a run is to be trusted: contacts that leave their layers, energy out of nothing.
 #include <cmath>
+#include <utility>
 
 #include "layer_watch.h"
 #include "simulation_scene.h"
@@ -22,9 +23,10 @@ ContactManifold manifoldOf(int a, int b, double depth, bool pierced = false) {
   return manifold;
 }
 
-std::vector<LayerEventReport> lookAt(LayerWatch* watch, const std::vector<ContactManifold>& manifolds, double time) {
+std::vector<LayerEventReport> lookAt(LayerWatch* watch, const std::vector<ContactManifold>& manifolds, double time,
+                                     const std::vector<std::pair<int, int>>& passed = {}) {
   std::vector<LayerEventReport> events;
-  watch->look(manifolds, time, &events);
+  watch->look(manifolds, passed, time, &events);
   return events;
 }
 
@@ -50,6 +52,21 @@ TEST(LayerWatch, TellsEveryChangeOnceInOrderOfPairs) {
   EXPECT_FALSE(events[1].outside);
   EXPECT_DOUBLE_EQ(events[1].of_layer, 0.8);
   EXPECT_TRUE(lookAt(&watch, {}, 4).empty());
+}
+
+TEST(LayerWatch, TellsWhatPassedThoughNeitherEndIsOutside) {
+  LayerWatch watch;
+  const std::vector<LayerEventReport> events =
+      lookAt(&watch, {manifoldOf(0, 1, 0.006), manifoldOf(2, 3, 0.001)}, 0, {{0, 0}, {0, 1}, {2, 3}});
+  ASSERT_EQ(events.size(), 3u);
+  EXPECT_EQ(events[0].collider_b, 0);
+  EXPECT_EQ(events[1].collider_b, 1);
+  EXPECT_EQ(events[2].collider_b, 3);
+  for (const LayerEventReport& event : events) EXPECT_TRUE(event.outside);
+  EXPECT_TRUE(events[0].pierced && !events[1].pierced && events[2].pierced);
+  EXPECT_DOUBLE_EQ(events[2].of_layer, 0.2);
+  // Behind each other they are apart again: three changes.
+  EXPECT_EQ(lookAt(&watch, {}, 1).size(), 3u);
 }
 
 TEST(LayerWatch, ReadsWhatItWroteAndNothingLess) {

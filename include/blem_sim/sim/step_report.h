@@ -17,8 +17,9 @@ enum StepStatus : std::uint32_t {
   STEP_OK = 0,
   STEP_SHORTENED = 1u << 0,  ///< bodies so fast that they could use up a boundary layer: the step was made in parts. Thicker boundary_width
                              ///< or smaller time_step
-  CONTACT_UNRELIABLE = 1u << 1,  ///< bare meshes cross, or did and are not apart yet: directions there are the way back or a guess. Thicker
-                                 ///< boundary_width, smaller time_step, or a better start pose
+  CONTACT_UNRELIABLE = 1u << 1,  ///< bare meshes cross, or did and are not apart yet: directions there are the way back or a guess; or they
+                                 ///< crossed within the step and may be on each other's other side. Thicker boundary_width, smaller
+                                 ///< time_step, or a better start pose
   CONTACTS_REDUCED = 1u << 2,    ///< contacts were left out by max_contacts_per_robot/object. Raise them if forces look wrong
   SOLVER_TROUBLE = 1u << 3,  ///< the complementarity solver complained and the step was redone softer, or Newton stopped at its bound with
                              ///< contact forces off by over 1 % of the largest, or velocities by 0.01. Smaller time_step, fewer contacts;
@@ -62,10 +63,11 @@ struct ContactReport {
 struct LayerEventReport {
   double time = 0;                       ///< [s] simulated, of the state whose contacts they are: where the (sub)step started
   int collider_a = -1, collider_b = -1;  ///< a < b
-  bool outside = false;                  ///< true: more than the layers is used up, or bare meshes cross; false: not any more
+  bool outside = false;                  ///< true: more than the layers is used up, or bare meshes cross, there or on the way to the next
+                                         ///< state; false: not any more
   double depth = 0;                      ///< [m] of their deepest contact, 0 without one
   double of_layer = 0;                   ///< depth / (rA + rB); 0 without a layer
-  bool pierced = false;                  ///< bare meshes cross
+  bool pierced = false;                  ///< bare meshes cross, there or on the way
 };
 
 struct ForceTorqueReading {
