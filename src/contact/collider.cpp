@@ -33,6 +33,7 @@ SurfaceProperties combineSurfaces(const SurfaceProperties& a, const SurfacePrope
   SurfaceProperties pair;
   pair.friction = combinedFriction(a.friction, b.friction, rule);
   pair.restitution = std::max(a.restitution, b.restitution);
+  pair.impact_friction_factor = std::min(a.impact_friction_factor, b.impact_friction_factor);
   pair.stiffness = inSeries(a.stiffness, b.stiffness);
   pair.damping = inSeries(a.damping, b.damping);
   return pair;

@@ -18,8 +18,11 @@ double normalSpeed(const BodyPair& pair, const ContactTerm& term, const std::vec
   return term.normal.dot(velocityAt(relativeTwist(pair, twist), term.point));
 }
 
-// Of a compliant contact the touch bounces, what presses behind it is the spring's.
-bool bounces(const ContactConstraint& c, const ContactTerm& term) { return c.restitution > 0 && !(term.compliance > 0 && c.depth > 0); }
+// Of a compliant contact the touch is an impact, what presses behind it is the spring's. Without restitution and a friction of its own an
+// impact is what the solve makes of it.
+bool hasImpacts(const ContactConstraint& c, const ContactTerm& term) {
+  return (c.restitution > 0 || c.impact_friction_factor != 1) && !(term.compliance > 0 && c.depth > 0);
+}
 
 double slowestBounce(const TermSource& s, double kick) {
   return std::max(REST_SPEED, REST_STEPS * std::max(s.input.dt * s.scene.gravity().norm(), 2 * std::abs(kick)));
@@ -34,7 +37,7 @@ bool IslandImpacts::expect(const TermSource& s, const std::vector<int>& contacts
   for (const ContactPatch& patch : problem.patches)
     for (int i = patch.first; i < patch.end; ++i) {
       const ContactConstraint& c = s.input.contacts[contacts[i]];
-      if (!bounces(c, problem.contacts[i])) continue;
+      if (!hasImpacts(c, problem.contacts[i])) continue;
       const double closing = -normalSpeed(patch.pair, problem.contacts[i], s.motion.twist);
       if (4 * closing > 3 * slowest && 5 * s.input.dt * closing > -3 * c.depth) return true;
     }
@@ -61,11 +64,12 @@ void IslandImpacts::begin(const TermSource& s, const std::vector<int>& contacts,
   for (const ContactPatch& patch : problem.patches)
     for (int i = patch.first; i < patch.end; ++i) {
       const ContactConstraint& c = s.input.contacts[contacts[i]];
-      if (!bounces(c, problem.contacts[i])) continue;
+      if (!hasImpacts(c, problem.contacts[i])) continue;
       Bouncer bouncer;
       bouncer.contact = i;
       bouncer.pair = &patch.pair;
       bouncer.restitution = c.restitution;
+      bouncer.friction = c.impact_friction_factor * problem.contacts[i].friction;
       bouncer.depth = c.depth;
       bouncers_.push_back(bouncer);
     }
@@ -97,8 +101,8 @@ bool IslandImpacts::findMeetings(const TermSource& s, const IslandProblem& probl
     Meeting meeting;
     meeting.bouncer = static_cast<int>(&b - bouncers_.data());
     meeting.row = b.row;
-    meeting.friction = problem.contacts[b.contact].friction;
-    meeting.restitution = std::sqrt(std::clamp(e2 - (1 - e2) * fall, 0.0, 1.0));
+    meeting.friction = b.friction;
+    if (b.restitution > 0) meeting.restitution = std::sqrt(std::clamp(e2 - (1 - e2) * fall, 0.0, 1.0));
     meetings_.push_back(meeting);
   }
   findGroups(s.forest, problem);

@@ -1,4 +1,4 @@
-// Impacts with restitution: velocities leap at the beginning of a step, before it is solved. See docs/solver.md.
+// Impacts with restitution or a friction of their own: velocities leap at the beginning of a step, before it is solved. See docs/solver.md.
 #pragma once
 
 #include <vector>
@@ -11,10 +11,10 @@ namespace blem_sim {
 /** The impacts of one island in one step. Used again from step to step, so that it need not allocate. */
 class IslandImpacts {
  public:
-  /** Forgets those of the last step. @return may any contact with restitution meet within this one? */
+  /** Forgets those of the last step. @return may any contact that has impacts meet within this one? */
   bool expect(const TermSource& source, const std::vector<int>& contacts, const IslandProblem& problem);
   /**
-   * Contacts with restitution that will meet within the step reflect velocities as often as it takes until none approaches any more, or
+   * Contacts that have impacts and will meet within the step reflect velocities as often as it takes until none approaches any more, or
    * the bounds on work are reached; what then still approaches is left to the solve, where it does not bounce. No reflection adds kinetic
    * energy. If any happens, the free momentum of `solver` and its first guess of the velocities change by the impulses.
    * @param contacts of the step's input, those of the problem
@@ -34,12 +34,12 @@ class IslandImpacts {
   void takeFrom(const Forest& forest, const std::vector<int>& trees, Eigen::VectorXd* change) const;
 
  private:
-  /** A contact that has restitution. */
+  /** A contact that has restitution, or a friction of its own in impacts. */
   struct Bouncer {
     int contact = 0;  ///< of the problem
     const BodyPair* pair = nullptr;
     int row = -1;  ///< of rows_, once it has met
-    double restitution = 0;
+    double restitution = 0, friction = 0;
     double depth = 0;                   ///< [m]
     double kick = 0;                    ///< [m/s] of its normal velocity by half of the step's forces
     double slowest = 0;                 ///< [m/s] closing speed below which nothing bounces

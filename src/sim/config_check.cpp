@@ -41,6 +41,7 @@ class Fields {
   void surface(const SurfaceProperties& s) const {
     number("friction", s.friction, NumberRange::notNegative());
     number("restitution", s.restitution, NumberRange::fraction());
+    number("impact_friction_factor", s.impact_friction_factor, NumberRange::fraction());
     number("stiffness", s.stiffness, NumberRange::positiveOrInfinite());
     number("damping", s.damping, NumberRange::notNegativeOrInfinite());
   }
@@ -48,6 +49,7 @@ class Fields {
     number("boundary_width", o.boundary_width, NumberRange::notNegative());
     number("friction", o.friction, NumberRange::notNegative());
     number("restitution", o.restitution, NumberRange::fraction());
+    number("impact_friction_factor", o.impact_friction_factor, NumberRange::fraction());
     number("stiffness", o.stiffness, NumberRange::positiveOrInfinite());
     number("damping", o.damping, NumberRange::notNegativeOrInfinite());
   }

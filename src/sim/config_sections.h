@@ -8,7 +8,7 @@ namespace blem_sim {
 
 ContactConfig readContact(YamlReader reader);
 SolverSettings readSolver(YamlReader reader);
-/** boundary_width, friction, restitution, stiffness, damping: those given. */
+/** boundary_width, friction, restitution, impact_friction_factor, stiffness, damping: those given. */
 ContactOverrides readContactOverrides(YamlReader& reader);
 CloudOptions readCloud(YamlReader reader);
 /** A name that models may bear: given, not empty, without "::". */

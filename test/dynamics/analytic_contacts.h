@@ -23,7 +23,7 @@ inline BodySpec boxBody(const std::string& name, double mass, const Vector3& siz
 
 /** Properties that all contacts of a pair share. */
 struct Surface {
-  double friction = 0.5, restitution = 0;
+  double friction = 0.5, restitution = 0, impact_friction_factor = 1;
   double stiffness = std::numeric_limits<double>::infinity(), damping = std::numeric_limits<double>::infinity();
 };
 
@@ -33,6 +33,7 @@ inline ContactConstraint contactOf(int body_a, int body_b, const Vector3& point,
   c.body_a = body_a, c.body_b = body_b;
   c.point = point, c.normal_BA = normal_BA, c.depth = depth, c.id = id;
   c.friction = surface.friction, c.restitution = surface.restitution;
+  c.impact_friction_factor = surface.impact_friction_factor;
   c.stiffness = surface.stiffness, c.damping = surface.damping;
   return c;
 }

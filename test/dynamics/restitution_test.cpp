@@ -29,7 +29,7 @@ TEST(Restitution, ATurningCubeKeepsAllItsEnergy) {
 }
 
 struct Law {
-  double restitution, friction;
+  double restitution, friction, impact_friction_factor = 1;
 };
 
 class Bounces : public ::testing::TestWithParam<Law> {};
@@ -39,7 +39,9 @@ class Bounces : public ::testing::TestWithParam<Law> {};
 TEST_P(Bounces, NeverGain) {
   for (void (*const toss)(BouncingBodies*, int) : {tossCube, tossThree}) {
     for (int seed = 0; seed < 2; ++seed) {
-      BouncingBodies scene(GRAVITY, surfaceOf(GetParam().restitution, GetParam().friction));
+      Surface surface = surfaceOf(GetParam().restitution, GetParam().friction);
+      surface.impact_friction_factor = GetParam().impact_friction_factor;
+      BouncingBodies scene(GRAVITY, surface);
       toss(&scene, seed);
       const EnergyRun run = followEnergy(&scene, DT, 3000);
       ASSERT_TRUE(run.finite);
@@ -51,7 +53,8 @@ TEST_P(Bounces, NeverGain) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Laws, Bounces,
-                         ::testing::Values(Law{0.2, 0}, Law{0.2, 0.3}, Law{0.5, 1}, Law{0.8, 0}, Law{0.8, 0.3}, Law{1, 0.3}, Law{1, 1}));
+                         ::testing::Values(Law{0.2, 0}, Law{0.2, 0.3}, Law{0.5, 1}, Law{0.8, 0}, Law{0.8, 0.3}, Law{1, 0.3}, Law{1, 1},
+                                           Law{0, 0.3, 0.5}, Law{0.2, 0.3, 0.75}, Law{0.8, 1, 0.2}, Law{1, 0.5, 0.5}, Law{1, 1, 0}));
 
 class Cradles : public ::testing::TestWithParam<double> {};
 
@@ -151,6 +154,33 @@ TEST(Restitution, FrictionOfAnImpactIsCoulombs) {
     EXPECT_NEAR(state.v_WCom.x(), 1 - push, 1e-9);
     EXPECT_NEAR(state.w_WB.y(), push / (0.4 * radius), 1e-7);
   }
+}
+
+// And what slides keeps its own friction: the ball's impact rubs with a half of it, with and without a bounce.
+TEST(Restitution, FrictionOfImpactsMayBeLowerThanThatOfSliding) {
+  const double mu = 0.1, factor = 0.5, radius = 0.05;
+  for (const double e : {0.0, 0.5}) {
+    Surface surface = surfaceOf(e, mu);
+    surface.impact_friction_factor = factor;
+    BouncingBodies scene(Vector3::Zero(), surface);
+    scene.walls = {{Vector3::UnitZ(), 0}};
+    scene.addSphere(1, radius, {0, 0, radius + 0.01});
+    scene.setVelocity(0, {1, 0, -2}, Vector3::Zero());
+    for (int i = 0; i < 20; ++i) scene.step(DT);
+    const BodyState state = scene.world.bodyState(0);
+    const double push = factor * mu * (1 + e) * 2;
+    EXPECT_NEAR(state.v_WCom.z(), e * 2, 1e-9) << e;
+    EXPECT_NEAR(state.v_WCom.x(), 1 - push, 1e-9) << e;
+    EXPECT_NEAR(state.w_WB.y(), push / (0.4 * radius), 1e-7) << e;
+  }
+  Surface surface = surfaceOf(0.5, mu);
+  surface.impact_friction_factor = factor;
+  BouncingBodies scene(GRAVITY, surface);
+  scene.walls = {{Vector3::UnitZ(), 0}};
+  scene.addBox(1, {0.1, 0.1, 0.02}, {0, 0, 0.01});
+  scene.setVelocity(0, {1, 0, 0}, Vector3::Zero());
+  for (int i = 0; i < 500; ++i) scene.step(DT);
+  EXPECT_NEAR(scene.world.bodyState(0).v_WCom.x(), 1 - 0.5 * mu * 9.81, 1e-6);
 }
 
 // The touch bounces; what is too slow for that rests on the springs.

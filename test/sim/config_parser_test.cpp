@@ -76,6 +76,7 @@ TEST(Manual, SaysWhatHoldsWithoutIt) {
   EXPECT_EQ(manual_config.contact.boundary_width, defaults.contact.boundary_width);
   EXPECT_EQ(manual_config.contact.surface.friction, defaults.contact.surface.friction);
   EXPECT_EQ(manual_config.contact.surface.restitution, defaults.contact.surface.restitution);
+  EXPECT_EQ(manual_config.contact.surface.impact_friction_factor, defaults.contact.surface.impact_friction_factor);
   EXPECT_EQ(manual_config.contact.surface.stiffness, INF);
   EXPECT_EQ(manual_config.contact.surface.damping, INF);
   EXPECT_EQ(manual_config.contact.friction_rule, defaults.contact.friction_rule);
@@ -302,6 +303,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"paused: maybe", {"paused", "true or false"}}, BadInput{"random_seed: -1", {"random_seed", "'-1'"}},
         BadInput{"random_seed: 1.5", {"random_seed"}}, BadInput{"contact: {friction: .inf}", {"contact.friction", "finite"}},
         BadInput{"contact: {restitution: 1.1}", {"contact.restitution"}},
+        BadInput{"contact: {impact_friction_factor: 1.1}", {"contact.impact_friction_factor"}},
         BadInput{"contact: {stiffness: 0}", {"contact.stiffness", ".inf"}},
         BadInput{"contact: {max_contacts_per_robot: 0}", {"contact.max_contacts_per_robot"}},
         BadInput{"contact: {max_contacts_per_robot: 2.5}", {"contact.max_contacts_per_robot", "whole"}},

@@ -68,6 +68,7 @@ struct ContactConstraint {
   Vector3 point, normal_BA;  ///< world
   double depth = 0;          ///< [m], negative = gap
   double friction = 0, restitution = 0;
+  double impact_friction_factor = 1;  ///< 0 to 1: friction in impacts over friction; only `articulated` knows it
   double stiffness = std::numeric_limits<double>::infinity(), damping = std::numeric_limits<double>::infinity();
   std::uint64_t id = 0;  ///< identity across steps, unique within one step (colliders and features)
 };
