@@ -54,8 +54,8 @@ TEST(Sweep, NeverMissesWhatSamplesFind) {
   int seen = 0, cleared = 0;
   for (int i = 0; i < 150; ++i) {
     const TriangleMesh &a = meshes[i % 3], &b = meshes[i / 3 % 3];
-    const GeometrySweep way_a{makePose(vector(0.2), vector(3)), vector(0.2), vector(0.3), vector(1.5)},
-        way_b{makePose(vector(0.2), vector(3)), vector(0.2), vector(0.3), vector(1.5)};
+    const GeometrySweep way_a{makePose(vector(0.1), vector(3)), vector(0.2), vector(0.3), vector(1.5)},
+        way_b{makePose(vector(0.1), vector(3)), vector(0.2), vector(0.3), vector(1.5)};
     const double most = mostApproach(geometryOf(a), way_a, geometryOf(b), way_b);
     double least = INFINITY, start = 0;
     for (int k = 0; k <= 300; ++k) {

@@ -7,7 +7,7 @@ namespace blem_sim {
 
 /** A geometry on its way from one state to another: the middle of its turn moves straight and evenly, the turn is even about one axis. */
 struct GeometrySweep {
-  Pose X_WC;                         ///< geometry at the start
+  Pose X_WC = Pose::Identity();      ///< geometry at the start
   Vector3 centre = Vector3::Zero();  ///< [m] world, of its turn at the start: its body's centre of mass
   Vector3 shift = Vector3::Zero();   ///< [m] of the centre, over the whole way
   Vector3 turn = Vector3::Zero();    ///< [rad] rotation vector in world axes, over the whole way
