@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "blem_sim/contact/collider_pairs.h"
-
 namespace blem_sim {
 namespace {
 
@@ -94,7 +92,8 @@ bool LayerWatch::read(const std::vector<Collider>& colliders, const std::uint64_
   if (static_cast<std::uint64_t>(end - cursor) / 2 < count) return false;
   std::vector<std::pair<int, int>> outside;
   for (std::uint64_t i = 0; i < count; ++i, cursor += 2) {
-    if (!isPair(colliders, cursor[0], cursor[1])) return false;
+    // A collider that was just taken out is still to be told gone.
+    if (cursor[0] >= cursor[1] || cursor[1] >= colliders.size()) return false;
     outside.emplace_back(static_cast<int>(cursor[0]), static_cast<int>(cursor[1]));
     if (i > 0 && outside[i] <= outside[i - 1]) return false;
   }

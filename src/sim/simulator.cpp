@@ -50,10 +50,7 @@ void Simulator::Impl::unloadEnvironment(const std::string& name) {
   for (const ModelInfo& model : world_.models)
     if (model.alive && model.kind == ModelKind::ENVIRONMENT) environments.push_back(model.name);
   requireName(name, environments, "unload_environment", "environment");
-  for (const int collider : world_.removeEnvironment(name)) {
-    layer_watch_.forget(collider);
-    world_.world.forgetContacts(contacts_.forgetCollider(collider));
-  }
+  for (const int collider : world_.removeEnvironment(name)) world_.world.forgetContacts(contacts_.forgetCollider(collider));
   layout_.clear();
   reportWithoutStep();
 }
@@ -61,6 +58,10 @@ void Simulator::Impl::unloadEnvironment(const std::string& name) {
 void Simulator::Impl::loadEnvironment(const EnvironmentConfig& environment) {
   checkEnvironment(environment);
   builder_.addEnvironment(environment, &world_);
+  // Pairs of who had its slots before are told to be gone by the next step, unless the slots are taken by then.
+  const int model = world_.modelIndex(environment.name);
+  for (std::size_t i = 0; i < world_.colliders.size(); ++i)
+    if (world_.colliders[i].model == model) layer_watch_.forget(static_cast<int>(i));
   contacts_.forget();
   layout_.clear();
 }

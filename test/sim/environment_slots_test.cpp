@@ -89,6 +89,10 @@ TEST(EnvironmentSlots, PairsOutsideTheirLayersAreForgottenWithTheirCollider) {
   Simulator simulator(config, UriResolver());
   ASSERT_EQ(simulator.step().layer_events.size(), 1u);
   simulator.unloadEnvironment("ground");
+  const SimulationState between = simulator.save();
+  const std::uint64_t hash = simulator.stateHash();
+  simulator.restore(between);
+  EXPECT_EQ(simulator.stateHash(), hash);
   EnvironmentConfig deep = ground();
   deep.X_WE = makePose({0, 0, -1});
   simulator.loadEnvironment(deep);

@@ -120,8 +120,9 @@ class Simulator {
    */
   void loadEnvironment(const EnvironmentConfig& environment);
   /**
-   * Takes it out with all that is remembered of its contacts. Its slots (indices of model and collider) are free for the next environment,
-   * so report() holds no contacts until the next step, and no layer event tells that its pairs are gone.
+   * Takes it out with all that is remembered of its contacts, so report() holds none until the next step, which tells that pairs outside
+   * their layers are gone. Its slots (indices of model and collider) are free; an environment that takes them before that step is told
+   * nothing of those pairs.
    * @throws InputError if there is no such environment
    */
   void unloadEnvironment(const std::string& name);
