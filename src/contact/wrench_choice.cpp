@@ -17,6 +17,7 @@ namespace {
 // [m] Once no wrench lacks, depth counts too, a unit force per this depth.
 constexpr double DEPTH_SCALE = 1e-3;
 constexpr float NOTHING_LACKS = 1e-6f;  // of a unit force
+constexpr float BETWEEN = 0.1f;         // of a unit force: what directions between those looked at may lack more
 
 double nextUniform(std::uint64_t& state) {  // splitmix64
   std::uint64_t z = (state += 0x9E3779B97F4A7C15ull);
@@ -94,6 +95,21 @@ class Choice {
     return lack;
   }
 
+  /** What others lack of the wrenches of these. */
+  float lackOf(const std::vector<Contact>& contacts, const std::vector<Contact>& others, const PatchScale& scale) {
+    const auto findExtremes = [&](const std::vector<Contact>& of, WrenchComponents* extremes) {
+      points_.clear();
+      for (const Contact& contact : of) points_.push_back(wrenchPoint(contact, scale));
+      if (components_.size() < points_.size()) components_.resize(points_.size());
+      findWrenches(directions_, points_.data(), static_cast<int>(points_.size()), components_.data(), extremes);
+    };
+    findExtremes(contacts, &extremes_);
+    findExtremes(others, &reached_);
+    float lack = 0;
+    for (int d = 0; d < WRENCH_DIRECTIONS; ++d) lack = std::max(lack, extremes_.value[d] - reached_.value[d]);
+    return lack;
+  }
+
  private:
   float add(int candidate) { return addWrenches(components_[candidate], points_[candidate].handicap, extremes_, &reached_); }
 
@@ -141,8 +157,8 @@ void addDeepest(const std::vector<Contact>& contacts, const std::vector<int>& me
 
 }  // namespace
 
-void chooseSpanningContacts(const std::vector<Contact>& contacts, const std::vector<int>& members, const PatchScale& scale, int k,
-                            const ContactIds& chosen_before, std::vector<int>* candidates, std::vector<int>* chosen) {
+float chooseSpanningContacts(const std::vector<Contact>& contacts, const std::vector<int>& members, const PatchScale& scale, int k,
+                             const ContactIds& chosen_before, std::vector<int>* candidates, std::vector<int>* chosen) {
   static thread_local Choice choice;
   static thread_local std::vector<int> continued;
   sortCanonically(contacts, candidates);
@@ -161,7 +177,10 @@ void chooseSpanningContacts(const std::vector<Contact>& contacts, const std::vec
     chosen->swap(continued);
   } else {
     chosen->assign(1, deep);
-    if (lack <= choice.addExtremes(k, chosen) + GOOD_ENOUGH) chosen->swap(continued);
+    const float fresh = choice.addExtremes(k, chosen);
+    const bool goes_on = lack <= fresh + GOOD_ENOUGH;
+    if (goes_on) chosen->swap(continued);
+    if (!goes_on) lack = fresh;
   }
   if (static_cast<int>(chosen->size()) < k) {
     choice.countDepth(contacts, *candidates);
@@ -169,6 +188,14 @@ void chooseSpanningContacts(const std::vector<Contact>& contacts, const std::vec
   }
   for (int& i : *chosen) i = (*candidates)[i];
   if (static_cast<int>(chosen->size()) < k) addDeepest(contacts, members, static_cast<std::size_t>(k), chosen);
+  return std::max(0.0f, lack) + BETWEEN;
+}
+
+float wrenchLack(const std::vector<Contact>& all, const std::vector<Contact>& kept) {
+  static thread_local Choice choice;
+  bool sound = true;
+  const PatchScale scale(all, &sound);
+  return sound ? choice.lackOf(all, kept, scale) + BETWEEN : 1;
 }
 
 }  // namespace blem_sim

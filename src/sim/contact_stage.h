@@ -66,7 +66,7 @@ class ContactStage {
   LayerStops& stops() { return stops_; }
   const LayerStops& stops() const { return stops_; }
   bool known() const { return known_; }
-  /** At most k contacts per model out of current(), as constraints, and the stops below soft ones. */
+  /** At most k contacts per model out of current(), but three of each pair, as constraints, and the stops below soft ones. */
   void reduction(const SimulatedWorld& world);
 
   const std::vector<ContactManifold>& found() const { return found_; }      ///< sorted by (a, b), none empty
@@ -93,8 +93,7 @@ class ContactStage {
    * is in the other's; of such pairs only some of each collider are looked at, since their number grows as the colliders' number squared.
    */
   const std::vector<PairLeftOut>& leftOut() const { return current_search_.left_out; }
-  /** A model has as many contacts as it may, and others were left out. */
-  bool budgetUsedUp() const { return budget_used_up_; }
+  const ReductionLoss& reductionLoss() const { return reduction_loss_; }
 
  private:
   struct Search {
@@ -127,8 +126,7 @@ class ContactStage {
   std::vector<ContactConstraint> constraints_;
   std::vector<SolvedContact> solved_;
   std::vector<int> model_a_, model_b_;  // of each of current_
-  std::vector<int> contacts_of_model_;
-  bool budget_used_up_ = false;
+  ReductionLoss reduction_loss_;
 };
 
 }  // namespace blem_sim

@@ -66,7 +66,7 @@ void Simulator::Impl::startStep() {
   report_.samples.clear();
   report_.layer_events.clear();
   report_.energy_gained = report_.energy_out_of_nothing = 0;
-  report_.solver_residual = report_.solver_creep = 0;
+  report_.solver_residual = report_.solver_creep = report_.wrench_error = 0;
   report_.solver_iterations = 0;
   report_.dt = config_.time_step;
   joint_wrenches_.assign(world_.world.jointCount(), Wrench());
@@ -143,7 +143,6 @@ void Simulator::Impl::stepGuard() {
 
 void Simulator::Impl::acceptSubstep() {
   recordSolve();
-  if (contacts_.budgetUsedUp()) report_.status |= CONTACTS_REDUCED;
   for (std::size_t j = 0; j < joint_wrenches_.size(); ++j) {
     joint_wrenches_[j].force += substeps_.fraction() * solved_->joint_wrenches[j].force;
     joint_wrenches_[j].torque += substeps_.fraction() * solved_->joint_wrenches[j].torque;
@@ -200,6 +199,8 @@ void Simulator::Impl::recordContacts() {
     contact_reports_.push_back({solved.collider_a, solved.collider_b, constraint.body_a, constraint.body_b, constraint.point,
                                 constraint.normal_BA, depth, of_layer, force, solved.pierced});
   }
+  if (contacts_.reductionLoss().cut_pairs > 0) report_.status |= CONTACTS_REDUCED;
+  report_.wrench_error = std::max(report_.wrench_error, contacts_.reductionLoss().wrench);
   if (!contacts_.recoveries().empty()) report_.status |= CONTACT_UNRELIABLE;
   if (!contacts_.leftOut().empty()) report_.status |= CONTACT_UNRELIABLE | CONTACTS_REDUCED;
   for (const ContactManifold& manifold : contacts_.current()) {
