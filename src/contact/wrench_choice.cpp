@@ -17,7 +17,8 @@ namespace {
 // [m] Once no wrench lacks, depth counts too, a unit force per this depth.
 constexpr double DEPTH_SCALE = 1e-3;
 constexpr float NOTHING_LACKS = 1e-6f;  // of a unit force
-constexpr float BETWEEN = 0.1f;         // of a unit force: what directions between those looked at may lack more
+// What directions between those looked at may lack more, of a unit force, and of what those looked at lack.
+constexpr float BETWEEN = 0.1f, MORE_BETWEEN = 0.3f;
 
 double nextUniform(std::uint64_t& state) {  // splitmix64
   std::uint64_t z = (state += 0x9E3779B97F4A7C15ull);
@@ -155,6 +156,9 @@ void addDeepest(const std::vector<Contact>& contacts, const std::vector<int>& me
   chosen->insert(chosen->end(), rest.begin(), rest.begin() + room);
 }
 
+/** In any direction. */
+float atMost(float lack) { return (1 + MORE_BETWEEN) * std::max(0.0f, lack) + BETWEEN; }
+
 }  // namespace
 
 float chooseSpanningContacts(const std::vector<Contact>& contacts, const std::vector<int>& members, const PatchScale& scale, int k,
@@ -188,14 +192,14 @@ float chooseSpanningContacts(const std::vector<Contact>& contacts, const std::ve
   }
   for (int& i : *chosen) i = (*candidates)[i];
   if (static_cast<int>(chosen->size()) < k) addDeepest(contacts, members, static_cast<std::size_t>(k), chosen);
-  return std::max(0.0f, lack) + BETWEEN;
+  return atMost(lack);
 }
 
 float wrenchLack(const std::vector<Contact>& all, const std::vector<Contact>& kept) {
   static thread_local Choice choice;
   bool sound = true;
   const PatchScale scale(all, &sound);
-  return sound ? choice.lackOf(all, kept, scale) + BETWEEN : 1;
+  return sound ? atMost(choice.lackOf(all, kept, scale)) : 1;
 }
 
 }  // namespace blem_sim

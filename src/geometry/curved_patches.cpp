@@ -10,7 +10,7 @@ namespace blem_sim {
 namespace {
 
 constexpr double BOWED = 0.1;   // of the heights' mean square: what a surface of second order may leave
-constexpr double SMOOTH = 0.5;  // of the heights' range: what an edge may climb
+constexpr double SMOOTH = 0.5;  // of the heights' range: what a flat facet may climb
 
 using Terms = Eigen::Matrix<double, 6, 1>;
 
@@ -76,18 +76,20 @@ class PatchHeights {
   Vector3 u_, v_;
 };
 
-/** By patch: [m] the most that an edge of it climbs. */
-std::vector<double> steepestEdges(const MeshTopology& topology, const TriangleMesh& mesh, const std::vector<int>& patch_of,
-                                  const std::vector<PatchPlane>& planes) {
-  std::vector<double> steepest(planes.size(), 0);
-  for (int edge = 0; edge < topology.edgeCount(); ++edge) {
-    for (const int face : topology.facesOf(edge)) {
-      const int patch = patch_of[face];
-      if (patch < 0 || !planes[patch].asked) continue;
-      const auto [start, end] = topology.ends(mesh, edge);
-      const double climb = std::abs(planes[patch].normal.dot(mesh.vertices[end] - mesh.vertices[start]));
-      steepest[patch] = std::max(steepest[patch], climb);
+/** By patch: [m] the most that a flat facet of it climbs, of one triangle or of several that continue one another. */
+std::vector<double> steepestFacets(const MeshTopology& topology, const TriangleMesh& mesh, const std::vector<int>& patch_of,
+                                   const std::vector<PatchPlane>& planes) {
+  std::vector<double> steepest(planes.size(), 0), low(mesh.elements.size(), std::numeric_limits<double>::infinity()), high(low.size());
+  for (std::size_t i = 0; i < patch_of.size(); ++i) {
+    const int patch = patch_of[i], facet = topology.patchOf(static_cast<int>(i));
+    if (patch < 0 || !planes[patch].asked) continue;
+    if (std::isinf(low[facet])) high[facet] = -low[facet];
+    const PatchHeights heights(mesh, planes[patch]);
+    for (int k = 0; k < 3; ++k) {
+      low[facet] = std::min(low[facet], heights.height(mesh.elements[i][k]));
+      high[facet] = std::max(high[facet], heights.height(mesh.elements[i][k]));
     }
+    steepest[patch] = std::max(steepest[patch], high[facet] - low[facet]);
   }
   return steepest;
 }
@@ -105,7 +107,7 @@ std::vector<char> findCurved(const MeshTopology& topology, const TriangleMesh& m
   if (vertices.empty()) return curved;
   std::sort(vertices.begin(), vertices.end());
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-  const std::vector<double> steepest = steepestEdges(topology, mesh, patch_of, planes);
+  const std::vector<double> steepest = steepestFacets(topology, mesh, patch_of, planes);
   for (auto begin = vertices.begin(), end = begin; begin != vertices.end(); begin = end) {
     const int patch = begin->first;
     end = std::find_if(begin, vertices.end(), [&](const auto& pair) { return pair.first != patch; });

@@ -17,7 +17,8 @@ struct PatchPlane {
 /**
  * Whether a patch's vertices lie over its plane as those of a curved surface do. Noise differs from vertex to vertex. So a patch is curved
  * if a surface of second order leaves no more than a tenth of the heights' mean square, as under a lens or a barrel, however few its
- * vertices; or if no edge climbs more than half of the way from its lowest vertex to its highest, as in any fine mesh of something smooth.
+ * vertices; or if no flat facet climbs more than half of the way from its lowest vertex to its highest, as in any fine mesh of something
+ * smooth.
  * @param patch_of patch of each element; negative: none @param planes by patch
  * @return by patch; false where not asked
  */
