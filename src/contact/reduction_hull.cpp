@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "blem_sim/contact/reduction.h"
+#include "blem_sim/geometry/roomy.h"
 #include "contact_order.h"
 #include "continued_choice.h"
 #include "crowd.h"
@@ -105,6 +106,7 @@ float chooseFromHulls(const std::vector<Contact>& contacts, const ThinnedContact
                       std::vector<Contact>* reduced) {
   const bool few = static_cast<int>(thinned.kept.size()) <= k;
   Buffers& buffers = threadBuffers();
+  makeRoomFor(thinned.kept.size(), &buffers.chosen);
   if (few) buffers.chosen = thinned.kept;
   const float lack = few ? 0 : choose(contacts, thinned, k, chosen_before, &buffers);
   sortCanonically(contacts, &buffers.chosen);
