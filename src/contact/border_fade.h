@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "blem_sim/geometry/roomy.h"
 #include "candidate_lists.h"
 #include "mesh_pair.h"
 #include "surroundings.h"
@@ -16,8 +17,8 @@ struct BesideFaces {
   std::vector<kernels::BesideSides> sides;  ///< of each
 
   void resize(std::size_t size) {
-    pairs.resize(size);
-    sides.resize(size);
+    resizeRoomy(size, &pairs);
+    resizeRoomy(size, &sides);
   }
 };
 
@@ -30,9 +31,9 @@ struct LeavingBuffers {
 
   void makeRoom(std::size_t pairs) {
     if (fades.size() >= pairs) return;
-    questions.resize(3 * pairs);
-    answers.resize(3 * pairs);
-    fades.resize(pairs);
+    resizeRoomy(3 * pairs, &questions);
+    resizeRoomy(3 * pairs, &answers);
+    resizeRoomy(pairs, &fades);
   }
 };
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "blem_sim/geometry/roomy.h"
 #include "tolerances.h"
 #include "vectors.h"
 
@@ -117,7 +118,7 @@ namespace {
 template <typename Record>
 void turn(void (*kernel)(const Record*, std::uint32_t, const kernels::Motion&, Record*), const std::vector<Record>& in,
           const kernels::Motion& motion, std::vector<Record>* out) {
-  if (out->size() < in.size()) out->resize(in.size());
+  if (out->size() < in.size()) resizeRoomy(in.size(), out);
   kernel(in.data(), static_cast<std::uint32_t>(in.size()), motion, out->data());
 }
 
@@ -149,7 +150,7 @@ void groupByFaces(const MeshPair& pair, CandidateLists* lists, CandidatePairs* r
     for (const Candidate& c : candidates) ++places[faces[c.b]];
     std::uint32_t end = 0;
     for (std::uint32_t& place : places) end += std::exchange(place, end);
-    grouped.resize(candidates.size());
+    resizeRoomy(candidates.size(), &grouped);
     for (const Candidate& c : candidates) grouped[places[faces[c.b]]++] = c;
     candidates.swap(grouped);
   }
@@ -160,7 +161,7 @@ namespace {
 /** Keeps what the kernel copies. */
 template <typename Kernel>
 void keep(Kernel&& kernel, const kernels::Reach& reach, const std::vector<Candidate>& from, std::vector<Candidate>* to) {
-  to->resize(from.size());
+  resizeRoomy(from.size(), to);
   to->resize(kernel(from.data(), static_cast<std::uint32_t>(from.size()), reach, to->data()));
 }
 template <typename Kernel, typename First, typename Second>
@@ -180,7 +181,7 @@ std::size_t findNearest(const MeshPair& pair, const TurnedFeatures& turned, cons
   for (const bool moves : {true, false}) {
     const NearFeatures& partner = lists.near[!moves];
     const kernels::NearVertices vertices = turned.nearFaces(lists, moves, pair.X_FM);
-    nearest->inner[moves].resize(all.vertex_face[moves].size());
+    resizeRoomy(all.vertex_face[moves].size(), &nearest->inner[moves]);
     keep(
         [&](auto&&... rest) {
           return kernels.nearVertexFaces(vertices, partner.faces.records.data(), partner.open.data(), rest...,

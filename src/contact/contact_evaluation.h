@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "blem_sim/geometry/roomy.h"
 #include "border_fade.h"
 #include "candidate_lists.h"
 #include "close_contacts.h"
@@ -54,7 +55,7 @@ struct EvaluationBuffers {
 
   template <typename Items, typename... Item>
   static void makeRoom(std::size_t size, Items* items, const Item&... filled_with) {
-    if (items->size() < size) items->resize(size, filled_with...);
+    if (items->size() < size) resizeRoomy(size, items, filled_with...);
   }
 };
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "blem_sim/geometry/roomy.h"
 #include "kernels/edge_directions.h"
 #include "kernels/records.h"
 #include "surroundings.h"
@@ -21,8 +22,8 @@ class FadingRecords {
 
   /** There is a place for all features of a list. */
   void makePlaces(std::size_t vertices, std::size_t faces) {
-    if (at_vertices_.size() < vertices) at_vertices_.resize(vertices, {UNKNOWN, 0});
-    if (of_faces_.size() < faces) of_faces_.resize(faces, UNKNOWN);
+    if (at_vertices_.size() < vertices) resizeRoomy(vertices, &at_vertices_, Directions{UNKNOWN, 0});
+    if (of_faces_.size() < faces) resizeRoomy(faces, &of_faces_, std::uint32_t{UNKNOWN});
   }
   /** Of the edges at a vertex. @param vertex in the list @param name in the mesh */
   const Directions& directionsAt(const MeshSide& side, std::uint32_t vertex, int name, SurroundingsMemory* surroundings) {

@@ -20,8 +20,9 @@ struct ThinnedContacts {
  */
 bool thinToHulls(const std::vector<Contact>& contacts, int k, ThinnedContacts* thinned);
 
-/** What is kept, or k of it that span the wrenches best. @param reduced overwritten; sorted by id */
-void chooseFromHulls(const std::vector<Contact>& contacts, const ThinnedContacts& thinned, int k, const ContactIds& chosen_before,
-                     std::vector<Contact>* reduced);
+/** What is kept, or k of it that span the wrenches best. @param reduced overwritten; sorted by id
+ * @return what it lacks at most of the wrenches, as chooseSpanningContacts tells it; 0 if nothing is left out */
+float chooseFromHulls(const std::vector<Contact>& contacts, const ThinnedContacts& thinned, int k, const ContactIds& chosen_before,
+                      std::vector<Contact>* reduced);
 
 }  // namespace blem_sim

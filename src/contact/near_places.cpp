@@ -2,6 +2,7 @@
 
 #include <cstring>
 
+#include "blem_sim/geometry/roomy.h"
 #include "contact_order.h"
 #include "tolerances.h"
 
@@ -24,12 +25,12 @@ std::uint64_t nearest(double value) {
 void NearPlaces::begin(const Contact* contacts, std::size_t count) {
   contacts_ = contacts;
   count_ = 0;
-  added_.resize(count);
-  slots_.resize(count);
+  resizeRoomy(count, &added_);
+  resizeRoomy(count, &slots_);
   int bits = 4;
   while (std::size_t{1} << bits < 4 * count) ++bits;
   last_.clear();
-  last_.resize(std::size_t{1} << bits);  // with NONE
+  resizeRoomy(std::size_t{1} << bits, &last_);  // with NONE
   const auto slot = [bits](std::uint64_t slab) { return static_cast<std::uint32_t>(slab * 0x9E3779B97F4A7C15u >> (64 - bits)); };
   const Vector3 across = UNCOMMON_DIRECTION / WIDTH;
   for (std::size_t i = 0; i < count; ++i) {

@@ -1,5 +1,7 @@
 #include "normal_cells.h"
 
+#include "blem_sim/geometry/roomy.h"
+
 namespace blem_sim {
 
 namespace {
@@ -30,7 +32,7 @@ bool NormalCells::group(const std::vector<Contact>& contacts) {
   cells_.clear();
   ends_.clear();
   slots_.fill(-1);
-  cell_of_.resize(contacts.size());
+  resizeRoomy(contacts.size(), &cell_of_);
   int last = -1;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const std::uint64_t key = keyOf(contacts[i].normal_BA);
@@ -42,10 +44,11 @@ bool NormalCells::group(const std::vector<Contact>& contacts) {
     cell_of_[i] = static_cast<std::int16_t>(last);
   }
   // Counting sort; ends_[c + 1] is where members of cell c go on.
+  makeRoomFor(cells_.size() + 2, &ends_);
   ends_.assign(cells_.size() + 2, 0);
   for (const std::int16_t cell : cell_of_) ++ends_[cell + 2];
   for (std::size_t c = 2; c < ends_.size(); ++c) ends_[c] += ends_[c - 1];
-  members_.resize(contacts.size());
+  resizeRoomy(contacts.size(), &members_);
   for (std::size_t i = 0; i < contacts.size(); ++i) members_[ends_[cell_of_[i] + 1]++] = static_cast<int>(i);
   return true;
 }

@@ -6,6 +6,7 @@
 
 #include "contact_order.h"
 #include "hull_stages.h"
+#include "wrench_choice.h"
 
 namespace blem_sim {
 
@@ -39,18 +40,20 @@ void reduceContacts(const std::vector<Contact>& contacts, int k, const Reduction
   std::sort(reduced->begin(), reduced->end(), contactBefore);
 }
 
-/** k shared by `counts` in proportion, by largest remainders; nobody gets more than it has; each at least `floor`, if it has that. */
+constexpr int FLOOR = 3;  // contacts of a pair, if it has them, whatever budgets say: with none it falls through, with two it tips over
+
+/** k shared by `counts` in proportion, by largest remainders; nobody gets more than it has; each at least FLOOR, if it has that, even
+ * where they sum to more than k. */
 void fairShares(int k, Buffers* buffers) {
   const std::vector<int>& counts = buffers->counts;
   std::vector<int>& shares = buffers->shares;
   const int parties = static_cast<int>(counts.size());
   const long total = std::accumulate(counts.begin(), counts.end(), 0L);
-  const int floor = 3L * parties <= k ? 3 : (parties <= k ? 1 : 0);
   shares.resize(parties);
   buffers->remainders.clear();
   for (int i = 0; i < parties; ++i) {
     const long part = static_cast<long>(k) * counts[i];
-    shares[i] = std::max(static_cast<int>(part / total), std::min(floor, counts[i]));
+    shares[i] = std::max(static_cast<int>(part / total), std::min(FLOOR, counts[i]));
     buffers->remainders.push_back({-(part % total), i});
   }
   std::sort(buffers->remainders.begin(), buffers->remainders.end());
@@ -61,8 +64,12 @@ void fairShares(int k, Buffers* buffers) {
     ++shares[party];
     --left;
   }
-  // The floors may have overdrawn: the largest give back, one at a time.
-  for (; left < 0; ++left) --*std::max_element(shares.begin(), shares.end());
+  // The floors may have overdrawn: the largest give back, one at a time, down to the floor.
+  for (; left < 0; ++left) {
+    const auto largest = std::max_element(shares.begin(), shares.end());
+    if (*largest <= FLOOR) break;
+    --*largest;
+  }
 }
 
 using ModelManifold = std::vector<std::pair<int, int>>::const_iterator;
@@ -86,7 +93,7 @@ void applyBudget(ModelManifold begin, ModelManifold end, int k, Buffers* buffers
   for (std::size_t i = 0; i < touching.size(); ++i) limits[touching[i]] = std::min(limits[touching[i]], buffers->shares[i]);
 }
 
-// Lowers limits until every model keeps to its budget.
+// Lowers limits until every model keeps to its budget, or its pairs to FLOOR.
 void applyBudgets(const std::vector<int>& model_a, const std::vector<int>& model_b, const std::vector<ContactBudget>& budgets,
                   Buffers* buffers) {
   std::vector<std::pair<int, int>>& of_models = buffers->of_models;
@@ -130,16 +137,22 @@ int prepare(const ContactManifold& manifold, int limit, const Reduction& method,
   return static_cast<int>(reduced->size());
 }
 
-void finish(const ContactManifold& manifold, int limit, const Reduction& method, const ContactIds& chosen_before,
-            const ThinnedContacts& thinned, Buffers* buffers, std::vector<Contact>* reduced) {
-  if (!thinned.kept.empty()) {
-    if (limit > 0) return chooseFromHulls(manifold.contacts, thinned, limit, chosen_before, reduced);
-    return reduced->clear();
+// Chooses within the limit, at least 1 where there are contacts. @return what of the wrenches is lacking
+float finish(const ContactManifold& manifold, int limit, const Reduction& method, const ContactIds& chosen_before,
+             const ThinnedContacts& thinned, Buffers* buffers, std::vector<Contact>* reduced) {
+  if (!thinned.kept.empty()) return chooseFromHulls(manifold.contacts, thinned, limit, chosen_before, reduced);
+  if (limit < static_cast<int>(reduced->size())) {
+    buffers->again = *reduced;
+    reduceContacts(buffers->again, limit, method, chosen_before, buffers, reduced);
   }
-  if (limit >= static_cast<int>(reduced->size())) return;
-  buffers->again = *reduced;
-  reduced->clear();
-  if (limit > 0) reduceContacts(buffers->again, limit, method, chosen_before, buffers, reduced);
+  const bool all = reduced->size() == manifold.contacts.size();
+  return all || hasPierced(manifold.contacts) ? 0 : wrenchLack(manifold.contacts, *reduced);
+}
+
+// Whether a pair has fewer contacts than it would have without a limit.
+bool isCut(const ContactManifold& manifold, int limit, const ThinnedContacts& thinned, const std::vector<Contact>& reduced) {
+  if (!thinned.kept.empty()) return reduced.size() < thinned.kept.size();
+  return static_cast<int>(manifold.contacts.size()) > limit;
 }
 
 }  // namespace
@@ -166,9 +179,9 @@ void reduceNone(const std::vector<Contact>& contacts, int, const ContactIds&, st
   makeCanonical(*reduced);
 }
 
-int reduceManifolds(const std::vector<ContactManifold>& manifolds, const std::vector<int>& model_a, const std::vector<int>& model_b,
-                    const std::vector<ContactBudget>& budgets, const Reduction& method, ReductionMemory* memory,
-                    std::vector<ContactManifold>* reduced) {
+ReductionLoss reduceManifolds(const std::vector<ContactManifold>& manifolds, const std::vector<int>& model_a,
+                              const std::vector<int>& model_b, const std::vector<ContactBudget>& budgets, const Reduction& method,
+                              ReductionMemory* memory, std::vector<ContactManifold>* reduced) {
   static thread_local Buffers buffers;
   const bool all = method.reduce == reduceNone;
   const int count = static_cast<int>(manifolds.size());
@@ -182,13 +195,19 @@ int reduceManifolds(const std::vector<ContactManifold>& manifolds, const std::ve
     buffers.sizes[m] =
         prepare(manifolds[m], buffers.limits[m], method, memory->of(manifolds[m]), &buffers, &buffers.thinned[m], &(*reduced)[m].contacts);
   }
-  if (!all) {
-    applyBudgets(model_a, model_b, budgets, &buffers);
-    for (int m = 0; m < count; ++m)
-      finish(manifolds[m], buffers.limits[m], method, memory->of(manifolds[m]), buffers.thinned[m], &buffers, &(*reduced)[m].contacts);
-    memory->remember(*reduced);
+  if (all) return {};
+  applyBudgets(model_a, model_b, budgets, &buffers);
+  ReductionLoss loss;
+  for (int m = 0; m < count; ++m) {
+    std::vector<Contact>& kept = (*reduced)[m].contacts;
+    const float lack = finish(manifolds[m], buffers.limits[m], method, memory->of(manifolds[m]), buffers.thinned[m], &buffers, &kept);
+    if (!isCut(manifolds[m], buffers.limits[m], buffers.thinned[m], kept)) continue;
+    ++loss.cut_pairs;
+    loss.wrench = std::max(loss.wrench, static_cast<double>(lack));
   }
-  return countContacts(manifolds) - countContacts(*reduced);
+  memory->remember(*reduced);
+  loss.contacts = countContacts(manifolds) - countContacts(*reduced);
+  return loss;
 }
 
 }  // namespace blem_sim

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "blem_sim/contact/reduction.h"
+#include "blem_sim/geometry/roomy.h"
 #include "contact_order.h"
 #include "continued_choice.h"
 #include "crowd.h"
@@ -81,15 +82,15 @@ void keepPatchHulls(const std::vector<Contact>& contacts, int k, Buffers* buffer
   }
 }
 
-void choose(const std::vector<Contact>& contacts, const ThinnedContacts& thinned, int k, const ContactIds& chosen_before,
-            Buffers* buffers) {
+float choose(const std::vector<Contact>& contacts, const ThinnedContacts& thinned, int k, const ContactIds& chosen_before,
+             Buffers* buffers) {
   if (thinned.kept.size() > CROWD && k <= FEW) {
     thinCrowd(contacts, thinned.scale, thinned.kept, chosen_before, &buffers->candidates);
   } else {
-    if (surelyGoesOn(contacts, thinned.kept, thinned.scale, k, chosen_before, &buffers->chosen)) return;
+    if (surelyGoesOn(contacts, thinned.kept, thinned.scale, k, chosen_before, &buffers->chosen)) return GOOD_ENOUGH;
     buffers->candidates = thinned.kept;
   }
-  chooseSpanningContacts(contacts, thinned.kept, thinned.scale, k, chosen_before, &buffers->candidates, &buffers->chosen);
+  return chooseSpanningContacts(contacts, thinned.kept, thinned.scale, k, chosen_before, &buffers->candidates, &buffers->chosen);
 }
 
 }  // namespace
@@ -101,23 +102,25 @@ bool thinToHulls(const std::vector<Contact>& contacts, int k, ThinnedContacts* t
   return ready;
 }
 
-void chooseFromHulls(const std::vector<Contact>& contacts, const ThinnedContacts& thinned, int k, const ContactIds& chosen_before,
-                     std::vector<Contact>* reduced) {
+float chooseFromHulls(const std::vector<Contact>& contacts, const ThinnedContacts& thinned, int k, const ContactIds& chosen_before,
+                      std::vector<Contact>* reduced) {
   const bool few = static_cast<int>(thinned.kept.size()) <= k;
   Buffers& buffers = threadBuffers();
-  if (few) {
-    buffers.chosen = thinned.kept;
-  } else {
-    choose(contacts, thinned, k, chosen_before, &buffers);
-  }
+  makeRoomFor(thinned.kept.size(), &buffers.chosen);
+  if (few) buffers.chosen = thinned.kept;
+  const float lack = few ? 0 : choose(contacts, thinned, k, chosen_before, &buffers);
   sortCanonically(contacts, &buffers.chosen);
   reduced->clear();
   for (const int i : buffers.chosen) reduced->push_back(contacts[i]);
+  return lack;
 }
 
 void reduceHull(const std::vector<Contact>& contacts, int k, const ContactIds& chosen_before, std::vector<Contact>* reduced) {
   static thread_local ThinnedContacts thinned;
-  if (thinToHulls(contacts, k, &thinned)) return chooseFromHulls(contacts, thinned, k, chosen_before, reduced);
+  if (thinToHulls(contacts, k, &thinned)) {
+    chooseFromHulls(contacts, thinned, k, chosen_before, reduced);
+    return;
+  }
   static thread_local std::vector<Contact> usable;
   usable = contacts;
   makeUsable(usable);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "blem_sim/contact/manifold.h"
+#include "blem_sim/geometry/roomy.h"
 #include "kernels/records.h"
 #include "mesh_pair.h"
 
@@ -66,7 +67,7 @@ class ContactWriter {
   }
   /** For so many more; whoever takes it writes every number. */
   Contact* room(std::size_t more) {
-    if (contacts_->size() < count_ + more) contacts_->resize(count_ + more);
+    if (contacts_->size() < count_ + more) resizeRoomy(count_ + more, contacts_);
     return contacts_->data() + count_;
   }
   kernels::ContactRow* rows(std::size_t more) { return reinterpret_cast<kernels::ContactRow*>(room(more)); }

@@ -17,6 +17,8 @@ namespace {
 // [m] Once no wrench lacks, depth counts too, a unit force per this depth.
 constexpr double DEPTH_SCALE = 1e-3;
 constexpr float NOTHING_LACKS = 1e-6f;  // of a unit force
+// What directions between those looked at may lack more, of a unit force, and of what those looked at lack.
+constexpr float BETWEEN = 0.1f, MORE_BETWEEN = 0.3f;
 
 double nextUniform(std::uint64_t& state) {  // splitmix64
   std::uint64_t z = (state += 0x9E3779B97F4A7C15ull);
@@ -94,6 +96,21 @@ class Choice {
     return lack;
   }
 
+  /** What others lack of the wrenches of these. */
+  float lackOf(const std::vector<Contact>& contacts, const std::vector<Contact>& others, const PatchScale& scale) {
+    const auto findExtremes = [&](const std::vector<Contact>& of, WrenchComponents* extremes) {
+      points_.clear();
+      for (const Contact& contact : of) points_.push_back(wrenchPoint(contact, scale));
+      if (components_.size() < points_.size()) components_.resize(points_.size());
+      findWrenches(directions_, points_.data(), static_cast<int>(points_.size()), components_.data(), extremes);
+    };
+    findExtremes(contacts, &extremes_);
+    findExtremes(others, &reached_);
+    float lack = 0;
+    for (int d = 0; d < WRENCH_DIRECTIONS; ++d) lack = std::max(lack, extremes_.value[d] - reached_.value[d]);
+    return lack;
+  }
+
  private:
   float add(int candidate) { return addWrenches(components_[candidate], points_[candidate].handicap, extremes_, &reached_); }
 
@@ -139,10 +156,13 @@ void addDeepest(const std::vector<Contact>& contacts, const std::vector<int>& me
   chosen->insert(chosen->end(), rest.begin(), rest.begin() + room);
 }
 
+/** In any direction. */
+float atMost(float lack) { return (1 + MORE_BETWEEN) * std::max(0.0f, lack) + BETWEEN; }
+
 }  // namespace
 
-void chooseSpanningContacts(const std::vector<Contact>& contacts, const std::vector<int>& members, const PatchScale& scale, int k,
-                            const ContactIds& chosen_before, std::vector<int>* candidates, std::vector<int>* chosen) {
+float chooseSpanningContacts(const std::vector<Contact>& contacts, const std::vector<int>& members, const PatchScale& scale, int k,
+                             const ContactIds& chosen_before, std::vector<int>* candidates, std::vector<int>* chosen) {
   static thread_local Choice choice;
   static thread_local std::vector<int> continued;
   sortCanonically(contacts, candidates);
@@ -161,7 +181,10 @@ void chooseSpanningContacts(const std::vector<Contact>& contacts, const std::vec
     chosen->swap(continued);
   } else {
     chosen->assign(1, deep);
-    if (lack <= choice.addExtremes(k, chosen) + GOOD_ENOUGH) chosen->swap(continued);
+    const float fresh = choice.addExtremes(k, chosen);
+    const bool goes_on = lack <= fresh + GOOD_ENOUGH;
+    if (goes_on) chosen->swap(continued);
+    if (!goes_on) lack = fresh;
   }
   if (static_cast<int>(chosen->size()) < k) {
     choice.countDepth(contacts, *candidates);
@@ -169,6 +192,14 @@ void chooseSpanningContacts(const std::vector<Contact>& contacts, const std::vec
   }
   for (int& i : *chosen) i = (*candidates)[i];
   if (static_cast<int>(chosen->size()) < k) addDeepest(contacts, members, static_cast<std::size_t>(k), chosen);
+  return atMost(lack);
+}
+
+float wrenchLack(const std::vector<Contact>& all, const std::vector<Contact>& kept) {
+  static thread_local Choice choice;
+  bool sound = true;
+  const PatchScale scale(all, &sound);
+  return sound ? atMost(choice.lackOf(all, kept, scale)) : 1;
 }
 
 }  // namespace blem_sim

@@ -19,8 +19,13 @@ namespace blem_sim {
  * @param members indices of the contacts to choose from @param scale of all contacts
  * @param candidates those of the members that may be extreme; reordered
  * @param chosen overwritten by indices
+ * @return what those chosen lack of the candidates' wrenches in the direction that lacks most, of a unit force; lengths in the scale's
+ * radius
  */
-void chooseSpanningContacts(const std::vector<Contact>& contacts, const std::vector<int>& members, const PatchScale& scale, int k,
-                            const ContactIds& chosen_before, std::vector<int>* candidates, std::vector<int>* chosen);
+float chooseSpanningContacts(const std::vector<Contact>& contacts, const std::vector<int>& members, const PatchScale& scale, int k,
+                             const ContactIds& chosen_before, std::vector<int>* candidates, std::vector<int>* chosen);
+
+/** What `kept` lack, as chooseSpanningContacts tells it, of the wrenches of all contacts. @return 1 if some contact is not sound */
+float wrenchLack(const std::vector<Contact>& all, const std::vector<Contact>& kept);
 
 }  // namespace blem_sim

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "blem_sim/geometry/roomy.h"
 #include "contact_motion.h"
 #include "contact_work.h"
 #include "island_impacts.h"
@@ -213,6 +214,7 @@ void ArticulatedStepper::reckonWork(bool leaps, Island* island) {
   const IslandProblem& problem = island->problem;
   if (leaps)
     for (const int tree : problem.trees) computeTwists(forest_, tree, motion_, impact_space_.leap, &impact_space_.twist);
+  makeRoomFor(problem.contacts.size(), &island->apparent_work);
   island->apparent_work.assign(problem.contacts.size(), 0);
   for (const ContactPatch& patch : problem.patches) {
     Vector6 before = relativeTwist(patch.pair, motion_.twist);
@@ -340,6 +342,8 @@ void ArticulatedStepper::step(Scene* scene, const StepInput& input, SolveResult*
   rebuild(*scene);
   readEdits(*scene);
   findIslands(*scene, input.contacts);
+  makeRoomFor(input.contacts.size(), &result->contact_forces);
+  makeRoomFor(input.contacts.size(), &result->apparent_work);
   result->contact_forces.assign(input.contacts.size(), Vector3::Zero());
   result->apparent_work.assign(input.contacts.size(), 0);
   result->joint_efforts.assign(scene->joints().size(), 0);

@@ -219,7 +219,8 @@ Matrix6 IslandResponse::between(const ResponseSide& of, const ResponseSide& to) 
   const int last = forest_->nodes()[of.node].last_dof;
   for (int e = 0; last >= 0 && e < forest_->rowLength(last); ++e) {
     const int dof = forest_->columns(last)[e];
-    out += motion_->subspace[dof] * columns.row(unit.rowOf(dof));
+    const Eigen::Matrix<double, 1, 6> row = columns.row(unit.rowOf(dof));  // as long as it is: products of it need no memory
+    out += motion_->subspace[dof] * row;
   }
   return out;
 }

@@ -22,9 +22,11 @@ void subtract(const std::vector<double>& a, const std::vector<double>& b, std::v
 
 }  // namespace
 
-// Room for all that may come, so that a step like the ones before allocates nothing.
+// Room for all that may come, so that a step like the ones before, or with twice the contacts, allocates nothing.
 void SlipMixing::start(std::size_t lanes) {
   steps_ = 0;
+  if (lanes <= shift_.capacity()) return;
+  lanes *= 2;
   for (Slips* slips : {&now_, &last_, &changes_[0], &changes_[1]})
     for (std::vector<double>* v : {&slips->found, &slips->miss}) v->reserve(lanes);
   shift_.reserve(lanes);

@@ -9,6 +9,8 @@
 #include <numeric>
 #include <utility>
 
+#include "curved_patches.h"
+
 namespace blem_sim {
 namespace {
 
@@ -68,12 +70,9 @@ class PlaneFinder {
     for (std::size_t i = 0; i < patch_of_.size(); ++i) addFace(static_cast<int>(i));
     for (Patch& patch : patches_) fit(&patch);
     measureDeviations();
-    bool found = false;
-    for (Patch& patch : patches_) {
-      patch.plane = isPlane(patch);
-      found = found || (patch.plane && patch.rough);
-    }
-    return found;
+    for (Patch& patch : patches_) patch.plane = isPlane(patch);
+    dropCurved();
+    return std::any_of(patches_.begin(), patches_.end(), [](const Patch& patch) { return patch.plane && patch.rough; });
   }
 
   std::vector<Patch>& patches() { return patches_; }
@@ -221,8 +220,20 @@ class PlaneFinder {
   static bool isPlane(const Patch& patch) {
     if (patch.deviation > PLANE_DEVIATION || MIN_WIDTH * patch.deviation > patch.width) return false;
     if (isDoubtful(patch)) return false;
-    const bool has_edges = MIN_WIDTH_OF_FEW * patch.deviation <= patch.width && hasEdges(patch);
-    return patch.faces >= MANY_FACES || patch.deviation <= patch.noise || has_edges;
+    return patch.faces >= MANY_FACES || isKnownNoise(patch) || isFlatToTheLastBit(patch);
+  }
+
+  static bool isKnownNoise(const Patch& patch) { return patch.deviation <= patch.noise; }
+  static bool isFlatToTheLastBit(const Patch& patch) { return MIN_WIDTH_OF_FEW * patch.deviation <= patch.width && hasEdges(patch); }
+
+  /** What is no noise for sure, and no rounding, is no plane if it is curved. */
+  void dropCurved() {
+    std::vector<PatchPlane> planes;
+    planes.reserve(patches_.size());
+    for (const Patch& patch : patches_)
+      planes.push_back({patch.centre, patch.normal, patch.plane && patch.rough && !isKnownNoise(patch) && !isFlatToTheLastBit(patch)});
+    const std::vector<char> curved = findCurved(topology_, mesh_, patch_of_, planes);
+    for (std::size_t i = 0; i < patches_.size(); ++i) patches_[i].plane = patches_[i].plane && !curved[i];
   }
 
   const MeshTopology& topology_;

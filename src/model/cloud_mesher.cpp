@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "blem_sim/geometry/far_origin.h"
 #include "quiet_pcl.h"
 #include "surface_soup.h"
 
@@ -56,10 +57,14 @@ class GridMesher {
 std::vector<Vector3i> projectionTriangles(const std::vector<Vector3>& points, double max_edge) {
   pcl::PointCloud<pcl::PointXYZ>::Ptr cloud(new pcl::PointCloud<pcl::PointXYZ>);
   std::vector<int> original;
+  Box bounds;
+  for (const Vector3& p : points)
+    if (p.allFinite()) bounds.extend(p);
+  const Vector3 origin = farOrigin(bounds);
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!points[i].allFinite()) continue;
-    cloud->push_back(
-        pcl::PointXYZ(static_cast<float>(points[i].x()), static_cast<float>(points[i].y()), static_cast<float>(points[i].z())));
+    const Eigen::Vector3f p = (points[i] - origin).cast<float>();
+    cloud->push_back(pcl::PointXYZ(p.x(), p.y(), p.z()));
     original.push_back(static_cast<int>(i));
   }
   if (cloud->size() < 3) return {};

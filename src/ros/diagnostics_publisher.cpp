@@ -93,6 +93,7 @@ void DiagnosticsPublisher::describeContacts(DiagnosticStatusWrapper& status) con
                                      [](const ContactReport& contact) { return contact.pierced || contact.of_layer > 1; });
   status.addf("contacts", "%d", report.reduced_contacts);
   status.addf("contacts before reduction", "%d", report.raw_contacts);
+  status.addf("wrench off by contacts left out in the last second, at most, of the normal force", "%.4f", statistics_.wrench_error);
   status.addf("contacts outside the boundary layers", "%d", static_cast<int>(outside));
   status.addf("steps with such contacts in the last second", "%u", statistics_.unreliable_steps);
   status.addf("deepest contact in the last second [m]", "%.6f", statistics_.max_depth);

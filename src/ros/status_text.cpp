@@ -14,7 +14,7 @@ struct Advice {
 constexpr Advice ADVICE[] = {
     {STEP_SHORTENED, "steps were halved to stay within the boundary layers: raise boundary_width or lower time_step"},
     {CONTACT_UNRELIABLE, "bare meshes cross, forces there are a guess: raise boundary_width, lower time_step, or start from a better pose"},
-    {CONTACTS_REDUCED, "contacts were left out: raise max_contacts_per_robot or max_contacts_per_object if forces look wrong"},
+    {CONTACTS_REDUCED, "contacts were left out: raise max_contacts_per_robot or max_contacts_per_object if wrench_error is too much"},
     {SOLVER_TROUBLE,
      "contact forces are off by over 1 %: smaller time_step or fewer contacts; with world_step or quick_step raise solver/cfm"},
     {STATE_NOT_FINITE,

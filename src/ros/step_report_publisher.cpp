@@ -41,6 +41,7 @@ void StepReportPublisher::publish(const StepReport& report) {
   message.substeps = report.substeps;
   message.raw_contacts = report.raw_contacts;
   message.reduced_contacts = report.reduced_contacts;
+  message.wrench_error = statistics.wrench_error;
   message.max_depth = statistics.max_depth;
   message.max_of_layer = statistics.max_of_layer;
   if (statistics.deepest_a >= 0) message.deepest_a = simulator_.colliders()[statistics.deepest_a].name;

@@ -17,6 +17,7 @@ void StepStatisticsCollector::add(const StepReport& report) {
     statistics_.max_of_layer = report.max_of_layer;
     noteDeepest(report);
   }
+  statistics_.wrench_error = std::max(statistics_.wrench_error, report.wrench_error);
   statistics_.solver_residual = std::max(statistics_.solver_residual, report.solver_residual);
   statistics_.solver_creep = std::max(statistics_.solver_creep, report.solver_creep);
   statistics_.solver_iterations += report.solver_iterations;

@@ -13,6 +13,7 @@ struct StepStatistics {
   std::uint32_t steps = 0;
   std::uint32_t status = STEP_OK;      ///< every bit that was set
   std::uint32_t unreliable_steps = 0;  ///< steps with a contact outside the boundary layers
+  double wrench_error = 0;             ///< largest
   double max_depth = 0, max_of_layer = 0;
   int deepest_a = -1, deepest_b = -1;                                  ///< colliders of the contact that used up most of its layers
   double simulated = 0, wall = 0;                                      ///< [s]

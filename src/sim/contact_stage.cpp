@@ -325,21 +325,12 @@ void ContactStage::reduction(const SimulatedWorld& world, const std::vector<Body
     model_a_.push_back(world.colliders[manifold.a].model);
     model_b_.push_back(world.colliders[manifold.b].model);
   }
-  const int left_out = reduceManifolds(current_, model_a_, model_b_, world.budgets, *method_, &memory_, &reduced_);
+  reduction_loss_ = reduceManifolds(current_, model_a_, model_b_, world.budgets, *method_, &memory_, &reduced_);
   constraints_.clear();
   solved_.clear();
   stops_.start();
-  contacts_of_model_.assign(world.models.size(), 0);
-  for (std::size_t m = 0; m < reduced_.size(); ++m) {
-    addConstraints(world, current_[m], reduced_[m]);
-    const int count = static_cast<int>(reduced_[m].contacts.size());
-    contacts_of_model_[model_a_[m]] += count;
-    if (model_b_[m] != model_a_[m]) contacts_of_model_[model_b_[m]] += count;
-  }
+  for (std::size_t m = 0; m < reduced_.size(); ++m) addConstraints(world, current_[m], reduced_[m]);
   stops_.remember();
-  budget_used_up_ = false;
-  for (std::size_t model = 0; model < contacts_of_model_.size(); ++model)
-    budget_used_up_ = budget_used_up_ || (left_out > 0 && contacts_of_model_[model] >= world.budgets[model].max_contacts);
   meetings_.exchange(&current_);
 }
 

@@ -74,8 +74,8 @@ class ContactStage {
   const LayerStops& stops() const { return stops_; }
   bool known() const { return known_; }
   /**
-   * At most k contacts per model out of current(), as constraints, and the stops below soft ones. Those before touch are the ones that will
-   * be met (ContactMeetings).
+   * At most k contacts per model out of current(), but three of each pair, as constraints, and the stops below soft ones. Those before
+   * touch are the ones that will be met (ContactMeetings).
    * @param bodies states at hand, by slot @param dt [s] of the solve
    */
   void reduction(const SimulatedWorld& world, const std::vector<BodyState>& bodies, double dt);
@@ -115,8 +115,7 @@ class ContactStage {
    * is in the other's; of such pairs only some of each collider are looked at, since their number grows as the colliders' number squared.
    */
   const std::vector<PairLeftOut>& leftOut() const { return current_search_.left_out; }
-  /** A model has as many contacts as it may, and others were left out. */
-  bool budgetUsedUp() const { return budget_used_up_; }
+  const ReductionLoss& reductionLoss() const { return reduction_loss_; }
 
  private:
   struct Search {
@@ -152,8 +151,7 @@ class ContactStage {
   std::vector<ContactConstraint> constraints_;
   std::vector<SolvedContact> solved_;
   std::vector<int> model_a_, model_b_;  // of each of current_
-  std::vector<int> contacts_of_model_;
-  bool budget_used_up_ = false;
+  ReductionLoss reduction_loss_;
 };
 
 }  // namespace blem_sim

@@ -40,11 +40,13 @@ void JointMotor::hold(double position, double velocity) {
 void JointMotor::keepVelocity(double velocity) {
   velocity_only_ = true;
   velocity_target_ = velocity;
+  integral_ = 0;
 }
 
 JointSample JointMotor::desired(double time) const {
   JointSample sample = spline_.sample(time);
-  sample.velocity = (velocity_only_ ? 0 : sample.velocity) + velocity_target_;
+  if (velocity_only_) sample.velocity = sample.effort = 0;
+  sample.velocity += velocity_target_;
   sample.effort += added_effort_;
   return sample;
 }

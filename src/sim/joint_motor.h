@@ -29,7 +29,7 @@ class JointMotor {
   /** Takes over a trajectory's knots. @param position [rad or m] of the joint now, from which a velocity target is left */
   void follow(double now, double start, std::vector<JointSpline::Knot> knots, double position);
   void hold(double position, double velocity = 0);
-  /** Velocity alone: damping against the velocity error, no stiffness, no integral. */
+  /** Velocity alone: damping against the velocity error, no stiffness; what the integral and a trajectory's effort have built up ends. */
   void keepVelocity(double velocity);
   void addEffort(double effort) { added_effort_ = effort; }
 

@@ -1,7 +1,7 @@
 #include <algorithm>
-#include <cmath>
 
 #include "blem_sim/sim/trajectory.h"
+#include "nearest_turn.h"
 #include "number_reader.h"
 
 namespace blem_sim {
@@ -65,9 +65,9 @@ void lowerOrders(std::vector<Knot>* knots) {
   }
 }
 
-/** Adds the multiple of a full turn that brings the first position nearest to `present`. */
+/** Brings the first position nearest to `present`, and the others with it. */
 void takeNearestTurn(double present, std::vector<Knot>* knots) {
-  const double turns = 2 * M_PI * std::round((present - knots->front().position) / (2 * M_PI));
+  const double turns = turnsTo(present, knots->front().position);
   for (Knot& knot : *knots) knot.position += turns;
 }
 

@@ -35,12 +35,30 @@ void PairSearches::watch(const std::vector<WatchedPair>& pairs) {
   if (std::equal(known_.begin(), known_.end(), pairs.begin(), pairs.end(), same)) return;
   std::swap(known_, before_);
   known_.clear();
+  giveBack(pairs);
   auto old = before_.begin();
   for (const WatchedPair& pair : pairs) {
     while (old != before_.end() && std::make_pair(old->a, old->b) < std::make_pair(pair.a, pair.b)) ++old;
-    known_.push_back(old != before_.end() && same(*old, pair) ? std::move(*old) : Known{pair.a, pair.b, NarrowPhaseMemory()});
+    known_.push_back(old != before_.end() && same(*old, pair) ? std::move(*old) : Known{pair.a, pair.b, takeSpare()});
   }
   before_.clear();
+}
+
+/** What pairs have that are watched no more. */
+void PairSearches::giveBack(const std::vector<WatchedPair>& pairs) {
+  auto pair = pairs.begin();
+  for (Known& old : before_) {
+    while (pair != pairs.end() && std::make_pair(pair->a, pair->b) < std::make_pair(old.a, old.b)) ++pair;
+    if (pair == pairs.end() || pair->a != old.a || pair->b != old.b) spare_.push_back(std::move(old.memory));
+  }
+}
+
+/** Its room serves again; what it holds is of other meshes or another pose, which the search sees. */
+NarrowPhaseMemory PairSearches::takeSpare() {
+  if (spare_.empty()) return NarrowPhaseMemory();
+  NarrowPhaseMemory memory = std::move(spare_.back());
+  spare_.pop_back();
+  return memory;
 }
 
 }  // namespace blem_sim

@@ -13,7 +13,7 @@ namespace blem_sim {
 
 struct WatchedPair;
 
-/** Memories of pairs live while the pairs are watched. They change no result, so they are no state. */
+/** Memories of pairs live while the pairs are watched; then others get them. They change no result, so they are no state. */
 class PairSearches {
  public:
   explicit PairSearches(int threads);
@@ -29,8 +29,11 @@ class PairSearches {
     NarrowPhaseMemory memory;
   };
   void watch(const std::vector<WatchedPair>& pairs);
+  void giveBack(const std::vector<WatchedPair>& pairs);
+  NarrowPhaseMemory takeSpare();
 
-  std::vector<Known> known_, before_;  // sorted by (a, b)
+  std::vector<Known> known_, before_;     // sorted by (a, b)
+  std::vector<NarrowPhaseMemory> spare_;  // of pairs that went
   int threads_;
   tbb::task_arena arena_;
 };

@@ -2,11 +2,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 
 #include "blem_sim/geometry/input_error.h"
 #include "nearest_name.h"
+#include "nearest_turn.h"
 #include "simulator_impl.h"
 
 namespace blem_sim {
@@ -36,8 +36,9 @@ void checkValues(const std::vector<double>& values, const JointCommandMessage& c
     throw InputError(
         fmt::format("{}: {}: {} values for {} joints; give one each, or none", where, field, values.size(), command.joints.size()));
   for (std::size_t i = 0; i < values.size(); ++i)
-    if (!std::isfinite(values[i]))
-      throw InputError(fmt::format("{}: {}: joint '{}' has {}; numbers must be finite", where, field, command.joints[i], values[i]));
+    if (!isCommand(values[i]))
+      throw InputError(fmt::format("{}: {}: joint '{}' has {}; numbers must be finite, and not beyond {:g}", where, field,
+                                   command.joints[i], values[i], LARGEST_COMMAND));
 }
 
 void checkCommand(const JointCommandMessage& command, const RobotInfo& robot) {
@@ -73,13 +74,19 @@ void Simulator::Impl::commandJoints(int robot, const JointCommandMessage& comman
   const RobotInfo& info = world_.robots.at(robot);
   checkCommand(command, info);
   for (std::size_t i = 0; i < command.joints.size(); ++i) {
-    JointMotor& motor = world_.motors[info.joints[indexOf(info.joint_names, command.joints[i])]];
+    const int joint = info.joints[indexOf(info.joint_names, command.joints[i])];
+    JointMotor& motor = world_.motors[joint];
     if (!command.positions.empty())
-      motor.hold(command.positions[i], valueAt(command.velocities, i));
+      motor.hold(nearestTurn(joint, command.positions[i]), valueAt(command.velocities, i));
     else if (!command.velocities.empty())
       motor.keepVelocity(command.velocities[i]);
     if (!command.efforts.empty()) motor.addEffort(command.efforts[i]);
   }
+}
+
+double Simulator::Impl::nearestTurn(int joint, double position) const {
+  if (!world_.motors[joint].settings().continuous) return position;
+  return position + turnsTo(world_.world.jointState(joint).position, position);
 }
 
 JointSample Simulator::Impl::desiredState(int joint) const {

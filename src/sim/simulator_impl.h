@@ -56,6 +56,8 @@ struct Simulator::Impl {
   void commandTrajectory(int robot, const JointTrajectory& trajectory);
   void commandJoints(int robot, const JointCommandMessage& command);
   JointSample desiredState(int world_joint) const;
+  /** A position as the joint takes it: of one that turns without end, the turn nearest to where it is. */
+  double nearestTurn(int world_joint, double position) const;
 
   // simulator_state.cpp
   /** What the next save writes, without a header. */

@@ -67,7 +67,7 @@ void Simulator::Impl::startStep() {
   report_.samples.clear();
   report_.layer_events.clear();
   report_.energy_gained = report_.energy_out_of_nothing = 0;
-  report_.solver_residual = report_.solver_creep = 0;
+  report_.solver_residual = report_.solver_creep = report_.wrench_error = 0;
   report_.solver_iterations = 0;
   report_.dt = config_.time_step;
   report_.max_depth = report_.max_of_layer = 0;
@@ -174,7 +174,6 @@ const std::vector<BodyState>* Simulator::Impl::foreseen() {
 
 void Simulator::Impl::acceptSubstep() {
   recordSolve();
-  if (contacts_.budgetUsedUp()) report_.status |= CONTACTS_REDUCED;
   part_reports_.startPart(substeps_.fraction());
   part_reports_.addJoints(solved_->joint_wrenches, solved_->joint_efforts);
   recordSaturation();
@@ -227,6 +226,8 @@ void Simulator::Impl::recordContacts() {
     part_reports_.addContact(constraint.id, withMoments({solved.collider_a, solved.collider_b, constraint.body_a, constraint.body_b,
                                                          constraint.point, constraint.normal_BA, depth, of_layer, force, solved.pierced}));
   }
+  if (contacts_.reductionLoss().cut_pairs > 0) report_.status |= CONTACTS_REDUCED;
+  report_.wrench_error = std::max(report_.wrench_error, contacts_.reductionLoss().wrench);
   if (!contacts_.recoveries().empty()) report_.status |= CONTACT_UNRELIABLE;
   if (!contacts_.leftOut().empty()) report_.status |= CONTACT_UNRELIABLE | CONTACTS_REDUCED;
   for (const ContactManifold& manifold : contacts_.current()) {

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
+#include "blem_sim/geometry/far_origin.h"
 #include "blem_sim/geometry/mesh_shrinking.h"
 
 namespace blem_sim {
@@ -31,6 +33,20 @@ void forgetExpired(Map* known, std::size_t* enough, const Expired& expired) {
   *enough = 2 * known->size();
 }
 
+std::shared_ptr<const TriangleMesh> movedBy(const TriangleMesh& mesh, const Vector3& way) {
+  const auto moved = std::make_shared<TriangleMesh>(mesh);
+  for (Vector3& p : moved->vertices) p += way;
+  return moved;
+}
+
+std::string farAway(const Vector3& origin) {
+  const double farthest = origin.cwiseAbs().maxCoeff(), step = std::nextafter(static_cast<float>(farthest), INFINITY) - farthest;
+  return fmt::format(
+      "lies around ({:.0f}, {:.0f}, {:.0f}) m: searched about that place; where the file is read as floats (all but .pcd) it is rounded to "
+      "{:.2g} m: take that place off its coordinates and add it to the pose",
+      origin.x(), origin.y(), origin.z(), step);
+}
+
 }  // namespace
 
 std::size_t SurfaceLibrary::remembered() const { return files_.size() + meshes_.size() + shrunk_.size(); }
@@ -47,12 +63,17 @@ SharedSurface SurfaceLibrary::load(const std::string& file, const Vector3& scale
                                       cloud.point_radius, cloud.max_edge);
   forgetWhatIsGone();
   Entry& entry = files_[key];
-  if (const auto held = entry.geometry.lock()) return {held, entry.radius, entry.report};
-  const LoadedSurface surface = loadSurface(file, scale, cloud, mending_, progress);
+  if (const auto held = entry.geometry.lock()) return {held, entry.radius, entry.report, entry.origin};
+  LoadedSurface surface = loadSurface(file, scale, cloud, mending_, progress);
   progress("topology and tree of " + surface.report.name, 1 - TREE_FRACTION);
+  const Vector3 origin = farOrigin(surface.mesh->bounds());
+  if (!origin.isZero(0)) {
+    surface.mesh = movedBy(*surface.mesh, -origin);
+    surface.report.notes.push_back(farAway(origin));
+  }
   const auto made = geometry(surface.mesh, surface.topology);
-  entry = {made, surface.radius, surface.report};
-  return {made, surface.radius, surface.report};
+  entry = {made, surface.radius, surface.report, origin};
+  return {made, surface.radius, surface.report, origin};
 }
 
 std::shared_ptr<const CollisionGeometry> SurfaceLibrary::geometry(const std::shared_ptr<const TriangleMesh>& mesh,

@@ -18,6 +18,9 @@ struct SharedSurface {
   std::shared_ptr<const CollisionGeometry> geometry;
   double radius = 0;  ///< [m] > 0 for clouds as points
   MeshReport report;
+  /** [m] of the geometry's frame in the file's: zero unless the file's coordinates are large, as those of a surveyor's grid. Search works
+   *  in floats, which step by half a metre there. */
+  Vector3 origin = Vector3::Zero();
 };
 
 /** Gives the same geometry for the same file and settings, or the same mesh, while anybody holds it. */
@@ -50,6 +53,7 @@ class SurfaceLibrary {
     std::weak_ptr<const CollisionGeometry> geometry;
     double radius = 0;
     MeshReport report;
+    Vector3 origin = Vector3::Zero();
   };
   const Mending mending_;
   std::map<std::string, Entry> files_;

@@ -32,9 +32,9 @@ void checkValues(const JointTrajectory& trajectory, std::size_t point, const cha
     throw InputError(fmt::format("trajectory: points[{}].{}: {} values for {} joints; give one per joint", point, field, values.size(),
                                  trajectory.joints.size()));
   for (std::size_t j = 0; j < values.size(); ++j)
-    if (!std::isfinite(values[j]))
-      throw InputError(
-          fmt::format("trajectory: points[{}].{}: joint '{}' is not a finite number; correct it", point, field, trajectory.joints[j]));
+    if (!isCommand(values[j]))
+      throw InputError(fmt::format("trajectory: points[{}].{}: joint '{}' is not a finite number within {:g}; correct it", point, field,
+                                   trajectory.joints[j], LARGEST_COMMAND));
 }
 
 void checkPoint(const JointTrajectory& trajectory, std::size_t index) {
@@ -51,12 +51,14 @@ void checkPoint(const JointTrajectory& trajectory, std::size_t index) {
 
 void checkTrajectory(const JointTrajectory& trajectory, const std::vector<std::string>& known_joints) {
   checkNames(trajectory, known_joints);
-  if (!std::isfinite(trajectory.start_time)) throw InputError("trajectory: the start time is not a finite number; 0 means now");
+  if (!(std::abs(trajectory.start_time) <= LATEST_COMMAND))
+    throw InputError(fmt::format("trajectory: the start time is not a finite number within {:g} s; 0 means now", LATEST_COMMAND));
   if (trajectory.joints.empty() && !trajectory.points.empty()) throw InputError("trajectory: points without joint names; name the joints");
   for (std::size_t i = 0; i < trajectory.points.size(); ++i) {
     const double time = trajectory.points[i].time_from_start;
-    if (!std::isfinite(time) || time < 0)
-      throw InputError(fmt::format("trajectory: points[{}].time_from_start: must be a finite number of at least 0, not {}", i, time));
+    if (!(time >= 0 && time <= LATEST_COMMAND))
+      throw InputError(
+          fmt::format("trajectory: points[{}].time_from_start: must be a finite number from 0 to {:g}, not {}", i, LATEST_COMMAND, time));
     if (i > 0 && time <= trajectory.points[i - 1].time_from_start)
       throw InputError(fmt::format("trajectory: points[{}].time_from_start: {} does not come after {}; times must increase strictly", i,
                                    time, trajectory.points[i - 1].time_from_start));

@@ -105,7 +105,7 @@ void WorldBuilder::addEnvironment(const EnvironmentConfig& config, SimulatedWorl
   const ContactSettings settings = contactSettings(0, contact_, {&config.contact});
   Collider collider;
   collider.name = config.name;
-  collider.X_BC = config.X_WE;
+  collider.X_BC = config.X_WE * Eigen::Translation3d(surface.origin);
   if (settings.shrink) watch.enter("shrinking", 1 - TREE_FRACTION);
   collider.geometry = surfaces_.fitted(surface.geometry, settings, surface.radius, &surface.report);
   collider.model = world->addModel(config.name, ModelKind::ENVIRONMENT, INT_MAX);
@@ -161,13 +161,14 @@ void WorldBuilder::addMeshObject(const ObjectConfig& config, LoadWatch* watch, S
   if (!config.mass || !(*config.mass > 0) || !std::isfinite(*config.mass))
     throw InputError(where + ": mass: needs a finite number of kg above 0");
   SharedSurface surface = load(config.uri, config.scale, config.cloud, where, watch);
+  const Pose X_OC = config.X_OM * Eigen::Translation3d(surface.origin);
   const ContactSettings settings = contactSettings(contact_.boundary_width, contact_, {&config.contact});
   const double width = surface.radius > 0 ? surface.radius : settings.boundary_width;
 
   std::string from = "the configuration";
   MassProperties inertial;
   if (!config.com || !config.inertia)
-    inertial = massFromShape(transformed(surface.geometry->mesh(), config.X_OM), surface.report.closed, *config.mass, &from);
+    inertial = massFromShape(transformed(surface.geometry->mesh(), X_OC), surface.report.closed, *config.mass, &from);
   inertial.mass = *config.mass;
   if (config.com) inertial.com = *config.com;
   if (config.inertia) inertial.inertia = *config.inertia;
@@ -182,7 +183,7 @@ void WorldBuilder::addMeshObject(const ObjectConfig& config, LoadWatch* watch, S
   collider.name = config.name;
   collider.model = world->addModel(config.name, ModelKind::OBJECT, config.max_contacts.value_or(contact_.max_contacts_per_object));
   collider.body = body;
-  collider.X_BC = config.X_OM;
+  collider.X_BC = X_OC;
   if (settings.shrink) watch->enter("shrinking", 1 - TREE_FRACTION);
   collider.geometry = surfaces_.fitted(surface.geometry, settings, surface.radius, &surface.report);
   world->addCollider(collider, width, settings.surface, surface.report);

@@ -32,7 +32,7 @@ TEST_P(Budgets, HoldForRobotObjectsAndStaticWorld) {
   int before = 0, after = 0;
   for (const ContactManifold& manifold : manifolds) before += static_cast<int>(manifold.contacts.size());
   ReductionMemory memory;
-  const int left_out = reduceAll(manifolds, model_a, model_b, budgets, method(), &memory);
+  const int left_out = reduceAll(manifolds, model_a, model_b, budgets, method(), &memory).contacts;
   for (const ContactManifold& manifold : manifolds) {
     after += static_cast<int>(manifold.contacts.size());
     EXPECT_GE(manifold.contacts.size(), manifold.a == 3 ? 2u : 3u) << manifold.a;
@@ -48,14 +48,75 @@ TEST_P(Budgets, HoldForRobotObjectsAndStaticWorld) {
   EXPECT_GT(contactsOf(1, manifolds, model_a, model_b), 25);
 }
 
-TEST_P(Budgets, HoldWithMoreManifoldsThanContactsAllowed) {
+TEST_P(Budgets, LeaveThreeOfEveryPairHoweverManyThereAre) {
   if (method().reduce == reduceNone) return;  // has no budget
-  std::vector<ContactManifold> manifolds;
-  for (int m = 0; m < 9; ++m) manifolds.push_back(manifoldOf(0, m + 1, noisyPatch(5, 70 + m)));
-  const std::vector<int> robot(9, 1), world(9, 0);
+  for (const int k : {3, 4, 20, 26}) {
+    std::vector<ContactManifold> manifolds;
+    for (int m = 0; m < 9; ++m) manifolds.push_back(manifoldOf(0, m + 1, noisyPatch(m == 8 ? 2 : 5, 70 + m)));
+    const std::vector<int> robot(9, 1), world(9, 0);
+    ReductionMemory memory;
+    const ReductionLoss loss = reduceAll(manifolds, robot, world, {{INT_MAX}, {k}}, method(), &memory);
+    for (const ContactManifold& manifold : manifolds) EXPECT_EQ(manifold.contacts.size(), manifold.b == 9 ? 2u : 3u);
+    EXPECT_EQ(contactsOf(1, manifolds, robot, world), 26);
+    EXPECT_EQ(loss.cut_pairs, 8);
+  }
+}
+
+// Who asks for a contact or two a pair gets that: a point on a point.
+TEST_P(Budgets, AreOfAPairWhatAModelsOwnIs) {
+  if (method().reduce == reduceNone) return;  // has no budget
+  for (const int k : {1, 2}) {
+    std::vector<ContactManifold> manifolds = {manifoldOf(0, 1, noisyPatch(5, 70)), manifoldOf(0, 2, noisyPatch(5, 71))};
+    ReductionMemory memory;
+    reduceAll(manifolds, {1, 1}, {0, 0}, {{INT_MAX}, {k}}, method(), &memory);
+    for (const ContactManifold& manifold : manifolds) EXPECT_EQ(static_cast<int>(manifold.contacts.size()), k);
+  }
+}
+
+/** Of the support functions, as far as the reduction tells it, over directions of its own. */
+double worstLack(const Contacts& all, const Contacts& kept) {
+  Box box;
+  for (const Contact& contact : all) box.extend(contact.point);
+  const double radius = 0.5 * box.diagonal().norm();
+  Noise noise(5);
+  double worst = 0;
+  for (int d = 0; d < 4000; ++d) {
+    Eigen::Matrix<double, 6, 1> w;
+    for (int i = 0; i < 6; ++i) w[i] = noise() + noise() + noise();
+    w.normalize();
+    // Torques about the middle.
+    const Vector3 b = w.tail<3>() / radius, a = w.head<3>() - b.cross(box.center());
+    worst = std::max(worst, support(all, a, b) - support(kept, a, b));
+  }
+  return worst;
+}
+
+TEST_P(Budgets, SayByHowMuchWrenchesAreOff) {
+  if (method().reduce == reduceNone) return;  // leaves nothing out
+  for (const int k : {3, 6, 12, 30}) {
+    for (const bool flat : {false, true}) {
+      const Contacts all = flat ? flatPatch(200, {0, 0.6, 0.8}, {1, 2, 3}) : noisyPatch(200);
+      std::vector<ContactManifold> manifolds = {manifoldOf(0, 1, all)};
+      ReductionMemory memory;
+      const ReductionLoss loss = reduceAll(manifolds, {0}, {1}, {{k}, {INT_MAX}}, method(), &memory);
+      const double worst = worstLack(all, manifolds[0].contacts);
+      EXPECT_LE(worst, loss.wrench) << k << " " << flat;
+      EXPECT_GT(worst, 0.7 * loss.wrench - 0.1) << k << " " << flat;
+      // Gone on with, no worse is told.
+      std::vector<ContactManifold> again = {manifoldOf(0, 1, all)};
+      const double told = reduceAll(again, {0}, {1}, {{k}, {INT_MAX}}, method(), &memory).wrench;
+      EXPECT_LE(told, loss.wrench + 1e-6);
+      EXPECT_LE(worstLack(all, again[0].contacts), told);
+    }
+  }
+}
+
+TEST_P(Budgets, SayNothingWhereNothingIsCut) {
+  std::vector<ContactManifold> manifolds = {manifoldOf(0, 1, noisyPatch(12)), manifoldOf(0, 2, flatPatch(8, {0, 0, 1}, {0, 0, 0}))};
   ReductionMemory memory;
-  reduceAll(manifolds, robot, world, {{INT_MAX}, {4}}, method(), &memory);
-  EXPECT_EQ(contactsOf(1, manifolds, robot, world), 4);
+  const ReductionLoss loss = reduceAll(manifolds, {1, 1}, {0, 0}, {{INT_MAX}, {20}}, method(), &memory);
+  EXPECT_EQ(loss.cut_pairs, 0);
+  EXPECT_EQ(loss.wrench, 0);
 }
 
 TEST(HullBudget, CountsWhatHullsNeedAndNoMore) {

@@ -94,13 +94,13 @@ inline Contacts reducedBy(const Reduction& method, const Contacts& contacts, int
   return reduced;
 }
 
-/** Reduces manifolds in place. @return how many contacts were left out */
-inline int reduceAll(std::vector<ContactManifold>& manifolds, const std::vector<int>& model_a, const std::vector<int>& model_b,
-                     const std::vector<ContactBudget>& budgets, const Reduction& method, ReductionMemory* memory) {
+/** Reduces manifolds in place. */
+inline ReductionLoss reduceAll(std::vector<ContactManifold>& manifolds, const std::vector<int>& model_a, const std::vector<int>& model_b,
+                               const std::vector<ContactBudget>& budgets, const Reduction& method, ReductionMemory* memory) {
   std::vector<ContactManifold> reduced;
-  const int left_out = reduceManifolds(manifolds, model_a, model_b, budgets, method, memory, &reduced);
+  const ReductionLoss loss = reduceManifolds(manifolds, model_a, model_b, budgets, method, memory, &reduced);
   manifolds = std::move(reduced);
-  return left_out;
+  return loss;
 }
 
 // Largest component along (a, b) of the wrenches about the origin that contacts with unit normal force give.

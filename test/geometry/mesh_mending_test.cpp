@@ -9,6 +9,7 @@
 #include "blem_sim/geometry/mesh_mending.h"
 #include "blem_sim/geometry/mesh_topology.h"
 #include "contact/stl_soup.h"
+#include "lens_shapes.h"
 #include "ply_soup.h"
 #include "support/broken_meshes.h"
 #include "support/shared_data.h"
@@ -217,6 +218,44 @@ TEST(MeshMending, ReliefStays) {
   TriangleMesh dome = gridMesh(0.1, 0.1, 50, 50);
   for (Vector3& p : dome.vertices) p.z() = p.head<2>().squaredNorm() / (2 * 2.0);  // 2 m of radius: 0.6 mm high
   EXPECT_TRUE(Mended(dome).same());
+}
+
+TEST(MeshMending, LensesStayLenses) {
+  RandomShapes random(8);
+  for (const double sag : {1e-6, 4e-6, 16e-6, 25e-6, 36e-6, 60e-6}) {
+    for (const int rings : {1, 2, 3, 5, 20}) {
+      for (const int sides : {12, 24, 60, 200}) {
+        const TriangleMesh lens = lensMesh(0.015, 0.003, sag, rings, sides);
+        EXPECT_TRUE(Mended(transformed(lens, makePose({0.1, 0.2, 0.3}, {0.3, 0.4, 0.5}))).same()) << sag << " " << rings << " " << sides;
+        EXPECT_TRUE(Mended(shuffledCopy(lens, random)).same()) << sag << " " << rings << " " << sides;
+      }
+    }
+  }
+}
+
+TEST(MeshMending, SurfacesThatBulgeBetweenSharpEdgesStay) {
+  const auto bent = [](int cells, const auto& height) {
+    TriangleMesh mesh = gridMesh(0.1, 0.1, cells, cells);
+    for (Vector3& p : mesh.vertices) p.z() = height(p.x() / 0.05, p.y() / 0.05);
+    return mesh;
+  };
+  for (const int cells : {5, 10, 40}) {
+    EXPECT_TRUE(Mended(bent(cells, [](double x, double) { return 15e-6 * x * x; })).same()) << cells;         // a barrel
+    EXPECT_TRUE(Mended(bent(cells, [](double x, double y) { return 15e-6 * x * y; })).same()) << cells;       // a saddle
+    EXPECT_TRUE(Mended(bent(cells, [](double x, double y) { return 8e-6 * (x + y) * y; })).same()) << cells;  // both
+  }
+  EXPECT_TRUE(Mended(bent(60, [](double x, double y) { return 15e-6 * std::sin(7 * x) * std::cos(5 * y); })).same());  // waves
+}
+
+// What a crack explains is a crack's doing: ten micrometres of noise hide a bulge of sixteen, a tenth does not.
+TEST(MeshMending, CrackedLensesStayLenses) {
+  RandomShapes random(9);
+  for (const double sag : {16e-6, 36e-6}) {
+    const TriangleMesh lens = lensMesh(0.015, 0.003, sag, 6, 48);
+    const Mended mended(crackedCopy(lens, 1e-7, random));
+    EXPECT_EQ(mended.report.vertices, static_cast<int>(lens.vertices.size()));
+    EXPECT_LE(farthest(mended.mesh, lens), 1e-6);
+  }
 }
 
 TEST(MeshMending, RobotsMoveByLittle) {

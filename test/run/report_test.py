@@ -31,6 +31,7 @@ class ReportTest(RunCase):
         self.assertGreaterEqual(contacts["raw_mean"], contacts["reduced_mean"])
         self.assertGreaterEqual(contacts["reduced_max"], contacts["reduced_mean"])
         self.assertGreater(contacts["reduced_mean"], 0)
+        self.assertEqual(contacts["wrench_error_max"] > 0, report["status"]["CONTACTS_REDUCED"] > 0)
         self.assertEqual(set(report["max_penetration"]), {"depth_m", "of_layer", "pair", "time_s"})
         self.assertTrue(math.isfinite(report["energy_J"]))
 

@@ -8,6 +8,7 @@
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)
 
 #include "support/counted_allocations.h"
+#include "support/moving_shapes.h"
 
 namespace blem_sim {
 namespace {
@@ -42,8 +43,8 @@ long allocationsOf(Simulator* simulator) {
   return allocations - before;
 }
 
-long allocationsOfWarmSteps(Simulator* simulator) {
-  for (int i = 0; i < WARM_UP; ++i) simulator->step();
+long allocationsOfWarmSteps(Simulator* simulator, int warm_up = WARM_UP) {
+  for (int i = 0; i < warm_up; ++i) simulator->step();
   long allocated = 0;
   for (int i = 0; i < WATCHED; ++i) allocated += allocationsOf(simulator);
   return allocated;
@@ -87,6 +88,67 @@ TEST(StepAllocation, NoneInAWarmStepMadeInParts) {
   EXPECT_EQ(allocationsOfWarmSteps(&simulator), 0);
   EXPECT_GT(simulator.report().substeps, 1);
   EXPECT_EQ(simulator.report().contacts.size(), 4u);
+}
+
+ObjectConfig bodyOfMesh(const std::string& name, const TriangleMesh& mesh, double mass, const Pose& pose) {
+  ObjectConfig object;
+  object.name = name;
+  object.uri = meshFile(name, mesh);
+  object.mass = mass;
+  object.X_WO = pose;
+  object.contact.boundary_width = 0.001;
+  return object;
+}
+
+std::string wheelUrdf(const std::string& mesh) {
+  return R"(<robot name="wheel"><link name="base"/>
+    <link name="gear"><inertial><mass value="1"/><inertia ixx="1e-3" iyy="1e-3" izz="2e-3" ixy="0" ixz="0" iyz="0"/></inertial>
+      <collision><geometry><mesh filename=")" +
+         mesh + R"("/></geometry></collision></link>
+    <joint name="axle" type="continuous"><parent link="base"/><child link="gear"/><axis xyz="0 0 1"/></joint></robot>)";
+}
+
+// Two gears, one driven: other teeth touch all the time. Warm is what has turned once.
+TEST(StepAllocation, NoneInAWarmStepOfGears) {
+  constexpr int TEETH = 20;
+  constexpr double ROOT = 0.09, TIP = 0.11, LAYER = 0.0005;
+  const std::string mesh = meshFile("gear", gearMesh(TEETH, ROOT, TIP, 0.02));
+  SimulationConfig config;
+  for (const int i : {0, 1}) {
+    RobotConfig wheel = robot("wheel" + std::to_string(i), wheelUrdf(mesh), true);
+    wheel.X_WR = makePose({0.202 * i, 0, 0}, {0, 0, i * M_PI / TEETH});
+    wheel.contact.boundary_width = LAYER;
+    wheel.joint_friction["default"] = {0.01, 0.01};
+    config.robots.push_back(wheel);
+  }
+  config.robots[0].gains["default"] = {0, 0, 10, 0};
+  config.robots[0].motor["default"] = MotorLaw::IMPLICIT_PD;
+  Simulator simulator(config, UriResolver());
+  simulator.commandJoints(0, {{"axle"}, {}, {3.0}, {}});
+  EXPECT_EQ(allocationsOfWarmSteps(&simulator, 4000), 0);
+  EXPECT_NEAR(simulator.report().joints[1].velocity, -3, 1.5);
+}
+
+// Rings that hang in each other and swing: what is new in its kind still asks now and then.
+TEST(StepAllocation, FewInWarmStepsOfAHangingChain) {
+  constexpr int RINGS = 5;
+  constexpr double RADIUS = 0.03, THICKNESS = 0.004;
+  const TriangleMesh ring = ringMesh(RADIUS, THICKNESS, 40, 12);
+  SimulationConfig config;
+  EnvironmentConfig hook;
+  hook.name = "hook";
+  hook.uri = meshFile("hook", ring);
+  hook.X_WE = makePose({0, 0, 1}, {M_PI / 2, 0, 0});
+  config.environments = {hook};
+  for (int i = 1; i <= RINGS; ++i) {
+    const Pose pose = makePose({0, 0, 1 - 2 * i * (RADIUS - THICKNESS - 0.001)}, {M_PI / 2, 0, i % 2 ? M_PI / 2 : 0});
+    config.objects.push_back(bodyOfMesh("ring" + std::to_string(i), ring, 0.05, pose));
+  }
+  config.objects.back().linear_velocity = {0.3, 0.2, 0};
+  Simulator simulator(config, UriResolver());
+  EXPECT_LE(allocationsOfWarmSteps(&simulator, 4000), WATCHED / 25);
+  EXPECT_GT(bodyOf(simulator, "ring5").X_WB.translation().z(), 0.6);
+  EXPECT_GE(simulator.report().reduced_contacts, RINGS);
 }
 
 }  // namespace

@@ -92,6 +92,28 @@ TEST(JointMotor, VelocityAloneIsDampingAlone) {
   EXPECT_DOUBLE_EQ(motor.desired(0.5).position, 1.35);
 }
 
+TEST(JointMotor, NothingOfBeforeAddsToAVelocity) {
+  for (const MotorLaw law : {MotorLaw::PID, MotorLaw::IMPLICIT_PD}) {
+    JointMotor motor(settings(law, {100, 1000, 2, 50}), 0);
+    motor.follow(0, 0, {{0.001, 0.5, 0, 0, 7, 1}}, 0);
+    for (int i = 0; i < 100; ++i) {
+      motor.sample(i * DT, DT);
+      motor.accept(motor.drive({0, 0, 0}), {0, 0, 0}, DT);
+    }
+    motor.keepVelocity(1.5);
+    motor.sample(0.1, DT);
+    const JointDrive drive = motor.drive({0.7, 1, 0});
+    EXPECT_DOUBLE_EQ(drive.effort + drive.damping * (drive.target_velocity - 1), 2 * 0.5);
+    EXPECT_EQ(drive.stiffness, 0);
+    motor.accept(drive, {0.7, 1, 0}, DT);
+    // An effort that is commanded beside it still adds.
+    motor.addEffort(3);
+    motor.sample(0.101, DT);
+    const JointDrive pushed = motor.drive({0.7, 1, 0});
+    EXPECT_DOUBLE_EQ(pushed.effort + pushed.damping * (pushed.target_velocity - 1), 2 * 0.5 + 3);
+  }
+}
+
 TEST(JointMotor, WithoutCommandOnlyFrictionActs) {
   MotorSettings mimic = settings(MotorLaw::PID, {100, 10, 2});
   mimic.commanded = false;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "blem_sim/geometry/input_error.h"
@@ -80,6 +81,79 @@ TEST(SimulatorCommands, JointTargets) {
   stepFor(&simulator, 1);
   // The effort adds: it bends the hold by effort / stiffness.
   EXPECT_NEAR(simulator.report().joints[0].position, 100 / 1e5, 1e-6);
+}
+
+SimulationConfig wheelScene(MotorLaw law, const JointGains& gains) {
+  SimulationConfig config = pendulumScene();
+  std::string& urdf = config.robots[0].urdf_xml;
+  urdf.replace(urdf.find("revolute"), 8, "continuous");
+  config.robots[0].gains["default"] = gains;
+  config.robots[0].motor["default"] = law;
+  return config;
+}
+
+// An arm held against its weight has an integral; a velocity that follows is reached as d (v* - v) alone reaches it.
+TEST(SimulatorCommands, VelocityIsReachedAfterAnIntegralHasBuiltUp) {
+  for (const MotorLaw law : {MotorLaw::PID, MotorLaw::IMPLICIT_PD}) {
+    SimulationConfig config = wheelScene(law, {1000, 2000, 60, 1000});
+    config.gravity = {0, 0, 0};
+    Simulator simulator(config, UriResolver());
+    simulator.commandJoints(0, {{"hinge"}, {0}, {}, {-20}});
+    stepFor(&simulator, 5);
+    EXPECT_NEAR(simulator.report().joints[0].position, 0, 1e-3);
+    simulator.commandJoints(0, {{"hinge"}, {}, {0.5}, {0}});
+    stepFor(&simulator, 1);
+    EXPECT_NEAR(simulator.report().joints[0].velocity, 0.5, 1e-6);
+  }
+}
+
+TEST(SimulatorCommands, AJointWithoutEndTakesTheNearestTurn) {
+  Simulator simulator(wheelScene(MotorLaw::IMPLICIT_PD, {1000, 0, 60}), UriResolver());
+  const auto turned = [&](double turns, double rest) {
+    simulator.commandJoints(0, {{"hinge"}, {2 * M_PI * turns + rest}, {}, {}});
+    double fastest = 0;
+    for (int i = 0; i < 1000; ++i) {
+      simulator.step();
+      fastest = std::max(fastest, std::abs(simulator.report().joints[0].velocity));
+    }
+    EXPECT_LT(fastest, 50);
+    EXPECT_FALSE(simulator.report().status & STATE_NOT_FINITE);
+    return simulator.report().joints[0].position;
+  };
+  EXPECT_NEAR(turned(1e6, 0.3), 0.3, 1e-6);
+  EXPECT_NEAR(turned(-3, -0.5), -0.5, 1e-6);
+  EXPECT_NEAR(turned(0, 2), 2, 1e-6);
+  EXPECT_NEAR(turned(0, -2), 2 * M_PI - 2, 1e-6);  // on over pi, not back
+  EXPECT_NEAR(turned(-7, 0), 2 * M_PI, 1e-6);
+}
+
+// Whatever is taken leaves the simulation running.
+TEST(SimulatorCommands, WhatIsTooLargeIsRefused) {
+  const auto expectRefused = [](const std::string& urdf_joint, double target) {
+    SimulationConfig config = pendulumScene();
+    std::string& urdf = config.robots[0].urdf_xml;
+    urdf.replace(urdf.find("revolute"), 8, urdf_joint);
+    Simulator simulator(config, UriResolver());
+    const std::uint64_t before = simulator.stateHash();
+    for (const double bad : {1e308, -1e308, 1.01e7}) {
+      for (const JointCommandMessage& command :
+           {JointCommandMessage{{"hinge"}, {bad}, {}, {}}, {{"hinge"}, {}, {bad}, {}}, {{"hinge"}, {}, {}, {bad}}}) {
+        const std::string message = refusal([&] { simulator.commandJoints(0, command); });
+        EXPECT_NE(message.find("beyond 1e+07"), std::string::npos) << message;
+      }
+      EXPECT_NE(refusal([&] { simulator.commandTrajectory(0, reach(bad, 1)); }), "");
+    }
+    EXPECT_EQ(simulator.stateHash(), before);
+    simulator.commandJoints(0, {{"hinge"}, {target}, {}, {}});
+    stepFor(&simulator, 0.1);
+    EXPECT_FALSE(simulator.report().status & STATE_NOT_FINITE);
+    EXPECT_EQ(simulator.steps(), 100u);
+  };
+  for (const double target : {9.9e6, -9.9e6}) {
+    expectRefused("revolute", target);
+    expectRefused("continuous", target);
+    expectRefused("prismatic", target);
+  }
 }
 
 TEST(SimulatorCommands, ErrorsNameRobotAndJointAndChangeNothing) {

@@ -46,6 +46,10 @@ TEST(CheckTrajectory, RefusesInOneLine) {
   expect([](JointTrajectory& t) { t.points[0].velocities.clear(); }, {"points[0]", "accelerations without velocities"});
   expect([](JointTrajectory& t) { t.points[1].positions[1] = NAN; }, {"points[1].positions", "'hip'", "finite"});
   expect([](JointTrajectory& t) { t.points[0].velocities[0] = INFINITY; }, {"points[0].velocities", "'ankle'"});
+  expect([](JointTrajectory& t) { t.points[0].positions[0] = 1e308; }, {"points[0].positions", "'ankle'", "within 1e+07"});
+  expect([](JointTrajectory& t) { t.points[1].effort[1] = -1e300; }, {"points[1].effort", "'hip'", "within 1e+07"});
+  expect([](JointTrajectory& t) { t.start_time = 1e300; }, {"start time", "within 1e+10"});
+  expect([](JointTrajectory& t) { t.points[1].time_from_start = 1e300; }, {"points[1].time_from_start", "1e+10"});
   expect([](JointTrajectory& t) { t.points[1].time_from_start = 0; }, {"points[1].time_from_start", "increase"});
   expect([](JointTrajectory& t) { t.points[1].time_from_start = NAN; }, {"points[1].time_from_start"});
   expect([](JointTrajectory& t) { t.points[0].time_from_start = -1; }, {"points[0].time_from_start", "-1"});

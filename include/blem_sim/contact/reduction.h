@@ -79,24 +79,33 @@ class ReductionMemory {
  */
 void weighSprings(std::vector<Contact>& contacts);
 
-/** Contacts a model may have. */
+/** Contacts a model should have: a wish. */
 struct ContactBudget {
   int max_contacts = 20;  ///< k of this model; a static environment has none of its own: INT_MAX
 };
 
+/** What a reduction cost. */
+struct ReductionLoss {
+  int contacts = 0;   ///< left out, those that others imply among them
+  int cut_pairs = 0;  ///< that budgets left fewer contacts than `method` would keep of them without a limit
+  /** By how much a wrench between two of a cut pair can be off at most, of its normal force, torques by the radius of the pair's contacts:
+   *  what those kept lack at most, with friction 0.5 (of 256 directions, with a margin for others). Pierced pairs do not count. */
+  double wrench = 0;
+};
+
 /**
  * Reduces every manifold so that the contacts of each model sum to at most its k: each manifold asks for what `method` would keep with the
- * smaller k of its two models; where a model has too many then, its manifolds share k in proportion to what they ask for, each at
- * least one (3 if it has them, and k allows). `hull` chooses once, when shares are known; others, and pierced contacts, are reduced again.
+ * smaller k of its two models; where a model has too many then, its manifolds share k in proportion to what they ask for. But each keeps
+ * 3, if it asks for them, even where a model then has more than k: no pair ever loses its hold.
+ * `hull` chooses once, when shares are known; others, and pierced contacts, are reduced again.
  * Pierced contacts are kept out of the choice while others exist.
  * @param manifolds before reduction, sorted by (a, b)
  * @param model_a, model_b models of the two colliders of each manifold, indices into budgets
  * @param memory of the last reduction, overwritten by this one's
  * @param reduced overwritten, its memory used again; manifold by manifold the contacts kept
- * @return how many contacts were left out
  */
-int reduceManifolds(const std::vector<ContactManifold>& manifolds, const std::vector<int>& model_a, const std::vector<int>& model_b,
-                    const std::vector<ContactBudget>& budgets, const Reduction& method, ReductionMemory* memory,
-                    std::vector<ContactManifold>* reduced);
+ReductionLoss reduceManifolds(const std::vector<ContactManifold>& manifolds, const std::vector<int>& model_a,
+                              const std::vector<int>& model_b, const std::vector<ContactBudget>& budgets, const Reduction& method,
+                              ReductionMemory* memory, std::vector<ContactManifold>* reduced);
 
 }  // namespace blem_sim

@@ -20,7 +20,8 @@ enum StepStatus : std::uint32_t {
   CONTACT_UNRELIABLE = 1u << 1,  ///< bare meshes cross, or did and are not apart yet: directions there are the way back or a guess; or they
                                  ///< crossed within the step and may be on each other's other side. Thicker boundary_width, smaller
                                  ///< time_step, or a better start pose
-  CONTACTS_REDUCED = 1u << 2,    ///< contacts were left out by max_contacts_per_robot/object. Raise them if forces look wrong
+  CONTACTS_REDUCED = 1u << 2,  ///< contacts were left out by max_contacts_per_robot/object; StepReport::wrench_error says how far wrenches
+                               ///< may be off for it. Raise them if that is too much
   SOLVER_TROUBLE = 1u << 3,  ///< the complementarity solver complained and the step was redone softer, or Newton stopped at its bound with
                              ///< contact forces off by over 1 % of the largest, or velocities by 0.01. Smaller time_step, fewer contacts;
                              ///< ODE: more solver.cfm
@@ -112,6 +113,7 @@ struct StepReport {
   int redone_solves = 0;   ///< solves thrown away because they used up a layer, and made again shorter
   int searched_pairs = 0;  ///< of colliders, after the step: those whose contacts were looked for
   int raw_contacts = 0, reduced_contacts = 0;
+  double wrench_error = 0;                 ///< worst over the step, where contacts were left out: ReductionLoss::wrench
   double max_depth = 0, max_of_layer = 0;  ///< over this step's contacts
   int deepest_a = -1, deepest_b = -1;      ///< colliders
   double energy = 0;                       ///< [J] kinetic + potential

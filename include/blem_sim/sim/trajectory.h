@@ -1,6 +1,7 @@
 // Joint trajectories with joint_trajectory_controller's semantics, without ROS.
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,12 @@
 namespace blem_sim {
 
 class NumberReader;
+
+/** Positions, velocities, accelerations and efforts that are commanded are no larger than this, in whatever SI unit. */
+constexpr double LARGEST_COMMAND = 1e7;
+/** [s] and times no later than this. */
+constexpr double LATEST_COMMAND = 1e10;
+inline bool isCommand(double value) { return std::abs(value) <= LARGEST_COMMAND; }
 
 struct TrajectoryPoint {
   double time_from_start = 0;         ///< [s], strictly increasing
@@ -59,7 +66,8 @@ class JointSpline {
   std::vector<Knot> knots_;
 };
 
-/** Checks a command against a robot's joints. @throws InputError: unknown or repeated joint, sizes, NaN, times not increasing */
+/** Checks a command against a robot's joints. @throws InputError: unknown or repeated joint, sizes, NaN, beyond LARGEST_COMMAND, times not
+ * increasing */
 void checkTrajectory(const JointTrajectory& trajectory, const std::vector<std::string>& known_joints);
 
 /** Reads a CSV with a `time` column, NAME and NAME_vel columns; `#` starts a comment. Columns of no known joint are listed in

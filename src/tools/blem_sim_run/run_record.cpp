@@ -35,6 +35,7 @@ void RunRecord::add(const StepReport& report) {
   raw_contacts_ += static_cast<std::uint64_t>(report.raw_contacts);
   reduced_contacts_ += static_cast<std::uint64_t>(report.reduced_contacts);
   most_reduced_contacts_ = std::max(most_reduced_contacts_, report.reduced_contacts);
+  wrench_error_ = std::max(wrench_error_, report.wrench_error);
   addDepth(report);
   trust_.add(report);
   if (report.time <= stats_from_) return;
@@ -101,6 +102,7 @@ void RunRecord::writeContacts(JsonWriter& json) const {
   json.key("raw_mean").value(static_cast<double>(raw_contacts_) / steps);
   json.key("reduced_mean").value(static_cast<double>(reduced_contacts_) / steps);
   json.key("reduced_max").value(most_reduced_contacts_);
+  json.key("wrench_error_max").value(wrench_error_);
   json.closeObject();
   json.key("max_penetration").openObject();
   json.key("depth_m").value(deepest_.depth);

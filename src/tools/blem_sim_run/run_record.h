@@ -45,6 +45,7 @@ class RunRecord {
   double stats_from_ = 0;
   std::uint64_t steps_ = 0, raw_contacts_ = 0, reduced_contacts_ = 0;
   int most_reduced_contacts_ = 0;
+  double wrench_error_ = 0;
   std::vector<std::uint64_t> status_steps_;  ///< per bit
   std::array<Distribution, static_cast<int>(Stage::COUNT)> stages_;
   Distribution step_;
