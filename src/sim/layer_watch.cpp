@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "blem_sim/contact/collider_pairs.h"
+
 namespace blem_sim {
 namespace {
 

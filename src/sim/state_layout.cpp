@@ -115,7 +115,7 @@ void writeColliders(const SimulatedWorld& world, LayoutWriter* writer) {
     line("mesh", ContentHash().add(geometries.of(*c.geometry)));
     line("place", ContentHash().add(c.body).add(c.model).add(c.link).add(c.X_BC));
     ContentHash surface;
-    surface.add(c.radius).add(c.surface.friction).add(c.surface.restitution);
+    surface.add(c.radius).add(c.surface.friction).add(c.surface.restitution).add(c.surface.impact_friction_factor);
     line("layer or surface", surface.add(c.surface.stiffness).add(c.surface.damping));
   }
   ContentHash pairs;
