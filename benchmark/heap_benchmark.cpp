@@ -1,6 +1,7 @@
 // Heaps in a bin beside Bullet: cubes of twelve triangles (there boxes), exact spheres. Both take turns in one run, so that ratios mean
 // more than times. Processor time of the stepping thread, of stages too. One island on one thread and on two, in turns, by the wall's
-// clock. Arguments: --seconds=S simulated (4 if not given), then Google Benchmark's: --benchmark_filter='cubes/(30|100)/' chooses sizes.
+// clock. Arguments: --seconds=S simulated (4 if not given), --seed=N of the heap (1; heaps are chaotic, so that seeds tell more than a
+// repetition), then Google Benchmark's: --benchmark_filter='cubes/(30|100)/' chooses sizes.
 #include <benchmark/benchmark.h>
 
 #include <array>
@@ -17,9 +18,9 @@
 namespace blem_sim {
 namespace {
 
-constexpr int SEED = 1, TURN = 50;  // [steps] of one engine before it is the other's turn
+constexpr int TURN = 50;  // [steps] of one engine before it is the other's turn
 constexpr std::size_t STAGES = static_cast<std::size_t>(Stage::COUNT);
-double seconds_simulated = 4;
+double seconds_simulated = 4, seed = 1;
 
 /** What both engines are to run. */
 struct Heap {
@@ -29,6 +30,8 @@ struct Heap {
   HeapScene (*scene)(int count);
 };
 
+int seedOfHeap() { return static_cast<int>(seed); }
+
 HeapScene cubes(int count) {
   HeapScene scene;
   scene.size = 0.1;
@@ -36,7 +39,7 @@ HeapScene cubes(int count) {
   scene.friction = 0.5;
   scene.bin_width = heapBinWidth(count);
   scene.bin_height = heapBinHeight(count);
-  scene.poses = heapPoses(count, SEED);
+  scene.poses = heapPoses(count, seedOfHeap());
   return scene;
 }
 
@@ -48,7 +51,7 @@ HeapScene spheres(int count) {
   scene.friction = 0.5;
   scene.bin_width = pouredBinWidth(count);
   scene.bin_height = pouredBinHeight(count);
-  scene.poses = pouredPoses(count, SEED);
+  scene.poses = pouredPoses(count, seedOfHeap());
   return scene;
 }
 
@@ -167,7 +170,7 @@ void count(const Heap& heap, const Figures& figures, const Simulator& simulator,
 }
 
 void measure(const Heap& heap, benchmark::State& state) {
-  Simulator simulator(heap.config(heap.count, SEED, {}), UriResolver(sharedPackages()));
+  Simulator simulator(heap.config(heap.count, seedOfHeap(), {}), UriResolver(sharedPackages()));
   const std::unique_ptr<BulletHeap> bullet = makeBulletHeap(heap.scene(heap.count));
   Figures figures;
   for (auto _ : state) {
@@ -203,7 +206,7 @@ void compareThreads(int count, benchmark::State& state) {
   for (const int threads : {1, 2}) {
     SolverSettings solver;
     solver.threads = threads;
-    simulators[threads - 1] = std::make_unique<Simulator>(heapInBin(count, SEED, solver), UriResolver(sharedPackages()));
+    simulators[threads - 1] = std::make_unique<Simulator>(heapInBin(count, seedOfHeap(), solver), UriResolver(sharedPackages()));
   }
   const int turns = static_cast<int>(std::lround(seconds_simulated / simulators[0]->config().time_step)) / TURN;
   double mean[2] = {};
@@ -218,13 +221,12 @@ void compareThreads(int count, benchmark::State& state) {
   state.counters["same_hash"] = simulators[0]->stateHash() == simulators[1]->stateHash() ? 1 : 0;
 }
 
-/** Takes --seconds=S out of the arguments. */
-void takeSeconds(int* argc, char** argv) {
-  static const char OPTION[] = "--seconds=";
+/** Takes an option out of the arguments. @param option as "--name=" */
+void takeOption(const std::string& option, double* value, int* argc, char** argv) {
   int kept = 1;
   for (int i = 1; i < *argc; ++i) {
-    if (std::strncmp(argv[i], OPTION, sizeof(OPTION) - 1) == 0)
-      seconds_simulated = std::atof(argv[i] + sizeof(OPTION) - 1);
+    if (std::strncmp(argv[i], option.c_str(), option.size()) == 0)
+      *value = std::atof(argv[i] + option.size());
     else
       argv[kept++] = argv[i];
   }
@@ -236,7 +238,8 @@ void takeSeconds(int* argc, char** argv) {
 
 int main(int argc, char** argv) {
   using namespace blem_sim;
-  takeSeconds(&argc, argv);
+  takeOption("--seconds=", &seconds_simulated, &argc, argv);
+  takeOption("--seed=", &seed, &argc, argv);
   for (const int size : {30, 100, 300, 1000}) addBesideBullet({"cubes", size, heapInBin, cubes});
   addBesideBullet({"spheres", 1000, spheresInBin, spheres});
   for (const int size : {100, 300, 1000}) add("threads", size, [size](benchmark::State& state) { compareThreads(size, state); });

@@ -33,13 +33,10 @@ bool beyondPlane(const Triangle& t, const Triangle& plane, double range) {
 PlainTree::PlainTree(const TriangleMesh& mesh) : order_(mesh.elements.size()) {
   std::iota(order_.begin(), order_.end(), 0);
   std::vector<Box> boxes;
-  for (const Vector3i& e : mesh.elements) boxes.push_back(boxOf({mesh.vertices[e[0]], mesh.vertices[e[1]], mesh.vertices[e[2]]}));
+  for (std::size_t i = 0; i < mesh.elements.size(); ++i) boxes.push_back(boxOf(triangleOf(mesh, i)));
   nodes_.reserve(2 * order_.size());
   build(0, static_cast<int>(order_.size()), mesh, boxes);
-  for (const int i : order_) {
-    const Vector3i& e = mesh.elements[i];
-    triangles_.push_back({mesh.vertices[e[0]], mesh.vertices[e[1]], mesh.vertices[e[2]]});
-  }
+  for (const int i : order_) triangles_.push_back(triangleOf(mesh, i));
 }
 
 void PlainTree::build(int first, int count, const TriangleMesh& mesh, const std::vector<Box>& boxes) {

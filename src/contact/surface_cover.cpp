@@ -17,12 +17,7 @@ constexpr double SAME_PLANE = 1e-5;  // sine
 constexpr double SAME_ANGLE = 1e-3;  // [rad]
 constexpr double TURN = 2 * M_PI;
 
-Triangle triangleOf(const TriangleMesh& mesh, std::uint32_t element) {
-  const Vector3i& corners = mesh.elements[element];
-  return {mesh.vertices[corners[0]], mesh.vertices[corners[1]], mesh.vertices[corners[2]]};
-}
-
-/** Where on the surface the contact is, world. A contact that fades is less deep than its points tell: they lie on its feature. */
+/** [m] Place of the contact on the surface, world. A contact that fades is less deep than its points tell; its place is on its feature. */
 Vector3 placeOn(const Collider& own, const Pose& X_WO, const Contact& contact, bool own_is_a) {
   const Vector3 place = witnessOf(contact, own.radius, own_is_a);
   const Feature feature = featureOf(contact.id, own_is_a);

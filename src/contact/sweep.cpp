@@ -14,12 +14,7 @@ Matrix3 turned(const Vector3& turn) {
   return angle > 0 ? Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix() : Matrix3::Identity();
 }
 
-Triangle triangleOf(const TriangleMesh& mesh, std::uint32_t element) {
-  const Vector3i& e = mesh.elements[element];
-  return {mesh.vertices[e[0]], mesh.vertices[e[1]], mesh.vertices[e[2]]};
-}
-
-/** Are two meshes within a distance [m]? */
+/** Whether two meshes are within a distance [m] of each other. */
 bool areWithin(double distance, const CollisionGeometry& a, const CollisionGeometry& b, const Pose& X_BA) {
   bool found = false;
   const auto looking = [&found](std::uint32_t, std::uint32_t) { return !found; };

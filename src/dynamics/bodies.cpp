@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "blem_sim/geometry/free_slots.h"
 #include "blem_sim/geometry/input_error.h"
 #include "scene.h"
 
@@ -27,10 +28,7 @@ int Scene::addBody(const BodySpec& spec) {
   BodySlot slot;
   slot.spec = spec;
   createBody(&slot);
-  if (free_bodies_.empty()) free_bodies_.insert(static_cast<int>(bodies_.size()));
-  const int body = *free_bodies_.begin();
-  free_bodies_.erase(free_bodies_.begin());
-  if (body == static_cast<int>(bodies_.size())) bodies_.emplace_back();
+  const int body = takeSlot(&free_bodies_, &bodies_);
   bodies_[body] = slot;
   ++structure_;
   BodyState state;

@@ -1,6 +1,7 @@
 // Joints of the scene. ODE's first body is the child, so its angles, positions and motor efforts are the child's against the parent.
 #include <cmath>
 
+#include "blem_sim/geometry/free_slots.h"
 #include "blem_sim/geometry/input_error.h"
 #include "input_check.h"
 #include "scene.h"
@@ -28,11 +29,7 @@ int Scene::addJoint(const JointSpec& spec, double position) {
   check(spec, *this);
   checkJointNumbers(spec, position);
   const bool is_new = free_joints_.empty();
-  const int joint = is_new ? static_cast<int>(joints_.size()) : *free_joints_.begin();
-  if (is_new)
-    joints_.emplace_back();
-  else
-    free_joints_.erase(free_joints_.begin());
+  const int joint = takeSlot(&free_joints_, &joints_);
   JointSlot& slot = joints_[joint];
   slot = JointSlot();
   slot.occupant = ++joints_added_;

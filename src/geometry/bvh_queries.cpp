@@ -102,10 +102,8 @@ double distanceToMesh(const Bvh& tree, const TriangleMesh& mesh, const Vector3& 
     if (box_distance2 > best * best) continue;
     const Bvh::Node& node = tree.nodes()[index];
     if (node.isLeaf()) {
-      for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-        const Vector3i& e = mesh.elements[tree.order()[i]];
-        best = std::min(best, closestPointTriangle(p, {mesh.vertices[e[0]], mesh.vertices[e[1]], mesh.vertices[e[2]]}).distance);
-      }
+      for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
+        best = std::min(best, closestPointTriangle(p, triangleOf(mesh, tree.order()[i])).distance);
       continue;
     }
     // The nearer child comes off the stack first.

@@ -46,21 +46,21 @@ struct Recovery {
 };
 
 /**
- * Finds contacts at the state at hand. The manifolds are a function of the state and of recoveries() alone, so those found at the end of an
- * accepted step serve the next one, and after a restore they are found anew, the same.
+ * Finds contacts at the state at hand (contact_stage.cpp) and makes constraints of them (contact_constraints.cpp). The manifolds are a
+ * function of the state and of recoveries() alone, so those found at the end of an accepted step serve the next one, and after a restore
+ * they are found anew, the same.
  */
 class ContactStage {
  public:
   /** @param threads that search pairs at once; the result is the same for any number */
   ContactStage(const ContactConfig& config, int threads);
 
-  /** Pairs that may touch within the coming step of length dt [s]. @param bodies their states at hand, by slot */
-  void broadPhase(const SimulatedWorld& world, const std::vector<BodyState>& bodies, double dt);
   /**
-   * Bodies may become as fast as in these states, by slot, of the same poses: broadPhase reckons with the larger speed. They must live
-   * until told otherwise. Null: bodies go on as they do.
+   * Pairs that may touch within the coming step of length dt [s].
+   * @param bodies their states at hand, by slot
+   * @param faster states of the same poses whose speeds bodies may reach: the larger speed counts. Null: bodies go on as they do
    */
-  void foresee(const std::vector<BodyState>* faster) { faster_ = faster; }
+  void broadPhase(const SimulatedWorld& world, const std::vector<BodyState>& bodies, const std::vector<BodyState>* faster, double dt);
   /** Their manifolds: found(). */
   void narrowPhase(const SimulatedWorld& world);
   /** What was found is the state the next solve starts from. */
@@ -125,8 +125,9 @@ class ContactStage {
     std::vector<Recovery> recoveries;
     FlushSurfaces flush;
   };
-  void moveColliders(const SimulatedWorld& world, const std::vector<BodyState>& bodies, double dt);
-  double knownMargin(const SimulatedWorld& world, const std::vector<BodyState>& bodies, const ColliderPair& pair, double dt) const;
+  void moveColliders(const SimulatedWorld& world, const std::vector<BodyState>& bodies, const std::vector<BodyState>* faster, double dt);
+  double knownMargin(const SimulatedWorld& world, const std::vector<BodyState>& bodies, const std::vector<BodyState>* faster,
+                     const ColliderPair& pair, double dt) const;
   bool isAtOnePlace(const SimulatedWorld& world, int a, int b) const;
   /** Where a pair was last apart, as far as the accepted state knows. */
   Recovery lastApart(int a, int b) const;
@@ -139,7 +140,6 @@ class ContactStage {
   ReductionMemory memory_;
   LayerStops stops_;
   bool known_ = false;
-  const std::vector<BodyState>* faster_ = nullptr;
   std::vector<double> arms_;
   BroadPhase pair_search_;
   Search search_, current_search_;

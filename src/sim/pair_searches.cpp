@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "blem_sim/contact/collider_pairs.h"
 #include "contact_stage.h"
 
 namespace blem_sim {
@@ -38,7 +39,7 @@ void PairSearches::watch(const std::vector<WatchedPair>& pairs) {
   giveBack(pairs);
   auto old = before_.begin();
   for (const WatchedPair& pair : pairs) {
-    while (old != before_.end() && std::make_pair(old->a, old->b) < std::make_pair(pair.a, pair.b)) ++old;
+    while (old != before_.end() && IsPairBefore()(*old, pair)) ++old;
     known_.push_back(old != before_.end() && same(*old, pair) ? std::move(*old) : Known{pair.a, pair.b, takeSpare()});
   }
   before_.clear();
@@ -48,7 +49,7 @@ void PairSearches::watch(const std::vector<WatchedPair>& pairs) {
 void PairSearches::giveBack(const std::vector<WatchedPair>& pairs) {
   auto pair = pairs.begin();
   for (Known& old : before_) {
-    while (pair != pairs.end() && std::make_pair(pair->a, pair->b) < std::make_pair(old.a, old.b)) ++pair;
+    while (pair != pairs.end() && IsPairBefore()(*pair, old)) ++pair;
     if (pair == pairs.end() || pair->a != old.a || pair->b != old.b) spare_.push_back(std::move(old.memory));
   }
 }

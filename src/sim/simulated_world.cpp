@@ -4,24 +4,10 @@
 
 #include <algorithm>
 
+#include "blem_sim/geometry/free_slots.h"
 #include "blem_sim/geometry/input_error.h"
 
 namespace blem_sim {
-namespace {
-
-/** The lowest free slot, else a new one at the end. */
-template <typename Item>
-int takeSlot(std::set<int>* free, std::vector<Item>* items) {
-  if (free->empty()) {
-    items->emplace_back();
-    return static_cast<int>(items->size()) - 1;
-  }
-  const int slot = *free->begin();
-  free->erase(free->begin());
-  return slot;
-}
-
-}  // namespace
 
 void SimulatedWorld::checkNewName(const std::string& name, const std::string& section) const {
   if (name.empty()) throw InputError(fmt::format("{}: an entry has no name; give it one", section));

@@ -1,4 +1,5 @@
-// What a Simulator holds. Its work is split by concept: simulator_step.cpp, simulator_commands.cpp, simulator_state.cpp.
+// What a Simulator holds. Its work is split by concept: simulator_step.cpp, simulator_report.cpp,
+// simulator_commands.cpp, simulator_state.cpp.
 #pragma once
 
 #include <memory>
@@ -34,21 +35,23 @@ struct Simulator::Impl {
   /** False if the state is not finite any more; the last finite one is then restored. */
   bool solve();
   void readSensors();
-  void report();
   void acceptSubstep();
   void redoSubstep(const std::vector<ClosePass>& close);
   /** What bodies may become in the rest of the step, where a solve that was thrown away has shown it; else null. */
   const std::vector<BodyState>* foreseen();
+  const StepReport& stop();
+  void findFirstContacts();
+  void jointStates(std::vector<JointState>* out) const;
+  bool bodiesAreFinite() const;
+
+  // simulator_report.cpp
   void recordContacts();
   /** A contact of the part at hand, with its moments: its links have moved on since the step began. */
   ContactReport withMoments(ContactReport contact) const;
   void recordSolve();
   void recordEnergy();
   void recordSaturation();
-  const StepReport& stop();
-  void findFirstContacts();
-  void jointStates(std::vector<JointState>* out) const;
-  bool bodiesAreFinite() const;
+  void report();
   /** Report of the state at hand, nothing having happened. */
   void reportWithoutStep();
 

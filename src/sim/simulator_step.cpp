@@ -1,33 +1,16 @@
 // One step: the table of docs/architecture.md.
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <utility>
 
 #include "simulator_impl.h"
+#include "stage_timer.h"
 #include "step_prediction.h"
 
 namespace blem_sim {
 namespace {
 
-constexpr double FARTHEST = 1e12;             // [m], [m/s], [rad/s]: what is beyond has no meaning as a number any more
-constexpr double LIMIT_REACHED = 1e-6;        // [rad or m]
-constexpr double CREEP_IS_TROUBLE = 0.01;     // [rad/s or m/s]
-constexpr double RESIDUAL_IS_TROUBLE = 0.01;  // of the largest contact force
-
-/** Adds the wall time of a scope to a stage. */
-class StageTimer {
- public:
-  StageTimer(StepProfile* profile, Stage stage) : seconds_(&profile->seconds[static_cast<int>(stage)]), start_(Clock::now()) {}
-  ~StageTimer() { *seconds_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
-  StageTimer(const StageTimer&) = delete;
-  StageTimer& operator=(const StageTimer&) = delete;
-
- private:
-  using Clock = std::chrono::steady_clock;
-  double* seconds_;
-  Clock::time_point start_;
-};
+constexpr double FARTHEST = 1e12;  // [m], [m/s], [rad/s]: what is beyond has no meaning as a number any more
 
 bool withinReach(const BodyState& state) {
   const auto small = [](const Vector3& v) { return v.allFinite() && v.cwiseAbs().maxCoeff() < FARTHEST; };
@@ -110,8 +93,7 @@ void Simulator::Impl::broadPhase() {
   const StageTimer timer(&report_.profile, Stage::BROAD_PHASE);
   // The next solve goes on with the rest of the step, or with the next one.
   const double left = substeps_.fractionAfter();
-  contacts_.foresee(left > 0 ? foreseen() : nullptr);
-  contacts_.broadPhase(world_, bodies_, (left > 0 ? left : 1) * config_.time_step);
+  contacts_.broadPhase(world_, bodies_, left > 0 ? foreseen() : nullptr, (left > 0 ? left : 1) * config_.time_step);
 }
 
 void Simulator::Impl::narrowPhase() {
@@ -159,8 +141,7 @@ void Simulator::Impl::redoSubstep(const std::vector<ClosePass>& close) {
   foreseen_ = bodies_;
   world_.world.restore(substep_start_);
   bodies_ = bodies_before_substep_;
-  contacts_.foresee(foreseen());
-  contacts_.broadPhase(world_, bodies_, substeps_.fractionLeft() * config_.time_step);
+  contacts_.broadPhase(world_, bodies_, foreseen(), substeps_.fractionLeft() * config_.time_step);
   contacts_.narrowPhase(world_);
   contacts_.accept();
   substeps_.redo(std::min(part, safeTime(world_, contacts_, foreseen_, substepLength()) / substepLength()));
@@ -185,72 +166,6 @@ void Simulator::Impl::acceptSubstep() {
   substeps_.accept();
 }
 
-void Simulator::Impl::recordSolve() {
-  double largest = 0;
-  for (const Vector3& force : solved_->contact_forces) largest = std::max(largest, force.norm());
-  if (solved_->lcp_errors > 0 || solved_->residual > RESIDUAL_IS_TROUBLE * largest || solved_->creep > CREEP_IS_TROUBLE)
-    report_.status |= SOLVER_TROUBLE;
-  if (solved_->too_fast) report_.status |= MOTION_TOO_FAST;
-  report_.solver_residual = std::max(report_.solver_residual, solved_->residual);
-  report_.solver_creep = std::max(report_.solver_creep, solved_->creep);
-  report_.solver_iterations += solved_->iterations;
-}
-
-void Simulator::Impl::recordEnergy() {
-  const EnergyGain gain = energy_balance_.addSolve(world_.world, substepLength(), contacts_, *solved_, bodies_before_substep_, bodies_);
-  report_.energy_gained += gain.total;
-  report_.energy_out_of_nothing += gain.out_of_nothing;
-  if (gain.beyond_bound) report_.status |= ENERGY_GAINED;
-}
-
-void Simulator::Impl::recordSaturation() {
-  for (std::size_t j = 0; j < drives_.size(); ++j) {
-    const JointState state = world_.world.jointState(static_cast<int>(j));
-    if (world_.motors[j].accept(drives_[j], state, substepLength())) report_.status |= EFFORT_SATURATED;
-    const JointSpec& spec = world_.world.jointSpec(static_cast<int>(j));
-    if (spec.kind == JointKind::FIXED) continue;
-    if (state.position < spec.lower + LIMIT_REACHED || state.position > spec.upper - LIMIT_REACHED) report_.status |= JOINT_LIMIT_HIT;
-  }
-}
-
-// Speculative contacts that did not act are left out.
-void Simulator::Impl::recordContacts() {
-  report_.raw_contacts = contacts_.rawContacts();
-  report_.reduced_contacts = contacts_.reducedContacts();
-  for (std::size_t i = 0; i < contacts_.constraints().size(); ++i) {
-    const ContactConstraint& constraint = contacts_.constraints()[i];
-    const SolvedContact& solved = contacts_.solved()[i];
-    const Vector3& force = solved_->contact_forces[i];
-    if (constraint.depth < 0 && force.isZero(0)) continue;
-    const double depth = constraint.depth + solved.stop, of_layer = solved.layer > 0 ? std::max(0.0, depth) / solved.layer : 0;
-    part_reports_.addContact(constraint.id, withMoments({solved.collider_a, solved.collider_b, constraint.body_a, constraint.body_b,
-                                                         constraint.point, constraint.normal_BA, depth, of_layer, force, solved.pierced}));
-  }
-  if (contacts_.reductionLoss().cut_pairs > 0) report_.status |= CONTACTS_REDUCED;
-  report_.wrench_error = std::max(report_.wrench_error, contacts_.reductionLoss().wrench);
-  if (!contacts_.recoveries().empty()) report_.status |= CONTACT_UNRELIABLE;
-  if (!contacts_.leftOut().empty()) report_.status |= CONTACT_UNRELIABLE | CONTACTS_REDUCED;
-  for (const ContactManifold& manifold : contacts_.current()) {
-    const double depth = manifold.maxDepth();
-    if (manifold.layer > 0) report_.max_of_layer = std::max(report_.max_of_layer, depth / manifold.layer);
-    if (depth <= report_.max_depth) continue;
-    report_.max_depth = depth;
-    report_.deepest_a = manifold.a;
-    report_.deepest_b = manifold.b;
-  }
-}
-
-ContactReport Simulator::Impl::withMoments(ContactReport contact) const {
-  if (substeps_.count() == 0) return contact;
-  const auto travel = [&](int collider) -> Vector3 {
-    const Collider& on = world_.colliders[collider];
-    return world_.linkOrigin(on, bodies_before_substep_) - world_.linkOrigin(on, bodies_before_);
-  };
-  contact.moment_a = contact.force.cross(travel(contact.collider_a));
-  contact.moment_b = travel(contact.collider_b).cross(contact.force);
-  return contact;
-}
-
 void Simulator::Impl::readSensors() {
   const StageTimer timer(&report_.profile, Stage::SENSORS);
   jointStates(&joints_);
@@ -266,28 +181,6 @@ void Simulator::Impl::readSensors() {
     sensors_[i]->read(context, period, &spare_readings_[i]);
     report_.samples.push_back({static_cast<int>(i), std::move(spare_readings_[i])});
   }
-}
-
-void Simulator::Impl::report() {
-  const StageTimer timer(&report_.profile, Stage::REPORT);
-  report_.step = step_count_;
-  report_.time = time();
-  report_.searched_pairs = static_cast<int>(contacts_.watched().size());
-  report_.substeps = substeps_.count();
-  report_.redone_solves = substeps_.redone();
-  if (report_.substeps > 1) report_.status |= STEP_SHORTENED;
-  report_.energy = world_.world.kineticEnergy() + world_.world.potentialEnergy();
-  part_reports_.takeContacts(&report_.contacts);
-  report_.bodies = bodies_;
-  report_.joints = joints_;
-}
-
-void Simulator::Impl::reportWithoutStep() {
-  startStep();
-  report_.raw_contacts = report_.reduced_contacts = 0;
-  jointStates(&joints_);
-  if (stopped_) report_.status |= STATE_NOT_FINITE;
-  report();
 }
 
 bool Simulator::Impl::bodiesAreFinite() const {

@@ -27,18 +27,15 @@ const std::vector<ClosePass>& SweepGuard::look(const SimulatedWorld& world, cons
   before_ = &before;
   after_ = &after;
   moveColliders(world, contacts, before, after);
-  auto manifold = contacts.current().begin();
   for (const WatchedPair& pair : contacts.watched()) {
     const Collider &a = world.colliders[pair.a], &b = world.colliders[pair.b];
     const double layer = a.radius + b.radius, motion = motion_[pair.a].reach + motion_[pair.b].reach;
     if (motion <= STILL * layer || !canPass(a, b)) continue;
-    const auto isBefore = [](const ContactManifold& m, const WatchedPair& p) { return m.a < p.a || (m.a == p.a && m.b < p.b); };
-    while (manifold != contacts.current().end() && isBefore(*manifold, pair)) ++manifold;
-    const bool known = manifold != contacts.current().end() && manifold->a == pair.a && manifold->b == pair.b;
-    if (known && manifold->pierced) continue;
-    const double distance = layer - (known ? manifold->maxDepth() : -pair.known);
+    const ContactManifold* known = findPair(contacts.current(), pair.a, pair.b);
+    if (known && known->pierced) continue;
+    const double distance = layer - (known ? known->maxDepth() : -pair.known);
     if (distance - motion < (known ? SPARED : HALF) * layer && !findPair(contacts.recoveries(), pair.a, pair.b))
-      lookAt(world, pair.a, pair.b, distance, known);
+      lookAt(world, pair.a, pair.b, distance, known != nullptr);
   }
   if (leavesWhatWasSearched(world, contacts)) lookAtOthers(world, contacts);
   return close_;
@@ -88,11 +85,10 @@ void SweepGuard::lookAtOthers(const SimulatedWorld& world, const ContactStage& c
     if (!canPass(a, b) || world.disabled_pairs.count({pair.a, pair.b}) > 0 || findPair(contacts.watched(), pair.a, pair.b)) continue;
     lookAt(world, pair.a, pair.b, a.radius + b.radius, false);
   }
-  const auto isBefore = [](const ClosePass& p, const ClosePass& q) { return p.a < q.a || (p.a == q.a && p.b < q.b); };
-  std::inplace_merge(close_.begin(), close_.begin() + static_cast<std::ptrdiff_t>(watched), close_.end(), isBefore);
+  std::inplace_merge(close_.begin(), close_.begin() + static_cast<std::ptrdiff_t>(watched), close_.end(), IsPairBefore());
 }
 
-/** @param distance [m] of the bare meshes at the start, at least @param known are its contacts there? */
+/** @param distance [m] of the bare meshes at the start, at least @param known whether its contacts there are known */
 void SweepGuard::lookAt(const SimulatedWorld& world, int a, int b, double distance, bool known) {
   const CollisionGeometry &geometry_a = *world.colliders[a].geometry, &geometry_b = *world.colliders[b].geometry;
   const double layer = world.colliders[a].radius + world.colliders[b].radius;

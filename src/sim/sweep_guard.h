@@ -1,4 +1,4 @@
-// Did bare meshes meet, or nearly, on the way from one end of a solve to the other, whatever its contacts foresaw?
+// Pairs whose bare meshes meet, or nearly, on the way from one end of a solve to the other.
 #pragma once
 
 #include <vector>

@@ -20,7 +20,7 @@ namespace {
 double besideFace(const TriangleMesh& mesh, int face, const Vector3& p) {
   const Vector3i& e = mesh.elements[face];
   const Vector3 normal = MeshTopology::normal(mesh, face), projection = p - normal.dot(p - mesh.vertices[e[0]]) * normal;
-  return closestPointTriangle(projection, {mesh.vertices[e[0]], mesh.vertices[e[1]], mesh.vertices[e[2]]}).distance;
+  return closestPointTriangle(projection, triangleOf(mesh, face)).distance;
 }
 
 /** Is p inside all sides of the face, but for so little as counts as over it? */

@@ -14,11 +14,6 @@
 namespace blem_sim {
 namespace {
 
-Triangle triangleOf(const TriangleMesh& mesh, int element) {
-  const Vector3i& e = mesh.elements[element];
-  return {mesh.vertices[e[0]], mesh.vertices[e[1]], mesh.vertices[e[2]]};
-}
-
 TriangleMesh bumpySphere(RandomShapes& random, int level) {
   TriangleMesh mesh = icosphereMesh(0.1, level);
   for (Vector3& v : mesh.vertices) v *= random.uniform(0.8, 1.2);

@@ -10,6 +10,14 @@
 
 namespace blem_sim {
 
+/** The order of pairs: by a, then by b. */
+struct IsPairBefore {
+  template <typename P, typename Q>
+  bool operator()(const P& p, const Q& q) const {
+    return std::make_pair(p.a, p.b) < std::make_pair(q.a, q.b);
+  }
+};
+
 /** The item of the pair (a, b), a < b; null if there is none. Precondition: items sorted by (a, b). */
 template <typename Item>
 const Item* findPair(const std::vector<Item>& items, int a, int b) {
@@ -18,16 +26,16 @@ const Item* findPair(const std::vector<Item>& items, int a, int b) {
   return at != items.end() && at->a == a && at->b == b ? &*at : nullptr;
 }
 
-/** Are these words of a saved state the pair (a, b), a < b, of two colliders that are there? */
+/** Whether two words of a saved state name two colliders that are there, in order. */
 inline bool isPair(const std::vector<Collider>& colliders, std::uint64_t a, std::uint64_t b) {
   return a < b && b < colliders.size() && colliders[a].enabled && colliders[b].enabled;
 }
 
-/** Does each pair of a list come after the one before it? */
+/** Whether every pair of a list comes after the one before it, none twice. */
 template <typename Item>
 bool areSorted(const std::vector<Item>& items) {
-  const auto follows = [](const Item& p, const Item& q) { return std::make_pair(q.a, q.b) <= std::make_pair(p.a, p.b); };
-  return std::adjacent_find(items.begin(), items.end(), follows) == items.end();
+  const auto is_not_before = [](const Item& p, const Item& q) { return !IsPairBefore()(p, q); };
+  return std::adjacent_find(items.begin(), items.end(), is_not_before) == items.end();
 }
 
 /** Takes the pairs of one collider out of a list. */

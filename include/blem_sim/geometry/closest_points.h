@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <limits>
 
 #include "blem_sim/geometry/triangle_mesh.h"
@@ -16,6 +17,12 @@ struct ClosestPoints {
 };
 
 using Triangle = std::array<Vector3, 3>;  ///< corners [m]; they may coincide (a segment, a point) or be collinear
+
+/** Corners of an element of a mesh. */
+inline Triangle triangleOf(const TriangleMesh& mesh, std::size_t element) {
+  const Vector3i& e = mesh.elements[element];
+  return {mesh.vertices[e[0]], mesh.vertices[e[1]], mesh.vertices[e[2]]};
+}
 
 /** Closest point of triangle t to p, and its distance. [Ericson 2005, 5.1.5], robust for collinear corners */
 ClosestPoints closestPointTriangle(const Vector3& p, const Triangle& t);

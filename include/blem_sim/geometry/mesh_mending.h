@@ -33,9 +33,11 @@ constexpr double PLANE_DEVIATION = 2e-5;
  * - T-junctions: a border edge along which such a partner begins or ends is split there;
  * - planes: a patch of triangles that bend by no more than PLANE_DEVIATION explains, ends at true creases (not gradually, as a curved
  *   surface does), does not bulge (findCurved: heights that change smoothly, not from vertex to vertex as noise does), lies within
- * PLANE_DEVIATION and 1/500 of its width of its least-squares plane, is moved onto it, a vertex of several such planes to their
- * intersection; by at most 2 PLANE_DEVIATION, else the patch stays as it is. What is whole and flat (MeshTopology::FLAT_SINE), or curved,
- * comes back bit-identical. Deterministic; the surface does not depend on the order of vertices and triangles but for rounding.
+ *   PLANE_DEVIATION and 1/500 of its width of its least-squares plane, is moved onto it, a vertex of several such planes to their
+ *   intersection; by at most 2 PLANE_DEVIATION, else the patch stays as it is.
+ *
+ * A mesh that is whole and flat (MeshTopology::FLAT_SINE), or curved, comes back bit-identical. Deterministic; the surface does not
+ * depend on the order of vertices and triangles but for rounding.
  * @param report of cleanMesh: counts and extents are brought up to date; may be null @param what may be null
  * @param topology of what comes back, which mending has at hand; may be null
  */
