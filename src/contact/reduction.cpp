@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <climits>
-#include <numeric>
 
 #include "contact_order.h"
 #include "hull_stages.h"
@@ -18,8 +17,8 @@ struct Buffers {
   std::vector<ThinnedContacts> thinned;  // manifold by manifold
   std::vector<int> limits, sizes;        // manifold by manifold: how many may be kept, and would be
   std::vector<int> touching, counts, shares;
-  std::vector<std::pair<int, int>> of_models;    // (model, manifold)
-  std::vector<std::pair<long, int>> remainders;  // negative, so that the largest comes first
+  std::vector<std::pair<int, int>> of_models;  // (model, manifold)
+  std::vector<std::pair<int, int>> order;      // (count, party)
 };
 
 // Sound contacts take part in the choice; pierced ones, whose directions are the fallback's, get the room that is left, and a quarter of k
@@ -42,33 +41,21 @@ void reduceContacts(const std::vector<Contact>& contacts, int k, const Reduction
 
 constexpr int FLOOR = 3;  // contacts of a pair, if it has them, whatever budgets say: with none it falls through, with two it tips over
 
-/** k shared by `counts` in proportion, by largest remainders; nobody gets more than it has; each at least FLOOR, if it has that, even
- * where they sum to more than k. */
+/** k shared by `counts`: who asks for little gets all of it, the others get equal shares. What a pair's wrenches lack depends on how many
+ * contacts it keeps, hardly on how many it has: so the largest lack is the least. Each gets at least FLOOR, if it has that, even where
+ * they sum to more than k. */
 void fairShares(int k, Buffers* buffers) {
   const std::vector<int>& counts = buffers->counts;
-  std::vector<int>& shares = buffers->shares;
-  const int parties = static_cast<int>(counts.size());
-  const long total = std::accumulate(counts.begin(), counts.end(), 0L);
-  shares.resize(parties);
-  buffers->remainders.clear();
-  for (int i = 0; i < parties; ++i) {
-    const long part = static_cast<long>(k) * counts[i];
-    shares[i] = std::max(static_cast<int>(part / total), std::min(FLOOR, counts[i]));
-    buffers->remainders.push_back({-(part % total), i});
-  }
-  std::sort(buffers->remainders.begin(), buffers->remainders.end());
-  int left = k - std::accumulate(shares.begin(), shares.end(), 0);
-  for (std::size_t i = 0; i < buffers->remainders.size() && left > 0; ++i) {
-    const int party = buffers->remainders[i].second;
-    if (shares[party] >= counts[party]) continue;
-    ++shares[party];
-    --left;
-  }
-  // The floors may have overdrawn: the largest give back, one at a time, down to the floor.
-  for (; left < 0; ++left) {
-    const auto largest = std::max_element(shares.begin(), shares.end());
-    if (*largest <= FLOOR) break;
-    --*largest;
+  std::vector<std::pair<int, int>>& order = buffers->order;
+  order.clear();
+  for (int i = 0; i < static_cast<int>(counts.size()); ++i) order.push_back({counts[i], i});
+  std::sort(order.begin(), order.end());
+  buffers->shares.resize(counts.size());
+  int left = k, parties = static_cast<int>(counts.size());
+  for (const auto& [count, party] : order) {
+    const int share = std::min(count, std::max(left / parties--, FLOOR));
+    buffers->shares[party] = share;
+    left = std::max(0, left - share);
   }
 }
 

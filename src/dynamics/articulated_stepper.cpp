@@ -333,7 +333,7 @@ void ArticulatedStepper::report(double dt, SolveResult* result) const {
     const NewtonReport& report = islands_of_step_[i].report;
     result->too_fast |= !islands_of_step_[i].followed;
     result->residual = std::max(result->residual, report.contact_residual / dt);
-    result->creep = std::max({result->creep, report.joint_creep, report.imbalance});
+    result->creep = std::max({result->creep, report.joint_creep, report.contact_creep, report.imbalance});
     result->iterations += report.iterations;
   }
 }

@@ -41,6 +41,8 @@ BLEM_SIM_INLINE LaneSlope respondLane(ContactBlock& b, int lane, const Triple& u
   return {-dot(impulse, step), normal_gain * squared + tangent_gain * across};
 }
 
+double largestRoot(const Lanes& squares) { return std::sqrt(std::max({squares[0], squares[1], squares[2], squares[3]})); }
+
 }  // namespace
 
 void setLane(const ContactTerm* term, int lane, ContactBlock* b) {
@@ -198,8 +200,8 @@ BLEM_SIM_LANES void remember(ContactBlock* begin, ContactBlock* end) {
   }
 }
 
-BLEM_SIM_LANES double residual(const ContactBlock* begin, const ContactBlock* end) {
-  Lanes worst = {};
+BLEM_SIM_LANES ContactResidual residual(const ContactBlock* begin, const ContactBlock* end) {
+  Lanes worst = {}, worst_speed = {};
   for (const ContactBlock* b = begin; b != end; ++b) {
     for (int lane = 0; lane < LANES; ++lane) {
       const Triple normal = at(b->normal, lane), u = at(b->velocity, lane), g = at(b->impulse, lane);
@@ -213,10 +215,24 @@ BLEM_SIM_LANES double residual(const ContactBlock* begin, const ContactBlock* en
       const Triple ridge = normal + (size > 0 ? mu / size : 0) * y_t;
       const Triple lawful = either(opens, {0, 0, 0}, either(sticks, y_n * normal + y_t, push * ridge)), miss = lawful - g;
       const double squared = dot(miss, miss);
+      const double speed = b->inverse_mass[lane] * b->inverse_mass[lane] * squared;
+      worst[lane] = squared > worst[lane] ? squared : worst[lane];
+      worst_speed[lane] = speed > worst_speed[lane] ? speed : worst_speed[lane];
+    }
+  }
+  return {largestRoot(worst), largestRoot(worst_speed)};
+}
+
+BLEM_SIM_LANES double fastest(const ContactBlock* begin, const ContactBlock* end) {
+  Lanes worst = {};
+  for (const ContactBlock* b = begin; b != end; ++b) {
+    for (int lane = 0; lane < LANES; ++lane) {
+      const Triple u = at(b->velocity, lane);
+      const double squared = dot(u, u);
       worst[lane] = squared > worst[lane] ? squared : worst[lane];
     }
   }
-  return std::sqrt(std::max({worst[0], worst[1], worst[2], worst[3]}));
+  return largestRoot(worst);
 }
 
 }  // namespace blem_sim

@@ -46,11 +46,16 @@ double IslandProblem::largestImpulse() const {
   return std::sqrt(largest);
 }
 
-// Imbalance, creep and violation of Coulomb's law, the worst of them in units of its bound. Infinite if one is not a number.
+// Imbalance, creep of joints and violation of Coulomb's law, the worst of them in units of its bound. Infinite if one is not a number.
 double IslandProblem::faults(const NewtonReport& report) const {
   const double contact = report.contact_residual > 0 ? report.contact_residual / (RESIDUAL_IS_TROUBLE * largestImpulse()) : 0;
   const double worst = std::max({report.imbalance / BALANCED, report.joint_creep / CREEP_IS_TROUBLE, contact});
   return std::isfinite(report.imbalance + report.joint_creep + report.contact_residual) ? worst : INFINITY;
+}
+
+// Creep of contacts among them: light bodies between heavy ones creep long before they violate the law by much of the largest impulse.
+double IslandProblem::faultsWithCreep(const NewtonReport& report) const {
+  return std::max(faults(report), report.contact_creep / CREEP_IS_TROUBLE);
 }
 
 void IslandProblem::takeFirstVelocity() {
@@ -269,7 +274,7 @@ void IslandProblem::sweepAndPolish(const NewtonSettings& settings, NewtonReport*
 // smallest faults is taken: one of theirs, or the one found before.
 void IslandProblem::recover(NewtonReport* report) {
   SolverSpace& s = *space_;
-  double least = faults(*report);
+  double least = faultsWithCreep(*report);
   kept_.take(s.velocity, trees, *forest_, contacts, joints, loops);
   for (const SweepStart start : {SweepStart::PREVIOUS, SweepStart::NOTHING}) {
     NewtonReport swept;
@@ -278,7 +283,7 @@ void IslandProblem::recover(NewtonReport* report) {
     report->iterations += sweeps.sweeps;
     adoptSwept();
     finishSwept(&swept);
-    const double left = faults(swept);
+    const double left = faultsWithCreep(swept);
     if (left < least) kept_.take(s.velocity, trees, *forest_, contacts, joints, loops);
     least = std::min(least, left);
     if (least <= 1) break;

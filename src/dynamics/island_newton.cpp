@@ -15,8 +15,12 @@ constexpr double JOINT_SOFTNESS[SOFT_STAGES] = {10, 3};
 constexpr double FIRST_PROGRESS = 0.1;      // an iteration that leads somewhere reduces the gradient to this
 constexpr double CHORD_PROGRESS = 0.1;      // a factor that is not made anew must have reduced the gradient to this
 constexpr int EASY = 10, ENOUGH_LEFT = 20;  // iterations of a proximal step whose slips are mixed, and of those that are left then
-constexpr double HEAP_TOLERANCE = 100;      // times the gradient's tolerance: of a heap that goes on as it did
-constexpr double NO_STEP = 1e-16;           // [rad/s or m/s] largest change of a velocity that is none
+// Contacts of a light body between heavy ones still creep so fast after the proximal steps that suffice elsewhere: they get more.
+constexpr double CREEPS = 1e-3;          // [m/s]
+constexpr int ENOUGH_TO_END = 30;        // iterations that are left for a last step
+constexpr double OF_FIRST_SPEED = 1e-3;  // creep of contacts that is none: of the fastest of them before the solve
+constexpr double HEAP_TOLERANCE = 100;   // times the gradient's tolerance: of a heap that goes on as it did
+constexpr double NO_STEP = 1e-16;        // [rad/s or m/s] largest change of a velocity that is none
 
 }  // namespace
 
@@ -177,7 +181,9 @@ void IslandProblem::remember() {
 
 void IslandProblem::assess(NewtonReport* report) const {
   report->imbalance = imbalance();
-  report->contact_residual = residual(contact_blocks_.data(), contact_blocks_.data() + contact_blocks_.size());
+  const ContactResidual contact = residual(contact_blocks_.data(), contact_blocks_.data() + contact_blocks_.size());
+  report->contact_residual = contact.impulse;
+  report->contact_creep = std::max(0.0, contact.speed - OF_FIRST_SPEED * first_speed_);
   report->joint_creep = creep(joint_blocks_.data(), joint_blocks_.data() + joint_blocks_.size());
   for (const LoopTerm& loop : loops) report->joint_creep = std::max(report->joint_creep, loop.creep());
 }
@@ -202,6 +208,7 @@ NewtonReport IslandProblem::solve(const Forest& forest, const ForestMotion& moti
 
 NewtonReport IslandProblem::solveFirst(const NewtonSettings& settings) {
   start();
+  first_speed_ = fastest(contact_blocks_.data(), contact_blocks_.data() + contact_blocks_.size());
   NewtonReport report;
   if (isSolved(isHeap() ? HEAP_TOLERANCE * settings.gradient_tolerance : settings.gradient_tolerance)) {
     finish(settings, &report);
@@ -265,7 +272,7 @@ NewtonReport IslandProblem::iterate(const NewtonSettings& settings) {
 void IslandProblem::finish(const NewtonSettings& settings, NewtonReport* report) {
   int last = settings.max_iterations;
   double least = INFINITY;
-  for (int outer = 1; outer < settings.max_outer; ++outer) {
+  for (int outer = 1, most = settings.max_outer; outer < most; ++outer) {
     assess(report);
     keepBalanced(*report, &least);
     const bool lawful = report->contact_residual <= settings.contact_tolerance && report->joint_creep <= settings.joint_tolerance &&
@@ -273,11 +280,13 @@ void IslandProblem::finish(const NewtonSettings& settings, NewtonReport* report)
     const bool exact = gradient_norm_ <= settings.gradient_tolerance;
     const int left = settings.max_iterations - report->iterations;
     if ((lawful && exact) || left <= 0) break;
-    // What may be the last step is not led beyond what was found.
-    const bool mixes = outer > 1 && last <= EASY && left >= ENOUGH_LEFT && outer + 1 < settings.max_outer;
+    if (outer + 1 == most && report->contact_creep > CREEPS && left >= ENOUGH_TO_END) ++most;
+    // The last step is led on until momentum is balanced.
+    const bool is_last = outer + 1 == most;
+    const bool mixes = outer > 1 && last <= EASY && left >= ENOUGH_LEFT && !is_last;
     if (!mixes) slip_mixing_.start(contact_blocks_.size() * LANES);
     if (!lawful) remember();
-    last = newton(settings, lawful ? 0 : mixes ? INEXACT_MIXED : INEXACT, left);
+    last = newton(settings, lawful || is_last ? 0 : mixes ? INEXACT_MIXED : INEXACT, left);
     report->iterations += last;
   }
   assess(report);

@@ -34,6 +34,7 @@ struct NewtonSettings {
 struct NewtonReport {
   int iterations = 0;
   double contact_residual = 0;  ///< [N s] largest violation of Coulomb's law over the contacts
+  double contact_creep = 0;     ///< [m/s] the same as velocities, beyond a thousandth of the fastest contact's before the solve
   double joint_creep = 0;       ///< [rad/s or m/s] largest creep of a joint that sticks, miss of a limit or of a loop
   double imbalance = 0;         ///< [rad/s or m/s] by how much momentum and impulses differ, over the dof's inertia; worst dof
 };
@@ -175,6 +176,7 @@ class IslandProblem {
   SweepProblem sweepProblem() const;
   double largestImpulse() const;
   double faults(const NewtonReport& report) const;
+  double faultsWithCreep(const NewtonReport& report) const;
   void takeFirstVelocity();
   void adoptImpulses();
   ContactWork contactWork();
@@ -215,6 +217,7 @@ class IslandProblem {
   bool strayed_ = false;       ///< so many joints have left the piece of their response that they were on, that all were woken
   bool woken_ = false;         ///< joints have left the piece of their response that they were on, once in this solve
   double gradient_norm_ = 0;   ///< [sqrt(kg) m/s]
+  double first_speed_ = 0;     ///< [m/s] of the fastest contact before the solve
   std::unique_ptr<Team> team_ = std::make_unique<Team>();
   std::vector<ContactBlock> contact_blocks_;  ///< responses: where the line search looked last
   std::vector<PotentialSlope> slopes_;        ///< by range of contact blocks

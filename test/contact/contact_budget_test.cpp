@@ -119,15 +119,29 @@ TEST_P(Budgets, SayNothingWhereNothingIsCut) {
   EXPECT_EQ(loss.wrench, 0);
 }
 
-TEST(HullBudget, CountsWhatHullsNeedAndNoMore) {
+TEST(HullBudget, GivesAllToThosePairsThatNeedLittle) {
   std::vector<ContactManifold> manifolds = {manifoldOf(0, 1, flatPatch(300, {0, 0, 1}, {0, 0, 0})), manifoldOf(0, 2, noisyPatch(90, 6))};
   const std::size_t corners = reducedBy(*findReduction("hull"), manifolds[0].contacts, 40).size();
   ASSERT_LT(corners, 20u);
   ReductionMemory memory;
   reduceAll(manifolds, {1, 1}, {0, 0}, {{INT_MAX}, {40}}, *findReduction("hull"), &memory);
-  const double share = 40.0 * corners / (corners + 40);  // of what it asks for, as the noisy one asks for 40
-  EXPECT_NEAR(static_cast<double>(manifolds[0].contacts.size()), share, 1);
-  EXPECT_EQ(manifolds[0].contacts.size() + manifolds[1].contacts.size(), 40u);
+  EXPECT_EQ(manifolds[0].contacts.size(), corners);
+  EXPECT_EQ(manifolds[1].contacts.size(), 40 - corners);
+}
+
+// A plate stands on its four corners while something round lies on it: with three of them it would tip over the missing one.
+TEST(HullBudget, LeavesFourCornersBesideCrowds) {
+  Contacts corners;
+  for (const double x : {-1.0, 1.0})
+    for (const double y : {-1.0, 1.0})
+      corners.push_back(makeContact({x, y, 0}, Vector3::UnitZ(), 0, static_cast<std::uint64_t>(corners.size())));
+  std::vector<ContactManifold> manifolds = {manifoldOf(0, 1, noisyPatch(90, 6)), manifoldOf(0, 2, noisyPatch(80, 7)),
+                                            manifoldOf(0, 3, corners)};
+  ReductionMemory memory;
+  reduceAll(manifolds, {1, 1, 1}, {0, 0, 0}, {{INT_MAX}, {20}}, *findReduction("hull"), &memory);
+  EXPECT_EQ(manifolds[2].contacts.size(), 4u);
+  EXPECT_EQ(manifolds[0].contacts.size(), 8u);
+  EXPECT_EQ(manifolds[1].contacts.size(), 8u);
 }
 
 TEST_P(Budgets, ChoosePiercedContactsLast) {

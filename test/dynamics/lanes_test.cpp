@@ -160,7 +160,7 @@ TEST_F(Lane, ExpectsWhatWasRemembered) {
       remember(&b, &b + 1);
     }
     respond(0, &b, &b + 1);
-    ASSERT_LT(residual(&b, &b + 1), 1e-9);
+    ASSERT_LT(residual(&b, &b + 1).impulse, 1e-9);
     const ContactBlock solved = b;
     expect(&b, &b + 1);
     for (int lane = 0; lane < 3; ++lane) {

@@ -95,8 +95,8 @@ struct ReductionLoss {
 
 /**
  * Reduces every manifold so that the contacts of each model sum to at most its k: each manifold asks for what `method` would keep with the
- * smaller k of its two models; where a model has too many then, its manifolds share k in proportion to what they ask for. But each keeps
- * 3, if it asks for them, even where a model then has more than k: no pair ever loses its hold.
+ * smaller k of its two models; where a model has too many then, manifolds that ask for little get all of it and the others equal shares.
+ * But each keeps 3, if it asks for them, even where a model then has more than k: no pair ever loses its hold.
  * `hull` chooses once, when shares are known; others, and pierced contacts, are reduced again.
  * Pierced contacts are kept out of the choice while others exist.
  * @param manifolds before reduction, sorted by (a, b)

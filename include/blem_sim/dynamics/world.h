@@ -93,7 +93,7 @@ struct SolveResult {
   std::vector<double> apparent_work;    ///< [J] per contact: what departures and slips that loads end within the step, and bent paths,
                                         ///< make look like work of the contact, at most; empty where a stepper does not know it
   double residual = 0;    ///< [N] by how much contact forces miss Coulomb's law, worst contact; 0 where a stepper does not know it
-  double creep = 0;       ///< [rad/s or m/s] by how much velocities miss momentum's balance, sticking joints, limits or loops; worst
+  double creep = 0;       ///< [rad/s or m/s] by how much velocities miss momentum's balance, contacts, sticking joints, limits or loops
   int iterations = 0;     ///< of the solver, over all islands
   int lcp_errors = 0;     ///< the complementarity solver complained; the step was redone with more CFM
   bool too_fast = false;  ///< joints or bodies turned too far in the step for their free motion to be followed: shorten dt
