@@ -9,7 +9,7 @@
 
 namespace blem_sim {
 
-/** What of some contacts says all that the others say. */
+/** Those of some contacts that imply all others. */
 struct ThinnedContacts {
   PatchScale scale;
   std::vector<int> kept;  ///< indices
@@ -20,8 +20,8 @@ struct ThinnedContacts {
  */
 bool thinToHulls(const std::vector<Contact>& contacts, int k, ThinnedContacts* thinned);
 
-/** What is kept, or k of it that span the wrenches best. @param reduced overwritten; sorted by id
- * @return what it lacks at most of the wrenches, as chooseSpanningContacts tells it; 0 if nothing is left out */
+/** Chooses all thinned contacts, or k of them that span the wrenches best. @param reduced overwritten; sorted by id
+ * @return largest lack of the choice in any wrench, as chooseSpanningContacts tells it; 0 if nothing is left out */
 float chooseFromHulls(const std::vector<Contact>& contacts, const ThinnedContacts& thinned, int k, const ContactIds& chosen_before,
                       std::vector<Contact>* reduced);
 

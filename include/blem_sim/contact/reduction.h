@@ -16,7 +16,7 @@ using ContactIds = std::vector<std::uint64_t>;
 /**
  * Reduces `contacts` to at most k >= 1. Deterministic, whatever their order. Never invents a deeper contact than the deepest given.
  * @param contacts ids are their own
- * @param chosen_before what it kept of the same pair in the step before: among equal choices that one is gone on with
+ * @param chosen_before ids of the contacts kept of the same pair in the step before: among equal choices that one is gone on with
  * @param reduced overwritten; sorted by id; not `contacts` itself
  */
 using ReduceFunction = void (*)(const std::vector<Contact>& contacts, int k, const ContactIds& chosen_before,
@@ -49,7 +49,7 @@ void reduceNone(const std::vector<Contact>& contacts, int k, const ContactIds& c
 /** reduceHull in place. */
 void reduceHull(std::vector<Contact>& contacts, int k, const ContactIds& chosen_before = {});
 
-/** What each pair of colliders kept in the last reduction. It decides between equal choices of the next one: state. */
+/** Contacts that each pair of colliders kept in the last reduction. They decide between equal choices of the next one: state. */
 class ReductionMemory {
  public:
   const ContactIds& of(const ContactManifold& manifold) const;
@@ -84,10 +84,10 @@ struct ContactBudget {
   int max_contacts = 20;  ///< k of this model; a static environment has none of its own: INT_MAX
 };
 
-/** What a reduction cost. */
+/** Losses of a reduction: contacts left out, pairs cut, wrench given up. */
 struct ReductionLoss {
   int contacts = 0;   ///< left out, those that others imply among them
-  int cut_pairs = 0;  ///< that budgets left fewer contacts than `method` would keep of them without a limit
+  int cut_pairs = 0;  ///< pairs with fewer contacts by budgets than `method` would keep of them without a limit
   /** By how much a wrench between two of a cut pair can be off at most, of its normal force, torques by the radius of the pair's contacts:
    *  what those kept lack at most, with friction 0.5 (of 256 directions, with a margin for others). Pierced pairs do not count. */
   double wrench = 0;

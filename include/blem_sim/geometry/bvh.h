@@ -30,7 +30,7 @@ class Bvh {
   bool empty() const { return nodes_.empty(); }
   const std::vector<Node>& nodes() const { return nodes_; }
   const std::vector<std::uint32_t>& order() const { return order_; }  ///< element indices, grouped by leaf
-  std::size_t bytes() const { return nodes_.capacity() * sizeof(Node) + order_.capacity() * sizeof(std::uint32_t); }  ///< of memory
+  std::size_t bytes() const { return nodes_.capacity() * sizeof(Node) + order_.capacity() * sizeof(std::uint32_t); }  ///< memory held
 
  private:
   std::vector<Node> nodes_;

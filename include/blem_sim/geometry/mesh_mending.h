@@ -6,7 +6,7 @@
 
 namespace blem_sim {
 
-/** What mendMesh did. */
+/** Changes that mendMesh made. */
 struct MeshMending {
   int cracks = 0;           ///< pairs of border edges joined end to end
   double widest_crack = 0;  ///< [m] largest distance between ends that were joined

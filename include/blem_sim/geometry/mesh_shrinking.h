@@ -7,7 +7,7 @@
 
 namespace blem_sim {
 
-/** What shrinkMesh did. */
+/** Result of shrinkMesh: vertices that moved, and how well the layer's outside meets the old surface. */
 struct MeshShrinking {
   std::string refused;   ///< why nothing moved; empty if it did
   int moved = 0;         ///< vertices that moved as far as their planes ask for

@@ -6,7 +6,7 @@
 namespace blem_sim::kernels {
 
 constexpr int DIRECTION_BLOCK = 8;
-/** How many blocks hold so many edges. */
+/** Number of blocks that hold so many edges. */
 constexpr int directionBlocks(int edges) { return (edges + DIRECTION_BLOCK - 1) / DIRECTION_BLOCK; }
 
 /** Unit directions of some edges from the vertex; zero behind the last. */
@@ -26,7 +26,7 @@ struct LeavingSide {
   std::uint32_t pair;
   std::uint16_t side;
   bool is_above;                ///< the vertex is over the face, not under it
-  std::uint32_t first, blocks;  ///< of the vertex's EdgeDirections
+  std::uint32_t first, blocks;  ///< blocks of the vertex's EdgeDirections: the first, and their number
 };
 
 }  // namespace blem_sim::kernels
