@@ -158,7 +158,7 @@ class Search {
     }
   }
 
-  /** Bound [m] on the rounding of float coordinates in either frame, and on CLOSED. */
+  /** Room [m] for the rounding of float coordinates in either frame, and for CLOSED. */
   double findRounding() const {
     const auto largest = [](const Box& box) { return std::max(box.min().cwiseAbs().maxCoeff(), box.max().cwiseAbs().maxCoeff()); };
     const double shift = pair_.X_FM.translation().cwiseAbs().maxCoeff();

@@ -25,9 +25,9 @@ struct FoundContacts {
   double leastGap(const MeshPair& pair) const;  ///< [m]; the pair's range if there is none
 };
 
-/** Of a contact that fades. */
+/** Cover of a contact that fades, one of asked_fading. */
 struct FadingCover {
-  std::uint32_t before;  ///< another one of its vertex
+  std::uint32_t before;  ///< index of the one before of its vertex
   bool is_covered;       ///< the vertex lies over another face of the plane
 };
 
@@ -50,8 +50,8 @@ struct EvaluationBuffers {
   BesideFaces fading;
   std::vector<kernels::ContactRow> feet;             ///< per pair that fades
   std::vector<kernels::FadingContact> asked_fading;  ///< those that may be covered
-  std::vector<FadingCover> covers;                   ///< as these
-  std::vector<std::uint32_t> last_fading;            ///< of each vertex; none between evaluations
+  std::vector<FadingCover> covers;                   ///< per contact of asked_fading
+  std::vector<std::uint32_t> last_fading;            ///< per vertex: the last one of asked_fading; none between evaluations
 
   template <typename Items, typename... Item>
   static void makeRoom(std::size_t size, Items* items, const Item&... filled_with) {

@@ -29,7 +29,7 @@ constexpr double MOST_KNOWN_MARGIN = 2.2;                                       
 constexpr std::size_t MANY_LEAF_PAIRS = 4000;
 constexpr double MOST_MARGIN_OF_MANY = 0.3;
 constexpr double FIRST_MARGIN = 0.1;  // part of the range, where the motion is not known yet
-// The same of directions.
+// Margins of directions: lengths of the difference of unit vectors.
 constexpr double LEAST_TURN = 0.005, LEAST_NEAREST_TURN = 0.001, FIRST_TURN = 0.05;
 /** Largest error [m] of a distance. */
 constexpr double DISTANCE_ROUNDING = 1e-7;

@@ -15,7 +15,7 @@ struct KeptListing {
 
 /** Memory of a pair of meshes from search to search; it saves time and changes no result. */
 struct ContactSearchMemory {
-  std::uint64_t moving = 0, fixed = 0;  ///< whose
+  std::uint64_t moving = 0, fixed = 0;  ///< identities of the two geometries
   KeptListing contacts;                 ///< for many steps
   CandidatePairs nearest;               ///< candidates of `contacts` that matter for a few steps
   ListOrigin nearest_origin;

@@ -1,4 +1,4 @@
-// Where what has a contact with the features of a leaf may lie.
+// Region where partners of a leaf's contacts may lie.
 #pragma once
 
 #include "leaf_features.h"

@@ -88,8 +88,8 @@ struct ContactBudget {
 struct ReductionLoss {
   int contacts = 0;   ///< left out, those that others imply among them
   int cut_pairs = 0;  ///< pairs with fewer contacts by budgets than `method` would keep of them without a limit
-  /** By how much a wrench between two of a cut pair can be off at most, of its normal force, torques by the radius of the pair's contacts:
-   *  what those kept lack at most, with friction 0.5 (of 256 directions, with a margin for others). Pierced pairs do not count. */
+  /** Largest error of a wrench between two of a cut pair, of its normal force, torques by the radius of the pair's contacts: the most that
+   * those kept lack, with friction 0.5 (of 256 directions, with a margin for others). Pierced pairs do not count. */
   double wrench = 0;
 };
 

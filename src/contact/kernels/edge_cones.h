@@ -8,8 +8,9 @@
 namespace blem_sim::kernels {
 namespace {
 
-/** Largest part of n, the product of two edges, into a face of either that may vanish while unit vectors turn by no more than `turn`: n by
- * that part of twice the product of their lengths, once for itself and once for its own length; the faces by that part of n.
+/** Largest part of n, the product of two edges, into a face of either that may come within EDGE_CONE_SLACK while unit vectors turn by no
+ * more than `turn`: n by that part of twice the product of their lengths, once for itself and once for its own length; the faces by that
+ * part of n.
  * @param n2 its square @param pp_qq product of the squared lengths of the edges */
 template <typename Lanes, typename Number>
 inline Lanes coneBound(Lanes n2, Lanes pp_qq, Number turn) {
