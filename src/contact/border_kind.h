@@ -12,7 +12,7 @@ namespace blem_sim {
 struct BorderKinds {
   struct Seen {
     std::uint8_t flat;     ///< the plane goes on
-    std::uint8_t round;    ///< the surface falls, by so little that the edge and the face behind it take over whatever leaves
+    std::uint8_t round;    ///< the surface falls, by so little that the edge and the face behind it take over contacts that leave
     std::uint8_t falling;  ///< nothing rises out of the plane
     std::uint8_t rising;   ///< something rises, and takes nothing over
   } seen[2];

@@ -126,7 +126,7 @@ class BroadPhase::Search {
     if (box.model < 0 || other.model != box.model) meet(box, space_.boxes_[other.box]);
   }
 
-  // Boxes beside each other along two axes are never compared; those of many cells are, with whatever overlaps them along one axis.
+  // Boxes beside each other along two axes are never compared; those of many cells are, with all boxes that overlap them along one axis.
   void sweepCells() {
     for (int i = 0; i < 2; ++i) {
       cell_axes_[i] = spread(i);

@@ -25,7 +25,7 @@ class LeadingVertices {
         R_MF_(pair.X_FM.linear().transpose()),
         limit_(margin.motion + (margin.turn + 2 * CONE_SLACK) * (pair.range + margin.motion) + 2 * TOUCH) {}
 
-  /** Drops vertices that lead towards edges that are not round. */
+  /** Drops vertices whose surface leads towards edges that are not round. */
   void dropFrom(bool moves, const std::vector<Vec4>& vertices, const std::vector<EdgeRecord>& edges, std::vector<Candidate>* candidates) {
     drop(candidates, [&](const Candidate& c) {
       const EdgeRecord& edge = edges[c.b];

@@ -48,8 +48,7 @@ struct NearFeatures {
 struct CandidatePairs {
   using Candidates = std::vector<kernels::Candidate>;
   Candidates vertex_face[2], vertex_edge[2], edge_face[2];
-  /** Per candidate of vertex_face: 1 where the vertex is surely over its face, not near a border, while the list is good; empty where that
-   * is not known */
+  /** Per candidate of vertex_face: 1 where the vertex is surely over its face, not near a border, while the list is good; empty: unknown */
   std::vector<std::uint8_t> inner[2];
   Candidates edge_edge, vertex_vertex;  ///< a is the moving mesh's
 

@@ -14,7 +14,7 @@ namespace {
 using kernels::Candidate;
 using kernels::LeafHit;
 
-/** Rounding of float coordinates and of what is reckoned with them, relative to the largest one. */
+/** Rounding of float coordinates and of numbers reckoned from them, relative to the largest one. */
 constexpr double FLOAT_ROUNDING = 1e-6;
 /** Rounding of directions: unit vectors, and products of edges relative to their lengths. */
 constexpr double FLOAT_TURN = 1e-5;
@@ -217,7 +217,7 @@ class Search {
     if (next.moving != now.moving) prefetch(true, next.moving);
     if (next.fixed != now.fixed) prefetch(false, next.fixed);
   }
-  /** New leaves lie far away in memory; of others only the part that is always asked does. */
+  /** New leaves lie far away in memory; of others only the part that is always read does. */
   void prefetch(bool moves, std::uint32_t index) {
     using Shapes = kernels::LeafShapes;
     constexpr std::size_t LINE = 64, FEW = offsetof(Shapes, faces), MOST = offsetof(Shapes, edges) + sizeof(kernels::LeafEdges);

@@ -10,7 +10,7 @@
 
 namespace blem_sim {
 
-/** Purpose of a pair of features in a list. */
+/** Kind of a list: of candidates for contacts, or for crossings. */
 enum class CandidateKind { CONTACTS, CROSSINGS };
 
 /** Candidate lists and the progress of their making. */
@@ -20,8 +20,7 @@ struct CandidateListing {
   ListOrigin origin;
 
   static constexpr std::uint32_t NOWHERE = 0xFFFFFFFF;
-  /** A leaf near the other mesh, and the first of its slots: places of its vertices, then of its faces and edges, among the near
-   * features. */
+  /** A leaf near the other mesh, and the first of its slots: places of its vertices, then faces and edges, among the near features. */
   struct Leaf {
     std::uint32_t node, slots = NOWHERE;  ///< slots: NOWHERE until it is described
   };

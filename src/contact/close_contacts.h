@@ -11,7 +11,7 @@
 
 namespace blem_sim {
 
-/** Contacts in the world at once; with their witness points where meshes cross, since retraction asks for those. */
+/** Contacts, placed in the world at once; where meshes cross, kept with their witness points, since retraction asks for those. */
 class CloseContacts {
  public:
   void begin(bool keeps_witnesses) {
@@ -40,7 +40,7 @@ class CloseContacts {
 
   bool keepsWitnesses() const { return keeps_witnesses_; }
 
-  /** Keeps those of the last `count` contacts for which is_kept(index among them). */
+  /** Keeps those of the last `count` contacts for which is_kept(index among them) holds. */
   template <typename IsKept>
   void keepOfLast(std::size_t count, IsKept&& is_kept) {
     if (keeps_witnesses_) {

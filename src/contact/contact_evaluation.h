@@ -27,7 +27,7 @@ struct FoundContacts {
 
 /** Cover of a contact that fades, one of asked_fading. */
 struct FadingCover {
-  std::uint32_t before;  ///< index of the one before of its vertex
+  std::uint32_t before;  ///< index of the one before it of the same vertex
   bool is_covered;       ///< the vertex lies over another face of the plane
 };
 

@@ -179,8 +179,7 @@ class ContactSearch {
   /** Whether a list of that margin is good for much longer than its making takes. */
   bool lasts(const ListMargin& margin) const { return LASTING_STEPS * motion_.motion <= margin.motion; }
 
-  /** Whether lists of that origin will be good for no longer than the making of the next one takes, if the pair goes on to leave it as it
-   * does. */
+  /** Whether lists of that origin are good for no longer than making the next one takes, if the pair goes on to leave it as it does. */
   bool endsSoon(const ListOrigin& origin) const {
     constexpr double STEPS = PARTS + 1;
     const double before = region_.used(origin, memory_.X_FM, pair_.range), now = region_.used(origin, pair_.X_FM, pair_.range);

@@ -1,5 +1,4 @@
-// Tests of one pair of features at a time: those that the kernels cannot make, since it touches, has left its face or edge, or asks for
-// neighbourhoods.
+// Tests of one pair of features at a time, where kernels cannot tell: it touches, has left its face or edge, or asks for neighbourhoods.
 #pragma once
 
 #include "close_contacts.h"
@@ -25,8 +24,8 @@ class ExactTests {
   /** Whether the surface at the vertex surely leads towards the edge, so that the vertex is no local minimum. Most vertices are told by
    * this, without a foot on the edge. @param d from the edge's line to the vertex, frame F */
   bool leadsTo(bool vertex_moves, int vertex, const Vector3& d) const;
-  /** Contact where each is the other's local minimum; at a round edge wherever the vertex is nearer to it than to its faces. @param p,
-   * record the vertex and the edge in frame F */
+  /** Contact where each is the other's local minimum; at a round edge wherever the vertex is nearer to it than to its faces.
+   * @param p, record the vertex and the edge in frame F */
   void vertexEdge(bool vertex_moves, int vertex, int edge, const Vector3& p, const kernels::EdgeRecord& record);
   void vertexVertex(int moving, int fixed);
 

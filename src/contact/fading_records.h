@@ -30,8 +30,7 @@ class FadingRecords {
     if (at_vertices_[vertex].first == UNKNOWN) at_vertices_[vertex] = addDirections(surroundings->ofVertex(side, name));
     return at_vertices_[vertex];
   }
-  /** Index of a face's shape in corners(). @param face in the list @param name in the mesh @param goes_on whether its plane has other
-   * faces */
+  /** A face's place in corners(). @param face in the list @param name in the mesh @param goes_on whether its plane has other faces */
   std::uint32_t shapeOf(const MeshSide& side, std::uint32_t face, int name, bool goes_on, SurroundingsMemory* surroundings) {
     if (of_faces_[face] == UNKNOWN) of_faces_[face] = addShape(side, name, goes_on ? surroundings->ofFace(side, name) : PlaneReach{0, 0});
     return of_faces_[face];

@@ -9,15 +9,14 @@
 
 namespace blem_sim {
 
-/** Those of some contacts that imply all others. */
+/** Contacts that imply all others of a set. */
 struct ThinnedContacts {
   PatchScale scale;
   std::vector<int> kept;  ///< indices
 };
 
-/** Leaves out what the corners of flat patches imply; of patches that have more than k corners, nothing. @return false if some contact is
- * not finite or its normal not unit: nothing is done
- */
+/** Leaves out contacts that the corners of flat patches imply; of patches that have more than k corners, nothing. @return false if some
+ * contact is not finite or its normal not unit: nothing is done */
 bool thinToHulls(const std::vector<Contact>& contacts, int k, ThinnedContacts* thinned);
 
 /** Chooses all thinned contacts, or k of them that span the wrenches best. @param reduced overwritten; sorted by id

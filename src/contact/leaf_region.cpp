@@ -13,7 +13,7 @@ namespace {
 
 /** Directions farther than this [rad] from the axis: points may lie anywhere within range. */
 constexpr double WIDE = 0.7;
-/** Rounding and slack of cones [rad], but for what edges allow each other. */
+/** Rounding and slack of cones [rad], but for the slack of edges with edges. */
 constexpr double ANGLE_SLACK = 1e-3;
 constexpr double EDGE_SLACK = 1.01 * EDGE_CONE_SLACK + ANGLE_SLACK;
 

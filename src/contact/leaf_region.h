@@ -1,4 +1,4 @@
-// Region where partners of a leaf's contacts may lie.
+// Region where features may lie that have a contact with a leaf's.
 #pragma once
 
 #include "leaf_features.h"

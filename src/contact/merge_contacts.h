@@ -12,8 +12,8 @@ namespace blem_sim {
 class ContactMerge {
  public:
   /**
-   * Sorts by id; contacts of one id, and contacts at one place with one normal, become the deepest of them under their smallest id. Pierced
-   * contacts are kept apart from those that are not, unless they have one id: then the pierced one stays.
+   * Sorts by id; contacts of one id, and contacts at one place with one normal, become the deepest of them under their smallest id.
+   * Pierced contacts are kept apart from those that are not, unless they have one id: then the pierced one stays.
    * @param merged room for as many @return number of contacts left
    */
   std::size_t run(const Contact* contacts, std::size_t count, Contact* merged);

@@ -9,7 +9,7 @@ namespace blem_sim {
 
 /**
  * Appends the contacts to keep, for contacts with (nearly) one normal: the corners of the convex hull of their points in the plane across
- * `normal`, and contacts deeper than what the kept ones' depths interpolate to. The constraint of every contact left out is a convex
+ * `normal`, and contacts deeper than the interpolation of the kept ones' depths. The constraint of every contact left out is a convex
  * combination of kept ones' or weaker, so no wrench is lost [Hauser 2013, 5]. The choice depends on the set of members only, not on their
  * order.
  * @param begin, end members, indices of contacts; at least one

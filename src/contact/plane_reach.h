@@ -14,8 +14,7 @@ struct PlaneReach {
   double at(double height) const { return flat + height * per_height; }
 };
 
-/** Reach of a face's plane; infinite where the plane has many faces: to look at all of them takes longer than to ask those that are
- * near. */
+/** Reach of a face's plane, infinite if that has many faces: to look at all takes longer than to ask those that are near. */
 PlaneReach planeReach(const MeshSide& side, int face);
 
 }  // namespace blem_sim

@@ -126,8 +126,8 @@ bool hasPierced(const std::vector<Contact>& contacts) {
   return std::any_of(contacts.begin(), contacts.end(), [](const Contact& c) { return c.pierced; });
 }
 
-// One manifold before budgets are shared out. `hull` alone can tell what it would keep before it chooses; others, and pierced contacts, are
-// reduced to the limit, and again if it is lowered. @return number of contacts that would be kept
+// One manifold before budgets are shared out. `hull` alone can tell the number that it would keep before it chooses; others, and pierced
+// contacts, are reduced to the limit, and again if it is lowered. @return number of contacts that would be kept
 int prepare(const ContactManifold& manifold, int limit, const Reduction& method, const ContactIds& chosen_before, Buffers* buffers,
             ThinnedContacts* thinned, std::vector<Contact>* reduced) {
   const bool in_steps = method.reduce == static_cast<ReduceFunction>(reduceHull) && !hasPierced(manifold.contacts);

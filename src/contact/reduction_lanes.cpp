@@ -218,7 +218,7 @@ BLEM_SIM_LANES int findOutside(const Octagon& octagon, const double* x, const do
   int size = 0;
   for (int first = 0; first < count; first += BLOCK) {
     const int some = count - first < BLOCK ? count - first : BLOCK;
-    double least[BLOCK];  // over all sides: excess of a point's way inside over the limit
+    double least[BLOCK];  // over all sides: product with the side, positive inside, less the limit
     for (int i = 0; i < BLOCK; ++i) least[i] = __builtin_inf();
     for (int s = 0; s < OCTAGON_SIDES; ++s) {
       const double dx = octagon.dx[s], dy = octagon.dy[s], sx = octagon.x[s], sy = octagon.y[s], limit = octagon.limit[s];

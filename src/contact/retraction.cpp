@@ -8,7 +8,7 @@
 namespace blem_sim {
 namespace {
 
-/** Least cosine by which a contact of meshes that cross must push the bodies apart: known from where they were, or guessed. */
+/** Least cosine by which a contact of meshes that cross must push the bodies apart: with sides known from before, or guessed. */
 constexpr double MIN_OUTWARD = 1e-3, MIN_OUTWARD_GUESSED = 0.2;
 /** Retractions farther (cosine) from their mean direction than this are turned into it: one motion must be able to satisfy all of them. */
 constexpr double MIN_AGREEMENT = 0.3;

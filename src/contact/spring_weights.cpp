@@ -1,4 +1,4 @@
-// Weights of several springs, so that a patch is as stiff whatever it is made of.
+// Weights of several springs, so that a patch is equally stiff whatever its tessellation.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -109,7 +109,7 @@ struct Buffers {
   std::vector<Row> prominence;  // per contact: its heights, as powers of e; the largest of a direction is 1
   std::vector<double> alike;
   std::vector<std::size_t> leaders;  // the first contacts of each normal
-  std::vector<Row> inverses;         // per leader: inverse of its patch's sum
+  std::vector<Row> inverses;         // per leader: inverse sum of its patch's prominence
 };
 
 void findProminence(const std::vector<Contact>& contacts, Buffers* buffers) {

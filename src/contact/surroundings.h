@@ -33,7 +33,7 @@ struct EdgesAtVertex {
 struct EdgeSurroundings {
   Vector3 direction;  ///< unit, from its lower vertex to the higher one
   Vector3 inward[2];  ///< unit, into its first two faces
-  int faces;          ///< their number
+  int faces;          ///< number of its faces
   bool is_round;      ///< isRoundEdge
 };
 

@@ -16,8 +16,8 @@ constexpr double EDGE_CONE_SLACK = 0.02;
 constexpr double CONE_SLACK = 1e-6;
 /** Depth lost per distance outside: a contact of depth p is gone p / FADE_SLOPE beyond the border. */
 constexpr double FADE_SLOPE = 2;
-/** Largest distance of an edge's fading contact inside a face beside its edge, as part of the range: a fifth of the range deep it has faded
- * by then. */
+/** Largest distance of an edge's fading contact inside a face beside its edge, as part of the range: one a fifth of the range deep has
+ * faded then. */
 constexpr double FADED = 0.1;
 /** Faces whose planes differ by no more than this (cosine of 0.2 rad) go over into each other: a vertex that leaves one over such a convex
  * border belongs to the edge, then to the other face, however it is shaped itself. */
@@ -27,8 +27,7 @@ constexpr double MERGE_DISTANCE = 0.2e-6, MERGE_SINE = 1e-3;
 /** A contact farther [m] than this from the border of its face and from the ends of its edges shares its place with no other. */
 constexpr double NEAR_BORDER = 100 * MERGE_DISTANCE;
 
-/** Largest distance [m] inside a face that both ends of an edge may lie at, if it has a contact within `range` with an edge of that
- * face. */
+/** Largest distance [m] inside a face of both ends of an edge that has a contact within `range` with an edge of that face. */
 inline constexpr double deepestInside(double range) { return (1.001 * EDGE_CONE_SLACK + FADED) * range + 10 * CLOSED; }
 
 }  // namespace blem_sim

@@ -110,7 +110,7 @@ void Evaluation::addFeet(bool moves) {
   }
 }
 
-/** Drops fading contacts of vertices that lie beside one face of a plane but over another. @param count of the last contacts, which fade */
+/** Drops fading contacts of vertices that lie beside one face of a plane but over another. @param count the last contacts fade */
 void Evaluation::dropCovered(bool moves, std::uint32_t count) {
   const auto& asked = buffers_.asked_fading;
   if (asked.empty()) return;

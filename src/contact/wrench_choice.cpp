@@ -76,7 +76,7 @@ class Choice {
     findWrenches(directions_, points_.data(), static_cast<int>(points_.size()), components_.data(), &extremes_);
   }
 
-  /** From now on depth counts too. */
+  /** Makes depth count too from now on. */
   void countDepth(const std::vector<Contact>& contacts, const std::vector<int>& candidates) {
     for (std::size_t i = 0; i < candidates.size(); ++i)
       points_[i].handicap -= static_cast<float>(std::max(0.0, contacts[candidates[i]].depth) / DEPTH_SCALE);

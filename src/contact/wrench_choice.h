@@ -10,10 +10,12 @@ namespace blem_sim {
 
 /**
  * Chooses at most k contacts: the deepest, then greedily the extreme contact of that fixed 6-D wrench direction in which the contacts
- * chosen so far lack most; then, with what is left of k, the same where depth counts too, and at last the deepest. Contacts that do not
- * touch yet stand back. A choice made before is gone on with, completed by the same rule, while it spans nearly as much as a fresh one:
- * among equals no noise decides anew from step to step. The result depends on the sets given only, not on their order. Precondition: k >=
- * 1, candidates are there, the deepest of the members among them.
+ * chosen so far lack most; then, with the rest of k, the same where depth counts too, and at last the deepest. Contacts that do not touch
+ * yet stand back.
+ * A choice made before is gone on with, completed by the same rule, while it spans nearly as much as a fresh one: among equals no noise
+ * decides anew from step to step.
+ * The result depends on the sets given only, not on their order.
+ * Precondition: k >= 1, candidates are there, the deepest of the members among them.
  * @param members indices of the contacts to choose from @param scale of all contacts
  * @param candidates those of the members that may be extreme; reordered
  * @param chosen overwritten by indices

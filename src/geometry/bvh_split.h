@@ -1,4 +1,4 @@
-// Elements while a tree is built over them, and how a run of them is split in two.
+// Elements while a tree is built over them, and the split of a run of them in two.
 #pragma once
 
 #include <algorithm>

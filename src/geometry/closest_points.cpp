@@ -138,8 +138,7 @@ bool straddles(const std::array<double, 3>& heights) {
   return *std::min_element(heights.begin(), heights.end()) <= 0 && *std::max_element(heights.begin(), heights.end()) >= 0;
 }
 
-/** Whether the planes through the two points, square to the line between them, part the triangles up to rounding: then no pair is
- * closer. */
+/** Whether planes through the two points, square to the line between them, part the triangles up to rounding: no pair is closer then. */
 bool isClosest(const Candidate& candidate, const Triangle& a, const Triangle& b, double rounding) {
   const Vector3 line = candidate.point_b - candidate.point_a;
   const double slack = rounding * std::sqrt(candidate.squared_distance);

@@ -19,11 +19,10 @@ struct Border {
 
 std::vector<Border> bordersOf(const TriangleMesh& mesh, const MeshTopology& topology);
 
-/** Whether the surface may go on from one border to the other: not if the triangles lie on one another, nor if they are neighbours
- * already. */
+/** Whether the surface may go on from e to f: not if the triangles lie on one another, nor if they are neighbours already. */
 bool mayContinue(const Border& e, const Border& f);
 
-/** Largest distance [m] of the borders' ends: CRACK_WIDTH, less for short edges. */
+/** Largest distance [m] of the borders' ends for a join: CRACK_WIDTH, less for short edges. */
 double reachOf(const Border& e, const Border& f);
 
 /** Whether two vertices are the ends of one edge of the mesh. */
@@ -38,8 +37,8 @@ class VertexClusters {
 
   /** The mesh with one vertex per cluster; triangles that lose a corner are dropped. @param places of the vertices before any joining */
   TriangleMesh applied(const TriangleMesh& mesh, const std::vector<Vector3>& places);
-  /** [m] per vertex that stands for its cluster: distance of the farthest member's place from the joined one; 0 for the others. @param
-   * joined the mesh from applied() */
+  /** [m] per vertex that stands for its cluster: distance of the farthest member's place from the joined one; 0 for the others.
+   * @param joined the mesh from applied() */
   std::vector<double> spreads(const TriangleMesh& joined, const std::vector<Vector3>& places);
 
  private:

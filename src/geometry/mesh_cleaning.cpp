@@ -47,7 +47,7 @@ std::uint64_t elementHash(const Vector3i& sorted_corners) {
   return h;
 }
 
-/** Drops elements that repeat an earlier one, either winding. @return how many */
+/** Drops elements that repeat an earlier one, either winding. @return their number */
 int dropRepeated(std::vector<Vector3i>* elements) {
   std::vector<Vector3i> keys(elements->size());
   tbb::parallel_for(std::size_t{0}, keys.size(), [&](std::size_t i) { keys[i] = sorted((*elements)[i]); });
@@ -62,7 +62,7 @@ int dropRepeated(std::vector<Vector3i>* elements) {
   return dropped;
 }
 
-/** Counts the edges of triangles by how many triangles they have. */
+/** Counts the edges of triangles by their numbers of triangles. */
 void countEdges(const TriangleMesh& mesh, MeshReport* report) {
   struct Counts {
     int edges = 0, open = 0, nonmanifold = 0;

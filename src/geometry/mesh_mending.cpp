@@ -36,8 +36,8 @@ std::vector<double> kept(const std::vector<double>& values, const TriangleMesh& 
   return kept;
 }
 
-/** Joins and splits borders. @param noise of the vertices [m], where known from what was joined @return false if nothing was to be done;
- * then the mesh is as it was */
+/** Joins and splits borders. @param noise of the vertices [m], where known from the vertices joined @return false if nothing was to be
+ * done; then the mesh is as it was */
 bool closeCracks(const MeshTopology& topology, TriangleMesh* mesh, std::vector<double>* noise, MeshReport* report, MeshMending* what) {
   const std::vector<Border> borders = bordersOf(*mesh, topology);
   if (borders.empty()) return false;

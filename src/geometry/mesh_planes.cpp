@@ -18,7 +18,7 @@ namespace {
 constexpr double BEND_HEIGHT = 4 * PLANE_DEVIATION;
 /** ... but by no more than this [rad], however low they are: a chamfer is no noise. */
 constexpr double MAX_BEND = 0.5;
-/** A crease bends by this many times what noise can, or by MIN_CREASE [rad]; between the two a curved surface is likelier. */
+/** A crease bends by this many times as much as noise can, or by MIN_CREASE [rad]; between the two a curved surface is likelier. */
 constexpr double CREASE = 3;
 constexpr double MIN_CREASE = 0.7;
 /** Part of a patch's outline that may be neither crease nor open border. */

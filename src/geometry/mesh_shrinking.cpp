@@ -11,7 +11,7 @@ namespace blem_sim {
 namespace {
 
 constexpr double SMALLEST_EIGENVALUE = 1e-4;  // part of the largest: planes that differ by less ask for the same
-constexpr double FARTHEST = 3;                // in r: longest move
+constexpr double FARTHEST = 3;                // longest move, in r
 constexpr double LEAST_COSINE = 0.5;          // between a triangle's normals before and after
 constexpr int MAX_HALVINGS = 6;
 

@@ -33,7 +33,7 @@ class CollisionFilter {
 /** Motion of a collider over the coming step, for its margin. */
 struct ColliderMotion {
   Pose X_WC;         ///< geometry frame in the world
-  double reach = 0;  ///< [m] bound on how far any of its points moves in the coming step
+  double reach = 0;  ///< [m] bound on the motion of any of its points in the coming step
 };
 
 /** Search for pairs, with its buffers; they are used again, so that a warm search allocates nothing. */

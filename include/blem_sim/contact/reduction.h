@@ -16,7 +16,7 @@ using ContactIds = std::vector<std::uint64_t>;
 /**
  * Reduces `contacts` to at most k >= 1. Deterministic, whatever their order. Never invents a deeper contact than the deepest given.
  * @param contacts ids are their own
- * @param chosen_before ids of the contacts kept of the same pair in the step before: among equal choices that one is gone on with
+ * @param chosen_before ids of the contacts kept of the same pair in the step before: among equal choices that choice is gone on with
  * @param reduced overwritten; sorted by id; not `contacts` itself
  */
 using ReduceFunction = void (*)(const std::vector<Contact>& contacts, int k, const ContactIds& chosen_before,
@@ -87,18 +87,17 @@ struct ContactBudget {
 /** Losses of a reduction: contacts left out, pairs cut, wrench given up. */
 struct ReductionLoss {
   int contacts = 0;   ///< left out, those that others imply among them
-  int cut_pairs = 0;  ///< pairs with fewer contacts by budgets than `method` would keep of them without a limit
+  int cut_pairs = 0;  ///< pairs that budgets left with fewer contacts than `method` would keep of them without a limit
   /** Largest error of a wrench between two of a cut pair, of its normal force, torques by the radius of the pair's contacts: the most that
    * those kept lack, with friction 0.5 (of 256 directions, with a margin for others). Pierced pairs do not count. */
   double wrench = 0;
 };
 
 /**
- * Reduces every manifold so that the contacts of each model sum to at most its k: each manifold asks for what `method` would keep with the
- * smaller k of its two models; where a model has too many then, its manifolds share k in proportion to what they ask for. But each keeps
- * 3, if it asks for them, even where a model then has more than k: no pair ever loses its hold.
- * `hull` chooses once, when shares are known; others, and pierced contacts, are reduced again.
- * Pierced contacts are kept out of the choice while others exist.
+ * Reduces every manifold so that the contacts of each model sum to at most its k: each manifold asks for as many as `method` would keep
+ * with the smaller k of its two models; where a model has too many then, its manifolds share k in proportion to these numbers. But each
+ * keeps 3, if it asks for them, even where a model then has more than k: no pair ever loses its hold. `hull` chooses once, when shares are
+ * known; others, and pierced contacts, are reduced again. Pierced contacts are kept out of the choice while others exist.
  * @param manifolds before reduction, sorted by (a, b)
  * @param model_a, model_b models of the two colliders of each manifold, indices into budgets
  * @param memory of the last reduction, overwritten by this one's

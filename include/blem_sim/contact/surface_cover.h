@@ -10,8 +10,8 @@ namespace blem_sim {
 
 /**
  * Whether other surfaces of the same body cover a contact: it would not exist if all were one mesh. It is covered if another one, on which
- * its place lies (within 1 um), leads along its direction from there; or if it is of an edge or a vertex that is flat in what they are
- * together; and a vertex above several that lie in each other keeps one contact. Room is kept.
+ * its place lies (within 1 um), leads along its direction from there; or if it is of an edge or a vertex that is flat in that mesh; and a
+ * vertex above several that lie in each other keeps one contact. Room is kept.
  */
 class SurfaceCover {
  public:
@@ -41,12 +41,12 @@ class SurfaceCover {
   const Collider* own_ = nullptr;
   Pose X_WO_;
   Vector3 place_, away_;       // world; away from the surface
-  double flat_ = 0;            // [rad] gap between faces of what is flat
-  bool is_of_vertex_ = false;  // of the other body, with a contact at each face it is over
+  double flat_ = 0;            // [rad] largest gap between faces around a flat place
+  bool is_of_vertex_ = false;  // whether it is of a vertex of the other body: that has one with whichever face it is over
   bool is_met_ = false;        // whether the place lies on another surface
   bool leads_along_ = false;   // whether another one leads along `away_`
   std::vector<Face> faces_;
-  Vector3 normal_, across_[2];   // unit, of and in the plane that the place lies in
+  Vector3 normal_, across_[2];   // unit: normal of the plane that the place lies in, axes in it
   std::vector<Sector> sectors_;  // in that plane
 };
 

@@ -38,7 +38,7 @@ class FrameChange {
     shift_ << X_BA.translation().array(), 0;
   }
 
-  /** Box in B's axes that holds the node's box, widened by what rounding can lose. */
+  /** Box in B's axes that holds the node's box, widened by as much as rounding can lose. */
   FloatBox bound(const Bvh::Node& node) const {
     const Vector3 c = centre(node), h = halfExtents(node);
     const Eigen::Array4d x = axes_[0] * c.x(), y = axes_[1] * c.y(), z = axes_[2] * c.z(), middle = x + y + z + shift_;
@@ -69,8 +69,7 @@ class WithinMargin {
 
 inline float size(const Bvh::Node& node) { return (node.upper - node.lower).sum(); }
 
-/** Whether node a is opened rather than b; one of them at least is no leaf. Depends on the trees only, so that the order of visits does not
- * move. */
+/** Whether node a is opened, not b; one at least is no leaf. Depends on the trees only, so that the order of visits does not move. */
 inline bool descendsFirst(const Bvh::Node& a, const Bvh::Node& b) { return b.isLeaf() || (!a.isLeaf() && size(a) >= size(b)); }
 
 /** Calls visit(leaf) for each leaf, left before right, below nodes for which meets(node) holds. */

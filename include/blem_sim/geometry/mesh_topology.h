@@ -70,12 +70,14 @@ class VertexEdges {
 
 /**
  * Features of a TriangleMesh: its vertices, its edges (each once, with any number of incident faces: none for a segment, one on a border,
- * two inside a surface, more where a soup is not a manifold) and its faces (elements with area). Nothing is assumed of winding. A feature
- * is flat, and owns nothing, where it lies inside a plane: an edge whose faces continue each other, a vertex with flat edges only. A vertex
- * inside a straight edge owns nothing either: the edge's parts speak for it. Made by the threads there are, whose number does not show. The
- * topology takes some 36 bytes per triangle of a closed surface, 40 where some of it is flat; what the mesh tells at once is not held, so
- * that functions that need it ask for the same mesh again. Precondition: indices in range; fewer than 2^30 - 2 elements; coincident
- * vertices are one, as cleanMesh leaves them (else neighbours are not seen: more features, none lost).
+ * two inside a surface, more where a soup is not a manifold) and its faces (elements with area). Nothing is assumed of winding.
+ * A feature is flat, and owns nothing, where it lies inside a plane: an edge whose faces continue each other, a vertex with flat edges
+ * only. A vertex inside a straight edge owns nothing either: the edge's parts speak for it. Made by the threads there are, whose number
+ * does not show.
+ * The topology takes some 36 bytes per triangle of a closed surface, 40 where some of it is flat; data that the mesh tells at once are not
+ * held, so that functions that need them ask for the same mesh again.
+ * Precondition: indices in range; fewer than 2^30 - 2 elements; coincident vertices are one, as
+ * cleanMesh leaves them (else neighbours are not seen: more features, none lost).
  */
 class MeshTopology {
  public:

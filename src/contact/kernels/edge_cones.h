@@ -1,5 +1,4 @@
-// Test whether the common perpendicular of two edges may point out of all their faces, for lanes of floats or doubles. Included by the
-// kernels only.
+// Whether the common perpendicular of two edges may point out of all their faces: lanes of floats or doubles. Included by the kernels only.
 #pragma once
 
 #include "../tolerances.h"

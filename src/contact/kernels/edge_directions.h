@@ -15,10 +15,10 @@ struct alignas(64) EdgeDirections {
   double near[DIRECTION_BLOCK];  ///< NEAR_SUCCESSOR; -1 of flat edges, whose contacts take nothing over
 };
 
-/** Leading of the surface at a vertex. */
+/** Whether edges at a vertex lead down, and one may have a successor. */
 struct LeadingEdges {
   bool down;  ///< some edge leads down, by a larger part (sine) than CONE_SLACK
-  bool near;  ///< one of them, not flat, may have a near contact with an edge square to `aside`: the one that takes over is to be asked
+  bool near;  ///< one of them, not flat, may have a contact near, with an edge square to `aside`: a successor is to be looked for
 };
 
 /** A vertex of some pair that leaves a face over one of its sides. */

@@ -1,4 +1,4 @@
-// Test whether a vertex is where it can have a contact with an edge, for lanes of floats or doubles. Included by the kernels only.
+// Whether a vertex is where it can have a contact with an edge: lanes of floats or doubles. Included by the kernels only.
 #pragma once
 
 #include "../tolerances.h"

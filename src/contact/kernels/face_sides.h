@@ -1,5 +1,4 @@
-// Test whether a vertex is over a face, or so little beside it that its contact fades, for lanes of floats or doubles. Included by the
-// kernels only.
+// Whether a vertex is over a face, or so little beside it that its contact fades: lanes of floats or doubles. Included by the kernels only.
 #pragma once
 
 #include "../tolerances.h"

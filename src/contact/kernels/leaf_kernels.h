@@ -12,8 +12,8 @@
 namespace blem_sim::kernels {
 namespace {
 
-// While features move by no more than the margin, heights and distances change by no more than it: so the tests are the exact ones, that
-// much wider.
+// While features move by no more than the margin, heights and distances change by no more: so the tests are the exact ones, that much
+// wider.
 
 inline FloatMask mayTouch(const FloatVectors& p, const FloatFaces& face, const LeafReach& reach) {
   const Floats height = face.plane.above(p), most = reach.range - absolute(height);
@@ -33,7 +33,7 @@ inline FloatMask mayTouch(const FloatVectors& p, const LeafEdges& edges, std::ui
   return beside & isAtEdge(vertex, absolute(fold), fold < 0, reach.range, reach.margin, reach.rounding);
 }
 
-/** Whether these vertices may be the nearest of their surface: perhaps no edge leads along d. @param d from the vertices, d2 its square
+/** Whether these vertices may be nearest: perhaps no edge of them leads along d. @param d from the vertices, d2 its square
  * @param slack [m] */
 inline FloatMask mayBeNearest(const FloatVectors& axis, Floats up, Floats down, Floats per_slack, const FloatVectors& d, Floats d2,
                               float slack) {

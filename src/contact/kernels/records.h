@@ -27,7 +27,7 @@ struct alignas(64) FaceRecord {
   Vec4 sides[3];  ///< unit, in the plane, square to side k and into the face; offset
 };
 
-/** Sides k of a face over which a vertex's contact may fade, instead of being taken over by what lies behind: bits k for vertices above its
+/** Sides k of a face over which a vertex's contact may fade, instead of being taken over by a feature behind: bits k for vertices above its
  * plane, 3 + k for those below; from OPEN_TO_POINTS on the same for points, which have no edges. */
 using OpenSides = std::int32_t;
 constexpr int OPEN_TO_POINTS = 6;
@@ -67,7 +67,7 @@ struct VertexCone {
   bool is_round;  ///< flat and round edges only (ROUND_COSINE)
 };
 
-/** Region where partners of a leaf's contacts may lie: above or below its box, and beside it by so much. */
+/** Region where features may lie that have a contact with a leaf's: above or below its box, and beside it by so much. */
 struct LeafRegion {
   float axes[3][3];            ///< unit, square to each other; the last one leads up
   float middle[3], halves[3];  ///< of the box of all elements along the axes [m]

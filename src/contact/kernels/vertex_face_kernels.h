@@ -56,8 +56,7 @@ class VertexFaceTest {
         hits_(hits),
         deepest_(all(plain ? plain->deepest : 0)) {}
 
-  /** Appends contacts of vertices that are surely over their faces and not near a border. @return false: there is one that needs a closer
-   * look */
+  /** Appends contacts of vertices that are surely over their faces and not near a border. @return false: one needs a closer look */
   bool appendInner(const Batch& batch) {
     const Rows vertices = batch.points(vertices_.records, OF_A);
     return withFaces(batch, faces_, [&](const auto& faces) {
