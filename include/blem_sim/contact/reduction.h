@@ -96,8 +96,9 @@ struct ReductionLoss {
 /**
  * Reduces every manifold so that the contacts of each model sum to at most its k: each manifold asks for as many as `method` would keep
  * with the smaller k of its two models; where a model has too many then, its manifolds share k in proportion to these numbers. But each
- * keeps 3, if it asks for them, even where a model then has more than k: no pair ever loses its hold. `hull` chooses once, when shares are
- * known; others, and pierced contacts, are reduced again. Pierced contacts are kept out of the choice while others exist.
+ * keeps 3, if it asks for them, even where a model then has more than k: no pair ever loses its hold.
+ * `hull` chooses once, when shares are known; others, and pierced contacts, are reduced again.
+ * Pierced contacts are reduced apart, to the room that the others leave, a quarter of k at least if they are so many.
  * @param manifolds before reduction, sorted by (a, b)
  * @param model_a, model_b models of the two colliders of each manifold, indices into budgets
  * @param memory of the last reduction, overwritten by this one's

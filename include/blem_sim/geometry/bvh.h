@@ -9,9 +9,9 @@
 namespace blem_sim {
 
 /**
- * Binary tree of axis-aligned float boxes in the mesh's frame, rounded outwards, so that a box always holds all of its elements. Built by
- * binned surface area heuristic, by the threads there are, whose number does not show; deterministic. Nodes lie in one array, children
- * adjacent; leaves hold a run of order(). Precondition: finite vertices, indices in range, as cleanMesh leaves them. [Wald 2007]
+ * Binary tree of axis-aligned float boxes in the mesh's frame, rounded outwards, so that a box always holds all of its elements.
+ * Built by binned surface area heuristic, by the threads there are, whose number does not show; deterministic. Nodes lie in one array,
+ * children adjacent; leaves hold a run of order(). Precondition: finite vertices, indices in range, as cleanMesh leaves them. [Wald 2007]
  */
 class Bvh {
  public:

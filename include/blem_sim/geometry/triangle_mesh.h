@@ -58,8 +58,9 @@ enum class RepeatedIndices { ARE_SEGMENTS_AND_POINTS, ARE_DEGENERATE };
  * Makes a soup fit for contact and reports the changes: drops elements with non-finite coordinates or indices out of range, welds vertices
  * at exactly the same position, drops triangles without area and repeated ones (either winding), drops unused vertices, counts open and
  * non-manifold edges. Never moves a vertex. Segments and points pass through, unless told that the soup has none; three different indices
- * are always a triangle, whatever their positions. A coordinate beyond 1e30 m counts as non-finite: boxes are float. The result may be
- * empty; the caller decides whether that is an error. Order is kept. @param report its counts, extents are set; may be null
+ * are always a triangle, whatever their positions. A coordinate beyond 1e30 m counts as non-finite: boxes are float.
+ * The result may be empty; the caller decides whether that is an error. Order is kept.
+ * @param report its counts, extents are set; may be null
  */
 TriangleMesh cleanMesh(const TriangleMesh& soup, MeshReport* report, RepeatedIndices repeated = RepeatedIndices::ARE_SEGMENTS_AND_POINTS);
 
