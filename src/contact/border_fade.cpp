@@ -25,8 +25,8 @@ void BorderFades::list(bool vertices_move, const Candidate* candidates, const Ve
   fading->resize(kept);
 }
 
-/** Those that fade unless something takes over, and what is to be asked about them. Numbers are written one by one where they stay: a copy
- * of several would wait for each. */
+/** Lists the pairs that fade unless something takes over, and the questions about them. Numbers are written one by one where they stay: a
+ * copy of several would wait for each. */
 void BorderFades::listOpen(bool vertices_move, const Candidate* candidates, const VertexFaceHit* hits, std::uint32_t count,
                            LeavingBuffers* buffers, BesideFaces* fading) {
   fading->resize(count);
@@ -70,8 +70,8 @@ void BorderFades::listOpen(bool vertices_move, const Candidate* candidates, cons
   buffers->question_count = static_cast<std::uint32_t>(question - buffers->questions.data());
 }
 
-/** Does nothing take over where vertices leave over borders behind which the surface falls? isTakenOver in a few products: over such a
- * border the partner allows the vertex's own contact. */
+/** Marks the pairs where nothing takes over from a vertex that leaves over a border behind which the surface falls: isTakenOver in a few
+ * products, since over such a border the partner allows the vertex's own contact. */
 void BorderFades::answer(bool vertices_move, LeavingBuffers* buffers, const BesideFaces& fading) {
   if (buffers->question_count == 0) return;
   const kernels::Motion to_vertices = motionOf(Pose(vertices_move ? R_MF_ : R_FM_));

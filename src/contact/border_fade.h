@@ -14,7 +14,7 @@ namespace blem_sim {
 /** Vertices beside faces whose contacts fade. */
 struct BesideFaces {
   std::vector<kernels::Candidate> pairs;
-  std::vector<kernels::BesideSides> sides;  ///< of each
+  std::vector<kernels::BesideSides> sides;  ///< per pair: the sides that the vertex lies outside of
 
   void resize(std::size_t size) {
     resizeRoomy(size, &pairs);
@@ -22,12 +22,12 @@ struct BesideFaces {
   }
 };
 
-/** What is asked about vertices that may leave: room that only grows. */
+/** Questions about vertices that may leave, and their answers: room that only grows. */
 struct LeavingBuffers {
   std::vector<kernels::LeavingSide> questions;
   std::uint32_t question_count = 0;
   std::vector<kernels::LeadingEdges> answers;
-  std::vector<std::uint8_t> fades;  ///< of each pair
+  std::vector<std::uint8_t> fades;  ///< per pair
 
   void makeRoom(std::size_t pairs) {
     if (fades.size() >= pairs) return;

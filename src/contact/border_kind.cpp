@@ -7,8 +7,7 @@
 namespace blem_sim {
 namespace {
 
-/** @param slope seen from where it is positive: how steeply (sine) the steepest of a face's neighbours over an edge rises out of its plane
- */
+/** @param slope largest sine by which a neighbour over an edge rises out of the face's plane, to the side seen; -1: no neighbour */
 void addSide(bool is_round, int k, double slope, BorderKinds::Seen* seen) {
   const auto bit = static_cast<std::uint8_t>(1 << k);
   if (slope > NEAR_SUCCESSOR) {

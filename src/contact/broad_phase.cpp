@@ -126,7 +126,7 @@ class BroadPhase::Search {
     if (box.model < 0 || other.model != box.model) meet(box, space_.boxes_[other.box]);
   }
 
-  // Boxes beside each other along two axes are never compared; those of many cells are, with whatever overlaps them along one axis.
+  // Boxes beside each other along two axes are never compared; those of many cells are, with all boxes that overlap them along one axis.
   void sweepCells() {
     for (int i = 0; i < 2; ++i) {
       cell_axes_[i] = spread(i);
@@ -161,7 +161,7 @@ class BroadPhase::Search {
     return *middle;
   }
 
-  /** Monotonic in the place; what is beyond the last cell is in it. */
+  /** Cell of a place, monotonic in it; places beyond the last cell are in that one. */
   std::int64_t cellAt(double place, int i) const {
     constexpr double LAST = 1e9;
     return static_cast<std::int64_t>(std::floor(std::clamp(place / widths_[i], -LAST, LAST)));
@@ -177,7 +177,7 @@ class BroadPhase::Search {
     return cellOf(first(0), first(1));
   }
 
-  /** False for a box of too many cells, or where cells have no width. */
+  /** Enters a box into its cells. @return false for a box of too many cells, or where cells have no width */
   bool enterCells(int i) {
     const SweepBox& box = space_.boxes_[i];
     std::int64_t first[2], last[2];
@@ -192,7 +192,7 @@ class BroadPhase::Search {
     return true;
   }
 
-  // Each large box with all that starts after it, each other one with the large ones that do.
+  // Compares each large box with all that start after it, each other one with the large ones that do.
   void sweepLarge() {
     const int third_axis = axis_;
     sortStarts(cell_axes_[0]);
@@ -229,7 +229,7 @@ class BroadPhase::Search {
   const std::vector<ColliderMotion>& motion_;
   const CollisionFilter& filter_;
   const double base_margin_, max_margin_;
-  int axis_ = 0;  // of the sweep
+  int axis_ = 0;  // axis of the sweep
   int cell_axes_[2] = {0, 0};
   double widths_[2] = {0, 0};  // [m] of cells along their axes
 };

@@ -15,7 +15,7 @@ using kernels::Candidate;
 using kernels::EdgeRecord;
 using kernels::Vec4;
 
-/** Drops what has no contact since the surface at a vertex leads towards the other mesh, however the pair moves by a margin. */
+/** Drops candidates that have no contact since the surface at a vertex leads towards the other mesh, however the pair moves by a margin. */
 class LeadingVertices {
  public:
   LeadingVertices(const MeshPair& pair, const ListMargin& margin, const CandidateLists& lists, SurroundingsMemory* surroundings)
@@ -25,7 +25,7 @@ class LeadingVertices {
         R_MF_(pair.X_FM.linear().transpose()),
         limit_(margin.motion + (margin.turn + 2 * CONE_SLACK) * (pair.range + margin.motion) + 2 * TOUCH) {}
 
-  /** Near edges that are not round. */
+  /** Drops vertices whose surface leads towards edges that are not round. */
   void dropFrom(bool moves, const std::vector<Vec4>& vertices, const std::vector<EdgeRecord>& edges, std::vector<Candidate>* candidates) {
     drop(candidates, [&](const Candidate& c) {
       const EdgeRecord& edge = edges[c.b];
@@ -35,7 +35,7 @@ class LeadingVertices {
     });
   }
 
-  /** Near vertices: both lead, or one does and the other, nearer than its surroundings, is not round. */
+  /** Drops pairs of vertices of which both lead, or one does and the other, nearer than its surroundings, is not round. */
   void dropFrom(const std::vector<Vec4>& moving, const std::vector<Vec4>& fixed, std::vector<Candidate>* candidates) {
     drop(candidates, [&](const Candidate& c) {
       const Vector3 d = vector3(fixed[c.b]) - vector3(moving[c.a]);
@@ -61,7 +61,7 @@ class LeadingVertices {
     return kernels::kernels().leadTo(edges.blocks, edges.block_count, towards.data(), limit_ * limit_);
   }
 
-  /** Has it flat and round edges only? */
+  /** Whether the vertex has flat and round edges only. */
   bool isRound(bool moves, std::uint32_t vertex) {
     const EdgesAtVertex edges = edgesOf(moves, vertex);
     return std::all_of(edges.begin(), edges.end(), [&](const EdgeFromVertex& edge) {
@@ -158,7 +158,7 @@ void groupByFaces(const MeshPair& pair, CandidateLists* lists, CandidatePairs* r
 
 namespace {
 
-/** Keeps what the kernel copies. */
+/** Keeps the candidates that the kernel copies. */
 template <typename Kernel>
 void keep(Kernel&& kernel, const kernels::Reach& reach, const std::vector<Candidate>& from, std::vector<Candidate>* to) {
   resizeRoomy(from.size(), to);

@@ -1,4 +1,4 @@
-// Which features of two meshes may have a contact, good for as long as nothing has moved by more than a margin.
+// Lists of features of two meshes that may have a contact, good for as long as nothing has moved by more than a margin.
 #pragma once
 
 #include <vector>
@@ -34,12 +34,12 @@ struct NearFeatures {
   FeatureRecords<kernels::Vec4> vertices;
   FeatureRecords<kernels::EdgeRecord> edges;
   FeatureRecords<kernels::FaceRecord> faces;
-  std::vector<int> patches;              ///< of the faces
-  std::vector<kernels::OpenSides> open;  ///< of the faces
-  std::vector<BorderKinds> borders;      ///< of the faces
+  std::vector<int> patches;              ///< per face: its plane
+  std::vector<kernels::OpenSides> open;  ///< per face: its open sides
+  std::vector<BorderKinds> borders;      ///< per face: the kinds of its sides
   FadingRecords fading;
 
-  void addFaceOf(const LeafFeatures& leaf, std::uint32_t i, bool near_points);  ///< what goes with faces
+  void addFaceOf(const LeafFeatures& leaf, std::uint32_t i, bool near_points);  ///< appends patch, open sides and borders of a face
   void clear();
 };
 
@@ -48,13 +48,12 @@ struct NearFeatures {
 struct CandidatePairs {
   using Candidates = std::vector<kernels::Candidate>;
   Candidates vertex_face[2], vertex_edge[2], edge_face[2];
-  /** As vertex_face: 1 where the vertex is surely over its face, not near a border, while the list is good; empty where that is not known
-   */
+  /** Per candidate of vertex_face: 1 where the vertex is surely over its face, not near a border, while the list is good; empty: unknown */
   std::vector<std::uint8_t> inner[2];
   Candidates edge_edge, vertex_vertex;  ///< a is the moving mesh's
 
   void clear();
-  std::size_t contacts() const;  ///< how many candidates for contacts
+  std::size_t contacts() const;  ///< number of candidates for contacts
 };
 
 struct CandidateLists {
@@ -70,9 +69,9 @@ struct TurnedFeatures {
   std::vector<kernels::EdgeRecord> edges;  ///< of the moving mesh
   std::vector<kernels::FaceRecord> faces;  ///< of the moving mesh
 
-  /** Those that candidates for contacts are tested with. @param X_FM of the pair */
+  /** Turns the features that candidates for contacts are tested with. @param X_FM of the pair */
   void turnForContacts(const CandidateLists& lists, const Pose& X_FM);
-  /** Those that candidates for crossings are tested with. */
+  /** Turns the features that candidates for crossings are tested with. */
   void turnForCrossings(const CandidateLists& lists, const Pose& X_FM);
 
   /** The vertices of the moving mesh, or of the fixed one, near the other's faces, for kernels. */
@@ -84,10 +83,10 @@ struct TurnedFeatures {
 void groupByFaces(const MeshPair& pair, CandidateLists* lists, CandidatePairs* room);
 
 /**
- * Of the candidates for contacts those that can have one within pair.range while nothing moves or turns by more than the margin, in their
+ * Selects the candidates for contacts that can have one within pair.range while nothing moves or turns by more than the margin, in their
  * order.
  * @param turned of these lists at the pair's pose
- * @return how many are near, with those that can have none since a vertex leads towards the other feature
+ * @return number of candidates that are near, with those that can have none since a vertex leads towards the other feature
  */
 std::size_t findNearest(const MeshPair& pair, const TurnedFeatures& turned, const ListMargin& margin, const CandidateLists& lists,
                         SurroundingsMemory* surroundings, CandidatePairs* nearest);

@@ -14,9 +14,9 @@ namespace {
 using kernels::Candidate;
 using kernels::LeafHit;
 
-/** Rounding of float coordinates and of what is reckoned with them, relative to the largest one. */
+/** Rounding of float coordinates and of numbers reckoned from them, relative to the largest one. */
 constexpr double FLOAT_ROUNDING = 1e-6;
-/** And of directions: unit vectors, and products of edges relative to their lengths. */
+/** Rounding of directions: unit vectors, and products of edges relative to their lengths. */
 constexpr double FLOAT_TURN = 1e-5;
 constexpr std::uint32_t NOWHERE = CandidateListing::NOWHERE;
 
@@ -88,7 +88,7 @@ class Search {
     }
   }
 
-  /** With room for the rounding of floats. */
+  /** Reach of the kernels, with room for the rounding of floats. */
   kernels::LeafReach leafReach() const {
     const ListMargin& margin = listing_.origin.margin;
     const double wider = margin.motion + rounding_;
@@ -105,7 +105,7 @@ class Search {
     return reach;
   }
 
-  // Where a feature of a leaf is among the near ones of its mesh.
+  // Place of a leaf's feature among the near features of its mesh.
   std::uint32_t vertex(bool moves, const LeafInUse& leaf, std::uint32_t i) {
     return place(leaf, leaf.slots + i, i, listing_.lists.near[moves].vertices, &buffers_.new_features[moves].vertices);
   }
@@ -158,7 +158,7 @@ class Search {
     }
   }
 
-  /** Of coordinates in either frame [m]. */
+  /** Room [m] for the rounding of float coordinates in either frame, and for CLOSED. */
   double findRounding() const {
     const auto largest = [](const Box& box) { return std::max(box.min().cwiseAbs().maxCoeff(), box.max().cwiseAbs().maxCoeff()); };
     const double shift = pair_.X_FM.translation().cwiseAbs().maxCoeff();
@@ -217,7 +217,7 @@ class Search {
     if (next.moving != now.moving) prefetch(true, next.moving);
     if (next.fixed != now.fixed) prefetch(false, next.fixed);
   }
-  /** Leaves that are new lie far away in memory; of others only what is always asked does. */
+  /** New leaves lie far away in memory; of others only the part that is always read does. */
   void prefetch(bool moves, std::uint32_t index) {
     using Shapes = kernels::LeafShapes;
     constexpr std::size_t LINE = 64, FEW = offsetof(Shapes, faces), MOST = offsetof(Shapes, edges) + sizeof(kernels::LeafEdges);
@@ -237,7 +237,7 @@ class Search {
     return place;
   }
 
-  /** Copies what was placed, at once: records lie far away in memory, and so they are fetched side by side. */
+  /** Copies the features that were placed, at once: records lie far away in memory, and so they are fetched side by side. */
   void copyNew() {
     for (const bool moves : {true, false}) {
       NearFeatures& near = listing_.lists.near[moves];
@@ -253,7 +253,7 @@ class Search {
     }
   }
 
-  /** Of the fixed leaves that were looked at: directions within an angle of an axis are in a ball. */
+  /** Adds the normals of the fixed leaves that were looked at: directions within an angle of an axis are in a ball. */
   void addNormals() {
     for (const FoundLeaf& found : buffers_.found[false]) {
       if (!found.shapes) continue;

@@ -1,4 +1,4 @@
-// How candidates are found: by the trees of two meshes.
+// Search for candidates by the trees of two meshes.
 #pragma once
 
 #include <memory>
@@ -10,28 +10,28 @@
 
 namespace blem_sim {
 
-/** What pairs of features are candidates for. */
+/** Kind of a list: of candidates for contacts, or for crossings. */
 enum class CandidateKind { CONTACTS, CROSSINGS };
 
-/** Lists and how far they are made. */
+/** Candidate lists and the progress of their making. */
 struct CandidateListing {
   CandidateKind kind = CandidateKind::CONTACTS;
   CandidateLists lists;
   ListOrigin origin;
 
   static constexpr std::uint32_t NOWHERE = 0xFFFFFFFF;
-  /** A leaf near the other mesh, and the first of its slots: where its vertices, then its faces and edges, are among the near features. */
+  /** A leaf near the other mesh, and the first of its slots: places of its vertices, then faces and edges, among the near features. */
   struct Leaf {
-    std::uint32_t node, slots = NOWHERE;  ///< slots from when it is described
+    std::uint32_t node, slots = NOWHERE;  ///< slots: NOWHERE until it is described
   };
   struct LeafPair {
-    std::uint32_t moving, fixed;  ///< of the leaves
+    std::uint32_t moving, fixed;  ///< indices into leaves[1], leaves[0]
   };
   std::vector<Leaf> leaves[2];  ///< [1] of the moving mesh, [0] of the fixed one
   std::vector<std::uint32_t> slots;
   std::vector<LeafPair> pairs;
-  std::size_t done = 0;   ///< of the pairs
-  DirectionBall normals;  ///< of the fixed mesh where it is near the moving one, of a list for contacts that lasts
+  std::size_t done = 0;   ///< number of pairs that were looked at
+  DirectionBall normals;  ///< of the fixed mesh where it is near the moving one; only of a list for contacts with a margin
 
   std::size_t left() const { return pairs.size() - done; }
   bool isComplete() const { return origin.known && left() == 0; }
@@ -45,7 +45,7 @@ struct FoundLeaf {
 
 struct LeafFeature {
   const LeafFeatures* leaf;
-  std::uint32_t i;  ///< of its features of a kind
+  std::uint32_t i;  ///< index among the leaf's features of a kind
 };
 
 /** Features of one mesh that are near and not copied yet. */
@@ -58,11 +58,11 @@ struct NewFeatures {
   }
 };
 
-/** What searches for candidates work in. */
+/** Buffers of searches for candidates. */
 struct CandidateSearchBuffers {
   LeafMemory leaves;
-  std::vector<FoundLeaf> found[2];                           ///< of the listing's leaves
-  std::vector<std::unique_ptr<kernels::LeafShapes>> turned;  ///< of the moving ones that were looked at
+  std::vector<FoundLeaf> found[2];                           ///< per leaf of the listing
+  std::vector<std::unique_ptr<kernels::LeafShapes>> turned;  ///< of the moving leaves that were looked at
   NewFeatures new_features[2];                               ///< [1] of the moving mesh, [0] of the fixed one
   kernels::LeafHits hits;
   std::uint64_t searches = 0;

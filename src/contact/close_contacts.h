@@ -11,7 +11,7 @@
 
 namespace blem_sim {
 
-/** In the world at once; with their witness points where meshes cross, since retraction asks for those. */
+/** Contacts, placed in the world at once; where meshes cross, kept with their witness points, since retraction asks for those. */
 class CloseContacts {
  public:
   void begin(bool keeps_witnesses) {
@@ -34,13 +34,13 @@ class CloseContacts {
     }
   }
 
-  // Those that are in the world already, where no witnesses are kept: room for so many, and how many were written there.
+  // Contacts that are in the world already, where no witnesses are kept: room for so many more, and the number that was written there.
   kernels::ContactRow* rows(std::size_t more) { return placed_.rows(more); }
   void advance(std::size_t written) { placed_.advance(written); }
 
   bool keepsWitnesses() const { return keeps_witnesses_; }
 
-  /** Of the last contacts, so many, those stay for which is_kept(index among them). */
+  /** Keeps those of the last `count` contacts for which is_kept(index among them) holds. */
   template <typename IsKept>
   void keepOfLast(std::size_t count, IsKept&& is_kept) {
     if (keeps_witnesses_) {
@@ -59,9 +59,9 @@ class CloseContacts {
     return least;
   }
 
-  /** Those that were kept with their witness points; more may be added. */
+  /** The contacts that were kept with their witness points; more may be added. */
   std::vector<FeatureContact>& witnessed() { return witnessed_; }
-  /** All of them, in the world. */
+  /** All contacts, in the world. */
   const ContactWriter& placed(const MeshPair& pair) {
     for (const FeatureContact& c : witnessed_) {
       placeInWorld(pair, true, c.moving, c.fixed, c.point_M, c.point_F, c.normal, c.gap, placed_.room(1));

@@ -60,7 +60,7 @@ void Evaluation::forEachHit(const std::vector<Candidate>& candidates, std::uint3
   for (std::uint32_t i = 0; i < count; ++i) visit(candidates[buffers_.hits[i]]);
 }
 
-/** @return how many plain ones need a closer look; the others are written, those that are not plain are left */
+/** @return number of plain ones that need a closer look; the others are written, those that are not plain are left */
 std::uint32_t Evaluation::findEdgeEdges(const kernels::EdgeRecord* moving, const kernels::EdgeRecord* fixed) {
   const std::vector<Candidate>& candidates = pairs_.edge_edge;
   const ContactRoles& roles = pair_.roles;

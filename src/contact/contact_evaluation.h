@@ -1,4 +1,4 @@
-// Which candidates have a contact, or cross, and where.
+// Evaluation of candidates: their contacts and crossings.
 #pragma once
 
 #include <algorithm>
@@ -14,10 +14,10 @@
 
 namespace blem_sim {
 
-/** What a search finds. */
+/** Contacts and crossings that a search finds. */
 struct FoundContacts {
   ContactWriter plain;       ///< in the world; each in a place of its own; none where meshes cross
-  double deepest_plain = 0;  ///< [m] their largest depth
+  double deepest_plain = 0;  ///< [m] largest depth of the plain ones
   CloseContacts close;       ///< the others
   std::vector<Crossing> crossings;
 
@@ -25,13 +25,13 @@ struct FoundContacts {
   double leastGap(const MeshPair& pair) const;  ///< [m]; the pair's range if there is none
 };
 
-/** Of a contact that fades. */
+/** Cover of a contact that fades, one of asked_fading. */
 struct FadingCover {
-  std::uint32_t before;  ///< another one of its vertex
+  std::uint32_t before;  ///< index of the one before it of the same vertex
   bool is_covered;       ///< the vertex lies over another face of the plane
 };
 
-/** What evaluations work in: room that only grows. */
+/** Buffers of evaluations: room that only grows. */
 struct EvaluationBuffers {
   static constexpr std::uint32_t BLOCK = 256;  ///< candidates that are tested at once: there is room for contacts of all
 
@@ -41,17 +41,17 @@ struct EvaluationBuffers {
   std::vector<kernels::VertexEdgeHit> vertex_edges;
   std::vector<kernels::EdgeEdgeHit> edge_edges;
   std::vector<kernels::Candidate> edges_left;  ///< those that are not plain
-  std::uint32_t edges_left_count = 0;          ///< of them
+  std::uint32_t edges_left_count = 0;          ///< their number
   std::vector<kernels::FadingEdgesHit> fading_edges;
   std::vector<std::uint32_t> hits;
   std::vector<kernels::Candidate> over;   ///< vertices over faces beside which they may fade, or so near a border that they were asked
   std::vector<kernels::Candidate> asked;  ///< vertices that may be over such faces
   LeavingBuffers leaving;
   BesideFaces fading;
-  std::vector<kernels::ContactRow> feet;             ///< as the pairs that fade
+  std::vector<kernels::ContactRow> feet;             ///< per pair that fades
   std::vector<kernels::FadingContact> asked_fading;  ///< those that may be covered
-  std::vector<FadingCover> covers;                   ///< as these
-  std::vector<std::uint32_t> last_fading;            ///< of each vertex; none between evaluations
+  std::vector<FadingCover> covers;                   ///< per contact of asked_fading
+  std::vector<std::uint32_t> last_fading;            ///< per vertex: the last one of asked_fading; none between evaluations
 
   template <typename Items, typename... Item>
   static void makeRoom(std::size_t size, Items* items, const Item&... filled_with) {
@@ -72,13 +72,13 @@ class Evaluation {
         exact_(pair, &buffers->surroundings, &found->close),
         fades_(pair, lists, &buffers->surroundings) {}
 
-  /** Where meshes cross, which must be known before, all contacts are close ones. */
+  /** Finds all contacts. Crossings must be known before: where meshes cross, all contacts are close ones. */
   void findContacts();
   void findCrossings();
 
  private:
   std::uint32_t* room(const std::vector<kernels::Candidate>& candidates);
-  /** Calls test(first candidate, how many, hits) for blocks of them, which writes to plain. @return how many hits there are in all */
+  /** Calls test(first candidate, their number, hits) for blocks of candidates, which writes to plain. @return number of hits in all */
   template <typename Hit, typename Plain, typename Test>
   std::uint32_t testBlocks(std::size_t candidates, std::vector<Hit>* hits, Plain* plain, Test&& test);
   template <typename Visit>

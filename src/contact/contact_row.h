@@ -11,7 +11,7 @@ namespace blem_sim {
 
 typedef double Doubles __attribute__((vector_size(32)));  // wider ones would be taken apart where processors have none
 
-/** Its point and its normal's x; its normal's y and z, its depth and 0. */
+/** A contact's point and its normal's x; the normal's y and z, the depth and 0. */
 struct ContactRow {
   Doubles first, second;
 };

@@ -6,35 +6,35 @@
 namespace blem_sim {
 namespace {
 
-// A list is made for so many steps of the present motion, or for what is cheapest if it is known how lists of the pair grow.
+// A list is made for so many steps of the present motion, or for the cheapest number if the growth of the pair's lists is known.
 constexpr double MARGIN_STEPS = 15, FEWEST_STEPS = 3, MOST_STEPS = 50;
-constexpr double LEAST_PART = 0.7;  // of those, see partOf
-// What the making of a list takes per pair of leaves, and per candidate, in candidates that findNearest looks at, and the steps that its
-// choice lasts.
+constexpr double LEAST_PART = 0.7;  // part of those steps, see partOf
+// Cost of making a list per pair of leaves, and per candidate, in candidates that findNearest looks at, and the steps that its choice
+// lasts.
 constexpr double LEAF_PAIR_COST = 40, CANDIDATE_COST = 8, CHOICE_STEPS = 8;
-// Where there are not few pairs of leaves the next list is made in so many parts, in as many steps before it is needed, if it lasts.
+// The next list is made in so many parts, in as many steps before it is needed, if it lasts and its pairs of leaves are not few.
 constexpr std::size_t PARTS = 4, FEW_LEAF_PAIRS = 64;
 constexpr double LASTING_STEPS = 5;
 // A list is made for a pose ahead, so much of its margin away on the way of the pair, and so many steps, at most.
 constexpr double AHEAD = 0.9, AHEAD_AT_MOST = 0.98, AHEAD_STEPS = 16;
-// Of long lists those that matter for so few steps are listed again, or for what is cheapest if it is known how lists of the pair grow.
+// Candidates of long lists that matter for so few steps are listed again; or for the cheapest number if the growth of lists is known.
 constexpr double NEAREST_STEPS = 3, FEWEST_NEAREST_STEPS = 2, MOST_NEAREST_STEPS = 8;
-constexpr double MOST_NEAREST_PART = 0.4;  // of a list's margin
-// Candidates for crossings are listed for so many, or for what fits into the largest margin.
+constexpr double MOST_NEAREST_PART = 0.4;  // part of a list's margin
+// Candidates for crossings are listed for so many steps, or for those that fit into the largest margin.
 constexpr double CROSSING_STEPS = 10;
 constexpr std::size_t FEW_CANDIDATES = 50;
-constexpr double LEAST_MARGIN = 0.02, MOST_MARGIN = 0.8, LEAST_NEAREST_MARGIN = 0.005;  // of the range
-constexpr double MOST_KNOWN_MARGIN = 2.2;                                               // where it is known how lists grow
+constexpr double LEAST_MARGIN = 0.02, MOST_MARGIN = 0.8, LEAST_NEAREST_MARGIN = 0.005;  // parts of the range
+constexpr double MOST_KNOWN_MARGIN = 2.2;                                               // where the growth of lists is known
 // Lists of fast bodies grow faster than their margins where there are many pairs of leaves.
 constexpr std::size_t MANY_LEAF_PAIRS = 4000;
 constexpr double MOST_MARGIN_OF_MANY = 0.3;
-constexpr double FIRST_MARGIN = 0.1;  // of the range, where the motion is not known yet
-// The same of directions.
+constexpr double FIRST_MARGIN = 0.1;  // part of the range, where the motion is not known yet
+// Margins of directions: lengths of the difference of unit vectors.
 constexpr double LEAST_TURN = 0.005, LEAST_NEAREST_TURN = 0.001, FIRST_TURN = 0.05;
-/** What a distance may be wrong by [m]. */
+/** Largest error [m] of a distance. */
 constexpr double DISTANCE_ROUNDING = 1e-7;
 
-/** Is it of these two meshes? */
+/** Whether the memory is of these two meshes. */
 bool isOf(const ContactSearchMemory& memory, const MeshPair& pair) {
   return memory.moving == pair.moving.identity && memory.fixed == pair.fixed.identity;
 }
@@ -46,7 +46,7 @@ double partOf(const Pose& X) {
   return LEAST_PART + (1 - LEAST_PART) * (grains - std::floor(grains));
 }
 
-/** One search with what is known. */
+/** One search, with the memory of the pair. */
 class ContactSearch {
  public:
   ContactSearch(const MeshPair& pair, ContactSearchMemory* memory, ContactSearchBuffers* buffers, FoundContacts* found)
@@ -75,11 +75,11 @@ class ContactSearch {
   }
 
  private:
-  /** What has none, as points, crosses nothing. */
+  /** Whether both meshes have edges. Point clouds have none, so they cannot cross anything. */
   bool haveEdges() const { return pair_.moving.topology.edgeCount() > 0 && pair_.fixed.topology.edgeCount() > 0; }
 
-  /** Have the meshes surely not come to cross since they were apart? What is nearest on the straight way of the points near the fixed mesh
-   * lies along a normal of that one, so their distance shrinks by no more than what they move along its normals there. */
+  /** Whether the meshes surely stayed apart since the last search. Points near the fixed mesh move straight, and the place nearest to each
+   * lies along a normal of that mesh, so the distance shrinks by no more than they move along its normals there. */
   bool staysApart() const {
     if (!memory_.visited) return false;
     if (motion_.motion + DISTANCE_ROUNDING < memory_.distance) return true;
@@ -97,12 +97,12 @@ class ContactSearch {
     memory_.fixed = pair_.fixed.identity;
   }
 
-  /** Too fast for lists to last. */
+  /** Whether the pair is too fast for lists to last. */
   bool isFast() const { return FEWEST_STEPS * motion_.motion > MOST_MARGIN * pair_.range; }
 
-  /** Has the list so many pairs of leaves that lists grow faster than their margins? */
+  /** Whether the list has so many pairs of leaves that lists grow faster than their margins. */
   bool areMany() const { return memory_.contacts.now.pairs.size() > MANY_LEAF_PAIRS; }
-  /** [m], where it is not known how they grow. */
+  /** Largest margin [m] of lists whose growth is not known. */
   double mostMargin() const { return (areMany() ? MOST_MARGIN_OF_MANY : MOST_MARGIN) * pair_.range; }
 
   ListMargin contactMargin() const {
@@ -115,8 +115,8 @@ class ContactSearch {
     return {std::max(steps * motion_.motion, LEAST_MARGIN * pair_.range), std::max(steps * motion_.turn, LEAST_TURN)};
   }
 
-  /** Longer lists are made less often, but what they hold more is looked at whenever the nearest are chosen: of both together the least. A
-   * list of margin m lasts 2 m / motion steps; it takes some cost anyway and some more in proportion to m. */
+  /** Steps of the cheapest list. A longer list is made less often, but its additional candidates are looked at whenever the nearest are
+   * chosen. A list of margin m lasts 2 m / motion steps; it takes some cost anyway and some more in proportion to m. */
   double cheapestSteps() const {
     if (motion_.motion <= 0) return MOST_STEPS;
     const CandidateListing& list = memory_.contacts.now;
@@ -148,7 +148,7 @@ class ContactSearch {
     return ahead;
   }
 
-  /** Leaves a list that is good; what takes its place is made a part at a time, in the last steps that it is good for. */
+  /** Leaves a list that is good; its successor is made a part at a time, in the last steps that it is good for. */
   void refresh(CandidateKind kind, bool keeps, KeptListing* kept) {
     CandidateListing& next = kept->next;
     const bool good = isGood(kept->now.origin), next_is_good = isGood(next.origin);
@@ -176,17 +176,17 @@ class ContactSearch {
     groupByFaces(pair_, &kept->now.lists, &memory_.nearest);
   }
 
-  /** Is a list of that margin good for much longer than it takes to make it? */
+  /** Whether a list of that margin is good for much longer than its making takes. */
   bool lasts(const ListMargin& margin) const { return LASTING_STEPS * motion_.motion <= margin.motion; }
 
-  /** Will lists of that origin be good for no longer than it takes to make the next one, if the pair goes on to leave it as it does? */
+  /** Whether lists of that origin are good for no longer than making the next one takes, if the pair goes on to leave it as it does. */
   bool endsSoon(const ListOrigin& origin) const {
     constexpr double STEPS = PARTS + 1;
     const double before = region_.used(origin, memory_.X_FM, pair_.range), now = region_.used(origin, pair_.X_FM, pair_.range);
     return now > before && now + STEPS * (now - before) > 1;
   }
 
-  /** For so many steps of the present motion. */
+  /** Margin of the nearest candidates for so many steps of the present motion. */
   ListMargin marginOf(double steps) const {
     return {std::clamp(steps * motion_.motion, LEAST_NEAREST_MARGIN * pair_.range, MOST_MARGIN * pair_.range),
             std::max(steps * motion_.turn, LEAST_NEAREST_TURN)};
@@ -228,8 +228,8 @@ class ContactSearch {
   ListMargin motion_;  // since the last search
 };
 
-/** Has a pair that was apart and without candidates surely moved by so little that it is so still? What moves most of all that there is
- * tells. Apart by more than the margin when last seen, it did not cross where the list was made. */
+/** Whether a pair that was apart and without candidates has surely moved by so little that it is so still: a bound on the motion of all
+ * points tells. Apart by more than the margin when last seen, it did not cross where the list was made. */
 bool staysEmpty(const MeshPair& pair, const ContactSearchMemory& memory) {
   const CandidateListing& list = memory.contacts.now;
   const ListOrigin& origin = list.origin;

@@ -8,26 +8,26 @@
 
 namespace blem_sim {
 
-/** A listing, and what takes its place, made a part at a time. */
+/** A listing, and its successor, made a part at a time. */
 struct KeptListing {
   CandidateListing now, next;
 };
 
-/** What is kept of a pair of meshes from search to search; it saves time and changes no result. */
+/** Memory of a pair of meshes from search to search; it saves time and changes no result. */
 struct ContactSearchMemory {
-  std::uint64_t moving = 0, fixed = 0;  ///< whose
+  std::uint64_t moving = 0, fixed = 0;  ///< identities of the two geometries
   KeptListing contacts;                 ///< for many steps
-  CandidatePairs nearest;               ///< those of its candidates that matter for a few
+  CandidatePairs nearest;               ///< candidates of `contacts` that matter for a few steps
   ListOrigin nearest_origin;
-  double growth = 0;      ///< [1/m] of lists of candidates with their margins; 0: not known
+  double growth = 0;      ///< [1/m] candidates that a list gains with its margin; 0: not known
   KeptListing crossings;  ///< only where the meshes may have met
   bool visited = false;
   Pose X_FM = Pose::Identity();  ///< at the last search
   SteadyMotion motion;           ///< of the moving mesh
-  double distance = 0;           ///< [m] of the meshes then, at least; 0 if they crossed
+  double distance = 0;           ///< [m] of the meshes at that search, at least; 0 if they crossed
 };
 
-/** What searches of one thread work in. */
+/** Buffers of the searches of one thread. */
 struct ContactSearchBuffers {
   CandidateSearchBuffers search;
   EvaluationBuffers evaluation;

@@ -11,7 +11,7 @@ namespace blem_sim {
 
 namespace {
 
-constexpr float MOST_LACK = GOOD_ENOUGH - ROUNDING;  // of a unit force
+constexpr float MOST_LACK = GOOD_ENOUGH - ROUNDING;  // part of a unit force
 constexpr float FARTHEST = 1000;                     // [unit forces] larger handicaps are rounded by more than ROUNDING
 
 // A largest component is a convex function of place: between two places it is no larger than the weighted mean of theirs.

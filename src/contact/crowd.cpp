@@ -19,7 +19,7 @@ namespace {
 
 constexpr int PER_UNIT = 8;  // cells of normals
 constexpr int NUMBERS = 2 * PER_UNIT + 1;
-constexpr double TILT = 0.6;  // what a unit of tilt counts, in radii of the patch, in every other direction
+constexpr double TILT = 0.6;  // weight of a unit of tilt, in radii of the patch, in every other direction
 
 // Places around a normal (u, v), half of them mixed with tilts.
 struct Circles {
@@ -87,7 +87,7 @@ class CoarseCells {
   std::vector<CellDirections> directions_;
 };
 
-/** What of the members is read, contact by contact, and what goes with it. */
+/** Input of readMembers: the members' contacts, their scale, and the limits for those that may be spared. */
 struct Reading {
   const Contact* contacts;
   const int* members;
@@ -98,8 +98,7 @@ struct Reading {
   const std::uint64_t* spared_bits;
 };
 
-// Points of the members as wrenchPoint has them, the keys of the cells of their normals, and those that may be spared. @return how many
-// those are
+// Points of the members as wrenchPoint has them, the keys of the cells of their normals, and those that may be spared. @return their number
 BLEM_SIM_LANES int readMembers(const Reading& given, WrenchPoint* points, int* keys, int* spared) {
   const Reading reading = given;
   typedef float Floats __attribute__((vector_size(16)));

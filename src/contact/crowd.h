@@ -10,9 +10,9 @@
 namespace blem_sim {
 
 /**
- * Of every cell of alike normals (some degrees) the contacts that are extreme in some mixture of place and tilt across its normal, contacts
- * that do not touch yet standing back; the deepest; and those of the ids `spared`.
- * What is kept depends on the set of members only, not on their order.
+ * Keeps in every cell of alike normals (some degrees) the contacts that are extreme in some mixture of place and tilt across its normal,
+ * contacts that do not touch yet standing back; the deepest; and those of the ids `spared`.
+ * The choice depends on the set of members only, not on their order.
  * @param scale of all contacts @param members indices of contacts
  * @param kept overwritten by those to keep
  */

@@ -10,7 +10,7 @@ class DirectionBall {
  public:
   /** Grows so far that it holds a ball around `centre`, or around its opposite. */
   void add(Vector3 centre, double radius);
-  /** How far [m] v leads at most along a direction in here, or against it. */
+  /** Largest part [m] of v along a direction in here, or against it. */
   double most(const Vector3& v) const;
 
  private:

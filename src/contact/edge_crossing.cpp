@@ -24,7 +24,7 @@ bool crosses(const MeshPair& pair, const Crossing& crossing) {
   const Vector3 through = p + height_p / (height_p - height_q) * (q - p);
   if (!holdsProjection(face, through)) return false;
   const Vector3 lean = pair.turned(edgeLean(edge_side, crossing.edge), edge_moves), face_inward = middle(face.corners) - through;
-  // At a border it only grazes an edge or a corner, unless it runs down along a neighbour's plane, its own surface within: so aligned
+  // At a border the edge only grazes an edge or a corner, unless it runs down along a neighbour's plane, its own surface within: so aligned
   // boxes sink into each other.
   bool enters = true, along_neighbour = false;
   const bool at_border = forEachNeighbourAt(pair, face, !edge_moves, through, [&](const Vector3& inward, const Vector3& normal) {

@@ -13,8 +13,8 @@ struct Crossing {
 };
 
 /**
- * Does the edge pass through the face? What only touches it, or only grazes a border, is an ordinary contact.
- * Precondition: its ends are on different sides of the face's plane, neither within TOUCH of it.
+ * Whether the edge passes through the face. One that only touches it, or only grazes a border, has an ordinary contact.
+ * Precondition: the edge's ends are on different sides of the face's plane, neither within TOUCH of it.
  */
 bool crosses(const MeshPair& pair, const Crossing& crossing);
 

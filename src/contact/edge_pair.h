@@ -18,7 +18,7 @@ struct EdgePair {
 
 namespace edge_pair_detail {
 
-/** Is numerator / denominator in [0, 1], or beyond it by no more than CLOSED along an edge of that squared length? */
+/** Whether numerator / denominator is in [0, 1], or beyond it by no more than CLOSED along an edge of that squared length. */
 inline bool isInside(double numerator, double denominator, double squared_length) {
   if (numerator >= 0 && numerator <= denominator) return true;
   const double beyond = numerator < 0 ? -numerator : numerator - denominator;

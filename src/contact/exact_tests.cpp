@@ -30,7 +30,7 @@ bool ExactTests::vertexFace(bool vertex_moves, int name, int element) {
   return true;
 }
 
-/** Where a vertex touches a face's border: does its surface extend over the face, or only beside it? */
+/** Whether the surface of a vertex that touches a face's border extends over the face, not only beside it. */
 bool ExactTests::reachesOver(bool vertex_moves, int vertex, const Vector3& p, const FaceShape& face) const {
   const MeshSide &vertex_side = pair_.side(vertex_moves), &face_side = pair_.side(!vertex_moves);
   if (vertex_side.topology.edgesOf(vertex).empty()) return true;
@@ -98,7 +98,7 @@ bool ExactTests::leadsTo(bool vertex_moves, int vertex, const Vector3& d) const 
   return kernels::kernels().leadTo(edges.blocks, edges.block_count, towards.data(), SURE * SURE * distance2);
 }
 
-/** Beyond its ends, but for round ones, which take over, the contact fades. @return false if they touch */
+/** Contact at a round edge. Beyond the edge's ends, but for round ones, which take over, it fades. @return false if they touch */
 bool ExactTests::addAtRoundEdge(bool vertex_moves, int vertex, int edge, const Vector3& p, const kernels::EdgeRecord& record) {
   const Vector3 start = vector3(record.start), along = vector3(record.along);
   const double length2 = along.squaredNorm(), part = (p - start).dot(along) / length2, clamped = std::clamp(part, 0.0, 1.0);
@@ -126,7 +126,7 @@ void ExactTests::vertexVertex(int moving, int fixed) {
   const Feature m{FeatureKind::VERTEX, moving}, f{FeatureKind::VERTEX, fixed};
   if (gap <= TOUCH) return addLocalMinimum(m, f, p, q, Vector3::Zero());
   const Vector3 normal = d / gap, inverse = -(R_FM_.transpose() * normal);
-  // Allowed, and round besides.
+  // Whether the vertex's cone allows the direction, and whether the vertex is round besides.
   const auto cone = [&](bool moves, int vertex, const Vector3& direction) {
     const MeshSide& side = pair_.side(moves);
     const EdgesAtVertex edges = surroundings_.ofVertex(side, vertex);

@@ -1,4 +1,4 @@
-// What lies around a point on the border of a face's plane.
+// Edges and faces around a point on the border of a face's plane.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@ inline int cornerAt(const FaceShape& face, const Vector3& p) {
   return -1;
 }
 
-/** Is p within CLOSED of the edge? */
+/** Whether p is within CLOSED of the edge. */
 inline bool liesOn(const MeshPair& pair, bool edge_moves, int edge, const Vector3& p) {
   const MeshSide& side = pair.side(edge_moves);
   const std::array<int, 2> ends = side.topology.ends(side.mesh, edge);
@@ -59,8 +59,8 @@ void forEachBorderAt(const MeshPair& pair, const FaceShape& face, bool face_move
 }
 
 /**
- * Does the plane of `face` end within CLOSED of p (frame F)? Then calls visit(direction into it, unit normal) for each face of other planes
- * there.
+ * Calls visit(direction into it, unit normal) for each face of other planes where the plane of `face` ends within CLOSED of p (frame F).
+ * @return whether it does
  */
 template <typename Visit>
 bool forEachNeighbourAt(const MeshPair& pair, const FaceShape& face, bool face_moves, const Vector3& p, Visit&& visit) {

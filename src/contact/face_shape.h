@@ -1,4 +1,4 @@
-// A face in the frame of the search, and where points lie to it.
+// A face in the frame of the search, and the places of points relative to it.
 #pragma once
 
 #include <cstdint>
@@ -35,10 +35,10 @@ inline FaceShape faceShape(const MeshPair& pair, bool face_moves, int element) {
 
 inline Vector3 middle(const Vector3 corners[3]) { return (corners[0] + corners[1] + corners[2]) / 3; }
 
-/** How far p projects inside the face's side k, times the side's length; negative outside. */
+/** Distance of p's projection inside the face's side k, times the side's length [m^2]; negative outside. */
 inline double insideSide(const FaceShape& face, int k, const Vector3& p) { return face.inward[k].dot(p - face.corners[k]); }
 
-/** Does p project into the face, or beside it by no more than CLOSED? */
+/** Whether p projects into the face, or beside it by no more than CLOSED. */
 inline bool holdsProjection(const FaceShape& face, const Vector3& p) {
   for (int k = 0; k < 3; ++k) {
     const double inside = insideSide(face, k, p);

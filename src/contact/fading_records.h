@@ -1,4 +1,4 @@
-// What is asked of the features of a list where contacts fade.
+// Records of a list's features, asked where contacts fade.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@
 
 namespace blem_sim {
 
-/** Of one mesh, in its frame. Few features are asked, but again in each step: what they have is worked out when they first are, and kept
- * side by side for as long as the list. */
+/** Directions at vertices and shapes of faces of one mesh, in its frame. Few features are asked, but again in each step: their records are
+ * worked out when they first are, and kept side by side for as long as the list. */
 class FadingRecords {
  public:
   /** A run of directions(). */
@@ -20,17 +20,17 @@ class FadingRecords {
     std::uint32_t first, blocks;
   };
 
-  /** There is a place for all features of a list. */
+  /** Makes places for all features of a list. */
   void makePlaces(std::size_t vertices, std::size_t faces) {
     if (at_vertices_.size() < vertices) resizeRoomy(vertices, &at_vertices_, Directions{UNKNOWN, 0});
     if (of_faces_.size() < faces) resizeRoomy(faces, &of_faces_, std::uint32_t{UNKNOWN});
   }
-  /** Of the edges at a vertex. @param vertex in the list @param name in the mesh */
+  /** Directions of the edges at a vertex. @param vertex in the list @param name in the mesh */
   const Directions& directionsAt(const MeshSide& side, std::uint32_t vertex, int name, SurroundingsMemory* surroundings) {
     if (at_vertices_[vertex].first == UNKNOWN) at_vertices_[vertex] = addDirections(surroundings->ofVertex(side, name));
     return at_vertices_[vertex];
   }
-  /** Of a face, as corners(). @param face in the list @param name in the mesh @param goes_on whether its plane has other faces */
+  /** A face's place in corners(). @param face in the list @param name in the mesh @param goes_on whether its plane has other faces */
   std::uint32_t shapeOf(const MeshSide& side, std::uint32_t face, int name, bool goes_on, SurroundingsMemory* surroundings) {
     if (of_faces_[face] == UNKNOWN) of_faces_[face] = addShape(side, name, goes_on ? surroundings->ofFace(side, name) : PlaneReach{0, 0});
     return of_faces_[face];

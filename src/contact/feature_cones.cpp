@@ -8,7 +8,7 @@
 namespace blem_sim {
 namespace {
 
-/** From the vertex, one of its ends, along the edge; mesh's frame. */
+/** Direction from the vertex, one of the edge's ends, along the edge; not unit, mesh's frame. */
 Vector3 edgeDirection(const MeshSide& side, int vertex, int edge) {
   return side.mesh.vertices[side.topology.otherEnd(side.mesh, edge, vertex)] - side.mesh.vertices[vertex];
 }
@@ -27,7 +27,7 @@ Vector3 leanOf(const MeshSide& side, const Feature& feature) {
   return Vector3::Zero();
 }
 
-/** Where the meshes touch: from the fixed surface at the feature to the moving one. */
+/** Direction from the fixed surface to the moving one at features that touch; not unit, frame F. */
 Vector3 leanBetween(const MeshPair& pair, const Feature& m, const Feature& f) {
   return pair.X_FM.linear() * leanOf(pair.moving, m) - leanOf(pair.fixed, f);
 }

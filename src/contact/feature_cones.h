@@ -1,4 +1,4 @@
-// What the neighbourhood of a vertex or an edge says about directions.
+// Tests of directions by the neighbourhood of a vertex or an edge.
 #pragma once
 
 #include "mesh_pair.h"
@@ -6,14 +6,14 @@
 
 namespace blem_sim {
 
-/** Does the surface at the edge lead nowhere along `direction`? None of its faces has a larger part of it than `slack` (sine).
- *  @param direction unit, the mesh's frame, towards the other mesh */
+/** Whether the surface at the edge leads nowhere along `direction`: none of its faces has a larger part of it than `slack` (sine).
+ * @param direction unit, the mesh's frame, towards the other mesh */
 bool edgeConeAllows(const MeshSide& side, int edge, const Vector3& direction, double slack);
 
-/** Do the two faces of an edge, which is not flat, go over into each other (ROUND_COSINE)? */
+/** Whether an edge is round: not flat, its two faces go over into each other (ROUND_COSINE). */
 bool isRoundEdge(const MeshSide& side, int edge);
 
-/** Do two faces of an edge go over into each other? By the unit directions into them. */
+/** Whether two faces of an edge go over into each other, by the unit directions into them. */
 inline bool isRound(const Vector3& inward, const Vector3& other) { return inward.dot(other) <= -ROUND_COSINE; }
 
 /** A contact that takes over where another leaves is no farther from it than this part of its length. */
@@ -24,8 +24,7 @@ Vector3 vertexLean(const MeshSide& side, int vertex);
 Vector3 edgeLean(const MeshSide& side, int edge);
 
 /**
- * On which side of each other two bodies are, where their surfaces at a point do not tell: the smaller body's middle is on its own side.
- * Frame F.
+ * Sides of two bodies where their surfaces at a point do not tell: the smaller body's middle is on its own side. Frame F.
  * @return not unit, from the fixed body's side to the moving one's; may be zero
  */
 Vector3 bodySide(const MeshPair& pair, const Vector3& point);

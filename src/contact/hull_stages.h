@@ -9,19 +9,18 @@
 
 namespace blem_sim {
 
-/** What of some contacts says all that the others say. */
+/** Contacts that imply all others of a set. */
 struct ThinnedContacts {
   PatchScale scale;
   std::vector<int> kept;  ///< indices
 };
 
-/** Leaves out what the corners of flat patches imply; of patches that have more than k corners, nothing. @return false if some contact is
- * not finite or its normal not unit: nothing is done
- */
+/** Leaves out contacts that the corners of flat patches imply; of patches that have more than k corners, nothing. @return false if some
+ * contact is not finite or its normal not unit: nothing is done */
 bool thinToHulls(const std::vector<Contact>& contacts, int k, ThinnedContacts* thinned);
 
-/** What is kept, or k of it that span the wrenches best. @param reduced overwritten; sorted by id
- * @return what it lacks at most of the wrenches, as chooseSpanningContacts tells it; 0 if nothing is left out */
+/** Chooses all thinned contacts, or k of them that span the wrenches best. @param reduced overwritten; sorted by id
+ * @return largest lack of the choice in any wrench, as chooseSpanningContacts tells it; 0 if nothing is left out */
 float chooseFromHulls(const std::vector<Contact>& contacts, const ThinnedContacts& thinned, int k, const ContactIds& chosen_before,
                       std::vector<Contact>* reduced);
 

@@ -1,4 +1,4 @@
-// Which of many contacts are among some that are named.
+// Filter for the contacts that are among some that are named.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@ class IdFilter {
   bool has(std::uint64_t id) const { return mayHave(bits_.data(), id) && std::binary_search(ids_.begin(), ids_.end(), id); }
 
   const std::uint64_t* bits() const { return bits_.data(); }
-  /** False if it surely has not. @param bits of a filter */
+  /** False if the filter surely does not have the id. @param bits of a filter */
   static bool mayHave(const std::uint64_t* bits, std::uint64_t id) { return bits[slot(id) / 64] >> slot(id) % 64 & 1; }
 
  private:

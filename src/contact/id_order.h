@@ -17,7 +17,7 @@ class IdOrder {
     std::uint32_t index;  ///< of the contact
   };
 
-  /** By id, those of one id by index. Good until the next call. */
+  /** The contacts by id, those of one id by index. Good until the next call. */
   const std::vector<Entry>& of(const Contact* contacts, std::size_t count);
 
  private:

@@ -82,7 +82,7 @@ EdgeCone edgeCone(const std::vector<EdgeRecord>& edges) {
   Vector3 middles[kernels::MAX_LEAF_FEATURES], axis = Vector3::Zero();
   double spread = 0, halves[kernels::MAX_LEAF_FEATURES];
   for (std::size_t i = 0; i < edges.size(); ++i) {
-    // Of a normal that points out of both faces the middle is square to the edge and to this.
+    // The middle of the normals that point out of both faces is square to the edge and to this.
     const Vector3 across = vector3(edges[i].inward[0]) - vector3(edges[i].inward[1]);
     middles[i] = vector3(edges[i].along).cross(across).normalized();
     halves[i] = across.norm() > 1.01 ? std::acos(std::min(0.5 * across.norm(), 1.0)) : ANY;
@@ -102,7 +102,7 @@ void describe(const MeshSide& side, std::uint32_t index, SurroundingsMemory* sur
   leaf->vertices.clear();
   leaf->faces.clear();
   leaf->edges.clear();
-  // For what most leaves own: grown step by step it takes a fifth of all the time here.
+  // Room for the features that most leaves own: grown step by step they take a fifth of all the time here.
   leaf->vertices.records.reserve(node.count);
   leaf->faces.records.reserve(node.count);
   leaf->edges.records.reserve(2 * node.count);
@@ -149,7 +149,7 @@ EdgeRecord edgeRecord(const MeshSide& side, int edge, SurroundingsMemory* surrou
   EdgeRecord record{vec4(start, length2), vec4(along, faces.size() > 2 ? 1 : surroundings->ofEdge(side, edge).is_round ? -1 : 0), {}};
   for (int k = 0; k < std::min(faces.size(), 2); ++k) {
     const int face = faces[k];
-    // By the face's own winding: does the edge run along its side, or against it?
+    // Whether the edge runs along its side by the face's own winding, or against it.
     const Vector3i& e = side.mesh.elements[face];
     const bool forward =
         (e[0] == ends[0] && e[1] == ends[1]) || (e[1] == ends[0] && e[2] == ends[1]) || (e[2] == ends[0] && e[0] == ends[1]);
@@ -159,7 +159,8 @@ EdgeRecord edgeRecord(const MeshSide& side, int edge, SurroundingsMemory* surrou
   return record;
 }
 
-/** What is held of the leaf; else it takes the place, of its few, that was used longest ago. */
+/** The place that holds the leaf; else the leaf takes that of its few places that was used longest ago, if this search does not use all of
+ * them. */
 KeptLeaf& LeafMemory::findKept(const MeshSide& side, std::uint32_t leaf, std::uint64_t search) {
   const std::uint64_t key = keyOf(side, leaf);
   Set& set = sets_[key * 0x9E3779B97F4A7C15u >> (64 - SET_BITS)];

@@ -1,4 +1,4 @@
-// What the leaves of a mesh's tree own, as the kernels want it; worked out when a search first comes to a leaf, and kept.
+// Features that the leaves of a mesh's tree own, as the kernels want them; worked out when a search first comes to a leaf, and kept.
 #pragma once
 
 #include <cstdint>
@@ -34,8 +34,8 @@ struct LeafFeatures {
   Kind<kernels::Vec4, kernels::MAX_LEAF_FEATURES> vertices;
   Kind<kernels::FaceRecord, kernels::MAX_LEAF_ELEMENTS> faces;
   Kind<kernels::EdgeRecord, kernels::MAX_LEAF_FEATURES> edges;
-  int patches[kernels::MAX_LEAF_ELEMENTS];          ///< of the faces
-  BorderKinds borders[kernels::MAX_LEAF_ELEMENTS];  ///< of the faces
+  int patches[kernels::MAX_LEAF_ELEMENTS];          ///< per face: its plane
+  BorderKinds borders[kernels::MAX_LEAF_ELEMENTS];  ///< per face: the kinds of its sides
 };
 
 kernels::FaceRecord faceRecord(const MeshSide& side, int element);
@@ -45,23 +45,23 @@ inline kernels::Vec4 vertexRecord(const MeshSide& side, int vertex) {
   return {p.x(), p.y(), p.z(), kernels::nameBits(vertex)};
 }
 
-/** A leaf that has a place, and what searches want to know without a look at its features. */
+/** A leaf that has a place, and its numbers that searches read without a look at its features. */
 struct KeptLeaf {
   static constexpr std::uint32_t NO_INDEX = 0xFFFFFFFF;
 
   std::unique_ptr<LeafFeatures> features;  ///< the leaf's once it is described
   std::uint64_t search = 0;                ///< the last one that came here
-  std::uint32_t index[2];  ///< what that search calls it, as a leaf of the moving mesh [1] and of the fixed one [0]; NO_INDEX: nothing yet
+  std::uint32_t index[2];  ///< its index in that search, as a leaf of the moving mesh [1] and of the fixed one [0]; NO_INDEX: none yet
   std::uint32_t feature_count = 0;  ///< vertices, faces and edges
   bool is_described = false;
 };
 
-/** Leaves that were looked at lately. What is kept changes no result. */
+/** Leaves that were looked at lately. The memory changes no result. */
 class LeafMemory {
  public:
   /** @return the leaf's place until the search ends */
   KeptLeaf& find(const MeshSide& side, std::uint32_t leaf, std::uint64_t search);
-  /** What was found is described, if it is not yet. */
+  /** Describes the leaf that was found, if it is not described yet. */
   const LeafFeatures& describe(const MeshSide& side, std::uint32_t leaf, KeptLeaf* found) {
     if (!found->is_described) describeAnew(side, leaf, found);
     return *found->features;
@@ -69,9 +69,9 @@ class LeafMemory {
 
  private:
   static constexpr std::size_t SET_BITS = 11, WAYS = 8;  // 16,384 leaves; places that a leaf may have
-  /** Which leaves are held, and where. */
+  /** Leaves that are held, by key. */
   struct alignas(64) Set {
-    std::uint64_t keys[WAYS] = {};  // keyOf; 0: nobody's
+    std::uint64_t keys[WAYS] = {};  // keyOf; 0: free
     KeptLeaf leaves[WAYS];
   };
   static std::uint64_t keyOf(const MeshSide& side, std::uint32_t leaf) { return side.identity << 32 | leaf; }

@@ -13,7 +13,7 @@ namespace {
 
 /** Directions farther than this [rad] from the axis: points may lie anywhere within range. */
 constexpr double WIDE = 0.7;
-/** Rounding and slack of cones [rad], but for what edges allow each other. */
+/** Rounding and slack of cones [rad], but for the slack of edges with edges. */
 constexpr double ANGLE_SLACK = 1e-3;
 constexpr double EDGE_SLACK = 1.01 * EDGE_CONE_SLACK + ANGLE_SLACK;
 
@@ -28,7 +28,7 @@ Vector3 axisOf(const LeafFeatures& leaf) {
   return norm > 0 ? Vector3(axis / norm) : Vector3::UnitZ();
 }
 
-/** Gathers what the features of a leaf allow. */
+/** Gathers the directions of contacts that the features of a leaf allow. */
 class Directions {
  public:
   explicit Directions(const Vector3& axis) : axis_(axis) {}
@@ -40,7 +40,7 @@ class Directions {
 
   void addEdge(const kernels::EdgeRecord& edge) {
     const Vector3 u = vector3(edge.inward[0]), v = vector3(edge.inward[1]), out = vector3(edge.along).cross(u - v).normalized();
-    // Fewer than two faces: whatever leads away from them.
+    // With fewer than two faces: all directions that lead away from them.
     const double half = (u - v).norm() > 1.01 ? std::acos(std::min(0.5 * (u - v).norm(), 1.0)) : M_PI;
     add(out, half);
     edges_ = std::max(edges_, angleFrom(out) + half);
@@ -65,10 +65,10 @@ class Directions {
   }
 
  private:
-  /** [rad] from the axis or its opposite */
+  /** Angle [rad] from the axis or its opposite. */
   double angleFrom(const Vector3& direction) const { return std::acos(std::min(std::abs(axis_.dot(direction)), 1.0)); }
 
-  /** Directions within an angle around one. */
+  /** Adds directions within an angle [rad] around one. */
   void add(const Vector3& direction, double half) { angle_ = std::max(angle_, angleFrom(direction) + half); }
 
   const Vector3 axis_;

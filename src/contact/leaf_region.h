@@ -1,4 +1,4 @@
-// Where what has a contact with the features of a leaf may lie.
+// Region where features may lie that have a contact with a leaf's.
 #pragma once
 
 #include "leaf_features.h"

@@ -9,8 +9,7 @@
 namespace blem_sim {
 namespace {
 
-/** Largest part (sine) along `direction` (unit, mesh's frame) of the faces of an edge: how steeply its surface goes that way; -1 without
- * faces. */
+/** Largest part (sine) along `direction` (unit, mesh's frame) of the faces of an edge: slope of its surface that way; -1 without faces. */
 double slopeOf(const MeshSide& side, int edge, const Vector3& direction, SurroundingsMemory* surroundings) {
   double slope = -1;
   forEachInward(side, edge, surroundings, [&](const Vector3& u) { slope = std::max(slope, u.dot(direction)); });
@@ -35,7 +34,7 @@ bool isTakenOver(const LeavingVertex& leaving, SurroundingsMemory* surroundings)
   for (const EdgeFromVertex& edge : edges) {
     const double down = edge.along.dot(leaving.normal), aside = edge.along.dot(across), length2 = edge.length2;
     if (edge.is_flat || down <= 0 || down * down <= CONE_SLACK * CONE_SLACK * length2) continue;
-    // Its foot lies farther from the vertex than a successor, as part of the contact's length?
+    // Edges whose foot lies farther from the vertex than a successor, as part of the contact's length, take nothing over.
     const double span2 = down * down + aside * aside;
     if (down * down * length2 > NEAR_SUCCESSOR * NEAR_SUCCESSOR * span2 * span2) continue;
     const Vector3 normal = (leaving.normal * std::abs(aside) - across * (aside > 0 ? down : -down)) / std::sqrt(span2);

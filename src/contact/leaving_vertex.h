@@ -1,4 +1,4 @@
-// A vertex whose contact leaves over an edge of the other mesh: does another take over?
+// A vertex whose contact leaves over an edge of the other mesh, and the contact that takes over, if one does.
 #pragma once
 
 #include "surroundings.h"
@@ -14,9 +14,9 @@ struct LeavingVertex {
 };
 
 /**
- * Does another contact take over where it leaves? The vertex's own with the edge, where no edge at the vertex leads towards the partner;
- * else that of such an edge with the partner's, if it is there and not far: a plane's inner edges have none, nor have edges whose contact
- * would point into a face.
+ * Whether another contact takes over where the vertex leaves: the vertex's own with the edge, where no edge at the vertex leads towards the
+ * partner; else that of such an edge with the partner's, if it is there and not far: a plane's inner edges have none, nor have edges whose
+ * contact would point into a face.
  */
 bool isTakenOver(const LeavingVertex& leaving, SurroundingsMemory* surroundings);
 

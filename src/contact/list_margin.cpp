@@ -9,10 +9,11 @@
 namespace blem_sim {
 namespace {
 
-/** How far pairs leave their way, as part of the length of it. */
+/** Distance of pairs from their expected way, as part of its length. */
 constexpr double BEND = 0.05;
 
-/** What of the moving mesh's frame is near the fixed mesh: its box there, where the other's box is, both wider by the range. */
+/** Box in the moving mesh's frame that is near the fixed mesh: where that mesh's own box, wider by the range, meets the fixed one's, wider
+ * by twice the range. */
 Box commonRegion(const MeshPair& pair) {
   const Pose X_MF = pair.X_FM.inverse();
   const Box& fixed = pair.fixed.bounds;

@@ -5,7 +5,7 @@
 namespace blem_sim {
 
 double ContactManifold::maxDepth() const {
-  // Several at once: one alone would wait for the last comparison.
+  // Several maxima at once: one alone would wait for the last comparison.
   constexpr std::size_t CHAINS = 4;
   constexpr double NONE = -std::numeric_limits<double>::infinity();
   double deepest[CHAINS] = {NONE, NONE, NONE, NONE};

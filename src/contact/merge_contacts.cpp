@@ -9,7 +9,7 @@
 namespace blem_sim {
 namespace {
 
-/** Of one id the one to keep comes first; total. */
+/** Total order of contacts of one id: the one to keep comes first. */
 bool keptBefore(const Contact& a, const Contact& b) {
   const auto key = [](const Contact& c) { return std::make_tuple(!c.pierced, -c.depth, c.point.x(), c.point.y(), c.point.z()); };
   return key(a) < key(b);

@@ -13,8 +13,8 @@ class ContactMerge {
  public:
   /**
    * Sorts by id; contacts of one id, and contacts at one place with one normal, become the deepest of them under their smallest id.
-   * Whether a contact is pierced keeps it apart from those that are not, unless they have one id: then the pierced one stays.
-   * @param merged room for as many @return how many are left
+   * Pierced contacts are kept apart from those that are not, unless they have one id: then the pierced one stays.
+   * @param merged room for as many @return number of contacts left
    */
   std::size_t run(const Contact* contacts, std::size_t count, Contact* merged);
 

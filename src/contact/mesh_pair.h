@@ -25,7 +25,7 @@ inline std::uint64_t contactId(const Feature& a, const Feature& b) {
   return pack(a) << 32 | pack(b);
 }
 
-/** Its feature of A, or of B. */
+/** The id's feature of A, or of B. */
 inline Feature featureOf(std::uint64_t id, bool of_a) {
   const std::uint64_t packed = id >> (of_a ? 32 : 0) & 0xFFFFFFFF;
   return {static_cast<FeatureKind>(packed >> 30), static_cast<int>(packed & ((1u << 30) - 1))};
@@ -48,7 +48,7 @@ struct MeshSide {
   std::uint64_t identity;  ///< of the geometry, its own for as long as the program runs
 };
 
-/** Which of the two meshes is A, and how thick their layers are. */
+/** Roles of the two meshes, A or B, and the widths of their layers. */
 struct ContactRoles {
   bool first_is_a = true;   ///< the moving one, or the mesh on a half-space
   double r_a = 0, r_b = 0;  ///< [m]

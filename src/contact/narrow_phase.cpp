@@ -9,7 +9,7 @@
 namespace blem_sim {
 namespace {
 
-/** What a thread's searches work in. */
+/** Buffers of a thread's searches. */
 struct Buffers {
   ContactSearchBuffers search;
   FoundContacts found;

@@ -1,4 +1,4 @@
-// Which of many contacts lie close to another.
+// Search for contacts that lie close to another.
 #pragma once
 
 #include <cstddef>
@@ -13,12 +13,12 @@ namespace blem_sim {
  * between calls. */
 class NearPlaces {
  public:
-  /** None of these contacts has been added yet. @param contacts stay where they are */
+  /** Starts with none of these contacts added. @param contacts stay where they are */
   void begin(const Contact* contacts, std::size_t count);
 
   /**
    * Calls visit(number, place) for every place that was added within MERGE_DISTANCE of this contact's, and others, until it returns true;
-   * adds this one, as the next number, if it never does. @return whether it did
+   * adds this one, as the next number, if it never does. @return whether visit returned true
    */
   template <typename Visit>
   bool visitOrAdd(std::uint32_t index, Visit&& visit) {
@@ -32,7 +32,7 @@ class NearPlaces {
 
  private:
   static constexpr std::uint32_t NONE = 0;
-  /** Of a contact's slab, and of the one beside it if that is within reach. */
+  /** Slots of a contact's slab, and of the one beside it if that is within reach. */
   struct Slots {
     std::uint32_t own, beside;
   };
@@ -49,10 +49,10 @@ class NearPlaces {
   }
 
   const Contact* contacts_ = nullptr;
-  std::vector<Slots> slots_;         // as the contacts
+  std::vector<Slots> slots_;         // per contact
   std::vector<std::uint32_t> last_;  // added to each slot, counted from 1
   std::vector<Added> added_;
-  std::uint32_t count_ = 0;  // of them
+  std::uint32_t count_ = 0;  // number of those added
 };
 
 }  // namespace blem_sim

@@ -43,7 +43,7 @@ bool NormalCells::group(const std::vector<Contact>& contacts) {
     }
     cell_of_[i] = static_cast<std::int16_t>(last);
   }
-  // Counting sort; ends_[c + 1] is where members of cell c go on.
+  // Counting sort; ends_[c + 1] is the place of the next member of cell c.
   makeRoomFor(cells_.size() + 2, &ends_);
   ends_.assign(cells_.size() + 2, 0);
   for (const std::int16_t cell : cell_of_) ++ends_[cell + 2];

@@ -14,19 +14,19 @@ class NormalCells {
  public:
   static constexpr int MOST = 400;  ///< cells
 
-  /** @return false if there are more than MOST cells; none is formed then. Whether does not depend on the order of the contacts. */
+  /** @return false if there are more than MOST cells; none is formed then. The outcome does not depend on the order of the contacts. */
   bool group(const std::vector<Contact>& contacts);
 
   int count() const { return static_cast<int>(cells_.size()); }
   /** Unit normal in the middle of a cell. */
   Vector3 normal(int cell) const;
-  /** Indices of its contacts, which may be reordered. */
+  /** Indices of the cell's contacts, which may be reordered. */
   int* begin(int cell) { return members_.data() + ends_[cell]; }
   int* end(int cell) { return members_.data() + ends_[cell + 1]; }
 
  private:
   static constexpr std::size_t SLOTS = 1024;
-  /** -1 if there is no room for another. */
+  /** Cell of a key, a new one if it has none; -1 if there is no room for another. */
   int cellOf(std::uint64_t key);
 
   std::array<std::int16_t, SLOTS> slots_;

@@ -1,4 +1,4 @@
-// How places on a patch are measured.
+// Measures of places on a patch.
 #pragma once
 
 #include <algorithm>
@@ -25,7 +25,7 @@ inline PlaneAxes axesAcross(const Vector3& normal) {
   return {u, normal.cross(u)};
 }
 
-/** What some contacts span. */
+/** Centre, radius and largest depth of some contacts. */
 class PatchScale {
  public:
   PatchScale() = default;
@@ -37,7 +37,7 @@ class PatchScale {
   /** A point from the middle, in radii. */
   Vector3 lever(const Vector3& point) const { return (point - centre_) * per_radius_; }
   double depth() const { return depth_; }  ///< [m] of the deepest
-  /** Whether none is deeper, but for rounding. */
+  /** Whether no contact is deeper, but for rounding. */
   bool isDeepest(const Contact& contact) const { return contact.depth >= depth_ - DEPTH_TIE; }
 
  private:

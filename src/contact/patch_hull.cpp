@@ -39,7 +39,7 @@ int inOrder(int d) {
   return after == 0 ? side : OCTAGON_SIDES + side * BETWEEN + after - 1;
 }
 
-// No mesh has sides across them.
+// Directions across which no mesh has sides.
 const PlaneDirections& planeDirections() {
   static const PlaneDirections directions = [] {
     constexpr double FIRST = 0.1234;  // [rad]
@@ -53,10 +53,10 @@ const PlaneDirections& planeDirections() {
   return directions;
 }
 
-// Whether it is worth a look if a patch has more corners than that: large ones are mostly inside.
+// Whether a patch may have more corners than that and a look is worth it: large patches are mostly inside.
 bool mayHaveMore(int corners, int members) { return corners < std::min(members, PLANE_DIRECTIONS) && members < 20 * corners; }
 
-// Where the members lie in the plane.
+// Places of the members in the plane, and their depths.
 void project(const std::vector<Contact>& contacts, const int* begin, const int* end, const Vector3& normal, PlanePlaces* places) {
   const PlaneAxes axes = axesAcross(normal);
   places->x.resize(end - begin);
@@ -70,7 +70,7 @@ void project(const std::vector<Contact>& contacts, const int* begin, const int* 
   }
 }
 
-// Which places are farthest out, along the octagon's directions at least; few places need none.
+// Finds the places that are farthest out, along the octagon's directions at least; few places need none.
 void findExtremes(int most, Buffers* buffers) {
   const PlanePlaces& places = buffers->places;
   const int count = static_cast<int>(places.x.size());
@@ -104,7 +104,7 @@ bool hasMoreCorners(int than, const Buffers& buffers) {
   return corners > than;
 }
 
-// Indices of the places that may be corners: others lie inside the octagon of extremes. Saves most of the sorting of large patches.
+// Indices of the places that may be corners: others lie inside the octagon of extremes. This saves most of the sorting of large patches.
 void findOuter(Buffers* buffers) {
   const std::vector<double>&x = buffers->places.x, &y = buffers->places.y;
   const int count = static_cast<int>(x.size());

@@ -33,7 +33,7 @@ struct PlaneFaces {
   bool are_many = false;
 };
 
-/** What lies outside each side by no more than 1 lies within 1 / sharpness of the face. */
+/** Sharpness of a face: points outside each side by no more than 1 lie within 1 / sharpness of the face. */
 double sharpness(const FaceRecord& face) {
   double least = 1;
   for (int k = 0; k < 3; ++k) least = std::min(least, 0.5 * vector3(face.sides[k]).cross(vector3(face.sides[(k + 1) % 3])).norm());
@@ -56,7 +56,7 @@ PlaneReach planeReach(const MeshSide& side, int face) {
       if (side.topology.isFlatEdge(side.topology.edgeOf(face, k))) continue;
       for (const int corner : side.mesh.elements[faces.of[i]]) {
         const double outside = own.sides[k].w - vector3(own.sides[k]).dot(side.mesh.vertices[corner]);
-        reach.flat = std::max(reach.flat, outside + 3 * CLOSED / sharpness(other));  // what is over it may lie so little beside it
+        reach.flat = std::max(reach.flat, outside + 3 * CLOSED / sharpness(other));  // vertices over it may lie so little beside it
       }
     }
   }

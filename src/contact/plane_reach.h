@@ -1,20 +1,20 @@
-// How far the plane of a face goes on beyond its sides.
+// Reach of a face's plane beyond the face's sides.
 #pragma once
 
 #include "mesh_pair.h"
 
 namespace blem_sim {
 
-/** Beside a face, but not outside of those of its sides behind which its plane goes on. */
+/** Reach of a face's plane beside the face, but not outside of those of its sides behind which the plane goes on. */
 struct PlaneReach {
   double flat;        ///< [m]
-  double per_height;  ///< more of it, since the plane's faces are parallel but for rounding
+  double per_height;  ///< reach added per height, since the plane's faces are parallel but for rounding
 
   /** No vertex that high [m] lies farther [m] beside the face and over another one of its plane. */
   double at(double height) const { return flat + height * per_height; }
 };
 
-/** Infinite where the plane has many faces: to look at all of them takes longer than to ask those that are near. */
+/** Reach of a face's plane, infinite if that has many faces: to look at all takes longer than to ask those that are near. */
 PlaneReach planeReach(const MeshSide& side, int face);
 
 }  // namespace blem_sim

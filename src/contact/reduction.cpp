@@ -15,14 +15,14 @@ namespace {
 struct Buffers {
   std::vector<Contact> sound, pierced, more, again;
   std::vector<ThinnedContacts> thinned;  // manifold by manifold
-  std::vector<int> limits, sizes;        // manifold by manifold: how many may be kept, and would be
+  std::vector<int> limits, sizes;        // manifold by manifold: numbers of contacts that may be kept, and would be
   std::vector<int> touching, counts, shares;
   std::vector<std::pair<int, int>> of_models;  // (model, manifold)
   std::vector<std::pair<int, int>> order;      // (count, party)
 };
 
 // Sound contacts take part in the choice; pierced ones, whose directions are the fallback's, get the room that is left, and a quarter of k
-// if they are so many: else what crossed would stay crossed.
+// if they are so many: else bodies that crossed would stay crossed.
 void reduceContacts(const std::vector<Contact>& contacts, int k, const Reduction& method, const ContactIds& chosen_before, Buffers* buffers,
                     std::vector<Contact>* reduced) {
   const auto is_pierced = [](const Contact& c) { return c.pierced; };
@@ -41,9 +41,9 @@ void reduceContacts(const std::vector<Contact>& contacts, int k, const Reduction
 
 constexpr int FLOOR = 3;  // contacts of a pair, if it has them, whatever budgets say: with none it falls through, with two it tips over
 
-/** k shared by `counts`: who asks for little gets all of it, the others get equal shares. What a pair's wrenches lack depends on how many
- * contacts it keeps, hardly on how many it has: so the largest lack is the least. Each gets at least FLOOR, if it has that, even where
- * they sum to more than k. */
+/** k shared by `counts`: manifolds that ask for few contacts get all of them, the others equal shares. The lack of a manifold's wrenches
+ * depends on the number of contacts it keeps, hardly on the number it has: so the largest lack is the least. Each gets at least FLOOR, if
+ * it has that, even where they sum to more than k. */
 void fairShares(int k, Buffers* buffers) {
   const std::vector<int>& counts = buffers->counts;
   std::vector<std::pair<int, int>>& order = buffers->order;
@@ -61,7 +61,7 @@ void fairShares(int k, Buffers* buffers) {
 
 using ModelManifold = std::vector<std::pair<int, int>>::const_iterator;
 
-// Where a model has more contacts than its k, lowers the limits of its manifolds to their shares.
+// Lowers the limits of a model's manifolds to their shares, if it has more contacts than its k.
 void applyBudget(ModelManifold begin, ModelManifold end, int k, Buffers* buffers) {
   std::vector<int>&limits = buffers->limits, &touching = buffers->touching;
   touching.clear();
@@ -113,8 +113,8 @@ bool hasPierced(const std::vector<Contact>& contacts) {
   return std::any_of(contacts.begin(), contacts.end(), [](const Contact& c) { return c.pierced; });
 }
 
-// One manifold before budgets are shared out. `hull` alone can tell what it would keep before it chooses; others, and pierced contacts, are
-// reduced to the limit, and again if it is lowered. @return how many would be kept
+// One manifold before budgets are shared out. `hull` alone can tell the number that it would keep before it chooses; others, and pierced
+// contacts, are reduced to the limit, and again if it is lowered. @return number of contacts that would be kept
 int prepare(const ContactManifold& manifold, int limit, const Reduction& method, const ContactIds& chosen_before, Buffers* buffers,
             ThinnedContacts* thinned, std::vector<Contact>* reduced) {
   const bool in_steps = method.reduce == static_cast<ReduceFunction>(reduceHull) && !hasPierced(manifold.contacts);
@@ -124,7 +124,7 @@ int prepare(const ContactManifold& manifold, int limit, const Reduction& method,
   return static_cast<int>(reduced->size());
 }
 
-// Chooses within the limit, at least 1 where there are contacts. @return what of the wrenches is lacking
+// Chooses within the limit, at least 1 where there are contacts. @return largest lack of those kept in any wrench
 float finish(const ContactManifold& manifold, int limit, const Reduction& method, const ContactIds& chosen_before,
              const ThinnedContacts& thinned, Buffers* buffers, std::vector<Contact>* reduced) {
   if (!thinned.kept.empty()) return chooseFromHulls(manifold.contacts, thinned, limit, chosen_before, reduced);

@@ -90,7 +90,7 @@ int nearestCentre(const std::vector<Feature>& centres, const Feature& feature) {
   return nearest;
 }
 
-// One round of Lloyd: assign, then move the centres. A centre that nobody is near stays. @return whether an assignment changed
+// One round of Lloyd: assign, then move the centres. A centre without members stays. @return whether an assignment changed
 bool improve(const std::vector<Feature>& features, std::vector<Feature>& centres, std::vector<int>& cluster_of) {
   bool changed = false;
   std::vector<Feature> sums(centres.size(), Feature::Zero());

@@ -39,7 +39,7 @@ bool mayHaveStairs(const std::vector<double>& heights) {
   const auto [lowest, highest] = std::minmax_element(heights.begin(), heights.end());
   const double low = *lowest, high = *highest;
   if (high - low <= STAIR) return false;
-  // One that is within STAIR of both leaves no such gap on either side.
+  // A height that is within STAIR of both leaves no such gap on either side.
   return std::none_of(heights.begin(), heights.end(), [&](double height) { return height - low <= STAIR && high - height <= STAIR; });
 }
 
@@ -64,7 +64,7 @@ void keepHullsOfCell(const std::vector<Contact>& contacts, int* begin, int* end,
   }
 }
 
-// All contacts, but of each patch of equal normals its hull; where normals are too many for patches to matter, all of them.
+// Keeps the hull of each patch of equal normals; all contacts where normals are too many for patches to matter.
 void keepPatchHulls(const std::vector<Contact>& contacts, int k, Buffers* buffers, std::vector<int>* kept) {
   NormalCells& cells = buffers->cells;
   if (!cells.group(contacts)) {

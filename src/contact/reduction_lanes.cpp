@@ -7,7 +7,7 @@ namespace blem_sim {
 
 namespace {
 
-constexpr float CHOICE_FRICTION = 0.5f;  // of the cones that are compared; the choice hardly depends on it
+constexpr float CHOICE_FRICTION = 0.5f;  // friction of the cones that are compared; the choice hardly depends on it
 
 // With g the direction seen by a force at x, the largest component along direction d is g.n + mu |g - (g.n) n|.
 BLEM_SIM_INLINE float wrenchComponent(const WrenchDirections& w, const WrenchPoint& p, int d) {
@@ -218,7 +218,7 @@ BLEM_SIM_LANES int findOutside(const Octagon& octagon, const double* x, const do
   int size = 0;
   for (int first = 0; first < count; first += BLOCK) {
     const int some = count - first < BLOCK ? count - first : BLOCK;
-    double least[BLOCK];  // that a point is inside by, more than it must
+    double least[BLOCK];  // over all sides: product with the side, positive inside, less the limit
     for (int i = 0; i < BLOCK; ++i) least[i] = __builtin_inf();
     for (int s = 0; s < OCTAGON_SIDES; ++s) {
       const double dx = octagon.dx[s], dy = octagon.dy[s], sx = octagon.x[s], sy = octagon.y[s], limit = octagon.limit[s];
@@ -237,7 +237,7 @@ BLEM_SIM_LANES int findOutside(const Octagon& octagon, const double* x, const do
 
 namespace {
 
-// Right angles from the x-axis, on the unit circle of the sum norm: as good as angles to tell what comes first.
+// Right angles from the x-axis, on the unit circle of the sum norm: as good as angles for their order.
 BLEM_SIM_INLINE double angleOf(double dx, double dy) {
   const double around = (dx < 0 ? -dx : dx) + (dy < 0 ? -dy : dy), part = dy / (around > 0 ? around : 1);
   return dx < 0 ? 2 - part : (dy < 0 ? 4 + part : part);

@@ -15,12 +15,12 @@ struct alignas(64) WrenchDirections {
   float force[3][WRENCH_DIRECTIONS], torque[3][WRENCH_DIRECTIONS];
 };
 
-/** Where a contact pushes, lengths in a patch's radius; every wrench of it counts less by the handicap, in unit forces. */
+/** Place and normal of a contact, lengths in a patch's radius; every wrench of it counts less by the handicap, in unit forces. */
 struct alignas(32) WrenchPoint {
   float x[3], n[3], handicap;
 };
 
-/** Many of them, coordinate by coordinate. */
+/** Many wrench points, coordinate by coordinate. */
 struct WrenchPointRows {
   void clear();
   void add(const WrenchPoint& point);
@@ -30,7 +30,7 @@ struct WrenchPointRows {
 /** Whether some of the points is so near that `point` exceeds its wrenches by no more than `most` in any direction. */
 bool addsLittleBeside(const WrenchPointRows& points, const WrenchPoint& point, float most);
 
-/** Of one point's wrenches, or the largest of several, by direction. */
+/** Components of one point's wrenches, or the largest of several, by direction. */
 struct alignas(64) WrenchComponents {
   float value[WRENCH_DIRECTIONS];
 };
@@ -43,7 +43,8 @@ void findWrenches(const WrenchDirections& directions, const WrenchPoint* points,
 /** The extremes alone, when handicaps have changed. */
 void findWrenchExtremes(const WrenchComponents* components, const WrenchPoint* points, int count, WrenchComponents* extremes);
 
-/** Raises `reached` to what a point with these components adds. @return what is lacking most of the extremes, in some direction */
+/** Raises `reached` to the components of a point, less its handicap. @return largest lack of `reached` against the extremes, in some
+ * direction */
 float addWrenches(const WrenchComponents& components, float handicap, const WrenchComponents& extremes, WrenchComponents* reached);
 
 /** The first direction in which so much is lacking; WRENCH_DIRECTIONS if there is none. */
@@ -66,11 +67,11 @@ struct CellPoints {
   CellExtremes* extremes;
 };
 
-/** Raises the extremes of every point's cell to what the point has.
- * @param raising into [count]: points, ascending, among which are all that are extreme in the end @return how many */
+/** Raises the extremes of every point's cell to the point's components.
+ * @param raising into [count]: points, ascending, among which are all that are extreme in the end @return their number */
 int raiseCellExtremes(const CellPoints& points, int count, int* raising);
 
-/** Leaves those of the points that are extreme in a direction of their cell. @return how many */
+/** Leaves those of the points that are extreme in a direction of their cell. @return their number */
 int keepExtremePoints(const CellPoints& points, int count, int* among);
 
 /** Points of a flat patch, seen along its normal, coordinate by coordinate. */
@@ -87,18 +88,18 @@ struct alignas(64) PlaneExtremes {
   double value[PLANE_DIRECTIONS];
 };
 
-/** Indices of the points that are farthest along some direction, ascending, into found[count]. @return how many */
+/** Indices of the points that are farthest along some direction, ascending, into found[count]. @return their number */
 int findFarthest(const PlaneDirections& directions, const double* x, const double* y, int count, PlaneExtremes* extremes, int* found);
 /** The same along the first OCTAGON_SIDES directions alone. */
 int findFarthestOfOctagon(const PlaneDirections& directions, const double* x, const double* y, int count, PlaneExtremes* extremes,
                           int* found);
 
-/** Lines through (x, y) along (dx, dy): what lies more than `limit` / length to their left is inside. */
+/** Lines through (x, y) along (dx, dy): points more than `limit` / length to their left are inside. */
 struct Octagon {
   double x[OCTAGON_SIDES], y[OCTAGON_SIDES], dx[OCTAGON_SIDES], dy[OCTAGON_SIDES], limit[OCTAGON_SIDES];
 };
 
-/** Indices of the points that are not inside all sides, ascending, into found[count]. @return how many */
+/** Indices of the points that are not inside all sides, ascending, into found[count]. @return their number */
 int findOutside(const Octagon& octagon, const double* x, const double* y, int count, int* found);
 
 /** Triangles around a point, counter-clockwise. Keeps its memory. */

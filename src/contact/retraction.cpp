@@ -8,26 +8,26 @@
 namespace blem_sim {
 namespace {
 
-/** Where meshes cross, a contact must push the bodies apart by this (cosine) at least: known from where they were, or guessed. */
+/** Least cosine by which a contact of meshes that cross must push the bodies apart: with sides known from before, or guessed. */
 constexpr double MIN_OUTWARD = 1e-3, MIN_OUTWARD_GUESSED = 0.2;
 /** Retractions farther (cosine) from their mean direction than this are turned into it: one motion must be able to satisfy all of them. */
 constexpr double MIN_AGREEMENT = 0.3;
 /** A mean of unit vectors shorter than this says nothing. */
 constexpr double MIN_MEAN = 0.1;
 
-/** On which sides of each other the bodies were before they crossed. Everything in frame F. */
+/** Sides of each other that the bodies were on before they crossed. Everything in frame F. */
 class Sides {
  public:
   Sides(const MeshPair& pair, const Pose* X_FM_apart) : pair_(pair), known_(X_FM_apart != nullptr) {
     if (known_) back_ = *X_FM_apart * pair.X_FM.inverse();
   }
 
-  /** Not unit; from the fixed body's side to the moving one's, where these two points are now; may be zero. */
+  /** Direction from the fixed body's side to the moving one's, where these two points are now; not unit, may be zero. */
   Vector3 between(const Vector3& point_M, const Vector3& point_F) const {
     return known_ ? Vector3(back_ * point_M - point_F) : bodySide(pair_, point_F);
   }
 
-  /** Does a contact push the moving body back to its side? */
+  /** Whether a contact pushes the moving body back to its side. */
   bool isOutward(const FeatureContact& contact) const {
     const Vector3 side = between(contact.point_M, contact.point_F);
     return contact.normal.dot(side) >= (known_ ? MIN_OUTWARD : MIN_OUTWARD_GUESSED) * side.norm();

@@ -1,4 +1,4 @@
-// How much each of several springs counts, so that a patch is as stiff whatever it is made of.
+// Weights of several springs, so that a patch is equally stiff whatever its tessellation.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -18,7 +18,7 @@ constexpr int LANES = 8;
 constexpr double RESOLUTION = 0.005;  // [m] contacts within it share a direction
 constexpr double DEPTH_SLOPE = 20;    // [m/m] one deeper by this part of the distance stands before one farther out
 constexpr double ALIKE = 0.5;         // contacts whose normals differ more are of different patches
-constexpr double SPRINGS = 5;         // of a patch in all, if it has as many contacts; a rectangle's corners then still count fully
+constexpr double SPRINGS = 5;         // springs of a patch in all, if it has as many contacts; a rectangle's corners then still count fully
 
 struct alignas(64) Row {
   double of[DIRECTIONS];  // by direction
@@ -28,7 +28,7 @@ struct alignas(64) Directions {
   double x[DIRECTIONS], y[DIRECTIONS], z[DIRECTIONS];
 };
 
-// Spread evenly over the sphere [Fibonacci].
+// Directions spread evenly over the sphere [Fibonacci].
 Directions makeDirections() {
   constexpr double GOLDEN_ANGLE = 2.39996322972865332;
   Directions directions;
@@ -68,7 +68,7 @@ BLEM_SIM_INLINE double decay(double x) {
   return sum * power;
 }
 
-// How far out a contact lies along every direction, in resolutions.
+// Height of a contact along every direction, its depth times DEPTH_SLOPE added, in resolutions.
 BLEM_SIM_LANES void findHeights(const Directions& directions, const double* lever, double depth, Row* heights, Row* highest) {
   const double x = lever[0], y = lever[1], z = lever[2], deep = DEPTH_SLOPE * depth;
   for (int m = 0; m < DIRECTIONS; ++m) {
@@ -106,10 +106,10 @@ BLEM_SIM_LANES double meanProduct(const Row& a, const Row& b) {
 }
 
 struct Buffers {
-  std::vector<Row> prominence;  // of every contact: how far out it lies, as powers of e; the largest of a direction is 1
+  std::vector<Row> prominence;  // per contact: its heights, as powers of e; the largest of a direction is 1
   std::vector<double> alike;
   std::vector<std::size_t> leaders;  // the first contacts of each normal
-  std::vector<Row> inverses;         // of what the leaders' patches have in all
+  std::vector<Row> inverses;         // per leader: inverse sum of its patch's prominence
 };
 
 void findProminence(const std::vector<Contact>& contacts, Buffers* buffers) {
@@ -124,7 +124,7 @@ void findProminence(const std::vector<Contact>& contacts, Buffers* buffers) {
   turnIntoPowers(highest, buffers->prominence.data(), contacts.size());
 }
 
-// Of all that lies in one patch with contacts of this normal.
+// Adds a leader, with the inverse sum of all contacts that lie in one patch with those of its normal.
 void addLeader(const std::vector<Contact>& contacts, std::size_t leader, Buffers* buffers) {
   buffers->alike.clear();
   for (const Contact& contact : contacts) buffers->alike.push_back(1 - (contacts[leader].normal_BA - contact.normal_BA).norm() / ALIKE);
@@ -133,7 +133,7 @@ void addLeader(const std::vector<Contact>& contacts, std::size_t leader, Buffers
   invertSum(buffers->prominence.data(), buffers->alike.data(), contacts.size(), &buffers->inverses.back());
 }
 
-// The last one's, mostly: patches are flat, or curved without equal normals.
+// Inverse sum for a contact: the last leader's, mostly, for patches are flat, or curved without equal normals.
 const Row& inverseFor(const std::vector<Contact>& contacts, std::size_t i, Buffers* buffers) {
   for (std::size_t l = buffers->leaders.size(); l-- > 0;) {
     if (contacts[buffers->leaders[l]].normal_BA == contacts[i].normal_BA) return buffers->inverses[l];
@@ -154,7 +154,7 @@ void weighSprings(std::vector<Contact>& contacts) {
   buffers.leaders.clear();
   buffers.inverses.clear();
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    // Of the directions in which its patch has an extreme, the part in which this contact is it.
+    // Part of the directions in which this contact is the extreme of its patch.
     const double share = meanProduct(buffers.prominence[i], inverseFor(contacts, i, &buffers));
     contacts[i].weight = std::clamp(SPRINGS * share, 1e-6, 1.0);
   }

@@ -1,11 +1,11 @@
-// Where a mesh is on its way to.
+// Expected motion of a mesh.
 #pragma once
 
 #include "blem_sim/geometry/types.h"
 
 namespace blem_sim {
 
-/** The mean of a mesh's motions from search to search, newer ones counting more: what trembles about a place goes nowhere. */
+/** The mean of a mesh's motions from search to search, newer ones counting more: a mesh that trembles about a place goes nowhere. */
 class SteadyMotion {
  public:
   /** @param X, Y poses of the mesh at a search and at the next one @param middle of the mesh, its frame */

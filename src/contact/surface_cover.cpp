@@ -29,7 +29,7 @@ Vector3 placeOn(const Collider& own, const Pose& X_WO, const Contact& contact, b
   return X_WO * closestPointTriangle(X_WO.inverse() * place, {p, q, q}).point_b;
 }
 
-/** The longest product of two of them. */
+/** Unit normal: the longest product of two neighbouring directions. */
 Vector3 normalOf(const Vector3* ways, int count) {
   Vector3 normal = Vector3::Zero();
   for (int k = 0; k < count; ++k) {
@@ -124,7 +124,7 @@ void SurfaceCover::addSector(const Face& face) {
   sectors_.push_back({angles[(before + 1) % face.count], gap < M_PI - SAME_ANGLE ? TURN : TURN - gap});
 }
 
-/** [rad] of directions in the plane that lead into no face. */
+/** Widest gap [rad] between directions in the plane that lead into faces. */
 double SurfaceCover::widestGap() {
   if (sectors_.empty()) return TURN;
   std::sort(sectors_.begin(), sectors_.end(), [](const Sector& a, const Sector& b) { return a.first < b.first; });

@@ -1,4 +1,4 @@
-// What lies around the vertices and edges that were asked about lately: directions, so that no search works them out anew.
+// Surroundings of the vertices and edges that were asked about lately: directions, so that no search works them out anew.
 #pragma once
 
 #include <algorithm>
@@ -24,7 +24,7 @@ struct EdgeFromVertex {
 struct EdgesAtVertex {
   const EdgeFromVertex* first;
   int count;
-  const kernels::EdgeDirections* blocks;  ///< theirs
+  const kernels::EdgeDirections* blocks;  ///< the edges' directions
   int block_count;
   const EdgeFromVertex* begin() const { return first; }
   const EdgeFromVertex* end() const { return first + count; }
@@ -33,14 +33,14 @@ struct EdgesAtVertex {
 struct EdgeSurroundings {
   Vector3 direction;  ///< unit, from its lower vertex to the higher one
   Vector3 inward[2];  ///< unit, into its first two faces
-  int faces;          ///< how many it has
+  int faces;          ///< number of its faces
   bool is_round;      ///< isRoundEdge
 };
 
-/** Of any meshes, for one thread. What is kept changes no result. */
+/** Surroundings in any meshes, for one thread. The memory changes no result. */
 class SurroundingsMemory {
  public:
-  // Good until the next question of the same kind.
+  // Answers are good until the next question of the same kind.
   EdgesAtVertex ofVertex(const MeshSide& side, int vertex);
   const EdgeSurroundings& ofEdge(const MeshSide& side, int edge);
   const PlaneReach& ofFace(const MeshSide& side, int face);
@@ -56,7 +56,7 @@ class SurroundingsMemory {
   template <typename Item, std::size_t CAPACITY>
   struct Table {
     struct Place {
-      std::uint64_t geometry = 0;  // whose; 0: nobody's
+      std::uint64_t geometry = 0;  // its identity; 0: free
       int name = 0;
       Item item;
     };
@@ -75,7 +75,7 @@ class SurroundingsMemory {
   Table<VertexEdgesKept, 4096> vertices_;
   Table<EdgeSurroundings, 8192> edges_;
   Table<PlaneReach, 1024> faces_;
-  std::vector<EdgeFromVertex> many_;  // of a vertex that has more than a place holds
+  std::vector<EdgeFromVertex> many_;  // edges of a vertex that has more than a place holds
   std::vector<kernels::EdgeDirections> many_blocks_;
 };
 
@@ -89,11 +89,11 @@ void forEachInward(const MeshSide& side, int edge, SurroundingsMemory* surroundi
   for (int k = 2; k < around.faces; ++k) visit(side.topology.inward(side.mesh, edge, faces[k]));
 }
 
-/** Does the surface at the vertex lead nowhere along `direction`? No edge there has a larger part of it than `slack` (sine).
- *  @param direction unit, the mesh's frame, towards the other mesh */
+/** Whether the surface at the vertex leads nowhere along `direction`: no edge there has a larger part of it than `slack` (sine).
+ * @param direction unit, the mesh's frame, towards the other mesh */
 bool vertexConeAllows(const EdgesAtVertex& edges, const Vector3& direction, double slack);
 
-/** Is the surface around a vertex convex as seen from `direction` (mesh's frame, not unit), with round or flat edges only? */
+/** Whether the surface around a vertex is convex as seen from `direction` (mesh's frame, not unit), with round or flat edges only. */
 bool isRoundVertex(const MeshSide& side, const EdgesAtVertex& edges, const Vector3& direction, SurroundingsMemory* surroundings);
 
 }  // namespace blem_sim

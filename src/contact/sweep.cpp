@@ -6,7 +6,7 @@
 namespace blem_sim {
 namespace {
 
-constexpr double RESOLUTION = 0.25;  // of the distance asked for
+constexpr double RESOLUTION = 0.25;  // part of the distance asked for
 constexpr int MOST_LOOKS = 256;      // at poses on the way
 
 Matrix3 turned(const Vector3& turn) {

@@ -28,7 +28,7 @@ Vector3 axisOf(const MeshSide& side, int vertex) {
 }  // namespace
 
 kernels::VertexCone vertexCone(const MeshSide& side, int vertex, SurroundingsMemory* surroundings) {
-  constexpr double ANY = 1e6, ROUNDING = 0.002, LEAST_COSINE = 0.15;  // of half the widest gap between edges, seen along the axis
+  constexpr double ANY = 1e6, ROUNDING = 0.002, LEAST_COSINE = 0.15;  // cosine: of half the widest gap between edges, seen along the axis
   const Vector3 axis = axisOf(side, vertex), x = axis.unitOrthogonal(), y = axis.cross(x);
   double up = -ANY, down = -ANY, least_across = 1;
   bool is_round = true;

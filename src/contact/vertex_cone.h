@@ -1,4 +1,4 @@
-// Where a vertex can be the nearest point of its surface.
+// Directions in which a vertex can be the nearest point of its surface.
 #pragma once
 
 #include "kernels/records.h"
@@ -7,7 +7,7 @@
 
 namespace blem_sim {
 
-/** Holds every direction, in the mesh's frame, that vertexConeAllows. */
+/** Cone that holds every direction, in the mesh's frame, that vertexConeAllows. */
 kernels::VertexCone vertexCone(const MeshSide& side, int vertex, SurroundingsMemory* surroundings);
 
 }  // namespace blem_sim

@@ -29,7 +29,7 @@ kernels::ContactPlace Evaluation::place(bool vertices_move) const {
           found_.close.keepsWitnesses()};
 }
 
-/** @return how many need a closer look; the plain ones are written */
+/** @return number of those that need a closer look; the plain ones are written */
 std::uint32_t Evaluation::findVertexFaces(bool moves) {
   const std::vector<Candidate>& candidates = pairs_.vertex_face[moves];
   const kernels::NearVertices vertices = buffers_.turned.nearFaces(lists_, moves, pair_.X_FM);
@@ -79,7 +79,7 @@ void Evaluation::addPlain(bool moves, const Candidate& c, double height) {
   found_.close.add(pair_, moves, vertex, patch, p, foot, normal, std::abs(height));
 }
 
-/** Of each vertex with a face: at the nearest of the sides. */
+/** Adds the contact of each vertex with a face at the nearest of the sides. @return number of contacts */
 std::uint32_t Evaluation::addFading(bool moves) {
   const auto size = static_cast<std::uint32_t>(buffers_.fading.pairs.size());
   const bool keeps_feet = found_.close.keepsWitnesses();
@@ -110,7 +110,7 @@ void Evaluation::addFeet(bool moves) {
   }
 }
 
-/** What lies beside one face of a plane but over another does not fade. @param count the last contacts fade */
+/** Drops fading contacts of vertices that lie beside one face of a plane but over another. @param count the last contacts fade */
 void Evaluation::dropCovered(bool moves, std::uint32_t count) {
   const auto& asked = buffers_.asked_fading;
   if (asked.empty()) return;
@@ -132,7 +132,7 @@ void Evaluation::dropCovered(bool moves, std::uint32_t count) {
   });
 }
 
-/** Of vertices whose contacts may be covered, the plain ones with other faces of the same plane. */
+/** Lists plain contacts, with other faces of the same plane, of vertices whose fading contacts may be covered. */
 void Evaluation::listCovering(bool moves) {
   auto& asked = buffers_.asked;
   asked.clear();

@@ -21,7 +21,7 @@ inline Vector3 witnessOf(const Contact& contact, double radius, bool of_a) {
   return contact.point + (of_a ? 1 : -1) * (radius - 0.5 * contact.depth) * contact.normal_BA;
 }
 
-/** In the frame of the points. @param normal from second to first */
+/** A contact in the frame of the points. @param normal from second to first */
 inline Contact contactOf(const ContactRoles& roles, const Feature& first, const Feature& second, const Vector3& point_first,
                          const Vector3& point_second, const Vector3& normal, double gap) {
   Contact contact;
@@ -32,7 +32,7 @@ inline Contact contactOf(const ContactRoles& roles, const Feature& first, const 
   return contact;
 }
 
-/** Of a feature and one of the other mesh, whichever of them moves. */
+/** Id of a contact of a feature with one of the other mesh, whichever of them moves. */
 inline std::uint64_t contactId(const ContactRoles& roles, bool first_moves, const Feature& first, const Feature& second) {
   return first_moves == roles.first_is_a ? contactId(first, second) : contactId(second, first);
 }
@@ -65,17 +65,17 @@ class ContactWriter {
     contacts_ = contacts;
     count_ = 0;
   }
-  /** For so many more; whoever takes it writes every number. */
+  /** Room for `more` contacts; whoever takes it writes every number. */
   Contact* room(std::size_t more) {
     if (contacts_->size() < count_ + more) resizeRoomy(count_ + more, contacts_);
     return contacts_->data() + count_;
   }
   kernels::ContactRow* rows(std::size_t more) { return reinterpret_cast<kernels::ContactRow*>(room(more)); }
-  /** So many were written. */
+  /** Counts contacts that were written. */
   void advance(std::size_t written) { count_ += written; }
-  /** So many of the last are none. */
+  /** Drops so many of the last contacts. */
   void retreat(std::size_t dropped) { count_ -= dropped; }
-  /** The list is what was written. */
+  /** Cuts the list to the contacts that were written. */
   void finish() { contacts_->resize(count_); }
 
   std::size_t size() const { return count_; }

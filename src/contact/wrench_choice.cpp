@@ -16,8 +16,8 @@ namespace {
 
 // [m] Once no wrench lacks, depth counts too, a unit force per this depth.
 constexpr double DEPTH_SCALE = 1e-3;
-constexpr float NOTHING_LACKS = 1e-6f;  // of a unit force
-// What directions between those looked at may lack more, of a unit force, and of what those looked at lack.
+constexpr float NOTHING_LACKS = 1e-6f;  // part of a unit force
+// Additional lack in directions between those looked at, of a unit force, and of the lack in those looked at.
 constexpr float BETWEEN = 0.1f, MORE_BETWEEN = 0.3f;
 
 double nextUniform(std::uint64_t& state) {  // splitmix64
@@ -76,7 +76,7 @@ class Choice {
     findWrenches(directions_, points_.data(), static_cast<int>(points_.size()), components_.data(), &extremes_);
   }
 
-  /** From now on depth counts too. */
+  /** Makes depth count too from now on. */
   void countDepth(const std::vector<Contact>& contacts, const std::vector<int>& candidates) {
     for (std::size_t i = 0; i < candidates.size(); ++i)
       points_[i].handicap -= static_cast<float>(std::max(0.0, contacts[candidates[i]].depth) / DEPTH_SCALE);
@@ -84,7 +84,7 @@ class Choice {
   }
 
   /** Adds to `chosen`, indices of candidates, the extreme ones of the directions that lack most, until k are chosen or nothing lacks.
-   * @return what still lacks most */
+   * @return largest lack left */
   float addExtremes(int k, std::vector<int>* chosen) {
     std::fill(std::begin(reached_.value), std::end(reached_.value), -std::numeric_limits<float>::infinity());
     float lack = 0;
@@ -96,7 +96,7 @@ class Choice {
     return lack;
   }
 
-  /** What others lack of the wrenches of these. */
+  /** Lack of `others` in the wrenches of `contacts`. */
   float lackOf(const std::vector<Contact>& contacts, const std::vector<Contact>& others, const PatchScale& scale) {
     const auto findExtremes = [&](const std::vector<Contact>& of, WrenchComponents* extremes) {
       points_.clear();
@@ -123,7 +123,7 @@ class Choice {
 
   const WrenchDirections directions_ = makeDirections();
   std::vector<WrenchPoint> points_;
-  std::vector<WrenchComponents> components_;  // of the points; not fewer
+  std::vector<WrenchComponents> components_;  // per point; room for more
   WrenchComponents extremes_, reached_;
 };
 
@@ -156,7 +156,7 @@ void addDeepest(const std::vector<Contact>& contacts, const std::vector<int>& me
   chosen->insert(chosen->end(), rest.begin(), rest.begin() + room);
 }
 
-/** In any direction. */
+/** Bound on the lack in any direction. */
 float atMost(float lack) { return (1 + MORE_BETWEEN) * std::max(0.0f, lack) + BETWEEN; }
 
 }  // namespace

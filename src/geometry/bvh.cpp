@@ -105,7 +105,7 @@ class Builder {
     }
   }
 
-  /** Writes a part's node to `index` and what is below to `below` and on. */
+  /** Writes a part's node to `index` and the nodes below it to `below` and on. */
   static void place(const Part& part, std::size_t index, std::size_t below, std::vector<Bvh::Node>* nodes) {
     const auto placed = [below](Bvh::Node node) {
       if (!node.isLeaf()) node.first += static_cast<std::uint32_t>(below);

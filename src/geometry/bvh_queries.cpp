@@ -24,7 +24,7 @@ class Ray {
     shear_ = Vector3(direction[kx_], direction[ky_], 1) / direction[kz_];
   }
 
-  /** May the ray meet the box before t_max? Never false by rounding. */
+  /** Whether the ray may meet the box before t_max; never false by rounding. */
   bool mayMeet(const Bvh::Node& node, double t_max) const {
     double enter = 0, leave = t_max;
     for (int k = 0; k < 3; ++k) {

@@ -14,7 +14,7 @@ using Ints = int __attribute__((vector_size(16)));
 constexpr int BINS = 16;
 constexpr std::size_t SOME = 512, MANY = 1 << 16;  // primitives that are binned by turns, by several threads
 
-/** Which bins a middle falls into, per axis. */
+/** Bins that a primitive's middle falls into, per axis. */
 struct Binning {
   explicit Binning(const FloatBox& middles) : lower(middles.lower), scale(BINS * (1 - 1e-6f) / (middles.upper - middles.lower)) {
     for (int k = 0; k < 4; ++k) {
@@ -31,7 +31,7 @@ struct Binning {
   std::array<bool, 4> usable;
 };
 
-/** What lies in the bins of the three axes; lanes of numbers are axes. */
+/** Boxes and numbers of the primitives in the bins of the three axes; lanes of numbers are axes. */
 struct Bins {
   Bins() {
     for (auto& of_axis : boxes) of_axis.fill(FloatBox::nothing());

@@ -1,4 +1,4 @@
-// Elements while a tree is built over them, and how a run of them is split in two.
+// Elements while a tree is built over them, and the split of a run of them in two.
 #pragma once
 
 #include <algorithm>
@@ -77,7 +77,7 @@ class Primitive {
   FloatBox box_;
 };
 
-/** What holds all of a run. */
+/** Bounds of a run: of its boxes, and of their doubled middles. */
 struct RunBounds {
   FloatBox box = FloatBox::nothing(), middles = box;
 
@@ -99,7 +99,7 @@ struct PrimitiveRun {
   std::size_t size() const { return static_cast<std::size_t>(end - begin); }
 };
 
-/** Of all primitives from begin to end, by the threads there are. */
+/** The run of all primitives from begin to end; its bounds are found by the threads there are. */
 PrimitiveRun boundedRun(Primitive* begin, Primitive* end);
 
 enum class SplitBy { COST, MEDIAN };

@@ -53,7 +53,7 @@ struct Face {
   /** n.(p - corner): the height of p, times |normal|. */
   double height(const Vector3& p) const { return normal.dot(p - corners[0]); }
 
-  /** Does p project into the triangle? Always false for a triangle without area. */
+  /** Whether p projects into the triangle; always false for a triangle without area. */
   bool holdsProjectionOf(const Vector3& p) const {
     return !flat && inward[0].dot(p - corners[0]) >= 0 && inward[1].dot(p - corners[1]) >= 0 && inward[2].dot(p - corners[2]) >= 0;
   }
@@ -101,7 +101,7 @@ void improveByAlignedSides(const Side& a, const Side& b, Candidate* best) {
   best->improve(a.to, closestOnSegment(a.to, b.from, b.to));
   best->improve(closestOnSegment(b.from, a.from, a.to), b.from);
   best->improve(closestOnSegment(b.to, a.from, a.to), b.to);
-  // By the cross product, which keeps its accuracy for a small angle where a.a b.b - (a.b)^2 loses it.
+  // The cross product keeps its accuracy for a small angle where a.a b.b - (a.b)^2 loses it.
   const Vector3 r = b.from - a.from, n = a.along.cross(b.along);
   const double n2 = n.squaredNorm();
   if (!(n2 > 0)) return;
@@ -119,7 +119,7 @@ void improveBySides(const Side& a, const Side& b, Candidate* best) {
   }
 }
 
-/** Where an edge of `edges` goes through the face, if one does. @param heights of the corners over the face */
+/** Finds the point where an edge of `edges` goes through the face, if one does. @param heights of the corners over the face */
 bool crossingPoint(const Triangle& edges, const std::array<double, 3>& heights, const Face& face, Vector3* crossing) {
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3;
@@ -138,13 +138,13 @@ bool straddles(const std::array<double, 3>& heights) {
   return *std::min_element(heights.begin(), heights.end()) <= 0 && *std::max_element(heights.begin(), heights.end()) >= 0;
 }
 
-/** Do the planes through the two points, square to the line between them, part the triangles up to rounding? Then no pair is closer. */
+/** Whether planes through the two points, square to the line between them, part the triangles up to rounding: no pair is closer then. */
 bool isClosest(const Candidate& candidate, const Triangle& a, const Triangle& b, double rounding) {
   const Vector3 line = candidate.point_b - candidate.point_a;
   const double slack = rounding * std::sqrt(candidate.squared_distance);
   const double reach_a = line.dot(candidate.point_a) + slack, reach_b = line.dot(candidate.point_b) - slack;
   for (int k = 0; k < 3; ++k) {
-    // So that no candidate yet, which is NaN, proves nothing.
+    // Written so that an empty candidate, which is NaN, proves nothing.
     if (!(line.dot(a[k]) <= reach_a && line.dot(b[k]) >= reach_b)) return false;
   }
   return true;
@@ -202,7 +202,7 @@ ClosestPoints closestTriangleTriangle(const Triangle& a, const Triangle& b) {
   }
   const double rounding = ROUNDING * std::max(largestCoordinate(a), largestCoordinate(b));
   const Candidate best = closestFeatures(face_a, face_b, rounding / 16);
-  // What meets within a plane or along a side comes out as a distance of rounding's size; its direction would mean nothing.
+  // Triangles that meet within a plane or along a side have a distance of rounding's size; its direction would mean nothing.
   if (best.squared_distance <= rounding * rounding) return {0, best.point_a, best.point_a};
   return best.result();
 }

@@ -9,8 +9,8 @@
 namespace blem_sim {
 namespace {
 
-constexpr double BOWED = 0.1;   // of the heights' mean square: what a surface of second order may leave
-constexpr double SMOOTH = 0.5;  // of the heights' range: what a flat facet may climb
+constexpr double BOWED = 0.1;   // part of the heights' mean square that a surface of second order may leave
+constexpr double SMOOTH = 0.5;  // part of the heights' range that a flat facet may climb
 
 using Terms = Eigen::Matrix<double, 6, 1>;
 

@@ -1,4 +1,4 @@
-// Which items are equal: a hash table that several threads fill.
+// Equal items, found by a hash table that several threads fill.
 #pragma once
 
 #include <tbb/blocked_range.h>
@@ -33,7 +33,7 @@ std::vector<int> firstEquals(int count, Hash&& hash, Equal&& equal) {
       return slot;
     }
   };
-  std::vector<int> first(count);  // until all are in: where they are
+  std::vector<int> first(count);  // until all are in: their slots
   tbb::parallel_for(tbb::blocked_range<int>(0, count, GRAIN), [&](const tbb::blocked_range<int>& range) {
     std::array<std::size_t, BATCH> slot;
     for (int begin = range.begin(); begin < range.end(); begin += BATCH) {

@@ -18,14 +18,14 @@ inline void accumulate(std::vector<int>* counts) {
 /**
  * Puts values into groups; within one they are in the order of their items.
  * @param visitValues called as visitValues(item, visit) calls visit(group, value) for each value of the item, the same ones each time
- * @param makeRoom called with the number of all values, gives where they go @return where each group begins, and the end of the last
+ * @param makeRoom called with the number of all values, gives their place @return beginning of each group, and the end of the last
  */
 template <typename VisitValues, typename MakeRoom>
 std::vector<int> grouped(int items, int groups, VisitValues&& visitValues, MakeRoom&& makeRoom) {
   constexpr int MANY = 1 << 14;
   const int parts = items < MANY ? 1 : 4;
   const auto first = [&](int part) { return static_cast<int>(static_cast<long long>(items) * part / parts); };
-  // Per part, first how many values each group gets, then where its next one goes.
+  // Per part, first the number of values that each group gets, then the place of its next one.
   std::vector<std::unique_ptr<int[]>> next(static_cast<std::size_t>(parts));
   tbb::parallel_for(0, parts, [&](int part) {
     next[part] = std::make_unique<int[]>(static_cast<std::size_t>(groups));

@@ -50,7 +50,7 @@ class MomentSum {
 
 double area(const Vector3& a, const Vector3& b, const Vector3& c) { return 0.5 * (b - a).cross(c - a).norm(); }
 
-/** Does each edge run as often one way as the other? Then the triangles enclose a volume, and all turn their outside out, or all in. */
+/** Whether each edge runs as often one way as the other: then the triangles enclose a volume, and all turn their outside out, or all in. */
 bool isClosedAndConsistentlyWound(const TriangleMesh& mesh) {
   struct DirectedEdge {
     int low, high, direction;
@@ -75,7 +75,7 @@ bool isClosedAndConsistentlyWound(const TriangleMesh& mesh) {
   return !edges.empty();
 }
 
-/** Positive definite, and no axis heavier than the other two: what a body with mass everywhere has. */
+/** Whether an inertia is positive definite and no axis heavier than the other two together, as of a body with mass everywhere. */
 bool isInertiaOfVolume(const Matrix3& inertia) {
   const Vector3 moments = Eigen::SelfAdjointEigenSolver<Matrix3>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
   return moments[0] > 0 && moments[0] + moments[1] > moments[2];
@@ -116,7 +116,7 @@ MassProperties massFromSurface(const TriangleMesh& mesh, double mass) {
   for (const Vector3i& e : mesh.elements) {
     const Vector3 &a = mesh.vertices[e[0]], &b = mesh.vertices[e[1]], &c = mesh.vertices[e[2]];
     triangles.add(area(a, b, c), {a, b, c});
-    // Of a segment's corners two coincide, so its longest side is the segment.
+    // Two corners of a segment coincide, so its longest side is the segment.
     const Vector3& far = (b - a).squaredNorm() > (c - a).squaredNorm() ? b : c;
     segments.add((far - a).norm(), {a, far});
     points.add(1, {a});

@@ -15,7 +15,7 @@ constexpr double SHEETS_COSINE = 0.95;
 /** Joined ends are closer than this part of their edges, so that no triangle is lost. */
 constexpr double REACH_OF_LENGTH = 0.25;
 
-/** Places in cells, for what is near a place. Open hashing. */
+/** Places in cells, to find those near a place. Open hashing. */
 class PlaceGrid {
  public:
   PlaceGrid(double reach, int count) : reach_(reach), cell_size_(8 * reach), next_(count, NONE) {
@@ -67,7 +67,7 @@ class PlaceGrid {
 struct Match {
   int e, f;
   bool crossed;
-  double distance;  ///< [m] larger one of the ends'
+  double distance;  ///< [m] larger one of the ends' distances
 };
 
 class Matcher {

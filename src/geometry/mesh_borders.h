@@ -14,18 +14,18 @@ struct Border {
   int a, b;          ///< its vertices
   double length;     ///< [m]
   Vector3 inward;    ///< unit, in the triangle's plane, square to the edge
-  Vector3i corners;  ///< of the triangle
+  Vector3i corners;  ///< vertices of the triangle
 };
 
 std::vector<Border> bordersOf(const TriangleMesh& mesh, const MeshTopology& topology);
 
-/** May the surface go on from one to the other? Not if the triangles lie on one another, nor if they are neighbours already. */
+/** Whether the surface may go on from e to f: not if the triangles lie on one another, nor if they are neighbours already. */
 bool mayContinue(const Border& e, const Border& f);
 
-/** How far apart [m] their ends may be: CRACK_WIDTH, less for short edges. */
+/** Largest distance [m] of the borders' ends for a join: CRACK_WIDTH, less for short edges. */
 double reachOf(const Border& e, const Border& f);
 
-/** Are they ends of one edge of the mesh? */
+/** Whether two vertices are the ends of one edge of the mesh. */
 bool areNeighbours(const TriangleMesh& mesh, const MeshTopology& topology, int vertex, int other);
 
 /** Sets of vertices that become one, at the mean of their places. */
@@ -37,7 +37,8 @@ class VertexClusters {
 
   /** The mesh with one vertex per cluster; triangles that lose a corner are dropped. @param places of the vertices before any joining */
   TriangleMesh applied(const TriangleMesh& mesh, const std::vector<Vector3>& places);
-  /** [m] per vertex: how far the farthest of its cluster is from it. @param joined what applied() gave */
+  /** [m] per vertex that stands for its cluster: distance of the farthest member's place from the joined one; 0 for the others.
+   * @param joined the mesh from applied() */
   std::vector<double> spreads(const TriangleMesh& joined, const std::vector<Vector3>& places);
 
  private:

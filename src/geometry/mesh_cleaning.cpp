@@ -26,11 +26,11 @@ bool isFinite(const Vector3& v) { return (v.array().abs() <= MAX_COORDINATE).all
 bool hasArea(const Vector3& a, const Vector3& b, const Vector3& c) {
   const Vector3 ab = b - a, bc = c - b, ca = a - c;
   const double longest2 = std::max({ab.squaredNorm(), bc.squaredNorm(), ca.squaredNorm()});
-  // Nearly all, by far: without a root or a quotient.
+  // Nearly all triangles need no root and no quotient.
   constexpr double PLENTY = 1e4 * MIN_RELATIVE_HEIGHT * MIN_RELATIVE_HEIGHT, SMALL = 1e-60, LARGE = 1e60;
   if (longest2 > SMALL && longest2 < LARGE && ab.cross(ca).squaredNorm() > PLENTY * longest2 * longest2) return true;
   const double longest = std::sqrt(longest2);
-  // Of unit size before the product, which would lose a triangle of 1e-100 m or 1e100 m.
+  // Scaled to unit size before the product, which would lose a triangle of 1e-100 m or 1e100 m.
   return longest > 0 && (ab / longest).cross(ca / longest).norm() > MIN_RELATIVE_HEIGHT;
 }
 
@@ -47,7 +47,7 @@ std::uint64_t elementHash(const Vector3i& sorted_corners) {
   return h;
 }
 
-/** Drops elements that repeat an earlier one, either winding. @return how many */
+/** Drops elements that repeat an earlier one, either winding. @return their number */
 int dropRepeated(std::vector<Vector3i>* elements) {
   std::vector<Vector3i> keys(elements->size());
   tbb::parallel_for(std::size_t{0}, keys.size(), [&](std::size_t i) { keys[i] = sorted((*elements)[i]); });
@@ -62,7 +62,7 @@ int dropRepeated(std::vector<Vector3i>* elements) {
   return dropped;
 }
 
-/** Counts the edges of triangles by how many triangles they have. */
+/** Counts the edges of triangles by their numbers of triangles. */
 void countEdges(const TriangleMesh& mesh, MeshReport* report) {
   struct Counts {
     int edges = 0, open = 0, nonmanifold = 0;
@@ -117,7 +117,7 @@ std::vector<Vector3i> usableElements(const TriangleMesh& soup, RepeatedIndices r
   return usable;
 }
 
-/** For each vertex the first one at exactly its position; what is not finite is alone. */
+/** For each vertex the first one at exactly its position; a vertex that is not finite is alone. */
 std::vector<int> firstAt(const std::vector<Vector3>& vertices) {
   return firstEquals(
       static_cast<int>(vertices.size()),

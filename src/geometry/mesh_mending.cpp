@@ -9,7 +9,7 @@
 namespace blem_sim {
 namespace {
 
-/** Cleans what joining has left, with the report brought up to date. */
+/** Cleans the mesh that joining has left, and brings the report up to date. */
 TriangleMesh recleaned(const TriangleMesh& joined, int collapsed, MeshReport* report) {
   MeshReport after;
   TriangleMesh mesh = cleanMesh(joined, &after);
@@ -26,7 +26,7 @@ TriangleMesh recleaned(const TriangleMesh& joined, int collapsed, MeshReport* re
   return mesh;
 }
 
-/** Of the vertices that cleaning has kept, in their order. */
+/** Values of the vertices that cleaning has kept, in their order. */
 std::vector<double> kept(const std::vector<double>& values, const TriangleMesh& before, const TriangleMesh& after) {
   std::vector<double> kept;
   kept.reserve(after.vertices.size());
@@ -36,8 +36,8 @@ std::vector<double> kept(const std::vector<double>& values, const TriangleMesh& 
   return kept;
 }
 
-/** Joins and splits borders. @param noise of the vertices [m], where known from what was joined @return false if nothing was to be done;
- * then the mesh is as it was */
+/** Joins and splits borders. @param noise of the vertices [m], where known from the vertices joined @return false if nothing was to be
+ * done; then the mesh is as it was */
 bool closeCracks(const MeshTopology& topology, TriangleMesh* mesh, std::vector<double>* noise, MeshReport* report, MeshMending* what) {
   const std::vector<Border> borders = bordersOf(*mesh, topology);
   if (borders.empty()) return false;

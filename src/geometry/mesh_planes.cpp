@@ -18,7 +18,7 @@ namespace {
 constexpr double BEND_HEIGHT = 4 * PLANE_DEVIATION;
 /** ... but by no more than this [rad], however low they are: a chamfer is no noise. */
 constexpr double MAX_BEND = 0.5;
-/** A crease bends by this many times what noise can, or by MIN_CREASE [rad]; between the two a curved surface is likelier. */
+/** A crease bends by this many times as much as noise can, or by MIN_CREASE [rad]; between the two a curved surface is likelier. */
 constexpr double CREASE = 3;
 constexpr double MIN_CREASE = 0.7;
 /** Part of a patch's outline that may be neither crease nor open border. */
@@ -42,12 +42,12 @@ struct Patch {
   Vector3 first = Vector3::Zero();   ///< [m^3]
   Matrix3 second = Matrix3::Zero();  ///< [m^4]
   Vector3 centre = Vector3::Zero(), normal = Vector3::Zero();
-  double width = 0;                             ///< [m] of the rectangle that has the same second moments
-  double deviation = 0;                         ///< [m] of the farthest vertex
+  double width = 0;                             ///< [m] shorter side of the rectangle that has the same second moments
+  double deviation = 0;                         ///< [m] distance of the farthest vertex from the plane
   double outline = 0, doubtful = 0, blunt = 0;  ///< [m]
   double noise = 0;                             ///< [m] twice the largest noise known of its vertices
   int faces = 0;
-  bool rough = false;  ///< has an edge inside that is not flat
+  bool rough = false;  ///< whether an edge inside is not flat
   bool plane = false;
 };
 
@@ -105,7 +105,7 @@ class PlaneFinder {
     return bend <= MIN_CREASE ? Bend::CREASE : Bend::SHARP;
   }
 
-  /** Where two faces meet. */
+  /** Bends of the edges where two faces meet. */
   void findBends() {
     tbb::parallel_for(0, topology_.edgeCount(), [this](int edge) {
       const EdgeFaces faces = topology_.facesOf(edge);
@@ -155,7 +155,8 @@ class PlaneFinder {
     }
   }
 
-  /** How much of a patch's outline is crease or border, and how much might be the way a curved surface goes on. */
+  /** Lengths [m] of each patch's outline: of all, of the doubtful part, where a curved surface might go on, and of the blunt part, which
+   * bends by less than MIN_CREASE or is a border. */
   void addOutlines() {
     for (int edge = 0; edge < topology_.edgeCount(); ++edge) {
       const EdgeFaces faces = topology_.facesOf(edge);
@@ -212,7 +213,8 @@ class PlaneFinder {
   static bool isDoubtful(const Patch& patch) { return patch.doubtful > MAX_DOUBTFUL * patch.outline; }
   static bool hasEdges(const Patch& patch) { return patch.blunt <= MAX_BLUNT * patch.outline; }
 
-  /** Before its plane is known; but for patches that are flat to the last bit. */
+  /** Whether a patch may be a plane, before its plane is known; with few faces and no known noise only if it has edges, as those that are
+   * flat to the last bit need. */
   bool mayBePlane(const Patch& patch) const {
     return !isDoubtful(patch) && (patch.faces >= MANY_FACES || !noise_.empty() || hasEdges(patch));
   }
@@ -226,7 +228,7 @@ class PlaneFinder {
   static bool isKnownNoise(const Patch& patch) { return patch.deviation <= patch.noise; }
   static bool isFlatToTheLastBit(const Patch& patch) { return MIN_WIDTH_OF_FEW * patch.deviation <= patch.width && hasEdges(patch); }
 
-  /** What is no noise for sure, and no rounding, is no plane if it is curved. */
+  /** Curved patches are no planes, unless their deviation is surely noise or rounding. */
   void dropCurved() {
     std::vector<PatchPlane> planes;
     planes.reserve(patches_.size());
@@ -246,7 +248,7 @@ class PlaneFinder {
   std::vector<Patch> patches_;
 };
 
-/** Which planes each vertex lies on. */
+/** Planes that each vertex lies on. */
 class VertexPlanes {
  public:
   VertexPlanes(const TriangleMesh& mesh, const std::vector<double>& noise, PlaneFinder* finder)

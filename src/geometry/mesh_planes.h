@@ -9,8 +9,8 @@
 namespace blem_sim {
 
 /**
- * Moves the vertices of nearly planar patches onto their planes; what is planar already stays.
- * @param topology of the mesh @param noise per vertex: [m] how far its place is known to be wrong; empty: nothing is known
+ * Moves the vertices of nearly planar patches onto their planes; vertices of planar ones stay.
+ * @param topology of the mesh @param noise per vertex: [m] known error of its place; empty: no error is known
  */
 void flattenPlanes(const MeshTopology& topology, const std::vector<double>& noise, TriangleMesh* mesh, MeshMending* what);
 

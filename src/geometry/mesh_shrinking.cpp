@@ -10,8 +10,8 @@
 namespace blem_sim {
 namespace {
 
-constexpr double SMALLEST_EIGENVALUE = 1e-4;  // of the largest: planes that differ by less ask for the same
-constexpr double FARTHEST = 3;                // r
+constexpr double SMALLEST_EIGENVALUE = 1e-4;  // part of the largest: planes that differ by less ask for the same
+constexpr double FARTHEST = 3;                // longest move, in r
 constexpr double LEAST_COSINE = 0.5;          // between a triangle's normals before and after
 constexpr int MAX_HALVINGS = 6;
 
@@ -23,7 +23,7 @@ double signedVolume(const TriangleMesh& mesh) {
   return sum / 6;
 }
 
-/** Why a mesh has no inside to move to; empty if it has. */
+/** Reason why a mesh has no inside to move to; empty if it has one. */
 std::string whyNot(const TriangleMesh& mesh, const MeshTopology& topology, double volume) {
   for (int e = 0; e < static_cast<int>(mesh.elements.size()); ++e)
     if (!mesh.isTriangle(e) || !topology.isFace(e)) return "it has segments or points";
@@ -185,7 +185,7 @@ class Shrinking {
 
   const TriangleMesh& mesh_;
   const double r_, outward_;  // -1: the winding shows inwards
-  std::vector<double> part_;  // of its move, per vertex
+  std::vector<double> part_;  // per vertex: part of its move that is made
   std::vector<char> crossed_before_;
   std::vector<Vector3> moves_;
   std::vector<std::vector<int>> triangles_of_;

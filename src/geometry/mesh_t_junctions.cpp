@@ -87,7 +87,7 @@ class OverlapFinder {
   std::vector<Overlap> overlaps_;
 };
 
-/** What overlaps ask for. */
+/** Joins and splits that overlaps ask for. */
 class OverlapJoiner {
  public:
   OverlapJoiner(const TriangleMesh& mesh, const OverlapFinder& finder, const MeshTopology& topology, VertexClusters* clusters)
@@ -136,7 +136,7 @@ class TriangleCutter {
   }
 
  private:
-  /** -1 if no side is cut. Of equally long ones the one whose opposite corner comes first in space. */
+  /** The longest side that is cut, -1 if none is; among equally long ones that whose opposite corner has the largest x, then y, then z. */
   int longestCutSide(const Vector3i& corners, const std::array<std::vector<int>, 3>& cuts) const {
     int longest = -1;
     const auto rank = [&](int side) {

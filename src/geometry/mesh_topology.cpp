@@ -86,7 +86,7 @@ std::vector<Vector3> MeshTopology::findFaces(const TriangleMesh& mesh) {
 void MeshTopology::findEdges(const SidesByVertex& by_vertex, int vertex_count) {
   const auto isOfFace = [this](const Side& side) { return isFace(side.element()); };
   const auto facesAmong = [&](const Side* first, const Side* last) { return static_cast<int>(std::count_if(first, last, isOfFace)); };
-  // Where the edges of a vertex begin, and the lists of many faces: first how long they are.
+  // Beginnings of the edges of a vertex, and of the lists of many faces: first their lengths.
   std::vector<int> many_begin(vertex_count + 1, 0);
   higher_begin_.assign(vertex_count + 1, 0);
   tbb::parallel_for(0, vertex_count, [&](int v) {

@@ -14,7 +14,7 @@ inline std::uint64_t hashedOn(std::uint64_t h, std::uint64_t bits) {
   return h ^ h >> 32;
 }
 
-/** Of its bits; -0.0 is 0.0. */
+/** Hash of a place's bits; -0.0 is 0.0. */
 inline std::uint64_t placeHash(const Vector3& v) {
   std::uint64_t h = 0;
   for (int k = 0; k < 3; ++k) {

@@ -12,10 +12,10 @@ namespace blem_sim {
 /** A pair of colliders that may be within rA + rB + margin of each other; a < b. */
 struct ColliderPair {
   int a, b;
-  double margin;  ///< [m] how far beyond the layers the narrow phase shall look: a speculative contact's largest gap
+  double margin;  ///< [m] reach of the narrow phase beyond the layers: a speculative contact's largest gap
 };
 
-/** Which colliders may touch at all. Static against static and two colliders of one body never do. */
+/** Rules for pairs of colliders that may touch at all. Static against static and two colliders of one body never do. */
 class CollisionFilter {
  public:
   /** Colliders of one model touch each other only if this is on (robots; default off). */
@@ -33,10 +33,10 @@ class CollisionFilter {
 /** Motion of a collider over the coming step, for its margin. */
 struct ColliderMotion {
   Pose X_WC;         ///< geometry frame in the world
-  double reach = 0;  ///< [m] bound on how far any of its points moves in the coming step
+  double reach = 0;  ///< [m] bound on the motion of any of its points in the coming step
 };
 
-/** What the search for pairs works in; used again, so that a warm search allocates nothing. */
+/** Search for pairs, with its buffers; they are used again, so that a warm search allocates nothing. */
 class BroadPhase {
  public:
   /**
@@ -47,14 +47,14 @@ class BroadPhase {
    */
   const std::vector<ColliderPair>& find(const std::vector<Collider>& colliders, const std::vector<ColliderMotion>& motion,
                                         const CollisionFilter& filter, double base_margin, double max_margin);
-  /** How many pairs of boxes the last search compared. */
+  /** Number of pairs of boxes that the last search compared. */
   std::int64_t compared() const { return compared_; }
 
  private:
-  /** A collider in the sweep: its box in the world, and how much farther it may matter. */
+  /** A collider in the sweep: its box in the world, and its reach beyond it. */
   struct SweepBox {
     int collider;
-    int model;             // whose other colliders it never touches, -1: none
+    int model;             // model whose other colliders it never touches, -1: none
     Vector3 lower, upper;  // [m] world, without the layer
     double reach;          // [m] layer and this collider's share of the margin, at most
   };
@@ -75,7 +75,7 @@ class BroadPhase {
   std::vector<SweepStart> starts_;
   std::vector<CellEntry> entries_;
   std::vector<double> sizes_;      // [m] of boxes along an axis
-  std::vector<int> large_starts_;  // of starts_: boxes of so many cells that they are swept by themselves
+  std::vector<int> large_starts_;  // those of starts_ whose boxes have so many cells that they are swept by themselves
   std::int64_t compared_ = 0;
   std::vector<char> large_;  // box by box
   std::vector<ColliderPair> pairs_;

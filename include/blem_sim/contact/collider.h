@@ -1,4 +1,4 @@
-// What can touch: boundary-layer expanded meshes [Hauser 2013, Eq. 1] placed on bodies.
+// Colliders: boundary-layer expanded meshes [Hauser 2013, Eq. 1] placed on bodies.
 #pragma once
 
 #include <cstdint>
@@ -40,14 +40,14 @@ class CollisionGeometry {
   const TriangleMesh& mesh() const { return *mesh_; }
   const MeshTopology& topology() const { return *topology_; }
   const Bvh& bvh() const { return bvh_; }
-  /** Per node of the tree: does an element below it own a vertex or an edge? Two that own nothing have no contact. */
+  /** Per node of the tree: whether an element below it owns a vertex or an edge. Two nodes that own nothing have no contact. */
   const std::vector<std::uint8_t>& owners() const { return owners_; }
   /** A number that no other geometry of this run has; 0 for a half-space. */
   std::uint64_t identity() const { return identity_; }
   const Box& bounds() const { return bounds_; }  ///< [m], geometry frame; unbounded below for a half-space
   const Vector3& planeNormal() const { return normal_; }
   double planeOffset() const { return offset_; }
-  std::size_t bytes() const;  ///< of memory: mesh, topology, tree
+  std::size_t bytes() const;  ///< memory of mesh, topology and tree
 
  private:
   CollisionGeometry() = default;

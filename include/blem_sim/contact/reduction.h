@@ -16,7 +16,7 @@ using ContactIds = std::vector<std::uint64_t>;
 /**
  * Reduces `contacts` to at most k >= 1. Deterministic, whatever their order. Never invents a deeper contact than the deepest given.
  * @param contacts ids are their own
- * @param chosen_before what it kept of the same pair in the step before: among equal choices that one is gone on with
+ * @param chosen_before ids of the contacts kept of the same pair in the step before: among equal choices that choice is gone on with
  * @param reduced overwritten; sorted by id; not `contacts` itself
  */
 using ReduceFunction = void (*)(const std::vector<Contact>& contacts, int k, const ContactIds& chosen_before,
@@ -49,7 +49,7 @@ void reduceNone(const std::vector<Contact>& contacts, int k, const ContactIds& c
 /** reduceHull in place. */
 void reduceHull(std::vector<Contact>& contacts, int k, const ContactIds& chosen_before = {});
 
-/** What each pair of colliders kept in the last reduction. It decides between equal choices of the next one: state. */
+/** Contacts that each pair of colliders kept in the last reduction. They decide between equal choices of the next one: state. */
 class ReductionMemory {
  public:
   const ContactIds& of(const ContactManifold& manifold) const;
@@ -84,21 +84,21 @@ struct ContactBudget {
   int max_contacts = 20;  ///< k of this model; a static environment has none of its own: INT_MAX
 };
 
-/** What a reduction cost. */
+/** Losses of a reduction: contacts left out, pairs cut, wrench given up. */
 struct ReductionLoss {
   int contacts = 0;   ///< left out, those that others imply among them
-  int cut_pairs = 0;  ///< that budgets left fewer contacts than `method` would keep of them without a limit
-  /** By how much a wrench between two of a cut pair can be off at most, of its normal force, torques by the radius of the pair's contacts:
-   *  what those kept lack at most, with friction 0.5 (of 256 directions, with a margin for others). Pierced pairs do not count. */
+  int cut_pairs = 0;  ///< pairs that budgets left with fewer contacts than `method` would keep of them without a limit
+  /** Largest error of a wrench between two of a cut pair, of its normal force, torques by the radius of the pair's contacts: the most that
+   * those kept lack, with friction 0.5 (of 256 directions, with a margin for others). Pierced pairs do not count. */
   double wrench = 0;
 };
 
 /**
- * Reduces every manifold so that the contacts of each model sum to at most its k: each manifold asks for what `method` would keep with the
- * smaller k of its two models; where a model has too many then, manifolds that ask for little get all of it and the others equal shares.
- * But each keeps 3, if it asks for them, even where a model then has more than k: no pair ever loses its hold.
+ * Reduces every manifold so that the contacts of each model sum to at most its k: each manifold asks for as many as `method` would keep
+ * with the smaller k of its two models; where a model has too many then, manifolds that ask for few get all of them and the others equal
+ * shares. But each keeps 3, if it asks for them, even where a model then has more than k: no pair ever loses its hold.
  * `hull` chooses once, when shares are known; others, and pierced contacts, are reduced again.
- * Pierced contacts are kept out of the choice while others exist.
+ * Pierced contacts are reduced apart, to the room that the others leave, a quarter of k at least if they are so many.
  * @param manifolds before reduction, sorted by (a, b)
  * @param model_a, model_b models of the two colliders of each manifold, indices into budgets
  * @param memory of the last reduction, overwritten by this one's

@@ -9,15 +9,15 @@
 namespace blem_sim {
 
 /**
- * Would a contact be there if its surface and others of the same body were one mesh? Not if another one, on which its place lies (within
- * 1 um), leads along its direction from there; nor that of an edge or a vertex that is flat in what they are together; and a vertex above
- * several that lie in each other has one. Room is kept.
+ * Whether other surfaces of the same body cover a contact: it would not exist if all were one mesh. It is covered if another one, on which
+ * its place lies (within 1 um), leads along its direction from there; or if it is of an edge or a vertex that is flat in that mesh; and a
+ * vertex above several that lie in each other keeps one contact. Room is kept.
  */
 class SurfaceCover {
  public:
-  /** @param own_is_a is the contact's A the surface? */
+  /** @param own_is_a whether the surface is the contact's A */
   void begin(const Contact& contact, bool own_is_a, const Collider& own, const Pose& X_WO);
-  /** @param other its layer is no thinner @param comes_first does its contact stay, if both have the same one? */
+  /** @param other of no thinner layer @param comes_first whether its contact stays if both have the same one */
   void add(const Collider& other, const Pose& X_WO, bool comes_first);
   /** After all others were added. */
   bool isCovered();
@@ -26,7 +26,7 @@ class SurfaceCover {
   /** A face that the place lies on. */
   struct Face {
     Vector3 ways[3];  // unit, to its corners; world
-    int count;        // of them: not to one that is the place
+    int count;        // ways; none to a corner that is the place
     bool comes_first;
   };
   /** Directions from the place into a face. */
@@ -41,13 +41,13 @@ class SurfaceCover {
   const Collider* own_ = nullptr;
   Pose X_WO_;
   Vector3 place_, away_;       // world; away from the surface
-  double flat_ = 0;            // [rad] gap between faces of what is flat
-  bool is_of_vertex_ = false;  // of the other body: it has a contact with whichever face it is over
-  bool is_met_ = false;        // by another surface
-  bool leads_along_ = false;   // another one
+  double flat_ = 0;            // [rad] largest gap between faces around a flat place
+  bool is_of_vertex_ = false;  // whether it is of a vertex of the other body: that has one with whichever face it is over
+  bool is_met_ = false;        // whether the place lies on another surface
+  bool leads_along_ = false;   // whether another one leads along `away_`
   std::vector<Face> faces_;
-  Vector3 normal_, across_[2];   // of the plane that the place lies in
-  std::vector<Sector> sectors_;  // in it
+  Vector3 normal_, across_[2];   // unit: normal of the plane that the place lies in, axes in it
+  std::vector<Sector> sectors_;  // in that plane
 };
 
 }  // namespace blem_sim

@@ -1,4 +1,4 @@
-// How close do two bare meshes come while they move?
+// Bounds on the distance of two bare meshes while they move.
 #pragma once
 
 #include "blem_sim/contact/collider.h"
@@ -23,8 +23,8 @@ Vector3 turnBetween(const Pose& before, const Pose& after);
 double mostApproach(const CollisionGeometry& a, const GeometrySweep& sweep_a, const CollisionGeometry& b, const GeometrySweep& sweep_b);
 
 /**
- * Can bare meshes be within `distance` [m] > 0 of each other anywhere on their way? Never false if they are; true for some that are within
- * 1.25 times as much only, or where the way is more than some hundred times as long as that. Neither is a half-space.
+ * Whether bare meshes may be within `distance` [m] > 0 of each other anywhere on their way. Never false if they are; true for some that are
+ * within 1.25 times as much only, or where the way is more than some hundred times as long as that. Neither is a half-space.
  */
 bool mayComeWithin(double distance, const CollisionGeometry& a, const GeometrySweep& sweep_a, const CollisionGeometry& b,
                    const GeometrySweep& sweep_b);

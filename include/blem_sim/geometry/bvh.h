@@ -9,7 +9,7 @@
 namespace blem_sim {
 
 /**
- * Binary tree of axis-aligned float boxes in the mesh's frame, rounded outwards, so that a box never misses what it holds.
+ * Binary tree of axis-aligned float boxes in the mesh's frame, rounded outwards, so that a box always holds all of its elements.
  * Built by binned surface area heuristic, by the threads there are, whose number does not show; deterministic. Nodes lie in one array,
  * children adjacent; leaves hold a run of order(). Precondition: finite vertices, indices in range, as cleanMesh leaves them. [Wald 2007]
  */
@@ -30,7 +30,7 @@ class Bvh {
   bool empty() const { return nodes_.empty(); }
   const std::vector<Node>& nodes() const { return nodes_; }
   const std::vector<std::uint32_t>& order() const { return order_; }  ///< element indices, grouped by leaf
-  std::size_t bytes() const { return nodes_.capacity() * sizeof(Node) + order_.capacity() * sizeof(std::uint32_t); }  ///< of memory
+  std::size_t bytes() const { return nodes_.capacity() * sizeof(Node) + order_.capacity() * sizeof(std::uint32_t); }  ///< memory held
 
  private:
   std::vector<Node> nodes_;

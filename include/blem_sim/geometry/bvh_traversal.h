@@ -38,7 +38,7 @@ class FrameChange {
     shift_ << X_BA.translation().array(), 0;
   }
 
-  /** Box in B's axes that holds the node's box, widened by what rounding can lose. */
+  /** Box in B's axes that holds the node's box, widened by as much as rounding can lose. */
   FloatBox bound(const Bvh::Node& node) const {
     const Vector3 c = centre(node), h = halfExtents(node);
     const Eigen::Array4d x = axes_[0] * c.x(), y = axes_[1] * c.y(), z = axes_[2] * c.z(), middle = x + y + z + shift_;
@@ -52,7 +52,7 @@ class FrameChange {
   Eigen::Array4d axes_[3], shift_;
 };
 
-/** May boxes be within a margin? Never false by rounding. */
+/** Test whether boxes may be within a margin [m]; never false by rounding. */
 class WithinMargin {
  public:
   explicit WithinMargin(double margin)
@@ -69,7 +69,7 @@ class WithinMargin {
 
 inline float size(const Bvh::Node& node) { return (node.upper - node.lower).sum(); }
 
-/** Of an inner and any other node, is it a that is opened? Depends on the trees only, so that the order of visits does not move. */
+/** Whether node a is opened, not b; one at least is no leaf. Depends on the trees only, so that the order of visits does not move. */
 inline bool descendsFirst(const Bvh::Node& a, const Bvh::Node& b) { return b.isLeaf() || (!a.isLeaf() && size(a) >= size(b)); }
 
 /** Calls visit(leaf) for each leaf, left before right, below nodes for which meets(node) holds. */
@@ -100,7 +100,7 @@ void visitLeafPairsIf(const Bvh& a, const Bvh& b, const Pose& X_BA, double margi
   if (a.empty() || b.empty() || margin < 0) return;
   struct Pair {
     std::uint32_t a, b;
-    FloatBox box_a;  // of a, in B's frame: turned once when a is opened, kept while b is
+    FloatBox box_a;  // box of node a in B's frame: turned once when a is opened, kept while b is
   };
   const FrameChange change(X_BA);
   const WithinMargin near(margin);

@@ -33,7 +33,7 @@ ClosestPoints closestSegmentSegment(const Vector3& a0, const Vector3& a1, const 
 /** Closest points of two triangles, [Hauser 2013, Eq. 6]'s d: vertex-face, edge-edge and crossing edges. Distance 0 iff they meet. */
 ClosestPoints closestTriangleTriangle(const Triangle& a, const Triangle& b);
 
-/** Does the segment pq cross the interior or border of triangle t? */
+/** Whether the segment pq crosses the interior or border of triangle t. */
 bool segmentCrossesTriangle(const Vector3& p, const Vector3& q, const Triangle& t);
 
 /** Exact distance of two meshes by testing every pair: the oracle. @param X_BA pose of A's frame in B's; the points are in B's frame */

@@ -10,8 +10,8 @@ namespace blem_sim {
 /** [m] from the origin, beyond which floats step by 0.06 mm and more. */
 constexpr double FAR_AWAY = 1000;
 
-/** [m] Whole numbers near the middle of what lies farther than FAR_AWAY, and than its own size, from the origin: taking them off rounds
- * nothing. Else zero. */
+/** [m] Whole numbers near the middle of a shape that lies farther than FAR_AWAY, and than its own size, from the origin: taking them off
+ * rounds nothing. Else zero. */
 inline Vector3 farOrigin(const Box& bounds) {
   if (bounds.isEmpty()) return Vector3::Zero();
   const Vector3 middle = bounds.center();

@@ -6,7 +6,7 @@
 
 namespace blem_sim {
 
-/** What mendMesh did. */
+/** Changes that mendMesh made. */
 struct MeshMending {
   int cracks = 0;           ///< pairs of border edges joined end to end
   double widest_crack = 0;  ///< [m] largest distance between ends that were joined
@@ -21,7 +21,7 @@ constexpr double CRACK_WIDTH = 4e-5;
 
 /**
  * A patch is taken as a plane if no vertex is farther from it than this [m]: cracks of +-10 um with the tilt of a fitted plane. Far below
- * what sensors see (0.5 mm) and what layers are (mm), so that no relief that matters goes.
+ * the least that sensors see (0.5 mm) and the width of layers (mm), so that no relief that matters goes.
  */
 constexpr double PLANE_DEVIATION = 2e-5;
 
@@ -39,7 +39,7 @@ constexpr double PLANE_DEVIATION = 2e-5;
  * A mesh that is whole and flat (MeshTopology::FLAT_SINE), or curved, comes back bit-identical. Deterministic; the surface does not
  * depend on the order of vertices and triangles but for rounding.
  * @param report of cleanMesh: counts and extents are brought up to date; may be null @param what may be null
- * @param topology of what comes back, which mending has at hand; may be null
+ * @param topology of the mesh that comes back, which mending has at hand; may be null
  */
 TriangleMesh mendMesh(const TriangleMesh& mesh, MeshReport* report, MeshMending* what = nullptr, MeshTopology* topology = nullptr);
 

@@ -7,13 +7,13 @@
 
 namespace blem_sim {
 
-/** What shrinkMesh did. */
+/** Result of shrinkMesh: vertices that moved, and how well the layer's outside meets the old surface. */
 struct MeshShrinking {
   std::string refused;   ///< why nothing moved; empty if it did
   int moved = 0;         ///< vertices that moved as far as their planes ask for
   int held_back = 0;     ///< vertices that moved less, where the mesh is thin or sharp
   double excess = 0;     ///< [m] by how much the layer's outside stands out of the old surface's planes, at most; r where nothing moved
-  double shortfall = 0;  ///< [m] by how much it lies inside them, at most
+  double shortfall = 0;  ///< [m] by how much the layer's outside lies inside them, at most
 };
 
 /**

@@ -1,4 +1,4 @@
-// Who owns what: vertices, edges and faces of a soup, each once, with what a closest-point test needs to know of their neighbours.
+// Vertices, edges and faces of a soup, each once, with their owners and the neighbours that a closest-point test needs to know.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@ namespace blem_sim {
 
 struct SidesByVertex;
 
-/** The faces of an edge, ascending. Where there are more than two they lie with the topology, which must outlive this. */
+/** The faces of an edge, ascending. More than two lie with the topology, which must outlive this. */
 class EdgeFaces {
  public:
   EdgeFaces(int first, int second, int size) : few_{first, second}, size_(size) {}
@@ -72,9 +72,10 @@ class VertexEdges {
  * Features of a TriangleMesh: its vertices, its edges (each once, with any number of incident faces: none for a segment, one on a border,
  * two inside a surface, more where a soup is not a manifold) and its faces (elements with area). Nothing is assumed of winding.
  * A feature is flat, and owns nothing, where it lies inside a plane: an edge whose faces continue each other, a vertex with flat edges
- * only. Nor does a vertex inside a straight edge, whose parts speak for it. Made by the threads there are, whose number does not show.
- * It takes some 36 bytes per triangle of a closed surface, 40 where some of it is flat; what the mesh tells at once is not held, so that
- * functions that need it ask for the same mesh again.
+ * only. A vertex inside a straight edge owns nothing either: the edge's parts speak for it. Made by the threads there are, whose number
+ * does not show.
+ * The topology takes some 36 bytes per triangle of a closed surface, 40 where some of it is flat; data that the mesh tells at once are not
+ * held, so that functions that need them ask for the same mesh again.
  * Precondition: indices in range; fewer than 2^30 - 2 elements; coincident vertices are one, as
  * cleanMesh leaves them (else neighbours are not seen: more features, none lost).
  */
@@ -88,7 +89,7 @@ class MeshTopology {
   static constexpr int NO_EDGE = -1;
 
   int edgeCount() const { return static_cast<int>(edge_sides_.size()); }
-  /** Its vertices, the lower index first; edges are sorted by them. */
+  /** Vertices of the edge, the lower index first; edges are sorted by them. */
   std::array<int, 2> ends(const TriangleMesh& mesh, int edge) const {
     const int from = fromOf(mesh, edge), to = toOf(mesh, edge);
     return from < to ? std::array<int, 2>{from, to} : std::array<int, 2>{to, from};
@@ -104,24 +105,24 @@ class MeshTopology {
 
   bool isFlatEdge(int edge) const { return edge_sides_[edge].other & FLAT; }
   bool isFlatVertex(int vertex) const { return vertex_kinds_[vertex] & FLAT_VERTEX; }
-  /** But for flat ones it has two edges, which continue each other. */
+  /** Whether the vertex has two edges, but for flat ones, and they continue each other. */
   bool isStraightVertex(int vertex) const { return vertex_kinds_[vertex] & STRAIGHT_VERTEX; }
   /** First element of the plane that the element is part of, across flat edges. */
   int patchOf(int element) const { return patches_.empty() ? element : patches_[element]; }
 
   bool isFace(int element) const { return owned_[element] & FACE; }
-  /** Unit, by the element's winding; zero for elements without area: they are no faces. The same bits each time. */
+  /** Unit normal by the element's winding; zero for elements without area: they are no faces. The same bits each time. */
   static Vector3 normal(const TriangleMesh& mesh, int element);
 
-  /** Is this element the one that asks for its corner k / its edge between corners k and k + 1? Never for flat ones. */
+  /** Whether this element is the one that asks for its corner k / its edge between corners k and k + 1; never for flat ones. */
   bool ownsVertex(int element, int k) const { return owned_[element] >> k & 1; }
   bool ownsEdge(int element, int k) const { return owned_[element] >> (3 + k) & 1; }
 
-  /** Bits k of the vertices / edges that it asks for. */
+  /** Bits k of the vertices / edges that the element asks for. */
   std::uint8_t ownedVertices(int element) const { return owned_[element] & 7; }
   std::uint8_t ownedEdges(int element) const { return owned_[element] >> 3 & 7; }
 
-  std::size_t bytes() const;  ///< of memory
+  std::size_t bytes() const;  ///< memory held
 
   /** Unit direction in the face's plane, square to the edge, into the face. @param face one of the edge's faces */
   Vector3 inward(const TriangleMesh& mesh, int edge, int face) const { return inward(mesh, edge, face, normal(mesh, face)); }
@@ -155,9 +156,9 @@ class MeshTopology {
   Vector3 inward(const TriangleMesh& mesh, int edge, int face, const Vector3& face_normal) const;
 
   std::vector<EdgeSides> edge_sides_;
-  std::vector<int> many_faces_;                    // per edge with more than two: how many, then all of them
+  std::vector<int> many_faces_;                    // per edge with more than two faces: their number, then all
   std::vector<int> higher_begin_;                  // size vertices + 1: edges to higher vertices
-  std::vector<int> lower_begin_, lower_edges_;     // size vertices + 1: where edges from lower vertices are listed
+  std::vector<int> lower_begin_, lower_edges_;     // size vertices + 1: beginnings of lower_edges_ per vertex
   std::vector<std::array<int, 3>> element_edges_;  // per corner
   std::vector<std::uint8_t> vertex_kinds_;
   std::vector<int> patches_;         // empty: nothing is flat

@@ -5,8 +5,8 @@
 
 namespace blem_sim {
 
-/** Room for so many items: where there is less, for twice as many, so that a list that was emptied does not ask for memory whenever it is
- * longer by one than it ever was. */
+/** Makes room for `count` items, where there is less for twice as many, so that a list that was emptied does not ask for memory whenever it
+ * is longer by one than it ever was. */
 template <typename Items>
 void makeRoomFor(std::size_t count, Items* items) {
   if (items->capacity() < count) items->reserve(2 * count);

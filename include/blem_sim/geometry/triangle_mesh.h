@@ -26,12 +26,12 @@ struct TriangleMesh {
     return e[0] != e[1] && e[1] != e[2] && e[2] != e[0];
   }
   Box bounds() const;
-  std::size_t bytes() const { return vertices.capacity() * sizeof(Vector3) + elements.capacity() * sizeof(Vector3i); }  ///< of memory
+  std::size_t bytes() const { return vertices.capacity() * sizeof(Vector3) + elements.capacity() * sizeof(Vector3i); }  ///< memory held
 };
 
-/** What became of one mesh or cloud when it was loaded; published as it stands in the load report. */
+/** Result of loading one mesh or cloud; published as it stands in the load report. */
 struct MeshReport {
-  std::string name;    ///< who uses it: "hubo::Body_LAR", "ladder"
+  std::string name;    ///< user of the mesh: "hubo::Body_LAR", "ladder"
   std::string source;  ///< file or primitive it came from
   int vertices = 0;    ///< after cleaning and mending
   int triangles = 0;   ///< after cleaning and mending
@@ -47,20 +47,20 @@ struct MeshReport {
   bool closed = false;             ///< every edge has two triangles
   Box extents;                     ///< [m], mesh frame, after cleaning and mending
   double boundary_width = 0;       ///< [m] r that contact uses
-  std::size_t bytes = 0;           ///< of memory that its geometry takes, shared by all that use the same
-  std::vector<std::string> notes;  ///< what was done, in words
+  std::size_t bytes = 0;           ///< memory of its geometry, shared by all users of the same one
+  std::vector<std::string> notes;  ///< changes that were made, in words
 };
 
-/** What an element that names a vertex twice is: meant so (a segment, a point), or a malformed triangle of a file. */
+/** Meaning of an element that names a vertex twice: a segment or a point, on purpose, or a malformed triangle of a file. */
 enum class RepeatedIndices { ARE_SEGMENTS_AND_POINTS, ARE_DEGENERATE };
 
 /**
- * Makes a soup fit for contact and says what it did: drops elements with non-finite coordinates or indices out of range, welds vertices
+ * Makes a soup fit for contact and reports the changes: drops elements with non-finite coordinates or indices out of range, welds vertices
  * at exactly the same position, drops triangles without area and repeated ones (either winding), drops unused vertices, counts open and
- * non-manifold edges. Never moves a vertex. Segments and points pass through, unless told that the soup has none; three different
- * indices are always a triangle, whatever their positions. A coordinate beyond 1e30 m counts as non-finite: boxes are float.
- * The result may be empty; the caller decides whether that is an error. Order is kept. @param report its counts, extents are set; may be
- * null
+ * non-manifold edges. Never moves a vertex. Segments and points pass through, unless told that the soup has none; three different indices
+ * are always a triangle, whatever their positions. A coordinate beyond 1e30 m counts as non-finite: boxes are float.
+ * The result may be empty; the caller decides whether that is an error. Order is kept.
+ * @param report its counts, extents are set; may be null
  */
 TriangleMesh cleanMesh(const TriangleMesh& soup, MeshReport* report, RepeatedIndices repeated = RepeatedIndices::ARE_SEGMENTS_AND_POINTS);
 

@@ -1,4 +1,4 @@
-// As many candidates as there are lanes. Included by the kernels only.
+// Batches of as many candidates as there are lanes. Included by the kernels only.
 #pragma once
 
 #include "lanes.h"
@@ -11,11 +11,11 @@ constexpr unsigned ALL_LANES = (1u << LANES) - 1;
 /** Height over the plane, or inside the side. */
 inline Doubles above(const Vectors& p, const Rows& plane) { return dot(p, plane.v) - plane.w; }
 
-/** Which of a candidate's features. */
+/** One of a candidate's two features. */
 using Which = std::uint32_t Candidate::*;
 constexpr Which OF_A = &Candidate::a, OF_B = &Candidate::b;
 
-/** Which candidates the lanes hold: behind the last one it is repeated, and masked. */
+/** Candidates in the lanes: behind the last one it is repeated, and masked. */
 class Batch {
  public:
   Batch(const Candidate* candidates, std::uint32_t first, std::uint32_t count) : lanes(candidates + first), valid(ALL_LANES) {
@@ -47,7 +47,7 @@ class Batch {
     return numbers;
   }
 
-  /** Have all lanes the same feature b? */
+  /** Whether all lanes have the same feature b. */
   bool hasOneB() const {
     static_assert(sizeof(Candidate) == sizeof(Mask) / LANES, "a candidate is as wide as a lane");
     constexpr Candidate ONLY_B{0, 0xFFFFFFFF};
@@ -93,7 +93,7 @@ struct OneFace {
   std::uint32_t index;
 };
 
-/** Calls visit with the lanes' faces. @return what it returns */
+/** Calls visit with the lanes' faces. @return visit's result */
 template <typename Visit>
 inline auto withFaces(const Batch& batch, const FaceRecord* faces, Visit&& visit) {
   const std::uint32_t first = batch.lanes[0].b;

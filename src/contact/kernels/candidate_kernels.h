@@ -37,10 +37,10 @@ struct InsideSides {
   const Doubles of[3];
 };
 
-// ---- what can have a contact soon: as for leaves, in double
+// ---- candidates that can have a contact soon: as for leaves, in double
 
-/** Copies those for which test(batch) sets bits. @param also is called with the first lane's place among them and its bits, before all of
- * them */
+/** Copies the candidates for which test(batch) sets bits. @param also is called with the first lane's place among them and its bits, before
+ * all of them */
 template <typename Test, typename Also>
 inline std::uint32_t copied(const Candidate* in, std::uint32_t count, Candidate* out, Test&& test, Also&& also) {
   std::uint32_t kept = 0;
@@ -62,7 +62,7 @@ inline std::uint32_t copied(const Candidate* in, std::uint32_t count, Candidate*
   return copied(in, count, out, test, [](std::uint32_t, unsigned) {});
 }
 
-/** Are both ends of an edge, seen from the start of another, farther than the limit inside a face of that one? */
+/** Whether both ends of an edge, seen from the start of another, are farther than the limit inside a face of that one. */
 inline Mask liesInside(const Vectors& first, const Vectors& second, const Vectors& inward, double limit) {
   return minimum(dot(inward, first), dot(inward, second)) > limit;
 }
@@ -120,9 +120,9 @@ std::uint32_t nearVertexVertices(const Vec4* a, const Vec4* b, const Candidate* 
   });
 }
 
-// ---- what has a contact
+// ---- candidates that have a contact
 
-/** How far a part of an edge times n2 lies beyond its ends. */
+/** Excess of a part of an edge, times n2, beyond the edge's ends; 0 inside. */
 inline Doubles beyondEnds(Doubles part, Doubles n2) { return maximum(maximum(-part, part - n2), Doubles{}); }
 
 std::uint32_t vertexVertices(const Vec4* a, const Vec4* b, const Candidate* candidates, std::uint32_t count, double range,

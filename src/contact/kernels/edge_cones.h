@@ -1,4 +1,4 @@
-// May the common perpendicular of two edges point out of all their faces? Of lanes of floats or doubles. Included by the kernels only.
+// Whether the common perpendicular of two edges may point out of all their faces: lanes of floats or doubles. Included by the kernels only.
 #pragma once
 
 #include "../tolerances.h"
@@ -7,8 +7,9 @@
 namespace blem_sim::kernels {
 namespace {
 
-/** How far n, the product of two edges, may reach into a face of either while unit vectors turn by no more than `turn`: n by that part of
- * twice the product of their lengths, once for itself and once for its own length; the faces by that part of n.
+/** Largest part of n, the product of two edges, into a face of either that may come within EDGE_CONE_SLACK while unit vectors turn by no
+ * more than `turn`: n by that part of twice the product of their lengths, once for itself and once for its own length; the faces by that
+ * part of n.
  * @param n2 its square @param pp_qq product of the squared lengths of the edges */
 template <typename Lanes, typename Number>
 inline Lanes coneBound(Lanes n2, Lanes pp_qq, Number turn) {
@@ -16,7 +17,7 @@ inline Lanes coneBound(Lanes n2, Lanes pp_qq, Number turn) {
   return (slack + turn) * squareRoot(n2) + 2 * turn * squareRoot(pp_qq);
 }
 
-/** The contact's normal is n or -n, from b to a: which, is not asked. */
+/** Whether n or -n, from b to a, may be a contact's normal; which of them, is not asked. */
 template <typename V, typename Lanes>
 inline auto conesMayAllow(const V& n, Lanes bound, const V& a0, const V& a1, const V& b0, const V& b1) {
   const Lanes into_a0 = dot(a0, n), into_a1 = dot(a1, n), into_b0 = dot(b0, n), into_b1 = dot(b1, n);

@@ -6,7 +6,7 @@
 namespace blem_sim::kernels {
 
 constexpr int DIRECTION_BLOCK = 8;
-/** How many blocks hold so many edges. */
+/** Number of blocks that hold so many edges. */
 constexpr int directionBlocks(int edges) { return (edges + DIRECTION_BLOCK - 1) / DIRECTION_BLOCK; }
 
 /** Unit directions of some edges from the vertex; zero behind the last. */
@@ -15,10 +15,10 @@ struct alignas(64) EdgeDirections {
   double near[DIRECTION_BLOCK];  ///< NEAR_SUCCESSOR; -1 of flat edges, whose contacts take nothing over
 };
 
-/** Where the surface at a vertex leads. */
+/** Whether edges at a vertex lead down, and one may have a successor. */
 struct LeadingEdges {
   bool down;  ///< some edge leads down, by a larger part (sine) than CONE_SLACK
-  bool near;  ///< such a one, not flat, whose contact with an edge square to `aside` may be there and near: what takes over is to be asked
+  bool near;  ///< one of them, not flat, may have a contact near, with an edge square to `aside`: a successor is to be looked for
 };
 
 /** A vertex of some pair that leaves a face over one of its sides. */
@@ -26,7 +26,7 @@ struct LeavingSide {
   std::uint32_t pair;
   std::uint16_t side;
   bool is_above;                ///< the vertex is over the face, not under it
-  std::uint32_t first, blocks;  ///< of the vertex's EdgeDirections
+  std::uint32_t first, blocks;  ///< blocks of the vertex's EdgeDirections: the first, and their number
 };
 
 }  // namespace blem_sim::kernels

@@ -8,21 +8,22 @@
 namespace blem_sim::kernels {
 namespace {
 
-/** Where the lines through edges are closest: at parts s / n2 and t / n2 of them. */
+/** Closest points of the lines through edges: at parts s / n2 and t / n2 of them. */
 struct Perpendiculars {
   explicit Perpendiculars(const EdgeBatch& edges) : n(cross(edges.along_a.v, edges.along_b.v)), n2(dot(n, n)), rn(dot(edges.between, n)) {
     s = dot(cross(edges.between, edges.along_b.v), n), t = dot(cross(edges.between, edges.along_a.v), n);
     over_s = beyondEnds(s, n2), over_t = beyondEnds(t, n2);
   }
 
-  /** No farther from each other than the range [m], nor from the edges than contacts fade? */
+  /** Whether these points are no farther from each other than the range [m], nor from the edges than contacts fade; never for parallel
+   * edges. */
   Mask within(const EdgeBatch& edges, double range) const {
     const double most = range / FADE_SLOPE;
     const Doubles pp = edges.start_a.w, qq = edges.start_b.w, most2 = most * most * n2 * n2;
     return (rn * rn <= range * range * n2) & (n2 > MIN_EDGE_SINE * MIN_EDGE_SINE * pp * qq) & (over_s * over_s * pp <= most2) &
            (over_t * over_t * qq <= most2);
   }
-  /** Is a foot that close to an end of its edge? */
+  /** Whether a foot is within NEAR_BORDER of an end of its edge. */
   Mask nearBorder(const EdgeBatch& edges) const {
     const Doubles border2 = NEAR_BORDER * NEAR_BORDER * n2 * n2, end_s = minimum(s, n2 - s), end_t = minimum(t, n2 - t);
     return (end_s * end_s * edges.start_a.w < border2) | (end_t * end_t * edges.start_b.w < border2);
@@ -33,7 +34,7 @@ struct Perpendiculars {
   Doubles s, t, over_s, over_t;
 };
 
-/** Does a normal from b to a point into no face of either? */
+/** Whether a normal from b to a points into no face of either edge. */
 inline Mask conesAllow(const EdgeBatch& edges, const Vectors& normal) {
   Mask allowed = dot(edges.inward_b[0], normal) <= EDGE_CONE_SLACK;
   allowed &= dot(edges.inward_b[1], normal) <= EDGE_CONE_SLACK;
@@ -54,7 +55,7 @@ inline Doubles appendEdges(const Batch& batch, const EdgeFeet& feet, unsigned bi
   return depth;
 }
 
-/** @param bits of the lanes that have a hit @return how many there are now */
+/** @param bits of the lanes that have a hit @return number of hits now */
 inline std::uint32_t appendHits(std::uint32_t first, const EdgeFeet& feet, unsigned bits, std::uint32_t found, EdgeEdgeHit* hits) {
   for (; bits != 0; bits &= bits - 1) {
     const int i = __builtin_ctz(bits);

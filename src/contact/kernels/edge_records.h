@@ -1,11 +1,11 @@
-// What the kernels find near edges: plain numbers, the same for every instruction set.
+// Results of the kernels near edges: plain numbers, the same for every instruction set.
 #pragma once
 
 #include "records.h"
 
 namespace blem_sim::kernels {
 
-/** Where the contacts of two meshes' edges are. */
+/** Data that place contacts of two meshes' edges in the world, and name them. */
 struct EdgePlace {
   const int *names_a, *names_b;  ///< of the edges
   bool first_is_a;               ///< A is the mesh of the edges named first
@@ -15,7 +15,7 @@ struct EdgePlace {
   std::uint64_t kinds;  ///< contactId of edges 0
 };
 
-/** Where kernels write contacts of edges that need no closer look. Room for one more than there are candidates. */
+/** Contacts of edges that need no closer look, as kernels write them. Room for one more than there are candidates. */
 struct PlainEdges {
   EdgePlace place;
   ContactRow* rows;
@@ -23,7 +23,7 @@ struct PlainEdges {
   double deepest;       ///< [m] their largest depth so far
 };
 
-/** Where kernels copy candidates that are not plain. Room for one more than there are candidates. */
+/** Candidates that are not plain, as kernels copy them. Room for one more than there are candidates. */
 struct LeftEdges {
   Candidate* pairs;
   std::uint32_t count;  ///< so far; they are appended

@@ -1,4 +1,4 @@
-// Is a vertex where it can have a contact with an edge? Of lanes of floats or doubles. Included by the kernels only.
+// Whether a vertex is where it can have a contact with an edge: lanes of floats or doubles. Included by the kernels only.
 #pragma once
 
 #include "../tolerances.h"
@@ -10,12 +10,13 @@ namespace {
 /** A vertex as an edge sees it, in metres. */
 template <typename Lanes>
 struct AtEdge {
-  Lanes inside[2];  ///< along the directions into its faces
-  Lanes distance;   ///< from its line
-  Lanes beyond;     ///< its ends
+  Lanes inside[2];  ///< along the directions into the edge's faces
+  Lanes distance;   ///< from the edge's line
+  Lanes beyond;     ///< beyond the edge's ends
 };
 
-/** Over neither of the edge's faces, nor behind both, nor farther beyond an end than a contact fades: it does so at round edges.
+/** Whether a vertex that is over neither of the edge's faces is not behind both, within range, and no farther beyond an end than a contact
+ * fades: it does so at round edges.
  * @param fold length of the sum of the directions into the faces @param round whether the edge is @param range [m] of distance, and the
  * margin @param margin [m] that the vertex may move @param rounding [m] that `inside` may be wrong by */
 template <typename Lanes, typename Bits, typename Number>

@@ -1,4 +1,4 @@
-// Is a vertex over a face, or so little beside it that its contact fades? Of lanes of floats or doubles. Included by the kernels only.
+// Whether a vertex is over a face, or so little beside it that its contact fades: lanes of floats or doubles. Included by the kernels only.
 #pragma once
 
 #include "../tolerances.h"

@@ -29,13 +29,13 @@ struct EdgeBatch {
   Mask end_a[2], end_b[2];  ///< names of their vertices
 };
 
-/** Where edges have their contacts. */
+/** Witness points of contacts of edges, with their normals and gaps. */
 struct EdgeFeet {
   Vectors point_a, point_b, normal;  ///< the normal from b to a, square to both
   Doubles distance, gap;             ///< [m] of the points; and with the depth that is lost beyond the ends
 };
 
-/** As findEdgePair of edge_pair.h, but of feet outside. */
+/** Common perpendiculars as findEdgePair of edge_pair.h finds them, with feet outside too. */
 struct EdgesBeyond {
   EdgesBeyond(const EdgeBatch& edges, double range) {
     const Vectors &p0 = edges.start_a.v, &q0 = edges.start_b.v, r = edges.between;
@@ -64,7 +64,7 @@ struct EdgesBeyond {
     end_b = over_t == 0 ? none : t > 0 ? edges.end_b[1] : edges.end_b[0];
   }
 
-  /** Do both ends of an edge lie farther inside a face of the other edge than a contact within range could? Of its first two faces. */
+  /** Whether both ends of an edge lie farther inside one of the first two faces of the other edge than a contact within range could. */
   static Mask lieInside(const EdgeBatch& edges, double range) {
     const double limit = deepestInside(range);
     const Vectors &there = edges.between, back = edges.start_a.v - edges.start_b.v;
@@ -76,13 +76,13 @@ struct EdgesBeyond {
     return inside;
   }
 
-  unsigned fades;                   ///< contacts, if nothing takes over where they end
+  unsigned fades;                   ///< lanes with a contact, if nothing takes over where the edges end
   unsigned is_inside, cones_known;  ///< as FadingEdgesHit
   Mask end_a, end_b;                ///< as there
   EdgeFeet feet;
 };
 
-/** Writes a hit for every lane; where its bit is not set the next one is written over it. @return how many there are now */
+/** Writes a hit for every lane; where its bit is not set the next one is written over it. @return number of hits now */
 inline std::uint32_t appendHits(std::uint32_t first, const EdgesBeyond& edges, unsigned bits, std::uint32_t found, FadingEdgesHit* hits) {
   const EdgeFeet& feet = edges.feet;
   transposed({feet.point_a.x, feet.point_a.y, feet.point_a.z, feet.point_b.x, feet.point_b.y, feet.point_b.z, feet.distance, feet.gap},

@@ -43,29 +43,29 @@ struct Kernels {
                                std::uint32_t count, const std::uint8_t* inner, double range, PlainContacts* plain, VertexFaceHit* hits);
   /** The contacts within `range` of vertices with the nearest of those sides of faces that they lie outside of. Where witness points are
    * asked for a row has the foot on the side and the normal from the fixed mesh to the moving one, in frame F, and the gap as its depth.
-   * @param sides as the pairs @return how many */
+   * @param sides per pair @return number of contacts */
   std::uint32_t (*sideFeet)(const ContactPlace& place, const NearVertices& vertices, const FaceRecord* faces, const FaceCorners* corners,
                             const BesideSides* sides, const Candidate* pairs, std::uint32_t count, double range, FadingContacts* out);
   /** As vertexFaces. @param left takes those that are not plain */
   std::uint32_t (*edgeEdges)(const EdgeRecord* a, const EdgeRecord* b, const Candidate* candidates, std::uint32_t count, double range,
                              PlainEdges* plain, LeftEdges* left, EdgeEdgeHit* hits);
-  /** Of those that are not plain: candidates with a contact within `range` if nothing takes over, or that need a closer look. Room for one
-   * more hit than candidates. */
+  /** Candidates, among those that are not plain, with a contact within `range` if nothing takes over, or that need a closer look. Room for
+   * one more hit than candidates. */
   std::uint32_t (*fadingEdges)(const EdgeRecord* a, const EdgeRecord* b, const Candidate* candidates, std::uint32_t count, double range,
                                FadingEdgesHit* hits);
   /** Candidates that need a closer look. @return their number */
   std::uint32_t (*vertexEdges)(const Vec4* a, const EdgeRecord* b, const Candidate* candidates, std::uint32_t count, double range,
                                VertexEdgeHit* hits);
-  /** The same; their indices. */
+  /** The same for two vertices; hits are indices of candidates. */
   std::uint32_t (*vertexVertices)(const Vec4* a, const Vec4* b, const Candidate* candidates, std::uint32_t count, double range,
                                   std::uint32_t* hits);
-  /** Of a vertex's edges, in so many blocks. @param down, aside unit, three numbers each, as the edges */
+  /** Leading edges among a vertex's edges, in `count` blocks. @param down, aside unit, three numbers each, in the edges' frame */
   LeadingEdges (*leadingEdges)(const EdgeDirections* blocks, int count, const double* down, const double* aside);
-  /** Where the edges of vertices lead that leave faces over their sides: down, to the face, and aside, into it.
+  /** Leading edges of vertices that leave faces over their sides: down, to the face, and aside, into it.
    * @param directions of all vertices @param to_vertices turns directions of the faces */
   void (*leadingAtSides)(const EdgeDirections* directions, const FaceRecord* faces, const Motion& to_vertices, const Candidate* pairs,
                          const LeavingSide* sides, std::uint32_t count, LeadingEdges* leading);
-  /** Has one of them a part along `towards` whose square is larger than `least2`? */
+  /** Whether an edge has a part along `towards` whose square is larger than `least2`. */
   bool (*leadTo)(const EdgeDirections* blocks, int count, const double* towards, double least2);
   /** Edges that pass through a face's plane where the face may be. */
   std::uint32_t (*edgeFaces)(const EdgeRecord* a, const FaceRecord* b, const Candidate* candidates, std::uint32_t count,

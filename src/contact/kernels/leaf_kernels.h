@@ -12,7 +12,8 @@
 namespace blem_sim::kernels {
 namespace {
 
-// Moved by no more than the margin, heights and distances change by no more than it: so the tests are the exact ones, that much wider.
+// While features move by no more than the margin, heights and distances change by no more: so the tests are the exact ones, that much
+// wider.
 
 inline FloatMask mayTouch(const FloatVectors& p, const FloatFaces& face, const LeafReach& reach) {
   const Floats height = face.plane.above(p), most = reach.range - absolute(height);
@@ -32,14 +33,15 @@ inline FloatMask mayTouch(const FloatVectors& p, const LeafEdges& edges, std::ui
   return beside & isAtEdge(vertex, absolute(fold), fold < 0, reach.range, reach.margin, reach.rounding);
 }
 
-/** May no edge of these vertices lead towards what lies that way? @param d from the vertices, d2 its square @param slack [m] */
+/** Whether these vertices may be nearest: perhaps no edge of them leads along d. @param d from the vertices, d2 its square
+ * @param slack [m] */
 inline FloatMask mayBeNearest(const FloatVectors& axis, Floats up, Floats down, Floats per_slack, const FloatVectors& d, Floats d2,
                               float slack) {
   const Floats along = dot(axis, d), most = per_slack * slack + absolute(along) * (along > 0 ? up : down);
   return (most >= 0) & (d2 - along * along <= most * most);
 }
 
-/** Vertex i of one leaf and several of another: where each is the nearest of its surface, or one is and it is round. */
+/** Whether vertex i of one leaf and several of another may touch: each may be the nearest of its surface, or one may and is round. */
 inline FloatMask mayTouch(const LeafShapes& a, std::uint32_t i, const LeafShapes& b, std::uint32_t first, const LeafReach& reach) {
   const FloatVectors d = oneVertex(a, i) - severalVertices(b, first), back = {-d.x, -d.y, -d.z};
   const Floats d2 = dot(d, d);
@@ -56,7 +58,7 @@ inline FloatMask mayTouch(const LeafShapes& a, std::uint32_t i, const LeafShapes
   return near & ((a_may & b_may) | (b_may & b_round) | (a_may & one.round[k]));
 }
 
-/** Are not both ends of an edge too far inside a face of the other? @param start as the other's start sees it */
+/** Whether an end of an edge lies no farther than `limit` [m] inside a face of the other. @param start as the other's start sees it */
 inline FloatMask reachesOut(const FloatVectors& start, const FloatVectors& along, const FloatVectors& inward, float limit) {
   return dot(inward, start) + minimum(dot(inward, along), Floats{}) <= limit;
 }
@@ -92,7 +94,7 @@ inline void append(std::uint32_t feature, std::uint32_t bits, LeafHit* hits, int
   *count += bits != 0;
 }
 
-/** May edges of the two leaves have a common perpendicular that points out of the faces of both? */
+/** Whether edges of the two leaves may have a common perpendicular that points out of the faces of both. */
 inline bool mayShareNormal(const EdgeCone& a, const EdgeCone& b, float turn) {
   const float slack = static_cast<float>(2 * 1.001 * EDGE_CONE_SLACK + 1e-4) + 1.1f * turn;
   const float cosine = a.axis[0] * b.axis[0] + a.axis[1] * b.axis[1] + a.axis[2] * b.axis[2];

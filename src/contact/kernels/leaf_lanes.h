@@ -41,7 +41,7 @@ struct FloatFaces {
   FloatMask open;
 };
 
-/** Which block holds feature i of a leaf. */
+/** Block that holds feature i of a leaf. */
 template <typename Block>
 inline const Block& blockOf(const Block (&blocks)[LEAF_BLOCKS], std::uint32_t i) {
   return blocks[i / LEAF_BLOCK];

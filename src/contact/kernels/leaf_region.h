@@ -1,4 +1,4 @@
-// What of a leaf lies where another one can have a contact with it. Included by the kernels only.
+// Features of a leaf that lie where another leaf can have a contact with them. Included by the kernels only.
 #pragma once
 
 #include "leaf_lanes.h"
@@ -12,7 +12,7 @@ inline FloatVectors alongAxes(const LeafRegion& region, const FloatVectors& v) {
   return {along(region.axes[0]), along(region.axes[1]), along(region.axes[2])};
 }
 
-/** How far outside the box, along each axis [m]. */
+/** Distance [m] of points outside the box along each axis; negative inside. */
 inline FloatVectors outsideOf(const LeafRegion& region, const FloatVectors& p) {
   const auto outside = [&](Floats at, int k) { return absolute(at - region.middle[k]) - region.halves[k]; };
   return {outside(p.x, 0), outside(p.y, 1), outside(p.z, 2)};
@@ -29,7 +29,7 @@ inline std::uint32_t verticesNear(const LeafShapes& a, const LeafShapes& b, cons
   });
 }
 
-/** Edges by their middles and what leads from there to their ends [m]. */
+/** Edges by their middles and the ways [m] from there to their second ends. */
 struct FloatSegments {
   FloatSegments(const LeafEdges& edges, std::uint32_t first)
       : half(0.5f * row(&edges.lengths[first]) * severalVectors(edges.directions, first)),
@@ -37,7 +37,7 @@ struct FloatSegments {
   FloatVectors half, middle;
 };
 
-/** Do the boxes of edges come so near the leaf's? */
+/** Whether the boxes of edges come within `reach` [m] of the leaf's. */
 inline FloatMask areNear(const LeafShapes& leaf, const FloatSegments& edges, float reach) {
   const auto outside = [&](Floats middle, Floats half, int k) {
     return absolute(middle - leaf.middle[k]) - absolute(half) - leaf.halves[k];
@@ -46,13 +46,13 @@ inline FloatMask areNear(const LeafShapes& leaf, const FloatSegments& edges, flo
                  outside(edges.middle.z, edges.half.z, 2)) <= reach;
 }
 
-/** How far edges lie outside the box, along each axis [m]. */
+/** Distance [m] of edges outside the box along each axis; negative inside. */
 inline FloatVectors outsideOf(const LeafRegion& region, const FloatSegments& edges) {
   const FloatVectors middle = outsideOf(region, alongAxes(region, edges.middle)), along = alongAxes(region, edges.half);
   return {middle.x - absolute(along.x), middle.y - absolute(along.y), middle.z - absolute(along.z)};
 }
 
-/** Edges of a that come so near b's box, and of whose way outside along the axes of its region the test holds. */
+/** Edges of a that come within `reach` [m] of b's box, and for whose distances outside along the axes of its region the test holds. */
 template <typename Test>
 inline std::uint32_t edgesNear(const LeafShapes& a, const LeafShapes& b, float reach, Test&& test) {
   return edgesWhere(a, [&](const LeafEdges& block, std::uint32_t i) {
@@ -72,7 +72,7 @@ inline std::uint32_t edgesNear(const LeafShapes& a, const LeafShapes& b, const L
   });
 }
 
-/** How far [m] points may move along a unit vector, or several, with room for rounding. */
+/** Largest motion [m] of points along a unit vector, or several, with room for rounding. */
 template <typename Number>
 inline Number motionAlong(const LeafReach& reach, Number x, Number y, Number z) {
   Number along = reach.rounding - Number{};

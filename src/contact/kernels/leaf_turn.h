@@ -19,7 +19,7 @@ struct LeafTurn {
     const float none[3] = {0, 0, 0};
     turn(in, none, out);
   }
-  /** Normals turn; an offset grows by what the translation is along the normal. */
+  /** Normals turn; an offset grows by the translation's part along the normal. */
   void planes(const float (&in)[4][LEAF_BLOCK], float (&out)[4][LEAF_BLOCK]) const {
     directions(in, out);
     for (int i = 0; i < LEAF_BLOCK; i += FLOAT_LANES)
@@ -29,7 +29,7 @@ struct LeafTurn {
   void direction(const float (&in)[3], float (&out)[3]) const {
     for (int k = 0; k < 3; ++k) out[k] = R[3 * k] * in[0] + R[3 * k + 1] * in[1] + R[3 * k + 2] * in[2];
   }
-  /** The box around the box where it comes to lie. */
+  /** The box around the turned box. */
   void box(const LeafShapes& in, LeafShapes* out) const {
     const auto size = [](float value) { return value < 0 ? -value : value; };
     for (int k = 0; k < 3; ++k) {

@@ -17,7 +17,7 @@ inline Vectors turnedPoint(const Motion& X, const Vectors& p) {
   return {row(0), row(1), row(2)};
 }
 
-/** In the mesh's frame of the faces. @param at in frame F */
+/** Points in the frame of the faces' mesh. @param at in frame F */
 inline Vectors seenByFaces(const NearVertices& vertices, const Vectors& at) {
   return vertices.faces_move ? turnedPoint(vertices.X_MF, at) : at;
 }
@@ -49,7 +49,7 @@ inline WorldContacts inWorld(const Place& place, const Vectors& at, const Vector
   return {turnedPoint(place.X_WF, middle), turnedDirection(place.X_WF, normal)};
 }
 
-/** ContactRow::weight and what follows. */
+/** ContactRow::weight and the fields behind it. */
 constexpr struct {
   double weight;
   std::uint64_t pierced;
@@ -97,7 +97,7 @@ template <typename Faces, typename Lanes>
   return depth;
 }
 
-/** What vertices ask of faces in frame F and in the world; of one face in all lanes it is kept. */
+/** Planes of faces in frame F, and their normals in the world; those of one face in all lanes are kept. */
 class FacePlanes {
  public:
   FacePlanes(const NearVertices& vertices, const PlainContacts* plain)
@@ -122,7 +122,7 @@ class FacePlanes {
  private:
   const NearVertices& vertices_;
   const Motion& X_WF_;
-  std::uint32_t index_ = 0xFFFFFFFF;  ///< whose the others are
+  std::uint32_t index_ = 0xFFFFFFFF;  ///< face whose the other fields are
   PlaneInF<double> plane_{vertices_, {}, 0};
   VectorsOf<double> up_W_{};
 };

@@ -1,4 +1,4 @@
-// What the kernels work on: plain numbers, the same for every instruction set.
+// Input and output of the kernels: plain numbers, the same for every instruction set.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@ struct alignas(32) Vec4 {
   double x, y, z, w;
 };
 
-/** What the w of a vertex holds, and of an edge for its ends: a name's bits. */
+/** Bits of a name, as the w of a vertex holds them, and of an edge for its ends. */
 inline double nameBits(std::int64_t name) {
   double bits;
   __builtin_memcpy(&bits, &name, sizeof bits);
@@ -27,8 +27,8 @@ struct alignas(64) FaceRecord {
   Vec4 sides[3];  ///< unit, in the plane, square to side k and into the face; offset
 };
 
-/** Over which of its sides k a vertex's contact with a face may fade, instead of being taken over by what lies behind: bits k for vertices
- * above its plane, 3 + k for those below; from OPEN_TO_POINTS on the same for points, which have no edges. */
+/** Sides k of a face over which a vertex's contact may fade, instead of being taken over by a feature behind: bits k for vertices above its
+ * plane, 3 + k for those below; from OPEN_TO_POINTS on the same for points, which have no edges. */
 using OpenSides = std::int32_t;
 constexpr int OPEN_TO_POINTS = 6;
 
@@ -67,12 +67,12 @@ struct VertexCone {
   bool is_round;  ///< flat and round edges only (ROUND_COSINE)
 };
 
-/** Where what has a contact with a leaf's features may lie: above or below its box, and beside it by so much. */
+/** Region where features may lie that have a contact with a leaf's: above or below its box, and beside it by so much. */
 struct LeafRegion {
   float axes[3][3];            ///< unit, square to each other; the last one leads up
   float middle[3], halves[3];  ///< of the box of all elements along the axes [m]
   float lean;                  ///< sine of the widest angle of a contact's direction, but for its sign, from `up`; 1: any direction
-  float fall;                  ///< how far beside: both these parts of the range, less this one of the height
+  float fall;                  ///< distance beside: both these parts of the range, less this one of the height
   float edge_beside;           ///< edges with edges: this part of the range, less the height
 };
 
@@ -108,7 +108,7 @@ struct alignas(64) LeafShapes {
   LeafCones cones[LEAF_BLOCKS];  ///< of the vertices
 };
 
-/** What a search for candidates asks [m]. */
+/** Reach of a search for candidates [m]. */
 struct LeafReach {
   float range;     ///< of contacts, and the margin
   float margin;    ///< that points may move
@@ -120,7 +120,7 @@ struct LeafReach {
   float ways[3][3];
 };
 
-/** How near candidates must be [m]. */
+/** Reach of candidates that are near [m]. */
 struct Reach {
   double range;   ///< of contacts
   double margin;  ///< that points may move
@@ -168,12 +168,12 @@ struct ContactRow {
 struct NearVertices {
   const Vec4* records;  ///< in frame F; w: nameBits
   bool faces_move;      ///< their records are in the moving mesh's frame
-  Motion X_MF, X_FM;    ///< asked only then
+  Motion X_MF, X_FM;    ///< read only then
 };
 
-/** Where the contacts of vertices of one mesh with faces of the other are. */
+/** Data that place contacts of vertices of one mesh with faces of the other in the world, and name them. */
 struct ContactPlace {
-  const int* face_names;  ///< as the faces
+  const int* face_names;  ///< per face
   bool vertices_are_a;    ///< A is the mesh of the vertices
   Motion X_FM, X_WF;
   double layer;         ///< [m] rA + rB
@@ -182,7 +182,7 @@ struct ContactPlace {
   bool keeps_feet;      ///< witness points are asked for
 };
 
-/** Where kernels write contacts that need no closer look. Room for one more than there are candidates. */
+/** Contacts that need no closer look, as kernels write them. Room for one more than there are candidates. */
 struct PlainContacts {
   ContactPlace place;
   ContactRow* rows;
@@ -202,12 +202,12 @@ struct BesideSides {
   double reach;           ///< [m] farther beside the face the vertex lies over no other face of the plane
 };
 
-/** The row of a contact that fades, and whose it is. */
+/** The row of a contact that fades, and its pair. */
 struct FadingContact {
   std::uint32_t row, pair;
 };
 
-/** Where kernels write contacts that fade. Room for one more row than there are pairs. */
+/** Contacts that fade, as kernels write them. Room for one more row than there are pairs. */
 struct FadingContacts {
   ContactRow* rows;
   FadingContact* asked;  ///< those within the face's reach; where witness points are asked for, all

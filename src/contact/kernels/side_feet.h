@@ -1,4 +1,4 @@
-// Vertices beside faces: where on the faces' sides their contacts are. Included by the kernels only.
+// Vertices beside faces: places of their contacts on the faces' sides. Included by the kernels only.
 #pragma once
 
 #include "plain_contacts.h"
@@ -15,13 +15,13 @@ inline Vectors closestOnSide(const Vectors& start, const Vectors& end, const Vec
 
 inline Vectors chosen(Mask first, const Vectors& a, const Vectors& b) { return {first ? a.x : b.x, first ? a.y : b.y, first ? a.z : b.z}; }
 
-/** Where contacts are, and the depth [m] that they lose there, since the vertices lie beside their faces. */
+/** Places of contacts, and the depth [m] that they lose there, since the vertices lie beside their faces. */
 struct FeetOnSides {
   Vectors foot;
   Doubles lost;
 };
 
-/** Of each lane: on the nearest of the sides. @param projection of the vertex into the face's plane */
+/** Foot of each lane's contact, on the nearest of the sides. @param projection of the vertex into the face's plane */
 inline FeetOnSides nearestFeet(const BesideSides* sides, std::uint32_t count, const FaceCorners* corners, const Vectors& projection) {
   constexpr int NEXT[] = {1, 2, 0};
   FeetOnSides nearest{{}, all(__builtin_inf())};
@@ -51,7 +51,7 @@ inline FeetOnSides nearestFeet(const BesideSides* sides, std::uint32_t count, co
   return nearest;
 }
 
-/** Of each lane, how far beside its face the plane goes on [m]. */
+/** Reach [m] of each lane's plane beside its face. */
 inline Doubles reaches(const BesideSides* sides, std::uint32_t count) {
   Doubles reach;
   for (std::uint32_t i = 0; i < LANES; ++i) reach[i] = sides[i < count ? i : 0].reach;

@@ -35,7 +35,7 @@ inline Mask vertexFaceBits(const InsideSides& sides, Doubles inside, Mask plain)
          bit(inside < -2 * CLOSED, VertexFaceHit::BESIDE) | bit(inside < NEAR_BORDER, VertexFaceHit::NEAR_BORDER);
 }
 
-/** Is a batch whole and each of its candidates flagged? @param flags null: none is */
+/** Whether a batch is whole and each of its candidates flagged. @param flags null: none is */
 inline bool areAll(const std::uint8_t* flags, std::uint32_t first, const Batch& batch) {
   constexpr std::uint8_t ONES[] = {1, 1, 1, 1, 1, 1, 1, 1};
   static_assert(sizeof ONES >= LANES);
@@ -56,7 +56,7 @@ class VertexFaceTest {
         hits_(hits),
         deepest_(all(plain ? plain->deepest : 0)) {}
 
-  /** Of vertices that are surely over their faces and not near a border. @return false: there is one that needs a closer look */
+  /** Appends contacts of vertices that are surely over their faces and not near a border. @return false: one needs a closer look */
   bool appendInner(const Batch& batch) {
     const Rows vertices = batch.points(vertices_.records, OF_A);
     return withFaces(batch, faces_, [&](const auto& faces) {
@@ -68,7 +68,7 @@ class VertexFaceTest {
     });
   }
 
-  /** Of any. Which lanes have what is hard to foresee: it does not branch. @param first the batch's first candidate */
+  /** Tests any vertices, without branches: hits of lanes are hard to foresee. @param first the batch's first candidate */
   void test(const Batch& batch, std::uint32_t first) {
     withFaces(batch, faces_, [&](const auto& faces) { test(batch, faces, first); });
   }
@@ -100,7 +100,7 @@ class VertexFaceTest {
   }
 
  private:
-  /** Plain contacts of the lanes where there is one. @return their bits */
+  /** Appends plain contacts of the lanes where there is one. @return their bits */
   template <typename Faces, typename Plane>
   [[gnu::always_inline]] unsigned append(const Batch& batch, const Faces& faces, const Rows& vertices, const Plane& plane, Doubles height,
                                          Mask is) {

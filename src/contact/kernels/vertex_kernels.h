@@ -1,4 +1,4 @@
-// What the edges around a vertex say, and vertices near edges, in double. Included by kernels_code.h only.
+// Leading edges around vertices, and vertices near edges, in double. Included by kernels_code.h only.
 #pragma once
 
 #include "candidate_kernels.h"
@@ -62,7 +62,7 @@ bool leadTo(const EdgeDirections* blocks, int count, const double* towards, doub
   return bitsOf(leads) != 0;
 }
 
-/** Offset from the foot on an edge, which may lie beyond its ends, and where that foot is as part of the edge. */
+/** Offset from the foot on an edge, which may lie beyond its ends, and that foot's place as part of the edge. */
 struct EdgeOffset {
   Vectors d;
   Doubles part;
