@@ -14,7 +14,7 @@ Vector3 tangential(const Vector3& v, const Vector3& normal) { return v - normal 
 
 bool compliant(const ContactConstraint& c) { return std::isfinite(c.stiffness) && std::isfinite(c.damping) && c.stiffness + c.damping > 0; }
 
-// A step of free motion keeps v^2/2 + a x - a dt v/2 constant; e^2 of it, taken at the surface, is what is left after an impact. So e = 1
+// A step of free motion keeps v^2/2 + a x - a dt v/2 constant; an impact leaves e^2 of it, taken at the surface. So e = 1
 // neither gains nor loses height, wherever in the step the impact falls and however deep it was noticed.
 double impactSpeed(double closing, double acceleration, double depth, double dt) {
   if (closing <= 0) return 0;

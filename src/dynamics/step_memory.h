@@ -1,4 +1,4 @@
-// What the articulated stepper remembers from one step to the next: reactions, as forces, so that a step of another length can use them.
+// Memory of the articulated stepper from one step to the next: reactions, as forces, so that a step of another length can use them.
 #pragma once
 
 #include <cstdint>
