@@ -1,4 +1,4 @@
-// Bodies that move along given paths close to others: what contact generation is timed on.
+// Scenes on which contact generation is timed: bodies that move along given paths close to others.
 #pragma once
 
 #include <functional>

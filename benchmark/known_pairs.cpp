@@ -25,7 +25,7 @@ MeshPair pairOf(const Collider& a, const Pose& X_WA, const Collider& standing) {
           Pose::Identity()};
 }
 
-/** Which pairs of features have a contact. Every pair is known once: a contact with a plane by one of its faces. */
+/** Pairs of features that have a contact. Every pair is known once: a contact with a plane by one of its faces. */
 class KnownContacts {
  public:
   KnownContacts(const std::vector<Contact>& plain, const ContactWriter& close) {

@@ -1,5 +1,5 @@
-// What other engines take for the mesh queries they have, beside contact generation in the same run. Processor time per step, mean over
-// some poses; the label says what is computed. Arguments: Google Benchmark's.
+// Times of other engines' mesh queries, beside contact generation in the same run. Processor time per step, mean over some poses; the label
+// names the query's result. Arguments: Google Benchmark's.
 #include <benchmark/benchmark.h>
 
 #include <cstdio>

@@ -99,7 +99,7 @@ class SoupBuilder {
   std::size_t polygons_ = 0;
 };
 
-/** What the header of a PLY announces must have arrived: assimp ends early without a word where rows are missing. */
+/** Refuses a PLY of fewer vertices or faces than its header announces: assimp ends early without a word where rows are missing. */
 void checkPlyArrived(const std::string& file, const PlyCounts& announced, const aiScene& scene) {
   std::size_t vertices = 0, faces = 0;
   for (unsigned m = 0; m < scene.mNumMeshes; ++m) {

@@ -10,7 +10,7 @@
 
 namespace blem_sim {
 
-/** /diagnostics once per second of wall time, also while paused: speed, contacts and what to change. */
+/** /diagnostics once per second of wall time, also while paused: speed, contacts and settings to change. */
 class DiagnosticsPublisher : public StepPublisher {
  public:
   DiagnosticsPublisher(ros::NodeHandle node, ros::NodeHandle private_node, SimulationLoop* loop);

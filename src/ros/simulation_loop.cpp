@@ -89,7 +89,7 @@ void SimulationLoop::flush() {
 }
 
 void SimulationLoop::resetSimulation() {
-  sender_.drain();  // what was before goes out before what is told directly
+  sender_.drain();  // messages of earlier steps go out before those that are published directly
   simulator_->resetSimulation();
   for (const auto& publisher : publishers_) publisher->timeRestarted();
   publish(simulator_->report());

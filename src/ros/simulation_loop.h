@@ -17,7 +17,7 @@ namespace blem_sim {
 /** [s] that publishing took in the stepping thread since the start. */
 struct PublishingTime {
   double wall = 0;
-  double processor = 0;  ///< without waiting, and without what other threads and programs take
+  double processor = 0;  ///< without waiting, and without the time of other threads and programs
 };
 
 class SimulationLoop {
@@ -44,7 +44,7 @@ class SimulationLoop {
   /** An environment was loaded or unloaded. */
   void geometryChanged();
 
-  /** What publishers of every step send their messages with. */
+  /** Sender for the messages of every step's publishers. */
   StepSender* sender() { return &sender_; }
 
   const PublishingTime& publishingTime() const { return publishing_time_; }

@@ -50,7 +50,7 @@ struct SimulationNode::Impl {
   std::unique_ptr<EnvironmentServices> environments;
 
   void addPublishers() {
-    // The clock goes last: whoever wakes by it finds the messages of that time on their way.
+    // The clock goes last: a node that wakes by it finds the messages of that time on their way.
     loop.add(std::make_unique<JointStatePublisher>(node, simulator, loop.sender()));
     loop.add(std::make_unique<TransformPublisher>(node, simulator, loop.sender()));
     loop.add(std::make_unique<OdometryPublisher>(node, simulator, loop.sender()));

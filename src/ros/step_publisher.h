@@ -1,4 +1,4 @@
-// What the simulation loop tells after each step; one family of topics each.
+// Interface of publishers, which the simulation loop calls after each step; one family of topics each.
 #pragma once
 
 #include "blem_sim/sim/simulator.h"
@@ -12,7 +12,7 @@ class StepPublisher {
   virtual void publish(const StepReport& report) = 0;
   /** Simulated time starts again at 0. */
   virtual void timeRestarted() {}
-  /** Steps are about to be made again after a pause: what was measured on the wall clock starts anew. */
+  /** Steps are about to be made again after a pause: measurements on the wall clock start anew. */
   virtual void resumed() {}
   /** An environment was loaded or unloaded. */
   virtual void geometryChanged() {}
