@@ -124,7 +124,7 @@ std::vector<NamedContact> contactsOf(const MeshPair& pair, CandidateLists* lists
   found.plain.overwrite(&plain);
   found.clear();
   buffers->turned.turnForContacts(*lists, pair.X_FM);
-  // As if the meshes crossed: then none is plain, and all say whose they are.
+  // As if the meshes crossed: then no contact is plain, and all name their features.
   found.crossings.push_back({});
   Evaluation(pair, lists, pairs, buffers, &found).findContacts();
   std::vector<NamedContact> out;
@@ -233,7 +233,7 @@ TEST(CandidateCompleteness, ListsHoldEveryCrossing) {
     SCOPED_TRACE(a.name + " at " + b.name + ", pose " + std::to_string(i));
     const Pose X = someMeeting(random, a, b, 0.1 * LAYER);
     const MeshPair pair = pairOf(a.collider, b.collider, X);
-    // It slides along, and turns about some axis through its middle, not at all or as fast.
+    // The mesh slides along, and turns about some axis through its middle, not at all or as fast.
     const double step = LAYER * std::pow(10, random.uniform(-4, -2)), steps = 10;
     const Vector3 shift = step * random.point(1).normalized(), turn = (i % 2) * step / SIZE * random.point(1).normalized();
     const auto after = [&](double count) { return makePose(count * shift) * X * makePose(Vector3::Zero(), count * turn); };

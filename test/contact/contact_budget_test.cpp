@@ -62,7 +62,7 @@ TEST_P(Budgets, LeaveThreeOfEveryPairHoweverManyThereAre) {
   }
 }
 
-// Who asks for a contact or two a pair gets that: a point on a point.
+// A model whose own budget is a contact or two gets that per pair: a point on a point.
 TEST_P(Budgets, AreOfAPairWhatAModelsOwnIs) {
   if (method().reduce == reduceNone) return;  // has no budget
   for (const int k : {1, 2}) {
@@ -73,7 +73,7 @@ TEST_P(Budgets, AreOfAPairWhatAModelsOwnIs) {
   }
 }
 
-/** Of the support functions, as far as the reduction tells it, over directions of its own. */
+/** Largest lack of the kept contacts' support function, as ReductionLoss::wrench bounds it, over directions of its own. */
 double worstLack(const Contacts& all, const Contacts& kept) {
   Box box;
   for (const Contact& contact : all) box.extend(contact.point);
@@ -125,7 +125,7 @@ TEST(HullBudget, CountsWhatHullsNeedAndNoMore) {
   ASSERT_LT(corners, 20u);
   ReductionMemory memory;
   reduceAll(manifolds, {1, 1}, {0, 0}, {{INT_MAX}, {40}}, *findReduction("hull"), &memory);
-  const double share = 40.0 * corners / (corners + 40);  // of what it asks for, as the noisy one asks for 40
+  const double share = 40.0 * corners / (corners + 40);  // of the corners asked for, as the noisy one asks for 40
   EXPECT_NEAR(static_cast<double>(manifolds[0].contacts.size()), share, 1);
   EXPECT_EQ(manifolds[0].contacts.size() + manifolds[1].contacts.size(), 40u);
 }

@@ -50,7 +50,7 @@ struct EdgesNearEdges {
   std::vector<Candidate> candidates;
 };
 
-/** What one set finds. */
+/** Contacts that one instruction set finds. */
 struct Found {
   Found(const Kernels& set, const EdgesNearEdges& in, bool first_is_a, bool takes_plain)
       : hits(CANDIDATES + 1),

@@ -87,7 +87,7 @@ struct PlainVertexFaces {
   PlainContacts plain;
 };
 
-/** What one set finds, as bytes. */
+/** Results of one instruction set, as bytes. */
 struct Found {
   std::vector<std::uint32_t> counts, indices;
   std::vector<double> numbers;
@@ -213,7 +213,7 @@ TEST(Kernels, PlainContactsAreThoseMadeOneByOne) {
   }
 }
 
-/** Those that can have a contact, the flagged ones first, and their flags. */
+/** Keeps the candidates that can have a contact, the flagged ones first. @return their flags */
 std::vector<std::uint8_t> sortByFlags(const NearVertices& vertices, const Reach& reach, Features* features) {
   const Kernels& set = *availableKernels().front();
   std::vector<Candidate> near(CANDIDATES);

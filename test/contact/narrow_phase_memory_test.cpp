@@ -1,4 +1,4 @@
-// What a search remembers saves time and changes nothing.
+// Memory of the narrow phase saves time and changes nothing.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@ bool sameBits(const Contact& a, const Contact& b) {
          std::memcmp(a.normal_BA.data(), b.normal_BA.data(), sizeof(Vector3)) == 0 && a.depth == b.depth;
 }
 
-/** Along a path, contacts with and without a memory. @return how many there were, and whether meshes crossed and did not */
+/** Along a path, contacts with and without a memory. @return their number, and whether meshes crossed and did not */
 struct Followed {
   std::size_t contacts = 0;
   bool crossed = false, apart = false;

@@ -178,7 +178,7 @@ TEST(NarrowPhase, HalfSpaceInEitherOrder) {
     const ContactManifold above = contactsOf(box, X_WA, half_space, X_WH, 0.001);
     ContactManifold below = contactsOf(half_space, X_WH, box, X_WA, 0.001);
     EXPECT_FALSE(above.pierced);
-    ASSERT_EQ(above.contacts.size(), 4u) << gap;  // what subdivision adds lies inside the bottom's sides
+    ASSERT_EQ(above.contacts.size(), 4u) << gap;  // vertices of the subdivision lie inside the bottom's sides
     for (const Contact& c : above.contacts) {
       EXPECT_NEAR((c.normal_BA - X_WH.linear().col(2)).norm(), 0, 1e-12);
       EXPECT_NEAR(c.depth, 0.004 - gap, 1e-12);

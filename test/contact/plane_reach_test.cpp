@@ -16,20 +16,20 @@
 namespace blem_sim {
 namespace {
 
-/** How far [m] a point projects beside a face; 0 over it. */
+/** Distance [m] of a point's projection from a face; 0 over it. */
 double besideFace(const TriangleMesh& mesh, int face, const Vector3& p) {
   const Vector3i& e = mesh.elements[face];
   const Vector3 normal = MeshTopology::normal(mesh, face), projection = p - normal.dot(p - mesh.vertices[e[0]]) * normal;
   return closestPointTriangle(projection, triangleOf(mesh, face)).distance;
 }
 
-/** Is p inside all sides of the face, but for so little as counts as over it? */
+/** Whether p is inside all sides of the face, but for so little as counts as over it. */
 bool isOver(const kernels::FaceRecord& face, const Vector3& p) {
   return std::all_of(std::begin(face.sides), std::end(face.sides),
                      [&](const kernels::Vec4& side) { return vector3(side).dot(p) - side.w >= -2 * CLOSED; });
 }
 
-/** Is it outside of some sides, behind none of which the plane goes on? */
+/** Whether p is outside of some sides, behind none of which the plane goes on. */
 bool mayFade(const MeshSide& side, int face, const kernels::FaceRecord& record, const Vector3& p) {
   bool is_outside = false;
   for (int k = 0; k < 3; ++k) {

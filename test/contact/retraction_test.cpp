@@ -1,4 +1,4 @@
-// Beyond the layer: what the fallback says where bare meshes cross.
+// Beyond the layer: contacts of the fallback where bare meshes cross.
 #include <gtest/gtest.h>
 
 #include "contact_shapes.h"
@@ -15,7 +15,7 @@ int countPierced(const ContactManifold& manifold) {
   return std::count_if(manifold.contacts.begin(), manifold.contacts.end(), [](const Contact& c) { return c.pierced; });
 }
 
-/** Depth grows past the layer, the direction stays: what a cube sunk into another or a sheet should feel, whatever the tessellations. */
+/** For a cube sunk into another or a sheet, of any tessellations, depth grows past the layer and the direction stays. */
 TEST(Retraction, SunkCubeIsPushedOutTheWayItCame) {
   struct Ground {
     const char* name;

@@ -21,7 +21,7 @@ struct Counts {
   int covered = 0, all = 0;
 };
 
-/** How many contacts of a mesh with the sheet x < 0 another surface covers. */
+/** Number of contacts of a mesh with the sheet x < 0, and of those that another surface covers. */
 Counts countCovered(const TriangleMesh& mesh, const Pose& X_WM, const Collider& other, const Pose& X_WO) {
   const Collider sheet = colliderOf(gridMesh(0.4, 0.4, 1, 1)), body = colliderOf(mesh, 0.0025);
   const Pose X_WS = makePose({-0.2, 0, 0});
@@ -45,7 +45,7 @@ TEST(SurfaceCover, EdgeThatGoesOnInAnotherSheetHasNoContactBesideIt) {
   const Collider sheet = colliderOf(gridMesh(0.4, 0.4, 3, 2));
   EXPECT_EQ(countCovered(pointMesh(Vector3::Zero()), X_WM, sheet, BESIDE).all, 1);
   EXPECT_EQ(countCovered(pointMesh(Vector3::Zero()), X_WM, sheet, BESIDE).covered, 1);
-  // A gap, a step, and a slope down leave the edge what it is.
+  // A gap, a step, and a slope down leave the edge as it is.
   for (const Pose& X_WO : {makePose({0.2001, 0, 0}), makePose({0.2, 0, -1e-5}), makePose({0.2, 0, -0.2 * std::tan(0.8)}, {0, 0.8, 0})})
     EXPECT_EQ(countCovered(pointMesh(Vector3::Zero()), X_WM, sheet, X_WO).covered, 0);
   const std::shared_ptr<const CollisionGeometry> plane = CollisionGeometry::halfSpace(Vector3::UnitZ(), 0);

@@ -31,7 +31,7 @@ TEST(Sweep, PlateThroughSheetIsSeenThoughNeitherEndIsNear) {
   EXPECT_FALSE(mayComeWithin(1e-3, plate, sweep({0, 0, 0.05}, {0.3, 0, -0.048}), sheet, GeometrySweep{}));
   // Both move on together.
   EXPECT_FALSE(mayComeWithin(0.04, plate, sweep({0, 0, 0.05}, {0, 0, -0.1}), sheet, sweep({0, 0, 0}, {0, 0, -0.1})));
-  // It turns over: its edge comes down to the sheet half way.
+  // The plate turns over: its edge comes down to the sheet half way.
   EXPECT_TRUE(mayComeWithin(1e-3, plate, sweep({0, 0, 0.0505}, Vector3::Zero(), {M_PI, 0, 0}), sheet, GeometrySweep{}));
   EXPECT_FALSE(mayComeWithin(1e-3, plate, sweep({0, 0, 0.0515}, Vector3::Zero(), {M_PI, 0, 0}), sheet, GeometrySweep{}));
 }
@@ -67,7 +67,7 @@ TEST(Sweep, NeverMissesWhatSamplesFind) {
     const double within = 0.01;
     const bool may = mayComeWithin(within, geometryOf(a), way_a, geometryOf(b), way_b);
     EXPECT_TRUE(may || least > within) << i;
-    // Samples miss by what moves between two of them.
+    // Samples miss by the motion between two of them.
     EXPECT_TRUE(!may || least <= 1.25 * within + most / 300) << i;
     seen += may;
     cleared += !may;

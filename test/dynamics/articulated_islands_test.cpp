@@ -1,4 +1,4 @@
-// The articulated stepper where trees meet: loops, threads, edits from outside; and what it tells of its own solve.
+// The articulated stepper where trees meet: loops, threads, edits from outside; and its report of its own solve.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -174,7 +174,7 @@ TEST(ArticulatedFlight, KeepsItsMomenta) {
   EXPECT_LT((com() - start + Vector3(0, 0, 0.5 * G * 1.001)).norm(), 1e-7);
 }
 
-// A step that is like the one before is exact; what is left of it is stated.
+// A step that is like the one before is exact; the report states the residual.
 TEST(ArticulatedReport, StatesWhatIsLeft) {
   World world({0, 0, -G}, {});
   world.addBody(boxBody("cube", 1, CUBE, {0, 0, 0.0501}));

@@ -1,4 +1,4 @@
-// Contacts and loops that correct depth and gaps must not throw what they correct, nor squeeze it.
+// Contacts and loops that correct depth and gaps must not throw bodies, nor squeeze them.
 #include <gtest/gtest.h>
 
 #include <algorithm>

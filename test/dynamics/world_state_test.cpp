@@ -108,10 +108,10 @@ TEST_P(Replay, WorldsInThreadsKeepTheirBits) {
 TEST_P(Replay, BrokenStepIsReportedAndTheWorldLivesOn) {
   Scene3 scene(GetParam()), undisturbed(GetParam());
   for (int i = 0; i < 100; ++i) scene.step(), undisturbed.step();
-  // What was asked for is not a number.
+  // The input is not a number.
   scene.contacts = {contactOf(0, WORLD_BODY, {0, 0, std::nan("")}, Vector3::UnitZ(), 0, {}, 1)};
   EXPECT_FALSE(scene.world.step(DT, scene.contacts, std::vector<JointDrive>(2)).finite);
-  // What comes out is not a number: ODE itself fails on it.
+  // The result is not a number: ODE itself fails on it.
   const BodyState sane = scene.world.bodyState(0);
   scene.world.applyWrench(0, {{0, 0, 0}, {1e200, -1e250, 1e290}}, Vector3::Zero());
   EXPECT_FALSE(scene.step().finite);

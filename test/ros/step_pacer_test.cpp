@@ -9,7 +9,7 @@ using Clock = StepPacer::Clock;
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
-/** How many steps are due at once at `now`, each taking no time. */
+/** Number of steps that are due at once at `now`, each taking no time. */
 int stepsDue(StepPacer* pacer, Clock::time_point now) {
   int steps = 0;
   while (pacer->wait(now) <= 0 && steps < 100000) {

@@ -1,4 +1,4 @@
-// Messages of steps go out in order, and have gone out when they are waited for. Who is not waited for wakes by itself in time.
+// Messages of steps go out in order, and have gone out when drain() returns. Without it the sender's thread wakes by itself in time.
 #include "step_sender.h"
 
 #include <gtest/gtest.h>

@@ -69,7 +69,7 @@ TEST(ManyBodies, MoreModelsThanAreSimulatedAreRefusedInOneLine) {
   }
 }
 
-// Meshes cross from the start: the step says so, stays finite, and what crossed parts at a bounded speed.
+// Meshes cross from the start: the step says so, stays finite, and crossed bodies part at a bounded speed.
 TEST(ManyBodies, AHundredStartedInsideEachOtherIsSaidSo) {
   SimulationConfig config;
   config.environments = {ground(8)};

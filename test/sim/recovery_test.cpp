@@ -1,4 +1,4 @@
-// Past the layer: what starts inside something else, or was driven into it, leaves it steadily and the way it came, and comes to rest.
+// Past the layer: a body that starts inside another, or was driven into it, leaves it steadily and the way it came, and comes to rest.
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +11,7 @@ namespace {
 constexpr double SEPARATION_SPEED = 0.1;  // [m/s] of a contact
 constexpr double AT_REST = 1e-3;          // [m/s]
 
-/** What became of a scene. */
+/** Outcome of a scene. */
 struct Outcome {
   double fastest = 0;       ///< [m/s] of any body's middle, while meshes cross
   double max_of_layer = 0;  ///< while meshes cross

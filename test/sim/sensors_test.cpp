@@ -125,7 +125,7 @@ TEST(ImuSensor, InFreeFallItFeelsNothing) {
   EXPECT_NEAR(tilt.pitch, 0.2, 1e-9);
 }
 
-/** A balanced disc about z on a post: what turns it is its motor alone. */
+/** A balanced disc about z on a post: its motor alone turns it. */
 const char* const TURNTABLE = R"(<robot name="turntable">
   <link name="post"/>
   <link name="disc"><inertial><mass value="1"/><inertia ixx="0.1" iyy="0.1" izz="0.2" ixy="0" ixz="0" iyz="0"/></inertial></link>

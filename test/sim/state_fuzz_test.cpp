@@ -51,7 +51,7 @@ TEST_P(StateFuzz, OneChangedLetterOfTheLayoutIsRefused) {
   }
 }
 
-/** Whoever changes a state and its checksum with it is refused in one line with nothing changed, or gets what steps on. */
+/** A state that is changed together with its checksum is refused in one line with nothing changed, or can be stepped on. */
 TEST_P(StateFuzz, OneChangedWordUnderItsOwnChecksumBreaksNothing) {
   Simulator simulator(sceneOfAllKinds(GetParam()), UriResolver()), other(sceneOfAllKinds(GetParam()), UriResolver());
   setOut(&simulator);

@@ -1,4 +1,4 @@
-// A saved state goes on only where all is the same that its numbers rest on; else it is said what is not.
+// A saved state goes on only if all that its numbers rest on is the same; else the message names the difference.
 #include <functional>
 
 #include "blem_sim/geometry/input_error.h"

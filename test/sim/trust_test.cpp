@@ -1,4 +1,4 @@
-// What tells whether a run is to be trusted: contacts that leave their layers, energy out of nothing.
+// Signs that a run may not be trusted: contacts that leave their layers, energy out of nothing.
 #include <cmath>
 #include <utility>
 

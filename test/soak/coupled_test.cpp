@@ -71,14 +71,14 @@ struct Pushers : Mechanism {
 
 TEST(SoakPushing, ForcesAreEqualAndOpposite) {
   Pushers pushers;
-  // In motion the two ways to reckon a step's forces, from joint coordinates and from bodies, differ by what a step changes of them.
+  // In motion the two ways to reckon a step's forces, from joint coordinates and from bodies, differ by the forces' change.
   double moving = 0, worst = 0, force = 0, gap = 0;
   const int steps = soakSteps(20, 3);
   for (int i = 0; i < steps; ++i) {
     const std::vector<BodyState> before = bodyStates(pushers.world);
     const SolveResult& result = pushers.step();
     ASSERT_TRUE(result.finite) << i;
-    // What each robot feels from the other: what its bodies' motion needs, less what its base gives.
+    // Force on each robot from the other: that which its bodies' motion needs, less its base's.
     Vector3 felt[2];
     for (int k = 0; k < 2; ++k)
       felt[k] =

@@ -1,4 +1,4 @@
-// Thrown bodies must not pass, whatever they hit, how they are turned and how thin it is; and what a step of it costs at most.
+// Thrown bodies must not pass any body, however thin, at any turn; and the largest time of a step.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -9,7 +9,7 @@
 namespace blem_sim {
 namespace {
 
-/** Throws in every orientation at a speed; prints what became of it. */
+/** Throws in every orientation at a speed; prints the outcome. */
 void sweep(const std::string& name, ThrowScene scene, double speed) {
   ThrowOutcome all;
   StepTimes times;

@@ -118,7 +118,7 @@ double cornerMotion(const Pose& before, const Pose& after) {
   return worst;
 }
 
-/** Largest deviations, and what they are measured against. */
+/** Largest deviations, and the largest torque, against which they are measured. */
 struct WrenchErrors {
   double force = 0, torque = 0, largest_torque = 0;
   void add(const Wrench& measured, const Wrench& expected) {

@@ -73,7 +73,7 @@ Runner start(std::uint64_t seed, const Options& options) {
   run(seed, options, ends[1]);
 }
 
-/** What became of a runner whose pipe has something to say or whose time is over. */
+/** Outcome of a runner whose pipe has something to read or whose time is over. */
 SceneOutcome finish(const Runner& runner, bool hangs) {
   SceneOutcome outcome;
   if (hangs) kill(runner.process, SIGKILL);

@@ -1,4 +1,4 @@
-// Random scenes of test/support/throw_scene.h: what passed, what crossed, and what of it was not said.
+// Random scenes of test/support/throw_scene.h: bodies that passed, meshes that crossed, and those that were not said.
 #include <cstdlib>
 #include <cstring>
 #include <exception>
