@@ -19,7 +19,7 @@ struct ContactScene {
   Vector3 approach = -Vector3::UnitZ();              ///< unit, that frame: the way from the moving bodies to the standing one
 };
 
-/** [m/s] of the moving bodies; every one oscillates by itself at 5 Hz. */
+/** Speed [m/s] of the moving bodies; every one oscillates by itself at 5 Hz. */
 constexpr double SCENE_SPEED = 0.1;
 
 /**

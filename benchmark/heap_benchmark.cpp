@@ -55,7 +55,7 @@ HeapScene spheres(int count) {
   return scene;
 }
 
-/** [us] of each step of one thing. */
+/** Times [us] of each step of one thing. */
 class Times {
  public:
   void add(double seconds) { all_.push_back(1e6 * seconds); }

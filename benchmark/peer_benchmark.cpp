@@ -12,7 +12,7 @@ namespace {
 
 using MakeScene = std::unique_ptr<ContactScene> (*)();
 
-/** A scene and our own times on it. */
+/** A scene and blem_sim's own times on it. */
 struct Measured {
   MakeScene make = nullptr;
   std::unique_ptr<ContactScene> scene;

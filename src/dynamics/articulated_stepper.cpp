@@ -111,7 +111,7 @@ bool ArticulatedStepper::isOurs(const Scene& scene, int tree) const {
   return true;
 }
 
-// A tree whose bodies somebody else has set since our last step is read back; the others' joint coordinates are kept as they are.
+// Reads back the trees whose bodies were set from outside since the last step; the others' joint coordinates are kept as they are.
 void ArticulatedStepper::readEdits(const Scene& scene) {
   for (int tree = 0; tree < static_cast<int>(forest_.trees().size()); ++tree) {
     if (isOurs(scene, tree)) continue;
@@ -358,7 +358,8 @@ void ArticulatedStepper::step(Scene* scene, const StepInput& input, SolveResult*
   writeScene(scene);
 }
 
-// The same words for a world that was just made and for one that was brought back to its beginning: trees that are not ours are left out.
+// The same words for a world that was just made and for one that was brought back to its beginning: trees changed from outside are left
+// out.
 void ArticulatedStepper::save(const Scene& scene, StateWriter* writer) const {
   memory_.save(scene, writer);
   const int trees = structure_ == scene.structure() ? static_cast<int>(forest_.trees().size()) : 0;

@@ -27,7 +27,7 @@ class BlockMatrix {
   void analyse();
 
   void setZero();
-  /** Only its lower triangle counts. */
+  /** A block on the diagonal, of which only the lower triangle counts. */
   Block diagonal(int block);
   /** The block of rows `a` and columns `b`, which are coupled, or, if `transposed` says so, of rows b and columns a. */
   Block coupling(int a, int b, bool* transposed);

@@ -36,9 +36,8 @@ void setRestitution(const ContactConstraint& c, const ContactMotion& motion, dou
     row->approach = impactSpeed(-c.normal_BA.dot(motion.velocity_BA), acceleration, c.depth, dt);
 }
 
-// The force friction is about to exert: last step's, less what the present slip adds against the row's softness. So the pyramid's first
-// axis follows the slip as soon as it exceeds the creep, and the last force below; an axis of the last force alone turns sideways once
-// sliding starts.
+// Friction force to be: last step's, less the present slip over the row's softness. So the pyramid's first axis follows the slip as soon as
+// it exceeds the creep, and the last force below; an axis of the last force alone turns sideways once sliding starts.
 Vector3 frictionToBe(const Vector3& last_force, const Vector3& slip, double cfm) { return last_force - slip / cfm; }
 
 void setFriction(const ContactConstraint& c, const ContactMotion& motion, const ContactMemo* memo, double dt,

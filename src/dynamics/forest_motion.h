@@ -86,7 +86,7 @@ void addProjectedNode(const Forest& forest, int node, const ForestMotion& motion
 void addProjected(const Forest& forest, int tree, const ForestMotion& motion, double sign, std::vector<Vector6>* wrench,
                   Eigen::VectorXd* out);
 
-/** Positions, velocities and a free root's pose from the bodies of the scene, which somebody else has set. */
+/** Positions, velocities and a free root's pose from the bodies of the scene, which were set from outside. */
 void readTree(const Forest& forest, const Scene& scene, int tree, ForestMotion* motion);
 
 /** Sets the bodies of the scene to the motion at hand. @param written per node, the bits that its body was given, out */

@@ -41,8 +41,8 @@ bool IslandProblem::giveUpLocked(double speed) {
   return any;
 }
 
-// Contacts that lead bodies apart, and loops that close, need the energy of bodies that move at their targets. Those that hardly have a
-// lever, or leave bodies no other way, would add any amount. @return share of their targets that is to be reached
+// Contacts that lead bodies apart, and loops that close, need the energy of bodies that move at their targets. Contacts that hardly have a
+// lever, or leave bodies no other way, would add any amount. @return share of the targets that is to be reached
 double IslandProblem::affordableShare(double speed) {
   const double fastest = std::max(speed, fastestTarget()), enough = AT_TARGET * 0.5 * mass * fastest * fastest;
   double work = 0;

@@ -11,7 +11,7 @@ constexpr int HEAP = 4;         // fewest free bodies of an island that is swept
 constexpr int LARGE_HEAP = 32;  // fewest that are swept first; of fewer only if Newton's first iterations fail
 constexpr double TURNS = 0.03;  // [rad/s] fastest turn of a heap that stands, slides or lands flat: Newton's method solves it
 constexpr int FEW_ITERATIONS = 30, CROWD_ITERATIONS = 8;  // most of Newton's method on a small heap that tumbles, on a crowd at rest
-constexpr double SETTLED = 1e-4;  // of the largest impulse: by how much the last proximal step of a heap may change one
+constexpr double SETTLED = 1e-4;                          // of the largest impulse: largest change of one by a heap's last proximal step
 // A heap tumbles if the first sweep changes impulses by more than this share of the largest. Sweeps end when they change impulses by less;
 // a quiet crowd sways for ever if they leave more.
 constexpr double TUMBLES = 1e-2, SWEPT = 1e-3, SWEPT_FEW = 2e-5, SWEPT_QUIET = 1e-5, RECOVERED = 1e-7;

@@ -181,8 +181,8 @@ double IslandProblem::followIdle() {
   return gradientNorm(idle_dofs_);
 }
 
-// Finds the velocities of idle dofs. False if joints have left the piece of their response that they were on. They are live from then on:
-// if they are few, just they, or else, or if it happens again, all.
+// Finds the velocities of idle dofs. False if joints have left the piece of their response that they were on. These joints are live from
+// then on if they are few; or else, or if it happens again, all are.
 bool IslandProblem::settle(double enough) {
   const double missed = followIdle();
   gradient_norm_ = std::max(gradient_norm_, missed);

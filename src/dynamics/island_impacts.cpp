@@ -133,7 +133,7 @@ double IslandImpacts::push(const Vector3& impulse, Meeting* meeting) {
   return std::max(std::abs(change[0]) * rows_.inverseMass(meeting->row), change.tail<2>().norm() * rows_.inverseMassAcross(meeting->row));
 }
 
-// The normal impulse that stops the approach, but does not pull. @return [m/s] by how much velocities changed
+// The normal impulse that stops the approach, but does not pull. @return [m/s] change of velocities
 double IslandImpacts::stop(Meeting* m) {
   const double speed = rows_.velocity(m->row, space_->velocity)[0];
   return push({std::max(0.0, m->impulse[0] - speed / rows_.inverseMass(m->row)), m->impulse[1], m->impulse[2]}, m);

@@ -75,7 +75,7 @@ class IslandSweeps {
     AxisRow(const JointTerm& joint, double axis_response, SweepStart start);
     double sum() const { return motor + dry + lower - upper; }
     void scale(double factor);
-    /** Visits friction and limits at a velocity. @return `change` and by how much their sum has changed */
+    /** Visits friction and limits at a velocity. @return `change` plus the change of their sum */
     double visit(const JointTerm& joint, double v, double change = 0);
     /** Change of the impulse of a motor that is not folded into the mass matrix. */
     double visitMotor(const JointTerm& joint, double v);

@@ -34,7 +34,7 @@ Scene::~Scene() {
 void Scene::createWorld() {
   world_ = dWorldCreate();
   contact_group_ = dJointGroupCreate(0);
-  // ODE's default job list is shared by all worlds of a process; each of ours has its own.
+  // ODE's default job list is shared by all worlds of a process; each scene has its own.
   threading_ = dThreadingAllocateSelfThreadedImplementation();
   dWorldSetStepThreadingImplementation(world_, dThreadingImplementationGetFunctions(threading_), threading_);
   dWorldSetGravity(world_, gravity_.x(), gravity_.y(), gravity_.z());

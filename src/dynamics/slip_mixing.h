@@ -11,7 +11,7 @@ namespace blem_sim {
 /** Anderson's mixing [1965] of the slips of the last proximal steps. */
 class SlipMixing {
  public:
-  /** Forgets the steps of another problem. @param lanes how many the next one has */
+  /** Forgets the steps of another problem. @param lanes number of the next one's */
   void start(std::size_t lanes);
   /**
    * Takes the present iterate as the next proximal point, as blem_sim::remember, but for the slips of contacts that push: these become

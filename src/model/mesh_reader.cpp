@@ -62,7 +62,7 @@ class SoupBuilder {
     for (unsigned f = 0; f < mesh.mNumFaces; ++f) appendFace(mesh.mFaces[f], first, mirrored);
   }
 
-  /** For so many more, without another copy where many small meshes follow each other. */
+  /** Reserves memory for `more` items, without another copy where many small meshes follow each other. */
   template <typename T>
   static void makeRoom(std::size_t more, std::vector<T>* items) {
     const std::size_t needed = items->size() + more;

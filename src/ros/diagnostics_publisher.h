@@ -18,7 +18,7 @@ class DiagnosticsPublisher : public StepPublisher {
   void timeRestarted() override;
   void resumed() override { collector_.resume(); }
   void geometryChanged() override { collector_.forgetColliders(); }
-  /** To be called often; publishes when a second has passed. */
+  /** Publishes when a second has passed; to be called often. */
   void serve(bool paused);
 
  private:

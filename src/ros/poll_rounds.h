@@ -16,7 +16,7 @@ class PollRounds {
  public:
   static PollRounds& instance();
 
-  /** Call after ros::init and before the first NodeHandle: roscpp's own hand-over then lies between our two looks at a round. */
+  /** Call after ros::init and before the first NodeHandle: roscpp's own hand-over then lies between the two listeners of a round. */
   void watchBegin();
   /** Call once roscpp has started. */
   void watchEnd();

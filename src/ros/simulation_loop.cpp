@@ -16,7 +16,7 @@ constexpr double LONGEST_WAIT = 0.05;  // [s]
 // Steps made without a look at the sockets; below the publishers' queue lengths, so that no message of a batch is dropped.
 constexpr std::uint32_t STEPS_PER_FLUSH = 50;
 
-/** [s] of processor time of this thread. */
+/** Processor time [s] of this thread. */
 double threadSeconds() {
   timespec t;
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);

@@ -14,7 +14,7 @@
 
 namespace blem_sim {
 
-/** [s] that publishing took in the stepping thread since the start. */
+/** Time [s] of publishing in the stepping thread since the start. */
 struct PublishingTime {
   double wall = 0;
   double processor = 0;  ///< without waiting, and without the time of other threads and programs
@@ -35,7 +35,7 @@ class SimulationLoop {
   void pause() { paused_ = true; }
   void unpause();
 
-  /** Pauses, makes `count` steps and sees their messages off. @return how many were made: fewer if the node is shut down or a state
+  /** Pauses, makes `count` steps and sees their messages off. @return number of steps made: fewer if the node is shut down or a state
    *  stopped being finite */
   std::uint32_t stepPaused(std::uint32_t count);
 

@@ -37,7 +37,7 @@ ContactConstraint constraintOf(const SimulatedWorld& world, const ContactManifol
   return constraint;
 }
 
-/** [kg] of all that moves with the collider. */
+/** Mass [kg] of all bodies of the collider's model. */
 double massOf(const SimulatedWorld& world, const Collider& collider) {
   if (collider.body == WORLD_BODY) return std::numeric_limits<double>::infinity();
   double mass = 0;

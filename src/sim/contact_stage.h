@@ -74,8 +74,8 @@ class ContactStage {
   const LayerStops& stops() const { return stops_; }
   bool known() const { return known_; }
   /**
-   * At most k contacts per model out of current(), but three of each pair, as constraints, and the stops below soft ones. Those before
-   * touch are the ones that will be met (ContactMeetings).
+   * At most k contacts per model out of current(), but three of each pair, as constraints, and the stops below soft ones. Contacts before
+   * touch are those that will be met (ContactMeetings).
    * @param bodies states at hand, by slot @param dt [s] of the solve
    */
   void reduction(const SimulatedWorld& world, const std::vector<BodyState>& bodies, double dt);

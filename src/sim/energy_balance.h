@@ -33,7 +33,7 @@ class EnergyBalance {
 
   explicit EnergyBalance(const SolverSettings& settings) : settings_(settings) {}
 
-  /** At the start of a step; bodies may have been moved since the last one. */
+  /** Call at the start of a step; bodies may have been moved since the last one. */
   void start(const World& world);
   /**
    * After a solve that was accepted.
@@ -79,7 +79,7 @@ class EnergyBalance {
                     const std::vector<BodyState>& after);
   void holdBack();
   Book& bookOf(const ContactConstraint& contact);
-  /** [m/s] of A's point against B's along the normal. */
+  /** Speed [m/s] of A's point against B's along the normal. */
   double normalSpeed(const ContactConstraint& contact, const std::vector<BodyState>& states) const;
 
   SolverSettings settings_;

@@ -24,7 +24,7 @@ class JointMotor {
   JointMotor() = default;
   JointMotor(const MotorSettings& settings, double initial_position);
 
-  /** Back to holding the initial position, integral 0. */
+  /** Makes the motor hold the initial position again, integral 0. */
   void reset();
   /** Takes over a trajectory's knots. @param position [rad or m] of the joint now, from which a velocity target is left */
   void follow(double now, double start, std::vector<JointSpline::Knot> knots, double position);

@@ -43,7 +43,7 @@ class NumberReader {
     if (left() > 0) refuse();
   }
   [[noreturn]] static void refuse() { throw InputError("restore: the state is cut short, or not of these models; save it again"); }
-  /** @param what is wrong with it */
+  /** @param what names the fault */
   [[noreturn]] static void refuseContent(const char* what) {
     throw InputError(std::string("restore: the state's content cannot be, ") + what + "; save it again");
   }

@@ -18,7 +18,7 @@ void PairSearches::run(const std::vector<WatchedPair>& pairs, const std::functio
   if (threads_ == 1 || pairs.size() < 2) {
     for (std::size_t i = 0; i < pairs.size(); ++i) one(i);
   } else {
-    // One by one: some cost a thousand times what others do.
+    // One by one: some searches take a thousand times as long as others.
     arena_.execute([&] {
       tbb::parallel_for(
           tbb::blocked_range<std::size_t>(0, pairs.size(), 1),

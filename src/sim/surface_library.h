@@ -18,8 +18,8 @@ struct SharedSurface {
   std::shared_ptr<const CollisionGeometry> geometry;
   double radius = 0;  ///< [m] > 0 for clouds as points
   MeshReport report;
-  /** [m] of the geometry's frame in the file's: zero unless the file's coordinates are large, as those of a surveyor's grid. Search works
-   *  in floats, which step by half a metre there. */
+  /** Origin [m] of the geometry's frame in the file's: zero unless the file's coordinates are large, as those of a surveyor's grid. Search
+   *  works in floats, which step by half a metre there. */
   Vector3 origin = Vector3::Zero();
 };
 

@@ -143,7 +143,7 @@ TEST(EdgeKernels, FadingContactsAreWhereTheEdgesAreClosest) {
     const bool both = hit.end_a >= 0 && hit.end_b >= 0;
     (both ? beyond_both : beyond_one) += 1;
     if (both) continue;
-    // Nothing of either edge is closer to the other's point.
+    // No other point of either edge is closer to the other's point.
     for (double part = 0; part <= 1; part += 0.125)
       EXPECT_GE(std::min((p + part * along_p - point_b).norm(), (q + part * along_q - point_a).norm()), hit.distance - 1e-12);
     EXPECT_EQ(hit.cones_known, c.a % 7 != 0 && c.b % 7 != 0);

@@ -136,7 +136,7 @@ TEST(NarrowPhaseMemory, MarginsMayChange) {
   EXPECT_GT(follow(cube, hills, 300, wandering({0, 0, 0.027}, 0.003, 0.01), margin).contacts, 300u);
 }
 
-/** Its lists made in straight flight, a chip turns on the spot, until edges have contacts that had none: little moves, but much turns. */
+/** A chip, its lists made in straight flight, turns on the spot until edges have contacts that had none: little moves, but much turns. */
 TEST(NarrowPhaseMemory, TurningOnTheSpot) {
   RandomShapes random(10);
   const Collider hills = makeCollider(hillMesh(random, 0.02, 40, 0.0001), 0), chip = makeCollider(hillMesh(random, 0.001, 4, 0.0001), R);

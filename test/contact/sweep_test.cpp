@@ -29,7 +29,7 @@ TEST(Sweep, PlateThroughSheetIsSeenThoughNeitherEndIsNear) {
   const CollisionGeometry plate = geometryOf(gridMesh(0.1, 0.1, 1, 1)), sheet = geometryOf(gridMesh(4, 4, 1, 1));
   EXPECT_TRUE(mayComeWithin(1e-4, plate, sweep({0, 0, 0.05}, {0, 0, -0.1}), sheet, GeometrySweep{}));
   EXPECT_FALSE(mayComeWithin(1e-3, plate, sweep({0, 0, 0.05}, {0.3, 0, -0.048}), sheet, GeometrySweep{}));
-  // Both move on together.
+  // Plate and sheet move on together.
   EXPECT_FALSE(mayComeWithin(0.04, plate, sweep({0, 0, 0.05}, {0, 0, -0.1}), sheet, sweep({0, 0, 0}, {0, 0, -0.1})));
   // The plate turns over: its edge comes down to the sheet half way.
   EXPECT_TRUE(mayComeWithin(1e-3, plate, sweep({0, 0, 0.0505}, Vector3::Zero(), {M_PI, 0, 0}), sheet, GeometrySweep{}));

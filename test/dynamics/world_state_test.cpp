@@ -6,7 +6,7 @@
 #include "analytic_contacts.h"
 #include "blem_sim/geometry/input_error.h"
 
-// A step that ODE breaks off loses its own record of the call; we keep the rest of that world reachable.
+// A step that ODE breaks off loses its own record of the call; the rest of that world stays reachable.
 extern "C" const char* __lsan_default_suppressions() { return "leak:PreallocateJobInfos"; }
 
 namespace blem_sim {
@@ -62,7 +62,7 @@ class Replay : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(Replay, RestoredMidImpactRunsTheSame) {
   Scene3 scene(GetParam());
-  // Until the bouncing box has just landed, its rebound still to come.
+  // Steps until the bouncing box has just landed, its rebound still to come.
   int steps = 0;
   for (bool landed = false; !landed && steps < 400; ++steps) {
     scene.step();

@@ -271,7 +271,7 @@ TEST(CastRay, IsTheFirstHitOfAllTriangles) {
 }
 
 TEST(CastRay, SlipsThroughNoSideOfAClosedSurface) {
-  // From the middle through vertices, sides and along the axes, where rays meet two triangles or more at their borders.
+  // Rays from the middle through vertices, sides and along the axes meet two triangles or more at their borders.
   for (const TriangleMesh& mesh : {icosphereMesh(1, 3), boxMesh({1, 2, 3}), subdivided(boxMesh({1, 1, 1}), 3)}) {
     const Bvh tree(mesh);
     for (const Vector3i& e : mesh.elements) {

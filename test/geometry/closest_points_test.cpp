@@ -152,7 +152,7 @@ TEST(ClosestTriangleTriangle, IsTheSameInEveryFrame) {
 TEST(ClosestTriangleTriangle, IsExactlyZeroWhereTheyMeet) {
   RandomShapes random(11);
   for (int i = 0; i < 20000; ++i) {
-    // Both hold the point p, which is inside one and inside, on the border, or at a corner of the other.
+    // Both triangles hold the point p, which is inside one and inside, on the border, or at a corner of the other.
     const Vector3 p = random.point(1);
     Triangle a = random.triangle(1);
     a[2] = 3 * p - a[0] - a[1];

@@ -48,7 +48,7 @@ TEST(Recovery, CubeStartedInABoxRisesSteadily) {
     const Outcome outcome = run(&simulator, 1);
     EXPECT_NEAR(outcome.max_of_layer, 1 + depth / 0.005, 1e-6);
     EXPECT_LT(outcome.fastest, SEPARATION_SPEED);
-    // At that speed while meshes cross, then as much slower as less of the layer is used up, until a quarter is left.
+    // The cube leaves at that speed while meshes cross, then as much slower as less of the layer is used up, until a quarter is left.
     EXPECT_NEAR(outcome.unreliable_steps, 1e3 * (depth + 0.005 * std::log(4)) / SEPARATION_SPEED, 15);
     EXPECT_FALSE(outcome.unreliable_at_end);
     EXPECT_LT(outcome.speed_at_end, 1e-6);

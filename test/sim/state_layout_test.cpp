@@ -75,7 +75,7 @@ TEST(StateLayout, SaysWhatIsNotTheSame) {
   }
 }
 
-/** A mesh of the same file name, whose vertices somebody has moved by a micrometre. */
+/** A mesh of the same file name, whose vertices were moved by a micrometre. */
 TEST(StateLayout, SeesAMeshThatOnlyItsVerticesTellApart) {
   SimulationConfig config = sceneOfAllKinds();
   TriangleMesh mesh = boxMesh({0.1, 0.1, 0.1});

@@ -15,7 +15,7 @@ const Vector3 HAND(0.1, 0.08, 0.08);
 /** A world of links that are each their own joint's child, with the drives beside them. */
 struct Mechanism {
   Mechanism() : world(GRAVITY, soakSettings()) {}
-  /** Its frame is the joint's; the box lies from there to `reach`. */
+  /** Adds a link whose frame is the joint's; its box lies from there to `reach`. */
   int addLink(const std::string& name, double mass, const Vector3& reach, const Pose& X_WB) {
     BodySpec spec = boxBody(name, mass, reach.cwiseAbs() + Vector3::Constant(0.02), Vector3::Zero());
     spec.inertial.com = reach / 2;

@@ -40,7 +40,7 @@ inline int soakSteps(double seconds, double short_seconds) {
   return static_cast<int>(std::lround(1000 * (soakShort() ? short_seconds : seconds)));
 }
 
-/** [s] of processor time of this thread. */
+/** Processor time [s] of this thread. */
 inline double threadSeconds() {
   timespec t;
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);

@@ -136,7 +136,7 @@ class World {
   JointState jointState(int joint) const;
   /** Sets the position that the joint's bodies' poses stand for, after setBodyState; keeps count of full turns. */
   void resetJointPosition(int joint, double position);
-  /** For steps that are made of several of the world's: JointState::effort of every joint [N m or N], until the next step. */
+  /** Sets JointState::effort of every joint [N m or N] until the next step, for steps that are made of several of the world's. */
   void setJointEfforts(const std::vector<double>& efforts);
 
   const Vector3& gravity() const;

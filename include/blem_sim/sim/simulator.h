@@ -53,7 +53,7 @@ struct JointCommandMessage {
   std::vector<double> positions, velocities, efforts;
 };
 
-/** Log of long loads: their progress, and the size of what is loaded: models, stages, seconds, triangles, memory. */
+/** Log of long loads: their progress, and the size of the loaded model: names, stages, seconds, triangles, memory. */
 struct LoadLog {
   std::function<void(const std::string& line)> tell;  ///< also called by a thread of its own, never by two at once; may be empty
   double interval = 1;                                ///< [s] between lines; shorter loads are not told

@@ -117,8 +117,8 @@ struct StepReport {
   double max_depth = 0, max_of_layer = 0;  ///< over this step's contacts
   int deepest_a = -1, deepest_b = -1;      ///< colliders
   double energy = 0;                       ///< [J] kinetic + potential
-  /** [J] by which energy (bodies, rotors, springs of compliant contacts) rose in this step beyond the work of motors and joint friction
-   *  (effort times joint motion): the sum over islands, so that none's gain is hidden by another's loss, which contacts may cause.
+  /** [J] rise of energy (bodies, rotors, springs of compliant contacts) in this step beyond the work of motors and joint friction (effort
+   *  times joint motion): the sum over islands, so that none's gain is hidden by another's loss, which contacts may cause.
    *  Corrections of depth count, and integration errors of order dt. */
   double energy_gained = 0;
   /** [J] the part of energy_gained that nothing explains: without the work of contacts on purpose (correcting depth, parting meshes that

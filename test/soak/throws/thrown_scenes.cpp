@@ -18,7 +18,7 @@ struct Counts {
       most_solves = 0;
 };
 
-/** At most 1 ms, default widths, nothing faster than 20 m/s: there the step guard must keep everything apart. */
+/** Whether a scene has steps of at most 1 ms, default widths and nothing faster than 20 m/s: there the step guard must keep all apart. */
 bool isEasy(const ThrownScene& scene, const ThrownOutcome& outcome) {
   return scene.default_widths && scene.config.time_step <= 0.001 && outcome.fastest <= 20;
 }
