@@ -34,7 +34,7 @@ const Measured& measured(MakeScene make) {
   return last;
 }
 
-/** Mean over sampled steps, each asked once before. */
+/** Times of a peer, mean over sampled steps, each asked once before. */
 PairSearch timed(const ContactScene& scene, const PeerRow& row) {
   const std::unique_ptr<Peer> peer = row.make(scene);
   const std::vector<int> steps = sampledSteps();

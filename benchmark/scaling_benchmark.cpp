@@ -22,7 +22,7 @@ namespace {
 constexpr int ROUNDS = 7, STEPS = 200;  // one oscillation of the contact scenes
 constexpr int MANY = 1000;              // bodies
 
-/** Means over a round [us]; NaN: not part of it. */
+/** Mean times over a round [us]; NaN: not part of it. */
 struct Sample {
   double mean = NAN;      ///< of the time that the curve shows
   double fresh = NAN;     ///< without a memory of the step before

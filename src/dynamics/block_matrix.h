@@ -21,7 +21,7 @@ class BlockMatrix {
 
   /** Begins a pattern of blocks, none of them coupled. */
   void start(const std::vector<int>& sizes);
-  /** Two different blocks that are coupled. */
+  /** Notes that two different blocks are coupled. */
   void couple(int a, int b);
   /** Chooses the order and makes room for the blocks that elimination fills in. */
   void analyse();

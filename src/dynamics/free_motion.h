@@ -22,7 +22,7 @@ class FreeMotion {
  public:
   void resize(const Forest& forest);
 
-  /** Per dof: it keeps its velocity on the way. To be set before `follow`, which lets go of those that cannot. */
+  /** Per dof: whether it keeps its velocity on the way. To be set before `follow`, which lets go of those that cannot. */
   std::vector<char> held;
   /** Per dof [N m s or N s]: least and largest impulse that it can supply to do so. */
   std::vector<double> least, most;

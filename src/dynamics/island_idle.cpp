@@ -141,7 +141,7 @@ bool IslandProblem::eliminateIdle() {
   return base_known_ = true;
 }
 
-// From the velocities at hand on, idle dofs follow: their joints' responses at hand are extended linearly.
+// Makes idle dofs follow from the velocities at hand: their joints' responses at hand are extended linearly.
 bool IslandProblem::anchor() {
   SolverSpace& s = *space_;
   gradient_norm_ = INFINITY;

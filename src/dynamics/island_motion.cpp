@@ -93,7 +93,7 @@ void integrate(const Forest& forest, int tree, double dt, ForestMotion* motion) 
   motion->origin[t.first_node] = com - motion->rotation[t.first_node] * com_B;
 }
 
-// In flight the whole tree's centre of mass moves by its momentum; joints that turn while the root moves would lead it astray.
+// Moves a flying tree so that its centre of mass is where its momentum leads: joints that turn while the root moves would lead it astray.
 void followMomentum(const Forest& forest, int tree, const Vector3& target, ForestMotion* motion) {
   const ForestTree& t = forest.trees()[tree];
   const Vector3 shift = target - (motion->reference[tree] + motion->tree_com[tree]);

@@ -27,7 +27,7 @@ void IslandProblem::evaluateGradient() {
   foldGradient();
 }
 
-// First step: as if contacts, friction and limits went on as they were when the last step ended, linear though they are not.
+// Makes the first step: as if contacts, friction and limits went on as they were when the last step ended, linear though they are not.
 void IslandProblem::predict() {
   forContactRanges([](std::size_t, ContactBlock* first, ContactBlock* end) { expect(first, end); });
   for (std::size_t b = 0; b < joint_blocks_.size(); ++b)

@@ -84,7 +84,7 @@ class IslandProblem {
   void clear();
   /** Solves for space->velocity, which holds the first guess, space->mass_velocity M times it. The terms hold the reactions afterwards. */
   NewtonReport solve(const Forest& forest, const ForestMotion& motion, const NewtonSettings& settings, SolverSpace* space);
-  /** Goes on from there after space->free_momentum has changed a little. */
+  /** Goes on from the last solve's velocities after space->free_momentum has changed a little. */
   NewtonReport solveAgain(const NewtonSettings& settings);
   /**
    * After solve: contacts and loops that have added far more energy than moving the island at their speed takes are to correct less,

@@ -53,7 +53,7 @@ class IslandSweeps {
   bool motorsAgree(const Eigen::VectorXd& velocity) const;
   /** Velocities without any impulse of contacts, joint friction, limits and loops. */
   void freeVelocity(Eigen::VectorXd* velocity) { response_.freeVelocity(momentum_, velocity); }
-  /** All impulses times a factor. @param velocity theirs, out */
+  /** Multiplies all impulses by a factor. @param velocity with these impulses, out */
   void scale(double factor, Eigen::VectorXd* velocity);
 
   /** The impulses found: of contacts, world axes; of joints and loops, as proximal points that answer so at the velocity. */

@@ -65,7 +65,7 @@ class Lumping {
     lumped_.joints.push_back(moving);
   }
 
-  /** Two slides and a turn, with a virtual body after each slide. Axes x, y and the normal are right-handed; for normal z they are x, y, z.
+  /** Adds two slides and a turn, a virtual body after each slide. Axes x, y and the normal are right-handed; for normal z they are x, y, z.
    */
   void addPlanarJoint(const JointModel& joint) {
     int largest = 0;

@@ -50,10 +50,10 @@ class SimulationLoop {
   const PublishingTime& publishingTime() const { return publishing_time_; }
 
  private:
-  /** False if the state stopped being finite: the simulation is paused then. */
+  /** Makes a step. False if the state stopped being finite: the simulation is paused then. */
   bool step();
   void publish(const StepReport& report);
-  /** Sees the messages off that were published so far. */
+  /** Returns when the messages published so far have been offered to the sockets. */
   void flush();
 
   Simulator* simulator_;

@@ -33,7 +33,7 @@ struct WatchedPair {
   double known;   ///< [m] distance beyond the layers within which their contacts are known
 };
 
-/** Two colliders of a pair that is not looked at. */
+/** Two colliders of a pair that is not searched. */
 struct PairLeftOut {
   int a, b;
 };
@@ -65,7 +65,7 @@ class ContactStage {
   void narrowPhase(const SimulatedWorld& world);
   /** Makes found() the manifolds that the next solve starts from: current(). */
   void accept();
-  /** After bodies or geometry changed other than by a step: no contact is known. */
+  /** Call after bodies or geometry changed other than by a step: no contact is known. */
   void forget() { known_ = false; }
   /** Choice of the last reduction: with the stops and recoveries() all that the next step depends on here, beside the bodies' states. */
   ReductionMemory& memory() { return memory_; }

@@ -39,7 +39,7 @@ class JointMotor {
   void sample(double time, double dt);
   /** Drive of the joint in the coming (sub)step, within the effort limit [Hauser 2013, Eq. 7 and 4.1]. */
   JointDrive drive(const JointState& state);
-  /** After a (sub)step that was accepted: integrates, and notes whether the limit was met. @return true if it was */
+  /** Call after an accepted (sub)step: integrates, and notes whether the limit was met. @return true if it was */
   bool accept(const JointDrive& drive, const JointState& after, double dt);
 
   const MotorSettings& settings() const { return settings_; }

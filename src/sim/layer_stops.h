@@ -20,11 +20,11 @@ class LayerStops {
   static constexpr double SEEN = 0.6;  ///< of the layer: a contact less deep gets to 0.9 at most in one solve that the step guard accepts
   static constexpr int MOST = 6;       ///< of a pair
 
-  /** Before the first pair of a reduction. */
+  /** Call before the first pair of a reduction. */
   void start() { count_ = 0; }
   /** Stops of the next pair, in the order (a, b): its contacts with depths [m] beyond the stop. @param manifold before reduction */
   const std::vector<Contact>& choose(const ContactManifold& manifold, const Reduction& method);
-  /** After the last pair: the next reduction goes on with the choices of this one. */
+  /** Call after the last pair: the next reduction goes on with the choices of this one. */
   void remember();
 
   void clear();

@@ -34,7 +34,7 @@ class NumberReader {
     if (number != 0 && number != 1) refuseContent("a flag is neither 0 nor 1");
     return number != 0;
   }
-  /** Throws unless so many are left. */
+  /** Throws unless `count` numbers are left. */
   void require(std::size_t count) const {
     if (left() < count) refuse();
   }

@@ -1,4 +1,4 @@
-// Our own random numbers: the same everywhere, and their whole state is one word.
+// Random numbers of blem_sim's own: the same everywhere, and their whole state is one word.
 #pragma once
 
 #include <cmath>

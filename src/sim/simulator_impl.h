@@ -32,7 +32,7 @@ struct Simulator::Impl {
   void narrowPhase();
   void reduction();
   void stepGuard();
-  /** False if the state is not finite any more; the last finite one is then restored. */
+  /** Solves the substep. False if the state is not finite any more; the last finite one is then restored. */
   bool solve();
   void readSensors();
   void acceptSubstep();

@@ -31,7 +31,7 @@ double extent(const Collider& a, const Collider& b) {
   return least + 2 * (a.radius + b.radius) + BEYOND;
 }
 
-/** No contact was carried deeper than this, of the layer. @param size [m] extent of the contacts */
+/** Bound on `carried`: no contact was carried deeper, of the layer. @param size [m] extent of the contacts */
 double mostCarried(const ContactManifold& manifold, double depth, double size, const Pose& motion_a, const Pose& motion_b) {
   const Vector3& somewhere = manifold.contacts.front().point;
   const double motion = (motion_a * somewhere - motion_b * somewhere).norm() + (motion_a.linear() - motion_b.linear()).norm() * size;

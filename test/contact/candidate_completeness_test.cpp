@@ -35,7 +35,7 @@ TriangleMesh torusMesh(double radius, double thickness, int around, int across) 
   return mesh;
 }
 
-/** Curved by so much along either axis [1/m]. */
+/** A mesh of curvatures x and y [1/m] along its axes. */
 TriangleMesh curvedMesh(double x, double y) {
   TriangleMesh mesh = gridMesh(SIZE, SIZE, 13, 13);
   for (Vector3& v : mesh.vertices) v.z() = 0.5 * (x * v.x() * v.x() + y * v.y() * v.y());
@@ -146,7 +146,7 @@ std::vector<NamedCrossing> crossingsOf(const MeshPair& pair, CandidateLists* lis
   return out;
 }
 
-/** Some vertex of one is that near [m] some vertex of the other. */
+/** A pose in which some vertex of one mesh is within `distance` [m] of some vertex of the other. */
 Pose someMeeting(RandomShapes& random, const Shape& a, const Shape& b, double distance) {
   Pose X = random.pose(1);
   const auto someVertex = [&](const Shape& shape) {
@@ -157,7 +157,7 @@ Pose someMeeting(RandomShapes& random, const Shape& a, const Shape& b, double di
   return X;
 }
 
-/** Within half the margin each. */
+/** The pose moved and turned within half the margin each. */
 Pose movedALittle(RandomShapes& random, const Pose& X, const ListMargin& margin) {
   const Vector3 turn = random.point(1).normalized() * random.uniform(0, 0.5 * margin.motion / SIZE);
   return makePose(random.point(1).normalized() * random.uniform(0, 0.5 * margin.motion)) * X * makePose(Vector3::Zero(), turn);

@@ -45,7 +45,7 @@ std::vector<NamedPairs> namesOf(const CandidateLists& lists) {
   return out;
 }
 
-// Between the parts the pair moves on and the same leaves are asked for by other searches.
+// Between the parts of a search the pair moves on, and other searches ask for the same leaves.
 TEST(CandidateSearch, InPartsAsAtOnce) {
   RandomShapes random(3);
   const Collider hills = makeCollider(hillMesh(random, 0.1, 60, 0.001), 0), ball = makeCollider(icosphereMesh(0.02, 4), 0.002);

@@ -102,7 +102,7 @@ TEST_P(Budgets, SayByHowMuchWrenchesAreOff) {
       const double worst = worstLack(all, manifolds[0].contacts);
       EXPECT_LE(worst, loss.wrench) << k << " " << flat;
       EXPECT_GT(worst, 0.7 * loss.wrench - 0.1) << k << " " << flat;
-      // Gone on with, no worse is told.
+      // A reduction that goes on with the choice tells no larger loss.
       std::vector<ContactManifold> again = {manifoldOf(0, 1, all)};
       const double told = reduceAll(again, {0}, {1}, {{k}, {INT_MAX}}, method(), &memory).wrench;
       EXPECT_LE(told, loss.wrench + 1e-6);

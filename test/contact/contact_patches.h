@@ -23,7 +23,7 @@ inline Contact makeContact(const Vector3& point, const Vector3& normal, double d
   return contact;
 }
 
-// Uniform in [-1, 1), the same with every standard library.
+// Uniform numbers in [-1, 1), the same with every standard library.
 class Noise {
  public:
   explicit Noise(unsigned seed) : engine_(seed) {}

@@ -131,7 +131,7 @@ TEST(EdgeKernels, FadingContactsAreWhereTheEdgesAreClosest) {
     EXPECT_NEAR(std::abs(normal.dot(along_p.normalized())) + std::abs(normal.dot(along_q.normalized())), 0, 1e-9);
     EXPECT_GE(normal.dot(p - q), 0);
     EXPECT_LE(hit.gap, RANGE);
-    // Beyond its end so far, where the other line passes.
+    // Distance beyond its end at which the other line passes.
     const Vector3 across = along_p.cross(along_q);
     const double s = (q - p).cross(along_q).dot(across) / across.squaredNorm(),
                  t = (q - p).cross(along_p).dot(across) / across.squaredNorm();
@@ -198,7 +198,7 @@ TEST(EdgeKernels, EdgesAroundAVertexLeadAsTheirDirectionsSay) {
     const double least = random.uniform(0, 0.9);
     bool leads = false;
     for (int k = 0; k < count; ++k) {
-      // Few lead down, some of them hardly.
+      // Few directions lead down, some of them hardly.
       Vector3 direction = random.point(1).normalized();
       if (direction.dot(down) > 0) direction -= random.uniform(0.9, 1.5) * direction.dot(down) * down;
       direction.normalize();

@@ -45,7 +45,7 @@ Followed follow(const Collider& a, const Collider& b, int steps, const std::func
   return out;
 }
 
-/** Wanders and turns about its place, some 10 um to 1 mm a step. */
+/** Path of a mesh that wanders and turns about its place, some 10 um to 1 mm a step. */
 std::function<Pose(int)> wandering(const Vector3& place, double reach, double speed) {
   return [=](int step) {
     const double t = speed * step;
@@ -116,7 +116,7 @@ TEST(NarrowPhaseMemory, EdgesThatMeetAreFound) {
   EXPECT_TRUE(found.apart);
 }
 
-/** Along a floor that it does not come nearer to, farther in every step than it is above it, a cube runs into a step of the floor. */
+/** A cube runs into a step of a floor, along which it slides at one height, farther in every step than it is above the floor. */
 TEST(NarrowPhaseMemory, WhatSlidesIntoAStepIsFound) {
   TriangleMesh floor = gridMesh(0.3, 0.3, 60, 60);
   for (Vector3& v : floor.vertices) v.z() = v.x() > 0.101 ? 0.004 : 0;

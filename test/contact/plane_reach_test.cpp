@@ -74,7 +74,7 @@ TEST(PlaneReach, NothingFartherBesideIsOverAnotherFace) {
       const kernels::FaceRecord record = faceRecord(side, face);
       const Vector3 normal = vector3(record.plane);
       for (int i = 0; i < 400; ++i) {
-        // Around the corners of all faces, where those of a plane meet, and anywhere.
+        // Points around the corners of all faces, where those of a plane meet, and anywhere.
         const Vector3& corner = mesh->vertices[static_cast<std::size_t>(random.integer(0, 15))];
         const double height = random.uniform(-1, 1);
         const Vector3 p = corner + random.point(std::pow(10, random.uniform(-9, -1))),

@@ -72,7 +72,7 @@ Contacts opposite() {
   return contacts;
 }
 
-// Many normals, and places that tie in many directions.
+// Contacts of many normals, and of places that tie in many directions.
 Contacts roughGrid() {
   Contacts contacts;
   for (int i = 0; i < 30; ++i) {

@@ -44,7 +44,7 @@ TEST(Retraction, SunkCubeIsPushedOutTheWayItCame) {
   }
 }
 
-/** Sunk by more than half, only where it was tells the side. */
+/** Only the earlier pose of a cube that is sunk by more than half tells the side. */
 TEST(Retraction, WayBackIsTheOneFromWhereThePairWasApart) {
   const Collider sheet = makeCollider(gridMesh(1, 1, 7, 7), LAYER / 2);
   for (const double above : {1.0, -1.0}) {

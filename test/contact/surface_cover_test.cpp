@@ -55,7 +55,7 @@ TEST(SurfaceCover, EdgeThatGoesOnInAnotherSheetHasNoContactBesideIt) {
 }
 
 TEST(SurfaceCover, EdgesInsideAPlaneHaveNoContactsVerticesAboveItHave) {
-  // Half over the seam: two corners over this sheet, two crossings of edges with the seam.
+  // A cube half over the seam: two corners over this sheet, two crossings of edges with the seam.
   const TriangleMesh cube = boxMesh(Vector3::Constant(0.1));
   const Pose X_WM = makePose({0.01, 0.02, 0.0525});
   const Counts flush = countCovered(cube, X_WM, colliderOf(gridMesh(0.4, 0.4, 1, 1)), BESIDE);

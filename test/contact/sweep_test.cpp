@@ -42,7 +42,7 @@ TEST(Sweep, PointsPassEachOtherAtTheirDistance) {
   EXPECT_FALSE(mayComeWithin(0.01, point, sweep({-1, 0, 0}, {2, 0, 0}), point, sweep({0, -1, 0.013}, {0, 2, 0})));
 }
 
-/** Against the distance at 300 poses on the way. */
+/** Sweeps against the distance at 300 poses on the way. */
 TEST(Sweep, NeverMissesWhatSamplesFind) {
   std::mt19937_64 generator(3);
   const auto uniform = [&generator](double size) { return size * (2 * static_cast<double>(generator() >> 11) * 0x1p-53 - 1); };

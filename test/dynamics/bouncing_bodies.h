@@ -246,7 +246,7 @@ struct Cradle {
     surface.friction = friction;
     return surface;
   }
-  /** Half a period. */
+  /** Makes the steps of half a period. */
   void swing(double dt) {
     const double seconds = M_PI * std::sqrt(LENGTH / 9.81 * (1 + 0.4 * RADIUS * RADIUS / (LENGTH * LENGTH))) * (1 + ANGLE * ANGLE / 16);
     for (int i = 0; i < std::lround(seconds / dt); ++i) scene.step(dt);

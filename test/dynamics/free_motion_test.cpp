@@ -121,7 +121,7 @@ TEST(FreeMotion, SliderInASpinningArm) {
 
 class SpinningBody : public ::testing::TestWithParam<double> {};
 
-// About the smallest and the largest principal axis it stays, about the middle one it turns over, and nothing is lost.
+// A body keeps spinning about its smallest and largest principal axes, about the middle one it turns over, and nothing is lost.
 TEST_P(SpinningBody, KeepsItsEnergyAndItsAxis) {
   for (const double dt : {1e-4, 1e-3, 2e-3, 5e-3})
     for (int axis = 0; axis < 3; ++axis) {

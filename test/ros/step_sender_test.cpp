@@ -31,7 +31,7 @@ class Numbers {
     const std::lock_guard<std::mutex> lock(mutex_);
     return published_;
   }
-  /** False if they are not that many within 20 s. */
+  /** Waits for `count` messages. False if they are not that many within 20 s. */
   bool waitFor(std::size_t count) const {
     const Clock::time_point deadline = Clock::now() + std::chrono::seconds(20);
     while (published().size() < count && Clock::now() < deadline) std::this_thread::sleep_for(milliseconds(1));

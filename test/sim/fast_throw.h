@@ -55,7 +55,7 @@ inline ThrowBody sheetHit(double size, int cells) {
   return {meshFile("sheet" + std::to_string(cells), gridMesh(size, size, cells, cells)), 0, 0.5 * size};
 }
 inline ThrowBody boxHit() { return {meshFile("hit_box", boxMesh(Vector3::Constant(0.1))), 0.05, 0}; }
-/** Upright, across the plate that is thrown. */
+/** A plate to be hit, upright, across the plate that is thrown. */
 inline ThrowBody plateHit() {
   return {meshFile("hit_plate", transformed(gridMesh(0.1, 0.1, 1, 1), makePose(Vector3::Zero(), {M_PI / 2, 0, M_PI / 2}))), 0.05, 0};
 }

@@ -144,7 +144,7 @@ TEST(NearMiss, DescendingPastTheFarEdgeChangesNothing) {
       }
 }
 
-/** Over a narrow ridge on a falling path: gravity is all that there is. Steps that are made in parts fall less. */
+/** A cube flies over a narrow ridge on a falling path: gravity alone acts. Steps that are made in parts fall less. */
 TEST(NearMiss, OnAFallingPathOnlyGravityActs) {
   EnvironmentConfig ridge;
   ridge.name = "ridge";

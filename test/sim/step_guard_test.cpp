@@ -102,7 +102,7 @@ TEST_F(UsesUpLayer, RefusesWhatPassedThrough) {
   // 20 mm down, and on the other side nothing is near any more.
   after_[0].X_WB.translation().z() = -0.02;
   EXPECT_TRUE(check({manifold(-0.002)}, {}));
-  // Sideways is no danger.
+  // Motion sideways is no danger.
   after_[0].X_WB.translation() = Vector3(0.02, 0, 0);
   EXPECT_FALSE(check({manifold(-0.002)}, {}));
 }

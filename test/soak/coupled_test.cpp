@@ -46,7 +46,7 @@ struct Pushers : Mechanism {
       bases.push_back(addJoint(JointKind::FIXED, WORLD_BODY, base, Vector3::UnitX()));
       const int push = addJoint(JointKind::PRISMATIC, base, slide, Vector3::UnitX());
       const int wrist = addJoint(JointKind::REVOLUTE, slide, hand, Vector3::UnitY());
-      // Unequal: one gives way until the other's spring balances it.
+      // Unequal stiffnesses: one gives way until the other's spring balances it.
       drives[push].stiffness = side < 0 ? 4000 : 1500, drives[push].damping = 200, drives[push].target_position = -0.05 * side;
       drives[push].dry_friction = 2;
       drives[wrist].stiffness = 50, drives[wrist].damping = 1;
@@ -136,7 +136,7 @@ TEST(SoakFourBar, StaysClosedWhileItsCrankTurns) {
   EXPECT_NEAR(bar.world.jointState(0).velocity, 3, 0.3);
 }
 
-// No motor at all: it swings, and neither opens nor gains energy.
+// A four-bar without any motor swings, and neither opens nor gains energy.
 TEST(SoakFourBar, SwingsFreely) {
   FourBar bar;
   const double start = bar.world.kineticEnergy() + bar.world.potentialEnergy();

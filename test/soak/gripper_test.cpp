@@ -47,7 +47,7 @@ struct Gripper {
     return world.addJoint(spec, position);
   }
 
-  /** Closes with growing q. @param side 1: at +y @param first joint to be mimicked, -1 for none @return its hinge */
+  /** Adds a finger that closes with growing q. @param side 1: at +y @param first joint to be mimicked, -1 for none @return its hinge */
   int addFinger(int side, int first) {
     const Vector3 axis = -side * Vector3::UnitX();
     const auto turned = [&](double q) {

@@ -15,7 +15,7 @@ namespace blem_sim {
 
 constexpr int STATUS_BITS = 9;
 
-/** Plain, so that a process can hand it to another. */
+/** Outcome of a scene, plain data so that a process can hand it to another. */
 struct SceneOutcome {
   std::uint64_t seed = 0;
   char failure[32] = "";   ///< its kind, empty if there is none

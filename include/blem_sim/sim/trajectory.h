@@ -46,7 +46,7 @@ class JointSpline {
     int order;  ///< highest order of a segment at this knot: 1 linear (positions only), 3 cubic (velocities), 5 quintic (accelerations)
   };
   JointSpline() = default;
-  /** Hold. */
+  /** A spline that holds a position. */
   explicit JointSpline(double position);
   /**
    * From `now` on: follows the present spline until the new trajectory's start, then the new knots (times absolute, strictly

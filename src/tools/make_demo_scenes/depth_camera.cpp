@@ -99,7 +99,7 @@ TriangleMesh triangulated(const DepthImage& image, double max_edge) {
   };
   for (int row = 0; row + 1 < image.rows; ++row) {
     for (int column = 0; column + 1 < image.columns; ++column) {
-      // Wound so that the front shows to the camera.
+      // Triangles are wound so that their fronts show to the camera.
       const int i = row * image.columns + column, below = i + image.columns;
       addTriangle(i, below, i + 1);
       addTriangle(i + 1, below, below + 1);

@@ -41,7 +41,7 @@ void tellHowFar(int) {
   _exit(write(told_to, &running, sizeof running) == sizeof running ? 0 : 1);
 }
 
-/** In its own process. */
+/** Runs a scene in its own process. */
 [[noreturn]] void run(std::uint64_t seed, const Options& options, int pipe) {
   told_to = pipe;
   running.seed = seed;
