@@ -27,7 +27,7 @@ class BulletHeap {
   virtual double fastest() const = 0;  ///< [m/s] of the centres
 };
 
-/** Null where it is built without Bullet. */
+/** A heap in Bullet; null in a build without Bullet. */
 std::unique_ptr<BulletHeap> makeBulletHeap(const HeapScene& scene);
 
 }  // namespace blem_sim

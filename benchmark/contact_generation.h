@@ -1,4 +1,4 @@
-// Times of contact generation on the scenes of contact_scenes.h, and of what bounds it from above and below.
+// Times of contact generation on the scenes of contact_scenes.h, and of searches that bound it from above and below.
 #pragma once
 
 #include <memory>
@@ -22,7 +22,7 @@ struct Generation {
  */
 Generation generate(const ContactScene& scene, bool remembers, int steps);
 
-/** What a search for pairs takes, and how many it finds; means over some poses of the scene. */
+/** Time of a search for pairs, and the number it finds; means over some poses of the scene. */
 struct PairSearch {
   double microseconds = 0, pairs = 0;
 };
@@ -30,7 +30,7 @@ struct PairSearch {
 /** A plain tree that lists the pairs of triangles within reach: trees of all colliders, then some steps. */
 PairSearch searchPlainly(const ContactScene& scene);
 
-/** The steps at which what hardly varies is timed. */
+/** Sampled steps, for times that hardly vary from step to step. */
 std::vector<int> sampledSteps();
 
 }  // namespace blem_sim

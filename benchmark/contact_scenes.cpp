@@ -24,7 +24,7 @@ Pose oscillation(int collider, int step) {
   return makePose(reach * std::sin(phase) * direction, {0, 0, 0.01 * std::sin(phase)});
 }
 
-/** Oscillates about its own middle, where it stands. */
+/** Pose of a collider that oscillates about its own middle, where it stands. */
 Pose moved(const Pose& X, const Vector3& middle, int collider, int step) {
   const Pose about = makePose(X * middle);
   return about * oscillation(collider, step) * about.inverse() * X;
@@ -46,13 +46,13 @@ TriangleMesh noisyGrid(int triangles) {
   return mesh;
 }
 
-/** In [-1, 1), the same for a place of the grid however large that is. */
+/** Noise in [-1, 1), the same for a place of the grid however large the grid is. */
 double noiseAt(int i, int j) {
   const std::int64_t row = i, column = j;
   return RandomShapes(static_cast<std::uint64_t>(row * 1000003 + column)).uniform(-1, 1);
 }
 
-/** About as many triangles as asked for, `cell` [m] wide: the middle of a larger one is a smaller one, to the last bit. */
+/** A grid of about as many triangles as asked for, `cell` [m] wide: the middle of a larger grid is a smaller one, to the last bit. */
 TriangleMesh growingGrid(int triangles, double cell) {
   const int cells = 2 * static_cast<int>(std::lround(0.5 * std::sqrt(0.5 * triangles)));
   TriangleMesh mesh = gridMesh(cells, cells, cells, cells);
@@ -167,7 +167,7 @@ std::unique_ptr<ContactScene> mugOnFractalTerrain(int triangles) {
   scene->name = "mug on fractal " + std::to_string(scene->standing.geometry->mesh().elements.size());
   const TriangleMesh mug = loadedMesh(MUG);
   scene->moving = {makeCollider(mug, LAYER)};
-  // Lowered until the layers overlap by half.
+  // The body is lowered until the layers overlap by half.
   Pose X = makePose({0.3, 0.2, 2});
   for (double step = 1; step > 1e-5; step *= 0.5) {
     X.translation().z() -= step;

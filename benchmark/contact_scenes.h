@@ -1,4 +1,4 @@
-// Bodies that move along given paths close to others: what contact generation is timed on.
+// Scenes on which contact generation is timed: bodies that move along given paths close to others.
 #pragma once
 
 #include <functional>
@@ -19,7 +19,7 @@ struct ContactScene {
   Vector3 approach = -Vector3::UnitZ();              ///< unit, that frame: the way from the moving bodies to the standing one
 };
 
-/** [m/s] of the moving bodies; every one oscillates by itself at 5 Hz. */
+/** Speed [m/s] of the moving bodies; every one oscillates by itself at 5 Hz. */
 constexpr double SCENE_SPEED = 0.1;
 
 /**

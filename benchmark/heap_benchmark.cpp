@@ -22,7 +22,7 @@ constexpr int TURN = 50;  // [steps] of one engine before it is the other's turn
 constexpr std::size_t STAGES = static_cast<std::size_t>(Stage::COUNT);
 double seconds_simulated = 4, seed = 1;
 
-/** What both engines are to run. */
+/** A heap that both engines run. */
 struct Heap {
   std::string name;
   int count;
@@ -55,7 +55,7 @@ HeapScene spheres(int count) {
   return scene;
 }
 
-/** [us] of each step of one thing. */
+/** Times [us] of each step of one thing. */
 class Times {
  public:
   void add(double seconds) { all_.push_back(1e6 * seconds); }
@@ -75,7 +75,7 @@ class Times {
   std::vector<double> all_;
 };
 
-/** What a run showed. */
+/** Results of a run. */
 struct Figures {
   Times step, bullet;
   std::array<Times, STAGES> stages;

@@ -25,7 +25,7 @@ MeshPair pairOf(const Collider& a, const Pose& X_WA, const Collider& standing) {
           Pose::Identity()};
 }
 
-/** Which pairs of features have a contact. Every pair is known once: a contact with a plane by one of its faces. */
+/** Pairs of features that have a contact. Every pair is known once: a contact with a plane by one of its faces. */
 class KnownContacts {
  public:
   KnownContacts(const std::vector<Contact>& plain, const ContactWriter& close) {
@@ -36,7 +36,7 @@ class KnownContacts {
     unseen_.erase(std::unique(unseen_.begin(), unseen_.end()), unseen_.end());
     seen_.resize(unseen_.size());
   }
-  /** True the first time that a known pair is asked for. */
+  /** Whether a pair is known, the first time that it is asked for; false from then on. */
   bool take(const Feature& moving, const Feature& fixed) {
     const auto at = std::lower_bound(unseen_.begin(), unseen_.end(), contactId(moving, fixed));
     if (at == unseen_.end() || *at != contactId(moving, fixed) || seen_[at - unseen_.begin()]) return false;
@@ -48,7 +48,7 @@ class KnownContacts {
   std::vector<bool> seen_;
 };
 
-/** Drops the records that no candidate names, so that they lie as close as they can; `indices` are told where theirs went. */
+/** Drops the records that no candidate names, so that they lie as close as they can; `indices` follow their records. */
 template <typename Record>
 void compact(const std::vector<std::uint32_t*>& indices, FeatureRecords<Record>* features,
              std::vector<kernels::OpenSides>* open = nullptr) {

@@ -139,7 +139,7 @@ void addFile(const std::string& name, const std::string& file) {
   add(name + "_as_it_is", [file] { loadSurface(file, Vector3::Ones(), {}, Mending::OFF); });
 }
 
-/** What stays, per triangle, by parts. */
+/** Memory that stays after loading, per triangle, by parts. */
 void addMemory(const std::string& name, const std::function<TriangleMesh()>& surface) {
   benchmark::RegisterBenchmark(("loading/memory_" + name).c_str(),
                                [surface](benchmark::State& state) {

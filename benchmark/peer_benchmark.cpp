@@ -1,5 +1,5 @@
-// What other engines take for the mesh queries they have, beside contact generation in the same run. Processor time per step, mean over
-// some poses; the label says what is computed. Arguments: Google Benchmark's.
+// Times of other engines' mesh queries, beside contact generation in the same run. Processor time per step, mean over some poses; the label
+// names the query's result. Arguments: Google Benchmark's.
 #include <benchmark/benchmark.h>
 
 #include <cstdio>
@@ -12,7 +12,7 @@ namespace {
 
 using MakeScene = std::unique_ptr<ContactScene> (*)();
 
-/** A scene and our own times on it. */
+/** A scene and blem_sim's own times on it. */
 struct Measured {
   MakeScene make = nullptr;
   std::unique_ptr<ContactScene> scene;
@@ -34,7 +34,7 @@ const Measured& measured(MakeScene make) {
   return last;
 }
 
-/** Mean over sampled steps, each asked once before. */
+/** Times of a peer, mean over sampled steps, each asked once before. */
 PairSearch timed(const ContactScene& scene, const PeerRow& row) {
   const std::unique_ptr<Peer> peer = row.make(scene);
   const std::vector<int> steps = sampledSteps();

@@ -1,4 +1,4 @@
-// What contact generation is measured against: a plain binary tree of boxes in double, one triangle pair at a time.
+// Reference for the times of contact generation: a plain binary tree of boxes in double, one triangle pair at a time.
 #pragma once
 
 #include <utility>

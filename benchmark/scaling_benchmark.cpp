@@ -1,4 +1,4 @@
-// How times grow: with the triangles of an environment under a fixed footprint, with contacts, bodies, threads. Every curve is one run in
+// Growth of times: with the triangles of an environment under a fixed footprint, with contacts, bodies, threads. Every curve is one run in
 // which its points take turns, so that ratios mean more than times. Arguments: Google Benchmark's.
 #include <benchmark/benchmark.h>
 
@@ -22,9 +22,9 @@ namespace {
 constexpr int ROUNDS = 7, STEPS = 200;  // one oscillation of the contact scenes
 constexpr int MANY = 1000;              // bodies
 
-/** Means over a round [us]; NaN: not part of it. */
+/** Mean times over a round [us]; NaN: not part of it. */
 struct Sample {
-  double mean = NAN;      ///< of what the curve is about
+  double mean = NAN;      ///< of the time that the curve shows
   double fresh = NAN;     ///< without a memory of the step before
   double contacts = NAN;  ///< raw
   double narrow_phase = NAN, reduction = NAN, solve = NAN;
@@ -33,7 +33,7 @@ struct Sample {
 struct Point {
   std::string name;
   double size;
-  std::function<std::function<Sample()>()> prepare;  ///< returns what measures a round
+  std::function<std::function<Sample()>()> prepare;  ///< returns a function that measures a round
 };
 
 struct Curve {
@@ -151,7 +151,7 @@ Curve contacts() {
 /** @param clock [s] that the step is timed by; its stages are wall time */
 Point wholeStep(const std::string& name, int size, const SimulationConfig& config, double (*clock)()) {
   return {name + std::to_string(size), static_cast<double>(size), [=]() -> std::function<Sample()> {
-            // Of large scenes fewer steps say as much.
+            // Fewer steps of a large scene say as much.
             const int warm_up = size < MANY ? 400 : 150, steps = size < MANY ? STEPS : 20;
             const auto simulator = std::make_shared<Simulator>(config, UriResolver(sharedPackages()));
             for (int i = 0; i < warm_up; ++i) simulator->step();

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double LONGEST = 60;  // [s] of processor time that the timed steps of a scene may take together
 
-/** A scene and how many of its steps are timed. */
+/** A scene and the number of its timed steps. */
 struct Scene {
   std::string name;
   std::function<SimulationConfig()> config;
@@ -90,7 +90,7 @@ void run(const Scene& scene, benchmark::State& state) {
   }
   char hash[17];
   std::snprintf(hash, sizeof(hash), "%016llx", static_cast<unsigned long long>(simulator.stateHash()));
-  state.SetLabel(hash);  // what was reached
+  state.SetLabel(hash);  // of the last state
   count(times, totals, steps, threadSeconds() - start, simulator.config().time_step, &state);
 }
 

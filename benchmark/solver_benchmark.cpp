@@ -31,7 +31,7 @@ HuboOptions standOptions(const std::string& name, int contacts) {
   return options;
 }
 
-/** Times of `steps` steps, without what prepares them. */
+/** Times of `steps` steps, without their preparation. */
 StepTimes timed(int steps, const std::function<void()>& prepare, const std::function<bool()>& step) {
   StepTimes times;
   for (int i = 0; i < steps; ++i) {

@@ -41,7 +41,7 @@ class Bullet : public Engine {
   }
 
  private:
-  // Of 0.5 to 10 mm the best here; the shape's own default of 4 cm throws cubes of 10 cm away.
+  // The best margin here from 0.5 to 10 mm; the shape's own default of 4 cm throws cubes of 10 cm away.
   static constexpr btScalar MARGIN = static_cast<btScalar>(0.001);  // [m]
 
   void add(btCollisionShape* shape, double mass, double height) {

@@ -1,4 +1,4 @@
-// Stacks of triangulated cubes in several engines, one after the other, in one run: how far off theory, how calm, how fast.
+// Stacks of triangulated cubes in several engines, one after the other, in one run: distance from theory, calmness, speed.
 #include <time.h>
 
 #include <algorithm>

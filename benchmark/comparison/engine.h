@@ -27,7 +27,7 @@ class Engine {
   virtual ~Engine() = default;
   virtual void step() = 0;
   virtual std::vector<CubeState> cubes() const = 0;
-  /** [m] by which surfaces stand apart at rest, by the engine's own theory: boundary layers, margins. */
+  /** Distance [m] of surfaces at rest, by the engine's own theory: boundary layers, margins. */
   virtual double layer() const { return 0; }
 };
 

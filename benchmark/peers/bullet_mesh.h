@@ -13,7 +13,7 @@ inline btVector3 toBullet(const Vector3& v) {
   return {static_cast<btScalar>(v.x()), static_cast<btScalar>(v.y()), static_cast<btScalar>(v.z())};
 }
 
-/** Must outlive the shapes made of it. */
+/** A mesh for Bullet, which must outlive the shapes made of it. */
 inline std::unique_ptr<btTriangleMesh> bulletMesh(const TriangleMesh& mesh) {
   auto out = std::make_unique<btTriangleMesh>();
   for (const Vector3i& e : mesh.elements)

@@ -9,7 +9,7 @@
 
 namespace blem_sim {
 
-/** Must outlive the geoms made of it. */
+/** A mesh for ODE, which must outlive the geoms made of it. */
 struct OdeMesh {
   explicit OdeMesh(const TriangleMesh& mesh) : data(dGeomTriMeshDataCreate()) {
     for (const Vector3& v : mesh.vertices) vertices.insert(vertices.end(), {v.x(), v.y(), v.z()});
@@ -26,7 +26,7 @@ struct OdeMesh {
   dTriMeshDataID data;
 };
 
-/** Once for the rest of the program. */
+/** Initialises ODE, once for the rest of the program. */
 inline bool initialiseOde() {
   static const bool initialised = dInitODE2(0) != 0;
   return initialised;

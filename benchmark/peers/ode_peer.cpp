@@ -41,7 +41,7 @@ class OdePeer : public Peer {
 
 std::unique_ptr<Peer> makeOdePeer(const ContactScene& scene) {
   if (!initialiseOde()) return nullptr;
-  // It says for every pair that its table of contacts to merge is too small.
+  // Silences ODE, which says for every pair that its table of contacts to merge is too small.
   dSetMessageHandler([](int, const char*, va_list) {});
   return std::make_unique<OdePeer>(scene);
 }

@@ -1,5 +1,5 @@
-// Mesh collision of other engines on the scenes of contact_scenes.h. None of them finds what contact generation finds; each row says what
-// it does find.
+// Mesh collision of other engines on the scenes of contact_scenes.h. None of them finds the contacts of contact generation; each row names
+// its own result.
 #pragma once
 
 #include <memory>
@@ -25,9 +25,9 @@ struct PeerRow {
   std::unique_ptr<Peer> (*make)(const ContactScene& scene);
 };
 
-/** Those that were installed where this was built. */
+/** Peers that were installed at build time. */
 std::vector<PeerRow> peers();
-/** The others, and what to install. */
+/** Peers that were missing at build time, and the packages to install. */
 std::vector<std::string> missingPeers();
 
 std::unique_ptr<Peer> makeOdePeer(const ContactScene& scene);

@@ -16,7 +16,7 @@ struct TossScene {
   Vector3 gravity = Vector3::Zero();
   Vector3 com = Vector3::Zero();          ///< from the cube's middle, its axes
   Vector3 inertia = Vector3::Zero();      ///< [kg m^2] about the centre of mass, along the cube's axes
-  std::map<std::string, double> surface;  ///< what is fitted, by the engine's own names
+  std::map<std::string, double> surface;  ///< parameters that are fitted, by the engine's own names
 };
 
 /** Pose of the cube's middle; velocities of the centre of mass, world axes. */
@@ -31,7 +31,7 @@ class TossEngine {
   /** Begins a toss, with nothing remembered of the last one. */
   virtual void start(const TossMotion& motion) = 0;
   virtual void step() = 0;
-  /** Of the cube's middle. */
+  /** Pose of the cube's middle. */
   virtual Pose pose() const = 0;
 };
 

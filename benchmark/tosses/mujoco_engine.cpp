@@ -1,4 +1,4 @@
-// MuJoCo's box on its plane, elliptic cones. Surface: friction, and what its contacts' springs are made of: time_constant, damping_ratio.
+// MuJoCo's box on its plane, elliptic cones. Surface: friction, and of its contacts' springs time_constant and damping_ratio.
 #include <fmt/format.h>
 #include <mujoco/mujoco.h>
 

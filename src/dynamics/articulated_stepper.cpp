@@ -17,14 +17,14 @@
 namespace blem_sim {
 namespace {
 
-constexpr double FASTEST = 1e100;       // [m/s or rad/s]: beyond, ODE could not normalise what it is given
+constexpr double FASTEST = 1e100;       // [m/s or rad/s]: at higher speeds ODE could not normalise the state it gets
 constexpr double SAME_PRODUCTS = 1e-9;  // [sqrt(kg) m/s] change of the free momentum that needs no second pass
 
 constexpr std::size_t SHARED = 300;  // contacts of an island that threads share
 constexpr double LIGHT = 0.01;       // [kg] mass of the lightest tree of an island, below which tolerances shrink
 constexpr std::uint64_t NO_MORE_TREES = ~0ull;
 
-/** An island with what belongs to it in this step. */
+/** An island with its contacts, impacts and reports of this step. */
 struct Island {
   IslandProblem problem;
   std::vector<int> contacts;          ///< of the step's input
@@ -82,7 +82,7 @@ class ArticulatedStepper : public Stepper {
   ForestMotion motion_;
   FreeMotion way_;  ///< of fast trees
   StepMemory memory_;
-  std::vector<BodyBits> written_;  ///< per node: what the scene was given last
+  std::vector<BodyBits> written_;  ///< per node: bits that the scene was given last
   SolverSpace space_;
   ImpactSpace impact_space_;
   Islands islands_;
@@ -111,7 +111,7 @@ bool ArticulatedStepper::isOurs(const Scene& scene, int tree) const {
   return true;
 }
 
-// A tree whose bodies somebody else has set since our last step is read back; the others' joint coordinates are kept as they are.
+// Reads back the trees whose bodies were set from outside since the last step; the others' joint coordinates are kept as they are.
 void ArticulatedStepper::readEdits(const Scene& scene) {
   for (int tree = 0; tree < static_cast<int>(forest_.trees().size()); ++tree) {
     if (isOurs(scene, tree)) continue;
@@ -122,7 +122,7 @@ void ArticulatedStepper::readEdits(const Scene& scene) {
   }
 }
 
-// A contact between things that nothing can move is no contact.
+// Whether a body of the contact can move; a contact between two that cannot is no contact.
 bool ArticulatedStepper::isMoved(const ContactConstraint& c) const {
   const auto moved = [&](int body) { return body != WORLD_BODY && forest_.nodes()[forest_.nodeOfBody(body)].last_dof >= 0; };
   return moved(c.body_a) || moved(c.body_b);
@@ -187,7 +187,7 @@ NewtonSettings ArticulatedStepper::settingsFor(const IslandProblem& problem) con
   return settings;
 }
 
-// With velocity products at the middle of the step, where the first guess of it was not good enough.
+// Solves with velocity products at the middle of the step, again where their first guess was not good enough.
 NewtonReport ArticulatedStepper::solveTwice(double dt, const NewtonSettings& newton, IslandProblem* problem) {
   const NewtonReport first = problem->solve(forest_, motion_, newton, &space_);
   double change = 0;
@@ -358,7 +358,8 @@ void ArticulatedStepper::step(Scene* scene, const StepInput& input, SolveResult*
   writeScene(scene);
 }
 
-// The same words for a world that was just made and for one that was brought back to its beginning: trees that are not ours are left out.
+// The same words for a world that was just made and for one that was brought back to its beginning: trees changed from outside are left
+// out.
 void ArticulatedStepper::save(const Scene& scene, StateWriter* writer) const {
   memory_.save(scene, writer);
   const int trees = structure_ == scene.structure() ? static_cast<int>(forest_.trees().size()) : 0;

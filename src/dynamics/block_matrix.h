@@ -12,7 +12,7 @@ namespace blem_sim {
 
 /**
  * Use: start, couple, analyse; then setZero, fill, factor, solve as often as wished. Blocks are eliminated in an order of least degree
- * (EliminationOrder), which only decides what it costs; a pattern told as the last one was needs no analysis. A pattern no larger than an
+ * (EliminationOrder), which changes only the cost; a pattern told as the last one was needs no analysis. A pattern no larger than an
  * earlier one allocates nothing.
  */
 class BlockMatrix {
@@ -21,13 +21,13 @@ class BlockMatrix {
 
   /** Begins a pattern of blocks, none of them coupled. */
   void start(const std::vector<int>& sizes);
-  /** Two different blocks that are coupled. */
+  /** Notes that two different blocks are coupled. */
   void couple(int a, int b);
-  /** Chooses the order and makes room for what elimination fills in. */
+  /** Chooses the order and makes room for the blocks that elimination fills in. */
   void analyse();
 
   void setZero();
-  /** Only its lower triangle counts. */
+  /** A block on the diagonal, of which only the lower triangle counts. */
   Block diagonal(int block);
   /** The block of rows `a` and columns `b`, which are coupled, or, if `transposed` says so, of rows b and columns a. */
   Block coupling(int a, int b, bool* transposed);
@@ -37,7 +37,7 @@ class BlockMatrix {
   int offset(int block) const { return offsets_[block]; }
   int size() const { return size_; }
 
-  /** @param team shares what is taken from blocks. @return false if the matrix is not positive definite */
+  /** @param team its threads share the outer products of a column. @return false if the matrix is not positive definite */
   bool factor(Team* team);
   /** Solves in place. Precondition: factor */
   void solve(Eigen::Ref<Eigen::VectorXd> x) const;
@@ -51,7 +51,7 @@ class BlockMatrix {
     bool free = false;         // it and all its entries are of free bodies
   };
   struct Entry {
-    int column = 0;         // where its row's block is eliminated
+    int column = 0;         // in which its row's block is eliminated
     std::size_t value = 0;  // in values_
   };
   void eliminateAll();
@@ -79,10 +79,10 @@ class BlockMatrix {
   std::vector<int> position_;                          // per block: its column
   std::vector<Column> columns_;
   std::vector<Entry> entries_;
-  std::vector<int> rows_;  // per entry: where its row's block begins in a vector
+  std::vector<int> rows_;  // per entry: first row of its row's block in a vector
   std::vector<double> values_;
   std::size_t most_entries_ = 0;      // of a column
-  std::vector<std::size_t> targets_;  // in values_: what an entry's outer products are taken from; for each chunk of entries
+  std::vector<std::size_t> targets_;  // in values_: blocks that an entry's outer products are subtracted from; for each chunk of entries
 };
 
 }  // namespace blem_sim

@@ -76,7 +76,7 @@ BodyBits Scene::bits(int body) const {
 bool Scene::hasBits(int body, const BodyBits& bits) const {
   const dBodyID ode = bodies_[body].ode;
   const double* known = bits.numbers;
-  // Few bodies are touched by others, so that all is compared before anything is asked.
+  // Few bodies are changed from outside, so all numbers are compared before the result is asked for.
   std::uint64_t differs = 0;
   const auto compare = [&](const dReal* numbers, int count) {
     for (int i = 0; i < count; ++i) {

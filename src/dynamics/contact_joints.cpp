@@ -8,7 +8,8 @@
 namespace blem_sim {
 namespace {
 
-// A pyramid's bound is the normal force times this; an infinite one would hold contacts that do not push.
+// Largest friction coefficient of a pyramid, whose bound is the normal force times it: an infinite one would hold contacts that do not
+// push.
 constexpr double MAX_FRICTION = 1e6;
 
 }  // namespace

@@ -9,7 +9,7 @@ namespace blem_sim {
 namespace {
 
 constexpr double NO_FRICTION = 1e-9;   // of the push: below, the direction of friction is made of rounding errors
-constexpr double STICKING = 1 - 1e-9;  // of friction's bound: what was remembered below it had stuck
+constexpr double STICKING = 1 - 1e-9;  // of friction's bound: friction that was remembered below it had stuck
 
 /** Slope and curvature of a contact's potential along its step. */
 struct LaneSlope {
@@ -50,7 +50,7 @@ void setLane(const ContactTerm* term, int lane, ContactBlock* b) {
     ContactTerm never;
     never.point = never.normal = Vector3::Zero();
     never.inverse_mass = 1;
-    never.target = -1;  // and without friction: with it, what is faster than that would be held
+    never.target = -1;  // and without friction: with it, points faster than that would be held
     return never;
   }();
   const ContactTerm& t = term ? *term : NEVER;
@@ -92,7 +92,7 @@ BLEM_SIM_LANES void expect(ContactBlock* begin, ContactBlock* end) {
       const double push = dot(normal, previous);
       const Triple held = previous - push * normal;
       const double size = __builtin_sqrt(dot(held, held)), slip = b->slip[lane];
-      // What slips is on its cone, where De Saxce's term just undoes what the slip adds. What sticks creeps on as it did.
+      // A slipping contact is on its cone, where De Saxce's term just undoes the slip's share. A sticking one creeps on as it did.
       const bool slipped = size >= STICKING * b->friction[lane] * push;
       const double u_n = b->target[lane] - (slipped ? 0 : b->friction[lane] * slip) - b->compliance[lane] * push;
       const Triple past = u_n * normal - (size > NO_FRICTION * push ? slip / size : 0) * held, change = u - past;

@@ -9,7 +9,7 @@
 
 namespace blem_sim {
 
-/** Four contacts of one patch. What a contact answers to a velocity falls with it: its stiffness -d impulse/du is positive semidefinite. */
+/** Four contacts of one patch. A contact's impulse falls with the velocity: its stiffness -d impulse/du is positive semidefinite. */
 struct ContactBlock {
   static constexpr double OPEN = 0, STICK = 1, SLIP = 2;
 
@@ -21,8 +21,8 @@ struct ContactBlock {
   Lanes slip;                                        ///< [m/s] |u_t| there: De Saxce's term
   VectorLanes velocity;                              ///< [m/s] relative, mean over the step, at the present iterate
   VectorLanes step;                                  ///< its change along the search direction
-  // The response where it was asked for last. The stiffness of one that sticks: normal_gain along its axis, the normal, tangent_gain
-  // across. Of one that slips: normal_gain along its axis, the ridge n + mu t of the cone, tangent_gain along `side`.
+  // The response at the velocity it was asked for last. Stiffness of a contact that sticks: normal_gain along its axis, the normal,
+  // tangent_gain across; of one that slips: normal_gain along its axis, the ridge n + mu t of the cone, tangent_gain along `side`.
   Lanes kind, normal_gain, tangent_gain;
   VectorLanes impulse, axis, side;
 };
@@ -40,7 +40,7 @@ struct PotentialSlope {
 
 /** A lane's contact from a term; null: a contact that never acts. */
 void setLane(const ContactTerm* term, int lane, ContactBlock* block);
-/** What the iteration has found of a lane's contact. */
+/** Impulse and velocity of a lane's contact at the present iterate, into its term. */
 void readLane(const ContactBlock& block, int lane, ContactTerm* term);
 
 /** Proximal weights `softness` times the terms' own. @param terms of the block's lanes; those that are left never act */
@@ -53,7 +53,7 @@ PotentialSlope respond(double a, ContactBlock* begin, ContactBlock* end);
 
 /** Sum of the impulses' wrenches about the points' origin. */
 Vector6 wrenchOf(const ContactBlock* begin, const ContactBlock* end);
-/** Sum of J' k J, k being the responses' stiffnesses: the 6 x 6 by which the patch is felt. @return false if no contact acts */
+/** Stiffness of the patch: the 6 x 6 sum of J' k J, k being the responses' stiffnesses. @return false if no contact acts */
 bool stiffnessOf(const ContactBlock* begin, const ContactBlock* end, Matrix6* out);
 /** The steps of the points that a twist carries along. */
 void setSteps(const Vector6& twist, ContactBlock* begin, ContactBlock* end);

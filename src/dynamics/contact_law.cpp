@@ -14,7 +14,7 @@ Vector3 tangential(const Vector3& v, const Vector3& normal) { return v - normal 
 
 bool compliant(const ContactConstraint& c) { return std::isfinite(c.stiffness) && std::isfinite(c.damping) && c.stiffness + c.damping > 0; }
 
-// A step of free motion keeps v^2/2 + a x - a dt v/2 constant; e^2 of it, taken at the surface, is what is left after an impact. So e = 1
+// A step of free motion keeps v^2/2 + a x - a dt v/2 constant; an impact leaves e^2 of it, taken at the surface. So e = 1
 // neither gains nor loses height, wherever in the step the impact falls and however deep it was noticed.
 double impactSpeed(double closing, double acceleration, double depth, double dt) {
   if (closing <= 0) return 0;
@@ -36,9 +36,8 @@ void setRestitution(const ContactConstraint& c, const ContactMotion& motion, dou
     row->approach = impactSpeed(-c.normal_BA.dot(motion.velocity_BA), acceleration, c.depth, dt);
 }
 
-// The force friction is about to exert: last step's, less what the present slip adds against the row's softness. So the pyramid's first
-// axis follows the slip as soon as it exceeds the creep, and the last force below; an axis of the last force alone turns sideways once
-// sliding starts.
+// Friction force to be: last step's, less the present slip over the row's softness. So the pyramid's first axis follows the slip as soon as
+// it exceeds the creep, and the last force below; an axis of the last force alone turns sideways once sliding starts.
 Vector3 frictionToBe(const Vector3& last_force, const Vector3& slip, double cfm) { return last_force - slip / cfm; }
 
 void setFriction(const ContactConstraint& c, const ContactMotion& motion, const ContactMemo* memo, double dt,

@@ -1,4 +1,4 @@
-// What a contact asks of the solver: bounds on relative velocities at its point.
+// The contact law: bounds on relative velocities at a contact's point.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace blem_sim {
 
-/** What is remembered of one contact from one step to the next. */
+/** Memory of one contact from one step to the next. */
 struct ContactMemo {
   std::uint64_t id = 0;
   Vector3 friction = Vector3::Zero();  ///< [N] tangential force on A, world axes
@@ -31,20 +31,21 @@ class ContactMemory {
 /** Motion of A's point against B's at a contact, world axes, at the start of a step. */
 struct ContactMotion {
   Vector3 velocity_BA = Vector3::Zero();      ///< [m/s]
-  Vector3 acceleration_BA = Vector3::Zero();  ///< [m/s^2] what gravity and outside wrenches alone would give
+  Vector3 acceleration_BA = Vector3::Zero();  ///< [m/s^2] by gravity and outside wrenches alone
 };
 
-/** What a contact asks along its normal: v_n+ >= speed - compliance f_n. */
+/** Bound of a contact along its normal: v_n+ >= speed - compliance f_n. */
 struct NormalRow {
   double speed = 0;       ///< [m/s]
   double compliance = 0;  ///< [m/s per N] of the surface, at least the solver's own softness
   double approach = 0;    ///< [m/s] to be remembered if the contact pushes in this step
 };
 
-/** Without restitution. @param softness [m/s per N] least compliance that the solver needs */
+/** Normal row without restitution. @param softness [m/s per N] least compliance that the solver needs */
 NormalRow surfaceRow(const ContactConstraint& contact, double dt, double softness, const SolverSettings& settings);
 
-/** @param approach [m/s] remembered of the last step, 0 if none; softness [m/s per N] least compliance that the solver needs */
+/** Normal row with restitution. @param approach [m/s] remembered of the last step, 0 if none; softness [m/s per N] least compliance that
+ * the solver needs */
 NormalRow normalRow(const ContactConstraint& contact, const ContactMotion& motion, double approach, double dt, double softness,
                     const SolverSettings& settings);
 
@@ -60,7 +61,7 @@ struct ContactRows {
   double approach = 0;  ///< [m/s] to be remembered if the contact pushes in this step
 };
 
-/** Notes what the next step needs to know of a contact that pushed. @param force [N] on A, world axes */
+/** Notes a contact that pushed for the next step. @param force [N] on A, world axes */
 void addMemo(const ContactConstraint& contact, const ContactRows& rows, const Vector3& force, std::vector<ContactMemo>* memos);
 
 /**

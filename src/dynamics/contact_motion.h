@@ -1,4 +1,4 @@
-// How the two bodies of a contact move at its point.
+// Motion of a contact's two bodies at its point.
 #pragma once
 
 #include "contact_law.h"
@@ -6,7 +6,7 @@
 
 namespace blem_sim {
 
-/** Does the contact join two different things that are in the scene, one of them a body? */
+/** Whether the contact joins two different things that are in the scene, one of them a body. */
 bool isUsable(const Scene& scene, const ContactConstraint& contact);
 
 /** Motion of A's point against B's at the start of a step. Precondition: the contact is usable. */

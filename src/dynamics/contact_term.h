@@ -16,7 +16,7 @@ struct ContactTerm {
   double target = 0;                   ///< [m/s] u_n >= target - R g_n
   Vector3 previous = Vector3::Zero();  ///< [N s] impulse of the first proximal point
   double slip = 0;                     ///< [m/s] |u_t| there
-  Vector3 bend = Vector3::Zero();      ///< [m/s] across the normal: what the bodies' paths bend apart there, over the step
+  Vector3 bend = Vector3::Zero();      ///< [m/s] across the normal: by which the bodies' paths bend apart there, over the step
   Vector3 velocity = Vector3::Zero();  ///< [m/s] solved: relative, mean over the step
   Vector3 impulse = Vector3::Zero();   ///< [N s] solved
 

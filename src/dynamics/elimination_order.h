@@ -1,4 +1,4 @@
-// In which order the blocks of a sparse symmetric matrix are best eliminated, and what that fills in.
+// Elimination order of the blocks of a sparse symmetric matrix, and the couplings that elimination fills in.
 #pragma once
 
 #include <cstdint>

@@ -56,7 +56,7 @@ struct LoopClosure {
  */
 class Forest {
  public:
-  /** Forgets what was and reads the scene. */
+  /** Builds the trees anew from the scene. */
   void build(const Scene& scene);
 
   const std::vector<ForestNode>& nodes() const { return nodes_; }

@@ -119,7 +119,7 @@ BLEM_SIM_LANES void computeProducts(const Forest& forest, int tree, const Eigen:
       drift.setZero();
     else
       drift = motion->drift[node.parent];
-    // The velocity of a moving centre of mass is given; that of the body's point at the reference is another one.
+    // A root's dofs hold the velocity of its moving centre of mass; that of the body's point at the reference is another one.
     if (node.joint < 0)
       drift.tail<3>() = -angular(twist[i]).cross(linear(twist[i]));
     else if (node.dofs == 1 && node.parent >= 0)

@@ -1,4 +1,4 @@
-// How the trees of a forest stand and move: kinematics, inertias, momenta. One tree at a time, so that trees can be worked on at once.
+// Motion of a forest's trees: kinematics, inertias, momenta. One tree at a time, so that trees can be worked on at once.
 #pragma once
 
 #include <vector>
@@ -7,15 +7,15 @@
 
 namespace blem_sim {
 
-/** How far velocity products turn the velocities of a tree in a step. */
+/** Speed of a tree, by how far velocity products turn its velocities in a step. */
 enum class Pace : char {
   SLOW,
-  FAST,     ///< they are none; the free motion is followed along its way (free_motion.h)
-  TOO_FAST  ///< they are none; the tree is tied to others and cannot be followed, but gains no energy
+  FAST,     ///< products are left out; the free motion is followed along its way (free_motion.h)
+  TOO_FAST  ///< products are left out; the tree is tied to others and cannot be followed, but gains no energy
 };
 
 /**
- * Where bodies are and how they move. World axes; everything of a tree about its reference point, which stands still during a step: a
+ * Poses and velocities of bodies. World axes; everything of a tree about its reference point, which stands still during a step: a
  * free root's centre of mass at its start, else the root's origin. The six velocities of a free root are its spin and the velocity of its
  * moving centre of mass.
  */
@@ -34,9 +34,9 @@ struct ForestMotion {
   Eigen::VectorXd velocity;       ///< start of the step
   Eigen::VectorXd change;         ///< of the velocity in the last step
   Eigen::VectorXd next_velocity;  ///< end of the step
-  Eigen::VectorXd products;       ///< velocity products: what M dv/dt lacks to the forces
+  Eigen::VectorXd products;       ///< velocity products: forces less M dv/dt
   Eigen::VectorXd applied;        ///< gravity and outside wrenches
-  Eigen::VectorXd owed;           ///< [N m s or N s] what dofs took on their free way to keep their velocities; the next step's to supply
+  Eigen::VectorXd owed;           ///< [N m s or N s] impulses that kept dofs' velocities on their free way; the next step supplies them
   // Per packed entry.
   std::vector<double> mass;  ///< joint space inertia; zero where room is left
   // Per tree.
@@ -86,10 +86,10 @@ void addProjectedNode(const Forest& forest, int node, const ForestMotion& motion
 void addProjected(const Forest& forest, int tree, const ForestMotion& motion, double sign, std::vector<Vector6>* wrench,
                   Eigen::VectorXd* out);
 
-/** Positions, velocities and a free root's pose from the bodies of the scene, which somebody else has set. */
+/** Positions, velocities and a free root's pose from the bodies of the scene, which were set from outside. */
 void readTree(const Forest& forest, const Scene& scene, int tree, ForestMotion* motion);
 
-/** Sets the bodies of the scene to the motion at hand. @param written per node, what they were given, out */
+/** Sets the bodies of the scene to the motion at hand. @param written per node, the bits that its body was given, out */
 void writeTree(const Forest& forest, int tree, const ForestMotion& motion, Scene* scene, std::vector<BodyBits>* written);
 
 }  // namespace blem_sim

@@ -7,7 +7,7 @@
 namespace blem_sim {
 namespace {
 
-// A column of a block: four rows and two. Compilers lower them to what the processor has.
+// A column of a block: four rows and two. Compilers lower them to the processor's own vectors.
 using Four = double __attribute__((vector_size(32), aligned(8), may_alias));
 using Two = double __attribute__((vector_size(16), aligned(8), may_alias));
 

@@ -10,7 +10,7 @@
 namespace blem_sim {
 namespace {
 
-constexpr double ENERGY_MISS = 1e-5;   // relative, over a step: raise it for less work; what is missed is put right in any case
+constexpr double ENERGY_MISS = 1e-5;   // relative, over a step: raise it for less work; energy that is missed is put right in any case
 constexpr double TOO_INEXACT = 1e-3;   // likewise: no longer the same motion
 constexpr double SUB_STEP_TURN = 0.5;  // [rad] of the fastest body in the first try's sub-steps
 constexpr int MAX_SUB_STEPS = 64;
@@ -42,7 +42,7 @@ Eigen::Vector4d turnRate(const Vector3& spin, const Eigen::Vector4d& turn) {
   return rate;
 }
 
-/** As many as the order of the method asks for, where it shows already. */
+/** Next number of sub-steps: by the fourth order of the method, at least a quarter more and at most four times as many, and one. */
 int moreSteps(int steps, double miss) {
   const double more = steps * std::clamp(std::pow(miss / ENERGY_MISS, 0.25), 1.25, 4.0) + 1;
   return more < MAX_SUB_STEPS ? static_cast<int>(more) : MAX_SUB_STEPS;
@@ -77,7 +77,7 @@ void FreeMotion::place(const Forest& forest, int tree, const RootPose& root) {
   computeTwists(forest, tree, at_, at_.velocity, &at_.twist);
 }
 
-// Articulated inertia and bias of what a node carries [Featherstone 2008, 7.3], all about the tree's reference; added to its parent's.
+// Articulated inertia and bias of all that a node carries [Featherstone 2008, 7.3], all about the tree's reference; added to its parent's.
 void FreeMotion::articulate(const Forest& forest, int node) {
   const ForestNode& n = forest.nodes()[node];
   if (n.joint < 0) return;
@@ -141,7 +141,7 @@ BLEM_SIM_LANES void FreeMotion::accelerate(const Forest& forest, int tree) {
   }
 }
 
-// Runge and Kutta's fourth order, from and to where the tree is placed.
+// A sub-step of Runge and Kutta's fourth order, from the poses where the tree is placed; it is placed at the end.
 void FreeMotion::subStep(const Forest& forest, int tree, double dt, RootPose* root) {
   constexpr double SHARE[] = {0, 0.5, 0.5, 1}, WEIGHT[] = {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6};
   const ForestTree& t = forest.trees()[tree];
@@ -182,7 +182,7 @@ void FreeMotion::subStep(const Forest& forest, int tree, double dt, RootPose* ro
   for (int k = t.first_dof; k < t.dof_end; ++k) owed_[k] += dt * sum_effort_[k];
 }
 
-// To the start of the step; a free tree seen from its centre of mass.
+// Places the tree at the start of the step; a free tree seen from its centre of mass.
 void FreeMotion::start(const Forest& forest, int tree, const ForestMotion& motion, const Eigen::VectorXd& velocity) {
   const ForestTree& t = forest.trees()[tree];
   std::copy(motion.position.begin() + t.first_node, motion.position.begin() + t.node_end, at_.position.begin() + t.first_node);
@@ -281,8 +281,8 @@ FreeMotionReport FreeMotion::follow(const Forest& forest, int tree, double dt, c
   return report;
 }
 
-// Where sub-steps lead nowhere: the tree keeps its shape for this step, turns as one body, and its joints lose half their speed. Momenta
-// are kept, energy is lost.
+// Way of a tree that sub-steps cannot follow: it keeps its shape for this step, turns as one body, and its joints lose half their speed.
+// Momenta are kept, energy is lost.
 void FreeMotion::wait(const Forest& forest, int tree, double dt, const ForestMotion& motion, const Eigen::VectorXd& velocity) {
   const ForestTree& t = forest.trees()[tree];
   start(forest, tree, motion, velocity);
@@ -298,7 +298,7 @@ void FreeMotion::wait(const Forest& forest, int tree, double dt, const ForestMot
   computeTwists(forest, tree, at_, at_.velocity, &at_.twist);
 }
 
-// A free tree's momenta by moving all of it; the energy by faster or slower joints, which is the same way at another speed.
+// Puts right a free tree's momenta by moving all of it, and the energy by faster or slower joints: the same way at another speed.
 void FreeMotion::correct(const Forest& forest, int tree, double energy_wanted) {
   const ForestTree& t = forest.trees()[tree];
   Vector6 locked = Vector6::Zero();
@@ -347,7 +347,7 @@ void FreeMotion::leaveFrame(const Forest& forest, int tree, double dt, const For
   }
 }
 
-// As one body.
+// Turns a free tree as one body through the step. @return its turn
 Matrix3 FreeMotion::turnRigid(const Forest& forest, int tree, double dt, const ForestMotion& motion) {
   const ForestTree& t = forest.trees()[tree];
   const RigidTurn way = turnFreely(centralInertia(motion.composite[t.first_node]), spin_[tree], dt);

@@ -1,11 +1,11 @@
-// The way that a tree takes through a step under its own momentum alone: what fast trees follow instead of a straight one.
+// Way of a tree through a step under its own momentum alone: fast trees follow it instead of a straight one.
 #pragma once
 
 #include "forest_motion.h"
 
 namespace blem_sim {
 
-/** How well a free motion was followed. */
+/** Quality of a free motion that was followed. */
 struct FreeMotionReport {
   double miss = 0;       ///< of kinetic energy, relative, before it was put right
   bool followed = true;  ///< with as many sub-steps as are allowed at most; if not, energy is lost
@@ -14,7 +14,7 @@ struct FreeMotionReport {
 
 /**
  * Geodesic motion of trees: joints turn as they may, nothing acts from outside. Kinetic energy and a free tree's momenta are kept to
- * rounding. Held dofs keep their velocities, and what that takes is theirs to supply. A tree of several dofs is followed by sub-steps of
+ * rounding. Held dofs keep their velocities and supply the impulses for it. A tree of several dofs is followed by sub-steps of
  * Runge and Kutta's fourth order, twice as many as long as energy is missed; a rigid body by turns about its principal axes
  * [McLachlan 1993], which are symplectic. Bounded, allocates nothing.
  */
@@ -22,9 +22,9 @@ class FreeMotion {
  public:
   void resize(const Forest& forest);
 
-  /** Per dof: it keeps its velocity on the way. To be set before `follow`, which lets go of those that cannot. */
+  /** Per dof: whether it keeps its velocity on the way. To be set before `follow`, which lets go of those that cannot. */
   std::vector<char> held;
-  /** Per dof [N m s or N s]: what it can supply at least and at most to do so. */
+  /** Per dof [N m s or N s]: least and largest impulse that it can supply to do so. */
   std::vector<double> least, most;
 
   /**
@@ -34,14 +34,14 @@ class FreeMotion {
   FreeMotionReport follow(const Forest& forest, int tree, double dt, const ForestMotion& motion, const Eigen::VectorXd& velocity,
                           const Eigen::VectorXd& mass_velocity);
 
-  /** Of the end of the way: positions, velocities of the dofs, owed impulses, a free root's pose. Then placeBodies, computeInertias. */
+  /** Takes the end of the way: positions, velocities of the dofs, owed impulses, a free root's pose. Then placeBodies, computeInertias. */
   void takeEnd(const Forest& forest, int tree, ForestMotion* motion) const;
 
   /** Rate of change of a node's momentum over the step, at the middle of its centre of mass's way, about the reference at the start. */
   Vector6 momentumRate(const Forest& forest, int node, double dt, const ForestMotion& motion) const;
-  /** Where a node's centre of mass is at the middle of the step, about the reference at the start. */
+  /** Centre of mass of a node at the middle of the step, about the reference at the start. */
   Vector3 middleCom(int node, const ForestMotion& motion) const { return 0.5 * (motion.com[node] + at_.com[node]); }
-  /** Likewise the origin of its joint, in the world. */
+  /** Origin of a node's joint at the middle of the step, in the world. */
   Vector3 middleJoint(int node, const ForestMotion& motion) const;
 
  private:

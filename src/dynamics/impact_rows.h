@@ -1,4 +1,4 @@
-// What impulses at contacts do to the velocities of trees at once, motors and joint friction being no impulses.
+// Changes of trees' velocities by impulses at contacts, at once; motors and joint friction give no impulses.
 #pragma once
 
 #include <vector>
@@ -13,7 +13,7 @@ namespace blem_sim {
 /** Vectors over the forest that impacts are reckoned in, each island in its own trees. */
 struct ImpactSpace {
   Eigen::VectorXd velocity;  ///< with half of the step's forces: that of the moment when impacts happen
-  Eigen::VectorXd leap;      ///< by how much impacts have changed it
+  Eigen::VectorXd leap;      ///< its change by impacts
   Eigen::VectorXd momentum;  ///< the mass matrix times that: the sum of impulses
   Eigen::VectorXd column;    ///< work space
   TreeFactor factor;         ///< of the mass matrix
@@ -40,24 +40,24 @@ class ImpactRows {
   /** Precondition: the trees of both nodes are factored. @return index of the contact here */
   int add(const Forest& forest, const ForestMotion& motion, const BodyPair& pair, const ContactTerm& term, ImpactSpace* space);
 
-  /** [m/s] for given velocities of the dofs. */
+  /** Relative velocity [m/s] along the contact's directions, for given velocities of the dofs. */
   Vector3 velocity(int contact, const Eigen::VectorXd& v) const;
-  /** Changes velocities by what an impulse [N s] does to them. */
+  /** Adds to velocities their change by an impulse [N s]. */
   void push(int contact, const Vector3& impulse, Eigen::VectorXd* v) const;
   /** Adds the impulse to momenta. */
   void addMomentum(int contact, const Vector3& impulse, Eigen::VectorXd* momentum) const;
-  /** World axes. */
+  /** The impulse in world axes. */
   Vector3 inWorld(int contact, const Vector3& impulse) const { return contacts_[contact].basis * impulse; }
 
-  /** [1/kg] along the normal; 0 if nothing can move there. */
+  /** Inverse mass [1/kg] along the normal; 0 if nothing can move there. */
   double inverseMass(int contact) const { return contacts_[contact].normal; }
-  /** [1/kg] largest across it. */
+  /** Largest inverse mass [1/kg] across the normal. */
   double inverseMassAcross(int contact) const { return contacts_[contact].across; }
 
  private:
   struct Side {
     int first_dof = 0, dofs = 0;
-    int rows = 0;  ///< where three rows of J begin, and behind them three columns of M^-1 J', one after the other
+    int rows = 0;  ///< in numbers_: start of three rows of J, and behind them three columns of M^-1 J', one after the other
   };
   struct Entry {
     Matrix3 basis;  ///< columns: normal and two tangents

@@ -7,7 +7,7 @@
 namespace blem_sim {
 namespace {
 
-constexpr double UNIT = 1e-3;  // by which a normal's length may differ from 1
+constexpr double UNIT = 1e-3;  // largest difference of a normal's length from 1
 
 bool finiteAndNotNegative(double x) { return x >= 0 && std::isfinite(x); }
 

@@ -1,13 +1,13 @@
-// What the world takes: numbers that are numbers, and in their ranges.
+// Input checks of the world: numbers that are finite, and in their ranges.
 #pragma once
 
 #include "blem_sim/dynamics/world.h"
 
 namespace blem_sim {
 
-/** Finite where it must be, nothing negative that has no sign, and a normal of length 1 within 1e-3. */
+/** Whether the contact is finite where it must be, has nothing negative that has no sign, and a normal of length 1 within 1e-3. */
 bool isSound(const ContactConstraint& contact);
-/** Finite, and no gain, friction or bound below 0. */
+/** Whether the drive is finite, and no gain, friction or bound below 0. */
 bool isSound(const JointDrive& drive);
 /** @throws InputError that names the field and the cure */
 void checkJointNumbers(const JointSpec& joint, double position);

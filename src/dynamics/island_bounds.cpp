@@ -1,4 +1,4 @@
-// Bounds on what contacts may do on purpose: push and add energy by correcting depth, and move bodies where nothing solved the problem.
+// Bounds on contacts that correct depth: on their pushes and the energy they add; and on velocities where nothing solved the problem.
 #include <algorithm>
 #include <cmath>
 
@@ -7,7 +7,7 @@
 namespace blem_sim {
 namespace {
 
-constexpr double AT_TARGET = 4;         // times the energy of an island as fast as its fastest target: what correcting depth may take
+constexpr double AT_TARGET = 4;         // times the energy of an island as fast as its fastest target: most that correcting depth may take
 constexpr double HARD = 10;             // times the fastest correction of depth: a push that makes the whole island so fast is hard
 constexpr double OF_CORRECTION = 0.25;  // of a gain of energy: the least share of contacts that gained it by correcting depth
 
@@ -19,7 +19,7 @@ double IslandProblem::fastestTarget() const {
   return fastest;
 }
 
-// [J] Overwrites space->mass_direction.
+// Kinetic energy [J] at a velocity. Overwrites space->mass_direction.
 double IslandProblem::kineticEnergy(const Eigen::VectorXd& velocity) {
   SolverSpace& s = *space_;
   for (const int tree : trees) multiply(*forest_, tree, motion_->mass, velocity, &s.mass_direction, &s.paths);
@@ -41,8 +41,8 @@ bool IslandProblem::giveUpLocked(double speed) {
   return any;
 }
 
-// Contacts that lead bodies apart, and loops that close, need the energy of bodies that move at their targets. Those that hardly have a
-// lever, or leave bodies no other way, would add any amount. @return share of their targets that is to be reached
+// Contacts that lead bodies apart, and loops that close, need the energy of bodies that move at their targets. Contacts that hardly have a
+// lever, or leave bodies no other way, would add any amount. @return share of the targets that is to be reached
 double IslandProblem::affordableShare(double speed) {
   const double fastest = std::max(speed, fastestTarget()), enough = AT_TARGET * 0.5 * mass * fastest * fastest;
   double work = 0;

@@ -11,7 +11,7 @@ constexpr int HEAP = 4;         // fewest free bodies of an island that is swept
 constexpr int LARGE_HEAP = 32;  // fewest that are swept first; of fewer only if Newton's first iterations fail
 constexpr double TURNS = 0.03;  // [rad/s] fastest turn of a heap that stands, slides or lands flat: Newton's method solves it
 constexpr int FEW_ITERATIONS = 30, CROWD_ITERATIONS = 8;  // most of Newton's method on a small heap that tumbles, on a crowd at rest
-constexpr double SETTLED = 1e-4;  // of the largest impulse: by how much the last proximal step of a heap may change one
+constexpr double SETTLED = 1e-4;                          // of the largest impulse: largest change of one by a heap's last proximal step
 // A heap tumbles if the first sweep changes impulses by more than this share of the largest. Sweeps end when they change impulses by less;
 // a quiet crowd sways for ever if they leave more.
 constexpr double TUMBLES = 1e-2, SWEPT = 1e-3, SWEPT_FEW = 2e-5, SWEPT_QUIET = 1e-5, RECOVERED = 1e-7;
@@ -22,11 +22,11 @@ constexpr double LIKE_BEFORE = 1e-6, NEARLY = 1e-4;
 // Softness of contacts while a quiet heap is polished: stiffer ones change their kinds too often.
 constexpr double POLISH_SOFTNESS = 300, KEPT_SOFTNESS = 100, INEXACT = 0.02;
 constexpr int POLISH_WORK = 6000, FEWEST_POLISHES = 10, MOST_POLISHES = 60;  // iterations times trees
-constexpr double BALANCED = 1e-5;                                            // [rad/s or m/s] what a step may miss momentum's balance by
+constexpr double BALANCED = 1e-5;                                            // [rad/s or m/s] most that a step may miss momentum's balance
 constexpr double RESIDUAL_IS_TROUBLE = 0.01;                                 // of the largest impulse
 constexpr double CREEP_IS_TROUBLE = 0.01;                                    // [rad/s or m/s]
-constexpr int MOTOR_ROUNDS = 4;                                              // of finding which motors are at their bounds
-constexpr double FREE_ENERGY = 1e-9, GAIN_OF_MOTION = 1e-6;  // [J], and of the work that contacts exchange: what sweeps may gain
+constexpr int MOTOR_ROUNDS = 4;                                              // searches for the motors that are at their bounds
+constexpr double FREE_ENERGY = 1e-9, GAIN_OF_MOTION = 1e-6;  // [J], and of the work that contacts exchange: most that sweeps may gain
 
 }  // namespace
 
@@ -128,7 +128,7 @@ void IslandProblem::adoptSwept() {
   const ContactWork work = contactWork();
   const double bound = FREE_ENERGY + GAIN_OF_MOTION * work.exchanged;
   if (work.gained <= bound) return;
-  // Impulses a times as large gain a (first + a second): a is led to where that is nothing.
+  // Impulses a times as large gain a (first + a second): the factor a makes this gain nothing.
   const double second = 0.5 * work.change, first = work.gained - second;
   sweeps_.scale(second > 0 ? std::clamp(-first / second, 0.0, 1.0) : 0, &space_->velocity);
   sweeps_.read(space_->velocity, &contacts, &joints, &loops);
@@ -191,7 +191,7 @@ bool IslandProblem::isSettled() const {
   return change <= SETTLED * SETTLED * largest;
 }
 
-// The budget may end at any proximal step of a heap. Of the steps that balanced momentum the best one is kept.
+// Keeps the best proximal step of a heap that balanced momentum, since the budget may end at any step.
 void IslandProblem::keepBalanced(const NewtonReport& report, double* least) {
   if (!isHeap() || !(report.imbalance <= BALANCED) || !(report.contact_residual < *least)) return;
   *least = report.contact_residual;
@@ -210,8 +210,8 @@ bool IslandProblem::isExact(const NewtonSettings& settings, const NewtonReport& 
   return report.contact_residual <= settings.contact_tolerance && gradient_norm_ <= settings.gradient_tolerance;
 }
 
-// The hard problem alone, in few iterations: of a few bodies that tumble, but move much as in the step before, or of a crowd at rest. A
-// crowd's result must be exact: the least imbalance would set it in motion again.
+// Solves the hard problem alone, in few iterations: for a few bodies that tumble, but move much as in the step before, or for a crowd at
+// rest. A crowd's result must be exact: the least imbalance would set it in motion again.
 bool IslandProblem::solveFew(const NewtonSettings& settings, NewtonReport* report) {
   NewtonSettings few = settings;
   few.max_iterations = isCrowd() ? CROWD_ITERATIONS : FEW_ITERATIONS;
@@ -229,13 +229,13 @@ bool IslandProblem::solveStanding(const NewtonSettings& settings, NewtonReport* 
   return faults(*report) <= 1;
 }
 
-// One sweep tells whether the last step's impulses nearly solve this one.
+// Whether the last step's impulses nearly solve this one: one sweep tells.
 bool IslandProblem::isLikeBefore() {
   Eigen::VectorXd* velocity = &space_->direction;
   return sweeps_.load(sweepProblem(), SweepStart::PREVIOUS, velocity) && sweeps_.sweep(1, 0, velocity).first_change <= LIKE_BEFORE;
 }
 
-// Newton's method where it succeeds and is worth its price. @return whether it did
+// Runs Newton's method where it may succeed at its price. @return whether it did
 bool IslandProblem::solveWithoutSweeps(const NewtonSettings& settings, NewtonReport* report) {
   if (!turnsSlowly()) return treeCount() < LARGE_HEAP && solveFew(settings, report);
   return isCrowd() ? isLikeBefore() && solveFew(settings, report) : solveStanding(settings, report);

@@ -1,4 +1,4 @@
-// M plus what contacts, loops and joints stiffen, its factor, and the direction that follows from it.
+// Hessian: M plus the stiffnesses of contacts, loops and joints; its factor, and the direction that follows from it.
 #include <algorithm>
 
 #include "island_problem.h"
@@ -76,7 +76,7 @@ void IslandProblem::coupleBlocks(const BodyPair& pair, const Matrix6& stiffness)
     for (int f = 0; f < forest_->rowLength(b.last_dof); ++f) {
       const int j = forest_->columns(b.last_dof)[f], c = s.block_row[j];
       const double value = row.dot(motion_->subspace[j]);
-      // Of a diagonal block only the lower triangle is kept; a dof that carries both gets both halves.
+      // A diagonal block keeps its lower triangle only; a dof that carries both nodes gets both halves.
       if (block_a == block_b)
         block(std::max(r, c), std::min(r, c)) -= r == c ? 2 * value : value;
       else
@@ -85,7 +85,7 @@ void IslandProblem::coupleBlocks(const BodyPair& pair, const Matrix6& stiffness)
   }
 }
 
-// How contacts and loops stiffen the bodies at the present iterate.
+// Adds the stiffnesses of contacts and loops at the present iterate to the bodies.
 void IslandProblem::addStiffness() {
   for (const int i : live_nodes_) space_->stiff[i] = 0;
   if (coupled_) matrix_.setZero();
@@ -135,7 +135,7 @@ void IslandProblem::fillMatrix() {
     matrix_.fold(s.block[forest_->nodes()[forest_->nodeOfDof(m.dof)].tree], s.block_row[m.dof], s.block_row[m.master], m.multiplier);
 }
 
-// At the responses at hand. False if the Hessian is not positive definite.
+// Factors the Hessian at the responses at hand. False if it is not positive definite.
 bool IslandProblem::factor() {
   SolverSpace& s = *space_;
   factored_ = false;

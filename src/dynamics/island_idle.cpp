@@ -1,4 +1,4 @@
-// What need not be iterated: branches of trees that nothing touches follow the others, as long as their joints answer linearly.
+// Idle branches: branches of trees that nothing touches are not iterated, but follow the others, as long as their joints answer linearly.
 #include <algorithm>
 
 #include "island_problem.h"
@@ -10,7 +10,7 @@ constexpr int FEW = 8;  // joints that stray: the solution without them is near
 
 }  // namespace
 
-// Nodes that something acts on, and those that carry them.
+// Finds the live nodes: those that something acts on, and those that carry them.
 void IslandProblem::findLive() {
   SolverSpace& s = *space_;
   for (const int tree : trees) {
@@ -53,7 +53,7 @@ void IslandProblem::listLive() {
   orderJoints();
 }
 
-// Live joints first, in blocks of their own.
+// Orders the joints: live ones first, in blocks of their own.
 void IslandProblem::orderJoints() {
   joint_order_.clear();
   const auto add = [&](bool idle) {
@@ -90,13 +90,13 @@ void IslandProblem::softenJoints() {
 
 bool IslandProblem::isIdle(int dof) const { return !space_->live[forest_->nodeOfDof(dof)]; }
 
-// Idle joints, at the velocities at hand.
+// Responses of idle joints at the velocities at hand.
 void IslandProblem::respondIdle() {
   double first = 0, second = 0;
   blem_sim::respond(0, joint_blocks_.data() + live_joint_blocks_, joint_blocks_.data() + joint_blocks_.size(), &first, &second);
 }
 
-// Do the velocities at hand solve the problem? Idle dofs first: they cost least.
+// Whether the velocities at hand solve the problem. Idle dofs first: they cost least.
 bool IslandProblem::isSolved(double tolerance) {
   SolverSpace& s = *space_;
   respondIdle();
@@ -117,7 +117,7 @@ bool IslandProblem::isBaseCurrent() {
   return current;
 }
 
-// Rows of idle dofs become those of the factor; those of live ones what is left of M.
+// Eliminates idle dofs: their rows become those of the factor; those of live dofs hold the rest of M.
 bool IslandProblem::eliminateIdle() {
   SolverSpace& s = *space_;
   base_joints_.clear();
@@ -141,7 +141,7 @@ bool IslandProblem::eliminateIdle() {
   return base_known_ = true;
 }
 
-// From the velocities at hand on, idle dofs follow: their joints' responses at hand are extended linearly.
+// Makes idle dofs follow from the velocities at hand: their joints' responses at hand are extended linearly.
 bool IslandProblem::anchor() {
   SolverSpace& s = *space_;
   gradient_norm_ = INFINITY;
@@ -158,7 +158,7 @@ bool IslandProblem::anchor() {
   return true;
 }
 
-// Where idle dofs are at the present iterate. @return [sqrt(kg) m/s] by how much their joints' impulses miss those that were extended
+// Velocities of idle dofs at the present iterate. @return [sqrt(kg) m/s] difference of their joints' impulses from those extended linearly
 double IslandProblem::followIdle() {
   SolverSpace& s = *space_;
   anchored_ = false;
@@ -181,8 +181,8 @@ double IslandProblem::followIdle() {
   return gradientNorm(idle_dofs_);
 }
 
-// Finds the velocities of idle dofs. False if joints have left the piece of their response that they were on. They are live from then on:
-// if they are few, just they, or else, or if it happens again, all.
+// Finds the velocities of idle dofs. False if joints have left the piece of their response that they were on. These joints are live from
+// then on if they are few; or else, or if it happens again, all are.
 bool IslandProblem::settle(double enough) {
   const double missed = followIdle();
   gradient_norm_ = std::max(gradient_norm_, missed);
@@ -207,7 +207,7 @@ void IslandProblem::keepFirst() {
   });
 }
 
-// Back to where the iteration began: where idle joints led by leaving their pieces is no place to go on from.
+// Back to the first velocities of the iteration: idle joints that left their pieces have led to no place to go on from.
 void IslandProblem::rewind() {
   SolverSpace& s = *space_;
   forDofs([&s](int k) {

@@ -6,7 +6,7 @@
 namespace blem_sim {
 namespace {
 
-// An impact bounces that is faster than what a contact at rest gains in some steps: of gravity, and of the forces that press it.
+// An impact bounces if it is faster than the speed that a contact at rest gains in some steps, by gravity and by the forces that press it.
 constexpr double REST_STEPS = 2;
 constexpr double REST_SPEED = 1e-3;  // [m/s] and than this
 constexpr int MAX_ROUNDS = 100;      // a row of as many touching bodies passes an impact on
@@ -18,8 +18,8 @@ double normalSpeed(const BodyPair& pair, const ContactTerm& term, const std::vec
   return term.normal.dot(velocityAt(relativeTwist(pair, twist), term.point));
 }
 
-// Of a compliant contact the touch is an impact, what presses behind it is the spring's. Without restitution and a friction of its own an
-// impact is what the solve makes of it.
+// Whether a contact has impacts. A compliant contact has one at touch; its spring answers behind it. Impacts without restitution and a
+// friction of their own are left to the solve.
 bool hasImpacts(const ContactConstraint& c, const ContactTerm& term) {
   return (c.restitution > 0 || c.impact_friction_factor != 1) && !(term.compliance > 0 && c.depth > 0);
 }
@@ -53,7 +53,7 @@ void IslandImpacts::begin(const TermSource& s, const std::vector<int>& contacts,
     const int first = t.first_dof, count = t.dofCount();
     factorMass(s.forest, tree, s.motion, space_);
     space_->column.segment(first, count) = 0.5 * (solver.free_momentum.segment(first, count) - solver.mass_velocity.segment(first, count));
-    // By what a slow step's momentum is beside its velocities, a fast one goes at once.
+    // A slow step's momentum is half a step beside its velocities; a fast tree takes that difference at once.
     if (t.free && s.motion.pace[tree] == Pace::FAST)
       space_->column.segment<6>(first) += 0.5 * (s.motion.momentum[tree] - solver.mass_velocity.segment<6>(first));
     solveMass(s.forest, tree, space_);
@@ -86,8 +86,8 @@ void IslandImpacts::setSpeeds(const Forest& forest, const ForestMotion& motion, 
   for (Bouncer& b : bouncers_) b.speed = normalSpeed(*b.pair, problem.contacts[b.contact], space_->twist);
 }
 
-// Who approaches so fast that it will meet within the step, and what of its speed it will keep: restitution is that at the surface, which
-// is a gap's fall away.
+// Finds the contacts that approach so fast that they will meet within the step, and the share of its speed that each will keep: restitution
+// is that at the surface, which is a gap's fall away.
 bool IslandImpacts::findMeetings(const TermSource& s, const IslandProblem& problem) {
   meetings_.clear();
   const double dt = s.input.dt;
@@ -109,7 +109,7 @@ bool IslandImpacts::findMeetings(const TermSource& s, const IslandProblem& probl
   return !meetings_.empty();
 }
 
-// Meetings that no moved tree ties together do not know of each other.
+// Groups the meetings: those that no moved tree ties together do not act on each other.
 void IslandImpacts::findGroups(const Forest& forest, const IslandProblem& problem) {
   const auto treeOf = [&](int node) {
     const auto at = std::lower_bound(problem.trees.begin(), problem.trees.end(), forest.nodes()[node].tree);
@@ -133,7 +133,7 @@ double IslandImpacts::push(const Vector3& impulse, Meeting* meeting) {
   return std::max(std::abs(change[0]) * rows_.inverseMass(meeting->row), change.tail<2>().norm() * rows_.inverseMassAcross(meeting->row));
 }
 
-// The normal impulse that stops the approach, but does not pull. @return [m/s] by how much velocities changed
+// The normal impulse that stops the approach, but does not pull. @return [m/s] change of velocities
 double IslandImpacts::stop(Meeting* m) {
   const double speed = rows_.velocity(m->row, space_->velocity)[0];
   return push({std::max(0.0, m->impulse[0] - speed / rows_.inverseMass(m->row)), m->impulse[1], m->impulse[2]}, m);
@@ -161,7 +161,7 @@ double IslandImpacts::compress(Meeting* first, Meeting* end) {
     m->before = rows_.velocity(m->row, space_->velocity);
     fastest = std::max(fastest, m->before.norm());
   }
-  // All at once, to begin with: what is symmetric stays it.
+  // All at once, to begin with: a symmetric impact stays symmetric.
   const double share = 1.0 / static_cast<double>(end - first);
   for (Meeting* m = first; m != end; ++m) push({share * -m->before[0] / rows_.inverseMass(m->row), 0, 0}, m);
   const auto sums = [&](double* along, double* square) {
@@ -191,8 +191,8 @@ double IslandImpacts::compress(Meeting* first, Meeting* end) {
   return best * along - 0.5 * best * best * square;
 }
 
-// What the impact gives back: normal impulses in proportion to those of the compression [Poisson], and their friction; of the energy that
-// was lost at most the square of the largest restitution.
+// Expansion of an impact: normal impulses in proportion to those of the compression [Poisson], and their friction. It returns at most the
+// lost energy times the square of the largest restitution.
 void IslandImpacts::expand(Meeting* first, Meeting* end, double lost) {
   double largest = 0;
   for (Meeting* m = first; m != end; ++m) {

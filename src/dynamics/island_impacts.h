@@ -11,22 +11,22 @@ namespace blem_sim {
 /** The impacts of one island in one step. Used again from step to step, so that it need not allocate. */
 class IslandImpacts {
  public:
-  /** Forgets those of the last step. @return may any contact that has impacts meet within this one? */
+  /** Forgets the last step's impacts. @return whether any contact that has impacts may meet within this step */
   bool expect(const TermSource& source, const std::vector<int>& contacts, const IslandProblem& problem);
   /**
    * Contacts that have impacts and will meet within the step reflect velocities as often as it takes until none approaches any more, or
-   * the bounds on work are reached; what then still approaches is left to the solve, where it does not bounce. No reflection adds kinetic
-   * energy. If any happens, the free momentum of `solver` and its first guess of the velocities change by the impulses.
+   * the bounds on work are reached; contacts that then still approach are left to the solve, where they do not bounce. No reflection adds
+   * kinetic energy. If any happens, the free momentum of `solver` and its first guess of the velocities change by the impulses.
    * @param contacts of the step's input, those of the problem
-   * @return did anything meet? If not, nothing was changed
+   * @return whether anything met; if not, nothing was changed
    * Precondition: expect() was true
    */
   bool happen(const TermSource& source, const std::vector<int>& contacts, const IslandProblem& problem, ImpactSpace* space,
               SolverSpace* solver);
 
-  /** Did anything meet in the step at hand? */
+  /** Whether anything met in the step at hand. */
   bool any() const { return !impulses_.empty(); }
-  /** [N s] of a contact of the problem, in the sense of its term. Precondition: any() */
+  /** Impulse [N s] of a contact of the problem, in the sense of its term. Precondition: any() */
   const Vector3& impulse(std::size_t contact) const { return impulses_[contact]; }
   /** Adds the impulses to those that the solve found. Precondition: any() */
   void addTo(IslandProblem* problem) const;

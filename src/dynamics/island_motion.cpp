@@ -6,8 +6,8 @@
 namespace blem_sim {
 namespace {
 
-// Of the velocity products, the share that a row's free momentum takes. A free root carries its momentum from middle to middle of its
-// steps, half a step beside the poses where the mass matrix holds.
+// Share of the velocity products that a row's free momentum takes. A free root carries its momentum from middle to middle of its steps,
+// half a step beside the poses where the mass matrix holds.
 double productsShare(const ForestTree& tree, int dof) { return tree.free && dof < tree.first_dof + 6 ? 0.5 : 1; }
 
 // Change of the velocities by velocity products in a step, over the velocities: beyond, a tree is fast. One that nothing drives has an
@@ -93,7 +93,7 @@ void integrate(const Forest& forest, int tree, double dt, ForestMotion* motion) 
   motion->origin[t.first_node] = com - motion->rotation[t.first_node] * com_B;
 }
 
-// In flight the whole tree's centre of mass moves by its momentum; joints that turn while the root moves would lead it astray.
+// Moves a flying tree so that its centre of mass is where its momentum leads: joints that turn while the root moves would lead it astray.
 void followMomentum(const Forest& forest, int tree, const Vector3& target, ForestMotion* motion) {
   const ForestTree& t = forest.trees()[tree];
   const Vector3 shift = target - (motion->reference[tree] + motion->tree_com[tree]);
@@ -122,7 +122,7 @@ void addReactions(const Forest& forest, const IslandProblem& problem, const Fore
   }
 }
 
-// Of momenta at the start and at the end; forces act at the middle of the way. What acts on the nodes is used up.
+// Wrenches of a fast tree's joints, from momenta at the start and at the end; forces act at the middle of the way. Overwrites on_node.
 void addFastWrenches(const Forest& forest, const Scene& scene, int tree, double dt, const FreeMotion& way, const ForestMotion& motion,
                      std::vector<Vector6>* on_node, std::vector<Wrench>* wrenches) {
   const ForestTree& t = forest.trees()[tree];
@@ -252,7 +252,7 @@ void computeWrenches(const Forest& forest, const Scene& scene, const IslandProbl
       const ForestNode& node = forest.nodes()[i];
       const Wrench& pending = scene.bodies()[node.body].pending;
       const Vector3 outside = node.inertial.mass * scene.gravity() + pending.force;
-      // Through the joint, less the velocity products of what it carries, which are summed already.
+      // Wrench through the joint, less the velocity products of the bodies that it carries, which are summed already.
       Vector6& through = motion->node_change[i];
       through = motion->inertia[i].times(through) - reaction[i];
       through -= spatial(motion->com[i].cross(outside) + pending.torque, outside);

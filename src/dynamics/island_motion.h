@@ -1,4 +1,4 @@
-// What happens to an island's trees before and after its problem is solved.
+// Motion of an island's trees before and after its problem is solved.
 #pragma once
 
 #include "free_motion.h"
@@ -7,15 +7,15 @@
 
 namespace blem_sim {
 
-/** The momentum of a free tree that was just read: that of its velocities. */
+/** Sets the momentum of a free tree that was just read to that of its velocities. */
 void takeMomentum(const Forest& forest, int tree, ForestMotion* motion, SolverSpace* space);
 
 /**
  * Fills space->free_momentum, M v*, the first guess of the velocities, and M times them, space->mass_velocity. A free root's rows carry its
  * momentum from step to step, so that none is lost to the change of the mass matrix; velocity products are those of the middle of the step,
- * guessed from the last one. Where they change the velocities by too much for one guess, the tree is fast: they act on its way instead,
- * after the solve.
- * @param touched contacts act on the tree's island
+ * guessed from the last one. A tree whose velocities they change by too much for one guess is fast: they act on its way instead, after the
+ * solve.
+ * @param touched whether contacts act on the tree's island
  */
 void setFreeMomentum(const Forest& forest, const Scene& scene, const StepInput& input, bool touched, int tree, ForestMotion* motion,
                      SolverSpace* space);
@@ -30,11 +30,11 @@ bool followFast(const Forest& forest, const IslandProblem& problem, double dt, c
 /** Adds the efforts given in advance. */
 void addEfforts(const StepInput& input, const IslandProblem& problem, SolverSpace* space);
 
-/** Takes the velocity products at the middle of the step that was solved. @return [sqrt(kg) m/s] by how much the free momentum changed */
+/** Takes the velocity products at the middle of the step that was solved. @return [sqrt(kg) m/s] change of the free momentum */
 double correctProducts(const Forest& forest, int tree, double dt, ForestMotion* motion, SolverSpace* space);
 
-/** What each joint's child feels from the parent: Newton-Euler backwards over the step, about the joint frame's origin at its start, of a
- *  fast tree at its middle. */
+/** Wrench from each joint's parent on its child: Newton-Euler backwards over the step, about the joint frame's origin at the step's start,
+ *  for a fast tree at its middle. */
 void computeWrenches(const Forest& forest, const Scene& scene, const IslandProblem& problem, double dt, const FreeMotion& way,
                      ForestMotion* motion, SolverSpace* space, std::vector<Wrench>* wrenches);
 
@@ -44,7 +44,7 @@ void advanceIsland(const Forest& forest, const IslandProblem& problem, double dt
 
 void saveTree(const Forest& forest, int tree, const ForestMotion& motion, StateWriter* writer);
 void restoreTree(const Forest& forest, int tree, ForestMotion* motion, StateReader* reader);
-/** Do the bodies of the scene stand where the tree has them, but for rounding? */
+/** Whether the bodies of the scene stand where the tree has them, but for rounding. */
 bool standsAt(const Forest& forest, int tree, const ForestMotion& motion, const Scene& scene);
 
 }  // namespace blem_sim

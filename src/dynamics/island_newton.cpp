@@ -5,10 +5,11 @@ namespace blem_sim {
 namespace {
 
 constexpr int MAX_LINE_SEARCH = 30;
-constexpr double LINE_SEARCH_SLOPE = 1e-3;  // of the first slope: where the search is near enough to its minimum
-// Of the first gradient of a proximal step: the next step changes the problem again, so this one need not be solved to the last digit.
+constexpr double LINE_SEARCH_SLOPE = 1e-3;  // of the first slope: below it the search is near enough to its minimum
+// Shares of a proximal step's first gradient: the next step changes the problem again, so this one need not be solved to the last digit.
 constexpr double INEXACT = 0.02, INEXACT_MIXED = 1e-4;  // mixed slips begin far away: a miss that is to lead on must not be the rest
-// Proximal weights of the first steps against the last one's: soft contacts and soft joint friction find who sticks in few iterations.
+// Proximal weights of the first steps against the last one's: soft contacts and soft joint friction find in few iterations which contacts
+// and joints stick.
 constexpr int SOFT_STAGES = 2;
 constexpr double CONTACT_SOFTNESS[SOFT_STAGES] = {1000, 30};
 constexpr double JOINT_SOFTNESS[SOFT_STAGES] = {10, 3};
@@ -30,7 +31,7 @@ void IslandProblem::evaluateGradient() {
   foldGradient();
 }
 
-// First step: as if contacts, friction and limits went on as they were when the last step ended, linear though they are not.
+// Makes the first step: as if contacts, friction and limits went on as they were when the last step ended, linear though they are not.
 void IslandProblem::predict() {
   forContactRanges([](std::size_t, ContactBlock* first, ContactBlock* end) { expect(first, end); });
   for (std::size_t b = 0; b < joint_blocks_.size(); ++b)
@@ -45,7 +46,7 @@ void IslandProblem::predict() {
   responses_known_ = false;
 }
 
-// What moving along the direction changes.
+// Changes along the direction: of momenta on live dofs, of relative velocities of contacts, joints and loops.
 void IslandProblem::setDirection() {
   SolverSpace& s = *space_;
   for (const int tree : trees) multiply(*forest_, tree, s.idle.rows, s.direction, &s.mass_direction, &s.paths, &s.live);
@@ -97,7 +98,7 @@ double IslandProblem::gradientNorm(const std::vector<int>& dofs) const {
   return worst;
 }
 
-// The gradient as the velocity that each dof's own inertia would make of it.
+// Largest gradient of a dof, over the dof's own inertia: a velocity.
 double IslandProblem::imbalance() const {
   double worst = 0;
   for (const int tree : trees)
@@ -129,9 +130,9 @@ bool IslandProblem::keepsFactor(double last) const {
   return gradient_norm_ < CHORD_PROGRESS * last && (isFactorCurrent() || (isCrowd() && soft_ && factored_ && std::isfinite(last)));
 }
 
-// Until the gradient is below `exactness` times the first one, or the tolerance; or, `patience` iterations having passed, one of them does
-// not lead on. All velocities are known afterwards. Joints that stray are iterated from then on; if all were woken, whoever has patience
-// begins again.
+// Iterates until the gradient is below `exactness` times the first one, or the tolerance; or, `patience` iterations having passed, one of
+// them does not lead on. All velocities are known afterwards. Joints that stray are iterated from then on; if all were woken, a caller that
+// gave a patience begins again.
 int IslandProblem::newton(const NewtonSettings& settings, double exactness, int max_iterations, int patience) {
   double enough = settings.gradient_tolerance, last = INFINITY;
   for (int iterations = 0;; ++iterations) {
@@ -188,7 +189,7 @@ void IslandProblem::assess(NewtonReport* report) const {
   for (const LoopTerm& loop : loops) report->joint_creep = std::max(report->joint_creep, loop.creep());
 }
 
-// The fold's reaction is what the gradient lacks on the mimic's own dof.
+// The impulse of a fold is the gradient on the mimic's own dof.
 void IslandProblem::readMimics() {
   mimic_impulses.clear();
   if (mimics.empty()) return;
@@ -242,8 +243,8 @@ NewtonReport IslandProblem::solveAgain(const NewtonSettings& settings) {
 NewtonReport IslandProblem::iterate(const NewtonSettings& settings) {
   NewtonReport report;
   const auto left = [&] { return settings.max_iterations - report.iterations; };
-  // Most steps are like the one before: the hard problem is solved in a few iterations. Where it is not, soft ones lead to it.
-  // Where idle joints stray, or are not known to do right, all are live, and everything is begun again.
+  // Most steps are like the one before: the hard problem is solved in a few iterations. If not, soft ones lead to it.
+  // If idle joints stray, or are not known to do right, all are live, and everything is begun again.
   bool solved = false;
   for (;;) {
     strayed_ = false;
@@ -281,7 +282,7 @@ void IslandProblem::finish(const NewtonSettings& settings, NewtonReport* report)
     const int left = settings.max_iterations - report->iterations;
     if ((lawful && exact) || left <= 0) break;
     if (outer + 1 == most && report->contact_creep > CREEPS && left >= ENOUGH_TO_END) ++most;
-    // The last step is led on until momentum is balanced.
+    // The last step is led on until momentum is balanced; it does not mix slips: mixing leads beyond those that were found.
     const bool is_last = outer + 1 == most;
     const bool mixes = outer > 1 && last <= EASY && left >= ENOUGH_LEFT && !is_last;
     if (!mixes) slip_mixing_.start(contact_blocks_.size() * LANES);

@@ -50,7 +50,7 @@ void IslandProblem::start() {
   begin();
 }
 
-// From the velocities at hand, with the live nodes at hand, on the hard problem.
+// Begins the iteration from the velocities at hand, with the live nodes at hand, on the hard problem.
 void IslandProblem::begin() {
   factored_ = base_known_ = anchored_ = laid_ = soft_ = false;
   listLive();
@@ -61,7 +61,7 @@ void IslandProblem::begin() {
   soften(1, 1);
 }
 
-// Contacts and joints of the terms, four by four; the contacts' velocities begin with what the bodies' paths bend apart.
+// Contacts and joints of the terms, four by four; the contacts' velocities begin with the bend of the bodies' paths.
 void IslandProblem::fillBlocks() {
   contact_blocks_.clear();
   for (ContactPatch& p : patches) {
@@ -75,14 +75,14 @@ void IslandProblem::fillBlocks() {
   }
 }
 
-// What was found, back to the terms.
+// Writes the contacts' impulses and velocities back to the terms.
 void IslandProblem::readTerms() {
   for (const ContactPatch& p : patches)
     for (int i = p.first; i < p.end; ++i)
       readLane(contact_blocks_[p.first_block + (i - p.first) / LANES], (i - p.first) % LANES, &contacts[i]);
 }
 
-// Of all contacts, live joints and loops, for a change v of the velocities.
+// Sets the steps of all contacts, live joints and loops for a change v of the velocities.
 void IslandProblem::setSteps(const Eigen::VectorXd& v) {
   for (const int i : live_nodes_) computeTwist(*forest_, i, *motion_, v, &space_->twist);
   forPatches([&](std::size_t index) {
@@ -115,7 +115,7 @@ void IslandProblem::evaluate() {
   for (std::size_t l = 0; l < loops.size(); ++l) push(loop_pairs[l], loops[l].basis * loops[l].impulses());
 }
 
-// Of contacts and live joints, at velocity + a step.
+// Responses of contacts and live joints at velocity + a step.
 PotentialSlope IslandProblem::respond(double a) {
   slopes_.assign(contact_blocks_.size() / BLOCKS_AT_ONCE + 1, PotentialSlope());
   forContactRanges([&](std::size_t range, ContactBlock* first, ContactBlock* end) { slopes_[range] = blem_sim::respond(a, first, end); });

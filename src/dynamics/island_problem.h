@@ -30,42 +30,42 @@ struct NewtonSettings {
   int helpers = 0;                    ///< threads that take part in the loops of one island, beside the caller
 };
 
-/** What a solve needed and how good it is. */
+/** Effort and quality of a solve. */
 struct NewtonReport {
   int iterations = 0;
   double contact_residual = 0;  ///< [N s] largest violation of Coulomb's law over the contacts
   double contact_creep = 0;     ///< [m/s] the same as velocities, beyond a thousandth of the fastest contact's before the solve
   double joint_creep = 0;       ///< [rad/s or m/s] largest creep of a joint that sticks, miss of a limit or of a loop
-  double imbalance = 0;         ///< [rad/s or m/s] by how much momentum and impulses differ, over the dof's inertia; worst dof
+  double imbalance = 0;         ///< [rad/s or m/s] difference of momentum and impulses, over the dof's inertia; worst dof
 };
 
 /** Vectors over the forest that the islands work in, each in its own trees. */
 struct SolverSpace {
   Eigen::VectorXd free_momentum;  ///< M v*
   Eigen::VectorXd velocity, mass_velocity, gradient, direction, mass_direction, scale;
-  /// M (v - v*). While a problem is iterated: on live dofs, with all that idle ones add as they follow; else on all dofs.
+  /// M (v - v*). While a problem is iterated: on live dofs, with the share of idle ones that follow them; else on all dofs.
   Eigen::VectorXd kinetic;
-  Eigen::VectorXd first_velocity, first_kinetic;  ///< where the iteration began
-  Eigen::VectorXd anchor;                         ///< the velocities from where idle dofs follow
+  Eigen::VectorXd first_velocity, first_kinetic;  ///< at the first iterate
+  Eigen::VectorXd anchor;                         ///< the velocities from which idle dofs follow
   Eigen::VectorXd idle_pull;                      ///< the right-hand side there, reduced: by it idle dofs move if live ones do not
-  TreeFactor idle;                                ///< of idle dofs; the rows of live ones hold what is left of M, the base of their Hessian
+  TreeFactor idle;                                ///< of idle dofs; the rows of live ones hold the rest of M, the base of their Hessian
   TreeFactor hessian;                             ///< of live dofs, in the end
   TreePaths paths;
   std::vector<Vector6> twist, wrench;  ///< per node
   std::vector<Matrix6> stiffness;      ///< per node
   std::vector<char> stiff;             ///< per node: stiffness is not zero
-  std::vector<char> live;              ///< per node: contacts, loops or mimic joints act on it or on what it carries
+  std::vector<char> live;              ///< per node: contacts, loops or mimic joints act on it or on a node that it carries
   std::vector<int> block;              ///< per tree: its block in the island's matrix
   std::vector<int> block_row;          ///< per dof: its row in that block
 
   void resize(const Forest& forest);
 };
 
-/** [J] Of the contacts' impulses, at the mean of the velocities with and without them. */
+/** Work [J] of the contacts' impulses, at the mean of the velocities with and without them. */
 struct ContactWork {
   double gained = 0;     ///< by the bodies, without correcting depth
   double exchanged = 0;  ///< sum without signs
-  double change = 0;     ///< impulses times what they change of the velocities
+  double change = 0;     ///< impulses times the change of velocities that they make
 };
 
 /** One island: trees that something ties together. Used again from step to step, so that it need not allocate. */
@@ -85,13 +85,13 @@ class IslandProblem {
   void clear();
   /** Solves for space->velocity, which holds the first guess, space->mass_velocity M times it. The terms hold the reactions afterwards. */
   NewtonReport solve(const Forest& forest, const ForestMotion& motion, const NewtonSettings& settings, SolverSpace* space);
-  /** Goes on from there after space->free_momentum has changed a little. */
+  /** Goes on from the last solve's velocities after space->free_momentum has changed a little. */
   NewtonReport solveAgain(const NewtonSettings& settings);
   /**
    * After solve: contacts and loops that have added far more energy than moving the island at their speed takes are to correct less,
    * contacts that push hard nothing. Overwrites space->mass_direction.
    * @param speed [m/s] at which contacts correct depth at most
-   * @return whether there were such: solveAgain solves the step with what is left of their corrections
+   * @return whether there were such: solveAgain solves the step with the rest of their corrections
    */
   bool limitCorrections(double speed);
   /** [N s] A push that no load needs: it would make the whole island ten times as fast. @param speed [m/s] the same */
@@ -117,7 +117,7 @@ class IslandProblem {
   void push(const BodyPair& pair, const Vector6& wrench);
   void gradient();
   void foldGradient();
-  // island_idle.cpp: what need not be iterated
+  // island_idle.cpp: idle branches, which are not iterated
   void findLive();
   void wake(int node);
   void listLive();
@@ -139,7 +139,7 @@ class IslandProblem {
   bool settle(double enough);
   void keepFirst();
   void rewind();
-  // island_hessian.cpp: its Hessian and what is solved with it
+  // island_hessian.cpp: its Hessian, and the direction solved with it
   void layBlocks();
   void stiffen(int node, const Matrix6& stiffness);
   void stiffenPair(const BodyPair& pair, const Matrix6& stiffness);
@@ -169,7 +169,7 @@ class IslandProblem {
   void readMimics();
   NewtonReport iterate(const NewtonSettings& settings);
   void finish(const NewtonSettings& settings, NewtonReport* report);
-  // island_heap.cpp: many bodies that push each other, and what the iteration did not solve
+  // island_heap.cpp: many bodies that push each other, and problems that the iteration did not solve
   int treeCount() const;
   bool isCrowd() const;
   bool isHeap() const;
@@ -196,7 +196,7 @@ class IslandProblem {
   NewtonReport solveHeap(const NewtonSettings& settings);
   void sweepAndPolish(const NewtonSettings& settings, NewtonReport* report);
   void recover(NewtonReport* report);
-  // island_bounds.cpp: bounds on what contacts do on purpose
+  // island_bounds.cpp: bounds on contacts that correct depth
   double fastestTarget() const;
   bool giveUpLocked(double speed);
   double affordableShare(double speed);
@@ -219,20 +219,20 @@ class IslandProblem {
   double gradient_norm_ = 0;   ///< [sqrt(kg) m/s]
   double first_speed_ = 0;     ///< [m/s] of the fastest contact before the solve
   std::unique_ptr<Team> team_ = std::make_unique<Team>();
-  std::vector<ContactBlock> contact_blocks_;  ///< responses: where the line search looked last
+  std::vector<ContactBlock> contact_blocks_;  ///< responses: at the line search's last step length
   std::vector<PotentialSlope> slopes_;        ///< by range of contact blocks
   std::vector<Vector6> patch_wrenches_;
   std::vector<Matrix6> patch_stiffness_;
   std::vector<char> patch_is_stiff_;
-  std::vector<JointBlock> joint_blocks_;  ///< likewise responses where the line search looked last
+  std::vector<JointBlock> joint_blocks_;  ///< likewise responses at the line search's last step length
   SlipMixing slip_mixing_;
   IslandSweeps sweeps_;
   KeptSolution kept_;
-  double responses_at_ = 0;            ///< how far along the direction that was
-  bool responses_known_ = false;       ///< and that is the present iterate
+  double responses_at_ = 0;            ///< that step length, along the direction
+  bool responses_known_ = false;       ///< and it is 0: the present iterate
   double linear_ = 0, quadratic_ = 0;  ///< of the kinetic part along the search direction
   bool soft_ = false;                  ///< contacts are softened
-  // What the factor at hand, and the elimination of idle dofs, were made with: kinds of contacts and stiffnesses of joints, lane by lane.
+  // Kinds of contacts and stiffnesses of joints, lane by lane, that the factor at hand and the elimination of idle dofs were made with.
   bool factored_ = false, base_known_ = false;
   std::vector<double> factored_kinds_, factored_joints_, base_joints_;
   Islands tree_blocks_;  ///< trees that mimic joints tie are one block

@@ -1,5 +1,5 @@
-// How the trees of an island answer to wrenches and joint impulses: inverse inertias of free bodies, columns of (M + D)^-1 of the others, D
-// being what motors and viscous friction add.
+// Responses of an island's trees to wrenches and joint impulses: inverse inertias of free bodies, columns of (M + D)^-1 of the others, D
+// being the gains of motors and viscous friction.
 #pragma once
 
 #include <vector>
@@ -20,7 +20,7 @@ class ResponseUnit {
   /** Solves in place for `columns` right-hand sides, one value per entry of `dofs` each. */
   void solve(double* values, int columns) const;
   int size() const { return static_cast<int>(dofs.size()); }
-  /** Where a dof stands among `dofs`. Precondition: it does. */
+  /** Index of a dof among `dofs`. Precondition: it is one of them. */
   int rowOf(int dof) const;
 
  private:
@@ -32,7 +32,7 @@ class ResponseUnit {
   std::vector<Fold> folds_;
 };
 
-/** One side of a pair: what a wrench on it moves. */
+/** One side of a pair: the free body or unit that a wrench on it moves. */
 struct ResponseSide {
   int node = -1;         ///< -1: the static world
   int first_dof = 0;     ///< of a free body
@@ -46,7 +46,7 @@ class IslandResponse {
   void start(const Forest& forest, const ForestMotion& motion, const std::vector<int>& trees, const std::vector<MimicFold>& mimics);
   /** Factors the units. @param gains D by dof. @return false if a matrix is not positive definite */
   bool factor(const Eigen::VectorXd& gains);
-  /** Of a node; asked for again, the same columns serve. Precondition: factor */
+  /** Side of a node; asked for again, the same columns serve. Precondition: factor */
   ResponseSide side(int node);
   /** Column of (M + D)^-1 that belongs to a dof of a unit. Precondition: factor. @return its place among the columns */
   std::size_t column(int dof);
@@ -63,7 +63,7 @@ class IslandResponse {
   void setLane(const ResponseSide& side, int lane, BodyLanes* bodies) const;
   /** A joint impulse on a dof whose column was made. */
   void push(int unit, std::size_t column, double impulse, Eigen::VectorXd* velocity) const;
-  /** Of the relative twist to a wrench on a and its reaction on b, about a's reference point. */
+  /** Response of the relative twist to a wrench on a and its reaction on b, about a's reference point. */
   Matrix6 relative(const BodyPair& pair, const ResponseSide& a, const ResponseSide& b) const;
   /** Velocities that the momentum at hand gives alone. @param momentum M v* + D v of the motors, by dof */
   void freeVelocity(const Eigen::VectorXd& momentum, Eigen::VectorXd* velocity);
@@ -85,7 +85,7 @@ class IslandResponse {
   const ForestMotion* motion_ = nullptr;
   const std::vector<MimicFold>* mimics_ = nullptr;
   std::vector<int> trees_;
-  std::vector<int> mover_;  // by place among the trees: of free_ if not negative, else -1 - unit
+  std::vector<int> mover_;  // by place among the trees: index in free_ if not negative, else -1 - unit
   std::vector<FreeBody> free_;
   std::vector<ResponseUnit> units_;  // those beyond unit_count_ keep their memory only
   int unit_count_ = 0;

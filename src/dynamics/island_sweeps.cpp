@@ -44,7 +44,7 @@ bool IslandSweeps::load(const SweepProblem& problem, SweepStart start, Eigen::Ve
   return true;
 }
 
-// The velocity that the impulses at hand make.
+// Velocity with the impulses at hand.
 void IslandSweeps::findVelocity(Eigen::VectorXd* velocity) {
   response_.freeVelocity(momentum_, velocity);
   TwistLanes wrench;
@@ -112,7 +112,7 @@ void IslandSweeps::sweepLoops(Eigen::VectorXd* velocity) {
   }
 }
 
-// A group in which a tree takes part.
+// Sweeps a group in which a tree takes part.
 void IslandSweeps::sweepTrees(std::size_t index, Eigen::VectorXd* velocity) {
   const SweepGroup& group = groups_[index];
   TwistLanes twist = {}, wrench;

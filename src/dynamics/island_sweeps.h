@@ -14,7 +14,7 @@
 
 namespace blem_sim {
 
-/** What an island's sweeps work on: the terms as they were made for the step. */
+/** Problem of an island's sweeps: the terms as they were made for the step. */
 struct SweepProblem {
   const Forest& forest;
   const ForestMotion& motion;
@@ -30,7 +30,7 @@ struct SweepProblem {
   Team* team;                            ///< shares the loops
 };
 
-/** Where sweeps begin: at the terms' previous impulses, or at none. */
+/** First impulses of sweeps: the terms' previous impulses, or none. */
 enum class SweepStart { PREVIOUS, NOTHING };
 
 struct SweepReport {
@@ -43,17 +43,17 @@ class IslandSweeps {
  public:
   /**
    * Takes a problem.
-   * @param velocity by dof, of the start of the step: by it motors are thought to be saturated or not; out: that of the impulses
+   * @param velocity by dof, at the start of the step: by it motors are taken to be saturated or not; out: that of the impulses
    * @return false if a mass matrix is not positive definite
    */
   bool load(const SweepProblem& problem, SweepStart start, Eigen::VectorXd* velocity);
   /** Sweeps until the largest change of an impulse is below `enough` of the largest impulse, at most `most` times. */
   SweepReport sweep(int most, double enough, Eigen::VectorXd* velocity);
-  /** Do motors that answer linearly stay within their efforts at a velocity, and only those? */
+  /** Whether, at a velocity, exactly those motors stay within their efforts that were taken to answer linearly. */
   bool motorsAgree(const Eigen::VectorXd& velocity) const;
   /** Velocities without any impulse of contacts, joint friction, limits and loops. */
   void freeVelocity(Eigen::VectorXd* velocity) { response_.freeVelocity(momentum_, velocity); }
-  /** All impulses times a factor. @param velocity theirs, out */
+  /** Multiplies all impulses by a factor. @param velocity with these impulses, out */
   void scale(double factor, Eigen::VectorXd* velocity);
 
   /** The impulses found: of contacts, world axes; of joints and loops, as proximal points that answer so at the velocity. */
@@ -75,7 +75,7 @@ class IslandSweeps {
     AxisRow(const JointTerm& joint, double axis_response, SweepStart start);
     double sum() const { return motor + dry + lower - upper; }
     void scale(double factor);
-    /** Visits friction and limits at a velocity. @return `change` and by how much their sum has changed */
+    /** Visits friction and limits at a velocity. @return `change` plus the change of their sum */
     double visit(const JointTerm& joint, double v, double change = 0);
     /** Change of the impulse of a motor that is not folded into the mass matrix. */
     double visitMotor(const JointTerm& joint, double v);

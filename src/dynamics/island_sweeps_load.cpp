@@ -1,4 +1,4 @@
-// From the terms of an island to what is swept: responses, rows of joints and loops, contacts in groups of bodies of their own.
+// Loads an island's terms for sweeps: responses, rows of joints and loops, contacts in groups of bodies of their own.
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -99,7 +99,7 @@ void IslandSweeps::loadLoops(SweepStart start) {
   }
 }
 
-// From the ground up.
+// Orders the patches from the ground up.
 void IslandSweeps::orderPatches(const Vector3& up) {
   heights_.clear();
   for (const ContactPatch& patch : problem_->patches) {

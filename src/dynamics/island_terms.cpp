@@ -36,7 +36,7 @@ JointTerm driveTerm(const TermSource& s, int joint, double q, double inertia) {
   if (drive.dry_friction > 0) {
     term.dry_gain = inertia / JOINT_PROXIMAL;
     term.dry_bound = dt * drive.dry_friction;
-    // What stuck goes on to change as it did, so that it need not creep to do so.
+    // Friction that stuck is expected to go on changing as it did, so that the joint need not creep for it.
     term.dry_previous = std::clamp(dt * (memory.dry + DRY_MOMENTUM * memory.dry_change), -term.dry_bound, term.dry_bound);
   }
   if (std::isfinite(spec.lower) || std::isfinite(spec.upper)) {
@@ -86,7 +86,7 @@ BodyPair makePair(const TermSource& s, int a, int b) {
   return pair;
 }
 
-/** Where a loop's child is against where the joint wants it. */
+/** Pose of a loop's child against the one that the joint asks for. */
 struct LoopFrames {
   Matrix3 R_WJ;
   Vector3 origin;       ///< of the joint frame, in the world
@@ -126,7 +126,7 @@ PairDrift pairDrift(const TermSource& s, const BodyPair& pair, const Vector3& an
   return drift;
 }
 
-// Proximal weights and points of a loop's rows. What nothing can move, such as the way out of a planar loop's plane, needs no row.
+// Proximal weights and points of a loop's rows. A direction in which nothing can move, such as out of a planar loop's plane, needs no row.
 void weighLoop(const TermSource& s, const BodyPair& pair, const Vector6& force, LoopTerm* term) {
   for (int r = 0; r < 6; ++r) {
     const Vector6 wrench = term->basis.col(r);
@@ -194,7 +194,7 @@ void addContact(const TermSource& s, const ContactConstraint& c, IslandProblem* 
   ContactTerm term;
   term.point = c.point - s.motion.reference[s.forest.nodes()[a].tree];
   term.normal = termSign(c) * c.normal_BA;
-  // What sticks shall not have moved at the end of the step, along paths that bend.
+  // A sticking contact shall not have moved at the end of the step, along paths that bend.
   const Vector3 drift = pairDrift(s, problem->patches.back().pair, term.point).point;
   term.bend = 0.5 * s.input.dt * (drift - drift.dot(term.normal) * term.normal);
   term.friction = c.friction;
@@ -227,7 +227,7 @@ void weighContacts(const TermSource& s, IslandProblem* problem) {
       ContactTerm& c = problem->contacts[i];
       c.inverse_mass = inverse;
       c.stiffest_rho = CONTACT_PROXIMAL * std::min(inverse, HEAVIEST / heaviest);
-      // Blows do not go on, and a squeeze that friction has locked need not.
+      // The impulse of a blow does not go on, and that of a squeeze that friction has locked need not.
       if (c.normal.dot(c.previous) > hard) c.previous.setZero();
     }
   }

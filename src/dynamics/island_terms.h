@@ -7,7 +7,7 @@
 
 namespace blem_sim {
 
-/** What terms are made of, in one step. */
+/** Input of all terms in one step. */
 struct TermSource {
   const Scene& scene;
   const Forest& forest;

@@ -10,7 +10,7 @@ class Islands {
  public:
   void reset(int trees);
   void join(int a, int b);
-  /** Numbers the islands once all is joined. @return how many there are */
+  /** Numbers the islands once all is joined. @return their number */
   int number();
   int islandOf(int tree) const { return island_[tree]; }
 

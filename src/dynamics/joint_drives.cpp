@@ -42,7 +42,7 @@ Row pdRow(const JointDrive& drive, double q, double dt) {
   return {(drive.stiffness * (drive.target_position - q) + drive.damping * drive.target_velocity) / gain, 1 / gain, drive.max_effort};
 }
 
-/** Of each joint in a tree, the inertia of all that it carries along its axis; 0 for others. */
+/** Inertia along its axis of all that a joint carries, for each joint in a tree; 0 for others. */
 std::vector<double> carriedInertias(const Scene& scene) {
   std::vector<BodyBits> bits;
   scene.bits(&bits);

@@ -23,7 +23,7 @@ void setDrives(Scene* scene, double dt, const std::vector<JointDrive>& drives, c
                const SolverSettings& settings, double cfm_scale);
 
 /**
- * After the step: [N m or N] along the axis, what was given in advance (coupling included) and what the motor rows exerted.
+ * Efforts [N m or N] along the axes, after the step: those given in advance (coupling included) and those of the motor rows.
  * @param axes world axes of the moving joints at the start of the step, by slot
  */
 void readEfforts(const Scene& scene, const std::vector<JointDrive>& drives, const std::vector<double>& coupling,

@@ -1,4 +1,4 @@
-// Joints of the step problem while it is iterated, four at a time. What they are: joint_term.h.
+// Joints of the step problem while it is iterated, four at a time, each a lane's joint_term.h.
 #pragma once
 
 #include <vector>
@@ -14,10 +14,10 @@ struct JointBlock {
   Lanes dry_gain, dry_previous, dry_bound;  ///< the gains divided by their softness
   Lanes limit_gain, lower_velocity, lower_previous, upper_velocity, upper_previous;
   Lanes velocity, step;      ///< at the present iterate, and along the search direction
-  Lanes impulse, stiffness;  ///< the response where it was asked for last
+  Lanes impulse, stiffness;  ///< the response at the velocity it was asked for last
 };
 
-/** A lane's joint from a term; null: none, which never acts. Terms that were softened or that remembered must be set again. */
+/** A lane's joint from a term; null: none, which never acts. Terms whose softness or proximal point changed must be set again. */
 void setLane(const JointTerm* term, int lane, JointBlock* block);
 /** JointTerm::expect at a lane's present velocity; null: no joint. */
 void expect(const JointTerm* term, int lane, JointBlock* block);

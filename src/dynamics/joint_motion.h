@@ -1,4 +1,4 @@
-// How a joint moves its child.
+// Motion of a joint's child.
 #pragma once
 
 #include "blem_sim/dynamics/world.h"

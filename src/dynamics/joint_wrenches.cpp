@@ -26,7 +26,7 @@ void add(const Wrench& w, double sign, Wrench* to) {
   to->torque += sign * w.torque;
 }
 
-// What a body needs to move as it did, less gravity and outside wrenches; about its com.
+// Wrench that a body needs to move as it did, less gravity and outside wrenches; about its com.
 Wrench needed(const Scene& scene, int body, const BodyBits& start, double dt) {
   const BodySlot& slot = scene.bodies()[body];
   const BodyBits end = scene.bits(body);

@@ -42,7 +42,7 @@ int Scene::addJoint(const JointSpec& spec, double position) {
   if (spec.parent != WORLD_BODY) slot.assembled_turn = slot.parent_assembled.turn().conjugate() * slot.assembled_turn;
   slot.parent_axis = spec.X_PJ.linear() * slot.spec.axis;
   createJoint(&slot);
-  // Which joint closes a loop is decided in the order of slots, whatever the order they came in.
+  // The order of slots decides which joint closes a loop, whatever the order they came in.
   if (is_new)
     placeInTree(joint);
   else
@@ -113,7 +113,7 @@ Vector3 Scene::jointOrigin(int joint, const std::vector<BodyBits>& bits) const {
   return parent.com() + parent.rotation() * (p_PJ - bodies_[spec.parent].spec.inertial.com);
 }
 
-// Since it was assembled. The same as ODE's, which goes a longer way.
+// Angle of a hinge since it was assembled. The same as ODE's, which takes longer to compute.
 double Scene::hingeAngle(const JointSlot& slot) const {
   Quaternion turn = quaternionFromOde(dBodyGetQuaternion(bodies_[slot.spec.child].ode));
   if (slot.spec.parent != WORLD_BODY) turn = quaternionFromOde(dBodyGetQuaternion(bodies_[slot.spec.parent].ode)).conjugate() * turn;

@@ -10,7 +10,7 @@
 
 namespace blem_sim {
 
-/** Velocities, contact impulses, and the joints' and loops' terms, whose proximal points say what they answer. */
+/** Velocities, contact impulses, and the joints' and loops' terms, whose proximal points give their impulses. */
 struct KeptSolution {
   std::vector<double> velocity;  ///< of the trees' dofs in turn
   std::vector<Vector3> impulses;

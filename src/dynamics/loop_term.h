@@ -1,4 +1,4 @@
-// A joint that closes a loop: what it forbids is a bilateral row with a proximal point, along its free axis it is a joint like any other.
+// A joint that closes a loop: each forbidden direction is a bilateral row with a proximal point, its free axis a joint like any other.
 #pragma once
 
 #include "joint_term.h"
@@ -27,7 +27,7 @@ struct LoopTerm {
     return g;
   }
 
-  /** [rad/s or m/s] by how much forbidden velocities miss their targets. */
+  /** Largest miss [rad/s or m/s] of forbidden velocities to their targets; along the free axis, the drive's creep. */
   double creep() const {
     double worst = rows < 6 ? drive.creep(velocity[5]) : 0;
     for (int r = 0; r < rows; ++r) worst = std::max(worst, std::abs(velocity[r] - target[r]));

@@ -1,4 +1,4 @@
-// ODE as a process-wide library: its start and end, and what it has to say.
+// ODE as a process-wide library: its start and end, its messages and errors.
 #pragma once
 
 #include <stdexcept>
@@ -12,8 +12,8 @@ class OdeFailure : public std::runtime_error {
 };
 
 /**
- * Keeps ODE initialised while one exists, and its messages, errors and debug assertions in our hands. ODE's handlers are process wide; what
- * they hear is counted per thread, so worlds stepped in different threads do not hear each other.
+ * Keeps ODE initialised while one exists, and handles its messages, errors and debug assertions. ODE's handlers are process wide;
+ * complaints are counted per thread, so worlds stepped in different threads do not get each other's.
  */
 class OdeLibrary {
  public:

@@ -34,7 +34,7 @@ class QuickStepSolver : public OdeSolver {
  public:
   explicit QuickStepSolver(int iterations) : iterations_(iterations) {}
 
-  // ODE shuffles rows by one seed per process; ours is this world's own, so other worlds do not change it and a restored one replays.
+  // ODE shuffles rows by one seed per process; each stepper sets its own, so other worlds do not change it and a restored one replays.
   void solve(dWorldID world, double dt) override {
     static std::mutex mutex;
     const std::lock_guard<std::mutex> lock(mutex);

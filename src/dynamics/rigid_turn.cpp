@@ -29,7 +29,7 @@ struct TurningBody {
 
 }  // namespace
 
-// H = sum of L_i^2 / 2 I_i = L^2 / 2 I_middle and what lacks for the other two axes, each a turn about its axis. The first part is a turn
+// H = sum of L_i^2 / 2 I_i = L^2 / 2 I_middle plus the rest for the other two axes, each a turn about its axis. The first part is a turn
 // about the momentum, which commutes with the others.
 RigidTurn turnFreely(const Matrix3& inertia, const Vector3& momentum, double dt) {
   const Eigen::SelfAdjointEigenSolver<Matrix3> principal(inertia);

@@ -15,7 +15,7 @@ struct AbandonedWorld {
 
 void abandon(const AbandonedWorld& world) {
   static std::mutex mutex;
-  // Never destroyed: what it points to stays reachable until the process ends.
+  // Never destroyed: the worlds it points to stay reachable until the process ends.
   static std::vector<AbandonedWorld>& abandoned = *new std::vector<AbandonedWorld>;
   const std::lock_guard<std::mutex> lock(mutex);
   abandoned.push_back(world);
@@ -34,7 +34,7 @@ Scene::~Scene() {
 void Scene::createWorld() {
   world_ = dWorldCreate();
   contact_group_ = dJointGroupCreate(0);
-  // ODE's default job list is shared by all worlds of a process; each of ours has its own.
+  // ODE's default job list is shared by all worlds of a process; each scene has its own.
   threading_ = dThreadingAllocateSelfThreadedImplementation();
   dWorldSetStepThreadingImplementation(world_, dThreadingImplementationGetFunctions(threading_), threading_);
   dWorldSetGravity(world_, gravity_.x(), gravity_.y(), gravity_.z());
@@ -59,7 +59,7 @@ void Scene::removeBody(int body) {
   findTrees();
 }
 
-// What is left of it in its slot ties nothing: other bodies and joints may come to have the indices that it names.
+// Empties a joint's slot, which then ties nothing: other bodies and joints may come to have the indices that its spec names.
 void Scene::removeJoint(int joint) {
   JointSlot& slot = joints_[joint];
   dJointDestroy(slot.joint);
@@ -89,7 +89,7 @@ void Scene::rebuild(const std::vector<BodyBits>& state) {
   setBits(state);
 }
 
-// A joint whose child hangs on something already, or on what hangs on the child, closes a loop.
+// A joint closes a loop if its child has a joint of a tree already, or if its parent hangs on the child.
 void Scene::placeInTree(int joint) {
   JointSlot& slot = joints_[joint];
   tree_parent_.resize(bodies_.size(), WORLD_BODY);

@@ -46,17 +46,17 @@ struct JointSlot {
   dJointID joint = nullptr;  ///< hinge, slider or fixed; null once removed
   dJointID motor = nullptr;  ///< angular or linear motor along the axis: implicit PD, viscous and dry friction; null if fixed
   dJointFeedback joint_feedback = {}, motor_feedback = {};
-  BodyBits child_assembled = {}, parent_assembled = {};  ///< where the bodies stood when ODE took the joint's geometry
+  BodyBits child_assembled = {}, parent_assembled = {};  ///< states of the bodies when ODE took the joint's geometry
   double assembled_position = 0;                         ///< q there, where ODE's own coordinate is 0
   Quaternion assembled_turn = Quaternion::Identity();    ///< of the child against the parent there
   Vector3 parent_axis = Vector3::UnitZ();                ///< in the parent's frame
-  double last_position = 0;                              ///< q at the end of the last step: which turn it is
+  double last_position = 0;                              ///< q at the end of the last step: tells the full turns
   double last_effort = 0;                                ///< along the axis in the last step
   bool in_tree = true;                                   ///< false: closes a loop
   std::uint64_t occupant = 0;                            ///< a number that no other joint of the scene ever has; 0 once removed
 };
 
-/** Bodies and joints. Indices are slots; what is added takes the lowest that is empty. */
+/** Bodies and joints. Indices are slots; a new body or joint takes the lowest empty one. */
 class Scene {
  public:
   Scene(const Vector3& gravity, const SolverSettings& settings);
@@ -67,11 +67,11 @@ class Scene {
   int addBody(const BodySpec& spec);
   int addJoint(const JointSpec& spec, double position);
   void removeBody(int body);
-  /** Throws the ODE world away, which an internal error left unusable, and makes it anew from the slots. */
+  /** Replaces the ODE world, which an internal error left unusable, by a new one from the slots. */
   void rebuild(const std::vector<BodyBits>& state);
 
   dWorldID ode() const { return world_; }
-  /** The group of this step's contact joints; emptied by whoever fills it. */
+  /** The group of this step's contact joints; its user fills and empties it. */
   dJointGroupID contactGroup() const { return contact_group_; }
   std::vector<BodySlot>& bodies() { return bodies_; }
   const std::vector<BodySlot>& bodies() const { return bodies_; }
@@ -80,7 +80,7 @@ class Scene {
   /** Joints of the kinematic trees, a body's own joint after those of its children. */
   const std::vector<int>& leavesFirst() const;
 
-  /** Counts the changes of which bodies and joints there are. */
+  /** Number of changes of the set of bodies and joints. */
   std::uint64_t structure() const { return structure_; }
 
   const Vector3& gravity() const { return gravity_; }
@@ -88,7 +88,7 @@ class Scene {
 
   bool exists(int body) const { return body >= 0 && body < static_cast<int>(bodies_.size()) && bodies_[body].ode; }
   BodyBits bits(int body) const;
-  /** Is the body's state the same to the last bit? */
+  /** Whether the body's state is the same to the last bit. */
   bool hasBits(int body, const BodyBits& bits) const;
   Vector3 com(int body) const { return fromOde(dBodyGetPosition(bodies_[body].ode)); }
   Matrix3 rotation(int body) const { return rotationFromOde(dBodyGetRotation(bodies_[body].ode)); }
@@ -109,7 +109,7 @@ class Scene {
   double jointVelocity(int joint) const;
   /** Inverse inertia along the joint's axis of its two bodies alone, [1/(kg m^2) or 1/kg]: an upper bound of the articulated one. */
   double inverseInertia(int joint) const;
-  /** States of all joints; notes at which turn each is. */
+  /** States of all joints; notes their positions, which tell the full turns. */
   void readJoints(std::vector<JointState>* states);
 
  private:
@@ -133,9 +133,9 @@ class Scene {
   std::deque<JointSlot> joints_;  ///< a deque, as ODE holds pointers to the feedbacks
   std::set<int> free_bodies_, free_joints_;
   std::uint64_t joints_added_ = 0;
-  std::vector<int> tree_parent_;  ///< per body: what its joint of a tree hangs it on, WORLD_BODY too
+  std::vector<int> tree_parent_;  ///< per body: parent of its joint of a tree, WORLD_BODY too
   std::vector<char> has_parent_;  ///< per body: it has such a joint
-  // Caches of what the joints tell, made when somebody asks.
+  // Caches that follow from the joints, made on demand.
   mutable bool ordered_ = true;
   mutable std::vector<int> leaves_first_, depth_;
   std::uint64_t structure_ = 0;

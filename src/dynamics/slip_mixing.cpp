@@ -7,7 +7,7 @@
 namespace blem_sim {
 namespace {
 
-constexpr double FARTHEST = 3;  // misses: how far beyond what was found mixing goes at most, since nothing is linear there
+constexpr double FARTHEST = 3;  // misses: farthest that mixing goes beyond the slips found, since nothing is linear there
 
 double dot(const std::vector<double>& a, const std::vector<double>& b) {
   double sum = 0;
@@ -44,7 +44,7 @@ void SlipMixing::findSlips(ContactBlock* begin, ContactBlock* end) {
     for (int lane = 0; lane < LANES; ++lane, ++i) now_.miss[i] = b->kind[lane] == ContactBlock::OPEN ? 0 : now_.found[i] - now_.miss[i];
 }
 
-// Of the changes that, taken back, leave least of the miss. Zero where changes are alike to rounding.
+// Shares of the last changes that, taken back, leave least of the miss. Zero where changes are alike to rounding.
 std::array<double, SlipMixing::KEPT> SlipMixing::shares(int changes) const {
   constexpr double ALIKE = 1e-10;
   const std::vector<double>&a = changes_[0].miss, &b = changes_[1].miss;

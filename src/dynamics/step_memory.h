@@ -1,4 +1,4 @@
-// What the articulated stepper remembers from one step to the next: reactions, as forces, so that a step of another length can use them.
+// Memory of the articulated stepper from one step to the next: reactions, as forces, so that a step of another length can use them.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,7 @@ struct StepMemory {
   std::vector<ContactRecord> contacts;  ///< sorted by id; index() after they were changed
   std::vector<JointRecord> joints;      ///< one per joint slot
 
-  /** Null if there was no such contact in the last step. */
+  /** Record of a contact; null if there was no such contact in the last step. */
   const ContactRecord* find(std::uint64_t id) const;
   void index();
   /** A record per joint slot; that of a slot with another joint than before is empty. */

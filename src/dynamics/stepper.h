@@ -20,7 +20,7 @@ struct StepInput {
 
 /**
  * The scene is the one store of bodies and joints: a stepper reads poses, velocities and pending wrenches from it and writes poses and
- * velocities back; what it remembers beside that (a warm start, a seed) is private and part of its saved state.
+ * velocities back; its memory beside that (a warm start, a seed) is private and part of its saved state.
  */
 class Stepper {
  public:
@@ -31,9 +31,9 @@ class Stepper {
   virtual void save(const Scene& scene, StateWriter* writer) const = 0;
   /** The scene is already restored. */
   virtual void restore(const Scene& scene, StateReader* reader) = 0;
-  /** After a restore: does what it remembers of bodies go with where they are? */
+  /** Whether, after a restore, the stepper's memory of bodies agrees with their states. */
   virtual bool agreesWith(const Scene&) const { return true; }
-  /** What it remembers of contacts with these ids is gone. @param ids ascending */
+  /** Forgets the contacts with these ids. @param ids ascending */
   virtual void forgetContacts(const std::vector<std::uint64_t>& ids) = 0;
 };
 

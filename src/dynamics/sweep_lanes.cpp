@@ -38,7 +38,7 @@ BLEM_SIM_INLINE Six respond(const double (&r)[21][LANES], int l, const Six& w) {
   return v;
 }
 
-/** A number of each lane. Compilers lower it to what the processor has. */
+/** A number of each lane. Compilers lower it to the processor's own vectors. */
 using Four = double __attribute__((vector_size(8 * LANES), aligned(8), may_alias));
 
 BLEM_SIM_INLINE const Four& four(const Lanes& lanes) { return *reinterpret_cast<const Four*>(lanes); }
@@ -86,7 +86,7 @@ BLEM_SIM_INLINE void scatter(const FourBodies& v, double* const (&to)[LANES]) {
   }
 }
 
-/** Adds what a torque about the centres of mass and a force change. */
+/** Adds the changes of velocity by a torque about the centres of mass and a force. */
 BLEM_SIM_INLINE void push(const BodyLanes& body, const FourTriples& torque, const FourTriples& force, FourBodies* v) {
   const auto& r = body.inverse_inertia;
   const Four xx = four(r[0]), xy = four(r[1]), yy = four(r[2]), xz = four(r[3]), yz = four(r[4]), zz = four(r[5]);
@@ -112,7 +112,7 @@ struct FourChanges {
   }
 };
 
-/** Visits a contact of each lane, whose points have the relative velocity u. @return by how much the impulses were changed */
+/** Visits a contact of each lane, whose points have the relative velocity u. @return changes of the impulses */
 BLEM_SIM_INLINE FourTriples visit(const SweepContact& c, const FourTriples& u, SweepImpulse* impulse, FourChanges* changes) {
   const Four zero = {}, one = {1, 1, 1, 1};
   const FourTriples n = all(c.axis[0]), s = all(c.axis[1]), t = all(c.axis[2]);
@@ -121,7 +121,7 @@ BLEM_SIM_INLINE FourTriples visit(const SweepContact& c, const FourTriples& u, S
   const Four wanted = g_n - four(c.normal_gain) * miss, push = wanted > zero ? wanted : zero, pushed = push - g_n;
   const Four u_s = dot(s, u) + four(c.offset[0]) + four(c.mixed[0]) * pushed;
   const Four u_t = dot(t, u) + four(c.offset[1]) + four(c.mixed[1]) * pushed;
-  // Friction that sticks ends the slip. Where that is beyond the cone it is led against the slip, and back onto the cone.
+  // Friction that sticks ends the slip. If that is beyond the cone it moves against the slip, and back onto the cone.
   const Four stick_s = g_s - (four(c.tangent_inverse[0]) * u_s + four(c.tangent_inverse[1]) * u_t);
   const Four stick_t = g_t - (four(c.tangent_inverse[1]) * u_s + four(c.tangent_inverse[2]) * u_t);
   const Four most = four(c.friction) * push;
@@ -178,7 +178,7 @@ BLEM_SIM_LANES void setGains(const SweepGroup& group, SweepContact* begin, Sweep
       const double w11 = dot(s, by_s), w12 = dot(t, by_s), w22 = dot(t, by_t);
       const double half = 0.5 * (w11 + w22), apart = 0.5 * (w11 - w22), largest = half + __builtin_sqrt(apart * apart + w12 * w12);
       const double determinant = w11 * w22 - w12 * w12;
-      // What nothing can move, or moves only along one line, needs no inverse of its own.
+      // Points that cannot move across the normal, or only along one line, need no inverse of their own.
       const bool regular = determinant > 1e-12 * largest * largest;
       const double inverse = regular ? 1 / determinant : 0, along = largest > 0 ? 1 / largest : 0;
       c->normal_gain[lane] = w_n > 0 ? 1 / w_n : 0;

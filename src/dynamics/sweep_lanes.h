@@ -9,19 +9,19 @@ namespace blem_sim {
 
 using TwistLanes = double[6][LANES];
 
-/** One contact of each of four patches: what stays while they are swept. */
+/** One contact of each of four patches: its constants while they are swept. */
 struct SweepContact {
   VectorLanes point;    ///< about the reference point of the patch's first body
   VectorLanes axis[3];  ///< the normal, and two directions across it
   Lanes friction, compliance, target;
-  Lanes offset[2];           ///< [m/s] across the normal: what the bodies' paths bend apart
+  Lanes offset[2];           ///< [m/s] across the normal: by which the bodies' paths bend apart
   Lanes normal_gain;         ///< [kg] of the normal row, compliance included
   Lanes mixed[2];            ///< [1/kg] by which a push moves the point across
   Lanes tangent_inverse[3];  ///< [kg] inverse of the response across: 11, 12, 22
   Lanes slide_gain;          ///< [kg] inverse of the largest response across
 };
 
-/** What changes: impulses along the axes [N s]. */
+/** Variables of a sweep: impulses along the axes [N s]. */
 struct SweepImpulse {
   VectorLanes now;     ///< those found
   VectorLanes change;  ///< by the last sweep
@@ -36,7 +36,7 @@ struct SweepGroup {
   double response[21][LANES];  ///< of the relative twist to a wrench, about the first body's reference point; lower triangle by rows
 };
 
-/** Velocity of four bodies, and what changes it. Lanes of the static world, or without a patch, stay at zero. */
+/** Velocity of four bodies, and their inverse inertias. Lanes of the static world, or without a patch, stay at zero. */
 struct BodyLanes {
   int first_dof[LANES];              ///< -1: none
   double inverse_inertia[6][LANES];  ///< [1/(kg m^2)] lower triangle by rows, world axes
@@ -59,7 +59,7 @@ Vector3 readLane(const SweepContact& contact, const SweepImpulse& impulse, int l
 /** Sum of the impulses' wrenches, about the patches' reference points. */
 void wrenchOf(const SweepContact* begin, const SweepContact* end, const SweepImpulse* impulse, TwistLanes* wrench);
 
-/** What a sweep over contacts has done. */
+/** Changes of impulses by a sweep over contacts. */
 struct SweepChange {
   double squared = 0;  ///< [N^2 s^2] sum of the changes' squares
   double largest = 0;  ///< [N^2 s^2] square of the largest change of one contact
@@ -69,7 +69,7 @@ struct SweepChange {
 /**
  * Visits the contacts in turn: the push that ends the approach, then friction on Coulomb's cone.
  * @param twist relative, at the present impulses
- * @param wrench by which impulses were changed, out
+ * @param wrench change of the impulses' wrenches, out
  */
 void sweep(const SweepGroup& group, const SweepContact* begin, const SweepContact* end, SweepImpulse* impulse, const TwistLanes& twist,
            TwistLanes* wrench, SweepChange* change);

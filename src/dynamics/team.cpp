@@ -5,7 +5,7 @@
 namespace blem_sim {
 namespace {
 
-constexpr int PATIENCE = 2000;  // looks at a loop before the processor is left to others
+constexpr int PATIENCE = 2000;  // looks at a loop before a waiting thread yields its processor
 
 /** A wait of microseconds: the thread looks again and again, and yields the processor only after PATIENCE looks. */
 class Wait {

@@ -10,9 +10,9 @@
 namespace blem_sim {
 
 /**
- * While somebody works `with` helpers, they stand by and take chunks of its loops. Who takes which chunk is left to chance, so chunks must
- * not depend on each other, and sums over them are made in the order of chunks. A helper that the scheduler holds back costs nothing: the
- * others take its chunks.
+ * While a thread works `with` helpers, they stand by and take chunks of its loops. Chance decides which thread takes a chunk, so chunks
+ * must not depend on each other, and sums over them are made in the order of chunks. A helper that the scheduler holds back costs nothing:
+ * the others take its chunks.
  */
 class Team {
  public:

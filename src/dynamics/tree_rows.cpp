@@ -10,7 +10,7 @@ namespace {
 
 static_assert(Forest::ROW_UNIT == LANES, "rows are worked on in whole units");
 
-/** Where a tree's part of the work space begins: no path is longer than the tree has dofs, up to whole units. */
+/** Start of a tree's part of the work space: no path is longer than the tree has dofs, up to whole units. */
 std::size_t partOf(const Forest& forest, int tree) { return forest.trees()[tree].first_dof + static_cast<std::size_t>(LANES) * tree; }
 
 void clear(const Forest& forest, int tree, std::vector<double>* part) {
@@ -51,7 +51,7 @@ BLEM_SIM_LANES void multiply(const Forest& forest, int tree, const std::vector<d
   clear(forest, tree, &paths->sums);
   double *path = paths->values.data() + partOf(forest, tree), *sums = paths->sums.data() + partOf(forest, tree);
   int *dofs = paths->dofs.data() + partOf(forest, tree), depth = 0;
-  // What a dof's descendants have summed is its own when the path leaves it.
+  // The sum of a dof's descendants is its own when the path leaves it.
   const auto leave = [&](int length) {
     for (; depth > length; --depth) {
       (*out)[dofs[depth - 1]] += sums[depth - 1];
@@ -90,7 +90,7 @@ BLEM_SIM_LANES bool eliminate(const Forest& forest, int dof, TreeFactor* factor)
   const double inverse = factor->inverse[dof] = 1 / std::sqrt(row[last]);
   for (int e = 0; e < last; ++e) row[e] *= inverse;
   for (int e = last; e < end; ++e) row[e] = 0;
-  // The ancestor's row has the same columns as the beginning of this one; what is written behind its end does not count.
+  // The ancestor's row has the same columns as the beginning of this one; numbers written behind its end do not count.
   for (int i = 0; i < last; ++i) addTo(-row[i], row, i + 1, factor->rows.data() + forest.rowStart(column[i]));
   return true;
 }

@@ -34,10 +34,10 @@ void multiply(const Forest& forest, int tree, const std::vector<double>& rows, c
 /** a . b on the dofs of some trees. */
 double dotProduct(const Forest& forest, const std::vector<int>& trees, const Eigen::VectorXd& a, const Eigen::VectorXd& b);
 
-/** Eliminates a dof: its ancestors' rows lose what it takes. @return false if H is not positive definite */
+/** Eliminates a dof: its row's outer product is subtracted from its ancestors' rows. @return false if H is not positive definite */
 bool eliminate(const Forest& forest, int dof, TreeFactor* factor);
 
-/** What the eliminated dofs of a tree take from the right-hand side x. */
+/** Forward elimination: takes the eliminated dofs' shares from the right-hand side x of a tree. */
 void reduce(const Forest& forest, int tree, const TreeFactor& factor, Eigen::VectorXd* x, TreePaths* paths);
 
 /** The solution on the eliminated dofs, x holding that of the others. */

@@ -14,7 +14,8 @@
 namespace blem_sim {
 namespace {
 
-// All at once, four sums that need not wait for each other: a number that is not finite times zero is not a number, and so is every sum.
+// Whether all numbers are finite, by four sums that need not wait for each other: zero times a number that is not finite is not a number,
+// and so is its sum.
 BLEM_SIM_LANES bool finite(const std::vector<BodyBits>& bodies) {
   Lanes zero = {};
   for (const BodyBits& body : bodies)
@@ -41,7 +42,7 @@ bool isSound(const Scene& scene, const StepInput& input, const std::vector<BodyB
 struct World::Impl {
   Impl(const Vector3& gravity, const SolverSettings& settings) : scene(gravity, settings), stepper(makeStepper(settings)) {}
 
-  /** False if the step broke down; the scene is then as it was. */
+  /** Makes a step. False if it broke down; the scene is then as it was. */
   bool advance(const StepInput& input) {
     if (!isSound(scene, input, start)) return false;
     result.finite = true;

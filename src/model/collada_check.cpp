@@ -15,7 +15,7 @@ namespace {
 
 using Element = tinyxml2::XMLElement;
 
-/** Looks through a document once for its ids and counts, once for what refers to them. */
+/** Looks through a document once for its ids and counts, once for the references to them. */
 class ColladaCheck {
  public:
   explicit ColladaCheck(const std::string& file) : file_(file) {}

@@ -24,7 +24,7 @@ class CollisionShapeReader {
 
   /**
    * Spheres become points, a cylinder with a sphere of its radius at each end becomes a segment, the rest triangles; in the link's frame.
-   * @param where names the link in messages @param notes what was merged @throws InputError
+   * @param where names the link in messages @param notes shapes that were merged, in words @throws InputError
    */
   std::vector<CollisionShape> read(const urdf::Link& link, const std::string& where, std::vector<std::string>* notes);
 

@@ -1,4 +1,4 @@
-// What the mesh and cloud readers do not check: announced counts against what the file holds, indices against their range.
+// Checks that the mesh and cloud readers leave out: announced counts against the file's content, indices against their range.
 #pragma once
 
 #include <string>
@@ -6,7 +6,7 @@
 
 namespace blem_sim {
 
-/** Bytes of a file and what was found out about them. @throws InputError if it is missing, unreadable or empty */
+/** Bytes of a file. @throws InputError if it is missing, unreadable or empty */
 std::string readBytes(const std::string& file);
 
 /** Refuses a truncated STL, binary or ASCII. Bytes beyond the announced triangles of a binary one are cut off, with a note. */
@@ -15,19 +15,19 @@ void checkStl(const std::string& file, std::string* bytes, std::vector<std::stri
 /** Refuses an OFF whose header, rows or face indices are wrong. */
 void checkOff(const std::string& file, const std::string& bytes);
 
-/** What a PLY's header announces. */
+/** Counts that a PLY's header announces. */
 struct PlyCounts {
   std::size_t vertices = 0;
   std::size_t faces = 0;
 };
 
-/** Refuses a PLY that cannot hold what its header announces. */
+/** Refuses a PLY too short for the rows that its header announces. */
 PlyCounts checkPly(const std::string& file, const std::string& bytes);
 
 /** Refuses a COLLADA file that is not XML, or whose references and counts lead nowhere. */
 void checkCollada(const std::string& file, const std::string& bytes);
 
-/** Refuses a PCD that cannot hold what its header announces. */
+/** Refuses a PCD too short for the points that its header announces. */
 void checkPcd(const std::string& file, const std::string& bytes);
 
 }  // namespace blem_sim

@@ -23,7 +23,7 @@ constexpr double ROUNDING_RATIO = 1e-3;
 /** Inertia about a point at -d from the centre of mass, less the inertia about the centre of mass: the parallel axis theorem. */
 Matrix3 parallelAxis(double mass, const Vector3& d) { return mass * (d.squaredNorm() * Matrix3::Identity() - d * d.transpose()); }
 
-/** About an axis: J along it, I across it. */
+/** Inertia of a body that is symmetric about an axis: `along` it, `across` it. */
 Matrix3 axial(const Vector3& axis, double along, double across) {
   return across * Matrix3::Identity() + (along - across) * axis * axis.transpose();
 }

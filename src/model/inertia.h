@@ -1,4 +1,4 @@
-// Masses and inertias: sums over frames, repair, and what stands in where the URDF gives none.
+// Masses and inertias: sums over frames, repair, and substitutes where the URDF gives none.
 #pragma once
 
 #include <optional>

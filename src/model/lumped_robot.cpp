@@ -65,7 +65,7 @@ class Lumping {
     lumped_.joints.push_back(moving);
   }
 
-  /** Two slides and a turn, with a virtual body after each slide. Axes x, y and the normal are right-handed; for normal z they are x, y, z.
+  /** Adds two slides and a turn, a virtual body after each slide. Axes x, y and the normal are right-handed; for normal z they are x, y, z.
    */
   void addPlanarJoint(const JointModel& joint) {
     int largest = 0;
@@ -121,7 +121,7 @@ class Lumping {
                     any ? "its collision shapes at 1000 kg/m^3 (open ones as a shell of 1 mm)" : "a ball of 1 cm stands in"));
   }
 
-  /** From the last joint back, so that the body a virtual one carries is known. */
+  /** Sets the inertials of virtual bodies, from the last joint back, so that the body that a virtual one carries is known. */
   void addVirtualInertials() {
     for (auto joint = lumped_.joints.rbegin(); joint != lumped_.joints.rend(); ++joint) {
       LumpedBody& parent = lumped_.bodies[joint->parent];

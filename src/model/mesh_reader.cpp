@@ -62,7 +62,7 @@ class SoupBuilder {
     for (unsigned f = 0; f < mesh.mNumFaces; ++f) appendFace(mesh.mFaces[f], first, mirrored);
   }
 
-  /** For so many more, without another copy where many small meshes follow each other. */
+  /** Reserves memory for `more` items, without another copy where many small meshes follow each other. */
   template <typename T>
   static void makeRoom(std::size_t more, std::vector<T>* items) {
     const std::size_t needed = items->size() + more;
@@ -99,7 +99,7 @@ class SoupBuilder {
   std::size_t polygons_ = 0;
 };
 
-/** What the header of a PLY announces must have arrived: assimp ends early without a word where rows are missing. */
+/** Refuses a PLY of fewer vertices or faces than its header announces: assimp ends early without a word where rows are missing. */
 void checkPlyArrived(const std::string& file, const PlyCounts& announced, const aiScene& scene) {
   std::size_t vertices = 0, faces = 0;
   for (unsigned m = 0; m < scene.mNumMeshes; ++m) {

@@ -48,7 +48,7 @@ Header readHeader(const std::string& file, const std::string& bytes) {
 }
 
 std::size_t toNumber(const std::string& file, const std::string& keyword, const std::string& word) {
-  // At most eighteen digits fit.
+  // A count of at most eighteen digits fits.
   if (word.find_first_not_of("0123456789") != std::string::npos || word.size() > 18)
     refuse(file, fmt::format("{} '{}' is no count", keyword, word));
   return static_cast<std::size_t>(std::stoull(word));

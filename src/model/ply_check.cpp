@@ -155,7 +155,7 @@ class BinaryWalk {
   std::size_t at_;
 };
 
-/** An ASCII PLY has one row per line, of at least so many numbers as it has properties; lists say how many follow. */
+/** An ASCII PLY has one row per line, of at least as many numbers as it has properties; a list begins with its count. */
 void checkAsciiRows(const std::string& file, const std::string& bytes, const Header& header) {
   std::istringstream stream(bytes.substr(header.data));
   std::string line, word;

@@ -5,7 +5,7 @@
 
 namespace blem_sim {
 
-/** PCL speaks on stderr; one line of ours is what the user is to see. */
+/** Keeps PCL from writing on stderr while one lives: the user shall see one line of blem_sim's own. */
 class QuietPcl {
  public:
   QuietPcl() : level_(pcl::console::getVerbosityLevel()) { pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS); }

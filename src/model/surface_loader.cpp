@@ -79,7 +79,7 @@ void joinCloud(double max_edge, SurfaceSoup* soup, MeshReport* report) {
                                       points.points, grid ? "the pixel grid" : "greedy projection", max_edge));
 }
 
-/** cleanMesh, with what was already left out counted in. The soup is given up. */
+/** cleanMesh, counting in the elements that were left out before. The soup is given up. */
 TriangleMesh cleanSoup(SurfaceSoup&& soup, MeshReport* report) {
   const MeshReport before = *report;
   TriangleMesh cleaned = cleanMesh(soup.mesh, report);

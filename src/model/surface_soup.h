@@ -1,4 +1,4 @@
-// What a file holds, before scaling and cleaning.
+// Content of a mesh or cloud file, before scaling and cleaning.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ struct SurfaceSoup {
   TriangleMesh mesh;               ///< no elements: a cloud
   int width = 0, height = 1;       ///< > 1 both: vertex (row, column) is row * width + column
   int collapsed = 0;               ///< faces that name a vertex twice; left out, as they are no segments
-  std::vector<std::string> notes;  ///< what was done, in words
+  std::vector<std::string> notes;  ///< repairs, in words
 };
 
 /** Mesh by assimp. @param extension "stl", "ply", "obj", "off" or "dae" @throws InputError */

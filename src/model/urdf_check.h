@@ -1,4 +1,4 @@
-// What urdfdom swallows or says badly: the text is looked through before urdfdom reads it.
+// Errors of a URDF that urdfdom swallows or reports badly: its text is checked before urdfdom reads it.
 #pragma once
 
 #include <string>
@@ -6,7 +6,7 @@
 
 namespace blem_sim {
 
-/** Names in the file's order (urdfdom sorts them) and what is left out of the simulation. */
+/** Names in the file's order (urdfdom sorts them) and notes on blocks left out of the simulation. */
 struct UrdfOutline {
   std::vector<std::string> links;
   std::vector<std::string> joints;

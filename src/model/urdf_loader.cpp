@@ -26,7 +26,7 @@ double withoutLimit(double value) {
   return std::copysign(std::numeric_limits<double>::infinity(), value);
 }
 
-/** Keeps what urdfdom says instead of printing it. */
+/** Keeps urdfdom's messages instead of printing them. */
 class UrdfdomMessages : public console_bridge::OutputHandler {
  public:
   UrdfdomMessages() { console_bridge::useOutputHandler(this); }

@@ -1,4 +1,4 @@
-// Do links and joints of a URDF form one tree?
+// Check that links and joints of a URDF form one tree.
 #pragma once
 
 #include <string>

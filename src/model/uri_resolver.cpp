@@ -75,7 +75,8 @@ bool isPackageNamed(const fs::path& folder, const std::string& name) {
   return folder.filename() == name || packageXmlName(folder / "package.xml") == name;
 }
 
-/** As rospack crawls: a folder with a package.xml is a package and is not searched further; hidden and ignored folders are left out. */
+/** Searches a tree as rospack does: a folder with a package.xml is a package and is not searched further; hidden and ignored folders are
+ *  left out. */
 std::string crawl(const fs::path& folder, const std::string& name, std::set<std::string>* visited) {
   std::error_code error;
   const fs::path canonical = fs::canonical(folder, error);

@@ -5,7 +5,7 @@
 namespace blem_sim {
 
 namespace {
-// Long enough for every stamp of a batch of steps made between two flushes of the outbox.
+// Queue long enough for every stamp of a batch of steps made between two flushes of the outbox.
 constexpr int QUEUE_SIZE = 1000;
 }  // namespace
 

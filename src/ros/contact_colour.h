@@ -6,7 +6,8 @@
 
 namespace blem_sim {
 
-/** Of a contact's markers: green at no depth, yellow where the boundary layers are used up, red beyond and where bare meshes cross. */
+/** Colour of a contact's markers: green at no depth, yellow where the boundary layers are used up, red beyond and where bare meshes cross.
+ */
 std_msgs::ColorRGBA contactColour(const ContactReport& contact);
 
 }  // namespace blem_sim

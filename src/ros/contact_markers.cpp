@@ -49,7 +49,7 @@ void ContactMarkers::publish(const boost::shared_ptr<StampedContacts>& contacts)
     const std_msgs::ColorRGBA colour = contactColour(contact);
     points.points.push_back(toPoint(contact.point));
     points.colors.push_back(colour);
-    // What the moving side feels.
+    // Force on the moving side.
     const Vector3 force = contact.body_a == WORLD_BODY ? Vector3(-contact.force) : contact.force;
     const double length = std::min(LONGEST_ARROW, metres_per_newton_ * force.norm());
     if (length < SHORTEST_ARROW) continue;

@@ -10,7 +10,7 @@
 
 namespace blem_sim {
 
-/** /diagnostics once per second of wall time, also while paused: speed, contacts and what to change. */
+/** /diagnostics once per second of wall time, also while paused: speed, contacts and settings to change. */
 class DiagnosticsPublisher : public StepPublisher {
  public:
   DiagnosticsPublisher(ros::NodeHandle node, ros::NodeHandle private_node, SimulationLoop* loop);
@@ -18,7 +18,7 @@ class DiagnosticsPublisher : public StepPublisher {
   void timeRestarted() override;
   void resumed() override { collector_.resume(); }
   void geometryChanged() override { collector_.forgetColliders(); }
-  /** To be called often; publishes when a second has passed. */
+  /** Publishes when a second has passed; to be called often. */
   void serve(bool paused);
 
  private:

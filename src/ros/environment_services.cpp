@@ -10,7 +10,7 @@ namespace blem_sim {
 
 namespace {
 
-/** Runs what may refuse its input and puts the outcome in the response. */
+/** Runs an action that may refuse its input and puts the outcome in the response. */
 template <typename Response, typename Act>
 void answer(const char* service, Response* response, const Act& act) {
   try {

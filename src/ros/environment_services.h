@@ -8,7 +8,7 @@
 
 namespace blem_sim {
 
-/** `~load_environment`, `~unload_environment`. What cannot be done is said in status_message, and nothing is changed. */
+/** `~load_environment`, `~unload_environment`. A request that cannot be met changes nothing; status_message gives the reason. */
 class EnvironmentServices {
  public:
   EnvironmentServices(ros::NodeHandle private_node, SimulationLoop* loop);

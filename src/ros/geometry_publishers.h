@@ -1,4 +1,4 @@
-// What there is to stand on and to touch, and what became of it when it was loaded. Latched; sent again when it changes.
+// Geometry of environments and objects as markers, and the load report. Latched; sent again when they change.
 #pragma once
 
 #include <ros/node_handle.h>

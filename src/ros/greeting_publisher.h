@@ -1,4 +1,4 @@
-// Publishers whose late subscribers learn the last message, also during a pause.
+// Publishers whose late subscribers get the last message, also during a pause.
 #pragma once
 
 #include <ros/node_handle.h>
@@ -15,7 +15,8 @@ namespace blem_sim {
 
 /**
  * A publisher that gives a new subscriber the last message. roscpp's own latching does so a moment after the connection, and so gives a
- * message twice to who connects while messages are under way; here nobody gets one twice, or misses the last: stamps must never repeat.
+ * message twice to subscribers that connect while messages are under way; here none gets one twice, or misses the last: stamps must never
+ * repeat.
  */
 template <typename Message>
 class GreetingPublisher {
@@ -41,11 +42,11 @@ class GreetingPublisher {
       state_->message = message;
       state_->round = PollRounds::instance().count();
     }
-    // As a value: a shared one is not queued where only this program listens, and who links in this round would miss it.
+    // As a value: a shared message is not queued where only this program listens, and a subscriber that links in this round would miss it.
     publisher_.publish(*message);
   }
 
-  /** There is no last message any more. */
+  /** Forgets the last message: new subscribers get none. */
   void forget() {
     const std::lock_guard<std::mutex> lock(state_->mutex);
     state_->message.reset();

@@ -9,7 +9,7 @@ namespace blem_sim {
 /** Runs callbacks at once, in the thread they come from: roscpp's poll thread for those of subscribers that come and go. */
 class ImmediateQueue : public ros::CallbackQueueInterface {
  public:
-  /** There until the program ends, as roscpp's threads are. */
+  /** The queue of the program, which lives until it ends, as roscpp's threads do. */
   static ImmediateQueue* instance() {
     static ImmediateQueue queue;
     return &queue;

@@ -11,7 +11,7 @@ namespace blem_sim {
 
 /**
  * `~layer_events`: one message per contact that leaves its boundary layers or comes back. None is dropped, and late subscribers are told
- * the last one. That a contact left is also said on /rosout, at most once in WARNING_PERIOD.
+ * the last one. Contacts that left are also said on /rosout, at most once in WARNING_PERIOD.
  */
 class LayerEventPublisher : public StepPublisher {
  public:

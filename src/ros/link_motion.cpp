@@ -5,7 +5,7 @@
 namespace blem_sim {
 
 namespace {
-/** Of a frame F that is fixed on the body. */
+/** Motion of a frame F that is fixed on the body. */
 LinkMotion frameMotion(const Simulator& simulator, const StepReport& report, int body, const Pose& X_BF) {
   const BodyState& state = report.bodies[body];
   LinkMotion motion;

@@ -17,7 +17,7 @@ LinkMotion linkMotion(const Simulator& simulator, const StepReport& report, cons
 /** Motion of a body's own frame. */
 LinkMotion bodyMotion(const Simulator& simulator, const StepReport& report, int body);
 
-/** Root link of a robot, frame of an object's body, or where an environment's geometry stands. */
+/** Motion of a model: a robot's root link, the frame of an object's body, or an environment's geometry, which stands. */
 LinkMotion modelMotion(const Simulator& simulator, const StepReport& report, int model);
 
 }  // namespace blem_sim

@@ -1,4 +1,4 @@
-// Messages that are filled again and again, shared with whoever still reads them.
+// Messages that are filled again and again, shared with those that still read them.
 #pragma once
 
 #include <boost/make_shared.hpp>
@@ -13,7 +13,7 @@ namespace blem_sim {
 template <typename Message>
 class MessagePool {
  public:
-  /** @param model what a new message is a copy of */
+  /** @param model new messages are copies of it */
   explicit MessagePool(Message model = Message()) : model_(std::move(model)) {}
 
   /** A message that nobody else holds: one as it was last filled, or a new one. To be asked for by one thread. */

@@ -19,7 +19,7 @@ class Outbox {
   Outbox(const Outbox&) = delete;
   Outbox& operator=(const Outbox&) = delete;
 
-  /** Returns when what was published so far has been offered to the sockets; at most 100 ms later. */
+  /** Returns when all messages published so far have been offered to the sockets; at most 100 ms later. */
   void flush();
 
  private:

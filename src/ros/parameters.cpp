@@ -58,7 +58,7 @@ std::string readFile(const std::string& file, const std::string& source) {
   return text.str();
 }
 
-/** Takes the settings of a robot that is made without a list of robots: its row, without what it is read from. */
+/** Takes the settings of a robot that is made without a list of robots: its row, without its URDF. */
 YAML::Node takeRobotRow(YAML::Node* parameters) {
   YAML::Node row(YAML::NodeType::Map);
   for (const auto& [key, row_key] : {std::make_pair("robot_pose", "pose"), std::make_pair("robot_fixed_base", "fixed_base")}) {
@@ -68,7 +68,7 @@ YAML::Node takeRobotRow(YAML::Node* parameters) {
   return row;
 }
 
-/** The row of somebody who gave a URDF and no list of robots; nothing if there is none either. */
+/** List of the one robot of a URDF that is given without a list of robots; empty if there is no URDF either. */
 YAML::Node describedRobots(YAML::Node row, const std::string& file, const std::string& base_directory, const std::string& source) {
   YAML::Node robots(YAML::NodeType::Sequence);
   std::string xml;

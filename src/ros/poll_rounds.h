@@ -1,4 +1,4 @@
-// Which of two came first: a message, or the link to a new subscriber.
+// Order of a message and a link to a new subscriber: rounds of roscpp's poll thread tell which came first.
 #pragma once
 
 #include <atomic>
@@ -16,7 +16,7 @@ class PollRounds {
  public:
   static PollRounds& instance();
 
-  /** Call after ros::init and before the first NodeHandle: roscpp's own hand-over then lies between our two looks at a round. */
+  /** Call after ros::init and before the first NodeHandle: roscpp's own hand-over then lies between the two listeners of a round. */
   void watchBegin();
   /** Call once roscpp has started. */
   void watchEnd();
@@ -24,7 +24,7 @@ class PollRounds {
   /** Keeps the poll thread from handing messages over while it lives. Given up after 100 ms, and at once while roscpp shuts down: the
    *  poll thread does so in the middle of a round and does not come back. A thread may ask for it again while it has it. */
   std::unique_lock<std::recursive_timed_mutex> betweenHandOvers();
-  /** Rounds so far. To be asked between hand-overs, or in the poll thread. */
+  /** Number of rounds so far. To be asked between hand-overs, or in the poll thread. */
   std::uint64_t count() const { return count_; }
 
  private:

@@ -1,4 +1,4 @@
-// Which steps a topic of a given rate is published at.
+// Schedule of a topic: the steps at which its rate is due.
 #pragma once
 
 #include <cmath>

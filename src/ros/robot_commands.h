@@ -11,9 +11,9 @@
 namespace blem_sim {
 
 /**
- * What a robot takes, in its namespace: `joint_trajectory_controller/command` and `joint_trajectory` (trajectory_msgs/JointTrajectory;
- * stamp 0 = now, no points = hold) and `joint_command` (sensor_msgs/JointState: targets by joint name). What is wrong with a message is
- * said in one error line and nothing is changed.
+ * Commands to a robot, in its namespace: `joint_trajectory_controller/command` and `joint_trajectory` (trajectory_msgs/JointTrajectory;
+ * stamp 0 = now, no points = hold) and `joint_command` (sensor_msgs/JointState: targets by joint name). A faulty message changes nothing;
+ * one error line names the fault.
  */
 class RobotCommands {
  public:

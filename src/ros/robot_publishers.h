@@ -1,4 +1,4 @@
-// What every robot publishes: joint states, the pose of its root link.
+// Topics of every robot: joint states, the pose of its root link.
 #pragma once
 
 #include <nav_msgs/Odometry.h>

@@ -16,7 +16,7 @@ constexpr double LONGEST_WAIT = 0.05;  // [s]
 // Steps made without a look at the sockets; below the publishers' queue lengths, so that no message of a batch is dropped.
 constexpr std::uint32_t STEPS_PER_FLUSH = 50;
 
-/** [s] of processor time of this thread. */
+/** Processor time [s] of this thread. */
 double threadSeconds() {
   timespec t;
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
@@ -89,7 +89,7 @@ void SimulationLoop::flush() {
 }
 
 void SimulationLoop::resetSimulation() {
-  sender_.drain();  // what was before goes out before what is told directly
+  sender_.drain();  // messages of earlier steps go out before those that are published directly
   simulator_->resetSimulation();
   for (const auto& publisher : publishers_) publisher->timeRestarted();
   publish(simulator_->report());

@@ -14,10 +14,10 @@
 
 namespace blem_sim {
 
-/** [s] that publishing took in the stepping thread since the start. */
+/** Time [s] of publishing in the stepping thread since the start. */
 struct PublishingTime {
   double wall = 0;
-  double processor = 0;  ///< without waiting, and without what other threads and programs take
+  double processor = 0;  ///< without waiting, and without the time of other threads and programs
 };
 
 class SimulationLoop {
@@ -35,7 +35,7 @@ class SimulationLoop {
   void pause() { paused_ = true; }
   void unpause();
 
-  /** Pauses, makes `count` steps and sees their messages off. @return how many were made: fewer if the node is shut down or a state
+  /** Pauses, makes `count` steps and sees their messages off. @return number of steps made: fewer if the node is shut down or a state
    *  stopped being finite */
   std::uint32_t stepPaused(std::uint32_t count);
 
@@ -44,16 +44,16 @@ class SimulationLoop {
   /** An environment was loaded or unloaded. */
   void geometryChanged();
 
-  /** What publishers of every step send their messages with. */
+  /** Sender for the messages of every step's publishers. */
   StepSender* sender() { return &sender_; }
 
   const PublishingTime& publishingTime() const { return publishing_time_; }
 
  private:
-  /** False if the state stopped being finite: the simulation is paused then. */
+  /** Makes a step. False if the state stopped being finite: the simulation is paused then. */
   bool step();
   void publish(const StepReport& report);
-  /** Sees the messages off that were published so far. */
+  /** Returns when the messages published so far have been offered to the sockets. */
   void flush();
 
   Simulator* simulator_;

@@ -23,7 +23,7 @@ namespace blem_sim {
 
 namespace {
 
-/** Long loads in the node's log. */
+/** Log of long loads, in the node's log. */
 LoadLog consoleLog() {
   return {[](const std::string& line) { ROS_INFO("%s", line.c_str()); }};
 }
@@ -37,7 +37,7 @@ ros::NodeHandle nodeOn(ros::CallbackQueue* callbacks, const std::string& name) {
 }  // namespace
 
 struct SimulationNode::Impl {
-  // Own queue: callbacks are served between steps, in the thread that steps.
+  // A queue of the node's own: callbacks are served between steps, in the thread that steps.
   ros::CallbackQueue callbacks;
   ros::NodeHandle node = nodeOn(&callbacks, "");
   ros::NodeHandle private_node = nodeOn(&callbacks, "~");
@@ -50,7 +50,7 @@ struct SimulationNode::Impl {
   std::unique_ptr<EnvironmentServices> environments;
 
   void addPublishers() {
-    // The clock goes last: whoever wakes by it finds the messages of that time on their way.
+    // The clock goes last: a node that wakes by it finds the messages of that time on their way.
     loop.add(std::make_unique<JointStatePublisher>(node, simulator, loop.sender()));
     loop.add(std::make_unique<TransformPublisher>(node, simulator, loop.sender()));
     loop.add(std::make_unique<OdometryPublisher>(node, simulator, loop.sender()));

@@ -14,7 +14,7 @@ class SimulationNode {
   SimulationNode();
   ~SimulationNode();
 
-  /** Until the node is shut down. */
+  /** Runs until the node is shut down. */
   void run();
 
  private:

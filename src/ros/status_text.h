@@ -10,7 +10,7 @@ namespace blem_sim {
 /** Names of the bits that are set, in bit order. */
 std::vector<std::string> statusNames(std::uint32_t status);
 
-/** For each bit that is set and asks for a change: what to change, in bit order. */
+/** Advice of each bit that is set and asks for a change, in bit order. */
 std::vector<std::string> statusAdvice(std::uint32_t status);
 
 }  // namespace blem_sim

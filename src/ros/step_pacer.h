@@ -1,16 +1,15 @@
-// When the next step is due on the wall clock.
+// Due times of steps on the wall clock.
 #pragma once
 
 #include <chrono>
 
 namespace blem_sim {
 
-/** Keeps simulated time at real_time_factor times wall time. A late simulation is not sped up for more than MAX_BACKLOG of what it missed.
- */
+/** Keeps simulated time at real_time_factor times wall time. A late simulation catches up at most MAX_BACKLOG. */
 class StepPacer {
  public:
   using Clock = std::chrono::steady_clock;
-  /** [s] wall time that may be caught up; what is later than that is given up, so that a pause of the machine makes no burst. */
+  /** [s] wall time that may be caught up; a larger backlog is given up, so that a pause of the machine makes no burst. */
   static constexpr double MAX_BACKLOG = 0.02;
 
   /** @param real_time_factor 0 = as fast as possible. @param time_step [s] */

@@ -1,4 +1,4 @@
-// What the simulation loop tells after each step; one family of topics each.
+// Interface of publishers, which the simulation loop calls after each step; one family of topics each.
 #pragma once
 
 #include "blem_sim/sim/simulator.h"
@@ -8,13 +8,13 @@ namespace blem_sim {
 class StepPublisher {
  public:
   virtual ~StepPublisher() = default;
-  /** After every step, and once with the state at hand when the node is ready or time has started again. */
+  /** Called after every step, and once with the state at hand when the node is ready or time has started again. */
   virtual void publish(const StepReport& report) = 0;
-  /** Simulated time starts again at 0. */
+  /** Called when simulated time starts again at 0. */
   virtual void timeRestarted() {}
-  /** Steps are about to be made again after a pause: what was measured on the wall clock starts anew. */
+  /** Called when steps are about to be made again after a pause: measurements on the wall clock start anew. */
   virtual void resumed() {}
-  /** An environment was loaded or unloaded. */
+  /** Called when an environment was loaded or unloaded. */
   virtual void geometryChanged() {}
 };
 

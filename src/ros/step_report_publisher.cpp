@@ -55,7 +55,7 @@ void StepReportPublisher::publish(const StepReport& report) {
     message.stages.emplace_back(STAGE_NAMES[i]);
     message.stage_seconds.push_back(statistics.stage_seconds[i] / statistics.steps);
   }
-  // Up to the step before; this one's messages are still going out.
+  // Publishing time up to the step before; this step's messages are still going out.
   message.stages.emplace_back("publish");
   message.stage_seconds.push_back((loop_.publishingTime().wall - published_) / statistics.steps);
   published_ = loop_.publishingTime().wall;

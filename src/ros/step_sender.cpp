@@ -8,9 +8,9 @@
 namespace blem_sim {
 
 namespace {
-// More than the messages of some hundred steps: who is that far behind has to be waited for.
+// More than the messages of some hundred steps: send() waits for a thread that is so far behind.
 constexpr std::size_t MOST_WAITING = 5000;
-// Of who is late, in the time between two hand-overs.
+// Looks for a late hand-over, in the time between two of them.
 constexpr int LOOKS = 8;
 }  // namespace
 

@@ -17,8 +17,8 @@ namespace blem_sim {
  * a step's messages go out as they were added, and after those of the steps before. All but the thread's work is called by one thread.
  *
  * Waking a thread takes longer than filling, too. While hand-overs come LONGEST_NAP apart or less, the thread wakes by itself when it
- * expects the next one: as long after the last as that came after the one before. What comes sooner waits until then, but not past the
- * hand-over after it. For one that is late it looks some more times; then it sleeps until it is woken.
+ * expects the next one: as long after the last as that came after the one before. Messages that come sooner wait until then, but not past
+ * the hand-over after theirs. If the hand-over is late the thread looks some more times; then it sleeps until it is woken.
  */
 class StepSender {
  public:
@@ -26,7 +26,7 @@ class StepSender {
   static constexpr std::chrono::microseconds LONGEST_NAP{2500};
 
   explicit StepSender(Clock::duration longest_nap = LONGEST_NAP);
-  /** Sends what was handed over before. */
+  /** Sends all messages handed over before. */
   ~StepSender();
   StepSender(const StepSender&) = delete;
   StepSender& operator=(const StepSender&) = delete;
@@ -39,9 +39,9 @@ class StepSender {
     };
     added_.push_back({publish, publisher, std::move(message)});
   }
-  /** Hands over what was added. Waits only if the thread is far behind. */
+  /** Hands over the added messages. Waits only if the thread is far behind. */
   void send();
-  /** Returns when all that was handed over has been published; nothing of it waits for a nap to end. */
+  /** Returns when all messages handed over have been published; none of them waits for a nap to end. */
   void drain();
 
  private:

@@ -1,4 +1,4 @@
-// What happened over several steps, for topics slower than the simulation.
+// Statistics over several steps, for topics slower than the simulation.
 #pragma once
 
 #include <array>
@@ -35,7 +35,7 @@ class StepStatisticsCollector {
   void resume() { last_ = Clock::now(); }
   /** Colliders may be others now: the deepest contact so far has none. */
   void forgetColliders() { statistics_.deepest_a = statistics_.deepest_b = -1; }
-  /** What was collected; starts anew. */
+  /** Returns the statistics and starts anew. */
   StepStatistics take();
 
  private:

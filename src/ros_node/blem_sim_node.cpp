@@ -10,9 +10,9 @@
 int main(int argc, char** argv) {
   ros::init(argc, argv, "blem_sim");
   blem_sim::PollRounds::instance().watchBegin();
-  // Before the node starts its own clock, which asks for it.
+  // The parameter is set before the node starts its own clock, which asks for it.
   if (!ros::param::has("/use_sim_time")) ros::param::set("/use_sim_time", true);
-  // roscpp ends with its last handle, and its log with it: this one sees the error line out.
+  // roscpp ends with its last handle, and its log with it: this handle keeps it until the error line is out.
   const ros::NodeHandle handle;
   try {
     blem_sim::SimulationNode node;

@@ -8,12 +8,12 @@ namespace blem_sim {
 /** Disjoint sets of bodies [Tarjan 1975]; the least index of a set stands for it. Allocates only when there are more bodies than ever. */
 class BodyIslands {
  public:
-  /** Every body alone. */
+  /** Makes every body an island of its own. */
   void start(int bodies) {
     parent_.resize(bodies);
     for (int b = 0; b < bodies; ++b) parent_[b] = b;
   }
-  /** The static world, WORLD_BODY, ties nothing. */
+  /** Joins the islands of two bodies. The static world, WORLD_BODY, ties nothing. */
   void tie(int a, int b) {
     if (a < 0 || b < 0) return;
     a = islandOf(a);
@@ -23,7 +23,7 @@ class BodyIslands {
     else
       parent_[a] = b;
   }
-  /** Its least body. */
+  /** Least body of a body's island. */
   int islandOf(int body) {
     while (parent_[body] != body) {
       parent_[body] = parent_[parent_[body]];

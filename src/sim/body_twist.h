@@ -1,4 +1,4 @@
-// How the points of a body move while its velocities stay.
+// Motion of a body's points while its velocities stay.
 #pragma once
 
 #include "simulated_world.h"
@@ -11,7 +11,7 @@ struct BodyTwist {
   /** Velocity [m/s] of the body's point at p. */
   Vector3 at(const Vector3& p) const { return v + w.cross(p - centre); }
 
-  /** Where a frame X of the body is `time` [s] later. */
+  /** Pose of a frame X of the body `time` [s] later. */
   Pose moved(const Pose& X, double time) const {
     const double angle = time * w.norm();
     const Matrix3 turn = angle > 0 ? Eigen::AngleAxisd(angle, w.normalized()).toRotationMatrix() : Matrix3(Matrix3::Identity());
@@ -22,7 +22,7 @@ struct BodyTwist {
   }
 };
 
-/** Of a collider's body. @param bodies their states, by slot */
+/** Twist of a collider's body. @param bodies their states, by slot */
 inline BodyTwist twistOf(const SimulatedWorld& world, const std::vector<BodyState>& bodies, int collider) {
   const int body = world.colliders[collider].body;
   if (body == WORLD_BODY) return {};

@@ -31,7 +31,7 @@ PublishRates readRates(YamlReader& reader) {
 template <typename Model, typename Read>
 std::vector<Model> readModels(YamlReader& root, const std::string& key, std::set<std::string>* names, Read read) {
   std::vector<Model> models;
-  // Before any of them is read.
+  // Checked before any model is read.
   const YAML::Node list = root.node(key);
   if (list.IsDefined() && list.size() > MOST_MODELS)
     root.refuse(key, fmt::format("{} entries are more than the {} that are simulated; give fewer", list.size(), MOST_MODELS));

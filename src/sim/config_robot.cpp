@@ -6,7 +6,7 @@ namespace {
 
 const char* const DEFAULT = "default";
 
-/** What a joint starts from where its own entry leaves something out: the entry "default", if there is one. */
+/** First value of a joint, for fields that its own entry leaves out: the entry "default", if there is one. */
 template <typename Value>
 Value inherited(const std::map<std::string, Value>& by_joint) {
   const auto entry = by_joint.find(DEFAULT);

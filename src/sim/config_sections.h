@@ -8,7 +8,7 @@ namespace blem_sim {
 
 ContactConfig readContact(YamlReader reader);
 SolverSettings readSolver(YamlReader reader);
-/** boundary_width, friction, restitution, impact_friction_factor, stiffness, damping: those given. */
+/** Reads those given of boundary_width, friction, restitution, impact_friction_factor, stiffness, damping, shrink. */
 ContactOverrides readContactOverrides(YamlReader& reader);
 CloudOptions readCloud(YamlReader reader);
 /** A name that models may bear: given, not empty, without "::". */

@@ -10,7 +10,7 @@
 namespace blem_sim {
 namespace {
 
-// Pierced contacts part at this speed; what weighs on them slows them down by its weight over this rate times the lighter model's mass.
+// Pierced contacts part at this speed; a load on them slows them down by its weight over this rate times the lighter model's mass.
 constexpr double SEPARATION_SPEED = 0.1;  // [m/s]
 constexpr double SEPARATION_RATE = 1e4;   // [1/s]
 
@@ -25,7 +25,7 @@ std::uint64_t contactId(int a, int b, std::uint64_t id) {
   return mixed(id + mixed((static_cast<std::uint64_t>(a) << 32) + static_cast<std::uint64_t>(b) + 1));
 }
 
-/** Rigid, without friction. */
+/** Constraint of a contact, rigid, without friction. */
 ContactConstraint constraintOf(const SimulatedWorld& world, const ContactManifold& manifold, const Contact& contact) {
   ContactConstraint constraint;
   constraint.body_a = world.colliders[manifold.a].body;
@@ -37,7 +37,7 @@ ContactConstraint constraintOf(const SimulatedWorld& world, const ContactManifol
   return constraint;
 }
 
-/** [kg] of all that moves with the collider. */
+/** Mass [kg] of all bodies of the collider's model. */
 double massOf(const SimulatedWorld& world, const Collider& collider) {
   if (collider.body == WORLD_BODY) return std::numeric_limits<double>::infinity();
   double mass = 0;
@@ -46,12 +46,13 @@ double massOf(const SimulatedWorld& world, const Collider& collider) {
   return mass;
 }
 
-/** A stop below a contact's spring, where it has one, is another contact. */
+/** Identity of the stop below a contact's spring, which is another contact. */
 std::uint64_t stopId(std::uint64_t id) { return mixed(id); }
 
 bool isCompliant(const SurfaceProperties& surface) { return std::isfinite(surface.stiffness) && std::isfinite(surface.damping); }
 
-/** Where meshes cross, contacts may contradict each other: a damper that lets go at SEPARATION_SPEED, and never bounces. */
+/** Makes a contact of meshes that cross a damper that lets go at SEPARATION_SPEED and never bounces: such contacts may contradict each
+ *  other. */
 void separate(double mass, double layer, ContactConstraint* contact) {
   contact->damping = SEPARATION_RATE * mass;
   contact->stiffness = SEPARATION_SPEED * contact->damping / std::max(layer, contact->depth);
@@ -123,7 +124,7 @@ void ContactStage::addStops(const SimulatedWorld& world, const ContactManifold& 
 void ContactStage::reduction(const SimulatedWorld& world, const std::vector<BodyState>& bodies, double dt) {
   meetings_.look(world, bodies, *this, current_search_.flush, dt);
   meetings_.exchange(&current_);
-  for (ContactManifold& manifold : reduced_) manifold.contacts.clear();  // one that has none any more keeps none
+  for (ContactManifold& manifold : reduced_) manifold.contacts.clear();  // a pair without contacts now keeps none
   model_a_.clear();
   model_b_.clear();
   for (const ContactManifold& manifold : current_) {

@@ -8,7 +8,7 @@
 namespace blem_sim {
 namespace {
 
-constexpr double TOUCHING = 1e-6;  // [m] gap at most, of what is borne
+constexpr double TOUCHING = 1e-6;  // [m] largest gap of a contact that bears a body
 
 }  // namespace
 
@@ -31,7 +31,7 @@ double ContactMeetings::depthOf(const SimulatedWorld& world, int collider) const
   return body == WORLD_BODY ? 0 : supports_[body].depth;
 }
 
-/** An object that touches nothing falls; other bodies are borne by what they touch, or by their motors. */
+/** Way of a collider. An object that touches nothing falls; other bodies are borne by their contacts or motors. */
 ColliderWay ContactMeetings::wayOf(const SimulatedWorld& world, const std::vector<BodyState>& bodies, const ContactStage& contacts,
                                    int collider, double dt) const {
   const Collider& c = world.colliders[collider];

@@ -1,4 +1,4 @@
-// Where will contacts before touch be touched, or will their gaps be passed sideways?
+// Contacts before touch: the poses where they are met, or passed sideways.
 #pragma once
 
 #include <cstddef>
@@ -11,13 +11,12 @@ namespace blem_sim {
 class ContactStage;
 
 /**
- * A contact before touch bounds the closing speed along the normal of its pose. While a body moves across that normal, the features that it
- * is about pass each other, or meet along another normal. So where a pair, moving on freely, would use up a gap while it moves across it,
- * the pair is followed on its way through the solve, to where its layers first touch, or to where they come nearest if they do not.
- * Contacts before touch that would act, and are not the ones that are met there, are replaced by those of that pose, seen from the pose at
- * hand: they let the pair go as far as to the meeting. Where nothing is met, none acts on the motion at hand, and a motion that changes in
- * the solve is bounded by the planes of the nearest pose. Contacts that touch, those whose gap will not be used up, and those that are met
- * as they are stay as they are.
+ * A contact before touch bounds the closing speed along the normal of its pose. While a body moves across that normal, the contact's
+ * features pass each other, or meet along another normal. So a pair that, moving on freely, would use up a gap while it moves across it is
+ * followed on its way through the solve, to the pose where its layers first touch, or to the nearest pose if they do not. Contacts before
+ * touch that would act, and are not met there, are replaced by those of that pose, seen from the pose at hand: they let the pair go as far
+ * as to the meeting. If nothing is met, none acts on the motion at hand, and a motion that changes in the solve is bounded by the planes of
+ * the nearest pose. Contacts that touch, those whose gap will not be used up, and those that are met as they are stay as they are.
  */
 class ContactMeetings {
  public:
@@ -29,7 +28,7 @@ class ContactMeetings {
 
  private:
   struct Support {
-    bool touches = false;  // something
+    bool touches = false;  // the body touches something
     double depth = 0;      // [m] of its deepest contact, at least 0
   };
   struct Replaced {

@@ -13,16 +13,16 @@ namespace blem_sim {
 namespace {
 
 // Contacts exist before touch, so that none appears with a force: at rest within this of the layer, sooner at speed. Less between small
-// things: what lies around them would use up their budgets.
+// things: contacts with everything around them would use up their budgets.
 constexpr double BASE_MARGIN = 0.0005;         // [m], or
 constexpr double BASE_MARGIN_OF_LENGTH = 0.1;  // of the shorter collider
-// What is farther than this is not looked at: before it comes close, the step guard ends the substep.
+// Contacts farther than this are not searched: before they come close, the step guard ends the substep.
 constexpr double LEAST_MAX_MARGIN = 0.005;  // [m], or
 constexpr double MAX_MARGIN_OF_LAYER = 2;   // layers
 constexpr double UNGUARDED_MARGIN = 0.1;    // [m] where there is no layer, and over half-spaces: 66 m/s at 1 ms
 // Forces may speed a body up during the step; a margin covers this times the present motion.
 constexpr double REACH_FACTOR = 1.5;
-constexpr double APART = 0.25;  // of the layer: what crossed is sound again when its deepest contact uses up less
+constexpr double APART = 0.25;  // of the layer: a pair that crossed is sound again when its deepest contact uses up less
 
 constexpr int MOST_AT_ONE_PLACE = 8;  // pairs of a collider with others at its place (leftOut()) that are looked at
 
@@ -36,7 +36,7 @@ double armOf(const Collider& collider, const Vector3& com) {
   return arm;
 }
 
-/** [m] of its box's longest edge, layers included. */
+/** Length [m] of the longest edge of a collider's box, layers included. */
 double lengthOf(const Collider& collider) {
   if (collider.geometry->isHalfSpace()) return std::numeric_limits<double>::infinity();
   return collider.geometry->bounds().sizes().maxCoeff() + 2 * collider.radius;
@@ -84,7 +84,7 @@ void ContactStage::moveColliders(const SimulatedWorld& world, const std::vector<
   }
 }
 
-/** WatchedPair::known: by how far two colliders can approach each other, moving on as they do, or if one of them is stopped dead. */
+/** WatchedPair::known: most [m] that two colliders can approach each other, moving on as they do, or if one of them is stopped dead. */
 double ContactStage::knownMargin(const SimulatedWorld& world, const std::vector<BodyState>& bodies, const std::vector<BodyState>* faster,
                                  const ColliderPair& pair, double dt) const {
   const Collider &a = world.colliders[pair.a], &b = world.colliders[pair.b];
@@ -154,7 +154,7 @@ void ContactStage::narrowPhase(const SimulatedWorld& world) {
   keepWhatWasFound(pairs);
 }
 
-/** Manifolds with contacts, and the pairs that cross or are not apart yet. */
+/** Keeps the manifolds with contacts, and the pairs that cross or are not apart yet. */
 void ContactStage::keepWhatWasFound(std::size_t pairs) {
   std::size_t manifolds = 0, recoveries = 0;
   for (std::size_t i = 0; i < pairs; ++i) {

@@ -1,4 +1,4 @@
-// From body poses to what the solver takes: broad phase, narrow phase, reduction.
+// From body poses to contact constraints of the solver: broad phase, narrow phase, reduction.
 #pragma once
 
 #include <utility>
@@ -17,23 +17,23 @@
 
 namespace blem_sim {
 
-/** A contact in the solve: which of whose manifolds it is. Goes with the constraint of the same index. */
+/** A contact in the solve: its pair, layer and kind. Goes with the constraint of the same index. */
 struct SolvedContact {
   int collider_a, collider_b;
   double layer;  ///< [m] rA + rB
   bool pierced;
-  double stop;    ///< [m] depth at which it begins, of a layer's stop; else 0
+  double stop;    ///< [m] depth at which a layer's stop begins; 0 for other contacts
   bool recovers;  ///< of a pair of recoveries()
 };
 
 /** Two colliders that may meet in the coming step. */
 struct WatchedPair {
   int a, b;
-  double margin;  ///< [m] beyond the layers, within which they may meet at all
-  double known;   ///< [m] beyond the layers, within which their contacts are known
+  double margin;  ///< [m] distance beyond the layers within which they may meet at all
+  double known;   ///< [m] distance beyond the layers within which their contacts are known
 };
 
-/** Two colliders of a pair that is not looked at. */
+/** Two colliders of a pair that is not searched. */
 struct PairLeftOut {
   int a, b;
 };
@@ -42,7 +42,7 @@ struct PairLeftOut {
 struct Recovery {
   int a, b;
   bool known;  ///< false if the pair crossed from the start
-  Pose X_AB;   ///< geometry of B in A's where they were last apart
+  Pose X_AB;   ///< geometry of B in A's when they were last apart
 };
 
 /**
@@ -61,21 +61,21 @@ class ContactStage {
    * @param faster states of the same poses whose speeds bodies may reach: the larger speed counts. Null: bodies go on as they do
    */
   void broadPhase(const SimulatedWorld& world, const std::vector<BodyState>& bodies, const std::vector<BodyState>* faster, double dt);
-  /** Their manifolds: found(). */
+  /** Finds the manifolds of these pairs: found(). */
   void narrowPhase(const SimulatedWorld& world);
-  /** What was found is the state the next solve starts from. */
+  /** Makes found() the manifolds that the next solve starts from: current(). */
   void accept();
-  /** After bodies or geometry changed other than by a step: no contact is known. */
+  /** Call after bodies or geometry changed other than by a step: no contact is known. */
   void forget() { known_ = false; }
-  /** What the last reduction chose; the only thing that outlives a step here, with the stops, beside what the state tells. */
+  /** Choice of the last reduction: with the stops and recoveries() all that the next step depends on here, beside the bodies' states. */
   ReductionMemory& memory() { return memory_; }
   const ReductionMemory& memory() const { return memory_; }
   LayerStops& stops() { return stops_; }
   const LayerStops& stops() const { return stops_; }
   bool known() const { return known_; }
   /**
-   * At most k contacts per model out of current(), but three of each pair, as constraints, and the stops below soft ones. Those before
-   * touch are the ones that will be met (ContactMeetings).
+   * At most k contacts per model out of current(), but three of each pair, as constraints, and the stops below soft ones. Contacts before
+   * touch are those that will be met (ContactMeetings).
    * @param bodies states at hand, by slot @param dt [s] of the solve
    */
   void reduction(const SimulatedWorld& world, const std::vector<BodyState>& bodies, double dt);
@@ -85,9 +85,9 @@ class ContactStage {
   const std::vector<ContactConstraint>& constraints() const { return constraints_; }
   const std::vector<SolvedContact>& solved() const { return solved_; }
   const std::vector<WatchedPair>& watched() const { return current_search_.pairs; }  ///< of the accepted state
-  /** [m] by collider: farthest point of its geometry's box from the body's centre of mass; 0 for what is static. */
+  /** [m] by collider: farthest point of its geometry's box from the body's centre of mass; 0 for static ones. */
   double arm(int collider) const { return arms_[collider]; }
-  /** [colliders] of the accepted state: where they are, and how far they may move. */
+  /** Poses of the accepted state, and how far each may move, by collider. */
   const std::vector<ColliderMotion>& motion() const { return current_search_.motion; }
   /**
    * Sorted by (a, b). Contacts of these pairs may contradict each other: they push as dampers that let go at 0.1 m/s, less while no more
@@ -103,7 +103,7 @@ class ContactStage {
   /** recoveries() as numbers and words, for save: the last numbers of a state. */
   void appendRecoveries(std::vector<double>* numbers, std::vector<std::uint64_t>* words) const;
   /**
-   * Reads what appendRecoveries wrote and moves the cursor behind its words.
+   * Reads the words and numbers of appendRecoveries and moves the cursor behind the words.
    * @param colliders whose pairs they may be @return false if they are others, or not whole
    */
   static bool readRecoveries(const std::vector<Collider>& colliders, const std::uint64_t** words, const std::uint64_t* words_end,
@@ -129,7 +129,7 @@ class ContactStage {
   double knownMargin(const SimulatedWorld& world, const std::vector<BodyState>& bodies, const std::vector<BodyState>* faster,
                      const ColliderPair& pair, double dt) const;
   bool isAtOnePlace(const SimulatedWorld& world, int a, int b) const;
-  /** Where a pair was last apart, as far as the accepted state knows. */
+  /** Pose in which a pair was last apart, as far as the accepted state knows. */
   Recovery lastApart(int a, int b) const;
   void keepWhatWasFound(std::size_t pairs);
   void addConstraints(const SimulatedWorld& world, const ContactManifold& all, ContactManifold& manifold);
@@ -143,7 +143,7 @@ class ContactStage {
   std::vector<double> arms_;
   BroadPhase pair_search_;
   Search search_, current_search_;
-  std::vector<int> at_one_place_;  // pairs of each collider that are
+  std::vector<int> at_one_place_;  // by collider: its pairs at one place
   PairSearches searches_;
   ContactMeetings meetings_;
   std::vector<ContactManifold> found_, current_, reduced_;

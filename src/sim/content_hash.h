@@ -1,4 +1,4 @@
-// A hash of what something holds, word by word.
+// A hash of a thing's content, word by word.
 #pragma once
 
 #include <cstdint>

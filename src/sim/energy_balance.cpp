@@ -10,14 +10,14 @@ double square(double x) { return x * x; }
 
 bool isCompliant(const ContactConstraint& c) { return std::isfinite(c.stiffness) && std::isfinite(c.damping); }
 
-/** [m/s] at which a contact that is too deep pushes on purpose. */
+/** Speed [m/s] at which a contact that is too deep pushes on purpose. */
 double correctionSpeed(const ContactConstraint& c, bool recovers, double dt, const SolverSettings& settings) {
   if (!(c.depth > 0)) return 0;
   if (!isCompliant(c)) return std::min(settings.correction_fraction * c.depth / dt, settings.max_correction_speed);
   return recovers && c.damping > 0 ? c.stiffness * c.depth / c.damping : 0;
 }
 
-/** How points of bodies were moved; contacts of one body follow on each other. */
+/** Displacements of points of bodies; contacts of one body follow on each other. */
 class Displacements {
  public:
   Displacements(const std::vector<BodyState>& before, const std::vector<BodyState>& after) : before_(before), after_(after) {}
@@ -100,7 +100,7 @@ void EnergyBalance::bookBodies(const World& world, double dt, const std::vector<
   }
 }
 
-// With effort times mean velocity, for the same reason.
+// Books the work of joints: effort times mean velocity, for the same reason.
 void EnergyBalance::bookJoints(const World& world, double dt) {
   for (int joint = 0; joint < world.jointCount(); ++joint) {
     const JointSpec& spec = world.jointSpec(joint);
@@ -114,7 +114,7 @@ void EnergyBalance::bookJoints(const World& world, double dt) {
   }
 }
 
-// The springs that part crossed meshes hold none.
+// Books the energy of springs; those that part crossed meshes hold none.
 void EnergyBalance::bookSprings(const ContactStage& contacts, const std::vector<BodyState>& before, const std::vector<BodyState>& after) {
   Displacements a(before, after), b(before, after);
   for (std::size_t i = 0; i < contacts.constraints().size(); ++i) {
@@ -158,7 +158,7 @@ void EnergyBalance::bookContacts(double dt, const ContactStage& contacts, const 
   }
 }
 
-// A bounce leaves by the contacts that landed, so a body of each keeps its part of it, whatever is tied together then.
+// A bounce leaves by the contacts that landed, so a body of each keeps its part of the bounce's energy, whatever the islands are then.
 void EnergyBalance::holdBack() {
   std::fill(held_.begin(), held_.end(), 0);
   for (const Landing& landing : landings_) {

@@ -18,9 +18,9 @@ struct EnergyGain {
 };
 
 /**
- * Books, solve by solve, the kinetic energy of bodies and rotors, the potential energy and what springs of compliant contacts hold, against
- * the work of motors and joint friction. Contacts may only take from it. Each island has a book of its own: bodies that joints, mimic
- * joints, loops or contacts with a force tie together.
+ * Books, solve by solve, the kinetic energy of bodies and rotors, the potential energy and that of the springs of compliant contacts,
+ * against the work of motors and joint friction. Contacts may only take from it. Each island has a book of its own: bodies that joints,
+ * mimic joints, loops or contacts with a force tie together.
  *
  * Contacts do work on purpose: they correct depth, and part meshes that cross, at a bounded speed. Apparent work
  * (SolveResult::apparent_work) counts with it. Beyond both an island may gain FLOOR, less where it weighs less than 1 kg, and RELATIVE
@@ -33,7 +33,7 @@ class EnergyBalance {
 
   explicit EnergyBalance(const SolverSettings& settings) : settings_(settings) {}
 
-  /** At the start of a step; bodies may have been moved since the last one. */
+  /** Call at the start of a step; bodies may have been moved since the last one. */
   void start(const World& world);
   /**
    * After a solve that was accepted.
@@ -41,24 +41,24 @@ class EnergyBalance {
    * @param contacts it was made with
    * @param solved forces of those contacts
    * @param before, after bodies at its start and end
-   * @return never below 0. An impact's energy that is still to bounce is held back from one solve to the next: of what the solve before
-   * took, as much as the largest restitution gives back
+   * @return never below 0. An impact's energy that is still to bounce is held back from one solve to the next: the share that the largest
+   * restitution gives back of the energy that the solve before took
    */
   EnergyGain addSolve(const World& world, double dt, const ContactStage& contacts, const SolveResult& solved,
                       const std::vector<BodyState>& before, const std::vector<BodyState>& after);
 
-  /** No impact is to bounce. */
+  /** Forgets the energy that is held back: no impact is to bounce. */
   void clear() { held_.assign(held_.size(), 0); }
   void append(std::vector<double>* numbers) const;
-  /** @param bodies of the world: of so many it holds back, or of none */
+  /** @param bodies number of the world's bodies: energy is held back for each of them, or for none */
   void read(int bodies, NumberReader* reader);
 
  private:
-  /** Of an island, at its least body. */
+  /** Book of an island, kept at its least body. */
   struct Book {
     double rise = 0;         // [J] of all energies, less the work of motors and joint friction
     double mass = 0;         // [kg]
-    double moved = 0;        // [J] what moved, without sign
+    double moved = 0;        // [J] energy that moves in it, without sign
     double on_purpose = 0;   // [J] work of contacts that correct depth, and apparent work
     double held = 0;         // [J] that the solve before took, and that may bounce now
     double restitution = 0;  // largest of contacts that pushed
@@ -79,14 +79,14 @@ class EnergyBalance {
                     const std::vector<BodyState>& after);
   void holdBack();
   Book& bookOf(const ContactConstraint& contact);
-  /** [m/s] of A's point against B's along the normal. */
+  /** Speed [m/s] of A's point against B's along the normal. */
   double normalSpeed(const ContactConstraint& contact, const std::vector<BodyState>& states) const;
 
   SolverSettings settings_;
   std::vector<JointState> joints_;  // after the last solve
-  std::vector<double> held_;        // [J] by body: what its contacts may give back in the next solve; empty: none
+  std::vector<double> held_;        // [J] by body: energy that its contacts may give back in the next solve; empty: none
 
-  // Of the solve at hand.
+  // The solve at hand.
   BodyIslands islands_;
   std::vector<Book> books_;
   std::vector<Vector3> coms_;  // [m] of bodies at its start, world axes

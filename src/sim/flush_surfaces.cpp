@@ -8,7 +8,7 @@
 namespace blem_sim {
 namespace {
 
-constexpr double SAME_WIDTH = 1e-6;  // [m] what a thinner layer leaves uncovered stands out
+constexpr double SAME_WIDTH = 1e-6;  // [m] parts that a layer thinner by more leaves uncovered stand out
 
 SurfaceCover& threadCover() {
   thread_local SurfaceCover cover;

@@ -10,7 +10,7 @@ namespace blem_sim {
 
 struct WatchedPair;
 
-/** Which static colliders are near each moving one: where there are several, their surfaces may go over into each other. */
+/** Static colliders near each moving one: where there are several, their surfaces may go over into each other. */
 class FlushSurfaces {
  public:
   /** @param pairs of the search at hand */

@@ -83,7 +83,7 @@ bool JointMotor::accept(const JointDrive& drive, const JointState& after, double
   const double asked =
       drive.stiffness * (drive.target_position - after.position) + drive.damping * (drive.target_velocity - after.velocity);
   const bool saturated = capped_ || std::abs(asked) > drive.max_effort * (1 + SATURATION_TOLERANCE);
-  // What the motor cannot give is not asked for later either: the integral does not wind up.
+  // Effort beyond the limit is not asked for later either: the integral does not wind up.
   const bool winds_up = saturated && (capped_ ? drive.effort : asked) * error_ > 0;
   if (!winds_up) integral_ = clamped(integral_ + settings_.gains.i * error_ * dt, settings_.gains.i_clamp);
   return saturated;

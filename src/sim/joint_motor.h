@@ -1,4 +1,4 @@
-// One joint's motor: what it is told, and how that becomes effort.
+// One joint's motor: its commands, and the effort that follows from them.
 #pragma once
 
 #include <vector>
@@ -24,22 +24,22 @@ class JointMotor {
   JointMotor() = default;
   JointMotor(const MotorSettings& settings, double initial_position);
 
-  /** Back to holding the initial position, integral 0. */
+  /** Makes the motor hold the initial position again, integral 0. */
   void reset();
   /** Takes over a trajectory's knots. @param position [rad or m] of the joint now, from which a velocity target is left */
   void follow(double now, double start, std::vector<JointSpline::Knot> knots, double position);
   void hold(double position, double velocity = 0);
-  /** Velocity alone: damping against the velocity error, no stiffness; what the integral and a trajectory's effort have built up ends. */
+  /** Velocity alone: damping against the velocity error, no stiffness; the integral and a trajectory's effort end. */
   void keepVelocity(double velocity);
   void addEffort(double effort) { added_effort_ = effort; }
 
   JointSample desired(double time) const;
 
-  /** Latches what the motor is told for the coming (sub)step: Eq. 7 looks at its start, the implicit law at its end. */
+  /** Latches the desired state for the coming (sub)step: Eq. 7 takes that at its start, the implicit law that at its end. */
   void sample(double time, double dt);
-  /** What drives the joint in the coming (sub)step, within the effort limit [Hauser 2013, Eq. 7 and 4.1]. */
+  /** Drive of the joint in the coming (sub)step, within the effort limit [Hauser 2013, Eq. 7 and 4.1]. */
   JointDrive drive(const JointState& state);
-  /** After a (sub)step that was accepted: integrates, and notes whether the limit was met. @return true if it was */
+  /** Call after an accepted (sub)step: integrates, and notes whether the limit was met. @return true if it was */
   bool accept(const JointDrive& drive, const JointState& after, double dt);
 
   const MotorSettings& settings() const { return settings_; }
@@ -54,7 +54,7 @@ class JointMotor {
   double velocity_target_ = 0;  ///< adds to the spline's
   double added_effort_ = 0;
   double integral_ = 0;  ///< [N m or N] the integral term, k_I times the integral of the error
-  // Of the present (sub)step, not state.
+  // Variables of the present (sub)step, not state.
   JointSample sample_;
   double error_ = 0;
   bool capped_ = false;

@@ -99,7 +99,7 @@ void JointSpline::splice(double now, double start, std::vector<Knot> knots, bool
   if (knots.empty()) return;
   lowerOrders(&knots);
 
-  // What stays of the present spline, cut at both ends; Hermite pieces keep their shape when they are cut.
+  // The rest of the present spline, cut at both ends; Hermite pieces keep their shape when they are cut.
   std::vector<Knot> spliced = {makeKnot(now, sample(now), 1)};
   const auto after = firstAfter(knots_, now);
   const auto end = std::find_if(after, knots_.cend(), [&](const Knot& knot) { return knot.time >= switch_time; });

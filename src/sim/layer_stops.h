@@ -1,4 +1,4 @@
-// Once most of a soft layer is used up, the rigid bodies below it bear.
+// Stops of soft layers: once most of a layer is used up, the rigid bodies below it bear.
 #pragma once
 
 #include <cstdint>
@@ -17,24 +17,24 @@ namespace blem_sim {
 class LayerStops {
  public:
   static constexpr double STOP = 0.8;  ///< of the layer
-  static constexpr double SEEN = 0.6;  ///< of the layer: what is less deep gets to 0.9 at most in one solve that the step guard accepts
+  static constexpr double SEEN = 0.6;  ///< of the layer: a contact less deep gets to 0.9 at most in one solve that the step guard accepts
   static constexpr int MOST = 6;       ///< of a pair
 
-  /** Before the first pair of a reduction. */
+  /** Call before the first pair of a reduction. */
   void start() { count_ = 0; }
   /** Stops of the next pair, in the order (a, b): its contacts with depths [m] beyond the stop. @param manifold before reduction */
   const std::vector<Contact>& choose(const ContactManifold& manifold, const Reduction& method);
-  /** After the last pair: choices of this reduction are what the next one goes on with. */
+  /** Call after the last pair: the next reduction goes on with the choices of this one. */
   void remember();
 
   void clear();
   /** Forgets the pairs of a collider whose slot another one may take. */
   void forget(int collider);
-  /** What was chosen in the last reduction, by pairs. */
+  /** Choices of the last reduction, by pairs. */
   const ReductionMemory& memory() const { return memory_; }
-  /** What was chosen as words, for save: none if there are no stops. */
+  /** The choices as words, for save: none if there are no stops. */
   void append(std::vector<std::uint64_t>* words) const;
-  /** Reads what append wrote, up to the end. @param colliders whose pairs they may be @return false if it is something else */
+  /** Reads the words of append, up to the end. @param colliders whose pairs they may be @return false if the words are others */
   bool read(const std::vector<Collider>& colliders, const std::uint64_t* words, const std::uint64_t* end);
 
  private:

@@ -42,7 +42,7 @@ void LayerWatch::look(const std::vector<ContactManifold>& manifolds, const std::
   const std::size_t first = events->size();
   next_outside_.clear();
   auto known = outside_.begin();
-  // Both are sorted: what was outside and has no contacts any more comes before the next manifold.
+  // Both are sorted: pairs that were outside and have no contacts any more come before the next manifold.
   const auto tellGoneBefore = [&](const std::pair<int, int>* pair) {
     for (; known != outside_.end() && (pair == nullptr || *known < *pair); ++known) events->push_back(goneEvent(*known, time));
   };

@@ -1,4 +1,4 @@
-// Which pairs of colliders are outside their boundary layers, and when that changes.
+// Pairs of colliders outside their boundary layers, and events when they change.
 #pragma once
 
 #include <cstddef>
@@ -12,23 +12,23 @@
 
 namespace blem_sim {
 
-/** Remembers who is outside, so that every change is told once; part of the simulation's state. */
+/** Remembers the pairs that are outside, so that every change is told once; part of the simulation's state. */
 class LayerWatch {
  public:
   /**
-   * Appends what changed, in order of the pairs.
+   * Appends the events of pairs that changed, in order of the pairs.
    * @param manifolds of the state at `time` [s], sorted by (a, b)
    * @param passed pairs that used up their layers on the way from there to the next state, whatever its contacts; sorted
    */
   void look(const std::vector<ContactManifold>& manifolds, const std::vector<std::pair<int, int>>& passed, double time,
             std::vector<LayerEventReport>* events);
-  /** Nobody is outside. */
+  /** Forgets all pairs: none is outside. */
   void clear() { outside_.clear(); }
   /** Forgets the pairs of a collider whose slot another one may take; no event tells it. */
   void forget(int collider);
   void append(std::vector<std::uint64_t>* words) const;
   /**
-   * Reads what append wrote and moves the cursor behind it.
+   * Reads the words of append and moves the cursor behind them.
    * @param colliders whose pairs they may be @return false, and nothing changed, if the words are others or end too early
    */
   bool read(const std::vector<Collider>& colliders, const std::uint64_t** words, const std::uint64_t* end);

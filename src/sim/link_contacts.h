@@ -1,4 +1,4 @@
-// Which contacts each link of a robot has, found once for all sensors that ask.
+// Contacts of each link of a robot, found once for all sensors that ask.
 #pragma once
 
 #include <vector>
@@ -22,9 +22,9 @@ class LinkContacts {
     const Entry* end() const { return last; }
   };
 
-  /** Takes a step's contacts; what was taken before is forgotten. */
+  /** Takes a step's contacts; those taken before are forgotten. */
   void index(const SimulatedWorld& world, const std::vector<ContactReport>& contacts);
-  /** Those of a link alone, not of the links that are rigidly joined to it. Precondition: index() */
+  /** Contacts of a link alone, not of the links that are rigidly joined to it. Precondition: index() */
   Range of(int model, int link) const;
 
  private:

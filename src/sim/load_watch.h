@@ -1,4 +1,4 @@
-// Says how far a long load is.
+// Progress messages of long loads.
 #pragma once
 
 #include <chrono>
@@ -13,14 +13,14 @@ namespace blem_sim {
 
 /**
  * Lives while one model is loaded. Once that has taken log.interval, and each time it passes again, a thread of its own tells the stage, so
- * that a file that is read for long does not look like a program that hangs; at the end it tells what was loaded, or where it was given up.
- * A short load says nothing.
+ * that a file that is read for long does not look like a program that hangs; at the end it tells the size loaded, or the stage in which the
+ * load was given up. A short load says nothing.
  */
 class LoadWatch {
  public:
   /** @param model in messages; log must outlive this */
   LoadWatch(const LoadLog& log, std::string model);
-  /** Without loaded() before: it was given up. */
+  /** Without loaded() before, the load counts as given up. */
   ~LoadWatch();
   LoadWatch(const LoadWatch&) = delete;
   LoadWatch& operator=(const LoadWatch&) = delete;
@@ -43,7 +43,7 @@ class LoadWatch {
   const Clock::time_point start_ = Clock::now();
   std::mutex mutex_;
   std::condition_variable ended_;
-  bool over_ = false;  // like what follows, by the mutex
+  bool over_ = false;  // guarded by the mutex, like the next two
   std::string stage_ = "starting";
   double fraction_ = 0;
   std::thread teller_;

@@ -17,7 +17,7 @@ Box boxOf(const Collider& collider, const Pose& X_WC, double margin) {
 
 }  // namespace
 
-// It is a convex function of place, so the corners of what is common to both boxes tell.
+// The speed is a convex function of place, so the corners of the box common to both tell its largest value.
 double meetingSpeed(const SimulatedWorld& world, const std::vector<BodyState>& bodies, const std::vector<ColliderMotion>& motion,
                     int collider_a, int collider_b, double reach) {
   const Collider &a = world.colliders[collider_a], &b = world.colliders[collider_b];

@@ -1,4 +1,4 @@
-// How fast do two colliders move against each other where they may meet?
+// Speed of two colliders against each other where they may meet.
 #pragma once
 
 #include <vector>
@@ -10,7 +10,7 @@ namespace blem_sim {
 /**
  * Largest relative speed of the points that are within `reach` [m] of both colliders, whatever its direction; over a half-space the largest
  * one towards its plane.
- * @param bodies their states, by slot @param motion where the colliders are
+ * @param bodies their states, by slot @param motion poses of the colliders
  * @return [m/s] at least 0
  */
 double meetingSpeed(const SimulatedWorld& world, const std::vector<BodyState>& bodies, const std::vector<ColliderMotion>& motion, int a,

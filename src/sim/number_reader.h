@@ -34,7 +34,7 @@ class NumberReader {
     if (number != 0 && number != 1) refuseContent("a flag is neither 0 nor 1");
     return number != 0;
   }
-  /** Throws unless so many are left. */
+  /** Throws unless `count` numbers are left. */
   void require(std::size_t count) const {
     if (left() < count) refuse();
   }
@@ -43,7 +43,7 @@ class NumberReader {
     if (left() > 0) refuse();
   }
   [[noreturn]] static void refuse() { throw InputError("restore: the state is cut short, or not of these models; save it again"); }
-  /** @param what is wrong with it */
+  /** @param what names the fault */
   [[noreturn]] static void refuseContent(const char* what) {
     throw InputError(std::string("restore: the state's content cannot be, ") + what + "; save it again");
   }

@@ -18,7 +18,7 @@ void PairSearches::run(const std::vector<WatchedPair>& pairs, const std::functio
   if (threads_ == 1 || pairs.size() < 2) {
     for (std::size_t i = 0; i < pairs.size(); ++i) one(i);
   } else {
-    // One by one: some cost a thousand times what others do.
+    // One by one: some searches take a thousand times as long as others.
     arena_.execute([&] {
       tbb::parallel_for(
           tbb::blocked_range<std::size_t>(0, pairs.size(), 1),
@@ -30,7 +30,7 @@ void PairSearches::run(const std::vector<WatchedPair>& pairs, const std::functio
   }
 }
 
-/** known_ becomes what goes with the pairs, in their order. */
+/** Makes known_ the memories of these pairs, in their order. */
 void PairSearches::watch(const std::vector<WatchedPair>& pairs) {
   const auto same = [](const Known& known, const WatchedPair& pair) { return known.a == pair.a && known.b == pair.b; };
   if (std::equal(known_.begin(), known_.end(), pairs.begin(), pairs.end(), same)) return;
@@ -45,7 +45,7 @@ void PairSearches::watch(const std::vector<WatchedPair>& pairs) {
   before_.clear();
 }
 
-/** What pairs have that are watched no more. */
+/** Takes back the memories of pairs that are watched no more. */
 void PairSearches::giveBack(const std::vector<WatchedPair>& pairs) {
   auto pair = pairs.begin();
   for (Known& old : before_) {
@@ -54,7 +54,7 @@ void PairSearches::giveBack(const std::vector<WatchedPair>& pairs) {
   }
 }
 
-/** Its room serves again; what it holds is of other meshes or another pose, which the search sees. */
+/** A memory whose room serves again; its content is of other meshes or another pose, which the search sees. */
 NarrowPhaseMemory PairSearches::takeSpare() {
   if (spare_.empty()) return NarrowPhaseMemory();
   NarrowPhaseMemory memory = std::move(spare_.back());

@@ -13,7 +13,8 @@ namespace blem_sim {
 
 struct WatchedPair;
 
-/** Memories of pairs live while the pairs are watched; then others get them. They change no result, so they are no state. */
+/** Searches pairs, each with a memory that lives while the pair is watched; then another gets it. Memories change no result, so they are
+ *  no state. */
 class PairSearches {
  public:
   explicit PairSearches(int threads);

@@ -49,7 +49,7 @@ bool PairWay::isDoubtful(const WayOfPair& pair) const {
 
 bool PairWay::touchesNow(std::uint64_t id) const { return std::binary_search(touching_.begin(), touching_.end(), id); }
 
-/** [s] for which the contacts surely do not touch anew: distances of convex features that move on straight shrink ever slower. */
+/** Time [s] in which the contacts surely do not touch anew: distances of convex features that move on straight shrink ever slower. */
 double PairWay::freeTime(const WayOfPair& pair, const std::vector<Contact>& contacts, double time) const {
   double free = pair.dt, fastest = 0;
   for (const Contact& contact : contacts) {
@@ -72,7 +72,7 @@ double PairWay::newDepth(const std::vector<Contact>& contacts) const {
   return depth;
 }
 
-/** @return false if it cannot be told where the pair meets */
+/** Searches the pose where the pair meets, or is nearest: met_, met_time_. @return false if it cannot be told */
 bool PairWay::search(const WayOfPair& pair, const FlushSurfaces& flush, const std::vector<Collider>& colliders,
                      const std::vector<ColliderMotion>& motion) {
   double time = std::min(pair.dt, freeTime(pair, pair.now.contacts, 0)), nearest = -std::numeric_limits<double>::infinity();

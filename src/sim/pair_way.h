@@ -17,24 +17,24 @@ struct ColliderWay {
   BodyTwist twist;
 };
 
-/** Where a pair begins, and for how long it is followed. */
+/** First state of a pair, and the time for which it is followed. */
 struct WayOfPair {
   const ContactManifold& now;  ///< its contacts
   ColliderWay a, b;
-  double known = 0;  ///< [m] beyond the layers, within which contacts are known
-  double depth = 0;  ///< [m] by which the two bodies' layers are used up by contacts that touch, at least 0
+  double known = 0;  ///< [m] distance beyond the layers within which contacts are known
+  double depth = 0;  ///< [m] of the deepest contact that touches, of both bodies; at least 0
   double dt = 0;     ///< [s]
 };
 
-/** Works in room that is kept between pairs. */
+/** Follows pairs on their ways, in memory that is kept between pairs. */
 class PairWay {
  public:
-  /** Would a contact before touch act while the pair moves across its normal? */
+  /** Whether a contact before touch would act while the pair moves across its normal. */
   bool isDoubtful(const WayOfPair& pair) const;
   /**
-   * Follows a pair to where it first touches anew, or else to where it comes nearest.
+   * Follows a pair to the pose where it first touches anew, or else to the nearest pose.
    * @param flush, colliders, motion as FlushSurfaces takes them
-   * @param contacts to be solved, sorted by id; as they were where all that would act are met as they are
+   * @param contacts to be solved, sorted by id; unchanged if all that would act are met as they are
    * @return false, and nothing is written, if contacts stay as they are: also where bare meshes cross on the way
    */
   bool follow(const WayOfPair& pair, const FlushSurfaces& flush, const std::vector<Collider>& colliders,

@@ -17,27 +17,28 @@ class PartReports {
  public:
   /** Forgets the last step. @param joints number of joints */
   void startStep(std::size_t joints);
-  /** Precedes what an accepted part adds. @param fraction of the step that the part takes, above 0; those of a step sum up to 1 */
+  /** Call before an accepted part's contacts and joints. @param fraction of the step that the part takes, above 0; those of a step sum up
+   * to 1 */
   void startPart(double fraction);
   /**
    * A contact of the part. Contacts of one id are one contact of the step: depth, of_layer and pierced are the worst of its parts; the
    * point is their mean, weighted with the impulses; the normal is that of the part of the largest impulse, the earlier of equals; the
-   * moments make up for what the mean point misses. Without any impulse, point and normal are those of the first of its parts.
+   * moments make up for the torque that the mean point misses. Without any impulse, point and normal are those of the first of its parts.
    * @param id as in ContactConstraint, unique in the part
    */
   void addContact(std::uint64_t id, const ContactReport& contact);
-  /** Those of all joints in the part. */
+  /** Adds the wrenches and efforts of all joints in the part. */
   void addJoints(const std::vector<Wrench>& wrenches, const std::vector<double>& efforts);
 
   const std::vector<ContactReport>& contacts() const { return contacts_; }  ///< of the step so far, in the order they were first added
-  /** The same, swapped out; what it is swapped for is only memory for the next step. */
+  /** Swaps contacts() out; the vector swapped in is only memory for the next step. */
   void takeContacts(std::vector<ContactReport>* contacts) { contacts_.swap(*contacts); }
   void clearContacts() { contacts_.clear(); }
   const std::vector<Wrench>& jointWrenches() const { return wrenches_; }  ///< as SolveResult has them
   const std::vector<double>& efforts() const { return efforts_; }         ///< [N m or N]
 
  private:
-  /** Of the contact of the same index, once the part it was first added in is over. */
+  /** Sums of the contact of the same index, once the part it was first added in is over. */
   struct Added {
     double impulses, largest;    // sum of their sizes, and largest of them, over the length of the step [N]
     Vector3 start;               // [m] point of the first part

@@ -1,4 +1,4 @@
-// Our own random numbers: the same everywhere, and their whole state is one word.
+// Random numbers of blem_sim's own: the same everywhere, and their whole state is one word.
 #pragma once
 
 #include <cmath>
@@ -19,9 +19,9 @@ class RandomNumbers {
     z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
     return z ^ (z >> 31);
   }
-  /** In (0, 1]. */
+  /** Uniform number in (0, 1]. */
   double uniform() { return (static_cast<double>(next() >> 11) + 1) * 0x1p-53; }
-  /** Of mean 0 and standard deviation 1. */
+  /** Normal number of mean 0 and standard deviation 1. */
   double gaussian() {
     const double radius = std::sqrt(-2 * std::log(uniform()));
     return radius * std::cos(2 * M_PI * uniform());

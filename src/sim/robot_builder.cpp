@@ -42,7 +42,7 @@ JointKind kindOf(JointType type) {
   return type == JointType::PRISMATIC ? JointKind::PRISMATIC : JointKind::REVOLUTE;
 }
 
-/** Joints with those that others mimic first. */
+/** Joints in an order where those that others mimic come first. */
 std::vector<int> mastersFirst(const LumpedRobot& robot, const std::string& where) {
   std::vector<int> order;
   std::vector<bool> placed(robot.joints.size(), false);
@@ -70,7 +70,7 @@ std::vector<int> mastersFirst(const LumpedRobot& robot, const std::string& where
 
 RobotBuilder::RobotBuilder(const RobotConfig& config, const ContactConfig& contact, std::shared_ptr<const RobotModel> model)
     : config_(config), contact_(contact), model_(std::move(model)) {
-  // A sensor at an unknown joint is told apart by the check below.
+  // The check below refuses a sensor at an unknown joint.
   lumped_ = std::make_shared<const LumpedRobot>(lumpFixedJoints(*model_, jointsWithSensor(config_), config_.fixed_base));
   checkRobotNames(config_, *model_, *lumped_);
   checkMotors();

@@ -1,4 +1,4 @@
-// What of a robot can touch, and what of it never touches.
+// Colliders of a robot, and the pairs of them that never touch.
 #include "contact_settings.h"
 #include "robot_builder.h"
 
@@ -27,7 +27,7 @@ void RobotBuilder::addColliders(SurfaceLibrary* surfaces) {
 }
 
 // Bodies joined by a joint never touch; the bodies inside a planar joint have no links and are seen through. A fixed base is the world,
-// which is not only the robot's, so its colliders are listed one by one.
+// which has other models' colliders too, so the base's are listed one by one.
 void RobotBuilder::disableNeighbours() {
   std::vector<int> parent(lumped_->bodies.size(), -1);
   for (const LumpedJoint& joint : lumped_->joints) parent[joint.child] = joint.parent;

@@ -1,5 +1,4 @@
-// A sensor looks at an accepted step and says what it read. A new one is one class here, one row in makeSensor, one alternative in
-// SensorReading.
+// Sensors, which turn an accepted step into readings. A new one is one class here, one row in makeSensor, one alternative in SensorReading.
 #pragma once
 
 #include <memory>
@@ -13,7 +12,7 @@
 
 namespace blem_sim {
 
-/** What a sensor may look at: one accepted step. */
+/** Input of sensors: one accepted step. */
 struct StepContext {
   const SimulatedWorld& world;
   double dt;                                    ///< [s] of the step
@@ -34,9 +33,9 @@ class Sensor {
    */
   virtual void read(const StepContext& step, double period, SensorReading* out) = 0;
   virtual bool readsContacts() const { return false; }
-  /** Forgets what it remembers (a drifting bias), without touching the random numbers. */
+  /** Forgets the sensor's memory (a drifting bias), without touching the random numbers. */
   virtual void reset() {}
-  /** What it remembers. */
+  /** Appends the sensor's memory. */
   virtual void append(std::vector<double>* numbers) const {}
   virtual void restore(NumberReader* reader) {}
 
@@ -47,7 +46,7 @@ class Sensor {
   RandomNumbers random_;
 };
 
-/** The alternative that a sensor fills; what it held before stays in it. */
+/** The alternative that a sensor fills; its old content stays in it. */
 template <typename Reading>
 Reading& readingIn(SensorReading* out) {
   return std::holds_alternative<Reading>(*out) ? std::get<Reading>(*out) : out->emplace<Reading>();
@@ -60,7 +59,7 @@ std::unique_ptr<Sensor> makeTiltSensor(const SimulatedWorld& world, const Sensor
 std::unique_ptr<Sensor> makeMotorCurrentSensor(const SimulatedWorld& world, const SensorInfo& info);
 std::unique_ptr<Sensor> makeSensor(const SimulatedWorld& world, const SensorInfo& info);
 
-/** A frame that is fixed on a link, and how it moves. */
+/** A frame that is fixed on a link, and its motion. */
 class MountedFrame {
  public:
   /** @param X_LS frame in the link */

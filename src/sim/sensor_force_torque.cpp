@@ -4,7 +4,7 @@
 namespace blem_sim {
 namespace {
 
-/** The wrench that a joint carries, about the origin of the child's link frame, which is where the joint sits. */
+/** The wrench that a joint carries, about the origin of the child's link frame, where the joint sits. */
 class ForceTorqueSensor : public Sensor {
  public:
   ForceTorqueSensor(const SimulatedWorld& world, const SensorInfo& info) : info_(info), robot_(world.robots[info.robot]) {

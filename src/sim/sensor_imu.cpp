@@ -3,7 +3,8 @@
 namespace blem_sim {
 namespace {
 
-/** Specific force and angular velocity of a frame on a link. The acceleration is what the step made of the velocity, lever arm included. */
+/** Specific force and angular velocity of a frame on a link. The acceleration is the step's change of velocity over dt, lever arm included.
+ */
 class ImuSensor : public Sensor {
  public:
   ImuSensor(const SimulatedWorld& world, const SensorInfo& info)
@@ -34,7 +35,7 @@ class ImuSensor : public Sensor {
   }
 
  private:
-  /** White noise, and a bias that walks: bias_stddev is what it strays in one second. */
+  /** Adds white noise, and a bias that walks: bias_stddev is its standard deviation after one second. */
   void addNoise(double stddev, double bias_stddev, double period, Vector3* bias, Vector3* value) {
     if (bias_stddev > 0) *bias += bias_stddev * std::sqrt(period) * random_.gaussianVector();
     if (stddev > 0) *value += stddev * random_.gaussianVector();

@@ -17,7 +17,7 @@ class TiltSensor : public Sensor {
     TiltReading& reading = readingIn<TiltReading>(out);
     reading.orientation = Quaternion(R).normalized();
     reading.angular_velocity = R.transpose() * motion.w_WS;
-    // Of Rz(yaw) Ry(pitch) Rx(roll).
+    // Angles of Rz(yaw) Ry(pitch) Rx(roll).
     reading.roll = std::atan2(R(2, 1), R(2, 2));
     reading.pitch = std::asin(std::max(-1.0, std::min(1.0, -R(2, 0))));
   }

@@ -1,4 +1,4 @@
-// Everything a simulation is made of once it is built: the world, its models, and what can touch.
+// All parts of a simulation once it is built: the world, its models, and their colliders.
 #pragma once
 
 #include <map>
@@ -31,11 +31,11 @@ struct SimulatedWorld {
 
   /** @throws InputError if the name is empty or taken. @param section of the configuration, for the message */
   void checkNewName(const std::string& name, const std::string& section) const;
-  /** What is added takes the lowest slot that is free. @param max_contacts its k @return its index */
+  /** Adds a model in the lowest free slot. @param max_contacts its k @return its index */
   int addModel(const std::string& name, ModelKind kind, int max_contacts);
   /** Adds a collider and its line in the load report. @param width [m] of the layer @return its index */
   int addCollider(Collider collider, double width, const SurfaceProperties& surface, MeshReport report);
-  /** Precondition: there is such an environment. Its slots are free. @return those of its colliders */
+  /** Removes an environment, whose slots are free then. Precondition: it exists. @return slots of its colliders */
   std::vector<int> removeEnvironment(const std::string& name);
 
   int modelIndex(const std::string& name) const;  ///< among the living; -1 if there is none

@@ -58,7 +58,7 @@ void Simulator::Impl::unloadEnvironment(const std::string& name) {
 void Simulator::Impl::loadEnvironment(const EnvironmentConfig& environment) {
   checkEnvironment(environment);
   builder_.addEnvironment(environment, &world_);
-  // Pairs of who had its slots before are told to be gone by the next step, unless the slots are taken by then.
+  // The next step tells that pairs of the slots' earlier colliders are gone, unless the slots are taken by then, as here.
   const int model = world_.modelIndex(environment.name);
   for (std::size_t i = 0; i < world_.colliders.size(); ++i)
     if (world_.colliders[i].model == model) layer_watch_.forget(static_cast<int>(i));

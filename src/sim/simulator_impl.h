@@ -1,4 +1,4 @@
-// What a Simulator holds. Its work is split by concept: simulator_step.cpp, simulator_report.cpp,
+// Content of a Simulator. Its work is split by concept: simulator_step.cpp, simulator_report.cpp,
 // simulator_commands.cpp, simulator_state.cpp.
 #pragma once
 
@@ -32,12 +32,12 @@ struct Simulator::Impl {
   void narrowPhase();
   void reduction();
   void stepGuard();
-  /** False if the state is not finite any more; the last finite one is then restored. */
+  /** Solves the substep. False if the state is not finite any more; the last finite one is then restored. */
   bool solve();
   void readSensors();
   void acceptSubstep();
   void redoSubstep(const std::vector<ClosePass>& close);
-  /** What bodies may become in the rest of the step, where a solve that was thrown away has shown it; else null. */
+  /** States that bodies may reach in the rest of the step, if a solve that was thrown away has shown them; else null. */
   const std::vector<BodyState>* foreseen();
   const StepReport& stop();
   void findFirstContacts();
@@ -59,16 +59,16 @@ struct Simulator::Impl {
   void commandTrajectory(int robot, const JointTrajectory& trajectory);
   void commandJoints(int robot, const JointCommandMessage& command);
   JointSample desiredState(int world_joint) const;
-  /** A position as the joint takes it: of one that turns without end, the turn nearest to where it is. */
+  /** A position as the joint takes it: a joint that turns without end takes the turn nearest to its present position. */
   double nearestTurn(int world_joint, double position) const;
 
   // simulator_state.cpp
-  /** What the next save writes, without a header. */
+  /** Content of the next save, without a header. */
   SimulationState content() const;
   SimulationState save() const;
   /** A state that is refused changes nothing. */
   void restore(const SimulationState& state);
-  /** Made when somebody asks; models come and go seldom. */
+  /** Layout of the state, made on demand; models come and go seldom. */
   const std::string& layout() const;
   void resetWorld();
   void seedSensors();
@@ -97,7 +97,7 @@ struct Simulator::Impl {
   std::uint64_t step_count_ = 0;
   bool stopped_ = false;  ///< the state is not finite any more
 
-  // Of the step at hand.
+  // The step at hand.
   Substeps substeps_;
   StepReport report_;
   std::vector<JointDrive> drives_;

@@ -52,7 +52,7 @@ std::string namesOf(const SimulatedWorld& world) {
   return names;
 }
 
-/** All of a state but the world's, read and found sound, and not in force yet. */
+/** Parts of a state except the world's, read and found sound, and not in force yet. */
 struct StateParts {
   EnergyBalance energy_balance;
   std::vector<JointMotor> motors;
@@ -85,7 +85,7 @@ void readContacts(const SimulationState& state, const std::vector<Collider>& col
 /** @param parts as they are now, overwritten @throws InputError */
 void readParts(const SimulationState& state, const SimulatedWorld& world, const std::vector<std::unique_ptr<Sensor>>& sensors,
                StateParts* parts) {
-  constexpr std::uint64_t MOST_STEPS = std::uint64_t{1} << 53;  // whose times are all different
+  constexpr std::uint64_t MOST_STEPS = std::uint64_t{1} << 53;  // up to here the times of all steps are different
   if (state.step > MOST_STEPS) NumberReader::refuseContent("there are more steps than time can count");
   const std::size_t contacts = contactWords(sensors.size());
   if (state.words.size() < contacts) NumberReader::refuse();

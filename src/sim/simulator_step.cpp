@@ -10,7 +10,7 @@
 namespace blem_sim {
 namespace {
 
-constexpr double FARTHEST = 1e12;  // [m], [m/s], [rad/s]: what is beyond has no meaning as a number any more
+constexpr double FARTHEST = 1e12;  // [m], [m/s], [rad/s]: larger numbers have no meaning any more
 
 bool withinReach(const BodyState& state) {
   const auto small = [](const Vector3& v) { return v.allFinite() && v.cwiseAbs().maxCoeff() < FARTHEST; };

@@ -1,4 +1,4 @@
-// What a saved state says of itself.
+// Header of a saved state.
 #pragma once
 
 #include "blem_sim/sim/simulator.h"

@@ -34,7 +34,7 @@ class GeometryHashes {
 
 class LayoutWriter {
  public:
-  /** Of a thing's property: body 'cube::link': mass. */
+  /** Adds the line of a thing's property: body 'cube::link': mass. */
   void line(const std::string& thing, const std::string& name, const std::string& property, const ContentHash& content) {
     line(fmt::format("{} '{}': {}", thing, inOneLine(name), property), ContentHash(content).add(name));
   }
@@ -136,7 +136,7 @@ void writeSensors(const SimulatedWorld& world, LayoutWriter* writer) {
 
 using Lines = std::vector<std::pair<std::string, std::string>>;
 
-/** What it is and its hash, line by line. */
+/** Name of a thing's property and its hash, line by line. */
 Lines linesOf(const std::string& layout) {
   Lines lines;
   for (std::size_t from = 0; from < layout.size();) {

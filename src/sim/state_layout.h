@@ -1,4 +1,4 @@
-// What a state belongs to: everything that decides what its numbers mean and how a step goes on from them.
+// Layout of a state: everything that decides the meaning of its numbers and how a step goes on from them.
 #pragma once
 
 #include <string>
@@ -8,12 +8,12 @@
 namespace blem_sim {
 
 /**
- * Settings, models, bodies, joints, colliders and sensors, a line each: what it is, a tab, and the hash of what it holds (masses, inertias,
+ * Settings, models, bodies, joints, colliders and sensors, line by line: a name, a tab, and the hash of the content (masses, inertias,
  * limits, gains, surfaces, vertices and triangles). Colliders come with their slots, as contacts are known by them.
  */
 std::string layoutOf(const SimulationConfig& config, const SimulatedWorld& world);
 
-/** @throws InputError in one line that says what differs first */
+/** @throws InputError in one line that names the first difference */
 void checkLayout(const std::string& saved, const std::string& here);
 
 }  // namespace blem_sim

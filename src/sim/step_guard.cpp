@@ -13,12 +13,12 @@ constexpr double USED_UP = 0.9;       // of the layer
 constexpr double LEAST_GROWTH = 0.1;  // of the layer in one step: slower sinking is not for the guard
 constexpr double BEYOND = 0.2;        // [m] at most, that a contact is outside the boxes of both colliders, to both sides together
 
-/** Of the layer; 0 without contact. */
+/** Used-up share of the layer; 0 without contact. */
 double used(const ContactManifold& manifold) { return std::max(0.0, manifold.maxDepth() / manifold.layer); }
 
 bool inDanger(double before, double after) { return after > USED_UP && after - before > LEAST_GROWTH; }
 
-/** How a point fixed on the body moved. */
+/** Motion of points fixed on the body: from their place in the world before to that after. */
 Pose motionOf(int body, const std::vector<BodyState>& before, const std::vector<BodyState>& after) {
   return body == WORLD_BODY ? Pose::Identity() : after[body].X_WB * before[body].X_WB.inverse();
 }
@@ -31,7 +31,7 @@ double extent(const Collider& a, const Collider& b) {
   return least + 2 * (a.radius + b.radius) + BEYOND;
 }
 
-/** No contact was carried deeper than this, of the layer. @param size [m] extent of the contacts */
+/** Bound on `carried`: no contact was carried deeper, of the layer. @param size [m] extent of the contacts */
 double mostCarried(const ContactManifold& manifold, double depth, double size, const Pose& motion_a, const Pose& motion_b) {
   const Vector3& somewhere = manifold.contacts.front().point;
   const double motion = (motion_a * somewhere - motion_b * somewhere).norm() + (motion_a.linear() - motion_b.linear()).norm() * size;

@@ -1,4 +1,4 @@
-// Was too much of a boundary layer used up by a step, though step_prediction.h saw no danger? Then it is made again, shorter.
+// Steps that used up too much of a boundary layer, though step_prediction.h saw no danger: they are made again, shorter.
 #pragma once
 
 #include <cstdint>
@@ -34,16 +34,16 @@ class Substeps {
   double fractionDone() const { return static_cast<double>(done_) / MAX_SUBSTEPS; }
   double fractionLeft() const { return static_cast<double>(MAX_SUBSTEPS - done_) / MAX_SUBSTEPS; }           ///< with the substep at hand
   double fractionAfter() const { return static_cast<double>(MAX_SUBSTEPS - done_ - size_) / MAX_SUBSTEPS; }  ///< without it
-  /** The next substep takes at most this part (0 to 1) of what is left, in whole ticks, at least one. */
+  /** The next substep takes at most this part (0 to 1) of the rest of the step, in whole ticks, at least one. */
   void plan(double part);
   bool canRedo() const { return redone_ < MAX_REDONE && (size_ > 1 || !redone_at_hand_); }
-  /** It is made again: of this part (0 to 1) of its length in whole ticks, of half of it at most, at least of one. One of one tick is made
-   *  again once: its contacts are known farther then. */
+  /** Makes the substep at hand again, in this part (0 to 1) of its length in whole ticks, half of it at most, at least one. A substep of
+   * one tick is made again once: its contacts are known farther then. */
   void redo(double part);
   void accept();
   int count() const { return count_; }               ///< accepted so far
   int redone() const { return redone_; }             ///< thrown away so far
-  bool isRedone() const { return redone_at_hand_; }  ///< the substep at hand is made again: its length stands
+  bool isRedone() const { return redone_at_hand_; }  ///< the substep at hand is made again: its length is fixed
 
  private:
   int size_ = MAX_SUBSTEPS, done_ = 0, count_ = 0, redone_ = 0;

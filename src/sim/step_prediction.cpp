@@ -11,7 +11,7 @@ namespace {
 
 constexpr double USED_UP = 0.9;    // of the distance between bare meshes
 constexpr double PER_SOLVE = 0.5;  // layers that two bodies that touch may move in one solve
-// A margin is at least 1.5 times the largest motion: what is slower than this is no danger to any layer.
+// A margin is at least 1.5 times the largest motion: a pair of a smaller margin is no danger to its layer.
 constexpr double LEAST_MARGIN = 1.5 * PER_SOLVE;  // layers
 
 /** safeTime of one pair. */

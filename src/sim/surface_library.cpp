@@ -24,7 +24,7 @@ std::string wordsFor(const MeshShrinking& what, double r) {
   return what.excess > SAME || what.shortfall > SAME ? words : words + "; outer dimensions stay";
 }
 
-/** What nobody holds any more is forgotten once it is half of all, so that the cost per surface stays the same. */
+/** Forgets surfaces that nobody holds any more once they are half of all, so that the cost per surface stays the same. */
 template <typename Map, typename Expired>
 void forgetExpired(Map* known, std::size_t* enough, const Expired& expired) {
   constexpr std::size_t LEAST = 16;

@@ -13,13 +13,13 @@
 
 namespace blem_sim {
 
-/** A file as contact wants it. */
+/** A file's surface as the contact room takes it. */
 struct SharedSurface {
   std::shared_ptr<const CollisionGeometry> geometry;
   double radius = 0;  ///< [m] > 0 for clouds as points
   MeshReport report;
-  /** [m] of the geometry's frame in the file's: zero unless the file's coordinates are large, as those of a surveyor's grid. Search works
-   *  in floats, which step by half a metre there. */
+  /** Origin [m] of the geometry's frame in the file's: zero unless the file's coordinates are large, as those of a surveyor's grid. Search
+   *  works in floats, which step by half a metre there. */
   Vector3 origin = Vector3::Zero();
 };
 
@@ -34,12 +34,12 @@ class SurfaceLibrary {
                                                     const std::shared_ptr<const MeshTopology>& topology = nullptr);
   /**
    * The geometry, moved inwards by its boundary width if the settings ask for it.
-   * @param own_radius [m] > 0 if it is its own boundary: then it stays @param report notes what was done and where it could not be
+   * @param own_radius [m] > 0 if it is its own boundary: then it stays @param report notes what was done, and failures
    */
   std::shared_ptr<const CollisionGeometry> fitted(const std::shared_ptr<const CollisionGeometry>& geometry, const ContactSettings& settings,
                                                   double own_radius, MeshReport* report);
 
-  /** How many surfaces it knows, those that nobody holds any more included: at most twice as many as are held, or 48. */
+  /** Number of known surfaces, those that nobody holds any more included: at most twice as many as are held, or 48. */
   std::size_t remembered() const;
 
  private:
@@ -59,7 +59,7 @@ class SurfaceLibrary {
   std::map<std::string, Entry> files_;
   std::map<std::pair<const CollisionGeometry*, double>, Shrunk> shrunk_;
   std::map<const TriangleMesh*, std::weak_ptr<const CollisionGeometry>> meshes_;  ///< a mesh lives as long as its geometry
-  std::size_t enough_files_ = 0, enough_shrunk_ = 0, enough_meshes_ = 0;          ///< to look for what is gone
+  std::size_t enough_files_ = 0, enough_shrunk_ = 0, enough_meshes_ = 0;          ///< entries at which to look for those that are gone
 };
 
 }  // namespace blem_sim

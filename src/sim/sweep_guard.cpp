@@ -9,7 +9,7 @@
 namespace blem_sim {
 namespace {
 
-constexpr double STILL = 1e-3;         // of the layer: less motion than this uses up nothing
+constexpr double STILL = 1e-3;         // of the layer: less motion uses up nothing
 constexpr double HALF = 0.5;           // of the layer
 constexpr double TURN_OF_CHORD = 1.2;  // [rad] of a turn by at most pi, over the Frobenius norm of its change of axes: pi / (2 sqrt 2)
 
@@ -68,7 +68,7 @@ GeometrySweep SweepGuard::sweepOf(const SimulatedWorld& world, int collider) con
   return sweep;
 }
 
-// A pair that nobody searches is farther apart than both layers and margins: one of the two must use up its own.
+// Whether a collider used up its layer and margin: a pair that is not searched is farther apart than both colliders' together.
 bool SweepGuard::leavesWhatWasSearched(const SimulatedWorld& world, const ContactStage& contacts) const {
   for (std::size_t i = 0; i < motion_.size(); ++i) {
     const Collider& collider = world.colliders[i];

@@ -18,11 +18,11 @@ struct ClosePass {
 };
 
 /**
- * Watches the whole way, not only its ends: bodies move evenly from where they were to where they are (sweep.h). A pair comes too close
- * where less than SPARED of its layer is left, and passed where it is less than NOTHING. Two geometries without area (points, segments)
+ * Watches the whole way, not only its ends: bodies move evenly from their old poses to the new ones (sweep.h). A pair comes too close where
+ * less than SPARED of its layer is left, and passed where it is less than NOTHING. Two geometries without area (points, segments)
  * whose contact was not known cannot cross: they do both where they use up half of their layers. Pairs that cross already, half-spaces
  * (nothing passes these: a vertex below them is pushed up from any depth) and pairs without a layer are not asked. Bodies that move less
- * than their layers, or than what is known to be free around them, cost some comparisons.
+ * than their layers, or than the space known to be free around them, cost some comparisons.
  */
 class SweepGuard {
  public:
@@ -44,7 +44,7 @@ class SweepGuard {
   void lookAt(const SimulatedWorld& world, int a, int b, double distance, bool known);
 
   const std::vector<BodyState>*before_ = nullptr, *after_ = nullptr;
-  std::vector<ColliderMotion> motion_;  // from where, and how far at most in the solve
+  std::vector<ColliderMotion> motion_;  // poses at the start, and longest ways in the solve
   BroadPhase other_pairs_;
   std::vector<ClosePass> close_;
 };

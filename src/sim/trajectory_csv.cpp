@@ -17,7 +17,7 @@ namespace {
 const std::string TIME = "time";
 const std::string VELOCITY_SUFFIX = "_vel";
 
-/** What the columns of a file are: their places. */
+/** Places of a file's columns. */
 struct Columns {
   std::size_t count = 0, time = 0;
   std::vector<std::string> joints;

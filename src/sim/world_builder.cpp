@@ -18,7 +18,7 @@ namespace {
 // Half the size [m] that a body's mass is spread over at least, so that a point or a line can turn.
 constexpr double SMALLEST_EXTENT = 0.001;
 
-/** Mass properties in the object's frame from its shape, and in words where they come from. */
+/** Mass properties in the object's frame from its shape, and in words their source. */
 MassProperties massFromShape(const TriangleMesh& mesh_O, bool closed, double mass, std::string* from) {
   MassProperties properties;
   if (closed && massFromVolume(mesh_O, mass, &properties)) {
@@ -43,7 +43,7 @@ bool floorInertia(double radius, MassProperties* properties) {
 
 std::string words(const Vector3& v) { return fmt::format("[{:.4g}, {:.4g}, {:.4g}]", v.x(), v.y(), v.z()); }
 
-/** How large these colliders are, the last ones that the load report has; what several of them share counts once. */
+/** Size in words of these colliders, the last ones of the load report; a geometry that several of them share counts once. */
 std::string sizeOf(const SimulatedWorld& world, std::size_t first, std::size_t end) {
   constexpr double MEGA = 1e6;
   const MeshReport* report = world.load_report.data() + world.load_report.size() - (end - first);

@@ -1,4 +1,4 @@
-// From a configuration to a world: files are loaded, names are checked, everything stands where it starts.
+// From a configuration to a world: files are loaded, names are checked, bodies are placed at their start poses.
 #pragma once
 
 #include <map>
@@ -16,7 +16,7 @@ namespace blem_sim {
 /** Adds models one by one. Each function throws InputError before it changes the world. */
 class WorldBuilder {
  public:
-  /** @param base_directory that relative files are meant against */
+  /** @param base_directory of relative files */
   WorldBuilder(const ContactConfig& contact, std::string base_directory, const UriResolver& resolver, LoadLog log)
       : contact_(contact),
         base_directory_(std::move(base_directory)),

@@ -1,4 +1,4 @@
-// Reads one map of a configuration key by key, and refuses what nobody asked for.
+// Reads one map of a configuration key by key, and refuses keys that nobody asked for.
 #pragma once
 
 #include <yaml-cpp/yaml.h>

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::streamoff SHORTEST_ENTRY = 2;  // [characters], as in [1,2,3]
 
-/** Counts the entries of what is open. */
+/** Counts the entries of the lists and maps that are open. */
 class EntryCounter : public YAML::EventHandler {
  public:
   explicit EntryCounter(const std::string& file) : file_(file) {}

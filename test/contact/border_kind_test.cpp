@@ -1,4 +1,4 @@
-// Over which sides of faces contacts fade.
+// Sides of faces over which contacts fade.
 #include "border_kind.h"
 
 #include <gtest/gtest.h>

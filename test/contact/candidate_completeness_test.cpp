@@ -35,7 +35,7 @@ TriangleMesh torusMesh(double radius, double thickness, int around, int across) 
   return mesh;
 }
 
-/** Curved by so much along either axis [1/m]. */
+/** A mesh of curvatures x and y [1/m] along its axes. */
 TriangleMesh curvedMesh(double x, double y) {
   TriangleMesh mesh = gridMesh(SIZE, SIZE, 13, 13);
   for (Vector3& v : mesh.vertices) v.z() = 0.5 * (x * v.x() * v.x() + y * v.y() * v.y());
@@ -124,7 +124,7 @@ std::vector<NamedContact> contactsOf(const MeshPair& pair, CandidateLists* lists
   found.plain.overwrite(&plain);
   found.clear();
   buffers->turned.turnForContacts(*lists, pair.X_FM);
-  // As if the meshes crossed: then none is plain, and all say whose they are.
+  // As if the meshes crossed: then no contact is plain, and all name their features.
   found.crossings.push_back({});
   Evaluation(pair, lists, pairs, buffers, &found).findContacts();
   std::vector<NamedContact> out;
@@ -146,7 +146,7 @@ std::vector<NamedCrossing> crossingsOf(const MeshPair& pair, CandidateLists* lis
   return out;
 }
 
-/** Some vertex of one is that near [m] some vertex of the other. */
+/** A pose in which some vertex of one mesh is within `distance` [m] of some vertex of the other. */
 Pose someMeeting(RandomShapes& random, const Shape& a, const Shape& b, double distance) {
   Pose X = random.pose(1);
   const auto someVertex = [&](const Shape& shape) {
@@ -157,7 +157,7 @@ Pose someMeeting(RandomShapes& random, const Shape& a, const Shape& b, double di
   return X;
 }
 
-/** Within half the margin each. */
+/** The pose moved and turned within half the margin each. */
 Pose movedALittle(RandomShapes& random, const Pose& X, const ListMargin& margin) {
   const Vector3 turn = random.point(1).normalized() * random.uniform(0, 0.5 * margin.motion / SIZE);
   return makePose(random.point(1).normalized() * random.uniform(0, 0.5 * margin.motion)) * X * makePose(Vector3::Zero(), turn);
@@ -233,7 +233,7 @@ TEST(CandidateCompleteness, ListsHoldEveryCrossing) {
     SCOPED_TRACE(a.name + " at " + b.name + ", pose " + std::to_string(i));
     const Pose X = someMeeting(random, a, b, 0.1 * LAYER);
     const MeshPair pair = pairOf(a.collider, b.collider, X);
-    // It slides along, and turns about some axis through its middle, not at all or as fast.
+    // The mesh slides along, and turns about some axis through its middle, not at all or as fast.
     const double step = LAYER * std::pow(10, random.uniform(-4, -2)), steps = 10;
     const Vector3 shift = step * random.point(1).normalized(), turn = (i % 2) * step / SIZE * random.point(1).normalized();
     const auto after = [&](double count) { return makePose(count * shift) * X * makePose(Vector3::Zero(), count * turn); };

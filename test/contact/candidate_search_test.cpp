@@ -1,4 +1,4 @@
-// How candidates are found: in parts as at once, and none is missed for its directions.
+// Search for candidates: the same in parts as at once, and none is missed for its directions.
 #include "candidate_search.h"
 
 #include <gtest/gtest.h>
@@ -45,7 +45,7 @@ std::vector<NamedPairs> namesOf(const CandidateLists& lists) {
   return out;
 }
 
-// Between the parts the pair moves on and the same leaves are asked for by other searches.
+// Between the parts of a search the pair moves on, and other searches ask for the same leaves.
 TEST(CandidateSearch, InPartsAsAtOnce) {
   RandomShapes random(3);
   const Collider hills = makeCollider(hillMesh(random, 0.1, 60, 0.001), 0), ball = makeCollider(icosphereMesh(0.02, 4), 0.002);
@@ -105,7 +105,7 @@ bool holds(const kernels::VertexCone& cone, const Vector3& direction) {
   return most >= 0 && direction.squaredNorm() - along * along <= most * most;
 }
 
-// Where a vertex is the nearest of its surface, its cone says so.
+// A vertex's cone holds every direction in which the vertex is the nearest of its surface.
 TEST(VertexCone, HoldsEveryDirectionThatIsAllowed) {
   RandomShapes random(4);
   int allowed = 0, refused = 0;

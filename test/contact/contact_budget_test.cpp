@@ -62,7 +62,7 @@ TEST_P(Budgets, LeaveThreeOfEveryPairHoweverManyThereAre) {
   }
 }
 
-// Who asks for a contact or two a pair gets that: a point on a point.
+// A model whose own budget is a contact or two gets that per pair: a point on a point.
 TEST_P(Budgets, AreOfAPairWhatAModelsOwnIs) {
   if (method().reduce == reduceNone) return;  // has no budget
   for (const int k : {1, 2}) {
@@ -73,7 +73,7 @@ TEST_P(Budgets, AreOfAPairWhatAModelsOwnIs) {
   }
 }
 
-/** Of the support functions, as far as the reduction tells it, over directions of its own. */
+/** Largest lack of the kept contacts' support function, as ReductionLoss::wrench bounds it, over directions of its own. */
 double worstLack(const Contacts& all, const Contacts& kept) {
   Box box;
   for (const Contact& contact : all) box.extend(contact.point);
@@ -102,7 +102,7 @@ TEST_P(Budgets, SayByHowMuchWrenchesAreOff) {
       const double worst = worstLack(all, manifolds[0].contacts);
       EXPECT_LE(worst, loss.wrench) << k << " " << flat;
       EXPECT_GT(worst, 0.7 * loss.wrench - 0.1) << k << " " << flat;
-      // Gone on with, no worse is told.
+      // A reduction that goes on with the choice tells no larger loss.
       std::vector<ContactManifold> again = {manifoldOf(0, 1, all)};
       const double told = reduceAll(again, {0}, {1}, {{k}, {INT_MAX}}, method(), &memory).wrench;
       EXPECT_LE(told, loss.wrench + 1e-6);

@@ -23,7 +23,7 @@ inline Contact makeContact(const Vector3& point, const Vector3& normal, double d
   return contact;
 }
 
-// Uniform in [-1, 1), the same with every standard library.
+// Uniform numbers in [-1, 1), the same with every standard library.
 class Noise {
  public:
   explicit Noise(unsigned seed) : engine_(seed) {}
@@ -33,7 +33,7 @@ class Noise {
   std::mt19937 engine_;
 };
 
-// A 10 cm square in the plane across `normal`, all contacts at one depth: what a tessellated cube on a plane gives.
+// A 10 cm square in the plane across `normal`, all contacts at one depth: contacts of a tessellated cube on a plane.
 inline Contacts flatPatch(int count, const Vector3& normal, const Vector3& centre, unsigned seed = 1) {
   Noise noise(seed);
   const Quaternion tilt = Quaternion::FromTwoVectors(Vector3::UnitZ(), normal);

@@ -41,7 +41,7 @@ inline TriangleMesh octahedronMesh(double radius) {
   return mesh;
 }
 
-/** Unconnected triangles, segments and points. */
+/** A soup of unconnected triangles, segments and points. */
 inline TriangleMesh soupMesh(RandomShapes& random, int count, double size) {
   TriangleMesh mesh;
   for (int i = 0; i < count; ++i) {

@@ -33,7 +33,7 @@ TEST(DirectionBall, HoldsWhatWasAdded) {
   EXPECT_LT(ball.most(Vector3::UnitX()), 0.8);
 }
 
-// Whatever can be nearest something near lies along one of them.
+// The ball of a listing's directions holds the normals of its faces, and all directions that the cones of its vertices allow.
 TEST(DirectionBall, HoldsTheNormalsOfAListing) {
   RandomShapes random(4);
   TriangleMesh plain_and_hills = hillMesh(random, 0.1, 60, 0.0001);

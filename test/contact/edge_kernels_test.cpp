@@ -50,7 +50,7 @@ struct EdgesNearEdges {
   std::vector<Candidate> candidates;
 };
 
-/** What one set finds. */
+/** Contacts that one instruction set finds. */
 struct Found {
   Found(const Kernels& set, const EdgesNearEdges& in, bool first_is_a, bool takes_plain)
       : hits(CANDIDATES + 1),
@@ -131,7 +131,7 @@ TEST(EdgeKernels, FadingContactsAreWhereTheEdgesAreClosest) {
     EXPECT_NEAR(std::abs(normal.dot(along_p.normalized())) + std::abs(normal.dot(along_q.normalized())), 0, 1e-9);
     EXPECT_GE(normal.dot(p - q), 0);
     EXPECT_LE(hit.gap, RANGE);
-    // Beyond its end so far, where the other line passes.
+    // Distance beyond its end at which the other line passes.
     const Vector3 across = along_p.cross(along_q);
     const double s = (q - p).cross(along_q).dot(across) / across.squaredNorm(),
                  t = (q - p).cross(along_p).dot(across) / across.squaredNorm();
@@ -143,7 +143,7 @@ TEST(EdgeKernels, FadingContactsAreWhereTheEdgesAreClosest) {
     const bool both = hit.end_a >= 0 && hit.end_b >= 0;
     (both ? beyond_both : beyond_one) += 1;
     if (both) continue;
-    // Nothing of either edge is closer to the other's point.
+    // No other point of either edge is closer to the other's point.
     for (double part = 0; part <= 1; part += 0.125)
       EXPECT_GE(std::min((p + part * along_p - point_b).norm(), (q + part * along_q - point_a).norm()), hit.distance - 1e-12);
     EXPECT_EQ(hit.cones_known, c.a % 7 != 0 && c.b % 7 != 0);
@@ -198,7 +198,7 @@ TEST(EdgeKernels, EdgesAroundAVertexLeadAsTheirDirectionsSay) {
     const double least = random.uniform(0, 0.9);
     bool leads = false;
     for (int k = 0; k < count; ++k) {
-      // Few lead down, some of them hardly.
+      // Few directions lead down, some of them hardly.
       Vector3 direction = random.point(1).normalized();
       if (direction.dot(down) > 0) direction -= random.uniform(0.9, 1.5) * direction.dot(down) * down;
       direction.normalize();

@@ -1,4 +1,4 @@
-// The memory that a collision geometry takes: what it says is what malloc gave, and no more than 90 bytes per triangle.
+// Memory of a collision geometry: bytes() are those that malloc gave, and at most 90 per triangle (150 where four faces share edges).
 #include <gtest/gtest.h>
 
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)

@@ -87,7 +87,7 @@ struct PlainVertexFaces {
   PlainContacts plain;
 };
 
-/** What one set finds, as bytes. */
+/** Results of one instruction set, as bytes. */
 struct Found {
   std::vector<std::uint32_t> counts, indices;
   std::vector<double> numbers;
@@ -187,7 +187,7 @@ TEST(Kernels, PlainContactsAreThoseMadeOneByOne) {
       const Candidate& c = in.candidates[hit.candidate];
       const Vector3 p = vector3(in.vertices[c.a]), plane = vector3(in.faces[c.b].plane),
                     up = faces_move ? Vector3(all.X_FM.linear() * plane) : plane;
-      // From the faces' mesh, which is B, to the vertices'.
+      // The normal points from the faces' mesh, which is B, to the vertices'.
       const ContactRoles roles{true, all.RADIUS_A, all.RADIUS_B};
       Contact one = contactOf(roles, {FeatureKind::VERTEX, in.names[c.a]}, {FeatureKind::FACE, in.names[c.b]}, p, p - hit.height * up,
                               hit.height > 0 ? up : Vector3(-up), std::abs(hit.height));
@@ -213,7 +213,7 @@ TEST(Kernels, PlainContactsAreThoseMadeOneByOne) {
   }
 }
 
-/** Those that can have a contact, the flagged ones first, and their flags. */
+/** Keeps the candidates that can have a contact, the flagged ones first. @return their flags */
 std::vector<std::uint8_t> sortByFlags(const NearVertices& vertices, const Reach& reach, Features* features) {
   const Kernels& set = *availableKernels().front();
   std::vector<Candidate> near(CANDIDATES);

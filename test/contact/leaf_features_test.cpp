@@ -1,4 +1,4 @@
-// What is kept of leaves.
+// Features kept of leaves.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,8 +9,8 @@
 namespace blem_sim {
 namespace {
 
-// A search that comes to more leaves than are kept must still know which it has seen: else one vertex would count as two. Who takes a
-// place is not taken for who had it before.
+// A search that comes to more leaves than are kept must still know which it has seen: else one vertex would count as two. A leaf in a
+// place is not taken for the one that had it before.
 TEST(LeafMemory, OneSearchLosesNoLeaf) {
   const Collider plane = makeCollider(gridMesh(1, 1, 300, 300), 0);
   const MeshSide side(*plane.geometry);

@@ -1,4 +1,4 @@
-// Micro-steps: what changes from one to the next in a contact set, against what a rigid shift would change.
+// Micro-steps: changes of a contact set from one to the next, against those of a rigid shift.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ namespace blem_sim {
 constexpr double STEP = 1e-6;    // [m]
 constexpr double R = 0.0025;     // [m] boundary widths
 constexpr double MARGIN = 1e-3;  // [m] the simulation's
-constexpr double DEEP = 5e-6;    // [m] what is deeper must not come or go
+constexpr double DEEP = 5e-6;    // [m] deeper contacts must not come or go
 constexpr double NEAR = 1e-4;    // [m] a contact this close ...
 constexpr double ALIKE = 0.02;   // ... with a normal this close (sine), as deep, has taken over
 constexpr double FASTEST = 4;    // depth fades 2 um per um outside; feet of nearly parallel edges run faster than the bodies
@@ -81,7 +81,7 @@ inline void compare(const std::vector<Contact>& before, const std::vector<Contac
 struct Scene {
   const char* name;
   Collider a, b;
-  double height, spread;  ///< [m] where A starts above B, how far to the sides
+  double height, spread;  ///< [m] of A's start above B, and to the sides
 };
 
 inline Walk walk(const Scene& scene, double overlap, int poses, int steps) {

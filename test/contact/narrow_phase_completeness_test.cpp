@@ -141,7 +141,7 @@ TEST(NarrowPhaseCompleteness, EdgeGrazesACorner) {
   EXPECT_EQ(one.within, 1);
 }
 
-/** Deep poses: whatever meets has contacts, all finite, none deeper than the layer by more than the smaller body. */
+/** Deep poses: meshes that meet have contacts, all finite, none deeper than the layer by more than the smaller body. */
 TEST(NarrowPhaseCompleteness, MeetingPosesAreFiniteAndBounded) {
   const std::vector<Shape> shapes = makeShapes();
   RandomShapes random(4);

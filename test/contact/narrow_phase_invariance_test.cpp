@@ -1,4 +1,4 @@
-// What must not matter: order of the pair, where the pair is, order of triangles, winding, faces given twice, tessellation of planes.
+// Contacts must not depend on: order of the pair, the pair's place, order of triangles, winding, faces given twice, tessellation of planes.
 #include <gtest/gtest.h>
 
 #include <numeric>
@@ -140,7 +140,7 @@ TEST(NarrowPhaseInvariance, SubdivisionKeepsTheDeepest) {
   }
 }
 
-/** What deep layers push with together, every contact of the reduced set by its depth: force and torque about the origin. */
+/** Push of deep layers together, every contact of the reduced set by its depth: force and torque about the origin. */
 Eigen::Matrix<double, 6, 1> netWrench(const TriangleMesh& a, const Pose& X_WA, const TriangleMesh& b) {
   ContactManifold manifold = contactsOf(layered(a), X_WA, layered(b), Pose::Identity());
   reduceHull(manifold.contacts, 50);
@@ -153,7 +153,8 @@ Eigen::Matrix<double, 6, 1> netWrench(const TriangleMesh& a, const Pose& X_WA, c
   return wrench;
 }
 
-/** Flat on one another whatever the tessellation; tilted, an edge cut in pieces has more contacts along it, so there only for one. */
+/** Soups flat on one another push the same for any tessellation; tilted only for one, since an edge in pieces has more contacts along it.
+ */
 TEST(NarrowPhaseInvariance, CopiesOfASoupPushTheSame) {
   RandomShapes random(25);
   const TriangleMesh cube = boxMesh(Vector3::Constant(0.1));

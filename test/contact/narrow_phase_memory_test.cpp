@@ -1,4 +1,4 @@
-// What a search remembers saves time and changes nothing.
+// Memory of the narrow phase saves time and changes nothing.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@ bool sameBits(const Contact& a, const Contact& b) {
          std::memcmp(a.normal_BA.data(), b.normal_BA.data(), sizeof(Vector3)) == 0 && a.depth == b.depth;
 }
 
-/** Along a path, contacts with and without a memory. @return how many there were, and whether meshes crossed and did not */
+/** Along a path, contacts with and without a memory. @return their number, and whether meshes crossed and did not */
 struct Followed {
   std::size_t contacts = 0;
   bool crossed = false, apart = false;
@@ -45,7 +45,7 @@ Followed follow(const Collider& a, const Collider& b, int steps, const std::func
   return out;
 }
 
-/** Wanders and turns about its place, some 10 um to 1 mm a step. */
+/** Path of a mesh that wanders and turns about its place, some 10 um to 1 mm a step. */
 std::function<Pose(int)> wandering(const Vector3& place, double reach, double speed) {
   return [=](int step) {
     const double t = speed * step;
@@ -116,7 +116,7 @@ TEST(NarrowPhaseMemory, EdgesThatMeetAreFound) {
   EXPECT_TRUE(found.apart);
 }
 
-/** Along a floor that it does not come nearer to, farther in every step than it is above it, a cube runs into a step of the floor. */
+/** A cube runs into a step of a floor, along which it slides at one height, farther in every step than it is above the floor. */
 TEST(NarrowPhaseMemory, WhatSlidesIntoAStepIsFound) {
   TriangleMesh floor = gridMesh(0.3, 0.3, 60, 60);
   for (Vector3& v : floor.vertices) v.z() = v.x() > 0.101 ? 0.004 : 0;
@@ -136,7 +136,7 @@ TEST(NarrowPhaseMemory, MarginsMayChange) {
   EXPECT_GT(follow(cube, hills, 300, wandering({0, 0, 0.027}, 0.003, 0.01), margin).contacts, 300u);
 }
 
-/** Its lists made in straight flight, a chip turns on the spot, until edges have contacts that had none: little moves, but much turns. */
+/** A chip, its lists made in straight flight, turns on the spot until edges have contacts that had none: little moves, but much turns. */
 TEST(NarrowPhaseMemory, TurningOnTheSpot) {
   RandomShapes random(10);
   const Collider hills = makeCollider(hillMesh(random, 0.02, 40, 0.0001), 0), chip = makeCollider(hillMesh(random, 0.001, 4, 0.0001), R);

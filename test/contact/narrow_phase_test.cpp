@@ -144,7 +144,7 @@ TEST(NarrowPhase, SpheresAndCapsules) {
   ASSERT_EQ(manifold.contacts.size(), 1u);
   EXPECT_NEAR(manifold.contacts[0].depth, 0.005, 1e-12);
 
-  // Crosswise: the common perpendicular. Parallel: the ends that overlap.
+  // Crosswise capsules: the common perpendicular. Parallel ones: the ends that overlap.
   manifold = contactsOf(capsule, at(0, 0, 0.015), capsule, makePose({0, 0.03, 0}, {0, 0, M_PI / 2}));
   ASSERT_EQ(manifold.contacts.size(), 1u);
   EXPECT_NEAR(manifold.contacts[0].depth, 0.005, 1e-12);
@@ -172,13 +172,13 @@ TEST(NarrowPhase, CloudOnMesh) {
 TEST(NarrowPhase, HalfSpaceInEitherOrder) {
   const Collider half_space = makeHalfSpace({0, 0, 2}, 0.25, 0.001),
                  box = makeCollider(subdivided(boxMesh(Vector3::Constant(EDGE)), 1), 0.003);
-  // Deep, shallow and speculative; the plane turned with its frame.
+  // Deep, shallow and speculative contacts; the plane turned with its frame.
   for (const double gap : {-0.03, 0.002, 0.0045}) {
     const Pose X_WH = makePose({1, 2, 3}, {0.3, -0.8, 0.5}), X_WA = X_WH * makePose({0.2, 0.1, 0.25 + EDGE / 2 + gap}, {0, 0, 0.4});
     const ContactManifold above = contactsOf(box, X_WA, half_space, X_WH, 0.001);
     ContactManifold below = contactsOf(half_space, X_WH, box, X_WA, 0.001);
     EXPECT_FALSE(above.pierced);
-    ASSERT_EQ(above.contacts.size(), 4u) << gap;  // what subdivision adds lies inside the bottom's sides
+    ASSERT_EQ(above.contacts.size(), 4u) << gap;  // vertices of the subdivision lie inside the bottom's sides
     for (const Contact& c : above.contacts) {
       EXPECT_NEAR((c.normal_BA - X_WH.linear().col(2)).norm(), 0, 1e-12);
       EXPECT_NEAR(c.depth, 0.004 - gap, 1e-12);
@@ -194,7 +194,7 @@ TEST(NarrowPhase, HalfSpaceInEitherOrder) {
   EXPECT_NEAR(contactsOf(sphere, at(0, 0, 0.27), half_space, Pose::Identity()).maxDepth(), 0.031, 1e-12);
 }
 
-/** Bare meshes that touch exactly have no direction between them; their surfaces have. */
+/** Bare meshes that touch exactly have no direction between them; their surfaces give it. */
 TEST(NarrowPhase, ExactTouchPointsOut) {
   const Collider bare = cube(0), plane = makeCollider(gridMesh(1, 1, 5, 5), 0);
   for (const double gap : {0.0, 1e-17, 1e-12, -1e-12, 1e-9, -1e-10}) {

@@ -12,7 +12,7 @@
 namespace blem_sim {
 namespace {
 
-/** At nearly the places of a grid, five each: in a row across the slabs, the first and the last nearly as far apart as may be merged. */
+/** Five contacts at nearly each place of a grid, in a row across the slabs, the first and the last nearly as far apart as may be merged. */
 std::vector<Contact> rows(RandomShapes* random, int count) {
   std::vector<Contact> contacts;
   for (int i = 0; i < count; ++i) {

@@ -16,20 +16,20 @@
 namespace blem_sim {
 namespace {
 
-/** How far [m] a point projects beside a face; 0 over it. */
+/** Distance [m] of a point's projection from a face; 0 over it. */
 double besideFace(const TriangleMesh& mesh, int face, const Vector3& p) {
   const Vector3i& e = mesh.elements[face];
   const Vector3 normal = MeshTopology::normal(mesh, face), projection = p - normal.dot(p - mesh.vertices[e[0]]) * normal;
   return closestPointTriangle(projection, triangleOf(mesh, face)).distance;
 }
 
-/** Is p inside all sides of the face, but for so little as counts as over it? */
+/** Whether p is inside all sides of the face, but for so little as counts as over it. */
 bool isOver(const kernels::FaceRecord& face, const Vector3& p) {
   return std::all_of(std::begin(face.sides), std::end(face.sides),
                      [&](const kernels::Vec4& side) { return vector3(side).dot(p) - side.w >= -2 * CLOSED; });
 }
 
-/** Is it outside of some sides, behind none of which the plane goes on? */
+/** Whether p is outside of some sides, behind none of which the plane goes on. */
 bool mayFade(const MeshSide& side, int face, const kernels::FaceRecord& record, const Vector3& p) {
   bool is_outside = false;
   for (int k = 0; k < 3; ++k) {
@@ -74,7 +74,7 @@ TEST(PlaneReach, NothingFartherBesideIsOverAnotherFace) {
       const kernels::FaceRecord record = faceRecord(side, face);
       const Vector3 normal = vector3(record.plane);
       for (int i = 0; i < 400; ++i) {
-        // Around the corners of all faces, where those of a plane meet, and anywhere.
+        // Points around the corners of all faces, where those of a plane meet, and anywhere.
         const Vector3& corner = mesh->vertices[static_cast<std::size_t>(random.integer(0, 15))];
         const double height = random.uniform(-1, 1);
         const Vector3 p = corner + random.point(std::pow(10, random.uniform(-9, -1))),

@@ -53,7 +53,7 @@ TEST(ReductionMemory, GivesUpAChoiceThatLacksMuch) {
   ContactManifold half = rim(random, 0);
   half.contacts.resize(RIM_CORNERS / 2);
   reduced(half, 20, &memory);
-  // All of them now: what was chosen spans one half.
+  // All contacts now: the choice spans one half of them.
   ReductionMemory nothing;
   const ContactManifold whole = rim(random, 0);
   EXPECT_EQ(reduced(whole, 20, &memory), reduced(whole, 20, &nothing));

@@ -72,7 +72,7 @@ Contacts opposite() {
   return contacts;
 }
 
-// Many normals, and places that tie in many directions.
+// Contacts of many normals, and of places that tie in many directions.
 Contacts roughGrid() {
   Contacts contacts;
   for (int i = 0; i < 30; ++i) {
@@ -245,7 +245,7 @@ TEST(ReduceHull, LosesNoWrenchOnFlatPatches) {
   }
 }
 
-// Does some affine function separate p from the kept contacts in (x, y, depth)? Then p's constraint is not implied by theirs.
+// Whether the kept contacts imply p's constraint: no affine function separates p from them in (x, y, depth).
 bool isImplied(const Contact& p, const Contacts& kept) {
   for (std::size_t i = 0; i < kept.size(); ++i) {
     for (std::size_t j = 0; j < kept.size(); ++j) {
@@ -325,7 +325,7 @@ TEST(ReduceHull, SpansTheWrenchesOfANoisyPatch) {
   }
 }
 
-// A tilted patch: what does not touch yet counts less by its gap, and most of it nowhere at all.
+// A tilted patch: contacts that do not touch yet count less by their gaps, and most of them nowhere at all.
 TEST(ReduceHull, KeepsTheExtremesOfWhatHardlyTouches) {
   Noise noise(41);
   for (int trial = 0; trial < 30; ++trial) {

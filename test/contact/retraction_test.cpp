@@ -1,4 +1,4 @@
-// Beyond the layer: what the fallback says where bare meshes cross.
+// Beyond the layer: contacts of the fallback where bare meshes cross.
 #include <gtest/gtest.h>
 
 #include "contact_shapes.h"
@@ -15,7 +15,7 @@ int countPierced(const ContactManifold& manifold) {
   return std::count_if(manifold.contacts.begin(), manifold.contacts.end(), [](const Contact& c) { return c.pierced; });
 }
 
-/** Depth grows past the layer, the direction stays: what a cube sunk into another or a sheet should feel, whatever the tessellations. */
+/** For a cube sunk into another or a sheet, of any tessellations, depth grows past the layer and the direction stays. */
 TEST(Retraction, SunkCubeIsPushedOutTheWayItCame) {
   struct Ground {
     const char* name;
@@ -44,7 +44,7 @@ TEST(Retraction, SunkCubeIsPushedOutTheWayItCame) {
   }
 }
 
-/** Sunk by more than half, only where it was tells the side. */
+/** Only the earlier pose of a cube that is sunk by more than half tells the side. */
 TEST(Retraction, WayBackIsTheOneFromWhereThePairWasApart) {
   const Collider sheet = makeCollider(gridMesh(1, 1, 7, 7), LAYER / 2);
   for (const double above : {1.0, -1.0}) {

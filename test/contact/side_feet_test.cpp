@@ -63,7 +63,7 @@ struct SidesAndVertices {
   std::vector<Candidate> pairs;
 };
 
-/** What a set finds. */
+/** Feet that an instruction set finds. */
 struct Feet {
   Feet(const Kernels& set, const SidesAndVertices& in, bool keeps_feet) : rows(COUNT + 1), asked(COUNT) {
     FadingContacts out{rows.data(), asked.data(), 0};

@@ -32,8 +32,8 @@ Collider loaded(const TriangleMesh& soup) {
 }
 
 /**
- * What the contacts forbid: for small motions of A, how deep [m] the deepest contact would be after each, to first order. It is the support
- * function of the cone of wrenches, each contact's with its depth; contacts that others imply do not change it.
+ * Motions that the contacts forbid: the depth [m] of the deepest contact after each of some small motions of A, to first order. It is the
+ * support function of the cone of wrenches, each contact's with its depth; contacts that others imply do not change it.
  */
 std::vector<double> supports(const Collider& a, const Pose& X_WA, const Collider& b) {
   std::vector<Contact> contacts = contactsOf(a, X_WA, b, Pose::Identity(), 0.001).contacts;

@@ -1,4 +1,4 @@
-// A patch is as stiff whatever it is made of.
+// Stiffness of a patch does not depend on the number and places of its contacts, as tessellations give them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -44,7 +44,7 @@ TEST(SpringWeights, HoldWhateverTheTessellation) {
   EXPECT_NEAR(totalWeight(coarse), totalWeight(contacts), 0.1);
 }
 
-/** What spring_weights.cpp says, contact by contact and with the library's exponential. */
+/** Weight as spring_weights.cpp defines it, contact by contact and with the library's exponential. */
 double weightByDefinition(const std::vector<Contact>& contacts, std::size_t i) {
   constexpr int DIRECTIONS = 32;
   double share = 0;

@@ -1,4 +1,4 @@
-// Where a mesh is on its way to.
+// Poses that a mesh on its way is expected to reach.
 #include "steady_motion.h"
 
 #include <gtest/gtest.h>

@@ -21,7 +21,7 @@ struct Counts {
   int covered = 0, all = 0;
 };
 
-/** How many contacts of a mesh with the sheet x < 0 another surface covers. */
+/** Number of contacts of a mesh with the sheet x < 0, and of those that another surface covers. */
 Counts countCovered(const TriangleMesh& mesh, const Pose& X_WM, const Collider& other, const Pose& X_WO) {
   const Collider sheet = colliderOf(gridMesh(0.4, 0.4, 1, 1)), body = colliderOf(mesh, 0.0025);
   const Pose X_WS = makePose({-0.2, 0, 0});
@@ -45,7 +45,7 @@ TEST(SurfaceCover, EdgeThatGoesOnInAnotherSheetHasNoContactBesideIt) {
   const Collider sheet = colliderOf(gridMesh(0.4, 0.4, 3, 2));
   EXPECT_EQ(countCovered(pointMesh(Vector3::Zero()), X_WM, sheet, BESIDE).all, 1);
   EXPECT_EQ(countCovered(pointMesh(Vector3::Zero()), X_WM, sheet, BESIDE).covered, 1);
-  // A gap, a step, and a slope down leave the edge what it is.
+  // A gap, a step, and a slope down leave the edge as it is.
   for (const Pose& X_WO : {makePose({0.2001, 0, 0}), makePose({0.2, 0, -1e-5}), makePose({0.2, 0, -0.2 * std::tan(0.8)}, {0, 0.8, 0})})
     EXPECT_EQ(countCovered(pointMesh(Vector3::Zero()), X_WM, sheet, X_WO).covered, 0);
   const std::shared_ptr<const CollisionGeometry> plane = CollisionGeometry::halfSpace(Vector3::UnitZ(), 0);
@@ -55,7 +55,7 @@ TEST(SurfaceCover, EdgeThatGoesOnInAnotherSheetHasNoContactBesideIt) {
 }
 
 TEST(SurfaceCover, EdgesInsideAPlaneHaveNoContactsVerticesAboveItHave) {
-  // Half over the seam: two corners over this sheet, two crossings of edges with the seam.
+  // A cube half over the seam: two corners over this sheet, two crossings of edges with the seam.
   const TriangleMesh cube = boxMesh(Vector3::Constant(0.1));
   const Pose X_WM = makePose({0.01, 0.02, 0.0525});
   const Counts flush = countCovered(cube, X_WM, colliderOf(gridMesh(0.4, 0.4, 1, 1)), BESIDE);

@@ -29,9 +29,9 @@ TEST(Sweep, PlateThroughSheetIsSeenThoughNeitherEndIsNear) {
   const CollisionGeometry plate = geometryOf(gridMesh(0.1, 0.1, 1, 1)), sheet = geometryOf(gridMesh(4, 4, 1, 1));
   EXPECT_TRUE(mayComeWithin(1e-4, plate, sweep({0, 0, 0.05}, {0, 0, -0.1}), sheet, GeometrySweep{}));
   EXPECT_FALSE(mayComeWithin(1e-3, plate, sweep({0, 0, 0.05}, {0.3, 0, -0.048}), sheet, GeometrySweep{}));
-  // Both move on together.
+  // Plate and sheet move on together.
   EXPECT_FALSE(mayComeWithin(0.04, plate, sweep({0, 0, 0.05}, {0, 0, -0.1}), sheet, sweep({0, 0, 0}, {0, 0, -0.1})));
-  // It turns over: its edge comes down to the sheet half way.
+  // The plate turns over: its edge comes down to the sheet half way.
   EXPECT_TRUE(mayComeWithin(1e-3, plate, sweep({0, 0, 0.0505}, Vector3::Zero(), {M_PI, 0, 0}), sheet, GeometrySweep{}));
   EXPECT_FALSE(mayComeWithin(1e-3, plate, sweep({0, 0, 0.0515}, Vector3::Zero(), {M_PI, 0, 0}), sheet, GeometrySweep{}));
 }
@@ -42,7 +42,7 @@ TEST(Sweep, PointsPassEachOtherAtTheirDistance) {
   EXPECT_FALSE(mayComeWithin(0.01, point, sweep({-1, 0, 0}, {2, 0, 0}), point, sweep({0, -1, 0.013}, {0, 2, 0})));
 }
 
-/** Against the distance at 300 poses on the way. */
+/** Sweeps against the distance at 300 poses on the way. */
 TEST(Sweep, NeverMissesWhatSamplesFind) {
   std::mt19937_64 generator(3);
   const auto uniform = [&generator](double size) { return size * (2 * static_cast<double>(generator() >> 11) * 0x1p-53 - 1); };
@@ -67,7 +67,7 @@ TEST(Sweep, NeverMissesWhatSamplesFind) {
     const double within = 0.01;
     const bool may = mayComeWithin(within, geometryOf(a), way_a, geometryOf(b), way_b);
     EXPECT_TRUE(may || least > within) << i;
-    // Samples miss by what moves between two of them.
+    // Samples miss by the motion between two of them.
     EXPECT_TRUE(!may || least <= 1.25 * within + most / 300) << i;
     seen += may;
     cleared += !may;

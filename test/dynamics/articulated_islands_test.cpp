@@ -1,4 +1,4 @@
-// The articulated stepper where trees meet: loops, threads, edits from outside; and what it tells of its own solve.
+// The articulated stepper where trees meet: loops, threads, edits from outside; and its report of its own solve.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -67,7 +67,7 @@ TEST(ArticulatedLoop, StaysClosedWhileItsCrankTurns) {
   EXPECT_NEAR(bar.world.jointState(0).velocity, 3, 0.3);
 }
 
-// Fast enough for the bend of the paths to matter.
+// The bar swings fast enough for the bend of the paths to matter.
 TEST(ArticulatedLoop, StaysClosedWhileItSwingsFreely) {
   FourBar bar;
   double fastest = 0;
@@ -79,7 +79,7 @@ TEST(ArticulatedLoop, StaysClosedWhileItSwingsFreely) {
   EXPECT_GT(fastest, 5);
 }
 
-// Held still, the two pins of the world carry all of it; the closing joint's wrench is part of the balance.
+// The two pins of the world carry all of a bar that is held still; the closing joint's wrench is part of the balance.
 TEST(ArticulatedLoop, CarriesItsWeight) {
   FourBar bar;
   bar.drives[0].stiffness = 1e4, bar.drives[0].damping = 100;
@@ -130,7 +130,7 @@ TEST(ArticulatedJoint, ArmatureAddsToTheInertia) {
   EXPECT_NEAR(speed(3 * inertia), 0.05 / (4 * inertia), 1e-9);
 }
 
-// Someone sets the upper link: its tree is read back, and only its tree.
+// The upper link is set from outside: its tree is read back, and only its tree.
 TEST(ArticulatedEdits, AreReadBackOnce) {
   World world({0, 0, -G}, {});
   const int flying = world.addBody(boxBody("flying", 1, CUBE, {0, 0, 5})), other = world.addBody(boxBody("other", 1, CUBE, {1, 0, 5}));
@@ -174,7 +174,7 @@ TEST(ArticulatedFlight, KeepsItsMomenta) {
   EXPECT_LT((com() - start + Vector3(0, 0, 0.5 * G * 1.001)).norm(), 1e-7);
 }
 
-// A step that is like the one before is exact; what is left of it is stated.
+// A step that is like the one before is exact; the report states the residual.
 TEST(ArticulatedReport, StatesWhatIsLeft) {
   World world({0, 0, -G}, {});
   world.addBody(boxBody("cube", 1, CUBE, {0, 0, 0.0501}));

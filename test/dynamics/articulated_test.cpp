@@ -108,7 +108,7 @@ TEST(Articulated, BipedStandsStill) {
   EXPECT_LT(biped.jointSpeed(), 1e-9);
 }
 
-// Both solve the same step: while every contact sticks they agree to world_step's own softness, which is made small here.
+// Both steppers solve the same step: while every contact sticks they agree to world_step's own softness, which is made small here.
 TEST(Articulated, AgreesWithWorldStepWhereContactsStick) {
   SolverSettings reference_settings = stepper("world_step");
   reference_settings.cfm = 1e-8;

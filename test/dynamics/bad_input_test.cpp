@@ -58,7 +58,7 @@ TEST(BadInput, JointsAreRefused) {
   EXPECT_EQ(world.jointCount(), 0);
 }
 
-/** A body on a hinge over a contact; what a step is told. */
+/** Input of a step for a body on a hinge over a contact. */
 struct Told {
   double dt = 0.001;
   ContactConstraint contact;

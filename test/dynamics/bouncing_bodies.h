@@ -104,8 +104,8 @@ class BouncingBodies {
   }
 
   /**
-   * [J] kinetic and potential, the latter half a step earlier, since bodies are moved by the velocities at a step's end: what flight keeps
-   * exactly.
+   * [J] kinetic and potential, the latter half a step earlier, since bodies are moved by the velocities at a step's end: flight keeps this
+   * sum exactly.
    */
   double energy(double dt) const {
     double sum = world.kineticEnergy() + world.potentialEnergy();
@@ -123,16 +123,16 @@ class BouncingBodies {
   Surface surface_;
 };
 
-/** How energy went over a run. */
+/** Energy over a run. */
 struct EnergyRun {
   double start = 0, end = 0;
-  double worst = 0;         ///< [J] largest rise in one step beyond what corrects depth
-  double worst_gain = 0;    ///< [J] the same, also beyond what only looks like work of contacts (SolveResult::apparent_work)
+  double worst = 0;         ///< [J] largest rise in one step beyond that by correcting depth
+  double worst_gain = 0;    ///< [J] the same, also beyond apparent work of contacts (SolveResult::apparent_work)
   double worst_flight = 0;  ///< [J] largest change in a step without any force: the error of integrating free motion
   bool finite = true;
 };
 
-/** [J] by which contacts that correct depth may lift things in a step. */
+/** Largest work [J] by which contacts that correct depth may lift things in a step. */
 inline double correctionWork(const BouncingBodies& scene, const SolveResult& result, double dt) {
   const SolverSettings settings;
   double work = 0;
@@ -246,7 +246,7 @@ struct Cradle {
     surface.friction = friction;
     return surface;
   }
-  /** Half a period. */
+  /** Makes the steps of half a period. */
   void swing(double dt) {
     const double seconds = M_PI * std::sqrt(LENGTH / 9.81 * (1 + 0.4 * RADIUS * RADIUS / (LENGTH * LENGTH))) * (1 + ANGLE * ANGLE / 16);
     for (int i = 0; i < std::lround(seconds / dt); ++i) scene.step(dt);

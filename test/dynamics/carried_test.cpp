@@ -1,4 +1,4 @@
-// What sticks to something that turns stays where it is on it.
+// A body that sticks to a turning one stays in its place on it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,7 +10,7 @@ namespace {
 
 constexpr double DT = 1e-3;
 
-/** A cube rides on a turntable; friction 0.8 holds up to 8.8 rad/s. @return [m] by how far it has moved on it after `turns` */
+/** A cube rides on a turntable; friction 0.8 holds up to 8.8 rad/s. @return [m] distance that it has moved on it after `turns` */
 double slipOnTurntable(double speed, double turns) {
   const Vector3 disk_size(0.4, 0.4, 0.05), cube_size(0.05, 0.05, 0.05);
   const double radius = 0.1;

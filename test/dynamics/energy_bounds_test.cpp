@@ -1,4 +1,4 @@
-// Contacts and loops that correct depth and gaps must not throw what they correct, nor squeeze it.
+// Contacts and loops that correct depth and gaps must not throw bodies, nor squeeze them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ struct HingedBar {
   }
 };
 
-/** [J] of a kilogram that moves four times as fast as depth is corrected. */
+/** Energy [J] of a kilogram that moves four times as fast as depth is corrected. */
 double boundOfEnergy() { return 8 * std::pow(SolverSettings().max_correction_speed, 2); }
 
 class Lever : public ::testing::TestWithParam<double> {};

@@ -1,4 +1,4 @@
-// Chains and spinning bodies that nothing drives, against what theory keeps: energy and momenta. The long ones are in test/soak.
+// Chains and spinning bodies that nothing drives, against theory, which keeps energy and momenta. The long ones are in test/soak.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@ constexpr double DT = 1e-3;
 
 const std::vector<ChainLink> TAPER = taper(6, {1, 0.3}, {0.02, 0.05});
 
-/** Largest miss of energy, over that above rest. Energy swings by half a step of what gravity does, at any speed of the links. */
+/** Largest miss of energy, over that above rest. Energy swings by half a step of gravity's work, at any speed of the links. */
 double energyMiss(const std::vector<ChainLink>& links, const ChainOptions& options, double seconds, double dt = DT, double viscous = 0) {
   Chain chain(links, options);
   for (JointDrive& drive : chain.drives) drive.viscous_friction = viscous;
@@ -121,7 +121,7 @@ TEST(FreeMotion, SliderInASpinningArm) {
 
 class SpinningBody : public ::testing::TestWithParam<double> {};
 
-// About the smallest and the largest principal axis it stays, about the middle one it turns over, and nothing is lost.
+// A body keeps spinning about its smallest and largest principal axes, about the middle one it turns over, and nothing is lost.
 TEST_P(SpinningBody, KeepsItsEnergyAndItsAxis) {
   for (const double dt : {1e-4, 1e-3, 2e-3, 5e-3})
     for (int axis = 0; axis < 3; ++axis) {
@@ -144,8 +144,8 @@ TEST_P(SpinningBody, KeepsItsEnergyAndItsAxis) {
 }
 INSTANTIATE_TEST_SUITE_P(Speeds, SpinningBody, ::testing::Values(100, 300, 1000));
 
-// Two links about a vertical axis, the outer one held at a right angle by its motor: centrifugal forces are its load, and the joint is
-// where it was told to be.
+// Two links about a vertical axis, the outer one held at a right angle by its motor: centrifugal forces are its load, and the joint keeps
+// its target.
 TEST(FreeMotion, MotorCarriesCentrifugalForces) {
   for (const double stiffness : {1e4, 1e6}) {
     ChainOptions options;
@@ -182,7 +182,7 @@ TEST(FreeMotion, MotorCarriesCentrifugalForces) {
   }
 }
 
-// It loses energy then, until it can be followed again; a free one may not, by its angular momentum.
+// A chain that is too fast loses energy until it can be followed again, which a free one may never be, by its angular momentum.
 TEST(FreeMotion, SaysWhatIsTooFast) {
   for (const bool held : {true, false}) {
     ChainOptions options;
@@ -202,7 +202,7 @@ TEST(FreeMotion, SaysWhatIsTooFast) {
   }
 }
 
-// Held joints owe what they took on their way: that is part of the state.
+// Held joints owe the impulses of their way: these are part of the state.
 TEST(FreeMotion, ReplaysFromASavedState) {
   ChainOptions options;
   options.held = false, options.alternates = true, options.bend = 0.4;

@@ -1,4 +1,4 @@
-// Branches that nothing touches are not iterated while their joints answer linearly: what is found must not show it.
+// Branches that nothing touches are not iterated while their joints answer linearly: the solution must not show it.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -34,7 +34,7 @@ struct Hanger {
     for (JointDrive& drive : drives) drive.dry_friction = FRICTION;
   }
 
-  /** A step; adds up how often joints began or ceased to slip. */
+  /** Makes a step and counts the joints that began or ceased to slip. */
   void step() {
     std::vector<ContactConstraint> contacts;
     boxOnPlane(world, 0, BASE, Vector3::UnitZ(), 0, {}, &contacts);
@@ -49,7 +49,7 @@ struct Hanger {
     slips.resize(drives.size(), false);
     for (int j = 0; j < world.jointCount(); ++j) {
       const double v = world.jointState(j).velocity, friction = result.joint_efforts[j] - drives[j].effort;
-      // The wrench follows from how the bodies have moved, the effort from the joint's law.
+      // The wrench follows from the bodies' motion, the effort from the joint's law.
       EXPECT_NEAR(result.joint_wrenches[j].torque.dot(axes[j]), result.joint_efforts[j], 1e-6) << j;
       EXPECT_LE(std::abs(friction), FRICTION * (1 + 1e-12)) << j;
       const bool slip = std::abs(v) > 1e-6;
@@ -85,7 +85,7 @@ TEST(IdleBranches, AllJointsBeginToSlipAtOnce) {
   EXPECT_GT(hanger.changes, 50);
 }
 
-// How friction that sticks has changed last is part of the state: the next step expects it to go on.
+// The last change of friction that sticks is part of the state: the next step expects it to go on.
 TEST(IdleBranches, DriftOfStuckFrictionIsRestored) {
   Hanger hanger;
   const auto drift = [&](int from, int to) {

@@ -82,7 +82,7 @@ TEST_P(Drives, DryFrictionSticksBelowAndSlipsAbove) {
   drive.effort = 1.99;
   one.run(1000, drive);
   EXPECT_LT(std::abs(one.state().position), 1e-8);
-  EXPECT_NEAR(one.state().effort, 0, 1e-6);  // friction takes up what was given
+  EXPECT_NEAR(one.state().effort, 0, 1e-6);  // friction takes up the given effort
   drive.effort = 2.5;
   const double before = one.state().velocity;
   one.run(1000, drive);
@@ -113,7 +113,7 @@ TEST_P(Drives, ViscousFrictionDecays) {
   viscous.viscous_friction = 3;
   one.run(500, viscous);
   EXPECT_NEAR(one.state().velocity, std::pow(1 / (1 + DT * 3), 500), 1e-9);
-  // Stiff: 3000 times what an explicit torque could stand.
+  // Stiff: 3000 times the friction at which an explicit torque is stable.
   viscous.viscous_friction = 6e6;
   one.run(10, viscous);
   EXPECT_NEAR(one.state().velocity, 0, 1e-9);

@@ -142,7 +142,7 @@ TEST(JointWrenches, AgreeWithOdesFeedback) {
 }
 
 // A table on two legs joined to one top closes a loop through the world.
-// What cannot be known from motion comes from ODE's feedback.
+// The load that motion does not determine comes from ODE's feedback.
 TEST(JointWrenches, LoopIsSharedByItsJoints) {
   SolverSettings settings;
   settings.stepper = "world_step";

@@ -95,7 +95,7 @@ TEST_P(Limits, StopUnderLoadWithoutOvershoot) {
     EXPECT_LT(furthest, 0.3 + 1e-9);
     EXPECT_NEAR(world.jointState(joint).position, 0.3 * sign, 1e-9);
     EXPECT_NEAR(world.jointState(joint).effort, 5 * sign, 1e-12);  // the stop is not the motor
-    // And it lets go.
+    // The stop lets go.
     drive.effort = -5 * sign;
     for (int i = 0; i < 50; ++i) world.step(DT, {}, {drive});
     EXPECT_LT(sign * world.jointState(joint).position, 0.299);

@@ -1,4 +1,4 @@
-// Terms side by side against the same terms one by one, and against what defines them.
+// Terms side by side against the same terms one by one, and against their definitions.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -92,7 +92,7 @@ TEST_F(Lane, JointsAnswerAsTheirTerms) {
   }
 }
 
-// The impulse is the nearest point of the cone: what is left of y is normal to it and points away.
+// The impulse is the nearest point of the cone: the rest of y is normal to it and points away.
 TEST_F(Lane, ContactsAreProjectedOnTheirCones) {
   int kinds[3] = {};
   for (int round = 0; round < 1000; ++round) {
@@ -146,7 +146,7 @@ TEST_F(Lane, StiffnessIsTheImpulsesDerivative) {
   }
 }
 
-// Where nothing has changed since the impulse was remembered, it is what is expected; beside that, along the response's stiffness.
+// If nothing has changed since the impulse was remembered, it is the expected one; at other velocities, along the response's stiffness.
 TEST_F(Lane, ExpectsWhatWasRemembered) {
   int slipping = 0;
   for (int round = 0; round < 300; ++round) {

@@ -55,7 +55,7 @@ TEST(Mimic, FollowsItsMasterUnderLoad) {
   EXPECT_LT(worst, 1e-10);
 }
 
-// The master alone carries what loads the mimic joint: virtual work.
+// The master alone carries the mimic joint's load: virtual work.
 TEST(Mimic, HandsItsLoadToTheMaster) {
   World world({0, 0, -G}, {});
   const int a = world.addBody(bar(1, 1)), b = world.addBody(bar(1, 1));

@@ -48,7 +48,7 @@ TEST(Motion, SpinAboutAPrincipalAxisIsExact) {
   EXPECT_NEAR(world.kineticEnergy(), 0.5 * 1.0 / 12 * 0.05 * 100, 1e-12);
 }
 
-/** How a tumbling box fares: its angular momentum and its energy against those of the start. */
+/** A tumbling box: its angular momentum and its energy against those of the start. */
 struct Tumbling {
   explicit Tumbling(const std::string& stepper) {
     SolverSettings settings;
@@ -82,7 +82,7 @@ TEST(Motion, TumblingInOdeLosesALittle) {
   EXPECT_GT(tumbling.lowest, -0.03);
 }
 
-// Carried momentum: what is published swings about it by half a step, and nothing is lost.
+// Carried momentum: the published velocity swings about it by half a step, and nothing is lost.
 TEST(Motion, TumblingInTheArticulatedStepperLosesNothing) {
   const Tumbling tumbling("articulated");
   EXPECT_LT(tumbling.momentum_off, 2e-3);

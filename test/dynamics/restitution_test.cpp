@@ -1,4 +1,4 @@
-// Bounces never make energy: bodies that turn, rows of balls, trees, friction; and what a bounce tells its sensors.
+// Bounces never make energy: bodies that turn, rows of balls, trees, friction; and sensors' readings of a bounce.
 #include <gtest/gtest.h>
 
 #include "bouncing_bodies.h"
@@ -16,7 +16,7 @@ Surface surfaceOf(double restitution, double friction) {
   return surface;
 }
 
-// It gained 21 to 55 % when corners landed in one step and left in the next, each with its own speed.
+// The cube would gain 21 to 55 % if corners landed in one step and left in the next, each with its own speed.
 TEST(Restitution, ATurningCubeKeepsAllItsEnergy) {
   for (int seed = 0; seed < 3; ++seed) {
     BouncingBodies scene(GRAVITY, surfaceOf(1, 0));
@@ -76,7 +76,7 @@ TEST_P(Cradles, AsManyLeaveAsCame) {
 
 INSTANTIATE_TEST_SUITE_P(Gaps, Cradles, ::testing::Values(0, 1e-5, 1e-4, 1e-3));
 
-// One after the other, although they touch: what leaves a pair hits the next.
+// Balls hit one after the other, although they touch: a ball that leaves a pair hits the next.
 TEST(Restitution, ARowOfUnequalBallsPassesTheImpactOn) {
   const double e = 0.7, masses[] = {1, 0.4, 2};
   BouncingBodies scene(Vector3::Zero(), surfaceOf(e, 0.5));
@@ -139,7 +139,7 @@ TEST(Restitution, ComesToRestAndStaysThere) {
   }
 }
 
-// Friction stops the slip of a ball that has the time for it, or takes mu times what the normal impulse was.
+// Friction stops the slip of a ball that has the time for it, or takes mu times the normal impulse.
 TEST(Restitution, FrictionOfAnImpactIsCoulombs) {
   const double e = 0.5, radius = 0.05;
   for (const double mu : {0.05, 1.0}) {
@@ -156,7 +156,7 @@ TEST(Restitution, FrictionOfAnImpactIsCoulombs) {
   }
 }
 
-// And what slides keeps its own friction: the ball's impact rubs with a half of it, with and without a bounce.
+// Sliding contacts keep their own friction: the ball's impact rubs with a half of it, with and without a bounce.
 TEST(Restitution, FrictionOfImpactsMayBeLowerThanThatOfSliding) {
   const double mu = 0.1, factor = 0.5, radius = 0.05;
   for (const double e : {0.0, 0.5}) {
@@ -183,7 +183,7 @@ TEST(Restitution, FrictionOfImpactsMayBeLowerThanThatOfSliding) {
   EXPECT_NEAR(scene.world.bodyState(0).v_WCom.x(), 1 - 0.5 * mu * 9.81, 1e-6);
 }
 
-// The touch bounces; what is too slow for that rests on the springs.
+// The touch bounces; a cube too slow for that rests on the springs.
 TEST(Restitution, ACompliantSurfaceBouncesAtTheTouch) {
   Surface surface = surfaceOf(0.5, 0.5);
   surface.stiffness = 2e4, surface.damping = 200;

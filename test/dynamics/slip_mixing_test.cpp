@@ -21,7 +21,7 @@ class LinearSlips : public ::testing::Test {
     answer();
   }
 
-  /** What a solve would do: velocities that follow from the slips of the proximal point. */
+  /** Answer of a solve: velocities that follow from the slips of the proximal point. */
   void answer() {
     const double sum = block_.slip[0] + block_.slip[1], difference = block_.slip[0] - block_.slip[1];
     const double next_sum = SUM + 0.7 * (sum - SUM), next_difference = DIFFERENCE - 0.4 * (difference - DIFFERENCE);
@@ -47,7 +47,7 @@ TEST_F(LinearSlips, AreFoundFromThreeSteps) {
   }
   mixing_.remember(&block_, &block_ + 1);
   EXPECT_LT(miss(), 1e-12);
-  for (int i = 0; i < 3; ++i) {  // where nothing changes any more it stays
+  for (int i = 0; i < 3; ++i) {  // a fixed point stays
     answer();
     mixing_.remember(&block_, &block_ + 1);
     EXPECT_LT(miss(), 1e-12);

@@ -1,4 +1,4 @@
-// Indices of bodies and joints that were removed are given out again, and nothing of who had them is left.
+// Indices of removed bodies and joints are given out again, and nothing is left of their earlier owners.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -86,7 +86,7 @@ TEST_F(TreeRows, FactorSolves) {
   EXPECT_LT((dense_ * x - x_).norm(), 1e-12);
 }
 
-// Leaves first, and what they leave to the others solved densely: two chains are eliminated, whose ancestors are not.
+// Leaves first, and the rest of the matrix solved densely: two chains are eliminated, whose ancestors are not.
 TEST_F(TreeRows, WhatSomeDofsLeaveToTheOthers) {
   TreeFactor factor;
   factor.resize(forest_);

@@ -6,7 +6,7 @@
 #include "analytic_contacts.h"
 #include "blem_sim/geometry/input_error.h"
 
-// A step that ODE breaks off loses its own record of the call; we keep the rest of that world reachable.
+// A step that ODE breaks off loses its own record of the call; the rest of that world stays reachable.
 extern "C" const char* __lsan_default_suppressions() { return "leak:PreallocateJobInfos"; }
 
 namespace blem_sim {
@@ -62,7 +62,7 @@ class Replay : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(Replay, RestoredMidImpactRunsTheSame) {
   Scene3 scene(GetParam());
-  // Until the bouncing box has just landed, its rebound still to come.
+  // Steps until the bouncing box has just landed, its rebound still to come.
   int steps = 0;
   for (bool landed = false; !landed && steps < 400; ++steps) {
     scene.step();
@@ -108,10 +108,10 @@ TEST_P(Replay, WorldsInThreadsKeepTheirBits) {
 TEST_P(Replay, BrokenStepIsReportedAndTheWorldLivesOn) {
   Scene3 scene(GetParam()), undisturbed(GetParam());
   for (int i = 0; i < 100; ++i) scene.step(), undisturbed.step();
-  // What was asked for is not a number.
+  // The input is not a number.
   scene.contacts = {contactOf(0, WORLD_BODY, {0, 0, std::nan("")}, Vector3::UnitZ(), 0, {}, 1)};
   EXPECT_FALSE(scene.world.step(DT, scene.contacts, std::vector<JointDrive>(2)).finite);
-  // What comes out is not a number: ODE itself fails on it.
+  // The result is not a number: ODE itself fails on it.
   const BodyState sane = scene.world.bodyState(0);
   scene.world.applyWrench(0, {{0, 0, 0}, {1e200, -1e250, 1e290}}, Vector3::Zero());
   EXPECT_FALSE(scene.step().finite);

@@ -178,7 +178,7 @@ TEST(VisitLeafPairs, OrderComesFromTheTreesAlone) {
     visitLeafPairs(tree_a, tree_b, X_BA, margin, [&](std::uint32_t i, std::uint32_t j) { order.emplace_back(i, j); });
     return order;
   };
-  // All pairs, from two poses; a part of them comes in the same order.
+  // All pairs of leaves, from two poses; a part of them comes in the same order.
   const auto all = sequence(Pose::Identity(), 10);
   EXPECT_EQ(all, sequence(random.pose(1), 10));
   const auto some = sequence(makePose({0.21, 0, 0}), 0.01);
@@ -271,7 +271,7 @@ TEST(CastRay, IsTheFirstHitOfAllTriangles) {
 }
 
 TEST(CastRay, SlipsThroughNoSideOfAClosedSurface) {
-  // From the middle through vertices, sides and along the axes, where rays meet two triangles or more at their borders.
+  // Rays from the middle through vertices, sides and along the axes meet two triangles or more at their borders.
   for (const TriangleMesh& mesh : {icosphereMesh(1, 3), boxMesh({1, 2, 3}), subdivided(boxMesh({1, 1, 1}), 3)}) {
     const Bvh tree(mesh);
     for (const Vector3i& e : mesh.elements) {

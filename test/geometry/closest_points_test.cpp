@@ -152,7 +152,7 @@ TEST(ClosestTriangleTriangle, IsTheSameInEveryFrame) {
 TEST(ClosestTriangleTriangle, IsExactlyZeroWhereTheyMeet) {
   RandomShapes random(11);
   for (int i = 0; i < 20000; ++i) {
-    // Both hold the point p, which is inside one and inside, on the border, or at a corner of the other.
+    // Both triangles hold the point p, which is inside one and inside, on the border, or at a corner of the other.
     const Vector3 p = random.point(1);
     Triangle a = random.triangle(1);
     a[2] = 3 * p - a[0] - a[1];
@@ -203,7 +203,7 @@ TEST(ClosestSegmentSegment, IsTheEnumerationOfFaces) {
     if (i % 2 == 0) {
       a0 = random.point(1), a1 = random.point(1), b0 = random.point(1), b1 = random.point(1);
     }
-    // Parallel up to a tilt between nothing and a milliradian.
+    // Segments parallel up to a tilt between nothing and a milliradian.
     if (i % 4 == 0) b1 = b0 + random.uniform(-2, 2) * (a1 - a0) + std::pow(10, random.uniform(-18, -3)) * random.point(1);
     const ClosestPoints found = closestSegmentSegment(a0, a1, b0, b1);
     ASSERT_NEAR(found.distance, simplexDistance({a0, a1}, {b0, b1}), 1e-14) << "pair " << i;

@@ -204,14 +204,14 @@ TEST(PointCloudMesh, KeepsFinitePointsOnce) {
   EXPECT_TRUE(pointCloudMesh({}, &report).elements.empty());
 }
 
-/** What pathological.yaml says of a file, as far as cleaning decides it. */
+/** Counts of a file in pathological.yaml, as far as cleaning decides them. */
 struct Expected {
   const char* file;
   int triangles, degenerate, duplicate, nonfinite;
   int open_edges, nonmanifold_edges;
 };
 
-/** Counts that the yaml gives before cleaning are corrected for what is dropped: a repeated triangle makes edges non-manifold. */
+/** Counts that the yaml gives before cleaning are corrected for dropped elements: a repeated triangle makes edges non-manifold. */
 class PathologicalMesh : public testing::TestWithParam<Expected> {};
 
 TEST_P(PathologicalMesh, IsReportedAsItWasMade) {

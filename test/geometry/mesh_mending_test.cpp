@@ -1,4 +1,4 @@
-// Cracks are closed, T-junctions split, noisy planes made planes; what is whole, curved or meant to be apart stays.
+// Cracks are closed, T-junctions split, noisy planes made planes; surfaces that are whole, curved or meant to be apart stay.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ constexpr double FARTHEST_CRACK = 1.7321 * CRACKS;             // [m]
 constexpr double MOST = FARTHEST_CRACK + 2 * PLANE_DEVIATION;  // [m] from where a vertex should be
 constexpr const char* MUG = BLEM_SIM_SOURCE_DIR "/meshes/shell_mug.stl";
 
-/** A mesh as the loader would clean it, and what mending made of it. */
+/** A mesh as the loader would clean it, and as mending made it. */
 struct Mended {
   explicit Mended(const TriangleMesh& soup) : cleaned(cleanMesh(soup, &report)), mesh(mendMesh(cleaned, &report, &what)) {}
 
@@ -247,7 +247,7 @@ TEST(MeshMending, SurfacesThatBulgeBetweenSharpEdgesStay) {
   EXPECT_TRUE(Mended(bent(60, [](double x, double y) { return 15e-6 * std::sin(7 * x) * std::cos(5 * y); })).same());  // waves
 }
 
-// What a crack explains is a crack's doing: ten micrometres of noise hide a bulge of sixteen, a tenth does not.
+// Bulges that the noise of cracks explains are flattened: ten micrometres of noise hide a bulge of sixteen, a tenth does not.
 TEST(MeshMending, CrackedLensesStayLenses) {
   RandomShapes random(9);
   for (const double sag : {16e-6, 36e-6}) {

@@ -71,7 +71,7 @@ TEST(MeshShrinking, ThinPartsAreHeldBack) {
   EXPECT_GT(what.excess, 0);
 }
 
-/** As in a CAD model: parts that stick in each other shrink each for itself. */
+/** Parts that stick in each other, as in a CAD model, shrink each for itself. */
 TEST(MeshShrinking, PartsThatCrossedBeforeAreNoHindrance) {
   TriangleMesh mesh = boxMesh({0.1, 0.1, 0.1});
   const TriangleMesh rod = boxMesh({0.03, 0.03, 0.3});

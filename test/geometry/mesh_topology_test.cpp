@@ -11,7 +11,7 @@
 namespace blem_sim {
 namespace {
 
-/** How many of `count` numbers a question about them says yes to. */
+/** Number of those from 0 to `count` - 1 for which a predicate holds. */
 template <typename Holds>
 int countOf(int count, Holds&& holds) {
   int found = 0;
@@ -79,7 +79,7 @@ std::vector<int> patchesOf(const TriangleMesh& mesh, const MeshTopology& topolog
   return patches;
 }
 
-/** What does not depend on the mesh: all is as the plain way finds it. */
+/** Expects of any mesh's topology that it is as the plain way finds it. */
 void expectConsistent(const TriangleMesh& mesh, const MeshTopology& topology) {
   const PlainTopology plain(mesh);
   ASSERT_EQ(topology.edgeCount(), static_cast<int>(plain.edges.size()));

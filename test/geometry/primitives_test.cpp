@@ -27,7 +27,7 @@ double area(const TriangleMesh& mesh) {
   return sum;
 }
 
-/** Closed, nothing to clean. */
+/** Expects a closed mesh with nothing to clean. */
 void expectClosed(const TriangleMesh& mesh, int triangles) {
   MeshReport report;
   cleanMesh(mesh, &report);

@@ -55,7 +55,7 @@ bool sameBits(const std::vector<T>& a, const std::vector<T>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
 }
 
-/** All that a topology tells. */
+/** All numbers that a topology tells. */
 std::vector<int> told(const Loaded& loaded) {
   const TriangleMesh& mesh = loaded.mesh;
   const MeshTopology& topology = loaded.topology;

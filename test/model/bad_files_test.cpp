@@ -1,4 +1,4 @@
-// Files that are damaged are refused with one line that names the file and what is wrong; none crashes or allocates what it announces.
+// Damaged files are refused with one line that names the file and the fault; none crashes or allocates memory for all that it announces.
 #include <gtest/gtest.h>
 
 #include <cctype>

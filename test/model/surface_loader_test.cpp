@@ -113,7 +113,7 @@ TEST(SurfaceLoader, colladaUnitsAreAppliedAndTheUpAxisIsNot) {
 }
 
 TEST(SurfaceLoader, nodeTransformsAreBakedInFileUnits) {
-  // Scaled by 2, turned by 90 deg about z, moved by (10, 20, 30) inches.
+  // The mesh is scaled by 2, turned by 90 deg about z, moved by (10, 20, 30) inches.
   expectBounds(loadSurface(dataFile("inch_z_up_nested.dae")), 0.0254 * Vector3(6, 20, 30), 0.0254 * Vector3(10, 22, 36));
 }
 

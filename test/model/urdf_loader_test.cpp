@@ -153,7 +153,7 @@ TEST(UrdfLoader, inertialFramesTurnTheInertia) {
   const Inertial& inertial = *robot.links[0].inertial;
   EXPECT_EQ(inertial.mass, 4);
   EXPECT_TRUE(inertial.com.isApprox(Vector3(1, 2, 3), 1e-15));
-  // Turned by 90 deg about z: x becomes y, y becomes -x.
+  // The frame is turned by 90 deg about z: x becomes y, y becomes -x.
   Matrix3 expected;
   expected << 2, -0.1, -0.3, -0.1, 1, 0.2, -0.3, 0.2, 2.5;
   EXPECT_TRUE(inertial.inertia.isApprox(expected, 1e-12)) << inertial.inertia;

@@ -9,7 +9,7 @@ using Clock = StepPacer::Clock;
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
-/** How many steps are due at once at `now`, each taking no time. */
+/** Number of steps that are due at once at `now`, each taking no time. */
 int stepsDue(StepPacer* pacer, Clock::time_point now) {
   int steps = 0;
   while (pacer->wait(now) <= 0 && steps < 100000) {
@@ -23,7 +23,7 @@ TEST(StepPacer, KeepsTheFactor) {
   const Clock::time_point start = Clock::now();
   StepPacer pacer(2.0, 0.001);
   pacer.restart(start);
-  // Woken every 0.7 ms, it owes a step per 0.5 ms.
+  // A pacer that wakes every 0.7 ms owes a step per 0.5 ms.
   int steps = 0;
   for (int wake = 0; wake <= 1000; ++wake) steps += stepsDue(&pacer, start + wake * microseconds(700));
   EXPECT_EQ(steps, 1401);

@@ -1,4 +1,4 @@
-// Messages of steps go out in order, and have gone out when they are waited for. Who is not waited for wakes by itself in time.
+// Messages of steps go out in order, and have gone out when drain() returns. Without it the sender's thread wakes by itself in time.
 #include "step_sender.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ class Numbers {
     const std::lock_guard<std::mutex> lock(mutex_);
     return published_;
   }
-  /** False if they are not that many within 20 s. */
+  /** Waits for `count` messages. False if they are not that many within 20 s. */
   bool waitFor(std::size_t count) const {
     const Clock::time_point deadline = Clock::now() + std::chrono::seconds(20);
     while (published().size() < count && Clock::now() < deadline) std::this_thread::sleep_for(milliseconds(1));

@@ -108,7 +108,7 @@ std::string wheelUrdf(const std::string& mesh) {
     <joint name="axle" type="continuous"><parent link="base"/><child link="gear"/><axis xyz="0 0 1"/></joint></robot>)";
 }
 
-// Two gears, one driven: other teeth touch all the time. Warm is what has turned once.
+// Two gears, one driven: other teeth touch all the time. They are warm after one turn.
 TEST(StepAllocation, NoneInAWarmStepOfGears) {
   constexpr int TEETH = 20;
   constexpr double ROOT = 0.09, TIP = 0.11, LAYER = 0.0005;
@@ -129,7 +129,7 @@ TEST(StepAllocation, NoneInAWarmStepOfGears) {
   EXPECT_NEAR(simulator.report().joints[1].velocity, -3, 1.5);
 }
 
-// Rings that hang in each other and swing: what is new in its kind still asks now and then.
+// Rings that hang in each other and swing: contacts of a new kind still allocate now and then.
 TEST(StepAllocation, FewInWarmStepsOfAHangingChain) {
   constexpr int RINGS = 5;
   constexpr double RADIUS = 0.03, THICKNESS = 0.004;

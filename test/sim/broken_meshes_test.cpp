@@ -22,7 +22,7 @@ constexpr int CUBES = 10;
 // A cube that rocks on cracks of 10 um may take 20 s to come to rest.
 constexpr double SECONDS = SANITIZED ? 2 : 30;
 
-/** What a stack does in its last second. */
+/** A stack in its last second. */
 struct Stack {
   double away = 0;          ///< [m] of the cube farthest from where theory puts it
   double rms_velocity = 0;  ///< [m/s]
@@ -94,7 +94,7 @@ struct Resting {
   Vector3 start;  ///< [m]
 };
 
-/** Where it comes to rest, and what holds it there: force [N] and torque [N m] about where it is. */
+/** Pose of a body at rest, and the wrench that holds it: force [N] and torque [N m] about its origin. */
 struct Rest {
   Pose X_WB;
   Wrench wrench;
@@ -168,7 +168,7 @@ TriangleMesh hills(double size, int cells, double height) {
   return mesh;
 }
 
-/** With its lowest point at z = 0. */
+/** A mesh moved so that its lowest point is at z = 0. */
 TriangleMesh onGround(const TriangleMesh& mesh) { return transformed(mesh, makePose({0, 0, -mesh.bounds().min().z()})); }
 
 TEST(BrokenMeshes, CubeRestsWhereTheWholeOneDoes) {
@@ -204,7 +204,7 @@ TEST(BrokenMeshes, PathologicalCubesRestWhereTheWholeOneDoes) {
   }
 }
 
-/** Its triangles are off by 0.15 mm and more, which is no crack any more but a shape: it stands on what sticks out most. */
+/** Triangles off by 0.15 mm and more are no crack any more but a shape: the soup stands on the corners that stick out most. */
 TEST(BrokenMeshes, SoupOfTrianglesStandsOnWhatSticksOut) {
   const char* const SOUP = "pathological/cube_cracked_soup.ply";
   SKIP_WITHOUT_SHARED_DATA(SOUP);

@@ -338,7 +338,7 @@ TEST(NearestName, TakesTheFewestEdits) {
   EXPECT_EQ(nearestName("x", {}), "");
 }
 
-// Before a node is built, of which each takes kilobytes.
+// The list is refused before a node is built, of which each takes kilobytes.
 TEST(ConfigFile, AMillionObjectsAreRefusedWhereTheyBecomeTooMany) {
   const TemporaryFolder folder;
   std::string text = "time_step: 0.001\nobjects:\n";

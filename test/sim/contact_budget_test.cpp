@@ -1,4 +1,4 @@
-// Budgets are a wish: what stands on many others, or carries many, never falls through.
+// Budgets are a wish: a body that stands on many others, or carries many, never falls through.
 #include <algorithm>
 #include <cmath>
 
@@ -50,12 +50,12 @@ SimulationConfig loadedTray(int rows) {
 
 struct Carried {
   int fallen = 0;
-  double farthest = 0;  ///< [m] of a cube from where it was put on what carries it
+  double farthest = 0;  ///< [m] of a cube from its first place on its carrier
   double tilt = 0;      ///< [rad]
   double speed = 0;     ///< [m/s] of the fastest cube
 };
 
-/** @param moved [m] by which the carrier went up */
+/** @param moved [m] rise of the carrier */
 Carried cubesOf(const Simulator& simulator, const SimulationConfig& config, double moved) {
   Carried carried;
   for (const ObjectConfig& object : config.objects) {

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double DT = 1e-3;
 
-/** Bodies of 2 kg in free space, and what a solve is said to have done to them. */
+/** Bodies of 2 kg in free space, and the result of a solve made by hand. */
 class HandMadeSolve {
  public:
   explicit HandMadeSolve(int bodies, const Vector3& gravity = Vector3::Zero())

@@ -1,4 +1,4 @@
-// Environments that come and go: slots are used again, and who comes is not taken for who was there.
+// Environments that come and go: slots are used again, and a new environment is not taken for the old one.
 #include "blem_sim/geometry/input_error.h"
 #include "simulation_scene.h"
 #include "support/sanitizers.h"
@@ -52,8 +52,7 @@ TEST(EnvironmentSlots, TheLowestFreeOneIsTaken) {
   EXPECT_EQ(simulator.modelIndex("a"), -1);
 }
 
-/** Whatever touches on the ground that is taken away is new to the next ground in its slot: the rebound of what had landed is gone with it.
- */
+/** Bodies that touch a ground that is taken away are new to the next ground in its slot: the rebound of landed ones is gone with it. */
 TEST(EnvironmentSlots, NothingIsTakenForWhatItWasBefore) {
   for (const char* stepper : {"articulated", "world_step", "quick_step"}) {
     SimulationConfig config = cubeOnGround();

@@ -1,4 +1,4 @@
-// Fast drops: nothing passes, whatever it hits. A part of the sweep in test/soak/fast_drops_test.cpp.
+// Fast drops: no body passes any other. A part of the sweep in test/soak/fast_drops_test.cpp.
 #include "fast_throw.h"
 
 namespace blem_sim {

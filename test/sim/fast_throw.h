@@ -1,4 +1,4 @@
-// A body thrown down at something that stands still or comes up, and what became of it.
+// A body thrown down at another that stands still or comes up, and the outcome.
 #pragma once
 
 #include <algorithm>
@@ -11,25 +11,25 @@
 
 namespace blem_sim {
 
-/** What is thrown, and what it is thrown at: mesh, and its extent over and under its frame [m]. */
+/** The thrown body, or the one it is thrown at: mesh, and its extent over and under its frame [m]. */
 struct ThrowBody {
   std::string uri;
-  double half_height = 0;  ///< [m] of its box, turned any way for what is thrown
+  double half_height = 0;  ///< [m] of its box; of the thrown body's, turned any way
   double half_width = 0;   ///< [m] of a sheet: within it no centre may get below it; 0: not a sheet
 };
 
 struct ThrowScene {
   ThrowBody thrown, hit;
   double speed = 20;                 ///< [m/s] of approach
-  Vector3 turn = Vector3::Zero();    ///< [rad] roll, pitch, yaw of what is thrown
+  Vector3 turn = Vector3::Zero();    ///< [rad] roll, pitch, yaw of the thrown body
   Vector3 spin = Vector3::Zero();    ///< [rad/s] of it
   Vector3 beside = Vector3::Zero();  ///< [m] by which it is thrown off the middle
-  bool both_move = false;            ///< what is hit is free too, of the same mass, and comes up at half the speed
-  double at_rest = 0;                ///< [kg] of what is hit, free too and at rest; 0: it is not
+  bool both_move = false;            ///< the body that is hit is free too, of the same mass, and comes up at half the speed
+  double at_rest = 0;                ///< [kg] of the body that is hit, free too and at rest; 0: it is not
 };
 
 struct ThrowOutcome {
-  bool passed = false;  ///< bare meshes crossed at the end of a step, or the centre of what is thrown went through the other mesh in one
+  bool passed = false;  ///< bare meshes crossed at the end of a step, or the thrown body's centre went through the other mesh in one
   int pierced_steps = 0, most_substeps = 0, most_redone = 0, redone_steps = 0;
   double max_of_layer = 0;
 
@@ -55,7 +55,7 @@ inline ThrowBody sheetHit(double size, int cells) {
   return {meshFile("sheet" + std::to_string(cells), gridMesh(size, size, cells, cells)), 0, 0.5 * size};
 }
 inline ThrowBody boxHit() { return {meshFile("hit_box", boxMesh(Vector3::Constant(0.1))), 0.05, 0}; }
-/** Upright, across the plate that is thrown. */
+/** A plate to be hit, upright, across the plate that is thrown. */
 inline ThrowBody plateHit() {
   return {meshFile("hit_plate", transformed(gridMesh(0.1, 0.1, 1, 1), makePose(Vector3::Zero(), {M_PI / 2, 0, M_PI / 2}))), 0.05, 0};
 }
@@ -87,7 +87,7 @@ inline SimulationConfig configOf(const ThrowScene& scene) {
   return config;
 }
 
-/** 40 ms of the throw. @param aroundStep is called with what makes a step */
+/** Makes 40 ms of the throw. @param aroundStep is called with the function that makes a step */
 template <typename AroundStep>
 ThrowOutcome throwIt(const ThrowScene& scene, const SolverSettings& solver, AroundStep&& aroundStep) {
   SimulationConfig config = configOf(scene);

@@ -1,4 +1,4 @@
-// Heaps, towers and mass ratios: what many bodies that push each other do, from any start, without a word of trouble.
+// Heaps, towers and mass ratios: many bodies that push each other, from any start, without a word of trouble.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 namespace blem_sim {
 namespace {
 
-/** What was seen of some steps. */
+/** Figures of some steps. */
 struct Seen {
   int trouble = 0;     ///< steps that said SOLVER_TROUBLE
   double gained = 0;   ///< [J] most in a step
@@ -47,7 +47,7 @@ TEST(Heaps, SixtyCubesTumbleWithoutTrouble) {
   EXPECT_LT(seen.deepest, 0.25);
 }
 
-// What is gained below the bound of ENERGY_GAINED corrects depth.
+// Energy gained below the bound of ENERGY_GAINED corrects depth.
 TEST(Heaps, PouredSpheresGainNoEnergy) {
   Simulator simulator(spheresInBin(64, 3, SolverSettings()), UriResolver());
   const Seen seen = run(&simulator, 0.6);

@@ -1,5 +1,4 @@
-// Impacts of which the momentum is known: what sensors and reports tell, times the step, is its change, in however many parts a step is
-// made.
+// Impacts of known momentum: forces of sensors and reports, times the step, are its change, whatever the number of parts of a step.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -11,7 +10,7 @@ namespace blem_sim {
 namespace {
 
 constexpr double ASKED = 1e-3;  // of mass times speed
-constexpr double EXACT = 1e-9;  // of mass times speed: what rounding and the solver's own tolerance leave
+constexpr double EXACT = 1e-9;  // of mass times speed: miss by rounding and the solver's own tolerance
 const double SPEEDS[] = {0.5, 1, 3.1, 5, 10, 19.8, 20}, TIME_STEPS[] = {1e-3, 5e-3};
 
 /** A trunk of 4 kg, its centre of mass beside the ankle, on a foot of 1 kg; 0.34 m from the trunk's origin to the sole. */
@@ -47,7 +46,7 @@ SensorConfig sensorOf(SensorType type, const std::string& link, const std::strin
   return sensor;
 }
 
-/** World of one sheet and a lean of gravity, in which what starts at `above` the place where it lands lands at the speed. */
+/** World of one sheet and a lean of gravity, in which a body that starts at `above` its place of landing lands at the speed. */
 SimulationConfig landingWorld(const Landing& landing, Vector3* above) {
   SimulationConfig config;
   config.time_step = landing.time_step;
@@ -74,7 +73,7 @@ SimulationConfig hopperWorld(const Landing& landing) {
   return config;
 }
 
-/** By how much impulses miss changes of momentum: in all, and in the worst step. */
+/** Misses of impulses to changes of momentum: in all, and in the worst step. */
 struct Missed {
   Vector3 sum = Vector3::Zero();
   double worst = 0;
@@ -86,7 +85,7 @@ struct Missed {
 
 int stepsOf(const Landing& landing) { return static_cast<int>((landing.speed / G + 0.1) / landing.time_step); }
 
-/** What a hopper's sensors and the list of contacts miss, as parts of mass times speed. */
+/** Misses of a hopper's sensors and of the list of contacts, as parts of mass times speed. */
 struct HopperMissed {
   Missed sole, contacts, ankle, ankle_torque, imu;
   int most_parts = 1;
@@ -143,7 +142,7 @@ TEST(ImpactReports, RobotOnItsFoot) {
           EXPECT_LT(missed.ankle.sum.norm(), ASKED * 5 * speed) << scene;
           EXPECT_TRUE(speed < 5 || missed.most_parts > 1) << scene;
           if (ankle != "fixed" || friction > 0) continue;
-          // It slides on without turning: each step is right by itself, and torques too.
+          // The hopper slides on without turning: each step is right by itself, and torques too.
           EXPECT_LT(missed.sole.worst, EXACT * 5 * speed) << scene;
           EXPECT_LT(missed.contacts.worst, EXACT * 5 * speed) << scene;
           EXPECT_LT(missed.ankle.worst, EXACT * 5 * speed) << scene;

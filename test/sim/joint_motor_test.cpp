@@ -48,7 +48,7 @@ TEST(JointMotor, IntegralDoesNotWindUpWhileSaturated) {
       motor.sample(i * DT, DT);
       EXPECT_TRUE(motor.accept(motor.drive({0, 0, 0}), {0, 0, 0}, DT));
     }
-    // 100 N m/rad ask for 100; of the integral nothing but what the first steps gave.
+    // 100 N m/rad ask for 100; the integral holds nothing but its gain of the first steps.
     motor.hold(-0.1, 0);
     motor.sample(5, DT);
     const JointDrive drive = motor.drive({0, 0, 0});

@@ -11,7 +11,7 @@ namespace {
 constexpr double LAYER = 0.0025;                   // [m] of a box on the ground
 constexpr double STOP = LayerStops::STOP * LAYER;  // [m]
 constexpr double STIFFNESS = 1e4, DAMPING = 200;   // of a box, per contact
-constexpr double BEARS = 4 * STIFFNESS * STOP;     // [N] what four corners bear as springs
+constexpr double BEARS = 4 * STIFFNESS * STOP;     // [N] load that four corners bear as springs
 
 void soften(ObjectConfig* object, double damping = DAMPING) {
   object->contact.stiffness = STIFFNESS;
@@ -83,7 +83,7 @@ TEST(LayerStops, RestIsAsExactAsThatOfRigidContacts) {
   EXPECT_LT((bodyOf(simulator, "cube").X_WB.translation() - before).norm(), 1e-9);
 }
 
-/** As many deep contacts on a circle, as deep as each other. */
+/** A manifold of `count` contacts on a circle, all of one depth. */
 ContactManifold ringOf(int count, double depth) {
   ContactManifold ring;
   ring.a = 3;

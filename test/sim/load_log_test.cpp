@@ -1,4 +1,4 @@
-// What long loads tell while they last, and at their end.
+// Messages of long loads while they last, and at their end.
 #include <algorithm>
 #include <atomic>
 #include <fstream>

@@ -69,7 +69,7 @@ TEST(ManyBodies, MoreModelsThanAreSimulatedAreRefusedInOneLine) {
   }
 }
 
-// Meshes cross from the start: the step says so, stays finite, and what crossed parts at a bounded speed.
+// Meshes cross from the start: the step says so, stays finite, and crossed bodies part at a bounded speed.
 TEST(ManyBodies, AHundredStartedInsideEachOtherIsSaidSo) {
   SimulationConfig config;
   config.environments = {ground(8)};
@@ -87,7 +87,7 @@ TEST(ManyBodies, AHundredStartedInsideEachOtherIsSaidSo) {
   EXPECT_LT(fastest, 10);
 }
 
-// All in one place: finite, said so, and looked at within a bound that does not grow as the square of their number.
+// Bodies all in one place: the step is finite, says so, and searches fewer pairs than a bound that does not grow as their number squared.
 TEST(ManyBodies, TwoHundredAtOnePlaceAreBounded) {
   constexpr int CUBES = SANITIZED ? 60 : 200, MOST_PAIRS_OF_ONE = 8;
   SimulationConfig config;

@@ -1,4 +1,4 @@
-// What passes beside something without touching it goes on as if nothing were there.
+// A body that passes beside another without touching it goes on as if nothing were there.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -144,7 +144,7 @@ TEST(NearMiss, DescendingPastTheFarEdgeChangesNothing) {
       }
 }
 
-/** Over a narrow ridge on a falling path: gravity is all that there is. Steps that are made in parts fall less. */
+/** A cube flies over a narrow ridge on a falling path: gravity alone acts. Steps that are made in parts fall less. */
 TEST(NearMiss, OnAFallingPathOnlyGravityActs) {
   EnvironmentConfig ridge;
   ridge.name = "ridge";
@@ -182,7 +182,7 @@ ObjectConfig pointBall(const std::string& name, const Vector3& position, const V
   return ball;
 }
 
-/** Without friction a ball loses what goes along the line to the edge that it touches. */
+/** Without friction a ball loses its velocity along the line to the edge that it touches. */
 TEST(NearMiss, BallThatMeetsAnEdgeTurnsAsTheEdgeTellsIt) {
   EnvironmentConfig table;
   table.name = "table";
@@ -198,7 +198,7 @@ TEST(NearMiss, BallThatMeetsAnEdgeTurnsAsTheEdgeTellsIt) {
         const Vector3 normal = part < 1 ? Vector3(-std::sqrt(1 - part * part), 0, part) : Vector3::UnitZ();
         const Vector3 expected = config.objects[0].linear_velocity - config.objects[0].linear_velocity.dot(normal) * normal;
         stepFor(&simulator, 0.12 / speed);
-        // It lands in one part of a step and has stopped in the next, by when it is elsewhere.
+        // The ball lands in one part of a step and has stopped in the next, by when it is elsewhere.
         const double turned = part < 1 ? std::min(1.0, 2 * speed * dt / 0.05) : 0;
         EXPECT_LT((bodyOf(simulator, "ball").v_WCom - expected).norm(), (1e-6 + turned) * speed)
             << part << " of the radius, " << speed << " m/s, dt " << dt << ": " << bodyOf(simulator, "ball").v_WCom.transpose() << " not "
@@ -207,7 +207,7 @@ TEST(NearMiss, BallThatMeetsAnEdgeTurnsAsTheEdgeTellsIt) {
       }
 }
 
-/** Off their middles, balls without friction exchange what goes along the line between them, here half of it: nothing bounces. */
+/** Balls that meet off their middles without friction exchange velocity along the line between them, here half of it: nothing bounces. */
 TEST(NearMiss, BallsThatMeetOffTheirMiddlesLoseWhatGoesAlongTheirLine) {
   for (const double part : {0.0, 0.5, 0.9, 0.99, 1.0002})
     for (const double speed : {1.0, 3.0}) {

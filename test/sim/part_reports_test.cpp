@@ -1,4 +1,4 @@
-// What the parts of a step become together, against sums made the plain way.
+// Reports of a step from its parts, against sums made the plain way.
 #include "part_reports.h"
 
 #include <gtest/gtest.h>

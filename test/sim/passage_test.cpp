@@ -6,12 +6,12 @@
 namespace blem_sim {
 namespace {
 
-/** What became of a wall below bodies. */
+/** Passages of bodies through a wall below them, and whether they were said and told. */
 struct Watched {
   bool behind = false, unsaid = false, untold = false;
 };
 
-/** @param body what must stay over z = 0 */
+/** @param body name of the body that must stay over z = 0 */
 Watched watch(const SimulationConfig& config, const std::string& body, int steps, const JointCommandMessage& command = {}) {
   Simulator simulator(config, UriResolver());
   if (!command.joints.empty()) simulator.commandJoints(0, command);

@@ -1,4 +1,4 @@
-// Past the layer: what starts inside something else, or was driven into it, leaves it steadily and the way it came, and comes to rest.
+// Past the layer: a body that starts inside another, or was driven into it, leaves it steadily and the way it came, and comes to rest.
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +11,7 @@ namespace {
 constexpr double SEPARATION_SPEED = 0.1;  // [m/s] of a contact
 constexpr double AT_REST = 1e-3;          // [m/s]
 
-/** What became of a scene. */
+/** Outcome of a scene. */
 struct Outcome {
   double fastest = 0;       ///< [m/s] of any body's middle, while meshes cross
   double max_of_layer = 0;  ///< while meshes cross
@@ -48,7 +48,7 @@ TEST(Recovery, CubeStartedInABoxRisesSteadily) {
     const Outcome outcome = run(&simulator, 1);
     EXPECT_NEAR(outcome.max_of_layer, 1 + depth / 0.005, 1e-6);
     EXPECT_LT(outcome.fastest, SEPARATION_SPEED);
-    // At that speed while meshes cross, then as much slower as less of the layer is used up, until a quarter is left.
+    // The cube leaves at that speed while meshes cross, then as much slower as less of the layer is used up, until a quarter is left.
     EXPECT_NEAR(outcome.unreliable_steps, 1e3 * (depth + 0.005 * std::log(4)) / SEPARATION_SPEED, 15);
     EXPECT_FALSE(outcome.unreliable_at_end);
     EXPECT_LT(outcome.speed_at_end, 1e-6);

@@ -68,7 +68,7 @@ TEST_P(SphereCradle, KeepsItsEnergyAndAsManyLeaveAsCame) {
 
 INSTANTIATE_TEST_SUITE_P(Gaps, SphereCradle, ::testing::Values(0, 1e-5, 1e-4, 1e-3));
 
-// Of triangles, where contacts come and go.
+// Bounces of meshes, whose contacts come and go.
 TEST(BouncingMeshes, NeverGain) {
   for (const double restitution : {0.5, 0.8, 1.0}) {
     SimulationConfig config;

@@ -74,7 +74,7 @@ TEST(RobotBuilder, HoldsAndTheMimicFollows) {
   EXPECT_NEAR(position("finger_a"), 0.03, 1e-4);
   EXPECT_NEAR(position("finger_b"), 0.5 * position("finger_a") + 0.01, 1e-5);
   EXPECT_NEAR(position("shoulder"), 0, 1e-2);
-  // Nothing ties the floating link.
+  // The floating link is free: it falls.
   EXPECT_NEAR(simulator.linkPose(0, link(simulator, "balloon")).translation().z(), 3 + 1 - 0.5 * G * 9, 0.05);
 }
 

@@ -42,7 +42,7 @@ inline SimulationConfig sceneOfAllKinds(const std::string& stepper = "articulate
   return config;
 }
 
-/** On its way: 60 ms after a trajectory was given. */
+/** Brings the simulation on its way: 60 ms after a trajectory was given. */
 inline void setOut(Simulator* simulator) {
   JointTrajectory trajectory;
   trajectory.joints = {"hinge"};

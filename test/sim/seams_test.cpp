@@ -27,7 +27,7 @@ struct Cut {
 /** The same ground in pieces. */
 std::vector<Cut> cuts() {
   const auto half = [](double x, double height) { return transformed(boxMesh({2, 1, height}), makePose({x, 0, -height / 2})); };
-  // Along a line askew.
+  // A seam along a line askew.
   TriangleMesh left, right;
   left.vertices = {{-2, -0.5, 0}, {-0.1, -0.5, 0}, {0.1, 0.5, 0}, {-2, 0.5, 0}};
   right.vertices = {{-0.1, -0.5, 0}, {2, -0.5, 0}, {2, 0.5, 0}, {0.1, 0.5, 0}};

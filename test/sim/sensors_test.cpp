@@ -46,7 +46,7 @@ TEST(ForceTorqueSensor, WeightAndMomentInEveryFrameAndSign) {
   Simulator simulator(config, UriResolver());
   stepFor(&simulator, 0.2);
 
-  // In the mast's axes: com at R_y(-90) (0.1, 0, 0) = (0, 0, 0.1) from the flange; gravity -y; the wrist is held up by +y.
+  // Wrench in the mast's axes: com at R_y(-90) (0.1, 0, 0) = (0, 0, 0.1) from the flange; gravity -y; the wrist is held up by +y.
   const Vector3 force_P(0, 2 * G, 0), torque_P = Vector3(0, 0, 0.1).cross(force_P);
   const Matrix3 R_CP = makePose(Vector3::Zero(), {0, -M_PI / 2, 0}).linear().transpose();
   for (int i = 0; i < 6; ++i) {
@@ -125,7 +125,7 @@ TEST(ImuSensor, InFreeFallItFeelsNothing) {
   EXPECT_NEAR(tilt.pitch, 0.2, 1e-9);
 }
 
-/** A balanced disc about z on a post: what turns it is its motor alone. */
+/** A balanced disc about z on a post: its motor alone turns it. */
 const char* const TURNTABLE = R"(<robot name="turntable">
   <link name="post"/>
   <link name="disc"><inertial><mass value="1"/><inertia ixx="0.1" iyy="0.1" izz="0.2" ixy="0" ixz="0" iyz="0"/></inertial></link>
@@ -210,7 +210,7 @@ TEST(ContactSensor, TotalIsTheWeight) {
   EXPECT_EQ(sole.contacts.size(), 4u);
   EXPECT_EQ(sole.link_body, simulator.robots()[0].bodies[0]);
   expectNear(sole.total.force, {0, 0, 3 * G}, 1e-5);
-  // About the link's origin: the weight's lever arm is 0.02 m along x.
+  // Torque about the link's origin: the weight's lever arm is 0.02 m along x.
   expectNear(sole.total.torque, {0, -0.02 * 3 * G, 0}, 1e-4);
   const ContactReading hat = reading<ContactReading>(simulator.report(), 1);
   EXPECT_TRUE(hat.contacts.empty());

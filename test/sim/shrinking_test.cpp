@@ -1,4 +1,4 @@
-// Meshes shrunk by their layers: what a model measures, and what the load report says.
+// Meshes shrunk by their layers: the size of a model, and the words of the load report.
 #include "simulation_scene.h"
 
 namespace blem_sim {

@@ -127,7 +127,7 @@ TEST(SimulatorCommands, AJointWithoutEndTakesTheNearestTurn) {
   EXPECT_NEAR(turned(-7, 0), 2 * M_PI, 1e-6);
 }
 
-// Whatever is taken leaves the simulation running.
+// Commands that are not refused leave the simulation running.
 TEST(SimulatorCommands, WhatIsTooLargeIsRefused) {
   const auto expectRefused = [](const std::string& urdf_joint, double target) {
     SimulationConfig config = pendulumScene();

@@ -70,7 +70,7 @@ TEST(SimulatorState, RefusesAStateOfOtherModels) {
   EXPECT_EQ(other.stateHash(), before);
 }
 
-/** Whatever is missing at the end, of the dynamics' state or of the rest, it is said, and nothing is taken. */
+/** A state with any part missing at the end, of the dynamics' or of the rest, is refused, and nothing of it is taken. */
 TEST(SimulatorState, RefusesAStateThatIsCutShort) {
   Simulator simulator(busyScene(), UriResolver()), other(busyScene(), UriResolver());
   stepFor(&simulator, 0.25);

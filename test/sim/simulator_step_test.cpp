@@ -1,4 +1,4 @@
-// What bodies do under the step: fall, rest, roll, stack.
+// Motion of bodies under the step: fall, rest, roll, stack.
 #include <cmath>
 
 #include "simulation_scene.h"

@@ -1,4 +1,4 @@
-// Saved states that somebody changed: refused with nothing changed, or at least restored into something that steps.
+// Saved states that were changed: refused with nothing changed, or at least restored into something that steps.
 #include "blem_sim/geometry/input_error.h"
 #include "saved_scene.h"
 #include "state_header.h"
@@ -51,7 +51,7 @@ TEST_P(StateFuzz, OneChangedLetterOfTheLayoutIsRefused) {
   }
 }
 
-/** Whoever changes a state and its checksum with it is refused in one line with nothing changed, or gets what steps on. */
+/** A state that is changed together with its checksum is refused in one line with nothing changed, or can be stepped on. */
 TEST_P(StateFuzz, OneChangedWordUnderItsOwnChecksumBreaksNothing) {
   Simulator simulator(sceneOfAllKinds(GetParam()), UriResolver()), other(sceneOfAllKinds(GetParam()), UriResolver());
   setOut(&simulator);
@@ -82,7 +82,7 @@ TEST_P(StateFuzz, OneChangedWordUnderItsOwnChecksumBreaksNothing) {
   }
   EXPECT_GT(refused * STRIDE, 300);
   EXPECT_GT(restored * STRIDE, 300);
-  // Nothing of all that is left.
+  // Nothing is left of all these states.
   other.restore(saved);
   stepFor(&other, 0.01);
   EXPECT_EQ(other.stateHash(), end);

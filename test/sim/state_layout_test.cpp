@@ -1,4 +1,4 @@
-// A saved state goes on only where all is the same that its numbers rest on; else it is said what is not.
+// A saved state goes on only if all that its numbers rest on is the same; else the message names the difference.
 #include <functional>
 
 #include "blem_sim/geometry/input_error.h"
@@ -75,7 +75,7 @@ TEST(StateLayout, SaysWhatIsNotTheSame) {
   }
 }
 
-/** A mesh of the same file name, whose vertices somebody has moved by a micrometre. */
+/** A mesh of the same file name, whose vertices were moved by a micrometre. */
 TEST(StateLayout, SeesAMeshThatOnlyItsVerticesTellApart) {
   SimulationConfig config = sceneOfAllKinds();
   TriangleMesh mesh = boxMesh({0.1, 0.1, 0.1});

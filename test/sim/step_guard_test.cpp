@@ -102,7 +102,7 @@ TEST_F(UsesUpLayer, RefusesWhatPassedThrough) {
   // 20 mm down, and on the other side nothing is near any more.
   after_[0].X_WB.translation().z() = -0.02;
   EXPECT_TRUE(check({manifold(-0.002)}, {}));
-  // Sideways is no danger.
+  // Motion sideways is no danger.
   after_[0].X_WB.translation() = Vector3(0.02, 0, 0);
   EXPECT_FALSE(check({manifold(-0.002)}, {}));
 }
@@ -113,7 +113,7 @@ TEST_F(UsesUpLayer, IgnoresPairsWithoutLayer) {
   EXPECT_FALSE(check({}, {bare}));
 }
 
-/** Height [m] of a cube 0.3 s after it was thrown at a single sheet; was a bare mesh ever pierced? */
+/** Height [m] of a cube 0.3 s after it was thrown at a single sheet. @param pierced whether a bare mesh ever was */
 double thrownAtSheet(double speed, double tilt, bool* pierced) {
   SimulationConfig config;
   config.environments = {ground()};
@@ -165,7 +165,7 @@ TEST(StepGuard, OnlyWhatIsFastAndNearShortensTheStep) {
   EXPECT_EQ(mostSubsteps({0, 0, 0.5}, {20, 0, 0}, {0, 0, 100}), 1);
   EXPECT_EQ(mostSubsteps({0, 0, 0.2}, {0, 0, 20}, zero), 1);
   EXPECT_GT(mostSubsteps({0, 0, 0.2}, {0, 0, -10}, zero), 1);
-  // On its way along the sheet it might meet what no contact foresees.
+  // On its way along the sheet the cube might meet features that no contact foresees.
   EXPECT_GT(mostSubsteps({0, 0, 0.0525}, {5, 0, 0}, zero), 1);
   EXPECT_GT(mostSubsteps({0, 0, 0.0525}, zero, {0, 0, 100}), 1);
 }

@@ -1,4 +1,4 @@
-// What tells whether a run is to be trusted: contacts that leave their layers, energy out of nothing.
+// Signs that a run may not be trusted: contacts that leave their layers, energy out of nothing.
 #include <cmath>
 #include <utility>
 
@@ -65,7 +65,7 @@ TEST(LayerWatch, TellsWhatPassedThoughNeitherEndIsOutside) {
   for (const LayerEventReport& event : events) EXPECT_TRUE(event.outside);
   EXPECT_TRUE(events[0].pierced && !events[1].pierced && events[2].pierced);
   EXPECT_DOUBLE_EQ(events[2].of_layer, 0.2);
-  // Behind each other they are apart again: three changes.
+  // Pairs that are behind each other count as apart again: three changes.
   EXPECT_EQ(lookAt(&watch, {}, 1).size(), 3u);
 }
 

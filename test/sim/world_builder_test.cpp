@@ -48,7 +48,7 @@ TEST(WorldBuilder, MassFromVolumeSurfaceOrConfiguration) {
   const MassProperties closed = simulator.world().bodySpec(0).inertial;
   EXPECT_EQ(closed.mass, 2);
   EXPECT_LT((closed.com - Vector3(0.05, 0, 0)).norm(), 1e-12);
-  // Turned by 90 degrees: 0.2 m along x now. The file is read in single precision.
+  // The box is turned by 90 degrees: 0.2 m along x now. The file is read in single precision.
   EXPECT_NEAR(closed.inertia(0, 0), 2.0 / 12 * (0.01 + 0.09), 1e-8);
   EXPECT_NEAR(closed.inertia(1, 1), 2.0 / 12 * (0.04 + 0.09), 1e-8);
   EXPECT_GT(simulator.world().bodySpec(1).inertial.inertia(0, 0), 2.0 / 12 * (0.04 + 0.09));

@@ -15,7 +15,7 @@ const Vector3 HAND(0.1, 0.08, 0.08);
 /** A world of links that are each their own joint's child, with the drives beside them. */
 struct Mechanism {
   Mechanism() : world(GRAVITY, soakSettings()) {}
-  /** Its frame is the joint's; the box lies from there to `reach`. */
+  /** Adds a link whose frame is the joint's; its box lies from there to `reach`. */
   int addLink(const std::string& name, double mass, const Vector3& reach, const Pose& X_WB) {
     BodySpec spec = boxBody(name, mass, reach.cwiseAbs() + Vector3::Constant(0.02), Vector3::Zero());
     spec.inertial.com = reach / 2;
@@ -46,7 +46,7 @@ struct Pushers : Mechanism {
       bases.push_back(addJoint(JointKind::FIXED, WORLD_BODY, base, Vector3::UnitX()));
       const int push = addJoint(JointKind::PRISMATIC, base, slide, Vector3::UnitX());
       const int wrist = addJoint(JointKind::REVOLUTE, slide, hand, Vector3::UnitY());
-      // Unequal: one gives way until the other's spring balances it.
+      // Unequal stiffnesses: one gives way until the other's spring balances it.
       drives[push].stiffness = side < 0 ? 4000 : 1500, drives[push].damping = 200, drives[push].target_position = -0.05 * side;
       drives[push].dry_friction = 2;
       drives[wrist].stiffness = 50, drives[wrist].damping = 1;
@@ -71,14 +71,14 @@ struct Pushers : Mechanism {
 
 TEST(SoakPushing, ForcesAreEqualAndOpposite) {
   Pushers pushers;
-  // In motion the two ways to reckon a step's forces, from joint coordinates and from bodies, differ by what a step changes of them.
+  // In motion the two ways to reckon a step's forces, from joint coordinates and from bodies, differ by the forces' change.
   double moving = 0, worst = 0, force = 0, gap = 0;
   const int steps = soakSteps(20, 3);
   for (int i = 0; i < steps; ++i) {
     const std::vector<BodyState> before = bodyStates(pushers.world);
     const SolveResult& result = pushers.step();
     ASSERT_TRUE(result.finite) << i;
-    // What each robot feels from the other: what its bodies' motion needs, less what its base gives.
+    // Force on each robot from the other: that which its bodies' motion needs, less its base's.
     Vector3 felt[2];
     for (int k = 0; k < 2; ++k)
       felt[k] =
@@ -136,7 +136,7 @@ TEST(SoakFourBar, StaysClosedWhileItsCrankTurns) {
   EXPECT_NEAR(bar.world.jointState(0).velocity, 3, 0.3);
 }
 
-// No motor at all: it swings, and neither opens nor gains energy.
+// A four-bar without any motor swings, and neither opens nor gains energy.
 TEST(SoakFourBar, SwingsFreely) {
   FourBar bar;
   const double start = bar.world.kineticEnergy() + bar.world.potentialEnergy();

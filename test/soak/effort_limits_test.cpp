@@ -96,7 +96,7 @@ struct HeavyOnLight {
     const int shin = addLink(foot, boxBody("shin", 0.02, {0.05, 0.05, 0.4}, {0, 0, 0.04}), 0.2);
     body = addLink(shin, boxBody("body", 40, TORSO, {0, 0, 0.44}), 0.2);
   }
-  /** Its frame is the joint, its centre of mass above it. */
+  /** Adds a link whose frame is the joint's, its centre of mass above it. */
   int addLink(int parent, BodySpec spec, double com_height) {
     spec.inertial.com = {0, 0, com_height};
     const int link = world.addBody(spec);

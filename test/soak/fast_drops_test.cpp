@@ -1,4 +1,4 @@
-// Thrown bodies must not pass, whatever they hit, how they are turned and how thin it is; and what a step of it costs at most.
+// Thrown bodies must not pass any body, however thin, at any turn; and the largest time of a step.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -9,7 +9,7 @@
 namespace blem_sim {
 namespace {
 
-/** Throws in every orientation at a speed; prints what became of it. */
+/** Throws in every orientation at a speed; prints the outcome. */
 void sweep(const std::string& name, ThrowScene scene, double speed) {
   ThrowOutcome all;
   StepTimes times;
@@ -42,7 +42,7 @@ void sweep(const std::string& name, ThrowScene scene, double speed) {
   EXPECT_LE(all.most_redone, Substeps::MAX_REDONE);
 }
 
-/** Any turn, spin, speed and place. */
+/** Throws of any turn, spin, speed and place. */
 TEST(FastThrows, AtRandom) {
   std::mt19937_64 generator(7);
   const auto uniform = [&generator](double low, double high) {
@@ -84,7 +84,7 @@ TEST(FastThrows, AtRandom) {
   figure("throws at random: greatest depth", all.max_of_layer, "of the layer");
 }
 
-/** Started in each other: they part steadily. */
+/** Mugs that start in each other part steadily. */
 TEST(Recovery, InterlockedMugs) {
   SimulationConfig config;
   config.solver = soakSettings();

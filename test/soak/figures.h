@@ -1,4 +1,4 @@
-// How the long runs speak: figures on lines of their own, times of single steps, and what the environment asks for.
+// Output of the long runs: figures on lines of their own, times of single steps; and their environment variables.
 #pragma once
 
 #include <time.h>
@@ -29,18 +29,18 @@ inline SolverSettings soakSettings() {
   return settings;
 }
 
-/** Is a short run asked for (environment variable BLEM_SIM_SOAK_SHORT)? */
+/** Whether a short run is asked for (environment variable BLEM_SIM_SOAK_SHORT). */
 inline bool soakShort() {
   const char* set = std::getenv("BLEM_SIM_SOAK_SHORT");
   return set && *set && *set != '0';
 }
 
-/** [steps of 1 ms] simulated: what must be shown, or the short run's. */
+/** Number of simulated steps of 1 ms: for the seconds that must be shown, or for the short run's. */
 inline int soakSteps(double seconds, double short_seconds) {
   return static_cast<int>(std::lround(1000 * (soakShort() ? short_seconds : seconds)));
 }
 
-/** [s] of processor time of this thread. */
+/** Processor time [s] of this thread. */
 inline double threadSeconds() {
   timespec t;
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);

@@ -81,7 +81,7 @@ struct Flight {
 
 class FreeFlight : public ::testing::TestWithParam<double> {};
 
-// Thrown with every limb in motion; motors without damping or friction hold the first posture.
+// A robot is thrown with every limb in motion; motors without damping or friction hold the first posture.
 TEST_P(FreeFlight, KeepsItsMomenta) {
   SKIP_WITHOUT_SHARED_DATA(HUBO_FOLDER);
   HuboOptions options = flying();

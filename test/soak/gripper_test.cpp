@@ -47,7 +47,7 @@ struct Gripper {
     return world.addJoint(spec, position);
   }
 
-  /** Closes with growing q. @param side 1: at +y @param first joint to be mimicked, -1 for none @return its hinge */
+  /** Adds a finger that closes with growing q. @param side 1: at +y @param first joint to be mimicked, -1 for none @return its hinge */
   int addFinger(int side, int first) {
     const Vector3 axis = -side * Vector3::UnitX();
     const auto turned = [&](double q) {
@@ -118,7 +118,7 @@ double cornerMotion(const Pose& before, const Pose& after) {
   return worst;
 }
 
-/** Largest deviations, and what they are measured against. */
+/** Largest deviations, and the largest torque, against which they are measured. */
 struct WrenchErrors {
   double force = 0, torque = 0, largest_torque = 0;
   void add(const Wrench& measured, const Wrench& expected) {

@@ -1,4 +1,4 @@
-// Heaps: thirty cubes of twelve triangles that tumble onto each other, and what is poured into a bin: no energy out of nothing, none lost.
+// Heaps: thirty cubes of twelve triangles that tumble onto each other, and pieces poured into a bin: no energy out of nothing, none lost.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -61,7 +61,7 @@ struct Pour {
   double rest;     ///< [m/s] at their end, at most: balls roll on, small parts settle slowly
 };
 
-/** What became of one heap. */
+/** Outcome of one heap. */
 struct PourOutcome {
   double gained = 0, out_of_nothing = 0;  ///< [J] in a step, at most
   double deepest = 0;                     ///< of the layers

@@ -70,7 +70,7 @@ RobotConfig huboConfig(const YAML::Node& world, const HuboOptions& options) {
   return config;
 }
 
-/** Of two springs or dampers in a row. */
+/** Stiffness or damping of two springs or dampers in a row. */
 double inRow(double a, double b) { return a * b / (a + b); }
 
 Surface footOnGround(const YAML::Node& world, bool compliant) {

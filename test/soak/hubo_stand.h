@@ -47,7 +47,7 @@ class HuboStand {
 
   /** Contacts and drives of the coming step. */
   void prepare();
-  /** The step alone: what is to be timed. */
+  /** The step alone, for timing. */
   const SolveResult& solve() { return sim_.world.step(DT, contacts_, drives_); }
   const SolveResult& step() {
     prepare();
@@ -64,7 +64,7 @@ class HuboStand {
   std::vector<JointMotor>& motors() { return sim_.motors; }
   const std::vector<ContactConstraint>& contacts() const { return contacts_; }
   const std::vector<JointDrive>& drives() const { return drives_; }
-  /** May be changed between prepare() and solve(). */
+  /** Drives of the joints, which may be changed between prepare() and solve(). */
   std::vector<JointDrive>& drives() { return drives_; }
   int leftFoot() const { return feet_[0]; }
   double time() const { return static_cast<double>(steps_) * DT; }

@@ -41,7 +41,7 @@ TEST(Replay, RestoredInTheMiddleOfAnImpact) {
   std::printf("hash after the impact: %016" PRIx64 "\n", first);
 }
 
-/** False where the solver has no such setting. */
+/** Sets the number of threads; false where the solver has no such setting. */
 template <typename Settings>
 auto setThreads(Settings* settings, int threads, int) -> decltype(settings->threads = threads, true) {
   settings->threads = threads;

@@ -77,7 +77,7 @@ struct Throw {
   double most;  ///< [J] out of nothing in a step
 };
 
-/** Turned and spinning at random. @param any a number from -1 to 1 */
+/** An object turned and spinning at random. @param any a number from -1 to 1 */
 ObjectConfig thrown(ObjectConfig object, const std::function<double()>& any) {
   const double x = any(), y = any(), z = any();
   object.X_WO.linear() = makePose(Vector3::Zero(), 3 * Vector3(x, y, z)).linear();

@@ -1,4 +1,4 @@
-// Where bare meshes are, told by the poses of bodies alone: nothing here asks the simulator's contacts or bits.
+// Places of bare meshes by the poses of bodies alone: nothing here asks the simulator's contacts or bits.
 #pragma once
 
 #include <optional>
@@ -28,7 +28,7 @@ inline Vector3 centreOf(const Simulator& simulator, int collider) {
   return simulator.report().bodies[c.body].X_WB * simulator.world().bodySpec(c.body).inertial.com;
 }
 
-/** Does the segment cross a triangle of the mesh, in the mesh's frame? */
+/** Whether the segment crosses a triangle of the mesh, in the mesh's frame. */
 inline bool crossesMesh(const Vector3& p, const Vector3& q, const CollisionGeometry& geometry) {
   bool crosses = false;
   const Box box(p.cwiseMin(q), p.cwiseMax(q));
@@ -44,7 +44,7 @@ inline bool crossesMesh(const Vector3& p, const Vector3& q, const CollisionGeome
   return crosses;
 }
 
-/** Does an edge of one mesh cross a triangle of the other, either way round? */
+/** Whether an edge of one mesh crosses a triangle of the other, either way round. */
 inline bool meshesCross(const Simulator& simulator, int a, int b) {
   for (const auto& [edges, faces] : {std::pair(a, b), std::pair(b, a)}) {
     const CollisionGeometry &of_edges = *simulator.colliders()[edges].geometry, &of_faces = *simulator.colliders()[faces].geometry;
@@ -58,7 +58,7 @@ inline bool meshesCross(const Simulator& simulator, int a, int b) {
   return false;
 }
 
-/** Did a body's centre of mass go through another mesh, straight from one look to the next? */
+/** Tells whether a body's centre of mass went through another mesh, straight from one look to the next. */
 class CentrePath {
  public:
   CentrePath(int thrown, int hit) : thrown_(thrown), hit_(hit) {}
@@ -97,10 +97,10 @@ struct Wall {
   }
 };
 
-/** How much of a body is behind a wall. */
+/** Part of a body that is behind a wall. */
 enum class Behind { NOTHING, SOME, ALL };
 
-/** What is beside a sheet is not behind it: it may have left it over its edge. */
+/** Whether p is beside a sheet, not behind it: a body may have left it over its edge. */
 inline bool isBeside(const Wall& wall, const Box& bounds, const Vector3& p) {
   return wall.planes.size() == 1 &&
          (p.x() < bounds.min().x() || p.x() > bounds.max().x() || p.y() < bounds.min().y() || p.y() > bounds.max().y());

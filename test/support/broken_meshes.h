@@ -23,7 +23,7 @@ inline TriangleMesh shuffledCopy(const TriangleMesh& mesh, RandomShapes& random)
   return copy;
 }
 
-/** Half of the triangles wound the other way. */
+/** A copy with half of the triangles wound the other way. */
 inline TriangleMesh rewoundCopy(const TriangleMesh& mesh, RandomShapes& random) {
   TriangleMesh copy = mesh;
   for (Vector3i& e : copy.elements) {

@@ -79,7 +79,7 @@ class Chain {
     for (int i = 0; i < world.bodyCount(); ++i) sum += world.bodySpec(i).inertial.mass * world.bodyState(i).v_WCom;
     return sum;
   }
-  /** About the world's origin. */
+  /** Angular momentum about the world's origin. */
   Vector3 angularMomentum() const {
     Vector3 sum = Vector3::Zero();
     for (int i = 0; i < world.bodyCount(); ++i) {

@@ -1,4 +1,4 @@
-// Counts what a test program asks the heap for. Included by one file of a program, where glibc is without the sanitizers' heap.
+// Counts the allocations of a test program. Included by one file of a program, where glibc is without the sanitizers' heap.
 #pragma once
 
 #include <malloc.h>
@@ -8,7 +8,7 @@
 
 namespace {
 std::atomic<long> allocations{0};
-std::atomic<long> held_bytes{0};  // of what was asked for and not given back, as malloc rounds it up
+std::atomic<long> held_bytes{0};  // of allocations that were not given back, as malloc rounds them up
 }  // namespace
 
 // Stand before glibc's own in this program, so that Eigen's allocations are seen like those of new.

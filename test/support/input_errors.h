@@ -1,4 +1,4 @@
-// What the text of a refusal must be.
+// Form of a refusal's text.
 #pragma once
 
 #include <string>

@@ -12,7 +12,7 @@
 
 namespace blem_sim {
 
-/** A robot of a random scene and what its joints are told at the start. */
+/** A robot of a random scene and its joints' command at the start. */
 struct RandomRobot {
   RobotConfig config;
   JointCommandMessage command;
@@ -115,7 +115,7 @@ inline RandomRobot randomTree(SceneNumbers* numbers, const std::string& name, co
   return robot;
 }
 
-/** A hand of two fingers along x that hangs from the world and closes on what is between them, `width` wide. */
+/** A hand of two fingers along x that hangs from the world and closes on a body of `width` between them. */
 inline RandomRobot randomHand(SceneNumbers* numbers, const std::string& name, const Vector3& position, double width) {
   RandomRobot robot;
   robot.driven = true;

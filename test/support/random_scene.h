@@ -22,12 +22,12 @@ struct RandomScene {
   std::string description;                    ///< one line
 };
 
-/** What holds for all bodies of a scene. */
+/** Traits of all bodies of a scene. */
 struct SceneTraits {
   double size;           // [m] of a body, typically
   double size_spread;    // factor by which bodies differ from it at most
   double pitch;          // of the lattice they start in, of the larger ones' diagonal; below 1 they may overlap
-  bool any_mass;         // 1e-3 to 1e3 kg whatever the size
+  bool any_mass;         // 1e-3 to 1e3 kg for any size
   double throws, spins;  // fractions of bodies
   int columns;           // of the lattice
 };

@@ -1,4 +1,4 @@
-// Runs a random scene for a second and says what must not be.
+// Runs a random scene for a second and reports faults.
 #pragma once
 
 #include <fmt/format.h>
@@ -15,7 +15,7 @@ namespace blem_sim {
 
 constexpr int STATUS_BITS = 9;
 
-/** Plain, so that a process can hand it to another. */
+/** Outcome of a scene, plain data so that a process can hand it to another. */
 struct SceneOutcome {
   std::uint64_t seed = 0;
   char failure[32] = "";   ///< its kind, empty if there is none
@@ -53,11 +53,11 @@ class SceneWatch {
     lookAtEnergy(report);
     lookAtFloor(report);
   }
-  /** [J] the larger of what moves and what fell since the start. */
+  /** [J] largest kinetic energy, or change of energy, since the start. */
   double scale() const { return scale_; }
 
  private:
-  // Where nothing drives, energy is at most what it was and what the steps said.
+  // Without drives energy is at most that of the start plus the gains that the steps said.
   void lookAtEnergy(const StepReport& report) {
     const double rise = report.energy - start_;
     if (!std::isfinite(rise)) return;
@@ -67,7 +67,8 @@ class SceneWatch {
     if (scene_.passive && unsaid > 1e-3 * scale_ + 1e-6)
       outcome_.fail("energy unsaid", fmt::format("{:.3g} J at {:.3f} s", unsaid, report.time));
   }
-  /** [J] by which energy is not known: what bodies fall in half a step. Where a step is shortened, it stays as it was until then. */
+  /** [J] bound on the energy that is not known, by the fall of bodies in half a step: taken for a whole one. If a step is shortened, it
+   * stays as it was until then. */
   double lag(const StepReport& report) const {
     double energy = 0;
     for (std::size_t b = 0; b < report.bodies.size(); ++b)

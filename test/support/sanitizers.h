@@ -1,4 +1,4 @@
-// Where the sanitizers make everything some thirty times slower, long searches take fewer samples.
+// Fewer samples of long searches under the sanitizers, which make everything some thirty times slower.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,8 @@ constexpr bool SANITIZED = true;
 constexpr bool SANITIZED = false;
 #endif
 
-/** How many samples a search takes of those it takes without sanitizers; environment variable BLEM_SIM_SAMPLES multiplies them. */
+/** Number of samples of a search that takes `full` without sanitizers: an eighth with them; else the environment variable BLEM_SIM_SAMPLES
+ *  multiplies them. */
 inline int samples(int full) {
   const char* set = std::getenv("BLEM_SIM_SAMPLES");
   const int times = set && std::atoi(set) > 0 ? std::atoi(set) : 1;

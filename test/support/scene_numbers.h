@@ -14,9 +14,9 @@ class SceneNumbers {
   explicit SceneNumbers(std::uint64_t seed) : numbers_(seed) {}
 
   double uniform(double low, double high) { return low + (high - low) * numbers_.uniform(); }
-  /** Uniform in the logarithm. */
+  /** A number from low to high, uniform in the logarithm. */
   double spread(double low, double high) { return low * std::pow(high / low, numbers_.uniform()); }
-  /** low to high, both included. */
+  /** A whole number from low to high, both included. */
   int count(int low, int high) { return low + static_cast<int>(numbers_.next() % static_cast<std::uint64_t>(high - low + 1)); }
   bool chance(double probability) { return numbers_.uniform() <= probability; }
   Vector3 direction() {

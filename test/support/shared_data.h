@@ -1,4 +1,4 @@
-// Where the shared robots, scans and worlds are, if they are on this machine.
+// Paths of the shared robots, scans and worlds, if they are on this machine.
 #pragma once
 
 #include <cstdlib>

@@ -1,4 +1,4 @@
-// One 64-bit seed makes one scene of things thrown at walls, at bodies at rest before them, and driven into them; and what became of it.
+// One 64-bit seed makes one scene of things thrown at walls, at bodies at rest before them, and driven into them; and its outcome.
 #pragma once
 
 #include <fmt/format.h>
@@ -14,7 +14,7 @@
 
 namespace blem_sim {
 
-/** What is thrown where, 0.1 to 100 m/s, 0.1 to 10 ms. */
+/** A scene of thrown bodies, 0.1 to 100 m/s, time steps of 0.1 to 10 ms. */
 struct ThrownScene {
   SimulationConfig config;
   JointCommandMessage command;  ///< to the robot, if there is one

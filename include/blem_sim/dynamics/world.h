@@ -48,10 +48,10 @@ struct BodyState {
 struct JointState {
   double position = 0;  ///< [rad or m], counts full turns
   double velocity = 0;
-  double effort = 0;  ///< [N m or N] what motor and joint friction exerted along the axis in the last step
+  double effort = 0;  ///< [N m or N] of motor and joint friction, along the axis, in the last step
 };
 
-/** What drives one joint during one step. Every term acts together. */
+/** Drive of one joint during one step. All terms act together. */
 struct JointDrive {
   double effort = 0;  ///< [N m or N] given in advance: explicit PID, already capped, or an outside effort
   /** Implicit PD: stiffness (target_position - q) + damping (target_velocity - qdot), both taken at the end of the step, bounded by
@@ -84,16 +84,16 @@ struct SolverSettings {
   double joint_cfm = 1e-10;
 };
 
-/** What one solve did; lives until the next one. Indices go with the constraints, joints, bodies given. */
+/** Result of one solve; lives until the next one. Indices go with the constraints, joints, bodies given. */
 struct SolveResult {
   std::vector<Vector3> contact_forces;  ///< [N] on body A, world axes, mean over the step
-  std::vector<Wrench> joint_wrenches;   ///< what the child feels from the parent, world axes, about the joint frame's origin at the
-                                        ///< start of the step; from motion (Newton-Euler over the step), not from a residual
+  std::vector<Wrench> joint_wrenches;   ///< from the parent on the child, world axes, about the joint frame's origin at the start of
+                                        ///< the step; from motion (Newton-Euler over the step), not from a residual
   std::vector<double> joint_efforts;    ///< [N m or N] motor and friction along the axis
-  std::vector<double> apparent_work;    ///< [J] per contact: what departures and slips that loads end within the step, and bent paths,
-                                        ///< make look like work of the contact, at most; empty where a stepper does not know it
-  double residual = 0;    ///< [N] by how much contact forces miss Coulomb's law, worst contact; 0 where a stepper does not know it
-  double creep = 0;       ///< [rad/s or m/s] by how much velocities miss momentum's balance, contacts, sticking joints, limits or loops
+  std::vector<double> apparent_work;    ///< [J] per contact: apparent work, at most, of departures and slips that loads end within the
+                                        ///< step, and of bent paths; empty where a stepper does not know it
+  double residual = 0;                  ///< [N] largest miss of Coulomb's law by a contact's force; 0 where a stepper does not know it
+  double creep = 0;       ///< [rad/s or m/s] largest miss of velocities to momentum's balance, contacts, sticking joints, limits or loops
   int iterations = 0;     ///< of the solver, over all islands
   int lcp_errors = 0;     ///< the complementarity solver complained; the step was redone with more CFM
   bool too_fast = false;  ///< joints or bodies turned too far in the step for their free motion to be followed: shorten dt
@@ -109,7 +109,7 @@ struct WorldState {
 
 /**
  * Bodies and joints in an ODE world. Deterministic: same calls, same bits. Not thread safe.
- * Indices returned by add functions stay valid until the thing is removed; what is added next gets the lowest free index.
+ * Indices returned by add functions stay valid until the thing is removed; the next one added gets the lowest free index.
  */
 class World {
  public:
@@ -134,9 +134,9 @@ class World {
   BodyState bodyState(int body) const;
   void setBodyState(int body, const BodyState& state);
   JointState jointState(int joint) const;
-  /** Tells the joint which position its bodies' poses stand for, after setBodyState; keeps count of full turns. */
+  /** Sets the position that the joint's bodies' poses stand for, after setBodyState; keeps count of full turns. */
   void resetJointPosition(int joint, double position);
-  /** For steps that are made of several of the world's: JointState::effort of every joint [N m or N], until the next step. */
+  /** Sets JointState::effort of every joint [N m or N] until the next step, for steps that are made of several of the world's. */
   void setJointEfforts(const std::vector<double>& efforts);
 
   const Vector3& gravity() const;
@@ -154,11 +154,11 @@ class World {
   WorldState save() const;
   /** The same into a state that is used again. */
   void save(WorldState* state) const;
-  /** Precondition: state was saved from a world with the same bodies and joints. */
+  /** Restores a saved state. Precondition: it is of a world with the same bodies and joints. */
   void restore(const WorldState& state);
   /**
    * The same for a state that comes from outside.
-   * @throws InputError in one line, nothing being changed: it is of other bodies or joints, is cut short, counts what it cannot hold, or
+   * @throws InputError in one line, nothing being changed: it is of other bodies or joints, is cut short, counts more than it can hold, or
    * its numbers cannot be those of bodies
    */
   void restoreChecked(const WorldState& state);

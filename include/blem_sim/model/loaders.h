@@ -27,7 +27,7 @@ class UriResolver {
   std::map<std::string, std::string> packages_;
 };
 
-/** How a file of points is to be simulated. */
+/** Settings of a file of points in the simulation. */
 struct CloudOptions {
   enum class As { AUTO, POINTS, MESH };
   As as = As::AUTO;             ///< AUTO: points for a file without faces, triangles otherwise
@@ -35,16 +35,16 @@ struct CloudOptions {
   double max_edge = 0.05;       ///< [m] as: mesh; longest edge that joins neighbours of an organized cloud or of the projection mesher
 };
 
-/** Are meshes for contact mended after cleaning (mendMesh), or taken as they are? */
+/** Whether meshes for contact are mended after cleaning (mendMesh), or taken as they are. */
 enum class Mending { ON, OFF };
 
 /** Called when a stage of a load begins, with its name and the part of the load that lies behind, 0 to 1. */
 using LoadProgress = std::function<void(const std::string& stage, double fraction)>;
 
-/** Part of a load that topology and tree take, about, which are made of what a loader gives. */
+/** Part of a load that topology and tree take, about; both are made from the loader's surface. */
 constexpr double TREE_FRACTION = 0.3;
 
-/** A mesh or a cloud as contact wants it. */
+/** A mesh or a cloud as the contact room takes it. */
 struct LoadedSurface {
   std::shared_ptr<const TriangleMesh> mesh;      ///< scaled, cleaned, mended, mesh frame
   std::shared_ptr<const MeshTopology> topology;  ///< of the mesh, if mending has found it; else null
@@ -65,7 +65,8 @@ LoadedSurface loadSurface(const std::string& file, const Vector3& scale = Vector
                           Mending mending = Mending::ON, const LoadProgress& progress = {});
 
 /**
- * Parses URDF text. Limits of 1e6 and more mean none. What is not simulated (safety_controller, gazebo, transmission ...) is noted.
+ * Parses URDF text. Limits of 1e6 and more mean none. Blocks that are not simulated (safety_controller, gazebo, transmission ...) are
+ * noted.
  * @param source for messages; @param base directory for relative mesh paths. @param progress told link by link; may be empty
  * @throws InputError
  */

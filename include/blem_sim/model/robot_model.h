@@ -64,13 +64,13 @@ struct RobotModel {
   std::vector<LinkModel> links;
   std::vector<JointModel> joints;
   int root = 0;                    ///< index of the root link
-  std::vector<std::string> notes;  ///< what was repaired or left out, in words
+  std::vector<std::string> notes;  ///< repairs and parts left out, in words
 
   int linkIndex(const std::string& link) const;    ///< -1 if there is none
   int jointIndex(const std::string& joint) const;  ///< -1 if there is none
 };
 
-/** Where a link sits on a rigid body of a LumpedRobot. */
+/** Place of a link on a rigid body of a LumpedRobot. */
 struct LinkPlacement {
   int body = 0;
   Pose X_BL = Pose::Identity();  ///< link frame in the body's frame

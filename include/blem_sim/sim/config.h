@@ -1,4 +1,4 @@
-// The YAML of interface: what a simulation is made of. Filled by config_parser, or by hand in tests.
+// Configuration of a simulation, as in the YAML of the interface. Filled by config_parser, or by hand in tests.
 #pragma once
 
 #include <limits>
@@ -65,7 +65,7 @@ struct SensorConfig {
   SensorType type = SensorType::IMU;
   std::string joint;                        ///< force_torque
   std::string frame = "child";              ///< force_torque: child | parent | sensor (axes of the joint frame)
-  std::string measure = "parent_to_child";  ///< force_torque: parent_to_child (what the child feels) | child_to_parent
+  std::string measure = "parent_to_child";  ///< force_torque: parent_to_child (the wrench on the child) | child_to_parent
   std::string link;                         ///< imu, contact, tilt
   std::string topic;                        ///< empty: the sensor's name
   Pose X_LS = Pose::Identity();             ///< imu, tilt: sensor in the link
@@ -79,7 +79,7 @@ struct RobotConfig {
   std::string name;
   std::string urdf;               ///< file or URI, or
   std::string description_param;  ///< ROS parameter that holds the text (node), or
-  std::string urdf_xml;           ///< the text itself (what the node puts here; spawned robots)
+  std::string urdf_xml;           ///< the text itself (set by the node; spawned robots)
   std::string name_space;
   bool fixed_base = false;
   Pose X_WR = Pose::Identity();  ///< root link in the world
@@ -130,7 +130,7 @@ struct SimulationConfig {
   std::vector<RobotConfig> robots;
   std::vector<ObjectConfig> objects;
   PublishRates rates;
-  std::string base_directory;  ///< relative files are meant against it
+  std::string base_directory;  ///< of relative files
 };
 
 /**

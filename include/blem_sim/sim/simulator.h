@@ -53,15 +53,15 @@ struct JointCommandMessage {
   std::vector<double> positions, velocities, efforts;
 };
 
-/** Where long loads tell how far they are, and how large what they have loaded is: which models, stages, seconds, triangles, memory. */
+/** Log of long loads: their progress, and the size of the loaded model: names, stages, seconds, triangles, memory. */
 struct LoadLog {
   std::function<void(const std::string& line)> tell;  ///< also called by a thread of its own, never by two at once; may be empty
-  double interval = 1;                                ///< [s] between lines; what takes less than that is not told
+  double interval = 1;                                ///< [s] between lines; shorter loads are not told
 };
 
-/** What a saved state says of itself; restore holds it against the content. */
+/** Header of a saved state; restore checks it against the content. */
 struct StateHeader {
-  std::uint64_t format = 0;    ///< a mark, and the version of what follows
+  std::uint64_t format = 0;    ///< a mark, and the version of the content
   std::uint64_t layout = 0;    ///< hash of SimulationState::layout
   std::uint64_t length = 0;    ///< of the content, in words of 64 bits
   std::uint64_t checksum = 0;  ///< of layout and content
@@ -74,7 +74,8 @@ struct SimulationState {
   WorldState world;
   std::vector<double> numbers;
   std::vector<std::uint64_t> words;
-  std::string layout;  ///< what it belongs to: settings, models, bodies, joints, colliders, sensors; each with a hash of what it holds
+  std::string
+      layout;  ///< things the state belongs to: settings, models, bodies, joints, colliders, sensors; each with a hash of its content
 };
 
 /**
@@ -101,9 +102,9 @@ class Simulator {
   const std::vector<ModelInfo>& models() const;
   const std::vector<RobotInfo>& robots() const;
   const std::vector<SensorInfo>& sensors() const;
-  const std::vector<Collider>& colliders() const;  ///< with pose on the body, geometry, width: what markers draw
+  const std::vector<Collider>& colliders() const;  ///< with pose on the body, geometry, width; markers draw them
   const std::vector<MeshReport>& loadReport() const;
-  const std::vector<std::string>& notes() const;  ///< what was repaired or assumed while loading, in words
+  const std::vector<std::string>& notes() const;  ///< repairs and assumptions made while loading, in words
   std::string bodyName(int body) const;           ///< "model::link", "world" for WORLD_BODY
   const World& world() const;
 
@@ -114,20 +115,20 @@ class Simulator {
   /** @throws InputError: unknown joint, NaN, wrong sizes; nothing is changed then */
   void commandTrajectory(int robot, const JointTrajectory& trajectory);
   void commandJoints(int robot, const JointCommandMessage& command);
-  JointSample desiredState(int robot, int joint) const;  ///< what the motor is told now; joint = index into joint_names
+  JointSample desiredState(int robot, int joint) const;  ///< command of the motor now; joint = index into joint_names
 
   /** Adds static geometry between steps, in the lowest slots that are free. @throws InputError if it cannot be loaded or the name is taken
    */
   void loadEnvironment(const EnvironmentConfig& environment);
   /**
-   * Takes it out with all that is remembered of its contacts, so report() holds none until the next step, which tells that pairs outside
-   * their layers are gone. Its slots (indices of model and collider) are free; an environment that takes them before that step is told
-   * nothing of those pairs.
+   * Takes an environment out with all memory of its contacts, so report() holds none until the next step, which tells that pairs outside
+   * their layers are gone. Its slots (indices of model and collider) are free; if an environment takes them before that step, those pairs
+   * are not told.
    * @throws InputError if there is no such environment
    */
   void unloadEnvironment(const std::string& name);
 
-  /** Models back to where they started, at rest (objects at their configured velocity), commands and sensors cleared; time goes on. */
+  /** Models back to their start poses, at rest (objects at their configured velocity), commands and sensors cleared; time goes on. */
   void resetWorld();
   /** The same, and time and random generators start again. */
   void resetSimulation();
@@ -136,7 +137,8 @@ class Simulator {
   /**
    * Goes on from a saved state with the same bits.
    * @throws InputError in one line, nothing being changed: the state is another version's, was changed or cut short after it was saved,
-   * belongs to other models or settings (it says which body's mass, joint's gains, collider's mesh), or holds what no simulation saves
+   * belongs to other models or settings (it says which body's mass, joint's gains, collider's mesh), or has content that no simulation
+   * saves
    */
   void restore(const SimulationState& state);
   /** 64-bit hash of all state that steps depend on. */

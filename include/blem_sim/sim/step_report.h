@@ -1,4 +1,4 @@
-// What one step did, as immutable plain data: sensors, statistics and publishers read this and nothing else.
+// Report of one step, as immutable plain data: sensors, statistics and publishers read this and nothing else.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace blem_sim {
 
-/** Bits of StepReport::status. Each says what to change. */
+/** Bits of StepReport::status. Each comment says which setting to change. */
 enum StepStatus : std::uint32_t {
   STEP_OK = 0,
   STEP_SHORTENED = 1u << 0,  ///< bodies so fast that they could use up a boundary layer: the step was made in parts. Thicker boundary_width
@@ -20,8 +20,8 @@ enum StepStatus : std::uint32_t {
   CONTACT_UNRELIABLE = 1u << 1,  ///< bare meshes cross, or did and are not apart yet: directions there are the way back or a guess; or they
                                  ///< crossed within the step and may be on each other's other side. Thicker boundary_width, smaller
                                  ///< time_step, or a better start pose
-  CONTACTS_REDUCED = 1u << 2,  ///< contacts were left out by max_contacts_per_robot/object; StepReport::wrench_error says how far wrenches
-                               ///< may be off for it. Raise them if that is too much
+  CONTACTS_REDUCED = 1u << 2,    ///< contacts were left out by max_contacts_per_robot/object; StepReport::wrench_error is the largest
+                                 ///< error of wrenches by that. Raise them if it is too much
   SOLVER_TROUBLE = 1u << 3,  ///< the complementarity solver complained and the step was redone softer, or Newton stopped at its bound with
                              ///< contact forces off by over 1 % of the largest, or velocities by 0.01. Smaller time_step, fewer contacts;
                              ///< ODE: more solver.cfm
@@ -29,7 +29,7 @@ enum StepStatus : std::uint32_t {
   EFFORT_SATURATED = 1u << 5,  ///< a motor ran into its effort limit. Raise effort_limits, or a slower motion
   JOINT_LIMIT_HIT = 1u << 6,   ///< a joint is at its limit
   ENERGY_GAINED = 1u << 7,     ///< an island of bodies gained more energy out of nothing than EnergyBalance's bound. Smaller time_step;
-                               ///< softer motors, or a lower restitution, if they are what drives it
+                               ///< softer motors, or a lower restitution, if they drive it
   MOTION_TOO_FAST = 1u << 8,   ///< a motion was too fast for the step: velocity products changed too much within it. Smaller time_step
 };
 /** Names in the report and in messages, in bit order. */
@@ -62,7 +62,7 @@ struct ContactReport {
 
 /** The contacts of two colliders left their boundary layers, or came back. */
 struct LayerEventReport {
-  double time = 0;                       ///< [s] simulated, of the state whose contacts they are: where the (sub)step started
+  double time = 0;                       ///< [s] simulated, of the state whose contacts they are: the start of the (sub)step
   int collider_a = -1, collider_b = -1;  ///< a < b
   bool outside = false;                  ///< true: more than the layers is used up, or bare meshes cross, there or on the way to the next
                                          ///< state; false: not any more
@@ -111,18 +111,18 @@ struct StepReport {
   std::uint32_t status = STEP_OK;
   int substeps = 1;
   int redone_solves = 0;   ///< solves thrown away because they used up a layer, and made again shorter
-  int searched_pairs = 0;  ///< of colliders, after the step: those whose contacts were looked for
+  int searched_pairs = 0;  ///< of colliders, after the step: pairs whose contacts were searched
   int raw_contacts = 0, reduced_contacts = 0;
   double wrench_error = 0;                 ///< worst over the step, where contacts were left out: ReductionLoss::wrench
   double max_depth = 0, max_of_layer = 0;  ///< over this step's contacts
   int deepest_a = -1, deepest_b = -1;      ///< colliders
   double energy = 0;                       ///< [J] kinetic + potential
-  /** [J] by which energy (bodies, rotors, springs of compliant contacts) rose in this step beyond the work of motors and joint friction
-   *  (effort times joint motion): the sum over islands, so that none's gain is hidden by another's loss, which contacts may cause.
+  /** [J] rise of energy (bodies, rotors, springs of compliant contacts) in this step beyond the work of motors and joint friction (effort
+   *  times joint motion): the sum over islands, so that none's gain is hidden by another's loss, which contacts may cause.
    *  Corrections of depth count, and integration errors of order dt. */
   double energy_gained = 0;
-  /** [J] the part of energy_gained that nothing explains: without what contacts did on purpose (correcting depth, parting meshes that
-   *  cross) and without what only looks like their work. ENERGY_GAINED is set where an island's is beyond its bound. */
+  /** [J] the part of energy_gained that nothing explains: without the work of contacts on purpose (correcting depth, parting meshes that
+   *  cross) and without their apparent work. ENERGY_GAINED is set if that of an island is beyond its bound. */
   double energy_out_of_nothing = 0;
   double solver_residual = 0;  ///< [N] worst over the step: SolveResult::residual
   double solver_creep = 0;     ///< [rad/s or m/s] worst over the step: SolveResult::creep

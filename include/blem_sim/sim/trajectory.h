@@ -11,9 +11,9 @@ namespace blem_sim {
 
 class NumberReader;
 
-/** Positions, velocities, accelerations and efforts that are commanded are no larger than this, in whatever SI unit. */
+/** Largest position, velocity, acceleration and effort that may be commanded, in its SI unit. */
 constexpr double LARGEST_COMMAND = 1e7;
-/** [s] and times no later than this. */
+/** Latest time [s] of a command. */
 constexpr double LATEST_COMMAND = 1e10;
 inline bool isCommand(double value) { return std::abs(value) <= LARGEST_COMMAND; }
 
@@ -25,7 +25,7 @@ struct TrajectoryPoint {
   std::vector<double> effort;         ///< empty, or one per joint: feed-forward
 };
 
-/** A command for some or all joints of a robot; no points = hold where it is now. */
+/** A command for some or all joints of a robot; no points = hold the present position. */
 struct JointTrajectory {
   std::vector<std::string> joints;
   double start_time = 0;  ///< [s] simulated; <= 0: now
@@ -37,22 +37,22 @@ struct JointSample {
   double position = 0, velocity = 0, acceleration = 0, effort = 0;
 };
 
-/** One joint's piecewise polynomial: what of a trajectory is in force for it. */
+/** One joint's piecewise polynomial: the part of trajectories that is in force for it. */
 class JointSpline {
  public:
   struct Knot {
     double time;  ///< [s] simulated
     double position, velocity, acceleration, effort;
-    int order;  ///< what this point is good for: 1 linear (positions only), 3 cubic (velocities), 5 quintic (accelerations)
+    int order;  ///< highest order of a segment at this knot: 1 linear (positions only), 3 cubic (velocities), 5 quintic (accelerations)
   };
   JointSpline() = default;
-  /** Hold. */
+  /** A spline that holds a position. */
   explicit JointSpline(double position);
   /**
    * From `now` on: follows the present spline until the new trajectory's start, then the new knots (times absolute, strictly
    * increasing). As joint_trajectory_controller has it: knots at or before `now` are dropped; the first one left is reached by a bridge
    * from the present spline, of that knot's own order; between two knots the lower of their orders counts. Nothing changes if all were
-   * in the past. No knots given: hold where the spline is now.
+   * in the past. No knots given: hold the spline's present position.
    * @param continuous positions are taken to the turn nearest to the present one.
    */
   void splice(double now, double start, std::vector<Knot> knots, bool continuous);

@@ -1,4 +1,4 @@
-// Writes JSON [RFC 8259]; what is no number there (NaN, infinity) becomes null.
+// Writes JSON [RFC 8259]; NaN and infinity, which are no numbers there, become null.
 #pragma once
 
 #include <cstdint>

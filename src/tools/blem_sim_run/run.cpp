@@ -57,7 +57,7 @@ void commandTrajectory(const std::string& file, Simulator* simulator, std::vecto
   throw InputError(first_refusal);
 }
 
-/** A line on a terminal that tells how far it is; nothing elsewhere. */
+/** Progress of a run as a line on a terminal; nothing elsewhere. */
 class Progress {
  public:
   explicit Progress(std::uint64_t steps) : steps_(steps), on_terminal_(isatty(STDERR_FILENO) == 1) {}

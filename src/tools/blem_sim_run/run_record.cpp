@@ -127,7 +127,7 @@ void RunRecord::writeBodies(JsonWriter& json) const {
       json.key(simulator_.bodyName(body)).openObject();
       json.key("xyz").value(Vector3(state.X_WB.translation()));
       json.key("quat_xyzw").value(Quaternion(state.X_WB.linear()));
-      // Of the frame's origin, whose position xyz is; the state holds the centre of mass's.
+      // Velocity of the frame's origin, whose position is xyz; the state holds that of the centre of mass.
       json.key("linear_velocity").value(Vector3(state.v_WCom - state.w_WB.cross(com_from_origin)));
       json.key("angular_velocity").value(state.w_WB);
       json.closeObject();

@@ -1,4 +1,4 @@
-// What a run leaves behind: counted step by step, written as one JSON object at the end.
+// Record of a run: counted step by step, written as one JSON object at the end.
 #pragma once
 
 #include <array>

@@ -13,7 +13,7 @@ struct SensorValues {
   std::vector<double> values;
 };
 
-/** Does not compile until it knows every kind of reading. */
+/** Numbers of a reading, with their names. Does not compile until it knows every kind of reading. */
 SensorValues sensorValues(const SensorReading& reading);
 
 /** Names of the fields of a sensor's readings, known before the first one. */

@@ -12,7 +12,7 @@ namespace blem_sim {
 
 namespace {
 
-// Little-endian 64-bit words throughout, so that a state goes from one machine to another.
+// Format: little-endian 64-bit words throughout, so that a state goes from one machine to another.
 const char MAGIC[] = "blem_sim state 2\n";
 
 void putWord(std::ostream& stream, std::uint64_t word) {

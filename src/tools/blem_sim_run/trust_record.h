@@ -1,4 +1,4 @@
-// What a run's report says about whether to trust it: energy out of nothing, contacts outside their boundary layers.
+// Signs in a run's report that it may not be trusted: energy out of nothing, contacts outside their boundary layers.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ class TrustRecord {
  public:
   static constexpr std::size_t MOST_EVENTS = 100;  ///< listed; all are counted
   void add(const StepReport& report);
-  /** As keys of the open object. */
+  /** Writes the record as keys of the open object. */
   void write(const Simulator& simulator, JsonWriter& json) const;
 
  private:

@@ -24,7 +24,7 @@ bool isLit(const Scene& scene, const Vector3& point, const Vector3& projector) {
   return castRay(scene.bvh, scene.mesh, projector, ray, &t) < 0 || t > 1 - 1e-3;
 }
 
-// Ragged at the rim: there some samples come back.
+// Whether a dark spot swallows a sample; spots are ragged at the rim, where some samples come back.
 bool isSwallowed(const Scene& scene, const Vector3& point, Noise& noise) {
   const double reach = 0.75 + 0.5 * noise.uniform();
   return std::any_of(scene.dark_spots.begin(), scene.dark_spots.end(),
@@ -99,7 +99,7 @@ TriangleMesh triangulated(const DepthImage& image, double max_edge) {
   };
   for (int row = 0; row + 1 < image.rows; ++row) {
     for (int column = 0; column + 1 < image.columns; ++column) {
-      // Wound so that the front shows to the camera.
+      // Triangles are wound so that their fronts show to the camera.
       const int i = row * image.columns + column, below = i + image.columns;
       addTriangle(i, below, i + 1);
       addTriangle(i + 1, below, below + 1);

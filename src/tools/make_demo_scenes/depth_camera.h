@@ -15,7 +15,7 @@ struct DarkSpot {
   double radius;   ///< [m]
 };
 
-/** A mesh with its tree, and where a camera sees nothing of it. */
+/** A mesh with its tree, and the spots of it that a camera does not see. */
 struct Scene {
   Scene(TriangleMesh triangles, std::vector<DarkSpot> spots) : mesh(std::move(triangles)), bvh(mesh), dark_spots(std::move(spots)) {}
   TriangleMesh mesh;
@@ -42,7 +42,7 @@ struct DepthImage {
 };
 
 /**
- * What the camera measures: rays to the nearest surface; nothing where the projector's light does not reach, on dark spots, grazing or too
+ * Image of the camera: rays to the nearest surface; nothing where the projector's light does not reach, on dark spots, grazing or too
  * far surfaces, and now and then at random; each frame's depth with the noise of such cameras, sigma = 0.0012 + 0.0019 (z - 0.4)^2 m
  * [Nguyen 2012], its disparity in steps of 1/8 pixel; frames averaged.
  */

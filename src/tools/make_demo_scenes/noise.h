@@ -11,7 +11,7 @@ class Noise {
  public:
   explicit Noise(std::uint64_t seed) : state_(seed) {}
 
-  /** In [0, 1). */
+  /** Uniform number in [0, 1). */
   double uniform() {
     std::uint64_t z = (state_ += 0x9E3779B97F4A7C15ull);
     z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ull;
@@ -19,7 +19,7 @@ class Noise {
     return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1.0p-53;
   }
 
-  /** Mean 0, standard deviation 1: the sum of twelve uniform numbers. */
+  /** Nearly normal number of mean 0, standard deviation 1: the sum of twelve uniform numbers. */
   double normal() {
     double sum = -6;
     for (int i = 0; i < 12; ++i) sum += uniform();

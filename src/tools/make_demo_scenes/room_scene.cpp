@@ -20,7 +20,7 @@ void appendBox(TriangleMesh& mesh, const Vector3& size, const Vector3& centre, c
   append(mesh, transformed(boxMesh(size), makePose(centre, rpy)));
 }
 
-// Long waves of 1 mm, each tile laid up to 0.5 mm too high and a little askew; smaller near the origin, where the robot stands.
+// A floor of long waves of 1 mm, each tile laid up to 0.5 mm too high and a little askew; smaller near the origin, where the robot stands.
 TriangleMesh unevenFloor() {
   TriangleMesh floor = gridMesh(4.4, 4.4, 220, 220);
   for (Vector3& v : floor.vertices) {
@@ -65,7 +65,7 @@ void appendClutter(TriangleMesh& mesh) {
   appendBox(mesh, {0.42, 0.42, 0.03}, {0.35, 1.35, 0.435}, {0, 0, 0});
 }
 
-// Everywhere on the floor, small ones under the robot's feet too.
+// Dark spots everywhere on the floor, small ones under the robot's feet too.
 std::vector<DarkSpot> darkSpots() {
   std::vector<DarkSpot> spots = {
       {{0.10, 0.13, 0}, 0.022}, {{-0.07, 0.06, 0}, 0.018}, {{0.03, -0.13, 0}, 0.025}, {{-0.10, -0.08, 0}, 0.020}};
@@ -77,7 +77,7 @@ std::vector<DarkSpot> darkSpots() {
   return spots;
 }
 
-// Up to 0.4 mm and 0.5 mrad off, as scans put together by hand are.
+// Registration error of a view: up to 1 mm along the floor, 0.4 mm in height and 0.5 mrad, as of scans put together by hand.
 Pose registrationError(Noise& noise) {
   const auto part = [&](double size) { return size * (2 * noise.uniform() - 1); };
   return makePose({part(1e-3), part(1e-3), part(0.4e-3)}, {part(5e-4), part(5e-4), part(5e-4)});

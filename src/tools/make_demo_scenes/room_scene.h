@@ -1,4 +1,4 @@
-// What the depth camera looks at.
+// Scene of the depth camera: a workshop floor.
 #pragma once
 
 #include <vector>

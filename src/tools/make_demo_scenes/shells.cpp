@@ -15,7 +15,7 @@ struct Section {
   std::vector<Eigen::Vector2d> outline;  // counter-clockwise
 };
 
-// Between an ellipse (exponent 2) and a rectangle (large exponent).
+// An outline between an ellipse (exponent 2) and a rectangle (large exponent).
 Section oval(double z, double half_x, double half_y, double centre_x = 0, double centre_y = 0, double exponent = 4) {
   Section section{z, {}};
   for (int i = 0; i < SEGMENTS; ++i) {

@@ -95,7 +95,7 @@ TEST(SoakRest, BallOnFineTriangles) {
   expectRest("ball on 1 mm triangles", config, 5, 1e-6);
 }
 
-// On the facet that the icosphere has at the bottom: there is nowhere to go.
+// The icosphere stands on the facet at its bottom: there is nowhere to go.
 TEST(SoakRest, BallOnItsFacet) {
   const Vector3i& e = ball().elements[0];
   const Vector3 &p = ball().vertices[e[0]], &q = ball().vertices[e[1]], &r = ball().vertices[e[2]];

@@ -1,4 +1,4 @@
-// Stacks of mesh cubes that stand for ten minutes, whatever their triangles [Hauser 2013, Fig. 1].
+// Stacks of mesh cubes, of any triangles, that stand for ten minutes [Hauser 2013, Fig. 1].
 #include <gtest/gtest.h>
 
 #include "geometry/random_shapes.h"

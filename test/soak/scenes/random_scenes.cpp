@@ -41,7 +41,7 @@ void tellHowFar(int) {
   _exit(write(told_to, &running, sizeof running) == sizeof running ? 0 : 1);
 }
 
-/** In its own process. */
+/** Runs a scene in its own process. */
 [[noreturn]] void run(std::uint64_t seed, const Options& options, int pipe) {
   told_to = pipe;
   running.seed = seed;
@@ -73,7 +73,7 @@ Runner start(std::uint64_t seed, const Options& options) {
   run(seed, options, ends[1]);
 }
 
-/** What became of a runner whose pipe has something to say or whose time is over. */
+/** Outcome of a runner whose pipe has something to read or whose time is over. */
 SceneOutcome finish(const Runner& runner, bool hangs) {
   SceneOutcome outcome;
   if (hangs) kill(runner.process, SIGKILL);

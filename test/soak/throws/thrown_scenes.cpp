@@ -1,4 +1,4 @@
-// Random scenes of test/support/throw_scene.h: what passed, what crossed, and what of it was not said.
+// Random scenes of test/support/throw_scene.h: bodies that passed, meshes that crossed, and those that were not said.
 #include <cstdlib>
 #include <cstring>
 #include <exception>
@@ -18,7 +18,7 @@ struct Counts {
       most_solves = 0;
 };
 
-/** At most 1 ms, default widths, nothing faster than 20 m/s: there the step guard must keep everything apart. */
+/** Whether a scene has steps of at most 1 ms, default widths and nothing faster than 20 m/s: there the step guard must keep all apart. */
 bool isEasy(const ThrownScene& scene, const ThrownOutcome& outcome) {
   return scene.default_widths && scene.config.time_step <= 0.001 && outcome.fastest <= 20;
 }
