@@ -276,12 +276,13 @@ void IslandProblem::finish(const NewtonSettings& settings, NewtonReport* report)
   for (int outer = 1, most = settings.max_outer; outer < most; ++outer) {
     assess(report);
     keepBalanced(*report, &least);
-    const bool lawful = report->contact_residual <= settings.contact_tolerance && report->joint_creep <= settings.joint_tolerance &&
-                        (!isHeap() || isCrowd() || isSettled());
+    const bool settled = !isHeap() || isCrowd() || isSettled();
+    const bool lawful =
+        settled && report->contact_residual <= settings.contact_tolerance && report->joint_creep <= settings.joint_tolerance;
     const bool exact = gradient_norm_ <= settings.gradient_tolerance;
     const int left = settings.max_iterations - report->iterations;
     if ((lawful && exact) || left <= 0) break;
-    if (outer + 1 == most && report->contact_creep > CREEPS && left >= ENOUGH_TO_END) ++most;
+    if (outer + 1 == most && left >= ENOUGH_TO_END && (!settled || report->contact_creep > CREEPS)) ++most;
     // The last step is led on until momentum is balanced; it does not mix slips: mixing leads beyond those that were found.
     const bool is_last = outer + 1 == most;
     const bool mixes = outer > 1 && last <= EASY && left >= ENOUGH_LEFT && !is_last;

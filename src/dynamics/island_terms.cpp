@@ -6,7 +6,7 @@ namespace blem_sim {
 namespace {
 
 constexpr double CONTACT_PROXIMAL = 1e-4;  // rho = this * inverse mass at the contact: smaller is stiffer and needs more Newton iterations
-constexpr double HEAVIEST = 1e4;           // contacts are no softer than those of a mass this many times below the heaviest tree
+constexpr double HEAVIEST = 1e3;           // contacts are no softer than those of a mass this many times below the heaviest tree
 constexpr double JOINT_PROXIMAL = 1e-3;    // gain of friction and limits = inertia / this
 constexpr double DRY_MOMENTUM = 0.9;  // share of its last change that stuck friction is expected to change by: all of it would never settle
 constexpr double LOOP_PROXIMAL = 1e-4;  // rho = this * inverse inertia
