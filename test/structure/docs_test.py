@@ -1,0 +1,118 @@
+"""Documentation: relative links, images and anchors lead somewhere, and table cells stay short enough to be read in a table."""
+import pathlib
+import re
+import urllib.parse
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PAGES = [ROOT / "README.md"] + sorted((ROOT / "docs").glob("*.md"))
+# Pages whose tables are read from top to bottom; one that does not exist is left out.
+SHORT_CELLS = ["docs/decisions.md", "docs/reduction.md", "docs/tour.md"]
+MOST_WORDS = 40
+
+FENCE = re.compile(r"^\s*(```+|~~~+)")
+CODE = re.compile(r"(`+)(?!`).*?(?<!`)\1(?!`)")
+# [text](target "title"), images too; <img src="target">, <a href="target">; [name]: target
+INLINE = re.compile(r"\]\(\s*<?([^)\s>]+)>?(?:\s+(?:\"[^\"]*\"|'[^']*'))?\s*\)")
+HTML = re.compile(r"<(?:img|a)\b[^>]*?\b(?:src|href)\s*=\s*[\"']([^\"']+)[\"']", re.IGNORECASE)
+DEFINITION = re.compile(r"^\s{0,3}\[[^\]]+\]:\s*<?([^\s>]+)>?")
+HEADING = re.compile(r"^\s{0,3}#{1,6}\s+(.*?)(?:\s+#+)?\s*$")
+ELSEWHERE = re.compile(r"^(?:[a-z][a-z0-9+.-]*:|//)", re.IGNORECASE)
+
+
+def prose(text):
+    """(number, line) of all lines outside fenced code."""
+    fence = None
+    for number, line in enumerate(text.splitlines(), 1):
+        match = FENCE.match(line)
+        if match and fence is None:
+            fence = match[1]
+        elif fence is not None:
+            if match and match[1].startswith(fence) and not line.strip().strip(fence[0]):
+                fence = None
+        else:
+            yield number, line
+
+
+def links(text):
+    """(number of the line, target) of all links and images outside code."""
+    for number, line in prose(text):
+        line = CODE.sub("", line)
+        for pattern in (INLINE, HTML, DEFINITION):
+            for target in pattern.findall(line):
+                yield number, target
+
+
+def anchors(text):
+    """Anchors of a page's headings, as GitHub makes them: small letters, hyphens for spaces, no punctuation, numbers for repetitions."""
+    made, repeated = set(), {}
+    for _, line in prose(text):
+        heading = HEADING.match(line)
+        if not heading:
+            continue
+        words = re.sub(r"!?\[([^\]]*)\]\([^)]*\)", r"\1", heading[1])
+        anchor = re.sub(r"[^\w\- ]", "", words.strip().lower()).replace(" ", "-")
+        count = repeated.get(anchor, 0)
+        repeated[anchor] = count + 1
+        made.add("%s-%d" % (anchor, count) if count else anchor)
+    return made
+
+
+def wrong_link(page, target, root=ROOT):
+    """Why a link of a page leads nowhere, or None."""
+    if ELSEWHERE.match(target):
+        return None
+    path, _, anchor = urllib.parse.unquote(target).partition("#")
+    if path.startswith("/"):
+        return "is no relative path"
+    file = (page.parent / path).resolve() if path else page.resolve()
+    if root.resolve() not in [file] + list(file.parents):
+        return "leads out of the repository"
+    if not file.exists():
+        return "does not exist"
+    if anchor and file.suffix == ".md" and anchor not in anchors(file.read_text()):
+        return "has no such heading"
+    return None
+
+
+def long_cells(text):
+    """(number of the line, words) of table cells with too many words."""
+    for number, line in prose(text):
+        if not line.lstrip().startswith("|"):
+            continue
+        for cell in re.split(r"(?<!\\)\|", line.strip().strip("|")):
+            words = len(cell.split())
+            if words > MOST_WORDS:
+                yield number, words
+
+
+def test_links_lead_somewhere():
+    wrong = []
+    for page in PAGES:
+        for number, target in links(page.read_text()):
+            reason = wrong_link(page, target)
+            if reason:
+                wrong.append("%s:%d: %s %s" % (page.relative_to(ROOT), number, target, reason))
+    assert not wrong, "\n".join(wrong)
+
+
+def test_table_cells_are_short():
+    pages = [ROOT / name for name in SHORT_CELLS if (ROOT / name).exists()]
+    wrong = ["%s:%d: a cell of %d words, %d at most" % (page.relative_to(ROOT), number, words, MOST_WORDS)
+             for page in pages for number, words in long_cells(page.read_text())]
+    assert not wrong, "\n".join(wrong)
+
+
+def test_the_rules_see_what_is_wrong(tmp_path):
+    page, other = tmp_path / "page.md", tmp_path / "other.md"
+    page.write_text("# First\n## A `name_b`: [c](other.md), d!\n## First\n```\n# no heading\n[x](nowhere.md)\n```\n`[x](nowhere.md)`\n"
+                    "![picture](missing.png) [b](other.md#two) <img src='missing.svg'>\n[e]: other.md#three\n")
+    other.write_text("# Two\n")
+    assert anchors(page.read_text()) == {"first", "a-name_b-c-d", "first-1"}
+    assert [target for _, target in links(page.read_text())] == ["other.md", "missing.png", "other.md#two", "missing.svg", "other.md#three"]
+    for target in ("missing.png", "other.md#three", "#second", "../outside.md", "/other.md"):
+        assert wrong_link(page, target, tmp_path), target
+    for target in ("other.md", "other.md#two", "#first-1", "https://example.org/x#y", "mailto:a@example.org"):
+        assert wrong_link(page, target, tmp_path) is None, target
+    long_row = "| a | %s |" % " ".join(["word"] * (MOST_WORDS + 1))
+    assert list(long_cells("| b | c |\n|---|---|\n%s\n" % long_row)) == [(3, MOST_WORDS + 1)]
+    assert not list(long_cells("```\n%s\n```\n" % long_row))
