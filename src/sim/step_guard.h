@@ -22,8 +22,8 @@ bool usesUpLayer(const std::vector<Collider>& colliders, const std::vector<Conta
                  const std::vector<BodyState>& bodies_after);
 
 /**
- * Divides one step into substeps of whole ticks. So a step costs at most MAX_SUBSTEPS + MAX_REDONE solves and searches for contacts,
- * whatever happens in it.
+ * Divides one step into substeps of whole ticks. So a step costs at most MAX_SUBSTEPS + MAX_REDONE solves, and MAX_REDONE more searches
+ * for contacts, whatever happens in it.
  */
 class Substeps {
  public:

@@ -74,8 +74,8 @@ class ReductionMemory {
 
 /**
  * Sets Contact::weight where surfaces are compliant, for reduced contacts of one manifold: the springs at the corners of a rectangle, an
- * edge or a point count fully, those of a patch with more corners by the angles, so that a patch is as stiff as four springs whatever its
- * tessellation; contacts at one place share. Contacts that do not touch keep the weight 1.
+ * edge or a point count fully, those of a patch with more corners by the share of 32 directions in which each lies farthest out. A patch
+ * is as stiff as five springs at most, whatever its tessellation; contacts at one place share.
  */
 void weighSprings(std::vector<Contact>& contacts);
 

@@ -53,7 +53,7 @@ struct LoadedSurface {
 };
 
 /**
- * Loads triangles (STL, PLY, OBJ, OFF, DAE by assimp: node transforms, DAE units and up-axis, polygons split) or points (PCD, PLY
+ * Loads triangles (STL, PLY, OBJ, OFF, DAE by assimp: node transforms, DAE units, polygons split) or points (PCD, PLY
  * without faces), scales, cleans and mends them. A mirroring scale or node keeps the outside outside.
  * COLLADA as in rviz and MoveIt: <unit meter> is applied, <up_axis> is not, so that x, y, z of the file stay x, y, z of the link.
  * A PCD's VIEWPOINT is not applied either; the report says so.
