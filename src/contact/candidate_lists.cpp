@@ -94,12 +94,29 @@ void NearFeatures::clear() {
   fading.clear();
 }
 
+void NearFeatures::reserve(std::size_t count) {
+  vertices.reserve(count);
+  edges.reserve(count);
+  faces.reserve(count);
+  patches.reserve(count);
+  open.reserve(count);
+  borders.reserve(count);
+  fading.reserve(count);
+}
+
 void CandidatePairs::clear() {
   for (Candidates* candidates :
        {&vertex_face[0], &vertex_face[1], &vertex_edge[0], &vertex_edge[1], &edge_face[0], &edge_face[1], &edge_edge, &vertex_vertex}) {
     candidates->clear();
   }
   for (std::vector<std::uint8_t>& each : inner) each.clear();
+}
+
+void CandidatePairs::reserve(std::size_t count) {
+  for (Candidates* candidates :
+       {&vertex_face[0], &vertex_face[1], &vertex_edge[0], &vertex_edge[1], &edge_face[0], &edge_face[1], &edge_edge, &vertex_vertex}) {
+    candidates->reserve(count);
+  }
 }
 
 std::size_t CandidatePairs::contacts() const {

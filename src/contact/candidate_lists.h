@@ -1,6 +1,7 @@
 // Lists of features of two meshes that may have a contact, good for as long as nothing has moved by more than a margin.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "fading_records.h"
@@ -27,6 +28,10 @@ struct FeatureRecords {
     records.clear();
     names.clear();
   }
+  void reserve(std::size_t count) {
+    records.reserve(count);
+    names.reserve(count);
+  }
 };
 
 /** The features of one mesh that appear in candidates. */
@@ -41,6 +46,7 @@ struct NearFeatures {
 
   void addFaceOf(const LeafFeatures& leaf, std::uint32_t i, bool near_points);  ///< appends patch, open sides and borders of a face
   void clear();
+  void reserve(std::size_t count);  ///< room for so many features of each kind
 };
 
 /** Pairs of features, in an order that the meshes alone decide. An index [moves] tells whether the feature named first is the moving
@@ -53,7 +59,8 @@ struct CandidatePairs {
   Candidates edge_edge, vertex_vertex;  ///< a is the moving mesh's
 
   void clear();
-  std::size_t contacts() const;  ///< number of candidates for contacts
+  void reserve(std::size_t count);  ///< room for so many candidates of each kind
+  std::size_t contacts() const;     ///< number of candidates for contacts
 };
 
 struct CandidateLists {

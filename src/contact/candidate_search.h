@@ -35,6 +35,14 @@ struct CandidateListing {
 
   std::size_t left() const { return pairs.size() - done; }
   bool isComplete() const { return origin.known && left() == 0; }
+  /** Makes room for so many leaves, features and candidates of each kind, and as many pairs of leaves. */
+  void reserve(std::size_t count) {
+    for (std::vector<Leaf>& of_mesh : leaves) of_mesh.reserve(count);
+    slots.reserve(count);
+    pairs.reserve(count);
+    for (NearFeatures& features : lists.near) features.reserve(count);
+    lists.pairs.reserve(count);
+  }
 };
 
 /** A leaf of a listing. */

@@ -29,6 +29,12 @@ struct ContactSearchMemory {
 
 /** Buffers of the searches of one thread. */
 struct ContactSearchBuffers {
+  static constexpr std::size_t ROOM = 512;  ///< so that the first search without a memory, in a warm step, asks for hardly any
+
+  ContactSearchBuffers() {
+    for (KeptListing* listing : {&unknown.contacts, &unknown.crossings}) listing->now.reserve(ROOM);
+  }
+
   CandidateSearchBuffers search;
   EvaluationBuffers evaluation;
   ContactSearchMemory unknown;  ///< for searches without a memory

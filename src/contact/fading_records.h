@@ -1,6 +1,7 @@
 // Records of a list's features, asked where contacts fade.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -40,6 +41,14 @@ class FadingRecords {
   const kernels::FaceCorners* corners() const { return corners_.data(); }
   const PlaneReach& reach(std::uint32_t shape) const { return reaches_[shape]; }
   void clear();
+  /** Makes room for so many features. */
+  void reserve(std::size_t count) {
+    at_vertices_.reserve(count);
+    of_faces_.reserve(count);
+    directions_.reserve(count);
+    corners_.reserve(count);
+    reaches_.reserve(count);
+  }
 
  private:
   static constexpr std::uint32_t UNKNOWN = 0xFFFFFFFF;
