@@ -20,7 +20,8 @@ namespace {
 
 constexpr int TURN = 50;  // [steps] of one engine before it is the other's turn
 constexpr std::size_t STAGES = static_cast<std::size_t>(Stage::COUNT);
-double seconds_simulated = 4, seed = 1;
+double seconds_simulated = 4;
+int heap_seed = 1;
 
 /** A heap that both engines run. */
 struct Heap {
@@ -30,8 +31,6 @@ struct Heap {
   HeapScene (*scene)(int count);
 };
 
-int seedOfHeap() { return static_cast<int>(seed); }
-
 HeapScene cubes(int count) {
   HeapScene scene;
   scene.size = 0.1;
@@ -39,7 +38,7 @@ HeapScene cubes(int count) {
   scene.friction = 0.5;
   scene.bin_width = heapBinWidth(count);
   scene.bin_height = heapBinHeight(count);
-  scene.poses = heapPoses(count, seedOfHeap());
+  scene.poses = heapPoses(count, heap_seed);
   return scene;
 }
 
@@ -51,7 +50,7 @@ HeapScene spheres(int count) {
   scene.friction = 0.5;
   scene.bin_width = pouredBinWidth(count);
   scene.bin_height = pouredBinHeight(count);
-  scene.poses = pouredPoses(count, seedOfHeap());
+  scene.poses = pouredPoses(count, heap_seed);
   return scene;
 }
 
@@ -170,7 +169,7 @@ void count(const Heap& heap, const Figures& figures, const Simulator& simulator,
 }
 
 void measure(const Heap& heap, benchmark::State& state) {
-  Simulator simulator(heap.config(heap.count, seedOfHeap(), {}), UriResolver(sharedPackages()));
+  Simulator simulator(heap.config(heap.count, heap_seed, {}), UriResolver(sharedPackages()));
   const std::unique_ptr<BulletHeap> bullet = makeBulletHeap(heap.scene(heap.count));
   Figures figures;
   for (auto _ : state) {
@@ -206,7 +205,7 @@ void compareThreads(int count, benchmark::State& state) {
   for (const int threads : {1, 2}) {
     SolverSettings solver;
     solver.threads = threads;
-    simulators[threads - 1] = std::make_unique<Simulator>(heapInBin(count, seedOfHeap(), solver), UriResolver(sharedPackages()));
+    simulators[threads - 1] = std::make_unique<Simulator>(heapInBin(count, heap_seed, solver), UriResolver(sharedPackages()));
   }
   const int turns = static_cast<int>(std::lround(seconds_simulated / simulators[0]->config().time_step)) / TURN;
   double mean[2] = {};
@@ -221,16 +220,18 @@ void compareThreads(int count, benchmark::State& state) {
   state.counters["same_hash"] = simulators[0]->stateHash() == simulators[1]->stateHash() ? 1 : 0;
 }
 
-/** Takes an option out of the arguments. @param option as "--name=" */
-void takeOption(const std::string& option, double* value, int* argc, char** argv) {
+/** Takes an option out of the arguments. @param option as "--name=" @return its value, or `otherwise` */
+double takeOption(const std::string& option, double otherwise, int* argc, char** argv) {
+  double value = otherwise;
   int kept = 1;
   for (int i = 1; i < *argc; ++i) {
     if (std::strncmp(argv[i], option.c_str(), option.size()) == 0)
-      *value = std::atof(argv[i] + option.size());
+      value = std::atof(argv[i] + option.size());
     else
       argv[kept++] = argv[i];
   }
   *argc = kept;
+  return value;
 }
 
 }  // namespace
@@ -238,8 +239,8 @@ void takeOption(const std::string& option, double* value, int* argc, char** argv
 
 int main(int argc, char** argv) {
   using namespace blem_sim;
-  takeOption("--seconds=", &seconds_simulated, &argc, argv);
-  takeOption("--seed=", &seed, &argc, argv);
+  seconds_simulated = takeOption("--seconds=", seconds_simulated, &argc, argv);
+  heap_seed = static_cast<int>(takeOption("--seed=", heap_seed, &argc, argv));
   for (const int size : {30, 100, 300, 1000}) addBesideBullet({"cubes", size, heapInBin, cubes});
   addBesideBullet({"spheres", 1000, spheresInBin, spheres});
   for (const int size : {100, 300, 1000}) add("threads", size, [size](benchmark::State& state) { compareThreads(size, state); });

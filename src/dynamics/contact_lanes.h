@@ -61,11 +61,12 @@ void setSteps(const Vector6& twist, ContactBlock* begin, ContactBlock* end);
 void take(double a, ContactBlock* begin, ContactBlock* end);
 /** Takes the present iterate as the next proximal point. */
 void remember(ContactBlock* begin, ContactBlock* end);
-/** Misses of Coulomb's law by an impulse: its distance to its own projection after a step against the velocity. */
+/** By how much contacts miss Coulomb's law. */
 struct ContactResidual {
   double impulse = 0;  ///< [N s] the worst
   double speed = 0;    ///< [m/s] the worst as the velocity that the contact's own inertia would make of it
 };
+/** Each impulse's distance to its own projection after a step against the velocity. */
 ContactResidual residual(const ContactBlock* begin, const ContactBlock* end);
 /** [m/s] of the fastest of the points. */
 double fastest(const ContactBlock* begin, const ContactBlock* end);

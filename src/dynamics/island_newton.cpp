@@ -16,7 +16,8 @@ constexpr double JOINT_SOFTNESS[SOFT_STAGES] = {10, 3};
 constexpr double FIRST_PROGRESS = 0.1;      // an iteration that leads somewhere reduces the gradient to this
 constexpr double CHORD_PROGRESS = 0.1;      // a factor that is not made anew must have reduced the gradient to this
 constexpr int EASY = 10, ENOUGH_LEFT = 20;  // iterations of a proximal step whose slips are mixed, and of those that are left then
-// Contacts of a light body between heavy ones still creep so fast after the proximal steps that suffice elsewhere: they get more.
+// Contacts of a light body between heavy ones still creep so fast after the proximal steps that suffice elsewhere: they
+// get more, as long as a step takes an iteration.
 constexpr double CREEPS = 1e-3;          // [m/s]
 constexpr int ENOUGH_TO_END = 30;        // iterations that are left for a last step
 constexpr double OF_FIRST_SPEED = 1e-3;  // creep of contacts that is none: of the fastest of them before the solve
@@ -282,7 +283,7 @@ void IslandProblem::finish(const NewtonSettings& settings, NewtonReport* report)
     const bool exact = gradient_norm_ <= settings.gradient_tolerance;
     const int left = settings.max_iterations - report->iterations;
     if ((lawful && exact) || left <= 0) break;
-    if (outer + 1 == most && left >= ENOUGH_TO_END && (!settled || report->contact_creep > CREEPS)) ++most;
+    if (outer + 1 == most && last > 0 && left >= ENOUGH_TO_END && report->contact_creep > CREEPS) ++most;
     // The last step is led on until momentum is balanced; it does not mix slips: mixing leads beyond those that were found.
     const bool is_last = outer + 1 == most;
     const bool mixes = outer > 1 && last <= EASY && left >= ENOUGH_LEFT && !is_last;

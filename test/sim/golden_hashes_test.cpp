@@ -49,11 +49,8 @@ SimulationConfig slidingOverPoints() {
   std::vector<Vector3> points;
   for (int i = 0; i < 2500; ++i) points.push_back({0.01 * (i % 50) - 0.25, 0.01 * (i / 50) - 0.25, 1e-3 * std::sin(0.7 * i)});
   SimulationConfig config;
-  EnvironmentConfig cloud;
-  cloud.name = "cloud";
-  cloud.uri = pointsFile("golden_points", points);
-  cloud.contact.boundary_width = 0.01;
-  config.environments = {cloud};
+  config.environments = {pointCloud("golden_points", points)};
+  config.environments[0].contact.boundary_width = 0.01;
   config.objects = {box("slider", {0.1, 0.1, 0.05}, 1, {0, 0, 0.04})};
   config.objects[0].linear_velocity = {0.5, 0.1, 0};
   return config;

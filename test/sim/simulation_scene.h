@@ -45,6 +45,13 @@ inline std::string pointsFile(const std::string& name, const std::vector<Vector3
   });
 }
 
+inline EnvironmentConfig pointCloud(const std::string& name, const std::vector<Vector3>& points) {
+  EnvironmentConfig environment;
+  environment.name = "cloud";
+  environment.uri = pointsFile(name, points);
+  return environment;
+}
+
 /** A mesh of two triangles at z = 0. */
 inline EnvironmentConfig ground(double size = 4) {
   EnvironmentConfig environment;

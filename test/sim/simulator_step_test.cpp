@@ -88,11 +88,8 @@ TEST(SimulatorStep, PointCloudCarriesABox) {
   for (int i = -20; i <= 20; ++i)
     for (int j = -20; j <= 20; ++j) points.emplace_back(0.01 * i, 0.01 * j, 0);
   SimulationConfig config;
-  EnvironmentConfig cloud;
-  cloud.name = "cloud";
-  cloud.uri = pointsFile("cloud", points);
-  cloud.cloud.point_radius = 0.004;
-  config.environments = {cloud};
+  config.environments = {pointCloud("cloud", points)};
+  config.environments[0].cloud.point_radius = 0.004;
   config.objects = {box("cube", Vector3::Constant(0.1), 1, {0.003, 0.004, 0.06})};
   Simulator simulator(config, UriResolver());
   stepFor(&simulator, 1);
