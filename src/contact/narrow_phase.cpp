@@ -9,6 +9,9 @@
 namespace blem_sim {
 namespace {
 
+// Of the bounds' diagonal: bounds that agree so closely are those of copies at one place, and so far apart copies cross.
+constexpr double AT_ONE_PLACE = 1e-6, APART = 1e-5;
+
 /** Buffers of a thread's searches. */
 struct Buffers {
   ContactSearchBuffers search;
@@ -22,21 +25,34 @@ Buffers& threadBuffers() {
   return buffers;
 }
 
+/** Whether two bodies share one place: their faces coincide, so that none crosses another, however deep the bodies are in each other. */
+bool areAtOnePlace(const MeshPair& pair) {
+  const Box &moving = pair.moving.bounds, &fixed = pair.fixed.bounds;
+  const double tolerance = AT_ONE_PLACE * fixed.diagonal().norm();
+  if ((pair.X_FM * moving.center() - fixed.center()).norm() > tolerance) return false;
+  return (pair.X_FM.linear().cwiseAbs() * moving.diagonal() - fixed.diagonal()).norm() <= tolerance;
+}
+
 void meshMesh(const Collider& a, const Pose& X_WA, const Collider& b, const Pose& X_WB, double range, const Pose* X_AB_apart,
               ContactSearchMemory* memory, ContactManifold* out) {
   const bool a_moves = a.geometry->mesh().elements.size() <= b.geometry->mesh().elements.size();
   const Pose &X_WM = a_moves ? X_WA : X_WB, &X_WF = a_moves ? X_WB : X_WA;
-  const MeshPair pair{MeshSide(a_moves ? *a.geometry : *b.geometry),
-                      MeshSide(a_moves ? *b.geometry : *a.geometry),
-                      X_WF.inverse() * X_WM,
-                      a.radius + b.radius,
-                      range,
-                      {a_moves, a.radius, b.radius},
-                      X_WF};
+  MeshPair pair{MeshSide(a_moves ? *a.geometry : *b.geometry),
+                MeshSide(a_moves ? *b.geometry : *a.geometry),
+                X_WF.inverse() * X_WM,
+                a.radius + b.radius,
+                range,
+                {a_moves, a.radius, b.radius},
+                X_WF};
   Buffers& buffers = threadBuffers();
   FoundContacts& found = buffers.found;
   found.plain.overwrite(&out->contacts);
   searchContacts(pair, memory, &buffers.search, &found);
+  if (found.crossings.empty() && areAtOnePlace(pair)) {
+    pair.X_FM.translation() += APART * pair.fixed.bounds.diagonal().norm() * Vector3(0.48, 0.6, 0.64);
+    found.plain.overwrite(&out->contacts);
+    searchContacts(pair, nullptr, &buffers.search, &found);
+  }
   out->pierced = !found.crossings.empty();
   if (out->pierced) {
     Pose X_FM_apart;

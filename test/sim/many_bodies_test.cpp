@@ -87,6 +87,25 @@ TEST(ManyBodies, AHundredStartedInsideEachOtherIsSaidSo) {
   EXPECT_LT(fastest, 10);
 }
 
+// Faces of copies at one place coincide and cross nowhere, yet the copies are in each other: they say so and get out.
+class Copies : public ::testing::TestWithParam<double> {};
+
+TEST_P(Copies, AtOnePlaceGetOutOfEachOther) {
+  SimulationConfig config;
+  config.environments = {ground()};
+  for (const char* name : {"one", "other"}) config.objects.push_back(box(name, Vector3::Constant(0.1), 1, {0, 0, 0.2}));
+  config.objects[1].X_WO.translation().x() += GetParam();
+  Simulator simulator(config, UriResolver());
+  EXPECT_TRUE(simulator.step().status & CONTACT_UNRELIABLE);
+  stepFor(&simulator, 2);
+  EXPECT_FALSE(simulator.report().status & CONTACT_UNRELIABLE);
+  const Vector3 apart = bodyOf(simulator, "one").X_WB.translation() - bodyOf(simulator, "other").X_WB.translation();
+  EXPECT_GT(apart.lpNorm<Eigen::Infinity>(), 0.1);
+  EXPECT_LT(bodyOf(simulator, "one").v_WCom.norm(), 1e-6);
+}
+
+INSTANTIATE_TEST_SUITE_P(ManyBodies, Copies, ::testing::Values(0, 1e-12, 1e-9, 1e-7, 1e-6, 1e-5, 1e-4));
+
 // Bodies all in one place: the step is finite, says so, and searches fewer pairs than a bound that does not grow as their number squared.
 class AtOnePlace : public ::testing::TestWithParam<int> {};
 
