@@ -33,26 +33,32 @@ bool areAtOnePlace(const MeshPair& pair) {
   return (pair.X_FM.linear().cwiseAbs() * moving.diagonal() - fixed.diagonal()).norm() <= tolerance;
 }
 
+/** Where copies at one place cross. */
+MeshPair aLittleApart(const MeshPair& pair) {
+  MeshPair apart = pair;
+  apart.X_FM.translation() += APART * pair.fixed.bounds.diagonal().norm() * Vector3(0.48, 0.6, 0.64);
+  return apart;
+}
+
 void meshMesh(const Collider& a, const Pose& X_WA, const Collider& b, const Pose& X_WB, double range, const Pose* X_AB_apart,
               ContactSearchMemory* memory, ContactManifold* out) {
   const bool a_moves = a.geometry->mesh().elements.size() <= b.geometry->mesh().elements.size();
   const Pose &X_WM = a_moves ? X_WA : X_WB, &X_WF = a_moves ? X_WB : X_WA;
-  MeshPair pair{MeshSide(a_moves ? *a.geometry : *b.geometry),
-                MeshSide(a_moves ? *b.geometry : *a.geometry),
-                X_WF.inverse() * X_WM,
-                a.radius + b.radius,
-                range,
-                {a_moves, a.radius, b.radius},
-                X_WF};
+  const MeshPair pair{MeshSide(a_moves ? *a.geometry : *b.geometry),
+                      MeshSide(a_moves ? *b.geometry : *a.geometry),
+                      X_WF.inverse() * X_WM,
+                      a.radius + b.radius,
+                      range,
+                      {a_moves, a.radius, b.radius},
+                      X_WF};
   Buffers& buffers = threadBuffers();
   FoundContacts& found = buffers.found;
-  found.plain.overwrite(&out->contacts);
-  searchContacts(pair, memory, &buffers.search, &found);
-  if (found.crossings.empty() && areAtOnePlace(pair)) {
-    pair.X_FM.translation() += APART * pair.fixed.bounds.diagonal().norm() * Vector3(0.48, 0.6, 0.64);
+  const auto cross = [&](const MeshPair& at, ContactSearchMemory* known) {
     found.plain.overwrite(&out->contacts);
-    searchContacts(pair, nullptr, &buffers.search, &found);
-  }
+    searchContacts(at, known, &buffers.search, &found);
+    return !found.crossings.empty();
+  };
+  if (!areAtOnePlace(pair) || !cross(aLittleApart(pair), nullptr)) cross(pair, memory);
   out->pierced = !found.crossings.empty();
   if (out->pierced) {
     Pose X_FM_apart;
