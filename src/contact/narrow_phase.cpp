@@ -33,7 +33,7 @@ bool areAtOnePlace(const MeshPair& pair) {
   return (pair.X_FM.linear().cwiseAbs() * moving.diagonal() - fixed.diagonal()).norm() <= tolerance;
 }
 
-/** Where copies at one place cross. */
+/** The pair at which copies at one place cross. */
 MeshPair aLittleApart(const MeshPair& pair) {
   MeshPair apart = pair;
   apart.X_FM.translation() += APART * pair.fixed.bounds.diagonal().norm() * Vector3(0.48, 0.6, 0.64);
