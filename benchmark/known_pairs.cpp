@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "contact_search.h"
+#include "search/contact_search.h"
 
 namespace blem_sim {
 namespace {

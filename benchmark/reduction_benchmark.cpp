@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <new>
 
-#include "contact/contact_patches.h"
+#include "reduction/contact_patches.h"
 #include "soak/figures.h"
 
 namespace {

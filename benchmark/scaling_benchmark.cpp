@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "blem_sim/contact/reduction.h"
+#include "blem_sim/reduction/reduction.h"
 #include "blem_sim/sim/simulator.h"
 #include "contact/contact_shapes.h"
 #include "contact_generation.h"

@@ -1,6 +1,8 @@
 # One library per room; links, like includes, only downwards (test/structure/arrows_test.py).
 function(blem_sim_room room)
-  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${room}/*.cpp)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${room}/*.cpp)
+  # Those for the instruction sets of one kind of machine are added below.
+  list(FILTER sources EXCLUDE REGEX "_avx[^/]*\\.cpp$")
   add_library(blem_sim_${room} ${sources})
   target_include_directories(blem_sim_${room} PUBLIC ${PROJECT_SOURCE_DIR}/include PRIVATE ${PROJECT_SOURCE_DIR}/src/${room})
   target_link_libraries(blem_sim_${room} PUBLIC ${ARGN})
@@ -18,10 +20,11 @@ target_link_libraries(blem_sim_model PRIVATE PkgConfig::URDFDOM PkgConfig::CONSO
   ${PCL_COMMON_LIBRARIES} ${PCL_IO_LIBRARIES} ${PCL_FEATURES_LIBRARIES} ${PCL_SEARCH_LIBRARIES} ${PCL_SURFACE_LIBRARIES})
 blem_sim_room(contact blem_sim_geometry)
 blem_sim_precompiled_as(blem_sim_contact blem_sim_geometry)
+blem_sim_room(reduction blem_sim_contact)
+blem_sim_precompiled_as(blem_sim_reduction blem_sim_geometry)
 
 # The kernels of the contact search, one source for several instruction sets; the fastest that the machine has is chosen when it runs.
 set(kernels ${PROJECT_SOURCE_DIR}/src/contact/kernels)
-target_sources(blem_sim_contact PRIVATE ${kernels}/kernels.cpp ${kernels}/kernels_baseline.cpp)
 set_source_files_properties(${kernels}/kernels_avx2.cpp ${kernels}/kernels_avx512.cpp PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   target_sources(blem_sim_contact PRIVATE ${kernels}/kernels_avx2.cpp ${kernels}/kernels_avx512.cpp)
@@ -33,7 +36,7 @@ if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
 endif()
 
 # Square roots and comparisons as vector code; changes no result, only what becomes of errno and the flags of exceptions.
-foreach(lanes contact/reduction_lanes dynamics/contact_lanes dynamics/joint_lanes dynamics/sweep_lanes)
+foreach(lanes reduction/lanes/reduction_lanes dynamics/lanes/contact_lanes dynamics/lanes/joint_lanes dynamics/lanes/sweep_lanes)
   # Without precompiled headers, which bring their own options.
   set_source_files_properties(${PROJECT_SOURCE_DIR}/src/${lanes}.cpp PROPERTIES COMPILE_OPTIONS "-fno-math-errno;-fno-trapping-math"
     SKIP_PRECOMPILE_HEADERS ON)
@@ -41,6 +44,6 @@ endforeach()
 blem_sim_room(dynamics blem_sim_contact blem_sim_model)
 blem_sim_precompiled_as(blem_sim_dynamics blem_sim_geometry)
 target_link_libraries(blem_sim_dynamics PRIVATE PkgConfig::ODE PkgConfig::TBB)
-blem_sim_room(sim blem_sim_dynamics)
+blem_sim_room(sim blem_sim_dynamics blem_sim_reduction)
 blem_sim_precompiled_as(blem_sim_sim blem_sim_geometry)
 target_link_libraries(blem_sim_sim PUBLIC yaml-cpp fmt::fmt PRIVATE PkgConfig::TBB)

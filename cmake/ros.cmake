@@ -11,7 +11,7 @@ target_link_libraries(blem_sim_node blem_sim_ros)
 
 catkin_install_python(PROGRAMS scripts/expect_contacts_in_layer scripts/play_trajectory DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 install(TARGETS blem_sim_node RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
-install(TARGETS blem_sim_geometry blem_sim_model blem_sim_contact blem_sim_dynamics blem_sim_sim blem_sim_ros
+install(TARGETS blem_sim_geometry blem_sim_model blem_sim_contact blem_sim_reduction blem_sim_dynamics blem_sim_sim blem_sim_ros
   ARCHIVE DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
   LIBRARY DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
   RUNTIME DESTINATION ${CATKIN_GLOBAL_BIN_DESTINATION})

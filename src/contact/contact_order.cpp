@@ -1,4 +1,4 @@
-#include "contact_order.h"
+#include "blem_sim/contact/contact_order.h"
 
 #include <algorithm>
 #include <cmath>

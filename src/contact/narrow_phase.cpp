@@ -1,10 +1,10 @@
 #include "blem_sim/contact/narrow_phase.h"
 
 #include "blem_sim/geometry/bvh_traversal.h"
-#include "contact_search.h"
-#include "merge_contacts.h"
-#include "retraction.h"
-#include "world_contact.h"
+#include "evaluation/retraction.h"
+#include "evaluation/world_contact.h"
+#include "merging/merge_contacts.h"
+#include "search/contact_search.h"
 
 namespace blem_sim {
 namespace {

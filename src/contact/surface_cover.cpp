@@ -5,8 +5,8 @@
 
 #include "blem_sim/geometry/bvh_traversal.h"
 #include "blem_sim/geometry/closest_points.h"
-#include "tolerances.h"
-#include "world_contact.h"
+#include "evaluation/world_contact.h"
+#include "features/tolerances.h"
 
 namespace blem_sim {
 namespace {

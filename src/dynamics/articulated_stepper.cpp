@@ -7,12 +7,12 @@
 #include <cmath>
 
 #include "blem_sim/geometry/roomy.h"
-#include "contact_motion.h"
-#include "contact_work.h"
-#include "island_impacts.h"
-#include "island_motion.h"
-#include "island_terms.h"
-#include "islands.h"
+#include "island/contact_work.h"
+#include "island/island_impacts.h"
+#include "island/island_motion.h"
+#include "island/island_terms.h"
+#include "scene/contact_motion.h"
+#include "trees/islands.h"
 
 namespace blem_sim {
 namespace {

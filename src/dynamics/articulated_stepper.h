@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "stepper.h"
+#include "scene/stepper.h"
 
 namespace blem_sim {
 

@@ -4,12 +4,12 @@
 #include <cassert>
 #include <cmath>
 
-#include "input_check.h"
-#include "lanes.h"
-#include "scene.h"
-#include "stepper.h"
-#include "world_state.h"
-#include "world_state_check.h"
+#include "lanes/lanes.h"
+#include "scene/input_check.h"
+#include "scene/scene.h"
+#include "scene/world_state.h"
+#include "scene/world_state_check.h"
+#include "stepper_table.h"
 
 namespace blem_sim {
 namespace {

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "blem_sim/geometry/input_error.h"
-#include "file_check.h"
+#include "checks/file_check.h"
 #include "quiet_pcl.h"
 #include "surface_soup.h"
 

@@ -9,11 +9,11 @@
 #include <fmt/format.h>
 
 #include "blem_sim/model/loaders.h"
+#include "checks/file_check.h"
+#include "checks/one_line.h"
+#include "checks/urdf_check.h"
 #include "collision_shapes.h"
-#include "file_check.h"
 #include "inertia.h"
-#include "one_line.h"
-#include "urdf_check.h"
 
 namespace blem_sim {
 namespace {

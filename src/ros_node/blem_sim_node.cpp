@@ -4,7 +4,7 @@
 #include <ros/node_handle.h>
 #include <ros/param.h>
 
-#include "poll_rounds.h"
+#include "sending/poll_rounds.h"
 #include "simulation_node.h"
 
 int main(int argc, char** argv) {

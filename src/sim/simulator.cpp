@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "blem_sim/geometry/input_error.h"
-#include "config_check.h"
-#include "nearest_name.h"
+#include "config/config_check.h"
+#include "numbers/nearest_name.h"
 #include "simulator_impl.h"
 
 namespace blem_sim {

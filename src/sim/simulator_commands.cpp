@@ -5,8 +5,8 @@
 #include <set>
 
 #include "blem_sim/geometry/input_error.h"
-#include "nearest_name.h"
-#include "nearest_turn.h"
+#include "numbers/nearest_name.h"
+#include "numbers/nearest_turn.h"
 #include "simulator_impl.h"
 
 namespace blem_sim {

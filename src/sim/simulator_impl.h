@@ -6,16 +6,17 @@
 #include <utility>
 #include <vector>
 
-#include "contact_stage.h"
-#include "energy_balance.h"
-#include "layer_watch.h"
-#include "link_contacts.h"
+#include "blem_sim/sim/simulator.h"
+#include "build/simulated_world.h"
+#include "build/world_builder.h"
+#include "contacts/contact_stage.h"
+#include "guard/energy_balance.h"
+#include "guard/layer_watch.h"
+#include "guard/step_guard.h"
+#include "guard/sweep_guard.h"
 #include "part_reports.h"
-#include "sensor.h"
-#include "simulated_world.h"
-#include "step_guard.h"
-#include "sweep_guard.h"
-#include "world_builder.h"
+#include "sensors/link_contacts.h"
+#include "sensors/sensor.h"
 
 namespace blem_sim {
 

@@ -2,10 +2,10 @@
 #include <cstring>
 #include <utility>
 
-#include "number_reader.h"
+#include "numbers/number_reader.h"
 #include "simulator_impl.h"
-#include "state_header.h"
-#include "state_layout.h"
+#include "state/state_header.h"
+#include "state/state_layout.h"
 
 namespace blem_sim {
 namespace {

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <utility>
 
+#include "guard/step_prediction.h"
 #include "simulator_impl.h"
 #include "stage_timer.h"
-#include "step_prediction.h"
 
 namespace blem_sim {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "contact_shapes.h"
+#include "contact/contact_shapes.h"
 
 namespace blem_sim {
 namespace {

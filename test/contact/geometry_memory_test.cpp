@@ -3,7 +3,7 @@
 
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)
 
-#include "contact_shapes.h"
+#include "contact/contact_shapes.h"
 #include "support/counted_allocations.h"
 
 namespace blem_sim {

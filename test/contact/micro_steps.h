@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdio>
 
-#include "blem_sim/contact/reduction.h"
+#include "blem_sim/reduction/reduction.h"
 #include "contact/contact_shapes.h"
 #include "support/sanitizers.h"
 

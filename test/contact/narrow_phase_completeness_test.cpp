@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "blem_sim/geometry/closest_points.h"
-#include "contact_shapes.h"
+#include "contact/contact_shapes.h"
 #include "support/sanitizers.h"
 
 namespace blem_sim {

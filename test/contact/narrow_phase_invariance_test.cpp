@@ -3,8 +3,8 @@
 
 #include <numeric>
 
-#include "blem_sim/contact/reduction.h"
-#include "contact_shapes.h"
+#include "blem_sim/reduction/reduction.h"
+#include "contact/contact_shapes.h"
 
 namespace blem_sim {
 namespace {

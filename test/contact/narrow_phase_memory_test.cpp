@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "contact_shapes.h"
+#include "contact/contact_shapes.h"
 
 namespace blem_sim {
 namespace {

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "blem_sim/geometry/closest_points.h"
+#include "contact/contact_shapes.h"
 #include "contact/stl_soup.h"
-#include "contact_shapes.h"
 #include "support/shared_data.h"
 
 namespace blem_sim {

@@ -3,9 +3,9 @@
 
 #include <set>
 
-#include "blem_sim/contact/reduction.h"
-#include "contact_shapes.h"
-#include "mesh_pair.h"
+#include "blem_sim/reduction/reduction.h"
+#include "contact/contact_shapes.h"
+#include "features/mesh_pair.h"
 
 namespace blem_sim {
 namespace {

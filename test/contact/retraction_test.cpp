@@ -1,7 +1,7 @@
 // Beyond the layer: contacts of the fallback where bare meshes cross.
 #include <gtest/gtest.h>
 
-#include "contact_shapes.h"
+#include "contact/contact_shapes.h"
 
 namespace blem_sim {
 namespace {

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "blem_sim/geometry/closest_points.h"
-#include "contact_shapes.h"
-#include "mesh_pair.h"
+#include "contact/contact_shapes.h"
+#include "features/mesh_pair.h"
 
 namespace blem_sim {
 namespace {

@@ -1,9 +1,9 @@
 // Micro-steps of 1 um: no contact deeper than a few of them comes or goes, and the forces of deep layers change as a rigid shift would.
 #include <gtest/gtest.h>
 
+#include "contact/micro_steps.h"
 #include "contact/stl_soup.h"
 #include "geometry/gridded_box.h"
-#include "micro_steps.h"
 
 namespace blem_sim {
 namespace {

@@ -4,10 +4,10 @@
 #include <array>
 #include <tuple>
 
-#include "blem_sim/contact/reduction.h"
 #include "blem_sim/geometry/mesh_mending.h"
+#include "blem_sim/reduction/reduction.h"
+#include "contact/contact_shapes.h"
 #include "contact/stl_soup.h"
-#include "contact_shapes.h"
 #include "geometry/ply_soup.h"
 #include "support/broken_meshes.h"
 #include "support/sanitizers.h"

@@ -1,8 +1,8 @@
 // Once warm, a step of the articulated stepper asks the heap for nothing.
 #include <gtest/gtest.h>
 
-#include "analytic_contacts.h"
-#include "bouncing_bodies.h"
+#include "dynamics/analytic_contacts.h"
+#include "dynamics/bouncing_bodies.h"
 #include "support/chains.h"
 
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analytic_contacts.h"
+#include "dynamics/analytic_contacts.h"
 
 namespace blem_sim {
 namespace {

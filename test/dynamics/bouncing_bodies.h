@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "analytic_contacts.h"
+#include "dynamics/analytic_contacts.h"
 
 namespace blem_sim {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "analytic_contacts.h"
+#include "dynamics/analytic_contacts.h"
 
 namespace blem_sim {
 namespace {

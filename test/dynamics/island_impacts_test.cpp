@@ -1,11 +1,11 @@
 // The impact stage of a step on its own: trees at random, hit at random.
-#include "island_impacts.h"
+#include "island/island_impacts.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "island_motion.h"
+#include "island/island_motion.h"
 
 namespace blem_sim {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "analytic_contacts.h"
 #include "blem_sim/geometry/input_error.h"
+#include "dynamics/analytic_contacts.h"
 
 namespace blem_sim {
 namespace {

@@ -1,7 +1,7 @@
 // Bounces never make energy: bodies that turn, rows of balls, trees, friction; and sensors' readings of a bounce.
 #include <gtest/gtest.h>
 
-#include "bouncing_bodies.h"
+#include "dynamics/bouncing_bodies.h"
 
 namespace blem_sim {
 namespace {

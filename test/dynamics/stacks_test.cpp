@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "analytic_contacts.h"
+#include "dynamics/analytic_contacts.h"
 
 namespace blem_sim {
 namespace {

@@ -9,8 +9,8 @@
 #include "blem_sim/geometry/mesh_mending.h"
 #include "blem_sim/geometry/mesh_topology.h"
 #include "contact/stl_soup.h"
-#include "lens_shapes.h"
-#include "ply_soup.h"
+#include "geometry/lens_shapes.h"
+#include "geometry/ply_soup.h"
 #include "support/broken_meshes.h"
 #include "support/shared_data.h"
 

@@ -6,7 +6,7 @@
 #include <map>
 #include <set>
 
-#include "random_shapes.h"
+#include "geometry/random_shapes.h"
 
 namespace blem_sim {
 namespace {

@@ -9,8 +9,8 @@
 #include "blem_sim/geometry/mesh_mending.h"
 #include "blem_sim/geometry/mesh_topology.h"
 #include "first_equals.h"
+#include "geometry/random_shapes.h"
 #include "grouped.h"
-#include "random_shapes.h"
 
 namespace blem_sim {
 namespace {

@@ -1,8 +1,8 @@
 // Once warm, a step's messages are handed over without asking the heap for anything.
 #include <gtest/gtest.h>
 
-#include "message_pool.h"
-#include "step_sender.h"
+#include "messages/message_pool.h"
+#include "sending/step_sender.h"
 
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)
 

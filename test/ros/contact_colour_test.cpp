@@ -1,4 +1,4 @@
-#include "contact_colour.h"
+#include "messages/contact_colour.h"
 
 #include <gtest/gtest.h>
 

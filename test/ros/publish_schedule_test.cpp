@@ -1,4 +1,4 @@
-#include "publish_schedule.h"
+#include "sending/publish_schedule.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "step_pacer.h"
+#include "loop/step_pacer.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Messages of steps go out in order, and have gone out when drain() returns. Without it the sender's thread wakes by itself in time.
-#include "step_sender.h"
+#include "sending/step_sender.h"
 
 #include <gtest/gtest.h>
 #include <boost/make_shared.hpp>
@@ -10,7 +10,7 @@
 #include <numeric>
 #include <thread>
 
-#include "message_pool.h"
+#include "messages/message_pool.h"
 
 namespace blem_sim {
 namespace {

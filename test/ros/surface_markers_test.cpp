@@ -1,4 +1,4 @@
-#include "surface_markers.h"
+#include "publishers/surface_markers.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "simulation_scene.h"
+#include "sim/simulation_scene.h"
 
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)
 

@@ -1,7 +1,7 @@
 // Numbers that are none, or out of their range, in a configuration made by hand: one line that names the field.
 #include <functional>
 
-#include "simulation_scene.h"
+#include "sim/simulation_scene.h"
 #include "support/input_errors.h"
 
 namespace blem_sim {

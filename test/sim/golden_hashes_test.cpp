@@ -12,8 +12,8 @@
 #include <tuple>
 #include <vector>
 
-#include "saved_scene.h"
-#include "simulation_scene.h"
+#include "sim/simulation_scene.h"
+#include "sim/state/saved_scene.h"
 #include "soak/heap.h"
 #include "support/random_scene.h"
 #include "support/shared_packages.h"

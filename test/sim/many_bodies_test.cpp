@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "blem_sim/geometry/input_error.h"
-#include "simulation_scene.h"
+#include "sim/simulation_scene.h"
 #include "support/sanitizers.h"
 
 namespace blem_sim {

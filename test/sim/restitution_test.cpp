@@ -3,7 +3,7 @@
 #include <cmath>
 #include <random>
 
-#include "simulation_scene.h"
+#include "sim/simulation_scene.h"
 
 namespace blem_sim {
 namespace {

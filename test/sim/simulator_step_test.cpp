@@ -1,7 +1,7 @@
 // Motion of bodies under the step: fall, rest, roll, stack.
 #include <cmath>
 
-#include "simulation_scene.h"
+#include "sim/simulation_scene.h"
 
 namespace blem_sim {
 namespace {

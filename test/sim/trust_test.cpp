@@ -2,8 +2,8 @@
 #include <cmath>
 #include <utility>
 
-#include "layer_watch.h"
-#include "simulation_scene.h"
+#include "guard/layer_watch.h"
+#include "sim/simulation_scene.h"
 
 namespace blem_sim {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include "sim/fast_throw.h"
+#include "sim/contacts/fast_throw.h"
 #include "soak/figures.h"
 
 namespace blem_sim {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "robot_builder.h"
+#include "build/robot_builder.h"
 #include "support/shared_packages.h"
 
 namespace blem_sim {

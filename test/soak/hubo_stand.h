@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "build/simulated_world.h"
 #include "dynamics/analytic_contacts.h"
-#include "simulated_world.h"
 #include "support/shared_data.h"
 
 namespace blem_sim {

@@ -9,9 +9,10 @@ BELOW = {
     "geometry": [],
     "model": ["geometry"],
     "contact": ["geometry"],
+    "reduction": ["contact", "geometry"],
     "dynamics": ["contact", "model", "geometry"],
-    "sim": ["dynamics", "contact", "model", "geometry"],
-    "ros": ["sim", "dynamics", "contact", "model", "geometry"],
+    "sim": ["dynamics", "reduction", "contact", "model", "geometry"],
+    "ros": ["sim", "dynamics", "reduction", "contact", "model", "geometry"],
 }
 
 # First component (or whole name) of a library's headers -> the rooms that may include them.
@@ -77,7 +78,7 @@ def test_libraries_link_downwards():
     """blem_sim_room(NAME LIBS...) in cmake/rooms.cmake names only rooms below."""
     text = (ROOT / "cmake" / "rooms.cmake").read_text()
     calls = re.findall(r"^blem_sim_room\((\w+)([^)]*)\)", text, re.MULTILINE)
-    assert {room for room, _ in calls} >= {"geometry", "model", "contact", "dynamics", "sim"}
+    assert {room for room, _ in calls} >= {"geometry", "model", "contact", "reduction", "dynamics", "sim"}
     for room, libraries in calls:
         for below in re.findall(r"blem_sim_(\w+)", libraries):
             assert below in BELOW[room], "%s links %s" % (room, below)

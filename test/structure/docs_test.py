@@ -1,4 +1,4 @@
-"""Documentation: relative links, images and anchors lead somewhere, and table cells stay short enough to be read in a table."""
+"""Documentation: relative links, images and anchors lead somewhere, files that are named exist, and table cells stay short enough to be read in a table."""
 import pathlib
 import re
 import urllib.parse
@@ -11,6 +11,8 @@ MOST_WORDS = 40
 
 FENCE = re.compile(r"^\s*(```+|~~~+)")
 CODE = re.compile(r"(`+)(?!`).*?(?<!`)\1(?!`)")
+SPAN = re.compile(r"`([^`]+)`")
+FILE = re.compile(r"(?<![\w./])((?:(?:include|src|test|benchmark|scripts)/[\w/.]*)?\w+\.(?:h|cpp|py))\b")
 # [text](target "title"), images too; <img src="target">, <a href="target">; [name]: target
 INLINE = re.compile(r"\]\(\s*<?([^)\s>]+)>?(?:\s+(?:\"[^\"]*\"|'[^']*'))?\s*\)")
 HTML = re.compile(r"<(?:img|a)\b[^>]*?\b(?:src|href)\s*=\s*[\"']([^\"']+)[\"']", re.IGNORECASE)
@@ -74,6 +76,15 @@ def wrong_link(page, target, root=ROOT):
     return None
 
 
+def missing_files(text, names):
+    """(number of the line, file) of C++ and Python files that code spans name and the repository does not have. @param names of all its files"""
+    for number, line in prose(text):
+        for span in SPAN.findall(line):
+            for file in FILE.findall(span):
+                if not (ROOT / file).exists() and ("/" in file or file not in names):
+                    yield number, file
+
+
 def long_cells(text):
     """(number of the line, words) of table cells with too many words."""
     for number, line in prose(text):
@@ -95,6 +106,13 @@ def test_links_lead_somewhere():
     assert not wrong, "\n".join(wrong)
 
 
+def test_named_files_are_there():
+    names = {path.name for top in ("include", "src", "test", "benchmark", "scripts") for path in (ROOT / top).rglob("*")}
+    wrong = ["%s:%d: there is no %s" % (page.relative_to(ROOT), number, file)
+             for page in PAGES for number, file in missing_files(page.read_text(), names)]
+    assert not wrong, "\n".join(wrong)
+
+
 def test_table_cells_are_short():
     pages = [ROOT / name for name in SHORT_CELLS if (ROOT / name).exists()]
     wrong = ["%s:%d: a cell of %d words, %d at most" % (page.relative_to(ROOT), number, words, MOST_WORDS)
@@ -113,6 +131,7 @@ def test_the_rules_see_what_is_wrong(tmp_path):
         assert wrong_link(page, target, tmp_path), target
     for target in ("other.md", "other.md#two", "#first-1", "https://example.org/x#y", "mailto:a@example.org"):
         assert wrong_link(page, target, tmp_path) is None, target
+    assert [file for _, file in missing_files("`src/nowhere.cpp`, `nothing.h`, `other.h` nothing.py\n", {"other.h"})] == ["src/nowhere.cpp", "nothing.h"]
     long_row = "| a | %s |" % " ".join(["word"] * (MOST_WORDS + 1))
     assert list(long_cells("| b | c |\n|---|---|\n%s\n" % long_row)) == [(3, MOST_WORDS + 1)]
     assert not list(long_cells("```\n%s\n```\n" % long_row))

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "blem_sim/geometry/types.h"
-#include "random_numbers.h"
+#include "numbers/random_numbers.h"
 
 namespace blem_sim {
 

@@ -6,7 +6,8 @@ import pytest
 
 np = pytest.importorskip("numpy", reason="python3-numpy is not installed")
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+SUPPORT = pathlib.Path(__file__).resolve().parents[1] / "support"
+sys.path[:0] = [str(SUPPORT), str(SUPPORT / "tosses")]
 import toss_bounces  # noqa: E402
 import toss_identification  # noqa: E402
 import tosses as recorded  # noqa: E402

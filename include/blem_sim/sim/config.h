@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "blem_sim/contact/collider.h"
-#include "blem_sim/dynamics/world.h"
+#include "blem_sim/dynamics/world_types.h"
 #include "blem_sim/model/loaders.h"
 
 namespace YAML {

@@ -1,82 +1,17 @@
 // The simulation: models from a configuration, one step, commands between steps.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "blem_sim/contact/collider.h"
-#include "blem_sim/model/robot_model.h"
-#include "blem_sim/sim/config.h"
+#include "blem_sim/dynamics/world.h"
+#include "blem_sim/sim/simulator_types.h"
 #include "blem_sim/sim/step_report.h"
 #include "blem_sim/sim/trajectory.h"
 
 namespace blem_sim {
-
-enum class ModelKind { ENVIRONMENT, ROBOT, OBJECT };
-
-/** A robot, object or environment in the simulation. */
-struct ModelInfo {
-  std::string name;
-  ModelKind kind = ModelKind::OBJECT;
-  std::vector<int> bodies;  ///< world bodies; [0] holds the root link
-  std::vector<int> joints;  ///< world joints, movable ones, in the robot's order
-  bool alive = true;        ///< false: unloaded, and its slot is free
-};
-
-/** A robot as publishers and commands see it. */
-struct RobotInfo {
-  int model = 0;
-  std::string name, name_space;
-  bool fixed_base = false;
-  std::shared_ptr<const RobotModel> description;
-  std::shared_ptr<const LumpedRobot> lumped;
-  std::string root_link;
-  Pose X_WR = Pose::Identity();          ///< root link at the start; a fixed base's for good
-  std::vector<int> bodies;               ///< world body of lumped body i; WORLD_BODY for a fixed base
-  std::vector<int> world_joints;         ///< world joint of lumped joint i, fixed ones kept for a sensor too; -1 for a floating one
-  std::vector<std::string> joint_names;  ///< movable joints
-  std::vector<int> joints;               ///< their world joints
-  std::vector<JointLimits> limits;
-};
-
-struct SensorInfo {
-  int robot = 0;
-  SensorConfig config;
-  std::string frame_id;  ///< link the reading is expressed in
-};
-
-/** Targets for joints by name; empty vectors = not commanded. Position and velocity go to the motor, effort adds to it. */
-struct JointCommandMessage {
-  std::vector<std::string> joints;
-  std::vector<double> positions, velocities, efforts;
-};
-
-/** Log of long loads: their progress, and the size of the loaded model: names, stages, seconds, triangles, memory. */
-struct LoadLog {
-  std::function<void(const std::string& line)> tell;  ///< also called by a thread of its own, never by two at once; may be empty
-  double interval = 1;                                ///< [s] between lines; shorter loads are not told
-};
-
-/** Header of a saved state; restore checks it against the content. */
-struct StateHeader {
-  std::uint64_t format = 0;    ///< a mark, and the version of the content
-  std::uint64_t layout = 0;    ///< hash of SimulationState::layout
-  std::uint64_t length = 0;    ///< of the content, in words of 64 bits
-  std::uint64_t checksum = 0;  ///< of layout and content
-};
-
-/** Everything a simulation needs to replay bit for bit: world, motors, trajectories, sensors, random generators, contact memory. */
-struct SimulationState {
-  StateHeader header;
-  std::uint64_t step = 0;
-  WorldState world;
-  std::vector<double> numbers;
-  std::vector<std::uint64_t> words;
-  std::string
-      layout;  ///< things the state belongs to: settings, models, bodies, joints, colliders, sensors; each with a hash of its content
-};
 
 /**
  * Owns the world and steps it. Single-threaded: call everything from one thread, between steps. The constructor and the load functions

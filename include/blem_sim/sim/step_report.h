@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "blem_sim/contact/manifold.h"
-#include "blem_sim/dynamics/world.h"
+#include "blem_sim/dynamics/world_types.h"
 
 namespace blem_sim {
 

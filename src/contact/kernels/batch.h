@@ -1,7 +1,7 @@
 // Batches of as many candidates as there are lanes. Included by the kernels only.
 #pragma once
 
-#include "lanes.h"
+#include "kernels/simd.h"
 
 namespace blem_sim::kernels {
 namespace {

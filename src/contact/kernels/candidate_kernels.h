@@ -1,11 +1,11 @@
 // Candidates, several at once, in double. Included by kernels_code.h only.
 #pragma once
 
-#include "../tolerances.h"
-#include "batch.h"
-#include "edge_cones.h"
-#include "edge_sides.h"
-#include "lanes.h"
+#include "features/tolerances.h"
+#include "kernels/batch.h"
+#include "kernels/edge_cones.h"
+#include "kernels/edge_sides.h"
+#include "kernels/simd.h"
 
 namespace blem_sim::kernels {
 namespace {

@@ -1,8 +1,8 @@
 // Whether the common perpendicular of two edges may point out of all their faces: lanes of floats or doubles. Included by the kernels only.
 #pragma once
 
-#include "../tolerances.h"
-#include "lanes.h"
+#include "features/tolerances.h"
+#include "kernels/simd.h"
 
 namespace blem_sim::kernels {
 namespace {

@@ -1,9 +1,9 @@
 // Edges near edges, several pairs at once, in double. Included by kernels_code.h only.
 #pragma once
 
-#include "edge_records.h"
-#include "fading_edges.h"
-#include "plain_contacts.h"
+#include "kernels/edge_records.h"
+#include "kernels/fading_edges.h"
+#include "kernels/plain_contacts.h"
 
 namespace blem_sim::kernels {
 namespace {

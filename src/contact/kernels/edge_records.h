@@ -1,7 +1,7 @@
 // Results of the kernels near edges: plain numbers, the same for every instruction set.
 #pragma once
 
-#include "records.h"
+#include "kernels/records.h"
 
 namespace blem_sim::kernels {
 

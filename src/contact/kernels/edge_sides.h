@@ -1,8 +1,8 @@
 // Whether a vertex is where it can have a contact with an edge: lanes of floats or doubles. Included by the kernels only.
 #pragma once
 
-#include "../tolerances.h"
-#include "lanes.h"
+#include "features/tolerances.h"
+#include "kernels/simd.h"
 
 namespace blem_sim::kernels {
 namespace {

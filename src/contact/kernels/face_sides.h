@@ -1,8 +1,8 @@
 // Whether a vertex is over a face, or so little beside it that its contact fades: lanes of floats or doubles. Included by the kernels only.
 #pragma once
 
-#include "../tolerances.h"
-#include "lanes.h"
+#include "features/tolerances.h"
+#include "kernels/simd.h"
 
 namespace blem_sim::kernels {
 namespace {

@@ -1,7 +1,7 @@
 // Edges whose feet lie beyond an end of one or both, several pairs at once. Included by the kernels only.
 #pragma once
 
-#include "candidate_kernels.h"
+#include "kernels/candidate_kernels.h"
 
 namespace blem_sim::kernels {
 namespace {

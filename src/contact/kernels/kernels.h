@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "edge_directions.h"
-#include "edge_records.h"
+#include "kernels/edge_directions.h"
+#include "kernels/edge_records.h"
 
 namespace blem_sim::kernels {
 

@@ -1,4 +1,4 @@
-#include "kernels_code.h"
+#include "kernels/kernels_code.h"
 
 namespace blem_sim::kernels {
 extern const Kernels AVX512;

@@ -2,14 +2,14 @@
 // Wide vectors are passed inside that file only.
 #pragma GCC diagnostic ignored "-Wpsabi"
 
-#include "candidate_kernels.h"
-#include "edge_kernels.h"
-#include "kernels.h"
-#include "lanes.h"
-#include "leaf_kernels.h"
-#include "side_feet.h"
-#include "vertex_face_kernels.h"
-#include "vertex_kernels.h"
+#include "kernels/candidate_kernels.h"
+#include "kernels/edge_kernels.h"
+#include "kernels/kernels.h"
+#include "kernels/leaves/leaf_kernels.h"
+#include "kernels/side_feet.h"
+#include "kernels/simd.h"
+#include "kernels/vertex_face_kernels.h"
+#include "kernels/vertex_kernels.h"
 
 namespace blem_sim::kernels {
 namespace {

@@ -1,7 +1,7 @@
 // Contacts of vertices with faces, in the world. Included by the kernels only.
 #pragma once
 
-#include "batch.h"
+#include "kernels/batch.h"
 
 namespace blem_sim::kernels {
 namespace {

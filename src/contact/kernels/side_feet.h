@@ -1,7 +1,7 @@
 // Vertices beside faces: places of their contacts on the faces' sides. Included by the kernels only.
 #pragma once
 
-#include "plain_contacts.h"
+#include "kernels/plain_contacts.h"
 
 namespace blem_sim::kernels {
 namespace {

@@ -1,9 +1,9 @@
 // Vertices near faces, several at once, in double. Included by kernels_code.h only.
 #pragma once
 
-#include "candidate_kernels.h"
-#include "face_sides.h"
-#include "plain_contacts.h"
+#include "kernels/candidate_kernels.h"
+#include "kernels/face_sides.h"
+#include "kernels/plain_contacts.h"
 
 namespace blem_sim::kernels {
 namespace {

@@ -1,9 +1,9 @@
 // Leading edges around vertices, and vertices near edges, in double. Included by kernels_code.h only.
 #pragma once
 
-#include "candidate_kernels.h"
-#include "edge_directions.h"
-#include "edge_records.h"
+#include "kernels/candidate_kernels.h"
+#include "kernels/edge_directions.h"
+#include "kernels/edge_records.h"
 
 namespace blem_sim::kernels {
 namespace {

@@ -1,0 +1,109 @@
+// Bodies, joints, contacts and drives as plain data: what a world is asked with and answers with.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "blem_sim/geometry/triangle_mesh.h"
+#include "blem_sim/geometry/types.h"
+
+namespace blem_sim {
+
+constexpr int WORLD_BODY = -1;  ///< the static world where a body is asked for
+
+/** A rigid body. Its frame B is wherever its maker put it (a link's frame, a mesh's frame); the centre of mass may be elsewhere. */
+struct BodySpec {
+  std::string name;         ///< "model::link"
+  MassProperties inertial;  ///< mass > 0, com and inertia in B's axes, inertia about the com
+  Pose X_WB = Pose::Identity();
+};
+
+enum class JointKind { FIXED, REVOLUTE, PRISMATIC };
+
+/** A joint between two bodies, or a body and the world. Position 0 is where the child's frame C coincides with the joint frame J. */
+struct JointSpec {
+  std::string name;  ///< "model::joint"
+  JointKind kind = JointKind::REVOLUTE;
+  int parent = WORLD_BODY;
+  int child = 0;
+  Pose X_PJ = Pose::Identity();                             ///< joint frame in the parent body's frame (or the world)
+  Vector3 axis = Vector3::UnitZ();                          ///< unit, in J; child's motion relative to the parent is along/about +axis
+  double lower = -std::numeric_limits<double>::infinity();  ///< [rad or m]
+  double upper = std::numeric_limits<double>::infinity();
+  /** q = multiplier * q[mimic_joint] + offset, if mimic_joint >= 0. */
+  int mimic_joint = -1;
+  double mimic_multiplier = 1, mimic_offset = 0;
+  double armature = 0;  ///< [kg m^2 or kg] inertia of the motor's rotor, seen at the joint; only `articulated` knows it
+};
+
+struct BodyState {
+  Pose X_WB = Pose::Identity();
+  Vector3 v_WCom = Vector3::Zero();  ///< [m/s] of the centre of mass, world axes
+  Vector3 w_WB = Vector3::Zero();    ///< [rad/s] world axes
+};
+
+struct JointState {
+  double position = 0;  ///< [rad or m], counts full turns
+  double velocity = 0;
+  double effort = 0;  ///< [N m or N] of motor and joint friction, along the axis, in the last step
+};
+
+/** Drive of one joint during one step. All terms act together. */
+struct JointDrive {
+  double effort = 0;  ///< [N m or N] given in advance: explicit PID, already capped, or an outside effort
+  /** Implicit PD: stiffness (target_position - q) + damping (target_velocity - qdot), both taken at the end of the step, bounded by
+   *  max_effort. Stable for any gain. Off while both gains are 0. */
+  double stiffness = 0, damping = 0, target_position = 0, target_velocity = 0;
+  double max_effort = std::numeric_limits<double>::infinity();
+  double dry_friction = 0;      ///< [N m or N] mu_D: sticks up to it, slips against it [Hauser 2013, 4.1]
+  double viscous_friction = 0;  ///< mu_V
+};
+
+/** One contact as the solver takes it. */
+struct ContactConstraint {
+  int body_a = WORLD_BODY, body_b = WORLD_BODY;
+  Vector3 point, normal_BA;  ///< world
+  double depth = 0;          ///< [m], negative = gap
+  double friction = 0, restitution = 0;
+  double impact_friction_factor = 1;  ///< 0 to 1: friction in impacts over friction; only `articulated` knows it
+  double stiffness = std::numeric_limits<double>::infinity(), damping = std::numeric_limits<double>::infinity();
+  std::uint64_t id = 0;  ///< identity across steps, unique within one step (colliders and features)
+};
+
+struct SolverSettings {
+  std::string stepper = "articulated";  ///< a name in stepperTable()
+  int threads = 1;                      ///< for `articulated`: islands and the loops of large ones; the result is the same for any number
+  int quick_step_iterations = 50;
+  double cfm = 1e-6;                  ///< constraint force mixing of contacts in ODE's steppers
+  double correction_fraction = 0.2;   ///< of a contact's depth removed per step, at most at max_correction_speed
+  double max_correction_speed = 0.1;  ///< [m/s]
+  double joint_erp = 0.2;
+  double joint_cfm = 1e-10;
+};
+
+/** Result of one solve; lives until the next one. Indices go with the constraints, joints, bodies given. */
+struct SolveResult {
+  std::vector<Vector3> contact_forces;  ///< [N] on body A, world axes, mean over the step
+  std::vector<Wrench> joint_wrenches;   ///< from the parent on the child, world axes, about the joint frame's origin at the start of
+                                        ///< the step; from motion (Newton-Euler over the step), not from a residual
+  std::vector<double> joint_efforts;    ///< [N m or N] motor and friction along the axis
+  std::vector<double> apparent_work;    ///< [J] per contact: apparent work, at most, of departures and slips that loads end within the
+                                        ///< step, and of bent paths; empty where a stepper does not know it
+  double residual = 0;                  ///< [N] largest miss of Coulomb's law by a contact's force; 0 where a stepper does not know it
+  double creep = 0;       ///< [rad/s or m/s] largest miss of velocities to momentum's balance, contacts, sticking joints, limits or loops
+  int iterations = 0;     ///< of the solver, over all islands
+  int lcp_errors = 0;     ///< the complementarity solver complained; the step was redone with more CFM
+  bool too_fast = false;  ///< joints or bodies turned too far in the step for their free motion to be followed: shorten dt
+  bool finite = true;     ///< step gave a finite state; if not, bodies stay as before it and nothing else here means anything
+};
+
+/** Everything a world needs to replay bit for bit. */
+struct WorldState {
+  std::vector<double> numbers;
+  std::vector<std::uint64_t> words;
+  bool operator==(const WorldState& o) const { return numbers == o.numbers && words == o.words; }
+};
+
+}  // namespace blem_sim

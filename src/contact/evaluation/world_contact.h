@@ -1,0 +1,90 @@
+// From the witness points of two features to the contact that is handed on.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "blem_sim/contact/manifold.h"
+#include "blem_sim/geometry/roomy.h"
+#include "features/mesh_pair.h"
+#include "kernels/records.h"
+
+namespace blem_sim {
+
+/** The middle of the overlap of the layers [Hauser 2013, 3.2]. @param p, q witness points @param normal from B to A */
+inline Vector3 placeOf(const ContactRoles& roles, const Vector3& p, const Vector3& q, const Vector3& normal) {
+  return 0.5 * (p + q) + 0.5 * (roles.r_b - roles.r_a) * normal;
+}
+
+/** Point of A's bare mesh, or of B's, of radius r [m], at a contact. */
+inline Vector3 witnessOf(const Contact& contact, double radius, bool of_a) {
+  return contact.point + (of_a ? 1 : -1) * (radius - 0.5 * contact.depth) * contact.normal_BA;
+}
+
+/** A contact in the frame of the points. @param normal from second to first */
+inline Contact contactOf(const ContactRoles& roles, const Feature& first, const Feature& second, const Vector3& point_first,
+                         const Vector3& point_second, const Vector3& normal, double gap) {
+  Contact contact;
+  contact.normal_BA = roles.first_is_a ? normal : Vector3(-normal);
+  contact.point = placeOf(roles, point_first, point_second, contact.normal_BA);
+  contact.depth = roles.r_a + roles.r_b - gap;
+  contact.id = roles.first_is_a ? contactId(first, second) : contactId(second, first);
+  return contact;
+}
+
+/** Id of a contact of a feature with one of the other mesh, whichever of them moves. */
+inline std::uint64_t contactId(const ContactRoles& roles, bool first_moves, const Feature& first, const Feature& second) {
+  return first_moves == roles.first_is_a ? contactId(first, second) : contactId(second, first);
+}
+
+/** A contact of a pair in the world. @param normal from the fixed mesh to the moving one, as the points in frame F */
+inline void placeInWorld(const MeshPair& pair, bool first_moves, const Feature& first, const Feature& second, const Vector3& point_first,
+                         const Vector3& point_second, const Vector3& normal, double gap, Contact* out) {
+  const ContactRoles& roles = pair.roles;
+  const Vector3 normal_BA = roles.first_is_a ? normal : Vector3(-normal);
+  out->point = pair.X_WF * placeOf(roles, point_first, point_second, normal_BA);
+  out->normal_BA = pair.X_WF.linear() * normal_BA;
+  out->depth = roles.r_a + roles.r_b - gap;
+  out->id = contactId(roles, first_moves, first, second);
+  out->weight = 1;
+  out->pierced = false;
+}
+
+static_assert(offsetof(Contact, point) == offsetof(kernels::ContactRow, point) &&
+                  offsetof(Contact, normal_BA) == offsetof(kernels::ContactRow, normal) &&
+                  offsetof(Contact, depth) == offsetof(kernels::ContactRow, depth) &&
+                  offsetof(Contact, id) == offsetof(kernels::ContactRow, id) &&
+                  offsetof(Contact, weight) == offsetof(kernels::ContactRow, weight) &&
+                  offsetof(Contact, pierced) == offsetof(kernels::ContactRow, pierced) && sizeof(Contact) == sizeof(kernels::ContactRow),
+              "kernels write contacts as they are");
+
+/** A list of contacts that is written anew, over those that it holds: none is made only to be overwritten. */
+class ContactWriter {
+ public:
+  void overwrite(std::vector<Contact>* contacts) {
+    contacts_ = contacts;
+    count_ = 0;
+  }
+  /** Room for `more` contacts; whoever takes it writes every number. */
+  Contact* room(std::size_t more) {
+    if (contacts_->size() < count_ + more) resizeRoomy(count_ + more, contacts_);
+    return contacts_->data() + count_;
+  }
+  kernels::ContactRow* rows(std::size_t more) { return reinterpret_cast<kernels::ContactRow*>(room(more)); }
+  /** Counts contacts that were written. */
+  void advance(std::size_t written) { count_ += written; }
+  /** Drops so many of the last contacts. */
+  void retreat(std::size_t dropped) { count_ -= dropped; }
+  /** Cuts the list to the contacts that were written. */
+  void finish() { contacts_->resize(count_); }
+
+  std::size_t size() const { return count_; }
+  const Contact* begin() const { return contacts_ ? contacts_->data() : nullptr; }
+  const Contact* end() const { return begin() + count_; }
+
+ private:
+  std::vector<Contact>* contacts_ = nullptr;
+  std::size_t count_ = 0;
+};
+
+}  // namespace blem_sim

@@ -1,0 +1,165 @@
+// Features of two leaves against each other, all of one at once, in float. Included by kernels_code.h only.
+#pragma once
+
+#include "features/tolerances.h"
+#include "kernels/edge_cones.h"
+#include "kernels/edge_sides.h"
+#include "kernels/face_sides.h"
+#include "kernels/leaves/leaf_lanes.h"
+#include "kernels/leaves/leaf_turn.h"
+#include "kernels/leaves/near_features.h"
+
+namespace blem_sim::kernels {
+namespace {
+
+// While features move by no more than the margin, heights and distances change by no more: so the tests are the exact ones, that much
+// wider.
+
+inline FloatMask mayTouch(const FloatVectors& p, const FloatFaces& face, const LeafReach& reach) {
+  const Floats height = face.plane.above(p), most = reach.range - absolute(height);
+  const Floats inside[3] = {face.sides[0].above(p), face.sides[1].above(p), face.sides[2].above(p)};
+  return (most >= 0) & isOverOrFades(inside, openSides(face.open >> reach.open_shift, height, reach.margin), most, reach.margin);
+}
+
+inline FloatMask mayTouch(const FloatVectors& p, const LeafEdges& edges, std::uint32_t first, const LeafReach& reach) {
+  const FloatVectors r = p - severalVectors(edges.starts, first);
+  const Floats inside = dot(severalVectors(edges.inwards[0], first), r), also = dot(severalVectors(edges.inwards[1], first), r);
+  const FloatMask beside = maximum(inside, also) <= static_cast<float>(2 * CONE_SLACK) * reach.range + reach.margin;
+  if (bitsOf(beside) == 0) return beside;
+  const FloatVectors direction = severalVectors(edges.directions, first);
+  const Floats along = dot(r, direction), fold = row(&edges.folds[first]);
+  const FloatVectors d = r - along * direction;
+  const AtEdge<Floats> vertex{{inside, also}, squareRoot(dot(d, d)), maximum(-along, along - row(&edges.lengths[first]))};
+  return beside & isAtEdge(vertex, absolute(fold), fold < 0, reach.range, reach.margin, reach.rounding);
+}
+
+/** Whether these vertices may be nearest: perhaps no edge of them leads along d. @param d from the vertices, d2 its square
+ * @param slack [m] */
+inline FloatMask mayBeNearest(const FloatVectors& axis, Floats up, Floats down, Floats per_slack, const FloatVectors& d, Floats d2,
+                              float slack) {
+  const Floats along = dot(axis, d), most = per_slack * slack + absolute(along) * (along > 0 ? up : down);
+  return (most >= 0) & (d2 - along * along <= most * most);
+}
+
+/** Whether vertex i of one leaf and several of another may touch: each may be the nearest of its surface, or one may and is round. */
+inline FloatMask mayTouch(const LeafShapes& a, std::uint32_t i, const LeafShapes& b, std::uint32_t first, const LeafReach& reach) {
+  const FloatVectors d = oneVertex(a, i) - severalVertices(b, first), back = {-d.x, -d.y, -d.z};
+  const Floats d2 = dot(d, d);
+  const FloatMask near = d2 <= reach.range * reach.range;
+  if (bitsOf(near) == 0) return near;
+  const float slack = static_cast<float>(CONE_SLACK) * reach.range + reach.margin;
+  const LeafCones &one = blockOf(a.cones, i), &several = blockOf(b.cones, first);
+  const std::uint32_t k = i % LEAF_BLOCK, j = first % LEAF_BLOCK;
+  const FloatMask a_may =
+      mayBeNearest(oneVector(one.axes, k), allFloats(one.up[k]), allFloats(one.down[k]), allFloats(one.per_slack[k]), back, d2, slack);
+  const FloatMask b_may =
+      mayBeNearest(severalVectors(several.axes, j), row(&several.up[j]), row(&several.down[j]), row(&several.per_slack[j]), d, d2, slack);
+  const FloatMask b_round = maskRow(&several.round[j]);
+  return near & ((a_may & b_may) | (b_may & b_round) | (a_may & one.round[k]));
+}
+
+/** Whether an end of an edge lies no farther than `limit` [m] inside a face of the other. @param start as the other's start sees it */
+inline FloatMask reachesOut(const FloatVectors& start, const FloatVectors& along, const FloatVectors& inward, float limit) {
+  return dot(inward, start) + minimum(dot(inward, along), Floats{}) <= limit;
+}
+
+inline FloatMask mayTouch(const FloatEdge& a, const FloatEdge& b, const LeafReach& reach) {
+  const FloatVectors &p = a.along, &q = b.along, r = b.start - a.start, back = a.start - b.start;
+  FloatMask may = reachesOut(r, q, a.inward[0], reach.inside) & reachesOut(r, q, a.inward[1], reach.inside);
+  may &= reachesOut(back, p, b.inward[0], reach.inside) & reachesOut(back, p, b.inward[1], reach.inside);
+  if (bitsOf(may) == 0) return may;
+  const Floats pp = dot(p, p), qq = dot(q, q);
+  const FloatVectors n = cross(p, q);
+  may &= conesMayAllow(n, coneBound(dot(n, n), pp * qq, reach.turn), a.inward[0], a.inward[1], b.inward[0], b.inward[1]);
+  if (bitsOf(may) == 0) return may;
+  // Closest points of the segments [Ericson 2005, 5.1.9].
+  const Floats pq = dot(p, q), pr = dot(p, r), qr = dot(q, r), denominator = pp * qq - pq * pq;
+  const Floats first = denominator > 0 ? clampedToUnit((pr * qq - pq * qr) / denominator) : Floats{};
+  const Floats t = clampedToUnit((pq * first - qr) / qq), s = clampedToUnit((pq * t + pr) / pp);
+  const FloatVectors d = r + t * q - s * p;
+  return may & ~(dot(d, d) > reach.range * reach.range);
+}
+
+/** Only an edge with ends on both sides of a plane, inside some part of the face, passes through it. */
+inline FloatMask mayCross(const FloatVectors& start, const FloatVectors& end, const FloatFaces& face, const LeafReach& reach) {
+  const Floats first = face.plane.above(start), second = face.plane.above(end), margin = motionAlong(reach, face.plane.normal);
+  FloatMask may = (minimum(first, second) <= margin) & (maximum(first, second) >= -margin);
+  if (bitsOf(may) == 0) return may;
+  for (const FloatPlanes& side : face.sides) may &= maximum(side.above(start), side.above(end)) >= -reach.margin;
+  return may;
+}
+
+inline void append(std::uint32_t feature, std::uint32_t bits, LeafHit* hits, int* count) {
+  hits[*count] = {feature, bits};
+  *count += bits != 0;
+}
+
+/** Whether edges of the two leaves may have a common perpendicular that points out of the faces of both. */
+inline bool mayShareNormal(const EdgeCone& a, const EdgeCone& b, float turn) {
+  const float slack = static_cast<float>(2 * 1.001 * EDGE_CONE_SLACK + 1e-4) + 1.1f * turn;
+  const float cosine = a.axis[0] * b.axis[0] + a.axis[1] * b.axis[1] + a.axis[2] * b.axis[2];
+  // The cosine of the sum of both angles and the slack is no less than this.
+  const float least = a.cosine * b.cosine - a.sine * b.sine - slack * (a.sine * b.cosine + a.cosine * b.sine) - 0.5f * slack * slack;
+  return (cosine < 0 ? -cosine : cosine) >= least;
+}
+
+/** The vertices of one leaf, by their bits, at the faces and edges of another. */
+inline void findAtVertices(const LeafShapes& a, std::uint32_t vertices, const LeafShapes& b, const LeafReach& reach, int order,
+                           LeafHits* hits) {
+  hits->vertex_faces[order] = hits->vertex_edges[order] = 0;
+  forEachBit(vertices, [&](std::uint32_t i) {
+    const FloatVectors p = oneVertex(a, i);
+    const std::uint32_t faces = bitsWhere(b.face_count, [&](auto j) { return mayTouch(p, FloatFaces(b.faces, j), reach); });
+    append(i, faces, hits->vertex_face[order], &hits->vertex_faces[order]);
+    const std::uint32_t edges = edgesWhere(b, [&](const LeafEdges& block, auto j) { return mayTouch(p, block, j, reach); });
+    append(i, edges, hits->vertex_edge[order], &hits->vertex_edges[order]);
+  });
+}
+
+/** Vertices that can each be the nearest of their surface, or one can and is round: it sees the other one near its leaf. */
+inline void findVertexVertices(const LeafShapes& a, std::uint32_t near_a, const LeafShapes& b, std::uint32_t near_b, const LeafReach& reach,
+                               LeafHits* hits) {
+  const std::uint32_t of_a = near_b == 0 ? 0 : a.nearest, of_b = near_a == 0 ? 0 : b.nearest;
+  forEachBit(of_a | (of_b == 0 ? 0 : near_a), [&](std::uint32_t i) {
+    const std::uint32_t seen = ((of_a >> i & 1) != 0 ? near_b : 0) | ((near_a >> i & 1) != 0 ? of_b : 0);
+    const std::uint32_t vertices = bitsWhere(b.vertex_count, [&](auto j) { return mayTouch(a, i, b, j, reach); });
+    append(i, vertices & seen, hits->vertex_vertex, &hits->vertex_vertices);
+  });
+}
+
+inline void findEdgeEdges(const LeafShapes& a, const LeafShapes& b, const LeafReach& reach, LeafHits* hits) {
+  if (!mayShareNormal(a.edge_cone, b.edge_cone, reach.turn)) return;
+  forEachBit(edgesNear(a, b, reach), [&](std::uint32_t i) {
+    const FloatEdge edge = oneEdge(a, i);
+    const std::uint32_t edges =
+        edgesWhere(b, [&](const LeafEdges& block, auto j) { return mayTouch(edge, severalEdges(block, j), reach); });
+    append(i, edges, hits->edge_edge, &hits->edge_edges);
+  });
+}
+
+void leafContacts(const LeafShapes& a, const LeafShapes& b, const LeafReach& reach, LeafHits* hits) {
+  const std::uint32_t near_a = verticesNear(a, b, reach), near_b = verticesNear(b, a, reach);
+  findAtVertices(a, near_a, b, reach, 0, hits);
+  findAtVertices(b, near_b, a, reach, 1, hits);
+  hits->vertex_vertices = hits->edge_edges = 0;
+  findVertexVertices(a, near_a, b, near_b, reach, hits);
+  findEdgeEdges(a, b, reach, hits);
+}
+
+inline void findCrossings(const LeafShapes& a, const LeafShapes& b, const LeafReach& reach, int order, LeafHits* hits) {
+  hits->edge_faces[order] = 0;
+  forEachBit(edgesAtBox(a, b, reach), [&](std::uint32_t i) {
+    const FloatEdge edge = oneEdge(a, i);
+    const FloatVectors start = edge.start, end = start + edge.along;
+    const std::uint32_t faces = bitsWhere(b.face_count, [&](auto j) { return mayCross(start, end, FloatFaces(b.faces, j), reach); });
+    append(i, faces, hits->edge_face[order], &hits->edge_faces[order]);
+  });
+}
+
+void leafCrossings(const LeafShapes& a, const LeafShapes& b, const LeafReach& reach, LeafHits* hits) {
+  findCrossings(a, b, reach, 0, hits);
+  findCrossings(b, a, reach, 1, hits);
+}
+
+}  // namespace
+}  // namespace blem_sim::kernels

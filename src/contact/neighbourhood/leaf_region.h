@@ -1,0 +1,11 @@
+// Region where features may lie that have a contact with a leaf's.
+#pragma once
+
+#include "neighbourhood/leaf_features.h"
+
+namespace blem_sim {
+
+/** @param leaf its faces, edges and vertices, with their shapes */
+kernels::LeafRegion leafRegion(const MeshSide& side, const Bvh::Node& node, const LeafFeatures& leaf);
+
+}  // namespace blem_sim

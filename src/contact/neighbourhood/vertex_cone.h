@@ -1,0 +1,13 @@
+// Directions in which a vertex can be the nearest point of its surface.
+#pragma once
+
+#include "features/mesh_pair.h"
+#include "kernels/records.h"
+#include "neighbourhood/surroundings.h"
+
+namespace blem_sim {
+
+/** Cone that holds every direction, in the mesh's frame, that vertexConeAllows. */
+kernels::VertexCone vertexCone(const MeshSide& side, int vertex, SurroundingsMemory* surroundings);
+
+}  // namespace blem_sim

@@ -1,0 +1,78 @@
+// Impacts with restitution or a friction of their own: velocities leap at the beginning of a step, before it is solved. See docs/solver.md.
+#pragma once
+
+#include <vector>
+
+#include "island/impact_rows.h"
+#include "island/island_terms.h"
+
+namespace blem_sim {
+
+/** The impacts of one island in one step. Used again from step to step, so that it need not allocate. */
+class IslandImpacts {
+ public:
+  /** Forgets the last step's impacts. @return whether any contact that has impacts may meet within this step */
+  bool expect(const TermSource& source, const std::vector<int>& contacts, const IslandProblem& problem);
+  /**
+   * Contacts that have impacts and will meet within the step reflect velocities as often as it takes until none approaches any more, or
+   * the bounds on work are reached; contacts that then still approach are left to the solve, where they do not bounce. No reflection adds
+   * kinetic energy. If any happens, the free momentum of `solver` and its first guess of the velocities change by the impulses.
+   * @param contacts of the step's input, those of the problem
+   * @return whether anything met; if not, nothing was changed
+   * Precondition: expect() was true
+   */
+  bool happen(const TermSource& source, const std::vector<int>& contacts, const IslandProblem& problem, ImpactSpace* space,
+              SolverSpace* solver);
+
+  /** Whether anything met in the step at hand. */
+  bool any() const { return !impulses_.empty(); }
+  /** Impulse [N s] of a contact of the problem, in the sense of its term. Precondition: any() */
+  const Vector3& impulse(std::size_t contact) const { return impulses_[contact]; }
+  /** Adds the impulses to those that the solve found. Precondition: any() */
+  void addTo(IslandProblem* problem) const;
+  /** Takes the leaps of velocity, if any, away from changes that are to be extrapolated. */
+  void takeFrom(const Forest& forest, const std::vector<int>& trees, Eigen::VectorXd* change) const;
+
+ private:
+  /** A contact that has restitution, or a friction of its own in impacts. */
+  struct Bouncer {
+    int contact = 0;  ///< of the problem
+    const BodyPair* pair = nullptr;
+    int row = -1;  ///< of rows_, once it has met
+    double restitution = 0, friction = 0;
+    double depth = 0;                   ///< [m]
+    double kick = 0;                    ///< [m/s] of its normal velocity by half of the step's forces
+    double slowest = 0;                 ///< [m/s] closing speed below which nothing bounces
+    double speed = 0;                   ///< [m/s] along the normal, at present
+    Vector3 impulse = Vector3::Zero();  ///< [N s] so far, along the row's directions
+  };
+  /** A bouncer that meets in this round. */
+  struct Meeting {
+    int group = 0, bouncer = 0, row = 0;
+    double friction = 0, restitution = 0;
+    Vector3 before = Vector3::Zero();   ///< [m/s] relative velocity
+    Vector3 impulse = Vector3::Zero();  ///< [N s] of the phase at hand
+  };
+
+  void begin(const TermSource& source, const std::vector<int>& contacts, const IslandProblem& problem, const SolverSpace& solver);
+  void setSpeeds(const Forest& forest, const ForestMotion& motion, const IslandProblem& problem, const Eigen::VectorXd& velocity);
+  bool findMeetings(const TermSource& source, const IslandProblem& problem);
+  void findGroups(const Forest& forest, const IslandProblem& problem);
+  double compress(Meeting* first, Meeting* end);
+  void expand(Meeting* first, Meeting* end, double lost);
+  double push(const Vector3& impulse, Meeting* meeting);
+  double stop(Meeting* meeting);
+  double rub(double most, Meeting* meeting);
+  void scale(double factor, Meeting* first, Meeting* end);
+  void finish(const Forest& forest, const IslandProblem& problem, SolverSpace* solver);
+
+  ImpactSpace* space_ = nullptr;
+  int work_left_ = 0;
+  std::vector<Bouncer> bouncers_;
+  std::vector<Meeting> meetings_;
+  ImpactRows rows_;
+  Islands groups_;  ///< of the problem's trees
+  std::vector<Vector3> impulses_;
+};
+
+}  // namespace blem_sim

@@ -1,0 +1,339 @@
+#include "island/island_motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace blem_sim {
+namespace {
+
+// Share of the velocity products that a row's free momentum takes. A free root carries its momentum from middle to middle of its steps,
+// half a step beside the poses where the mass matrix holds.
+double productsShare(const ForestTree& tree, int dof) { return tree.free && dof < tree.first_dof + 6 ? 0.5 : 1; }
+
+// Change of the velocities by velocity products in a step, over the velocities: beyond, a tree is fast. One that nothing drives has an
+// energy to keep; where motors act against contacts, forces of both sides are best found together with the products.
+constexpr double FAST_ALONE = 1e-4, FAST = 0.005, FAST_AT_WORK = 0.1;
+constexpr double SMALL_TURN = 0.05;  // [rad] of a free root in a step: beyond, products of the step's start are not those of its end
+// Trees in loops, and those with mimic joints, are solved with their products. Beyond this the products would add energy without bound:
+// they are left out, and the trees are braked.
+constexpr double TOO_FAST = 0.1;
+constexpr double HOLDS = 0.5;  // of a dof's inertia: a joint that answers more stiffly keeps its velocity on the way
+
+// Change of the velocities of a tree by its velocity products in a step, over the velocities in the frame of its centre of mass; in the
+// norm of the energy, each dof's inertia taken alone; the more, the further the root turns.
+double turning(const Forest& forest, int tree, double dt, const ForestMotion& motion, const SolverSpace& space) {
+  const ForestTree& t = forest.trees()[tree];
+  double change = 0, energy = 0;
+  for (int k = t.first_dof; k < t.dof_end; ++k) {
+    change += motion.products[k] * motion.products[k] / motion.mass[forest.diagonal(k)];
+    energy += motion.velocity[k] * space.mass_velocity[k];
+  }
+  if (!(change > 0)) return 0;
+  if (!t.free) return dt * std::sqrt(change / energy);
+  const double inner = energy - space.mass_velocity.segment<3>(t.first_dof + 3).squaredNorm() / motion.composite[t.first_node].mass;
+  const double turn = dt * motion.velocity.segment<3>(t.first_dof).norm();
+  return dt * std::sqrt(change / std::max(inner, 1e-12 * energy)) * std::max(1.0, turn / SMALL_TURN);
+}
+
+bool isFast(const ForestMotion& motion, int tree) { return motion.pace[tree] == Pace::FAST; }
+
+bool isDriven(const Forest& forest, int tree, const StepInput& input) {
+  const ForestTree& t = forest.trees()[tree];
+  return std::any_of(forest.nodes().begin() + t.first_node, forest.nodes().begin() + t.node_end, [&](const ForestNode& n) {
+    if (n.dofs != 1) return false;
+    const JointDrive& d = input.drives[n.joint];
+    return d.effort != 0 || d.stiffness > 0 || d.damping > 0 || d.dry_friction > 0 || d.viscous_friction > 0;
+  });
+}
+
+bool isTied(const Forest& forest, int tree) {
+  const auto belongs = [&](int node) { return node >= 0 && forest.nodes()[node].tree == tree; };
+  const auto& mimics = forest.mimics();
+  const auto& loops = forest.loops();
+  return std::any_of(mimics.begin(), mimics.end(), [&](const MimicRelation& m) { return belongs(m.node) || belongs(m.master); }) ||
+         std::any_of(loops.begin(), loops.end(), [&](const LoopClosure& l) { return belongs(l.child) || belongs(l.parent); });
+}
+
+Pace paceOf(const Forest& forest, const StepInput& input, bool touched, int tree, double turning) {
+  if (isTied(forest, tree)) return turning > TOO_FAST ? Pace::TOO_FAST : Pace::SLOW;
+  const bool driven = isDriven(forest, tree, input);
+  const double fast = !driven ? FAST_ALONE : touched ? FAST_AT_WORK : FAST;
+  return turning > fast ? Pace::FAST : Pace::SLOW;
+}
+
+// Joints that answer stiffly keep their velocity on the way, as far as motor, friction and limits reach.
+void setHold(const JointTerm& joint, double velocity, double inertia, FreeMotion* way) {
+  const bool holds = joint.stiffness(velocity) > HOLDS * inertia;
+  const double reach = (joint.motor_gain > 0 ? joint.motor_bound : 0) + joint.dry_bound;
+  way->held[joint.dof] = holds;
+  way->most[joint.dof] = joint.lowerImpulse(velocity) > 0 ? INFINITY : reach;
+  way->least[joint.dof] = joint.upperImpulse(velocity) > 0 ? -INFINITY : -reach;
+}
+
+void turn(double dt, const Vector3& spin, Matrix3* R) {
+  const double angle = dt * spin.norm();
+  if (!(angle > 0)) return;
+  const Quaternion step(Eigen::AngleAxisd(angle, spin.normalized()));
+  *R = (step * Quaternion(*R)).normalized().toRotationMatrix();
+}
+
+// Moves joints by their next velocity, a free root by its centre of mass.
+void integrate(const Forest& forest, int tree, double dt, ForestMotion* motion) {
+  const ForestTree& t = forest.trees()[tree];
+  for (int i = t.first_node; i < t.node_end; ++i)
+    if (forest.nodes()[i].dofs == 1) motion->position[i] += dt * motion->next_velocity[forest.nodes()[i].first_dof];
+  for (int k = t.first_dof; k < t.dof_end; ++k) {
+    motion->change[k] = motion->next_velocity[k] - motion->velocity[k];
+    motion->velocity[k] = motion->next_velocity[k];
+  }
+  if (!t.free) return;
+  const Vector3& com_B = forest.nodes()[t.first_node].inertial.com;
+  const Vector3 com = motion->reference[tree] + dt * motion->velocity.segment<3>(t.first_dof + 3);
+  turn(dt, motion->velocity.segment<3>(t.first_dof), &motion->rotation[t.first_node]);
+  motion->origin[t.first_node] = com - motion->rotation[t.first_node] * com_B;
+}
+
+// Moves a flying tree so that its centre of mass is where its momentum leads: joints that turn while the root moves would lead it astray.
+void followMomentum(const Forest& forest, int tree, const Vector3& target, ForestMotion* motion) {
+  const ForestTree& t = forest.trees()[tree];
+  const Vector3 shift = target - (motion->reference[tree] + motion->tree_com[tree]);
+  motion->reference[tree] += shift;
+  for (int i = t.first_node; i < t.node_end; ++i) {
+    motion->origin[i] += shift;
+    motion->joint_origin[i] += shift;
+  }
+}
+
+// Wrenches on the nodes from contacts, and from loops whose joints' wrenches are noted on the way, about the trees' reference points.
+void addReactions(const Forest& forest, const IslandProblem& problem, const ForestMotion& motion, double dt, std::vector<Vector6>* on_node,
+                  std::vector<Wrench>* wrenches) {
+  const auto add = [&](const BodyPair& pair, const Vector6& wrench) {
+    (*on_node)[pair.a] += wrench;
+    if (pair.b >= 0) (*on_node)[pair.b] -= moveWrench(wrench, -pair.shift);
+  };
+  for (const ContactPatch& patch : problem.patches)
+    for (int i = patch.first; i < patch.end; ++i) add(patch.pair, wrenchOf(problem.contacts[i].impulse / dt, problem.contacts[i].point));
+  for (std::size_t l = 0; l < problem.loops.size(); ++l) {
+    const LoopTerm& loop = problem.loops[l];
+    const Vector6 wrench = loop.basis * loop.impulses() / dt;
+    add(problem.loop_pairs[l], wrench);
+    const Vector6 at_origin = moveWrench(wrench, motion.reference[forest.nodes()[problem.loop_pairs[l].a].tree] - loop.origin);
+    (*wrenches)[loop.drive.joint] = {linear(at_origin), angular(at_origin)};
+  }
+}
+
+// Wrenches of a fast tree's joints, from momenta at the start and at the end; forces act at the middle of the way. Overwrites on_node.
+void addFastWrenches(const Forest& forest, const Scene& scene, int tree, double dt, const FreeMotion& way, const ForestMotion& motion,
+                     std::vector<Vector6>* on_node, std::vector<Wrench>* wrenches) {
+  const ForestTree& t = forest.trees()[tree];
+  for (int i = t.node_end - 1; i >= t.first_node; --i) {
+    const ForestNode& node = forest.nodes()[i];
+    const Wrench& pending = scene.bodies()[node.body].pending;
+    const Vector3 middle = way.middleCom(i, motion), force = node.inertial.mass * scene.gravity() + pending.force;
+    Vector6& through = (*on_node)[i];
+    through = moveWrench(through, middle - motion.com[i]);
+    through += spatial(middle.cross(force) + pending.torque, force);
+    through = way.momentumRate(forest, i, dt, motion) - through;
+  }
+  for (int i = t.node_end - 1; i >= t.first_node; --i) {
+    const ForestNode& node = forest.nodes()[i];
+    if (node.parent >= 0) (*on_node)[node.parent] += (*on_node)[i];
+    if (node.joint < 0) continue;
+    const Vector6 at_origin = moveWrench((*on_node)[i], motion.reference[tree] - way.middleJoint(i, motion));
+    (*wrenches)[node.joint] = {linear(at_origin), angular(at_origin)};
+  }
+}
+
+// The velocities of the solve, taken on to the end of the step without velocity products, may have more energy there. The island loses it:
+// all velocities shrink alike, so that mimic joints and loops keep their relations.
+void brake(const Forest& forest, const IslandProblem& problem, ForestMotion* motion, SolverSpace* space) {
+  const double solved = dotProduct(forest, problem.trees, space->velocity, space->mass_velocity);
+  for (const int tree : problem.trees) multiply(forest, tree, motion->mass, motion->velocity, &space->mass_velocity, &space->paths);
+  const double there = dotProduct(forest, problem.trees, motion->velocity, space->mass_velocity);
+  if (!(there > solved)) return;
+  for (const int tree : problem.trees) {
+    const ForestTree& t = forest.trees()[tree];
+    motion->velocity.segment(t.first_dof, t.dofCount()) *= std::sqrt(solved / there);
+    takeMomentum(forest, tree, motion, space);
+  }
+}
+
+}  // namespace
+
+void takeMomentum(const Forest& forest, int tree, ForestMotion* motion, SolverSpace* space) {
+  const ForestTree& t = forest.trees()[tree];
+  if (!t.free) return;
+  multiply(forest, tree, motion->mass, motion->velocity, &space->mass_velocity, &space->paths);
+  motion->momentum[tree] = space->mass_velocity.segment<6>(t.first_dof);
+}
+
+void setFreeMomentum(const Forest& forest, const Scene& scene, const StepInput& input, bool touched, int tree, ForestMotion* motion,
+                     SolverSpace* space) {
+  const ForestTree& t = forest.trees()[tree];
+  const int first = t.first_dof, count = t.dofCount();
+  computeApplied(forest, scene, tree, motion);
+  space->direction.segment(first, count) = motion->velocity.segment(first, count) + 0.5 * motion->change.segment(first, count);
+  computeProducts(forest, tree, space->direction, motion);
+  multiply(forest, tree, motion->mass, motion->velocity, &space->mass_velocity, &space->paths);
+  const double fast = turning(forest, tree, input.dt, *motion, *space);
+  motion->pace[tree] = fast > FAST_ALONE ? paceOf(forest, input, touched, tree, fast) : Pace::SLOW;
+  if (motion->pace[tree] != Pace::SLOW) motion->products.segment(first, count).setZero();
+  space->free_momentum.segment(first, count) = space->mass_velocity.segment(first, count);
+  if (t.free) space->free_momentum.segment<6>(first) = motion->momentum[tree];
+  for (int k = first; k < t.dof_end; ++k) {
+    space->free_momentum[k] += input.dt * (motion->applied[k] - productsShare(t, k) * motion->products[k]);
+    space->free_momentum[k] -= motion->owed[k];
+    space->velocity[k] = motion->velocity[k];
+  }
+}
+
+void followAlone(const Forest& forest, const StepInput& input, int tree, ForestMotion* motion, SolverSpace* space) {
+  if (motion->pace[tree] != Pace::SLOW || isTied(forest, tree) || isDriven(forest, tree, input)) return;
+  const ForestTree& t = forest.trees()[tree];
+  motion->pace[tree] = Pace::FAST;
+  for (int k = t.first_dof; k < t.dof_end; ++k) {
+    space->free_momentum[k] += input.dt * productsShare(t, k) * motion->products[k];
+    motion->products[k] = 0;
+  }
+}
+
+void addEfforts(const StepInput& input, const IslandProblem& problem, SolverSpace* space) {
+  for (const JointTerm& j : problem.joints) space->free_momentum[j.dof] += input.dt * input.drives[j.joint].effort;
+}
+
+double correctProducts(const Forest& forest, int tree, double dt, ForestMotion* motion, SolverSpace* space) {
+  if (motion->pace[tree] != Pace::SLOW) return 0;
+  const ForestTree& t = forest.trees()[tree];
+  const int first = t.first_dof, count = t.dofCount();
+  space->gradient.segment(first, count) = motion->products.segment(first, count);
+  space->direction.segment(first, count) = 0.5 * (motion->velocity.segment(first, count) + space->velocity.segment(first, count));
+  computeProducts(forest, tree, space->direction, motion);
+  double worst = 0;
+  for (int k = first; k < t.dof_end; ++k) {
+    const double change = dt * productsShare(t, k) * (motion->products[k] - space->gradient[k]);
+    space->free_momentum[k] -= change;
+    worst = std::max(worst, std::abs(change) * space->scale[k]);
+  }
+  return worst;
+}
+
+bool followFast(const Forest& forest, const IslandProblem& problem, double dt, const ForestMotion& motion, const SolverSpace& space,
+                FreeMotion* way) {
+  const auto turns = [&](int tree) { return motion.pace[tree] != Pace::SLOW; };
+  if (std::none_of(problem.trees.begin(), problem.trees.end(), turns)) return true;
+  bool followed = true;
+  for (const JointTerm& j : problem.joints) setHold(j, space.velocity[j.dof], motion.mass[forest.diagonal(j.dof)], way);
+  for (const int tree : problem.trees) {
+    followed &= motion.pace[tree] != Pace::TOO_FAST;
+    if (!isFast(motion, tree)) continue;
+    followed &= way->follow(forest, tree, dt, motion, space.velocity, space.mass_velocity).followed;
+  }
+  return followed;
+}
+
+void computeWrenches(const Forest& forest, const Scene& scene, const IslandProblem& problem, double dt, const FreeMotion& way,
+                     ForestMotion* motion, SolverSpace* space, std::vector<Wrench>* wrenches) {
+  std::vector<Vector6>& reaction = space->wrench;
+  for (const int tree : problem.trees) {
+    const ForestTree& t = forest.trees()[tree];
+    for (int i = t.first_node; i < t.node_end; ++i) reaction[i].setZero();
+  }
+  addReactions(forest, problem, *motion, dt, &reaction, wrenches);
+  for (const int tree : problem.trees) {
+    const ForestTree& t = forest.trees()[tree];
+    if (isFast(*motion, tree)) {
+      addFastWrenches(forest, scene, tree, dt, way, *motion, &reaction, wrenches);
+      continue;
+    }
+    space->gradient.segment(t.first_dof, t.dofCount()) =
+        (motion->next_velocity.segment(t.first_dof, t.dofCount()) - motion->velocity.segment(t.first_dof, t.dofCount())) / dt;
+    for (int i = t.first_node; i < t.node_end; ++i) computeTwist(forest, i, *motion, space->gradient, &motion->node_change);
+    for (int i = t.node_end - 1; i >= t.first_node; --i) {
+      const ForestNode& node = forest.nodes()[i];
+      const Wrench& pending = scene.bodies()[node.body].pending;
+      const Vector3 outside = node.inertial.mass * scene.gravity() + pending.force;
+      // Wrench through the joint, less the velocity products of the bodies that it carries, which are summed already.
+      Vector6& through = motion->node_change[i];
+      through = motion->inertia[i].times(through) - reaction[i];
+      through -= spatial(motion->com[i].cross(outside) + pending.torque, outside);
+    }
+    for (int i = t.node_end - 1; i >= t.first_node; --i) {
+      const ForestNode& node = forest.nodes()[i];
+      const Vector6& through = motion->node_change[i];
+      if (node.parent >= 0) motion->node_change[node.parent] += through;
+      if (node.joint < 0) continue;
+      const Vector6 at_origin = moveWrench(through + motion->node_force[i], motion->reference[tree] - motion->joint_origin[i]);
+      (*wrenches)[node.joint] = {linear(at_origin), angular(at_origin)};
+    }
+  }
+}
+
+void advanceIsland(const Forest& forest, const IslandProblem& problem, double dt, const FreeMotion& way, ForestMotion* motion,
+                   SolverSpace* space) {
+  const bool flies = problem.contacts.empty() && problem.loops.empty();
+  for (const int tree : problem.trees) {
+    const ForestTree& t = forest.trees()[tree];
+    if (t.free) motion->momentum[tree] = space->mass_velocity.segment<6>(t.first_dof) + 0.5 * dt * motion->products.segment<6>(t.first_dof);
+    if (isFast(*motion, tree)) {
+      motion->change.segment(t.first_dof, t.dofCount()) = -motion->velocity.segment(t.first_dof, t.dofCount());
+      way.takeEnd(forest, tree, motion);
+      motion->change.segment(t.first_dof, t.dofCount()) += motion->velocity.segment(t.first_dof, t.dofCount());
+    } else {
+      motion->owed.segment(t.first_dof, t.dofCount()).setZero();
+      integrate(forest, tree, dt, motion);
+    }
+  }
+  for (const MimicRelation& m : forest.mimics())
+    if (std::binary_search(problem.trees.begin(), problem.trees.end(), forest.nodes()[m.node].tree))
+      motion->position[m.node] = m.multiplier * motion->position[m.master] + m.offset;
+  for (const int tree : problem.trees) {
+    const ForestTree& t = forest.trees()[tree];
+    const Vector3 reference = motion->reference[tree];
+    const Vector3 com = reference + motion->tree_com[tree] + dt * linear(motion->momentum[tree]) / motion->composite[t.first_node].mass;
+    placeBodies(forest, tree, motion);
+    computeInertias(forest, tree, motion);
+    if (!t.free) continue;
+    if (flies && !isFast(*motion, tree) && t.node_end - t.first_node > 1) followMomentum(forest, tree, com, motion);
+    motion->momentum[tree] = moveWrench(motion->momentum[tree], reference - motion->reference[tree]);
+  }
+  const auto tooFast = [&](int tree) { return motion->pace[tree] == Pace::TOO_FAST; };
+  if (std::any_of(problem.trees.begin(), problem.trees.end(), tooFast)) brake(forest, problem, motion, space);
+}
+
+void saveTree(const Forest& forest, int tree, const ForestMotion& motion, StateWriter* writer) {
+  const ForestTree& t = forest.trees()[tree];
+  writer->numbers(motion.rotation[t.first_node].data(), 9);
+  writer->vector(motion.origin[t.first_node]);
+  writer->numbers(motion.momentum[tree].data(), 6);
+  writer->numbers(motion.position.data() + t.first_node, t.node_end - t.first_node);
+  writer->numbers(motion.velocity.data() + t.first_dof, t.dofCount());
+  writer->numbers(motion.change.data() + t.first_dof, t.dofCount());
+  writer->numbers(motion.owed.data() + t.first_dof, t.dofCount());
+}
+
+void restoreTree(const Forest& forest, int tree, ForestMotion* motion, StateReader* reader) {
+  const ForestTree& t = forest.trees()[tree];
+  reader->numbers(motion->rotation[t.first_node].data(), 9);
+  motion->origin[t.first_node] = reader->vector();
+  reader->numbers(motion->momentum[tree].data(), 6);
+  reader->numbers(motion->position.data() + t.first_node, t.node_end - t.first_node);
+  reader->numbers(motion->velocity.data() + t.first_dof, t.dofCount());
+  reader->numbers(motion->change.data() + t.first_dof, t.dofCount());
+  reader->numbers(motion->owed.data() + t.first_dof, t.dofCount());
+  placeBodies(forest, tree, motion);
+  computeInertias(forest, tree, motion);
+}
+
+bool standsAt(const Forest& forest, int tree, const ForestMotion& motion, const Scene& scene) {
+  constexpr double ROUNDING = 1e-6;  // of turns, of a metre, and of the way from the origin
+  const ForestTree& t = forest.trees()[tree];
+  for (int i = t.first_node; i < t.node_end; ++i) {
+    const int body = forest.nodes()[i].body;
+    const Vector3 com = scene.com(body), way = motion.reference[tree] + motion.com[i] - com;
+    if (!((motion.rotation[i] - scene.rotation(body)).cwiseAbs().maxCoeff() <= ROUNDING)) return false;
+    if (!(way.norm() <= ROUNDING * (1 + com.norm()))) return false;
+  }
+  return true;
+}
+
+}  // namespace blem_sim

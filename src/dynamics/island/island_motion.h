@@ -1,0 +1,50 @@
+// Motion of an island's trees before and after its problem is solved.
+#pragma once
+
+#include "island/island_problem.h"
+#include "scene/stepper.h"
+#include "trees/free_motion.h"
+
+namespace blem_sim {
+
+/** Sets the momentum of a free tree that was just read to that of its velocities. */
+void takeMomentum(const Forest& forest, int tree, ForestMotion* motion, SolverSpace* space);
+
+/**
+ * Fills space->free_momentum, M v*, the first guess of the velocities, and M times them, space->mass_velocity. A free root's rows carry its
+ * momentum from step to step, so that none is lost to the change of the mass matrix; velocity products are those of the middle of the step,
+ * guessed from the last one. A tree whose velocities they change by too much for one guess is fast: they act on its way instead, after the
+ * solve.
+ * @param touched whether contacts act on the tree's island
+ */
+void setFreeMomentum(const Forest& forest, const Scene& scene, const StepInput& input, bool touched, int tree, ForestMotion* motion,
+                     SolverSpace* space);
+
+/** A tree that nothing drives or ties is fast in this step, whatever its speed. After setFreeMomentum, before the solve. */
+void followAlone(const Forest& forest, const StepInput& input, int tree, ForestMotion* motion, SolverSpace* space);
+
+/** Follows the free motion of fast trees from the velocities that were solved. @return false if one was too fast to be followed */
+bool followFast(const Forest& forest, const IslandProblem& problem, double dt, const ForestMotion& motion, const SolverSpace& space,
+                FreeMotion* way);
+
+/** Adds the efforts given in advance. */
+void addEfforts(const StepInput& input, const IslandProblem& problem, SolverSpace* space);
+
+/** Takes the velocity products at the middle of the step that was solved. @return [sqrt(kg) m/s] change of the free momentum */
+double correctProducts(const Forest& forest, int tree, double dt, ForestMotion* motion, SolverSpace* space);
+
+/** Wrench from each joint's parent on its child: Newton-Euler backwards over the step, about the joint frame's origin at the step's start,
+ *  for a fast tree at its middle. */
+void computeWrenches(const Forest& forest, const Scene& scene, const IslandProblem& problem, double dt, const FreeMotion& way,
+                     ForestMotion* motion, SolverSpace* space, std::vector<Wrench>* wrenches);
+
+/** Moves the trees to the end of the step. Islands with a tree that is too fast gain no energy on the way. */
+void advanceIsland(const Forest& forest, const IslandProblem& problem, double dt, const FreeMotion& way, ForestMotion* motion,
+                   SolverSpace* space);
+
+void saveTree(const Forest& forest, int tree, const ForestMotion& motion, StateWriter* writer);
+void restoreTree(const Forest& forest, int tree, ForestMotion* motion, StateReader* reader);
+/** Whether the bodies of the scene stand where the tree has them, but for rounding. */
+bool standsAt(const Forest& forest, int tree, const ForestMotion& motion, const Scene& scene);
+
+}  // namespace blem_sim

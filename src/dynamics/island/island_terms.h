@@ -1,0 +1,35 @@
+// From contacts, drives and loops of the scene to the terms of an island's problem.
+#pragma once
+
+#include "island/island_problem.h"
+#include "scene/step_memory.h"
+#include "scene/stepper.h"
+
+namespace blem_sim {
+
+/** Input of all terms in one step. */
+struct TermSource {
+  const Scene& scene;
+  const Forest& forest;
+  const ForestMotion& motion;
+  const StepInput& input;
+  const SolverSettings& settings;
+  const StepMemory& memory;
+};
+
+/** Motor, friction and limits of a node's joint. Precondition: the node has one dof. */
+JointTerm jointTerm(const TermSource& source, int node);
+
+/** @param index of the loop in the forest; pair: child and parent */
+LoopTerm loopTerm(const TermSource& source, int index, BodyPair* pair);
+
+/** Adds a usable contact to the problem, to the last patch if it is of the same pair. */
+void addContact(const TermSource& source, const ContactConstraint& contact, IslandProblem* problem);
+
+/** Proximal weights of the patches' contacts, once all are added. */
+void weighContacts(const TermSource& source, IslandProblem* problem);
+
+/** +1 if the contact's A is the body the term's impulse acts on, -1 if it is B, A being the static world. */
+inline double termSign(const ContactConstraint& contact) { return contact.body_a == WORLD_BODY ? -1 : 1; }
+
+}  // namespace blem_sim

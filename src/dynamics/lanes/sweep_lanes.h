@@ -1,0 +1,86 @@
+// Contacts while they are swept: impulses improved one contact after the other, four patches at a time, each between bodies of its own.
+#pragma once
+
+#include "lanes/contact_term.h"
+#include "lanes/lanes.h"
+#include "lanes/spatial.h"
+
+namespace blem_sim {
+
+using TwistLanes = double[6][LANES];
+
+/** One contact of each of four patches: its constants while they are swept. */
+struct SweepContact {
+  VectorLanes point;    ///< about the reference point of the patch's first body
+  VectorLanes axis[3];  ///< the normal, and two directions across it
+  Lanes friction, compliance, target;
+  Lanes offset[2];           ///< [m/s] across the normal: by which the bodies' paths bend apart
+  Lanes normal_gain;         ///< [kg] of the normal row, compliance included
+  Lanes mixed[2];            ///< [1/kg] by which a push moves the point across
+  Lanes tangent_inverse[3];  ///< [kg] inverse of the response across: 11, 12, 22
+  Lanes slide_gain;          ///< [kg] inverse of the largest response across
+};
+
+/** Variables of a sweep: impulses along the axes [N s]. */
+struct SweepImpulse {
+  VectorLanes now;     ///< those found
+  VectorLanes change;  ///< by the last sweep
+  VectorLanes search;  ///< along which the conjugate steps lead
+};
+
+/** Four patches at most, no body in two of them. Lanes without a patch have contacts that never act. */
+struct SweepGroup {
+  int patch[LANES];            ///< -1: none
+  int first = 0, end = 0;      ///< contacts: as many as the largest patch has
+  bool free = false;           ///< all bodies are free, or the static world
+  double response[21][LANES];  ///< of the relative twist to a wrench, about the first body's reference point; lower triangle by rows
+};
+
+/** Velocity of four bodies, and their inverse inertias. Lanes of the static world, or without a patch, stay at zero. */
+struct BodyLanes {
+  int first_dof[LANES];              ///< -1: none
+  double inverse_inertia[6][LANES];  ///< [1/(kg m^2)] lower triangle by rows, world axes
+  Lanes inverse_mass;                ///< [1/kg]
+};
+
+/** Bodies of a group that are all free. */
+struct SweepBodies {
+  BodyLanes a, b;
+  VectorLanes shift;  ///< from a's reference point to b's
+};
+
+/** A lane's contact from a term; null: one that never acts. */
+void setLane(const ContactTerm* term, int lane, SweepContact* contact, SweepImpulse* impulse);
+/** Gains of the contacts, once all their lanes and the group's responses are set. */
+void setGains(const SweepGroup& group, SweepContact* begin, SweepContact* end);
+/** Impulse of a lane's contact, world axes. */
+Vector3 readLane(const SweepContact& contact, const SweepImpulse& impulse, int lane);
+
+/** Sum of the impulses' wrenches, about the patches' reference points. */
+void wrenchOf(const SweepContact* begin, const SweepContact* end, const SweepImpulse* impulse, TwistLanes* wrench);
+
+/** Changes of impulses by a sweep over contacts. */
+struct SweepChange {
+  double squared = 0;  ///< [N^2 s^2] sum of the changes' squares
+  double largest = 0;  ///< [N^2 s^2] square of the largest change of one contact
+  double impulse = 0;  ///< [N^2 s^2] square of the largest impulse
+};
+
+/**
+ * Visits the contacts in turn: the push that ends the approach, then friction on Coulomb's cone.
+ * @param twist relative, at the present impulses
+ * @param wrench change of the impulses' wrenches, out
+ */
+void sweep(const SweepGroup& group, const SweepContact* begin, const SweepContact* end, SweepImpulse* impulse, const TwistLanes& twist,
+           TwistLanes* wrench, SweepChange* change);
+
+/** The same with the bodies' velocities instead of twists and wrenches. @param velocity by dof: angular, then linear */
+void sweepFree(const SweepBodies& bodies, const SweepContact* begin, const SweepContact* end, SweepImpulse* impulse, double* velocity,
+               SweepChange* change);
+
+/** Impulses move on by `share` of the last search direction, which the last changes join. */
+void moveOn(double share, SweepImpulse* begin, SweepImpulse* end);
+/** Impulses times a factor. */
+void scale(double factor, SweepImpulse* begin, SweepImpulse* end);
+
+}  // namespace blem_sim

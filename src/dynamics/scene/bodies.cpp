@@ -1,0 +1,130 @@
+// Bodies of the scene: ODE's body sits at the centre of mass, with the axes of the body frame B.
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "blem_sim/geometry/free_slots.h"
+#include "blem_sim/geometry/input_error.h"
+#include "scene/scene.h"
+
+namespace blem_sim {
+namespace {
+
+void check(const BodySpec& spec) {
+  const MassProperties& m = spec.inertial;
+  if (!(m.mass > 0) || !std::isfinite(m.mass))
+    throw InputError("body '" + spec.name + "': mass is " + std::to_string(m.mass) + " kg; give it a finite mass above 0");
+  if (!m.com.allFinite() || !spec.X_WB.matrix().allFinite())
+    throw InputError("body '" + spec.name + "': centre of mass or pose is not finite; correct its origin");
+  if (!m.inertia.allFinite() || Eigen::LLT<Matrix3>(m.inertia).info() != Eigen::Success)
+    throw InputError("body '" + spec.name + "': inertia is not positive definite; correct ixx..izz");
+}
+
+}  // namespace
+
+int Scene::addBody(const BodySpec& spec) {
+  check(spec);
+  BodySlot slot;
+  slot.spec = spec;
+  createBody(&slot);
+  const int body = takeSlot(&free_bodies_, &bodies_);
+  bodies_[body] = slot;
+  ++structure_;
+  BodyState state;
+  state.X_WB = spec.X_WB;
+  setBodyState(body, state);
+  return body;
+}
+
+void Scene::createBody(BodySlot* slot) {
+  const MassProperties& m = slot->spec.inertial;
+  slot->ode = dBodyCreate(world_);
+  dMass mass;
+  dMassSetParameters(&mass, m.mass, 0, 0, 0, m.inertia(0, 0), m.inertia(1, 1), m.inertia(2, 2), m.inertia(0, 1), m.inertia(0, 2),
+                     m.inertia(1, 2));
+  dBodySetMass(slot->ode, &mass);
+  dBodySetGyroscopicMode(slot->ode, 1);
+  // Rotation by the exponential map: a hinge then turns by exactly dt times its speed.
+  dBodySetFiniteRotationMode(slot->ode, 1);
+}
+
+void BodyBits::set(const Vector3& com, const Matrix3& R, const Vector3& velocity, const Vector3& spin) {
+  const Quaternion q = Quaternion(R).normalized();
+  double* to = numbers;
+  for (int i = 0; i < 3; ++i) *to++ = com[i];
+  for (const double x : {q.w(), q.x(), q.y(), q.z()}) *to++ = x;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) *to++ = R(row, column);
+    *to++ = 0;
+  }
+  for (int i = 0; i < 3; ++i) *to++ = velocity[i];
+  for (int i = 0; i < 3; ++i) *to++ = spin[i];
+}
+
+BodyBits Scene::bits(int body) const {
+  const dBodyID ode = bodies_[body].ode;
+  BodyBits out;
+  std::copy_n(dBodyGetPosition(ode), 3, out.numbers);
+  std::copy_n(dBodyGetQuaternion(ode), 4, out.numbers + 3);
+  std::copy_n(dBodyGetRotation(ode), 12, out.numbers + 7);
+  std::copy_n(dBodyGetLinearVel(ode), 3, out.numbers + 19);
+  std::copy_n(dBodyGetAngularVel(ode), 3, out.numbers + 22);
+  return out;
+}
+
+bool Scene::hasBits(int body, const BodyBits& bits) const {
+  const dBodyID ode = bodies_[body].ode;
+  const double* known = bits.numbers;
+  // Few bodies are changed from outside, so all numbers are compared before the result is asked for.
+  std::uint64_t differs = 0;
+  const auto compare = [&](const dReal* numbers, int count) {
+    for (int i = 0; i < count; ++i) {
+      std::uint64_t one, other;
+      std::memcpy(&one, numbers + i, sizeof one);
+      std::memcpy(&other, known++, sizeof other);
+      differs |= one ^ other;
+    }
+  };
+  compare(dBodyGetPosition(ode), 3);
+  compare(dBodyGetQuaternion(ode), 4);
+  compare(dBodyGetRotation(ode), 12);
+  compare(dBodyGetLinearVel(ode), 3);
+  compare(dBodyGetAngularVel(ode), 3);
+  return differs == 0;
+}
+
+void Scene::setBits(int body, const BodyBits& bits) {
+  const dBodyID ode = bodies_[body].ode;
+  const double* n = bits.numbers;
+  dBodySetPosition(ode, n[0], n[1], n[2]);
+  // The getters give ODE's own arrays; its setters would normalise and so change the last bits. The body has no geoms to tell.
+  std::copy_n(n + 3, 4, const_cast<dReal*>(dBodyGetQuaternion(ode)));
+  std::copy_n(n + 7, 12, const_cast<dReal*>(dBodyGetRotation(ode)));
+  dBodySetLinearVel(ode, n[19], n[20], n[21]);
+  dBodySetAngularVel(ode, n[22], n[23], n[24]);
+}
+
+BodyState Scene::bodyState(int body) const {
+  BodyState state;
+  state.X_WB.linear() = rotation(body);
+  state.X_WB.translation() = com(body) - state.X_WB.linear() * bodies_[body].spec.inertial.com;
+  state.v_WCom = velocity(body);
+  state.w_WB = spin(body);
+  return state;
+}
+
+void Scene::setBodyState(int body, const BodyState& state) {
+  const dBodyID ode = bodies_[body].ode;
+  const Quaternion q = Quaternion(state.X_WB.linear()).normalized();
+  const dQuaternion numbers = {q.w(), q.x(), q.y(), q.z()};
+  dBodySetQuaternion(ode, numbers);
+  const Vector3 com = state.X_WB * bodies_[body].spec.inertial.com;
+  dBodySetPosition(ode, com.x(), com.y(), com.z());
+  dBodySetLinearVel(ode, state.v_WCom.x(), state.v_WCom.y(), state.v_WCom.z());
+  dBodySetAngularVel(ode, state.w_WB.x(), state.w_WB.y(), state.w_WB.z());
+}
+
+Matrix3 Scene::inertiaInWorld(int body, const Matrix3& R_WB) const { return R_WB * bodies_[body].spec.inertial.inertia * R_WB.transpose(); }
+
+}  // namespace blem_sim

@@ -1,0 +1,38 @@
+// A stepper solves one step: given bodies, joints, contacts and drives, it moves the bodies.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "scene/contact_law.h"
+#include "scene/scene.h"
+#include "scene/world_state.h"
+
+namespace blem_sim {
+
+struct StepInput {
+  double dt;  ///< [s]
+  const std::vector<ContactConstraint>& contacts;
+  const std::vector<JointDrive>& drives;  ///< one per joint slot
+};
+
+/**
+ * The scene is the one store of bodies and joints: a stepper reads poses, velocities and pending wrenches from it and writes poses and
+ * velocities back; its memory beside that (a warm start, a seed) is private and part of its saved state.
+ */
+class Stepper {
+ public:
+  virtual ~Stepper() = default;
+  /** Advances the bodies by input.dt under gravity, pending wrenches, drives and contacts, and fills the result.
+   *  A stepper that notices that a step broke down says finite = false and leaves the scene as it was. */
+  virtual void step(Scene* scene, const StepInput& input, SolveResult* result) = 0;
+  virtual void save(const Scene& scene, StateWriter* writer) const = 0;
+  /** The scene is already restored. */
+  virtual void restore(const Scene& scene, StateReader* reader) = 0;
+  /** Whether, after a restore, the stepper's memory of bodies agrees with their states. */
+  virtual bool agreesWith(const Scene&) const { return true; }
+  /** Forgets the contacts with these ids. @param ids ascending */
+  virtual void forgetContacts(const std::vector<std::uint64_t>& ids) = 0;
+};
+
+}  // namespace blem_sim

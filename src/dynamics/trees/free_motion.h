@@ -1,0 +1,79 @@
+// Way of a tree through a step under its own momentum alone: fast trees follow it instead of a straight one.
+#pragma once
+
+#include "trees/forest_motion.h"
+
+namespace blem_sim {
+
+/** Quality of a free motion that was followed. */
+struct FreeMotionReport {
+  double miss = 0;       ///< of kinetic energy, relative, before it was put right
+  bool followed = true;  ///< with as many sub-steps as are allowed at most; if not, energy is lost
+  int evaluations = 0;   ///< of a tree's accelerations
+};
+
+/**
+ * Geodesic motion of trees: joints turn as they may, nothing acts from outside. Kinetic energy and a free tree's momenta are kept to
+ * rounding. Held dofs keep their velocities and supply the impulses for it. A tree of several dofs is followed by sub-steps of
+ * Runge and Kutta's fourth order, twice as many as long as energy is missed; a rigid body by turns about its principal axes
+ * [McLachlan 1993], which are symplectic. Bounded, allocates nothing.
+ */
+class FreeMotion {
+ public:
+  void resize(const Forest& forest);
+
+  /** Per dof: whether it keeps its velocity on the way. To be set before `follow`, which lets go of those that cannot. */
+  std::vector<char> held;
+  /** Per dof [N m s or N s]: least and largest impulse that it can supply to do so. */
+  std::vector<double> least, most;
+
+  /**
+   * Follows a tree from its present poses.
+   * @param velocity of the dofs at the start; mass_velocity: M times it
+   */
+  FreeMotionReport follow(const Forest& forest, int tree, double dt, const ForestMotion& motion, const Eigen::VectorXd& velocity,
+                          const Eigen::VectorXd& mass_velocity);
+
+  /** Takes the end of the way: positions, velocities of the dofs, owed impulses, a free root's pose. Then placeBodies, computeInertias. */
+  void takeEnd(const Forest& forest, int tree, ForestMotion* motion) const;
+
+  /** Rate of change of a node's momentum over the step, at the middle of its centre of mass's way, about the reference at the start. */
+  Vector6 momentumRate(const Forest& forest, int node, double dt, const ForestMotion& motion) const;
+  /** Centre of mass of a node at the middle of the step, about the reference at the start. */
+  Vector3 middleCom(int node, const ForestMotion& motion) const { return 0.5 * (motion.com[node] + at_.com[node]); }
+  /** Origin of a node's joint at the middle of the step, in the world. */
+  Vector3 middleJoint(int node, const ForestMotion& motion) const;
+
+ private:
+  struct RootPose {
+    Eigen::Vector4d turn;  ///< quaternion's coefficients
+    Vector3 origin;
+  };
+  void place(const Forest& forest, int tree, const RootPose& root);
+  void accelerate(const Forest& forest, int tree);
+  void articulate(const Forest& forest, int node);
+  void subStep(const Forest& forest, int tree, double dt, RootPose* root);
+  void run(const Forest& forest, int tree, double dt, int steps, const ForestMotion& motion, const Eigen::VectorXd& velocity);
+  double energy(const Forest& forest, int tree) const;
+  double work(const Forest& forest, int tree) const;
+  bool letGo(const Forest& forest, int tree);
+  void correct(const Forest& forest, int tree, double energy_wanted);
+  void leaveFrame(const Forest& forest, int tree, double dt, const ForestMotion& motion);
+  Matrix3 turnRigid(const Forest& forest, int tree, double dt, const ForestMotion& motion);
+  void start(const Forest& forest, int tree, const ForestMotion& motion, const Eigen::VectorXd& velocity);
+  void wait(const Forest& forest, int tree, double dt, const ForestMotion& motion, const Eigen::VectorXd& velocity);
+  int firstSteps(const Forest& forest, int tree, double dt) const;
+
+  ForestMotion at_;  ///< at the instant at hand; the reference is that of the step's start, a free tree's centre of mass stands still
+  // Per node.
+  std::vector<Matrix6> articulated_;
+  std::vector<Vector6> bias_, pull_, acceleration_;
+  // Per dof.
+  std::vector<double> start_position_, lack_, inverse_;
+  Eigen::VectorXd start_velocity_, rate_, sum_position_, sum_velocity_, effort_, sum_effort_, owed_;
+  // Per tree.
+  std::vector<Vector3> drift_;  ///< [m/s] of a free tree's centre of mass
+  std::vector<Vector3> spin_;   ///< [kg m^2/s] of a free tree about it
+};
+
+}  // namespace blem_sim

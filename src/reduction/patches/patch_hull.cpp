@@ -1,0 +1,239 @@
+#include "patches/patch_hull.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "blem_sim/contact/contact_order.h"
+#include "lanes/reduction_lanes.h"
+#include "patches/patch_depths.h"
+#include "patches/patch_frame.h"
+
+namespace blem_sim {
+
+namespace {
+
+constexpr int WORTHWHILE = 40;  // places: of fewer, none are sorted out before the hull
+
+struct Buffers {
+  PlanePlaces places;
+  std::vector<int> farthest, outside;
+  PlaneExtremes extremes;
+  std::vector<PlanePoint> points, half, hull, ring, corners;
+  PatchDepths depths;
+};
+
+// Total: at the same place the deepest comes first, then the first in canonical order.
+bool planePointBefore(const std::vector<Contact>& contacts, const PlanePoint& a, const PlanePoint& b) {
+  if (a.x != b.x) return a.x < b.x;
+  if (a.y != b.y) return a.y < b.y;
+  if (a.depth != b.depth) return a.depth > b.depth;
+  return a.contact != b.contact && contactBefore(contacts[a.contact], contacts[b.contact]);
+}
+
+// The octagon's directions come first, the others between them after those. @return the index of the d-th, counter-clockwise
+int inOrder(int d) {
+  constexpr int BETWEEN = PLANE_DIRECTIONS / OCTAGON_SIDES - 1;
+  const int side = d / (BETWEEN + 1), after = d % (BETWEEN + 1);
+  return after == 0 ? side : OCTAGON_SIDES + side * BETWEEN + after - 1;
+}
+
+// Directions across which no mesh has sides.
+const PlaneDirections& planeDirections() {
+  static const PlaneDirections directions = [] {
+    constexpr double FIRST = 0.1234;  // [rad]
+    PlaneDirections made;
+    for (int d = 0; d < PLANE_DIRECTIONS; ++d) {
+      made.x[inOrder(d)] = std::cos(FIRST + 2 * M_PI * d / PLANE_DIRECTIONS);
+      made.y[inOrder(d)] = std::sin(FIRST + 2 * M_PI * d / PLANE_DIRECTIONS);
+    }
+    return made;
+  }();
+  return directions;
+}
+
+// Whether a patch may have more corners than that and a look is worth it: large patches are mostly inside.
+bool mayHaveMore(int corners, int members) { return corners < std::min(members, PLANE_DIRECTIONS) && members < 20 * corners; }
+
+// Places of the members in the plane, and their depths.
+void project(const std::vector<Contact>& contacts, const int* begin, const int* end, const Vector3& normal, PlanePlaces* places) {
+  const PlaneAxes axes = axesAcross(normal);
+  places->x.resize(end - begin);
+  places->y.resize(end - begin);
+  places->depth.resize(end - begin);
+  for (std::size_t i = 0; i < places->x.size(); ++i) {
+    const Contact& contact = contacts[begin[i]];
+    places->x[i] = axes.u.dot(contact.point);
+    places->y[i] = axes.v.dot(contact.point);
+    places->depth[i] = contact.depth;
+  }
+}
+
+// Finds the places that are farthest out, along the octagon's directions at least; few places need none.
+void findExtremes(int most, Buffers* buffers) {
+  const PlanePlaces& places = buffers->places;
+  const int count = static_cast<int>(places.x.size());
+  const bool all_directions = mayHaveMore(most, count);
+  if (!all_directions && count < WORTHWHILE) return;
+  buffers->farthest.resize(count);
+  const auto find = all_directions ? findFarthest : findFarthestOfOctagon;
+  const int found = find(planeDirections(), places.x.data(), places.y.data(), count, &buffers->extremes, buffers->farthest.data());
+  buffers->farthest.resize(found);
+}
+
+// The first place that is farthest along a direction.
+int farthestAlong(int direction, const Buffers& buffers) {
+  const PlanePlaces& places = buffers.places;
+  return *std::find_if(buffers.farthest.begin(), buffers.farthest.end(), [&](int i) {
+    return planeDirections().along(direction, places.x[i], places.y[i]) == buffers.extremes.value[direction];
+  });
+}
+
+// Whether the hull surely has more corners than that: so many extremes apart from each other follow around it.
+bool hasMoreCorners(int than, const Buffers& buffers) {
+  constexpr double APART = 1e-6;  // [m]
+  if (!mayHaveMore(than, static_cast<int>(buffers.places.x.size())) || static_cast<int>(buffers.farthest.size()) <= than) return false;
+  const std::vector<double>&x = buffers.places.x, &y = buffers.places.y;
+  int corners = 0;
+  for (int d = 0, last = farthestAlong(inOrder(PLANE_DIRECTIONS - 1), buffers); d < PLANE_DIRECTIONS; ++d) {
+    const int next = farthestAlong(inOrder(d), buffers);
+    corners += std::abs(x[next] - x[last]) + std::abs(y[next] - y[last]) > APART;
+    last = next;
+  }
+  return corners > than;
+}
+
+// Indices of the places that may be corners: others lie inside the octagon of extremes. This saves most of the sorting of large patches.
+void findOuter(Buffers* buffers) {
+  const std::vector<double>&x = buffers->places.x, &y = buffers->places.y;
+  const int count = static_cast<int>(x.size());
+  std::vector<int>& outside = buffers->outside;
+  outside.resize(count);
+  std::iota(outside.begin(), outside.end(), 0);
+  if (count < WORTHWHILE) return;
+  int corners[OCTAGON_SIDES];
+  for (int d = 0; d < OCTAGON_SIDES; ++d) corners[d] = farthestAlong(d, *buffers);
+  Octagon octagon;
+  int sides = 0;
+  for (int d = 0; d < OCTAGON_SIDES; ++d) {
+    const int from = corners[d], to = corners[(d + 1) % OCTAGON_SIDES];
+    octagon.x[d] = x[from];
+    octagon.y[d] = y[from];
+    octagon.dx[d] = x[to] - x[from];
+    octagon.dy[d] = y[to] - y[from];
+    octagon.limit[d] = from == to ? -1 : FLATNESS * std::sqrt(octagon.dx[d] * octagon.dx[d] + octagon.dy[d] * octagon.dy[d]);
+    sides += from != to;
+  }
+  if (sides < 3) return;  // all at one place, or in a line
+  outside.resize(findOutside(octagon, x.data(), y.data(), count, outside.data()));
+}
+
+// The outer places as points, sorted, of those at one place the deepest.
+void sortOuter(const std::vector<Contact>& contacts, const int* members, Buffers* buffers) {
+  const PlanePlaces& places = buffers->places;
+  std::vector<PlanePoint>& points = buffers->points;
+  points.clear();
+  for (const int i : buffers->outside) points.push_back({places.x[i], places.y[i], places.depth[i], members[i]});
+  std::sort(points.begin(), points.end(), [&](const PlanePoint& a, const PlanePoint& b) { return planePointBefore(contacts, a, b); });
+  const auto samePlace = [](const PlanePoint& a, const PlanePoint& b) {
+    return std::abs(a.x - b.x) <= FLATNESS && std::abs(a.y - b.y) <= FLATNESS && b.depth <= a.depth + DEPTH_TIE;
+  };
+  points.erase(std::unique(points.begin(), points.end(), samePlace), points.end());
+}
+
+// Half of the hull, from points.front() to points.back(), counter-clockwise for points sorted upwards. [Andrew 1979]
+template <typename Iterator>
+void halfHull(Iterator begin, Iterator end, std::vector<PlanePoint>* half) {
+  half->clear();
+  for (Iterator p = begin; p != end; ++p) {
+    while (half->size() >= 2 && cross((*half)[half->size() - 2], half->back(), *p) <= 0) half->pop_back();
+    half->push_back(*p);
+  }
+}
+
+void convexHull(Buffers* buffers) {
+  halfHull(buffers->points.begin(), buffers->points.end(), &buffers->hull);
+  halfHull(buffers->points.rbegin(), buffers->points.rend(), &buffers->half);
+  buffers->hull.pop_back();
+  buffers->hull.insert(buffers->hull.end(), buffers->half.begin(), buffers->half.end() - 1);
+}
+
+std::size_t farthestFrom(const std::vector<PlanePoint>& hull, std::size_t from) {
+  std::size_t farthest = from;
+  double most = 0;
+  for (std::size_t i = 0; i < hull.size(); ++i) {
+    const double dx = hull[i].x - hull[from].x, dy = hull[i].y - hull[from].y, length2 = dx * dx + dy * dy;
+    if (length2 <= most) continue;
+    most = length2;
+    farthest = i;
+  }
+  return farthest;
+}
+
+// Two corners, ascending, each the farthest from the other: they stand out whatever lies along the sides.
+std::pair<std::size_t, std::size_t> farthestPair(const std::vector<PlanePoint>& hull) {
+  std::size_t one = farthestFrom(hull, 0), other = farthestFrom(hull, one);
+  for (;;) {
+    const std::size_t next = farthestFrom(hull, other);
+    if (distance(hull[other], hull[next]) <= distance(hull[other], hull[one])) break;
+    one = std::exchange(other, next);
+  }
+  return {std::min(one, other), std::max(one, other)};
+}
+
+// Appends chain[from] and those of the corners up to, and without, chain[to] that stand out from the chords. [Douglas 1973]
+void appendProminent(const std::vector<PlanePoint>& chain, std::size_t from, std::size_t to, std::vector<PlanePoint>* corners) {
+  if (to == from + 1) return corners->push_back(chain[from]);
+  std::size_t farthest = from;
+  double most = FLATNESS * distance(chain[from], chain[to]);
+  for (std::size_t i = from + 1; i < to; ++i) {
+    const double out = cross(chain[from], chain[i], chain[to]);
+    if (out > most) {
+      most = out;
+      farthest = i;
+    }
+  }
+  if (farthest == from) return corners->push_back(chain[from]);
+  appendProminent(chain, from, farthest, corners);
+  appendProminent(chain, farthest, to, corners);
+}
+
+// The hull without corners that stand out less than FLATNESS: decided from the whole hull, since along a side noise decides what comes
+// first in any order, and a chain thinned on the way can lose a true corner.
+void findCorners(Buffers* buffers) {
+  buffers->corners = buffers->points;
+  if (buffers->points.size() <= 2) return;
+  convexHull(buffers);
+  const std::vector<PlanePoint>& hull = buffers->hull;
+  buffers->corners = hull;
+  if (hull.size() <= 2) return;
+  const auto [first, second] = farthestPair(hull);
+  buffers->ring.assign(hull.begin() + first, hull.end());
+  buffers->ring.insert(buffers->ring.end(), hull.begin(), hull.begin() + first + 1);
+  buffers->corners.clear();
+  appendProminent(buffers->ring, 0, second - first, &buffers->corners);
+  appendProminent(buffers->ring, second - first, hull.size(), &buffers->corners);
+}
+
+}  // namespace
+
+void patchHull(const std::vector<Contact>& contacts, const int* begin, const int* end, const Vector3& normal, int most,
+               std::vector<int>* kept) {
+  static thread_local Buffers buffers;
+  if (end - begin == 1) return kept->push_back(*begin);
+  project(contacts, begin, end, normal, &buffers.places);
+  findExtremes(most, &buffers);
+  if (hasMoreCorners(most, buffers)) {
+    kept->insert(kept->end(), begin, end);
+    return;
+  }
+  findOuter(&buffers);
+  sortOuter(contacts, begin, &buffers);
+  findCorners(&buffers);
+  for (const PlanePoint& corner : buffers.corners) kept->push_back(corner.contact);
+  if (buffers.corners.size() == buffers.places.x.size()) return;  // no other
+  buffers.depths.keepDeeper(contacts, begin, buffers.places, buffers.corners, kept);
+}
+
+}  // namespace blem_sim

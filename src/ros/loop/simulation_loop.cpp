@@ -1,0 +1,102 @@
+#include "loop/simulation_loop.h"
+
+#include <ros/console.h>
+#include <ros/init.h>
+#include <time.h>
+
+#include <algorithm>
+
+#include "messages/status_text.h"
+
+namespace blem_sim {
+
+namespace {
+// Longest wait for a callback, so that a shutdown and the 1 Hz diagnostics are noticed during a pause.
+constexpr double LONGEST_WAIT = 0.05;  // [s]
+// Steps made without a look at the sockets; below the publishers' queue lengths, so that no message of a batch is dropped.
+constexpr std::uint32_t STEPS_PER_FLUSH = 50;
+
+/** Processor time [s] of this thread. */
+double threadSeconds() {
+  timespec t;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+}  // namespace
+
+SimulationLoop::SimulationLoop(Simulator* simulator)
+    : simulator_(simulator),
+      pacer_(simulator->config().real_time_factor, simulator->config().time_step),
+      paused_(simulator->config().paused) {}
+
+void SimulationLoop::publish(const StepReport& report) {
+  const StepPacer::Clock::time_point start = StepPacer::Clock::now();
+  const double processor_start = threadSeconds();
+  for (const auto& publisher : publishers_) publisher->publish(report);
+  sender_.send();
+  publishing_time_.processor += threadSeconds() - processor_start;
+  publishing_time_.wall += std::chrono::duration<double>(StepPacer::Clock::now() - start).count();
+}
+
+bool SimulationLoop::step() {
+  const StepReport& report = simulator_->step();
+  publish(report);
+  if ((report.status & STATE_NOT_FINITE) == 0) return true;
+  paused_ = true;
+  ROS_ERROR("t = %.3f s: %s", report.time, statusAdvice(STATE_NOT_FINITE).front().c_str());
+  return false;
+}
+
+void SimulationLoop::run(ros::CallbackQueue* callbacks, const std::function<void(bool paused)>& serve) {
+  publish(simulator_->report());
+  for (const auto& publisher : publishers_) publisher->resumed();
+  pacer_.restart(StepPacer::Clock::now());
+  while (ros::ok()) {
+    const double wait = paused_ ? LONGEST_WAIT : std::min(LONGEST_WAIT, pacer_.wait(StepPacer::Clock::now()));
+    callbacks->callAvailable(ros::WallDuration(wait));
+    serve(paused_);
+    if (paused_ || pacer_.wait(StepPacer::Clock::now()) > 0) continue;
+    step();
+    pacer_.stepped(StepPacer::Clock::now());
+  }
+}
+
+void SimulationLoop::unpause() {
+  if (!paused_) return;
+  paused_ = false;
+  pacer_.restart(StepPacer::Clock::now());
+  for (const auto& publisher : publishers_) publisher->resumed();
+}
+
+std::uint32_t SimulationLoop::stepPaused(std::uint32_t count) {
+  paused_ = true;
+  for (const auto& publisher : publishers_) publisher->resumed();
+  std::uint32_t made = 0;
+  bool finite = true;
+  while (made < count && finite && ros::ok()) {
+    finite = step();
+    ++made;
+    if (made % STEPS_PER_FLUSH == 0) flush();
+  }
+  flush();
+  return made;
+}
+
+void SimulationLoop::flush() {
+  sender_.drain();
+  outbox_.flush();
+}
+
+void SimulationLoop::resetSimulation() {
+  sender_.drain();  // messages of earlier steps go out before those that are published directly
+  simulator_->resetSimulation();
+  for (const auto& publisher : publishers_) publisher->timeRestarted();
+  publish(simulator_->report());
+}
+
+void SimulationLoop::geometryChanged() {
+  for (const auto& publisher : publishers_) publisher->geometryChanged();
+}
+
+}  // namespace blem_sim

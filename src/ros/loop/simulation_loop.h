@@ -1,0 +1,68 @@
+// The simulation's one thread: steps when they are due, tells the publishers, serves callbacks between steps.
+#pragma once
+
+#include <ros/callback_queue.h>
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "loop/step_pacer.h"
+#include "sending/outbox.h"
+#include "sending/step_publisher.h"
+#include "sending/step_sender.h"
+
+namespace blem_sim {
+
+/** Time [s] of publishing in the stepping thread since the start. */
+struct PublishingTime {
+  double wall = 0;
+  double processor = 0;  ///< without waiting, and without the time of other threads and programs
+};
+
+class SimulationLoop {
+ public:
+  explicit SimulationLoop(Simulator* simulator);
+
+  Simulator& simulator() { return *simulator_; }
+  void add(std::unique_ptr<StepPublisher> publisher) { publishers_.push_back(std::move(publisher)); }
+
+  /** Publishes the state at hand, then steps until the node is shut down. @param serve is called between steps with whether it is paused.
+   */
+  void run(ros::CallbackQueue* callbacks, const std::function<void(bool paused)>& serve);
+
+  bool paused() const { return paused_; }
+  void pause() { paused_ = true; }
+  void unpause();
+
+  /** Pauses, makes `count` steps and sees their messages off. @return number of steps made: fewer if the node is shut down or a state
+   *  stopped being finite */
+  std::uint32_t stepPaused(std::uint32_t count);
+
+  void resetWorld() { simulator_->resetWorld(); }
+  void resetSimulation();
+  /** An environment was loaded or unloaded. */
+  void geometryChanged();
+
+  /** Sender for the messages of every step's publishers. */
+  StepSender* sender() { return &sender_; }
+
+  const PublishingTime& publishingTime() const { return publishing_time_; }
+
+ private:
+  /** Makes a step. False if the state stopped being finite: the simulation is paused then. */
+  bool step();
+  void publish(const StepReport& report);
+  /** Returns when the messages published so far have been offered to the sockets. */
+  void flush();
+
+  Simulator* simulator_;
+  std::vector<std::unique_ptr<StepPublisher>> publishers_;
+  StepPacer pacer_;
+  Outbox outbox_;
+  bool paused_;
+  PublishingTime publishing_time_;
+  StepSender sender_;  // last: its messages need the publishers
+};
+
+}  // namespace blem_sim

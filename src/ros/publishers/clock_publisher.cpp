@@ -1,0 +1,31 @@
+#include "publishers/clock_publisher.h"
+
+#include "messages/conversions.h"
+
+namespace blem_sim {
+
+namespace {
+// Queue long enough for every stamp of a batch of steps made between two flushes of the outbox.
+constexpr int QUEUE_SIZE = 1000;
+}  // namespace
+
+ClockPublisher::ClockPublisher(ros::NodeHandle node, double rate, StepSender* sender)
+    : publisher_(&node, "/clock", QUEUE_SIZE), schedule_(rate), sender_(sender) {}
+
+void ClockPublisher::publish(const StepReport& report) {
+  const ros::Time now = toStamp(report.time);
+  if (published_ && now <= last_) return;
+  if (!schedule_.due(report.time)) return;
+  const auto message = messages_.spare();
+  message->clock = now;
+  sender_->add(&publisher_, message);
+  published_ = true;
+  last_ = now;
+}
+
+void ClockPublisher::timeRestarted() {
+  schedule_.restart();
+  published_ = false;
+}
+
+}  // namespace blem_sim

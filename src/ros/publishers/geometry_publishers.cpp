@@ -1,0 +1,108 @@
+#include "publishers/geometry_publishers.h"
+
+#include <blem_sim/LoadReport.h>
+#include <visualization_msgs/MarkerArray.h>
+
+#include <map>
+
+#include "messages/conversions.h"
+#include "publishers/surface_markers.h"
+
+namespace blem_sim {
+
+namespace {
+
+using visualization_msgs::Marker;
+using visualization_msgs::MarkerArray;
+
+std_msgs::ColorRGBA colour(float r, float g, float b) {
+  std_msgs::ColorRGBA rgba;
+  rgba.r = r;
+  rgba.g = g;
+  rgba.b = b;
+  rgba.a = 1;
+  return rgba;
+}
+
+/** Pale stone, sand, clay, slate for environments, since rviz lights from the camera and floors are seen askew; brighter ones for objects.
+ */
+std_msgs::ColorRGBA colourOf(ModelKind kind, int model) {
+  static const std_msgs::ColorRGBA ENVIRONMENTS[] = {colour(0.95F, 0.94F, 0.90F), colour(0.98F, 0.90F, 0.75F), colour(0.95F, 0.80F, 0.72F),
+                                                     colour(0.78F, 0.86F, 0.95F)};
+  static const std_msgs::ColorRGBA OBJECTS[] = {colour(0.95F, 0.50F, 0.22F), colour(0.30F, 0.62F, 0.90F), colour(0.95F, 0.80F, 0.28F),
+                                                colour(0.50F, 0.80F, 0.45F), colour(0.75F, 0.52F, 0.85F)};
+  return kind == ModelKind::ENVIRONMENT ? ENVIRONMENTS[model % std::size(ENVIRONMENTS)] : OBJECTS[model % std::size(OBJECTS)];
+}
+
+LoadReportEntry toEntry(const MeshReport& report) {
+  LoadReportEntry entry;
+  entry.name = report.name;
+  entry.source = report.source;
+  entry.vertices = report.vertices;
+  entry.triangles = report.triangles;
+  entry.segments = report.segments;
+  entry.points = report.points;
+  entry.degenerate = report.degenerate;
+  entry.duplicate = report.duplicate;
+  entry.nonfinite = report.nonfinite;
+  entry.invalid = report.invalid;
+  entry.welded = report.welded;
+  entry.open_edges = report.open_edges;
+  entry.nonmanifold_edges = report.nonmanifold_edges;
+  entry.closed = report.closed;
+  if (!report.extents.isEmpty()) {
+    entry.extents_min = toPoint(report.extents.min());
+    entry.extents_max = toPoint(report.extents.max());
+  }
+  entry.boundary_width = report.boundary_width;
+  entry.bytes = report.bytes;
+  entry.notes = report.notes;
+  return entry;
+}
+
+}  // namespace
+
+GeometryMarkerPublisher::GeometryMarkerPublisher(ros::NodeHandle private_node, const Simulator& simulator)
+    : simulator_(simulator),
+      environments_(private_node.advertise<MarkerArray>("environment_markers", 1, true)),
+      objects_(private_node.advertise<MarkerArray>("object_markers", 1, true)) {
+  geometryChanged();
+}
+
+void GeometryMarkerPublisher::geometryChanged() {
+  // Everything is sent anew, so that nothing unloaded stays in sight.
+  MarkerArray environments, objects;
+  environments.markers.emplace_back();
+  environments.markers.back().action = Marker::DELETEALL;
+  environments.markers.back().header.frame_id = WORLD_FRAME;
+  objects = environments;
+  std::map<std::string, int> next_id;  // by collider name: an object of several shapes has several colliders of that name
+  for (const Collider& collider : simulator_.colliders()) {
+    if (!collider.enabled || collider.model < 0) continue;
+    const ModelInfo& model = simulator_.models()[collider.model];
+    if (!model.alive || model.kind == ModelKind::ROBOT) continue;
+    MarkerArray& array = model.kind == ModelKind::ENVIRONMENT ? environments : objects;
+    const std::string frame = model.kind == ModelKind::ENVIRONMENT ? WORLD_FRAME : model.name;
+    for (Marker& marker : surfaceMarkers(collider, frame, collider.X_BC, colourOf(model.kind, collider.model), next_id[collider.name])) {
+      next_id[collider.name] = marker.id + 1;
+      array.markers.push_back(std::move(marker));
+    }
+  }
+  environments_.publish(environments);
+  objects_.publish(objects);
+}
+
+LoadReportPublisher::LoadReportPublisher(ros::NodeHandle private_node, const Simulator& simulator)
+    : simulator_(simulator), publisher_(private_node.advertise<LoadReport>("load_report", 1, true)) {
+  geometryChanged();
+}
+
+void LoadReportPublisher::geometryChanged() {
+  LoadReport message;
+  message.header.stamp = toStamp(simulator_.time());
+  for (const MeshReport& report : simulator_.loadReport()) message.meshes.push_back(toEntry(report));
+  message.notes = simulator_.notes();
+  publisher_.publish(message);
+}
+
+}  // namespace blem_sim

@@ -1,0 +1,34 @@
+// Geometry of environments and objects as markers, and the load report. Latched; sent again when they change.
+#pragma once
+
+#include <ros/node_handle.h>
+
+#include "sending/step_publisher.h"
+
+namespace blem_sim {
+
+/** `~environment_markers` in the world and `~object_markers` in each object's own frame, which /tf moves. */
+class GeometryMarkerPublisher : public StepPublisher {
+ public:
+  GeometryMarkerPublisher(ros::NodeHandle private_node, const Simulator& simulator);
+  void publish(const StepReport&) override {}
+  void geometryChanged() override;
+
+ private:
+  const Simulator& simulator_;
+  ros::Publisher environments_, objects_;
+};
+
+/** `~load_report`. */
+class LoadReportPublisher : public StepPublisher {
+ public:
+  LoadReportPublisher(ros::NodeHandle private_node, const Simulator& simulator);
+  void publish(const StepReport&) override {}
+  void geometryChanged() override;
+
+ private:
+  const Simulator& simulator_;
+  ros::Publisher publisher_;
+};
+
+}  // namespace blem_sim

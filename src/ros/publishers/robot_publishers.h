@@ -1,0 +1,67 @@
+// Topics of every robot: joint states, the pose of its root link.
+#pragma once
+
+#include <nav_msgs/Odometry.h>
+#include <ros/node_handle.h>
+#include <sensor_msgs/JointState.h>
+#include <tf2_msgs/TFMessage.h>
+
+#include <vector>
+
+#include "messages/message_pool.h"
+#include "sending/greeting_publisher.h"
+#include "sending/publish_schedule.h"
+#include "sending/step_publisher.h"
+#include "sending/step_sender.h"
+
+namespace blem_sim {
+
+/** `joint_states` in each robot's namespace: position, velocity and effort of every movable joint. Told late subscribers. */
+class JointStatePublisher : public StepPublisher {
+ public:
+  JointStatePublisher(ros::NodeHandle node, const Simulator& simulator, StepSender* sender);
+  void publish(const StepReport& report) override;
+  void timeRestarted() override { schedule_.restart(); }
+
+ private:
+  const Simulator& simulator_;
+  PublishSchedule schedule_;
+  StepSender* sender_;
+  std::vector<GreetingPublisher<sensor_msgs::JointState>> publishers_;  // per robot
+  std::vector<MessagePool<sensor_msgs::JointState>> messages_;          // per robot, names filled in once
+};
+
+/** `odom` in each robot's namespace: ground truth of the root link, twist in its own axes. Told late subscribers. */
+class OdometryPublisher : public StepPublisher {
+ public:
+  OdometryPublisher(ros::NodeHandle node, const Simulator& simulator, StepSender* sender);
+  void publish(const StepReport& report) override;
+  void timeRestarted() override { schedule_.restart(); }
+
+ private:
+  const Simulator& simulator_;
+  PublishSchedule schedule_;
+  StepSender* sender_;
+  std::vector<GreetingPublisher<nav_msgs::Odometry>> publishers_;  // per robot
+  MessagePool<nav_msgs::Odometry> messages_;
+};
+
+/**
+ * /tf: world to the root link of each robot whose root is not itself called world, and world to each object. Told late
+ * subscribers during a pause, so that rviz sees where everything stands.
+ */
+class TransformPublisher : public StepPublisher {
+ public:
+  TransformPublisher(ros::NodeHandle node, const Simulator& simulator, StepSender* sender);
+  void publish(const StepReport& report) override;
+  void timeRestarted() override { schedule_.restart(); }
+
+ private:
+  const Simulator& simulator_;
+  PublishSchedule schedule_;
+  StepSender* sender_;
+  GreetingPublisher<tf2_msgs::TFMessage> publisher_;
+  MessagePool<tf2_msgs::TFMessage> messages_;
+};
+
+}  // namespace blem_sim

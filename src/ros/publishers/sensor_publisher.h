@@ -1,0 +1,44 @@
+#pragma once
+
+#include <blem_sim/MotorCurrents.h>
+#include <geometry_msgs/WrenchStamped.h>
+#include <ros/node_handle.h>
+#include <sensor_msgs/Imu.h>
+
+#include <string>
+#include <vector>
+
+#include "messages/message_pool.h"
+#include "sending/listened_publisher.h"
+#include "sending/step_publisher.h"
+#include "sending/step_sender.h"
+
+namespace blem_sim {
+
+/** Messages of one sensor: those of its type are used. */
+struct SensorMessages {
+  MessagePool<geometry_msgs::WrenchStamped> wrenches;
+  MessagePool<sensor_msgs::Imu> imus;
+  MessagePool<MotorCurrents> currents;
+};
+
+/** One topic per sensor, in its robot's namespace; a sensor's rate was kept when it was sampled. */
+class SensorPublisher : public StepPublisher {
+ public:
+  /** @throws InputError: a sensor's topic is no valid ROS name, or two sensors share one */
+  SensorPublisher(ros::NodeHandle node, const Simulator& simulator, StepSender* sender);
+  void publish(const StepReport& report) override;
+
+ private:
+  void publishMountings();
+
+  const Simulator& simulator_;
+  StepSender* sender_;
+  ros::NodeHandle node_;
+  std::vector<ListenedPublisher> publishers_;  // per sensor
+  std::vector<SensorMessages> messages_;       // per sensor
+  std::vector<std::string> frames_;            // per sensor: frame_id of its messages
+  ros::Publisher mountings_;                   // /tf_static of sensors that sit askew in their link
+};
+
+}  // namespace blem_sim

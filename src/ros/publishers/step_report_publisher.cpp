@@ -1,0 +1,65 @@
+#include "publishers/step_report_publisher.h"
+
+#include <boost/make_shared.hpp>
+
+#include "messages/conversions.h"
+#include "messages/status_text.h"
+#include "messages/step_report_message.h"
+
+namespace blem_sim {
+
+namespace {
+constexpr int QUEUE_SIZE = 100;
+}
+
+StepReportPublisher::StepReportPublisher(ros::NodeHandle private_node, SimulationLoop* loop)
+    : loop_(*loop),
+      simulator_(loop->simulator()),
+      schedule_(simulator_.config().rates.step_report),
+      publisher_(private_node.advertise<StepReportMessage>("step_report", QUEUE_SIZE)),
+      sender_(loop->sender()) {}
+
+void StepReportPublisher::timeRestarted() {
+  schedule_.restart();
+  collector_.take();
+  collector_.resume();
+}
+
+void StepReportPublisher::publish(const StepReport& report) {
+  collector_.add(report);
+  if (!schedule_.due(report.time)) return;
+  const StepStatistics statistics = collector_.take();
+  const auto sent = boost::make_shared<StepReportMessage>();
+  StepReportMessage& message = *sent;
+  message.header.stamp = toStamp(report.time);
+  message.step = report.step;
+  message.steps = statistics.steps;
+  message.time_step = simulator_.config().time_step;
+  message.status = statistics.status;
+  message.status_names = statusNames(statistics.status);
+  message.real_time_factor = statistics.realTimeFactor();
+  message.substeps = report.substeps;
+  message.raw_contacts = report.raw_contacts;
+  message.reduced_contacts = report.reduced_contacts;
+  message.wrench_error = statistics.wrench_error;
+  message.max_depth = statistics.max_depth;
+  message.max_of_layer = statistics.max_of_layer;
+  if (statistics.deepest_a >= 0) message.deepest_a = simulator_.colliders()[statistics.deepest_a].name;
+  if (statistics.deepest_b >= 0) message.deepest_b = simulator_.colliders()[statistics.deepest_b].name;
+  message.energy = report.energy;
+  message.energy_gained = statistics.energy_gained;
+  message.solver_residual = statistics.solver_residual;
+  message.solver_creep = statistics.solver_creep;
+  message.solver_iterations = static_cast<double>(statistics.solver_iterations) / statistics.steps;
+  for (std::size_t i = 0; i < statistics.stage_seconds.size(); ++i) {
+    message.stages.emplace_back(STAGE_NAMES[i]);
+    message.stage_seconds.push_back(statistics.stage_seconds[i] / statistics.steps);
+  }
+  // Publishing time up to the step before; this step's messages are still going out.
+  message.stages.emplace_back("publish");
+  message.stage_seconds.push_back((loop_.publishingTime().wall - published_) / statistics.steps);
+  published_ = loop_.publishingTime().wall;
+  sender_->add(&publisher_, sent);
+}
+
+}  // namespace blem_sim

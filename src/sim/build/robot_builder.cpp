@@ -1,0 +1,228 @@
+#include "build/robot_builder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "blem_sim/geometry/input_error.h"
+#include "build/robot_names.h"
+
+namespace blem_sim {
+namespace {
+
+bool moves(const LumpedJoint& joint) { return joint.type != JointType::FIXED && joint.type != JointType::FLOATING; }
+
+/** The joint's own entry, else "default", else `otherwise`. */
+template <typename Value>
+Value byJoint(const std::map<std::string, Value>& entries, const std::string& joint, const Value& otherwise) {
+  for (const std::string& key : {joint, std::string("default")}) {
+    const auto entry = entries.find(key);
+    if (entry != entries.end()) return entry->second;
+  }
+  return otherwise;
+}
+
+std::set<std::string> jointsWithSensor(const RobotConfig& config) {
+  std::set<std::string> joints;
+  for (const SensorConfig& sensor : config.sensors)
+    if (sensor.type == SensorType::FORCE_TORQUE) joints.insert(sensor.joint);
+  return joints;
+}
+
+int lumpedJointIndex(const LumpedRobot& robot, const std::string& name) {
+  for (std::size_t i = 0; i < robot.joints.size(); ++i)
+    if (robot.joints[i].name == name) return static_cast<int>(i);
+  return -1;
+}
+
+JointKind kindOf(JointType type) {
+  if (type == JointType::FIXED) return JointKind::FIXED;
+  return type == JointType::PRISMATIC ? JointKind::PRISMATIC : JointKind::REVOLUTE;
+}
+
+/** Joints in an order where those that others mimic come first. */
+std::vector<int> mastersFirst(const LumpedRobot& robot, const std::string& where) {
+  std::vector<int> order;
+  std::vector<bool> placed(robot.joints.size(), false);
+  while (order.size() < robot.joints.size()) {
+    const std::size_t before = order.size();
+    for (std::size_t j = 0; j < robot.joints.size(); ++j) {
+      const LumpedJoint& joint = robot.joints[j];
+      if (placed[j]) continue;
+      if (joint.mimic) {
+        const int master = lumpedJointIndex(robot, joint.mimic->joint);
+        if (master < 0 || !moves(robot.joints[master]))
+          throw InputError(
+              fmt::format("{}: joint '{}' mimics '{}', which does not move; correct <mimic>", where, joint.name, joint.mimic->joint));
+        if (!placed[master]) continue;
+      }
+      placed[j] = true;
+      order.push_back(static_cast<int>(j));
+    }
+    if (order.size() == before) throw InputError(where + ": its mimic joints mimic each other in a circle; correct <mimic>");
+  }
+  return order;
+}
+
+}  // namespace
+
+RobotBuilder::RobotBuilder(const RobotConfig& config, const ContactConfig& contact, std::shared_ptr<const RobotModel> model)
+    : config_(config), contact_(contact), model_(std::move(model)) {
+  // The check below refuses a sensor at an unknown joint.
+  lumped_ = std::make_shared<const LumpedRobot>(lumpFixedJoints(*model_, jointsWithSensor(config_), config_.fixed_base));
+  checkRobotNames(config_, *model_, *lumped_);
+  checkMotors();
+  placeBodies();
+}
+
+void RobotBuilder::checkMotors() const {
+  const auto refuse = [&](const std::string& what, const std::string& joint) {
+    throw InputError(fmt::format("robots: {}: {}: {}: numbers must be finite and not negative", config_.name, what, joint));
+  };
+  const auto wrong = [](double x) { return !(x >= 0) || std::isinf(x); };
+  for (const auto& [joint, gains] : config_.gains)
+    if (wrong(gains.p) || wrong(gains.i) || wrong(gains.d) || !(gains.i_clamp >= 0)) refuse("gains", joint);
+  for (const auto& [joint, friction] : config_.joint_friction)
+    if (wrong(friction.dry) || wrong(friction.viscous)) refuse("joint_friction", joint);
+  for (const auto& [joint, limit] : config_.effort_limits)
+    if (!(limit >= 0)) refuse("effort_limits", joint);
+  for (const auto& [joint, inertia] : config_.armature)
+    if (wrong(inertia)) refuse("armature", joint);
+  for (const auto& [joint, position] : config_.initial_positions)
+    if (!std::isfinite(position)) refuse("initial_positions", joint);
+}
+
+double RobotBuilder::initialPosition(const LumpedJoint& joint) const {
+  const auto given = config_.initial_positions.find(joint.name);
+  return given == config_.initial_positions.end() ? 0 : given->second;
+}
+
+void RobotBuilder::placeBodies() {
+  const std::vector<LumpedJoint>& joints = lumped_->joints;
+  positions_.assign(joints.size(), 0);
+  for (const int j : mastersFirst(*lumped_, "robots: " + config_.name)) {
+    const LumpedJoint& joint = joints[j];
+    if (!moves(joint)) continue;
+    if (joint.mimic) {
+      positions_[j] = joint.mimic->multiplier * positions_[lumpedJointIndex(*lumped_, joint.mimic->joint)] + joint.mimic->offset;
+      continue;
+    }
+    const double wanted = initialPosition(joint);
+    positions_[j] = std::max(joint.limits.lower, std::min(joint.limits.upper, wanted));
+    if (positions_[j] != wanted)
+      start_notes_.push_back(fmt::format("joint '{}' starts at {:.6g}, its limit, not at {:.6g}", joint.name, positions_[j], wanted));
+  }
+  X_WB_.assign(lumped_->bodies.size(), config_.X_WR);
+  for (std::size_t j = 0; j < joints.size(); ++j) X_WB_[joints[j].child] = X_WB_[joints[j].parent] * joints[j].pose(positions_[j]);
+}
+
+void RobotBuilder::addTo(SimulatedWorld* world, SurfaceLibrary* surfaces) {
+  world_ = world;
+  info_.name = config_.name;
+  info_.name_space = config_.name_space;
+  info_.fixed_base = config_.fixed_base;
+  info_.description = model_;
+  info_.lumped = lumped_;
+  info_.root_link = model_->links[model_->root].name;
+  info_.X_WR = config_.X_WR;
+  info_.model = world->addModel(config_.name, ModelKind::ROBOT, config_.max_contacts.value_or(contact_.max_contacts_per_robot));
+  for (const auto* notes : {&model_->notes, &lumped_->notes, &std::as_const(start_notes_)})
+    for (const std::string& words : *notes) note(words);
+  addBodies();
+  addJoints();
+  const int first_collider = static_cast<int>(world->colliders.size());
+  addColliders(surfaces);
+  world->filter.setSelfCollision(info_.model, config_.self_collision);
+  disableNeighbours();
+  disableListedPairs(first_collider);
+  ModelInfo& model = world->models[info_.model];
+  for (const int body : info_.bodies)
+    if (body != WORLD_BODY) model.bodies.push_back(body);
+  model.joints = info_.joints;
+  world->robots.push_back(info_);
+  addSensors(static_cast<int>(world->robots.size()) - 1);
+}
+
+void RobotBuilder::addBodies() {
+  for (std::size_t b = 0; b < lumped_->bodies.size(); ++b) {
+    if (b == 0 && config_.fixed_base) {
+      info_.bodies.push_back(WORLD_BODY);
+      continue;
+    }
+    BodySpec spec;
+    spec.name = config_.name + "::" + lumped_->bodies[b].name;
+    spec.inertial = lumped_->bodies[b].inertial;
+    spec.X_WB = X_WB_[b];
+    info_.bodies.push_back(world_->world.addBody(spec));
+  }
+}
+
+void RobotBuilder::addJoints() {
+  info_.world_joints.assign(lumped_->joints.size(), -1);
+  for (const int j : mastersFirst(*lumped_, "robots: " + config_.name))
+    if (lumped_->joints[j].type != JointType::FLOATING) addJoint(j);
+  for (std::size_t j = 0; j < lumped_->joints.size(); ++j) {
+    const LumpedJoint& joint = lumped_->joints[j];
+    if (!moves(joint)) continue;
+    info_.joint_names.push_back(joint.name);
+    info_.joints.push_back(info_.world_joints[j]);
+    info_.limits.push_back(joint.limits);
+  }
+}
+
+void RobotBuilder::addJoint(int j) {
+  const LumpedJoint& joint = lumped_->joints[j];
+  JointSpec spec;
+  spec.name = config_.name + "::" + joint.name;
+  spec.kind = kindOf(joint.type);
+  spec.parent = info_.bodies[joint.parent];
+  spec.child = info_.bodies[joint.child];
+  spec.X_PJ = spec.parent == WORLD_BODY ? config_.X_WR * joint.X_PJ : joint.X_PJ;
+  spec.axis = joint.axis;
+  if (joint.type != JointType::CONTINUOUS) {
+    spec.lower = joint.limits.lower;
+    spec.upper = joint.limits.upper;
+  }
+  if (joint.mimic && moves(joint)) {
+    spec.mimic_joint = info_.world_joints[lumpedJointIndex(*lumped_, joint.mimic->joint)];
+    spec.mimic_multiplier = joint.mimic->multiplier;
+    spec.mimic_offset = joint.mimic->offset;
+  }
+  if (moves(joint)) spec.armature = byJoint(config_.armature, joint.name, 0.0);
+  info_.world_joints[j] = world_->world.addJoint(spec, positions_[j]);
+  addMotor(joint, positions_[j]);
+}
+
+void RobotBuilder::addMotor(const LumpedJoint& joint, double position) {
+  MotorSettings settings;
+  settings.commanded = moves(joint) && !joint.mimic;
+  settings.continuous = joint.type == JointType::CONTINUOUS;
+  if (moves(joint)) {
+    settings.friction = byJoint(config_.joint_friction, joint.name, JointFriction{joint.dry_friction, joint.viscous_friction});
+    settings.effort_limit = byJoint(config_.effort_limits, joint.name, joint.limits.effort);
+    settings.law = byJoint(config_.motor, joint.name, MotorLaw::PID);
+    settings.gains = byJoint(config_.gains, joint.name, JointGains());
+  }
+  if (settings.commanded && settings.effort_limit == 0 && settings.gains.p + settings.gains.d > 0)
+    note(fmt::format("joint '{}' has an effort limit of 0, so its motor does nothing; set effort_limits", joint.name));
+  world_->motors.emplace_back(settings, position);
+}
+
+void RobotBuilder::addSensors(int robot) {
+  for (const SensorConfig& config : config_.sensors) {
+    SensorInfo sensor;
+    sensor.robot = robot;
+    sensor.config = config;
+    if (config.type == SensorType::FORCE_TORQUE) {
+      const JointModel& joint = model_->joints[model_->jointIndex(config.joint)];
+      sensor.frame_id = model_->links[config.frame == "parent" ? joint.parent : joint.child].name;
+    } else {
+      sensor.frame_id = config.type == SensorType::MOTOR_CURRENT ? info_.root_link : config.link;
+    }
+    world_->sensors.push_back(sensor);
+  }
+}
+
+}  // namespace blem_sim

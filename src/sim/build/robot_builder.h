@@ -1,0 +1,48 @@
+// One robot's bodies, joints, motors, colliders and sensors into a world.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "blem_sim/model/robot_model.h"
+#include "blem_sim/sim/config.h"
+#include "build/simulated_world.h"
+#include "build/surface_library.h"
+
+namespace blem_sim {
+
+/** Lives while one robot is added. */
+class RobotBuilder {
+ public:
+  /** Checks everything that can be wrong. @throws InputError */
+  RobotBuilder(const RobotConfig& config, const ContactConfig& contact, std::shared_ptr<const RobotModel> model);
+
+  void addTo(SimulatedWorld* world, SurfaceLibrary* surfaces);
+
+ private:
+  void checkMotors() const;
+  void placeBodies();
+  double initialPosition(const LumpedJoint& joint) const;
+  void addBodies();
+  void addJoints();
+  void addJoint(int joint);
+  void addMotor(const LumpedJoint& joint, double position);
+  void addColliders(SurfaceLibrary* surfaces);
+  void disableNeighbours();
+  void disableListedPairs(int first_collider);
+  void addSensors(int robot);
+  void note(const std::string& words) { world_->notes.push_back(config_.name + ": " + words); }
+
+  const RobotConfig config_;
+  const ContactConfig contact_;
+  std::shared_ptr<const RobotModel> model_;
+  std::shared_ptr<const LumpedRobot> lumped_;
+  std::vector<double> positions_;  ///< of lumped joints, at the start
+  std::vector<Pose> X_WB_;         ///< of lumped bodies, at the start
+  std::vector<std::string> start_notes_;
+  SimulatedWorld* world_ = nullptr;
+  RobotInfo info_;
+};
+
+}  // namespace blem_sim

@@ -1,0 +1,57 @@
+// All parts of a simulation once it is built: the world, its models, and their colliders.
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "blem_sim/contact/broad_phase.h"
+#include "blem_sim/dynamics/world.h"
+#include "blem_sim/reduction/reduction.h"
+#include "blem_sim/sim/simulator_types.h"
+#include "commands/joint_motor.h"
+
+namespace blem_sim {
+
+struct SimulatedWorld {
+  SimulatedWorld(const Vector3& gravity, const SolverSettings& solver) : world(gravity, solver) {}
+
+  World world;
+  std::vector<ModelInfo> models;
+  std::vector<RobotInfo> robots;
+  std::vector<SensorInfo> sensors;
+  std::vector<JointMotor> motors;  ///< one per joint slot of the world
+  std::vector<Collider> colliders;
+  std::vector<ContactBudget> budgets;  ///< one per model
+  CollisionFilter filter;
+  std::set<std::pair<int, int>> disabled_pairs;  ///< (smaller, larger) index of colliders that never touch
+  std::vector<MeshReport> load_report;
+  std::vector<std::string> notes;
+
+  /** @throws InputError if the name is empty or taken. @param section of the configuration, for the message */
+  void checkNewName(const std::string& name, const std::string& section) const;
+  /** Adds a model in the lowest free slot. @param max_contacts its k @return its index */
+  int addModel(const std::string& name, ModelKind kind, int max_contacts);
+  /** Adds a collider and its line in the load report. @param width [m] of the layer @return its index */
+  int addCollider(Collider collider, double width, const SurfaceProperties& surface, MeshReport report);
+  /** Removes an environment, whose slots are free then. Precondition: it exists. @return slots of its colliders */
+  std::vector<int> removeEnvironment(const std::string& name);
+
+  int modelIndex(const std::string& name) const;  ///< among the living; -1 if there is none
+  /** Pose of a link in the world now. */
+  Pose linkPose(const RobotInfo& robot, int link) const;
+  /** Pose of a link in the world when the bodies have these states. */
+  Pose linkPose(const RobotInfo& robot, int link, const std::vector<BodyState>& bodies) const;
+  /** [m] Origin, in the world, of the link that a collider is on when the bodies have these states; of the body where it is on no link. */
+  Vector3 linkOrigin(const Collider& collider, const std::vector<BodyState>& bodies) const;
+  /** State of every body slot. */
+  void bodyStates(std::vector<BodyState>* out) const;
+
+ private:
+  std::map<std::string, int> model_named_;  ///< the living
+  std::set<int> free_models_, free_colliders_;
+};
+
+}  // namespace blem_sim

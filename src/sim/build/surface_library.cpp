@@ -1,0 +1,104 @@
+#include "build/surface_library.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "blem_sim/geometry/far_origin.h"
+#include "blem_sim/geometry/mesh_shrinking.h"
+
+namespace blem_sim {
+namespace {
+
+std::string wordsFor(const MeshShrinking& what, double r) {
+  if (!what.refused.empty())
+    return fmt::format("not shrunk: {}; every side stands out by its boundary_width, {:.3g} mm", what.refused, 1e3 * r);
+  std::string words = fmt::format("shrunk by {:.3g} mm", 1e3 * r);
+  if (what.held_back > 0)
+    words += fmt::format("; {} of {} vertices less, where it is thin or sharp", what.held_back, what.moved + what.held_back);
+  constexpr double SAME = 1e-6;  // [m]
+  if (what.excess > SAME) words += fmt::format("; outside stands out by up to {:.3g} mm", 1e3 * what.excess);
+  if (what.shortfall > SAME) words += fmt::format("; lies inside by up to {:.3g} mm", 1e3 * what.shortfall);
+  return what.excess > SAME || what.shortfall > SAME ? words : words + "; outer dimensions stay";
+}
+
+/** Forgets surfaces that nobody holds any more once they are half of all, so that the cost per surface stays the same. */
+template <typename Map, typename Expired>
+void forgetExpired(Map* known, std::size_t* enough, const Expired& expired) {
+  constexpr std::size_t LEAST = 16;
+  if (known->size() < std::max(LEAST, *enough)) return;
+  for (auto it = known->begin(); it != known->end();) it = expired(it->second) ? known->erase(it) : std::next(it);
+  *enough = 2 * known->size();
+}
+
+std::shared_ptr<const TriangleMesh> movedBy(const TriangleMesh& mesh, const Vector3& way) {
+  const auto moved = std::make_shared<TriangleMesh>(mesh);
+  for (Vector3& p : moved->vertices) p += way;
+  return moved;
+}
+
+std::string farAway(const Vector3& origin) {
+  const double farthest = origin.cwiseAbs().maxCoeff(), step = std::nextafter(static_cast<float>(farthest), INFINITY) - farthest;
+  return fmt::format(
+      "lies around ({:.0f}, {:.0f}, {:.0f}) m: searched about that place; where the file is read as floats (all but .pcd) it is rounded to "
+      "{:.2g} m: take that place off its coordinates and add it to the pose",
+      origin.x(), origin.y(), origin.z(), step);
+}
+
+}  // namespace
+
+std::size_t SurfaceLibrary::remembered() const { return files_.size() + meshes_.size() + shrunk_.size(); }
+
+void SurfaceLibrary::forgetWhatIsGone() {
+  const auto gone = [](const auto& entry) { return entry.geometry.expired(); };
+  forgetExpired(&files_, &enough_files_, gone);
+  forgetExpired(&shrunk_, &enough_shrunk_, gone);
+  forgetExpired(&meshes_, &enough_meshes_, [](const std::weak_ptr<const CollisionGeometry>& held) { return held.expired(); });
+}
+
+SharedSurface SurfaceLibrary::load(const std::string& file, const Vector3& scale, const CloudOptions& cloud, const LoadProgress& progress) {
+  const std::string key = fmt::format("{}|{} {} {}|{} {} {}", file, scale.x(), scale.y(), scale.z(), static_cast<int>(cloud.as),
+                                      cloud.point_radius, cloud.max_edge);
+  forgetWhatIsGone();
+  Entry& entry = files_[key];
+  if (const auto held = entry.geometry.lock()) return {held, entry.radius, entry.report, entry.origin};
+  LoadedSurface surface = loadSurface(file, scale, cloud, mending_, progress);
+  progress("topology and tree of " + surface.report.name, 1 - TREE_FRACTION);
+  const Vector3 origin = farOrigin(surface.mesh->bounds());
+  if (!origin.isZero(0)) {
+    surface.mesh = movedBy(*surface.mesh, -origin);
+    surface.report.notes.push_back(farAway(origin));
+  }
+  const auto made = geometry(surface.mesh, surface.topology);
+  entry = {made, surface.radius, surface.report, origin};
+  return {made, surface.radius, surface.report, origin};
+}
+
+std::shared_ptr<const CollisionGeometry> SurfaceLibrary::geometry(const std::shared_ptr<const TriangleMesh>& mesh,
+                                                                  const std::shared_ptr<const MeshTopology>& topology) {
+  std::weak_ptr<const CollisionGeometry>& held = meshes_[mesh.get()];
+  if (auto known = held.lock()) return known;
+  const auto made = std::make_shared<const CollisionGeometry>(mesh, topology);
+  held = made;
+  return made;
+}
+
+std::shared_ptr<const CollisionGeometry> SurfaceLibrary::fitted(const std::shared_ptr<const CollisionGeometry>& geometry,
+                                                                const ContactSettings& settings, double own_radius, MeshReport* report) {
+  const double r = settings.boundary_width;
+  if (!settings.shrink || geometry->isHalfSpace() || own_radius > 0 || !(r > 0)) return geometry;
+  Shrunk& held = shrunk_[{geometry.get(), r}];
+  std::shared_ptr<const CollisionGeometry> made = held.geometry.lock();
+  // Another geometry may have got the address of one that is gone.
+  if (!made || held.original.lock() != geometry) {
+    MeshShrinking what;
+    made = std::make_shared<const CollisionGeometry>(std::make_shared<const TriangleMesh>(shrinkMesh(geometry->mesh(), r, &what)));
+    held = {geometry, made, wordsFor(what, r)};
+  }
+  report->notes.push_back(held.note);
+  return made;
+}
+
+}  // namespace blem_sim

@@ -1,0 +1,229 @@
+#include "build/world_builder.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <climits>
+#include <cmath>
+#include <set>
+
+#include "blem_sim/geometry/input_error.h"
+#include "build/contact_settings.h"
+#include "build/robot_builder.h"
+
+namespace blem_sim {
+namespace {
+
+// Half the size [m] that a body's mass is spread over at least, so that a point or a line can turn.
+constexpr double SMALLEST_EXTENT = 0.001;
+
+/** Mass properties in the object's frame from its shape, and in words their source. */
+MassProperties massFromShape(const TriangleMesh& mesh_O, bool closed, double mass, std::string* from) {
+  MassProperties properties;
+  if (closed && massFromVolume(mesh_O, mass, &properties)) {
+    *from = "the enclosed volume";
+    return properties;
+  }
+  *from = closed ? "the surface, as a thin shell (the enclosed volume is not positive)" : "the surface, as a thin shell (it is open)";
+  return massFromSurface(mesh_O, mass);
+}
+
+/** An inertia too small about some axis, as a line's or a point's, gets that of a small ball there. */
+bool floorInertia(double radius, MassProperties* properties) {
+  const double r = std::max(radius, SMALLEST_EXTENT);
+  const double least = 0.4 * properties->mass * r * r;
+  Eigen::SelfAdjointEigenSolver<Matrix3> eigen(properties->inertia);
+  const Vector3 moments = eigen.eigenvalues();
+  if (moments.minCoeff() >= 1e-3 * least) return false;
+  const Matrix3 axes = eigen.eigenvectors();
+  properties->inertia = axes * moments.cwiseMax(least).asDiagonal() * axes.transpose();
+  return true;
+}
+
+std::string words(const Vector3& v) { return fmt::format("[{:.4g}, {:.4g}, {:.4g}]", v.x(), v.y(), v.z()); }
+
+/** Size in words of these colliders, the last ones of the load report; a geometry that several of them share counts once. */
+std::string sizeOf(const SimulatedWorld& world, std::size_t first, std::size_t end) {
+  constexpr double MEGA = 1e6;
+  const MeshReport* report = world.load_report.data() + world.load_report.size() - (end - first);
+  std::set<const CollisionGeometry*> counted;
+  std::size_t triangles = 0, points = 0, bytes = 0;
+  for (std::size_t i = first; i < end; ++i, ++report) {
+    if (!counted.insert(world.colliders[i].geometry.get()).second) continue;
+    triangles += static_cast<std::size_t>(report->triangles);
+    points += static_cast<std::size_t>(report->points);
+    bytes += report->bytes;
+  }
+  const std::string words = fmt::format("{} triangles, {:.1f} MB", triangles, static_cast<double>(bytes) / MEGA);
+  return points > 0 ? fmt::format("{} points, {}", points, words) : words;
+}
+
+int addFreeBody(const std::string& name, const MassProperties& inertial, const ObjectConfig& config, SimulatedWorld* world) {
+  BodySpec spec;
+  spec.name = name;
+  spec.inertial = inertial;
+  spec.X_WB = config.X_WO;
+  const int body = world->world.addBody(spec);
+  BodyState state;
+  state.X_WB = config.X_WO;
+  state.v_WCom = config.linear_velocity + config.angular_velocity.cross(config.X_WO.linear() * inertial.com);
+  state.w_WB = config.angular_velocity;
+  world->world.setBodyState(body, state);
+  return body;
+}
+
+}  // namespace
+
+SharedSurface WorldBuilder::load(const std::string& uri, const Vector3& scale, const CloudOptions& cloud, const std::string& where,
+                                 LoadWatch* watch) {
+  try {
+    return surfaces_.load(resolver_.resolve(uri, base_directory_), scale, cloud, watch->progress());
+  } catch (const InputError& error) {
+    throw InputError(where + ": " + error.what());
+  }
+}
+
+void WorldBuilder::addEnvironment(const EnvironmentConfig& config, SimulatedWorld* world) {
+  world->checkNewName(config.name, "environments");
+  const std::string where = "environments: " + config.name;
+  LoadWatch watch(log_, config.name);
+  SharedSurface surface;
+  if (config.plane) {
+    const Vector3 normal = config.plane->head<3>();
+    if (!config.plane->allFinite() || !(normal.norm() > 0))
+      throw InputError(where + ": plane: a x + b y + c z = d needs finite numbers and a direction (a, b, c) that is not zero");
+    surface.geometry = CollisionGeometry::halfSpace(normal, (*config.plane)[3]);
+    surface.report.source = fmt::format("half-space below the plane {} . x = {:g}", words(normal), (*config.plane)[3]);
+  } else if (!config.uri.empty()) {
+    surface = load(config.uri, config.scale, config.cloud, where, &watch);
+  } else if (!config.topic.empty()) {
+    throw InputError(where + ": topic: live clouds are not simulated; save the cloud as .pcd or .ply and give its uri");
+  } else {
+    throw InputError(where + ": nothing to load; give a uri or a plane");
+  }
+  const ContactSettings settings = contactSettings(0, contact_, {&config.contact});
+  Collider collider;
+  collider.name = config.name;
+  collider.X_BC = config.X_WE * Eigen::Translation3d(surface.origin);
+  if (settings.shrink) watch.enter("shrinking", 1 - TREE_FRACTION);
+  collider.geometry = surfaces_.fitted(surface.geometry, settings, surface.radius, &surface.report);
+  collider.model = world->addModel(config.name, ModelKind::ENVIRONMENT, INT_MAX);
+  const double width = surface.radius > 0 ? surface.radius : settings.boundary_width;
+  const int slot = world->addCollider(collider, width, settings.surface, surface.report);
+  watch.loaded(sizeOf(*world, slot, slot + 1));
+}
+
+std::shared_ptr<const RobotModel> WorldBuilder::description(const RobotConfig& config, LoadWatch* watch) {
+  const bool text = !config.urdf_xml.empty();
+  if (!text && config.urdf.empty()) {
+    throw InputError(
+        fmt::format("robots: {}: no description; give urdf{}", config.name,
+                    config.description_param.empty() ? "" : " (the parameter " + config.description_param + " is not read here)"));
+  }
+  const std::string key = text ? config.urdf_xml : resolver_.resolve(config.urdf, base_directory_);
+  std::weak_ptr<const RobotModel>& held = descriptions_[key];
+  if (auto known = held.lock()) return known;
+  const std::string source = config.description_param.empty() ? "robots: " + config.name : config.description_param;
+  const auto model =
+      std::make_shared<const RobotModel>(text ? loadUrdf(key, source, resolver_, base_directory_, contact_.mending, watch->progress())
+                                              : loadUrdfFile(key, resolver_, contact_.mending, watch->progress()));
+  held = model;
+  return model;
+}
+
+void WorldBuilder::addRobot(const RobotConfig& config, SimulatedWorld* world) {
+  world->checkNewName(config.name, "robots");
+  LoadWatch watch(log_, config.name);
+  const std::size_t first = world->colliders.size();
+  RobotBuilder builder(config, contact_, description(config, &watch));
+  watch.enter("topology and trees of its links", 1 - TREE_FRACTION);
+  builder.addTo(world, &surfaces_);
+  watch.loaded(sizeOf(*world, first, world->colliders.size()));
+}
+
+void WorldBuilder::addObject(const ObjectConfig& config, SimulatedWorld* world) {
+  world->checkNewName(config.name, "objects");
+  if (!config.linear_velocity.allFinite() || !config.angular_velocity.allFinite())
+    throw InputError(fmt::format("objects: {}: velocity: numbers must be finite", config.name));
+  LoadWatch watch(log_, config.name);
+  const std::size_t first = world->colliders.size();
+  if (config.urdf.empty())
+    addMeshObject(config, &watch, world);
+  else
+    addUrdfObject(config, &watch, world);
+  watch.loaded(sizeOf(*world, first, world->colliders.size()));
+}
+
+void WorldBuilder::addMeshObject(const ObjectConfig& config, LoadWatch* watch, SimulatedWorld* world) {
+  const std::string where = "objects: " + config.name;
+  if (config.uri.empty()) throw InputError(where + ": nothing to load; give a uri or a urdf");
+  if (!config.mass || !(*config.mass > 0) || !std::isfinite(*config.mass))
+    throw InputError(where + ": mass: needs a finite number of kg above 0");
+  SharedSurface surface = load(config.uri, config.scale, config.cloud, where, watch);
+  const Pose X_OC = config.X_OM * Eigen::Translation3d(surface.origin);
+  const ContactSettings settings = contactSettings(contact_.boundary_width, contact_, {&config.contact});
+  const double width = surface.radius > 0 ? surface.radius : settings.boundary_width;
+
+  std::string from = "the configuration";
+  MassProperties inertial;
+  if (!config.com || !config.inertia)
+    inertial = massFromShape(transformed(surface.geometry->mesh(), X_OC), surface.report.closed, *config.mass, &from);
+  inertial.mass = *config.mass;
+  if (config.com) inertial.com = *config.com;
+  if (config.inertia) inertial.inertia = *config.inertia;
+  if (!config.inertia && floorInertia(width, &inertial)) from += ", made turnable as a small ball would be";
+  if (!inertial.com.allFinite() || !inertial.inertia.allFinite() || inertial.inertia.llt().info() != Eigen::Success)
+    throw InputError(where + ": inertia: is not positive definite; correct [ixx, ixy, ixz, iyy, iyz, izz] and com");
+  const char* what = config.com ? "inertia" : config.inertia ? "centre of mass" : "centre of mass and inertia";
+  surface.report.notes.push_back(fmt::format("{} from {}: com {}", what, from, words(inertial.com)));
+
+  const int body = addFreeBody(config.name + "::link", inertial, config, world);
+  Collider collider;
+  collider.name = config.name;
+  collider.model = world->addModel(config.name, ModelKind::OBJECT, config.max_contacts.value_or(contact_.max_contacts_per_object));
+  collider.body = body;
+  collider.X_BC = X_OC;
+  if (settings.shrink) watch->enter("shrinking", 1 - TREE_FRACTION);
+  collider.geometry = surfaces_.fitted(surface.geometry, settings, surface.radius, &surface.report);
+  world->addCollider(collider, width, settings.surface, surface.report);
+  world->models.back().bodies = {body};
+}
+
+void WorldBuilder::addUrdfObject(const ObjectConfig& config, LoadWatch* watch, SimulatedWorld* world) {
+  const std::string where = "objects: " + config.name;
+  const RobotModel model = loadUrdfFile(resolver_.resolve(config.urdf, base_directory_), resolver_, contact_.mending, watch->progress());
+  watch->enter("topology and trees of its links", 1 - TREE_FRACTION);
+  const LumpedRobot lumped = lumpFixedJoints(model, {}, false);
+  if (lumped.bodies.size() != 1)
+    throw InputError(fmt::format("{}: urdf: {} has {} bodies that move against each other; load it under robots", where, model.source,
+                                 lumped.bodies.size()));
+  MassProperties inertial = lumped.bodies[0].inertial;
+  if (config.mass) {
+    inertial.inertia *= *config.mass / inertial.mass;
+    inertial.mass = *config.mass;
+  }
+  if (config.com) inertial.com = *config.com;
+  if (config.inertia) inertial.inertia = *config.inertia;
+  const ContactSettings settings = contactSettings(contact_.boundary_width, contact_, {&config.contact});
+  const std::string name = config.name + "::" + lumped.bodies[0].name;
+  const int body = addFreeBody(name, inertial, config, world);
+  const int index = world->addModel(config.name, ModelKind::OBJECT, config.max_contacts.value_or(contact_.max_contacts_per_object));
+  world->models[index].bodies = {body};
+  for (std::size_t link = 0; link < model.links.size(); ++link) {
+    for (const CollisionShape& shape : model.links[link].collisions) {
+      Collider collider;
+      collider.name = config.name + "::" + model.links[link].name;
+      collider.model = index;
+      collider.body = body;
+      collider.X_BC = lumped.link_placement[link].X_BL;
+      MeshReport report = shape.report;
+      collider.geometry = surfaces_.fitted(surfaces_.geometry(shape.mesh), settings, shape.radius, &report);
+      world->addCollider(collider, shape.radius > 0 ? shape.radius : settings.boundary_width, settings.surface, report);
+    }
+  }
+  for (const auto* notes : {&model.notes, &lumped.notes})
+    for (const std::string& note : *notes) world->notes.push_back(config.name + ": " + note);
+}
+
+}  // namespace blem_sim

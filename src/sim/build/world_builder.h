@@ -1,0 +1,45 @@
+// From a configuration to a world: files are loaded, names are checked, bodies are placed at their start poses.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "blem_sim/model/loaders.h"
+#include "blem_sim/sim/config.h"
+#include "build/load_watch.h"
+#include "build/simulated_world.h"
+#include "build/surface_library.h"
+
+namespace blem_sim {
+
+/** Adds models one by one. Each function throws InputError before it changes the world. */
+class WorldBuilder {
+ public:
+  /** @param base_directory of relative files */
+  WorldBuilder(const ContactConfig& contact, std::string base_directory, const UriResolver& resolver, LoadLog log)
+      : contact_(contact),
+        base_directory_(std::move(base_directory)),
+        resolver_(resolver),
+        log_(std::move(log)),
+        surfaces_(contact.mending) {}
+
+  void addEnvironment(const EnvironmentConfig& config, SimulatedWorld* world);
+  void addRobot(const RobotConfig& config, SimulatedWorld* world);
+  void addObject(const ObjectConfig& config, SimulatedWorld* world);
+
+ private:
+  void addMeshObject(const ObjectConfig& config, LoadWatch* watch, SimulatedWorld* world);
+  void addUrdfObject(const ObjectConfig& config, LoadWatch* watch, SimulatedWorld* world);
+  SharedSurface load(const std::string& uri, const Vector3& scale, const CloudOptions& cloud, const std::string& where, LoadWatch* watch);
+  std::shared_ptr<const RobotModel> description(const RobotConfig& config, LoadWatch* watch);
+
+  const ContactConfig contact_;
+  const std::string base_directory_;
+  const UriResolver resolver_;
+  const LoadLog log_;
+  SurfaceLibrary surfaces_;
+  std::map<std::string, std::weak_ptr<const RobotModel>> descriptions_;  ///< by file or text
+};
+
+}  // namespace blem_sim

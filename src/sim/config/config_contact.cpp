@@ -1,0 +1,67 @@
+#include "blem_sim/dynamics/world.h"
+#include "blem_sim/reduction/reduction.h"
+#include "config/config_sections.h"
+
+namespace blem_sim {
+
+ContactConfig readContact(YamlReader reader) {
+  ContactConfig contact;
+  reader.read("boundary_width", &contact.boundary_width, NumberRange::notNegative());
+  reader.read("shrink", &contact.shrink);
+  reader.read("friction", &contact.surface.friction, NumberRange::notNegative());
+  reader.read("restitution", &contact.surface.restitution, NumberRange::fraction());
+  reader.read("impact_friction_factor", &contact.surface.impact_friction_factor, NumberRange::fraction());
+  reader.read("stiffness", &contact.surface.stiffness, NumberRange::positiveOrInfinite());
+  reader.read("damping", &contact.surface.damping, NumberRange::notNegativeOrInfinite());
+  reader.read("max_contacts_per_robot", &contact.max_contacts_per_robot, 1);
+  reader.read("max_contacts_per_object", &contact.max_contacts_per_object, 1);
+  const std::vector<FrictionRule> rules = {FrictionRule::MIN, FrictionRule::HARMONIC_MEAN, FrictionRule::MEAN, FrictionRule::PRODUCT};
+  if (const auto rule = reader.choice("friction_rule", {"min", "harmonic_mean", "mean", "product"})) contact.friction_rule = rules[*rule];
+  bool mend = true;
+  reader.read("mend_meshes", &mend);
+  contact.mending = mend ? Mending::ON : Mending::OFF;
+  std::vector<std::string> reductions;
+  for (const Reduction& reduction : reductionTable()) reductions.push_back(reduction.name);
+  if (const auto reduction = reader.choice("reduction", reductions)) contact.reduction = reductions[*reduction];
+  reader.finish();
+  return contact;
+}
+
+SolverSettings readSolver(YamlReader reader) {
+  SolverSettings solver;
+  const std::vector<std::string> steppers = stepperNames();
+  if (const auto stepper = reader.choice("stepper", steppers)) solver.stepper = steppers[*stepper];
+  reader.read("threads", &solver.threads, 1);
+  reader.read("quick_step_iterations", &solver.quick_step_iterations, 1);
+  reader.read("cfm", &solver.cfm, NumberRange::notNegative());
+  reader.read("correction_fraction", &solver.correction_fraction, NumberRange::fraction());
+  reader.read("max_correction_speed", &solver.max_correction_speed, NumberRange::notNegative());
+  reader.read("joint_erp", &solver.joint_erp, NumberRange::fraction());
+  reader.read("joint_cfm", &solver.joint_cfm, NumberRange::notNegative());
+  reader.finish();
+  return solver;
+}
+
+ContactOverrides readContactOverrides(YamlReader& reader) {
+  ContactOverrides contact;
+  reader.read("boundary_width", &contact.boundary_width, NumberRange::notNegative());
+  reader.read("shrink", &contact.shrink);
+  reader.read("friction", &contact.friction, NumberRange::notNegative());
+  reader.read("restitution", &contact.restitution, NumberRange::fraction());
+  reader.read("impact_friction_factor", &contact.impact_friction_factor, NumberRange::fraction());
+  reader.read("stiffness", &contact.stiffness, NumberRange::positiveOrInfinite());
+  reader.read("damping", &contact.damping, NumberRange::notNegativeOrInfinite());
+  return contact;
+}
+
+CloudOptions readCloud(YamlReader reader) {
+  CloudOptions cloud;
+  const std::vector<CloudOptions::As> ways = {CloudOptions::As::AUTO, CloudOptions::As::POINTS, CloudOptions::As::MESH};
+  if (const auto as = reader.choice("as", {"auto", "points", "mesh"})) cloud.as = ways[*as];
+  reader.read("point_radius", &cloud.point_radius, NumberRange::positive());
+  reader.read("max_edge", &cloud.max_edge, NumberRange::positive());
+  reader.finish();
+  return cloud;
+}
+
+}  // namespace blem_sim

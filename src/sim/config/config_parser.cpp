@@ -1,0 +1,96 @@
+#include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
+
+#include <filesystem>
+#include <set>
+
+#include "blem_sim/geometry/input_error.h"
+#include "config/config_sections.h"
+#include "config/scene_limits.h"
+#include "config/yaml_size.h"
+
+namespace blem_sim {
+
+namespace {
+
+PublishRates readRates(YamlReader& reader) {
+  PublishRates rates;
+  const NumberRange range = NumberRange::notNegative();
+  reader.read("clock_rate", &rates.clock, range);
+  reader.read("joint_state_rate", &rates.joint_state, range);
+  reader.read("tf_rate", &rates.tf, range);
+  reader.read("odom_rate", &rates.odom, range);
+  reader.read("contact_rate", &rates.contact, range);
+  reader.read("marker_rate", &rates.markers, range);
+  reader.read("link_states_rate", &rates.link_states, range);
+  reader.read("step_report_rate", &rates.step_report, range);
+  return rates;
+}
+
+/** Reads a list of models, whose names must differ from all others'. */
+template <typename Model, typename Read>
+std::vector<Model> readModels(YamlReader& root, const std::string& key, std::set<std::string>* names, Read read) {
+  std::vector<Model> models;
+  // Checked before any model is read.
+  const YAML::Node list = root.node(key);
+  if (list.IsDefined() && list.size() > MOST_MODELS)
+    root.refuse(key, fmt::format("{} entries are more than the {} that are simulated; give fewer", list.size(), MOST_MODELS));
+  root.forEachItem(key, [&](YamlReader& reader) {
+    Model model = read(reader);
+    if (!names->insert(model.name).second)
+      reader.refuse("name", fmt::format("'{}' is taken; robots, objects and environments need names of their own", model.name));
+    models.push_back(std::move(model));
+  });
+  return models;
+}
+
+}  // namespace
+
+SimulationConfig parseConfig(const YAML::Node& root, const std::string& source, const std::string& base_directory,
+                             std::set<std::string>* known_keys) {
+  YamlReader reader(root, source, known_keys);
+  SimulationConfig config;
+  config.base_directory = base_directory;
+  reader.read("time_step", &config.time_step, NumberRange::positive());
+  reader.read("real_time_factor", &config.real_time_factor, NumberRange::notNegative());
+  reader.read("paused", &config.paused);
+  reader.read("gravity", &config.gravity);
+  reader.read("random_seed", &config.random_seed);
+  config.solver = readSolver(reader.section("solver"));
+  config.contact = readContact(reader.section("contact"));
+  config.rates = readRates(reader);
+  std::set<std::string> names;
+  config.environments = readModels<EnvironmentConfig>(reader, "environments", &names, readEnvironment);
+  config.robots = readModels<RobotConfig>(reader, "robots", &names, readRobot);
+  config.objects = readModels<ObjectConfig>(reader, "objects", &names, readObject);
+  reader.finish();
+  return config;
+}
+
+SimulationConfig parseConfig(const YAML::Node& root, const std::string& source, const std::string& base_directory) {
+  return parseConfig(root, source, base_directory, nullptr);
+}
+
+SimulationConfig loadConfigFile(const std::string& file) {
+  return parseConfig(loadYamlFile(file), file, std::filesystem::absolute(file).parent_path().string());
+}
+
+YAML::Node loadYamlFile(const std::string& file) {
+  try {
+    checkYamlSize(file);
+    return YAML::LoadFile(file);
+  } catch (const YAML::BadFile&) {
+    throw InputError(fmt::format("{}: cannot be read; check the path", file));
+  } catch (const YAML::ParserException& error) {
+    throw InputError(fmt::format("{}:{}: is not YAML: {}", file, error.mark.line + 1, error.msg));
+  }
+}
+
+EnvironmentConfig parseEnvironment(const YAML::Node& node, const std::string& source) {
+  YamlReader reader(node, source);
+  EnvironmentConfig environment = readEnvironment(reader);
+  reader.finish();
+  return environment;
+}
+
+}  // namespace blem_sim

@@ -1,0 +1,28 @@
+// The sections of a configuration, one reader each; config_parser.cpp puts them together.
+#pragma once
+
+#include "blem_sim/sim/config.h"
+#include "config/yaml_reader.h"
+
+namespace blem_sim {
+
+ContactConfig readContact(YamlReader reader);
+SolverSettings readSolver(YamlReader reader);
+/** Reads those given of boundary_width, friction, restitution, impact_friction_factor, stiffness, damping, shrink. */
+ContactOverrides readContactOverrides(YamlReader& reader);
+CloudOptions readCloud(YamlReader reader);
+/** A name that models may bear: given, not empty, without "::". */
+std::string readName(YamlReader& reader);
+/** One number or three, none of them 0. */
+void readScale(YamlReader& reader, Vector3* scale);
+
+EnvironmentConfig readEnvironment(YamlReader& reader);
+ObjectConfig readObject(YamlReader& reader);
+RobotConfig readRobot(YamlReader& reader);
+std::vector<SensorConfig> readSensors(YamlReader& robot);
+
+/** parseConfig that also tells which keys it knows, as "robots[].gains.*.p"; of a list or map only if the node holds one. */
+SimulationConfig parseConfig(const YAML::Node& root, const std::string& source, const std::string& base_directory,
+                             std::set<std::string>* known_keys);
+
+}  // namespace blem_sim

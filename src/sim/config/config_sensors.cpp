@@ -1,0 +1,92 @@
+#include <algorithm>
+
+#include "config/config_sections.h"
+
+namespace blem_sim {
+
+namespace {
+
+using ReadSensor = void (*)(YamlReader&, SensorConfig*);
+
+void requireText(YamlReader& reader, const std::string& key, std::string* value) {
+  reader.read(key, value);
+  if (value->empty()) reader.refuse(key, "is missing; name the " + key + " that the sensor sits on");
+}
+
+void readForceTorque(YamlReader& reader, SensorConfig* sensor) {
+  const std::vector<std::string> frames = {"child", "parent", "sensor"};
+  const std::vector<std::string> senses = {"parent_to_child", "child_to_parent"};
+  requireText(reader, "joint", &sensor->joint);
+  if (const auto frame = reader.choice("frame", frames)) sensor->frame = frames[*frame];
+  if (const auto sense = reader.choice("measure", senses)) sensor->measure = senses[*sense];
+  YamlReader noise = reader.section("noise");
+  noise.read("stddev", &sensor->noise_stddev, NumberRange::notNegative());
+  noise.finish();
+}
+
+void readImu(YamlReader& reader, SensorConfig* sensor) {
+  requireText(reader, "link", &sensor->link);
+  reader.read("pose", &sensor->X_LS);
+  YamlReader noise = reader.section("noise");
+  noise.read("accel_stddev", &sensor->accel_stddev, NumberRange::notNegative());
+  noise.read("gyro_stddev", &sensor->gyro_stddev, NumberRange::notNegative());
+  noise.read("accel_bias_stddev", &sensor->accel_bias_stddev, NumberRange::notNegative());
+  noise.read("gyro_bias_stddev", &sensor->gyro_bias_stddev, NumberRange::notNegative());
+  noise.finish();
+}
+
+void readContactSensor(YamlReader& reader, SensorConfig* sensor) { requireText(reader, "link", &sensor->link); }
+
+void readTilt(YamlReader& reader, SensorConfig* sensor) {
+  requireText(reader, "link", &sensor->link);
+  reader.read("pose", &sensor->X_LS);
+}
+
+void readMotorCurrent(YamlReader& reader, SensorConfig* sensor) {
+  reader.forEachName("torque_constant", [&](const std::string& joint, YamlReader& map) {
+    map.read(joint, &sensor->torque_constant[joint], NumberRange::positive());
+  });
+}
+
+/** A new sensor is one row: its name in the YAML, its type, its own keys. */
+struct SensorRow {
+  const char* name;
+  SensorType type;
+  ReadSensor read;
+};
+const std::vector<SensorRow> SENSOR_TABLE = {
+    {"force_torque", SensorType::FORCE_TORQUE, readForceTorque},
+    {"imu", SensorType::IMU, readImu},
+    {"contact", SensorType::CONTACT, readContactSensor},
+    {"tilt", SensorType::TILT, readTilt},
+    {"motor_current", SensorType::MOTOR_CURRENT, readMotorCurrent},
+};
+
+SensorConfig readSensor(YamlReader& reader) {
+  SensorConfig sensor;
+  sensor.name = readName(reader);
+  std::vector<std::string> types;
+  for (const SensorRow& row : SENSOR_TABLE) types.push_back(row.name);
+  const auto type = reader.choice("type", types);
+  if (!type) reader.refuse("type", "is missing; one of force_torque, imu, contact, tilt, motor_current");
+  sensor.type = SENSOR_TABLE[*type].type;
+  reader.read("topic", &sensor.topic);
+  reader.read("rate", &sensor.rate, NumberRange::notNegative());
+  SENSOR_TABLE[*type].read(reader, &sensor);
+  return sensor;
+}
+
+}  // namespace
+
+std::vector<SensorConfig> readSensors(YamlReader& robot) {
+  std::vector<SensorConfig> sensors;
+  robot.forEachItem("sensors", [&](YamlReader& reader) {
+    SensorConfig sensor = readSensor(reader);
+    const auto same = [&](const SensorConfig& other) { return other.name == sensor.name; };
+    if (std::any_of(sensors.begin(), sensors.end(), same)) reader.refuse("name", "'" + sensor.name + "' is taken by another sensor");
+    sensors.push_back(std::move(sensor));
+  });
+  return sensors;
+}
+
+}  // namespace blem_sim

@@ -1,0 +1,32 @@
+// Motion of a body's points while its velocities stay.
+#pragma once
+
+#include "build/simulated_world.h"
+
+namespace blem_sim {
+
+struct BodyTwist {
+  Vector3 centre = Vector3::Zero(), v = Vector3::Zero(), w = Vector3::Zero();  ///< of mass [m], [m/s] there, [rad/s]; world
+
+  /** Velocity [m/s] of the body's point at p. */
+  Vector3 at(const Vector3& p) const { return v + w.cross(p - centre); }
+
+  /** Pose of a frame X of the body `time` [s] later. */
+  Pose moved(const Pose& X, double time) const {
+    const double angle = time * w.norm();
+    const Matrix3 turn = angle > 0 ? Eigen::AngleAxisd(angle, w.normalized()).toRotationMatrix() : Matrix3(Matrix3::Identity());
+    Pose Y = X;
+    Y.linear() = turn * X.linear();
+    Y.translation() = centre + time * v + turn * (X.translation() - centre);
+    return Y;
+  }
+};
+
+/** Twist of a collider's body. @param bodies their states, by slot */
+inline BodyTwist twistOf(const SimulatedWorld& world, const std::vector<BodyState>& bodies, int collider) {
+  const int body = world.colliders[collider].body;
+  if (body == WORLD_BODY) return {};
+  return {bodies[body].X_WB * world.world.bodySpec(body).inertial.com, bodies[body].v_WCom, bodies[body].w_WB};
+}
+
+}  // namespace blem_sim

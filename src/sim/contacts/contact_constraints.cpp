@@ -1,0 +1,143 @@
+// From the manifolds of the state at hand to the constraints of the solve.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "blem_sim/contact/collider_pairs.h"
+#include "contacts/contact_stage.h"
+
+namespace blem_sim {
+namespace {
+
+// Pierced contacts part at this speed; a load on them slows them down by its weight over this rate times the lighter model's mass.
+constexpr double SEPARATION_SPEED = 0.1;  // [m/s]
+constexpr double SEPARATION_RATE = 1e4;   // [1/s]
+
+std::uint64_t mixed(std::uint64_t x) {  // splitmix64's finalizer [Steele 2014]
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+  return x ^ (x >> 31);
+}
+
+/** Identity of a contact of a pair among those of all pairs. */
+std::uint64_t contactId(int a, int b, std::uint64_t id) {
+  return mixed(id + mixed((static_cast<std::uint64_t>(a) << 32) + static_cast<std::uint64_t>(b) + 1));
+}
+
+/** Constraint of a contact, rigid, without friction. */
+ContactConstraint constraintOf(const SimulatedWorld& world, const ContactManifold& manifold, const Contact& contact) {
+  ContactConstraint constraint;
+  constraint.body_a = world.colliders[manifold.a].body;
+  constraint.body_b = world.colliders[manifold.b].body;
+  constraint.point = contact.point;
+  constraint.normal_BA = contact.normal_BA;
+  constraint.depth = contact.depth;
+  constraint.id = contactId(manifold.a, manifold.b, contact.id);
+  return constraint;
+}
+
+/** Mass [kg] of all bodies of the collider's model. */
+double massOf(const SimulatedWorld& world, const Collider& collider) {
+  if (collider.body == WORLD_BODY) return std::numeric_limits<double>::infinity();
+  double mass = 0;
+  for (const int body : world.models[collider.model].bodies)
+    if (body != WORLD_BODY) mass += world.world.bodySpec(body).inertial.mass;
+  return mass;
+}
+
+/** Identity of the stop below a contact's spring, which is another contact. */
+std::uint64_t stopId(std::uint64_t id) { return mixed(id); }
+
+bool isCompliant(const SurfaceProperties& surface) { return std::isfinite(surface.stiffness) && std::isfinite(surface.damping); }
+
+/** Makes a contact of meshes that cross a damper that lets go at SEPARATION_SPEED and never bounces: such contacts may contradict each
+ *  other. */
+void separate(double mass, double layer, ContactConstraint* contact) {
+  contact->damping = SEPARATION_RATE * mass;
+  contact->stiffness = SEPARATION_SPEED * contact->damping / std::max(layer, contact->depth);
+  contact->restitution = 0;
+}
+
+int countContacts(const std::vector<ContactManifold>& manifolds) {
+  int count = 0;
+  for (const ContactManifold& manifold : manifolds) count += static_cast<int>(manifold.contacts.size());
+  return count;
+}
+
+}  // namespace
+
+std::vector<std::uint64_t> ContactStage::forgetCollider(int collider) {
+  std::vector<std::uint64_t> ids;
+  for (const ReductionMemory* memory : {&std::as_const(memory_), &stops_.memory()}) {
+    for (const ReductionMemory::Choice& choice : memory->choices()) {
+      if (choice.a != collider && choice.b != collider) continue;
+      for (const std::uint64_t id : choice.ids) {
+        const std::uint64_t known_as = contactId(choice.a, choice.b, id);
+        ids.push_back(memory == &memory_ ? known_as : stopId(known_as));
+      }
+    }
+  }
+  memory_.forget(collider);
+  stops_.forget(collider);
+  searches_.forget(collider);
+  removePairsOf(collider, &current_search_.recoveries);
+  arms_.clear();
+  known_ = false;
+  return ids;
+}
+
+int ContactStage::rawContacts() const { return countContacts(current_); }
+int ContactStage::reducedContacts() const { return countContacts(reduced_); }
+
+/** @param all contacts of the pair, of which the manifold's were kept */
+void ContactStage::addConstraints(const SimulatedWorld& world, const ContactManifold& all, ContactManifold& manifold) {
+  const Collider &a = world.colliders[manifold.a], &b = world.colliders[manifold.b];
+  const SurfaceProperties surface = combineSurfaces(a.surface, b.surface, config_.friction_rule);
+  if (std::isfinite(surface.stiffness) || std::isfinite(surface.damping)) weighSprings(manifold.contacts);
+  const bool recovers = findPair(current_search_.recoveries, manifold.a, manifold.b) != nullptr;
+  for (const Contact& contact : manifold.contacts) {
+    ContactConstraint constraint = constraintOf(world, manifold, contact);
+    constraint.friction = surface.friction;
+    constraint.restitution = surface.restitution;
+    constraint.impact_friction_factor = surface.impact_friction_factor;
+    constraint.stiffness = contact.weight * surface.stiffness;
+    constraint.damping = contact.weight * surface.damping;
+    if (recovers && contact.depth > 0) separate(std::min(massOf(world, a), massOf(world, b)), manifold.layer, &constraint);
+    constraints_.push_back(constraint);
+    solved_.push_back({manifold.a, manifold.b, manifold.layer, contact.pierced, 0, recovers});
+  }
+  if (!recovers && isCompliant(surface)) addStops(world, all, surface.friction);
+}
+
+void ContactStage::addStops(const SimulatedWorld& world, const ContactManifold& all, double friction) {
+  const double stop = LayerStops::STOP * all.layer;
+  for (const Contact& contact : stops_.choose(all, *method_)) {
+    ContactConstraint constraint = constraintOf(world, all, contact);
+    constraint.friction = friction;
+    constraint.id = stopId(constraint.id);
+    constraints_.push_back(constraint);
+    solved_.push_back({all.a, all.b, all.layer, false, stop, false});
+  }
+}
+
+void ContactStage::reduction(const SimulatedWorld& world, const std::vector<BodyState>& bodies, double dt) {
+  meetings_.look(world, bodies, *this, current_search_.flush, dt);
+  meetings_.exchange(&current_);
+  for (ContactManifold& manifold : reduced_) manifold.contacts.clear();  // a pair without contacts now keeps none
+  model_a_.clear();
+  model_b_.clear();
+  for (const ContactManifold& manifold : current_) {
+    model_a_.push_back(world.colliders[manifold.a].model);
+    model_b_.push_back(world.colliders[manifold.b].model);
+  }
+  reduction_loss_ = reduceManifolds(current_, model_a_, model_b_, world.budgets, *method_, &memory_, &reduced_);
+  constraints_.clear();
+  solved_.clear();
+  stops_.start();
+  for (std::size_t m = 0; m < reduced_.size(); ++m) addConstraints(world, current_[m], reduced_[m]);
+  stops_.remember();
+  meetings_.exchange(&current_);
+}
+
+}  // namespace blem_sim

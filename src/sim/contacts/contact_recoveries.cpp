@@ -1,0 +1,41 @@
+// The pairs that cross or are not apart yet, in a saved state.
+#include "blem_sim/contact/collider_pairs.h"
+#include "contacts/contact_stage.h"
+
+namespace blem_sim {
+namespace {
+
+constexpr std::size_t WORDS = 3, NUMBERS = 16;  // of a recovery
+
+bool isRigid(const Pose& X) {
+  constexpr double ROUNDING = 1e-6;
+  return (X.linear() * X.linear().transpose() - Matrix3::Identity()).cwiseAbs().maxCoeff() <= ROUNDING &&
+         X.matrix().row(3) == Eigen::RowVector4d(0, 0, 0, 1);
+}
+
+}  // namespace
+
+void ContactStage::appendRecoveries(std::vector<double>* numbers, std::vector<std::uint64_t>* words) const {
+  words->push_back(current_search_.recoveries.size());
+  for (const Recovery& recovery : current_search_.recoveries) {
+    for (const int word : {recovery.a, recovery.b, static_cast<int>(recovery.known)}) words->push_back(static_cast<std::uint64_t>(word));
+    numbers->insert(numbers->end(), recovery.X_AB.matrix().data(), recovery.X_AB.matrix().data() + NUMBERS);
+  }
+}
+
+bool ContactStage::readRecoveries(const std::vector<Collider>& colliders, const std::uint64_t** words, const std::uint64_t* words_end,
+                                  NumberReader* reader, std::vector<Recovery>* recoveries) {
+  if (*words == words_end) return false;
+  const std::uint64_t count = *(*words)++;
+  if (static_cast<std::uint64_t>(words_end - *words) / WORDS < count) return false;
+  for (std::uint64_t i = 0; i < count; ++i, *words += WORDS) {
+    if (!isPair(colliders, (*words)[0], (*words)[1]) || (*words)[2] > 1) return false;
+    Recovery recovery{static_cast<int>((*words)[0]), static_cast<int>((*words)[1]), (*words)[2] != 0, Pose()};
+    reader->numbers(recovery.X_AB.matrix().data(), NUMBERS);
+    if (!isRigid(recovery.X_AB)) return false;
+    recoveries->push_back(recovery);
+  }
+  return areSorted(*recoveries);
+}
+
+}  // namespace blem_sim

@@ -1,0 +1,39 @@
+#include "contacts/meeting_speed.h"
+
+#include <algorithm>
+
+#include "contacts/body_twist.h"
+
+namespace blem_sim {
+namespace {
+
+/** World box of a collider's geometry, grown by `margin` [m]; everything for a half-space. */
+Box boxOf(const Collider& collider, const Pose& X_WC, double margin) {
+  const Box& box = collider.geometry->bounds();
+  if (collider.geometry->isHalfSpace()) return box;
+  const Vector3 half = X_WC.linear().cwiseAbs() * (0.5 * (box.max() - box.min())) + Vector3::Constant(margin), centre = X_WC * box.center();
+  return Box(centre - half, centre + half);
+}
+
+}  // namespace
+
+// The speed is a convex function of place, so the corners of the box common to both tell its largest value.
+double meetingSpeed(const SimulatedWorld& world, const std::vector<BodyState>& bodies, const std::vector<ColliderMotion>& motion,
+                    int collider_a, int collider_b, double reach) {
+  const Collider &a = world.colliders[collider_a], &b = world.colliders[collider_b];
+  const Pose &X_WA = motion[collider_a].X_WC, &X_WB = motion[collider_b].X_WC;
+  const Box common = boxOf(a, X_WA, reach).intersection(boxOf(b, X_WB, reach));
+  if (common.isEmpty()) return 0;
+  Vector3 towards = Vector3::Zero();  // the half-space's way in for A's points
+  if (b.geometry->isHalfSpace()) towards = -(X_WB.linear() * b.geometry->planeNormal());
+  if (a.geometry->isHalfSpace()) towards = X_WA.linear() * a.geometry->planeNormal();
+  const BodyTwist twist_a = twistOf(world, bodies, collider_a), twist_b = twistOf(world, bodies, collider_b);
+  double fastest = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vector3 p = common.corner(static_cast<Box::CornerType>(corner)), v = twist_a.at(p) - twist_b.at(p);
+    fastest = std::max(fastest, towards.isZero(0) ? v.norm() : towards.dot(v));
+  }
+  return fastest;
+}
+
+}  // namespace blem_sim

@@ -1,0 +1,57 @@
+// A pair of colliders on its way through a solve, while its velocities stay.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "blem_sim/contact/manifold.h"
+#include "contacts/body_twist.h"
+#include "contacts/flush_surfaces.h"
+
+namespace blem_sim {
+
+/** A collider at the start of the solve. */
+struct ColliderWay {
+  const Collider* collider;
+  Pose X_WC;
+  BodyTwist twist;
+};
+
+/** First state of a pair, and the time for which it is followed. */
+struct WayOfPair {
+  const ContactManifold& now;  ///< its contacts
+  ColliderWay a, b;
+  double known = 0;  ///< [m] distance beyond the layers within which contacts are known
+  double depth = 0;  ///< [m] of the deepest contact that touches, of both bodies; at least 0
+  double dt = 0;     ///< [s]
+};
+
+/** Follows pairs on their ways, in memory that is kept between pairs. */
+class PairWay {
+ public:
+  /** Whether a contact before touch would act while the pair moves across its normal. */
+  bool isDoubtful(const WayOfPair& pair) const;
+  /**
+   * Follows a pair to the pose where it first touches anew, or else to the nearest pose.
+   * @param flush, colliders, motion as FlushSurfaces takes them
+   * @param contacts to be solved, sorted by id; unchanged if all that would act are met as they are
+   * @return false, and nothing is written, if contacts stay as they are: also where bare meshes cross on the way
+   */
+  bool follow(const WayOfPair& pair, const FlushSurfaces& flush, const std::vector<Collider>& colliders,
+              const std::vector<ColliderMotion>& motion, std::vector<Contact>* contacts);
+
+ private:
+  bool search(const WayOfPair& pair, const FlushSurfaces& flush, const std::vector<Collider>& colliders,
+              const std::vector<ColliderMotion>& motion);
+  double freeTime(const WayOfPair& pair, const std::vector<Contact>& contacts, double time) const;
+  double newDepth(const std::vector<Contact>& contacts) const;
+  bool touchesNow(std::uint64_t id) const;
+  bool isMetAsItIs(const Contact& contact) const;
+
+  std::vector<std::uint64_t> touching_;  // ids, ascending
+  ContactManifold at_, met_;
+  double met_time_ = 0;  // [s] of met_
+  bool touches_ = false;
+};
+
+}  // namespace blem_sim

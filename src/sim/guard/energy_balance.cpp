@@ -1,0 +1,187 @@
+#include "guard/energy_balance.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace blem_sim {
+namespace {
+
+double square(double x) { return x * x; }
+
+bool isCompliant(const ContactConstraint& c) { return std::isfinite(c.stiffness) && std::isfinite(c.damping); }
+
+/** Speed [m/s] at which a contact that is too deep pushes on purpose. */
+double correctionSpeed(const ContactConstraint& c, bool recovers, double dt, const SolverSettings& settings) {
+  if (!(c.depth > 0)) return 0;
+  if (!isCompliant(c)) return std::min(settings.correction_fraction * c.depth / dt, settings.max_correction_speed);
+  return recovers && c.damping > 0 ? c.stiffness * c.depth / c.damping : 0;
+}
+
+/** Displacements of points of bodies; contacts of one body follow on each other. */
+class Displacements {
+ public:
+  Displacements(const std::vector<BodyState>& before, const std::vector<BodyState>& after) : before_(before), after_(after) {}
+
+  Vector3 of(const Vector3& point, int body) {
+    if (body == WORLD_BODY) return Vector3::Zero();
+    if (body != last_) X_BW_before_ = before_[body].X_WB.inverse();
+    last_ = body;
+    return after_[body].X_WB * (X_BW_before_ * point) - point;
+  }
+
+ private:
+  const std::vector<BodyState>&before_, &after_;
+  int last_ = WORLD_BODY;
+  Pose X_BW_before_;
+};
+
+}  // namespace
+
+void EnergyBalance::start(const World& world) {
+  joints_.resize(world.jointCount());
+  for (int joint = 0; joint < world.jointCount(); ++joint) joints_[joint] = world.jointState(joint);
+}
+
+EnergyGain EnergyBalance::addSolve(const World& world, double dt, const ContactStage& contacts, const SolveResult& solved,
+                                   const std::vector<BodyState>& before, const std::vector<BodyState>& after) {
+  tie(world, contacts, solved.contact_forces);
+  bookBodies(world, dt, before, after);
+  bookJoints(world, dt);
+  bookSprings(contacts, before, after);
+  bookContacts(dt, contacts, solved, before, after);
+  EnergyGain gain;
+  for (const Book& book : books_) {
+    const double rise = book.rise - book.held;
+    gain.total += std::max(0.0, rise);
+    gain.out_of_nothing += std::max(0.0, rise - book.on_purpose);
+    if (rise - book.on_purpose > FLOOR * std::min(1.0, book.mass) + RELATIVE * book.moved) gain.beyond_bound = true;
+  }
+  holdBack();
+  return gain;
+}
+
+// A contact without a force passes no energy on.
+void EnergyBalance::tie(const World& world, const ContactStage& contacts, const std::vector<Vector3>& forces) {
+  islands_.start(world.bodyCount());
+  for (int joint = 0; joint < world.jointCount(); ++joint) {
+    const JointSpec& spec = world.jointSpec(joint);
+    islands_.tie(spec.parent, spec.child);
+    if (spec.mimic_joint >= 0) islands_.tie(spec.child, world.jointSpec(spec.mimic_joint).child);
+  }
+  for (std::size_t i = 0; i < forces.size(); ++i)
+    if (!forces[i].isZero(0)) islands_.tie(contacts.constraints()[i].body_a, contacts.constraints()[i].body_b);
+  books_.assign(world.bodyCount(), Book());
+}
+
+EnergyBalance::Book& EnergyBalance::bookOf(const ContactConstraint& contact) {
+  return books_[islands_.islandOf(contact.body_a != WORLD_BODY ? contact.body_a : contact.body_b)];
+}
+
+// Steppers move bodies by the velocity at a step's end, while kinetic energy changes by forces times mean velocity: the way that weights
+// work along is the mean velocity's. Without this, flight would lose m g^2 dt^2 / 2 a step and a bounce gain it back.
+void EnergyBalance::bookBodies(const World& world, double dt, const std::vector<BodyState>& before, const std::vector<BodyState>& after) {
+  coms_.resize(after.size());
+  held_.resize(after.size(), 0);
+  for (std::size_t b = 0; b < after.size(); ++b) {
+    const MassProperties& body = world.bodySpec(static_cast<int>(b)).inertial;
+    const BodyState &old = before[b], &now = after[b];
+    coms_[b] = old.X_WB * body.com;
+    const Vector3 way = now.X_WB * body.com - coms_[b] - 0.5 * dt * (now.v_WCom - old.v_WCom);
+    const Vector3 old_spin = old.X_WB.linear().transpose() * old.w_WB, spin = now.X_WB.linear().transpose() * now.w_WB;
+    const double kinetic = 0.5 * (body.mass * now.v_WCom.squaredNorm() + spin.dot(body.inertia * spin));
+    const double kinetic_rise = 0.5 * (body.mass * (now.v_WCom - old.v_WCom).dot(now.v_WCom + old.v_WCom) +
+                                       (spin - old_spin).dot(body.inertia * (spin + old_spin)));
+    const double work = body.mass * world.gravity().dot(way);
+    Book& book = books_[islands_.islandOf(static_cast<int>(b))];
+    book.rise += kinetic_rise - work;
+    book.moved += kinetic + std::abs(work);
+    book.held += held_[b];
+    book.mass += body.mass;
+  }
+}
+
+// Books the work of joints: effort times mean velocity, for the same reason.
+void EnergyBalance::bookJoints(const World& world, double dt) {
+  for (int joint = 0; joint < world.jointCount(); ++joint) {
+    const JointSpec& spec = world.jointSpec(joint);
+    const JointState state = world.jointState(joint);
+    JointState& last = joints_[joint];
+    const double work = state.effort * (state.position - last.position - 0.5 * dt * (state.velocity - last.velocity));
+    Book& book = books_[islands_.islandOf(spec.child)];
+    book.rise += 0.5 * spec.armature * (square(state.velocity) - square(last.velocity)) - work;
+    book.moved += 0.5 * spec.armature * square(state.velocity) + std::abs(work);
+    last = state;
+  }
+}
+
+// Books the energy of springs; those that part crossed meshes hold none.
+void EnergyBalance::bookSprings(const ContactStage& contacts, const std::vector<BodyState>& before, const std::vector<BodyState>& after) {
+  Displacements a(before, after), b(before, after);
+  for (std::size_t i = 0; i < contacts.constraints().size(); ++i) {
+    const ContactConstraint& contact = contacts.constraints()[i];
+    if (!isCompliant(contact) || contacts.solved()[i].recovers) continue;
+    const Vector3 apart = a.of(contact.point, contact.body_a) - b.of(contact.point, contact.body_b);
+    const double old_depth = std::max(0.0, contact.depth), depth = std::max(0.0, contact.depth - contact.normal_BA.dot(apart));
+    Book& book = bookOf(contact);
+    book.rise += 0.5 * contact.stiffness * (square(depth) - square(old_depth));
+    book.moved += 0.5 * contact.stiffness * std::max(square(depth), square(old_depth));
+  }
+}
+
+double EnergyBalance::normalSpeed(const ContactConstraint& contact, const std::vector<BodyState>& states) const {
+  const auto velocity = [&](int body) -> Vector3 {
+    if (body == WORLD_BODY) return Vector3::Zero();
+    return states[body].v_WCom + states[body].w_WB.cross(contact.point - coms_[body]);
+  };
+  return contact.normal_BA.dot(velocity(contact.body_a) - velocity(contact.body_b));
+}
+
+// Apparent work of steppers that do not report it is taken as half the loss of a departure that loads brake in this step.
+void EnergyBalance::bookContacts(double dt, const ContactStage& contacts, const SolveResult& solved, const std::vector<BodyState>& before,
+                                 const std::vector<BodyState>& after) {
+  const std::vector<Vector3>& forces = solved.contact_forces;
+  landings_.clear();
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    if (forces[i].isZero(0)) continue;
+    const ContactConstraint& contact = contacts.constraints()[i];
+    const double impulse = dt * std::max(0.0, contact.normal_BA.dot(forces[i]));
+    const double old_speed = normalSpeed(contact, before), speed = normalSpeed(contact, after);
+    const double correction = correctionSpeed(contact, contacts.solved()[i].recovers, dt, settings_);
+    Book& book = bookOf(contact);
+    const double braked = 0.5 * impulse * std::max(0.0, std::max(0.0, old_speed) - std::max(0.0, speed));
+    book.on_purpose += impulse * correction + (solved.apparent_work.empty() ? braked : solved.apparent_work[i]);
+    if (!(contact.restitution > 0) || old_speed >= 0) continue;
+    book.restitution = std::max(book.restitution, contact.restitution);
+    book.approach -= impulse * old_speed;
+    const double left = std::max(0.0, 1 - square(std::max(0.0, speed) / (contact.restitution * old_speed)));
+    landings_.push_back({contact.body_a != WORLD_BODY ? contact.body_a : contact.body_b, -impulse * old_speed, left});
+  }
+}
+
+// A bounce leaves by the contacts that landed, so a body of each keeps its part of the bounce's energy, whatever the islands are then.
+void EnergyBalance::holdBack() {
+  std::fill(held_.begin(), held_.end(), 0);
+  for (const Landing& landing : landings_) {
+    const Book& book = books_[islands_.islandOf(landing.body)];
+    if (book.rise >= 0 || !(book.approach > 0)) continue;
+    held_[landing.body] -= book.rise * square(book.restitution) * landing.left * landing.approach / book.approach;
+  }
+}
+
+void EnergyBalance::append(std::vector<double>* numbers) const {
+  const bool any = std::any_of(held_.begin(), held_.end(), [](double held) { return held != 0; });
+  numbers->push_back(any ? static_cast<double>(held_.size()) : 0);
+  if (any) numbers->insert(numbers->end(), held_.begin(), held_.end());
+}
+
+void EnergyBalance::read(int bodies, NumberReader* reader) {
+  const double count = reader->number();
+  if (count != 0 && count != bodies) NumberReader::refuse();
+  reader->require(static_cast<std::size_t>(count));
+  held_.assign(static_cast<std::size_t>(count), 0);
+  reader->numbers(held_.data(), held_.size());
+  if (std::any_of(held_.begin(), held_.end(), [](double held) { return held < 0; }))
+    NumberReader::refuseContent("energy is held back that is below 0");
+}
+
+}  // namespace blem_sim

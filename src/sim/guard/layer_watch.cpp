@@ -1,0 +1,107 @@
+#include "guard/layer_watch.h"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "blem_sim/contact/collider_pairs.h"
+
+namespace blem_sim {
+namespace {
+
+LayerEventReport eventOf(const ContactManifold& manifold, double time) {
+  LayerEventReport event;
+  event.time = time;
+  event.collider_a = manifold.a;
+  event.collider_b = manifold.b;
+  event.depth = std::max(0.0, manifold.maxDepth());
+  event.of_layer = manifold.layer > 0 ? event.depth / manifold.layer : 0;
+  event.pierced = manifold.pierced;
+  event.outside = event.of_layer > 1 || event.pierced;
+  return event;
+}
+
+LayerEventReport goneEvent(const std::pair<int, int>& pair, double time) {
+  LayerEventReport event;
+  event.time = time;
+  event.collider_a = pair.first;
+  event.collider_b = pair.second;
+  return event;
+}
+
+/** @param manifold of the pair before it passed, or null */
+LayerEventReport passEvent(const std::pair<int, int>& pair, const ContactManifold* manifold, double time) {
+  LayerEventReport event = manifold ? eventOf(*manifold, time) : goneEvent(pair, time);
+  event.outside = event.pierced = true;
+  return event;
+}
+
+}  // namespace
+
+void LayerWatch::look(const std::vector<ContactManifold>& manifolds, const std::vector<std::pair<int, int>>& passed, double time,
+                      std::vector<LayerEventReport>* events) {
+  const std::size_t first = events->size();
+  next_outside_.clear();
+  auto known = outside_.begin();
+  // Both are sorted: pairs that were outside and have no contacts any more come before the next manifold.
+  const auto tellGoneBefore = [&](const std::pair<int, int>* pair) {
+    for (; known != outside_.end() && (pair == nullptr || *known < *pair); ++known) events->push_back(goneEvent(*known, time));
+  };
+  for (const ContactManifold& manifold : manifolds) {
+    const std::pair<int, int> pair(manifold.a, manifold.b);
+    tellGoneBefore(&pair);
+    const bool was_outside = known != outside_.end() && *known == pair;
+    if (was_outside) ++known;
+    const LayerEventReport event = eventOf(manifold, time);
+    if (event.outside) next_outside_.push_back(pair);
+    if (event.outside != was_outside) events->push_back(event);
+  }
+  tellGoneBefore(nullptr);
+  std::swap(outside_, next_outside_);
+  if (!passed.empty()) addPassed(manifolds, passed, time, first, events);
+}
+
+/** @param first of the events of this look */
+void LayerWatch::addPassed(const std::vector<ContactManifold>& manifolds, const std::vector<std::pair<int, int>>& passed, double time,
+                           std::size_t first, std::vector<LayerEventReport>* events) {
+  for (const std::pair<int, int>& pair : passed) {
+    const auto at = std::lower_bound(outside_.begin(), outside_.end(), pair);
+    if (at != outside_.end() && *at == pair) continue;
+    outside_.insert(at, pair);
+    events->push_back(passEvent(pair, findPair(manifolds, pair.first, pair.second), time));
+  }
+  std::stable_sort(events->begin() + static_cast<std::ptrdiff_t>(first), events->end(), [](const auto& p, const auto& q) {
+    return std::make_pair(p.collider_a, p.collider_b) < std::make_pair(q.collider_a, q.collider_b);
+  });
+}
+
+void LayerWatch::append(std::vector<std::uint64_t>* words) const {
+  words->push_back(outside_.size());
+  for (const auto& [a, b] : outside_) {
+    words->push_back(static_cast<std::uint64_t>(a));
+    words->push_back(static_cast<std::uint64_t>(b));
+  }
+}
+
+void LayerWatch::forget(int collider) {
+  const auto has_it = [&](const std::pair<int, int>& pair) { return pair.first == collider || pair.second == collider; };
+  outside_.erase(std::remove_if(outside_.begin(), outside_.end(), has_it), outside_.end());
+}
+
+bool LayerWatch::read(const std::vector<Collider>& colliders, const std::uint64_t** words, const std::uint64_t* end) {
+  const std::uint64_t* cursor = *words;
+  if (cursor == end) return false;
+  const std::uint64_t count = *cursor++;
+  if (static_cast<std::uint64_t>(end - cursor) / 2 < count) return false;
+  std::vector<std::pair<int, int>> outside;
+  for (std::uint64_t i = 0; i < count; ++i, cursor += 2) {
+    // A collider that was just taken out is still to be told gone.
+    if (cursor[0] >= cursor[1] || cursor[1] >= colliders.size()) return false;
+    outside.emplace_back(static_cast<int>(cursor[0]), static_cast<int>(cursor[1]));
+    if (i > 0 && outside[i] <= outside[i - 1]) return false;
+  }
+  outside_ = std::move(outside);
+  *words = cursor;
+  return true;
+}
+
+}  // namespace blem_sim

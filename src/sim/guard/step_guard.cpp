@@ -1,0 +1,93 @@
+#include "guard/step_guard.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "blem_sim/contact/collider_pairs.h"
+
+namespace blem_sim {
+namespace {
+
+constexpr double USED_UP = 0.9;       // of the layer
+constexpr double LEAST_GROWTH = 0.1;  // of the layer in one step: slower sinking is not for the guard
+constexpr double BEYOND = 0.2;        // [m] at most, that a contact is outside the boxes of both colliders, to both sides together
+
+/** Used-up share of the layer; 0 without contact. */
+double used(const ContactManifold& manifold) { return std::max(0.0, manifold.maxDepth() / manifold.layer); }
+
+bool inDanger(double before, double after) { return after > USED_UP && after - before > LEAST_GROWTH; }
+
+/** Motion of points fixed on the body: from their place in the world before to that after. */
+Pose motionOf(int body, const std::vector<BodyState>& before, const std::vector<BodyState>& after) {
+  return body == WORLD_BODY ? Pose::Identity() : after[body].X_WB * before[body].X_WB.inverse();
+}
+
+/** [m] Largest extent of the contacts of two colliders; infinite if nothing bounds it. */
+double extent(const Collider& a, const Collider& b) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Collider* collider : {&a, &b})
+    if (collider->geometry && !collider->geometry->isHalfSpace()) least = std::min(least, collider->geometry->bounds().diagonal().norm());
+  return least + 2 * (a.radius + b.radius) + BEYOND;
+}
+
+/** Bound on `carried`: no contact was carried deeper, of the layer. @param size [m] extent of the contacts */
+double mostCarried(const ContactManifold& manifold, double depth, double size, const Pose& motion_a, const Pose& motion_b) {
+  const Vector3& somewhere = manifold.contacts.front().point;
+  const double motion = (motion_a * somewhere - motion_b * somewhere).norm() + (motion_a.linear() - motion_b.linear()).norm() * size;
+  return (depth + motion) / manifold.layer;
+}
+
+/** Deepest that a contact of the manifold was carried, of the layer. */
+double carried(const ContactManifold& manifold, const Pose& motion_a, const Pose& motion_b) {
+  double deepest = 0;
+  for (const Contact& contact : manifold.contacts) {
+    const double parted = contact.normal_BA.dot(motion_a * contact.point - motion_b * contact.point);
+    deepest = std::max(deepest, (contact.depth - parted) / manifold.layer);
+  }
+  return deepest;
+}
+
+}  // namespace
+
+bool usesUpLayer(const std::vector<Collider>& colliders, const std::vector<ContactManifold>& before,
+                 const std::vector<ContactManifold>& after, const std::vector<BodyState>& bodies_before,
+                 const std::vector<BodyState>& bodies_after) {
+  for (const ContactManifold& now : after) {
+    if (!(now.layer > 0)) continue;
+    const double used_now = used(now);
+    if (!now.pierced && used_now <= USED_UP) continue;
+    const ContactManifold* then = findPair(before, now.a, now.b);
+    if (now.pierced && !(then && then->pierced)) return true;
+    if (inDanger(then ? used(*then) : 0, used_now)) return true;
+  }
+  for (const ContactManifold& then : before) {
+    if (!(then.layer > 0) || then.pierced || then.contacts.empty()) continue;
+    const Collider &a = colliders[then.a], &b = colliders[then.b];
+    const Pose motion_a = motionOf(a.body, bodies_before, bodies_after), motion_b = motionOf(b.body, bodies_before, bodies_after);
+    const double depth = then.maxDepth();
+    if (mostCarried(then, depth, extent(a, b), motion_a, motion_b) <= USED_UP) continue;
+    if (inDanger(std::max(0.0, depth / then.layer), carried(then, motion_a, motion_b))) return true;
+  }
+  return false;
+}
+
+void Substeps::plan(double part) {
+  const int left = MAX_SUBSTEPS - done_;
+  size_ = std::clamp(static_cast<int>(std::floor(part * left)), 1, left);
+}
+
+void Substeps::redo(double part) {
+  size_ = std::clamp(static_cast<int>(std::floor(part * size_)), 1, std::max(1, size_ / 2));
+  ++redone_;
+  redone_at_hand_ = true;
+}
+
+void Substeps::accept() {
+  done_ += size_;
+  ++count_;
+  size_ = std::min(size_, MAX_SUBSTEPS - done_);
+  redone_at_hand_ = false;
+}
+
+}  // namespace blem_sim

@@ -1,0 +1,53 @@
+// Steps that used up too much of a boundary layer, though step_prediction.h saw no danger: they are made again, shorter.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "blem_sim/contact/manifold.h"
+#include "build/simulated_world.h"
+
+namespace blem_sim {
+
+/**
+ * A pair is in danger if a step
+ * - made its bare meshes cross, or
+ * - used up more than 0.9 of its layer, at least 0.1 of it in this step, or
+ * - carried a contact that existed before it, solved or left out, as far: then the pair may have passed through.
+ * Pairs without a layer cannot be guarded.
+ * @param before, after manifolds at the two ends of the step, sorted by (a, b); bodies_before, bodies_after by body slot
+ */
+bool usesUpLayer(const std::vector<Collider>& colliders, const std::vector<ContactManifold>& before,
+                 const std::vector<ContactManifold>& after, const std::vector<BodyState>& bodies_before,
+                 const std::vector<BodyState>& bodies_after);
+
+/**
+ * Divides one step into substeps of whole ticks. So a step costs at most MAX_SUBSTEPS + MAX_REDONE solves, and MAX_REDONE more searches
+ * for contacts, whatever happens in it.
+ */
+class Substeps {
+ public:
+  static constexpr int MAX_SUBSTEPS = 16, MAX_REDONE = 4;
+
+  bool finished() const { return done_ == MAX_SUBSTEPS; }
+  double fraction() const { return static_cast<double>(size_) / MAX_SUBSTEPS; }  ///< of the step, the substep at hand
+  double fractionDone() const { return static_cast<double>(done_) / MAX_SUBSTEPS; }
+  double fractionLeft() const { return static_cast<double>(MAX_SUBSTEPS - done_) / MAX_SUBSTEPS; }           ///< with the substep at hand
+  double fractionAfter() const { return static_cast<double>(MAX_SUBSTEPS - done_ - size_) / MAX_SUBSTEPS; }  ///< without it
+  /** The next substep takes at most this part (0 to 1) of the rest of the step, in whole ticks, at least one. */
+  void plan(double part);
+  bool canRedo() const { return redone_ < MAX_REDONE && (size_ > 1 || !redone_at_hand_); }
+  /** Makes the substep at hand again, in this part (0 to 1) of its length in whole ticks, half of it at most, at least one. A substep of
+   * one tick is made again once: its contacts are known farther then. */
+  void redo(double part);
+  void accept();
+  int count() const { return count_; }               ///< accepted so far
+  int redone() const { return redone_; }             ///< thrown away so far
+  bool isRedone() const { return redone_at_hand_; }  ///< the substep at hand is made again: its length is fixed
+
+ private:
+  int size_ = MAX_SUBSTEPS, done_ = 0, count_ = 0, redone_ = 0;
+  bool redone_at_hand_ = false;
+};
+
+}  // namespace blem_sim

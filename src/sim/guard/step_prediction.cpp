@@ -1,0 +1,38 @@
+#include "guard/step_prediction.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "blem_sim/contact/collider_pairs.h"
+#include "contacts/meeting_speed.h"
+
+namespace blem_sim {
+namespace {
+
+constexpr double USED_UP = 0.9;    // of the distance between bare meshes
+constexpr double PER_SOLVE = 0.5;  // layers that two bodies that touch may move in one solve
+// A margin is at least 1.5 times the largest motion: a pair of a smaller margin is no danger to its layer.
+constexpr double LEAST_MARGIN = 1.5 * PER_SOLVE;  // layers
+
+/** safeTime of one pair. */
+double safeTimeOf(const WatchedPair& pair, const SimulatedWorld& world, const ContactStage& contacts, const std::vector<BodyState>& bodies,
+                  double time) {
+  const double layer = world.colliders[pair.a].radius + world.colliders[pair.b].radius;
+  if (!(layer > 0) || pair.margin <= LEAST_MARGIN * layer) return time;
+  const ContactManifold* manifold = findPair(contacts.current(), pair.a, pair.b);
+  const double gap = std::min(pair.known, manifold ? -manifold->maxDepth() : pair.known);  // between the layers, at least
+  const double harmless = std::max(PER_SOLVE * layer, std::min(pair.known, USED_UP * (layer + gap)));
+  const double speed = meetingSpeed(world, bodies, contacts.motion(), pair.a, pair.b, layer + pair.margin);
+  if (speed * time <= harmless) return time;
+  return std::min(time, std::max(gap, PER_SOLVE * layer) / speed);
+}
+
+}  // namespace
+
+double safeTime(const SimulatedWorld& world, const ContactStage& contacts, const std::vector<BodyState>& bodies, double time) {
+  double safe = time;
+  for (const WatchedPair& pair : contacts.watched()) safe = std::min(safe, safeTimeOf(pair, world, contacts, bodies, time));
+  return safe;
+}
+
+}  // namespace blem_sim

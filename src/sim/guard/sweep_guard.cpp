@@ -1,0 +1,106 @@
+#include "guard/sweep_guard.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "blem_sim/contact/collider_pairs.h"
+
+namespace blem_sim {
+namespace {
+
+constexpr double STILL = 1e-3;         // of the layer: less motion uses up nothing
+constexpr double HALF = 0.5;           // of the layer
+constexpr double TURN_OF_CHORD = 1.2;  // [rad] of a turn by at most pi, over the Frobenius norm of its change of axes: pi / (2 sqrt 2)
+
+bool hasArea(const CollisionGeometry& geometry) { return geometry.mesh().isTriangle(0); }
+
+bool canPass(const Collider& a, const Collider& b) {
+  return a.radius + b.radius > 0 && !a.geometry->isHalfSpace() && !b.geometry->isHalfSpace();
+}
+
+}  // namespace
+
+const std::vector<ClosePass>& SweepGuard::look(const SimulatedWorld& world, const ContactStage& contacts,
+                                               const std::vector<BodyState>& before, const std::vector<BodyState>& after) {
+  close_.clear();
+  before_ = &before;
+  after_ = &after;
+  moveColliders(world, contacts, before, after);
+  for (const WatchedPair& pair : contacts.watched()) {
+    const Collider &a = world.colliders[pair.a], &b = world.colliders[pair.b];
+    const double layer = a.radius + b.radius, motion = motion_[pair.a].reach + motion_[pair.b].reach;
+    if (motion <= STILL * layer || !canPass(a, b)) continue;
+    const ContactManifold* known = findPair(contacts.current(), pair.a, pair.b);
+    if (known && known->pierced) continue;
+    const double distance = layer - (known ? known->maxDepth() : -pair.known);
+    if (distance - motion < (known ? SPARED : HALF) * layer && !findPair(contacts.recoveries(), pair.a, pair.b))
+      lookAt(world, pair.a, pair.b, distance, known != nullptr);
+  }
+  if (leavesWhatWasSearched(world, contacts)) lookAtOthers(world, contacts);
+  return close_;
+}
+
+void SweepGuard::moveColliders(const SimulatedWorld& world, const ContactStage& contacts, const std::vector<BodyState>& before,
+                               const std::vector<BodyState>& after) {
+  motion_.resize(world.colliders.size());
+  for (std::size_t i = 0; i < motion_.size(); ++i) {
+    const int body = world.colliders[i].body;
+    motion_[i] = {contacts.motion()[i].X_WC, 0};
+    if (body == WORLD_BODY) continue;
+    const Vector3& com = world.world.bodySpec(body).inertial.com;
+    const Pose &from = before[body].X_WB, &to = after[body].X_WB;
+    const double turn = TURN_OF_CHORD * (to.linear() - from.linear()).norm();
+    motion_[i].reach = (to * com - from * com).norm() + turn * contacts.arm(static_cast<int>(i));
+  }
+}
+
+GeometrySweep SweepGuard::sweepOf(const SimulatedWorld& world, int collider) const {
+  GeometrySweep sweep;
+  sweep.X_WC = motion_[collider].X_WC;
+  const int body = world.colliders[collider].body;
+  if (body == WORLD_BODY) return sweep;
+  const Vector3& com = world.world.bodySpec(body).inertial.com;
+  const Pose &from = (*before_)[body].X_WB, &to = (*after_)[body].X_WB;
+  sweep.centre = from * com;
+  sweep.shift = to * com - sweep.centre;
+  sweep.turn = turnBetween(from, to);
+  return sweep;
+}
+
+// Whether a collider used up its layer and margin: a pair that is not searched is farther apart than both colliders' together.
+bool SweepGuard::leavesWhatWasSearched(const SimulatedWorld& world, const ContactStage& contacts) const {
+  for (std::size_t i = 0; i < motion_.size(); ++i) {
+    const Collider& collider = world.colliders[i];
+    if (collider.enabled && motion_[i].reach > (1 - HALF) * collider.radius + contacts.motion()[i].reach) return true;
+  }
+  return false;
+}
+
+void SweepGuard::lookAtOthers(const SimulatedWorld& world, const ContactStage& contacts) {
+  const std::size_t watched = close_.size();
+  const double any = std::numeric_limits<double>::infinity();
+  for (const ColliderPair& pair : other_pairs_.find(world.colliders, motion_, world.filter, 0, any)) {
+    const Collider &a = world.colliders[pair.a], &b = world.colliders[pair.b];
+    if (!canPass(a, b) || world.disabled_pairs.count({pair.a, pair.b}) > 0 || findPair(contacts.watched(), pair.a, pair.b)) continue;
+    lookAt(world, pair.a, pair.b, a.radius + b.radius, false);
+  }
+  std::inplace_merge(close_.begin(), close_.begin() + static_cast<std::ptrdiff_t>(watched), close_.end(), IsPairBefore());
+}
+
+/** @param distance [m] of the bare meshes at the start, at least @param known whether its contacts there are known */
+void SweepGuard::lookAt(const SimulatedWorld& world, int a, int b, double distance, bool known) {
+  const CollisionGeometry &geometry_a = *world.colliders[a].geometry, &geometry_b = *world.colliders[b].geometry;
+  const double layer = world.colliders[a].radius + world.colliders[b].radius;
+  if (!(distance > 0)) return;
+  const bool cross = known || hasArea(geometry_a) || hasArea(geometry_b);
+  const auto left = [&](double share) { return std::min(share * layer, 0.5 * distance); };
+  const double spared = left(cross ? SPARED : HALF);
+  const GeometrySweep sweep_a = sweepOf(world, a), sweep_b = sweepOf(world, b);
+  const double most = mostApproach(geometry_a, sweep_a, geometry_b, sweep_b);
+  if (distance - most >= spared || !mayComeWithin(spared, geometry_a, sweep_a, geometry_b, sweep_b)) return;
+  const bool passed = !cross || mayComeWithin(left(NOTHING), geometry_a, sweep_a, geometry_b, sweep_b);
+  close_.push_back({a, b, std::min(1.0, std::max(distance - layer, HALF * layer) / most), passed});
+}
+
+}  // namespace blem_sim

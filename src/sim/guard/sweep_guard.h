@@ -1,0 +1,52 @@
+// Pairs whose bare meshes meet, or nearly, on the way from one end of a solve to the other.
+#pragma once
+
+#include <vector>
+
+#include "blem_sim/contact/broad_phase.h"
+#include "blem_sim/contact/sweep.h"
+#include "build/simulated_world.h"
+#include "contacts/contact_stage.h"
+
+namespace blem_sim {
+
+/** Two colliders that came too close within a solve. */
+struct ClosePass {
+  int a, b;
+  double part;  ///< of the solve's length, 0 to 1: so long their layers last, or half of them if they touch already
+  bool passed;  ///< nothing of their layers was left, so that they may be on each other's other side
+};
+
+/**
+ * Watches the whole way, not only its ends: bodies move evenly from their old poses to the new ones (sweep.h). A pair comes too close where
+ * less than SPARED of its layer is left, and passed where it is less than NOTHING. Two geometries without area (points, segments)
+ * whose contact was not known cannot cross: they do both where they use up half of their layers. Pairs that cross already, half-spaces
+ * (nothing passes these: a vertex below them is pushed up from any depth) and pairs without a layer are not asked. Bodies that move less
+ * than their layers, or than the space known to be free around them, cost some comparisons.
+ */
+class SweepGuard {
+ public:
+  static constexpr double SPARED = 0.1, NOTHING = 0.02;  ///< of the layer
+
+  /**
+   * @param contacts of the state where the solve started @param before, after bodies at its ends, by slot
+   * @return sorted by (a, b); lives until the next call
+   */
+  const std::vector<ClosePass>& look(const SimulatedWorld& world, const ContactStage& contacts, const std::vector<BodyState>& before,
+                                     const std::vector<BodyState>& after);
+
+ private:
+  void moveColliders(const SimulatedWorld& world, const ContactStage& contacts, const std::vector<BodyState>& before,
+                     const std::vector<BodyState>& after);
+  GeometrySweep sweepOf(const SimulatedWorld& world, int collider) const;
+  bool leavesWhatWasSearched(const SimulatedWorld& world, const ContactStage& contacts) const;
+  void lookAtOthers(const SimulatedWorld& world, const ContactStage& contacts);
+  void lookAt(const SimulatedWorld& world, int a, int b, double distance, bool known);
+
+  const std::vector<BodyState>*before_ = nullptr, *after_ = nullptr;
+  std::vector<ColliderMotion> motion_;  // poses at the start, and longest ways in the solve
+  BroadPhase other_pairs_;
+  std::vector<ClosePass> close_;
+};
+
+}  // namespace blem_sim

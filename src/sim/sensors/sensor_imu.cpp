@@ -1,0 +1,56 @@
+#include "sensors/sensor.h"
+
+namespace blem_sim {
+namespace {
+
+/** Specific force and angular velocity of a frame on a link. The acceleration is the step's change of velocity over dt, lever arm included.
+ */
+class ImuSensor : public Sensor {
+ public:
+  ImuSensor(const SimulatedWorld& world, const SensorInfo& info)
+      : config_(info.config), frame_(world, world.robots[info.robot], info.config.link, info.config.X_LS) {}
+
+  void read(const StepContext& step, double period, SensorReading* out) override {
+    const MountedFrame::Motion before = frame_.motion(step.bodies_before), after = frame_.motion(step.bodies);
+    const Vector3 specific_force = (after.v_WS - before.v_WS) / step.dt - step.world.world.gravity();
+    // A difference of velocities belongs to the middle of the step, and so do the axes it is seen in.
+    const Quaternion end(after.X_WS.linear());
+    const Quaternion middle = Quaternion(before.X_WS.linear()).slerp(0.5, end);
+    ImuReading& reading = readingIn<ImuReading>(out);
+    reading.orientation = end.normalized();
+    reading.angular_velocity = end.conjugate() * after.w_WS;
+    reading.linear_acceleration = middle.conjugate() * specific_force;
+    reading.accel_stddev = config_.accel_stddev;
+    reading.gyro_stddev = config_.gyro_stddev;
+    addNoise(config_.accel_stddev, config_.accel_bias_stddev, period, &accel_bias_, &reading.linear_acceleration);
+    addNoise(config_.gyro_stddev, config_.gyro_bias_stddev, period, &gyro_bias_, &reading.angular_velocity);
+  }
+
+  void reset() override { accel_bias_ = gyro_bias_ = Vector3::Zero(); }
+  void append(std::vector<double>* numbers) const override {
+    for (const Vector3* bias : {&accel_bias_, &gyro_bias_}) numbers->insert(numbers->end(), bias->data(), bias->data() + 3);
+  }
+  void restore(NumberReader* reader) override {
+    for (Vector3* bias : {&accel_bias_, &gyro_bias_}) reader->numbers(bias->data(), 3);
+  }
+
+ private:
+  /** Adds white noise, and a bias that walks: bias_stddev is its standard deviation after one second. */
+  void addNoise(double stddev, double bias_stddev, double period, Vector3* bias, Vector3* value) {
+    if (bias_stddev > 0) *bias += bias_stddev * std::sqrt(period) * random_.gaussianVector();
+    if (stddev > 0) *value += stddev * random_.gaussianVector();
+    *value += *bias;
+  }
+
+  const SensorConfig config_;
+  const MountedFrame frame_;
+  Vector3 accel_bias_ = Vector3::Zero(), gyro_bias_ = Vector3::Zero();
+};
+
+}  // namespace
+
+std::unique_ptr<Sensor> makeImuSensor(const SimulatedWorld& world, const SensorInfo& info) {
+  return std::make_unique<ImuSensor>(world, info);
+}
+
+}  // namespace blem_sim

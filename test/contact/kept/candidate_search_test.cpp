@@ -1,0 +1,134 @@
+// Search for candidates: the same in parts as at once, and none is missed for its directions.
+#include "search/candidate_search.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "contact/contact_shapes.h"
+#include "features/feature_cones.h"
+#include "features/tolerances.h"
+#include "neighbourhood/surroundings.h"
+#include "neighbourhood/vertex_cone.h"
+
+namespace blem_sim {
+namespace {
+
+MeshPair pairOf(const Collider& moving, const Collider& fixed, const Pose& X_FM) {
+  const double layer = moving.radius + fixed.radius;
+  return {MeshSide(*moving.geometry), MeshSide(*fixed.geometry), X_FM, layer, layer, {}};
+}
+
+using NamedPairs = std::vector<std::pair<int, int>>;
+
+template <typename First, typename Second>
+NamedPairs named(const std::vector<kernels::Candidate>& candidates, const FeatureRecords<First>& a, const FeatureRecords<Second>& b) {
+  NamedPairs out;
+  for (const kernels::Candidate& c : candidates) out.emplace_back(a.names[c.a], b.names[c.b]);
+  return out;
+}
+
+/** All candidates, by the names of their features, in their order. */
+std::vector<NamedPairs> namesOf(const CandidateLists& lists) {
+  std::vector<NamedPairs> out;
+  for (const bool moves : {true, false}) {
+    const NearFeatures &own = lists.near[moves], &partner = lists.near[!moves];
+    out.push_back(named(lists.pairs.vertex_face[moves], own.vertices, partner.faces));
+    out.push_back(named(lists.pairs.vertex_edge[moves], own.vertices, partner.edges));
+    out.push_back(named(lists.pairs.edge_face[moves], own.edges, partner.faces));
+  }
+  out.push_back(named(lists.pairs.edge_edge, lists.near[1].edges, lists.near[0].edges));
+  out.push_back(named(lists.pairs.vertex_vertex, lists.near[1].vertices, lists.near[0].vertices));
+  return out;
+}
+
+// Between the parts of a search the pair moves on, and other searches ask for the same leaves.
+TEST(CandidateSearch, InPartsAsAtOnce) {
+  RandomShapes random(3);
+  const Collider hills = makeCollider(hillMesh(random, 0.1, 60, 0.001), 0), ball = makeCollider(icosphereMesh(0.02, 4), 0.002);
+  const Pose X = makePose({0.001, 0.002, 0.0205}, {0.1, 0.2, 0.3}), other = makePose({-0.004, 0.001, 0.0201}, {0.3, 0, 0.1});
+  const ListMargin margin{0.001, 0.02};
+  for (const CandidateKind kind : {CandidateKind::CONTACTS, CandidateKind::CROSSINGS}) {
+    CandidateSearchBuffers buffers;
+    CandidateListing whole, parts, between;
+    findCandidates(pairOf(ball, hills, X), kind, margin, &buffers, &whole);
+    ASSERT_GT(whole.pairs.size(), 100u);
+    beginCandidates(pairOf(ball, hills, X), kind, margin, &buffers, &parts);
+    EXPECT_FALSE(parts.isComplete());
+    while (!parts.isComplete()) {
+      findMoreCandidates(pairOf(ball, hills, other), 37, &buffers, &parts);
+      findCandidates(pairOf(ball, hills, other), CandidateKind::CONTACTS, margin, &buffers, &between);
+      findCandidates(pairOf(hills, ball, other.inverse()), CandidateKind::CONTACTS, margin, &buffers, &between);
+    }
+    EXPECT_EQ(namesOf(parts.lists), namesOf(whole.lists));
+    for (const bool moves : {true, false}) {
+      const NearFeatures &near = parts.lists.near[moves], &expected = whole.lists.near[moves];
+      EXPECT_EQ(near.vertices.names, expected.vertices.names);
+      EXPECT_EQ(near.edges.names, expected.edges.names);
+      EXPECT_EQ(near.faces.names, expected.faces.names);
+      EXPECT_EQ(near.patches, expected.patches);
+    }
+  }
+}
+
+// A box has few faces, hills have many.
+TEST(CandidateLists, AreGroupedByFacesWhereThereAreFew) {
+  RandomShapes random(5);
+  const Collider hills = makeCollider(hillMesh(random, 0.1, 60, 0.001), 0), box = makeCollider(boxMesh(Vector3::Constant(0.06)), 0.002);
+  const MeshPair pair = pairOf(box, hills, makePose({0.001, 0.002, 0.0305}, {0.01, 0.02, 0.3}));
+  CandidateSearchBuffers buffers;
+  CandidateListing listing;
+  findCandidates(pair, CandidateKind::CONTACTS, {0.001, 0.02}, &buffers, &listing);
+  const std::vector<NamedPairs> before = namesOf(listing.lists);
+  CandidatePairs room;
+  groupByFaces(pair, &listing.lists, &room);
+  const std::vector<NamedPairs> after = namesOf(listing.lists);
+  constexpr std::size_t OVER_BOX = 3;  // place of the hills' vertices over the box's faces
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    NamedPairs expected = before[i];
+    const auto byFace = [](const auto& a, const auto& b) { return a.second < b.second; };
+    if (i == OVER_BOX) {
+      ASSERT_GT(expected.size(), 100u);
+      EXPECT_FALSE(std::is_sorted(expected.begin(), expected.end(), byFace));
+      std::stable_sort(expected.begin(), expected.end(), byFace);
+    }
+    EXPECT_EQ(after[i], expected) << i;
+  }
+}
+
+bool holds(const kernels::VertexCone& cone, const Vector3& direction) {
+  const Vector3 axis(cone.axis[0], cone.axis[1], cone.axis[2]);
+  const double along = axis.dot(direction), most = std::abs(along) * (along > 0 ? cone.up : cone.down);
+  return most >= 0 && direction.squaredNorm() - along * along <= most * most;
+}
+
+// A vertex's cone holds every direction in which the vertex is the nearest of its surface.
+TEST(VertexCone, HoldsEveryDirectionThatIsAllowed) {
+  RandomShapes random(4);
+  int allowed = 0, refused = 0;
+  for (const TriangleMesh& mesh :
+       {boxMesh(Vector3::Constant(0.1)), icosphereMesh(0.1, 2), hillMesh(random, 0.1, 6, 0.01), soupMesh(random, 20, 0.02)}) {
+    const Collider collider = makeCollider(mesh, 0);
+    const MeshSide side(*collider.geometry);
+    SurroundingsMemory surroundings;
+    for (int vertex = 0; vertex < static_cast<int>(side.mesh.vertices.size()); ++vertex) {
+      const kernels::VertexCone cone = vertexCone(side, vertex, &surroundings);
+      const Vector3 axis(cone.axis[0], cone.axis[1], cone.axis[2]);
+      for (int i = 0; i < 200; ++i) {
+        const Vector3 direction = (random.point(1) + (i % 4) * random.uniform(-3, 3) * axis).normalized();
+        const bool allows = vertexConeAllows(surroundings.ofVertex(side, vertex), direction, CONE_SLACK);
+        EXPECT_TRUE(!allows || holds(cone, direction)) << vertex;
+        allowed += allows;
+        refused += !holds(cone, direction);
+      }
+    }
+  }
+  EXPECT_GT(allowed, 1000);
+  EXPECT_GT(refused, 10000);
+}
+
+}  // namespace
+}  // namespace blem_sim

@@ -1,0 +1,93 @@
+// A choice among equals is gone on with while it is good; it is state.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <climits>
+
+#include "reduction/contact_patches.h"
+
+namespace blem_sim {
+namespace {
+
+ContactIds reduced(ContactManifold manifold, int k, ReductionMemory* memory) {
+  std::vector<ContactManifold> manifolds = {std::move(manifold)};
+  reduceAll(manifolds, {0}, {1}, {{k}, {INT_MAX}}, *findReduction("hull"), memory);
+  ContactIds ids;
+  for (const Contact& c : manifolds[0].contacts) ids.push_back(c.id);
+  return ids;
+}
+
+TEST(ReductionMemory, KeepsItsChoiceAmongEquals) {
+  RandomShapes random(4);
+  ReductionMemory memory;
+  const ContactIds first = reduced(rim(random, 1e-8), 20, &memory);
+  ASSERT_EQ(first.size(), 20u);
+  int forgetful = 0;
+  for (int step = 0; step < 50; ++step) {
+    const ContactManifold now = rim(random, 1e-8);
+    EXPECT_EQ(reduced(now, 20, &memory), first) << step;
+    ReductionMemory nothing;
+    forgetful += reduced(now, 20, &nothing) != first;
+  }
+  EXPECT_GT(forgetful, 0);  // else there is nothing to remember
+}
+
+TEST(ReductionMemory, KeepsItsChoiceInACrowd) {
+  Noise noise(8);
+  ReductionMemory memory;
+  const Contacts patch = noisyPatch(2000);
+  const ContactIds first = reduced(manifoldOf(3, 7, patch), 20, &memory);
+  for (int step = 0; step < 20; ++step) {
+    Contacts now = patch;
+    for (Contact& c : now) {
+      c.point += 1e-7 * Vector3(noise(), noise(), noise());
+      c.depth += 1e-7 * noise();
+    }
+    EXPECT_EQ(reduced(manifoldOf(3, 7, now), 20, &memory), first) << step;
+  }
+}
+
+TEST(ReductionMemory, GivesUpAChoiceThatLacksMuch) {
+  RandomShapes random(4);
+  ReductionMemory memory;
+  ContactManifold half = rim(random, 0);
+  half.contacts.resize(RIM_CORNERS / 2);
+  reduced(half, 20, &memory);
+  // All contacts now: the choice spans one half of them.
+  ReductionMemory nothing;
+  const ContactManifold whole = rim(random, 0);
+  EXPECT_EQ(reduced(whole, 20, &memory), reduced(whole, 20, &nothing));
+}
+
+TEST(ReductionMemory, GivesUpAChoiceWithoutTheDeepest) {
+  RandomShapes random(4);
+  ReductionMemory memory;
+  ContactManifold manifold = rim(random, 0);
+  const ContactIds first = reduced(manifold, 20, &memory);
+  for (Contact& c : manifold.contacts) {
+    if (std::find(first.begin(), first.end(), c.id) != first.end()) continue;
+    c.depth += 1e-4;
+    const ContactIds now = reduced(manifold, 20, &memory);
+    EXPECT_NE(std::find(now.begin(), now.end(), c.id), now.end());
+    break;
+  }
+}
+
+TEST(ReductionMemory, IsSavedAndReadBack) {
+  RandomShapes random(4);
+  ReductionMemory memory, copy;
+  const ContactIds ids = reduced(rim(random, 1e-8), 20, &memory);
+  std::vector<std::uint64_t> words = {42};
+  memory.append(&words);
+  const std::uint64_t* cursor = words.data() + 1;
+  const std::vector<Collider> colliders(10);
+  ASSERT_TRUE(copy.read(colliders, &cursor, words.data() + words.size()));
+  EXPECT_EQ(cursor, words.data() + words.size());
+  EXPECT_EQ(copy.of(rim(random, 0)), ids);
+  words.pop_back();
+  cursor = words.data() + 1;
+  EXPECT_FALSE(copy.read(colliders, &cursor, words.data() + words.size()));
+}
+
+}  // namespace
+}  // namespace blem_sim

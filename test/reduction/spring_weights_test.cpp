@@ -1,0 +1,96 @@
+// Stiffness of a patch does not depend on the number and places of its contacts, as tessellations give them.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "reduction/contact_patches.h"
+
+namespace blem_sim {
+namespace {
+
+double totalWeight(std::vector<Contact> contacts) {
+  weighSprings(contacts);
+  double total = 0;
+  for (const Contact& c : contacts) total += c.weight;
+  return total;
+}
+
+TEST(SpringWeights, CountFullyUpToTheCornersOfARectangle) {
+  RandomShapes random(4);
+  for (int pose = 0; pose < 20; ++pose) {
+    const Pose X = random.pose(1);
+    std::vector<Contact> contacts(4);
+    for (int i = 0; i < 4; ++i) {
+      contacts[i].point = X * Vector3(i % 2 ? 0.05 : -0.05, i / 2 ? 0.02 : -0.02, 0);
+      contacts[i].normal_BA = X.linear() * Vector3::UnitZ();
+      contacts[i].depth = 1e-3;
+    }
+    for (int count = 1; count <= 4; ++count) {
+      std::vector<Contact> some(contacts.begin(), contacts.begin() + count);
+      weighSprings(some);
+      for (const Contact& c : some) EXPECT_EQ(c.weight, 1) << count;
+    }
+  }
+}
+
+TEST(SpringWeights, HoldWhateverTheTessellation) {
+  RandomShapes random(4);
+  std::vector<Contact> contacts = rim(random, 0).contacts, doubled = contacts;
+  doubled.insert(doubled.end(), contacts.begin(), contacts.end());
+  std::vector<Contact> coarse;
+  for (int i = 0; i < RIM_CORNERS; i += 3) coarse.push_back(contacts[i]);
+  EXPECT_NEAR(totalWeight(contacts), 5, 0.1);
+  EXPECT_NEAR(totalWeight(doubled), totalWeight(contacts), 1e-9);
+  EXPECT_NEAR(totalWeight(coarse), totalWeight(contacts), 0.1);
+}
+
+/** Weight as spring_weights.cpp defines it, contact by contact and with the library's exponential. */
+double weightByDefinition(const std::vector<Contact>& contacts, std::size_t i) {
+  constexpr int DIRECTIONS = 32;
+  double share = 0;
+  for (int m = 0; m < DIRECTIONS; ++m) {
+    const double z = (2.0 * m + 1) / DIRECTIONS - 1, r = std::sqrt(1 - z * z), angle = 2.39996322972865332 * m;
+    const auto height = [&](const Contact& c) {
+      return (Vector3(r * std::cos(angle), r * std::sin(angle), z).dot(c.point) + 20 * c.depth) / 0.005;
+    };
+    double all = 0;
+    for (const Contact& c : contacts)
+      all += std::max(0.0, 1 - (c.normal_BA - contacts[i].normal_BA).norm() / 0.5) * std::exp(height(c) - height(contacts[i]));
+    share += 1 / all / DIRECTIONS;
+  }
+  return std::min(5 * share, 1.0);
+}
+
+TEST(SpringWeights, AreWhatTheirDefinitionSays) {
+  std::vector<Contact> contacts = noisyPatch(30);
+  for (const Contact& c : flatPatch(20, {0.2, 0.1, 1}, {0.03, 0, 0})) contacts.push_back(c);
+  weighSprings(contacts);
+  double least = 1;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const double expected = weightByDefinition(contacts, i);
+    EXPECT_NEAR(contacts[i].weight, std::max(expected, 1e-6), 1e-12) << i;
+    least = std::min(least, expected);
+  }
+  EXPECT_LT(least, 0.1);  // else they are hardly weighed
+}
+
+TEST(SpringWeights, OfSidesOfACornerAreTheirOwn) {
+  std::vector<Contact> contacts;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int i = 0; i < 4; ++i) {
+      Contact contact;
+      contact.point = Vector3::Constant(0.05);
+      contact.point[axis] = 0;
+      contact.point[(axis + 1) % 3] += i % 2 ? 0.05 : -0.04;
+      contact.point[(axis + 2) % 3] += i / 2 ? 0.05 : -0.04;
+      contact.normal_BA = Vector3::Unit(axis);
+      contact.depth = 1e-4;
+      contacts.push_back(contact);
+    }
+  }
+  weighSprings(contacts);
+  for (const Contact& c : contacts) EXPECT_EQ(c.weight, 1);
+}
+
+}  // namespace
+}  // namespace blem_sim

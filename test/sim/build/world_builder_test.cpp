@@ -1,0 +1,109 @@
+#include <algorithm>
+
+#include "blem_sim/geometry/input_error.h"
+#include "sim/simulation_scene.h"
+
+namespace blem_sim {
+namespace {
+
+std::string refusal(const SimulationConfig& config) {
+  try {
+    Simulator simulator(config, UriResolver());
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+bool contains(const std::string& text, const std::string& words) { return text.find(words) != std::string::npos; }
+
+bool anyContains(const std::vector<std::string>& texts, const std::string& words) {
+  return std::any_of(texts.begin(), texts.end(), [&](const std::string& text) { return contains(text, words); });
+}
+
+TEST(WorldBuilder, SameFileIsOneGeometry) {
+  SimulationConfig config;
+  for (int i = 0; i < 18; ++i) config.objects.push_back(box("mug" + std::to_string(i), Vector3::Constant(0.1), 1, {0.2 * i, 0, 1}));
+  config.objects.push_back(box("large", Vector3::Constant(0.1), 1, {0, 1, 1}));
+  config.objects.back().scale = Vector3::Constant(2);
+  Simulator simulator(config, UriResolver());
+  for (int i = 1; i < 18; ++i) EXPECT_EQ(simulator.colliders()[i].geometry, simulator.colliders()[0].geometry);
+  EXPECT_NE(simulator.colliders()[18].geometry, simulator.colliders()[0].geometry);
+  EXPECT_EQ(simulator.loadReport().size(), 19u);
+  EXPECT_EQ(simulator.bodyName(0), "mug0::link");
+  EXPECT_EQ(simulator.bodyName(WORLD_BODY), "world");
+}
+
+TEST(WorldBuilder, MassFromVolumeSurfaceOrConfiguration) {
+  SimulationConfig config;
+  const Vector3 size(0.1, 0.2, 0.3);
+  config.objects = {box("closed", size, 2, {0, 0, 1}), box("open", size, 2, {1, 0, 1}), box("given", size, 2, {2, 0, 1})};
+  config.objects[0].X_OM = makePose({0.05, 0, 0}, {0, 0, M_PI / 2});
+  TriangleMesh open = boxMesh(size);
+  open.elements.pop_back();
+  config.objects[1].uri = meshFile("open_box", open);
+  config.objects[2].com = Vector3(0.01, 0.02, 0.03);
+  config.objects[2].inertia = Matrix3(0.5 * Matrix3::Identity());
+  Simulator simulator(config, UriResolver());
+  const MassProperties closed = simulator.world().bodySpec(0).inertial;
+  EXPECT_EQ(closed.mass, 2);
+  EXPECT_LT((closed.com - Vector3(0.05, 0, 0)).norm(), 1e-12);
+  // The box is turned by 90 degrees: 0.2 m along x now. The file is read in single precision.
+  EXPECT_NEAR(closed.inertia(0, 0), 2.0 / 12 * (0.01 + 0.09), 1e-8);
+  EXPECT_NEAR(closed.inertia(1, 1), 2.0 / 12 * (0.04 + 0.09), 1e-8);
+  EXPECT_GT(simulator.world().bodySpec(1).inertial.inertia(0, 0), 2.0 / 12 * (0.04 + 0.09));
+  EXPECT_EQ(simulator.world().bodySpec(2).inertial.inertia(0, 0), 0.5);
+  EXPECT_TRUE(anyContains(simulator.loadReport()[0].notes, "volume"));
+  EXPECT_TRUE(anyContains(simulator.loadReport()[1].notes, "surface"));
+}
+
+TEST(WorldBuilder, BoundaryWidths) {
+  SimulationConfig config;
+  config.contact.boundary_width = 0.003;
+  config.environments = {ground()};
+  config.objects = {box("default", Vector3::Constant(0.1), 1, {0, 0, 1}), box("own", Vector3::Constant(0.1), 1, {1, 0, 1})};
+  config.objects[1].contact.boundary_width = 0.007;
+  config.objects[1].contact.friction = 0.9;
+  Simulator simulator(config, UriResolver());
+  EXPECT_EQ(simulator.colliders()[0].radius, 0);
+  EXPECT_EQ(simulator.colliders()[1].radius, 0.003);
+  EXPECT_EQ(simulator.colliders()[2].radius, 0.007);
+  EXPECT_EQ(simulator.colliders()[2].surface.friction, 0.9);
+  EXPECT_EQ(simulator.loadReport()[2].boundary_width, 0.007);
+}
+
+TEST(WorldBuilder, InitialVelocityIsOfTheObjectsOrigin) {
+  SimulationConfig config;
+  config.gravity = Vector3::Zero();
+  config.objects = {box("spinner", Vector3::Constant(0.1), 1, {0, 0, 1})};
+  config.objects[0].com = Vector3(0.02, 0, 0);
+  config.objects[0].linear_velocity = {1, 0, 0};
+  config.objects[0].angular_velocity = {0, 0, 5};
+  Simulator simulator(config, UriResolver());
+  EXPECT_LT((bodyOf(simulator, "spinner").v_WCom - Vector3(1, 0.1, 0)).norm(), 1e-12);
+}
+
+TEST(WorldBuilder, RefusesInWords) {
+  SimulationConfig config;
+  config.environments = {ground(), ground()};
+  EXPECT_TRUE(contains(refusal(config), "ground: the name is taken"));
+  config.environments = {ground()};
+  config.environments[0].uri = "no_such_mesh.stl";
+  EXPECT_TRUE(contains(refusal(config), "environments: ground")) << refusal(config);
+  EXPECT_TRUE(contains(refusal(config), "no_such_mesh.stl"));
+  config.environments = {};
+  config.objects = {box("cube", Vector3::Constant(0.1), 0, {0, 0, 1})};
+  EXPECT_TRUE(contains(refusal(config), "cube: mass")) << refusal(config);
+  config.objects = {box("cube", Vector3::Constant(0.1), 1, {0, 0, 1})};
+  config.contact.reduction = "hul";
+  EXPECT_TRUE(contains(refusal(config), "hull")) << refusal(config);
+  config.contact.reduction = "hull";
+  config.time_step = 0;
+  EXPECT_TRUE(contains(refusal(config), "time_step")) << refusal(config);
+  config.time_step = 0.001;
+  config.solver.stepper = "jump_step";
+  EXPECT_TRUE(contains(refusal(config), "world_step")) << refusal(config);
+}
+
+}  // namespace
+}  // namespace blem_sim

@@ -1,0 +1,191 @@
+// Energy out of nothing, island by island: books of hand-made solves, then scenes that must not set the bit.
+#include "guard/energy_balance.h"
+
+#include <cmath>
+
+#include "sim/simulation_scene.h"
+
+namespace blem_sim {
+namespace {
+
+constexpr double DT = 1e-3;
+
+/** Bodies of 2 kg in free space, and the result of a solve made by hand. */
+class HandMadeSolve {
+ public:
+  explicit HandMadeSolve(int bodies, const Vector3& gravity = Vector3::Zero())
+      : world(gravity, SolverSettings()), contacts(ContactConfig(), 1) {
+    for (int b = 0; b < bodies; ++b) {
+      BodySpec spec;
+      spec.name = "body" + std::to_string(b);
+      spec.inertial.mass = 2;
+      spec.inertial.inertia = Vector3(0.1, 0.2, 0.3).asDiagonal();
+      spec.X_WB = makePose({1.0 * b, 0, 0});
+      world.addBody(spec);
+      before.push_back(world.bodyState(b));
+    }
+    after = before;
+  }
+  EnergyGain gain() {
+    EnergyBalance balance{SolverSettings()};
+    balance.start(world);
+    return balance.addSolve(world, DT, contacts, {}, before, after);
+  }
+
+  World world;
+  ContactStage contacts;
+  std::vector<BodyState> before, after;
+};
+
+TEST(EnergyBalance, OneBodysGainIsNotHiddenByAnothersLoss) {
+  HandMadeSolve solve(2);
+  solve.before[1].v_WCom = {3, 0, 0};
+  solve.after[0].v_WCom = {1, 0, 0};
+  const EnergyGain gain = solve.gain();
+  EXPECT_NEAR(gain.total, 1, 1e-12);
+  EXPECT_NEAR(gain.out_of_nothing, 1, 1e-12);
+  EXPECT_TRUE(gain.beyond_bound);
+}
+
+TEST(EnergyBalance, WhatAJointTiesIsOneIsland) {
+  HandMadeSolve solve(3);
+  JointSpec joint;
+  joint.kind = JointKind::PRISMATIC;
+  joint.parent = 0;
+  joint.child = 1;
+  joint.axis = Vector3::UnitX();
+  solve.world.addJoint(joint);
+  solve.before[1].v_WCom = {3, 0, 0};
+  solve.after[0].v_WCom = {1, 0, 0};
+  EXPECT_EQ(solve.gain().total, 0);
+  solve.after[2].w_WB = {0, 0, 2};
+  EXPECT_NEAR(solve.gain().total, 0.6, 1e-12);
+}
+
+TEST(EnergyBalance, FlightGainsNothing) {
+  HandMadeSolve solve(1, {0, 0, -G});
+  solve.before[0].v_WCom = {20, 0, 30};
+  solve.after[0].v_WCom = {20, 0, 30 - G * DT};
+  solve.after[0].X_WB.translation() += DT * solve.after[0].v_WCom;
+  EXPECT_LT(solve.gain().total, 1e-11);
+}
+
+TEST(EnergyBalance, ABodyThatTurnsOverOntoAnotherAxisGains) {
+  HandMadeSolve solve(1);
+  solve.before[0].w_WB = {0, 0, 100};
+  solve.after[0].w_WB = {0, 0, 100};
+  solve.after[0].X_WB.linear() = makePose(Vector3::Zero(), {0.2, 0.1, 0}).linear();
+  EXPECT_LT(solve.gain().total, 1e-9);  // towards the smaller inertia
+  std::swap(solve.before[0], solve.after[0]);
+  const EnergyGain gain = solve.gain();
+  EXPECT_GT(gain.total, 1);
+  EXPECT_TRUE(gain.beyond_bound);
+}
+
+TEST(EnergyBalance, TheBoundGrowsWithWhatMoves) {
+  HandMadeSolve solve(1);
+  for (const double speed : {0.0, 1.0, 100.0}) {
+    const double bound = EnergyBalance::FLOOR + EnergyBalance::RELATIVE * speed * speed;  // of 2 kg
+    for (const double part : {0.9, 1.2}) {
+      solve.before[0].v_WCom = {speed, 0, 0};
+      solve.after[0].v_WCom = {std::sqrt(speed * speed + part * bound), 0, 0};
+      EXPECT_EQ(solve.gain().beyond_bound, part > 1) << speed;
+    }
+  }
+}
+
+TEST(EnergyBalance, ReadsWhatItWrote) {
+  EnergyBalance balance{SolverSettings()};
+  std::vector<double> numbers;
+  balance.append(&numbers);
+  EXPECT_EQ(numbers, std::vector<double>{0});
+  for (const std::vector<double>& bad : {std::vector<double>{}, {2, 1}, {-1}, {NAN}, {1e300}}) {
+    NumberReader reader(bad);
+    EXPECT_THROW(balance.read(2, &reader), InputError);
+  }
+  const std::vector<double> held = {2, 0.5, 0};
+  NumberReader reader(held);
+  balance.read(2, &reader);
+  numbers.clear();
+  balance.append(&numbers);
+  EXPECT_EQ(numbers, held);
+}
+
+/** Every bit that was set in so long. */
+std::uint32_t statusOf(const SimulationConfig& config, double seconds, const JointCommandMessage& command = {}) {
+  Simulator simulator(config, UriResolver());
+  if (!command.joints.empty()) simulator.commandJoints(0, command);
+  std::uint32_t status = 0;
+  for (long i = 0; i < std::lround(seconds / config.time_step); ++i) status |= simulator.step().status;
+  return status;
+}
+
+SimulationConfig onGround(const std::vector<ObjectConfig>& objects) {
+  SimulationConfig config;
+  config.environments = {ground()};
+  config.objects = objects;
+  return config;
+}
+
+TEST(EnergyGainedBit, IsNotSetByAStackNorBySlidingNorByAFall) {
+  const Vector3 size = Vector3::Constant(0.1);
+  SimulationConfig config = onGround({box("low", size, 1, {0, 0, 0.0525}), box("high", size, 1, {0, 0, 0.1575}),
+                                      box("slides", size, 1, {0.5, 0, 0.0525}), box("falls", size, 1, {-0.5, 0, 0.4})});
+  config.objects[2].linear_velocity = {2, 0.5, 0};
+  config.objects[3].angular_velocity = {5, 3, 1};
+  EXPECT_EQ(statusOf(config, 1) & ENERGY_GAINED, 0u);
+}
+
+TEST(EnergyOutOfNothing, LeavesOutWhatCorrectingDepthTakes) {
+  Simulator simulator(onGround({box("deep", Vector3::Constant(0.1), 1, {0, 0, 0.0515})}), UriResolver());
+  double gained = 0, out_of_nothing = 0;
+  for (int i = 0; i < 300; ++i) {
+    const StepReport& report = simulator.step();
+    gained += report.energy_gained;
+    out_of_nothing += report.energy_out_of_nothing;
+  }
+  EXPECT_GT(gained, 0.5 * G * 0.001);  // lifted by a millimetre
+  EXPECT_LT(out_of_nothing, 1e-9);
+}
+
+TEST(EnergyGainedBit, IsNotSetByWhatContactsDoOnPurpose) {
+  const Vector3 size = Vector3::Constant(0.1);
+  EXPECT_EQ(statusOf(onGround({box("deep", size, 1, {0, 0, 0.0515})}), 0.3) & ENERGY_GAINED, 0u);
+  const std::uint32_t crossed = statusOf(onGround({box("crossed", size, 1, {0, 0, 0.0485})}), 0.3);
+  EXPECT_NE(crossed & CONTACT_UNRELIABLE, 0u);
+  EXPECT_EQ(crossed & ENERGY_GAINED, 0u);
+}
+
+TEST(EnergyGainedBit, IsNotSetByABounceOfABall) {
+  SimulationConfig config = onGround({});
+  config.robots = {robot("ball", R"(<robot name="ball"><link name="link"><inertial><mass value="1"/>
+    <inertia ixx="0.001" iyy="0.001" izz="0.001" ixy="0" ixz="0" iyz="0"/></inertial>
+    <collision><geometry><sphere radius="0.05"/></geometry></collision></link></robot>)",
+                         false)};
+  config.robots[0].X_WR = makePose({0, 0, 0.3});
+  for (const double restitution : {0.5, 1.0}) {
+    config.contact.surface.restitution = restitution;
+    EXPECT_EQ(statusOf(config, 1) & ENERGY_GAINED, 0u) << restitution;
+  }
+}
+
+TEST(EnergyGainedBit, IsNotSetByMotorsFrictionAndLimits) {
+  SimulationConfig config;
+  config.robots = {robot("pendulum", pendulumUrdf(R"(<dynamics damping="0.1" friction="0.5"/>)"), true)};
+  config.robots[0].motor["default"] = MotorLaw::IMPLICIT_PD;
+  for (const double stiffness : {1.0, 100.0, 1e5}) {
+    config.robots[0].gains["default"] = {stiffness, 0, 0.05 * stiffness};
+    EXPECT_EQ(statusOf(config, 1, {{"hinge"}, {-1}, {}, {}}) & ENERGY_GAINED, 0u) << stiffness;
+  }
+  EXPECT_EQ(statusOf(config, 1, {{"hinge"}, {3}, {}, {}}) & ENERGY_GAINED, 0u);
+}
+
+TEST(EnergyGainedBit, HasItsNameAndItsPlace) {
+  EXPECT_EQ(STEP_STATUS_NAMES.at(7), "ENERGY_GAINED");
+  EXPECT_EQ(1u << 7, ENERGY_GAINED);
+  EXPECT_EQ(STEP_STATUS_NAMES.at(8), "MOTION_TOO_FAST");
+  EXPECT_EQ(1u << 8, MOTION_TOO_FAST);
+}
+
+}  // namespace
+}  // namespace blem_sim
