@@ -8,6 +8,8 @@ blem_sim_precompile(blem_sim_ros ${common_headers} ${ros_headers})
 add_executable(blem_sim_node ${PROJECT_SOURCE_DIR}/src/ros_node/blem_sim_node.cpp)
 target_include_directories(blem_sim_node PRIVATE ${PROJECT_SOURCE_DIR}/src/ros)
 target_link_libraries(blem_sim_node blem_sim_ros)
+# All that a demo runs, and no test: scripts/demo.
+add_custom_target(demo DEPENDS blem_sim_node ${PROJECT_NAME}_generate_messages)
 
 catkin_install_python(PROGRAMS scripts/expect_contacts_in_layer scripts/play_trajectory DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 install(TARGETS blem_sim_node RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})

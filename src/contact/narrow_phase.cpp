@@ -1,5 +1,7 @@
 #include "blem_sim/contact/narrow_phase.h"
 
+#include <cmath>
+
 #include "blem_sim/geometry/bvh_traversal.h"
 #include "evaluation/retraction.h"
 #include "evaluation/world_contact.h"
@@ -11,6 +13,7 @@ namespace {
 
 // Of the bounds' diagonal: bounds that agree so closely are those of copies at one place, and so far apart copies cross.
 constexpr double AT_ONE_PLACE = 1e-6, APART = 1e-5;
+constexpr double IN_EACH_OTHER = 1e-9;  // of the layers: a gap that is none
 
 /** Buffers of a thread's searches. */
 struct Buffers {
@@ -58,7 +61,10 @@ void meshMesh(const Collider& a, const Pose& X_WA, const Collider& b, const Pose
     searchContacts(at, known, &buffers.search, &found);
     return !found.crossings.empty();
   };
-  if (!areAtOnePlace(pair) || !cross(aLittleApart(pair), nullptr)) cross(pair, memory);
+  const bool copies = areAtOnePlace(pair);
+  if (!copies || !cross(aLittleApart(pair), nullptr)) cross(pair, memory);
+  // Copies of a sheet lie in each other without a crossing, and each vertex is pushed to its own side.
+  if (copies && std::abs(found.leastGap(pair)) <= IN_EACH_OTHER * pair.layer) cross(aLittleApart(pair), nullptr);
   out->pierced = !found.crossings.empty();
   if (out->pierced) {
     Pose X_FM_apart;

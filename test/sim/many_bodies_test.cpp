@@ -106,6 +106,26 @@ TEST_P(Copies, AtOnePlaceGetOutOfEachOther) {
 
 INSTANTIATE_TEST_SUITE_P(ManyBodies, Copies, ::testing::Values(0, 1e-12, 1e-9, 1e-7, 1e-6, 1e-5, 1e-4));
 
+TEST(ManyBodies, SheetsAtOnePlaceLieOnEachOther) {
+  SimulationConfig config;
+  config.environments = {ground()};
+  for (const char* name : {"one", "other"}) {
+    ObjectConfig sheet;
+    sheet.name = name;
+    sheet.uri = meshFile("sheet_of_copies", gridMesh(0.2, 0.2, 1, 1));
+    sheet.mass = 1;
+    sheet.com = Vector3::Zero();
+    sheet.inertia = Vector3(0.003, 0.003, 0.006).asDiagonal();
+    sheet.X_WO = makePose({0, 0, 0.05});
+    config.objects.push_back(sheet);
+  }
+  Simulator simulator(config, UriResolver());
+  stepFor(&simulator, 2);
+  const double apart = bodyOf(simulator, "one").X_WB.translation().z() - bodyOf(simulator, "other").X_WB.translation().z();
+  EXPECT_NEAR(std::abs(apart), 0.005, 1e-5);
+  EXPECT_LT(bodyOf(simulator, "one").v_WCom.norm(), 1e-6);
+}
+
 // Bodies all in one place: the step is finite, says so, and searches fewer pairs than a bound that does not grow as their number squared.
 class AtOnePlace : public ::testing::TestWithParam<int> {};
 

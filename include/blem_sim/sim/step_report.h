@@ -9,31 +9,9 @@
 
 #include "blem_sim/contact/manifold.h"
 #include "blem_sim/dynamics/world_types.h"
+#include "blem_sim/sim/step_status.h"
 
 namespace blem_sim {
-
-/** Bits of StepReport::status. Each comment says which setting to change. */
-enum StepStatus : std::uint32_t {
-  STEP_OK = 0,
-  STEP_SHORTENED = 1u << 0,  ///< bodies so fast that they could use up a boundary layer: the step was made in parts. Thicker boundary_width
-                             ///< or smaller time_step
-  CONTACT_UNRELIABLE = 1u << 1,  ///< bare meshes cross, or did and are not apart yet: directions there are the way back or a guess; or they
-                                 ///< crossed within the step and may be on each other's other side. Thicker boundary_width, smaller
-                                 ///< time_step, or a better start pose
-  CONTACTS_REDUCED = 1u << 2,    ///< contacts were left out by max_contacts_per_robot/object; StepReport::wrench_error is the largest
-                                 ///< error of wrenches by that. Raise them if it is too much
-  SOLVER_TROUBLE = 1u << 3,  ///< the complementarity solver complained and the step was redone softer, or Newton stopped at its bound with
-                             ///< contact forces off by over 1 % of the largest, or velocities by 0.01. Smaller time_step, fewer contacts;
-                             ///< ODE: more solver.cfm
-  STATE_NOT_FINITE = 1u << 4,  ///< a body's state is NaN or infinite; the last finite state was restored and the simulation is stopped
-  EFFORT_SATURATED = 1u << 5,  ///< a motor ran into its effort limit. Raise effort_limits, or a slower motion
-  JOINT_LIMIT_HIT = 1u << 6,   ///< a joint is at its limit
-  ENERGY_GAINED = 1u << 7,     ///< an island of bodies gained more energy out of nothing than EnergyBalance's bound. Smaller time_step;
-                               ///< softer motors, or a lower restitution, if they drive it
-  MOTION_TOO_FAST = 1u << 8,   ///< a motion was too fast for the step: velocity products changed too much within it. Smaller time_step
-};
-/** Names in the report and in messages, in bit order. */
-extern const std::vector<std::string> STEP_STATUS_NAMES;
 
 enum class Stage { SAMPLE_COMMANDS, MOTOR_TORQUE, BROAD_PHASE, NARROW_PHASE, REDUCTION, STEP_GUARD, SOLVE, SENSORS, REPORT, COUNT };
 extern const std::array<const char*, static_cast<int>(Stage::COUNT)> STAGE_NAMES;  ///< "sample_commands", ...

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
 
 #include "sensor_values.h"
@@ -25,7 +26,7 @@ void writeDistribution(JsonWriter& json, const Distribution& distribution) {
 }  // namespace
 
 RunRecord::RunRecord(const Simulator& simulator, double stats_from)
-    : simulator_(simulator), stats_from_(stats_from), status_steps_(STEP_STATUS_NAMES.size()), sensors_(simulator.sensors().size()) {}
+    : simulator_(simulator), stats_from_(stats_from), status_steps_(std::size(STEP_STATUS)), sensors_(simulator.sensors().size()) {}
 
 void RunRecord::add(const StepReport& report) {
   ++steps_;
@@ -81,7 +82,7 @@ void RunRecord::write(const RunTimes& times, const std::vector<std::string>& not
 
 void RunRecord::writeStatus(JsonWriter& json) const {
   json.key("status").openObject();
-  for (std::size_t bit = 0; bit < status_steps_.size(); ++bit) json.key(STEP_STATUS_NAMES[bit]).value(status_steps_[bit]);
+  for (std::size_t bit = 0; bit < status_steps_.size(); ++bit) json.key(STEP_STATUS[bit].name).value(status_steps_[bit]);
   json.closeObject();
 }
 

@@ -180,12 +180,5 @@ TEST(EnergyGainedBit, IsNotSetByMotorsFrictionAndLimits) {
   EXPECT_EQ(statusOf(config, 1, {{"hinge"}, {3}, {}, {}}) & ENERGY_GAINED, 0u);
 }
 
-TEST(EnergyGainedBit, HasItsNameAndItsPlace) {
-  EXPECT_EQ(STEP_STATUS_NAMES.at(7), "ENERGY_GAINED");
-  EXPECT_EQ(1u << 7, ENERGY_GAINED);
-  EXPECT_EQ(STEP_STATUS_NAMES.at(8), "MOTION_TOO_FAST");
-  EXPECT_EQ(1u << 8, MOTION_TOO_FAST);
-}
-
 }  // namespace
 }  // namespace blem_sim
