@@ -57,7 +57,7 @@ void Simulator::Impl::recordContacts() {
   }
   if (contacts_.reductionLoss().cut_pairs > 0) report_.status |= CONTACTS_REDUCED;
   report_.wrench_error = std::max(report_.wrench_error, contacts_.reductionLoss().wrench);
-  if (!contacts_.recoveries().empty()) report_.status |= CONTACT_UNRELIABLE;
+  if (!contacts_.crossings().empty()) report_.status |= CONTACT_UNRELIABLE;
   if (!contacts_.leftOut().empty()) report_.status |= CONTACT_UNRELIABLE | CONTACTS_REDUCED;
   for (const ContactManifold& manifold : contacts_.current()) {
     const double depth = manifold.maxDepth();

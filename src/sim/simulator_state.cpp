@@ -59,7 +59,7 @@ struct StateParts {
   std::vector<std::vector<double>> sensors;  // numbers of each
   ReductionMemory choices;
   LayerWatch layer_watch;
-  std::vector<Recovery> recoveries;
+  CrossingHistory crossings;
   LayerStops stops;
 };
 
@@ -78,7 +78,7 @@ void readContacts(const SimulationState& state, const std::vector<Collider>& col
                   StateParts* parts) {
   const std::uint64_t *words = state.words.data() + first, *end = state.words.data() + state.words.size();
   if (!parts->choices.read(colliders, &words, end) || !parts->layer_watch.read(colliders, &words, end) ||
-      !ContactStage::readRecoveries(colliders, &words, end, reader, &parts->recoveries) || !parts->stops.read(colliders, words, end))
+      !parts->crossings.read(colliders, &words, end, reader) || !parts->stops.read(colliders, words, end))
     NumberReader::refuseContent("memories of contacts are of no pairs of these colliders");
 }
 
@@ -118,7 +118,7 @@ SimulationState Simulator::Impl::content() const {
   }
   contacts_.memory().append(&state.words);
   layer_watch_.append(&state.words);
-  contacts_.appendRecoveries(&state.numbers, &state.words);
+  contacts_.crossings().append(&state.numbers, &state.words);
   contacts_.stops().append(&state.words);
   return state;
 }
@@ -148,7 +148,7 @@ void Simulator::Impl::restore(const SimulationState& state) {
   }
   contacts_.memory() = std::move(parts.choices);
   contacts_.stops() = std::move(parts.stops);
-  contacts_.setRecoveries(std::move(parts.recoveries));
+  contacts_.crossings() = std::move(parts.crossings);
   layer_watch_ = std::move(parts.layer_watch);
   contacts_.forget();
   reportWithoutStep();
@@ -161,7 +161,7 @@ void Simulator::Impl::resetWorld() {
   stopped_ = false;
   contacts_.memory().clear();
   contacts_.stops().clear();
-  contacts_.setRecoveries({});
+  contacts_.crossings().clear();
   layer_watch_.clear();
   energy_balance_.clear();
   contacts_.forget();

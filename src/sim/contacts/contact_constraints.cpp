@@ -81,7 +81,7 @@ std::vector<std::uint64_t> ContactStage::forgetCollider(int collider) {
   memory_.forget(collider);
   stops_.forget(collider);
   searches_.forget(collider);
-  removePairsOf(collider, &current_search_.recoveries);
+  current_search_.crossings.forget(collider);
   arms_.clear();
   known_ = false;
   return ids;
@@ -95,7 +95,7 @@ void ContactStage::addConstraints(const SimulatedWorld& world, const ContactMani
   const Collider &a = world.colliders[manifold.a], &b = world.colliders[manifold.b];
   const SurfaceProperties surface = combineSurfaces(a.surface, b.surface, config_.friction_rule);
   if (std::isfinite(surface.stiffness) || std::isfinite(surface.damping)) weighSprings(manifold.contacts);
-  const bool recovers = findPair(current_search_.recoveries, manifold.a, manifold.b) != nullptr;
+  const bool recovers = current_search_.crossings.find(manifold.a, manifold.b) != nullptr;
   for (const Contact& contact : manifold.contacts) {
     ContactConstraint constraint = constraintOf(world, manifold, contact);
     constraint.friction = surface.friction;

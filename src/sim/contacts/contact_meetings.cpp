@@ -50,7 +50,7 @@ void ContactMeetings::look(const SimulatedWorld& world, const std::vector<BodySt
     const ContactManifold& manifold = manifolds[m];
     const Collider &a = world.colliders[manifold.a], &b = world.colliders[manifold.b];
     if (a.geometry->isHalfSpace() || b.geometry->isHalfSpace()) continue;
-    if (manifold.pierced || findPair(contacts.recoveries(), manifold.a, manifold.b)) continue;
+    if (manifold.pierced || contacts.crossings().find(manifold.a, manifold.b)) continue;
     WayOfPair way{manifold, wayOf(world, bodies, contacts, manifold.a, dt), wayOf(world, bodies, contacts, manifold.b, dt)};
     way.dt = dt;
     if (!way_.isDoubtful(way)) continue;

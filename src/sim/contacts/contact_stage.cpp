@@ -130,7 +130,7 @@ void ContactStage::broadPhase(const SimulatedWorld& world, const std::vector<Bod
 }
 
 Recovery ContactStage::lastApart(int a, int b) const {
-  if (const Recovery* recovery = findPair(current_search_.recoveries, a, b)) return *recovery;
+  if (const Recovery* recovery = current_search_.crossings.find(a, b)) return *recovery;
   if (!known_ || findPair(current_search_.left_out, a, b)) return {a, b, false, Pose::Identity()};
   return {a, b, true, current_search_.motion[a].X_WC.inverse() * current_search_.motion[b].X_WC};
 }
@@ -139,12 +139,12 @@ void ContactStage::narrowPhase(const SimulatedWorld& world) {
   const std::size_t pairs = search_.pairs.size();
   for (; found_.size() < pairs && !spare_.empty(); spare_.pop_back()) found_.push_back(std::move(spare_.back()));
   if (found_.size() < pairs) found_.resize(pairs);
-  search_.recoveries.clear();
-  for (const WatchedPair& pair : search_.pairs) search_.recoveries.push_back(lastApart(pair.a, pair.b));
+  search_.last_apart.clear();
+  for (const WatchedPair& pair : search_.pairs) search_.last_apart.push_back(lastApart(pair.a, pair.b));
   search_.flush.watch(world.colliders, search_.pairs);
   searches_.run(search_.pairs, [&](std::size_t i, NarrowPhaseMemory* memory) {
     const WatchedPair& pair = search_.pairs[i];
-    const Recovery& last = search_.recoveries[i];
+    const Recovery& last = search_.last_apart[i];
     blem_sim::narrowPhase(world.colliders[pair.a], search_.motion[pair.a].X_WC, world.colliders[pair.b], search_.motion[pair.b].X_WC,
                           pair.known, &found_[i], last.known ? &last.X_AB : nullptr, memory);
     found_[i].a = pair.a;
@@ -156,18 +156,17 @@ void ContactStage::narrowPhase(const SimulatedWorld& world) {
 
 /** Keeps the manifolds with contacts, and the pairs that cross or are not apart yet. */
 void ContactStage::keepWhatWasFound(std::size_t pairs) {
-  std::size_t manifolds = 0, recoveries = 0;
+  search_.crossings.clear();
+  std::size_t manifolds = 0;
   for (std::size_t i = 0; i < pairs; ++i) {
     const ContactManifold& manifold = found_[i];
-    const bool was_recovering = findPair(current_search_.recoveries, manifold.a, manifold.b) != nullptr;
-    if (manifold.pierced || (was_recovering && manifold.maxDepth() > APART * manifold.layer))
-      search_.recoveries[recoveries++] = search_.recoveries[i];
+    const bool was_recovering = current_search_.crossings.find(manifold.a, manifold.b) != nullptr;
+    if (manifold.pierced || (was_recovering && manifold.maxDepth() > APART * manifold.layer)) search_.crossings.add(search_.last_apart[i]);
     if (manifold.contacts.empty()) continue;
     if (manifolds != i) std::swap(found_[manifolds], found_[i]);
     ++manifolds;
   }
   for (; found_.size() > manifolds; found_.pop_back()) spare_.push_back(std::move(found_.back()));
-  search_.recoveries.resize(recoveries);
 }
 
 void ContactStage::accept() {

@@ -10,10 +10,10 @@
 #include "blem_sim/reduction/reduction.h"
 #include "build/simulated_world.h"
 #include "contacts/contact_meetings.h"
+#include "contacts/crossing_history.h"
 #include "contacts/flush_surfaces.h"
 #include "contacts/layer_stops.h"
 #include "contacts/pair_searches.h"
-#include "numbers/number_reader.h"
 
 namespace blem_sim {
 
@@ -23,7 +23,7 @@ struct SolvedContact {
   double layer;  ///< [m] rA + rB
   bool pierced;
   double stop;    ///< [m] depth at which a layer's stop begins; 0 for other contacts
-  bool recovers;  ///< of a pair of recoveries()
+  bool recovers;  ///< of a pair of crossings()
 };
 
 /** Two colliders that may meet in the coming step. */
@@ -38,16 +38,9 @@ struct PairLeftOut {
   int a, b;
 };
 
-/** A pair whose bare meshes cross, or did and are not apart yet. */
-struct Recovery {
-  int a, b;
-  bool known;  ///< false if the pair crossed from the start
-  Pose X_AB;   ///< geometry of B in A's when they were last apart
-};
-
 /**
  * Finds contacts at the state at hand (contact_stage.cpp) and makes constraints of them (contact_constraints.cpp). The manifolds are a
- * function of the state and of recoveries() alone, so those found at the end of an accepted step serve the next one, and after a restore
+ * function of the state and of crossings() alone, so those found at the end of an accepted step serve the next one, and after a restore
  * they are found anew, the same.
  */
 class ContactStage {
@@ -67,7 +60,7 @@ class ContactStage {
   void accept();
   /** Call after bodies or geometry changed other than by a step: no contact is known. */
   void forget() { known_ = false; }
-  /** Choice of the last reduction: with the stops and recoveries() all that the next step depends on here, beside the bodies' states. */
+  /** Choice of the last reduction: with stops() and crossings() all that the next step depends on here, beside the bodies' states. */
   ReductionMemory& memory() { return memory_; }
   const ReductionMemory& memory() const { return memory_; }
   LayerStops& stops() { return stops_; }
@@ -89,25 +82,14 @@ class ContactStage {
   double arm(int collider) const { return arms_[collider]; }
   /** Poses of the accepted state, and how far each may move, by collider. */
   const std::vector<ColliderMotion>& motion() const { return current_search_.motion; }
-  /**
-   * Sorted by (a, b). Contacts of these pairs may contradict each other: they push as dampers that let go at 0.1 m/s, less while no more
-   * than the layer is used up.
-   */
-  const std::vector<Recovery>& recoveries() const { return current_search_.recoveries; }
-  void setRecoveries(std::vector<Recovery> recoveries) { current_search_.recoveries = std::move(recoveries); }
+  /** Pairs that cross, or did and are not apart yet, in the accepted state. */
+  CrossingHistory& crossings() { return current_search_.crossings; }
+  const CrossingHistory& crossings() const { return current_search_.crossings; }
   /**
    * Forgets all that is remembered of a collider whose slot another one may take.
    * @return ids of its contacts in the last step, as the world knows them, and others that it does not know
    */
   std::vector<std::uint64_t> forgetCollider(int collider);
-  /** recoveries() as numbers and words, for save: the last numbers of a state. */
-  void appendRecoveries(std::vector<double>* numbers, std::vector<std::uint64_t>* words) const;
-  /**
-   * Reads the words and numbers of appendRecoveries and moves the cursor behind the words.
-   * @param colliders whose pairs they may be @return false if they are others, or not whole
-   */
-  static bool readRecoveries(const std::vector<Collider>& colliders, const std::uint64_t** words, const std::uint64_t* words_end,
-                             NumberReader* reader, std::vector<Recovery>* recoveries);
   int rawContacts() const;
   int reducedContacts() const;  ///< without stops
   /**
@@ -122,7 +104,8 @@ class ContactStage {
     std::vector<ColliderMotion> motion;
     std::vector<WatchedPair> pairs;
     std::vector<PairLeftOut> left_out;  // sorted by (a, b)
-    std::vector<Recovery> recoveries;
+    std::vector<Recovery> last_apart;   // by pair
+    CrossingHistory crossings;
     FlushSurfaces flush;
   };
   void moveColliders(const SimulatedWorld& world, const std::vector<BodyState>& bodies, const std::vector<BodyState>* faster, double dt);

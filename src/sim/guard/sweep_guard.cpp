@@ -34,7 +34,7 @@ const std::vector<ClosePass>& SweepGuard::look(const SimulatedWorld& world, cons
     const ContactManifold* known = findPair(contacts.current(), pair.a, pair.b);
     if (known && known->pierced) continue;
     const double distance = layer - (known ? known->maxDepth() : -pair.known);
-    if (distance - motion < (known ? SPARED : HALF) * layer && !findPair(contacts.recoveries(), pair.a, pair.b))
+    if (distance - motion < (known ? SPARED : HALF) * layer && !contacts.crossings().find(pair.a, pair.b))
       lookAt(world, pair.a, pair.b, distance, known != nullptr);
   }
   if (leavesWhatWasSearched(world, contacts)) lookAtOthers(world, contacts);

@@ -1,6 +1,6 @@
-// The pairs that cross or are not apart yet, in a saved state.
+#include "contacts/crossing_history.h"
+
 #include "blem_sim/contact/collider_pairs.h"
-#include "contacts/contact_stage.h"
 
 namespace blem_sim {
 namespace {
@@ -15,16 +15,21 @@ bool isRigid(const Pose& X) {
 
 }  // namespace
 
-void ContactStage::appendRecoveries(std::vector<double>* numbers, std::vector<std::uint64_t>* words) const {
-  words->push_back(current_search_.recoveries.size());
-  for (const Recovery& recovery : current_search_.recoveries) {
+const Recovery* CrossingHistory::find(int a, int b) const { return findPair(recoveries_, a, b); }
+
+void CrossingHistory::forget(int collider) { removePairsOf(collider, &recoveries_); }
+
+void CrossingHistory::append(std::vector<double>* numbers, std::vector<std::uint64_t>* words) const {
+  words->push_back(recoveries_.size());
+  for (const Recovery& recovery : recoveries_) {
     for (const int word : {recovery.a, recovery.b, static_cast<int>(recovery.known)}) words->push_back(static_cast<std::uint64_t>(word));
     numbers->insert(numbers->end(), recovery.X_AB.matrix().data(), recovery.X_AB.matrix().data() + NUMBERS);
   }
 }
 
-bool ContactStage::readRecoveries(const std::vector<Collider>& colliders, const std::uint64_t** words, const std::uint64_t* words_end,
-                                  NumberReader* reader, std::vector<Recovery>* recoveries) {
+bool CrossingHistory::read(const std::vector<Collider>& colliders, const std::uint64_t** words, const std::uint64_t* words_end,
+                           NumberReader* reader) {
+  recoveries_.clear();
   if (*words == words_end) return false;
   const std::uint64_t count = *(*words)++;
   if (static_cast<std::uint64_t>(words_end - *words) / WORDS < count) return false;
@@ -33,9 +38,9 @@ bool ContactStage::readRecoveries(const std::vector<Collider>& colliders, const 
     Recovery recovery{static_cast<int>((*words)[0]), static_cast<int>((*words)[1]), (*words)[2] != 0, Pose()};
     reader->numbers(recovery.X_AB.matrix().data(), NUMBERS);
     if (!isRigid(recovery.X_AB)) return false;
-    recoveries->push_back(recovery);
+    recoveries_.push_back(recovery);
   }
-  return areSorted(*recoveries);
+  return areSorted(recoveries_);
 }
 
 }  // namespace blem_sim

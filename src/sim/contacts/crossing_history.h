@@ -1,0 +1,46 @@
+// Pairs of colliders whose bare meshes cross, and the poses in which they were last apart.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "blem_sim/contact/collider.h"
+#include "blem_sim/geometry/types.h"
+#include "numbers/number_reader.h"
+
+namespace blem_sim {
+
+/** A pair whose bare meshes cross, or did and are not apart yet. */
+struct Recovery {
+  int a, b;
+  bool known;  ///< false if the pair crossed from the start
+  Pose X_AB;   ///< geometry of B in A's when they were last apart
+};
+
+/**
+ * Contacts of these pairs may contradict each other: they push as dampers that let go at 0.1 m/s, less while no more than the layer is
+ * used up. Part of the saved state.
+ */
+class CrossingHistory {
+ public:
+  bool empty() const { return recoveries_.empty(); }
+  /** The pair's recovery; null if it is apart. */
+  const Recovery* find(int a, int b) const;
+  void clear() { recoveries_.clear(); }
+  /** Adds a pair that comes after all that are there. */
+  void add(const Recovery& recovery) { recoveries_.push_back(recovery); }
+  void forget(int collider);
+  /** The history as numbers and words, for save: the last numbers of a state. */
+  void append(std::vector<double>* numbers, std::vector<std::uint64_t>* words) const;
+  /**
+   * Reads the words and numbers of append and moves the cursor behind the words.
+   * @param colliders whose pairs they may be @return false if they are others, or not whole
+   */
+  bool read(const std::vector<Collider>& colliders, const std::uint64_t** words, const std::uint64_t* words_end, NumberReader* reader);
+
+ private:
+  std::vector<Recovery> recoveries_;  // sorted by (a, b)
+};
+
+}  // namespace blem_sim
