@@ -11,7 +11,7 @@
 namespace blem_sim {
 namespace {
 
-// Of the bounds' diagonal: bounds that agree so closely are those of copies at one place, and so far apart copies cross.
+// Copies at one place have bounds that agree within the first of these parts of their diagonal; moved by the second, they cross.
 constexpr double AT_ONE_PLACE = 1e-6, APART = 1e-5;
 constexpr double IN_EACH_OTHER = 1e-9;  // of the layers: a gap that is none
 

@@ -109,16 +109,7 @@ INSTANTIATE_TEST_SUITE_P(ManyBodies, Copies, ::testing::Values(0, 1e-12, 1e-9, 1
 TEST(ManyBodies, SheetsAtOnePlaceLieOnEachOther) {
   SimulationConfig config;
   config.environments = {ground()};
-  for (const char* name : {"one", "other"}) {
-    ObjectConfig sheet;
-    sheet.name = name;
-    sheet.uri = meshFile("sheet_of_copies", gridMesh(0.2, 0.2, 1, 1));
-    sheet.mass = 1;
-    sheet.com = Vector3::Zero();
-    sheet.inertia = Vector3(0.003, 0.003, 0.006).asDiagonal();
-    sheet.X_WO = makePose({0, 0, 0.05});
-    config.objects.push_back(sheet);
-  }
+  for (const char* name : {"one", "other"}) config.objects.push_back(sheet(name, 0.2, 1, makePose({0, 0, 0.05})));
   Simulator simulator(config, UriResolver());
   stepFor(&simulator, 2);
   const double apart = bodyOf(simulator, "one").X_WB.translation().z() - bodyOf(simulator, "other").X_WB.translation().z();

@@ -70,6 +70,18 @@ inline ObjectConfig box(const std::string& name, const Vector3& size, double mas
   return object;
 }
 
+/** A flat square of two triangles, free to move. */
+inline ObjectConfig sheet(const std::string& name, double side, double mass, const Pose& X_WO) {
+  ObjectConfig object;
+  object.name = name;
+  object.uri = meshFile("sheet_" + std::to_string(side), gridMesh(side, side, 1, 1));
+  object.mass = mass;
+  object.X_WO = X_WO;
+  object.com = Vector3::Zero();
+  object.inertia = mass * side * side / 12 * Vector3(1, 1, 2).asDiagonal();
+  return object;
+}
+
 inline RobotConfig robot(const std::string& name, const std::string& urdf, bool fixed_base) {
   RobotConfig config;
   config.name = name;

@@ -2,7 +2,7 @@
 import pathlib
 import re
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+from source_files import INCLUDE, ROOT, sources
 
 # A room may include its own headers and those of the rooms listed.
 BELOW = {
@@ -25,15 +25,10 @@ LIBRARIES = {
     "XmlRpcValue.h": ["ros"], "xmlrpcpp": ["ros"],
 }
 ROS_MESSAGES = re.compile(r"^\w+_(msgs|srvs)$")
-INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)
 
 
-def sources(room):
-    """Every C++ file of a room, headers and sources."""
-    for folder in (ROOT / "include" / "blem_sim" / room, ROOT / "src" / room):
-        for path in sorted(folder.rglob("*")):
-            if path.suffix in (".h", ".cpp"):
-                yield path
+def files_of(room):
+    return sources("include/blem_sim/" + room, "src/" + room)
 
 
 def wrong_include(room, include):
@@ -49,13 +44,13 @@ def wrong_include(room, include):
 
 def test_every_room_has_sources():
     for room in BELOW:
-        assert list(sources(room)), "no sources found for room %s" % room
+        assert list(files_of(room)), "no sources found for room %s" % room
 
 
 def test_includes_point_down():
     wrong = []
     for room in BELOW:
-        for path in sources(room):
+        for path in files_of(room):
             for include in INCLUDE.findall(path.read_text()):
                 reason = wrong_include(room, include)
                 if reason:

@@ -1,9 +1,9 @@
 """The floors of a room: its sub-folders, of which the lower ones know nothing of the upper ones; small folders, files with names of their own."""
 import collections
 import pathlib
-import re
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+from source_files import INCLUDE_IN_QUOTES, ROOT, sources
+
 MOST_FILES = 25
 
 # Floors of each room, the lowest first; files of the room's own folder stand above all of them.
@@ -16,7 +16,6 @@ FLOORS = {
     "sim": ["numbers", "config", "commands", "build", "contacts", "guard", "sensors", "state"],
     "ros": ["messages", "sending", "loop", "publishers", "services"],
 }
-INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"', re.MULTILINE)
 
 
 def height(room, path):
@@ -33,16 +32,16 @@ def wrong_include(room, path, include):
     return None if height(room, path) >= height(room, pathlib.Path(include)) else "the floor is above"
 
 
-def sources(room):
-    folder = ROOT / "src" / room
-    return [path.relative_to(folder) for path in sorted(folder.rglob("*")) if path.suffix in (".h", ".cpp")]
+def files_of(room):
+    """Paths in the room's folder."""
+    return [path.relative_to(ROOT / "src" / room) for path in sources("src/" + room)]
 
 
 def test_includes_point_down_inside_rooms():
     wrong = []
     for room in FLOORS:
-        for path in sources(room):
-            for include in INCLUDE.findall((ROOT / "src" / room / path).read_text()):
+        for path in files_of(room):
+            for include in INCLUDE_IN_QUOTES.findall((ROOT / "src" / room / path).read_text()):
                 reason = wrong_include(room, path, include)
                 if reason:
                     wrong.append("src/%s/%s includes %s: %s" % (room, path, include, reason))
@@ -59,7 +58,7 @@ def test_the_rule_sees_wrong_includes():
 
 def test_every_floor_is_there():
     for room, floors in FLOORS.items():
-        folders = sorted({path.parts[0] for path in sources(room) if len(path.parts) > 1})
+        folders = sorted({path.parts[0] for path in files_of(room) if len(path.parts) > 1})
         assert folders == sorted(floors), room
 
 
@@ -74,8 +73,6 @@ def test_folders_are_small():
 def test_no_two_headers_or_sources_share_a_name():
     """A header and its source do, in one folder or include/ and src/."""
     named = collections.defaultdict(list)
-    for top in ("include", "src"):
-        for path in sorted((ROOT / top).rglob("*")):
-            if path.suffix in (".h", ".cpp"):
-                named[path.name].append(str(path.relative_to(ROOT)))
+    for path in sources("include", "src"):
+        named[path.name].append(str(path.relative_to(ROOT)))
     assert not [paths for paths in named.values() if len(paths) > 1]

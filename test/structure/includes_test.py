@@ -1,9 +1,8 @@
 """Every file includes what it uses of the headers that some builds precompile (cmake/precompiled.cmake), by itself or by headers of ours."""
-import pathlib
 import re
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)
+from source_files import INCLUDE, ROOT, sources
+
 COMMENT = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"', re.DOTALL)
 
 # What a file says -> the headers that give it.
@@ -27,7 +26,6 @@ PROVIDERS = {
     r"\bROS_(?:INFO|WARN|ERROR)": ["ros/console.h"],
     r"\bboost::make_shared\b": ["boost/make_shared.hpp"],
 }
-FOLDERS = ("include", "src", "test")
 
 
 def included(path, seen):
@@ -53,10 +51,8 @@ def missing(text, names):
 
 def test_files_include_what_they_use():
     wrong = []
-    for folder in FOLDERS:
-        for path in sorted((ROOT / folder).rglob("*")):
-            if path.suffix in (".h", ".cpp"):
-                wrong += ["%s uses <%s>" % (path.relative_to(ROOT), header) for header in missing(path.read_text(), included(path, {path}))]
+    for path in sources("include", "src", "test"):
+        wrong += ["%s uses <%s>" % (path.relative_to(ROOT), header) for header in missing(path.read_text(), included(path, {path}))]
     assert not wrong, "\n".join(wrong)
 
 
