@@ -45,6 +45,24 @@ TEST_P(Lever, OfADeepContactDoesNotThrowAnArm) {
 }
 INSTANTIATE_TEST_SUITE_P(OfDepth, Lever, ::testing::Values(0.3, 1e-2, 1e-3, 1e-5, 1e-8));
 
+// A point of a turning arm sweeps across a surface whose gap it does not use up. Friction there would hold it hard, if anything pushed.
+TEST(EnergyBounds, ContactsThatStayOpenDoNotHoldAnArm) {
+  constexpr double SPIN = 30, REACH = 0.55, DT = 3e-4;  // [rad/s, m, s]
+  for (const double lever : {1e-4, 1e-3, 3e-3, 0.02})
+    for (const double spare : {1e-3, 0.05, 0.5}) {  // of the way towards the surface
+      HingedBar arm;
+      BodyState state = arm.world.bodyState(arm.bar);
+      state.w_WB = {0, SPIN, 0};
+      state.v_WCom = state.w_WB.cross(state.X_WB.translation());
+      arm.world.setBodyState(arm.bar, state);
+      const double gap = (1 + spare) * SPIN * lever * DT;
+      const ContactConstraint contact = contactOf(arm.bar, WORLD_BODY, {lever, 0, -REACH}, Vector3::UnitZ(), -gap, {0.5}, 1);
+      const SolveResult& result = arm.world.step(DT, {contact}, std::vector<JointDrive>(1));
+      EXPECT_EQ(result.contact_forces[0].norm(), 0) << lever << " m, " << spare;
+      EXPECT_NEAR(arm.world.bodyState(arm.bar).w_WB.y(), SPIN, 1e-9) << lever << " m, " << spare;
+    }
+}
+
 // Each of many contacts pushes little, all of them together as hard as one.
 TEST(EnergyBounds, ManyContactsDoNotThrowAnArm) {
   HingedBar arm;

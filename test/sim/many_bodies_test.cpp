@@ -100,7 +100,7 @@ TEST_P(Copies, AtOnePlaceGetOutOfEachOther) {
   stepFor(&simulator, 2);
   EXPECT_FALSE(simulator.report().status & CONTACT_UNRELIABLE);
   const Vector3 apart = bodyOf(simulator, "one").X_WB.translation() - bodyOf(simulator, "other").X_WB.translation();
-  EXPECT_GT(apart.lpNorm<Eigen::Infinity>(), 0.1);
+  EXPECT_GT(apart.norm(), 0.1);  // one may lean on the other
   EXPECT_LT(bodyOf(simulator, "one").v_WCom.norm(), 1e-6);
 }
 

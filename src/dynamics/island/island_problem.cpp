@@ -57,6 +57,7 @@ void IslandProblem::begin() {
   fillBlocks();
   setSteps(space_->velocity);
   takeSteps(1);
+  startSlips(contact_blocks_.data(), contact_blocks_.data() + contact_blocks_.size());
   for (LoopTerm& loop : loops) loop.velocity = loop.step;
   soften(1, 1);
 }

@@ -190,6 +190,18 @@ BLEM_SIM_LANES void take(double a, ContactBlock* begin, ContactBlock* end) {
       for (int lane = 0; lane < LANES; ++lane) b->velocity[i][lane] += a * b->step[i][lane];
 }
 
+BLEM_SIM_LANES void startSlips(ContactBlock* begin, ContactBlock* end) {
+  for (ContactBlock* b = begin; b != end; ++b) {
+    for (int lane = 0; lane < LANES; ++lane) {
+      const Triple normal = at(b->normal, lane), u = at(b->velocity, lane), g = at(b->previous, lane);
+      const double along = dot(normal, u);
+      const Triple u_t = u - along * normal;
+      const bool open = along >= b->target[lane] && !(dot(g, g) > 0);
+      b->slip[lane] = open ? __builtin_sqrt(dot(u_t, u_t)) : b->slip[lane];
+    }
+  }
+}
+
 BLEM_SIM_LANES void remember(ContactBlock* begin, ContactBlock* end) {
   for (ContactBlock* b = begin; b != end; ++b) {
     for (int lane = 0; lane < LANES; ++lane) {

@@ -59,6 +59,8 @@ bool stiffnessOf(const ContactBlock* begin, const ContactBlock* end, Matrix6* ou
 void setSteps(const Vector6& twist, ContactBlock* begin, ContactBlock* end);
 /** velocity += a step */
 void take(double a, ContactBlock* begin, ContactBlock* end);
+/** Contacts that stay open at their velocities, and have no impulse in the proximal point, slip there as they do at these. */
+void startSlips(ContactBlock* begin, ContactBlock* end);
 /** Takes the present iterate as the next proximal point. */
 void remember(ContactBlock* begin, ContactBlock* end);
 /** By how much contacts miss Coulomb's law. */

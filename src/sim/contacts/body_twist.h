@@ -5,8 +5,9 @@
 
 namespace blem_sim {
 
+/** A body turns about a centre that moves straight. */
 struct BodyTwist {
-  Vector3 centre = Vector3::Zero(), v = Vector3::Zero(), w = Vector3::Zero();  ///< of mass [m], [m/s] there, [rad/s]; world
+  Vector3 centre = Vector3::Zero(), v = Vector3::Zero(), w = Vector3::Zero();  ///< [m], [m/s] there, [rad/s]; world
 
   /** Velocity [m/s] of the body's point at p. */
   Vector3 at(const Vector3& p) const { return v + w.cross(p - centre); }
@@ -22,9 +23,8 @@ struct BodyTwist {
   }
 };
 
-/** Twist of a collider's body. @param bodies their states, by slot */
-inline BodyTwist twistOf(const SimulatedWorld& world, const std::vector<BodyState>& bodies, int collider) {
-  const int body = world.colliders[collider].body;
+/** Twist of a body about its centre of mass; none of the world's. @param bodies their states, by slot */
+inline BodyTwist twistOf(const SimulatedWorld& world, const std::vector<BodyState>& bodies, int body) {
   if (body == WORLD_BODY) return {};
   return {bodies[body].X_WB * world.world.bodySpec(body).inertial.com, bodies[body].v_WCom, bodies[body].w_WB};
 }

@@ -35,7 +35,8 @@ double ContactMeetings::depthOf(const SimulatedWorld& world, int collider) const
 ColliderWay ContactMeetings::wayOf(const SimulatedWorld& world, const std::vector<BodyState>& bodies, const ContactStage& contacts,
                                    int collider, double dt) const {
   const Collider& c = world.colliders[collider];
-  ColliderWay way{&c, contacts.motion()[collider].X_WC, twistOf(world, bodies, collider)};
+  const BodyTwist now = twistOf(world, bodies, c.body);
+  ColliderWay way{&c, contacts.motion()[collider].X_WC, now.centre, now};
   if (c.body != WORLD_BODY && world.models[c.model].kind == ModelKind::OBJECT && !supports_[c.body].touches)
     way.twist.v += dt * world.world.gravity();
   return way;
@@ -45,6 +46,7 @@ void ContactMeetings::look(const SimulatedWorld& world, const std::vector<BodySt
                            const FlushSurfaces& flush, double dt) {
   const std::vector<ContactManifold>& manifolds = contacts.current();
   replaced_count_ = 0;
+  ways_.start(world, bodies, dt);
   findSupports(world, manifolds);
   for (std::size_t m = 0; m < manifolds.size(); ++m) {
     const ContactManifold& manifold = manifolds[m];
@@ -54,6 +56,8 @@ void ContactMeetings::look(const SimulatedWorld& world, const std::vector<BodySt
     WayOfPair way{manifold, wayOf(world, bodies, contacts, manifold.a, dt), wayOf(world, bodies, contacts, manifold.b, dt)};
     way.dt = dt;
     if (!way_.isDoubtful(way)) continue;
+    ways_.lead(a.body, &way.a.twist);
+    ways_.lead(b.body, &way.b.twist);
     way.known = findPair(contacts.watched(), manifold.a, manifold.b)->known;
     way.depth = std::max(depthOf(world, manifold.a), depthOf(world, manifold.b));
     if (replaced_.size() == replaced_count_) replaced_.emplace_back();

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "contacts/body_ways.h"
 #include "contacts/pair_way.h"
 
 namespace blem_sim {
@@ -41,6 +42,7 @@ class ContactMeetings {
   double depthOf(const SimulatedWorld& world, int collider) const;
 
   std::vector<Support> supports_;  // by body
+  BodyWays ways_;
   PairWay way_;
   std::vector<Replaced> replaced_;
   std::size_t replaced_count_ = 0;  // of them; the others are room

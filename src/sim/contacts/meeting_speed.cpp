@@ -27,7 +27,7 @@ double meetingSpeed(const SimulatedWorld& world, const std::vector<BodyState>& b
   Vector3 towards = Vector3::Zero();  // the half-space's way in for A's points
   if (b.geometry->isHalfSpace()) towards = -(X_WB.linear() * b.geometry->planeNormal());
   if (a.geometry->isHalfSpace()) towards = X_WA.linear() * a.geometry->planeNormal();
-  const BodyTwist twist_a = twistOf(world, bodies, collider_a), twist_b = twistOf(world, bodies, collider_b);
+  const BodyTwist twist_a = twistOf(world, bodies, a.body), twist_b = twistOf(world, bodies, b.body);
   double fastest = 0;
   for (int corner = 0; corner < 8; ++corner) {
     const Vector3 p = common.corner(static_cast<Box::CornerType>(corner)), v = twist_a.at(p) - twist_b.at(p);

@@ -30,7 +30,7 @@ bool acts(const WayOfPair& pair, const Contact& contact) { return !touches(conta
 Contact seenFromStart(const WayOfPair& pair, const Contact& contact, double time) {
   Contact seen = contact;
   const bool a_moves = pair.a.collider->body != WORLD_BODY, b_moves = pair.b.collider->body != WORLD_BODY;
-  seen.point -= time / (a_moves + b_moves) * (pair.a.twist.v + pair.b.twist.v);
+  seen.point -= time / (a_moves + b_moves) * (pair.a.twist.at(pair.a.com) + pair.b.twist.at(pair.b.com));
   seen.depth -= time * closing(pair, seen);
   return seen;
 }

@@ -14,7 +14,8 @@ namespace blem_sim {
 struct ColliderWay {
   const Collider* collider;
   Pose X_WC;
-  BodyTwist twist;
+  Vector3 com;      ///< [m] its body's, world
+  BodyTwist twist;  ///< its body's way
 };
 
 /** First state of a pair, and the time for which it is followed. */

@@ -1,0 +1,76 @@
+#include "contacts/body_ways.h"
+
+#include <cmath>
+
+namespace blem_sim {
+namespace {
+
+constexpr int NO_JOINT = WORLD_BODY - 1;
+constexpr double STRAIGHT = 1e-6;  // [rad] turn of a screw whose bend is none
+
+/** Motion of poses of the world for dt [s] by a constant screw, whose point at p moves at v [m/s]. */
+Pose screwMotion(const Vector3& p, const Vector3& v, const Vector3& w, double dt) {
+  const double angle = dt * w.norm();
+  const Vector3 axis = angle > 0 ? w.normalized() : Vector3::UnitZ(), way = dt * v, along = axis.dot(way) * axis;
+  const Matrix3 turn = Eigen::AngleAxisd(angle, axis).toRotationMatrix();
+  Vector3 bent = way;
+  if (angle > 0) bent = along + (std::sin(angle) * (way - along) + (1 - std::cos(angle)) * axis.cross(way)) / angle;
+  Pose motion = Pose::Identity();
+  motion.linear() = turn;
+  motion.translation() = p + bent - turn * p;
+  return motion;
+}
+
+/** Constant screw of a motion of poses of the world, within dt [s], seen from a centre of mass [m] at its start. */
+BodyTwist screwOf(const Pose& motion, const Vector3& com, double dt) {
+  const Eigen::AngleAxisd turn(motion.linear());
+  const Vector3 axis = turn.axis(), way = motion * com - com;
+  BodyTwist screw{com, way / dt, turn.angle() / dt * axis};
+  if (turn.angle() < STRAIGHT) return screw;
+  const Vector3 along = axis.dot(way) * axis, across = way - along;
+  screw.centre = com + 0.5 * across + 0.5 / std::tan(0.5 * turn.angle()) * axis.cross(across);
+  screw.v = along / dt;
+  return screw;
+}
+
+}  // namespace
+
+void BodyWays::start(const SimulatedWorld& world, const std::vector<BodyState>& bodies, double dt) {
+  world_ = &world;
+  bodies_ = &bodies;
+  dt_ = dt;
+  parents_known_ = false;
+}
+
+// A joint that closes a loop leads nothing: the first one of a body does.
+void BodyWays::findParents() {
+  parents_.assign(bodies_->size(), NO_JOINT);
+  for (const RobotInfo& robot : world_->robots) {
+    for (const int joint : robot.world_joints) {
+      if (joint < 0 || !world_->models[robot.model].alive) continue;
+      const JointSpec& spec = world_->world.jointSpec(joint);
+      if (parents_[spec.child] == NO_JOINT) parents_[spec.child] = spec.parent;
+    }
+  }
+  parents_known_ = true;
+}
+
+BodyTwist BodyWays::twist(int body) const { return twistOf(*world_, *bodies_, body); }
+
+/** Motion of a body until the end of the solve, by which poses of the world are moved. Seen from its parent, a body on a joint moves by a constant screw. */
+Pose BodyWays::ahead(int body) const {
+  const int parent = body == WORLD_BODY ? NO_JOINT : parents_[body];
+  const BodyTwist own = twist(body);
+  if (parent == NO_JOINT) return own.moved(Pose::Identity(), dt_);
+  const BodyTwist of_parent = twist(parent);
+  const Vector3 w = own.w - of_parent.w, v = own.v - of_parent.at(own.centre);
+  return ahead(parent) * screwMotion(own.centre, v, w, dt_);
+}
+
+void BodyWays::lead(int body, BodyTwist* way) {
+  if (body == WORLD_BODY) return;
+  if (!parents_known_) findParents();
+  if (parents_[body] != NO_JOINT) *way = screwOf(ahead(body), twist(body).centre, dt_);
+}
+
+}  // namespace blem_sim

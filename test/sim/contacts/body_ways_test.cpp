@@ -1,0 +1,113 @@
+// Ways of links through a solve against their closed forms.
+#include "contacts/body_ways.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace blem_sim {
+namespace {
+
+constexpr double DT = 0.005;            // [s]
+constexpr double UPPER = 0.4, COM = 0.3;  // [m] upper link, centre of mass of the lower one beyond the elbow
+
+Matrix3 turned(double angle) { return Eigen::AngleAxisd(angle, Vector3::UnitY()).toRotationMatrix(); }
+
+/** Two links along x in the plane y = 0. The upper one turns about the origin; the lower one turns, or slides, at the upper one's end. */
+struct TwoLinks {
+  SimulatedWorld world{Vector3::Zero(), SolverSettings()};
+  std::vector<BodyState> bodies;
+  int upper, lower;
+
+  TwoLinks(JointKind elbow, const Vector3& elbow_axis, double upper_speed, double lower_speed) {
+    BodySpec spec;
+    spec.name = "upper";
+    spec.inertial.mass = 1;
+    spec.inertial.com = {0.5 * UPPER, 0, 0};
+    spec.inertial.inertia = 0.01 * Matrix3::Identity();
+    upper = world.world.addBody(spec);
+    spec.name = "lower";
+    spec.inertial.com = {COM, 0, 0};
+    spec.X_WB = makePose({UPPER, 0, 0});
+    lower = world.world.addBody(spec);
+    JointSpec joint;
+    joint.name = "shoulder";
+    joint.child = upper;
+    joint.axis = Vector3::UnitY();
+    const int shoulder = world.world.addJoint(joint);
+    joint.name = "elbow";
+    joint.kind = elbow;
+    joint.parent = upper;
+    joint.child = lower;
+    joint.axis = elbow_axis;
+    joint.X_PJ = makePose({UPPER, 0, 0});
+    world.robots.emplace_back();
+    world.robots[0].world_joints = {shoulder, world.world.addJoint(joint)};
+    world.models.emplace_back();
+    world.bodyStates(&bodies);
+    const Vector3 w1(0, upper_speed, 0), com = Vector3(UPPER + COM, 0, 0);
+    const bool turns = elbow == JointKind::REVOLUTE;
+    const Vector3 w2 = turns ? Vector3(lower_speed * elbow_axis) : Vector3(Vector3::Zero());
+    const Vector3 slide = turns ? Vector3(Vector3::Zero()) : Vector3(lower_speed * elbow_axis);
+    bodies[upper].w_WB = w1;
+    bodies[upper].v_WCom = w1.cross(Vector3(0.5 * UPPER, 0, 0));
+    bodies[lower].w_WB = w1 + w2;
+    bodies[lower].v_WCom = w1.cross(com) + w2.cross(Vector3(COM, 0, 0)) + slide;
+  }
+
+  /** Pose of a body's frame after a part of the solve. */
+  Pose ahead(int body, double part) {
+    BodyWays ways;
+    ways.start(world, bodies, DT);
+    BodyTwist way = twistOf(world, bodies, body);
+    ways.lead(body, &way);
+    return way.moved(bodies[body].X_WB, part * DT);
+  }
+};
+
+void expectSame(const Pose& pose, const Matrix3& turn, const Vector3& place) {
+  EXPECT_LT((pose.linear() - turn).norm(), 1e-12);
+  EXPECT_LT((pose.translation() - place).norm(), 1e-12);
+}
+
+TEST(BodyWays, LinkOnAHingeOfTheWorldIsOnItsArcAllAlong) {
+  for (const double speed : {1e-6, 0.1, 30.0, -300.0}) {
+    TwoLinks arm(JointKind::REVOLUTE, Vector3::UnitY(), speed, 0);
+    for (const double part : {0.1, 0.5, 1.0}) {
+      expectSame(arm.ahead(arm.upper, part), turned(part * DT * speed), Vector3::Zero());
+      expectSame(arm.ahead(arm.lower, part), turned(part * DT * speed), turned(part * DT * speed) * Vector3(UPPER, 0, 0));
+    }
+  }
+}
+
+TEST(BodyWays, LinkBeyondAnElbowEndsWhereItsJointsLead) {
+  for (const double upper : {0.0, 5.0, -40.0})
+    for (const double lower : {0.0, 5.0, 90.0}) {
+      TwoLinks arm(JointKind::REVOLUTE, Vector3::UnitY(), upper, lower);
+      expectSame(arm.ahead(arm.lower, 1), turned(DT * (upper + lower)), turned(DT * upper) * Vector3(UPPER, 0, 0));
+    }
+}
+
+TEST(BodyWays, LinkOnASliderThatTurnsEndsWhereItsJointsLead) {
+  for (const double turn : {0.0, 1e-5, 20.0})
+    for (const double slide : {0.0, 2.0}) {
+      TwoLinks arm(JointKind::PRISMATIC, Vector3::UnitX(), turn, slide);
+      expectSame(arm.ahead(arm.lower, 1), turned(DT * turn), turned(DT * turn) * Vector3(UPPER + DT * slide, 0, 0));
+    }
+}
+
+TEST(BodyWays, BodyOnNoJointGoesStraight) {
+  TwoLinks arm(JointKind::REVOLUTE, Vector3::UnitY(), 0, 0);
+  BodySpec spec;
+  spec.name = "free";
+  spec.inertial.mass = 1;
+  spec.inertial.inertia = Matrix3::Identity();
+  const int free = arm.world.world.addBody(spec);
+  arm.bodies.emplace_back();
+  arm.bodies[free].v_WCom = {1, 2, 3};
+  arm.bodies[free].w_WB = {0, 10, 0};
+  expectSame(arm.ahead(free, 0.5), turned(5 * DT), 0.5 * DT * Vector3(1, 2, 3));
+}
+
+}  // namespace
+}  // namespace blem_sim
