@@ -57,7 +57,8 @@ void BodyWays::findParents() {
 
 BodyTwist BodyWays::twist(int body) const { return twistOf(*world_, *bodies_, body); }
 
-/** Motion of a body until the end of the solve, by which poses of the world are moved. Seen from its parent, a body on a joint moves by a constant screw. */
+/** Motion of a body until the end of the solve, by which poses of the world are moved. Seen from its parent, a body on a joint moves by a
+ * constant screw. */
 Pose BodyWays::ahead(int body) const {
   const int parent = body == WORLD_BODY ? NO_JOINT : parents_[body];
   const BodyTwist own = twist(body);

@@ -8,7 +8,7 @@
 namespace blem_sim {
 namespace {
 
-constexpr double DT = 0.005;            // [s]
+constexpr double DT = 0.005;              // [s]
 constexpr double UPPER = 0.4, COM = 0.3;  // [m] upper link, centre of mass of the lower one beyond the elbow
 
 Matrix3 turned(double angle) { return Eigen::AngleAxisd(angle, Vector3::UnitY()).toRotationMatrix(); }

@@ -283,7 +283,9 @@ TEST(NearMiss, OfADrivenArmChangesNothing) {
                      " " + std::to_string(drive->gains.d) + ", " + std::to_string(drive->velocity) + " rad/s");
         EXPECT_EQ(force, 0);
         // A motor that still speeds the arm up does so in the parts of a step near the edge.
-        if (drive == &slow || drive == &fast) EXPECT_LT(change, 1e-6);
+        if (drive == &slow || drive == &fast) {
+          EXPECT_LT(change, 1e-6);
+        }
       }
     }
 }
