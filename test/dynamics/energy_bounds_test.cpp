@@ -1,4 +1,4 @@
-// Contacts and loops that correct depth and gaps must not throw bodies, nor squeeze them.
+// Contacts and loops that correct depth and gaps must not throw bodies, nor squeeze them; contacts that stay open do nothing.
 #include <gtest/gtest.h>
 
 #include <algorithm>

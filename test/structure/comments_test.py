@@ -1,17 +1,11 @@
 """Comments begin with a noun that the glossary or the field knows, not with a clause or an inverted question."""
-import pathlib
 import re
-import subprocess
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+from source_files import ROOT, sources
+
 # "Whether" is how predicates begin.
 CLAUSE = re.compile(r"(?:What|Who|Whom|Whose|How|Which|Where|Did|Does|Do|Is|Are|Can|May|Would|Has|Have|Of)\b(?![^.]*,)")
 FIRST = re.compile(r"^\s*(?:/\*\*|///<?|//)\s*(?P<text>\S.*)$")
-
-
-def sources():
-    names = subprocess.check_output(["git", "ls-files", "--", "*.h", "*.cpp"], cwd=ROOT, text=True).split()
-    return [ROOT / name for name in names]
 
 
 def first_lines(path):
@@ -26,5 +20,5 @@ def first_lines(path):
 
 def test_comments_begin_with_their_subject():
     bad = ["%s:%d: %s" % (path.relative_to(ROOT), number, text)
-           for path in sources() for number, text in first_lines(path) if CLAUSE.match(text)]
+           for path in sources("benchmark", "include", "src", "test") for number, text in first_lines(path) if CLAUSE.match(text)]
     assert not bad, "comments whose subject is a clause or that ask:\n" + "\n".join(bad)

@@ -14,6 +14,7 @@ class BodyWays {
   /**
    * Makes a link's way the screw that leads it from its pose to that at the end of the solve, while every joint of its tree keeps its
    * velocity and the root its own: exact there, and all along on one hinge of the world. A body on no joint keeps the way it has.
+   * @param way of the body from its start on
    */
   void lead(int body, BodyTwist* way);
 
