@@ -1,5 +1,6 @@
 #include "contacts/body_ways.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace blem_sim {
@@ -45,14 +46,34 @@ void BodyWays::start(const SimulatedWorld& world, const std::vector<BodyState>& 
 // A joint that closes a loop leads nothing: the first one of a body does.
 void BodyWays::findParents() {
   parents_.assign(bodies_->size(), NO_JOINT);
+  swings_.assign(bodies_->size(), 0);
   for (const RobotInfo& robot : world_->robots) {
+    const ModelInfo& model = world_->models[robot.model];
+    if (!model.alive) continue;
+    const double swing = swingOf(model);
+    for (const int body : model.bodies) swings_[body] = swing;
     for (const int joint : robot.world_joints) {
-      if (joint < 0 || !world_->models[robot.model].alive) continue;
+      if (joint < 0) continue;
       const JointSpec& spec = world_->world.jointSpec(joint);
       if (parents_[spec.child] == NO_JOINT) parents_[spec.child] = spec.parent;
     }
   }
   parents_known_ = true;
+}
+
+double BodyWays::swingOf(const ModelInfo& model) const {
+  double turn = 0, size = 0;
+  for (const int body : model.bodies) {
+    turn = std::max(turn, (*bodies_)[body].w_WB.norm());
+    size = std::max(size, 2 * (twist(body).centre - twist(model.bodies[0]).centre).norm());
+  }
+  return dt_ * turn * turn * size;
+}
+
+double BodyWays::swing(int body) {
+  if (body == WORLD_BODY) return 0;
+  if (!parents_known_) findParents();
+  return swings_[body];
 }
 
 BodyTwist BodyWays::twist(int body) const { return twistOf(*world_, *bodies_, body); }

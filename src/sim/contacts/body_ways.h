@@ -17,9 +17,15 @@ class BodyWays {
    * @param way of the body from its start on
    */
   void lead(int body, BodyTwist* way);
+  /**
+   * Speed [m/s] by which links of a tree swing each other within the solve, beside turning: what a body of the tree's size would give its
+   * ends if it turned as fast as the fastest link. 0 for a body on no joint.
+   */
+  double swing(int body);
 
  private:
   void findParents();
+  double swingOf(const ModelInfo& model) const;
   Pose ahead(int body) const;
   BodyTwist twist(int body) const;
 
@@ -27,7 +33,8 @@ class BodyWays {
   const std::vector<BodyState>* bodies_ = nullptr;
   double dt_ = 0;
   bool parents_known_ = false;
-  std::vector<int> parents_;  // by body
+  std::vector<int> parents_;    // by body
+  std::vector<double> swings_;  // by body
 };
 
 }  // namespace blem_sim

@@ -23,7 +23,10 @@ Vector3 velocityOf(const WayOfPair& pair, const Vector3& point) { return pair.a.
 /** Closing speed [m/s]. */
 double closing(const WayOfPair& pair, const Contact& contact) { return -contact.normal_BA.dot(velocityOf(pair, contact.point)); }
 
-bool acts(const WayOfPair& pair, const Contact& contact) { return !touches(contact) && closing(pair, contact) * pair.dt > -contact.depth; }
+/** Distance [m] that the pair may close along a contact's normal in the solve. */
+double reach(const WayOfPair& pair, const Contact& contact) { return (closing(pair, contact) + pair.swing) * pair.dt; }
+
+bool acts(const WayOfPair& pair, const Contact& contact) { return !touches(contact) && reach(pair, contact) > -contact.depth; }
 
 /** The contact of a later pose as the bodies have it at the start: with the levers of that pose, and with the gap that their motion closes
  * until then. */
@@ -39,11 +42,10 @@ Contact seenFromStart(const WayOfPair& pair, const Contact& contact, double time
 
 bool PairWay::isDoubtful(const WayOfPair& pair) const {
   return std::any_of(pair.now.contacts.begin(), pair.now.contacts.end(), [&](const Contact& contact) {
-    if (touches(contact)) return false;
+    if (!acts(pair, contact)) return false;
     const Vector3 velocity = velocityOf(pair, contact.point);
-    const double speed = -contact.normal_BA.dot(velocity), gap = -contact.depth;
-    if (speed * pair.dt <= gap) return false;
-    return (velocity + speed * contact.normal_BA).norm() * gap > ACROSS * pair.now.layer * speed;
+    const Vector3 across = velocity - contact.normal_BA.dot(velocity) * contact.normal_BA;
+    return across.norm() * pair.dt * -contact.depth > ACROSS * pair.now.layer * reach(pair, contact);
   });
 }
 
@@ -119,9 +121,8 @@ bool PairWay::follow(const WayOfPair& pair, const FlushSurfaces& flush, const st
   for (const Contact& contact : met_.contacts) {
     if (isKept(contact.id)) continue;
     Contact seen = seenFromStart(pair, contact, met_time_);
-    const double speed = closing(pair, seen);
-    if (speed * pair.dt < -TOUCHING) continue;  // behind the pair by then
-    if (!touches_) seen.depth = std::min(seen.depth, -(speed * pair.dt + TOUCHING));
+    if (reach(pair, seen) < -TOUCHING) continue;  // behind the pair by then
+    if (!touches_) seen.depth = std::min(seen.depth, -(reach(pair, seen) + TOUCHING));
     contacts->push_back(seen);
   }
   std::sort(contacts->begin(), contacts->end(), [](const Contact& a, const Contact& b) { return a.id < b.id; });

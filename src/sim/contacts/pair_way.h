@@ -25,6 +25,7 @@ struct WayOfPair {
   double known = 0;  ///< [m] distance beyond the layers within which contacts are known
   double depth = 0;  ///< [m] of the deepest contact that touches, of both bodies; at least 0
   double dt = 0;     ///< [s]
+  double swing = 0;  ///< [m/s] by which velocities may change within dt though nothing touches
 };
 
 /** Follows pairs on their ways, in memory that is kept between pairs. */

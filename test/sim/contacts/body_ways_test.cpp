@@ -44,6 +44,7 @@ struct TwoLinks {
     world.robots.emplace_back();
     world.robots[0].world_joints = {shoulder, world.world.addJoint(joint)};
     world.models.emplace_back();
+    world.models[0].bodies = {upper, lower};
     world.bodyStates(&bodies);
     const Vector3 w1(0, upper_speed, 0), com = Vector3(UPPER + COM, 0, 0);
     const bool turns = elbow == JointKind::REVOLUTE;
@@ -96,6 +97,19 @@ TEST(BodyWays, LinkOnASliderThatTurnsEndsWhereItsJointsLead) {
     }
 }
 
+TEST(BodyWays, LinksSwingEachOtherByNoMoreThanIsTold) {
+  for (const double upper : {0.0, 5.0, -40.0})
+    for (const double lower : {0.0, 5.0, 90.0}) {
+      TwoLinks arm(JointKind::REVOLUTE, Vector3::UnitY(), upper, lower);
+      BodyWays ways;
+      ways.start(arm.world, arm.bodies, DT);
+      const double w = upper + lower, centripetal = 0.5 * UPPER * upper * upper + COM * w * w;
+      EXPECT_GE(ways.swing(arm.lower), DT * centripetal * (1 - 1e-12));
+      EXPECT_EQ(ways.swing(arm.upper), ways.swing(arm.lower));
+      EXPECT_EQ(ways.swing(WORLD_BODY), 0);
+    }
+}
+
 TEST(BodyWays, BodyOnNoJointGoesStraight) {
   TwoLinks arm(JointKind::REVOLUTE, Vector3::UnitY(), 0, 0);
   BodySpec spec;
@@ -107,6 +121,9 @@ TEST(BodyWays, BodyOnNoJointGoesStraight) {
   arm.bodies[free].v_WCom = {1, 2, 3};
   arm.bodies[free].w_WB = {0, 10, 0};
   expectSame(arm.ahead(free, 0.5), turned(5 * DT), 0.5 * DT * Vector3(1, 2, 3));
+  BodyWays ways;
+  ways.start(arm.world, arm.bodies, DT);
+  EXPECT_EQ(ways.swing(free), 0);
 }
 
 }  // namespace
