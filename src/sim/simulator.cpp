@@ -13,11 +13,6 @@
 namespace blem_sim {
 namespace {
 
-std::uint64_t stepsPerReading(double rate, double time_step) {
-  if (!(rate > 0)) return 1;
-  return std::max<std::uint64_t>(1, static_cast<std::uint64_t>(std::llround(1 / (rate * time_step))));
-}
-
 template <typename Named>
 int indexOf(const std::vector<Named>& items, const std::string& name) {
   const auto at = std::find_if(items.begin(), items.end(), [&](const Named& item) { return item.name == name; });
@@ -37,7 +32,7 @@ Simulator::Impl::Impl(const SimulationConfig& config, const UriResolver& resolve
   for (const ObjectConfig& object : config_.objects) builder_.addObject(object, &world_);
   for (const SensorInfo& sensor : world_.sensors) {
     sensors_.push_back(makeSensor(world_, sensor));
-    sensor_periods_.push_back(stepsPerReading(sensor.config.rate, config_.time_step));
+    sensor_schedules_.emplace_back(sensor.config.rate, config_.time_step);
   }
   spare_readings_.resize(sensors_.size());
   seedSensors();

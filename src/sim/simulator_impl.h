@@ -17,6 +17,7 @@
 #include "part_reports.h"
 #include "sensors/link_contacts.h"
 #include "sensors/sensor.h"
+#include "sensors/sensor_schedule.h"
 
 namespace blem_sim {
 
@@ -90,7 +91,7 @@ struct Simulator::Impl {
   LayerWatch layer_watch_;
   EnergyBalance energy_balance_;
   std::vector<std::unique_ptr<Sensor>> sensors_;
-  std::vector<std::uint64_t> sensor_periods_;  ///< [steps]
+  std::vector<SensorSchedule> sensor_schedules_;
   std::vector<SensorReading> spare_readings_;  ///< [sensors] whose memory the next reading uses
   WorldState initial_state_;
   mutable std::string layout_;  ///< empty: not known

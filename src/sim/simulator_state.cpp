@@ -2,6 +2,7 @@
 #include <cstring>
 #include <utility>
 
+#include "numbers/content_hash.h"
 #include "numbers/number_reader.h"
 #include "simulator_impl.h"
 #include "state/state_header.h"
@@ -168,9 +169,13 @@ void Simulator::Impl::resetWorld() {
   reportWithoutStep();
 }
 
+// A sensor's noise is a stream of its own, told by names: other sensors and robots change nothing in it.
 void Simulator::Impl::seedSensors() {
-  RandomNumbers seeds(config_.random_seed);
-  for (const auto& sensor : sensors_) sensor->random().setState(seeds.next());
+  for (std::size_t i = 0; i < sensors_.size(); ++i) {
+    const SensorInfo& info = world_.sensors[i];
+    sensors_[i]->random().setState(
+        ContentHash().add(config_.random_seed).add(world_.robots[info.robot].name).add(info.config.name).value());
+  }
 }
 
 SimulationState Simulator::save() const { return impl_->save(); }

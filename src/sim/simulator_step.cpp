@@ -169,7 +169,7 @@ void Simulator::Impl::acceptSubstep() {
 void Simulator::Impl::readSensors() {
   const StageTimer timer(&report_.profile, Stage::SENSORS);
   jointStates(&joints_);
-  const auto due = [this](std::size_t i) { return step_count_ % sensor_periods_[i] == 0; };
+  const auto due = [this](std::size_t i) { return sensor_schedules_[i].due(step_count_); };
   bool contacts = false;
   for (std::size_t i = 0; i < sensors_.size(); ++i) contacts = contacts || (due(i) && sensors_[i]->readsContacts());
   if (contacts) link_contacts_.index(world_, part_reports_.contacts());
@@ -177,8 +177,7 @@ void Simulator::Impl::readSensors() {
       world_, config_.time_step, bodies_before_, bodies_, joints_, part_reports_.jointWrenches(), part_reports_.contacts(), link_contacts_};
   for (std::size_t i = 0; i < sensors_.size(); ++i) {
     if (!due(i)) continue;
-    const double period = static_cast<double>(sensor_periods_[i]) * config_.time_step;
-    sensors_[i]->read(context, period, &spare_readings_[i]);
+    sensors_[i]->read(context, sensor_schedules_[i].period(), &spare_readings_[i]);
     report_.samples.push_back({static_cast<int>(i), std::move(spare_readings_[i])});
   }
 }

@@ -28,7 +28,7 @@ class Sensor {
  public:
   virtual ~Sensor() = default;
   /**
-   * @param period [s] since the last reading
+   * @param period [s] between two readings, on average
    * @param out overwritten; if it holds a reading of this sensor already, its memory is used again
    */
   virtual void read(const StepContext& step, double period, SensorReading* out) = 0;

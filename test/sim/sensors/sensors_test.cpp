@@ -181,6 +181,42 @@ TEST(ImuSensor, BiasWalksAndResets) {
   EXPECT_LT(reading<ImuReading>(simulator.report(), 0).angular_velocity.norm(), 0.3);
 }
 
+/** Readings of a noisy IMU of the first robot in 100 steps. */
+std::vector<Vector3> imuNoise(const SimulationConfig& config) {
+  Simulator simulator(config, UriResolver());
+  std::vector<Vector3> noise;
+  for (int i = 0; i < 100; ++i) {
+    simulator.step();
+    for (std::size_t s = 0; s < simulator.sensors().size(); ++s)
+      if (simulator.sensors()[s].robot == 0 && simulator.sensors()[s].config.name == "imu")
+        noise.push_back(reading<ImuReading>(simulator.report(), static_cast<int>(s)).angular_velocity);
+  }
+  return noise;
+}
+
+TEST(Sensors, NoiseIsAStreamOfEachSensorsOwn) {
+  SensorConfig imu = sensor("imu", SensorType::IMU, "base");
+  imu.gyro_stddev = 0.1;
+  SimulationConfig alone;
+  alone.robots = {robot("pendulum", pendulumUrdf(), true)};
+  alone.robots[0].sensors = {imu};
+  SimulationConfig beside = alone;
+  imu.name = "another";
+  beside.robots[0].sensors.insert(beside.robots[0].sensors.begin(), imu);
+  imu.name = "imu";
+  beside.robots.push_back(robot("second", pendulumUrdf(), true));
+  beside.robots[1].sensors = {imu};
+  const std::vector<Vector3> noise = imuNoise(alone);
+  ASSERT_EQ(noise.size(), 100u);
+  EXPECT_EQ(imuNoise(beside), noise);
+  SimulationConfig other_seed = alone;
+  other_seed.random_seed = 2;
+  EXPECT_NE(imuNoise(other_seed), noise);
+  SimulationConfig other_name = alone;
+  other_name.robots[0].name = "other";
+  EXPECT_NE(imuNoise(other_name), noise);
+}
+
 TEST(Sensors, RateIsAWholeNumberOfStepsFromStepZero) {
   SimulationConfig config;
   config.robots = {robot("pendulum", pendulumUrdf(), true)};
