@@ -37,6 +37,13 @@ struct JointLimits {
   double velocity = std::numeric_limits<double>::infinity();  ///< [rad/s or m/s]
 };
 
+/** URDF safety_controller: bounds of a motor's drive before the joint's limits. */
+struct SafetyController {
+  double lower = 0, upper = 0;  ///< [rad or m] soft limits; without a range between them they bound nothing
+  double k_position = 0;        ///< [1/s] the motor drives towards a soft limit at k_position times the way that is left, at most
+  double k_velocity = 0;  ///< [N m s/rad or N s/m] its effort is k_velocity times what is left of that velocity, at most; 0: unbounded
+};
+
 /** q = multiplier * q[joint] + offset */
 struct Mimic {
   std::string joint;
@@ -55,6 +62,7 @@ struct JointModel {
   double dry_friction = 0;      ///< [N m or N], URDF dynamics/friction
   double viscous_friction = 0;  ///< [N m s/rad or N s/m], URDF dynamics/damping
   std::optional<Mimic> mimic;
+  std::optional<SafetyController> safety;
 };
 
 /** A kinematic tree. Joints are sorted so that every joint comes after the joint that moves its parent; otherwise in the file's order. */
@@ -92,7 +100,10 @@ struct LumpedJoint {
   JointLimits limits;
   double dry_friction = 0, viscous_friction = 0;
   std::optional<Mimic> mimic;
+  std::optional<SafetyController> safety;
 
+  /** True for hinges and sliders, which have a position. */
+  bool moves() const { return type != JointType::FIXED && type != JointType::FLOATING; }
   /** Pose of the child body in the parent body at position q [rad or m]. */
   Pose pose(double q) const;
 };

@@ -54,6 +54,12 @@ struct JointGains {
 
 enum class MotorLaw { PID, IMPLICIT_PD };
 
+/** Motors of joints without gains. */
+enum class MotorDefault {
+  COMPUTED,  ///< gains computed from what the joints carry: the robot holds its pose
+  FREE,      ///< none: joints move freely, friction stays
+};
+
 struct JointFriction {
   double dry = 0, viscous = 0;
 };
@@ -89,9 +95,12 @@ struct RobotConfig {
   ContactOverrides contact;
   std::map<std::string, ContactOverrides> links;
   std::map<std::string, JointGains> gains;              ///< by joint, "default"
-  std::map<std::string, MotorLaw> motor;                ///< by joint, "default"
+  MotorDefault motors = MotorDefault::COMPUTED;         ///< of joints that gains do not name
+  std::map<std::string, MotorLaw> motor;                ///< by joint, "default"; implicit_pd where there is none
   std::map<std::string, JointFriction> joint_friction;  ///< by joint, "default"; beats the URDF's
   std::map<std::string, double> effort_limits;          ///< beats the URDF's
+  std::map<std::string, double> velocity_limits;        ///< [rad/s or m/s] beats the URDF's
+  double command_timeout = 0;                           ///< [s] after which velocity and effort commands end and joints hold; 0: never
   std::map<std::string, double> armature;               ///< [kg m^2 or kg] rotor inertia seen at the joint; by joint, "default"
   std::vector<SensorConfig> sensors;
   std::optional<int> max_contacts;  ///< k of this robot

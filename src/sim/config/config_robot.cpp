@@ -44,6 +44,10 @@ void readJointFriction(const std::string& name, YamlReader& map, JointFriction* 
   reader.finish();
 }
 
+MotorDefault readMotorDefault(YamlReader& reader) {
+  return reader.choice("motors", {"computed", "free"}).value_or(0) == 1 ? MotorDefault::FREE : MotorDefault::COMPUTED;
+}
+
 MotorLaw motorLaw(YamlReader& reader, const std::string& key) {
   return reader.choice(key, {"pid", "implicit_pd"}).value_or(0) == 1 ? MotorLaw::IMPLICIT_PD : MotorLaw::PID;
 }
@@ -104,9 +108,12 @@ RobotConfig readRobot(YamlReader& reader) {
     link.finish();
   });
   robot.gains = readByJoint<JointGains>(reader, "gains", readGains);
+  robot.motors = readMotorDefault(reader);
   robot.motor = readMotor(reader);
   robot.joint_friction = readByJoint<JointFriction>(reader, "joint_friction", readJointFriction);
   robot.effort_limits = readNumbers(reader, "effort_limits", NumberRange::notNegativeOrInfinite());
+  robot.velocity_limits = readNumbers(reader, "velocity_limits", NumberRange::positiveOrInfinite());
+  reader.read("command_timeout", &robot.command_timeout, NumberRange::notNegative());
   robot.armature = readNumbers(reader, "armature", NumberRange::notNegative());
   robot.sensors = readSensors(reader);
   return robot;
