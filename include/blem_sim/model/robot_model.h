@@ -65,17 +65,27 @@ struct JointModel {
   std::optional<SafetyController> safety;
 };
 
+/** URDF transmission between an actuator and a joint. Commands and efforts are the joint's; actuators turn `reduction` times as far. */
+struct Transmission {
+  std::string name, joint;
+  double reduction = 1;  ///< not 0
+  double offset = 0;     ///< [rad or m] of the joint where the actuator is at 0
+};
+
 /** A kinematic tree. Joints are sorted so that every joint comes after the joint that moves its parent; otherwise in the file's order. */
 struct RobotModel {
   std::string name;
   std::string source;  ///< file or parameter, for error texts
   std::vector<LinkModel> links;
   std::vector<JointModel> joints;
+  std::vector<Transmission> transmissions;
   int root = 0;                    ///< index of the root link
   std::vector<std::string> notes;  ///< repairs and parts left out, in words
 
   int linkIndex(const std::string& link) const;    ///< -1 if there is none
   int jointIndex(const std::string& joint) const;  ///< -1 if there is none
+  /** The first transmission of a joint; null if it has none. */
+  const Transmission* transmissionOf(const std::string& joint) const;
 };
 
 /** Place of a link on a rigid body of a LumpedRobot. */

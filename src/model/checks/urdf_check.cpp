@@ -12,6 +12,7 @@
 
 #include "blem_sim/geometry/input_error.h"
 #include "checks/one_line.h"
+#include "checks/urdf_transmissions.h"
 #include "checks/urdf_tree_check.h"
 
 namespace blem_sim {
@@ -214,7 +215,7 @@ UrdfOutline checkUrdf(const std::string& xml, const std::string& source) {
   const Element& robot = robotElement(document, xml, source);
   UrdfOutline outline;
   std::map<std::string, int> left_out;
-  countExtensions(robot, {"link", "joint", "material"}, &left_out);
+  countExtensions(robot, {"link", "joint", "material", "transmission"}, &left_out);
   forChildren(robot, "link", [&](const Element& link) {
     outline.links.push_back(attribute(link, "name"));
     checkLink(link, fmt::format("{}: link '{}'", source, outline.links.back()));
@@ -227,6 +228,7 @@ UrdfOutline checkUrdf(const std::string& xml, const std::string& source) {
     countExtensions(joint, {"origin", "parent", "child", "axis", "limit", "dynamics", "mimic", "safety_controller"}, &left_out);
   });
   checkTree(outline.links, joints, source);
+  outline.transmissions = readTransmissions(robot, outline.joints, source, &outline.notes);
   for (const auto& [name, count] : left_out)
     outline.notes.push_back(fmt::format("<{}> left out ({} of them): it is not simulated", name, count));
   return outline;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "blem_sim/geometry/input_error.h"
 #include "build/by_joint.h"
@@ -17,7 +18,7 @@ constexpr double VELOCITY_TIME = 1;        // [s] in which a joint that keeps a 
 /** Writes the motors of one robot, joint by joint. */
 class MotorWriter {
  public:
-  MotorWriter(const RobotConfig& config, RobotMotors* motors) : config_(config), motors_(*motors) {}
+  MotorWriter(const RobotConfig& config, const RobotModel& model, RobotMotors* motors) : config_(config), model_(model), motors_(*motors) {}
 
   void add(const LumpedJoint& joint, const JointLoad& load) {
     MotorSettings settings;
@@ -52,6 +53,17 @@ class MotorWriter {
   }
 
  private:
+  const JointGains* givenGains(const std::string& joint) const {
+    const auto pid_gains = config_.pid_gains.find(joint);
+    if (const JointGains* gains = entryOf(config_.gains, joint)) return gains;
+    return pid_gains == config_.pid_gains.end() ? nullptr : &pid_gains->second;
+  }
+
+  bool isFree(const std::string& joint) const {
+    if (config_.motors == MotorDefault::TRANSMISSIONS) return !model_.transmissionOf(joint);
+    return config_.motors == MotorDefault::FREE;
+  }
+
   double velocityLimit(const LumpedJoint& joint) {
     const double limit = byJoint(config_.velocity_limits, joint.name, joint.limits.velocity);
     if (limit > 0) return limit;
@@ -60,9 +72,9 @@ class MotorWriter {
   }
 
   void addGains(const LumpedJoint& joint, const JointLoad& load, MotorSettings* settings) {
-    if (const JointGains* given = entryOf(config_.gains, joint.name)) {
+    if (const JointGains* given = givenGains(joint.name)) {
       settings->gains = *given;
-    } else if (config_.motors == MotorDefault::FREE) {
+    } else if (isFree(joint.name)) {
       free_.push_back(joint.name);
     } else {
       if (settings->law == MotorLaw::PID) not_explicit_.push_back(joint.name);
@@ -80,6 +92,7 @@ class MotorWriter {
   }
 
   const RobotConfig& config_;
+  const RobotModel& model_;
   RobotMotors& motors_;
   std::vector<std::string> free_, computed_, not_explicit_, unlimited_;
 };
@@ -91,8 +104,9 @@ void checkMotors(const RobotConfig& config) {
     throw InputError(fmt::format("robots: {}: {}: {}: numbers must be finite and not negative", config.name, what, joint));
   };
   const auto wrong = [](double x) { return !(x >= 0) || std::isinf(x); };
-  for (const auto& [joint, gains] : config.gains)
-    if (wrong(gains.p) || wrong(gains.i) || wrong(gains.d) || !(gains.i_clamp >= 0)) refuse("gains", joint);
+  for (const auto& [field, by_joint] : {std::make_pair("gains", &config.gains), std::make_pair("pid_gains", &config.pid_gains)})
+    for (const auto& [joint, gains] : *by_joint)
+      if (wrong(gains.p) || wrong(gains.i) || wrong(gains.d) || !(gains.i_clamp >= 0)) refuse(field, joint);
   for (const auto& [joint, friction] : config.joint_friction)
     if (wrong(friction.dry) || wrong(friction.viscous)) refuse("joint_friction", joint);
   for (const auto& [joint, limit] : config.effort_limits)
@@ -107,10 +121,11 @@ void checkMotors(const RobotConfig& config) {
     if (!std::isfinite(position)) refuse("initial_positions", joint);
 }
 
-RobotMotors robotMotors(const RobotConfig& config, const LumpedRobot& robot, const std::vector<double>& positions, double gravity) {
+RobotMotors robotMotors(const RobotConfig& config, const RobotModel& model, const LumpedRobot& robot, const std::vector<double>& positions,
+                        double gravity) {
   std::vector<JointLoad> loads = jointLoads(robot, positions, config.fixed_base, gravity);
   RobotMotors motors;
-  MotorWriter writer(config, &motors);
+  MotorWriter writer(config, model, &motors);
   for (std::size_t j = 0; j < robot.joints.size(); ++j) {
     const LumpedJoint& joint = robot.joints[j];
     if (joint.moves()) loads[j].child.inertia += byJoint(config.armature, joint.name, 0.0);

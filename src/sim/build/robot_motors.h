@@ -20,6 +20,7 @@ struct RobotMotors {
 };
 
 /** @param positions of the joints at the start; gravity: its size [m/s^2] */
-RobotMotors robotMotors(const RobotConfig& config, const LumpedRobot& robot, const std::vector<double>& positions, double gravity);
+RobotMotors robotMotors(const RobotConfig& config, const RobotModel& model, const LumpedRobot& robot, const std::vector<double>& positions,
+                        double gravity);
 
 }  // namespace blem_sim

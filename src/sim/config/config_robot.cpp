@@ -45,7 +45,7 @@ void readJointFriction(const std::string& name, YamlReader& map, JointFriction* 
 }
 
 MotorDefault readMotorDefault(YamlReader& reader) {
-  return reader.choice("motors", {"computed", "free"}).value_or(0) == 1 ? MotorDefault::FREE : MotorDefault::COMPUTED;
+  return static_cast<MotorDefault>(reader.choice("motors", {"computed", "transmissions", "free"}).value_or(0));
 }
 
 MotorLaw motorLaw(YamlReader& reader, const std::string& key) {
@@ -90,6 +90,22 @@ void readSource(YamlReader& reader, RobotConfig* robot) {
 }
 
 }  // namespace
+
+std::map<std::string, JointGains> parsePidGains(const YAML::Node& node, const std::string& source) {
+  YAML::Node root;
+  root["pid_gains"] = node;
+  YamlReader reader(root, source);
+  std::map<std::string, JointGains> by_joint;
+  reader.forEachName("pid_gains", [&](const std::string& joint, YamlReader& map) {
+    YamlReader gains = map.section(joint);
+    JointGains& out = by_joint[joint];
+    gains.read("p", &out.p, NumberRange::notNegative());
+    gains.read("i", &out.i, NumberRange::notNegative());
+    gains.read("d", &out.d, NumberRange::notNegative());
+    for (const char* key : {"i_clamp_max", "i_clamp"}) gains.read(key, &out.i_clamp, NumberRange::notNegativeOrInfinite());
+  });
+  return by_joint;
+}
 
 RobotConfig readRobot(YamlReader& reader) {
   RobotConfig robot;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "blem_sim/geometry/input_error.h"
 #include "build/joint_loads.h"
 #include "sim/simulation_scene.h"
 
@@ -135,6 +136,35 @@ TEST(ComputedGains, AreTold) {
   SimulationConfig free = heldPendulum();
   free.robots[0].motors = MotorDefault::FREE;
   EXPECT_NE(noteOf(free, "move freely").find("hinge"), std::string::npos);
+}
+
+// Gazebo moves what a transmission names.
+TEST(ComputedGains, OnlyForTransmissionsIfAsked) {
+  for (const bool with : {false, true}) {
+    SimulationConfig config = heldPendulum();
+    config.robots[0].motors = MotorDefault::TRANSMISSIONS;
+    std::string& urdf = config.robots[0].urdf_xml;
+    if (with) urdf.insert(urdf.find("</robot>"), R"(<transmission name="t"><joint name="hinge"/></transmission>)");
+    Simulator simulator(config, UriResolver());
+    stepFor(&simulator, 1);
+    EXPECT_EQ(std::abs(simulator.report().joints[0].position) < 2e-3, with);
+  }
+}
+
+TEST(ComputedGains, GainsOfGazeboRosControl) {
+  SimulationConfig config = heldPendulum();
+  config.robots[0].pid_gains = {{"hinge", {500, 0, 40}}, {"of another robot", {1, 1, 1}}};
+  Simulator simulator(config, UriResolver());
+  EXPECT_EQ(noteOf(config, "computed gains"), "");
+  stepFor(&simulator, 4);
+  const double position = simulator.report().joints[0].position;
+  EXPECT_NEAR(500 * position, PENDULUM_WEIGHT * std::cos(position), 1e-3);
+  config.robots[0].gains["default"] = {1000, 0, 40};
+  Simulator configured(config, UriResolver());
+  stepFor(&configured, 4);
+  EXPECT_LT(configured.report().joints[0].position, 0.6 * position) << "the configuration's beat them";
+  config.robots[0].pid_gains["hinge"].d = -1;
+  EXPECT_THROW(Simulator(config, UriResolver()), InputError);
 }
 
 TEST(ComputedGains, GivenGainsStandAsTheyAre) {

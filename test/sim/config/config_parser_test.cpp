@@ -165,6 +165,17 @@ TEST(ConfigParser, MotorMayBeOneWord) {
   EXPECT_EQ(parse("robots: [{name: a, urdf: a.urdf}]").robots[0].motors, MotorDefault::COMPUTED);
 }
 
+TEST(ConfigParser, ReadsPidGainsAsGazeboRosControlHasThem) {
+  const auto gains = parsePidGains(
+      YAML::Load("{LKP: {p: 100, i: 1, d: 5, i_clamp_min: -3, i_clamp_max: 3, antiwindup: true}, LAR: {p: 20, i_clamp: 2}}"), "/pid_gains");
+  EXPECT_EQ(gains.at("LKP").p, 100);
+  EXPECT_EQ(gains.at("LKP").i_clamp, 3);
+  EXPECT_EQ(gains.at("LAR").i_clamp, 2);
+  EXPECT_EQ(gains.at("LAR").d, 0);
+  for (const char* bad : {"{LKP: 3}", "[1]", "{LKP: {p: -1}}", "{LKP: {d: fast}}"})
+    EXPECT_THROW(parsePidGains(YAML::Load(bad), "/pid_gains"), InputError) << bad;
+}
+
 TEST(ConfigParser, ReadsSensors) {
   const auto sensors = parse(R"(
 robots:
