@@ -115,6 +115,18 @@ TEST(ComputedGains, HoldEveryPoseWhateverTheMotor) {
   }
 }
 
+// Gravity slows a joint that keeps a velocity by 1 mrad/s at most.
+TEST(ComputedGains, KeepAVelocityUnderLoad) {
+  for (const double velocity : {0.0, 0.3}) {
+    Simulator simulator(heldPendulum(), UriResolver());
+    simulator.commandJoints(0, {{"hinge"}, {}, {velocity}, {}});
+    for (int i = 0; i < 2000; ++i) {
+      simulator.step();
+      if (i > 100) ASSERT_NEAR(simulator.report().joints[0].velocity, velocity, 1.001e-3) << i;
+    }
+  }
+}
+
 std::string noteOf(const SimulationConfig& config, const std::string& words) {
   const Simulator simulator(config, UriResolver());
   for (const std::string& note : simulator.notes())
