@@ -55,6 +55,7 @@ class Lumping {
     moving.dry_friction = joint.dry_friction;
     moving.viscous_friction = joint.viscous_friction;
     moving.mimic = joint.mimic;
+    moving.safety = joint.safety;
     return moving;
   }
 

@@ -1,5 +1,7 @@
 #include "blem_sim/model/robot_model.h"
 
+#include <algorithm>
+
 namespace blem_sim {
 namespace {
 
@@ -15,6 +17,12 @@ int indexOf(const std::vector<Named>& items, const std::string& name) {
 int RobotModel::linkIndex(const std::string& link) const { return indexOf(links, link); }
 
 int RobotModel::jointIndex(const std::string& joint) const { return indexOf(joints, joint); }
+
+const Transmission* RobotModel::transmissionOf(const std::string& joint) const {
+  const auto drives = [&](const Transmission& transmission) { return transmission.joint == joint; };
+  const auto found = std::find_if(transmissions.begin(), transmissions.end(), drives);
+  return found == transmissions.end() ? nullptr : &*found;
+}
 
 Pose LumpedJoint::pose(double q) const {
   switch (type) {

@@ -103,6 +103,9 @@ JointModel toJoint(const urdf::Joint& given, const RobotModel& robot) {
     joint.dry_friction = given.dynamics->friction;
     joint.viscous_friction = given.dynamics->damping;
   }
+  if (given.safety)
+    joint.safety = SafetyController{given.safety->soft_lower_limit, given.safety->soft_upper_limit, given.safety->k_position,
+                                    given.safety->k_velocity};
   if (given.mimic) joint.mimic = Mimic{given.mimic->joint_name, given.mimic->multiplier, given.mimic->offset};
   return joint;
 }
@@ -160,6 +163,7 @@ RobotModel loadUrdf(const std::string& xml, const std::string& source, const Uri
   robot.name = model->getName();
   robot.source = source;
   robot.notes = outline.notes;
+  robot.transmissions = outline.transmissions;
   CollisionShapeReader shapes(resolver, base, mending);
   readLinks(*model, outline, progress, &shapes, &robot);
   robot.root = robot.linkIndex(model->getRoot()->name);

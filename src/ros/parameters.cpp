@@ -97,6 +97,14 @@ void fetchDescriptions(const std::string& source, SimulationConfig* config) {
   }
 }
 
+void fetchPidGains(SimulationConfig* config) {
+  for (RobotConfig& robot : config->robots) {
+    const std::string parameter = ros::names::resolve(ros::names::append(robot.name_space, "gazebo_ros_control/pid_gains"));
+    XmlRpc::XmlRpcValue given;
+    if (ros::param::get(parameter, given)) robot.pid_gains = parsePidGains(toYaml(given), parameter);
+  }
+}
+
 }  // namespace
 
 YAML::Node toYaml(XmlRpc::XmlRpcValue value) {
@@ -149,6 +157,7 @@ SimulationConfig readParameters(const ros::NodeHandle& private_node) {
   }
   SimulationConfig config = parseConfig(parameters, source, directoryOf(config_file));
   fetchDescriptions(source, &config);
+  fetchPidGains(&config);
   return config;
 }
 

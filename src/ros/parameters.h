@@ -20,7 +20,8 @@ YAML::Node toYaml(XmlRpc::XmlRpcValue value);
  * Reads every private parameter through parseConfig, so that the node and blem_sim_run take the same keys, plus the node's own:
  * `config_file` (relative files are meant against its folder), `environment` (URI of one more environment, of that name) and, if there is
  * no key `robots`, for one robot that is made then: `robot_description_file` (URDF file; else the parameter `robot_description` if it is
- * set), `robot_pose` ({xyz, rpy} of its root link) and `robot_fixed_base`. Fetches every `description_param`.
+ * set), `robot_pose` ({xyz, rpy} of its root link) and `robot_fixed_base`. Fetches every `description_param`, and
+ * `gazebo_ros_control/pid_gains` in the namespace of each robot.
  * @throws InputError
  */
 SimulationConfig readParameters(const ros::NodeHandle& private_node);

@@ -79,7 +79,9 @@ void Simulator::Impl::commandJoints(int robot, const JointCommandMessage& comman
     if (!command.positions.empty())
       motor.hold(nearestTurn(joint, command.positions[i]), valueAt(command.velocities, i));
     else if (!command.velocities.empty())
-      motor.keepVelocity(command.velocities[i]);
+      motor.keepVelocity(command.velocities[i], time());
+    else if (!command.efforts.empty())
+      motor.keepEffort(command.efforts[i], time());
     if (!command.efforts.empty()) motor.addEffort(command.efforts[i]);
   }
 }

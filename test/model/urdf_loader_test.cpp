@@ -159,13 +159,55 @@ TEST(UrdfLoader, inertialFramesTurnTheInertia) {
   EXPECT_TRUE(inertial.inertia.isApprox(expected, 1e-12)) << inertial.inertia;
 }
 
+TEST(UrdfLoader, safetyControllersAreRead) {
+  const auto robot = [](const std::string& attributes) {
+    return load(
+        "<link name=\"a\"/><link name=\"b\"/><joint name=\"j\" type=\"continuous\"><parent link=\"a\"/><child link=\"b\"/>"
+        "<safety_controller " +
+        attributes + "/></joint>");
+  };
+  const SafetyController safety =
+      *robot("soft_lower_limit=\"-1\" soft_upper_limit=\"2\" k_position=\"15\" k_velocity=\"10\"").joints[0].safety;
+  EXPECT_EQ(safety.lower, -1);
+  EXPECT_EQ(safety.upper, 2);
+  EXPECT_EQ(safety.k_position, 15);
+  EXPECT_EQ(safety.k_velocity, 10);
+  for (const char* bad : {"k_position=\"1\"", "k_velocity=\"-1\"", "k_velocity=\"fast\"", "k_velocity=\"1\" soft_upper_limit=\"inf\""})
+    EXPECT_THROW(robot(bad), InputError) << bad;
+}
+
+TEST(UrdfLoader, transmissionsAreRead) {
+  const auto robot = [](const std::string& transmission) {
+    return load(
+        "<link name=\"a\"/><link name=\"b\"/><joint name=\"j\" type=\"continuous\"><parent link=\"a\"/><child link=\"b\"/></joint>" +
+        transmission);
+  };
+  const RobotModel with = robot(
+      "<transmission name=\"t\"><type>transmission_interface/SimpleTransmission</type><joint name=\"j\"><offset> 0.2 </offset></joint>"
+      "<actuator name=\"m\"><mechanicalReduction>-50</mechanicalReduction></actuator></transmission>"
+      "<transmission name=\"other\"><joint name=\"k\"/></transmission>");
+  ASSERT_EQ(with.transmissions.size(), 1u);
+  EXPECT_EQ(with.transmissionOf("j")->reduction, -50);
+  EXPECT_EQ(with.transmissionOf("j")->offset, 0.2);
+  EXPECT_EQ(with.transmissionOf("k"), nullptr);
+  EXPECT_TRUE(noted(with.notes, "no joint 'k'"));
+  EXPECT_EQ(robot("<transmission name=\"t\"><joint name=\"j\"/><mechanicalReduction>7</mechanicalReduction></transmission>")
+                .transmissionOf("j")
+                ->reduction,
+            7);
+  for (const char* bad : {"0", "fast", "1 2", "nan", ""})
+    EXPECT_THROW(robot(std::string("<transmission name=\"t\"><joint name=\"j\"/><actuator name=\"m\"><mechanicalReduction>") + bad +
+                       "</mechanicalReduction></actuator></transmission>"),
+                 InputError)
+        << bad;
+}
+
 TEST(UrdfLoader, notesSayWhatIsLeftOut) {
   const RobotModel robot = load(
       "<link name=\"a\"/><link name=\"b\"/><gazebo/><gazebo reference=\"a\"/><transmission name=\"t\"/>"
       "<joint name=\"j\" type=\"revolute\"><parent link=\"a\"/><child link=\"b\"/><limit effort=\"0\" velocity=\"1\"/>"
       "<safety_controller k_velocity=\"1\"/></joint>");
-  for (const char* words :
-       {"<gazebo> left out (2", "<transmission>", "<safety_controller>", "cannot move", "effort limit 0", "touches nothing"})
+  for (const char* words : {"<gazebo> left out (2", "transmission 't' left out", "cannot move", "effort limit 0", "touches nothing"})
     EXPECT_TRUE(noted(robot.notes, words)) << words;
 }
 

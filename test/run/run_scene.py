@@ -64,6 +64,7 @@ robots:
     pose: {xyz: [0, 0, 0.0525]}
     initial_positions: {shoulder: 0.3}
     gains: {default: {p: 60, i: 5, d: 4}}
+    motor: pid
     sensors:
       - {name: shoulder_wrench, type: force_torque, joint: shoulder, noise: {stddev: 0.1}}
       - {name: imu, type: imu, link: upper, rate: 200, noise: {accel_stddev: 0.01, gyro_bias_stddev: 0.02}}

@@ -31,6 +31,11 @@ def test_stands_or_holds(case):
     validate(case, SECONDS[case])
 
 
+@pytest.mark.parametrize("robot", ["anymal", "atlas", "huboplus", "panda", "pr2gripper", "robotiq", "tx90l", "tx90pr2", "ur5"])
+def test_holds_without_gains(robot):
+    validate("bare_" + robot, 10)
+
+
 def test_hubo_stands_with_world_step():
     validate("hubo_plane", 1, "--stepper", "world_step", "--max-contacts", "6")
 

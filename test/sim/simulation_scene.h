@@ -82,8 +82,11 @@ inline ObjectConfig sheet(const std::string& name, double side, double mass, con
   return object;
 }
 
+/** A robot whose joints move freely unless a test gives them gains, which are Eq. 7's unless it says otherwise. */
 inline RobotConfig robot(const std::string& name, const std::string& urdf, bool fixed_base) {
   RobotConfig config;
+  config.motors = MotorDefault::FREE;
+  config.motor["default"] = MotorLaw::PID;
   config.name = name;
   config.urdf_xml = urdf;
   config.fixed_base = fixed_base;

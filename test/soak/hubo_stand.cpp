@@ -60,6 +60,7 @@ RobotConfig huboConfig(const YAML::Node& world, const HuboOptions& options) {
   const YAML::Node robot = world["robots"][0], description = sharedYaml(std::string(HUBO_FOLDER) + "/huboplus.yaml");
   RobotConfig config;
   config.name = "hubo";
+  config.motors = MotorDefault::FREE;
   config.X_WR = makePose(vector3(robot["base_xyz"]), vector3(robot["base_rpy"]));
   for (const auto& entry : robot["joint_positions"]) config.initial_positions[entry.first.as<std::string>()] = entry.second.as<double>();
   if (!options.start_at.empty()) startAt(options.start_at, &config);

@@ -70,6 +70,7 @@ def convert_robot(robot, options):
         "joint_friction": {driven_joints(d): {"dry": d["dryFriction"], "viscous": d["viscousFriction"]} for d in drivers},
         "effort_limits": {driven_joints(d): d["tmax"] for d in drivers if "tmax" in d},
         "motor": options.motor,
+        "motors": "free",
         "links": {link["link"]: surface(link) for link in robot.get("link_surfaces", [])},
     }
     row.update(surface(robot.get("default_surface", {})))

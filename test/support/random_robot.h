@@ -105,6 +105,7 @@ inline RandomRobot randomTree(SceneNumbers* numbers, const std::string& name, co
     if (!follows && numbers->chance(0.5)) robot.config.initial_positions[joint.name] = numbers->uniform(-0.5, 0.5);
   }
   robot.config.name = name;
+  robot.config.motors = MotorDefault::FREE;
   robot.config.urdf_xml = text + "</robot>";
   robot.config.fixed_base = numbers->chance(0.5);
   robot.config.self_collision = numbers->chance(0.2);
@@ -139,6 +140,7 @@ inline RandomRobot randomHand(SceneNumbers* numbers, const std::string& name, co
     robot.command.positions.push_back(0.5 * width);
   }
   robot.config.name = name;
+  robot.config.motors = MotorDefault::FREE;
   robot.config.urdf_xml = text + "</robot>";
   robot.config.fixed_base = true;
   robot.config.X_WR = makePose(position);

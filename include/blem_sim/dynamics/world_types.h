@@ -57,6 +57,10 @@ struct JointDrive {
    *  max_effort. Stable for any gain. Off while both gains are 0. */
   double stiffness = 0, damping = 0, target_position = 0, target_velocity = 0;
   double max_effort = std::numeric_limits<double>::infinity();
+  /** [rad/s or m/s] The implicit PD moves no joint beyond these velocities: within max_effort, its effort is at most
+   *  velocity_gain (max_velocity - v), at least velocity_gain (min_velocity - v). */
+  double min_velocity = -std::numeric_limits<double>::infinity(), max_velocity = std::numeric_limits<double>::infinity();
+  double velocity_gain = std::numeric_limits<double>::infinity();  ///< [N m s/rad or N s/m]
   double dry_friction = 0;      ///< [N m or N] mu_D: sticks up to it, slips against it [Hauser 2013, 4.1]
   double viscous_friction = 0;  ///< mu_V
 };

@@ -37,6 +37,13 @@ struct JointLimits {
   double velocity = std::numeric_limits<double>::infinity();  ///< [rad/s or m/s]
 };
 
+/** URDF safety_controller: bounds of a motor's drive before the joint's limits. */
+struct SafetyController {
+  double lower = 0, upper = 0;  ///< [rad or m] soft limits; without a range between them they bound nothing
+  double k_position = 0;        ///< [1/s] the motor drives towards a soft limit at k_position times the way that is left, at most
+  double k_velocity = 0;  ///< [N m s/rad or N s/m] its effort is k_velocity times what is left of that velocity, at most; 0: unbounded
+};
+
 /** q = multiplier * q[joint] + offset */
 struct Mimic {
   std::string joint;
@@ -55,6 +62,14 @@ struct JointModel {
   double dry_friction = 0;      ///< [N m or N], URDF dynamics/friction
   double viscous_friction = 0;  ///< [N m s/rad or N s/m], URDF dynamics/damping
   std::optional<Mimic> mimic;
+  std::optional<SafetyController> safety;
+};
+
+/** URDF transmission between an actuator and a joint. Commands and efforts are the joint's; actuators turn `reduction` times as far. */
+struct Transmission {
+  std::string name, joint;
+  double reduction = 1;  ///< not 0
+  double offset = 0;     ///< [rad or m] of the joint where the actuator is at 0
 };
 
 /** A kinematic tree. Joints are sorted so that every joint comes after the joint that moves its parent; otherwise in the file's order. */
@@ -63,11 +78,14 @@ struct RobotModel {
   std::string source;  ///< file or parameter, for error texts
   std::vector<LinkModel> links;
   std::vector<JointModel> joints;
+  std::vector<Transmission> transmissions;
   int root = 0;                    ///< index of the root link
   std::vector<std::string> notes;  ///< repairs and parts left out, in words
 
   int linkIndex(const std::string& link) const;    ///< -1 if there is none
   int jointIndex(const std::string& joint) const;  ///< -1 if there is none
+  /** The first transmission of a joint; null if it has none. */
+  const Transmission* transmissionOf(const std::string& joint) const;
 };
 
 /** Place of a link on a rigid body of a LumpedRobot. */
@@ -92,7 +110,10 @@ struct LumpedJoint {
   JointLimits limits;
   double dry_friction = 0, viscous_friction = 0;
   std::optional<Mimic> mimic;
+  std::optional<SafetyController> safety;
 
+  /** True for hinges and sliders, which have a position. */
+  bool moves() const { return type != JointType::FIXED && type != JointType::FLOATING; }
   /** Pose of the child body in the parent body at position q [rad or m]. */
   Pose pose(double q) const;
 };

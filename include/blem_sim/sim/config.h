@@ -54,6 +54,13 @@ struct JointGains {
 
 enum class MotorLaw { PID, IMPLICIT_PD };
 
+/** Motors of joints without gains. */
+enum class MotorDefault {
+  COMPUTED,       ///< gains computed from what the joints carry: the robot holds its pose
+  TRANSMISSIONS,  ///< the same where the URDF has a <transmission>, as Gazebo needs it; others are free
+  FREE,           ///< none: joints move freely, friction stays
+};
+
 struct JointFriction {
   double dry = 0, viscous = 0;
 };
@@ -88,10 +95,14 @@ struct RobotConfig {
   std::vector<std::pair<std::string, std::string>> disable_collisions;
   ContactOverrides contact;
   std::map<std::string, ContactOverrides> links;
-  std::map<std::string, JointGains> gains;              ///< by joint, "default"
-  std::map<std::string, MotorLaw> motor;                ///< by joint, "default"
+  std::map<std::string, JointGains> gains;       ///< by joint, "default"
+  std::map<std::string, JointGains> pid_gains;   ///< by joint, of gazebo_ros_control; gains beat them, names of no joint are left out
+  MotorDefault motors = MotorDefault::COMPUTED;  ///< of joints that gains do not name
+  std::map<std::string, MotorLaw> motor;         ///< by joint, "default"; implicit_pd where there is none
   std::map<std::string, JointFriction> joint_friction;  ///< by joint, "default"; beats the URDF's
   std::map<std::string, double> effort_limits;          ///< beats the URDF's
+  std::map<std::string, double> velocity_limits;        ///< [rad/s or m/s] beats the URDF's
+  double command_timeout = 0;                           ///< [s] after which velocity and effort commands end and joints hold; 0: never
   std::map<std::string, double> armature;               ///< [kg m^2 or kg] rotor inertia seen at the joint; by joint, "default"
   std::vector<SensorConfig> sensors;
   std::optional<int> max_contacts;  ///< k of this robot
@@ -141,6 +152,9 @@ SimulationConfig parseConfig(const YAML::Node& root, const std::string& source, 
 SimulationConfig loadConfigFile(const std::string& file);
 /** The document in a file, unread. @throws InputError if it cannot be read or is not YAML */
 YAML::Node loadYamlFile(const std::string& file);
+
+/** Gains by joint as the parameter gazebo_ros_control/pid_gains has them: p, i, d, i_clamp (or i_clamp_max); other keys are left. */
+std::map<std::string, JointGains> parsePidGains(const YAML::Node& node, const std::string& source);
 
 /** One environment entry, as the load_environment service takes it. */
 EnvironmentConfig parseEnvironment(const YAML::Node& node, const std::string& source);

@@ -46,7 +46,10 @@ struct SensorInfo {
   std::string frame_id;  ///< link the reading is expressed in
 };
 
-/** Targets for joints by name; empty vectors = not commanded. Position and velocity go to the motor, effort adds to it. */
+/**
+ * Targets for joints by name; empty vectors = not commanded. Modes: positions (held, with velocities as their rate), velocities alone,
+ * efforts alone; efforts beside the others add to the motor's.
+ */
 struct JointCommandMessage {
   std::vector<std::string> joints;
   std::vector<double> positions, velocities, efforts;

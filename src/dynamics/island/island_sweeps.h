@@ -61,7 +61,6 @@ class IslandSweeps {
             std::vector<LoopTerm>* loops) const;
 
  private:
-  enum class Motor : char { FREE, LOW, HIGH };  // answers linearly, or is at a bound of its effort
   struct Pair {
     BodyPair pair;
     ResponseSide a, b;
@@ -90,7 +89,6 @@ class IslandSweeps {
     Vector6 impulse;  // of forbidden rows
     AxisRow axis;     // the free one
   };
-  static Motor motorAt(const JointTerm& joint, double velocity);
   bool loadResponse(const SweepProblem& problem, const Eigen::VectorXd& velocity);
   void loadJoints(SweepStart start);
   void loadLoops(SweepStart start);
@@ -113,8 +111,8 @@ class IslandSweeps {
 
   std::optional<SweepProblem> problem_;
   IslandResponse response_;
-  Eigen::VectorXd gains_, momentum_;  // by dof of the forest
-  std::vector<Motor> motors_;         // by joint term
+  Eigen::VectorXd gains_, momentum_;   // by dof of the forest
+  std::vector<JointResponse> motors_;  // the line of each joint term's motor
   std::vector<int> dofs_;
   std::vector<Pair> pairs_, loop_pairs_;  // by patch, by loop
   std::vector<double> heights_;

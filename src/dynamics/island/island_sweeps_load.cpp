@@ -14,14 +14,9 @@ constexpr double LOOP_SOFTNESS = 1e-9;  // of the largest response: rows that de
 
 }  // namespace
 
-IslandSweeps::Motor IslandSweeps::motorAt(const JointTerm& joint, double velocity) {
-  const double wanted = joint.motor_gain * (joint.motor_velocity - velocity);
-  return wanted > joint.motor_bound ? Motor::HIGH : wanted < -joint.motor_bound ? Motor::LOW : Motor::FREE;
-}
-
 bool IslandSweeps::motorsAgree(const Eigen::VectorXd& velocity) const {
   for (std::size_t i = 0; i < motors_.size(); ++i)
-    if (motorAt(problem_->joints[i], velocity[problem_->joints[i].dof]) != motors_[i]) return false;
+    if (!(problem_->joints[i].motorLine(velocity[problem_->joints[i].dof]) == motors_[i])) return false;
   return true;
 }
 
@@ -40,11 +35,10 @@ bool IslandSweeps::loadResponse(const SweepProblem& problem, const Eigen::Vector
   }
   motors_.clear();
   for (const JointTerm& j : problem.joints) {
-    const Motor motor = motorAt(j, velocity[j.dof]);
+    const JointResponse motor = j.motorLine(velocity[j.dof]);
     motors_.push_back(motor);
-    gains_[j.dof] = j.viscous + (motor == Motor::FREE ? j.motor_gain : 0);
-    const double at_bound = motor == Motor::HIGH ? j.motor_bound : -j.motor_bound;
-    momentum_[j.dof] += motor == Motor::FREE ? j.motor_gain * j.motor_velocity : at_bound;
+    gains_[j.dof] = j.viscous + motor.stiffness;
+    momentum_[j.dof] += motor.impulse;
   }
   return response_.factor(gains_);
 }

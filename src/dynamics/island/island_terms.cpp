@@ -8,6 +8,7 @@ namespace {
 constexpr double CONTACT_PROXIMAL = 1e-4;  // rho = this * inverse mass at the contact: smaller is stiffer and needs more Newton iterations
 constexpr double HEAVIEST = 1e3;           // contacts are no softer than those of a mass this many times below the heaviest tree
 constexpr double JOINT_PROXIMAL = 1e-3;    // gain of friction and limits = inertia / this
+constexpr double VELOCITY_END = 1e-6;      // gain at the end of a motor's velocities = inertia / this
 constexpr double DRY_MOMENTUM = 0.9;  // share of its last change that stuck friction is expected to change by: all of it would never settle
 constexpr double LOOP_PROXIMAL = 1e-4;  // rho = this * inverse inertia
 constexpr double IMMOVABLE = 1e-12;     // [1/kg or 1/(kg m^2)]
@@ -31,6 +32,9 @@ JointTerm driveTerm(const TermSource& s, int joint, double q, double inertia) {
     term.motor_gain = dt * gain;
     term.motor_velocity = (drive.stiffness * (drive.target_position - q) + drive.damping * drive.target_velocity) / gain;
     term.motor_bound = dt * drive.max_effort;
+    term.velocity_gain = std::min(inertia / VELOCITY_END, dt * drive.velocity_gain);
+    term.min_velocity = drive.min_velocity;
+    term.max_velocity = drive.max_velocity;
   }
   term.viscous = dt * drive.viscous_friction;
   if (drive.dry_friction > 0) {

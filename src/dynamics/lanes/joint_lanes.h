@@ -10,7 +10,7 @@ namespace blem_sim {
 
 struct JointBlock {
   int dof[LANES];  ///< -1: no joint
-  Lanes motor_gain, motor_velocity, motor_bound, viscous;
+  Lanes motor_gain, motor_velocity, motor_bound, velocity_gain, min_velocity, max_velocity, viscous;
   Lanes dry_gain, dry_previous, dry_bound;  ///< the gains divided by their softness
   Lanes limit_gain, lower_velocity, lower_previous, upper_velocity, upper_previous;
   Lanes velocity, step;      ///< at the present iterate, and along the search direction

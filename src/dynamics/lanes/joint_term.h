@@ -8,6 +8,15 @@ namespace blem_sim {
 
 struct JointResponse {
   double impulse = 0, stiffness = 0;  ///< the second: -d impulse / dv >= 0
+
+  bool operator==(const JointResponse& o) const { return impulse == o.impulse && stiffness == o.stiffness; }
+};
+
+/** A straight piece of a motor's law. */
+struct MotorPiece {
+  double gain = 0, velocity = 0;
+
+  double impulse(double v) const { return gain * (velocity - v); }
 };
 
 /** Units for a revolute joint; a prismatic one has N s and m/s. */
@@ -19,6 +28,8 @@ struct JointTerm {
   double motor_gain = 0;  ///< D [N m s^2/rad]: impulse D (motor_velocity - v), within +-motor_bound
   double motor_velocity = 0;
   double motor_bound = 0;
+  double velocity_gain = 1;  ///< impulse at most velocity_gain (max_velocity - v), at least velocity_gain (min_velocity - v)
+  double min_velocity = -INFINITY, max_velocity = INFINITY;
   double viscous = 0;   ///< h mu_V
   double softness = 1;  ///< divides the gains of friction and limits
   double dry_gain = 0;  ///< impulse dry_previous - dry_gain / softness * v, within +-dry_bound
@@ -28,7 +39,22 @@ struct JointTerm {
   double lower_velocity = 0, lower_previous = 0;  ///< impulse max(0, lower_previous + limit_gain / softness * (lower_velocity - v))
   double upper_velocity = 0, upper_previous = 0;  ///< impulse -max(0, upper_previous + limit_gain / softness * (v - upper_velocity))
 
-  double motorImpulse(double v) const { return std::clamp(motor_gain * (motor_velocity - v), -motor_bound, motor_bound); }
+  /** Velocity that the motor wants at v, and how stiffly: its law, or the end of its velocities that lies before that. */
+  MotorPiece motorPiece(double v) const {
+    const double law = motor_gain * (motor_velocity - v);
+    if (law > velocity_gain * (max_velocity - v)) return {velocity_gain, max_velocity};
+    if (law < velocity_gain * (min_velocity - v)) return {velocity_gain, min_velocity};
+    return {motor_gain, motor_velocity};
+  }
+  double motorImpulse(double v) const { return std::clamp(motorPiece(v).impulse(v), -motor_bound, motor_bound); }
+  /** The motor's impulse about v as a straight line: impulse - stiffness * velocity. */
+  JointResponse motorLine(double v) const {
+    const MotorPiece piece = motorPiece(v);
+    const double wanted = piece.impulse(v);
+    if (wanted > motor_bound) return {motor_bound, 0};
+    if (wanted < -motor_bound) return {-motor_bound, 0};
+    return {piece.gain * piece.velocity, piece.gain};
+  }
   double dryImpulse(double v) const { return std::clamp(dry_previous - dry_gain / softness * v, -dry_bound, dry_bound); }
   double lowerImpulse(double v) const {
     return limit_gain > 0 ? std::max(0.0, lower_previous + limit_gain / softness * (lower_velocity - v)) : 0;
@@ -40,8 +66,7 @@ struct JointTerm {
 
   /** -d impulse / dv >= 0 */
   double stiffness(double v) const {
-    double sum = viscous;
-    if (std::abs(motor_gain * (motor_velocity - v)) < motor_bound) sum += motor_gain;
+    double sum = viscous + motorLine(v).stiffness;
     if (std::abs(dry_previous - dry_gain / softness * v) < dry_bound) sum += dry_gain / softness;
     if (lowerImpulse(v) > 0) sum += limit_gain / softness;
     if (upperImpulse(v) > 0) sum += limit_gain / softness;
@@ -55,7 +80,7 @@ struct JointTerm {
       out.impulse -= gain * speed;
       out.stiffness += gain;
     };
-    if (std::abs(motor_gain * (motor_velocity - v)) < motor_bound) out.stiffness += motor_gain;
+    out.stiffness += motorLine(v).stiffness;
     if (std::abs(dry_previous) < STICKING * dry_bound) add(dry_gain / softness, v);
     if (lower_previous > 0) {
       out.impulse += lower_previous;

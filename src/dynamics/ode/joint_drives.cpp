@@ -36,10 +36,23 @@ void setRow(const JointSlot& slot, MotorRow which, const Row& row) {
   setParameter(slot, dParamFMax + group, std::isinf(row.bound) ? dInfinity : row.bound);
 }
 
-Row pdRow(const JointDrive& drive, double q, double dt) {
+/** Position and velocity of a joint as the step begins. */
+struct JointMotion {
+  double q = 0, velocity = 0;
+};
+
+Row pdRow(const JointDrive& drive, const JointMotion& motion, double dt, double softness) {
   const double gain = dt * drive.stiffness + drive.damping;
   if (!(gain > 0) || !(drive.max_effort > 0)) return {};
-  return {(drive.stiffness * (drive.target_position - q) + drive.damping * drive.target_velocity) / gain, 1 / gain, drive.max_effort};
+  const double wanted = (drive.stiffness * (drive.target_position - motion.q) + drive.damping * drive.target_velocity) / gain;
+  const Row law{wanted, 1 / gain, drive.max_effort};
+  if (wanted >= drive.min_velocity && wanted <= drive.max_velocity) return law;
+  // A law that leads beyond a velocity becomes one that leads to it, with the effort of now: one row has no third piece.
+  const bool upwards = wanted > drive.max_velocity;
+  const double end = upwards ? drive.max_velocity : drive.min_velocity;
+  const bool is_faster = upwards ? motion.velocity > end : motion.velocity < end;
+  const double effort = is_faster ? drive.max_effort : gain * std::abs(wanted - motion.velocity);
+  return {end, std::max(softness, 1 / drive.velocity_gain), std::min(drive.max_effort, effort)};
 }
 
 /** Inertia along its axis of all that a joint carries, for each joint in a tree; 0 for others. */
@@ -63,8 +76,9 @@ std::vector<double> carriedInertias(const Scene& scene) {
   return inertias;
 }
 
-void setMotorRows(const JointSlot& slot, const JointDrive& drive, double q, double inverse_inertia, double dt, double joint_cfm) {
-  Row pd = pdRow(drive, q, dt);
+/** @param softness of a row that is to be rigid */
+void setMotorRows(const JointSlot& slot, const JointDrive& drive, const JointMotion& motion, double dt, double softness) {
+  Row pd = pdRow(drive, motion, dt, softness);
   Row viscous;
   if (drive.viscous_friction > 0) viscous = {0, 1 / drive.viscous_friction, dInfinity};
   // Two unbounded linear rows are one: fewer rows, better conditioned.
@@ -74,7 +88,7 @@ void setMotorRows(const JointSlot& slot, const JointDrive& drive, double q, doub
     viscous = {};
   }
   Row dry;
-  if (drive.dry_friction > 0) dry = {0, std::max(joint_cfm, DRY_SOFTNESS * dt * inverse_inertia), drive.dry_friction};
+  if (drive.dry_friction > 0) dry = {0, softness, drive.dry_friction};
   setRow(slot, PD_ROW, pd);
   setRow(slot, VISCOUS_ROW, viscous);
   setRow(slot, DRY_ROW, dry);
@@ -139,8 +153,9 @@ void setDrives(Scene* scene, double dt, const std::vector<JointDrive>& drives, c
     const int joint = static_cast<int>(j);
     const double q = scene->jointPosition(joint);
     const double inverse_inertia = inertias[j] > 0 ? 1 / inertias[j] : scene->inverseInertia(joint);
-    setMotorRows(slot, drives[j], q, inverse_inertia * cfm_scale, dt, cfm);
-    setStop(slot, q, scene->jointVelocity(joint), dt, settings, cfm);
+    const double velocity = scene->jointVelocity(joint);
+    setMotorRows(slot, drives[j], {q, velocity}, dt, std::max(cfm, DRY_SOFTNESS * dt * (inverse_inertia * cfm_scale)));
+    setStop(slot, q, velocity, dt, settings, cfm);
     addEffort(slot, drives[j].effort + coupling[j]);
   }
 }

@@ -20,8 +20,8 @@ bool isSound(const ContactConstraint& c) {
 
 bool isSound(const JointDrive& d) {
   return std::isfinite(d.effort) && std::isfinite(d.target_position) && std::isfinite(d.target_velocity) && d.max_effort >= 0 &&
-         finiteAndNotNegative(d.stiffness) && finiteAndNotNegative(d.damping) && finiteAndNotNegative(d.dry_friction) &&
-         finiteAndNotNegative(d.viscous_friction);
+         d.min_velocity <= d.max_velocity && d.velocity_gain >= 0 && finiteAndNotNegative(d.stiffness) && finiteAndNotNegative(d.damping) &&
+         finiteAndNotNegative(d.dry_friction) && finiteAndNotNegative(d.viscous_friction);
 }
 
 void checkJointNumbers(const JointSpec& joint, double position) {

@@ -12,6 +12,7 @@
 
 #include "blem_sim/geometry/input_error.h"
 #include "checks/one_line.h"
+#include "checks/urdf_transmissions.h"
 #include "checks/urdf_tree_check.h"
 
 namespace blem_sim {
@@ -148,6 +149,16 @@ void checkJointNumbers(const Element& joint, const std::string& type, const std:
   }
 }
 
+void checkSafetyController(const Element& joint, const std::string& where) {
+  const Element* safety = joint.FirstChildElement("safety_controller");
+  if (!safety) return;
+  if (!safety->Attribute("k_velocity")) refuse(where, "<safety_controller> without k_velocity; add it (0 bounds no effort)");
+  for (const char* name : {"soft_lower_limit", "soft_upper_limit"}) optionalNumbers(*safety, name, 1, where);
+  for (const char* name : {"k_position", "k_velocity"})
+    if (safety->Attribute(name) && numbers(*safety, name, 1, where)[0] < 0)
+      refuse(where, fmt::format("<safety_controller {}=\"{}\"> is negative; give zero or more", name, attribute(*safety, name)));
+}
+
 JointOutline checkJoint(const Element& joint, const std::string& where) {
   static const std::set<std::string> TYPES = {"fixed", "revolute", "continuous", "prismatic", "planar", "floating"};
   JointOutline outline;
@@ -161,6 +172,7 @@ JointOutline checkJoint(const Element& joint, const std::string& where) {
   if (child) outline.child = attribute(*child, "link");
   if (outline.parent.empty() || outline.child.empty()) refuse(where, "it needs <parent link=\"...\"/> and <child link=\"...\"/>");
   checkJointNumbers(joint, outline.type, where);
+  checkSafetyController(joint, where);
   if (const Element* mimic = joint.FirstChildElement("mimic")) {
     outline.mimic = attribute(*mimic, "joint");
     if (outline.mimic.empty()) refuse(where, "<mimic> without a joint; name the joint it follows");
@@ -203,7 +215,7 @@ UrdfOutline checkUrdf(const std::string& xml, const std::string& source) {
   const Element& robot = robotElement(document, xml, source);
   UrdfOutline outline;
   std::map<std::string, int> left_out;
-  countExtensions(robot, {"link", "joint", "material"}, &left_out);
+  countExtensions(robot, {"link", "joint", "material", "transmission"}, &left_out);
   forChildren(robot, "link", [&](const Element& link) {
     outline.links.push_back(attribute(link, "name"));
     checkLink(link, fmt::format("{}: link '{}'", source, outline.links.back()));
@@ -213,9 +225,10 @@ UrdfOutline checkUrdf(const std::string& xml, const std::string& source) {
   forChildren(robot, "joint", [&](const Element& joint) {
     outline.joints.push_back(attribute(joint, "name"));
     joints.push_back(checkJoint(joint, fmt::format("{}: joint '{}'", source, outline.joints.back())));
-    countExtensions(joint, {"origin", "parent", "child", "axis", "limit", "dynamics", "mimic"}, &left_out);
+    countExtensions(joint, {"origin", "parent", "child", "axis", "limit", "dynamics", "mimic", "safety_controller"}, &left_out);
   });
   checkTree(outline.links, joints, source);
+  outline.transmissions = readTransmissions(robot, outline.joints, source, &outline.notes);
   for (const auto& [name, count] : left_out)
     outline.notes.push_back(fmt::format("<{}> left out ({} of them): it is not simulated", name, count));
   return outline;

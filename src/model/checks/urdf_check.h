@@ -4,12 +4,15 @@
 #include <string>
 #include <vector>
 
+#include "blem_sim/model/robot_model.h"
+
 namespace blem_sim {
 
 /** Names in the file's order (urdfdom sorts them) and notes on blocks left out of the simulation. */
 struct UrdfOutline {
   std::vector<std::string> links;
   std::vector<std::string> joints;
+  std::vector<Transmission> transmissions;
   std::vector<std::string> notes;
 };
 

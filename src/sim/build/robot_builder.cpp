@@ -3,26 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 
 #include "blem_sim/geometry/input_error.h"
+#include "build/by_joint.h"
+#include "build/robot_motors.h"
 #include "build/robot_names.h"
 
 namespace blem_sim {
 namespace {
-
-bool moves(const LumpedJoint& joint) { return joint.type != JointType::FIXED && joint.type != JointType::FLOATING; }
-
-/** The joint's own entry, else "default", else `otherwise`. */
-template <typename Value>
-Value byJoint(const std::map<std::string, Value>& entries, const std::string& joint, const Value& otherwise) {
-  for (const std::string& key : {joint, std::string("default")}) {
-    const auto entry = entries.find(key);
-    if (entry != entries.end()) return entry->second;
-  }
-  return otherwise;
-}
 
 std::set<std::string> jointsWithSensor(const RobotConfig& config) {
   std::set<std::string> joints;
@@ -53,7 +42,7 @@ std::vector<int> mastersFirst(const LumpedRobot& robot, const std::string& where
       if (placed[j]) continue;
       if (joint.mimic) {
         const int master = lumpedJointIndex(robot, joint.mimic->joint);
-        if (master < 0 || !moves(robot.joints[master]))
+        if (master < 0 || !robot.joints[master].moves())
           throw InputError(
               fmt::format("{}: joint '{}' mimics '{}', which does not move; correct <mimic>", where, joint.name, joint.mimic->joint));
         if (!placed[master]) continue;
@@ -73,25 +62,8 @@ RobotBuilder::RobotBuilder(const RobotConfig& config, const ContactConfig& conta
   // The check below refuses a sensor at an unknown joint.
   lumped_ = std::make_shared<const LumpedRobot>(lumpFixedJoints(*model_, jointsWithSensor(config_), config_.fixed_base));
   checkRobotNames(config_, *model_, *lumped_);
-  checkMotors();
+  checkMotors(config_);
   placeBodies();
-}
-
-void RobotBuilder::checkMotors() const {
-  const auto refuse = [&](const std::string& what, const std::string& joint) {
-    throw InputError(fmt::format("robots: {}: {}: {}: numbers must be finite and not negative", config_.name, what, joint));
-  };
-  const auto wrong = [](double x) { return !(x >= 0) || std::isinf(x); };
-  for (const auto& [joint, gains] : config_.gains)
-    if (wrong(gains.p) || wrong(gains.i) || wrong(gains.d) || !(gains.i_clamp >= 0)) refuse("gains", joint);
-  for (const auto& [joint, friction] : config_.joint_friction)
-    if (wrong(friction.dry) || wrong(friction.viscous)) refuse("joint_friction", joint);
-  for (const auto& [joint, limit] : config_.effort_limits)
-    if (!(limit >= 0)) refuse("effort_limits", joint);
-  for (const auto& [joint, inertia] : config_.armature)
-    if (wrong(inertia)) refuse("armature", joint);
-  for (const auto& [joint, position] : config_.initial_positions)
-    if (!std::isfinite(position)) refuse("initial_positions", joint);
 }
 
 double RobotBuilder::initialPosition(const LumpedJoint& joint) const {
@@ -104,7 +76,7 @@ void RobotBuilder::placeBodies() {
   positions_.assign(joints.size(), 0);
   for (const int j : mastersFirst(*lumped_, "robots: " + config_.name)) {
     const LumpedJoint& joint = joints[j];
-    if (!moves(joint)) continue;
+    if (!joint.moves()) continue;
     if (joint.mimic) {
       positions_[j] = joint.mimic->multiplier * positions_[lumpedJointIndex(*lumped_, joint.mimic->joint)] + joint.mimic->offset;
       continue;
@@ -160,19 +132,21 @@ void RobotBuilder::addBodies() {
 }
 
 void RobotBuilder::addJoints() {
+  const RobotMotors motors = robotMotors(config_, *model_, *lumped_, positions_, world_->world.gravity().norm());
+  for (const std::string& words : motors.notes) note(words);
   info_.world_joints.assign(lumped_->joints.size(), -1);
   for (const int j : mastersFirst(*lumped_, "robots: " + config_.name))
-    if (lumped_->joints[j].type != JointType::FLOATING) addJoint(j);
+    if (lumped_->joints[j].type != JointType::FLOATING) addJoint(j, motors.settings[j]);
   for (std::size_t j = 0; j < lumped_->joints.size(); ++j) {
     const LumpedJoint& joint = lumped_->joints[j];
-    if (!moves(joint)) continue;
+    if (!joint.moves()) continue;
     info_.joint_names.push_back(joint.name);
     info_.joints.push_back(info_.world_joints[j]);
     info_.limits.push_back(joint.limits);
   }
 }
 
-void RobotBuilder::addJoint(int j) {
+void RobotBuilder::addJoint(int j, const MotorSettings& motor) {
   const LumpedJoint& joint = lumped_->joints[j];
   JointSpec spec;
   spec.name = config_.name + "::" + joint.name;
@@ -185,29 +159,14 @@ void RobotBuilder::addJoint(int j) {
     spec.lower = joint.limits.lower;
     spec.upper = joint.limits.upper;
   }
-  if (joint.mimic && moves(joint)) {
+  if (joint.mimic && joint.moves()) {
     spec.mimic_joint = info_.world_joints[lumpedJointIndex(*lumped_, joint.mimic->joint)];
     spec.mimic_multiplier = joint.mimic->multiplier;
     spec.mimic_offset = joint.mimic->offset;
   }
-  if (moves(joint)) spec.armature = byJoint(config_.armature, joint.name, 0.0);
+  if (joint.moves()) spec.armature = byJoint(config_.armature, joint.name, 0.0);
   info_.world_joints[j] = world_->world.addJoint(spec, positions_[j]);
-  addMotor(joint, positions_[j]);
-}
-
-void RobotBuilder::addMotor(const LumpedJoint& joint, double position) {
-  MotorSettings settings;
-  settings.commanded = moves(joint) && !joint.mimic;
-  settings.continuous = joint.type == JointType::CONTINUOUS;
-  if (moves(joint)) {
-    settings.friction = byJoint(config_.joint_friction, joint.name, JointFriction{joint.dry_friction, joint.viscous_friction});
-    settings.effort_limit = byJoint(config_.effort_limits, joint.name, joint.limits.effort);
-    settings.law = byJoint(config_.motor, joint.name, MotorLaw::PID);
-    settings.gains = byJoint(config_.gains, joint.name, JointGains());
-  }
-  if (settings.commanded && settings.effort_limit == 0 && settings.gains.p + settings.gains.d > 0)
-    note(fmt::format("joint '{}' has an effort limit of 0, so its motor does nothing; set effort_limits", joint.name));
-  world_->motors.emplace_back(settings, position);
+  world_->motors.emplace_back(motor, positions_[j]);
 }
 
 void RobotBuilder::addSensors(int robot) {

@@ -21,13 +21,11 @@ class RobotBuilder {
   void addTo(SimulatedWorld* world, SurfaceLibrary* surfaces);
 
  private:
-  void checkMotors() const;
   void placeBodies();
   double initialPosition(const LumpedJoint& joint) const;
   void addBodies();
   void addJoints();
-  void addJoint(int joint);
-  void addMotor(const LumpedJoint& joint, double position);
+  void addJoint(int joint, const MotorSettings& motor);
   void addColliders(SurfaceLibrary* surfaces);
   void disableNeighbours();
   void disableListedPairs(int first_collider);

@@ -21,7 +21,7 @@ Names namesOf(const RobotModel& model, const LumpedRobot& lumped) {
   for (const LinkModel& link : model.links) names.links.push_back(link.name);
   for (const JointModel& joint : model.joints) names.all_joints.push_back(joint.name);
   for (const LumpedJoint& joint : lumped.joints)
-    if (joint.type != JointType::FIXED && joint.type != JointType::FLOATING) names.movable.push_back(joint.name);
+    if (joint.moves()) names.movable.push_back(joint.name);
   return names;
 }
 
@@ -65,6 +65,7 @@ void checkRobotNames(const RobotConfig& config, const RobotModel& model, const L
   checkJoints(config.motor, where + "motor", names.movable, true);
   checkJoints(config.joint_friction, where + "joint_friction", names.movable, true);
   checkJoints(config.effort_limits, where + "effort_limits", names.movable, true);
+  checkJoints(config.velocity_limits, where + "velocity_limits", names.movable, true);
   checkJoints(config.armature, where + "armature", names.movable, true);
   for (const auto& entry : config.links) requireName(entry.first, names.links, where + "links", "link");
   for (const auto& pair : config.disable_collisions)

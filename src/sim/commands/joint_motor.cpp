@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "numbers/number_reader.h"
 
@@ -10,6 +11,12 @@ namespace {
 
 // The implicit law's effort is bounded in the solve; beyond this much of the limit, relative, it asked for more.
 constexpr double SATURATION_TOLERANCE = 1e-6;
+constexpr double AT_VELOCITY = 1e-3;     // of the limit, relative: the joint moves as fast as the motor may drive it
+constexpr double TIME_TOLERANCE = 1e-9;  // [s] rounding of times that are sums of steps
+// Joints that a given effort could bring to their velocity limit in this many steps, alone against the least inertia, get a row that ends
+// it there; a row costs little, so the number is large against what other joints' inertia may add.
+constexpr double STEPS_TO_LIMIT = 100;
+constexpr double RIGID = 1e6;  // gain of that row over the inertia: what it gives misses the limit by a millionth of the step's change
 
 double clamped(double x, double bound) { return std::max(-bound, std::min(bound, x)); }
 
@@ -24,81 +31,155 @@ void JointMotor::reset() {
   added_effort_ = integral_ = 0;
 }
 
-void JointMotor::follow(double now, double start, std::vector<JointSpline::Knot> knots, double position) {
-  if (velocity_only_) spline_ = JointSpline(position);
-  velocity_only_ = false;
+/** A mode's targets end with it. */
+void JointMotor::enter(Mode mode) {
+  if (mode_ == Mode::EFFORT) added_effort_ = 0;
+  mode_ = mode;
   velocity_target_ = 0;
+}
+
+void JointMotor::follow(double now, double start, std::vector<JointSpline::Knot> knots, double position) {
+  if (mode_ != Mode::POSITION) spline_ = JointSpline(position);
+  enter(Mode::POSITION);
   spline_.splice(now, start, std::move(knots), settings_.continuous);
 }
 
 void JointMotor::hold(double position, double velocity) {
   spline_ = JointSpline(position);
-  velocity_only_ = false;
+  enter(Mode::POSITION);
   velocity_target_ = velocity;
 }
 
-void JointMotor::keepVelocity(double velocity) {
-  velocity_only_ = true;
+void JointMotor::keepVelocity(double velocity, double now) {
+  enter(Mode::VELOCITY);
   velocity_target_ = velocity;
+  command_time_ = now;
+  integral_ = 0;
+}
+
+void JointMotor::keepEffort(double effort, double now) {
+  enter(Mode::EFFORT);
+  added_effort_ = effort;
+  command_time_ = now;
   integral_ = 0;
 }
 
 JointSample JointMotor::desired(double time) const {
   JointSample sample = spline_.sample(time);
-  if (velocity_only_) sample.velocity = sample.effort = 0;
+  if (mode_ != Mode::POSITION) sample.velocity = sample.effort = 0;
   sample.velocity += velocity_target_;
   sample.effort += added_effort_;
   return sample;
 }
 
-void JointMotor::sample(double time, double dt) { sample_ = desired(settings_.law == MotorLaw::PID ? time : time + dt); }
+void JointMotor::sample(double time, double dt) {
+  now_ = time;
+  dt_ = dt;
+  sample_ = desired(settings_.law == MotorLaw::PID ? time : time + dt);
+}
+
+bool JointMotor::isOverdue() const {
+  return mode_ != Mode::POSITION && settings_.command_timeout > 0 && now_ > command_time_ + settings_.command_timeout - TIME_TOLERANCE;
+}
+
+double JointMotor::damping() const {
+  if (mode_ == Mode::EFFORT) return 0;
+  return mode_ == Mode::VELOCITY ? settings_.velocity_gain.value_or(settings_.gains.d) : settings_.gains.d;
+}
+
+void JointMotor::setVelocities(double position, JointDrive* drive) {
+  const double limit = settings_.velocity_limit;
+  max_velocity_ = limit;
+  min_velocity_ = -limit;
+  const SafetyController safety = settings_.safety.value_or(SafetyController());
+  if (safety.k_position > 0 && safety.lower < safety.upper) {
+    max_velocity_ = clamped(safety.k_position * (safety.upper - position), limit);
+    min_velocity_ = clamped(safety.k_position * (safety.lower - position), limit);
+  }
+  if (safety.k_velocity > 0) drive->velocity_gain = safety.k_velocity;
+  drive->max_velocity = max_velocity_;
+  drive->min_velocity = min_velocity_;
+}
 
 JointDrive JointMotor::drive(const JointState& state) {
   JointDrive drive;
   drive.dry_friction = settings_.friction.dry;
   drive.viscous_friction = settings_.friction.viscous;
   capped_ = false;
+  given_effort_.reset();
   if (!settings_.commanded) return drive;
-  const JointGains& gains = settings_.gains;
-  const double stiffness = velocity_only_ ? 0 : gains.p;
-  error_ = velocity_only_ ? 0 : sample_.position - state.position;
+  if (isOverdue()) {
+    hold(state.position);
+    sample(now_, dt_);
+  }
+  setVelocities(state.position, &drive);
+  const double stiffness = mode_ == Mode::POSITION ? settings_.gains.p : 0;
+  error_ = mode_ == Mode::POSITION ? sample_.position - state.position : 0;
   const double feed_forward = integral_ + sample_.effort;
-  if (settings_.law == MotorLaw::IMPLICIT_PD && stiffness + gains.d > 0) {
+  if (settings_.law == MotorLaw::IMPLICIT_PD && stiffness + damping() > 0) {
     // The feed-forward goes into the target, so that one bound holds for the sum.
     drive.stiffness = stiffness;
-    drive.damping = gains.d;
+    drive.damping = damping();
     drive.max_effort = settings_.effort_limit;
     drive.target_position = sample_.position + (stiffness > 0 ? feed_forward / stiffness : 0);
-    drive.target_velocity = sample_.velocity + (stiffness > 0 ? 0 : feed_forward / gains.d);
+    drive.target_velocity = sample_.velocity + (stiffness > 0 ? 0 : feed_forward / damping());
     return drive;
   }
-  const double effort = stiffness * error_ + gains.d * (sample_.velocity - state.velocity) + feed_forward;
-  drive.effort = clamped(effort, settings_.effort_limit);
-  capped_ = drive.effort != effort;
+  giveEffort(stiffness * error_ + damping() * (sample_.velocity - state.velocity) + feed_forward, state.velocity, &drive);
   return drive;
+}
+
+void JointMotor::giveEffort(double effort, double velocity, JointDrive* drive) {
+  given_effort_ = clamped(effort, settings_.effort_limit);
+  capped_ = *given_effort_ != effort;
+  const double limit = std::exchange(drive->max_velocity, INFINITY), lower = std::exchange(drive->min_velocity, -INFINITY);
+  const double room = *given_effort_ > 0 ? limit - velocity : velocity - lower;
+  if (!(settings_.inertia > 0) || STEPS_TO_LIMIT * dt_ * std::abs(*given_effort_) < settings_.inertia * room) {
+    drive->effort = *given_effort_;
+    return;
+  }
+  drive->damping = std::min(RIGID * settings_.inertia / dt_, drive->velocity_gain);
+  drive->target_velocity = *given_effort_ > 0 ? limit : lower;
+  drive->max_effort = std::abs(*given_effort_);
+}
+
+bool JointMotor::atVelocityLimit(double effort, double velocity) const {
+  const double limit = effort > 0 ? max_velocity_ : -min_velocity_, along = effort > 0 ? velocity : -velocity;
+  return along >= limit - AT_VELOCITY * std::abs(limit);
 }
 
 bool JointMotor::accept(const JointDrive& drive, const JointState& after, double dt) {
   if (!settings_.commanded) return false;
   const double asked =
-      drive.stiffness * (drive.target_position - after.position) + drive.damping * (drive.target_velocity - after.velocity);
-  const bool saturated = capped_ || std::abs(asked) > drive.max_effort * (1 + SATURATION_TOLERANCE);
-  // Effort beyond the limit is not asked for later either: the integral does not wind up.
-  const bool winds_up = saturated && (capped_ ? drive.effort : asked) * error_ > 0;
-  if (!winds_up) integral_ = clamped(integral_ + settings_.gains.i * error_ * dt, settings_.gains.i_clamp);
+      given_effort_ ? *given_effort_
+                    : drive.stiffness * (drive.target_position - after.position) + drive.damping * (drive.target_velocity - after.velocity);
+  const bool held_back = atVelocityLimit(asked, after.velocity);
+  const bool saturated = capped_ || (!held_back && std::abs(asked) > drive.max_effort * (1 + SATURATION_TOLERANCE));
+  // Effort beyond a limit is not asked for later either: the integral does not wind up.
+  const bool winds_up = (saturated || held_back) && asked * error_ > 0;
+  if (!winds_up) integrate(dt);
   return saturated;
 }
 
+/** An error that dry friction holds against p alone is not integrated: the joint would stick and slip about its target for ever. */
+void JointMotor::integrate(double dt) {
+  const JointGains& gains = settings_.gains;
+  if (gains.i > 0 && gains.p * std::abs(error_) < settings_.friction.dry) return;
+  integral_ = clamped(integral_ + gains.i * error_ * dt, gains.i_clamp);
+}
+
 void JointMotor::append(std::vector<double>* numbers) const {
-  numbers->insert(numbers->end(), {velocity_only_ ? 1.0 : 0.0, velocity_target_, added_effort_, integral_});
+  numbers->insert(numbers->end(), {static_cast<double>(mode_), velocity_target_, added_effort_, integral_});
+  if (mode_ != Mode::POSITION) numbers->push_back(command_time_);
   spline_.append(numbers);
 }
 
 void JointMotor::read(NumberReader* reader) {
-  velocity_only_ = reader->flag();
+  mode_ = static_cast<Mode>(reader->choice(static_cast<int>(Mode::COUNT)));
   velocity_target_ = reader->number();
   added_effort_ = reader->number();
   integral_ = reader->number();
+  command_time_ = mode_ == Mode::POSITION ? 0 : reader->number();
   spline_.read(reader);
 }
 

@@ -1,9 +1,11 @@
 // One joint's motor: its commands, and the effort that follows from them.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "blem_sim/dynamics/world_types.h"
+#include "blem_sim/model/robot_model.h"
 #include "blem_sim/sim/config.h"
 #include "blem_sim/sim/trajectory.h"
 
@@ -11,14 +13,20 @@ namespace blem_sim {
 
 struct MotorSettings {
   JointGains gains;
+  std::optional<double> velocity_gain;  ///< [N m s/rad or N s/m] instead of gains.d while a velocity is commanded
   MotorLaw law = MotorLaw::PID;
   JointFriction friction;
-  double effort_limit = std::numeric_limits<double>::infinity();  ///< [N m or N]
-  bool continuous = false;                                        ///< positions are meant to the nearest turn
-  bool commanded = false;  ///< false: no motor of its own (a fixed joint, a mimic joint); friction stays
+  double effort_limit = std::numeric_limits<double>::infinity();    ///< [N m or N]
+  double velocity_limit = std::numeric_limits<double>::infinity();  ///< [rad/s or m/s] beyond which the motor does not drive
+  std::optional<SafetyController> safety;
+  double inertia = 0;          ///< [kg m^2 or kg] that its effort meets at least; 0: not known, and Eq. 7 knows no velocity limit
+  double command_timeout = 0;  ///< [s] after which a velocity or an effort that was commanded ends; 0: never
+  bool continuous = false;     ///< positions are meant to the nearest turn
+  bool commanded = false;      ///< false: no motor of its own (a fixed joint, a mimic joint); friction stays
 };
 
-/** Follows a trajectory, holds a target, or keeps a velocity; an effort adds to each. State: trajectory, targets, integral term. */
+/** Follows a trajectory, holds a target, keeps a velocity (an effort adds to each), or gives an effort. State: all of these, integral term.
+ */
 class JointMotor {
  public:
   JointMotor() = default;
@@ -26,20 +34,22 @@ class JointMotor {
 
   /** Makes the motor hold the initial position again, integral 0. */
   void reset();
-  /** Takes over a trajectory's knots. @param position [rad or m] of the joint now, from which a velocity target is left */
+  /** Takes over a trajectory's knots. @param position [rad or m] of the joint now, from which a velocity or an effort is left */
   void follow(double now, double start, std::vector<JointSpline::Knot> knots, double position);
   void hold(double position, double velocity = 0);
   /** Velocity alone: damping against the velocity error, no stiffness; the integral and a trajectory's effort end. */
-  void keepVelocity(double velocity);
+  void keepVelocity(double velocity, double now);
+  /** Effort alone: no stiffness, no damping; integral and trajectory end. */
+  void keepEffort(double effort, double now);
   void addEffort(double effort) { added_effort_ = effort; }
 
   JointSample desired(double time) const;
 
   /** Latches the desired state for the coming (sub)step: Eq. 7 takes that at its start, the implicit law that at its end. */
   void sample(double time, double dt);
-  /** Drive of the joint in the coming (sub)step, within the effort limit [Hauser 2013, Eq. 7 and 4.1]. */
+  /** Drive of the joint in the coming (sub)step, within effort and velocity limits [Hauser 2013, Eq. 7 and 4.1]. */
   JointDrive drive(const JointState& state);
-  /** Call after an accepted (sub)step: integrates, and notes whether the limit was met. @return true if it was */
+  /** Call after an accepted (sub)step: integrates, and notes whether the effort limit was met. @return true if it was */
   bool accept(const JointDrive& drive, const JointState& after, double dt);
 
   const MotorSettings& settings() const { return settings_; }
@@ -47,16 +57,32 @@ class JointMotor {
   void read(NumberReader* reader);
 
  private:
+  enum class Mode { POSITION, VELOCITY, EFFORT, COUNT };
+
+  void enter(Mode mode);
+  bool isOverdue() const;
+  double damping() const;
+  /** Velocities between which the motor drives in the coming (sub)step. */
+  void setVelocities(double position, JointDrive* drive);
+  /** An effort given in advance, ended by the step's solution where it could drive the joint beyond its velocities. */
+  void giveEffort(double effort, double velocity, JointDrive* drive);
+  bool atVelocityLimit(double effort, double velocity) const;
+  void integrate(double dt);
+
   MotorSettings settings_;
   double initial_position_ = 0;
   JointSpline spline_;
-  bool velocity_only_ = false;
+  Mode mode_ = Mode::POSITION;
   double velocity_target_ = 0;  ///< adds to the spline's
   double added_effort_ = 0;
-  double integral_ = 0;  ///< [N m or N] the integral term, k_I times the integral of the error
+  double integral_ = 0;      ///< [N m or N] the integral term, k_I times the integral of the error
+  double command_time_ = 0;  ///< [s] of a velocity or an effort
   // Variables of the present (sub)step, not state.
   JointSample sample_;
+  double now_ = 0, dt_ = 0;
   double error_ = 0;
+  double min_velocity_ = 0, max_velocity_ = 0;
+  std::optional<double> given_effort_;
   bool capped_ = false;
 };
 

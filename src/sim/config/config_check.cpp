@@ -77,6 +77,15 @@ void checkContact(const ContactConfig& contact) {
   fields.atLeastOne("max_contacts_per_object", contact.max_contacts_per_object);
 }
 
+void checkArmature(const RobotConfig& robot, const SolverSettings& solver) {
+  if (solver.stepper == "articulated") return;
+  for (const auto& [joint, inertia] : robot.armature)
+    if (inertia > 0)
+      throw InputError(
+          fmt::format("robots: {}: armature: {}: {} knows no rotor inertia; set solver.stepper to articulated, or leave it out", robot.name,
+                      joint, solver.stepper));
+}
+
 void checkRobot(const RobotConfig& robot) {
   const Fields fields("robots: " + robot.name + ": ");
   fields.pose("pose", robot.X_WR);
@@ -125,7 +134,10 @@ void checkConfig(const SimulationConfig& config) {
   checkSolver(config.solver);
   checkContact(config.contact);
   for (const EnvironmentConfig& environment : config.environments) checkEnvironment(environment);
-  for (const RobotConfig& robot : config.robots) checkRobot(robot);
+  for (const RobotConfig& robot : config.robots) {
+    checkRobot(robot);
+    checkArmature(robot, config.solver);
+  }
   for (const ObjectConfig& object : config.objects) checkObject(object);
 }
 

@@ -44,6 +44,10 @@ void readJointFriction(const std::string& name, YamlReader& map, JointFriction* 
   reader.finish();
 }
 
+MotorDefault readMotorDefault(YamlReader& reader) {
+  return static_cast<MotorDefault>(reader.choice("motors", {"computed", "transmissions", "free"}).value_or(0));
+}
+
 MotorLaw motorLaw(YamlReader& reader, const std::string& key) {
   return reader.choice(key, {"pid", "implicit_pd"}).value_or(0) == 1 ? MotorLaw::IMPLICIT_PD : MotorLaw::PID;
 }
@@ -87,6 +91,22 @@ void readSource(YamlReader& reader, RobotConfig* robot) {
 
 }  // namespace
 
+std::map<std::string, JointGains> parsePidGains(const YAML::Node& node, const std::string& source) {
+  YAML::Node root;
+  root["pid_gains"] = node;
+  YamlReader reader(root, source);
+  std::map<std::string, JointGains> by_joint;
+  reader.forEachName("pid_gains", [&](const std::string& joint, YamlReader& map) {
+    YamlReader gains = map.section(joint);
+    JointGains& out = by_joint[joint];
+    gains.read("p", &out.p, NumberRange::notNegative());
+    gains.read("i", &out.i, NumberRange::notNegative());
+    gains.read("d", &out.d, NumberRange::notNegative());
+    for (const char* key : {"i_clamp_max", "i_clamp"}) gains.read(key, &out.i_clamp, NumberRange::notNegativeOrInfinite());
+  });
+  return by_joint;
+}
+
 RobotConfig readRobot(YamlReader& reader) {
   RobotConfig robot;
   robot.name = readName(reader);
@@ -104,9 +124,12 @@ RobotConfig readRobot(YamlReader& reader) {
     link.finish();
   });
   robot.gains = readByJoint<JointGains>(reader, "gains", readGains);
+  robot.motors = readMotorDefault(reader);
   robot.motor = readMotor(reader);
   robot.joint_friction = readByJoint<JointFriction>(reader, "joint_friction", readJointFriction);
   robot.effort_limits = readNumbers(reader, "effort_limits", NumberRange::notNegativeOrInfinite());
+  robot.velocity_limits = readNumbers(reader, "velocity_limits", NumberRange::positiveOrInfinite());
+  reader.read("command_timeout", &robot.command_timeout, NumberRange::notNegative());
   robot.armature = readNumbers(reader, "armature", NumberRange::notNegative());
   robot.sensors = readSensors(reader);
   return robot;

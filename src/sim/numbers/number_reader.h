@@ -29,10 +29,11 @@ class NumberReader {
       *out = *next_;
     }
   }
-  bool flag() {
+  /** One of `count` alternatives. */
+  int choice(int count) {
     const double number = this->number();
-    if (number != 0 && number != 1) refuseContent("a flag is neither 0 nor 1");
-    return number != 0;
+    if (!(number >= 0 && number < count) || number != std::floor(number)) refuseContent("a choice is none of those there are");
+    return static_cast<int>(number);
   }
   /** Throws unless `count` numbers are left. */
   void require(std::size_t count) const {

@@ -7,7 +7,10 @@ namespace {
 class MotorCurrentSensor : public Sensor {
  public:
   MotorCurrentSensor(const SimulatedWorld& world, const SensorInfo& info) : robot_(world.robots[info.robot]) {
-    for (const std::string& joint : robot_.joint_names) torque_constants_.push_back(torqueConstant(info.config, joint));
+    for (const std::string& joint : robot_.joint_names) {
+      const Transmission* transmission = robot_.description->transmissionOf(joint);
+      torque_constants_.push_back((transmission ? transmission->reduction : 1) * torqueConstant(info.config, joint));
+    }
   }
 
   void read(const StepContext& step, double, SensorReading* out) override {
@@ -33,7 +36,7 @@ class MotorCurrentSensor : public Sensor {
   }
 
   const RobotInfo robot_;
-  std::vector<double> torque_constants_;
+  std::vector<double> torque_constants_;  ///< [N m/A] seen at the joints
 };
 
 }  // namespace

@@ -91,7 +91,10 @@ ContentHash hashOf(const JointGains& gains) { return ContentHash().add(gains.p).
 ContentHash hashOf(const MotorSettings& motor) {
   ContentHash hash;
   hash.add(static_cast<int>(motor.law)).add(motor.friction.dry).add(motor.friction.viscous);
-  return hash.add(motor.effort_limit).add(motor.continuous).add(motor.commanded);
+  hash.add(motor.effort_limit).add(motor.velocity_limit).add(motor.command_timeout);
+  const SafetyController safety = motor.safety.value_or(SafetyController());
+  hash.add(safety.lower).add(safety.upper).add(safety.k_position).add(safety.k_velocity);
+  return hash.add(motor.continuous).add(motor.commanded);
 }
 
 void writeJoints(const SimulatedWorld& world, LayoutWriter* writer) {

@@ -20,6 +20,11 @@ class Lane : public ::testing::Test {
     term.motor_gain = 1 + uniform();
     term.motor_velocity = uniform();
     term.motor_bound = uniform() > 0 ? 0.3 : INFINITY;
+    if (uniform() > 0) {
+      term.velocity_gain = 2;
+      term.max_velocity = 0.3 * uniform();
+      term.min_velocity = term.max_velocity - 0.3;
+    }
     term.viscous = 0.1;
     term.softness = 3;
     term.dry_gain = 2 + uniform();
@@ -180,6 +185,22 @@ TEST_F(Lane, ExpectsWhatWasRemembered) {
     EXPECT_LT((here - stiffness * twist - wrenchOf(&b, &b + 1)).norm(), 1e-9 * (1 + stiffness.norm()));
   }
   EXPECT_GT(slipping, 200);
+}
+
+TEST_F(Lane, AMotorsImpulseFallsAndIsItsLine) {
+  for (int round = 0; round < 1000; ++round) {
+    const JointTerm term = joint();
+    double last = INFINITY;
+    for (double v = -1; v < 1; v += 0.01) {
+      const JointResponse line = term.motorLine(v);
+      const double impulse = term.motorImpulse(v);
+      EXPECT_NEAR(line.impulse - line.stiffness * v, impulse, 1e-12);
+      EXPECT_LE(impulse, last + 1e-12);
+      EXPECT_LE(impulse, std::max(-term.motor_bound, term.velocity_gain * (term.max_velocity - v)) + 1e-12);
+      EXPECT_GE(impulse, std::min(term.motor_bound, term.velocity_gain * (term.min_velocity - v)) - 1e-12);
+      last = impulse;
+    }
+  }
 }
 
 TEST(JointExpectation, IsTheLineThroughTheProximalPoint) {

@@ -83,7 +83,7 @@ TEST(JointMotor, ImplicitLawBoundsTheSumOfFeedbackAndFeedForward) {
 
 TEST(JointMotor, VelocityAloneIsDampingAlone) {
   JointMotor motor(settings(MotorLaw::PID, {100, 10, 2}), 0);
-  motor.keepVelocity(1.5);
+  motor.keepVelocity(1.5, 0);
   motor.sample(0, DT);
   EXPECT_DOUBLE_EQ(motor.drive({0.7, 1, 0}).effort, 2 * 0.5);
   // A trajectory that follows starts where the joint is.
@@ -100,7 +100,7 @@ TEST(JointMotor, NothingOfBeforeAddsToAVelocity) {
       motor.sample(i * DT, DT);
       motor.accept(motor.drive({0, 0, 0}), {0, 0, 0}, DT);
     }
-    motor.keepVelocity(1.5);
+    motor.keepVelocity(1.5, 0);
     motor.sample(0.1, DT);
     const JointDrive drive = motor.drive({0.7, 1, 0});
     EXPECT_DOUBLE_EQ(drive.effort + drive.damping * (drive.target_velocity - 1), 2 * 0.5);
@@ -131,7 +131,7 @@ TEST(JointMotor, StateGoesThroughNumbers) {
   motor.addEffort(1);
   motor.sample(0, DT);
   motor.accept(motor.drive({0, 0, 0}), {}, DT);
-  motor.keepVelocity(0.4);
+  motor.keepVelocity(0.4, 0);
   std::vector<double> numbers;
   motor.append(&numbers);
   JointMotor copy(settings(MotorLaw::PID, {100, 10, 2}), 0);

@@ -125,6 +125,9 @@ robots:
     joint_friction: {default: {dry: 0, viscous: 0.5}, LKP: {dry: 0.1}}
     effort_limits: {LKP: 150, LAR: .inf}
     armature: {LKP: 0.03}
+    motors: free
+    velocity_limits: {LKP: 2, LAR: .inf}
+    command_timeout: 0.5
     max_contacts_per_robot: 12
 )");
   const RobotConfig& robot = config.robots.at(0);
@@ -145,6 +148,9 @@ robots:
   EXPECT_EQ(robot.gains.at("default").i_clamp, INF);
   EXPECT_EQ(robot.motor.at("default"), MotorLaw::IMPLICIT_PD);
   EXPECT_EQ(robot.motor.at("LKP"), MotorLaw::PID);
+  EXPECT_EQ(robot.motors, MotorDefault::FREE);
+  EXPECT_EQ(robot.velocity_limits.at("LKP"), 2);
+  EXPECT_EQ(robot.command_timeout, 0.5);
   EXPECT_EQ(robot.joint_friction.at("LKP").dry, 0.1);
   EXPECT_EQ(robot.joint_friction.at("LKP").viscous, 0.5);
   EXPECT_EQ(robot.effort_limits.at("LAR"), INF);
@@ -156,6 +162,18 @@ TEST(ConfigParser, MotorMayBeOneWord) {
   const auto config = parse("robots: [{name: a, urdf: a.urdf, motor: implicit_pd}]");
   EXPECT_EQ(config.robots[0].motor.at("default"), MotorLaw::IMPLICIT_PD);
   EXPECT_TRUE(parse("robots: [{name: a, urdf: a.urdf}]").robots[0].motor.empty());
+  EXPECT_EQ(parse("robots: [{name: a, urdf: a.urdf}]").robots[0].motors, MotorDefault::COMPUTED);
+}
+
+TEST(ConfigParser, ReadsPidGainsAsGazeboRosControlHasThem) {
+  const auto gains = parsePidGains(
+      YAML::Load("{LKP: {p: 100, i: 1, d: 5, i_clamp_min: -3, i_clamp_max: 3, antiwindup: true}, LAR: {p: 20, i_clamp: 2}}"), "/pid_gains");
+  EXPECT_EQ(gains.at("LKP").p, 100);
+  EXPECT_EQ(gains.at("LKP").i_clamp, 3);
+  EXPECT_EQ(gains.at("LAR").i_clamp, 2);
+  EXPECT_EQ(gains.at("LAR").d, 0);
+  for (const char* bad : {"{LKP: 3}", "[1]", "{LKP: {p: -1}}", "{LKP: {d: fast}}"})
+    EXPECT_THROW(parsePidGains(YAML::Load(bad), "/pid_gains"), InputError) << bad;
 }
 
 TEST(ConfigParser, ReadsSensors) {

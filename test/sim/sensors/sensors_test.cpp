@@ -266,6 +266,12 @@ TEST(MotorCurrentSensor, EffortOverTorqueConstant) {
   ASSERT_EQ(value.joints, std::vector<std::string>{"hinge"});
   EXPECT_EQ(value.efforts[0], simulator.report().joints[0].effort);
   EXPECT_DOUBLE_EQ(value.currents[0], value.efforts[0] / 0.5);
+  std::string& urdf = config.robots[0].urdf_xml;
+  urdf.insert(urdf.find("</robot>"),
+              R"(<transmission name="t"><joint name="hinge"/><mechanicalReduction>40</mechanicalReduction></transmission>)");
+  Simulator geared(config, UriResolver());
+  stepFor(&geared, 0.5);
+  EXPECT_DOUBLE_EQ(reading<MotorCurrentReading>(geared.report(), 0).currents[0], value.efforts[0] / (40 * 0.5));
 }
 
 }  // namespace
