@@ -42,6 +42,9 @@ class JointMotor {
   /** Call after an accepted (sub)step: integrates, and notes whether the limit was met. @return true if it was */
   bool accept(const JointDrive& drive, const JointState& after, double dt);
 
+  /** Path that is followed; null while a velocity is kept. */
+  const JointSpline* path() const { return velocity_only_ ? nullptr : &spline_; }
+
   const MotorSettings& settings() const { return settings_; }
   void append(std::vector<double>* numbers) const;
   void read(NumberReader* reader);

@@ -109,6 +109,7 @@ RobotConfig readRobot(YamlReader& reader) {
   robot.effort_limits = readNumbers(reader, "effort_limits", NumberRange::notNegativeOrInfinite());
   robot.armature = readNumbers(reader, "armature", NumberRange::notNegative());
   robot.sensors = readSensors(reader);
+  robot.controllers = readControllers(reader);
   return robot;
 }
 
