@@ -103,10 +103,12 @@ const JointSpline* Simulator::followedPath(int robot, int joint) const {
 }
 
 void Simulator::holdJoints(int robot, const std::vector<int>& joints) {
-  for (const int joint : joints) {
-    const int world_joint = robots().at(robot).joints.at(joint);
-    impl_->world_.motors[world_joint].hold(world().jointState(world_joint).position);
-  }
+  for (const int joint : joints) holdJoint(robot, joint, world().jointState(robots().at(robot).joints.at(joint)).position);
+}
+
+void Simulator::holdJoint(int robot, int joint, double position) {
+  const int world_joint = robots().at(robot).joints.at(joint);
+  impl_->world_.motors[world_joint].hold(impl_->nearestTurn(world_joint, position));
 }
 
 void Simulator::loadEnvironment(const EnvironmentConfig& environment) { impl_->loadEnvironment(environment); }

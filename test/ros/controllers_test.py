@@ -8,11 +8,12 @@ import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus
 from rosgraph_msgs.msg import Log
+from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 import sim_client
 from blem_sim.msg import FollowJointTrajectoryAction, FollowJointTrajectoryGoal, FollowJointTrajectoryResult
-from blem_sim.msg import JointTolerance, JointTrajectoryControllerState
+from blem_sim.msg import GripperCommandAction, GripperCommandGoal, JointTolerance, JointTrajectoryControllerState
 from blem_sim.srv import ListControllers, LoadController, QueryTrajectoryState, SwitchController, UnloadController
 from sim_client import PATIENCE, Recorder, wait_until
 
@@ -34,16 +35,28 @@ def goal(points, **options):
     return FollowJointTrajectoryGoal(trajectory=trajectory(points, **options))
 
 
+def action_client(name, action_type):
+    client = actionlib.ActionClient(name, action_type)
+    assert client.wait_for_server(), name
+    return client
+
+
+def ask(client, message, feedback_cb=None):
+    """Sends a goal; returns its handle when the server has answered it."""
+    handle = client.send_goal(message, feedback_cb=feedback_cb)
+    wait_until(lambda: handle.get_goal_status() != GoalStatus.PENDING, "an answer to a goal")
+    return handle
+
+
 class Controller(object):
     """The client's side of a controller."""
 
     def __init__(self, name):
         self.name = name
         self.command = rospy.Publisher(name + "/command", JointTrajectory, queue_size=10)
-        self.action = actionlib.ActionClient(name + "/follow_joint_trajectory", FollowJointTrajectoryAction)
+        self.action = action_client(name + "/follow_joint_trajectory", FollowJointTrajectoryAction)
         self.feedback = []
         wait_until(lambda: self.command.get_num_connections() > 0, name + " to listen")
-        assert self.action.wait_for_server(), name
 
     def send(self, message):
         self.command.publish(message)
@@ -51,9 +64,7 @@ class Controller(object):
 
     def ask(self, message):
         """Sends a goal; returns its handle when the server has answered it."""
-        handle = self.action.send_goal(message, feedback_cb=lambda _, feedback: self.feedback.append(feedback))
-        wait_until(lambda: handle.get_goal_status() != GoalStatus.PENDING, "an answer to a goal")
-        return handle
+        return ask(self.action, message, lambda _, feedback: self.feedback.append(feedback))
 
     def query(self, stamp):
         service = self.name + "/query_state"
@@ -69,14 +80,18 @@ def now():
     return sim_client.step(0).stamp.to_sec()
 
 
-def manage(name, service_type, *request):
-    service = "/controller_manager/" + name
+def manage(name, service_type, *request, **options):
+    service = options.get("robot", "") + "/controller_manager/" + name
     rospy.wait_for_service(service, PATIENCE)
     return rospy.ServiceProxy(service, service_type)(*request)
 
 
-def states():
-    return {c.name: c.state for c in manage("list_controllers", ListControllers).controller}
+def states(**options):
+    return {c.name: c.state for c in manage("list_controllers", ListControllers, **options).controller}
+
+
+def switch(start, stop, strictness=STRICT, **options):
+    return manage("switch_controller", SwitchController, start, stop, strictness, False, 0.0, **options).ok
 
 
 class ControllersTest(unittest.TestCase):
@@ -297,9 +312,6 @@ class ControllersTest(unittest.TestCase):
             self.assertEqual(manage("load_controller", LoadController, name).ok, ok, name)
         wait_until(lambda: any("DiffDriveController" in e for e in self.errors()), "a line about the type")
 
-        def switch(start, stop, strictness=STRICT):
-            return manage("switch_controller", SwitchController, start, stop, strictness, False, 0.0).ok
-
         self.assertTrue(switch(["arm_controller", "joint_state_controller"], []), "what runs may be started")
         self.assertFalse(switch(["rival_controller"], []))
         self.assertFalse(switch(["rival_controller"], ["arm_controller", "weak_controller", "none"]))
@@ -315,6 +327,69 @@ class ControllersTest(unittest.TestCase):
         self.assertTrue(switch(["weak_controller"], ["late_controller"]))
         self.assertTrue(manage("unload_controller", UnloadController, "late_controller").ok)
         self.assertNotIn("late_controller", states())
+
+    def test_a_gripper_in_a_namespace_of_its_own(self):
+        self.assertEqual(states(robot="/left"), {"joint_trajectory_controller": "running"})
+        default = Controller("/left/joint_trajectory_controller")
+        self.assertEqual(default.desired().name, ["swing", "spin", "weak"])
+        default.send(trajectory([(0.2, [0.3, 0.3, 0.3])], joints=["swing", "spin", "weak"]))
+        sim_client.step(300)
+        self.assertAlmostEqual(default.desired().position[0], 0.3, delta=1e-9)
+        self.assert_at(0, 0)
+
+        self.assertTrue(manage("load_controller", LoadController, "gripper_controller", robot="/left").ok)
+        self.assertTrue(switch(["gripper_controller"], [], robot="/left"), "the controller of all joints gives way")
+        self.assertEqual(states(robot="/left"), {"joint_trajectory_controller": "stopped", "gripper_controller": "running"})
+        client = action_client("/left/gripper_controller/gripper_cmd", GripperCommandAction)
+        command = GripperCommandGoal()
+        command.command.position = 0.6
+        handle = ask(client, command)
+        sim_client.step(1000)
+        self.assert_ended(handle, GoalStatus.SUCCEEDED)
+        self.assertTrue(handle.get_result().reached_goal)
+        self.assertAlmostEqual(handle.get_result().position, 0.6, delta=0.011)
+        command.command.position = 3.1
+        handle = ask(client, command)
+        sim_client.step(5000)
+        self.assert_ended(handle, GoalStatus.ABORTED)
+        self.assertTrue(handle.get_result().stalled)
+        self.assertAlmostEqual(handle.get_result().position, 3, delta=1e-3)
+        command.command.position = math.nan
+        self.assert_ended(ask(client, command), GoalStatus.REJECTED)
+
+    def test_two_robots_of_one_namespace_do_not_share_controllers(self):
+        recorder = Recorder("/joint_states", JointState)
+        wait_until(recorder.connected, "the joint states")
+        self.arm.send(trajectory([(0.2, [0.5, 0.5])]))
+        answer = sim_client.step(300)
+
+        def last():
+            return sorted(m.position[m.name.index("swing")] for m in recorder.messages() if m.header.stamp == answer.stamp)
+        wait_until(lambda: len(last()) == 2, "the last joint states of both robots")
+        recorder.stop()
+        self.assertAlmostEqual(last()[0], 0, delta=1e-9)
+        self.assertAlmostEqual(last()[1], 0.5, delta=1e-3)
+
+    def test_lock_step_gives_the_same_motion(self):
+        def run():
+            sim_client.reset_simulation()
+            recorder = Recorder("/arm_controller/state", JointTrajectoryControllerState)
+            wait_until(recorder.connected, "the state")
+            sim_client.step(1)
+            self.arm.ask(goal([(0.2, [0.5, -0.5]), (0.4, [0.1, 0.1])]))
+            sim_client.step(100)
+            handle = self.arm.ask(goal([(0.3, [-0.5, 0.5])]))
+            sim_client.step(100)
+            handle.cancel()
+            self.assert_ended(handle, GoalStatus.PREEMPTED)
+            sim_client.step(50)
+            wait_until(lambda: recorder.messages()[-1].header.stamp.to_sec() > 0.2505, "the last state")
+            recorder.stop()
+            return [(m.header.stamp, m.desired, m.actual) for m in recorder.messages() if m.header.stamp.to_sec() > 0.0015]
+
+        first, second = run(), run()
+        self.assertEqual(len(first), 250)
+        self.assertTrue(first == second, "the same bits")
 
 
 if __name__ == "__main__":

@@ -57,6 +57,8 @@ class Simulator {
   const JointSpline* followedPath(int robot, int joint) const;
   /** Motors hold the joints where they are now, at rest. @param joints indices into joint_names */
   void holdJoints(int robot, const std::vector<int>& joints);
+  /** The joint's motor holds a position [rad or m] from now on; a joint that turns without end takes the nearest turn. */
+  void holdJoint(int robot, int joint, double position);
 
   /** Adds static geometry between steps, in the lowest slots that are free. @throws InputError if it cannot be loaded or the name is taken
    */

@@ -68,6 +68,11 @@ class JointSpline {
   std::vector<Knot> knots_;
 };
 
+/** True for the end of one path; that of another differs in time or place. */
+inline bool sameKnot(const JointSpline::Knot& a, const JointSpline::Knot& b) {
+  return a.time == b.time && a.position == b.position && a.velocity == b.velocity;
+}
+
 /** Checks a command against a robot's joints. @throws InputError: unknown or repeated joint, sizes, NaN, beyond LARGEST_COMMAND, times not
  * increasing */
 void checkTrajectory(const JointTrajectory& trajectory, const std::vector<std::string>& known_joints);

@@ -111,7 +111,6 @@ class TrajectoryController {
   };
 
   int indexOf(const std::string& joint) const;
-  void takeJoints();
   void checkRunning() const;
   void checkJoints(const JointTrajectory& trajectory) const;
   Plan planFor(const JointTrajectory& trajectory) const;
@@ -133,8 +132,8 @@ class TrajectoryController {
   Simulator* simulator_;
   int robot_;
   ControllerConfig config_;
-  std::vector<std::string> joint_names_;
   std::vector<int> joints_;  ///< indices into RobotInfo::joint_names
+  std::vector<std::string> joint_names_;
   bool running_ = true;
   std::optional<Goal> goal_;
 };

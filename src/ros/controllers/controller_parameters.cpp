@@ -12,7 +12,7 @@ ControllerConfig withParameters(const ros::NodeHandle& robot_node, const Control
   XmlRpc::XmlRpcValue given;
   if (!ros::param::get(place, given) || given.getType() != XmlRpc::XmlRpcValue::TypeStruct) return settings;
   YAML::Node node(YAML::NodeType::Map);
-  for (const std::string& key : controllerKeys())
+  for (const std::string& key : controllerKeys(settings.kind))
     if (given.hasMember(key)) node[key] = toYaml(given[key]);
   return parseController(node, place, settings);
 }

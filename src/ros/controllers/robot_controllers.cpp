@@ -4,44 +4,57 @@
 #include <ros/names.h>
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "blem_sim/geometry/input_error.h"
 #include "controllers/controller_parameters.h"
+#include "controllers/gripper_server.h"
+#include "controllers/trajectory_server.h"
 
 namespace blem_sim {
 
 namespace {
 
-const char* const JOINT_STATES = "joint_state_controller/JointStateController";
-const char* const DEFAULT_TYPE = "position_controllers/JointTrajectoryController";
-
-/** Built-in types and the interface of ros_control that each stands for. */
+/** Built-in types, the interface of ros_control that each stands for, and what makes it; nothing makes joint states, which come anyway. */
 struct TypeRow {
   const char* type;
   const char* hardware_interface;
+  std::optional<ControllerKind> kind;
 };
 const std::vector<TypeRow> TYPE_TABLE = {
-    {DEFAULT_TYPE, "hardware_interface::PositionJointInterface"},
-    {"velocity_controllers/JointTrajectoryController", "hardware_interface::VelocityJointInterface"},
-    {"effort_controllers/JointTrajectoryController", "hardware_interface::EffortJointInterface"},
-    {"pos_vel_controllers/JointTrajectoryController", "hardware_interface::PosVelJointInterface"},
-    {"pos_vel_acc_controllers/JointTrajectoryController", "hardware_interface::PosVelAccJointInterface"},
-    {JOINT_STATES, "hardware_interface::JointStateInterface"},
+    {"position_controllers/JointTrajectoryController", "hardware_interface::PositionJointInterface", ControllerKind::TRAJECTORY},
+    {"velocity_controllers/JointTrajectoryController", "hardware_interface::VelocityJointInterface", ControllerKind::TRAJECTORY},
+    {"effort_controllers/JointTrajectoryController", "hardware_interface::EffortJointInterface", ControllerKind::TRAJECTORY},
+    {"pos_vel_controllers/JointTrajectoryController", "hardware_interface::PosVelJointInterface", ControllerKind::TRAJECTORY},
+    {"pos_vel_acc_controllers/JointTrajectoryController", "hardware_interface::PosVelAccJointInterface", ControllerKind::TRAJECTORY},
+    {"position_controllers/GripperActionController", "hardware_interface::PositionJointInterface", ControllerKind::GRIPPER},
+    {"effort_controllers/GripperActionController", "hardware_interface::EffortJointInterface", ControllerKind::GRIPPER},
+    {"joint_state_controller/JointStateController", "hardware_interface::JointStateInterface", {}},
 };
 
-std::string interfaceOf(const std::string& type) {
-  for (const TypeRow& row : TYPE_TABLE)
-    if (type == row.type) return row.hardware_interface;
-  return TYPE_TABLE.front().hardware_interface;
+/** Row of a type; null if it is not built in. */
+const TypeRow* rowOf(const std::string& type) {
+  const auto row = std::find_if(TYPE_TABLE.begin(), TYPE_TABLE.end(), [&](const TypeRow& other) { return type == other.type; });
+  return row == TYPE_TABLE.end() ? nullptr : &*row;
+}
+
+/** Type of a configured controller: the parameter's if it is of the kind. */
+std::string typeOf(const std::string& parameter, ControllerKind kind) {
+  const TypeRow* given = rowOf(parameter);
+  if (given && given->kind == kind) return parameter;
+  return std::find_if(TYPE_TABLE.begin(), TYPE_TABLE.end(), [&](const TypeRow& row) { return row.kind == kind; })->type;
 }
 
 bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-bool shareAJoint(const TrajectoryController& a, const TrajectoryController& b) {
-  return std::any_of(a.joints().begin(), a.joints().end(), [&](const std::string& joint) { return contains(b.joints(), joint); });
+/** False if either is null. */
+bool shareAJoint(const ControllerServer* a, const ControllerServer* b) {
+  if (!a || !b) return false;
+  const std::vector<std::string> joints = a->joints(), others = b->joints();
+  return std::any_of(joints.begin(), joints.end(), [&](const std::string& joint) { return contains(others, joint); });
 }
 
 std::string joined(const std::vector<std::string>& words) {
@@ -63,8 +76,7 @@ RobotControllers::RobotControllers(ros::NodeHandle node, Simulator* simulator, i
   const auto& configured = simulator->config().robots[robot].controllers;
   for (const ControllerConfig& config : configured.value_or(std::vector<ControllerConfig>(1))) {
     checkName(config.name);
-    const std::string type = controllerType(node_, config.name);
-    add(withParameters(node_, config), type.empty() ? DEFAULT_TYPE : type);
+    add(withParameters(node_, config), typeOf(controllerType(node_, config.name), config.kind));
     controllers_.back().gives_way = !configured;
   }
   startFirst();
@@ -109,8 +121,8 @@ std::vector<ControllerState> RobotControllers::list() const {
     state.type = controller.type;
     state.state = controller.running ? "running" : controller.has_run ? "stopped" : "initialized";
     state.claimed_resources.resize(1);
-    state.claimed_resources[0].hardware_interface = interfaceOf(controller.type);
-    if (controller.server) state.claimed_resources[0].resources = controller.server->controller().joints();
+    state.claimed_resources[0].hardware_interface = rowOf(controller.type)->hardware_interface;
+    if (controller.server) state.claimed_resources[0].resources = controller.server->joints();
     states.push_back(state);
   }
   return states;
@@ -120,7 +132,10 @@ void RobotControllers::add(const ControllerConfig& config, const std::string& ty
   Controller controller;
   controller.name = config.name;
   controller.type = type;
-  controller.server = std::make_unique<ControllerServer>(node_, TrajectoryController(simulator_, robot_, config), sender_);
+  if (config.kind == ControllerKind::GRIPPER)
+    controller.server = std::make_unique<GripperServer>(node_, GripperController(simulator_, robot_, config));
+  else
+    controller.server = std::make_unique<TrajectoryServer>(node_, TrajectoryController(simulator_, robot_, config), sender_);
   controllers_.push_back(std::move(controller));
 }
 
@@ -129,13 +144,15 @@ void RobotControllers::load(const std::string& name) {
   if (find(name)) return;
   const std::string type = controllerType(node_, name), place = node_.resolveName(name);
   if (type.empty()) throw InputError("there is no string parameter " + place + "/type; load the controller's settings first");
-  if (!contains(types(), type)) throw InputError(place + "/type: '" + type + "' is not built in; built in are " + joined(types()));
-  if (type == JOINT_STATES) {
+  const TypeRow* row = rowOf(type);
+  if (!row) throw InputError(place + "/type: '" + type + "' is not built in; built in are " + joined(types()));
+  if (!row->kind) {
     controllers_.push_back({name, type, nullptr, false, false, false});
     return;
   }
   ControllerConfig config;
   config.name = name;
+  config.kind = *row->kind;
   config = withParameters(node_, config);
   if (config.joints.empty()) throw InputError(place + "/joints: is missing; list the controller's joints");
   add(config, type);
@@ -179,10 +196,9 @@ std::vector<std::string> RobotControllers::knownNames() const {
 }
 
 RobotControllers::Controller* RobotControllers::rivalOf(const Controller& controller, const std::vector<std::string>& stopping) {
-  if (!controller.server) return nullptr;
   for (Controller& other : controllers_) {
-    if (&other == &controller || !other.running || !other.server || contains(stopping, other.name)) continue;
-    if (shareAJoint(controller.server->controller(), other.server->controller())) return &other;
+    if (&other == &controller || !other.running || contains(stopping, other.name)) continue;
+    if (shareAJoint(controller.server.get(), other.server.get())) return &other;
   }
   return nullptr;
 }
@@ -197,12 +213,9 @@ std::string RobotControllers::obstacleToStart(const std::string& name, const Con
   const Controller* controller = find(name);
   if (!controller) return "there is no controller '" + name + "' to start (there are: " + joined(knownNames()) + "); load it first";
   if (controller->running && !contains(change.stop, name)) return "";
-  for (const std::string& other : change.start) {
-    const Controller* started = find(other);
-    if (other != name && started->server && controller->server &&
-        shareAJoint(started->server->controller(), controller->server->controller()))
+  for (const std::string& other : change.start)
+    if (other != name && shareAJoint(find(other)->server.get(), controller->server.get()))
       return "controllers '" + name + "' and '" + other + "' have joints in common";
-  }
   const Controller* rival = rivalOf(*controller, change.stop);
   return !rival || rival->gives_way ? "" : "controller '" + name + "' has joints of '" + rival->name + "', which runs; stop that one too";
 }

@@ -6,8 +6,10 @@ namespace blem_sim {
 
 namespace {
 
-const std::vector<std::string> KEYS = {
+const std::vector<std::string> TRAJECTORY_KEYS = {
     "joints", "state_publish_rate", "action_monitor_rate", "stop_trajectory_duration", "allow_partial_joints_goal", "constraints"};
+const std::vector<std::string> GRIPPER_KEYS = {"joint", "action_monitor_rate", "goal_tolerance", "stall_velocity_threshold",
+                                               "stall_timeout"};
 
 void readJoints(YamlReader& reader, std::vector<std::string>* joints) {
   const YAML::Node list = reader.node("joints");
@@ -42,18 +44,37 @@ void readConstraints(YamlReader& controller, ControllerConfig* config) {
   });
 }
 
-void readSettings(YamlReader& reader, ControllerConfig* config) {
+void readTrajectorySettings(YamlReader& reader, ControllerConfig* config) {
   readJoints(reader, &config->joints);
   reader.read("state_publish_rate", &config->state_publish_rate, NumberRange::notNegative());
-  reader.read("action_monitor_rate", &config->action_monitor_rate, NumberRange::notNegative());
   reader.read("stop_trajectory_duration", &config->stop_trajectory_duration, NumberRange::notNegative());
   reader.read("allow_partial_joints_goal", &config->allow_partial_joints_goal);
   readConstraints(reader, config);
 }
 
+void readGripperSettings(YamlReader& reader, ControllerConfig* config) {
+  std::string joint = config->joints.empty() ? "" : config->joints.front();
+  reader.read("joint", &joint);
+  if (joint.empty()) reader.refuse("joint", "is missing; name the joint that the gripper's motor moves");
+  config->joints = {joint};
+  reader.read("goal_tolerance", &config->goal_tolerance, NumberRange::positive());
+  reader.read("stall_velocity_threshold", &config->stall_velocity_threshold, NumberRange::notNegative());
+  reader.read("stall_timeout", &config->stall_timeout, NumberRange::notNegative());
+}
+
+void readSettings(YamlReader& reader, ControllerConfig* config) {
+  reader.read("action_monitor_rate", &config->action_monitor_rate, NumberRange::notNegative());
+  if (config->kind == ControllerKind::GRIPPER)
+    readGripperSettings(reader, config);
+  else
+    readTrajectorySettings(reader, config);
+}
+
 }  // namespace
 
-const std::vector<std::string>& controllerKeys() { return KEYS; }
+const std::vector<std::string>& controllerKeys(ControllerKind kind) {
+  return kind == ControllerKind::GRIPPER ? GRIPPER_KEYS : TRAJECTORY_KEYS;
+}
 
 ControllerConfig parseController(const YAML::Node& node, const std::string& source, ControllerConfig settings) {
   YamlReader reader(node, source);
@@ -68,6 +89,7 @@ std::optional<std::vector<ControllerConfig>> readControllers(YamlReader& robot) 
   robot.forEachItem("controllers", [&](YamlReader& reader) {
     ControllerConfig config;
     config.name = readName(reader);
+    if (reader.choice("type", {"joint_trajectory", "gripper"}).value_or(0) == 1) config.kind = ControllerKind::GRIPPER;
     readSettings(reader, &config);
     const auto same = [&](const ControllerConfig& other) { return other.name == config.name; };
     if (std::any_of(controllers.begin(), controllers.end(), same))

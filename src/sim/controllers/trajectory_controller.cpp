@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "controllers/controlled_joints.h"
 #include "numbers/nearest_name.h"
 
 namespace blem_sim {
@@ -28,25 +29,10 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
 }  // namespace
 
 TrajectoryController::TrajectoryController(Simulator* simulator, int robot, ControllerConfig config)
-    : simulator_(simulator), robot_(robot), config_(std::move(config)) {
-  takeJoints();
+    : simulator_(simulator), robot_(robot), config_(std::move(config)), joints_(controlledJoints(simulator->robots().at(robot), config_)) {
+  for (const int joint : joints_) joint_names_.push_back(simulator->robots()[robot].joint_names[joint]);
   for (const auto& [joint, constraint] : config_.joint_constraints)
     requireName(joint, joint_names_, "controller '" + config_.name + "': constraints", "joint of this controller");
-}
-
-void TrajectoryController::takeJoints() {
-  const RobotInfo& robot = simulator_->robots().at(robot_);
-  const std::string where = "controller '" + config_.name + "': joints";
-  for (const std::string& joint : config_.joints) requireName(joint, robot.joint_names, where, "movable joint");
-  for (std::size_t j = 0; j < robot.joint_names.size(); ++j) {
-    const bool named = contains(config_.joints, robot.joint_names[j]);
-    if (named && !robot.driven[j])
-      throw InputError(fmt::format("{}: '{}' mimics another joint and has no motor; leave it out", where, robot.joint_names[j]));
-    if (config_.joints.empty() && robot.driven[j]) joint_names_.push_back(robot.joint_names[j]);
-  }
-  if (!config_.joints.empty()) joint_names_ = config_.joints;
-  for (const std::string& joint : joint_names_)
-    joints_.push_back(static_cast<int>(std::find(robot.joint_names.begin(), robot.joint_names.end(), joint) - robot.joint_names.begin()));
 }
 
 int TrajectoryController::indexOf(const std::string& joint) const {

@@ -116,9 +116,7 @@ std::vector<JointSample> TrajectoryController::query(double time) const {
 
 bool TrajectoryController::replaced(const GoalJoint& joint) const {
   const JointSpline* path = simulator_->followedPath(robot_, joints_[joint.joint]);
-  if (!path) return true;
-  const JointSpline::Knot last = path->lastKnot();
-  return last.time != joint.last.time || last.position != joint.last.position || last.velocity != joint.last.velocity;
+  return !path || !sameKnot(path->lastKnot(), joint.last);
 }
 
 std::optional<GoalOutcome> TrajectoryController::judge(GoalJoint* joint, double time) const {

@@ -103,7 +103,7 @@ TEST(Manual, HoldsEveryKnownKey) {
   EXPECT_EQ(config.robots.size(), 2u);
   EXPECT_EQ(config.robots[0].sensors.size(), 5u);
   ASSERT_TRUE(config.robots[0].controllers);
-  EXPECT_EQ(config.robots[0].controllers->size(), 2u);
+  EXPECT_EQ(config.robots[0].controllers->size(), 3u);
   EXPECT_FALSE(config.robots[1].controllers);
   EXPECT_EQ(config.objects.size(), 2u);
   EXPECT_EQ(config.environments.size(), 4u);

@@ -1,4 +1,4 @@
-#include "controllers/controller_server.h"
+#include "controllers/trajectory_server.h"
 
 #include <ros/console.h>
 
@@ -27,37 +27,43 @@ FollowJointTrajectoryResult resultOf(GoalError error, const std::string& text) {
   return result;
 }
 
+void tellOldPoints(const std::string& where, int count) {
+  if (count > 0) ROS_WARN("%s: points at or before the next step are left out: %d", where.c_str(), count);
+}
+
 }  // namespace
 
-ControllerServer::ControllerServer(ros::NodeHandle robot_node, TrajectoryController controller, StepSender* sender)
+TrajectoryServer::TrajectoryServer(ros::NodeHandle robot_node, TrajectoryController controller, StepSender* sender)
     : controller_(std::move(controller)),
       node_(robot_node, controller_.config().name),
       sender_(sender),
       state_schedule_(controller_.config().state_publish_rate),
-      feedback_schedule_(controller_.config().action_monitor_rate),
       state_publisher_(ListenedPublisher::advertise<JointTrajectoryControllerState>(&node_, "state", QUEUE_SIZE)),
       states_(namedState(controller_)),
-      query_(node_.advertiseService("query_state", &ControllerServer::onQuery, this)),
-      actions_(
-          node_, "follow_joint_trajectory", [this](GoalHandle goal) { onGoal(goal); }, [this](GoalHandle goal) { onCancel(goal); }, false) {
+      query_(node_.advertiseService("query_state", &TrajectoryServer::onQuery, this)),
+      goals_(
+          node_, "follow_joint_trajectory", controller_.config().action_monitor_rate, [this](Goals::Handle goal) { onGoal(goal); },
+          [this] {
+            controller_.cancel();
+            goals_.preempt(resultOf(GoalError::SUCCESSFUL, ""), "cancelled");
+          }) {
   const boost::function<void(const trajectory_msgs::JointTrajectoryConstPtr&)> on_command =
       [this](const trajectory_msgs::JointTrajectoryConstPtr& message) { onCommand(*message); };
   commands_ = node_.subscribe<trajectory_msgs::JointTrajectory>("command", QUEUE_SIZE, on_command);
-  actions_.start();
 }
 
-void ControllerServer::onCommand(const trajectory_msgs::JointTrajectory& message) {
+void TrajectoryServer::onCommand(const trajectory_msgs::JointTrajectory& message) {
   const std::string topic = commands_.getTopic();
   try {
     const int old_points = controller_.command(fromMessage(message));
-    preempt("a trajectory came on the topic");
+    goals_.preempt(resultOf(GoalError::SUCCESSFUL, ""), "a trajectory came on the topic");
     tellOldPoints(topic, old_points);
   } catch (const InputError& error) {
     ROS_ERROR("%s: trajectory refused: %s", topic.c_str(), error.what());
   }
 }
 
-void ControllerServer::onGoal(GoalHandle goal) {
+void TrajectoryServer::onGoal(Goals::Handle goal) {
   int old_points = 0;
   try {
     old_points = controller_.accept(fromMessage(*goal.getGoal()));
@@ -66,21 +72,16 @@ void ControllerServer::onGoal(GoalHandle goal) {
   } catch (const InputError& error) {
     return reject(&goal, GoalError::INVALID_GOAL, error.what());
   }
-  preempt("a new goal came");
-  goal.setAccepted();
-  goal_ = goal;
-  has_goal_ = true;
-  feedback_schedule_.restart();
-  tellOldPoints(node_.resolveName("follow_joint_trajectory"), old_points);
+  goals_.activate(goal);
+  tellOldPoints(goals_.name(), old_points);
 }
 
-void ControllerServer::onCancel(GoalHandle goal) {
-  if (!has_goal_ || !(goal == goal_)) return;
-  controller_.cancel();
-  preempt("cancelled");
+void TrajectoryServer::reject(Goals::Handle* goal, GoalError error, const std::string& why) const {
+  goal->setRejected(resultOf(error, why), why);
+  ROS_ERROR("%s: goal refused: %s", goals_.name().c_str(), why.c_str());
 }
 
-bool ControllerServer::onQuery(QueryTrajectoryState::Request& request, QueryTrajectoryState::Response& response) {
+bool TrajectoryServer::onQuery(QueryTrajectoryState::Request& request, QueryTrajectoryState::Response& response) {
   try {
     for (const JointSample& sample : controller_.query(request.time.toSec())) {
       response.position.push_back(sample.position);
@@ -95,46 +96,31 @@ bool ControllerServer::onQuery(QueryTrajectoryState::Request& request, QueryTraj
   return true;
 }
 
-void ControllerServer::stop() {
+void TrajectoryServer::stop() {
   controller_.stop();
-  preempt("the controller was stopped");
+  goals_.preempt(resultOf(GoalError::SUCCESSFUL, ""), "the controller was stopped");
 }
 
-void ControllerServer::preempt(const std::string& why) {
-  if (!has_goal_) return;
-  has_goal_ = false;
-  goal_.setCanceled(resultOf(GoalError::SUCCESSFUL, ""), why);
+void TrajectoryServer::finish(const GoalOutcome& outcome) {
+  const FollowJointTrajectoryResult result = resultOf(outcome.error, outcome.text);
+  if (outcome.end == GoalEnd::SUCCEEDED) return goals_.succeed(result);
+  if (outcome.end == GoalEnd::PREEMPTED) return goals_.preempt(result, outcome.text);
+  goals_.abort(result, outcome.text);
+  ROS_WARN("%s: %s; the motion goes on", goals_.name().c_str(), outcome.text.c_str());
 }
 
-void ControllerServer::finish(const GoalOutcome& outcome) {
-  if (outcome.end == GoalEnd::PREEMPTED) return preempt(outcome.text);
-  has_goal_ = false;
-  if (outcome.end == GoalEnd::SUCCEEDED) return goal_.setSucceeded(resultOf(outcome.error, outcome.text));
-  goal_.setAborted(resultOf(outcome.error, outcome.text), outcome.text);
-  ROS_WARN("%s: %s; the motion goes on", node_.resolveName("follow_joint_trajectory").c_str(), outcome.text.c_str());
-}
-
-void ControllerServer::reject(GoalHandle* goal, GoalError error, const std::string& why) const {
-  goal->setRejected(resultOf(error, why), why);
-  ROS_ERROR("%s: goal refused: %s", node_.resolveName("follow_joint_trajectory").c_str(), why.c_str());
-}
-
-void ControllerServer::tellOldPoints(const std::string& where, int count) const {
-  if (count > 0) ROS_WARN("%s: points at or before the next step are left out: %d", where.c_str(), count);
-}
-
-void ControllerServer::step(double time) {
+void TrajectoryServer::step(double time) {
   if (const std::optional<GoalOutcome> outcome = controller_.update()) finish(*outcome);
   if (state_schedule_.due(time)) publishState(time);
-  if (has_goal_ && feedback_schedule_.due(time)) publishFeedback(time);
+  if (goals_.feedbackDue(time)) publishFeedback(time);
 }
 
-void ControllerServer::restartTime() {
+void TrajectoryServer::restartTime() {
   state_schedule_.restart();
-  feedback_schedule_.restart();
+  goals_.restartTime();
 }
 
-void ControllerServer::publishState(double time) {
+void TrajectoryServer::publishState(double time) {
   if (!controller_.running() || !state_publisher_.listened()) return;
   const auto message = states_.spare();
   message->header.stamp = toStamp(time);
@@ -142,12 +128,12 @@ void ControllerServer::publishState(double time) {
   sender_->add(&state_publisher_, message);
 }
 
-void ControllerServer::publishFeedback(double time) {
+void TrajectoryServer::publishFeedback(double time) {
   FollowJointTrajectoryFeedback feedback;
   feedback.header.stamp = toStamp(time);
   feedback.joint_names = controller_.joints();
   setTracking(controller_.state(), &feedback);
-  goal_.publishFeedback(feedback);
+  goals_.publish(feedback);
 }
 
 }  // namespace blem_sim
