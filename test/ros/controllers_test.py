@@ -1,134 +1,23 @@
 #!/usr/bin/python3
-"""Trajectory controllers behave as joint_trajectory_controller does, to an actionlib client, to topics and to a spawner."""
+"""Trajectory controllers behave as joint_trajectory_controller does, to an actionlib client and to topics."""
 import math
-import unittest
 
-import actionlib
 import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus
-from rosgraph_msgs.msg import Log
-from sensor_msgs.msg import JointState
-from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+from trajectory_msgs.msg import JointTrajectory
 
 import sim_client
-from blem_sim.msg import FollowJointTrajectoryAction, FollowJointTrajectoryGoal, FollowJointTrajectoryResult
-from blem_sim.msg import GripperCommandAction, GripperCommandGoal, JointTolerance, JointTrajectoryControllerState
-from blem_sim.srv import ListControllers, LoadController, QueryTrajectoryState, SwitchController, UnloadController
-from sim_client import PATIENCE, Recorder, wait_until
-
-JOINTS = ["swing", "spin"]
-STRICT, BEST_EFFORT = 2, 1
+from blem_sim.msg import FollowJointTrajectoryGoal, FollowJointTrajectoryResult, JointTolerance, JointTrajectoryControllerState
+from controller_client import JOINTS, Controller, ControllerTestCase, goal, now, trajectory
+from sim_client import Recorder, wait_until
 
 
-def trajectory(points, joints=None, stamp=None):
-    """@param points [(time [s], positions)], at rest in each"""
-    message = JointTrajectory(joint_names=joints or JOINTS)
-    message.header.stamp = stamp or rospy.Time()
-    for time, positions in points:
-        message.points.append(
-            JointTrajectoryPoint(positions=positions, velocities=[0] * len(positions), time_from_start=rospy.Duration.from_sec(time)))
-    return message
-
-
-def goal(points, **options):
-    return FollowJointTrajectoryGoal(trajectory=trajectory(points, **options))
-
-
-def action_client(name, action_type):
-    client = actionlib.ActionClient(name, action_type)
-    assert client.wait_for_server(), name
-    return client
-
-
-def ask(client, message, feedback_cb=None):
-    """Sends a goal; returns its handle when the server has answered it."""
-    handle = client.send_goal(message, feedback_cb=feedback_cb)
-    wait_until(lambda: handle.get_goal_status() != GoalStatus.PENDING, "an answer to a goal")
-    return handle
-
-
-class Controller(object):
-    """The client's side of a controller."""
-
-    def __init__(self, name):
-        self.name = name
-        self.command = rospy.Publisher(name + "/command", JointTrajectory, queue_size=10)
-        self.action = action_client(name + "/follow_joint_trajectory", FollowJointTrajectoryAction)
-        self.feedback = []
-        wait_until(lambda: self.command.get_num_connections() > 0, name + " to listen")
-
-    def send(self, message):
-        self.command.publish(message)
-        rospy.rostime.wallsleep(0.3)
-
-    def ask(self, message):
-        """Sends a goal; returns its handle when the server has answered it."""
-        return ask(self.action, message, lambda _, feedback: self.feedback.append(feedback))
-
-    def query(self, stamp):
-        service = self.name + "/query_state"
-        rospy.wait_for_service(service, PATIENCE)
-        return rospy.ServiceProxy(service, QueryTrajectoryState)(stamp)
-
-    def desired(self):
-        return self.query(sim_client.step(0).stamp)
-
-
-def now():
-    """[s] simulated."""
-    return sim_client.step(0).stamp.to_sec()
-
-
-def manage(name, service_type, *request, **options):
-    service = options.get("robot", "") + "/controller_manager/" + name
-    rospy.wait_for_service(service, PATIENCE)
-    return rospy.ServiceProxy(service, service_type)(*request)
-
-
-def states(**options):
-    return {c.name: c.state for c in manage("list_controllers", ListControllers, **options).controller}
-
-
-def switch(start, stop, strictness=STRICT, **options):
-    return manage("switch_controller", SwitchController, start, stop, strictness, False, 0.0, **options).ok
-
-
-class ControllersTest(unittest.TestCase):
+class ControllersTest(ControllerTestCase):
     @classmethod
     def setUpClass(cls):
-        cls.arm, cls.weak = Controller("/arm_controller"), Controller("/weak_controller")
-        cls.log = Recorder("/rosout", Log)
-        wait_until(cls.log.connected, "the log")
-
-    def setUp(self):
-        sim_client.reset_world()
-        sim_client.step(1)
-
-    def errors(self):
-        return [m.msg for m in self.log.messages() if m.name == sim_client.NODE and m.level == Log.ERROR]
-
-    def assert_ended(self, handle, status, code=None):
-        wait_until(lambda: handle.get_terminal_state() is not None if handle.get_comm_state() == actionlib.CommState.DONE else False,
-                   "the end of a goal")
-        self.assertEqual(handle.get_terminal_state(), status, handle.get_goal_status_text())
-        if code is not None:
-            self.assertEqual(handle.get_result().error_code, code, handle.get_result().error_string)
-            self.assertNotIn("\n", handle.get_result().error_string)
-
-    def assert_active(self, handle):
-        self.assertEqual(handle.get_goal_status(), GoalStatus.ACTIVE)
-
-    def assert_at(self, swing, spin, delta=2e-3):
-        desired = self.arm.desired()
-        self.assertAlmostEqual(desired.position[0], swing, delta=delta)
-        self.assertAlmostEqual(desired.position[1], spin, delta=delta)
-
-    def assert_rejected(self, message, code, *words):
-        handle = self.arm.ask(message)
-        self.assert_ended(handle, GoalStatus.REJECTED, code)
-        for word in words:
-            self.assertIn(word, handle.get_result().error_string)
+        super(ControllersTest, cls).setUpClass()
+        cls.weak = Controller("/weak_controller")
 
     def test_state_and_query_agree(self):
         recorder = Recorder("/arm_controller/state", JointTrajectoryControllerState)
@@ -301,95 +190,6 @@ class ControllersTest(unittest.TestCase):
             sim_client.step(500)
             self.assert_ended(handle, GoalStatus.SUCCEEDED)
             self.assert_at(0, expected)
-
-    def test_controllers_are_listed_loaded_and_switched(self):
-        self.assertEqual(states(), {"arm_controller": "running", "weak_controller": "running", "rival_controller": "initialized"})
-        listed = {c.name: c for c in manage("list_controllers", ListControllers).controller}
-        self.assertEqual(listed["arm_controller"].type, "effort_controllers/JointTrajectoryController")
-        self.assertEqual(list(listed["arm_controller"].claimed_resources[0].resources), JOINTS)
-        for name, ok in (("arm_controller", True), ("late_controller", True), ("joint_state_controller", True), ("odd_controller", False),
-                         ("no_controller", False)):
-            self.assertEqual(manage("load_controller", LoadController, name).ok, ok, name)
-        wait_until(lambda: any("DiffDriveController" in e for e in self.errors()), "a line about the type")
-
-        self.assertTrue(switch(["arm_controller", "joint_state_controller"], []), "what runs may be started")
-        self.assertFalse(switch(["rival_controller"], []))
-        self.assertFalse(switch(["rival_controller"], ["arm_controller", "weak_controller", "none"]))
-        self.assertEqual(states()["arm_controller"], "running", "a strict change is whole or not at all")
-        handle = self.arm.ask(goal([(1, [1, 1])]))
-        sim_client.step(100)
-        self.assertTrue(switch(["rival_controller"], ["arm_controller", "weak_controller"]))
-        self.assert_ended(handle, GoalStatus.PREEMPTED)
-        self.assert_rejected(goal([(1, [1, 1])]), -1, "stopped")
-        self.assertFalse(manage("unload_controller", UnloadController, "rival_controller").ok)
-        self.assertTrue(switch(["arm_controller", "late_controller"], ["rival_controller", "none"], BEST_EFFORT))
-        self.assertEqual(states()["late_controller"], "running")
-        self.assertTrue(switch(["weak_controller"], ["late_controller"]))
-        self.assertTrue(manage("unload_controller", UnloadController, "late_controller").ok)
-        self.assertNotIn("late_controller", states())
-
-    def test_a_gripper_in_a_namespace_of_its_own(self):
-        self.assertEqual(states(robot="/left"), {"joint_trajectory_controller": "running"})
-        default = Controller("/left/joint_trajectory_controller")
-        self.assertEqual(default.desired().name, ["swing", "spin", "weak"])
-        default.send(trajectory([(0.2, [0.3, 0.3, 0.3])], joints=["swing", "spin", "weak"]))
-        sim_client.step(300)
-        self.assertAlmostEqual(default.desired().position[0], 0.3, delta=1e-9)
-        self.assert_at(0, 0)
-
-        self.assertTrue(manage("load_controller", LoadController, "gripper_controller", robot="/left").ok)
-        self.assertTrue(switch(["gripper_controller"], [], robot="/left"), "the controller of all joints gives way")
-        self.assertEqual(states(robot="/left"), {"joint_trajectory_controller": "stopped", "gripper_controller": "running"})
-        client = action_client("/left/gripper_controller/gripper_cmd", GripperCommandAction)
-        command = GripperCommandGoal()
-        command.command.position = 0.6
-        handle = ask(client, command)
-        sim_client.step(1000)
-        self.assert_ended(handle, GoalStatus.SUCCEEDED)
-        self.assertTrue(handle.get_result().reached_goal)
-        self.assertAlmostEqual(handle.get_result().position, 0.6, delta=0.011)
-        command.command.position = 3.1
-        handle = ask(client, command)
-        sim_client.step(5000)
-        self.assert_ended(handle, GoalStatus.ABORTED)
-        self.assertTrue(handle.get_result().stalled)
-        self.assertAlmostEqual(handle.get_result().position, 3, delta=1e-3)
-        command.command.position = math.nan
-        self.assert_ended(ask(client, command), GoalStatus.REJECTED)
-
-    def test_two_robots_of_one_namespace_do_not_share_controllers(self):
-        recorder = Recorder("/joint_states", JointState)
-        wait_until(recorder.connected, "the joint states")
-        self.arm.send(trajectory([(0.2, [0.5, 0.5])]))
-        answer = sim_client.step(300)
-
-        def last():
-            return sorted(m.position[m.name.index("swing")] for m in recorder.messages() if m.header.stamp == answer.stamp)
-        wait_until(lambda: len(last()) == 2, "the last joint states of both robots")
-        recorder.stop()
-        self.assertAlmostEqual(last()[0], 0, delta=1e-9)
-        self.assertAlmostEqual(last()[1], 0.5, delta=1e-3)
-
-    def test_lock_step_gives_the_same_motion(self):
-        def run():
-            sim_client.reset_simulation()
-            recorder = Recorder("/arm_controller/state", JointTrajectoryControllerState)
-            wait_until(recorder.connected, "the state")
-            sim_client.step(1)
-            self.arm.ask(goal([(0.2, [0.5, -0.5]), (0.4, [0.1, 0.1])]))
-            sim_client.step(100)
-            handle = self.arm.ask(goal([(0.3, [-0.5, 0.5])]))
-            sim_client.step(100)
-            handle.cancel()
-            self.assert_ended(handle, GoalStatus.PREEMPTED)
-            sim_client.step(50)
-            wait_until(lambda: recorder.messages()[-1].header.stamp.to_sec() > 0.2505, "the last state")
-            recorder.stop()
-            return [(m.header.stamp, m.desired, m.actual) for m in recorder.messages() if m.header.stamp.to_sec() > 0.0015]
-
-        first, second = run(), run()
-        self.assertEqual(len(first), 250)
-        self.assertTrue(first == second, "the same bits")
 
 
 if __name__ == "__main__":

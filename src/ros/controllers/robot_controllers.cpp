@@ -63,6 +63,13 @@ std::string joined(const std::vector<std::string>& words) {
   return text.empty() ? "none" : text;
 }
 
+/** Nothing if the robot's configuration names none, or there is no configuration of that robot. */
+std::optional<std::vector<ControllerConfig>> configuredOf(const Simulator& simulator, const std::string& robot) {
+  for (const RobotConfig& config : simulator.config().robots)
+    if (config.name == robot) return config.controllers;
+  return {};
+}
+
 void checkName(const std::string& name) {
   std::string error;
   if (name.empty() || name.front() == '/' || !ros::names::validate(name, error))
@@ -73,7 +80,7 @@ void checkName(const std::string& name) {
 
 RobotControllers::RobotControllers(ros::NodeHandle node, Simulator* simulator, int robot, StepSender* sender)
     : node_(node, simulator->robots()[robot].name_space), simulator_(simulator), robot_(robot), sender_(sender) {
-  const auto& configured = simulator->config().robots[robot].controllers;
+  const auto configured = configuredOf(*simulator, simulator->robots()[robot].name);
   for (const ControllerConfig& config : configured.value_or(std::vector<ControllerConfig>(1))) {
     checkName(config.name);
     add(withParameters(node_, config), typeOf(controllerType(node_, config.name), config.kind));
