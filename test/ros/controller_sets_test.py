@@ -37,7 +37,7 @@ class ControllerSetsTest(ControllerTestCase):
         self.assertEqual(listed["arm_controller"].type, "effort_controllers/JointTrajectoryController")
         self.assertEqual(list(listed["arm_controller"].claimed_resources[0].resources), JOINTS)
         for name, ok in (("arm_controller", True), ("late_controller", True), ("joint_state_controller", True), ("odd_controller", False),
-                         ("no_controller", False)):
+                         ("no_controller", False), ("bad_controller", False)):
             self.assertEqual(manage("load_controller", LoadController, name).ok, ok, name)
         wait_until(lambda: any("DiffDriveController" in e for e in self.errors()), "a line about the type")
 
