@@ -23,9 +23,9 @@ class GripperController {
 
   const ControllerConfig& config() const { return config_; }
 
-  /** A controller runs from the start on; one that is stopped takes no goal. A start holds the joint where it is. */
-  bool running() const { return running_; }
+  /** Holds the joint where it is; goals are taken from now on. */
   void start();
+  /** Ends a goal; the motor keeps its target. */
   void stop();
 
   /** Sends the joint to a position [m or rad]. @throws GoalRefused: stopped, no finite number */
@@ -53,7 +53,7 @@ class GripperController {
   int robot_;
   ControllerConfig config_;
   int joint_;  ///< index into RobotInfo::joint_names
-  bool running_ = true;
+  bool running_ = false;
   bool stalled_ = false, reached_ = false;  ///< by the last goal
   std::optional<Goal> goal_;
 };

@@ -66,9 +66,11 @@ class TrajectoryController {
   const ControllerConfig& config() const { return config_; }
   const std::vector<std::string>& joints() const { return joint_names_; }
 
-  /** A controller runs from the start on; one that is stopped takes no command. A start holds the joints where they are. */
+  /** A controller takes commands while it runs: not before its start. */
   bool running() const { return running_; }
+  /** Holds the joints where they are. */
   void start();
+  /** Ends a goal and holds the joints' desired positions. */
   void stop();
 
   /** Follows a trajectory (no points: stops), which ends a goal. @return number of points left out as old @throws GoalRefused, InputError
@@ -134,7 +136,7 @@ class TrajectoryController {
   ControllerConfig config_;
   std::vector<int> joints_;  ///< indices into RobotInfo::joint_names
   std::vector<std::string> joint_names_;
-  bool running_ = true;
+  bool running_ = false;
   std::optional<Goal> goal_;
 };
 

@@ -95,10 +95,8 @@ void RobotControllers::startFirst() {
       ROS_WARN("controller '%s' waits: '%s' has joints of it; switch_controller changes over", controller.name.c_str(),
                rival->name.c_str());
     else
-      controller.running = controller.has_run = true;
+      start(&controller);
   }
-  for (Controller& controller : controllers_)
-    if (!controller.running) controller.server->stop();
 }
 
 void RobotControllers::publish(const StepReport& report) {
@@ -163,7 +161,6 @@ void RobotControllers::load(const std::string& name) {
   config = withParameters(node_, config);
   if (config.joints.empty()) throw InputError(place + "/joints: is missing; list the controller's joints");
   add(config, type);
-  controllers_.back().server->stop();
 }
 
 void RobotControllers::unload(const std::string& name) {

@@ -45,8 +45,10 @@ void TrajectoryController::start() {
 }
 
 void TrajectoryController::stop() {
+  if (!running_) return;
   running_ = false;
   goal_.reset();
+  simulator_->commandTrajectory(robot_, {joint_names_, 0, {}});
 }
 
 void TrajectoryController::checkRunning() const {

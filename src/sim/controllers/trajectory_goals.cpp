@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "blem_sim/sim/trajectory_controller.h"
 #include "numbers/nearest_turn.h"
@@ -21,7 +20,23 @@ void takeOver(double asked, double* tolerance) {
   if (asked != 0) *tolerance = std::max(asked, 0.0);
 }
 
-bool finite(const GoalTolerance& tolerance) { return std::isfinite(tolerance.position) && std::isfinite(tolerance.velocity); }
+void checkFinite(const char* field, const std::vector<GoalTolerance>& tolerances) {
+  for (const GoalTolerance& tolerance : tolerances)
+    if (!std::isfinite(tolerance.position) || !std::isfinite(tolerance.velocity))
+      throw GoalRefused(GoalError::INVALID_GOAL,
+                        fmt::format("{}: joint '{}' has a number that is not finite; 0 means the controller's own tolerance, a negative "
+                                    "one none",
+                                    field, tolerance.joint));
+}
+
+/** Takes the tolerances of a joint over those in force. */
+void takeOver(const std::string& joint, const std::vector<GoalTolerance>& asked, double* position, double* velocity) {
+  for (const GoalTolerance& tolerance : asked) {
+    if (tolerance.joint != joint) continue;
+    takeOver(tolerance.position, position);
+    takeOver(tolerance.velocity, velocity);
+  }
+}
 
 /** How a joint fails, in words; empty if it does not. */
 std::string excess(const TrackingState& state, double position_tolerance, double velocity_tolerance) {
@@ -45,13 +60,8 @@ TrackingTolerance TrajectoryController::ownTolerance(int joint) const {
 }
 
 void TrajectoryController::checkTolerances(const TrajectoryGoal& goal) const {
-  for (const auto& [field, tolerances] : {std::make_pair("path_tolerance", &goal.path_tolerance), {"goal_tolerance", &goal.goal_tolerance}})
-    for (const GoalTolerance& tolerance : *tolerances)
-      if (!finite(tolerance))
-        throw GoalRefused(GoalError::INVALID_GOAL,
-                          fmt::format("{}: joint '{}' has a number that is not finite; 0 means the controller's own tolerance, a negative "
-                                      "one none",
-                                      field, tolerance.joint));
+  checkFinite("path_tolerance", goal.path_tolerance);
+  checkFinite("goal_tolerance", goal.goal_tolerance);
 }
 
 TrajectoryController::GoalJoint TrajectoryController::goalJoint(int joint) const {
@@ -70,16 +80,8 @@ TrajectoryController::Goal TrajectoryController::goalFor(const TrajectoryGoal& a
   for (const std::string& name : plan.trajectory.joints) {
     GoalJoint joint = goalJoint(indexOf(name));
     joint.tolerance = ownTolerance(joint.joint);
-    for (const GoalTolerance& tolerance : asked.path_tolerance)
-      if (tolerance.joint == name) {
-        takeOver(tolerance.position, &joint.tolerance.path_position);
-        takeOver(tolerance.velocity, &joint.tolerance.path_velocity);
-      }
-    for (const GoalTolerance& tolerance : asked.goal_tolerance)
-      if (tolerance.joint == name) {
-        takeOver(tolerance.position, &joint.tolerance.goal_position);
-        takeOver(tolerance.velocity, &joint.tolerance.goal_velocity);
-      }
+    takeOver(name, asked.path_tolerance, &joint.tolerance.path_position, &joint.tolerance.path_velocity);
+    takeOver(name, asked.goal_tolerance, &joint.tolerance.goal_position, &joint.tolerance.goal_velocity);
     goal.joints.push_back(joint);
   }
   return goal;

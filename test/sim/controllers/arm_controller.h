@@ -51,7 +51,10 @@ inline TrajectoryGoal goalOf(const JointTrajectory& trajectory) { return {trajec
 
 class TrajectoryControllerTest : public testing::Test {
  protected:
-  void make(const ControllerConfig& config = {}) { controller_ = std::make_unique<TrajectoryController>(&simulator_, 0, config); }
+  void make(const ControllerConfig& config = {}) {
+    controller_ = std::make_unique<TrajectoryController>(&simulator_, 0, config);
+    controller_->start();
+  }
 
   /** Steps up to the goal's outcome, or for a time. */
   std::optional<GoalOutcome> outcomeWithin(double seconds) {

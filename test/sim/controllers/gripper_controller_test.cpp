@@ -41,6 +41,8 @@ ControllerConfig fingerConfig() {
 
 class GripperControllerTest : public testing::Test {
  protected:
+  void SetUp() override { controller_.start(); }
+
   std::optional<GoalOutcome> outcomeWithin(double seconds) {
     for (long i = 0; i < std::lround(seconds / simulator_.config().time_step); ++i) {
       simulator_.step();

@@ -136,11 +136,24 @@ TEST_F(TrajectoryControllerTest, CancelHolds) {
   EXPECT_NEAR(position(0), held, 1e-6);
 }
 
+TEST_F(TrajectoryControllerTest, OneThatNeverRanLeavesTheJointsAlone) {
+  make();
+  controller_->command(path({{1, {1, 1}}}));
+  TrajectoryController other(&simulator_, 0, {});
+  EXPECT_THROW(other.command({}), GoalRefused);
+  other.stop();
+  ASSERT_FALSE(outcomeWithin(1.1));
+  EXPECT_NEAR(position(0), 1, 1e-3);
+}
+
 TEST_F(TrajectoryControllerTest, AStoppedControllerRefusesAndAStartHolds) {
   make();
   controller_->command(path({{1, {1, 1}}}));
   ASSERT_FALSE(outcomeWithin(0.5));
+  const double at_stop = desired(0);
   controller_->stop();
+  ASSERT_FALSE(outcomeWithin(0.2));
+  EXPECT_EQ(desired(0), at_stop);
   EXPECT_EQ(refusalOf(goalOf(path({{1, {0, 0}}}))), GoalError::INVALID_GOAL);
   EXPECT_THROW(controller_->command({}), InputError);
   EXPECT_THROW(controller_->query(simulator_.time()), InputError);
