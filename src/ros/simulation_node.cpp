@@ -2,13 +2,8 @@
 
 #include <ros/console.h>
 
-#include <map>
-#include <string>
-#include <vector>
-
 #include "blem_sim/sim/simulator.h"
-#include "controllers/controller_services.h"
-#include "controllers/robot_controllers.h"
+#include "controllers/controller_sets.h"
 #include "loop/simulation_loop.h"
 #include "parameters.h"
 #include "publishers/clock_publisher.h"
@@ -50,9 +45,7 @@ struct SimulationNode::Impl {
   Simulator simulator{readParameters(private_node), UriResolver(), consoleLog()};
   SimulationLoop loop{&simulator};
   DiagnosticsPublisher* diagnostics = nullptr;
-  std::vector<RobotControllers*> controllers;
   std::unique_ptr<RobotCommands> commands;
-  std::vector<std::unique_ptr<ControllerServices>> controller_services;
   std::unique_ptr<PhysicsServices> physics;
   std::unique_ptr<StepService> step;
   std::unique_ptr<EnvironmentServices> environments;
@@ -73,28 +66,11 @@ struct SimulationNode::Impl {
     auto diagnostics_publisher = std::make_unique<DiagnosticsPublisher>(node, private_node, &loop);
     diagnostics = diagnostics_publisher.get();
     loop.add(std::move(diagnostics_publisher));
-    addControllers();
+    loop.add(std::make_unique<ControllerSets>(node, &simulator, loop.sender()));
     loop.add(std::make_unique<ClockPublisher>(node, simulator.config().rates.clock, loop.sender()));
   }
 
-  /** One set for each robot that has its namespace to itself. */
-  void addControllers() {
-    std::map<std::string, std::string> owner;  // of a namespace
-    for (std::size_t robot = 0; robot < simulator.robots().size(); ++robot) {
-      const RobotInfo& info = simulator.robots()[robot];
-      const auto [other, is_first] = owner.emplace(node.resolveName(info.name_space), info.name);
-      if (!is_first) {
-        ROS_WARN("robots: %s: has no controllers: those of %s have their names; set namespace", info.name.c_str(), other->second.c_str());
-        continue;
-      }
-      auto made = std::make_unique<RobotControllers>(node, &simulator, static_cast<int>(robot), loop.sender());
-      controllers.push_back(made.get());
-      loop.add(std::move(made));
-    }
-  }
-
   void addInputs() {
-    for (RobotControllers* robot : controllers) controller_services.push_back(std::make_unique<ControllerServices>(robot));
     commands = std::make_unique<RobotCommands>(node, &simulator);
     physics = std::make_unique<PhysicsServices>(private_node, &loop);
     step = std::make_unique<StepService>(private_node, &loop);

@@ -38,6 +38,8 @@ class GripperController {
   GripperState state() const;
 
  private:
+  int robot() const { return simulator_->robotIndex(robot_); }
+  const RobotInfo& robotInfo() const { return simulator_->robots()[robot()]; }
   struct Goal {
     double position = 0;     ///< [m or rad]
     double moved_last = 0;   ///< [s]
@@ -50,7 +52,7 @@ class GripperController {
   GoalOutcome end(GoalEnd end, const std::string& text);
 
   Simulator* simulator_;
-  int robot_;
+  std::string robot_;  ///< its index may change when others come or go
   ControllerConfig config_;
   int joint_;  ///< index into RobotInfo::joint_names
   bool running_ = false;

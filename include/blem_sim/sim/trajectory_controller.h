@@ -93,6 +93,8 @@ class TrajectoryController {
   std::vector<JointSample> query(double time) const;
 
  private:
+  int robot() const { return simulator_->robotIndex(robot_); }
+  const RobotInfo& robotInfo() const { return simulator_->robots()[robot()]; }
   /** A joint on its way to a goal. */
   struct GoalJoint {
     int joint = 0;                ///< index into joints()
@@ -132,7 +134,7 @@ class TrajectoryController {
   std::optional<GoalOutcome> judge(GoalJoint* joint, double time) const;
 
   Simulator* simulator_;
-  int robot_;
+  std::string robot_;  ///< its index may change when others come or go
   ControllerConfig config_;
   std::vector<int> joints_;  ///< indices into RobotInfo::joint_names
   std::vector<std::string> joint_names_;

@@ -79,8 +79,8 @@ void checkName(const std::string& name) {
 }  // namespace
 
 RobotControllers::RobotControllers(ros::NodeHandle node, Simulator* simulator, int robot, StepSender* sender)
-    : node_(node, simulator->robots()[robot].name_space), simulator_(simulator), robot_(robot), sender_(sender) {
-  const auto configured = configuredOf(*simulator, simulator->robots()[robot].name);
+    : node_(node, simulator->robots()[robot].name_space), simulator_(simulator), robot_(simulator->robots()[robot].name), sender_(sender) {
+  const auto configured = configuredOf(*simulator, robot_);
   for (const ControllerConfig& config : configured.value_or(std::vector<ControllerConfig>(1))) {
     checkName(config.name);
     add(withParameters(node_, config), typeOf(controllerType(node_, config.name), config.kind));
@@ -99,12 +99,12 @@ void RobotControllers::startFirst() {
   }
 }
 
-void RobotControllers::publish(const StepReport& report) {
+void RobotControllers::step(double time) {
   for (Controller& controller : controllers_)
-    if (controller.server) controller.server->step(report.time);
+    if (controller.server) controller.server->step(time);
 }
 
-void RobotControllers::timeRestarted() {
+void RobotControllers::restartTime() {
   for (Controller& controller : controllers_)
     if (controller.server) controller.server->restartTime();
 }
@@ -138,9 +138,10 @@ void RobotControllers::add(const ControllerConfig& config, const std::string& ty
   controller.name = config.name;
   controller.type = type;
   if (config.kind == ControllerKind::GRIPPER)
-    controller.server = std::make_unique<GripperServer>(node_, GripperController(simulator_, robot_, config));
+    controller.server = std::make_unique<GripperServer>(node_, GripperController(simulator_, simulator_->robotIndex(robot_), config));
   else
-    controller.server = std::make_unique<TrajectoryServer>(node_, TrajectoryController(simulator_, robot_, config), sender_);
+    controller.server =
+        std::make_unique<TrajectoryServer>(node_, TrajectoryController(simulator_, simulator_->robotIndex(robot_), config), sender_);
   controllers_.push_back(std::move(controller));
 }
 

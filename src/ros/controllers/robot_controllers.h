@@ -10,7 +10,6 @@
 
 #include "blem_sim/sim/simulator.h"
 #include "controllers/controller_server.h"
-#include "sending/step_publisher.h"
 #include "sending/step_sender.h"
 
 namespace blem_sim {
@@ -25,13 +24,14 @@ struct ControllerChange {
  * Controllers of the configuration, and those loaded later. A joint obeys one controller at a time. Without a configuration one controller
  * of all joints runs, which gives way to others that are started.
  */
-class RobotControllers : public StepPublisher {
+class RobotControllers {
  public:
   /** @throws InputError: wrong settings of a controller */
   RobotControllers(ros::NodeHandle node, Simulator* simulator, int robot, StepSender* sender);
 
-  void publish(const StepReport& report) override;
-  void timeRestarted() override;
+  /** To be called after each step. @param time [s] simulated */
+  void step(double time);
+  void restartTime();
 
   const ros::NodeHandle& node() const { return node_; }  ///< in the robot's namespace
 
@@ -67,7 +67,7 @@ class RobotControllers : public StepPublisher {
 
   ros::NodeHandle node_;
   Simulator* simulator_;
-  int robot_;
+  std::string robot_;
   StepSender* sender_;
   std::vector<Controller> controllers_;
 };

@@ -20,11 +20,14 @@ int onlyJoint(const RobotInfo& robot, const ControllerConfig& config) {
 }  // namespace
 
 GripperController::GripperController(Simulator* simulator, int robot, ControllerConfig config)
-    : simulator_(simulator), robot_(robot), config_(std::move(config)), joint_(onlyJoint(simulator->robots().at(robot), config_)) {}
+    : simulator_(simulator),
+      robot_(simulator->robots().at(robot).name),
+      config_(std::move(config)),
+      joint_(onlyJoint(simulator->robots().at(robot), config_)) {}
 
 void GripperController::start() {
   running_ = true;
-  simulator_->holdJoints(robot_, {joint_});
+  simulator_->holdJoints(robot(), {joint_});
 }
 
 void GripperController::stop() {
@@ -38,15 +41,15 @@ void GripperController::accept(double position) {
   if (!isCommand(position))
     throw GoalRefused(GoalError::INVALID_GOAL,
                       fmt::format("command: position: is not a finite number within {:g}; correct it", LARGEST_COMMAND));
-  simulator_->holdJoint(robot_, joint_, position);
+  simulator_->holdJoint(robot(), joint_, position);
   stalled_ = reached_ = false;
-  goal_ = Goal{position, simulator_->time(), simulator_->followedPath(robot_, joint_)->lastKnot()};
+  goal_ = Goal{position, simulator_->time(), simulator_->followedPath(robot(), joint_)->lastKnot()};
 }
 
 void GripperController::cancel() {
   if (!goal_) return;
   goal_.reset();
-  simulator_->holdJoints(robot_, {joint_});
+  simulator_->holdJoints(robot(), {joint_});
 }
 
 std::optional<GoalOutcome> GripperController::update() {
@@ -67,15 +70,15 @@ GripperState GripperController::state() const {
   return {now.position, now.effort, stalled_, reached_};
 }
 
-JointState GripperController::joint() const { return simulator_->world().jointState(simulator_->robots()[robot_].joints[joint_]); }
+JointState GripperController::joint() const { return simulator_->world().jointState(robotInfo().joints[joint_]); }
 
 double GripperController::errorFrom(double position) const {
-  const bool continuous = simulator_->robots()[robot_].continuous[joint_];
+  const bool continuous = robotInfo().continuous[joint_];
   return continuous ? shortestTurn(position, goal_->position) : goal_->position - position;
 }
 
 bool GripperController::replaced() const {
-  const JointSpline* path = simulator_->followedPath(robot_, joint_);
+  const JointSpline* path = simulator_->followedPath(robot(), joint_);
   return !path || !sameKnot(path->lastKnot(), goal_->last);
 }
 

@@ -29,7 +29,10 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
 }  // namespace
 
 TrajectoryController::TrajectoryController(Simulator* simulator, int robot, ControllerConfig config)
-    : simulator_(simulator), robot_(robot), config_(std::move(config)), joints_(controlledJoints(simulator->robots().at(robot), config_)) {
+    : simulator_(simulator),
+      robot_(simulator->robots().at(robot).name),
+      config_(std::move(config)),
+      joints_(controlledJoints(simulator->robots().at(robot), config_)) {
   for (const int joint : joints_) joint_names_.push_back(simulator->robots()[robot].joint_names[joint]);
   for (const auto& [joint, constraint] : config_.joint_constraints)
     requireName(joint, joint_names_, "controller '" + config_.name + "': constraints", "joint of this controller");
@@ -41,14 +44,14 @@ int TrajectoryController::indexOf(const std::string& joint) const {
 
 void TrajectoryController::start() {
   running_ = true;
-  simulator_->holdJoints(robot_, joints_);
+  simulator_->holdJoints(robot(), joints_);
 }
 
 void TrajectoryController::stop() {
   if (!running_) return;
   running_ = false;
   goal_.reset();
-  simulator_->commandTrajectory(robot_, {joint_names_, 0, {}});
+  simulator_->commandTrajectory(robot(), {joint_names_, 0, {}});
 }
 
 void TrajectoryController::checkRunning() const {
@@ -125,7 +128,7 @@ TrajectoryController::Plan TrajectoryController::planFor(const JointTrajectory& 
 
 void TrajectoryController::follow(const Plan& plan) {
   try {
-    simulator_->commandTrajectory(robot_, plan.trajectory);
+    simulator_->commandTrajectory(robot(), plan.trajectory);
   } catch (const InputError& error) {
     throw GoalRefused(GoalError::INVALID_GOAL, error.what());
   }
@@ -134,18 +137,18 @@ void TrajectoryController::follow(const Plan& plan) {
 double TrajectoryController::halt() {
   const double duration = config_.stop_trajectory_duration, now = simulator_->time();
   if (duration <= 0) {
-    simulator_->holdJoints(robot_, joints_);
+    simulator_->holdJoints(robot(), joints_);
     return now;
   }
   // Constant deceleration from the desired state: half of a cubic that comes back with the opposite velocity.
   TrajectoryPoint rest;
   rest.time_from_start = duration;
   for (const int joint : joints_) {
-    const JointSample desired = simulator_->desiredState(robot_, joint);
+    const JointSample desired = simulator_->desiredState(robot(), joint);
     rest.positions.push_back(desired.position + desired.velocity * duration / 2);
     rest.velocities.push_back(0);
   }
-  simulator_->commandTrajectory(robot_, {joint_names_, now, {rest}});
+  simulator_->commandTrajectory(robot(), {joint_names_, now, {rest}});
   return now + duration;
 }
 

@@ -65,7 +65,7 @@ void TrajectoryController::checkTolerances(const TrajectoryGoal& goal) const {
 }
 
 TrajectoryController::GoalJoint TrajectoryController::goalJoint(int joint) const {
-  return {joint, simulator_->followedPath(robot_, joints_[joint])->lastKnot(), {}, false};
+  return {joint, simulator_->followedPath(robot(), joints_[joint])->lastKnot(), {}, false};
 }
 
 TrajectoryController::Goal TrajectoryController::goalToHalt(double end) const {
@@ -88,11 +88,11 @@ TrajectoryController::Goal TrajectoryController::goalFor(const TrajectoryGoal& a
 }
 
 TrackingState TrajectoryController::stateAt(int joint, double time) const {
-  const RobotInfo& robot = simulator_->robots()[robot_];
-  const JointState actual = simulator_->world().jointState(robot.joints[joints_[joint]]);
-  TrackingState state{simulator_->desiredState(robot_, joints_[joint], time), actual.position, actual.velocity, 0, 0};
+  const RobotInfo& info = robotInfo();
+  const JointState actual = simulator_->world().jointState(info.joints[joints_[joint]]);
+  TrackingState state{simulator_->desiredState(robot(), joints_[joint], time), actual.position, actual.velocity, 0, 0};
   const double desired = state.desired.position;
-  state.position_error = robot.continuous[joints_[joint]] ? shortestTurn(actual.position, desired) : desired - actual.position;
+  state.position_error = info.continuous[joints_[joint]] ? shortestTurn(actual.position, desired) : desired - actual.position;
   state.velocity_error = state.desired.velocity - actual.velocity;
   return state;
 }
@@ -107,17 +107,17 @@ std::vector<JointSample> TrajectoryController::query(double time) const {
   checkRunning();
   std::vector<JointSample> samples;
   for (std::size_t joint = 0; joint < joints_.size(); ++joint) {
-    const JointSpline* path = simulator_->followedPath(robot_, joints_[joint]);
+    const JointSpline* path = simulator_->followedPath(robot(), joints_[joint]);
     if (path && time < path->startTime() - SAME_TIME)
       throw InputError(fmt::format("query_state: {:.9g} s is before the path of joint '{}' begins, at {:.9g} s; ask for a later time", time,
                                    joint_names_[joint], path->startTime()));
-    samples.push_back(simulator_->desiredState(robot_, joints_[joint], time));
+    samples.push_back(simulator_->desiredState(robot(), joints_[joint], time));
   }
   return samples;
 }
 
 bool TrajectoryController::replaced(const GoalJoint& joint) const {
-  const JointSpline* path = simulator_->followedPath(robot_, joints_[joint.joint]);
+  const JointSpline* path = simulator_->followedPath(robot(), joints_[joint.joint]);
   return !path || !sameKnot(path->lastKnot(), joint.last);
 }
 
