@@ -1,5 +1,7 @@
 # catkin: messages, services and what other packages see. Before any target, so that libraries land in the devel space.
 set(BLEM_SIM_CATKIN_COMPONENTS
+  actionlib
+  actionlib_msgs
   diagnostic_msgs
   diagnostic_updater
   geometry_msgs
@@ -16,9 +18,11 @@ find_package(catkin REQUIRED COMPONENTS message_generation ${BLEM_SIM_CATKIN_COM
 
 file(GLOB messages CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/msg ${PROJECT_SOURCE_DIR}/msg/*.msg)
 file(GLOB services CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/srv ${PROJECT_SOURCE_DIR}/srv/*.srv)
+file(GLOB actions CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/action ${PROJECT_SOURCE_DIR}/action/*.action)
 add_message_files(FILES ${messages})
 add_service_files(FILES ${services})
-generate_messages(DEPENDENCIES geometry_msgs std_msgs)
+add_action_files(FILES ${actions})
+generate_messages(DEPENDENCIES actionlib_msgs geometry_msgs std_msgs trajectory_msgs)
 
 catkin_package(
   INCLUDE_DIRS include

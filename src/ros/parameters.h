@@ -2,19 +2,10 @@
 #pragma once
 
 #include <ros/node_handle.h>
-#include <xmlrpcpp/XmlRpcValue.h>
 
 #include "blem_sim/sim/config.h"
 
-namespace YAML {
-class Node;
-}
-
 namespace blem_sim {
-
-/** Parameters are YAML that has been through XML-RPC; this is the way back. @throws InputError: dates and binary data, which no key takes
- */
-YAML::Node toYaml(XmlRpc::XmlRpcValue value);
 
 /**
  * Reads every private parameter through parseConfig, so that the node and blem_sim_run take the same keys, plus the node's own:

@@ -5,45 +5,27 @@
 #include <boost/function.hpp>
 
 #include "blem_sim/geometry/input_error.h"
+#include "messages/trajectory_messages.h"
 
 namespace blem_sim {
 
 namespace {
-
 constexpr int QUEUE_SIZE = 100;
-
-JointTrajectory fromMessage(const trajectory_msgs::JointTrajectory& message) {
-  JointTrajectory trajectory;
-  trajectory.joints = message.joint_names;
-  trajectory.start_time = message.header.stamp.toSec();
-  for (const trajectory_msgs::JointTrajectoryPoint& point : message.points) {
-    TrajectoryPoint knot;
-    knot.time_from_start = point.time_from_start.toSec();
-    knot.positions = point.positions;
-    knot.velocities = point.velocities;
-    knot.accelerations = point.accelerations;
-    knot.effort = point.effort;
-    trajectory.points.push_back(std::move(knot));
-  }
-  return trajectory;
 }
-
-}  // namespace
 
 RobotCommands::RobotCommands(ros::NodeHandle node, Simulator* simulator) : simulator_(simulator) {
   const int robots = static_cast<int>(simulator->robots().size());
   for (int robot = 0; robot < robots; ++robot) {
     ros::NodeHandle robot_node(node, simulator->robots()[robot].name_space);
-    for (const char* name : {"joint_trajectory_controller/command", "joint_trajectory"}) {
-      const std::string topic = robot_node.resolveName(name);
-      const boost::function<void(const trajectory_msgs::JointTrajectoryConstPtr&)> callback =
-          [this, robot, topic](const trajectory_msgs::JointTrajectoryConstPtr& message) { onTrajectory(robot, topic, *message); };
-      subscribers_.push_back(robot_node.subscribe<trajectory_msgs::JointTrajectory>(name, QUEUE_SIZE, callback));
-    }
-    const std::string topic = robot_node.resolveName("joint_command");
-    const boost::function<void(const sensor_msgs::JointStateConstPtr&)> callback =
-        [this, robot, topic](const sensor_msgs::JointStateConstPtr& message) { onJointCommand(robot, topic, *message); };
-    subscribers_.push_back(robot_node.subscribe<sensor_msgs::JointState>("joint_command", QUEUE_SIZE, callback));
+    const std::string trajectories = robot_node.resolveName("joint_trajectory"), commands = robot_node.resolveName("joint_command");
+    const boost::function<void(const trajectory_msgs::JointTrajectoryConstPtr&)> on_trajectory =
+        [this, robot, trajectories](const trajectory_msgs::JointTrajectoryConstPtr& message) {
+          onTrajectory(robot, trajectories, *message);
+        };
+    const boost::function<void(const sensor_msgs::JointStateConstPtr&)> on_command =
+        [this, robot, commands](const sensor_msgs::JointStateConstPtr& message) { onJointCommand(robot, commands, *message); };
+    subscribers_.push_back(robot_node.subscribe<trajectory_msgs::JointTrajectory>("joint_trajectory", QUEUE_SIZE, on_trajectory));
+    subscribers_.push_back(robot_node.subscribe<sensor_msgs::JointState>("joint_command", QUEUE_SIZE, on_command));
   }
 }
 

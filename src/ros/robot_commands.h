@@ -11,7 +11,7 @@
 namespace blem_sim {
 
 /**
- * Commands to a robot, in its namespace: `joint_trajectory_controller/command` and `joint_trajectory` (trajectory_msgs/JointTrajectory;
+ * Commands to a robot past its controllers, in its namespace: `joint_trajectory` (trajectory_msgs/JointTrajectory for some or all joints;
  * stamp 0 = now, no points = hold) and `joint_command` (sensor_msgs/JointState: targets by joint name). A faulty message changes nothing;
  * one error line names the fault.
  */

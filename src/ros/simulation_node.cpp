@@ -3,6 +3,7 @@
 #include <ros/console.h>
 
 #include "blem_sim/sim/simulator.h"
+#include "controllers/controller_sets.h"
 #include "loop/simulation_loop.h"
 #include "parameters.h"
 #include "publishers/clock_publisher.h"
@@ -65,6 +66,7 @@ struct SimulationNode::Impl {
     auto diagnostics_publisher = std::make_unique<DiagnosticsPublisher>(node, private_node, &loop);
     diagnostics = diagnostics_publisher.get();
     loop.add(std::move(diagnostics_publisher));
+    loop.add(std::make_unique<ControllerSets>(node, &simulator, loop.sender()));
     loop.add(std::make_unique<ClockPublisher>(node, simulator.config().rates.clock, loop.sender()));
   }
 

@@ -87,7 +87,24 @@ Pose Simulator::linkPose(int robot, int link) const { return impl_->world_.linkP
 
 void Simulator::commandTrajectory(int robot, const JointTrajectory& trajectory) { impl_->commandTrajectory(robot, trajectory); }
 void Simulator::commandJoints(int robot, const JointCommandMessage& command) { impl_->commandJoints(robot, command); }
-JointSample Simulator::desiredState(int robot, int joint) const { return impl_->desiredState(robots().at(robot).joints.at(joint)); }
+JointSample Simulator::desiredState(int robot, int joint) const { return desiredState(robot, joint, time()); }
+JointSample Simulator::desiredState(int robot, int joint, double time) const {
+  return impl_->desiredState(robots().at(robot).joints.at(joint), time);
+}
+
+const JointSpline* Simulator::followedPath(int robot, int joint) const {
+  const JointMotor& motor = impl_->world_.motors[robots().at(robot).joints.at(joint)];
+  return motor.settings().commanded ? motor.path() : nullptr;
+}
+
+void Simulator::holdJoints(int robot, const std::vector<int>& joints) {
+  for (const int joint : joints) holdJoint(robot, joint, world().jointState(robots().at(robot).joints.at(joint)).position);
+}
+
+void Simulator::holdJoint(int robot, int joint, double position) {
+  const int world_joint = robots().at(robot).joints.at(joint);
+  impl_->world_.motors[world_joint].hold(impl_->nearestTurn(world_joint, position));
+}
 
 void Simulator::loadEnvironment(const EnvironmentConfig& environment) { impl_->loadEnvironment(environment); }
 void Simulator::unloadEnvironment(const std::string& name) { impl_->unloadEnvironment(name); }

@@ -91,10 +91,10 @@ double Simulator::Impl::nearestTurn(int joint, double position) const {
   return position + turnsTo(world_.world.jointState(joint).position, position);
 }
 
-JointSample Simulator::Impl::desiredState(int joint) const {
+JointSample Simulator::Impl::desiredState(int joint, double time) const {
   const JointSpec& spec = world_.world.jointSpec(joint);
-  if (spec.mimic_joint < 0) return world_.motors[joint].desired(time());
-  const JointSample master = desiredState(spec.mimic_joint);
+  if (spec.mimic_joint < 0) return world_.motors[joint].desired(time);
+  const JointSample master = desiredState(spec.mimic_joint, time);
   return {spec.mimic_multiplier * master.position + spec.mimic_offset, spec.mimic_multiplier * master.velocity,
           spec.mimic_multiplier * master.acceleration, 0};
 }

@@ -1,4 +1,4 @@
-#include "parameters.h"
+#include "messages/parameter_yaml.h"
 
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>

@@ -11,6 +11,7 @@
 #include "blem_sim/contact/collider.h"
 #include "blem_sim/dynamics/world_types.h"
 #include "blem_sim/model/loaders.h"
+#include "blem_sim/sim/controller_config.h"
 
 namespace YAML {
 class Node;
@@ -105,7 +106,8 @@ struct RobotConfig {
   double command_timeout = 0;                           ///< [s] after which velocity and effort commands end and joints hold; 0: never
   std::map<std::string, double> armature;               ///< [kg m^2 or kg] rotor inertia seen at the joint; by joint, "default"
   std::vector<SensorConfig> sensors;
-  std::optional<int> max_contacts;  ///< k of this robot
+  std::optional<std::vector<ControllerConfig>> controllers;  ///< none given: one of all joints (node only)
+  std::optional<int> max_contacts;                           ///< k of this robot
 };
 
 struct ObjectConfig {

@@ -51,6 +51,14 @@ class Simulator {
   void commandTrajectory(int robot, const JointTrajectory& trajectory);
   void commandJoints(int robot, const JointCommandMessage& command);
   JointSample desiredState(int robot, int joint) const;  ///< command of the motor now; joint = index into joint_names
+  /** The same at another time [s], if nothing new is commanded. */
+  JointSample desiredState(int robot, int joint, double time) const;
+  /** Path that the joint's motor follows; null while it keeps a velocity, and for a joint without a motor. */
+  const JointSpline* followedPath(int robot, int joint) const;
+  /** Motors hold the joints where they are now, at rest. @param joints indices into joint_names */
+  void holdJoints(int robot, const std::vector<int>& joints);
+  /** The joint's motor holds a position [rad or m] from now on; a joint that turns without end takes the nearest turn. */
+  void holdJoint(int robot, int joint, double position);
 
   /** Adds static geometry between steps, in the lowest slots that are free. @throws InputError if it cannot be loaded or the name is taken
    */

@@ -38,6 +38,8 @@ struct RobotInfo {
   std::vector<std::string> joint_names;  ///< movable joints
   std::vector<int> joints;               ///< their world joints
   std::vector<JointLimits> limits;
+  std::vector<bool> continuous;  ///< turns without end
+  std::vector<bool> driven;      ///< has a motor of its own: no mimic
 };
 
 struct SensorInfo {

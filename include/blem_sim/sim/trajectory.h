@@ -18,7 +18,7 @@ constexpr double LATEST_COMMAND = 1e10;
 inline bool isCommand(double value) { return std::abs(value) <= LARGEST_COMMAND; }
 
 struct TrajectoryPoint {
-  double time_from_start = 0;         ///< [s], strictly increasing
+  double time_from_start = 0;         ///< [s], strictly increasing; old points, negative times among them, are left out
   std::vector<double> positions;      ///< one per joint
   std::vector<double> velocities;     ///< empty, or one per joint: cubic
   std::vector<double> accelerations;  ///< empty, or one per joint: quintic (needs velocities)
@@ -57,7 +57,9 @@ class JointSpline {
    */
   void splice(double now, double start, std::vector<Knot> knots, bool continuous);
   JointSample sample(double time) const;
+  double startTime() const;  ///< [s] of what is known of the path: earlier times are held at its first position
   double endTime() const;
+  Knot lastKnot() const;
   /** State as numbers, for save and restore. */
   void append(std::vector<double>* numbers) const;
   void read(NumberReader* reader);
@@ -65,6 +67,11 @@ class JointSpline {
  private:
   std::vector<Knot> knots_;
 };
+
+/** True for the end of one path; that of another differs in time or place. */
+inline bool sameKnot(const JointSpline::Knot& a, const JointSpline::Knot& b) {
+  return a.time == b.time && a.position == b.position && a.velocity == b.velocity;
+}
 
 /** Checks a command against a robot's joints. @throws InputError: unknown or repeated joint, sizes, NaN, beyond LARGEST_COMMAND, times not
  * increasing */

@@ -143,6 +143,8 @@ void RobotBuilder::addJoints() {
     info_.joint_names.push_back(joint.name);
     info_.joints.push_back(info_.world_joints[j]);
     info_.limits.push_back(joint.limits);
+    info_.continuous.push_back(joint.type == JointType::CONTINUOUS);
+    info_.driven.push_back(!joint.mimic);
   }
 }
 

@@ -52,6 +52,9 @@ class JointMotor {
   /** Call after an accepted (sub)step: integrates, and notes whether the effort limit was met. @return true if it was */
   bool accept(const JointDrive& drive, const JointState& after, double dt);
 
+  /** Path that is followed; null while a velocity or an effort is kept. */
+  const JointSpline* path() const { return mode_ == Mode::POSITION ? &spline_ : nullptr; }
+
   const MotorSettings& settings() const { return settings_; }
   void append(std::vector<double>* numbers) const;
   void read(NumberReader* reader);

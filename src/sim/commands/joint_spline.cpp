@@ -85,6 +85,10 @@ JointSample JointSpline::sample(double time) const {
   return ends_now ? sampleSegment(*(&last - 1), last, time) : holdAt(last);
 }
 
+double JointSpline::startTime() const { return knots_.empty() ? 0 : knots_.front().time; }
+
+JointSpline::Knot JointSpline::lastKnot() const { return knots_.empty() ? Knot{0, 0, 0, 0, 0, 1} : knots_.back(); }
+
 double JointSpline::endTime() const { return knots_.empty() ? 0 : knots_.back().time; }
 
 void JointSpline::splice(double now, double start, std::vector<Knot> knots, bool continuous) {

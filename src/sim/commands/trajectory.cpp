@@ -56,9 +56,9 @@ void checkTrajectory(const JointTrajectory& trajectory, const std::vector<std::s
   if (trajectory.joints.empty() && !trajectory.points.empty()) throw InputError("trajectory: points without joint names; name the joints");
   for (std::size_t i = 0; i < trajectory.points.size(); ++i) {
     const double time = trajectory.points[i].time_from_start;
-    if (!(time >= 0 && time <= LATEST_COMMAND))
+    if (!(std::abs(time) <= LATEST_COMMAND))
       throw InputError(
-          fmt::format("trajectory: points[{}].time_from_start: must be a finite number from 0 to {:g}, not {}", i, LATEST_COMMAND, time));
+          fmt::format("trajectory: points[{}].time_from_start: must be a finite number within {:g} s, not {}", i, LATEST_COMMAND, time));
     if (i > 0 && time <= trajectory.points[i - 1].time_from_start)
       throw InputError(fmt::format("trajectory: points[{}].time_from_start: {} does not come after {}; times must increase strictly", i,
                                    time, trajectory.points[i - 1].time_from_start));

@@ -140,6 +140,8 @@ JointTrajectory loadTrajectoryCsv(const std::string& file, const std::vector<std
     }
   }
   if (trajectory.points.empty()) throw InputError(fmt::format("{}: holds no rows; give a header line and one row per point", file));
+  if (trajectory.points.front().time_from_start < 0)
+    throw InputError(fmt::format("{}: column 'time' begins at {} s; begin at 0 or later", file, trajectory.points.front().time_from_start));
   try {
     checkTrajectory(trajectory, known_joints);
   } catch (const InputError& error) {

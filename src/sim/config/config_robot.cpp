@@ -132,6 +132,7 @@ RobotConfig readRobot(YamlReader& reader) {
   reader.read("command_timeout", &robot.command_timeout, NumberRange::notNegative());
   robot.armature = readNumbers(reader, "armature", NumberRange::notNegative());
   robot.sensors = readSensors(reader);
+  robot.controllers = readControllers(reader);
   return robot;
 }
 

@@ -20,6 +20,8 @@ EnvironmentConfig readEnvironment(YamlReader& reader);
 ObjectConfig readObject(YamlReader& reader);
 RobotConfig readRobot(YamlReader& reader);
 std::vector<SensorConfig> readSensors(YamlReader& robot);
+/** Nothing if the robot names none. */
+std::optional<std::vector<ControllerConfig>> readControllers(YamlReader& robot);
 
 /** parseConfig that also tells which keys it knows, as "robots[].gains.*.p"; of a list or map only if the node holds one. */
 SimulationConfig parseConfig(const YAML::Node& root, const std::string& source, const std::string& base_directory,

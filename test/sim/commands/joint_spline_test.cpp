@@ -161,6 +161,21 @@ TEST(JointSpline, ContinuousJointsTakeTheNearestTurn) {
   EXPECT_NEAR(limited.sample(1).position, -0.2, 1e-12);
 }
 
+TEST(JointSpline, HalfATurnGoesTheWayOfTheNumbers) {
+  const auto endOf = [](double from, double to) {
+    JointSpline spline(from);
+    spline.splice(0, 0, {linear(1, to)}, true);
+    return spline.sample(1).position;
+  };
+  EXPECT_NEAR(endOf(-M_PI / 2, M_PI / 2), M_PI / 2, 1e-12);
+  EXPECT_NEAR(endOf(M_PI / 2, -M_PI / 2), -M_PI / 2, 1e-12);
+  EXPECT_NEAR(endOf(0, M_PI), M_PI, 1e-12);
+  EXPECT_NEAR(endOf(0, -M_PI), -M_PI, 1e-12);
+  EXPECT_NEAR(endOf(0, 3 * M_PI), M_PI, 1e-12);
+  EXPECT_NEAR(endOf(7, 7 - 5 * M_PI), 7 - M_PI, 1e-12);
+  EXPECT_NEAR(endOf(0, M_PI + 1e-6), -M_PI + 1e-6, 1e-12);
+}
+
 TEST(JointSpline, EffortIsInterpolatedAndHeld) {
   JointSpline spline(0);
   spline.splice(0, 0, {{1, 0, 0, 0, 4, 1}, {2, 0, 0, 0, 8, 1}}, false);

@@ -102,6 +102,9 @@ TEST(Manual, HoldsEveryKnownKey) {
   const SimulationConfig config = parseConfig(document, "default.yaml", "", &known);
   EXPECT_EQ(config.robots.size(), 2u);
   EXPECT_EQ(config.robots[0].sensors.size(), 5u);
+  ASSERT_TRUE(config.robots[0].controllers);
+  EXPECT_EQ(config.robots[0].controllers->size(), 3u);
+  EXPECT_FALSE(config.robots[1].controllers);
   EXPECT_EQ(config.objects.size(), 2u);
   EXPECT_EQ(config.environments.size(), 4u);
   collectKeys(document, "", &written);

@@ -1,0 +1,42 @@
+// The controllers of all robots.
+#pragma once
+
+#include <ros/node_handle.h>
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "controllers/controller_services.h"
+#include "controllers/robot_controllers.h"
+#include "sending/step_publisher.h"
+
+namespace blem_sim {
+
+/** One set of controllers, and its services, for each robot that has its namespace to itself. */
+class ControllerSets : public StepPublisher {
+ public:
+  /** @throws InputError: wrong settings of a controller */
+  ControllerSets(ros::NodeHandle node, Simulator* simulator, StepSender* sender);
+
+  void publish(const StepReport& report) override;
+  void timeRestarted() override;
+  /** Robots came or went; all messages about those that went are out. @throws InputError: wrong settings of a controller */
+  void robotsChanged();
+
+ private:
+  struct Set {
+    std::string robot;
+    std::unique_ptr<RobotControllers> controllers;
+    std::unique_ptr<ControllerServices> services;
+  };
+
+  void add(int robot);
+
+  ros::NodeHandle node_;
+  Simulator* simulator_;
+  StepSender* sender_;
+  std::map<std::string, Set> sets_;  // by namespace
+};
+
+}  // namespace blem_sim

@@ -1,0 +1,139 @@
+#include "controllers/trajectory_server.h"
+
+#include <ros/console.h>
+
+#include <boost/function.hpp>
+#include <utility>
+
+#include "messages/conversions.h"
+#include "messages/trajectory_messages.h"
+
+namespace blem_sim {
+
+namespace {
+
+constexpr int QUEUE_SIZE = 100;
+
+JointTrajectoryControllerState namedState(const TrajectoryController& controller) {
+  JointTrajectoryControllerState message;
+  message.joint_names = controller.joints();
+  return message;
+}
+
+FollowJointTrajectoryResult resultOf(GoalError error, const std::string& text) {
+  FollowJointTrajectoryResult result;
+  result.error_code = static_cast<int>(error);
+  result.error_string = text;
+  return result;
+}
+
+void tellOldPoints(const std::string& where, int count) {
+  if (count > 0) ROS_WARN("%s: points at or before the next step are left out: %d", where.c_str(), count);
+}
+
+}  // namespace
+
+TrajectoryServer::TrajectoryServer(ros::NodeHandle robot_node, TrajectoryController controller, StepSender* sender)
+    : controller_(std::move(controller)),
+      node_(robot_node, controller_.config().name),
+      sender_(sender),
+      state_schedule_(controller_.config().state_publish_rate),
+      state_publisher_(ListenedPublisher::advertise<JointTrajectoryControllerState>(&node_, "state", QUEUE_SIZE)),
+      states_(namedState(controller_)),
+      query_(node_.advertiseService("query_state", &TrajectoryServer::onQuery, this)),
+      goals_(
+          node_, "follow_joint_trajectory", controller_.config().action_monitor_rate, [this](Goals::Handle goal) { onGoal(goal); },
+          [this] {
+            controller_.cancel();
+            goals_.preempt(resultOf(GoalError::SUCCESSFUL, ""), "cancelled");
+          }) {
+  const boost::function<void(const trajectory_msgs::JointTrajectoryConstPtr&)> on_command =
+      [this](const trajectory_msgs::JointTrajectoryConstPtr& message) { onCommand(*message); };
+  commands_ = node_.subscribe<trajectory_msgs::JointTrajectory>("command", QUEUE_SIZE, on_command);
+}
+
+void TrajectoryServer::onCommand(const trajectory_msgs::JointTrajectory& message) {
+  const std::string topic = commands_.getTopic();
+  try {
+    const int old_points = controller_.command(fromMessage(message));
+    goals_.preempt(resultOf(GoalError::SUCCESSFUL, ""), "a trajectory came on the topic");
+    tellOldPoints(topic, old_points);
+  } catch (const InputError& error) {
+    ROS_ERROR("%s: trajectory refused: %s", topic.c_str(), error.what());
+  }
+}
+
+void TrajectoryServer::onGoal(Goals::Handle goal) {
+  int old_points = 0;
+  try {
+    old_points = controller_.accept(fromMessage(*goal.getGoal()));
+  } catch (const GoalRefused& refusal) {
+    return reject(&goal, refusal.error, refusal.what());
+  } catch (const InputError& error) {
+    return reject(&goal, GoalError::INVALID_GOAL, error.what());
+  }
+  goals_.activate(goal);
+  tellOldPoints(goals_.name(), old_points);
+}
+
+void TrajectoryServer::reject(Goals::Handle* goal, GoalError error, const std::string& why) const {
+  goal->setRejected(resultOf(error, why), why);
+  ROS_ERROR("%s: goal refused: %s", goals_.name().c_str(), why.c_str());
+}
+
+bool TrajectoryServer::onQuery(QueryTrajectoryState::Request& request, QueryTrajectoryState::Response& response) {
+  try {
+    for (const JointSample& sample : controller_.query(request.time.toSec())) {
+      response.position.push_back(sample.position);
+      response.velocity.push_back(sample.velocity);
+      response.acceleration.push_back(sample.acceleration);
+    }
+  } catch (const InputError& error) {
+    ROS_ERROR("%s: %s", query_.getService().c_str(), error.what());
+    return false;
+  }
+  response.name = controller_.joints();
+  return true;
+}
+
+void TrajectoryServer::stop() {
+  controller_.stop();
+  goals_.preempt(resultOf(GoalError::SUCCESSFUL, ""), "the controller was stopped");
+}
+
+void TrajectoryServer::finish(const GoalOutcome& outcome) {
+  const FollowJointTrajectoryResult result = resultOf(outcome.error, outcome.text);
+  if (outcome.end == GoalEnd::SUCCEEDED) return goals_.succeed(result);
+  if (outcome.end == GoalEnd::PREEMPTED) return goals_.preempt(result, outcome.text);
+  goals_.abort(result, outcome.text);
+  ROS_WARN("%s: %s; the motion goes on", goals_.name().c_str(), outcome.text.c_str());
+}
+
+void TrajectoryServer::step(double time) {
+  if (const std::optional<GoalOutcome> outcome = controller_.update()) finish(*outcome);
+  if (state_schedule_.due(time)) publishState(time);
+  if (goals_.feedbackDue(time)) publishFeedback(time);
+}
+
+void TrajectoryServer::restartTime() {
+  state_schedule_.restart();
+  goals_.restartTime();
+}
+
+void TrajectoryServer::publishState(double time) {
+  if (!controller_.running() || !state_publisher_.listened()) return;
+  const auto message = states_.spare();
+  message->header.stamp = toStamp(time);
+  setTracking(controller_.state(), message.get());
+  sender_->add(&state_publisher_, message);
+}
+
+void TrajectoryServer::publishFeedback(double time) {
+  FollowJointTrajectoryFeedback feedback;
+  feedback.header.stamp = toStamp(time);
+  feedback.joint_names = controller_.joints();
+  setTracking(controller_.state(), &feedback);
+  goals_.publish(feedback);
+}
+
+}  // namespace blem_sim

@@ -1,0 +1,81 @@
+#include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
+
+#include "blem_sim/sim/config.h"
+#include "support/input_errors.h"
+
+namespace blem_sim {
+namespace {
+
+std::optional<std::vector<ControllerConfig>> controllersOf(const std::string& yaml) {
+  return parseConfig(YAML::Load("robots: [{name: r, urdf: r.urdf" + yaml + "}]"), "test", "").robots[0].controllers;
+}
+
+std::string refusalOf(const std::string& list) {
+  return refusal([&] { controllersOf(", controllers: [" + list + "]"); });
+}
+
+TEST(ConfigControllers, NoneGivenIsNotAnEmptyList) {
+  EXPECT_FALSE(controllersOf(""));
+  ASSERT_TRUE(controllersOf(", controllers: []"));
+  EXPECT_TRUE(controllersOf(", controllers: []")->empty());
+}
+
+TEST(ConfigControllers, ReadsTrajectoryControllers) {
+  const auto controllers = controllersOf(
+      ", controllers: [{name: arm, joints: [a, b], state_publish_rate: 10, action_monitor_rate: 5, stop_trajectory_duration: 0.5, "
+      "allow_partial_joints_goal: true, constraints: {goal_time: 2, stopped_velocity_tolerance: 0.3, a: {goal: 0.1, trajectory: 0.2}}}]");
+  ASSERT_EQ(controllers->size(), 1u);
+  const ControllerConfig& arm = controllers->front();
+  EXPECT_EQ(arm.name, "arm");
+  EXPECT_EQ(arm.kind, ControllerKind::TRAJECTORY);
+  EXPECT_EQ(arm.joints, (std::vector<std::string>{"a", "b"}));
+  EXPECT_EQ(arm.state_publish_rate, 10);
+  EXPECT_EQ(arm.action_monitor_rate, 5);
+  EXPECT_EQ(arm.stop_trajectory_duration, 0.5);
+  EXPECT_TRUE(arm.allow_partial_joints_goal);
+  EXPECT_EQ(arm.goal_time, 2);
+  EXPECT_EQ(arm.stopped_velocity_tolerance, 0.3);
+  EXPECT_EQ(arm.joint_constraints.at("a").goal, 0.1);
+  EXPECT_EQ(arm.joint_constraints.at("a").trajectory, 0.2);
+  EXPECT_EQ(arm.joint_constraints.size(), 1u);
+}
+
+TEST(ConfigControllers, ReadsGrippers) {
+  const ControllerConfig gripper =
+      controllersOf(
+          ", controllers: [{name: g, type: gripper, joint: f, goal_tolerance: 0.2, stall_velocity_threshold: 0.3, stall_timeout: 4}]")
+          ->front();
+  EXPECT_EQ(gripper.kind, ControllerKind::GRIPPER);
+  EXPECT_EQ(gripper.joints, std::vector<std::string>{"f"});
+  EXPECT_EQ(gripper.goal_tolerance, 0.2);
+  EXPECT_EQ(gripper.stall_velocity_threshold, 0.3);
+  EXPECT_EQ(gripper.stall_timeout, 4);
+}
+
+TEST(ConfigControllers, KeysOfTheParameterServerGoOverThoseGiven) {
+  ControllerConfig given;
+  given.goal_time = 3;
+  given.stopped_velocity_tolerance = 0.5;
+  const ControllerConfig both = parseController(YAML::Load("{joints: [a], constraints: {goal_time: 1}}"), "/c", given);
+  EXPECT_EQ(both.joints, std::vector<std::string>{"a"});
+  EXPECT_EQ(both.goal_time, 1);
+  EXPECT_EQ(both.stopped_velocity_tolerance, 0.5);
+}
+
+TEST(ConfigControllers, RefusesInOneLine) {
+  EXPECT_TRUE(isOneLineWith(refusalOf("{joints: [a]}"), {"controllers[0].name"}));
+  EXPECT_TRUE(isOneLineWith(refusalOf("{name: c}, {name: c}"), {"controllers[1].name", "'c'", "taken"}));
+  EXPECT_TRUE(isOneLineWith(refusalOf("{name: c, joints: a}"), {"controllers[0].joints", "list"}));
+  EXPECT_TRUE(isOneLineWith(refusalOf("{name: c, joints: [a, a]}"), {"'a'", "twice"}));
+  EXPECT_TRUE(isOneLineWith(refusalOf("{name: c, jonts: [a]}"), {"jonts", "'joints'"}));
+  EXPECT_TRUE(isOneLineWith(refusalOf("{name: c, constraints: {goal_time: -1}}"), {"goal_time", "at least 0"}));
+  EXPECT_TRUE(isOneLineWith(refusalOf("{name: c, constraints: {a: {gaol: 1}}}"), {"gaol", "'goal'"}));
+  EXPECT_TRUE(isOneLineWith(refusalOf("{name: c, state_publish_rate: .inf}"), {"state_publish_rate"}));
+  EXPECT_TRUE(isOneLineWith(refusalOf("{name: c, type: griper, joint: f}"), {"type", "gripper"}));
+  EXPECT_TRUE(isOneLineWith(refusalOf("{name: c, type: gripper}"), {"joint", "missing"}));
+  EXPECT_TRUE(isOneLineWith(refusalOf("{name: c, type: gripper, joint: f, joints: [f]}"), {"joints", "unknown"}));
+}
+
+}  // namespace
+}  // namespace blem_sim
