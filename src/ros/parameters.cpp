@@ -1,10 +1,12 @@
 #include "parameters.h"
 
+#include <ros/console.h>
 #include <ros/names.h>
 #include <ros/param.h>
 #include <yaml-cpp/yaml.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <sstream>
 
@@ -30,6 +32,14 @@ std::string takeText(YAML::Node* parameters, const std::string& key, const std::
   const auto text = value.as<std::string>();
   parameters->remove(key);
   return text;
+}
+
+/** Takes keys out of the parameters that launch files for Gazebo set, with a note where they mean something there. */
+void takeGazeboKeys(YAML::Node* parameters) {
+  parameters->remove("enable_ros_network");
+  if (!(*parameters)["world_name"].IsDefined()) return;
+  ROS_WARN("world_name: world files are SDF, which is not read; write the world as YAML (config/default.yaml), a plane stands in");
+  parameters->remove("world_name");
 }
 
 std::string directoryOf(const std::string& file) {
@@ -127,12 +137,24 @@ YAML::Node toYaml(XmlRpc::XmlRpcValue value) {
   }
 }
 
+std::vector<std::string> serviceFolders(const SimulationConfig& config) {
+  if (!config.allow_file_services) return {};
+  std::vector<std::string> folders = config.file_roots;
+  if (!config.base_directory.empty()) folders.push_back(config.base_directory);
+  const char* packages = std::getenv("ROS_PACKAGE_PATH");
+  std::istringstream stream(packages ? packages : "");
+  for (std::string folder; std::getline(stream, folder, ':');)
+    if (!folder.empty()) folders.push_back(folder);
+  return folders;
+}
+
 SimulationConfig readParameters(const ros::NodeHandle& private_node) {
   const std::string source = private_node.getNamespace();
   XmlRpc::XmlRpcValue given;
   YAML::Node parameters(YAML::NodeType::Map);
   if (ros::param::get(source, given) && given.getType() == XmlRpc::XmlRpcValue::TypeStruct) parameters = toYaml(given);
 
+  takeGazeboKeys(&parameters);
   const std::string config_file = takeText(&parameters, "config_file", source);
   const std::string environment = takeText(&parameters, "environment", source);
   const std::string description_file = takeText(&parameters, "robot_description_file", source);

@@ -132,17 +132,16 @@ void RobotBuilder::addTo(SimulatedWorld* world, SurfaceLibrary* surfaces) {
     for (const std::string& words : *notes) note(words);
   addBodies();
   addJoints();
-  const int first_collider = static_cast<int>(world->colliders.size());
   addColliders(surfaces);
   world->filter.setSelfCollision(info_.model, config_.self_collision);
   disableNeighbours();
-  disableListedPairs(first_collider);
+  disableListedPairs();
   ModelInfo& model = world->models[info_.model];
   for (const int body : info_.bodies)
     if (body != WORLD_BODY) model.bodies.push_back(body);
   model.joints = info_.joints;
-  world->robots.push_back(info_);
-  addSensors(static_cast<int>(world->robots.size()) - 1);
+  model.X_WM = config_.X_WR;
+  addSensors(world->addRobot(info_));
 }
 
 void RobotBuilder::addBodies() {
@@ -155,7 +154,7 @@ void RobotBuilder::addBodies() {
     spec.name = config_.name + "::" + lumped_->bodies[b].name;
     spec.inertial = lumped_->bodies[b].inertial;
     spec.X_WB = X_WB_[b];
-    info_.bodies.push_back(world_->world.addBody(spec));
+    info_.bodies.push_back(world_->addBody(spec));
   }
 }
 
@@ -191,11 +190,10 @@ void RobotBuilder::addJoint(int j) {
     spec.mimic_offset = joint.mimic->offset;
   }
   if (moves(joint)) spec.armature = byJoint(config_.armature, joint.name, 0.0);
-  info_.world_joints[j] = world_->world.addJoint(spec, positions_[j]);
-  addMotor(joint, positions_[j]);
+  info_.world_joints[j] = world_->addJoint(spec, positions_[j], JointMotor(motorOf(joint), positions_[j]));
 }
 
-void RobotBuilder::addMotor(const LumpedJoint& joint, double position) {
+MotorSettings RobotBuilder::motorOf(const LumpedJoint& joint) {
   MotorSettings settings;
   settings.commanded = moves(joint) && !joint.mimic;
   settings.continuous = joint.type == JointType::CONTINUOUS;
@@ -207,7 +205,7 @@ void RobotBuilder::addMotor(const LumpedJoint& joint, double position) {
   }
   if (settings.commanded && settings.effort_limit == 0 && settings.gains.p + settings.gains.d > 0)
     note(fmt::format("joint '{}' has an effort limit of 0, so its motor does nothing; set effort_limits", joint.name));
-  world_->motors.emplace_back(settings, position);
+  return settings;
 }
 
 void RobotBuilder::addSensors(int robot) {

@@ -27,10 +27,10 @@ class RobotBuilder {
   void addBodies();
   void addJoints();
   void addJoint(int joint);
-  void addMotor(const LumpedJoint& joint, double position);
+  MotorSettings motorOf(const LumpedJoint& joint);
   void addColliders(SurfaceLibrary* surfaces);
   void disableNeighbours();
-  void disableListedPairs(int first_collider);
+  void disableListedPairs();
   void addSensors(int robot);
   void note(const std::string& words) { world_->notes.push_back(config_.name + ": " + words); }
 

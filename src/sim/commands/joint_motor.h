@@ -43,6 +43,7 @@ class JointMotor {
   bool accept(const JointDrive& drive, const JointState& after, double dt);
 
   const MotorSettings& settings() const { return settings_; }
+  void setViscousFriction(double friction) { settings_.friction.viscous = friction; }
   void append(std::vector<double>* numbers) const;
   void read(NumberReader* reader);
 

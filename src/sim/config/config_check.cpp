@@ -77,6 +77,20 @@ void checkContact(const ContactConfig& contact) {
   fields.atLeastOne("max_contacts_per_object", contact.max_contacts_per_object);
 }
 
+void checkObject(const ObjectConfig& object) {
+  const Fields fields("objects: " + object.name + ": ");
+  fields.pose("pose", object.X_WO);
+  fields.pose("mesh_pose", object.X_OM);
+  fields.scale(object.scale);
+  fields.number("mass", object.mass, NumberRange::positive());
+  if (object.com) fields.finite("com", object.com->allFinite());
+  if (object.inertia) fields.finite("inertia", object.inertia->allFinite());
+  fields.overrides(object.contact);
+  if (object.max_contacts) fields.atLeastOne("max_contacts", *object.max_contacts);
+}
+
+}  // namespace
+
 void checkRobot(const RobotConfig& robot) {
   const Fields fields("robots: " + robot.name + ": ");
   fields.pose("pose", robot.X_WR);
@@ -92,20 +106,6 @@ void checkRobot(const RobotConfig& robot) {
       of_sensor.number("noise", deviation, NumberRange::notNegative());
   }
 }
-
-void checkObject(const ObjectConfig& object) {
-  const Fields fields("objects: " + object.name + ": ");
-  fields.pose("pose", object.X_WO);
-  fields.pose("mesh_pose", object.X_OM);
-  fields.scale(object.scale);
-  fields.number("mass", object.mass, NumberRange::positive());
-  if (object.com) fields.finite("com", object.com->allFinite());
-  if (object.inertia) fields.finite("inertia", object.inertia->allFinite());
-  fields.overrides(object.contact);
-  if (object.max_contacts) fields.atLeastOne("max_contacts", *object.max_contacts);
-}
-
-}  // namespace
 
 void checkEnvironment(const EnvironmentConfig& environment) {
   const Fields fields("environments: " + environment.name + ": ");
