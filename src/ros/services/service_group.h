@@ -29,9 +29,10 @@ class ServiceGroup {
         setOutcome(&response, true, "done");
         act(request, &response);
       } catch (const std::exception& error) {
-        ROS_ERROR("%s: %s", name.c_str(), error.what());
+        const std::string why = inOneLine(error.what());
+        ROS_ERROR("%s: %s", name.c_str(), why.c_str());
         response = Response();
-        setOutcome(&response, false, error.what());
+        setOutcome(&response, false, why);
       }
       return true;
     };
@@ -39,6 +40,14 @@ class ServiceGroup {
   }
 
  private:
+  /** Text without what a request may have brought in: line ends, control characters, a length without bound. */
+  static std::string inOneLine(std::string text) {
+    constexpr std::size_t LONGEST = 2000;
+    if (text.size() > LONGEST) text = text.substr(0, LONGEST) + " ...";
+    for (char& c : text)
+      if (static_cast<unsigned char>(c) < ' ') c = ' ';
+    return text;
+  }
   template <typename Response>
   static auto setOutcome(Response* response, bool success, const std::string& text) -> decltype(response->success, void()) {
     response->success = success;

@@ -87,6 +87,8 @@ class StateReader {
 
 void saveState(const SimulationState& state, const std::string& file) {
   const std::string draft = file + ".part";
+  std::error_code error;
+  std::filesystem::remove(draft, error);  // a link of that name would lead elsewhere
   std::ofstream stream(draft, std::ios::binary);
   stream.write(MAGIC, sizeof MAGIC - 1);
   for (const std::uint64_t word : {state.header.format, state.header.layout, state.header.length, state.header.checksum})
@@ -99,7 +101,7 @@ void saveState(const SimulationState& state, const std::string& file) {
   putNumbers(stream, state.numbers);
   putWords(stream, state.words);
   stream.close();
-  std::error_code error;
+  error.clear();
   if (stream) std::filesystem::rename(draft, file, error);
   if (stream && !error) return;
   std::filesystem::remove(draft, error);

@@ -115,6 +115,9 @@ class GazeboSpawnTest(unittest.TestCase):
             self.assertFalse(answer.success, word)
             self.assertIn(word, answer.status_message)
             self.assertNotIn("\n", answer.status_message)
+        long_name = service("get_model_properties", srv.GetModelProperties)("x" * 1000000 + "\n")
+        self.assertFalse(long_name.success)
+        self.assertLess(len(long_name.status_message), 1000)
         self.assertEqual(models(), before)
         sim_client.step(10)
 
