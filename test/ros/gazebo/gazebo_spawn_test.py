@@ -124,12 +124,16 @@ class GazeboSpawnTest(unittest.TestCase):
     def test_one_body_is_an_object(self):
         markers = Recorder("/gazebo/object_markers", MarkerArray)
         self.addCleanup(markers.stop)
+        arrows = Recorder("/gazebo/contact_markers", MarkerArray)
+        self.addCleanup(arrows.stop)
+        wait_until(arrows.connected, "contact markers")
         self.assertTrue(spawn("ball", BALL, x=0.1, z=0.5, frame="cube").success)
         self.assertAlmostEqual(place("ball").x, 0.7, delta=1e-3)
         wait_until(lambda: markers.messages() and "ball" in {marker.ns.split("::")[0] for marker in markers.messages()[-1].markers}, "its marker")
         service("set_model_state", srv.SetModelState)(msg.ModelState("ball", Pose(position=Point(-0.5, 0.5, 0.4)), msg.ModelState().twist, ""))
         sim_client.step(2000)
         self.assertAlmostEqual(place("ball").z, 0.1, delta=0.01)
+        self.assertIn("forces", {marker.ns for message in arrows.messages() for marker in message.markers})
         sim_client.reset_world()
         self.assertAlmostEqual(place("ball", "cube").z, 0.5, delta=1e-3)
 
