@@ -11,6 +11,8 @@ target_link_libraries(blem_sim_node blem_sim_ros)
 # All that a demo runs, and no test: scripts/demo.
 add_custom_target(demo DEPENDS blem_sim_node ${PROJECT_NAME}_generate_messages)
 
+# Without catkin's relay in the devel space: rosrun, which looks below the package's folder and so in scripts/build's too, would find two.
+install(PROGRAMS scripts/ros/spawn_model DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 catkin_install_python(PROGRAMS scripts/expect_contacts_in_layer scripts/play_trajectory DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 install(TARGETS blem_sim_node RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 install(TARGETS blem_sim_geometry blem_sim_model blem_sim_contact blem_sim_reduction blem_sim_dynamics blem_sim_sim blem_sim_ros
@@ -26,7 +28,7 @@ endforeach()
 
 if(CATKIN_ENABLE_TESTING)
   find_package(rostest REQUIRED)
-  file(GLOB rostests CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/test/ros/*.test)
+  file(GLOB rostests CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/test/ros/*.test ${PROJECT_SOURCE_DIR}/test/ros/*/*.test)
   foreach(rostest ${rostests})
     add_rostest(${rostest} DEPENDENCIES blem_sim_node)
   endforeach()

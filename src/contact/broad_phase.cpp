@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <tuple>
 
 namespace blem_sim {
@@ -243,6 +244,11 @@ void CollisionFilter::setSelfCollision(int model, bool on) {
 }
 
 void CollisionFilter::disableBodies(int body_a, int body_b) { disabled_bodies_.insert(std::minmax(body_a, body_b)); }
+
+void CollisionFilter::forgetBody(int body) {
+  for (auto pair = disabled_bodies_.begin(); pair != disabled_bodies_.end();)
+    pair = pair->first == body || pair->second == body ? disabled_bodies_.erase(pair) : std::next(pair);
+}
 
 bool CollisionFilter::allows(const Collider& a, const Collider& b) const {
   if (!a.enabled || !b.enabled || a.body == b.body) return false;

@@ -11,6 +11,7 @@
 #include "island/island_impacts.h"
 #include "island/island_motion.h"
 #include "island/island_terms.h"
+#include "kept_trees.h"
 #include "scene/contact_motion.h"
 #include "trees/islands.h"
 
@@ -82,6 +83,7 @@ class ArticulatedStepper : public Stepper {
   ForestMotion motion_;
   FreeMotion way_;  ///< of fast trees
   StepMemory memory_;
+  KeptTrees kept_;
   std::vector<BodyBits> written_;  ///< per node: bits that the scene was given last
   SolverSpace space_;
   ImpactSpace impact_space_;
@@ -94,6 +96,9 @@ class ArticulatedStepper : public Stepper {
 void ArticulatedStepper::rebuild(const Scene& scene) {
   if (structure_ == scene.structure()) return;
   structure_ = scene.structure();
+  kept_.clear();
+  for (int tree = 0; tree < static_cast<int>(forest_.trees().size()); ++tree)
+    if (isOurs(scene, tree)) kept_.keep(forest_, tree, motion_);
   forest_.build(scene);
   motion_.resize(forest_);
   way_.resize(forest_);
@@ -102,12 +107,14 @@ void ArticulatedStepper::rebuild(const Scene& scene) {
   memory_.resize(scene);
   written_.resize(forest_.nodes().size());
   for (BodyBits& bits : written_) bits.numbers[0] = NAN;
+  for (int tree = 0; tree < static_cast<int>(forest_.trees().size()); ++tree)
+    if (kept_.restore(forest_, tree, &motion_)) noteWritten(scene, tree);
 }
 
 bool ArticulatedStepper::isOurs(const Scene& scene, int tree) const {
   const ForestTree& t = forest_.trees()[tree];
   for (int i = t.first_node; i < t.node_end; ++i)
-    if (!scene.hasBits(forest_.nodes()[i].body, written_[i])) return false;
+    if (!scene.exists(forest_.nodes()[i].body) || !scene.hasBits(forest_.nodes()[i].body, written_[i])) return false;
   return true;
 }
 

@@ -40,7 +40,8 @@ bool isSound(const Scene& scene, const StepInput& input, const std::vector<BodyB
 }  // namespace
 
 struct World::Impl {
-  Impl(const Vector3& gravity, const SolverSettings& settings) : scene(gravity, settings), stepper(makeStepper(settings)) {}
+  Impl(const Vector3& gravity, const SolverSettings& settings)
+      : settings(settings), scene(gravity, settings), stepper(makeStepper(settings)) {}
 
   /** Makes a step. False if it broke down; the scene is then as it was. */
   bool advance(const StepInput& input) {
@@ -64,6 +65,7 @@ struct World::Impl {
     for (BodySlot& slot : scene.bodies()) slot.pending = Wrench();
   }
 
+  const SolverSettings settings;
   Scene scene;
   std::unique_ptr<Stepper> stepper;
   SolveResult result;
@@ -89,6 +91,8 @@ void World::removeBody(int body) {
 
 int World::bodyCount() const { return static_cast<int>(impl_->scene.bodies().size()); }
 int World::jointCount() const { return static_cast<int>(impl_->scene.joints().size()); }
+bool World::hasBody(int body) const { return impl_->scene.exists(body); }
+bool World::hasJoint(int joint) const { return joint >= 0 && joint < jointCount() && impl_->scene.joints()[joint].joint; }
 const BodySpec& World::bodySpec(int body) const { return impl_->scene.bodies()[body].spec; }
 const JointSpec& World::jointSpec(int joint) const { return impl_->scene.joints()[joint].spec; }
 
@@ -107,6 +111,17 @@ JointState World::jointState(int joint) const {
 void World::resetJointPosition(int joint, double position) {
   impl_->joints_known = false;
   impl_->scene.joints()[joint].last_position = position;
+}
+
+void World::setInertial(int body, const MassProperties& inertial) {
+  impl_->joints_known = false;
+  if (impl_->scene.exists(body)) impl_->scene.setInertial(body, inertial);
+}
+
+void World::setJointLimits(int joint, double lower, double upper) {
+  JointSpec& spec = impl_->scene.joints()[joint].spec;
+  spec.lower = lower;
+  spec.upper = upper;
 }
 
 void World::setJointEfforts(const std::vector<double>& efforts) {
@@ -177,6 +192,12 @@ void World::save(WorldState* state) const {
   StateWriter writer(state);
   saveScene(impl_->scene, &writer);
   impl_->stepper->save(impl_->scene, &writer);
+}
+
+void World::forgetHistory() {
+  impl_->joints_known = false;
+  impl_->stepper = makeStepper(impl_->settings);
+  impl_->clearPending();
 }
 
 void World::forgetContacts(std::vector<std::uint64_t> ids) {

@@ -163,6 +163,12 @@ std::string resolvePackage(const std::string& uri, const std::map<std::string, s
 UriResolver::UriResolver(std::map<std::string, std::string> packages) : packages_(std::move(packages)) {}
 
 std::string UriResolver::resolve(const std::string& uri, const std::string& base) const {
+  std::string file = find(uri, base);
+  if (roots_) roots_->require(file);
+  return file;
+}
+
+std::string UriResolver::find(const std::string& uri, const std::string& base) const {
   if (uri.empty()) throw InputError("an empty file name; write package://NAME/path, file:///path or a path");
   if (startsWith(uri, "package://")) return resolvePackage(uri, packages_);
   std::string path = uri;

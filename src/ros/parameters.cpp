@@ -1,14 +1,17 @@
 #include "parameters.h"
 
+#include <ros/console.h>
 #include <ros/names.h>
 #include <ros/param.h>
 #include <yaml-cpp/yaml.h>
 
+#include <cstdlib>
 #include <fstream>
 #include <sstream>
 
 #include "blem_sim/geometry/input_error.h"
 #include "messages/parameter_yaml.h"
+#include "messages/pid_gains.h"
 
 namespace blem_sim {
 
@@ -24,6 +27,14 @@ std::string takeText(YAML::Node* parameters, const std::string& key, const std::
   const auto text = value.as<std::string>();
   parameters->remove(key);
   return text;
+}
+
+/** Takes keys out of the parameters that launch files for Gazebo set, with a note where they mean something there. */
+void takeGazeboKeys(YAML::Node* parameters) {
+  parameters->remove("enable_ros_network");
+  if (!(*parameters)["world_name"].IsDefined()) return;
+  ROS_WARN("world_name: world files are SDF, which is not read; write the world as YAML (config/default.yaml), a plane stands in");
+  parameters->remove("world_name");
 }
 
 std::string directoryOf(const std::string& file) {
@@ -91,15 +102,18 @@ void fetchDescriptions(const std::string& source, SimulationConfig* config) {
   }
 }
 
-void fetchPidGains(SimulationConfig* config) {
-  for (RobotConfig& robot : config->robots) {
-    const std::string parameter = ros::names::resolve(ros::names::append(robot.name_space, "gazebo_ros_control/pid_gains"));
-    XmlRpc::XmlRpcValue given;
-    if (ros::param::get(parameter, given)) robot.pid_gains = parsePidGains(toYaml(given), parameter);
-  }
-}
-
 }  // namespace
+
+std::vector<std::string> serviceFolders(const SimulationConfig& config) {
+  if (!config.allow_file_services) return {};
+  std::vector<std::string> folders = config.file_roots;
+  if (!config.base_directory.empty()) folders.push_back(config.base_directory);
+  const char* packages = std::getenv("ROS_PACKAGE_PATH");
+  std::istringstream stream(packages ? packages : "");
+  for (std::string folder; std::getline(stream, folder, ':');)
+    if (!folder.empty()) folders.push_back(folder);
+  return folders;
+}
 
 SimulationConfig readParameters(const ros::NodeHandle& private_node) {
   const std::string source = private_node.getNamespace();
@@ -107,6 +121,7 @@ SimulationConfig readParameters(const ros::NodeHandle& private_node) {
   YAML::Node parameters(YAML::NodeType::Map);
   if (ros::param::get(source, given) && given.getType() == XmlRpc::XmlRpcValue::TypeStruct) parameters = toYaml(given);
 
+  takeGazeboKeys(&parameters);
   const std::string config_file = takeText(&parameters, "config_file", source);
   const std::string environment = takeText(&parameters, "environment", source);
   const std::string description_file = takeText(&parameters, "robot_description_file", source);
@@ -123,7 +138,7 @@ SimulationConfig readParameters(const ros::NodeHandle& private_node) {
   }
   SimulationConfig config = parseConfig(parameters, source, directoryOf(config_file));
   fetchDescriptions(source, &config);
-  fetchPidGains(&config);
+  for (RobotConfig& robot : config.robots) robot.pid_gains = pidGainsIn(robot.name_space);
   return config;
 }
 

@@ -3,6 +3,9 @@
 
 #include <ros/node_handle.h>
 
+#include <string>
+#include <vector>
+
 #include "blem_sim/sim/config.h"
 
 namespace blem_sim {
@@ -16,5 +19,9 @@ namespace blem_sim {
  * @throws InputError
  */
 SimulationConfig readParameters(const ros::NodeHandle& private_node);
+
+/** Folders whose files services may read and write: the configuration's, file_roots and those of ROS_PACKAGE_PATH; none if services may
+ * use no files. */
+std::vector<std::string> serviceFolders(const SimulationConfig& config);
 
 }  // namespace blem_sim

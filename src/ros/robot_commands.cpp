@@ -3,6 +3,7 @@
 #include <ros/console.h>
 
 #include <boost/function.hpp>
+#include <iterator>
 
 #include "blem_sim/geometry/input_error.h"
 #include "messages/trajectory_messages.h"
@@ -13,38 +14,45 @@ namespace {
 constexpr int QUEUE_SIZE = 100;
 }
 
-RobotCommands::RobotCommands(ros::NodeHandle node, Simulator* simulator) : simulator_(simulator) {
-  const int robots = static_cast<int>(simulator->robots().size());
-  for (int robot = 0; robot < robots; ++robot) {
-    ros::NodeHandle robot_node(node, simulator->robots()[robot].name_space);
-    const std::string trajectories = robot_node.resolveName("joint_trajectory"), commands = robot_node.resolveName("joint_command");
-    const boost::function<void(const trajectory_msgs::JointTrajectoryConstPtr&)> on_trajectory =
-        [this, robot, trajectories](const trajectory_msgs::JointTrajectoryConstPtr& message) {
-          onTrajectory(robot, trajectories, *message);
-        };
-    const boost::function<void(const sensor_msgs::JointStateConstPtr&)> on_command =
-        [this, robot, commands](const sensor_msgs::JointStateConstPtr& message) { onJointCommand(robot, commands, *message); };
-    subscribers_.push_back(robot_node.subscribe<trajectory_msgs::JointTrajectory>("joint_trajectory", QUEUE_SIZE, on_trajectory));
-    subscribers_.push_back(robot_node.subscribe<sensor_msgs::JointState>("joint_command", QUEUE_SIZE, on_command));
-  }
+RobotCommands::RobotCommands(ros::NodeHandle node, Simulator* simulator) : node_(node), simulator_(simulator) { modelsChanged(); }
+
+void RobotCommands::modelsChanged() {
+  for (auto robot = subscribers_.begin(); robot != subscribers_.end();)
+    robot = simulator_->robotIndex(robot->first) < 0 ? subscribers_.erase(robot) : std::next(robot);
+  for (const RobotInfo& robot : simulator_->robots())
+    if (subscribers_.count(robot.name) == 0) subscribers_[robot.name] = subscribe(robot);
 }
 
-void RobotCommands::onTrajectory(int robot, const std::string& topic, const trajectory_msgs::JointTrajectory& message) {
+std::vector<ros::Subscriber> RobotCommands::subscribe(const RobotInfo& info) {
+  std::vector<ros::Subscriber> subscribers;
+  ros::NodeHandle robot_node(node_, info.name_space);
+  const std::string robot = info.name;
+  const std::string trajectories = robot_node.resolveName("joint_trajectory"), commands = robot_node.resolveName("joint_command");
+  const boost::function<void(const trajectory_msgs::JointTrajectoryConstPtr&)> on_trajectory =
+      [this, robot, trajectories](const trajectory_msgs::JointTrajectoryConstPtr& message) { onTrajectory(robot, trajectories, *message); };
+  const boost::function<void(const sensor_msgs::JointStateConstPtr&)> on_command =
+      [this, robot, commands](const sensor_msgs::JointStateConstPtr& message) { onJointCommand(robot, commands, *message); };
+  subscribers.push_back(robot_node.subscribe<trajectory_msgs::JointTrajectory>("joint_trajectory", QUEUE_SIZE, on_trajectory));
+  subscribers.push_back(robot_node.subscribe<sensor_msgs::JointState>("joint_command", QUEUE_SIZE, on_command));
+  return subscribers;
+}
+
+void RobotCommands::onTrajectory(const std::string& robot, const std::string& topic, const trajectory_msgs::JointTrajectory& message) {
   try {
-    simulator_->commandTrajectory(robot, fromMessage(message));
+    simulator_->commandTrajectory(simulator_->robotIndex(robot), fromMessage(message));
   } catch (const InputError& error) {
     ROS_ERROR("%s: trajectory refused: %s", topic.c_str(), error.what());
   }
 }
 
-void RobotCommands::onJointCommand(int robot, const std::string& topic, const sensor_msgs::JointState& message) {
+void RobotCommands::onJointCommand(const std::string& robot, const std::string& topic, const sensor_msgs::JointState& message) {
   JointCommandMessage command;
   command.joints = message.name;
   command.positions = message.position;
   command.velocities = message.velocity;
   command.efforts = message.effort;
   try {
-    simulator_->commandJoints(robot, command);
+    simulator_->commandJoints(simulator_->robotIndex(robot), command);
   } catch (const InputError& error) {
     ROS_ERROR("%s: command refused: %s", topic.c_str(), error.what());
   }

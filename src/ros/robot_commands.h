@@ -4,6 +4,8 @@
 #include <sensor_msgs/JointState.h>
 #include <trajectory_msgs/JointTrajectory.h>
 
+#include <map>
+#include <string>
 #include <vector>
 
 #include "blem_sim/sim/simulator.h"
@@ -18,13 +20,17 @@ namespace blem_sim {
 class RobotCommands {
  public:
   RobotCommands(ros::NodeHandle node, Simulator* simulator);
+  /** Robots came or went. */
+  void modelsChanged();
 
  private:
-  void onTrajectory(int robot, const std::string& topic, const trajectory_msgs::JointTrajectory& message);
-  void onJointCommand(int robot, const std::string& topic, const sensor_msgs::JointState& message);
+  std::vector<ros::Subscriber> subscribe(const RobotInfo& robot);
+  void onTrajectory(const std::string& robot, const std::string& topic, const trajectory_msgs::JointTrajectory& message);
+  void onJointCommand(const std::string& robot, const std::string& topic, const sensor_msgs::JointState& message);
 
+  ros::NodeHandle node_;
   Simulator* simulator_;
-  std::vector<ros::Subscriber> subscribers_;
+  std::map<std::string, std::vector<ros::Subscriber>> subscribers_;  // by name of the robot
 };
 
 }  // namespace blem_sim

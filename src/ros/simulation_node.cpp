@@ -17,7 +17,13 @@
 #include "publishers/step_report_publisher.h"
 #include "robot_commands.h"
 #include "services/environment_services.h"
+#include "services/force_services.h"
+#include "services/motion_services.h"
 #include "services/physics_services.h"
+#include "services/property_services.h"
+#include "services/query_services.h"
+#include "services/spawn_services.h"
+#include "services/state_services.h"
 #include "services/step_service.h"
 
 namespace blem_sim {
@@ -49,6 +55,12 @@ struct SimulationNode::Impl {
   std::unique_ptr<PhysicsServices> physics;
   std::unique_ptr<StepService> step;
   std::unique_ptr<EnvironmentServices> environments;
+  std::unique_ptr<QueryServices> queries;
+  std::unique_ptr<MotionServices> motions;
+  std::unique_ptr<ForceServices> forces;
+  std::unique_ptr<SpawnServices> spawns;
+  std::unique_ptr<PropertyServices> properties;
+  std::unique_ptr<StateServices> states;
 
   void addPublishers() {
     // The clock goes last: a node that wakes by it finds the messages of that time on their way.
@@ -74,7 +86,16 @@ struct SimulationNode::Impl {
     commands = std::make_unique<RobotCommands>(node, &simulator);
     physics = std::make_unique<PhysicsServices>(private_node, &loop);
     step = std::make_unique<StepService>(private_node, &loop);
+    loop.onModelsChanged([this] { commands->modelsChanged(); });
+    const FileRoots roots(serviceFolders(simulator.config()));
+    simulator.restrictFiles(roots);
     environments = std::make_unique<EnvironmentServices>(private_node, &loop);
+    queries = std::make_unique<QueryServices>(private_node, &loop);
+    motions = std::make_unique<MotionServices>(private_node, &simulator);
+    forces = std::make_unique<ForceServices>(private_node, &simulator);
+    spawns = std::make_unique<SpawnServices>(private_node, &loop);
+    properties = std::make_unique<PropertyServices>(private_node, &loop);
+    states = std::make_unique<StateServices>(private_node, &loop, roots);
   }
 };
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "blem_sim/geometry/input_error.h"
 #include "config/config_check.h"
@@ -30,13 +29,7 @@ Simulator::Impl::Impl(const SimulationConfig& config, const UriResolver& resolve
   for (const EnvironmentConfig& environment : config_.environments) builder_.addEnvironment(environment, &world_);
   for (const RobotConfig& robot : config_.robots) builder_.addRobot(robot, &world_);
   for (const ObjectConfig& object : config_.objects) builder_.addObject(object, &world_);
-  for (const SensorInfo& sensor : world_.sensors) {
-    sensors_.push_back(makeSensor(world_, sensor));
-    sensor_schedules_.emplace_back(sensor.config.rate, config_.time_step);
-  }
-  spare_readings_.resize(sensors_.size());
-  seedSensors();
-  initial_state_ = world_.world.save();
+  makeSensors();
   reportWithoutStep();
 }
 
@@ -45,18 +38,18 @@ void Simulator::Impl::unloadEnvironment(const std::string& name) {
   for (const ModelInfo& model : world_.models)
     if (model.alive && model.kind == ModelKind::ENVIRONMENT) environments.push_back(model.name);
   requireName(name, environments, "unload_environment", "environment");
-  for (const int collider : world_.removeEnvironment(name)) world_.world.forgetContacts(contacts_.forgetCollider(collider));
-  layout_.clear();
-  reportWithoutStep();
+  removeModel(name);
 }
 
 void Simulator::Impl::loadEnvironment(const EnvironmentConfig& environment) {
   checkEnvironment(environment);
   builder_.addEnvironment(environment, &world_);
+  forgetLayers(environment.name);
+}
+
+void Simulator::Impl::forgetLayers(const std::string& model) {
   // The next step tells that pairs of the slots' earlier colliders are gone, unless the slots are taken by then, as here.
-  const int model = world_.modelIndex(environment.name);
-  for (std::size_t i = 0; i < world_.colliders.size(); ++i)
-    if (world_.colliders[i].model == model) layer_watch_.forget(static_cast<int>(i));
+  for (const int collider : world_.collidersOf(world_.modelIndex(model))) layer_watch_.forget(collider);
   contacts_.forget();
   layout_.clear();
 }
@@ -108,5 +101,28 @@ void Simulator::holdJoint(int robot, int joint, double position) {
 
 void Simulator::loadEnvironment(const EnvironmentConfig& environment) { impl_->loadEnvironment(environment); }
 void Simulator::unloadEnvironment(const std::string& name) { impl_->unloadEnvironment(name); }
+
+void Simulator::spawn(const RobotConfig& robot) { impl_->spawn(robot); }
+void Simulator::removeModel(const std::string& name) { impl_->removeModel(name); }
+void Simulator::restrictFiles(const FileRoots& roots) { impl_->builder_.restrictFiles(roots); }
+
+void Simulator::moveModel(int body, const BodyState& to) { impl_->moveModel(body, to); }
+void Simulator::setJointPositions(int robot, const std::vector<std::string>& joints, const std::vector<double>& positions) {
+  impl_->setJointPositions(robot, joints, positions);
+}
+void Simulator::resetModel(int model) { impl_->resetModel(model); }
+
+void Simulator::applyLoad(const BodyLoad& load, const LoadTime& when) { impl_->loads_.apply(load, when, {time(), config().time_step}); }
+void Simulator::applyEffort(int joint, double effort, const LoadTime& when) {
+  impl_->loads_.apply(joint, effort, when, {time(), config().time_step});
+}
+void Simulator::clearLoads(int body) { impl_->loads_.clearBody(body); }
+void Simulator::clearEfforts(int joint) { impl_->loads_.clearJoint(joint); }
+
+void Simulator::setPhysics(const Vector3& gravity, double time_step, double real_time_factor) {
+  impl_->setPhysics(gravity, time_step, real_time_factor);
+}
+void Simulator::setLinkInertial(int body, int link, const MassProperties& inertial) { impl_->setLinkInertial(body, link, inertial); }
+void Simulator::setJointLimits(int robot, int joint, double lower, double upper) { impl_->setJointLimits(robot, joint, lower, upper); }
 
 }  // namespace blem_sim

@@ -1,5 +1,5 @@
 // Content of a Simulator. Its work is split by concept: simulator_step.cpp, simulator_report.cpp,
-// simulator_commands.cpp, simulator_state.cpp.
+// simulator_commands.cpp, simulator_models.cpp, simulator_motion.cpp, simulator_state.cpp.
 #pragma once
 
 #include <memory>
@@ -9,6 +9,7 @@
 #include "blem_sim/sim/simulator.h"
 #include "build/simulated_world.h"
 #include "build/world_builder.h"
+#include "commands/applied_loads.h"
 #include "contacts/contact_stage.h"
 #include "guard/energy_balance.h"
 #include "guard/layer_watch.h"
@@ -20,6 +21,12 @@
 #include "sensors/sensor_schedule.h"
 
 namespace blem_sim {
+
+/** Step at which the time step was set, and its time [s]. */
+struct Epoch {
+  double time = 0;
+  std::uint64_t step = 0;
+};
 
 struct Simulator::Impl {
   Impl(const SimulationConfig& config, const UriResolver& resolver, LoadLog log);
@@ -72,18 +79,42 @@ struct Simulator::Impl {
   void restore(const SimulationState& state);
   /** Layout of the state, made on demand; models come and go seldom. */
   const std::string& layout() const;
-  void resetWorld();
-  void seedSensors();
+  void seedSensor(std::size_t sensor);
 
   void loadEnvironment(const EnvironmentConfig& environment);
   void unloadEnvironment(const std::string& name);
+  /** A model has come: no event tells of its slots' earlier colliders. */
+  void forgetLayers(const std::string& model);
 
-  double time() const { return static_cast<double>(step_count_) * config_.time_step; }
+  // simulator_models.cpp
+  void spawn(RobotConfig robot);
+  void removeModel(const std::string& name);
+  /** Makes sensors of the world's that have none yet. */
+  void makeSensors();
+  void removeSensors(int robot);
+  /** Makes all sensors again, as their bodies are now. */
+  void remakeSensors();
+  /** A model's colliders are elsewhere, or others: nothing is remembered of their contacts. */
+  void forgetContacts(const std::vector<int>& colliders);
+  void setLinkInertial(int body, int link, const MassProperties& inertial);
+  void setJointLimits(int robot, int joint, double lower, double upper);
+  void setPhysics(const Vector3& gravity, double time_step, double real_time_factor);
+
+  // simulator_motion.cpp
+  void moveModel(int body, const BodyState& to);
+  void setJointPositions(int robot, const std::vector<std::string>& joints, const std::vector<double>& positions);
+  void resetModel(int model);
+  /** Bodies, joints, motors and loads of a model as they were at the start. */
+  void restart(const ModelInfo& model, int robot);
+  void resetWorld();
+  int modelOfBody(int body) const;
+
+  double time() const { return epoch_.time + static_cast<double>(step_count_ - epoch_.step) * config_.time_step; }
   /** Simulated time at which the substep at hand starts. */
   double substepTime() const { return time() + substeps_.fractionDone() * config_.time_step; }
   double substepLength() const { return substeps_.fraction() * config_.time_step; }
 
-  const SimulationConfig config_;
+  SimulationConfig config_;
   SimulatedWorld world_;
   WorldBuilder builder_;
   ContactStage contacts_;
@@ -93,7 +124,8 @@ struct Simulator::Impl {
   std::vector<std::unique_ptr<Sensor>> sensors_;
   std::vector<SensorSchedule> sensor_schedules_;
   std::vector<SensorReading> spare_readings_;  ///< [sensors] whose memory the next reading uses
-  WorldState initial_state_;
+  AppliedLoads loads_;
+  Epoch epoch_;
   mutable std::string layout_;  ///< empty: not known
 
   std::uint64_t step_count_ = 0;

@@ -45,8 +45,10 @@ std::string namesOf(const SimulatedWorld& world) {
   std::string names;
   for (const ModelInfo& model : world.models)
     if (model.alive) names += model.name + ";";
-  for (int body = 0; body < world.world.bodyCount(); ++body) names += world.world.bodySpec(body).name + ";";
-  for (int joint = 0; joint < world.world.jointCount(); ++joint) names += world.world.jointSpec(joint).name + ";";
+  for (int body = 0; body < world.world.bodyCount(); ++body)
+    if (world.world.hasBody(body)) names += world.world.bodySpec(body).name + ";";
+  for (int joint = 0; joint < world.world.jointCount(); ++joint)
+    if (world.world.hasJoint(joint)) names += world.world.jointSpec(joint).name + ";";
   for (std::size_t i = 0; i < world.colliders.size(); ++i)
     if (world.colliders[i].enabled) names += std::to_string(i) + world.colliders[i].name + ";";
   for (const SensorInfo& sensor : world.sensors) names += sensor.config.name + ";";
@@ -62,6 +64,8 @@ struct StateParts {
   LayerWatch layer_watch;
   CrossingHistory crossings;
   LayerStops stops;
+  AppliedLoads loads;
+  Epoch epoch;
 };
 
 /** The next numbers of the state, as many as the sensor has. */
@@ -74,6 +78,17 @@ std::vector<double> numbersOf(const Sensor& sensor, NumberReader* reader) {
 
 /** Words of a state: whether the simulation has stopped, then of each sensor its random numbers, then those of contacts. */
 std::size_t contactWords(std::size_t sensors) { return 1 + sensors; }
+
+/** Reads the numbers at the end, which only states with loads or another time step have. */
+void readLoads(const SimulationState& state, const SimulatedWorld& world, NumberReader* reader, StateParts* parts) {
+  if (reader->left() == 0) return;
+  parts->epoch.time = reader->number();
+  const double step = reader->number();
+  if (!(parts->epoch.time >= 0) || !(step >= 0 && step <= static_cast<double>(state.step)))
+    NumberReader::refuseContent("the time step was set at a step that is still to come");
+  parts->epoch.step = static_cast<std::uint64_t>(step);
+  parts->loads.read(world.world.bodyCount(), world.world.jointCount(), reader);
+}
 
 void readContacts(const SimulationState& state, const std::vector<Collider>& colliders, std::size_t first, NumberReader* reader,
                   StateParts* parts) {
@@ -93,9 +108,11 @@ void readParts(const SimulationState& state, const SimulatedWorld& world, const 
   if (state.words[0] > 1) NumberReader::refuseContent("a flag is neither 0 nor 1");
   NumberReader reader(state.numbers);
   parts->energy_balance.read(world.world.bodyCount(), &reader);
-  for (JointMotor& motor : parts->motors) motor.read(&reader);
+  for (std::size_t joint = 0; joint < parts->motors.size(); ++joint)
+    if (world.world.hasJoint(static_cast<int>(joint))) parts->motors[joint].read(&reader);
   for (const auto& sensor : sensors) parts->sensors.push_back(numbersOf(*sensor, &reader));
   readContacts(state, world.colliders, contacts, &reader, parts);
+  readLoads(state, world, &reader, parts);
   reader.finish();
 }
 
@@ -112,7 +129,8 @@ SimulationState Simulator::Impl::content() const {
   state.world = world_.world.save();
   state.words.push_back(stopped_ ? 1 : 0);
   energy_balance_.append(&state.numbers);
-  for (const JointMotor& motor : world_.motors) motor.append(&state.numbers);
+  for (std::size_t joint = 0; joint < world_.motors.size(); ++joint)
+    if (world_.world.hasJoint(static_cast<int>(joint))) world_.motors[joint].append(&state.numbers);
   for (const auto& sensor : sensors_) {
     sensor->append(&state.numbers);
     state.words.push_back(sensor->random().state());
@@ -121,6 +139,9 @@ SimulationState Simulator::Impl::content() const {
   layer_watch_.append(&state.words);
   contacts_.crossings().append(&state.numbers, &state.words);
   contacts_.stops().append(&state.words);
+  if (loads_.empty() && epoch_.step == 0) return state;
+  state.numbers.insert(state.numbers.end(), {epoch_.time, static_cast<double>(epoch_.step)});
+  loads_.append(&state.numbers);
   return state;
 }
 
@@ -134,7 +155,7 @@ SimulationState Simulator::Impl::save() const {
 void Simulator::Impl::restore(const SimulationState& state) {
   checkHeader(state);
   checkLayout(state.layout, layout());
-  StateParts parts{energy_balance_, world_.motors, {}, {}, {}, {}, {}};
+  StateParts parts{energy_balance_, world_.motors, {}, {}, {}, {}, {}, {}, {}};
   readParts(state, world_, sensors_, &parts);
   world_.world.restoreChecked(state.world);
   // Nothing below throws.
@@ -151,31 +172,18 @@ void Simulator::Impl::restore(const SimulationState& state) {
   contacts_.stops() = std::move(parts.stops);
   contacts_.crossings() = std::move(parts.crossings);
   layer_watch_ = std::move(parts.layer_watch);
-  contacts_.forget();
-  reportWithoutStep();
-}
-
-void Simulator::Impl::resetWorld() {
-  world_.world.restore(initial_state_);
-  for (JointMotor& motor : world_.motors) motor.reset();
-  for (const auto& sensor : sensors_) sensor->reset();
-  stopped_ = false;
-  contacts_.memory().clear();
-  contacts_.stops().clear();
-  contacts_.crossings().clear();
-  layer_watch_.clear();
-  energy_balance_.clear();
+  loads_ = std::move(parts.loads);
+  epoch_ = parts.epoch;
   contacts_.forget();
   reportWithoutStep();
 }
 
 // A sensor's noise is a stream of its own, told by names: other sensors and robots change nothing in it.
-void Simulator::Impl::seedSensors() {
-  for (std::size_t i = 0; i < sensors_.size(); ++i) {
-    const SensorInfo& info = world_.sensors[i];
-    sensors_[i]->random().setState(
-        ContentHash().add(config_.random_seed).add(world_.robots[info.robot].name).add(info.config.name).value());
-  }
+void Simulator::Impl::seedSensor(std::size_t sensor) {
+  const SensorInfo& info = world_.sensors[sensor];
+  ContentHash seed;
+  seed.add(config_.random_seed).add(world_.robots[info.robot].name).add(info.config.name);
+  sensors_[sensor]->random().setState(seed.value());
 }
 
 SimulationState Simulator::save() const { return impl_->save(); }
@@ -184,7 +192,8 @@ void Simulator::resetWorld() { impl_->resetWorld(); }
 
 void Simulator::resetSimulation() {
   impl_->step_count_ = 0;
-  impl_->seedSensors();
+  impl_->epoch_ = Epoch();
+  for (std::size_t i = 0; i < impl_->sensors_.size(); ++i) impl_->seedSensor(i);
   impl_->resetWorld();
 }
 

@@ -36,6 +36,7 @@ const StepReport& Simulator::Impl::step() {
     stepGuard();
   }
   ++step_count_;
+  loads_.expire(time());
   if (substeps_.count() > 1) world_.world.setJointEfforts(part_reports_.efforts());
   readSensors();
   report();
@@ -87,6 +88,7 @@ void Simulator::Impl::motorTorque() {
   const StageTimer timer(&report_.profile, Stage::MOTOR_TORQUE);
   drives_.resize(world_.motors.size());
   for (std::size_t j = 0; j < drives_.size(); ++j) drives_[j] = world_.motors[j].drive(world_.world.jointState(static_cast<int>(j)));
+  loads_.addEfforts(time(), &drives_);
 }
 
 void Simulator::Impl::broadPhase() {
@@ -110,6 +112,9 @@ bool Simulator::Impl::solve() {
   const StageTimer timer(&report_.profile, Stage::SOLVE);
   world_.world.save(&substep_start_);
   bodies_before_substep_ = bodies_;
+  const std::vector<BodyLoad>& loads = loads_.wrenchesAt(time());
+  for (const BodyLoad& load : loads) world_.world.applyWrench(load.body, load.wrench, bodies_[load.body].X_WB * load.p_B);
+  energy_balance_.setLoads(loads);
   solved_ = &world_.world.step(substepLength(), contacts_.constraints(), drives_);
   if (solved_->finite) world_.bodyStates(&bodies_);
   if (solved_->finite && bodiesAreFinite()) return true;

@@ -15,6 +15,7 @@ import rostest
 import yaml
 from rosgraph_msgs.msg import Clock
 
+from blem_sim.srv import LoadEnvironment, RestoreState, SaveState
 from sim_client import Recorder
 
 NAME = "/starting_blem_sim"
@@ -96,6 +97,19 @@ class StartupTest(unittest.TestCase):
         process = self.start(self.parameters)
         self.wait_until_ready(process)
         rosnode.kill_nodes([NAME])
+        self.assertEqual(process.wait(timeout=20), 0)
+
+    def test_services_use_no_files_if_they_are_not_allowed_to(self):
+        self.parameters["allow_file_services"] = False
+        self.parameters["paused"] = True
+        process = self.start(self.parameters)
+        self.wait_until_ready(process)
+        for name, kind, request in (("save_state", SaveState, {"file": "a.state"}), ("restore_state", RestoreState, {"file": "a.state"}),
+                                    ("load_environment", LoadEnvironment, {"name": "a", "uri": "package://blem_sim/test/data/ros/cube.off"})):
+            answer = rospy.ServiceProxy(NAME + "/" + name, kind)(**request)
+            self.assertFalse(answer.success)
+            self.assertIn("allow_file_services", answer.status_message)
+        process.send_signal(signal.SIGINT)
         self.assertEqual(process.wait(timeout=20), 0)
 
     def test_sim_time_is_set_if_it_was_not(self):

@@ -23,6 +23,8 @@ class CollisionFilter {
   bool selfCollides(int model) const { return self_colliding_models_.count(model) > 0; }
   /** Two bodies that never touch: neighbours at a joint, listed pairs. Order does not matter. */
   void disableBodies(int body_a, int body_b);
+  /** Forgets the rules about a body whose slot another one may take. */
+  void forgetBody(int body);
   bool allows(const Collider& a, const Collider& b) const;
 
  private:

@@ -31,6 +31,8 @@ class World {
 
   int bodyCount() const;  ///< slots, removed ones included
   int jointCount() const;
+  bool hasBody(int body) const;  ///< false: the slot is free
+  bool hasJoint(int joint) const;
   const BodySpec& bodySpec(int body) const;
   const JointSpec& jointSpec(int joint) const;
 
@@ -39,6 +41,13 @@ class World {
   JointState jointState(int joint) const;
   /** Sets the position that the joint's bodies' poses stand for, after setBodyState; keeps count of full turns. */
   void resetJointPosition(int joint, double position);
+  /**
+   * Gives a body other mass properties, where it is and as it moves.
+   * @throws InputError if they are no body's, nothing being changed
+   */
+  void setInertial(int body, const MassProperties& inertial);
+  /** Precondition: lower <= upper. @param lower, upper [rad or m] */
+  void setJointLimits(int joint, double lower, double upper);
   /** Sets JointState::effort of every joint [N m or N] until the next step, for steps that are made of several of the world's. */
   void setJointEfforts(const std::vector<double>& efforts);
 
@@ -53,6 +62,9 @@ class World {
 
   double kineticEnergy() const;    ///< [J]
   double potentialEnergy() const;  ///< [J] against gravity, zero at the origin
+
+  /** Forgets all steps: the next one is made as the first of a world with the bodies where they are. */
+  void forgetHistory();
 
   WorldState save() const;
   /** The same into a state that is used again. */

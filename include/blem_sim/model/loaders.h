@@ -4,10 +4,12 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "blem_sim/geometry/input_error.h"
 #include "blem_sim/geometry/mesh_topology.h"
+#include "blem_sim/model/file_roots.h"
 #include "blem_sim/model/robot_model.h"
 
 namespace blem_sim {
@@ -23,8 +25,14 @@ class UriResolver {
    *  place that was tried. */
   std::string resolve(const std::string& uri, const std::string& base = "") const;
 
+  /** Refuses files elsewhere from now on. */
+  void restrictTo(const FileRoots& roots) { roots_ = roots; }
+
  private:
+  std::string find(const std::string& uri, const std::string& base) const;
+
   std::map<std::string, std::string> packages_;
+  std::optional<FileRoots> roots_;
 };
 
 /** Settings of a file of points in the simulation. */

@@ -112,8 +112,9 @@ struct RobotConfig {
 
 struct ObjectConfig {
   std::string name;
-  std::string uri;   ///< mesh or cloud, or
-  std::string urdf;  ///< a one-body URDF
+  std::string uri;       ///< mesh or cloud, or
+  std::string urdf;      ///< a one-body URDF, or
+  std::string urdf_xml;  ///< the text of one (spawned objects)
   Vector3 scale = Vector3::Ones();
   Pose X_OM = Pose::Identity();  ///< mesh in the object's frame
   Pose X_WO = Pose::Identity();
@@ -143,7 +144,9 @@ struct SimulationConfig {
   std::vector<RobotConfig> robots;
   std::vector<ObjectConfig> objects;
   PublishRates rates;
-  std::string base_directory;  ///< of relative files
+  std::string base_directory;           ///< of relative files
+  bool allow_file_services = true;      ///< false: no service of the node reads or writes files
+  std::vector<std::string> file_roots;  ///< folders that services may use beside base_directory and ROS_PACKAGE_PATH
 };
 
 /**

@@ -29,7 +29,7 @@ class Simulator {
   /** The state at hand without stepping: bodies and joints now, contacts of the last step. */
   const StepReport& report() const;
 
-  double time() const;  ///< [s] simulated, steps * time_step: never goes back except by reset_simulation
+  double time() const;  ///< [s] simulated, steps * time_step while that stays: never goes back except by reset_simulation
   std::uint64_t steps() const;
   const SimulationConfig& config() const;
   const Vector3& gravity() const;
@@ -70,6 +70,48 @@ class Simulator {
    * @throws InputError if there is no such environment
    */
   void unloadEnvironment(const std::string& name);
+
+  /**
+   * Adds a robot between steps; one of a single free body becomes an object, and one whose root link is called world has a fixed base.
+   * A joint without gains in the configuration is free. Indices of robots and sensors that come after it go up by its own.
+   * @throws InputError, nothing being changed: the name is taken, or whatever the configuration would be refused for
+   */
+  void spawn(const RobotConfig& robot);
+  /**
+   * Takes a model out between steps, with its sensors and all memory of its contacts. Indices of robots and sensors behind it go down.
+   * @throws InputError if there is no such model
+   */
+  void removeModel(const std::string& name);
+  /** Lets all later loads read files below these folders alone. */
+  void restrictFiles(const FileRoots& roots);
+
+  /** Moves a body, and its whole model with it as if it were rigid: joints keep their positions and stop. @throws InputError: a fixed base,
+   *  numbers that are none or too large */
+  void moveModel(int body, const BodyState& to);
+  /**
+   * Sets joint positions [rad or m], moved into the limits, at rest; motors hold them. The root link and other joints go on as they are.
+   * @param joints with or without the robot's name before :: @throws InputError, nothing being changed
+   */
+  void setJointPositions(int robot, const std::vector<std::string>& joints, const std::vector<double>& positions);
+  /** A model back to its start pose, as resetWorld does. */
+  void resetModel(int model);
+
+  /** Lets a wrench act in all steps of a time. @throws InputError: numbers that are none or too large, too many loads */
+  void applyLoad(const BodyLoad& load, const LoadTime& when);
+  /** Lets an effort [N m or N] act beside the motor's. @param joint of the world @throws InputError */
+  void applyEffort(int joint, double effort, const LoadTime& when);
+  void clearLoads(int body);
+  void clearEfforts(int joint);
+
+  /** @param gravity [m/s^2], time_step [s]; all or nothing is taken. @throws InputError */
+  void setPhysics(const Vector3& gravity, double time_step, double real_time_factor);
+  /** Gives a robot's link, or an object's body, other mass properties in the link's frame. @throws InputError, nothing being changed */
+  void setLinkInertial(int body, int link, const MassProperties& inertial);
+  MassProperties linkInertial(int body, int link) const;  ///< @param link of the body's robot, -1: the body itself
+  void setJointDamping(int robot, int joint, double damping);
+  /** @throws InputError: limits that do not hold the joint's position, or of a joint that takes none */
+  void setJointLimits(int robot, int joint, double lower, double upper);
+  double jointDamping(int world_joint) const;  ///< [N m s/rad or N s/m]
 
   /** Models back to their start poses, at rest (objects at their configured velocity), commands and sensors cleared; time goes on. */
   void resetWorld();

@@ -19,9 +19,10 @@ enum class ModelKind { ENVIRONMENT, ROBOT, OBJECT };
 struct ModelInfo {
   std::string name;
   ModelKind kind = ModelKind::OBJECT;
-  std::vector<int> bodies;  ///< world bodies; [0] holds the root link
-  std::vector<int> joints;  ///< world joints, movable ones, in the robot's order
-  bool alive = true;        ///< false: unloaded, and its slot is free
+  std::vector<int> bodies;       ///< world bodies; [0] holds the root link
+  std::vector<int> joints;       ///< world joints, movable ones, in the robot's order
+  Pose X_WM = Pose::Identity();  ///< root link, object's frame or environment at the start
+  bool alive = true;             ///< false: unloaded, and its slot is free
 };
 
 /** A robot as publishers and commands see it. */
@@ -55,6 +56,19 @@ struct SensorInfo {
 struct JointCommandMessage {
   std::vector<std::string> joints;
   std::vector<double> positions, velocities, efforts;
+};
+
+/** A time of simulation in which a load acts, from a step's start to another's. */
+struct LoadTime {
+  double start = 0;     ///< [s] simulated; in the past: now
+  double duration = 0;  ///< [s] below 0: until it is cleared; a step at least
+};
+
+/** Wrench from outside on a body. */
+struct BodyLoad {
+  int body = 0;
+  Wrench wrench;  ///< [N, N m] world axes
+  Vector3 p_B;    ///< [m] in the body's frame, where the force acts
 };
 
 /** Log of long loads: their progress, and the size of the loaded model: names, stages, seconds, triangles, memory. */

@@ -21,6 +21,19 @@ void check(const BodySpec& spec) {
     throw InputError("body '" + spec.name + "': inertia is not positive definite; correct ixx..izz");
 }
 
+void setMass(dBodyID body, const MassProperties& m) {
+  dMass mass;
+  dMassSetParameters(&mass, m.mass, 0, 0, 0, m.inertia(0, 0), m.inertia(1, 1), m.inertia(2, 2), m.inertia(0, 1), m.inertia(0, 2),
+                     m.inertia(1, 2));
+  dBodySetMass(body, &mass);
+}
+
+/** Moves the centre of mass that the bits are of by an offset [m] in the body's axes. */
+void moveCom(const Vector3& offset, BodyBits* bits) {
+  const Vector3 com = bits->com() + bits->rotation() * offset;
+  std::copy_n(com.data(), 3, bits->numbers);
+}
+
 }  // namespace
 
 int Scene::addBody(const BodySpec& spec) {
@@ -38,15 +51,32 @@ int Scene::addBody(const BodySpec& spec) {
 }
 
 void Scene::createBody(BodySlot* slot) {
-  const MassProperties& m = slot->spec.inertial;
   slot->ode = dBodyCreate(world_);
-  dMass mass;
-  dMassSetParameters(&mass, m.mass, 0, 0, 0, m.inertia(0, 0), m.inertia(1, 1), m.inertia(2, 2), m.inertia(0, 1), m.inertia(0, 2),
-                     m.inertia(1, 2));
-  dBodySetMass(slot->ode, &mass);
+  setMass(slot->ode, slot->spec.inertial);
   dBodySetGyroscopicMode(slot->ode, 1);
   // Rotation by the exponential map: a hinge then turns by exactly dt times its speed.
   dBodySetFiniteRotationMode(slot->ode, 1);
+}
+
+void Scene::setInertial(int body, const MassProperties& inertial) {
+  BodySlot& slot = bodies_[body];
+  BodySpec spec = slot.spec;
+  spec.inertial = inertial;
+  check(spec);
+  const Vector3 offset = inertial.com - slot.spec.inertial.com;
+  BodyState state = bodyState(body);
+  state.v_WCom += state.w_WB.cross(state.X_WB.linear() * offset);
+  slot.spec = spec;
+  setMass(slot.ode, inertial);
+  ++structure_;
+  if (offset.isZero(0)) return;
+  setBodyState(body, state);
+  // ODE holds a joint's geometry against the centres of mass.
+  for (JointSlot& joint : joints_) {
+    if (!joint.joint || (joint.spec.child != body && joint.spec.parent != body)) continue;
+    moveCom(offset, joint.spec.child == body ? &joint.child_assembled : &joint.parent_assembled);
+    recreateJoint(&joint);
+  }
 }
 
 void BodyBits::set(const Vector3& com, const Matrix3& R, const Vector3& velocity, const Vector3& spin) {

@@ -1,6 +1,7 @@
 #include "scene/scene.h"
 
 #include <algorithm>
+#include <limits>
 #include <mutex>
 
 namespace blem_sim {
@@ -53,8 +54,7 @@ void Scene::removeBody(int body) {
   for (int j = 0; j < static_cast<int>(joints_.size()); ++j)
     if (joints_[j].joint && (joints_[j].spec.child == body || joints_[j].spec.parent == body)) removeJoint(j);
   dBodyDestroy(bodies_[body].ode);
-  bodies_[body].ode = nullptr;
-  bodies_[body].pending = Wrench();
+  bodies_[body] = BodySlot();
   free_bodies_.insert(body);
   findTrees();
 }
@@ -68,6 +68,10 @@ void Scene::removeJoint(int joint) {
   slot.occupant = 0;
   slot.spec.parent = WORLD_BODY;
   slot.spec.mimic_joint = -1;
+  slot.spec.name.clear();
+  slot.spec.lower = -std::numeric_limits<double>::infinity();
+  slot.spec.upper = std::numeric_limits<double>::infinity();
+  slot.spec.armature = 0;
   slot.last_position = slot.last_effort = 0;
   for (JointSlot& other : joints_)
     if (other.spec.mimic_joint == joint) other.spec.mimic_joint = -1;
@@ -81,12 +85,25 @@ void Scene::rebuild(const std::vector<BodyBits>& state) {
     if (slot.ode) createBody(&slot);
   // ODE takes a joint's geometry from where its bodies stand.
   for (JointSlot& slot : joints_) {
-    if (!slot.joint) continue;
-    setBits(slot.spec.child, slot.child_assembled);
-    if (slot.spec.parent != WORLD_BODY) setBits(slot.spec.parent, slot.parent_assembled);
-    createJoint(&slot);
+    if (slot.joint) createJointWhereAssembled(&slot);
   }
   setBits(state);
+}
+
+void Scene::recreateJoint(JointSlot* slot) {
+  std::vector<BodyBits> now;
+  bits(&now);
+  dJointDestroy(slot->joint);
+  if (slot->motor) dJointDestroy(slot->motor);
+  slot->motor = nullptr;
+  createJointWhereAssembled(slot);
+  setBits(now);
+}
+
+void Scene::createJointWhereAssembled(JointSlot* slot) {
+  setBits(slot->spec.child, slot->child_assembled);
+  if (slot->spec.parent != WORLD_BODY) setBits(slot->spec.parent, slot->parent_assembled);
+  createJoint(slot);
 }
 
 // A joint closes a loop if its child has a joint of a tree already, or if its parent hangs on the child.

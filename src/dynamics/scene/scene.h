@@ -67,6 +67,8 @@ class Scene {
   int addBody(const BodySpec& spec);
   int addJoint(const JointSpec& spec, double position);
   void removeBody(int body);
+  /** Gives a body other mass properties; its frame and that frame's motion stay. @throws InputError before anything is changed */
+  void setInertial(int body, const MassProperties& inertial);
   /** Replaces the ODE world, which an internal error left unusable, by a new one from the slots. */
   void rebuild(const std::vector<BodyBits>& state);
 
@@ -116,6 +118,9 @@ class Scene {
   double hingeAngle(const JointSlot& slot) const;
   void createWorld();
   void createBody(BodySlot* slot);
+  void createJointWhereAssembled(JointSlot* slot);
+  /** Makes ODE's joint anew after a centre of mass has moved. */
+  void recreateJoint(JointSlot* slot);
   void createJoint(JointSlot* slot);
   void createMotor(JointSlot* slot, dBodyID child, dBodyID parent, const Vector3& axis);
   void removeJoint(int joint);

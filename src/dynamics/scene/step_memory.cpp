@@ -49,6 +49,7 @@ void StepMemory::save(const Scene& scene, StateWriter* writer) const {
   }
   // A joint that was added since the last step has nothing to remember.
   for (std::size_t j = 0; j < scene.joints().size(); ++j) {
+    if (!scene.joints()[j].joint) continue;
     const JointRecord record = knows(scene, j) ? joints[j] : JointRecord();
     for (const double x : {record.dry, record.lower, record.upper, record.dry_change}) writer->number(x);
     if (!scene.joints()[j].in_tree) writer->numbers(record.loop.data(), 6);
@@ -67,6 +68,7 @@ void StepMemory::restore(const Scene& scene, StateReader* reader) {
   index();
   resize(scene);
   for (std::size_t j = 0; j < joints.size(); ++j) {
+    if (!scene.joints()[j].joint) continue;
     for (double* x : {&joints[j].dry, &joints[j].lower, &joints[j].upper, &joints[j].dry_change}) *x = reader->number();
     if (!scene.joints()[j].in_tree) reader->numbers(joints[j].loop.data(), 6);
   }

@@ -8,10 +8,10 @@ namespace blem_sim {
 
 ControllerSets::ControllerSets(ros::NodeHandle node, Simulator* simulator, StepSender* sender)
     : node_(node), simulator_(simulator), sender_(sender) {
-  robotsChanged();
+  modelsChanged();
 }
 
-void ControllerSets::robotsChanged() {
+void ControllerSets::modelsChanged() {
   for (auto set = sets_.begin(); set != sets_.end();)
     set = simulator_->robotIndex(set->second.robot) < 0 ? sets_.erase(set) : std::next(set);
   for (std::size_t robot = 0; robot < simulator_->robots().size(); ++robot) add(static_cast<int>(robot));

@@ -21,8 +21,8 @@ class ControllerSets : public StepPublisher {
 
   void publish(const StepReport& report) override;
   void timeRestarted() override;
-  /** Robots came or went; all messages about those that went are out. @throws InputError: wrong settings of a controller */
-  void robotsChanged();
+  /** All messages about robots that went are out. @throws InputError: wrong settings of a controller */
+  void modelsChanged() override;
 
  private:
   struct Set {

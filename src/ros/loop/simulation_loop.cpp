@@ -95,8 +95,21 @@ void SimulationLoop::resetSimulation() {
   publish(simulator_->report());
 }
 
-void SimulationLoop::geometryChanged() {
-  for (const auto& publisher : publishers_) publisher->geometryChanged();
+void SimulationLoop::restore(const SimulationState& state) {
+  const double before = simulator_->time();
+  simulator_->restore(state);
+  sender_.drain();
+  if (simulator_->time() < before)
+    for (const auto& publisher : publishers_) publisher->timeRestarted();
+  publish(simulator_->report());
+}
+
+void SimulationLoop::paceChanged() { pacer_ = StepPacer(simulator_->config().real_time_factor, simulator_->config().time_step); }
+
+void SimulationLoop::modelsChanged() {
+  sender_.drain();  // messages in it are for publishers that may go
+  for (const auto& act : on_models_changed_) act();
+  for (const auto& publisher : publishers_) publisher->modelsChanged();
 }
 
 }  // namespace blem_sim

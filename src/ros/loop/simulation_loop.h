@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "loop/step_pacer.h"
@@ -41,8 +42,14 @@ class SimulationLoop {
 
   void resetWorld() { simulator_->resetWorld(); }
   void resetSimulation();
-  /** An environment was loaded or unloaded. */
-  void geometryChanged();
+  /** Goes on from a saved state; if that lies back in time, time has started again for the publishers. @throws InputError */
+  void restore(const SimulationState& state);
+  /** Models came or went. @throws InputError: a name of theirs clashes */
+  void modelsChanged();
+  /** Lets an action follow on every change of models. */
+  void onModelsChanged(std::function<void()> act) { on_models_changed_.push_back(std::move(act)); }
+  /** The time step or the real-time factor was set. */
+  void paceChanged();
 
   /** Sender for the messages of every step's publishers. */
   StepSender* sender() { return &sender_; }
@@ -58,6 +65,7 @@ class SimulationLoop {
 
   Simulator* simulator_;
   std::vector<std::unique_ptr<StepPublisher>> publishers_;
+  std::vector<std::function<void()>> on_models_changed_;
   StepPacer pacer_;
   Outbox outbox_;
   bool paused_;

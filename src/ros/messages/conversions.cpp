@@ -67,6 +67,9 @@ geometry_msgs::Twist toTwist(const Vector3& linear, const Vector3& angular) {
   return message;
 }
 
+Vector3 fromVector3(const geometry_msgs::Vector3& message) { return {message.x, message.y, message.z}; }
+Vector3 fromPoint(const geometry_msgs::Point& message) { return {message.x, message.y, message.z}; }
+
 Pose fromPose(const geometry_msgs::Pose& message, const std::string& source) {
   const Vector3 translation(message.position.x, message.position.y, message.position.z);
   Quaternion rotation(message.orientation.w, message.orientation.x, message.orientation.y, message.orientation.z);

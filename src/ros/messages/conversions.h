@@ -31,6 +31,9 @@ geometry_msgs::Transform toTransform(const Pose& X);
 geometry_msgs::Wrench toWrench(const Vector3& force, const Vector3& torque);
 geometry_msgs::Twist toTwist(const Vector3& linear, const Vector3& angular);
 
+Vector3 fromVector3(const geometry_msgs::Vector3& message);
+Vector3 fromPoint(const geometry_msgs::Point& message);
+
 /**
  * Pose from a message; a quaternion of zeros is the identity, others are normalised.
  * @param source names the message in errors. @throws InputError: NaN, infinite

@@ -17,6 +17,13 @@ LinkMotion frameMotion(const Simulator& simulator, const StepReport& report, int
 }
 }  // namespace
 
+LinkMotion partMotion(const Simulator& simulator, const LinkPart& part) {
+  if (part.body != WORLD_BODY) return frameMotion(simulator, simulator.report(), part.body, part.X_BL);
+  LinkMotion fixed;
+  fixed.X_WL = part.X_BL;
+  return fixed;
+}
+
 LinkMotion linkMotion(const Simulator& simulator, const StepReport& report, const RobotInfo& robot, int link) {
   const LinkPlacement& placement = robot.lumped->link_placement[link];
   const int body = robot.bodies[placement.body];
@@ -33,16 +40,14 @@ LinkMotion bodyMotion(const Simulator& simulator, const StepReport& report, int 
 LinkMotion modelMotion(const Simulator& simulator, const StepReport& report, int model) {
   const ModelInfo& info = simulator.models()[model];
   if (info.kind == ModelKind::ROBOT) {
+    // Robots come in the order of their models.
     const auto robot = std::partition_point(simulator.robots().begin(), simulator.robots().end(),
                                             [model](const RobotInfo& other) { return other.model < model; });
     return linkMotion(simulator, report, *robot, robot->description->root);
   }
   if (info.kind == ModelKind::OBJECT) return bodyMotion(simulator, report, info.bodies.front());
-  // Robots and colliders come in the order of their models; an environment has one collider, and both its slots are the lowest free ones.
   LinkMotion environment;
-  const auto collider = std::partition_point(simulator.colliders().begin(), simulator.colliders().end(),
-                                             [model](const Collider& other) { return other.model < model; });
-  environment.X_WL = collider->X_BC;
+  environment.X_WL = info.X_WM;
   return environment;
 }
 

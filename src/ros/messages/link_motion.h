@@ -1,7 +1,7 @@
 // Pose and velocity of a link, from the state of the body it is part of.
 #pragma once
 
-#include "blem_sim/sim/simulator.h"
+#include "blem_sim/sim/named_parts.h"
 
 namespace blem_sim {
 
@@ -10,6 +10,9 @@ struct LinkMotion {
   Vector3 v_WL = Vector3::Zero();  ///< [m/s] of the link's origin, world axes
   Vector3 w_WL = Vector3::Zero();  ///< [rad/s] world axes
 };
+
+/** Motion of a link, an object or an environment now. */
+LinkMotion partMotion(const Simulator& simulator, const LinkPart& part);
 
 /** @param link index into the robot's description */
 LinkMotion linkMotion(const Simulator& simulator, const StepReport& report, const RobotInfo& robot, int link);

@@ -22,6 +22,8 @@ class ContactMarkers {
  public:
   static constexpr double LONGEST_ARROW = 0.25;  // [m]
   ContactMarkers(ros::NodeHandle* private_node, const std::string& topic, double metres_per_newton);
+  /** Not while publish() runs. */
+  void setScale(double metres_per_newton) { metres_per_newton_ = metres_per_newton; }
   bool listened() const { return publisher_.listened(); }
   void publish(const boost::shared_ptr<StampedContacts>& contacts);
 

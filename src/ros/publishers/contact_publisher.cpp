@@ -43,9 +43,12 @@ void ContactPublisher::publish(const StepReport& report) {
 }
 
 ContactMarkerPublisher::ContactMarkerPublisher(ros::NodeHandle private_node, const Simulator& simulator, StepSender* sender)
-    : schedule_(simulator.config().rates.markers),
+    : simulator_(simulator),
+      schedule_(simulator.config().rates.markers),
       markers_(&private_node, "contact_markers", metresPerNewton(simulator)),
       sender_(sender) {}
+
+void ContactMarkerPublisher::modelsChanged() { markers_.setScale(metresPerNewton(simulator_)); }
 
 void ContactMarkerPublisher::publish(const StepReport& report) {
   if (!schedule_.due(report.time) || !markers_.listened()) return;

@@ -36,8 +36,10 @@ class ContactMarkerPublisher : public StepPublisher {
   ContactMarkerPublisher(ros::NodeHandle private_node, const Simulator& simulator, StepSender* sender);
   void publish(const StepReport& report) override;
   void timeRestarted() override { schedule_.restart(); }
+  void modelsChanged() override;
 
  private:
+  const Simulator& simulator_;
   PublishSchedule schedule_;
   ContactMarkers markers_;                 // the sender's
   MessagePool<StampedContacts> contacts_;  // to make them from

@@ -17,7 +17,7 @@ class DiagnosticsPublisher : public StepPublisher {
   void publish(const StepReport& report) override { collector_.add(report); }
   void timeRestarted() override;
   void resumed() override { collector_.resume(); }
-  void geometryChanged() override { collector_.forgetColliders(); }
+  void modelsChanged() override { collector_.forgetColliders(); }
   /** Publishes when a second has passed; to be called often. */
   void serve(bool paused);
 

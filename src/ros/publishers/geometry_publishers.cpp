@@ -66,10 +66,10 @@ GeometryMarkerPublisher::GeometryMarkerPublisher(ros::NodeHandle private_node, c
     : simulator_(simulator),
       environments_(private_node.advertise<MarkerArray>("environment_markers", 1, true)),
       objects_(private_node.advertise<MarkerArray>("object_markers", 1, true)) {
-  geometryChanged();
+  modelsChanged();
 }
 
-void GeometryMarkerPublisher::geometryChanged() {
+void GeometryMarkerPublisher::modelsChanged() {
   // Everything is sent anew, so that nothing unloaded stays in sight.
   MarkerArray environments, objects;
   environments.markers.emplace_back();
@@ -94,10 +94,10 @@ void GeometryMarkerPublisher::geometryChanged() {
 
 LoadReportPublisher::LoadReportPublisher(ros::NodeHandle private_node, const Simulator& simulator)
     : simulator_(simulator), publisher_(private_node.advertise<LoadReport>("load_report", 1, true)) {
-  geometryChanged();
+  modelsChanged();
 }
 
-void LoadReportPublisher::geometryChanged() {
+void LoadReportPublisher::modelsChanged() {
   LoadReport message;
   message.header.stamp = toStamp(simulator_.time());
   for (const MeshReport& report : simulator_.loadReport()) message.meshes.push_back(toEntry(report));

@@ -12,7 +12,7 @@ class GeometryMarkerPublisher : public StepPublisher {
  public:
   GeometryMarkerPublisher(ros::NodeHandle private_node, const Simulator& simulator);
   void publish(const StepReport&) override {}
-  void geometryChanged() override;
+  void modelsChanged() override;
 
  private:
   const Simulator& simulator_;
@@ -24,7 +24,7 @@ class LoadReportPublisher : public StepPublisher {
  public:
   LoadReportPublisher(ros::NodeHandle private_node, const Simulator& simulator);
   void publish(const StepReport&) override {}
-  void geometryChanged() override;
+  void modelsChanged() override;
 
  private:
   const Simulator& simulator_;

@@ -2,31 +2,39 @@
 
 #include "messages/conversions.h"
 #include "messages/link_motion.h"
+#include "publishers/robot_topics.h"
 
 namespace blem_sim {
 
 namespace {
 constexpr int QUEUE_SIZE = 100;
-}
+
+const std::string& nameOf(const RobotInfo& robot) { return robot.name; }
+}  // namespace
 
 JointStatePublisher::JointStatePublisher(ros::NodeHandle node, const Simulator& simulator, StepSender* sender)
-    : simulator_(simulator), schedule_(simulator.config().rates.joint_state), sender_(sender) {
-  for (const RobotInfo& robot : simulator.robots()) {
-    ros::NodeHandle robot_node(node, robot.name_space);
-    publishers_.emplace_back(&robot_node, "joint_states", QUEUE_SIZE);
+    : node_(node), simulator_(simulator), schedule_(simulator.config().rates.joint_state), sender_(sender) {
+  modelsChanged();
+}
+
+void JointStatePublisher::modelsChanged() {
+  const auto make = [this](const RobotInfo& robot) {
+    ros::NodeHandle robot_node(node_, robot.name_space);
     sensor_msgs::JointState message;
     message.name = robot.joint_names;
     message.position.resize(robot.joints.size());
     message.velocity.resize(robot.joints.size());
     message.effort.resize(robot.joints.size());
-    messages_.emplace_back(message);
-  }
+    return RobotTopic<sensor_msgs::JointState>{
+        "", {&robot_node, "joint_states", QUEUE_SIZE}, MessagePool<sensor_msgs::JointState>(message)};
+  };
+  keepTopics(simulator_.robots(), nameOf, make, &topics_);
 }
 
 void JointStatePublisher::publish(const StepReport& report) {
   if (!schedule_.due(report.time)) return;
-  for (std::size_t robot = 0; robot < publishers_.size(); ++robot) {
-    const auto message = messages_[robot].spare();
+  for (std::size_t robot = 0; robot < topics_.size(); ++robot) {
+    const auto message = topics_[robot].messages.spare();
     message->header.stamp = toStamp(report.time);
     const std::vector<int>& joints = simulator_.robots()[robot].joints;
     for (std::size_t i = 0; i < joints.size(); ++i) {
@@ -35,31 +43,36 @@ void JointStatePublisher::publish(const StepReport& report) {
       message->velocity[i] = state.velocity;
       message->effort[i] = state.effort;
     }
-    sender_->add(&publishers_[robot], message);
+    sender_->add(&topics_[robot].publisher, message);
   }
 }
 
 OdometryPublisher::OdometryPublisher(ros::NodeHandle node, const Simulator& simulator, StepSender* sender)
-    : simulator_(simulator), schedule_(simulator.config().rates.odom), sender_(sender) {
-  for (const RobotInfo& robot : simulator.robots()) {
-    ros::NodeHandle robot_node(node, robot.name_space);
-    publishers_.emplace_back(&robot_node, "odom", QUEUE_SIZE);
-  }
+    : node_(node), simulator_(simulator), schedule_(simulator.config().rates.odom), sender_(sender) {
+  modelsChanged();
+}
+
+void OdometryPublisher::modelsChanged() {
+  const auto make = [this](const RobotInfo& robot) {
+    ros::NodeHandle robot_node(node_, robot.name_space);
+    return RobotTopic<nav_msgs::Odometry>{"", {&robot_node, "odom", QUEUE_SIZE}, MessagePool<nav_msgs::Odometry>()};
+  };
+  keepTopics(simulator_.robots(), nameOf, make, &topics_);
 }
 
 void OdometryPublisher::publish(const StepReport& report) {
   if (!schedule_.due(report.time)) return;
-  for (std::size_t i = 0; i < publishers_.size(); ++i) {
+  for (std::size_t i = 0; i < topics_.size(); ++i) {
     const RobotInfo& robot = simulator_.robots()[i];
     const LinkMotion root = linkMotion(simulator_, report, robot, robot.description->root);
-    const auto message = messages_.spare();
+    const auto message = topics_[i].messages.spare();
     message->header.stamp = toStamp(report.time);
     message->header.frame_id = WORLD_FRAME;
     message->child_frame_id = robot.root_link;
     message->pose.pose = toPose(root.X_WL);
     const Matrix3 R_LW = root.X_WL.linear().transpose();
     message->twist.twist = toTwist(R_LW * root.v_WL, R_LW * root.w_WL);
-    sender_->add(&publishers_[i], message);
+    sender_->add(&topics_[i].publisher, message);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <sensor_msgs/JointState.h>
 #include <tf2_msgs/TFMessage.h>
 
+#include <string>
 #include <vector>
 
 #include "messages/message_pool.h"
@@ -16,19 +17,28 @@
 
 namespace blem_sim {
 
+/** Topic of a robot. */
+template <typename Message>
+struct RobotTopic {
+  std::string key;  ///< name of the robot
+  GreetingPublisher<Message> publisher;
+  MessagePool<Message> messages;
+};
+
 /** `joint_states` in each robot's namespace: position, velocity and effort of every movable joint. Told late subscribers. */
 class JointStatePublisher : public StepPublisher {
  public:
   JointStatePublisher(ros::NodeHandle node, const Simulator& simulator, StepSender* sender);
   void publish(const StepReport& report) override;
   void timeRestarted() override { schedule_.restart(); }
+  void modelsChanged() override;
 
  private:
+  ros::NodeHandle node_;
   const Simulator& simulator_;
   PublishSchedule schedule_;
   StepSender* sender_;
-  std::vector<GreetingPublisher<sensor_msgs::JointState>> publishers_;  // per robot
-  std::vector<MessagePool<sensor_msgs::JointState>> messages_;          // per robot, names filled in once
+  std::vector<RobotTopic<sensor_msgs::JointState>> topics_;  // per robot; names are filled in once
 };
 
 /** `odom` in each robot's namespace: ground truth of the root link, twist in its own axes. Told late subscribers. */
@@ -37,13 +47,14 @@ class OdometryPublisher : public StepPublisher {
   OdometryPublisher(ros::NodeHandle node, const Simulator& simulator, StepSender* sender);
   void publish(const StepReport& report) override;
   void timeRestarted() override { schedule_.restart(); }
+  void modelsChanged() override;
 
  private:
+  ros::NodeHandle node_;
   const Simulator& simulator_;
   PublishSchedule schedule_;
   StepSender* sender_;
-  std::vector<GreetingPublisher<nav_msgs::Odometry>> publishers_;  // per robot
-  MessagePool<nav_msgs::Odometry> messages_;
+  std::vector<RobotTopic<nav_msgs::Odometry>> topics_;  // per robot
 };
 
 /**

@@ -9,6 +9,7 @@
 #include "blem_sim/geometry/input_error.h"
 #include "messages/contact_messages.h"
 #include "messages/conversions.h"
+#include "publishers/robot_topics.h"
 
 namespace blem_sim {
 
@@ -92,6 +93,8 @@ ListenedPublisher advertise(ros::NodeHandle* node, SensorType type, const std::s
   throw InputError("sensor topic " + topic + ": this type of sensor has no message");
 }
 
+std::string topicOf(const SensorConfig& sensor) { return sensor.topic.empty() ? sensor.name : sensor.topic; }
+
 bool sitsAskew(const SensorConfig& sensor) {
   return (sensor.type == SensorType::IMU || sensor.type == SensorType::TILT) && !sensor.X_LS.isApprox(Pose::Identity(), 1e-12);
 }
@@ -100,33 +103,46 @@ bool sitsAskew(const SensorConfig& sensor) {
 
 SensorPublisher::SensorPublisher(ros::NodeHandle node, const Simulator& simulator, StepSender* sender)
     : simulator_(simulator), sender_(sender), node_(node) {
-  std::set<std::string> topics;
-  for (const SensorInfo& sensor : simulator.sensors()) {
-    const SensorConfig& config = sensor.config;
-    ros::NodeHandle robot_node(node, simulator.robots()[sensor.robot].name_space);
-    const std::string topic = config.topic.empty() ? config.name : config.topic;
+  modelsChanged();
+}
+
+void SensorPublisher::modelsChanged() {
+  std::set<std::string> names;
+  for (const SensorInfo& sensor : simulator_.sensors()) {
+    const std::string topic = topicOf(sensor.config);
     std::string error;
     if (topic.empty() || !ros::names::validate(topic, error)) {
-      throw InputError("sensors: " + config.name + ": '" + topic + "' is no ROS topic; use letters, digits, _ and /");
+      throw InputError("sensors: " + sensor.config.name + ": '" + topic + "' is no ROS topic; use letters, digits, _ and /");
     }
-    if (!topics.insert(robot_node.resolveName(topic)).second) {
-      throw InputError("sensors: " + config.name + ": another sensor publishes on " + robot_node.resolveName(topic) + "; set topic");
+    const std::string name = nodeOf(sensor).resolveName(topic);
+    if (!names.insert(name).second) {
+      throw InputError("sensors: " + sensor.config.name + ": another sensor publishes on " + name + "; set topic");
     }
-    publishers_.push_back(advertise(&robot_node, config.type, topic));
-    frames_.push_back(sitsAskew(config) ? config.name + "_frame" : sensor.frame_id);
   }
-  messages_.resize(publishers_.size());
+  const auto keyOf = [this](const SensorInfo& sensor) {
+    return std::make_pair(simulator_.robots()[sensor.robot].name, sensor.config.name);
+  };
+  const auto make = [this](const SensorInfo& sensor) {
+    ros::NodeHandle robot_node = nodeOf(sensor);
+    const std::string frame = sitsAskew(sensor.config) ? sensor.config.name + "_frame" : sensor.frame_id;
+    return SensorTopic{{}, advertise(&robot_node, sensor.config.type, topicOf(sensor.config)), frame, SensorMessages()};
+  };
+  keepTopics(simulator_.sensors(), keyOf, make, &topics_);
   publishMountings();
+}
+
+ros::NodeHandle SensorPublisher::nodeOf(const SensorInfo& sensor) const {
+  return ros::NodeHandle(node_, simulator_.robots()[sensor.robot].name_space);
 }
 
 void SensorPublisher::publishMountings() {
   tf2_msgs::TFMessage message;
-  for (std::size_t i = 0; i < frames_.size(); ++i) {
+  for (std::size_t i = 0; i < topics_.size(); ++i) {
     const SensorConfig& config = simulator_.sensors()[i].config;
     if (!sitsAskew(config)) continue;
     geometry_msgs::TransformStamped transform;
     transform.header.frame_id = config.link;
-    transform.child_frame_id = frames_[i];
+    transform.child_frame_id = topics_[i].frame;
     transform.transform = toTransform(config.X_LS);
     message.transforms.push_back(transform);
   }
@@ -137,10 +153,9 @@ void SensorPublisher::publishMountings() {
 
 void SensorPublisher::publish(const StepReport& report) {
   for (const SensorSample& sample : report.samples) {
-    ListenedPublisher& publisher = publishers_[sample.sensor];
-    if (!publisher.listened()) continue;
-    std::visit(ReadingPublisher{simulator_, report, frames_[sample.sensor], &messages_[sample.sensor], &publisher, sender_},
-               sample.reading);
+    SensorTopic& topic = topics_[sample.sensor];
+    if (!topic.publisher.listened()) continue;
+    std::visit(ReadingPublisher{simulator_, report, topic.frame, &topic.messages, &topic.publisher, sender_}, sample.reading);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <sensor_msgs/Imu.h>
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "messages/message_pool.h"
@@ -22,23 +23,31 @@ struct SensorMessages {
   MessagePool<MotorCurrents> currents;
 };
 
+/** Topic of a sensor. */
+struct SensorTopic {
+  std::pair<std::string, std::string> key;  ///< names of the robot and the sensor
+  ListenedPublisher publisher;
+  std::string frame;  ///< frame_id of its messages
+  SensorMessages messages;
+};
+
 /** One topic per sensor, in its robot's namespace; a sensor's rate was kept when it was sampled. */
 class SensorPublisher : public StepPublisher {
  public:
   /** @throws InputError: a sensor's topic is no valid ROS name, or two sensors share one */
   SensorPublisher(ros::NodeHandle node, const Simulator& simulator, StepSender* sender);
   void publish(const StepReport& report) override;
+  void modelsChanged() override;
 
  private:
   void publishMountings();
+  ros::NodeHandle nodeOf(const SensorInfo& sensor) const;
 
   const Simulator& simulator_;
   StepSender* sender_;
   ros::NodeHandle node_;
-  std::vector<ListenedPublisher> publishers_;  // per sensor
-  std::vector<SensorMessages> messages_;       // per sensor
-  std::vector<std::string> frames_;            // per sensor: frame_id of its messages
-  ros::Publisher mountings_;                   // /tf_static of sensors that sit askew in their link
+  std::vector<SensorTopic> topics_;  // per sensor
+  ros::Publisher mountings_;         // /tf_static of sensors that sit askew in their link
 };
 
 }  // namespace blem_sim

@@ -16,7 +16,7 @@ class StepReportPublisher : public StepPublisher {
   void publish(const StepReport& report) override;
   void timeRestarted() override;
   void resumed() override { collector_.resume(); }
-  void geometryChanged() override { collector_.forgetColliders(); }
+  void modelsChanged() override { collector_.forgetColliders(); }
 
  private:
   const SimulationLoop& loop_;

@@ -14,8 +14,8 @@ class StepPublisher {
   virtual void timeRestarted() {}
   /** Called when steps are about to be made again after a pause: measurements on the wall clock start anew. */
   virtual void resumed() {}
-  /** Called when an environment was loaded or unloaded. */
-  virtual void geometryChanged() {}
+  /** Called when models came or went; all messages about those that went are out. @throws InputError: a name that clashes */
+  virtual void modelsChanged() {}
 };
 
 }  // namespace blem_sim

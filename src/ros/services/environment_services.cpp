@@ -1,6 +1,7 @@
 #include "services/environment_services.h"
 
-#include <ros/console.h>
+#include <blem_sim/LoadEnvironment.h>
+#include <blem_sim/UnloadEnvironment.h>
 #include <yaml-cpp/yaml.h>
 
 #include "blem_sim/geometry/input_error.h"
@@ -9,19 +10,6 @@
 namespace blem_sim {
 
 namespace {
-
-/** Runs an action that may refuse its input and puts the outcome in the response. */
-template <typename Response, typename Act>
-void answer(const char* service, Response* response, const Act& act) {
-  try {
-    act();
-    response->success = true;
-  } catch (const std::exception& error) {
-    response->success = false;
-    response->status_message = error.what();
-    ROS_ERROR("%s: %s", service, error.what());
-  }
-}
 
 YAML::Node settingsOf(const std::string& text) {
   YAML::Node settings;
@@ -53,27 +41,17 @@ EnvironmentConfig fromRequest(const LoadEnvironment::Request& request) {
 
 }  // namespace
 
-EnvironmentServices::EnvironmentServices(ros::NodeHandle private_node, SimulationLoop* loop)
-    : loop_(loop),
-      load_(private_node.advertiseService("load_environment", &EnvironmentServices::onLoad, this)),
-      unload_(private_node.advertiseService("unload_environment", &EnvironmentServices::onUnload, this)) {}
-
-bool EnvironmentServices::onLoad(LoadEnvironment::Request& request, LoadEnvironment::Response& response) {
-  answer("load_environment", &response, [&] {
-    loop_->simulator().loadEnvironment(fromRequest(request));
-    loop_->geometryChanged();
-    response.status_message = "loaded " + request.name;
+EnvironmentServices::EnvironmentServices(const ros::NodeHandle& private_node, SimulationLoop* loop) : services_(private_node) {
+  services_.add<LoadEnvironment>("load_environment", [loop](const auto& request, auto* response) {
+    loop->simulator().loadEnvironment(fromRequest(request));
+    loop->modelsChanged();
+    response->status_message = "loaded " + request.name;
   });
-  return true;
-}
-
-bool EnvironmentServices::onUnload(UnloadEnvironment::Request& request, UnloadEnvironment::Response& response) {
-  answer("unload_environment", &response, [&] {
-    loop_->simulator().unloadEnvironment(request.name);
-    loop_->geometryChanged();
-    response.status_message = "unloaded " + request.name;
+  services_.add<UnloadEnvironment>("unload_environment", [loop](const auto& request, auto* response) {
+    loop->simulator().unloadEnvironment(request.name);
+    loop->modelsChanged();
+    response->status_message = "unloaded " + request.name;
   });
-  return true;
 }
 
 }  // namespace blem_sim

@@ -104,17 +104,16 @@ void RobotBuilder::addTo(SimulatedWorld* world, SurfaceLibrary* surfaces) {
     for (const std::string& words : *notes) note(words);
   addBodies();
   addJoints();
-  const int first_collider = static_cast<int>(world->colliders.size());
   addColliders(surfaces);
   world->filter.setSelfCollision(info_.model, config_.self_collision);
   disableNeighbours();
-  disableListedPairs(first_collider);
+  disableListedPairs();
   ModelInfo& model = world->models[info_.model];
   for (const int body : info_.bodies)
     if (body != WORLD_BODY) model.bodies.push_back(body);
   model.joints = info_.joints;
-  world->robots.push_back(info_);
-  addSensors(static_cast<int>(world->robots.size()) - 1);
+  model.X_WM = config_.X_WR;
+  addSensors(world->addRobot(info_));
 }
 
 void RobotBuilder::addBodies() {
@@ -127,7 +126,7 @@ void RobotBuilder::addBodies() {
     spec.name = config_.name + "::" + lumped_->bodies[b].name;
     spec.inertial = lumped_->bodies[b].inertial;
     spec.X_WB = X_WB_[b];
-    info_.bodies.push_back(world_->world.addBody(spec));
+    info_.bodies.push_back(world_->addBody(spec));
   }
 }
 
@@ -167,8 +166,7 @@ void RobotBuilder::addJoint(int j, const MotorSettings& motor) {
     spec.mimic_offset = joint.mimic->offset;
   }
   if (joint.moves()) spec.armature = byJoint(config_.armature, joint.name, 0.0);
-  info_.world_joints[j] = world_->world.addJoint(spec, positions_[j]);
-  world_->motors.emplace_back(motor, positions_[j]);
+  info_.world_joints[j] = world_->addJoint(spec, positions_[j], JointMotor(motor, positions_[j]));
 }
 
 void RobotBuilder::addSensors(int robot) {

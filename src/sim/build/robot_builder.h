@@ -28,7 +28,7 @@ class RobotBuilder {
   void addJoint(int joint, const MotorSettings& motor);
   void addColliders(SurfaceLibrary* surfaces);
   void disableNeighbours();
-  void disableListedPairs(int first_collider);
+  void disableListedPairs();
   void addSensors(int robot);
   void note(const std::string& words) { world_->notes.push_back(config_.name + ": " + words); }
 

@@ -1,4 +1,6 @@
 // Colliders of a robot, and the pairs of them that never touch.
+#include <algorithm>
+
 #include "build/contact_settings.h"
 #include "build/robot_builder.h"
 
@@ -41,20 +43,22 @@ void RobotBuilder::disableNeighbours() {
     }
     const int count = static_cast<int>(world_->colliders.size());
     for (int a = 0; a < count; ++a) {
-      if (world_->colliders[a].model != info_.model || world_->colliders[a].body != WORLD_BODY) continue;
+      if (!world_->colliders[a].enabled || world_->colliders[a].model != info_.model || world_->colliders[a].body != WORLD_BODY) continue;
       for (int b = 0; b < count; ++b)
-        if (world_->colliders[b].body == info_.bodies[child]) world_->disabled_pairs.insert(std::minmax(a, b));
+        if (world_->colliders[b].enabled && world_->colliders[b].body == info_.bodies[child])
+          world_->disabled_pairs.insert(std::minmax(a, b));
     }
   }
 }
 
-void RobotBuilder::disableListedPairs(int first_collider) {
-  const int count = static_cast<int>(world_->colliders.size());
+void RobotBuilder::disableListedPairs() {
+  const std::vector<int> own = world_->collidersOf(info_.model);
+  const auto link = [this](int collider) { return world_->colliders[collider].link; };
   for (const auto& [first, second] : config_.disable_collisions) {
     const int link_a = model_->linkIndex(first), link_b = model_->linkIndex(second);
-    for (int a = first_collider; a < count; ++a)
-      for (int b = first_collider; b < count; ++b)
-        if (world_->colliders[a].link == link_a && world_->colliders[b].link == link_b) world_->disabled_pairs.insert(std::minmax(a, b));
+    for (const int a : own)
+      for (const int b : own)
+        if (link(a) == link_a && link(b) == link_b) world_->disabled_pairs.insert(std::minmax(a, b));
   }
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "blem_sim/geometry/free_slots.h"
 #include "blem_sim/geometry/input_error.h"
@@ -39,22 +40,99 @@ int SimulatedWorld::addCollider(Collider collider, double width, const SurfacePr
   return index;
 }
 
-std::vector<int> SimulatedWorld::removeEnvironment(const std::string& name) {
+int SimulatedWorld::addBody(const BodySpec& spec, const Vector3& v_WCom, const Vector3& w_WB) {
+  const int body = world.addBody(spec);
+  const BodyState state{spec.X_WB, v_WCom, w_WB};
+  world.setBodyState(body, state);
+  start_states.resize(world.bodyCount());
+  start_states[body] = state;
+  return body;
+}
+
+int SimulatedWorld::addJoint(const JointSpec& spec, double position, const JointMotor& motor) {
+  const int joint = world.addJoint(spec, position);
+  motors.resize(world.jointCount());
+  start_positions.resize(world.jointCount());
+  motors[joint] = motor;
+  start_positions[joint] = position;
+  return joint;
+}
+
+int SimulatedWorld::addRobot(const RobotInfo& robot) {
+  const auto behind =
+      std::upper_bound(robots.begin(), robots.end(), robot.model, [](int model, const RobotInfo& other) { return model < other.model; });
+  const int index = static_cast<int>(behind - robots.begin());
+  robots.insert(behind, robot);
+  for (SensorInfo& sensor : sensors)
+    if (sensor.robot >= index) ++sensor.robot;
+  return index;
+}
+
+std::vector<int> SimulatedWorld::removeModel(const std::string& name) {
   const int model = modelIndex(name);
+  std::vector<int> removed = removeColliders(model);
+  removeBodies(models[model]);
+  if (robotOf(model) >= 0) removeRobot(robotOf(model));
+  removeReports(name);
+  filter.setSelfCollision(model, false);
+  models[model] = ModelInfo();
   models[model].alive = false;
   model_named_.erase(name);
   free_models_.insert(model);
-  std::vector<int> removed;
-  for (std::size_t i = 0; i < colliders.size(); ++i) {
-    if (!colliders[i].enabled || colliders[i].model != model) continue;
-    colliders[i].enabled = false;
-    colliders[i].geometry.reset();
-    free_colliders_.insert(static_cast<int>(i));
-    removed.push_back(static_cast<int>(i));
-  }
-  const auto is_its = [&](const MeshReport& report) { return report.name == name; };
-  load_report.erase(std::remove_if(load_report.begin(), load_report.end(), is_its), load_report.end());
   return removed;
+}
+
+std::vector<int> SimulatedWorld::removeColliders(int model) {
+  std::vector<int> removed = collidersOf(model);
+  for (const int collider : removed) {
+    colliders[collider].enabled = false;
+    colliders[collider].geometry.reset();
+    free_colliders_.insert(collider);
+  }
+  const auto is_removed = [&](int collider) { return std::binary_search(removed.begin(), removed.end(), collider); };
+  for (auto pair = disabled_pairs.begin(); pair != disabled_pairs.end();)
+    pair = is_removed(pair->first) || is_removed(pair->second) ? disabled_pairs.erase(pair) : std::next(pair);
+  return removed;
+}
+
+void SimulatedWorld::removeBodies(const ModelInfo& model) {
+  for (const int body : model.bodies) {
+    filter.forgetBody(body);
+    world.removeBody(body);
+    start_states[body] = BodyState();
+  }
+  for (int joint = 0; joint < world.jointCount(); ++joint) {
+    if (world.hasJoint(joint)) continue;
+    motors[joint] = JointMotor();
+    start_positions[joint] = 0;
+  }
+}
+
+void SimulatedWorld::removeRobot(int robot) {
+  robots.erase(robots.begin() + robot);
+  sensors.erase(std::remove_if(sensors.begin(), sensors.end(), [robot](const SensorInfo& sensor) { return sensor.robot == robot; }),
+                sensors.end());
+  for (SensorInfo& sensor : sensors)
+    if (sensor.robot > robot) --sensor.robot;
+}
+
+void SimulatedWorld::removeReports(const std::string& name) {
+  const auto begins = [](const std::string& text, const std::string& start) { return text.compare(0, start.size(), start) == 0; };
+  const auto is_its = [&](const MeshReport& report) { return report.name == name || begins(report.name, name + "::"); };
+  load_report.erase(std::remove_if(load_report.begin(), load_report.end(), is_its), load_report.end());
+  notes.erase(std::remove_if(notes.begin(), notes.end(), [&](const std::string& note) { return begins(note, name + ": "); }), notes.end());
+}
+
+int SimulatedWorld::robotOf(int model) const {
+  const auto robot = std::partition_point(robots.begin(), robots.end(), [&](const RobotInfo& other) { return other.model < model; });
+  return robot != robots.end() && robot->model == model ? static_cast<int>(robot - robots.begin()) : -1;
+}
+
+std::vector<int> SimulatedWorld::collidersOf(int model) const {
+  std::vector<int> found;
+  for (std::size_t i = 0; i < colliders.size(); ++i)
+    if (colliders[i].enabled && colliders[i].model == model) found.push_back(static_cast<int>(i));
+  return found;
 }
 
 int SimulatedWorld::modelIndex(const std::string& name) const {
@@ -77,10 +155,7 @@ Pose SimulatedWorld::linkPose(const RobotInfo& robot, int link, const std::vecto
 Vector3 SimulatedWorld::linkOrigin(const Collider& collider, const std::vector<BodyState>& bodies) const {
   if (collider.body == WORLD_BODY) return Vector3::Zero();
   if (collider.link < 0) return bodies[collider.body].X_WB.translation();
-  // Robots come in the order of their models.
-  const auto robot =
-      std::partition_point(robots.begin(), robots.end(), [&](const RobotInfo& other) { return other.model < collider.model; });
-  return linkPose(*robot, collider.link, bodies).translation();
+  return linkPose(robots[robotOf(collider.model)], collider.link, bodies).translation();
 }
 
 void SimulatedWorld::bodyStates(std::vector<BodyState>* out) const {

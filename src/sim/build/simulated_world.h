@@ -20,9 +20,11 @@ struct SimulatedWorld {
 
   World world;
   std::vector<ModelInfo> models;
-  std::vector<RobotInfo> robots;
+  std::vector<RobotInfo> robots;  ///< in the order of their models
   std::vector<SensorInfo> sensors;
-  std::vector<JointMotor> motors;  ///< one per joint slot of the world
+  std::vector<JointMotor> motors;       ///< one per joint slot of the world
+  std::vector<BodyState> start_states;  ///< one per body slot: where a reset puts the body
+  std::vector<double> start_positions;  ///< [rad or m] one per joint slot
   std::vector<Collider> colliders;
   std::vector<ContactBudget> budgets;  ///< one per model
   CollisionFilter filter;
@@ -36,10 +38,19 @@ struct SimulatedWorld {
   int addModel(const std::string& name, ModelKind kind, int max_contacts);
   /** Adds a collider and its line in the load report. @param width [m] of the layer @return its index */
   int addCollider(Collider collider, double width, const SurfaceProperties& surface, MeshReport report);
-  /** Removes an environment, whose slots are free then. Precondition: it exists. @return slots of its colliders */
-  std::vector<int> removeEnvironment(const std::string& name);
+  /** Adds a body that stands or moves so at the start. @return its index */
+  int addBody(const BodySpec& spec, const Vector3& v_WCom = Vector3::Zero(), const Vector3& w_WB = Vector3::Zero());
+  /** Adds a joint at its start position [rad or m] with its motor. @return its index */
+  int addJoint(const JointSpec& spec, double position, const JointMotor& motor);
+  /** Adds a robot, whose model has its slot, in the order of models. @return its index */
+  int addRobot(const RobotInfo& robot);
+  /** Removes a model, whose slots are free then; robots and sensors behind it move up. Precondition: it exists. @return slots of its
+   *  colliders */
+  std::vector<int> removeModel(const std::string& name);
 
   int modelIndex(const std::string& name) const;  ///< among the living; -1 if there is none
+  int robotOf(int model) const;                   ///< -1: it is no robot
+  std::vector<int> collidersOf(int model) const;
   /** Pose of a link in the world now. */
   Pose linkPose(const RobotInfo& robot, int link) const;
   /** Pose of a link in the world when the bodies have these states. */
@@ -50,6 +61,11 @@ struct SimulatedWorld {
   void bodyStates(std::vector<BodyState>* out) const;
 
  private:
+  std::vector<int> removeColliders(int model);
+  void removeBodies(const ModelInfo& model);
+  void removeRobot(int robot);
+  void removeReports(const std::string& name);
+
   std::map<std::string, int> model_named_;  ///< the living
   std::set<int> free_models_, free_colliders_;
 };

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <climits>
 #include <cmath>
+#include <iterator>
 #include <set>
 
 #include "blem_sim/geometry/input_error.h"
@@ -43,20 +44,26 @@ bool floorInertia(double radius, MassProperties* properties) {
 
 std::string words(const Vector3& v) { return fmt::format("[{:.4g}, {:.4g}, {:.4g}]", v.x(), v.y(), v.z()); }
 
-/** Size in words of these colliders, the last ones of the load report; a geometry that several of them share counts once. */
-std::string sizeOf(const SimulatedWorld& world, std::size_t first, std::size_t end) {
+/** Size in words of a model's colliders, the last ones of the load report; a geometry that several of them share counts once. */
+std::string sizeOf(const SimulatedWorld& world, int model) {
   constexpr double MEGA = 1e6;
-  const MeshReport* report = world.load_report.data() + world.load_report.size() - (end - first);
+  const std::vector<int> own = world.collidersOf(model);
+  const MeshReport* report = world.load_report.data() + world.load_report.size() - own.size();
   std::set<const CollisionGeometry*> counted;
   std::size_t triangles = 0, points = 0, bytes = 0;
-  for (std::size_t i = first; i < end; ++i, ++report) {
-    if (!counted.insert(world.colliders[i].geometry.get()).second) continue;
-    triangles += static_cast<std::size_t>(report->triangles);
-    points += static_cast<std::size_t>(report->points);
-    bytes += report->bytes;
+  for (const int collider : own) {
+    const MeshReport& shape = *report++;
+    if (!counted.insert(world.colliders[collider].geometry.get()).second) continue;
+    triangles += static_cast<std::size_t>(shape.triangles);
+    points += static_cast<std::size_t>(shape.points);
+    bytes += shape.bytes;
   }
   const std::string words = fmt::format("{} triangles, {:.1f} MB", triangles, static_cast<double>(bytes) / MEGA);
   return points > 0 ? fmt::format("{} points, {}", points, words) : words;
+}
+
+UrdfSource sourceOf(const RobotConfig& config) {
+  return {"robots: " + config.name, config.urdf, config.urdf_xml, config.description_param};
 }
 
 int addFreeBody(const std::string& name, const MassProperties& inertial, const ObjectConfig& config, SimulatedWorld* world) {
@@ -64,13 +71,8 @@ int addFreeBody(const std::string& name, const MassProperties& inertial, const O
   spec.name = name;
   spec.inertial = inertial;
   spec.X_WB = config.X_WO;
-  const int body = world->world.addBody(spec);
-  BodyState state;
-  state.X_WB = config.X_WO;
-  state.v_WCom = config.linear_velocity + config.angular_velocity.cross(config.X_WO.linear() * inertial.com);
-  state.w_WB = config.angular_velocity;
-  world->world.setBodyState(body, state);
-  return body;
+  const Vector3 v_WCom = config.linear_velocity + config.angular_velocity.cross(config.X_WO.linear() * inertial.com);
+  return world->addBody(spec, v_WCom, config.angular_velocity);
 }
 
 }  // namespace
@@ -110,36 +112,40 @@ void WorldBuilder::addEnvironment(const EnvironmentConfig& config, SimulatedWorl
   collider.geometry = surfaces_.fitted(surface.geometry, settings, surface.radius, &surface.report);
   collider.model = world->addModel(config.name, ModelKind::ENVIRONMENT, INT_MAX);
   const double width = surface.radius > 0 ? surface.radius : settings.boundary_width;
-  const int slot = world->addCollider(collider, width, settings.surface, surface.report);
-  watch.loaded(sizeOf(*world, slot, slot + 1));
+  world->models[collider.model].X_WM = config.X_WE;
+  world->addCollider(collider, width, settings.surface, surface.report);
+  watch.loaded(sizeOf(*world, collider.model));
 }
 
-std::shared_ptr<const RobotModel> WorldBuilder::description(const RobotConfig& config, LoadWatch* watch) {
-  const bool text = !config.urdf_xml.empty();
-  if (!text && config.urdf.empty()) {
-    throw InputError(
-        fmt::format("robots: {}: no description; give urdf{}", config.name,
-                    config.description_param.empty() ? "" : " (the parameter " + config.description_param + " is not read here)"));
+std::shared_ptr<const RobotModel> WorldBuilder::description(const UrdfSource& urdf, LoadWatch* watch) {
+  const bool text = !urdf.xml.empty();
+  if (!text && urdf.file.empty()) {
+    throw InputError(fmt::format("{}: no description; give urdf{}", urdf.where,
+                                 urdf.parameter.empty() ? "" : " (the parameter " + urdf.parameter + " is not read here)"));
   }
-  const std::string key = text ? config.urdf_xml : resolver_.resolve(config.urdf, base_directory_);
-  std::weak_ptr<const RobotModel>& held = descriptions_[key];
-  if (auto known = held.lock()) return known;
-  const std::string source = config.description_param.empty() ? "robots: " + config.name : config.description_param;
-  const auto model =
-      std::make_shared<const RobotModel>(text ? loadUrdf(key, source, resolver_, base_directory_, contact_.mending, watch->progress())
-                                              : loadUrdfFile(key, resolver_, contact_.mending, watch->progress()));
-  held = model;
+  const std::string key = text ? urdf.xml : resolver_.resolve(urdf.file, base_directory_);
+  const auto known = descriptions_.find(key);
+  if (known != descriptions_.end())
+    if (auto model = known->second.lock()) return model;
+  for (auto old = descriptions_.begin(); old != descriptions_.end();)
+    old = old->second.expired() ? descriptions_.erase(old) : std::next(old);
+  const std::string source = urdf.parameter.empty() ? urdf.where : urdf.parameter;
+  const LoadProgress progress = watch ? watch->progress() : LoadProgress();
+  const auto model = std::make_shared<const RobotModel>(text ? loadUrdf(key, source, resolver_, base_directory_, contact_.mending, progress)
+                                                             : loadUrdfFile(key, resolver_, contact_.mending, progress));
+  descriptions_[key] = model;
   return model;
 }
+
+std::shared_ptr<const RobotModel> WorldBuilder::describe(const RobotConfig& config) { return description(sourceOf(config), nullptr); }
 
 void WorldBuilder::addRobot(const RobotConfig& config, SimulatedWorld* world) {
   world->checkNewName(config.name, "robots");
   LoadWatch watch(log_, config.name);
-  const std::size_t first = world->colliders.size();
-  RobotBuilder builder(config, contact_, description(config, &watch));
+  RobotBuilder builder(config, contact_, description(sourceOf(config), &watch));
   watch.enter("topology and trees of its links", 1 - TREE_FRACTION);
   builder.addTo(world, &surfaces_);
-  watch.loaded(sizeOf(*world, first, world->colliders.size()));
+  watch.loaded(sizeOf(*world, world->modelIndex(config.name)));
 }
 
 void WorldBuilder::addObject(const ObjectConfig& config, SimulatedWorld* world) {
@@ -147,12 +153,13 @@ void WorldBuilder::addObject(const ObjectConfig& config, SimulatedWorld* world) 
   if (!config.linear_velocity.allFinite() || !config.angular_velocity.allFinite())
     throw InputError(fmt::format("objects: {}: velocity: numbers must be finite", config.name));
   LoadWatch watch(log_, config.name);
-  const std::size_t first = world->colliders.size();
-  if (config.urdf.empty())
+  if (config.urdf.empty() && config.urdf_xml.empty())
     addMeshObject(config, &watch, world);
   else
     addUrdfObject(config, &watch, world);
-  watch.loaded(sizeOf(*world, first, world->colliders.size()));
+  const int model = world->modelIndex(config.name);
+  world->models[model].X_WM = config.X_WO;
+  watch.loaded(sizeOf(*world, model));
 }
 
 void WorldBuilder::addMeshObject(const ObjectConfig& config, LoadWatch* watch, SimulatedWorld* world) {
@@ -187,12 +194,13 @@ void WorldBuilder::addMeshObject(const ObjectConfig& config, LoadWatch* watch, S
   if (settings.shrink) watch->enter("shrinking", 1 - TREE_FRACTION);
   collider.geometry = surfaces_.fitted(surface.geometry, settings, surface.radius, &surface.report);
   world->addCollider(collider, width, settings.surface, surface.report);
-  world->models.back().bodies = {body};
+  world->models[collider.model].bodies = {body};
 }
 
 void WorldBuilder::addUrdfObject(const ObjectConfig& config, LoadWatch* watch, SimulatedWorld* world) {
   const std::string where = "objects: " + config.name;
-  const RobotModel model = loadUrdfFile(resolver_.resolve(config.urdf, base_directory_), resolver_, contact_.mending, watch->progress());
+  const std::shared_ptr<const RobotModel> held = description({where, config.urdf, config.urdf_xml, ""}, watch);
+  const RobotModel& model = *held;
   watch->enter("topology and trees of its links", 1 - TREE_FRACTION);
   const LumpedRobot lumped = lumpFixedJoints(model, {}, false);
   if (lumped.bodies.size() != 1)

@@ -13,6 +13,13 @@
 
 namespace blem_sim {
 
+/** Description of a robot or an object: a file, or a text. */
+struct UrdfSource {
+  std::string where;  ///< in messages
+  std::string file, xml;
+  std::string parameter;  ///< that the text came from, or empty
+};
+
 /** Adds models one by one. Each function throws InputError before it changes the world. */
 class WorldBuilder {
  public:
@@ -27,16 +34,21 @@ class WorldBuilder {
   void addEnvironment(const EnvironmentConfig& config, SimulatedWorld* world);
   void addRobot(const RobotConfig& config, SimulatedWorld* world);
   void addObject(const ObjectConfig& config, SimulatedWorld* world);
+  /** Description of a robot that is not added yet. @throws InputError */
+  std::shared_ptr<const RobotModel> describe(const RobotConfig& config);
+  /** Lets later loads read files below these folders alone. */
+  void restrictFiles(const FileRoots& roots) { resolver_.restrictTo(roots); }
 
  private:
   void addMeshObject(const ObjectConfig& config, LoadWatch* watch, SimulatedWorld* world);
   void addUrdfObject(const ObjectConfig& config, LoadWatch* watch, SimulatedWorld* world);
   SharedSurface load(const std::string& uri, const Vector3& scale, const CloudOptions& cloud, const std::string& where, LoadWatch* watch);
-  std::shared_ptr<const RobotModel> description(const RobotConfig& config, LoadWatch* watch);
+  /** @param watch may be null */
+  std::shared_ptr<const RobotModel> description(const UrdfSource& urdf, LoadWatch* watch);
 
   const ContactConfig contact_;
   const std::string base_directory_;
-  const UriResolver resolver_;
+  UriResolver resolver_;
   const LoadLog log_;
   SurfaceLibrary surfaces_;
   std::map<std::string, std::weak_ptr<const RobotModel>> descriptions_;  ///< by file or text

@@ -56,6 +56,7 @@ class JointMotor {
   const JointSpline* path() const { return mode_ == Mode::POSITION ? &spline_ : nullptr; }
 
   const MotorSettings& settings() const { return settings_; }
+  void setViscousFriction(double friction) { settings_.friction.viscous = friction; }
   void append(std::vector<double>* numbers) const;
   void read(NumberReader* reader);
 

@@ -86,6 +86,20 @@ void checkArmature(const RobotConfig& robot, const SolverSettings& solver) {
                       joint, solver.stepper));
 }
 
+void checkObject(const ObjectConfig& object) {
+  const Fields fields("objects: " + object.name + ": ");
+  fields.pose("pose", object.X_WO);
+  fields.pose("mesh_pose", object.X_OM);
+  fields.scale(object.scale);
+  fields.number("mass", object.mass, NumberRange::positive());
+  if (object.com) fields.finite("com", object.com->allFinite());
+  if (object.inertia) fields.finite("inertia", object.inertia->allFinite());
+  fields.overrides(object.contact);
+  if (object.max_contacts) fields.atLeastOne("max_contacts", *object.max_contacts);
+}
+
+}  // namespace
+
 void checkRobot(const RobotConfig& robot) {
   const Fields fields("robots: " + robot.name + ": ");
   fields.pose("pose", robot.X_WR);
@@ -101,20 +115,6 @@ void checkRobot(const RobotConfig& robot) {
       of_sensor.number("noise", deviation, NumberRange::notNegative());
   }
 }
-
-void checkObject(const ObjectConfig& object) {
-  const Fields fields("objects: " + object.name + ": ");
-  fields.pose("pose", object.X_WO);
-  fields.pose("mesh_pose", object.X_OM);
-  fields.scale(object.scale);
-  fields.number("mass", object.mass, NumberRange::positive());
-  if (object.com) fields.finite("com", object.com->allFinite());
-  if (object.inertia) fields.finite("inertia", object.inertia->allFinite());
-  fields.overrides(object.contact);
-  if (object.max_contacts) fields.atLeastOne("max_contacts", *object.max_contacts);
-}
-
-}  // namespace
 
 void checkEnvironment(const EnvironmentConfig& environment) {
   const Fields fields("environments: " + environment.name + ": ");

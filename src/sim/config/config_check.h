@@ -9,5 +9,6 @@ namespace blem_sim {
  * joints. */
 void checkConfig(const SimulationConfig& config);
 void checkEnvironment(const EnvironmentConfig& environment);
+void checkRobot(const RobotConfig& robot);
 
 }  // namespace blem_sim

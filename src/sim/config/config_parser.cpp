@@ -27,6 +27,18 @@ PublishRates readRates(YamlReader& reader) {
   return rates;
 }
 
+std::vector<std::string> readFolders(YamlReader& reader, const std::string& key) {
+  std::vector<std::string> folders;
+  const YAML::Node list = reader.node(key);
+  if (!list.IsDefined() || list.IsNull()) return folders;
+  if (!list.IsSequence()) reader.refuse(key, "must be a list of folders");
+  for (const YAML::Node& folder : list) {
+    if (!folder.IsScalar()) reader.refuse(key, "must be a list of folders");
+    folders.push_back(folder.Scalar());
+  }
+  return folders;
+}
+
 /** Reads a list of models, whose names must differ from all others'. */
 template <typename Model, typename Read>
 std::vector<Model> readModels(YamlReader& root, const std::string& key, std::set<std::string>* names, Read read) {
@@ -56,6 +68,8 @@ SimulationConfig parseConfig(const YAML::Node& root, const std::string& source, 
   reader.read("paused", &config.paused);
   reader.read("gravity", &config.gravity);
   reader.read("random_seed", &config.random_seed);
+  reader.read("allow_file_services", &config.allow_file_services);
+  config.file_roots = readFolders(reader, "file_roots");
   config.solver = readSolver(reader.section("solver"));
   config.contact = readContact(reader.section("contact"));
   config.rates = readRates(reader);

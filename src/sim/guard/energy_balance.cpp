@@ -46,6 +46,7 @@ EnergyGain EnergyBalance::addSolve(const World& world, double dt, const ContactS
                                    const std::vector<BodyState>& before, const std::vector<BodyState>& after) {
   tie(world, contacts, solved.contact_forces);
   bookBodies(world, dt, before, after);
+  bookLoads(world, dt, before, after);
   bookJoints(world, dt);
   bookSprings(contacts, before, after);
   bookContacts(dt, contacts, solved, before, after);
@@ -97,6 +98,21 @@ void EnergyBalance::bookBodies(const World& world, double dt, const std::vector<
     book.moved += kinetic + std::abs(work);
     book.held += held_[b];
     book.mass += body.mass;
+  }
+}
+
+// Books the work of wrenches from outside: along the way of the mean velocity, as for weights.
+void EnergyBalance::bookLoads(const World& world, double dt, const std::vector<BodyState>& before, const std::vector<BodyState>& after) {
+  for (const BodyLoad& load : loads_) {
+    const BodyState &old = before[load.body], &now = after[load.body];
+    const Vector3& com = world.bodySpec(load.body).inertial.com;
+    const Vector3 arm = old.X_WB.linear() * (load.p_B - com);
+    const Vector3 way = now.X_WB * com - old.X_WB * com - 0.5 * dt * (now.v_WCom - old.v_WCom);
+    const Vector3 turn = 0.5 * dt * (old.w_WB + now.w_WB);
+    const double work = load.wrench.force.dot(way) + (load.wrench.torque + arm.cross(load.wrench.force)).dot(turn);
+    Book& book = books_[islands_.islandOf(load.body)];
+    book.rise -= work;
+    book.moved += std::abs(work);
   }
 }
 

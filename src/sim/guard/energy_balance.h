@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "blem_sim/dynamics/world.h"
+#include "blem_sim/sim/simulator_types.h"
 #include "contacts/contact_stage.h"
 #include "guard/body_islands.h"
 #include "numbers/number_reader.h"
@@ -35,6 +36,8 @@ class EnergyBalance {
 
   /** Call at the start of a step; bodies may have been moved since the last one. */
   void start(const World& world);
+  /** Wrenches from outside in the next solve, whose work comes out of something. */
+  void setLoads(const std::vector<BodyLoad>& loads) { loads_ = loads; }
   /**
    * After a solve that was accepted.
    * @param dt [s] its length
@@ -73,6 +76,7 @@ class EnergyBalance {
 
   void tie(const World& world, const ContactStage& contacts, const std::vector<Vector3>& forces);
   void bookBodies(const World& world, double dt, const std::vector<BodyState>& before, const std::vector<BodyState>& after);
+  void bookLoads(const World& world, double dt, const std::vector<BodyState>& before, const std::vector<BodyState>& after);
   void bookJoints(const World& world, double dt);
   void bookSprings(const ContactStage& contacts, const std::vector<BodyState>& before, const std::vector<BodyState>& after);
   void bookContacts(double dt, const ContactStage& contacts, const SolveResult& solved, const std::vector<BodyState>& before,
@@ -87,6 +91,7 @@ class EnergyBalance {
   std::vector<double> held_;        // [J] by body: energy that its contacts may give back in the next solve; empty: none
 
   // The solve at hand.
+  std::vector<BodyLoad> loads_;
   BodyIslands islands_;
   std::vector<Book> books_;
   std::vector<Vector3> coms_;  // [m] of bodies at its start, world axes

@@ -10,6 +10,8 @@
 namespace blem_sim {
 namespace {
 
+constexpr std::size_t LONGEST_NAME = 200;  // characters that are compared and told
+
 int editDistance(const std::string& a, const std::string& b) {
   std::vector<int> row(b.size() + 1);
   std::iota(row.begin(), row.end(), 0);
@@ -34,8 +36,9 @@ std::string nearestName(const std::string& name, const std::vector<std::string>&
   return nearest == known.end() ? std::string() : *nearest;
 }
 
-void requireName(const std::string& name, const std::vector<std::string>& known, const std::string& where, const std::string& kind) {
-  if (std::find(known.begin(), known.end(), name) != known.end()) return;
+void requireName(const std::string& given, const std::vector<std::string>& known, const std::string& where, const std::string& kind) {
+  if (std::find(known.begin(), known.end(), given) != known.end()) return;
+  const std::string name = given.substr(0, LONGEST_NAME);
   if (known.empty()) throw InputError(fmt::format("{}: no {} '{}'; there is none at all", where, kind, name));
   throw InputError(fmt::format("{}: no {} '{}'; the nearest is '{}'", where, kind, name, nearestName(name, known)));
 }

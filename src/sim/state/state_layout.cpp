@@ -73,6 +73,7 @@ void writeModels(const SimulatedWorld& world, LayoutWriter* writer) {
 
 void writeBodies(const World& world, LayoutWriter* writer) {
   for (int body = 0; body < world.bodyCount(); ++body) {
+    if (!world.hasBody(body)) continue;
     const BodySpec& spec = world.bodySpec(body);
     writer->line("body", spec.name, "mass", ContentHash().add(spec.inertial.mass));
     writer->line("body", spec.name, "centre of mass or inertia", ContentHash().add(spec.inertial.com).add(spec.inertial.inertia));
@@ -99,6 +100,7 @@ ContentHash hashOf(const MotorSettings& motor) {
 
 void writeJoints(const SimulatedWorld& world, LayoutWriter* writer) {
   for (int joint = 0; joint < world.world.jointCount(); ++joint) {
+    if (!world.world.hasJoint(joint)) continue;
     const JointSpec& spec = world.world.jointSpec(joint);
     const MotorSettings& motor = world.motors[joint].settings();
     writer->line("joint", spec.name, "kind, place or limits", hashOf(spec));

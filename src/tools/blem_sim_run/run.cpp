@@ -15,10 +15,10 @@
 
 #include "blem_sim/geometry/input_error.h"
 #include "blem_sim/sim/simulator.h"
+#include "blem_sim/sim/state_file.h"
 #include "csv_table.h"
 #include "overrides.h"
 #include "run_record.h"
-#include "state_file.h"
 
 namespace blem_sim {
 

@@ -1,8 +1,9 @@
-#include "state_file.h"
+#include "blem_sim/sim/state_file.h"
 
 #include <fmt/format.h>
 
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
@@ -73,7 +74,9 @@ class StateReader {
   }
 
  private:
-  [[noreturn]] void fail() const { throw InputError(fmt::format("{}: is no whole state; save it again with --save-state", file_)); }
+  [[noreturn]] void fail() const {
+    throw InputError(fmt::format("{}: is no whole state; save it again with --save-state or save_state", file_));
+  }
 
   const std::string& bytes_;
   const std::string& file_;
@@ -83,7 +86,10 @@ class StateReader {
 }  // namespace
 
 void saveState(const SimulationState& state, const std::string& file) {
-  std::ofstream stream(file, std::ios::binary);
+  const std::string draft = file + ".part";
+  std::error_code error;
+  std::filesystem::remove(draft, error);  // a link of that name would lead elsewhere
+  std::ofstream stream(draft, std::ios::binary);
   stream.write(MAGIC, sizeof MAGIC - 1);
   for (const std::uint64_t word : {state.header.format, state.header.layout, state.header.length, state.header.checksum})
     putWord(stream, word);
@@ -95,18 +101,23 @@ void saveState(const SimulationState& state, const std::string& file) {
   putNumbers(stream, state.numbers);
   putWords(stream, state.words);
   stream.close();
-  if (!stream) throw InputError(fmt::format("{}: cannot be written; check the folder", file));
+  error.clear();
+  if (stream) std::filesystem::rename(draft, file, error);
+  if (stream && !error) return;
+  std::filesystem::remove(draft, error);
+  throw InputError(fmt::format("{}: cannot be written; check the folder", file));
 }
 
 SimulationState loadState(const std::string& file) {
+  std::error_code error;
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw InputError(fmt::format("{}: cannot be read; check the path", file));
+  if (!stream || !std::filesystem::is_regular_file(file, error)) throw InputError(fmt::format("{}: cannot be read; check the path", file));
   std::ostringstream buffer;
   buffer << stream.rdbuf();
   const std::string bytes = buffer.str();
   StateReader reader(bytes, file);
   if (bytes.compare(0, sizeof MAGIC - 1, MAGIC) != 0)
-    throw InputError(fmt::format("{}: is not a state that --save-state of this version wrote; save it again", file));
+    throw InputError(fmt::format("{}: is not a state that --save-state or save_state of this version wrote; save it again", file));
   reader.text(sizeof MAGIC - 1);
   SimulationState state;
   for (std::uint64_t* word : {&state.header.format, &state.header.layout, &state.header.length, &state.header.checksum})

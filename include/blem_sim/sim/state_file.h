@@ -7,7 +7,7 @@
 
 namespace blem_sim {
 
-/** @throws InputError if the file cannot be written */
+/** Writes beside the file and renames: what was there stays whole. @throws InputError if the file cannot be written */
 void saveState(const SimulationState& state, const std::string& file);
 /** @throws InputError if the file cannot be read, or is not one of blem_sim's, or is cut short */
 SimulationState loadState(const std::string& file);

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "loop/simulation_loop.h"
+#include "services/service_group.h"
+
+namespace blem_sim {
+
+/** `~get_world_properties`, `~get_model_properties`, `~get_model_state`, `~get_link_state`, `~get_link_properties`,
+ *  `~get_joint_properties`, `~get_physics_properties`: the state between two steps. */
+class QueryServices {
+ public:
+  QueryServices(const ros::NodeHandle& private_node, SimulationLoop* loop);
+
+ private:
+  void addModels(const Simulator& simulator);
+  void addLinks(const Simulator& simulator);
+  void addJoints(const Simulator& simulator);
+
+  ServiceGroup services_;
+};
+
+}  // namespace blem_sim

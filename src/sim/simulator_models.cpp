@@ -1,0 +1,197 @@
+// Models that come and go between steps, and their properties.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <set>
+
+#include "blem_sim/geometry/input_error.h"
+#include "config/config_check.h"
+#include "config/scene_limits.h"
+#include "numbers/nearest_name.h"
+#include "numbers/number_reader.h"
+#include "simulator_impl.h"
+
+namespace blem_sim {
+namespace {
+
+const char* const WORLD_LINK = "world";                     // root link of a URDF that is fixed to the world
+constexpr double SHORTEST_STEP = 1e-6, LONGEST_STEP = 0.1;  // [s]
+constexpr double LARGEST_GRAVITY = 1e4;                     // [m/s^2]
+
+ObjectConfig objectOf(const RobotConfig& robot) {
+  ObjectConfig object;
+  object.name = robot.name;
+  object.urdf = robot.urdf;
+  object.urdf_xml = robot.urdf_xml;
+  object.X_WO = robot.X_WR;
+  object.contact = robot.contact;
+  object.max_contacts = robot.max_contacts;
+  return object;
+}
+
+void checkName(const std::string& name) {
+  if (name.find("::") != std::string::npos)
+    throw InputError(fmt::format("'{}': the name has ::, which stands between model and link; leave it out", name));
+}
+
+std::set<std::string> keptJoints(const SimulatedWorld& world, int robot) {
+  std::set<std::string> joints;
+  for (const SensorInfo& sensor : world.sensors)
+    if (sensor.robot == robot && sensor.config.type == SensorType::FORCE_TORQUE) joints.insert(sensor.config.joint);
+  return joints;
+}
+
+}  // namespace
+
+void Simulator::Impl::spawn(RobotConfig robot) {
+  checkName(robot.name);
+  checkRobot(robot);
+  world_.checkNewName(robot.name, "robots");
+  if (static_cast<std::size_t>(std::count_if(world_.models.begin(), world_.models.end(), [](const ModelInfo& m) { return m.alive; })) >=
+      MOST_MODELS)
+    throw InputError(fmt::format("{}: there are {} models, which is the most; delete some", robot.name, MOST_MODELS));
+  const std::shared_ptr<const RobotModel> model = builder_.describe(robot);
+  robot.fixed_base = robot.fixed_base || model->links[model->root].name == WORLD_LINK;
+  const bool one_free_body = !robot.fixed_base && robot.sensors.empty() && lumpFixedJoints(*model, {}, false).bodies.size() == 1;
+  if (one_free_body)
+    builder_.addObject(objectOf(robot), &world_);
+  else
+    builder_.addRobot(robot, &world_);
+  report_.samples.clear();
+  makeSensors();
+  forgetLayers(robot.name);
+  reportWithoutStep();
+}
+
+void Simulator::Impl::removeModel(const std::string& name) {
+  std::vector<std::string> names;
+  for (const ModelInfo& model : world_.models)
+    if (model.alive) names.push_back(model.name);
+  requireName(name, names, "delete_model", "model");
+  const int model = world_.modelIndex(name);
+  if (world_.robotOf(model) >= 0) removeSensors(world_.robotOf(model));
+  const std::vector<int> bodies = world_.models[model].bodies;
+  for (const int body : bodies) loads_.clearBody(body);
+  for (int joint = 0; joint < world_.world.jointCount(); ++joint) {
+    const JointSpec& spec = world_.world.jointSpec(joint);
+    if (std::find(bodies.begin(), bodies.end(), spec.child) != bodies.end()) loads_.clearJoint(joint);
+  }
+  forgetContacts(world_.collidersOf(model));
+  world_.removeModel(name);
+  layout_.clear();
+  reportWithoutStep();
+}
+
+void Simulator::Impl::makeSensors() {
+  for (std::size_t i = sensors_.size(); i < world_.sensors.size(); ++i) {
+    sensors_.push_back(makeSensor(world_, world_.sensors[i]));
+    seedSensor(i);
+    sensor_schedules_.emplace_back(world_.sensors[i].config.rate, config_.time_step);
+  }
+  spare_readings_.resize(sensors_.size());
+}
+
+void Simulator::Impl::removeSensors(int robot) {
+  report_.samples.clear();
+  for (std::size_t i = sensors_.size(); i-- > 0;) {
+    if (world_.sensors[i].robot != robot) continue;
+    sensors_.erase(sensors_.begin() + static_cast<std::ptrdiff_t>(i));
+    sensor_schedules_.erase(sensor_schedules_.begin() + static_cast<std::ptrdiff_t>(i));
+    spare_readings_.erase(spare_readings_.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+}
+
+void Simulator::Impl::remakeSensors() {
+  for (std::size_t i = 0; i < sensors_.size(); ++i) {
+    std::vector<double> numbers;
+    sensors_[i]->append(&numbers);
+    const std::uint64_t random = sensors_[i]->random().state();
+    sensors_[i] = makeSensor(world_, world_.sensors[i]);
+    NumberReader reader(numbers);
+    sensors_[i]->restore(&reader);
+    sensors_[i]->random().setState(random);
+    sensor_schedules_[i] = SensorSchedule(world_.sensors[i].config.rate, config_.time_step);
+  }
+}
+
+void Simulator::Impl::forgetContacts(const std::vector<int>& colliders) {
+  for (const int collider : colliders) world_.world.forgetContacts(contacts_.forgetCollider(collider));
+  contacts_.forget();
+}
+
+void Simulator::Impl::setLinkInertial(int body, int link, const MassProperties& inertial) {
+  const int model = modelOfBody(body), index = world_.robotOf(model);
+  if (index < 0) {
+    world_.world.setInertial(body, inertial);
+  } else {
+    RobotInfo& robot = world_.robots[index];
+    const auto description = std::make_shared<RobotModel>(*robot.description);
+    description->links[link].inertial = inertial;
+    const auto lumped = std::make_shared<const LumpedRobot>(lumpFixedJoints(*description, keptJoints(world_, index), robot.fixed_base));
+    world_.world.setInertial(body, lumped->bodies[robot.lumped->link_placement[link].body].inertial);
+    robot.description = description;
+    robot.lumped = lumped;
+    remakeSensors();
+  }
+  forgetContacts(world_.collidersOf(model));
+  layout_.clear();
+  reportWithoutStep();
+}
+
+MassProperties Simulator::linkInertial(int body, int link) const {
+  const int robot = link < 0 ? -1 : impl_->world_.robotOf(impl_->modelOfBody(body));
+  if (robot < 0) return world().bodySpec(body).inertial;
+  const RobotInfo& info = robots()[robot];
+  const LumpedBody& lumped = info.lumped->bodies[info.lumped->link_placement[link].body];
+  const std::optional<Inertial>& own = info.description->links[link].inertial;
+  if (own) return *own;
+  return lumped.links.size() == 1 ? lumped.inertial : MassProperties();
+}
+
+void Simulator::Impl::setJointLimits(int robot, int joint, double lower, double upper) {
+  RobotInfo& info = world_.robots.at(robot);
+  const std::string where = fmt::format("joint '{}': ", info.joint_names.at(joint));
+  const int world_joint = info.joints[joint];
+  if (world_.motors[world_joint].settings().continuous) throw InputError(where + "turns without end and takes no limits");
+  if (!(lower <= upper)) throw InputError(fmt::format("{}loStop {:g} and hiStop {:g}: the lower comes first", where, lower, upper));
+  const double position = world_.world.jointState(world_joint).position;
+  if (!(lower <= position && position <= upper))
+    throw InputError(fmt::format("{}stands at {:.6g}, which is not from {:g} to {:g}; move it there first", where, position, lower, upper));
+  world_.world.setJointLimits(world_joint, lower, upper);
+  info.limits[joint].lower = lower;
+  info.limits[joint].upper = upper;
+  layout_.clear();
+}
+
+void Simulator::setJointDamping(int robot, int joint, double damping) {
+  const std::string& name = robots().at(robot).joint_names.at(joint);
+  if (!(damping >= 0) || !isCommand(damping))
+    throw InputError(fmt::format("joint '{}': damping: is {:g}; give it a finite number of at least 0", name, damping));
+  impl_->world_.motors[robots()[robot].joints[joint]].setViscousFriction(damping);
+  impl_->layout_.clear();
+}
+
+double Simulator::jointDamping(int world_joint) const { return impl_->world_.motors.at(world_joint).settings().friction.viscous; }
+
+void Simulator::Impl::setPhysics(const Vector3& gravity, double time_step, double real_time_factor) {
+  if (!(time_step >= SHORTEST_STEP && time_step <= LONGEST_STEP))
+    throw InputError(fmt::format("time_step: is {:g}; give it {:g} to {:g} s", time_step, SHORTEST_STEP, LONGEST_STEP));
+  if (!(gravity.cwiseAbs().maxCoeff() <= LARGEST_GRAVITY))
+    throw InputError(fmt::format("gravity: needs three numbers, not beyond {:g} m/s^2", LARGEST_GRAVITY));
+  if (!(real_time_factor >= 0) || !std::isfinite(real_time_factor))
+    throw InputError("max_update_rate: needs a finite number of at least 0");
+  world_.world.setGravity(gravity);
+  config_.gravity = gravity;
+  config_.real_time_factor = real_time_factor;
+  if (time_step == config_.time_step) return;
+  epoch_ = {time(), step_count_};
+  config_.time_step = time_step;
+  layout_.clear();
+  remakeSensors();
+  contacts_.forget();
+}
+
+}  // namespace blem_sim

@@ -1,0 +1,38 @@
+// Files are taken from below the folders that are allowed, wherever links lead.
+#include "blem_sim/model/file_roots.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "blem_sim/geometry/input_error.h"
+#include "blem_sim/model/loaders.h"
+
+namespace blem_sim {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(FileRoots, HoldFilesBelowThemAlone) {
+  const fs::path folder = fs::path(testing::TempDir()) / "blem_sim_roots", allowed = folder / "allowed";
+  fs::create_directories(allowed / "deep");
+  fs::create_directories(folder / "allowed_not");
+  std::ofstream(folder / "secret.off") << "x";
+  fs::remove(allowed / "link.off");
+  fs::create_symlink(folder / "secret.off", allowed / "link.off");
+  const FileRoots roots({allowed.string() + "/"});
+  EXPECT_NO_THROW(roots.require((allowed / "deep" / "new.state").string()));
+  for (const fs::path& path :
+       {folder / "secret.off", allowed / ".." / "secret.off", allowed / "link.off", folder / "allowed_not" / "a.off"})
+    EXPECT_THROW(roots.require(path.string()), InputError) << path;
+  EXPECT_THROW(FileRoots(std::vector<std::string>{}).require((allowed / "a").string()), InputError);
+  UriResolver resolver;
+  resolver.restrictTo(roots);
+  EXPECT_THROW(resolver.resolve((folder / "secret.off").string()), InputError);
+}
+
+}  // namespace
+}  // namespace blem_sim

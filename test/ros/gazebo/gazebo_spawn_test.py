@@ -1,0 +1,204 @@
+#!/usr/bin/python3
+"""Models come and go by Gazebo's services, in a node named gazebo that empty_world.launch starts; the types have Gazebo's md5."""
+import os
+import subprocess
+import sys
+import unittest
+
+import rospkg
+import rospy
+import rostest
+from geometry_msgs.msg import Point, Pose
+from sensor_msgs.msg import Imu, JointState
+from tf2_msgs.msg import TFMessage
+from visualization_msgs.msg import MarkerArray
+
+from blem_sim import msg, srv
+from blem_sim.msg import LinkStates
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+import sim_client
+from sim_client import Recorder, service, wait_until
+
+sim_client.NODE = "/gazebo"
+DATA = os.path.join(rospkg.RosPack().get_path("blem_sim"), "test", "data", "ros")
+ARM = os.path.join(DATA, "arm_on_base.urdf")
+# Sums of gazebo_msgs, as its generated code has them.
+SUMS = {
+    "ModelState": "9330fd35f2fcd82d457e54bd54e10593", "LinkState": "0818ebbf28ce3a08d48ab1eaa7309ebe",
+    "ModelStates": "48c080191eb15c41858319b4d8a609c2", "LinkStates": "48c080191eb15c41858319b4d8a609c2",
+    "ODEPhysics": "667d56ddbd547918c32d1934503dc335", "ODEJointProperties": "1b744c32a920af979f53afe2f9c3511f",
+    "ContactState": "48c0ffb054b8c444f870cecea1ee50d9", "ContactsState": "acbcb1601a8e525bf72509f18e6f668d",
+    "ApplyBodyWrench": "585b9f9618aa0581b207e2f2d90866bc", "ApplyJointEffort": "c0039811b8cc919490b3cff748cdf46b",
+    "BodyRequest": "5eade9afe7f232d78005bd0cafeab755", "JointRequest": "0be1351618e1dc030eb7959d9a4902de",
+    "DeleteModel": "9ce56b4e9e54616de25d796dc972a262", "SpawnModel": "9ed9c82c96abe1a00c3e8cdaeee24413",
+    "GetJointProperties": "7b30be900f50aa21efec4a0ec92d91c9", "SetJointProperties": "15a76e921b1410c698d82782ea5fa370",
+    "GetLinkProperties": "0e06a70386d0ee3fb880c02f23fcd821", "SetLinkProperties": "d534ce1b36ee99de0ffa806c3a6348f0",
+    "GetLinkState": "09d6c98cce97b35f7ab9bd70300657ab", "SetLinkState": "8a5146eb66ae4d26b0860b08f3f271be",
+    "GetModelState": "4c515e936d3319c9610c559c60bfc3d4", "SetModelState": "5b3ab0281d4f5445def017e3a2e4a07b",
+    "GetModelProperties": "5717f7bd34ed990fa80e28b3015027a3", "SetModelConfiguration": "10e3139d3b669c40afc057d38956fff7",
+    "GetPhysicsProperties": "575a5e74786981b7df2e3afc567693a6", "SetPhysicsProperties": "97e2057080558ce4730434b5fae75c91",
+    "GetWorldProperties": "36bb0f2eccf4d8be971410c22818ba3f", "GetLightProperties": "df2cef87e13e2e6990e81e8aaa454c19",
+    "SetLightProperties": "e6f13430c57278bb364aca53a1bf5ebf",
+}
+BALL = """<robot name="ball"><link name="ball"><inertial><mass value="1"/>
+<inertia ixx="0.004" iyy="0.004" izz="0.004" ixy="0" ixz="0" iyz="0"/></inertial>
+<collision><geometry><sphere radius="0.1"/></geometry></collision></link></robot>"""
+POST = """<robot name="post"><link name="world"/><link name="bar"><inertial><origin xyz="0.5 0 0"/><mass value="2"/>
+<inertia ixx="0.01" iyy="0.02" izz="0.03" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<joint name="swing" type="continuous"><parent link="world"/><child link="bar"/><axis xyz="0 1 0"/></joint></robot>"""
+
+
+def spawn(name, xml, name_space="", x=0.0, y=0.0, z=1.0, frame=""):
+    return service("spawn_urdf_model", srv.SpawnModel)(name, xml, name_space, Pose(position=Point(x, y, z)), frame)
+
+
+def delete(name):
+    return service("delete_model", srv.DeleteModel)(name)
+
+
+def place(model, frame=""):
+    answer = service("get_model_state", srv.GetModelState)(model, frame)
+    assert answer.success, answer.status_message
+    return answer.pose.position
+
+
+def models():
+    return service("get_world_properties", srv.GetWorldProperties)().model_names
+
+
+def published():
+    return set(topic for topic, _ in rospy.get_published_topics())
+
+
+class GazeboSpawnTest(unittest.TestCase):
+    def setUp(self):
+        with open(ARM) as stream:
+            self.arm = stream.read()
+        self.assertEqual(models(), ["ground", "arm_on_base", "cube"])
+        self.addCleanup(lambda: [delete(name) for name in models() if name not in ("ground", "arm_on_base", "cube")])
+
+    def test_types_have_gazebos_sums(self):
+        for name, md5 in SUMS.items():
+            self.assertEqual((getattr(msg, name, None) or getattr(srv, name))._md5sum, md5, name)
+
+    def test_robot_gets_all_that_a_configured_one_has(self):
+        answer = spawn("second", self.arm, "second", x=2)
+        self.assertTrue(answer.success, answer.status_message)
+        self.assertIn("free", answer.status_message)
+        joints, links, frames = Recorder("/second/joint_states", JointState), Recorder("/gazebo/link_states", LinkStates), Recorder("/tf", TFMessage)
+        self.addCleanup(lambda: [recorder.stop() for recorder in (joints, links, frames)])
+        command = rospy.Publisher("/second/joint_command", JointState, queue_size=1)
+        wait_until(lambda: command.get_num_connections() and links.connected(), "the node to listen")
+        command.publish(JointState(name=["shoulder"], effort=[4.0]))
+        rospy.rostime.wallsleep(0.3)
+        sim_client.step(200)
+        wait_until(lambda: joints.messages() and links.messages() and frames.messages(), "messages")
+        self.assertEqual(joints.messages()[-1].name, ["shoulder"])
+        self.assertGreater(joints.messages()[-1].position[0], 0.05)
+        self.assertIn("second::hand", links.messages()[-1].name)
+        self.assertIn(2, [round(transform.transform.translation.x) for transform in frames.messages()[-1].transforms])
+        self.assertTrue({"/second/odom", "/second/joint_states"} <= published())
+        self.assertAlmostEqual(place("second", "cube").x, 1.4, delta=0.2)
+        self.assertTrue(delete("second").success)
+        self.assertFalse([topic for topic in published() if topic.startswith("/second/odom")])
+        self.assertEqual(models(), ["ground", "arm_on_base", "cube"])
+        sim_client.step(10)
+        self.assertFalse(service("get_model_state", srv.GetModelState)("second", "").success)
+
+    def test_clashes_and_nonsense_are_refused(self):
+        before = models()
+        for word, answer in (("taken", spawn("cube", BALL)), ("robot_namespace", spawn("second", self.arm)), ("model_xml", spawn("a", "")),
+                             ("model_name", spawn("", BALL)), ("::", spawn("a::b", BALL)), ("a", spawn("a", "<robot")),
+                             ("robot_namespace", spawn("a", self.arm, "no name!")), ("initial_pose", spawn("a", BALL, x=float("nan"))),
+                             ("reference_frame", spawn("a", BALL, frame="nowhere")), ("nobody", delete("nobody"))):
+            self.assertFalse(answer.success, word)
+            self.assertIn(word, answer.status_message)
+            self.assertNotIn("\n", answer.status_message)
+        long_name = service("get_model_properties", srv.GetModelProperties)("x" * 1000000 + "\n")
+        self.assertFalse(long_name.success)
+        self.assertLess(len(long_name.status_message), 1000)
+        self.assertEqual(models(), before)
+        sim_client.step(10)
+
+    def test_one_body_is_an_object(self):
+        markers = Recorder("/gazebo/object_markers", MarkerArray)
+        self.addCleanup(markers.stop)
+        arrows = Recorder("/gazebo/contact_markers", MarkerArray)
+        self.addCleanup(arrows.stop)
+        wait_until(arrows.connected, "contact markers")
+        self.assertTrue(spawn("ball", BALL, x=0.1, z=0.5, frame="cube").success)
+        self.assertAlmostEqual(place("ball").x, 0.7, delta=1e-3)
+        wait_until(lambda: markers.messages() and "ball" in {marker.ns.split("::")[0] for marker in markers.messages()[-1].markers}, "its marker")
+        service("set_model_state", srv.SetModelState)(msg.ModelState("ball", Pose(position=Point(-0.5, 0.5, 0.4)), msg.ModelState().twist, ""))
+        sim_client.step(2000)
+        self.assertAlmostEqual(place("ball").z, 0.1, delta=0.01)
+        self.assertIn("forces", {marker.ns for message in arrows.messages() for marker in message.markers})
+        sim_client.reset_world()
+        self.assertAlmostEqual(place("ball", "cube").z, 0.5, delta=1e-3)
+
+    def test_root_link_world_is_fixed(self):
+        self.assertTrue(spawn("post", POST, "post", x=-2, z=2).success)
+        sim_client.step(200)
+        joint = service("get_joint_properties", srv.GetJointProperties)("post::swing")
+        self.assertEqual(joint.type, 1)
+        self.assertGreater(joint.position[0], 0.1)
+        self.assertAlmostEqual(place("post").z, 2)
+        moved = service("set_model_state", srv.SetModelState)(msg.ModelState("post", Pose(), msg.ModelState().twist, ""))
+        self.assertIn("fixed", moved.status_message)
+
+    def test_slots_are_used_again(self):
+        sim_client.step(1)
+        for _ in range(10):
+            self.assertTrue(spawn("ball", BALL, x=-1).success)
+            self.assertTrue(spawn("second", self.arm, "second", x=2).success)
+            self.assertTrue(delete("ball").success)
+            loaded = sim_client.load_environment(name="platform", uri="package://blem_sim/test/data/ros/cube.off", pose=Pose(position=Point(5, 6, 7)))
+            self.assertTrue(loaded.success, loaded.status_message)
+            sim_client.step(3)
+            self.assertEqual((place("platform").x, place("platform").z), (5, 7))
+            self.assertTrue(delete("second").success)
+            self.assertTrue(delete("platform").success)
+            sim_client.step(3)
+        self.assertAlmostEqual(place("cube").x, 0.6, delta=1e-3)
+        self.assertEqual(models(), ["ground", "arm_on_base", "cube"])
+
+    def test_what_is_not_supported_says_so(self):
+        sdf = service("spawn_sdf_model", srv.SpawnModel)("a", "<sdf/>", "", Pose(), "")
+        self.assertFalse(sdf.success)
+        self.assertIn("URDF", sdf.status_message)
+        for name, kind in (("get_light_properties", srv.GetLightProperties), ("set_light_properties", srv.SetLightProperties)):
+            answer = service(name, kind)(light_name="sun")
+            self.assertFalse(answer.success)
+            self.assertIn("light", answer.status_message)
+
+    def test_script_spawns(self):
+        flags = ["-urdf", "-file", ARM, "-model", "scripted", "-x", "3", "-z", "0.5", "-Y", "0.3", "-robot_namespace", "scripted", "-J", "shoulder", "0.25"]
+        subprocess.check_call(["rosrun", "blem_sim", "spawn_model"] + flags)
+        self.assertAlmostEqual(place("scripted").x, 3, delta=1e-6)
+        self.assertAlmostEqual(service("get_joint_properties", srv.GetJointProperties)("scripted::shoulder").position[0], 0.25, delta=1e-6)
+        rospy.set_param("/ball_description", BALL)
+        subprocess.check_call(["rosrun", "blem_sim", "spawn_model", "-urdf", "-param", "ball_description", "-model", "ball", "-z", "2"])
+        self.assertAlmostEqual(place("ball").z, 2)
+        again = ["rosrun", "blem_sim", "spawn_model", "-urdf", "-param", "ball_description", "-model", "ball"]
+        self.assertNotEqual(subprocess.call(again), 0)
+
+    def test_z_configured_robot_goes_with_its_sensors(self):
+        imu = Recorder("/imu", Imu)
+        self.addCleanup(imu.stop)
+        wait_until(imu.connected, "the IMU's topic")
+        self.assertTrue(spawn("second", self.arm, "second", x=2).success)
+        sim_client.step(20)
+        imu.wait_for(4)
+        self.assertTrue(delete("arm_on_base").success)
+        sim_client.step(20)
+        self.assertEqual(models(), ["ground", "cube", "second"])
+        self.assertFalse({"/imu", "/joint_states", "/motors"} & published())
+        self.assertTrue(spawn("arm_on_base", self.arm, "").success)
+        sim_client.step(20)
+        self.assertIn("/joint_states", published())
+
+
+if __name__ == "__main__":
+    rospy.init_node("gazebo_spawn_test", disable_rostime=True)
+    rostest.rosrun("blem_sim", "gazebo_spawn", GazeboSpawnTest)

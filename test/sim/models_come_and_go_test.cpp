@@ -1,0 +1,163 @@
+// Robots and objects that are spawned and removed while the others go on, and what acts on them from outside.
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "blem_sim/geometry/input_error.h"
+#include "blem_sim/sim/named_parts.h"
+#include "sim/simulation_scene.h"
+#include "support/sanitizers.h"
+
+namespace blem_sim {
+namespace {
+
+constexpr int CYCLES = SANITIZED ? 100 : 1000;
+
+SimulationConfig cubeOnGround(const char* stepper = "articulated") {
+  SimulationConfig config;
+  config.solver.stepper = stepper;
+  config.environments = {ground()};
+  config.objects = {box("cube", Vector3::Constant(0.1), 1, {0, 0, 0.0525})};
+  return config;
+}
+
+RobotConfig pendulum(const std::string& name, const Vector3& place) {
+  RobotConfig config = robot(name, pendulumUrdf(), true);
+  config.X_WR = makePose(place);
+  SensorConfig imu;
+  imu.name = "imu";
+  imu.link = "arm";
+  imu.accel_stddev = 0.1;
+  config.sensors = {imu};
+  return config;
+}
+
+/** The order of quick_step's sweeps is drawn for all models together, so it is left out. */
+TEST(ModelsComeAndGo, TheOthersKeepTheirBits) {
+  for (const char* stepper : {"articulated", "world_step"}) {
+    Simulator alone(cubeOnGround(stepper), UriResolver()), visited(cubeOnGround(stepper), UriResolver());
+    for (int i = 0; i < 20; ++i) {
+      alone.step();
+      visited.step();
+      visited.spawn(pendulum("guest", {3, 0, 0}));
+      alone.step();
+      visited.step();
+      visited.removeModel("guest");
+      ASSERT_EQ(bodyOf(alone, "cube").X_WB.matrix(), bodyOf(visited, "cube").X_WB.matrix()) << stepper << " " << i;
+    }
+    alone.step();
+    visited.step();
+    EXPECT_EQ(alone.stateHash(), visited.stateHash()) << stepper;
+  }
+}
+
+TEST(ModelsComeAndGo, SlotsAreUsedAgainHoweverOften) {
+  Simulator simulator(cubeOnGround(), UriResolver());
+  for (int i = 0; i < CYCLES; ++i) {
+    simulator.spawn(pendulum("guest", {3, 0, 0}));
+    if (i % 10 == 0) simulator.step();
+    simulator.removeModel("guest");
+  }
+  const StepReport& report = simulator.step();
+  EXPECT_EQ(report.status & JOINT_LIMIT_HIT, 0u);
+  EXPECT_EQ(simulator.models().size(), 3u);
+  EXPECT_EQ(simulator.world().jointCount(), 1);
+  EXPECT_EQ(simulator.loadReport().size(), 2u);
+  EXPECT_TRUE(simulator.robots().empty());
+  EXPECT_TRUE(simulator.sensors().empty());
+  EXPECT_TRUE(report.samples.empty());
+}
+
+TEST(ModelsComeAndGo, SensorsGoByTheirRobotsWhoeverLeaves) {
+  SimulationConfig config = cubeOnGround();
+  for (const char* name : {"a", "b", "c"}) config.robots.push_back(pendulum(name, {0, 3, 0}));
+  Simulator simulator(config, UriResolver());
+  simulator.step();
+  simulator.removeModel("b");
+  simulator.spawn(pendulum("d", {0, 4, 0}));
+  ASSERT_EQ(simulator.robots().size(), 3u);
+  EXPECT_EQ(simulator.robots()[1].name, "d");
+  const StepReport& report = simulator.step();
+  ASSERT_EQ(report.samples.size(), 3u);
+  std::vector<std::string> owners;
+  for (const SensorInfo& sensor : simulator.sensors()) owners.push_back(simulator.robots()[sensor.robot].name);
+  EXPECT_EQ(owners, (std::vector<std::string>{"a", "c", "d"}));
+}
+
+TEST(ModelsComeAndGo, ResetGoesToWhereTheyWereSpawned) {
+  Simulator simulator(cubeOnGround(), UriResolver()), fresh(cubeOnGround(), UriResolver());
+  for (Simulator* each : {&simulator, &fresh}) each->spawn(pendulum("guest", {3, 0, 0}));
+  stepFor(&simulator, 0.3);
+  simulator.setJointPositions(0, {"guest::hinge"}, {1.0});
+  stepFor(&simulator, 0.1);
+  simulator.resetSimulation();
+  EXPECT_EQ(simulator.stateHash(), fresh.stateHash());
+  stepFor(&simulator, 0.2);
+  stepFor(&fresh, 0.2);
+  EXPECT_EQ(simulator.stateHash(), fresh.stateHash());
+}
+
+TEST(ModelsComeAndGo, BadOnesChangeNothing) {
+  Simulator simulator(cubeOnGround(), UriResolver());
+  simulator.step();
+  const std::uint64_t hash = simulator.stateHash();
+  EXPECT_THROW(simulator.spawn(pendulum("cube", {0, 0, 0})), InputError);
+  EXPECT_THROW(simulator.spawn(robot("bad", "<robot", false)), InputError);
+  EXPECT_THROW(simulator.spawn(robot("a::b", pendulumUrdf(), true)), InputError);
+  EXPECT_THROW(simulator.spawn(pendulum("far", {NAN, 0, 0})), InputError);
+  EXPECT_THROW(simulator.removeModel("nobody"), InputError);
+  EXPECT_EQ(simulator.stateHash(), hash);
+}
+
+TEST(Loads, AreSavedAndGainNoEnergyOutOfNothing) {
+  Simulator simulator(cubeOnGround(), UriResolver());
+  const LinkPart link = findLink(simulator, "cube::link", "test");
+  simulator.applyLoad({link.body, {Vector3(0, 3, 20), Vector3(0, 0, 0.1)}, Vector3(0.01, 0.02, 0)}, {0, -1});
+  stepFor(&simulator, 0.05);
+  const SimulationState state = simulator.save();
+  std::uint32_t status = 0;
+  for (int i = 0; i < 300; ++i) status |= simulator.step().status;
+  EXPECT_EQ(status & ENERGY_GAINED, 0u);
+  const std::uint64_t end = simulator.stateHash();
+  simulator.clearLoads(link.body);
+  EXPECT_NE(simulator.stateHash(), end);
+  simulator.restore(state);
+  stepFor(&simulator, 0.3);
+  EXPECT_EQ(simulator.stateHash(), end);
+  EXPECT_GT(bodyOf(simulator, "cube").X_WB.translation().z(), 0.5);
+}
+
+TEST(Loads, HaveABound) {
+  Simulator simulator(cubeOnGround(), UriResolver());
+  simulator.spawn(pendulum("guest", {3, 0, 0}));
+  for (int i = 0; i < 10000; ++i) simulator.applyEffort(0, 1e-6, {0, 0.5});
+  EXPECT_THROW(simulator.applyEffort(0, 1e-6, {0, 0.5}), InputError);
+  stepFor(&simulator, 0.6);
+  EXPECT_NO_THROW(simulator.applyEffort(0, 1e-6, {0, 0.5}));
+}
+
+/** A pendulum whose centre of mass was moved later moves as one that had it from the start. */
+TEST(LinkProperties, ComOfALinkOnAJointIsMoved) {
+  for (const char* stepper : {"articulated", "world_step"}) {
+    SimulationConfig config;
+    config.solver.stepper = stepper;
+    config.robots = {pendulum("swing", Vector3::Zero())};
+    Simulator moved(config, UriResolver());
+    std::string& urdf = config.robots[0].urdf_xml;
+    urdf.replace(urdf.find("0.5 0 0"), 7, "0.3 0 0.1");
+    Simulator made(config, UriResolver());
+    const LinkPart arm = findLink(moved, "arm", "test");
+    MassProperties inertial = moved.linkInertial(arm.body, arm.link);
+    inertial.com = Vector3(0.3, 0, 0.1);
+    stepFor(&moved, 0.001);
+    moved.setLinkInertial(arm.body, arm.link, inertial);
+    moved.resetWorld();
+    stepFor(&moved, 0.3);
+    stepFor(&made, 0.3);
+    EXPECT_NEAR(moved.report().joints[0].position, made.report().joints[0].position, 1e-9) << stepper;
+    EXPECT_GT(std::abs(made.report().joints[0].position), 0.1);
+  }
+}
+
+}  // namespace
+}  // namespace blem_sim
