@@ -22,7 +22,8 @@ TEST(RayScene, IsTheFirstOfAllTargets) {
   RandomShapes random(21);
   std::vector<RayTarget> targets;
   for (int i = 0; i < 40; ++i) {
-    const TriangleMesh shapes[] = {boxMesh({0.3, 0.2, 0.1}), icosphereMesh(0.2, 2), pointMesh({0.1, 0, 0}), segmentMesh({0, 0, 0}, {0.3, 0, 0})};
+    const TriangleMesh shapes[] = {boxMesh({0.3, 0.2, 0.1}), icosphereMesh(0.2, 2), pointMesh({0.1, 0, 0}),
+                                   segmentMesh({0, 0, 0}, {0.3, 0, 0})};
     targets.push_back(target(shapes[i % 4], random.pose(2), i % 2 ? 0.0025 : 0.1, i % 3));
   }
   targets.push_back({CollisionGeometry::halfSpace({0.1, 0, 1}, -1.5), makePose({0, 0, 0.2}), 0, 5});

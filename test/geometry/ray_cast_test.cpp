@@ -68,8 +68,7 @@ TEST(CastRay, SlipsThroughNoSideOfAClosedSurface) {
     for (const Vector3i& e : mesh.elements) {
       for (int k = 0; k < 3; ++k) {
         const Vector3 &p = mesh.vertices[e[k]], &q = mesh.vertices[e[(k + 1) % 3]];
-        for (const double s : {0.0, 0.25, 0.5, 1.0 / 3})
-          ASSERT_NEAR(castRay({tree, mesh}, {Vector3::Zero(), p + s * (q - p)}).t, 1, 1e-12);
+        for (const double s : {0.0, 0.25, 0.5, 1.0 / 3}) ASSERT_NEAR(castRay({tree, mesh}, {Vector3::Zero(), p + s * (q - p)}).t, 1, 1e-12);
       }
     }
     for (int axis = 0; axis < 3; ++axis)

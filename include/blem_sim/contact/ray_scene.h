@@ -40,10 +40,10 @@ class RayScene {
   void add(int target, const Ray& ray, const Query& query, Hit* first) const;
 
   std::vector<RayTarget> targets_;
-  std::vector<Pose> X_CW_;          // of each target
-  std::vector<int> unbounded_;      // half-spaces
-  std::vector<int> bounded_;        // the others, in the order of the tree's elements
-  Bvh boxes_;                       // over diagonals of the world's boxes of the bounded ones
+  std::vector<Pose> X_CW_;      // of each target
+  std::vector<int> unbounded_;  // half-spaces
+  std::vector<int> bounded_;    // the others, in the order of the tree's elements
+  Bvh boxes_;                   // over diagonals of the world's boxes of the bounded ones
 };
 
 }  // namespace blem_sim

@@ -101,7 +101,7 @@ TEST(Manual, HoldsEveryKnownKey) {
   std::set<std::string> known, written;
   const SimulationConfig config = parseConfig(document, "default.yaml", "", &known);
   EXPECT_EQ(config.robots.size(), 2u);
-  EXPECT_EQ(config.robots[0].sensors.size(), 5u);
+  EXPECT_EQ(config.robots[0].sensors.size(), 7u);
   EXPECT_EQ(config.objects.size(), 2u);
   EXPECT_EQ(config.environments.size(), 4u);
   collectKeys(document, "", &written);
