@@ -4,7 +4,9 @@
 #include <tf2_msgs/TFMessage.h>
 #include <boost/make_shared.hpp>
 
+#include <optional>
 #include <set>
+#include <utility>
 
 #include "blem_sim/geometry/input_error.h"
 #include "messages/contact_messages.h"
@@ -26,9 +28,11 @@ void setVariance(Covariance* covariance, double stddev) {
 struct ReadingPublisher {
   const Simulator& simulator;
   const StepReport& report;
+  int sensor;
   const std::string& frame_id;
   SensorMessages* messages;
   ListenedPublisher* publisher;
+  RangePublisher* ranges;
   StepSender* sender;
 
   template <typename Message>
@@ -75,6 +79,10 @@ struct ReadingPublisher {
     message->current = reading.currents;
     sender->add(publisher, message);
   }
+
+  void operator()(const DepthCameraReading& reading) const { ranges->publish(sensor, report.time, frame_id, reading.view); }
+
+  void operator()(const LidarReading& reading) const { ranges->publish(sensor, report.time, frame_id, reading.view); }
 };
 
 ListenedPublisher advertise(ros::NodeHandle* node, SensorType type, const std::string& topic) {
@@ -88,12 +96,29 @@ ListenedPublisher advertise(ros::NodeHandle* node, SensorType type, const std::s
       return ListenedPublisher::advertise<ContactsState>(node, topic, QUEUE_SIZE);
     case SensorType::MOTOR_CURRENT:
       return ListenedPublisher::advertise<MotorCurrents>(node, topic, QUEUE_SIZE);
+    case SensorType::DEPTH_CAMERA:
+    case SensorType::LIDAR:
+      break;  // RangePublisher's
   }
   throw InputError("sensor topic " + topic + ": this type of sensor has no message");
 }
 
-bool sitsAskew(const SensorConfig& sensor) {
-  return (sensor.type == SensorType::IMU || sensor.type == SensorType::TILT) && !sensor.X_LS.isApprox(Pose::Identity(), 1e-12);
+/** A sensor's frame of its own in its link. */
+struct Mounting {
+  std::string frame;
+  Pose X_LF;
+};
+
+/** The optical frame of a camera; the frame of another sensor that sits askew in its link; none if it is the link's. */
+std::optional<Mounting> mountingOf(const SensorConfig& sensor) {
+  if (sensor.type == SensorType::DEPTH_CAMERA) {
+    Pose X_SO = Pose::Identity();
+    X_SO.linear() = opticalAxes();
+    return Mounting{sensor.name + "_optical_frame", sensor.X_LS * X_SO};
+  }
+  const bool sits_anyhow = sensor.type == SensorType::IMU || sensor.type == SensorType::TILT || sensor.type == SensorType::LIDAR;
+  if (!sits_anyhow || sensor.X_LS.isApprox(Pose::Identity(), 1e-12)) return std::nullopt;
+  return Mounting{sensor.name + "_frame", sensor.X_LS};
 }
 
 }  // namespace
@@ -112,22 +137,27 @@ SensorPublisher::SensorPublisher(ros::NodeHandle node, const Simulator& simulato
     if (!topics.insert(robot_node.resolveName(topic)).second) {
       throw InputError("sensors: " + config.name + ": another sensor publishes on " + robot_node.resolveName(topic) + "; set topic");
     }
-    publishers_.push_back(advertise(&robot_node, config.type, topic));
-    frames_.push_back(sitsAskew(config) ? config.name + "_frame" : sensor.frame_id);
+    const int index = static_cast<int>(frames_.size());
+    if (isRangeSensor(config.type))
+      ranges_.advertise(&robot_node, topic, index, sensor);
+    else
+      publishers_.emplace(index, advertise(&robot_node, config.type, topic));
+    const std::optional<Mounting> mounting = mountingOf(config);
+    frames_.push_back(mounting ? mounting->frame : sensor.frame_id);
   }
-  messages_.resize(publishers_.size());
+  messages_.resize(frames_.size());
   publishMountings();
 }
 
 void SensorPublisher::publishMountings() {
   tf2_msgs::TFMessage message;
-  for (std::size_t i = 0; i < frames_.size(); ++i) {
-    const SensorConfig& config = simulator_.sensors()[i].config;
-    if (!sitsAskew(config)) continue;
+  for (const SensorInfo& sensor : simulator_.sensors()) {
+    const std::optional<Mounting> mounting = mountingOf(sensor.config);
+    if (!mounting) continue;
     geometry_msgs::TransformStamped transform;
-    transform.header.frame_id = config.link;
-    transform.child_frame_id = frames_[i];
-    transform.transform = toTransform(config.X_LS);
+    transform.header.frame_id = sensor.config.link;
+    transform.child_frame_id = mounting->frame;
+    transform.transform = toTransform(mounting->X_LF);
     message.transforms.push_back(transform);
   }
   if (message.transforms.empty()) return;
@@ -137,9 +167,11 @@ void SensorPublisher::publishMountings() {
 
 void SensorPublisher::publish(const StepReport& report) {
   for (const SensorSample& sample : report.samples) {
-    ListenedPublisher& publisher = publishers_[sample.sensor];
-    if (!publisher.listened()) continue;
-    std::visit(ReadingPublisher{simulator_, report, frames_[sample.sensor], &messages_[sample.sensor], &publisher, sender_},
+    const auto own = publishers_.find(sample.sensor);
+    ListenedPublisher* const publisher = own == publishers_.end() ? nullptr : &own->second;
+    if (publisher && !publisher->listened()) continue;
+    const std::string& frame = frames_[sample.sensor];
+    std::visit(ReadingPublisher{simulator_, report, sample.sensor, frame, &messages_[sample.sensor], publisher, &ranges_, sender_},
                sample.reading);
   }
 }

@@ -5,10 +5,12 @@
 #include <ros/node_handle.h>
 #include <sensor_msgs/Imu.h>
 
+#include <map>
 #include <string>
 #include <vector>
 
 #include "messages/message_pool.h"
+#include "publishers/ranges/range_publisher.h"
 #include "sending/listened_publisher.h"
 #include "sending/step_publisher.h"
 #include "sending/step_sender.h"
@@ -28,6 +30,7 @@ class SensorPublisher : public StepPublisher {
   /** @throws InputError: a sensor's topic is no valid ROS name, or two sensors share one */
   SensorPublisher(ros::NodeHandle node, const Simulator& simulator, StepSender* sender);
   void publish(const StepReport& report) override;
+  void drain() override { ranges_.drain(); }
 
  private:
   void publishMountings();
@@ -35,10 +38,11 @@ class SensorPublisher : public StepPublisher {
   const Simulator& simulator_;
   StepSender* sender_;
   ros::NodeHandle node_;
-  std::vector<ListenedPublisher> publishers_;  // per sensor
-  std::vector<SensorMessages> messages_;       // per sensor
-  std::vector<std::string> frames_;            // per sensor: frame_id of its messages
-  ros::Publisher mountings_;                   // /tf_static of sensors that sit askew in their link
+  std::map<int, ListenedPublisher> publishers_;  // by sensor, but for those of ranges_
+  std::vector<SensorMessages> messages_;         // per sensor
+  std::vector<std::string> frames_;              // per sensor: frame_id of its messages
+  RangePublisher ranges_;
+  ros::Publisher mountings_;  // /tf_static of sensors that sit askew in their link
 };
 
 }  // namespace blem_sim
