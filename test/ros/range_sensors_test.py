@@ -10,7 +10,7 @@ import sensor_msgs.point_cloud2 as point_cloud2
 from sensor_msgs.msg import CameraInfo, Image, LaserScan, PointCloud2
 from tf2_msgs.msg import TFMessage
 
-from sim_client import Recorder, stamps
+from sim_client import Recorder, pause, stamps, step, unpause
 
 WIDTH, HEIGHT, HFOV = 64, 48, 0.6
 WALL = 2.0
@@ -86,6 +86,18 @@ class RangeSensorsTest(unittest.TestCase):
         self.assertAlmostEqual(scan.ranges[135], WALL * math.sqrt(2), delta=1e-5)
         self.assertEqual(scan.ranges[0], float("inf"))
         self.assertAlmostEqual(scan.scan_time, 1 / 40.0, places=6)
+
+    def test_a_step_answers_when_its_images_are_out(self):
+        recorder = Recorder("/camera/depth/image_raw", Image)
+        recorder.wait_for(1)
+        pause()
+        recorder.clear()
+        last = step(50).stamp.to_sec()
+        # 100 ms at 30 Hz; what was sent before the answer may take a moment to be read.
+        times = stamps(recorder.wait_for(3))
+        self.assertTrue(all(last - 0.1 < time <= last + 1e-9 for time in times), "%s until %g" % (times, last))
+        recorder.stop()
+        unpause()
 
     def test_layers(self):
         cloud = record("/layers", PointCloud2)[0]

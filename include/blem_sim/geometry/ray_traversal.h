@@ -51,14 +51,17 @@ class RaySlabs {
 template <typename Visit>
 void visitLeavesAlong(const RaySlabs& ray, const Bvh& tree, const double* farthest, Visit&& visit) {
   if (tree.empty()) return;
-  using Entry = std::pair<std::uint32_t, double>;  // node, where the ray enters its box
+  struct Entry {
+    std::uint32_t node;
+    double enter;  // of the ray into its box
+  };
   constexpr double NEVER = std::numeric_limits<double>::infinity();
   std::array<Entry, Bvh::MAX_DEPTH + 1> stack;
   int depth = 0;
   const auto push = [&](const Entry& entry) {
-    if (entry.second < NEVER) stack[depth++] = entry;
+    if (entry.enter < NEVER) stack[depth++] = entry;
   };
-  const auto entry = [&](std::uint32_t node) { return Entry(node, ray.enter(tree.nodes()[node], *farthest)); };
+  const auto entry = [&](std::uint32_t node) { return Entry{node, ray.enter(tree.nodes()[node], *farthest)}; };
   push(entry(0));
   while (depth > 0) {
     const auto [index, enter] = stack[--depth];
@@ -69,7 +72,7 @@ void visitLeavesAlong(const RaySlabs& ray, const Bvh& tree, const double* farthe
       continue;
     }
     Entry near = entry(node.first), far = entry(node.first + 1);
-    if (far.second < near.second) std::swap(near, far);
+    if (far.enter < near.enter) std::swap(near, far);
     push(far);
     push(near);
   }

@@ -41,7 +41,8 @@ std::optional<ConfigFault> faultOfLidar(const RangeSensorConfig& rays) {
   if (auto fault = faultOfCount("layers", rays.layers)) return fault;
   if (auto fault = faultOfAngles("angle", rays.first_angle, rays.last_angle, rays.beams > 1)) return fault;
   if (rays.layers == 1 && (rays.lowest_angle != 0 || rays.highest_angle != 0))
-    return ConfigFault{"vertical_angle", "is there, but one layer lies in the plane of x and y; take it away, give more layers, or turn pose"};
+    return ConfigFault{"vertical_angle",
+                       "is there, but one layer lies in the plane of x and y; take it away, give more layers, or turn pose"};
   if (std::max(std::abs(rays.lowest_angle), std::abs(rays.highest_angle)) > M_PI / 2)
     return ConfigFault{"vertical_angle", "goes beyond straight up or down; give angles from -1.57 to 1.57 rad"};
   if (auto fault = faultOfAngles("vertical_angle", rays.lowest_angle, rays.highest_angle, rays.layers > 1)) return fault;

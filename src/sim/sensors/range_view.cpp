@@ -80,8 +80,7 @@ std::vector<float> depthsOf(const RangeView& camera) {
 }
 
 std::vector<float> rangesOf(const RangeView& lidar) {
-  return draw(lidar, lidar.rays.layers, lidar.rays.beams,
-              [&](int layer, int beam) { return beamDirection(lidar.rays, layer, beam); });
+  return draw(lidar, lidar.rays.layers, lidar.rays.beams, [&](int layer, int beam) { return beamDirection(lidar.rays, layer, beam); });
 }
 
 }  // namespace blem_sim

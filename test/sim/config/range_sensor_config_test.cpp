@@ -69,10 +69,8 @@ TEST(RangeSensorConfig, IsRefusedInOneLine) {
 TEST(RangeSensorConfig, ByHandIsRefusedAsWell) {
   using Set = void (*)(SensorConfig*);
   const std::vector<std::pair<const char*, Set>> bad = {
-      {"eye: link", [](SensorConfig* s) { s->link = "bse"; }},
-      {"eye: hfov", [](SensorConfig* s) { s->rays.hfov = NAN; }},
-      {"eye: width", [](SensorConfig* s) { s->rays.width = 0; }},
-      {"eye: range", [](SensorConfig* s) { s->rays.farthest = INFINITY; }},
+      {"eye: link", [](SensorConfig* s) { s->link = "bse"; }},       {"eye: hfov", [](SensorConfig* s) { s->rays.hfov = NAN; }},
+      {"eye: width", [](SensorConfig* s) { s->rays.width = 0; }},    {"eye: range", [](SensorConfig* s) { s->rays.farthest = INFINITY; }},
       {"eye: noise", [](SensorConfig* s) { s->rays.stddev = NAN; }},
   };
   for (const auto& [words, set] : bad) {
