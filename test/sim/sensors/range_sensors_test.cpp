@@ -1,6 +1,9 @@
 // Depth cameras and lidars against closed forms, and against all triangles of a scan.
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "blem_sim/geometry/closest_points.h"
@@ -143,6 +146,20 @@ TEST(RangeView, IsDrawnAsItWasTaken) {
   stepFor(&simulator, 0.2);
   EXPECT_NEAR(rangesOf(*view)[90], 1.9 + 0.005, 1e-6);
   EXPECT_NEAR(rangesOf(*reading<LidarReading>(simulator.report(), 0).view)[90], 1.9 + 5 * 0.201, 1e-5);
+}
+
+TEST(RangeView, IsTheSameForAnyNumberOfThreads) {
+  SimulationConfig config = sceneWith(depthCamera());
+  config.environments = {halfSpace({0, 0, 1, -0.5})};
+  config.robots[0].sensors[0].rays.noise = RangeNoise::KINECT;
+  config.robots[0].sensors[0].rays.width = 320;
+  config.robots[0].sensors[0].rays.height = 240;
+  Simulator simulator(config, UriResolver());
+  const auto view = reading<DepthCameraReading>(simulator.step(), 0).view;
+  const auto drawnBy = [&](int threads) { return tbb::task_arena(threads).execute([&] { return depthsOf(*view); }); };
+  const std::vector<float> one = drawnBy(1), four = drawnBy(4);
+  ASSERT_EQ(one.size(), four.size());
+  EXPECT_EQ(std::memcmp(one.data(), four.data(), one.size() * sizeof(float)), 0);
 }
 
 /** Depth of the nearest triangle along a ray, by Cramer's rule for every one. */
