@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <limits>
 
 #include "config/config_sections.h"
 #include "config/range_sensor_check.h"
@@ -49,6 +50,9 @@ void readMotorCurrent(YamlReader& reader, SensorConfig* sensor) {
   });
 }
 
+// Lower bound of counts: refuseFaults says why one cannot be used.
+constexpr int ANY_COUNT = std::numeric_limits<int>::min();
+
 void readRays(YamlReader& reader, SensorConfig* sensor) {
   requireText(reader, "link", &sensor->link);
   reader.read("pose", &sensor->X_LS);
@@ -65,8 +69,8 @@ void refuseFaults(const YamlReader& reader, const SensorConfig& sensor) {
 void readDepthCamera(YamlReader& reader, SensorConfig* sensor) {
   RangeSensorConfig& rays = sensor->rays;
   readRays(reader, sensor);
-  reader.read("width", &rays.width, 1);
-  reader.read("height", &rays.height, 1);
+  reader.read("width", &rays.width, ANY_COUNT);
+  reader.read("height", &rays.height, ANY_COUNT);
   reader.read("hfov", &rays.hfov, NumberRange::any());
   YamlReader noise = reader.section("noise");
   if (const auto model = noise.choice("model", {"gaussian", "kinect"})) rays.noise = *model ? RangeNoise::KINECT : RangeNoise::GAUSSIAN;
@@ -80,8 +84,8 @@ void readLidar(YamlReader& reader, SensorConfig* sensor) {
   rays.nearest = 0.1;
   rays.farthest = 30;
   readRays(reader, sensor);
-  reader.read("beams", &rays.beams, 1);
-  reader.read("layers", &rays.layers, 1);
+  reader.read("beams", &rays.beams, ANY_COUNT);
+  reader.read("layers", &rays.layers, ANY_COUNT);
   if (const auto angle = reader.numbers("angle", 2)) {
     rays.first_angle = (*angle)[0];
     rays.last_angle = (*angle)[1];

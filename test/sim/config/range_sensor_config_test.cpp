@@ -40,7 +40,7 @@ TEST(RangeSensorConfig, IsRefusedInOneLine) {
   struct Bad {
     const char *type, *settings, *key;
   };
-  const Bad bad[] = {{"depth_camera", "width: 0", "width"},
+  const Bad bad[] = {{"depth_camera", "width: 0", "width: is 0; give it a whole number of at least 1"},
                      {"depth_camera", "height: -3", "height"},
                      {"depth_camera", "width: 100000, height: 100000", "width"},
                      {"depth_camera", "hfov: 4", "hfov"},
