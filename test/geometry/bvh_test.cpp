@@ -78,7 +78,6 @@ TEST(Bvh, IsEmptyForAnEmptyMesh) {
   visitLeaves(tree, Box(Vector3(-1, -1, -1), Vector3(1, 1, 1)), [](std::uint32_t) { ADD_FAILURE(); });
   visitLeavesBelowPlane(tree, Vector3(0, 0, 1), 0, 1, [](std::uint32_t) { ADD_FAILURE(); });
   visitLeafPairs(tree, Bvh(boxMesh({1, 1, 1})), Pose::Identity(), 1, [](std::uint32_t, std::uint32_t) { ADD_FAILURE(); });
-  EXPECT_EQ(castRay(tree, TriangleMesh(), {0, 0, 0}, {1, 0, 0}, nullptr), -1);
   EXPECT_EQ(distanceToMesh(tree, TriangleMesh(), {0, 0, 0}), std::numeric_limits<double>::infinity());
 }
 
@@ -235,71 +234,6 @@ TEST(VisitLeavesBelowPlane, FindsEveryVertexBelow) {
     }
   }
   visitLeavesBelowPlane(tree, Vector3(0, 0, 1), -10, 0.1, [](std::uint32_t) { ADD_FAILURE() << "nothing is down there"; });
-}
-
-/** Nearest hit by solving o + t d = a + u (b - a) + v (c - a) for every triangle. */
-double castRayByBruteForce(const TriangleMesh& mesh, const Vector3& origin, const Vector3& direction) {
-  double best = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < static_cast<int>(mesh.elements.size()); ++i) {
-    if (!mesh.isTriangle(i)) continue;
-    const Triangle t = triangleOf(mesh, i);
-    Matrix3 system;
-    system << t[1] - t[0], t[2] - t[0], -direction;
-    const Vector3 x = system.fullPivLu().solve(origin - t[0]);
-    if (x[0] >= 0 && x[1] >= 0 && x[0] + x[1] <= 1 && x[2] >= 0) best = std::min(best, x[2]);
-  }
-  return best;
-}
-
-TEST(CastRay, IsTheFirstHitOfAllTriangles) {
-  RandomShapes random(9);
-  const TriangleMesh mesh = triangleSoup(random, 500);
-  const Bvh tree(mesh);
-  int hits = 0;
-  for (int trial = 0; trial < 1000; ++trial) {
-    const Vector3 origin = random.point(2), direction = random.point(1) - origin;
-    const double expected = castRayByBruteForce(mesh, origin, direction);
-    double t = -1;
-    const int element = castRay(tree, mesh, origin, direction, &t);
-    ASSERT_EQ(element >= 0, std::isfinite(expected)) << "ray " << trial;
-    if (element < 0) continue;
-    ++hits;
-    ASSERT_NEAR(t, expected, 1e-11) << "ray " << trial;
-    ASSERT_NEAR(closestPointTriangle(origin + t * direction, triangleOf(mesh, element)).distance, 0, 1e-12);
-  }
-  EXPECT_GT(hits, 100);
-}
-
-TEST(CastRay, SlipsThroughNoSideOfAClosedSurface) {
-  // Rays from the middle through vertices, sides and along the axes meet two triangles or more at their borders.
-  for (const TriangleMesh& mesh : {icosphereMesh(1, 3), boxMesh({1, 2, 3}), subdivided(boxMesh({1, 1, 1}), 3)}) {
-    const Bvh tree(mesh);
-    for (const Vector3i& e : mesh.elements) {
-      for (int k = 0; k < 3; ++k) {
-        const Vector3 &p = mesh.vertices[e[k]], &q = mesh.vertices[e[(k + 1) % 3]];
-        for (const double s : {0.0, 0.25, 0.5, 1.0 / 3}) {
-          double t = -1;
-          ASSERT_GE(castRay(tree, mesh, {0, 0, 0}, p + s * (q - p), &t), 0);
-          ASSERT_NEAR(t, 1, 1e-12);
-        }
-      }
-    }
-    for (int axis = 0; axis < 3; ++axis) {
-      for (const int sign : {-1, 1}) EXPECT_GE(castRay(tree, mesh, {0, 0, 0}, sign * Vector3::Unit(axis), nullptr), 0);
-    }
-  }
-}
-
-TEST(CastRay, LooksForwardOnlyAndSeesBothSides) {
-  const TriangleMesh floor = gridMesh(2, 2, 1, 1);
-  const Bvh tree(floor);
-  double t = -1;
-  EXPECT_GE(castRay(tree, floor, {0.3, 0.1, 2}, {0, 0, -0.5}, &t), 0);
-  EXPECT_NEAR(t, 4, 1e-15);
-  EXPECT_GE(castRay(tree, floor, {0.3, 0.1, -2}, {0, 0, 1}, &t), 0) << "from below";
-  EXPECT_EQ(castRay(tree, floor, {0.3, 0.1, 2}, {0, 0, 1}, &t), -1) << "away";
-  EXPECT_EQ(castRay(tree, floor, {1.5, 0.1, 2}, {0, 0, -1}, &t), -1) << "beside";
-  EXPECT_EQ(castRay(tree, floor, {0.3, 0.1, 2}, {0, 0, 0}, &t), -1) << "no direction";
 }
 
 TEST(DistanceToMesh, IsTheLeastOverAllElements) {

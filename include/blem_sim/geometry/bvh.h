@@ -57,9 +57,6 @@ void visitLeaves(const Bvh& tree, const Box& box, Visit&& visit);
 template <typename Visit>
 void visitLeavesBelowPlane(const Bvh& tree, const Vector3& n, double d, double margin, Visit&& visit);
 
-/** First hit of a ray with the triangles of a mesh, tree's frame. @return element index, -1 if none; *t in units of direction */
-int castRay(const Bvh& tree, const TriangleMesh& mesh, const Vector3& origin, const Vector3& direction, double* t);
-
 /** Exact smallest distance [m] from a point to the mesh, by the tree. Infinity for an empty mesh. */
 double distanceToMesh(const Bvh& tree, const TriangleMesh& mesh, const Vector3& p);
 

@@ -66,7 +66,24 @@ struct JointFriction {
   double dry = 0, viscous = 0;
 };
 
-enum class SensorType { FORCE_TORQUE, IMU, CONTACT, TILT, MOTOR_CURRENT };
+enum class SensorType { FORCE_TORQUE, IMU, CONTACT, TILT, MOTOR_CURRENT, DEPTH_CAMERA, LIDAR };
+
+enum class RangeNoise { GAUSSIAN, KINECT };
+
+/** Rays of a depth camera or a lidar. */
+struct RangeSensorConfig {
+  double nearest = 0.4, farthest = 5;  ///< [m] along the optical axis of a camera, along the beam of a lidar
+  RangeNoise noise = RangeNoise::GAUSSIAN;
+  double stddev = 0;                              ///< [m] of gaussian noise
+  int width = 640, height = 480;                  ///< [pixels] depth_camera
+  double hfov = 1;                                ///< [rad] depth_camera: between the outer borders of the outer columns
+  int beams = 720, layers = 1;                    ///< lidar
+  double first_angle = -2.35, last_angle = 2.35;  ///< [rad] lidar: of the outer beams, counter-clockwise about z from x
+  double lowest_angle = 0, highest_angle = 0;     ///< [rad] lidar: of the outer layers above the plane of x and y
+};
+
+/** Sensors that look: depth_camera and lidar. */
+inline bool isRangeSensor(SensorType type) { return type == SensorType::DEPTH_CAMERA || type == SensorType::LIDAR; }
 
 struct SensorConfig {
   std::string name;
@@ -74,13 +91,14 @@ struct SensorConfig {
   std::string joint;                        ///< force_torque
   std::string frame = "child";              ///< force_torque: child | parent | sensor (axes of the joint frame)
   std::string measure = "parent_to_child";  ///< force_torque: parent_to_child (the wrench on the child) | child_to_parent
-  std::string link;                         ///< imu, contact, tilt
+  std::string link;                         ///< imu, contact, tilt, depth_camera, lidar
   std::string topic;                        ///< empty: the sensor's name
-  Pose X_LS = Pose::Identity();             ///< imu, tilt: sensor in the link
+  Pose X_LS = Pose::Identity();             ///< imu, tilt, depth_camera, lidar: sensor in the link
   double rate = 0;                          ///< [Hz], 0 = every step
   double noise_stddev = 0;                  ///< force_torque [N, N m]
   double accel_stddev = 0, gyro_stddev = 0, accel_bias_stddev = 0, gyro_bias_stddev = 0;
   std::map<std::string, double> torque_constant;  ///< motor_current, by joint, "default"
+  RangeSensorConfig rays;                         ///< depth_camera, lidar
 };
 
 struct RobotConfig {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <variant>
 #include <vector>
@@ -74,8 +75,18 @@ struct MotorCurrentReading {
   std::vector<std::string> joints;
   std::vector<double> efforts, currents;  ///< [N m or N], [A] means over the step
 };
+struct RangeView;
+/** A view that is taken, not drawn: depthsOf (range_view.h) draws it when somebody wants to see it. */
+struct DepthCameraReading {
+  std::shared_ptr<const RangeView> view;
+};
+/** The same for rangesOf. */
+struct LidarReading {
+  std::shared_ptr<const RangeView> view;
+};
 /** A new sensor is one alternative; the visits in blem_sim_run and in ros do not compile until they know it. */
-using SensorReading = std::variant<ForceTorqueReading, ImuReading, ContactReading, TiltReading, MotorCurrentReading>;
+using SensorReading =
+    std::variant<ForceTorqueReading, ImuReading, ContactReading, TiltReading, MotorCurrentReading, DepthCameraReading, LidarReading>;
 
 struct SensorSample {
   int sensor = 0;  ///< index into Simulator::sensors()

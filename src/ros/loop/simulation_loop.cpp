@@ -83,13 +83,18 @@ std::uint32_t SimulationLoop::stepPaused(std::uint32_t count) {
   return made;
 }
 
-void SimulationLoop::flush() {
+void SimulationLoop::drain() {
+  for (const auto& publisher : publishers_) publisher->drain();
   sender_.drain();
+}
+
+void SimulationLoop::flush() {
+  drain();
   outbox_.flush();
 }
 
 void SimulationLoop::resetSimulation() {
-  sender_.drain();  // messages of earlier steps go out before those that are published directly
+  drain();  // messages of earlier steps go out before those that are published directly
   simulator_->resetSimulation();
   for (const auto& publisher : publishers_) publisher->timeRestarted();
   publish(simulator_->report());

@@ -62,6 +62,7 @@ class SimulationLoop {
   void publish(const StepReport& report);
   /** Returns when the messages published so far have been offered to the sockets. */
   void flush();
+  void drain();
 
   Simulator* simulator_;
   std::vector<std::unique_ptr<StepPublisher>> publishers_;

@@ -4,7 +4,9 @@
 #include <tf2_msgs/TFMessage.h>
 #include <boost/make_shared.hpp>
 
+#include <optional>
 #include <set>
+#include <utility>
 
 #include "blem_sim/geometry/input_error.h"
 #include "messages/contact_messages.h"
@@ -29,7 +31,9 @@ struct ReadingPublisher {
   const StepReport& report;
   const std::string& frame_id;
   SensorMessages* messages;
-  ListenedPublisher* publisher;
+  ListenedPublisher* publisher;                      // none for a RangeReading
+  const std::shared_ptr<const RangeTopics>& topics;  // for it alone
+  RangePublisher* ranges;
   StepSender* sender;
 
   template <typename Message>
@@ -76,6 +80,10 @@ struct ReadingPublisher {
     message->current = reading.currents;
     sender->add(publisher, message);
   }
+
+  void operator()(const DepthCameraReading& reading) const { ranges->publish(topics, report.time, frame_id, reading.view); }
+
+  void operator()(const LidarReading& reading) const { ranges->publish(topics, report.time, frame_id, reading.view); }
 };
 
 ListenedPublisher advertise(ros::NodeHandle* node, SensorType type, const std::string& topic) {
@@ -89,14 +97,31 @@ ListenedPublisher advertise(ros::NodeHandle* node, SensorType type, const std::s
       return ListenedPublisher::advertise<ContactsState>(node, topic, QUEUE_SIZE);
     case SensorType::MOTOR_CURRENT:
       return ListenedPublisher::advertise<MotorCurrents>(node, topic, QUEUE_SIZE);
+    case SensorType::DEPTH_CAMERA:
+    case SensorType::LIDAR:
+      break;  // RangePublisher's
   }
   throw InputError("sensor topic " + topic + ": this type of sensor has no message");
 }
 
 std::string topicOf(const SensorConfig& sensor) { return sensor.topic.empty() ? sensor.name : sensor.topic; }
 
-bool sitsAskew(const SensorConfig& sensor) {
-  return (sensor.type == SensorType::IMU || sensor.type == SensorType::TILT) && !sensor.X_LS.isApprox(Pose::Identity(), 1e-12);
+/** A sensor's frame of its own in its link. */
+struct Mounting {
+  std::string frame;
+  Pose X_LF;
+};
+
+/** The optical frame of a camera; the frame of another sensor that sits askew in its link; none if it is the link's. */
+std::optional<Mounting> mountingOf(const SensorConfig& sensor) {
+  if (sensor.type == SensorType::DEPTH_CAMERA) {
+    Pose X_SO = Pose::Identity();
+    X_SO.linear() = opticalAxes();
+    return Mounting{sensor.name + "_optical_frame", sensor.X_LS * X_SO};
+  }
+  const bool sits_anyhow = sensor.type == SensorType::IMU || sensor.type == SensorType::TILT || sensor.type == SensorType::LIDAR;
+  if (!sits_anyhow || sensor.X_LS.isApprox(Pose::Identity(), 1e-12)) return std::nullopt;
+  return Mounting{sensor.name + "_frame", sensor.X_LS};
 }
 
 }  // namespace
@@ -124,8 +149,14 @@ void SensorPublisher::modelsChanged() {
   };
   const auto make = [this](const SensorInfo& sensor) {
     ros::NodeHandle robot_node = nodeOf(sensor);
-    const std::string frame = sitsAskew(sensor.config) ? sensor.config.name + "_frame" : sensor.frame_id;
-    return SensorTopic{{}, advertise(&robot_node, sensor.config.type, topicOf(sensor.config)), frame, SensorMessages()};
+    const std::optional<Mounting> mounting = mountingOf(sensor.config);
+    SensorTopic topic;
+    topic.frame = mounting ? mounting->frame : sensor.frame_id;
+    if (isRangeSensor(sensor.config.type))
+      topic.ranges = advertiseRanges(&robot_node, topicOf(sensor.config), sensor.config);
+    else
+      topic.publisher = advertise(&robot_node, sensor.config.type, topicOf(sensor.config));
+    return topic;
   };
   keepTopics(simulator_.sensors(), keyOf, make, &topics_);
   publishMountings();
@@ -137,13 +168,13 @@ ros::NodeHandle SensorPublisher::nodeOf(const SensorInfo& sensor) const {
 
 void SensorPublisher::publishMountings() {
   tf2_msgs::TFMessage message;
-  for (std::size_t i = 0; i < topics_.size(); ++i) {
-    const SensorConfig& config = simulator_.sensors()[i].config;
-    if (!sitsAskew(config)) continue;
+  for (const SensorInfo& sensor : simulator_.sensors()) {
+    const std::optional<Mounting> mounting = mountingOf(sensor.config);
+    if (!mounting) continue;
     geometry_msgs::TransformStamped transform;
-    transform.header.frame_id = config.link;
-    transform.child_frame_id = topics_[i].frame;
-    transform.transform = toTransform(config.X_LS);
+    transform.header.frame_id = sensor.config.link;
+    transform.child_frame_id = mounting->frame;
+    transform.transform = toTransform(mounting->X_LF);
     message.transforms.push_back(transform);
   }
   if (message.transforms.empty()) return;
@@ -154,8 +185,10 @@ void SensorPublisher::publishMountings() {
 void SensorPublisher::publish(const StepReport& report) {
   for (const SensorSample& sample : report.samples) {
     SensorTopic& topic = topics_[sample.sensor];
-    if (!topic.publisher.listened()) continue;
-    std::visit(ReadingPublisher{simulator_, report, topic.frame, &topic.messages, &topic.publisher, sender_}, sample.reading);
+    if (topic.publisher && !topic.publisher->listened()) continue;
+    ListenedPublisher* const publisher = topic.publisher ? &*topic.publisher : nullptr;
+    std::visit(ReadingPublisher{simulator_, report, topic.frame, &topic.messages, publisher, topic.ranges, &ranges_, sender_},
+               sample.reading);
   }
 }
 

@@ -5,11 +5,14 @@
 #include <ros/node_handle.h>
 #include <sensor_msgs/Imu.h>
 
+#include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "messages/message_pool.h"
+#include "publishers/ranges/range_publisher.h"
 #include "sending/listened_publisher.h"
 #include "sending/step_publisher.h"
 #include "sending/step_sender.h"
@@ -25,9 +28,10 @@ struct SensorMessages {
 
 /** Topic of a sensor. */
 struct SensorTopic {
-  std::pair<std::string, std::string> key;  ///< names of the robot and the sensor
-  ListenedPublisher publisher;
-  std::string frame;  ///< frame_id of its messages
+  std::pair<std::string, std::string> key;     ///< names of the robot and the sensor
+  std::string frame;                           ///< frame_id of its messages
+  std::optional<ListenedPublisher> publisher;  ///< none for cameras and lidars
+  std::shared_ptr<const RangeTopics> ranges;   ///< for them alone
   SensorMessages messages;
 };
 
@@ -38,6 +42,7 @@ class SensorPublisher : public StepPublisher {
   SensorPublisher(ros::NodeHandle node, const Simulator& simulator, StepSender* sender);
   void publish(const StepReport& report) override;
   void modelsChanged() override;
+  void drain() override { ranges_.drain(); }
 
  private:
   void publishMountings();
@@ -47,7 +52,8 @@ class SensorPublisher : public StepPublisher {
   StepSender* sender_;
   ros::NodeHandle node_;
   std::vector<SensorTopic> topics_;  // per sensor
-  ros::Publisher mountings_;         // /tf_static of sensors that sit askew in their link
+  RangePublisher ranges_;
+  ros::Publisher mountings_;  // /tf_static of sensors that sit askew in their link
 };
 
 }  // namespace blem_sim

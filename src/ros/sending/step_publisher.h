@@ -10,6 +10,8 @@ class StepPublisher {
   virtual ~StepPublisher() = default;
   /** Called after every step, and once with the state at hand when the node is ready or time has started again. */
   virtual void publish(const StepReport& report) = 0;
+  /** Returns when messages of earlier steps are published that are made beside the steps. */
+  virtual void drain() {}
   /** Called when simulated time starts again at 0. */
   virtual void timeRestarted() {}
   /** Called when steps are about to be made again after a pause: measurements on the wall clock start anew. */

@@ -47,6 +47,8 @@ void checkSensor(const SensorConfig& sensor, const std::string& where, const Nam
     case SensorType::IMU:
     case SensorType::CONTACT:
     case SensorType::TILT:
+    case SensorType::DEPTH_CAMERA:
+    case SensorType::LIDAR:
       requireName(sensor.link, names.links, where + ": link", "link");
       return;
     case SensorType::MOTOR_CURRENT:

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "blem_sim/geometry/input_error.h"
+#include "config/range_sensor_check.h"
 #include "config/scene_limits.h"
 #include "config/yaml_reader.h"
 
@@ -44,6 +45,9 @@ class Fields {
     number("impact_friction_factor", s.impact_friction_factor, NumberRange::fraction());
     number("stiffness", s.stiffness, NumberRange::positiveOrInfinite());
     number("damping", s.damping, NumberRange::notNegativeOrInfinite());
+  }
+  void rays(const SensorConfig& sensor) const {
+    if (const auto fault = faultOf(sensor.type, sensor.rays)) throw InputError(where_ + fault->key + ": " + fault->why);
   }
   void overrides(const ContactOverrides& o) const {
     number("boundary_width", o.boundary_width, NumberRange::notNegative());
@@ -113,6 +117,7 @@ void checkRobot(const RobotConfig& robot) {
     for (const double deviation :
          {sensor.noise_stddev, sensor.accel_stddev, sensor.gyro_stddev, sensor.accel_bias_stddev, sensor.gyro_bias_stddev})
       of_sensor.number("noise", deviation, NumberRange::notNegative());
+    of_sensor.rays(sensor);
   }
 }
 

@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <limits>
 
 #include "config/config_sections.h"
+#include "config/range_sensor_check.h"
 
 namespace blem_sim {
 
@@ -48,18 +50,71 @@ void readMotorCurrent(YamlReader& reader, SensorConfig* sensor) {
   });
 }
 
-/** A new sensor is one row: its name in the YAML, its type, its own keys. */
+// Lower bound of counts: refuseFaults says why one cannot be used.
+constexpr int ANY_COUNT = std::numeric_limits<int>::min();
+
+void readRays(YamlReader& reader, SensorConfig* sensor) {
+  requireText(reader, "link", &sensor->link);
+  reader.read("pose", &sensor->X_LS);
+  if (const auto range = reader.numbers("range", 2)) {
+    sensor->rays.nearest = (*range)[0];
+    sensor->rays.farthest = (*range)[1];
+  }
+}
+
+void refuseFaults(const YamlReader& reader, const SensorConfig& sensor) {
+  if (const auto fault = faultOf(sensor.type, sensor.rays)) reader.refuse(fault->key, fault->why);
+}
+
+void readDepthCamera(YamlReader& reader, SensorConfig* sensor) {
+  RangeSensorConfig& rays = sensor->rays;
+  readRays(reader, sensor);
+  reader.read("width", &rays.width, ANY_COUNT);
+  reader.read("height", &rays.height, ANY_COUNT);
+  reader.read("hfov", &rays.hfov, NumberRange::any());
+  YamlReader noise = reader.section("noise");
+  if (const auto model = noise.choice("model", {"gaussian", "kinect"})) rays.noise = *model ? RangeNoise::KINECT : RangeNoise::GAUSSIAN;
+  noise.read("stddev", &rays.stddev, NumberRange::notNegative());
+  noise.finish();
+  refuseFaults(reader, *sensor);
+}
+
+void readLidar(YamlReader& reader, SensorConfig* sensor) {
+  RangeSensorConfig& rays = sensor->rays;
+  rays.nearest = 0.1;
+  rays.farthest = 30;
+  readRays(reader, sensor);
+  reader.read("beams", &rays.beams, ANY_COUNT);
+  reader.read("layers", &rays.layers, ANY_COUNT);
+  if (const auto angle = reader.numbers("angle", 2)) {
+    rays.first_angle = (*angle)[0];
+    rays.last_angle = (*angle)[1];
+  }
+  if (const auto angle = reader.numbers("vertical_angle", 2)) {
+    rays.lowest_angle = (*angle)[0];
+    rays.highest_angle = (*angle)[1];
+  }
+  YamlReader noise = reader.section("noise");
+  noise.read("stddev", &rays.stddev, NumberRange::notNegative());
+  noise.finish();
+  refuseFaults(reader, *sensor);
+}
+
+/** A new sensor is one row: its name in the YAML, its type, its rate [Hz] unless told otherwise, its own keys. */
 struct SensorRow {
   const char* name;
   SensorType type;
+  double rate;
   ReadSensor read;
 };
 const std::vector<SensorRow> SENSOR_TABLE = {
-    {"force_torque", SensorType::FORCE_TORQUE, readForceTorque},
-    {"imu", SensorType::IMU, readImu},
-    {"contact", SensorType::CONTACT, readContactSensor},
-    {"tilt", SensorType::TILT, readTilt},
-    {"motor_current", SensorType::MOTOR_CURRENT, readMotorCurrent},
+    {"force_torque", SensorType::FORCE_TORQUE, 0, readForceTorque},
+    {"imu", SensorType::IMU, 0, readImu},
+    {"contact", SensorType::CONTACT, 0, readContactSensor},
+    {"tilt", SensorType::TILT, 0, readTilt},
+    {"motor_current", SensorType::MOTOR_CURRENT, 0, readMotorCurrent},
+    {"depth_camera", SensorType::DEPTH_CAMERA, 30, readDepthCamera},
+    {"lidar", SensorType::LIDAR, 40, readLidar},
 };
 
 SensorConfig readSensor(YamlReader& reader) {
@@ -68,8 +123,9 @@ SensorConfig readSensor(YamlReader& reader) {
   std::vector<std::string> types;
   for (const SensorRow& row : SENSOR_TABLE) types.push_back(row.name);
   const auto type = reader.choice("type", types);
-  if (!type) reader.refuse("type", "is missing; one of force_torque, imu, contact, tilt, motor_current");
+  if (!type) reader.refuse("type", "is missing; one of force_torque, imu, contact, tilt, motor_current, depth_camera, lidar");
   sensor.type = SENSOR_TABLE[*type].type;
+  sensor.rate = SENSOR_TABLE[*type].rate;
   reader.read("topic", &sensor.topic);
   reader.read("rate", &sensor.rate, NumberRange::notNegative());
   SENSOR_TABLE[*type].read(reader, &sensor);

@@ -34,6 +34,9 @@ std::unique_ptr<Sensor> makeSensor(const SimulatedWorld& world, const SensorInfo
       return makeTiltSensor(world, info);
     case SensorType::MOTOR_CURRENT:
       return makeMotorCurrentSensor(world, info);
+    case SensorType::DEPTH_CAMERA:
+    case SensorType::LIDAR:
+      return makeRangeSensor(world, info);
   }
   return nullptr;
 }

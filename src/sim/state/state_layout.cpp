@@ -128,6 +128,13 @@ void writeColliders(const SimulatedWorld& world, LayoutWriter* writer) {
   writer->line("colliders that never touch", pairs);
 }
 
+std::uint64_t raysHash(const RangeSensorConfig& rays) {
+  ContentHash hash;
+  hash.add(rays.nearest).add(rays.farthest).add(static_cast<int>(rays.noise)).add(rays.stddev).add(rays.width).add(rays.height);
+  hash.add(rays.hfov).add(rays.beams).add(rays.layers).add(rays.first_angle).add(rays.last_angle);
+  return hash.add(rays.lowest_angle).add(rays.highest_angle).value();
+}
+
 void writeSensors(const SimulatedWorld& world, LayoutWriter* writer) {
   for (const SensorInfo& sensor : world.sensors) {
     const SensorConfig& c = sensor.config;
@@ -135,6 +142,7 @@ void writeSensors(const SimulatedWorld& world, LayoutWriter* writer) {
     hash.add(sensor.robot).add(static_cast<int>(c.type)).add(c.joint).add(c.frame).add(c.measure).add(c.link).add(c.X_LS).add(c.rate);
     hash.add(c.noise_stddev).add(c.accel_stddev).add(c.gyro_stddev).add(c.accel_bias_stddev).add(c.gyro_bias_stddev);
     for (const auto& [joint, constant] : c.torque_constant) hash.add(joint).add(constant);
+    if (isRangeSensor(c.type)) hash.add(raysHash(c.rays));
     writer->line("sensor", c.name, "kind or settings", hash);
   }
 }

@@ -1,6 +1,10 @@
 #include "sensor_values.h"
 
+#include <algorithm>
+#include <cmath>
 #include <map>
+
+#include "blem_sim/sim/range_view.h"
 
 namespace blem_sim {
 
@@ -40,6 +44,23 @@ struct ToRow {
     for (std::size_t i = 0; i < r.joints.size(); ++i) row.add(r.joints[i] + "_effort", r.efforts[i]);
     return row;
   }
+  SensorValues operator()(const DepthCameraReading& r) const { return summary(r.view ? depthsOf(*r.view) : std::vector<float>()); }
+  SensorValues operator()(const LidarReading& r) const { return summary(r.view ? rangesOf(*r.view) : std::vector<float>()); }
+
+  /** Nearest, farthest and mean range [m] of the rays that hit, 0 if none does, and their share of all. */
+  static SensorValues summary(const std::vector<float>& ranges) {
+    double nearest = 0, farthest = 0, sum = 0, hits = 0;
+    for (const double range : ranges) {
+      if (!std::isfinite(range)) continue;
+      nearest = hits > 0 ? std::min(nearest, range) : range;
+      farthest = std::max(farthest, range);
+      sum += range;
+      ++hits;
+    }
+    Row row;
+    row.add("nearest", nearest).add("farthest", farthest).add("mean", hits > 0 ? sum / hits : 0);
+    return row.add("hits", ranges.empty() ? 0 : hits / static_cast<double>(ranges.size()));
+  }
 };
 
 }  // namespace
@@ -61,6 +82,9 @@ std::vector<std::string> sensorFields(const Simulator& simulator, const SensorIn
       return sensorValues(TiltReading{Quaternion::Identity(), zero, 0, 0}).names;
     case SensorType::MOTOR_CURRENT:
       return sensorValues(MotorCurrentReading{joints, none, none}).names;
+    case SensorType::DEPTH_CAMERA:
+    case SensorType::LIDAR:
+      return sensorValues(LidarReading()).names;
   }
   return {};
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "blem_sim/geometry/ray_cast.h"
+
 namespace blem_sim::demo {
 
 namespace {
@@ -19,9 +21,7 @@ Vector3 normalOf(const TriangleMesh& mesh, int element) {
 }
 
 bool isLit(const Scene& scene, const Vector3& point, const Vector3& projector) {
-  double t = 0;
-  const Vector3 ray = point - projector;
-  return castRay(scene.bvh, scene.mesh, projector, ray, &t) < 0 || t > 1 - 1e-3;
+  return castRay({scene.bvh, scene.mesh}, {projector, point - projector}).t > 1 - 1e-3;
 }
 
 // Whether a dark spot swallows a sample; spots are ragged at the rim, where some samples come back.
@@ -67,8 +67,7 @@ DepthImage capture(const Scene& scene, const DepthCamera& camera, Noise& noise) 
       const Vector3 direction_C(((column + 0.5) * camera.stride - 0.5 * camera.width) / camera.focal_length,
                                 ((row + 0.5) * camera.stride - 0.5 * camera.height) / camera.focal_length, 1);
       const Vector3 direction = camera.X_WC.linear() * direction_C;
-      double depth = 0;
-      const int hit = castRay(scene.bvh, scene.mesh, eye, direction, &depth);
+      const auto [depth, hit] = castRay({scene.bvh, scene.mesh}, {eye, direction});
       const bool dropped = noise.uniform() < DROPOUT;
       if (hit < 0 || dropped || depth > FARTHEST) continue;
       if (std::abs(normalOf(scene.mesh, hit).dot(direction.normalized())) < GRAZING) continue;

@@ -1,12 +1,15 @@
 #!/usr/bin/python3
 """Several controllers: listed, loaded and switched as a spawner does it, in namespaces, grippers, in lock-step, asked by clients of other packages."""
 import math
+import os
+import sys
 
 import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus
 from sensor_msgs.msg import JointState
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 import sim_client
 from blem_sim.msg import FollowJointTrajectoryAction, GripperCommandAction, GripperCommandGoal, JointTrajectoryControllerState
 from blem_sim.srv import ListControllers, LoadController, SwitchController, UnloadController

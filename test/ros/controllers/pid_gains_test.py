@@ -1,12 +1,15 @@
 #!/usr/bin/python3
 """Gains come from gazebo_ros_control/pid_gains; without them the arm would fall, or sag by a fiftieth of what they let it."""
 import math
+import os
+import sys
 import unittest
 
 import rospy
 import rostest
 from sensor_msgs.msg import JointState
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 import sim_client
 from sim_client import Recorder, wait_until
 

@@ -1,12 +1,15 @@
 #!/usr/bin/python3
 """Trajectory controllers behave as joint_trajectory_controller does, to an actionlib client and to topics."""
 import math
+import os
+import sys
 
 import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus
 from trajectory_msgs.msg import JointTrajectory
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 import sim_client
 from blem_sim.msg import FollowJointTrajectoryGoal, FollowJointTrajectoryResult, JointTolerance, JointTrajectoryControllerState
 from controller_client import JOINTS, Controller, ControllerTestCase, goal, now, trajectory

@@ -1,4 +1,6 @@
 """Clients of controllers, as the rostests of controllers share them."""
+import os
+import sys
 import unittest
 
 import actionlib
@@ -8,6 +10,7 @@ from actionlib_msgs.msg import GoalStatus
 from rosgraph_msgs.msg import Log
 from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 import sim_client
 from blem_sim.msg import FollowJointTrajectoryAction, FollowJointTrajectoryGoal
 from blem_sim.srv import QueryTrajectoryState

@@ -1,0 +1,77 @@
+#include "publishers/ranges/range_publisher.h"
+
+#include <boost/make_shared.hpp>
+
+#include <algorithm>
+#include <utility>
+
+#include "messages/conversions.h"
+#include "messages/range_messages.h"
+#include "sending/poll_rounds.h"
+
+namespace blem_sim {
+
+namespace {
+
+// Megabytes each: more than a few are of no use to who is late.
+constexpr int IMAGES = 5;
+constexpr int SCANS = 100;
+
+template <typename Message>
+void send(const ListenedPublisher& publisher, Message message, const std_msgs::Header& header) {
+  const auto shared = boost::make_shared<Message>(std::move(message));
+  shared->header = header;
+  const auto between = PollRounds::instance().betweenHandOvers();
+  publisher.publish(shared);
+}
+
+}  // namespace
+
+std::shared_ptr<const RangeTopics> advertiseRanges(ros::NodeHandle* node, const std::string& topic, const SensorConfig& sensor) {
+  const auto topics = std::make_shared<RangeTopics>();
+  topics->config = sensor;
+  std::vector<ListenedPublisher>& made = topics->publishers;
+  if (sensor.type == SensorType::DEPTH_CAMERA) {
+    made.push_back(ListenedPublisher::advertise<sensor_msgs::CameraInfo>(node, topic + "/depth/camera_info", SCANS));
+    made.push_back(ListenedPublisher::advertise<sensor_msgs::Image>(node, topic + "/depth/image_raw", IMAGES));
+    made.push_back(ListenedPublisher::advertise<sensor_msgs::Image>(node, topic + "/depth/image", IMAGES));
+    made.push_back(ListenedPublisher::advertise<sensor_msgs::PointCloud2>(node, topic + "/depth/points", IMAGES));
+  } else if (sensor.rays.layers == 1) {
+    made.push_back(ListenedPublisher::advertise<sensor_msgs::LaserScan>(node, topic, SCANS));
+  } else {
+    made.push_back(ListenedPublisher::advertise<sensor_msgs::PointCloud2>(node, topic, SCANS));
+  }
+  return topics;
+}
+
+void RangePublisher::publish(const std::shared_ptr<const RangeTopics>& topics, double time, const std::string& frame_id,
+                             const std::shared_ptr<const RangeView>& view) {
+  const auto listened = [](const ListenedPublisher& publisher) { return publisher.listened(); };
+  if (std::none_of(topics->publishers.begin(), topics->publishers.end(), listened)) return;
+  Header header;
+  header.stamp = toStamp(time);
+  header.frame_id = frame_id;
+  const auto draw = topics->config.type == SensorType::DEPTH_CAMERA ? drawCamera : drawLidar;
+  thread_.add([topics, view, header, draw] { draw(*topics, *view, header); });
+}
+
+void RangePublisher::drawCamera(const RangeTopics& topics, const RangeView& view, const Header& header) {
+  const ListenedPublisher &info = topics.publishers[0], &metres = topics.publishers[1], &millimetres = topics.publishers[2],
+                          &points = topics.publishers[3];
+  if (info.listened()) send(info, toCameraInfo(view.rays), header);
+  if (!metres.listened() && !millimetres.listened() && !points.listened()) return;
+  const std::vector<float> depths = depthsOf(view);
+  if (metres.listened()) send(metres, toMetreImage(view.rays, depths), header);
+  if (millimetres.listened()) send(millimetres, toMillimetreImage(view.rays, depths), header);
+  if (points.listened()) send(points, toCloud(view.rays, depths), header);
+}
+
+void RangePublisher::drawLidar(const RangeTopics& topics, const RangeView& view, const Header& header) {
+  const std::vector<float> ranges = rangesOf(view);
+  if (view.rays.layers == 1)
+    send(topics.publishers[0], toScan(topics.config, ranges), header);
+  else
+    send(topics.publishers[0], toLayeredCloud(view.rays, ranges), header);
+}
+
+}  // namespace blem_sim

@@ -1,0 +1,86 @@
+#include "blem_sim/sim/range_view.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "numbers/random_numbers.h"
+
+namespace blem_sim {
+namespace {
+
+constexpr double INFINITE = std::numeric_limits<double>::infinity();
+constexpr double DISPARITY_STEP = 2.85e-3;  // [1/m]
+constexpr double DISPARITY_STDDEV = 0.5;    // steps
+
+double between(double first, double last, int i, int count) { return count > 1 ? first + i * ((last - first) / (count - 1)) : first; }
+
+/** Rays of a sensor in rows: direction(row, column), in the sensor's axes, has the length that ranges are counted in. */
+template <typename Direction>
+std::vector<float> draw(const RangeView& view, int rows, int columns, Direction&& direction) {
+  const RayScene scene(view.targets);
+  const RayScene::Query query{view.rays.farthest, view.model, view.rays.nearest};
+  std::vector<float> ranges(static_cast<std::size_t>(rows) * columns);
+  tbb::parallel_for(0, rows, [&](int row) {
+    for (int column = 0; column < columns; ++column) {
+      const std::size_t ray = static_cast<std::size_t>(row) * columns + column;
+      const double t = scene.firstHit({view.X_WS.translation(), view.X_WS.linear() * direction(row, column)}, query).t;
+      const double range = t < view.rays.nearest ? -INFINITE : t < INFINITE ? measuredRange(view, ray, t) : INFINITE;
+      ranges[ray] = static_cast<float>(range);
+    }
+  });
+  return ranges;
+}
+
+}  // namespace
+
+Pinhole pinholeOf(const RangeSensorConfig& camera) {
+  return {camera.width / (2 * std::tan(camera.hfov / 2)), (camera.width - 1) / 2.0, (camera.height - 1) / 2.0};
+}
+
+Matrix3 opticalAxes() {
+  Matrix3 R_SO;
+  R_SO << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  return R_SO;
+}
+
+double beamAngle(const RangeSensorConfig& lidar, int beam) { return between(lidar.first_angle, lidar.last_angle, beam, lidar.beams); }
+double layerAngle(const RangeSensorConfig& lidar, int layer) {
+  return between(lidar.lowest_angle, lidar.highest_angle, layer, lidar.layers);
+}
+
+Vector3 beamDirection(const RangeSensorConfig& lidar, int layer, int beam) {
+  const double up = layerAngle(lidar, layer), turn = beamAngle(lidar, beam);
+  return {std::cos(up) * std::cos(turn), std::cos(up) * std::sin(turn), std::sin(up)};
+}
+
+double measuredRange(const RangeView& view, std::size_t ray, double range) {
+  const RangeSensorConfig& rays = view.rays;
+  if (rays.noise == RangeNoise::GAUSSIAN && rays.stddev == 0) return range;
+  RandomNumbers random(RandomNumbers(view.noise_seed + ray).next());
+  double measured = range + (rays.stddev > 0 ? rays.stddev * random.gaussian() : 0);
+  if (rays.noise == RangeNoise::KINECT) {
+    measured = std::clamp(measured, rays.nearest, rays.farthest);
+    const double disparity = std::round(1 / (measured * DISPARITY_STEP) + DISPARITY_STDDEV * random.gaussian());
+    measured = disparity > 0 ? 1 / (disparity * DISPARITY_STEP) : INFINITE;
+  }
+  return std::clamp(measured, rays.nearest, rays.farthest);
+}
+
+std::vector<float> depthsOf(const RangeView& camera) {
+  const Pinhole pinhole = pinholeOf(camera.rays);
+  const Matrix3 R_SO = opticalAxes();
+  std::vector<float> depths = draw(camera, camera.rays.height, camera.rays.width, [&](int row, int column) -> Vector3 {
+    return R_SO * Vector3((column - pinhole.middle_u) / pinhole.focal_length, (row - pinhole.middle_v) / pinhole.focal_length, 1);
+  });
+  for (float& depth : depths)
+    if (std::isinf(depth)) depth = std::numeric_limits<float>::quiet_NaN();
+  return depths;
+}
+
+std::vector<float> rangesOf(const RangeView& lidar) {
+  return draw(lidar, lidar.rays.layers, lidar.rays.beams, [&](int layer, int beam) { return beamDirection(lidar.rays, layer, beam); });
+}
+
+}  // namespace blem_sim
