@@ -161,10 +161,11 @@ bool JointMotor::accept(const JointDrive& drive, const JointState& after, double
   return saturated;
 }
 
-/** An error that dry friction holds against p alone is not integrated: the joint would stick and slip about its target for ever. */
+/** An error from a target at rest that dry friction holds against p alone is not integrated: the joint would stick and slip about its
+ * target for ever. */
 void JointMotor::integrate(double dt) {
   const JointGains& gains = settings_.gains;
-  if (gains.i > 0 && gains.p * std::abs(error_) < settings_.friction.dry) return;
+  if (gains.i > 0 && sample_.velocity == 0 && gains.p * std::abs(error_) < settings_.friction.dry) return;
   integral_ = clamped(integral_ + gains.i * error_ * dt, gains.i_clamp);
 }
 
