@@ -85,7 +85,7 @@ void followMasters(const LumpedRobot& robot, JointValues* values) {
   }
 }
 
-std::string withoutModel(const std::string& joint, const std::string& model) {
+std::string withoutScope(const std::string& joint, const std::string& model) {
   return joint.compare(0, model.size() + 2, model + "::") == 0 ? joint.substr(model.size() + 2) : joint;
 }
 
@@ -97,7 +97,7 @@ std::vector<std::size_t> indicesOf(const RobotInfo& robot, const std::vector<std
   std::vector<std::size_t> indices;
   std::set<std::string> seen;
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const std::string name = withoutModel(names[i], robot.name);
+    const std::string name = withoutScope(names[i], robot.name);
     requireName(name, robot.joint_names, where, "movable joint");
     if (!seen.insert(name).second) throw InputError(fmt::format("{}: joint '{}' is there twice; name it once", where, name));
     if (!isCommand(positions[i])) throw InputError(fmt::format("{}: joint '{}': {} is no position", where, name, positions[i]));

@@ -31,8 +31,8 @@ struct ReadingPublisher {
   const StepReport& report;
   const std::string& frame_id;
   SensorMessages* messages;
-  ListenedPublisher* publisher;                      // none for a RangeReading
-  const std::shared_ptr<const RangeTopics>& topics;  // for it alone
+  ListenedPublisher* publisher;                      // none for cameras and lidars
+  const std::shared_ptr<const RangeTopics>& topics;  // for them alone
   RangePublisher* ranges;
   StepSender* sender;
 

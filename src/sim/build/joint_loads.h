@@ -1,4 +1,4 @@
-// What each joint of a robot has to move and to hold, and gains for it.
+// Loads of a robot's joints, what each has to move and to hold, and gains for them.
 #pragma once
 
 #include <vector>

@@ -106,6 +106,20 @@ class GazeboSpawnTest(unittest.TestCase):
         sim_client.step(10)
         self.assertFalse(service("get_model_state", srv.GetModelState)("second", "").success)
 
+    def test_joints_with_a_transmission_hold(self):
+        transmission = """<transmission name="drive"><type>transmission_interface/SimpleTransmission</type>
+          <joint name="shoulder"/><actuator name="motor"><mechanicalReduction>1</mechanicalReduction></actuator></transmission></robot>"""
+        for urdf, holds in ((self.arm, False), (self.arm.replace("</robot>", transmission), True)):
+            answer = spawn("second", urdf, "second", x=2)
+            self.assertTrue(answer.success, answer.status_message)
+            self.assertIn("computed gains" if holds else "move freely", answer.status_message)
+            configured = service("set_model_configuration", srv.SetModelConfiguration)("second", "", ["shoulder"], [0.5])
+            self.assertTrue(configured.success, configured.status_message)
+            sim_client.step(200)
+            sunk = abs(service("get_joint_properties", srv.GetJointProperties)("second::shoulder").position[0] - 0.5)
+            self.assertEqual(sunk < 2e-3, holds, sunk)
+            self.assertTrue(delete("second").success)
+
     def test_clashes_and_nonsense_are_refused(self):
         before = models()
         for word, answer in (("taken", spawn("cube", BALL)), ("robot_namespace", spawn("second", self.arm)), ("model_xml", spawn("a", "")),
