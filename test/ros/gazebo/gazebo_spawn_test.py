@@ -108,9 +108,10 @@ class GazeboSpawnTest(unittest.TestCase):
 
     def test_joints_with_a_transmission_hold(self):
         transmission = """<transmission name="drive"><type>transmission_interface/SimpleTransmission</type>
-          <joint name="shoulder"/><actuator name="motor"><mechanicalReduction>1</mechanicalReduction></actuator></transmission></robot>"""
-        for urdf, holds in ((self.arm, False), (self.arm.replace("</robot>", transmission), True)):
-            answer = spawn("second", urdf, "second", x=2)
+          <joint name="shoulder"/><actuator name="motor"><mechanicalReduction>1</mechanicalReduction></actuator></transmission>"""
+        base = """<link name="world"/><joint name="foot" type="fixed"><parent link="world"/><child link="base"/></joint>"""
+        for added, holds in ((base, False), (base + transmission, True)):
+            answer = spawn("second", self.arm.replace("</robot>", added + "</robot>"), "second", x=2)
             self.assertTrue(answer.success, answer.status_message)
             self.assertIn("computed gains" if holds else "move freely", answer.status_message)
             configured = service("set_model_configuration", srv.SetModelConfiguration)("second", "", ["shoulder"], [0.5])

@@ -85,6 +85,15 @@ TEST(DepthCamera, SphereBoxAndLayer) {
   EXPECT_NEAR(depthsIn(config)[8 * 33 + 16], 0.9, 1e-6);
 }
 
+TEST(DepthCamera, LooksThroughTheMiddleOfItsImage) {
+  SimulationConfig config = sceneWith(depthCamera());
+  config.environments = {halfSpace({-0.8, 0, -0.6, -1.6})};  // depth grows downwards alone
+  config.robots[0].sensors[0].rays.hfov = 0.4;
+  const std::vector<float> depths = depthsIn(config);
+  EXPECT_NEAR(depths[8 * 33 + 16], 2, 1e-6);
+  EXPECT_LT(depths[0], depths[16 * 33] - 0.01);
+}
+
 TEST(DepthCamera, SitsWhereItsPoseSays) {
   SimulationConfig config = sceneWith(depthCamera());
   config.robots[0].X_WR = makePose({0, 0, 1});

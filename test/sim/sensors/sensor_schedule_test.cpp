@@ -38,6 +38,12 @@ TEST(SensorSchedule, WholePeriodsAreExactForYears) {
   }
 }
 
+TEST(SensorSchedule, RoundingDelaysNoReading) {
+  // 0.29 * 100 is below 29 in doubles.
+  EXPECT_TRUE(SensorSchedule(290, 0.001).due(100));
+  EXPECT_EQ(readings(SensorSchedule(290, 0.001), 1, 101), 29);
+}
+
 TEST(SensorSchedule, EveryStepWithoutARateOrWithOneThatIsFasterThanTheSteps) {
   for (const double rate : {0.0, 1000.0, 1500.0, 1e9}) {
     const SensorSchedule schedule(rate, 0.001);

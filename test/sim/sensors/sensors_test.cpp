@@ -209,6 +209,9 @@ TEST(Sensors, NoiseIsAStreamOfEachSensorsOwn) {
   const std::vector<Vector3> noise = imuNoise(alone);
   ASSERT_EQ(noise.size(), 100u);
   EXPECT_EQ(imuNoise(beside), noise);
+  Simulator two(beside, UriResolver());
+  two.step();
+  EXPECT_NE(reading<ImuReading>(two.report(), 0).angular_velocity, reading<ImuReading>(two.report(), 1).angular_velocity);
   SimulationConfig other_seed = alone;
   other_seed.random_seed = 2;
   EXPECT_NE(imuNoise(other_seed), noise);
