@@ -22,7 +22,7 @@ file(GLOB actions CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/action ${PROJ
 add_message_files(FILES ${messages})
 add_service_files(FILES ${services})
 add_action_files(FILES ${actions})
-generate_messages(DEPENDENCIES actionlib_msgs geometry_msgs std_msgs trajectory_msgs)
+generate_messages(DEPENDENCIES actionlib_msgs geometry_msgs sensor_msgs std_msgs trajectory_msgs)
 
 catkin_package(
   INCLUDE_DIRS include

@@ -15,7 +15,7 @@ constexpr int LARGE = 16;                  // cells that a box may cover
 Vector3 halfExtents(const Box& box) { return 0.5 * (box.max() - box.min()); }
 
 /** Box around the turned box. */
-void turn(const Box& box, const Pose& X_WC, Vector3* lower, Vector3* upper) {
+void turnBox(const Box& box, const Pose& X_WC, Vector3* lower, Vector3* upper) {
   const Vector3 half = X_WC.linear().cwiseAbs() * halfExtents(box), centre = X_WC * box.center();
   *lower = centre - half;
   *upper = centre + half;
@@ -66,7 +66,7 @@ class BroadPhase::Search {
     }
     const int model = colliders_[i].model >= 0 && !filter_.selfCollides(colliders_[i].model) ? colliders_[i].model : -1;
     SweepBox box{i, model, {}, {}, colliders_[i].radius + std::min(max_margin_, std::max(0.5 * base_margin_, motion_[i].reach))};
-    turn(colliders_[i].geometry->bounds(), motion_[i].X_WC, &box.lower, &box.upper);
+    turnBox(colliders_[i].geometry->bounds(), motion_[i].X_WC, &box.lower, &box.upper);
     // A state that is not finite is the step's to report; here it would only upset the order.
     if (box.lower.allFinite() && box.upper.allFinite()) space_.boxes_.push_back(box);
   }

@@ -277,7 +277,9 @@ void ArticulatedStepper::readJoints(const StepInput& input, const Island& island
     record.lower = j.lowerImpulse(v) / input.dt;
     record.upper = j.upperImpulse(v) / input.dt;
     record.dry_change = std::abs(record.dry) < bound && std::abs(last) < bound ? record.dry - last : 0;
-    result->joint_efforts[j.joint] = input.drives[j.joint].effort + (j.motorImpulse(v) + j.dryImpulse(v) - j.viscous * v) / input.dt;
+    const JointDrive& drive = input.drives[j.joint];
+    result->motor_efforts[j.joint] = drive.effort + j.motorImpulse(v) / input.dt;
+    result->axis_efforts[j.joint] = drive.givenEffort() + (j.motorImpulse(v) + j.dryImpulse(v) - j.viscous * v) / input.dt;
   };
   for (const JointTerm& j : problem.joints) read(j, space_.velocity[j.dof]);
   for (std::size_t l = 0; l < island.loops.size(); ++l) {
@@ -289,8 +291,8 @@ void ArticulatedStepper::readJoints(const StepInput& input, const Island& island
   for (std::size_t i = 0; i < island.mimics.size(); ++i) {
     const MimicRelation& m = forest_.mimics()[island.mimics[i]];
     const double effort = problem.mimic_impulses[i] / input.dt;
-    result->joint_efforts[forest_.nodes()[m.node].joint] += effort;
-    result->joint_efforts[forest_.nodes()[m.master].joint] -= m.multiplier * effort;
+    result->axis_efforts[forest_.nodes()[m.node].joint] += effort;
+    result->axis_efforts[forest_.nodes()[m.master].joint] -= m.multiplier * effort;
   }
 }
 
@@ -353,7 +355,8 @@ void ArticulatedStepper::step(Scene* scene, const StepInput& input, SolveResult*
   makeRoomFor(input.contacts.size(), &result->apparent_work);
   result->contact_forces.assign(input.contacts.size(), Vector3::Zero());
   result->apparent_work.assign(input.contacts.size(), 0);
-  result->joint_efforts.assign(scene->joints().size(), 0);
+  result->motor_efforts.assign(scene->joints().size(), 0);
+  result->axis_efforts.assign(scene->joints().size(), 0);
   result->joint_wrenches.assign(scene->joints().size(), Wrench());
   forEachIsland([&](Island* island) { solveIsland(*scene, input, island); });
   // Nothing was changed yet: a step that broke down leaves everything as it was.

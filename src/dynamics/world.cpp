@@ -148,13 +148,14 @@ const SolveResult& World::step(double dt, const std::vector<ContactConstraint>& 
   impl.scene.bits(&impl.start);
   impl.result.finite = impl.advance(input);
   if (impl.result.finite) {
-    for (std::size_t j = 0; j < drives.size(); ++j) impl.scene.joints()[j].last_effort = impl.result.joint_efforts[j];
+    for (std::size_t j = 0; j < drives.size(); ++j) impl.scene.joints()[j].last_effort = impl.result.motor_efforts[j];
     impl.scene.readJoints(&impl.joints);
     impl.joints_known = true;
   } else {
     impl.result.contact_forces.assign(contacts.size(), Vector3::Zero());
     impl.result.joint_wrenches.assign(drives.size(), Wrench());
-    impl.result.joint_efforts.assign(drives.size(), 0);
+    impl.result.motor_efforts.assign(drives.size(), 0);
+    impl.result.axis_efforts.assign(drives.size(), 0);
     impl.result.residual = impl.result.creep = 0;
     impl.result.iterations = impl.result.lcp_errors = 0;
   }

@@ -55,7 +55,7 @@ class Builder {
 
   /** Fills in the node of a run. @return false for a leaf; else the run lies in its two sides */
   bool split(const Run& run, Bvh::Node* node, Run* left, Run* right) const {
-    const FloatBox& box = run.bounds.box;
+    const BuildBox& box = run.bounds.box;
     node->lower = {box.lower[0], box.lower[1], box.lower[2]};
     node->upper = {box.upper[0], box.upper[1], box.upper[2]};
     node->first = static_cast<std::uint32_t>(run.begin - all_.begin);

@@ -16,7 +16,7 @@ constexpr std::size_t SOME = 512, MANY = 1 << 16;  // primitives that are binned
 
 /** Bins that a primitive's middle falls into, per axis. */
 struct Binning {
-  explicit Binning(const FloatBox& middles) : lower(middles.lower), scale(BINS * (1 - 1e-6f) / (middles.upper - middles.lower)) {
+  explicit Binning(const BuildBox& middles) : lower(middles.lower), scale(BINS * (1 - 1e-6f) / (middles.upper - middles.lower)) {
     for (int k = 0; k < 4; ++k) {
       usable[k] = std::isfinite(scale[k]);
       if (!usable[k]) scale[k] = 0;
@@ -34,9 +34,9 @@ struct Binning {
 /** Boxes and numbers of the primitives in the bins of the three axes; lanes of numbers are axes. */
 struct Bins {
   Bins() {
-    for (auto& of_axis : boxes) of_axis.fill(FloatBox::nothing());
+    for (auto& of_axis : boxes) of_axis.fill(BuildBox::nothing());
   }
-  void add(const Ints& bin, const FloatBox& box) {
+  void add(const Ints& bin, const BuildBox& box) {
     for (int axis = 0; axis < 3; ++axis) {
       boxes[axis][bin[axis]].extend(box);
       ++counts[bin[axis]][axis];
@@ -49,13 +49,13 @@ struct Bins {
     }
   }
 
-  std::array<std::array<FloatBox, BINS>, 3> boxes;
+  std::array<std::array<BuildBox, BINS>, 3> boxes;
   std::array<Ints, BINS> counts{};
 };
 
 /** One side of borders between bins of each axis, while they move on. */
 struct Sides {
-  std::array<FloatBox, 3> boxes{FloatBox::nothing(), FloatBox::nothing(), FloatBox::nothing()};
+  std::array<BuildBox, 3> boxes{BuildBox::nothing(), BuildBox::nothing(), BuildBox::nothing()};
   Ints counts{};
 
   void add(const Bins& bins, int bin) {
@@ -170,7 +170,7 @@ RunBounds boundsOf(const Primitive* begin, const Primitive* end) {
 
 /** Halves along the widest axis, in a total order. */
 Primitive* halved(const PrimitiveRun& run) {
-  const FloatBox& middles = run.bounds.middles;
+  const BuildBox& middles = run.bounds.middles;
   int widest = 0;
   for (int axis = 1; axis < 3; ++axis) {
     if (middles.upper[axis] - middles.lower[axis] > middles.upper[widest] - middles.lower[widest]) widest = axis;

@@ -14,14 +14,14 @@ namespace blem_sim {
 using Floats = float __attribute__((vector_size(16)));
 
 /** Axis-aligned float box; the fourth places are not its own. */
-struct FloatBox {
+struct BuildBox {
   Floats lower, upper;
 
-  static FloatBox nothing() {
+  static BuildBox nothing() {
     constexpr float INFINITE = std::numeric_limits<float>::infinity();
     return {Floats{} + INFINITE, Floats{} - INFINITE};
   }
-  void extend(const FloatBox& other) {
+  void extend(const BuildBox& other) {
     lower = other.lower < lower ? other.lower : lower;
     upper = other.upper > upper ? other.upper : upper;
   }
@@ -39,7 +39,7 @@ class Primitive {
     box_.upper[3] = packed(element >> MANTISSA_BITS);
   }
 
-  const FloatBox& box() const { return box_; }
+  const BuildBox& box() const { return box_; }
   Floats middle() const { return box_.lower + box_.upper; }
   float middle(int axis) const { return box_.lower[axis] + box_.upper[axis]; }
   std::uint32_t element() const { return unpacked(box_.lower[3]) | unpacked(box_.upper[3]) << MANTISSA_BITS; }
@@ -74,12 +74,12 @@ class Primitive {
   }
   static float roundedDown(double x) { return 0.0f - roundedUp(-x); }
 
-  FloatBox box_;
+  BuildBox box_;
 };
 
 /** Bounds of a run: of its boxes, and of their doubled middles. */
 struct RunBounds {
-  FloatBox box = FloatBox::nothing(), middles = box;
+  BuildBox box = BuildBox::nothing(), middles = box;
 
   void extend(const Primitive& p) {
     const Floats middle = p.middle();

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double MAX_COORDINATE = 1e30;
 /** A triangle lower than this part of its longest side has no area but rounding. */
-constexpr double MIN_RELATIVE_HEIGHT = 1e-12;
+constexpr double DEGENERATE_HEIGHT = 1e-12;
 constexpr int NONE = -1;
 
 bool isFinite(const Vector3& v) { return (v.array().abs() <= MAX_COORDINATE).all(); }
@@ -27,11 +27,11 @@ bool hasArea(const Vector3& a, const Vector3& b, const Vector3& c) {
   const Vector3 ab = b - a, bc = c - b, ca = a - c;
   const double longest2 = std::max({ab.squaredNorm(), bc.squaredNorm(), ca.squaredNorm()});
   // Nearly all triangles need no root and no quotient.
-  constexpr double PLENTY = 1e4 * MIN_RELATIVE_HEIGHT * MIN_RELATIVE_HEIGHT, SMALL = 1e-60, LARGE = 1e60;
+  constexpr double PLENTY = 1e4 * DEGENERATE_HEIGHT * DEGENERATE_HEIGHT, SMALL = 1e-60, LARGE = 1e60;
   if (longest2 > SMALL && longest2 < LARGE && ab.cross(ca).squaredNorm() > PLENTY * longest2 * longest2) return true;
   const double longest = std::sqrt(longest2);
   // Scaled to unit size before the product, which would lose a triangle of 1e-100 m or 1e100 m.
-  return longest > 0 && (ab / longest).cross(ca / longest).norm() > MIN_RELATIVE_HEIGHT;
+  return longest > 0 && (ab / longest).cross(ca / longest).norm() > DEGENERATE_HEIGHT;
 }
 
 /** The vertices in ascending order; a segment's third index repeats the higher one, whichever was repeated. */

@@ -12,7 +12,7 @@ namespace blem_sim {
 namespace {
 
 // Kept between calls.
-struct Buffers {
+struct ReductionBuffers {
   std::vector<Contact> sound, pierced, more, again;
   std::vector<ThinnedContacts> thinned;  // manifold by manifold
   std::vector<int> limits, sizes;        // manifold by manifold: numbers of contacts that may be kept, and would be
@@ -23,8 +23,8 @@ struct Buffers {
 
 // Sound contacts take part in the choice; pierced ones, whose directions are the fallback's, get the room that is left, and a quarter of k
 // if they are so many: else bodies that crossed would stay crossed.
-void reduceContacts(const std::vector<Contact>& contacts, int k, const Reduction& method, const ContactIds& chosen_before, Buffers* buffers,
-                    std::vector<Contact>* reduced) {
+void reduceContacts(const std::vector<Contact>& contacts, int k, const Reduction& method, const ContactIds& chosen_before,
+                    ReductionBuffers* buffers, std::vector<Contact>* reduced) {
   const auto is_pierced = [](const Contact& c) { return c.pierced; };
   if (std::none_of(contacts.begin(), contacts.end(), is_pierced)) return method.reduce(contacts, k, chosen_before, reduced);
   buffers->sound.clear();
@@ -44,7 +44,7 @@ constexpr int FLOOR = 3;  // contacts of a pair, if it has them, whatever budget
 /** k shared by `counts`: manifolds that ask for few contacts get all of them, the others equal shares. The lack of a manifold's wrenches
  * depends on the number of contacts it keeps, hardly on the number it has: so the largest lack is the least. Each gets at least FLOOR, if
  * it has that, even where they sum to more than k. */
-void fairShares(int k, Buffers* buffers) {
+void fairShares(int k, ReductionBuffers* buffers) {
   const std::vector<int>& counts = buffers->counts;
   std::vector<std::pair<int, int>>& order = buffers->order;
   order.clear();
@@ -62,7 +62,7 @@ void fairShares(int k, Buffers* buffers) {
 using ModelManifold = std::vector<std::pair<int, int>>::const_iterator;
 
 // Lowers the limits of a model's manifolds to their shares, if it has more contacts than its k.
-void applyBudget(ModelManifold begin, ModelManifold end, int k, Buffers* buffers) {
+void applyBudget(ModelManifold begin, ModelManifold end, int k, ReductionBuffers* buffers) {
   std::vector<int>&limits = buffers->limits, &touching = buffers->touching;
   touching.clear();
   buffers->counts.clear();
@@ -82,7 +82,7 @@ void applyBudget(ModelManifold begin, ModelManifold end, int k, Buffers* buffers
 
 // Lowers limits until every model keeps to its budget, or its pairs to FLOOR.
 void applyBudgets(const std::vector<int>& model_a, const std::vector<int>& model_b, const std::vector<ContactBudget>& budgets,
-                  Buffers* buffers) {
+                  ReductionBuffers* buffers) {
   std::vector<std::pair<int, int>>& of_models = buffers->of_models;
   of_models.clear();
   for (int m = 0; m < static_cast<int>(model_a.size()); ++m) {
@@ -115,7 +115,7 @@ bool hasPierced(const std::vector<Contact>& contacts) {
 
 // One manifold before budgets are shared out. `hull` alone can tell the number that it would keep before it chooses; others, and pierced
 // contacts, are reduced to the limit, and again if it is lowered. @return number of contacts that would be kept
-int prepare(const ContactManifold& manifold, int limit, const Reduction& method, const ContactIds& chosen_before, Buffers* buffers,
+int prepare(const ContactManifold& manifold, int limit, const Reduction& method, const ContactIds& chosen_before, ReductionBuffers* buffers,
             ThinnedContacts* thinned, std::vector<Contact>* reduced) {
   const bool in_steps = method.reduce == static_cast<ReduceFunction>(reduceHull) && !hasPierced(manifold.contacts);
   if (in_steps && thinToHulls(manifold.contacts, limit, thinned)) return std::min(limit, static_cast<int>(thinned->kept.size()));
@@ -126,7 +126,7 @@ int prepare(const ContactManifold& manifold, int limit, const Reduction& method,
 
 // Chooses within the limit, at least 1 where there are contacts. @return largest lack of those kept in any wrench
 float finish(const ContactManifold& manifold, int limit, const Reduction& method, const ContactIds& chosen_before,
-             const ThinnedContacts& thinned, Buffers* buffers, std::vector<Contact>* reduced) {
+             const ThinnedContacts& thinned, ReductionBuffers* buffers, std::vector<Contact>* reduced) {
   if (!thinned.kept.empty()) return chooseFromHulls(manifold.contacts, thinned, limit, chosen_before, reduced);
   if (limit < static_cast<int>(reduced->size())) {
     buffers->again = *reduced;
@@ -169,7 +169,7 @@ void reduceNone(const std::vector<Contact>& contacts, int, const ContactIds&, st
 ReductionLoss reduceManifolds(const std::vector<ContactManifold>& manifolds, const std::vector<int>& model_a,
                               const std::vector<int>& model_b, const std::vector<ContactBudget>& budgets, const Reduction& method,
                               ReductionMemory* memory, std::vector<ContactManifold>* reduced) {
-  static thread_local Buffers buffers;
+  static thread_local ReductionBuffers buffers;
   const bool all = method.reduce == reduceNone;
   const int count = static_cast<int>(manifolds.size());
   buffers.limits.resize(count);

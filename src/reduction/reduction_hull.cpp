@@ -22,15 +22,15 @@ constexpr double STAIR = 1e-3;      // [m] parallel patches with this much air b
 constexpr std::size_t CROWD = 100;  // more than this many contacts are thinned before the choice, to save time,
 constexpr int FEW = 100;            // if no more than this many are chosen
 
-struct Buffers {
+struct PatchBuffers {
   NormalCells cells;
   std::vector<double> heights;
   std::vector<std::pair<double, int>> stairs;
   std::vector<int> candidates, chosen;
 };
 
-Buffers& threadBuffers() {
-  static thread_local Buffers buffers;
+PatchBuffers& threadBuffers() {
+  static thread_local PatchBuffers buffers;
   return buffers;
 }
 
@@ -44,7 +44,7 @@ bool mayHaveStairs(const std::vector<double>& heights) {
 }
 
 // Appends the hull of every patch among contacts of one cell, two at least. Reorders the members.
-void keepHullsOfCell(const std::vector<Contact>& contacts, int* begin, int* end, const Vector3& normal, int k, Buffers* buffers,
+void keepHullsOfCell(const std::vector<Contact>& contacts, int* begin, int* end, const Vector3& normal, int k, PatchBuffers* buffers,
                      std::vector<int>* kept) {
   std::vector<double>& heights = buffers->heights;
   heights.clear();
@@ -65,7 +65,7 @@ void keepHullsOfCell(const std::vector<Contact>& contacts, int* begin, int* end,
 }
 
 // Keeps the hull of each patch of equal normals; all contacts where normals are too many for patches to matter.
-void keepPatchHulls(const std::vector<Contact>& contacts, int k, Buffers* buffers, std::vector<int>* kept) {
+void keepPatchHulls(const std::vector<Contact>& contacts, int k, PatchBuffers* buffers, std::vector<int>* kept) {
   NormalCells& cells = buffers->cells;
   if (!cells.group(contacts)) {
     kept->resize(contacts.size());
@@ -83,7 +83,7 @@ void keepPatchHulls(const std::vector<Contact>& contacts, int k, Buffers* buffer
 }
 
 float choose(const std::vector<Contact>& contacts, const ThinnedContacts& thinned, int k, const ContactIds& chosen_before,
-             Buffers* buffers) {
+             PatchBuffers* buffers) {
   if (thinned.kept.size() > CROWD && k <= FEW) {
     thinCrowd(contacts, thinned.scale, thinned.kept, chosen_before, &buffers->candidates);
   } else {
@@ -105,7 +105,7 @@ bool thinToHulls(const std::vector<Contact>& contacts, int k, ThinnedContacts* t
 float chooseFromHulls(const std::vector<Contact>& contacts, const ThinnedContacts& thinned, int k, const ContactIds& chosen_before,
                       std::vector<Contact>* reduced) {
   const bool few = static_cast<int>(thinned.kept.size()) <= k;
-  Buffers& buffers = threadBuffers();
+  PatchBuffers& buffers = threadBuffers();
   makeRoomFor(thinned.kept.size(), &buffers.chosen);
   if (few) buffers.chosen = thinned.kept;
   const float lack = few ? 0 : choose(contacts, thinned, k, chosen_before, &buffers);

@@ -29,7 +29,7 @@ struct alignas(64) Directions {
 };
 
 // Directions spread evenly over the sphere [Fibonacci].
-Directions makeDirections() {
+Directions makeSpringDirections() {
   constexpr double GOLDEN_ANGLE = 2.39996322972865332;
   Directions directions;
   for (int m = 0; m < DIRECTIONS; ++m) {
@@ -105,15 +105,15 @@ BLEM_SIM_LANES double meanProduct(const Row& a, const Row& b) {
   return sum / DIRECTIONS;
 }
 
-struct Buffers {
+struct SpringBuffers {
   std::vector<Row> prominence;  // per contact: its heights, as powers of e; the largest of a direction is 1
   std::vector<double> alike;
   std::vector<std::size_t> leaders;  // the first contacts of each normal
   std::vector<Row> inverses;         // per leader: inverse sum of its patch's prominence
 };
 
-void findProminence(const std::vector<Contact>& contacts, Buffers* buffers) {
-  static const Directions directions = makeDirections();
+void findProminence(const std::vector<Contact>& contacts, SpringBuffers* buffers) {
+  static const Directions directions = makeSpringDirections();
   Row highest;
   std::fill(std::begin(highest.of), std::end(highest.of), -std::numeric_limits<double>::infinity());
   buffers->prominence.resize(contacts.size());
@@ -125,7 +125,7 @@ void findProminence(const std::vector<Contact>& contacts, Buffers* buffers) {
 }
 
 // Adds a leader, with the inverse sum of all contacts that lie in one patch with those of its normal.
-void addLeader(const std::vector<Contact>& contacts, std::size_t leader, Buffers* buffers) {
+void addLeader(const std::vector<Contact>& contacts, std::size_t leader, SpringBuffers* buffers) {
   buffers->alike.clear();
   for (const Contact& contact : contacts) buffers->alike.push_back(1 - (contacts[leader].normal_BA - contact.normal_BA).norm() / ALIKE);
   buffers->leaders.push_back(leader);
@@ -134,7 +134,7 @@ void addLeader(const std::vector<Contact>& contacts, std::size_t leader, Buffers
 }
 
 // Inverse sum for a contact: the last leader's, mostly, for patches are flat, or curved without equal normals.
-const Row& inverseFor(const std::vector<Contact>& contacts, std::size_t i, Buffers* buffers) {
+const Row& inverseFor(const std::vector<Contact>& contacts, std::size_t i, SpringBuffers* buffers) {
   for (std::size_t l = buffers->leaders.size(); l-- > 0;) {
     if (contacts[buffers->leaders[l]].normal_BA == contacts[i].normal_BA) return buffers->inverses[l];
   }
@@ -145,7 +145,7 @@ const Row& inverseFor(const std::vector<Contact>& contacts, std::size_t i, Buffe
 }  // namespace
 
 void weighSprings(std::vector<Contact>& contacts) {
-  static thread_local Buffers buffers;
+  static thread_local SpringBuffers buffers;
   if (contacts.size() < 3) {
     for (Contact& contact : contacts) contact.weight = 1;
     return;

@@ -6,12 +6,13 @@
 #include <iterator>
 
 #include "blem_sim/geometry/input_error.h"
+#include "messages/joint_messages.h"
 #include "messages/trajectory_messages.h"
 
 namespace blem_sim {
 
 namespace {
-constexpr int QUEUE_SIZE = 100;
+constexpr int COMMAND_QUEUE = 100;
 }
 
 RobotCommands::RobotCommands(ros::NodeHandle node, Simulator* simulator) : node_(node), simulator_(simulator) { modelsChanged(); }
@@ -32,8 +33,8 @@ std::vector<ros::Subscriber> RobotCommands::subscribe(const RobotInfo& info) {
       [this, robot, trajectories](const trajectory_msgs::JointTrajectoryConstPtr& message) { onTrajectory(robot, trajectories, *message); };
   const boost::function<void(const sensor_msgs::JointStateConstPtr&)> on_command =
       [this, robot, commands](const sensor_msgs::JointStateConstPtr& message) { onJointCommand(robot, commands, *message); };
-  subscribers.push_back(robot_node.subscribe<trajectory_msgs::JointTrajectory>("joint_trajectory", QUEUE_SIZE, on_trajectory));
-  subscribers.push_back(robot_node.subscribe<sensor_msgs::JointState>("joint_command", QUEUE_SIZE, on_command));
+  subscribers.push_back(robot_node.subscribe<trajectory_msgs::JointTrajectory>("joint_trajectory", COMMAND_QUEUE, on_trajectory));
+  subscribers.push_back(robot_node.subscribe<sensor_msgs::JointState>("joint_command", COMMAND_QUEUE, on_command));
   return subscribers;
 }
 
@@ -46,13 +47,8 @@ void RobotCommands::onTrajectory(const std::string& robot, const std::string& to
 }
 
 void RobotCommands::onJointCommand(const std::string& robot, const std::string& topic, const sensor_msgs::JointState& message) {
-  JointCommandMessage command;
-  command.joints = message.name;
-  command.positions = message.position;
-  command.velocities = message.velocity;
-  command.efforts = message.effort;
   try {
-    simulator_->commandJoints(simulator_->robotIndex(robot), command);
+    simulator_->commandJoints(simulator_->robotIndex(robot), commandOf(message));
   } catch (const InputError& error) {
     ROS_ERROR("%s: command refused: %s", topic.c_str(), error.what());
   }

@@ -48,8 +48,8 @@ std::optional<LinkPart> linkNamed(const Simulator& simulator, const std::string&
   return std::nullopt;
 }
 
-[[noreturn]] void refuse(const std::string& name, const std::vector<std::string>& known, const std::string& where,
-                         const std::string& kind) {
+[[noreturn]] void refuseName(const std::string& name, const std::vector<std::string>& known, const std::string& where,
+                             const std::string& kind) {
   requireName(name, known, where, kind);
   throw InputError(where + ": no " + kind + " '" + name + "'");
 }
@@ -84,13 +84,13 @@ std::vector<LinkPart> linksOf(const Simulator& simulator, int index) {
 }
 
 int findModel(const Simulator& simulator, const std::string& name, const std::string& where) {
-  if (simulator.modelIndex(name) < 0) refuse(name, modelNames(simulator), where, "model");
+  if (simulator.modelIndex(name) < 0) refuseName(name, modelNames(simulator), where, "model");
   return simulator.modelIndex(name);
 }
 
 LinkPart findLink(const Simulator& simulator, const std::string& name, const std::string& where) {
   if (std::optional<LinkPart> part = linkNamed(simulator, name)) return std::move(*part);
-  refuse(name, linkNames(simulator), where, "link");
+  refuseName(name, linkNames(simulator), where, "link");
 }
 
 JointPart findJoint(const Simulator& simulator, const std::string& name, const std::string& where) {
@@ -103,7 +103,7 @@ JointPart findJoint(const Simulator& simulator, const std::string& name, const s
       return {robot, static_cast<int>(joint - info.joint_names.begin())};
     for (const std::string& each : info.joint_names) known.push_back(info.name + SCOPE + each);
   }
-  refuse(name, known, where, "movable joint");
+  refuseName(name, known, where, "movable joint");
 }
 
 std::optional<LinkPart> findFrame(const Simulator& simulator, const std::string& name, const std::string& where) {

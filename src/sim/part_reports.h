@@ -27,7 +27,7 @@ class PartReports {
    * @param id as in ContactConstraint, unique in the part
    */
   void addContact(std::uint64_t id, const ContactReport& contact);
-  /** Adds the wrenches and efforts of all joints in the part. */
+  /** Adds the wrenches of all joints and the efforts of their motors in the part. */
   void addJoints(const std::vector<Wrench>& wrenches, const std::vector<double>& efforts);
 
   const std::vector<ContactReport>& contacts() const { return contacts_; }  ///< of the step so far, in the order they were first added
@@ -35,7 +35,7 @@ class PartReports {
   void takeContacts(std::vector<ContactReport>* contacts) { contacts_.swap(*contacts); }
   void clearContacts() { contacts_.clear(); }
   const std::vector<Wrench>& jointWrenches() const { return wrenches_; }  ///< as SolveResult has them
-  const std::vector<double>& efforts() const { return efforts_; }         ///< [N m or N]
+  const std::vector<double>& efforts() const { return efforts_; }         ///< [N m or N] of motors
 
  private:
   /** Sums of the contact of the same index, once the part it was first added in is over. */

@@ -80,6 +80,7 @@ Pose Simulator::linkPose(int robot, int link) const { return impl_->world_.linkP
 
 void Simulator::commandTrajectory(int robot, const JointTrajectory& trajectory) { impl_->commandTrajectory(robot, trajectory); }
 void Simulator::commandJoints(int robot, const JointCommandMessage& command) { impl_->commandJoints(robot, command); }
+void Simulator::checkJointCommand(int robot, const JointCommandMessage& command) const { impl_->checkJointCommand(robot, command); }
 JointSample Simulator::desiredState(int robot, int joint) const { return desiredState(robot, joint, time()); }
 JointSample Simulator::desiredState(int robot, int joint, double time) const {
   return impl_->desiredState(robots().at(robot).joints.at(joint), time);

@@ -26,11 +26,11 @@ std::vector<Knot> knotsOf(const JointTrajectory& trajectory, std::size_t joint, 
   return knots;
 }
 
-std::size_t indexOf(const std::vector<std::string>& names, const std::string& name) {
+std::size_t placeAmong(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) - names.begin();
 }
 
-void checkValues(const std::vector<double>& values, const JointCommandMessage& command, const std::string& where, const char* field) {
+void checkCommanded(const std::vector<double>& values, const JointCommandMessage& command, const std::string& where, const char* field) {
   if (values.empty()) return;
   if (values.size() != command.joints.size())
     throw InputError(
@@ -39,18 +39,6 @@ void checkValues(const std::vector<double>& values, const JointCommandMessage& c
     if (!isCommand(values[i]))
       throw InputError(fmt::format("{}: {}: joint '{}' has {}; numbers must be finite, and not beyond {:g}", where, field,
                                    command.joints[i], values[i], LARGEST_COMMAND));
-}
-
-void checkCommand(const JointCommandMessage& command, const RobotInfo& robot) {
-  const std::string where = "robot '" + robot.name + "': joint command";
-  std::set<std::string> seen;
-  for (const std::string& joint : command.joints) {
-    requireName(joint, robot.joint_names, where, "movable joint");
-    if (!seen.insert(joint).second) throw InputError(fmt::format("{}: joint '{}' is there twice; name it once", where, joint));
-  }
-  checkValues(command.positions, command, where, "position");
-  checkValues(command.velocities, command, where, "velocity");
-  checkValues(command.efforts, command, where, "effort");
 }
 
 }  // namespace
@@ -65,16 +53,29 @@ void Simulator::Impl::commandTrajectory(int robot, const JointTrajectory& trajec
   const double now = time(), start = trajectory.start_time > 0 ? trajectory.start_time : now;
   const std::vector<std::string>& joints = trajectory.joints.empty() ? info.joint_names : trajectory.joints;
   for (std::size_t i = 0; i < joints.size(); ++i) {
-    const int joint = info.joints[indexOf(info.joint_names, joints[i])];
+    const int joint = info.joints[placeAmong(info.joint_names, joints[i])];
     world_.motors[joint].follow(now, start, knotsOf(trajectory, i, start), world_.world.jointState(joint).position);
   }
 }
 
+void Simulator::Impl::checkJointCommand(int robot, const JointCommandMessage& command) const {
+  const RobotInfo& info = world_.robots.at(robot);
+  const std::string where = "robot '" + info.name + "': joint command";
+  std::set<std::string> seen;
+  for (const std::string& joint : command.joints) {
+    requireName(joint, info.joint_names, where, "movable joint");
+    if (!seen.insert(joint).second) throw InputError(fmt::format("{}: joint '{}' is there twice; name it once", where, joint));
+  }
+  checkCommanded(command.positions, command, where, "position");
+  checkCommanded(command.velocities, command, where, "velocity");
+  checkCommanded(command.efforts, command, where, "effort");
+}
+
 void Simulator::Impl::commandJoints(int robot, const JointCommandMessage& command) {
   const RobotInfo& info = world_.robots.at(robot);
-  checkCommand(command, info);
+  checkJointCommand(robot, command);
   for (std::size_t i = 0; i < command.joints.size(); ++i) {
-    const int joint = info.joints[indexOf(info.joint_names, command.joints[i])];
+    const int joint = info.joints[placeAmong(info.joint_names, command.joints[i])];
     JointMotor& motor = world_.motors[joint];
     if (!command.positions.empty())
       motor.hold(nearestTurn(joint, command.positions[i]), valueAt(command.velocities, i));

@@ -10,10 +10,10 @@
 namespace blem_sim {
 namespace {
 
-constexpr double FARTHEST = 1e12;  // [m], [m/s], [rad/s]: larger numbers have no meaning any more
+constexpr double FARTHEST_FINITE = 1e12;  // [m], [m/s], [rad/s]: larger numbers have no meaning any more
 
 bool withinReach(const BodyState& state) {
-  const auto small = [](const Vector3& v) { return v.allFinite() && v.cwiseAbs().maxCoeff() < FARTHEST; };
+  const auto small = [](const Vector3& v) { return v.allFinite() && v.cwiseAbs().maxCoeff() < FARTHEST_FINITE; };
   return small(state.X_WB.translation()) && state.X_WB.linear().allFinite() && small(state.v_WCom) && small(state.w_WB);
 }
 
@@ -161,7 +161,7 @@ const std::vector<BodyState>* Simulator::Impl::foreseen() {
 void Simulator::Impl::acceptSubstep() {
   recordSolve();
   part_reports_.startPart(substeps_.fraction());
-  part_reports_.addJoints(solved_->joint_wrenches, solved_->joint_efforts);
+  part_reports_.addJoints(solved_->joint_wrenches, solved_->motor_efforts);
   recordSaturation();
   recordContacts();
   if (!passed_.empty()) report_.status |= CONTACT_UNRELIABLE;

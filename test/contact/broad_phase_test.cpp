@@ -9,7 +9,7 @@
 namespace blem_sim {
 namespace {
 
-struct Scene {
+struct PlacedBoxes {
   std::vector<Collider> colliders;
   std::vector<ColliderMotion> motion;
 
@@ -37,7 +37,7 @@ TEST(BroadPhase, NothingThatNarrowPhaseFindsIsMissed) {
   const Collider shapes[] = {box(0.002), makeCollider(octahedronMesh(0.06), 0.004), makeCollider(pointMesh(Vector3::Zero()), 0.05)};
   int touching = 0;
   for (int round = 0; round < 40; ++round) {
-    Scene scene;
+    PlacedBoxes scene;
     scene.add(makeHalfSpace({0.1, 0, 1}, -0.3), makePose({0, 0, 0.02}, {0.1, 0, 0}), -1, 0);
     for (int i = 0; i < 30; ++i) {
       scene.add(shapes[i % 3], makePose(random.point(0.4), random.point(3)), i % 7 == 0 ? -1 : i, i, random.uniform(0, 0.02));
@@ -68,7 +68,7 @@ TEST(BroadPhase, NothingThatNarrowPhaseFindsIsMissed) {
 }
 
 /** Every pair of boxes asked. */
-Pairs allPairs(const Scene& scene, double base, double max) {
+Pairs everyPair(const PlacedBoxes& scene, double base, double max) {
   const auto reach = [&](int i) { return scene.colliders[i].radius + scene.motion[i].reach; };
   const auto boxOf = [&](int i) {
     Box box;
@@ -94,7 +94,7 @@ TEST(BroadPhase, ManyBoxesOfAllSizesFindTheSamePairsAsEachWithEachOther) {
   const Collider sizes[] = {makeCollider(boxMesh(Vector3::Constant(0.02)), 0.001), box(0.002), makeCollider(boxMesh({0.05, 3, 0.4}), 0),
                             makeCollider(gridMesh(20, 20, 1, 1), 0), makeCollider(pointMesh(Vector3::Zero()), 0)};
   for (int round = 0; round < 12; ++round) {
-    Scene scene;
+    PlacedBoxes scene;
     const int count = 65 + 40 * round, shapes = 1 + round % 5;
     const Vector3 spread = round % 3 == 0 ? Vector3(2, 2, 0.01) : round % 3 == 1 ? Vector3(0.01, 0.01, 5) : Vector3(0.5, 1, 0.5);
     for (int i = 0; i < count; ++i) {
@@ -103,14 +103,14 @@ TEST(BroadPhase, ManyBoxesOfAllSizesFindTheSamePairsAsEachWithEachOther) {
       if (i % 50 == 49) place *= 1e7;  // strayed
       scene.add(sizes[shape], makePose(place, shape == 3 ? Vector3::Zero() : random.point(3)), i, i, random.uniform(0, 0.01));
     }
-    EXPECT_EQ(scene.pairs({}, 0.001, 0.015), allPairs(scene, 0.001, 0.015)) << round;
+    EXPECT_EQ(scene.pairs({}, 0.001, 0.015), everyPair(scene, 0.001, 0.015)) << round;
   }
 }
 
 TEST(BroadPhase, ComparesEachOfManyBoxesWithFewOthersInLayersAndHeaps) {
   constexpr int COUNT = 20000;
   for (const int axes : {2, 3}) {
-    Scene scene;
+    PlacedBoxes scene;
     int side = 1;
     while (std::pow(side, axes) < COUNT) ++side;
     for (int i = 0; i < COUNT; ++i)
@@ -123,7 +123,7 @@ TEST(BroadPhase, ComparesEachOfManyBoxesWithFewOthersInLayersAndHeaps) {
 }
 
 TEST(BroadPhase, LeavesOutWhatIsFar) {
-  Scene scene;
+  PlacedBoxes scene;
   scene.add(box(0.002), makePose({0, 0, 0}), 0, 0);
   scene.add(box(0.002), makePose({0.1049, 0, 0}), 1, 1);
   scene.add(box(0.002), makePose({0.1049, 0.1051, 0}), 2, 2);
@@ -133,7 +133,7 @@ TEST(BroadPhase, LeavesOutWhatIsFar) {
 }
 
 TEST(BroadPhase, MarginFollowsTheMotionUpToItsBound) {
-  Scene scene;
+  PlacedBoxes scene;
   scene.add(box(), makePose({0, 0, 0}), 0, 0, 0.01);
   scene.add(box(), makePose({0.125, 0, 0}), 1, 1, 0.02);
   ASSERT_EQ(scene.pairs(), (Pairs{{0, 1}}));
@@ -143,7 +143,7 @@ TEST(BroadPhase, MarginFollowsTheMotionUpToItsBound) {
 }
 
 TEST(BroadPhase, StateThatIsNotFiniteIsLeftOut) {
-  Scene scene;
+  PlacedBoxes scene;
   for (int i = 0; i < 3; ++i) scene.add(box(), makePose({0.05 * i, 0, 0}), i, i);
   scene.motion[1].X_WC.translation().x() = std::nan("");
   EXPECT_EQ(scene.pairs(), (Pairs{{0, 2}}));

@@ -9,26 +9,26 @@
 namespace blem_sim {
 namespace {
 
-constexpr double SIZE = 0.1;
-constexpr double LAYER = 0.01;
+constexpr double EXTENT = 0.1;
+constexpr double REACH = 0.01;
 
-struct Shape {
+struct PosedShape {
   const char* name;
   Collider collider;
 };
 
-std::vector<Shape> makeShapes() {
+std::vector<PosedShape> makePosedShapes() {
   RandomShapes random(7);
-  std::vector<Shape> shapes;
-  shapes.push_back({"cube", makeCollider(boxMesh(Vector3::Constant(SIZE)), LAYER / 2)});
-  shapes.push_back({"slab", makeCollider(boxMesh({SIZE, 0.5 * SIZE, 0.02 * SIZE}), LAYER / 2)});
-  shapes.push_back({"octahedron", makeCollider(octahedronMesh(0.5 * SIZE), LAYER / 2)});
-  shapes.push_back({"fine cube", makeCollider(subdivided(boxMesh(Vector3::Constant(SIZE)), 1), LAYER / 2)});
-  shapes.push_back({"grid", makeCollider(gridMesh(SIZE, SIZE, 3, 2), LAYER / 2)});
-  shapes.push_back({"hills", makeCollider(hillMesh(random, SIZE, 4, 0.1 * SIZE), LAYER / 2)});
-  shapes.push_back({"soup", makeCollider(soupMesh(random, 12, 0.5 * SIZE), LAYER / 2)});
-  shapes.push_back({"point", makeCollider(pointMesh(Vector3(0.01, 0, 0)), LAYER / 2)});
-  shapes.push_back({"segment", makeCollider(segmentMesh(Vector3(-0.5 * SIZE, 0, 0), Vector3(0.5 * SIZE, 0, 0)), LAYER / 2)});
+  std::vector<PosedShape> shapes;
+  shapes.push_back({"cube", makeCollider(boxMesh(Vector3::Constant(EXTENT)), REACH / 2)});
+  shapes.push_back({"slab", makeCollider(boxMesh({EXTENT, 0.5 * EXTENT, 0.02 * EXTENT}), REACH / 2)});
+  shapes.push_back({"octahedron", makeCollider(octahedronMesh(0.5 * EXTENT), REACH / 2)});
+  shapes.push_back({"fine cube", makeCollider(subdivided(boxMesh(Vector3::Constant(EXTENT)), 1), REACH / 2)});
+  shapes.push_back({"grid", makeCollider(gridMesh(EXTENT, EXTENT, 3, 2), REACH / 2)});
+  shapes.push_back({"hills", makeCollider(hillMesh(random, EXTENT, 4, 0.1 * EXTENT), REACH / 2)});
+  shapes.push_back({"soup", makeCollider(soupMesh(random, 12, 0.5 * EXTENT), REACH / 2)});
+  shapes.push_back({"point", makeCollider(pointMesh(Vector3(0.01, 0, 0)), REACH / 2)});
+  shapes.push_back({"segment", makeCollider(segmentMesh(Vector3(-0.5 * EXTENT, 0, 0), Vector3(0.5 * EXTENT, 0, 0)), REACH / 2)});
   return shapes;
 }
 
@@ -37,14 +37,14 @@ class Completeness {
   int poses = 0, within = 0, apart = 0, meeting = 0;
   double worst = 0;
 
-  void check(const Shape& a, const Shape& b, const Pose& X_BA) {
+  void check(const PosedShape& a, const PosedShape& b, const Pose& X_BA) {
     ++poses;
     const ClosestPoints exact = closestMeshMeshBruteForce(a.collider.geometry->mesh(), b.collider.geometry->mesh(), X_BA);
     const ContactManifold manifold = contactsOf(a.collider, X_BA, b.collider, Pose::Identity());
     ASSERT_TRUE(allFinite(manifold));
-    if (exact.distance > LAYER) {
+    if (exact.distance > REACH) {
       ++apart;
-      if (exact.distance > LAYER + 1e-9) {
+      if (exact.distance > REACH + 1e-9) {
         ASSERT_TRUE(manifold.contacts.empty()) << a.name << " on " << b.name;
       }
     } else if (exact.distance > 1e-12) {
@@ -63,22 +63,22 @@ class Completeness {
 };
 
 /** Moves A along the shortest way to B until `gap` is left. */
-Pose approached(const Shape& a, const Shape& b, Pose X_BA, double gap) {
+Pose approached(const PosedShape& a, const PosedShape& b, Pose X_BA, double gap) {
   const ClosestPoints exact = closestMeshMeshBruteForce(a.collider.geometry->mesh(), b.collider.geometry->mesh(), X_BA);
   if (exact.distance > gap) X_BA.pretranslate((exact.point_b - exact.point_a) * (1 - gap / exact.distance));
   return X_BA;
 }
 
 TEST(NarrowPhaseCompleteness, RandomPoses) {
-  const std::vector<Shape> shapes = makeShapes();
+  const std::vector<PosedShape> shapes = makePosedShapes();
   RandomShapes random(1);
   Completeness all;
   while (all.poses < samples(12000)) {
-    const Shape& a = shapes[random.integer(0, shapes.size() - 1)];
-    const Shape& b = shapes[random.integer(0, shapes.size() - 1)];
+    const PosedShape& a = shapes[random.integer(0, shapes.size() - 1)];
+    const PosedShape& b = shapes[random.integer(0, shapes.size() - 1)];
     Pose X_BA = random.pose(1);
-    X_BA.translation() = X_BA.translation().normalized() * 2 * SIZE;
-    const double gap = LAYER * std::pow(10, random.uniform(-8, 0));
+    X_BA.translation() = X_BA.translation().normalized() * 2 * EXTENT;
+    const double gap = REACH * std::pow(10, random.uniform(-8, 0));
     all.check(a, b, approached(a, b, X_BA, gap));
     if (HasFatalFailure()) return;
   }
@@ -88,19 +88,19 @@ TEST(NarrowPhaseCompleteness, RandomPoses) {
 }
 
 TEST(NarrowPhaseCompleteness, AxisAlignedPoses) {
-  const std::vector<Shape> shapes = makeShapes();
+  const std::vector<PosedShape> shapes = makePosedShapes();
   RandomShapes random(2);
   Completeness all;
   while (all.poses < samples(12000)) {
-    const Shape& a = shapes[random.integer(0, shapes.size() - 1)];
-    const Shape& b = shapes[random.integer(0, shapes.size() - 1)];
+    const PosedShape& a = shapes[random.integer(0, shapes.size() - 1)];
+    const PosedShape& b = shapes[random.integer(0, shapes.size() - 1)];
     Pose X_BA = Pose::Identity();
     X_BA.linear() = axisRotation(random);
     // Centres on a lattice: faces over faces, edges over edges, corners over corners; then apart along one axis.
-    for (int k = 0; k < 3; ++k) X_BA.translation()[k] = 0.25 * SIZE * random.integer(-4, 4);
+    for (int k = 0; k < 3; ++k) X_BA.translation()[k] = 0.25 * EXTENT * random.integer(-4, 4);
     const int axis = random.integer(0, 2);
-    X_BA.translation()[axis] = 2 * SIZE * (random.integer(0, 1) ? 1 : -1);
-    const double gap = random.integer(0, 9) == 0 ? 0 : LAYER * std::pow(10, random.uniform(-8, 0));
+    X_BA.translation()[axis] = 2 * EXTENT * (random.integer(0, 1) ? 1 : -1);
+    const double gap = random.integer(0, 9) == 0 ? 0 : REACH * std::pow(10, random.uniform(-8, 0));
     all.check(a, b, approached(a, b, X_BA, gap));
     if (HasFatalFailure()) return;
   }
@@ -109,18 +109,18 @@ TEST(NarrowPhaseCompleteness, AxisAlignedPoses) {
 }
 
 TEST(NarrowPhaseCompleteness, NearlyAlignedPoses) {
-  const std::vector<Shape> shapes = makeShapes();
+  const std::vector<PosedShape> shapes = makePosedShapes();
   RandomShapes random(3);
   Completeness all;
   while (all.poses < samples(6000)) {
-    const Shape& a = shapes[random.integer(0, shapes.size() - 1)];
-    const Shape& b = shapes[random.integer(0, shapes.size() - 1)];
+    const PosedShape& a = shapes[random.integer(0, shapes.size() - 1)];
+    const PosedShape& b = shapes[random.integer(0, shapes.size() - 1)];
     const double tilt = std::pow(10, random.uniform(-9, -2));
     Pose X_BA = makePose(Vector3::Zero(), random.point(tilt));
     X_BA.linear() = X_BA.linear() * axisRotation(random);
-    for (int k = 0; k < 2; ++k) X_BA.translation()[k] = 0.25 * SIZE * random.integer(-4, 4) + random.uniform(-tilt, tilt) * SIZE;
-    X_BA.translation().z() = 2 * SIZE;
-    all.check(a, b, approached(a, b, X_BA, LAYER * std::pow(10, random.uniform(-8, 0))));
+    for (int k = 0; k < 2; ++k) X_BA.translation()[k] = 0.25 * EXTENT * random.integer(-4, 4) + random.uniform(-tilt, tilt) * EXTENT;
+    X_BA.translation().z() = 2 * EXTENT;
+    all.check(a, b, approached(a, b, X_BA, REACH * std::pow(10, random.uniform(-8, 0))));
     if (HasFatalFailure()) return;
   }
   EXPECT_GT(all.within, samples(3000));
@@ -130,7 +130,7 @@ TEST(NarrowPhaseCompleteness, NearlyAlignedPoses) {
 
 /** An edge that touches a corner passes the plane of a side beside it, on a diagonal of that side: no crossing. */
 TEST(NarrowPhaseCompleteness, EdgeGrazesACorner) {
-  const std::vector<Shape> shapes = makeShapes();
+  const std::vector<PosedShape> shapes = makePosedShapes();
   Pose X_BA = Pose::Identity();
   X_BA.matrix() << -0.0027391364947207566, 0.99999624181455637, 0.00011613796312474911, -0.074863065371878396,  //
       0.99999190526702708, 0.0027394668744232238, -0.0029469851823538426, -0.050324844976090528,                //
@@ -143,13 +143,13 @@ TEST(NarrowPhaseCompleteness, EdgeGrazesACorner) {
 
 /** Deep poses: meshes that meet have contacts, all finite, none deeper than the layer by more than the smaller body. */
 TEST(NarrowPhaseCompleteness, MeetingPosesAreFiniteAndBounded) {
-  const std::vector<Shape> shapes = makeShapes();
+  const std::vector<PosedShape> shapes = makePosedShapes();
   RandomShapes random(4);
   int pierced = 0;
   for (int i = 0; i < samples(3000); ++i) {
-    const Shape& a = shapes[random.integer(0, shapes.size() - 1)];
-    const Shape& b = shapes[random.integer(0, shapes.size() - 1)];
-    const Pose X_BA = random.pose(SIZE);
+    const PosedShape& a = shapes[random.integer(0, shapes.size() - 1)];
+    const PosedShape& b = shapes[random.integer(0, shapes.size() - 1)];
+    const Pose X_BA = random.pose(EXTENT);
     const ContactManifold manifold = contactsOf(a.collider, X_BA, b.collider, Pose::Identity());
     ASSERT_TRUE(allFinite(manifold));
     if (!manifold.pierced) continue;

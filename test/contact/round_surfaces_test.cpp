@@ -8,7 +8,7 @@
 namespace blem_sim {
 namespace {
 
-constexpr double R = 0.002;
+constexpr double ROUND_WIDTH = 0.002;
 
 struct Nearest {
   double distance = std::numeric_limits<double>::infinity();
@@ -48,7 +48,7 @@ double depthOfFirstVertex(const Collider& a, const Collider& b) {
 TEST(RoundSurfaces, AVertexThatLeadsDownKeepsItsContact) {
   RandomShapes random(11);
   const TriangleMesh mesh = icosphereMesh(0.03, 3);
-  const Collider ball = makeCollider(mesh, R);
+  const Collider ball = makeCollider(mesh, ROUND_WIDTH);
   int at[4] = {};
   for (int i = 0; i < 600; ++i) {
     const Vector3& corner = mesh.vertices[random.integer(0, static_cast<int>(mesh.vertices.size()) - 1)];
@@ -57,7 +57,8 @@ TEST(RoundSurfaces, AVertexThatLeadsDownKeepsItsContact) {
     const TriangleMesh blade{{tip, tip + 0.004 * aside - 0.0004 * up, tip + 0.004 * aside + 0.002 * up}, {{0, 1, 2}}};
     const Nearest nearest = nearestTo(tip, mesh);
     ++at[nearest.features];
-    EXPECT_NEAR(depthOfFirstVertex(makeCollider(blade, R), ball), 2 * R - nearest.distance, 1e-9) << i << ": " << nearest.features;
+    EXPECT_NEAR(depthOfFirstVertex(makeCollider(blade, ROUND_WIDTH), ball), 2 * ROUND_WIDTH - nearest.distance, 1e-9)
+        << i << ": " << nearest.features;
   }
   for (int features = 1; features <= 3; ++features) EXPECT_GT(at[features], 20) << features;
 }

@@ -8,13 +8,13 @@
 namespace blem_sim {
 namespace {
 
-Collider cube() { return makeCollider(boxMesh(Vector3::Constant(0.1)), R); }
+Collider smoothCube() { return makeCollider(boxMesh(Vector3::Constant(0.1)), R); }
 Collider pad() { return makeCollider(cleanMesh(griddedBox({0.02, 0.02, 0.004}, Vector3i(20, 20, 4)), nullptr), R); }
 Collider shellMug() { return makeCollider(cleanMesh(readStlSoup(BLEM_SIM_SOURCE_DIR "/meshes/shell_mug.stl"), nullptr), R); }
 
 TEST(Smoothness, CubeOnCube) {
   for (const double overlap : {1e-3, 1e-5}) {
-    const Walk w = walk({"cube_cube", cube(), cube(), 0.12, 0.06}, overlap, 40, 100);
+    const Walk w = walk({"cube_cube", smoothCube(), smoothCube(), 0.12, 0.06}, overlap, 40, 100);
     EXPECT_EQ(w.orphans, 0);
     EXPECT_LE(w.rate, 1);
     EXPECT_LE(w.support, 2);
@@ -23,7 +23,7 @@ TEST(Smoothness, CubeOnCube) {
 
 TEST(Smoothness, FinePadOnCube) {
   for (const double overlap : {1e-3, 1e-5}) {
-    const Walk w = walk({"pad_cube", pad(), cube(), 0.065, 0.055}, overlap, 40, 100);
+    const Walk w = walk({"pad_cube", pad(), smoothCube(), 0.065, 0.055}, overlap, 40, 100);
     EXPECT_EQ(w.orphans, 0);
     EXPECT_LE(w.rate, overlap < 1e-4 ? 1 : 20);
     EXPECT_LE(w.support, 2);
@@ -44,7 +44,7 @@ TEST(Smoothness, MugOnBoxAndMugOnMug) {
   const Collider mug = shellMug();
   const double height = -mug.geometry->bounds().min().z();
   for (const double overlap : {1e-3, 1e-5}) {
-    for (const Walk& w : {walk({"mug_box", mug, cube(), 0.06 + height, 0.06}, overlap, 8, 40),
+    for (const Walk& w : {walk({"mug_box", mug, smoothCube(), 0.06 + height, 0.06}, overlap, 8, 40),
                           walk({"mug_mug", mug, mug, 0.01 + 2 * height, 0.03}, overlap, 8, 40)}) {
       EXPECT_EQ(w.orphans, 0);
       EXPECT_LE(w.rate, overlap < 1e-4 ? 1 : 4);
@@ -56,7 +56,7 @@ TEST(Smoothness, MugOnBoxAndMugOnMug) {
 /** Valleys everywhere: contacts leave faces and edges where nothing takes them over exactly. */
 TEST(Smoothness, CubeOnNoise) {
   RandomShapes random(5);
-  const Scene scene{"cube_noise", cube(), makeCollider(hillMesh(random, 0.15, 40, 0.0002), 0), 0.06, 0.01};
+  const Scene scene{"cube_noise", smoothCube(), makeCollider(hillMesh(random, 0.15, 40, 0.0002), 0), 0.06, 0.01};
   const Walk w = walk(scene, 1e-3, 12, 60);
   EXPECT_LE(w.orphans, 1);
   EXPECT_LE(w.support, 2);

@@ -16,7 +16,7 @@
 namespace blem_sim {
 namespace {
 
-constexpr double LAYER = 0.0025;  // [m]
+constexpr double WIDTH = 0.0025;  // [m]
 constexpr double CRACKS = 1e-5;   // [m] in each coordinate
 constexpr double MOTION = 1e-5;   // [m]
 constexpr double OVERLAP = 1e-3;  // [m] of the layers
@@ -28,7 +28,7 @@ constexpr double ALIKE = 1e-4;  // [m] where it was cracked
 Collider loaded(const TriangleMesh& soup) {
   MeshReport report;
   const TriangleMesh cleaned = cleanMesh(soup, &report, RepeatedIndices::ARE_DEGENERATE);
-  return makeCollider(mendMesh(cleaned, &report), LAYER);
+  return makeCollider(mendMesh(cleaned, &report), WIDTH);
 }
 
 /**
@@ -50,7 +50,7 @@ std::vector<double> supports(const Collider& a, const Pose& X_WA, const Collider
   return supports;
 }
 
-struct Scene {
+struct SoupScene {
   const char* name;
   TriangleMesh mesh;
   Collider below;
@@ -71,7 +71,7 @@ std::vector<Copy> copiesOf(const TriangleMesh& mesh) {
           {"cracked with T-junctions", crackedCopy(tJunctionCopy(mesh), CRACKS, random), ALIKE}};
 }
 
-void expectSameSupports(const Scene& scene, const std::vector<Copy>& copies, int poses) {
+void expectSameSupports(const SoupScene& scene, const std::vector<Copy>& copies, int poses) {
   const Collider whole = loaded(scene.mesh);
   std::vector<Collider> broken;
   for (const Copy& copy : copies) broken.push_back(loaded(std::get<1>(copy)));

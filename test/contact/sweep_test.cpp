@@ -10,7 +10,7 @@
 namespace blem_sim {
 namespace {
 
-CollisionGeometry geometryOf(const TriangleMesh& mesh) { return CollisionGeometry(std::make_shared<const TriangleMesh>(mesh)); }
+CollisionGeometry sweptGeometry(const TriangleMesh& mesh) { return CollisionGeometry(std::make_shared<const TriangleMesh>(mesh)); }
 
 GeometrySweep sweep(const Vector3& from, const Vector3& shift, const Vector3& turn = Vector3::Zero()) {
   return {makePose(from), from, shift, turn};
@@ -26,7 +26,7 @@ TEST(Sweep, EndsWhereItsTurnAndShiftLead) {
 }
 
 TEST(Sweep, PlateThroughSheetIsSeenThoughNeitherEndIsNear) {
-  const CollisionGeometry plate = geometryOf(gridMesh(0.1, 0.1, 1, 1)), sheet = geometryOf(gridMesh(4, 4, 1, 1));
+  const CollisionGeometry plate = sweptGeometry(gridMesh(0.1, 0.1, 1, 1)), sheet = sweptGeometry(gridMesh(4, 4, 1, 1));
   EXPECT_TRUE(mayComeWithin(1e-4, plate, sweep({0, 0, 0.05}, {0, 0, -0.1}), sheet, GeometrySweep{}));
   EXPECT_FALSE(mayComeWithin(1e-3, plate, sweep({0, 0, 0.05}, {0.3, 0, -0.048}), sheet, GeometrySweep{}));
   // Plate and sheet move on together.
@@ -37,7 +37,7 @@ TEST(Sweep, PlateThroughSheetIsSeenThoughNeitherEndIsNear) {
 }
 
 TEST(Sweep, PointsPassEachOtherAtTheirDistance) {
-  const CollisionGeometry point = geometryOf(pointMesh(Vector3::Zero()));
+  const CollisionGeometry point = sweptGeometry(pointMesh(Vector3::Zero()));
   EXPECT_TRUE(mayComeWithin(0.01, point, sweep({-1, 0, 0}, {2, 0, 0}), point, sweep({0, -1, 0.009}, {0, 2, 0})));
   EXPECT_FALSE(mayComeWithin(0.01, point, sweep({-1, 0, 0}, {2, 0, 0}), point, sweep({0, -1, 0.013}, {0, 2, 0})));
 }
@@ -56,7 +56,7 @@ TEST(Sweep, NeverMissesWhatSamplesFind) {
     const TriangleMesh &a = meshes[i % 3], &b = meshes[i / 3 % 3];
     const GeometrySweep way_a{makePose(vector(0.1), vector(3)), vector(0.2), vector(0.3), vector(1.5)},
         way_b{makePose(vector(0.1), vector(3)), vector(0.2), vector(0.3), vector(1.5)};
-    const double most = mostApproach(geometryOf(a), way_a, geometryOf(b), way_b);
+    const double most = mostApproach(sweptGeometry(a), way_a, sweptGeometry(b), way_b);
     double least = INFINITY, start = 0;
     for (int k = 0; k <= 300; ++k) {
       const double d = closestMeshMeshBruteForce(a, b, way_b.at(k / 300.0).inverse() * way_a.at(k / 300.0)).distance;
@@ -65,7 +65,7 @@ TEST(Sweep, NeverMissesWhatSamplesFind) {
     }
     EXPECT_GE(most, start - least) << i;
     const double within = 0.01;
-    const bool may = mayComeWithin(within, geometryOf(a), way_a, geometryOf(b), way_b);
+    const bool may = mayComeWithin(within, sweptGeometry(a), way_a, sweptGeometry(b), way_b);
     EXPECT_TRUE(may || least > within) << i;
     // Samples miss by the motion between two of them.
     EXPECT_TRUE(!may || least <= 1.25 * within + most / 300) << i;

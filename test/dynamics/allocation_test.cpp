@@ -8,11 +8,10 @@
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)
 
 #include "support/counted_allocations.h"
+#include "support/standard_values.h"
 
 namespace blem_sim {
 namespace {
-
-const Vector3 CUBE(0.1, 0.1, 0.1);
 
 /** A stack of three, a box that slides beside it, and a motor driven arm with a mimic joint. */
 struct BusyWorld {

@@ -5,13 +5,10 @@
 #include <cmath>
 
 #include "dynamics/analytic_contacts.h"
+#include "support/standard_values.h"
 
 namespace blem_sim {
 namespace {
-
-constexpr double DT = 1e-3;
-constexpr double G = 9.81;
-const Vector3 CUBE(0.1, 0.1, 0.1);
 
 int addBar(World* world, const Vector3& from, const Vector3& to) {
   BodySpec bar = boxBody("bar", 0.4, {0.02, 0.02, (to - from).norm()}, Vector3::Zero());

@@ -5,12 +5,11 @@
 #include <cmath>
 
 #include "dynamics/analytic_contacts.h"
+#include "support/standard_values.h"
 
 namespace blem_sim {
 namespace {
 
-constexpr double DT = 1e-3;
-const Vector3 GRAVITY(0, 0, -9.81);
 const Vector3 FOOT(0.24, 0.14, 0.04);
 
 SolverSettings stepper(const std::string& name) {

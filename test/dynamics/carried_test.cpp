@@ -4,11 +4,10 @@
 #include <algorithm>
 
 #include "dynamics/analytic_contacts.h"
+#include "support/standard_values.h"
 
 namespace blem_sim {
 namespace {
-
-constexpr double DT = 1e-3;
 
 /** A cube rides on a turntable; friction 0.8 holds up to 8.8 rad/s. @return [m] distance that it has moved on it after `turns` */
 double slipOnTurntable(double speed, double turns) {

@@ -4,11 +4,12 @@
 #include <cmath>
 
 #include "dynamics/analytic_contacts.h"
+#include "support/standard_values.h"
 
 namespace blem_sim {
 namespace {
 
-constexpr double DT = 1e-3, FRICTION = 0.5;
+constexpr double FRICTION = 0.5;
 constexpr int ARMS = 2, LINKS = 6;
 const Vector3 BASE(0.6, 0.6, 0.2);
 
@@ -48,9 +49,9 @@ struct Hanger {
     EXPECT_LT(result.residual, 1e-4);
     slips.resize(drives.size(), false);
     for (int j = 0; j < world.jointCount(); ++j) {
-      const double v = world.jointState(j).velocity, friction = result.joint_efforts[j] - drives[j].effort;
+      const double v = world.jointState(j).velocity, friction = result.axis_efforts[j] - drives[j].effort;
       // The wrench follows from the bodies' motion, the effort from the joint's law.
-      EXPECT_NEAR(result.joint_wrenches[j].torque.dot(axes[j]), result.joint_efforts[j], 1e-6) << j;
+      EXPECT_NEAR(result.joint_wrenches[j].torque.dot(axes[j]), result.axis_efforts[j], 1e-6) << j;
       EXPECT_LE(std::abs(friction), FRICTION * (1 + 1e-12)) << j;
       const bool slip = std::abs(v) > 1e-6;
       if (slip) {

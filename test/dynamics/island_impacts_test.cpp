@@ -6,11 +6,10 @@
 #include <random>
 
 #include "island/island_motion.h"
+#include "support/standard_values.h"
 
 namespace blem_sim {
 namespace {
-
-constexpr double DT = 1e-3;
 
 /** Two free trees of five bodies and a chain that the world holds, all hit at once. */
 struct HitTrees {

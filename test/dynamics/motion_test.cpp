@@ -4,11 +4,10 @@
 #include <algorithm>
 
 #include "dynamics/analytic_contacts.h"
+#include "support/standard_values.h"
 
 namespace blem_sim {
 namespace {
-
-constexpr double DT = 1e-3;
 
 TEST(Motion, FreeFall) {
   World world({0, 0, -9.81}, {});

@@ -2,12 +2,10 @@
 #include <gtest/gtest.h>
 
 #include "dynamics/bouncing_bodies.h"
+#include "support/standard_values.h"
 
 namespace blem_sim {
 namespace {
-
-const Vector3 GRAVITY(0, 0, -9.81);
-constexpr double DT = 1e-3;
 
 Surface surfaceOf(double restitution, double friction) {
   Surface surface;

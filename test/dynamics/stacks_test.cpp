@@ -4,12 +4,10 @@
 #include <algorithm>
 
 #include "dynamics/analytic_contacts.h"
+#include "support/standard_values.h"
 
 namespace blem_sim {
 namespace {
-
-const Vector3 CUBE(0.1, 0.1, 0.1);
-const Vector3 GRAVITY(0, 0, -9.81);
 
 struct Stack {
   explicit Stack(int count, double gap, double offset = 0, const SolverSettings& settings = {}) : world(GRAVITY, settings) {

@@ -34,7 +34,7 @@ std::string arm(const std::string& type, const std::string& inside, const std::s
   return robot("<link name=\"b\">" + link + "</link>" + joint("j", type, "a", "b", inside));
 }
 
-std::string collision(const std::string& shape) {
+std::string collisionOf(const std::string& shape) {
   return robot("<link name=\"b\"><collision><geometry>" + shape + "</geometry></collision></link>");
 }
 
@@ -109,12 +109,12 @@ INSTANTIATE_TEST_SUITE_P(
         BadUrdfRow{"no_inertia", arm("continuous", "", "<inertial><mass value=\"1\"/></inertial>"), {"link 'b'", "<inertia"}},
         BadUrdfRow{
             "half_inertia", arm("continuous", "", "<inertial><mass value=\"1\"/><inertia ixx=\"1\"/></inertial>"), {"link 'b'", "ixy"}},
-        BadUrdfRow{"no_shape", collision(""), {"link 'b' collision 1", "<box>"}},
-        BadUrdfRow{"cone", collision("<cone/>"), {"link 'b'", "<cone>"}},
-        BadUrdfRow{"capsule", collision("<capsule/>"), {"link 'b'", "<sphere>"}},
-        BadUrdfRow{"flat_box", collision("<box size=\"1 0 1\"/>"), {"link 'b'", "greater than zero"}},
-        BadUrdfRow{"negative_radius", collision("<sphere radius=\"-1\"/>"), {"link 'b'", "greater than zero"}},
-        BadUrdfRow{"no_file", collision("<mesh/>"), {"link 'b'", "filename"}},
+        BadUrdfRow{"no_shape", collisionOf(""), {"link 'b' collision 1", "<box>"}},
+        BadUrdfRow{"cone", collisionOf("<cone/>"), {"link 'b'", "<cone>"}},
+        BadUrdfRow{"capsule", collisionOf("<capsule/>"), {"link 'b'", "<sphere>"}},
+        BadUrdfRow{"flat_box", collisionOf("<box size=\"1 0 1\"/>"), {"link 'b'", "greater than zero"}},
+        BadUrdfRow{"negative_radius", collisionOf("<sphere radius=\"-1\"/>"), {"link 'b'", "greater than zero"}},
+        BadUrdfRow{"no_file", collisionOf("<mesh/>"), {"link 'b'", "filename"}},
         BadUrdfRow{"missing_mesh",
                    arm("continuous", "", "<collision><geometry><mesh filename=\"package://none/a.stl\"/></geometry></collision>"),
                    {"link 'b' collision 1", "package://none/a.stl", "tried", "--package"}}),

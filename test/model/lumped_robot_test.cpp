@@ -13,7 +13,7 @@
 namespace blem_sim {
 namespace {
 
-RobotModel load(const std::string& inside) { return loadUrdf("<robot name=\"r\">" + inside + "</robot>", "test.urdf", UriResolver()); }
+RobotModel loadRobot(const std::string& inside) { return loadUrdf("<robot name=\"r\">" + inside + "</robot>", "test.urdf", UriResolver()); }
 
 std::string link(const std::string& name, const std::string& mass = "", const std::string& inside = "") {
   const std::string inertial =
@@ -23,15 +23,15 @@ std::string link(const std::string& name, const std::string& mass = "", const st
   return "<link name=\"" + name + "\">" + inertial + inside + "</link>";
 }
 
-std::string joint(const std::string& name, const std::string& type, const std::string& parent, const std::string& child,
-                  const std::string& inside = "") {
+std::string jointOf(const std::string& name, const std::string& type, const std::string& parent, const std::string& child,
+                    const std::string& inside = "") {
   return "<joint name=\"" + name + "\" type=\"" + type + "\"><parent link=\"" + parent + "\"/><child link=\"" + child +
          "\"/><origin xyz=\"1 0.5 0.25\" rpy=\"0.5 -0.25 1\"/>" + inside + "</joint>";
 }
 
 const Pose X_JOINT = makePose(Vector3(1, 0.5, 0.25), Vector3(0.5, -0.25, 1));
 
-bool noted(const std::vector<std::string>& notes, const std::string& words) {
+bool isNoted(const std::vector<std::string>& notes, const std::string& words) {
   return std::any_of(notes.begin(), notes.end(), [&](const std::string& note) { return note.find(words) != std::string::npos; });
 }
 
@@ -63,8 +63,8 @@ void expectBruteForceSum(const RobotModel& robot, const LumpedRobot& lumped) {
 }
 
 TEST(LumpedRobot, fixedJointsSumInertialsInTheirFrames) {
-  const RobotModel robot = load(link("a", "1") + link("b", "2") + link("c", "3") + link("d", "4") + joint("ab", "fixed", "a", "b") +
-                                joint("bc", "fixed", "b", "c") + joint("cd", "continuous", "c", "d"));
+  const RobotModel robot = loadRobot(link("a", "1") + link("b", "2") + link("c", "3") + link("d", "4") + jointOf("ab", "fixed", "a", "b") +
+                                     jointOf("bc", "fixed", "b", "c") + jointOf("cd", "continuous", "c", "d"));
   const LumpedRobot lumped = lumpFixedJoints(robot, {}, false);
   ASSERT_EQ(lumped.bodies.size(), 2u);
   EXPECT_EQ(lumped.bodies[0].name, "a");
@@ -90,7 +90,7 @@ TEST(LumpedRobot, sharedRobotsKeepTheirInertia) {
 
 TEST(LumpedRobot, keptFixedJointsStayJoints) {
   const RobotModel robot =
-      load(link("a", "1") + link("b", "2") + link("c", "3") + joint("ab", "fixed", "a", "b") + joint("bc", "fixed", "b", "c"));
+      loadRobot(link("a", "1") + link("b", "2") + link("c", "3") + jointOf("ab", "fixed", "a", "b") + jointOf("bc", "fixed", "b", "c"));
   const LumpedRobot lumped = lumpFixedJoints(robot, {"bc", "no_such_joint"}, false);
   ASSERT_EQ(lumped.bodies.size(), 2u);
   ASSERT_EQ(lumped.joints.size(), 1u);
@@ -121,7 +121,8 @@ TEST(LumpedRobot, planarJointBecomesTwoSlidesAndATurn) {
   for (const Vector3& normal : {Vector3(0, 0, 1), Vector3(1, 0, 0), Vector3(0, -1, 0), Vector3(0.6, 0, -0.8)}) {
     const std::string axis =
         "<axis xyz=\"" + std::to_string(normal.x()) + " " + std::to_string(normal.y()) + " " + std::to_string(normal.z()) + "\"/>";
-    const RobotModel robot = load(link("a") + link("b", "2") + joint("base", "planar", "a", "b", axis + "<dynamics damping=\"0.5\"/>"));
+    const RobotModel robot =
+        loadRobot(link("a") + link("b", "2") + jointOf("base", "planar", "a", "b", axis + "<dynamics damping=\"0.5\"/>"));
     const LumpedRobot lumped = lumpFixedJoints(robot, {}, true);
     ASSERT_EQ(lumped.joints.size(), 3u);
     ASSERT_EQ(lumped.bodies.size(), 4u);
@@ -141,16 +142,16 @@ TEST(LumpedRobot, planarJointBecomesTwoSlidesAndATurn) {
       EXPECT_LE(lumped.bodies[body].inertial.mass, 2e-3 * (1 + 1e-12));
       EXPECT_GT(lumped.bodies[body].inertial.inertia.determinant(), 0);
     }
-    EXPECT_TRUE(noted(lumped.notes, "planar joint 'base'"));
+    EXPECT_TRUE(isNoted(lumped.notes, "planar joint 'base'"));
   }
   const LumpedRobot flat =
-      lumpFixedJoints(load(link("a") + link("b", "2") + joint("base", "planar", "a", "b", "<axis xyz=\"0 0 1\"/>")), {}, true);
+      lumpFixedJoints(loadRobot(link("a") + link("b", "2") + jointOf("base", "planar", "a", "b", "<axis xyz=\"0 0 1\"/>")), {}, true);
   EXPECT_EQ(flat.joints[0].axis, Vector3(Vector3::UnitX()));
   EXPECT_EQ(flat.joints[1].axis, Vector3(Vector3::UnitY()));
 }
 
 TEST(LumpedRobot, floatingJointIsABodyOfItsOwn) {
-  const LumpedRobot lumped = lumpFixedJoints(load(link("a") + link("b", "2") + joint("free", "floating", "a", "b")), {}, true);
+  const LumpedRobot lumped = lumpFixedJoints(loadRobot(link("a") + link("b", "2") + jointOf("free", "floating", "a", "b")), {}, true);
   ASSERT_EQ(lumped.joints.size(), 1u);
   EXPECT_EQ(lumped.joints[0].type, JointType::FLOATING);
   EXPECT_TRUE(lumped.joints[0].pose(5).isApprox(X_JOINT, 1e-15));
@@ -167,9 +168,9 @@ TEST(LumpedRobot, missingInertialsComeFromShapesAndAreNoted) {
       "<collision><geometry><cylinder radius=\"0.1\" length=\"0.4\"/></geometry></collision>"
       "<collision><origin xyz=\"0 0 0.2\"/><geometry><sphere radius=\"0.1\"/></geometry></collision>"
       "<collision><origin xyz=\"0 0 -0.2\"/><geometry><sphere radius=\"0.1\"/></geometry></collision>";
-  const RobotModel robot = load(link("box", "", box) + link("balls", "", sphere(0.1, "1") + sphere(0.1, "-1")) +
-                                link("capsule", "", capsule) + link("nothing") + joint("j0", "continuous", "box", "balls") +
-                                joint("j1", "continuous", "balls", "capsule") + joint("j2", "continuous", "capsule", "nothing"));
+  const RobotModel robot = loadRobot(link("box", "", box) + link("balls", "", sphere(0.1, "1") + sphere(0.1, "-1")) +
+                                     link("capsule", "", capsule) + link("nothing") + jointOf("j0", "continuous", "box", "balls") +
+                                     jointOf("j1", "continuous", "balls", "capsule") + jointOf("j2", "continuous", "capsule", "nothing"));
   const LumpedRobot lumped = lumpFixedJoints(robot, {}, false);
   const Inertial& solid = lumped.bodies[0].inertial;
   EXPECT_NEAR(solid.mass, 6, 1e-9);
@@ -193,29 +194,29 @@ TEST(LumpedRobot, missingInertialsComeFromShapesAndAreNoted) {
   EXPECT_NEAR(rod.inertia(2, 2), along, 1e-7);
   EXPECT_NEAR(rod.inertia(0, 0), across, 1e-7);
   EXPECT_EQ(lumped.bodies[3].inertial.mass, 0.01);
-  for (const char* name : {"'box'", "'balls'", "'capsule'", "'nothing'"}) EXPECT_TRUE(noted(lumped.notes, name)) << name;
+  for (const char* name : {"'box'", "'balls'", "'capsule'", "'nothing'"}) EXPECT_TRUE(isNoted(lumped.notes, name)) << name;
 }
 
 TEST(LumpedRobot, inertiasAreRepairedOrRefused) {
   const auto body = [](const std::string& inertia) {
-    return load("<link name=\"b\"><inertial><mass value=\"2\"/><inertia " + inertia + "/></inertial></link>");
+    return loadRobot("<link name=\"b\"><inertial><mass value=\"2\"/><inertia " + inertia + "/></inertial></link>");
   };
   const LumpedRobot point = lumpFixedJoints(body("ixx=\"0\" ixy=\"0\" ixz=\"0\" iyy=\"0\" iyz=\"0\" izz=\"0\""), {}, false);
   EXPECT_GT(point.bodies[0].inertial.inertia.determinant(), 0);
-  EXPECT_TRUE(noted(point.notes, "zero"));
+  EXPECT_TRUE(isNoted(point.notes, "zero"));
   const LumpedRobot rod = lumpFixedJoints(body("ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"-1e-9\""), {}, false);
   EXPECT_GT(rod.bodies[0].inertial.inertia(2, 2), 0);
-  EXPECT_TRUE(noted(rod.notes, "raised"));
+  EXPECT_TRUE(isNoted(rod.notes, "raised"));
   const LumpedRobot impossible = lumpFixedJoints(body("ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"3\""), {}, false);
   EXPECT_EQ(impossible.bodies[0].inertial.inertia(2, 2), 3);  // Atlas is given so; it is kept, and said
-  EXPECT_TRUE(noted(impossible.notes, "no rigid body"));
+  EXPECT_TRUE(isNoted(impossible.notes, "no rigid body"));
   const RobotModel skewed = body("ixx=\"1\" ixy=\"2\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\"");
   EXPECT_TRUE(isOneLineWith(refusal([&] { lumpFixedJoints(skewed, {}, false); }), {"test.urdf", "link 'b'", "not positive definite"}));
   EXPECT_EQ(refusal([&] { lumpFixedJoints(skewed, {}, true); }), "");  // a fixed base needs none
 }
 
 TEST(LumpedRobot, massesOfLumpedLinksMayBeZero) {
-  const RobotModel robot = load(link("a", "1") + link("b", "0") + joint("ab", "fixed", "a", "b"));
+  const RobotModel robot = loadRobot(link("a", "1") + link("b", "0") + jointOf("ab", "fixed", "a", "b"));
   EXPECT_EQ(lumpFixedJoints(robot, {}, false).bodies[0].inertial.mass, 1);
   EXPECT_TRUE(isOneLineWith(refusal([&] { lumpFixedJoints(robot, {"ab"}, false); }), {"link 'b'", "mass is 0 kg"}));
 }

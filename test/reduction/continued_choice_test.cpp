@@ -12,7 +12,7 @@ namespace blem_sim {
 namespace {
 
 /** A ring of contacts, some at an inner radius [m]; normals and depths [m] vary by so much. */
-Contacts ring(Noise* noise, double inner, double tilt, double gap) {
+Contacts variedRing(Noise* noise, double inner, double tilt, double gap) {
   Contacts contacts;
   for (int i = 0; i < 40; ++i) {
     const double angle = 2 * M_PI * i / 40, radius = i % 8 == 0 ? inner : 0.05;
@@ -46,7 +46,7 @@ TEST(ContinuedChoice, GoesOnOnlyWhereTheChoiceByWrenchesDoes) {
   int sure = 0, unsure = 0;
   for (int round = 0; round < 4000; ++round) {
     const double tilts[] = {0, 0.005, 0.1}, gaps[] = {0, 1e-5, 5e-4};
-    const Contacts contacts = ring(&noise, round % 2 ? 0.049 : 0.03, tilts[round % 3], gaps[round / 3 % 3]);
+    const Contacts contacts = variedRing(&noise, round % 2 ? 0.049 : 0.03, tilts[round % 3], gaps[round / 3 % 3]);
     const int k = 12 + round % 28;
     const ContactIds before = someOf(contacts, k, &noise);
     std::vector<int> members(contacts.size()), went_on, chosen;
@@ -69,7 +69,7 @@ TEST(ContinuedChoice, GoesOnOnlyWhereTheChoiceByWrenchesDoes) {
 
 TEST(ContinuedChoice, IsNotSureWithoutTheDeepestOrWithOthersThanK) {
   Noise noise(12);
-  Contacts contacts = ring(&noise, 0.05, 0, 0);
+  Contacts contacts = variedRing(&noise, 0.05, 0, 0);
   ContactIds before;
   for (int i = 0; i < 40; i += 2) before.push_back(contacts[i].id);
   std::sort(before.begin(), before.end());

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int WARM_UP = 300, WATCHED = 500;  // [steps]
 
-SensorConfig sensorOf(SensorType type) {
+SensorConfig sensorOfType(SensorType type) {
   SensorConfig sensor;
   sensor.name = "sensor" + std::to_string(static_cast<int>(type));
   sensor.type = type;
@@ -25,13 +25,13 @@ SensorConfig sensorOf(SensorType type) {
 }
 
 /** A motor driven arm with every kind of sensor, and a ball beside it that falls past. */
-SimulationConfig busyScene() {
+SimulationConfig allocatingScene() {
   SimulationConfig config;
   RobotConfig arm = robot("arm_with_a_name_too_long_for_a_short_string", pendulumUrdf(), true);
   arm.gains["default"] = {300, 10, 20, 100};
   for (const SensorType type :
        {SensorType::FORCE_TORQUE, SensorType::IMU, SensorType::CONTACT, SensorType::TILT, SensorType::MOTOR_CURRENT})
-    arm.sensors.push_back(sensorOf(type));
+    arm.sensors.push_back(sensorOfType(type));
   config.robots = {arm};
   config.objects = {box("falling", Vector3::Constant(0.1), 1, Vector3(3, 0, 100))};
   return config;
@@ -51,13 +51,13 @@ long allocationsOfWarmSteps(Simulator* simulator, int warm_up = WARM_UP) {
 }
 
 TEST(StepAllocation, NoneInAWarmStepWithoutContacts) {
-  Simulator simulator(busyScene(), UriResolver());
+  Simulator simulator(allocatingScene(), UriResolver());
   EXPECT_EQ(allocationsOfWarmSteps(&simulator), 0);
   EXPECT_EQ(simulator.report().samples.size(), 5u);
 }
 
 TEST(StepAllocation, NoneInAWarmStepOfAStack) {
-  SimulationConfig config = busyScene();
+  SimulationConfig config = allocatingScene();
   config.environments = {ground()};
   config.objects = {box("lower", Vector3::Constant(0.1), 1, Vector3(3, 0, 0.053)),
                     box("upper", Vector3::Constant(0.1), 1, Vector3(3, 0, 0.158))};
@@ -68,7 +68,7 @@ TEST(StepAllocation, NoneInAWarmStepOfAStack) {
 }
 
 TEST(StepAllocation, NoneInAWarmStepOnUsedUpLayers) {
-  SimulationConfig config = busyScene();
+  SimulationConfig config = allocatingScene();
   config.environments = {ground()};
   config.objects = {box("heavy", Vector3::Constant(0.1), 100, Vector3(0.5, 0, 0.0525))};
   config.objects[0].contact.stiffness = 1e4;
@@ -79,7 +79,7 @@ TEST(StepAllocation, NoneInAWarmStepOnUsedUpLayers) {
 }
 
 TEST(StepAllocation, NoneInAWarmStepMadeInParts) {
-  SimulationConfig config = busyScene();
+  SimulationConfig config = allocatingScene();
   config.environments = {ground(20)};
   config.environments[0].contact.friction = 0;
   config.objects = {box("gliding", Vector3::Constant(0.1), 1, Vector3(-5, 3, 0.0525))};

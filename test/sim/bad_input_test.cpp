@@ -7,7 +7,7 @@
 namespace blem_sim {
 namespace {
 
-constexpr double INF = std::numeric_limits<double>::infinity();
+constexpr double INFINITE = std::numeric_limits<double>::infinity();
 
 /** A pendulum with a sensor, a cube, a ground: sound. */
 SimulationConfig soundScene() {
@@ -29,9 +29,9 @@ struct BadField {
   std::vector<double> values;
 };
 
-const std::vector<double> NO_NUMBER = {NAN, INF, -INF};
-const std::vector<double> NOT_POSITIVE = {NAN, INF, -INF, 0, -1};
-const std::vector<double> NEGATIVE = {NAN, INF, -1};
+const std::vector<double> NO_NUMBER = {NAN, INFINITE, -INFINITE};
+const std::vector<double> NOT_POSITIVE = {NAN, INFINITE, -INFINITE, 0, -1};
+const std::vector<double> NEGATIVE = {NAN, INFINITE, -1};
 const std::vector<double> NEGATIVE_OR_NAN = {NAN, -1};
 
 std::vector<BadField> badFields() {
@@ -53,13 +53,13 @@ std::vector<BadField> badFields() {
       {"environments: ground: friction", [](C c, double x) { c->environments[0].contact.friction = x; }, NEGATIVE},
       {"environments: ground: pose", [](C c, double x) { c->environments[0].X_WE.translation().x() = x; }, NO_NUMBER},
       {"environments: ground: pose", [](C c, double x) { c->environments[0].X_WE.linear() *= x; }, {NAN, 0, -1, 2}},
-      {"environments: ground: scale", [](C c, double x) { c->environments[0].scale.y() = x; }, {NAN, INF, 0}},
+      {"environments: ground: scale", [](C c, double x) { c->environments[0].scale.y() = x; }, {NAN, INFINITE, 0}},
       {"objects: cube: mass", [](C c, double x) { c->objects[0].mass = x; }, NOT_POSITIVE},
       {"objects: cube: stiffness", [](C c, double x) { c->objects[0].contact.stiffness = x; }, {NAN, 0, -1e5}},
       {"objects: cube: pose", [](C c, double x) { c->objects[0].X_WO.translation().z() = x; }, NO_NUMBER},
       {"objects: cube: mesh_pose", [](C c, double x) { c->objects[0].X_OM.linear()(0, 0) = x; }, {NAN, 3}},
       {"objects: cube: velocity", [](C c, double x) { c->objects[0].angular_velocity.x() = x; }, NO_NUMBER},
-      {"objects: cube: inertia", [](C c, double x) { c->objects[0].inertia = Matrix3(x * Matrix3::Identity()); }, {NAN, INF, 0, -1}},
+      {"objects: cube: inertia", [](C c, double x) { c->objects[0].inertia = Matrix3(x * Matrix3::Identity()); }, {NAN, INFINITE, 0, -1}},
       {"objects: cube: max_contacts", [](C c, double x) { c->objects[0].max_contacts = static_cast<int>(x); }, {0, -7}},
       {"objects: cube: com", [](C c, double x) { c->objects[0].com = Vector3(0, x, 0); }, NO_NUMBER},
       {"robots: arm: pose", [](C c, double x) { c->robots[0].X_WR.translation().z() = x; }, NO_NUMBER},
@@ -98,7 +98,7 @@ TEST(BadInput, AnEnvironmentThatIsLoadedLaterToo) {
 }
 
 /** A link of a robot, with this inertial and this in its joint. */
-std::string armUrdf(const std::string& inertial, const std::string& joint) {
+std::string badArm(const std::string& inertial, const std::string& joint) {
   return R"(<robot name="arm"><link name="base"/><link name="link">)" + inertial +
          R"(</link><joint name="hinge" type="revolute"><parent link="base"/><child link="link"/>)" + joint + "</joint></robot>";
 }
@@ -124,7 +124,7 @@ TEST(BadInput, AUrdfIsRefusedInOneLine) {
   rows.push_back({inertial("1", "1"), limit + R"(<origin xyz="0 0 nan"/>)", "origin"});
   for (const Row& row : rows) {
     SimulationConfig config;
-    config.robots = {robot("arm", armUrdf(row.inertial, row.joint), true)};
+    config.robots = {robot("arm", badArm(row.inertial, row.joint), true)};
     const std::string text = refusal([&] { Simulator simulator(config, UriResolver()); });
     EXPECT_TRUE(isOneLineWith(text, {"arm", row.word})) << row.inertial << row.joint << ": '" << text << "'";
   }

@@ -26,7 +26,7 @@ namespace {
 constexpr const char* FILE_OF_HASHES = BLEM_SIM_SOURCE_DIR "/test/data/golden_hashes.txt";
 
 constexpr const char* HUMANOID = "robots/klampt/huboplus/huboplus.urdf";
-constexpr const char* GRIPPER = "robots/robotiq_arg85_description/robots/robotiq_arg85_description.urdf";  // with mimic joints
+constexpr const char* GRIPPER_URDF = "robots/robotiq_arg85_description/robots/robotiq_arg85_description.urdf";  // with mimic joints
 
 /** One row of scenes: its name in the file, how it is made, and for how long it is simulated. */
 struct GoldenScene {
@@ -120,7 +120,7 @@ const GoldenScene SCENES[] = {
     {"random_17", random<17>, 0.1},
     {"random_23", random<23>, 0.1},
     {"humanoid", [] { return onHills(HUMANOID, 0.8); }, 0.05, HUMANOID},
-    {"gripper", [] { return onHills(GRIPPER, 0.1); }, 0.15, GRIPPER},
+    {"gripper", [] { return onHills(GRIPPER_URDF, 0.1); }, 0.15, GRIPPER_URDF},
 };
 
 /** Compiler, machine and libraries, which decide bits. */

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int CYCLES = SANITIZED ? 100 : 1000;
 
-SimulationConfig cubeOnGround(const char* stepper = "articulated") {
+SimulationConfig cubeOn(const char* stepper = "articulated") {
   SimulationConfig config;
   config.solver.stepper = stepper;
   config.environments = {ground()};
@@ -21,7 +21,7 @@ SimulationConfig cubeOnGround(const char* stepper = "articulated") {
   return config;
 }
 
-RobotConfig pendulum(const std::string& name, const Vector3& place) {
+RobotConfig pendulumAt(const std::string& name, const Vector3& place) {
   RobotConfig config = robot(name, pendulumUrdf(), true);
   config.X_WR = makePose(place);
   SensorConfig imu;
@@ -35,11 +35,11 @@ RobotConfig pendulum(const std::string& name, const Vector3& place) {
 /** The order of quick_step's sweeps is drawn for all models together, so it is left out. */
 TEST(ModelsComeAndGo, TheOthersKeepTheirBits) {
   for (const char* stepper : {"articulated", "world_step"}) {
-    Simulator alone(cubeOnGround(stepper), UriResolver()), visited(cubeOnGround(stepper), UriResolver());
+    Simulator alone(cubeOn(stepper), UriResolver()), visited(cubeOn(stepper), UriResolver());
     for (int i = 0; i < 20; ++i) {
       alone.step();
       visited.step();
-      visited.spawn(pendulum("guest", {3, 0, 0}));
+      visited.spawn(pendulumAt("guest", {3, 0, 0}));
       alone.step();
       visited.step();
       visited.removeModel("guest");
@@ -52,9 +52,9 @@ TEST(ModelsComeAndGo, TheOthersKeepTheirBits) {
 }
 
 TEST(ModelsComeAndGo, SlotsAreUsedAgainHoweverOften) {
-  Simulator simulator(cubeOnGround(), UriResolver());
+  Simulator simulator(cubeOn(), UriResolver());
   for (int i = 0; i < CYCLES; ++i) {
-    simulator.spawn(pendulum("guest", {3, 0, 0}));
+    simulator.spawn(pendulumAt("guest", {3, 0, 0}));
     if (i % 10 == 0) simulator.step();
     simulator.removeModel("guest");
   }
@@ -69,12 +69,12 @@ TEST(ModelsComeAndGo, SlotsAreUsedAgainHoweverOften) {
 }
 
 TEST(ModelsComeAndGo, SensorsGoByTheirRobotsWhoeverLeaves) {
-  SimulationConfig config = cubeOnGround();
-  for (const char* name : {"a", "b", "c"}) config.robots.push_back(pendulum(name, {0, 3, 0}));
+  SimulationConfig config = cubeOn();
+  for (const char* name : {"a", "b", "c"}) config.robots.push_back(pendulumAt(name, {0, 3, 0}));
   Simulator simulator(config, UriResolver());
   simulator.step();
   simulator.removeModel("b");
-  simulator.spawn(pendulum("d", {0, 4, 0}));
+  simulator.spawn(pendulumAt("d", {0, 4, 0}));
   ASSERT_EQ(simulator.robots().size(), 3u);
   EXPECT_EQ(simulator.robots()[1].name, "d");
   const StepReport& report = simulator.step();
@@ -85,8 +85,8 @@ TEST(ModelsComeAndGo, SensorsGoByTheirRobotsWhoeverLeaves) {
 }
 
 TEST(ModelsComeAndGo, ResetGoesToWhereTheyWereSpawned) {
-  Simulator simulator(cubeOnGround(), UriResolver()), fresh(cubeOnGround(), UriResolver());
-  for (Simulator* each : {&simulator, &fresh}) each->spawn(pendulum("guest", {3, 0, 0}));
+  Simulator simulator(cubeOn(), UriResolver()), fresh(cubeOn(), UriResolver());
+  for (Simulator* each : {&simulator, &fresh}) each->spawn(pendulumAt("guest", {3, 0, 0}));
   stepFor(&simulator, 0.3);
   simulator.setJointPositions(0, {"guest::hinge"}, {1.0});
   stepFor(&simulator, 0.1);
@@ -98,19 +98,19 @@ TEST(ModelsComeAndGo, ResetGoesToWhereTheyWereSpawned) {
 }
 
 TEST(ModelsComeAndGo, BadOnesChangeNothing) {
-  Simulator simulator(cubeOnGround(), UriResolver());
+  Simulator simulator(cubeOn(), UriResolver());
   simulator.step();
   const std::uint64_t hash = simulator.stateHash();
-  EXPECT_THROW(simulator.spawn(pendulum("cube", {0, 0, 0})), InputError);
+  EXPECT_THROW(simulator.spawn(pendulumAt("cube", {0, 0, 0})), InputError);
   EXPECT_THROW(simulator.spawn(robot("bad", "<robot", false)), InputError);
   EXPECT_THROW(simulator.spawn(robot("a::b", pendulumUrdf(), true)), InputError);
-  EXPECT_THROW(simulator.spawn(pendulum("far", {NAN, 0, 0})), InputError);
+  EXPECT_THROW(simulator.spawn(pendulumAt("far", {NAN, 0, 0})), InputError);
   EXPECT_THROW(simulator.removeModel("nobody"), InputError);
   EXPECT_EQ(simulator.stateHash(), hash);
 }
 
 TEST(Loads, AreSavedAndGainNoEnergyOutOfNothing) {
-  Simulator simulator(cubeOnGround(), UriResolver());
+  Simulator simulator(cubeOn(), UriResolver());
   const LinkPart link = findLink(simulator, "cube::link", "test");
   simulator.applyLoad({link.body, {Vector3(0, 3, 20), Vector3(0, 0, 0.1)}, Vector3(0.01, 0.02, 0)}, {0, -1});
   stepFor(&simulator, 0.05);
@@ -128,8 +128,8 @@ TEST(Loads, AreSavedAndGainNoEnergyOutOfNothing) {
 }
 
 TEST(Loads, HaveABound) {
-  Simulator simulator(cubeOnGround(), UriResolver());
-  simulator.spawn(pendulum("guest", {3, 0, 0}));
+  Simulator simulator(cubeOn(), UriResolver());
+  simulator.spawn(pendulumAt("guest", {3, 0, 0}));
   for (int i = 0; i < 10000; ++i) simulator.applyEffort(0, 1e-6, {0, 0.5});
   EXPECT_THROW(simulator.applyEffort(0, 1e-6, {0, 0.5}), InputError);
   stepFor(&simulator, 0.6);
@@ -141,7 +141,7 @@ TEST(LinkProperties, ComOfALinkOnAJointIsMoved) {
   for (const char* stepper : {"articulated", "world_step"}) {
     SimulationConfig config;
     config.solver.stepper = stepper;
-    config.robots = {pendulum("swing", Vector3::Zero())};
+    config.robots = {pendulumAt("swing", Vector3::Zero())};
     Simulator moved(config, UriResolver());
     std::string& urdf = config.robots[0].urdf_xml;
     urdf.replace(urdf.find("0.5 0 0"), 7, "0.3 0 0.1");

@@ -32,17 +32,17 @@ SimulationConfig cradle(int swung, double gap, double time_step) {
   return config;
 }
 
-struct Swing {
+struct Bouncing {
   double energy;  ///< [J] kinetic and potential above that of the hanging balls, of the end over that of the start
   double gained;  ///< [J] in a step, at most
   int away;
 };
 
-Swing halfPeriod(const SimulationConfig& config) {
+Bouncing halfPeriod(const SimulationConfig& config) {
   Simulator simulator(config, UriResolver());
   const double hanging = 5 * 0.1 * G * (1 - LENGTH), start = simulator.report().energy - hanging;
   const double seconds = M_PI * std::sqrt(LENGTH / G * (1 + 0.4 * RADIUS * RADIUS / (LENGTH * LENGTH))) * (1 + ANGLE * ANGLE / 16);
-  Swing swing{0, 0, 0};
+  Bouncing swing{0, 0, 0};
   for (int i = 0; i < std::lround(seconds / config.time_step); ++i) swing.gained = std::max(swing.gained, simulator.step().energy_gained);
   swing.energy = (simulator.report().energy - hanging) / start;
   for (int i = 0; i < 5; ++i) {
@@ -57,7 +57,7 @@ class SphereCradle : public ::testing::TestWithParam<double> {};
 TEST_P(SphereCradle, KeepsItsEnergyAndAsManyLeaveAsCame) {
   for (const double time_step : {1e-3, 2e-3}) {
     for (int swung = 1; swung <= 3; ++swung) {
-      const Swing swing = halfPeriod(cradle(swung, GetParam(), time_step));
+      const Bouncing swing = halfPeriod(cradle(swung, GetParam(), time_step));
       EXPECT_NEAR(swing.energy, 1, 0.005) << swung;
       EXPECT_EQ(swing.away, swung);
       // A ball that is hit may fly farther within 2 ms than contacts are known beyond pairs that move; the depth is corrected.

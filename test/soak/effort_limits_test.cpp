@@ -8,14 +8,13 @@
 namespace blem_sim {
 namespace {
 
-/** Motor efforts against their caps: the effort told of a joint is motor and friction, and friction is known up to its dry part. */
+/** Motor efforts against their caps. */
 struct Saturation {
   void observe(const World& world, const std::vector<JointDrive>& drives, const SolveResult& result) {
     for (int j = 0; j < world.jointCount(); ++j) {
       const JointDrive& drive = drives[j];
       if (std::isinf(drive.max_effort)) continue;
-      const double viscous = -drive.viscous_friction * world.jointState(j).velocity;
-      const double over = std::abs(result.joint_efforts[j] - viscous) - drive.dry_friction - drive.max_effort;
+      const double over = std::abs(result.motor_efforts[j]) - drive.max_effort;
       worst = std::max(worst, over / drive.max_effort);
       saturated += over > -1e-9 * drive.max_effort;
     }

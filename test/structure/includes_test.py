@@ -1,4 +1,4 @@
-"""Every file includes what it uses of the headers that some builds precompile (cmake/precompiled.cmake), by itself or by headers of ours."""
+"""Every file includes what it uses of the headers that some builds precompile (cmake/compile_time.cmake), by itself or by headers of ours."""
 import re
 
 from source_files import INCLUDE, ROOT, sources

@@ -48,7 +48,8 @@ class World {
   void setInertial(int body, const MassProperties& inertial);
   /** Precondition: lower <= upper. @param lower, upper [rad or m] */
   void setJointLimits(int joint, double lower, double upper);
-  /** Sets JointState::effort of every joint [N m or N] until the next step, for steps that are made of several of the world's. */
+  /** Sets JointState::effort, the motor's, of every joint [N m or N] until the next step, for steps that are made of several of the
+   * world's. */
   void setJointEfforts(const std::vector<double>& efforts);
 
   const Vector3& gravity() const;

@@ -47,12 +47,13 @@ struct BodyState {
 struct JointState {
   double position = 0;  ///< [rad or m], counts full turns
   double velocity = 0;
-  double effort = 0;  ///< [N m or N] of motor and joint friction, along the axis, in the last step
+  double effort = 0;  ///< [N m or N] of the motor alone, along the axis, in the last step
 };
 
 /** Drive of one joint during one step. All terms act together. */
 struct JointDrive {
-  double effort = 0;  ///< [N m or N] given in advance: explicit PID, already capped, or an outside effort
+  double effort = 0;          ///< [N m or N] of the motor, given in advance: explicit PID, already capped
+  double outside_effort = 0;  ///< [N m or N] beside the motor's
   /** Implicit PD: stiffness (target_position - q) + damping (target_velocity - qdot), both taken at the end of the step, bounded by
    *  max_effort. Stable for any gain. Off while both gains are 0. */
   double stiffness = 0, damping = 0, target_position = 0, target_velocity = 0;
@@ -63,6 +64,8 @@ struct JointDrive {
   double velocity_gain = std::numeric_limits<double>::infinity();  ///< [N m s/rad or N s/m]
   double dry_friction = 0;      ///< [N m or N] mu_D: sticks up to it, slips against it [Hauser 2013, 4.1]
   double viscous_friction = 0;  ///< mu_V
+
+  double givenEffort() const { return effort + outside_effort; }
 };
 
 /** One contact as the solver takes it. */
@@ -92,7 +95,8 @@ struct SolveResult {
   std::vector<Vector3> contact_forces;  ///< [N] on body A, world axes, mean over the step
   std::vector<Wrench> joint_wrenches;   ///< from the parent on the child, world axes, about the joint frame's origin at the start of
                                         ///< the step; from motion (Newton-Euler over the step), not from a residual
-  std::vector<double> joint_efforts;    ///< [N m or N] motor and friction along the axis
+  std::vector<double> motor_efforts;    ///< [N m or N] of the motors alone, along the axes
+  std::vector<double> axis_efforts;     ///< [N m or N] of motors, outside efforts, friction and mimic joints' pull along the axes
   std::vector<double> apparent_work;    ///< [J] per contact: apparent work, at most, of departures and slips that loads end within the
                                         ///< step, and of bent paths; empty where a stepper does not know it
   double residual = 0;                  ///< [N] largest miss of Coulomb's law by a contact's force; 0 where a stepper does not know it

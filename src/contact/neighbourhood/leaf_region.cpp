@@ -18,7 +18,7 @@ constexpr double ANGLE_SLACK = 1e-3;
 constexpr double EDGE_SLACK = 1.01 * EDGE_CONE_SLACK + ANGLE_SLACK;
 
 /** Direction around which the faces sum up, whichever way they are wound. */
-Vector3 axisOf(const LeafFeatures& leaf) {
+Vector3 leafAxis(const LeafFeatures& leaf) {
   Vector3 axis = Vector3::Zero();
   for (const kernels::FaceRecord& face : leaf.faces.records) {
     const Vector3 normal = vector3(face.plane);
@@ -95,7 +95,7 @@ void placeBox(const MeshSide& side, const Bvh::Node& node, const Vector3 (&axes)
 }  // namespace
 
 kernels::LeafRegion leafRegion(const MeshSide& side, const Bvh::Node& node, const LeafFeatures& leaf) {
-  const Vector3 up = axisOf(leaf), x = up.unitOrthogonal(), axes[3] = {x, up.cross(x), up};
+  const Vector3 up = leafAxis(leaf), x = up.unitOrthogonal(), axes[3] = {x, up.cross(x), up};
   kernels::LeafRegion region;
   Directions directions(up);
   for (std::size_t i = 0; i < leaf.faces.records.size(); ++i) directions.addFace(leaf.faces.records[i], leaf.shapes.faces.open[i]);

@@ -6,7 +6,7 @@
 namespace blem_sim {
 namespace {
 
-constexpr double IMMOVABLE = 1e-12;  // [1/kg]
+constexpr double IMMOVABLE_POINT = 1e-12;  // [1/kg]
 
 }  // namespace
 
@@ -86,7 +86,7 @@ int ImpactRows::add(const Forest& forest, const ForestMotion& motion, const Body
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) response(i, j) += rows.col(i).dot(rows.col(3 + j));
   }
-  entry.normal = response(0, 0) > IMMOVABLE ? response(0, 0) : 0;
+  entry.normal = response(0, 0) > IMMOVABLE_POINT ? response(0, 0) : 0;
   const double mean = 0.5 * (response(1, 1) + response(2, 2));
   entry.across = mean + std::hypot(0.5 * (response(1, 1) - response(2, 2)), response(1, 2));
   contacts_.push_back(entry);

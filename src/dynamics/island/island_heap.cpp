@@ -20,7 +20,7 @@ constexpr int FEW_SWEEPS = 60, MOST_SWEEPS = 240;
 // polishing.
 constexpr double LIKE_BEFORE = 1e-6, NEARLY = 1e-4;
 // Softness of contacts while a quiet heap is polished: stiffer ones change their kinds too often.
-constexpr double POLISH_SOFTNESS = 300, KEPT_SOFTNESS = 100, INEXACT = 0.02;
+constexpr double POLISH_SOFTNESS = 300, KEPT_SOFTNESS = 100, INEXACT_POLISH = 0.02;
 constexpr int POLISH_WORK = 6000, FEWEST_POLISHES = 10, MOST_POLISHES = 60;  // iterations times trees
 constexpr double BALANCED = 1e-5;                                            // [rad/s or m/s] most that a step may miss momentum's balance
 constexpr double RESIDUAL_IS_TROUBLE = 0.01;                                 // of the largest impulse
@@ -151,11 +151,11 @@ bool IslandProblem::polish(const NewtonSettings& settings, NewtonReport* report)
   few.max_iterations = std::clamp(POLISH_WORK / treeCount(), FEWEST_POLISHES, MOST_POLISHES);
   soften(POLISH_SOFTNESS, 1);
   predict();
-  polished.iterations = 1 + newton(few, INEXACT, few.max_iterations);
+  polished.iterations = 1 + newton(few, INEXACT_POLISH, few.max_iterations);
   slip_mixing_.start(contact_blocks_.size() * LANES);
   remember();
   soften(KEPT_SOFTNESS, 1);
-  polished.iterations += newton(few, INEXACT, std::max(0, few.max_iterations - polished.iterations));
+  polished.iterations += newton(few, INEXACT_POLISH, std::max(0, few.max_iterations - polished.iterations));
   finish(few, &polished);
   const int iterations = report->iterations + polished.iterations;
   const bool better = polished.imbalance <= BALANCED && polished.contact_residual < swept.contact_residual;

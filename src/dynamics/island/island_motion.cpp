@@ -42,7 +42,7 @@ bool isDriven(const Forest& forest, int tree, const StepInput& input) {
   return std::any_of(forest.nodes().begin() + t.first_node, forest.nodes().begin() + t.node_end, [&](const ForestNode& n) {
     if (n.dofs != 1) return false;
     const JointDrive& d = input.drives[n.joint];
-    return d.effort != 0 || d.stiffness > 0 || d.damping > 0 || d.dry_friction > 0 || d.viscous_friction > 0;
+    return d.givenEffort() != 0 || d.stiffness > 0 || d.damping > 0 || d.dry_friction > 0 || d.viscous_friction > 0;
   });
 }
 
@@ -198,7 +198,7 @@ void followAlone(const Forest& forest, const StepInput& input, int tree, ForestM
 }
 
 void addEfforts(const StepInput& input, const IslandProblem& problem, SolverSpace* space) {
-  for (const JointTerm& j : problem.joints) space->free_momentum[j.dof] += input.dt * input.drives[j.joint].effort;
+  for (const JointTerm& j : problem.joints) space->free_momentum[j.dof] += input.dt * input.drives[j.joint].givenEffort();
 }
 
 double correctProducts(const Forest& forest, int tree, double dt, ForestMotion* motion, SolverSpace* space) {

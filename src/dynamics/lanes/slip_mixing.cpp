@@ -7,9 +7,9 @@
 namespace blem_sim {
 namespace {
 
-constexpr double FARTHEST = 3;  // misses: farthest that mixing goes beyond the slips found, since nothing is linear there
+constexpr double FARTHEST_MIX = 3;  // misses: farthest that mixing goes beyond the slips found, since nothing is linear there
 
-double dot(const std::vector<double>& a, const std::vector<double>& b) {
+double innerProduct(const std::vector<double>& a, const std::vector<double>& b) {
   double sum = 0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
   return sum;
@@ -48,10 +48,10 @@ void SlipMixing::findSlips(ContactBlock* begin, ContactBlock* end) {
 std::array<double, SlipMixing::KEPT> SlipMixing::shares(int changes) const {
   constexpr double ALIKE = 1e-10;
   const std::vector<double>&a = changes_[0].miss, &b = changes_[1].miss;
-  const double aa = dot(a, a), am = dot(a, now_.miss);
+  const double aa = innerProduct(a, a), am = innerProduct(a, now_.miss);
   if (!(aa > 0)) return {0, 0};
   if (changes < 2) return {am / aa, 0};
-  const double bb = dot(b, b), ab = dot(a, b), bm = dot(b, now_.miss), determinant = aa * bb - ab * ab;
+  const double bb = innerProduct(b, b), ab = innerProduct(a, b), bm = innerProduct(b, now_.miss), determinant = aa * bb - ab * ab;
   if (!(determinant > ALIKE * aa * bb)) return {am / aa, 0};
   return {(am * bb - bm * ab) / determinant, (bm * aa - am * ab) / determinant};
 }
@@ -69,7 +69,7 @@ void SlipMixing::mix(ContactBlock* begin, ContactBlock* end) {
   for (const ContactBlock* b = begin; b != end; ++b)
     for (int lane = 0; lane < LANES; ++lane, ++i)
       if (b->kind[lane] == ContactBlock::OPEN) shift_[i] = 0;
-  const double shift = std::sqrt(dot(shift_, shift_)), most = FARTHEST * std::sqrt(dot(now_.miss, now_.miss));
+  const double shift = std::sqrt(innerProduct(shift_, shift_)), most = FARTHEST_MIX * std::sqrt(innerProduct(now_.miss, now_.miss));
   const double part = shift > most ? most / shift : 1;
   i = 0;
   for (ContactBlock* b = begin; b != end; ++b)
@@ -78,7 +78,7 @@ void SlipMixing::mix(ContactBlock* begin, ContactBlock* end) {
 
 void SlipMixing::remember(ContactBlock* begin, ContactBlock* end) {
   findSlips(begin, end);
-  if (steps_ > 0 && !(dot(now_.miss, now_.miss) < dot(last_.miss, last_.miss))) steps_ = 0;
+  if (steps_ > 0 && !(innerProduct(now_.miss, now_.miss) < innerProduct(last_.miss, last_.miss))) steps_ = 0;
   if (steps_ > 0) mix(begin, end);
   std::swap(now_, last_);
   ++steps_;

@@ -36,7 +36,7 @@ void setRow(const JointSlot& slot, MotorRow which, const Row& row) {
   setParameter(slot, dParamFMax + group, std::isinf(row.bound) ? dInfinity : row.bound);
 }
 
-/** Position and velocity of a joint as the step begins. */
+/** Position and velocity of a joint. */
 struct JointMotion {
   double q = 0, velocity = 0;
 };
@@ -141,6 +141,15 @@ void addEffort(const JointSlot& slot, double effort) {
     dJointAddSliderForce(slot.joint, effort);
 }
 
+/** Effort of the implicit PD out of that of all rows: its law at the step's end, as far as friction explains the rest. */
+double ofMotor(double of_rows, const JointDrive& drive, const JointMotion& end) {
+  if (!(drive.stiffness + drive.damping > 0)) return 0;
+  const double law = drive.stiffness * (drive.target_position - end.q) + drive.damping * (drive.target_velocity - end.velocity);
+  const double without_viscous = of_rows + drive.viscous_friction * end.velocity;
+  return std::clamp(std::clamp(law, -drive.max_effort, drive.max_effort), without_viscous - drive.dry_friction,
+                    without_viscous + drive.dry_friction);
+}
+
 }  // namespace
 
 void setDrives(Scene* scene, double dt, const std::vector<JointDrive>& drives, const std::vector<double>& coupling,
@@ -156,19 +165,23 @@ void setDrives(Scene* scene, double dt, const std::vector<JointDrive>& drives, c
     const double velocity = scene->jointVelocity(joint);
     setMotorRows(slot, drives[j], {q, velocity}, dt, std::max(cfm, DRY_SOFTNESS * dt * (inverse_inertia * cfm_scale)));
     setStop(slot, q, velocity, dt, settings, cfm);
-    addEffort(slot, drives[j].effort + coupling[j]);
+    addEffort(slot, drives[j].givenEffort() + coupling[j]);
   }
 }
 
 void readEfforts(const Scene& scene, const std::vector<JointDrive>& drives, const std::vector<double>& coupling,
-                 const std::vector<Vector3>& axes, std::vector<double>* efforts) {
-  efforts->assign(scene.joints().size(), 0);
+                 const std::vector<Vector3>& axes, SolveResult* result) {
+  result->motor_efforts.assign(scene.joints().size(), 0);
+  result->axis_efforts.assign(scene.joints().size(), 0);
   for (std::size_t j = 0; j < scene.joints().size(); ++j) {
     const JointSlot& slot = scene.joints()[j];
     if (!slot.motor) continue;
     const dJointFeedback& f = slot.motor_feedback;
     const Vector3 on_child = slot.spec.kind == JointKind::REVOLUTE ? fromOde(f.t1) : fromOde(f.f1);
-    (*efforts)[j] = drives[j].effort + coupling[j] + axes[j].dot(on_child);
+    const double of_rows = axes[j].dot(on_child);
+    result->axis_efforts[j] = drives[j].givenEffort() + coupling[j] + of_rows;
+    const int joint = static_cast<int>(j);
+    result->motor_efforts[j] = drives[j].effort + ofMotor(of_rows, drives[j], {scene.jointPosition(joint), scene.jointVelocity(joint)});
   }
 }
 

@@ -23,10 +23,10 @@ void setDrives(Scene* scene, double dt, const std::vector<JointDrive>& drives, c
                const SolverSettings& settings, double cfm_scale);
 
 /**
- * Efforts [N m or N] along the axes, after the step: those given in advance (coupling included) and those of the motor rows.
+ * Efforts [N m or N] along the axes, after the step: those given in advance and those of the rows; of the motors alone, and of all.
  * @param axes world axes of the moving joints at the start of the step, by slot
  */
 void readEfforts(const Scene& scene, const std::vector<JointDrive>& drives, const std::vector<double>& coupling,
-                 const std::vector<Vector3>& axes, std::vector<double>* efforts);
+                 const std::vector<Vector3>& axes, SolveResult* result);
 
 }  // namespace blem_sim

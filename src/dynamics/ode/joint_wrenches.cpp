@@ -21,7 +21,7 @@ Vector3 gyroscopicTorque(const Matrix3& I, const Vector3& w, double dt) {
 /** Moves a wrench about `from` to one about `to`. */
 Wrench moved(const Wrench& w, const Vector3& from, const Vector3& to) { return {w.force, w.torque + (from - to).cross(w.force)}; }
 
-void add(const Wrench& w, double sign, Wrench* to) {
+void addWrench(const Wrench& w, double sign, Wrench* to) {
   to->force += sign * w.force;
   to->torque += sign * w.torque;
 }
@@ -58,21 +58,21 @@ void jointWrenches(const Scene& scene, const std::vector<BodyBits>& start, const
   for (std::size_t i = 0; i < input.contacts.size(); ++i) {
     const ContactConstraint& c = input.contacts[i];
     const Wrench on_a{result.contact_forces[i], Vector3::Zero()};
-    if (scene.exists(c.body_a)) add(moved(on_a, c.point, start[c.body_a].com()), -1, &open[c.body_a]);
-    if (scene.exists(c.body_b)) add(moved(on_a, c.point, start[c.body_b].com()), 1, &open[c.body_b]);
+    if (scene.exists(c.body_a)) addWrench(moved(on_a, c.point, start[c.body_a].com()), -1, &open[c.body_a]);
+    if (scene.exists(c.body_b)) addWrench(moved(on_a, c.point, start[c.body_b].com()), 1, &open[c.body_b]);
   }
   wrenches->assign(scene.joints().size(), Wrench());
   const auto settle = [&](int joint, const Wrench& on_child) {
     const JointSpec& spec = scene.joints()[joint].spec;
     const Vector3 child = start[spec.child].com();
     (*wrenches)[joint] = moved(on_child, child, scene.jointOrigin(joint, start));
-    if (spec.parent != WORLD_BODY) add(moved(on_child, child, start[spec.parent].com()), 1, &open[spec.parent]);
+    if (spec.parent != WORLD_BODY) addWrench(moved(on_child, child, start[spec.parent].com()), 1, &open[spec.parent]);
   };
   for (std::size_t j = 0; j < scene.joints().size(); ++j) {
     const JointSlot& slot = scene.joints()[j];
     if (!slot.joint || slot.in_tree) continue;
-    const Wrench on_child = feedbackOnChild(slot, static_cast<int>(j), scene, input.drives[j].effort);
-    add(on_child, -1, &open[slot.spec.child]);
+    const Wrench on_child = feedbackOnChild(slot, static_cast<int>(j), scene, input.drives[j].givenEffort());
+    addWrench(on_child, -1, &open[slot.spec.child]);
     settle(static_cast<int>(j), on_child);
   }
   for (const int joint : scene.leavesFirst()) settle(joint, open[scene.joints()[joint].spec.child]);

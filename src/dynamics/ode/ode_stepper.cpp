@@ -69,7 +69,7 @@ class OdeStepper : public Stepper {
     });
     solver_->accept();
     contacts_.readForces(&result->contact_forces);
-    readEfforts(*scene, input.drives, mimics_.efforts(), axes_, &result->joint_efforts);
+    readEfforts(*scene, input.drives, mimics_.efforts(), axes_, result);
     memory_.replace(contacts_.memos(result->contact_forces));
     jointWrenches(*scene, start_, input, *result, &result->joint_wrenches);
   }

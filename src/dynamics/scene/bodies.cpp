@@ -11,7 +11,7 @@
 namespace blem_sim {
 namespace {
 
-void check(const BodySpec& spec) {
+void checkBody(const BodySpec& spec) {
   const MassProperties& m = spec.inertial;
   if (!(m.mass > 0) || !std::isfinite(m.mass))
     throw InputError("body '" + spec.name + "': mass is " + std::to_string(m.mass) + " kg; give it a finite mass above 0");
@@ -37,7 +37,7 @@ void moveCom(const Vector3& offset, BodyBits* bits) {
 }  // namespace
 
 int Scene::addBody(const BodySpec& spec) {
-  check(spec);
+  checkBody(spec);
   BodySlot slot;
   slot.spec = spec;
   createBody(&slot);
@@ -62,7 +62,7 @@ void Scene::setInertial(int body, const MassProperties& inertial) {
   BodySlot& slot = bodies_[body];
   BodySpec spec = slot.spec;
   spec.inertial = inertial;
-  check(spec);
+  checkBody(spec);
   const Vector3 offset = inertial.com - slot.spec.inertial.com;
   BodyState state = bodyState(body);
   state.v_WCom += state.w_WB.cross(state.X_WB.linear() * offset);

@@ -6,7 +6,7 @@
 namespace blem_sim {
 namespace {
 
-constexpr double REST_SPEED = 1e-3;        // [m/s] of slip below which a contact counts as sticking
+constexpr double STICKING_SPEED = 1e-3;    // [m/s] of slip below which a contact counts as sticking
 constexpr double MAX_FEED_FORWARD = 1e-4;  // [m/s]
 constexpr double NO_FORCE = 1e-9;          // [N]
 
@@ -49,7 +49,7 @@ void setFriction(const ContactConstraint& c, const ContactMotion& motion, const 
   const Vector3 force = frictionToBe(last, last.norm() > NO_FORCE ? slip : slip_to_be, settings.cfm);
   rows->first_axis = force.norm() > NO_FORCE ? force.normalized() : c.normal_BA.unitOrthogonal();
   // Feed-forward of the last force: one proximal point step, so that the creep of the regularisation vanishes at rest.
-  if (slip.norm() > REST_SPEED) return;
+  if (slip.norm() > STICKING_SPEED) return;
   rows->tangent_velocity = settings.cfm * last;
   const double speed = rows->tangent_velocity.norm();
   if (speed > MAX_FEED_FORWARD) rows->tangent_velocity *= MAX_FEED_FORWARD / speed;

@@ -19,9 +19,10 @@ bool isSound(const ContactConstraint& c) {
 }
 
 bool isSound(const JointDrive& d) {
-  return std::isfinite(d.effort) && std::isfinite(d.target_position) && std::isfinite(d.target_velocity) && d.max_effort >= 0 &&
-         d.min_velocity <= d.max_velocity && d.velocity_gain >= 0 && finiteAndNotNegative(d.stiffness) && finiteAndNotNegative(d.damping) &&
-         finiteAndNotNegative(d.dry_friction) && finiteAndNotNegative(d.viscous_friction);
+  return std::isfinite(d.effort) && std::isfinite(d.outside_effort) && std::isfinite(d.target_position) &&
+         std::isfinite(d.target_velocity) && d.max_effort >= 0 && d.min_velocity <= d.max_velocity && d.velocity_gain >= 0 &&
+         finiteAndNotNegative(d.stiffness) && finiteAndNotNegative(d.damping) && finiteAndNotNegative(d.dry_friction) &&
+         finiteAndNotNegative(d.viscous_friction);
 }
 
 void checkJointNumbers(const JointSpec& joint, double position) {

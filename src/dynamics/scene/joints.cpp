@@ -11,7 +11,7 @@ namespace {
 
 constexpr int MOTOR_ROWS = 3;  // implicit PD, viscous friction, dry friction
 
-void check(const JointSpec& spec, const Scene& scene) {
+void checkJoint(const JointSpec& spec, const Scene& scene) {
   const std::string where = "joint '" + spec.name + "': ";
   if (!scene.exists(spec.child)) throw InputError(where + "child body does not exist; add it first");
   if (spec.parent != WORLD_BODY && !scene.exists(spec.parent)) throw InputError(where + "parent body does not exist; add it first");
@@ -26,7 +26,7 @@ void check(const JointSpec& spec, const Scene& scene) {
 }  // namespace
 
 int Scene::addJoint(const JointSpec& spec, double position) {
-  check(spec, *this);
+  checkJoint(spec, *this);
   checkJointNumbers(spec, position);
   const bool is_new = free_joints_.empty();
   const int joint = takeSlot(&free_joints_, &joints_);

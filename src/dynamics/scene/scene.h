@@ -51,7 +51,7 @@ struct JointSlot {
   Quaternion assembled_turn = Quaternion::Identity();    ///< of the child against the parent there
   Vector3 parent_axis = Vector3::UnitZ();                ///< in the parent's frame
   double last_position = 0;                              ///< q at the end of the last step: tells the full turns
-  double last_effort = 0;                                ///< along the axis in the last step
+  double last_effort = 0;                                ///< of the motor, along the axis, in the last step
   bool in_tree = true;                                   ///< false: closes a loop
   std::uint64_t occupant = 0;                            ///< a number that no other joint of the scene ever has; 0 once removed
 };

@@ -19,7 +19,7 @@ constexpr std::size_t WRENCH_SIZE = 6;
 
 bool within(const Vector3& v) { return v.cwiseAbs().maxCoeff() <= FARTHEST; }
 
-void check(const BodyBits& bits, const std::string& name) {
+void checkBits(const BodyBits& bits, const std::string& name) {
   if (!(std::abs(bits.turn().norm() - 1) <= TURN_ROUNDING)) refuse("the quaternion of body '" + name + "' is not unit");
   if (!((bits.rotation() - bits.turn().toRotationMatrix()).cwiseAbs().maxCoeff() <= TURN_ROUNDING))
     refuse("rotation and quaternion of body '" + name + "' are not the same");
@@ -39,7 +39,7 @@ void checkNumbers(const Scene& scene, const WorldState& state) {
     double wrench[WRENCH_SIZE];
     reader.numbers(bits.numbers, BodyBits::SIZE);
     reader.numbers(wrench, WRENCH_SIZE);
-    check(bits, slot.spec.name);
+    checkBits(bits, slot.spec.name);
   }
 }
 

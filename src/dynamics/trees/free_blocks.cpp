@@ -8,17 +8,17 @@ namespace blem_sim {
 namespace {
 
 // A column of a block: four rows and two. Compilers lower them to the processor's own vectors.
-using Four = double __attribute__((vector_size(32), aligned(8), may_alias));
+using FourRows = double __attribute__((vector_size(32), aligned(8), may_alias));
 using Two = double __attribute__((vector_size(16), aligned(8), may_alias));
 
-inline Four& four(double* column) { return *reinterpret_cast<Four*>(column); }
-inline const Four& four(const double* column) { return *reinterpret_cast<const Four*>(column); }
+inline FourRows& fourRows(double* column) { return *reinterpret_cast<FourRows*>(column); }
+inline const FourRows& fourRows(const double* column) { return *reinterpret_cast<const FourRows*>(column); }
 inline Two& two(double* column) { return *reinterpret_cast<Two*>(column + 4); }
 inline const Two& two(const double* column) { return *reinterpret_cast<const Two*>(column + 4); }
 
 /** Sum of products in two interleaved halves, as they come from a processor's pairs. */
 template <int N>
-inline double dot(const double* p, const double* q) {
+inline double blockDot(const double* p, const double* q) {
   if (N == 1) return p[0] * q[0];
   if (N < 4) {
     const double two = p[0] * q[0] + p[1] * q[1];
@@ -51,12 +51,12 @@ BLEM_SIM_LANES void divideFree(const double* l, int count, double* blocks) {
   for (int n = 0; n < count; ++n, blocks += FREE_BLOCK) {
     for (int k = 0; k < FREE; ++k) {
       double* own = blocks + FREE * k;
-      const Four upper = four(own) / l[FREE * k + k];
+      const FourRows upper = fourRows(own) / l[FREE * k + k];
       const Two lower = two(own) / l[FREE * k + k];
-      four(own) = upper;
+      fourRows(own) = upper;
       two(own) = lower;
       for (int j = k + 1; j < FREE; ++j) {
-        four(blocks + FREE * j) -= l[FREE * k + j] * upper;
+        fourRows(blocks + FREE * j) -= l[FREE * k + j] * upper;
         two(blocks + FREE * j) -= l[FREE * k + j] * lower;
       }
     }
@@ -67,13 +67,13 @@ BLEM_SIM_LANES void subtractFree(const double* b, const double* a, int count, co
   for (int n = 0; n < count; ++n, a += FREE_BLOCK) {
     double* c = values + at[n];
     for (int j = 0; j < FREE; ++j, c += FREE) {
-      Four upper = four(a) * b[j];
+      FourRows upper = fourRows(a) * b[j];
       Two lower = two(a) * b[j];
       for (int k = 1; k < FREE; ++k) {
-        upper += four(a + FREE * k) * b[FREE * k + j];
+        upper += fourRows(a + FREE * k) * b[FREE * k + j];
         lower += two(a + FREE * k) * b[FREE * k + j];
       }
-      four(c) -= upper;
+      fourRows(c) -= upper;
       two(c) -= lower;
     }
   }
@@ -85,26 +85,26 @@ BLEM_SIM_LANES void forwardFree(const double* l, const double* blocks, int count
     for (int i = k + 1; i < FREE; ++i) own[i] -= own[k] * l[FREE * k + i];
   }
   for (int n = 0; n < count; ++n, blocks += FREE_BLOCK) {
-    Four upper = four(blocks) * own[0];
+    FourRows upper = fourRows(blocks) * own[0];
     Two lower = two(blocks) * own[0];
     for (int k = 1; k < FREE; ++k) {
-      upper += four(blocks + FREE * k) * own[k];
+      upper += fourRows(blocks + FREE * k) * own[k];
       lower += two(blocks + FREE * k) * own[k];
     }
-    four(x + rows[n]) -= upper;
+    fourRows(x + rows[n]) -= upper;
     two(x + rows[n]) -= lower;
   }
 }
 
 void backwardFree(const double* l, const double* blocks, int count, const int* rows, double* own, const double* x) {
   for (int n = 0; n < count; ++n, blocks += FREE_BLOCK)
-    for (int i = 0; i < FREE; ++i) own[i] -= dot<FREE>(blocks + FREE * i, x + rows[n]);
+    for (int i = 0; i < FREE; ++i) own[i] -= blockDot<FREE>(blocks + FREE * i, x + rows[n]);
   own[5] /= l[35];
-  own[4] = (own[4] - dot<1>(l + 29, own + 5)) / l[28];
-  own[3] = (own[3] - dot<2>(l + 22, own + 4)) / l[21];
-  own[2] = (own[2] - dot<3>(l + 15, own + 3)) / l[14];
-  own[1] = (own[1] - dot<4>(l + 8, own + 2)) / l[7];
-  own[0] = (own[0] - dot<5>(l + 1, own + 1)) / l[0];
+  own[4] = (own[4] - blockDot<1>(l + 29, own + 5)) / l[28];
+  own[3] = (own[3] - blockDot<2>(l + 22, own + 4)) / l[21];
+  own[2] = (own[2] - blockDot<3>(l + 15, own + 3)) / l[14];
+  own[1] = (own[1] - blockDot<4>(l + 8, own + 2)) / l[7];
+  own[0] = (own[0] - blockDot<5>(l + 1, own + 1)) / l[0];
 }
 
 }  // namespace blem_sim

@@ -7,8 +7,8 @@
 namespace blem_sim {
 namespace {
 
-constexpr double SUB_STEP_TURN = 0.02;  // [rad] about a principal axis
-constexpr int MAX_SUB_STEPS = 256;
+constexpr double TURN_STEP = 0.02;  // [rad] about a principal axis
+constexpr int MAX_TURN_STEPS = 256;
 
 /** A body's momentum in its principal axes, and how these have turned. */
 struct TurningBody {
@@ -37,8 +37,8 @@ RigidTurn turnFreely(const Matrix3& inertia, const Vector3& momentum, double dt)
   Matrix3 axes = principal.eigenvectors();
   if (axes.determinant() < 0) axes.col(0) = -axes.col(0);
   const double rate_x = 1 / moments[0] - 1 / moments[1], rate_z = 1 / moments[2] - 1 / moments[1];
-  const double turns = std::ceil(dt * momentum.norm() * std::max(std::abs(rate_x), std::abs(rate_z)) / SUB_STEP_TURN);
-  const int steps = turns < MAX_SUB_STEPS ? std::max(1, static_cast<int>(turns)) : MAX_SUB_STEPS;
+  const double turns = std::ceil(dt * momentum.norm() * std::max(std::abs(rate_x), std::abs(rate_z)) / TURN_STEP);
+  const int steps = turns < MAX_TURN_STEPS ? std::max(1, static_cast<int>(turns)) : MAX_TURN_STEPS;
   TurningBody body{axes.transpose() * momentum};
   const double h = dt / steps;
   for (int i = 0; i < steps; ++i) {

@@ -23,7 +23,7 @@ inline __attribute__((always_inline)) void addTo(double factor, const double* __
     for (int lane = 0; lane < LANES; ++lane) to[e + lane] += factor * row[e + lane];
 }
 
-inline __attribute__((always_inline)) double dot(const double* __restrict row, int length, const double* __restrict path) {
+inline __attribute__((always_inline)) double rowDot(const double* __restrict row, int length, const double* __restrict path) {
   Lanes sums = {};
   for (int e = 0; e < length; e += LANES)
     for (int lane = 0; lane < LANES; ++lane) sums[lane] += row[e + lane] * path[e + lane];
@@ -66,7 +66,7 @@ BLEM_SIM_LANES void multiply(const Forest& forest, int tree, const std::vector<d
     depth = length;
     dofs[length - 1] = k;
     path[length - 1] = v[k];
-    (*out)[k] = dot(row, length, path);
+    (*out)[k] = rowDot(row, length, path);
     addTo(v[k], row, length, sums);
     sums[length - 1] = 0;
   }
@@ -115,7 +115,7 @@ BLEM_SIM_LANES void substitute(const Forest& forest, int tree, const TreeFactor&
   double *path = paths->values.data() + partOf(forest, tree), *v = x->data();
   for (int k = t.first_dof; k < t.dof_end; ++k) {
     const int length = forest.rowLength(k);
-    if (factor.inverse[k] != 0) v[k] = (v[k] - dot(factor.rows.data() + forest.rowStart(k), length, path)) * factor.inverse[k];
+    if (factor.inverse[k] != 0) v[k] = (v[k] - rowDot(factor.rows.data() + forest.rowStart(k), length, path)) * factor.inverse[k];
     path[length - 1] = v[k];
   }
 }

@@ -49,9 +49,9 @@ void checkAsciiStl(const std::string& file, const std::string& bytes) {
 }
 
 /** Reads the rows of a text format: comments and blank lines are left out. */
-class Rows {
+class TextRows {
  public:
-  explicit Rows(const std::string& bytes) : stream_(bytes) {}
+  explicit TextRows(const std::string& bytes) : stream_(bytes) {}
   bool next(std::istringstream* row) {
     for (std::string line; std::getline(stream_, line);) {
       line.erase(std::min(line.find('#'), line.size()));
@@ -68,7 +68,7 @@ class Rows {
 };
 
 /** Vertex and face counts of an OFF, which may stand behind the keyword or on the next row. */
-bool offCounts(Rows* rows, long* vertices, long* faces) {
+bool offCounts(TextRows* rows, long* vertices, long* faces) {
   std::istringstream row;
   if (!rows->next(&row)) return false;
   std::string keyword;
@@ -122,7 +122,7 @@ void checkStl(const std::string& file, std::string* bytes, std::vector<std::stri
 }
 
 void checkOff(const std::string& file, const std::string& bytes) {
-  Rows rows(bytes);
+  TextRows rows(bytes);
   long vertices = 0, faces = 0;
   if (!offCounts(&rows, &vertices, &faces) || vertices < 0 || faces < 0)
     throw InputError(file + ": not an OFF file: no 'OFF' with the counts of vertices and faces; write the file anew");

@@ -19,15 +19,15 @@ struct Property {
   std::size_t count_bytes = 0;  // > 0: a list, whose count takes so many
 };
 
-struct Element {
+struct PlyElement {
   std::string name;
   std::size_t count = 0;
   std::vector<Property> properties;
 };
 
-struct Header {
+struct PlyHeader {
   std::string format;  // ascii, binary_little_endian, binary_big_endian
-  std::vector<Element> elements;
+  std::vector<PlyElement> elements;
   std::size_t data = 0;  // first byte of the rows
 };
 
@@ -40,7 +40,7 @@ std::size_t typeBytes(const std::string& type) {
 }
 
 /** "property TYPE NAME" or "property list COUNT_TYPE TYPE NAME"; false if it is neither. */
-bool addProperty(std::istringstream* row, std::vector<Element>* elements) {
+bool addProperty(std::istringstream* row, std::vector<PlyElement>* elements) {
   Property property;
   std::string type;
   *row >> type;
@@ -58,7 +58,7 @@ bool addProperty(std::istringstream* row, std::vector<Element>* elements) {
 }
 
 /** One row of the header; false if it is none that the format knows. assimp runs off its data where it meets another. */
-bool addHeaderRow(const std::string& line, Header* header) {
+bool addHeaderRow(const std::string& line, PlyHeader* header) {
   static const std::set<std::string> FORMATS = {"ascii", "binary_little_endian", "binary_big_endian"};
   std::istringstream row(line);
   std::string keyword;
@@ -66,13 +66,13 @@ bool addHeaderRow(const std::string& line, Header* header) {
   if (keyword == "comment" || keyword == "obj_info" || keyword.empty()) return true;
   if (keyword == "property") return addProperty(&row, &header->elements);
   if (keyword == "format") return static_cast<bool>(row >> header->format) && FORMATS.count(header->format) == 1;
-  Element element;
+  PlyElement element;
   if (keyword != "element" || !(row >> element.name >> element.count)) return false;
   header->elements.push_back(element);
   return true;
 }
 
-Header readHeader(const std::string& file, const std::string& bytes) {
+PlyHeader readPlyHeader(const std::string& file, const std::string& bytes) {
   std::string line;
   std::size_t at = 0;
   const auto next = [&] {
@@ -84,7 +84,7 @@ Header readHeader(const std::string& file, const std::string& bytes) {
   };
   next();
   if (line != "ply") throw InputError(file + ": not a PLY file: it does not begin with 'ply'; write the file anew");
-  Header header;
+  PlyHeader header;
   for (next(); line != "end_header"; next())
     if (!addHeaderRow(line, &header))
       throw InputError(fmt::format("{}: PLY header: '{}' is not understood; write the file anew", file, oneLine(line)));
@@ -94,9 +94,9 @@ Header readHeader(const std::string& file, const std::string& bytes) {
 }
 
 /** Vertices need x, y and z, faces the list of their vertices. */
-void checkProperties(const std::string& file, const Header& header) {
+void checkProperties(const std::string& file, const PlyHeader& header) {
   std::set<std::string> seen;
-  for (const Element& element : header.elements) {
+  for (const PlyElement& element : header.elements) {
     if (!seen.insert(element.name).second)
       throw InputError(fmt::format("{}: PLY header: element {} twice; write the file anew", file, element.name));
     const auto has = [&](const std::string& name, bool list) {
@@ -113,17 +113,17 @@ void checkProperties(const std::string& file, const Header& header) {
 /** Steps over the rows of a binary PLY. */
 class BinaryWalk {
  public:
-  BinaryWalk(const std::string& file, const std::string& bytes, const Header& header)
+  BinaryWalk(const std::string& file, const std::string& bytes, const PlyHeader& header)
       : file_(file), bytes_(bytes), header_(header), at_(header.data) {}
 
   void run() {
-    for (const Element& element : header_.elements)
+    for (const PlyElement& element : header_.elements)
       for (std::size_t row = 0; row < element.count; ++row)
         for (const Property& property : element.properties) step(element, row, property);
   }
 
  private:
-  void step(const Element& element, std::size_t row, const Property& property) {
+  void step(const PlyElement& element, std::size_t row, const Property& property) {
     std::size_t values = 1;
     if (property.count_bytes > 0) {
       require(element, row, property.count_bytes);
@@ -134,7 +134,7 @@ class BinaryWalk {
     at_ += values * property.bytes;
   }
 
-  void require(const Element& element, std::size_t row, std::size_t bytes) const {
+  void require(const PlyElement& element, std::size_t row, std::size_t bytes) const {
     if (bytes > bytes_.size() - at_)
       throw InputError(fmt::format("{}: truncated PLY: {} rows of element {} announced, {} there; write the file anew", file_,
                                    element.count, element.name, row));
@@ -151,15 +151,15 @@ class BinaryWalk {
 
   const std::string& file_;
   const std::string& bytes_;
-  const Header& header_;
+  const PlyHeader& header_;
   std::size_t at_;
 };
 
 /** An ASCII PLY has one row per line, of at least as many numbers as it has properties; a list begins with its count. */
-void checkAsciiRows(const std::string& file, const std::string& bytes, const Header& header) {
+void checkAsciiRows(const std::string& file, const std::string& bytes, const PlyHeader& header) {
   std::istringstream stream(bytes.substr(header.data));
   std::string line, word;
-  for (const Element& element : header.elements) {
+  for (const PlyElement& element : header.elements) {
     for (std::size_t row = 0; row < element.count; ++row) {
       do {
         if (!std::getline(stream, line))
@@ -182,14 +182,14 @@ void checkAsciiRows(const std::string& file, const std::string& bytes, const Hea
 }  // namespace
 
 PlyCounts checkPly(const std::string& file, const std::string& bytes) {
-  const Header header = readHeader(file, bytes);
+  const PlyHeader header = readPlyHeader(file, bytes);
   checkProperties(file, header);
   if (header.format == "ascii")
     checkAsciiRows(file, bytes, header);
   else
     BinaryWalk(file, bytes, header).run();
   PlyCounts counts;
-  for (const Element& element : header.elements) {
+  for (const PlyElement& element : header.elements) {
     if (element.name == "vertex") counts.vertices = element.count;
     if (element.name == "face") counts.faces = element.count;
   }

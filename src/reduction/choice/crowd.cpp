@@ -17,8 +17,8 @@ namespace blem_sim {
 
 namespace {
 
-constexpr int PER_UNIT = 8;  // cells of normals
-constexpr int NUMBERS = 2 * PER_UNIT + 1;
+constexpr int CELLS_PER_UNIT = 8;  // cells of normals
+constexpr int NUMBERS = 2 * CELLS_PER_UNIT + 1;
 constexpr double TILT = 0.6;  // weight of a unit of tilt, in radii of the patch, in every other direction
 
 // Places around a normal (u, v), half of them mixed with tilts.
@@ -79,7 +79,7 @@ class CoarseCells {
     numbers_[key] = static_cast<std::int16_t>(keys_.size());
     keys_.push_back(key);
     const Vector3 cell(key / (NUMBERS * NUMBERS), key / NUMBERS % NUMBERS, key % NUMBERS);
-    directions_.push_back(directionsAcross((cell - Vector3::Constant(PER_UNIT)).normalized()));
+    directions_.push_back(directionsAcross((cell - Vector3::Constant(CELLS_PER_UNIT)).normalized()));
   }
 
   std::array<std::int16_t, NUMBERS * NUMBERS * NUMBERS> numbers_;
@@ -104,7 +104,7 @@ BLEM_SIM_LANES int readMembers(const Reading& given, WrenchPoint* points, int* k
   typedef float Floats __attribute__((vector_size(16)));
   typedef int Ints __attribute__((vector_size(16)));
   static_assert(sizeof(WrenchPoint) == 2 * sizeof(Floats), "numbers in the order of rows");
-  constexpr double MIDDLE = PER_UNIT + 0.5;
+  constexpr double MIDDLE = CELLS_PER_UNIT + 0.5;
   const double s = reading.per_radius;
   const Doubles middle = {reading.centre[0], reading.centre[1], reading.centre[2], 0}, scale = {s, s, s, 1};
   const Doubles gaps = {1, 1, -PER_GAP, 0}, least = {-2, -2, 0, 0};  // handicaps are never negative
@@ -118,8 +118,8 @@ BLEM_SIM_LANES int readMembers(const Reading& given, WrenchPoint* points, int* k
     const Floats second_floats = __builtin_convertvector(second > least ? second : least, Floats);
     std::memcpy(&points[m], &first_floats, sizeof(Floats));
     std::memcpy(reinterpret_cast<char*>(&points[m]) + sizeof(Floats), &second_floats, sizeof(Floats));
-    const Ints first_cells = __builtin_convertvector(row.first * Doubles{0, 0, 0, PER_UNIT} + MIDDLE, Ints);
-    const Ints second_cells = __builtin_convertvector(row.second * Doubles{PER_UNIT, PER_UNIT, 0, 0} + MIDDLE, Ints);
+    const Ints first_cells = __builtin_convertvector(row.first * Doubles{0, 0, 0, CELLS_PER_UNIT} + MIDDLE, Ints);
+    const Ints second_cells = __builtin_convertvector(row.second * Doubles{CELLS_PER_UNIT, CELLS_PER_UNIT, 0, 0} + MIDDLE, Ints);
     keys[m] = (first_cells[3] * NUMBERS + second_cells[0]) * NUMBERS + second_cells[1];
     spared[size] = m;
     size += static_cast<int>(contact.depth >= reading.deep) | static_cast<int>(IdFilter::mayHave(reading.spared_bits, contact.id));
@@ -127,7 +127,7 @@ BLEM_SIM_LANES int readMembers(const Reading& given, WrenchPoint* points, int* k
   return size;
 }
 
-struct Buffers {
+struct CrowdBuffers {
   CoarseCells cells;
   std::vector<WrenchPoint> points;
   std::vector<int> cell_of, extreme, spared;
@@ -135,7 +135,7 @@ struct Buffers {
 };
 
 void read(const std::vector<Contact>& contacts, const PatchScale& scale, const std::vector<int>& members, const ContactIds& spared,
-          Buffers* buffers) {
+          CrowdBuffers* buffers) {
   const IdFilter filter(spared);
   buffers->points.resize(members.size());
   buffers->cell_of.resize(members.size());
@@ -154,7 +154,7 @@ void read(const std::vector<Contact>& contacts, const PatchScale& scale, const s
 }
 
 // Indices of the members that are extreme in their cells, ascending.
-void findExtreme(Buffers* buffers) {
+void findExtreme(CrowdBuffers* buffers) {
   CellExtremes lowest;
   std::fill(std::begin(lowest.value), std::end(lowest.value), -std::numeric_limits<float>::infinity());
   buffers->extremes.assign(buffers->cells.directions().size(), lowest);
@@ -168,8 +168,8 @@ void findExtreme(Buffers* buffers) {
 
 void thinCrowd(const std::vector<Contact>& contacts, const PatchScale& scale, const std::vector<int>& members, const ContactIds& spared,
                std::vector<int>* kept) {
-  static thread_local Buffers thread_buffers;
-  Buffers& buffers = thread_buffers;
+  static thread_local CrowdBuffers thread_buffers;
+  CrowdBuffers& buffers = thread_buffers;
   read(contacts, scale, members, spared, &buffers);
   findExtreme(&buffers);
   kept->clear();

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int WORTHWHILE = 40;  // places: of fewer, none are sorted out before the hull
 
-struct Buffers {
+struct HullBuffers {
   PlanePlaces places;
   std::vector<int> farthest, outside;
   PlaneExtremes extremes;
@@ -71,7 +71,7 @@ void project(const std::vector<Contact>& contacts, const int* begin, const int* 
 }
 
 // Finds the places that are farthest out, along the octagon's directions at least; few places need none.
-void findExtremes(int most, Buffers* buffers) {
+void findExtremes(int most, HullBuffers* buffers) {
   const PlanePlaces& places = buffers->places;
   const int count = static_cast<int>(places.x.size());
   const bool all_directions = mayHaveMore(most, count);
@@ -83,7 +83,7 @@ void findExtremes(int most, Buffers* buffers) {
 }
 
 // The first place that is farthest along a direction.
-int farthestAlong(int direction, const Buffers& buffers) {
+int farthestAlong(int direction, const HullBuffers& buffers) {
   const PlanePlaces& places = buffers.places;
   return *std::find_if(buffers.farthest.begin(), buffers.farthest.end(), [&](int i) {
     return planeDirections().along(direction, places.x[i], places.y[i]) == buffers.extremes.value[direction];
@@ -91,7 +91,7 @@ int farthestAlong(int direction, const Buffers& buffers) {
 }
 
 // Whether the hull surely has more corners than that: so many extremes apart from each other follow around it.
-bool hasMoreCorners(int than, const Buffers& buffers) {
+bool hasMoreCorners(int than, const HullBuffers& buffers) {
   constexpr double APART = 1e-6;  // [m]
   if (!mayHaveMore(than, static_cast<int>(buffers.places.x.size())) || static_cast<int>(buffers.farthest.size()) <= than) return false;
   const std::vector<double>&x = buffers.places.x, &y = buffers.places.y;
@@ -105,7 +105,7 @@ bool hasMoreCorners(int than, const Buffers& buffers) {
 }
 
 // Indices of the places that may be corners: others lie inside the octagon of extremes. This saves most of the sorting of large patches.
-void findOuter(Buffers* buffers) {
+void findOuter(HullBuffers* buffers) {
   const std::vector<double>&x = buffers->places.x, &y = buffers->places.y;
   const int count = static_cast<int>(x.size());
   std::vector<int>& outside = buffers->outside;
@@ -130,7 +130,7 @@ void findOuter(Buffers* buffers) {
 }
 
 // The outer places as points, sorted, of those at one place the deepest.
-void sortOuter(const std::vector<Contact>& contacts, const int* members, Buffers* buffers) {
+void sortOuter(const std::vector<Contact>& contacts, const int* members, HullBuffers* buffers) {
   const PlanePlaces& places = buffers->places;
   std::vector<PlanePoint>& points = buffers->points;
   points.clear();
@@ -152,7 +152,7 @@ void halfHull(Iterator begin, Iterator end, std::vector<PlanePoint>* half) {
   }
 }
 
-void convexHull(Buffers* buffers) {
+void convexHull(HullBuffers* buffers) {
   halfHull(buffers->points.begin(), buffers->points.end(), &buffers->hull);
   halfHull(buffers->points.rbegin(), buffers->points.rend(), &buffers->half);
   buffers->hull.pop_back();
@@ -201,7 +201,7 @@ void appendProminent(const std::vector<PlanePoint>& chain, std::size_t from, std
 
 // The hull without corners that stand out less than FLATNESS: decided from the whole hull, since along a side noise decides what comes
 // first in any order, and a chain thinned on the way can lose a true corner.
-void findCorners(Buffers* buffers) {
+void findCorners(HullBuffers* buffers) {
   buffers->corners = buffers->points;
   if (buffers->points.size() <= 2) return;
   convexHull(buffers);
@@ -220,7 +220,7 @@ void findCorners(Buffers* buffers) {
 
 void patchHull(const std::vector<Contact>& contacts, const int* begin, const int* end, const Vector3& normal, int most,
                std::vector<int>* kept) {
-  static thread_local Buffers buffers;
+  static thread_local HullBuffers buffers;
   if (end - begin == 1) return kept->push_back(*begin);
   project(contacts, begin, end, normal, &buffers.places);
   findExtremes(most, &buffers);

@@ -40,7 +40,7 @@ const TypeRow* rowOf(const std::string& type) {
 }
 
 /** Type of a configured controller: the parameter's if it is of the kind. */
-std::string typeOf(const std::string& parameter, ControllerKind kind) {
+std::string typeOfController(const std::string& parameter, ControllerKind kind) {
   const TypeRow* given = rowOf(parameter);
   if (given && given->kind == kind) return parameter;
   return std::find_if(TYPE_TABLE.begin(), TYPE_TABLE.end(), [&](const TypeRow& row) { return row.kind == kind; })->type;
@@ -57,7 +57,7 @@ bool shareAJoint(const ControllerServer* a, const ControllerServer* b) {
   return std::any_of(joints.begin(), joints.end(), [&](const std::string& joint) { return contains(others, joint); });
 }
 
-std::string joined(const std::vector<std::string>& words) {
+std::string listed(const std::vector<std::string>& words) {
   std::string text;
   for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
   return text.empty() ? "none" : text;
@@ -83,7 +83,7 @@ RobotControllers::RobotControllers(ros::NodeHandle node, Simulator* simulator, i
   const auto configured = configuredOf(*simulator, robot_);
   for (const ControllerConfig& config : configured.value_or(std::vector<ControllerConfig>(1))) {
     checkName(config.name);
-    add(withParameters(node_, config), typeOf(controllerType(node_, config.name), config.kind));
+    add(withParameters(node_, config), typeOfController(controllerType(node_, config.name), config.kind));
     controllers_.back().gives_way = !configured;
   }
   startFirst();
@@ -151,7 +151,7 @@ void RobotControllers::load(const std::string& name) {
   const std::string type = controllerType(node_, name), place = node_.resolveName(name);
   if (type.empty()) throw InputError("there is no string parameter " + place + "/type; load the controller's settings first");
   const TypeRow* row = rowOf(type);
-  if (!row) throw InputError(place + "/type: '" + type + "' is not built in; built in are " + joined(types()));
+  if (!row) throw InputError(place + "/type: '" + type + "' is not built in; built in are " + listed(types()));
   if (!row->kind) {
     controllers_.push_back({name, type, nullptr, false, false, false});
     return;
@@ -166,7 +166,7 @@ void RobotControllers::load(const std::string& name) {
 
 void RobotControllers::unload(const std::string& name) {
   const Controller* controller = find(name);
-  if (!controller) throw InputError("there is no controller '" + name + "'; there are: " + joined(knownNames()));
+  if (!controller) throw InputError("there is no controller '" + name + "'; there are: " + listed(knownNames()));
   if (controller->running) throw InputError("controller '" + name + "' runs; stop it by switch_controller first");
   sender_->drain();  // its messages need its publisher
   controllers_.erase(controllers_.begin() + (controller - controllers_.data()));
@@ -183,7 +183,7 @@ std::vector<std::string> RobotControllers::change(const ControllerChange& change
   };
   for (const std::string& name : change.stop) sort(name, obstacleToStop(name), &possible.stop);
   for (const std::string& name : change.start) sort(name, obstacleToStart(name, possible), &possible.start);
-  if (change.strict && !obstacles.empty()) throw InputError(joined(obstacles));
+  if (change.strict && !obstacles.empty()) throw InputError(listed(obstacles));
   for (const std::string& name : possible.stop) stop(find(name));
   for (const std::string& name : possible.start) start(find(name));
   return obstacles;
@@ -210,13 +210,13 @@ RobotControllers::Controller* RobotControllers::rivalOf(const Controller& contro
 
 std::string RobotControllers::obstacleToStop(const std::string& name) {
   const Controller* controller = find(name);
-  if (!controller) return "there is no controller '" + name + "' to stop (there are: " + joined(knownNames()) + ")";
+  if (!controller) return "there is no controller '" + name + "' to stop (there are: " + listed(knownNames()) + ")";
   return controller->running ? "" : "controller '" + name + "' does not run";
 }
 
 std::string RobotControllers::obstacleToStart(const std::string& name, const ControllerChange& change) {
   const Controller* controller = find(name);
-  if (!controller) return "there is no controller '" + name + "' to start (there are: " + joined(knownNames()) + "); load it first";
+  if (!controller) return "there is no controller '" + name + "' to start (there are: " + listed(knownNames()) + "); load it first";
   if (controller->running && !contains(change.stop, name)) return "";
   for (const std::string& other : change.start)
     if (other != name && shareAJoint(find(other)->server.get(), controller->server.get()))

@@ -12,7 +12,7 @@ namespace blem_sim {
 
 namespace {
 
-constexpr int QUEUE_SIZE = 100;
+constexpr int TRAJECTORY_QUEUE = 100;
 
 JointTrajectoryControllerState namedState(const TrajectoryController& controller) {
   JointTrajectoryControllerState message;
@@ -38,7 +38,7 @@ TrajectoryServer::TrajectoryServer(ros::NodeHandle robot_node, TrajectoryControl
       node_(robot_node, controller_.config().name),
       sender_(sender),
       state_schedule_(controller_.config().state_publish_rate),
-      state_publisher_(ListenedPublisher::advertise<JointTrajectoryControllerState>(&node_, "state", QUEUE_SIZE)),
+      state_publisher_(ListenedPublisher::advertise<JointTrajectoryControllerState>(&node_, "state", TRAJECTORY_QUEUE)),
       states_(namedState(controller_)),
       query_(node_.advertiseService("query_state", &TrajectoryServer::onQuery, this)),
       goals_(
@@ -49,7 +49,7 @@ TrajectoryServer::TrajectoryServer(ros::NodeHandle robot_node, TrajectoryControl
           }) {
   const boost::function<void(const trajectory_msgs::JointTrajectoryConstPtr&)> on_command =
       [this](const trajectory_msgs::JointTrajectoryConstPtr& message) { onCommand(*message); };
-  commands_ = node_.subscribe<trajectory_msgs::JointTrajectory>("command", QUEUE_SIZE, on_command);
+  commands_ = node_.subscribe<trajectory_msgs::JointTrajectory>("command", TRAJECTORY_QUEUE, on_command);
 }
 
 void TrajectoryServer::onCommand(const trajectory_msgs::JointTrajectory& message) {

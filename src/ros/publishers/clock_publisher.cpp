@@ -6,11 +6,11 @@ namespace blem_sim {
 
 namespace {
 // Queue long enough for every stamp of a batch of steps made between two flushes of the outbox.
-constexpr int QUEUE_SIZE = 1000;
+constexpr int CLOCK_QUEUE = 1000;
 }  // namespace
 
 ClockPublisher::ClockPublisher(ros::NodeHandle node, double rate, StepSender* sender)
-    : publisher_(&node, "/clock", QUEUE_SIZE), schedule_(rate), sender_(sender) {}
+    : publisher_(&node, "/clock", CLOCK_QUEUE), schedule_(rate), sender_(sender) {}
 
 void ClockPublisher::publish(const StepReport& report) {
   const ros::Time now = toStamp(report.time);

@@ -16,7 +16,7 @@ namespace {
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
-constexpr int QUEUE_SIZE = 100;
+constexpr int MARKER_QUEUE = 100;
 constexpr double POINT_SIZE = 0.012;      // [m]
 constexpr double SHAFT_SIZE = 0.008;      // [m]
 constexpr double HEAD_SIZE = 0.02;        // [m]
@@ -36,7 +36,7 @@ Marker makeMarker(const char* name, int id, int type, const ros::Time& stamp) {
 }  // namespace
 
 ContactMarkers::ContactMarkers(ros::NodeHandle* private_node, const std::string& topic, double metres_per_newton)
-    : publisher_(ListenedPublisher::advertise<MarkerArray>(private_node, topic, QUEUE_SIZE)), metres_per_newton_(metres_per_newton) {}
+    : publisher_(ListenedPublisher::advertise<MarkerArray>(private_node, topic, MARKER_QUEUE)), metres_per_newton_(metres_per_newton) {}
 
 void ContactMarkers::publish(const boost::shared_ptr<StampedContacts>& contacts) {
   const auto message = boost::make_shared<MarkerArray>();

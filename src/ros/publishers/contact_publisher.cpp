@@ -11,7 +11,7 @@ namespace blem_sim {
 
 namespace {
 
-constexpr int QUEUE_SIZE = 100;
+constexpr int CONTACT_QUEUE = 100;
 
 /** [N] weight of everything that moves. */
 double totalWeight(const Simulator& simulator) {
@@ -34,7 +34,7 @@ double metresPerNewton(const Simulator& simulator) {
 ContactPublisher::ContactPublisher(ros::NodeHandle private_node, const Simulator& simulator, StepSender* sender)
     : simulator_(simulator),
       schedule_(simulator.config().rates.contact),
-      publisher_(ListenedPublisher::advertise<ContactArray>(&private_node, "contacts", QUEUE_SIZE)),
+      publisher_(ListenedPublisher::advertise<ContactArray>(&private_node, "contacts", CONTACT_QUEUE)),
       sender_(sender) {}
 
 void ContactPublisher::publish(const StepReport& report) {

@@ -1,13 +1,14 @@
 #include "publishers/robot_publishers.h"
 
 #include "messages/conversions.h"
+#include "messages/joint_messages.h"
 #include "messages/link_motion.h"
 #include "publishers/robot_topics.h"
 
 namespace blem_sim {
 
 namespace {
-constexpr int QUEUE_SIZE = 100;
+constexpr int ROBOT_QUEUE = 100;
 
 const std::string& nameOf(const RobotInfo& robot) { return robot.name; }
 }  // namespace
@@ -20,13 +21,8 @@ JointStatePublisher::JointStatePublisher(ros::NodeHandle node, const Simulator& 
 void JointStatePublisher::modelsChanged() {
   const auto make = [this](const RobotInfo& robot) {
     ros::NodeHandle robot_node(node_, robot.name_space);
-    sensor_msgs::JointState message;
-    message.name = robot.joint_names;
-    message.position.resize(robot.joints.size());
-    message.velocity.resize(robot.joints.size());
-    message.effort.resize(robot.joints.size());
     return RobotTopic<sensor_msgs::JointState>{
-        "", {&robot_node, "joint_states", QUEUE_SIZE}, MessagePool<sensor_msgs::JointState>(message)};
+        "", {&robot_node, "joint_states", ROBOT_QUEUE}, MessagePool<sensor_msgs::JointState>(statesOf(robot))};
   };
   keepTopics(simulator_.robots(), nameOf, make, &topics_);
 }
@@ -35,14 +31,7 @@ void JointStatePublisher::publish(const StepReport& report) {
   if (!schedule_.due(report.time)) return;
   for (std::size_t robot = 0; robot < topics_.size(); ++robot) {
     const auto message = topics_[robot].messages.spare();
-    message->header.stamp = toStamp(report.time);
-    const std::vector<int>& joints = simulator_.robots()[robot].joints;
-    for (std::size_t i = 0; i < joints.size(); ++i) {
-      const JointState& state = report.joints[joints[i]];
-      message->position[i] = state.position;
-      message->velocity[i] = state.velocity;
-      message->effort[i] = state.effort;
-    }
+    writeStates(report, simulator_.robots()[robot], message.get());
     sender_->add(&topics_[robot].publisher, message);
   }
 }
@@ -55,7 +44,7 @@ OdometryPublisher::OdometryPublisher(ros::NodeHandle node, const Simulator& simu
 void OdometryPublisher::modelsChanged() {
   const auto make = [this](const RobotInfo& robot) {
     ros::NodeHandle robot_node(node_, robot.name_space);
-    return RobotTopic<nav_msgs::Odometry>{"", {&robot_node, "odom", QUEUE_SIZE}, MessagePool<nav_msgs::Odometry>()};
+    return RobotTopic<nav_msgs::Odometry>{"", {&robot_node, "odom", ROBOT_QUEUE}, MessagePool<nav_msgs::Odometry>()};
   };
   keepTopics(simulator_.robots(), nameOf, make, &topics_);
 }
@@ -77,7 +66,7 @@ void OdometryPublisher::publish(const StepReport& report) {
 }
 
 TransformPublisher::TransformPublisher(ros::NodeHandle node, const Simulator& simulator, StepSender* sender)
-    : simulator_(simulator), schedule_(simulator.config().rates.tf), sender_(sender), publisher_(&node, "/tf", QUEUE_SIZE) {}
+    : simulator_(simulator), schedule_(simulator.config().rates.tf), sender_(sender), publisher_(&node, "/tf", ROBOT_QUEUE) {}
 
 void TransformPublisher::publish(const StepReport& report) {
   if (!schedule_.due(report.time)) return;

@@ -18,7 +18,7 @@ namespace blem_sim {
 namespace {
 
 // Sensors run at every step by default; a subscriber may be a moment late.
-constexpr int QUEUE_SIZE = 1000;
+constexpr int SENSOR_QUEUE = 1000;
 
 template <typename Covariance>
 void setVariance(Covariance* covariance, double stddev) {
@@ -89,14 +89,14 @@ struct ReadingPublisher {
 ListenedPublisher advertise(ros::NodeHandle* node, SensorType type, const std::string& topic) {
   switch (type) {
     case SensorType::FORCE_TORQUE:
-      return ListenedPublisher::advertise<geometry_msgs::WrenchStamped>(node, topic, QUEUE_SIZE);
+      return ListenedPublisher::advertise<geometry_msgs::WrenchStamped>(node, topic, SENSOR_QUEUE);
     case SensorType::IMU:
     case SensorType::TILT:
-      return ListenedPublisher::advertise<sensor_msgs::Imu>(node, topic, QUEUE_SIZE);
+      return ListenedPublisher::advertise<sensor_msgs::Imu>(node, topic, SENSOR_QUEUE);
     case SensorType::CONTACT:
-      return ListenedPublisher::advertise<ContactsState>(node, topic, QUEUE_SIZE);
+      return ListenedPublisher::advertise<ContactsState>(node, topic, SENSOR_QUEUE);
     case SensorType::MOTOR_CURRENT:
-      return ListenedPublisher::advertise<MotorCurrents>(node, topic, QUEUE_SIZE);
+      return ListenedPublisher::advertise<MotorCurrents>(node, topic, SENSOR_QUEUE);
     case SensorType::DEPTH_CAMERA:
     case SensorType::LIDAR:
       break;  // RangePublisher's

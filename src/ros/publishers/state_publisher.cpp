@@ -1,32 +1,21 @@
 #include "publishers/state_publisher.h"
 
 #include <blem_sim/LinkStates.h>
-#include <blem_sim/ModelStates.h>
 #include <boost/make_shared.hpp>
 
-#include "messages/conversions.h"
-#include "messages/link_motion.h"
+#include "messages/model_states.h"
 
 namespace blem_sim {
 
 namespace {
-
-constexpr int QUEUE_SIZE = 10;
-
-template <typename States>
-void append(const std::string& name, const LinkMotion& motion, States* states) {
-  states->name.push_back(name);
-  states->pose.push_back(toPose(motion.X_WL));
-  states->twist.push_back(toTwist(motion.v_WL, motion.w_WL));
-}
-
+constexpr int STATE_QUEUE = 10;
 }  // namespace
 
 StatePublisher::StatePublisher(ros::NodeHandle private_node, const Simulator& simulator, StepSender* sender)
     : simulator_(simulator),
       schedule_(simulator.config().rates.link_states),
-      links_(ListenedPublisher::advertise<LinkStates>(&private_node, "link_states", QUEUE_SIZE)),
-      models_(ListenedPublisher::advertise<ModelStates>(&private_node, "model_states", QUEUE_SIZE)),
+      links_(ListenedPublisher::advertise<LinkStates>(&private_node, "link_states", STATE_QUEUE)),
+      models_(ListenedPublisher::advertise<ModelStates>(&private_node, "model_states", STATE_QUEUE)),
       sender_(sender) {}
 
 void StatePublisher::publish(const StepReport& report) {
@@ -52,10 +41,7 @@ void StatePublisher::publishLinks(const StepReport& report) {
 
 void StatePublisher::publishModels(const StepReport& report) {
   const auto message = boost::make_shared<ModelStates>();
-  const int models = static_cast<int>(simulator_.models().size());
-  for (int model = 0; model < models; ++model) {
-    if (simulator_.models()[model].alive) append(simulator_.models()[model].name, modelMotion(simulator_, report, model), message.get());
-  }
+  appendModels(simulator_, report, message.get());
   sender_->add(&models_, message);
 }
 

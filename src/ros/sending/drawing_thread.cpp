@@ -5,7 +5,7 @@
 namespace blem_sim {
 
 namespace {
-constexpr std::size_t MOST_WAITING = 8;
+constexpr std::size_t MOST_IMAGES = 8;
 }  // namespace
 
 DrawingThread::DrawingThread() : thread_([this] { run(); }) {}
@@ -21,7 +21,7 @@ DrawingThread::~DrawingThread() {
 
 void DrawingThread::add(std::function<void()> job) {
   std::unique_lock<std::mutex> lock(mutex_);
-  changed_.wait(lock, [this] { return waiting_.size() < MOST_WAITING; });
+  changed_.wait(lock, [this] { return waiting_.size() < MOST_IMAGES; });
   waiting_.push_back(std::move(job));
   changed_.notify_all();
 }

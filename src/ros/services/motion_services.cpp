@@ -11,7 +11,7 @@ namespace blem_sim {
 
 namespace {
 
-constexpr int QUEUE_SIZE = 100;
+constexpr int MOTION_QUEUE = 100;
 
 }  // namespace
 
@@ -28,8 +28,8 @@ MotionServices::MotionServices(ros::NodeHandle private_node, Simulator* simulato
   const boost::function<void(const LinkStateConstPtr&)> on_link = [this](const LinkStateConstPtr& state) {
     log("set_link_state", [&] { setLinkState(*state); });
   };
-  model_states_ = private_node.subscribe<ModelState>("set_model_state", QUEUE_SIZE, on_model);
-  link_states_ = private_node.subscribe<LinkState>("set_link_state", QUEUE_SIZE, on_link);
+  model_states_ = private_node.subscribe<ModelState>("set_model_state", MOTION_QUEUE, on_model);
+  link_states_ = private_node.subscribe<LinkState>("set_link_state", MOTION_QUEUE, on_link);
 }
 
 void MotionServices::log(const char* topic, const std::function<void()>& act) const {

@@ -27,7 +27,7 @@ std::string meaningless(const ODEJointProperties& given) {
   return names;
 }
 
-MassProperties inertialOf(const SetLinkProperties::Request& request) {
+MassProperties requestedInertial(const SetLinkProperties::Request& request) {
   const Pose X_LI = fromPose(request.com, "com");
   Matrix3 inertia;
   inertia << request.ixx, request.ixy, request.ixz, request.ixy, request.iyy, request.iyz, request.ixz, request.iyz, request.izz;
@@ -58,7 +58,7 @@ void PropertyServices::setLink(const SetLinkProperties::Request& request) {
   if (part.body == WORLD_BODY) throw InputError("link_name: '" + part.name + "' is fixed to the world; its mass means nothing");
   if (!request.gravity_mode)
     throw InputError("gravity_mode: gravity acts on every link here; hold a link by apply_body_wrench with its weight upwards");
-  const MassProperties inertial = inertialOf(request);
+  const MassProperties inertial = requestedInertial(request);
   if (!(inertial.mass > 0) || !inertial.inertia.allFinite() || !inertial.com.allFinite() || inertial.inertia.llt().info() != Eigen::Success)
     throw InputError("mass, com, ixx to izz: need a finite mass above 0 and a positive definite inertia");
   loop_->simulator().setLinkInertial(part.body, part.link, inertial);

@@ -11,7 +11,7 @@ namespace blem_sim {
 namespace {
 
 template <typename Response>
-void describe(const Simulator& simulator, const std::string& text, Response* response) {
+void describeState(const Simulator& simulator, const std::string& text, Response* response) {
   response->status_message = text;
   response->step = simulator.steps();
   response->state_hash = simulator.stateHash();
@@ -24,13 +24,13 @@ StateServices::StateServices(const ros::NodeHandle& private_node, SimulationLoop
   services_.add<SaveState>("save_state", [this](const auto& request, auto* response) {
     const std::string file = allowed(request.file);
     saveState(loop_->simulator().save(), file);
-    describe(loop_->simulator(), "saved " + file, response);
+    describeState(loop_->simulator(), "saved " + file, response);
   });
   services_.add<RestoreState>("restore_state", [this](const auto& request, auto* response) {
     const std::string file = allowed(request.file);
     const SimulationState state = loadState(file);
     loop_->restore(state);
-    describe(loop_->simulator(), "restored " + file, response);
+    describeState(loop_->simulator(), "restored " + file, response);
   });
 }
 

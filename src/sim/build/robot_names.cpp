@@ -10,7 +10,7 @@
 namespace blem_sim {
 namespace {
 
-constexpr const char* DEFAULT = "default";
+constexpr const char* DEFAULT_KEY = "default";
 
 struct Names {
   std::vector<std::string> links, movable, all_joints;
@@ -29,7 +29,7 @@ template <typename Value>
 void checkJoints(const std::map<std::string, Value>& by_joint, const std::string& where, const std::vector<std::string>& movable,
                  bool with_default) {
   for (const auto& entry : by_joint)
-    if (!with_default || entry.first != DEFAULT) requireName(entry.first, movable, where, "movable joint");
+    if (!with_default || entry.first != DEFAULT_KEY) requireName(entry.first, movable, where, "movable joint");
 }
 
 void checkSensor(const SensorConfig& sensor, const std::string& where, const Names& names, const RobotModel& model) {

@@ -95,7 +95,7 @@ void WorldBuilder::addEnvironment(const EnvironmentConfig& config, SimulatedWorl
     const Vector3 normal = config.plane->head<3>();
     if (!config.plane->allFinite() || !(normal.norm() > 0))
       throw InputError(where + ": plane: a x + b y + c z = d needs finite numbers and a direction (a, b, c) that is not zero");
-    surface.geometry = CollisionGeometry::halfSpace(normal, (*config.plane)[3]);
+    surface.geometry = CollisionGeometry::halfSpace(normal, (*config.plane)[3] / normal.norm());
     surface.report.source = fmt::format("half-space below the plane {} . x = {:g}", words(normal), (*config.plane)[3]);
   } else if (!config.uri.empty()) {
     surface = load(config.uri, config.scale, config.cloud, where, &watch);

@@ -80,7 +80,7 @@ const std::vector<BodyLoad>& AppliedLoads::wrenchesAt(double time) const {
 
 void AppliedLoads::addEfforts(double time, std::vector<JointDrive>* drives) const {
   for (const Driven& driven : efforts_)
-    if (driven.span.holds(time)) (*drives)[driven.joint].effort += driven.effort;
+    if (driven.span.holds(time)) (*drives)[driven.joint].outside_effort += driven.effort;
 }
 
 void AppliedLoads::expire(double time) {

@@ -42,7 +42,7 @@ bool endsWith(const std::string& text, const std::string& end) {
 }
 
 /** The joint whose velocity a column holds; empty if it holds none. */
-std::string velocityOf(const std::string& column, const std::set<std::string>& joints) {
+std::string velocityColumn(const std::string& column, const std::set<std::string>& joints) {
   if (joints.count(column) || !endsWith(column, VELOCITY_SUFFIX)) return "";
   const std::string joint = column.substr(0, column.size() - VELOCITY_SUFFIX.size());
   return joints.count(joint) ? joint : "";
@@ -57,19 +57,19 @@ void checkHeader(const std::string& file, const std::vector<std::string>& header
                                  file, header.front()));
 }
 
-std::size_t placeOf(const std::string& name, const std::vector<std::string>& header) {
+std::size_t columnOf(const std::string& name, const std::vector<std::string>& header) {
   return static_cast<std::size_t>(std::find(header.begin(), header.end(), name) - header.begin());
 }
 
 /** Velocities are for all joints or for none: a spline cannot be cubic for some. */
 std::vector<std::size_t> velocityColumns(const std::string& file, const std::vector<std::string>& header,
                                          const std::vector<std::string>& joints, const std::set<std::string>& known) {
-  const auto is_velocity = [&](const std::string& name) { return !velocityOf(name, known).empty(); };
+  const auto is_velocity = [&](const std::string& name) { return !velocityColumn(name, known).empty(); };
   const auto given = std::count_if(header.begin(), header.end(), is_velocity);
   std::vector<std::size_t> places;
   for (const std::string& joint : joints) {
     const std::string column = joint + VELOCITY_SUFFIX;
-    const std::size_t place = placeOf(column, header);
+    const std::size_t place = columnOf(column, header);
     if (is_velocity(column) && place < header.size()) places.push_back(place);
   }
   if (given > 0 && (places.size() != joints.size() || given != static_cast<std::ptrdiff_t>(joints.size())))
@@ -84,12 +84,12 @@ Columns readHeader(const std::string& file, const std::vector<std::string>& head
   const std::set<std::string> known(known_joints.begin(), known_joints.end());
   Columns columns;
   columns.count = header.size();
-  columns.time = placeOf(TIME, header);
+  columns.time = columnOf(TIME, header);
   for (const std::string& name : header) {
     if (known.count(name)) {
       columns.joints.push_back(name);
-      columns.positions.push_back(placeOf(name, header));
-    } else if (name != TIME && velocityOf(name, known).empty() && ignored) {
+      columns.positions.push_back(columnOf(name, header));
+    } else if (name != TIME && velocityColumn(name, known).empty() && ignored) {
       ignored->push_back(name);
     }
   }

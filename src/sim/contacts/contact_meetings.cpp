@@ -8,7 +8,7 @@
 namespace blem_sim {
 namespace {
 
-constexpr double TOUCHING = 1e-6;  // [m] largest gap of a contact that bears a body
+constexpr double BEARING_GAP = 1e-6;  // [m] largest gap of a contact that bears a body
 
 }  // namespace
 
@@ -16,7 +16,7 @@ void ContactMeetings::findSupports(const SimulatedWorld& world, const std::vecto
   supports_.assign(world.world.bodyCount(), Support());
   for (const ContactManifold& manifold : manifolds) {
     const double depth = manifold.maxDepth();
-    if (depth < -TOUCHING) continue;
+    if (depth < -BEARING_GAP) continue;
     for (const int collider : {manifold.a, manifold.b}) {
       const int body = world.colliders[collider].body;
       if (body == WORLD_BODY) continue;

@@ -37,13 +37,13 @@ double armOf(const Collider& collider, const Vector3& com) {
 }
 
 /** Length [m] of the longest edge of a collider's box, layers included. */
-double lengthOf(const Collider& collider) {
+double extentOf(const Collider& collider) {
   if (collider.geometry->isHalfSpace()) return std::numeric_limits<double>::infinity();
   return collider.geometry->bounds().sizes().maxCoeff() + 2 * collider.radius;
 }
 
 double baseMargin(const Collider& a, const Collider& b) {
-  return std::min(BASE_MARGIN, BASE_MARGIN_OF_LENGTH * std::min(lengthOf(a), lengthOf(b)));
+  return std::min(BASE_MARGIN, BASE_MARGIN_OF_LENGTH * std::min(extentOf(a), extentOf(b)));
 }
 
 const Reduction* reductionNamed(const std::string& name) {

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double TOUCHING = 1e-6;       // [m] a contact with no larger gap touches; a touch on the way that is no deeper is none
 constexpr double ACROSS = 0.01;         // layers that a pair moves across a normal until its gap is used up: less turns no normal
-constexpr double FARTHEST = 0.5;        // layers between two searches on the way
+constexpr double SEARCH_SPACING = 0.5;  // layers between two searches on the way
 constexpr double LONGEST = 1.0 / 16;    // of the solve between two searches where there is no layer
 constexpr double SHORTEST = 1.0 / 512;  // of the solve between two searches
 constexpr int MOST_SEARCHES = 40;
@@ -18,10 +18,10 @@ constexpr double SAME_NORMAL = 0.02;  // sine
 
 bool touches(const Contact& contact) { return contact.depth > -TOUCHING; }
 
-Vector3 velocityOf(const WayOfPair& pair, const Vector3& point) { return pair.a.twist.at(point) - pair.b.twist.at(point); }
+Vector3 slidingOf(const WayOfPair& pair, const Vector3& point) { return pair.a.twist.at(point) - pair.b.twist.at(point); }
 
 /** Closing speed [m/s]. */
-double closing(const WayOfPair& pair, const Contact& contact) { return -contact.normal_BA.dot(velocityOf(pair, contact.point)); }
+double closing(const WayOfPair& pair, const Contact& contact) { return -contact.normal_BA.dot(slidingOf(pair, contact.point)); }
 
 /** Distance [m] that the pair may close along a contact's normal in the solve. */
 double reach(const WayOfPair& pair, const Contact& contact) { return (closing(pair, contact) + pair.swing) * pair.dt; }
@@ -43,7 +43,7 @@ Contact seenFromStart(const WayOfPair& pair, const Contact& contact, double time
 bool PairWay::isDoubtful(const WayOfPair& pair) const {
   return std::any_of(pair.now.contacts.begin(), pair.now.contacts.end(), [&](const Contact& contact) {
     if (!acts(pair, contact)) return false;
-    const Vector3 velocity = velocityOf(pair, contact.point);
+    const Vector3 velocity = slidingOf(pair, contact.point);
     const Vector3 across = velocity - contact.normal_BA.dot(velocity) * contact.normal_BA;
     return across.norm() * pair.dt * -contact.depth > ACROSS * pair.now.layer * reach(pair, contact);
   });
@@ -55,14 +55,14 @@ bool PairWay::touchesNow(std::uint64_t id) const { return std::binary_search(tou
 double PairWay::freeTime(const WayOfPair& pair, const std::vector<Contact>& contacts, double time) const {
   double free = pair.dt, fastest = 0;
   for (const Contact& contact : contacts) {
-    fastest = std::max(fastest, velocityOf(pair, contact.point).norm());
+    fastest = std::max(fastest, slidingOf(pair, contact.point).norm());
     if (touchesNow(contact.id)) continue;
     Contact here = contact;
     here.depth = 0;
     const double speed = closing(pair, seenFromStart(pair, here, time));
     if (speed > 0) free = std::min(free, (pair.depth + TOUCHING - contact.depth) / speed);
   }
-  const double most = pair.now.layer > 0 ? FARTHEST * pair.now.layer / fastest : LONGEST * pair.dt;
+  const double most = pair.now.layer > 0 ? SEARCH_SPACING * pair.now.layer / fastest : LONGEST * pair.dt;
   return std::max(SHORTEST * pair.dt, std::min(free, most));
 }
 

@@ -8,12 +8,12 @@ namespace {
 
 double square(double x) { return x * x; }
 
-bool isCompliant(const ContactConstraint& c) { return std::isfinite(c.stiffness) && std::isfinite(c.damping); }
+bool isSpring(const ContactConstraint& c) { return std::isfinite(c.stiffness) && std::isfinite(c.damping); }
 
 /** Speed [m/s] at which a contact that is too deep pushes on purpose. */
 double correctionSpeed(const ContactConstraint& c, bool recovers, double dt, const SolverSettings& settings) {
   if (!(c.depth > 0)) return 0;
-  if (!isCompliant(c)) return std::min(settings.correction_fraction * c.depth / dt, settings.max_correction_speed);
+  if (!isSpring(c)) return std::min(settings.correction_fraction * c.depth / dt, settings.max_correction_speed);
   return recovers && c.damping > 0 ? c.stiffness * c.depth / c.damping : 0;
 }
 
@@ -47,7 +47,7 @@ EnergyGain EnergyBalance::addSolve(const World& world, double dt, const ContactS
   tie(world, contacts, solved.contact_forces);
   bookBodies(world, dt, before, after);
   bookLoads(world, dt, before, after);
-  bookJoints(world, dt);
+  bookJoints(world, dt, solved.axis_efforts);
   bookSprings(contacts, before, after);
   bookContacts(dt, contacts, solved, before, after);
   EnergyGain gain;
@@ -117,12 +117,12 @@ void EnergyBalance::bookLoads(const World& world, double dt, const std::vector<B
 }
 
 // Books the work of joints: effort times mean velocity, for the same reason.
-void EnergyBalance::bookJoints(const World& world, double dt) {
+void EnergyBalance::bookJoints(const World& world, double dt, const std::vector<double>& efforts) {
   for (int joint = 0; joint < world.jointCount(); ++joint) {
     const JointSpec& spec = world.jointSpec(joint);
     const JointState state = world.jointState(joint);
     JointState& last = joints_[joint];
-    const double work = state.effort * (state.position - last.position - 0.5 * dt * (state.velocity - last.velocity));
+    const double work = efforts[joint] * (state.position - last.position - 0.5 * dt * (state.velocity - last.velocity));
     Book& book = books_[islands_.islandOf(spec.child)];
     book.rise += 0.5 * spec.armature * (square(state.velocity) - square(last.velocity)) - work;
     book.moved += 0.5 * spec.armature * square(state.velocity) + std::abs(work);
@@ -135,7 +135,7 @@ void EnergyBalance::bookSprings(const ContactStage& contacts, const std::vector<
   Displacements a(before, after), b(before, after);
   for (std::size_t i = 0; i < contacts.constraints().size(); ++i) {
     const ContactConstraint& contact = contacts.constraints()[i];
-    if (!isCompliant(contact) || contacts.solved()[i].recovers) continue;
+    if (!isSpring(contact) || contacts.solved()[i].recovers) continue;
     const Vector3 apart = a.of(contact.point, contact.body_a) - b.of(contact.point, contact.body_b);
     const double old_depth = std::max(0.0, contact.depth), depth = std::max(0.0, contact.depth - contact.normal_BA.dot(apart));
     Book& book = bookOf(contact);

@@ -77,7 +77,8 @@ class EnergyBalance {
   void tie(const World& world, const ContactStage& contacts, const std::vector<Vector3>& forces);
   void bookBodies(const World& world, double dt, const std::vector<BodyState>& before, const std::vector<BodyState>& after);
   void bookLoads(const World& world, double dt, const std::vector<BodyState>& before, const std::vector<BodyState>& after);
-  void bookJoints(const World& world, double dt);
+  /** @param efforts along the joints' axes */
+  void bookJoints(const World& world, double dt, const std::vector<double>& efforts);
   void bookSprings(const ContactStage& contacts, const std::vector<BodyState>& before, const std::vector<BodyState>& after);
   void bookContacts(double dt, const ContactStage& contacts, const SolveResult& solved, const std::vector<BodyState>& before,
                     const std::vector<BodyState>& after);

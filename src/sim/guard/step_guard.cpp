@@ -19,7 +19,7 @@ double used(const ContactManifold& manifold) { return std::max(0.0, manifold.max
 bool inDanger(double before, double after) { return after > USED_UP && after - before > LEAST_GROWTH; }
 
 /** Motion of points fixed on the body: from their place in the world before to that after. */
-Pose motionOf(int body, const std::vector<BodyState>& before, const std::vector<BodyState>& after) {
+Pose motionBetween(int body, const std::vector<BodyState>& before, const std::vector<BodyState>& after) {
   return body == WORLD_BODY ? Pose::Identity() : after[body].X_WB * before[body].X_WB.inverse();
 }
 
@@ -64,7 +64,7 @@ bool usesUpLayer(const std::vector<Collider>& colliders, const std::vector<Conta
   for (const ContactManifold& then : before) {
     if (!(then.layer > 0) || then.pierced || then.contacts.empty()) continue;
     const Collider &a = colliders[then.a], &b = colliders[then.b];
-    const Pose motion_a = motionOf(a.body, bodies_before, bodies_after), motion_b = motionOf(b.body, bodies_before, bodies_after);
+    const Pose motion_a = motionBetween(a.body, bodies_before, bodies_after), motion_b = motionBetween(b.body, bodies_before, bodies_after);
     const double depth = then.maxDepth();
     if (mostCarried(then, depth, extent(a, b), motion_a, motion_b) <= USED_UP) continue;
     if (inDanger(std::max(0.0, depth / then.layer), carried(then, motion_a, motion_b))) return true;

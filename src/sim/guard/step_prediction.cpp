@@ -9,8 +9,8 @@
 namespace blem_sim {
 namespace {
 
-constexpr double USED_UP = 0.9;    // of the distance between bare meshes
-constexpr double PER_SOLVE = 0.5;  // layers that two bodies that touch may move in one solve
+constexpr double USED_UP_AHEAD = 0.9;  // of the distance between bare meshes
+constexpr double PER_SOLVE = 0.5;      // layers that two bodies that touch may move in one solve
 // A margin is at least 1.5 times the largest motion: a pair of a smaller margin is no danger to its layer.
 constexpr double LEAST_MARGIN = 1.5 * PER_SOLVE;  // layers
 
@@ -21,7 +21,7 @@ double safeTimeOf(const WatchedPair& pair, const SimulatedWorld& world, const Co
   if (!(layer > 0) || pair.margin <= LEAST_MARGIN * layer) return time;
   const ContactManifold* manifold = findPair(contacts.current(), pair.a, pair.b);
   const double gap = std::min(pair.known, manifold ? -manifold->maxDepth() : pair.known);  // between the layers, at least
-  const double harmless = std::max(PER_SOLVE * layer, std::min(pair.known, USED_UP * (layer + gap)));
+  const double harmless = std::max(PER_SOLVE * layer, std::min(pair.known, USED_UP_AHEAD * (layer + gap)));
   const double speed = meetingSpeed(world, bodies, contacts.motion(), pair.a, pair.b, layer + pair.margin);
   if (speed * time <= harmless) return time;
   return std::min(time, std::max(gap, PER_SOLVE * layer) / speed);

@@ -14,7 +14,7 @@ namespace blem_sim {
 namespace {
 
 // Format: little-endian 64-bit words throughout, so that a state goes from one machine to another.
-const char MAGIC[] = "blem_sim state 2\n";
+const char FILE_MAGIC[] = "blem_sim state 2\n";
 
 void putWord(std::ostream& stream, std::uint64_t word) {
   char bytes[8];
@@ -37,9 +37,9 @@ void putNumbers(std::ostream& stream, const std::vector<double>& numbers) {
 }
 
 /** Walks through the bytes of a file. */
-class StateReader {
+class FileReader {
  public:
-  StateReader(const std::string& bytes, const std::string& file) : bytes_(bytes), file_(file) {}
+  FileReader(const std::string& bytes, const std::string& file) : bytes_(bytes), file_(file) {}
 
   std::string text(std::size_t size) {
     if (size > bytes_.size() - at_) fail();
@@ -90,7 +90,7 @@ void saveState(const SimulationState& state, const std::string& file) {
   std::error_code error;
   std::filesystem::remove(draft, error);  // a link of that name would lead elsewhere
   std::ofstream stream(draft, std::ios::binary);
-  stream.write(MAGIC, sizeof MAGIC - 1);
+  stream.write(FILE_MAGIC, sizeof FILE_MAGIC - 1);
   for (const std::uint64_t word : {state.header.format, state.header.layout, state.header.length, state.header.checksum})
     putWord(stream, word);
   putWord(stream, state.layout.size());
@@ -115,10 +115,10 @@ SimulationState loadState(const std::string& file) {
   std::ostringstream buffer;
   buffer << stream.rdbuf();
   const std::string bytes = buffer.str();
-  StateReader reader(bytes, file);
-  if (bytes.compare(0, sizeof MAGIC - 1, MAGIC) != 0)
+  FileReader reader(bytes, file);
+  if (bytes.compare(0, sizeof FILE_MAGIC - 1, FILE_MAGIC) != 0)
     throw InputError(fmt::format("{}: is not a state that --save-state or save_state of this version wrote; save it again", file));
-  reader.text(sizeof MAGIC - 1);
+  reader.text(sizeof FILE_MAGIC - 1);
   SimulationState state;
   for (std::uint64_t* word : {&state.header.format, &state.header.layout, &state.header.length, &state.header.checksum})
     *word = reader.word();

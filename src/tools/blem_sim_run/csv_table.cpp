@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "blem_sim/geometry/input_error.h"
-#include "sensor_values.h"
+#include "blem_sim/sim/sensor_values.h"
 
 namespace blem_sim {
 

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <numeric>
 
-#include "sensor_values.h"
+#include "blem_sim/sim/sensor_values.h"
 
 namespace blem_sim {
 

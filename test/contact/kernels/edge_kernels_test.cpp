@@ -18,8 +18,8 @@ namespace {
 
 using namespace kernels;
 
-constexpr std::uint32_t EDGES = 127, CANDIDATES = EDGES * EDGES;  // no whole number of vectors
-constexpr double RANGE = 0.3, RADIUS_A = 0.2, RADIUS_B = 0.1;
+constexpr std::uint32_t EDGES = 127, EDGE_PAIRS = EDGES * EDGES;  // no whole number of vectors
+constexpr double EDGE_RANGE = 0.3, EDGE_RADIUS_A = 0.2, EDGE_RADIUS_B = 0.1;
 
 struct EdgesNearEdges {
   EdgesNearEdges() : X_WF(makePose({-3, 2, 1}, {0.7, -0.2, 0.1})) {
@@ -32,7 +32,7 @@ struct EdgesNearEdges {
       names.push_back(static_cast<int>(1000 + i));
     }
 
-    for (std::uint32_t i = 0; i < CANDIDATES; ++i) candidates.push_back({i / EDGES, i % EDGES});
+    for (std::uint32_t i = 0; i < EDGE_PAIRS; ++i) candidates.push_back({i / EDGES, i % EDGES});
   }
 
   /** @param end -1: none */
@@ -40,7 +40,12 @@ struct EdgesNearEdges {
 
   EdgePlace place(bool first_is_a) const {
     const Feature edge{FeatureKind::EDGE, 0};
-    return {names.data(),         names.data(), first_is_a, motionOf(X_WF), RADIUS_A + RADIUS_B, 0.5 * (RADIUS_B - RADIUS_A),
+    return {names.data(),
+            names.data(),
+            first_is_a,
+            motionOf(X_WF),
+            EDGE_RADIUS_A + EDGE_RADIUS_B,
+            0.5 * (EDGE_RADIUS_B - EDGE_RADIUS_A),
             contactId(edge, edge)};
   }
 
@@ -51,20 +56,20 @@ struct EdgesNearEdges {
 };
 
 /** Contacts that one instruction set finds. */
-struct Found {
-  Found(const Kernels& set, const EdgesNearEdges& in, bool first_is_a, bool takes_plain)
-      : hits(CANDIDATES + 1),
-        left(CANDIDATES + 1),
-        fading(CANDIDATES + 1),
-        rows(CANDIDATES + 1),
+struct FoundEdges {
+  FoundEdges(const Kernels& set, const EdgesNearEdges& in, bool first_is_a, bool takes_plain)
+      : hits(EDGE_PAIRS + 1),
+        left(EDGE_PAIRS + 1),
+        fading(EDGE_PAIRS + 1),
+        rows(EDGE_PAIRS + 1),
         plain{in.place(first_is_a), rows.data(), 0, -1} {
     const EdgeRecord* const records = in.records.data();
     LeftEdges to_left{left.data(), 0};
-    hits.resize(
-        set.edgeEdges(records, records, in.candidates.data(), CANDIDATES, RANGE, takes_plain ? &plain : nullptr, &to_left, hits.data()));
+    hits.resize(set.edgeEdges(records, records, in.candidates.data(), EDGE_PAIRS, EDGE_RANGE, takes_plain ? &plain : nullptr, &to_left,
+                              hits.data()));
     left.resize(to_left.count);
     rows.resize(plain.count);
-    fading.resize(set.fadingEdges(records, records, in.candidates.data(), CANDIDATES, RANGE, fading.data()));
+    fading.resize(set.fadingEdges(records, records, in.candidates.data(), EDGE_PAIRS, EDGE_RANGE, fading.data()));
   }
   std::vector<EdgeEdgeHit> hits;
   std::vector<Candidate> left;
@@ -82,7 +87,7 @@ Vector3 alongOf(const EdgesNearEdges& in, const Hit& hit, bool first) {
 TEST(EdgeKernels, PlainContactsAreThoseMadeOneByOne) {
   const EdgesNearEdges in;
   for (const bool first_is_a : {false, true}) {
-    const Found written(*availableKernels().front(), in, first_is_a, true), all(*availableKernels().front(), in, first_is_a, false);
+    const FoundEdges written(*availableKernels().front(), in, first_is_a, true), all(*availableKernels().front(), in, first_is_a, false);
     std::uint32_t count = 0, close = 0;
     double deepest = -1;
     for (const EdgeEdgeHit& hit : all.hits) {
@@ -92,8 +97,8 @@ TEST(EdgeKernels, PlainContactsAreThoseMadeOneByOne) {
       const Candidate& c = in.candidates[hit.candidate];
       const Vector3 point_a(hit.point_a), point_b(hit.point_b), normal(hit.normal);
       EXPECT_NEAR((point_a - point_b - hit.gap * normal).norm(), 0, 1e-13);
-      Contact one = contactOf({first_is_a, RADIUS_A, RADIUS_B}, {FeatureKind::EDGE, in.names[c.a]}, {FeatureKind::EDGE, in.names[c.b]},
-                              point_a, point_b, normal, hit.gap);
+      Contact one = contactOf({first_is_a, EDGE_RADIUS_A, EDGE_RADIUS_B}, {FeatureKind::EDGE, in.names[c.a]},
+                              {FeatureKind::EDGE, in.names[c.b]}, point_a, point_b, normal, hit.gap);
       one.point = in.X_WF * one.point;
       one.normal_BA = in.X_WF.linear() * one.normal_BA;
       ASSERT_LT(count, written.rows.size());
@@ -117,12 +122,12 @@ TEST(EdgeKernels, PlainContactsAreThoseMadeOneByOne) {
 TEST(EdgeKernels, FadingContactsAreWhereTheEdgesAreClosest) {
   const EdgesNearEdges in;
   int beyond_one = 0, beyond_both = 0, inside = 0;
-  for (const FadingEdgesHit& hit : Found(*availableKernels().front(), in, true, false).fading) {
+  for (const FadingEdgesHit& hit : FoundEdges(*availableKernels().front(), in, true, false).fading) {
     const Candidate& c = in.candidates[hit.candidate];
     const Vector3 p = vector3(in.records[c.a].start), q = vector3(in.records[c.b].start), along_p = alongOf(in, hit, true),
                   along_q = alongOf(in, hit, false);
     EdgePair feet;
-    const bool is_inside = findEdgePair(p, p + along_p, q, q + along_q, RANGE, &feet);
+    const bool is_inside = findEdgePair(p, p + along_p, q, q + along_q, EDGE_RANGE, &feet);
     EXPECT_EQ(hit.is_inside, is_inside);
     inside += is_inside;
     if (is_inside) continue;
@@ -130,7 +135,7 @@ TEST(EdgeKernels, FadingContactsAreWhereTheEdgesAreClosest) {
     EXPECT_NEAR((point_a - point_b).norm(), hit.distance, 1e-13);
     EXPECT_NEAR(std::abs(normal.dot(along_p.normalized())) + std::abs(normal.dot(along_q.normalized())), 0, 1e-9);
     EXPECT_GE(normal.dot(p - q), 0);
-    EXPECT_LE(hit.gap, RANGE);
+    EXPECT_LE(hit.gap, EDGE_RANGE);
     // Distance beyond its end at which the other line passes.
     const Vector3 across = along_p.cross(along_q);
     const double s = (q - p).cross(along_q).dot(across) / across.squaredNorm(),
@@ -157,10 +162,10 @@ TEST(EdgeKernels, AllInstructionSetsFindTheSame) {
   const EdgesNearEdges in;
   const auto same = [](const double* a, const double* b, std::size_t count) { return std::memcmp(a, b, sizeof(double) * count) == 0; };
   for (const bool takes_plain : {false, true}) {
-    const Found baseline(*availableKernels().back(), in, true, takes_plain);
+    const FoundEdges baseline(*availableKernels().back(), in, true, takes_plain);
     for (const Kernels* set : availableKernels()) {
       SCOPED_TRACE(set->name);
-      const Found each(*set, in, true, takes_plain);
+      const FoundEdges each(*set, in, true, takes_plain);
       ASSERT_EQ(each.hits.size(), baseline.hits.size());
       for (std::size_t i = 0; i < each.hits.size(); ++i) {
         const EdgeEdgeHit &a = each.hits[i], &b = baseline.hits[i];

@@ -22,7 +22,7 @@ using namespace kernels;
 constexpr std::uint32_t COUNT = 61;  // no whole number of vectors
 constexpr double RADIUS_A = 0.2, RADIUS_B = 0.1;
 
-constexpr double RANGE = 1.2;
+constexpr double FEET_RANGE = 1.2;
 
 /** A vertex beside some sides of a face each. */
 struct SidesAndVertices {
@@ -68,7 +68,7 @@ struct Feet {
   Feet(const Kernels& set, const SidesAndVertices& in, bool keeps_feet) : rows(COUNT + 1), asked(COUNT) {
     FadingContacts out{rows.data(), asked.data(), 0};
     count = set.sideFeet(in.place(keeps_feet), {in.placed.data(), in.faces_move, motionOf(in.X_FM.inverse()), motionOf(in.X_FM)},
-                         in.faces.data(), in.corners.data(), in.sides.data(), in.pairs.data(), COUNT, RANGE, &out);
+                         in.faces.data(), in.corners.data(), in.sides.data(), in.pairs.data(), COUNT, FEET_RANGE, &out);
     rows.resize(count);
     asked.resize(out.asked_count);
   }
@@ -100,7 +100,7 @@ TEST(SideFeet, AreTheClosestPointsOfTheNearestSides) {
         foot = foot_k;
       }
       const double gap = (p - foot).norm() + FADE_SLOPE * beside;
-      if (gap > RANGE) continue;
+      if (gap > FEET_RANGE) continue;
       ends += part == 0 || part == 1;
       if (beside <= in.sides[i].reach) {
         ASSERT_LT(within, contacts.asked.size());

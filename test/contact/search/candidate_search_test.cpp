@@ -17,7 +17,7 @@
 namespace blem_sim {
 namespace {
 
-MeshPair pairOf(const Collider& moving, const Collider& fixed, const Pose& X_FM) {
+MeshPair searchedPair(const Collider& moving, const Collider& fixed, const Pose& X_FM) {
   const double layer = moving.radius + fixed.radius;
   return {MeshSide(*moving.geometry), MeshSide(*fixed.geometry), X_FM, layer, layer, {}};
 }
@@ -54,14 +54,14 @@ TEST(CandidateSearch, InPartsAsAtOnce) {
   for (const CandidateKind kind : {CandidateKind::CONTACTS, CandidateKind::CROSSINGS}) {
     CandidateSearchBuffers buffers;
     CandidateListing whole, parts, between;
-    findCandidates(pairOf(ball, hills, X), kind, margin, &buffers, &whole);
+    findCandidates(searchedPair(ball, hills, X), kind, margin, &buffers, &whole);
     ASSERT_GT(whole.pairs.size(), 100u);
-    beginCandidates(pairOf(ball, hills, X), kind, margin, &buffers, &parts);
+    beginCandidates(searchedPair(ball, hills, X), kind, margin, &buffers, &parts);
     EXPECT_FALSE(parts.isComplete());
     while (!parts.isComplete()) {
-      findMoreCandidates(pairOf(ball, hills, other), 37, &buffers, &parts);
-      findCandidates(pairOf(ball, hills, other), CandidateKind::CONTACTS, margin, &buffers, &between);
-      findCandidates(pairOf(hills, ball, other.inverse()), CandidateKind::CONTACTS, margin, &buffers, &between);
+      findMoreCandidates(searchedPair(ball, hills, other), 37, &buffers, &parts);
+      findCandidates(searchedPair(ball, hills, other), CandidateKind::CONTACTS, margin, &buffers, &between);
+      findCandidates(searchedPair(hills, ball, other.inverse()), CandidateKind::CONTACTS, margin, &buffers, &between);
     }
     EXPECT_EQ(namesOf(parts.lists), namesOf(whole.lists));
     for (const bool moves : {true, false}) {
@@ -78,7 +78,7 @@ TEST(CandidateSearch, InPartsAsAtOnce) {
 TEST(CandidateLists, AreGroupedByFacesWhereThereAreFew) {
   RandomShapes random(5);
   const Collider hills = makeCollider(hillMesh(random, 0.1, 60, 0.001), 0), box = makeCollider(boxMesh(Vector3::Constant(0.06)), 0.002);
-  const MeshPair pair = pairOf(box, hills, makePose({0.001, 0.002, 0.0305}, {0.01, 0.02, 0.3}));
+  const MeshPair pair = searchedPair(box, hills, makePose({0.001, 0.002, 0.0305}, {0.01, 0.02, 0.3}));
   CandidateSearchBuffers buffers;
   CandidateListing listing;
   findCandidates(pair, CandidateKind::CONTACTS, {0.001, 0.02}, &buffers, &listing);

@@ -4,11 +4,10 @@
 #include <algorithm>
 
 #include "dynamics/analytic_contacts.h"
+#include "support/standard_values.h"
 
 namespace blem_sim {
 namespace {
-
-constexpr double DT = 1e-3;
 
 /** One body on one joint to the world, no gravity. */
 struct OneJoint {
@@ -25,14 +24,16 @@ struct OneJoint {
   }
   void run(int steps, const JointDrive& drive) {
     for (int i = 0; i < steps; ++i) {
-      const SolveResult& result = world.step(DT, {}, {drive});
-      ASSERT_TRUE(result.finite);
-      lcp_errors += result.lcp_errors;
+      last = &world.step(DT, {}, {drive});
+      ASSERT_TRUE(last->finite);
+      lcp_errors += last->lcp_errors;
     }
   }
+  const SolveResult& result() const { return *last; }
   JointState state() const { return world.jointState(0); }
 
   World world;
+  const SolveResult* last = nullptr;
   int lcp_errors = 0;
 };
 
@@ -82,12 +83,14 @@ TEST_P(Drives, DryFrictionSticksBelowAndSlipsAbove) {
   drive.effort = 1.99;
   one.run(1000, drive);
   EXPECT_LT(std::abs(one.state().position), 1e-8);
-  EXPECT_NEAR(one.state().effort, 0, 1e-6);  // friction takes up the given effort
+  EXPECT_EQ(one.state().effort, 1.99);
+  EXPECT_NEAR(one.result().axis_efforts[0], 0, 1e-6);  // friction takes up the motor's effort
   drive.effort = 2.5;
   const double before = one.state().velocity;
   one.run(1000, drive);
   EXPECT_NEAR(one.state().velocity - before, 0.5, 1e-8);
-  EXPECT_NEAR(one.state().effort, 0.5, 1e-9);
+  EXPECT_EQ(one.state().effort, 2.5);
+  EXPECT_NEAR(one.result().axis_efforts[0], 0.5, 1e-9);
   EXPECT_EQ(one.lcp_errors, 0);
 }
 
@@ -127,7 +130,33 @@ TEST_P(Drives, AllTermsTogetherBalance) {
   one.run(20000, drive);
   // 10 = 2 + 4 v + min(v, 0.5)
   EXPECT_NEAR(one.state().velocity, 7.5 / 4, 1e-6);
-  EXPECT_NEAR(one.state().effort, 0, 1e-5);
+  EXPECT_NEAR(one.state().effort, 10 - 0.5, 1e-9);
+  EXPECT_NEAR(one.result().axis_efforts[0], 0, 1e-5);
+}
+
+// A spring that pulls against friction: less than it holds, then more. The motor's effort is its law's.
+TEST_P(Drives, EffortIsTheMotorsAlone) {
+  for (const double friction : {25.0, 15.0}) {
+    OneJoint one(GetParam(), 1, 1);
+    JointDrive drive;
+    drive.stiffness = 20, drive.damping = 2, drive.target_position = 1;
+    drive.dry_friction = friction, drive.viscous_friction = 3, drive.outside_effort = 0.5;
+    one.run(40, drive);
+    const JointState now = one.state();
+    EXPECT_EQ(friction > 20.5, std::abs(now.velocity) < 1e-6) << friction;
+    EXPECT_NEAR(now.effort, 20 * (1 - now.position) - 2 * now.velocity, 1e-6) << friction;
+    const double held = friction > 20.5 ? 0 : now.effort + 0.5 - friction - 3 * now.velocity;
+    EXPECT_NEAR(one.result().axis_efforts[0], held, 1e-5) << friction;
+  }
+}
+
+TEST_P(Drives, EffortOfAnImplicitMotorAtItsLimit) {
+  OneJoint one(GetParam(), 1, 1);
+  JointDrive drive;
+  drive.stiffness = 1e5, drive.damping = 1e3, drive.target_position = 1, drive.max_effort = 6, drive.dry_friction = 2;
+  one.run(10, drive);
+  EXPECT_NEAR(one.state().effort, 6, 1e-9);
+  EXPECT_NEAR(one.result().axis_efforts[0], 4, 1e-9);
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, Drives, ::testing::Values(JointKind::REVOLUTE, JointKind::PRISMATIC));

@@ -5,14 +5,12 @@
 
 #include "dynamics/analytic_contacts.h"
 #include "stepper_table.h"
+#include "support/standard_values.h"
 
 namespace blem_sim {
 namespace {
 
-constexpr double DT = 1e-3, G = 9.81;
-const Vector3 GRAVITY(0, 0, -G);
-
-BodySpec bar(double mass, double length) {
+BodySpec wrenchBar(double mass, double length) {
   BodySpec spec = boxBody("bar", mass, {length, 0.02, 0.02}, Vector3::Zero());
   spec.inertial.com = {length / 2, 0, 0};
   return spec;
@@ -28,7 +26,7 @@ int join(World* world, JointKind kind, int parent, int child, const Pose& X_PJ, 
 
 TEST(JointWrenches, CantileverCarriesWeightAndMoment) {
   World world(GRAVITY, {});
-  BodySpec inner = bar(2, 0.5), outer = bar(1, 0.4);
+  BodySpec inner = wrenchBar(2, 0.5), outer = wrenchBar(1, 0.4);
   outer.X_WB = makePose({0.5, 0, 0});
   world.addBody(inner), world.addBody(outer);
   join(&world, JointKind::FIXED, WORLD_BODY, 0, Pose::Identity(), Vector3::UnitZ());
@@ -65,7 +63,7 @@ TEST(JointWrenches, HangingChainCarriesWhatHangsBelow) {
 TEST(JointWrenches, SwingingBarMatchesTheory) {
   const double mass = 1.5, length = 0.8;
   World world(GRAVITY, {});
-  BodySpec spec = bar(mass, length);
+  BodySpec spec = wrenchBar(mass, length);
   spec.inertial.inertia = Vector3(1e-4, mass * length * length / 12, mass * length * length / 12).asDiagonal();
   world.addBody(spec);
   join(&world, JointKind::REVOLUTE, WORLD_BODY, 0, Pose::Identity(), Vector3::UnitY());
@@ -95,7 +93,7 @@ TEST(JointWrenches, AgreeWithOdesFeedback) {
   Scene scene(GRAVITY, {});
   int parent = WORLD_BODY;
   for (int i = 0; i < 3; ++i) {
-    BodySpec link = bar(1 + i, 0.5);
+    BodySpec link = wrenchBar(1 + i, 0.5);
     link.X_WB = makePose({0.5 * i, 0, 0});
     const int body = scene.addBody(link);
     JointSpec spec;
@@ -173,8 +171,8 @@ TEST(JointWrenches, StandingOnAContact) {
     result = world.step(DT, contacts, {drive});
   }
   EXPECT_NEAR((result.joint_wrenches[ankle].force - Vector3(0, 0, 4 * G)).norm(), 0, 1e-7);
-  EXPECT_NEAR(result.joint_wrenches[ankle].torque.y(), result.joint_efforts[ankle], 1e-7);
-  EXPECT_NEAR(result.joint_efforts[ankle], -4 * G * 0.02, 1e-3);
+  EXPECT_NEAR(result.joint_wrenches[ankle].torque.y(), result.axis_efforts[ankle], 1e-7);
+  EXPECT_NEAR(result.axis_efforts[ankle], -4 * G * 0.02, 1e-3);
 }
 
 }  // namespace

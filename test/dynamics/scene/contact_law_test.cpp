@@ -5,12 +5,10 @@
 
 #include "dynamics/analytic_contacts.h"
 #include "scene/contact_law.h"
+#include "support/standard_values.h"
 
 namespace blem_sim {
 namespace {
-
-const Vector3 CUBE(0.1, 0.1, 0.1);
-constexpr double DT = 1e-3;
 
 /** A cube on the plane z = 0. */
 struct CubeOnPlane {

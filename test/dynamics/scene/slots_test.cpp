@@ -6,12 +6,10 @@
 
 #include "blem_sim/geometry/input_error.h"
 #include "dynamics/analytic_contacts.h"
+#include "support/standard_values.h"
 
 namespace blem_sim {
 namespace {
-
-constexpr double DT = 1e-3;
-const Vector3 CUBE(0.1, 0.1, 0.1);
 
 class Slots : public testing::TestWithParam<const char*> {
  protected:

@@ -5,15 +5,13 @@
 
 #include "blem_sim/geometry/input_error.h"
 #include "dynamics/analytic_contacts.h"
+#include "support/standard_values.h"
 
 // A step that ODE breaks off loses its own record of the call; the rest of that world stays reachable.
 extern "C" const char* __lsan_default_suppressions() { return "leak:PreallocateJobInfos"; }
 
 namespace blem_sim {
 namespace {
-
-constexpr double DT = 1e-3;
-const Vector3 CUBE(0.1, 0.1, 0.1);
 
 /** A bouncing box, a stack of two, and a motor driven arm with a mimic joint. */
 struct Scene3 {

@@ -4,11 +4,10 @@
 #include <algorithm>
 
 #include "support/chains.h"
+#include "support/standard_values.h"
 
 namespace blem_sim {
 namespace {
-
-constexpr double DT = 1e-3;
 
 const std::vector<ChainLink> TAPER = taper(6, {1, 0.3}, {0.02, 0.05});
 
@@ -171,13 +170,13 @@ TEST(FreeMotion, MotorCarriesCentrifugalForces) {
     }
     // Force of the outer link's centre of mass towards the axis: m w^2 (0.3, 0.05) along and across the inner link.
     const double w = chain.world.bodyState(0).w_WB.y(), along = 0.2 * w * w * 0.3, across = 0.2 * w * w * 0.05;
-    EXPECT_NEAR(result.joint_efforts[1] / (along * 0.05), 1, 1e-4) << stiffness;
+    EXPECT_NEAR(result.axis_efforts[1] / (along * 0.05), 1, 1e-4) << stiffness;
     const Vector3 axes(-along, 0, across);
     const Vector3 force = before.linear() * Eigen::AngleAxisd(0.5 * w * DT, Vector3::UnitY()) * axes;
     EXPECT_LT((result.joint_wrenches[1].force - force).norm(), 2e-3 * force.norm()) << stiffness << "\n"
                                                                                     << result.joint_wrenches[1].force << "\n"
                                                                                     << force;
-    EXPECT_NEAR(result.joint_wrenches[1].torque.y(), result.joint_efforts[1], 2e-3 * along * 0.05) << stiffness;
+    EXPECT_NEAR(result.joint_wrenches[1].torque.y(), result.axis_efforts[1], 2e-3 * along * 0.05) << stiffness;
     EXPECT_LT(std::abs(chain.world.jointState(1).position - M_PI / 2), 2 * along * 0.05 / stiffness);
   }
 }

@@ -6,7 +6,7 @@
 namespace blem_sim {
 namespace {
 
-std::string refusal(const SimulationConfig& config) {
+std::string refusalOfWorld(const SimulationConfig& config) {
   try {
     Simulator simulator(config, UriResolver());
   } catch (const InputError& error) {
@@ -83,26 +83,41 @@ TEST(WorldBuilder, InitialVelocityIsOfTheObjectsOrigin) {
   EXPECT_LT((bodyOf(simulator, "spinner").v_WCom - Vector3(1, 0.1, 0)).norm(), 1e-12);
 }
 
+// a x + b y + c z = d: a normal of any length, here the plane 0.5 above the origin along (0, 0.6, 0.8).
+TEST(WorldBuilder, PlanesWithNormalsOfAnyLengthLieWhereTheirEquationSays) {
+  for (const double length : {1e-3, 1.0, 2.0, 1e4}) {
+    SimulationConfig config;
+    EnvironmentConfig ground;
+    ground.name = "ground";
+    ground.plane = length * Eigen::Vector4d(0, 0.6, 0.8, 0.5);
+    config.environments = {ground};
+    Simulator simulator(config, UriResolver());
+    const CollisionGeometry& plane = *simulator.colliders()[0].geometry;
+    EXPECT_NEAR(plane.planeOffset(), 0.5, 1e-15) << length;
+    EXPECT_LT((plane.planeNormal() - Vector3(0, 0.6, 0.8)).norm(), 1e-15) << length;
+  }
+}
+
 TEST(WorldBuilder, RefusesInWords) {
   SimulationConfig config;
   config.environments = {ground(), ground()};
-  EXPECT_TRUE(contains(refusal(config), "ground: the name is taken"));
+  EXPECT_TRUE(contains(refusalOfWorld(config), "ground: the name is taken"));
   config.environments = {ground()};
   config.environments[0].uri = "no_such_mesh.stl";
-  EXPECT_TRUE(contains(refusal(config), "environments: ground")) << refusal(config);
-  EXPECT_TRUE(contains(refusal(config), "no_such_mesh.stl"));
+  EXPECT_TRUE(contains(refusalOfWorld(config), "environments: ground")) << refusalOfWorld(config);
+  EXPECT_TRUE(contains(refusalOfWorld(config), "no_such_mesh.stl"));
   config.environments = {};
   config.objects = {box("cube", Vector3::Constant(0.1), 0, {0, 0, 1})};
-  EXPECT_TRUE(contains(refusal(config), "cube: mass")) << refusal(config);
+  EXPECT_TRUE(contains(refusalOfWorld(config), "cube: mass")) << refusalOfWorld(config);
   config.objects = {box("cube", Vector3::Constant(0.1), 1, {0, 0, 1})};
   config.contact.reduction = "hul";
-  EXPECT_TRUE(contains(refusal(config), "hull")) << refusal(config);
+  EXPECT_TRUE(contains(refusalOfWorld(config), "hull")) << refusalOfWorld(config);
   config.contact.reduction = "hull";
   config.time_step = 0;
-  EXPECT_TRUE(contains(refusal(config), "time_step")) << refusal(config);
+  EXPECT_TRUE(contains(refusalOfWorld(config), "time_step")) << refusalOfWorld(config);
   config.time_step = 0.001;
   config.solver.stepper = "jump_step";
-  EXPECT_TRUE(contains(refusal(config), "world_step")) << refusal(config);
+  EXPECT_TRUE(contains(refusalOfWorld(config), "world_step")) << refusalOfWorld(config);
 }
 
 }  // namespace

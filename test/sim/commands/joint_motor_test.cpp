@@ -8,7 +8,7 @@
 namespace blem_sim {
 namespace {
 
-constexpr double DT = 0.001;
+constexpr double STEP = 0.001;
 
 MotorSettings settings(MotorLaw law, const JointGains& gains, double limit = std::numeric_limits<double>::infinity()) {
   MotorSettings settings;
@@ -21,22 +21,22 @@ MotorSettings settings(MotorLaw law, const JointGains& gains, double limit = std
 
 TEST(JointMotor, Equation7) {
   JointMotor motor(settings(MotorLaw::PID, {100, 20, 3}), 0.5);
-  motor.sample(0, DT);
+  motor.sample(0, STEP);
   const JointDrive drive = motor.drive({0.3, -0.2, 0});
   EXPECT_DOUBLE_EQ(drive.effort, 100 * 0.2 + 3 * 0.2);
   EXPECT_EQ(drive.stiffness, 0);
-  EXPECT_FALSE(motor.accept(drive, {0.3, 0, 0}, DT));
-  motor.sample(DT, DT);
-  EXPECT_DOUBLE_EQ(motor.drive({0.5, 0, 0}).effort, 20 * 0.2 * DT);
+  EXPECT_FALSE(motor.accept(drive, {0.3, 0, 0}, STEP));
+  motor.sample(STEP, STEP);
+  EXPECT_DOUBLE_EQ(motor.drive({0.5, 0, 0}).effort, 20 * 0.2 * STEP);
 }
 
 TEST(JointMotor, IntegralTermIsClamped) {
   JointMotor motor(settings(MotorLaw::PID, {0, 1000, 0, 0.05}), 1);
   for (int i = 0; i < 10; ++i) {
-    motor.sample(i * DT, DT);
-    motor.accept(motor.drive({0, 0, 0}), {}, DT);
+    motor.sample(i * STEP, STEP);
+    motor.accept(motor.drive({0, 0, 0}), {}, STEP);
   }
-  motor.sample(0.01, DT);
+  motor.sample(0.01, STEP);
   EXPECT_DOUBLE_EQ(motor.drive({0, 0, 0}).effort, 0.05);
 }
 
@@ -45,12 +45,12 @@ TEST(JointMotor, IntegralDoesNotWindUpWhileSaturated) {
   for (const MotorLaw law : {MotorLaw::PID, MotorLaw::IMPLICIT_PD}) {
     JointMotor motor(settings(law, {100, 1000, 1}, 30), 1);  // 0 is where it is held
     for (int i = 0; i < 5000; ++i) {
-      motor.sample(i * DT, DT);
-      EXPECT_TRUE(motor.accept(motor.drive({0, 0, 0}), {0, 0, 0}, DT));
+      motor.sample(i * STEP, STEP);
+      EXPECT_TRUE(motor.accept(motor.drive({0, 0, 0}), {0, 0, 0}, STEP));
     }
     // 100 N m/rad ask for 100; the integral holds nothing but its gain of the first steps.
     motor.hold(-0.1, 0);
-    motor.sample(5, DT);
+    motor.sample(5, STEP);
     const JointDrive drive = motor.drive({0, 0, 0});
     const double asked = law == MotorLaw::PID ? drive.effort : drive.stiffness * drive.target_position;
     EXPECT_NEAR(asked, -10, 1.1);
@@ -59,32 +59,32 @@ TEST(JointMotor, IntegralDoesNotWindUpWhileSaturated) {
 
 TEST(JointMotor, EffortIsCappedAndSaid) {
   JointMotor motor(settings(MotorLaw::PID, {1000, 0, 0}, 30), 1);
-  motor.sample(0, DT);
+  motor.sample(0, STEP);
   const JointDrive drive = motor.drive({0, 0, 0});
   EXPECT_EQ(drive.effort, 30);
-  EXPECT_TRUE(motor.accept(drive, {0, 0, 0}, DT));
-  motor.sample(0, DT);
+  EXPECT_TRUE(motor.accept(drive, {0, 0, 0}, STEP));
+  motor.sample(0, STEP);
   EXPECT_EQ(motor.drive({3, 0, 0}).effort, -30);
 }
 
 TEST(JointMotor, ImplicitLawBoundsTheSumOfFeedbackAndFeedForward) {
   JointMotor motor(settings(MotorLaw::IMPLICIT_PD, {100, 0, 2}, 30), 0.1);
   motor.addEffort(5);
-  motor.sample(0, DT);
+  motor.sample(0, STEP);
   const JointDrive drive = motor.drive({0, 0, 0});
   EXPECT_EQ(drive.effort, 0);
   EXPECT_EQ(drive.stiffness, 100);
   EXPECT_EQ(drive.damping, 2);
   EXPECT_EQ(drive.max_effort, 30);
   EXPECT_DOUBLE_EQ(drive.target_position, 0.1 + 5.0 / 100);
-  EXPECT_FALSE(motor.accept(drive, {0, 0, 0}, DT));
-  EXPECT_TRUE(motor.accept(drive, {-0.2, 0, 0}, DT));
+  EXPECT_FALSE(motor.accept(drive, {0, 0, 0}, STEP));
+  EXPECT_TRUE(motor.accept(drive, {-0.2, 0, 0}, STEP));
 }
 
 TEST(JointMotor, VelocityAloneIsDampingAlone) {
   JointMotor motor(settings(MotorLaw::PID, {100, 10, 2}), 0);
   motor.keepVelocity(1.5, 0);
-  motor.sample(0, DT);
+  motor.sample(0, STEP);
   EXPECT_DOUBLE_EQ(motor.drive({0.7, 1, 0}).effort, 2 * 0.5);
   // A trajectory that follows starts where the joint is.
   motor.follow(0, 0, {{1, 2.0, 0, 0, 0, 1}}, 0.7);
@@ -97,18 +97,18 @@ TEST(JointMotor, NothingOfBeforeAddsToAVelocity) {
     JointMotor motor(settings(law, {100, 1000, 2, 50}), 0);
     motor.follow(0, 0, {{0.001, 0.5, 0, 0, 7, 1}}, 0);
     for (int i = 0; i < 100; ++i) {
-      motor.sample(i * DT, DT);
-      motor.accept(motor.drive({0, 0, 0}), {0, 0, 0}, DT);
+      motor.sample(i * STEP, STEP);
+      motor.accept(motor.drive({0, 0, 0}), {0, 0, 0}, STEP);
     }
     motor.keepVelocity(1.5, 0);
-    motor.sample(0.1, DT);
+    motor.sample(0.1, STEP);
     const JointDrive drive = motor.drive({0.7, 1, 0});
     EXPECT_DOUBLE_EQ(drive.effort + drive.damping * (drive.target_velocity - 1), 2 * 0.5);
     EXPECT_EQ(drive.stiffness, 0);
-    motor.accept(drive, {0.7, 1, 0}, DT);
+    motor.accept(drive, {0.7, 1, 0}, STEP);
     // An effort that is commanded beside it still adds.
     motor.addEffort(3);
-    motor.sample(0.101, DT);
+    motor.sample(0.101, STEP);
     const JointDrive pushed = motor.drive({0.7, 1, 0});
     EXPECT_DOUBLE_EQ(pushed.effort + pushed.damping * (pushed.target_velocity - 1), 2 * 0.5 + 3);
   }
@@ -119,7 +119,7 @@ TEST(JointMotor, WithoutCommandOnlyFrictionActs) {
   mimic.commanded = false;
   mimic.friction = {0.3, 0.1};
   JointMotor motor(mimic, 0);
-  motor.sample(0, DT);
+  motor.sample(0, STEP);
   const JointDrive drive = motor.drive({1, 1, 0});
   EXPECT_EQ(drive.effort, 0);
   EXPECT_EQ(drive.dry_friction, 0.3);
@@ -129,8 +129,8 @@ TEST(JointMotor, WithoutCommandOnlyFrictionActs) {
 TEST(JointMotor, StateGoesThroughNumbers) {
   JointMotor motor(settings(MotorLaw::PID, {100, 10, 2}), 0.2);
   motor.addEffort(1);
-  motor.sample(0, DT);
-  motor.accept(motor.drive({0, 0, 0}), {}, DT);
+  motor.sample(0, STEP);
+  motor.accept(motor.drive({0, 0, 0}), {}, STEP);
   motor.keepVelocity(0.4, 0);
   std::vector<double> numbers;
   motor.append(&numbers);
@@ -138,7 +138,7 @@ TEST(JointMotor, StateGoesThroughNumbers) {
   NumberReader reader(numbers);
   copy.read(&reader);
   EXPECT_EQ(reader.left(), 0u);
-  for (JointMotor* m : {&motor, &copy}) m->sample(DT, DT);
+  for (JointMotor* m : {&motor, &copy}) m->sample(STEP, STEP);
   EXPECT_EQ(motor.drive({0.1, 0.1, 0}).effort, copy.drive({0.1, 0.1, 0}).effort);
   copy.reset();
   EXPECT_EQ(copy.desired(0).position, 0);

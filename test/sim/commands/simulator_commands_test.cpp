@@ -25,7 +25,7 @@ JointTrajectory reach(double position, double time, double start = 0) {
 }
 
 template <typename Act>
-std::string refusal(const Act& act) {
+std::string refusalOfAct(const Act& act) {
   try {
     act();
   } catch (const InputError& error) {
@@ -138,10 +138,10 @@ TEST(SimulatorCommands, WhatIsTooLargeIsRefused) {
     for (const double bad : {1e308, -1e308, 1.01e7}) {
       for (const JointCommandMessage& command :
            {JointCommandMessage{{"hinge"}, {bad}, {}, {}}, {{"hinge"}, {}, {bad}, {}}, {{"hinge"}, {}, {}, {bad}}}) {
-        const std::string message = refusal([&] { simulator.commandJoints(0, command); });
+        const std::string message = refusalOfAct([&] { simulator.commandJoints(0, command); });
         EXPECT_NE(message.find("beyond 1e+07"), std::string::npos) << message;
       }
-      EXPECT_NE(refusal([&] { simulator.commandTrajectory(0, reach(bad, 1)); }), "");
+      EXPECT_NE(refusalOfAct([&] { simulator.commandTrajectory(0, reach(bad, 1)); }), "");
     }
     EXPECT_EQ(simulator.stateHash(), before);
     simulator.commandJoints(0, {{"hinge"}, {target}, {}, {}});
@@ -166,12 +166,12 @@ TEST(SimulatorCommands, ErrorsNameRobotAndJointAndChangeNothing) {
   };
   JointTrajectory unknown = reach(1, 1);
   unknown.joints = {"hindge"};
-  expectRefused(refusal([&] { simulator.commandTrajectory(0, unknown); }), "'hinge'");
-  expectRefused(refusal([&] { simulator.commandTrajectory(0, reach(nan, 1)); }), "hinge");
-  expectRefused(refusal([&] { simulator.commandJoints(0, {{"hing"}, {1}, {}, {}}); }), "'hinge'");
-  expectRefused(refusal([&] { simulator.commandJoints(0, {{"hinge"}, {}, {nan}, {}}); }), "'hinge'");
-  expectRefused(refusal([&] { simulator.commandJoints(0, {{"hinge"}, {1, 2}, {}, {}}); }), "2 values for 1");
-  expectRefused(refusal([&] { simulator.commandJoints(0, {{"hinge", "hinge"}, {1, 2}, {}, {}}); }), "twice");
+  expectRefused(refusalOfAct([&] { simulator.commandTrajectory(0, unknown); }), "'hinge'");
+  expectRefused(refusalOfAct([&] { simulator.commandTrajectory(0, reach(nan, 1)); }), "hinge");
+  expectRefused(refusalOfAct([&] { simulator.commandJoints(0, {{"hing"}, {1}, {}, {}}); }), "'hinge'");
+  expectRefused(refusalOfAct([&] { simulator.commandJoints(0, {{"hinge"}, {}, {nan}, {}}); }), "'hinge'");
+  expectRefused(refusalOfAct([&] { simulator.commandJoints(0, {{"hinge"}, {1, 2}, {}, {}}); }), "2 values for 1");
+  expectRefused(refusalOfAct([&] { simulator.commandJoints(0, {{"hinge", "hinge"}, {1, 2}, {}, {}}); }), "twice");
   EXPECT_EQ(simulator.stateHash(), before);
 }
 

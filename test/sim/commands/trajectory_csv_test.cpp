@@ -8,11 +8,11 @@
 namespace blem_sim {
 namespace {
 
-const std::vector<std::string> JOINTS = {"hip", "knee", "knee_vel"};
+const std::vector<std::string> COLUMNS = {"hip", "knee", "knee_vel"};
 
 class TrajectoryCsv : public testing::Test {
  protected:
-  JointTrajectory load(const std::string& text) { return loadTrajectoryCsv(folder_.write("motion.csv", text), JOINTS, &ignored_); }
+  JointTrajectory load(const std::string& text) { return loadTrajectoryCsv(folder_.write("motion.csv", text), COLUMNS, &ignored_); }
   std::string refusalOf(const std::string& text) {
     return refusal([&] { load(text); });
   }
@@ -63,7 +63,7 @@ TEST_F(TrajectoryCsv, RefusesInOneLine) {
   expect("time,hip\n0,1\n0,2\n", {"motion.csv", "increase"});
   expect("time,hip,knee,hip_vel\n0,1,2,3\n", {"1 columns of velocities for 2 joints"});
   expect("time,knee,hip_vel\n0,1,2\n", {"1 columns of velocities for 1 joints"});
-  const std::string missing = refusal([&] { loadTrajectoryCsv(folder_.path("none.csv"), JOINTS, nullptr); });
+  const std::string missing = refusal([&] { loadTrajectoryCsv(folder_.path("none.csv"), COLUMNS, nullptr); });
   EXPECT_TRUE(isOneLineWith(missing, {"none.csv", "cannot be read"})) << missing;
 }
 

@@ -18,7 +18,7 @@ JointTrajectory good() {
   return trajectory;
 }
 
-std::string refusalOf(void (*spoil)(JointTrajectory&)) {
+std::string refusalOfTrajectory(void (*spoil)(JointTrajectory&)) {
   JointTrajectory trajectory = good();
   spoil(trajectory);
   return refusal([&] { checkTrajectory(trajectory, JOINTS); });
@@ -34,7 +34,7 @@ TEST(CheckTrajectory, AcceptsSomeJointsInAnyOrderAndNothing) {
 
 TEST(CheckTrajectory, RefusesInOneLine) {
   const auto expect = [](void (*spoil)(JointTrajectory&), std::initializer_list<std::string> words) {
-    const std::string text = refusalOf(spoil);
+    const std::string text = refusalOfTrajectory(spoil);
     EXPECT_TRUE(isOneLineWith(text, words)) << text;
   };
   expect([](JointTrajectory& t) { t.joints[0] = "anke"; }, {"'anke'", "unknown", "'ankle'"});

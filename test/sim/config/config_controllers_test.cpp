@@ -11,7 +11,7 @@ std::optional<std::vector<ControllerConfig>> controllersOf(const std::string& ya
   return parseConfig(YAML::Load("robots: [{name: r, urdf: r.urdf" + yaml + "}]"), "test", "").robots[0].controllers;
 }
 
-std::string refusalOf(const std::string& list) {
+std::string refusalOfList(const std::string& list) {
   return refusal([&] { controllersOf(", controllers: [" + list + "]"); });
 }
 
@@ -64,17 +64,17 @@ TEST(ConfigControllers, KeysOfTheParameterServerGoOverThoseGiven) {
 }
 
 TEST(ConfigControllers, RefusesInOneLine) {
-  EXPECT_TRUE(isOneLineWith(refusalOf("{joints: [a]}"), {"controllers[0].name"}));
-  EXPECT_TRUE(isOneLineWith(refusalOf("{name: c}, {name: c}"), {"controllers[1].name", "'c'", "taken"}));
-  EXPECT_TRUE(isOneLineWith(refusalOf("{name: c, joints: a}"), {"controllers[0].joints", "list"}));
-  EXPECT_TRUE(isOneLineWith(refusalOf("{name: c, joints: [a, a]}"), {"'a'", "twice"}));
-  EXPECT_TRUE(isOneLineWith(refusalOf("{name: c, jonts: [a]}"), {"jonts", "'joints'"}));
-  EXPECT_TRUE(isOneLineWith(refusalOf("{name: c, constraints: {goal_time: -1}}"), {"goal_time", "at least 0"}));
-  EXPECT_TRUE(isOneLineWith(refusalOf("{name: c, constraints: {a: {gaol: 1}}}"), {"gaol", "'goal'"}));
-  EXPECT_TRUE(isOneLineWith(refusalOf("{name: c, state_publish_rate: .inf}"), {"state_publish_rate"}));
-  EXPECT_TRUE(isOneLineWith(refusalOf("{name: c, type: griper, joint: f}"), {"type", "gripper"}));
-  EXPECT_TRUE(isOneLineWith(refusalOf("{name: c, type: gripper}"), {"joint", "missing"}));
-  EXPECT_TRUE(isOneLineWith(refusalOf("{name: c, type: gripper, joint: f, joints: [f]}"), {"joints", "unknown"}));
+  EXPECT_TRUE(isOneLineWith(refusalOfList("{joints: [a]}"), {"controllers[0].name"}));
+  EXPECT_TRUE(isOneLineWith(refusalOfList("{name: c}, {name: c}"), {"controllers[1].name", "'c'", "taken"}));
+  EXPECT_TRUE(isOneLineWith(refusalOfList("{name: c, joints: a}"), {"controllers[0].joints", "list"}));
+  EXPECT_TRUE(isOneLineWith(refusalOfList("{name: c, joints: [a, a]}"), {"'a'", "twice"}));
+  EXPECT_TRUE(isOneLineWith(refusalOfList("{name: c, jonts: [a]}"), {"jonts", "'joints'"}));
+  EXPECT_TRUE(isOneLineWith(refusalOfList("{name: c, constraints: {goal_time: -1}}"), {"goal_time", "at least 0"}));
+  EXPECT_TRUE(isOneLineWith(refusalOfList("{name: c, constraints: {a: {gaol: 1}}}"), {"gaol", "'goal'"}));
+  EXPECT_TRUE(isOneLineWith(refusalOfList("{name: c, state_publish_rate: .inf}"), {"state_publish_rate"}));
+  EXPECT_TRUE(isOneLineWith(refusalOfList("{name: c, type: griper, joint: f}"), {"type", "gripper"}));
+  EXPECT_TRUE(isOneLineWith(refusalOfList("{name: c, type: gripper}"), {"joint", "missing"}));
+  EXPECT_TRUE(isOneLineWith(refusalOfList("{name: c, type: gripper, joint: f, joints: [f]}"), {"joints", "unknown"}));
 }
 
 }  // namespace

@@ -10,12 +10,12 @@
 namespace blem_sim {
 namespace {
 
-SimulationConfig parse(const std::string& sensors) {
+SimulationConfig parseSensors(const std::string& sensors) {
   return parseConfig(YAML::Load("robots: [{name: a, urdf: a.urdf, sensors: [" + sensors + "]}]"), "scene.yaml", "");
 }
 
 TEST(RangeSensorConfig, IsRead) {
-  const auto sensors = parse(R"(
+  const auto sensors = parseSensors(R"(
     {name: eye, type: depth_camera, link: head, width: 320, height: 200, hfov: 1.2, range: [0.3, 8], noise: {model: kinect}},
     {name: scan, type: lidar, link: base, beams: 90, layers: 16, angle: [-1, 1], vertical_angle: [-0.2, 0.3], rate: 10, noise: {stddev: 0.02}},
     {name: plain, type: lidar, link: base})")
@@ -61,7 +61,7 @@ TEST(RangeSensorConfig, IsRefusedInOneLine) {
                      {"lidar", "noise: {model: kinect}", "noise.model"}};
   for (const Bad& each : bad) {
     const std::string text =
-        refusal([&] { parse("{name: s, type: " + std::string(each.type) + ", link: b, " + std::string(each.settings) + "}"); });
+        refusal([&] { parseSensors("{name: s, type: " + std::string(each.type) + ", link: b, " + std::string(each.settings) + "}"); });
     EXPECT_TRUE(isOneLineWith(text, {"scene.yaml", "sensors[0]", each.key})) << each.settings << ": '" << text << "'";
   }
 }

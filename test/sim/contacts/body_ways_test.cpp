@@ -8,7 +8,7 @@
 namespace blem_sim {
 namespace {
 
-constexpr double DT = 0.005;              // [s]
+constexpr double LONG_STEP = 0.005;       // [s]
 constexpr double UPPER = 0.4, COM = 0.3;  // [m] upper link, centre of mass of the lower one beyond the elbow
 
 Matrix3 turned(double angle) { return Eigen::AngleAxisd(angle, Vector3::UnitY()).toRotationMatrix(); }
@@ -59,10 +59,10 @@ struct TwoLinks {
   /** Pose of a body's frame after a part of the solve. */
   Pose ahead(int body, double part) {
     BodyWays ways;
-    ways.start(world, bodies, DT);
+    ways.start(world, bodies, LONG_STEP);
     BodyTwist way = twistOf(world, bodies, body);
     ways.lead(body, &way);
-    return way.moved(bodies[body].X_WB, part * DT);
+    return way.moved(bodies[body].X_WB, part * LONG_STEP);
   }
 };
 
@@ -75,8 +75,8 @@ TEST(BodyWays, LinkOnAHingeOfTheWorldIsOnItsArcAllAlong) {
   for (const double speed : {1e-6, 0.1, 30.0, -300.0}) {
     TwoLinks arm(JointKind::REVOLUTE, Vector3::UnitY(), speed, 0);
     for (const double part : {0.1, 0.5, 1.0}) {
-      expectSame(arm.ahead(arm.upper, part), turned(part * DT * speed), Vector3::Zero());
-      expectSame(arm.ahead(arm.lower, part), turned(part * DT * speed), turned(part * DT * speed) * Vector3(UPPER, 0, 0));
+      expectSame(arm.ahead(arm.upper, part), turned(part * LONG_STEP * speed), Vector3::Zero());
+      expectSame(arm.ahead(arm.lower, part), turned(part * LONG_STEP * speed), turned(part * LONG_STEP * speed) * Vector3(UPPER, 0, 0));
     }
   }
 }
@@ -85,7 +85,7 @@ TEST(BodyWays, LinkBeyondAnElbowEndsWhereItsJointsLead) {
   for (const double upper : {0.0, 5.0, -40.0})
     for (const double lower : {0.0, 5.0, 90.0}) {
       TwoLinks arm(JointKind::REVOLUTE, Vector3::UnitY(), upper, lower);
-      expectSame(arm.ahead(arm.lower, 1), turned(DT * (upper + lower)), turned(DT * upper) * Vector3(UPPER, 0, 0));
+      expectSame(arm.ahead(arm.lower, 1), turned(LONG_STEP * (upper + lower)), turned(LONG_STEP * upper) * Vector3(UPPER, 0, 0));
     }
 }
 
@@ -93,7 +93,7 @@ TEST(BodyWays, LinkOnASliderThatTurnsEndsWhereItsJointsLead) {
   for (const double turn : {0.0, 1e-5, 20.0})
     for (const double slide : {0.0, 2.0}) {
       TwoLinks arm(JointKind::PRISMATIC, Vector3::UnitX(), turn, slide);
-      expectSame(arm.ahead(arm.lower, 1), turned(DT * turn), turned(DT * turn) * Vector3(UPPER + DT * slide, 0, 0));
+      expectSame(arm.ahead(arm.lower, 1), turned(LONG_STEP * turn), turned(LONG_STEP * turn) * Vector3(UPPER + LONG_STEP * slide, 0, 0));
     }
 }
 
@@ -102,9 +102,9 @@ TEST(BodyWays, LinksSwingEachOtherByNoMoreThanIsTold) {
     for (const double lower : {0.0, 5.0, 90.0}) {
       TwoLinks arm(JointKind::REVOLUTE, Vector3::UnitY(), upper, lower);
       BodyWays ways;
-      ways.start(arm.world, arm.bodies, DT);
+      ways.start(arm.world, arm.bodies, LONG_STEP);
       const double w = upper + lower, centripetal = 0.5 * UPPER * upper * upper + COM * w * w;
-      EXPECT_GE(ways.swing(arm.lower), DT * centripetal * (1 - 1e-12));
+      EXPECT_GE(ways.swing(arm.lower), LONG_STEP * centripetal * (1 - 1e-12));
       EXPECT_EQ(ways.swing(arm.upper), ways.swing(arm.lower));
       EXPECT_EQ(ways.swing(WORLD_BODY), 0);
     }
@@ -120,9 +120,9 @@ TEST(BodyWays, BodyOnNoJointGoesStraight) {
   arm.bodies.emplace_back();
   arm.bodies[free].v_WCom = {1, 2, 3};
   arm.bodies[free].w_WB = {0, 10, 0};
-  expectSame(arm.ahead(free, 0.5), turned(5 * DT), 0.5 * DT * Vector3(1, 2, 3));
+  expectSame(arm.ahead(free, 0.5), turned(5 * LONG_STEP), 0.5 * LONG_STEP * Vector3(1, 2, 3));
   BodyWays ways;
-  ways.start(arm.world, arm.bodies, DT);
+  ways.start(arm.world, arm.bodies, LONG_STEP);
   EXPECT_EQ(ways.swing(free), 0);
 }
 

@@ -16,8 +16,8 @@
 namespace blem_sim {
 namespace {
 
-constexpr double LAYER = 0.0025;  // [m]
-constexpr double CRACKS = 1e-5;   // [m] in each coordinate
+constexpr double BROKEN_LAYER = 0.0025;  // [m]
+constexpr double CRACKS = 1e-5;          // [m] in each coordinate
 constexpr int CUBES = 10;
 // A cube that rocks on cracks of 10 um may take 20 s to come to rest.
 constexpr double SECONDS = SANITIZED ? 2 : 30;
@@ -50,7 +50,7 @@ Stack stackOf(const std::vector<TriangleMesh>& cubes, const std::string& name, c
   }
   stack.rms_velocity = std::sqrt(squares / (CUBES * steps));
   for (int i = 0; i < CUBES; ++i) {
-    const Vector3 theory(0, 0, 0.05 + LAYER + i * (0.1 + 2 * LAYER));
+    const Vector3 theory(0, 0, 0.05 + BROKEN_LAYER + i * (0.1 + 2 * BROKEN_LAYER));
     stack.away = std::max(stack.away, (bodyOf(simulator, "cube" + std::to_string(i)).X_WB.translation() - theory).norm());
   }
   std::printf("%s, %s: away %.3g um, rms %.3g m/s, %d to %d contacts\n", name.c_str(), stepper.c_str(), 1e6 * stack.away,
@@ -169,22 +169,22 @@ TriangleMesh hills(double size, int cells, double height) {
 }
 
 /** A mesh moved so that its lowest point is at z = 0. */
-TriangleMesh onGround(const TriangleMesh& mesh) { return transformed(mesh, makePose({0, 0, -mesh.bounds().min().z()})); }
+TriangleMesh restingOnGround(const TriangleMesh& mesh) { return transformed(mesh, makePose({0, 0, -mesh.bounds().min().z()})); }
 
 TEST(BrokenMeshes, CubeRestsWhereTheWholeOneDoes) {
-  expectSameRest({"cube_rest", onGround(CUBE), gridMesh(1, 1, 3, 3), {0.013, 0.021, 0.003}});
-  expectSameRest({"cube_hills", onGround(CUBE), hills(0.5, 20, 0.002), {0.013, 0.021, 0.006}});
+  expectSameRest({"cube_rest", restingOnGround(CUBE), gridMesh(1, 1, 3, 3), {0.013, 0.021, 0.003}});
+  expectSameRest({"cube_hills", restingOnGround(CUBE), hills(0.5, 20, 0.002), {0.013, 0.021, 0.006}});
 }
 
 TEST(BrokenMeshes, MugRestsWhereTheWholeOneDoes) {
-  const TriangleMesh mug = onGround(cleanMesh(readStlSoup(BLEM_SIM_SOURCE_DIR "/meshes/shell_mug.stl"), nullptr));
+  const TriangleMesh mug = restingOnGround(cleanMesh(readStlSoup(BLEM_SIM_SOURCE_DIR "/meshes/shell_mug.stl"), nullptr));
   expectSameRest({"mug_rest", mug, gridMesh(1, 1, 3, 3), {0.013, 0.021, 0.003}});
 }
 
 TEST(BrokenMeshes, FootRestsWhereTheWholeOneDoes) {
   const char* const FOOT = "robots/klampt/huboplus/meshes/Body_LAR_col_simple.stl";
   SKIP_WITHOUT_SHARED_DATA(FOOT);
-  const TriangleMesh foot = onGround(cleanMesh(readStlSoup(*sharedData(FOOT)), nullptr));
+  const TriangleMesh foot = restingOnGround(cleanMesh(readStlSoup(*sharedData(FOOT)), nullptr));
   expectSameRest({"foot_hills", foot, hills(0.8, 30, 0.002), {0.013, 0.021, 0.006}});
 }
 
@@ -211,8 +211,8 @@ TEST(BrokenMeshes, SoupOfTrianglesStandsOnWhatSticksOut) {
   const Resting scene = {"soup", CUBE, gridMesh(1, 1, 3, 3), {0.013, 0.021, 0.053}};
   const Rest rest = restOfFile(scene, *sharedData(SOUP), 3);
   EXPECT_LT(rest.speed, 1e-9);
-  EXPECT_GT(rest.X_WB.translation().z(), 0.05 + LAYER);
-  EXPECT_LT(rest.X_WB.translation().z(), 0.05 + LAYER + 0.0004);
+  EXPECT_GT(rest.X_WB.translation().z(), 0.05 + BROKEN_LAYER);
+  EXPECT_LT(rest.X_WB.translation().z(), 0.05 + BROKEN_LAYER + 0.0004);
 }
 
 bool notesHold(const Simulator& simulator, const std::string& words) {

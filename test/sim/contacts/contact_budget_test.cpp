@@ -8,7 +8,7 @@
 namespace blem_sim {
 namespace {
 
-constexpr double SIDE = 0.1, PITCH = 0.13, THICK = 0.05, LAYER = 0.0025;
+constexpr double SIDE = 0.1, PITCH = 0.13, THICK = 0.05, TRAY_LAYER = 0.0025;
 
 double sideOf(int rows) { return PITCH * rows; }
 
@@ -16,15 +16,15 @@ double sideOf(int rows) { return PITCH * rows; }
 void addCubes(int rows, double top, double mass, SimulationConfig* config) {
   for (int i = 0; i < rows * rows; ++i) {
     const double x = PITCH * (i / rows - 0.5 * (rows - 1)), y = PITCH * (i % rows - 0.5 * (rows - 1));
-    config->objects.push_back(box("cube" + std::to_string(i), Vector3::Constant(SIDE), mass, {x, y, top + 2 * LAYER + 0.5 * SIDE}));
+    config->objects.push_back(box("cube" + std::to_string(i), Vector3::Constant(SIDE), mass, {x, y, top + 2 * TRAY_LAYER + 0.5 * SIDE}));
   }
 }
 
 SimulationConfig loadedPallet(int rows) {
   SimulationConfig config;
   config.environments = {ground()};
-  config.objects = {box("pallet", {sideOf(rows), sideOf(rows), THICK}, 20, {0, 0, 0.5 * THICK + LAYER})};
-  addCubes(rows, THICK + LAYER, 1, &config);
+  config.objects = {box("pallet", {sideOf(rows), sideOf(rows), THICK}, 20, {0, 0, 0.5 * THICK + TRAY_LAYER})};
+  addCubes(rows, THICK + TRAY_LAYER, 1, &config);
   return config;
 }
 

@@ -30,7 +30,7 @@ EnvironmentConfig scan(const std::string& name, const Vector3& offset) {
   return environment;
 }
 
-SimulationConfig scene(const std::string& name, const Vector3& offset) {
+SimulationConfig scanScene(const std::string& name, const Vector3& offset) {
   SimulationConfig config;
   config.environments = {scan(name, offset)};
   config.objects = {box("cube", Vector3::Constant(0.2), 1, {0.03, 0.04, 0.2})};
@@ -40,7 +40,7 @@ SimulationConfig scene(const std::string& name, const Vector3& offset) {
 
 // Places in the files are multiples of 2^-10 m, which doubles hold there as here.
 TEST(FarScan, IsSimulatedAsOneAtTheOrigin) {
-  Simulator near(scene("near", Vector3::Zero()), UriResolver()), far(scene("far", EASTING_NORTHING), UriResolver());
+  Simulator near(scanScene("near", Vector3::Zero()), UriResolver()), far(scanScene("far", EASTING_NORTHING), UriResolver());
   for (int i = 0; i < 400; ++i) {
     near.step();
     far.step();
@@ -57,14 +57,14 @@ TEST(FarScan, IsSimulatedAsOneAtTheOrigin) {
 
 // Ground and robot both in those coordinates.
 TEST(FarScan, CarriesWhatStandsThere) {
-  SimulationConfig config = scene("far", EASTING_NORTHING);
+  SimulationConfig config = scanScene("far", EASTING_NORTHING);
   config.environments[0].X_WE = Pose::Identity();
   config.objects[0].X_WO = makePose(EASTING_NORTHING + config.objects[0].X_WO.translation());
   config.objects[0].linear_velocity = Vector3::Zero();
   Simulator simulator(config, UriResolver());
   Simulator near(
       [] {
-        SimulationConfig here = scene("near", Vector3::Zero());
+        SimulationConfig here = scanScene("near", Vector3::Zero());
         here.objects[0].linear_velocity = Vector3::Zero();
         return here;
       }(),

@@ -8,10 +8,10 @@
 namespace blem_sim {
 namespace {
 
-constexpr double LAYER = 0.0025;                   // [m] of a box on the ground
-constexpr double STOP = LayerStops::STOP * LAYER;  // [m]
-constexpr double STIFFNESS = 1e4, DAMPING = 200;   // of a box, per contact
-constexpr double BEARS = 4 * STIFFNESS * STOP;     // [N] load that four corners bear as springs
+constexpr double STOP_LAYER = 0.0025;                   // [m] of a box on the ground
+constexpr double STOP = LayerStops::STOP * STOP_LAYER;  // [m]
+constexpr double STIFFNESS = 1e4, DAMPING = 200;        // of a box, per contact
+constexpr double BEARS = 4 * STIFFNESS * STOP;          // [N] load that four corners bear as springs
 
 void soften(ObjectConfig* object, double damping = DAMPING) {
   object->contact.stiffness = STIFFNESS;
@@ -23,12 +23,12 @@ SimulationConfig softCube(double mass, const std::string& stepper = "articulated
   SimulationConfig config;
   config.solver.stepper = stepper;
   config.environments = {ground()};
-  config.objects = {box("cube", Vector3::Constant(0.1), mass, {0, 0, 0.05 + LAYER})};
+  config.objects = {box("cube", Vector3::Constant(0.1), mass, {0, 0, 0.05 + STOP_LAYER})};
   soften(&config.objects[0]);
   return config;
 }
 
-double depthOf(const Simulator& simulator) { return 0.05 + LAYER - bodyOf(simulator, "cube").X_WB.translation().z(); }
+double depthOf(const Simulator& simulator) { return 0.05 + STOP_LAYER - bodyOf(simulator, "cube").X_WB.translation().z(); }
 
 Vector3 forceOn(const Simulator& simulator) {
   Vector3 sum = Vector3::Zero();
@@ -67,7 +67,7 @@ TEST_P(LayerStop, DepthAtRestIsTheSpringsUpToTheStopAndNoMoreBeyond) {
     EXPECT_LT(bodyOf(simulator, "cube").v_WCom.norm(), 1e-4) << load;
     for (const ContactReport& contact : simulator.report().contacts) {
       EXPECT_NEAR(contact.depth, depthOf(simulator), 1e-5);
-      EXPECT_NEAR(contact.of_layer, contact.depth / LAYER, 1e-9);
+      EXPECT_NEAR(contact.of_layer, contact.depth / STOP_LAYER, 1e-9);
     }
   }
 }
@@ -88,7 +88,7 @@ ContactManifold ringOf(int count, double depth) {
   ContactManifold ring;
   ring.a = 3;
   ring.b = 5;
-  ring.layer = LAYER;
+  ring.layer = STOP_LAYER;
   ring.contacts.resize(count);
   for (int i = 0; i < count; ++i) {
     const double angle = 2 * M_PI * i / count;
@@ -112,7 +112,7 @@ TEST(LayerStops, NothingIsAddedWhereLayersAreNotUsedUp) {
   EXPECT_EQ(simulator.report().contacts.size(), 4u);
   LayerStops stops;
   stops.start();
-  EXPECT_TRUE(stops.choose(ringOf(40, LayerStops::SEEN * LAYER), *findReduction("hull")).empty());
+  EXPECT_TRUE(stops.choose(ringOf(40, LayerStops::SEEN * STOP_LAYER), *findReduction("hull")).empty());
   stops.remember();
   EXPECT_TRUE(wordsOf(stops).empty());
 }
@@ -158,7 +158,7 @@ TEST(LayerStops, FrictionBelongsToAllThatIsBorne) {
 TEST(LayerStops, AnImpactThatBottomsOutGainsNothing) {
   SimulationConfig config = softCube(0.2 * BEARS / G);
   soften(&config.objects[0], 1);
-  config.objects[0].X_WO = makePose({0, 0, 0.05 + LAYER + 0.05});
+  config.objects[0].X_WO = makePose({0, 0, 0.05 + STOP_LAYER + 0.05});
   Simulator simulator(config, UriResolver());
   double gained = 0, deepest = 0, highest = -1;
   for (int i = 0; i < 2000; ++i) {
@@ -175,8 +175,8 @@ TEST(LayerStops, AnImpactThatBottomsOutGainsNothing) {
 
 TEST(LayerStops, ATowerUnderAPressDoesNotCross) {
   SimulationConfig config = softCube(0.1);
-  config.objects.push_back(box("second", Vector3::Constant(0.1), 0.1, {0, 0, 0.15 + 3 * LAYER}));
-  config.objects.push_back(box("press", {0.1, 0.1, 0.2}, 200, {0, 0, 0.3 + 5 * LAYER}));
+  config.objects.push_back(box("second", Vector3::Constant(0.1), 0.1, {0, 0, 0.15 + 3 * STOP_LAYER}));
+  config.objects.push_back(box("press", {0.1, 0.1, 0.2}, 200, {0, 0, 0.3 + 5 * STOP_LAYER}));
   for (ObjectConfig& object : config.objects) soften(&object, 3000);
   Simulator simulator(config, UriResolver());
   const Press pressed = press(&simulator, 2);

@@ -8,13 +8,13 @@
 namespace blem_sim {
 namespace {
 
-constexpr double LAYER = 0.005;  // [m] of two boxes
+constexpr double BOTH_LAYERS = 0.005;  // [m] of two boxes
 
 /** Two cubes in the air, 10 cm wide, `gap` [m] between their layers along x. */
 SimulationConfig twoCubes(double gap, const Vector3& velocity_a, const Vector3& velocity_b) {
   SimulationConfig config;
   config.objects = {box("a", Vector3::Constant(0.1), 1, Vector3(0, 0, 5)),
-                    box("b", Vector3::Constant(0.1), 1, Vector3(0.1 + LAYER + gap, 0, 5))};
+                    box("b", Vector3::Constant(0.1), 1, Vector3(0.1 + BOTH_LAYERS + gap, 0, 5))};
   config.objects[0].linear_velocity = velocity_a;
   config.objects[1].linear_velocity = velocity_b;
   return config;
@@ -48,7 +48,7 @@ TEST(KnownContacts, ThingsThatMeetAreKnownBeforeTheyTouch) {
 TEST(KnownContacts, WhatIsStoppedDeadIsKnownToWhatFollows) {
   for (const double speed : {2.0, 4.0, 6.0}) {
     SimulationConfig config = twoCubes(0.001, Vector3(speed, 0, 0), Vector3(speed, 0, 0));
-    config.objects.push_back(box("wall", Vector3::Constant(0.1), 1e4, Vector3(2 * (0.1 + LAYER) + 0.02, 0, 5)));
+    config.objects.push_back(box("wall", Vector3::Constant(0.1), 1e4, Vector3(2 * (0.1 + BOTH_LAYERS) + 0.02, 0, 5)));
     Simulator simulator(config, UriResolver());
     double deepest = 0;
     for (int i = 0; i < 30; ++i) {

@@ -20,7 +20,7 @@ struct Outcome {
   bool unreliable_at_end = false;
 };
 
-Outcome run(Simulator* simulator, double seconds) {
+Outcome recover(Simulator* simulator, double seconds) {
   Outcome outcome;
   const long steps = std::lround(seconds / simulator->config().time_step);
   for (long i = 0; i < steps; ++i) {
@@ -45,7 +45,7 @@ TEST(Recovery, CubeStartedInABoxRisesSteadily) {
     config.objects = {box("block", {0.4, 0.4, 0.2}, 50, {0, 0, 0.1025}),
                       box("cube", Vector3::Constant(0.1), 1, {0.05, 0.03, 0.2025 + 0.05 - depth})};
     Simulator simulator(config, UriResolver());
-    const Outcome outcome = run(&simulator, 1);
+    const Outcome outcome = recover(&simulator, 1);
     EXPECT_NEAR(outcome.max_of_layer, 1 + depth / 0.005, 1e-6);
     EXPECT_LT(outcome.fastest, SEPARATION_SPEED);
     // The cube leaves at that speed while meshes cross, then as much slower as less of the layer is used up, until a quarter is left.
@@ -62,7 +62,7 @@ TEST(Recovery, CubesStartedInEachOtherSpreadAndRest) {
   for (int i = 0; i < 4; ++i)
     config.objects.push_back(box("cube" + std::to_string(i), Vector3::Constant(0.1), 1, {0.08 * (i % 2), 0.08 * (i / 2), 0.0525}));
   Simulator simulator(config, UriResolver());
-  const Outcome outcome = run(&simulator, 2);
+  const Outcome outcome = recover(&simulator, 2);
   EXPECT_LT(outcome.fastest, 3 * SEPARATION_SPEED);
   EXPECT_GT(outcome.max_of_layer, 1);
   EXPECT_FALSE(outcome.unreliable_at_end);
@@ -89,7 +89,7 @@ TEST(Recovery, InterlockedTraysPartAndRest) {
   config.environments = {ground()};
   config.objects = {tray("tray1", {0, 0, 0.034}, {0, 0, 0}), tray("tray2", {0.05, 0.012, 0.055}, {0.3, 0.2, 0.5})};
   Simulator simulator(config, UriResolver());
-  const Outcome outcome = run(&simulator, 3);
+  const Outcome outcome = recover(&simulator, 3);
   EXPECT_LT(outcome.fastest, 0.5);
   EXPECT_GT(outcome.unreliable_steps, 0);
   EXPECT_FALSE(outcome.unreliable_at_end);
@@ -114,7 +114,7 @@ TEST(Recovery, HandStartedInsideATable) {
   arm.X_WR = makePose({0, 0, 0.425});
   config.robots = {arm};
   Simulator simulator(config, UriResolver());
-  const Outcome outcome = run(&simulator, 1.5);
+  const Outcome outcome = recover(&simulator, 1.5);
   EXPECT_LT(outcome.fastest, 1.5 * SEPARATION_SPEED);
   EXPECT_GT(outcome.unreliable_steps, 0);
   EXPECT_FALSE(outcome.unreliable_at_end);
@@ -148,7 +148,7 @@ TEST(Recovery, WhatWasDrivenInComesOutTheWayItCame) {
   ASSERT_TRUE(status & CONTACT_UNRELIABLE);
   ASSERT_TRUE(status & STEP_SHORTENED);
   ASSERT_LT(lowest, -1e-4);
-  const Outcome outcome = run(&simulator, 0.5);
+  const Outcome outcome = recover(&simulator, 0.5);
   EXPECT_LT(outcome.fastest, 1.5 * SEPARATION_SPEED);
   EXPECT_FALSE(outcome.unreliable_at_end);
   EXPECT_GT(bodyOf(simulator, "plate").X_WB.translation().z(), 0.0015);

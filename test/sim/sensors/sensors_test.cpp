@@ -126,7 +126,7 @@ TEST(ImuSensor, InFreeFallItFeelsNothing) {
 }
 
 /** A balanced disc about z on a post: its motor alone turns it. */
-const char* const TURNTABLE = R"(<robot name="turntable">
+const char* const SENSOR_TABLE = R"(<robot name="turntable">
   <link name="post"/>
   <link name="disc"><inertial><mass value="1"/><inertia ixx="0.1" iyy="0.1" izz="0.2" ixy="0" ixz="0" iyz="0"/></inertial></link>
   <joint name="spin" type="continuous"><parent link="post"/><child link="disc"/><axis xyz="0 0 1"/></joint>
@@ -134,7 +134,7 @@ const char* const TURNTABLE = R"(<robot name="turntable">
 
 TEST(ImuSensor, OnATurntableItFeelsTheCentre) {
   SimulationConfig config;
-  config.robots = {robot("turntable", TURNTABLE, true)};
+  config.robots = {robot("turntable", SENSOR_TABLE, true)};
   config.robots[0].gains["default"] = {0, 0, 50};
   config.robots[0].motor["default"] = MotorLaw::IMPLICIT_PD;
   SensorConfig imu = sensor("imu", SensorType::IMU, "disc");
@@ -153,7 +153,7 @@ TEST(ImuSensor, OnATurntableItFeelsTheCentre) {
 
 TEST(ImuSensor, FeelsTangentialAccelerationAtItsLeverArm) {
   SimulationConfig config;
-  config.robots = {robot("turntable", TURNTABLE, true)};
+  config.robots = {robot("turntable", SENSOR_TABLE, true)};
   SensorConfig imu = sensor("imu", SensorType::IMU, "disc");
   imu.X_LS = makePose({0.2, 0, 0});
   config.robots[0].sensors = {imu};

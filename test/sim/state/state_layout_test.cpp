@@ -9,7 +9,7 @@ namespace blem_sim {
 namespace {
 
 /** The words of a refusal; empty if it is restored. */
-std::string refusal(Simulator* simulator, const SimulationState& state) {
+std::string refusalToRestore(Simulator* simulator, const SimulationState& state) {
   const std::uint64_t untouched = simulator->stateHash();
   try {
     simulator->restore(state);
@@ -69,7 +69,7 @@ TEST(StateLayout, SaysWhatIsNotTheSame) {
     SimulationConfig config = sceneOfAllKinds();
     change.change(&config);
     Simulator other(config, UriResolver());
-    const std::string words = refusal(&other, saved);
+    const std::string words = refusalToRestore(&other, saved);
     EXPECT_NE(words.find(change.what), std::string::npos) << change.what << ": " << words;
     EXPECT_EQ(words.find('\n'), std::string::npos) << words;
   }
@@ -86,7 +86,7 @@ TEST(StateLayout, SeesAMeshThatOnlyItsVerticesTellApart) {
   mesh.vertices[3].x() += 1e-6;
   meshFile("state_layout", mesh);
   Simulator other(config, UriResolver());
-  EXPECT_NE(refusal(&other, saved).find("collider 1 'cube': mesh is not the same"), std::string::npos);
+  EXPECT_NE(refusalToRestore(&other, saved).find("collider 1 'cube': mesh is not the same"), std::string::npos);
 }
 
 TEST(StateLayout, WhatDoesNotChangeResultsMayDiffer) {
@@ -105,9 +105,9 @@ TEST(StateLayout, AnotherVersionIsToldFromWhatIsNoState) {
   Simulator simulator(sceneOfAllKinds(), UriResolver());
   SimulationState state = simulator.save();
   ++state.header.format;
-  EXPECT_NE(refusal(&simulator, state).find("this version restores"), std::string::npos);
+  EXPECT_NE(refusalToRestore(&simulator, state).find("this version restores"), std::string::npos);
   state.header = StateHeader();
-  EXPECT_NE(refusal(&simulator, state).find("no header"), std::string::npos);
+  EXPECT_NE(refusalToRestore(&simulator, state).find("no header"), std::string::npos);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "sensor_values.h"
+#include "blem_sim/sim/sensor_values.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,30 @@
+// States of many links or models as a message.
+#pragma once
+
+#include <blem_sim/ModelStates.h>
+
+#include <string>
+
+#include "messages/conversions.h"
+#include "messages/link_motion.h"
+
+namespace blem_sim {
+
+/** @tparam States LinkStates or ModelStates */
+template <typename States>
+void append(const std::string& name, const LinkMotion& motion, States* states) {
+  states->name.push_back(name);
+  states->pose.push_back(toPose(motion.X_WL));
+  states->twist.push_back(toTwist(motion.v_WL, motion.w_WL));
+}
+
+/** Appends the models that are there: robots, objects and environments. */
+inline void appendModels(const Simulator& simulator, const StepReport& report, ModelStates* states) {
+  const int models = static_cast<int>(simulator.models().size());
+  for (int model = 0; model < models; ++model) {
+    const ModelInfo& info = simulator.models()[model];
+    if (info.alive) append(info.name, modelMotion(simulator, report, model), states);
+  }
+}
+
+}  // namespace blem_sim
