@@ -18,6 +18,7 @@
 #include "robot_commands.h"
 #include "services/environment_services.h"
 #include "services/force_services.h"
+#include "services/learner_service.h"
 #include "services/motion_services.h"
 #include "services/physics_services.h"
 #include "services/property_services.h"
@@ -54,6 +55,7 @@ struct SimulationNode::Impl {
   std::unique_ptr<RobotCommands> commands;
   std::unique_ptr<PhysicsServices> physics;
   std::unique_ptr<StepService> step;
+  std::unique_ptr<LearnerService> learner;
   std::unique_ptr<EnvironmentServices> environments;
   std::unique_ptr<QueryServices> queries;
   std::unique_ptr<MotionServices> motions;
@@ -86,6 +88,7 @@ struct SimulationNode::Impl {
     commands = std::make_unique<RobotCommands>(node, &simulator);
     physics = std::make_unique<PhysicsServices>(private_node, &loop);
     step = std::make_unique<StepService>(private_node, &loop);
+    learner = std::make_unique<LearnerService>(private_node, &loop);
     loop.onModelsChanged([this] { commands->modelsChanged(); });
     const FileRoots roots(serviceFolders(simulator.config()));
     simulator.restrictFiles(roots);

@@ -1,5 +1,4 @@
 // Save, restore, reset, hash.
-#include <cstring>
 #include <utility>
 
 #include "numbers/content_hash.h"
@@ -11,37 +10,8 @@
 namespace blem_sim {
 namespace {
 
-class Fnv1a {  // 64 bits [Fowler, Noll, Vo]
- public:
-  void add(std::uint64_t word) {
-    for (int byte = 0; byte < 8; ++byte) {
-      hash_ ^= (word >> (8 * byte)) & 0xff;
-      hash_ *= 0x100000001b3u;
-    }
-  }
-  void add(const std::vector<double>& numbers) {
-    add(static_cast<std::uint64_t>(numbers.size()));
-    for (const double number : numbers) {
-      std::uint64_t bits;
-      std::memcpy(&bits, &number, sizeof(bits));
-      add(bits);
-    }
-  }
-  void add(const std::vector<std::uint64_t>& words) {
-    add(static_cast<std::uint64_t>(words.size()));
-    for (const std::uint64_t word : words) add(word);
-  }
-  void add(const std::string& text) {
-    for (const unsigned char c : text) add(static_cast<std::uint64_t>(c));
-  }
-  std::uint64_t value() const { return hash_; }
-
- private:
-  std::uint64_t hash_ = 0xcbf29ce484222325u;
-};
-
 // The names of a state's layout, in the order of its content. Colliders are in it by their slots, as contacts are known by them.
-std::string namesOf(const SimulatedWorld& world) {
+std::string namesOfAll(const SimulatedWorld& world) {
   std::string names;
   for (const ModelInfo& model : world.models)
     if (model.alive) names += model.name + ";";
@@ -199,14 +169,9 @@ void Simulator::resetSimulation() {
 
 std::uint64_t Simulator::stateHash() const {
   const SimulationState state = impl_->content();
-  Fnv1a hash;
-  hash.add(state.step);
-  hash.add(state.world.numbers);
-  hash.add(state.world.words);
-  hash.add(state.numbers);
-  hash.add(state.words);
-  hash.add(namesOf(impl_->world_));
-  return hash.value();
+  ContentHash hash;
+  hash.add(state.step).add(state.world.numbers).add(state.world.words).add(state.numbers).add(state.words);
+  return hash.add(namesOfAll(impl_->world_)).value();
 }
 
 }  // namespace blem_sim

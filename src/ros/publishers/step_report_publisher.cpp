@@ -1,6 +1,7 @@
 #include "publishers/step_report_publisher.h"
 
 #include <boost/make_shared.hpp>
+#include <utility>
 
 #include "messages/conversions.h"
 #include "messages/status_text.h"
@@ -9,14 +10,14 @@
 namespace blem_sim {
 
 namespace {
-constexpr int QUEUE_SIZE = 100;
+constexpr int REPORT_QUEUE = 100;
 }
 
 StepReportPublisher::StepReportPublisher(ros::NodeHandle private_node, SimulationLoop* loop)
     : loop_(*loop),
       simulator_(loop->simulator()),
       schedule_(simulator_.config().rates.step_report),
-      publisher_(private_node.advertise<StepReportMessage>("step_report", QUEUE_SIZE)),
+      publisher_(ListenedPublisher::advertise<StepReportMessage>(&private_node, "step_report", REPORT_QUEUE)),
       sender_(loop->sender()) {}
 
 void StepReportPublisher::timeRestarted() {
@@ -29,11 +30,15 @@ void StepReportPublisher::publish(const StepReport& report) {
   collector_.add(report);
   if (!schedule_.due(report.time)) return;
   const StepStatistics statistics = collector_.take();
+  // Publishing time up to the step before; this step's messages are still going out.
+  const double published = loop_.publishingTime().wall, publishing = published - std::exchange(published_, published);
+  if (!publisher_.listened()) return;
   const auto sent = boost::make_shared<StepReportMessage>();
   StepReportMessage& message = *sent;
   message.header.stamp = toStamp(report.time);
   message.step = report.step;
   message.steps = statistics.steps;
+  message.state_hash = simulator_.stateHash();
   message.time_step = simulator_.config().time_step;
   message.status = statistics.status;
   message.status_names = statusNames(statistics.status);
@@ -55,10 +60,8 @@ void StepReportPublisher::publish(const StepReport& report) {
     message.stages.emplace_back(STAGE_NAMES[i]);
     message.stage_seconds.push_back(statistics.stage_seconds[i] / statistics.steps);
   }
-  // Publishing time up to the step before; this step's messages are still going out.
   message.stages.emplace_back("publish");
-  message.stage_seconds.push_back((loop_.publishingTime().wall - published_) / statistics.steps);
-  published_ = loop_.publishingTime().wall;
+  message.stage_seconds.push_back(publishing / statistics.steps);
   sender_->add(&publisher_, sent);
 }
 

@@ -4,6 +4,7 @@
 
 #include "loop/simulation_loop.h"
 #include "publishers/step_statistics.h"
+#include "sending/listened_publisher.h"
 #include "sending/publish_schedule.h"
 #include "sending/step_publisher.h"
 
@@ -22,7 +23,7 @@ class StepReportPublisher : public StepPublisher {
   const SimulationLoop& loop_;
   const Simulator& simulator_;
   PublishSchedule schedule_;
-  ros::Publisher publisher_;
+  ListenedPublisher publisher_;
   StepSender* sender_;
   StepStatisticsCollector collector_;
   double published_ = 0;  // [s] loop's publishing time at the last report
