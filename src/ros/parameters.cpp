@@ -5,7 +5,9 @@
 #include <ros/param.h>
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
@@ -113,6 +115,18 @@ std::vector<std::string> serviceFolders(const SimulationConfig& config) {
   for (std::string folder; std::getline(stream, folder, ':');)
     if (!folder.empty()) folders.push_back(folder);
   return folders;
+}
+
+std::string checkpointFile(const SimulationConfig& config, const ros::NodeHandle& private_node) {
+  namespace fs = std::filesystem;
+  if (!config.checkpoint_file.empty()) return fs::absolute(fs::path(config.base_directory) / config.checkpoint_file).string();
+  std::string name = private_node.getNamespace().substr(1);
+  std::replace(name.begin(), name.end(), '/', '_');
+  const char *ros_home = std::getenv("ROS_HOME"), *home = std::getenv("HOME");
+  const fs::path folder = ros_home ? fs::path(ros_home) : fs::path(home ? home : ".") / ".ros";
+  std::error_code error;
+  fs::create_directories(folder, error);  // what cannot be written is told at the first checkpoint
+  return fs::absolute(folder / (name + ".checkpoint")).string();
 }
 
 SimulationConfig readParameters(const ros::NodeHandle& private_node) {

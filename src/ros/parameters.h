@@ -24,4 +24,7 @@ SimulationConfig readParameters(const ros::NodeHandle& private_node);
  * use no files. */
 std::vector<std::string> serviceFolders(const SimulationConfig& config);
 
+/** Absolute path of the node's checkpoint: checkpoint_file, or NODE.checkpoint below ROS_HOME. */
+std::string checkpointFile(const SimulationConfig& config, const ros::NodeHandle& private_node);
+
 }  // namespace blem_sim

@@ -4,6 +4,7 @@
 
 #include "blem_sim/sim/simulator.h"
 #include "controllers/controller_sets.h"
+#include "loop/checkpoint.h"
 #include "loop/simulation_loop.h"
 #include "parameters.h"
 #include "publishers/clock_publisher.h"
@@ -84,6 +85,12 @@ struct SimulationNode::Impl {
     loop.add(std::make_unique<ClockPublisher>(node, simulator.config().rates.clock, loop.sender()));
   }
 
+  // Last: controllers that start give commands, which the state goes over; it is kept as they leave it after a step.
+  void addCheckpoint() {
+    if (simulator.config().checkpoint_period > 0)
+      loop.add(std::make_unique<Checkpoint>(&simulator, checkpointFile(simulator.config(), private_node)));
+  }
+
   void addInputs() {
     commands = std::make_unique<RobotCommands>(node, &simulator);
     physics = std::make_unique<PhysicsServices>(private_node, &loop);
@@ -106,6 +113,7 @@ SimulationNode::SimulationNode() : impl_(std::make_unique<Impl>()) {
   for (const std::string& note : impl_->simulator.notes()) ROS_WARN("%s", note.c_str());
   impl_->addPublishers();
   impl_->addInputs();
+  impl_->addCheckpoint();
 }
 
 SimulationNode::~SimulationNode() = default;

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "blem_sim/geometry/input_error.h"
+#include "state/whole_file.h"
 
 namespace blem_sim {
 
@@ -85,11 +86,8 @@ class FileReader {
 
 }  // namespace
 
-void saveState(const SimulationState& state, const std::string& file) {
-  const std::string draft = file + ".part";
-  std::error_code error;
-  std::filesystem::remove(draft, error);  // a link of that name would lead elsewhere
-  std::ofstream stream(draft, std::ios::binary);
+std::string stateBytes(const SimulationState& state) {
+  std::ostringstream stream;
   stream.write(FILE_MAGIC, sizeof FILE_MAGIC - 1);
   for (const std::uint64_t word : {state.header.format, state.header.layout, state.header.length, state.header.checksum})
     putWord(stream, word);
@@ -100,24 +98,13 @@ void saveState(const SimulationState& state, const std::string& file) {
   putWords(stream, state.world.words);
   putNumbers(stream, state.numbers);
   putWords(stream, state.words);
-  stream.close();
-  error.clear();
-  if (stream) std::filesystem::rename(draft, file, error);
-  if (stream && !error) return;
-  std::filesystem::remove(draft, error);
-  throw InputError(fmt::format("{}: cannot be written; check the folder", file));
+  return stream.str();
 }
 
-SimulationState loadState(const std::string& file) {
-  std::error_code error;
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream || !std::filesystem::is_regular_file(file, error)) throw InputError(fmt::format("{}: cannot be read; check the path", file));
-  std::ostringstream buffer;
-  buffer << stream.rdbuf();
-  const std::string bytes = buffer.str();
-  FileReader reader(bytes, file);
+SimulationState stateOf(const std::string& bytes, const std::string& source) {
+  FileReader reader(bytes, source);
   if (bytes.compare(0, sizeof FILE_MAGIC - 1, FILE_MAGIC) != 0)
-    throw InputError(fmt::format("{}: is not a state that --save-state or save_state of this version wrote; save it again", file));
+    throw InputError(fmt::format("{}: is not a state that --save-state or save_state of this version wrote; save it again", source));
   reader.text(sizeof FILE_MAGIC - 1);
   SimulationState state;
   for (std::uint64_t* word : {&state.header.format, &state.header.layout, &state.header.length, &state.header.checksum})
@@ -130,6 +117,17 @@ SimulationState loadState(const std::string& file) {
   state.words = reader.words();
   reader.expectEnd();
   return state;
+}
+
+void saveState(const SimulationState& state, const std::string& file) { writeWhole(file, stateBytes(state)); }
+
+SimulationState loadState(const std::string& file) {
+  std::error_code error;
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream || !std::filesystem::is_regular_file(file, error)) throw InputError(fmt::format("{}: cannot be read; check the path", file));
+  std::ostringstream buffer;
+  buffer << stream.rdbuf();
+  return stateOf(buffer.str(), file);
 }
 
 }  // namespace blem_sim

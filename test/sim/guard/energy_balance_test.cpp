@@ -29,7 +29,9 @@ class HandMadeSolve {
   EnergyGain gain() {
     EnergyBalance balance{SolverSettings()};
     balance.start(world);
-    return balance.addSolve(world, DT, contacts, {}, before, after);
+    SolveResult solved;
+    solved.axis_efforts.assign(world.jointCount(), 0);
+    return balance.addSolve(world, DT, contacts, solved, before, after);
   }
 
   World world;
