@@ -8,7 +8,7 @@
 
 #include "blem_sim/geometry/roomy.h"
 #include "island/contact_work.h"
-#include "island/island_impacts.h"
+#include "island/island.h"
 #include "island/island_motion.h"
 #include "island/island_terms.h"
 #include "kept_trees.h"
@@ -24,17 +24,6 @@ constexpr double SAME_PRODUCTS = 1e-9;  // [sqrt(kg) m/s] change of the free mom
 constexpr std::size_t SHARED = 300;  // contacts of an island that threads share
 constexpr double LIGHT = 0.01;       // [kg] mass of the lightest tree of an island, below which tolerances shrink
 constexpr std::uint64_t NO_MORE_TREES = ~0ull;
-
-/** An island with its contacts, impacts and reports of this step. */
-struct Island {
-  IslandProblem problem;
-  std::vector<int> contacts;          ///< of the step's input
-  std::vector<int> mimics, loops;     ///< of the forest's
-  std::vector<double> apparent_work;  ///< of the contacts [J]
-  IslandImpacts impacts;
-  NewtonReport report;
-  bool followed = true;  ///< no tree was too fast
-};
 
 // The last of several solves, with the iterations of all.
 NewtonReport afterAll(const NewtonReport& before, NewtonReport last) {

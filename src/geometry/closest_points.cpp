@@ -14,7 +14,7 @@ constexpr double ROUNDING = 16 * std::numeric_limits<double>::epsilon();
 constexpr double FLAT_HEIGHT = 1e-10;
 
 /** A pair of points, one of each set, with the square of its distance. */
-struct ClosestCandidate {
+struct ClosestPair {
   double squared_distance = std::numeric_limits<double>::infinity();
   Vector3 point_a = ClosestPoints().point_a, point_b = ClosestPoints().point_b;
 
@@ -72,14 +72,14 @@ double largestCoordinate(const Triangle& t) {
 }
 
 /** A segment. */
-struct SegmentSide {
-  SegmentSide(const Vector3& a, const Vector3& b) : from(a), to(b), along(b - a), length2(along.squaredNorm()) {}
+struct Segment {
+  Segment(const Vector3& a, const Vector3& b) : from(a), to(b), along(b - a), length2(along.squaredNorm()) {}
   Vector3 from, to, along;
   double length2;
 };
 
 /** Well away from parallel: the lines' closest points, one clamped to its side, then the other. [Ericson 2005, 5.1.9] */
-void improveByCrosswiseSides(const SegmentSide& a, const SegmentSide& b, double along_ab, ClosestCandidate* best) {
+void improveByCrosswiseSides(const Segment& a, const Segment& b, double along_ab, ClosestPair* best) {
   const Vector3 r = a.from - b.from;
   const double along_a = a.along.dot(r), along_b = b.along.dot(r);
   const auto clamped = [](double x) { return std::min(std::max(x, 0.0), 1.0); };
@@ -96,7 +96,7 @@ void improveByCrosswiseSides(const SegmentSide& a, const SegmentSide& b, double 
 }
 
 /** Any pair, points and parallels too: the ends against the sides, and the lines' closest points if those lie inside. */
-void improveByAlignedSides(const SegmentSide& a, const SegmentSide& b, ClosestCandidate* best) {
+void improveByAlignedSides(const Segment& a, const Segment& b, ClosestPair* best) {
   best->improve(a.from, closestOnSegment(a.from, b.from, b.to));
   best->improve(a.to, closestOnSegment(a.to, b.from, b.to));
   best->improve(closestOnSegment(b.from, a.from, a.to), b.from);
@@ -109,7 +109,7 @@ void improveByAlignedSides(const SegmentSide& a, const SegmentSide& b, ClosestCa
   if (s >= 0 && s <= 1 && t >= 0 && t <= 1) best->improve(a.from + s * a.along, b.from + t * b.along);
 }
 
-void improveBySides(const SegmentSide& a, const SegmentSide& b, ClosestCandidate* best) {
+void improveBySides(const Segment& a, const Segment& b, ClosestPair* best) {
   constexpr double MIN_SQUARED_SINE = 1e-3;
   const double along_ab = a.along.dot(b.along), product = a.length2 * b.length2;
   if (product - along_ab * along_ab > MIN_SQUARED_SINE * product) {
@@ -139,7 +139,7 @@ bool straddles(const std::array<double, 3>& heights) {
 }
 
 /** Whether planes through the two points, square to the line between them, part the triangles up to rounding: no pair is closer then. */
-bool isClosest(const ClosestCandidate& candidate, const Triangle& a, const Triangle& b, double rounding) {
+bool isClosest(const ClosestPair& candidate, const Triangle& a, const Triangle& b, double rounding) {
   const Vector3 line = candidate.point_b - candidate.point_a;
   const double slack = rounding * std::sqrt(candidate.squared_distance);
   const double reach_a = line.dot(candidate.point_a) + slack, reach_b = line.dot(candidate.point_b) - slack;
@@ -151,18 +151,18 @@ bool isClosest(const ClosestCandidate& candidate, const Triangle& a, const Trian
 }
 
 /** The least over insides and corners, then over pairs of sides; stops where the planes prove that it is found. */
-ClosestCandidate closestFeatures(const Face& a, const Face& b, double rounding) {
+ClosestPair closestFeatures(const Face& a, const Face& b, double rounding) {
   const Triangle &ta = a.corners, &tb = b.corners;
-  ClosestCandidate best;
+  ClosestPair best;
   for (int i = 0; i < 3; ++i) {
     if (b.holdsProjectionOf(ta[i])) best.improve(ta[i], b.projection(ta[i]));
     if (a.holdsProjectionOf(tb[i])) best.improve(a.projection(tb[i]), tb[i]);
   }
   if (isClosest(best, ta, tb, rounding)) return best;
-  const std::array<SegmentSide, 3> sides_a = {SegmentSide(ta[0], ta[1]), SegmentSide(ta[1], ta[2]), SegmentSide(ta[2], ta[0])};
-  const std::array<SegmentSide, 3> sides_b = {SegmentSide(tb[0], tb[1]), SegmentSide(tb[1], tb[2]), SegmentSide(tb[2], tb[0])};
-  for (const SegmentSide& side_a : sides_a) {
-    for (const SegmentSide& side_b : sides_b) {
+  const std::array<Segment, 3> sides_a = {Segment(ta[0], ta[1]), Segment(ta[1], ta[2]), Segment(ta[2], ta[0])};
+  const std::array<Segment, 3> sides_b = {Segment(tb[0], tb[1]), Segment(tb[1], tb[2]), Segment(tb[2], tb[0])};
+  for (const Segment& side_a : sides_a) {
+    for (const Segment& side_b : sides_b) {
       const double before = best.squared_distance;
       improveBySides(side_a, side_b, &best);
       if (best.squared_distance < before && isClosest(best, ta, tb, rounding)) return best;
@@ -179,14 +179,14 @@ ClosestPoints closestPointTriangle(const Vector3& p, const Triangle& t) {
     const Vector3 q = face.projection(p);
     return {(p - q).norm(), p, q};
   }
-  ClosestCandidate best;
+  ClosestPair best;
   for (int k = 0; k < 3; ++k) best.improve(p, closestOnSegment(p, t[k], t[(k + 1) % 3]));
   return best.result();
 }
 
 ClosestPoints closestSegmentSegment(const Vector3& a0, const Vector3& a1, const Vector3& b0, const Vector3& b1) {
-  ClosestCandidate best;
-  improveBySides(SegmentSide(a0, a1), SegmentSide(b0, b1), &best);
+  ClosestPair best;
+  improveBySides(Segment(a0, a1), Segment(b0, b1), &best);
   return best.result();
 }
 
@@ -201,7 +201,7 @@ ClosestPoints closestTriangleTriangle(const Triangle& a, const Triangle& b) {
     }
   }
   const double rounding = ROUNDING * std::max(largestCoordinate(a), largestCoordinate(b));
-  const ClosestCandidate best = closestFeatures(face_a, face_b, rounding / 16);
+  const ClosestPair best = closestFeatures(face_a, face_b, rounding / 16);
   // Triangles that meet within a plane or along a side have a distance of rounding's size; its direction would mean nothing.
   if (best.squared_distance <= rounding * rounding) return {0, best.point_a, best.point_a};
   return best.result();

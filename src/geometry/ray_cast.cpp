@@ -1,11 +1,10 @@
 #include "blem_sim/geometry/ray_cast.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace blem_sim {
 namespace {
-
-constexpr double UNLIMITED = std::numeric_limits<double>::infinity();
 
 /**
  * A ray seen along itself: sheared and scaled so that it runs along +z from the origin. A side that two triangles share is then
@@ -26,9 +25,9 @@ class ShearedRay {
     const double u = c.x() * b.y() - c.y() * b.x();
     const double v = a.x() * c.y() - a.y() * c.x();
     const double w = b.x() * a.y() - b.y() * a.x();
-    if ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) return UNLIMITED;
+    if ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) return INFINITY;
     const double det = u + v + w;
-    return det == 0 ? UNLIMITED : (u * a.z() + v * b.z() + w * c.z()) / det;
+    return det == 0 ? INFINITY : (u * a.z() + v * b.z() + w * c.z()) / det;
   }
 
  private:
@@ -43,7 +42,7 @@ class ShearedRay {
 
 /** Part of a ray inside something convex; empty if it begins after its end. */
 struct Chord {
-  double begin = UNLIMITED, end = -UNLIMITED;
+  double begin = INFINITY, end = -INFINITY;
 
   bool empty() const { return begin > end; }
   void extend(const Chord& other) {
@@ -51,16 +50,16 @@ struct Chord {
     end = std::max(end, other.end);
   }
   double firstWithin(const RayRange& range) const {
-    if (empty()) return UNLIMITED;
+    if (empty()) return INFINITY;
     const double first = begin >= range.nearest ? begin : end;
-    return first >= range.nearest && first <= range.farthest ? first : UNLIMITED;
+    return first >= range.nearest && first <= range.farthest ? first : INFINITY;
   }
 };
 
 /** Chord of an infinite cylinder or a ball, by the ray's way and its start across: without the cylinder's axis, from its middle. */
 Chord roundChord(const Vector3& start, const Vector3& way, double radius) {
   const double speed2 = way.squaredNorm();
-  if (speed2 == 0) return start.squaredNorm() <= radius * radius ? Chord{-UNLIMITED, UNLIMITED} : Chord();
+  if (speed2 == 0) return start.squaredNorm() <= radius * radius ? Chord{-INFINITY, INFINITY} : Chord();
   // The nearest place to the middle first: the discriminant of the quadratic loses digits from afar.
   const double nearest = -start.dot(way) / speed2;
   const double left = radius * radius - (start + nearest * way).squaredNorm();
@@ -94,14 +93,14 @@ class ElementHits {
  private:
   void add(int element) {
     const double t = hit(target_.mesh.elements[element]);
-    if (!(t >= range_.nearest) || t == UNLIMITED || t > first_.t) return;
+    if (!(t >= range_.nearest) || t == INFINITY || t > first_.t) return;
     if (t == first_.t && first_.element >= 0 && first_.element < element) return;
     first_ = {t, element};
   }
   double hit(const Vector3i& e) const {
     const std::vector<Vector3>& v = target_.mesh.vertices;
     if (e[0] != e[1] && e[1] != e[2] && e[2] != e[0]) return sheared_.hit(v[e[0]], v[e[1]], v[e[2]]);
-    if (target_.radius <= 0) return UNLIMITED;
+    if (target_.radius <= 0) return INFINITY;
     if (e[0] == e[1] && e[1] == e[2]) return hitBall(ray_, range_, v[e[0]], target_.radius);
     return hitCapsule(ray_, range_, {v[e[0]], e[1] == e[0] ? v[e[2]] : v[e[1]]}, target_.radius);
   }

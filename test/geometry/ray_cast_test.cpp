@@ -11,8 +11,6 @@
 namespace blem_sim {
 namespace {
 
-constexpr double UNLIMITED = std::numeric_limits<double>::infinity();
-
 TriangleMesh randomTriangles(RandomShapes& random, int count) {
   TriangleMesh mesh;
   for (int i = 0; i < count; ++i) {
@@ -28,11 +26,11 @@ double solvedHit(const Ray& ray, const Triangle& t) {
   Matrix3 system;
   system << t[1] - t[0], t[2] - t[0], -ray.direction;
   const Vector3 x = system.fullPivLu().solve(ray.origin - t[0]);
-  return x[0] >= 0 && x[1] >= 0 && x[0] + x[1] <= 1 ? x[2] : UNLIMITED;
+  return x[0] >= 0 && x[1] >= 0 && x[0] + x[1] <= 1 ? x[2] : INFINITY;
 }
 
 double byBruteForce(const TriangleMesh& mesh, const Ray& ray, const RayRange& range) {
-  double best = UNLIMITED;
+  double best = INFINITY;
   for (std::size_t i = 0; i < mesh.elements.size(); ++i) {
     const double t = solvedHit(ray, triangleOf(mesh, static_cast<int>(i)));
     if (t >= range.nearest && t <= range.farthest) best = std::min(best, t);
@@ -111,7 +109,7 @@ TEST(CastRay, PointsAreBalls) {
   for (int trial = 0; trial < 2000; ++trial) {
     const Vector3 origin = random.point(2);
     const Ray ray{origin, (random.point(1) - origin).normalized()};
-    double expected = UNLIMITED;
+    double expected = INFINITY;
     for (const Vector3& centre : cloud.vertices) expected = std::min(expected, hitBall(ray, {}, centre, radius));
     const RayHit hit = castRay({tree, cloud, radius}, ray);
     ASSERT_EQ(hit.t, expected);
@@ -129,9 +127,9 @@ TEST(HitBall, FromOutsideInsideAndBehind) {
   EXPECT_NEAR(hitBall({{-3, 0.6, 0}, {2, 0, 0}}, {}, centre, 1), 1.1, 1e-15);
   EXPECT_NEAR(hitBall({{0.5, 0, 0}, {1, 0, 0}}, {}, centre, 1), 0.5, 1e-15);
   EXPECT_NEAR(hitBall({{-3, 0, 0}, {1, 0, 0}}, {2.5, 10}, centre, 1), 4, 1e-15);
-  EXPECT_EQ(hitBall({{3, 0, 0}, {1, 0, 0}}, {}, centre, 1), UNLIMITED);
-  EXPECT_EQ(hitBall({{-3, 1.001, 0}, {1, 0, 0}}, {}, centre, 1), UNLIMITED);
-  EXPECT_EQ(hitBall({{-3, 0, 0}, {1, 0, 0}}, {0, 1.9}, centre, 1), UNLIMITED);
+  EXPECT_EQ(hitBall({{3, 0, 0}, {1, 0, 0}}, {}, centre, 1), INFINITY);
+  EXPECT_EQ(hitBall({{-3, 1.001, 0}, {1, 0, 0}}, {}, centre, 1), INFINITY);
+  EXPECT_EQ(hitBall({{-3, 0, 0}, {1, 0, 0}}, {0, 1.9}, centre, 1), INFINITY);
   // A ball of a millimetre, 10 km away.
   EXPECT_NEAR(hitBall({{-1e4, 0, 0}, {1, 0, 0}}, {}, centre, 1e-3), 1e4 - 1e-3, 1e-11);
 }
@@ -143,8 +141,8 @@ TEST(HitCapsule, TubeEndsAndAxis) {
   EXPECT_NEAR(hitCapsule({{0.3, 0, 5}, {0, 0, -1}}, {}, axis, 0.5), 3 - 0.4, 1e-15) << "along the axis, beside it";
   EXPECT_NEAR(hitCapsule({{-3, 0, 2.3}, {1, 0, 0}}, {}, axis, 0.5), 2.6, 1e-15) << "round end";
   EXPECT_NEAR(hitCapsule({{0, 0, 1}, {1, 0, 0}}, {}, axis, 0.5), 0.5, 1e-15) << "from inside";
-  EXPECT_EQ(hitCapsule({{-3, 0, 2.501}, {1, 0, 0}}, {}, axis, 0.5), UNLIMITED);
-  EXPECT_EQ(hitCapsule({{0.501, 0, 5}, {0, 0, -1}}, {}, axis, 0.5), UNLIMITED);
+  EXPECT_EQ(hitCapsule({{-3, 0, 2.501}, {1, 0, 0}}, {}, axis, 0.5), INFINITY);
+  EXPECT_EQ(hitCapsule({{0.501, 0, 5}, {0, 0, -1}}, {}, axis, 0.5), INFINITY);
 }
 
 TEST(HitCapsule, PlacesAreAtTheRadiusFromTheSegment) {
@@ -160,7 +158,7 @@ TEST(HitCapsule, PlacesAreAtTheRadiusFromTheSegment) {
     };
     for (double s = 0; s < std::min(t, 8.0); s += 0.01)
       ASSERT_EQ(distance(s) < radius - 1e-9, distance(0) < radius) << "no surface before the first, trial " << trial;
-    if (t == UNLIMITED) continue;
+    if (t == INFINITY) continue;
     ++hits;
     ASSERT_NEAR(distance(t), radius, 1e-12) << trial;
   }

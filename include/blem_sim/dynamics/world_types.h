@@ -65,6 +65,7 @@ struct JointDrive {
   double dry_friction = 0;      ///< [N m or N] mu_D: sticks up to it, slips against it [Hauser 2013, 4.1]
   double viscous_friction = 0;  ///< mu_V
 
+  /** [N m or N] known before the step is solved. */
   double givenEffort() const { return effort + outside_effort; }
 };
 

@@ -84,7 +84,7 @@ struct DepthCameraReading {
 struct LidarReading {
   std::shared_ptr<const RangeView> view;
 };
-/** A new sensor is one alternative; the visits in blem_sim_run and in ros do not compile until they know it. */
+/** A new sensor is one alternative; sensorValues and the visits in ros do not compile until they know it. */
 using SensorReading =
     std::variant<ForceTorqueReading, ImuReading, ContactReading, TiltReading, MotorCurrentReading, DepthCameraReading, LidarReading>;
 

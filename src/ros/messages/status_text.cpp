@@ -20,4 +20,9 @@ std::vector<std::string> statusAdvice(std::uint32_t status) {
   return texts;
 }
 
+std::string stoppedText(std::uint32_t made, std::uint32_t asked, std::uint32_t status) {
+  const std::string text = "stopped after " + std::to_string(made) + " of " + std::to_string(asked) + " steps";
+  return (status & STATE_NOT_FINITE) != 0 ? text + ": " + statusAdvice(STATE_NOT_FINITE).front() : text;
+}
+
 }  // namespace blem_sim

@@ -27,7 +27,7 @@ LearnerService::LearnerService(const ros::NodeHandle& private_node, SimulationLo
     response->status = readings_->takeStatus();
     observe(response);
     response->success = made == request.steps && (response->status & STATE_NOT_FINITE) == 0;
-    if (!response->success) response->status_message = fmt::format("stopped after {} of {} steps", made, request.steps);
+    if (!response->success) response->status_message = stoppedText(made, request.steps, response->status);
   });
 }
 

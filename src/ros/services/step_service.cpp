@@ -12,10 +12,7 @@ bool StepService::onStep(Step::Request& request, Step::Response& response) {
   const std::uint32_t made = loop_->stepPaused(request.steps);
   const StepReport& report = loop_->simulator().report();
   response.success = made == request.steps && (made == 0 || (report.status & STATE_NOT_FINITE) == 0);
-  if (!response.success) {
-    response.status_message = "stopped after " + std::to_string(made) + " of " + std::to_string(request.steps) + " steps";
-    if ((report.status & STATE_NOT_FINITE) != 0) response.status_message += ": " + statusAdvice(STATE_NOT_FINITE).front();
-  }
+  if (!response.success) response.status_message = stoppedText(made, request.steps, report.status);
   response.step = loop_->simulator().steps();
   response.stamp = toStamp(loop_->simulator().time());
   return true;

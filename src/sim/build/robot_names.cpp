@@ -10,8 +10,6 @@
 namespace blem_sim {
 namespace {
 
-constexpr const char* DEFAULT_KEY = "default";
-
 struct Names {
   std::vector<std::string> links, movable, all_joints;
 };
@@ -29,7 +27,7 @@ template <typename Value>
 void checkJoints(const std::map<std::string, Value>& by_joint, const std::string& where, const std::vector<std::string>& movable,
                  bool with_default) {
   for (const auto& entry : by_joint)
-    if (!with_default || entry.first != DEFAULT_KEY) requireName(entry.first, movable, where, "movable joint");
+    if (!with_default || entry.first != "default") requireName(entry.first, movable, where, "movable joint");
 }
 
 void checkSensor(const SensorConfig& sensor, const std::string& where, const Names& names, const RobotModel& model) {

@@ -18,10 +18,10 @@ constexpr double SAME_NORMAL = 0.02;  // sine
 
 bool touches(const Contact& contact) { return contact.depth > -TOUCHING; }
 
-Vector3 slidingOf(const WayOfPair& pair, const Vector3& point) { return pair.a.twist.at(point) - pair.b.twist.at(point); }
+Vector3 relativeVelocity(const WayOfPair& pair, const Vector3& point) { return pair.a.twist.at(point) - pair.b.twist.at(point); }
 
 /** Closing speed [m/s]. */
-double closing(const WayOfPair& pair, const Contact& contact) { return -contact.normal_BA.dot(slidingOf(pair, contact.point)); }
+double closing(const WayOfPair& pair, const Contact& contact) { return -contact.normal_BA.dot(relativeVelocity(pair, contact.point)); }
 
 /** Distance [m] that the pair may close along a contact's normal in the solve. */
 double reach(const WayOfPair& pair, const Contact& contact) { return (closing(pair, contact) + pair.swing) * pair.dt; }
@@ -43,7 +43,7 @@ Contact seenFromStart(const WayOfPair& pair, const Contact& contact, double time
 bool PairWay::isDoubtful(const WayOfPair& pair) const {
   return std::any_of(pair.now.contacts.begin(), pair.now.contacts.end(), [&](const Contact& contact) {
     if (!acts(pair, contact)) return false;
-    const Vector3 velocity = slidingOf(pair, contact.point);
+    const Vector3 velocity = relativeVelocity(pair, contact.point);
     const Vector3 across = velocity - contact.normal_BA.dot(velocity) * contact.normal_BA;
     return across.norm() * pair.dt * -contact.depth > ACROSS * pair.now.layer * reach(pair, contact);
   });
@@ -55,7 +55,7 @@ bool PairWay::touchesNow(std::uint64_t id) const { return std::binary_search(tou
 double PairWay::freeTime(const WayOfPair& pair, const std::vector<Contact>& contacts, double time) const {
   double free = pair.dt, fastest = 0;
   for (const Contact& contact : contacts) {
-    fastest = std::max(fastest, slidingOf(pair, contact.point).norm());
+    fastest = std::max(fastest, relativeVelocity(pair, contact.point).norm());
     if (touchesNow(contact.id)) continue;
     Contact here = contact;
     here.depth = 0;

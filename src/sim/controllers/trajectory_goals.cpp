@@ -11,7 +11,7 @@ namespace blem_sim {
 namespace {
 
 // A step's time and a trajectory's end are sums of their own, so that one instant has several numbers.
-constexpr double SAME_STAMP = 1e-9;  // [s]
+constexpr double SAME_INSTANT = 1e-9;  // [s]
 
 bool exceeds(double error, double tolerance) { return tolerance > 0 && std::abs(error) > tolerance; }
 
@@ -108,7 +108,7 @@ std::vector<JointSample> TrajectoryController::query(double time) const {
   std::vector<JointSample> samples;
   for (std::size_t joint = 0; joint < joints_.size(); ++joint) {
     const JointSpline* path = simulator_->followedPath(robot(), joints_[joint]);
-    if (path && time < path->startTime() - SAME_STAMP)
+    if (path && time < path->startTime() - SAME_INSTANT)
       throw InputError(fmt::format("query_state: {:.9g} s is before the path of joint '{}' begins, at {:.9g} s; ask for a later time", time,
                                    joint_names_[joint], path->startTime()));
     samples.push_back(simulator_->desiredState(robot(), joints_[joint], time));
@@ -122,14 +122,14 @@ bool TrajectoryController::replaced(const GoalJoint& joint) const {
 }
 
 std::optional<GoalOutcome> TrajectoryController::judge(GoalJoint* joint, double time) const {
-  const bool at_end = time > goal_->end - SAME_STAMP;
+  const bool at_end = time > goal_->end - SAME_INSTANT;
   // The end itself is judged by the trajectory's last velocity, later times by rest.
-  const TrackingState state = stateAt(joint->joint, std::abs(time - goal_->end) <= SAME_STAMP ? goal_->end : time);
+  const TrackingState state = stateAt(joint->joint, std::abs(time - goal_->end) <= SAME_INSTANT ? goal_->end : time);
   const TrackingTolerance& tolerance = joint->tolerance;
   const std::string why = at_end ? excess(state, tolerance.goal_position, tolerance.goal_velocity)
                                  : excess(state, tolerance.path_position, tolerance.path_velocity);
   joint->reached = joint->reached || (at_end && why.empty());
-  if (why.empty() || (at_end && time < goal_->end + goal_->goal_time - SAME_STAMP)) return {};
+  if (why.empty() || (at_end && time < goal_->end + goal_->goal_time - SAME_INSTANT)) return {};
   const std::string text = fmt::format("joint '{}': {}", joint_names_[joint->joint], why);
   return at_end ? GoalOutcome{GoalEnd::ABORTED, GoalError::GOAL_TOLERANCE_VIOLATED, "goal tolerance violated: " + text}
                 : GoalOutcome{GoalEnd::ABORTED, GoalError::PATH_TOLERANCE_VIOLATED, "path tolerance violated: " + text};
@@ -144,7 +144,7 @@ std::optional<GoalOutcome> TrajectoryController::update() {
     if (replaced(joint))
       outcome = GoalOutcome{GoalEnd::PREEMPTED, GoalError::SUCCESSFUL,
                             fmt::format("joint '{}' got another command or was reset", joint_names_[joint.joint])};
-    else if (time > goal_->start - SAME_STAMP)
+    else if (time > goal_->start - SAME_INSTANT)
       outcome = judge(&joint, time);
     if (outcome) break;
     reached = reached && joint.reached;

@@ -91,6 +91,8 @@ class CheckpointTest(unittest.TestCase):
         self.assertGreater(max(lost), 0, "steps made anew")
 
     def test_what_is_no_state_is_put_aside(self):
+        if os.path.exists(FILE + ".refused"):
+            os.remove(FILE + ".refused")
         decide(0)
         os.kill(pid(), signal.SIGKILL)
         time.sleep(0.2)  # before it is started again

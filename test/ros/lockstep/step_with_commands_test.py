@@ -46,6 +46,12 @@ class StepWithCommandsTest(unittest.TestCase):
         self.assertEqual(set(answer.models.name), {"ground", "arm_on_base", "cube"})
         self.assertAlmostEqual(answer.models.pose[answer.models.name.index("cube")].position.x, 0.6, delta=1e-3)
 
+    def test_status_of_the_steps(self):
+        self.assertNotIn("JOINT_LIMIT_HIT", self.call(10, []).status_names)
+        answer = self.call(1500, [command(shoulder=1.6)])
+        self.assertIn("JOINT_LIMIT_HIT", answer.status_names)
+        self.assertTrue(answer.status & StepReport.JOINT_LIMIT_HIT)
+
     def test_a_reading_stays_until_the_next_one(self):
         before = {sensor.sensor: sensor for sensor in self.call(100, []).robots[0].sensors}
         after = {sensor.sensor: sensor for sensor in self.call(1, []).robots[0].sensors}

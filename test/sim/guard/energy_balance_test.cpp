@@ -64,6 +64,33 @@ TEST(EnergyBalance, WhatAJointTiesIsOneIsland) {
   EXPECT_NEAR(solve.gain().total, 0.6, 1e-12);
 }
 
+// A slider that its motor pushes against friction of the same size keeps its speed of 1 m/s. The motor's work, 10 mJ in the step, goes into
+// friction and makes up for no gain: a start told 1 mm/s slower is a gain of 0.9995 mJ.
+TEST(EnergyBalance, WorkThatFrictionTakesHidesNoGain) {
+  World world(Vector3::Zero(), SolverSettings());
+  BodySpec slider;
+  slider.name = "slider";
+  slider.inertial.mass = 1;
+  slider.inertial.inertia.setIdentity();
+  world.addBody(slider);
+  JointSpec joint;
+  joint.kind = JointKind::PRISMATIC;
+  joint.child = 0;
+  joint.axis = Vector3::UnitX();
+  world.addJoint(joint);
+  world.setBodyState(0, {Pose::Identity(), Vector3::UnitX(), Vector3::Zero()});
+  JointDrive drive;
+  drive.effort = drive.dry_friction = 10;
+  std::vector<BodyState> before = {world.bodyState(0)};
+  EnergyBalance balance{SolverSettings()};
+  balance.start(world);
+  const SolveResult& solved = world.step(DT, {}, {drive});
+  const std::vector<BodyState> after = {world.bodyState(0)};
+  ASSERT_NEAR(after[0].v_WCom.x(), 1, 1e-9);
+  before[0].v_WCom.x() -= 1e-3;
+  EXPECT_NEAR(balance.addSolve(world, DT, ContactStage(ContactConfig(), 1), solved, before, after).total, 0.9995e-3, 1e-8);
+}
+
 TEST(EnergyBalance, FlightGainsNothing) {
   HandMadeSolve solve(1, {0, 0, -G});
   solve.before[0].v_WCom = {20, 0, 30};

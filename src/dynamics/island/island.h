@@ -1,0 +1,22 @@
+// An island in one step.
+#pragma once
+
+#include <vector>
+
+#include "island/island_impacts.h"
+#include "island/island_problem.h"
+
+namespace blem_sim {
+
+/** An island with its contacts, impacts and reports of this step. */
+struct Island {
+  IslandProblem problem;
+  std::vector<int> contacts;          ///< of the step's input
+  std::vector<int> mimics, loops;     ///< of the forest's
+  std::vector<double> apparent_work;  ///< of the contacts [J]
+  IslandImpacts impacts;
+  NewtonReport report;
+  bool followed = true;  ///< no tree was too fast
+};
+
+}  // namespace blem_sim
