@@ -121,8 +121,8 @@ void ContactStage::addStops(const SimulatedWorld& world, const ContactManifold& 
   }
 }
 
-void ContactStage::reduction(const SimulatedWorld& world, const std::vector<BodyState>& bodies, double dt) {
-  meetings_.look(world, bodies, *this, current_search_.flush, dt);
+void ContactStage::reduction(const SimulatedWorld& world, const std::vector<BodyState>& bodies, const Expectation& expected, double dt) {
+  meetings_.look(world, bodies, *this, current_search_.flush, expected, dt);
   meetings_.exchange(&current_);
   for (ContactManifold& manifold : reduced_) manifold.contacts.clear();  // a pair without contacts now keeps none
   model_a_.clear();

@@ -54,14 +54,15 @@ std::pair<double, double> feltOf(const Drive& drive, const EnvironmentConfig& ta
 
 /** An arm moves on a bent path; an edge that it misses is not felt, however near it is and however fast the arm sweeps across it. */
 TEST(NearMiss, OfADrivenArmChangesNothing) {
-  const Drive slow{{0, 0, 1e3}, NAN, 3}, fast{{0, 0, 1e3}, NAN, 30}, weak{{0, 0, 0.5}, NAN, 30}, held{{1e5, 0, 1e3}, 2.5, NAN};
+  const Drive slow{{0, 0, 1e3}, NAN, 3}, fast{{0, 0, 1e3}, NAN, 30}, weak{{0, 0, 0.5}, NAN, 30}, held{{1e5, 0, 1e3}, 2.5, NAN},
+      step{{1e3, 0, 10}, 2.5, NAN};
   for (const double clearance : {1e-5, 1e-4, 5e-4})
     for (const double dt : {0.0005, 0.001, 0.005}) {
       EnvironmentConfig table;
       table.name = "table";
       table.uri = meshFile("table_below_arm", gridMesh(0.05, 0.6, 1, 1));
       table.X_WE = makePose({0, 0, -(std::hypot(0.55, 0.05) + LAYER + clearance)});
-      for (const Drive* drive : {&slow, &fast, &weak, &held}) {
+      for (const Drive* drive : {&slow, &fast, &weak, &held, &step}) {
         const auto [force, change] = feltOf(*drive, table, dt);
         SCOPED_TRACE(std::to_string(1000 * clearance) + " mm, dt " + std::to_string(dt) + ", gains " + std::to_string(drive->gains.p) +
                      " " + std::to_string(drive->gains.d) + ", " + std::to_string(drive->velocity) + " rad/s");
