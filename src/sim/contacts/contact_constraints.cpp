@@ -101,6 +101,7 @@ void ContactStage::addConstraints(const SimulatedWorld& world, const ContactMani
     constraint.friction = surface.friction;
     constraint.restitution = surface.restitution;
     constraint.impact_friction_factor = surface.impact_friction_factor;
+    constraint.impact_friction_speed = surface.impact_friction_speed;
     constraint.stiffness = contact.weight * surface.stiffness;
     constraint.damping = contact.weight * surface.damping;
     if (recovers && contact.depth > 0) separate(std::min(massOf(world, a), massOf(world, b)), manifold.layer, &constraint);
