@@ -11,6 +11,18 @@ namespace {
 
 constexpr double BEARING_GAP = 1e-6;  // [m] largest gap of a contact that bears a body
 
+/** Largest change [m/s] of a contact's velocity from that at hand to that of the pair's way. The solve begins with the slip at hand: where the
+ * gap spares less than friction makes of that change, contacts that are not met would push. */
+double changeOf(const SimulatedWorld& world, const std::vector<BodyState>& bodies, const WayOfPair& way) {
+  const BodyTwist a = twistOf(world, bodies, way.a.collider->body), b = twistOf(world, bodies, way.b.collider->body);
+  double largest = 0;
+  for (const Contact& contact : way.now.contacts) {
+    const Vector3& p = contact.point;
+    largest = std::max(largest, (way.a.twist.at(p) - way.b.twist.at(p) - a.at(p) + b.at(p)).norm());
+  }
+  return largest;
+}
+
 }  // namespace
 
 void ContactMeetings::findSupports(const SimulatedWorld& world, const std::vector<ContactManifold>& manifolds) {
@@ -95,6 +107,7 @@ void ContactMeetings::lookAgain(const SimulatedWorld& world, const std::vector<B
   };
   WayOfPair way{now, way_of(now.a), way_of(now.b)};
   way.dt = dt;
+  way.swing = changeOf(world, bodies, way);
   follow(world, contacts, flush, manifold, &way);
 }
 

@@ -11,7 +11,7 @@ namespace {
 constexpr double SEARCH_SPACING = 0.5;  // layers between two searches on the way
 constexpr double LONGEST = 1.0 / 16;    // of the solve between two searches where there is no layer
 constexpr double SHORTEST = 1.0 / 512;  // of the solve between two searches
-constexpr int MOST_SEARCHES = 40;
+constexpr int MOST_SEARCHES = 256;
 constexpr double SAME_NORMAL = 0.02;  // sine
 
 Vector3 slidingOf(const WayOfPair& pair, const Vector3& point) { return pair.a.twist.at(point) - pair.b.twist.at(point); }

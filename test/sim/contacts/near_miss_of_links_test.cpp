@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sim/contacts/near_miss_scene.h"
+#include "support/scene_numbers.h"
 
 namespace blem_sim {
 namespace {
@@ -73,6 +74,21 @@ TEST(NearMiss, OfADrivenArmChangesNothing) {
         }
       }
     }
+}
+
+/** Motors of any strength whose target leaps: 0.5 to 300 rad/s at the edge, of which up to 50 come within a step. */
+TEST(NearMiss, OfAnArmThatMotorsSpeedUpAtRandomChangesNothing) {
+  SceneNumbers numbers(1);
+  for (int i = 0; i < 100; ++i) {
+    const Drive drive{{numbers.spread(10, 1e6), 0, numbers.spread(0.1, 1e3)}, numbers.uniform(1.7, 4.2), NAN};
+    const double dt = 0.0005 * numbers.count(1, 20), clearance = numbers.spread(1e-6, 5e-4);
+    EnvironmentConfig table;
+    table.name = "table";
+    table.uri = meshFile("table_below_arm", gridMesh(0.05, 0.6, 1, 1));
+    table.X_WE = makePose({0, 0, -(std::hypot(0.55, 0.05) + LAYER + clearance)});
+    EXPECT_EQ(feltOf(drive, table, dt).first, 0) << i << ": " << 1000 * clearance << " mm, dt " << dt << ", gains " << drive.gains.p << " "
+                                                 << drive.gains.d << ", to " << drive.position << " rad";
+  }
 }
 
 /** A cube of 0.1 m at the end of a leg of 0.5 m and 2 kg, on a hinge about y of a torso of 0.5 kg that nothing holds. */
