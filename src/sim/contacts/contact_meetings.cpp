@@ -11,8 +11,8 @@ namespace {
 
 constexpr double BEARING_GAP = 1e-6;  // [m] largest gap of a contact that bears a body
 
-/** Largest change [m/s] of a contact's velocity from that at hand to that of the pair's way. The solve begins with the slip at hand: where the
- * gap spares less than friction makes of that change, contacts that are not met would push. */
+/** Largest change [m/s] of a contact's velocity from that at hand to that of the pair's way. The solve begins with the slip at hand: where
+ * the gap spares less than friction makes of that change, contacts that are not met would push. */
 double changeOf(const SimulatedWorld& world, const std::vector<BodyState>& bodies, const WayOfPair& way) {
   const BodyTwist a = twistOf(world, bodies, way.a.collider->body), b = twistOf(world, bodies, way.b.collider->body);
   double largest = 0;

@@ -91,6 +91,30 @@ TEST(NearMiss, OfAnArmThatMotorsSpeedUpAtRandomChangesNothing) {
   }
 }
 
+/** Arms that strong motors turn by up to 2 rad in a solve, through a sheet that their cube reaches below by 3 to 23 mm. */
+TEST(Passage, OfAnArmThatTurnsFarInOneSolveIsSaid) {
+  SceneNumbers numbers(1);
+  int driven = 0;
+  for (int i = 0; i < 100; ++i) {
+    const Drive drive{{numbers.spread(1e3, 1e6), 0, numbers.spread(0.1, 1e3)}, numbers.uniform(2.2, 4.2), NAN};
+    const double dt = 0.0005 * numbers.count(1, 20);
+    EnvironmentConfig table;
+    table.name = "table";
+    table.uri = meshFile("table_below_arm", gridMesh(0.05, 0.6, 1, 1));
+    table.X_WE = makePose({0, 0, -(std::hypot(0.55, 0.05) + LAYER - numbers.uniform(0.003, 0.023))});
+    const auto arm = drivenArm(drive, {table}, dt);
+    bool said = false, behind = false;
+    for (double t = 0; t < 0.5 && !behind; t += dt) {
+      const StepReport& report = arm->step();
+      said = said || (report.status & CONTACT_UNRELIABLE);
+      behind = report.joints[0].position > 1.95;
+    }
+    driven += behind || said;
+    EXPECT_TRUE(said || !behind) << i << ": dt " << dt << ", gains " << drive.gains.p << " " << drive.gains.d << ", to " << drive.position;
+  }
+  EXPECT_GT(driven, 5);
+}
+
 /** A cube of 0.1 m at the end of a leg of 0.5 m and 2 kg, on a hinge about y of a torso of 0.5 kg that nothing holds. */
 std::string swingingUrdf() {
   return R"(<robot name="swinging"><link name="torso"><inertial><mass value="0.5"/>
