@@ -13,6 +13,7 @@
 #include "soak/figures.h"
 #include "soak/heap.h"
 #include "support/shared_packages.h"
+#include "support/surveyed_scan.h"
 
 namespace blem_sim {
 namespace {
@@ -40,13 +41,14 @@ SimulationConfig stackOfCubes(int cubes) {
 /** Sums over the timed steps. */
 struct Totals {
   StepProfile profile;
-  double raw = 0, reduced = 0, pairs = 0, substeps = 0, iterations = 0, unreliable = 0;
+  double raw = 0, reduced = 0, pairs = 0, substeps = 0, redone = 0, iterations = 0, unreliable = 0;
   void add(const StepReport& report) {
     for (std::size_t s = 0; s < profile.seconds.size(); ++s) profile.seconds[s] += report.profile.seconds[s];
     raw += report.raw_contacts;
     reduced += report.reduced_contacts;
     pairs += report.searched_pairs;
     substeps += report.substeps;
+    redone += report.redone_solves;
     iterations += report.solver_iterations;
     unreliable += report.status & CONTACT_UNRELIABLE ? 1 : 0;
   }
@@ -65,6 +67,7 @@ void count(const StepTimes& times, const Totals& totals, int steps, double secon
   counters["reduced_contacts"] = totals.reduced / steps;
   counters["pairs"] = totals.pairs / steps;
   counters["substeps"] = totals.substeps / steps;
+  counters["redone_solves"] = totals.redone / steps;
   counters["iterations"] = totals.iterations / steps;
   counters["unreliable_steps"] = totals.unreliable;
 }
@@ -125,6 +128,10 @@ int main(int argc, char** argv) {
   add({"heap_of_30", [] { return heapOfCubes(1, {}); }, 0, 3000, ""});
   for (const int threads : {1, 2})
     add({"40_stacks/threads:" + std::to_string(threads), [threads] { return stacksOfThree(40, threads); }, 500, 500, ""});
+  const auto cubes_on_scan = [](const Vector3& offset) { return cubesOnSurveyedScan("benchmark", offset, 100, 9); };
+  add({"scan/at_the_origin", [&] { return cubes_on_scan(Vector3::Zero()); }, 100, 3000, ""});
+  add({"scan/surveyed", [&] { return cubes_on_scan(EASTING_NORTHING); }, 100, 3000, ""});
+  add({"scan/surveyed_world", [&] { return movedTo(EASTING_NORTHING, cubes_on_scan(EASTING_NORTHING)); }, 100, 3000, ""});
   if (argc == 2) {
     addPrepared(argv[1], "hubo_plane", 500, 2000);
     addPrepared(argv[1], "hubo_plane_sway", 500, 2000);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <tuple>
 
 #include "blem_sim/geometry/input_error.h"
 #include "kernels/kernels.h"
@@ -33,7 +34,8 @@ SurfaceProperties combineSurfaces(const SurfaceProperties& a, const SurfacePrope
   SurfaceProperties pair;
   pair.friction = combinedFriction(a.friction, b.friction, rule);
   pair.restitution = std::max(a.restitution, b.restitution);
-  pair.impact_friction_factor = std::min(a.impact_friction_factor, b.impact_friction_factor);
+  std::tie(pair.impact_friction_factor, pair.impact_friction_speed) =
+      std::min(std::tie(a.impact_friction_factor, a.impact_friction_speed), std::tie(b.impact_friction_factor, b.impact_friction_speed));
   pair.stiffness = inSeries(a.stiffness, b.stiffness);
   pair.damping = inSeries(a.damping, b.damping);
   return pair;

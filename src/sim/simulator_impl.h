@@ -11,6 +11,7 @@
 #include "build/world_builder.h"
 #include "commands/applied_loads.h"
 #include "contacts/contact_stage.h"
+#include "contacts/early_pushes.h"
 #include "guard/energy_balance.h"
 #include "guard/layer_watch.h"
 #include "guard/step_guard.h"
@@ -40,12 +41,17 @@ struct Simulator::Impl {
   void broadPhase();
   void narrowPhase();
   void reduction();
+  bool hasEarlyPushes();
   void stepGuard();
   /** Solves the substep. False if the state is not finite any more; the last finite one is then restored. */
   bool solve();
   void readSensors();
   void acceptSubstep();
   void redoSubstep(const std::vector<ClosePass>& close);
+  /** Makes the substep again, with the ways of early pushes' pairs as a solve without them shows them. */
+  void repeatSubstep();
+  /** Bodies go back to where the substep started. */
+  void rewind();
   /** States that bodies may reach in the rest of the step, if a solve that was thrown away has shown them; else null. */
   const std::vector<BodyState>* foreseen();
   const StepReport& stop();
@@ -119,6 +125,7 @@ struct Simulator::Impl {
   SimulatedWorld world_;
   WorldBuilder builder_;
   ContactStage contacts_;
+  EarlyPushes early_pushes_;
   SweepGuard sweep_guard_;
   LayerWatch layer_watch_;
   EnergyBalance energy_balance_;

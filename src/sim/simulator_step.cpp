@@ -33,7 +33,10 @@ const StepReport& Simulator::Impl::step() {
     // Contacts at the new state: the guard judges by them, and the next solve starts from them.
     broadPhase();
     narrowPhase();
-    stepGuard();
+    if (hasEarlyPushes())
+      repeatSubstep();
+    else
+      stepGuard();
   }
   ++step_count_;
   loads_.expire(time());
@@ -105,7 +108,7 @@ void Simulator::Impl::narrowPhase() {
 
 void Simulator::Impl::reduction() {
   const StageTimer timer(&report_.profile, Stage::REDUCTION);
-  contacts_.reduction(world_, bodies_, substepLength());
+  contacts_.reduction(world_, bodies_, early_pushes_.expectation(), substepLength());
 }
 
 bool Simulator::Impl::solve() {
@@ -118,9 +121,13 @@ bool Simulator::Impl::solve() {
   solved_ = &world_.world.step(substepLength(), contacts_.constraints(), drives_);
   if (solved_->finite) world_.bodyStates(&bodies_);
   if (solved_->finite && bodiesAreFinite()) return true;
-  world_.world.restore(substep_start_);
-  bodies_ = bodies_before_substep_;
+  rewind();
   return false;
+}
+
+bool Simulator::Impl::hasEarlyPushes() {
+  const StageTimer timer(&report_.profile, Stage::STEP_GUARD);
+  return substeps_.canRepeat() && early_pushes_.find(world_, contacts_, solved_->contact_forces, bodies_, substepLength());
 }
 
 void Simulator::Impl::stepGuard() {
@@ -139,13 +146,29 @@ void Simulator::Impl::stepGuard() {
   acceptSubstep();
 }
 
+void Simulator::Impl::rewind() {
+  world_.world.restore(substep_start_);
+  bodies_ = bodies_before_substep_;
+}
+
+void Simulator::Impl::repeatSubstep() {
+  rewind();
+  reduction();
+  if (solve())
+    early_pushes_.expect(bodies_);
+  else
+    early_pushes_.clear();
+  rewind();
+  substeps_.repeat();
+}
+
 /** Bodies go back to where the substep started; contacts are known as far as the solve has shown that bodies may get. */
 void Simulator::Impl::redoSubstep(const std::vector<ClosePass>& close) {
   double part = 1;
   for (const ClosePass& pass : close) part = std::min(part, pass.part);
   foreseen_ = bodies_;
-  world_.world.restore(substep_start_);
-  bodies_ = bodies_before_substep_;
+  rewind();
+  early_pushes_.clear();
   contacts_.broadPhase(world_, bodies_, foreseen(), substeps_.fractionLeft() * config_.time_step);
   contacts_.narrowPhase(world_);
   contacts_.accept();
@@ -169,6 +192,7 @@ void Simulator::Impl::acceptSubstep() {
   recordEnergy();
   contacts_.accept();
   substeps_.accept();
+  early_pushes_.clear();
 }
 
 void Simulator::Impl::readSensors() {

@@ -33,6 +33,17 @@ TEST(CombineSurfaces, LargerRestitutionSpringsInSeries) {
   EXPECT_DOUBLE_EQ(combineSurfaces(a, b, FrictionRule::MIN).damping, 0);
 }
 
+TEST(CombineSurfaces, SmallerImpactFrictionFactorWithItsSpeed) {
+  SurfaceProperties a, b;
+  a.impact_friction_factor = 0.8, a.impact_friction_speed = 0.1;
+  for (const auto& pair : {combineSurfaces(a, b, FrictionRule::MIN), combineSurfaces(b, a, FrictionRule::MIN)}) {
+    EXPECT_EQ(pair.impact_friction_factor, 0.8);
+    EXPECT_EQ(pair.impact_friction_speed, 0.1);
+  }
+  b.impact_friction_factor = 0.8;
+  EXPECT_EQ(combineSurfaces(a, b, FrictionRule::MIN).impact_friction_speed, 0);
+}
+
 TEST(CollisionGeometry, MeshAndHalfSpace) {
   const CollisionGeometry box(std::make_shared<TriangleMesh>(boxMesh({1, 2, 3})));
   EXPECT_FALSE(box.isHalfSpace());

@@ -23,7 +23,7 @@ inline BodySpec boxBody(const std::string& name, double mass, const Vector3& siz
 
 /** Properties that all contacts of a pair share. */
 struct Surface {
-  double friction = 0.5, restitution = 0, impact_friction_factor = 1;
+  double friction = 0.5, restitution = 0, impact_friction_factor = 1, impact_friction_speed = 0;
   double stiffness = std::numeric_limits<double>::infinity(), damping = std::numeric_limits<double>::infinity();
 };
 
@@ -34,6 +34,7 @@ inline ContactConstraint contactOf(int body_a, int body_b, const Vector3& point,
   c.point = point, c.normal_BA = normal_BA, c.depth = depth, c.id = id;
   c.friction = surface.friction, c.restitution = surface.restitution;
   c.impact_friction_factor = surface.impact_friction_factor;
+  c.impact_friction_speed = surface.impact_friction_speed;
   c.stiffness = surface.stiffness, c.damping = surface.damping;
   return c;
 }

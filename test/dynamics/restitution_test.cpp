@@ -181,6 +181,23 @@ TEST(Restitution, FrictionOfImpactsMayBeLowerThanThatOfSliding) {
   EXPECT_NEAR(scene.world.bodyState(0).v_WCom.x(), 1 - 0.5 * mu * 9.81, 1e-6);
 }
 
+// The factor acts on impacts that are faster than impact_friction_speed, 2 m/s here.
+TEST(Restitution, FrictionOfSlowImpactsIsThatOfSliding) {
+  const double mu = 0.1, factor = 0.5, radius = 0.05, e = 0.5;
+  for (const double speed : {1.9, 2.1}) {
+    Surface surface = surfaceOf(e, mu);
+    surface.impact_friction_factor = factor;
+    surface.impact_friction_speed = 2;
+    BouncingBodies scene(Vector3::Zero(), surface);
+    scene.walls = {{Vector3::UnitZ(), 0}};
+    scene.addSphere(1, radius, {0, 0, radius + 0.01});
+    scene.setVelocity(0, {2, 0, -speed}, Vector3::Zero());
+    for (int i = 0; i < 20; ++i) scene.step(DT);
+    const double push = (speed > 2 ? factor : 1) * mu * (1 + e) * speed;
+    EXPECT_NEAR(scene.world.bodyState(0).v_WCom.x(), 2 - push, 1e-9) << speed;
+  }
+}
+
 // The touch bounces; a cube too slow for that rests on the springs.
 TEST(Restitution, ACompliantSurfaceBouncesAtTheTouch) {
   Surface surface = surfaceOf(0.5, 0.5);

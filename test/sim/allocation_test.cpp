@@ -43,10 +43,10 @@ long allocationsOf(Simulator* simulator) {
   return allocations - before;
 }
 
-long allocationsOfWarmSteps(Simulator* simulator, int warm_up = WARM_UP) {
+long allocationsOfWarmSteps(Simulator* simulator, int warm_up = WARM_UP, int watched = WATCHED) {
   for (int i = 0; i < warm_up; ++i) simulator->step();
   long allocated = 0;
-  for (int i = 0; i < WATCHED; ++i) allocated += allocationsOf(simulator);
+  for (int i = 0; i < watched; ++i) allocated += allocationsOf(simulator);
   return allocated;
 }
 
@@ -129,8 +129,8 @@ TEST(StepAllocation, NoneInAWarmStepOfGears) {
   EXPECT_NEAR(simulator.report().joints[1].velocity, -3, 1.5);
 }
 
-// Rings that hang in each other and swing: contacts of a new kind still allocate now and then.
-TEST(StepAllocation, FewInWarmStepsOfAHangingChain) {
+// Rings that hang in each other and swing. Until each pair of them has been as near as it gets, its lists still grow.
+TEST(StepAllocation, NoneInWarmStepsOfAHangingChain) {
   constexpr int RINGS = 5;
   constexpr double RADIUS = 0.03, THICKNESS = 0.004;
   const TriangleMesh ring = ringMesh(RADIUS, THICKNESS, 40, 12);
@@ -146,7 +146,8 @@ TEST(StepAllocation, FewInWarmStepsOfAHangingChain) {
   }
   config.objects.back().linear_velocity = {0.3, 0.2, 0};
   Simulator simulator(config, UriResolver());
-  EXPECT_LE(allocationsOfWarmSteps(&simulator, 4000), WATCHED / 25);
+  EXPECT_EQ(allocationsOfWarmSteps(&simulator, 6000, 2000), 0);
+  EXPECT_GT(bodyOf(simulator, "ring5").v_WCom.norm(), 1e-3);
   EXPECT_GT(bodyOf(simulator, "ring5").X_WB.translation().z(), 0.6);
   EXPECT_GE(simulator.report().reduced_contacts, RINGS);
 }

@@ -45,6 +45,7 @@ std::vector<BadField> badFields() {
       {"solver.threads", [](C c, double x) { c->solver.threads = static_cast<int>(x); }, {0, -3}},
       {"contact.friction", [](C c, double x) { c->contact.surface.friction = x; }, NEGATIVE},
       {"contact.impact_friction_factor", [](C c, double x) { c->contact.surface.impact_friction_factor = x; }, {NAN, -0.1, 1.1}},
+      {"contact.impact_friction_speed", [](C c, double x) { c->contact.surface.impact_friction_speed = x; }, NEGATIVE},
       {"contact.restitution", [](C c, double x) { c->contact.surface.restitution = x; }, {NAN, -0.1, 1.1}},
       {"contact.stiffness", [](C c, double x) { c->contact.surface.stiffness = x; }, {NAN, 0, -1e5}},
       {"contact.damping", [](C c, double x) { c->contact.surface.damping = x; }, NEGATIVE_OR_NAN},

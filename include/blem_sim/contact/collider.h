@@ -18,14 +18,15 @@ struct SurfaceProperties {
   double friction = 0.5;  ///< Coulomb coefficient
   double restitution = 0;
   double impact_friction_factor = 1;                           ///< 0 to 1: friction in impacts over friction
+  double impact_friction_speed = 0;                            ///< [m/s] closing speed up to which that factor does not act
   double stiffness = std::numeric_limits<double>::infinity();  ///< [N/m] per contact; infinite = rigid
   double damping = std::numeric_limits<double>::infinity();    ///< [N s/m] per contact
 };
 
 enum class FrictionRule { MIN, HARMONIC_MEAN, MEAN, PRODUCT };
 
-/** Surface of a pair: friction by the rule (harmonic mean: 2/(1/a+1/b)), the larger restitution, the smaller impact friction factor,
- * springs and dampers in series. */
+/** Surface of a pair: friction by the rule (harmonic mean: 2/(1/a+1/b)), the larger restitution, the smaller impact friction factor
+ * with its speed (of equal factors the smaller speed), springs and dampers in series. */
 SurfaceProperties combineSurfaces(const SurfaceProperties& a, const SurfaceProperties& b, FrictionRule rule);
 
 /** Geometry that contact searches, shared by all its copies: a mesh with its topology and tree, or a half-space. Immutable. */

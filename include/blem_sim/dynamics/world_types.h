@@ -76,6 +76,7 @@ struct ContactConstraint {
   double depth = 0;          ///< [m], negative = gap
   double friction = 0, restitution = 0;
   double impact_friction_factor = 1;  ///< 0 to 1: friction in impacts over friction; only `articulated` knows it
+  double impact_friction_speed = 0;   ///< [m/s] closing speed up to which that factor does not act
   double stiffness = std::numeric_limits<double>::infinity(), damping = std::numeric_limits<double>::infinity();
   std::uint64_t id = 0;  ///< identity across steps, unique within one step (colliders and features)
 };

@@ -21,7 +21,7 @@ namespace blem_sim {
 
 /** Contact settings that may be set again per environment, robot, object or link; unset ones inherit. */
 struct ContactOverrides {
-  std::optional<double> boundary_width, friction, restitution, impact_friction_factor, stiffness, damping;
+  std::optional<double> boundary_width, friction, restitution, impact_friction_factor, impact_friction_speed, stiffness, damping;
   std::optional<bool> shrink;
 };
 

@@ -99,7 +99,7 @@ struct StepReport {
   double dt = 0;
   std::uint32_t status = STEP_OK;
   int substeps = 1;
-  int redone_solves = 0;   ///< solves thrown away because they used up a layer, and made again shorter
+  int redone_solves = 0;   ///< solves thrown away: of steps that used up a layer, or that pushed what is not met
   int searched_pairs = 0;  ///< of colliders, after the step: pairs whose contacts were searched
   int raw_contacts = 0, reduced_contacts = 0;
   double wrench_error = 0;                 ///< worst over the step, where contacts were left out: ReductionLoss::wrench

@@ -69,7 +69,9 @@ void IslandImpacts::begin(const TermSource& s, const std::vector<int>& contacts,
       bouncer.contact = i;
       bouncer.pair = &patch.pair;
       bouncer.restitution = c.restitution;
-      bouncer.friction = c.impact_friction_factor * problem.contacts[i].friction;
+      bouncer.slow_friction = problem.contacts[i].friction;
+      bouncer.friction = c.impact_friction_factor * bouncer.slow_friction;
+      bouncer.friction_speed = c.impact_friction_speed;
       bouncer.depth = c.depth;
       bouncers_.push_back(bouncer);
     }
@@ -101,7 +103,7 @@ bool IslandImpacts::findMeetings(const TermSource& s, const IslandProblem& probl
     Meeting meeting;
     meeting.bouncer = static_cast<int>(&b - bouncers_.data());
     meeting.row = b.row;
-    meeting.friction = b.friction;
+    meeting.friction = closing > b.friction_speed ? b.friction : b.slow_friction;
     if (b.restitution > 0) meeting.restitution = std::sqrt(std::clamp(e2 - (1 - e2) * fall, 0.0, 1.0));
     meetings_.push_back(meeting);
   }

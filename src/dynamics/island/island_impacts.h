@@ -39,12 +39,14 @@ class IslandImpacts {
     int contact = 0;  ///< of the problem
     const BodyPair* pair = nullptr;
     int row = -1;  ///< of rows_, once it has met
-    double restitution = 0, friction = 0;
-    double depth = 0;                   ///< [m]
-    double kick = 0;                    ///< [m/s] of its normal velocity by half of the step's forces
-    double slowest = 0;                 ///< [m/s] closing speed below which nothing bounces
-    double speed = 0;                   ///< [m/s] along the normal, at present
-    Vector3 impulse = Vector3::Zero();  ///< [N s] so far, along the row's directions
+    double restitution = 0;
+    double friction = 0, slow_friction = 0;  ///< in impacts, and in those of up to friction_speed
+    double friction_speed = 0;               ///< [m/s]
+    double depth = 0;                        ///< [m]
+    double kick = 0;                         ///< [m/s] of its normal velocity by half of the step's forces
+    double slowest = 0;                      ///< [m/s] closing speed below which nothing bounces
+    double speed = 0;                        ///< [m/s] along the normal, at present
+    Vector3 impulse = Vector3::Zero();       ///< [N s] so far, along the row's directions
   };
   /** A bouncer that meets in this round. */
   struct Meeting {

@@ -15,7 +15,7 @@ bool finiteAndNotNegative(double x) { return x >= 0 && std::isfinite(x); }
 
 bool isSound(const ContactConstraint& c) {
   return c.point.allFinite() && std::abs(c.normal_BA.squaredNorm() - 1) < 2 * UNIT && std::isfinite(c.depth) && c.friction >= 0 &&
-         c.restitution >= 0 && c.impact_friction_factor >= 0 && c.stiffness >= 0 && c.damping >= 0;
+         c.restitution >= 0 && c.impact_friction_factor >= 0 && c.impact_friction_speed >= 0 && c.stiffness >= 0 && c.damping >= 0;
 }
 
 bool isSound(const JointDrive& d) {

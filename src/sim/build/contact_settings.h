@@ -23,6 +23,7 @@ inline ContactSettings contactSettings(double boundary_width, const ContactConfi
     settings.surface.friction = o->friction.value_or(settings.surface.friction);
     settings.surface.restitution = o->restitution.value_or(settings.surface.restitution);
     settings.surface.impact_friction_factor = o->impact_friction_factor.value_or(settings.surface.impact_friction_factor);
+    settings.surface.impact_friction_speed = o->impact_friction_speed.value_or(settings.surface.impact_friction_speed);
     settings.surface.stiffness = o->stiffness.value_or(settings.surface.stiffness);
     settings.shrink = o->shrink.value_or(settings.shrink);
     settings.surface.damping = o->damping.value_or(settings.surface.damping);

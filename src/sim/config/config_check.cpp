@@ -43,6 +43,7 @@ class Fields {
     number("friction", s.friction, NumberRange::notNegative());
     number("restitution", s.restitution, NumberRange::fraction());
     number("impact_friction_factor", s.impact_friction_factor, NumberRange::fraction());
+    number("impact_friction_speed", s.impact_friction_speed, NumberRange::notNegative());
     number("stiffness", s.stiffness, NumberRange::positiveOrInfinite());
     number("damping", s.damping, NumberRange::notNegativeOrInfinite());
   }
@@ -54,6 +55,7 @@ class Fields {
     number("friction", o.friction, NumberRange::notNegative());
     number("restitution", o.restitution, NumberRange::fraction());
     number("impact_friction_factor", o.impact_friction_factor, NumberRange::fraction());
+    number("impact_friction_speed", o.impact_friction_speed, NumberRange::notNegative());
     number("stiffness", o.stiffness, NumberRange::positiveOrInfinite());
     number("damping", o.damping, NumberRange::notNegativeOrInfinite());
   }

@@ -11,6 +11,7 @@ ContactConfig readContact(YamlReader reader) {
   reader.read("friction", &contact.surface.friction, NumberRange::notNegative());
   reader.read("restitution", &contact.surface.restitution, NumberRange::fraction());
   reader.read("impact_friction_factor", &contact.surface.impact_friction_factor, NumberRange::fraction());
+  reader.read("impact_friction_speed", &contact.surface.impact_friction_speed, NumberRange::notNegative());
   reader.read("stiffness", &contact.surface.stiffness, NumberRange::positiveOrInfinite());
   reader.read("damping", &contact.surface.damping, NumberRange::notNegativeOrInfinite());
   reader.read("max_contacts_per_robot", &contact.max_contacts_per_robot, 1);
@@ -49,6 +50,7 @@ ContactOverrides readContactOverrides(YamlReader& reader) {
   reader.read("friction", &contact.friction, NumberRange::notNegative());
   reader.read("restitution", &contact.restitution, NumberRange::fraction());
   reader.read("impact_friction_factor", &contact.impact_friction_factor, NumberRange::fraction());
+  reader.read("impact_friction_speed", &contact.impact_friction_speed, NumberRange::notNegative());
   reader.read("stiffness", &contact.stiffness, NumberRange::positiveOrInfinite());
   reader.read("damping", &contact.damping, NumberRange::notNegativeOrInfinite());
   return contact;

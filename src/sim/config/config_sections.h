@@ -8,7 +8,8 @@ namespace blem_sim {
 
 ContactConfig readContact(YamlReader reader);
 SolverSettings readSolver(YamlReader reader);
-/** Reads those given of boundary_width, friction, restitution, impact_friction_factor, stiffness, damping, shrink. */
+/** Reads those given of boundary_width, friction, restitution, impact_friction_factor, impact_friction_speed, stiffness, damping, shrink.
+ */
 ContactOverrides readContactOverrides(YamlReader& reader);
 CloudOptions readCloud(YamlReader reader);
 /** A name that models may bear: given, not empty, without "::". */

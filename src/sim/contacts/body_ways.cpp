@@ -89,10 +89,18 @@ Pose BodyWays::ahead(int body) const {
   return ahead(parent) * screwMotion(own.centre, v, w, dt_);
 }
 
-void BodyWays::lead(int body, BodyTwist* way) {
-  if (body == WORLD_BODY) return;
+bool BodyWays::isOnJoint(int body) {
+  if (body == WORLD_BODY) return false;
   if (!parents_known_) findParents();
-  if (parents_[body] != NO_JOINT) *way = screwOf(ahead(body), twist(body).centre, dt_);
+  return parents_[body] != NO_JOINT;
+}
+
+void BodyWays::lead(int body, BodyTwist* way) {
+  if (isOnJoint(body)) *way = screwOf(ahead(body), twist(body).centre, dt_);
+}
+
+void BodyWays::leadTo(int body, const Pose& X_WB, BodyTwist* way) {
+  if (isOnJoint(body)) *way = screwOf(X_WB * (*bodies_)[body].X_WB.inverse(), twist(body).centre, dt_);
 }
 
 }  // namespace blem_sim

@@ -17,6 +17,8 @@ class BodyWays {
    * @param way of the body from its start on
    */
   void lead(int body, BodyTwist* way);
+  /** Makes a link's way the screw that leads it to a pose at the end of the solve. A body on no joint keeps the way it has. */
+  void leadTo(int body, const Pose& X_WB, BodyTwist* way);
   /**
    * Speed [m/s] by which links of a tree swing each other within the solve, beside turning: what a body of the tree's size would give its
    * ends if it turned as fast as the fastest link. 0 for a body on no joint.
@@ -24,6 +26,7 @@ class BodyWays {
   double swing(int body);
 
  private:
+  bool isOnJoint(int body);
   void findParents();
   double swingOf(const ModelInfo& model) const;
   Pose ahead(int body) const;

@@ -101,6 +101,7 @@ void ContactStage::addConstraints(const SimulatedWorld& world, const ContactMani
     constraint.friction = surface.friction;
     constraint.restitution = surface.restitution;
     constraint.impact_friction_factor = surface.impact_friction_factor;
+    constraint.impact_friction_speed = surface.impact_friction_speed;
     constraint.stiffness = contact.weight * surface.stiffness;
     constraint.damping = contact.weight * surface.damping;
     if (recovers && contact.depth > 0) separate(std::min(massOf(world, a), massOf(world, b)), manifold.layer, &constraint);
@@ -121,8 +122,8 @@ void ContactStage::addStops(const SimulatedWorld& world, const ContactManifold& 
   }
 }
 
-void ContactStage::reduction(const SimulatedWorld& world, const std::vector<BodyState>& bodies, double dt) {
-  meetings_.look(world, bodies, *this, current_search_.flush, dt);
+void ContactStage::reduction(const SimulatedWorld& world, const std::vector<BodyState>& bodies, const Expectation& expected, double dt) {
+  meetings_.look(world, bodies, *this, current_search_.flush, expected, dt);
   meetings_.exchange(&current_);
   for (ContactManifold& manifold : reduced_) manifold.contacts.clear();  // a pair without contacts now keeps none
   model_a_.clear();

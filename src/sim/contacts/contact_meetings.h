@@ -11,6 +11,17 @@ namespace blem_sim {
 
 class ContactStage;
 
+/** Two colliders whose contacts before touch are looked at once more. */
+struct PairAside {
+  int a, b;
+};
+
+/** Way of some pairs that is known better than from the velocities at hand. */
+struct Expectation {
+  std::vector<PairAside> pairs;   ///< sorted by (a, b)
+  std::vector<BodyState> bodies;  ///< states at the end of the solve; empty: contacts that do not touch are left out
+};
+
 /**
  * A contact before touch bounds the closing speed along the normal of its pose. While a body moves across that normal, the contact's
  * features pass each other, or meet along another normal. So a pair that, moving on freely, would use up a gap while it moves across it is
@@ -21,9 +32,12 @@ class ContactStage;
  */
 class ContactMeetings {
  public:
-  /** @param contacts of the state at hand @param bodies its states, by slot @param dt [s] of the solve */
+  /**
+   * @param contacts of the state at hand @param bodies its states, by slot @param flush surfaces that meet at it
+   * @param expected pairs that go on otherwise than bodies do at hand @param dt [s] of the solve
+   */
   void look(const SimulatedWorld& world, const std::vector<BodyState>& bodies, const ContactStage& contacts, const FlushSurfaces& flush,
-            double dt);
+            const Expectation& expected, double dt);
   /** Exchanges the contacts of these manifolds for those that are to be solved; a second time back. */
   void exchange(std::vector<ContactManifold>* manifolds);
 
@@ -40,6 +54,12 @@ class ContactMeetings {
   ColliderWay wayOf(const SimulatedWorld& world, const std::vector<BodyState>& bodies, const ContactStage& contacts, int collider,
                     double dt) const;
   double depthOf(const SimulatedWorld& world, int collider) const;
+  void lookAt(const SimulatedWorld& world, const std::vector<BodyState>& bodies, const ContactStage& contacts, const FlushSurfaces& flush,
+              std::size_t manifold, double dt);
+  void lookAgain(const SimulatedWorld& world, const std::vector<BodyState>& bodies, const ContactStage& contacts,
+                 const FlushSurfaces& flush, const Expectation& expected, std::size_t manifold, double dt);
+  void follow(const SimulatedWorld& world, const ContactStage& contacts, const FlushSurfaces& flush, std::size_t manifold, WayOfPair* way);
+  std::vector<Contact>* room(std::size_t manifold);
 
   std::vector<Support> supports_;  // by body
   BodyWays ways_;

@@ -69,9 +69,9 @@ class ContactStage {
   /**
    * At most k contacts per model out of current(), but three of each pair, as constraints, and the stops below soft ones. Contacts before
    * touch are those that will be met (ContactMeetings).
-   * @param bodies states at hand, by slot @param dt [s] of the solve
+   * @param bodies states at hand, by slot @param expected as ContactMeetings takes it @param dt [s] of the solve
    */
-  void reduction(const SimulatedWorld& world, const std::vector<BodyState>& bodies, double dt);
+  void reduction(const SimulatedWorld& world, const std::vector<BodyState>& bodies, const Expectation& expected, double dt);
 
   const std::vector<ContactManifold>& found() const { return found_; }      ///< sorted by (a, b), none empty
   const std::vector<ContactManifold>& current() const { return current_; }  ///< of the accepted state, before reduction

@@ -8,15 +8,11 @@
 namespace blem_sim {
 namespace {
 
-constexpr double TOUCHING = 1e-6;       // [m] a contact with no larger gap touches; a touch on the way that is no deeper is none
-constexpr double ACROSS = 0.01;         // layers that a pair moves across a normal until its gap is used up: less turns no normal
 constexpr double SEARCH_SPACING = 0.5;  // layers between two searches on the way
 constexpr double LONGEST = 1.0 / 16;    // of the solve between two searches where there is no layer
 constexpr double SHORTEST = 1.0 / 512;  // of the solve between two searches
-constexpr int MOST_SEARCHES = 40;
+constexpr int MOST_SEARCHES = 256;
 constexpr double SAME_NORMAL = 0.02;  // sine
-
-bool touches(const Contact& contact) { return contact.depth > -TOUCHING; }
 
 Vector3 relativeVelocity(const WayOfPair& pair, const Vector3& point) { return pair.a.twist.at(point) - pair.b.twist.at(point); }
 

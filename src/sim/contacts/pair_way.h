@@ -10,6 +10,11 @@
 
 namespace blem_sim {
 
+constexpr double TOUCHING = 1e-6;  ///< [m] a contact with no larger gap touches; a touch on the way that is no deeper is none
+constexpr double ACROSS = 0.01;    ///< layers that a pair moves across a normal until its gap is used up: less turns no normal
+
+inline bool touches(const Contact& contact) { return contact.depth > -TOUCHING; }
+
 /** A collider at the start of the solve. */
 struct ColliderWay {
   const Collider* collider;

@@ -81,13 +81,19 @@ void Substeps::redo(double part) {
   size_ = std::clamp(static_cast<int>(std::floor(part * size_)), 1, std::max(1, size_ / 2));
   ++redone_;
   redone_at_hand_ = true;
+  repeated_at_hand_ = false;
+}
+
+void Substeps::repeat() {
+  ++repeated_;
+  repeated_at_hand_ = true;
 }
 
 void Substeps::accept() {
   done_ += size_;
   ++count_;
   size_ = std::min(size_, MAX_SUBSTEPS - done_);
-  redone_at_hand_ = false;
+  redone_at_hand_ = repeated_at_hand_ = false;
 }
 
 }  // namespace blem_sim

@@ -22,12 +22,13 @@ bool usesUpLayer(const std::vector<Collider>& colliders, const std::vector<Conta
                  const std::vector<BodyState>& bodies_after);
 
 /**
- * Divides one step into substeps of whole ticks. So a step costs at most MAX_SUBSTEPS + MAX_REDONE solves, and MAX_REDONE more searches
- * for contacts, whatever happens in it.
+ * Divides one step into substeps of whole ticks. So a step costs at most MAX_SOLVES solves, and as many searches for contacts, whatever
+ * happens in it.
  */
 class Substeps {
  public:
-  static constexpr int MAX_SUBSTEPS = 16, MAX_REDONE = 4;
+  static constexpr int MAX_SUBSTEPS = 16, MAX_REDONE = 4, MAX_REPEATED = 4;
+  static constexpr int MAX_SOLVES = MAX_SUBSTEPS + MAX_REDONE + 2 * MAX_REPEATED;
 
   bool finished() const { return done_ == MAX_SUBSTEPS; }
   double fraction() const { return static_cast<double>(size_) / MAX_SUBSTEPS; }  ///< of the step, the substep at hand
@@ -40,14 +41,19 @@ class Substeps {
   /** Makes the substep at hand again, in this part (0 to 1) of its length in whole ticks, half of it at most, at least one. A substep of
    * one tick is made again once: its contacts are known farther then. */
   void redo(double part);
+  bool canRepeat() const { return repeated_ < MAX_REPEATED && !repeated_at_hand_; }
+  /** Makes the substep at hand again as long as it is, once: with contacts that are known better. */
+  void repeat();
   void accept();
-  int count() const { return count_; }               ///< accepted so far
-  int redone() const { return redone_; }             ///< thrown away so far
-  bool isRedone() const { return redone_at_hand_; }  ///< the substep at hand is made again: its length is fixed
+  int count() const { return count_; }                    ///< accepted so far
+  int redone() const { return redone_ + 2 * repeated_; }  ///< solves thrown away so far
+  /** The substep at hand is made again: its length is fixed. */
+  bool isRedone() const { return redone_at_hand_ || repeated_at_hand_; }
 
  private:
   int size_ = MAX_SUBSTEPS, done_ = 0, count_ = 0, redone_ = 0;
-  bool redone_at_hand_ = false;
+  int repeated_ = 0;
+  bool redone_at_hand_ = false, repeated_at_hand_ = false;
 };
 
 }  // namespace blem_sim

@@ -13,6 +13,11 @@ constexpr double STILL = 1e-3;         // of the layer: less motion uses up noth
 constexpr double HALF = 0.5;           // of the layer
 constexpr double TURN_OF_CHORD = 1.2;  // [rad] of a turn by at most pi, over the Frobenius norm of its change of axes: pi / (2 sqrt 2)
 
+constexpr double BENT = 0.02;  // of the layer: a way that bends less is straight
+
+/** Turn [rad] between two poses, at least. */
+double turnAtMost(const Pose& from, const Pose& to) { return TURN_OF_CHORD * (to.linear() - from.linear()).norm(); }
+
 bool hasArea(const CollisionGeometry& geometry) { return geometry.mesh().isTriangle(0); }
 
 bool canPass(const Collider& a, const Collider& b) {
@@ -50,8 +55,28 @@ void SweepGuard::moveColliders(const SimulatedWorld& world, const ContactStage& 
     if (body == WORLD_BODY) continue;
     const Vector3& com = world.world.bodySpec(body).inertial.com;
     const Pose &from = before[body].X_WB, &to = after[body].X_WB;
-    const double turn = TURN_OF_CHORD * (to.linear() - from.linear()).norm();
-    motion_[i].reach = (to * com - from * com).norm() + turn * contacts.arm(static_cast<int>(i));
+    motion_[i].reach = (to * com - from * com).norm() + turnAtMost(from, to) * contacts.arm(static_cast<int>(i));
+  }
+  bendWays(world, before, after);
+}
+
+/** The middle of a link that turns with its robot's links moves on an arc, whose height over its chord adds to the way. */
+void SweepGuard::bendWays(const SimulatedWorld& world, const std::vector<BodyState>& before, const std::vector<BodyState>& after) {
+  bends_.assign(world.colliders.size(), 0);
+  turns_.assign(world.models.size(), 0);
+  for (std::size_t m = 0; m < turns_.size(); ++m)
+    if (world.models[m].alive && world.models[m].kind == ModelKind::ROBOT)
+      for (const int body : world.models[m].bodies)
+        if (body != WORLD_BODY) turns_[m] = std::max(turns_[m], std::min(M_PI, turnAtMost(before[body].X_WB, after[body].X_WB)));
+  for (std::size_t i = 0; i < bends_.size(); ++i) {
+    const Collider& collider = world.colliders[i];
+    if (collider.body == WORLD_BODY || turns_[collider.model] == 0) continue;
+    const Vector3& com = world.world.bodySpec(collider.body).inertial.com;
+    const double chord = (after[collider.body].X_WB * com - before[collider.body].X_WB * com).norm();
+    const double height = 0.5 * chord * std::tan(0.25 * turns_[collider.model]);
+    if (height < BENT * collider.radius) continue;
+    bends_[i] = height;
+    motion_[i].reach += height;
   }
 }
 
@@ -94,11 +119,12 @@ void SweepGuard::lookAt(const SimulatedWorld& world, int a, int b, double distan
   const double layer = world.colliders[a].radius + world.colliders[b].radius;
   if (!(distance > 0)) return;
   const bool cross = known || hasArea(geometry_a) || hasArea(geometry_b);
-  const auto left = [&](double share) { return std::min(share * layer, 0.5 * distance); };
+  const double bend = bends_[a] + bends_[b];
+  const auto left = [&](double share) { return std::min(share * layer, 0.5 * distance) + bend; };
   const double spared = left(cross ? SPARED : HALF);
   const GeometrySweep sweep_a = sweepOf(world, a), sweep_b = sweepOf(world, b);
-  const double most = mostApproach(geometry_a, sweep_a, geometry_b, sweep_b);
-  if (distance - most >= spared || !mayComeWithin(spared, geometry_a, sweep_a, geometry_b, sweep_b)) return;
+  const double most = mostApproach(geometry_a, sweep_a, geometry_b, sweep_b) + bend;
+  if (distance - most >= spared - bend || !mayComeWithin(spared, geometry_a, sweep_a, geometry_b, sweep_b)) return;
   const bool passed = !cross || mayComeWithin(left(NOTHING), geometry_a, sweep_a, geometry_b, sweep_b);
   close_.push_back({a, b, std::min(1.0, std::max(distance - layer, HALF * layer) / most), passed});
 }

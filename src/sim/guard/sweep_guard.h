@@ -18,7 +18,8 @@ struct ClosePass {
 };
 
 /**
- * Watches the whole way, not only its ends: bodies move evenly from their old poses to the new ones (sweep.h). A pair comes too close where
+ * Watches the whole way, not only its ends: bodies move evenly from their old poses to the new ones (sweep.h), links of robots as far
+ * beside that as their joints bend their ways. A pair comes too close where
  * less than SPARED of its layer is left, and passed where it is less than NOTHING. Two geometries without area (points, segments)
  * whose contact was not known cannot cross: they do both where they use up half of their layers. Pairs that cross already, half-spaces
  * (nothing passes these: a vertex below them is pushed up from any depth) and pairs without a layer are not asked. Bodies that move less
@@ -38,6 +39,7 @@ class SweepGuard {
  private:
   void moveColliders(const SimulatedWorld& world, const ContactStage& contacts, const std::vector<BodyState>& before,
                      const std::vector<BodyState>& after);
+  void bendWays(const SimulatedWorld& world, const std::vector<BodyState>& before, const std::vector<BodyState>& after);
   GeometrySweep sweepOf(const SimulatedWorld& world, int collider) const;
   bool leavesWhatWasSearched(const SimulatedWorld& world, const ContactStage& contacts) const;
   void lookAtOthers(const SimulatedWorld& world, const ContactStage& contacts);
@@ -45,6 +47,8 @@ class SweepGuard {
 
   const std::vector<BodyState>*before_ = nullptr, *after_ = nullptr;
   std::vector<ColliderMotion> motion_;  // poses at the start, and longest ways in the solve
+  std::vector<double> bends_;           // [m] by collider: how far its way may lie beside a straight one
+  std::vector<double> turns_;           // [rad] by model: largest of its links in the solve
   BroadPhase other_pairs_;
   std::vector<ClosePass> close_;
 };

@@ -121,7 +121,7 @@ void writeColliders(const SimulatedWorld& world, LayoutWriter* writer) {
     line("place", ContentHash().add(c.body).add(c.model).add(c.link).add(c.X_BC));
     ContentHash surface;
     surface.add(c.radius).add(c.surface.friction).add(c.surface.restitution).add(c.surface.impact_friction_factor);
-    line("layer or surface", surface.add(c.surface.stiffness).add(c.surface.damping));
+    line("layer or surface", surface.add(c.surface.impact_friction_speed).add(c.surface.stiffness).add(c.surface.damping));
   }
   ContentHash pairs;
   for (const auto& [a, b] : world.disabled_pairs) pairs.add(a).add(b);

@@ -77,6 +77,7 @@ TEST(Manual, SaysWhatHoldsWithoutIt) {
   EXPECT_EQ(manual_config.contact.surface.friction, defaults.contact.surface.friction);
   EXPECT_EQ(manual_config.contact.surface.restitution, defaults.contact.surface.restitution);
   EXPECT_EQ(manual_config.contact.surface.impact_friction_factor, defaults.contact.surface.impact_friction_factor);
+  EXPECT_EQ(manual_config.contact.surface.impact_friction_speed, defaults.contact.surface.impact_friction_speed);
   EXPECT_EQ(manual_config.contact.surface.stiffness, INF);
   EXPECT_EQ(manual_config.contact.surface.damping, INF);
   EXPECT_EQ(manual_config.contact.friction_rule, defaults.contact.friction_rule);
@@ -325,6 +326,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"random_seed: 1.5", {"random_seed"}}, BadInput{"contact: {friction: .inf}", {"contact.friction", "finite"}},
         BadInput{"contact: {restitution: 1.1}", {"contact.restitution"}},
         BadInput{"contact: {impact_friction_factor: 1.1}", {"contact.impact_friction_factor"}},
+        BadInput{"contact: {impact_friction_speed: -1}", {"contact.impact_friction_speed"}},
         BadInput{"contact: {stiffness: 0}", {"contact.stiffness", ".inf"}},
         BadInput{"contact: {max_contacts_per_robot: 0}", {"contact.max_contacts_per_robot"}},
         BadInput{"contact: {max_contacts_per_robot: 2.5}", {"contact.max_contacts_per_robot", "whole"}},

@@ -110,6 +110,18 @@ TEST(BodyWays, LinksSwingEachOtherByNoMoreThanIsTold) {
     }
 }
 
+TEST(BodyWays, LinkIsLedToAPose) {
+  for (const double turn : {0.0, 1e-5, 0.3}) {
+    TwoLinks arm(JointKind::REVOLUTE, Vector3::UnitY(), 5, 90);
+    BodyWays ways;
+    ways.start(arm.world, arm.bodies, LONG_STEP);
+    BodyTwist way = twistOf(arm.world, arm.bodies, arm.upper);
+    ways.leadTo(arm.upper, makePose({0, 0, 0}, {0, turn, 0}), &way);
+    for (const double part : {0.5, 1.0})
+      expectSame(way.moved(arm.bodies[arm.upper].X_WB, part * LONG_STEP), turned(part * turn), Vector3::Zero());
+  }
+}
+
 TEST(BodyWays, BodyOnNoJointGoesStraight) {
   TwoLinks arm(JointKind::REVOLUTE, Vector3::UnitY(), 0, 0);
   BodySpec spec;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sim/contacts/near_miss_scene.h"
+#include "support/scene_numbers.h"
 
 namespace blem_sim {
 namespace {
@@ -54,14 +55,15 @@ std::pair<double, double> feltOf(const Drive& drive, const EnvironmentConfig& ta
 
 /** An arm moves on a bent path; an edge that it misses is not felt, however near it is and however fast the arm sweeps across it. */
 TEST(NearMiss, OfADrivenArmChangesNothing) {
-  const Drive slow{{0, 0, 1e3}, NAN, 3}, fast{{0, 0, 1e3}, NAN, 30}, weak{{0, 0, 0.5}, NAN, 30}, held{{1e5, 0, 1e3}, 2.5, NAN};
+  const Drive slow{{0, 0, 1e3}, NAN, 3}, fast{{0, 0, 1e3}, NAN, 30}, weak{{0, 0, 0.5}, NAN, 30}, held{{1e5, 0, 1e3}, 2.5, NAN},
+      step{{1e3, 0, 10}, 2.5, NAN};
   for (const double clearance : {1e-5, 1e-4, 5e-4})
     for (const double dt : {0.0005, 0.001, 0.005}) {
       EnvironmentConfig table;
       table.name = "table";
       table.uri = meshFile("table_below_arm", gridMesh(0.05, 0.6, 1, 1));
       table.X_WE = makePose({0, 0, -(std::hypot(0.55, 0.05) + LAYER + clearance)});
-      for (const Drive* drive : {&slow, &fast, &weak, &held}) {
+      for (const Drive* drive : {&slow, &fast, &weak, &held, &step}) {
         const auto [force, change] = feltOf(*drive, table, dt);
         SCOPED_TRACE(std::to_string(1000 * clearance) + " mm, dt " + std::to_string(dt) + ", gains " + std::to_string(drive->gains.p) +
                      " " + std::to_string(drive->gains.d) + ", " + std::to_string(drive->velocity) + " rad/s");
@@ -72,6 +74,45 @@ TEST(NearMiss, OfADrivenArmChangesNothing) {
         }
       }
     }
+}
+
+/** Motors of any strength whose target leaps: 0.5 to 300 rad/s at the edge, of which up to 50 come within a step. */
+TEST(NearMiss, OfAnArmThatMotorsSpeedUpAtRandomChangesNothing) {
+  SceneNumbers numbers(1);
+  for (int i = 0; i < 100; ++i) {
+    const Drive drive{{numbers.spread(10, 1e6), 0, numbers.spread(0.1, 1e3)}, numbers.uniform(1.7, 4.2), NAN};
+    const double dt = 0.0005 * numbers.count(1, 20), clearance = numbers.spread(1e-6, 5e-4);
+    EnvironmentConfig table;
+    table.name = "table";
+    table.uri = meshFile("table_below_arm", gridMesh(0.05, 0.6, 1, 1));
+    table.X_WE = makePose({0, 0, -(std::hypot(0.55, 0.05) + LAYER + clearance)});
+    EXPECT_EQ(feltOf(drive, table, dt).first, 0) << i << ": " << 1000 * clearance << " mm, dt " << dt << ", gains " << drive.gains.p << " "
+                                                 << drive.gains.d << ", to " << drive.position << " rad";
+  }
+}
+
+/** Arms that strong motors turn by up to 2 rad in a solve, through a sheet that their cube reaches below by 3 to 23 mm. */
+TEST(Passage, OfAnArmThatTurnsFarInOneSolveIsSaid) {
+  SceneNumbers numbers(1);
+  int driven = 0;
+  for (int i = 0; i < 100; ++i) {
+    const Drive drive{{numbers.spread(1e3, 1e6), 0, numbers.spread(0.1, 1e3)}, numbers.uniform(2.2, 4.2), NAN};
+    const double dt = 0.0005 * numbers.count(1, 20);
+    EnvironmentConfig table;
+    table.name = "table";
+    table.uri = meshFile("table_below_arm", gridMesh(0.05, 0.6, 1, 1));
+    table.X_WE = makePose({0, 0, -(std::hypot(0.55, 0.05) + LAYER - numbers.uniform(0.003, 0.023))});
+    const auto arm = drivenArm(drive, {table}, dt);
+    bool said = false, behind = false;
+    for (double t = 0; t < 0.5 && !behind; t += dt) {
+      const StepReport& report = arm->step();
+      said = said || (report.status & CONTACT_UNRELIABLE);
+      behind = report.joints[0].position > 1.95;
+    }
+    driven += behind || said;
+    EXPECT_TRUE(said || !behind) << i << ": dt " << dt << ", gains " << drive.gains.p << " " << drive.gains.d << ", to " << drive.position;
+  }
+  EXPECT_GT(driven, 5);
 }
 
 /** A cube of 0.1 m at the end of a leg of 0.5 m and 2 kg, on a hinge about y of a torso of 0.5 kg that nothing holds. */

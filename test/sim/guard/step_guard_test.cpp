@@ -37,15 +37,30 @@ TEST(Substeps, CostOfAStepIsBoundedWhateverIsAskedFor) {
   int solves = 0;
   for (; !substeps.finished(); ++solves) {
     if (!substeps.isRedone()) substeps.plan(0.3);
-    if (substeps.canRedo()) {
+    if (substeps.canRepeat()) {
+      substeps.repeat();
+      ++solves;
+    } else if (substeps.canRedo()) {
       substeps.redo(1);
     } else {
       substeps.accept();
     }
-    ASSERT_LE(solves, Substeps::MAX_SUBSTEPS + Substeps::MAX_REDONE);
+    ASSERT_LE(solves, Substeps::MAX_SOLVES);
   }
   EXPECT_LE(substeps.count(), Substeps::MAX_SUBSTEPS);
-  EXPECT_EQ(substeps.redone(), Substeps::MAX_REDONE);
+  EXPECT_EQ(substeps.redone(), Substeps::MAX_REDONE + 2 * Substeps::MAX_REPEATED);
+}
+
+TEST(Substeps, APartIsRepeatedAsLongAsItIsAndOnce) {
+  Substeps substeps;
+  substeps.plan(0.5);
+  substeps.repeat();
+  EXPECT_TRUE(substeps.isRedone());
+  EXPECT_FALSE(substeps.canRepeat());
+  EXPECT_EQ(substeps.fraction(), 0.5);
+  substeps.accept();
+  EXPECT_FALSE(substeps.isRedone());
+  EXPECT_TRUE(substeps.canRepeat());
 }
 
 class UsesUpLayer : public testing::Test {
