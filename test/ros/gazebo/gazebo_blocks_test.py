@@ -10,6 +10,7 @@ import rostest
 from geometry_msgs.msg import Point, Pose, WrenchStamped
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import CameraInfo, Image, Imu, LaserScan, PointCloud2
+from tf2_msgs.msg import TFMessage
 
 from blem_sim import srv
 from blem_sim.msg import ContactsState
@@ -34,7 +35,7 @@ BOX = """<robot name="box"><link name="box"><inertial><mass value="1"/>
 <collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
 <gazebo reference="box"><mu1>0.02</mu1><mu2>0.02</mu2>%s</gazebo></robot>"""
 IMU = """<sensor name="box_imu" type="imu"><plugin name="p" filename="libgazebo_ros_imu_sensor.so"><robotNamespace>/boxes</robotNamespace>
-<topicName>imu</topicName></plugin></sensor>"""
+<topicName>imu</topicName><frameName>extra_frame</frameName></plugin></sensor>"""
 
 
 def spawn(name, xml, name_space="", x=0.0, y=0.7, z=HEIGHT):
@@ -123,6 +124,11 @@ class GazeboBlocksTest(unittest.TestCase):
         wait_until(imu.connected, "the IMU's topic")
         sim_client.step(10)
         self.assertAlmostEqual(imu.wait_for(10)[-1].linear_acceleration.z, G, delta=0.01)
+        self.assertEqual(imu.messages()[-1].header.frame_id, "extra_frame")
+        frames = Recorder("/tf_static", TFMessage)
+        self.addCleanup(frames.stop)
+        mounting = frames.wait_for(1)[0].transforms[-1]
+        self.assertEqual((mounting.header.frame_id, mounting.child_frame_id), ("box", "extra_frame"))
         self.assertTrue(delete("boxed").success)
         self.assertNotIn("/boxes/imu", published())
 

@@ -227,6 +227,18 @@ TEST(GazeboSensor, ImuNoiseInBothLayouts) {
   EXPECT_EQ(told(uneven, "different noise"), 1);
 }
 
+TEST(GazeboSensor, NoiseThatIsNotGaussianIsLeftOut) {
+  const auto ray = [](const std::string& type) {
+    return described(onLink(sensorBlock("ray", "<ray><scan><horizontal><samples>1</samples></horizontal></scan><noise><type>" + type +
+                                                   "</type><stddev>0.1</stddev></noise></ray>")));
+  };
+  EXPECT_EQ(ray("gaussian").config.sensors.at(0).rays.stddev, 0.1);
+  EXPECT_EQ(ray("none").config.sensors.at(0).rays.stddev, 0);
+  EXPECT_EQ(told(ray("none"), "test.urdf"), 0);
+  EXPECT_EQ(ray("pink").config.sensors.at(0).rays.stddev, 0);
+  EXPECT_EQ(told(ray("pink"), "<ray/noise/type>: 'pink' is not known"), 1);
+}
+
 TEST(GazeboSensor, ImuPlugins) {
   const std::string values =
       "<topicName>data</topicName><bodyName>tool</bodyName><gaussianNoise>0.3</gaussianNoise><xyzOffset>0 0 1</xyzOffset>"
