@@ -15,7 +15,7 @@ using Element = tinyxml2::XMLElement;
 
 constexpr std::size_t LONGEST_NAME = 100, LONGEST_TEXT = 1000;  // characters kept
 constexpr int DEEPEST = 12;                                     // elements below a block
-constexpr int MOST_VALUES = 100000, MOST_BLOCKS = 10000;        // of a robot
+constexpr int MOST_VALUES = 30000, MOST_BLOCKS = 10000;         // of a robot
 
 std::string trimmed(const char* text, std::size_t longest) {
   const std::string all = oneLine(text ? text : "");

@@ -8,7 +8,8 @@
 namespace blem_sim {
 namespace {
 
-constexpr std::size_t LISTED = 20;  // names in a line, and lines on faults
+constexpr std::size_t LONGEST_WORDS = 300;  // characters
+constexpr std::size_t LISTED = 20;          // names in a line, and lines on faults
 
 }  // namespace
 
@@ -17,6 +18,10 @@ void GazeboNotes::List::tell(const std::string& beginning, const std::string& en
   const auto last = names_.begin() + static_cast<std::ptrdiff_t>(std::min(names_.size(), LISTED));
   const std::string more = names_.size() > LISTED ? fmt::format(" and {} more", names_.size() - LISTED) : "";
   lines->push_back(fmt::format("{}: {}{}{}", beginning, fmt::join(names_.begin(), last, ", "), more, end));
+}
+
+std::string GazeboNotes::shortened(const std::string& words) {
+  return words.size() > LONGEST_WORDS ? words.substr(0, LONGEST_WORDS) + "..." : words;
 }
 
 std::vector<std::string> GazeboNotes::lines() const {

@@ -13,11 +13,13 @@ class GazeboNotes {
   explicit GazeboNotes(std::string source) : source_(std::move(source)) {}
 
   /** Something that is not read. @param where the block @param what in words, such as <fudge> */
-  void unknown(const std::string& where, const std::string& what) { unknown_.add(where + " " + what); }
+  void unknown(const std::string& where, const std::string& what) { unknown_.add(shortened(where + " " + what)); }
   /** A known element that has nothing to act on here. */
   void withoutEffect(const std::string& element) { without_effect_.add(element); }
   /** Something that cannot be used, and the cure. */
-  void fault(const std::string& where, const std::string& why) { faults_.push_back(source_ + ": " + where + ": " + why); }
+  void fault(const std::string& where, const std::string& why) {
+    faults_.push_back(source_ + ": " + shortened(where) + ": " + shortened(why));
+  }
   /** A link whose friction along the second direction is another one. */
   void anisotropic(const std::string& link) { anisotropic_.add(link); }
   /** A link that should not feel gravity. */
@@ -28,6 +30,9 @@ class GazeboNotes {
   std::vector<std::string> lines() const;
 
  private:
+  /** The beginning of what is absurdly long. */
+  static std::string shortened(const std::string& words);
+
   /** Names once each, in the order they came. */
   class List {
    public:

@@ -34,10 +34,10 @@ double gaussianNoise(GazeboReader* reader) {
   return stddev;
 }
 
-void readImuPlugin(GazeboReader* reader, GazeboSensor* sensor) {
+/** The plugin in a <sensor>, which knows its link. */
+void readImuSensorPlugin(GazeboReader* reader, GazeboSensor* sensor) {
   SensorConfig& config = sensor->config;
   readCommon(reader, sensor);
-  reader->read("bodyName", &config.link);
   double rate = 0;
   reader->read("updateRateHZ", &rate, NumberRange::notNegative());
   slowDown(rate, &config);
@@ -52,7 +52,13 @@ void readImuPlugin(GazeboReader* reader, GazeboSensor* sensor) {
   reader->read("initialOrientationAsReference", &first_is_zero);
   if (first_is_zero.value_or(false))
     reader->fault("initialOrientationAsReference", "the orientation is that in the world (REP 145); it is left out: write false");
+  reader->skip({"bodyName"});
   reader->skipWithoutEffect({"serviceName"});
+}
+
+void readImuPlugin(GazeboReader* reader, GazeboSensor* sensor) {
+  reader->read("bodyName", &sensor->config.link);
+  readImuSensorPlugin(reader, sensor);
 }
 
 void readForceTorquePlugin(GazeboReader* reader, GazeboSensor* sensor) {
@@ -99,6 +105,8 @@ void readCameraPlugin(GazeboReader* reader, GazeboSensor* sensor) {
   readCommon(reader, sensor);
   config.topic = config.name;
   reader->read("cameraName", &config.topic);
+  config.topic.erase(0, std::min(config.topic.find_first_not_of('/'), config.topic.size()));  // never absolute in Gazebo
+  if (config.topic.empty()) config.topic = config.name;
   const auto below = [&](const char* path, std::string* topic) {
     const std::string given = reader->text(path).value_or("");
     if (!given.empty()) *topic = given.front() == '/' ? given : config.topic + "/" + given;
@@ -113,14 +121,14 @@ void readCameraPlugin(GazeboReader* reader, GazeboSensor* sensor) {
   config.rays.nearest = std::max(config.rays.nearest, nearest);
   config.rays.farthest = std::min(config.rays.farthest, farthest);
   reader->skipWithoutEffect({"imageTopicName", "cameraInfoTopicName"});
-  reader->skip({"baseline", "CxPrime", "Cx", "Cy", "focalLength", "rangeMax", "useDepth16UC1"});
+  reader->skip({"baseline", "CxPrime", "CyPrime", "Cx", "Cy", "Fx", "Fy", "focalLength", "rangeMax", "useDepth16UC1"});
   reader->skipZeros({"hackBaseline", "distortionK1", "distortionK2", "distortionK3", "distortionT1", "distortionT2", "distortion_k1",
                      "distortion_k2", "distortion_k3", "distortion_t1", "distortion_t2"});
 }
 
 const GazeboPluginType PLUGIN_TYPES[] = {
     {"gazebo_ros_imu", SensorType::IMU, false, readImuPlugin},
-    {"gazebo_ros_imu_sensor", SensorType::IMU, true, readImuPlugin},
+    {"gazebo_ros_imu_sensor", SensorType::IMU, true, readImuSensorPlugin},
     {"gazebo_ros_ft_sensor", SensorType::FORCE_TORQUE, false, readForceTorquePlugin},
     {"gazebo_ros_bumper", SensorType::CONTACT, true, readBumper},
     {"gazebo_ros_p3d", SensorType::ODOMETRY, false, readP3d},

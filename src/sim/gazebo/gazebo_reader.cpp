@@ -8,6 +8,11 @@
 #include <sstream>
 
 namespace blem_sim {
+namespace {
+
+constexpr double NEARLY_ZERO = 1e-6;  // written where other programs refuse 0
+
+}  // namespace
 
 std::optional<std::string> GazeboReader::text(const std::string& path) {
   known_.insert(path);
@@ -103,7 +108,7 @@ void GazeboReader::skipZeros(std::initializer_list<const char*> paths) {
   for (const char* path : paths) {
     double number = 0;
     read(path, &number, NumberRange::any());
-    if (number != 0) notes_.unknown(where(), fmt::format("<{}>", path));
+    if (std::abs(number) > NEARLY_ZERO) notes_.unknown(where(), fmt::format("<{}>", path));
   }
 }
 

@@ -70,11 +70,15 @@ class GazeboBlocksTest(unittest.TestCase):
                       "without effect here: controlPeriod"):
             self.assertEqual(answer.status_message.count(words), 1, words + " in " + answer.status_message)
         first = self.listen("first")
+        frames = Recorder("/tf_static", TFMessage)
+        self.addCleanup(frames.stop)
         sim_client.step(1000)
         for topic, (_, rate, frame) in TOPICS.items():
             messages = first[topic].wait_for(rate)
             self.assertEqual(len(messages), rate, topic)
             self.assertEqual(messages[-1].header.frame_id, frame, topic)
+        told = [transform.child_frame_id for message in frames.messages() for transform in message.transforms]
+        self.assertFalse(set(told) & {frame for _, _, frame in TOPICS.values()}, "links are on /tf")
         self.check_values({topic: recorder.messages()[-1] for topic, recorder in first.items()})
         self.assertTrue(spawn("second", self.robot, "second", x=-0.6, y=-0.6).success)
         second = self.listen("second")

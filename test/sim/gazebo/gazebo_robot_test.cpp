@@ -173,6 +173,12 @@ INSTANTIATE_TEST_SUITE_P(
                  "<robotNamespace>: '/r2' is not where"}),
     [](const testing::TestParamInfo<BadBlock>& info) { return std::string(info.param.name); });
 
+TEST(GazeboBlocks, LongWordsAreCut) {
+  const GazeboRobot robot = described(onLink("<mu1>" + std::string(900, 'x') + "</mu1>"));
+  ASSERT_EQ(robot.notes.size(), 1u);
+  EXPECT_LT(robot.notes[0].size(), 400u);
+}
+
 TEST(GazeboSensor, ForceTorqueByPluginAndBySensor) {
   const GazeboRobot robot =
       described("<gazebo>" +
@@ -243,10 +249,11 @@ TEST(GazeboSensor, ImuPlugins) {
   const std::string values =
       "<topicName>data</topicName><bodyName>tool</bodyName><gaussianNoise>0.3</gaussianNoise><xyzOffset>0 0 1</xyzOffset>"
       "<rpyOffset>0 0 1</rpyOffset><frameName>/tool_imu</frameName>";
-  const GazeboRobot robot =
-      described("<gazebo>" + plugin("imu", values + "<updateRate>50</updateRate><serviceName>calibrate</serviceName>") + "</gazebo>" +
-                onLink(sensorBlock("imu", "<update_rate>100</update_rate>" +
-                                              plugin("imu_sensor", "<topicName>b</topicName><updateRateHZ>400</updateRateHZ>"))));
+  const GazeboRobot robot = described(
+      "<gazebo>" + plugin("imu", values + "<updateRate>50</updateRate><serviceName>calibrate</serviceName>") + "</gazebo>" +
+      onLink(sensorBlock(
+          "imu", "<update_rate>100</update_rate>" +
+                     plugin("imu_sensor", "<topicName>b</topicName><bodyName>anywhere</bodyName><updateRateHZ>400</updateRateHZ>"))));
   ASSERT_EQ(robot.config.sensors.size(), 2u) << allNotes(robot);
   const SensorConfig &model = robot.config.sensors[0], &inside = robot.config.sensors[1];
   EXPECT_EQ(model.name + " " + model.link + " " + model.topic + " " + model.frame_id, "p tool data tool_imu");
@@ -292,12 +299,14 @@ TEST(GazeboSensor, RayAndDepth) {
           "<camera name=\"c\"><horizontal_fov>1.2</horizontal_fov><image><width>64</width><height>48</height></image><clip><near>0.05"
           "</near><far>8</far></clip></camera>" +
               plugin("openni_kinect",
-                     "<cameraName>cam</cameraName><depthImageTopicName>d</depthImageTopicName><depthImageInfoTopicName>/i"
+                     "<cameraName>/cam</cameraName><distortionK1>0.00000001</distortionK1><CxPrime>320.5</CxPrime><depthImageTopicName>d</"
+                     "depthImageTopicName><depthImageInfoTopicName>/i"
                      "</depthImageInfoTopicName><pointCloudTopicName>/p</pointCloudTopicName><pointCloudCutoff>0.4</pointCloudCutoff>"
                      "<frameName>optical</frameName><updateRate>15</updateRate>"),
           "eye")));
   ASSERT_EQ(robot.config.sensors.size(), 2u) << allNotes(robot);
   const SensorConfig &scan = robot.config.sensors[0], &eye = robot.config.sensors[1];
+  EXPECT_EQ(robot.notes.size(), 1u) << allNotes(robot);
   EXPECT_EQ(scan.type, SensorType::LIDAR);
   EXPECT_EQ(scan.topic + " " + scan.frame_id, "cloud leg");
   EXPECT_EQ(scan.rays.beams, 50);
