@@ -42,7 +42,8 @@ void readWrenchSensor(GazeboReader* reader, SensorConfig* sensor) {
     if (std::find(words.begin(), words.end(), *given) != words.end())
       *value = *given;
     else
-      reader->fault(path, fmt::format("'{}' is not known; it is left out: write one of {}", *given, fmt::join(words, ", ")));
+      reader->fault(path,
+                    fmt::format("'{}' is not known; it is left out: write one of {}", *given, fmt::join(words.begin(), words.end(), ", ")));
   };
   sensor->measure = "child_to_parent";
   choose("force_torque/frame", {"child", "parent", "sensor"}, &sensor->frame);
