@@ -244,7 +244,7 @@ void CollisionFilter::setSelfCollision(int model, bool on) {
   }
 }
 
-void CollisionFilter::setSelfCollision(int model, const std::set<int>& links) {
+void CollisionFilter::setSelfCollidingLinks(int model, const std::set<int>& links) {
   setSelfCollision(model, !links.empty());
   if (!links.empty()) self_colliding_links_[model] = links;
 }

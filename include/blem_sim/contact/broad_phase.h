@@ -22,7 +22,7 @@ class CollisionFilter {
   /** Colliders of one model touch each other only if this is on (robots; default off). */
   void setSelfCollision(int model, bool on);
   /** Colliders of these links touch any other collider of their model; the model's others do not touch each other. */
-  void setSelfCollision(int model, const std::set<int>& links);
+  void setSelfCollidingLinks(int model, const std::set<int>& links);
   const std::set<int>& selfCollidingLinks(int model) const;  ///< empty: all of a model that self-collides
   bool selfCollides(int model) const { return self_colliding_models_.count(model) > 0; }
   /** Two bodies that never touch: neighbours at a joint, listed pairs. Order does not matter. */

@@ -126,7 +126,7 @@ void RobotBuilder::setSelfCollision() {
   if (config_.self_collision)
     world_->filter.setSelfCollision(info_.model, *config_.self_collision);
   else
-    world_->filter.setSelfCollision(info_.model, links);
+    world_->filter.setSelfCollidingLinks(info_.model, links);
 }
 
 void RobotBuilder::addBodies() {
