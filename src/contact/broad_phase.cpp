@@ -236,11 +236,23 @@ class BroadPhase::Search {
 };
 
 void CollisionFilter::setSelfCollision(int model, bool on) {
+  self_colliding_links_.erase(model);
   if (on) {
     self_colliding_models_.insert(model);
   } else {
     self_colliding_models_.erase(model);
   }
+}
+
+void CollisionFilter::setSelfCollidingLinks(int model, const std::set<int>& links) {
+  setSelfCollision(model, !links.empty());
+  if (!links.empty()) self_colliding_links_[model] = links;
+}
+
+const std::set<int>& CollisionFilter::selfCollidingLinks(int model) const {
+  static const std::set<int> ALL;
+  const auto some = self_colliding_links_.find(model);
+  return some == self_colliding_links_.end() ? ALL : some->second;
 }
 
 void CollisionFilter::disableBodies(int body_a, int body_b) { disabled_bodies_.insert(std::minmax(body_a, body_b)); }
@@ -252,7 +264,11 @@ void CollisionFilter::forgetBody(int body) {
 
 bool CollisionFilter::allows(const Collider& a, const Collider& b) const {
   if (!a.enabled || !b.enabled || a.body == b.body) return false;
-  if (a.model == b.model && a.model >= 0 && !selfCollides(a.model)) return false;
+  if (a.model == b.model && a.model >= 0) {
+    if (!selfCollides(a.model)) return false;
+    const std::set<int>& links = selfCollidingLinks(a.model);
+    if (!links.empty() && links.count(a.link) == 0 && links.count(b.link) == 0) return false;
+  }
   return disabled_bodies_.count(std::minmax(a.body, b.body)) == 0;
 }
 

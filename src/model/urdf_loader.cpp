@@ -164,6 +164,7 @@ RobotModel loadUrdf(const std::string& xml, const std::string& source, const Uri
   robot.source = source;
   robot.notes = outline.notes;
   robot.transmissions = outline.transmissions;
+  robot.gazebo = outline.gazebo;
   CollisionShapeReader shapes(resolver, base, mending);
   readLinks(*model, outline, progress, &shapes, &robot);
   robot.root = robot.linkIndex(model->getRoot()->name);

@@ -10,6 +10,7 @@
 #include "blem_sim/geometry/input_error.h"
 #include "config/config_check.h"
 #include "config/scene_limits.h"
+#include "gazebo/gazebo_robot.h"
 #include "numbers/nearest_name.h"
 #include "numbers/number_reader.h"
 #include "simulator_impl.h"
@@ -55,7 +56,8 @@ void Simulator::Impl::spawn(RobotConfig robot) {
     throw InputError(fmt::format("{}: there are {} models, which is the most; delete some", robot.name, MOST_MODELS));
   const std::shared_ptr<const RobotModel> model = builder_.describe(robot);
   robot.fixed_base = robot.fixed_base || model->links[model->root].name == WORLD_LINK;
-  const bool one_free_body = !robot.fixed_base && robot.sensors.empty() && lumpFixedJoints(*model, {}, false).bodies.size() == 1;
+  const bool one_free_body =
+      !robot.fixed_base && withGazeboBlocks(robot, *model).config.sensors.empty() && lumpFixedJoints(*model, {}, false).bodies.size() == 1;
   if (one_free_body)
     builder_.addObject(objectOf(robot), &world_);
   else

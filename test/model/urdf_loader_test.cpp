@@ -204,10 +204,10 @@ TEST(UrdfLoader, transmissionsAreRead) {
 
 TEST(UrdfLoader, notesSayWhatIsLeftOut) {
   const RobotModel robot = load(
-      "<link name=\"a\"/><link name=\"b\"/><gazebo/><gazebo reference=\"a\"/><transmission name=\"t\"/>"
+      "<link name=\"a\"/><link name=\"b\"/><wheel/><wheel/><transmission name=\"t\"/>"
       "<joint name=\"j\" type=\"revolute\"><parent link=\"a\"/><child link=\"b\"/><limit effort=\"0\" velocity=\"1\"/>"
       "<safety_controller k_velocity=\"1\"/></joint>");
-  for (const char* words : {"<gazebo> left out (2", "transmission 't' left out", "cannot move", "effort limit 0", "touches nothing"})
+  for (const char* words : {"<wheel> left out (2", "transmission 't' left out", "cannot move", "effort limit 0", "touches nothing"})
     EXPECT_TRUE(noted(robot.notes, words)) << words;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <set>
 #include <utility>
 #include <vector>
@@ -20,6 +21,9 @@ class CollisionFilter {
  public:
   /** Colliders of one model touch each other only if this is on (robots; default off). */
   void setSelfCollision(int model, bool on);
+  /** Colliders of these links touch any other collider of their model; the model's others do not touch each other. */
+  void setSelfCollidingLinks(int model, const std::set<int>& links);
+  const std::set<int>& selfCollidingLinks(int model) const;  ///< empty: all of a model that self-collides
   bool selfCollides(int model) const { return self_colliding_models_.count(model) > 0; }
   /** Two bodies that never touch: neighbours at a joint, listed pairs. Order does not matter. */
   void disableBodies(int body_a, int body_b);
@@ -29,6 +33,7 @@ class CollisionFilter {
 
  private:
   std::set<int> self_colliding_models_;
+  std::map<int, std::set<int>> self_colliding_links_;  // by model, of those where only some do
   std::set<std::pair<int, int>> disabled_bodies_;
 };
 

@@ -73,8 +73,7 @@ LoadedSurface loadSurface(const std::string& file, const Vector3& scale = Vector
                           Mending mending = Mending::ON, const LoadProgress& progress = {});
 
 /**
- * Parses URDF text. Limits of 1e6 and more mean none. Blocks that are not simulated (safety_controller, gazebo, transmission ...) are
- * noted.
+ * Parses URDF text. Limits of 1e6 and more mean none. Elements that are not simulated are noted; <gazebo> blocks are kept as texts.
  * @param source for messages; @param base directory for relative mesh paths. @param progress told link by link; may be empty
  * @throws InputError
  */

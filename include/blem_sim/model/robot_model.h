@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "blem_sim/geometry/triangle_mesh.h"
+#include "blem_sim/model/gazebo_blocks.h"
 
 namespace blem_sim {
 
@@ -79,8 +80,9 @@ struct RobotModel {
   std::vector<LinkModel> links;
   std::vector<JointModel> joints;
   std::vector<Transmission> transmissions;
-  int root = 0;                    ///< index of the root link
-  std::vector<std::string> notes;  ///< repairs and parts left out, in words
+  std::vector<GazeboBlock> gazebo;  ///< <gazebo> blocks in the file's order
+  int root = 0;                     ///< index of the root link
+  std::vector<std::string> notes;   ///< repairs and parts left out, in words
 
   int linkIndex(const std::string& link) const;    ///< -1 if there is none
   int jointIndex(const std::string& joint) const;  ///< -1 if there is none

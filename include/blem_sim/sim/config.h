@@ -4,6 +4,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -66,7 +67,7 @@ struct JointFriction {
   double dry = 0, viscous = 0;
 };
 
-enum class SensorType { FORCE_TORQUE, IMU, CONTACT, TILT, MOTOR_CURRENT, DEPTH_CAMERA, LIDAR };
+enum class SensorType { FORCE_TORQUE, IMU, CONTACT, TILT, MOTOR_CURRENT, ODOMETRY, DEPTH_CAMERA, LIDAR };
 
 enum class RangeNoise { GAUSSIAN, KINECT };
 
@@ -82,6 +83,11 @@ struct RangeSensorConfig {
   double lowest_angle = 0, highest_angle = 0;     ///< [rad] lidar: of the outer layers above the plane of x and y
 };
 
+/** Topics of a depth camera; empty: image_raw and so on below depth/ below the sensor's topic. */
+struct CameraTopics {
+  std::string image_raw, image, camera_info, points;
+};
+
 /** Sensors that look: depth_camera and lidar. */
 inline bool isRangeSensor(SensorType type) { return type == SensorType::DEPTH_CAMERA || type == SensorType::LIDAR; }
 
@@ -91,14 +97,19 @@ struct SensorConfig {
   std::string joint;                        ///< force_torque
   std::string frame = "child";              ///< force_torque: child | parent | sensor (axes of the joint frame)
   std::string measure = "parent_to_child";  ///< force_torque: parent_to_child (the wrench on the child) | child_to_parent
-  std::string link;                         ///< imu, contact, tilt, depth_camera, lidar
+  std::string link;                         ///< imu, contact, tilt, odometry, depth_camera, lidar
   std::string topic;                        ///< empty: the sensor's name
-  Pose X_LS = Pose::Identity();             ///< imu, tilt, depth_camera, lidar: sensor in the link
+  std::string frame_id;                     ///< of the messages; empty: what the readings are in. odometry: name of the world
+  Pose X_LS = Pose::Identity();             ///< imu, tilt, odometry, depth_camera, lidar: sensor in the link
+  std::string twist = "link";               ///< odometry: axes of the velocities, link (the sensor's) | world
   double rate = 0;                          ///< [Hz], 0 = every step
-  double noise_stddev = 0;                  ///< force_torque [N, N m]
+  double noise_stddev = 0;                  ///< force_torque [N, N m]; odometry [m, rad, m/s, rad/s]
   double accel_stddev = 0, gyro_stddev = 0, accel_bias_stddev = 0, gyro_bias_stddev = 0;
-  std::map<std::string, double> torque_constant;  ///< motor_current, by joint, "default"
-  RangeSensorConfig rays;                         ///< depth_camera, lidar
+  double accel_bias = 0, gyro_bias = 0;                ///< imu: mean of a constant bias of each axis [m/s^2, rad/s]
+  double accel_bias_spread = 0, gyro_bias_spread = 0;  ///< imu: standard deviation of it, drawn with the first reading
+  std::map<std::string, double> torque_constant;       ///< motor_current, by joint, "default"
+  RangeSensorConfig rays;                              ///< depth_camera, lidar
+  CameraTopics camera_topics;                          ///< depth_camera
 };
 
 struct RobotConfig {
@@ -110,11 +121,13 @@ struct RobotConfig {
   bool fixed_base = false;
   Pose X_WR = Pose::Identity();  ///< root link in the world
   std::map<std::string, double> initial_positions;
-  bool self_collision = false;
+  std::optional<bool> self_collision;          ///< links touch each other; none given: what the URDF says, else they do not
+  std::set<std::string> self_colliding_links;  ///< links that touch any other of the robot, if self_collision is not given
   std::vector<std::pair<std::string, std::string>> disable_collisions;
   ContactOverrides contact;
   std::map<std::string, ContactOverrides> links;
-  std::map<std::string, JointGains> gains;       ///< by joint, "default"
+  std::map<std::string, ContactOverrides> described_links;  ///< of the URDF's <gazebo> blocks; beaten by contact and links
+  std::map<std::string, JointGains> gains;                  ///< by joint, "default"
   std::map<std::string, JointGains> pid_gains;   ///< by joint, of gazebo_ros_control; gains beat them, names of no joint are left out
   MotorDefault motors = MotorDefault::COMPUTED;  ///< of joints that gains do not name
   std::map<std::string, MotorLaw> motor;         ///< by joint, "default"; implicit_pd where there is none

@@ -75,6 +75,12 @@ struct MotorCurrentReading {
   std::vector<std::string> joints;
   std::vector<double> efforts, currents;  ///< [N m or N], [A] means over the step
 };
+struct OdometryReading {
+  Vector3 position;                           ///< [m] sensor in the world
+  Quaternion orientation;                     ///< sensor in the world
+  Vector3 linear_velocity, angular_velocity;  ///< [m/s, rad/s] of the sensor's origin and axes, in the axes its configuration asks for
+  double stddev;                              ///< of each of them
+};
 struct RangeView;
 /** A view that is taken, not drawn: depthsOf (range_view.h) draws it when somebody wants to see it. */
 struct DepthCameraReading {
@@ -85,8 +91,8 @@ struct LidarReading {
   std::shared_ptr<const RangeView> view;
 };
 /** A new sensor is one alternative; sensorValues and the visits in ros do not compile until they know it. */
-using SensorReading =
-    std::variant<ForceTorqueReading, ImuReading, ContactReading, TiltReading, MotorCurrentReading, DepthCameraReading, LidarReading>;
+using SensorReading = std::variant<ForceTorqueReading, ImuReading, ContactReading, TiltReading, MotorCurrentReading, OdometryReading,
+                                   DepthCameraReading, LidarReading>;
 
 struct SensorSample {
   int sensor = 0;  ///< index into Simulator::sensors()

@@ -12,6 +12,7 @@
 
 #include "blem_sim/geometry/input_error.h"
 #include "checks/one_line.h"
+#include "checks/urdf_gazebo.h"
 #include "checks/urdf_transmissions.h"
 #include "checks/urdf_tree_check.h"
 
@@ -182,7 +183,7 @@ JointOutline checkJoint(const Element& joint, const std::string& where) {
   return outline;
 }
 
-/** Counts blocks that are not simulated, such as <gazebo>. */
+/** Counts elements that are not simulated. */
 void countExtensions(const Element& element, const std::set<std::string>& known, std::map<std::string, int>* left_out) {
   forChildren(element, nullptr, [&](const Element& child) {
     if (known.count(child.Name()) == 0) ++(*left_out)[child.Name()];
@@ -215,7 +216,7 @@ UrdfOutline checkUrdf(const std::string& xml, const std::string& source) {
   const Element& robot = robotElement(document, xml, source);
   UrdfOutline outline;
   std::map<std::string, int> left_out;
-  countExtensions(robot, {"link", "joint", "material", "transmission"}, &left_out);
+  countExtensions(robot, {"link", "joint", "material", "transmission", "gazebo"}, &left_out);
   forChildren(robot, "link", [&](const Element& link) {
     outline.links.push_back(attribute(link, "name"));
     checkLink(link, fmt::format("{}: link '{}'", source, outline.links.back()));
@@ -229,6 +230,7 @@ UrdfOutline checkUrdf(const std::string& xml, const std::string& source) {
   });
   checkTree(outline.links, joints, source);
   outline.transmissions = readTransmissions(robot, outline.joints, source, &outline.notes);
+  outline.gazebo = readGazeboBlocks(robot, &outline.notes);
   for (const auto& [name, count] : left_out)
     outline.notes.push_back(fmt::format("<{}> left out ({} of them): it is not simulated", name, count));
   return outline;

@@ -13,6 +13,7 @@ struct UrdfOutline {
   std::vector<std::string> links;
   std::vector<std::string> joints;
   std::vector<Transmission> transmissions;
+  std::vector<GazeboBlock> gazebo;
   std::vector<std::string> notes;
 };
 

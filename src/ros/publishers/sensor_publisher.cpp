@@ -30,6 +30,7 @@ struct ReadingPublisher {
   const Simulator& simulator;
   const StepReport& report;
   const std::string& frame_id;
+  const std::string& child_frame_id;  // of odometry
   SensorMessages* messages;
   ListenedPublisher* publisher;                      // none for cameras and lidars
   const std::shared_ptr<const RangeTopics>& topics;  // for them alone
@@ -46,7 +47,6 @@ struct ReadingPublisher {
 
   void operator()(const ForceTorqueReading& reading) const {
     const auto message = startedFrom(&messages->wrenches);
-    if (!reading.frame_id.empty()) message->header.frame_id = reading.frame_id;
     message->wrench = toWrench(reading.force, reading.torque);
     sender->add(publisher, message);
   }
@@ -81,6 +81,17 @@ struct ReadingPublisher {
     sender->add(publisher, message);
   }
 
+  void operator()(const OdometryReading& reading) const {
+    const auto message = startedFrom(&messages->odometries);
+    message->child_frame_id = child_frame_id;
+    message->pose.pose.position = toPoint(reading.position);
+    message->pose.pose.orientation = toQuaternion(reading.orientation);
+    message->twist.twist = toTwist(reading.linear_velocity, reading.angular_velocity);
+    for (int diagonal = 0; diagonal < 36; diagonal += 7)
+      message->pose.covariance[diagonal] = message->twist.covariance[diagonal] = reading.stddev * reading.stddev;
+    sender->add(publisher, message);
+  }
+
   void operator()(const DepthCameraReading& reading) const { ranges->publish(topics, report.time, frame_id, reading.view); }
 
   void operator()(const LidarReading& reading) const { ranges->publish(topics, report.time, frame_id, reading.view); }
@@ -97,6 +108,8 @@ ListenedPublisher advertise(ros::NodeHandle* node, SensorType type, const std::s
       return ListenedPublisher::advertise<ContactsState>(node, topic, SENSOR_QUEUE);
     case SensorType::MOTOR_CURRENT:
       return ListenedPublisher::advertise<MotorCurrents>(node, topic, SENSOR_QUEUE);
+    case SensorType::ODOMETRY:
+      return ListenedPublisher::advertise<nav_msgs::Odometry>(node, topic, SENSOR_QUEUE);
     case SensorType::DEPTH_CAMERA:
     case SensorType::LIDAR:
       break;  // RangePublisher's
@@ -112,16 +125,35 @@ struct Mounting {
   Pose X_LF;
 };
 
-/** The optical frame of a camera; the frame of another sensor that sits askew in its link; none if it is the link's. */
+/** The optical frame of a camera; the frame of another sensor that sits askew in its link, or has a frame_id; none if it is the link's. */
 std::optional<Mounting> mountingOf(const SensorConfig& sensor) {
+  const std::string told = sensor.type == SensorType::ODOMETRY ? "" : sensor.frame_id;
   if (sensor.type == SensorType::DEPTH_CAMERA) {
     Pose X_SO = Pose::Identity();
     X_SO.linear() = opticalAxes();
-    return Mounting{sensor.name + "_optical_frame", sensor.X_LS * X_SO};
+    return Mounting{told.empty() ? sensor.name + "_optical_frame" : told, sensor.X_LS * X_SO};
   }
-  const bool sits_anyhow = sensor.type == SensorType::IMU || sensor.type == SensorType::TILT || sensor.type == SensorType::LIDAR;
-  if (!sits_anyhow || sensor.X_LS.isApprox(Pose::Identity(), 1e-12)) return std::nullopt;
-  return Mounting{sensor.name + "_frame", sensor.X_LS};
+  const bool sits_anyhow = sensor.type == SensorType::IMU || sensor.type == SensorType::TILT || sensor.type == SensorType::ODOMETRY ||
+                           sensor.type == SensorType::LIDAR;
+  if (!sits_anyhow || (told.empty() && sensor.X_LS.isApprox(Pose::Identity(), 1e-12))) return std::nullopt;
+  return Mounting{told.empty() ? sensor.name + "_frame" : told, sensor.X_LS};
+}
+
+/** Names of frames in a sensor's messages. */
+void nameFrames(const SensorInfo& sensor, SensorTopic* topic) {
+  const std::optional<Mounting> mounting = mountingOf(sensor.config);
+  const std::string& told = sensor.config.frame_id;
+  const std::string own = mounting ? mounting->frame : sensor.frame_id;
+  if (sensor.config.type == SensorType::ODOMETRY) {
+    topic->frame = told.empty() ? WORLD_FRAME : told;
+    topic->child_frame = own;
+  } else {
+    topic->frame = told.empty() ? own : told;
+  }
+}
+
+std::vector<std::string> topicsOf(const SensorConfig& sensor) {
+  return isRangeSensor(sensor.type) ? rangeTopics(topicOf(sensor), sensor) : std::vector<std::string>{topicOf(sensor)};
 }
 
 }  // namespace
@@ -133,25 +165,15 @@ SensorPublisher::SensorPublisher(ros::NodeHandle node, const Simulator& simulato
 
 void SensorPublisher::modelsChanged() {
   std::set<std::string> names;
-  for (const SensorInfo& sensor : simulator_.sensors()) {
-    const std::string topic = topicOf(sensor.config);
-    std::string error;
-    if (topic.empty() || !ros::names::validate(topic, error)) {
-      throw InputError("sensors: " + sensor.config.name + ": '" + topic + "' is no ROS topic; use letters, digits, _ and /");
-    }
-    const std::string name = nodeOf(sensor).resolveName(topic);
-    if (!names.insert(name).second) {
-      throw InputError("sensors: " + sensor.config.name + ": another sensor publishes on " + name + "; set topic");
-    }
-  }
+  for (const SensorInfo& sensor : simulator_.sensors())
+    for (const std::string& topic : topicsOf(sensor.config)) checkTopic(sensor, topic, &names);
   const auto keyOf = [this](const SensorInfo& sensor) {
     return std::make_pair(simulator_.robots()[sensor.robot].name, sensor.config.name);
   };
   const auto make = [this](const SensorInfo& sensor) {
     ros::NodeHandle robot_node = nodeOf(sensor);
-    const std::optional<Mounting> mounting = mountingOf(sensor.config);
     SensorTopic topic;
-    topic.frame = mounting ? mounting->frame : sensor.frame_id;
+    nameFrames(sensor, &topic);
     if (isRangeSensor(sensor.config.type))
       topic.ranges = advertiseRanges(&robot_node, topicOf(sensor.config), sensor.config);
     else
@@ -162,6 +184,15 @@ void SensorPublisher::modelsChanged() {
   publishMountings();
 }
 
+void SensorPublisher::checkTopic(const SensorInfo& sensor, const std::string& topic, std::set<std::string>* names) const {
+  std::string error;
+  if (topic.empty() || !ros::names::validate(topic, error))
+    throw InputError("sensors: " + sensor.config.name + ": '" + topic + "' is no ROS topic; use letters, digits, _ and /");
+  const std::string name = nodeOf(sensor).resolveName(topic);
+  if (!names->insert(name).second)
+    throw InputError("sensors: " + sensor.config.name + ": another sensor publishes on " + name + "; set topic");
+}
+
 ros::NodeHandle SensorPublisher::nodeOf(const SensorInfo& sensor) const {
   return ros::NodeHandle(node_, simulator_.robots()[sensor.robot].name_space);
 }
@@ -170,7 +201,8 @@ void SensorPublisher::publishMountings() {
   tf2_msgs::TFMessage message;
   for (const SensorInfo& sensor : simulator_.sensors()) {
     const std::optional<Mounting> mounting = mountingOf(sensor.config);
-    if (!mounting) continue;
+    // The robot's own links are on /tf already.
+    if (!mounting || simulator_.robots()[sensor.robot].description->linkIndex(mounting->frame) >= 0) continue;
     geometry_msgs::TransformStamped transform;
     transform.header.frame_id = sensor.config.link;
     transform.child_frame_id = mounting->frame;
@@ -187,8 +219,9 @@ void SensorPublisher::publish(const StepReport& report) {
     SensorTopic& topic = topics_[sample.sensor];
     if (topic.publisher && !topic.publisher->listened()) continue;
     ListenedPublisher* const publisher = topic.publisher ? &*topic.publisher : nullptr;
-    std::visit(ReadingPublisher{simulator_, report, topic.frame, &topic.messages, publisher, topic.ranges, &ranges_, sender_},
-               sample.reading);
+    std::visit(
+        ReadingPublisher{simulator_, report, topic.frame, topic.child_frame, &topic.messages, publisher, topic.ranges, &ranges_, sender_},
+        sample.reading);
   }
 }
 

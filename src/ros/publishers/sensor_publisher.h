@@ -2,11 +2,13 @@
 
 #include <blem_sim/MotorCurrents.h>
 #include <geometry_msgs/WrenchStamped.h>
+#include <nav_msgs/Odometry.h>
 #include <ros/node_handle.h>
 #include <sensor_msgs/Imu.h>
 
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,12 +26,14 @@ struct SensorMessages {
   MessagePool<geometry_msgs::WrenchStamped> wrenches;
   MessagePool<sensor_msgs::Imu> imus;
   MessagePool<MotorCurrents> currents;
+  MessagePool<nav_msgs::Odometry> odometries;
 };
 
 /** Topic of a sensor. */
 struct SensorTopic {
   std::pair<std::string, std::string> key;     ///< names of the robot and the sensor
   std::string frame;                           ///< frame_id of its messages
+  std::string child_frame;                     ///< child_frame_id of odometry
   std::optional<ListenedPublisher> publisher;  ///< none for cameras and lidars
   std::shared_ptr<const RangeTopics> ranges;   ///< for them alone
   SensorMessages messages;
@@ -45,6 +49,8 @@ class SensorPublisher : public StepPublisher {
   void drain() override { ranges_.drain(); }
 
  private:
+  /** @param names those of all topics so far */
+  void checkTopic(const SensorInfo& sensor, const std::string& topic, std::set<std::string>* names) const;
   void publishMountings();
   ros::NodeHandle nodeOf(const SensorInfo& sensor) const;
 

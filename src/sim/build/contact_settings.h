@@ -2,6 +2,8 @@
 #pragma once
 
 #include <initializer_list>
+#include <map>
+#include <string>
 
 #include "blem_sim/sim/config.h"
 
@@ -29,6 +31,12 @@ inline ContactSettings contactSettings(double boundary_width, const ContactConfi
     settings.surface.damping = o->damping.value_or(settings.surface.damping);
   }
   return settings;
+}
+
+/** Settings of a link; null if it has none. */
+inline const ContactOverrides* overridesOf(const std::map<std::string, ContactOverrides>& links, const std::string& link) {
+  const auto found = links.find(link);
+  return found == links.end() ? nullptr : &found->second;
 }
 
 }  // namespace blem_sim

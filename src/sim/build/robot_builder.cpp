@@ -6,6 +6,7 @@
 #include <set>
 
 #include "blem_sim/geometry/input_error.h"
+#include "blem_sim/sim/range_view.h"
 #include "build/by_joint.h"
 #include "build/robot_motors.h"
 #include "build/robot_names.h"
@@ -57,8 +58,11 @@ std::vector<int> mastersFirst(const LumpedRobot& robot, const std::string& where
 
 }  // namespace
 
-RobotBuilder::RobotBuilder(const RobotConfig& config, const ContactConfig& contact, std::shared_ptr<const RobotModel> model)
-    : config_(config), contact_(contact), model_(std::move(model)) {
+RobotBuilder::RobotBuilder(const RobotConfig& config, const ContactConfig& contact, const std::shared_ptr<const RobotModel>& model)
+    : RobotBuilder(withGazeboBlocks(config, *model), contact, model) {}
+
+RobotBuilder::RobotBuilder(const GazeboRobot& robot, const ContactConfig& contact, std::shared_ptr<const RobotModel> model)
+    : config_(robot.config), contact_(contact), model_(std::move(model)), start_notes_(robot.notes) {
   // The check below refuses a sensor at an unknown joint.
   lumped_ = std::make_shared<const LumpedRobot>(lumpFixedJoints(*model_, jointsWithSensor(config_), config_.fixed_base));
   checkRobotNames(config_, *model_, *lumped_);
@@ -105,7 +109,7 @@ void RobotBuilder::addTo(SimulatedWorld* world, SurfaceLibrary* surfaces) {
   addBodies();
   addJoints();
   addColliders(surfaces);
-  world->filter.setSelfCollision(info_.model, config_.self_collision);
+  setSelfCollision();
   disableNeighbours();
   disableListedPairs();
   ModelInfo& model = world->models[info_.model];
@@ -114,6 +118,15 @@ void RobotBuilder::addTo(SimulatedWorld* world, SurfaceLibrary* surfaces) {
   model.joints = info_.joints;
   model.X_WM = config_.X_WR;
   addSensors(world->addRobot(info_));
+}
+
+void RobotBuilder::setSelfCollision() {
+  std::set<int> links;
+  for (const std::string& link : config_.self_colliding_links) links.insert(model_->linkIndex(link));
+  if (config_.self_collision)
+    world_->filter.setSelfCollision(info_.model, *config_.self_collision);
+  else
+    world_->filter.setSelfCollidingLinks(info_.model, links);
 }
 
 void RobotBuilder::addBodies() {
@@ -171,17 +184,32 @@ void RobotBuilder::addJoint(int j, const MotorSettings& motor) {
 
 void RobotBuilder::addSensors(int robot) {
   for (const SensorConfig& config : config_.sensors) {
-    SensorInfo sensor;
-    sensor.robot = robot;
-    sensor.config = config;
-    if (config.type == SensorType::FORCE_TORQUE) {
-      const JointModel& joint = model_->joints[model_->jointIndex(config.joint)];
-      sensor.frame_id = model_->links[config.frame == "parent" ? joint.parent : joint.child].name;
-    } else {
-      sensor.frame_id = config.type == SensorType::MOTOR_CURRENT ? info_.root_link : config.link;
-    }
-    world_->sensors.push_back(sensor);
+    world_->sensors.push_back({robot, config, frameOf(config)});
+    checkFrame(config);
   }
+}
+
+std::string RobotBuilder::frameOf(const SensorConfig& sensor) const {
+  if (sensor.type == SensorType::FORCE_TORQUE) {
+    const JointModel& joint = model_->joints[model_->jointIndex(sensor.joint)];
+    return model_->links[sensor.frame == "parent" ? joint.parent : joint.child].name;
+  }
+  return sensor.type == SensorType::MOTOR_CURRENT ? info_.root_link : sensor.link;
+}
+
+// A frame_id that is a link's name claims that the readings are in that link's axes.
+void RobotBuilder::checkFrame(const SensorConfig& sensor) {
+  const int claimed = model_->linkIndex(sensor.frame_id), own = model_->linkIndex(frameOf(sensor));
+  if (claimed < 0 || sensor.type == SensorType::ODOMETRY) return;
+  Pose X_LS = sensor.X_LS;
+  if (sensor.type == SensorType::DEPTH_CAMERA) X_LS.linear() = X_LS.linear() * opticalAxes();
+  const LinkPlacement &at_claimed = lumped_->link_placement[claimed], &at_own = lumped_->link_placement[own];
+  const Matrix3 R_FS = at_claimed.X_BL.linear().transpose() * at_own.X_BL.linear() * X_LS.linear();
+  if (at_claimed.body == at_own.body && R_FS.isIdentity(1e-6)) return;
+  note(
+      fmt::format("sensor '{}': its frame_id says '{}', whose axes are not those of its readings; take a link that is turned as they are, "
+                  "or leave it out",
+                  sensor.name, sensor.frame_id));
 }
 
 }  // namespace blem_sim

@@ -9,6 +9,7 @@
 #include "blem_sim/sim/config.h"
 #include "build/simulated_world.h"
 #include "build/surface_library.h"
+#include "gazebo/gazebo_robot.h"
 
 namespace blem_sim {
 
@@ -16,11 +17,12 @@ namespace blem_sim {
 class RobotBuilder {
  public:
   /** Checks everything that can be wrong. @throws InputError */
-  RobotBuilder(const RobotConfig& config, const ContactConfig& contact, std::shared_ptr<const RobotModel> model);
+  RobotBuilder(const RobotConfig& config, const ContactConfig& contact, const std::shared_ptr<const RobotModel>& model);
 
   void addTo(SimulatedWorld* world, SurfaceLibrary* surfaces);
 
  private:
+  RobotBuilder(const GazeboRobot& robot, const ContactConfig& contact, std::shared_ptr<const RobotModel> model);
   void placeBodies();
   double initialPosition(const LumpedJoint& joint) const;
   void addBodies();
@@ -28,8 +30,12 @@ class RobotBuilder {
   void addJoint(int joint, const MotorSettings& motor);
   void addColliders(SurfaceLibrary* surfaces);
   void disableNeighbours();
+  void disableBodies(int lumped_a, int lumped_b);
   void disableListedPairs();
+  void setSelfCollision();
   void addSensors(int robot);
+  std::string frameOf(const SensorConfig& sensor) const;
+  void checkFrame(const SensorConfig& sensor);
   void note(const std::string& words) { world_->notes.push_back(config_.name + ": " + words); }
 
   const RobotConfig config_;

@@ -9,9 +9,9 @@ namespace blem_sim {
 void RobotBuilder::addColliders(SurfaceLibrary* surfaces) {
   for (std::size_t link = 0; link < model_->links.size(); ++link) {
     const LinkModel& description = model_->links[link];
-    const auto overrides = config_.links.find(description.name);
-    const ContactSettings settings = contactSettings(contact_.boundary_width, contact_,
-                                                     {&config_.contact, overrides == config_.links.end() ? nullptr : &overrides->second});
+    const ContactSettings settings = contactSettings(
+        contact_.boundary_width, contact_,
+        {overridesOf(config_.described_links, description.name), &config_.contact, overridesOf(config_.links, description.name)});
     const LinkPlacement& placement = lumped_->link_placement[link];
     const int body = info_.bodies[placement.body];
     for (const CollisionShape& shape : description.collisions) {
@@ -28,26 +28,34 @@ void RobotBuilder::addColliders(SurfaceLibrary* surfaces) {
   }
 }
 
-// Bodies joined by a joint never touch; the bodies inside a planar joint have no links and are seen through. A fixed base is the world,
-// which has other models' colliders too, so the base's are listed one by one.
+// Bodies joined by a joint never touch; the bodies inside a planar joint have no links and are seen through. Bodies that a joint kept for a
+// sensor holds together count as the one they would be without it.
 void RobotBuilder::disableNeighbours() {
-  std::vector<int> parent(lumped_->bodies.size(), -1);
-  for (const LumpedJoint& joint : lumped_->joints) parent[joint.child] = joint.parent;
-  for (std::size_t child = 1; child < parent.size(); ++child) {
-    int p = parent[child];
+  const int count = static_cast<int>(lumped_->bodies.size());
+  std::vector<int> parent(count, -1), rigid(count, 0);  // rigid: first of the bodies that are held together
+  for (const LumpedJoint& joint : lumped_->joints) {
+    parent[joint.child] = joint.parent;
+    rigid[joint.child] = joint.type == JointType::FIXED ? rigid[joint.parent] : joint.child;
+  }
+  const auto above = [&](int first) {
+    int p = parent[first];
     while (p >= 0 && lumped_->bodies[p].links.empty()) p = parent[p];
-    if (p < 0) continue;
-    if (info_.bodies[p] != WORLD_BODY) {
-      world_->filter.disableBodies(info_.bodies[p], info_.bodies[child]);
-      continue;
-    }
-    const int count = static_cast<int>(world_->colliders.size());
-    for (int a = 0; a < count; ++a) {
-      if (!world_->colliders[a].enabled || world_->colliders[a].model != info_.model || world_->colliders[a].body != WORLD_BODY) continue;
-      for (int b = 0; b < count; ++b)
-        if (world_->colliders[b].enabled && world_->colliders[b].body == info_.bodies[child])
-          world_->disabled_pairs.insert(std::minmax(a, b));
-    }
+    return p < 0 ? -1 : rigid[p];
+  };
+  for (int a = 0; a < count; ++a)
+    for (int b = a + 1; b < count; ++b)
+      if (rigid[a] == rigid[b] || above(rigid[b]) == rigid[a] || above(rigid[a]) == rigid[b]) disableBodies(a, b);
+}
+
+// A fixed base is the world, which has other models' colliders too, so the base's are listed one by one.
+void RobotBuilder::disableBodies(int lumped_a, int lumped_b) {
+  const int body_a = info_.bodies[lumped_a], body_b = info_.bodies[lumped_b];
+  if (body_a != WORLD_BODY) return world_->filter.disableBodies(body_a, body_b);
+  const int count = static_cast<int>(world_->colliders.size());
+  for (int a = 0; a < count; ++a) {
+    if (!world_->colliders[a].enabled || world_->colliders[a].model != info_.model || world_->colliders[a].body != WORLD_BODY) continue;
+    for (int b = 0; b < count; ++b)
+      if (world_->colliders[b].enabled && world_->colliders[b].body == body_b) world_->disabled_pairs.insert(std::minmax(a, b));
   }
 }
 

@@ -45,6 +45,7 @@ void checkSensor(const SensorConfig& sensor, const std::string& where, const Nam
     case SensorType::IMU:
     case SensorType::CONTACT:
     case SensorType::TILT:
+    case SensorType::ODOMETRY:
     case SensorType::DEPTH_CAMERA:
     case SensorType::LIDAR:
       requireName(sensor.link, names.links, where + ": link", "link");
@@ -67,6 +68,7 @@ void checkRobotNames(const RobotConfig& config, const RobotModel& model, const L
   checkJoints(config.effort_limits, where + "effort_limits", names.movable, true);
   checkJoints(config.velocity_limits, where + "velocity_limits", names.movable, true);
   checkJoints(config.armature, where + "armature", names.movable, true);
+  for (const std::string& link : config.self_colliding_links) requireName(link, names.links, where + "self_colliding_links", "link");
   for (const auto& entry : config.links) requireName(entry.first, names.links, where + "links", "link");
   for (const auto& pair : config.disable_collisions)
     for (const std::string& link : {pair.first, pair.second}) requireName(link, names.links, where + "disable_collisions", "link");

@@ -12,6 +12,7 @@
 #include "blem_sim/geometry/input_error.h"
 #include "build/contact_settings.h"
 #include "build/robot_builder.h"
+#include "gazebo/gazebo_robot.h"
 
 namespace blem_sim {
 namespace {
@@ -213,12 +214,14 @@ void WorldBuilder::addUrdfObject(const ObjectConfig& config, LoadWatch* watch, S
   }
   if (config.com) inertial.com = *config.com;
   if (config.inertia) inertial.inertia = *config.inertia;
-  const ContactSettings settings = contactSettings(contact_.boundary_width, contact_, {&config.contact});
+  const GazeboRobot described = withGazeboBlocks({}, model);
   const std::string name = config.name + "::" + lumped.bodies[0].name;
   const int body = addFreeBody(name, inertial, config, world);
   const int index = world->addModel(config.name, ModelKind::OBJECT, config.max_contacts.value_or(contact_.max_contacts_per_object));
   world->models[index].bodies = {body};
   for (std::size_t link = 0; link < model.links.size(); ++link) {
+    const ContactSettings settings = contactSettings(
+        contact_.boundary_width, contact_, {overridesOf(described.config.described_links, model.links[link].name), &config.contact});
     for (const CollisionShape& shape : model.links[link].collisions) {
       Collider collider;
       collider.name = config.name + "::" + model.links[link].name;
@@ -230,7 +233,9 @@ void WorldBuilder::addUrdfObject(const ObjectConfig& config, LoadWatch* watch, S
       world->addCollider(collider, shape.radius > 0 ? shape.radius : settings.boundary_width, settings.surface, report);
     }
   }
-  for (const auto* notes : {&model.notes, &lumped.notes})
+  if (!described.config.sensors.empty())
+    world->notes.push_back(config.name + ": objects have no sensors; load it under robots to have them");
+  for (const auto* notes : {&model.notes, &lumped.notes, &described.notes})
     for (const std::string& note : *notes) world->notes.push_back(config.name + ": " + note);
 }
 

@@ -119,6 +119,9 @@ void checkRobot(const RobotConfig& robot) {
     for (const double deviation :
          {sensor.noise_stddev, sensor.accel_stddev, sensor.gyro_stddev, sensor.accel_bias_stddev, sensor.gyro_bias_stddev})
       of_sensor.number("noise", deviation, NumberRange::notNegative());
+    for (const double bias : {sensor.accel_bias, sensor.gyro_bias}) of_sensor.number("noise", bias, NumberRange::any());
+    for (const double spread : {sensor.accel_bias_spread, sensor.gyro_bias_spread})
+      of_sensor.number("noise", spread, NumberRange::notNegative());
     of_sensor.rays(sensor);
   }
 }

@@ -81,6 +81,18 @@ std::vector<std::pair<std::string, std::string>> readPairs(YamlReader& reader, c
   return pairs;
 }
 
+std::set<std::string> readNames(YamlReader& reader, const std::string& key) {
+  const YAML::Node list = reader.node(key);
+  if (!list.IsDefined()) return {};
+  std::set<std::string> names;
+  if (!list.IsSequence()) reader.refuse(key, "must be a list of links: [LinkA, LinkB, ...]");
+  for (const auto& name : list) {
+    if (!name.IsScalar()) reader.refuse(key, "must be a list of links: [LinkA, LinkB, ...]");
+    names.insert(name.Scalar());
+  }
+  return names;
+}
+
 void readSource(YamlReader& reader, RobotConfig* robot) {
   reader.read("urdf", &robot->urdf);
   reader.read("description_param", &robot->description_param);
@@ -115,6 +127,7 @@ RobotConfig readRobot(YamlReader& reader) {
   reader.read("pose", &robot.X_WR);
   robot.initial_positions = readNumbers(reader, "initial_positions", NumberRange::any());
   reader.read("self_collision", &robot.self_collision);
+  robot.self_colliding_links = readNames(reader, "self_colliding_links");
   robot.disable_collisions = readPairs(reader, "disable_collisions");
   robot.contact = readContactOverrides(reader);
   reader.read("max_contacts_per_robot", &robot.max_contacts, 1);

@@ -20,28 +20,43 @@ void readForceTorque(YamlReader& reader, SensorConfig* sensor) {
   const std::vector<std::string> senses = {"parent_to_child", "child_to_parent"};
   requireText(reader, "joint", &sensor->joint);
   if (const auto frame = reader.choice("frame", frames)) sensor->frame = frames[*frame];
+  reader.read("frame_id", &sensor->frame_id);
   if (const auto sense = reader.choice("measure", senses)) sensor->measure = senses[*sense];
   YamlReader noise = reader.section("noise");
   noise.read("stddev", &sensor->noise_stddev, NumberRange::notNegative());
   noise.finish();
 }
 
-void readImu(YamlReader& reader, SensorConfig* sensor) {
+/** The link that a sensor sits on, its pose there, and its messages' frame. */
+void readMounting(YamlReader& reader, SensorConfig* sensor) {
   requireText(reader, "link", &sensor->link);
   reader.read("pose", &sensor->X_LS);
+  reader.read("frame_id", &sensor->frame_id);
+}
+
+void readImu(YamlReader& reader, SensorConfig* sensor) {
+  readMounting(reader, sensor);
   YamlReader noise = reader.section("noise");
   noise.read("accel_stddev", &sensor->accel_stddev, NumberRange::notNegative());
   noise.read("gyro_stddev", &sensor->gyro_stddev, NumberRange::notNegative());
   noise.read("accel_bias_stddev", &sensor->accel_bias_stddev, NumberRange::notNegative());
   noise.read("gyro_bias_stddev", &sensor->gyro_bias_stddev, NumberRange::notNegative());
+  noise.read("accel_bias", &sensor->accel_bias, NumberRange::any());
+  noise.read("gyro_bias", &sensor->gyro_bias, NumberRange::any());
+  noise.read("accel_bias_spread", &sensor->accel_bias_spread, NumberRange::notNegative());
+  noise.read("gyro_bias_spread", &sensor->gyro_bias_spread, NumberRange::notNegative());
   noise.finish();
 }
 
 void readContactSensor(YamlReader& reader, SensorConfig* sensor) { requireText(reader, "link", &sensor->link); }
 
-void readTilt(YamlReader& reader, SensorConfig* sensor) {
-  requireText(reader, "link", &sensor->link);
-  reader.read("pose", &sensor->X_LS);
+void readOdometry(YamlReader& reader, SensorConfig* sensor) {
+  readMounting(reader, sensor);
+  const std::vector<std::string> axes = {"link", "world"};
+  if (const auto twist = reader.choice("twist", axes)) sensor->twist = axes[*twist];
+  YamlReader noise = reader.section("noise");
+  noise.read("stddev", &sensor->noise_stddev, NumberRange::notNegative());
+  noise.finish();
 }
 
 void readMotorCurrent(YamlReader& reader, SensorConfig* sensor) {
@@ -54,8 +69,7 @@ void readMotorCurrent(YamlReader& reader, SensorConfig* sensor) {
 constexpr int ANY_COUNT = std::numeric_limits<int>::min();
 
 void readRays(YamlReader& reader, SensorConfig* sensor) {
-  requireText(reader, "link", &sensor->link);
-  reader.read("pose", &sensor->X_LS);
+  readMounting(reader, sensor);
   if (const auto range = reader.numbers("range", 2)) {
     sensor->rays.nearest = (*range)[0];
     sensor->rays.farthest = (*range)[1];
@@ -72,6 +86,12 @@ void readDepthCamera(YamlReader& reader, SensorConfig* sensor) {
   reader.read("width", &rays.width, ANY_COUNT);
   reader.read("height", &rays.height, ANY_COUNT);
   reader.read("hfov", &rays.hfov, NumberRange::any());
+  YamlReader topics = reader.section("topics");
+  topics.read("image_raw", &sensor->camera_topics.image_raw);
+  topics.read("image", &sensor->camera_topics.image);
+  topics.read("camera_info", &sensor->camera_topics.camera_info);
+  topics.read("points", &sensor->camera_topics.points);
+  topics.finish();
   YamlReader noise = reader.section("noise");
   if (const auto model = noise.choice("model", {"gaussian", "kinect"})) rays.noise = *model ? RangeNoise::KINECT : RangeNoise::GAUSSIAN;
   noise.read("stddev", &rays.stddev, NumberRange::notNegative());
@@ -111,8 +131,9 @@ const std::vector<SensorRow> SENSOR_TABLE = {
     {"force_torque", SensorType::FORCE_TORQUE, 0, readForceTorque},
     {"imu", SensorType::IMU, 0, readImu},
     {"contact", SensorType::CONTACT, 0, readContactSensor},
-    {"tilt", SensorType::TILT, 0, readTilt},
+    {"tilt", SensorType::TILT, 0, readMounting},
     {"motor_current", SensorType::MOTOR_CURRENT, 0, readMotorCurrent},
+    {"odometry", SensorType::ODOMETRY, 50, readOdometry},
     {"depth_camera", SensorType::DEPTH_CAMERA, 30, readDepthCamera},
     {"lidar", SensorType::LIDAR, 40, readLidar},
 };
@@ -123,7 +144,7 @@ SensorConfig readSensor(YamlReader& reader) {
   std::vector<std::string> types;
   for (const SensorRow& row : SENSOR_TABLE) types.push_back(row.name);
   const auto type = reader.choice("type", types);
-  if (!type) reader.refuse("type", "is missing; one of force_torque, imu, contact, tilt, motor_current, depth_camera, lidar");
+  if (!type) reader.refuse("type", "is missing; one of force_torque, imu, contact, tilt, motor_current, odometry, depth_camera, lidar");
   sensor.type = SENSOR_TABLE[*type].type;
   sensor.rate = SENSOR_TABLE[*type].rate;
   reader.read("topic", &sensor.topic);

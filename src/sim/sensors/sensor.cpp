@@ -34,6 +34,8 @@ std::unique_ptr<Sensor> makeSensor(const SimulatedWorld& world, const SensorInfo
       return makeTiltSensor(world, info);
     case SensorType::MOTOR_CURRENT:
       return makeMotorCurrentSensor(world, info);
+    case SensorType::ODOMETRY:
+      return makeOdometrySensor(world, info);
     case SensorType::DEPTH_CAMERA:
     case SensorType::LIDAR:
       return makeRangeSensor(world, info);

@@ -57,6 +57,7 @@ std::unique_ptr<Sensor> makeImuSensor(const SimulatedWorld& world, const SensorI
 std::unique_ptr<Sensor> makeContactSensor(const SimulatedWorld& world, const SensorInfo& info);
 std::unique_ptr<Sensor> makeTiltSensor(const SimulatedWorld& world, const SensorInfo& info);
 std::unique_ptr<Sensor> makeMotorCurrentSensor(const SimulatedWorld& world, const SensorInfo& info);
+std::unique_ptr<Sensor> makeOdometrySensor(const SimulatedWorld& world, const SensorInfo& info);
 std::unique_ptr<Sensor> makeRangeSensor(const SimulatedWorld& world, const SensorInfo& info);
 std::unique_ptr<Sensor> makeSensor(const SimulatedWorld& world, const SensorInfo& info);
 

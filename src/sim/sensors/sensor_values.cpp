@@ -44,6 +44,11 @@ struct ToRow {
     for (std::size_t i = 0; i < r.joints.size(); ++i) row.add(r.joints[i] + "_effort", r.efforts[i]);
     return row;
   }
+  SensorValues operator()(const OdometryReading& r) const {
+    Row row;
+    row.add("position", r.position).add(r.orientation);
+    return row.add("linear_velocity", r.linear_velocity).add("angular_velocity", r.angular_velocity);
+  }
   SensorValues operator()(const DepthCameraReading& r) const { return summary(r.view ? depthsOf(*r.view) : std::vector<float>()); }
   SensorValues operator()(const LidarReading& r) const { return summary(r.view ? rangesOf(*r.view) : std::vector<float>()); }
 
@@ -82,6 +87,8 @@ std::vector<std::string> sensorFields(const Simulator& simulator, const SensorIn
       return sensorValues(TiltReading{Quaternion::Identity(), zero, 0, 0}).names;
     case SensorType::MOTOR_CURRENT:
       return sensorValues(MotorCurrentReading{joints, none, none}).names;
+    case SensorType::ODOMETRY:
+      return sensorValues(OdometryReading{zero, Quaternion::Identity(), zero, zero, 0}).names;
     case SensorType::DEPTH_CAMERA:
     case SensorType::LIDAR:
       return sensorValues(LidarReading()).names;

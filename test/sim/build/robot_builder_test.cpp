@@ -165,21 +165,49 @@ TEST(RobotBuilder, SelfCollisionOnlyWhereItIsAllowed) {
     r->fixed_base = false;
   };
   EXPECT_EQ(selfContacts(free), 0u);
-  // A sensor in the mount makes the camera a body of its own, two joints away from the arm.
+  // A mount that turns makes the camera two joints away from the arm.
   const auto apart = [](RobotConfig* r) {
     r->self_collision = true;
-    SensorConfig sensor;
-    sensor.name = "mount";
-    sensor.type = SensorType::FORCE_TORQUE;
-    sensor.joint = "mount";
-    r->sensors = {sensor};
+    std::string& urdf = r->urdf_xml;
+    urdf.replace(urdf.find("\"mount\" type=\"fixed\""), 20, "\"mount\" type=\"continuous\"");
   };
   EXPECT_GT(selfContacts(apart), 0u);
+  for (const char* link : {"upper", "camera"}) {
+    EXPECT_GT(selfContacts([&](RobotConfig* r) {
+                apart(r);
+                r->self_collision = std::nullopt;
+                r->self_colliding_links = {link};
+              }),
+              0u)
+        << link;
+  }
+  EXPECT_EQ(selfContacts([&](RobotConfig* r) {
+              apart(r);
+              r->self_collision = std::nullopt;
+              r->self_colliding_links = {"finger1"};
+            }),
+            0u);
   EXPECT_EQ(selfContacts([&](RobotConfig* r) {
               apart(r);
               r->disable_collisions = {{"upper", "camera"}};
             }),
             0u);
+}
+
+TEST(RobotBuilder, AForceTorqueSensorAtAFixedJointMakesNoSelfCollisions) {
+  for (const bool fixed_base : {true, false}) {
+    EXPECT_EQ(selfContacts([&](RobotConfig* r) {
+                r->self_collision = true;
+                r->fixed_base = fixed_base;
+                SensorConfig sensor;
+                sensor.name = "mount";
+                sensor.type = SensorType::FORCE_TORQUE;
+                sensor.joint = "mount";
+                r->sensors = {sensor};
+              }),
+              0u)
+        << fixed_base;
+  }
 }
 
 TEST(RobotBuilder, AFixedBaseStillMeetsTheWorld) {

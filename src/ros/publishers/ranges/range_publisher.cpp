@@ -27,19 +27,29 @@ void send(const ListenedPublisher& publisher, Message message, const std_msgs::H
 
 }  // namespace
 
+std::vector<std::string> rangeTopics(const std::string& topic, const SensorConfig& sensor) {
+  if (sensor.type != SensorType::DEPTH_CAMERA) return {topic};
+  const CameraTopics& own = sensor.camera_topics;
+  const auto below = [&](const std::string& own_topic, const char* name) {
+    return own_topic.empty() ? topic + "/depth/" + name : own_topic;
+  };
+  return {below(own.camera_info, "camera_info"), below(own.image_raw, "image_raw"), below(own.image, "image"), below(own.points, "points")};
+}
+
 std::shared_ptr<const RangeTopics> advertiseRanges(ros::NodeHandle* node, const std::string& topic, const SensorConfig& sensor) {
   const auto topics = std::make_shared<RangeTopics>();
   topics->config = sensor;
   std::vector<ListenedPublisher>& made = topics->publishers;
+  const std::vector<std::string> names = rangeTopics(topic, sensor);
   if (sensor.type == SensorType::DEPTH_CAMERA) {
-    made.push_back(ListenedPublisher::advertise<sensor_msgs::CameraInfo>(node, topic + "/depth/camera_info", SCANS));
-    made.push_back(ListenedPublisher::advertise<sensor_msgs::Image>(node, topic + "/depth/image_raw", IMAGES));
-    made.push_back(ListenedPublisher::advertise<sensor_msgs::Image>(node, topic + "/depth/image", IMAGES));
-    made.push_back(ListenedPublisher::advertise<sensor_msgs::PointCloud2>(node, topic + "/depth/points", IMAGES));
+    made.push_back(ListenedPublisher::advertise<sensor_msgs::CameraInfo>(node, names[0], SCANS));
+    made.push_back(ListenedPublisher::advertise<sensor_msgs::Image>(node, names[1], IMAGES));
+    made.push_back(ListenedPublisher::advertise<sensor_msgs::Image>(node, names[2], IMAGES));
+    made.push_back(ListenedPublisher::advertise<sensor_msgs::PointCloud2>(node, names[3], IMAGES));
   } else if (sensor.rays.layers == 1) {
-    made.push_back(ListenedPublisher::advertise<sensor_msgs::LaserScan>(node, topic, SCANS));
+    made.push_back(ListenedPublisher::advertise<sensor_msgs::LaserScan>(node, names[0], SCANS));
   } else {
-    made.push_back(ListenedPublisher::advertise<sensor_msgs::PointCloud2>(node, topic, SCANS));
+    made.push_back(ListenedPublisher::advertise<sensor_msgs::PointCloud2>(node, names[0], SCANS));
   }
   return topics;
 }

@@ -20,7 +20,10 @@ struct RangeTopics {
   std::vector<ListenedPublisher> publishers;  ///< of a camera: info, metres, millimetres, points
 };
 
-/** Advertises depth/camera_info, image_raw, image and points below a camera's topic, one message of a lidar's at it. */
+/** Names of the topics of a camera (in the order of its publishers) or a lidar. @param topic of the sensor */
+std::vector<std::string> rangeTopics(const std::string& topic, const SensorConfig& sensor);
+
+/** Advertises rangeTopics(): a camera's depth/camera_info, image_raw, image and points below its topic, a lidar's one message at it. */
 std::shared_ptr<const RangeTopics> advertiseRanges(ros::NodeHandle* node, const std::string& topic, const SensorConfig& sensor);
 
 /**

@@ -1,0 +1,232 @@
+#include "gazebo/gazebo_sensors.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <utility>
+
+#include "config/range_sensor_check.h"
+#include "gazebo/gazebo_sensor_types.h"
+#include "numbers/nearest_name.h"
+
+namespace blem_sim {
+namespace {
+
+constexpr std::size_t MOST_SENSORS = 1000;   // of a robot
+constexpr std::size_t COMPARED_NAMES = 200;  // in the search for the nearest one
+constexpr const char* WORLD = "world";
+// Topics of every robot, which no sensor may have.
+const char* const TAKEN_TOPICS[] = {"joint_states", "odom", "joint_command", "joint_trajectory"};
+
+bool isWord(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
+
+/** A name that ROS takes in a topic. */
+std::string rosWord(std::string name) {
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return !isWord(c); }, '_');
+  const bool begins_well = !name.empty() && std::isalpha(static_cast<unsigned char>(name.front()));
+  return begins_well ? name : "sensor_" + name;
+}
+
+bool isTopic(const std::string& topic) {
+  const bool begins_well = std::isalpha(static_cast<unsigned char>(topic.front())) || topic.front() == '/';
+  return begins_well && std::all_of(topic.begin(), topic.end(), [](char c) { return isWord(c) || c == '/'; });
+}
+
+std::string withoutDoubleSlashes(std::string topic) {
+  const auto twice = [](char a, char b) { return a == '/' && b == '/'; };
+  topic.erase(std::unique(topic.begin(), topic.end(), twice), topic.end());
+  return topic;
+}
+
+std::string topicOf(const SensorConfig& sensor) { return sensor.topic.empty() ? sensor.name : sensor.topic; }
+
+const char* wordOf(SensorType type) {
+  switch (type) {
+    case SensorType::FORCE_TORQUE:
+      return "force_torque";
+    case SensorType::IMU:
+      return "imu";
+    case SensorType::CONTACT:
+      return "contact";
+    case SensorType::ODOMETRY:
+      return "odometry";
+    case SensorType::LIDAR:
+      return "lidar";
+    case SensorType::DEPTH_CAMERA:
+      return "depth_camera";
+    default:
+      return "sensor";
+  }
+}
+
+/** In words, a name that is not there, and the nearest among the first that are. */
+template <typename Named>
+std::string unknownName(const std::string& kind, const std::string& name, const std::vector<Named>& items) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < std::min(items.size(), COMPARED_NAMES); ++i) names.push_back(items[i].name);
+  return fmt::format("there is no {} '{}' (the nearest is '{}')", kind, name, nearestName(name, names));
+}
+
+}  // namespace
+
+void GazeboSensors::read(const GazeboBlock& gazebo) {
+  for (const GazeboBlock& block : gazebo.blocks) {
+    if (block.element == "sensor")
+      readSensor(block);
+    else
+      readPlugin(block);
+  }
+}
+
+void GazeboSensors::readSensor(const GazeboBlock& block) {
+  const GazeboSensorType* type = gazeboSensorType(block.type);
+  GazeboReader reader(block, &notes_);
+  if (!type) return notes_.unknown(reader.where(), fmt::format("of type '{}'", block.type));
+  GazeboSensor sensor;
+  SensorConfig& config = sensor.config;
+  config.type = type->type;
+  config.name = block.name;
+  (config.type == SensorType::FORCE_TORQUE ? config.joint : config.link) = block.reference;
+  type->read(&reader, &config);
+  reader.read("update_rate", &config.rate, NumberRange::notNegative());
+  reader.read("pose", &config.X_LS);
+  if (config.type == SensorType::FORCE_TORQUE && !config.X_LS.isApprox(Pose::Identity()))
+    reader.fault("pose", "the sensor sits at the joint; it is left out: take it away");
+  reader.skip({"always_on", "visualize", "topic", "pose/frame"});
+  reader.finish();
+  for (const GazeboBlock& inner : block.blocks) {
+    const GazeboPluginType* plugin = inner.element == "plugin" ? gazeboPluginType(inner.type) : nullptr;
+    GazeboReader plugin_reader(inner, &notes_);
+    if (!plugin || plugin->type != config.type) {
+      notes_.unknown(plugin_reader.where(), fmt::format("of type '{}' in {}", inner.type, reader.where()));
+      continue;
+    }
+    plugin->read(&plugin_reader, &sensor);
+    plugin_reader.finish();
+  }
+  if (config.rate == 0) config.rate = type->rate;
+  add(std::move(sensor), block);
+}
+
+void GazeboSensors::readPlugin(const GazeboBlock& block) {
+  const GazeboPluginType* type = gazeboPluginType(block.type);
+  if (!type) return readOtherPlugin(block);
+  GazeboReader reader(block, &notes_);
+  if (type->inside)
+    return notes_.fault(reader.where(), fmt::format("'{}' stands outside of a <sensor>; it is left out: put it into one", block.type));
+  GazeboSensor sensor;
+  sensor.config.type = type->type;
+  sensor.config.name = block.name;
+  (type->type == SensorType::FORCE_TORQUE ? sensor.config.joint : sensor.config.link) = block.reference;
+  type->read(&reader, &sensor);
+  reader.finish();
+  add(std::move(sensor), block);
+}
+
+void GazeboSensors::readOtherPlugin(const GazeboBlock& block) {
+  const std::string name = pluginName(block.type);
+  GazeboReader reader(block, &notes_);
+  if (name == "gazebo_ros_control") {
+    const std::string name_space = reader.text("robotNamespace").value_or("");
+    if (!name_space.empty() && resolved("") != withoutDoubleSlashes("/" + name_space + "/"))
+      reader.fault("robotNamespace", fmt::format("'{}' is not where the robot's topics are; it is left out: set namespace", name_space));
+    reader.skip({"robotSimType", "robotParam", "legacyModeNS"});
+    reader.skipWithoutEffect({"controlPeriod"});
+  } else if (name == "gazebo_ros_joint_state_publisher") {
+    reader.skip({"robotNamespace", "alwaysOn"});
+    reader.skipWithoutEffect({"jointName", "updateRate"});
+  } else {
+    return notes_.unknown(reader.where(), fmt::format("of type '{}'", block.type));
+  }
+  reader.finish();
+}
+
+const SensorConfig* GazeboSensors::sensorNamed(const std::string& name) const {
+  const auto named = [&](const SensorConfig& sensor) { return sensor.name == name; };
+  const auto found = std::find_if(config_.sensors.begin(), config_.sensors.end(), named);
+  return found == config_.sensors.end() ? nullptr : &*found;
+}
+
+std::string GazeboSensors::resolved(const std::string& topic) const {
+  const bool absolute = !topic.empty() && topic.front() == '/';
+  return withoutDoubleSlashes(absolute ? topic : "/" + config_.name_space + "/" + topic);
+}
+
+void GazeboSensors::add(GazeboSensor sensor, const GazeboBlock& block) {
+  const GazeboReader reader(block, &notes_);
+  SensorConfig& config = sensor.config;
+  if (config_.sensors.size() >= configured_ + MOST_SENSORS)
+    return notes_.fault(reader.where(), fmt::format("is one of more than {} sensors; it is left out: give fewer", MOST_SENSORS));
+  const std::string seat = config.type == SensorType::FORCE_TORQUE ? config.joint : config.link;
+  config.name = rosWord(config.name.empty() ? fmt::format("{}_{}", seat, wordOf(config.type)) : config.name);
+  const SensorConfig* same = sensorNamed(config.name);
+  if (same && same < config_.sensors.data() + configured_) return;
+  if (same) config.name += "_" + rosWord(seat);
+  nameTopics(&sensor);
+  nameFrame(reader, &config);
+  if (!sitsSomewhere(config, reader) || !topicIsFree(reader, &config)) return;
+  if (const auto fault = faultOf(config.type, config.rays))
+    return notes_.fault(reader.where(), fmt::format("its {} {}; it is left out", fault->key, fault->why));
+  if (sensorNamed(config.name)) return notes_.fault(reader.where(), "is there twice; it is left out: rename it");
+  notes_.sensor(fmt::format("{} ({} of '{}' on {})", config.name, wordOf(config.type), seat, resolved(topicOf(config))));
+  config_.sensors.push_back(config);
+}
+
+void GazeboSensors::nameTopics(GazeboSensor* sensor) {
+  SensorConfig& config = sensor->config;
+  if (config.topic.empty() && !sensor->name_space.empty()) config.topic = config.name;
+  for (std::string* topic :
+       {&config.topic, &config.camera_topics.image_raw, &config.camera_topics.camera_info, &config.camera_topics.points}) {
+    // A robot's own name space beats that of its URDF, so that two robots of one URDF have topics of their own.
+    if (!topic->empty() && topic->front() != '/' && config_.name_space.empty() && !sensor->name_space.empty())
+      *topic = "/" + sensor->name_space + "/" + *topic;
+    *topic = withoutDoubleSlashes(*topic);
+    if (topic->empty() || isTopic(*topic)) continue;
+    notes_.fault(fmt::format("sensor '{}'", config.name),
+                 fmt::format("'{}' is no ROS topic; it is left out: use letters, digits, _ and /", *topic));
+    topic->clear();
+  }
+}
+
+void GazeboSensors::nameFrame(const GazeboReader& reader, SensorConfig* sensor) {
+  std::string& frame = sensor->frame_id;
+  frame.erase(0, std::min(frame.find_first_not_of('/'), frame.size()));
+  if (sensor->type != SensorType::ODOMETRY || frame == WORLD || model_.linkIndex(frame) < 0) return;
+  notes_.fault(reader.where(), fmt::format("poses are those in the world, not in link '{}'; frameName is left out: write world", frame));
+  frame.clear();
+}
+
+bool GazeboSensors::sitsSomewhere(const SensorConfig& sensor, const GazeboReader& reader) const {
+  std::string why;
+  if (sensor.type != SensorType::FORCE_TORQUE) {
+    if (model_.linkIndex(sensor.link) < 0) why = unknownName("link", sensor.link, model_.links);
+  } else if (const int joint = model_.jointIndex(sensor.joint); joint < 0) {
+    why = unknownName("joint", sensor.joint, model_.joints);
+  } else if (const JointType type = model_.joints[joint].type; type == JointType::FLOATING || type == JointType::PLANAR) {
+    why = fmt::format("joint '{}' is floating or planar and carries no wrench", sensor.joint);
+  }
+  if (!why.empty()) notes_.fault(reader.where(), why + "; it is left out: name another");
+  return why.empty();
+}
+
+bool GazeboSensors::topicIsFree(const GazeboReader& reader, SensorConfig* sensor) const {
+  const auto is = [&](const std::string& topic) { return resolved(topicOf(*sensor)) == resolved(topic); };
+  for (const char* taken : TAKEN_TOPICS) {
+    if (!is(taken)) continue;
+    notes_.fault(reader.where(), fmt::format("its topic {} is the robot's own; it is on {}: give it another", taken, sensor->name));
+    sensor->topic.clear();
+  }
+  for (const SensorConfig& other : config_.sensors) {
+    if (!is(topicOf(other))) continue;
+    const bool configured = &other < config_.sensors.data() + configured_;
+    if (!configured)
+      notes_.fault(reader.where(),
+                   fmt::format("sensor '{}' has its topic {}; it is left out: give it another", other.name, topicOf(other)));
+    return false;
+  }
+  return true;
+}
+
+}  // namespace blem_sim

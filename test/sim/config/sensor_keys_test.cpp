@@ -1,0 +1,53 @@
+// Keys that sensors of several types have: frames, topics, constant biases; odometry; links that collide with their own robot.
+#include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
+
+#include <set>
+#include <string>
+
+#include "sim/simulation_scene.h"
+#include "support/input_errors.h"
+
+namespace blem_sim {
+namespace {
+
+RobotConfig parsedRobot(const std::string& keys) {
+  return parseConfig(YAML::Load("robots: [{name: a, urdf: a.urdf, " + keys + "}]"), "scene.yaml", "").robots[0];
+}
+
+TEST(SensorKeys, AreRead) {
+  const auto sensors = parsedRobot(R"(sensors: [
+    {name: o, type: odometry, link: l, pose: {xyz: [1, 2, 3]}, twist: world, frame_id: map, noise: {stddev: 0.1}},
+    {name: f, type: force_torque, joint: j, frame_id: plate}, {name: t, type: tilt, link: l, frame_id: x}, {name: s, type: lidar, link: l, frame_id: y},
+    {name: i, type: imu, link: l, frame_id: z, noise: {accel_bias: -1, gyro_bias: 2, accel_bias_spread: 3, gyro_bias_spread: 4}},
+    {name: c, type: depth_camera, link: l, frame_id: w, topics: {image_raw: a, image: b, camera_info: c, points: d}}])")
+                           .sensors;
+  ASSERT_EQ(sensors.size(), 6u);
+  EXPECT_EQ(sensors[0].type, SensorType::ODOMETRY);
+  EXPECT_EQ(sensors[0].rate, 50);
+  EXPECT_EQ(sensors[0].twist + sensors[0].frame_id, "worldmap");
+  EXPECT_EQ(sensors[0].noise_stddev, 0.1);
+  EXPECT_EQ(sensors[0].X_LS.translation(), Vector3(1, 2, 3));
+  EXPECT_EQ(sensors[1].frame_id + sensors[2].frame_id + sensors[3].frame_id + sensors[4].frame_id + sensors[5].frame_id, "platexyzw");
+  EXPECT_EQ((std::vector<double>{sensors[4].accel_bias, sensors[4].gyro_bias, sensors[4].accel_bias_spread, sensors[4].gyro_bias_spread}),
+            (std::vector<double>{-1, 2, 3, 4}));
+  const CameraTopics& topics = sensors[5].camera_topics;
+  EXPECT_EQ(topics.image_raw + topics.image + topics.camera_info + topics.points, "abcd");
+  EXPECT_EQ(parsedRobot("self_colliding_links: [b, c]").self_colliding_links, (std::set<std::string>{"b", "c"}));
+  EXPECT_EQ(parsedRobot("namespace: n").self_collision, std::nullopt);
+  EXPECT_EQ(parsedRobot("self_collision: false").self_collision, false);
+}
+
+TEST(SensorKeys, AreRefusedInOneLine) {
+  for (const auto& [keys, word] :
+       {std::make_pair("sensors: [{name: o, type: odometry, link: l, twist: up}]", "twist"),
+        std::make_pair("sensors: [{name: o, type: odometry}]", "link"),
+        std::make_pair("sensors: [{name: c, type: contact, link: l, frame_id: x}]", "frame_id"),
+        std::make_pair("sensors: [{name: i, type: imu, link: l, noise: {gyro_bias_spread: -1}}]", "gyro_bias_spread"),
+        std::make_pair("self_colliding_links: foot", "self_colliding_links"),
+        std::make_pair("self_colliding_links: [[foot]]", "self_colliding_links")})
+    EXPECT_TRUE(isOneLineWith(refusal([&, k = keys] { parsedRobot(k); }), {word})) << keys;
+}
+
+}  // namespace
+}  // namespace blem_sim

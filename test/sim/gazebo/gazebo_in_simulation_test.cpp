@@ -1,0 +1,134 @@
+// <gazebo> blocks in a simulation: surfaces of colliders, sensors of configured, spawned and deleted models, what notes say.
+#include <algorithm>
+#include <limits>
+
+#include "sim/simulation_scene.h"
+
+namespace blem_sim {
+namespace {
+
+/** Two links that each have a ball, with these blocks. */
+std::string pairUrdf(const std::string& blocks, const std::string& joint = "fixed") {
+  const auto link = [](const std::string& name) {
+    return "<link name=\"" + name +
+           "\"><inertial><mass value=\"1\"/><inertia ixx=\"0.01\" iyy=\"0.01\" izz=\"0.01\" ixy=\"0\" ixz=\"0\" "
+           "iyz=\"0\"/></inertial><collision><geometry><sphere radius=\"0.1\"/></geometry></collision></link>";
+  };
+  return "<robot name=\"pair\">" + link("a") + link("b") + "<joint name=\"j\" type=\"" + joint +
+         "\"><parent link=\"a\"/><child link=\"b\"/><origin xyz=\"0 0 1\" rpy=\"0 0 0.5\"/></joint>" + blocks + "</robot>";
+}
+
+const char* const SURFACES = R"(<gazebo reference="a"><mu1>0.9</mu1><kp>3e4</kp><kd>200</kd></gazebo>
+  <gazebo reference="b"><mu1>0.8</mu1><kp>1e12</kp><kd>1</kd></gazebo>)";
+const char* const IMU = R"(<gazebo reference="b"><sensor name="imu" type="imu"><update_rate>100</update_rate></sensor></gazebo>)";
+
+SurfaceProperties surfaceOf(const Simulator& simulator, const std::string& collider) {
+  for (const Collider& other : simulator.colliders())
+    if (other.enabled && other.name == collider) return other.surface;
+  ADD_FAILURE() << "no collider " << collider;
+  return {};
+}
+
+bool isTold(const Simulator& simulator, const std::string& words) {
+  const auto& notes = simulator.notes();
+  return std::any_of(notes.begin(), notes.end(), [&](const std::string& note) { return note.find(words) != note.npos; });
+}
+
+SimulationConfig pairScene(const std::string& blocks) {
+  SimulationConfig config;
+  config.contact.surface.friction = 0.4;
+  config.contact.surface.stiffness = 5e5;
+  config.robots = {robot("pair", pairUrdf(blocks), true)};
+  return config;
+}
+
+TEST(GazeboInSimulation, SurfacesBeatTheDefaultsAndTheConfigurationBeatsThem) {
+  SimulationConfig config = pairScene(SURFACES);
+  const Simulator described(config, UriResolver());
+  EXPECT_EQ(surfaceOf(described, "pair::a").friction, 0.9);
+  EXPECT_EQ(surfaceOf(described, "pair::a").stiffness, 3e4);
+  EXPECT_EQ(surfaceOf(described, "pair::a").damping, 200);
+  EXPECT_EQ(surfaceOf(described, "pair::b").friction, 0.8);
+  EXPECT_EQ(surfaceOf(described, "pair::b").stiffness, std::numeric_limits<double>::infinity());
+  config.robots[0].links["a"].friction = 0.1;
+  const Simulator by_link(config, UriResolver());
+  EXPECT_EQ(surfaceOf(by_link, "pair::a").friction, 0.1);
+  EXPECT_EQ(surfaceOf(by_link, "pair::a").stiffness, 3e4);
+  config.robots[0].contact.friction = 0.2;
+  const Simulator by_robot(config, UriResolver());
+  EXPECT_EQ(surfaceOf(by_robot, "pair::a").friction, 0.1);
+  EXPECT_EQ(surfaceOf(by_robot, "pair::b").friction, 0.2);
+}
+
+TEST(GazeboInSimulation, ASingleBodyIsAnObjectWithSurfacesOrARobotWithSensors) {
+  SimulationConfig config;
+  Simulator simulator(config, UriResolver());
+  RobotConfig spawned;
+  spawned.name = "object";
+  spawned.urdf_xml = pairUrdf(SURFACES);
+  simulator.spawn(spawned);
+  EXPECT_EQ(simulator.models()[simulator.modelIndex("object")].kind, ModelKind::OBJECT);
+  EXPECT_EQ(surfaceOf(simulator, "object::a").friction, 0.9);
+  EXPECT_EQ(surfaceOf(simulator, "object::b").friction, 0.8);
+  spawned.name = "robot";
+  spawned.urdf_xml = pairUrdf(IMU);
+  spawned.X_WR = makePose({3, 0, 0});
+  simulator.spawn(spawned);
+  ASSERT_EQ(simulator.sensors().size(), 1u);
+  EXPECT_TRUE(isTold(simulator, "robot: sensors of its <gazebo> blocks: imu"));
+  for (int i = 0; i < 10; ++i) simulator.step();
+  EXPECT_LT(reading<ImuReading>(simulator.report(), 0).linear_acceleration.norm(), 1e-9) << "free fall";
+  simulator.removeModel("robot");
+  EXPECT_TRUE(simulator.sensors().empty());
+  EXPECT_FALSE(isTold(simulator, "robot: sensors"));
+  simulator.step();
+}
+
+TEST(GazeboInSimulation, AnObjectSaysThatItHasNoSensors) {
+  SimulationConfig config;
+  ObjectConfig object;
+  object.name = "ball";
+  object.urdf_xml = pairUrdf(IMU);
+  config.objects = {object};
+  const Simulator simulator(config, UriResolver());
+  EXPECT_TRUE(simulator.sensors().empty());
+  EXPECT_TRUE(isTold(simulator, "ball: objects have no sensors"));
+}
+
+TEST(GazeboInSimulation, AFrameOfOtherAxesIsTold) {
+  const auto told = [](const std::string& frame, const std::string& rpy, const std::string& joint = "fixed") {
+    const std::string plugin = "<plugin name=\"p\" filename=\"libgazebo_ros_imu_sensor.so\"><frameName>" + frame + "</frameName></plugin>";
+    SimulationConfig config;
+    config.robots = {robot(
+        "pair",
+        pairUrdf("<gazebo reference=\"b\"><sensor name=\"imu\" type=\"imu\"><pose>0 0 0 " + rpy + "</pose>" + plugin + "</sensor></gazebo>",
+                 joint),
+        true)};
+    const Simulator simulator(config, UriResolver());
+    return isTold(simulator, "sensor 'imu': its frame_id says '" + frame + "'");
+  };
+  EXPECT_FALSE(told("b", "0 0 0"));
+  EXPECT_TRUE(told("b", "0 0 0.1"));
+  EXPECT_TRUE(told("a", "0 0 0"));
+  EXPECT_FALSE(told("a", "0 0 -0.5"));
+  EXPECT_TRUE(told("a", "0 0 0", "continuous"));
+  EXPECT_FALSE(told("elsewhere", "0 0 0.1"));
+}
+
+TEST(GazeboInSimulation, ACameraFrameIsOptical) {
+  const auto told = [](bool turned) {
+    SimulationConfig config = pairScene("");
+    SensorConfig camera;
+    camera.name = "eye";
+    camera.type = SensorType::DEPTH_CAMERA;
+    camera.link = camera.frame_id = "a";
+    camera.X_LS = turned ? makePose({0, 0, 0}, {0, -M_PI / 2, M_PI / 2}) : Pose::Identity();
+    config.robots[0].sensors = {camera};
+    return isTold(Simulator(config, UriResolver()), "sensor 'eye': its frame_id says 'a'");
+  };
+  EXPECT_TRUE(told(false));
+  EXPECT_FALSE(told(true));
+}
+
+}  // namespace
+}  // namespace blem_sim
