@@ -55,6 +55,7 @@ void ContactMeetings::look(const SimulatedWorld& world, const std::vector<BodySt
     if (manifold.pierced || contacts.crossings().find(manifold.a, manifold.b)) continue;
     WayOfPair way{manifold, wayOf(world, bodies, contacts, manifold.a, dt), wayOf(world, bodies, contacts, manifold.b, dt)};
     way.dt = dt;
+    way.fading = &contacts.fading();
     way.swing = ways_.swing(a.body) + ways_.swing(b.body);
     if (!way_.isDoubtful(way)) continue;
     ways_.lead(a.body, &way.a.twist);
