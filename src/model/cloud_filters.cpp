@@ -42,7 +42,7 @@ std::string faultOf(const CloudFilter& filter) {
   return "";
 }
 
-const char* nameOf(Kind kind) {
+const char* filterName(Kind kind) {
   switch (kind) {
     case Kind::VOXEL_GRID:
       return "voxel_grid";
@@ -120,7 +120,7 @@ FloatCloud::Ptr toFloats(const std::vector<Vector3>& points, const Vector3& orig
 void checkFilters(const std::vector<CloudFilter>& filters, const std::string& source) {
   for (const CloudFilter& filter : filters) {
     const std::string fault = faultOf(filter);
-    if (!fault.empty()) throw InputError(fmt::format("{}: filters: {}: {}", source, nameOf(filter.kind), fault));
+    if (!fault.empty()) throw InputError(fmt::format("{}: filters: {}: {}", source, filterName(filter.kind), fault));
   }
 }
 
@@ -139,7 +139,7 @@ std::vector<Vector3> filtered(std::vector<Vector3> points, const std::vector<Clo
   for (const CloudFilter& filter : filters) {
     const std::size_t before = cloud->size();
     apply(filter, origin, source, &cloud);
-    notes->push_back(fmt::format("{}: {} of {} points left", nameOf(filter.kind), cloud->size(), before));
+    notes->push_back(fmt::format("{}: {} of {} points left", filterName(filter.kind), cloud->size(), before));
   }
   points.clear();
   points.reserve(cloud->size());
