@@ -1,7 +1,7 @@
 # Libraries of the rooms below ros.
 find_package(Eigen3 REQUIRED NO_MODULE)
 find_package(assimp REQUIRED)
-find_package(PCL REQUIRED COMPONENTS common io features search surface)
+find_package(PCL REQUIRED COMPONENTS common io features filters kdtree search surface)
 find_package(yaml-cpp REQUIRED)
 find_package(fmt REQUIRED)
 find_package(PkgConfig REQUIRED)

@@ -12,6 +12,7 @@ set(BLEM_SIM_CATKIN_COMPONENTS
   std_msgs
   std_srvs
   tf2_msgs
+  tf2_ros
   trajectory_msgs
   visualization_msgs)
 find_package(catkin REQUIRED COMPONENTS message_generation ${BLEM_SIM_CATKIN_COMPONENTS})

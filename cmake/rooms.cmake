@@ -17,7 +17,8 @@ blem_sim_room(model blem_sim_geometry)
 blem_sim_precompiled_as(blem_sim_model blem_sim_geometry)
 target_include_directories(blem_sim_model SYSTEM PRIVATE ${PCL_INCLUDE_DIRS} ${ASSIMP_INCLUDE_DIRS})
 target_link_libraries(blem_sim_model PRIVATE PkgConfig::URDFDOM PkgConfig::CONSOLE_BRIDGE PkgConfig::TINYXML2 assimp fmt::fmt
-  ${PCL_COMMON_LIBRARIES} ${PCL_IO_LIBRARIES} ${PCL_FEATURES_LIBRARIES} ${PCL_SEARCH_LIBRARIES} ${PCL_SURFACE_LIBRARIES})
+  ${PCL_COMMON_LIBRARIES} ${PCL_IO_LIBRARIES} ${PCL_FEATURES_LIBRARIES} ${PCL_FILTERS_LIBRARIES} ${PCL_KDTREE_LIBRARIES}
+  ${PCL_SEARCH_LIBRARIES} ${PCL_SURFACE_LIBRARIES})
 blem_sim_room(contact blem_sim_geometry)
 blem_sim_precompiled_as(blem_sim_contact blem_sim_geometry)
 blem_sim_room(reduction blem_sim_contact)

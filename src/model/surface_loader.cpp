@@ -44,10 +44,11 @@ SurfaceSoup readSurface(const std::string& file) {
 void checkOptions(const std::string& file, const Vector3& scale, const CloudOptions& cloud) {
   if (!scale.allFinite() || scale.cwiseAbs().minCoeff() == 0)
     throw InputError(fmt::format("{}: scale {} {} {}: every factor must be finite and not zero", file, scale.x(), scale.y(), scale.z()));
-  if (!(cloud.point_radius > 0) || !std::isfinite(cloud.point_radius))
+  if (!cloud.auto_radius && (!(cloud.point_radius > 0) || !std::isfinite(cloud.point_radius)))
     throw InputError(fmt::format("{}: point_radius {} m must be greater than zero", file, cloud.point_radius));
   if (!(cloud.max_edge > 0) || !std::isfinite(cloud.max_edge))
     throw InputError(fmt::format("{}: max_edge {} m must be greater than zero", file, cloud.max_edge));
+  checkFilters(cloud.filters, file);
 }
 
 /** Scales in place; a mirroring scale turns the winding, so that outside stays outside. */
@@ -103,6 +104,24 @@ TriangleMesh mended(const TriangleMesh& cleaned, MeshReport* report, MeshTopolog
   return mesh;
 }
 
+/** Leaves the points that filters leave, without a pixel grid. */
+void filterSoup(const std::vector<CloudFilter>& filters, bool points, SurfaceSoup* soup, MeshReport* report) {
+  if (filters.empty()) return;
+  if (!points && !soup->mesh.elements.empty())
+    throw InputError(report->source + ": filters: are for points, and the file has faces; set as: points, or leave them out");
+  soup->mesh.vertices = filtered(std::move(soup->mesh.vertices), filters, report->source, &report->notes);
+  soup->width = static_cast<int>(soup->mesh.vertices.size());
+  soup->height = 1;
+}
+
+/** A point is its own boundary. */
+void setRadius(const CloudOptions& cloud, const TriangleMesh& mesh, LoadedSurface* surface) {
+  const double spacing = cloud.auto_radius ? pointSpacing(mesh.vertices) : 0;
+  surface->radius = surface->report.boundary_width = cloud.auto_radius ? pointRadius(spacing) : cloud.point_radius;
+  surface->report.notes.push_back(fmt::format("simulated as points of radius {:.4g} m", surface->radius));
+  if (cloud.auto_radius) surface->report.notes.back() += fmt::format(", from their spacing of {:.4g} m", spacing);
+}
+
 void noteDropped(MeshReport* report) {
   if (report->nonfinite > 0)
     report->notes.push_back(fmt::format("{} elements with a coordinate that is not finite dropped", report->nonfinite));
@@ -128,6 +147,7 @@ LoadedSurface loadSurface(const std::string& file, const Vector3& scale, const C
   surface.report.source = file;
   surface.report.notes = soup.notes;
   const bool points = wantsPoints(soup, cloud.as);
+  filterSoup(cloud.filters, points, &soup, &surface.report);
   if (!points && soup.mesh.elements.empty()) {
     enter("joining the points of", CLEANING_FRACTION);
     joinCloud(cloud.max_edge, &soup, &surface.report);
@@ -140,15 +160,24 @@ LoadedSurface loadSurface(const std::string& file, const Vector3& scale, const C
     cleaned = mended(cleaned, &surface.report, topology.get());
     surface.topology = topology;
   }
-  if (points) {
-    surface.radius = surface.report.boundary_width = cloud.point_radius;
-    surface.report.notes.push_back(fmt::format("simulated as points of radius {} m", cloud.point_radius));
-  }
+  if (points) setRadius(cloud, cleaned, &surface);
   noteDropped(&surface.report);
   if (cleaned.elements.empty())
     throw InputError(fmt::format("{}: nothing is left after cleaning ({} not finite, {} without area); check the file and its scale", file,
                                  surface.report.nonfinite, surface.report.degenerate));
   surface.mesh = std::make_shared<const TriangleMesh>(std::move(cleaned));
+  return surface;
+}
+
+LoadedSurface cloudSurface(std::vector<Vector3> points, const CloudOptions& cloud, const std::string& source) {
+  LoadedSurface surface;
+  surface.report.name = surface.report.source = source;
+  points = filtered(std::move(points), cloud.filters, source, &surface.report.notes);
+  TriangleMesh mesh = pointCloudMesh(points, &surface.report);
+  if (mesh.elements.empty()) throw InputError(source + ": no finite point is left; check the sensor, and the filters");
+  setRadius(cloud, mesh, &surface);
+  noteDropped(&surface.report);
+  surface.mesh = std::make_shared<const TriangleMesh>(std::move(mesh));
   return surface;
 }
 

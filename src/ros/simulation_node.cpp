@@ -2,7 +2,10 @@
 
 #include <ros/console.h>
 
+#include <algorithm>
+
 #include "blem_sim/sim/simulator.h"
+#include "clouds/live_clouds.h"
 #include "controllers/controller_sets.h"
 #include "loop/checkpoint.h"
 #include "loop/simulation_loop.h"
@@ -81,8 +84,17 @@ struct SimulationNode::Impl {
     auto diagnostics_publisher = std::make_unique<DiagnosticsPublisher>(node, private_node, &loop);
     diagnostics = diagnostics_publisher.get();
     loop.add(std::move(diagnostics_publisher));
+    addLiveClouds();
     loop.add(std::make_unique<ControllerSets>(node, &simulator, loop.sender()));
     loop.add(std::make_unique<ClockPublisher>(node, simulator.config().rates.clock, loop.sender()));
+  }
+
+  void addLiveClouds() {
+    const auto& environments = simulator.config().environments;
+    if (std::none_of(environments.begin(), environments.end(), [](const EnvironmentConfig& e) { return !e.live.topic.empty(); })) return;
+    auto live_clouds = std::make_unique<LiveClouds>(node, private_node, &loop);
+    diagnostics->add("live clouds", [clouds = live_clouds.get()](auto& status) { clouds->describe(status); });
+    loop.add(std::move(live_clouds));
   }
 
   // Last: controllers that start give commands, which the state goes over; it is kept as they leave it after a step.

@@ -26,7 +26,10 @@ Simulator::Impl::Impl(const SimulationConfig& config, const UriResolver& resolve
       builder_(config.contact, config.base_directory, resolver, std::move(log)),
       contacts_(config.contact, config.solver.threads),
       energy_balance_(config.solver) {
-  for (const EnvironmentConfig& environment : config_.environments) builder_.addEnvironment(environment, &world_);
+  for (const EnvironmentConfig& environment : config_.environments) {
+    builder_.addEnvironment(environment, &world_);
+    addLive(environment);
+  }
   for (const RobotConfig& robot : config_.robots) builder_.addRobot(robot, &world_);
   for (const ObjectConfig& object : config_.objects) builder_.addObject(object, &world_);
   makeSensors();
@@ -44,6 +47,7 @@ void Simulator::Impl::unloadEnvironment(const std::string& name) {
 void Simulator::Impl::loadEnvironment(const EnvironmentConfig& environment) {
   checkEnvironment(environment);
   builder_.addEnvironment(environment, &world_);
+  addLive(environment);
   forgetLayers(environment.name);
 }
 
@@ -102,6 +106,8 @@ void Simulator::holdJoint(int robot, int joint, double position) {
 
 void Simulator::loadEnvironment(const EnvironmentConfig& environment) { impl_->loadEnvironment(environment); }
 void Simulator::unloadEnvironment(const std::string& name) { impl_->unloadEnvironment(name); }
+
+void Simulator::updateCloud(const std::string& environment, CloudSurface* surface) { impl_->updateCloud(environment, surface); }
 
 void Simulator::spawn(const RobotConfig& robot) { impl_->spawn(robot); }
 void Simulator::removeModel(const std::string& name) { impl_->removeModel(name); }

@@ -1,8 +1,10 @@
 // Content of a Simulator. Its work is split by concept: simulator_step.cpp, simulator_report.cpp,
-// simulator_commands.cpp, simulator_models.cpp, simulator_motion.cpp, simulator_state.cpp.
+// simulator_commands.cpp, simulator_clouds.cpp, simulator_models.cpp, simulator_motion.cpp, simulator_state.cpp.
 #pragma once
 
+#include <map>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -27,6 +29,13 @@ namespace blem_sim {
 struct Epoch {
   double time = 0;
   std::uint64_t step = 0;
+};
+
+/** A live environment. */
+struct LiveGround {
+  SurfaceProperties surface;
+  double fade_speed = 0;  ///< [m/s]
+  int cloud = -1;         ///< collider of its points; -1: none have come
 };
 
 struct Simulator::Impl {
@@ -93,6 +102,22 @@ struct Simulator::Impl {
   /** A model has come: no event tells of its slots' earlier colliders. */
   void forgetLayers(const std::string& model);
 
+  // simulator_clouds.cpp
+  void addLive(const EnvironmentConfig& environment);
+  void updateCloud(const std::string& environment, CloudSurface* surface);
+  /** Points that something stands on now, in the world. */
+  struct LeavingPoint {
+    Vector3 p_W;
+    double sink;  ///< [m] at hand
+  };
+  std::vector<LeavingPoint> pointsStoodOn(int model) const;
+  void addStoodOn(const ContactManifold& manifold, bool is_a, std::vector<LeavingPoint>* points) const;
+  void addLeaving(int model, const std::vector<LeavingPoint>& points, double speed);
+  /** Sinks of a new cloud's points that are inside layers, so that they touch and no more. */
+  std::vector<SunkPoint> sunkIntoTouch(int cloud) const;
+  /** Nothing comes or goes any more: clouds are as they were last sent. */
+  void endFading();
+
   // simulator_models.cpp
   void spawn(RobotConfig robot);
   void removeModel(const std::string& name);
@@ -129,6 +154,7 @@ struct Simulator::Impl {
   SweepGuard sweep_guard_;
   LayerWatch layer_watch_;
   EnergyBalance energy_balance_;
+  std::map<std::string, LiveGround> live_;  ///< by environment
   std::vector<std::unique_ptr<Sensor>> sensors_;
   std::vector<SensorSchedule> sensor_schedules_;
   std::vector<SensorReading> spare_readings_;  ///< [sensors] whose memory the next reading uses

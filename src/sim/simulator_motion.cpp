@@ -199,6 +199,7 @@ void Simulator::Impl::resetWorld() {
   world_.world.setJointEfforts(std::vector<double>(world_.world.jointCount(), 0));
   world_.world.forgetHistory();
   stopped_ = false;
+  endFading();
   contacts_.memory().clear();
   contacts_.stops().clear();
   contacts_.crossings().clear();

@@ -33,6 +33,7 @@ struct StateParts {
   ReductionMemory choices;
   LayerWatch layer_watch;
   CrossingHistory crossings;
+  FadingPoints fading;
   LayerStops stops;
   AppliedLoads loads;
   Epoch epoch;
@@ -60,16 +61,18 @@ void readLoads(const SimulationState& state, const SimulatedWorld& world, Number
   parts->loads.read(world.world.bodyCount(), world.world.jointCount(), reader);
 }
 
-void readContacts(const SimulationState& state, const std::vector<Collider>& colliders, std::size_t first, NumberReader* reader,
+/** @param first word @param live there are live environments, of whose points the state tells */
+void readContacts(const SimulationState& state, const std::vector<Collider>& colliders, std::size_t first, bool live, NumberReader* reader,
                   StateParts* parts) {
   const std::uint64_t *words = state.words.data() + first, *end = state.words.data() + state.words.size();
   if (!parts->choices.read(colliders, &words, end) || !parts->layer_watch.read(colliders, &words, end) ||
-      !parts->crossings.read(colliders, &words, end, reader) || !parts->stops.read(colliders, words, end))
+      !parts->crossings.read(colliders, &words, end, reader) || (live && !parts->fading.read(colliders, &words, end)) ||
+      !parts->stops.read(colliders, words, end))
     NumberReader::refuseContent("memories of contacts are of no pairs of these colliders");
 }
 
 /** @param parts as they are now, overwritten @throws InputError */
-void readParts(const SimulationState& state, const SimulatedWorld& world, const std::vector<std::unique_ptr<Sensor>>& sensors,
+void readParts(const SimulationState& state, const SimulatedWorld& world, const std::vector<std::unique_ptr<Sensor>>& sensors, bool live,
                StateParts* parts) {
   constexpr std::uint64_t MOST_STEPS = std::uint64_t{1} << 53;  // up to here the times of all steps are different
   if (state.step > MOST_STEPS) NumberReader::refuseContent("there are more steps than time can count");
@@ -81,7 +84,7 @@ void readParts(const SimulationState& state, const SimulatedWorld& world, const 
   for (std::size_t joint = 0; joint < parts->motors.size(); ++joint)
     if (world.world.hasJoint(static_cast<int>(joint))) parts->motors[joint].read(&reader);
   for (const auto& sensor : sensors) parts->sensors.push_back(numbersOf(*sensor, &reader));
-  readContacts(state, world.colliders, contacts, &reader, parts);
+  readContacts(state, world.colliders, contacts, live, &reader, parts);
   readLoads(state, world, &reader, parts);
   reader.finish();
 }
@@ -108,6 +111,7 @@ SimulationState Simulator::Impl::content() const {
   contacts_.memory().append(&state.words);
   layer_watch_.append(&state.words);
   contacts_.crossings().append(&state.numbers, &state.words);
+  if (!live_.empty()) contacts_.fading().append(&state.words);
   contacts_.stops().append(&state.words);
   if (loads_.empty() && epoch_.step == 0) return state;
   state.numbers.insert(state.numbers.end(), {epoch_.time, static_cast<double>(epoch_.step)});
@@ -125,8 +129,8 @@ SimulationState Simulator::Impl::save() const {
 void Simulator::Impl::restore(const SimulationState& state) {
   checkHeader(state);
   checkLayout(state.layout, layout());
-  StateParts parts{energy_balance_, world_.motors, {}, {}, {}, {}, {}, {}, {}};
-  readParts(state, world_, sensors_, &parts);
+  StateParts parts{energy_balance_, world_.motors, {}, {}, {}, {}, {}, {}, {}, {}};
+  readParts(state, world_, sensors_, !live_.empty(), &parts);
   world_.world.restoreChecked(state.world);
   // Nothing below throws.
   step_count_ = state.step;
@@ -139,6 +143,7 @@ void Simulator::Impl::restore(const SimulationState& state) {
     sensors_[i]->random().setState(state.words[1 + i]);
   }
   contacts_.memory() = std::move(parts.choices);
+  contacts_.fading() = std::move(parts.fading);
   contacts_.stops() = std::move(parts.stops);
   contacts_.crossings() = std::move(parts.crossings);
   layer_watch_ = std::move(parts.layer_watch);

@@ -24,6 +24,7 @@ const StepReport& Simulator::Impl::step() {
   startStep();
   if (!bodiesAreFinite()) return stop();
   if (!contacts_.known()) findFirstContacts();
+  contacts_.fading().advance(config_.time_step);  // after contacts of the state at hand, as they are after a restore
   while (!substeps_.finished()) {
     planSubstep();
     sampleCommands();

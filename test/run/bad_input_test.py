@@ -32,6 +32,10 @@ class BadInputTest(RunCase):
         self.write("world.yaml", "robots:\n  - name: arm\n    urdf: arm.urdf\n    gians: {}\n")
         self.assert_refused(["world.yaml:4", "robots[0].gians", "'gains'"])
 
+    def test_topic(self):
+        self.write("world.yaml", "environments:\n  - {name: live, topic: /points}\n")
+        self.assert_refused(["live", "topic", "/points", "blem_sim_node", ".pcd"])
+
     def test_not_yaml(self):
         self.write("world.yaml", "robots: [\n")
         self.assert_refused(["world.yaml", "not YAML"])

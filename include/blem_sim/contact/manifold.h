@@ -25,6 +25,12 @@ struct Contact {
   bool pierced = false;
 };
 
+/** Vertex of A's mesh, or of B's, that made a contact of this id; -1 if an edge or a face did. */
+inline int vertexOf(std::uint64_t id, bool of_a) {
+  const std::uint64_t feature = id >> (of_a ? 32 : 0) & 0xFFFFFFFF;
+  return feature >> 30 == 0 ? static_cast<int>(feature) : -1;
+}
+
 /** All contacts of one pair of colliders; a < b. */
 struct ContactManifold {
   int a = -1, b = -1;    ///< indices of the colliders

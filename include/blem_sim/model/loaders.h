@@ -9,6 +9,7 @@
 
 #include "blem_sim/geometry/input_error.h"
 #include "blem_sim/geometry/mesh_topology.h"
+#include "blem_sim/model/cloud.h"
 #include "blem_sim/model/file_roots.h"
 #include "blem_sim/model/robot_model.h"
 
@@ -33,14 +34,6 @@ class UriResolver {
 
   std::map<std::string, std::string> packages_;
   std::optional<FileRoots> roots_;
-};
-
-/** Settings of a file of points in the simulation. */
-struct CloudOptions {
-  enum class As { AUTO, POINTS, MESH };
-  As as = As::AUTO;             ///< AUTO: points for a file without faces, triangles otherwise
-  double point_radius = 0.004;  ///< [m] boundary of each point
-  double max_edge = 0.05;       ///< [m] as: mesh; longest edge that joins neighbours of an organized cloud or of the projection mesher
 };
 
 /** Whether meshes for contact are mended after cleaning (mendMesh), or taken as they are. */
@@ -71,6 +64,13 @@ struct LoadedSurface {
  */
 LoadedSurface loadSurface(const std::string& file, const Vector3& scale = Vector3::Ones(), const CloudOptions& cloud = {},
                           Mending mending = Mending::ON, const LoadProgress& progress = {});
+
+/**
+ * Points that do not come from a file, filtered, as loadSurface makes them of a file of points.
+ * @param points [m] in the surface's frame @param cloud its `as` and `max_edge` are not used @param source for messages and the report
+ * @throws InputError: filters that cannot be met, no finite point left
+ */
+LoadedSurface cloudSurface(std::vector<Vector3> points, const CloudOptions& cloud, const std::string& source);
 
 /**
  * Parses URDF text. Limits of 1e6 and more mean none. Elements that are not simulated are noted; <gazebo> blocks are kept as texts.

@@ -12,6 +12,7 @@
 #include "blem_sim/contact/collider.h"
 #include "blem_sim/dynamics/world_types.h"
 #include "blem_sim/model/loaders.h"
+#include "blem_sim/model/voxel_map.h"
 #include "blem_sim/sim/controller_config.h"
 
 namespace YAML {
@@ -37,11 +38,21 @@ struct ContactConfig {
   Mending mending = Mending::ON;  ///< of the meshes of robots, objects and environments
 };
 
+/** A cloud that a sensor sends anew again and again. */
+struct LiveConfig {
+  enum class Update { REPLACE, ACCUMULATE };
+  std::string topic;            ///< sensor_msgs/PointCloud2; empty: the environment is no live one
+  std::string frame = "world";  ///< that points are turned into, taken for the world's
+  Update update = Update::REPLACE;
+  VoxelMapOptions map;          ///< of ACCUMULATE
+  double fade_speed = 0.00025;  ///< [m/s] at which points come and go below what stands on them
+};
+
 struct EnvironmentConfig {
   std::string name;
   std::string uri;                       ///< file, or
   std::optional<Eigen::Vector4d> plane;  ///< a x + b y + c z = d, solid below, or
-  std::string topic, frame;              ///< a live cloud (node only)
+  LiveConfig live;                       ///< a topic (node only): Simulator::updateCloud brings the points
   Pose X_WE = Pose::Identity();
   Vector3 scale = Vector3::Ones();
   CloudOptions cloud;

@@ -74,6 +74,15 @@ class Simulator {
   void unloadEnvironment(const std::string& name);
 
   /**
+   * Makes a live environment that of these points, between steps. Points that appear inside a layer of something rise into it, and points
+   * that something stood on sink away, both at the environment's fade_speed: nothing is thrown or let fall. Points inside a closed mesh
+   * count for nothing until the next update. Its slots are used again; contacts with it are new ones.
+   * @param surface made for it; what was there before after the call, for the caller to free where it takes no time from steps
+   * @throws InputError if there is no such live environment; nothing is changed then
+   */
+  void updateCloud(const std::string& environment, CloudSurface* surface);
+
+  /**
    * Adds a robot between steps; one of a single free body becomes an object, and one whose root link is called world has a fixed base.
    * A joint without gains in the configuration is free. Indices of robots and sensors that come after it go up by its own.
    * @throws InputError, nothing being changed: the name is taken, or whatever the configuration would be refused for

@@ -58,6 +58,20 @@ struct JointCommandMessage {
   std::vector<double> positions, velocities, efforts;
 };
 
+/** Points of a live cloud as contact takes them. */
+struct CloudSurface {
+  std::shared_ptr<const CollisionGeometry> geometry;
+  double radius = 0;                 ///< [m] of each point
+  Vector3 origin = Vector3::Zero();  ///< [m] of the geometry's frame in the world: zero unless the cloud is far away
+  MeshReport report;
+};
+
+/**
+ * Filters points and makes their tree. Any thread may call it, beside the steps; that is where the time of an update goes.
+ * @param points [m] in the world @param name of the environment, in messages @throws InputError: filters that cannot be met, no point left
+ */
+CloudSurface makeCloudSurface(std::vector<Vector3> points, const CloudOptions& cloud, const std::string& name);
+
 /** A time of simulation in which a load acts, from a step's start to another's. */
 struct LoadTime {
   double start = 0;     ///< [s] simulated; in the past: now

@@ -25,6 +25,8 @@ inline std::uint64_t contactId(const Feature& a, const Feature& b) {
   return pack(a) << 32 | pack(b);
 }
 
+static_assert(static_cast<int>(FeatureKind::VERTEX) == 0, "vertexOf knows vertices by it");
+
 /** The id's feature of A, or of B. */
 inline Feature featureOf(std::uint64_t id, bool of_a) {
   const std::uint64_t packed = id >> (of_a ? 32 : 0) & 0xFFFFFFFF;

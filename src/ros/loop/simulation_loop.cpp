@@ -57,6 +57,7 @@ void SimulationLoop::run(ros::CallbackQueue* callbacks, const std::function<void
     callbacks->callAvailable(ros::WallDuration(wait));
     serve(paused_);
     if (paused_ || pacer_.wait(StepPacer::Clock::now()) > 0) continue;
+    for (const auto& act : before_steps_) act(false);
     step();
     pacer_.stepped(StepPacer::Clock::now());
   }
@@ -72,6 +73,8 @@ void SimulationLoop::unpause() {
 std::uint32_t SimulationLoop::stepPaused(std::uint32_t count) {
   paused_ = true;
   for (const auto& publisher : publishers_) publisher->resumed();
+  if (count > 0)
+    for (const auto& act : before_steps_) act(true);
   std::uint32_t made = 0;
   bool finite = true;
   while (made < count && finite && ros::ok()) {
@@ -110,6 +113,10 @@ void SimulationLoop::restore(const SimulationState& state) {
 }
 
 void SimulationLoop::paceChanged() { pacer_ = StepPacer(simulator_->config().real_time_factor, simulator_->config().time_step); }
+
+void SimulationLoop::cloudsChanged() {
+  for (const auto& publisher : publishers_) publisher->cloudsChanged();
+}
 
 void SimulationLoop::modelsChanged() {
   sender_.drain();  // messages in it are for publishers that may go

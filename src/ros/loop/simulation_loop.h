@@ -48,6 +48,11 @@ class SimulationLoop {
   void modelsChanged();
   /** Lets an action follow on every change of models. */
   void onModelsChanged(std::function<void()> act) { on_models_changed_.push_back(std::move(act)); }
+  /** Lets an action take place before steps: before each while the simulation runs (with false), once before those that stepPaused makes
+   *  (with true: what was sent before shall count). */
+  void beforeSteps(std::function<void(bool asked_for)> act) { before_steps_.push_back(std::move(act)); }
+  /** Live environments were exchanged. */
+  void cloudsChanged();
   /** The time step or the real-time factor was set. */
   void paceChanged();
 
@@ -67,6 +72,7 @@ class SimulationLoop {
   Simulator* simulator_;
   std::vector<std::unique_ptr<StepPublisher>> publishers_;
   std::vector<std::function<void()>> on_models_changed_;
+  std::vector<std::function<void(bool)>> before_steps_;
   StepPacer pacer_;
   Outbox outbox_;
   bool paused_;

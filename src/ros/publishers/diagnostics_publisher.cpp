@@ -29,6 +29,10 @@ DiagnosticsPublisher::DiagnosticsPublisher(ros::NodeHandle node, ros::NodeHandle
   updater_.add("contacts", [this](DiagnosticStatusWrapper& status) { describeContacts(status); });
 }
 
+void DiagnosticsPublisher::add(const std::string& name, std::function<void(DiagnosticStatusWrapper&)> describe) {
+  updater_.add(name, describe);
+}
+
 void DiagnosticsPublisher::timeRestarted() {
   collector_.take();
   collector_.resume();

@@ -3,6 +3,8 @@
 #include <diagnostic_updater/diagnostic_updater.h>
 
 #include <chrono>
+#include <functional>
+#include <string>
 
 #include "loop/simulation_loop.h"
 #include "publishers/step_statistics.h"
@@ -18,6 +20,8 @@ class DiagnosticsPublisher : public StepPublisher {
   void timeRestarted() override;
   void resumed() override { collector_.resume(); }
   void modelsChanged() override { collector_.forgetColliders(); }
+  /** Adds a status of its own. */
+  void add(const std::string& name, std::function<void(diagnostic_updater::DiagnosticStatusWrapper&)> describe);
   /** Publishes when a second has passed; to be called often. */
   void serve(bool paused);
 

@@ -60,6 +60,26 @@ LoadReportEntry toEntry(const MeshReport& report) {
   return entry;
 }
 
+/** All models of a kind. They are sent anew, so that nothing unloaded stays in sight. */
+MarkerArray drawing(ModelKind kind, const std::vector<Collider>& colliders, const std::vector<ModelInfo>& models) {
+  MarkerArray array;
+  array.markers.emplace_back();
+  array.markers.back().action = Marker::DELETEALL;
+  array.markers.back().header.frame_id = WORLD_FRAME;
+  std::map<std::string, int> next_id;  // by collider name: an object of several shapes has several colliders of that name
+  for (const Collider& collider : colliders) {
+    if (!collider.enabled || collider.model < 0) continue;
+    const ModelInfo& model = models[collider.model];
+    if (!model.alive || model.kind != kind) continue;
+    const std::string frame = kind == ModelKind::ENVIRONMENT ? WORLD_FRAME : model.name;
+    for (Marker& marker : surfaceMarkers(collider, frame, collider.X_BC, colourOf(kind, collider.model), next_id[collider.name])) {
+      next_id[collider.name] = marker.id + 1;
+      array.markers.push_back(std::move(marker));
+    }
+  }
+  return array;
+}
+
 }  // namespace
 
 GeometryMarkerPublisher::GeometryMarkerPublisher(ros::NodeHandle private_node, const Simulator& simulator)
@@ -70,26 +90,16 @@ GeometryMarkerPublisher::GeometryMarkerPublisher(ros::NodeHandle private_node, c
 }
 
 void GeometryMarkerPublisher::modelsChanged() {
-  // Everything is sent anew, so that nothing unloaded stays in sight.
-  MarkerArray environments, objects;
-  environments.markers.emplace_back();
-  environments.markers.back().action = Marker::DELETEALL;
-  environments.markers.back().header.frame_id = WORLD_FRAME;
-  objects = environments;
-  std::map<std::string, int> next_id;  // by collider name: an object of several shapes has several colliders of that name
-  for (const Collider& collider : simulator_.colliders()) {
-    if (!collider.enabled || collider.model < 0) continue;
-    const ModelInfo& model = simulator_.models()[collider.model];
-    if (!model.alive || model.kind == ModelKind::ROBOT) continue;
-    MarkerArray& array = model.kind == ModelKind::ENVIRONMENT ? environments : objects;
-    const std::string frame = model.kind == ModelKind::ENVIRONMENT ? WORLD_FRAME : model.name;
-    for (Marker& marker : surfaceMarkers(collider, frame, collider.X_BC, colourOf(model.kind, collider.model), next_id[collider.name])) {
-      next_id[collider.name] = marker.id + 1;
-      array.markers.push_back(std::move(marker));
-    }
-  }
-  environments_.publish(environments);
-  objects_.publish(objects);
+  thread_.drain();
+  environments_.publish(drawing(ModelKind::ENVIRONMENT, simulator_.colliders(), simulator_.models()));
+  objects_.publish(drawing(ModelKind::OBJECT, simulator_.colliders(), simulator_.models()));
+}
+
+void GeometryMarkerPublisher::cloudsChanged() {
+  if (environments_.getNumSubscribers() == 0) return;
+  thread_.add([this, colliders = simulator_.colliders(), models = simulator_.models()] {
+    environments_.publish(drawing(ModelKind::ENVIRONMENT, colliders, models));
+  });
 }
 
 LoadReportPublisher::LoadReportPublisher(ros::NodeHandle private_node, const Simulator& simulator)

@@ -3,6 +3,7 @@
 
 #include <ros/node_handle.h>
 
+#include "sending/drawing_thread.h"
 #include "sending/step_publisher.h"
 
 namespace blem_sim {
@@ -13,10 +14,13 @@ class GeometryMarkerPublisher : public StepPublisher {
   GeometryMarkerPublisher(ros::NodeHandle private_node, const Simulator& simulator);
   void publish(const StepReport&) override {}
   void modelsChanged() override;
+  /** Draws beside the steps, if anybody looks. */
+  void cloudsChanged() override;
 
  private:
   const Simulator& simulator_;
   ros::Publisher environments_, objects_;
+  DrawingThread thread_;  // last: it publishes
 };
 
 /** `~load_report`. */
@@ -25,6 +29,7 @@ class LoadReportPublisher : public StepPublisher {
   LoadReportPublisher(ros::NodeHandle private_node, const Simulator& simulator);
   void publish(const StepReport&) override {}
   void modelsChanged() override;
+  void cloudsChanged() override { modelsChanged(); }
 
  private:
   const Simulator& simulator_;

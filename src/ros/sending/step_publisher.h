@@ -18,6 +18,8 @@ class StepPublisher {
   virtual void resumed() {}
   /** Called when models came or went; all messages about those that went are out. @throws InputError: a name that clashes */
   virtual void modelsChanged() {}
+  /** Called now and then while live environments are exchanged for others. */
+  virtual void cloudsChanged() {}
 };
 
 }  // namespace blem_sim

@@ -70,7 +70,8 @@ int SimulatedWorld::addRobot(const RobotInfo& robot) {
 
 std::vector<int> SimulatedWorld::removeModel(const std::string& name) {
   const int model = modelIndex(name);
-  std::vector<int> removed = removeColliders(model);
+  std::vector<int> removed = collidersOf(model);
+  removeColliders(removed);
   removeBodies(models[model]);
   if (robotOf(model) >= 0) removeRobot(robotOf(model));
   removeReports(name);
@@ -82,8 +83,20 @@ std::vector<int> SimulatedWorld::removeModel(const std::string& name) {
   return removed;
 }
 
-std::vector<int> SimulatedWorld::removeColliders(int model) {
+std::vector<int> SimulatedWorld::removeShapes(int model) {
   std::vector<int> removed = collidersOf(model);
+  removeReports(models[model].name);
+  removeColliders(removed);
+  return removed;
+}
+
+void SimulatedWorld::removeShape(int collider) {
+  removeReports(colliders[collider].name);
+  removeColliders({collider});
+}
+
+/** @param removed ascending */
+void SimulatedWorld::removeColliders(const std::vector<int>& removed) {
   for (const int collider : removed) {
     colliders[collider].enabled = false;
     colliders[collider].geometry.reset();
@@ -92,7 +105,6 @@ std::vector<int> SimulatedWorld::removeColliders(int model) {
   const auto is_removed = [&](int collider) { return std::binary_search(removed.begin(), removed.end(), collider); };
   for (auto pair = disabled_pairs.begin(); pair != disabled_pairs.end();)
     pair = is_removed(pair->first) || is_removed(pair->second) ? disabled_pairs.erase(pair) : std::next(pair);
-  return removed;
 }
 
 void SimulatedWorld::removeBodies(const ModelInfo& model) {

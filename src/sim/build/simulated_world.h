@@ -48,6 +48,12 @@ struct SimulatedWorld {
    *  colliders */
   std::vector<int> removeModel(const std::string& name);
 
+  /** Takes a model's colliders out, with their lines of the load report; the model stays. @return their slots, free now */
+  std::vector<int> removeShapes(int model);
+
+  /** Takes a collider of a model out, with its line. */
+  void removeShape(int collider);
+
   int modelIndex(const std::string& name) const;  ///< among the living; -1 if there is none
   int robotOf(int model) const;                   ///< -1: it is no robot
   std::vector<int> collidersOf(int model) const;
@@ -61,7 +67,7 @@ struct SimulatedWorld {
   void bodyStates(std::vector<BodyState>* out) const;
 
  private:
-  std::vector<int> removeColliders(int model);
+  void removeColliders(const std::vector<int>& removed);
   void removeBodies(const ModelInfo& model);
   void removeRobot(int robot);
   void removeReports(const std::string& name);

@@ -24,6 +24,14 @@ std::string wordsFor(const MeshShrinking& what, double r) {
   return what.excess > SAME || what.shortfall > SAME ? words : words + "; outer dimensions stay";
 }
 
+/** All settings of a cloud: equal words, equal clouds. */
+std::string wordsFor(const CloudOptions& cloud) {
+  std::string words = fmt::format("{} {} {} {}", static_cast<int>(cloud.as), cloud.point_radius, cloud.auto_radius, cloud.max_edge);
+  for (const CloudFilter& f : cloud.filters)
+    words += fmt::format("|{} {} {} {} {} {} {}", static_cast<int>(f.kind), f.size, f.neighbours, f.factor, f.axis, f.lower, f.upper);
+  return words;
+}
+
 /** Forgets surfaces that nobody holds any more once they are half of all, so that the cost per surface stays the same. */
 template <typename Map, typename Expired>
 void forgetExpired(Map* known, std::size_t* enough, const Expired& expired) {
@@ -59,8 +67,7 @@ void SurfaceLibrary::forgetWhatIsGone() {
 }
 
 SharedSurface SurfaceLibrary::load(const std::string& file, const Vector3& scale, const CloudOptions& cloud, const LoadProgress& progress) {
-  const std::string key = fmt::format("{}|{} {} {}|{} {} {}", file, scale.x(), scale.y(), scale.z(), static_cast<int>(cloud.as),
-                                      cloud.point_radius, cloud.max_edge);
+  const std::string key = fmt::format("{}|{} {} {}|{}", file, scale.x(), scale.y(), scale.z(), wordsFor(cloud));
   forgetWhatIsGone();
   Entry& entry = files_[key];
   if (const auto held = entry.geometry.lock()) return {held, entry.radius, entry.report, entry.origin};

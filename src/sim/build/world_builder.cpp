@@ -90,6 +90,10 @@ SharedSurface WorldBuilder::load(const std::string& uri, const Vector3& scale, c
 void WorldBuilder::addEnvironment(const EnvironmentConfig& config, SimulatedWorld* world) {
   world->checkNewName(config.name, "environments");
   const std::string where = "environments: " + config.name;
+  if (!config.live.topic.empty()) {
+    world->addModel(config.name, ModelKind::ENVIRONMENT, INT_MAX);  // its points come later
+    return;
+  }
   LoadWatch watch(log_, config.name);
   SharedSurface surface;
   if (config.plane) {
@@ -100,8 +104,6 @@ void WorldBuilder::addEnvironment(const EnvironmentConfig& config, SimulatedWorl
     surface.report.source = fmt::format("half-space below the plane {} . x = {:g}", words(normal), (*config.plane)[3]);
   } else if (!config.uri.empty()) {
     surface = load(config.uri, config.scale, config.cloud, where, &watch);
-  } else if (!config.topic.empty()) {
-    throw InputError(where + ": topic: live clouds are not simulated; save the cloud as .pcd or .ply and give its uri");
   } else {
     throw InputError(where + ": nothing to load; give a uri or a plane");
   }

@@ -56,14 +56,4 @@ ContactOverrides readContactOverrides(YamlReader& reader) {
   return contact;
 }
 
-CloudOptions readCloud(YamlReader reader) {
-  CloudOptions cloud;
-  const std::vector<CloudOptions::As> ways = {CloudOptions::As::AUTO, CloudOptions::As::POINTS, CloudOptions::As::MESH};
-  if (const auto as = reader.choice("as", {"auto", "points", "mesh"})) cloud.as = ways[*as];
-  reader.read("point_radius", &cloud.point_radius, NumberRange::positive());
-  reader.read("max_edge", &cloud.max_edge, NumberRange::positive());
-  reader.finish();
-  return cloud;
-}
-
 }  // namespace blem_sim

@@ -57,12 +57,10 @@ EnvironmentConfig readEnvironment(YamlReader& reader) {
     environment.plane = Eigen::Vector4d((*plane)[0], (*plane)[1], (*plane)[2], (*plane)[3]);
     if (environment.plane->head<3>().norm() == 0) reader.refuse("plane", "needs a normal: [a, b, c, d] for a x + b y + c z = d");
   }
-  reader.read("topic", &environment.topic);
-  reader.read("frame", &environment.frame);
-  if (environment.topic.empty() && !environment.frame.empty()) reader.refuse("frame", "belongs to topic: a file's place is its pose");
   reader.read("pose", &environment.X_WE);
   readScale(reader, &environment.scale);
   environment.cloud = readCloud(reader.section("cloud"));
+  environment.live = readLive(reader, environment.cloud);
   environment.contact = readContactOverrides(reader);
   return environment;
 }

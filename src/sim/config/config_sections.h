@@ -12,6 +12,8 @@ SolverSettings readSolver(YamlReader reader);
  */
 ContactOverrides readContactOverrides(YamlReader& reader);
 CloudOptions readCloud(YamlReader reader);
+/** Keys of an environment with a topic. @param cloud its points' settings */
+LiveConfig readLive(YamlReader& environment, const CloudOptions& cloud);
 /** A name that models may bear: given, not empty, without "::". */
 std::string readName(YamlReader& reader);
 /** One number or three, none of them 0. */

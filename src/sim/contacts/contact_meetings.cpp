@@ -66,6 +66,7 @@ std::vector<Contact>* ContactMeetings::room(std::size_t manifold) {
 void ContactMeetings::follow(const SimulatedWorld& world, const ContactStage& contacts, const FlushSurfaces& flush, std::size_t manifold,
                              WayOfPair* way) {
   const int a = way->now.a, b = way->now.b;
+  way->fading = &contacts.fading();
   way->known = findPair(contacts.watched(), a, b)->known;
   way->depth = std::max(depthOf(world, a), depthOf(world, b));
   if (way_.follow(*way, flush, world.colliders, contacts.motion(), room(manifold))) ++replaced_count_;

@@ -150,6 +150,7 @@ void ContactStage::narrowPhase(const SimulatedWorld& world) {
     found_[i].a = pair.a;
     found_[i].b = pair.b;
     search_.flush.dropCovered(world.colliders, search_.motion, &found_[i]);
+    fading_.apply(&found_[i]);
   });
   keepWhatWasFound(pairs);
 }

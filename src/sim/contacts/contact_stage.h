@@ -11,6 +11,7 @@
 #include "build/simulated_world.h"
 #include "contacts/contact_meetings.h"
 #include "contacts/crossing_history.h"
+#include "contacts/fading_points.h"
 #include "contacts/flush_surfaces.h"
 #include "contacts/layer_stops.h"
 #include "contacts/pair_searches.h"
@@ -82,6 +83,9 @@ class ContactStage {
   double arm(int collider) const { return arms_[collider]; }
   /** Poses of the accepted state, and how far each may move, by collider. */
   const std::vector<ColliderMotion>& motion() const { return current_search_.motion; }
+  /** Points that come and go: contacts that are found from now on are those of points as they are sunk. */
+  FadingPoints& fading() { return fading_; }
+  const FadingPoints& fading() const { return fading_; }
   /** Pairs that cross, or did and are not apart yet, in the accepted state. */
   CrossingHistory& crossings() { return current_search_.crossings; }
   const CrossingHistory& crossings() const { return current_search_.crossings; }
@@ -128,6 +132,7 @@ class ContactStage {
   Search search_, current_search_;
   std::vector<int> at_one_place_;  // by collider: its pairs at one place
   PairSearches searches_;
+  FadingPoints fading_;
   ContactMeetings meetings_;
   std::vector<ContactManifold> found_, current_, reduced_;
   std::vector<ContactManifold> spare_;  // only their memory

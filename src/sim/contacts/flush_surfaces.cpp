@@ -10,6 +10,9 @@ namespace {
 
 constexpr double SAME_WIDTH = 1e-6;  // [m] parts that a layer thinner by more leaves uncovered stand out
 
+/** A cloud of points has no surface that another could go on with. */
+bool hasSurface(const Collider& collider) { return collider.geometry->isHalfSpace() || !collider.geometry->mesh().isPoint(0); }
+
 SurfaceCover& threadCover() {
   thread_local SurfaceCover cover;
   return cover;
@@ -21,7 +24,7 @@ void FlushSurfaces::watch(const std::vector<Collider>& colliders, const std::vec
   neighbours_.clear();
   for (const WatchedPair& pair : pairs) {
     const bool a_is_fixed = colliders[pair.a].body == WORLD_BODY;
-    if (a_is_fixed || colliders[pair.b].body == WORLD_BODY)
+    if ((a_is_fixed || colliders[pair.b].body == WORLD_BODY) && hasSurface(colliders[a_is_fixed ? pair.a : pair.b]))
       neighbours_.push_back(a_is_fixed ? Neighbour{pair.b, pair.a} : Neighbour{pair.a, pair.b});
   }
   std::sort(neighbours_.begin(), neighbours_.end(),

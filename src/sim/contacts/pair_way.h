@@ -6,6 +6,7 @@
 
 #include "blem_sim/contact/manifold.h"
 #include "contacts/body_twist.h"
+#include "contacts/fading_points.h"
 #include "contacts/flush_surfaces.h"
 
 namespace blem_sim {
@@ -27,10 +28,11 @@ struct ColliderWay {
 struct WayOfPair {
   const ContactManifold& now;  ///< its contacts
   ColliderWay a, b;
-  double known = 0;  ///< [m] distance beyond the layers within which contacts are known
-  double depth = 0;  ///< [m] of the deepest contact that touches, of both bodies; at least 0
-  double dt = 0;     ///< [s]
-  double swing = 0;  ///< [m/s] by which velocities may change within dt though nothing touches
+  double known = 0;                      ///< [m] distance beyond the layers within which contacts are known
+  double depth = 0;                      ///< [m] of the deepest contact that touches, of both bodies; at least 0
+  double dt = 0;                         ///< [s]
+  const FadingPoints* fading = nullptr;  ///< applied to what is found on the way
+  double swing = 0;                      ///< [m/s] by which velocities may change within dt though nothing touches
 };
 
 /** Follows pairs on their ways, in memory that is kept between pairs. */

@@ -57,6 +57,15 @@ void commandTrajectory(const std::string& file, Simulator* simulator, std::vecto
   throw InputError(first_refusal);
 }
 
+/** @throws InputError for what only a node can have */
+void refuseTopics(const SimulationConfig& config) {
+  for (const EnvironmentConfig& environment : config.environments)
+    if (!environment.live.topic.empty())
+      throw InputError(
+          fmt::format("environments: {}: topic: {}: clouds come to blem_sim_node alone; save one as .pcd or .ply and give its uri",
+                      environment.name, environment.live.topic));
+}
+
 /** Progress of a run as a line on a terminal; nothing elsewhere. */
 class Progress {
  public:
@@ -109,6 +118,7 @@ void writeReport(const RunOptions& options, const RunRecord& record, const RunTi
 
 bool run(const RunOptions& options) {
   const SimulationConfig config = readConfig(options);
+  refuseTopics(config);
   const LoadLog log{[](const std::string& line) { std::fprintf(stderr, "blem_sim_run: %s\n", line.c_str()); }};
   Simulator simulator(config, UriResolver(options.packages), log);
   std::vector<std::string> notes = simulator.notes();

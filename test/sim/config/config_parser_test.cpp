@@ -215,7 +215,8 @@ solver: {stepper: quick_step, threads: 3, quick_step_iterations: 99}
 random_seed: 18446744073709551615
 environments:
   - {name: ladder, uri: ladder.ply, scale: 0.25, cloud: {as: mesh, max_edge: 0.02}}
-  - {name: live, topic: /points, frame: world}
+  - {name: live, topic: /points, frame: map, update: accumulate, fade_speed: 0.001, map: {voxel: 0.01, min_hits: 3, memory: 50, expire_after: 2, max_voxels: 10},
+     cloud: {as: points, point_radius: auto, filters: [{voxel_grid: 0.005}, {statistical_outliers: {neighbours: 16, factor: 2}}, {radius_outliers: {radius: 0.1, neighbours: 3}}, {pass_through: {axis: x, range: [-.inf, 2]}}]}}
   - {name: ground, plane: [0, 0, 2, 1], boundary_width: 0.001}
 objects:
   - {name: mug, uri: mug.stl, mass: 1, com: [1, 2, 3], inertia: [3, 0.1, 0.2, 4, 0.3, 5], mesh_pose: {xyz: [0, 0, 1]}, linear_velocity: [1, 0, 0]}
@@ -229,7 +230,26 @@ objects:
   EXPECT_EQ(config.random_seed, 18446744073709551615u);
   EXPECT_EQ(config.environments[0].scale, Vector3::Constant(0.25));
   EXPECT_EQ(config.environments[0].cloud.as, CloudOptions::As::MESH);
-  EXPECT_EQ(config.environments[1].frame, "world");
+  const LiveConfig& live = config.environments[1].live;
+  EXPECT_EQ(live.topic, "/points");
+  EXPECT_EQ(live.frame, "map");
+  EXPECT_EQ(live.update, LiveConfig::Update::ACCUMULATE);
+  EXPECT_EQ(live.fade_speed, 0.001);
+  EXPECT_EQ(live.map.voxel, 0.01);
+  EXPECT_EQ(live.map.min_hits, 3);
+  EXPECT_EQ(live.map.memory, 50);
+  EXPECT_EQ(live.map.expire_after, 2);
+  EXPECT_EQ(live.map.max_voxels, 10u);
+  const CloudOptions& cloud = config.environments[1].cloud;
+  EXPECT_TRUE(cloud.auto_radius);
+  ASSERT_EQ(cloud.filters.size(), 4u);
+  EXPECT_EQ(cloud.filters[0].size, 0.005);
+  EXPECT_EQ(cloud.filters[1].neighbours, 16);
+  EXPECT_EQ(cloud.filters[1].factor, 2);
+  EXPECT_EQ(cloud.filters[2].size, 0.1);
+  EXPECT_EQ(cloud.filters[3].axis, 0);
+  EXPECT_EQ(cloud.filters[3].lower, -INF);
+  EXPECT_EQ(cloud.filters[3].upper, 2);
   EXPECT_EQ(*config.environments[2].plane, Eigen::Vector4d(0, 0, 2, 1));
   Matrix3 inertia;
   inertia << 3, 0.1, 0.2, 0.1, 4, 0.3, 0.2, 0.3, 5;
@@ -311,6 +331,22 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"environments: [{name: e, plane: [0, 0, 1]}]", {"environments[0].plane", "list of 4"}},
         BadInput{"environments: [{name: e, uri: a, scale: [1, 0, 1]}]", {"environments[0].scale", "0"}},
         BadInput{"environments: [{name: e, uri: a, frame: world}]", {"environments[0].frame", "topic"}},
+        BadInput{"environments: [{name: e, uri: a, update: replace}]", {"environments[0].update", "topic"}},
+        BadInput{"environments: [{name: e, topic: a, pose: {}}]", {"environments[0].pose", "tf"}},
+        BadInput{"environments: [{name: e, topic: a, update: mix}]", {"environments[0].update", "replace, accumulate", "'mix'"}},
+        BadInput{"environments: [{name: e, topic: a, map: {voxel: 1}}]", {"environments[0].map", "accumulate"}},
+        BadInput{"environments: [{name: e, topic: a, update: accumulate, map: {voxel: 0}}]", {"map.voxel", "above 0"}},
+        BadInput{"environments: [{name: e, topic: a, fade_speed: 0}]", {"fade_speed", "above 0"}},
+        BadInput{"environments: [{name: e, topic: a, cloud: {as: mesh}}]", {"cloud.as", "points"}},
+        BadInput{"environments: [{name: e, uri: a, cloud: {point_radius: big}}]", {"cloud.point_radius", "'big'"}},
+        BadInput{"environments: [{name: e, uri: a, cloud: {filters: [{voxels: 1}]}}]", {"filters[0].voxels", "'voxel_grid'"}},
+        BadInput{"environments: [{name: e, uri: a, cloud: {filters: [{}]}}]", {"filters[0]", "exactly one"}},
+        BadInput{"environments: [{name: e, uri: a, cloud: {filters: [{voxel_grid: -1}]}}]", {"voxel_grid", "above 0"}},
+        BadInput{"environments: [{name: e, uri: a, cloud: {filters: [{statistical_outliers: {neighbours: 0}}]}}]", {"neighbours"}},
+        BadInput{"environments: [{name: e, uri: a, cloud: {filters: [{radius_outliers: {radius: 0}}]}}]", {"radius", "above 0"}},
+        BadInput{"environments: [{name: e, uri: a, cloud: {filters: [{pass_through: {range: [0, 1]}}]}}]", {"axis", "missing"}},
+        BadInput{"environments: [{name: e, uri: a, cloud: {filters: [{pass_through: {axis: x, range: [1, 0]}}]}}]",
+                 {"range", "lower first"}},
         BadInput{"environments: [{name: e, uri: a, pose: [0, 0, 0]}]", {"environments[0].pose", "must be a map"}},
         BadInput{"environments: [{name: e, uri: a, pose: {xyz: [0, 0, x]}}]", {"environments[0].pose.xyz", "finite", "'x'"}},
         BadInput{"environments: [{name: e, uri: a, cloud: {as: voxels}}]", {"environments[0].cloud.as", "auto, points, mesh"}},

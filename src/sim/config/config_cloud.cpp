@@ -1,0 +1,104 @@
+#include <yaml-cpp/yaml.h>
+
+#include <cmath>
+
+#include "config/config_sections.h"
+
+namespace blem_sim {
+namespace {
+
+using Kind = CloudFilter::Kind;
+
+CloudFilter readOutliers(YamlReader reader, Kind kind) {
+  CloudFilter filter;
+  filter.kind = kind;
+  filter.neighbours = 16;
+  filter.factor = 2;
+  filter.size = 0.02;
+  reader.read("neighbours", &filter.neighbours, 1);
+  if (kind == Kind::STATISTICAL_OUTLIERS) reader.read("factor", &filter.factor, NumberRange::notNegative());
+  if (kind == Kind::RADIUS_OUTLIERS) reader.read("radius", &filter.size, NumberRange::positive());
+  reader.finish();
+  return filter;
+}
+
+CloudFilter readPassThrough(YamlReader reader) {
+  CloudFilter filter;
+  filter.kind = Kind::PASS_THROUGH;
+  const auto axis = reader.choice("axis", {"x", "y", "z"});
+  if (!axis) reader.refuse("axis", "is missing; give it x, y or z");
+  filter.axis = *axis;
+  const YAML::Node range = reader.node("range");
+  const char* const wanted = "must be a list of two numbers, also -.inf and .inf, the lower first";
+  if (!range.IsDefined() || !range.IsSequence() || range.size() != 2) reader.refuse("range", wanted);
+  try {
+    filter.lower = range[0].as<double>();
+    filter.upper = range[1].as<double>();
+  } catch (const YAML::Exception&) {
+    reader.refuse("range", wanted);
+  }
+  if (!(filter.lower <= filter.upper)) reader.refuse("range", wanted);
+  reader.finish();
+  return filter;
+}
+
+CloudFilter readFilter(YamlReader& reader) {
+  int given = 0;
+  for (const char* key : {"voxel_grid", "statistical_outliers", "radius_outliers", "pass_through"}) given += reader.has(key) ? 1 : 0;
+  reader.finish();
+  if (given != 1) reader.refuse("", "needs exactly one of voxel_grid, statistical_outliers, radius_outliers or pass_through");
+  if (reader.has("statistical_outliers")) return readOutliers(reader.section("statistical_outliers"), Kind::STATISTICAL_OUTLIERS);
+  if (reader.has("radius_outliers")) return readOutliers(reader.section("radius_outliers"), Kind::RADIUS_OUTLIERS);
+  if (reader.has("pass_through")) return readPassThrough(reader.section("pass_through"));
+  CloudFilter filter;
+  reader.read("voxel_grid", &filter.size, NumberRange::positive());
+  return filter;
+}
+
+VoxelMapOptions readMap(YamlReader reader) {
+  VoxelMapOptions map;
+  reader.read("voxel", &map.voxel, NumberRange::positive());
+  reader.read("min_hits", &map.min_hits, 1);
+  reader.read("memory", &map.memory, 1);
+  reader.read("expire_after", &map.expire_after, NumberRange::positiveOrInfinite());
+  int most = static_cast<int>(map.max_voxels);
+  reader.read("max_voxels", &most, 1);
+  map.max_voxels = static_cast<std::size_t>(most);
+  reader.finish();
+  return map;
+}
+
+}  // namespace
+
+CloudOptions readCloud(YamlReader reader) {
+  CloudOptions cloud;
+  const std::vector<CloudOptions::As> ways = {CloudOptions::As::AUTO, CloudOptions::As::POINTS, CloudOptions::As::MESH};
+  if (const auto as = reader.choice("as", {"auto", "points", "mesh"})) cloud.as = ways[*as];
+  const YAML::Node radius = reader.node("point_radius");
+  cloud.auto_radius = radius.IsDefined() && radius.IsScalar() && radius.Scalar() == "auto";
+  if (!cloud.auto_radius) reader.read("point_radius", &cloud.point_radius, NumberRange::positive());
+  reader.read("max_edge", &cloud.max_edge, NumberRange::positive());
+  reader.forEachItem("filters", [&](YamlReader& filter) { cloud.filters.push_back(readFilter(filter)); });
+  reader.finish();
+  return cloud;
+}
+
+LiveConfig readLive(YamlReader& reader, const CloudOptions& cloud) {
+  LiveConfig live;
+  reader.read("topic", &live.topic);
+  reader.read("frame", &live.frame);
+  for (const char* key : {"frame", "update", "map", "fade_speed"})
+    if (live.topic.empty() && reader.has(key)) reader.refuse(key, "belongs to topic: a file does not change, and its place is its pose");
+  if (live.topic.empty()) return live;
+  for (const char* key : {"scale", "pose"})
+    if (reader.has(key)) reader.refuse(key, "is a file's: a topic's points are placed by tf");
+  if (cloud.as == CloudOptions::As::MESH) reader.refuse("cloud.as", "must be points: a live cloud is no mesh");
+  if (const auto update = reader.choice("update", {"replace", "accumulate"}))
+    live.update = *update == 0 ? LiveConfig::Update::REPLACE : LiveConfig::Update::ACCUMULATE;
+  if (live.update == LiveConfig::Update::REPLACE && reader.has("map")) reader.refuse("map", "belongs to update: accumulate");
+  live.map = readMap(reader.section("map"));
+  reader.read("fade_speed", &live.fade_speed, NumberRange::positive());
+  return live;
+}
+
+}  // namespace blem_sim

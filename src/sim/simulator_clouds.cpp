@@ -1,0 +1,135 @@
+// Live environments: clouds that are exchanged between steps.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+#include "blem_sim/geometry/input_error.h"
+#include "build/contact_settings.h"
+#include "contacts/inner_points.h"
+#include "simulator_impl.h"
+
+namespace blem_sim {
+namespace {
+
+constexpr double TOUCH = 1e-5;          // [m] largest gap of a point that something stands on
+constexpr std::size_t MOST_LEFT = 200;  // points of a pair without a choice of the last step
+
+/** Points that fade by vertex, one each: of two bodies the deeper one's. */
+std::vector<SunkPoint> byVertex(std::vector<SunkPoint> points) {
+  std::sort(points.begin(), points.end(),
+            [](const SunkPoint& a, const SunkPoint& b) { return std::make_tuple(a.vertex, -a.sink) < std::make_tuple(b.vertex, -b.sink); });
+  points.erase(std::unique(points.begin(), points.end(), [](const SunkPoint& a, const SunkPoint& b) { return a.vertex == b.vertex; }),
+               points.end());
+  return points;
+}
+
+}  // namespace
+
+void Simulator::Impl::addLive(const EnvironmentConfig& environment) {
+  if (environment.live.topic.empty()) return;
+  const ContactSettings settings = contactSettings(0, config_.contact, {&environment.contact});
+  live_[environment.name] = {settings.surface, environment.live.fade_speed, -1};
+}
+
+/** Adds the points of one collider of a pair that the other one stands on: those that the last step chose, if it chose some. */
+void Simulator::Impl::addStoodOn(const ContactManifold& manifold, bool is_a, std::vector<LeavingPoint>* points) const {
+  const int index = is_a ? manifold.a : manifold.b;
+  const Collider& collider = world_.colliders[index];
+  const ContactIds& chosen = contacts_.memory().of(manifold);
+  const std::size_t most = points->size() + MOST_LEFT;
+  for (const Contact& contact : manifold.contacts) {
+    const int vertex = vertexOf(contact.id, is_a);
+    if (vertex < 0 || contact.pierced || contact.depth < -TOUCH) continue;
+    if (chosen.empty() ? points->size() == most : !std::binary_search(chosen.begin(), chosen.end(), contact.id)) continue;
+    points->push_back({collider.X_BC * collider.geometry->mesh().vertices[vertex], contacts_.fading().sinkOf(index, vertex)});
+  }
+}
+
+std::vector<Simulator::Impl::LeavingPoint> Simulator::Impl::pointsStoodOn(int model) const {
+  std::vector<LeavingPoint> points;
+  for (const ContactManifold& manifold : contacts_.current())
+    for (const bool is_a : {true, false})
+      if (world_.colliders[is_a ? manifold.a : manifold.b].model == model) addStoodOn(manifold, is_a, &points);
+  const auto key = [](const LeavingPoint& p) { return std::make_tuple(p.p_W.x(), p.p_W.y(), p.p_W.z(), p.sink); };
+  std::sort(points.begin(), points.end(), [&](const LeavingPoint& a, const LeavingPoint& b) { return key(a) < key(b); });
+  points.erase(std::unique(points.begin(), points.end(), [](const LeavingPoint& a, const LeavingPoint& b) { return a.p_W == b.p_W; }),
+               points.end());
+  return points;
+}
+
+void Simulator::Impl::addLeaving(int model, const std::vector<LeavingPoint>& points, double speed) {
+  if (points.empty()) return;
+  const LiveGround& live = live_.at(world_.models[model].name);
+  Collider leaving = world_.colliders[live.cloud];
+  leaving.name += "::leaving";
+  std::vector<Vector3> places;
+  std::vector<SunkPoint> sunk;
+  for (const LeavingPoint& point : points) {
+    sunk.push_back({static_cast<int>(places.size()), std::max(point.sink, speed * config_.time_step)});
+    places.push_back(leaving.X_BC.inverse() * point.p_W);
+  }
+  MeshReport report;
+  leaving.geometry = std::make_shared<const CollisionGeometry>(std::make_shared<const TriangleMesh>(pointCloudMesh(places, &report)));
+  report.source = "points that sink away below what stood on them";
+  const int collider = world_.addCollider(leaving, leaving.radius, leaving.surface, report);
+  layer_watch_.forget(collider);
+  contacts_.fading().add(collider, speed, std::move(sunk));
+}
+
+std::vector<SunkPoint> Simulator::Impl::sunkIntoTouch(int cloud) const {
+  std::vector<SunkPoint> sunk = innerPoints(world_, bodies_, cloud);
+  for (const ContactManifold& manifold : contacts_.found()) {
+    if (manifold.a != cloud && manifold.b != cloud) continue;
+    for (const Contact& contact : manifold.contacts) {
+      const int vertex = vertexOf(contact.id, manifold.a == cloud);
+      if (vertex >= 0 && !contact.pierced && contact.depth > 0) sunk.push_back({vertex, contact.depth});
+    }
+  }
+  return byVertex(std::move(sunk));
+}
+
+void Simulator::Impl::updateCloud(const std::string& environment, CloudSurface* surface) {
+  const auto known = live_.find(environment);
+  if (known == live_.end()) throw InputError(fmt::format("environments: {}: is no live one, or was unloaded", environment));
+  LiveGround& live = known->second;
+  const int model = world_.modelIndex(environment);
+  world_.bodyStates(&bodies_);
+  if (!contacts_.known()) findFirstContacts();
+  const std::vector<LeavingPoint> leaving = pointsStoodOn(model);
+  CloudSurface before;
+  if (live.cloud >= 0) before.geometry = world_.colliders[live.cloud].geometry;
+  forgetContacts(world_.collidersOf(model));
+  for (const int collider : world_.removeShapes(model)) contacts_.fading().forget(collider);
+
+  Collider cloud;
+  cloud.name = environment;
+  cloud.model = model;
+  cloud.X_BC = makePose(surface->origin);
+  cloud.geometry = surface->geometry;
+  live.cloud = world_.addCollider(cloud, surface->radius, live.surface, surface->report);
+  layer_watch_.forget(live.cloud);
+  addLeaving(model, leaving, live.fade_speed);
+
+  contacts_.broadPhase(world_, bodies_, nullptr, config_.time_step);
+  contacts_.narrowPhase(world_);
+  contacts_.fading().add(live.cloud, -live.fade_speed, sunkIntoTouch(live.cloud));
+  contacts_.forget();
+  layout_.clear();
+  *surface = std::move(before);
+}
+
+void Simulator::Impl::endFading() {
+  contacts_.fading().clear();
+  for (const auto& [name, live] : live_) {
+    const int model = world_.modelIndex(name);
+    for (const int collider : world_.collidersOf(model)) {
+      if (collider == live.cloud) continue;
+      forgetContacts({collider});
+      world_.removeShape(collider);
+    }
+  }
+}
+
+}  // namespace blem_sim

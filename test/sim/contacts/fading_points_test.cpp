@@ -1,0 +1,112 @@
+#include "contacts/fading_points.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+
+namespace blem_sim {
+namespace {
+
+constexpr double FOR_GOOD = std::numeric_limits<double>::infinity();
+
+std::vector<Collider> threePoints() {
+  std::vector<Collider> colliders(2);
+  for (Collider& collider : colliders)
+    collider.geometry = std::make_shared<const CollisionGeometry>(
+        std::make_shared<const TriangleMesh>(pointCloudMesh({Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(2, 0, 0)}, nullptr)));
+  return colliders;
+}
+
+FadingPoints comingAndLeaving() {
+  FadingPoints fading;
+  fading.add(1, 0.001, {{0, 0.0001}, {2, FOR_GOOD}});
+  fading.add(0, -0.001, {{1, 0.002}});
+  return fading;
+}
+
+/** A contact of a vertex of A, or of B, with a face. */
+Contact contactOf(std::uint64_t vertex, bool of_a) {
+  const std::uint64_t face = std::uint64_t{2} << 30;
+  Contact contact;
+  contact.point = Vector3::Zero();
+  contact.normal_BA = Vector3::UnitZ();
+  contact.depth = 0.003;
+  contact.id = of_a ? vertex << 32 | face : face << 32 | vertex;
+  return contact;
+}
+
+TEST(FadingPoints, MakeContactsLessDeepOnTheirOwnSide) {
+  const FadingPoints fading = comingAndLeaving();
+  ContactManifold manifold;
+  manifold.a = 0;
+  manifold.b = 5;
+  manifold.contacts = {contactOf(0, true), contactOf(1, true), contactOf(1, false)};
+  fading.apply(&manifold);
+  ASSERT_EQ(manifold.contacts.size(), 3u);
+  EXPECT_EQ(manifold.contacts[0].depth, 0.003);
+  EXPECT_DOUBLE_EQ(manifold.contacts[1].depth, 0.001);
+  EXPECT_DOUBLE_EQ(manifold.contacts[1].point.z(), 0.001);  // the ball of A, above, is smaller from below
+  EXPECT_EQ(manifold.contacts[2].depth, 0.003);
+  manifold.a = -1;
+  manifold.b = 1;
+  manifold.contacts = {contactOf(0, false), contactOf(2, false)};
+  fading.apply(&manifold);
+  ASSERT_EQ(manifold.contacts.size(), 1u);
+  EXPECT_DOUBLE_EQ(manifold.contacts[0].depth, 0.0029);
+  EXPECT_DOUBLE_EQ(manifold.contacts[0].point.z(), -0.00005);
+}
+
+TEST(FadingPoints, ComeAndLeaveAtTheirSpeed) {
+  FadingPoints fading = comingAndLeaving();
+  fading.advance(1);
+  EXPECT_NEAR(fading.sinkOf(0, 1), 0.001, 1e-12);
+  EXPECT_NEAR(fading.sinkOf(1, 0), 0.0011, 1e-12);
+  EXPECT_EQ(fading.sinkOf(1, 2), FOR_GOOD);
+  fading.advance(1.5);
+  EXPECT_EQ(fading.sinkOf(0, 1), 0);
+  fading.advance(100);
+  EXPECT_EQ(fading.sinkOf(1, 0), FOR_GOOD);
+  fading.forget(1);
+  EXPECT_TRUE(fading.empty());
+}
+
+TEST(FadingPoints, AreReadAsTheyWereWritten) {
+  std::vector<std::uint64_t> words, again;
+  comingAndLeaving().append(&words);
+  FadingPoints read;
+  const std::uint64_t* word = words.data();
+  ASSERT_TRUE(read.read(threePoints(), &word, words.data() + words.size()));
+  EXPECT_EQ(word, words.data() + words.size());
+  read.append(&again);
+  EXPECT_EQ(words, again);
+}
+
+TEST(FadingPoints, WordsThatLieAreRefused) {
+  std::vector<std::uint64_t> words;
+  comingAndLeaving().append(&words);
+  const std::vector<Collider> colliders = threePoints();
+  const auto isRead = [&](const std::vector<std::uint64_t>& given) {
+    FadingPoints read;
+    const std::uint64_t* word = given.data();
+    return read.read(colliders, &word, given.data() + given.size());
+  };
+  for (std::size_t length = 0; length < words.size(); ++length)
+    EXPECT_FALSE(isRead({words.begin(), words.begin() + static_cast<std::ptrdiff_t>(length)})) << length;
+  // Number of colliders, collider, speed, number of points, vertex, sink.
+  for (const std::size_t at : {0, 1, 3, 4})
+    for (const std::uint64_t lie : {std::uint64_t{7}, ~std::uint64_t{0}, std::uint64_t{1} << 63}) {
+      std::vector<std::uint64_t> lying = words;
+      lying[at] = lie;
+      EXPECT_FALSE(isRead(lying)) << at << " " << lie;
+    }
+  for (const std::size_t at : {2, 5}) {
+    std::vector<std::uint64_t> lying = words;
+    lying[at] = 0x7FF8000000000000;  // NaN
+    EXPECT_FALSE(isRead(lying)) << at;
+  }
+}
+
+}  // namespace
+}  // namespace blem_sim
