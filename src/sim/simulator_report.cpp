@@ -20,7 +20,7 @@ void Simulator::Impl::recordSolve() {
   if (solved_->lcp_errors > 0 || solved_->residual > RESIDUAL_IS_TROUBLE * largest || solved_->creep > CREEP_IS_TROUBLE)
     report_.status |= SOLVER_TROUBLE;
   if (solved_->too_fast) report_.status |= MOTION_TOO_FAST;
-  report_.solver_residual = std::max(report_.solver_residual, solved_->residual);
+  report_.solver_residual += substeps_.fraction() * solved_->residual;
   report_.solver_creep = std::max(report_.solver_creep, solved_->creep);
   report_.solver_iterations += solved_->iterations;
 }

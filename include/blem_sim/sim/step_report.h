@@ -119,7 +119,7 @@ struct StepReport {
   /** [J] the part of energy_gained that nothing explains: without the work of contacts on purpose (correcting depth, parting meshes that
    *  cross) and without their apparent work. ENERGY_GAINED is set if that of an island is beyond its bound. */
   double energy_out_of_nothing = 0;
-  double solver_residual = 0;  ///< [N] worst over the step: SolveResult::residual
+  double solver_residual = 0;  ///< [N] SolveResult::residual, mean over the parts as the contacts' forces are
   double solver_creep = 0;     ///< [rad/s or m/s] worst over the step: SolveResult::creep
   int solver_iterations = 0;   ///< over the step's solves
   StepProfile profile;

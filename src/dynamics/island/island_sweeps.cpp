@@ -6,7 +6,7 @@
 namespace blem_sim {
 namespace {
 
-constexpr std::size_t GROUPS_AT_ONCE = 16, IMPULSES_AT_ONCE = 256, DOFS_AT_ONCE = 1024;  // sizes of chunks: some microseconds each
+constexpr std::size_t GROUPS_AT_ONCE = 8, IMPULSES_AT_ONCE = 256, DOFS_AT_ONCE = 1024;  // sizes of chunks: some microseconds each
 
 Vector6 columnOf(const TwistLanes& lanes, int lane) {
   Vector6 out;
@@ -50,7 +50,7 @@ void IslandSweeps::findVelocity(Eigen::VectorXd* velocity) {
   TwistLanes wrench;
   for (const SweepGroup& group : groups_) {
     wrenchOf(contacts_.data() + group.first, contacts_.data() + group.end, impulses_.data() + group.first, &wrench);
-    for (int lane = 0; lane < LANES; ++lane)
+    for (int lane = 0; lane < SWEEP_LANES; ++lane)
       if (group.patch[lane] >= 0) push(pairs_[group.patch[lane]], columnOf(wrench, lane), velocity);
   }
   for (const JointRow& row : joint_rows_) response_.push(row.unit, row.column, row.axis.sum(), velocity);
@@ -116,14 +116,14 @@ void IslandSweeps::sweepLoops(Eigen::VectorXd* velocity) {
 void IslandSweeps::sweepTrees(std::size_t index, Eigen::VectorXd* velocity) {
   const SweepGroup& group = groups_[index];
   TwistLanes twist = {}, wrench;
-  for (int lane = 0; lane < LANES; ++lane) {
+  for (int lane = 0; lane < SWEEP_LANES; ++lane) {
     if (group.patch[lane] < 0) continue;
     const Vector6 relative = relativeTwist(pairs_[group.patch[lane]], *velocity);
     for (int i = 0; i < 6; ++i) twist[i][lane] = relative[i];
   }
   blem_sim::sweep(group, contacts_.data() + group.first, contacts_.data() + group.end, impulses_.data() + group.first, twist, &wrench,
                   &changes_[index]);
-  for (int lane = 0; lane < LANES; ++lane)
+  for (int lane = 0; lane < SWEEP_LANES; ++lane)
     if (group.patch[lane] >= 0) push(pairs_[group.patch[lane]], columnOf(wrench, lane), velocity);
 }
 
@@ -148,8 +148,9 @@ void IslandSweeps::plainSweep(Eigen::VectorXd* velocity) {
   sweepLoops(velocity);
   for (std::size_t c = 0; c + 1 < group_start_.size(); ++c) sweepColour(c, velocity);
   change_ = SweepChange();
+  squared_change_ = 0;
   for (const SweepChange& group : changes_) {
-    change_.squared += group.squared;
+    for (const double squared : group.squared) squared_change_ += squared;
     change_.largest = std::max(change_.largest, group.largest);
     change_.impulse = std::max(change_.impulse, group.impulse);
   }
@@ -190,9 +191,9 @@ SweepReport IslandSweeps::sweep(int most, double enough, Eigen::VectorXd* veloci
     // The last sweep is a plain one: conjugate steps lead out of the cones.
     if (relative <= enough || report.sweeps == most) break;
     if (!conjugate) continue;
-    const double share = last > 0 ? change_.squared / last : 0;
+    const double share = last > 0 ? squared_change_ / last : 0;
     moveOn(share <= 1 ? share : 0, velocity);
-    last = change_.squared;
+    last = squared_change_;
   }
   findVelocity(velocity);
   return report;
@@ -211,7 +212,7 @@ void IslandSweeps::scale(double factor, Eigen::VectorXd* velocity) {
 void IslandSweeps::read(const Eigen::VectorXd& velocity, std::vector<ContactTerm>* contacts, std::vector<JointTerm>* joints,
                         std::vector<LoopTerm>* loops) const {
   for (const SweepGroup& group : groups_) {
-    for (int lane = 0; lane < LANES; ++lane) {
+    for (int lane = 0; lane < SWEEP_LANES; ++lane) {
       if (group.patch[lane] < 0) continue;
       const ContactPatch& patch = problem_->patches[group.patch[lane]];
       for (int i = patch.first; i < patch.end; ++i) {

@@ -127,7 +127,8 @@ class IslandSweeps {
   std::vector<SweepChange> changes_;  // by group
   std::vector<JointRow> joint_rows_;
   std::vector<LoopRow> loop_rows_;
-  SweepChange change_;
+  SweepChange change_;                   // of the last sweep, but for the sum of squares
+  double squared_change_ = 0;            // [N^2 s^2] that sum over all contacts
   std::vector<double> before_, search_;  // by place among dofs_
 };
 

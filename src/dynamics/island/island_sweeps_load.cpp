@@ -138,12 +138,12 @@ void IslandSweeps::layGroups() {
     const auto begin = by_colour_.begin() + colour_start_[c], end = by_colour_.begin() + colour_start_[c + 1];
     if (c < COLOURS)
       std::sort(begin, end, [&](int a, int b) { return contactsOf(a) > contactsOf(b) || (contactsOf(a) == contactsOf(b) && a < b); });
-    const int width = c < COLOURS ? LANES : 1;
+    const int width = c < COLOURS ? SWEEP_LANES : 1;
     for (auto p = begin; p != end;) {
       SweepGroup group;
       group.first = static_cast<int>(count);
       int longest = 0;
-      for (int lane = 0; lane < LANES; ++lane) {
+      for (int lane = 0; lane < SWEEP_LANES; ++lane) {
         group.patch[lane] = lane < width && p != end ? *p++ : -1;
         if (group.patch[lane] >= 0) longest = std::max(longest, contactsOf(group.patch[lane]));
       }
@@ -161,7 +161,7 @@ void IslandSweeps::layGroups() {
 
 void IslandSweeps::loadBodies(SweepGroup* group, SweepBodies* bodies) const {
   group->free = true;
-  for (int lane = 0; lane < LANES; ++lane) {
+  for (int lane = 0; lane < SWEEP_LANES; ++lane) {
     const int p = group->patch[lane];
     const ResponseSide none, &a = p < 0 ? none : pairs_[p].a, &b = p < 0 ? none : pairs_[p].b;
     group->free = group->free && a.unit < 0 && b.unit < 0;
@@ -176,7 +176,7 @@ void IslandSweeps::loadContacts(SweepStart start) {
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     SweepGroup& group = groups_[g];
     loadBodies(&group, &bodies_[g]);
-    for (int lane = 0; lane < LANES; ++lane) {
+    for (int lane = 0; lane < SWEEP_LANES; ++lane) {
       const int p = group.patch[lane];
       Matrix6 response = Matrix6::Identity();
       if (p >= 0) response = response_.relative(pairs_[p].pair, pairs_[p].a, pairs_[p].b);

@@ -15,7 +15,10 @@ namespace blem_sim {
 struct Triple {
   double x, y, z;
 };
-BLEM_SIM_INLINE Triple at(const VectorLanes& v, int lane) { return {v[0][lane], v[1][lane], v[2][lane]}; }
+template <int WIDTH>
+BLEM_SIM_INLINE Triple at(const double (&v)[3][WIDTH], int lane) {
+  return {v[0][lane], v[1][lane], v[2][lane]};
+}
 BLEM_SIM_INLINE void put(const Triple& v, int lane, VectorLanes* out) {
   (*out)[0][lane] = v.x;
   (*out)[1][lane] = v.y;

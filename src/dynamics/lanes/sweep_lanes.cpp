@@ -26,7 +26,7 @@ BLEM_SIM_INLINE void add(const Six& v, int lane, TwistLanes* to) {
   (*to)[5][lane] += v.linear.z;
 }
 
-BLEM_SIM_INLINE Six respond(const double (&r)[21][LANES], int l, const Six& w) {
+BLEM_SIM_INLINE Six respond(const double (&r)[21][SWEEP_LANES], int l, const Six& w) {
   const Triple &a = w.angular, &f = w.linear;
   Six v;
   v.angular.x = (r[0][l] * a.x + r[1][l] * a.y + r[3][l] * a.z) + (r[6][l] * f.x + r[10][l] * f.y + r[15][l] * f.z);
@@ -38,44 +38,76 @@ BLEM_SIM_INLINE Six respond(const double (&r)[21][LANES], int l, const Six& w) {
   return v;
 }
 
-/** A number of each lane. Compilers lower it to the processor's own vectors. */
 using Four = double __attribute__((vector_size(8 * LANES), aligned(8), may_alias));
+using FourFlags = decltype(Four() > Four());
 
-BLEM_SIM_INLINE const Four& four(const Lanes& lanes) { return *reinterpret_cast<const Four*>(lanes); }
-BLEM_SIM_INLINE Four& four(Lanes& lanes) { return *reinterpret_cast<Four*>(lanes); }
+/** A number of each lane: two of the vectors that most processors have, so that one works while the other waits. */
+struct Wide {
+  Four low, high;
 
-struct FourTriples {
-  Four x, y, z;
+  BLEM_SIM_INLINE double operator[](int lane) const { return lane < LANES ? low[lane] : high[lane - LANES]; }
 };
-BLEM_SIM_INLINE FourTriples all(const VectorLanes& v) { return {four(v[0]), four(v[1]), four(v[2])}; }
-BLEM_SIM_INLINE Four dot(const FourTriples& a, const FourTriples& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-BLEM_SIM_INLINE FourTriples cross(const FourTriples& a, const FourTriples& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+/** Answers of comparisons, lane by lane. */
+struct WideFlags {
+  FourFlags low, high;
+};
+BLEM_SIM_INLINE Wide operator+(const Wide& a, const Wide& b) { return {a.low + b.low, a.high + b.high}; }
+BLEM_SIM_INLINE Wide operator-(const Wide& a, const Wide& b) { return {a.low - b.low, a.high - b.high}; }
+BLEM_SIM_INLINE Wide operator*(const Wide& a, const Wide& b) { return {a.low * b.low, a.high * b.high}; }
+BLEM_SIM_INLINE Wide operator/(const Wide& a, const Wide& b) { return {a.low / b.low, a.high / b.high}; }
+BLEM_SIM_INLINE Wide operator-(const Wide& a) { return {-a.low, -a.high}; }
+BLEM_SIM_INLINE void operator+=(Wide& a, const Wide& b) { a = a + b; }
+BLEM_SIM_INLINE WideFlags operator>(const Wide& a, const Wide& b) { return {a.low > b.low, a.high > b.high}; }
+BLEM_SIM_INLINE WideFlags operator<=(const Wide& a, const Wide& b) { return {a.low <= b.low, a.high <= b.high}; }
+BLEM_SIM_INLINE Wide either(const WideFlags& first, const Wide& a, const Wide& b) {
+  return {first.low ? a.low : b.low, first.high ? a.high : b.high};
 }
-BLEM_SIM_INLINE FourTriples operator+(const FourTriples& a, const FourTriples& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-BLEM_SIM_INLINE FourTriples operator-(const FourTriples& a, const FourTriples& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-BLEM_SIM_INLINE FourTriples operator-(const FourTriples& a) { return {-a.x, -a.y, -a.z}; }
-BLEM_SIM_INLINE FourTriples operator*(const Four& s, const FourTriples& a) { return {s * a.x, s * a.y, s * a.z}; }
-
 BLEM_SIM_INLINE Four squareRoot(const Four& x) {
   Four root;
   for (int lane = 0; lane < LANES; ++lane) root[lane] = __builtin_sqrt(x[lane]);
   return root;
 }
+BLEM_SIM_INLINE double sum(const Four& x) { return (x[0] + x[1]) + (x[2] + x[3]); }
+BLEM_SIM_INLINE double largestOf(const Wide& x) {
+  return std::max({x.low[0], x.low[1], x.low[2], x.low[3], x.high[0], x.high[1], x.high[2], x.high[3]});
+}
+BLEM_SIM_INLINE Wide squareRoot(const Wide& x) { return {squareRoot(x.low), squareRoot(x.high)}; }
 
-/** Angular and linear velocities of four bodies. */
-struct FourBodies {
-  FourTriples angular, linear;
+BLEM_SIM_INLINE Wide wide(const SweepLanes& lanes) {
+  return {*reinterpret_cast<const Four*>(lanes), *reinterpret_cast<const Four*>(lanes + LANES)};
+}
+BLEM_SIM_INLINE void put(const Wide& x, SweepLanes* lanes) {
+  *reinterpret_cast<Four*>(*lanes) = x.low;
+  *reinterpret_cast<Four*>(*lanes + LANES) = x.high;
+}
+
+struct WideTriples {
+  Wide x, y, z;
+};
+BLEM_SIM_INLINE WideTriples all(const SweepVectors& v) { return {wide(v[0]), wide(v[1]), wide(v[2])}; }
+BLEM_SIM_INLINE Wide dot(const WideTriples& a, const WideTriples& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+BLEM_SIM_INLINE WideTriples cross(const WideTriples& a, const WideTriples& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+BLEM_SIM_INLINE WideTriples operator+(const WideTriples& a, const WideTriples& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+BLEM_SIM_INLINE WideTriples operator-(const WideTriples& a, const WideTriples& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+BLEM_SIM_INLINE WideTriples operator-(const WideTriples& a) { return {-a.x, -a.y, -a.z}; }
+BLEM_SIM_INLINE WideTriples operator*(const Wide& s, const WideTriples& a) { return {s * a.x, s * a.y, s * a.z}; }
+
+/** Angular and linear velocities of eight bodies. */
+struct WideBodies {
+  WideTriples angular, linear;
 };
 
-BLEM_SIM_INLINE FourBodies gather(const double* const (&from)[LANES]) {
-  Four v[6];
-  for (int i = 0; i < 6; ++i) v[i] = Four{from[0][i], from[1][i], from[2][i], from[3][i]};
+BLEM_SIM_INLINE WideBodies gather(const double* const (&from)[SWEEP_LANES]) {
+  Wide v[6];
+  for (int i = 0; i < 6; ++i)
+    v[i] = Wide{Four{from[0][i], from[1][i], from[2][i], from[3][i]}, Four{from[4][i], from[5][i], from[6][i], from[7][i]}};
   return {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}};
 }
 
-BLEM_SIM_INLINE void scatter(const FourBodies& v, double* const (&to)[LANES]) {
-  for (int lane = 0; lane < LANES; ++lane) {
+BLEM_SIM_INLINE void scatter(const WideBodies& v, double* const (&to)[SWEEP_LANES]) {
+  for (int lane = 0; lane < SWEEP_LANES; ++lane) {
     double* out = to[lane];
     out[0] = v.angular.x[lane];
     out[1] = v.angular.y[lane];
@@ -87,55 +119,56 @@ BLEM_SIM_INLINE void scatter(const FourBodies& v, double* const (&to)[LANES]) {
 }
 
 /** Adds the changes of velocity by a torque about the centres of mass and a force. */
-BLEM_SIM_INLINE void push(const BodyLanes& body, const FourTriples& torque, const FourTriples& force, FourBodies* v) {
+BLEM_SIM_INLINE void push(const BodyLanes& body, const WideTriples& torque, const WideTriples& force, WideBodies* v) {
   const auto& r = body.inverse_inertia;
-  const Four xx = four(r[0]), xy = four(r[1]), yy = four(r[2]), xz = four(r[3]), yz = four(r[4]), zz = four(r[5]);
+  const Wide xx = wide(r[0]), xy = wide(r[1]), yy = wide(r[2]), xz = wide(r[3]), yz = wide(r[4]), zz = wide(r[5]);
   v->angular.x += xx * torque.x + xy * torque.y + xz * torque.z;
   v->angular.y += xy * torque.x + yy * torque.y + yz * torque.z;
   v->angular.z += xz * torque.x + yz * torque.y + zz * torque.z;
-  v->linear = v->linear + four(body.inverse_mass) * force;
+  v->linear = v->linear + wide(body.inverse_mass) * force;
 }
 
 /** SweepChange by lane. */
-struct FourChanges {
-  Four squared = {}, largest = {}, strongest = {};
+struct WideChanges {
+  Wide squared = {}, largest = {}, strongest = {};
 
-  BLEM_SIM_INLINE void add(const Four& change, const Four& strength) {
+  BLEM_SIM_INLINE void add(const Wide& change, const Wide& strength) {
     squared += change;
-    largest = change > largest ? change : largest;
-    strongest = strength > strongest ? strength : strongest;
+    largest = either(change > largest, change, largest);
+    strongest = either(strength > strongest, strength, strongest);
   }
   BLEM_SIM_INLINE void put(SweepChange* out) const {
-    out->squared = (squared[0] + squared[1]) + (squared[2] + squared[3]);
-    out->largest = std::max({largest[0], largest[1], largest[2], largest[3]});
-    out->impulse = std::max({strongest[0], strongest[1], strongest[2], strongest[3]});
+    out->squared[0] = sum(squared.low);
+    out->squared[1] = sum(squared.high);
+    out->largest = largestOf(largest);
+    out->impulse = largestOf(strongest);
   }
 };
 
 /** Visits a contact of each lane, whose points have the relative velocity u. @return changes of the impulses */
-BLEM_SIM_INLINE FourTriples visit(const SweepContact& c, const FourTriples& u, SweepImpulse* impulse, FourChanges* changes) {
-  const Four zero = {}, one = {1, 1, 1, 1};
-  const FourTriples n = all(c.axis[0]), s = all(c.axis[1]), t = all(c.axis[2]);
-  const Four g_n = four(impulse->now[0]), g_s = four(impulse->now[1]), g_t = four(impulse->now[2]);
-  const Four miss = dot(n, u) + four(c.compliance) * g_n - four(c.target);
-  const Four wanted = g_n - four(c.normal_gain) * miss, push = wanted > zero ? wanted : zero, pushed = push - g_n;
-  const Four u_s = dot(s, u) + four(c.offset[0]) + four(c.mixed[0]) * pushed;
-  const Four u_t = dot(t, u) + four(c.offset[1]) + four(c.mixed[1]) * pushed;
+BLEM_SIM_INLINE WideTriples visit(const SweepContact& c, const WideTriples& u, SweepImpulse* impulse, WideChanges* changes) {
+  const Wide zero = {}, one = {Four{1, 1, 1, 1}, Four{1, 1, 1, 1}};
+  const WideTriples n = all(c.axis[0]), s = all(c.axis[1]), t = all(c.axis[2]);
+  const Wide g_n = wide(impulse->now[0]), g_s = wide(impulse->now[1]), g_t = wide(impulse->now[2]);
+  const Wide miss = dot(n, u) + wide(c.compliance) * g_n - wide(c.target);
+  const Wide wanted = g_n - wide(c.normal_gain) * miss, push = either(wanted > zero, wanted, zero), pushed = push - g_n;
+  const Wide u_s = dot(s, u) + wide(c.offset[0]) + wide(c.mixed[0]) * pushed;
+  const Wide u_t = dot(t, u) + wide(c.offset[1]) + wide(c.mixed[1]) * pushed;
   // Friction that sticks ends the slip. If that is beyond the cone it moves against the slip, and back onto the cone.
-  const Four stick_s = g_s - (four(c.tangent_inverse[0]) * u_s + four(c.tangent_inverse[1]) * u_t);
-  const Four stick_t = g_t - (four(c.tangent_inverse[1]) * u_s + four(c.tangent_inverse[2]) * u_t);
-  const Four most = four(c.friction) * push;
-  const Four slide_s = g_s - four(c.slide_gain) * u_s, slide_t = g_t - four(c.slide_gain) * u_t;
-  const Four size = squareRoot(slide_s * slide_s + slide_t * slide_t), back = size > most ? most / size : one;
-  const auto sticks = stick_s * stick_s + stick_t * stick_t <= most * most;
-  const Four change_s = (sticks ? stick_s : back * slide_s) - g_s, change_t = (sticks ? stick_t : back * slide_t) - g_t;
-  const Four now_s = g_s + change_s, now_t = g_t + change_t;
-  four(impulse->now[0]) = push;
-  four(impulse->now[1]) = now_s;
-  four(impulse->now[2]) = now_t;
-  four(impulse->change[0]) = pushed;
-  four(impulse->change[1]) = change_s;
-  four(impulse->change[2]) = change_t;
+  const Wide stick_s = g_s - (wide(c.tangent_inverse[0]) * u_s + wide(c.tangent_inverse[1]) * u_t);
+  const Wide stick_t = g_t - (wide(c.tangent_inverse[1]) * u_s + wide(c.tangent_inverse[2]) * u_t);
+  const Wide most = wide(c.friction) * push;
+  const Wide slide_s = g_s - wide(c.slide_gain) * u_s, slide_t = g_t - wide(c.slide_gain) * u_t;
+  const Wide size = squareRoot(slide_s * slide_s + slide_t * slide_t), back = either(size > most, most / size, one);
+  const WideFlags sticks = stick_s * stick_s + stick_t * stick_t <= most * most;
+  const Wide change_s = either(sticks, stick_s, back * slide_s) - g_s, change_t = either(sticks, stick_t, back * slide_t) - g_t;
+  const Wide now_s = g_s + change_s, now_t = g_t + change_t;
+  put(push, &impulse->now[0]);
+  put(now_s, &impulse->now[1]);
+  put(now_t, &impulse->now[2]);
+  put(pushed, &impulse->change[0]);
+  put(change_s, &impulse->change[1]);
+  put(change_t, &impulse->change[2]);
   changes->add(pushed * pushed + change_s * change_s + change_t * change_t, push * push + now_s * now_s + now_t * now_t);
   return pushed * n + change_s * s + change_t * t;
 }
@@ -167,7 +200,7 @@ void setLane(const ContactTerm* term, int lane, SweepContact* contact, SweepImpu
 
 BLEM_SIM_LANES void setGains(const SweepGroup& group, SweepContact* begin, SweepContact* end) {
   for (SweepContact* c = begin; c != end; ++c) {
-    for (int lane = 0; lane < LANES; ++lane) {
+    for (int lane = 0; lane < SWEEP_LANES; ++lane) {
       const Triple p = at(c->point, lane), n = at(c->axis[0], lane), s = at(c->axis[1], lane), t = at(c->axis[2], lane);
       const auto velocity = [&](const Triple& f) {
         const Six v = respond(group.response, lane, {cross(p, f), f});
@@ -201,9 +234,9 @@ Vector3 readLane(const SweepContact& contact, const SweepImpulse& impulse, int l
 
 BLEM_SIM_LANES void wrenchOf(const SweepContact* begin, const SweepContact* end, const SweepImpulse* impulse, TwistLanes* wrench) {
   for (int i = 0; i < 6; ++i)
-    for (int lane = 0; lane < LANES; ++lane) (*wrench)[i][lane] = 0;
+    for (int lane = 0; lane < SWEEP_LANES; ++lane) (*wrench)[i][lane] = 0;
   for (const SweepContact* c = begin; c != end; ++c, ++impulse) {
-    for (int lane = 0; lane < LANES; ++lane) {
+    for (int lane = 0; lane < SWEEP_LANES; ++lane) {
       const Triple f = impulse->now[0][lane] * at(c->axis[0], lane) + impulse->now[1][lane] * at(c->axis[1], lane) +
                        impulse->now[2][lane] * at(c->axis[2], lane);
       add({cross(at(c->point, lane), f), f}, lane, wrench);
@@ -213,40 +246,40 @@ BLEM_SIM_LANES void wrenchOf(const SweepContact* begin, const SweepContact* end,
 
 BLEM_SIM_LANES void sweep(const SweepGroup& group, const SweepContact* begin, const SweepContact* end, SweepImpulse* impulse,
                           const TwistLanes& start, TwistLanes* wrench, SweepChange* change) {
-  FourChanges changes;
+  WideChanges changes;
   TwistLanes twist, given_so_far = {};
   for (int i = 0; i < 6; ++i)
-    for (int lane = 0; lane < LANES; ++lane) twist[i][lane] = start[i][lane];
+    for (int lane = 0; lane < SWEEP_LANES; ++lane) twist[i][lane] = start[i][lane];
   for (const SweepContact* c = begin; c != end; ++c, ++impulse) {
-    const FourTriples p = all(c->point), w = {four(twist[0]), four(twist[1]), four(twist[2])};
-    const FourTriples v = {four(twist[3]), four(twist[4]), four(twist[5])};
-    const FourTriples f = visit(*c, v + cross(w, p), impulse, &changes), m = cross(p, f);
-    for (int lane = 0; lane < LANES; ++lane) {
+    const WideTriples p = all(c->point), w = {wide(twist[0]), wide(twist[1]), wide(twist[2])};
+    const WideTriples v = {wide(twist[3]), wide(twist[4]), wide(twist[5])};
+    const WideTriples f = visit(*c, v + cross(w, p), impulse, &changes), m = cross(p, f);
+    for (int lane = 0; lane < SWEEP_LANES; ++lane) {
       const Six given = {{m.x[lane], m.y[lane], m.z[lane]}, {f.x[lane], f.y[lane], f.z[lane]}};
       add(given, lane, &given_so_far);
       add(respond(group.response, lane, given), lane, &twist);
     }
   }
   for (int i = 0; i < 6; ++i)
-    for (int lane = 0; lane < LANES; ++lane) (*wrench)[i][lane] = given_so_far[i][lane];
+    for (int lane = 0; lane < SWEEP_LANES; ++lane) (*wrench)[i][lane] = given_so_far[i][lane];
   changes.put(change);
 }
 
 BLEM_SIM_LANES void sweepFree(const SweepBodies& bodies, const SweepContact* begin, const SweepContact* end, SweepImpulse* impulse,
                               double* velocity, SweepChange* change) {
   double nothing[6] = {};
-  double *of_a[LANES], *of_b[LANES];
-  for (int lane = 0; lane < LANES; ++lane) {
+  double *of_a[SWEEP_LANES], *of_b[SWEEP_LANES];
+  for (int lane = 0; lane < SWEEP_LANES; ++lane) {
     of_a[lane] = bodies.a.first_dof[lane] < 0 ? nothing : velocity + bodies.a.first_dof[lane];
     of_b[lane] = bodies.b.first_dof[lane] < 0 ? nothing : velocity + bodies.b.first_dof[lane];
   }
-  FourChanges changes;
-  FourBodies a = gather(of_a), b = gather(of_b);
-  const FourTriples shift = all(bodies.shift);
+  WideChanges changes;
+  WideBodies a = gather(of_a), b = gather(of_b);
+  const WideTriples shift = all(bodies.shift);
   for (const SweepContact* c = begin; c != end; ++c, ++impulse) {
-    const FourTriples p_a = all(c->point), p_b = p_a - shift;
-    const FourTriples u = (a.linear + cross(a.angular, p_a)) - (b.linear + cross(b.angular, p_b));
-    const FourTriples f = visit(*c, u, impulse, &changes);
+    const WideTriples p_a = all(c->point), p_b = p_a - shift;
+    const WideTriples u = (a.linear + cross(a.angular, p_a)) - (b.linear + cross(b.angular, p_b));
+    const WideTriples f = visit(*c, u, impulse, &changes);
     push(bodies.a, cross(p_a, f), f, &a);
     push(bodies.b, cross(f, p_b), -f, &b);
   }
@@ -258,7 +291,7 @@ BLEM_SIM_LANES void sweepFree(const SweepBodies& bodies, const SweepContact* beg
 BLEM_SIM_LANES void moveOn(double share, SweepImpulse* begin, SweepImpulse* end) {
   for (SweepImpulse* g = begin; g != end; ++g)
     for (int i = 0; i < 3; ++i)
-      for (int lane = 0; lane < LANES; ++lane) {
+      for (int lane = 0; lane < SWEEP_LANES; ++lane) {
         const double along = share * g->search[i][lane];
         g->now[i][lane] += along;
         g->search[i][lane] = along + g->change[i][lane];
@@ -268,7 +301,7 @@ BLEM_SIM_LANES void moveOn(double share, SweepImpulse* begin, SweepImpulse* end)
 BLEM_SIM_LANES void scale(double factor, SweepImpulse* begin, SweepImpulse* end) {
   for (SweepImpulse* g = begin; g != end; ++g)
     for (int i = 0; i < 3; ++i)
-      for (int lane = 0; lane < LANES; ++lane) g->now[i][lane] *= factor;
+      for (int lane = 0; lane < SWEEP_LANES; ++lane) g->now[i][lane] *= factor;
 }
 
 }  // namespace blem_sim

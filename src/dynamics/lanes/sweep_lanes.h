@@ -1,4 +1,4 @@
-// Contacts while they are swept: impulses improved one contact after the other, four patches at a time, each between bodies of its own.
+// Contacts while they are swept: impulses improved one contact after the other, eight patches at a time, each between bodies of its own.
 #pragma once
 
 #include "lanes/contact_term.h"
@@ -7,46 +7,50 @@
 
 namespace blem_sim {
 
-using TwistLanes = double[6][LANES];
+/** Twice as many as elsewhere: a visit is a long chain of dependent operations, and a processor works on two chains at once. */
+constexpr int SWEEP_LANES = 2 * LANES;
+using SweepLanes = double[SWEEP_LANES];
+using SweepVectors = double[3][SWEEP_LANES];
+using TwistLanes = double[6][SWEEP_LANES];
 
-/** One contact of each of four patches: its constants while they are swept. */
-struct SweepContact {
-  VectorLanes point;    ///< about the reference point of the patch's first body
-  VectorLanes axis[3];  ///< the normal, and two directions across it
-  Lanes friction, compliance, target;
-  Lanes offset[2];           ///< [m/s] across the normal: by which the bodies' paths bend apart
-  Lanes normal_gain;         ///< [kg] of the normal row, compliance included
-  Lanes mixed[2];            ///< [1/kg] by which a push moves the point across
-  Lanes tangent_inverse[3];  ///< [kg] inverse of the response across: 11, 12, 22
-  Lanes slide_gain;          ///< [kg] inverse of the largest response across
+/** One contact of each of eight patches: its constants while they are swept. */
+struct alignas(8 * SWEEP_LANES) SweepContact {
+  SweepVectors point;    ///< about the reference point of the patch's first body
+  SweepVectors axis[3];  ///< the normal, and two directions across it
+  SweepLanes friction, compliance, target;
+  SweepLanes offset[2];           ///< [m/s] across the normal: by which the bodies' paths bend apart
+  SweepLanes normal_gain;         ///< [kg] of the normal row, compliance included
+  SweepLanes mixed[2];            ///< [1/kg] by which a push moves the point across
+  SweepLanes tangent_inverse[3];  ///< [kg] inverse of the response across: 11, 12, 22
+  SweepLanes slide_gain;          ///< [kg] inverse of the largest response across
 };
 
 /** Variables of a sweep: impulses along the axes [N s]. */
-struct SweepImpulse {
-  VectorLanes now;     ///< those found
-  VectorLanes change;  ///< by the last sweep
-  VectorLanes search;  ///< along which the conjugate steps lead
+struct alignas(8 * SWEEP_LANES) SweepImpulse {
+  SweepVectors now;     ///< those found
+  SweepVectors change;  ///< by the last sweep
+  SweepVectors search;  ///< along which the conjugate steps lead
 };
 
-/** Four patches at most, no body in two of them. Lanes without a patch have contacts that never act. */
+/** Eight patches at most, no body in two of them. Lanes without a patch have contacts that never act. */
 struct SweepGroup {
-  int patch[LANES];            ///< -1: none
-  int first = 0, end = 0;      ///< contacts: as many as the largest patch has
-  bool free = false;           ///< all bodies are free, or the static world
-  double response[21][LANES];  ///< of the relative twist to a wrench, about the first body's reference point; lower triangle by rows
+  int patch[SWEEP_LANES];            ///< -1: none
+  int first = 0, end = 0;            ///< contacts: as many as the largest patch has
+  bool free = false;                 ///< all bodies are free, or the static world
+  double response[21][SWEEP_LANES];  ///< of the relative twist to a wrench, about the first body's reference point; lower triangle by rows
 };
 
-/** Velocity of four bodies, and their inverse inertias. Lanes of the static world, or without a patch, stay at zero. */
-struct BodyLanes {
-  int first_dof[LANES];              ///< -1: none
-  double inverse_inertia[6][LANES];  ///< [1/(kg m^2)] lower triangle by rows, world axes
-  Lanes inverse_mass;                ///< [1/kg]
+/** Velocity of eight bodies, and their inverse inertias. Lanes of the static world, or without a patch, stay at zero. */
+struct alignas(8 * SWEEP_LANES) BodyLanes {
+  int first_dof[SWEEP_LANES];              ///< -1: none
+  double inverse_inertia[6][SWEEP_LANES];  ///< [1/(kg m^2)] lower triangle by rows, world axes
+  SweepLanes inverse_mass;                 ///< [1/kg]
 };
 
 /** Bodies of a group that are all free. */
 struct SweepBodies {
   BodyLanes a, b;
-  VectorLanes shift;  ///< from a's reference point to b's
+  SweepVectors shift;  ///< from a's reference point to b's
 };
 
 /** A lane's contact from a term; null: one that never acts. */
@@ -61,9 +65,9 @@ void wrenchOf(const SweepContact* begin, const SweepContact* end, const SweepImp
 
 /** Changes of impulses by a sweep over contacts. */
 struct SweepChange {
-  double squared = 0;  ///< [N^2 s^2] sum of the changes' squares
-  double largest = 0;  ///< [N^2 s^2] square of the largest change of one contact
-  double impulse = 0;  ///< [N^2 s^2] square of the largest impulse
+  double squared[2] = {};  ///< [N^2 s^2] sums of the changes' squares: of the first LANES lanes, and of the others
+  double largest = 0;      ///< [N^2 s^2] square of the largest change of one contact
+  double impulse = 0;      ///< [N^2 s^2] square of the largest impulse
 };
 
 /**

@@ -34,7 +34,7 @@ Matrix6 inverseOf(const Body& body) {
 class SweepLanes : public ::testing::Test {
  protected:
   SweepLanes() {
-    for (int lane = 0; lane < LANES; ++lane) addLane(lane);
+    for (int lane = 0; lane < SWEEP_LANES; ++lane) addLane(lane);
     setGains(group_, contacts_, contacts_ + CONTACTS);
   }
 
@@ -102,8 +102,8 @@ class SweepLanes : public ::testing::Test {
   SweepContact contacts_[CONTACTS] = {};
   SweepImpulse impulses_[CONTACTS] = {};
   TwistLanes twist_ = {};
-  Vector3 shift_[LANES];
-  Eigen::VectorXd velocity_ = Eigen::VectorXd::Zero(12 * LANES);
+  Vector3 shift_[SWEEP_LANES];
+  Eigen::VectorXd velocity_ = Eigen::VectorXd::Zero(12 * SWEEP_LANES);
 };
 
 TEST_F(SweepLanes, OfFreeBodiesDoWhatThoseOfTreesDo) {
@@ -114,7 +114,7 @@ TEST_F(SweepLanes, OfFreeBodiesDoWhatThoseOfTreesDo) {
     TwistLanes wrench;
     sweep(group_, contacts_, contacts_ + CONTACTS, impulses_, twist_, &wrench, &change);
     sweepFree(bodies_, contacts_, contacts_ + CONTACTS, free, velocity_.data(), &free_change);
-    for (int lane = 0; lane < LANES; ++lane) {
+    for (int lane = 0; lane < SWEEP_LANES; ++lane) {
       const Vector6 now = relativeVelocity(lane);
       for (int i = 0; i < 6; ++i) twist_[i][lane] = now[i];
       for (int c = 0; c < CONTACTS; ++c)
@@ -131,7 +131,7 @@ TEST_F(SweepLanes, MomentumFollowsFromImpulses) {
   const Eigen::VectorXd before = velocity_;
   SweepChange change;
   sweepFree(bodies_, contacts_, contacts_ + CONTACTS, impulses_, velocity_.data(), &change);
-  for (int lane = 0; lane < LANES; ++lane) {
+  for (int lane = 0; lane < SWEEP_LANES; ++lane) {
     if (lane == WITHOUT_PATCH) continue;
     Vector3 force = Vector3::Zero();
     for (int c = 0; c < CONTACTS; ++c)
