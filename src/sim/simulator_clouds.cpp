@@ -7,7 +7,7 @@
 
 #include "blem_sim/geometry/input_error.h"
 #include "build/contact_settings.h"
-#include "contacts/inner_points.h"
+#include "clouds/inner_points.h"
 #include "simulator_impl.h"
 
 namespace blem_sim {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "blem_sim/contact/manifold.h"
+#include "clouds/fading_points.h"
 #include "contacts/body_twist.h"
-#include "contacts/fading_points.h"
 #include "contacts/flush_surfaces.h"
 
 namespace blem_sim {

@@ -1,4 +1,4 @@
-#include "contacts/inner_points.h"
+#include "clouds/inner_points.h"
 
 #include <limits>
 

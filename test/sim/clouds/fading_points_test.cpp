@@ -1,4 +1,4 @@
-#include "contacts/fading_points.h"
+#include "clouds/fading_points.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "build/simulated_world.h"
-#include "contacts/fading_points.h"
+#include "clouds/fading_points.h"
 
 namespace blem_sim {
 
