@@ -15,7 +15,7 @@ constexpr double SETTLED = 1e-4;                          // of the largest impu
 // A heap tumbles if the first sweep changes impulses by more than this share of the largest. Sweeps end when they change impulses by less;
 // a quiet crowd sways for ever if they leave more.
 constexpr double TUMBLES = 1e-2, SWEPT = 1e-3, SWEPT_FEW = 2e-5, SWEPT_QUIET = 1e-5, RECOVERED = 1e-7;
-constexpr int FEW_SWEEPS = 60, QUIET_SWEEPS = 120, MOST_SWEEPS = 240;  // most of a quiet heap, of a quiet crowd, of others
+constexpr int FEW_SWEEPS = 60, MOST_SWEEPS = 240;
 // Newton's method on a crowd fails where one sweep changes impulses by more than this share of the largest: the hard problem, and
 // polishing.
 constexpr double LIKE_BEFORE = 1e-6, NEARLY = 1e-4;
@@ -254,12 +254,18 @@ void IslandProblem::sweepAndPolish(const NewtonSettings& settings, NewtonReport*
   if (!sweeps_.load(problem, SweepStart::PREVIOUS, &s.velocity)) return;
   const double first_change = sweeps_.sweep(1, 0, &s.velocity).first_change;
   const bool quiet = first_change <= TUMBLES;
-  const SweepReport swept = quiet ? sweeps_.sweep(isCrowd() ? QUIET_SWEEPS : FEW_SWEEPS, isCrowd() ? SWEPT_QUIET : 0, &s.velocity)
+  const SweepReport swept = quiet ? sweeps_.sweep(isCrowd() ? MOST_SWEEPS : FEW_SWEEPS, isCrowd() ? SWEPT_QUIET : 0, &s.velocity)
                                   : sweeps_.sweep(MOST_SWEEPS, treeCount() < LARGE_HEAP ? SWEPT_FEW : SWEPT, &s.velocity);
   report->iterations += 1 + swept.sweeps;
   adoptSwept();
   NewtonReport found;
   assess(&found);
+  // Light pushes may creep though they change by little of the largest one.
+  if (found.contact_creep > CREEP_IS_TROUBLE) {
+    report->iterations += sweeps_.sweep(MOST_SWEEPS, SWEPT_FEW, &s.velocity).sweeps;
+    adoptSwept();
+    assess(&found);
+  }
   // Sweeps do not converge in towers, where a push has a long way to go.
   const bool worthwhile = isCrowd() ? first_change <= NEARLY : quiet || swept.last_change > SWEPT;
   if (worthwhile && !isExact(settings, found)) {
