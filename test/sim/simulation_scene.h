@@ -15,17 +15,36 @@ namespace blem_sim {
 
 constexpr double G = 9.81;  // [m/s^2], the default configuration's
 
-/** Writes a file of that name and tells its path; whole at once, since tests that run beside this one ask for the same. */
+/** Folder of one process, which ends with it: programs that run side by side write other files of the same names. */
+class SceneFolder {
+ public:
+  SceneFolder() : path(std::filesystem::path(testing::TempDir()) / ("blem_sim_scene." + std::to_string(getpid()))) {
+    std::filesystem::create_directories(path);
+  }
+  SceneFolder(const SceneFolder&) = delete;
+  SceneFolder& operator=(const SceneFolder&) = delete;
+  ~SceneFolder() {
+    std::error_code ignored;
+    if (getpid() == owner_) std::filesystem::remove_all(path, ignored);
+  }
+
+  const std::filesystem::path path;
+
+ private:
+  const pid_t owner_ = getpid();  // a child that was forked leaves its parent's files alone
+};
+
+inline const std::filesystem::path& sceneFolder() {
+  static const SceneFolder folder;
+  return folder.path;
+}
+
+/** Writes a file of that name, in place of one that was written before, and tells its path. */
 template <typename Write>
 std::string sceneFile(const std::string& name, Write&& write) {
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "blem_sim_scene";
-  std::filesystem::create_directories(folder);
-  const std::string file = (folder / name).string(), draft = file + "." + std::to_string(getpid());
-  {
-    std::ofstream out(draft);
-    write(out);
-  }
-  std::filesystem::rename(draft, file);
+  const std::string file = (sceneFolder() / name).string();
+  std::ofstream out(file);
+  write(out);
   return file;
 }
 

@@ -48,7 +48,7 @@ inline ObjectConfig bodyOf(SceneNumbers* n, const std::string& name, double diag
   if (shape == 1) object.uri = meshFile("unit_plate", gridMesh(1, 1, 1, 1));
   if (shape == 2) object.uri = meshFile("unit_cube", boxMesh(size)), size = {0.1, 0.1, 1};
   if (shape == 5) object.uri = meshFile("unit_cube", boxMesh(size)), size = {1, 1, 0.05};
-  if (shape == 4) object.uri = meshFile("unit_ball", icosphereMesh(0.5, 1)), size *= std::sqrt(3.0);
+  if (shape == 4) object.uri = meshFile("coarse_ball", icosphereMesh(0.5, 1)), size *= std::sqrt(3.0);
   if (shape == 3) {
     const double radius = std::pow(10, std::round(10 * std::log10(diagonal / 2)) / 10);
     object.urdf = sceneFile(fmt::format("thrown_ball_{:.4g}.urdf", radius), [&](std::ofstream& out) {
@@ -150,7 +150,7 @@ inline ThrownScene hitPlateScene(SceneNumbers* n) {
   const int shape = n->count(0, 2);
   const bool turned = n->chance(0.5);
   if (shape == 0) hitter.uri = meshFile("unit_cube", boxMesh(Vector3::Ones()));
-  if (shape == 1) hitter.uri = meshFile("unit_ball", icosphereMesh(0.5, 1));
+  if (shape == 1) hitter.uri = meshFile("coarse_ball", icosphereMesh(0.5, 1));
   if (shape == 2) hitter.uri = meshFile("unit_cylinder", cylinderMesh(0.5, 1, 16));
   hitter.scale = Vector3::Constant(size);
   hitter.mass = 10;
