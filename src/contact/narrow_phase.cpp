@@ -36,11 +36,19 @@ bool areAtOnePlace(const MeshPair& pair) {
   return (pair.X_FM.linear().cwiseAbs() * moving.diagonal() - fixed.diagonal()).norm() <= tolerance;
 }
 
-/** The pair at which copies at one place cross. */
+/** [m] By how much the moving mesh is moved so that copies at one place cross, axes of the fixed one. */
+Vector3 littleWay(const MeshPair& pair) { return APART * pair.fixed.bounds.diagonal().norm() * Vector3(0.48, 0.6, 0.64); }
+
 MeshPair aLittleApart(const MeshPair& pair) {
   MeshPair apart = pair;
-  apart.X_FM.translation() += APART * pair.fixed.bounds.diagonal().norm() * Vector3(0.48, 0.6, 0.64);
+  apart.X_FM.translation() += littleWay(pair);
   return apart;
+}
+
+/** Depths of contacts that were found a little apart, as they are where the meshes lie. */
+void takeBack(const MeshPair& pair, std::vector<Contact>* contacts) {
+  const Vector3 way = (pair.roles.first_is_a ? 1 : -1) * (pair.X_WF.linear() * littleWay(pair));
+  for (Contact& contact : *contacts) contact.depth += contact.normal_BA.dot(way);
 }
 
 void meshMesh(const Collider& a, const Pose& X_WA, const Collider& b, const Pose& X_WB, double range, const Pose* X_AB_apart,
@@ -64,7 +72,8 @@ void meshMesh(const Collider& a, const Pose& X_WA, const Collider& b, const Pose
   const bool copies = areAtOnePlace(pair);
   if (!copies || !cross(aLittleApart(pair), nullptr)) cross(pair, memory);
   // Copies of a sheet lie in each other without a crossing, and each vertex is pushed to its own side.
-  if (copies && std::abs(found.leastGap(pair)) <= IN_EACH_OTHER * pair.layer) cross(aLittleApart(pair), nullptr);
+  const bool in_each_other = copies && std::abs(found.leastGap(pair)) <= IN_EACH_OTHER * pair.layer;
+  if (in_each_other) cross(aLittleApart(pair), nullptr);
   out->pierced = !found.crossings.empty();
   if (out->pierced) {
     Pose X_FM_apart;
@@ -74,6 +83,7 @@ void meshMesh(const Collider& a, const Pose& X_WA, const Collider& b, const Pose
   const ContactWriter& close = found.close.placed(pair);
   found.plain.advance(buffers.merge.run(close.begin(), close.size(), found.plain.room(close.size())));
   found.plain.finish();
+  if (in_each_other && !out->pierced) takeBack(pair, &out->contacts);
 }
 
 /** Vertices of the mesh near or below the plane; however deep, each knows its way out. */

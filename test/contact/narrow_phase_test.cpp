@@ -212,6 +212,23 @@ TEST(NarrowPhase, ExactTouchPointsOut) {
   }
 }
 
+/** Their gap is 0, though the search that tells their sides apart moves one of them a little. */
+TEST(NarrowPhase, CopiesOfASheetAtOnePlaceTouch) {
+  const Collider segment = makeCollider(segmentMesh({-0.5 * EDGE, 0, 0}, {0.5 * EDGE, 0, 0}), 0.004);
+  const Collider coarse = makeCollider(gridMesh(EDGE, EDGE, 2, 2), 0.004), fine = makeCollider(gridMesh(EDGE, EDGE, 4, 4), 0.001);
+  const std::pair<const Collider*, const Collider*> pairs[] = {{&segment, &segment}, {&coarse, &coarse}, {&coarse, &fine}, {&fine, &coarse}};
+  for (const auto& [a, b] : pairs) {
+    for (const Vector3& turn : {Vector3(0, 0, 0), Vector3(0, 0, M_PI), Vector3(M_PI, 0, 0)}) {
+      const Pose X_WB = makePose({1, 2, 3}, {0.3, -0.2, 0.5});
+      const ContactManifold manifold = contactsOf(*a, X_WB * makePose(Vector3::Zero(), turn), *b, X_WB);
+      EXPECT_FALSE(manifold.contacts.empty());
+      EXPECT_FALSE(manifold.pierced);
+      EXPECT_NEAR(manifold.maxDepth(), manifold.layer, 1e-12);
+      for (const Contact& contact : manifold.contacts) EXPECT_LE(contact.depth, manifold.layer + 1e-12);
+    }
+  }
+}
+
 TEST(NarrowPhase, ContactsHaveUniqueIdsWhichLast) {
   RandomShapes random(11);
   const Collider hills = makeCollider(hillMesh(random, 0.5, 40, 0.001), 0), box = cube(0.005);
