@@ -51,8 +51,8 @@ class ArticulatedStepper : public Stepper {
   void makeTerms(const TermSource& source, Island* island);
   NewtonSettings settingsFor(const IslandProblem& problem) const;
   bool leap(const TermSource& source, Island* island);
-  NewtonReport solveTwice(double dt, const NewtonSettings& newton, IslandProblem* problem);
-  NewtonReport solveBounded(double dt, IslandProblem* problem);
+  NewtonReport solveTwice(const StepInput& input, const NewtonSettings& newton, IslandProblem* problem);
+  NewtonReport solveBounded(const StepInput& input, IslandProblem* problem);
   void reckonWork(bool leaps, Island* island);
   void solveIsland(const Scene& scene, const StepInput& input, Island* island);
   void finishIsland(const Scene& scene, const StepInput& input, Island* island, SolveResult* result);
@@ -184,16 +184,16 @@ NewtonSettings ArticulatedStepper::settingsFor(const IslandProblem& problem) con
 }
 
 // Solves with velocity products at the middle of the step, again where their first guess was not good enough.
-NewtonReport ArticulatedStepper::solveTwice(double dt, const NewtonSettings& newton, IslandProblem* problem) {
+NewtonReport ArticulatedStepper::solveTwice(const StepInput& input, const NewtonSettings& newton, IslandProblem* problem) {
   const NewtonReport first = problem->solve(forest_, motion_, newton, &space_);
   double change = 0;
-  for (const int tree : problem->trees) change = std::max(change, correctProducts(forest_, tree, dt, &motion_, &space_));
+  for (const int tree : problem->trees) change = std::max(change, correctProducts(forest_, input, tree, &motion_, &space_));
   return change <= SAME_PRODUCTS ? first : afterAll(first, problem->solveAgain(newton));
 }
 
-NewtonReport ArticulatedStepper::solveBounded(double dt, IslandProblem* problem) {
+NewtonReport ArticulatedStepper::solveBounded(const StepInput& input, IslandProblem* problem) {
   const NewtonSettings newton = settingsFor(*problem);
-  const NewtonReport report = solveTwice(dt, newton, problem);
+  const NewtonReport report = solveTwice(input, newton, problem);
   return problem->limitCorrections(settings_.max_correction_speed) ? afterAll(report, problem->solveAgain(newton)) : report;
 }
 
@@ -230,7 +230,7 @@ void ArticulatedStepper::solveIsland(const Scene& scene, const StepInput& input,
   problem.up = -scene.gravity();
   addEfforts(input, problem, &space_);
   const bool leaps = leap(source, island);
-  island->report = solveBounded(input.dt, &problem);
+  island->report = solveBounded(input, &problem);
   reckonWork(leaps, island);
   if (leaps) island->impacts.addTo(&problem);
 }

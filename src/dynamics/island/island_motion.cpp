@@ -20,18 +20,19 @@ constexpr double TOO_FAST = 0.1;
 constexpr double HOLDS = 0.5;  // of a dof's inertia: a joint that answers more stiffly keeps its velocity on the way
 
 // Change of the velocities of a tree by its velocity products in a step, over the velocities in the frame of its centre of mass; in the
-// norm of the energy, each dof's inertia taken alone; the more, the further the root turns.
-double turning(const Forest& forest, int tree, double dt, const ForestMotion& motion, const SolverSpace& space) {
+// norm of the energy, each dof's inertia taken alone; the more, the further the root turns. `mass_velocity`: M times the velocity.
+double turning(const Forest& forest, int tree, double dt, const ForestMotion& motion, const Eigen::VectorXd& velocity,
+               const Eigen::VectorXd& mass_velocity) {
   const ForestTree& t = forest.trees()[tree];
   double change = 0, energy = 0;
   for (int k = t.first_dof; k < t.dof_end; ++k) {
     change += motion.products[k] * motion.products[k] / motion.mass[forest.diagonal(k)];
-    energy += motion.velocity[k] * space.mass_velocity[k];
+    energy += velocity[k] * mass_velocity[k];
   }
   if (!(change > 0)) return 0;
   if (!t.free) return dt * std::sqrt(change / energy);
-  const double inner = energy - space.mass_velocity.segment<3>(t.first_dof + 3).squaredNorm() / motion.composite[t.first_node].mass;
-  const double turn = dt * motion.velocity.segment<3>(t.first_dof).norm();
+  const double inner = energy - mass_velocity.segment<3>(t.first_dof + 3).squaredNorm() / motion.composite[t.first_node].mass;
+  const double turn = dt * velocity.segment<3>(t.first_dof).norm();
   return dt * std::sqrt(change / std::max(inner, 1e-12 * energy)) * std::max(1.0, turn / SMALL_TURN);
 }
 
@@ -52,6 +53,10 @@ bool isTied(const Forest& forest, int tree) {
   const auto& loops = forest.loops();
   return std::any_of(mimics.begin(), mimics.end(), [&](const MimicRelation& m) { return belongs(m.node) || belongs(m.master); }) ||
          std::any_of(loops.begin(), loops.end(), [&](const LoopClosure& l) { return belongs(l.child) || belongs(l.parent); });
+}
+
+bool mayFollowAlone(const Forest& forest, const StepInput& input, int tree, const ForestMotion& motion) {
+  return motion.pace[tree] == Pace::SLOW && !isTied(forest, tree) && !isDriven(forest, tree, input);
 }
 
 Pace paceOf(const Forest& forest, const StepInput& input, bool touched, int tree, double turning) {
@@ -175,7 +180,7 @@ void setFreeMomentum(const Forest& forest, const Scene& scene, const StepInput& 
   space->direction.segment(first, count) = motion->velocity.segment(first, count) + 0.5 * motion->change.segment(first, count);
   computeProducts(forest, tree, space->direction, motion);
   multiply(forest, tree, motion->mass, motion->velocity, &space->mass_velocity, &space->paths);
-  const double fast = turning(forest, tree, input.dt, *motion, *space);
+  const double fast = turning(forest, tree, input.dt, *motion, motion->velocity, space->mass_velocity);
   motion->pace[tree] = fast > FAST_ALONE ? paceOf(forest, input, touched, tree, fast) : Pace::SLOW;
   if (motion->pace[tree] != Pace::SLOW) motion->products.segment(first, count).setZero();
   space->free_momentum.segment(first, count) = space->mass_velocity.segment(first, count);
@@ -188,7 +193,7 @@ void setFreeMomentum(const Forest& forest, const Scene& scene, const StepInput& 
 }
 
 void followAlone(const Forest& forest, const StepInput& input, int tree, ForestMotion* motion, SolverSpace* space) {
-  if (motion->pace[tree] != Pace::SLOW || isTied(forest, tree) || isDriven(forest, tree, input)) return;
+  if (!mayFollowAlone(forest, input, tree, *motion)) return;
   const ForestTree& t = forest.trees()[tree];
   motion->pace[tree] = Pace::FAST;
   for (int k = t.first_dof; k < t.dof_end; ++k) {
@@ -201,16 +206,22 @@ void addEfforts(const StepInput& input, const IslandProblem& problem, SolverSpac
   for (const JointTerm& j : problem.joints) space->free_momentum[j.dof] += input.dt * input.drives[j.joint].givenEffort();
 }
 
-double correctProducts(const Forest& forest, int tree, double dt, ForestMotion* motion, SolverSpace* space) {
+double correctProducts(const Forest& forest, const StepInput& input, int tree, ForestMotion* motion, SolverSpace* space) {
   if (motion->pace[tree] != Pace::SLOW) return 0;
   const ForestTree& t = forest.trees()[tree];
   const int first = t.first_dof, count = t.dofCount();
   space->gradient.segment(first, count) = motion->products.segment(first, count);
   space->direction.segment(first, count) = 0.5 * (motion->velocity.segment(first, count) + space->velocity.segment(first, count));
   computeProducts(forest, tree, space->direction, motion);
+  if (mayFollowAlone(forest, input, tree, *motion) &&
+      turning(forest, tree, input.dt, *motion, space->velocity, space->mass_velocity) > FAST_ALONE) {
+    motion->products.segment(first, count) = space->gradient.segment(first, count);
+    followAlone(forest, input, tree, motion, space);
+    return INFINITY;
+  }
   double worst = 0;
   for (int k = first; k < t.dof_end; ++k) {
-    const double change = dt * productsShare(t, k) * (motion->products[k] - space->gradient[k]);
+    const double change = input.dt * productsShare(t, k) * (motion->products[k] - space->gradient[k]);
     space->free_momentum[k] -= change;
     worst = std::max(worst, std::abs(change) * space->scale[k]);
   }

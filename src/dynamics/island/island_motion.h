@@ -30,8 +30,12 @@ bool followFast(const Forest& forest, const IslandProblem& problem, double dt, c
 /** Adds the efforts given in advance. */
 void addEfforts(const StepInput& input, const IslandProblem& problem, SolverSpace* space);
 
-/** Takes the velocity products at the middle of the step that was solved. @return [sqrt(kg) m/s] change of the free momentum */
-double correctProducts(const Forest& forest, int tree, double dt, ForestMotion* motion, SolverSpace* space);
+/**
+ * Takes the velocity products at the middle of the step that was solved. A tree that nothing drives or ties, and that an impact of this step
+ * set spinning, is fast from now on.
+ * @return [sqrt(kg) m/s] change of the free momentum, infinite for such a tree
+ */
+double correctProducts(const Forest& forest, const StepInput& input, int tree, ForestMotion* motion, SolverSpace* space);
 
 /** Wrench from each joint's parent on its child: Newton-Euler backwards over the step, about the joint frame's origin at the step's start,
  *  for a fast tree at its middle. */

@@ -177,6 +177,30 @@ TEST(EnergyOutOfNothing, LeavesOutWhatCorrectingDepthTakes) {
   EXPECT_LT(out_of_nothing, 1e-9);
 }
 
+/** A rod that lands on its end turns at 200 to 280 rad/s after the impact. */
+TEST(EnergyOutOfNothing, IsNoneWhereAnImpactSetsARodSpinning) {
+  const std::pair<Vector3, Vector3> turns_and_velocities[] = {{{2.420, 2.299, 0.519}, {-1.450, -0.208, -5.245}},
+                                                              {{-2.916, 1.122, 2.592}, {-1.063, 0.914, -4.561}},
+                                                              {{1.509, 2.928, -2.133}, {-1.112, -1.807, -2.868}},
+                                                              {{1.696, 0.692, -0.323}, {1.962, -0.216, -2.274}},
+                                                              {{-1.114, -0.862, -1.636}, {-1.301, 1.426, -2.907}}};
+  double out_of_nothing = 0;
+  for (const auto& [turn, velocity] : turns_and_velocities) {
+    ObjectConfig rod = box("rod", {0.006, 0.006, 0.045}, 0.0127, Vector3::Zero());
+    rod.X_WO = makePose({0, 0, 0.05}, turn);
+    rod.linear_velocity = velocity;
+    Simulator simulator(onGround({rod}), UriResolver());
+    double fastest = 0;
+    for (int i = 0; i < 40; ++i) {
+      const StepReport& report = simulator.step();
+      fastest = std::max(fastest, report.bodies[0].w_WB.norm());
+      out_of_nothing = std::max(out_of_nothing, report.energy_out_of_nothing);
+    }
+    EXPECT_GT(fastest, 180);
+  }
+  EXPECT_LT(out_of_nothing, 1e-9);
+}
+
 TEST(EnergyGainedBit, IsNotSetByWhatContactsDoOnPurpose) {
   const Vector3 size = Vector3::Constant(0.1);
   EXPECT_EQ(statusOf(onGround({box("deep", size, 1, {0, 0, 0.0515})}), 0.3) & ENERGY_GAINED, 0u);
