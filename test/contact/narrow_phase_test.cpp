@@ -216,7 +216,8 @@ TEST(NarrowPhase, ExactTouchPointsOut) {
 TEST(NarrowPhase, CopiesOfASheetAtOnePlaceTouch) {
   const Collider segment = makeCollider(segmentMesh({-0.5 * EDGE, 0, 0}, {0.5 * EDGE, 0, 0}), 0.004);
   const Collider coarse = makeCollider(gridMesh(EDGE, EDGE, 2, 2), 0.004), fine = makeCollider(gridMesh(EDGE, EDGE, 4, 4), 0.001);
-  const std::pair<const Collider*, const Collider*> pairs[] = {{&segment, &segment}, {&coarse, &coarse}, {&coarse, &fine}, {&fine, &coarse}};
+  const std::pair<const Collider*, const Collider*> pairs[] = {
+      {&segment, &segment}, {&coarse, &coarse}, {&coarse, &fine}, {&fine, &coarse}};
   for (const auto& [a, b] : pairs) {
     for (const Vector3& turn : {Vector3(0, 0, 0), Vector3(0, 0, M_PI), Vector3(M_PI, 0, 0)}) {
       const Pose X_WB = makePose({1, 2, 3}, {0.3, -0.2, 0.5});

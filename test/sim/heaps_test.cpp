@@ -48,6 +48,15 @@ TEST(Heaps, SixtyCubesTumbleWithoutTrouble) {
   EXPECT_LT(seen.deepest, 0.25);
 }
 
+/** One of the cubes lands on a corner, is hit from above, and its other corner comes down within the step, where nothing had foreseen it.
+ */
+TEST(Heaps, WhatAHitBringsDownDoesNotLeapIntoItsLayer) {
+  Simulator simulator(heapInBin(30, 3, SolverSettings()), UriResolver());
+  const Seen seen = run(&simulator, 0.22);
+  EXPECT_TRUE(seen.status & STEP_SHORTENED);
+  EXPECT_LT(seen.deepest, 0.25);
+}
+
 // Energy gained below the bound of ENERGY_GAINED corrects depth.
 TEST(Heaps, PouredSpheresGainNoEnergy) {
   Simulator simulator(spheresInBin(64, 3, SolverSettings()), UriResolver());

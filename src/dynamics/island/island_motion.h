@@ -31,8 +31,8 @@ bool followFast(const Forest& forest, const IslandProblem& problem, double dt, c
 void addEfforts(const StepInput& input, const IslandProblem& problem, SolverSpace* space);
 
 /**
- * Takes the velocity products at the middle of the step that was solved. A tree that nothing drives or ties, and that an impact of this step
- * set spinning, is fast from now on.
+ * Takes the velocity products at the middle of the step that was solved. A tree that nothing drives or ties, and that an impact of this
+ * step set spinning, is fast from now on.
  * @return [sqrt(kg) m/s] change of the free momentum, infinite for such a tree
  */
 double correctProducts(const Forest& forest, const StepInput& input, int tree, ForestMotion* motion, SolverSpace* space);

@@ -11,7 +11,8 @@ namespace {
 
 constexpr double USED_UP = 0.9;       // of the layer
 constexpr double LEAST_GROWTH = 0.1;  // of the layer in one step: slower sinking is not for the guard
-constexpr double BEYOND = 0.2;        // [m] at most, that a contact is outside the boxes of both colliders, to both sides together
+constexpr double LEAP = 0.2;    // of the layer in one step: deeper, the solve did not know of the contact, or springs take shorter steps
+constexpr double BEYOND = 0.2;  // [m] at most, that a contact is outside the boxes of both colliders, to both sides together
 
 /** Used-up share of the layer; 0 without contact. */
 double used(const ContactManifold& manifold) { return std::max(0.0, manifold.maxDepth() / manifold.layer); }
@@ -56,10 +57,11 @@ bool usesUpLayer(const std::vector<Collider>& colliders, const std::vector<Conta
   for (const ContactManifold& now : after) {
     if (!(now.layer > 0)) continue;
     const double used_now = used(now);
-    if (!now.pierced && used_now <= USED_UP) continue;
+    if (!now.pierced && used_now <= LEAP) continue;
     const ContactManifold* then = findPair(before, now.a, now.b);
     if (now.pierced && !(then && then->pierced)) return true;
-    if (inDanger(then ? used(*then) : 0, used_now)) return true;
+    const double used_then = then ? used(*then) : 0;
+    if (inDanger(used_then, used_now) || used_now - used_then > LEAP) return true;
   }
   for (const ContactManifold& then : before) {
     if (!(then.layer > 0) || then.pierced || then.contacts.empty()) continue;

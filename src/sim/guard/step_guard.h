@@ -12,7 +12,7 @@ namespace blem_sim {
 /**
  * A pair is in danger if a step
  * - made its bare meshes cross, or
- * - used up more than 0.9 of its layer, at least 0.1 of it in this step, or
+ * - used up more than 0.9 of its layer, at least 0.1 of it in this step, or more than 0.2 of it in this step, or
  * - carried a contact that existed before it, solved or left out, as far: then the pair may have passed through.
  * Pairs without a layer cannot be guarded.
  * @param before, after manifolds at the two ends of the step, sorted by (a, b); bodies_before, bodies_after by body slot

@@ -102,15 +102,22 @@ class UsesUpLayer : public testing::Test {
 
 TEST_F(UsesUpLayer, AcceptsShallowAndSlow) {
   EXPECT_FALSE(check({}, {}));
-  EXPECT_FALSE(check({manifold(-0.001)}, {manifold(0.008)}));
+  EXPECT_FALSE(check({manifold(-0.001)}, {manifold(0.0019)}));
+  EXPECT_FALSE(check({manifold(0.007)}, {manifold(0.0089)}));
   EXPECT_FALSE(check({manifold(0.0091)}, {manifold(0.0095)}));
   EXPECT_FALSE(check({manifold(0.0099, true)}, {manifold(0.0105, true)}));
 }
 
 TEST_F(UsesUpLayer, RefusesDeepAndFast) {
-  EXPECT_TRUE(check({manifold(-0.001)}, {manifold(0.0092)}));
+  EXPECT_TRUE(check({manifold(0.008)}, {manifold(0.0092)}));
   EXPECT_TRUE(check({}, {manifold(0.0092)}));
   EXPECT_TRUE(check({manifold(0.0085)}, {manifold(0.005, true)}));
+}
+
+TEST_F(UsesUpLayer, RefusesLeaps) {
+  EXPECT_TRUE(check({manifold(-0.001)}, {manifold(0.0021)}));
+  EXPECT_TRUE(check({}, {manifold(0.0021)}));
+  EXPECT_TRUE(check({manifold(0.003)}, {manifold(0.0051)}));
 }
 
 TEST_F(UsesUpLayer, RefusesWhatPassedThrough) {
