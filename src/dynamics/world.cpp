@@ -89,6 +89,11 @@ void World::removeBody(int body) {
   if (impl_->scene.exists(body)) impl_->scene.removeBody(body);
 }
 
+void World::removeJoint(int joint) {
+  impl_->joints_known = false;
+  if (hasJoint(joint)) impl_->scene.removeJoint(joint);
+}
+
 int World::bodyCount() const { return static_cast<int>(impl_->scene.bodies().size()); }
 int World::jointCount() const { return static_cast<int>(impl_->scene.joints().size()); }
 bool World::hasBody(int body) const { return impl_->scene.exists(body); }

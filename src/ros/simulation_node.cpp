@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "attachments/attachment_publisher.h"
+#include "attachments/attachment_services.h"
 #include "blem_sim/sim/simulator.h"
 #include "clouds/live_clouds.h"
 #include "controllers/controller_sets.h"
@@ -64,6 +66,7 @@ struct SimulationNode::Impl {
   std::unique_ptr<QueryServices> queries;
   std::unique_ptr<MotionServices> motions;
   std::unique_ptr<ForceServices> forces;
+  std::unique_ptr<AttachmentServices> attachments;
   std::unique_ptr<SpawnServices> spawns;
   std::unique_ptr<PropertyServices> properties;
   std::unique_ptr<StateServices> states;
@@ -79,6 +82,7 @@ struct SimulationNode::Impl {
     loop.add(std::make_unique<LayerEventPublisher>(private_node, simulator, loop.sender()));
     loop.add(std::make_unique<GeometryMarkerPublisher>(private_node, simulator));
     loop.add(std::make_unique<LoadReportPublisher>(private_node, simulator));
+    loop.add(std::make_unique<AttachmentPublisher>(private_node, simulator, loop.sender()));
     loop.add(std::make_unique<StatePublisher>(private_node, simulator, loop.sender()));
     loop.add(std::make_unique<StepReportPublisher>(private_node, &loop));
     auto diagnostics_publisher = std::make_unique<DiagnosticsPublisher>(node, private_node, &loop);
@@ -115,6 +119,7 @@ struct SimulationNode::Impl {
     queries = std::make_unique<QueryServices>(private_node, &loop);
     motions = std::make_unique<MotionServices>(private_node, &simulator);
     forces = std::make_unique<ForceServices>(private_node, &simulator);
+    attachments = std::make_unique<AttachmentServices>(private_node, &simulator);
     spawns = std::make_unique<SpawnServices>(private_node, &loop);
     properties = std::make_unique<PropertyServices>(private_node, &loop);
     states = std::make_unique<StateServices>(private_node, &loop, roots);

@@ -113,6 +113,12 @@ void Simulator::spawn(const RobotConfig& robot) { impl_->spawn(robot); }
 void Simulator::removeModel(const std::string& name) { impl_->removeModel(name); }
 void Simulator::restrictFiles(const FileRoots& roots) { impl_->builder_.restrictFiles(roots); }
 
+void Simulator::attach(const std::string& object, const LinkPart& part, double max_force, double max_torque) {
+  impl_->attach(object, part, max_force, max_torque);
+}
+void Simulator::detach(const std::string& object) { impl_->detach(object); }
+const std::vector<AttachedModel>& Simulator::attachments() const { return impl_->world_.attachments; }
+
 void Simulator::moveModel(int body, const BodyState& to) { impl_->moveModel(body, to); }
 void Simulator::setJointPositions(int robot, const std::vector<std::string>& joints, const std::vector<double>& positions) {
   impl_->setJointPositions(robot, joints, positions);

@@ -1,5 +1,5 @@
 // Content of a Simulator. Its work is split by concept: simulator_step.cpp, simulator_report.cpp,
-// simulator_commands.cpp, simulator_clouds.cpp, simulator_models.cpp, simulator_motion.cpp, simulator_state.cpp.
+// simulator_commands.cpp, simulator_clouds.cpp, simulator_models.cpp, simulator_attachments.cpp, simulator_motion.cpp, simulator_state.cpp.
 #pragma once
 
 #include <map>
@@ -132,7 +132,22 @@ struct Simulator::Impl {
   void setJointLimits(int robot, int joint, double lower, double upper);
   void setPhysics(const Vector3& gravity, double time_step, double real_time_factor);
 
+  // simulator_attachments.cpp
+  void attach(const std::string& object, const LinkPart& part, double max_force, double max_torque);
+  void detach(const std::string& object);
+  /** Detaches a model from whatever carries it, and all that it carries. */
+  void detachAll(int model);
+  void removeAttachment(std::size_t index);
+  /** The attachment by which a model is carried; null if none does. */
+  const AttachedModel* carrierOf(int model) const;
+  /** Puts all that a model carries, and what that carries, to where it belongs. */
+  void carryAlong(int model);
+  /** Notes the welds' wrenches of the step at hand, and breaks those that were overloaded. */
+  void watchAttachments();
+
   // simulator_motion.cpp
+  /** moveModel without its checks, and without what is attached. */
+  void moveRigidly(int model, int body, const BodyState& to);
   void moveModel(int body, const BodyState& to);
   void setJointPositions(int robot, const std::vector<std::string>& joints, const std::vector<double>& positions);
   void resetModel(int model);

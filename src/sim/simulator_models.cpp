@@ -74,6 +74,7 @@ void Simulator::Impl::removeModel(const std::string& name) {
     if (model.alive) names.push_back(model.name);
   requireName(name, names, "delete_model", "model");
   const int model = world_.modelIndex(name);
+  detachAll(model);
   if (world_.robotOf(model) >= 0) removeSensors(world_.robotOf(model));
   const std::vector<int> bodies = world_.models[model].bodies;
   for (const int body : bodies) loads_.clearBody(body);

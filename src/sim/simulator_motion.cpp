@@ -128,7 +128,15 @@ void Simulator::Impl::moveModel(int body, const BodyState& to) {
     throw InputError(fmt::format("'{}' has a fixed base; set_model_configuration moves its joints, delete and spawn it to move the base",
                                  world_.models[model].name));
   }
-  const Pose move = to.X_WB * from.X_WB.inverse();
+  if (const AttachedModel* by = carrierOf(model))
+    throw InputError(fmt::format("'{}' is attached to '{}'; detach it first", by->object, by->part.name));
+  moveRigidly(model, body, to);
+  carryAlong(model);
+  reportWithoutStep();
+}
+
+void Simulator::Impl::moveRigidly(int model, int body, const BodyState& to) {
+  const Pose move = to.X_WB * world_.world.bodyState(body).X_WB.inverse();
   const Vector3 p_WCom = to.X_WB * world_.world.bodySpec(body).inertial.com;
   for (const int each : world_.models[model].bodies) {
     BodyState state = to;
@@ -139,7 +147,6 @@ void Simulator::Impl::moveModel(int body, const BodyState& to) {
     world_.world.setBodyState(each, state);
   }
   forgetContacts(world_.collidersOf(model));
-  reportWithoutStep();
 }
 
 void Simulator::Impl::setJointPositions(int index, const std::vector<std::string>& names, const std::vector<double>& positions) {
@@ -168,6 +175,7 @@ void Simulator::Impl::setJointPositions(int index, const std::vector<std::string
   }
   for (const std::size_t j : set) world_.motors[robot.world_joints[j]].hold(values.positions[j]);
   forgetContacts(world_.collidersOf(robot.model));
+  carryAlong(robot.model);
   reportWithoutStep();
 }
 
@@ -188,12 +196,14 @@ void Simulator::Impl::restart(const ModelInfo& model, int robot) {
 }
 
 void Simulator::Impl::resetModel(int index) {
+  detachAll(index);
   restart(world_.models.at(index), world_.robotOf(index));
   forgetContacts(world_.collidersOf(index));
   reportWithoutStep();
 }
 
 void Simulator::Impl::resetWorld() {
+  while (!world_.attachments.empty()) removeAttachment(0);
   for (std::size_t i = 0; i < world_.models.size(); ++i)
     if (world_.models[i].alive) restart(world_.models[i], world_.robotOf(static_cast<int>(i)));
   world_.world.setJointEfforts(std::vector<double>(world_.world.jointCount(), 0));

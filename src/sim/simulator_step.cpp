@@ -44,6 +44,7 @@ const StepReport& Simulator::Impl::step() {
   if (substeps_.count() > 1) world_.world.setJointEfforts(part_reports_.efforts());
   readSensors();
   report();
+  watchAttachments();
   return report_;
 }
 
@@ -54,6 +55,7 @@ void Simulator::Impl::startStep() {
   for (SensorSample& sample : report_.samples) spare_readings_[sample.sensor] = std::move(sample.reading);
   report_.samples.clear();
   report_.layer_events.clear();
+  report_.broken_attachments.clear();
   report_.energy_gained = report_.energy_out_of_nothing = 0;
   report_.solver_residual = report_.solver_creep = report_.wrench_error = 0;
   report_.solver_iterations = 0;

@@ -14,7 +14,7 @@ FLOORS = {
     "reduction": ["lanes", "patches", "choice"],
     "dynamics": ["lanes", "scene", "trees", "island", "ode"],
     "sim": ["numbers", "config", "gazebo", "commands", "build", "clouds", "contacts", "guard", "sensors", "state", "controllers"],
-    "ros": ["messages", "sending", "loop", "clouds", "publishers", "services", "controllers"],
+    "ros": ["messages", "sending", "loop", "clouds", "publishers", "services", "attachments", "controllers"],
 }
 
 

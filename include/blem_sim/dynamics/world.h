@@ -26,6 +26,8 @@ class World {
   int addJoint(const JointSpec& spec, double position = 0);
   /** Takes a body and its joints out of the world; joints that mimic one of these are free then. */
   void removeBody(int body);
+  /** Takes a joint out of the world; joints that mimic it are free then. */
+  void removeJoint(int joint);
   /** Contacts with these ids (ContactConstraint::id) are strangers in the next step. */
   void forgetContacts(std::vector<std::uint64_t> ids);
 

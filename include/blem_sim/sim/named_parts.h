@@ -9,15 +9,6 @@
 
 namespace blem_sim {
 
-/** A link, or what stands for one: an object's body, an environment as a whole. */
-struct LinkPart {
-  std::string name;  ///< "model::link"
-  int model = -1, robot = -1;
-  int link = -1;                 ///< of the robot's description
-  int body = WORLD_BODY;         ///< that it is part of
-  Pose X_BL = Pose::Identity();  ///< in the body's frame; in the world's if it is part of that
-};
-
 struct JointPart {
   int robot = 0;
   int joint = 0;  ///< index into joint_names

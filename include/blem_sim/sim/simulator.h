@@ -96,8 +96,20 @@ class Simulator {
   /** Lets all later loads read files below these folders alone. */
   void restrictFiles(const FileRoots& roots);
 
-  /** Moves a body, and its whole model with it as if it were rigid: joints keep their positions and stop. @throws InputError: a fixed base,
-   *  numbers that are none or too large */
+  /**
+   * Welds a model that can move, as it stands now, to a part of another model: it takes that part's motion and goes on with it. They do not
+   * touch each other while it lasts.
+   * @param object name of the model
+   * @param max_force [N], max_torque [N m] about the object's origin, means of a step: beyond them the weld breaks after the step
+   * @throws InputError, nothing being changed: no such model, a fixed base, attached already, or the part hangs on the object itself
+   */
+  void attach(const std::string& object, const LinkPart& part, double max_force, double max_torque);
+  /** @throws InputError: the model is not attached */
+  void detach(const std::string& object);
+  const std::vector<AttachedModel>& attachments() const;  ///< in the order they were made
+
+  /** Moves a body, and its whole model with it as if it were rigid: joints keep their positions and stop. What is attached goes along.
+   * @throws InputError: a fixed base, an attached model, numbers that are none or too large */
   void moveModel(int body, const BodyState& to);
   /**
    * Sets joint positions [rad or m], moved into the limits, at rest; motors hold them. The root link and other joints go on as they are.

@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "blem_sim/dynamics/world_types.h"
@@ -56,6 +58,28 @@ struct SensorInfo {
 struct JointCommandMessage {
   std::vector<std::string> joints;
   std::vector<double> positions, velocities, efforts;
+};
+
+/** A link, or what stands for one: an object's body, an environment as a whole. */
+struct LinkPart {
+  std::string name;  ///< "model::link"
+  int model = -1, robot = -1;
+  int link = -1;                 ///< of the robot's description
+  int body = WORLD_BODY;         ///< that it is part of
+  Pose X_BL = Pose::Identity();  ///< in the body's frame; in the world's if it is part of that
+};
+
+/** A model welded to a part of another one, or of the world, until it is detached or the weld breaks. */
+struct AttachedModel {
+  std::string object;  ///< name of the model that is carried
+  int model = -1;
+  int body = -1;                                                ///< its root's
+  LinkPart part;                                                ///< that carries it
+  int joint = -1;                                               ///< of the world
+  double max_force = std::numeric_limits<double>::infinity();   ///< [N] mean of a step beyond which the weld breaks
+  double max_torque = std::numeric_limits<double>::infinity();  ///< [N m] the same, about the origin of the body
+  Wrench wrench;                                 ///< from the part on the body, about its origin, world axes; mean of the last step
+  std::vector<std::pair<int, int>> never_touch;  ///< colliders that do not meet while it lasts, sorted pairs
 };
 
 /** Points of a live cloud as contact takes them. */

@@ -123,11 +123,12 @@ struct StepReport {
   double solver_creep = 0;     ///< [rad/s or m/s] worst over the step: SolveResult::creep
   int solver_iterations = 0;   ///< over the step's solves
   StepProfile profile;
-  std::vector<ContactReport> contacts;         ///< that acted in any part of the step
-  std::vector<LayerEventReport> layer_events;  ///< in order of time, then of colliders
-  std::vector<BodyState> bodies;               ///< one per body slot
-  std::vector<JointState> joints;              ///< one per joint slot; efforts are means over the step
-  std::vector<SensorSample> samples;           ///< those whose time has come
+  std::vector<ContactReport> contacts;          ///< that acted in any part of the step
+  std::vector<LayerEventReport> layer_events;   ///< in order of time, then of colliders
+  std::vector<std::string> broken_attachments;  ///< models whose weld the step's forces broke
+  std::vector<BodyState> bodies;                ///< one per body slot
+  std::vector<JointState> joints;               ///< one per joint slot; efforts are means over the step
+  std::vector<SensorSample> samples;            ///< those whose time has come
 };
 
 }  // namespace blem_sim

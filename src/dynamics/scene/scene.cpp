@@ -52,15 +52,20 @@ void Scene::setGravity(const Vector3& gravity) {
 
 void Scene::removeBody(int body) {
   for (int j = 0; j < static_cast<int>(joints_.size()); ++j)
-    if (joints_[j].joint && (joints_[j].spec.child == body || joints_[j].spec.parent == body)) removeJoint(j);
+    if (joints_[j].joint && (joints_[j].spec.child == body || joints_[j].spec.parent == body)) emptyJoint(j);
   dBodyDestroy(bodies_[body].ode);
   bodies_[body] = BodySlot();
   free_bodies_.insert(body);
   findTrees();
 }
 
-// Empties a joint's slot, which then ties nothing: other bodies and joints may come to have the indices that its spec names.
 void Scene::removeJoint(int joint) {
+  emptyJoint(joint);
+  findTrees();
+}
+
+// Empties a joint's slot, which then ties nothing: other bodies and joints may come to have the indices that its spec names.
+void Scene::emptyJoint(int joint) {
   JointSlot& slot = joints_[joint];
   dJointDestroy(slot.joint);
   if (slot.motor) dJointDestroy(slot.motor);

@@ -67,6 +67,7 @@ class Scene {
   int addBody(const BodySpec& spec);
   int addJoint(const JointSpec& spec, double position);
   void removeBody(int body);
+  void removeJoint(int joint);
   /** Gives a body other mass properties; its frame and that frame's motion stay. @throws InputError before anything is changed */
   void setInertial(int body, const MassProperties& inertial);
   /** Replaces the ODE world, which an internal error left unusable, by a new one from the slots. */
@@ -123,7 +124,7 @@ class Scene {
   void recreateJoint(JointSlot* slot);
   void createJoint(JointSlot* slot);
   void createMotor(JointSlot* slot, dBodyID child, dBodyID parent, const Vector3& axis);
-  void removeJoint(int joint);
+  void emptyJoint(int joint);
   void placeInTree(int joint);
   void findTrees();
   void orderJoints() const;

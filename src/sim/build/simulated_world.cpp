@@ -58,6 +58,12 @@ int SimulatedWorld::addJoint(const JointSpec& spec, double position, const Joint
   return joint;
 }
 
+void SimulatedWorld::removeJoint(int joint) {
+  world.removeJoint(joint);
+  motors[joint] = JointMotor();
+  start_positions[joint] = 0;
+}
+
 int SimulatedWorld::addRobot(const RobotInfo& robot) {
   const auto behind =
       std::upper_bound(robots.begin(), robots.end(), robot.model, [](int model, const RobotInfo& other) { return model < other.model; });

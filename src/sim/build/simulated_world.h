@@ -29,6 +29,7 @@ struct SimulatedWorld {
   std::vector<ContactBudget> budgets;  ///< one per model
   CollisionFilter filter;
   std::set<std::pair<int, int>> disabled_pairs;  ///< (smaller, larger) index of colliders that never touch
+  std::vector<AttachedModel> attachments;           ///< in the order they were made
   std::vector<MeshReport> load_report;
   std::vector<std::string> notes;
 
@@ -42,6 +43,7 @@ struct SimulatedWorld {
   int addBody(const BodySpec& spec, const Vector3& v_WCom = Vector3::Zero(), const Vector3& w_WB = Vector3::Zero());
   /** Adds a joint at its start position [rad or m] with its motor. @return its index */
   int addJoint(const JointSpec& spec, double position, const JointMotor& motor);
+  void removeJoint(int joint);
   /** Adds a robot, whose model has its slot, in the order of models. @return its index */
   int addRobot(const RobotInfo& robot);
   /** Removes a model, whose slots are free then; robots and sensors behind it move up. Precondition: it exists. @return slots of its

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "blem_sim/sim/simulator.h"
+#include "services/service_group.h"
+
+namespace blem_sim {
+
+/** `~attach` and `~detach`: models welded to links. */
+class AttachmentServices {
+ public:
+  AttachmentServices(const ros::NodeHandle& private_node, Simulator* simulator);
+
+ private:
+  ServiceGroup services_;
+};
+
+}  // namespace blem_sim
