@@ -15,25 +15,6 @@ namespace {
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
-std_msgs::ColorRGBA colour(float r, float g, float b) {
-  std_msgs::ColorRGBA rgba;
-  rgba.r = r;
-  rgba.g = g;
-  rgba.b = b;
-  rgba.a = 1;
-  return rgba;
-}
-
-/** Pale stone, sand, clay, slate for environments, since rviz lights from the camera and floors are seen askew; brighter ones for objects.
- */
-std_msgs::ColorRGBA colourOf(ModelKind kind, int model) {
-  static const std_msgs::ColorRGBA ENVIRONMENTS[] = {colour(0.95F, 0.94F, 0.90F), colour(0.98F, 0.90F, 0.75F), colour(0.95F, 0.80F, 0.72F),
-                                                     colour(0.78F, 0.86F, 0.95F)};
-  static const std_msgs::ColorRGBA OBJECTS[] = {colour(0.95F, 0.50F, 0.22F), colour(0.30F, 0.62F, 0.90F), colour(0.95F, 0.80F, 0.28F),
-                                                colour(0.50F, 0.80F, 0.45F), colour(0.75F, 0.52F, 0.85F)};
-  return kind == ModelKind::ENVIRONMENT ? ENVIRONMENTS[model % std::size(ENVIRONMENTS)] : OBJECTS[model % std::size(OBJECTS)];
-}
-
 LoadReportEntry toEntry(const MeshReport& report) {
   LoadReportEntry entry;
   entry.name = report.name;
@@ -72,7 +53,8 @@ MarkerArray drawing(ModelKind kind, const std::vector<Collider>& colliders, cons
     const ModelInfo& model = models[collider.model];
     if (!model.alive || model.kind != kind) continue;
     const std::string frame = kind == ModelKind::ENVIRONMENT ? WORLD_FRAME : model.name;
-    for (Marker& marker : surfaceMarkers(collider, frame, collider.X_BC, colourOf(kind, collider.model), next_id[collider.name])) {
+    for (Marker& marker :
+         surfaceMarkers(collider, frame, collider.X_BC, toColour(modelColour(kind, collider.model)), next_id[collider.name])) {
       next_id[collider.name] = marker.id + 1;
       array.markers.push_back(std::move(marker));
     }
