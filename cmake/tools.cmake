@@ -15,15 +15,15 @@ file(GLOB scene_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/tools/make_d
 add_executable(make_demo_scenes ${scene_sources})
 target_link_libraries(make_demo_scenes blem_sim_geometry)
 
-# Pictures of worlds, drawn by the VTK that PCL brings: its parts have other names before VTK 9.
+# Pictures of worlds, drawn by the VTK that PCL brings. Before VTK 9 its parts have other names, and asking for one that is not there ends CMake.
 set(vtk_parts CommonCore CommonDataModel CommonExecutionModel RenderingCore RenderingOpenGL2 IOImage)
-find_package(VTK QUIET COMPONENTS ${vtk_parts})
+find_package(VTK 9 QUIET COMPONENTS ${vtk_parts})
 if(NOT VTK_FOUND)
-  list(TRANSFORM vtk_parts PREPEND vtk)
-  find_package(VTK QUIET COMPONENTS ${vtk_parts})
+  find_package(VTK QUIET)
+  list(TRANSFORM vtk_parts PREPEND vtk OUTPUT_VARIABLE VTK_LIBRARIES)
 endif()
-if(NOT VTK_FOUND)
-  message(STATUS "blem_sim: view_world is left out: VTK is missing")
+if(NOT TARGET VTK::RenderingOpenGL2 AND NOT TARGET vtkRenderingOpenGL2)
+  message(STATUS "blem_sim: view_world is left out: VTK with OpenGL 2 is missing")
   return()
 endif()
 file(GLOB view_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/tools/view_world/*.cpp)
