@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
 namespace blem_sim {
 namespace {
 
@@ -28,6 +30,27 @@ TEST(Drawing, GreenTurnsYellowAsTheLayerIsUsedUp) {
     EXPECT_GT(colour.g, 0.7F);
     red = colour.r;
   }
+}
+
+TEST(Drawing, PointsTurnFromBlueOverGreenToYellowAsTheyRise) {
+  std::vector<Vector3> points;
+  for (int i = 0; i <= 100; ++i) points.emplace_back(0.3 * i, -2, 5 + 0.01 * i);
+  points.emplace_back(0, 0, 1000);  // one outlier changes nothing
+  const std::vector<Colour> colours = coloursByHeight(points, Vector3::UnitZ());
+  ASSERT_EQ(colours.size(), points.size());
+  EXPECT_GT(colours[0].b, 2 * colours[0].r);
+  EXPECT_GT(colours[50].g, colours[50].r);
+  EXPECT_GT(colours[50].g, colours[50].b);
+  EXPECT_GT(colours[100].r, 2 * colours[100].b);
+  for (int i = 0; i < 100; ++i) EXPECT_LE(colours[i].r, colours[i + 1].r) << i;
+  EXPECT_EQ(colours[101].r, colours[100].r);
+  // The other way up, the first are the highest.
+  EXPECT_EQ(coloursByHeight(points, -Vector3::UnitZ())[0].r, colours[100].r);
+}
+
+TEST(Drawing, PointsOfOneHeightAndNoneHaveColoursToo) {
+  EXPECT_EQ(coloursByHeight({Vector3(0, 0, 1), Vector3(5, 0, 1)}, Vector3::UnitZ()).size(), 2u);
+  EXPECT_TRUE(coloursByHeight({}, Vector3::UnitZ()).empty());
 }
 
 }  // namespace

@@ -13,8 +13,6 @@ constexpr double SMALLEST_RADIUS = 1e-4;  // [m]
 
 }  // namespace
 
-Vector3 upwards(const Vector3& gravity) { return gravity.norm() > 0 ? Vector3(-gravity.normalized()) : Vector3::UnitZ(); }
-
 ViewCamera framing(const Box& box, const Vector3& up, double aspect) {
   const double radius = std::max(SMALLEST_RADIUS, 0.5 * box.diagonal().norm());
   const double half_height = 0.5 * FIELD_OF_VIEW;

@@ -13,9 +13,6 @@ struct ViewCamera {
   Vector3 eye = Vector3::Zero(), target = Vector3::Zero();
 };
 
-/** Upwards in the world, as gravity has it [m/s^2]; z without gravity. */
-Vector3 upwards(const Vector3& gravity);
-
 /** Camera that sees a box whole, from the side of +x and -y, and from above. @param aspect width over height of the picture */
 ViewCamera framing(const Box& box, const Vector3& up, double aspect);
 

@@ -18,32 +18,6 @@ constexpr double CONTACT_SIZE = 0.02;  // of the scale: radius of a contact's ba
 constexpr double ARROW_SIZE = 0.02;    // of the scale: thickness of an arrow
 constexpr double SHORTEST_ARROW = 0.02;
 
-const Colour LOW{0.20F, 0.38F, 0.70F}, MIDDLE{0.42F, 0.74F, 0.58F}, HIGH{0.97F, 0.82F, 0.35F};
-
-Colour between(const Colour& a, const Colour& b, double share) {
-  const auto s = static_cast<float>(share);
-  return {a.r + s * (b.r - a.r), a.g + s * (b.g - a.g), a.b + s * (b.b - a.b)};
-}
-
-/** Colour of a height, 0 to 1. */
-Colour heightColour(double height) {
-  const double h = std::clamp(height, 0.0, 1.0);
-  return h < 0.5 ? between(LOW, MIDDLE, 2 * h) : between(MIDDLE, HIGH, 2 * h - 1);
-}
-
-/** Points of a cloud by height along `up`: the lowest and the highest twentieth have the colours of the ends. */
-std::vector<Colour> coloursByHeight(const std::vector<Vector3>& points, const Vector3& up) {
-  std::vector<double> heights;
-  for (const Vector3& point : points) heights.push_back(up.dot(point));
-  std::vector<double> sorted = heights;
-  std::sort(sorted.begin(), sorted.end());
-  const double low = sorted[sorted.size() / 20];
-  const double range = std::max(1e-9, sorted[sorted.size() - 1 - sorted.size() / 20] - low);
-  std::vector<Colour> colours;
-  for (const double height : heights) colours.push_back(heightColour((height - low) / range));
-  return colours;
-}
-
 /** Points as balls, or dots if they are many. @param colours one per point, or one */
 void addPoints(const std::vector<Vector3>& points, const std::vector<Colour>& colours, double radius, DrawnShape* shape) {
   const auto colour = [&](std::size_t i) { return colours[colours.size() == 1 ? 0 : i]; };
@@ -89,7 +63,7 @@ DrawnShape planeShape(const CollisionGeometry& plane, const Pose& X_WC, const Ve
   const Vector3 way = X_WP.inverse() * middle;
   const Vector3 snapped(2 * cell * std::round(way.x() / (2 * cell)), 2 * cell * std::round(way.y() / (2 * cell)), 0);
   DrawnShape shape;
-  const Colour other = between(colour, {0.45F, 0.50F, 0.58F}, 0.3);
+  const Colour other = mixed(colour, {0.45F, 0.50F, 0.58F}, 0.3);
   for (int i = 0; i < CELLS; ++i) {
     for (int j = 0; j < CELLS; ++j) {
       const Vector3 centre = snapped + cell * Vector3(i - 0.5 * CELLS + 0.5, j - 0.5 * CELLS + 0.5, 0);
@@ -160,7 +134,7 @@ std::vector<DrawnShape> worldShapes(const Simulator& simulator, const ViewCamera
     DrawnShape shell;
     shell.body = collider.body;
     shell.mesh = transformed(layerShell(collider.geometry->mesh(), collider.geometry->topology(), collider.radius), collider.X_BC);
-    shell.colour = between(colour, {0.3F, 0.5F, 1.0F}, 0.6);
+    shell.colour = mixed(colour, {0.3F, 0.5F, 1.0F}, 0.6);
     shell.opacity = SHELL_OPACITY;
     shapes.push_back(shell);
   }
