@@ -83,11 +83,13 @@ Pose poseOf(const Collider& collider, const WorldFrame& frame) {
   return collider.body == WORLD_BODY ? collider.X_BC : Pose(frame.bodies[collider.body].X_WB * collider.X_BC);
 }
 
+/** Extends a box by that of a collider, whose sides it turns with it. */
 void extend(const Collider& collider, const WorldFrame& frame, Box* box) {
-  Box bounds = collider.geometry->bounds();
-  bounds.min().array() -= collider.radius;
-  bounds.max().array() += collider.radius;
-  box->extend(bounds.transformed(poseOf(collider, frame)));
+  const Box& bounds = collider.geometry->bounds();
+  const Pose X_WC = poseOf(collider, frame);
+  const Vector3 half = X_WC.linear().cwiseAbs() * Vector3(0.5 * bounds.sizes()) + Vector3::Constant(collider.radius);
+  const Vector3 centre = X_WC * bounds.center();
+  box->extend(Box(Vector3(centre - half), Vector3(centre + half)));
 }
 
 /** Largest power of ten [m] that is not above a length. */
