@@ -192,8 +192,9 @@ def test_motion_is_followed(tmp_path):
 
 @pytest.mark.parametrize("options", [["--contacts", "--layers"], ["--set", "objects.0.pose.xyz=[0, 0, 0.1]"]])
 def test_same_input_same_bytes(options, tmp_path):
-    pictures = [draw(tmp_path, RESTING, "--at", "0.1", *options, name=name, DISPLAY=display).read_bytes()
-                for name, display in (("a.png", ""), ("b.png", ":77"))]
+    """Neither a display nor the number of threads that draw shows."""
+    pictures = [draw(tmp_path, RESTING, "--at", "0.1", *options, name=name, DISPLAY=display, LP_NUM_THREADS=threads).read_bytes()
+                for name, display, threads in (("a.png", "", "1"), ("b.png", ":77", "3"))]
     assert pictures[0] == pictures[1]
 
 
