@@ -20,6 +20,7 @@ HIP_ABOVE_ANKLE = 0.495                       # [m]; straight legs would have 0.
 PELVIS_X = -0.0055                            # [m] in the world: puts the centre of mass over the soles' middles
 SWAY = 0.04                                   # [m] of the hips to either side
 ARMS = {"shoulder": 0.25, "elbow": -0.55}     # [rad]
+LOOKING_DOWN = 0.60                           # [rad] of the watcher's camera
 SOLE = (-0.080, 0.140, 0.055)                 # [m] heel, toe, half width about the ankle
 
 
@@ -73,6 +74,13 @@ def gripper_at(t):
     strength = smooth(t, 3.5, 4.0) - smooth(t, 6.0, 6.5)
     shake = 0.05 * strength * math.sin(2 * math.pi * (t - 3.5))
     return {"lift": lift, "shake": shake, "left_grip": grip, "right_grip": grip}
+
+
+def look_at(t):
+    """Left, right and back, with a nod on each side."""
+    pan = 0.7 * (smooth(t, 0.5, 2.0) - 2 * smooth(t, 3.5, 6.0) + smooth(t, 7.5, 9.0))
+    nod = smooth(t, 2.0, 2.7) - smooth(t, 2.8, 3.5) + smooth(t, 6.0, 6.7) - smooth(t, 6.8, 7.5)
+    return {"pan": pan, "tilt": LOOKING_DOWN - 0.25 * nod}
 
 
 def write_csv(path, duration, step, at):
@@ -194,6 +202,7 @@ def main():
     out = sys.argv[1] if len(sys.argv) > 1 else os.path.join(ROOT, "config")
     write_csv(os.path.join(out, "demo_humanoid_sway.csv"), 10.0, 0.02, lambda t: posture(sway_at(t)))
     write_csv(os.path.join(out, "demo_gripper_mug.csv"), 10.0, 0.02, gripper_at)
+    write_csv(os.path.join(out, "demo_robot_with_eyes.csv"), 10.0, 0.02, look_at)
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes urdf/blem_humanoid.urdf and urdf/demo_gripper.urdf; inertias are those of the link meshes at uniform density.
+"""Writes urdf/blem_humanoid.urdf, urdf/demo_gripper.urdf and urdf/demo_watcher.urdf; inertias are those of the link meshes at uniform density.
 
 Usage: scripts/make_demo_robots.py [OUT_DIR]     default: urdf/ of this package
 """
@@ -169,9 +169,20 @@ def gripper():
     return text + "</robot>\n"
 
 
+def watcher():
+    """A mast that stands on its foot; a camera on top pans and tilts."""
+    text = head_of("demo_watcher")
+    text += link("foot", [("watcher_foot", 9.0, "graphite"), ("watcher_mast", 1.5, "white")])
+    text += link("neck", [("watcher_neck", 0.2, "graphite")])
+    text += joint("pan", "revolute", "foot", "neck", (0, 0, 0.585), (0, 0, 1), (-1.6, 1.6), 10, 3)
+    text += link("head", [("watcher_head", 0.5, "blue")])
+    text += joint("tilt", "revolute", "neck", "head", (0, 0, 0.075), (0, 1, 0), (-0.6, 1.0), 10, 3)
+    return text + "</robot>\n"
+
+
 def main():
     out = sys.argv[1] if len(sys.argv) > 1 else os.path.join(ROOT, "urdf")
-    for name, text in (("blem_humanoid", humanoid()), ("demo_gripper", gripper())):
+    for name, text in (("blem_humanoid", humanoid()), ("demo_gripper", gripper()), ("demo_watcher", watcher())):
         with open(os.path.join(out, name + ".urdf"), "w") as file:
             file.write(text)
 

@@ -1,6 +1,7 @@
 """What each demo promises, run as fast as it goes by blem_sim_run (environment BLEM_SIM_RUN)."""
 import csv
 import json
+import math
 import os
 import pathlib
 import subprocess
@@ -13,7 +14,7 @@ HUMANOID_WEIGHT = 33.71 * 9.81  # [N]
 
 
 def run(folder, config, duration, *options):
-    """Runs a demo. Returns its report and its rows of state as dicts of numbers."""
+    """Runs a demo. Returns its report and its rows of state as dicts of numbers, without sensors that have none yet."""
     program = os.environ.get("BLEM_SIM_RUN")
     if not program:
         pytest.skip("BLEM_SIM_RUN does not name a built blem_sim_run; run by scripts/test")
@@ -21,7 +22,7 @@ def run(folder, config, duration, *options):
     command = [program, str(CONFIG / config), "--duration", str(duration), "--report", str(report), "--csv", str(table), "--csv-rate", "50"]
     subprocess.run(command + ["--package", "blem_sim=%s" % ROOT] + list(options), check=True, timeout=600)
     with open(str(table)) as stream:
-        rows = [{key: float(value) for key, value in row.items()} for row in csv.DictReader(stream)]
+        rows = [{key: float(value) for key, value in row.items() if value} for row in csv.DictReader(stream)]
     return json.loads(report.read_text()), rows
 
 
@@ -85,3 +86,24 @@ def test_ten_cubes_stand(tmp_path):
         x, y, z = report["bodies"]["cube_%d::link" % (i + 1)]["xyz"]
         assert abs(x) < 1e-4 and abs(y) < 1e-4, (i, x, y)
         assert abs(z - (0.0525 + 0.105 * i)) < 1e-4, (i, z)
+
+
+def test_watcher_looks_around_and_sees_what_is_there(tmp_path):
+    report, rows = run(tmp_path, "demo_robot_with_eyes.yaml", 10, "--trajectory", str(CONFIG / "demo_robot_with_eyes.csv"), "--stats-from", "1")
+    untroubled(report, of_layer=0.1)
+    foot = report["bodies"]["watcher::foot"]
+    assert math.hypot(*foot["xyz"][:2]) < 1e-4 and foot["quat_xyzw"][3] > 0.9999, foot
+    pan = [row["watcher::pan"] for row in rows]
+    assert max(pan) == pytest.approx(0.7, abs=0.01) and min(pan) == pytest.approx(-0.7, abs=0.01)
+    camera, scan = report["sensors"]["camera"], report["sensors"]["scan"]
+    assert camera["samples"] == 15 * 9 and scan["samples"] == 10 * 9
+    nearest, hits = camera["fields"].index("nearest"), camera["fields"].index("hits")
+    # The floor below its view, 0.66 m under it, and never its own mast; holes and the end of the scan give no depth.
+    assert 0.4 < camera["min"][nearest] and camera["max"][nearest] < 1.1
+    assert 0.3 < camera["min"][hits] and camera["max"][hits] < 1
+    # The upper cube is nearest to the lidar, which looks out of its own drum: between a face's middle and an edge away.
+    centre = math.hypot(*report["bodies"]["upper_cube::link"]["xyz"][:2])
+    assert centre - 0.0708 - 0.02 < scan["min"][scan["fields"].index("nearest")] < centre - 0.05
+    for name, height in (("cube", 0.0525), ("lower_cube", 0.0525), ("upper_cube", 0.1575), ("mug", 0.0025)):
+        body = report["bodies"][name + "::link"]
+        assert abs(body["xyz"][2] - height) < 0.005, (name, body)

@@ -69,13 +69,13 @@ def test_every_mesh_made_is_kept(made_meshes):
     assert sorted(os.listdir(str(made_meshes))) == mesh_names()
 
 
-@pytest.mark.parametrize("name", ["blem_humanoid.urdf", "demo_gripper.urdf"])
+@pytest.mark.parametrize("name", ["blem_humanoid.urdf", "demo_gripper.urdf", "demo_watcher.urdf"])
 def test_urdf_is_what_make_demo_robots_makes(name, tmp_path):
     subprocess.run(["/usr/bin/python3", str(ROOT / "scripts" / "make_demo_robots.py"), str(tmp_path)], check=True)
     assert (tmp_path / name).read_text() == (URDF / name).read_text()
 
 
-@pytest.mark.parametrize("name", ["demo_humanoid_sway.csv", "demo_gripper_mug.csv"])
+@pytest.mark.parametrize("name", ["demo_humanoid_sway.csv", "demo_gripper_mug.csv", "demo_robot_with_eyes.csv"])
 def test_trajectory_is_what_make_demo_motions_makes(name, tmp_path):
     subprocess.run(["/usr/bin/python3", str(ROOT / "scripts" / "make_demo_motions.py"), str(tmp_path)], check=True)
     assert (tmp_path / name).read_text() == (CONFIG / name).read_text()
@@ -106,7 +106,7 @@ def surface_is_closed(path):
     return all(count == 1 and edges.get((b, a)) == 1 for (a, b), count in edges.items())
 
 
-@pytest.mark.parametrize("name", [n for n in mesh_names() if n.startswith(("humanoid_", "gripper_", "finger_", "cube_"))])
+@pytest.mark.parametrize("name", [n for n in mesh_names() if n.startswith(("humanoid_", "gripper_", "finger_", "cube_", "watcher_"))])
 def test_link_meshes_are_closed_and_wound_outwards(name):
     assert surface_is_closed(MESHES / name)
     assert robots.volume_properties(robots.read_stl(str(MESHES / name)))[0] > 0
@@ -121,7 +121,8 @@ def read_motion(name):
         return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
 
 
-@pytest.mark.parametrize("name, urdf", [("demo_humanoid_sway.csv", "blem_humanoid.urdf"), ("demo_gripper_mug.csv", "demo_gripper.urdf")])
+@pytest.mark.parametrize("name, urdf", [("demo_humanoid_sway.csv", "blem_humanoid.urdf"), ("demo_gripper_mug.csv", "demo_gripper.urdf"),
+                                        ("demo_robot_with_eyes.csv", "demo_watcher.urdf")])
 def test_motion_stays_within_limits(name, urdf):
     limits = {}
     for joint in motions.xml.parse(str(URDF / urdf)).getroot().findall("joint"):

@@ -60,6 +60,15 @@ geometry_msgs::Wrench toWrench(const Vector3& force, const Vector3& torque) {
   return message;
 }
 
+std_msgs::ColorRGBA toColour(const Colour& colour) {
+  std_msgs::ColorRGBA message;
+  message.r = colour.r;
+  message.g = colour.g;
+  message.b = colour.b;
+  message.a = 1;
+  return message;
+}
+
 geometry_msgs::Twist toTwist(const Vector3& linear, const Vector3& angular) {
   geometry_msgs::Twist message;
   message.linear = toVector3(linear);

@@ -9,11 +9,13 @@
 #include <geometry_msgs/Vector3.h>
 #include <geometry_msgs/Wrench.h>
 #include <ros/time.h>
+#include <std_msgs/ColorRGBA.h>
 
 #include <string>
 
 #include "blem_sim/dynamics/world_types.h"
 #include "blem_sim/geometry/types.h"
+#include "blem_sim/sim/drawing.h"
 
 namespace blem_sim {
 
@@ -29,6 +31,7 @@ geometry_msgs::Quaternion toQuaternion(const Quaternion& q);
 geometry_msgs::Pose toPose(const Pose& X);
 geometry_msgs::Transform toTransform(const Pose& X);
 geometry_msgs::Wrench toWrench(const Vector3& force, const Vector3& torque);
+std_msgs::ColorRGBA toColour(const Colour& colour);  ///< opaque
 geometry_msgs::Twist toTwist(const Vector3& linear, const Vector3& angular);
 
 Vector3 fromVector3(const geometry_msgs::Vector3& message);

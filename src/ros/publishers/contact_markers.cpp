@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "messages/contact_colour.h"
 #include "messages/conversions.h"
 
 namespace blem_sim {
@@ -46,11 +45,10 @@ void ContactMarkers::publish(const boost::shared_ptr<StampedContacts>& contacts)
   points.scale.x = points.scale.y = points.scale.z = POINT_SIZE;
   int arrows = 0;
   for (const ContactReport& contact : contacts->contacts) {
-    const std_msgs::ColorRGBA colour = contactColour(contact);
+    const std_msgs::ColorRGBA colour = toColour(contactColour(contact));
     points.points.push_back(toPoint(contact.point));
     points.colors.push_back(colour);
-    // Force on the moving side.
-    const Vector3 force = contact.body_a == WORLD_BODY ? Vector3(-contact.force) : contact.force;
+    const Vector3 force = forceOnMovingSide(contact);
     const double length = std::min(LONGEST_ARROW, metres_per_newton_ * force.norm());
     if (length < SHORTEST_ARROW) continue;
     const Vector3 along = length * force.normalized();

@@ -2,8 +2,7 @@
 
 #include <boost/make_shared.hpp>
 
-#include <algorithm>
-
+#include "blem_sim/sim/drawing.h"
 #include "messages/contact_messages.h"
 #include "messages/conversions.h"
 
@@ -13,19 +12,8 @@ namespace {
 
 constexpr int CONTACT_QUEUE = 100;
 
-/** [N] weight of everything that moves. */
-double totalWeight(const Simulator& simulator) {
-  double mass = 0;
-  for (const ModelInfo& model : simulator.models()) {
-    for (const int body : model.bodies) {
-      if (body != WORLD_BODY) mass += simulator.world().bodySpec(body).inertial.mass;
-    }
-  }
-  return mass * std::max(1.0, simulator.gravity().norm());
-}
-
 double metresPerNewton(const Simulator& simulator) {
-  const double weight = totalWeight(simulator);
+  const double weight = movingWeight(simulator);
   return weight > 0 ? ContactMarkerPublisher::LENGTH_OF_WEIGHT / weight : 0;
 }
 

@@ -5,6 +5,7 @@
 
 #include <map>
 
+#include "blem_sim/sim/drawing.h"
 #include "messages/conversions.h"
 #include "publishers/surface_markers.h"
 
@@ -14,25 +15,6 @@ namespace {
 
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
-
-std_msgs::ColorRGBA colour(float r, float g, float b) {
-  std_msgs::ColorRGBA rgba;
-  rgba.r = r;
-  rgba.g = g;
-  rgba.b = b;
-  rgba.a = 1;
-  return rgba;
-}
-
-/** Pale stone, sand, clay, slate for environments, since rviz lights from the camera and floors are seen askew; brighter ones for objects.
- */
-std_msgs::ColorRGBA colourOf(ModelKind kind, int model) {
-  static const std_msgs::ColorRGBA ENVIRONMENTS[] = {colour(0.95F, 0.94F, 0.90F), colour(0.98F, 0.90F, 0.75F), colour(0.95F, 0.80F, 0.72F),
-                                                     colour(0.78F, 0.86F, 0.95F)};
-  static const std_msgs::ColorRGBA OBJECTS[] = {colour(0.95F, 0.50F, 0.22F), colour(0.30F, 0.62F, 0.90F), colour(0.95F, 0.80F, 0.28F),
-                                                colour(0.50F, 0.80F, 0.45F), colour(0.75F, 0.52F, 0.85F)};
-  return kind == ModelKind::ENVIRONMENT ? ENVIRONMENTS[model % std::size(ENVIRONMENTS)] : OBJECTS[model % std::size(OBJECTS)];
-}
 
 LoadReportEntry toEntry(const MeshReport& report) {
   LoadReportEntry entry;
@@ -60,8 +42,8 @@ LoadReportEntry toEntry(const MeshReport& report) {
   return entry;
 }
 
-/** All models of a kind. They are sent anew, so that nothing unloaded stays in sight. */
-MarkerArray drawing(ModelKind kind, const std::vector<Collider>& colliders, const std::vector<ModelInfo>& models) {
+/** All environments, or all objects. They are sent anew, so that nothing unloaded stays in sight. @param up unit, for colours of clouds */
+MarkerArray drawing(ModelKind kind, const std::vector<Collider>& colliders, const std::vector<ModelInfo>& models, const Vector3& up) {
   MarkerArray array;
   array.markers.emplace_back();
   array.markers.back().action = Marker::DELETEALL;
@@ -71,9 +53,12 @@ MarkerArray drawing(ModelKind kind, const std::vector<Collider>& colliders, cons
     if (!collider.enabled || collider.model < 0) continue;
     const ModelInfo& model = models[collider.model];
     if (!model.alive || model.kind != kind) continue;
-    const std::string frame = kind == ModelKind::ENVIRONMENT ? WORLD_FRAME : model.name;
-    for (Marker& marker : surfaceMarkers(collider, frame, collider.X_BC, colourOf(kind, collider.model), next_id[collider.name])) {
-      next_id[collider.name] = marker.id + 1;
+    const bool stands = kind == ModelKind::ENVIRONMENT;
+    const std::string frame = stands ? WORLD_FRAME : model.name;
+    const std_msgs::ColorRGBA colour = toColour(modelColour(kind, collider.model));
+    int& id = next_id[collider.name];
+    for (Marker& marker : surfaceMarkers(collider, frame, collider.X_BC, colour, id, stands ? up : Vector3(Vector3::Zero()))) {
+      id = marker.id + 1;
       array.markers.push_back(std::move(marker));
     }
   }
@@ -91,14 +76,15 @@ GeometryMarkerPublisher::GeometryMarkerPublisher(ros::NodeHandle private_node, c
 
 void GeometryMarkerPublisher::modelsChanged() {
   thread_.drain();
-  environments_.publish(drawing(ModelKind::ENVIRONMENT, simulator_.colliders(), simulator_.models()));
-  objects_.publish(drawing(ModelKind::OBJECT, simulator_.colliders(), simulator_.models()));
+  const Vector3 up = upwards(simulator_.gravity());
+  environments_.publish(drawing(ModelKind::ENVIRONMENT, simulator_.colliders(), simulator_.models(), up));
+  objects_.publish(drawing(ModelKind::OBJECT, simulator_.colliders(), simulator_.models(), up));
 }
 
 void GeometryMarkerPublisher::cloudsChanged() {
   if (environments_.getNumSubscribers() == 0) return;
-  thread_.add([this, colliders = simulator_.colliders(), models = simulator_.models()] {
-    environments_.publish(drawing(ModelKind::ENVIRONMENT, colliders, models));
+  thread_.add([this, colliders = simulator_.colliders(), models = simulator_.models(), up = upwards(simulator_.gravity())] {
+    environments_.publish(drawing(ModelKind::ENVIRONMENT, colliders, models, up));
   });
 }
 

@@ -22,15 +22,21 @@ class MarkerLists {
   MarkerLists(Marker prototype, std::vector<Marker>* markers) : prototype_(std::move(prototype)), markers_(markers) {}
 
   void add(std::initializer_list<Vector3> corners) {
-    if (full()) {
-      prototype_.id = markers_->empty() ? prototype_.id : markers_->back().id + 1;
-      markers_->push_back(prototype_);
-      started_ = true;
-    }
+    startIfFull();
     for (const Vector3& corner : corners) markers_->back().points.push_back(toPoint(corner));
+  }
+  void addDot(const Vector3& dot, const Colour& colour) {
+    add({dot});
+    markers_->back().colors.push_back(toColour(colour));
   }
 
  private:
+  void startIfFull() {
+    if (!full()) return;
+    prototype_.id = markers_->empty() ? prototype_.id : markers_->back().id + 1;
+    markers_->push_back(prototype_);
+    started_ = true;
+  }
   bool full() const { return !started_ || markers_->back().points.size() + 3 > CORNERS_PER_MARKER; }
 
   Marker prototype_;
@@ -54,13 +60,25 @@ void addPlane(const CollisionGeometry& geometry, const Marker& prototype, std::v
   triangles.add({centre - u - v, centre + u + v, centre - u + v});
 }
 
+/** Points as spheres or squares. @param up unit; if not zero, they have the colours of their heights along it */
+void addPoints(const std::vector<Vector3>& points, double radius, const Vector3& up, const Marker& prototype,
+               std::vector<Marker>* markers) {
+  const int type = points.size() <= MOST_SPHERES ? Marker::SPHERE_LIST : Marker::POINTS;
+  MarkerLists dots(withType(prototype, type, std::max(2 * radius, SMALLEST_POINT)), markers);
+  const std::vector<Colour> colours = up.isZero() ? std::vector<Colour>() : coloursByHeight(points, up);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (colours.empty()) {
+      dots.add({points[i]});
+    } else {
+      dots.addDot(points[i], colours[i]);
+    }
+  }
+}
+
 /** One pass per kind of element, so that each list is contiguous. */
-void addMesh(const TriangleMesh& mesh, double radius, const Marker& prototype, std::vector<Marker>* markers) {
+void addMesh(const TriangleMesh& mesh, double radius, const Vector3& up, const Marker& prototype, std::vector<Marker>* markers) {
   const int count = static_cast<int>(mesh.elements.size());
   const auto vertex = [&](int element, int corner) { return mesh.vertices[mesh.elements[element][corner]]; };
-  std::size_t points = 0;
-  for (int i = 0; i < count; ++i) points += mesh.isPoint(i) ? 1 : 0;
-
   MarkerLists triangles(withType(prototype, Marker::TRIANGLE_LIST, 1), markers);
   for (int i = 0; i < count; ++i) {
     if (mesh.isTriangle(i)) triangles.add({vertex(i, 0), vertex(i, 1), vertex(i, 2)});
@@ -71,17 +89,17 @@ void addMesh(const TriangleMesh& mesh, double radius, const Marker& prototype, s
       lines.add({vertex(i, 0), mesh.elements[i][1] == mesh.elements[i][0] ? vertex(i, 2) : vertex(i, 1)});
     }
   }
-  const int point_type = points <= MOST_SPHERES ? Marker::SPHERE_LIST : Marker::POINTS;
-  MarkerLists dots(withType(prototype, point_type, std::max(2 * radius, SMALLEST_POINT)), markers);
+  std::vector<Vector3> points;
   for (int i = 0; i < count; ++i) {
-    if (mesh.isPoint(i)) dots.add({vertex(i, 0)});
+    if (mesh.isPoint(i)) points.push_back(vertex(i, 0));
   }
+  addPoints(points, radius, up, prototype, markers);
 }
 
 }  // namespace
 
 std::vector<Marker> surfaceMarkers(const Collider& collider, const std::string& frame, const Pose& X_FC, const std_msgs::ColorRGBA& colour,
-                                   int first_id) {
+                                   int first_id, const Vector3& up) {
   Marker prototype;
   prototype.header.frame_id = frame;
   prototype.ns = collider.name;
@@ -93,7 +111,7 @@ std::vector<Marker> surfaceMarkers(const Collider& collider, const std::string& 
   if (collider.geometry->isHalfSpace()) {
     addPlane(*collider.geometry, prototype, &markers);
   } else {
-    addMesh(collider.geometry->mesh(), collider.radius, prototype, &markers);
+    addMesh(collider.geometry->mesh(), collider.radius, X_FC.linear().transpose() * up, prototype, &markers);
   }
   return markers;
 }

@@ -29,7 +29,7 @@ struct SimulatedWorld {
   std::vector<ContactBudget> budgets;  ///< one per model
   CollisionFilter filter;
   std::set<std::pair<int, int>> disabled_pairs;  ///< (smaller, larger) index of colliders that never touch
-  std::vector<AttachedModel> attachments;           ///< in the order they were made
+  std::vector<AttachedModel> attachments;        ///< in the order they were made
   std::vector<MeshReport> load_report;
   std::vector<std::string> notes;
 

@@ -2,12 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-#include <functional>
-#include <locale>
 #include <sstream>
 
 #include "blem_sim/geometry/input_error.h"
+#include "command_line.h"
 
 namespace blem_sim {
 
@@ -33,15 +31,6 @@ Exit status: 0 finished; 2 bad input, told in one line; 3 the state stopped bein
 
 namespace {
 
-double seconds(const std::string& option, const std::string& text) {
-  std::istringstream stream(text);
-  stream.imbue(std::locale::classic());
-  double value = 0;
-  if (!(stream >> value) || !stream.eof() || !std::isfinite(value) || value < 0)
-    throw InputError(fmt::format("{}: '{}' is not a number of at least 0", option, text));
-  return value;
-}
-
 std::uint64_t seedNumber(const std::string& option, const std::string& text) {
   std::istringstream stream(text);
   std::uint64_t value = 0;
@@ -50,25 +39,8 @@ std::uint64_t seedNumber(const std::string& option, const std::string& text) {
   return value;
 }
 
-std::pair<std::string, std::string> assignment(const std::string& option, const std::string& text) {
-  const std::size_t equals = text.find('=');
-  if (equals == std::string::npos || equals == 0) throw InputError(fmt::format("{}: '{}' is not NAME=VALUE", option, text));
-  return {text.substr(0, equals), text.substr(equals + 1)};
-}
-
-using Take = std::function<void(RunOptions&, const std::string& option, const std::string& value)>;
-
-Take text(std::string RunOptions::*field) {
-  return [field](RunOptions& options, const std::string&, const std::string& value) { options.*field = value; };
-}
-
-Take number(double RunOptions::*field) {
-  return [field](RunOptions& options, const std::string& option, const std::string& value) { options.*field = seconds(option, value); };
-}
-
-/** A new option is one row. */
-const std::map<std::string, Take>& optionTable() {
-  static const std::map<std::string, Take> table = {
+const OptionTable<RunOptions>& optionTable() {
+  static const OptionTable<RunOptions> table = {
       {"--duration", number(&RunOptions::duration)},
       {"--stats-from", number(&RunOptions::stats_from)},
       {"--csv-rate", number(&RunOptions::csv_rate)},
@@ -90,28 +62,11 @@ const std::map<std::string, Take>& optionTable() {
 
 RunOptions parseOptions(const std::vector<std::string>& arguments) {
   RunOptions options;
-  for (std::size_t i = 0; i < arguments.size(); ++i) {
-    const std::string& argument = arguments[i];
-    if (argument == "--help" || argument == "-h") {
-      options.help = true;
-      return options;
-    }
-    const std::size_t equals = argument.find('=');
-    const std::string name = argument.substr(0, equals);
-    const auto row = optionTable().find(name);
-    if (row != optionTable().end()) {
-      const bool joined = equals != std::string::npos;
-      if (!joined && i + 1 == arguments.size()) throw InputError(fmt::format("{}: its value is missing", name));
-      row->second(options, name, joined ? argument.substr(equals + 1) : arguments[++i]);
-    } else if (argument.size() > 1 && argument[0] == '-') {
-      throw InputError(fmt::format("{}: unknown option; --help lists them", name));
-    } else if (!options.config.empty()) {
-      throw InputError(fmt::format("'{}': there is a configuration already, {}", argument, options.config));
-    } else {
-      options.config = argument;
-    }
-  }
-  if (options.config.empty()) throw InputError("CONFIG.yaml is missing; --help says more");
+  const std::vector<std::string> files = readArguments(arguments, optionTable(), {}, &options);
+  if (options.help) return options;
+  if (files.empty()) throw InputError("CONFIG.yaml is missing; --help says more");
+  if (files.size() > 1) throw InputError(fmt::format("'{}': there is a configuration already, {}", files[1], files[0]));
+  options.config = files[0];
   return options;
 }
 

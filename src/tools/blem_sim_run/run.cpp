@@ -2,23 +2,24 @@
 
 #include <fmt/format.h>
 #include <unistd.h>
-#include <yaml-cpp/yaml.h>
 
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
-#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "blem_sim/geometry/input_error.h"
 #include "blem_sim/sim/simulator.h"
 #include "blem_sim/sim/state_file.h"
 #include "csv_table.h"
-#include "overrides.h"
 #include "run_record.h"
+#include "run_setup.h"
 
 namespace blem_sim {
 
@@ -27,44 +28,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 double secondsSince(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
-SimulationConfig readConfig(const RunOptions& options) {
-  YAML::Node root = loadYamlFile(options.config);
-  for (const auto& [path, value] : options.settings) overrideSetting(&root, path, value);
-  if (options.seed) overrideSetting(&root, "random_seed", std::to_string(*options.seed));
-  return parseConfig(root, options.config, std::filesystem::absolute(options.config).parent_path().string());
-}
-
-/** Commands the trajectory to the first robot that has joints of its columns. */
-void commandTrajectory(const std::string& file, Simulator* simulator, std::vector<std::string>* notes) {
-  const auto& robots = simulator->robots();
-  if (robots.empty()) throw InputError("--trajectory: the configuration has no robot");
-  std::string first_refusal;
-  for (std::size_t robot = 0; robot < robots.size(); ++robot) {
-    std::vector<std::string> ignored;
-    try {
-      const JointTrajectory trajectory = loadTrajectoryCsv(file, robots[robot].joint_names, &ignored);
-      simulator->commandTrajectory(static_cast<int>(robot), trajectory);
-    } catch (const InputError& error) {
-      if (first_refusal.empty()) first_refusal = error.what();
-      continue;
-    }
-    if (!ignored.empty())
-      notes->push_back(
-          fmt::format("{}: columns that are no joints of {}, ignored: {}", file, robots[robot].name, fmt::join(ignored, ", ")));
-    return;
-  }
-  throw InputError(first_refusal);
-}
-
-/** @throws InputError for what only a node can have */
-void refuseTopics(const SimulationConfig& config) {
-  for (const EnvironmentConfig& environment : config.environments)
-    if (!environment.live.topic.empty())
-      throw InputError(
-          fmt::format("environments: {}: topic: {}: clouds come to blem_sim_node alone; save one as .pcd or .ply and give its uri",
-                      environment.name, environment.live.topic));
-}
 
 /** Progress of a run as a line on a terminal; nothing elsewhere. */
 class Progress {
@@ -117,8 +80,9 @@ void writeReport(const RunOptions& options, const RunRecord& record, const RunTi
 }  // namespace
 
 bool run(const RunOptions& options) {
-  const SimulationConfig config = readConfig(options);
-  refuseTopics(config);
+  std::vector<std::pair<std::string, std::string>> settings = options.settings;
+  if (options.seed) settings.emplace_back("random_seed", std::to_string(*options.seed));
+  const SimulationConfig config = readConfig(options.config, settings);
   const LoadLog log{[](const std::string& line) { std::fprintf(stderr, "blem_sim_run: %s\n", line.c_str()); }};
   Simulator simulator(config, UriResolver(options.packages), log);
   std::vector<std::string> notes = simulator.notes();

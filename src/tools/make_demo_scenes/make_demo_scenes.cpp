@@ -33,6 +33,7 @@ void makeScenes(const std::string& folder) {
   saveStl(folder, "ground_2m", gridMesh(2, 2, 8, 8));
   for (const NamedMesh& part : humanoidShells()) saveStl(folder, std::string("humanoid_") + part.name, part.mesh);
   for (const NamedMesh& part : gripperShells()) saveStl(folder, part.name, part.mesh);
+  for (const NamedMesh& part : watcherShells()) saveStl(folder, part.name, part.mesh);
 }
 
 }  // namespace

@@ -178,4 +178,15 @@ std::vector<NamedMesh> gripperShells() {
           {"finger_pad", transformed(gridBox({0.020, 0.006, 0.030}, 0.001), makePose({0, 0.003, 0}))}};
 }
 
+std::vector<NamedMesh> watcherShells() {
+  // The lidar's drum sits around the mast, its middle 0.2 m above the ground.
+  return {
+      {"watcher_foot", loft({oval(0.000, 0.155, 0.125), oval(0.004, 0.160, 0.130), oval(0.060, 0.160, 0.130), oval(0.080, 0.120, 0.090)})},
+      {"watcher_mast", loft({oval(0.070, 0.030, 0.030, 0, 0, 2), oval(0.160, 0.030, 0.030, 0, 0, 2), oval(0.165, 0.055, 0.055, 0, 0, 2),
+                             oval(0.235, 0.055, 0.055, 0, 0, 2), oval(0.240, 0.024, 0.024, 0, 0, 2), oval(0.580, 0.020, 0.020, 0, 0, 2)})},
+      {"watcher_neck", loft({oval(0.000, 0.026, 0.026, 0, 0, 2), oval(0.030, 0.026, 0.030, 0, 0, 3), oval(0.045, 0.018, 0.018, 0, 0, 3)})},
+      {"watcher_head", loft({oval(-0.025, 0.030, 0.070, 0.015), oval(-0.018, 0.040, 0.085, 0.015), oval(0.022, 0.040, 0.085, 0.015),
+                             oval(0.030, 0.030, 0.070, 0.015)})}};
+}
+
 }  // namespace blem_sim::demo

@@ -25,4 +25,7 @@ std::vector<NamedMesh> humanoidShells();
 /** The parts of the demo gripper; in a finger's frame the pad's face is y = 0, and it closes towards -y. */
 std::vector<NamedMesh> gripperShells();
 
+/** The parts of the demo watcher, each closed: a foot with a mast in the frame of the ground, a neck and a head in their joints' frames. */
+std::vector<NamedMesh> watcherShells();
+
 }  // namespace blem_sim::demo

@@ -42,6 +42,23 @@ TEST(SurfaceMarkers, HugeMeshesAreSplitAndNothingIsLost) {
   EXPECT_EQ(*ids.begin(), 5);
 }
 
+TEST(SurfaceMarkers, PointsOfACloudHaveTheColoursOfTheirHeightsInTheWorld) {
+  TriangleMesh cloud;
+  for (int i = 0; i < 70000; ++i) {
+    cloud.vertices.emplace_back(0.001 * i, 0, 0);
+    cloud.elements.emplace_back(i, i, i);
+  }
+  const Pose X_WC = makePose(Vector3(1, 2, 3), Vector3(0, -M_PI_2, 0));  // the cloud's x is up
+  const std::vector<Marker> markers = surfaceMarkers(colliderOf(cloud, 0.004), "world", X_WC, std_msgs::ColorRGBA(), 0, Vector3::UnitZ());
+  ASSERT_EQ(markers.size(), 2U);
+  for (const Marker& marker : markers) EXPECT_EQ(marker.colors.size(), marker.points.size());
+  const auto &lowest = markers.front().colors.front(), &highest = markers.back().colors.back();
+  EXPECT_GT(lowest.b, lowest.r);
+  EXPECT_GT(highest.r, highest.b);
+  EXPECT_EQ(lowest.a, 1);
+  EXPECT_TRUE(markersOf(colliderOf(cloud, 0.004)).front().colors.empty());
+}
+
 TEST(SurfaceMarkers, PointsAreSpheresOfTheirRadius) {
   const std::vector<Marker> markers = markersOf(colliderOf(pointMesh(Vector3(1, 0, 0)), 0.004));
   ASSERT_EQ(markers.size(), 1U);
