@@ -3,6 +3,7 @@
 #include <ros/console.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "blem_sim/sim/simulator.h"
 #include "clouds/live_clouds.h"
@@ -20,6 +21,9 @@
 #include "publishers/state_publisher.h"
 #include "publishers/step_report_publisher.h"
 #include "robot_commands.h"
+#include "saving/input_recorder.h"
+#include "saving/record_services.h"
+#include "saving/state_services.h"
 #include "services/environment_services.h"
 #include "services/force_services.h"
 #include "services/learner_service.h"
@@ -28,7 +32,6 @@
 #include "services/property_services.h"
 #include "services/query_services.h"
 #include "services/spawn_services.h"
-#include "services/state_services.h"
 #include "services/step_service.h"
 
 namespace blem_sim {
@@ -53,7 +56,9 @@ struct SimulationNode::Impl {
   ros::CallbackQueue callbacks;
   ros::NodeHandle node = nodeOn(&callbacks, "");
   ros::NodeHandle private_node = nodeOn(&callbacks, "~");
-  Simulator simulator{readParameters(private_node), UriResolver(), consoleLog()};
+  const NodeParameters parameters = readParameters(private_node);
+  Simulator simulator{parameters.config, UriResolver(), consoleLog()};
+  InputRecorder recorder{&simulator, parameters.yaml};
   SimulationLoop loop{&simulator};
   DiagnosticsPublisher* diagnostics = nullptr;
   std::unique_ptr<RobotCommands> commands;
@@ -67,6 +72,7 @@ struct SimulationNode::Impl {
   std::unique_ptr<SpawnServices> spawns;
   std::unique_ptr<PropertyServices> properties;
   std::unique_ptr<StateServices> states;
+  std::unique_ptr<RecordServices> records;
 
   void addPublishers() {
     // The clock goes last: a node that wakes by it finds the messages of that time on their way.
@@ -117,7 +123,14 @@ struct SimulationNode::Impl {
     forces = std::make_unique<ForceServices>(private_node, &simulator);
     spawns = std::make_unique<SpawnServices>(private_node, &loop);
     properties = std::make_unique<PropertyServices>(private_node, &loop);
-    states = std::make_unique<StateServices>(private_node, &loop, roots);
+    const ServiceFiles files(roots, simulator.config().base_directory);
+    states = std::make_unique<StateServices>(private_node, &loop, files);
+    records = std::make_unique<RecordServices>(private_node, &recorder, files);
+  }
+
+  void startRecord() {
+    const SimulationConfig& config = simulator.config();
+    if (!config.record_file.empty()) recorder.start((std::filesystem::path(config.base_directory) / config.record_file).string());
   }
 };
 
@@ -126,6 +139,7 @@ SimulationNode::SimulationNode() : impl_(std::make_unique<Impl>()) {
   impl_->addPublishers();
   impl_->addInputs();
   impl_->addCheckpoint();
+  impl_->startRecord();
 }
 
 SimulationNode::~SimulationNode() = default;
