@@ -94,12 +94,12 @@ int InputReader::takeJoint() {
 
 int InputReader::takeLinkOf(int body) {
   const int link = take<int>();
-  if (link == -1) return link;
+  int links = 0;
   for (const RobotInfo& robot : simulator_.robots())
-    if (std::find(robot.bodies.begin(), robot.bodies.end(), body) != robot.bodies.end() && link >= 0 &&
-        static_cast<std::size_t>(link) < robot.description->links.size())
-      return link;
-  refuse(fmt::format("there is no link {}", link));
+    if (std::find(robot.bodies.begin(), robot.bodies.end(), body) != robot.bodies.end())
+      links = static_cast<int>(robot.description->links.size());
+  if (links == 0 ? link != -1 : link < 0 || link >= links) refuse(fmt::format("there is no link {} of body {}", link, body));
+  return link;
 }
 
 }  // namespace blem_sim

@@ -33,7 +33,7 @@ class InputReader : public FieldVisitor<InputReader> {
   int takeBody();
   /** A joint of the world. */
   int takeJoint();
-  /** A link of the body's robot, -1 for the body itself. */
+  /** A link of the body's robot; -1 for the body of an object. */
   int takeLinkOf(int body);
   /** Throws unless everything was read. */
   void finish() const;
