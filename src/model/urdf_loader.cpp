@@ -8,9 +8,9 @@
 
 #include <fmt/format.h>
 
+#include "blem_sim/geometry/one_line.h"
 #include "blem_sim/model/loaders.h"
 #include "checks/file_check.h"
-#include "checks/one_line.h"
 #include "checks/urdf_check.h"
 #include "collision_shapes.h"
 #include "inertia.h"
