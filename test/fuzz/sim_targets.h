@@ -90,9 +90,15 @@ inline void fuzzInput(const std::uint8_t* data, std::size_t size) {
   }
   static const char* const TEXTS[] = {"hinge", "ground", "pendulum", "x", "", "live", "second", "/points"};
   for (std::size_t i = 0; i < texts; ++i) input.texts.emplace_back(TEXTS[(data[1] / 8 + i) % 8]);
-  auto simulator = std::make_unique<Simulator>(FuzzedWorld::config(), UriResolver());
-  expectReadOrRefused([&] { applyInput(input, simulator.get()); });
-  simulator->step();
+  static std::unique_ptr<FuzzedWorld> world;
+  if (!world) world = std::make_unique<FuzzedWorld>();
+  expectReadOrRefused([&] { applyInput(input, &world->simulator); });
+  world->simulator.step();
+  try {
+    world->simulator.restore(world->start);
+  } catch (const InputError&) {
+    world.reset();  // models or settings are others now
+  }
 }
 
 }  // namespace blem_sim
