@@ -6,6 +6,7 @@ set(BLEM_SIM_CATKIN_COMPONENTS
   diagnostic_updater
   geometry_msgs
   nav_msgs
+  rosbag_storage
   roscpp
   rosgraph_msgs
   sensor_msgs

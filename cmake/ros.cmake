@@ -8,13 +8,16 @@ blem_sim_precompile(blem_sim_ros ${common_headers} ${ros_headers})
 add_executable(blem_sim_node ${PROJECT_SOURCE_DIR}/src/ros_node/blem_sim_node.cpp)
 target_include_directories(blem_sim_node PRIVATE ${PROJECT_SOURCE_DIR}/src/ros)
 target_link_libraries(blem_sim_node blem_sim_ros)
+add_executable(replay ${PROJECT_SOURCE_DIR}/src/ros_node/replay_main.cpp)
+target_include_directories(replay PRIVATE ${PROJECT_SOURCE_DIR}/src/ros)
+target_link_libraries(replay blem_sim_ros)
 # All that a demo runs, and no test: scripts/demo.
 add_custom_target(demo DEPENDS blem_sim_node ${PROJECT_NAME}_generate_messages)
 
 # Without catkin's relay in the devel space: rosrun, which looks below the package's folder and so in scripts/build's too, would find two.
-install(PROGRAMS scripts/ros/spawn_model DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+install(PROGRAMS scripts/ros/spawn_model scripts/ros/record DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 catkin_install_python(PROGRAMS scripts/expect_contacts_in_layer scripts/play_trajectory DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
-install(TARGETS blem_sim_node RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+install(TARGETS blem_sim_node replay RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
 install(TARGETS blem_sim_geometry blem_sim_model blem_sim_contact blem_sim_reduction blem_sim_dynamics blem_sim_sim blem_sim_ros
   ARCHIVE DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
   LIBRARY DESTINATION ${CATKIN_PACKAGE_LIB_DESTINATION}
@@ -30,6 +33,6 @@ if(CATKIN_ENABLE_TESTING)
   find_package(rostest REQUIRED)
   file(GLOB rostests CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/test/ros/*.test ${PROJECT_SOURCE_DIR}/test/ros/*/*.test)
   foreach(rostest ${rostests})
-    add_rostest(${rostest} DEPENDENCIES blem_sim_node)
+    add_rostest(${rostest} DEPENDENCIES blem_sim_node replay)
   endforeach()
 endif()

@@ -8,9 +8,9 @@
 
 #include <fmt/format.h>
 
+#include "blem_sim/geometry/one_line.h"
 #include "blem_sim/model/loaders.h"
 #include "checks/file_check.h"
-#include "checks/one_line.h"
 #include "checks/urdf_check.h"
 #include "collision_shapes.h"
 #include "inertia.h"
@@ -153,10 +153,7 @@ void addNotes(RobotModel* robot) {
   if (!touches) robot->notes.push_back("the robot has no <collision>: it touches nothing");
 }
 
-}  // namespace
-
-RobotModel loadUrdf(const std::string& xml, const std::string& source, const UriResolver& resolver, const std::string& base,
-                    Mending mending, const LoadProgress& progress) {
+RobotModel readRobot(const std::string& xml, const std::string& source, CollisionShapeReader* shapes, const LoadProgress& progress) {
   const UrdfOutline outline = checkUrdf(xml, source);
   const urdf::ModelInterfaceSharedPtr model = parseQuietly(xml, source);
   RobotModel robot;
@@ -165,14 +162,25 @@ RobotModel loadUrdf(const std::string& xml, const std::string& source, const Uri
   robot.notes = outline.notes;
   robot.transmissions = outline.transmissions;
   robot.gazebo = outline.gazebo;
-  CollisionShapeReader shapes(resolver, base, mending);
-  readLinks(*model, outline, progress, &shapes, &robot);
+  readLinks(*model, outline, progress, shapes, &robot);
   robot.root = robot.linkIndex(model->getRoot()->name);
   std::vector<JointModel> joints;
   for (const std::string& name : outline.joints) joints.push_back(toJoint(*model->getJoint(name), robot));
   robot.joints = parentsFirst(joints, robot.links.size(), robot.root);
   addNotes(&robot);
   return robot;
+}
+
+}  // namespace
+
+RobotModel loadUrdf(const std::string& xml, const std::string& source, const UriResolver& resolver, const std::string& base,
+                    Mending mending, const LoadProgress& progress) {
+  CollisionShapeReader shapes(resolver, base, mending);
+  try {
+    return readRobot(xml, source, &shapes, progress);
+  } catch (const InputError& error) {
+    throw InputError(oneLine(error.what()));  // names in a URDF may hold anything
+  }
 }
 
 RobotModel loadUrdfFile(const std::string& file, const UriResolver& resolver, Mending mending, const LoadProgress& progress) {

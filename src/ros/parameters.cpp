@@ -129,7 +129,7 @@ std::string checkpointFile(const SimulationConfig& config, const ros::NodeHandle
   return fs::absolute(folder / (name + ".checkpoint")).string();
 }
 
-SimulationConfig readParameters(const ros::NodeHandle& private_node) {
+NodeParameters readParameters(const ros::NodeHandle& private_node) {
   const std::string source = private_node.getNamespace();
   XmlRpc::XmlRpcValue given;
   YAML::Node parameters(YAML::NodeType::Map);
@@ -153,7 +153,7 @@ SimulationConfig readParameters(const ros::NodeHandle& private_node) {
   SimulationConfig config = parseConfig(parameters, source, directoryOf(config_file));
   fetchDescriptions(source, &config);
   for (RobotConfig& robot : config.robots) robot.pid_gains = pidGainsIn(robot.name_space);
-  return config;
+  return {config, YAML::Dump(parameters)};
 }
 
 }  // namespace blem_sim

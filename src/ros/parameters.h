@@ -10,6 +10,12 @@
 
 namespace blem_sim {
 
+/** A configuration, and the text that parseConfig read it from. */
+struct NodeParameters {
+  SimulationConfig config;
+  std::string yaml;
+};
+
 /**
  * Reads every private parameter through parseConfig, so that the node and blem_sim_run take the same keys, plus the node's own:
  * `config_file` (relative files are meant against its folder), `environment` (URI of one more environment, of that name) and, if there is
@@ -18,7 +24,7 @@ namespace blem_sim {
  * `gazebo_ros_control/pid_gains` in the namespace of each robot.
  * @throws InputError
  */
-SimulationConfig readParameters(const ros::NodeHandle& private_node);
+NodeParameters readParameters(const ros::NodeHandle& private_node);
 
 /** Folders whose files services may read and write: the configuration's, file_roots and those of ROS_PACKAGE_PATH; none if services may
  * use no files. */

@@ -3,6 +3,7 @@
 #include <ros/console.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "attachments/attachment_publisher.h"
 #include "attachments/attachment_services.h"
@@ -22,6 +23,9 @@
 #include "publishers/state_publisher.h"
 #include "publishers/step_report_publisher.h"
 #include "robot_commands.h"
+#include "saving/input_recorder.h"
+#include "saving/record_services.h"
+#include "saving/state_services.h"
 #include "services/environment_services.h"
 #include "services/force_services.h"
 #include "services/learner_service.h"
@@ -30,7 +34,6 @@
 #include "services/property_services.h"
 #include "services/query_services.h"
 #include "services/spawn_services.h"
-#include "services/state_services.h"
 #include "services/step_service.h"
 
 namespace blem_sim {
@@ -55,7 +58,9 @@ struct SimulationNode::Impl {
   ros::CallbackQueue callbacks;
   ros::NodeHandle node = nodeOn(&callbacks, "");
   ros::NodeHandle private_node = nodeOn(&callbacks, "~");
-  Simulator simulator{readParameters(private_node), UriResolver(), consoleLog()};
+  const NodeParameters parameters = readParameters(private_node);
+  Simulator simulator{parameters.config, UriResolver(), consoleLog()};
+  InputRecorder recorder{&simulator, parameters.yaml};
   SimulationLoop loop{&simulator};
   DiagnosticsPublisher* diagnostics = nullptr;
   std::unique_ptr<RobotCommands> commands;
@@ -70,6 +75,7 @@ struct SimulationNode::Impl {
   std::unique_ptr<SpawnServices> spawns;
   std::unique_ptr<PropertyServices> properties;
   std::unique_ptr<StateServices> states;
+  std::unique_ptr<RecordServices> records;
 
   void addPublishers() {
     // The clock goes last: a node that wakes by it finds the messages of that time on their way.
@@ -122,7 +128,14 @@ struct SimulationNode::Impl {
     attachments = std::make_unique<AttachmentServices>(private_node, &simulator);
     spawns = std::make_unique<SpawnServices>(private_node, &loop);
     properties = std::make_unique<PropertyServices>(private_node, &loop);
-    states = std::make_unique<StateServices>(private_node, &loop, roots);
+    const ServiceFiles files(roots, simulator.config().base_directory);
+    states = std::make_unique<StateServices>(private_node, &loop, files);
+    records = std::make_unique<RecordServices>(private_node, &recorder, files);
+  }
+
+  void startRecord() {
+    const SimulationConfig& config = simulator.config();
+    if (!config.record_file.empty()) recorder.start((std::filesystem::path(config.base_directory) / config.record_file).string());
   }
 };
 
@@ -131,6 +144,7 @@ SimulationNode::SimulationNode() : impl_(std::make_unique<Impl>()) {
   impl_->addPublishers();
   impl_->addInputs();
   impl_->addCheckpoint();
+  impl_->startRecord();
 }
 
 SimulationNode::~SimulationNode() = default;

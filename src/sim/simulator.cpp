@@ -62,7 +62,14 @@ Simulator::Simulator(const SimulationConfig& config, const UriResolver& resolver
     : impl_(std::make_unique<Impl>(config, resolver, std::move(log))) {}
 Simulator::~Simulator() = default;
 
-const StepReport& Simulator::step() { return impl_->step(); }
+void Simulator::watch(SimulatorWatcher* watcher) { impl_->watcher_ = watcher; }
+
+const StepReport& Simulator::step() {
+  const StepReport& report = impl_->step();
+  if (impl_->watcher_) impl_->watcher_->stepped();
+  return report;
+}
+
 const StepReport& Simulator::report() const { return impl_->report_; }
 double Simulator::time() const { return impl_->time(); }
 std::uint64_t Simulator::steps() const { return impl_->step_count_; }
@@ -82,8 +89,14 @@ int Simulator::robotIndex(const std::string& name) const { return indexOf(robots
 int Simulator::modelIndex(const std::string& name) const { return impl_->world_.modelIndex(name); }
 Pose Simulator::linkPose(int robot, int link) const { return impl_->world_.linkPose(robots().at(robot), link); }
 
-void Simulator::commandTrajectory(int robot, const JointTrajectory& trajectory) { impl_->commandTrajectory(robot, trajectory); }
-void Simulator::commandJoints(int robot, const JointCommandMessage& command) { impl_->commandJoints(robot, command); }
+void Simulator::commandTrajectory(int robot, const JointTrajectory& trajectory) {
+  impl_->commandTrajectory(robot, trajectory);
+  impl_->tell("commandTrajectory", robot, trajectory);
+}
+void Simulator::commandJoints(int robot, const JointCommandMessage& command) {
+  impl_->commandJoints(robot, command);
+  impl_->tell("commandJoints", robot, command);
+}
 void Simulator::checkJointCommand(int robot, const JointCommandMessage& command) const { impl_->checkJointCommand(robot, command); }
 JointSample Simulator::desiredState(int robot, int joint) const { return desiredState(robot, joint, time()); }
 JointSample Simulator::desiredState(int robot, int joint, double time) const {
@@ -102,40 +115,85 @@ void Simulator::holdJoints(int robot, const std::vector<int>& joints) {
 void Simulator::holdJoint(int robot, int joint, double position) {
   const int world_joint = robots().at(robot).joints.at(joint);
   impl_->world_.motors[world_joint].hold(impl_->nearestTurn(world_joint, position));
+  impl_->tell("holdJoint", robot, joint, position);
 }
 
-void Simulator::loadEnvironment(const EnvironmentConfig& environment) { impl_->loadEnvironment(environment); }
-void Simulator::unloadEnvironment(const std::string& name) { impl_->unloadEnvironment(name); }
+void Simulator::loadEnvironment(const EnvironmentConfig& environment) {
+  impl_->loadEnvironment(environment);
+  impl_->tell("loadEnvironment", environment);
+}
+void Simulator::unloadEnvironment(const std::string& name) {
+  impl_->unloadEnvironment(name);
+  impl_->tell("unloadEnvironment", name);
+}
 
-void Simulator::updateCloud(const std::string& environment, CloudSurface* surface) { impl_->updateCloud(environment, surface); }
+void Simulator::updateCloud(const std::string& environment, CloudSurface* surface) {
+  const CloudSurface taken = *surface;
+  impl_->updateCloud(environment, surface);
+  impl_->tell("updateCloud", environment, taken);
+}
 
-void Simulator::spawn(const RobotConfig& robot) { impl_->spawn(robot); }
-void Simulator::removeModel(const std::string& name) { impl_->removeModel(name); }
+void Simulator::spawn(const RobotConfig& robot) {
+  impl_->spawn(robot);
+  impl_->tell("spawn", robot);
+}
+void Simulator::removeModel(const std::string& name) {
+  impl_->removeModel(name);
+  impl_->tell("removeModel", name);
+}
 void Simulator::restrictFiles(const FileRoots& roots) { impl_->builder_.restrictFiles(roots); }
 
 void Simulator::attach(const std::string& object, const LinkPart& part, double max_force, double max_torque) {
   impl_->attach(object, part, max_force, max_torque);
+  impl_->tell("attach", object, part.name, max_force, max_torque);
 }
-void Simulator::detach(const std::string& object) { impl_->detach(object); }
+void Simulator::detach(const std::string& object) {
+  impl_->detach(object);
+  impl_->tell("detach", object);
+}
 const std::vector<AttachedModel>& Simulator::attachments() const { return impl_->world_.attachments; }
 
-void Simulator::moveModel(int body, const BodyState& to) { impl_->moveModel(body, to); }
+void Simulator::moveModel(int body, const BodyState& to) {
+  impl_->moveModel(body, to);
+  impl_->tell("moveModel", body, to);
+}
 void Simulator::setJointPositions(int robot, const std::vector<std::string>& joints, const std::vector<double>& positions) {
   impl_->setJointPositions(robot, joints, positions);
+  impl_->tell("setJointPositions", robot, joints, positions);
 }
-void Simulator::resetModel(int model) { impl_->resetModel(model); }
+void Simulator::resetModel(int model) {
+  impl_->resetModel(model);
+  impl_->tell("resetModel", model);
+}
 
-void Simulator::applyLoad(const BodyLoad& load, const LoadTime& when) { impl_->loads_.apply(load, when, {time(), config().time_step}); }
+void Simulator::applyLoad(const BodyLoad& load, const LoadTime& when) {
+  impl_->loads_.apply(load, when, {time(), config().time_step});
+  impl_->tell("applyLoad", load.body, load, when);
+}
 void Simulator::applyEffort(int joint, double effort, const LoadTime& when) {
   impl_->loads_.apply(joint, effort, when, {time(), config().time_step});
+  impl_->tell("applyEffort", joint, effort, when);
 }
-void Simulator::clearLoads(int body) { impl_->loads_.clearBody(body); }
-void Simulator::clearEfforts(int joint) { impl_->loads_.clearJoint(joint); }
+void Simulator::clearLoads(int body) {
+  impl_->loads_.clearBody(body);
+  impl_->tell("clearLoads", body);
+}
+void Simulator::clearEfforts(int joint) {
+  impl_->loads_.clearJoint(joint);
+  impl_->tell("clearEfforts", joint);
+}
 
 void Simulator::setPhysics(const Vector3& gravity, double time_step, double real_time_factor) {
   impl_->setPhysics(gravity, time_step, real_time_factor);
+  impl_->tell("setPhysics", gravity, time_step, real_time_factor);
 }
-void Simulator::setLinkInertial(int body, int link, const MassProperties& inertial) { impl_->setLinkInertial(body, link, inertial); }
-void Simulator::setJointLimits(int robot, int joint, double lower, double upper) { impl_->setJointLimits(robot, joint, lower, upper); }
+void Simulator::setLinkInertial(int body, int link, const MassProperties& inertial) {
+  impl_->setLinkInertial(body, link, inertial);
+  impl_->tell("setLinkInertial", body, link, inertial);
+}
+void Simulator::setJointLimits(int robot, int joint, double lower, double upper) {
+  impl_->setJointLimits(robot, joint, lower, upper);
+  impl_->tell("setJointLimits", robot, joint, lower, upper);
+}
 
 }  // namespace blem_sim

@@ -18,6 +18,7 @@
 #include "guard/layer_watch.h"
 #include "guard/step_guard.h"
 #include "guard/sweep_guard.h"
+#include "inputs/input_writer.h"
 #include "part_reports.h"
 #include "sensors/link_contacts.h"
 #include "sensors/sensor.h"
@@ -156,11 +157,18 @@ struct Simulator::Impl {
   void resetWorld();
   int modelOfBody(int body) const;
 
+  /** Tells the watcher, if there is one, of a call that was taken. */
+  template <typename... Arguments>
+  void tell(const char* call, const Arguments&... arguments) const {
+    if (watcher_) watcher_->told(inputOf(call, arguments...));
+  }
+
   double time() const { return epoch_.time + static_cast<double>(step_count_ - epoch_.step) * config_.time_step; }
   /** Simulated time at which the substep at hand starts. */
   double substepTime() const { return time() + substeps_.fractionDone() * config_.time_step; }
   double substepLength() const { return substeps_.fraction() * config_.time_step; }
 
+  SimulatorWatcher* watcher_ = nullptr;
   SimulationConfig config_;
   SimulatedWorld world_;
   WorldBuilder builder_;

@@ -176,6 +176,7 @@ void Simulator::setJointDamping(int robot, int joint, double damping) {
     throw InputError(fmt::format("joint '{}': damping: is {:g}; give it a finite number of at least 0", name, damping));
   impl_->world_.motors[robots()[robot].joints[joint]].setViscousFriction(damping);
   impl_->layout_.clear();
+  impl_->tell("setJointDamping", robot, joint, damping);
 }
 
 double Simulator::jointDamping(int world_joint) const { return impl_->world_.motors.at(world_joint).settings().friction.viscous; }

@@ -1,6 +1,7 @@
 // Save, restore, reset, hash.
 #include <utility>
 
+#include "blem_sim/sim/state_file.h"
 #include "numbers/content_hash.h"
 #include "numbers/number_reader.h"
 #include "simulator_impl.h"
@@ -162,14 +163,21 @@ void Simulator::Impl::seedSensor(std::size_t sensor) {
 }
 
 SimulationState Simulator::save() const { return impl_->save(); }
-void Simulator::restore(const SimulationState& state) { impl_->restore(state); }
-void Simulator::resetWorld() { impl_->resetWorld(); }
+void Simulator::restore(const SimulationState& state) {
+  impl_->restore(state);
+  if (impl_->watcher_) impl_->watcher_->told({"restore", {}, {}, stateBytes(state)});
+}
+void Simulator::resetWorld() {
+  impl_->resetWorld();
+  impl_->tell("resetWorld");
+}
 
 void Simulator::resetSimulation() {
   impl_->step_count_ = 0;
   impl_->epoch_ = Epoch();
   for (std::size_t i = 0; i < impl_->sensors_.size(); ++i) impl_->seedSensor(i);
   impl_->resetWorld();
+  impl_->tell("resetSimulation");
 }
 
 std::uint64_t Simulator::stateHash() const {

@@ -159,5 +159,25 @@ TEST(LinkProperties, ComOfALinkOnAJointIsMoved) {
   }
 }
 
+TEST(LinkProperties, AbsurdOnesAreRefusedAndChangeNothing) {
+  SimulationConfig config;
+  config.robots = {pendulumAt("swing", Vector3::Zero())};
+  Simulator simulator(config, UriResolver());
+  const LinkPart arm = findLink(simulator, "arm", "test");
+  const MassProperties good = simulator.linkInertial(arm.body, arm.link);
+  const std::uint64_t hash = simulator.stateHash();
+  for (int i = 0; i < 5; ++i) {
+    MassProperties absurd = good;
+    if (i == 0) absurd.mass = 1.8e-317;
+    if (i == 1) absurd.mass = 1e300;
+    if (i == 2) absurd.inertia = 1e-310 * Matrix3::Identity();
+    if (i == 3) absurd.inertia = Vector3(1, 1, 1e-14).asDiagonal();
+    if (i == 4) absurd.inertia(2, 2) = NAN;
+    EXPECT_THROW(simulator.setLinkInertial(arm.body, arm.link, absurd), InputError) << i;
+    EXPECT_EQ(simulator.stateHash(), hash) << i;
+    EXPECT_EQ(simulator.linkInertial(arm.body, arm.link).mass, good.mass) << i;
+  }
+}
+
 }  // namespace
 }  // namespace blem_sim

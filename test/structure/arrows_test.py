@@ -21,7 +21,7 @@ LIBRARIES = {
     "urdf_model": ["model"], "urdf_parser": ["model"], "urdf_world": ["model"], "urdf_exception": ["model"], "console_bridge": ["model"],
     "assimp": ["model"], "pcl": ["model"],
     "yaml-cpp": ["sim", "ros"],
-    "ros": ["ros"], "tf2_ros": ["ros"], "tf2": ["ros"], "actionlib": ["ros"], "diagnostic_updater": ["ros"], "blem_sim_msgs": ["ros"],
+    "ros": ["ros"], "tf2_ros": ["ros"], "tf2": ["ros"], "actionlib": ["ros"], "diagnostic_updater": ["ros"], "rosbag": ["ros"], "blem_sim_msgs": ["ros"],
     "XmlRpcValue.h": ["ros"], "xmlrpcpp": ["ros"],
 }
 ROS_MESSAGES = re.compile(r"^\w+_(msgs|srvs)$")

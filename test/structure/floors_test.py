@@ -13,8 +13,8 @@ FLOORS = {
     "contact": ["features", "kernels", "neighbourhood", "kept", "evaluation", "merging", "search"],
     "reduction": ["lanes", "patches", "choice"],
     "dynamics": ["lanes", "scene", "trees", "island", "ode"],
-    "sim": ["numbers", "config", "gazebo", "commands", "build", "clouds", "contacts", "guard", "sensors", "state", "controllers"],
-    "ros": ["messages", "sending", "loop", "clouds", "publishers", "services", "attachments", "controllers"],
+    "sim": ["numbers", "config", "gazebo", "commands", "build", "clouds", "contacts", "guard", "sensors", "state", "inputs", "controllers"],
+    "ros": ["messages", "sending", "loop", "clouds", "publishers", "services", "saving", "attachments", "controllers"],
 }
 
 

@@ -188,6 +188,7 @@ struct SimulationConfig {
   PublishRates rates;
   double checkpoint_period = 0;         ///< [s] simulated; 0: the node keeps no checkpoint
   std::string checkpoint_file;          ///< of the node; empty: below ROS_HOME, named after the node
+  std::string record_file;              ///< of the node: all inputs from the first step on; empty: none
   std::string base_directory;           ///< of relative files
   bool allow_file_services = true;      ///< false: no service of the node reads or writes files
   std::vector<std::string> file_roots;  ///< folders that services may use beside base_directory and ROS_PACKAGE_PATH

@@ -7,6 +7,7 @@
 
 #include "blem_sim/contact/collider.h"
 #include "blem_sim/dynamics/world.h"
+#include "blem_sim/sim/simulator_input.h"
 #include "blem_sim/sim/simulator_types.h"
 #include "blem_sim/sim/step_report.h"
 #include "blem_sim/sim/trajectory.h"
@@ -151,6 +152,9 @@ class Simulator {
   void restore(const SimulationState& state);
   /** 64-bit hash of all state that steps depend on. */
   std::uint64_t stateHash() const;
+
+  /** Tells the watcher of every step and of every call above that changes the simulation, file roots apart. @param watcher null: nobody */
+  void watch(SimulatorWatcher* watcher);
 
  private:
   struct Impl;

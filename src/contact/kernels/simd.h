@@ -23,9 +23,9 @@ constexpr int LANES = 2;
 constexpr int FLOAT_LANES = LANES < 4 ? 2 * LANES : 8;  // a leaf has few features of a kind
 
 typedef double Doubles __attribute__((vector_size(8 * LANES)));
-typedef long Mask __attribute__((vector_size(8 * LANES)));
+using Mask = decltype(Doubles{} > Doubles{});
 typedef float Floats __attribute__((vector_size(4 * FLOAT_LANES)));
-typedef int FloatMask __attribute__((vector_size(4 * FLOAT_LANES)));
+using FloatMask = decltype(Floats{} > Floats{});
 
 /** Coordinates of as many vectors as there are lanes. */
 template <typename Lanes>

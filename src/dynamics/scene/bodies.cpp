@@ -1,5 +1,7 @@
 // Bodies of the scene: ODE's body sits at the centre of mass, with the axes of the body frame B.
-#include <Eigen/Cholesky>
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -11,14 +13,25 @@
 namespace blem_sim {
 namespace {
 
+constexpr double LEAST = 1e-30, MOST = 1e30;  // [kg], and [kg m^2] along a principal axis
+constexpr double MOST_OBLONG = 1e12;          // largest principal inertia over the smallest
+
 void checkBody(const BodySpec& spec) {
   const MassProperties& m = spec.inertial;
+  const std::string where = "body '" + spec.name + "': ";
   if (!(m.mass > 0) || !std::isfinite(m.mass))
-    throw InputError("body '" + spec.name + "': mass is " + std::to_string(m.mass) + " kg; give it a finite mass above 0");
+    throw InputError(fmt::format("{}mass is {:g} kg; give it a finite mass above 0", where, m.mass));
+  if (!(m.mass >= LEAST && m.mass <= MOST))
+    throw InputError(fmt::format("{}mass is {:g} kg; give it {:g} to {:g}", where, m.mass, LEAST, MOST));
   if (!m.com.allFinite() || !spec.X_WB.matrix().allFinite())
-    throw InputError("body '" + spec.name + "': centre of mass or pose is not finite; correct its origin");
-  if (!m.inertia.allFinite() || Eigen::LLT<Matrix3>(m.inertia).info() != Eigen::Success)
-    throw InputError("body '" + spec.name + "': inertia is not positive definite; correct ixx..izz");
+    throw InputError(where + "centre of mass or pose is not finite; correct its origin");
+  if (!m.inertia.allFinite()) throw InputError(where + "inertia is not finite; correct ixx..izz");
+  const Vector3 principal = Eigen::SelfAdjointEigenSolver<Matrix3>(m.inertia, Eigen::EigenvaluesOnly).eigenvalues();
+  if (!(principal[0] > 0)) throw InputError(where + "inertia is not positive definite; correct ixx..izz");
+  if (!(principal[0] >= LEAST && principal[2] <= MOST && principal[2] <= MOST_OBLONG * principal[0]))
+    throw InputError(
+        fmt::format("{}principal inertias are {:g} to {:g} kg m^2; give it ones from {:g} to {:g} that differ by {:g} times at most", where,
+                    principal[0], principal[2], LEAST, MOST, MOST_OBLONG));
 }
 
 void setMass(dBodyID body, const MassProperties& m) {

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "blem_sim/geometry/input_error.h"
+#include "blem_sim/geometry/one_line.h"
 #include "checks/file_check.h"
-#include "checks/one_line.h"
 
 namespace blem_sim {
 namespace {
@@ -32,10 +32,13 @@ PcdHeader readPcdHeader(const std::string& file, const std::string& bytes) {
   PcdHeader header;
   while (header.data < bytes.size() && header.rows.count("DATA") == 0) {
     const std::size_t end = std::min(bytes.find('\n', header.data), bytes.size());
-    std::istringstream row(bytes.substr(header.data, end - header.data));
+    const std::string line = bytes.substr(header.data, end - header.data);
+    std::istringstream row(line);
     header.data = std::min(end + 1, bytes.size());
     std::string keyword;
-    if (!(row >> keyword) || keyword[0] == '#') continue;
+    row >> keyword;
+    if (keyword.empty() && !line.empty()) refuseCloud(file, "a row of its header has spaces alone");
+    if (keyword.empty() || keyword[0] == '#') continue;
     if (KEYWORDS.count(keyword) == 0) refuseCloud(file, "its header has an unknown row");
     std::vector<std::string>& words = header.rows[keyword];
     if (!words.empty()) refuseCloud(file, keyword + " is given twice");

@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "blem_sim/geometry/input_error.h"
+#include "blem_sim/geometry/one_line.h"
 #include "checks/file_check.h"
-#include "checks/one_line.h"
 
 namespace blem_sim {
 namespace {

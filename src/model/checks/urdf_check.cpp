@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include "blem_sim/geometry/input_error.h"
-#include "checks/one_line.h"
+#include "blem_sim/geometry/one_line.h"
 #include "checks/urdf_gazebo.h"
 #include "checks/urdf_transmissions.h"
 #include "checks/urdf_tree_check.h"

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "checks/one_line.h"
+#include "blem_sim/geometry/one_line.h"
 
 namespace blem_sim {
 namespace {

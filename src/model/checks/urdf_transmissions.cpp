@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "blem_sim/geometry/input_error.h"
-#include "checks/one_line.h"
+#include "blem_sim/geometry/one_line.h"
 
 namespace blem_sim {
 namespace {

@@ -71,6 +71,7 @@ SimulationConfig parseConfig(const YAML::Node& root, const std::string& source, 
   reader.read("allow_file_services", &config.allow_file_services);
   reader.read("checkpoint_period", &config.checkpoint_period, NumberRange::notNegative());
   reader.read("checkpoint_file", &config.checkpoint_file);
+  reader.read("record", &config.record_file);
   config.file_roots = readFolders(reader, "file_roots");
   config.solver = readSolver(reader.section("solver"));
   config.contact = readContact(reader.section("contact"));

@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "blem_sim/geometry/input_error.h"
+#include "blem_sim/geometry/one_line.h"
 #include "numbers/nearest_name.h"
 
 namespace blem_sim {
@@ -72,7 +73,8 @@ std::string YamlReader::pathOf(const std::string& key) const { return path_.empt
 void YamlReader::refuse(const std::string& key, const std::string& why) const {
   const YAML::Node value = key.empty() ? YAML::Node(YAML::NodeType::Undefined) : lookUp(key);
   const std::string path = pathOf(key);
-  throw InputError(fmt::format("{}: {}{}{}", place(source_, value.IsDefined() ? value : node_), path, path.empty() ? "" : ": ", why));
+  throw InputError(
+      oneLine(fmt::format("{}: {}{}{}", place(source_, value.IsDefined() ? value : node_), path, path.empty() ? "" : ": ", why)));
 }
 
 void YamlReader::finish() const {

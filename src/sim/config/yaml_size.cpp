@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "blem_sim/geometry/input_error.h"
+#include "blem_sim/geometry/one_line.h"
 #include "config/scene_limits.h"
 
 namespace blem_sim {
@@ -59,8 +60,8 @@ class EntryCounter : public YAML::EventHandler {
     std::string path;
     for (std::size_t i = 0; i + 1 < open_.size(); ++i)
       path += open_[i].map ? (path.empty() ? "" : ".") + open_[i].key : fmt::format("[{}]", open_[i].nodes - 1);
-    throw InputError(fmt::format("{}:{}: {}{}has more than the {} entries that are simulated; give fewer", file_, mark.line + 1, path,
-                                 path.empty() ? "" : ": ", MOST_MODELS));
+    throw InputError(oneLine(fmt::format("{}:{}: {}{}has more than the {} entries that are simulated; give fewer", file_, mark.line + 1,
+                                         path, path.empty() ? "" : ": ", MOST_MODELS)));
   }
 
   const std::string& file_;

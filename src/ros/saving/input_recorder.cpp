@@ -1,0 +1,100 @@
+#include "saving/input_recorder.h"
+
+#include <ros/console.h>
+
+#include <algorithm>
+
+#include "blem_sim/geometry/input_error.h"
+#include "saving/record_bag.h"
+
+namespace blem_sim {
+
+namespace {
+
+constexpr std::size_t STEPS_PER_MESSAGE = 100;
+
+}  // namespace
+
+InputRecorder::InputRecorder(Simulator* simulator, const std::string& configuration)
+    : simulator_(simulator), configuration_(configuration), first_layout_(simulator->save().layout) {}
+
+InputRecorder::~InputRecorder() {
+  try {
+    if (!file_.empty()) stop();
+  } catch (const InputError& error) {
+    ROS_ERROR("%s", error.what());
+  }
+}
+
+template <typename Message>
+void InputRecorder::write(const char* topic, const Message& message) {
+  // A reader goes by the stamps, so they differ.
+  const ros::WallTime now = ros::WallTime::now();
+  last_stamp_ = std::max(ros::Time(now.sec, now.nsec), last_stamp_ + ros::Duration(0, 1));
+  bag_.write(topic, last_stamp_, message);
+}
+
+void InputRecorder::start(const std::string& file) {
+  if (!file_.empty()) throw InputError("record: " + file_ + " is being recorded; stop it first");
+  if (simulator_->save().layout != first_layout_)
+    throw InputError("record: models or settings have changed since the node started; start the node with record: FILE");
+  try {
+    bag_.open(file, rosbag::bagmode::Write);
+    write(START_TOPIC, startMessage(*simulator_, configuration_));
+  } catch (const rosbag::BagException& error) {
+    throw InputError("record: " + file + ": cannot be written: " + error.what() + "; check the folder and its disk");
+  }
+  file_ = file;
+  steps_ = RecordedSteps();
+  inputs_ = 0;
+  simulator_->watch(this);
+}
+
+std::string InputRecorder::stop() {
+  if (file_.empty()) throw InputError("record: nothing is being recorded; start it first");
+  const std::string file = file_;
+  steps_.last = true;
+  writeSteps();
+  if (file_.empty()) throw InputError("record: " + file + ": its end could not be written; the log says why");
+  simulator_->watch(nullptr);
+  file_.clear();
+  bag_.close();
+  return std::to_string(steps_.first) + " steps, " + std::to_string(inputs_) + " inputs in " + file;
+}
+
+void InputRecorder::told(const SimulatorInput& input) {
+  ++inputs_;
+  try {
+    write(INPUT_TOPIC, toMessage(input, steps_.first + steps_.hashes.size()));
+  } catch (const rosbag::BagException& error) {
+    giveUp(error.what());
+  }
+}
+
+void InputRecorder::stepped() {
+  steps_.hashes.push_back(simulator_->stateHash());
+  if (steps_.hashes.size() == STEPS_PER_MESSAGE) writeSteps();
+}
+
+void InputRecorder::writeSteps() {
+  try {
+    write(STEPS_TOPIC, steps_);
+  } catch (const rosbag::BagException& error) {
+    return giveUp(error.what());
+  }
+  steps_.first += steps_.hashes.size();
+  steps_.hashes.clear();
+}
+
+void InputRecorder::giveUp(const char* why) {
+  ROS_ERROR("record: %s ends after step %lu: %s; make room and record again", file_.c_str(), static_cast<unsigned long>(steps_.first), why);
+  simulator_->watch(nullptr);
+  file_.clear();
+  try {
+    bag_.close();
+  } catch (const rosbag::BagException&) {
+    // The first error was told.
+  }
+}
+
+}  // namespace blem_sim

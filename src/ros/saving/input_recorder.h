@@ -1,0 +1,45 @@
+// Record of a running simulation.
+#pragma once
+
+#include <blem_sim/RecordedSteps.h>
+#include <rosbag/bag.h>
+
+#include <string>
+
+#include "blem_sim/sim/simulator.h"
+
+namespace blem_sim {
+
+/** Writes what decides a simulation's bits into a bag, as it is taken. A bag that cannot be written on is closed, and the log says why. */
+class InputRecorder : public SimulatorWatcher {
+ public:
+  /** @param configuration YAML that the simulation was loaded from, all that has changed since being part of its state */
+  InputRecorder(Simulator* simulator, const std::string& configuration);
+  ~InputRecorder() override;
+
+  /** Begins with the state at hand. @throws InputError: it records already, models are not those of the start, the file cannot be written
+   */
+  void start(const std::string& file);
+  /** Ends the record. @return in words, its length @throws InputError if there is none, or its end cannot be written */
+  std::string stop();
+
+  void told(const SimulatorInput& input) override;
+  void stepped() override;
+
+ private:
+  template <typename Message>
+  void write(const char* topic, const Message& message);
+  void writeSteps();
+  /** Ends the record without its last message. */
+  void giveUp(const char* why);
+
+  Simulator* simulator_;
+  std::string configuration_, first_layout_;
+  std::string file_;  // empty: nothing is recorded
+  rosbag::Bag bag_;
+  ros::Time last_stamp_;
+  RecordedSteps steps_;  // that are not written yet
+  std::uint64_t inputs_ = 0;
+};
+
+}  // namespace blem_sim

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "saving/input_recorder.h"
+#include "saving/service_files.h"
+#include "services/service_group.h"
+
+namespace blem_sim {
+
+/** `~start_record`, `~stop_record`. */
+class RecordServices {
+ public:
+  /** @param files that records may be */
+  RecordServices(const ros::NodeHandle& private_node, InputRecorder* recorder, const ServiceFiles& files);
+
+ private:
+  ServiceGroup services_;
+};
+
+}  // namespace blem_sim

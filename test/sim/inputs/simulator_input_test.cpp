@@ -1,0 +1,210 @@
+// Inputs that a simulation told, given to a fresh one.
+#include "blem_sim/sim/simulator_input.h"
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "blem_sim/geometry/input_error.h"
+#include "blem_sim/sim/named_parts.h"
+#include "sim/state/saved_scene.h"
+
+namespace blem_sim {
+namespace {
+
+/** Inputs with the steps made before them, and the hash after every step. */
+class InputNotes : public SimulatorWatcher {
+ public:
+  explicit InputNotes(Simulator* simulator) : simulator_(simulator) { simulator->watch(this); }
+  ~InputNotes() override { simulator_->watch(nullptr); }
+  void told(const SimulatorInput& input) override { inputs.emplace_back(hashes.size(), input); }
+  void stepped() override { hashes.push_back(simulator_->stateHash()); }
+
+  std::vector<std::pair<std::size_t, SimulatorInput>> inputs;
+  std::vector<std::uint64_t> hashes;
+
+ private:
+  Simulator* simulator_;
+};
+
+/** Step of the first hash that is another, counted from 1; 0 if there is none. */
+std::size_t firstDifference(const SimulationConfig& config, const InputNotes& notes) {
+  Simulator simulator(config, UriResolver());
+  std::size_t next = 0;
+  for (std::size_t step = 0; step < notes.hashes.size(); ++step) {
+    for (; next < notes.inputs.size() && notes.inputs[next].first == step; ++next) applyInput(notes.inputs[next].second, &simulator);
+    simulator.step();
+    if (simulator.stateHash() != notes.hashes[step]) return step + 1;
+  }
+  return 0;
+}
+
+SimulationConfig sceneWithCloud() {
+  SimulationConfig config = sceneOfAllKinds();
+  EnvironmentConfig live;
+  live.name = "live";
+  live.live.topic = "/points";
+  live.X_WE = makePose({0, 0, 0});
+  config.environments.push_back(live);
+  return config;
+}
+
+CloudSurface cloudBelowCube() {
+  std::vector<Vector3> points;
+  for (int i = -10; i <= 10; ++i)
+    for (int j = -10; j <= 10; ++j) points.emplace_back(0.0101 * i, 0.0099 * j, 1e-4 * (i % 3));
+  return makeCloudSurface(points, CloudOptions(), "live");
+}
+
+RobotConfig spawned() {
+  RobotConfig second = robot("second", pendulumUrdf(), true);
+  second.motor.clear();
+  second.motors = MotorDefault::TRANSMISSIONS;
+  second.X_WR = makePose({2, 0.1, 0}, {0, 0, 0.3});
+  second.pid_gains["hinge"] = {30, 1, 2, std::numeric_limits<double>::infinity()};
+  return second;
+}
+
+EnvironmentConfig tilted() {
+  EnvironmentConfig plane;
+  plane.name = "tilted";
+  plane.plane = Eigen::Vector4d(0.1, 0, 1, -0.3);
+  plane.contact.friction = 0.123456789;
+  return plane;
+}
+
+/** Every call that changes a simulation. */
+std::vector<std::function<void(Simulator&)>> allCalls(const SimulationState& earlier) {
+  CloudSurface cloud = cloudBelowCube();
+  BodyState thrown;
+  thrown.X_WB = makePose({0, 1, 0.5}, {0.3, 0.2, 0.1});
+  thrown.v_WCom = {1, 0, 2};
+  MassProperties heavier;
+  heavier.mass = 2;
+  heavier.inertia = 0.01 * Matrix3::Identity();
+  return {
+      [=](Simulator& s) { s.restore(earlier); },
+      [](Simulator& s) { setOut(&s); },
+      [](Simulator& s) {
+        s.commandJoints(0, {{"hinge"}, {0.2}, {0.1}, {1}});
+      },
+      [cloud](Simulator& s) mutable { s.updateCloud("live", &cloud); },
+      [](Simulator& s) { s.spawn(spawned()); },
+      [](Simulator& s) { s.holdJoints(1, {0}); },
+      [](Simulator& s) { s.loadEnvironment(tilted()); },
+      [=](Simulator& s) { s.moveModel(s.models()[s.modelIndex("ball")].bodies[0], thrown); },
+      [](Simulator& s) {
+        s.applyLoad({s.models()[s.modelIndex("cube")].bodies[0], {{5, 0, 1}, {0, 0.1, 0}}, {0, 0, 0.02}}, {0, 0.02});
+      },
+      [](Simulator& s) {
+        s.applyEffort(s.robots()[0].joints[0], 2.5, {0, -1});
+      },
+      [](Simulator& s) { s.setJointPositions(1, {"hinge"}, {0.7}); },
+      [](Simulator& s) { s.setJointDamping(1, 0, 0.7); },
+      [](Simulator& s) { s.setJointLimits(1, 0, -2, 2); },
+      [=](Simulator& s) { s.setLinkInertial(s.robots()[1].bodies[1], 1, heavier); },
+      [](Simulator& s) {
+        s.setPhysics({0.1, 0, -9}, 0.0005, 1);
+      },
+      [](Simulator& s) { s.attach("ball", findLink(s, "cube::link", ""), 1e3, std::numeric_limits<double>::infinity()); },
+      [](Simulator& s) { s.detach("ball"); },
+      [](Simulator& s) { s.clearLoads(s.models()[s.modelIndex("cube")].bodies[0]); },
+      [](Simulator& s) { s.clearEfforts(s.robots()[0].joints[0]); },
+      [](Simulator& s) { s.resetModel(s.modelIndex("plate")); },
+      [](Simulator& s) { s.unloadEnvironment("tilted"); },
+      [](Simulator& s) { s.removeModel("second"); },
+      [](Simulator& s) { s.resetWorld(); },
+      [](Simulator& s) { s.resetSimulation(); },
+  };
+}
+
+TEST(SimulatorInput, EveryCallPlayedAgainGivesTheSameBits) {
+  const SimulationConfig config = sceneWithCloud();
+  Simulator simulator(config, UriResolver());
+  setOut(&simulator);
+  const SimulationState earlier = simulator.save();
+  simulator.resetSimulation();
+  InputNotes notes(&simulator);
+  std::set<std::string> calls;
+  for (const auto& call : allCalls(earlier)) {
+    call(simulator);
+    calls.insert(notes.inputs.back().second.call);
+    stepFor(&simulator, 0.02);
+  }
+  EXPECT_EQ(calls.size(), allCalls(earlier).size()) << "a call that is told under another's name, or not at all";
+  EXPECT_EQ(firstDifference(config, notes), 0u);
+}
+
+TEST(SimulatorInput, AnAlteredNumberShowsInTheNextStep) {
+  const SimulationConfig config = sceneWithCloud();
+  Simulator simulator(config, UriResolver());
+  InputNotes notes(&simulator);
+  stepFor(&simulator, 0.01);
+  simulator.commandJoints(0, {{"hinge"}, {0.2}, {}, {}});
+  stepFor(&simulator, 0.01);
+  ASSERT_EQ(firstDifference(config, notes), 0u);
+  double& position = notes.inputs[0].second.numbers[3];
+  ASSERT_EQ(position, 0.2);
+  position = std::nextafter(position, 1);
+  EXPECT_EQ(firstDifference(config, notes), 11u);
+}
+
+TEST(SimulatorInput, ARefusedCallIsNotTold) {
+  Simulator simulator(sceneWithCloud(), UriResolver());
+  InputNotes notes(&simulator);
+  EXPECT_THROW(simulator.commandJoints(0, {{"elbow"}, {0.2}, {}, {}}), InputError);
+  EXPECT_THROW(simulator.removeModel("nobody"), InputError);
+  EXPECT_TRUE(notes.inputs.empty());
+}
+
+/** All inputs of a run, one of their arguments being another. */
+std::vector<SimulatorInput> altered(const SimulatorInput& input) {
+  std::vector<SimulatorInput> others;
+  for (std::size_t i = 0; i < input.numbers.size(); ++i)
+    for (const double number : {std::nan(""), -1.0, 0.5, 1e9, 1e300}) {
+      others.push_back(input);
+      others.back().numbers[i] = number;
+    }
+  for (const std::size_t size : {std::size_t{0}, input.numbers.size() / 2, input.numbers.size() + 1}) {
+    others.push_back(input);
+    others.back().numbers.resize(size);
+  }
+  others.push_back(input);
+  others.back().texts.emplace_back("too many");
+  others.push_back(input);
+  others.back().call += "s";
+  return others;
+}
+
+TEST(SimulatorInput, LyingArgumentsAreRefusedInOneLine) {
+  Simulator simulator(sceneWithCloud(), UriResolver());
+  const SimulationState earlier = simulator.save();
+  std::vector<SimulatorInput> inputs;
+  {
+    InputNotes notes(&simulator);
+    for (const auto& call : allCalls(earlier))
+      if (inputs.size() < 17) call(simulator), inputs.push_back(notes.inputs.back().second);
+  }
+  simulator.setPhysics({0, 0, -9.81}, 0.001, 1);
+  int refused = 0;
+  for (const SimulatorInput& input : inputs) {
+    if (input.call == "updateCloud") continue;  // its points are numbers like any
+    for (const SimulatorInput& other : altered(input)) {
+      try {
+        applyInput(other, &simulator);
+      } catch (const InputError& error) {
+        ++refused;
+        EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+      }
+    }
+  }
+  EXPECT_GT(refused, 300);
+  simulator.resetWorld();
+  simulator.step();
+}
+
+}  // namespace
+}  // namespace blem_sim
