@@ -21,8 +21,7 @@
 #include "inputs/input_writer.h"
 #include "part_reports.h"
 #include "sensors/link_contacts.h"
-#include "sensors/sensor.h"
-#include "sensors/sensor_schedule.h"
+#include "sensors/sensor_channel.h"
 
 namespace blem_sim {
 
@@ -178,9 +177,8 @@ struct Simulator::Impl {
   LayerWatch layer_watch_;
   EnergyBalance energy_balance_;
   std::map<std::string, LiveGround> live_;  ///< by environment
-  std::vector<std::unique_ptr<Sensor>> sensors_;
-  std::vector<SensorSchedule> sensor_schedules_;
-  std::vector<SensorReading> spare_readings_;  ///< [sensors] whose memory the next reading uses
+  std::vector<SensorChannel> sensors_;
+  std::vector<SensorSample> spare_samples_;  ///< [sensors] whose memory the next reading uses
   AppliedLoads loads_;
   Epoch epoch_;
   mutable std::string layout_;  ///< empty: not known

@@ -91,11 +91,10 @@ void Simulator::Impl::removeModel(const std::string& name) {
 
 void Simulator::Impl::makeSensors() {
   for (std::size_t i = sensors_.size(); i < world_.sensors.size(); ++i) {
-    sensors_.push_back(makeSensor(world_, world_.sensors[i]));
+    sensors_.emplace_back(world_, world_.sensors[i], config_.time_step);
     seedSensor(i);
-    sensor_schedules_.emplace_back(world_.sensors[i].config.rate, config_.time_step);
   }
-  spare_readings_.resize(sensors_.size());
+  spare_samples_.resize(sensors_.size());
 }
 
 void Simulator::Impl::removeSensors(int robot) {
@@ -103,22 +102,12 @@ void Simulator::Impl::removeSensors(int robot) {
   for (std::size_t i = sensors_.size(); i-- > 0;) {
     if (world_.sensors[i].robot != robot) continue;
     sensors_.erase(sensors_.begin() + static_cast<std::ptrdiff_t>(i));
-    sensor_schedules_.erase(sensor_schedules_.begin() + static_cast<std::ptrdiff_t>(i));
-    spare_readings_.erase(spare_readings_.begin() + static_cast<std::ptrdiff_t>(i));
+    spare_samples_.erase(spare_samples_.begin() + static_cast<std::ptrdiff_t>(i));
   }
 }
 
 void Simulator::Impl::remakeSensors() {
-  for (std::size_t i = 0; i < sensors_.size(); ++i) {
-    std::vector<double> numbers;
-    sensors_[i]->append(&numbers);
-    const std::uint64_t random = sensors_[i]->random().state();
-    sensors_[i] = makeSensor(world_, world_.sensors[i]);
-    NumberReader reader(numbers);
-    sensors_[i]->restore(&reader);
-    sensors_[i]->random().setState(random);
-    sensor_schedules_[i] = SensorSchedule(world_.sensors[i].config.rate, config_.time_step);
-  }
+  for (std::size_t i = 0; i < sensors_.size(); ++i) sensors_[i].remake(world_, world_.sensors[i], config_.time_step);
 }
 
 void Simulator::Impl::forgetContacts(const std::vector<int>& colliders) {

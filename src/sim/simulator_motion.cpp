@@ -192,7 +192,7 @@ void Simulator::Impl::restart(const ModelInfo& model, int robot) {
     loads_.clearJoint(joint);
   }
   for (std::size_t i = 0; i < sensors_.size(); ++i)
-    if (world_.sensors[i].robot == robot) sensors_[i]->reset();
+    if (world_.sensors[i].robot == robot) sensors_[i].reset();
 }
 
 void Simulator::Impl::resetModel(int index) {

@@ -31,6 +31,7 @@ struct StateParts {
   EnergyBalance energy_balance;
   std::vector<JointMotor> motors;
   std::vector<std::vector<double>> sensors;  // numbers of each
+  std::vector<DelayLine> delays;             // of each
   ReductionMemory choices;
   LayerWatch layer_watch;
   CrossingHistory crossings;
@@ -73,7 +74,7 @@ void readContacts(const SimulationState& state, const std::vector<Collider>& col
 }
 
 /** @param parts as they are now, overwritten @throws InputError */
-void readParts(const SimulationState& state, const SimulatedWorld& world, const std::vector<std::unique_ptr<Sensor>>& sensors, bool live,
+void readParts(const SimulationState& state, const SimulatedWorld& world, const std::vector<SensorChannel>& sensors, bool live,
                StateParts* parts) {
   constexpr std::uint64_t MOST_STEPS = std::uint64_t{1} << 53;  // up to here the times of all steps are different
   if (state.step > MOST_STEPS) NumberReader::refuseContent("there are more steps than time can count");
@@ -84,7 +85,11 @@ void readParts(const SimulationState& state, const SimulatedWorld& world, const 
   parts->energy_balance.read(world.world.bodyCount(), &reader);
   for (std::size_t joint = 0; joint < parts->motors.size(); ++joint)
     if (world.world.hasJoint(static_cast<int>(joint))) parts->motors[joint].read(&reader);
-  for (const auto& sensor : sensors) parts->sensors.push_back(numbersOf(*sensor, &reader));
+  for (const SensorChannel& sensor : sensors) {
+    parts->sensors.push_back(numbersOf(sensor.sensor(), &reader));
+    parts->delays.push_back(sensor.delay());
+    parts->delays.back().read(&reader);
+  }
   readContacts(state, world.colliders, contacts, live, &reader, parts);
   readLoads(state, world, &reader, parts);
   reader.finish();
@@ -105,9 +110,10 @@ SimulationState Simulator::Impl::content() const {
   energy_balance_.append(&state.numbers);
   for (std::size_t joint = 0; joint < world_.motors.size(); ++joint)
     if (world_.world.hasJoint(static_cast<int>(joint))) world_.motors[joint].append(&state.numbers);
-  for (const auto& sensor : sensors_) {
-    sensor->append(&state.numbers);
-    state.words.push_back(sensor->random().state());
+  for (const SensorChannel& sensor : sensors_) {
+    sensor.sensor().append(&state.numbers);
+    sensor.delay().append(&state.numbers);
+    state.words.push_back(sensor.sensor().random().state());
   }
   contacts_.memory().append(&state.words);
   layer_watch_.append(&state.words);
@@ -130,7 +136,7 @@ SimulationState Simulator::Impl::save() const {
 void Simulator::Impl::restore(const SimulationState& state) {
   checkHeader(state);
   checkLayout(state.layout, layout());
-  StateParts parts{energy_balance_, world_.motors, {}, {}, {}, {}, {}, {}, {}, {}};
+  StateParts parts{energy_balance_, world_.motors, {}, {}, {}, {}, {}, {}, {}, {}, {}};
   readParts(state, world_, sensors_, !live_.empty(), &parts);
   world_.world.restoreChecked(state.world);
   // Nothing below throws.
@@ -140,8 +146,9 @@ void Simulator::Impl::restore(const SimulationState& state) {
   world_.motors = std::move(parts.motors);
   for (std::size_t i = 0; i < sensors_.size(); ++i) {
     NumberReader reader(parts.sensors[i]);
-    sensors_[i]->restore(&reader);
-    sensors_[i]->random().setState(state.words[1 + i]);
+    sensors_[i].sensor().restore(&reader);
+    sensors_[i].sensor().random().setState(state.words[1 + i]);
+    sensors_[i].delay() = std::move(parts.delays[i]);
   }
   contacts_.memory() = std::move(parts.choices);
   contacts_.fading() = std::move(parts.fading);
@@ -159,7 +166,7 @@ void Simulator::Impl::seedSensor(std::size_t sensor) {
   const SensorInfo& info = world_.sensors[sensor];
   ContentHash seed;
   seed.add(config_.random_seed).add(world_.robots[info.robot].name).add(info.config.name);
-  sensors_[sensor]->random().setState(seed.value());
+  sensors_[sensor].sensor().random().setState(seed.value());
 }
 
 SimulationState Simulator::save() const { return impl_->save(); }

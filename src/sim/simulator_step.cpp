@@ -52,7 +52,7 @@ void Simulator::Impl::startStep() {
   substeps_ = Substeps();
   report_.status = STEP_OK;
   report_.profile = StepProfile();
-  for (SensorSample& sample : report_.samples) spare_readings_[sample.sensor] = std::move(sample.reading);
+  for (SensorSample& sample : report_.samples) spare_samples_[sample.sensor] = std::move(sample);
   report_.samples.clear();
   report_.layer_events.clear();
   report_.broken_attachments.clear();
@@ -201,16 +201,14 @@ void Simulator::Impl::acceptSubstep() {
 void Simulator::Impl::readSensors() {
   const StageTimer timer(&report_.profile, Stage::SENSORS);
   jointStates(&joints_);
-  const auto due = [this](std::size_t i) { return sensor_schedules_[i].due(step_count_); };
-  bool contacts = false;
-  for (std::size_t i = 0; i < sensors_.size(); ++i) contacts = contacts || (due(i) && sensors_[i]->readsContacts());
-  if (contacts) link_contacts_.index(world_, part_reports_.contacts());
+  const auto reads_contacts = [this](const SensorChannel& sensor) { return sensor.readsContacts(step_count_); };
+  if (std::any_of(sensors_.begin(), sensors_.end(), reads_contacts)) link_contacts_.index(world_, part_reports_.contacts());
   const StepContext context{
       world_, config_.time_step, bodies_before_, bodies_, joints_, part_reports_.jointWrenches(), part_reports_.contacts(), link_contacts_};
   for (std::size_t i = 0; i < sensors_.size(); ++i) {
-    if (!due(i)) continue;
-    sensors_[i]->read(context, sensor_schedules_[i].period(), &spare_readings_[i]);
-    report_.samples.push_back({static_cast<int>(i), std::move(spare_readings_[i])});
+    if (!sensors_[i].read(context, step_count_, &spare_samples_[i])) continue;
+    spare_samples_[i].sensor = static_cast<int>(i);
+    report_.samples.push_back(std::move(spare_samples_[i]));
   }
 }
 

@@ -1,6 +1,7 @@
 // Configuration of a simulation, as in the YAML of the interface. Filled by config_parser, or by hand in tests.
 #pragma once
 
+#include <array>
 #include <limits>
 #include <map>
 #include <optional>
@@ -82,6 +83,16 @@ enum class SensorType { FORCE_TORQUE, IMU, CONTACT, TILT, MOTOR_CURRENT, ODOMETR
 
 enum class RangeNoise { GAUSSIAN, KINECT };
 
+/** Range and resolution of a quantity that a sensor measures. */
+struct QuantityLimits {
+  double saturation = std::numeric_limits<double>::infinity();  ///< a reading goes from - this to + this
+  double resolution = 0;                                        ///< step of its numbers; 0: as fine as they are
+
+  bool any() const { return resolution > 0 || saturation < std::numeric_limits<double>::infinity(); }
+};
+/** force_torque: force [N], torque [N m]; imu: acceleration, rate; tilt: angles, rate; motor_current: current [A], effort. */
+using SensorLimits = std::array<QuantityLimits, 2>;
+
 /** Rays of a depth camera or a lidar. */
 struct RangeSensorConfig {
   double nearest = 0.4, farthest = 5;  ///< [m] along the optical axis of a camera, along the beam of a lidar
@@ -118,9 +129,11 @@ struct SensorConfig {
   double accel_stddev = 0, gyro_stddev = 0, accel_bias_stddev = 0, gyro_bias_stddev = 0;
   double accel_bias = 0, gyro_bias = 0;                ///< imu: mean of a constant bias of each axis [m/s^2, rad/s]
   double accel_bias_spread = 0, gyro_bias_spread = 0;  ///< imu: standard deviation of it, drawn with the first reading
-  std::map<std::string, double> torque_constant;       ///< motor_current, by joint, "default"
-  RangeSensorConfig rays;                              ///< depth_camera, lidar
-  CameraTopics camera_topics;                          ///< depth_camera
+  SensorLimits limits;
+  double delay = 0;                               ///< [s] by which readings are old; not of contact, odometry and those that look
+  std::map<std::string, double> torque_constant;  ///< motor_current, by joint, "default"
+  RangeSensorConfig rays;                         ///< depth_camera, lidar
+  CameraTopics camera_topics;                     ///< depth_camera
 };
 
 struct RobotConfig {

@@ -16,6 +16,12 @@ struct SensorValues {
 /** Numbers of a reading, with their names. Does not compile until it knows every kind of reading. */
 SensorValues sensorValues(const SensorReading& reading);
 
+/** A reading of a type of sensor that holds nothing yet. @param joints of its robot */
+SensorReading blankReading(SensorType type, const std::vector<std::string>& joints);
+
+/** Whether a sensor's samples hold the truth beside the reading: it has noise, a bias, limits or a delay. False for those that look. */
+bool hasGroundTruth(const SensorConfig& sensor);
+
 /** Names of the fields of a sensor's readings, known before the first one. */
 std::vector<std::string> sensorFields(const Simulator& simulator, const SensorInfo& sensor);
 

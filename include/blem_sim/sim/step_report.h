@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -97,6 +98,7 @@ using SensorReading = std::variant<ForceTorqueReading, ImuReading, ContactReadin
 struct SensorSample {
   int sensor = 0;  ///< index into Simulator::sensors()
   SensorReading reading;
+  std::optional<SensorReading> truth;  ///< of the end of this step, without error and delay; none if the sensor has neither
 };
 
 struct StepReport {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "blem_sim/geometry/input_error.h"
+#include "blem_sim/sim/sensor_values.h"
 #include "messages/contact_messages.h"
 #include "messages/conversions.h"
 #include "publishers/robot_topics.h"
@@ -118,6 +119,7 @@ ListenedPublisher advertise(ros::NodeHandle* node, SensorType type, const std::s
 }
 
 std::string topicOf(const SensorConfig& sensor) { return sensor.topic.empty() ? sensor.name : sensor.topic; }
+std::string truthTopicOf(const SensorConfig& sensor) { return topicOf(sensor) + "/ground_truth"; }
 
 /** A sensor's frame of its own in its link. */
 struct Mounting {
@@ -153,7 +155,9 @@ void nameFrames(const SensorInfo& sensor, SensorTopic* topic) {
 }
 
 std::vector<std::string> topicsOf(const SensorConfig& sensor) {
-  return isRangeSensor(sensor.type) ? rangeTopics(topicOf(sensor), sensor) : std::vector<std::string>{topicOf(sensor)};
+  if (isRangeSensor(sensor.type)) return rangeTopics(topicOf(sensor), sensor);
+  if (hasGroundTruth(sensor)) return {topicOf(sensor), truthTopicOf(sensor)};
+  return {topicOf(sensor)};
 }
 
 }  // namespace
@@ -178,6 +182,7 @@ void SensorPublisher::modelsChanged() {
       topic.ranges = advertiseRanges(&robot_node, topicOf(sensor.config), sensor.config);
     else
       topic.publisher = advertise(&robot_node, sensor.config.type, topicOf(sensor.config));
+    if (hasGroundTruth(sensor.config)) topic.truth = advertise(&robot_node, sensor.config.type, truthTopicOf(sensor.config));
     return topic;
   };
   keepTopics(simulator_.sensors(), keyOf, make, &topics_);
@@ -217,12 +222,18 @@ void SensorPublisher::publishMountings() {
 void SensorPublisher::publish(const StepReport& report) {
   for (const SensorSample& sample : report.samples) {
     SensorTopic& topic = topics_[sample.sensor];
-    if (topic.publisher && !topic.publisher->listened()) continue;
-    ListenedPublisher* const publisher = topic.publisher ? &*topic.publisher : nullptr;
-    std::visit(
-        ReadingPublisher{simulator_, report, topic.frame, topic.child_frame, &topic.messages, publisher, topic.ranges, &ranges_, sender_},
-        sample.reading);
+    publishReading(report, sample.reading, &topic.publisher, &topic);
+    if (sample.truth && topic.truth) publishReading(report, *sample.truth, &topic.truth, &topic);
   }
+}
+
+void SensorPublisher::publishReading(const StepReport& report, const SensorReading& reading, std::optional<ListenedPublisher>* publisher,
+                                     SensorTopic* topic) {
+  ListenedPublisher* const listened = *publisher ? &**publisher : nullptr;
+  if (listened && !listened->listened()) return;
+  std::visit(
+      ReadingPublisher{simulator_, report, topic->frame, topic->child_frame, &topic->messages, listened, topic->ranges, &ranges_, sender_},
+      reading);
 }
 
 }  // namespace blem_sim

@@ -35,6 +35,7 @@ struct SensorTopic {
   std::string frame;                           ///< frame_id of its messages
   std::string child_frame;                     ///< child_frame_id of odometry
   std::optional<ListenedPublisher> publisher;  ///< none for cameras and lidars
+  std::optional<ListenedPublisher> truth;      ///< of what the sensor would read without error, if it makes any
   std::shared_ptr<const RangeTopics> ranges;   ///< for them alone
   SensorMessages messages;
 };
@@ -52,6 +53,9 @@ class SensorPublisher : public StepPublisher {
   /** @param names those of all topics so far */
   void checkTopic(const SensorInfo& sensor, const std::string& topic, std::set<std::string>* names) const;
   void publishMountings();
+  /** @param publisher one of the topic's, which may be none */
+  void publishReading(const StepReport& report, const SensorReading& reading, std::optional<ListenedPublisher>* publisher,
+                      SensorTopic* topic);
   ros::NodeHandle nodeOf(const SensorInfo& sensor) const;
 
   const Simulator& simulator_;

@@ -15,6 +15,23 @@ void requireText(YamlReader& reader, const std::string& key, std::string* value)
   if (value->empty()) reader.refuse(key, "is missing; name the " + key + " that the sensor sits on");
 }
 
+constexpr double LONGEST_DELAY = 1;  // [s]
+
+/** Delay, range and resolution. @param first, second what the sensor measures, in the order of its limits */
+void readErrors(YamlReader& reader, const std::string& first, const std::string& second, SensorConfig* sensor) {
+  reader.read("delay", &sensor->delay, {0, LONGEST_DELAY, false, "a number from 0 to 1 s"});
+  YamlReader saturation = reader.section("saturation"), resolution = reader.section("resolution");
+  QuantityLimits* limits = sensor->limits.data();
+  for (const std::string& quantity : {first, second}) {
+    saturation.read(quantity, &limits->saturation, NumberRange::positiveOrInfinite());
+    resolution.read(quantity, &limits->resolution, NumberRange::notNegative());
+    if (limits->resolution > limits->saturation) resolution.refuse(quantity, "is coarser than its saturation; give a smaller step");
+    ++limits;
+  }
+  saturation.finish();
+  resolution.finish();
+}
+
 void readForceTorque(YamlReader& reader, SensorConfig* sensor) {
   const std::vector<std::string> frames = {"child", "parent", "sensor"};
   const std::vector<std::string> senses = {"parent_to_child", "child_to_parent"};
@@ -22,6 +39,7 @@ void readForceTorque(YamlReader& reader, SensorConfig* sensor) {
   if (const auto frame = reader.choice("frame", frames)) sensor->frame = frames[*frame];
   reader.read("frame_id", &sensor->frame_id);
   if (const auto sense = reader.choice("measure", senses)) sensor->measure = senses[*sense];
+  readErrors(reader, "force", "torque", sensor);
   YamlReader noise = reader.section("noise");
   noise.read("stddev", &sensor->noise_stddev, NumberRange::notNegative());
   noise.finish();
@@ -34,8 +52,14 @@ void readMounting(YamlReader& reader, SensorConfig* sensor) {
   reader.read("frame_id", &sensor->frame_id);
 }
 
+void readTilt(YamlReader& reader, SensorConfig* sensor) {
+  readMounting(reader, sensor);
+  readErrors(reader, "angle", "gyro", sensor);
+}
+
 void readImu(YamlReader& reader, SensorConfig* sensor) {
   readMounting(reader, sensor);
+  readErrors(reader, "accel", "gyro", sensor);
   YamlReader noise = reader.section("noise");
   noise.read("accel_stddev", &sensor->accel_stddev, NumberRange::notNegative());
   noise.read("gyro_stddev", &sensor->gyro_stddev, NumberRange::notNegative());
@@ -60,6 +84,7 @@ void readOdometry(YamlReader& reader, SensorConfig* sensor) {
 }
 
 void readMotorCurrent(YamlReader& reader, SensorConfig* sensor) {
+  readErrors(reader, "current", "effort", sensor);
   reader.forEachName("torque_constant", [&](const std::string& joint, YamlReader& map) {
     map.read(joint, &sensor->torque_constant[joint], NumberRange::positive());
   });
@@ -131,7 +156,7 @@ const std::vector<SensorRow> SENSOR_TABLE = {
     {"force_torque", SensorType::FORCE_TORQUE, 0, readForceTorque},
     {"imu", SensorType::IMU, 0, readImu},
     {"contact", SensorType::CONTACT, 0, readContactSensor},
-    {"tilt", SensorType::TILT, 0, readMounting},
+    {"tilt", SensorType::TILT, 0, readTilt},
     {"motor_current", SensorType::MOTOR_CURRENT, 0, readMotorCurrent},
     {"odometry", SensorType::ODOMETRY, 50, readOdometry},
     {"depth_camera", SensorType::DEPTH_CAMERA, 30, readDepthCamera},

@@ -27,11 +27,10 @@ struct StepContext {
 class Sensor {
  public:
   virtual ~Sensor() = default;
-  /**
-   * @param period [s] between two readings, on average
-   * @param out overwritten; if it holds a reading of this sensor already, its memory is used again
-   */
-  virtual void read(const StepContext& step, double period, SensorReading* out) = 0;
+  /** The truth. @param out overwritten; if it holds a reading of this sensor already, its memory is used again */
+  virtual void measure(const StepContext& step, SensorReading* out) = 0;
+  /** Noise and bias upon a reading of measure(), of this step or an earlier one. @param period [s] between two readings, on average */
+  virtual void addNoise(double period, SensorReading* reading) {}
   virtual bool readsContacts() const { return false; }
   /** Forgets the sensor's memory (a drifting bias), without touching the random numbers. */
   virtual void reset() {}

@@ -9,7 +9,7 @@ class ContactSensor : public Sensor {
   ContactSensor(const SimulatedWorld& world, const SensorInfo& info)
       : robot_(world.robots[info.robot]), link_(robot_.description->linkIndex(info.config.link)) {}
 
-  void read(const StepContext& step, double, SensorReading* out) override {
+  void measure(const StepContext& step, SensorReading* out) override {
     ContactReading& reading = readingIn<ContactReading>(out);
     reading.contacts.clear();
     reading.wrenches.clear();

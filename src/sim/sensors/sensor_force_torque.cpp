@@ -17,7 +17,7 @@ class ForceTorqueSensor : public Sensor {
     sign_ = info.config.measure == "child_to_parent" ? -1 : 1;
   }
 
-  void read(const StepContext& step, double, SensorReading* out) override {
+  void measure(const StepContext& step, SensorReading* out) override {
     const Wrench& about_joint = step.joint_wrenches[world_joint_];
     // Newton-Euler's configuration is that at the start of the step.
     const Pose X_WP = step.world.linkPose(robot_, parent_link_, step.bodies_before);
@@ -29,10 +29,13 @@ class ForceTorqueSensor : public Sensor {
     reading.force = sign_ * (R_WA.transpose() * about_joint.force);
     reading.torque = sign_ * (R_WA.transpose() * torque);
     reading.frame_id = info_.frame_id;
-    if (info_.config.noise_stddev > 0) {
-      reading.force += info_.config.noise_stddev * random_.gaussianVector();
-      reading.torque += info_.config.noise_stddev * random_.gaussianVector();
-    }
+  }
+
+  void addNoise(double, SensorReading* out) override {
+    if (info_.config.noise_stddev == 0) return;
+    ForceTorqueReading& reading = std::get<ForceTorqueReading>(*out);
+    reading.force += info_.config.noise_stddev * random_.gaussianVector();
+    reading.torque += info_.config.noise_stddev * random_.gaussianVector();
   }
 
  private:

@@ -10,7 +10,7 @@ class ImuSensor : public Sensor {
   ImuSensor(const SimulatedWorld& world, const SensorInfo& info)
       : config_(info.config), frame_(world, world.robots[info.robot], info.config.link, info.config.X_LS) {}
 
-  void read(const StepContext& step, double period, SensorReading* out) override {
+  void measure(const StepContext& step, SensorReading* out) override {
     const MountedFrame::Motion before = frame_.motion(step.bodies_before), after = frame_.motion(step.bodies);
     const Vector3 specific_force = (after.v_WS - before.v_WS) / step.dt - step.world.world.gravity();
     // A difference of velocities belongs to the middle of the step, and so do the axes it is seen in.
@@ -20,11 +20,16 @@ class ImuSensor : public Sensor {
     reading.orientation = end.normalized();
     reading.angular_velocity = end.conjugate() * after.w_WS;
     reading.linear_acceleration = middle.conjugate() * specific_force;
+    reading.accel_stddev = reading.gyro_stddev = 0;
+  }
+
+  void addNoise(double period, SensorReading* out) override {
+    ImuReading& reading = std::get<ImuReading>(*out);
     reading.accel_stddev = config_.accel_stddev;
     reading.gyro_stddev = config_.gyro_stddev;
     drawBiases();
-    addNoise(config_.accel_stddev, config_.accel_bias_stddev, period, &accel_bias_, &reading.linear_acceleration);
-    addNoise(config_.gyro_stddev, config_.gyro_bias_stddev, period, &gyro_bias_, &reading.angular_velocity);
+    disturb(config_.accel_stddev, config_.accel_bias_stddev, period, &accel_bias_, &reading.linear_acceleration);
+    disturb(config_.gyro_stddev, config_.gyro_bias_stddev, period, &gyro_bias_, &reading.angular_velocity);
   }
 
   void reset() override {
@@ -59,7 +64,7 @@ class ImuSensor : public Sensor {
   }
 
   /** Adds white noise, and a bias that walks: bias_stddev is its standard deviation after one second. */
-  void addNoise(double stddev, double bias_stddev, double period, Vector3* bias, Vector3* value) {
+  void disturb(double stddev, double bias_stddev, double period, Vector3* bias, Vector3* value) {
     if (bias_stddev > 0) *bias += bias_stddev * std::sqrt(period) * random_.gaussianVector();
     if (stddev > 0) *value += stddev * random_.gaussianVector();
     *value += *bias;

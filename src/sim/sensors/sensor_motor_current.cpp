@@ -13,7 +13,7 @@ class MotorCurrentSensor : public Sensor {
     }
   }
 
-  void read(const StepContext& step, double, SensorReading* out) override {
+  void measure(const StepContext& step, SensorReading* out) override {
     MotorCurrentReading& reading = readingIn<MotorCurrentReading>(out);
     reading.joints = robot_.joint_names;
     reading.efforts.clear();

@@ -9,7 +9,7 @@ class OdometrySensor : public Sensor {
   OdometrySensor(const SimulatedWorld& world, const SensorInfo& info)
       : config_(info.config), frame_(world, world.robots[info.robot], info.config.link, info.config.X_LS) {}
 
-  void read(const StepContext& step, double, SensorReading* out) override {
+  void measure(const StepContext& step, SensorReading* out) override {
     const MountedFrame::Motion motion = frame_.motion(step.bodies);
     const Matrix3 R_AW = config_.twist == "world" ? Matrix3(Matrix3::Identity()) : Matrix3(motion.X_WS.linear().transpose());
     OdometryReading& reading = readingIn<OdometryReading>(out);
@@ -17,12 +17,16 @@ class OdometrySensor : public Sensor {
     reading.orientation = Quaternion(motion.X_WS.linear()).normalized();
     reading.linear_velocity = R_AW * motion.v_WS;
     reading.angular_velocity = R_AW * motion.w_WS;
-    reading.stddev = config_.noise_stddev;
-    if (config_.noise_stddev > 0) addNoise(config_.noise_stddev, &reading);
+    reading.stddev = 0;
+  }
+
+  void addNoise(double, SensorReading* out) override {
+    if (config_.noise_stddev > 0) disturb(config_.noise_stddev, &std::get<OdometryReading>(*out));
   }
 
  private:
-  void addNoise(double stddev, OdometryReading* reading) {
+  void disturb(double stddev, OdometryReading* reading) {
+    reading->stddev = stddev;
     reading->position += stddev * random_.gaussianVector();
     const Vector3 turn = stddev * random_.gaussianVector();
     reading->orientation = (Quaternion(Eigen::AngleAxisd(turn.norm(), turn.stableNormalized())) * reading->orientation).normalized();

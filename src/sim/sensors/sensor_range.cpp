@@ -12,7 +12,7 @@ class RangeSensor : public Sensor {
         model_(world.robots[info.robot].model),
         frame_(world, world.robots[info.robot], info.config.link, info.config.X_LS) {}
 
-  void read(const StepContext& step, double, SensorReading* out) override {
+  void measure(const StepContext& step, SensorReading* out) override {
     auto view = std::make_shared<RangeView>();
     view->rays = config_.rays;
     view->X_WS = frame_.motion(step.bodies).X_WS;

@@ -11,7 +11,7 @@ class TiltSensor : public Sensor {
   TiltSensor(const SimulatedWorld& world, const SensorInfo& info)
       : frame_(world, world.robots[info.robot], info.config.link, info.config.X_LS) {}
 
-  void read(const StepContext& step, double, SensorReading* out) override {
+  void measure(const StepContext& step, SensorReading* out) override {
     const MountedFrame::Motion motion = frame_.motion(step.bodies);
     const Matrix3 R = motion.X_WS.linear();
     TiltReading& reading = readingIn<TiltReading>(out);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 
 #include "blem_sim/sim/range_view.h"
@@ -72,28 +73,42 @@ struct ToRow {
 
 SensorValues sensorValues(const SensorReading& reading) { return std::visit(ToRow(), reading); }
 
-std::vector<std::string> sensorFields(const Simulator& simulator, const SensorInfo& sensor) {
-  const auto& joints = simulator.robots()[static_cast<std::size_t>(sensor.robot)].joint_names;
+SensorReading blankReading(SensorType type, const std::vector<std::string>& joints) {
   const std::vector<double> none(joints.size());
   const Vector3 zero = Vector3::Zero();
-  switch (sensor.config.type) {
+  switch (type) {
     case SensorType::FORCE_TORQUE:
-      return sensorValues(ForceTorqueReading{zero, zero, ""}).names;
+      return ForceTorqueReading{zero, zero, ""};
     case SensorType::IMU:
-      return sensorValues(ImuReading{Quaternion::Identity(), zero, zero, 0, 0}).names;
+      return ImuReading{Quaternion::Identity(), zero, zero, 0, 0};
     case SensorType::CONTACT:
-      return sensorValues(ContactReading()).names;
+      return ContactReading();
     case SensorType::TILT:
-      return sensorValues(TiltReading{Quaternion::Identity(), zero, 0, 0}).names;
+      return TiltReading{Quaternion::Identity(), zero, 0, 0};
     case SensorType::MOTOR_CURRENT:
-      return sensorValues(MotorCurrentReading{joints, none, none}).names;
+      return MotorCurrentReading{joints, none, none};
     case SensorType::ODOMETRY:
-      return sensorValues(OdometryReading{zero, Quaternion::Identity(), zero, zero, 0}).names;
+      return OdometryReading{zero, Quaternion::Identity(), zero, zero, 0};
     case SensorType::DEPTH_CAMERA:
+      return DepthCameraReading();
     case SensorType::LIDAR:
-      return sensorValues(LidarReading()).names;
+      break;
   }
-  return {};
+  return LidarReading();
+}
+
+bool hasGroundTruth(const SensorConfig& sensor) {
+  if (isRangeSensor(sensor.type)) return false;
+  const double errors[] = {sensor.noise_stddev,     sensor.accel_stddev, sensor.gyro_stddev, sensor.accel_bias_stddev,
+                           sensor.gyro_bias_stddev, sensor.accel_bias,   sensor.gyro_bias,   sensor.accel_bias_spread,
+                           sensor.gyro_bias_spread, sensor.delay};
+  return std::any_of(std::begin(errors), std::end(errors), [](double error) { return error != 0; }) || sensor.limits[0].any() ||
+         sensor.limits[1].any();
+}
+
+std::vector<std::string> sensorFields(const Simulator& simulator, const SensorInfo& sensor) {
+  const auto& joints = simulator.robots()[static_cast<std::size_t>(sensor.robot)].joint_names;
+  return sensorValues(blankReading(sensor.config.type, joints)).names;
 }
 
 std::vector<std::string> sensorNames(const Simulator& simulator) {

@@ -145,6 +145,8 @@ void writeSensors(const SimulatedWorld& world, LayoutWriter* writer) {
     for (const auto& [joint, constant] : c.torque_constant) hash.add(joint).add(constant);
     if (c.accel_bias != 0 || c.gyro_bias != 0 || c.accel_bias_spread != 0 || c.gyro_bias_spread != 0)
       hash.add(c.accel_bias).add(c.gyro_bias).add(c.accel_bias_spread).add(c.gyro_bias_spread);
+    if (c.delay > 0 || c.limits[0].any() || c.limits[1].any())
+      for (const QuantityLimits& limits : c.limits) hash.add(c.delay).add(limits.saturation).add(limits.resolution);
     if (c.type == SensorType::ODOMETRY) hash.add(c.twist);
     if (isRangeSensor(c.type)) hash.add(raysHash(c.rays));
     writer->line("sensor", c.name, "kind or settings", hash);

@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 #include <yaml-cpp/yaml.h>
 
+#include <limits>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "sim/simulation_scene.h"
 #include "support/input_errors.h"
@@ -38,12 +40,34 @@ TEST(SensorKeys, AreRead) {
   EXPECT_EQ(parsedRobot("self_collision: false").self_collision, false);
 }
 
+TEST(SensorKeys, OfErrorsAreRead) {
+  const auto sensors = parsedRobot(R"(sensors: [
+    {name: f, type: force_torque, joint: j, delay: 0.1, saturation: {force: 4, torque: 3}, resolution: {force: 2, torque: 1}},
+    {name: i, type: imu, link: l, delay: 0.2, saturation: {accel: 40, gyro: 30}, resolution: {accel: 20, gyro: 10}},
+    {name: t, type: tilt, link: l, delay: 0.3, saturation: {angle: 0.4, gyro: .inf}, resolution: {angle: 0.2, gyro: 0}},
+    {name: m, type: motor_current, delay: 1, saturation: {effort: 8}, resolution: {current: 7}}])")
+                           .sensors;
+  ASSERT_EQ(sensors.size(), 4u);
+  std::vector<double> numbers;
+  for (const SensorConfig& s : sensors)
+    for (const double number : {s.delay, s.limits[0].saturation, s.limits[1].saturation, s.limits[0].resolution, s.limits[1].resolution})
+      numbers.push_back(number);
+  const double inf = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(numbers, (std::vector<double>{0.1, 4, 3, 2, 1, 0.2, 40, 30, 20, 10, 0.3, 0.4, inf, 0.2, 0, 1, inf, 8, 7, 0}));
+}
+
 TEST(SensorKeys, AreRefusedInOneLine) {
   for (const auto& [keys, word] :
        {std::make_pair("sensors: [{name: o, type: odometry, link: l, twist: up}]", "twist"),
         std::make_pair("sensors: [{name: o, type: odometry}]", "link"),
         std::make_pair("sensors: [{name: c, type: contact, link: l, frame_id: x}]", "frame_id"),
         std::make_pair("sensors: [{name: i, type: imu, link: l, noise: {gyro_bias_spread: -1}}]", "gyro_bias_spread"),
+        std::make_pair("sensors: [{name: t, type: tilt, link: l, delay: 1.5}]", "delay"),
+        std::make_pair("sensors: [{name: t, type: tilt, link: l, saturation: {angle: 0}}]", "saturation.angle"),
+        std::make_pair("sensors: [{name: t, type: tilt, link: l, resolution: {angle: -1}}]", "resolution.angle"),
+        std::make_pair("sensors: [{name: t, type: tilt, link: l, saturation: {force: 1}}]", "force"),
+        std::make_pair("sensors: [{name: t, type: tilt, link: l, saturation: {gyro: 1}, resolution: {gyro: 2}}]", "resolution.gyro"),
+        std::make_pair("sensors: [{name: c, type: contact, link: l, delay: 0.1}]", "delay"),
         std::make_pair("self_colliding_links: foot", "self_colliding_links"),
         std::make_pair("self_colliding_links: [[foot]]", "self_colliding_links")})
     EXPECT_TRUE(isOneLineWith(refusal([&, k = keys] { parsedRobot(k); }), {word})) << keys;

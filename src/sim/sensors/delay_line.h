@@ -1,0 +1,33 @@
+// Readings on their way from a sensor, for a whole number of steps.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "blem_sim/sim/step_report.h"
+#include "numbers/number_reader.h"
+
+namespace blem_sim {
+
+class DelayLine {
+ public:
+  /** @param delay, time_step [s] @param reading one like those that will come */
+  DelayLine(double delay, double time_step, SensorReading reading);
+
+  std::size_t steps() const { return steps_; }
+  /** Takes in the reading of a step, and turns it into the one of steps() earlier. @return false: there was none yet */
+  bool pass(SensorReading* reading);
+  /** Nothing is on its way any more. */
+  void clear();
+
+  /** Appends what is on its way; nothing without a delay. */
+  void append(std::vector<double>* numbers) const;
+  void read(NumberReader* reader);
+
+ private:
+  std::size_t steps_;
+  std::vector<double> numbers_;  ///< of the readings, those of the next to come at next_
+  std::size_t next_ = 0, taken_ = 0;
+};
+
+}  // namespace blem_sim

@@ -1,0 +1,47 @@
+// A sensor and what lies between it and its reader: schedule, delay, noise, range and resolution.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "sensors/delay_line.h"
+#include "sensors/sensor.h"
+#include "sensors/sensor_schedule.h"
+
+namespace blem_sim {
+
+class SensorChannel {
+ public:
+  /** @param time_step [s] */
+  SensorChannel(const SimulatedWorld& world, const SensorInfo& info, double time_step);
+
+  /**
+   * Lets the sensor see a step.
+   * @param number of the step, from 1
+   * @param out its reading, and the truth if there is noise or the like; memory of earlier readings in it is used again
+   * @return false: there is no reading at this step
+   */
+  bool read(const StepContext& step, std::uint64_t number, SensorSample* out);
+  /** Whether read() will need the contacts of that step. */
+  bool readsContacts(std::uint64_t number) const { return sensor_->readsContacts() && schedule_.due(number); }
+
+  /** Makes the sensor again, as its bodies are now. With another time step, readings on their way are lost. */
+  void remake(const SimulatedWorld& world, const SensorInfo& info, double time_step);
+  /** Forgets what the sensor remembers and what is on its way, without touching the random numbers. */
+  void reset();
+
+  Sensor& sensor() { return *sensor_; }
+  const Sensor& sensor() const { return *sensor_; }
+  DelayLine& delay() { return delay_; }
+  const DelayLine& delay() const { return delay_; }
+
+ private:
+  SensorConfig config_;
+  bool has_truth_;
+  std::unique_ptr<Sensor> sensor_;
+  SensorSchedule schedule_;
+  DelayLine delay_;
+};
+
+}  // namespace blem_sim
