@@ -44,7 +44,7 @@ foreach(lanes reduction/lanes/reduction_lanes dynamics/lanes/contact_lanes dynam
 endforeach()
 blem_sim_room(dynamics blem_sim_contact blem_sim_model)
 blem_sim_precompiled_as(blem_sim_dynamics blem_sim_geometry)
-target_link_libraries(blem_sim_dynamics PRIVATE PkgConfig::ODE PkgConfig::TBB)
+target_link_libraries(blem_sim_dynamics PRIVATE PkgConfig::ODE PkgConfig::TBB fmt::fmt)
 blem_sim_room(sim blem_sim_dynamics blem_sim_reduction)
 blem_sim_precompiled_as(blem_sim_sim blem_sim_geometry)
 target_link_libraries(blem_sim_sim PUBLIC yaml-cpp fmt::fmt PRIVATE PkgConfig::TBB)
