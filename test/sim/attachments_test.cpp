@@ -1,6 +1,12 @@
 // Models welded to others: they go along, weigh what they weigh, break where they should, and come loose.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+
 #include "blem_sim/geometry/input_error.h"
 #include "blem_sim/sim/named_parts.h"
 #include "sim/simulation_scene.h"

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int ATTACHMENT_QUEUE = 100;
 
-Attachment messageOf(const Simulator& simulator, const AttachedModel& weld) {
+Attachment attachmentMessage(const Simulator& simulator, const AttachedModel& weld) {
   const Matrix3 R_LW = partMotion(simulator, weld.part).X_WL.linear().transpose();
   Attachment message;
   message.object_name = weld.object;
@@ -39,7 +39,7 @@ void AttachmentPublisher::publish(const StepReport& report) {
   const auto message = boost::make_shared<AttachmentArray>();
   message->header.stamp = toStamp(report.time);
   message->header.frame_id = WORLD_FRAME;
-  for (const AttachedModel& weld : simulator_.attachments()) message->attachments.push_back(messageOf(simulator_, weld));
+  for (const AttachedModel& weld : simulator_.attachments()) message->attachments.push_back(attachmentMessage(simulator_, weld));
   message->broken = report.broken_attachments;
   sender_->add(&publisher_, message);
 }
