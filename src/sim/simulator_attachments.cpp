@@ -28,20 +28,19 @@ std::vector<int> rigidWith(const World& world, int body) {
   return bodies;
 }
 
-/** Pairs of colliders that two groups of bodies bring together, without those of one model. */
-std::vector<std::pair<int, int>> pairsBetween(const SimulatedWorld& world, const std::vector<int>& a, const std::vector<int>& b,
-                                              int carrier) {
-  std::vector<std::pair<int, int>> pairs;
-  const auto isOf = [&](const Collider& c, const std::vector<int>& bodies) {
-    if (!c.enabled || std::find(bodies.begin(), bodies.end(), c.body) == bodies.end()) return false;
-    return c.body != WORLD_BODY || c.model == carrier;  // of the static world only the model that carries
-  };
+/** Pairs of colliders of different models among these bodies, and those of the static model that carries one of them. */
+std::vector<std::pair<int, int>> pairsAmong(const SimulatedWorld& world, const std::vector<int>& bodies, const LinkPart& part) {
+  std::vector<int> members;
   for (int i = 0; i < static_cast<int>(world.colliders.size()); ++i) {
-    if (!isOf(world.colliders[i], a)) continue;
-    for (int j = 0; j < static_cast<int>(world.colliders.size()); ++j)
-      if (isOf(world.colliders[j], b) && world.disabled_pairs.count(std::minmax(i, j)) == 0) pairs.push_back(std::minmax(i, j));
+    const Collider& c = world.colliders[i];
+    const bool is_static = c.body == WORLD_BODY && part.body == WORLD_BODY && c.model == part.model;
+    const bool hangs = c.body != WORLD_BODY && std::find(bodies.begin(), bodies.end(), c.body) != bodies.end();
+    if (c.enabled && (is_static || hangs)) members.push_back(i);
   }
-  std::sort(pairs.begin(), pairs.end());
+  std::vector<std::pair<int, int>> pairs;
+  for (std::size_t i = 0; i < members.size(); ++i)
+    for (std::size_t j = i + 1; j < members.size(); ++j)
+      if (world.colliders[members[i]].model != world.colliders[members[j]].model) pairs.emplace_back(members[i], members[j]);
   return pairs;
 }
 
@@ -93,7 +92,6 @@ void Simulator::Impl::attach(const std::string& object, const LinkPart& part, do
   weld.max_force = max_force;
   weld.max_torque = max_torque;
   const World& world = world_.world;
-  weld.never_touch = pairsBetween(world_, rigidWith(world, weld.body), rigidWith(world, part.body), part.model);
   JointSpec spec;
   spec.name = object + "::attached";
   spec.kind = JointKind::FIXED;
@@ -102,8 +100,8 @@ void Simulator::Impl::attach(const std::string& object, const LinkPart& part, do
   const Pose X_WP = part.body == WORLD_BODY ? Pose::Identity() : world.bodyState(part.body).X_WB;
   spec.X_PJ = X_WP.inverse() * world.bodyState(weld.body).X_WB;
   weld.joint = world_.addJoint(spec, 0, JointMotor(MotorSettings(), 0));
-  world_.disabled_pairs.insert(weld.never_touch.begin(), weld.never_touch.end());
   world_.attachments.push_back(weld);
+  partWelded();
   moveRigidly(model, weld.body, carriedBy(world, weld));
   carryAlong(model);
   layout_.clear();
@@ -128,8 +126,20 @@ void Simulator::Impl::removeAttachment(std::size_t index) {
   for (const std::pair<int, int>& pair : weld.never_touch) world_.disabled_pairs.erase(pair);
   world_.removeJoint(weld.joint);
   world_.attachments.erase(world_.attachments.begin() + static_cast<std::ptrdiff_t>(index));
+  partWelded();
   forgetContacts(world_.collidersOf(weld.model));
   layout_.clear();
+}
+
+// Two that hang on the same part do not touch each other either; when one of them is gone, the other's pairs are others.
+void Simulator::Impl::partWelded() {
+  for (AttachedModel& weld : world_.attachments) {
+    for (const std::pair<int, int>& pair : weld.never_touch) world_.disabled_pairs.erase(pair);
+    weld.never_touch.clear();
+  }
+  for (AttachedModel& weld : world_.attachments)
+    for (const std::pair<int, int>& pair : pairsAmong(world_, rigidWith(world_.world, weld.body), weld.part))
+      if (world_.disabled_pairs.insert(pair).second) weld.never_touch.push_back(pair);
 }
 
 void Simulator::Impl::carryAlong(int model) {

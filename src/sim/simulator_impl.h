@@ -138,6 +138,8 @@ struct Simulator::Impl {
   /** Detaches a model from whatever carries it, and all that it carries. */
   void detachAll(int model);
   void removeAttachment(std::size_t index);
+  /** Finds anew which colliders never touch because they hang rigidly together. */
+  void partWelded();
   /** The attachment by which a model is carried; null if none does. */
   const AttachedModel* carrierOf(int model) const;
   /** Puts all that a model carries, and what that carries, to where it belongs. */

@@ -143,6 +143,20 @@ TEST(Attachments, DoNotTouchWhatCarriesThem) {
   EXPECT_FALSE(simulator.step().contacts.empty());
 }
 
+/** Two cubes in each other at the plate: while both hang there they do not touch; once one is let go it is led out of the other. */
+TEST(Attachments, TwoOfOnePartTouchOnceOneIsGone) {
+  SimulationConfig config = carriageAndCube();
+  config.objects.push_back(box("other", Vector3::Constant(0.1), 1, {-0.02, -0.01, 0.85}));
+  Simulator simulator(config, UriResolver());
+  const LinkPart plate = plateOf(simulator);
+  for (const char* cube : {"cube", "other"}) simulator.attach(cube, plate, UNBREAKABLE, UNBREAKABLE);
+  for (int i = 0; i < 20; ++i) EXPECT_TRUE(simulator.step().contacts.empty());
+  simulator.detach("cube");
+  EXPECT_FALSE(simulator.step().contacts.empty());
+  simulator.detach("other");
+  EXPECT_FALSE(simulator.step().contacts.empty());
+}
+
 TEST(Attachments, RefuseInWords) {
   Simulator simulator(carriageAndCube(), UriResolver());
   const LinkPart plate = plateOf(simulator);

@@ -136,6 +136,11 @@ std::uint64_t raysHash(const RangeSensorConfig& rays) {
   return hash.add(rays.lowest_angle).add(rays.highest_angle).value();
 }
 
+void writeAttachments(const SimulatedWorld& world, LayoutWriter* writer) {
+  for (const AttachedModel& weld : world.attachments)
+    writer->line("attachment", weld.object, "limits", ContentHash().add(weld.max_force).add(weld.max_torque));
+}
+
 void writeSensors(const SimulatedWorld& world, LayoutWriter* writer) {
   for (const SensorInfo& sensor : world.sensors) {
     const SensorConfig& c = sensor.config;
@@ -189,6 +194,7 @@ std::string layoutOf(const SimulationConfig& config, const SimulatedWorld& world
   writeBodies(world.world, &writer);
   writeJoints(world, &writer);
   writeColliders(world, &writer);
+  writeAttachments(world, &writer);
   writeSensors(world, &writer);
   return writer.take();
 }
