@@ -26,7 +26,7 @@ TEST(BadInput, BodiesAreRefused) {
                                                                       [](BodySpec* b, double x) { b->inertial.inertia(0, 0) = x; },
                                                                       [](BodySpec* b, double x) { b->inertial.inertia *= x; }};
   for (const auto& set : fields) {
-    for (const double x : {std::nan(""), INF, 0.0, -1.0}) {
+    for (const double x : {std::nan(""), INF, 0.0, -1.0, 1e-310, 1e300}) {
       BodySpec body = soundBody();
       set(&body, x);
       EXPECT_TRUE(isOneLineWith(refusal([&] { world.addBody(body); }), {"body 'body'"})) << x;
