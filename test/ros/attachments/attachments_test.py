@@ -11,8 +11,8 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."
 import sim_client
 from sim_client import Recorder, service, wait_until
 
-from blem_sim.msg import AttachmentArray
-from blem_sim.srv import Attach, Detach, GetModelState, ResetModel
+from blem_sim.msg import AttachmentArray, ModelState
+from blem_sim.srv import Attach, Detach, GetModelState, ResetModel, SetModelState
 
 ARM, GROUND = "arm_on_base::base", "ground::link"
 WEIGHT = 9.81  # [N] of the cube
@@ -36,16 +36,18 @@ class AttachmentsTest(unittest.TestCase):
         return service("get_model_state", GetModelState)("cube", "").pose.position.z
 
     def test_hangs_and_falls(self):
-        start = self.height()
+        raised = ModelState(model_name="cube")
+        raised.pose.position.x, raised.pose.position.z = 0.6, 0.5
+        self.assertTrue(service("set_model_state", SetModelState)(raised).success)
         self.attach()
         sim_client.step(300)
         last = self.attachments.wait_for(300)[-1].attachments[0]
         self.assertEqual((last.object_name, last.link_name, last.max_force), ("cube", GROUND, float("inf")))
         self.assertAlmostEqual(last.wrench.force.z, WEIGHT, delta=1e-9)
-        self.assertAlmostEqual(self.height(), start, delta=1e-12)
+        self.assertAlmostEqual(self.height(), 0.5, delta=1e-12)
         self.assertTrue(service("detach", Detach)("cube").success)
-        sim_client.step(300)
-        self.assertLess(self.height(), 0.06)
+        sim_client.step(600)
+        self.assertAlmostEqual(self.height(), 0.1025, delta=1e-3)  # on the ground
 
     def test_breaks_beyond_its_limit(self):
         self.attach(0.5 * WEIGHT)
