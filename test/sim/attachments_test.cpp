@@ -3,13 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <string>
 
-#include "blem_sim/geometry/input_error.h"
 #include "blem_sim/sim/named_parts.h"
 #include "sim/simulation_scene.h"
+#include "support/input_errors.h"
 
 namespace blem_sim {
 namespace {
@@ -41,15 +40,6 @@ LinkPart plateOf(const Simulator& simulator) { return findLink(simulator, "carri
 
 Pose placeOnPlate(const Simulator& simulator) {
   return simulator.report().bodies[plateOf(simulator).body].X_WB.inverse() * bodyOf(simulator, "cube").X_WB;
-}
-
-std::string refusal(const std::function<void()>& act) {
-  try {
-    act();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
 }
 
 TEST(Attachments, GoAlongAndFallWhenTheyAreDetached) {

@@ -96,7 +96,7 @@ void visitFields(Visitor& visit, JointGains& gains) {
   visit(gains.p, gains.i, gains.d, gains.i_clamp);
 }
 
-/** Of a spawned robot, all that a call of spawn_urdf_model sets. */
+/** Fields of a spawned robot: all that a call of spawn_urdf_model sets. */
 template <typename Visitor>
 void visitFields(Visitor& visit, RobotConfig& robot) {
   visit(robot.name, robot.name_space, robot.urdf, robot.urdf_xml, robot.fixed_base, robot.X_WR, robot.pid_gains);
