@@ -13,9 +13,9 @@ std::vector<int> sampledSteps() {
 }
 
 Generation generate(const ContactScene& scene, bool remembers, int steps) {
-  std::vector<NarrowPhaseMemory> memories(scene.moving.size());
+  std::vector<contact::NarrowPhaseMemory> memories(scene.moving.size());
   std::vector<Pose> poses(scene.moving.size());
-  std::vector<ContactManifold> manifolds(scene.moving.size());  // of each pair its own, as a simulation keeps them
+  std::vector<contact::ContactManifold> manifolds(scene.moving.size());  // of each pair its own, as a simulation keeps them
   Generation out;
   for (int step = -1; step < steps; ++step) {
     for (std::size_t i = 0; i < scene.moving.size(); ++i) poses[i] = scene.pose(static_cast<int>(i), step);
@@ -39,7 +39,7 @@ Generation generate(const ContactScene& scene, bool remembers, int steps) {
 PairSearch searchPlainly(const ContactScene& scene) {
   const PlainTree standing(scene.standing.geometry->mesh());
   std::vector<std::unique_ptr<PlainTree>> moving;
-  for (const Collider& collider : scene.moving) moving.push_back(std::make_unique<PlainTree>(collider.geometry->mesh()));
+  for (const contact::Collider& collider : scene.moving) moving.push_back(std::make_unique<PlainTree>(collider.geometry->mesh()));
   std::vector<std::pair<int, int>> pairs;
   std::size_t found = 0;
   const std::vector<int> steps = sampledSteps();

@@ -30,7 +30,7 @@ Pose moved(const Pose& X, const Vector3& middle, int collider, int step) {
   return about * oscillation(collider, step) * about.inverse() * X;
 }
 
-void raise(const std::vector<Box>& raised, TriangleMesh* mesh) {
+void raise(const std::vector<Box>& raised, geometry::TriangleMesh* mesh) {
   for (Vector3& v : mesh->vertices) {
     for (const Box& patch : raised)
       if ((v.head<2>().array() > patch.min().head<2>().array()).all() && (v.head<2>().array() < patch.max().head<2>().array()).all())
@@ -38,10 +38,10 @@ void raise(const std::vector<Box>& raised, TriangleMesh* mesh) {
   }
 }
 
-TriangleMesh noisyGrid(int triangles) {
-  RandomShapes random(5);
+geometry::TriangleMesh noisyGrid(int triangles) {
+  geometry::RandomShapes random(5);
   const int cells = static_cast<int>(std::lround(std::sqrt(0.5 * triangles)));
-  TriangleMesh mesh = gridMesh(SIZE, SIZE, cells, cells);
+  geometry::TriangleMesh mesh = geometry::gridMesh(SIZE, SIZE, cells, cells);
   for (Vector3& v : mesh.vertices) v.z() = random.uniform(-NOISE, NOISE);
   return mesh;
 }
@@ -49,13 +49,13 @@ TriangleMesh noisyGrid(int triangles) {
 /** Noise in [-1, 1), the same for a place of the grid however large the grid is. */
 double noiseAt(int i, int j) {
   const std::int64_t row = i, column = j;
-  return RandomShapes(static_cast<std::uint64_t>(row * 1000003 + column)).uniform(-1, 1);
+  return geometry::RandomShapes(static_cast<std::uint64_t>(row * 1000003 + column)).uniform(-1, 1);
 }
 
 /** A grid of about as many triangles as asked for, `cell` [m] wide: the middle of a larger grid is a smaller one, to the last bit. */
-TriangleMesh growingGrid(int triangles, double cell) {
+geometry::TriangleMesh growingGrid(int triangles, double cell) {
   const int cells = 2 * static_cast<int>(std::lround(0.5 * std::sqrt(0.5 * triangles)));
-  TriangleMesh mesh = gridMesh(cells, cells, cells, cells);
+  geometry::TriangleMesh mesh = geometry::gridMesh(cells, cells, cells, cells);
   for (Vector3& v : mesh.vertices) {
     const int i = static_cast<int>(std::lround(v.x())), j = static_cast<int>(std::lround(v.y()));
     v = {cell * i, cell * j, NOISE * noiseAt(i, j)};
@@ -63,13 +63,13 @@ TriangleMesh growingGrid(int triangles, double cell) {
   return mesh;
 }
 
-TriangleMesh pointsOf(TriangleMesh mesh) {
+geometry::TriangleMesh pointsOf(geometry::TriangleMesh mesh) {
   mesh.elements.clear();
   for (int i = 0; i < static_cast<int>(mesh.vertices.size()); ++i) mesh.elements.push_back({i, i, i});
   return mesh;
 }
 
-Box boundsOf(const TriangleMesh& mesh, const Pose& X) {
+Box boundsOf(const geometry::TriangleMesh& mesh, const Pose& X) {
   Box box;
   for (const Vector3& v : mesh.vertices) box.extend(X * v);
   return box;
@@ -77,19 +77,20 @@ Box boundsOf(const TriangleMesh& mesh, const Pose& X) {
 
 struct PosedLink {
   std::string name;
-  std::shared_ptr<const TriangleMesh> mesh;
+  std::shared_ptr<const geometry::TriangleMesh> mesh;
   Pose X_WL;
 };
 
 /** The links at zero joint angles, the lowest vertex of the robot just above the noise. */
 std::vector<PosedLink> huboLinks() {
-  const RobotModel robot = loadUrdfFile(*sharedData("robots/klampt/huboplus/huboplus.urdf"), UriResolver(sharedPackages()));
+  const model::RobotModel robot =
+      model::loadUrdfFile(*sharedData("robots/klampt/huboplus/huboplus.urdf"), model::UriResolver(sharedPackages()));
   std::vector<Pose> X_WL(robot.links.size(), Pose::Identity());
-  for (const JointModel& joint : robot.joints) X_WL[joint.child] = X_WL[joint.parent] * joint.X_PJ;
+  for (const model::JointModel& joint : robot.joints) X_WL[joint.child] = X_WL[joint.parent] * joint.X_PJ;
   std::vector<PosedLink> links;
   Box all;
   for (std::size_t i = 0; i < robot.links.size(); ++i) {
-    for (const CollisionShape& shape : robot.links[i].collisions) {
+    for (const model::CollisionShape& shape : robot.links[i].collisions) {
       links.push_back({robot.links[i].name, shape.mesh, X_WL[i]});
       all.extend(boundsOf(*shape.mesh, X_WL[i]));
     }
@@ -98,10 +99,12 @@ std::vector<PosedLink> huboLinks() {
   return links;
 }
 
-TriangleMesh loadedMesh(const char* file) { return *loadSurface(*sharedData(file), Vector3::Ones(), CloudOptions()).mesh; }
+geometry::TriangleMesh loadedMesh(const char* file) {
+  return *model::loadSurface(*sharedData(file), Vector3::Ones(), model::CloudOptions()).mesh;
+}
 
 /** @param terrain raised under the hands here; @param points its vertices alone */
-std::unique_ptr<ContactScene> huboOn(TriangleMesh terrain, bool points) {
+std::unique_ptr<ContactScene> huboOn(geometry::TriangleMesh terrain, bool points) {
   auto scene = std::make_unique<ContactScene>();
   scene->name = "hubo on " + std::to_string(terrain.elements.size());
   const std::vector<PosedLink> links = huboLinks();
@@ -110,11 +113,11 @@ std::unique_ptr<ContactScene> huboOn(TriangleMesh terrain, bool points) {
     if (link.name.find("Hand") != std::string::npos || link.name.find("Finger") != std::string::npos)
       raised.push_back(boundsOf(*link.mesh, link.X_WL));
   raise(raised, &terrain);
-  scene->standing = makeCollider(points ? pointsOf(std::move(terrain)) : std::move(terrain), 0);
+  scene->standing = contact::makeCollider(points ? pointsOf(std::move(terrain)) : std::move(terrain), 0);
   std::vector<Pose> poses;
   std::vector<Vector3> middles;
   for (const PosedLink& link : links) {
-    scene->moving.push_back(makeCollider(*link.mesh, LAYER));
+    scene->moving.push_back(contact::makeCollider(*link.mesh, LAYER));
     poses.push_back(link.X_WL);
     middles.push_back(link.mesh->bounds().center());
   }
@@ -122,11 +125,11 @@ std::unique_ptr<ContactScene> huboOn(TriangleMesh terrain, bool points) {
   return scene;
 }
 
-std::unique_ptr<ContactScene> boxOn(TriangleMesh terrain, const Vector3& size) {
+std::unique_ptr<ContactScene> boxOn(geometry::TriangleMesh terrain, const Vector3& size) {
   auto scene = std::make_unique<ContactScene>();
   scene->name = "box on " + std::to_string(terrain.elements.size());
-  scene->standing = makeCollider(std::move(terrain), 0);
-  scene->moving = {makeCollider(boxMesh(size), LAYER)};
+  scene->standing = contact::makeCollider(std::move(terrain), 0);
+  scene->moving = {contact::makeCollider(geometry::boxMesh(size), LAYER)};
   const Vector3 centre(0.01, 0.02, 0.5 * size.z() + NOISE + CLEARANCE);
   scene->pose = [centre](int collider, int step) { return moved(makePose(centre), Vector3::Zero(), collider, step); };
   return scene;
@@ -160,18 +163,19 @@ std::unique_ptr<ContactScene> slabOnTerrain(int contacts) {
 std::unique_ptr<ContactScene> mugOnFractalTerrain(int triangles) {
   if (!sharedData(MUG) || !sharedData(FRACTAL)) return nullptr;
   auto scene = std::make_unique<ContactScene>();
-  TriangleMesh terrain = loadedMesh(FRACTAL);
+  geometry::TriangleMesh terrain = loadedMesh(FRACTAL);
   int level = 0;
   while ((terrain.elements.size() << 2 * (level + 1)) <= 1.1 * triangles) ++level;
-  scene->standing = makeCollider(subdivided(terrain, level), 0);
+  scene->standing = contact::makeCollider(geometry::subdivided(terrain, level), 0);
   scene->name = "mug on fractal " + std::to_string(scene->standing.geometry->mesh().elements.size());
-  const TriangleMesh mug = loadedMesh(MUG);
-  scene->moving = {makeCollider(mug, LAYER)};
+  const geometry::TriangleMesh mug = loadedMesh(MUG);
+  scene->moving = {contact::makeCollider(mug, LAYER)};
   // The body is lowered until the layers overlap by half.
   Pose X = makePose({0.3, 0.2, 2});
   for (double step = 1; step > 1e-5; step *= 0.5) {
     X.translation().z() -= step;
-    if (contactsOf(scene->moving[0], X, scene->standing, Pose::Identity(), 0).maxDepth() > 0.5 * LAYER) X.translation().z() += step;
+    if (contact::contactsOf(scene->moving[0], X, scene->standing, Pose::Identity(), 0).maxDepth() > 0.5 * LAYER)
+      X.translation().z() += step;
   }
   const Vector3 middle = mug.bounds().center();
   scene->pose = [X, middle](int collider, int step) { return moved(X, middle, collider, step); };
@@ -182,9 +186,9 @@ std::unique_ptr<ContactScene> mugBesideMug() {
   if (!sharedData(MUG)) return nullptr;
   auto scene = std::make_unique<ContactScene>();
   scene->name = "mug beside mug";
-  const TriangleMesh mug = loadedMesh(MUG);
-  scene->standing = makeCollider(mug, LAYER);
-  scene->moving = {makeCollider(mug, LAYER)};
+  const geometry::TriangleMesh mug = loadedMesh(MUG);
+  scene->standing = contact::makeCollider(mug, LAYER);
+  scene->moving = {contact::makeCollider(mug, LAYER)};
   scene->approach = -Vector3::UnitY();
   const Pose X = makePose({0, mug.bounds().sizes().y() + 0.002, 0});
   const Vector3 middle = mug.bounds().center();

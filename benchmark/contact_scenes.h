@@ -13,8 +13,8 @@ namespace blem_sim {
 /** Moving colliders against one that stands. Their poses are functions of the step; nothing is simulated. */
 struct ContactScene {
   std::string name;
-  Collider standing;
-  std::vector<Collider> moving;
+  contact::Collider standing;
+  std::vector<contact::Collider> moving;
   std::function<Pose(int collider, int step)> pose;  ///< in the standing one's frame
   Vector3 approach = -Vector3::UnitZ();              ///< unit, that frame: the way from the moving bodies to the standing one
 };

@@ -6,8 +6,8 @@
 namespace blem_sim {
 
 /** Cubes beside each other on one ground of two triangles, each an island of its own. */
-SimulationConfig cubesOnGround(int cubes);
+sim::SimulationConfig cubesOnGround(int cubes);
 /** Stacks of three cubes on one ground, each an island of its own. */
-SimulationConfig stacksOfThree(int stacks, int threads);
+sim::SimulationConfig stacksOfThree(int stacks, int threads);
 
 }  // namespace blem_sim

@@ -19,7 +19,7 @@ namespace blem_sim {
 namespace {
 
 constexpr int TURN = 50;  // [steps] of one engine before it is the other's turn
-constexpr std::size_t STAGES = static_cast<std::size_t>(Stage::COUNT);
+constexpr std::size_t STAGES = static_cast<std::size_t>(sim::Stage::COUNT);
 double seconds_simulated = 4;
 int heap_seed = 1;
 
@@ -27,7 +27,7 @@ int heap_seed = 1;
 struct Heap {
   std::string name;
   int count;
-  SimulationConfig (*config)(int count, int seed, const SolverSettings& solver);
+  sim::SimulationConfig (*config)(int count, int seed, const dynamics::SolverSettings& solver);
   HeapScene (*scene)(int count);
 };
 
@@ -80,27 +80,27 @@ struct Figures {
   std::array<Times, STAGES> stages;
   Times residual_of_force;  // in millionths
   double trouble = 0, crossing = 0, shortened = 0, deepest = 0, gained = 0, bullet_deepest = 0;
-  void add(const StepReport& report) {
+  void add(const sim::StepReport& report) {
     for (std::size_t s = 0; s < STAGES; ++s) stages[s].add(report.profile.seconds[s]);
-    trouble += report.status & SOLVER_TROUBLE ? 1 : 0;
-    crossing += report.status & CONTACT_UNRELIABLE ? 1 : 0;
+    trouble += report.status & sim::SOLVER_TROUBLE ? 1 : 0;
+    crossing += report.status & sim::CONTACT_UNRELIABLE ? 1 : 0;
     shortened += report.substeps > 1 ? 1 : 0;
     deepest = std::max(deepest, report.max_of_layer);
     gained = std::max(gained, report.energy_gained);
     double largest = 0;
-    for (const ContactReport& contact : report.contacts) largest = std::max(largest, contact.force.norm());
+    for (const sim::ContactReport& contact : report.contacts) largest = std::max(largest, contact.force.norm());
     if (largest > 0) residual_of_force.add(report.solver_residual / largest);
   }
 };
 
-Figures run(Simulator* simulator, BulletHeap* bullet) {
+Figures run(sim::Simulator* simulator, BulletHeap* bullet) {
   Figures figures;
   const int steps = static_cast<int>(std::lround(seconds_simulated / simulator->config().time_step));
   for (int done = 0; done < steps; done += TURN) {
     const int turn = std::min(TURN, steps - done);
     for (int i = 0; i < turn; ++i) {
       const double start = threadSeconds();
-      const StepReport& report = simulator->step();
+      const sim::StepReport& report = simulator->step();
       figures.step.add(threadSeconds() - start);
       figures.add(report);
     }
@@ -114,23 +114,23 @@ Figures run(Simulator* simulator, BulletHeap* bullet) {
   return figures;
 }
 
-double fastest(const Simulator& simulator) {
+double fastest(const sim::Simulator& simulator) {
   double fastest = 0;
-  for (const BodyState& body : simulator.report().bodies) fastest = std::max(fastest, body.v_WCom.norm());
+  for (const dynamics::BodyState& body : simulator.report().bodies) fastest = std::max(fastest, body.v_WCom.norm());
   return fastest;
 }
 
 /** Bodies that are not in the bin any more. */
-int lost(const Simulator& simulator, double width) {
+int lost(const sim::Simulator& simulator, double width) {
   int lost = 0;
-  for (const BodyState& body : simulator.report().bodies) {
+  for (const dynamics::BodyState& body : simulator.report().bodies) {
     const Vector3& p = body.X_WB.translation();
     lost += p.z() < 0 || std::max(std::abs(p.x()), std::abs(p.y())) > 0.5 * width ? 1 : 0;
   }
   return lost;
 }
 
-void count(const Heap& heap, const Figures& figures, const Simulator& simulator, const BulletHeap* bullet, benchmark::State* state) {
+void count(const Heap& heap, const Figures& figures, const sim::Simulator& simulator, const BulletHeap* bullet, benchmark::State* state) {
   auto& counters = state->counters;
   const double steps = seconds_simulated / simulator.config().time_step;
   const auto add = [&](const std::string& name, const Times& times) {
@@ -139,8 +139,8 @@ void count(const Heap& heap, const Figures& figures, const Simulator& simulator,
     counters[name + "_max_us"] = times.quantile(1);
   };
   add("step", figures.step);
-  for (std::size_t s = 0; s < STAGES; ++s) add(STAGE_NAMES[s], figures.stages[s]);
-  const Times& solve = figures.stages[static_cast<std::size_t>(Stage::SOLVE)];
+  for (std::size_t s = 0; s < STAGES; ++s) add(sim::STAGE_NAMES[s], figures.stages[s]);
+  const Times& solve = figures.stages[static_cast<std::size_t>(sim::Stage::SOLVE)];
   counters["last_quarter_over_first"] = figures.step.mean(0.75, 1) / figures.step.mean(0, 0.25);
   counters["solve_last_quarter_over_first"] = solve.mean(0.75, 1) / solve.mean(0, 0.25);
   counters["trouble_share"] = figures.trouble / steps;
@@ -169,7 +169,7 @@ void count(const Heap& heap, const Figures& figures, const Simulator& simulator,
 }
 
 void measure(const Heap& heap, benchmark::State& state) {
-  Simulator simulator(heap.config(heap.count, heap_seed, {}), UriResolver(sharedPackages()));
+  sim::Simulator simulator(heap.config(heap.count, heap_seed, {}), model::UriResolver(sharedPackages()));
   const std::unique_ptr<BulletHeap> bullet = makeBulletHeap(heap.scene(heap.count));
   Figures figures;
   for (auto _ : state) {
@@ -193,7 +193,7 @@ void addBesideBullet(const Heap& heap) {
 }
 
 /** [us] wall time per step, mean over a turn. */
-double meanOfTurn(Simulator* simulator, int steps) {
+double meanOfTurn(sim::Simulator* simulator, int steps) {
   const double start = wallSeconds();
   for (int i = 0; i < steps; ++i) simulator->step();
   return 1e6 * (wallSeconds() - start) / steps;
@@ -201,11 +201,11 @@ double meanOfTurn(Simulator* simulator, int steps) {
 
 /** The same heap on one thread and on two. */
 void compareThreads(int count, benchmark::State& state) {
-  std::unique_ptr<Simulator> simulators[2];
+  std::unique_ptr<sim::Simulator> simulators[2];
   for (const int threads : {1, 2}) {
-    SolverSettings solver;
+    dynamics::SolverSettings solver;
     solver.threads = threads;
-    simulators[threads - 1] = std::make_unique<Simulator>(heapInBin(count, heap_seed, solver), UriResolver(sharedPackages()));
+    simulators[threads - 1] = std::make_unique<sim::Simulator>(heapInBin(count, heap_seed, solver), model::UriResolver(sharedPackages()));
   }
   const int turns = static_cast<int>(std::lround(seconds_simulated / simulators[0]->config().time_step)) / TURN;
   double mean[2] = {};

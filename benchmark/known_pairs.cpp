@@ -7,17 +7,17 @@
 namespace blem_sim {
 namespace {
 
-using kernels::Candidate;
-using Candidates = CandidatePairs::Candidates;
+using contact::kernels::Candidate;
+using Candidates = contact::CandidatePairs::Candidates;
 
 constexpr int REPEATS = 50;
 
 /** The moving mesh is the one with fewer elements, as in the narrow phase. */
-MeshPair pairOf(const Collider& a, const Pose& X_WA, const Collider& standing) {
+contact::MeshPair pairOf(const contact::Collider& a, const Pose& X_WA, const contact::Collider& standing) {
   const bool a_moves = a.geometry->mesh().elements.size() <= standing.geometry->mesh().elements.size();
   const double layer = a.radius + standing.radius;
-  return {MeshSide(a_moves ? *a.geometry : *standing.geometry),
-          MeshSide(a_moves ? *standing.geometry : *a.geometry),
+  return {contact::MeshSide(a_moves ? *a.geometry : *standing.geometry),
+          contact::MeshSide(a_moves ? *standing.geometry : *a.geometry),
           a_moves ? X_WA : X_WA.inverse(),
           layer,
           layer,
@@ -28,18 +28,18 @@ MeshPair pairOf(const Collider& a, const Pose& X_WA, const Collider& standing) {
 /** Pairs of features that have a contact. Every pair is known once: a contact with a plane by one of its faces. */
 class KnownContacts {
  public:
-  KnownContacts(const std::vector<Contact>& plain, const ContactWriter& close) {
+  KnownContacts(const std::vector<contact::Contact>& plain, const contact::ContactWriter& close) {
     // The moving mesh is A.
-    for (const Contact& c : plain) unseen_.push_back(c.id);
-    for (const Contact& c : close) unseen_.push_back(c.id);
+    for (const contact::Contact& c : plain) unseen_.push_back(c.id);
+    for (const contact::Contact& c : close) unseen_.push_back(c.id);
     std::sort(unseen_.begin(), unseen_.end());
     unseen_.erase(std::unique(unseen_.begin(), unseen_.end()), unseen_.end());
     seen_.resize(unseen_.size());
   }
   /** Whether a pair is known, the first time that it is asked for; false from then on. */
-  bool take(const Feature& moving, const Feature& fixed) {
-    const auto at = std::lower_bound(unseen_.begin(), unseen_.end(), contactId(moving, fixed));
-    if (at == unseen_.end() || *at != contactId(moving, fixed) || seen_[at - unseen_.begin()]) return false;
+  bool take(const contact::Feature& moving, const contact::Feature& fixed) {
+    const auto at = std::lower_bound(unseen_.begin(), unseen_.end(), contact::contactId(moving, fixed));
+    if (at == unseen_.end() || *at != contact::contactId(moving, fixed) || seen_[at - unseen_.begin()]) return false;
     return seen_[at - unseen_.begin()] = true;
   }
 
@@ -50,12 +50,12 @@ class KnownContacts {
 
 /** Drops the records that no candidate names, so that they lie as close as they can; `indices` follow their records. */
 template <typename Record>
-void compact(const std::vector<std::uint32_t*>& indices, FeatureRecords<Record>* features,
-             std::vector<kernels::OpenSides>* open = nullptr) {
+void compact(const std::vector<std::uint32_t*>& indices, contact::FeatureRecords<Record>* features,
+             std::vector<contact::kernels::OpenSides>* open = nullptr) {
   constexpr std::uint32_t NOWHERE = 0xFFFFFFFF;
   std::vector<std::uint32_t> place(features->names.size(), NOWHERE);
-  FeatureRecords<Record> kept;
-  std::vector<kernels::OpenSides> kept_open;
+  contact::FeatureRecords<Record> kept;
+  std::vector<contact::kernels::OpenSides> kept_open;
   for (std::uint32_t* index : indices) {
     if (place[*index] == NOWHERE) {
       place[*index] = kept.add(features->records[*index], features->names[*index]);
@@ -70,14 +70,14 @@ void compact(const std::vector<std::uint32_t*>& indices, FeatureRecords<Record>*
 /** The pairs of features of two meshes that have a contact, and the kernels on them. */
 class KnownPairs {
  public:
-  KnownPairs(const MeshPair& pair, ContactSearchBuffers* buffers) : X_FM_(pair.X_FM), range_(pair.range) {
-    std::vector<Contact> plain;
-    FoundContacts found;
+  KnownPairs(const contact::MeshPair& pair, contact::ContactSearchBuffers* buffers) : X_FM_(pair.X_FM), range_(pair.range) {
+    std::vector<contact::Contact> plain;
+    contact::FoundContacts found;
     found.plain.overwrite(&plain);
-    searchContacts(pair, nullptr, buffers, &found);
+    contact::searchContacts(pair, nullptr, buffers, &found);
     found.plain.finish();
-    CandidateListing listing;
-    findCandidates(pair, CandidateKind::CONTACTS, {}, &buffers->search, &listing);
+    contact::CandidateListing listing;
+    contact::findCandidates(pair, contact::CandidateKind::CONTACTS, {}, &buffers->search, &listing);
     lists_ = std::move(listing.lists);
     dropUnknown(KnownContacts(plain, found.close.placed(pair)));
     compactFeatures();
@@ -94,12 +94,12 @@ class KnownPairs {
   std::uint32_t run() {
     if (size() == 0) return 0;
     turned_.turnForContacts(lists_, X_FM_);
-    const kernels::Kernels& k = kernels::kernels();
-    const CandidatePairs& pairs = lists_.pairs;
+    const contact::kernels::Kernels& k = contact::kernels::kernels();
+    const contact::CandidatePairs& pairs = lists_.pairs;
     const auto count = [](const Candidates& candidates) { return static_cast<std::uint32_t>(candidates.size()); };
-    const NearFeatures& fixed = lists_.near[0];
-    const kernels::Vec4 *moving_vertices = turned_.vertices.data(), *fixed_vertices = fixed.vertices.records.data();
-    const kernels::EdgeRecord *moving_edges = turned_.edges.data(), *fixed_edges = fixed.edges.records.data();
+    const contact::NearFeatures& fixed = lists_.near[0];
+    const contact::kernels::Vec4 *moving_vertices = turned_.vertices.data(), *fixed_vertices = fixed.vertices.records.data();
+    const contact::kernels::EdgeRecord *moving_edges = turned_.edges.data(), *fixed_edges = fixed.edges.records.data();
     std::uint32_t hits = 0;
     for (const bool moves : {true, false}) {
       const Candidates &faces = pairs.vertex_face[moves], &edges = pairs.vertex_edge[moves];
@@ -108,7 +108,7 @@ class KnownPairs {
       hits += k.vertexEdges(moves ? moving_vertices : fixed_vertices, moves ? fixed_edges : moving_edges, edges.data(), count(edges),
                             range_, vertex_edges_.data());
     }
-    kernels::LeftEdges left{edges_left_.data(), 0};
+    contact::kernels::LeftEdges left{edges_left_.data(), 0};
     hits +=
         k.edgeEdges(moving_edges, fixed_edges, pairs.edge_edge.data(), count(pairs.edge_edge), range_, nullptr, &left, edge_edges_.data());
     hits += left.count;
@@ -121,19 +121,21 @@ class KnownPairs {
   void dropUnknown(KnownContacts known) {
     const auto drop = [&](Candidates* candidates, auto&& feature_a, auto&& feature_b, bool a_moves) {
       const auto unknown = [&](const Candidate& c) {
-        const Feature a = feature_a(c.a), b = feature_b(c.b);
+        const contact::Feature a = feature_a(c.a), b = feature_b(c.b);
         return !(a_moves ? known.take(a, b) : known.take(b, a));
       };
       candidates->erase(std::remove_if(candidates->begin(), candidates->end(), unknown), candidates->end());
     };
     const auto vertexOf = [this](bool moves) {
-      return [this, moves](std::uint32_t i) { return Feature{FeatureKind::VERTEX, lists_.near[moves].vertices.names[i]}; };
+      return [this, moves](std::uint32_t i) {
+        return contact::Feature{contact::FeatureKind::VERTEX, lists_.near[moves].vertices.names[i]};
+      };
     };
     const auto edgeOf = [this](bool moves) {
-      return [this, moves](std::uint32_t i) { return Feature{FeatureKind::EDGE, lists_.near[moves].edges.names[i]}; };
+      return [this, moves](std::uint32_t i) { return contact::Feature{contact::FeatureKind::EDGE, lists_.near[moves].edges.names[i]}; };
     };
     const auto patchOf = [this](bool moves) {
-      return [this, moves](std::uint32_t i) { return Feature{FeatureKind::FACE, lists_.near[moves].patches[i]}; };
+      return [this, moves](std::uint32_t i) { return contact::Feature{contact::FeatureKind::FACE, lists_.near[moves].patches[i]}; };
     };
     for (const bool moves : {true, false}) {
       drop(&lists_.pairs.vertex_face[moves], vertexOf(moves), patchOf(!moves), moves);
@@ -144,7 +146,7 @@ class KnownPairs {
   }
 
   void compactFeatures() {
-    CandidatePairs& pairs = lists_.pairs;
+    contact::CandidatePairs& pairs = lists_.pairs;
     std::vector<std::uint32_t*> vertices[2], edges[2], faces[2];
     const auto note = [](Candidates* candidates, std::vector<std::uint32_t*>* as, std::vector<std::uint32_t*>* bs) {
       for (Candidate& c : *candidates) {
@@ -167,12 +169,12 @@ class KnownPairs {
 
   const Pose X_FM_;
   const double range_;
-  CandidateLists lists_;
-  TurnedFeatures turned_;
-  std::vector<kernels::VertexFaceHit> vertex_faces_;
-  std::vector<kernels::EdgeEdgeHit> edge_edges_;
+  contact::CandidateLists lists_;
+  contact::TurnedFeatures turned_;
+  std::vector<contact::kernels::VertexFaceHit> vertex_faces_;
+  std::vector<contact::kernels::EdgeEdgeHit> edge_edges_;
   Candidates edges_left_;
-  std::vector<kernels::VertexEdgeHit> vertex_edges_;
+  std::vector<contact::kernels::VertexEdgeHit> vertex_edges_;
   std::vector<std::uint32_t> others_;
 };
 
@@ -181,7 +183,7 @@ class KnownPairs {
 PairSearch runKernelsOnKnownPairs(const ContactScene& scene) {
   const std::vector<int> steps = sampledSteps();
   const double count = static_cast<double>(steps.size());
-  ContactSearchBuffers buffers;
+  contact::ContactSearchBuffers buffers;
   PairSearch out;
   for (const int step : steps) {
     std::vector<KnownPairs> pairs;

@@ -24,10 +24,10 @@ constexpr int CELLS = 708, REPETITIONS = 5;  // 1,002,528 triangles
 constexpr double SIZE = 3, NOISE = 2.5e-4;   // [m]
 
 /** An open grid with noise: nothing in it is flat, nothing has to be mended. */
-const TriangleMesh& terrain() {
-  static const TriangleMesh mesh = [] {
-    RandomShapes random(5);
-    TriangleMesh grid = gridMesh(SIZE, SIZE, CELLS, CELLS);
+const geometry::TriangleMesh& terrain() {
+  static const geometry::TriangleMesh mesh = [] {
+    geometry::RandomShapes random(5);
+    geometry::TriangleMesh grid = geometry::gridMesh(SIZE, SIZE, CELLS, CELLS);
     for (Vector3& v : grid.vertices) v.z() = random.uniform(-NOISE, NOISE);
     return grid;
   }();
@@ -35,9 +35,9 @@ const TriangleMesh& terrain() {
 }
 
 /** The same as an STL has it: every triangle with corners of its own. */
-const TriangleMesh& soup() {
-  static const TriangleMesh mesh = [] {
-    TriangleMesh soup;
+const geometry::TriangleMesh& soup() {
+  static const geometry::TriangleMesh mesh = [] {
+    geometry::TriangleMesh soup;
     for (const Vector3i& e : terrain().elements) {
       const int first = static_cast<int>(soup.vertices.size());
       for (int k = 0; k < 3; ++k) soup.vertices.push_back(terrain().vertices[e[k]]);
@@ -92,15 +92,15 @@ class TemporaryFile {
   std::string path_;
 };
 
-void weldTopologyTree(const TriangleMesh& given) {
-  const TriangleMesh mesh = cleanMesh(given, nullptr);
-  const MeshTopology topology(mesh);
-  const Bvh tree(mesh);
+void weldTopologyTree(const geometry::TriangleMesh& given) {
+  const geometry::TriangleMesh mesh = geometry::cleanMesh(given, nullptr);
+  const geometry::MeshTopology topology(mesh);
+  const geometry::Bvh tree(mesh);
   benchmark::DoNotOptimize(tree.nodes().data());
 }
 
 /** A table has the same columns in every row. @param kept null: nothing */
-void count(benchmark::State* state, std::size_t triangles, const CollisionGeometry* kept) {
+void count(benchmark::State* state, std::size_t triangles, const contact::CollisionGeometry* kept) {
   const auto perTriangle = [&](const char* part, std::size_t bytes) {
     state->counters[part] = kept ? static_cast<double>(bytes) / static_cast<double>(triangles) : std::numeric_limits<double>::quiet_NaN();
   };
@@ -132,29 +132,29 @@ void add(const std::string& name, std::function<void()> work) {
 
 void addFile(const std::string& name, const std::string& file) {
   add(name + "_to_ready", [file] {
-    const LoadedSurface surface = loadSurface(file);
-    CollisionGeometry(surface.mesh, surface.topology);
+    const model::LoadedSurface surface = model::loadSurface(file);
+    contact::CollisionGeometry(surface.mesh, surface.topology);
   });
-  add(name + "_read_and_mended", [file] { loadSurface(file); });
-  add(name + "_as_it_is", [file] { loadSurface(file, Vector3::Ones(), {}, Mending::OFF); });
+  add(name + "_read_and_mended", [file] { model::loadSurface(file); });
+  add(name + "_as_it_is", [file] { model::loadSurface(file, Vector3::Ones(), {}, model::Mending::OFF); });
 }
 
 /** Memory that stays after loading, per triangle, by parts. */
-void addMemory(const std::string& name, const std::function<TriangleMesh()>& surface) {
+void addMemory(const std::string& name, const std::function<geometry::TriangleMesh()>& surface) {
   benchmark::RegisterBenchmark(("loading/memory_" + name).c_str(),
                                [surface](benchmark::State& state) {
-                                 const auto mesh = std::make_shared<const TriangleMesh>(surface());
-                                 std::unique_ptr<CollisionGeometry> geometry;
-                                 for (auto _ : state) geometry = std::make_unique<CollisionGeometry>(mesh);
+                                 const auto mesh = std::make_shared<const geometry::TriangleMesh>(surface());
+                                 std::unique_ptr<contact::CollisionGeometry> geometry;
+                                 for (auto _ : state) geometry = std::make_unique<contact::CollisionGeometry>(mesh);
                                  count(&state, mesh->elements.size(), geometry.get());
                                })
       ->Unit(benchmark::kMillisecond)
       ->Iterations(1);
 }
 
-TriangleMesh roughBall() {
-  RandomShapes random(6);
-  TriangleMesh ball = icosphereMesh(1, 8);
+geometry::TriangleMesh roughBall() {
+  geometry::RandomShapes random(6);
+  geometry::TriangleMesh ball = geometry::icosphereMesh(1, 8);
   for (Vector3& v : ball.vertices) v *= 1 + random.uniform(-NOISE, NOISE);
   return ball;
 }
@@ -168,18 +168,18 @@ int main(int argc, char** argv) {
   const std::string ply = ply_file.path(), stl = stl_file.path();
   add("weld_topology_tree", [] { weldTopologyTree(terrain()); });
   add("weld_topology_tree_of_soup", [] { weldTopologyTree(soup()); });
-  add("weld", [] { cleanMesh(terrain(), nullptr); });
-  add("weld_soup", [] { cleanMesh(soup(), nullptr); });
-  add("mend", [] { mendMesh(terrain(), nullptr); });
-  add("topology", [] { MeshTopology topology(terrain()); });
-  add("tree", [] { Bvh tree(terrain()); });
-  add("collision_geometry", [] { CollisionGeometry(std::make_shared<const TriangleMesh>(terrain())); });
+  add("weld", [] { geometry::cleanMesh(terrain(), nullptr); });
+  add("weld_soup", [] { geometry::cleanMesh(soup(), nullptr); });
+  add("mend", [] { geometry::mendMesh(terrain(), nullptr); });
+  add("topology", [] { geometry::MeshTopology topology(terrain()); });
+  add("tree", [] { geometry::Bvh tree(terrain()); });
+  add("collision_geometry", [] { contact::CollisionGeometry(std::make_shared<const geometry::TriangleMesh>(terrain())); });
   addFile("ply", ply);
   addFile("stl", stl);
-  addMemory("terrain", [] { return cleanMesh(terrain(), nullptr); });
-  addMemory("ball", [] { return cleanMesh(roughBall(), nullptr); });
-  addMemory("gridded_box", [] { return cleanMesh(subdivided(boxMesh({1, 1, 1}), 8), nullptr); });
-  addMemory("ply", [ply] { return *loadSurface(ply).mesh; });
+  addMemory("terrain", [] { return geometry::cleanMesh(terrain(), nullptr); });
+  addMemory("ball", [] { return geometry::cleanMesh(roughBall(), nullptr); });
+  addMemory("gridded_box", [] { return geometry::cleanMesh(geometry::subdivided(geometry::boxMesh({1, 1, 1}), 8), nullptr); });
+  addMemory("ply", [ply] { return *model::loadSurface(ply).mesh; });
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
   benchmark::RunSpecifiedBenchmarks();

@@ -6,9 +6,9 @@
 namespace blem_sim {
 namespace {
 
-Box boxOf(const Triangle& t) { return Box(t[0].cwiseMin(t[1]).cwiseMin(t[2]), t[0].cwiseMax(t[1]).cwiseMax(t[2])); }
+Box boxOf(const geometry::Triangle& t) { return Box(t[0].cwiseMin(t[1]).cwiseMin(t[2]), t[0].cwiseMax(t[1]).cwiseMax(t[2])); }
 
-Triangle placed(const Pose& X, const Triangle& t) { return {X * t[0], X * t[1], X * t[2]}; }
+geometry::Triangle placed(const Pose& X, const geometry::Triangle& t) { return {X * t[0], X * t[1], X * t[2]}; }
 
 Box placed(const Pose& X, const Eigen::Matrix3d& of_half, const Box& box) {
   const Vector3 half = of_half * (0.5 * box.sizes()), centre = X * box.center();
@@ -21,7 +21,7 @@ bool within(const Box& a, const Box& b, double range) {
 }
 
 /** Whether a triangle lies on one side of another's plane, farther than `range` [m] from it. */
-bool beyondPlane(const Triangle& t, const Triangle& plane, double range) {
+bool beyondPlane(const geometry::Triangle& t, const geometry::Triangle& plane, double range) {
   const Vector3 normal = (plane[1] - plane[0]).cross(plane[2] - plane[0]);
   const double a = normal.dot(t[0] - plane[0]), b = normal.dot(t[1] - plane[0]), c = normal.dot(t[2] - plane[0]);
   const double gap = std::max(std::min({a, b, c}), -std::max({a, b, c}));
@@ -30,16 +30,16 @@ bool beyondPlane(const Triangle& t, const Triangle& plane, double range) {
 
 }  // namespace
 
-PlainTree::PlainTree(const TriangleMesh& mesh) : order_(mesh.elements.size()) {
+PlainTree::PlainTree(const geometry::TriangleMesh& mesh) : order_(mesh.elements.size()) {
   std::iota(order_.begin(), order_.end(), 0);
   std::vector<Box> boxes;
-  for (std::size_t i = 0; i < mesh.elements.size(); ++i) boxes.push_back(boxOf(triangleOf(mesh, i)));
+  for (std::size_t i = 0; i < mesh.elements.size(); ++i) boxes.push_back(boxOf(geometry::triangleOf(mesh, i)));
   nodes_.reserve(2 * order_.size());
   build(0, static_cast<int>(order_.size()), mesh, boxes);
-  for (const int i : order_) triangles_.push_back(triangleOf(mesh, i));
+  for (const int i : order_) triangles_.push_back(geometry::triangleOf(mesh, i));
 }
 
-void PlainTree::build(int first, int count, const TriangleMesh& mesh, const std::vector<Box>& boxes) {
+void PlainTree::build(int first, int count, const geometry::TriangleMesh& mesh, const std::vector<Box>& boxes) {
   const std::size_t index = nodes_.size();
   nodes_.emplace_back();
   for (int i = first; i < first + count; ++i) nodes_[index].box.extend(boxes[order_[i]]);
@@ -72,9 +72,9 @@ void PlainTree::trianglePairs(const PlainTree& a, const PlainTree& b, const Pose
       stack.emplace_back(i, n.right);
       stack.emplace_back(i, j + 1);
     } else {
-      const Triangle t = placed(X_BA, a.triangles_[m.triangle]), &u = b.triangles_[n.triangle];
+      const geometry::Triangle t = placed(X_BA, a.triangles_[m.triangle]), &u = b.triangles_[n.triangle];
       if (within(boxOf(t), n.box, range) && !beyondPlane(t, u, range) && !beyondPlane(u, t, range) &&
-          closestTriangleTriangle(t, u).distance <= range)
+          geometry::closestTriangleTriangle(t, u).distance <= range)
         pairs->emplace_back(a.order_[m.triangle], b.order_[n.triangle]);
     }
   }

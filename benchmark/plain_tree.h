@@ -12,7 +12,7 @@ namespace blem_sim {
 /** Binary tree of axis-aligned boxes over the triangles of a mesh: halves at the median of the longest axis, one triangle a leaf. */
 class PlainTree {
  public:
-  explicit PlainTree(const TriangleMesh& mesh);
+  explicit PlainTree(const geometry::TriangleMesh& mesh);
 
   /**
    * Lists the pairs of triangles within `range` [m] of each other, exact distances in double.
@@ -29,10 +29,10 @@ class PlainTree {
     int triangle = 0;  ///< of a leaf: place in triangles_ and order_
     double size() const { return box.sizes().sum(); }
   };
-  void build(int first, int count, const TriangleMesh& mesh, const std::vector<Box>& boxes);
+  void build(int first, int count, const geometry::TriangleMesh& mesh, const std::vector<Box>& boxes);
 
-  std::vector<int> order_;           ///< element of the mesh by place
-  std::vector<Triangle> triangles_;  ///< corners by place
+  std::vector<int> order_;                     ///< element of the mesh by place
+  std::vector<geometry::Triangle> triangles_;  ///< corners by place
   std::vector<Node> nodes_;
 };
 

@@ -30,15 +30,15 @@ constexpr double MOTION = 1e-5;                      // [m] from step to step
 
 struct Patch {
   const char* name;
-  Contacts (*make)(int count);
+  reduction::Contacts (*make)(int count);
 };
 
-std::vector<Contacts> stepsOf(const Contacts& contacts) {
-  std::vector<Contacts> steps(STEPS, contacts);
-  Noise noise(5);
-  for (Contacts& step : steps) {
+std::vector<reduction::Contacts> stepsOf(const reduction::Contacts& contacts) {
+  std::vector<reduction::Contacts> steps(STEPS, contacts);
+  reduction::Noise noise(5);
+  for (reduction::Contacts& step : steps) {
     const Vector3 shift = MOTION * Vector3(noise(), noise(), noise());
-    for (Contact& contact : step) {
+    for (contact::Contact& contact : step) {
       contact.point += shift;
       contact.depth -= shift.dot(contact.normal_BA);
     }
@@ -46,38 +46,38 @@ std::vector<Contacts> stepsOf(const Contacts& contacts) {
   return steps;
 }
 
-Contacts touching(const Contacts& contacts) {
-  Contacts touching;
-  for (const Contact& contact : contacts) {
+reduction::Contacts touching(const reduction::Contacts& contacts) {
+  reduction::Contacts touching;
+  for (const contact::Contact& contact : contacts) {
     if (contact.depth >= 0) touching.push_back(contact);
   }
   return touching;
 }
 
 void run(benchmark::State& state, const Patch& patch, int count, int k) {
-  const std::vector<Contacts> steps = stepsOf(patch.make(count));
-  Contacts reduced;
-  ContactIds before;
+  const std::vector<reduction::Contacts> steps = stepsOf(patch.make(count));
+  reduction::Contacts reduced;
+  reduction::ContactIds before;
   std::vector<double> times;
   long allocated = 0;
   for (auto _ : state) {
     for (int call = -WARM_UP; call < CALLS; ++call) {
-      const Contacts& contacts = steps[(call + WARM_UP) % STEPS];
+      const reduction::Contacts& contacts = steps[(call + WARM_UP) % STEPS];
       const long allocated_before = allocations;
       const double start = threadSeconds();
-      reduceHull(contacts, k, before, &reduced);
+      reduction::reduceHull(contacts, k, before, &reduced);
       const double time = threadSeconds() - start;
       allocated += call >= 0 ? allocations - allocated_before : 0;
       if (call >= 0) times.push_back(time);
       before.clear();
-      for (const Contact& contact : reduced) before.push_back(contact.id);
+      for (const contact::Contact& contact : reduced) before.push_back(contact.id);
       std::sort(before.begin(), before.end());
     }
     std::sort(times.begin(), times.end());
     state.SetIterationTime(times[times.size() / 2]);
   }
-  reduceHull(steps[0], k, {}, &reduced);
-  const SupportError error = supportError(touching(steps[0]), reduced);
+  reduction::reduceHull(steps[0], k, {}, &reduced);
+  const reduction::SupportError error = reduction::supportError(touching(steps[0]), reduced);
   state.counters["min_us"] = 1e6 * times[0];
   state.counters["kept"] = static_cast<double>(reduced.size());
   state.counters["mean_error_%"] = 100 * error.mean;
@@ -86,11 +86,11 @@ void run(benchmark::State& state, const Patch& patch, int count, int k) {
 }
 
 const Patch PATCHES[] = {
-    {"noisy", [](int count) { return noisyPatch(count); }},
-    {"wall", [](int count) { return wallPatch(count); }},
+    {"noisy", [](int count) { return reduction::noisyPatch(count); }},
+    {"wall", [](int count) { return reduction::wallPatch(count); }},
     {"flat",
      [](int count) {
-       return flatPatch(count, {0.3, -0.2, 1}, {0.5, 0.7, 0.1});
+       return reduction::flatPatch(count, {0.3, -0.2, 1}, {0.5, 0.7, 0.1});
      }},
 };
 

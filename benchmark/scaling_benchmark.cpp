@@ -98,16 +98,17 @@ using MakeScene = std::unique_ptr<ContactScene> (*)(int size);
 
 /** [us] per call: the contacts of one pair to k, step after step. */
 double reductionTime(const ContactScene& scene, int k) {
-  std::vector<Contact> reduced;
+  std::vector<contact::Contact> reduced;
   std::vector<std::uint64_t> before;
   double total = 0;
   for (int step = -1; step < STEPS; ++step) {
-    const ContactManifold manifold = contactsOf(scene.moving[0], scene.pose(0, step), scene.standing, Pose::Identity(), 0);
+    const contact::ContactManifold manifold =
+        contact::contactsOf(scene.moving[0], scene.pose(0, step), scene.standing, Pose::Identity(), 0);
     const double start = threadSeconds();
-    reduceHull(manifold.contacts, k, before, &reduced);
+    reduction::reduceHull(manifold.contacts, k, before, &reduced);
     if (step >= 0) total += threadSeconds() - start;
     before.clear();
-    for (const Contact& contact : reduced) before.push_back(contact.id);
+    for (const contact::Contact& contact : reduced) before.push_back(contact.id);
     std::sort(before.begin(), before.end());
   }
   return 1e6 * total / STEPS;
@@ -149,28 +150,28 @@ Curve contacts() {
 // ---- whole steps
 
 /** @param clock [s] that the step is timed by; its stages are wall time */
-Point wholeStep(const std::string& name, int size, const SimulationConfig& config, double (*clock)()) {
+Point wholeStep(const std::string& name, int size, const sim::SimulationConfig& config, double (*clock)()) {
   return {name + std::to_string(size), static_cast<double>(size), [=]() -> std::function<Sample()> {
             // Fewer steps of a large scene say as much.
             const int warm_up = size < MANY ? 400 : 150, steps = size < MANY ? STEPS : 20;
-            const auto simulator = std::make_shared<Simulator>(config, UriResolver(sharedPackages()));
+            const auto simulator = std::make_shared<sim::Simulator>(config, model::UriResolver(sharedPackages()));
             for (int i = 0; i < warm_up; ++i) simulator->step();
             return [simulator, clock, steps] {
-              StepProfile profile;
+              sim::StepProfile profile;
               double contacts = 0;
               const double start = clock();
               for (int i = 0; i < steps; ++i) {
-                const StepReport& report = simulator->step();
+                const sim::StepReport& report = simulator->step();
                 for (std::size_t s = 0; s < profile.seconds.size(); ++s) profile.seconds[s] += report.profile.seconds[s];
                 contacts += report.raw_contacts;
               }
-              const auto mean = [&](Stage stage) { return 1e6 * profile.seconds[static_cast<int>(stage)] / steps; };
+              const auto mean = [&](sim::Stage stage) { return 1e6 * profile.seconds[static_cast<int>(stage)] / steps; };
               Sample sample;
               sample.mean = 1e6 * (clock() - start) / steps;
               sample.contacts = contacts / steps;
-              sample.narrow_phase = mean(Stage::NARROW_PHASE);
-              sample.reduction = mean(Stage::REDUCTION);
-              sample.solve = mean(Stage::SOLVE);
+              sample.narrow_phase = mean(sim::Stage::NARROW_PHASE);
+              sample.reduction = mean(sim::Stage::REDUCTION);
+              sample.solve = mean(sim::Stage::SOLVE);
               return sample;
             };
           }};

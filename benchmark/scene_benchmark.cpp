@@ -23,26 +23,26 @@ constexpr double LONGEST = 60;  // [s] of processor time that the timed steps of
 /** A scene and the number of its timed steps. */
 struct Scene {
   std::string name;
-  std::function<SimulationConfig()> config;
+  std::function<sim::SimulationConfig()> config;
   int warm_up, timed;      // [steps]
   std::string trajectory;  // file for the first robot, or none
 };
 
-SimulationConfig stackOfCubes(int cubes) {
-  SimulationConfig config;
-  config.environments = {ground()};
+sim::SimulationConfig stackOfCubes(int cubes) {
+  sim::SimulationConfig config;
+  config.environments = {sim::ground()};
   const double layers = 0.0025 + 0.0025;
   for (int i = 0; i < cubes; ++i)
     config.objects.push_back(
-        box("cube" + std::to_string(i), Vector3::Constant(0.1), 1, Vector3(0, 0, 0.05 + (i + 1) * layers + i * 0.1 + 0.01 * (i + 1))));
+        sim::box("cube" + std::to_string(i), Vector3::Constant(0.1), 1, Vector3(0, 0, 0.05 + (i + 1) * layers + i * 0.1 + 0.01 * (i + 1))));
   return config;
 }
 
 /** Sums over the timed steps. */
 struct Totals {
-  StepProfile profile;
+  sim::StepProfile profile;
   double raw = 0, reduced = 0, pairs = 0, substeps = 0, redone = 0, iterations = 0, unreliable = 0;
-  void add(const StepReport& report) {
+  void add(const sim::StepReport& report) {
     for (std::size_t s = 0; s < profile.seconds.size(); ++s) profile.seconds[s] += report.profile.seconds[s];
     raw += report.raw_contacts;
     reduced += report.reduced_contacts;
@@ -50,7 +50,7 @@ struct Totals {
     substeps += report.substeps;
     redone += report.redone_solves;
     iterations += report.solver_iterations;
-    unreliable += report.status & CONTACT_UNRELIABLE ? 1 : 0;
+    unreliable += report.status & sim::CONTACT_UNRELIABLE ? 1 : 0;
   }
 };
 
@@ -61,8 +61,8 @@ void count(const StepTimes& times, const Totals& totals, int steps, double secon
   counters["mean_us"] = 1e6 * seconds / steps;
   counters["p99_us"] = times.quantile(0.99);
   counters["max_us"] = times.worst();
-  for (std::size_t s = 0; s < STAGE_NAMES.size(); ++s)
-    counters[std::string(STAGE_NAMES[s]) + "_us"] = 1e6 * totals.profile.seconds[s] / steps;
+  for (std::size_t s = 0; s < sim::STAGE_NAMES.size(); ++s)
+    counters[std::string(sim::STAGE_NAMES[s]) + "_us"] = 1e6 * totals.profile.seconds[s] / steps;
   counters["raw_contacts"] = totals.raw / steps;
   counters["reduced_contacts"] = totals.reduced / steps;
   counters["pairs"] = totals.pairs / steps;
@@ -73,10 +73,10 @@ void count(const StepTimes& times, const Totals& totals, int steps, double secon
 }
 
 void run(const Scene& scene, benchmark::State& state) {
-  Simulator simulator(scene.config(), UriResolver(sharedPackages()));
+  sim::Simulator simulator(scene.config(), model::UriResolver(sharedPackages()));
   std::vector<std::string> ignored;
   if (!scene.trajectory.empty())
-    simulator.commandTrajectory(0, loadTrajectoryCsv(scene.trajectory, simulator.robots()[0].joint_names, &ignored));
+    simulator.commandTrajectory(0, sim::loadTrajectoryCsv(scene.trajectory, simulator.robots()[0].joint_names, &ignored));
   for (int i = 0; i < scene.warm_up; ++i) simulator.step();
   StepTimes times;
   Totals totals;
@@ -85,7 +85,7 @@ void run(const Scene& scene, benchmark::State& state) {
   for (auto _ : state) {
     for (; steps < scene.timed && threadSeconds() - start < LONGEST; ++steps) {
       times.start();
-      const StepReport& report = simulator.step();
+      const sim::StepReport& report = simulator.step();
       times.stop();
       totals.add(report);
     }
@@ -114,7 +114,7 @@ void add(const Scene& scene) {
 void addPrepared(const std::filesystem::path& folder, const std::string& name, int warm_up, int timed) {
   const std::string config = (folder / (name + ".yaml")).string(), trajectory = (folder / (name + ".csv")).string();
   if (!std::filesystem::exists(config)) return;
-  add({name, [config] { return loadConfigFile(config); }, warm_up, timed, std::filesystem::exists(trajectory) ? trajectory : ""});
+  add({name, [config] { return sim::loadConfigFile(config); }, warm_up, timed, std::filesystem::exists(trajectory) ? trajectory : ""});
 }
 
 }  // namespace
@@ -131,7 +131,7 @@ int main(int argc, char** argv) {
   const auto cubes_on_scan = [](const Vector3& offset) { return cubesOnSurveyedScan("benchmark", offset, 100, 9); };
   add({"scan/at_the_origin", [&] { return cubes_on_scan(Vector3::Zero()); }, 100, 3000, ""});
   add({"scan/surveyed", [&] { return cubes_on_scan(EASTING_NORTHING); }, 100, 3000, ""});
-  add({"scan/surveyed_world", [&] { return movedTo(EASTING_NORTHING, cubes_on_scan(EASTING_NORTHING)); }, 100, 3000, ""});
+  add({"scan/surveyed_world", [&] { return model::movedTo(EASTING_NORTHING, cubes_on_scan(EASTING_NORTHING)); }, 100, 3000, ""});
   if (argc == 2) {
     addPrepared(argv[1], "hubo_plane", 500, 2000);
     addPrepared(argv[1], "hubo_plane_sway", 500, 2000);

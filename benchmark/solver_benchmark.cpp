@@ -16,8 +16,8 @@ namespace {
 constexpr int SETTLE_STEPS = 1500, WARM_UP_STEPS = 20;
 constexpr int STEPS = 10000, SLOW_STEPS = 200;  // timed; the second for world_step
 
-SolverSettings stepper(const std::string& name) {
-  SolverSettings settings;
+dynamics::SolverSettings stepper(const std::string& name) {
+  dynamics::SolverSettings settings;
   settings.stepper = name;
   return settings;
 }
@@ -83,23 +83,23 @@ StepTimes sway(const std::string& name) {
 
 StepTimes stack(const std::string& name) {
   const Vector3 cube(0.1, 0.1, 0.1);
-  World world(Vector3(0, 0, -9.81), stepper(name));
-  for (int i = 0; i < 10; ++i) world.addBody(boxBody("cube", 1, cube, {0, 0, 0.05 + 0.1 * i}));
-  std::vector<ContactConstraint> contacts;
+  dynamics::World world(Vector3(0, 0, -9.81), stepper(name));
+  for (int i = 0; i < 10; ++i) world.addBody(dynamics::boxBody("cube", 1, cube, {0, 0, 0.05 + 0.1 * i}));
+  std::vector<dynamics::ContactConstraint> contacts;
   const auto prepare = [&] {
     contacts.clear();
-    boxOnPlane(world, 0, cube, Vector3::UnitZ(), 0, {}, &contacts);
-    for (int i = 1; i < 10; ++i) boxOnBox(world, i, cube, i - 1, cube, {}, &contacts);
+    dynamics::boxOnPlane(world, 0, cube, Vector3::UnitZ(), 0, {}, &contacts);
+    for (int i = 1; i < 10; ++i) dynamics::boxOnBox(world, i, cube, i - 1, cube, {}, &contacts);
   };
   return timed(stepsFor(name), prepare, [&] { return world.step(1e-3, contacts, {}).finite; });
 }
 
 /** Contacts of meshes included. */
 StepTimes heap(const std::string& name) {
-  Simulator simulator(heapOfCubes(1, stepper(name)), UriResolver());
+  sim::Simulator simulator(heapOfCubes(1, stepper(name)), model::UriResolver());
   const int steps = name == "world_step" ? 1000 : 3000;
   return timed(
-      steps, [] {}, [&] { return !(simulator.step().status & STATE_NOT_FINITE); });
+      steps, [] {}, [&] { return !(simulator.step().status & sim::STATE_NOT_FINITE); });
 }
 
 std::map<std::string, StepTimes>& results() {

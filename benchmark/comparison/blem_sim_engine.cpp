@@ -8,7 +8,7 @@
 namespace blem_sim {
 namespace {
 
-std::string written(const std::string& name, const TriangleMesh& mesh) {
+std::string written(const std::string& name, const geometry::TriangleMesh& mesh) {
   const std::string file = (std::filesystem::temp_directory_path() / ("blem_sim_comparison_" + name + ".off")).string();
   std::ofstream out(file);
   out << std::setprecision(17) << "OFF\n" << mesh.vertices.size() << " " << mesh.elements.size() << " 0\n";
@@ -19,13 +19,13 @@ std::string written(const std::string& name, const TriangleMesh& mesh) {
 
 class BlemSim : public Engine {
  public:
-  BlemSim(const StackScene& scene, const std::string& stepper) : simulator_(configOf(scene, stepper), UriResolver()) {}
+  BlemSim(const StackScene& scene, const std::string& stepper) : simulator_(node::configOf(scene, stepper), model::UriResolver()) {}
   void step() override { simulator_.step(); }
   std::vector<CubeState> cubes() const override {
     std::vector<CubeState> states;
-    for (const ObjectConfig& object : simulator_.config().objects) {
+    for (const sim::ObjectConfig& object : simulator_.config().objects) {
       const int body = simulator_.models()[simulator_.modelIndex(object.name)].bodies[0];
-      const BodyState& state = simulator_.report().bodies[body];
+      const dynamics::BodyState& state = simulator_.report().bodies[body];
       states.push_back({state.X_WB.translation(), state.v_WCom});
     }
     return states;
@@ -35,19 +35,19 @@ class BlemSim : public Engine {
  private:
   static constexpr double LAYER = 0.0025;
 
-  static SimulationConfig configOf(const StackScene& scene, const std::string& stepper) {
-    SimulationConfig config;
+  static sim::SimulationConfig configOf(const StackScene& scene, const std::string& stepper) {
+    sim::SimulationConfig config;
     config.solver.stepper = stepper;
     config.time_step = scene.time_step;
     config.contact.boundary_width = LAYER;
     config.contact.surface.friction = scene.friction;
-    EnvironmentConfig ground;
+    sim::EnvironmentConfig ground;
     ground.name = "ground";
     ground.uri = written("ground", scene.ground);
     config.environments = {ground};
     const double size = scene.cube.bounds().sizes().z();
     for (int i = 0; i < scene.cubes; ++i) {
-      ObjectConfig cube;
+      sim::ObjectConfig cube;
       cube.name = "cube" + std::to_string(i);
       cube.uri = written("cube", scene.cube);
       cube.mass = scene.mass;
@@ -57,7 +57,7 @@ class BlemSim : public Engine {
     return config;
   }
 
-  Simulator simulator_;
+  sim::Simulator simulator_;
 };
 
 }  // namespace

@@ -81,8 +81,8 @@ int main(int argc, char** argv) {
     return 2;
   }
   StackScene scene;
-  scene.cube = boxMesh(Vector3::Constant(0.1));
-  scene.ground = gridMesh(4, 4, 1, 1);
+  scene.cube = geometry::boxMesh(Vector3::Constant(0.1));
+  scene.ground = geometry::gridMesh(4, 4, 1, 1);
   for (const int cubes : {3, 10}) {
     scene.cubes = cubes;
     for (const EngineRow& row : ENGINES) print(row, scene, seconds, run(row, scene, seconds));

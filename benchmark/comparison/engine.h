@@ -11,7 +11,7 @@ namespace blem_sim {
 
 /** Cubes on a ground of two triangles, all as meshes, nothing asleep. Units m, kg, s; gravity 9.81 along -z. */
 struct StackScene {
-  TriangleMesh cube, ground;
+  geometry::TriangleMesh cube, ground;
   double mass = 1, friction = 0.5, time_step = 0.001;
   double gap = 0.01;  ///< [m] of air below each cube at the start
   int cubes = 3;

@@ -14,7 +14,7 @@ inline btVector3 toBullet(const Vector3& v) {
 }
 
 /** A mesh for Bullet, which must outlive the shapes made of it. */
-inline std::unique_ptr<btTriangleMesh> bulletMesh(const TriangleMesh& mesh) {
+inline std::unique_ptr<btTriangleMesh> bulletMesh(const geometry::TriangleMesh& mesh) {
   auto out = std::make_unique<btTriangleMesh>();
   for (const Vector3i& e : mesh.elements)
     out->addTriangle(toBullet(mesh.vertices[e[0]]), toBullet(mesh.vertices[e[1]]), toBullet(mesh.vertices[e[2]]));

@@ -9,7 +9,7 @@ namespace blem_sim {
 namespace {
 
 struct BulletBody {
-  BulletBody(const Collider& collider) : mesh(bulletMesh(collider.geometry->mesh())), shape(mesh.get()) {
+  BulletBody(const contact::Collider& collider) : mesh(bulletMesh(collider.geometry->mesh())), shape(mesh.get()) {
     shape.setMargin(static_cast<btScalar>(collider.radius));
     shape.updateBound();
     object.setCollisionShape(&shape);
@@ -34,7 +34,7 @@ class BulletPeer : public Peer {
  public:
   explicit BulletPeer(const ContactScene& scene) : dispatcher_(&configuration_), standing_(scene.standing) {
     btGImpactCollisionAlgorithm::registerAlgorithm(&dispatcher_);
-    for (const Collider& collider : scene.moving) moving_.push_back(std::make_unique<BulletBody>(collider));
+    for (const contact::Collider& collider : scene.moving) moving_.push_back(std::make_unique<BulletBody>(collider));
   }
   std::size_t query(std::size_t collider, const Pose& X) override {
     const Matrix3 R = X.linear();

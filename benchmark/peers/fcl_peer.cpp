@@ -10,7 +10,7 @@ namespace {
 
 using FclMesh = fcl::BVHModel<fcl::OBBRSSd>;
 
-std::shared_ptr<FclMesh> fclMesh(const TriangleMesh& mesh) {
+std::shared_ptr<FclMesh> fclMesh(const geometry::TriangleMesh& mesh) {
   std::vector<fcl::Triangle> triangles;
   for (const Vector3i& e : mesh.elements)
     triangles.emplace_back(static_cast<std::size_t>(e[0]), static_cast<std::size_t>(e[1]), static_cast<std::size_t>(e[2]));
@@ -24,7 +24,7 @@ std::shared_ptr<FclMesh> fclMesh(const TriangleMesh& mesh) {
 class FclPeer : public Peer {
  public:
   explicit FclPeer(const ContactScene& scene) : standing_(fclMesh(scene.standing.geometry->mesh())) {
-    for (const Collider& collider : scene.moving) moving_.push_back(fclMesh(collider.geometry->mesh()));
+    for (const contact::Collider& collider : scene.moving) moving_.push_back(fclMesh(collider.geometry->mesh()));
   }
 
  protected:

@@ -11,7 +11,7 @@ namespace blem_sim {
 
 /** A mesh for ODE, which must outlive the geoms made of it. */
 struct OdeMesh {
-  explicit OdeMesh(const TriangleMesh& mesh) : data(dGeomTriMeshDataCreate()) {
+  explicit OdeMesh(const geometry::TriangleMesh& mesh) : data(dGeomTriMeshDataCreate()) {
     for (const Vector3& v : mesh.vertices) vertices.insert(vertices.end(), {v.x(), v.y(), v.z()});
     for (const Vector3i& e : mesh.elements)
       for (int k = 0; k < 3; ++k) indices.push_back(static_cast<dTriIndex>(e[k]));

@@ -9,7 +9,7 @@ class OdePeer : public Peer {
  public:
   explicit OdePeer(const ContactScene& scene) : standing_(scene.standing.geometry->mesh()), contacts_(MOST) {
     standing_geom_ = dCreateTriMesh(nullptr, standing_.data, nullptr, nullptr, nullptr);
-    for (const Collider& collider : scene.moving) {
+    for (const contact::Collider& collider : scene.moving) {
       moving_.push_back(std::make_unique<OdeMesh>(collider.geometry->mesh()));
       geoms_.push_back(dCreateTriMesh(nullptr, moving_.back()->data, nullptr, nullptr, nullptr));
     }

@@ -5,7 +5,7 @@
 #include <iterator>
 #include <tuple>
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 constexpr std::size_t SWEPT_AT_ONCE = 64;  // boxes: so few need no cells
@@ -278,4 +278,4 @@ const std::vector<ColliderPair>& BroadPhase::find(const std::vector<Collider>& c
   return pairs_;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

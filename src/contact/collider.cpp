@@ -8,7 +8,7 @@
 #include "blem_sim/geometry/input_error.h"
 #include "kernels/kernels.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 double combinedFriction(double a, double b, FrictionRule rule) {
@@ -41,12 +41,13 @@ SurfaceProperties combineSurfaces(const SurfaceProperties& a, const SurfacePrope
   return pair;
 }
 
-CollisionGeometry::CollisionGeometry(std::shared_ptr<const TriangleMesh> mesh, std::shared_ptr<const MeshTopology> topology)
+CollisionGeometry::CollisionGeometry(std::shared_ptr<const geometry::TriangleMesh> mesh,
+                                     std::shared_ptr<const geometry::MeshTopology> topology)
     : mesh_(std::move(mesh)), topology_(std::move(topology)) {
   if (!mesh_ || mesh_->elements.empty()) throw InputError("collision geometry: the mesh has no element; leave the collider out");
   kernels::kernels();  // bad settings are told here, not in a step
-  if (!topology_) topology_ = std::make_shared<const MeshTopology>(*mesh_);
-  bvh_ = Bvh(*mesh_, kernels::MAX_LEAF_ELEMENTS);
+  if (!topology_) topology_ = std::make_shared<const geometry::MeshTopology>(*mesh_);
+  bvh_ = geometry::Bvh(*mesh_, kernels::MAX_LEAF_ELEMENTS);
   static std::atomic<std::uint64_t> last_identity{0};
   identity_ = ++last_identity;
   findOwners();
@@ -55,7 +56,7 @@ CollisionGeometry::CollisionGeometry(std::shared_ptr<const TriangleMesh> mesh, s
 
 // Children lie behind their parents.
 void CollisionGeometry::findOwners() {
-  const std::vector<Bvh::Node>& nodes = bvh_.nodes();
+  const std::vector<geometry::Bvh::Node>& nodes = bvh_.nodes();
   owners_.assign(nodes.size(), 0);
   for (std::size_t n = nodes.size(); n-- > 0;) {
     if (!nodes[n].isLeaf()) {
@@ -86,4 +87,4 @@ std::shared_ptr<const CollisionGeometry> CollisionGeometry::halfSpace(const Vect
   return geometry;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

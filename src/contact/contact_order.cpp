@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 namespace {
 
@@ -59,4 +59,4 @@ void sortCanonically(const std::vector<Contact>& contacts, std::vector<int>* ind
   for (std::size_t i = 0; i < keys.size(); ++i) (*indices)[i] = keys[i].index;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 double ContactManifold::maxDepth() const {
   // Several maxima at once: one alone would wait for the last comparison.
@@ -17,4 +17,4 @@ double ContactManifold::maxDepth() const {
   return *std::max_element(deepest, deepest + CHAINS);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -8,7 +8,7 @@
 #include "merging/merge_contacts.h"
 #include "search/contact_search.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 // Copies at one place have bounds that agree within the first of these parts of their diagonal; moved by the second, they cross.
@@ -96,8 +96,8 @@ void meshHalfSpace(const Collider& mesh, const Pose& X_WM, const Collider& half_
   Buffers& buffers = threadBuffers();
   std::vector<Contact>& found = buffers.below_plane;
   found.clear();
-  visitLeavesBelowPlane(side.bvh, normal, offset, range, [&](std::uint32_t leaf) {
-    const Bvh::Node& node = side.bvh.nodes()[leaf];
+  geometry::visitLeavesBelowPlane(side.bvh, normal, offset, range, [&](std::uint32_t leaf) {
+    const geometry::Bvh::Node& node = side.bvh.nodes()[leaf];
     for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
       const int element = static_cast<int>(side.bvh.order()[i]);
       for (int k = 0; k < 3; ++k) {
@@ -146,4 +146,4 @@ void narrowPhase(const Collider& a, const Pose& X_WA, const Collider& b, const P
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

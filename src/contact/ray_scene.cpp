@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 constexpr double INFINITE = std::numeric_limits<double>::infinity();
@@ -20,7 +20,7 @@ Box worldBox(const RayTarget& target) {
 }  // namespace
 
 RayScene::RayScene(std::vector<RayTarget> targets) : targets_(std::move(targets)) {
-  TriangleMesh diagonals;
+  geometry::TriangleMesh diagonals;
   for (std::size_t i = 0; i < targets_.size(); ++i) {
     X_CW_.push_back(targets_[i].X_WC.inverse());
     if (targets_[i].geometry->isHalfSpace()) {
@@ -33,33 +33,33 @@ RayScene::RayScene(std::vector<RayTarget> targets) : targets_(std::move(targets)
       bounded_.push_back(static_cast<int>(i));
     }
   }
-  boxes_ = Bvh(diagonals, 1);
+  boxes_ = geometry::Bvh(diagonals, 1);
 }
 
-double RayScene::hit(int target, const Ray& ray, const RayRange& range) const {
+double RayScene::hit(int target, const geometry::Ray& ray, const geometry::RayRange& range) const {
   const CollisionGeometry& geometry = *targets_[target].geometry;
-  const Ray ray_C{X_CW_[target] * ray.origin, X_CW_[target].linear() * ray.direction};
-  if (!geometry.isHalfSpace()) return castRay({geometry.bvh(), geometry.mesh(), targets_[target].radius}, ray_C, range).t;
+  const geometry::Ray ray_C{X_CW_[target] * ray.origin, X_CW_[target].linear() * ray.direction};
+  if (!geometry.isHalfSpace()) return geometry::castRay({geometry.bvh(), geometry.mesh(), targets_[target].radius}, ray_C, range).t;
   const double fall = geometry.planeNormal().dot(ray_C.direction);
   const double t = (geometry.planeOffset() - geometry.planeNormal().dot(ray_C.origin)) / fall;
   return fall != 0 && t >= range.nearest && t <= range.farthest ? t : INFINITE;
 }
 
-void RayScene::add(int target, const Ray& ray, const Query& query, Hit* first) const {
+void RayScene::add(int target, const geometry::Ray& ray, const Query& query, Hit* first) const {
   const bool own = targets_[target].model == query.own_model && query.own_model >= 0;
   const double t = hit(target, ray, {own ? query.own_nearest : 0, first->t});
   if (t == INFINITE || t > first->t) return;
   if (t < first->t || first->target < 0 || target < first->target) *first = {t, target};
 }
 
-RayScene::Hit RayScene::firstHit(const Ray& ray, const Query& query) const {
+RayScene::Hit RayScene::firstHit(const geometry::Ray& ray, const Query& query) const {
   Hit first{query.farthest, -1};
   for (const int target : unbounded_) add(target, ray, query, &first);
-  visitLeavesAlong(RaySlabs(ray, 0, 0), boxes_, &first.t, [&](std::uint32_t leaf) {
-    const Bvh::Node& node = boxes_.nodes()[leaf];
+  geometry::visitLeavesAlong(geometry::RaySlabs(ray, 0, 0), boxes_, &first.t, [&](std::uint32_t leaf) {
+    const geometry::Bvh::Node& node = boxes_.nodes()[leaf];
     for (std::uint32_t i = node.first; i < node.first + node.count; ++i) add(bounded_[boxes_.order()[i]], ray, query, &first);
   });
   return first.target < 0 ? Hit() : first;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -8,7 +8,7 @@
 #include "evaluation/world_contact.h"
 #include "features/tolerances.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 // Rounding of files and of poses leaves no more than this between planes that are meant to be one, and between directions in them.
@@ -22,11 +22,11 @@ Vector3 placeOn(const Collider& own, const Pose& X_WO, const Contact& contact, b
   const Vector3 place = witnessOf(contact, own.radius, own_is_a);
   const Feature feature = featureOf(contact.id, own_is_a);
   if (feature.kind != FeatureKind::VERTEX && feature.kind != FeatureKind::EDGE) return place;
-  const TriangleMesh& mesh = own.geometry->mesh();
+  const geometry::TriangleMesh& mesh = own.geometry->mesh();
   if (feature.kind == FeatureKind::VERTEX) return X_WO * mesh.vertices[feature.index];
   const std::array<int, 2> ends = own.geometry->topology().ends(mesh, feature.index);
   const Vector3 &p = mesh.vertices[ends[0]], &q = mesh.vertices[ends[1]];
-  return X_WO * closestPointTriangle(X_WO.inverse() * place, {p, q, q}).point_b;
+  return X_WO * geometry::closestPointTriangle(X_WO.inverse() * place, {p, q, q}).point_b;
 }
 
 /** Unit normal: the longest product of two neighbouring directions. */
@@ -69,11 +69,11 @@ void SurfaceCover::addFaces(const Collider& surface, const Pose& X_WS, bool come
   const Vector3 p = X_WS.inverse() * place_, room = Vector3::Constant(FLUSH);
   const Box near(p - room, p + room);
   if (!geometry.bounds().intersects(near)) return;
-  visitLeaves(geometry.bvh(), near, [&](std::uint32_t leaf) {
-    const Bvh::Node& node = geometry.bvh().nodes()[leaf];
+  geometry::visitLeaves(geometry.bvh(), near, [&](std::uint32_t leaf) {
+    const geometry::Bvh::Node& node = geometry.bvh().nodes()[leaf];
     for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      const Triangle triangle = triangleOf(geometry.mesh(), geometry.bvh().order()[i]);
-      const ClosestPoints closest = closestPointTriangle(p, triangle);
+      const geometry::Triangle triangle = geometry::triangleOf(geometry.mesh(), geometry.bvh().order()[i]);
+      const geometry::ClosestPoints closest = geometry::closestPointTriangle(p, triangle);
       if (closest.distance > FLUSH) continue;
       Face face{{}, 0, comes_first};
       for (const Vector3& corner : triangle)
@@ -147,4 +147,4 @@ bool SurfaceCover::isCovered() {
   return widestGap() <= flat_;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

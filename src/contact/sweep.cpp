@@ -3,7 +3,7 @@
 #include "blem_sim/geometry/bvh_traversal.h"
 #include "blem_sim/geometry/closest_points.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 constexpr double RESOLUTION = 0.25;  // part of the distance asked for
@@ -18,13 +18,13 @@ Matrix3 turned(const Vector3& turn) {
 bool areWithin(double distance, const CollisionGeometry& a, const CollisionGeometry& b, const Pose& X_BA) {
   bool found = false;
   const auto looking = [&found](std::uint32_t, std::uint32_t) { return !found; };
-  visitLeafPairsIf(a.bvh(), b.bvh(), X_BA, distance, looking, [&](std::uint32_t leaf_a, std::uint32_t leaf_b) {
-    const Bvh::Node &node_a = a.bvh().nodes()[leaf_a], &node_b = b.bvh().nodes()[leaf_b];
+  geometry::visitLeafPairsIf(a.bvh(), b.bvh(), X_BA, distance, looking, [&](std::uint32_t leaf_a, std::uint32_t leaf_b) {
+    const geometry::Bvh::Node &node_a = a.bvh().nodes()[leaf_a], &node_b = b.bvh().nodes()[leaf_b];
     for (std::uint32_t i = node_a.first; i < node_a.first + node_a.count && !found; ++i) {
-      Triangle t = triangleOf(a.mesh(), a.bvh().order()[i]);
+      geometry::Triangle t = geometry::triangleOf(a.mesh(), a.bvh().order()[i]);
       for (Vector3& corner : t) corner = X_BA * corner;
       for (std::uint32_t j = node_b.first; j < node_b.first + node_b.count && !found; ++j)
-        found = closestTriangleTriangle(t, triangleOf(b.mesh(), b.bvh().order()[j])).distance <= distance;
+        found = geometry::closestTriangleTriangle(t, geometry::triangleOf(b.mesh(), b.bvh().order()[j])).distance <= distance;
     }
   });
   return found;
@@ -93,4 +93,4 @@ bool mayComeWithin(double distance, const CollisionGeometry& a, const GeometrySw
   return SweptPair(a, sweep_a, b, sweep_b).mayComeWithin(distance, 0, 1);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

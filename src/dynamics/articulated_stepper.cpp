@@ -15,7 +15,7 @@
 #include "scene/contact_motion.h"
 #include "trees/islands.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 constexpr double FASTEST = 1e100;       // [m/s or rad/s]: at higher speeds ODE could not normalise the state it gets
@@ -210,7 +210,7 @@ void ArticulatedStepper::reckonWork(bool leaps, Island* island) {
   const IslandProblem& problem = island->problem;
   if (leaps)
     for (const int tree : problem.trees) computeTwists(forest_, tree, motion_, impact_space_.leap, &impact_space_.twist);
-  makeRoomFor(problem.contacts.size(), &island->apparent_work);
+  geometry::makeRoomFor(problem.contacts.size(), &island->apparent_work);
   island->apparent_work.assign(problem.contacts.size(), 0);
   for (const ContactPatch& patch : problem.patches) {
     Vector6 before = relativeTwist(patch.pair, motion_.twist);
@@ -340,8 +340,8 @@ void ArticulatedStepper::step(Scene* scene, const StepInput& input, SolveResult*
   rebuild(*scene);
   readEdits(*scene);
   findIslands(*scene, input.contacts);
-  makeRoomFor(input.contacts.size(), &result->contact_forces);
-  makeRoomFor(input.contacts.size(), &result->apparent_work);
+  geometry::makeRoomFor(input.contacts.size(), &result->contact_forces);
+  geometry::makeRoomFor(input.contacts.size(), &result->apparent_work);
   result->contact_forces.assign(input.contacts.size(), Vector3::Zero());
   result->apparent_work.assign(input.contacts.size(), 0);
   result->motor_efforts.assign(scene->joints().size(), 0);
@@ -393,4 +393,4 @@ bool ArticulatedStepper::agreesWith(const Scene& scene) const {
 
 std::unique_ptr<Stepper> makeArticulated(const SolverSettings& settings) { return std::make_unique<ArticulatedStepper>(settings); }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

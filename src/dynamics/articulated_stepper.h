@@ -4,7 +4,7 @@
 
 #include "scene/stepper.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 /**
  * Newton's method in joint coordinates on the convex step problem: robots are trees, free bodies trees of one, trees that touch one island.
@@ -12,4 +12,4 @@ namespace blem_sim {
  */
 std::unique_ptr<Stepper> makeArticulated(const SolverSettings& settings);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

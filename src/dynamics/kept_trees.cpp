@@ -4,10 +4,12 @@
 
 #include "island/island_motion.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
-bool isSame(const MassProperties& a, const MassProperties& b) { return a.mass == b.mass && a.com == b.com && a.inertia == b.inertia; }
+bool isSame(const geometry::MassProperties& a, const geometry::MassProperties& b) {
+  return a.mass == b.mass && a.com == b.com && a.inertia == b.inertia;
+}
 
 bool isSame(const ForestNode& a, const ForestNode& b) {
   return a.body == b.body && a.joint == b.joint && a.kind == b.kind && a.dofs == b.dofs && a.axis == b.axis && a.armature == b.armature &&
@@ -38,4 +40,4 @@ bool KeptTrees::restore(const Forest& forest, int tree, ForestMotion* motion) co
   return true;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

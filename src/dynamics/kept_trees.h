@@ -7,7 +7,7 @@
 #include "trees/forest.h"
 #include "trees/forest_motion.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 /** Coordinates are kept bit by bit: read back from bodies they would be rounded, and a visitor would move what it never touched. */
 class KeptTrees {
@@ -25,4 +25,4 @@ class KeptTrees {
   std::vector<Kept> trees_;  // by their first bodies, ascending
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -4,7 +4,7 @@
 #include "blem_sim/geometry/input_error.h"
 #include "ode/ode_stepper.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 const std::vector<StepperRow>& stepperTable() {
   static const std::vector<StepperRow> table = {
@@ -30,4 +30,4 @@ std::vector<std::string> stepperNames() {
   return names;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

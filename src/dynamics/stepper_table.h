@@ -6,7 +6,7 @@
 
 #include "scene/stepper.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 struct StepperRow {
   const char* name;
@@ -18,4 +18,4 @@ const std::vector<StepperRow>& stepperTable();
 /** Throws InputError for a name that is not in the table. */
 std::unique_ptr<Stepper> makeStepper(const SolverSettings& settings);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

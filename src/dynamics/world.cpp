@@ -11,7 +11,7 @@
 #include "scene/world_state_check.h"
 #include "stepper_table.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 // Whether all numbers are finite, by four sums that need not wait for each other: zero times a number that is not finite is not a number,
@@ -118,7 +118,7 @@ void World::resetJointPosition(int joint, double position) {
   impl_->scene.joints()[joint].last_position = position;
 }
 
-void World::setInertial(int body, const MassProperties& inertial) {
+void World::setInertial(int body, const geometry::MassProperties& inertial) {
   impl_->joints_known = false;
   if (impl_->scene.exists(body)) impl_->scene.setInertial(body, inertial);
 }
@@ -231,4 +231,4 @@ void World::restore(const WorldState& state) {
   reader.finish();
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

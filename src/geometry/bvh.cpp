@@ -8,7 +8,7 @@
 
 #include "bvh_split.h"
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 namespace {
 
 std::unique_ptr<Primitive[]> primitivesOf(const TriangleMesh& mesh) {
@@ -136,4 +136,4 @@ Bvh::Bvh(const TriangleMesh& mesh, int leaf_size) {
   tbb::parallel_for(std::size_t{0}, order_.size(), [&](std::size_t i) { order_[i] = primitives[i].element(); });
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

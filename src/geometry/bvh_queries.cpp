@@ -6,7 +6,7 @@
 #include "blem_sim/geometry/bvh_traversal.h"
 #include "blem_sim/geometry/closest_points.h"
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 namespace {
 
 constexpr double INFINITE = std::numeric_limits<double>::infinity();
@@ -43,4 +43,4 @@ double distanceToMesh(const Bvh& tree, const TriangleMesh& mesh, const Vector3& 
   return best;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 namespace {
 
 using Ints = int __attribute__((vector_size(16)));
@@ -213,4 +213,4 @@ void splitRun(const PrimitiveRun& run, SplitBy by, PrimitiveRun* left, Primitive
   *right = {middle, run.end, boundsOf(middle, run.end)};
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

@@ -8,7 +8,7 @@
 
 #include "blem_sim/geometry/types.h"
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 
 /** Four at once, lane by lane. */
 using Floats = float __attribute__((vector_size(16)));
@@ -108,4 +108,4 @@ enum class SplitBy { COST, MEDIAN };
  * cannot. [Wald 2007] */
 void splitRun(const PrimitiveRun& run, SplitBy by, PrimitiveRun* left, PrimitiveRun* right);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

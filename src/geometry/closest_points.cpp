@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 namespace {
 
 /** Coordinates of size 1 differ by rounding below this. */
@@ -230,4 +230,4 @@ ClosestPoints closestMeshMeshBruteForce(const TriangleMesh& a, const TriangleMes
   return best;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

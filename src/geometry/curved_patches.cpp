@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 namespace {
 
 constexpr double BOWED = 0.1;   // part of the heights' mean square that a surface of second order may leave
@@ -117,4 +117,4 @@ std::vector<char> findCurved(const MeshTopology& topology, const TriangleMesh& m
   return curved;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

@@ -6,7 +6,7 @@
 #include "blem_sim/geometry/mesh_topology.h"
 #include "blem_sim/geometry/triangle_mesh.h"
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 
 /** A patch's least-squares plane. */
 struct PatchPlane {
@@ -25,4 +25,4 @@ struct PatchPlane {
 std::vector<char> findCurved(const MeshTopology& topology, const TriangleMesh& mesh, const std::vector<int>& patch_of,
                              const std::vector<PatchPlane>& planes);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 
 /**
  * For each of `count` items the first one that equals it, itself if there is none before. Open addressing; of equal items the first wins
@@ -49,4 +49,4 @@ std::vector<int> firstEquals(int count, Hash&& hash, Equal&& equal) {
   return first;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 
 /** Turns counts at [i + 1] into the beginnings of groups. */
 inline void accumulate(std::vector<int>* counts) {
@@ -51,4 +51,4 @@ std::vector<int> grouped(int items, int groups, VisitValues&& visitValues, MakeR
   return begin;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

@@ -5,7 +5,7 @@
 
 #include "blem_sim/geometry/triangle_mesh.h"
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 namespace {
 
 /** Sums simplices of uniform density (points, segments, triangles, tetrahedra) up to the moment of order two. */
@@ -125,4 +125,4 @@ MassProperties massFromSurface(const TriangleMesh& mesh, double mass) {
   return segments.measure() > 0 ? segments.properties(mass) : points.properties(mass);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

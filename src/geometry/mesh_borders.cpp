@@ -7,7 +7,7 @@
 
 #include "place_hash.h"
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 namespace {
 
 /** Inward directions closer than this (cosine, 18 deg) are two sheets, not a surface and its continuation. */
@@ -203,4 +203,4 @@ void joinMatching(const TriangleMesh& mesh, const MeshTopology& topology, const 
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

@@ -6,7 +6,7 @@
 #include "blem_sim/geometry/mesh_mending.h"
 #include "blem_sim/geometry/mesh_topology.h"
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 
 /** An edge with one triangle. */
 struct Border {
@@ -62,4 +62,4 @@ std::vector<EdgeSplit> joinOverlapping(const TriangleMesh& mesh, const MeshTopol
 /** The mesh with triangles cut from splits to the opposite corners; a split at a corner is none. */
 TriangleMesh splitMesh(const TriangleMesh& mesh, std::vector<EdgeSplit> splits, MeshMending* what);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

@@ -13,7 +13,7 @@
 #include "place_hash.h"
 #include "sides_by_vertex.h"
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 namespace {
 
 constexpr double MAX_COORDINATE = 1e30;
@@ -212,4 +212,4 @@ TriangleMesh pointCloudMesh(const std::vector<Vector3>& points, MeshReport* repo
   return mesh;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

@@ -6,7 +6,7 @@
 #include "mesh_borders.h"
 #include "mesh_planes.h"
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 namespace {
 
 /** Cleans the mesh that joining has left, and brings the report up to date. */
@@ -84,4 +84,4 @@ TriangleMesh mendMesh(const TriangleMesh& mesh, MeshReport* report, MeshMending*
   return mended;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

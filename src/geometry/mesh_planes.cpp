@@ -11,7 +11,7 @@
 
 #include "curved_patches.h"
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 namespace {
 
 /** Two triangles of height h whose corners are off a plane by PLANE_DEVIATION bend by up to this [m] / h [rad] ... */
@@ -341,4 +341,4 @@ void flattenPlanes(const MeshTopology& topology, const std::vector<double>& nois
   for (const Patch& patch : finder.patches()) what->planes += patch.plane && patch.rough;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

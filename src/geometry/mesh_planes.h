@@ -6,7 +6,7 @@
 #include "blem_sim/geometry/mesh_mending.h"
 #include "blem_sim/geometry/mesh_topology.h"
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 
 /**
  * Moves the vertices of nearly planar patches onto their planes; vertices of planar ones stay.
@@ -14,4 +14,4 @@ namespace blem_sim {
  */
 void flattenPlanes(const MeshTopology& topology, const std::vector<double>& noise, TriangleMesh* mesh, MeshMending* what);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

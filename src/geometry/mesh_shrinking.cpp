@@ -7,7 +7,7 @@
 #include "blem_sim/geometry/bvh_traversal.h"
 #include "blem_sim/geometry/mesh_topology.h"
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 namespace {
 
 constexpr double SMALLEST_EIGENVALUE = 1e-4;  // part of the largest: planes that differ by less ask for the same
@@ -205,4 +205,4 @@ TriangleMesh shrinkMesh(const TriangleMesh& mesh, double r, MeshShrinking* what)
   return Shrinking(mesh, r, volume > 0 ? 1 : -1).run(what);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

@@ -8,7 +8,7 @@
 #include "blem_sim/geometry/bvh_traversal.h"
 #include "mesh_borders.h"
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 namespace {
 
 constexpr double SAME = 1e-9;  // [m] partners as near as each other
@@ -205,4 +205,4 @@ TriangleMesh splitMesh(const TriangleMesh& mesh, std::vector<EdgeSplit> splits, 
   return result;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

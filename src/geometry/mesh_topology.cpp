@@ -9,7 +9,7 @@
 #include "grouped.h"
 #include "sides_by_vertex.h"
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 namespace {
 
 /** A triangle lower than this part of its longest side is its sides: its normal would be rounding, and its inside is as near as they. */
@@ -208,4 +208,4 @@ void MeshTopology::findOwners(const TriangleMesh& mesh) {
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

@@ -6,7 +6,7 @@
 
 #include "blem_sim/geometry/types.h"
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 
 /** The hash `h`, with some more bits in it. */
 inline std::uint64_t hashedOn(std::uint64_t h, std::uint64_t bits) {
@@ -26,4 +26,4 @@ inline std::uint64_t placeHash(const Vector3& v) {
   return h;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

@@ -3,7 +3,7 @@
 
 #include "blem_sim/geometry/triangle_mesh.h"
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 
 TriangleMesh boxMesh(const Vector3& size) {
   TriangleMesh mesh;
@@ -84,4 +84,4 @@ TriangleMesh segmentMesh(const Vector3& p, const Vector3& q) {
   return mesh;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

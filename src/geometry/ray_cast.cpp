@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 namespace {
 
 /**
@@ -140,4 +140,4 @@ RayHit castRay(const RayMesh& target, const Ray& ray, const RayRange& range) {
   return hits.first();
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

@@ -4,7 +4,7 @@
 
 #include "grouped.h"
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 
 SidesByVertex::SidesByVertex(const TriangleMesh& mesh) {
   const auto visitSides = [&mesh](int i, auto&& visit) {
@@ -22,4 +22,4 @@ SidesByVertex::SidesByVertex(const TriangleMesh& mesh) {
   tbb::parallel_for(0, vertices, [this](int v) { std::sort(sides.get() + begin[v], sides.get() + begin[v + 1]); });
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

@@ -7,7 +7,7 @@
 
 #include "blem_sim/geometry/triangle_mesh.h"
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 
 /** A side of an element, from one corner to the next one; sorts by its higher vertex, then by element and corner. */
 class Side {
@@ -45,4 +45,4 @@ void visitEdges(const SidesByVertex& by_vertex, int lower_vertex, Visit&& visit)
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

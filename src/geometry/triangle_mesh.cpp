@@ -5,7 +5,7 @@
 #include <unordered_map>
 #include <utility>
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 
 Box TriangleMesh::bounds() const {
   Box box;
@@ -75,4 +75,4 @@ TriangleMesh subdivided(const TriangleMesh& mesh, int level) {
   return result;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

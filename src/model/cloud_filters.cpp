@@ -14,7 +14,7 @@
 #include "blem_sim/model/cloud.h"
 #include "quiet_pcl.h"
 
-namespace blem_sim {
+namespace blem_sim::model {
 namespace {
 
 using FloatCloud = pcl::PointCloud<pcl::PointXYZ>;
@@ -133,7 +133,7 @@ std::vector<Vector3> filtered(std::vector<Vector3> points, const std::vector<Clo
   if (points.size() < all) notes->push_back(fmt::format("{} points that are not finite dropped", all - points.size()));
   Box bounds;
   for (const Vector3& p : points) bounds.extend(p);
-  const Vector3 origin = farOrigin(bounds);
+  const Vector3 origin = geometry::farOrigin(bounds);
   const QuietPcl quiet;
   FloatCloud::Ptr cloud = toFloats(points, origin);
   for (const CloudFilter& filter : filters) {
@@ -147,4 +147,4 @@ std::vector<Vector3> filtered(std::vector<Vector3> points, const std::vector<Clo
   return points;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::model

@@ -11,7 +11,7 @@
 #include "quiet_pcl.h"
 #include "surface_soup.h"
 
-namespace blem_sim {
+namespace blem_sim::model {
 namespace {
 
 /** Triangles of the pixel grid: a cell of four measured corners gives two, split along its shorter diagonal, one of three gives one. */
@@ -60,7 +60,7 @@ std::vector<Vector3i> projectionTriangles(const std::vector<Vector3>& points, do
   Box bounds;
   for (const Vector3& p : points)
     if (p.allFinite()) bounds.extend(p);
-  const Vector3 origin = farOrigin(bounds);
+  const Vector3 origin = geometry::farOrigin(bounds);
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!points[i].allFinite()) continue;
     const Eigen::Vector3f p = (points[i] - origin).cast<float>();
@@ -108,4 +108,4 @@ std::vector<Vector3i> meshCloud(const SurfaceSoup& cloud, double max_edge) {
   return projectionTriangles(cloud.mesh.vertices, max_edge);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::model

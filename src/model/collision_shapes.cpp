@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-namespace blem_sim {
+namespace blem_sim::model {
 namespace {
 
 /** Decimals of a URDF; spheres that miss a cylinder's end by more are spheres of their own. */
@@ -59,9 +59,9 @@ std::vector<Capsule> findCapsules(const urdf::Link& link) {
 }
 
 /** A primitive with its report filled. @param radius boundary, 0 for triangles */
-CollisionShape primitive(const TriangleMesh& mesh, double radius, const std::string& source) {
+CollisionShape primitive(const geometry::TriangleMesh& mesh, double radius, const std::string& source) {
   CollisionShape shape;
-  shape.mesh = std::make_shared<const TriangleMesh>(cleanMesh(mesh, &shape.report));
+  shape.mesh = std::make_shared<const geometry::TriangleMesh>(geometry::cleanMesh(mesh, &shape.report));
   shape.radius = shape.report.boundary_width = radius;
   shape.report.source = source;
   return shape;
@@ -91,7 +91,7 @@ CollisionShape CollisionShapeReader::readMesh(const urdf::Mesh& mesh, const Pose
     shape.radius = loaded->second.radius;
     shape.report = loaded->second.report;
     if (X_LC.matrix() == Pose::Identity().matrix()) return shape;
-    shape.mesh = std::make_shared<const TriangleMesh>(transformed(*shape.mesh, X_LC));
+    shape.mesh = std::make_shared<const geometry::TriangleMesh>(geometry::transformed(*shape.mesh, X_LC));
     shape.report.extents = shape.mesh->bounds();
     return shape;
   } catch (const InputError& error) {
@@ -102,13 +102,13 @@ CollisionShape CollisionShapeReader::readMesh(const urdf::Mesh& mesh, const Pose
 CollisionShape CollisionShapeReader::readOne(const urdf::Collision& collision, const std::string& where) {
   const Pose X_LC = toPose(collision.origin);
   if (const urdf::Sphere* sphere = asSphere(collision))
-    return primitive(pointMesh(X_LC.translation()), sphere->radius, fmt::format("sphere of radius {} m", sphere->radius));
+    return primitive(geometry::pointMesh(X_LC.translation()), sphere->radius, fmt::format("sphere of radius {} m", sphere->radius));
   if (const urdf::Cylinder* cylinder = asCylinder(collision))
-    return primitive(transformed(cylinderMesh(cylinder->radius, cylinder->length), X_LC), 0,
+    return primitive(geometry::transformed(geometry::cylinderMesh(cylinder->radius, cylinder->length), X_LC), 0,
                      fmt::format("cylinder of radius {} m and length {} m", cylinder->radius, cylinder->length));
   if (collision.geometry->type == urdf::Geometry::BOX) {
     const urdf::Vector3& size = static_cast<const urdf::Box&>(*collision.geometry).dim;
-    return primitive(transformed(boxMesh(Vector3(size.x, size.y, size.z)), X_LC), 0,
+    return primitive(geometry::transformed(geometry::boxMesh(Vector3(size.x, size.y, size.z)), X_LC), 0,
                      fmt::format("box of {} x {} x {} m", size.x, size.y, size.z));
   }
   return readMesh(static_cast<const urdf::Mesh&>(*collision.geometry), X_LC, where);
@@ -123,11 +123,12 @@ std::vector<CollisionShape> CollisionShapeReader::read(const urdf::Link& link, c
     if (part == capsules.end()) {
       shapes.push_back(readOne(*link.collision_array[i], fmt::format("{} collision {}", where, i + 1)));
     } else if (part->cylinder == i) {
-      shapes.push_back(primitive(segmentMesh(part->p, part->q), part->radius, fmt::format("capsule of radius {} m", part->radius)));
+      shapes.push_back(
+          primitive(geometry::segmentMesh(part->p, part->q), part->radius, fmt::format("capsule of radius {} m", part->radius)));
       notes->push_back(fmt::format("link '{}': a cylinder with a sphere of its radius at each end is taken as one capsule", link.name));
     }
   }
   return shapes;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::model

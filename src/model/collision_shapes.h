@@ -10,7 +10,7 @@
 
 #include "blem_sim/model/loaders.h"
 
-namespace blem_sim {
+namespace blem_sim::model {
 
 /** Pose of URDF's origin. */
 Pose toPose(const urdf::Pose& pose);
@@ -38,4 +38,4 @@ class CollisionShapeReader {
   std::map<std::tuple<std::string, double, double, double>, LoadedSurface> loaded_;  // by file and scale
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::model

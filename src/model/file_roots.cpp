@@ -7,7 +7,7 @@
 
 #include "blem_sim/geometry/input_error.h"
 
-namespace blem_sim {
+namespace blem_sim::model {
 namespace {
 
 namespace fs = std::filesystem;
@@ -43,4 +43,4 @@ void FileRoots::require(const std::string& path) const {
                                fmt::join(folders_, ", ")));
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::model

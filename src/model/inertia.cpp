@@ -8,7 +8,7 @@
 
 #include "blem_sim/geometry/input_error.h"
 
-namespace blem_sim {
+namespace blem_sim::model {
 namespace {
 
 constexpr double DENSITY = 1000;          // [kg/m^3]
@@ -41,7 +41,7 @@ Inertial capsule(const Vector3& p, const Vector3& q, double radius) {
   return {cylinder + balls, (p + q) / 2, axial((q - p) / length, along, across)};
 }
 
-double enclosedVolume(const TriangleMesh& mesh) {
+double enclosedVolume(const geometry::TriangleMesh& mesh) {
   const Vector3 reference = mesh.bounds().center();
   double six_volumes = 0;
   for (const Vector3i& e : mesh.elements)
@@ -49,7 +49,7 @@ double enclosedVolume(const TriangleMesh& mesh) {
   return std::abs(six_volumes) / 6;
 }
 
-double area(const TriangleMesh& mesh) {
+double area(const geometry::TriangleMesh& mesh) {
   double twice = 0;
   for (const Vector3i& e : mesh.elements)
     twice += (mesh.vertices[e[1]] - mesh.vertices[e[0]]).cross(mesh.vertices[e[2]] - mesh.vertices[e[0]]).norm();
@@ -57,15 +57,15 @@ double area(const TriangleMesh& mesh) {
 }
 
 Inertial shapeInertial(const CollisionShape& shape) {
-  const TriangleMesh& mesh = *shape.mesh;
+  const geometry::TriangleMesh& mesh = *shape.mesh;
   if (shape.radius > 0 && mesh.elements.size() == 1) {
     const Vector3 &p = mesh.vertices[mesh.elements[0][0]], &q = mesh.vertices[mesh.elements[0][1]];
     if (!mesh.isPoint(0)) return capsule(p, q, shape.radius);
     return ball(p, shape.radius, DENSITY * 4.0 / 3.0 * M_PI * std::pow(shape.radius, 3));
   }
   Inertial solid;
-  if (shape.report.closed && massFromVolume(mesh, DENSITY * enclosedVolume(mesh), &solid)) return solid;
-  return massFromSurface(mesh, DENSITY * SHELL_THICKNESS * area(mesh));
+  if (shape.report.closed && geometry::massFromVolume(mesh, DENSITY * enclosedVolume(mesh), &solid)) return solid;
+  return geometry::massFromSurface(mesh, DENSITY * SHELL_THICKNESS * area(mesh));
 }
 
 }  // namespace
@@ -118,4 +118,4 @@ std::optional<Inertial> inertialOfShapes(const std::vector<CollisionShape>& shap
 
 Inertial smallBall() { return ball(Vector3::Zero(), BALL_RADIUS, BALL_MASS); }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::model

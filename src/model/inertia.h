@@ -7,7 +7,7 @@
 
 #include "blem_sim/model/robot_model.h"
 
-namespace blem_sim {
+namespace blem_sim::model {
 
 /** The same inertial seen from frame A. @param X_AB pose of the frame B it is given in */
 Inertial movedTo(const Pose& X_AB, const Inertial& inertial);
@@ -27,4 +27,4 @@ std::optional<Inertial> inertialOfShapes(const std::vector<CollisionShape>& shap
 /** A solid ball of 0.01 kg and 1 cm. */
 Inertial smallBall();
 
-}  // namespace blem_sim
+}  // namespace blem_sim::model

@@ -4,7 +4,7 @@
 #include "blem_sim/model/robot_model.h"
 #include "inertia.h"
 
-namespace blem_sim {
+namespace blem_sim::model {
 namespace {
 
 /** Mass of each of the two bodies between the three joints of a planar joint, as a part of the mass they carry. */
@@ -145,4 +145,4 @@ LumpedRobot lumpFixedJoints(const RobotModel& robot, const std::set<std::string>
   return Lumping(robot, keep).run(fixed_base);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::model

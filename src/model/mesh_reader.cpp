@@ -12,7 +12,7 @@
 #include "polygon_split.h"
 #include "surface_soup.h"
 
-namespace blem_sim {
+namespace blem_sim::model {
 namespace {
 
 using Matrix4 = Eigen::Matrix4d;
@@ -128,7 +128,7 @@ SurfaceSoup readMesh(const std::string& file, const std::string& extension) {
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
   const aiScene* scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, extension.c_str());
   if (!scene || !scene->mRootNode || scene->mNumMeshes == 0) {
-    const std::string reason = scene ? "it holds no mesh" : oneLine(importer.GetErrorString());
+    const std::string reason = scene ? "it holds no mesh" : geometry::oneLine(importer.GetErrorString());
     throw InputError(fmt::format("{}: not a readable {} mesh: {}; export it again", file, extension, reason));
   }
   std::string().swap(bytes);  // the scene has its own copy
@@ -141,4 +141,4 @@ SurfaceSoup readMesh(const std::string& file, const std::string& extension) {
   return soup;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::model

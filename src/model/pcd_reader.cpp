@@ -11,7 +11,7 @@
 #include "quiet_pcl.h"
 #include "surface_soup.h"
 
-namespace blem_sim {
+namespace blem_sim::model {
 namespace {
 
 const pcl::PCLPointField& coordinateField(const std::string& file, const pcl::PCLPointCloud2& cloud, const std::string& name) {
@@ -74,4 +74,4 @@ SurfaceSoup readPcd(const std::string& file) {
   return soup;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::model

@@ -6,7 +6,7 @@
 
 #include "blem_sim/model/cloud.h"
 
-namespace blem_sim {
+namespace blem_sim::model {
 namespace {
 
 constexpr std::size_t MOST_SAMPLES = 4000;
@@ -51,4 +51,4 @@ double pointRadius(double spacing) {
   return spacing > 0 ? std::max(SMALLEST_RADIUS, RADIUS_OF_SPACING * spacing) : CloudOptions().point_radius;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::model

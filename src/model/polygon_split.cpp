@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace blem_sim {
+namespace blem_sim::model {
 namespace {
 
 using Vector2 = Eigen::Vector2d;
@@ -75,4 +75,4 @@ std::vector<Vector3i> splitPolygon(const std::vector<Vector3>& vertices, const s
   return EarCutter(vertices, polygon).run();
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::model

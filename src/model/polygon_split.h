@@ -5,7 +5,7 @@
 
 #include "blem_sim/geometry/types.h"
 
-namespace blem_sim {
+namespace blem_sim::model {
 
 /**
  * Splits a polygon, perhaps concave, nearly plane, by cutting ears; n - 2 triangles with its winding. One that crosses itself or has a
@@ -14,4 +14,4 @@ namespace blem_sim {
  */
 std::vector<Vector3i> splitPolygon(const std::vector<Vector3>& vertices, const std::vector<int>& polygon);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::model

@@ -3,7 +3,7 @@
 
 #include <pcl/console/print.h>
 
-namespace blem_sim {
+namespace blem_sim::model {
 
 /** Keeps PCL from writing on stderr while one lives: the user shall see one line of blem_sim's own. */
 class QuietPcl {
@@ -17,4 +17,4 @@ class QuietPcl {
   pcl::console::VERBOSITY_LEVEL level_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::model

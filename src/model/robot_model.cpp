@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace blem_sim {
+namespace blem_sim::model {
 namespace {
 
 template <typename Named>
@@ -42,4 +42,4 @@ double LumpedRobot::mass() const {
   return sum;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::model

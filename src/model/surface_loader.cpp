@@ -9,7 +9,7 @@
 #include "blem_sim/model/loaders.h"
 #include "surface_soup.h"
 
-namespace blem_sim {
+namespace blem_sim::model {
 namespace {
 
 /** Parts of a load that lie behind when these stages begin, about. */
@@ -52,7 +52,7 @@ void checkOptions(const std::string& file, const Vector3& scale, const CloudOpti
 }
 
 /** Scales in place; a mirroring scale turns the winding, so that outside stays outside. */
-void scaleSoup(const Vector3& scale, TriangleMesh* mesh) {
+void scaleSoup(const Vector3& scale, geometry::TriangleMesh* mesh) {
   if (scale == Vector3::Ones()) return;
   for (Vector3& p : mesh->vertices) p = p.cwiseProduct(scale);
   if (scale.prod() < 0)
@@ -65,10 +65,10 @@ bool wantsPoints(const SurfaceSoup& soup, CloudOptions::As as) {
 }
 
 /** Triangles from points. A grid keeps its places; else points that are not finite or there twice go first, as they confuse normals. */
-void joinCloud(double max_edge, SurfaceSoup* soup, MeshReport* report) {
+void joinCloud(double max_edge, SurfaceSoup* soup, geometry::MeshReport* report) {
   const bool grid = soup->width > 1 && soup->height > 1;
-  MeshReport points;
-  TriangleMesh unique = pointCloudMesh(soup->mesh.vertices, &points);
+  geometry::MeshReport points;
+  geometry::TriangleMesh unique = geometry::pointCloudMesh(soup->mesh.vertices, &points);
   report->nonfinite = points.nonfinite;
   report->welded = points.welded;
   if (!grid) soup->mesh.vertices = std::move(unique.vertices);
@@ -81,10 +81,10 @@ void joinCloud(double max_edge, SurfaceSoup* soup, MeshReport* report) {
 }
 
 /** cleanMesh, counting in the elements that were left out before. The soup is given up. */
-TriangleMesh cleanSoup(SurfaceSoup&& soup, MeshReport* report) {
-  const MeshReport before = *report;
-  TriangleMesh cleaned = cleanMesh(soup.mesh, report);
-  soup.mesh = TriangleMesh();
+geometry::TriangleMesh cleanSoup(SurfaceSoup&& soup, geometry::MeshReport* report) {
+  const geometry::MeshReport before = *report;
+  geometry::TriangleMesh cleaned = geometry::cleanMesh(soup.mesh, report);
+  soup.mesh = geometry::TriangleMesh();
   report->nonfinite += before.nonfinite;
   report->welded += before.welded;
   report->degenerate += soup.collapsed;
@@ -92,10 +92,10 @@ TriangleMesh cleanSoup(SurfaceSoup&& soup, MeshReport* report) {
 }
 
 /** mendMesh, told in words. */
-TriangleMesh mended(const TriangleMesh& cleaned, MeshReport* report, MeshTopology* topology) {
+geometry::TriangleMesh mended(const geometry::TriangleMesh& cleaned, geometry::MeshReport* report, geometry::MeshTopology* topology) {
   constexpr double MICRO = 1e-6;
-  MeshMending what;
-  TriangleMesh mesh = mendMesh(cleaned, report, &what, topology);
+  geometry::MeshMending what;
+  geometry::TriangleMesh mesh = geometry::mendMesh(cleaned, report, &what, topology);
   if (what.cracks > 0) report->notes.push_back(fmt::format("{} cracks up to {:.3g} um closed", what.cracks, what.widest_crack / MICRO));
   if (what.split_edges > 0) report->notes.push_back(fmt::format("{} edges split at T-junctions", what.split_edges));
   if (what.flattened > 0)
@@ -105,7 +105,7 @@ TriangleMesh mended(const TriangleMesh& cleaned, MeshReport* report, MeshTopolog
 }
 
 /** Leaves the points that filters leave, without a pixel grid. */
-void filterSoup(const std::vector<CloudFilter>& filters, bool points, SurfaceSoup* soup, MeshReport* report) {
+void filterSoup(const std::vector<CloudFilter>& filters, bool points, SurfaceSoup* soup, geometry::MeshReport* report) {
   if (filters.empty()) return;
   if (!points && !soup->mesh.elements.empty())
     throw InputError(report->source + ": filters: are for points, and the file has faces; set as: points, or leave them out");
@@ -115,14 +115,14 @@ void filterSoup(const std::vector<CloudFilter>& filters, bool points, SurfaceSou
 }
 
 /** A point is its own boundary. */
-void setRadius(const CloudOptions& cloud, const TriangleMesh& mesh, LoadedSurface* surface) {
+void setRadius(const CloudOptions& cloud, const geometry::TriangleMesh& mesh, LoadedSurface* surface) {
   const double spacing = cloud.auto_radius ? pointSpacing(mesh.vertices) : 0;
   surface->radius = surface->report.boundary_width = cloud.auto_radius ? pointRadius(spacing) : cloud.point_radius;
   surface->report.notes.push_back(fmt::format("simulated as points of radius {:.4g} m", surface->radius));
   if (cloud.auto_radius) surface->report.notes.back() += fmt::format(", from their spacing of {:.4g} m", spacing);
 }
 
-void noteDropped(MeshReport* report) {
+void noteDropped(geometry::MeshReport* report) {
   if (report->nonfinite > 0)
     report->notes.push_back(fmt::format("{} elements with a coordinate that is not finite dropped", report->nonfinite));
   if (report->degenerate > 0) report->notes.push_back(fmt::format("{} triangles without area dropped", report->degenerate));
@@ -153,10 +153,11 @@ LoadedSurface loadSurface(const std::string& file, const Vector3& scale, const C
     joinCloud(cloud.max_edge, &soup, &surface.report);
   }
   enter("cleaning", CLEANING_FRACTION);
-  TriangleMesh cleaned = points ? pointCloudMesh(soup.mesh.vertices, &surface.report) : cleanSoup(std::move(soup), &surface.report);
+  geometry::TriangleMesh cleaned =
+      points ? geometry::pointCloudMesh(soup.mesh.vertices, &surface.report) : cleanSoup(std::move(soup), &surface.report);
   if (!points && mending == Mending::ON) {
     enter("mending", MENDING_FRACTION);
-    const auto topology = std::make_shared<MeshTopology>();
+    const auto topology = std::make_shared<geometry::MeshTopology>();
     cleaned = mended(cleaned, &surface.report, topology.get());
     surface.topology = topology;
   }
@@ -165,7 +166,7 @@ LoadedSurface loadSurface(const std::string& file, const Vector3& scale, const C
   if (cleaned.elements.empty())
     throw InputError(fmt::format("{}: nothing is left after cleaning ({} not finite, {} without area); check the file and its scale", file,
                                  surface.report.nonfinite, surface.report.degenerate));
-  surface.mesh = std::make_shared<const TriangleMesh>(std::move(cleaned));
+  surface.mesh = std::make_shared<const geometry::TriangleMesh>(std::move(cleaned));
   return surface;
 }
 
@@ -173,12 +174,12 @@ LoadedSurface cloudSurface(std::vector<Vector3> points, const CloudOptions& clou
   LoadedSurface surface;
   surface.report.name = surface.report.source = source;
   points = filtered(std::move(points), cloud.filters, source, &surface.report.notes);
-  TriangleMesh mesh = pointCloudMesh(points, &surface.report);
+  geometry::TriangleMesh mesh = geometry::pointCloudMesh(points, &surface.report);
   if (mesh.elements.empty()) throw InputError(source + ": no finite point is left; check the sensor, and the filters");
   setRadius(cloud, mesh, &surface);
   noteDropped(&surface.report);
-  surface.mesh = std::make_shared<const TriangleMesh>(std::move(mesh));
+  surface.mesh = std::make_shared<const geometry::TriangleMesh>(std::move(mesh));
   return surface;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::model

@@ -15,7 +15,7 @@
 #include "collision_shapes.h"
 #include "inertia.h"
 
-namespace blem_sim {
+namespace blem_sim::model {
 namespace {
 
 /** URDF has no word for "no limit"; files write a large number. */
@@ -46,7 +46,8 @@ urdf::ModelInterfaceSharedPtr parseQuietly(const std::string& xml, const std::st
   const UrdfdomMessages messages;
   const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(xml);
   if (!model) {
-    throw InputError(fmt::format("{}: not a URDF: {}; correct it (check_urdf FILE says more)", source, oneLine(messages.firstError())));
+    throw InputError(
+        fmt::format("{}: not a URDF: {}; correct it (check_urdf FILE says more)", source, geometry::oneLine(messages.firstError())));
   }
   return model;
 }
@@ -179,7 +180,7 @@ RobotModel loadUrdf(const std::string& xml, const std::string& source, const Uri
   try {
     return readRobot(xml, source, &shapes, progress);
   } catch (const InputError& error) {
-    throw InputError(oneLine(error.what()));  // names in a URDF may hold anything
+    throw InputError(geometry::oneLine(error.what()));  // names in a URDF may hold anything
   }
 }
 
@@ -188,4 +189,4 @@ RobotModel loadUrdfFile(const std::string& file, const UriResolver& resolver, Me
   return loadUrdf(readBytes(file), file, resolver, base, mending, progress);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::model

@@ -9,7 +9,7 @@
 
 #include "blem_sim/model/loaders.h"
 
-namespace blem_sim {
+namespace blem_sim::model {
 namespace {
 
 namespace fs = std::filesystem;
@@ -186,4 +186,4 @@ std::string UriResolver::find(const std::string& uri, const std::string& base) c
   return file;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::model

@@ -5,7 +5,7 @@
 #include <tuple>
 #include <utility>
 
-namespace blem_sim {
+namespace blem_sim::model {
 namespace {
 
 constexpr int BITS = 21;  // of a coordinate in a key
@@ -88,4 +88,4 @@ std::vector<Vector3> VoxelMap::points() const {
   return means;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::model

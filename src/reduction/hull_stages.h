@@ -7,7 +7,7 @@
 #include "blem_sim/reduction/reduction.h"
 #include "patches/patch_frame.h"
 
-namespace blem_sim {
+namespace blem_sim::reduction {
 
 /** Contacts that imply all others of a set. */
 struct ThinnedContacts {
@@ -17,11 +17,11 @@ struct ThinnedContacts {
 
 /** Leaves out contacts that the corners of flat patches imply; of patches that have more than k corners, nothing. @return false if some
  * contact is not finite or its normal not unit: nothing is done */
-bool thinToHulls(const std::vector<Contact>& contacts, int k, ThinnedContacts* thinned);
+bool thinToHulls(const std::vector<contact::Contact>& contacts, int k, ThinnedContacts* thinned);
 
 /** Chooses all thinned contacts, or k of them that span the wrenches best. @param reduced overwritten; sorted by id
  * @return largest lack of the choice in any wrench, as chooseSpanningContacts tells it; 0 if nothing is left out */
-float chooseFromHulls(const std::vector<Contact>& contacts, const ThinnedContacts& thinned, int k, const ContactIds& chosen_before,
-                      std::vector<Contact>* reduced);
+float chooseFromHulls(const std::vector<contact::Contact>& contacts, const ThinnedContacts& thinned, int k, const ContactIds& chosen_before,
+                      std::vector<contact::Contact>* reduced);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::reduction

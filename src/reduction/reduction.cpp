@@ -7,13 +7,13 @@
 #include "choice/wrench_choice.h"
 #include "hull_stages.h"
 
-namespace blem_sim {
+namespace blem_sim::reduction {
 
 namespace {
 
 // Kept between calls.
 struct ReductionBuffers {
-  std::vector<Contact> sound, pierced, more, again;
+  std::vector<contact::Contact> sound, pierced, more, again;
   std::vector<ThinnedContacts> thinned;  // manifold by manifold
   std::vector<int> limits, sizes;        // manifold by manifold: numbers of contacts that may be kept, and would be
   std::vector<int> touching, counts, shares;
@@ -23,20 +23,20 @@ struct ReductionBuffers {
 
 // Sound contacts take part in the choice; pierced ones, whose directions are the fallback's, get the room that is left, and a quarter of k
 // if they are so many: else bodies that crossed would stay crossed.
-void reduceContacts(const std::vector<Contact>& contacts, int k, const Reduction& method, const ContactIds& chosen_before,
-                    ReductionBuffers* buffers, std::vector<Contact>* reduced) {
-  const auto is_pierced = [](const Contact& c) { return c.pierced; };
+void reduceContacts(const std::vector<contact::Contact>& contacts, int k, const Reduction& method, const ContactIds& chosen_before,
+                    ReductionBuffers* buffers, std::vector<contact::Contact>* reduced) {
+  const auto is_pierced = [](const contact::Contact& c) { return c.pierced; };
   if (std::none_of(contacts.begin(), contacts.end(), is_pierced)) return method.reduce(contacts, k, chosen_before, reduced);
   buffers->sound.clear();
   buffers->pierced.clear();
-  for (const Contact& contact : contacts) (contact.pierced ? buffers->pierced : buffers->sound).push_back(contact);
+  for (const contact::Contact& contact : contacts) (contact.pierced ? buffers->pierced : buffers->sound).push_back(contact);
   const int reserved = std::min(k / 4, static_cast<int>(buffers->pierced.size()));
   method.reduce(buffers->sound, k - reserved, chosen_before, reduced);
   const int room = k - static_cast<int>(reduced->size());
   if (room <= 0) return;
   method.reduce(buffers->pierced, room, chosen_before, &buffers->more);
   reduced->insert(reduced->end(), buffers->more.begin(), buffers->more.end());
-  std::sort(reduced->begin(), reduced->end(), contactBefore);
+  std::sort(reduced->begin(), reduced->end(), contact::contactBefore);
 }
 
 constexpr int FLOOR = 3;  // contacts of a pair, if it has them, whatever budgets say: with none it falls through, with two it tips over
@@ -96,27 +96,27 @@ void applyBudgets(const std::vector<int>& model_a, const std::vector<int>& model
   }
 }
 
-int countContacts(const std::vector<ContactManifold>& manifolds) {
+int countContacts(const std::vector<contact::ContactManifold>& manifolds) {
   int count = 0;
-  for (const ContactManifold& manifold : manifolds) count += static_cast<int>(manifold.contacts.size());
+  for (const contact::ContactManifold& manifold : manifolds) count += static_cast<int>(manifold.contacts.size());
   return count;
 }
 
-void copyAllButContacts(const ContactManifold& from, ContactManifold* to) {
+void copyAllButContacts(const contact::ContactManifold& from, contact::ContactManifold* to) {
   to->a = from.a;
   to->b = from.b;
   to->layer = from.layer;
   to->pierced = from.pierced;
 }
 
-bool hasPierced(const std::vector<Contact>& contacts) {
-  return std::any_of(contacts.begin(), contacts.end(), [](const Contact& c) { return c.pierced; });
+bool hasPierced(const std::vector<contact::Contact>& contacts) {
+  return std::any_of(contacts.begin(), contacts.end(), [](const contact::Contact& c) { return c.pierced; });
 }
 
 // One manifold before budgets are shared out. `hull` alone can tell the number that it would keep before it chooses; others, and pierced
 // contacts, are reduced to the limit, and again if it is lowered. @return number of contacts that would be kept
-int prepare(const ContactManifold& manifold, int limit, const Reduction& method, const ContactIds& chosen_before, ReductionBuffers* buffers,
-            ThinnedContacts* thinned, std::vector<Contact>* reduced) {
+int prepare(const contact::ContactManifold& manifold, int limit, const Reduction& method, const ContactIds& chosen_before,
+            ReductionBuffers* buffers, ThinnedContacts* thinned, std::vector<contact::Contact>* reduced) {
   const bool in_steps = method.reduce == static_cast<ReduceFunction>(reduceHull) && !hasPierced(manifold.contacts);
   if (in_steps && thinToHulls(manifold.contacts, limit, thinned)) return std::min(limit, static_cast<int>(thinned->kept.size()));
   thinned->kept.clear();
@@ -125,8 +125,8 @@ int prepare(const ContactManifold& manifold, int limit, const Reduction& method,
 }
 
 // Chooses within the limit, at least 1 where there are contacts. @return largest lack of those kept in any wrench
-float finish(const ContactManifold& manifold, int limit, const Reduction& method, const ContactIds& chosen_before,
-             const ThinnedContacts& thinned, ReductionBuffers* buffers, std::vector<Contact>* reduced) {
+float finish(const contact::ContactManifold& manifold, int limit, const Reduction& method, const ContactIds& chosen_before,
+             const ThinnedContacts& thinned, ReductionBuffers* buffers, std::vector<contact::Contact>* reduced) {
   if (!thinned.kept.empty()) return chooseFromHulls(manifold.contacts, thinned, limit, chosen_before, reduced);
   if (limit < static_cast<int>(reduced->size())) {
     buffers->again = *reduced;
@@ -137,7 +137,8 @@ float finish(const ContactManifold& manifold, int limit, const Reduction& method
 }
 
 // Whether a pair has fewer contacts than it would have without a limit.
-bool isCut(const ContactManifold& manifold, int limit, const ThinnedContacts& thinned, const std::vector<Contact>& reduced) {
+bool isCut(const contact::ContactManifold& manifold, int limit, const ThinnedContacts& thinned,
+           const std::vector<contact::Contact>& reduced) {
   if (!thinned.kept.empty()) return reduced.size() < thinned.kept.size();
   return static_cast<int>(manifold.contacts.size()) > limit;
 }
@@ -161,14 +162,14 @@ const Reduction* findReduction(const std::string& name) {
   return nullptr;
 }
 
-void reduceNone(const std::vector<Contact>& contacts, int, const ContactIds&, std::vector<Contact>* reduced) {
+void reduceNone(const std::vector<contact::Contact>& contacts, int, const ContactIds&, std::vector<contact::Contact>* reduced) {
   *reduced = contacts;
-  makeCanonical(*reduced);
+  contact::makeCanonical(*reduced);
 }
 
-ReductionLoss reduceManifolds(const std::vector<ContactManifold>& manifolds, const std::vector<int>& model_a,
+ReductionLoss reduceManifolds(const std::vector<contact::ContactManifold>& manifolds, const std::vector<int>& model_a,
                               const std::vector<int>& model_b, const std::vector<ContactBudget>& budgets, const Reduction& method,
-                              ReductionMemory* memory, std::vector<ContactManifold>* reduced) {
+                              ReductionMemory* memory, std::vector<contact::ContactManifold>* reduced) {
   static thread_local ReductionBuffers buffers;
   const bool all = method.reduce == reduceNone;
   const int count = static_cast<int>(manifolds.size());
@@ -186,7 +187,7 @@ ReductionLoss reduceManifolds(const std::vector<ContactManifold>& manifolds, con
   applyBudgets(model_a, model_b, budgets, &buffers);
   ReductionLoss loss;
   for (int m = 0; m < count; ++m) {
-    std::vector<Contact>& kept = (*reduced)[m].contacts;
+    std::vector<contact::Contact>& kept = (*reduced)[m].contacts;
     const float lack = finish(manifolds[m], buffers.limits[m], method, memory->of(manifolds[m]), buffers.thinned[m], &buffers, &kept);
     if (!isCut(manifolds[m], buffers.limits[m], buffers.thinned[m], kept)) continue;
     ++loss.cut_pairs;
@@ -197,4 +198,4 @@ ReductionLoss reduceManifolds(const std::vector<ContactManifold>& manifolds, con
   return loss;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::reduction

@@ -7,7 +7,7 @@
 #include "blem_sim/contact/contact_order.h"
 #include "blem_sim/reduction/reduction.h"
 
-namespace blem_sim {
+namespace blem_sim::reduction {
 
 namespace {
 
@@ -16,7 +16,7 @@ constexpr std::size_t MANY = 300;      // contacts from which linkage costs too 
 
 using Feature = Eigen::Matrix<double, 7, 1>;
 
-std::vector<Feature> featuresOf(const std::vector<Contact>& contacts) {
+std::vector<Feature> featuresOf(const std::vector<contact::Contact>& contacts) {
   std::vector<Feature> features(contacts.size());
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     features[i] << contacts[i].point, NORMAL_WEIGHT * contacts[i].normal_BA, contacts[i].depth;
@@ -24,23 +24,25 @@ std::vector<Feature> featuresOf(const std::vector<Contact>& contacts) {
   return features;
 }
 
-bool deeper(const Contact& a, const Contact& b) { return a.depth != b.depth ? a.depth > b.depth : contactBefore(a, b); }
+bool deeper(const contact::Contact& a, const contact::Contact& b) {
+  return a.depth != b.depth ? a.depth > b.depth : contact::contactBefore(a, b);
+}
 
 // Mean point, direction and depth of a cluster; the deepest member gives the id, and the normal where the members' cancel out.
-Contact meanContact(const std::vector<Contact>& contacts, const std::vector<int>& members) {
-  Contact deepest = contacts[members[0]];
+contact::Contact meanContact(const std::vector<contact::Contact>& contacts, const std::vector<int>& members) {
+  contact::Contact deepest = contacts[members[0]];
   Vector3 point = Vector3::Zero(), normal = Vector3::Zero();
   Box box;
   double depth = 0;
   for (int i : members) {
-    const Contact& contact = contacts[i];
+    const contact::Contact& contact = contacts[i];
     if (deeper(contact, deepest)) deepest = contact;
     point += contact.point;
     normal += contact.normal_BA;
     depth += contact.depth;
     box.extend(contact.point);
   }
-  Contact mean = deepest;
+  contact::Contact mean = deepest;
   const double count = static_cast<double>(members.size());
   // Rounding of the sums must not carry a mean out of its members' range.
   mean.point = (point / count).cwiseMax(box.min()).cwiseMin(box.max());
@@ -50,19 +52,19 @@ Contact meanContact(const std::vector<Contact>& contacts, const std::vector<int>
 }
 
 // Replaces contacts by the means of their clusters. @param cluster_of one cluster number per contact, 0 .. count - 1
-void takeMeans(std::vector<Contact>& contacts, const std::vector<int>& cluster_of, int count) {
+void takeMeans(std::vector<contact::Contact>& contacts, const std::vector<int>& cluster_of, int count) {
   std::vector<std::vector<int>> members(count);
   for (std::size_t i = 0; i < contacts.size(); ++i) members[cluster_of[i]].push_back(static_cast<int>(i));
-  std::vector<Contact> means;
+  std::vector<contact::Contact> means;
   for (const std::vector<int>& cluster : members) {
     if (!cluster.empty()) means.push_back(meanContact(contacts, cluster));
   }
   contacts = std::move(means);
-  std::sort(contacts.begin(), contacts.end(), contactBefore);
+  std::sort(contacts.begin(), contacts.end(), contact::contactBefore);
 }
 
 // The deepest contact, then always the one farthest from those taken so far.
-std::vector<Feature> farthestPoints(const std::vector<Contact>& contacts, const std::vector<Feature>& features, int k) {
+std::vector<Feature> farthestPoints(const std::vector<contact::Contact>& contacts, const std::vector<Feature>& features, int k) {
   std::size_t next = 0;
   for (std::size_t i = 1; i < contacts.size(); ++i) {
     if (deeper(contacts[i], contacts[next])) next = i;
@@ -154,9 +156,9 @@ class Linkage {
 
 }  // namespace
 
-void reduceKmeans(const std::vector<Contact>& contacts, int k, const ContactIds&, std::vector<Contact>* reduced) {
+void reduceKmeans(const std::vector<contact::Contact>& contacts, int k, const ContactIds&, std::vector<contact::Contact>* reduced) {
   *reduced = contacts;
-  makeCanonical(*reduced);
+  contact::makeCanonical(*reduced);
   if (static_cast<int>(reduced->size()) <= k) return;
   const std::vector<Feature> features = featuresOf(*reduced);
   std::vector<Feature> centres = farthestPoints(*reduced, features, k);
@@ -166,9 +168,9 @@ void reduceKmeans(const std::vector<Contact>& contacts, int k, const ContactIds&
   takeMeans(*reduced, cluster_of, k);
 }
 
-void reduceHierarchical(const std::vector<Contact>& contacts, int k, const ContactIds&, std::vector<Contact>* reduced) {
+void reduceHierarchical(const std::vector<contact::Contact>& contacts, int k, const ContactIds&, std::vector<contact::Contact>* reduced) {
   *reduced = contacts;
-  makeCanonical(*reduced);
+  contact::makeCanonical(*reduced);
   const int count = static_cast<int>(reduced->size());
   if (count <= k) return;
   if (reduced->size() > MANY) return reduceKmeans(contacts, k, {}, reduced);
@@ -184,4 +186,4 @@ void reduceHierarchical(const std::vector<Contact>& contacts, int k, const Conta
   takeMeans(*reduced, cluster_of, count);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::reduction

@@ -14,7 +14,7 @@
 #include "patches/normal_cells.h"
 #include "patches/patch_hull.h"
 
-namespace blem_sim {
+namespace blem_sim::reduction {
 
 namespace {
 
@@ -44,8 +44,8 @@ bool mayHaveStairs(const std::vector<double>& heights) {
 }
 
 // Appends the hull of every patch among contacts of one cell, two at least. Reorders the members.
-void keepHullsOfCell(const std::vector<Contact>& contacts, int* begin, int* end, const Vector3& normal, int k, PatchBuffers* buffers,
-                     std::vector<int>* kept) {
+void keepHullsOfCell(const std::vector<contact::Contact>& contacts, int* begin, int* end, const Vector3& normal, int k,
+                     PatchBuffers* buffers, std::vector<int>* kept) {
   std::vector<double>& heights = buffers->heights;
   heights.clear();
   for (const int* member = begin; member != end; ++member) heights.push_back(normal.dot(contacts[*member].point));
@@ -65,7 +65,7 @@ void keepHullsOfCell(const std::vector<Contact>& contacts, int* begin, int* end,
 }
 
 // Keeps the hull of each patch of equal normals; all contacts where normals are too many for patches to matter.
-void keepPatchHulls(const std::vector<Contact>& contacts, int k, PatchBuffers* buffers, std::vector<int>* kept) {
+void keepPatchHulls(const std::vector<contact::Contact>& contacts, int k, PatchBuffers* buffers, std::vector<int>* kept) {
   NormalCells& cells = buffers->cells;
   if (!cells.group(contacts)) {
     kept->resize(contacts.size());
@@ -82,7 +82,7 @@ void keepPatchHulls(const std::vector<Contact>& contacts, int k, PatchBuffers* b
   }
 }
 
-float choose(const std::vector<Contact>& contacts, const ThinnedContacts& thinned, int k, const ContactIds& chosen_before,
+float choose(const std::vector<contact::Contact>& contacts, const ThinnedContacts& thinned, int k, const ContactIds& chosen_before,
              PatchBuffers* buffers) {
   if (thinned.kept.size() > CROWD && k <= FEW) {
     thinCrowd(contacts, thinned.scale, thinned.kept, chosen_before, &buffers->candidates);
@@ -95,44 +95,45 @@ float choose(const std::vector<Contact>& contacts, const ThinnedContacts& thinne
 
 }  // namespace
 
-bool thinToHulls(const std::vector<Contact>& contacts, int k, ThinnedContacts* thinned) {
+bool thinToHulls(const std::vector<contact::Contact>& contacts, int k, ThinnedContacts* thinned) {
   bool ready = true;
   thinned->scale = PatchScale(contacts, &ready);
   if (ready) keepPatchHulls(contacts, k, &threadBuffers(), &thinned->kept);
   return ready;
 }
 
-float chooseFromHulls(const std::vector<Contact>& contacts, const ThinnedContacts& thinned, int k, const ContactIds& chosen_before,
-                      std::vector<Contact>* reduced) {
+float chooseFromHulls(const std::vector<contact::Contact>& contacts, const ThinnedContacts& thinned, int k, const ContactIds& chosen_before,
+                      std::vector<contact::Contact>* reduced) {
   const bool few = static_cast<int>(thinned.kept.size()) <= k;
   PatchBuffers& buffers = threadBuffers();
-  makeRoomFor(thinned.kept.size(), &buffers.chosen);
+  geometry::makeRoomFor(thinned.kept.size(), &buffers.chosen);
   if (few) buffers.chosen = thinned.kept;
   const float lack = few ? 0 : choose(contacts, thinned, k, chosen_before, &buffers);
-  sortCanonically(contacts, &buffers.chosen);
+  contact::sortCanonically(contacts, &buffers.chosen);
   reduced->clear();
   for (const int i : buffers.chosen) reduced->push_back(contacts[i]);
   return lack;
 }
 
-void reduceHull(const std::vector<Contact>& contacts, int k, const ContactIds& chosen_before, std::vector<Contact>* reduced) {
+void reduceHull(const std::vector<contact::Contact>& contacts, int k, const ContactIds& chosen_before,
+                std::vector<contact::Contact>* reduced) {
   static thread_local ThinnedContacts thinned;
   if (thinToHulls(contacts, k, &thinned)) {
     chooseFromHulls(contacts, thinned, k, chosen_before, reduced);
     return;
   }
-  static thread_local std::vector<Contact> usable;
+  static thread_local std::vector<contact::Contact> usable;
   usable = contacts;
-  makeUsable(usable);
+  contact::makeUsable(usable);
   bool ready = true;
   thinned.scale = PatchScale(usable, &ready);
   keepPatchHulls(usable, k, &threadBuffers(), &thinned.kept);
   chooseFromHulls(usable, thinned, k, chosen_before, reduced);
 }
 
-void reduceHull(std::vector<Contact>& contacts, int k, const ContactIds& chosen_before) {
-  const std::vector<Contact> all = contacts;
+void reduceHull(std::vector<contact::Contact>& contacts, int k, const ContactIds& chosen_before) {
+  const std::vector<contact::Contact> all = contacts;
   reduceHull(all, k, chosen_before, &contacts);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::reduction

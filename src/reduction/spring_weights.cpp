@@ -9,7 +9,7 @@
 #include "blem_sim/reduction/reduction.h"
 #include "lanes/instruction_sets.h"
 
-namespace blem_sim {
+namespace blem_sim::reduction {
 
 namespace {
 
@@ -112,7 +112,7 @@ struct SpringBuffers {
   std::vector<Row> inverses;         // per leader: inverse sum of its patch's prominence
 };
 
-void findProminence(const std::vector<Contact>& contacts, SpringBuffers* buffers) {
+void findProminence(const std::vector<contact::Contact>& contacts, SpringBuffers* buffers) {
   static const Directions directions = makeSpringDirections();
   Row highest;
   std::fill(std::begin(highest.of), std::end(highest.of), -std::numeric_limits<double>::infinity());
@@ -125,16 +125,17 @@ void findProminence(const std::vector<Contact>& contacts, SpringBuffers* buffers
 }
 
 // Adds a leader, with the inverse sum of all contacts that lie in one patch with those of its normal.
-void addLeader(const std::vector<Contact>& contacts, std::size_t leader, SpringBuffers* buffers) {
+void addLeader(const std::vector<contact::Contact>& contacts, std::size_t leader, SpringBuffers* buffers) {
   buffers->alike.clear();
-  for (const Contact& contact : contacts) buffers->alike.push_back(1 - (contacts[leader].normal_BA - contact.normal_BA).norm() / ALIKE);
+  for (const contact::Contact& contact : contacts)
+    buffers->alike.push_back(1 - (contacts[leader].normal_BA - contact.normal_BA).norm() / ALIKE);
   buffers->leaders.push_back(leader);
   buffers->inverses.emplace_back();
   invertSum(buffers->prominence.data(), buffers->alike.data(), contacts.size(), &buffers->inverses.back());
 }
 
 // Inverse sum for a contact: the last leader's, mostly, for patches are flat, or curved without equal normals.
-const Row& inverseFor(const std::vector<Contact>& contacts, std::size_t i, SpringBuffers* buffers) {
+const Row& inverseFor(const std::vector<contact::Contact>& contacts, std::size_t i, SpringBuffers* buffers) {
   for (std::size_t l = buffers->leaders.size(); l-- > 0;) {
     if (contacts[buffers->leaders[l]].normal_BA == contacts[i].normal_BA) return buffers->inverses[l];
   }
@@ -144,10 +145,10 @@ const Row& inverseFor(const std::vector<Contact>& contacts, std::size_t i, Sprin
 
 }  // namespace
 
-void weighSprings(std::vector<Contact>& contacts) {
+void weighSprings(std::vector<contact::Contact>& contacts) {
   static thread_local SpringBuffers buffers;
   if (contacts.size() < 3) {
-    for (Contact& contact : contacts) contact.weight = 1;
+    for (contact::Contact& contact : contacts) contact.weight = 1;
     return;
   }
   findProminence(contacts, &buffers);
@@ -160,4 +161,4 @@ void weighSprings(std::vector<Contact>& contacts) {
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::reduction

@@ -15,7 +15,7 @@
 #include "messages/parameter_yaml.h"
 #include "messages/pid_gains.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 namespace {
 
@@ -80,7 +80,7 @@ YAML::Node describedRobots(YAML::Node row, const std::string& file, const std::s
   YAML::Node robots(YAML::NodeType::Sequence);
   std::string xml;
   if (!file.empty()) {
-    const std::string path = UriResolver().resolve(file, base_directory);
+    const std::string path = model::UriResolver().resolve(file, base_directory);
     xml = readFile(path, source);
     row["urdf"] = path;
   } else if (ros::param::get(DEFAULT_DESCRIPTION, xml)) {
@@ -93,8 +93,8 @@ YAML::Node describedRobots(YAML::Node row, const std::string& file, const std::s
   return robots;
 }
 
-void fetchDescriptions(const std::string& source, SimulationConfig* config) {
-  for (RobotConfig& robot : config->robots) {
+void fetchDescriptions(const std::string& source, sim::SimulationConfig* config) {
+  for (sim::RobotConfig& robot : config->robots) {
     if (robot.description_param.empty()) continue;
     const std::string parameter = ros::names::resolve(robot.description_param);
     if (!ros::param::get(parameter, robot.urdf_xml)) {
@@ -106,7 +106,7 @@ void fetchDescriptions(const std::string& source, SimulationConfig* config) {
 
 }  // namespace
 
-std::vector<std::string> serviceFolders(const SimulationConfig& config) {
+std::vector<std::string> serviceFolders(const sim::SimulationConfig& config) {
   if (!config.allow_file_services) return {};
   std::vector<std::string> folders = config.file_roots;
   if (!config.base_directory.empty()) folders.push_back(config.base_directory);
@@ -117,7 +117,7 @@ std::vector<std::string> serviceFolders(const SimulationConfig& config) {
   return folders;
 }
 
-std::string checkpointFile(const SimulationConfig& config, const ros::NodeHandle& private_node) {
+std::string checkpointFile(const sim::SimulationConfig& config, const ros::NodeHandle& private_node) {
   namespace fs = std::filesystem;
   if (!config.checkpoint_file.empty()) return fs::absolute(fs::path(config.base_directory) / config.checkpoint_file).string();
   std::string name = private_node.getNamespace().substr(1);
@@ -150,10 +150,10 @@ NodeParameters readParameters(const ros::NodeHandle& private_node) {
     row["uri"] = environment;
     parameters["environments"].push_back(row);
   }
-  SimulationConfig config = parseConfig(parameters, source, directoryOf(config_file));
+  sim::SimulationConfig config = sim::parseConfig(parameters, source, directoryOf(config_file));
   fetchDescriptions(source, &config);
-  for (RobotConfig& robot : config.robots) robot.pid_gains = pidGainsIn(robot.name_space);
+  for (sim::RobotConfig& robot : config.robots) robot.pid_gains = pidGainsIn(robot.name_space);
   return {config, YAML::Dump(parameters)};
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -8,11 +8,11 @@
 
 #include "blem_sim/sim/config.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /** A configuration, and the text that parseConfig read it from. */
 struct NodeParameters {
-  SimulationConfig config;
+  sim::SimulationConfig config;
   std::string yaml;
 };
 
@@ -28,9 +28,9 @@ NodeParameters readParameters(const ros::NodeHandle& private_node);
 
 /** Folders whose files services may read and write: the configuration's, file_roots and those of ROS_PACKAGE_PATH; none if services may
  * use no files. */
-std::vector<std::string> serviceFolders(const SimulationConfig& config);
+std::vector<std::string> serviceFolders(const sim::SimulationConfig& config);
 
 /** Absolute path of the node's checkpoint: checkpoint_file, or NODE.checkpoint below ROS_HOME. */
-std::string checkpointFile(const SimulationConfig& config, const ros::NodeHandle& private_node);
+std::string checkpointFile(const sim::SimulationConfig& config, const ros::NodeHandle& private_node);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

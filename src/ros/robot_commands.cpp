@@ -9,22 +9,22 @@
 #include "messages/joint_messages.h"
 #include "messages/trajectory_messages.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 namespace {
 constexpr int COMMAND_QUEUE = 100;
 }
 
-RobotCommands::RobotCommands(ros::NodeHandle node, Simulator* simulator) : node_(node), simulator_(simulator) { modelsChanged(); }
+RobotCommands::RobotCommands(ros::NodeHandle node, sim::Simulator* simulator) : node_(node), simulator_(simulator) { modelsChanged(); }
 
 void RobotCommands::modelsChanged() {
   for (auto robot = subscribers_.begin(); robot != subscribers_.end();)
     robot = simulator_->robotIndex(robot->first) < 0 ? subscribers_.erase(robot) : std::next(robot);
-  for (const RobotInfo& robot : simulator_->robots())
+  for (const sim::RobotInfo& robot : simulator_->robots())
     if (subscribers_.count(robot.name) == 0) subscribers_[robot.name] = subscribe(robot);
 }
 
-std::vector<ros::Subscriber> RobotCommands::subscribe(const RobotInfo& info) {
+std::vector<ros::Subscriber> RobotCommands::subscribe(const sim::RobotInfo& info) {
   std::vector<ros::Subscriber> subscribers;
   ros::NodeHandle robot_node(node_, info.name_space);
   const std::string robot = info.name;
@@ -54,4 +54,4 @@ void RobotCommands::onJointCommand(const std::string& robot, const std::string& 
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -10,7 +10,7 @@
 
 #include "blem_sim/sim/simulator.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /**
  * Commands to a robot past its controllers, in its namespace: `joint_trajectory` (trajectory_msgs/JointTrajectory for some or all joints;
@@ -19,18 +19,18 @@ namespace blem_sim {
  */
 class RobotCommands {
  public:
-  RobotCommands(ros::NodeHandle node, Simulator* simulator);
+  RobotCommands(ros::NodeHandle node, sim::Simulator* simulator);
   /** Robots came or went. */
   void modelsChanged();
 
  private:
-  std::vector<ros::Subscriber> subscribe(const RobotInfo& robot);
+  std::vector<ros::Subscriber> subscribe(const sim::RobotInfo& robot);
   void onTrajectory(const std::string& robot, const std::string& topic, const trajectory_msgs::JointTrajectory& message);
   void onJointCommand(const std::string& robot, const std::string& topic, const sensor_msgs::JointState& message);
 
   ros::NodeHandle node_;
-  Simulator* simulator_;
+  sim::Simulator* simulator_;
   std::map<std::string, std::vector<ros::Subscriber>> subscribers_;  // by name of the robot
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

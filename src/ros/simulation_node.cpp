@@ -36,12 +36,12 @@
 #include "services/spawn_services.h"
 #include "services/step_service.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 namespace {
 
 /** Log of long loads, in the node's log. */
-LoadLog consoleLog() {
+sim::LoadLog consoleLog() {
   return {[](const std::string& line) { ROS_INFO("%s", line.c_str()); }};
 }
 
@@ -59,7 +59,7 @@ struct SimulationNode::Impl {
   ros::NodeHandle node = nodeOn(&callbacks, "");
   ros::NodeHandle private_node = nodeOn(&callbacks, "~");
   const NodeParameters parameters = readParameters(private_node);
-  Simulator simulator{parameters.config, UriResolver(), consoleLog()};
+  sim::Simulator simulator{parameters.config, model::UriResolver(), consoleLog()};
   InputRecorder recorder{&simulator, parameters.yaml};
   SimulationLoop loop{&simulator};
   DiagnosticsPublisher* diagnostics = nullptr;
@@ -101,7 +101,8 @@ struct SimulationNode::Impl {
 
   void addLiveClouds() {
     const auto& environments = simulator.config().environments;
-    if (std::none_of(environments.begin(), environments.end(), [](const EnvironmentConfig& e) { return !e.live.topic.empty(); })) return;
+    if (std::none_of(environments.begin(), environments.end(), [](const sim::EnvironmentConfig& e) { return !e.live.topic.empty(); }))
+      return;
     auto live_clouds = std::make_unique<LiveClouds>(node, private_node, &loop);
     diagnostics->add("live clouds", [clouds = live_clouds.get()](auto& status) { clouds->describe(status); });
     loop.add(std::move(live_clouds));
@@ -119,7 +120,7 @@ struct SimulationNode::Impl {
     step = std::make_unique<StepService>(private_node, &loop);
     learner = std::make_unique<LearnerService>(private_node, &loop);
     loop.onModelsChanged([this] { commands->modelsChanged(); });
-    const FileRoots roots(serviceFolders(simulator.config()));
+    const model::FileRoots roots(serviceFolders(simulator.config()));
     simulator.restrictFiles(roots);
     environments = std::make_unique<EnvironmentServices>(private_node, &loop);
     queries = std::make_unique<QueryServices>(private_node, &loop);
@@ -134,7 +135,7 @@ struct SimulationNode::Impl {
   }
 
   void startRecord() {
-    const SimulationConfig& config = simulator.config();
+    const sim::SimulationConfig& config = simulator.config();
     if (!config.record_file.empty()) recorder.start((std::filesystem::path(config.base_directory) / config.record_file).string());
   }
 };
@@ -150,10 +151,10 @@ SimulationNode::SimulationNode() : impl_(std::make_unique<Impl>()) {
 SimulationNode::~SimulationNode() = default;
 
 void SimulationNode::run() {
-  const Simulator& simulator = impl_->simulator;
+  const sim::Simulator& simulator = impl_->simulator;
   ROS_INFO("ready: %zu robots, %zu models, %zu colliders, time step %g s%s", simulator.robots().size(), simulator.models().size(),
            simulator.colliders().size(), simulator.config().time_step, impl_->loop.paused() ? ", paused" : "");
   impl_->loop.run(&impl_->callbacks, [this](bool paused) { impl_->diagnostics->serve(paused); });
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

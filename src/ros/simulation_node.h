@@ -5,7 +5,7 @@
 
 #include <memory>
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /** The simulation behind its ROS names. Everything but the transport runs in the thread that calls run(). */
 class SimulationNode {
@@ -22,4 +22,4 @@ class SimulationNode {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -9,13 +9,13 @@
 
 int main(int argc, char** argv) {
   ros::init(argc, argv, "blem_sim");
-  blem_sim::PollRounds::instance().watchBegin();
+  blem_sim::node::PollRounds::instance().watchBegin();
   // The parameter is set before the node starts its own clock, which asks for it.
   if (!ros::param::has("/use_sim_time")) ros::param::set("/use_sim_time", true);
   // roscpp ends with its last handle, and its log with it: this handle keeps it until the error line is out.
   const ros::NodeHandle handle;
   try {
-    blem_sim::SimulationNode node;
+    blem_sim::node::SimulationNode node;
     node.run();
   } catch (const std::exception& error) {
     ROS_FATAL("%s", error.what());

@@ -11,7 +11,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    const blem_sim::ReplayResult replay = blem_sim::replay(argv[1]);
+    const blem_sim::node::ReplayResult replay = blem_sim::node::replay(argv[1]);
     if (!replay.difference.empty()) {
       std::printf("%s: %s\n", argv[1], replay.difference.c_str());
       return 1;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 namespace {
 
@@ -60,16 +60,18 @@ std::vector<Colour> coloursByHeight(const std::vector<Vector3>& points, const Ve
   return colours;
 }
 
-Vector3 forceOnMovingSide(const ContactReport& contact) { return contact.body_a == WORLD_BODY ? Vector3(-contact.force) : contact.force; }
+Vector3 forceOnMovingSide(const ContactReport& contact) {
+  return contact.body_a == dynamics::WORLD_BODY ? Vector3(-contact.force) : contact.force;
+}
 
 double movingWeight(const Simulator& simulator) {
   double mass = 0;
   for (const ModelInfo& model : simulator.models()) {
     for (const int body : model.bodies) {
-      if (body != WORLD_BODY) mass += simulator.world().bodySpec(body).inertial.mass;
+      if (body != dynamics::WORLD_BODY) mass += simulator.world().bodySpec(body).inertial.mass;
     }
   }
   return mass * std::max(1.0, simulator.gravity().norm());
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -6,7 +6,7 @@
 #include "blem_sim/geometry/input_error.h"
 #include "numbers/nearest_name.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 const char* const SCOPE = "::";
@@ -14,10 +14,10 @@ const char* const ENVIRONMENT_LINK = "link";
 
 LinkPart linkOfRobot(const Simulator& simulator, int robot, int link) {
   const RobotInfo& info = simulator.robots()[robot];
-  const LinkPlacement& placement = info.lumped->link_placement[link];
+  const model::LinkPlacement& placement = info.lumped->link_placement[link];
   LinkPart part{
       info.name + SCOPE + info.description->links[link].name, info.model, robot, link, info.bodies[placement.body], placement.X_BL};
-  if (part.body == WORLD_BODY) part.X_BL = info.X_WR * placement.X_BL;
+  if (part.body == dynamics::WORLD_BODY) part.X_BL = info.X_WR * placement.X_BL;
   return part;
 }
 
@@ -72,7 +72,8 @@ std::vector<LinkPart> linksOf(const Simulator& simulator, int index) {
   const ModelInfo& model = simulator.models()[index];
   std::vector<LinkPart> parts;
   if (!model.alive) return parts;
-  if (model.kind == ModelKind::ENVIRONMENT) parts.push_back({model.name + SCOPE + ENVIRONMENT_LINK, index, -1, -1, WORLD_BODY, model.X_WM});
+  if (model.kind == ModelKind::ENVIRONMENT)
+    parts.push_back({model.name + SCOPE + ENVIRONMENT_LINK, index, -1, -1, dynamics::WORLD_BODY, model.X_WM});
   if (model.kind == ModelKind::OBJECT)
     for (const int body : model.bodies) parts.push_back({simulator.bodyName(body), index, -1, -1, body, Pose::Identity()});
   if (model.kind != ModelKind::ROBOT) return parts;
@@ -112,4 +113,4 @@ std::optional<LinkPart> findFrame(const Simulator& simulator, const std::string&
   return findLink(simulator, name, where);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 void PartReports::startStep(std::size_t joints) {
   contacts_.clear();
@@ -61,4 +61,4 @@ void PartReports::addJoints(const std::vector<Wrench>& wrenches, const std::vect
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -7,7 +7,7 @@
 
 #include "blem_sim/sim/step_report.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /**
  * Means over a step: forces, wrenches and efforts count by the length of their parts, so times the length of the step they are impulses. Of
@@ -61,4 +61,4 @@ class PartReports {
   std::vector<double> efforts_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

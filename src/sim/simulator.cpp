@@ -9,7 +9,7 @@
 #include "numbers/nearest_name.h"
 #include "simulator_impl.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 template <typename Named>
@@ -20,7 +20,7 @@ int indexOf(const std::vector<Named>& items, const std::string& name) {
 
 }  // namespace
 
-Simulator::Impl::Impl(const SimulationConfig& config, const UriResolver& resolver, LoadLog log)
+Simulator::Impl::Impl(const SimulationConfig& config, const model::UriResolver& resolver, LoadLog log)
     : config_((checkConfig(config), config)),
       world_(config.gravity, config.solver),
       builder_(config.contact, config.base_directory, resolver, std::move(log)),
@@ -58,7 +58,7 @@ void Simulator::Impl::forgetLayers(const std::string& model) {
   layout_.clear();
 }
 
-Simulator::Simulator(const SimulationConfig& config, const UriResolver& resolver, LoadLog log)
+Simulator::Simulator(const SimulationConfig& config, const model::UriResolver& resolver, LoadLog log)
     : impl_(std::make_unique<Impl>(config, resolver, std::move(log))) {}
 Simulator::~Simulator() = default;
 
@@ -79,12 +79,12 @@ const Vector3& Simulator::gravity() const { return impl_->world_.world.gravity()
 const std::vector<ModelInfo>& Simulator::models() const { return impl_->world_.models; }
 const std::vector<RobotInfo>& Simulator::robots() const { return impl_->world_.robots; }
 const std::vector<SensorInfo>& Simulator::sensors() const { return impl_->world_.sensors; }
-const std::vector<Collider>& Simulator::colliders() const { return impl_->world_.colliders; }
-const std::vector<MeshReport>& Simulator::loadReport() const { return impl_->world_.load_report; }
+const std::vector<contact::Collider>& Simulator::colliders() const { return impl_->world_.colliders; }
+const std::vector<geometry::MeshReport>& Simulator::loadReport() const { return impl_->world_.load_report; }
 const std::vector<std::string>& Simulator::notes() const { return impl_->world_.notes; }
-const World& Simulator::world() const { return impl_->world_.world; }
+const dynamics::World& Simulator::world() const { return impl_->world_.world; }
 
-std::string Simulator::bodyName(int body) const { return body == WORLD_BODY ? "world" : world().bodySpec(body).name; }
+std::string Simulator::bodyName(int body) const { return body == dynamics::WORLD_BODY ? "world" : world().bodySpec(body).name; }
 int Simulator::robotIndex(const std::string& name) const { return indexOf(robots(), name); }
 int Simulator::modelIndex(const std::string& name) const { return impl_->world_.modelIndex(name); }
 Pose Simulator::linkPose(int robot, int link) const { return impl_->world_.linkPose(robots().at(robot), link); }
@@ -141,7 +141,7 @@ void Simulator::removeModel(const std::string& name) {
   impl_->removeModel(name);
   impl_->tell("removeModel", name);
 }
-void Simulator::restrictFiles(const FileRoots& roots) { impl_->builder_.restrictFiles(roots); }
+void Simulator::restrictFiles(const model::FileRoots& roots) { impl_->builder_.restrictFiles(roots); }
 
 void Simulator::attach(const std::string& object, const LinkPart& part, double max_force, double max_torque) {
   impl_->attach(object, part, max_force, max_torque);
@@ -153,7 +153,7 @@ void Simulator::detach(const std::string& object) {
 }
 const std::vector<AttachedModel>& Simulator::attachments() const { return impl_->world_.attachments; }
 
-void Simulator::moveModel(int body, const BodyState& to) {
+void Simulator::moveModel(int body, const dynamics::BodyState& to) {
   impl_->moveModel(body, to);
   impl_->tell("moveModel", body, to);
 }
@@ -187,7 +187,7 @@ void Simulator::setPhysics(const Vector3& gravity, double time_step, double real
   impl_->setPhysics(gravity, time_step, real_time_factor);
   impl_->tell("setPhysics", gravity, time_step, real_time_factor);
 }
-void Simulator::setLinkInertial(int body, int link, const MassProperties& inertial) {
+void Simulator::setLinkInertial(int body, int link, const geometry::MassProperties& inertial) {
   impl_->setLinkInertial(body, link, inertial);
   impl_->tell("setLinkInertial", body, link, inertial);
 }
@@ -196,4 +196,4 @@ void Simulator::setJointLimits(int robot, int joint, double lower, double upper)
   impl_->tell("setJointLimits", robot, joint, lower, upper);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

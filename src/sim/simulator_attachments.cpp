@@ -7,20 +7,20 @@
 #include "numbers/nearest_name.h"
 #include "simulator_impl.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 /** Bodies that hang rigidly together with one, itself among them. */
-std::vector<int> rigidWith(const World& world, int body) {
+std::vector<int> rigidWith(const dynamics::World& world, int body) {
   std::vector<int> bodies = {body};
   const auto add = [&](int other) {
-    if (other != WORLD_BODY && std::find(bodies.begin(), bodies.end(), other) == bodies.end()) bodies.push_back(other);
+    if (other != dynamics::WORLD_BODY && std::find(bodies.begin(), bodies.end(), other) == bodies.end()) bodies.push_back(other);
   };
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    if (bodies[i] == WORLD_BODY) continue;
+    if (bodies[i] == dynamics::WORLD_BODY) continue;
     for (int joint = 0; joint < world.jointCount(); ++joint) {
-      if (!world.hasJoint(joint) || world.jointSpec(joint).kind != JointKind::FIXED) continue;
-      const JointSpec& spec = world.jointSpec(joint);
+      if (!world.hasJoint(joint) || world.jointSpec(joint).kind != dynamics::JointKind::FIXED) continue;
+      const dynamics::JointSpec& spec = world.jointSpec(joint);
       if (spec.child == bodies[i]) add(spec.parent);
       if (spec.parent == bodies[i]) add(spec.child);
     }
@@ -32,9 +32,9 @@ std::vector<int> rigidWith(const World& world, int body) {
 std::vector<std::pair<int, int>> pairsAmong(const SimulatedWorld& world, const std::vector<int>& bodies, const LinkPart& part) {
   std::vector<int> members;
   for (int i = 0; i < static_cast<int>(world.colliders.size()); ++i) {
-    const Collider& c = world.colliders[i];
-    const bool is_static = c.body == WORLD_BODY && part.body == WORLD_BODY && c.model == part.model;
-    const bool hangs = c.body != WORLD_BODY && std::find(bodies.begin(), bodies.end(), c.body) != bodies.end();
+    const contact::Collider& c = world.colliders[i];
+    const bool is_static = c.body == dynamics::WORLD_BODY && part.body == dynamics::WORLD_BODY && c.model == part.model;
+    const bool hangs = c.body != dynamics::WORLD_BODY && std::find(bodies.begin(), bodies.end(), c.body) != bodies.end();
     if (c.enabled && (is_static || hangs)) members.push_back(i);
   }
   std::vector<std::pair<int, int>> pairs;
@@ -45,11 +45,11 @@ std::vector<std::pair<int, int>> pairsAmong(const SimulatedWorld& world, const s
 }
 
 /** State of a body that a part carries: as the part moves, at the place that the weld gives it. */
-BodyState carriedBy(const World& world, const AttachedModel& weld) {
-  BodyState state;
-  const BodyState carrier = weld.part.body == WORLD_BODY ? BodyState() : world.bodyState(weld.part.body);
+dynamics::BodyState carriedBy(const dynamics::World& world, const AttachedModel& weld) {
+  dynamics::BodyState state;
+  const dynamics::BodyState carrier = weld.part.body == dynamics::WORLD_BODY ? dynamics::BodyState() : world.bodyState(weld.part.body);
   state.X_WB = carrier.X_WB * world.jointSpec(weld.joint).X_PJ;
-  if (weld.part.body == WORLD_BODY) return state;
+  if (weld.part.body == dynamics::WORLD_BODY) return state;
   const Vector3 com = state.X_WB * world.bodySpec(weld.body).inertial.com;
   state.w_WB = carrier.w_WB;
   state.v_WCom = carrier.v_WCom + carrier.w_WB.cross(com - carrier.X_WB * world.bodySpec(weld.part.body).inertial.com);
@@ -91,13 +91,13 @@ void Simulator::Impl::attach(const std::string& object, const LinkPart& part, do
   weld.part = part;
   weld.max_force = max_force;
   weld.max_torque = max_torque;
-  const World& world = world_.world;
-  JointSpec spec;
+  const dynamics::World& world = world_.world;
+  dynamics::JointSpec spec;
   spec.name = object + "::attached";
-  spec.kind = JointKind::FIXED;
+  spec.kind = dynamics::JointKind::FIXED;
   spec.parent = part.body;
   spec.child = weld.body;
-  const Pose X_WP = part.body == WORLD_BODY ? Pose::Identity() : world.bodyState(part.body).X_WB;
+  const Pose X_WP = part.body == dynamics::WORLD_BODY ? Pose::Identity() : world.bodyState(part.body).X_WB;
   spec.X_PJ = X_WP.inverse() * world.bodyState(weld.body).X_WB;
   weld.joint = world_.addJoint(spec, 0, JointMotor(MotorSettings(), 0));
   world_.attachments.push_back(weld);
@@ -160,4 +160,4 @@ void Simulator::Impl::watchAttachments() {
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

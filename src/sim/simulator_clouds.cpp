@@ -10,7 +10,7 @@
 #include "clouds/inner_points.h"
 #include "simulator_impl.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr double TOUCH = 1e-5;          // [m] largest gap of a point that something stands on
@@ -34,13 +34,13 @@ void Simulator::Impl::addLive(const EnvironmentConfig& environment) {
 }
 
 /** Adds the points of one collider of a pair that the other one stands on: those that the last step chose, if it chose some. */
-void Simulator::Impl::addStoodOn(const ContactManifold& manifold, bool is_a, std::vector<LeavingPoint>* points) const {
+void Simulator::Impl::addStoodOn(const contact::ContactManifold& manifold, bool is_a, std::vector<LeavingPoint>* points) const {
   const int index = is_a ? manifold.a : manifold.b;
-  const Collider& collider = world_.colliders[index];
-  const ContactIds& chosen = contacts_.memory().of(manifold);
+  const contact::Collider& collider = world_.colliders[index];
+  const reduction::ContactIds& chosen = contacts_.memory().of(manifold);
   const std::size_t most = points->size() + MOST_LEFT;
-  for (const Contact& contact : manifold.contacts) {
-    const int vertex = vertexOf(contact.id, is_a);
+  for (const contact::Contact& contact : manifold.contacts) {
+    const int vertex = contact::vertexOf(contact.id, is_a);
     if (vertex < 0 || contact.pierced || contact.depth < -TOUCH) continue;
     if (chosen.empty() ? points->size() == most : !std::binary_search(chosen.begin(), chosen.end(), contact.id)) continue;
     points->push_back({collider.X_BC * collider.geometry->mesh().vertices[vertex], contacts_.fading().sinkOf(index, vertex)});
@@ -49,7 +49,7 @@ void Simulator::Impl::addStoodOn(const ContactManifold& manifold, bool is_a, std
 
 std::vector<Simulator::Impl::LeavingPoint> Simulator::Impl::pointsStoodOn(int model) const {
   std::vector<LeavingPoint> points;
-  for (const ContactManifold& manifold : contacts_.current())
+  for (const contact::ContactManifold& manifold : contacts_.current())
     for (const bool is_a : {true, false})
       if (world_.colliders[is_a ? manifold.a : manifold.b].model == model) addStoodOn(manifold, is_a, &points);
   const auto key = [](const LeavingPoint& p) { return std::make_tuple(p.p_W.x(), p.p_W.y(), p.p_W.z(), p.sink); };
@@ -62,7 +62,7 @@ std::vector<Simulator::Impl::LeavingPoint> Simulator::Impl::pointsStoodOn(int mo
 void Simulator::Impl::addLeaving(int model, const std::vector<LeavingPoint>& points, double speed) {
   if (points.empty()) return;
   const LiveGround& live = live_.at(world_.models[model].name);
-  Collider leaving = world_.colliders[live.cloud];
+  contact::Collider leaving = world_.colliders[live.cloud];
   leaving.name += "::leaving";
   std::vector<Vector3> places;
   std::vector<SunkPoint> sunk;
@@ -70,8 +70,9 @@ void Simulator::Impl::addLeaving(int model, const std::vector<LeavingPoint>& poi
     sunk.push_back({static_cast<int>(places.size()), std::max(point.sink, speed * config_.time_step)});
     places.push_back(leaving.X_BC.inverse() * point.p_W);
   }
-  MeshReport report;
-  leaving.geometry = std::make_shared<const CollisionGeometry>(std::make_shared<const TriangleMesh>(pointCloudMesh(places, &report)));
+  geometry::MeshReport report;
+  leaving.geometry = std::make_shared<const contact::CollisionGeometry>(
+      std::make_shared<const geometry::TriangleMesh>(geometry::pointCloudMesh(places, &report)));
   report.source = "points that sink away below what stood on them";
   const int collider = world_.addCollider(leaving, leaving.radius, leaving.surface, report);
   layer_watch_.forget(collider);
@@ -80,10 +81,10 @@ void Simulator::Impl::addLeaving(int model, const std::vector<LeavingPoint>& poi
 
 std::vector<SunkPoint> Simulator::Impl::sunkIntoTouch(int cloud) const {
   std::vector<SunkPoint> sunk = innerPoints(world_, bodies_, cloud);
-  for (const ContactManifold& manifold : contacts_.found()) {
+  for (const contact::ContactManifold& manifold : contacts_.found()) {
     if (manifold.a != cloud && manifold.b != cloud) continue;
-    for (const Contact& contact : manifold.contacts) {
-      const int vertex = vertexOf(contact.id, manifold.a == cloud);
+    for (const contact::Contact& contact : manifold.contacts) {
+      const int vertex = contact::vertexOf(contact.id, manifold.a == cloud);
       if (vertex >= 0 && !contact.pierced && contact.depth > 0) sunk.push_back({vertex, contact.depth});
     }
   }
@@ -103,7 +104,7 @@ void Simulator::Impl::updateCloud(const std::string& environment, CloudSurface* 
   forgetContacts(world_.collidersOf(model));
   for (const int collider : world_.removeShapes(model)) contacts_.fading().forget(collider);
 
-  Collider cloud;
+  contact::Collider cloud;
   cloud.name = environment;
   cloud.model = model;
   cloud.X_BC = makePose(surface->origin);
@@ -132,4 +133,4 @@ void Simulator::Impl::endFading() {
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -9,7 +9,7 @@
 #include "numbers/nearest_turn.h"
 #include "simulator_impl.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 using Knot = JointSpline::Knot;
@@ -93,11 +93,11 @@ double Simulator::Impl::nearestTurn(int joint, double position) const {
 }
 
 JointSample Simulator::Impl::desiredState(int joint, double time) const {
-  const JointSpec& spec = world_.world.jointSpec(joint);
+  const dynamics::JointSpec& spec = world_.world.jointSpec(joint);
   if (spec.mimic_joint < 0) return world_.motors[joint].desired(time);
   const JointSample master = desiredState(spec.mimic_joint, time);
   return {spec.mimic_multiplier * master.position + spec.mimic_offset, spec.mimic_multiplier * master.velocity,
           spec.mimic_multiplier * master.acceleration, 0};
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -23,7 +23,7 @@
 #include "sensors/link_contacts.h"
 #include "sensors/sensor_channel.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /** Step at which the time step was set, and its time [s]. */
 struct Epoch {
@@ -33,13 +33,13 @@ struct Epoch {
 
 /** A live environment. */
 struct LiveGround {
-  SurfaceProperties surface;
+  contact::SurfaceProperties surface;
   double fade_speed = 0;  ///< [m/s]
   int cloud = -1;         ///< collider of its points; -1: none have come
 };
 
 struct Simulator::Impl {
-  Impl(const SimulationConfig& config, const UriResolver& resolver, LoadLog log);
+  Impl(const SimulationConfig& config, const model::UriResolver& resolver, LoadLog log);
 
   // One step, stage by stage: simulator_step.cpp.
   const StepReport& step();
@@ -62,10 +62,10 @@ struct Simulator::Impl {
   /** Bodies go back to where the substep started. */
   void rewind();
   /** States that bodies may reach in the rest of the step, if a solve that was thrown away has shown them; else null. */
-  const std::vector<BodyState>* foreseen();
+  const std::vector<dynamics::BodyState>* foreseen();
   const StepReport& stop();
   void findFirstContacts();
-  void jointStates(std::vector<JointState>* out) const;
+  void jointStates(std::vector<dynamics::JointState>* out) const;
   bool bodiesAreFinite() const;
 
   // simulator_report.cpp
@@ -111,7 +111,7 @@ struct Simulator::Impl {
     double sink;  ///< [m] at hand
   };
   std::vector<LeavingPoint> pointsStoodOn(int model) const;
-  void addStoodOn(const ContactManifold& manifold, bool is_a, std::vector<LeavingPoint>* points) const;
+  void addStoodOn(const contact::ContactManifold& manifold, bool is_a, std::vector<LeavingPoint>* points) const;
   void addLeaving(int model, const std::vector<LeavingPoint>& points, double speed);
   /** Sinks of a new cloud's points that are inside layers, so that they touch and no more. */
   std::vector<SunkPoint> sunkIntoTouch(int cloud) const;
@@ -128,7 +128,7 @@ struct Simulator::Impl {
   void remakeSensors();
   /** A model's colliders are elsewhere, or others: nothing is remembered of their contacts. */
   void forgetContacts(const std::vector<int>& colliders);
-  void setLinkInertial(int body, int link, const MassProperties& inertial);
+  void setLinkInertial(int body, int link, const geometry::MassProperties& inertial);
   void setJointLimits(int robot, int joint, double lower, double upper);
   void setPhysics(const Vector3& gravity, double time_step, double real_time_factor);
 
@@ -149,8 +149,8 @@ struct Simulator::Impl {
 
   // simulator_motion.cpp
   /** moveModel without its checks, and without what is attached. */
-  void moveRigidly(int model, int body, const BodyState& to);
-  void moveModel(int body, const BodyState& to);
+  void moveRigidly(int model, int body, const dynamics::BodyState& to);
+  void moveModel(int body, const dynamics::BodyState& to);
   void setJointPositions(int robot, const std::vector<std::string>& joints, const std::vector<double>& positions);
   void resetModel(int model);
   /** Bodies, joints, motors and loads of a model as they were at the start. */
@@ -191,16 +191,17 @@ struct Simulator::Impl {
   // The step at hand.
   Substeps substeps_;
   StepReport report_;
-  std::vector<JointDrive> drives_;
-  WorldState substep_start_;
-  std::vector<BodyState> bodies_before_;  ///< at the start of the step
-  std::vector<BodyState> bodies_before_substep_, bodies_;
-  std::vector<BodyState> foreseen_;  ///< velocities of the last solve that was thrown away, with the poses of bodies_; none if empty
+  std::vector<dynamics::JointDrive> drives_;
+  dynamics::WorldState substep_start_;
+  std::vector<dynamics::BodyState> bodies_before_;  ///< at the start of the step
+  std::vector<dynamics::BodyState> bodies_before_substep_, bodies_;
+  std::vector<dynamics::BodyState>
+      foreseen_;  ///< velocities of the last solve that was thrown away, with the poses of bodies_; none if empty
   std::vector<std::pair<int, int>> passed_;  ///< colliders, in the substep at hand
-  std::vector<JointState> joints_;
+  std::vector<dynamics::JointState> joints_;
   PartReports part_reports_;
   LinkContacts link_contacts_;
-  const SolveResult* solved_ = nullptr;
+  const dynamics::SolveResult* solved_ = nullptr;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -15,7 +15,7 @@
 #include "numbers/number_reader.h"
 #include "simulator_impl.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 const char* const WORLD_LINK = "world";                     // root link of a URDF that is fixed to the world
@@ -54,10 +54,10 @@ void Simulator::Impl::spawn(RobotConfig robot) {
   if (static_cast<std::size_t>(std::count_if(world_.models.begin(), world_.models.end(), [](const ModelInfo& m) { return m.alive; })) >=
       MOST_MODELS)
     throw InputError(fmt::format("{}: there are {} models, which is the most; delete some", robot.name, MOST_MODELS));
-  const std::shared_ptr<const RobotModel> model = builder_.describe(robot);
+  const std::shared_ptr<const model::RobotModel> model = builder_.describe(robot);
   robot.fixed_base = robot.fixed_base || model->links[model->root].name == WORLD_LINK;
-  const bool one_free_body =
-      !robot.fixed_base && withGazeboBlocks(robot, *model).config.sensors.empty() && lumpFixedJoints(*model, {}, false).bodies.size() == 1;
+  const bool one_free_body = !robot.fixed_base && withGazeboBlocks(robot, *model).config.sensors.empty() &&
+                             model::lumpFixedJoints(*model, {}, false).bodies.size() == 1;
   if (one_free_body)
     builder_.addObject(objectOf(robot), &world_);
   else
@@ -79,7 +79,7 @@ void Simulator::Impl::removeModel(const std::string& name) {
   const std::vector<int> bodies = world_.models[model].bodies;
   for (const int body : bodies) loads_.clearBody(body);
   for (int joint = 0; joint < world_.world.jointCount(); ++joint) {
-    const JointSpec& spec = world_.world.jointSpec(joint);
+    const dynamics::JointSpec& spec = world_.world.jointSpec(joint);
     if (std::find(bodies.begin(), bodies.end(), spec.child) != bodies.end()) loads_.clearJoint(joint);
   }
   forgetContacts(world_.collidersOf(model));
@@ -115,15 +115,16 @@ void Simulator::Impl::forgetContacts(const std::vector<int>& colliders) {
   contacts_.forget();
 }
 
-void Simulator::Impl::setLinkInertial(int body, int link, const MassProperties& inertial) {
+void Simulator::Impl::setLinkInertial(int body, int link, const geometry::MassProperties& inertial) {
   const int model = modelOfBody(body), index = world_.robotOf(model);
   if (index < 0) {
     world_.world.setInertial(body, inertial);
   } else {
     RobotInfo& robot = world_.robots[index];
-    const auto description = std::make_shared<RobotModel>(*robot.description);
+    const auto description = std::make_shared<model::RobotModel>(*robot.description);
     description->links[link].inertial = inertial;
-    const auto lumped = std::make_shared<const LumpedRobot>(lumpFixedJoints(*description, keptJoints(world_, index), robot.fixed_base));
+    const auto lumped =
+        std::make_shared<const model::LumpedRobot>(model::lumpFixedJoints(*description, keptJoints(world_, index), robot.fixed_base));
     world_.world.setInertial(body, lumped->bodies[robot.lumped->link_placement[link].body].inertial);
     robot.description = description;
     robot.lumped = lumped;
@@ -134,14 +135,14 @@ void Simulator::Impl::setLinkInertial(int body, int link, const MassProperties& 
   reportWithoutStep();
 }
 
-MassProperties Simulator::linkInertial(int body, int link) const {
+geometry::MassProperties Simulator::linkInertial(int body, int link) const {
   const int robot = link < 0 ? -1 : impl_->world_.robotOf(impl_->modelOfBody(body));
   if (robot < 0) return world().bodySpec(body).inertial;
   const RobotInfo& info = robots()[robot];
-  const LumpedBody& lumped = info.lumped->bodies[info.lumped->link_placement[link].body];
-  const std::optional<Inertial>& own = info.description->links[link].inertial;
+  const model::LumpedBody& lumped = info.lumped->bodies[info.lumped->link_placement[link].body];
+  const std::optional<model::Inertial>& own = info.description->links[link].inertial;
   if (own) return *own;
-  return lumped.links.size() == 1 ? lumped.inertial : MassProperties();
+  return lumped.links.size() == 1 ? lumped.inertial : geometry::MassProperties();
 }
 
 void Simulator::Impl::setJointLimits(int robot, int joint, double lower, double upper) {
@@ -188,4 +189,4 @@ void Simulator::Impl::setPhysics(const Vector3& gravity, double time_step, doubl
   contacts_.forget();
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -9,7 +9,7 @@
 #include "numbers/nearest_name.h"
 #include "simulator_impl.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr double FARTHEST = 1e6, FASTEST = 1e5;  // [m]; [m/s] and [rad/s]
@@ -21,7 +21,7 @@ struct FrameMotion {
   Vector3 v = Vector3::Zero(), w = Vector3::Zero();
 };
 
-void checkState(const BodyState& state) {
+void checkState(const dynamics::BodyState& state) {
   const auto within = [](const Vector3& v, double most) { return v.cwiseAbs().maxCoeff() <= most; };
   if (!state.X_WB.matrix().allFinite() || !within(state.X_WB.translation(), FARTHEST))
     throw InputError(fmt::format("pose: needs finite numbers, not beyond {:g} m", FARTHEST));
@@ -30,11 +30,12 @@ void checkState(const BodyState& state) {
 }
 
 /** Motion of a joint's child from its parent's. @param rate [rad/s or m/s] */
-FrameMotion childOf(const FrameMotion& parent, const LumpedJoint& joint, double position, double rate) {
+FrameMotion childOf(const FrameMotion& parent, const model::LumpedJoint& joint, double position, double rate) {
   FrameMotion child;
   child.X_WF = parent.X_WF * joint.pose(position);
   const Vector3 axis = parent.X_WF.linear() * joint.X_PJ.linear() * joint.axis;
-  const bool slides = joint.type == JointType::PRISMATIC, turns = joint.type == JointType::REVOLUTE || joint.type == JointType::CONTINUOUS;
+  const bool slides = joint.type == model::JointType::PRISMATIC,
+             turns = joint.type == model::JointType::REVOLUTE || joint.type == model::JointType::CONTINUOUS;
   child.w = parent.w;
   if (turns) child.w += rate * axis;
   child.v = parent.v + parent.w.cross(child.X_WF.translation() - parent.X_WF.translation());
@@ -42,13 +43,13 @@ FrameMotion childOf(const FrameMotion& parent, const LumpedJoint& joint, double 
   return child;
 }
 
-FrameMotion motionOf(const World& world, int body) {
-  const BodyState state = world.bodyState(body);
+FrameMotion motionOf(const dynamics::World& world, int body) {
+  const dynamics::BodyState state = world.bodyState(body);
   const Vector3 arm = state.X_WB.linear() * world.bodySpec(body).inertial.com;
   return {state.X_WB, state.v_WCom - state.w_WB.cross(arm), state.w_WB};
 }
 
-BodyState stateOf(const World& world, int body, const FrameMotion& motion) {
+dynamics::BodyState stateOf(const dynamics::World& world, int body, const FrameMotion& motion) {
   const Vector3 arm = motion.X_WF.linear() * world.bodySpec(body).inertial.com;
   return {motion.X_WF, motion.v + motion.w.cross(arm), motion.w};
 }
@@ -58,10 +59,10 @@ struct JointValues {
   std::vector<double> positions, rates;
 };
 
-JointValues valuesOf(const World& world, const RobotInfo& robot) {
+JointValues valuesOf(const dynamics::World& world, const RobotInfo& robot) {
   JointValues values;
   for (const int joint : robot.world_joints) {
-    const JointState state = joint < 0 ? JointState() : world.jointState(joint);
+    const dynamics::JointState state = joint < 0 ? dynamics::JointState() : world.jointState(joint);
     values.positions.push_back(state.position);
     values.rates.push_back(state.velocity);
   }
@@ -69,15 +70,15 @@ JointValues valuesOf(const World& world, const RobotInfo& robot) {
 }
 
 /** Makes mimic joints follow their masters, through chains of them. */
-void followMasters(const LumpedRobot& robot, JointValues* values) {
+void followMasters(const model::LumpedRobot& robot, JointValues* values) {
   const auto indexOf = [&](const std::string& name) {
-    return std::find_if(robot.joints.begin(), robot.joints.end(), [&](const LumpedJoint& j) { return j.name == name; }) -
+    return std::find_if(robot.joints.begin(), robot.joints.end(), [&](const model::LumpedJoint& j) { return j.name == name; }) -
            robot.joints.begin();
   };
   for (std::size_t link = 0; link < robot.joints.size(); ++link) {
     for (std::size_t j = 0; j < robot.joints.size(); ++j) {
       if (!robot.joints[j].mimic) continue;
-      const Mimic& mimic = *robot.joints[j].mimic;
+      const model::Mimic& mimic = *robot.joints[j].mimic;
       const auto master = static_cast<std::size_t>(indexOf(mimic.joint));
       values->positions[j] = mimic.multiplier * values->positions[master] + mimic.offset;
       values->rates[j] = mimic.multiplier * values->rates[master];
@@ -101,8 +102,8 @@ std::vector<std::size_t> indicesOf(const RobotInfo& robot, const std::vector<std
     requireName(name, robot.joint_names, where, "movable joint");
     if (!seen.insert(name).second) throw InputError(fmt::format("{}: joint '{}' is there twice; name it once", where, name));
     if (!isCommand(positions[i])) throw InputError(fmt::format("{}: joint '{}': {} is no position", where, name, positions[i]));
-    const std::vector<LumpedJoint>& joints = robot.lumped->joints;
-    const auto joint = std::find_if(joints.begin(), joints.end(), [&](const LumpedJoint& j) { return j.name == name; });
+    const std::vector<model::LumpedJoint>& joints = robot.lumped->joints;
+    const auto joint = std::find_if(joints.begin(), joints.end(), [&](const model::LumpedJoint& j) { return j.name == name; });
     if (joint->mimic) throw InputError(fmt::format("{}: joint '{}' mimics '{}'; set that one", where, name, joint->mimic->joint));
     indices.push_back(joint - joints.begin());
   }
@@ -119,10 +120,10 @@ int Simulator::Impl::modelOfBody(int body) const {
   return static_cast<int>(std::find_if(models.begin(), models.end(), has) - models.begin());
 }
 
-void Simulator::Impl::moveModel(int body, const BodyState& to) {
+void Simulator::Impl::moveModel(int body, const dynamics::BodyState& to) {
   checkState(to);
   const int model = modelOfBody(body), robot = world_.robotOf(model);
-  const BodyState from = world_.world.bodyState(body);
+  const dynamics::BodyState from = world_.world.bodyState(body);
   if (robot >= 0 && world_.robots[robot].fixed_base) {
     if (to.X_WB.isApprox(from.X_WB, SAME_PLACE)) return;
     throw InputError(fmt::format("'{}' has a fixed base; set_model_configuration moves its joints, delete and spawn it to move the base",
@@ -135,11 +136,11 @@ void Simulator::Impl::moveModel(int body, const BodyState& to) {
   reportWithoutStep();
 }
 
-void Simulator::Impl::moveRigidly(int model, int body, const BodyState& to) {
+void Simulator::Impl::moveRigidly(int model, int body, const dynamics::BodyState& to) {
   const Pose move = to.X_WB * world_.world.bodyState(body).X_WB.inverse();
   const Vector3 p_WCom = to.X_WB * world_.world.bodySpec(body).inertial.com;
   for (const int each : world_.models[model].bodies) {
-    BodyState state = to;
+    dynamics::BodyState state = to;
     if (each != body) {
       state.X_WB = move * world_.world.bodyState(each).X_WB;
       state.v_WCom += to.w_WB.cross(state.X_WB * world_.world.bodySpec(each).inertial.com - p_WCom);
@@ -151,18 +152,18 @@ void Simulator::Impl::moveRigidly(int model, int body, const BodyState& to) {
 
 void Simulator::Impl::setJointPositions(int index, const std::vector<std::string>& names, const std::vector<double>& positions) {
   const RobotInfo& robot = world_.robots.at(index);
-  const std::vector<LumpedJoint>& joints = robot.lumped->joints;
+  const std::vector<model::LumpedJoint>& joints = robot.lumped->joints;
   const std::vector<std::size_t> set = indicesOf(robot, names, positions);
   JointValues values = valuesOf(world_.world, robot);
   for (std::size_t i = 0; i < set.size(); ++i) {
-    const JointLimits& limits = joints[set[i]].limits;
+    const model::JointLimits& limits = joints[set[i]].limits;
     values.positions[set[i]] =
-        joints[set[i]].type == JointType::CONTINUOUS ? positions[i] : std::clamp(positions[i], limits.lower, limits.upper);
+        joints[set[i]].type == model::JointType::CONTINUOUS ? positions[i] : std::clamp(positions[i], limits.lower, limits.upper);
     values.rates[set[i]] = 0;
   }
   followMasters(*robot.lumped, &values);
   std::vector<FrameMotion> motion(robot.bodies.size());
-  motion[0] = robot.bodies[0] == WORLD_BODY ? FrameMotion{robot.X_WR} : motionOf(world_.world, robot.bodies[0]);
+  motion[0] = robot.bodies[0] == dynamics::WORLD_BODY ? FrameMotion{robot.X_WR} : motionOf(world_.world, robot.bodies[0]);
   for (std::size_t j = 0; j < joints.size(); ++j) {
     const int child = joints[j].child, joint = robot.world_joints[j];
     if (joint < 0) {
@@ -219,4 +220,4 @@ void Simulator::Impl::resetWorld() {
   reportWithoutStep();
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

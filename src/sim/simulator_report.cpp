@@ -5,7 +5,7 @@
 #include "simulator_impl.h"
 #include "stage_timer.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr double LIMIT_REACHED = 1e-6;        // [rad or m]
@@ -34,10 +34,10 @@ void Simulator::Impl::recordEnergy() {
 
 void Simulator::Impl::recordSaturation() {
   for (std::size_t j = 0; j < drives_.size(); ++j) {
-    const JointState state = world_.world.jointState(static_cast<int>(j));
+    const dynamics::JointState state = world_.world.jointState(static_cast<int>(j));
     if (world_.motors[j].accept(drives_[j], state, substepLength())) report_.status |= EFFORT_SATURATED;
-    const JointSpec& spec = world_.world.jointSpec(static_cast<int>(j));
-    if (spec.kind == JointKind::FIXED) continue;
+    const dynamics::JointSpec& spec = world_.world.jointSpec(static_cast<int>(j));
+    if (spec.kind == dynamics::JointKind::FIXED) continue;
     if (state.position < spec.lower + LIMIT_REACHED || state.position > spec.upper - LIMIT_REACHED) report_.status |= JOINT_LIMIT_HIT;
   }
 }
@@ -47,7 +47,7 @@ void Simulator::Impl::recordContacts() {
   report_.raw_contacts = contacts_.rawContacts();
   report_.reduced_contacts = contacts_.reducedContacts();
   for (std::size_t i = 0; i < contacts_.constraints().size(); ++i) {
-    const ContactConstraint& constraint = contacts_.constraints()[i];
+    const dynamics::ContactConstraint& constraint = contacts_.constraints()[i];
     const SolvedContact& solved = contacts_.solved()[i];
     const Vector3& force = solved_->contact_forces[i];
     if (constraint.depth < 0 && force.isZero(0)) continue;
@@ -59,7 +59,7 @@ void Simulator::Impl::recordContacts() {
   report_.wrench_error = std::max(report_.wrench_error, contacts_.reductionLoss().wrench);
   if (!contacts_.crossings().empty()) report_.status |= CONTACT_UNRELIABLE;
   if (!contacts_.leftOut().empty()) report_.status |= CONTACT_UNRELIABLE | CONTACTS_REDUCED;
-  for (const ContactManifold& manifold : contacts_.current()) {
+  for (const contact::ContactManifold& manifold : contacts_.current()) {
     const double depth = manifold.maxDepth();
     if (manifold.layer > 0) report_.max_of_layer = std::max(report_.max_of_layer, depth / manifold.layer);
     if (depth <= report_.max_depth) continue;
@@ -72,7 +72,7 @@ void Simulator::Impl::recordContacts() {
 ContactReport Simulator::Impl::withMoments(ContactReport contact) const {
   if (substeps_.count() == 0) return contact;
   const auto travel = [&](int collider) -> Vector3 {
-    const Collider& on = world_.colliders[collider];
+    const contact::Collider& on = world_.colliders[collider];
     return world_.linkOrigin(on, bodies_before_substep_) - world_.linkOrigin(on, bodies_before_);
   };
   contact.moment_a = contact.force.cross(travel(contact.collider_a));
@@ -102,4 +102,4 @@ void Simulator::Impl::reportWithoutStep() {
   report();
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -8,7 +8,7 @@
 #include "state/state_header.h"
 #include "state/state_layout.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 // The names of a state's layout, in the order of its content. Colliders are in it by their slots, as contacts are known by them.
@@ -32,7 +32,7 @@ struct StateParts {
   std::vector<JointMotor> motors;
   std::vector<std::vector<double>> sensors;  // numbers of each
   std::vector<DelayLine> delays;             // of each
-  ReductionMemory choices;
+  reduction::ReductionMemory choices;
   LayerWatch layer_watch;
   CrossingHistory crossings;
   FadingPoints fading;
@@ -64,8 +64,8 @@ void readLoads(const SimulationState& state, const SimulatedWorld& world, Number
 }
 
 /** @param first word @param live there are live environments, of whose points the state tells */
-void readContacts(const SimulationState& state, const std::vector<Collider>& colliders, std::size_t first, bool live, NumberReader* reader,
-                  StateParts* parts) {
+void readContacts(const SimulationState& state, const std::vector<contact::Collider>& colliders, std::size_t first, bool live,
+                  NumberReader* reader, StateParts* parts) {
   const std::uint64_t *words = state.words.data() + first, *end = state.words.data() + state.words.size();
   if (!parts->choices.read(colliders, &words, end) || !parts->layer_watch.read(colliders, &words, end) ||
       !parts->crossings.read(colliders, &words, end, reader) || (live && !parts->fading.read(colliders, &words, end)) ||
@@ -194,4 +194,4 @@ std::uint64_t Simulator::stateHash() const {
   return hash.add(namesOfAll(impl_->world_)).value();
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

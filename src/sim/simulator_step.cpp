@@ -7,12 +7,12 @@
 #include "simulator_impl.h"
 #include "stage_timer.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr double FARTHEST_FINITE = 1e12;  // [m], [m/s], [rad/s]: larger numbers have no meaning any more
 
-bool withinReach(const BodyState& state) {
+bool withinReach(const dynamics::BodyState& state) {
   const auto small = [](const Vector3& v) { return v.allFinite() && v.cwiseAbs().maxCoeff() < FARTHEST_FINITE; };
   return small(state.X_WB.translation()) && state.X_WB.linear().allFinite() && small(state.v_WCom) && small(state.w_WB);
 }
@@ -81,7 +81,7 @@ void Simulator::Impl::planSubstep() {
   if (substeps_.isRedone() || !contacts_.leftOut().empty()) return;
   const double left = substeps_.fractionLeft() * config_.time_step;
   double safe = safeTime(world_, contacts_, bodies_, left);
-  if (const std::vector<BodyState>* faster = foreseen()) safe = safeTime(world_, contacts_, *faster, safe);
+  if (const std::vector<dynamics::BodyState>* faster = foreseen()) safe = safeTime(world_, contacts_, *faster, safe);
   substeps_.plan(safe / left);
 }
 
@@ -178,7 +178,7 @@ void Simulator::Impl::redoSubstep(const std::vector<ClosePass>& close) {
   substeps_.redo(std::min(part, safeTime(world_, contacts_, foreseen_, substepLength()) / substepLength()));
 }
 
-const std::vector<BodyState>* Simulator::Impl::foreseen() {
+const std::vector<dynamics::BodyState>* Simulator::Impl::foreseen() {
   if (foreseen_.empty()) return nullptr;
   for (std::size_t body = 0; body < bodies_.size(); ++body) foreseen_[body].X_WB = bodies_[body].X_WB;
   return &foreseen_;
@@ -213,7 +213,7 @@ void Simulator::Impl::readSensors() {
 }
 
 bool Simulator::Impl::bodiesAreFinite() const {
-  for (const BodyState& state : bodies_)
+  for (const dynamics::BodyState& state : bodies_)
     if (!withinReach(state)) return false;
   return true;
 }
@@ -227,9 +227,9 @@ const StepReport& Simulator::Impl::stop() {
   return report_;
 }
 
-void Simulator::Impl::jointStates(std::vector<JointState>* out) const {
+void Simulator::Impl::jointStates(std::vector<dynamics::JointState>* out) const {
   out->resize(world_.world.jointCount());
   for (int joint = 0; joint < world_.world.jointCount(); ++joint) (*out)[joint] = world_.world.jointState(joint);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -5,7 +5,7 @@
 
 #include "blem_sim/sim/step_report.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /** Adds the wall time of a scope to a stage. */
 class StageTimer {
@@ -21,4 +21,4 @@ class StageTimer {
   Clock::time_point start_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -6,7 +6,7 @@
 
 #include "contact/contact_shapes.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 struct PlacedBoxes {
@@ -30,11 +30,12 @@ struct PlacedBoxes {
 
 using Pairs = std::vector<std::pair<int, int>>;
 
-Collider box(double radius = 0) { return makeCollider(boxMesh(Vector3::Constant(0.1)), radius); }
+Collider box(double radius = 0) { return makeCollider(geometry::boxMesh(Vector3::Constant(0.1)), radius); }
 
 TEST(BroadPhase, NothingThatNarrowPhaseFindsIsMissed) {
-  RandomShapes random(51);
-  const Collider shapes[] = {box(0.002), makeCollider(octahedronMesh(0.06), 0.004), makeCollider(pointMesh(Vector3::Zero()), 0.05)};
+  geometry::RandomShapes random(51);
+  const Collider shapes[] = {box(0.002), makeCollider(octahedronMesh(0.06), 0.004),
+                             makeCollider(geometry::pointMesh(Vector3::Zero()), 0.05)};
   int touching = 0;
   for (int round = 0; round < 40; ++round) {
     PlacedBoxes scene;
@@ -90,9 +91,10 @@ Pairs everyPair(const PlacedBoxes& scene, double base, double max) {
 }
 
 TEST(BroadPhase, ManyBoxesOfAllSizesFindTheSamePairsAsEachWithEachOther) {
-  RandomShapes random(7);
-  const Collider sizes[] = {makeCollider(boxMesh(Vector3::Constant(0.02)), 0.001), box(0.002), makeCollider(boxMesh({0.05, 3, 0.4}), 0),
-                            makeCollider(gridMesh(20, 20, 1, 1), 0), makeCollider(pointMesh(Vector3::Zero()), 0)};
+  geometry::RandomShapes random(7);
+  const Collider sizes[] = {makeCollider(geometry::boxMesh(Vector3::Constant(0.02)), 0.001), box(0.002),
+                            makeCollider(geometry::boxMesh({0.05, 3, 0.4}), 0), makeCollider(geometry::gridMesh(20, 20, 1, 1), 0),
+                            makeCollider(geometry::pointMesh(Vector3::Zero()), 0)};
   for (int round = 0; round < 12; ++round) {
     PlacedBoxes scene;
     const int count = 65 + 40 * round, shapes = 1 + round % 5;
@@ -190,4 +192,4 @@ TEST(CollisionFilter, WhoMayTouchWhom) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -5,7 +5,7 @@
 #include "blem_sim/contact/manifold.h"
 #include "blem_sim/geometry/input_error.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 TEST(CombineSurfaces, FrictionByEachRule) {
@@ -45,7 +45,7 @@ TEST(CombineSurfaces, SmallerImpactFrictionFactorWithItsSpeed) {
 }
 
 TEST(CollisionGeometry, MeshAndHalfSpace) {
-  const CollisionGeometry box(std::make_shared<TriangleMesh>(boxMesh({1, 2, 3})));
+  const CollisionGeometry box(std::make_shared<geometry::TriangleMesh>(geometry::boxMesh({1, 2, 3})));
   EXPECT_FALSE(box.isHalfSpace());
   EXPECT_EQ(box.topology().edgeCount(), 18);
   EXPECT_FALSE(box.bvh().empty());
@@ -57,7 +57,7 @@ TEST(CollisionGeometry, MeshAndHalfSpace) {
 }
 
 TEST(CollisionGeometry, RefusesWhatCannotCollide) {
-  EXPECT_THROW(CollisionGeometry(std::make_shared<TriangleMesh>()), InputError);
+  EXPECT_THROW(CollisionGeometry(std::make_shared<geometry::TriangleMesh>()), InputError);
   EXPECT_THROW(CollisionGeometry(nullptr), InputError);
   EXPECT_THROW(CollisionGeometry::halfSpace(Vector3::Zero(), 0), InputError);
   EXPECT_THROW(CollisionGeometry::halfSpace({0, 0, NAN}, 0), InputError);
@@ -73,4 +73,4 @@ TEST(ContactManifold, DeepestOrNone) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -11,11 +11,11 @@
 #include "blem_sim/contact/narrow_phase.h"
 #include "geometry/random_shapes.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
-inline Collider makeCollider(TriangleMesh mesh, double radius) {
+inline Collider makeCollider(geometry::TriangleMesh mesh, double radius) {
   Collider collider;
-  collider.geometry = std::make_shared<CollisionGeometry>(std::make_shared<TriangleMesh>(std::move(mesh)));
+  collider.geometry = std::make_shared<CollisionGeometry>(std::make_shared<geometry::TriangleMesh>(std::move(mesh)));
   collider.radius = radius;
   return collider;
 }
@@ -27,8 +27,8 @@ inline Collider makeHalfSpace(const Vector3& normal, double offset, double radiu
   return collider;
 }
 
-inline TriangleMesh octahedronMesh(double radius) {
-  TriangleMesh mesh;
+inline geometry::TriangleMesh octahedronMesh(double radius) {
+  geometry::TriangleMesh mesh;
   for (int k = 0; k < 3; ++k) {
     mesh.vertices.push_back(radius * Vector3::Unit(k));
     mesh.vertices.push_back(-radius * Vector3::Unit(k));
@@ -42,8 +42,8 @@ inline TriangleMesh octahedronMesh(double radius) {
 }
 
 /** A soup of unconnected triangles, segments and points. */
-inline TriangleMesh soupMesh(RandomShapes& random, int count, double size) {
-  TriangleMesh mesh;
+inline geometry::TriangleMesh soupMesh(geometry::RandomShapes& random, int count, double size) {
+  geometry::TriangleMesh mesh;
   for (int i = 0; i < count; ++i) {
     const Vector3 centre = random.point(size);
     for (int k = 0; k < 3; ++k) mesh.vertices.push_back(centre + random.point(0.5 * size));
@@ -52,12 +52,12 @@ inline TriangleMesh soupMesh(RandomShapes& random, int count, double size) {
                             : i % 5 == 4 ? Vector3i(first, first, first)
                                          : Vector3i(first, first + 1, first + 2));
   }
-  return cleanMesh(mesh, nullptr);
+  return geometry::cleanMesh(mesh, nullptr);
 }
 
 /** A grid whose heights are noise: concave and convex edges everywhere. */
-inline TriangleMesh hillMesh(RandomShapes& random, double size, int cells, double height) {
-  TriangleMesh mesh = gridMesh(size, size, cells, cells);
+inline geometry::TriangleMesh hillMesh(geometry::RandomShapes& random, double size, int cells, double height) {
+  geometry::TriangleMesh mesh = geometry::gridMesh(size, size, cells, cells);
   for (Vector3& v : mesh.vertices) v.z() = random.uniform(-height, height);
   return mesh;
 }
@@ -86,7 +86,7 @@ inline bool allFinite(const ContactManifold& manifold) {
 }
 
 /** One of the 24 rotations that map the axes onto each other. */
-inline Matrix3 axisRotation(RandomShapes& random) {
+inline Matrix3 axisRotation(geometry::RandomShapes& random) {
   Matrix3 R = Matrix3::Zero();
   const int x = random.integer(0, 2), y = (x + random.integer(1, 2)) % 3;
   R.col(0) = Vector3::Unit(x) * (random.integer(0, 1) ? 1 : -1);
@@ -108,4 +108,4 @@ inline double largestDifference(const std::vector<Contact>& of, const std::vecto
   return largest;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -6,26 +6,26 @@
 #include "contact/contact_shapes.h"
 #include "support/counted_allocations.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
-TriangleMesh roughBall() {
-  RandomShapes random(23);
-  TriangleMesh ball = icosphereMesh(1, 6);
+geometry::TriangleMesh roughBall() {
+  geometry::RandomShapes random(23);
+  geometry::TriangleMesh ball = geometry::icosphereMesh(1, 6);
   for (Vector3& v : ball.vertices) v *= random.uniform(0.999, 1.001);
   return ball;
 }
 
-TriangleMesh roughGrid() {
-  RandomShapes random(24);
-  TriangleMesh grid = gridMesh(1, 1, 200, 200);
+geometry::TriangleMesh roughGrid() {
+  geometry::RandomShapes random(24);
+  geometry::TriangleMesh grid = geometry::gridMesh(1, 1, 200, 200);
   for (Vector3& v : grid.vertices) v.z() = random.uniform(-1e-3, 1e-3);
   return grid;
 }
 
 /** A leaf on every edge of a row: edges of four faces. */
-TriangleMesh book() {
-  TriangleMesh mesh;
+geometry::TriangleMesh book() {
+  geometry::TriangleMesh mesh;
   for (int i = 0; i < 10000; ++i) {
     const int first = static_cast<int>(mesh.vertices.size());
     mesh.vertices.insert(mesh.vertices.end(), {{0.1 * i, 0, 0}, {0.1 * i, 1, 0}});
@@ -39,17 +39,17 @@ TriangleMesh book() {
 
 struct SurfaceRow {
   const char* name;
-  TriangleMesh (*make)();
+  geometry::TriangleMesh (*make)();
   double bytes_per_triangle;  // at most
 };
 
 class GeometryMemory : public testing::TestWithParam<SurfaceRow> {};
 
 TEST_P(GeometryMemory, IsWhatMallocGaveAndLittle) {
-  const TriangleMesh soup = GetParam().make();
-  { CollisionGeometry warm_up(std::make_shared<const TriangleMesh>(cleanMesh(soup, nullptr))); }
+  const geometry::TriangleMesh soup = GetParam().make();
+  { CollisionGeometry warm_up(std::make_shared<const geometry::TriangleMesh>(geometry::cleanMesh(soup, nullptr))); }
   const long before = held_bytes;
-  const CollisionGeometry geometry(std::make_shared<const TriangleMesh>(cleanMesh(soup, nullptr)));
+  const CollisionGeometry geometry(std::make_shared<const geometry::TriangleMesh>(geometry::cleanMesh(soup, nullptr)));
   const double held = static_cast<double>(held_bytes - before), told = static_cast<double>(geometry.bytes());
   // Beside the arrays there are a few shared objects, and malloc rounds large arrays up to pages.
   EXPECT_GE(held, told);
@@ -62,7 +62,7 @@ INSTANTIATE_TEST_SUITE_P(Surfaces, GeometryMemory,
                          testing::Values(SurfaceRow{"rough_ball", roughBall, 90}, SurfaceRow{"rough_grid", roughGrid, 90},
                                          SurfaceRow{"gridded_box",
                                                     [] {
-                                                      return subdivided(boxMesh({1, 2, 3}), 6);
+                                                      return geometry::subdivided(geometry::boxMesh({1, 2, 3}), 6);
                                                     },
                                                     90},
                                          SurfaceRow{"edges_of_four_faces", book, 150}),
@@ -71,6 +71,6 @@ INSTANTIATE_TEST_SUITE_P(Surfaces, GeometryMemory,
 TEST(GeometryMemory, OfAHalfSpaceIsNone) { EXPECT_EQ(CollisionGeometry::halfSpace(Vector3::UnitZ(), 0)->bytes(), 0u); }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::contact
 
 #endif

@@ -8,7 +8,7 @@
 #include "contact/contact_shapes.h"
 #include "support/sanitizers.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 constexpr double STEP = 1e-6;    // [m]
 constexpr double R = 0.0025;     // [m] boundary widths
@@ -31,8 +31,8 @@ struct Springs {
   double weight = 0;
 
   explicit Springs(std::vector<Contact> contacts) {
-    reduceHull(contacts, 1000);
-    weighSprings(contacts);
+    reduction::reduceHull(contacts, 1000);
+    reduction::weighSprings(contacts);
     for (const Contact& c : contacts) {
       if (c.depth <= 0) continue;
       sum += c.weight * c.depth * c.normal_BA;
@@ -70,7 +70,7 @@ inline void compare(const std::vector<Contact>& before, const std::vector<Contac
   countOrphans(after, before, walk);
   const Springs was(before), is(after);
   walk->rate = std::max(walk->rate, (is.sum - was.sum).norm() / std::max({1.0, was.weight, is.weight}) / STEP);
-  RandomShapes random(9);
+  geometry::RandomShapes random(9);
   for (int i = 0; i < 40; ++i) {
     const Vector3 force = random.point(1), torque = random.point(1) / ARM;
     const double change = supportOf(after, centre, force, torque) - supportOf(before, centre, force, torque);
@@ -85,7 +85,7 @@ struct Scene {
 };
 
 inline Walk walk(const Scene& scene, double overlap, int poses, int steps) {
-  RandomShapes random(77);
+  geometry::RandomShapes random(77);
   Walk all;
   for (int pose = 0; pose < samples(poses); ++pose) {
     const double tilt = std::array<double, 4>{0, 1e-3, 0.05, 1}[pose % 4];
@@ -108,4 +108,4 @@ inline Walk walk(const Scene& scene, double overlap, int poses, int steps) {
   return all;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

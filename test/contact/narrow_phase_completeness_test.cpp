@@ -6,7 +6,7 @@
 #include "contact/contact_shapes.h"
 #include "support/sanitizers.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 constexpr double EXTENT = 0.1;
@@ -18,17 +18,17 @@ struct PosedShape {
 };
 
 std::vector<PosedShape> makePosedShapes() {
-  RandomShapes random(7);
+  geometry::RandomShapes random(7);
   std::vector<PosedShape> shapes;
-  shapes.push_back({"cube", makeCollider(boxMesh(Vector3::Constant(EXTENT)), REACH / 2)});
-  shapes.push_back({"slab", makeCollider(boxMesh({EXTENT, 0.5 * EXTENT, 0.02 * EXTENT}), REACH / 2)});
+  shapes.push_back({"cube", makeCollider(geometry::boxMesh(Vector3::Constant(EXTENT)), REACH / 2)});
+  shapes.push_back({"slab", makeCollider(geometry::boxMesh({EXTENT, 0.5 * EXTENT, 0.02 * EXTENT}), REACH / 2)});
   shapes.push_back({"octahedron", makeCollider(octahedronMesh(0.5 * EXTENT), REACH / 2)});
-  shapes.push_back({"fine cube", makeCollider(subdivided(boxMesh(Vector3::Constant(EXTENT)), 1), REACH / 2)});
-  shapes.push_back({"grid", makeCollider(gridMesh(EXTENT, EXTENT, 3, 2), REACH / 2)});
+  shapes.push_back({"fine cube", makeCollider(geometry::subdivided(geometry::boxMesh(Vector3::Constant(EXTENT)), 1), REACH / 2)});
+  shapes.push_back({"grid", makeCollider(geometry::gridMesh(EXTENT, EXTENT, 3, 2), REACH / 2)});
   shapes.push_back({"hills", makeCollider(hillMesh(random, EXTENT, 4, 0.1 * EXTENT), REACH / 2)});
   shapes.push_back({"soup", makeCollider(soupMesh(random, 12, 0.5 * EXTENT), REACH / 2)});
-  shapes.push_back({"point", makeCollider(pointMesh(Vector3(0.01, 0, 0)), REACH / 2)});
-  shapes.push_back({"segment", makeCollider(segmentMesh(Vector3(-0.5 * EXTENT, 0, 0), Vector3(0.5 * EXTENT, 0, 0)), REACH / 2)});
+  shapes.push_back({"point", makeCollider(geometry::pointMesh(Vector3(0.01, 0, 0)), REACH / 2)});
+  shapes.push_back({"segment", makeCollider(geometry::segmentMesh(Vector3(-0.5 * EXTENT, 0, 0), Vector3(0.5 * EXTENT, 0, 0)), REACH / 2)});
   return shapes;
 }
 
@@ -39,7 +39,8 @@ class Completeness {
 
   void check(const PosedShape& a, const PosedShape& b, const Pose& X_BA) {
     ++poses;
-    const ClosestPoints exact = closestMeshMeshBruteForce(a.collider.geometry->mesh(), b.collider.geometry->mesh(), X_BA);
+    const geometry::ClosestPoints exact =
+        geometry::closestMeshMeshBruteForce(a.collider.geometry->mesh(), b.collider.geometry->mesh(), X_BA);
     const ContactManifold manifold = contactsOf(a.collider, X_BA, b.collider, Pose::Identity());
     ASSERT_TRUE(allFinite(manifold));
     if (exact.distance > REACH) {
@@ -64,14 +65,14 @@ class Completeness {
 
 /** Moves A along the shortest way to B until `gap` is left. */
 Pose approached(const PosedShape& a, const PosedShape& b, Pose X_BA, double gap) {
-  const ClosestPoints exact = closestMeshMeshBruteForce(a.collider.geometry->mesh(), b.collider.geometry->mesh(), X_BA);
+  const geometry::ClosestPoints exact = geometry::closestMeshMeshBruteForce(a.collider.geometry->mesh(), b.collider.geometry->mesh(), X_BA);
   if (exact.distance > gap) X_BA.pretranslate((exact.point_b - exact.point_a) * (1 - gap / exact.distance));
   return X_BA;
 }
 
 TEST(NarrowPhaseCompleteness, RandomPoses) {
   const std::vector<PosedShape> shapes = makePosedShapes();
-  RandomShapes random(1);
+  geometry::RandomShapes random(1);
   Completeness all;
   while (all.poses < samples(12000)) {
     const PosedShape& a = shapes[random.integer(0, shapes.size() - 1)];
@@ -89,7 +90,7 @@ TEST(NarrowPhaseCompleteness, RandomPoses) {
 
 TEST(NarrowPhaseCompleteness, AxisAlignedPoses) {
   const std::vector<PosedShape> shapes = makePosedShapes();
-  RandomShapes random(2);
+  geometry::RandomShapes random(2);
   Completeness all;
   while (all.poses < samples(12000)) {
     const PosedShape& a = shapes[random.integer(0, shapes.size() - 1)];
@@ -110,7 +111,7 @@ TEST(NarrowPhaseCompleteness, AxisAlignedPoses) {
 
 TEST(NarrowPhaseCompleteness, NearlyAlignedPoses) {
   const std::vector<PosedShape> shapes = makePosedShapes();
-  RandomShapes random(3);
+  geometry::RandomShapes random(3);
   Completeness all;
   while (all.poses < samples(6000)) {
     const PosedShape& a = shapes[random.integer(0, shapes.size() - 1)];
@@ -144,7 +145,7 @@ TEST(NarrowPhaseCompleteness, EdgeGrazesACorner) {
 /** Deep poses: meshes that meet have contacts, all finite, none deeper than the layer by more than the smaller body. */
 TEST(NarrowPhaseCompleteness, MeetingPosesAreFiniteAndBounded) {
   const std::vector<PosedShape> shapes = makePosedShapes();
-  RandomShapes random(4);
+  geometry::RandomShapes random(4);
   int pierced = 0;
   for (int i = 0; i < samples(3000); ++i) {
     const PosedShape& a = shapes[random.integer(0, shapes.size() - 1)];
@@ -154,7 +155,7 @@ TEST(NarrowPhaseCompleteness, MeetingPosesAreFiniteAndBounded) {
     ASSERT_TRUE(allFinite(manifold));
     if (!manifold.pierced) continue;
     ++pierced;
-    const double exact = closestMeshMeshBruteForce(a.collider.geometry->mesh(), b.collider.geometry->mesh(), X_BA).distance;
+    const double exact = geometry::closestMeshMeshBruteForce(a.collider.geometry->mesh(), b.collider.geometry->mesh(), X_BA).distance;
     ASSERT_EQ(exact, 0) << a.name << " " << b.name;
     ASSERT_TRUE(std::any_of(manifold.contacts.begin(), manifold.contacts.end(), [](const Contact& c) { return c.pierced; }));
     const double smaller = std::min(a.collider.geometry->bounds().diagonal().norm(), b.collider.geometry->bounds().diagonal().norm());
@@ -164,4 +165,4 @@ TEST(NarrowPhaseCompleteness, MeetingPosesAreFiniteAndBounded) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

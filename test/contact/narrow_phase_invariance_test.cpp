@@ -6,7 +6,7 @@
 #include "blem_sim/reduction/reduction.h"
 #include "contact/contact_shapes.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 constexpr double TOLERANCE = 1e-9;
@@ -20,34 +20,35 @@ void expectSame(const ContactManifold& a, const ContactManifold& b, double toler
 }
 
 struct Case {
-  TriangleMesh a, b;
+  geometry::TriangleMesh a, b;
   Pose X_WA;
 };
 
 /** Poses within the layer: boxes, hills and soups in all positions, no two features exactly coincident. */
 std::vector<Case> makeCases(int count) {
-  RandomShapes random(21);
+  geometry::RandomShapes random(21);
   std::vector<Case> cases;
-  const TriangleMesh hills = hillMesh(random, 0.4, 12, 0.01), box = boxMesh({0.1, 0.08, 0.06}), soup = soupMesh(random, 20, 0.05);
+  const geometry::TriangleMesh hills = hillMesh(random, 0.4, 12, 0.01), box = geometry::boxMesh({0.1, 0.08, 0.06}),
+                               soup = soupMesh(random, 20, 0.05);
   for (int i = 0; i < count; ++i) {
-    const TriangleMesh& a = i % 3 == 2 ? soup : box;
-    cases.push_back({a, i % 2 ? hills : subdivided(box, i % 4 / 2), makePose(random.point(0.08), random.point(3))});
+    const geometry::TriangleMesh& a = i % 3 == 2 ? soup : box;
+    cases.push_back({a, i % 2 ? hills : geometry::subdivided(box, i % 4 / 2), makePose(random.point(0.08), random.point(3))});
   }
   return cases;
 }
 
-Collider layered(const TriangleMesh& mesh, double radius = 0.004) { return makeCollider(mesh, radius); }
+Collider layered(const geometry::TriangleMesh& mesh, double radius = 0.004) { return makeCollider(mesh, radius); }
 
-TriangleMesh rewound(const TriangleMesh& mesh, RandomShapes& random) {
-  TriangleMesh out = mesh;
+geometry::TriangleMesh rewound(const geometry::TriangleMesh& mesh, geometry::RandomShapes& random) {
+  geometry::TriangleMesh out = mesh;
   for (Vector3i& e : out.elements) {
     if (random.integer(0, 1) && e[0] != e[1] && e[1] != e[2]) std::swap(e[1], e[2]);
   }
   return out;
 }
 
-TriangleMesh shuffled(const TriangleMesh& mesh, RandomShapes& random) {
-  TriangleMesh out = mesh;
+geometry::TriangleMesh shuffled(const geometry::TriangleMesh& mesh, geometry::RandomShapes& random) {
+  geometry::TriangleMesh out = mesh;
   for (std::size_t i = out.elements.size(); i > 1; --i) std::swap(out.elements[i - 1], out.elements[random.integer(0, i - 1)]);
   std::vector<int> order(mesh.vertices.size());
   std::iota(order.begin(), order.end(), 0);
@@ -71,7 +72,7 @@ TEST(NarrowPhaseInvariance, SwappedPairIsMirrored) {
 }
 
 TEST(NarrowPhaseInvariance, MovedPairHasMovedContacts) {
-  RandomShapes random(22);
+  geometry::RandomShapes random(22);
   for (const Case& c : makeCases(300)) {
     const Collider a = layered(c.a), b = layered(c.b);
     const ContactManifold here = contactsOf(a, c.X_WA, b, Pose::Identity());
@@ -86,7 +87,7 @@ TEST(NarrowPhaseInvariance, MovedPairHasMovedContacts) {
 }
 
 TEST(NarrowPhaseInvariance, WindingDoesNotMatter) {
-  RandomShapes random(23);
+  geometry::RandomShapes random(23);
   for (const Case& c : makeCases(300)) {
     expectSame(contactsOf(layered(c.a), c.X_WA, layered(c.b), Pose::Identity()),
                contactsOf(layered(rewound(c.a, random)), c.X_WA, layered(rewound(c.b, random)), Pose::Identity()));
@@ -94,7 +95,7 @@ TEST(NarrowPhaseInvariance, WindingDoesNotMatter) {
 }
 
 TEST(NarrowPhaseInvariance, OrderOfTrianglesDoesNotMatter) {
-  RandomShapes random(24);
+  geometry::RandomShapes random(24);
   for (const Case& c : makeCases(300)) {
     expectSame(contactsOf(layered(c.a), c.X_WA, layered(c.b), Pose::Identity()),
                contactsOf(layered(shuffled(c.a, random)), c.X_WA, layered(shuffled(c.b, random)), Pose::Identity()));
@@ -103,26 +104,26 @@ TEST(NarrowPhaseInvariance, OrderOfTrianglesDoesNotMatter) {
 
 TEST(NarrowPhaseInvariance, FacesGivenTwiceDoNotMatter) {
   for (const Case& c : makeCases(100)) {
-    TriangleMesh twice = c.b;
+    geometry::TriangleMesh twice = c.b;
     for (std::size_t i = 0; i < c.b.elements.size(); i += 2) {
       const Vector3i& e = c.b.elements[i];
       if (c.b.isTriangle(static_cast<int>(i))) twice.elements.push_back({e[2], e[1], e[0]});
     }
     const ContactManifold once = contactsOf(layered(c.a), c.X_WA, layered(c.b), Pose::Identity());
-    expectSame(once, contactsOf(layered(c.a), c.X_WA, layered(cleanMesh(twice, nullptr)), Pose::Identity()));
+    expectSame(once, contactsOf(layered(c.a), c.X_WA, layered(geometry::cleanMesh(twice, nullptr)), Pose::Identity()));
   }
 }
 
 TEST(NarrowPhaseInvariance, UnweldedCopyIsWeldedOnLoading) {
   for (const Case& c : makeCases(100)) {
-    TriangleMesh soup;
+    geometry::TriangleMesh soup;
     for (const Vector3i& e : c.b.elements) {
       const int first = static_cast<int>(soup.vertices.size());
       for (int k = 0; k < 3; ++k) soup.vertices.push_back(c.b.vertices[e[k]]);
       soup.elements.push_back({first, first + 1, first + 2});
     }
     expectSame(contactsOf(layered(c.a), c.X_WA, layered(c.b), Pose::Identity()),
-               contactsOf(layered(c.a), c.X_WA, layered(cleanMesh(soup, nullptr)), Pose::Identity()));
+               contactsOf(layered(c.a), c.X_WA, layered(geometry::cleanMesh(soup, nullptr)), Pose::Identity()));
   }
 }
 
@@ -130,7 +131,7 @@ TEST(NarrowPhaseInvariance, UnweldedCopyIsWeldedOnLoading) {
 TEST(NarrowPhaseInvariance, SubdivisionKeepsTheDeepest) {
   for (const Case& c : makeCases(200)) {
     const ContactManifold coarse = contactsOf(layered(c.a), c.X_WA, layered(c.b), Pose::Identity());
-    const ContactManifold fine = contactsOf(layered(c.a), c.X_WA, layered(subdivided(c.b, 2)), Pose::Identity());
+    const ContactManifold fine = contactsOf(layered(c.a), c.X_WA, layered(geometry::subdivided(c.b, 2)), Pose::Identity());
     EXPECT_EQ(coarse.pierced, fine.pierced);
     if (coarse.pierced) continue;
     ASSERT_EQ(coarse.contacts.empty(), fine.contacts.empty());
@@ -141,9 +142,9 @@ TEST(NarrowPhaseInvariance, SubdivisionKeepsTheDeepest) {
 }
 
 /** Push of deep layers together, every contact of the reduced set by its depth: force and torque about the origin. */
-Eigen::Matrix<double, 6, 1> netWrench(const TriangleMesh& a, const Pose& X_WA, const TriangleMesh& b) {
+Eigen::Matrix<double, 6, 1> netWrench(const geometry::TriangleMesh& a, const Pose& X_WA, const geometry::TriangleMesh& b) {
   ContactManifold manifold = contactsOf(layered(a), X_WA, layered(b), Pose::Identity());
-  reduceHull(manifold.contacts, 50);
+  reduction::reduceHull(manifold.contacts, 50);
   Eigen::Matrix<double, 6, 1> wrench = Eigen::Matrix<double, 6, 1>::Zero();
   for (const Contact& c : manifold.contacts) {
     const Vector3 force = std::max(0.0, c.depth) * c.normal_BA;
@@ -156,22 +157,22 @@ Eigen::Matrix<double, 6, 1> netWrench(const TriangleMesh& a, const Pose& X_WA, c
 /** Soups flat on one another push the same for any tessellation; tilted only for one, since an edge in pieces has more contacts along it.
  */
 TEST(NarrowPhaseInvariance, CopiesOfASoupPushTheSame) {
-  RandomShapes random(25);
-  const TriangleMesh cube = boxMesh(Vector3::Constant(0.1));
+  geometry::RandomShapes random(25);
+  const geometry::TriangleMesh cube = geometry::boxMesh(Vector3::Constant(0.1));
   for (int i = 0; i < 200; ++i) {
     const double tilt = i % 2 ? 0.005 : 0;
     const Pose X_WA = makePose({random.uniform(-0.08, 0.08), random.uniform(-0.08, 0.08), 0.107},
                                {tilt * random.uniform(-1, 1), tilt, i % 4 < 2 ? 0 : 0.4});
     const Eigen::Matrix<double, 6, 1> plain = netWrench(cube, X_WA, cube);
-    TriangleMesh twice = subdivided(cube, i % 2 ? 0 : 2);
+    geometry::TriangleMesh twice = geometry::subdivided(cube, i % 2 ? 0 : 2);
     for (std::size_t e = 0; e < twice.elements.size(); e += 2) {
       const Vector3i element = twice.elements[e];
       twice.elements.push_back({element[2], element[1], element[0]});
     }
-    const TriangleMesh copy = rewound(shuffled(cleanMesh(twice, nullptr), random), random);
+    const geometry::TriangleMesh copy = rewound(shuffled(geometry::cleanMesh(twice, nullptr), random), random);
     EXPECT_LE((netWrench(copy, X_WA, copy) - plain).norm(), 1e-6 * plain.norm() + 1e-12) << i;
   }
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

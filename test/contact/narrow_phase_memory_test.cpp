@@ -8,7 +8,7 @@
 
 #include "contact/contact_shapes.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 constexpr double R = 0.002;
@@ -57,9 +57,10 @@ std::function<Pose(int)> wandering(const Vector3& place, double reach, double sp
 double noMargin(int) { return 0; }
 
 TEST(NarrowPhaseMemory, ContactsAreTheSameBits) {
-  RandomShapes random(5);
-  const Collider hills = makeCollider(hillMesh(random, 0.3, 60, 0.001), 0), cube = makeCollider(boxMesh(Vector3::Constant(0.05)), R),
-                 ball = makeCollider(icosphereMesh(0.02, 3), R), soup = makeCollider(soupMesh(random, 60, 0.02), R);
+  geometry::RandomShapes random(5);
+  const Collider hills = makeCollider(hillMesh(random, 0.3, 60, 0.001), 0),
+                 cube = makeCollider(geometry::boxMesh(Vector3::Constant(0.05)), R),
+                 ball = makeCollider(geometry::icosphereMesh(0.02, 3), R), soup = makeCollider(soupMesh(random, 60, 0.02), R);
   for (const double speed : {0.001, 0.02, 0.2}) {
     EXPECT_GT(follow(cube, hills, 300, wandering({0, 0, 0.026}, 0.004, speed), noMargin).contacts, 300u);
     EXPECT_GT(follow(ball, hills, 300, wandering({0, 0, 0.0215}, 0.003, speed), noMargin).contacts, 300u);
@@ -68,8 +69,8 @@ TEST(NarrowPhaseMemory, ContactsAreTheSameBits) {
 }
 
 TEST(NarrowPhaseMemory, JerksAreNoSurprise) {
-  RandomShapes random(9);
-  const Collider hills = makeCollider(hillMesh(random, 0.3, 60, 0.001), 0), ball = makeCollider(icosphereMesh(0.02, 3), R);
+  geometry::RandomShapes random(9);
+  const Collider hills = makeCollider(hillMesh(random, 0.3, 60, 0.001), 0), ball = makeCollider(geometry::icosphereMesh(0.02, 3), R);
   std::vector<Pose> path = {makePose({0, 0, 0.0215})};
   // The same way for some steps, then, up to ten thousand times slower or faster, another.
   for (int jerk = 0; jerk < 80; ++jerk) {
@@ -86,8 +87,8 @@ TEST(NarrowPhaseMemory, JerksAreNoSurprise) {
 
 /** Pairs that had no candidates for a while. */
 TEST(NarrowPhaseMemory, FromAfarByTurningAndByJumping) {
-  const Collider ground = makeCollider(gridMesh(2, 2, 20, 20), 0), pole = makeCollider(boxMesh({1, 0.01, 0.01}), R),
-                 cube = makeCollider(boxMesh(Vector3::Constant(0.05)), R);
+  const Collider ground = makeCollider(geometry::gridMesh(2, 2, 20, 20), 0), pole = makeCollider(geometry::boxMesh({1, 0.01, 0.01}), R),
+                 cube = makeCollider(geometry::boxMesh(Vector3::Constant(0.05)), R);
   const auto tilting = [](int step) { return makePose({0, 0, 0.02}, {0, 2e-4 * step, 0}); };
   EXPECT_GT(follow(pole, ground, 150, tilting, noMargin).contacts, 10u);
   const auto jumping = [](int step) { return makePose({1e-6 * step, 0, step < 20 ? 0.03 : 0.022}); };
@@ -95,8 +96,8 @@ TEST(NarrowPhaseMemory, FromAfarByTurningAndByJumping) {
 }
 
 TEST(NarrowPhaseMemory, CrossingsAreFoundAndLost) {
-  RandomShapes random(6);
-  const Collider hills = makeCollider(hillMesh(random, 0.3, 60, 0.001), 0), ball = makeCollider(icosphereMesh(0.02, 3), R);
+  geometry::RandomShapes random(6);
+  const Collider hills = makeCollider(hillMesh(random, 0.3, 60, 0.001), 0), ball = makeCollider(geometry::icosphereMesh(0.02, 3), R);
   for (const double speed : {0.002, 0.05}) {
     const Followed found = follow(ball, hills, 1500, wandering({0, 0, 0.019}, 0.004, speed), noMargin);
     EXPECT_TRUE(found.crossed);
@@ -106,9 +107,9 @@ TEST(NarrowPhaseMemory, CrossingsAreFoundAndLost) {
 
 /** The only contact is that of two edges, well away from their ends, until they pass through each other. */
 TEST(NarrowPhaseMemory, EdgesThatMeetAreFound) {
-  TriangleMesh ridge = boxMesh({0.02, 0.1, 0.02});
+  geometry::TriangleMesh ridge = geometry::boxMesh({0.02, 0.1, 0.02});
   for (Vector3& v : ridge.vertices) v = makePose(Vector3::Zero(), {0, M_PI / 4, 0}) * v;
-  const Collider below = makeCollider(ridge, 0), above = makeCollider(boxMesh({0.1, 0.02, 0.02}), R);
+  const Collider below = makeCollider(ridge, 0), above = makeCollider(geometry::boxMesh({0.1, 0.02, 0.02}), R);
   const double touch = 0.02 * std::sqrt(2.0);
   const auto path = [&](int step) { return makePose({0.001, 0.002, touch + 0.001 - 3e-4 * step}, {M_PI / 4, 0, 0}); };
   const Followed found = follow(above, below, 8, path, noMargin);
@@ -118,9 +119,9 @@ TEST(NarrowPhaseMemory, EdgesThatMeetAreFound) {
 
 /** A cube runs into a step of a floor, along which it slides at one height, farther in every step than it is above the floor. */
 TEST(NarrowPhaseMemory, WhatSlidesIntoAStepIsFound) {
-  TriangleMesh floor = gridMesh(0.3, 0.3, 60, 60);
+  geometry::TriangleMesh floor = geometry::gridMesh(0.3, 0.3, 60, 60);
   for (Vector3& v : floor.vertices) v.z() = v.x() > 0.101 ? 0.004 : 0;
-  const Collider ground = makeCollider(floor, 0), cube = makeCollider(boxMesh(Vector3::Constant(0.05)), 0.0005);
+  const Collider ground = makeCollider(floor, 0), cube = makeCollider(geometry::boxMesh(Vector3::Constant(0.05)), 0.0005);
   for (const double speed : {1e-4, 2e-4, 5e-4}) {
     const auto path = [=](int step) { return makePose({0.06 + speed * step, 0, 0.02505}); };
     const Followed found = follow(cube, ground, static_cast<int>(0.025 / speed), path, noMargin);
@@ -130,15 +131,16 @@ TEST(NarrowPhaseMemory, WhatSlidesIntoAStepIsFound) {
 }
 
 TEST(NarrowPhaseMemory, MarginsMayChange) {
-  RandomShapes random(7);
-  const Collider hills = makeCollider(hillMesh(random, 0.3, 60, 0.001), 0), cube = makeCollider(boxMesh(Vector3::Constant(0.05)), R);
+  geometry::RandomShapes random(7);
+  const Collider hills = makeCollider(hillMesh(random, 0.3, 60, 0.001), 0),
+                 cube = makeCollider(geometry::boxMesh(Vector3::Constant(0.05)), R);
   const auto margin = [](int step) { return 0.001 * (1 + std::sin(0.3 * step)); };
   EXPECT_GT(follow(cube, hills, 300, wandering({0, 0, 0.027}, 0.003, 0.01), margin).contacts, 300u);
 }
 
 /** A chip, its lists made in straight flight, turns on the spot until edges have contacts that had none: little moves, but much turns. */
 TEST(NarrowPhaseMemory, TurningOnTheSpot) {
-  RandomShapes random(10);
+  geometry::RandomShapes random(10);
   const Collider hills = makeCollider(hillMesh(random, 0.02, 40, 0.0001), 0), chip = makeCollider(hillMesh(random, 0.001, 4, 0.0001), R);
   const auto path = [](int step) {
     const int turned = std::max(0, step - 5) % 40;
@@ -148,20 +150,20 @@ TEST(NarrowPhaseMemory, TurningOnTheSpot) {
 }
 
 TEST(NarrowPhaseMemory, FarFromTheOriginToo) {
-  RandomShapes random(8);
-  TriangleMesh far = hillMesh(random, 0.3, 40, 0.001);
+  geometry::RandomShapes random(8);
+  geometry::TriangleMesh far = hillMesh(random, 0.3, 40, 0.001);
   for (Vector3& v : far.vertices) v += Vector3(90, -40, 3);
-  const Collider hills = makeCollider(far, 0), cube = makeCollider(boxMesh(Vector3::Constant(0.05)), R);
+  const Collider hills = makeCollider(far, 0), cube = makeCollider(geometry::boxMesh(Vector3::Constant(0.05)), R);
   EXPECT_GT(follow(cube, hills, 200, wandering({90, -40, 3.027}, 0.003, 0.02), noMargin).contacts, 200u);
 }
 
 TEST(NarrowPhaseMemory, AnotherGeometryIsNotTakenForTheOneBefore) {
-  RandomShapes random(9);
+  geometry::RandomShapes random(9);
   const Collider hills = makeCollider(hillMesh(random, 0.3, 60, 0.001), 0);
   const Pose X = makePose({0, 0, 0.0275});
   NarrowPhaseMemory memory;
   for (const double size : {0.05, 0.051, 0.05}) {
-    const Collider cube = makeCollider(boxMesh(Vector3::Constant(size)), R);
+    const Collider cube = makeCollider(geometry::boxMesh(Vector3::Constant(size)), R);
     NarrowPhaseMemory none;
     ContactManifold remembered, fresh;
     narrowPhase(cube, X, hills, Pose::Identity(), 0, &remembered, nullptr, &memory);
@@ -173,4 +175,4 @@ TEST(NarrowPhaseMemory, AnotherGeometryIsNotTakenForTheOneBefore) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

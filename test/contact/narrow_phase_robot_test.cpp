@@ -6,7 +6,7 @@
 #include "contact/stl_soup.h"
 #include "support/shared_data.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 constexpr const char* FOOT = "robots/klampt/huboplus/meshes/Body_LAR_col_simple.stl";
@@ -15,7 +15,7 @@ class HuboFoot : public testing::Test {
  protected:
   void SetUp() override {
     SKIP_WITHOUT_SHARED_DATA(FOOT);
-    const TriangleMesh mesh = cleanMesh(readStlSoup(*sharedData(FOOT)), nullptr);
+    const geometry::TriangleMesh mesh = geometry::cleanMesh(readStlSoup(*sharedData(FOOT)), nullptr);
     lowest_ = mesh.bounds().min().z();
     foot_ = makeCollider(mesh, 0.0025);
   }
@@ -27,7 +27,7 @@ class HuboFoot : public testing::Test {
 TEST_F(HuboFoot, OnPlanesOfAnyTessellation) {
   for (const int cells : {1, 50}) {
     const Pose X_WA = makePose({0.013, 0.021, 0.002 - lowest_}, {0, 0, 0.3});
-    const ContactManifold manifold = contactsOf(foot_, X_WA, makeCollider(gridMesh(1, 1, cells, cells), 0), Pose::Identity());
+    const ContactManifold manifold = contactsOf(foot_, X_WA, makeCollider(geometry::gridMesh(1, 1, cells, cells), 0), Pose::Identity());
     EXPECT_FALSE(manifold.pierced);
     ASSERT_GE(manifold.contacts.size(), 3u);
     EXPECT_NEAR(manifold.maxDepth(), 0.0005, 1e-9);
@@ -36,7 +36,7 @@ TEST_F(HuboFoot, OnPlanesOfAnyTessellation) {
 }
 
 TEST_F(HuboFoot, FarFromTheWorldsOriginAsNear) {
-  RandomShapes random(41);
+  geometry::RandomShapes random(41);
   const Collider hills = makeCollider(hillMesh(random, 1, 100, 0.002), 0);
   const Pose X_WA = makePose({0.013, 0.021, 0.003 - lowest_}, {0.004, 0.01, 0.3});
   const ContactManifold near = contactsOf(foot_, X_WA, hills, Pose::Identity());
@@ -52,14 +52,14 @@ TEST_F(HuboFoot, FarFromTheWorldsOriginAsNear) {
 }
 
 TEST_F(HuboFoot, CompleteOnTerrain) {
-  RandomShapes random(42);
+  geometry::RandomShapes random(42);
   const Collider hills = makeCollider(hillMesh(random, 0.4, 8, 0.01), 0);
   int within = 0;
   for (int i = 0; i < 30; ++i) {
     Pose X_WA = makePose({random.uniform(-0.05, 0.05), random.uniform(-0.05, 0.05), 0.1 - lowest_}, random.point(0.2));
-    ClosestPoints exact = closestMeshMeshBruteForce(foot_.geometry->mesh(), hills.geometry->mesh(), X_WA);
+    geometry::ClosestPoints exact = geometry::closestMeshMeshBruteForce(foot_.geometry->mesh(), hills.geometry->mesh(), X_WA);
     X_WA.pretranslate((exact.point_b - exact.point_a) * (1 - 0.001 / exact.distance));
-    exact = closestMeshMeshBruteForce(foot_.geometry->mesh(), hills.geometry->mesh(), X_WA);
+    exact = geometry::closestMeshMeshBruteForce(foot_.geometry->mesh(), hills.geometry->mesh(), X_WA);
     const ContactManifold manifold = contactsOf(foot_, X_WA, hills, Pose::Identity());
     ASSERT_TRUE(allFinite(manifold));
     if (exact.distance == 0) continue;
@@ -71,4 +71,4 @@ TEST_F(HuboFoot, CompleteOnTerrain) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

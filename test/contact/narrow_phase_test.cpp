@@ -7,12 +7,12 @@
 #include "contact/contact_shapes.h"
 #include "features/mesh_pair.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 constexpr double EDGE = 0.1;  // of the cubes
 
-Collider cube(double radius) { return makeCollider(boxMesh(Vector3::Constant(EDGE)), radius); }
+Collider cube(double radius) { return makeCollider(geometry::boxMesh(Vector3::Constant(EDGE)), radius); }
 Pose at(double x, double y, double z) { return makePose({x, y, z}); }
 
 /** Every contact of A, which lies above, points up and is `gap` high. */
@@ -38,7 +38,7 @@ TEST(NarrowPhase, AlignedCubesHaveFourContacts) {
 }
 
 TEST(NarrowPhase, WhatAManifoldHeldDoesNotMatter) {
-  RandomShapes random(2);
+  geometry::RandomShapes random(2);
   const Collider hills = makeCollider(hillMesh(random, 0.4, 20, 0.001), 0.002), ground = makeHalfSpace(Vector3::UnitZ(), 0);
   const Pose above = at(0, 0, EDGE / 2 + 0.002), crossing = at(0, 0, EDGE / 2 - 0.002);
   for (const Collider* standing : {&hills, &ground}) {
@@ -69,7 +69,7 @@ TEST(NarrowPhase, CubesSlightlyOffHaveFourCorners) {
     ContactManifold manifold = contactsOf(cube(0.0025), at(offset, 0.7 * offset, EDGE + 0.004), cube(0.0025), Pose::Identity());
     EXPECT_EQ(manifold.contacts.size(), 4u) << offset;
     expectUp(manifold, 0.004);
-    reduceHull(manifold.contacts, 20);
+    reduction::reduceHull(manifold.contacts, 20);
     EXPECT_EQ(manifold.contacts.size(), 4u) << offset;
   }
 }
@@ -77,7 +77,7 @@ TEST(NarrowPhase, CubesSlightlyOffHaveFourCorners) {
 TEST(NarrowPhase, TurnedCubesHaveEightCorners) {
   ContactManifold manifold = contactsOf(cube(0.0025), makePose({0, 0, EDGE + 0.004}, {0, 0, M_PI / 4}), cube(0.0025), Pose::Identity());
   expectUp(manifold, 0.004);
-  reduceHull(manifold.contacts, 20);
+  reduction::reduceHull(manifold.contacts, 20);
   EXPECT_EQ(manifold.contacts.size(), 8u);
 }
 
@@ -85,7 +85,8 @@ TEST(NarrowPhase, TessellationOfThePlaneDoesNotMatter) {
   for (const int cells : {1, 7, 60}) {
     for (const double tilt : {0.0, 0.002}) {
       const Pose X_WA = makePose({0.013, 0.021, EDGE / 2 + 0.002}, {tilt, 0.4 * tilt, 0.3});
-      const ContactManifold manifold = contactsOf(cube(0.0025), X_WA, makeCollider(gridMesh(1, 1, cells, cells), 0), Pose::Identity());
+      const ContactManifold manifold =
+          contactsOf(cube(0.0025), X_WA, makeCollider(geometry::gridMesh(1, 1, cells, cells), 0), Pose::Identity());
       ASSERT_EQ(manifold.contacts.size(), 4u) << cells << " cells, tilt " << tilt;
       for (const Contact& c : manifold.contacts) EXPECT_NEAR((c.normal_BA - Vector3::UnitZ()).norm(), 0, 1e-12);
     }
@@ -93,11 +94,11 @@ TEST(NarrowPhase, TessellationOfThePlaneDoesNotMatter) {
 }
 
 TEST(NarrowPhase, TessellationOfTheCubeDoesNotMatterAfterReduction) {
-  const Collider fine = makeCollider(subdivided(boxMesh(Vector3::Constant(EDGE)), 3), 0.0025);
+  const Collider fine = makeCollider(geometry::subdivided(geometry::boxMesh(Vector3::Constant(EDGE)), 3), 0.0025);
   ContactManifold manifold = contactsOf(fine, at(0.01, 0.02, EDGE + 0.003), fine, Pose::Identity());
   expectUp(manifold, 0.003);
   EXPECT_LT(manifold.contacts.size(), 50u);  // nothing from inside the faces
-  reduceHull(manifold.contacts, 20);
+  reduction::reduceHull(manifold.contacts, 20);
   EXPECT_EQ(manifold.contacts.size(), 4u);
 }
 
@@ -111,8 +112,8 @@ TEST(NarrowPhase, SpeculativeContactsHaveNegativeDepth) {
 
 TEST(NarrowPhase, SphereOnPlaneBoxEdgeAndCorner) {
   const double r = 0.03, gap = 0.025;
-  const Collider sphere = makeCollider(pointMesh(Vector3::Zero()), r);
-  const Collider plane = makeCollider(gridMesh(1, 1, 10, 10), 0.002), box = cube(0.002);
+  const Collider sphere = makeCollider(geometry::pointMesh(Vector3::Zero()), r);
+  const Collider plane = makeCollider(geometry::gridMesh(1, 1, 10, 10), 0.002), box = cube(0.002);
   const auto expectOne = [&](const Collider& on, const Vector3& centre, const Vector3& foot) {
     const ContactManifold manifold = contactsOf(sphere, makePose(centre), on, Pose::Identity());
     ASSERT_EQ(manifold.contacts.size(), 1u);
@@ -133,8 +134,9 @@ TEST(NarrowPhase, SphereOnPlaneBoxEdgeAndCorner) {
 }
 
 TEST(NarrowPhase, SpheresAndCapsules) {
-  const Collider sphere = makeCollider(pointMesh({0.001, 0, 0}), 0.03), ball = makeCollider(pointMesh(Vector3::Zero()), 0.02);
-  const Collider capsule = makeCollider(segmentMesh({-0.1, 0, 0}, {0.1, 0, 0}), 0.01);
+  const Collider sphere = makeCollider(geometry::pointMesh({0.001, 0, 0}), 0.03),
+                 ball = makeCollider(geometry::pointMesh(Vector3::Zero()), 0.02);
+  const Collider capsule = makeCollider(geometry::segmentMesh({-0.1, 0, 0}, {0.1, 0, 0}), 0.01);
   ContactManifold manifold = contactsOf(sphere, at(0.029, 0, 0.04), ball, Pose::Identity());
   ASSERT_EQ(manifold.contacts.size(), 1u);
   EXPECT_NEAR(manifold.contacts[0].depth, 0, 1e-15);
@@ -154,16 +156,17 @@ TEST(NarrowPhase, SpheresAndCapsules) {
   expectUp(manifold, 0.015);
 
   // The axis lies along a plane: both ends.
-  manifold = contactsOf(capsule, at(0, 0, 0.008), makeCollider(gridMesh(1, 1, 20, 20), 0), Pose::Identity());
+  manifold = contactsOf(capsule, at(0, 0, 0.008), makeCollider(geometry::gridMesh(1, 1, 20, 20), 0), Pose::Identity());
   ASSERT_EQ(manifold.contacts.size(), 2u);
   expectUp(manifold, 0.008);
 }
 
 TEST(NarrowPhase, CloudOnMesh) {
-  RandomShapes random(5);
+  geometry::RandomShapes random(5);
   std::vector<Vector3> points;
   for (int i = 0; i < 200; ++i) points.push_back({random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4), random.uniform(0, 0.02)});
-  const Collider cloud = makeCollider(pointCloudMesh(points, nullptr), 0.01), plane = makeCollider(gridMesh(1, 1, 9, 9), 0);
+  const Collider cloud = makeCollider(geometry::pointCloudMesh(points, nullptr), 0.01),
+                 plane = makeCollider(geometry::gridMesh(1, 1, 9, 9), 0);
   const ContactManifold manifold = contactsOf(cloud, Pose::Identity(), plane, Pose::Identity());
   EXPECT_EQ(manifold.contacts.size(), std::count_if(points.begin(), points.end(), [](const Vector3& p) { return p.z() <= 0.01; }));
   for (const Contact& c : manifold.contacts) EXPECT_NEAR((c.normal_BA - Vector3::UnitZ()).norm(), 0, 1e-12);
@@ -171,7 +174,7 @@ TEST(NarrowPhase, CloudOnMesh) {
 
 TEST(NarrowPhase, HalfSpaceInEitherOrder) {
   const Collider half_space = makeHalfSpace({0, 0, 2}, 0.25, 0.001),
-                 box = makeCollider(subdivided(boxMesh(Vector3::Constant(EDGE)), 1), 0.003);
+                 box = makeCollider(geometry::subdivided(geometry::boxMesh(Vector3::Constant(EDGE)), 1), 0.003);
   // Deep, shallow and speculative contacts; the plane turned with its frame.
   for (const double gap : {-0.03, 0.002, 0.0045}) {
     const Pose X_WH = makePose({1, 2, 3}, {0.3, -0.8, 0.5}), X_WA = X_WH * makePose({0.2, 0.1, 0.25 + EDGE / 2 + gap}, {0, 0, 0.4});
@@ -190,13 +193,13 @@ TEST(NarrowPhase, HalfSpaceInEitherOrder) {
     EXPECT_NEAR(largestDifference(above.contacts, below.contacts), 0, 1e-12);
   }
   EXPECT_TRUE(contactsOf(half_space, Pose::Identity(), half_space, at(0, 0, 0.1)).contacts.empty());
-  const Collider sphere = makeCollider(pointMesh(Vector3::Zero()), 0.05);
+  const Collider sphere = makeCollider(geometry::pointMesh(Vector3::Zero()), 0.05);
   EXPECT_NEAR(contactsOf(sphere, at(0, 0, 0.27), half_space, Pose::Identity()).maxDepth(), 0.031, 1e-12);
 }
 
 /** Bare meshes that touch exactly have no direction between them; their surfaces give it. */
 TEST(NarrowPhase, ExactTouchPointsOut) {
-  const Collider bare = cube(0), plane = makeCollider(gridMesh(1, 1, 5, 5), 0);
+  const Collider bare = cube(0), plane = makeCollider(geometry::gridMesh(1, 1, 5, 5), 0);
   for (const double gap : {0.0, 1e-17, 1e-12, -1e-12, 1e-9, -1e-10}) {
     for (const Pose& X_WA :
          {at(0, 0, EDGE + gap), at(0.03, 0.02, EDGE + gap), makePose({0.03, 0, EDGE + gap}, {0, 0, 0.3}), at(EDGE / 2, 0, EDGE + gap)}) {
@@ -214,8 +217,9 @@ TEST(NarrowPhase, ExactTouchPointsOut) {
 
 /** Their gap is 0, though the search that tells their sides apart moves one of them a little. */
 TEST(NarrowPhase, CopiesOfASheetAtOnePlaceTouch) {
-  const Collider segment = makeCollider(segmentMesh({-0.5 * EDGE, 0, 0}, {0.5 * EDGE, 0, 0}), 0.004);
-  const Collider coarse = makeCollider(gridMesh(EDGE, EDGE, 2, 2), 0.004), fine = makeCollider(gridMesh(EDGE, EDGE, 4, 4), 0.001);
+  const Collider segment = makeCollider(geometry::segmentMesh({-0.5 * EDGE, 0, 0}, {0.5 * EDGE, 0, 0}), 0.004);
+  const Collider coarse = makeCollider(geometry::gridMesh(EDGE, EDGE, 2, 2), 0.004),
+                 fine = makeCollider(geometry::gridMesh(EDGE, EDGE, 4, 4), 0.001);
   const std::pair<const Collider*, const Collider*> pairs[] = {
       {&segment, &segment}, {&coarse, &coarse}, {&coarse, &fine}, {&fine, &coarse}};
   for (const auto& [a, b] : pairs) {
@@ -231,7 +235,7 @@ TEST(NarrowPhase, CopiesOfASheetAtOnePlaceTouch) {
 }
 
 TEST(NarrowPhase, ContactsHaveUniqueIdsWhichLast) {
-  RandomShapes random(11);
+  geometry::RandomShapes random(11);
   const Collider hills = makeCollider(hillMesh(random, 0.5, 40, 0.001), 0), box = cube(0.005);
   Pose X_WA = makePose({0.013, 0.007, EDGE / 2 + 0.003}, {0.001, 0.002, 0.4});
   std::set<std::uint64_t> before;
@@ -249,7 +253,7 @@ TEST(NarrowPhase, ContactsHaveUniqueIdsWhichLast) {
 }
 
 TEST(NarrowPhase, SlidingOverATessellatedPlaneKeepsTheIds) {
-  const Collider plane = makeCollider(gridMesh(1, 1, 100, 100), 0), box = cube(0.005);
+  const Collider plane = makeCollider(geometry::gridMesh(1, 1, 100, 100), 0), box = cube(0.005);
   std::set<std::uint64_t> first;
   for (int step = 0; step < 50; ++step) {
     const ContactManifold manifold = contactsOf(box, at(0.001 * step, 0.0007 * step, EDGE / 2 + 0.004), plane, Pose::Identity());
@@ -263,7 +267,7 @@ TEST(NarrowPhase, SlidingOverATessellatedPlaneKeepsTheIds) {
 
 /** A plane with a notch: over one of its faces, beside another across the notch, where nothing but this takes over. */
 TEST(NarrowPhase, AVertexOverAPlaneDoesNotFadeBesideAnotherOfItsFaces) {
-  TriangleMesh plane;
+  geometry::TriangleMesh plane;
   const double xs[] = {-0.05, 0, 0.001, 0.05}, ys[] = {-0.05, 0, 0.1};
   for (const double y : ys)
     for (const double x : xs) plane.vertices.emplace_back(x, y, 0);
@@ -272,7 +276,7 @@ TEST(NarrowPhase, AVertexOverAPlaneDoesNotFadeBesideAnotherOfItsFaces) {
     plane.elements.emplace_back(corner, corner + 5, corner + 4);
   }
   const Vector3 tip(0.0012, 0.02, 0.0005);
-  const TriangleMesh blade{{tip, tip + Vector3(0, 0.004, -0.0004), tip + Vector3(0, 0.004, 0.002)}, {{0, 1, 2}}};
+  const geometry::TriangleMesh blade{{tip, tip + Vector3(0, 0.004, -0.0004), tip + Vector3(0, 0.004, 0.002)}, {{0, 1, 2}}};
   const Collider a = makeCollider(blade, 0.002), b = makeCollider(plane, 0.002);
   const ContactManifold manifold = contactsOf(a, Pose::Identity(), b, Pose::Identity());
   int of_tip = 0;
@@ -285,4 +289,4 @@ TEST(NarrowPhase, AVertexOverAPlaneDoesNotFadeBesideAnotherOfItsFaces) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -5,32 +5,32 @@
 
 #include "geometry/random_shapes.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 constexpr double INFINITE = std::numeric_limits<double>::infinity();
 
-std::shared_ptr<const CollisionGeometry> geometryOf(const TriangleMesh& mesh) {
-  return std::make_shared<const CollisionGeometry>(std::make_shared<const TriangleMesh>(mesh));
+std::shared_ptr<const CollisionGeometry> geometryOf(const geometry::TriangleMesh& mesh) {
+  return std::make_shared<const CollisionGeometry>(std::make_shared<const geometry::TriangleMesh>(mesh));
 }
 
-RayTarget target(const TriangleMesh& mesh, const Pose& X_WC, double radius = 0, int model = 0) {
+RayTarget target(const geometry::TriangleMesh& mesh, const Pose& X_WC, double radius = 0, int model = 0) {
   return {geometryOf(mesh), X_WC, radius, model};
 }
 
 TEST(RayScene, IsTheFirstOfAllTargets) {
-  RandomShapes random(21);
+  geometry::RandomShapes random(21);
   std::vector<RayTarget> targets;
   for (int i = 0; i < 40; ++i) {
-    const TriangleMesh shapes[] = {boxMesh({0.3, 0.2, 0.1}), icosphereMesh(0.2, 2), pointMesh({0.1, 0, 0}),
-                                   segmentMesh({0, 0, 0}, {0.3, 0, 0})};
+    const geometry::TriangleMesh shapes[] = {geometry::boxMesh({0.3, 0.2, 0.1}), geometry::icosphereMesh(0.2, 2),
+                                             geometry::pointMesh({0.1, 0, 0}), geometry::segmentMesh({0, 0, 0}, {0.3, 0, 0})};
     targets.push_back(target(shapes[i % 4], random.pose(2), i % 2 ? 0.0025 : 0.1, i % 3));
   }
   targets.push_back({CollisionGeometry::halfSpace({0.1, 0, 1}, -1.5), makePose({0, 0, 0.2}), 0, 5});
   const RayScene scene(targets);
   int hits = 0;
   for (int trial = 0; trial < 3000; ++trial) {
-    const Ray ray{random.point(3), random.point(1)};
+    const geometry::Ray ray{random.point(3), random.point(1)};
     const RayScene::Query query{random.uniform(0, 6), trial % 3, random.uniform(0, 2)};
     RayScene::Hit expected;
     for (int i = 0; i < static_cast<int>(targets.size()); ++i) {
@@ -47,10 +47,11 @@ TEST(RayScene, IsTheFirstOfAllTargets) {
 
 TEST(RayScene, TurnedBoxSphereCapsuleAndHalfSpace) {
   const Pose X = makePose({2, 0, 0}, {0, 0, M_PI / 4});
-  const Ray ahead{{0, 0, 0}, {1, 0, 0}};
-  EXPECT_NEAR(RayScene({target(boxMesh({1, 1, 1}), X)}).firstHit({{0, 0.1, 0}, {1, 0, 0}}, {}).t, 2 - std::sqrt(0.5) + 0.1, 1e-15);
-  EXPECT_NEAR(RayScene({target(pointMesh({0.5, 0, 0}), makePose({2, 0, 0}), 0.25)}).firstHit(ahead, {}).t, 2.25, 1e-15);
-  EXPECT_NEAR(RayScene({target(segmentMesh({0, 0, -1}, {0, 0, 1}), X, 0.25)}).firstHit(ahead, {}).t, 1.75, 1e-15);
+  const geometry::Ray ahead{{0, 0, 0}, {1, 0, 0}};
+  EXPECT_NEAR(RayScene({target(geometry::boxMesh({1, 1, 1}), X)}).firstHit({{0, 0.1, 0}, {1, 0, 0}}, {}).t, 2 - std::sqrt(0.5) + 0.1,
+              1e-15);
+  EXPECT_NEAR(RayScene({target(geometry::pointMesh({0.5, 0, 0}), makePose({2, 0, 0}), 0.25)}).firstHit(ahead, {}).t, 2.25, 1e-15);
+  EXPECT_NEAR(RayScene({target(geometry::segmentMesh({0, 0, -1}, {0, 0, 1}), X, 0.25)}).firstHit(ahead, {}).t, 1.75, 1e-15);
   const RayScene plane({{CollisionGeometry::halfSpace({0, 0, 1}, 0), makePose({0, 0, -1}), 0, 0}});
   EXPECT_NEAR(plane.firstHit({{0, 0, 0}, {1, 0, -0.5}}, {}).t, 2, 1e-15);
   EXPECT_EQ(plane.firstHit(ahead, {}).t, INFINITE) << "along the plane";
@@ -59,10 +60,10 @@ TEST(RayScene, TurnedBoxSphereCapsuleAndHalfSpace) {
 }
 
 TEST(RayScene, TrianglesAreBareAndTheOwnModelBeginsLater) {
-  const std::vector<RayTarget> walls = {target(boxMesh({0.1, 2, 2}), makePose({1, 0, 0}), 0.01, 0),
-                                        target(boxMesh({0.1, 2, 2}), makePose({3, 0, 0}), 0.01, 1)};
+  const std::vector<RayTarget> walls = {target(geometry::boxMesh({0.1, 2, 2}), makePose({1, 0, 0}), 0.01, 0),
+                                        target(geometry::boxMesh({0.1, 2, 2}), makePose({3, 0, 0}), 0.01, 1)};
   const RayScene scene(walls);
-  const Ray ahead{{0, 0.1, 0.2}, {1, 0, 0}};
+  const geometry::Ray ahead{{0, 0.1, 0.2}, {1, 0, 0}};
   EXPECT_NEAR(scene.firstHit(ahead, {}).t, 0.95, 1e-15);
   EXPECT_NEAR(scene.firstHit(ahead, {10, 0, 1.5}).t, 2.95, 1e-15) << "through the own wall";
   EXPECT_NEAR(scene.firstHit(ahead, {10, 1, 1.5}).t, 0.95, 1e-15) << "the other's wall is not its own";
@@ -71,4 +72,4 @@ TEST(RayScene, TrianglesAreBareAndTheOwnModelBeginsLater) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

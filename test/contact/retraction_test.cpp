@@ -3,13 +3,15 @@
 
 #include "contact/contact_shapes.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 constexpr double SIDE = 0.1;
 constexpr double SUM_OF_WIDTHS = 0.005;
 
-Collider retractedCube(int level = 0) { return makeCollider(subdivided(boxMesh(Vector3::Constant(SIDE)), level), SUM_OF_WIDTHS / 2); }
+Collider retractedCube(int level = 0) {
+  return makeCollider(geometry::subdivided(geometry::boxMesh(Vector3::Constant(SIDE)), level), SUM_OF_WIDTHS / 2);
+}
 
 int countPierced(const ContactManifold& manifold) {
   return std::count_if(manifold.contacts.begin(), manifold.contacts.end(), [](const Contact& c) { return c.pierced; });
@@ -24,9 +26,9 @@ TEST(Retraction, SunkCubeIsPushedOutTheWayItCame) {
   };
   const std::vector<Ground> grounds = {{"cube", retractedCube(), SIDE / 2},
                                        {"fine cube", retractedCube(2), SIDE / 2},
-                                       {"two triangles", makeCollider(gridMesh(1, 1, 1, 1), SUM_OF_WIDTHS / 2), 0},
-                                       {"fine sheet", makeCollider(gridMesh(1, 1, 90, 90), SUM_OF_WIDTHS / 2), 0},
-                                       {"block", makeCollider(boxMesh({1, 1, 0.2}), SUM_OF_WIDTHS / 2), 0.1}};
+                                       {"two triangles", makeCollider(geometry::gridMesh(1, 1, 1, 1), SUM_OF_WIDTHS / 2), 0},
+                                       {"fine sheet", makeCollider(geometry::gridMesh(1, 1, 90, 90), SUM_OF_WIDTHS / 2), 0},
+                                       {"block", makeCollider(geometry::boxMesh({1, 1, 0.2}), SUM_OF_WIDTHS / 2), 0.1}};
   for (const Ground& ground : grounds) {
     for (const int level : {0, 2}) {
       for (const Vector3& offset : {Vector3(0, 0, 0), Vector3(1e-6, 0, 0), Vector3(0.02, 0.013, 0), Vector3(0.0123, 0, 0)}) {
@@ -46,7 +48,7 @@ TEST(Retraction, SunkCubeIsPushedOutTheWayItCame) {
 
 /** Only the earlier pose of a cube that is sunk by more than half tells the side. */
 TEST(Retraction, WayBackIsTheOneFromWhereThePairWasApart) {
-  const Collider sheet = makeCollider(gridMesh(1, 1, 7, 7), SUM_OF_WIDTHS / 2);
+  const Collider sheet = makeCollider(geometry::gridMesh(1, 1, 7, 7), SUM_OF_WIDTHS / 2);
   for (const double above : {1.0, -1.0}) {
     const Pose X_BA_apart = makePose({0.01, 0, above * (SIDE / 2 + SUM_OF_WIDTHS)}, {0, 0, 0.1});
     for (const double sunk : {0.001, 0.04, 0.08}) {
@@ -72,7 +74,7 @@ TEST(Retraction, WayBackIsTheOneFromWhereThePairWasApart) {
 
 /** A wedged body: walls that cross on both sides must not pull it apart. */
 TEST(Retraction, DirectionsOfOnePairAgree) {
-  RandomShapes random(33);
+  geometry::RandomShapes random(33);
   int pierced = 0;
   for (int i = 0; i < 200; ++i) {
     const Collider a = makeCollider(hillMesh(random, 0.2, 6, 0.03), 0.001), b = makeCollider(octahedronMesh(0.04), 0.001);
@@ -87,7 +89,7 @@ TEST(Retraction, DirectionsOfOnePairAgree) {
 }
 
 TEST(Retraction, CornerAndEdgeThroughASheet) {
-  const Collider sheet = makeCollider(gridMesh(1, 1, 20, 20), SUM_OF_WIDTHS / 2);
+  const Collider sheet = makeCollider(geometry::gridMesh(1, 1, 20, 20), SUM_OF_WIDTHS / 2);
   const double corner = SIDE / 2 * std::sqrt(3.0), edge = SIDE / 2 * std::sqrt(2.0), sunk = 0.001;
   Pose X_WA = Pose::Identity();
   X_WA.linear() = Quaternion::FromTwoVectors(Vector3(1, 1, 1), Vector3(0, 0, -1)).toRotationMatrix();
@@ -114,7 +116,7 @@ TEST(Retraction, CrossedRidgesPartOverTheRidge) {
 }
 
 TEST(Retraction, DepthIsContinuousThroughThePiercing) {
-  RandomShapes random(31);
+  geometry::RandomShapes random(31);
   const Collider hills = makeCollider(hillMesh(random, 0.5, 25, 0.002), SUM_OF_WIDTHS / 2), box = retractedCube(1);
   double before = -SUM_OF_WIDTHS;
   for (int step = 0; step < 400; ++step) {
@@ -128,7 +130,7 @@ TEST(Retraction, DepthIsContinuousThroughThePiercing) {
 }
 
 TEST(Retraction, SwappedPairIsMirrored) {
-  RandomShapes random(32);
+  geometry::RandomShapes random(32);
   int pierced = 0;
   for (int i = 0; i < 300; ++i) {
     const Collider a = retractedCube(), b = makeCollider(octahedronMesh(0.04), 0.001);
@@ -145,4 +147,4 @@ TEST(Retraction, SwappedPairIsMirrored) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

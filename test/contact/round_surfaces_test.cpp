@@ -5,7 +5,7 @@
 #include "contact/contact_shapes.h"
 #include "features/mesh_pair.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 constexpr double ROUND_WIDTH = 0.002;
@@ -15,11 +15,11 @@ struct Nearest {
   int features = 0;  ///< of the triangle there: 1 a vertex, 2 an edge, 3 the face
 };
 
-Nearest nearestTo(const Vector3& p, const TriangleMesh& mesh) {
+Nearest nearestTo(const Vector3& p, const geometry::TriangleMesh& mesh) {
   Nearest out;
   for (const Vector3i& e : mesh.elements) {
-    const Triangle triangle{mesh.vertices[e[0]], mesh.vertices[e[1]], mesh.vertices[e[2]]};
-    const Vector3 q = closestPointTriangle(p, triangle).point_b;
+    const geometry::Triangle triangle{mesh.vertices[e[0]], mesh.vertices[e[1]], mesh.vertices[e[2]]};
+    const Vector3 q = geometry::closestPointTriangle(p, triangle).point_b;
     if ((p - q).norm() >= out.distance) continue;
     out.distance = (p - q).norm();
     out.features = 3;
@@ -46,15 +46,15 @@ double depthOfFirstVertex(const Collider& a, const Collider& b) {
 
 /** A blade whose tip is not its nearest point: its other end lies closer to the ball. */
 TEST(RoundSurfaces, AVertexThatLeadsDownKeepsItsContact) {
-  RandomShapes random(11);
-  const TriangleMesh mesh = icosphereMesh(0.03, 3);
+  geometry::RandomShapes random(11);
+  const geometry::TriangleMesh mesh = geometry::icosphereMesh(0.03, 3);
   const Collider ball = makeCollider(mesh, ROUND_WIDTH);
   int at[4] = {};
   for (int i = 0; i < 600; ++i) {
     const Vector3& corner = mesh.vertices[random.integer(0, static_cast<int>(mesh.vertices.size()) - 1)];
     const Vector3 up = (corner.normalized() + (i % 2 ? 0.01 : 0.2) * random.point(1)).normalized(), aside = up.unitOrthogonal();
     const Vector3 tip = 0.0315 * up;
-    const TriangleMesh blade{{tip, tip + 0.004 * aside - 0.0004 * up, tip + 0.004 * aside + 0.002 * up}, {{0, 1, 2}}};
+    const geometry::TriangleMesh blade{{tip, tip + 0.004 * aside - 0.0004 * up, tip + 0.004 * aside + 0.002 * up}, {{0, 1, 2}}};
     const Nearest nearest = nearestTo(tip, mesh);
     ++at[nearest.features];
     EXPECT_NEAR(depthOfFirstVertex(makeCollider(blade, ROUND_WIDTH), ball), 2 * ROUND_WIDTH - nearest.distance, 1e-9)
@@ -64,4 +64,4 @@ TEST(RoundSurfaces, AVertexThatLeadsDownKeepsItsContact) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -5,12 +5,12 @@
 #include "contact/stl_soup.h"
 #include "geometry/gridded_box.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
-Collider smoothCube() { return makeCollider(boxMesh(Vector3::Constant(0.1)), R); }
-Collider pad() { return makeCollider(cleanMesh(griddedBox({0.02, 0.02, 0.004}, Vector3i(20, 20, 4)), nullptr), R); }
-Collider shellMug() { return makeCollider(cleanMesh(readStlSoup(BLEM_SIM_SOURCE_DIR "/meshes/shell_mug.stl"), nullptr), R); }
+Collider smoothCube() { return makeCollider(geometry::boxMesh(Vector3::Constant(0.1)), R); }
+Collider pad() { return makeCollider(geometry::cleanMesh(geometry::griddedBox({0.02, 0.02, 0.004}, Vector3i(20, 20, 4)), nullptr), R); }
+Collider shellMug() { return makeCollider(geometry::cleanMesh(readStlSoup(BLEM_SIM_SOURCE_DIR "/meshes/shell_mug.stl"), nullptr), R); }
 
 TEST(Smoothness, CubeOnCube) {
   for (const double overlap : {1e-3, 1e-5}) {
@@ -32,7 +32,8 @@ TEST(Smoothness, FinePadOnCube) {
 
 TEST(Smoothness, BallOnFinePlane) {
   for (const double overlap : {1e-3, 1e-5}) {
-    const Scene scene{"ball_plane", makeCollider(icosphereMesh(0.03, 3), R), makeCollider(gridMesh(0.2, 0.2, 200, 200), 0), 0.04, 0.05};
+    const Scene scene{"ball_plane", makeCollider(geometry::icosphereMesh(0.03, 3), R),
+                      makeCollider(geometry::gridMesh(0.2, 0.2, 200, 200), 0), 0.04, 0.05};
     const Walk w = walk(scene, overlap, 16, 60);
     EXPECT_EQ(w.orphans, 0);
     EXPECT_LE(w.rate, 1);
@@ -55,7 +56,7 @@ TEST(Smoothness, MugOnBoxAndMugOnMug) {
 
 /** Valleys everywhere: contacts leave faces and edges where nothing takes them over exactly. */
 TEST(Smoothness, CubeOnNoise) {
-  RandomShapes random(5);
+  geometry::RandomShapes random(5);
   const Scene scene{"cube_noise", smoothCube(), makeCollider(hillMesh(random, 0.15, 40, 0.0002), 0), 0.06, 0.01};
   const Walk w = walk(scene, 1e-3, 12, 60);
   EXPECT_LE(w.orphans, 1);
@@ -64,7 +65,7 @@ TEST(Smoothness, CubeOnNoise) {
 
 /** A vertex that leaves a plane into a valley: its contact fades over half of its depth, at that rate and no faster. */
 TEST(Smoothness, ContactFadesAcrossAConcaveEdge) {
-  TriangleMesh valley;
+  geometry::TriangleMesh valley;
   valley.vertices = {{0, -0.1, 0}, {0, 0.1, 0}, {-0.1, -0.1, 0}, {-0.1, 0.1, 0}, {0.1, -0.1, 0.02}, {0.1, 0.1, 0.02}};
   valley.elements = {{0, 1, 2}, {1, 3, 2}, {0, 4, 1}, {1, 4, 5}};
   const Collider floor = makeCollider(valley, R), point = makeCollider(octahedronMesh(0.02), R);
@@ -85,4 +86,4 @@ TEST(Smoothness, ContactFadesAcrossAConcaveEdge) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -13,7 +13,7 @@
 #include "support/sanitizers.h"
 #include "support/shared_data.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 constexpr double WIDTH = 0.0025;  // [m]
@@ -25,10 +25,10 @@ constexpr int BUDGET = 50;
 constexpr double SAME = 1e-9;   // [m] of support, where the surface is the same
 constexpr double ALIKE = 1e-4;  // [m] where it was cracked
 
-Collider loaded(const TriangleMesh& soup) {
-  MeshReport report;
-  const TriangleMesh cleaned = cleanMesh(soup, &report, RepeatedIndices::ARE_DEGENERATE);
-  return makeCollider(mendMesh(cleaned, &report), WIDTH);
+Collider loaded(const geometry::TriangleMesh& soup) {
+  geometry::MeshReport report;
+  const geometry::TriangleMesh cleaned = geometry::cleanMesh(soup, &report, geometry::RepeatedIndices::ARE_DEGENERATE);
+  return makeCollider(geometry::mendMesh(cleaned, &report), WIDTH);
 }
 
 /**
@@ -37,8 +37,8 @@ Collider loaded(const TriangleMesh& soup) {
  */
 std::vector<double> supports(const Collider& a, const Pose& X_WA, const Collider& b) {
   std::vector<Contact> contacts = contactsOf(a, X_WA, b, Pose::Identity(), 0.001).contacts;
-  reduceHull(contacts, BUDGET);
-  RandomShapes random(9);
+  reduction::reduceHull(contacts, BUDGET);
+  geometry::RandomShapes random(9);
   std::vector<double> supports;
   for (int i = 0; i < 40; ++i) {
     const Vector3 shift = random.point(MOTION), turn = random.point(MOTION) / ARM;
@@ -52,16 +52,16 @@ std::vector<double> supports(const Collider& a, const Pose& X_WA, const Collider
 
 struct SoupScene {
   const char* name;
-  TriangleMesh mesh;
+  geometry::TriangleMesh mesh;
   Collider below;
   double height;  ///< [m] to start from
 };
 
-using Copy = std::tuple<std::string, TriangleMesh, double>;
+using Copy = std::tuple<std::string, geometry::TriangleMesh, double>;
 
-std::vector<Copy> copiesOf(const TriangleMesh& mesh) {
-  RandomShapes random(10);
-  return {{"subdivided", subdivided(mesh, 1), SAME},
+std::vector<Copy> copiesOf(const geometry::TriangleMesh& mesh) {
+  geometry::RandomShapes random(10);
+  return {{"subdivided", geometry::subdivided(mesh, 1), SAME},
           {"shuffled", shuffledCopy(mesh, random), SAME},
           {"rewound", rewoundCopy(mesh, random), SAME},
           {"doubled", doubledCopy(mesh), SAME},
@@ -76,7 +76,7 @@ void expectSameSupports(const SoupScene& scene, const std::vector<Copy>& copies,
   std::vector<Collider> broken;
   for (const Copy& copy : copies) broken.push_back(loaded(std::get<1>(copy)));
   std::vector<double> worst(copies.size(), 0);
-  RandomShapes random(11);
+  geometry::RandomShapes random(11);
   for (int pose = 0; pose < samples(poses); ++pose) {
     const double tilt = std::array<double, 4>{0, 0.003, 0.1, 3}[pose % 4];
     Pose X_WA = makePose({random.uniform(-0.03, 0.03), random.uniform(-0.03, 0.03), scene.height},
@@ -95,12 +95,12 @@ void expectSameSupports(const SoupScene& scene, const std::vector<Copy>& copies,
   }
 }
 
-TriangleMesh hills(double size, int cells, double height) {
-  RandomShapes random(12);
+geometry::TriangleMesh hills(double size, int cells, double height) {
+  geometry::RandomShapes random(12);
   return hillMesh(random, size, cells, height);
 }
 
-const TriangleMesh CUBE = boxMesh(Vector3::Constant(0.1));
+const geometry::TriangleMesh CUBE = geometry::boxMesh(Vector3::Constant(0.1));
 
 TEST(SoupInvariance, CubeOnCubeAndHills) {
   expectSameSupports({"cube on cube", CUBE, loaded(CUBE), 0.2}, copiesOf(CUBE), 200);
@@ -108,15 +108,15 @@ TEST(SoupInvariance, CubeOnCubeAndHills) {
 }
 
 TEST(SoupInvariance, MugOnPlaneAndHills) {
-  const TriangleMesh mug = cleanMesh(readStlSoup(BLEM_SIM_SOURCE_DIR "/meshes/shell_mug.stl"), nullptr);
-  expectSameSupports({"mug on plane", mug, makeCollider(gridMesh(1, 1, 4, 4), 0), 0.2}, copiesOf(mug), 60);
+  const geometry::TriangleMesh mug = geometry::cleanMesh(readStlSoup(BLEM_SIM_SOURCE_DIR "/meshes/shell_mug.stl"), nullptr);
+  expectSameSupports({"mug on plane", mug, makeCollider(geometry::gridMesh(1, 1, 4, 4), 0), 0.2}, copiesOf(mug), 60);
   expectSameSupports({"mug on hills", mug, makeCollider(hills(0.6, 30, 0.002), 0), 0.2}, copiesOf(mug), 60);
 }
 
 TEST(SoupInvariance, FootOnHills) {
   const char* const FOOT = "robots/klampt/huboplus/meshes/Body_LAR_col_simple.stl";
   SKIP_WITHOUT_SHARED_DATA(FOOT);
-  const TriangleMesh foot = cleanMesh(readStlSoup(*sharedData(FOOT)), nullptr);
+  const geometry::TriangleMesh foot = geometry::cleanMesh(readStlSoup(*sharedData(FOOT)), nullptr);
   expectSameSupports({"foot on hills", foot, makeCollider(hills(1, 50, 0.002), 0), 0.25}, copiesOf(foot), 100);
 }
 
@@ -124,11 +124,11 @@ TEST(SoupInvariance, PathologicalCubesOnHills) {
   SKIP_WITHOUT_SHARED_DATA("pathological");
   std::vector<Copy> copies;
   for (const char* name : {"cube_duplicate_faces", "cube_flipped", "cube_zero_area", "cube_nan"})
-    copies.emplace_back(name, readPlySoup(*sharedData(std::string("pathological/") + name + ".ply")), SAME);
+    copies.emplace_back(name, geometry::readPlySoup(*sharedData(std::string("pathological/") + name + ".ply")), SAME);
   expectSameSupports(
-      {"cube on hills", readPlySoup(*sharedData("pathological/cube_flipped.ply")), makeCollider(hills(0.6, 30, 0.002), 0), 0.2}, copies,
-      200);
+      {"cube on hills", geometry::readPlySoup(*sharedData("pathological/cube_flipped.ply")), makeCollider(hills(0.6, 30, 0.002), 0), 0.2},
+      copies, 200);
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -8,15 +8,15 @@
 
 #include "blem_sim/geometry/triangle_mesh.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 /** 80 bytes of header, a count, then 50 bytes per triangle (normal, three corners, attribute); little-endian floats. */
-inline TriangleMesh readStlSoup(const std::string& path) {
+inline geometry::TriangleMesh readStlSoup(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   file.seekg(80);
   std::uint32_t count = 0;
   file.read(reinterpret_cast<char*>(&count), sizeof count);
-  TriangleMesh soup;
+  geometry::TriangleMesh soup;
   for (std::uint32_t i = 0; i < count && file; ++i) {
     float numbers[12];
     std::uint16_t attribute;
@@ -30,4 +30,4 @@ inline TriangleMesh readStlSoup(const std::string& path) {
   return soup;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -7,12 +7,12 @@
 
 #include "blem_sim/contact/narrow_phase.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
-Collider colliderOf(const TriangleMesh& mesh, double radius = 0) {
+Collider colliderOf(const geometry::TriangleMesh& mesh, double radius = 0) {
   Collider collider;
-  collider.geometry = std::make_shared<const CollisionGeometry>(std::make_shared<const TriangleMesh>(mesh));
+  collider.geometry = std::make_shared<const CollisionGeometry>(std::make_shared<const geometry::TriangleMesh>(mesh));
   collider.radius = radius;
   return collider;
 }
@@ -22,8 +22,8 @@ struct Counts {
 };
 
 /** Number of contacts of a mesh with the sheet x < 0, and of those that another surface covers. */
-Counts countCovered(const TriangleMesh& mesh, const Pose& X_WM, const Collider& other, const Pose& X_WO) {
-  const Collider sheet = colliderOf(gridMesh(0.4, 0.4, 1, 1)), body = colliderOf(mesh, 0.0025);
+Counts countCovered(const geometry::TriangleMesh& mesh, const Pose& X_WM, const Collider& other, const Pose& X_WO) {
+  const Collider sheet = colliderOf(geometry::gridMesh(0.4, 0.4, 1, 1)), body = colliderOf(mesh, 0.0025);
   const Pose X_WS = makePose({-0.2, 0, 0});
   ContactManifold manifold;
   narrowPhase(sheet, X_WS, body, X_WM, 0.01, &manifold);
@@ -42,30 +42,31 @@ const Pose BESIDE = makePose({0.2, 0, 0});
 
 TEST(SurfaceCover, EdgeThatGoesOnInAnotherSheetHasNoContactBesideIt) {
   const Pose X_WM = makePose({0.003, 0.02, 0.002});
-  const Collider sheet = colliderOf(gridMesh(0.4, 0.4, 3, 2));
-  EXPECT_EQ(countCovered(pointMesh(Vector3::Zero()), X_WM, sheet, BESIDE).all, 1);
-  EXPECT_EQ(countCovered(pointMesh(Vector3::Zero()), X_WM, sheet, BESIDE).covered, 1);
+  const Collider sheet = colliderOf(geometry::gridMesh(0.4, 0.4, 3, 2));
+  EXPECT_EQ(countCovered(geometry::pointMesh(Vector3::Zero()), X_WM, sheet, BESIDE).all, 1);
+  EXPECT_EQ(countCovered(geometry::pointMesh(Vector3::Zero()), X_WM, sheet, BESIDE).covered, 1);
   // A gap, a step, and a slope down leave the edge as it is.
   for (const Pose& X_WO : {makePose({0.2001, 0, 0}), makePose({0.2, 0, -1e-5}), makePose({0.2, 0, -0.2 * std::tan(0.8)}, {0, 0.8, 0})})
-    EXPECT_EQ(countCovered(pointMesh(Vector3::Zero()), X_WM, sheet, X_WO).covered, 0);
+    EXPECT_EQ(countCovered(geometry::pointMesh(Vector3::Zero()), X_WM, sheet, X_WO).covered, 0);
   const std::shared_ptr<const CollisionGeometry> plane = CollisionGeometry::halfSpace(Vector3::UnitZ(), 0);
   Collider ground;
   ground.geometry = plane;
-  EXPECT_EQ(countCovered(pointMesh(Vector3::Zero()), X_WM, ground, Pose::Identity()).covered, 1);
+  EXPECT_EQ(countCovered(geometry::pointMesh(Vector3::Zero()), X_WM, ground, Pose::Identity()).covered, 1);
 }
 
 TEST(SurfaceCover, EdgesInsideAPlaneHaveNoContactsVerticesAboveItHave) {
   // A cube half over the seam: two corners over this sheet, two crossings of edges with the seam.
-  const TriangleMesh cube = boxMesh(Vector3::Constant(0.1));
+  const geometry::TriangleMesh cube = geometry::boxMesh(Vector3::Constant(0.1));
   const Pose X_WM = makePose({0.01, 0.02, 0.0525});
-  const Counts flush = countCovered(cube, X_WM, colliderOf(gridMesh(0.4, 0.4, 1, 1)), BESIDE);
+  const Counts flush = countCovered(cube, X_WM, colliderOf(geometry::gridMesh(0.4, 0.4, 1, 1)), BESIDE);
   EXPECT_EQ(flush.all - flush.covered, 2);
   EXPECT_GE(flush.covered, 2);
-  EXPECT_EQ(countCovered(cube, X_WM, colliderOf(gridMesh(0.4, 0.4, 1, 1)), makePose({0.2, 0, -1e-5})).covered, 0);
+  EXPECT_EQ(countCovered(cube, X_WM, colliderOf(geometry::gridMesh(0.4, 0.4, 1, 1)), makePose({0.2, 0, -1e-5})).covered, 0);
 }
 
 TEST(SurfaceCover, OfSheetsThatLieInEachOtherTheFirstHasTheContact) {
-  const Collider sheet = colliderOf(gridMesh(0.4, 0.4, 1, 1)), other = sheet, ball = colliderOf(pointMesh(Vector3::Zero()), 0.0025);
+  const Collider sheet = colliderOf(geometry::gridMesh(0.4, 0.4, 1, 1)), other = sheet,
+                 ball = colliderOf(geometry::pointMesh(Vector3::Zero()), 0.0025);
   const Pose X_WM = makePose({-0.003, 0.02, 0.002});
   ContactManifold manifold;
   narrowPhase(sheet, Pose::Identity(), ball, X_WM, 0.01, &manifold);
@@ -79,4 +80,4 @@ TEST(SurfaceCover, OfSheetsThatLieInEachOtherTheFirstHasTheContact) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

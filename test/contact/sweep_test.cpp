@@ -7,10 +7,12 @@
 
 #include "blem_sim/geometry/closest_points.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
-CollisionGeometry sweptGeometry(const TriangleMesh& mesh) { return CollisionGeometry(std::make_shared<const TriangleMesh>(mesh)); }
+CollisionGeometry sweptGeometry(const geometry::TriangleMesh& mesh) {
+  return CollisionGeometry(std::make_shared<const geometry::TriangleMesh>(mesh));
+}
 
 GeometrySweep sweep(const Vector3& from, const Vector3& shift, const Vector3& turn = Vector3::Zero()) {
   return {makePose(from), from, shift, turn};
@@ -26,7 +28,7 @@ TEST(Sweep, EndsWhereItsTurnAndShiftLead) {
 }
 
 TEST(Sweep, PlateThroughSheetIsSeenThoughNeitherEndIsNear) {
-  const CollisionGeometry plate = sweptGeometry(gridMesh(0.1, 0.1, 1, 1)), sheet = sweptGeometry(gridMesh(4, 4, 1, 1));
+  const CollisionGeometry plate = sweptGeometry(geometry::gridMesh(0.1, 0.1, 1, 1)), sheet = sweptGeometry(geometry::gridMesh(4, 4, 1, 1));
   EXPECT_TRUE(mayComeWithin(1e-4, plate, sweep({0, 0, 0.05}, {0, 0, -0.1}), sheet, GeometrySweep{}));
   EXPECT_FALSE(mayComeWithin(1e-3, plate, sweep({0, 0, 0.05}, {0.3, 0, -0.048}), sheet, GeometrySweep{}));
   // Plate and sheet move on together.
@@ -37,7 +39,7 @@ TEST(Sweep, PlateThroughSheetIsSeenThoughNeitherEndIsNear) {
 }
 
 TEST(Sweep, PointsPassEachOtherAtTheirDistance) {
-  const CollisionGeometry point = sweptGeometry(pointMesh(Vector3::Zero()));
+  const CollisionGeometry point = sweptGeometry(geometry::pointMesh(Vector3::Zero()));
   EXPECT_TRUE(mayComeWithin(0.01, point, sweep({-1, 0, 0}, {2, 0, 0}), point, sweep({0, -1, 0.009}, {0, 2, 0})));
   EXPECT_FALSE(mayComeWithin(0.01, point, sweep({-1, 0, 0}, {2, 0, 0}), point, sweep({0, -1, 0.013}, {0, 2, 0})));
 }
@@ -50,16 +52,17 @@ TEST(Sweep, NeverMissesWhatSamplesFind) {
     const double x = uniform(size), y = uniform(size), z = uniform(size);
     return Vector3(x, y, z);
   };
-  const TriangleMesh meshes[] = {boxMesh({0.1, 0.05, 0.02}), gridMesh(0.2, 0.1, 1, 1), segmentMesh({0, 0, 0}, {0.1, 0, 0})};
+  const geometry::TriangleMesh meshes[] = {geometry::boxMesh({0.1, 0.05, 0.02}), geometry::gridMesh(0.2, 0.1, 1, 1),
+                                           geometry::segmentMesh({0, 0, 0}, {0.1, 0, 0})};
   int seen = 0, cleared = 0;
   for (int i = 0; i < 150; ++i) {
-    const TriangleMesh &a = meshes[i % 3], &b = meshes[i / 3 % 3];
+    const geometry::TriangleMesh &a = meshes[i % 3], &b = meshes[i / 3 % 3];
     const GeometrySweep way_a{makePose(vector(0.1), vector(3)), vector(0.2), vector(0.3), vector(1.5)},
         way_b{makePose(vector(0.1), vector(3)), vector(0.2), vector(0.3), vector(1.5)};
     const double most = mostApproach(sweptGeometry(a), way_a, sweptGeometry(b), way_b);
     double least = INFINITY, start = 0;
     for (int k = 0; k <= 300; ++k) {
-      const double d = closestMeshMeshBruteForce(a, b, way_b.at(k / 300.0).inverse() * way_a.at(k / 300.0)).distance;
+      const double d = geometry::closestMeshMeshBruteForce(a, b, way_b.at(k / 300.0).inverse() * way_a.at(k / 300.0)).distance;
       least = std::min(least, d);
       if (k == 0) start = d;
     }
@@ -77,4 +80,4 @@ TEST(Sweep, NeverMissesWhatSamplesFind) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -10,7 +10,7 @@
 #include "support/counted_allocations.h"
 #include "support/standard_values.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 /** A stack of three, a box that slides beside it, and a motor driven arm with a mimic joint. */
@@ -121,6 +121,6 @@ TEST(Allocation, NoneInAWarmStep) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics
 
 #endif

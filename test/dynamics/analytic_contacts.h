@@ -7,7 +7,7 @@
 
 #include "blem_sim/dynamics/world.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 constexpr double CONTACT_MARGIN = 1e-3;  ///< [m] gap up to which contacts exist before touch
 
@@ -76,4 +76,4 @@ inline void boxOnBox(const World& world, int upper, const Vector3& upper_size, i
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

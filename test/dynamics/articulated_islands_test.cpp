@@ -7,7 +7,7 @@
 #include "dynamics/analytic_contacts.h"
 #include "support/standard_values.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 int addBar(World* world, const Vector3& from, const Vector3& to) {
@@ -190,4 +190,4 @@ TEST(ArticulatedReport, StatesWhatIsLeft) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -7,7 +7,7 @@
 #include "dynamics/analytic_contacts.h"
 #include "support/standard_values.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 const Vector3 FOOT(0.24, 0.14, 0.04);
@@ -201,4 +201,4 @@ TEST(Articulated, BoxesLandingOnEachOtherComeToRest) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

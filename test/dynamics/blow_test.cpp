@@ -7,7 +7,7 @@
 #include "dynamics/analytic_contacts.h"
 #include "geometry/random_shapes.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 /** Plate and ball as a seed makes them, at the moment before they meet. */
@@ -61,7 +61,7 @@ struct Blow {
   /** Uniform in the logarithm. */
   double spread(double low, double high) { return low * std::pow(high / low, n.uniform(0, 1)); }
 
-  RandomShapes n;
+  geometry::RandomShapes n;
   World world;
   double ratio = 1, speed = 0, dt = 0;
   std::vector<ContactConstraint> contacts;
@@ -95,4 +95,4 @@ TEST(Blow, TellsWhatGivesWay) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -8,7 +8,7 @@
 
 #include "dynamics/analytic_contacts.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 /** A ball fixed to a body. */
 struct Ball {
@@ -256,4 +256,4 @@ struct Cradle {
   BouncingBodies scene;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

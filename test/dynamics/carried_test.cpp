@@ -6,7 +6,7 @@
 #include "dynamics/analytic_contacts.h"
 #include "support/standard_values.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 /** A cube rides on a turntable; friction 0.8 holds up to 8.8 rad/s. @return [m] distance that it has moved on it after `turns` */
@@ -56,4 +56,4 @@ TEST(Carried, CubeStaysOnATurntable) {
 TEST(Carried, CubeLeavesATurntableThatIsTooFast) { EXPECT_GT(slipOnTurntable(9.5, 3), 0.01); }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

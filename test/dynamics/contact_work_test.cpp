@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 /** Pushes upwards by 2 N s, rubs along x by as much as given. */
@@ -52,4 +52,4 @@ TEST(ApparentWork, OfNoImpulseIsNone) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -7,7 +7,7 @@
 
 #include "dynamics/analytic_contacts.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 constexpr double LENGTH = 0.3, DEPTH = 0.01;  // [m]
@@ -140,4 +140,4 @@ TEST(EnergyBounds, AStretchedLoopKeepsStill) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

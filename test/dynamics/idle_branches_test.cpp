@@ -6,7 +6,7 @@
 #include "dynamics/analytic_contacts.h"
 #include "support/standard_values.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 constexpr double FRICTION = 0.5;
@@ -105,4 +105,4 @@ TEST(IdleBranches, DriftOfStuckFrictionIsRestored) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -8,7 +8,7 @@
 #include "island/island_motion.h"
 #include "support/standard_values.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 /** Two free trees of five bodies and a chain that the world holds, all hit at once. */
@@ -170,4 +170,4 @@ TEST(IslandImpacts, LeaveEverythingAsItIsWithoutRestitution) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

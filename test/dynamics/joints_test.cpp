@@ -7,7 +7,7 @@
 #include "dynamics/analytic_contacts.h"
 #include "support/standard_values.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 JointSpec jointSpec(JointKind kind, int parent, int child, const Pose& X_PJ, const Vector3& axis) {
@@ -158,4 +158,4 @@ TEST(Joints, BadSpecsAreRefused) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -6,7 +6,7 @@
 #include "dynamics/analytic_contacts.h"
 #include "support/standard_values.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 TEST(Motion, FreeFall) {
@@ -111,4 +111,4 @@ TEST(Motion, EnergyIsThatOfTheParabola) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

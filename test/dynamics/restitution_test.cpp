@@ -4,7 +4,7 @@
 #include "dynamics/bouncing_bodies.h"
 #include "support/standard_values.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 Surface surfaceOf(double restitution, double friction) {
@@ -221,4 +221,4 @@ TEST(Restitution, ACompliantSurfaceBouncesAtTheTouch) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -6,7 +6,7 @@
 #include "dynamics/analytic_contacts.h"
 #include "support/standard_values.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 struct Stack {
@@ -153,4 +153,4 @@ TEST(Stacks, TumblingCubesComeToRestWithoutGainingEnergy) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -45,7 +45,7 @@ inline std::string fuzzFile(const std::uint8_t* data, std::size_t size, const st
 /** Reads the bytes as a surface's file of that ending. */
 inline void fuzzSurface(const std::uint8_t* data, std::size_t size, const std::string& ending) {
   const std::string file = fuzzFile(data, size, ending);
-  expectReadOrRefused([&] { loadSurface(file); });
+  expectReadOrRefused([&] { model::loadSurface(file); });
   std::filesystem::remove(file);
 }
 
@@ -57,7 +57,7 @@ inline void fuzzPcd(const std::uint8_t* data, std::size_t size) { fuzzSurface(da
 
 inline void fuzzUrdf(const std::uint8_t* data, std::size_t size) {
   const std::string text(reinterpret_cast<const char*>(data), size);
-  expectReadOrRefused([&] { loadUrdf(text, "fuzz.urdf", UriResolver()); });
+  expectReadOrRefused([&] { model::loadUrdf(text, "fuzz.urdf", model::UriResolver()); });
 }
 
 }  // namespace blem_sim

@@ -21,26 +21,28 @@ inline void fuzzYaml(const std::uint8_t* data, std::size_t size) {
   } catch (const YAML::Exception&) {
     return;
   }
-  expectReadOrRefused([&] { parseConfig(document, "fuzz.yaml", ""); });
+  expectReadOrRefused([&] { sim::parseConfig(document, "fuzz.yaml", ""); });
 }
 
 inline void fuzzCsv(const std::uint8_t* data, std::size_t size) {
   const std::string file = fuzzFile(data, size, ".csv");
   std::vector<std::string> ignored;
-  expectReadOrRefused([&] { checkTrajectory(loadTrajectoryCsv(file, {"time", "left_grip", "lift"}, &ignored), {"left_grip", "lift"}); });
+  expectReadOrRefused([&] {
+    sim::checkTrajectory(sim::loadTrajectoryCsv(file, {"time", "left_grip", "lift"}, &ignored), {"left_grip", "lift"});
+  });
   std::filesystem::remove(file);
 }
 
 /** A world with a plane, a pendulum on it and its state at the start. */
 struct FuzzedWorld {
-  FuzzedWorld() : simulator(config(), UriResolver()), start(simulator.save()) {}
-  static SimulationConfig config() {
-    SimulationConfig config;
-    EnvironmentConfig plane;
+  FuzzedWorld() : simulator(config(), model::UriResolver()), start(simulator.save()) {}
+  static sim::SimulationConfig config() {
+    sim::SimulationConfig config;
+    sim::EnvironmentConfig plane;
     plane.name = "ground";
     plane.plane = Eigen::Vector4d(0, 0, 1, 0);
     config.environments = {plane};
-    RobotConfig robot;
+    sim::RobotConfig robot;
     robot.name = "pendulum";
     robot.fixed_base = true;
     robot.urdf_xml = R"(<robot name="pendulum"><link name="base"/><link name="arm"><inertial><origin xyz="0.5 0 0"/><mass value="2"/>
@@ -55,8 +57,8 @@ struct FuzzedWorld {
     return world;
   }
 
-  Simulator simulator;
-  SimulationState start;
+  sim::Simulator simulator;
+  sim::SimulationState start;
 };
 
 /** A saved state's bytes; header and layout are made to fit, or a checksum would refuse all of them. */
@@ -64,9 +66,9 @@ inline void fuzzState(const std::uint8_t* data, std::size_t size) {
   FuzzedWorld& world = FuzzedWorld::instance();
   const std::string bytes(reinterpret_cast<const char*>(data), size);
   expectReadOrRefused([&] {
-    SimulationState state = stateOf(bytes, "fuzz.state");
+    sim::SimulationState state = sim::stateOf(bytes, "fuzz.state");
     state.layout = world.start.layout;
-    state.header = headerOf(state);
+    state.header = sim::headerOf(state);
     world.simulator.restore(state);
   });
   world.simulator.step();
@@ -80,7 +82,7 @@ inline void fuzzInput(const std::uint8_t* data, std::size_t size) {
       "moveModel",         "setJointPositions", "resetModel",      "applyLoad",       "applyEffort",       "clearLoads",  "clearEfforts",
       "setPhysics",        "setLinkInertial",   "setJointDamping", "setJointLimits",  "resetWorld",        "restore",     "spawn"};
   if (size < 2) return;
-  SimulatorInput input;
+  sim::SimulatorInput input;
   input.call = CALLS[data[0] % (sizeof CALLS / sizeof *CALLS)];
   const std::size_t texts = data[1] % 8, numbers = (size - 2) / 8;
   for (std::size_t i = 0; i < numbers; ++i) {
@@ -92,7 +94,7 @@ inline void fuzzInput(const std::uint8_t* data, std::size_t size) {
   for (std::size_t i = 0; i < texts; ++i) input.texts.emplace_back(TEXTS[(data[1] / 8 + i) % 8]);
   static std::unique_ptr<FuzzedWorld> world;
   if (!world) world = std::make_unique<FuzzedWorld>();
-  expectReadOrRefused([&] { applyInput(input, &world->simulator); });
+  expectReadOrRefused([&] { sim::applyInput(input, &world->simulator); });
   world->simulator.step();
   try {
     world->simulator.restore(world->start);

@@ -11,7 +11,7 @@
 #include "blem_sim/geometry/closest_points.h"
 #include "geometry/random_shapes.h"
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 namespace {
 
 TriangleMesh bumpySphere(RandomShapes& random, int level) {
@@ -252,4 +252,4 @@ TEST(DistanceToMesh, IsTheLeastOverAllElements) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

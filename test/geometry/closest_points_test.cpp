@@ -8,7 +8,7 @@
 #include "geometry/random_shapes.h"
 #include "geometry/simplex_oracle.h"
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 namespace {
 
 /** The distance is the oracle's, the points are as far apart as said, and each lies in its triangle. */
@@ -255,4 +255,4 @@ TEST(ClosestMeshMeshBruteForce, OfTwoBoxes) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

@@ -3,7 +3,7 @@
 
 #include "blem_sim/geometry/triangle_mesh.h"
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 
 /** Closed box, centred; every side has vertices of its own. @param grid side's grid from its lengths [m], called per side with the axis
  * that it is square to: grid(axis, size_u, size_v) with u, v the axes that follow */
@@ -33,4 +33,4 @@ inline TriangleMesh griddedBox(const Vector3& size, const Vector3i& n) {
   return boxOfGrids(size, [&n](int axis, double u, double v) { return gridMesh(u, v, n[(axis + 1) % 3], n[(axis + 2) % 3]); });
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

@@ -5,7 +5,7 @@
 
 #include "blem_sim/geometry/triangle_mesh.h"
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 
 /** A plano-convex lens: z from 0 at the flat side's rim to height + sag in the middle. @param sag [m] of the bulge */
 inline TriangleMesh lensMesh(double radius, double height, double sag, int rings, int sides) {
@@ -35,4 +35,4 @@ inline TriangleMesh lensMesh(double radius, double height, double sag, int rings
   return mesh;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

@@ -6,7 +6,7 @@
 #include "blem_sim/geometry/triangle_mesh.h"
 #include "geometry/random_shapes.h"
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 namespace {
 
 Matrix3 diagonal(double x, double y, double z) { return Vector3(x, y, z).asDiagonal(); }
@@ -133,4 +133,4 @@ TEST(MassFromSurface, DoesNotDependOnTheTessellation) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

@@ -11,7 +11,7 @@
 #include "geometry/random_shapes.h"
 #include "support/shared_data.h"
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 namespace {
 
 constexpr double NOT_A_NUMBER = std::numeric_limits<double>::quiet_NaN();
@@ -257,4 +257,4 @@ TEST(PathologicalScan, SpoiledMugIsMended) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

@@ -14,7 +14,7 @@
 #include "support/broken_meshes.h"
 #include "support/shared_data.h"
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 namespace {
 
 constexpr double CRACKS = 1e-5;                                // [m] in each coordinate
@@ -80,7 +80,7 @@ TEST(MeshMending, WholeMeshesStayAsTheyAre) {
 TEST(MeshMending, MeshesOfTheDemosStayAsTheyAre) {
   for (const auto& entry : std::filesystem::directory_iterator(BLEM_SIM_SOURCE_DIR "/meshes")) {
     if (entry.path().extension() == ".stl") {
-      EXPECT_TRUE(Mended(readStlSoup(entry.path().string())).same()) << entry.path();
+      EXPECT_TRUE(Mended(contact::readStlSoup(entry.path().string())).same()) << entry.path();
     }
     if (entry.path().extension() == ".ply") {
       EXPECT_TRUE(Mended(readPlySoup(entry.path().string())).same()) << entry.path();
@@ -105,7 +105,7 @@ TEST(MeshMending, CrackedBoxIsABoxAgain) {
 
 TEST(MeshMending, CrackedCurvedSurfacesStayCurved) {
   RandomShapes random(2);
-  for (const TriangleMesh& mesh : {icosphereMesh(0.04, 2), icosphereMesh(0.04, 5), cleanMesh(readStlSoup(MUG), nullptr)}) {
+  for (const TriangleMesh& mesh : {icosphereMesh(0.04, 2), icosphereMesh(0.04, 5), cleanMesh(contact::readStlSoup(MUG), nullptr)}) {
     MeshReport whole;
     cleanMesh(mesh, &whole);
     const Mended mended(crackedCopy(mesh, CRACKS, random));
@@ -134,7 +134,7 @@ TEST(MeshMending, TJunctionsAreSplit) {
 }
 
 TEST(MeshMending, TJunctionsOfTheMugAreSplit) {
-  const TriangleMesh mug = cleanMesh(readStlSoup(MUG), nullptr);
+  const TriangleMesh mug = cleanMesh(contact::readStlSoup(MUG), nullptr);
   const Mended mended(tJunctionCopy(mug));
   MeshReport whole;
   cleanMesh(mug, &whole);
@@ -262,7 +262,7 @@ TEST(MeshMending, RobotsMoveByLittle) {
   SKIP_WITHOUT_SHARED_DATA("robots/klampt/huboplus/meshes");
   for (const auto& entry : std::filesystem::directory_iterator(*sharedData("robots/klampt/huboplus/meshes"))) {
     if (entry.path().extension() != ".stl") continue;
-    const Mended mended(readStlSoup(entry.path().string()));
+    const Mended mended(contact::readStlSoup(entry.path().string()));
     EXPECT_EQ(mended.what.cracks + mended.what.split_edges, 0) << entry.path();
     EXPECT_EQ(mended.mesh.elements, mended.cleaned.elements);
     EXPECT_LE(mended.what.farthest, 2 * PLANE_DEVIATION);
@@ -270,4 +270,4 @@ TEST(MeshMending, RobotsMoveByLittle) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

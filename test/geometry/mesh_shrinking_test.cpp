@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 namespace {
 
 constexpr double R = 0.0025;
@@ -95,4 +95,4 @@ TEST(MeshShrinking, SpikesMoveByABoundedLength) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

@@ -8,7 +8,7 @@
 
 #include "geometry/random_shapes.h"
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 namespace {
 
 /** Number of those from 0 to `count` - 1 for which a predicate holds. */
@@ -228,4 +228,4 @@ TEST(MeshTopology, EmptyMesh) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

@@ -8,7 +8,7 @@
 
 #include "blem_sim/geometry/triangle_mesh.h"
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 
 /** Float vertices x y z, then triangles as a byte 3 and three ints, little-endian: nothing else is understood. */
 inline TriangleMesh readPlySoup(const std::string& path) {
@@ -34,4 +34,4 @@ inline TriangleMesh readPlySoup(const std::string& path) {
   return soup;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

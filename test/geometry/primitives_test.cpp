@@ -6,7 +6,7 @@
 #include "blem_sim/geometry/types.h"
 #include "geometry/random_shapes.h"
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 namespace {
 
 /** Volume by the divergence theorem: positive when the mesh is wound outwards. */
@@ -128,4 +128,4 @@ TEST(MakePose, IsTheFixedAxisConvention) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

@@ -5,7 +5,7 @@
 
 #include "blem_sim/geometry/closest_points.h"
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 
 /** splitmix64; the standard library's distributions differ between implementations. */
 class RandomShapes {
@@ -50,4 +50,4 @@ class RandomShapes {
 inline Triangle operator*(const Pose& X, const Triangle& t) { return {X * t[0], X * t[1], X * t[2]}; }
 inline Triangle moved(const Triangle& t, const Vector3& by) { return {t[0] + by, t[1] + by, t[2] + by}; }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

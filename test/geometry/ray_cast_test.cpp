@@ -8,7 +8,7 @@
 
 #include "geometry/random_shapes.h"
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 namespace {
 
 TriangleMesh randomTriangles(RandomShapes& random, int count) {
@@ -172,4 +172,4 @@ TEST(CastRay, SegmentsAreCapsules) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

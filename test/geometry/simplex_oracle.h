@@ -8,7 +8,7 @@
 
 #include "blem_sim/geometry/closest_points.h"
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 
 /**
  * Smallest distance of two simplices given by their corners (1 to 3 each), in long double. The minimum of a convex quadratic over a
@@ -63,4 +63,4 @@ inline double oracleDistance(const Triangle& a, const Triangle& b) {
 
 inline double oracleDistance(const Vector3& p, const Triangle& t) { return simplexDistance({p}, std::vector<Vector3>(t.begin(), t.end())); }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

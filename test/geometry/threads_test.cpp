@@ -12,7 +12,7 @@
 #include "geometry/random_shapes.h"
 #include "grouped.h"
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 namespace {
 
 /** Triangles with corners of their own, in no order, some of them twice; enough of them for several threads to share. */
@@ -137,4 +137,4 @@ TEST(Threads, GroupsKeepTheOrderOfItems) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

@@ -8,7 +8,7 @@
 #include "support/input_errors.h"
 #include "support/temporary_folder.h"
 
-namespace blem_sim {
+namespace blem_sim::model {
 namespace {
 
 const std::string PLY_XYZ = "property float x\nproperty float y\nproperty float z\n";
@@ -110,4 +110,4 @@ TEST(BadSurfaces, missingFilesAndBadNumbers) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::model

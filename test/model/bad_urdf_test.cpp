@@ -5,7 +5,7 @@
 #include "support/input_errors.h"
 #include "support/temporary_folder.h"
 
-namespace blem_sim {
+namespace blem_sim::model {
 namespace {
 
 struct BadUrdfRow {
@@ -144,4 +144,4 @@ TEST(BadUrdf, damagedMeshIsNamedWithItsLink) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::model

@@ -9,7 +9,7 @@
 #include "support/input_errors.h"
 #include "support/temporary_folder.h"
 
-namespace blem_sim {
+namespace blem_sim::model {
 namespace {
 
 using Kind = CloudFilter::Kind;
@@ -131,4 +131,4 @@ TEST(CloudSurface, ofNoPointIsRefused) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::model

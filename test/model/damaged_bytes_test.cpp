@@ -10,7 +10,7 @@
 #include "support/input_errors.h"
 #include "support/temporary_folder.h"
 
-namespace blem_sim {
+namespace blem_sim::model {
 namespace {
 
 const std::string PLY_HEADER =
@@ -94,4 +94,4 @@ INSTANTIATE_TEST_SUITE_P(
     });
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::model

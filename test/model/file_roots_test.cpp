@@ -11,7 +11,7 @@
 #include "blem_sim/geometry/input_error.h"
 #include "blem_sim/model/loaders.h"
 
-namespace blem_sim {
+namespace blem_sim::model {
 namespace {
 
 namespace fs = std::filesystem;
@@ -35,4 +35,4 @@ TEST(FileRoots, HoldFilesBelowThemAlone) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::model

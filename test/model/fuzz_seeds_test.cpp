@@ -5,7 +5,7 @@
 #include "fuzz/model_targets.h"
 #include "fuzz/seeds.h"
 
-namespace blem_sim {
+namespace blem_sim::model {
 namespace {
 
 const std::map<std::string, FuzzTarget> TARGETS = {{"urdf", fuzzUrdf}, {"stl", fuzzStl}, {"ply", fuzzPly},
@@ -25,4 +25,4 @@ TEST(FuzzTargets, AnErrorOfAnotherKindIsAFinding) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::model

@@ -6,7 +6,7 @@
 
 #include "blem_sim/model/loaders.h"
 
-namespace blem_sim {
+namespace blem_sim::model {
 namespace {
 
 RobotModel blocksOf(const std::string& inside) {
@@ -70,4 +70,4 @@ TEST(GazeboBlocks, absurdSizesAreCut) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::model

@@ -10,7 +10,7 @@
 #include "support/shared_data.h"
 #include "support/shared_packages.h"
 
-namespace blem_sim {
+namespace blem_sim::model {
 namespace {
 
 RobotModel loadRobot(const std::string& inside) { return loadUrdf("<robot name=\"r\">" + inside + "</robot>", "test.urdf", UriResolver()); }
@@ -222,4 +222,4 @@ TEST(LumpedRobot, massesOfLumpedLinksMayBeZero) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::model

@@ -9,7 +9,7 @@
 #include "support/input_errors.h"
 #include "support/shared_data.h"
 
-namespace blem_sim {
+namespace blem_sim::model {
 namespace {
 
 struct GoodRow {
@@ -53,7 +53,7 @@ TEST(Pathological, goodPartsAreLoadedAndTheRestIsCounted) {
   for (const GoodRow& row : GOOD) {
     SCOPED_TRACE(row.name);
     const std::string file = *sharedData(std::string("pathological/") + row.name);
-    const MeshReport report = loadSurface(file, Vector3::Ones(), {}, Mending::OFF).report;
+    const geometry::MeshReport report = loadSurface(file, Vector3::Ones(), {}, Mending::OFF).report;
     EXPECT_EQ(report.triangles, row.triangles);
     EXPECT_EQ(report.vertices, row.vertices);
     EXPECT_EQ(report.nonfinite, row.nonfinite);
@@ -95,4 +95,4 @@ TEST(Pathological, noFileIsLeftOutOfTheTables) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::model

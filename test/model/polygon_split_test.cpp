@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-namespace blem_sim {
+namespace blem_sim::model {
 namespace {
 
 /** Sum of the triangles' signed areas and of their sizes; equal if none lies outside the polygon or over another. */
@@ -60,4 +60,4 @@ TEST(PolygonSplit, endsOnPolygonsThatAreNone) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::model

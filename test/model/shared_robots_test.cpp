@@ -5,7 +5,7 @@
 #include "support/shared_data.h"
 #include "support/shared_packages.h"
 
-namespace blem_sim {
+namespace blem_sim::model {
 namespace {
 
 struct RobotRow {
@@ -31,7 +31,7 @@ TEST_P(SharedRobots, loadsWithMassAndJointsOfItsReadme) {
   for (const LinkModel& link : robot.links) {
     for (const CollisionShape& shape : link.collisions) {
       EXPECT_FALSE(shape.mesh->elements.empty()) << shape.report.name;
-      const MeshReport& report = shape.report;
+      const geometry::MeshReport& report = shape.report;
       if (report.source.find('.') != std::string::npos && report.source.find('/') != std::string::npos)
         triangles += report.triangles + report.degenerate + report.duplicate + report.nonfinite;
     }
@@ -52,4 +52,4 @@ INSTANTIATE_TEST_SUITE_P(
                     RobotRow{"robots/robotiq_arg85_description/robots/robotiq_arg85_description.urdf", 9, 6, 2276, 0.41}));
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::model

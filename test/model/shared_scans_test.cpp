@@ -4,7 +4,7 @@
 #include "blem_sim/model/loaders.h"
 #include "support/shared_data.h"
 
-namespace blem_sim {
+namespace blem_sim::model {
 namespace {
 
 struct ScanRow {
@@ -19,7 +19,7 @@ class SharedScans : public testing::TestWithParam<ScanRow> {};
 TEST_P(SharedScans, loadWithTheirCounts) {
   const ScanRow& row = GetParam();
   SKIP_WITHOUT_SHARED_DATA(row.file);
-  const MeshReport report = loadSurface(*sharedData(row.file), Vector3::Ones(), {}, Mending::OFF).report;
+  const geometry::MeshReport report = loadSurface(*sharedData(row.file), Vector3::Ones(), {}, Mending::OFF).report;
   EXPECT_EQ(report.triangles, row.triangles - row.dropped);
   EXPECT_EQ(report.degenerate + report.duplicate, row.dropped);
   EXPECT_EQ(report.vertices, row.vertices);
@@ -58,7 +58,7 @@ class SharedClouds : public testing::TestWithParam<CloudRow> {};
 TEST_P(SharedClouds, loadWithTheirCounts) {
   const CloudRow& row = GetParam();
   SKIP_WITHOUT_SHARED_DATA(row.file);
-  const MeshReport report = loadSurface(*sharedData(row.file)).report;
+  const geometry::MeshReport report = loadSurface(*sharedData(row.file)).report;
   EXPECT_EQ(report.points + report.welded, row.points);
   EXPECT_EQ(report.nonfinite, row.not_measured);
   EXPECT_EQ(report.points + report.welded + report.nonfinite, row.pixels);
@@ -84,4 +84,4 @@ TEST(SharedClouds, aKinectFrameIsJoinedOnItsGrid) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::model

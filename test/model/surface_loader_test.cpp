@@ -8,18 +8,18 @@
 #include "support/input_errors.h"
 #include "support/temporary_folder.h"
 
-namespace blem_sim {
+namespace blem_sim::model {
 namespace {
 
 std::string dataFile(const std::string& name) { return std::string(BLEM_SIM_SOURCE_DIR) + "/test/data/model/" + name; }
 
-double signedVolume(const TriangleMesh& mesh) {
+double signedVolume(const geometry::TriangleMesh& mesh) {
   double six = 0;
   for (const Vector3i& e : mesh.elements) six += mesh.vertices[e[0]].dot(mesh.vertices[e[1]].cross(mesh.vertices[e[2]]));
   return six / 6;
 }
 
-double area(const TriangleMesh& mesh) {
+double area(const geometry::TriangleMesh& mesh) {
   double twice = 0;
   for (const Vector3i& e : mesh.elements)
     twice += (mesh.vertices[e[1]] - mesh.vertices[e[0]]).cross(mesh.vertices[e[2]] - mesh.vertices[e[0]]).norm();
@@ -227,7 +227,7 @@ TEST(SurfaceLoader, unorganizedCloudIsJoinedByProjection) {
 TEST(SurfaceLoader, reportNamesSourceAndWhatWasDone) {
   const TemporaryFolder folder;
   const std::string file = folder.write("twice.off", "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n2 0 0\n3 0 1 2\n3 2 1 0\n3 0 1 3\n3 1 1 2\n");
-  const MeshReport report = loadSurface(file).report;
+  const geometry::MeshReport report = loadSurface(file).report;
   EXPECT_EQ(report.source, file);
   EXPECT_EQ(report.triangles, 1);
   EXPECT_EQ(report.duplicate, 1);
@@ -237,4 +237,4 @@ TEST(SurfaceLoader, reportNamesSourceAndWhatWasDone) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::model

@@ -8,7 +8,7 @@
 #include "support/input_errors.h"
 #include "support/temporary_folder.h"
 
-namespace blem_sim {
+namespace blem_sim::model {
 namespace {
 
 constexpr double INFINITE = std::numeric_limits<double>::infinity();
@@ -212,4 +212,4 @@ TEST(UrdfLoader, notesSayWhatIsLeftOut) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::model

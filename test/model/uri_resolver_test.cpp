@@ -8,7 +8,7 @@
 #include "support/input_errors.h"
 #include "support/temporary_folder.h"
 
-namespace blem_sim {
+namespace blem_sim::model {
 namespace {
 
 /** Sets an environment variable for one test. */
@@ -102,4 +102,4 @@ TEST_F(UriResolverTest, refusalsNameEveryPlaceAndTheCure) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::model

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-namespace blem_sim {
+namespace blem_sim::model {
 namespace {
 
 VoxelMapOptions options() {
@@ -93,4 +93,4 @@ TEST(VoxelMap, isTheSameForTheSameClouds) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::model

@@ -10,12 +10,12 @@
 #include "blem_sim/reduction/reduction.h"
 #include "geometry/random_shapes.h"
 
-namespace blem_sim {
+namespace blem_sim::reduction {
 
-using Contacts = std::vector<Contact>;
+using Contacts = std::vector<contact::Contact>;
 
-inline Contact makeContact(const Vector3& point, const Vector3& normal, double depth, std::uint64_t id) {
-  Contact contact;
+inline contact::Contact makeContact(const Vector3& point, const Vector3& normal, double depth, std::uint64_t id) {
+  contact::Contact contact;
   contact.point = point;
   contact.normal_BA = normal.normalized();
   contact.depth = depth;
@@ -72,12 +72,12 @@ inline Contacts wallPatch(int count, unsigned seed = 7) {
 constexpr int RIM_CORNERS = 72;
 
 /** The rim of a mug's foot, its depths trembling by some nanometres. */
-inline ContactManifold rim(RandomShapes& random, double tremble) {
-  ContactManifold manifold;
+inline contact::ContactManifold rim(geometry::RandomShapes& random, double tremble) {
+  contact::ContactManifold manifold;
   manifold.a = 3;
   manifold.b = 7;
   for (int i = 0; i < RIM_CORNERS; ++i) {
-    Contact contact;
+    contact::Contact contact;
     const double angle = 2 * M_PI * i / RIM_CORNERS;
     contact.point = {0.03 * std::cos(angle), 0.03 * std::sin(angle), 0};
     contact.normal_BA = Vector3::UnitZ();
@@ -95,9 +95,10 @@ inline Contacts reducedBy(const Reduction& method, const Contacts& contacts, int
 }
 
 /** Reduces manifolds in place. */
-inline ReductionLoss reduceAll(std::vector<ContactManifold>& manifolds, const std::vector<int>& model_a, const std::vector<int>& model_b,
-                               const std::vector<ContactBudget>& budgets, const Reduction& method, ReductionMemory* memory) {
-  std::vector<ContactManifold> reduced;
+inline ReductionLoss reduceAll(std::vector<contact::ContactManifold>& manifolds, const std::vector<int>& model_a,
+                               const std::vector<int>& model_b, const std::vector<ContactBudget>& budgets, const Reduction& method,
+                               ReductionMemory* memory) {
+  std::vector<contact::ContactManifold> reduced;
   const ReductionLoss loss = reduceManifolds(manifolds, model_a, model_b, budgets, method, memory, &reduced);
   manifolds = std::move(reduced);
   return loss;
@@ -106,7 +107,7 @@ inline ReductionLoss reduceAll(std::vector<ContactManifold>& manifolds, const st
 // Largest component along (a, b) of the wrenches about the origin that contacts with unit normal force give.
 inline double support(const Contacts& contacts, const Vector3& a, const Vector3& b, double friction = 0.5) {
   double best = -std::numeric_limits<double>::infinity();
-  for (const Contact& c : contacts) {
+  for (const contact::Contact& c : contacts) {
     const Vector3 g = a + b.cross(c.point);
     const double along = g.dot(c.normal_BA);
     best = std::max(best, along + friction * (g - along * c.normal_BA).norm());
@@ -136,12 +137,12 @@ inline SupportError supportError(const Contacts& all, const Contacts& reduced) {
   return {sum / level, worst * 500 / level};
 }
 
-inline ContactManifold manifoldOf(int a, int b, Contacts contacts) {
-  ContactManifold manifold;
+inline contact::ContactManifold manifoldOf(int a, int b, Contacts contacts) {
+  contact::ContactManifold manifold;
   manifold.a = a;
   manifold.b = b;
   manifold.contacts = std::move(contacts);
   return manifold;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::reduction

@@ -8,7 +8,7 @@
 #include "choice/wrench_choice.h"
 #include "reduction/contact_patches.h"
 
-namespace blem_sim {
+namespace blem_sim::reduction {
 namespace {
 
 /** A ring of contacts, some at an inner radius [m]; normals and depths [m] vary by so much. */
@@ -27,7 +27,7 @@ ContactIds someOf(const Contacts& contacts, int k, Noise* noise) {
   std::vector<int> order(contacts.size());
   std::iota(order.begin(), order.end(), 0);
   for (std::size_t i = order.size(); i-- > 1;) std::swap(order[i], order[static_cast<std::size_t>((*noise)() * 0.5 * i + 0.5 * i)]);
-  const auto deeper = [](const Contact& a, const Contact& b) { return a.depth < b.depth; };
+  const auto deeper = [](const contact::Contact& a, const contact::Contact& b) { return a.depth < b.depth; };
   const int deepest = static_cast<int>(std::max_element(contacts.begin(), contacts.end(), deeper) - contacts.begin());
   std::swap(*std::find(order.begin(), order.end(), deepest), order[0]);
   ContactIds ids;
@@ -91,4 +91,4 @@ TEST(ContinuedChoice, IsNotSureWithoutTheDeepestOrWithOthersThanK) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::reduction

@@ -6,25 +6,25 @@
 
 #include "reduction/contact_patches.h"
 
-namespace blem_sim {
+namespace blem_sim::reduction {
 namespace {
 
-ContactIds reduced(ContactManifold manifold, int k, ReductionMemory* memory) {
-  std::vector<ContactManifold> manifolds = {std::move(manifold)};
+ContactIds reduced(contact::ContactManifold manifold, int k, ReductionMemory* memory) {
+  std::vector<contact::ContactManifold> manifolds = {std::move(manifold)};
   reduceAll(manifolds, {0}, {1}, {{k}, {INT_MAX}}, *findReduction("hull"), memory);
   ContactIds ids;
-  for (const Contact& c : manifolds[0].contacts) ids.push_back(c.id);
+  for (const contact::Contact& c : manifolds[0].contacts) ids.push_back(c.id);
   return ids;
 }
 
 TEST(ReductionMemory, KeepsItsChoiceAmongEquals) {
-  RandomShapes random(4);
+  geometry::RandomShapes random(4);
   ReductionMemory memory;
   const ContactIds first = reduced(rim(random, 1e-8), 20, &memory);
   ASSERT_EQ(first.size(), 20u);
   int forgetful = 0;
   for (int step = 0; step < 50; ++step) {
-    const ContactManifold now = rim(random, 1e-8);
+    const contact::ContactManifold now = rim(random, 1e-8);
     EXPECT_EQ(reduced(now, 20, &memory), first) << step;
     ReductionMemory nothing;
     forgetful += reduced(now, 20, &nothing) != first;
@@ -39,7 +39,7 @@ TEST(ReductionMemory, KeepsItsChoiceInACrowd) {
   const ContactIds first = reduced(manifoldOf(3, 7, patch), 20, &memory);
   for (int step = 0; step < 20; ++step) {
     Contacts now = patch;
-    for (Contact& c : now) {
+    for (contact::Contact& c : now) {
       c.point += 1e-7 * Vector3(noise(), noise(), noise());
       c.depth += 1e-7 * noise();
     }
@@ -48,23 +48,23 @@ TEST(ReductionMemory, KeepsItsChoiceInACrowd) {
 }
 
 TEST(ReductionMemory, GivesUpAChoiceThatLacksMuch) {
-  RandomShapes random(4);
+  geometry::RandomShapes random(4);
   ReductionMemory memory;
-  ContactManifold half = rim(random, 0);
+  contact::ContactManifold half = rim(random, 0);
   half.contacts.resize(RIM_CORNERS / 2);
   reduced(half, 20, &memory);
   // All contacts now: the choice spans one half of them.
   ReductionMemory nothing;
-  const ContactManifold whole = rim(random, 0);
+  const contact::ContactManifold whole = rim(random, 0);
   EXPECT_EQ(reduced(whole, 20, &memory), reduced(whole, 20, &nothing));
 }
 
 TEST(ReductionMemory, GivesUpAChoiceWithoutTheDeepest) {
-  RandomShapes random(4);
+  geometry::RandomShapes random(4);
   ReductionMemory memory;
-  ContactManifold manifold = rim(random, 0);
+  contact::ContactManifold manifold = rim(random, 0);
   const ContactIds first = reduced(manifold, 20, &memory);
-  for (Contact& c : manifold.contacts) {
+  for (contact::Contact& c : manifold.contacts) {
     if (std::find(first.begin(), first.end(), c.id) != first.end()) continue;
     c.depth += 1e-4;
     const ContactIds now = reduced(manifold, 20, &memory);
@@ -74,13 +74,13 @@ TEST(ReductionMemory, GivesUpAChoiceWithoutTheDeepest) {
 }
 
 TEST(ReductionMemory, IsSavedAndReadBack) {
-  RandomShapes random(4);
+  geometry::RandomShapes random(4);
   ReductionMemory memory, copy;
   const ContactIds ids = reduced(rim(random, 1e-8), 20, &memory);
   std::vector<std::uint64_t> words = {42};
   memory.append(&words);
   const std::uint64_t* cursor = words.data() + 1;
-  const std::vector<Collider> colliders(10);
+  const std::vector<contact::Collider> colliders(10);
   ASSERT_TRUE(copy.read(colliders, &cursor, words.data() + words.size()));
   EXPECT_EQ(cursor, words.data() + words.size());
   EXPECT_EQ(copy.of(rim(random, 0)), ids);
@@ -90,4 +90,4 @@ TEST(ReductionMemory, IsSavedAndReadBack) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::reduction

@@ -9,7 +9,7 @@
 
 #include "reduction/contact_patches.h"
 
-namespace blem_sim {
+namespace blem_sim::reduction {
 namespace {
 
 // A ring around a handle: normals all around, which cancel in the mean.
@@ -34,7 +34,7 @@ Contacts sphereCap(int count) {
   return contacts;
 }
 
-bool same(const Contact& a, const Contact& b) {
+bool same(const contact::Contact& a, const contact::Contact& b) {
   return a.point == b.point && a.normal_BA == b.normal_BA && a.depth == b.depth && a.id == b.id && a.pierced == b.pierced;
 }
 
@@ -65,7 +65,7 @@ Contacts line() {
 
 Contacts opposite() {
   Contacts contacts = flatPatch(100, {0, 0, 1}, {0, 0, 0});
-  for (Contact c : flatPatch(100, {0, 0, -1}, {0, 0, 0.1}, 5)) {
+  for (contact::Contact c : flatPatch(100, {0, 0, -1}, {0, 0, 0.1}, 5)) {
     c.id += 1000;
     contacts.push_back(c);
   }
@@ -119,7 +119,7 @@ TEST_P(EveryReduction, KeepsItsPromises) {
   const Contacts given = input();
   Box box;
   double deepest = -std::numeric_limits<double>::infinity();
-  for (const Contact& c : given) {
+  for (const contact::Contact& c : given) {
     box.extend(c.point);
     deepest = std::max(deepest, c.depth);
   }
@@ -132,13 +132,14 @@ TEST_P(EveryReduction, KeepsItsPromises) {
     } else {
       EXPECT_LE(reduced.size(), static_cast<std::size_t>(k));
     }
-    for (const Contact& c : reduced) {
+    for (const contact::Contact& c : reduced) {
       EXPECT_NEAR(c.normal_BA.norm(), 1, 1e-12);
       EXPECT_TRUE(c.point.allFinite());
       EXPECT_LE(c.depth, deepest);
       EXPECT_TRUE((c.point.array() >= box.min().array()).all() && (c.point.array() <= box.max().array()).all());
     }
-    EXPECT_TRUE(std::is_sorted(reduced.begin(), reduced.end(), [](const Contact& a, const Contact& b) { return a.id < b.id; }));
+    EXPECT_TRUE(
+        std::is_sorted(reduced.begin(), reduced.end(), [](const contact::Contact& a, const contact::Contact& b) { return a.id < b.id; }));
   }
 }
 
@@ -161,7 +162,7 @@ TEST_P(EveryReduction, ChangesNothingTheSecondTime) {
 TEST_P(EveryReduction, DropsContactsWithoutNumbersOrDirection) {
   Contacts contacts = input();
   const std::size_t sound = contacts.size();
-  Contact bad = makeContact({0, 0, 0}, {0, 0, 1}, 0, 5000);
+  contact::Contact bad = makeContact({0, 0, 0}, {0, 0, 1}, 0, 5000);
   bad.depth = std::numeric_limits<double>::quiet_NaN();
   contacts.push_back(bad);
   bad = makeContact({0, 0, 0}, {0, 0, 1}, 0, 5001);
@@ -171,7 +172,7 @@ TEST_P(EveryReduction, DropsContactsWithoutNumbersOrDirection) {
   contacts.push_back(bad);
   const Contacts reduced = reducedBy(method(), contacts, 20);
   EXPECT_EQ(reduced.empty(), sound == 0);
-  for (const Contact& c : reduced) EXPECT_LT(c.id, 5000u);
+  for (const contact::Contact& c : reduced) EXPECT_LT(c.id, 5000u);
 }
 
 std::string caseName(const ::testing::TestParamInfo<std::tuple<int, int>>& info) {
@@ -233,7 +234,7 @@ TEST(ReduceHull, LosesNoWrenchOnFlatPatches) {
     Contacts all = flatPatch(300, normal.normalized(), {noise(), noise(), noise()}, 100 + trial);
     // A second plane of the same direction, 3 cm higher: the steps of a stair.
     Contacts upper = flatPatch(100, normal.normalized(), all[0].point + 0.03 * normal.normalized(), 200 + trial);
-    for (Contact& c : upper) c.id += 1000;
+    for (contact::Contact& c : upper) c.id += 1000;
     all.insert(all.end(), upper.begin(), upper.end());
     Contacts reduced = all;
     reduceHull(reduced, 60);
@@ -246,7 +247,7 @@ TEST(ReduceHull, LosesNoWrenchOnFlatPatches) {
 }
 
 // Whether the kept contacts imply p's constraint: no affine function separates p from them in (x, y, depth).
-bool isImplied(const Contact& p, const Contacts& kept) {
+bool isImplied(const contact::Contact& p, const Contacts& kept) {
   for (std::size_t i = 0; i < kept.size(); ++i) {
     for (std::size_t j = 0; j < kept.size(); ++j) {
       for (std::size_t l = 0; l < kept.size(); ++l) {
@@ -264,32 +265,32 @@ bool isImplied(const Contact& p, const Contacts& kept) {
 
 TEST(ReduceHull, KeepsWhatIsDeeperThanItsCornersInterpolate) {
   Contacts all = flatPatch(200, {0, 0, 1}, {0, 0, 0}, 21);
-  for (Contact& c : all) {
+  for (contact::Contact& c : all) {
     const bool raised = std::abs(c.point.x()) < 0.02 && std::abs(c.point.y()) < 0.02;
     if (raised) c.depth += 5e-4;
   }
   Contacts reduced = all;
   reduceHull(reduced, 100);
   EXPECT_LT(reduced.size(), 50u);
-  EXPECT_GT(std::count_if(reduced.begin(), reduced.end(), [](const Contact& c) { return c.depth > 1.2e-3; }), 2);
-  for (const Contact& c : all) EXPECT_TRUE(isImplied(c, reduced)) << c.id;
+  EXPECT_GT(std::count_if(reduced.begin(), reduced.end(), [](const contact::Contact& c) { return c.depth > 1.2e-3; }), 2);
+  for (const contact::Contact& c : all) EXPECT_TRUE(isImplied(c, reduced)) << c.id;
 }
 
 TEST(ReduceHull, ImpliesEveryContactOfAPatchWithNoisyDepths) {
   Noise noise(22);
   Contacts all = flatPatch(300, {0, 0, 1}, {0, 0, 0}, 23);
-  for (Contact& c : all) c.depth += 1e-3 * noise();
+  for (contact::Contact& c : all) c.depth += 1e-3 * noise();
   Contacts reduced = all;
   reduceHull(reduced, 150);
   EXPECT_LT(reduced.size(), 100u);
-  for (const Contact& c : all) EXPECT_TRUE(isImplied(c, reduced)) << c.id;
+  for (const contact::Contact& c : all) EXPECT_TRUE(isImplied(c, reduced)) << c.id;
 }
 
 TEST(ReduceHull, KeepsContactsAsTheyAre) {
   const Contacts all = noisyPatch(800);
   Contacts reduced = all;
   reduceHull(reduced, 20);
-  for (const Contact& c : reduced) EXPECT_TRUE(same(c, all[c.id]));
+  for (const contact::Contact& c : reduced) EXPECT_TRUE(same(c, all[c.id]));
 }
 
 TEST(ReduceHull, KeepsTheDeepestContact) {
@@ -298,7 +299,7 @@ TEST(ReduceHull, KeepsTheDeepestContact) {
   for (int k : {1, 5, 20}) {
     Contacts reduced = all;
     reduceHull(reduced, k);
-    EXPECT_EQ(std::count_if(reduced.begin(), reduced.end(), [](const Contact& c) { return c.id == 400; }), 1) << k;
+    EXPECT_EQ(std::count_if(reduced.begin(), reduced.end(), [](const contact::Contact& c) { return c.id == 400; }), 1) << k;
   }
 }
 
@@ -331,10 +332,10 @@ TEST(ReduceHull, KeepsTheExtremesOfWhatHardlyTouches) {
   for (int trial = 0; trial < 30; ++trial) {
     Contacts all = noisyPatch(95, 300 + trial);
     const double slope = 2e-3 * std::pow(10, noise());
-    for (Contact& c : all) c.depth = slope * (c.point.x() - 0.03) + 1e-5 * noise();
+    for (contact::Contact& c : all) c.depth = slope * (c.point.x() - 0.03) + 1e-5 * noise();
     const auto reach = [](const Contacts& contacts, const Vector3& a, const Vector3& b) {
       double most = -std::numeric_limits<double>::infinity();
-      for (const Contact& c : contacts) most = std::max(most, support({c}, a, b) - 5000 * std::max(0.0, -c.depth));
+      for (const contact::Contact& c : contacts) most = std::max(most, support({c}, a, b) - 5000 * std::max(0.0, -c.depth));
       return most;
     };
     const Contacts reduced = reducedBy(*findReduction("hull"), all, 60);
@@ -389,4 +390,4 @@ TEST(ReduceKmeans, AveragesWhatBelongsTogether) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::reduction

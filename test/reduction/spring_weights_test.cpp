@@ -5,39 +5,39 @@
 
 #include "reduction/contact_patches.h"
 
-namespace blem_sim {
+namespace blem_sim::reduction {
 namespace {
 
-double totalWeight(std::vector<Contact> contacts) {
+double totalWeight(std::vector<contact::Contact> contacts) {
   weighSprings(contacts);
   double total = 0;
-  for (const Contact& c : contacts) total += c.weight;
+  for (const contact::Contact& c : contacts) total += c.weight;
   return total;
 }
 
 TEST(SpringWeights, CountFullyUpToTheCornersOfARectangle) {
-  RandomShapes random(4);
+  geometry::RandomShapes random(4);
   for (int pose = 0; pose < 20; ++pose) {
     const Pose X = random.pose(1);
-    std::vector<Contact> contacts(4);
+    std::vector<contact::Contact> contacts(4);
     for (int i = 0; i < 4; ++i) {
       contacts[i].point = X * Vector3(i % 2 ? 0.05 : -0.05, i / 2 ? 0.02 : -0.02, 0);
       contacts[i].normal_BA = X.linear() * Vector3::UnitZ();
       contacts[i].depth = 1e-3;
     }
     for (int count = 1; count <= 4; ++count) {
-      std::vector<Contact> some(contacts.begin(), contacts.begin() + count);
+      std::vector<contact::Contact> some(contacts.begin(), contacts.begin() + count);
       weighSprings(some);
-      for (const Contact& c : some) EXPECT_EQ(c.weight, 1) << count;
+      for (const contact::Contact& c : some) EXPECT_EQ(c.weight, 1) << count;
     }
   }
 }
 
 TEST(SpringWeights, HoldWhateverTheTessellation) {
-  RandomShapes random(4);
-  std::vector<Contact> contacts = rim(random, 0).contacts, doubled = contacts;
+  geometry::RandomShapes random(4);
+  std::vector<contact::Contact> contacts = rim(random, 0).contacts, doubled = contacts;
   doubled.insert(doubled.end(), contacts.begin(), contacts.end());
-  std::vector<Contact> coarse;
+  std::vector<contact::Contact> coarse;
   for (int i = 0; i < RIM_CORNERS; i += 3) coarse.push_back(contacts[i]);
   EXPECT_NEAR(totalWeight(contacts), 5, 0.1);
   EXPECT_NEAR(totalWeight(doubled), totalWeight(contacts), 1e-9);
@@ -45,16 +45,16 @@ TEST(SpringWeights, HoldWhateverTheTessellation) {
 }
 
 /** Weight as spring_weights.cpp defines it, contact by contact and with the library's exponential. */
-double weightByDefinition(const std::vector<Contact>& contacts, std::size_t i) {
+double weightByDefinition(const std::vector<contact::Contact>& contacts, std::size_t i) {
   constexpr int DIRECTIONS = 32;
   double share = 0;
   for (int m = 0; m < DIRECTIONS; ++m) {
     const double z = (2.0 * m + 1) / DIRECTIONS - 1, r = std::sqrt(1 - z * z), angle = 2.39996322972865332 * m;
-    const auto height = [&](const Contact& c) {
+    const auto height = [&](const contact::Contact& c) {
       return (Vector3(r * std::cos(angle), r * std::sin(angle), z).dot(c.point) + 20 * c.depth) / 0.005;
     };
     double all = 0;
-    for (const Contact& c : contacts)
+    for (const contact::Contact& c : contacts)
       all += std::max(0.0, 1 - (c.normal_BA - contacts[i].normal_BA).norm() / 0.5) * std::exp(height(c) - height(contacts[i]));
     share += 1 / all / DIRECTIONS;
   }
@@ -62,8 +62,8 @@ double weightByDefinition(const std::vector<Contact>& contacts, std::size_t i) {
 }
 
 TEST(SpringWeights, AreWhatTheirDefinitionSays) {
-  std::vector<Contact> contacts = noisyPatch(30);
-  for (const Contact& c : flatPatch(20, {0.2, 0.1, 1}, {0.03, 0, 0})) contacts.push_back(c);
+  std::vector<contact::Contact> contacts = noisyPatch(30);
+  for (const contact::Contact& c : flatPatch(20, {0.2, 0.1, 1}, {0.03, 0, 0})) contacts.push_back(c);
   weighSprings(contacts);
   double least = 1;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
@@ -75,10 +75,10 @@ TEST(SpringWeights, AreWhatTheirDefinitionSays) {
 }
 
 TEST(SpringWeights, OfSidesOfACornerAreTheirOwn) {
-  std::vector<Contact> contacts;
+  std::vector<contact::Contact> contacts;
   for (int axis = 0; axis < 3; ++axis) {
     for (int i = 0; i < 4; ++i) {
-      Contact contact;
+      contact::Contact contact;
       contact.point = Vector3::Constant(0.05);
       contact.point[axis] = 0;
       contact.point[(axis + 1) % 3] += i % 2 ? 0.05 : -0.04;
@@ -89,8 +89,8 @@ TEST(SpringWeights, OfSidesOfACornerAreTheirOwn) {
     }
   }
   weighSprings(contacts);
-  for (const Contact& c : contacts) EXPECT_EQ(c.weight, 1);
+  for (const contact::Contact& c : contacts) EXPECT_EQ(c.weight, 1);
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::reduction

@@ -8,7 +8,7 @@
 
 #include "support/counted_allocations.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 namespace {
 
 struct Topic {
@@ -37,6 +37,6 @@ TEST(StepSender, AWarmStepAllocatesNothing) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::node
 
 #endif

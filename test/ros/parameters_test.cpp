@@ -8,7 +8,7 @@
 
 #include "blem_sim/geometry/input_error.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 namespace {
 
 TEST(Parameters, ScalarsKeepTheirValues) {
@@ -46,4 +46,4 @@ TEST(Parameters, BinaryDataIsRefused) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::node

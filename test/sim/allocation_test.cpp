@@ -10,7 +10,7 @@
 #include "support/counted_allocations.h"
 #include "support/moving_shapes.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr int WARM_UP = 300, WATCHED = 500;  // [steps]
@@ -51,7 +51,7 @@ long allocationsOfWarmSteps(Simulator* simulator, int warm_up = WARM_UP, int wat
 }
 
 TEST(StepAllocation, NoneInAWarmStepWithoutContacts) {
-  Simulator simulator(allocatingScene(), UriResolver());
+  Simulator simulator(allocatingScene(), model::UriResolver());
   EXPECT_EQ(allocationsOfWarmSteps(&simulator), 0);
   EXPECT_EQ(simulator.report().samples.size(), 5u);
 }
@@ -61,8 +61,8 @@ TEST(StepAllocation, NoneInAWarmStepOfAStack) {
   config.environments = {ground()};
   config.objects = {box("lower", Vector3::Constant(0.1), 1, Vector3(3, 0, 0.053)),
                     box("upper", Vector3::Constant(0.1), 1, Vector3(3, 0, 0.158))};
-  config.environments[0].uri = meshFile("fine_ground", gridMesh(8, 1, 800, 100));
-  Simulator simulator(config, UriResolver());
+  config.environments[0].uri = meshFile("fine_ground", geometry::gridMesh(8, 1, 800, 100));
+  Simulator simulator(config, model::UriResolver());
   EXPECT_EQ(allocationsOfWarmSteps(&simulator), 0);
   EXPECT_EQ(simulator.report().reduced_contacts, 8);
 }
@@ -73,7 +73,7 @@ TEST(StepAllocation, NoneInAWarmStepOnUsedUpLayers) {
   config.objects = {box("heavy", Vector3::Constant(0.1), 100, Vector3(0.5, 0, 0.0525))};
   config.objects[0].contact.stiffness = 1e4;
   config.objects[0].contact.damping = 200;
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   EXPECT_EQ(allocationsOfWarmSteps(&simulator), 0);
   EXPECT_EQ(simulator.report().contacts.size(), 8u);
 }
@@ -84,13 +84,13 @@ TEST(StepAllocation, NoneInAWarmStepMadeInParts) {
   config.environments[0].contact.friction = 0;
   config.objects = {box("gliding", Vector3::Constant(0.1), 1, Vector3(-5, 3, 0.0525))};
   config.objects[0].linear_velocity = {6, 0, 0};
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   EXPECT_EQ(allocationsOfWarmSteps(&simulator), 0);
   EXPECT_GT(simulator.report().substeps, 1);
   EXPECT_EQ(simulator.report().contacts.size(), 4u);
 }
 
-ObjectConfig bodyOfMesh(const std::string& name, const TriangleMesh& mesh, double mass, const Pose& pose) {
+ObjectConfig bodyOfMesh(const std::string& name, const geometry::TriangleMesh& mesh, double mass, const Pose& pose) {
   ObjectConfig object;
   object.name = name;
   object.uri = meshFile(name, mesh);
@@ -123,7 +123,7 @@ TEST(StepAllocation, NoneInAWarmStepOfGears) {
   }
   config.robots[0].gains["default"] = {0, 0, 10, 0};
   config.robots[0].motor["default"] = MotorLaw::IMPLICIT_PD;
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   simulator.commandJoints(0, {{"axle"}, {}, {3.0}, {}});
   EXPECT_EQ(allocationsOfWarmSteps(&simulator, 4000), 0);
   EXPECT_NEAR(simulator.report().joints[1].velocity, -3, 1.5);
@@ -133,7 +133,7 @@ TEST(StepAllocation, NoneInAWarmStepOfGears) {
 TEST(StepAllocation, NoneInWarmStepsOfAHangingChain) {
   constexpr int RINGS = 5;
   constexpr double RADIUS = 0.03, THICKNESS = 0.004;
-  const TriangleMesh ring = ringMesh(RADIUS, THICKNESS, 40, 12);
+  const geometry::TriangleMesh ring = ringMesh(RADIUS, THICKNESS, 40, 12);
   SimulationConfig config;
   EnvironmentConfig hook;
   hook.name = "hook";
@@ -145,7 +145,7 @@ TEST(StepAllocation, NoneInWarmStepsOfAHangingChain) {
     config.objects.push_back(bodyOfMesh("ring" + std::to_string(i), ring, 0.05, pose));
   }
   config.objects.back().linear_velocity = {0.3, 0.2, 0};
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   EXPECT_EQ(allocationsOfWarmSteps(&simulator, 6000, 2000), 0);
   EXPECT_GT(bodyOf(simulator, "ring5").v_WCom.norm(), 1e-3);
   EXPECT_GT(bodyOf(simulator, "ring5").X_WB.translation().z(), 0.6);
@@ -153,6 +153,6 @@ TEST(StepAllocation, NoneInWarmStepsOfAHangingChain) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim
 
 #endif

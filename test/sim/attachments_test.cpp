@@ -10,7 +10,7 @@
 #include "sim/simulation_scene.h"
 #include "support/input_errors.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr double UNBREAKABLE = std::numeric_limits<double>::infinity();
@@ -43,7 +43,7 @@ Pose placeOnPlate(const Simulator& simulator) {
 }
 
 TEST(Attachments, GoAlongAndFallWhenTheyAreDetached) {
-  Simulator simulator(carriageAndCube(), UriResolver());
+  Simulator simulator(carriageAndCube(), model::UriResolver());
   simulator.attach("cube", plateOf(simulator), UNBREAKABLE, UNBREAKABLE);
   const Pose place = placeOnPlate(simulator);
   simulator.commandJoints(0, {{"lift"}, {0.3}, {}, {}});
@@ -65,7 +65,7 @@ TEST(Attachments, GoAlongAndFallWhenTheyAreDetached) {
 
 TEST(Attachments, BreakBeyondTheirForceAndTellIt) {
   for (const double limit : {0.999 * G, 1.001 * G}) {
-    Simulator simulator(carriageAndCube(), UriResolver());
+    Simulator simulator(carriageAndCube(), model::UriResolver());
     simulator.attach("cube", plateOf(simulator), UNBREAKABLE, UNBREAKABLE);
     stepFor(&simulator, 2);  // then the carriage stands still
     simulator.detach("cube");
@@ -84,12 +84,12 @@ TEST(Attachments, TwoBodiesThatFlyTurnAsOne) {
   config.gravity = Vector3::Zero();
   config.objects = {box("a", Vector3::Constant(0.1), 1, {0, 0, 0}), box("b", Vector3::Constant(0.1), 1, {0.3, 0, 0})};
   config.objects[0].angular_velocity = {0, 0, 3};
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   simulator.attach("b", findLink(simulator, "a::link", "part"), UNBREAKABLE, UNBREAKABLE);
   EXPECT_NEAR((bodyOf(simulator, "b").v_WCom - Vector3(0, 0.9, 0)).norm(), 0, 1e-12);
   for (int i = 0; i < 1000; ++i) {
     simulator.step();
-    const BodyState a = bodyOf(simulator, "a"), b = bodyOf(simulator, "b");
+    const dynamics::BodyState a = bodyOf(simulator, "a"), b = bodyOf(simulator, "b");
     EXPECT_NEAR((a.v_WCom + b.v_WCom - Vector3(0, 0.9, 0)).norm(), 0, 1e-9);
     EXPECT_NEAR(b.w_WB.z(), 3, 1e-6);
     EXPECT_NEAR((b.X_WB.translation() - a.X_WB.translation()).norm(), 0.3, 1e-9);
@@ -99,11 +99,12 @@ TEST(Attachments, TwoBodiesThatFlyTurnAsOne) {
 }
 
 TEST(Attachments, CarryWhatIsMovedAndComeLooseInAReset) {
-  Simulator simulator(carriageAndCube(), UriResolver());
+  Simulator simulator(carriageAndCube(), model::UriResolver());
   simulator.attach("cube", plateOf(simulator), UNBREAKABLE, UNBREAKABLE);
   simulator.setJointPositions(0, {"lift"}, {0.5});
   EXPECT_NEAR(bodyOf(simulator, "cube").X_WB.translation().z(), 1.4, 1e-12);
-  const std::string moved = refusal([&] { simulator.moveModel(simulator.models()[simulator.modelIndex("cube")].bodies[0], BodyState()); });
+  const std::string moved =
+      refusal([&] { simulator.moveModel(simulator.models()[simulator.modelIndex("cube")].bodies[0], dynamics::BodyState()); });
   EXPECT_NE(moved.find("'cube' is attached to 'carriage::plate'; detach it first"), std::string::npos) << moved;
   const SimulationState state = simulator.save();
   stepFor(&simulator, 0.2);
@@ -126,7 +127,7 @@ TEST(Attachments, CarryWhatIsMovedAndComeLooseInAReset) {
 TEST(Attachments, DoNotTouchWhatCarriesThem) {
   SimulationConfig config = carriageAndCube();
   config.objects[0].X_WO = makePose({0.02, 0.01, 0.95});  // inside the plate
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   simulator.attach("cube", plateOf(simulator), UNBREAKABLE, UNBREAKABLE);
   for (int i = 0; i < 100; ++i) EXPECT_TRUE(simulator.step().contacts.empty());
   simulator.detach("cube");
@@ -138,7 +139,7 @@ TEST(Attachments, TwoOfOnePartTouchOnceOneIsGone) {
   SimulationConfig config = carriageAndCube();
   config.objects.push_back(box("other", Vector3::Constant(0.1), 1, {-0.02, -0.01, 0.85}));
   for (const char* first : {"cube", "other"}) {
-    Simulator simulator(config, UriResolver());
+    Simulator simulator(config, model::UriResolver());
     const LinkPart plate = plateOf(simulator);
     for (const char* cube : {"cube", "other"}) simulator.attach(cube, plate, UNBREAKABLE, UNBREAKABLE);
     for (int i = 0; i < 20; ++i) EXPECT_TRUE(simulator.step().contacts.empty());
@@ -150,7 +151,7 @@ TEST(Attachments, TwoOfOnePartTouchOnceOneIsGone) {
 }
 
 TEST(Attachments, RefuseInWords) {
-  Simulator simulator(carriageAndCube(), UriResolver());
+  Simulator simulator(carriageAndCube(), model::UriResolver());
   const LinkPart plate = plateOf(simulator);
   const auto attach = [&](const std::string& object, const LinkPart& part, double force) {
     return refusal([&] { simulator.attach(object, part, force, UNBREAKABLE); });
@@ -168,4 +169,4 @@ TEST(Attachments, RefuseInWords) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

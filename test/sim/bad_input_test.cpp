@@ -4,7 +4,7 @@
 #include "sim/simulation_scene.h"
 #include "support/input_errors.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr double INFINITE = std::numeric_limits<double>::infinity();
@@ -77,19 +77,19 @@ std::vector<BadField> badFields() {
 }
 
 TEST(BadInput, AConfigurationByHandIsRefusedInOneLine) {
-  EXPECT_EQ(refusal([] { Simulator(soundScene(), UriResolver()).step(); }), "");
+  EXPECT_EQ(refusal([] { Simulator(soundScene(), model::UriResolver()).step(); }), "");
   for (const BadField& field : badFields()) {
     for (const double value : field.values) {
       SimulationConfig config = soundScene();
       field.set(&config, value);
-      const std::string text = refusal([&] { Simulator simulator(config, UriResolver()); });
+      const std::string text = refusal([&] { Simulator simulator(config, model::UriResolver()); });
       EXPECT_TRUE(isOneLineWith(text, {field.words})) << field.words << " = " << value << ": '" << text << "'";
     }
   }
 }
 
 TEST(BadInput, AnEnvironmentThatIsLoadedLaterToo) {
-  Simulator simulator(soundScene(), UriResolver());
+  Simulator simulator(soundScene(), model::UriResolver());
   EnvironmentConfig more = ground();
   more.name = "more";
   more.contact.restitution = 2;
@@ -126,7 +126,7 @@ TEST(BadInput, AUrdfIsRefusedInOneLine) {
   for (const Row& row : rows) {
     SimulationConfig config;
     config.robots = {robot("arm", badArm(row.inertial, row.joint), true)};
-    const std::string text = refusal([&] { Simulator simulator(config, UriResolver()); });
+    const std::string text = refusal([&] { Simulator simulator(config, model::UriResolver()); });
     EXPECT_TRUE(isOneLineWith(text, {"arm", row.word})) << row.inertial << row.joint << ": '" << text << "'";
   }
 }
@@ -138,9 +138,10 @@ TEST(BadInput, NumbersAtTheirEndsRunOrStopButNeverHang) {
       config.objects[0].mass = mass;
       config.objects[0].linear_velocity = {speed, 0, -1};
       const std::string text = refusal([&] {
-        Simulator simulator(config, UriResolver());
+        Simulator simulator(config, model::UriResolver());
         for (int i = 0; i < 20; ++i)
-          for (const BodyState& body : simulator.step().bodies) EXPECT_TRUE(body.X_WB.matrix().allFinite()) << mass << " " << speed;
+          for (const dynamics::BodyState& body : simulator.step().bodies)
+            EXPECT_TRUE(body.X_WB.matrix().allFinite()) << mass << " " << speed;
       });
       EXPECT_TRUE(text.empty() || isOneLineWith(text, {"cube"})) << text;
     }
@@ -153,9 +154,9 @@ TEST(BadInput, ManyStartedInsideEachOtherSayThatContactsAreUnreliable) {
   for (int i = 0; i < 30; ++i)
     config.objects.push_back(
         box("cube" + std::to_string(i), Vector3::Constant(0.1), 1, {0.01 * (i % 3), 0.01 * (i / 3 % 3), 0.06 + 0.01 * i / 9}));
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   for (int i = 0; i < 20; ++i) EXPECT_NE(simulator.step().status & CONTACT_UNRELIABLE, 0u) << i;
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

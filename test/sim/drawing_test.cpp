@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 Colour colourOf(double of_layer, bool pierced) {
@@ -54,4 +54,4 @@ TEST(Drawing, PointsOfOneHeightAndNoneHaveColoursToo) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

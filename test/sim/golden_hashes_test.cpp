@@ -20,7 +20,7 @@
 #include "support/shared_packages.h"
 #include "support/throw_scene.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr const char* FILE_OF_HASHES = BLEM_SIM_SOURCE_DIR "/test/data/golden_hashes.txt";
@@ -58,7 +58,7 @@ SimulationConfig slidingOverPoints() {
 }
 
 SimulationConfig mugOnTerrain() {
-  TriangleMesh hills = gridMesh(1, 1, 60, 60);
+  geometry::TriangleMesh hills = geometry::gridMesh(1, 1, 60, 60);
   for (Vector3& v : hills.vertices) v.z() = 0.01 * std::sin(31 * v.x()) * std::cos(27 * v.y()) + 0.002 * std::sin(171 * v.x() + 90 * v.y());
   SimulationConfig config;
   EnvironmentConfig terrain;
@@ -166,7 +166,7 @@ TEST_P(GoldenHashes, NoBitHasMoved) {
   config.solver.stepper = stepper;
   if (config.solver.stepper != "articulated")
     for (RobotConfig& robot : config.robots) robot.armature.clear();
-  Simulator simulator(config, UriResolver(sharedPackages()));
+  Simulator simulator(config, model::UriResolver(sharedPackages()));
   stepFor(&simulator, scene.seconds);
   const std::string key = platform() + " " + scene.name + " " + stepper, hash = fmt::format("{:016x}", simulator.stateHash());
   if (const char* file = std::getenv("BLEM_SIM_NEW_HASHES")) {
@@ -185,4 +185,4 @@ INSTANTIATE_TEST_SUITE_P(Scenes, GoldenHashes,
                          [](const auto& info) { return std::string(std::get<0>(info.param).name) + "_" + std::get<1>(info.param); });
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -6,7 +6,7 @@
 
 #include "soak/heap.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 /** Figures of some steps. */
@@ -28,7 +28,7 @@ Seen run(Simulator* simulator, double seconds) {
     seen.deepest = std::max(seen.deepest, report.max_of_layer);
     seen.status |= report.status;
   }
-  for (const BodyState& body : simulator->report().bodies) seen.speed = std::max(seen.speed, body.v_WCom.norm());
+  for (const dynamics::BodyState& body : simulator->report().bodies) seen.speed = std::max(seen.speed, body.v_WCom.norm());
   return seen;
 }
 
@@ -41,7 +41,7 @@ SimulationConfig tower(int cubes) {
 }
 
 TEST(Heaps, SixtyCubesTumbleWithoutTrouble) {
-  Simulator simulator(heapInBin(60, 1, SolverSettings()), UriResolver());
+  Simulator simulator(heapInBin(60, 1, dynamics::SolverSettings()), model::UriResolver());
   const Seen seen = run(&simulator, 0.6);
   EXPECT_EQ(seen.trouble, 0);
   EXPECT_FALSE(seen.status & (STATE_NOT_FINITE | CONTACT_UNRELIABLE));
@@ -51,7 +51,7 @@ TEST(Heaps, SixtyCubesTumbleWithoutTrouble) {
 /** One of the cubes lands on a corner, is hit from above, and its other corner comes down within the step, where nothing had foreseen it.
  */
 TEST(Heaps, WhatAHitBringsDownDoesNotLeapIntoItsLayer) {
-  Simulator simulator(heapInBin(30, 3, SolverSettings()), UriResolver());
+  Simulator simulator(heapInBin(30, 3, dynamics::SolverSettings()), model::UriResolver());
   const Seen seen = run(&simulator, 0.22);
   EXPECT_TRUE(seen.status & STEP_SHORTENED);
   EXPECT_LT(seen.deepest, 0.25);
@@ -59,7 +59,7 @@ TEST(Heaps, WhatAHitBringsDownDoesNotLeapIntoItsLayer) {
 
 // Energy gained below the bound of ENERGY_GAINED corrects depth.
 TEST(Heaps, PouredSpheresGainNoEnergy) {
-  Simulator simulator(spheresInBin(64, 3, SolverSettings()), UriResolver());
+  Simulator simulator(spheresInBin(64, 3, dynamics::SolverSettings()), model::UriResolver());
   const Seen seen = run(&simulator, 0.6);
   EXPECT_EQ(seen.trouble, 0);
   EXPECT_FALSE(seen.status & (STATE_NOT_FINITE | CONTACT_UNRELIABLE | ENERGY_GAINED));
@@ -68,7 +68,7 @@ TEST(Heaps, PouredSpheresGainNoEnergy) {
 
 TEST(Heaps, TowersOfTwentyAndThirtyRest) {
   for (const int cubes : {20, 30}) {
-    Simulator simulator(tower(cubes), UriResolver());
+    Simulator simulator(tower(cubes), model::UriResolver());
     const Seen seen = run(&simulator, 2);
     EXPECT_EQ(seen.trouble, 0) << cubes;
     EXPECT_LT(seen.speed, 1e-6) << cubes;
@@ -77,7 +77,7 @@ TEST(Heaps, TowersOfTwentyAndThirtyRest) {
 }
 
 TEST(Heaps, ATowerOfAHundredThatLandsAtOnceRests) {
-  Simulator simulator(tower(100), UriResolver());
+  Simulator simulator(tower(100), model::UriResolver());
   const Seen seen = run(&simulator, 0.5);
   EXPECT_EQ(seen.trouble, 0);
   EXPECT_FALSE(seen.status & ENERGY_GAINED);
@@ -95,7 +95,7 @@ class Loads : public ::testing::TestWithParam<Load> {
     const Load& load = GetParam();
     config.environments = {ground()};
     config.objects.push_back(box("load", size, load.heavy, place + Vector3(0, 0, load.fall)));
-    Simulator simulator(config, UriResolver());
+    Simulator simulator(config, model::UriResolver());
     const Seen seen = run(&simulator, 0.6 + std::sqrt(2 * load.fall / G));
     EXPECT_EQ(seen.trouble, 0);
     EXPECT_FALSE(seen.status & ENERGY_GAINED);
@@ -137,7 +137,7 @@ TEST(Heaps, APyramidRests) {
     for (int i = 0; i < ROWS - row; ++i)
       config.objects.push_back(box("cube" + std::to_string(config.objects.size()), Vector3::Constant(0.1), 1,
                                    {0.11 * i + 0.055 * row - 0.5, 0, 0.055 + 0.106 * row}));
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   const Seen seen = run(&simulator, 0.5);
   EXPECT_EQ(seen.trouble, 0);
   EXPECT_FALSE(seen.status & ENERGY_GAINED);
@@ -147,7 +147,7 @@ TEST(Heaps, APyramidRests) {
 TEST(Heaps, AThousandTonsRestOnAKilogram) {
   SimulationConfig config = tower(2);
   config.objects[1].mass = 1e6;
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   const Seen seen = run(&simulator, 1);
   EXPECT_EQ(seen.trouble, 0);
   EXPECT_LT(seen.speed, 1e-6);
@@ -163,7 +163,7 @@ TEST(Heaps, SizesFromATenthOfAMillimetreToAHundredMetresRest) {
     for (int i = 0; i < 3; ++i)
       config.objects.push_back(
           box("cube" + std::to_string(i), Vector3::Constant(size), 1000 * size * size * size, {0, 0, (0.55 + 1.06 * i) * size}));
-    Simulator simulator(config, UriResolver());
+    Simulator simulator(config, model::UriResolver());
     EXPECT_LT(run(&simulator, size > 1 ? 4 : 0.5).speed, 1e-6 * size) << size;
   }
 }
@@ -171,9 +171,9 @@ TEST(Heaps, SizesFromATenthOfAMillimetreToAHundredMetresRest) {
 TEST(Heaps, AreTheSameOnOneThreadAndTwo) {
   std::uint64_t hashes[2];
   for (const int threads : {1, 2}) {
-    SolverSettings solver;
+    dynamics::SolverSettings solver;
     solver.threads = threads;
-    Simulator simulator(heapInBin(40, 2, solver), UriResolver());
+    Simulator simulator(heapInBin(40, 2, solver), model::UriResolver());
     run(&simulator, 0.4);
     hashes[threads - 1] = simulator.stateHash();
   }
@@ -181,7 +181,7 @@ TEST(Heaps, AreTheSameOnOneThreadAndTwo) {
 }
 
 TEST(Heaps, ReplayFromAStateSavedWhileTheyTumble) {
-  Simulator simulator(heapInBin(40, 2, SolverSettings()), UriResolver());
+  Simulator simulator(heapInBin(40, 2, dynamics::SolverSettings()), model::UriResolver());
   run(&simulator, 0.3);
   const SimulationState state = simulator.save();
   run(&simulator, 0.1);
@@ -192,4 +192,4 @@ TEST(Heaps, ReplayFromAStateSavedWhileTheyTumble) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

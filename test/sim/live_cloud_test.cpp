@@ -9,7 +9,7 @@
 #include "sim/simulation_scene.h"
 #include "support/sanitizers.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr double NOISE = 0.001;  // [m]
@@ -59,7 +59,7 @@ TEST(AutoRadius, ABoxRestsWithinAThirdOfTheSpacing) {
     config.environments = {pointCloud("auto" + std::to_string(spacing), NoisyFloor(0.3, spacing, 0).next())};
     config.environments[0].cloud.auto_radius = true;
     config.objects = {box("cube", Vector3::Constant(0.1), 1, {0.003, 0.004, 0.06})};
-    Simulator simulator(config, UriResolver());
+    Simulator simulator(config, model::UriResolver());
     stepFor(&simulator, 0.5);
     const double above = bodyOf(simulator, "cube").X_WB.translation().z() - 0.05 - CUBE_LAYER;
     EXPECT_GT(above, 0) << spacing;
@@ -69,7 +69,7 @@ TEST(AutoRadius, ABoxRestsWithinAThirdOfTheSpacing) {
 }
 
 TEST(LiveCloud, IsNothingUntilPointsCome) {
-  Simulator simulator(cubeAboveLive(), UriResolver());
+  Simulator simulator(cubeAboveLive(), model::UriResolver());
   stepFor(&simulator, 0.1);
   EXPECT_NEAR(bodyOf(simulator, "cube").v_WCom.z(), -0.1 * G, 1e-9);
   EXPECT_EQ(simulator.models().size(), 2u);
@@ -101,7 +101,7 @@ Ride ride(Simulator* simulator, NoisyFloor* floor, int updates) {
 }
 
 TEST(LiveCloud, UpdatesWithFreshNoiseJerkNothing) {
-  Simulator simulator(cubeAboveLive(), UriResolver());
+  Simulator simulator(cubeAboveLive(), model::UriResolver());
   NoisyFloor floor(0.3, 0.005, NOISE);
   update(&simulator, floor.next());
   stepFor(&simulator, 0.5);
@@ -115,11 +115,11 @@ TEST(LiveCloud, UpdatesWithFreshNoiseJerkNothing) {
 /** Upward force of all contacts on bodies [N]. */
 double lift(const StepReport& report) {
   double force = 0;
-  for (const ContactReport& contact : report.contacts) force += (contact.body_a != WORLD_BODY ? 1 : -1) * contact.force.z();
+  for (const ContactReport& contact : report.contacts) force += (contact.body_a != dynamics::WORLD_BODY ? 1 : -1) * contact.force.z();
   return force;
 }
 
-double massOf(const World& world) {
+double massOf(const dynamics::World& world) {
   double mass = 0;
   for (int body = 0; body < world.bodyCount(); ++body) mass += world.bodySpec(body).inertial.mass;
   return mass;
@@ -131,7 +131,7 @@ TEST(LiveCloud, AHumanoidStandsOnAStream) {
   EnvironmentConfig floor_of_points = live();
   floor_of_points.contact = config.environments[0].contact;
   config.environments = {floor_of_points};
-  Simulator simulator(config, UriResolver({{"blem_sim", source}}));
+  Simulator simulator(config, model::UriResolver({{"blem_sim", source}}));
   NoisyFloor floor(1, 0.005, NOISE);
   update(&simulator, floor.next());
   stepFor(&simulator, 2);
@@ -153,7 +153,7 @@ TEST(LiveCloud, AHumanoidStandsOnAStream) {
 }
 
 TEST(LiveCloud, WhatAppearsInsideALayerLiftsSlowly) {
-  Simulator simulator(cubeAboveLive(), UriResolver());
+  Simulator simulator(cubeAboveLive(), model::UriResolver());
   NoisyFloor floor(0.3, 0.005, 0);
   update(&simulator, floor.next());
   stepFor(&simulator, 0.5);
@@ -169,7 +169,7 @@ TEST(LiveCloud, WhatAppearsInsideALayerLiftsSlowly) {
 }
 
 TEST(LiveCloud, WhatIsTakenAwaySinksSlowly) {
-  Simulator simulator(cubeAboveLive(), UriResolver());
+  Simulator simulator(cubeAboveLive(), model::UriResolver());
   NoisyFloor floor(0.3, 0.005, 0);
   update(&simulator, floor.next());
   stepFor(&simulator, 0.5);
@@ -187,7 +187,7 @@ TEST(LiveCloud, WhatIsTakenAwaySinksSlowly) {
 TEST(LiveCloud, PointsInsideABodyCountForNothing) {
   SimulationConfig config = cubeAboveLive();
   config.environments[0].live.fade_speed = 0.05;  // what counted would push soon
-  Simulator simulator(config, UriResolver()), seen(config, UriResolver());
+  Simulator simulator(config, model::UriResolver()), seen(config, model::UriResolver());
   NoisyFloor floor(0.3, 0.005, 0);
   for (Simulator* each : {&simulator, &seen}) {
     update(each, floor.next());
@@ -208,7 +208,7 @@ TEST(LiveCloud, PointsInsideABodyCountForNothing) {
 }
 
 TEST(LiveCloud, SlotsAreUsedAgainHoweverOften) {
-  Simulator simulator(cubeAboveLive(), UriResolver());
+  Simulator simulator(cubeAboveLive(), model::UriResolver());
   NoisyFloor floor(0.16, 0.02, 0.0002);
   update(&simulator, floor.next());
   stepFor(&simulator, 0.3);
@@ -224,7 +224,7 @@ TEST(LiveCloud, SlotsAreUsedAgainHoweverOften) {
 }
 
 TEST(LiveCloud, AStateSavedWhilePointsFadeIsRestoredToTheSameBits) {
-  Simulator simulator(cubeAboveLive(), UriResolver());
+  Simulator simulator(cubeAboveLive(), model::UriResolver());
   NoisyFloor floor(0.3, 0.005, NOISE);
   update(&simulator, floor.next());
   stepFor(&simulator, 0.5);
@@ -243,7 +243,7 @@ TEST(LiveCloud, AStateSavedWhilePointsFadeIsRestoredToTheSameBits) {
 TEST(LiveCloud, TheSameUpdatesGiveTheSameBits) {
   std::uint64_t hashes[2];
   for (std::uint64_t& hash : hashes) {
-    Simulator simulator(cubeAboveLive(), UriResolver());
+    Simulator simulator(cubeAboveLive(), model::UriResolver());
     NoisyFloor floor(0.3, 0.005, NOISE);
     for (int i = 0; i < 5; ++i) {
       update(&simulator, floor.next());
@@ -255,7 +255,7 @@ TEST(LiveCloud, TheSameUpdatesGiveTheSameBits) {
 }
 
 TEST(LiveCloud, IsUnloadedWithAllThatFades) {
-  Simulator simulator(cubeAboveLive(), UriResolver());
+  Simulator simulator(cubeAboveLive(), model::UriResolver());
   NoisyFloor floor(0.3, 0.005, NOISE);
   update(&simulator, floor.next());
   stepFor(&simulator, 0.5);
@@ -269,7 +269,7 @@ TEST(LiveCloud, IsUnloadedWithAllThatFades) {
 }
 
 TEST(LiveCloud, ResetEndsAllFading) {
-  Simulator simulator(cubeAboveLive(), UriResolver()), fresh(cubeAboveLive(), UriResolver());
+  Simulator simulator(cubeAboveLive(), model::UriResolver()), fresh(cubeAboveLive(), model::UriResolver());
   NoisyFloor floor(0.3, 0.005, NOISE);
   update(&simulator, floor.next());
   stepFor(&simulator, 0.5);
@@ -284,4 +284,4 @@ TEST(LiveCloud, ResetEndsAllFading) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -7,7 +7,7 @@
 #include "sim/simulation_scene.h"
 #include "support/sanitizers.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr double APART = 0.3;  // [m]
@@ -29,14 +29,14 @@ SimulationConfig cubesApart(int count) {
 
 TEST(ManyBodies, ThreeThousandCubesApartRest) {
   constexpr int CUBES = SANITIZED ? 300 : 3000;
-  Simulator simulator(cubesApart(CUBES), UriResolver());
+  Simulator simulator(cubesApart(CUBES), model::UriResolver());
   stepFor(&simulator, 0.05);
   const StepReport& report = simulator.report();
   EXPECT_EQ(report.status, static_cast<std::uint32_t>(STEP_OK));
   EXPECT_EQ(report.searched_pairs, CUBES);
   EXPECT_EQ(report.reduced_contacts, 4 * CUBES);
   double fastest = 0, lowest = 1, highest = 0;
-  for (const BodyState& body : report.bodies) {
+  for (const dynamics::BodyState& body : report.bodies) {
     fastest = std::max(fastest, body.v_WCom.norm());
     lowest = std::min(lowest, body.X_WB.translation().z());
     highest = std::max(highest, body.X_WB.translation().z());
@@ -48,7 +48,7 @@ TEST(ManyBodies, ThreeThousandCubesApartRest) {
 
 TEST(ManyBodies, ModelsAreFoundByNameWhateverTheirNumber) {
   constexpr int CUBES = 2000;
-  Simulator simulator(cubesApart(CUBES), UriResolver());
+  Simulator simulator(cubesApart(CUBES), model::UriResolver());
   EXPECT_EQ(simulator.modelIndex("ground"), 0);
   for (int i = 0; i < CUBES; ++i) EXPECT_EQ(simulator.modelIndex("cube" + std::to_string(i)), i + 1);
   EXPECT_EQ(simulator.modelIndex("cube2000"), -1);
@@ -62,7 +62,7 @@ TEST(ManyBodies, MoreModelsThanAreSimulatedAreRefusedInOneLine) {
   SimulationConfig config;
   config.objects.resize(1000000);
   try {
-    Simulator simulator(config, UriResolver());
+    Simulator simulator(config, model::UriResolver());
     FAIL() << "a million objects were taken";
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(), "objects: 1000000 environments, robots and objects are more than the 100000 that are simulated; give fewer");
@@ -76,13 +76,13 @@ TEST(ManyBodies, AHundredStartedInsideEachOtherIsSaidSo) {
   for (int i = 0; i < (SANITIZED ? 30 : 100); ++i)
     config.objects.push_back(
         box("cube" + std::to_string(i), Vector3::Constant(0.1), 1, Vector3(0.03 * (i % 6), 0.03 * (i / 6 % 6), 0.06 + 0.03 * (i / 36))));
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   double fastest = 0;
   for (int k = 0; k < 3; ++k) {
     const StepReport& report = simulator.step();
     EXPECT_TRUE(report.status & CONTACT_UNRELIABLE);
     ASSERT_FALSE(report.status & STATE_NOT_FINITE);
-    for (const BodyState& body : report.bodies) fastest = std::max(fastest, body.v_WCom.norm());
+    for (const dynamics::BodyState& body : report.bodies) fastest = std::max(fastest, body.v_WCom.norm());
   }
   EXPECT_LT(fastest, 10);
 }
@@ -95,7 +95,7 @@ TEST_P(Copies, AtOnePlaceGetOutOfEachOther) {
   config.environments = {ground()};
   for (const char* name : {"one", "other"}) config.objects.push_back(box(name, Vector3::Constant(0.1), 1, {0, 0, 0.2}));
   config.objects[1].X_WO.translation().x() += GetParam();
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   EXPECT_TRUE(simulator.step().status & CONTACT_UNRELIABLE);
   stepFor(&simulator, 2);
   EXPECT_FALSE(simulator.report().status & CONTACT_UNRELIABLE);
@@ -114,7 +114,7 @@ TEST(ManyBodies, SheetsAtOnePlaceLieOnEachOther) {
   SimulationConfig config;
   config.environments = {ground()};
   for (const char* name : {"one", "other"}) config.objects.push_back(sheet(name, 0.2, 1, makePose({0, 0, 0.05})));
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   stepFor(&simulator, 2);
   const double apart = bodyOf(simulator, "one").X_WB.translation().z() - bodyOf(simulator, "other").X_WB.translation().z();
   EXPECT_NEAR(std::abs(apart), 0.005, 1e-5);
@@ -130,7 +130,7 @@ TEST_P(AtOnePlace, AreBounded) {
   SimulationConfig config;
   config.environments = {ground(8)};
   for (int i = 0; i < cubes; ++i) config.objects.push_back(box("cube" + std::to_string(i), Vector3::Constant(0.1), 1, {0, 0, 0.2}));
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   for (int k = 0; k < 3; ++k) {
     const StepReport& report = simulator.step();
     EXPECT_TRUE(report.status & CONTACT_UNRELIABLE);
@@ -139,7 +139,7 @@ TEST_P(AtOnePlace, AreBounded) {
     EXPECT_EQ(report.substeps + report.redone_solves, 1);
     EXPECT_GT(report.searched_pairs, cubes);
     EXPECT_LE(report.searched_pairs, cubes * MOST_PAIRS_OF_ONE / 2 + cubes);
-    for (const BodyState& body : report.bodies) EXPECT_LT(body.v_WCom.norm(), 10);
+    for (const dynamics::BodyState& body : report.bodies) EXPECT_LT(body.v_WCom.norm(), 10);
   }
   const SimulationState saved = simulator.save();
   simulator.step();
@@ -152,4 +152,4 @@ TEST_P(AtOnePlace, AreBounded) {
 INSTANTIATE_TEST_SUITE_P(ManyBodies, AtOnePlace, ::testing::Values(60, SANITIZED ? 30 : 200));
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

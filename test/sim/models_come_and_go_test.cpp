@@ -8,7 +8,7 @@
 #include "sim/simulation_scene.h"
 #include "support/sanitizers.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr int CYCLES = SANITIZED ? 100 : 1000;
@@ -35,7 +35,7 @@ RobotConfig pendulumAt(const std::string& name, const Vector3& place) {
 /** The order of quick_step's sweeps is drawn for all models together, so it is left out. */
 TEST(ModelsComeAndGo, TheOthersKeepTheirBits) {
   for (const char* stepper : {"articulated", "world_step"}) {
-    Simulator alone(cubeOn(stepper), UriResolver()), visited(cubeOn(stepper), UriResolver());
+    Simulator alone(cubeOn(stepper), model::UriResolver()), visited(cubeOn(stepper), model::UriResolver());
     for (int i = 0; i < 20; ++i) {
       alone.step();
       visited.step();
@@ -52,7 +52,7 @@ TEST(ModelsComeAndGo, TheOthersKeepTheirBits) {
 }
 
 TEST(ModelsComeAndGo, SlotsAreUsedAgainHoweverOften) {
-  Simulator simulator(cubeOn(), UriResolver());
+  Simulator simulator(cubeOn(), model::UriResolver());
   for (int i = 0; i < CYCLES; ++i) {
     simulator.spawn(pendulumAt("guest", {3, 0, 0}));
     if (i % 10 == 0) simulator.step();
@@ -71,7 +71,7 @@ TEST(ModelsComeAndGo, SlotsAreUsedAgainHoweverOften) {
 TEST(ModelsComeAndGo, SensorsGoByTheirRobotsWhoeverLeaves) {
   SimulationConfig config = cubeOn();
   for (const char* name : {"a", "b", "c"}) config.robots.push_back(pendulumAt(name, {0, 3, 0}));
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   simulator.step();
   simulator.removeModel("b");
   simulator.spawn(pendulumAt("d", {0, 4, 0}));
@@ -85,7 +85,7 @@ TEST(ModelsComeAndGo, SensorsGoByTheirRobotsWhoeverLeaves) {
 }
 
 TEST(ModelsComeAndGo, ResetGoesToWhereTheyWereSpawned) {
-  Simulator simulator(cubeOn(), UriResolver()), fresh(cubeOn(), UriResolver());
+  Simulator simulator(cubeOn(), model::UriResolver()), fresh(cubeOn(), model::UriResolver());
   for (Simulator* each : {&simulator, &fresh}) each->spawn(pendulumAt("guest", {3, 0, 0}));
   stepFor(&simulator, 0.3);
   simulator.setJointPositions(0, {"guest::hinge"}, {1.0});
@@ -98,7 +98,7 @@ TEST(ModelsComeAndGo, ResetGoesToWhereTheyWereSpawned) {
 }
 
 TEST(ModelsComeAndGo, BadOnesChangeNothing) {
-  Simulator simulator(cubeOn(), UriResolver());
+  Simulator simulator(cubeOn(), model::UriResolver());
   simulator.step();
   const std::uint64_t hash = simulator.stateHash();
   EXPECT_THROW(simulator.spawn(pendulumAt("cube", {0, 0, 0})), InputError);
@@ -110,7 +110,7 @@ TEST(ModelsComeAndGo, BadOnesChangeNothing) {
 }
 
 TEST(Loads, AreSavedAndGainNoEnergyOutOfNothing) {
-  Simulator simulator(cubeOn(), UriResolver());
+  Simulator simulator(cubeOn(), model::UriResolver());
   const LinkPart link = findLink(simulator, "cube::link", "test");
   simulator.applyLoad({link.body, {Vector3(0, 3, 20), Vector3(0, 0, 0.1)}, Vector3(0.01, 0.02, 0)}, {0, -1});
   stepFor(&simulator, 0.05);
@@ -128,7 +128,7 @@ TEST(Loads, AreSavedAndGainNoEnergyOutOfNothing) {
 }
 
 TEST(Loads, HaveABound) {
-  Simulator simulator(cubeOn(), UriResolver());
+  Simulator simulator(cubeOn(), model::UriResolver());
   simulator.spawn(pendulumAt("guest", {3, 0, 0}));
   for (int i = 0; i < 10000; ++i) simulator.applyEffort(0, 1e-6, {0, 0.5});
   EXPECT_THROW(simulator.applyEffort(0, 1e-6, {0, 0.5}), InputError);
@@ -142,12 +142,12 @@ TEST(LinkProperties, ComOfALinkOnAJointIsMoved) {
     SimulationConfig config;
     config.solver.stepper = stepper;
     config.robots = {pendulumAt("swing", Vector3::Zero())};
-    Simulator moved(config, UriResolver());
+    Simulator moved(config, model::UriResolver());
     std::string& urdf = config.robots[0].urdf_xml;
     urdf.replace(urdf.find("0.5 0 0"), 7, "0.3 0 0.1");
-    Simulator made(config, UriResolver());
+    Simulator made(config, model::UriResolver());
     const LinkPart arm = findLink(moved, "arm", "test");
-    MassProperties inertial = moved.linkInertial(arm.body, arm.link);
+    geometry::MassProperties inertial = moved.linkInertial(arm.body, arm.link);
     inertial.com = Vector3(0.3, 0, 0.1);
     stepFor(&moved, 0.001);
     moved.setLinkInertial(arm.body, arm.link, inertial);
@@ -162,12 +162,12 @@ TEST(LinkProperties, ComOfALinkOnAJointIsMoved) {
 TEST(LinkProperties, AbsurdOnesAreRefusedAndChangeNothing) {
   SimulationConfig config;
   config.robots = {pendulumAt("swing", Vector3::Zero())};
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   const LinkPart arm = findLink(simulator, "arm", "test");
-  const MassProperties good = simulator.linkInertial(arm.body, arm.link);
+  const geometry::MassProperties good = simulator.linkInertial(arm.body, arm.link);
   const std::uint64_t hash = simulator.stateHash();
   for (int i = 0; i < 4; ++i) {
-    MassProperties absurd = good;
+    geometry::MassProperties absurd = good;
     if (i == 0) absurd.mass = 1.8e-317;
     if (i == 1) absurd.mass = 1e300;
     if (i == 2) absurd.inertia = 1e-310 * Matrix3::Identity();
@@ -179,4 +179,4 @@ TEST(LinkProperties, AbsurdOnesAreRefusedAndChangeNothing) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -6,7 +6,7 @@
 #include "support/random_scene_run.h"
 #include "support/sanitizers.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 const int GROUPS = 20, SCENES_OF_GROUP = samples(15);
@@ -40,4 +40,4 @@ INSTANTIATE_TEST_SUITE_P(Seeds, RandomScenesFound,
                                            std::pair(9600, 0.1)));
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -5,7 +5,7 @@
 
 #include "sim/simulation_scene.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr double ANGLE = 0.4, LENGTH = 0.5, RADIUS = 0.02;  // [rad], [m]
@@ -39,7 +39,7 @@ struct Bouncing {
 };
 
 Bouncing halfPeriod(const SimulationConfig& config) {
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   const double hanging = 5 * 0.1 * G * (1 - LENGTH), start = simulator.report().energy - hanging;
   const double seconds = M_PI * std::sqrt(LENGTH / G * (1 + 0.4 * RADIUS * RADIUS / (LENGTH * LENGTH))) * (1 + ANGLE * ANGLE / 16);
   Bouncing swing{0, 0, 0};
@@ -83,7 +83,7 @@ TEST(BouncingMeshes, NeverGain) {
       cube.angular_velocity = 5 * Vector3(any(), any(), any());
       config.objects.push_back(cube);
     }
-    Simulator simulator(config, UriResolver());
+    Simulator simulator(config, model::UriResolver());
     const double start = simulator.report().energy;
     double worst = 0, out_of_nothing = 0;
     for (int i = 0; i < 2000; ++i) {
@@ -100,4 +100,4 @@ TEST(BouncingMeshes, NeverGain) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -11,7 +11,7 @@
 
 #include "blem_sim/sim/simulator.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 constexpr double G = 9.81;  // [m/s^2], the default configuration's
 
@@ -48,7 +48,7 @@ std::string sceneFile(const std::string& name, Write&& write) {
   return file;
 }
 
-inline std::string meshFile(const std::string& name, const TriangleMesh& mesh) {
+inline std::string meshFile(const std::string& name, const geometry::TriangleMesh& mesh) {
   return sceneFile(name + ".off", [&](std::ofstream& out) {
     out << std::setprecision(17) << "OFF\n" << mesh.vertices.size() << " " << mesh.elements.size() << " 0\n";
     for (const Vector3& v : mesh.vertices) out << v.x() << " " << v.y() << " " << v.z() << "\n";
@@ -75,7 +75,7 @@ inline EnvironmentConfig pointCloud(const std::string& name, const std::vector<V
 inline EnvironmentConfig ground(double size = 4) {
   EnvironmentConfig environment;
   environment.name = "ground";
-  environment.uri = meshFile("ground" + std::to_string(static_cast<int>(1000 * size)), gridMesh(size, size, 1, 1));
+  environment.uri = meshFile("ground" + std::to_string(static_cast<int>(1000 * size)), geometry::gridMesh(size, size, 1, 1));
   return environment;
 }
 
@@ -83,7 +83,8 @@ inline EnvironmentConfig ground(double size = 4) {
 inline ObjectConfig box(const std::string& name, const Vector3& size, double mass, const Vector3& position) {
   ObjectConfig object;
   object.name = name;
-  object.uri = meshFile("box_" + std::to_string(size.x()) + "_" + std::to_string(size.y()) + "_" + std::to_string(size.z()), boxMesh(size));
+  object.uri = meshFile("box_" + std::to_string(size.x()) + "_" + std::to_string(size.y()) + "_" + std::to_string(size.z()),
+                        geometry::boxMesh(size));
   object.mass = mass;
   object.X_WO = makePose(position);
   return object;
@@ -93,7 +94,7 @@ inline ObjectConfig box(const std::string& name, const Vector3& size, double mas
 inline ObjectConfig sheet(const std::string& name, double side, double mass, const Pose& X_WO) {
   ObjectConfig object;
   object.name = name;
-  object.uri = meshFile("sheet_" + std::to_string(side), gridMesh(side, side, 1, 1));
+  object.uri = meshFile("sheet_" + std::to_string(side), geometry::gridMesh(side, side, 1, 1));
   object.mass = mass;
   object.X_WO = X_WO;
   object.com = Vector3::Zero();
@@ -117,7 +118,7 @@ inline void stepFor(Simulator* simulator, double seconds) {
   for (long i = 0; i < steps; ++i) simulator->step();
 }
 
-inline BodyState bodyOf(const Simulator& simulator, const std::string& model) {
+inline dynamics::BodyState bodyOf(const Simulator& simulator, const std::string& model) {
   return simulator.report().bodies[simulator.models()[simulator.modelIndex(model)].bodies[0]];
 }
 
@@ -145,4 +146,4 @@ inline std::string pendulumUrdf(const std::string& joint_extras = "") {
 </robot>)";
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

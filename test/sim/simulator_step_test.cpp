@@ -3,13 +3,13 @@
 
 #include "sim/simulation_scene.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 TEST(SimulatorStep, FreeFall) {
   SimulationConfig config;
   config.objects = {box("cube", Vector3::Constant(0.1), 1, {0, 0, 10})};
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   stepFor(&simulator, 1);
   // Velocity first, then position: dt g t / 2 more than the parabola.
   EXPECT_NEAR(bodyOf(simulator, "cube").X_WB.translation().z(), 10 - 0.5 * G - 0.5 * G * 1e-3, 1e-9);
@@ -22,7 +22,7 @@ TEST(SimulatorStep, DroppedCubeRestsOnItsLayer) {
   SimulationConfig config;
   config.environments = {ground()};
   config.objects = {box("cube", Vector3::Constant(0.1), 1, {0.01, 0.02, 0.0625})};
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   stepFor(&simulator, 1);
   const Pose early = bodyOf(simulator, "cube").X_WB;
   EXPECT_NEAR(early.translation().z(), 0.0525, 2e-6);
@@ -32,7 +32,7 @@ TEST(SimulatorStep, DroppedCubeRestsOnItsLayer) {
   Vector3 sum = Vector3::Zero();
   for (const ContactReport& contact : simulator.report().contacts) {
     // a < b: the ground is A, and its push on it is down.
-    EXPECT_EQ(contact.body_a, WORLD_BODY);
+    EXPECT_EQ(contact.body_a, dynamics::WORLD_BODY);
     EXPECT_NEAR(contact.normal_BA.z(), -1, 1e-9);
     sum += contact.force;
   }
@@ -47,7 +47,7 @@ TEST(SimulatorStep, ThreeCubesStackWithinATenthOfAMillimetre) {
   config.environments = {ground()};
   for (int i = 0; i < 3; ++i)
     config.objects.push_back(box("cube" + std::to_string(i), Vector3::Constant(0.1), 1, {0.002 * i, -0.002 * i, 0.0625 + 0.115 * i}));
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   stepFor(&simulator, 5);
   for (int i = 0; i < 3; ++i) {
     const Vector3 p = bodyOf(simulator, "cube" + std::to_string(i)).X_WB.translation();
@@ -69,16 +69,16 @@ TEST(SimulatorStep, BallRollsDownASlopeWithoutSlipping) {
   ObjectConfig ball;
   ball.name = "ball";
   ball.uri = pointsFile("one_point", {Vector3::Zero()});
-  ball.cloud.as = CloudOptions::As::POINTS;
+  ball.cloud.as = model::CloudOptions::As::POINTS;
   ball.cloud.point_radius = 0.1;
   ball.mass = 1;
   ball.com = Vector3::Zero();
   ball.inertia = Matrix3(0.4 * 0.01 * Matrix3::Identity());
   ball.X_WO = makePose(0.1 * Vector3(std::sin(slope), 0, std::cos(slope)));
   config.objects = {ball};
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   stepFor(&simulator, 1);
-  const BodyState state = bodyOf(simulator, "ball");
+  const dynamics::BodyState state = bodyOf(simulator, "ball");
   EXPECT_NEAR(state.v_WCom.norm(), 5.0 / 7 * G * std::sin(slope), 0.01 * G * std::sin(slope));
   EXPECT_NEAR(state.w_WB.y() * 0.1, state.v_WCom.norm(), 1e-4);
 }
@@ -91,7 +91,7 @@ TEST(SimulatorStep, PointCloudCarriesABox) {
   config.environments = {pointCloud("cloud", points)};
   config.environments[0].cloud.point_radius = 0.004;
   config.objects = {box("cube", Vector3::Constant(0.1), 1, {0.003, 0.004, 0.06})};
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   stepFor(&simulator, 1);
   EXPECT_NEAR(bodyOf(simulator, "cube").X_WB.translation().z(), 0.05 + 0.0025 + 0.004, 1e-5);
   EXPECT_LT(bodyOf(simulator, "cube").v_WCom.norm(), 1e-5);
@@ -104,11 +104,11 @@ TEST(SimulatorStep, PointCloudCarriesABox) {
 TEST(SimulatorStep, CountsContactsBeforeAndAfterReduction) {
   SimulationConfig config;
   EnvironmentConfig fine = ground();
-  fine.uri = meshFile("fine_ground", gridMesh(0.4, 0.4, 20, 20));
+  fine.uri = meshFile("fine_ground", geometry::gridMesh(0.4, 0.4, 20, 20));
   config.environments = {fine};
   config.objects = {box("cube", Vector3::Constant(0.1), 1, {0.003, 0.001, 0.0525})};
   config.objects[0].max_contacts = 3;
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   simulator.step();
   EXPECT_GE(simulator.report().raw_contacts, 4);
   EXPECT_EQ(simulator.report().reduced_contacts, 3);
@@ -119,7 +119,7 @@ TEST(SimulatorStep, EnergyIsKineticAndPotential) {
   SimulationConfig config;
   config.objects = {box("cube", Vector3::Constant(0.1), 2, {0, 0, 3})};
   config.objects[0].linear_velocity = {4, 0, 0};
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   EXPECT_NEAR(simulator.report().energy, 2 * G * 3 + 16, 1e-9);
 }
 
@@ -129,7 +129,7 @@ TEST(SimulatorStep, NonFiniteStateStopsAtTheLastFiniteOne) {
   config.objects = {box("cube", Vector3::Constant(0.1), 1, {0, 0, 1}), box("rocket", Vector3::Constant(0.1), 1, {0, 1, 1})};
   config.objects[1].linear_velocity = {9.9e11, 0, 0};
   config.gravity = {1e13, 0, 0};
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   const Pose before = bodyOf(simulator, "cube").X_WB;
   for (int i = 0; i < 3; ++i) EXPECT_NO_THROW(simulator.step());
   EXPECT_TRUE(simulator.report().status & STATE_NOT_FINITE);
@@ -149,11 +149,11 @@ TEST(SimulatorStep, ProfileHasEveryStage) {
   SimulationConfig config;
   config.environments = {ground()};
   config.objects = {box("cube", Vector3::Constant(0.1), 1, {0, 0, 0.0525})};
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   simulator.step();
   for (int stage = 0; stage < static_cast<int>(Stage::COUNT); ++stage)
     EXPECT_GT(simulator.report().profile.seconds[stage], 0) << STAGE_NAMES[stage];
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -7,7 +7,7 @@
 #include <regex>
 #include <string>
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 TEST(StepStatus, BitsStandInTheirOrder) {
@@ -36,4 +36,4 @@ TEST(StepStatus, MessageRepeatsTheTable) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -5,25 +5,25 @@
 #include "guard/layer_watch.h"
 #include "sim/simulation_scene.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr double LAYER = 0.005;  // [m] of two boxes
 
-ContactManifold manifoldOf(int a, int b, double depth, bool pierced = false) {
-  ContactManifold manifold;
+contact::ContactManifold manifoldOf(int a, int b, double depth, bool pierced = false) {
+  contact::ContactManifold manifold;
   manifold.a = a;
   manifold.b = b;
   manifold.layer = LAYER;
   manifold.pierced = pierced;
-  Contact contact;
+  contact::Contact contact;
   contact.depth = depth;
   contact.pierced = pierced;
   manifold.contacts = {contact};
   return manifold;
 }
 
-std::vector<LayerEventReport> lookAt(LayerWatch* watch, const std::vector<ContactManifold>& manifolds, double time,
+std::vector<LayerEventReport> lookAt(LayerWatch* watch, const std::vector<contact::ContactManifold>& manifolds, double time,
                                      const std::vector<std::pair<int, int>>& passed = {}) {
   std::vector<LayerEventReport> events;
   watch->look(manifolds, passed, time, &events);
@@ -75,7 +75,7 @@ TEST(LayerWatch, ReadsWhatItWroteAndNothingLess) {
   std::vector<std::uint64_t> words;
   watch.append(&words);
   LayerWatch other;
-  const std::vector<Collider> colliders(10);
+  const std::vector<contact::Collider> colliders(10);
   for (std::size_t size = 0; size < words.size(); ++size) {
     const std::uint64_t* cursor = words.data();
     EXPECT_FALSE(other.read(colliders, &cursor, words.data() + size)) << size;
@@ -114,7 +114,7 @@ double gainedBy(Simulator* simulator, double seconds) {
 }
 
 TEST(LayerEvents, ACubeStartedInABlockIsOutsideOnceAndComesBackOnce) {
-  Simulator simulator(cubeInBlock(), UriResolver());
+  Simulator simulator(cubeInBlock(), model::UriResolver());
   const std::vector<LayerEventReport> events = eventsOf(&simulator, 0.5);
   ASSERT_EQ(events.size(), 2u);
   for (const LayerEventReport& event : events) {
@@ -136,16 +136,16 @@ TEST(LayerEvents, NoneInASoundScene) {
   SimulationConfig config;
   config.environments = {ground()};
   config.objects = {box("cube", Vector3::Constant(0.1), 1, {0, 0, 0.1})};
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   EXPECT_TRUE(eventsOf(&simulator, 0.5).empty());
 }
 
 TEST(LayerEvents, ARestoredRunNeitherRepeatsNorLosesThem) {
-  Simulator simulator(cubeInBlock(), UriResolver());
+  Simulator simulator(cubeInBlock(), model::UriResolver());
   EXPECT_EQ(eventsOf(&simulator, 0.005).size(), 1u);
   const SimulationState saved = simulator.save();
   const std::vector<LayerEventReport> first = eventsOf(&simulator, 0.1);
-  Simulator other(cubeInBlock(), UriResolver());
+  Simulator other(cubeInBlock(), model::UriResolver());
   other.restore(saved);
   EXPECT_TRUE(other.report().layer_events.empty());
   const std::vector<LayerEventReport> again = eventsOf(&other, 0.1);
@@ -161,7 +161,7 @@ TEST(LayerEvents, WhatIsUnloadedIsOutsideNoMore) {
   SimulationConfig config;
   config.environments = {ground()};
   config.objects = {box("cube", Vector3::Constant(0.1), 1, {0, 0, 0.049})};
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   EXPECT_EQ(eventsOf(&simulator, 0.002).size(), 1u);
   simulator.unloadEnvironment("ground");
   const std::vector<LayerEventReport> events = eventsOf(&simulator, 0.002);
@@ -175,13 +175,13 @@ TEST(EnergyGained, NothingByAStackAtRest) {
   config.environments = {ground()};
   for (int i = 0; i < 3; ++i)
     config.objects.push_back(box("cube" + std::to_string(i), Vector3::Constant(0.1), 1, {0, 0, 0.0525 + 0.105 * i}));
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   gainedBy(&simulator, 0.5);
   EXPECT_LT(gainedBy(&simulator, 1), 1e-9);
 }
 
 TEST(EnergyGained, LiftedOutOfABlockByAtLeastItsWeight) {
-  Simulator simulator(cubeInBlock(), UriResolver());
+  Simulator simulator(cubeInBlock(), model::UriResolver());
   const double height = bodyOf(simulator, "cube").X_WB.translation().z();
   const double gained = gainedBy(&simulator, 0.5);
   const double rise = bodyOf(simulator, "cube").X_WB.translation().z() - height;
@@ -199,7 +199,7 @@ SimulationConfig droppedCube() {
 TEST(EnergyGained, ABounceGivesBackWhatTheImpactTook) {
   SimulationConfig config = droppedCube();
   config.objects[0].contact.restitution = 1;
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   const double gained = gainedBy(&simulator, 2);
   EXPECT_GT(simulator.report().energy, 0.8 * (G * 0.25));
   EXPECT_LT(gained, 1e-9);
@@ -211,7 +211,7 @@ TEST(EnergyGained, SpringsGiveBackWhatTheyTook) {
     contact->stiffness = 1e6;
     contact->damping = 1;
   }
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   EXPECT_LT(gainedBy(&simulator, 2), 1e-3);
 }
 
@@ -221,7 +221,7 @@ TEST(EnergyGained, MotorsAndJointFrictionAreAccountedFor) {
     config.robots = {robot("pendulum", pendulumUrdf(R"(<dynamics damping="0.1" friction="0.5"/>)"), true)};
     config.robots[0].motor["default"] = law;
     config.robots[0].gains["default"] = {100, 0, 5, 50};
-    Simulator simulator(config, UriResolver());
+    Simulator simulator(config, model::UriResolver());
     simulator.commandJoints(0, {{"hinge"}, {-1}, {}, {}});
     const double gained = gainedBy(&simulator, 1);
     EXPECT_GT(simulator.report().energy, 2 * G * 1.3);  // it was lifted
@@ -232,7 +232,7 @@ TEST(EnergyGained, MotorsAndJointFrictionAreAccountedFor) {
 TEST(EnergyGained, IsTheSameInARestoredRun) {
   SimulationConfig config = droppedCube();
   config.objects[0].contact.restitution = 1;
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   std::uint64_t hash = 0;
   for (int i = 0; i < 400; ++i) {
     const SimulationState saved = simulator.save();
@@ -245,4 +245,4 @@ TEST(EnergyGained, IsTheSameInARestoredRun) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -12,20 +12,20 @@ constexpr double DT = 1e-3, G = 9.81;
 constexpr double MARGIN = 5e-3;  // [m] contacts exist before touch: more than one step of the fastest fall here
 
 struct CubeOnPlane {
-  CubeOnPlane(const Vector3& gravity, double height, const Surface& s) : world(gravity, soakSettings()), surface(s) {
-    world.addBody(boxBody("cube", 1, CUBE, {0, 0, 0.05 + height}));
+  CubeOnPlane(const Vector3& gravity, double height, const dynamics::Surface& s) : world(gravity, soakSettings()), surface(s) {
+    world.addBody(dynamics::boxBody("cube", 1, CUBE, {0, 0, 0.05 + height}));
   }
   bool step() {
-    std::vector<ContactConstraint> contacts;
-    boxOnPlane(world, 0, CUBE, Vector3::UnitZ(), 0, surface, &contacts, MARGIN);
+    std::vector<dynamics::ContactConstraint> contacts;
+    dynamics::boxOnPlane(world, 0, CUBE, Vector3::UnitZ(), 0, surface, &contacts, MARGIN);
     return world.step(DT, contacts, {}).finite;
   }
   Vector3 velocity() const { return world.bodyState(0).v_WCom; }
   double height() const { return world.bodyState(0).X_WB.translation().z() - 0.05; }
   double energy() const { return world.kineticEnergy() + G * height(); }
 
-  World world;
-  Surface surface;
+  dynamics::World world;
+  dynamics::Surface surface;
 };
 
 class SoakSlope : public ::testing::TestWithParam<int> {
@@ -65,7 +65,7 @@ class SoakBounce : public ::testing::TestWithParam<double> {};
 
 TEST_P(SoakBounce, ApexIsRestitutionSquared) {
   const double e = GetParam(), drop = 0.5;
-  Surface surface;
+  dynamics::Surface surface;
   surface.restitution = e;
   CubeOnPlane cube({0, 0, -G}, drop, surface);
   bool landed = false, rising = false;
@@ -98,7 +98,7 @@ TEST(SoakBounceNone, StaysDown) {
 }
 
 TEST(SoakBounceFull, KeepsItsEnergyOverTenBounces) {
-  Surface surface;
+  dynamics::Surface surface;
   surface.restitution = 1;
   CubeOnPlane cube({0, 0, -G}, 0.5, surface);
   const double start = cube.energy();

@@ -17,23 +17,23 @@ struct Mechanism {
   Mechanism() : world(GRAVITY, soakSettings()) {}
   /** Adds a link whose frame is the joint's; its box lies from there to `reach`. */
   int addLink(const std::string& name, double mass, const Vector3& reach, const Pose& X_WB) {
-    BodySpec spec = boxBody(name, mass, reach.cwiseAbs() + Vector3::Constant(0.02), Vector3::Zero());
+    dynamics::BodySpec spec = dynamics::boxBody(name, mass, reach.cwiseAbs() + Vector3::Constant(0.02), Vector3::Zero());
     spec.inertial.com = reach / 2;
     spec.X_WB = X_WB;
     return world.addBody(spec);
   }
-  int addJoint(JointKind kind, int parent, int child, const Vector3& axis) {
-    JointSpec spec;
+  int addJoint(dynamics::JointKind kind, int parent, int child, const Vector3& axis) {
+    dynamics::JointSpec spec;
     spec.name = "joint" + std::to_string(world.jointCount());
     spec.kind = kind;
     spec.parent = parent, spec.child = child;
-    spec.X_PJ = (parent == WORLD_BODY ? Pose::Identity() : world.bodySpec(parent).X_WB).inverse() * world.bodySpec(child).X_WB;
+    spec.X_PJ = (parent == dynamics::WORLD_BODY ? Pose::Identity() : world.bodySpec(parent).X_WB).inverse() * world.bodySpec(child).X_WB;
     spec.axis = axis;
-    drives.push_back(JointDrive());
+    drives.push_back(dynamics::JointDrive());
     return world.addJoint(spec);
   }
-  World world;
-  std::vector<JointDrive> drives;
+  dynamics::World world;
+  std::vector<dynamics::JointDrive> drives;
 };
 
 /** Two arms on fixed bases that face each other along x: a slide, a hinged wrist, a hand whose face pushes. */
@@ -43,9 +43,9 @@ struct Pushers : Mechanism {
       const int base = addLink("base", 5, {0, 0, 0.1}, makePose({side * 1.0, 0, 0}));
       const int slide = addLink("slide", 2, {-0.5 * side, 0, 0}, makePose({side * 0.7, 0, 0}));
       const int hand = addLink("hand", 1, {-HAND.x() * side, 0, 0}, makePose({side * (HAND.x() + 0.001), 0, 0}));
-      bases.push_back(addJoint(JointKind::FIXED, WORLD_BODY, base, Vector3::UnitX()));
-      const int push = addJoint(JointKind::PRISMATIC, base, slide, Vector3::UnitX());
-      const int wrist = addJoint(JointKind::REVOLUTE, slide, hand, Vector3::UnitY());
+      bases.push_back(addJoint(dynamics::JointKind::FIXED, dynamics::WORLD_BODY, base, Vector3::UnitX()));
+      const int push = addJoint(dynamics::JointKind::PRISMATIC, base, slide, Vector3::UnitX());
+      const int wrist = addJoint(dynamics::JointKind::REVOLUTE, slide, hand, Vector3::UnitY());
       // Unequal stiffnesses: one gives way until the other's spring balances it.
       drives[push].stiffness = side < 0 ? 4000 : 1500, drives[push].damping = 200, drives[push].target_position = -0.05 * side;
       drives[push].dry_friction = 2;
@@ -54,19 +54,20 @@ struct Pushers : Mechanism {
       arms.push_back({base, slide, hand});
     }
   }
-  const SolveResult& step() {
+  const dynamics::SolveResult& step() {
     contacts.clear();
     const Pose X_WA = world.bodyState(hands[0]).X_WB, X_WB = world.bodyState(hands[1]).X_WB;
     for (int i = 0; i < 4; ++i) {
       const Vector3 p = X_WA * Vector3(HAND.x(), (i & 1 ? 0.5 : -0.5) * HAND.y(), (i & 2 ? 0.5 : -0.5) * HAND.z());
       const double gap = -HAND.x() - (X_WB.inverse() * p).x();
-      if (gap < 5 * CONTACT_MARGIN) contacts.push_back(contactOf(hands[0], hands[1], p, -X_WB.linear().col(0), -gap, {}, i + 1));
+      if (gap < 5 * dynamics::CONTACT_MARGIN)
+        contacts.push_back(contact::contactOf(hands[0], hands[1], p, -X_WB.linear().col(0), -gap, {}, i + 1));
     }
     return world.step(DT, contacts, drives);
   }
   std::vector<int> hands, bases;
   std::vector<std::vector<int>> arms;
-  std::vector<ContactConstraint> contacts;
+  std::vector<dynamics::ContactConstraint> contacts;
 };
 
 TEST(SoakPushing, ForcesAreEqualAndOpposite) {
@@ -75,8 +76,8 @@ TEST(SoakPushing, ForcesAreEqualAndOpposite) {
   double moving = 0, worst = 0, force = 0, gap = 0;
   const int steps = soakSteps(20, 3);
   for (int i = 0; i < steps; ++i) {
-    const std::vector<BodyState> before = bodyStates(pushers.world);
-    const SolveResult& result = pushers.step();
+    const std::vector<dynamics::BodyState> before = bodyStates(pushers.world);
+    const dynamics::SolveResult& result = pushers.step();
     ASSERT_TRUE(result.finite) << i;
     // Force on each robot from the other: that which its bodies' motion needs, less its base's.
     Vector3 felt[2];
@@ -105,11 +106,11 @@ struct FourBar : Mechanism {
     const int coupler = addLink("coupler", 0.6, rocker_end - crank_end, makePose(crank_end));
     const int rocker = addLink("rocker", 0.5, rocker_end - rocker_foot, makePose(rocker_foot));
     const int pin = addLink("pin", 0.05, Vector3::Zero(), makePose(rocker_end));
-    addJoint(JointKind::REVOLUTE, WORLD_BODY, crank, Vector3::UnitY());
-    addJoint(JointKind::REVOLUTE, crank, coupler, Vector3::UnitY());
-    addJoint(JointKind::REVOLUTE, WORLD_BODY, rocker, Vector3::UnitY());
-    addJoint(JointKind::FIXED, coupler, pin, Vector3::UnitY());
-    closing = addJoint(JointKind::REVOLUTE, rocker, pin, Vector3::UnitY());
+    addJoint(dynamics::JointKind::REVOLUTE, dynamics::WORLD_BODY, crank, Vector3::UnitY());
+    addJoint(dynamics::JointKind::REVOLUTE, crank, coupler, Vector3::UnitY());
+    addJoint(dynamics::JointKind::REVOLUTE, dynamics::WORLD_BODY, rocker, Vector3::UnitY());
+    addJoint(dynamics::JointKind::FIXED, coupler, pin, Vector3::UnitY());
+    closing = addJoint(dynamics::JointKind::REVOLUTE, rocker, pin, Vector3::UnitY());
   }
   int closing;
 };
@@ -122,7 +123,7 @@ TEST(SoakFourBar, StaysClosedWhileItsCrankTurns) {
   StepTimes times;
   for (int i = 0; i < soakSteps(20, 3); ++i) {
     times.start();
-    const SolveResult& result = bar.world.step(DT, {}, bar.drives);
+    const dynamics::SolveResult& result = bar.world.step(DT, {}, bar.drives);
     times.stop(result);
     ASSERT_TRUE(result.finite) << i;
     gap = std::max(gap, jointGap(bar.world, bar.closing));

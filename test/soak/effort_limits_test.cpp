@@ -10,9 +10,9 @@ namespace {
 
 /** Motor efforts against their caps. */
 struct Saturation {
-  void observe(const World& world, const std::vector<JointDrive>& drives, const SolveResult& result) {
+  void observe(const dynamics::World& world, const std::vector<dynamics::JointDrive>& drives, const dynamics::SolveResult& result) {
     for (int j = 0; j < world.jointCount(); ++j) {
-      const JointDrive& drive = drives[j];
+      const dynamics::JointDrive& drive = drives[j];
       if (std::isinf(drive.max_effort)) continue;
       const double over = std::abs(result.motor_efforts[j]) - drive.max_effort;
       worst = std::max(worst, over / drive.max_effort);
@@ -31,7 +31,7 @@ void expectWithinCaps(const std::string& name, HuboStand* hubo, int steps) {
   for (int i = 0; i < steps; ++i) {
     hubo->prepare();
     times.start();
-    const SolveResult& result = hubo->solve();
+    const dynamics::SolveResult& result = hubo->solve();
     times.stop(result);
     ASSERT_TRUE(result.finite) << i;
     saturation.observe(hubo->world(), hubo->drives(), result);
@@ -81,7 +81,7 @@ TEST(EffortLimits, FingersOfAMillion) {
   HuboStand hubo(options);
   // A third of a radian off in one step: every finger runs into its cap.
   for (int j = 0; j < hubo.world().jointCount(); ++j) {
-    const JointSpec& spec = hubo.world().jointSpec(j);
+    const dynamics::JointSpec& spec = hubo.world().jointSpec(j);
     if (spec.name.find("::left") == std::string::npos && spec.name.find("::right") == std::string::npos) continue;
     hubo.motors()[j].hold(spec.upper > 0.5 ? 0.3 : -0.3);
   }
@@ -90,40 +90,40 @@ TEST(EffortLimits, FingersOfAMillion) {
 
 /** 40 kg on a foot of 20 g, by an ankle and a knee of 20 g; the motors are too weak for the push that comes. */
 struct HeavyOnLight {
-  explicit HeavyOnLight(const SolverSettings& settings) : world(Vector3(0, 0, -9.81), settings) {
-    const int foot = world.addBody(boxBody("foot", 0.02, FOOT, {0, 0, FOOT.z() / 2}));
-    const int shin = addLink(foot, boxBody("shin", 0.02, {0.05, 0.05, 0.4}, {0, 0, 0.04}), 0.2);
-    body = addLink(shin, boxBody("body", 40, TORSO, {0, 0, 0.44}), 0.2);
+  explicit HeavyOnLight(const dynamics::SolverSettings& settings) : world(Vector3(0, 0, -9.81), settings) {
+    const int foot = world.addBody(dynamics::boxBody("foot", 0.02, FOOT, {0, 0, FOOT.z() / 2}));
+    const int shin = addLink(foot, dynamics::boxBody("shin", 0.02, {0.05, 0.05, 0.4}, {0, 0, 0.04}), 0.2);
+    body = addLink(shin, dynamics::boxBody("body", 40, TORSO, {0, 0, 0.44}), 0.2);
   }
   /** Adds a link whose frame is the joint's, its centre of mass above it. */
-  int addLink(int parent, BodySpec spec, double com_height) {
+  int addLink(int parent, dynamics::BodySpec spec, double com_height) {
     spec.inertial.com = {0, 0, com_height};
     const int link = world.addBody(spec);
-    JointSpec joint;
+    dynamics::JointSpec joint;
     joint.name = spec.name;
     joint.parent = parent, joint.child = link;
     joint.X_PJ = world.bodySpec(parent).X_WB.inverse() * spec.X_WB;
     joint.axis = Vector3::UnitY();
     world.addJoint(joint);
-    JointDrive drive;
+    dynamics::JointDrive drive;
     drive.stiffness = 4000, drive.damping = 100, drive.max_effort = 60;
     drives.push_back(drive);
     return link;
   }
-  const SolveResult& step() {
+  const dynamics::SolveResult& step() {
     contacts.clear();
-    boxOnPlane(world, 0, FOOT, Vector3::UnitZ(), 0, {}, &contacts, 0.01);
+    dynamics::boxOnPlane(world, 0, FOOT, Vector3::UnitZ(), 0, {}, &contacts, 0.01);
     for (int i = 0; i < 8; ++i) {
-      const Vector3 p = world.bodyState(body).X_WB * (corner(TORSO, i) + Vector3(0, 0, 0.2));
-      if (p.z() < 0.01) contacts.push_back(contactOf(body, WORLD_BODY, p, Vector3::UnitZ(), -p.z(), {}, 1000 + i));
+      const Vector3 p = world.bodyState(body).X_WB * (dynamics::corner(TORSO, i) + Vector3(0, 0, 0.2));
+      if (p.z() < 0.01) contacts.push_back(contact::contactOf(body, dynamics::WORLD_BODY, p, Vector3::UnitZ(), -p.z(), {}, 1000 + i));
     }
     return world.step(1e-3, contacts, drives);
   }
   const Vector3 FOOT{0.2, 0.15, 0.02}, TORSO{0.3, 0.3, 0.4};
-  World world;
+  dynamics::World world;
   int body;
-  std::vector<JointDrive> drives;
-  std::vector<ContactConstraint> contacts;
+  std::vector<dynamics::JointDrive> drives;
+  std::vector<dynamics::ContactConstraint> contacts;
 };
 
 TEST(EffortLimits, TwentyGramsUnderFortyKilograms) {
@@ -138,7 +138,7 @@ TEST(EffortLimits, TwentyGramsUnderFortyKilograms) {
       robot.world.applyWrench(robot.body, {{60000, 0, 0}, Vector3::Zero()}, bodyCom(robot.world, robot.body));  // 60 N s in one step
     }
     times.start();
-    const SolveResult& result = robot.step();
+    const dynamics::SolveResult& result = robot.step();
     times.stop(result);
     ASSERT_TRUE(result.finite) << i;
     saturation.observe(robot.world, robot.drives, result);

@@ -10,14 +10,14 @@ namespace blem_sim {
 namespace {
 
 /** Throws in every orientation at a speed; prints the outcome. */
-void sweep(const std::string& name, ThrowScene scene, double speed) {
-  ThrowOutcome all;
+void sweep(const std::string& name, sim::ThrowScene scene, double speed) {
+  sim::ThrowOutcome all;
   StepTimes times;
   int passed = 0, pierced = 0, count = 0;
-  for (const auto& turn : THROWN_TURNS) {
+  for (const auto& turn : sim::THROWN_TURNS) {
     scene.turn = {turn[0], turn[1], turn[2]};
     scene.speed = speed;
-    const ThrowOutcome outcome = throwIt(scene, soakSettings(), [&times](const auto& step) {
+    const sim::ThrowOutcome outcome = sim::throwIt(scene, soakSettings(), [&times](const auto& step) {
       times.start();
       step();
       times.stop();
@@ -38,8 +38,8 @@ void sweep(const std::string& name, ThrowScene scene, double speed) {
   figure(title + ": most redone solves", all.most_redone, "");
   figure(title + ": steps with redone solves", all.redone_steps, "");
   figure(title + ": greatest depth", all.max_of_layer, "of the layer");
-  EXPECT_LE(all.most_substeps, Substeps::MAX_SUBSTEPS);
-  EXPECT_LE(all.most_redone, Substeps::MAX_REDONE);
+  EXPECT_LE(all.most_substeps, sim::Substeps::MAX_SUBSTEPS);
+  EXPECT_LE(all.most_redone, sim::Substeps::MAX_REDONE);
 }
 
 /** Throws of any turn, spin, speed and place. */
@@ -52,19 +52,20 @@ TEST(FastThrows, AtRandom) {
     const double x = uniform(-size, size), y = uniform(-size, size), z = uniform(-size, size);
     return Vector3(x, y, z);
   };
-  const std::vector<ThrowBody> thrown = {cubeThrown(), plateThrown()}, hit = {sheetHit(2, 1), boxHit(), plateHit(), mugHit()};
+  const std::vector<sim::ThrowBody> thrown = {sim::cubeThrown(), sim::plateThrown()},
+                                    hit = {sim::sheetHit(2, 1), sim::boxHit(), sim::plateHit(), sim::mugHit()};
   const int throws = soakShort() ? 200 : 2000;
-  ThrowOutcome all;
+  sim::ThrowOutcome all;
   StepTimes times;
   int passed = 0, pierced = 0;
   for (int i = 0; i < throws; ++i) {
-    ThrowScene scene{thrown[i % 2], hit[i / 2 % 4]};
+    sim::ThrowScene scene{thrown[i % 2], hit[i / 2 % 4]};
     scene.turn = vector(M_PI);
     scene.spin = vector(60);
     scene.speed = uniform(3, 40);
     scene.beside = 0.04 * Vector3(uniform(-1, 1), uniform(-1, 1), 0);
     scene.both_move = i % 3 == 0 && i / 2 % 4 == 1;
-    const ThrowOutcome outcome = throwIt(scene, soakSettings(), [&times](const auto& step) {
+    const sim::ThrowOutcome outcome = sim::throwIt(scene, soakSettings(), [&times](const auto& step) {
       times.start();
       step();
       times.stop();
@@ -75,8 +76,8 @@ TEST(FastThrows, AtRandom) {
   }
   EXPECT_EQ(passed, 0);
   EXPECT_EQ(pierced, 0);
-  EXPECT_LE(all.most_substeps, Substeps::MAX_SUBSTEPS);
-  EXPECT_LE(all.most_redone, Substeps::MAX_REDONE);
+  EXPECT_LE(all.most_substeps, sim::Substeps::MAX_SUBSTEPS);
+  EXPECT_LE(all.most_redone, sim::Substeps::MAX_REDONE);
   figure("throws at random: passed of " + std::to_string(throws), passed, "");
   figure("throws at random: pierced", pierced, "");
   figure("throws at random: worst step", 1e-3 * times.worst(), "ms");
@@ -86,34 +87,34 @@ TEST(FastThrows, AtRandom) {
 
 /** Mugs that start in each other part steadily. */
 TEST(Recovery, InterlockedMugs) {
-  SimulationConfig config;
+  sim::SimulationConfig config;
   config.solver = soakSettings();
-  config.environments = {ground()};
+  config.environments = {sim::ground()};
   for (int i = 0; i < 2; ++i) {
-    ObjectConfig mug;
+    sim::ObjectConfig mug;
     mug.name = "mug" + std::to_string(i);
-    mug.uri = mugThrown().uri;
+    mug.uri = sim::mugThrown().uri;
     mug.mass = 0.3;
     mug.X_WO = i == 0 ? makePose({0, 0, 0.0026}) : makePose({0.05, 0.01, 0.0226}, {0.3, 0.2, 0.5});
     config.objects.push_back(mug);
   }
-  Simulator simulator(config, UriResolver());
+  sim::Simulator simulator(config, model::UriResolver());
   double fastest = 0, fastest_turn = 0, speed = 0;
   int unreliable = 0;
   for (int i = 0; i < 3000; ++i) {
-    const StepReport& report = simulator.step();
-    ASSERT_FALSE(report.status & STATE_NOT_FINITE);
-    const bool crossed = report.status & CONTACT_UNRELIABLE;
+    const sim::StepReport& report = simulator.step();
+    ASSERT_FALSE(report.status & sim::STATE_NOT_FINITE);
+    const bool crossed = report.status & sim::CONTACT_UNRELIABLE;
     unreliable += crossed;
     speed = 0;
-    for (const BodyState& body : report.bodies) {
+    for (const dynamics::BodyState& body : report.bodies) {
       speed = std::max(speed, body.v_WCom.norm());
       if (!crossed) continue;
       fastest = std::max(fastest, body.v_WCom.norm());
       fastest_turn = std::max(fastest_turn, body.w_WB.norm());
     }
   }
-  EXPECT_FALSE(simulator.report().status & CONTACT_UNRELIABLE);
+  EXPECT_FALSE(simulator.report().status & sim::CONTACT_UNRELIABLE);
   EXPECT_LT(fastest, 0.5);
   EXPECT_LT(speed, 0.1);  // a mug may roll
   figure("interlocked mugs: steps until apart", unreliable, "");
@@ -124,24 +125,26 @@ TEST(Recovery, InterlockedMugs) {
 
 class FastDrops : public testing::TestWithParam<double> {};
 
-TEST_P(FastDrops, CubeOnSheetOfTwoTriangles) { sweep("cube on sheet", {cubeThrown(), sheetHit(2, 1)}, GetParam()); }
-TEST_P(FastDrops, CubeOnSheetOfMillimetreTriangles) { sweep("cube on fine sheet", {cubeThrown(), sheetHit(0.3, 300)}, GetParam()); }
-TEST_P(FastDrops, CubeOnBox) { sweep("cube on box", {cubeThrown(), boxHit()}, GetParam()); }
-TEST_P(FastDrops, CubeOnMug) { sweep("cube on mug", {cubeThrown(), mugHit()}, GetParam()); }
-TEST_P(FastDrops, MugOnMug) { sweep("mug on mug", {mugThrown(), mugHit()}, GetParam()); }
-TEST_P(FastDrops, PlateEdgeOnPlateEdge) { sweep("plate on plate", {plateThrown(), plateHit()}, GetParam()); }
+TEST_P(FastDrops, CubeOnSheetOfTwoTriangles) { sweep("cube on sheet", {sim::cubeThrown(), sim::sheetHit(2, 1)}, GetParam()); }
+TEST_P(FastDrops, CubeOnSheetOfMillimetreTriangles) {
+  sweep("cube on fine sheet", {sim::cubeThrown(), sim::sheetHit(0.3, 300)}, GetParam());
+}
+TEST_P(FastDrops, CubeOnBox) { sweep("cube on box", {sim::cubeThrown(), sim::boxHit()}, GetParam()); }
+TEST_P(FastDrops, CubeOnMug) { sweep("cube on mug", {sim::cubeThrown(), sim::mugHit()}, GetParam()); }
+TEST_P(FastDrops, MugOnMug) { sweep("mug on mug", {sim::mugThrown(), sim::mugHit()}, GetParam()); }
+TEST_P(FastDrops, PlateEdgeOnPlateEdge) { sweep("plate on plate", {sim::plateThrown(), sim::plateHit()}, GetParam()); }
 TEST_P(FastDrops, TwoMovingCubes) {
-  ThrowScene scene{cubeThrown(), boxHit()};
+  sim::ThrowScene scene{sim::cubeThrown(), sim::boxHit()};
   scene.both_move = true;
   sweep("cube against cube", scene, GetParam());
 }
 TEST_P(FastDrops, SpinningCubeOnSheet) {
-  ThrowScene scene{cubeThrown(), sheetHit(2, 1)};
+  sim::ThrowScene scene{sim::cubeThrown(), sim::sheetHit(2, 1)};
   scene.spin = {60, 60, 53};
   sweep("cube at 100 rad/s on sheet", scene, GetParam());
 }
 TEST_P(FastDrops, SpinningPlateOnMug) {
-  ThrowScene scene{plateThrown(), mugHit()};
+  sim::ThrowScene scene{sim::plateThrown(), sim::mugHit()};
   scene.spin = {60, 60, 53};
   sweep("plate at 100 rad/s on mug", scene, GetParam());
 }

@@ -22,8 +22,8 @@ inline void figure(const std::string& name, double value, const std::string& uni
 }
 
 /** Stepper under test: environment variable BLEM_SIM_SOAK_STEPPER, else articulated. */
-inline SolverSettings soakSettings() {
-  SolverSettings settings;
+inline dynamics::SolverSettings soakSettings() {
+  dynamics::SolverSettings settings;
   const char* stepper = std::getenv("BLEM_SIM_SOAK_STEPPER");
   settings.stepper = stepper && *stepper ? stepper : "articulated";
   return settings;

@@ -21,11 +21,11 @@ HuboOptions flying() {
 }
 
 /** Joint speeds up to FASTEST, away from the nearer limit. */
-std::vector<double> limbSpeeds(const World& world) {
+std::vector<double> limbSpeeds(const dynamics::World& world) {
   std::mt19937_64 generator(7);
   std::vector<double> speeds;
   for (int j = 0; j < world.jointCount(); ++j) {
-    const JointSpec& spec = world.jointSpec(j);
+    const dynamics::JointSpec& spec = world.jointSpec(j);
     const double size = FASTEST * static_cast<double>(generator() >> 11) * 0x1p-53, q = world.jointState(j).position;
     speeds.push_back(q - spec.lower < spec.upper - q ? size : -size);
   }
@@ -34,10 +34,10 @@ std::vector<double> limbSpeeds(const World& world) {
 
 /** [J] kinetic about the centre of mass, and of the motors' springs. */
 double innerEnergy(HuboStand* hubo) {
-  const World& world = hubo->world();
+  const dynamics::World& world = hubo->world();
   double energy = innerKineticEnergy(world, hubo->bodies());
   for (int j = 0; j < world.jointCount(); ++j) {
-    const JointDrive& drive = hubo->drives()[j];
+    const dynamics::JointDrive& drive = hubo->drives()[j];
     energy += 0.5 * drive.stiffness * std::pow(drive.target_position - world.jointState(j).position, 2);
   }
   return energy;
@@ -48,14 +48,14 @@ struct Flight {
   explicit Flight(HuboStand* h) : hubo(h), mass(totalMass(h->world(), h->bodies())), start(centreOfMass(h->world(), h->bodies())) {
     velocity = momentum(h->world(), h->bodies()) / mass;
     spin = angularMomentum(h->world(), h->bodies(), start);
-    BodySpec spec = boxBody("ball", 1, {0.1, 0.1, 0.1}, start);
+    dynamics::BodySpec spec = dynamics::boxBody("ball", 1, {0.1, 0.1, 0.1}, start);
     ball = h->world().addBody(spec);
-    BodyState state = h->world().bodyState(ball);
+    dynamics::BodyState state = h->world().bodyState(ball);
     state.v_WCom = velocity;
     h->world().setBodyState(ball, state);
   }
   void observe(int steps) {
-    const World& world = hubo->world();
+    const dynamics::World& world = hubo->world();
     const double t = DT * steps;
     const Vector3 com = centreOfMass(world, hubo->bodies());
     off_ball = std::max(off_ball, (com - world.bodyState(ball).X_WB.translation()).norm());
@@ -97,7 +97,7 @@ TEST_P(FreeFlight, KeepsItsMomenta) {
   for (int i = 1; i <= 2000; ++i) {
     hubo.prepare();
     times.start();
-    const SolveResult& result = hubo.solve();
+    const dynamics::SolveResult& result = hubo.solve();
     times.stop(result);
     ASSERT_TRUE(result.finite) << i;
     flight.observe(i);

@@ -47,7 +47,7 @@ TEST_P(FreeChain, KeepsItsEnergy) {
   const int steps = static_cast<int>(1e-3 / scene.dt * soakSteps(scene.seconds, SHORT_SECONDS));
   for (int i = 0; i < steps; ++i) {
     times.start();
-    const SolveResult& result = chain.step(scene.dt);
+    const dynamics::SolveResult& result = chain.step(scene.dt);
     times.stop(result);
     ASSERT_TRUE(result.finite) << i;
     worst = std::max(worst, std::abs(chain.energy() - chain.first_energy) / whole);

@@ -19,14 +19,14 @@ const Vector3 SHAKEN = Vector3(1, 0.5, 2).normalized();
 struct Gripper {
   Gripper() : world(Vector3(0, 0, -9.81), soakSettings()) {
     closed = std::asin((HINGE - TIP.y() / 2 - CUBE / 2 - START_GAP) / PROXIMAL);
-    carriage = world.addBody(boxBody("carriage", 5, {0.1, 0.1, 0.1}, {0, 0, 0}));
-    add(JointKind::PRISMATIC, WORLD_BODY, carriage, Pose::Identity(), SHAKEN, 0);
-    palm = world.addBody(boxBody("palm", 0.5, {0.05, 0.15, 0.04}, {0, 0, -0.1}));
-    wrist = add(JointKind::FIXED, carriage, palm, makePose({0, 0, -0.1}), Vector3::UnitZ(), 0);
+    carriage = world.addBody(dynamics::boxBody("carriage", 5, {0.1, 0.1, 0.1}, {0, 0, 0}));
+    add(dynamics::JointKind::PRISMATIC, dynamics::WORLD_BODY, carriage, Pose::Identity(), SHAKEN, 0);
+    palm = world.addBody(dynamics::boxBody("palm", 0.5, {0.05, 0.15, 0.04}, {0, 0, -0.1}));
+    wrist = add(dynamics::JointKind::FIXED, carriage, palm, makePose({0, 0, -0.1}), Vector3::UnitZ(), 0);
     master = addFinger(1, -1);
     addFinger(-1, master);
     const Vector3 centre(0.003, 0, world.bodyState(tips[0]).X_WB.translation().z() - 0.015);
-    cube = world.addBody(boxBody("cube", 0.2, Vector3::Constant(CUBE), centre));
+    cube = world.addBody(dynamics::boxBody("cube", 0.2, Vector3::Constant(CUBE), centre));
     load = {palm, cube};
     load.insert(load.end(), fingers.begin(), fingers.end());
     drives[0].stiffness = 1e6, drives[0].damping = 1e4;
@@ -34,16 +34,16 @@ struct Gripper {
     drives[master].target_position = closed + 0.2;
   }
 
-  int add(JointKind kind, int parent, int child, const Pose& X_PJ, const Vector3& axis, double position, int mimicked = -1,
+  int add(dynamics::JointKind kind, int parent, int child, const Pose& X_PJ, const Vector3& axis, double position, int mimicked = -1,
           double multiplier = 1) {
-    JointSpec spec;
+    dynamics::JointSpec spec;
     spec.name = "joint" + std::to_string(world.jointCount());
     spec.kind = kind;
     spec.parent = parent, spec.child = child;
     spec.X_PJ = X_PJ;
     spec.axis = axis;
     spec.mimic_joint = mimicked, spec.mimic_multiplier = multiplier;
-    drives.push_back(JointDrive());
+    drives.push_back(dynamics::JointDrive());
     return world.addJoint(spec, position);
   }
 
@@ -56,17 +56,17 @@ struct Gripper {
       return turn;
     };
     const Pose X_PH = makePose({0, side * HINGE, -0.03}), X_HT = makePose({0, 0, -PROXIMAL});
-    BodySpec proximal = boxBody("proximal", 0.1, {0.02, 0.01, PROXIMAL}, Vector3::Zero());
+    dynamics::BodySpec proximal = dynamics::boxBody("proximal", 0.1, {0.02, 0.01, PROXIMAL}, Vector3::Zero());
     proximal.inertial.com = {0, 0, -PROXIMAL / 2};
     proximal.X_WB = world.bodyState(palm).X_WB * X_PH * turned(closed);
-    BodySpec tip = boxBody("tip", 0.02, TIP, Vector3::Zero());
+    dynamics::BodySpec tip = dynamics::boxBody("tip", 0.02, TIP, Vector3::Zero());
     tip.inertial.com = {0, 0, -TIP.z() / 2};
     tip.X_WB = proximal.X_WB * X_HT * turned(-closed);
     fingers.push_back(world.addBody(proximal));
     fingers.push_back(world.addBody(tip));
     tips.push_back(fingers.back());
-    const int hinge = add(JointKind::REVOLUTE, palm, fingers[fingers.size() - 2], X_PH, axis, closed, first);
-    add(JointKind::REVOLUTE, fingers[fingers.size() - 2], tips.back(), X_HT, axis, -closed, first < 0 ? hinge : first, -1);
+    const int hinge = add(dynamics::JointKind::REVOLUTE, palm, fingers[fingers.size() - 2], X_PH, axis, closed, first);
+    add(dynamics::JointKind::REVOLUTE, fingers[fingers.size() - 2], tips.back(), X_HT, axis, -closed, first < 0 ? hinge : first, -1);
     return hinge;
   }
 
@@ -80,27 +80,28 @@ struct Gripper {
       for (int i = 0; i < 4; ++i) {
         const Vector3 p_T(i & 1 ? TIP.x() / 2 : -TIP.x() / 2, -side * TIP.y() / 2, i & 2 ? -TIP.z() : 0);
         const double gap = side * (X_WC.inverse() * (X_WT * p_T)).y() - CUBE / 2;
-        if (gap >= CONTACT_MARGIN) continue;
-        contacts.push_back(contactOf(cube, tips[finger], X_WT * p_T, -side * X_WC.linear().col(1), -gap, {0.8}, 1 + 4 * finger + i));
+        if (gap >= dynamics::CONTACT_MARGIN) continue;
+        contacts.push_back(
+            contact::contactOf(cube, tips[finger], X_WT * p_T, -side * X_WC.linear().col(1), -gap, {0.8}, 1 + 4 * finger + i));
       }
     }
   }
 
-  const SolveResult& step() {
+  const dynamics::SolveResult& step() {
     findContacts();
     const double t = DT * ++steps, phase = 2 * M_PI * t;
     drives[0].target_position = AMPLITUDE * (1 - std::cos(phase));
     drives[0].target_velocity = AMPLITUDE * 2 * M_PI * std::sin(phase);
     times.start();
-    const SolveResult& result = world.step(DT, contacts, drives);
+    const dynamics::SolveResult& result = world.step(DT, contacts, drives);
     times.stop(result);
     return result;
   }
   Pose cubeInPalm() const { return world.bodyState(palm).X_WB.inverse() * world.bodyState(cube).X_WB; }
 
-  World world;
-  std::vector<JointDrive> drives;
-  std::vector<ContactConstraint> contacts;
+  dynamics::World world;
+  std::vector<dynamics::JointDrive> drives;
+  std::vector<dynamics::ContactConstraint> contacts;
   int carriage, palm, wrist, master, cube;
   double closed;
   long steps = 0;
@@ -112,7 +113,7 @@ struct Gripper {
 double cornerMotion(const Pose& before, const Pose& after) {
   double worst = 0;
   for (int i = 0; i < 8; ++i) {
-    const Vector3 p = corner(Vector3::Constant(CUBE), i);
+    const Vector3 p = dynamics::corner(Vector3::Constant(CUBE), i);
     worst = std::max(worst, (after * p - before * p).norm());
   }
   return worst;
@@ -136,9 +137,9 @@ TEST(SoakGripper, HoldsAShakenCube) {
   WrenchErrors wrist;
   for (int i = 0; i < steps; ++i) {
     if (i == 1000) settled = gripper.cubeInPalm();
-    const std::vector<BodyState> before = bodyStates(gripper.world);
+    const std::vector<dynamics::BodyState> before = bodyStates(gripper.world);
     const Vector3 about = jointFrame(gripper.world, gripper.wrist).translation();
-    const SolveResult& result = gripper.step();
+    const dynamics::SolveResult& result = gripper.step();
     ASSERT_TRUE(result.finite) << i;
     const double q = gripper.world.jointState(gripper.master).position;
     for (int j = gripper.master; j < gripper.world.jointCount(); ++j) {

@@ -11,10 +11,10 @@
 namespace blem_sim {
 
 /** Thirty cubes of 0.1 m and 1 kg in five layers, turned, spinning and falling as the seed says. */
-inline SimulationConfig heapOfCubes(int seed, const SolverSettings& solver) {
-  SimulationConfig config;
+inline sim::SimulationConfig heapOfCubes(int seed, const dynamics::SolverSettings& solver) {
+  sim::SimulationConfig config;
   config.solver = solver;
-  config.environments = {ground(8)};
+  config.environments = {sim::ground(8)};
   std::mt19937_64 generator(seed);
   const auto uniform = [&](double low, double high) { return low + (high - low) * static_cast<double>(generator() >> 11) * 0x1p-53; };
   const auto vector = [&](double size) {
@@ -23,7 +23,7 @@ inline SimulationConfig heapOfCubes(int seed, const SolverSettings& solver) {
   };
   for (int i = 0; i < 30; ++i) {
     const Vector3 centre(0.2 * (i % 3) - 0.2, 0.2 * (i / 3 % 2) - 0.1, 0.2 + 0.2 * (i / 6));
-    ObjectConfig cube = box("cube" + std::to_string(i), Vector3::Constant(0.1), 1, Vector3::Zero());
+    sim::ObjectConfig cube = sim::box("cube" + std::to_string(i), Vector3::Constant(0.1), 1, Vector3::Zero());
     cube.X_WO = makePose(centre, vector(M_PI));
     cube.linear_velocity = vector(0.5);
     cube.angular_velocity = vector(5);
@@ -65,8 +65,9 @@ inline std::vector<Pose> heapPoses(int count, int seed, double spacing = HEAP_SP
 }
 
 /** A floor and four walls of two triangles each, open at the top, wound towards the inside; the floor's middle is the origin. */
-inline TriangleMesh binMesh(double width, double height) {
-  TriangleMesh mesh = transformed(boxMesh(Vector3(width, width, height)), makePose(Vector3(0, 0, 0.5 * height)));
+inline geometry::TriangleMesh binMesh(double width, double height) {
+  geometry::TriangleMesh mesh =
+      geometry::transformed(geometry::boxMesh(Vector3(width, width, height)), makePose(Vector3(0, 0, 0.5 * height)));
   std::vector<Vector3i> inside;
   for (const Vector3i& e : mesh.elements) {
     const bool lid = mesh.vertices[e[0]].z() > 0 && mesh.vertices[e[1]].z() > 0 && mesh.vertices[e[2]].z() > 0;
@@ -77,20 +78,20 @@ inline TriangleMesh binMesh(double width, double height) {
 }
 
 /** [m] */
-inline EnvironmentConfig bin(double width, double height) {
-  EnvironmentConfig bin;
+inline sim::EnvironmentConfig bin(double width, double height) {
+  sim::EnvironmentConfig bin;
   bin.name = "bin";
-  bin.uri = meshFile("bin_" + std::to_string(width) + "_" + std::to_string(height), binMesh(width, height));
+  bin.uri = sim::meshFile("bin_" + std::to_string(width) + "_" + std::to_string(height), binMesh(width, height));
   return bin;
 }
 
 /** Cubes of 0.1 m and 1 kg, friction 0.5, at rest at the start, in a bin a little wider than their columns. */
-inline SimulationConfig heapInBin(int count, int seed, const SolverSettings& solver) {
-  SimulationConfig config;
+inline sim::SimulationConfig heapInBin(int count, int seed, const dynamics::SolverSettings& solver) {
+  sim::SimulationConfig config;
   config.solver = solver;
   config.environments = {bin(heapBinWidth(count), heapBinHeight(count))};
   config.contact.surface.friction = 0.5;
-  ObjectConfig cube = box("cube", Vector3::Constant(0.1), 1, Vector3::Zero());
+  sim::ObjectConfig cube = sim::box("cube", Vector3::Constant(0.1), 1, Vector3::Zero());
   for (const Pose& X_WC : heapPoses(count, seed)) {
     cube.name = "cube" + std::to_string(config.objects.size());
     cube.X_WO = X_WC;
@@ -113,13 +114,13 @@ inline double pouredBinWidth(int count) { return POURED_SPACING * heapColumns(co
 inline double pouredBinHeight(int count) { return 0.1 + POURED_SPACING * (heapColumns(count) + 2); }
 
 /** Exact spheres of 15 mm and 30 g, friction 0.5, at rest at the start, over a bin a little wider than their columns. */
-inline SimulationConfig spheresInBin(int count, int seed, const SolverSettings& solver) {
-  SimulationConfig config;
+inline sim::SimulationConfig spheresInBin(int count, int seed, const dynamics::SolverSettings& solver) {
+  sim::SimulationConfig config;
   config.solver = solver;
   config.environments = {bin(pouredBinWidth(count), pouredBinHeight(count))};
   config.contact.surface.friction = 0.5;
-  ObjectConfig sphere;
-  sphere.urdf = sceneFile("poured_sphere.urdf", [](std::ofstream& out) {
+  sim::ObjectConfig sphere;
+  sphere.urdf = sim::sceneFile("poured_sphere.urdf", [](std::ofstream& out) {
     const double i = 0.4 * POURED_MASS * POURED_RADIUS * POURED_RADIUS;
     out << "<robot name=\"sphere\"><link name=\"link\"><inertial><mass value=\"" << POURED_MASS << "\"/><inertia ixx=\"" << i << "\" iyy=\""
         << i << "\" izz=\"" << i << "\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial><collision><geometry><sphere radius=\"" << POURED_RADIUS
@@ -136,24 +137,25 @@ inline SimulationConfig spheresInBin(int count, int seed, const SolverSettings& 
 /** A shape and a mass that pieces of a pile have, and their friction 0.5. */
 struct PileShape {
   const char* name;
-  TriangleMesh mesh;
+  geometry::TriangleMesh mesh;
   double mass;  ///< [kg]
 };
 
 constexpr double PILE_LAYER = 0.001;  // [m] of small parts: each is so much larger on every side
 
 /** Small parts of these shapes in turn, at rest at the start, turned at random, over a bin a little wider than their columns. */
-inline SimulationConfig pileInBin(const std::vector<PileShape>& shapes, int count, double spacing, int seed, const SolverSettings& solver) {
-  SimulationConfig config;
+inline sim::SimulationConfig pileInBin(const std::vector<PileShape>& shapes, int count, double spacing, int seed,
+                                       const dynamics::SolverSettings& solver) {
+  sim::SimulationConfig config;
   config.solver = solver;
   config.contact.boundary_width = PILE_LAYER;
   config.contact.surface.friction = 0.5;
   config.environments = {bin(spacing * heapColumns(count) + 0.01, 0.1 + spacing * (heapColumns(count) + 2))};
   for (const Pose& X_WC : heapPoses(count, seed, spacing)) {
     const PileShape& shape = shapes[config.objects.size() % shapes.size()];
-    ObjectConfig part;
+    sim::ObjectConfig part;
     part.name = "part" + std::to_string(config.objects.size());
-    part.uri = meshFile(shape.name, shape.mesh);
+    part.uri = sim::meshFile(shape.name, shape.mesh);
     part.mass = shape.mass;
     part.X_WO = X_WC;
     config.objects.push_back(part);
@@ -162,16 +164,16 @@ inline SimulationConfig pileInBin(const std::vector<PileShape>& shapes, int coun
 }
 
 /** Steel rods of 6 x 6 x 45 mm. */
-inline SimulationConfig rodsInBin(int count, int seed, const SolverSettings& solver) {
-  return pileInBin({{"pile_rod", boxMesh({0.006, 0.006, 0.045}), 0.0127}}, count, 0.05, seed, solver);
+inline sim::SimulationConfig rodsInBin(int count, int seed, const dynamics::SolverSettings& solver) {
+  return pileInBin({{"pile_rod", geometry::boxMesh({0.006, 0.006, 0.045}), 0.0127}}, count, 0.05, seed, solver);
 }
 
 /** Blocks, hexagonal nuts, wedges and plates of 2 to 3 cm. */
-inline SimulationConfig partsInBin(int count, int seed, const SolverSettings& solver) {
-  const std::vector<PileShape> shapes = {{"pile_block", boxMesh({0.03, 0.02, 0.015}), 0.025},
-                                         {"pile_nut", cylinderMesh(0.012, 0.01, 6), 0.012},
-                                         {"pile_wedge", cylinderMesh(0.015, 0.02, 3), 0.01},
-                                         {"pile_plate", boxMesh({0.03, 0.03, 0.005}), 0.015}};
+inline sim::SimulationConfig partsInBin(int count, int seed, const dynamics::SolverSettings& solver) {
+  const std::vector<PileShape> shapes = {{"pile_block", geometry::boxMesh({0.03, 0.02, 0.015}), 0.025},
+                                         {"pile_nut", geometry::cylinderMesh(0.012, 0.01, 6), 0.012},
+                                         {"pile_wedge", geometry::cylinderMesh(0.015, 0.02, 3), 0.01},
+                                         {"pile_plate", geometry::boxMesh({0.03, 0.03, 0.005}), 0.015}};
   return pileInBin(shapes, count, 0.045, seed, solver);
 }
 

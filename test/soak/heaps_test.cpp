@@ -12,7 +12,7 @@ namespace {
 class Heap : public ::testing::TestWithParam<int> {};
 
 TEST_P(Heap, GainsNoEnergyAndLosesNone) {
-  Simulator simulator(heapOfCubes(GetParam(), soakSettings()), UriResolver());
+  sim::Simulator simulator(heapOfCubes(GetParam(), soakSettings()), model::UriResolver());
   const std::string name = "heap " + std::to_string(GetParam());
   double out_of_nothing = 0;
   double energy = simulator.report().energy, gained = -INFINITY, lowest = INFINITY, deepest = 0, slowest_solve = 0, residual = 0;
@@ -20,9 +20,9 @@ TEST_P(Heap, GainsNoEnergyAndLosesNone) {
   StepTimes times;
   for (int k = 0; k < soakSteps(20, 2); ++k) {
     times.start();
-    const StepReport& report = simulator.step();
+    const sim::StepReport& report = simulator.step();
     times.stop(report);
-    ASSERT_FALSE(report.status & STATE_NOT_FINITE) << k;
+    ASSERT_FALSE(report.status & sim::STATE_NOT_FINITE) << k;
     if (report.energy - energy > gained) worst_at = k;
     gained = std::max(gained, report.energy - energy);
     gaining += report.energy - energy >= 1e-6;
@@ -31,8 +31,8 @@ TEST_P(Heap, GainsNoEnergyAndLosesNone) {
     shortened += report.substeps > 1;
     deepest = std::max(deepest, report.max_of_layer);
     residual = std::max(residual, report.solver_residual);
-    slowest_solve = std::max(slowest_solve, 1e6 * report.profile.seconds[static_cast<int>(Stage::SOLVE)]);
-    for (const BodyState& body : report.bodies) lowest = std::min(lowest, body.X_WB.translation().z());
+    slowest_solve = std::max(slowest_solve, 1e6 * report.profile.seconds[static_cast<int>(sim::Stage::SOLVE)]);
+    for (const dynamics::BodyState& body : report.bodies) lowest = std::min(lowest, body.X_WB.translation().z());
   }
   figure(name + ": energy gained in a step", gained, "J");
   figure(name + ": the same, island by island, without corrections of depth", out_of_nothing, "J");
@@ -55,7 +55,7 @@ INSTANTIATE_TEST_SUITE_P(Seeds, Heap, ::testing::Range(1, 11));
 /** Pieces at rest over a bin. */
 struct Pour {
   const char* name;
-  SimulationConfig (*pour)(int count, int seed, const SolverSettings& solver);
+  sim::SimulationConfig (*pour)(int count, int seed, const dynamics::SolverSettings& solver);
   int count;
   double seconds;  ///< simulated
   double rest;     ///< [m/s] at their end, at most: balls roll on, small parts settle slowly
@@ -69,22 +69,22 @@ struct PourOutcome {
   int trouble = 0, told = 0, lost = 0;    ///< steps with SOLVER_TROUBLE, with ENERGY_GAINED; pieces outside the bin
 };
 
-PourOutcome pourOut(const SimulationConfig& config, int steps, StepTimes* times) {
-  Simulator simulator(config, UriResolver());
+PourOutcome pourOut(const sim::SimulationConfig& config, int steps, StepTimes* times) {
+  sim::Simulator simulator(config, model::UriResolver());
   const Box bin = simulator.colliders()[0].geometry->bounds();
   PourOutcome outcome;
   for (int k = 0; k < steps; ++k) {
     times->start();
-    const StepReport& report = simulator.step();
+    const sim::StepReport& report = simulator.step();
     times->stop(report);
-    EXPECT_FALSE(report.status & STATE_NOT_FINITE) << k;
+    EXPECT_FALSE(report.status & sim::STATE_NOT_FINITE) << k;
     outcome.gained = std::max(outcome.gained, report.energy_gained);
     outcome.out_of_nothing = std::max(outcome.out_of_nothing, report.energy_out_of_nothing);
     outcome.deepest = std::max(outcome.deepest, report.max_of_layer);
-    outcome.trouble += (report.status & SOLVER_TROUBLE) != 0;
-    outcome.told += (report.status & ENERGY_GAINED) != 0;
+    outcome.trouble += (report.status & sim::SOLVER_TROUBLE) != 0;
+    outcome.told += (report.status & sim::ENERGY_GAINED) != 0;
   }
-  for (const BodyState& body : simulator.report().bodies) {
+  for (const dynamics::BodyState& body : simulator.report().bodies) {
     outcome.speed = std::max(outcome.speed, body.v_WCom.norm());
     outcome.lost += !bin.contains(body.X_WB.translation());
   }

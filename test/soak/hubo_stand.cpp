@@ -18,55 +18,55 @@ YAML::Node sharedYaml(const std::string& path) { return YAML::LoadFile(*sharedDa
 Vector3 vector3(const YAML::Node& node) { return {node[0].as<double>(), node[1].as<double>(), node[2].as<double>()}; }
 
 /** Meshes are read once for all stands. */
-std::shared_ptr<const RobotModel> huboModel() {
-  static const auto model = std::make_shared<const RobotModel>(
-      loadUrdfFile(*sharedData(std::string(HUBO_FOLDER) + "/huboplus.urdf"), UriResolver(sharedPackages())));
+std::shared_ptr<const model::RobotModel> huboModel() {
+  static const auto model = std::make_shared<const model::RobotModel>(
+      model::loadUrdfFile(*sharedData(std::string(HUBO_FOLDER) + "/huboplus.urdf"), model::UriResolver(sharedPackages())));
   return model;
 }
 
-JointTrajectory motionWithRoot(const std::string& motion) {
+sim::JointTrajectory motionWithRoot(const std::string& motion) {
   std::vector<std::string> columns = {"root_x", "root_y", "root_z", "root_roll", "root_pitch", "root_yaw"};
-  for (const JointModel& joint : huboModel()->joints) columns.push_back(joint.name);
+  for (const model::JointModel& joint : huboModel()->joints) columns.push_back(joint.name);
   std::vector<std::string> ignored;
-  return loadTrajectoryCsv(*sharedData(motion), columns, &ignored);
+  return sim::loadTrajectoryCsv(*sharedData(motion), columns, &ignored);
 }
 
-void startAt(const std::string& motion, RobotConfig* config) {
-  const JointTrajectory trajectory = motionWithRoot(motion);
+void startAt(const std::string& motion, sim::RobotConfig* config) {
+  const sim::JointTrajectory trajectory = motionWithRoot(motion);
   std::map<std::string, double> first;
   for (std::size_t i = 0; i < trajectory.joints.size(); ++i) first[trajectory.joints[i]] = trajectory.points.front().positions[i];
   config->X_WR =
       makePose({first["root_x"], first["root_y"], first["root_z"]}, {first["root_roll"], first["root_pitch"], first["root_yaw"]});
-  for (const JointModel& joint : huboModel()->joints)
+  for (const model::JointModel& joint : huboModel()->joints)
     if (first.count(joint.name)) config->initial_positions[joint.name] = first[joint.name];
 }
 
 bool isFinger(const std::string& joint) { return joint.find("left") == 0 || joint.find("right") == 0; }
 
-void setDriver(const YAML::Node& driver, const HuboOptions& options, RobotConfig* config) {
+void setDriver(const YAML::Node& driver, const HuboOptions& options, sim::RobotConfig* config) {
   const std::string joint = driver["joint"].as<std::string>();
-  JointGains gains;
+  sim::JointGains gains;
   gains.p = driver["servoP"].as<double>();
   gains.d = driver["servoD"].as<double>();
   if (options.finger_stiffness && isFinger(joint)) gains.p = *options.finger_stiffness;
   if (options.stiffness) gains = {*options.stiffness, 0, 0};
   config->gains[joint] = gains;
-  config->joint_friction[joint] = JointFriction();
+  config->joint_friction[joint] = sim::JointFriction();
   if (options.joint_friction) config->joint_friction[joint] = {driver["dryFriction"].as<double>(), driver["viscousFriction"].as<double>()};
   if (options.stiffness) config->effort_limits[joint] = std::numeric_limits<double>::infinity();
 }
 
-RobotConfig huboConfig(const YAML::Node& world, const HuboOptions& options) {
+sim::RobotConfig huboConfig(const YAML::Node& world, const HuboOptions& options) {
   const YAML::Node robot = world["robots"][0], description = sharedYaml(std::string(HUBO_FOLDER) + "/huboplus.yaml");
-  RobotConfig config;
+  sim::RobotConfig config;
   config.name = "hubo";
-  config.motors = MotorDefault::FREE;
+  config.motors = sim::MotorDefault::FREE;
   config.X_WR = makePose(vector3(robot["base_xyz"]), vector3(robot["base_rpy"]));
   for (const auto& entry : robot["joint_positions"]) config.initial_positions[entry.first.as<std::string>()] = entry.second.as<double>();
   if (!options.start_at.empty()) startAt(options.start_at, &config);
-  config.motor["default"] = MotorLaw::IMPLICIT_PD;
+  config.motor["default"] = sim::MotorLaw::IMPLICIT_PD;
   for (const auto& driver : description["drivers"]) setDriver(driver, options, &config);
-  for (const JointModel& joint : huboModel()->joints)
+  for (const model::JointModel& joint : huboModel()->joints)
     if (!config.effort_limits.count(joint.name)) config.effort_limits[joint.name] = options.effort_scale * joint.limits.effort;
   return config;
 }
@@ -74,9 +74,9 @@ RobotConfig huboConfig(const YAML::Node& world, const HuboOptions& options) {
 /** Stiffness or damping of two springs or dampers in a row. */
 double inRow(double a, double b) { return a * b / (a + b); }
 
-Surface footOnGround(const YAML::Node& world, bool compliant) {
+dynamics::Surface footOnGround(const YAML::Node& world, bool compliant) {
   const YAML::Node foot = world["robots"][0]["link_surfaces"][0], ground = world["terrains"][0];
-  Surface surface;
+  dynamics::Surface surface;
   surface.friction = 2 / (1 / foot["kFriction"].as<double>() + 1 / ground["kFriction"].as<double>());
   if (!compliant) return surface;
   surface.stiffness = inRow(foot["stiffness"].as<double>(), ground["kStiffness"].as<double>());
@@ -85,12 +85,12 @@ Surface footOnGround(const YAML::Node& world, bool compliant) {
 }
 
 /** Bounds of a link's meshes in its body's frame, as far up from its lowest vertex as asked. */
-Box linkBounds(const RobotInfo& robot, int link, double height) {
+Box linkBounds(const sim::RobotInfo& robot, int link, double height) {
   Box all, lowest;
   const Pose& X_BL = robot.lumped->link_placement[link].X_BL;
-  for (const CollisionShape& shape : robot.description->links[link].collisions)
+  for (const model::CollisionShape& shape : robot.description->links[link].collisions)
     for (const Vector3& v : shape.mesh->vertices) all.extend(X_BL * v);
-  for (const CollisionShape& shape : robot.description->links[link].collisions)
+  for (const model::CollisionShape& shape : robot.description->links[link].collisions)
     for (const Vector3& v : shape.mesh->vertices)
       if ((X_BL * v).z() <= all.min().z() + height) lowest.extend(X_BL * v);
   return lowest;
@@ -108,8 +108,8 @@ HuboStand::HuboStand(const HuboOptions& options)
     : options_(options), sim_(vector3(sharedYaml("worlds/hubo_plane.yaml")["simulation"]["gravity"]), options.settings) {
   const YAML::Node world = sharedYaml("worlds/hubo_plane.yaml");
   surface_ = footOnGround(world, options.compliant);
-  SurfaceLibrary surfaces;
-  RobotBuilder(huboConfig(world, options), ContactConfig(), huboModel()).addTo(&sim_, &surfaces);
+  sim::SurfaceLibrary surfaces;
+  sim::RobotBuilder(huboConfig(world, options), sim::ContactConfig(), huboModel()).addTo(&sim_, &surfaces);
   if (options.sole_contacts > 0) {
     addSolePoints(0, options.sole_contacts / 2);
     addSolePoints(1, options.sole_contacts / 2);
@@ -123,7 +123,7 @@ HuboStand::HuboStand(const HuboOptions& options)
 }
 
 void HuboStand::addSolePoints(int foot_index, int count) {
-  const RobotInfo& robot = sim_.robots[0];
+  const sim::RobotInfo& robot = sim_.robots[0];
   const int link = robot.description->linkIndex(foot_index == 0 ? "Body_LAR" : "Body_RAR");
   const int body = feet_[foot_index] = robot.bodies[robot.lumped->link_placement[link].body];
   const Box sole = linkBounds(robot, link, SOLE_THICKNESS);
@@ -143,12 +143,12 @@ void HuboStand::addSolePoints(int foot_index, int count) {
 }
 
 void HuboStand::addLinkCorners() {
-  const RobotInfo& robot = sim_.robots[0];
+  const sim::RobotInfo& robot = sim_.robots[0];
   for (std::size_t link = 0; link < robot.description->links.size(); ++link) {
     const Box box = linkBounds(robot, static_cast<int>(link), std::numeric_limits<double>::infinity());
     if (box.isEmpty()) continue;
     const int body = robot.bodies[robot.lumped->link_placement[link].body];
-    for (int i = 0; i < 8; ++i) points_.push_back({body, box.center() + corner(box.sizes(), i), 8 * link + i + 1});
+    for (int i = 0; i < 8; ++i) points_.push_back({body, box.center() + dynamics::corner(box.sizes(), i), 8 * link + i + 1});
   }
 }
 
@@ -157,7 +157,8 @@ void HuboStand::prepare() {
   for (const GroundPoint& point : points_) {
     const Vector3 p = sim_.world.bodyState(point.body).X_WB * point.p_B;
     const double gap = p.z() - ground_;
-    if (gap < options_.margin) contacts_.push_back(contactOf(point.body, WORLD_BODY, p, Vector3::UnitZ(), -gap, surface_, point.id));
+    if (gap < options_.margin)
+      contacts_.push_back(contact::contactOf(point.body, dynamics::WORLD_BODY, p, Vector3::UnitZ(), -gap, surface_, point.id));
   }
   for (std::size_t j = 0; j < drives_.size(); ++j) {
     sim_.motors[j].sample(time(), DT);
@@ -167,13 +168,13 @@ void HuboStand::prepare() {
 }
 
 double HuboStand::follow(const std::string& motion) {
-  const JointTrajectory trajectory = motionWithRoot(motion);
-  const RobotInfo& robot = sim_.robots[0];
+  const sim::JointTrajectory trajectory = motionWithRoot(motion);
+  const sim::RobotInfo& robot = sim_.robots[0];
   for (std::size_t i = 0; i < trajectory.joints.size(); ++i) {
     const auto name = std::find(robot.joint_names.begin(), robot.joint_names.end(), trajectory.joints[i]);
     if (name == robot.joint_names.end()) continue;
-    std::vector<JointSpline::Knot> knots;
-    for (const TrajectoryPoint& point : trajectory.points)
+    std::vector<sim::JointSpline::Knot> knots;
+    for (const sim::TrajectoryPoint& point : trajectory.points)
       knots.push_back({time() + point.time_from_start, point.positions[i], 0, 0, 0, 1});
     const int joint = robot.joints[name - robot.joint_names.begin()];
     sim_.motors[joint].follow(time(), time(), knots, sim_.world.jointState(joint).position);
@@ -188,10 +189,10 @@ void HuboStand::copyState(const HuboStand& other) {
   steps_ = other.steps_;
 }
 
-double HuboStand::groundForce(const SolveResult& result, int body) const {
+double HuboStand::groundForce(const dynamics::SolveResult& result, int body) const {
   double sum = 0;
   for (std::size_t i = 0; i < contacts_.size(); ++i)
-    if (body == WORLD_BODY || contacts_[i].body_a == body) sum += result.contact_forces[i].z();
+    if (body == dynamics::WORLD_BODY || contacts_[i].body_a == body) sum += result.contact_forces[i].z();
   return sum;
 }
 

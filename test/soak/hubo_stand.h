@@ -17,12 +17,12 @@ constexpr const char* HUBO_FOLDER = "robots/klampt/huboplus";
 constexpr const char* HUBO_SWAY = "motions/hubo_sway_path_opt.csv";
 
 struct HuboOptions {
-  SolverSettings settings;
+  dynamics::SolverSettings settings;
   int sole_contacts = 50;     ///< on both soles together: 0, 4 (outer corners), 8, 20, 50 or 100
   bool link_corners = false;  ///< eight corners of every link's bounding box touch too
   bool compliant = false;     ///< the shared data's stiffness and damping of feet on ground, else rigid
   double drop = 5e-4;         ///< [m] of the lowest contact point above the ground at the start
-  double margin = CONTACT_MARGIN;
+  double margin = dynamics::CONTACT_MARGIN;
   double effort_scale = 1;
   bool joint_friction = true;
   std::optional<double> stiffness;         ///< of every joint, without damping and effort limit, instead of the servo's
@@ -48,8 +48,8 @@ class HuboStand {
   /** Contacts and drives of the coming step. */
   void prepare();
   /** The step alone, for timing. */
-  const SolveResult& solve() { return sim_.world.step(DT, contacts_, drives_); }
-  const SolveResult& step() {
+  const dynamics::SolveResult& solve() { return sim_.world.step(DT, contacts_, drives_); }
+  const dynamics::SolveResult& step() {
     prepare();
     return solve();
   }
@@ -58,19 +58,19 @@ class HuboStand {
   /** Takes over another stand's bodies, joint positions and time. Precondition: same options but for the stepper. */
   void copyState(const HuboStand& other);
 
-  World& world() { return sim_.world; }
-  const World& world() const { return sim_.world; }
+  dynamics::World& world() { return sim_.world; }
+  const dynamics::World& world() const { return sim_.world; }
   const std::vector<int>& bodies() const { return sim_.models[0].bodies; }
-  std::vector<JointMotor>& motors() { return sim_.motors; }
-  const std::vector<ContactConstraint>& contacts() const { return contacts_; }
-  const std::vector<JointDrive>& drives() const { return drives_; }
+  std::vector<sim::JointMotor>& motors() { return sim_.motors; }
+  const std::vector<dynamics::ContactConstraint>& contacts() const { return contacts_; }
+  const std::vector<dynamics::JointDrive>& drives() const { return drives_; }
   /** Drives of the joints, which may be changed between prepare() and solve(). */
-  std::vector<JointDrive>& drives() { return drives_; }
+  std::vector<dynamics::JointDrive>& drives() { return drives_; }
   int leftFoot() const { return feet_[0]; }
   double time() const { return static_cast<double>(steps_) * DT; }
   double weight() const { return weight_; }  ///< [N]
   /** [N] upwards on all bodies, or on one. */
-  double groundForce(const SolveResult& result, int body = WORLD_BODY) const;
+  double groundForce(const dynamics::SolveResult& result, int body = dynamics::WORLD_BODY) const;
 
   static constexpr double DT = 1e-3;
 
@@ -79,14 +79,14 @@ class HuboStand {
   void addLinkCorners();
 
   HuboOptions options_;
-  SimulatedWorld sim_;
-  Surface surface_;
+  sim::SimulatedWorld sim_;
+  dynamics::Surface surface_;
   int feet_[2];
   double ground_ = 0, weight_ = 0;
   long steps_ = 0;
   std::vector<GroundPoint> points_;
-  std::vector<ContactConstraint> contacts_;
-  std::vector<JointDrive> drives_;
+  std::vector<dynamics::ContactConstraint> contacts_;
+  std::vector<dynamics::JointDrive> drives_;
 };
 
 }  // namespace blem_sim

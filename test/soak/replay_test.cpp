@@ -30,7 +30,7 @@ TEST(Replay, RestoredInTheMiddleOfAnImpact) {
   for (int i = 0; i < 500 && force < hubo.weight(); ++i) force = hubo.groundForce(hubo.step());
   ASSERT_GT(force, hubo.weight());
   figure("impact: ground force over m g when saved", force / hubo.weight(), "");
-  const WorldState saved = hubo.world().save();
+  const dynamics::WorldState saved = hubo.world().save();
   const int steps = soakSteps(1, 0.2);
   const std::uint64_t first = hashAfter(&hubo, steps);
   hubo.world().restore(saved);
@@ -53,15 +53,15 @@ bool setThreads(Settings*, int, long) {
 }
 
 /** Twelve pairs of cubes that fall onto each other. */
-std::uint64_t hashOfPairs(const SolverSettings& settings) {
+std::uint64_t hashOfPairs(const dynamics::SolverSettings& settings) {
   const Vector3 size(0.1, 0.1, 0.1);
-  World world(Vector3(0, 0, -9.81), settings);
-  for (int i = 0; i < 24; ++i) world.addBody(boxBody("cube", 1 + i, size, {0.5 * (i / 2), 0.001 * i, 0.1 + 0.15 * (i % 2)}));
+  dynamics::World world(Vector3(0, 0, -9.81), settings);
+  for (int i = 0; i < 24; ++i) world.addBody(dynamics::boxBody("cube", 1 + i, size, {0.5 * (i / 2), 0.001 * i, 0.1 + 0.15 * (i % 2)}));
   for (int k = 0; k < soakSteps(2, 0.5); ++k) {
-    std::vector<ContactConstraint> contacts;
+    std::vector<dynamics::ContactConstraint> contacts;
     for (int i = 0; i < 24; i += 2) {
-      boxOnPlane(world, i, size, Vector3::UnitZ(), 0, {}, &contacts, 5e-3);
-      boxOnBox(world, i + 1, size, i, size, {}, &contacts);
+      dynamics::boxOnPlane(world, i, size, Vector3::UnitZ(), 0, {}, &contacts, 5e-3);
+      dynamics::boxOnBox(world, i + 1, size, i, size, {}, &contacts);
     }
     EXPECT_TRUE(world.step(1e-3, contacts, {}).finite) << k;
   }
@@ -69,7 +69,7 @@ std::uint64_t hashOfPairs(const SolverSettings& settings) {
 }
 
 TEST(Replay, AnyNumberOfThreads) {
-  SolverSettings settings = soakSettings();
+  dynamics::SolverSettings settings = soakSettings();
   if (!setThreads(&settings, 1, 0)) GTEST_SKIP() << "SolverSettings has no number of threads: islands are solved one after the other";
   const std::uint64_t one = hashOfPairs(settings);
   for (const int threads : {2, 4}) {

@@ -18,19 +18,19 @@ constexpr double DROP = 0.004;
 struct Tower {
   explicit Tower(const std::vector<double>& masses) : world(Vector3(0, 0, -9.81), soakSettings()) {
     for (std::size_t i = 0; i < masses.size(); ++i)
-      world.addBody(boxBody("cube", masses[i], CUBE, {0, 0, 0.05 + DROP + (0.1 + DROP) * static_cast<double>(i)}));
+      world.addBody(dynamics::boxBody("cube", masses[i], CUBE, {0, 0, 0.05 + DROP + (0.1 + DROP) * static_cast<double>(i)}));
   }
-  const SolveResult& step() {
+  const dynamics::SolveResult& step() {
     contacts.clear();
-    boxOnPlane(world, 0, CUBE, Vector3::UnitZ(), 0, {}, &contacts);
-    for (int i = 1; i < world.bodyCount(); ++i) boxOnBox(world, i, CUBE, i - 1, CUBE, {}, &contacts);
+    dynamics::boxOnPlane(world, 0, CUBE, Vector3::UnitZ(), 0, {}, &contacts);
+    for (int i = 1; i < world.bodyCount(); ++i) dynamics::boxOnBox(world, i, CUBE, i - 1, CUBE, {}, &contacts);
     times.start();
-    const SolveResult& result = world.step(1e-3, contacts, {});
+    const dynamics::SolveResult& result = world.step(1e-3, contacts, {});
     times.stop(result);
     return result;
   }
-  World world;
-  std::vector<ContactConstraint> contacts;
+  dynamics::World world;
+  std::vector<dynamics::ContactConstraint> contacts;
   StepTimes times;
 };
 
@@ -45,7 +45,7 @@ void expectStands(const std::string& name, const std::vector<double>& masses) {
   }
   double height = 0, sideways = 0, speed = 0;
   for (int i = 0; i < tower.world.bodyCount(); ++i) {
-    const BodyState state = tower.world.bodyState(i);
+    const dynamics::BodyState state = tower.world.bodyState(i);
     height = std::max(height, std::abs(state.X_WB.translation().z() - 0.05 - 0.1 * i));
     sideways = std::max(sideways, state.X_WB.translation().head<2>().norm());
     speed = std::max(speed, state.v_WCom.norm());
@@ -64,28 +64,28 @@ TEST(Stacking, TenCubes) { expectStands("ten cubes", std::vector<double>(10, 1))
 TEST(Stacking, HundredKilogramsOnOne) { expectStands("100 kg on 1 kg", {1, 100}); }
 
 void expectMeshesStand(const std::string& name, const std::vector<double>& masses) {
-  SimulationConfig config;
+  sim::SimulationConfig config;
   config.solver = soakSettings();
-  config.environments = {ground()};
+  config.environments = {sim::ground()};
   for (std::size_t i = 0; i < masses.size(); ++i) {
     const double z = 0.05 + LAYER + 0.01 + static_cast<double>(i) * (0.1 + 2 * LAYER + 0.01);
-    config.objects.push_back(box("cube" + std::to_string(i), CUBE, masses[i], {0, 0, z}));
+    config.objects.push_back(sim::box("cube" + std::to_string(i), CUBE, masses[i], {0, 0, z}));
   }
-  Simulator simulator(config, UriResolver());
+  sim::Simulator simulator(config, model::UriResolver());
   double energy = simulator.report().energy, gained = -INFINITY;
   StepTimes times;
   for (int k = 0; k < soakSteps(20, 3); ++k) {
     times.start();
-    const StepReport& report = simulator.step();
+    const sim::StepReport& report = simulator.step();
     times.stop(report);
-    ASSERT_FALSE(report.status & STATE_NOT_FINITE) << k;
+    ASSERT_FALSE(report.status & sim::STATE_NOT_FINITE) << k;
     gained = std::max(gained, report.energy - energy);
     energy = report.energy;
   }
   double height = 0;
   for (std::size_t i = 0; i < masses.size(); ++i) {
     const double z = 0.05 + LAYER + static_cast<double>(i) * (0.1 + 2 * LAYER);
-    height = std::max(height, std::abs(bodyOf(simulator, "cube" + std::to_string(i)).X_WB.translation().z() - z));
+    height = std::max(height, std::abs(sim::bodyOf(simulator, "cube" + std::to_string(i)).X_WB.translation().z() - z));
   }
   figure(name + ": height error", height, "m");
   figure(name + ": energy gained in a step", gained, "J");

@@ -32,7 +32,7 @@ TEST_P(Standing, SixtySeconds) {
   for (int i = 0; i < steps; ++i) {
     hubo.prepare();
     times.start();
-    const SolveResult& result = hubo.solve();
+    const dynamics::SolveResult& result = hubo.solve();
     times.stop(result);
     ASSERT_TRUE(result.finite) << i;
     lcp_errors += result.lcp_errors;
@@ -73,7 +73,7 @@ TEST(StandingAgainstWorldStep, OneStep) {
   options.settings.cfm = 1e-10;
   HuboStand reference(options);
   reference.copyState(tested);
-  const SolveResult result = tested.step(), reference_result = reference.step();
+  const dynamics::SolveResult result = tested.step(), reference_result = reference.step();
   ASSERT_TRUE(result.finite && reference_result.finite);
   ASSERT_EQ(tested.contacts().size(), reference.contacts().size());
   Vector3 force = Vector3::Zero(), reference_force = Vector3::Zero();
@@ -105,7 +105,7 @@ TEST(Sway, StaysFiniteWithItsJointsClosed) {
   for (int i = 0; i < steps; ++i) {
     hubo.prepare();
     times.start();
-    const SolveResult& result = hubo.solve();
+    const dynamics::SolveResult& result = hubo.solve();
     times.stop(result);
     ASSERT_TRUE(result.finite) << i;
     gap = std::max(gap, worstJointGap(hubo.world()));

@@ -11,43 +11,43 @@
 namespace blem_sim {
 
 /** Index of the first collider of a model. */
-inline int colliderOf(const Simulator& simulator, const std::string& model) {
+inline int colliderOf(const sim::Simulator& simulator, const std::string& model) {
   const int index = simulator.modelIndex(model);
   for (std::size_t i = 0; i < simulator.colliders().size(); ++i)
     if (simulator.colliders()[i].model == index) return static_cast<int>(i);
   return -1;
 }
 
-inline Pose poseOf(const Simulator& simulator, int collider) {
-  const Collider& c = simulator.colliders()[collider];
-  return c.body == WORLD_BODY ? c.X_BC : simulator.report().bodies[c.body].X_WB * c.X_BC;
+inline Pose poseOf(const sim::Simulator& simulator, int collider) {
+  const contact::Collider& c = simulator.colliders()[collider];
+  return c.body == dynamics::WORLD_BODY ? c.X_BC : simulator.report().bodies[c.body].X_WB * c.X_BC;
 }
 
-inline Vector3 centreOf(const Simulator& simulator, int collider) {
-  const Collider& c = simulator.colliders()[collider];
+inline Vector3 centreOf(const sim::Simulator& simulator, int collider) {
+  const contact::Collider& c = simulator.colliders()[collider];
   return simulator.report().bodies[c.body].X_WB * simulator.world().bodySpec(c.body).inertial.com;
 }
 
 /** Whether the segment crosses a triangle of the mesh, in the mesh's frame. */
-inline bool crossesMesh(const Vector3& p, const Vector3& q, const CollisionGeometry& geometry) {
+inline bool crossesMesh(const Vector3& p, const Vector3& q, const contact::CollisionGeometry& geometry) {
   bool crosses = false;
   const Box box(p.cwiseMin(q), p.cwiseMax(q));
   if (!geometry.bounds().intersects(box)) return false;
-  visitLeaves(geometry.bvh(), box, [&](std::uint32_t leaf) {
-    const Bvh::Node& node = geometry.bvh().nodes()[leaf];
+  geometry::visitLeaves(geometry.bvh(), box, [&](std::uint32_t leaf) {
+    const geometry::Bvh::Node& node = geometry.bvh().nodes()[leaf];
     for (std::uint32_t i = node.first; i < node.first + node.count && !crosses; ++i) {
       const Vector3i& e = geometry.mesh().elements[geometry.bvh().order()[i]];
       const std::vector<Vector3>& v = geometry.mesh().vertices;
-      crosses = segmentCrossesTriangle(p, q, {v[e[0]], v[e[1]], v[e[2]]});
+      crosses = geometry::segmentCrossesTriangle(p, q, {v[e[0]], v[e[1]], v[e[2]]});
     }
   });
   return crosses;
 }
 
 /** Whether an edge of one mesh crosses a triangle of the other, either way round. */
-inline bool meshesCross(const Simulator& simulator, int a, int b) {
+inline bool meshesCross(const sim::Simulator& simulator, int a, int b) {
   for (const auto& [edges, faces] : {std::pair(a, b), std::pair(b, a)}) {
-    const CollisionGeometry &of_edges = *simulator.colliders()[edges].geometry, &of_faces = *simulator.colliders()[faces].geometry;
+    const contact::CollisionGeometry &of_edges = *simulator.colliders()[edges].geometry, &of_faces = *simulator.colliders()[faces].geometry;
     const Pose X_FE = poseOf(simulator, faces).inverse() * poseOf(simulator, edges);
     std::vector<Vector3> placed;
     for (const Vector3& v : of_edges.mesh().vertices) placed.push_back(X_FE * v);
@@ -63,7 +63,7 @@ class CentrePath {
  public:
   CentrePath(int thrown, int hit) : thrown_(thrown), hit_(hit) {}
 
-  bool goesThrough(const Simulator& simulator) {
+  bool goesThrough(const sim::Simulator& simulator) {
     const Vector3 centre = poseOf(simulator, hit_).inverse() * centreOf(simulator, thrown_);
     const bool through = last_ && crossesMesh(*last_, centre, *simulator.colliders()[hit_].geometry);
     last_ = centre;
@@ -80,12 +80,12 @@ struct Wall {
   int collider;
   std::vector<std::pair<Vector3, double>> planes;  ///< outward normal, offset [m]
 
-  static Wall below(const Simulator& simulator, const std::string& model, double height) {
+  static Wall below(const sim::Simulator& simulator, const std::string& model, double height) {
     return {colliderOf(simulator, model), {{-Vector3::UnitZ(), -height}}};
   }
-  static Wall around(const Simulator& simulator, const std::string& model) {
+  static Wall around(const sim::Simulator& simulator, const std::string& model) {
     Wall wall{colliderOf(simulator, model), {}};
-    const TriangleMesh& mesh = simulator.colliders()[wall.collider].geometry->mesh();
+    const geometry::TriangleMesh& mesh = simulator.colliders()[wall.collider].geometry->mesh();
     const Vector3 middle = mesh.bounds().center();
     for (const Vector3i& e : mesh.elements) {
       const Vector3& p = mesh.vertices[e[0]];
@@ -106,7 +106,7 @@ inline bool isBeside(const Wall& wall, const Box& bounds, const Vector3& p) {
          (p.x() < bounds.min().x() || p.x() > bounds.max().x() || p.y() < bounds.min().y() || p.y() > bounds.max().y());
 }
 
-inline Behind behind(const Simulator& simulator, const Wall& wall, int collider) {
+inline Behind behind(const sim::Simulator& simulator, const Wall& wall, int collider) {
   const Box& bounds = simulator.colliders()[wall.collider].geometry->bounds();
   const Pose X_WC = poseOf(simulator, wall.collider).inverse() * poseOf(simulator, collider);
   int count = 0, all = 0;

@@ -11,8 +11,8 @@
 namespace blem_sim {
 
 /** Vertices and triangles in another order, some triangles wound the other way. */
-inline TriangleMesh shuffledCopy(const TriangleMesh& mesh, RandomShapes& random) {
-  TriangleMesh copy = mesh;
+inline geometry::TriangleMesh shuffledCopy(const geometry::TriangleMesh& mesh, geometry::RandomShapes& random) {
+  geometry::TriangleMesh copy = mesh;
   for (std::size_t i = copy.elements.size(); i > 1; --i)
     std::swap(copy.elements[i - 1], copy.elements[random.integer(0, static_cast<int>(i) - 1)]);
   std::vector<int> order(mesh.vertices.size());
@@ -24,8 +24,8 @@ inline TriangleMesh shuffledCopy(const TriangleMesh& mesh, RandomShapes& random)
 }
 
 /** A copy with half of the triangles wound the other way. */
-inline TriangleMesh rewoundCopy(const TriangleMesh& mesh, RandomShapes& random) {
-  TriangleMesh copy = mesh;
+inline geometry::TriangleMesh rewoundCopy(const geometry::TriangleMesh& mesh, geometry::RandomShapes& random) {
+  geometry::TriangleMesh copy = mesh;
   for (Vector3i& e : copy.elements) {
     if (random.integer(0, 1)) std::swap(e[1], e[2]);
   }
@@ -33,8 +33,8 @@ inline TriangleMesh rewoundCopy(const TriangleMesh& mesh, RandomShapes& random) 
 }
 
 /** Every second triangle once more, wound the other way. */
-inline TriangleMesh doubledCopy(const TriangleMesh& mesh) {
-  TriangleMesh copy = mesh;
+inline geometry::TriangleMesh doubledCopy(const geometry::TriangleMesh& mesh) {
+  geometry::TriangleMesh copy = mesh;
   for (std::size_t i = 0; i < mesh.elements.size(); i += 2) {
     const Vector3i e = mesh.elements[i];
     copy.elements.push_back({e[2], e[1], e[0]});
@@ -43,8 +43,8 @@ inline TriangleMesh doubledCopy(const TriangleMesh& mesh) {
 }
 
 /** Every triangle with vertices of its own, each coordinate off by up to `amplitude` [m]. */
-inline TriangleMesh crackedCopy(const TriangleMesh& mesh, double amplitude, RandomShapes& random) {
-  TriangleMesh copy;
+inline geometry::TriangleMesh crackedCopy(const geometry::TriangleMesh& mesh, double amplitude, geometry::RandomShapes& random) {
+  geometry::TriangleMesh copy;
   for (const Vector3i& e : mesh.elements) {
     const int first = static_cast<int>(copy.vertices.size());
     for (int k = 0; k < 3; ++k) {
@@ -57,13 +57,13 @@ inline TriangleMesh crackedCopy(const TriangleMesh& mesh, double amplitude, Rand
 }
 
 /** Every second triangle split in four, its neighbours not. */
-inline TriangleMesh tJunctionCopy(const TriangleMesh& mesh) {
-  TriangleMesh copy;
+inline geometry::TriangleMesh tJunctionCopy(const geometry::TriangleMesh& mesh) {
+  geometry::TriangleMesh copy;
   for (std::size_t i = 0; i < mesh.elements.size(); ++i) {
-    TriangleMesh one;
+    geometry::TriangleMesh one;
     for (int k = 0; k < 3; ++k) one.vertices.push_back(mesh.vertices[mesh.elements[i][k]]);
     one.elements = {{0, 1, 2}};
-    if (i % 2) one = subdivided(one, 1);
+    if (i % 2) one = geometry::subdivided(one, 1);
     const int first = static_cast<int>(copy.vertices.size());
     copy.vertices.insert(copy.vertices.end(), one.vertices.begin(), one.vertices.end());
     for (const Vector3i& e : one.elements) copy.elements.push_back(e + Vector3i::Constant(first));

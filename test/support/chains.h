@@ -23,8 +23,8 @@ inline std::vector<ChainLink> taper(int links, ChainLink first, ChainLink last) 
 }
 
 /** A thin rod along x from the body frame's origin. */
-inline BodySpec rod(const ChainLink& link) {
-  BodySpec spec;
+inline dynamics::BodySpec rod(const ChainLink& link) {
+  dynamics::BodySpec spec;
   spec.inertial.mass = link.mass;
   spec.inertial.com = {link.length / 2, 0, 0};
   const double across = link.mass * link.length * link.length / 12, radius = link.length / 20;
@@ -44,32 +44,32 @@ struct ChainOptions {
 /** Hangs from the origin and lies along x, or is folded. */
 class Chain {
  public:
-  Chain(const std::vector<ChainLink>& links, const ChainOptions& options = {}, const SolverSettings& settings = {})
+  Chain(const std::vector<ChainLink>& links, const ChainOptions& options = {}, const dynamics::SolverSettings& settings = {})
       : world(options.gravity, settings) {
     Pose X_WL = Pose::Identity();
     for (std::size_t i = 0; i < links.size(); ++i) {
-      JointSpec joint;
+      dynamics::JointSpec joint;
       const bool grounded = i == 0;
       joint.axis = options.alternates && i % 2 == 1 ? Vector3::UnitZ() : Vector3::UnitY();
       const bool slides = static_cast<int>(i) == options.slider;
       if (slides) {
-        joint.kind = JointKind::PRISMATIC;
+        joint.kind = dynamics::JointKind::PRISMATIC;
         joint.axis = Vector3::UnitX();
       }
       const double angle = slides ? 0 : i % 2 == 1 ? options.bend + options.fold : grounded ? 0 : options.bend - options.fold;
       if (!grounded) joint.X_PJ = makePose({links[i - 1].length, 0, 0});
       X_WL = X_WL * joint.X_PJ * Pose(Eigen::AngleAxisd(angle, joint.axis));
-      BodySpec spec = rod(links[i]);
+      dynamics::BodySpec spec = rod(links[i]);
       spec.X_WB = X_WL;
       joint.child = world.addBody(spec);
-      joint.parent = grounded ? WORLD_BODY : joint.child - 1;
+      joint.parent = grounded ? dynamics::WORLD_BODY : joint.child - 1;
       if (!grounded || options.held) world.addJoint(joint, angle);
     }
     drives.resize(world.jointCount());
     first_energy = energy();
   }
-  const SolveResult& step(double dt) {
-    const SolveResult& result = world.step(dt, {}, drives);
+  const dynamics::SolveResult& step(double dt) {
+    const dynamics::SolveResult& result = world.step(dt, {}, drives);
     too_fast += result.too_fast;
     return result;
   }
@@ -83,8 +83,8 @@ class Chain {
   Vector3 angularMomentum() const {
     Vector3 sum = Vector3::Zero();
     for (int i = 0; i < world.bodyCount(); ++i) {
-      const BodyState s = world.bodyState(i);
-      const MassProperties& body = world.bodySpec(i).inertial;
+      const dynamics::BodyState s = world.bodyState(i);
+      const geometry::MassProperties& body = world.bodySpec(i).inertial;
       const Matrix3 R = s.X_WB.linear();
       sum += R * body.inertia * R.transpose() * s.w_WB + body.mass * (s.X_WB * body.com).cross(s.v_WCom);
     }
@@ -100,8 +100,8 @@ class Chain {
     return first_energy - lowest;
   }
 
-  World world;
-  std::vector<JointDrive> drives;
+  dynamics::World world;
+  std::vector<dynamics::JointDrive> drives;
   double first_energy = 0;
   int too_fast = 0;
 };
@@ -110,24 +110,24 @@ class Chain {
 class Spinner {
  public:
   Spinner(int axis, double spin, double perturbation = 1e-3) : world(Vector3::Zero(), {}) {
-    BodySpec spec;
+    dynamics::BodySpec spec;
     spec.inertial.mass = 1;
     spec.inertial.inertia = Vector3(0.01, 0.02, 0.03).asDiagonal();
     body = world.addBody(spec);
-    BodyState state;
+    dynamics::BodyState state;
     state.w_WB = Vector3::Constant(perturbation * spin);
     state.w_WB[axis] = spin;
     world.setBodyState(body, state);
   }
   Vector3 momentum() const {
-    const BodyState s = world.bodyState(body);
+    const dynamics::BodyState s = world.bodyState(body);
     const Matrix3 R = s.X_WB.linear();
     return R * world.bodySpec(body).inertial.inertia * R.transpose() * s.w_WB;
   }
   /** Spin in the body's axes. */
   Vector3 bodySpin() const { return world.bodyState(body).X_WB.linear().transpose() * world.bodyState(body).w_WB; }
 
-  World world;
+  dynamics::World world;
   int body;
 };
 

@@ -8,8 +8,8 @@
 namespace blem_sim {
 
 /** A ring about z. @param radius [m] of its middle line @param thickness [m] half of it */
-inline TriangleMesh ringMesh(double radius, double thickness, int around, int across) {
-  TriangleMesh mesh;
+inline geometry::TriangleMesh ringMesh(double radius, double thickness, int around, int across) {
+  geometry::TriangleMesh mesh;
   for (int i = 0; i < around; ++i) {
     for (int j = 0; j < across; ++j) {
       const double a = 2 * M_PI * i / around, b = 2 * M_PI * j / across, r = radius + thickness * std::cos(b);
@@ -27,8 +27,8 @@ inline TriangleMesh ringMesh(double radius, double thickness, int around, int ac
 }
 
 /** A wheel about z with straight teeth. @param root, tip [m] radii between the teeth and at their ends @param width [m] along z */
-inline TriangleMesh gearMesh(int teeth, double root, double tip, double width) {
-  TriangleMesh mesh;
+inline geometry::TriangleMesh gearMesh(int teeth, double root, double tip, double width) {
+  geometry::TriangleMesh mesh;
   constexpr int CORNERS = 4;  // of a tooth: two at its root, two at its tip
   constexpr double PLACES[CORNERS] = {-0.28, -0.12, 0.12, 0.28};
   const int count = CORNERS * teeth;

@@ -14,8 +14,8 @@ namespace blem_sim {
 
 /** A robot of a random scene and its joints' command at the start. */
 struct RandomRobot {
-  RobotConfig config;
-  JointCommandMessage command;
+  sim::RobotConfig config;
+  sim::JointCommandMessage command;
   bool driven = false;  ///< a motor, which may do work
   std::string description;
 };
@@ -62,11 +62,11 @@ inline void driveJoint(SceneNumbers* numbers, const std::string& joint, RandomRo
   if (numbers->chance(0.2)) robot->config.armature[joint] = numbers->spread(1e-5, 1e-1);
   if (!robot->driven) return;
   const double stiffness = numbers->spread(1e-2, 1e5);
-  JointGains gains;
+  sim::JointGains gains;
   gains.p = stiffness;
   gains.d = numbers->chance(0.2) ? 0 : stiffness * numbers->spread(1e-3, 0.3);
   robot->config.gains[joint] = gains;
-  robot->config.motor[joint] = MotorLaw::IMPLICIT_PD;
+  robot->config.motor[joint] = sim::MotorLaw::IMPLICIT_PD;
   if (numbers->chance(0.5)) robot->config.effort_limits[joint] = numbers->spread(1e-2, 1e3);
   robot->command.joints.push_back(joint);
   robot->command.positions.push_back(numbers->uniform(-1, 1));
@@ -105,7 +105,7 @@ inline RandomRobot randomTree(SceneNumbers* numbers, const std::string& name, co
     if (!follows && numbers->chance(0.5)) robot.config.initial_positions[joint.name] = numbers->uniform(-0.5, 0.5);
   }
   robot.config.name = name;
-  robot.config.motors = MotorDefault::FREE;
+  robot.config.motors = sim::MotorDefault::FREE;
   robot.config.urdf_xml = text + "</robot>";
   robot.config.fixed_base = numbers->chance(0.5);
   robot.config.self_collision = numbers->chance(0.2);
@@ -135,12 +135,12 @@ inline RandomRobot randomHand(SceneNumbers* numbers, const std::string& name, co
     if (!follows.empty()) continue;
     const std::string joint = finger + "_joint";
     robot.config.gains[joint] = {stiffness, 0, 0.05 * stiffness};
-    robot.config.motor[joint] = MotorLaw::IMPLICIT_PD;
+    robot.config.motor[joint] = sim::MotorLaw::IMPLICIT_PD;
     robot.command.joints.push_back(joint);
     robot.command.positions.push_back(0.5 * width);
   }
   robot.config.name = name;
-  robot.config.motors = MotorDefault::FREE;
+  robot.config.motors = sim::MotorDefault::FREE;
   robot.config.urdf_xml = text + "</robot>";
   robot.config.fixed_base = true;
   robot.config.X_WR = makePose(position);

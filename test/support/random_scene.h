@@ -15,11 +15,11 @@
 namespace blem_sim {
 
 struct RandomScene {
-  SimulationConfig config;
-  std::vector<JointCommandMessage> commands;  ///< one per robot, given once at the start
-  bool passive = true;                        ///< no motor and no compliant contact: energy may only fall
-  double floor = -INFINITY;                   ///< [m] height that no centre of an object may pass downwards
-  std::string description;                    ///< one line
+  sim::SimulationConfig config;
+  std::vector<sim::JointCommandMessage> commands;  ///< one per robot, given once at the start
+  bool passive = true;                             ///< no motor and no compliant contact: energy may only fall
+  double floor = -INFINITY;                        ///< [m] height that no centre of an object may pass downwards
+  std::string description;                         ///< one line
 };
 
 /** Traits of all bodies of a scene. */
@@ -49,7 +49,7 @@ inline double ballRadius(double wanted) { return std::pow(10, std::round(20 * st
 
 inline std::string ballFile(double radius) {
   const std::string name = fmt::format("ball_{:.6g}", radius);
-  return sceneFile(name + ".urdf", [&](std::ofstream& out) {
+  return sim::sceneFile(name + ".urdf", [&](std::ofstream& out) {
     out << fmt::format(
         R"(<robot name="{}"><link name="link">{}<collision><geometry><sphere radius="{}"/></geometry></collision></link></robot>)", "ball",
         massText(1, Vector3::Zero(), Vector3::Constant(std::sqrt(2.4) * radius)), radius);
@@ -57,8 +57,8 @@ inline std::string ballFile(double radius) {
 }
 
 /** A body of this diagonal [m]: ball, cube, box, plate, rod or a round mesh. @param kind its word in descriptions */
-inline ObjectConfig randomShape(SceneNumbers* n, const std::string& name, double diagonal, std::string* kind, Vector3* extent) {
-  ObjectConfig object;
+inline sim::ObjectConfig randomShape(SceneNumbers* n, const std::string& name, double diagonal, std::string* kind, Vector3* extent) {
+  sim::ObjectConfig object;
   object.name = name;
   const int shape = n->count(0, 5);
   *kind = std::vector<std::string>{"ball", "cube", "box", "rod", "mesh", "cylinder"}[shape];
@@ -73,15 +73,15 @@ inline ObjectConfig randomShape(SceneNumbers* n, const std::string& name, double
   if (shape == 3) size = {0.12, 0.12, 1};
   if (shape == 5) size = {1, 1, n->uniform(0.2, 3)};
   size *= diagonal / size.norm();
-  if (shape <= 3) object.uri = meshFile("unit_cube", boxMesh(Vector3::Ones()));
-  if (shape == 4) object.uri = meshFile("unit_ball", icosphereMesh(0.5, 2));
-  if (shape == 5) object.uri = meshFile("unit_cylinder", cylinderMesh(0.5, 1, 16));
+  if (shape <= 3) object.uri = sim::meshFile("unit_cube", geometry::boxMesh(Vector3::Ones()));
+  if (shape == 4) object.uri = sim::meshFile("unit_ball", geometry::icosphereMesh(0.5, 2));
+  if (shape == 5) object.uri = sim::meshFile("unit_cylinder", geometry::cylinderMesh(0.5, 1, 16));
   object.scale = size;
   *extent = size;
   return object;
 }
 
-inline void moveAtStart(SceneNumbers* n, const SceneTraits& traits, double diagonal, ObjectConfig* object) {
+inline void moveAtStart(SceneNumbers* n, const SceneTraits& traits, double diagonal, sim::ObjectConfig* object) {
   const double speed = n->chance(traits.throws) ? n->spread(1, 30) : n->uniform(0, 0.5);
   const double spin = n->chance(traits.spins) ? n->spread(10, 300) : n->uniform(0, 5);
   object->linear_velocity = n->direction() * speed;
@@ -99,7 +99,7 @@ inline void addBodies(SceneNumbers* n, const SceneTraits& traits, int count, con
         std::clamp(traits.size * n->spread(1 / std::sqrt(traits.size_spread), std::sqrt(traits.size_spread)), 1e-3, 10.0);
     std::string kind;
     Vector3 extent;
-    ObjectConfig object = randomShape(n, fmt::format("body{}", i), diagonal, &kind, &extent);
+    sim::ObjectConfig object = randomShape(n, fmt::format("body{}", i), diagonal, &kind, &extent);
     const double weight = n->uniform(100, 8000) * extent.prod();
     object.mass = traits.any_mass ? n->spread(1e-3, 1e3) : weight;
     const int c = traits.columns;
@@ -128,21 +128,21 @@ inline void addGround(SceneNumbers* n, const SceneTraits& traits, RandomScene* s
   }
   scene->floor = 0;
   if (kind <= 2) {
-    EnvironmentConfig plane;
+    sim::EnvironmentConfig plane;
     plane.name = "ground";
     plane.plane = Eigen::Vector4d(0, 0, 1, 0);
     scene->config.environments.push_back(plane);
     scene->description += "half-space";
     return;
   }
-  scene->config.environments.push_back(ground(1000));
+  scene->config.environments.push_back(sim::ground(1000));
   scene->description += kind >= 8 ? "tray" : "sheet";
   if (kind < 8) return;
   const double inner = traits.size * (traits.columns + 1) * traits.pitch * std::sqrt(traits.size_spread), wall = 0.2 * inner;
   for (int side = 0; side < 4; ++side) {
-    EnvironmentConfig board;
+    sim::EnvironmentConfig board;
     board.name = fmt::format("wall{}", side);
-    board.uri = meshFile("unit_cube", boxMesh(Vector3::Ones()));
+    board.uri = sim::meshFile("unit_cube", geometry::boxMesh(Vector3::Ones()));
     board.scale = side < 2 ? Vector3(wall, inner + 2 * wall, inner) : Vector3(inner + 2 * wall, wall, inner);
     const double at = (side % 2 == 0 ? 0.5 : -0.5) * (inner + wall);
     board.X_WE = makePose({side < 2 ? at : 0, side < 2 ? 0 : at, 0.45 * inner});
@@ -152,7 +152,7 @@ inline void addGround(SceneNumbers* n, const SceneTraits& traits, RandomScene* s
 
 /** Gravity, surfaces and the step. */
 inline void setConditions(SceneNumbers* n, RandomScene* scene) {
-  SimulationConfig& config = scene->config;
+  sim::SimulationConfig& config = scene->config;
   if (n->chance(0.08)) config.gravity = Vector3::Zero();
   if (n->chance(0.08)) config.gravity = 9.81 * (n->direction() - Vector3(0, 0, 2)).normalized();
   if (n->chance(0.1)) config.time_step = n->chance(0.5) ? 0.002 : 0.0005;
@@ -192,7 +192,7 @@ inline RandomScene randomScene(std::uint64_t seed) {
     const double width = n.spread(0.02, 0.2);
     const Vector3 place(-10 * std::max(width, traits.size), 0, 5 * width);
     addRobot(randomHand(&n, "hand", place, width), &scene);
-    ObjectConfig held = box("held", Vector3(width, 0.8 * width, 0.8 * width), 1000 * width * width * width, place);
+    sim::ObjectConfig held = sim::box("held", Vector3(width, 0.8 * width, 0.8 * width), 1000 * width * width * width, place);
     held.contact.friction = n.uniform(0.3, 1.5);
     scene.config.objects.push_back(held);
   }

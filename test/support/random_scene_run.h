@@ -37,19 +37,19 @@ struct SceneOutcome {
 /** Watches the steps of one scene. */
 class SceneWatch {
  public:
-  SceneWatch(const RandomScene& scene, const Simulator& simulator, SceneOutcome* outcome)
+  SceneWatch(const RandomScene& scene, const sim::Simulator& simulator, SceneOutcome* outcome)
       : scene_(scene), simulator_(simulator), outcome_(*outcome) {
     start_ = simulator.report().energy + lag(simulator.report());
-    for (const BodyState& body : simulator.report().bodies) above_.push_back(body.X_WB.translation().z() > scene.floor);
+    for (const dynamics::BodyState& body : simulator.report().bodies) above_.push_back(body.X_WB.translation().z() > scene.floor);
   }
 
-  void look(const StepReport& report, double seconds) {
+  void look(const sim::StepReport& report, double seconds) {
     ++outcome_.steps;
     for (int bit = 0; bit < STATUS_BITS; ++bit) outcome_.bits[bit] += (report.status >> bit) & 1;
     told_ = told_ | report.status;
     outcome_.worst_step = std::max(outcome_.worst_step, seconds);
     outcome_.gained += report.energy_gained;
-    if (report.status & STATE_NOT_FINITE) outcome_.fail("not finite", fmt::format("at {:.3f} s", report.time));
+    if (report.status & sim::STATE_NOT_FINITE) outcome_.fail("not finite", fmt::format("at {:.3f} s", report.time));
     lookAtEnergy(report);
     lookAtFloor(report);
   }
@@ -58,7 +58,7 @@ class SceneWatch {
 
  private:
   // Without drives energy is at most that of the start plus the gains that the steps said.
-  void lookAtEnergy(const StepReport& report) {
+  void lookAtEnergy(const sim::StepReport& report) {
     const double rise = report.energy - start_;
     if (!std::isfinite(rise)) return;
     scale_ = std::max({scale_, simulator_.world().kineticEnergy(), std::abs(rise)});
@@ -69,17 +69,17 @@ class SceneWatch {
   }
   /** [J] bound on the energy that is not known, by the fall of bodies in half a step: taken for a whole one. If a step is shortened, it
    * stays as it was until then. */
-  double lag(const StepReport& report) const {
+  double lag(const sim::StepReport& report) const {
     double energy = 0;
     for (std::size_t b = 0; b < report.bodies.size(); ++b)
       energy += report.dt * simulator_.world().bodySpec(static_cast<int>(b)).inertial.mass *
                 std::abs(simulator_.gravity().dot(report.bodies[b].v_WCom));
     return energy;
   }
-  void lookAtFloor(const StepReport& report) {
-    if (told_ & (CONTACT_UNRELIABLE | STATE_NOT_FINITE)) return;
-    for (const ModelInfo& model : simulator_.models()) {
-      if (model.kind != ModelKind::OBJECT) continue;
+  void lookAtFloor(const sim::StepReport& report) {
+    if (told_ & (sim::CONTACT_UNRELIABLE | sim::STATE_NOT_FINITE)) return;
+    for (const sim::ModelInfo& model : simulator_.models()) {
+      if (model.kind != sim::ModelKind::OBJECT) continue;
       const int body = model.bodies[0];
       const double height = report.bodies[body].X_WB.translation().z();
       if (above_[body] && height < scene_.floor)
@@ -89,7 +89,7 @@ class SceneWatch {
   }
 
   const RandomScene& scene_;
-  const Simulator& simulator_;
+  const sim::Simulator& simulator_;
   SceneOutcome& outcome_;
   std::vector<bool> above_;
   std::uint32_t told_ = 0;
@@ -101,14 +101,14 @@ inline void runRandomScene(std::uint64_t seed, double duration, SceneOutcome* ou
   SceneOutcome& outcome = *out;
   outcome.seed = seed;
   const RandomScene scene = randomScene(seed);
-  Simulator simulator(scene.config, UriResolver());
+  sim::Simulator simulator(scene.config, model::UriResolver());
   for (std::size_t i = 0; i < scene.commands.size(); ++i)
     if (!scene.commands[i].joints.empty()) simulator.commandJoints(static_cast<int>(i), scene.commands[i]);
   SceneWatch watch(scene, simulator, &outcome);
   const long steps = std::lround(duration / scene.config.time_step);
   for (long i = 0; i < steps && !outcome.failed(); ++i) {
     const double start = threadSeconds();
-    const StepReport& report = simulator.step();
+    const sim::StepReport& report = simulator.step();
     watch.look(report, threadSeconds() - start);
     outcome.of_energy = outcome.gained / std::max(watch.scale(), 1e-9);
   }

@@ -29,7 +29,7 @@ class SceneNumbers {
   }
 
  private:
-  RandomNumbers numbers_;
+  sim::RandomNumbers numbers_;
 };
 
 }  // namespace blem_sim

@@ -8,7 +8,7 @@
 
 #include "blem_sim/contact/collider.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 /** A pair of colliders that may be within rA + rB + margin of each other; a < b. */
 struct ColliderPair {
@@ -88,4 +88,4 @@ class BroadPhase {
   std::vector<ColliderPair> pairs_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

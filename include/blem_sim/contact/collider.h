@@ -11,7 +11,7 @@
 #include "blem_sim/geometry/mesh_topology.h"
 #include "blem_sim/geometry/triangle_mesh.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 /** Surface of a body as contact response wants it. */
 struct SurfaceProperties {
@@ -33,14 +33,15 @@ SurfaceProperties combineSurfaces(const SurfaceProperties& a, const SurfacePrope
 class CollisionGeometry {
  public:
   /** @param topology of the mesh, if it is at hand */
-  explicit CollisionGeometry(std::shared_ptr<const TriangleMesh> mesh, std::shared_ptr<const MeshTopology> topology = nullptr);
+  explicit CollisionGeometry(std::shared_ptr<const geometry::TriangleMesh> mesh,
+                             std::shared_ptr<const geometry::MeshTopology> topology = nullptr);
   /** The solid half-space normal . x <= offset; normal is made unit. */
   static std::shared_ptr<const CollisionGeometry> halfSpace(const Vector3& normal, double offset);
 
   bool isHalfSpace() const { return mesh_ == nullptr; }
-  const TriangleMesh& mesh() const { return *mesh_; }
-  const MeshTopology& topology() const { return *topology_; }
-  const Bvh& bvh() const { return bvh_; }
+  const geometry::TriangleMesh& mesh() const { return *mesh_; }
+  const geometry::MeshTopology& topology() const { return *topology_; }
+  const geometry::Bvh& bvh() const { return bvh_; }
   /** Per node of the tree: whether an element below it owns a vertex or an edge. Two nodes that own nothing have no contact. */
   const std::vector<std::uint8_t>& owners() const { return owners_; }
   /** A number that no other geometry of this run has; 0 for a half-space. */
@@ -54,9 +55,9 @@ class CollisionGeometry {
   CollisionGeometry() = default;
   void findOwners();
 
-  std::shared_ptr<const TriangleMesh> mesh_;
-  std::shared_ptr<const MeshTopology> topology_;
-  Bvh bvh_;
+  std::shared_ptr<const geometry::TriangleMesh> mesh_;
+  std::shared_ptr<const geometry::MeshTopology> topology_;
+  geometry::Bvh bvh_;
   std::vector<std::uint8_t> owners_;
   std::uint64_t identity_ = 0;
   Box bounds_;
@@ -77,4 +78,4 @@ struct Collider {
   bool enabled = true;  ///< false: an unloaded slot, never collides; the next environment takes it
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -8,7 +8,7 @@
 
 #include "blem_sim/contact/collider.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 /** The order of pairs: by a, then by b. */
 struct IsPairBefore {
@@ -45,4 +45,4 @@ void removePairsOf(int collider, std::vector<Item>* items) {
   items->erase(std::remove_if(items->begin(), items->end(), has_it), items->end());
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

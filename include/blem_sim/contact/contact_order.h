@@ -5,7 +5,7 @@
 
 #include "blem_sim/contact/manifold.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 /** A direction that no mesh has: few contacts share a place along it. Unit, but for 1e-5. */
 inline const Vector3 UNCOMMON_DIRECTION(0.5773, 0.6411, 0.5057);
@@ -22,4 +22,4 @@ void makeUsable(std::vector<Contact>& contacts);
 /** Sorts indices of contacts by contactBefore. */
 void sortCanonically(const std::vector<Contact>& contacts, std::vector<int>* indices);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -7,7 +7,7 @@
 
 #include "blem_sim/geometry/types.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 /** One contact of a pair (A, B); NaN until filled. */
 struct Contact {
@@ -42,4 +42,4 @@ struct ContactManifold {
   double maxDepth() const;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

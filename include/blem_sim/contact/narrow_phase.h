@@ -6,7 +6,7 @@
 #include "blem_sim/contact/collider.h"
 #include "blem_sim/contact/manifold.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 /** Memory of the search for the contacts of one pair, from step to step. It saves time and changes no result: it is no state. */
 class NarrowPhaseMemory {
@@ -38,4 +38,4 @@ class NarrowPhaseMemory {
 void narrowPhase(const Collider& a, const Pose& X_WA, const Collider& b, const Pose& X_WB, double margin, ContactManifold* out,
                  const Pose* X_AB_apart = nullptr, NarrowPhaseMemory* memory = nullptr);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -7,7 +7,7 @@
 #include "blem_sim/contact/collider.h"
 #include "blem_sim/geometry/ray_cast.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 /** A collider where it stands. Holds its geometry, whatever becomes of the collider. */
 struct RayTarget {
@@ -33,17 +33,17 @@ class RayScene {
     int target = -1;                                     ///< -1: no hit
   };
   /** @param ray in the world @return first hit, the smaller target of several */
-  Hit firstHit(const Ray& ray, const Query& query) const;
+  Hit firstHit(const geometry::Ray& ray, const Query& query) const;
 
  private:
-  double hit(int target, const Ray& ray, const RayRange& range) const;
-  void add(int target, const Ray& ray, const Query& query, Hit* first) const;
+  double hit(int target, const geometry::Ray& ray, const geometry::RayRange& range) const;
+  void add(int target, const geometry::Ray& ray, const Query& query, Hit* first) const;
 
   std::vector<RayTarget> targets_;
   std::vector<Pose> X_CW_;      // of each target
   std::vector<int> unbounded_;  // half-spaces
   std::vector<int> bounded_;    // the others, in the order of the tree's elements
-  Bvh boxes_;                   // over diagonals of the world's boxes of the bounded ones
+  geometry::Bvh boxes_;         // over diagonals of the world's boxes of the bounded ones
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

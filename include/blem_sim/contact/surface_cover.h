@@ -6,7 +6,7 @@
 #include "blem_sim/contact/collider.h"
 #include "blem_sim/contact/manifold.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 /**
  * Whether other surfaces of the same body cover a contact: it would not exist if all were one mesh. It is covered if another one, on which
@@ -50,4 +50,4 @@ class SurfaceCover {
   std::vector<Sector> sectors_;  // in that plane
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -3,7 +3,7 @@
 
 #include "blem_sim/contact/collider.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 /** A geometry on its way from one state to another: the middle of its turn moves straight and evenly, the turn is even about one axis. */
 struct GeometrySweep {
@@ -29,4 +29,4 @@ double mostApproach(const CollisionGeometry& a, const GeometrySweep& sweep_a, co
 bool mayComeWithin(double distance, const CollisionGeometry& a, const GeometrySweep& sweep_a, const CollisionGeometry& b,
                    const GeometrySweep& sweep_b);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

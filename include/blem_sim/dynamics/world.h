@@ -8,7 +8,7 @@
 
 #include "blem_sim/dynamics/world_types.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 /**
  * Bodies and joints in an ODE world. Deterministic: same calls, same bits. Not thread safe.
@@ -47,7 +47,7 @@ class World {
    * Gives a body other mass properties, where it is and as it moves.
    * @throws InputError if they are no body's, nothing being changed
    */
-  void setInertial(int body, const MassProperties& inertial);
+  void setInertial(int body, const geometry::MassProperties& inertial);
   /** Precondition: lower <= upper. @param lower, upper [rad or m] */
   void setJointLimits(int joint, double lower, double upper);
   /** Sets JointState::effort, the motor's, of every joint [N m or N] until the next step, for steps that are made of several of the
@@ -89,4 +89,4 @@ class World {
 /** Names of the steppers: world_step, quick_step, articulated. */
 std::vector<std::string> stepperNames();
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

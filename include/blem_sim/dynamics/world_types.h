@@ -9,14 +9,14 @@
 #include "blem_sim/geometry/triangle_mesh.h"
 #include "blem_sim/geometry/types.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 constexpr int WORLD_BODY = -1;  ///< the static world where a body is asked for
 
 /** A rigid body. Its frame B is wherever its maker put it (a link's frame, a mesh's frame); the centre of mass may be elsewhere. */
 struct BodySpec {
-  std::string name;         ///< "model::link"
-  MassProperties inertial;  ///< mass > 0, com and inertia in B's axes, inertia about the com
+  std::string name;                   ///< "model::link"
+  geometry::MassProperties inertial;  ///< mass > 0, com and inertia in B's axes, inertia about the com
   Pose X_WB = Pose::Identity();
 };
 
@@ -116,4 +116,4 @@ struct WorldState {
   bool operator==(const WorldState& o) const { return numbers == o.numbers && words == o.words; }
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

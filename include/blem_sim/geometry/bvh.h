@@ -6,7 +6,7 @@
 
 #include "blem_sim/geometry/triangle_mesh.h"
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 
 /**
  * Binary tree of axis-aligned float boxes in the mesh's frame, rounded outwards, so that a box always holds all of its elements.
@@ -60,4 +60,4 @@ void visitLeavesBelowPlane(const Bvh& tree, const Vector3& n, double d, double m
 /** Exact smallest distance [m] from a point to the mesh, by the tree. Infinity for an empty mesh. */
 double distanceToMesh(const Bvh& tree, const TriangleMesh& mesh, const Vector3& p);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

@@ -8,7 +8,7 @@
 
 #include "blem_sim/geometry/bvh.h"
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 namespace bvh_detail {
 
 /** Bound of the rounding of a few sums and products, relative to the largest term. */
@@ -151,4 +151,4 @@ void visitLeavesBelowPlane(const Bvh& tree, const Vector3& n, double d, double m
   visitLeavesIf(tree, meets, visit);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

@@ -7,7 +7,7 @@
 
 #include "blem_sim/geometry/triangle_mesh.h"
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 
 /** Closest points of two sets; NaN until filled, so that an unfilled field shows. */
 struct ClosestPoints {
@@ -39,4 +39,4 @@ bool segmentCrossesTriangle(const Vector3& p, const Vector3& q, const Triangle& 
 /** Exact distance of two meshes by testing every pair: the oracle. @param X_BA pose of A's frame in B's; the points are in B's frame */
 ClosestPoints closestMeshMeshBruteForce(const TriangleMesh& a, const TriangleMesh& b, const Pose& X_BA);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

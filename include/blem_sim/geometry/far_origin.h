@@ -5,7 +5,7 @@
 
 #include "blem_sim/geometry/types.h"
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 
 /** [m] from the origin, beyond which floats step by 0.06 mm and more. */
 constexpr double FAR_AWAY = 1000;
@@ -18,4 +18,4 @@ inline Vector3 farOrigin(const Box& bounds) {
   return middle.norm() > std::max(FAR_AWAY, bounds.diagonal().norm()) ? Vector3(middle.array().round()) : Vector3::Zero();
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

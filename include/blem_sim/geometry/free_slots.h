@@ -3,7 +3,7 @@
 
 #include <set>
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 
 /** Takes the lowest free slot, else a new one at the end. @param free slots of `items` that nobody has @return the slot */
 template <typename Items>
@@ -17,4 +17,4 @@ int takeSlot(std::set<int>* free, Items* items) {
   return slot;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

@@ -4,7 +4,7 @@
 #include "blem_sim/geometry/mesh_topology.h"
 #include "blem_sim/geometry/triangle_mesh.h"
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 
 /** Changes that mendMesh made. */
 struct MeshMending {
@@ -43,4 +43,4 @@ constexpr double PLANE_DEVIATION = 2e-5;
  */
 TriangleMesh mendMesh(const TriangleMesh& mesh, MeshReport* report, MeshMending* what = nullptr, MeshTopology* topology = nullptr);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

@@ -5,7 +5,7 @@
 
 #include "blem_sim/geometry/triangle_mesh.h"
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 
 /** Result of shrinkMesh: vertices that moved, and how well the layer's outside meets the old surface. */
 struct MeshShrinking {
@@ -27,4 +27,4 @@ struct MeshShrinking {
  */
 TriangleMesh shrinkMesh(const TriangleMesh& mesh, double r, MeshShrinking* what);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

@@ -7,7 +7,7 @@
 
 #include "blem_sim/geometry/triangle_mesh.h"
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 
 struct SidesByVertex;
 
@@ -165,4 +165,4 @@ class MeshTopology {
   std::vector<std::uint8_t> owned_;  // bits 0-2 vertices, 3-5 edges, 6 FACE
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

@@ -5,7 +5,7 @@
 #include <cctype>
 #include <string>
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 
 /** Control characters, line ends among them, become spaces. */
 inline std::string oneLine(std::string text) {
@@ -14,4 +14,4 @@ inline std::string oneLine(std::string text) {
   return text;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

@@ -3,7 +3,7 @@
 
 #include "blem_sim/geometry/ray_traversal.h"
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 
 struct RayHit {
   double t = std::numeric_limits<double>::infinity();  ///< in units of the ray's direction
@@ -26,4 +26,4 @@ double hitBall(const Ray& ray, const RayRange& range, const Vector3& centre, dou
 /** The same for all points within `radius` of the segment from p to q. */
 double hitCapsule(const Ray& ray, const RayRange& range, const std::array<Vector3, 2>& axis, double radius);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

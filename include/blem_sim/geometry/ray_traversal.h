@@ -8,7 +8,7 @@
 
 #include "blem_sim/geometry/bvh_traversal.h"
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 
 /** A ray in any frame; lengths along it are in units of its direction. */
 struct Ray {
@@ -78,4 +78,4 @@ void visitLeavesAlong(const RaySlabs& ray, const Bvh& tree, const double* farthe
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

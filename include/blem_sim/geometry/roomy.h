@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 
 /** Makes room for `count` items, where there is less for twice as many, so that a list that was emptied does not ask for memory whenever it
  * is longer by one than it ever was. */
@@ -19,4 +19,4 @@ void resizeRoomy(std::size_t count, Items* items, const Item&... filled_with) {
   items->resize(count, filled_with...);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

@@ -7,7 +7,7 @@
 
 #include "blem_sim/geometry/types.h"
 
-namespace blem_sim {
+namespace blem_sim::geometry {
 
 /**
  * A soup of elements. An element is a triangle of vertex indices whose corners may coincide: {i, j, k} is a triangle, {i, j, j} a
@@ -103,4 +103,4 @@ bool massFromVolume(const TriangleMesh& mesh, double mass, MassProperties* out);
 /** Uniform density on the surface (triangles by area; else segments by length; else points): a thin shell. */
 MassProperties massFromSurface(const TriangleMesh& mesh, double mass);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::geometry

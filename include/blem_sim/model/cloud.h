@@ -6,7 +6,7 @@
 
 #include "blem_sim/geometry/triangle_mesh.h"
 
-namespace blem_sim {
+namespace blem_sim::model {
 
 /** One filter of a cloud, by PCL. Numbers that a kind does not name are not used. */
 struct CloudFilter {
@@ -55,4 +55,4 @@ double pointSpacing(const std::vector<Vector3>& points);
 /** Boundary [m] that suits a spacing [m]: 0.3 of it, 0.1 mm at least; CloudOptions' own for a cloud without a spacing. */
 double pointRadius(double spacing);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::model

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace blem_sim {
+namespace blem_sim::model {
 
 /** Rule for files that others name: below these folders alone, wherever links lead. */
 class FileRoots {
@@ -19,4 +19,4 @@ class FileRoots {
   std::vector<std::string> folders_;  // without links
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::model

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace blem_sim {
+namespace blem_sim::model {
 
 /** Text of an element, or of an attribute, inside a block. */
 struct GazeboValue {
@@ -22,4 +22,4 @@ struct GazeboBlock {
   std::vector<GazeboBlock> blocks;  ///< sensors and plugins inside
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::model

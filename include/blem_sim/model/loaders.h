@@ -13,7 +13,7 @@
 #include "blem_sim/model/file_roots.h"
 #include "blem_sim/model/robot_model.h"
 
-namespace blem_sim {
+namespace blem_sim::model {
 
 /** Resolves package://NAME/path, file://path, absolute and relative paths to a file that exists. */
 class UriResolver {
@@ -47,10 +47,10 @@ constexpr double TREE_FRACTION = 0.3;
 
 /** A mesh or a cloud as the contact room takes it. */
 struct LoadedSurface {
-  std::shared_ptr<const TriangleMesh> mesh;      ///< scaled, cleaned, mended, mesh frame
-  std::shared_ptr<const MeshTopology> topology;  ///< of the mesh, if mending has found it; else null
-  double radius = 0;                             ///< [m] > 0 for clouds as points: their boundary
-  MeshReport report;
+  std::shared_ptr<const geometry::TriangleMesh> mesh;      ///< scaled, cleaned, mended, mesh frame
+  std::shared_ptr<const geometry::MeshTopology> topology;  ///< of the mesh, if mending has found it; else null
+  double radius = 0;                                       ///< [m] > 0 for clouds as points: their boundary
+  geometry::MeshReport report;
 };
 
 /**
@@ -84,4 +84,4 @@ RobotModel loadUrdf(const std::string& xml, const std::string& source, const Uri
 RobotModel loadUrdfFile(const std::string& file, const UriResolver& resolver, Mending mending = Mending::ON,
                         const LoadProgress& progress = {});
 
-}  // namespace blem_sim
+}  // namespace blem_sim::model

@@ -11,16 +11,16 @@
 #include "blem_sim/geometry/triangle_mesh.h"
 #include "blem_sim/model/gazebo_blocks.h"
 
-namespace blem_sim {
+namespace blem_sim::model {
 
 /** Mass [kg], centre of mass [m] and inertia [kg m^2] about the centre of mass, both in the axes of the frame they are given in. */
-using Inertial = MassProperties;
+using Inertial = geometry::MassProperties;
 
 /** One collision shape. Spheres are a point, capsules a segment, with their radius as boundary; all else is a mesh of triangles. */
 struct CollisionShape {
-  std::shared_ptr<const TriangleMesh> mesh;  ///< in the link's frame, scaled and cleaned
-  double radius = 0;                         ///< [m] > 0: this is the boundary, exactly; 0: the configured boundary width applies
-  MeshReport report;
+  std::shared_ptr<const geometry::TriangleMesh> mesh;  ///< in the link's frame, scaled and cleaned
+  double radius = 0;                                   ///< [m] > 0: this is the boundary, exactly; 0: the configured boundary width applies
+  geometry::MeshReport report;
 };
 
 struct LinkModel {
@@ -137,4 +137,4 @@ struct LumpedRobot {
  */
 LumpedRobot lumpFixedJoints(const RobotModel& robot, const std::set<std::string>& keep, bool fixed_base);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::model

@@ -8,7 +8,7 @@
 
 #include "blem_sim/geometry/types.h"
 
-namespace blem_sim {
+namespace blem_sim::model {
 
 /** Settings of a VoxelMap. */
 struct VoxelMapOptions {
@@ -56,4 +56,4 @@ class VoxelMap {
   std::vector<Cell> cells_;                                   // sorted by key
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::model

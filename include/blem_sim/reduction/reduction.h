@@ -8,7 +8,7 @@
 #include "blem_sim/contact/collider.h"
 #include "blem_sim/contact/manifold.h"
 
-namespace blem_sim {
+namespace blem_sim::reduction {
 
 /** Identities of contacts (Contact::id), ascending. */
 using ContactIds = std::vector<std::uint64_t>;
@@ -19,8 +19,8 @@ using ContactIds = std::vector<std::uint64_t>;
  * @param chosen_before ids of the contacts kept of the same pair in the step before: among equal choices that choice is gone on with
  * @param reduced overwritten; sorted by id; not `contacts` itself
  */
-using ReduceFunction = void (*)(const std::vector<Contact>& contacts, int k, const ContactIds& chosen_before,
-                                std::vector<Contact>* reduced);
+using ReduceFunction = void (*)(const std::vector<contact::Contact>& contacts, int k, const ContactIds& chosen_before,
+                                std::vector<contact::Contact>* reduced);
 
 /** One way to reduce contacts; a new one is one function and one row in the table. */
 struct Reduction {
@@ -37,30 +37,34 @@ const Reduction* findReduction(const std::string& name);
 
 /** Hull: within equal normals the corners of the convex hull (lossless, [Hauser 2013, 5]), points deeper than the hull's own interpolation
  * kept; beyond k the extremes that span the wrench cone best are kept. Allocates nothing once it has seen as many contacts. */
-void reduceHull(const std::vector<Contact>& contacts, int k, const ContactIds& chosen_before, std::vector<Contact>* reduced);
+void reduceHull(const std::vector<contact::Contact>& contacts, int k, const ContactIds& chosen_before,
+                std::vector<contact::Contact>* reduced);
 /** Average-linkage clusters of (x, n, p), then their means [Hauser 2013, 3.4]. O(N^2 log N); above 300 contacts k-means, as the paper does.
  */
-void reduceHierarchical(const std::vector<Contact>& contacts, int k, const ContactIds& chosen_before, std::vector<Contact>* reduced);
+void reduceHierarchical(const std::vector<contact::Contact>& contacts, int k, const ContactIds& chosen_before,
+                        std::vector<contact::Contact>* reduced);
 /** Lloyd's k-means on (x, n, p), k iterations, farthest-point start (no random number). */
-void reduceKmeans(const std::vector<Contact>& contacts, int k, const ContactIds& chosen_before, std::vector<Contact>* reduced);
+void reduceKmeans(const std::vector<contact::Contact>& contacts, int k, const ContactIds& chosen_before,
+                  std::vector<contact::Contact>* reduced);
 /** All contacts. */
-void reduceNone(const std::vector<Contact>& contacts, int k, const ContactIds& chosen_before, std::vector<Contact>* reduced);
+void reduceNone(const std::vector<contact::Contact>& contacts, int k, const ContactIds& chosen_before,
+                std::vector<contact::Contact>* reduced);
 
 /** reduceHull in place. */
-void reduceHull(std::vector<Contact>& contacts, int k, const ContactIds& chosen_before = {});
+void reduceHull(std::vector<contact::Contact>& contacts, int k, const ContactIds& chosen_before = {});
 
 /** Contacts that each pair of colliders kept in the last reduction. They decide between equal choices of the next one: state. */
 class ReductionMemory {
  public:
-  const ContactIds& of(const ContactManifold& manifold) const;
-  void remember(const std::vector<ContactManifold>& manifolds);
+  const ContactIds& of(const contact::ContactManifold& manifold) const;
+  void remember(const std::vector<contact::ContactManifold>& manifolds);
   void clear() { choices_.clear(); }
   /** Forgets the pairs of a collider whose slot another one may take. */
   void forget(int collider);
   /** State as words, for save and restore. */
   void append(std::vector<std::uint64_t>* words) const;
   /** @param colliders whose pairs they may be @return false if the words up to `end` are none that append wrote */
-  bool read(const std::vector<Collider>& colliders, const std::uint64_t** cursor, const std::uint64_t* end);
+  bool read(const std::vector<contact::Collider>& colliders, const std::uint64_t** cursor, const std::uint64_t* end);
 
   struct Choice {
     int a, b;
@@ -77,7 +81,7 @@ class ReductionMemory {
  * edge or a point count fully, those of a patch with more corners by the share of 32 directions in which each lies farthest out. A patch
  * is as stiff as five springs at most, whatever its tessellation; contacts at one place share.
  */
-void weighSprings(std::vector<Contact>& contacts);
+void weighSprings(std::vector<contact::Contact>& contacts);
 
 /** Contacts a model should have: a wish. */
 struct ContactBudget {
@@ -104,8 +108,8 @@ struct ReductionLoss {
  * @param memory of the last reduction, overwritten by this one's
  * @param reduced overwritten, its memory used again; manifold by manifold the contacts kept
  */
-ReductionLoss reduceManifolds(const std::vector<ContactManifold>& manifolds, const std::vector<int>& model_a,
+ReductionLoss reduceManifolds(const std::vector<contact::ContactManifold>& manifolds, const std::vector<int>& model_a,
                               const std::vector<int>& model_b, const std::vector<ContactBudget>& budgets, const Reduction& method,
-                              ReductionMemory* memory, std::vector<ContactManifold>* reduced);
+                              ReductionMemory* memory, std::vector<contact::ContactManifold>* reduced);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::reduction

@@ -20,7 +20,7 @@ namespace YAML {
 class Node;
 }
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /** Contact settings that may be set again per environment, robot, object or link; unset ones inherit. */
 struct ContactOverrides {
@@ -31,12 +31,12 @@ struct ContactOverrides {
 struct ContactConfig {
   double boundary_width = 0.0025;  ///< [m] robots and objects; environments default to 0
   bool shrink = false;             ///< meshes by their boundary_width, so that outer dimensions stay (shrinkMesh)
-  SurfaceProperties surface;
-  FrictionRule friction_rule = FrictionRule::MIN;
+  contact::SurfaceProperties surface;
+  contact::FrictionRule friction_rule = contact::FrictionRule::MIN;
   int max_contacts_per_robot = 50;
   int max_contacts_per_object = 20;
   std::string reduction = "hull";
-  Mending mending = Mending::ON;  ///< of the meshes of robots, objects and environments
+  model::Mending mending = model::Mending::ON;  ///< of the meshes of robots, objects and environments
 };
 
 /** A cloud that a sensor sends anew again and again. */
@@ -45,7 +45,7 @@ struct LiveConfig {
   std::string topic;            ///< sensor_msgs/PointCloud2; empty: the environment is no live one
   std::string frame = "world";  ///< that points are turned into, taken for the world's
   Update update = Update::REPLACE;
-  VoxelMapOptions map;          ///< of ACCUMULATE
+  model::VoxelMapOptions map;   ///< of ACCUMULATE
   double fade_speed = 0.00025;  ///< [m/s] at which points come and go below what stands on them
 };
 
@@ -56,7 +56,7 @@ struct EnvironmentConfig {
   LiveConfig live;                       ///< a topic (node only): Simulator::updateCloud brings the points
   Pose X_WE = Pose::Identity();
   Vector3 scale = Vector3::Ones();
-  CloudOptions cloud;
+  model::CloudOptions cloud;
   ContactOverrides contact;
 };
 
@@ -177,7 +177,7 @@ struct ObjectConfig {
   std::optional<Vector3> com;                                                     ///< in the object's frame
   std::optional<Matrix3> inertia;                                                 ///< about com, object's axes
   Vector3 linear_velocity = Vector3::Zero(), angular_velocity = Vector3::Zero();  ///< [m/s, rad/s] at the start, world axes
-  CloudOptions cloud;
+  model::CloudOptions cloud;
   ContactOverrides contact;
   std::optional<int> max_contacts;
 };
@@ -193,7 +193,7 @@ struct SimulationConfig {
   bool paused = false;
   Vector3 gravity = Vector3(0, 0, -9.81);
   std::uint64_t random_seed = 1;
-  SolverSettings solver;
+  dynamics::SolverSettings solver;
   ContactConfig contact;
   std::vector<EnvironmentConfig> environments;
   std::vector<RobotConfig> robots;
@@ -222,4 +222,4 @@ std::map<std::string, JointGains> parsePidGains(const YAML::Node& node, const st
 /** One environment entry, as the load_environment service takes it. */
 EnvironmentConfig parseEnvironment(const YAML::Node& node, const std::string& source);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

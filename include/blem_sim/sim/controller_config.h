@@ -9,7 +9,7 @@ namespace YAML {
 class Node;
 }
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /** Position errors [rad or m] that a joint may have; 0: any. */
 struct JointConstraint {
@@ -46,4 +46,4 @@ const std::vector<std::string>& controllerKeys(ControllerKind kind);
  */
 ControllerConfig parseController(const YAML::Node& node, const std::string& source, ControllerConfig settings);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -6,7 +6,7 @@
 #include "blem_sim/geometry/types.h"
 #include "blem_sim/sim/simulator.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /** Red, green and blue, 0 to 1. */
 struct Colour {
@@ -37,4 +37,4 @@ Vector3 forceOnMovingSide(const ContactReport& contact);
 /** Weight [N] of everything that moves; without gravity as at 1 m/s^2. */
 double movingWeight(const Simulator& simulator);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

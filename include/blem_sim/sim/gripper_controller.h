@@ -6,7 +6,7 @@
 
 #include "blem_sim/sim/trajectory_controller.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 struct GripperState {
   double position = 0;  ///< [m or rad]
@@ -46,7 +46,7 @@ class GripperController {
     JointSpline::Knot last;  ///< of its path: another one means that the path was replaced
   };
 
-  JointState joint() const;
+  dynamics::JointState joint() const;
   double errorFrom(double position) const;
   bool replaced() const;
   GoalOutcome end(GoalEnd end, const std::string& text);
@@ -60,4 +60,4 @@ class GripperController {
   std::optional<Goal> goal_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -7,7 +7,7 @@
 
 #include "blem_sim/sim/simulator.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 struct JointPart {
   int robot = 0;
@@ -28,4 +28,4 @@ std::vector<LinkPart> linksOf(const Simulator& simulator, int model);
 /** A part's name without its model's. */
 std::string withoutModel(const std::string& name);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

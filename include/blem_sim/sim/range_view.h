@@ -7,7 +7,7 @@
 #include "blem_sim/contact/ray_scene.h"
 #include "blem_sim/sim/config.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /**
  * The world as a sensor may see it at the end of a step. Drawing depends on nothing else: any thread may do so at any time, or nobody,
@@ -15,7 +15,7 @@ namespace blem_sim {
  */
 struct RangeView {
   RangeSensorConfig rays;
-  std::vector<RayTarget> targets;
+  std::vector<contact::RayTarget> targets;
   Pose X_WS = Pose::Identity();  ///< sensor: it looks along x, z is up
   int model = -1;                ///< the sensor's robot, which it sees from `rays.nearest` on only
   std::uint64_t noise_seed = 0;
@@ -49,4 +49,4 @@ std::vector<float> rangesOf(const RangeView& lidar);
  */
 double measuredRange(const RangeView& view, std::size_t ray, double range);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

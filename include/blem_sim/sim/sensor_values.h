@@ -6,7 +6,7 @@
 
 #include "blem_sim/sim/simulator.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 struct SensorValues {
   std::vector<std::string> names;  ///< force_x, ...
@@ -28,4 +28,4 @@ std::vector<std::string> sensorFields(const Simulator& simulator, const SensorIn
 /** Names for a report: the sensor's own, "robot::name" where two robots have one of the same name. */
 std::vector<std::string> sensorNames(const Simulator& simulator);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -12,7 +12,7 @@
 #include "blem_sim/sim/step_report.h"
 #include "blem_sim/sim/trajectory.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /**
  * Owns the world and steps it. Single-threaded: call everything from one thread, between steps. The constructor and the load functions
@@ -20,7 +20,7 @@ namespace blem_sim {
  */
 class Simulator {
  public:
-  Simulator(const SimulationConfig& config, const UriResolver& resolver, LoadLog log = {});
+  Simulator(const SimulationConfig& config, const model::UriResolver& resolver, LoadLog log = {});
   ~Simulator();
   Simulator(const Simulator&) = delete;
   Simulator& operator=(const Simulator&) = delete;
@@ -38,11 +38,11 @@ class Simulator {
   const std::vector<ModelInfo>& models() const;
   const std::vector<RobotInfo>& robots() const;
   const std::vector<SensorInfo>& sensors() const;
-  const std::vector<Collider>& colliders() const;  ///< with pose on the body, geometry, width; markers draw them
-  const std::vector<MeshReport>& loadReport() const;
+  const std::vector<contact::Collider>& colliders() const;  ///< with pose on the body, geometry, width; markers draw them
+  const std::vector<geometry::MeshReport>& loadReport() const;
   const std::vector<std::string>& notes() const;  ///< repairs and assumptions made while loading, in words
   std::string bodyName(int body) const;           ///< "model::link", "world" for WORLD_BODY
-  const World& world() const;
+  const dynamics::World& world() const;
 
   int robotIndex(const std::string& name) const;  ///< -1 if there is none
   int modelIndex(const std::string& name) const;
@@ -95,7 +95,7 @@ class Simulator {
    */
   void removeModel(const std::string& name);
   /** Lets all later loads read files below these folders alone. */
-  void restrictFiles(const FileRoots& roots);
+  void restrictFiles(const model::FileRoots& roots);
 
   /**
    * Welds a model that can move, as it stands now, to a part of another model: it takes that part's motion and goes on with it. They do not
@@ -111,7 +111,7 @@ class Simulator {
 
   /** Moves a body, and its whole model with it as if it were rigid: joints keep their positions and stop. What is attached goes along.
    * @throws InputError: a fixed base, an attached model, numbers that are none or too large */
-  void moveModel(int body, const BodyState& to);
+  void moveModel(int body, const dynamics::BodyState& to);
   /**
    * Sets joint positions [rad or m], moved into the limits, at rest; motors hold them. The root link and other joints go on as they are.
    * @param joints with or without the robot's name before :: @throws InputError, nothing being changed
@@ -130,8 +130,8 @@ class Simulator {
   /** @param gravity [m/s^2], time_step [s]; all or nothing is taken. @throws InputError */
   void setPhysics(const Vector3& gravity, double time_step, double real_time_factor);
   /** Gives a robot's link, or an object's body, other mass properties in the link's frame. @throws InputError, nothing being changed */
-  void setLinkInertial(int body, int link, const MassProperties& inertial);
-  MassProperties linkInertial(int body, int link) const;  ///< @param link of the body's robot, -1: the body itself
+  void setLinkInertial(int body, int link, const geometry::MassProperties& inertial);
+  geometry::MassProperties linkInertial(int body, int link) const;  ///< @param link of the body's robot, -1: the body itself
   void setJointDamping(int robot, int joint, double damping);
   /** @throws InputError: limits that do not hold the joint's position, or of a joint that takes none */
   void setJointLimits(int robot, int joint, double lower, double upper);
@@ -161,4 +161,4 @@ class Simulator {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

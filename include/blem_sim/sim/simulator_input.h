@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 class Simulator;
 
@@ -28,4 +28,4 @@ class SimulatorWatcher {
 /** Makes the call that an input describes. @throws InputError: no such call, arguments that are none of it, or what the call refuses */
 void applyInput(const SimulatorInput& input, Simulator* simulator);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -13,7 +13,7 @@
 #include "blem_sim/model/robot_model.h"
 #include "blem_sim/sim/config.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 enum class ModelKind { ENVIRONMENT, ROBOT, OBJECT };
 
@@ -32,15 +32,15 @@ struct RobotInfo {
   int model = 0;
   std::string name, name_space;
   bool fixed_base = false;
-  std::shared_ptr<const RobotModel> description;
-  std::shared_ptr<const LumpedRobot> lumped;
+  std::shared_ptr<const model::RobotModel> description;
+  std::shared_ptr<const model::LumpedRobot> lumped;
   std::string root_link;
   Pose X_WR = Pose::Identity();          ///< root link at the start; a fixed base's for good
   std::vector<int> bodies;               ///< world body of lumped body i; WORLD_BODY for a fixed base
   std::vector<int> world_joints;         ///< world joint of lumped joint i, fixed ones kept for a sensor too; -1 for a floating one
   std::vector<std::string> joint_names;  ///< movable joints
   std::vector<int> joints;               ///< their world joints
-  std::vector<JointLimits> limits;
+  std::vector<model::JointLimits> limits;
   std::vector<bool> continuous;  ///< turns without end
   std::vector<bool> driven;      ///< has a motor of its own: no mimic
 };
@@ -64,9 +64,9 @@ struct JointCommandMessage {
 struct LinkPart {
   std::string name;  ///< "model::link"
   int model = -1, robot = -1;
-  int link = -1;                 ///< of the robot's description
-  int body = WORLD_BODY;         ///< that it is part of
-  Pose X_BL = Pose::Identity();  ///< in the body's frame; in the world's if it is part of that
+  int link = -1;                    ///< of the robot's description
+  int body = dynamics::WORLD_BODY;  ///< that it is part of
+  Pose X_BL = Pose::Identity();     ///< in the body's frame; in the world's if it is part of that
 };
 
 /** A model welded to a part of another one, or of the world, until it is detached or the weld breaks. */
@@ -84,17 +84,17 @@ struct AttachedModel {
 
 /** Points of a live cloud as contact takes them. */
 struct CloudSurface {
-  std::shared_ptr<const CollisionGeometry> geometry;
+  std::shared_ptr<const contact::CollisionGeometry> geometry;
   double radius = 0;                 ///< [m] of each point
   Vector3 origin = Vector3::Zero();  ///< [m] of the geometry's frame in the world: zero unless the cloud is far away
-  MeshReport report;
+  geometry::MeshReport report;
 };
 
 /**
  * Filters points and makes their tree. Any thread may call it, beside the steps; that is where the time of an update goes.
  * @param points [m] in the world @param name of the environment, in messages @throws InputError: filters that cannot be met, no point left
  */
-CloudSurface makeCloudSurface(std::vector<Vector3> points, const CloudOptions& cloud, const std::string& name);
+CloudSurface makeCloudSurface(std::vector<Vector3> points, const model::CloudOptions& cloud, const std::string& name);
 
 /** A time of simulation in which a load acts, from a step's start to another's. */
 struct LoadTime {
@@ -127,11 +127,11 @@ struct StateHeader {
 struct SimulationState {
   StateHeader header;
   std::uint64_t step = 0;
-  WorldState world;
+  dynamics::WorldState world;
   std::vector<double> numbers;
   std::vector<std::uint64_t> words;
   std::string
       layout;  ///< things the state belongs to: settings, models, bodies, joints, colliders, sensors; each with a hash of its content
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -5,7 +5,7 @@
 
 #include "blem_sim/sim/simulator.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /** Content of a state's file: little-endian, the same on every machine. */
 std::string stateBytes(const SimulationState& state);
@@ -17,4 +17,4 @@ void saveState(const SimulationState& state, const std::string& file);
 /** @throws InputError if the file cannot be read, or is not one of blem_sim's, or is cut short */
 SimulationState loadState(const std::string& file);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

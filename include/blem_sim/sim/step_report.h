@@ -13,7 +13,7 @@
 #include "blem_sim/dynamics/world_types.h"
 #include "blem_sim/sim/step_status.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 enum class Stage { SAMPLE_COMMANDS, MOTOR_TORQUE, BROAD_PHASE, NARROW_PHASE, REDUCTION, STEP_GUARD, SOLVE, SENSORS, REPORT, COUNT };
 extern const std::array<const char*, static_cast<int>(Stage::COUNT)> STAGE_NAMES;  ///< "sample_commands", ...
@@ -128,9 +128,9 @@ struct StepReport {
   std::vector<ContactReport> contacts;          ///< that acted in any part of the step
   std::vector<LayerEventReport> layer_events;   ///< in order of time, then of colliders
   std::vector<std::string> broken_attachments;  ///< models whose weld the step's forces broke
-  std::vector<BodyState> bodies;                ///< one per body slot
-  std::vector<JointState> joints;               ///< one per joint slot; efforts are means over the step
+  std::vector<dynamics::BodyState> bodies;      ///< one per body slot
+  std::vector<dynamics::JointState> joints;     ///< one per joint slot; efforts are means over the step
   std::vector<SensorSample> samples;            ///< those whose time has come
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /** Bits of StepReport::status. STEP_STATUS says what each means. */
 enum StepStatus : std::uint32_t {
@@ -46,4 +46,4 @@ inline constexpr StatusBit STEP_STATUS[] = {
      "lower time_step"},
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

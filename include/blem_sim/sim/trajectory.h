@@ -7,7 +7,7 @@
 
 #include "blem_sim/geometry/input_error.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 class NumberReader;
 
@@ -81,4 +81,4 @@ void checkTrajectory(const JointTrajectory& trajectory, const std::vector<std::s
  *  the output `ignored`. @throws InputError */
 JointTrajectory loadTrajectoryCsv(const std::string& file, const std::vector<std::string>& known_joints, std::vector<std::string>* ignored);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -8,7 +8,7 @@
 #include "blem_sim/sim/controller_config.h"
 #include "blem_sim/sim/simulator.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /** Codes of control_msgs/FollowJointTrajectory. */
 enum class GoalError { SUCCESSFUL = 0, INVALID_GOAL = -1, INVALID_JOINTS = -2, PATH_TOLERANCE_VIOLATED = -4, GOAL_TOLERANCE_VIOLATED = -5 };
@@ -142,4 +142,4 @@ class TrajectoryController {
   std::optional<Goal> goal_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

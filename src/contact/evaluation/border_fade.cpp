@@ -6,7 +6,7 @@
 #include "kernels/kernels.h"
 #include "kernels/vectors.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 using kernels::Candidate;
 using kernels::LeavingSide;
@@ -91,8 +91,8 @@ bool BorderFades::isTakenOver(bool vertex_moves, const Candidate& c, const Leavi
   const Vector3 normal = vector3(faces.faces.records[c.b].plane), down = leaving.is_above ? Vector3(-normal) : normal;
   const Matrix3& R_PS = vertex_moves ? R_FM_ : R_MF_;
   const int edge = partner.topology.edgeOf(faces.faces.names[c.b], leaving.side);
-  return blem_sim::isTakenOver({side, partner, lists_.near[vertex_moves].vertices.names[c.a], edge, R_PS, R_PS.transpose() * down},
-                               &surroundings_);
+  return blem_sim::contact::isTakenOver({side, partner, lists_.near[vertex_moves].vertices.names[c.a], edge, R_PS, R_PS.transpose() * down},
+                                        &surroundings_);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -9,7 +9,7 @@
 #include "kept/candidate_lists.h"
 #include "neighbourhood/surroundings.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 /** Vertices beside faces whose contacts fade. */
 struct BesideFaces {
@@ -17,8 +17,8 @@ struct BesideFaces {
   std::vector<kernels::BesideSides> sides;  ///< per pair: the sides that the vertex lies outside of
 
   void resize(std::size_t size) {
-    resizeRoomy(size, &pairs);
-    resizeRoomy(size, &sides);
+    geometry::resizeRoomy(size, &pairs);
+    geometry::resizeRoomy(size, &sides);
   }
 };
 
@@ -31,9 +31,9 @@ struct LeavingBuffers {
 
   void makeRoom(std::size_t pairs) {
     if (fades.size() >= pairs) return;
-    resizeRoomy(3 * pairs, &questions);
-    resizeRoomy(3 * pairs, &answers);
-    resizeRoomy(pairs, &fades);
+    geometry::resizeRoomy(3 * pairs, &questions);
+    geometry::resizeRoomy(3 * pairs, &answers);
+    geometry::resizeRoomy(pairs, &fades);
   }
 };
 
@@ -63,4 +63,4 @@ class BorderFades {
   const Matrix3 R_FM_, R_MF_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -9,7 +9,7 @@
 
 #include "evaluation/world_contact.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 /** Contacts, placed in the world at once; where meshes cross, kept with their witness points, since retraction asks for those. */
 class CloseContacts {
@@ -87,4 +87,4 @@ class CloseContacts {
   std::vector<Contact> room_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

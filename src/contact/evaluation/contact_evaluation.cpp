@@ -5,7 +5,7 @@
 
 #include "kernels/vectors.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 using kernels::Candidate;
@@ -133,4 +133,4 @@ void Evaluation::vertexVertices(const Vec4* moving, const Vec4* fixed) {
              [&](const Candidate& c) { exact_.vertexVertex(lists_.near[1].vertices.names[c.a], lists_.near[0].vertices.names[c.b]); });
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -12,7 +12,7 @@
 #include "features/mesh_pair.h"
 #include "kept/candidate_lists.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 /** Contacts and crossings that a search finds. */
 struct FoundContacts {
@@ -55,7 +55,7 @@ struct EvaluationBuffers {
 
   template <typename Items, typename... Item>
   static void makeRoom(std::size_t size, Items* items, const Item&... filled_with) {
-    if (items->size() < size) resizeRoomy(size, items, filled_with...);
+    if (items->size() < size) geometry::resizeRoomy(size, items, filled_with...);
   }
 };
 
@@ -129,4 +129,4 @@ std::uint32_t Evaluation::testBlocks(std::size_t candidates, std::vector<Hit>* h
   return count;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

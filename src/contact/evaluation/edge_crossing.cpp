@@ -5,7 +5,7 @@
 #include "features/face_borders.h"
 #include "features/feature_cones.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 /** A surface along a plane leaves it if its lean has this part (sine) off it. */
@@ -39,4 +39,4 @@ bool crosses(const MeshPair& pair, const Crossing& crossing) {
   return !at_border || (enters && along_neighbour);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -3,7 +3,7 @@
 
 #include "features/mesh_pair.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 /** An edge of one mesh passes through a face of the other. */
 struct Crossing {
@@ -18,4 +18,4 @@ struct Crossing {
  */
 bool crosses(const MeshPair& pair, const Crossing& crossing);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -9,7 +9,7 @@
 #include "kernels/kernels.h"
 #include "kernels/vectors.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 // ---- a vertex over a face
 
@@ -159,4 +159,4 @@ bool ExactTests::coneAllows(bool moves, const Feature& feature, const Vector3& d
                                              : edgeConeAllows(side, feature.index, direction, slack, &surroundings_);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -7,7 +7,7 @@
 #include "kernels/edge_records.h"
 #include "neighbourhood/surroundings.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 /** Appends the contact of a pair of features, if they have one, to a list. */
 class ExactTests {
@@ -44,4 +44,4 @@ class ExactTests {
   CloseContacts& contacts_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

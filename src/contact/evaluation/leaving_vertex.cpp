@@ -6,7 +6,7 @@
 #include "features/feature_cones.h"
 #include "kernels/kernels.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 /** Largest part (sine) along `direction` (unit, mesh's frame) of the faces of an edge: slope of its surface that way; -1 without faces. */
@@ -49,4 +49,4 @@ bool edgeConeAllows(const MeshSide& side, int edge, const Vector3& direction, do
   return allows;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -3,7 +3,7 @@
 
 #include "neighbourhood/surroundings.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 /** A vertex whose contact with an edge of the other mesh, or with a plane that ends there, leaves over that edge. */
 struct LeavingVertex {
@@ -23,4 +23,4 @@ bool isTakenOver(const LeavingVertex& leaving, SurroundingsMemory* surroundings)
 /** edgeConeAllows of feature_cones.h, by directions that are kept. */
 bool edgeConeAllows(const MeshSide& side, int edge, const Vector3& direction, double slack, SurroundingsMemory* surroundings);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

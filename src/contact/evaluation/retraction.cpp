@@ -5,7 +5,7 @@
 #include "features/edge_pair.h"
 #include "features/feature_cones.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 /** Least cosine by which a contact of meshes that cross must push the bodies apart: with sides known from before, or guessed. */
@@ -66,10 +66,10 @@ class Retraction {
   /** Calls visit(edge) for the borders of the face's plane at its corners: a border of the plane need not be one of this face. */
   template <typename Visit>
   static void forEachBorderNear(const MeshSide& side, int face, Visit&& visit) {
-    const MeshTopology& topology = side.topology;
+    const geometry::MeshTopology& topology = side.topology;
     const auto isBorder = [&topology, face](int edge) {
       if (topology.isFlatEdge(edge)) return false;
-      const EdgeFaces faces = topology.facesOf(edge);
+      const geometry::EdgeFaces faces = topology.facesOf(edge);
       return std::any_of(faces.begin(), faces.end(), [&](int other) { return topology.patchOf(other) == topology.patchOf(face); });
     };
     for (int k = 0; k < 3; ++k) {
@@ -88,7 +88,7 @@ class Retraction {
   FeatureContact byEnd(const Crossing& crossing, const MeshSide& edge_side, const MeshSide& face_side) const {
     const std::array<int, 2> ends = edge_side.topology.ends(edge_side.mesh, crossing.edge);
     const Vector3 p0 = position(edge_side, ends[0]), p1 = position(edge_side, ends[1]);
-    Vector3 normal = MeshTopology::normal(face_side.mesh, crossing.face);
+    Vector3 normal = geometry::MeshTopology::normal(face_side.mesh, crossing.face);
     if (&face_side == &pair_.moving) normal = pair_.X_FM.linear() * normal;
     const Vector3 corner = position(face_side, face_side.mesh.elements[crossing.face][0]);
     const double h0 = normal.dot(p0 - corner), h1 = normal.dot(p1 - corner);
@@ -157,4 +157,4 @@ void addRetractions(const MeshPair& pair, const Pose* X_FM_apart, const std::vec
   turnIntoMean(sides, contacts->begin() + sound, contacts->end());
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

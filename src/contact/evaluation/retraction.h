@@ -5,7 +5,7 @@
 
 #include "evaluation/edge_crossing.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 /**
  * One contact per crossing: the shortest retraction among its candidates, which are the edge's end that is on the wrong side of the face
@@ -18,4 +18,4 @@ namespace blem_sim {
 void addRetractions(const MeshPair& pair, const Pose* X_FM_apart, const std::vector<Crossing>& crossings,
                     std::vector<FeatureContact>* contacts);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -5,7 +5,7 @@
 #include "evaluation/contact_evaluation.h"
 #include "kernels/vectors.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 using kernels::Candidate;
@@ -161,4 +161,4 @@ void Evaluation::forEachBeside(bool moves, const Candidate& c, Visit&& visit) {
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

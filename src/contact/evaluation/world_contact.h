@@ -9,7 +9,7 @@
 #include "features/mesh_pair.h"
 #include "kernels/records.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 /** The middle of the overlap of the layers [Hauser 2013, 3.2]. @param p, q witness points @param normal from B to A */
 inline Vector3 placeOf(const ContactRoles& roles, const Vector3& p, const Vector3& q, const Vector3& normal) {
@@ -67,7 +67,7 @@ class ContactWriter {
   }
   /** Room for `more` contacts; whoever takes it writes every number. */
   Contact* room(std::size_t more) {
-    if (contacts_->size() < count_ + more) resizeRoomy(count_ + more, contacts_);
+    if (contacts_->size() < count_ + more) geometry::resizeRoomy(count_ + more, contacts_);
     return contacts_->data() + count_;
   }
   kernels::ContactRow* rows(std::size_t more) { return reinterpret_cast<kernels::ContactRow*>(room(more)); }
@@ -87,4 +87,4 @@ class ContactWriter {
   std::size_t count_ = 0;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -7,7 +7,7 @@
 #include "blem_sim/geometry/types.h"
 #include "features/tolerances.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 /** Segments p0 p1 and q0 q1 where their lines are closest. */
 struct EdgePair {
@@ -42,4 +42,4 @@ inline bool findEdgePair(const Vector3& p0, const Vector3& p1, const Vector3& q0
   return true;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -5,7 +5,7 @@
 
 #include "features/face_shape.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace face_borders_detail {
 
 inline int cornerAt(const FaceShape& face, const Vector3& p) {
@@ -25,7 +25,7 @@ inline bool liesOn(const MeshPair& pair, bool edge_moves, int edge, const Vector
 }
 
 template <typename Visit>
-void visitIfBorder(const MeshTopology& topology, int edge, int patch, Visit&& visit) {
+void visitIfBorder(const geometry::MeshTopology& topology, int edge, int patch, Visit&& visit) {
   if (topology.isFlatEdge(edge)) return;
   for (const int face : topology.facesOf(edge)) {
     if (topology.patchOf(face) == patch) return visit(edge, face);
@@ -39,7 +39,7 @@ template <typename Visit>
 void forEachBorderAt(const MeshPair& pair, const FaceShape& face, bool face_moves, const Vector3& p, Visit&& visit) {
   using namespace face_borders_detail;
   const MeshSide& side = pair.side(face_moves);
-  const MeshTopology& topology = side.topology;
+  const geometry::MeshTopology& topology = side.topology;
   const auto forEachEdgeAt = [&](int k, auto&& visit_edge) {
     const int vertex = side.mesh.elements[face.element][k];
     for (const int edge : topology.edgesOf(vertex)) visit_edge(edge);
@@ -65,13 +65,13 @@ void forEachBorderAt(const MeshPair& pair, const FaceShape& face, bool face_move
 template <typename Visit>
 bool forEachNeighbourAt(const MeshPair& pair, const FaceShape& face, bool face_moves, const Vector3& p, Visit&& visit) {
   const MeshSide& side = pair.side(face_moves);
-  const MeshTopology& topology = side.topology;
+  const geometry::MeshTopology& topology = side.topology;
   const auto visitFacesOf = [&](int edge) {
     for (const int neighbour : topology.facesOf(edge)) {
       if (topology.patchOf(neighbour) == topology.patchOf(face.element)) continue;
       const Vector3i& v = side.mesh.elements[neighbour];
       const Vector3 middle = (side.mesh.vertices[v[0]] + side.mesh.vertices[v[1]] + side.mesh.vertices[v[2]]) / 3;
-      visit(pair.placed(middle, face_moves) - p, pair.turned(MeshTopology::normal(side.mesh, neighbour), face_moves));
+      visit(pair.placed(middle, face_moves) - p, pair.turned(geometry::MeshTopology::normal(side.mesh, neighbour), face_moves));
     }
   };
   const int corner = face_borders_detail::cornerAt(face, p);
@@ -88,4 +88,4 @@ bool forEachNeighbourAt(const MeshPair& pair, const FaceShape& face, bool face_m
   return at_border;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -6,7 +6,7 @@
 #include "features/edge_pair.h"
 #include "features/mesh_pair.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 /** A face as the exact tests want it, in frame F. */
 struct FaceShape {
@@ -24,7 +24,7 @@ inline FaceShape faceShape(const MeshPair& pair, bool face_moves, int element) {
   FaceShape shape;
   shape.element = element;
   for (int k = 0; k < 3; ++k) shape.corners[k] = pair.placed(side.mesh.vertices[side.mesh.elements[element][k]], face_moves);
-  shape.normal = pair.turned(MeshTopology::normal(side.mesh, element), face_moves);
+  shape.normal = pair.turned(geometry::MeshTopology::normal(side.mesh, element), face_moves);
   for (int k = 0; k < 3; ++k) {
     const Vector3 along = shape.corners[NEXT[k]] - shape.corners[k];
     shape.inward[k] = shape.normal.cross(along);
@@ -52,4 +52,4 @@ inline bool holdsProjection(const FaceShape& face, const Vector3& p) {
   return true;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

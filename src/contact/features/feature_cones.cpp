@@ -5,7 +5,7 @@
 
 #include "features/edge_pair.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 /** Direction from the vertex, one of the edge's ends, along the edge; not unit, mesh's frame. */
@@ -41,7 +41,7 @@ bool edgeConeAllows(const MeshSide& side, int edge, const Vector3& direction, do
 }
 
 bool isRoundEdge(const MeshSide& side, int edge) {
-  const EdgeFaces faces = side.topology.facesOf(edge);
+  const geometry::EdgeFaces faces = side.topology.facesOf(edge);
   if (side.topology.isFlatEdge(edge) || faces.size() != 2) return false;
   return isRound(side.topology.inward(side.mesh, edge, faces[0]), side.topology.inward(side.mesh, edge, faces[1]));
 }
@@ -82,4 +82,4 @@ Vector3 touchNormal(const MeshPair& pair, const Feature& m, const Feature& f, co
   return length2 > 0 ? along.unitOrthogonal() : Vector3(Vector3::UnitZ());
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

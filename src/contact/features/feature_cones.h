@@ -4,7 +4,7 @@
 #include "features/mesh_pair.h"
 #include "features/tolerances.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 /** Whether the surface at the edge leads nowhere along `direction`: none of its faces has a larger part of it than `slack` (sine).
  * @param direction unit, the mesh's frame, towards the other mesh */
@@ -36,4 +36,4 @@ Vector3 towardsMoving(const MeshPair& pair, const Vector3& axis, const Feature& 
  *  @param along direction to which it is square; zero if there is none */
 Vector3 touchNormal(const MeshPair& pair, const Feature& m, const Feature& f, const Vector3& point, const Vector3& along);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -6,7 +6,7 @@
 
 #include "blem_sim/contact/collider.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 enum class FeatureKind : std::uint8_t { VERTEX = 0, EDGE = 1, FACE = 2, HALF_SPACE = 3 };
 
@@ -42,9 +42,9 @@ struct MeshSide {
         owners(geometry.owners()),
         bounds(geometry.bounds()),
         identity(geometry.identity()) {}
-  const TriangleMesh& mesh;
-  const MeshTopology& topology;
-  const Bvh& bvh;
+  const geometry::TriangleMesh& mesh;
+  const geometry::MeshTopology& topology;
+  const geometry::Bvh& bvh;
   const std::vector<std::uint8_t>& owners;
   const Box& bounds;
   std::uint64_t identity;  ///< of the geometry, its own for as long as the program runs
@@ -81,4 +81,4 @@ struct FeatureContact {
   bool pierced = false;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

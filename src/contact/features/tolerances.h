@@ -1,7 +1,7 @@
 // Lengths and sines that the tests of simplices share. No Eigen here: the kernels include it.
 #pragma once
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 /** Bare meshes closer than this [m] touch: the direction between their points is rounding, and comes from their neighbourhoods instead. */
 constexpr double TOUCH = 1e-9;
@@ -30,4 +30,4 @@ constexpr double NEAR_BORDER = 100 * MERGE_DISTANCE;
 /** Largest distance [m] inside a face of both ends of an edge that has a contact within `range` with an edge of that face. */
 inline constexpr double deepestInside(double range) { return (1.001 * EDGE_CONE_SLACK + FADED) * range + 10 * CLOSED; }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

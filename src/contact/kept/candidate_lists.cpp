@@ -8,7 +8,7 @@
 #include "features/tolerances.h"
 #include "kernels/vectors.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 using kernels::Candidate;
@@ -135,7 +135,7 @@ namespace {
 template <typename Record>
 void turn(void (*kernel)(const Record*, std::uint32_t, const kernels::Motion&, Record*), const std::vector<Record>& in,
           const kernels::Motion& motion, std::vector<Record>* out) {
-  if (out->size() < in.size()) resizeRoomy(in.size(), out);
+  if (out->size() < in.size()) geometry::resizeRoomy(in.size(), out);
   kernel(in.data(), static_cast<std::uint32_t>(in.size()), motion, out->data());
 }
 
@@ -167,7 +167,7 @@ void groupByFaces(const MeshPair& pair, CandidateLists* lists, CandidatePairs* r
     for (const Candidate& c : candidates) ++places[faces[c.b]];
     std::uint32_t end = 0;
     for (std::uint32_t& place : places) end += std::exchange(place, end);
-    resizeRoomy(candidates.size(), &grouped);
+    geometry::resizeRoomy(candidates.size(), &grouped);
     for (const Candidate& c : candidates) grouped[places[faces[c.b]]++] = c;
     candidates.swap(grouped);
   }
@@ -178,7 +178,7 @@ namespace {
 /** Keeps the candidates that the kernel copies. */
 template <typename Kernel>
 void keep(Kernel&& kernel, const kernels::Reach& reach, const std::vector<Candidate>& from, std::vector<Candidate>* to) {
-  resizeRoomy(from.size(), to);
+  geometry::resizeRoomy(from.size(), to);
   to->resize(kernel(from.data(), static_cast<std::uint32_t>(from.size()), reach, to->data()));
 }
 template <typename Kernel, typename First, typename Second>
@@ -198,7 +198,7 @@ std::size_t findNearest(const MeshPair& pair, const TurnedFeatures& turned, cons
   for (const bool moves : {true, false}) {
     const NearFeatures& partner = lists.near[!moves];
     const kernels::NearVertices vertices = turned.nearFaces(lists, moves, pair.X_FM);
-    resizeRoomy(all.vertex_face[moves].size(), &nearest->inner[moves]);
+    geometry::resizeRoomy(all.vertex_face[moves].size(), &nearest->inner[moves]);
     keep(
         [&](auto&&... rest) {
           return kernels.nearVertexFaces(vertices, partner.faces.records.data(), partner.open.data(), rest...,
@@ -218,4 +218,4 @@ std::size_t findNearest(const MeshPair& pair, const TurnedFeatures& turned, cons
   return near;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -11,7 +11,7 @@
 #include "neighbourhood/leaf_features.h"
 #include "neighbourhood/surroundings.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 /** Records of some features of a mesh, in its own frame, and their names in it. */
 template <typename Record>
@@ -98,4 +98,4 @@ void groupByFaces(const MeshPair& pair, CandidateLists* lists, CandidatePairs* r
 std::size_t findNearest(const MeshPair& pair, const TurnedFeatures& turned, const ListMargin& margin, const CandidateLists& lists,
                         SurroundingsMemory* surroundings, CandidatePairs* nearest);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 void DirectionBall::add(Vector3 centre, double radius) {
   if (centre.dot(centre_) < 0) centre = -centre;
@@ -26,4 +26,4 @@ double DirectionBall::most(const Vector3& v) const {
   return std::min(length, std::abs(centre_.dot(v)) + radius_ * length);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

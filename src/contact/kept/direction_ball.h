@@ -3,7 +3,7 @@
 
 #include "blem_sim/geometry/types.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 /** Holds unit vectors, but for their signs; none at first. */
 class DirectionBall {
@@ -18,4 +18,4 @@ class DirectionBall {
   double radius_ = -1;  // negative: it holds nothing
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -2,7 +2,7 @@
 
 #include "kernels/vectors.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 FadingRecords::Directions FadingRecords::addDirections(const EdgesAtVertex& edges) {
   const Directions added{static_cast<std::uint32_t>(directions_.size()), static_cast<std::uint32_t>(edges.block_count)};
@@ -25,4 +25,4 @@ void FadingRecords::clear() {
   reaches_.clear();
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

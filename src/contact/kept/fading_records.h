@@ -10,7 +10,7 @@
 #include "kernels/records.h"
 #include "neighbourhood/surroundings.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 /** Directions at vertices and shapes of faces of one mesh, in its frame. Few features are asked, but again in each step: their records are
  * worked out when they first are, and kept side by side for as long as the list. */
@@ -23,8 +23,8 @@ class FadingRecords {
 
   /** Makes places for all features of a list. */
   void makePlaces(std::size_t vertices, std::size_t faces) {
-    if (at_vertices_.size() < vertices) resizeRoomy(vertices, &at_vertices_, Directions{UNKNOWN, 0});
-    if (of_faces_.size() < faces) resizeRoomy(faces, &of_faces_, std::uint32_t{UNKNOWN});
+    if (at_vertices_.size() < vertices) geometry::resizeRoomy(vertices, &at_vertices_, Directions{UNKNOWN, 0});
+    if (of_faces_.size() < faces) geometry::resizeRoomy(faces, &of_faces_, std::uint32_t{UNKNOWN});
   }
   /** Directions of the edges at a vertex. @param vertex in the list @param name in the mesh */
   const Directions& directionsAt(const MeshSide& side, std::uint32_t vertex, int name, SurroundingsMemory* surroundings) {
@@ -63,4 +63,4 @@ class FadingRecords {
   std::vector<PlaneReach> reaches_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

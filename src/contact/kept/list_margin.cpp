@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 /** Distance of pairs from their expected way, as part of its length. */
@@ -70,4 +70,4 @@ ListMargin marginAlong(const NearRegion::Motions& step, double steps, double lea
   return {lengths.norm(), 0, lengths.asDiagonal() * axes};
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

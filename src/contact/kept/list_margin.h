@@ -6,7 +6,7 @@
 #include "features/mesh_pair.h"
 #include "kept/direction_ball.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 /** Motion of one mesh against the other for which lists of candidates are good. */
 struct ListMargin {
@@ -57,4 +57,4 @@ class NearRegion {
 /** Margin for a pair that goes on as it moved in a step, for `steps` of them: wide along its way, narrow beside it. @param least [m] */
 ListMargin marginAlong(const NearRegion::Motions& step, double steps, double least);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

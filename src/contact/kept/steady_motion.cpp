@@ -1,6 +1,6 @@
 #include "kept/steady_motion.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 constexpr double NEWEST = 0.3;  // share of the last motion
@@ -25,4 +25,4 @@ Pose SteadyMotion::after(double searches, const Pose& X, const Vector3& middle) 
   return Y;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -3,7 +3,7 @@
 
 #include "blem_sim/geometry/types.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 /** The mean of a mesh's motions from search to search, newer ones counting more: a mesh that trembles about a place goes nowhere. */
 class SteadyMotion {
@@ -19,4 +19,4 @@ class SteadyMotion {
   Vector3 turn_ = Vector3::Zero();   ///< [rad] about the middle
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

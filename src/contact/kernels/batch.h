@@ -3,7 +3,7 @@
 
 #include "kernels/simd.h"
 
-namespace blem_sim::kernels {
+namespace blem_sim::contact::kernels {
 namespace {
 
 constexpr unsigned ALL_LANES = (1u << LANES) - 1;
@@ -101,4 +101,4 @@ inline auto withFaces(const Batch& batch, const FaceRecord* faces, Visit&& visit
 }
 
 }  // namespace
-}  // namespace blem_sim::kernels
+}  // namespace blem_sim::contact::kernels

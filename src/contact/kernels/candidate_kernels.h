@@ -7,7 +7,7 @@
 #include "kernels/edge_sides.h"
 #include "kernels/simd.h"
 
-namespace blem_sim::kernels {
+namespace blem_sim::contact::kernels {
 namespace {
 
 /** Calls test(batch) for all; where its bits are set, take(candidate's index, lane). */
@@ -147,4 +147,4 @@ std::uint32_t edgeFaces(const EdgeRecord* a, const FaceRecord* b, const Candidat
 }
 
 }  // namespace
-}  // namespace blem_sim::kernels
+}  // namespace blem_sim::contact::kernels

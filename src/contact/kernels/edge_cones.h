@@ -4,7 +4,7 @@
 #include "features/tolerances.h"
 #include "kernels/simd.h"
 
-namespace blem_sim::kernels {
+namespace blem_sim::contact::kernels {
 namespace {
 
 /** Largest part of n, the product of two edges, into a face of either that may come within EDGE_CONE_SLACK while unit vectors turn by no
@@ -27,4 +27,4 @@ inline auto conesMayAllow(const V& n, Lanes bound, const V& a0, const V& a1, con
 }
 
 }  // namespace
-}  // namespace blem_sim::kernels
+}  // namespace blem_sim::contact::kernels

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace blem_sim::kernels {
+namespace blem_sim::contact::kernels {
 
 constexpr int DIRECTION_BLOCK = 8;
 /** Number of blocks that hold so many edges. */
@@ -29,4 +29,4 @@ struct LeavingSide {
   std::uint32_t first, blocks;  ///< blocks of the vertex's EdgeDirections: the first, and their number
 };
 
-}  // namespace blem_sim::kernels
+}  // namespace blem_sim::contact::kernels

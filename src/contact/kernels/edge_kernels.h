@@ -5,7 +5,7 @@
 #include "kernels/fading_edges.h"
 #include "kernels/plain_contacts.h"
 
-namespace blem_sim::kernels {
+namespace blem_sim::contact::kernels {
 namespace {
 
 /** Closest points of the lines through edges: at parts s / n2 and t / n2 of them. */
@@ -112,4 +112,4 @@ std::uint32_t edgeEdges(const EdgeRecord* a, const EdgeRecord* b, const Candidat
 }
 
 }  // namespace
-}  // namespace blem_sim::kernels
+}  // namespace blem_sim::contact::kernels

@@ -3,7 +3,7 @@
 
 #include "kernels/records.h"
 
-namespace blem_sim::kernels {
+namespace blem_sim::contact::kernels {
 
 /** Data that place contacts of two meshes' edges in the world, and name them. */
 struct EdgePlace {
@@ -54,4 +54,4 @@ struct VertexEdgeHit {
   double offset[3];  ///< [m] of the vertex from the edge's line
 };
 
-}  // namespace blem_sim::kernels
+}  // namespace blem_sim::contact::kernels

@@ -4,7 +4,7 @@
 #include "features/tolerances.h"
 #include "kernels/simd.h"
 
-namespace blem_sim::kernels {
+namespace blem_sim::contact::kernels {
 namespace {
 
 /** A vertex as an edge sees it, in metres. */
@@ -27,4 +27,4 @@ inline auto isAtEdge(const AtEdge<Lanes>& vertex, Lanes fold, Bits round, Number
 }
 
 }  // namespace
-}  // namespace blem_sim::kernels
+}  // namespace blem_sim::contact::kernels

@@ -4,7 +4,7 @@
 #include "features/tolerances.h"
 #include "kernels/simd.h"
 
-namespace blem_sim::kernels {
+namespace blem_sim::contact::kernels {
 namespace {
 
 /** Bits 0 to 2: the sides that are open to vertices at that height, wherever it is within the margin [m]. */
@@ -24,4 +24,4 @@ inline auto isOverOrFades(const Lanes (&inside)[3], Bits open, Lanes most, Numbe
 }
 
 }  // namespace
-}  // namespace blem_sim::kernels
+}  // namespace blem_sim::contact::kernels

@@ -3,7 +3,7 @@
 
 #include "kernels/candidate_kernels.h"
 
-namespace blem_sim::kernels {
+namespace blem_sim::contact::kernels {
 namespace {
 
 /** The edges of a batch of candidates. */
@@ -115,4 +115,4 @@ std::uint32_t fadingEdges(const EdgeRecord* a, const EdgeRecord* b, const Candid
 }
 
 }  // namespace
-}  // namespace blem_sim::kernels
+}  // namespace blem_sim::contact::kernels

@@ -5,7 +5,7 @@
 
 #include "blem_sim/geometry/input_error.h"
 
-namespace blem_sim::kernels {
+namespace blem_sim::contact::kernels {
 
 extern const Kernels BASELINE;
 #if defined(BLEM_SIM_X86_KERNELS)
@@ -44,4 +44,4 @@ const Kernels& kernels() {
   return chosen;
 }
 
-}  // namespace blem_sim::kernels
+}  // namespace blem_sim::contact::kernels

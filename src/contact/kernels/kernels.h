@@ -6,7 +6,7 @@
 #include "kernels/edge_directions.h"
 #include "kernels/edge_records.h"
 
-namespace blem_sim::kernels {
+namespace blem_sim::contact::kernels {
 
 /** One set of kernels. Arrays of hits must have room for as many as there are candidates. */
 struct Kernels {
@@ -82,4 +82,4 @@ const Kernels& kernelsNamed(const char* name);
 /** Sets that this machine runs, fastest first; the last one is "baseline". */
 const std::vector<const Kernels*>& availableKernels();
 
-}  // namespace blem_sim::kernels
+}  // namespace blem_sim::contact::kernels

@@ -11,7 +11,7 @@
 #include "kernels/vertex_face_kernels.h"
 #include "kernels/vertex_kernels.h"
 
-namespace blem_sim::kernels {
+namespace blem_sim::contact::kernels {
 namespace {
 
 typedef double Quad __attribute__((vector_size(32)));
@@ -56,7 +56,7 @@ void turnFaces(const FaceRecord* in, std::uint32_t count, const Motion& motion, 
 }
 
 }  // namespace
-}  // namespace blem_sim::kernels
+}  // namespace blem_sim::contact::kernels
 
 #define BLEM_SIM_KERNEL_TABLE(name)                                                                                                   \
   {                                                                                                                                   \

@@ -3,7 +3,7 @@
 
 #include "kernels/batch.h"
 
-namespace blem_sim::kernels {
+namespace blem_sim::contact::kernels {
 namespace {
 
 // Sums in the order of Eigen's, which turns the contacts that come one by one: the same bits.
@@ -128,4 +128,4 @@ class FacePlanes {
 };
 
 }  // namespace
-}  // namespace blem_sim::kernels
+}  // namespace blem_sim::contact::kernels

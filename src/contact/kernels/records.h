@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace blem_sim::kernels {
+namespace blem_sim::contact::kernels {
 
 struct alignas(32) Vec4 {
   double x, y, z, w;
@@ -214,4 +214,4 @@ struct FadingContacts {
   std::uint32_t asked_count;
 };
 
-}  // namespace blem_sim::kernels
+}  // namespace blem_sim::contact::kernels

@@ -3,7 +3,7 @@
 
 #include "kernels/plain_contacts.h"
 
-namespace blem_sim::kernels {
+namespace blem_sim::contact::kernels {
 namespace {
 
 /** The closest point of the side to the vertex's projection into the face's plane. */
@@ -86,4 +86,4 @@ std::uint32_t sideFeet(const ContactPlace& place, const NearVertices& vertices, 
 }
 
 }  // namespace
-}  // namespace blem_sim::kernels
+}  // namespace blem_sim::contact::kernels

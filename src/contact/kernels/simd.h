@@ -10,7 +10,7 @@
 
 #include "kernels/records.h"
 
-namespace blem_sim::kernels {
+namespace blem_sim::contact::kernels {
 namespace {
 
 #if defined(__AVX512F__)
@@ -195,4 +195,4 @@ inline void transposed(const Doubles (&columns)[8], Row&& row) {
 }
 
 }  // namespace
-}  // namespace blem_sim::kernels
+}  // namespace blem_sim::contact::kernels

@@ -4,7 +4,7 @@
 #include "blem_sim/geometry/types.h"
 #include "kernels/records.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 inline Vector3 vector3(const kernels::Vec4& v) { return {v.x, v.y, v.z}; }
 inline kernels::Vec4 vec4(const Vector3& v, double w) { return {v.x(), v.y(), v.z(), w}; }
@@ -17,4 +17,4 @@ inline kernels::Motion motionOf(const Pose& X) {
   return motion;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

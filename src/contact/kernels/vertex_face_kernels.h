@@ -5,7 +5,7 @@
 #include "kernels/face_sides.h"
 #include "kernels/plain_contacts.h"
 
-namespace blem_sim::kernels {
+namespace blem_sim::contact::kernels {
 namespace {
 
 std::uint32_t nearVertexFaces(const NearVertices& a, const FaceRecord* b, const OpenSides* open, const Candidate* in, std::uint32_t count,
@@ -133,4 +133,4 @@ std::uint32_t vertexFaces(const NearVertices& a, const FaceRecord* b, const Open
 }
 
 }  // namespace
-}  // namespace blem_sim::kernels
+}  // namespace blem_sim::contact::kernels

@@ -5,7 +5,7 @@
 #include "kernels/edge_directions.h"
 #include "kernels/edge_records.h"
 
-namespace blem_sim::kernels {
+namespace blem_sim::contact::kernels {
 namespace {
 
 /** Calls visit(directions, their first lane in the block) for all edges. */
@@ -101,4 +101,4 @@ std::uint32_t vertexEdges(const Vec4* a, const EdgeRecord* b, const Candidate* c
 }
 
 }  // namespace
-}  // namespace blem_sim::kernels
+}  // namespace blem_sim::contact::kernels

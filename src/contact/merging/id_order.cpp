@@ -5,7 +5,7 @@
 
 #include "blem_sim/geometry/roomy.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 int widthOf(std::uint64_t value) { return value == 0 ? 0 : 64 - __builtin_clzll(value); }
@@ -13,7 +13,7 @@ int widthOf(std::uint64_t value) { return value == 0 ? 0 : 64 - __builtin_clzll(
 }  // namespace
 
 const std::vector<IdOrder::Entry>& IdOrder::of(const Contact* contacts, std::size_t count) {
-  resizeRoomy(count, &entries_);
+  geometry::resizeRoomy(count, &entries_);
   std::uint64_t different = 0;
   for (std::size_t i = 0; i < count; ++i) {
     entries_[i] = {contacts[i].id, static_cast<std::uint32_t>(i)};
@@ -37,7 +37,7 @@ void IdOrder::sortByFirstFeature(std::uint64_t different) {
   const std::uint64_t number_mask = (std::uint64_t{1} << number_bits) - 1;
   const int digits = (bits + LONGEST_DIGIT - 1) / LONGEST_DIGIT, digit_bits = (bits + digits - 1) / digits;
   const std::size_t values = std::size_t{1} << digit_bits;
-  resizeRoomy(entries_.size(), &room_);
+  geometry::resizeRoomy(entries_.size(), &room_);
   for (int shift = 0; shift < bits; shift += digit_bits) {
     const auto digit = [=](const Entry& entry) {
       return (entry.id >> 62 << number_bits | (entry.id >> 32 & number_mask)) >> shift & (values - 1);
@@ -67,4 +67,4 @@ bool IdOrder::insertAll() {
   return true;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

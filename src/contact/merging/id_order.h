@@ -7,7 +7,7 @@
 
 #include "blem_sim/contact/manifold.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 /** Sorts contacts by id; room that is kept between calls. */
 class IdOrder {
@@ -27,4 +27,4 @@ class IdOrder {
   std::vector<Entry> entries_, room_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

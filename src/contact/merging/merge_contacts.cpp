@@ -6,7 +6,7 @@
 
 #include "features/tolerances.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 /** Total order of contacts of one id: the one to keep comes first. */
@@ -54,4 +54,4 @@ std::size_t ContactMerge::run(const Contact* contacts, std::size_t count, Contac
   return left;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -6,7 +6,7 @@
 #include "merging/id_order.h"
 #include "merging/near_places.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 /** Makes one of contacts that say the same; room that is kept between calls. */
 class ContactMerge {
@@ -23,4 +23,4 @@ class ContactMerge {
   NearPlaces places_;  // of the contacts that each of the merged ones began with
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

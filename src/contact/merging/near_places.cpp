@@ -6,7 +6,7 @@
 #include "blem_sim/geometry/roomy.h"
 #include "features/tolerances.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 constexpr double WIDTH = 16 * MERGE_DISTANCE;             // thin, yet seldom with two within reach
@@ -25,12 +25,12 @@ std::uint64_t nearest(double value) {
 void NearPlaces::begin(const Contact* contacts, std::size_t count) {
   contacts_ = contacts;
   count_ = 0;
-  resizeRoomy(count, &added_);
-  resizeRoomy(count, &slots_);
+  geometry::resizeRoomy(count, &added_);
+  geometry::resizeRoomy(count, &slots_);
   int bits = 4;
   while (std::size_t{1} << bits < 4 * count) ++bits;
   last_.clear();
-  resizeRoomy(std::size_t{1} << bits, &last_);  // with NONE
+  geometry::resizeRoomy(std::size_t{1} << bits, &last_);  // with NONE
   const auto slot = [bits](std::uint64_t slab) { return static_cast<std::uint32_t>(slab * 0x9E3779B97F4A7C15u >> (64 - bits)); };
   const Vector3 across = UNCOMMON_DIRECTION / WIDTH;
   for (std::size_t i = 0; i < count; ++i) {
@@ -40,4 +40,4 @@ void NearPlaces::begin(const Contact* contacts, std::size_t count) {
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -7,7 +7,7 @@
 
 #include "blem_sim/contact/manifold.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 /** Places of contacts by the slab of space that they lie in: few share one, since it is thin and no mesh lies along it. Room is kept
  * between calls. */
@@ -55,4 +55,4 @@ class NearPlaces {
   std::uint32_t count_ = 0;  // number of those added
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -4,7 +4,7 @@
 
 #include "features/feature_cones.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 /** @param slope largest sine by which a neighbour over an edge rises out of the face's plane, to the side seen; -1: no neighbour */
@@ -21,7 +21,7 @@ void addSide(bool is_round, int k, double slope, BorderKinds::Seen* seen) {
 
 BorderKinds borderKinds(const MeshSide& side, int face, SurroundingsMemory* surroundings) {
   BorderKinds kinds{};
-  const Vector3 normal = MeshTopology::normal(side.mesh, face);
+  const Vector3 normal = geometry::MeshTopology::normal(side.mesh, face);
   for (int k = 0; k < 3; ++k) {
     const int edge = side.topology.edgeOf(face, k);
     if (side.topology.isFlatEdge(edge)) {
@@ -29,7 +29,7 @@ BorderKinds borderKinds(const MeshSide& side, int face, SurroundingsMemory* surr
       continue;
     }
     double above = -1, below = -1;
-    const EdgeFaces faces = side.topology.facesOf(edge);
+    const geometry::EdgeFaces faces = side.topology.facesOf(edge);
     const int* neighbour = faces.begin();
     forEachInward(side, edge, surroundings, [&](const Vector3& inward) {
       if (side.topology.patchOf(*neighbour++) == side.topology.patchOf(face)) return;
@@ -55,4 +55,4 @@ kernels::OpenSides openSides(const BorderKinds& kinds) {
   return static_cast<kernels::OpenSides>(of(&BorderKinds::Seen::falling) | of(&BorderKinds::Seen::rising) << kernels::OPEN_TO_POINTS);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

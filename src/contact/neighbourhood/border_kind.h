@@ -5,7 +5,7 @@
 #include "kernels/records.h"
 #include "neighbourhood/surroundings.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 /** Kinds of the sides of a face, seen from above its plane, where the normal of its winding points to, [1], and from below [0]. Bits k;
  * side k goes from corner k to the next. Behind sides without a bit a face rises so little that it takes over a contact that leaves. */
@@ -23,4 +23,4 @@ BorderKinds borderKinds(const MeshSide& side, int face, SurroundingsMemory* surr
  * without edges only a rising side does: over one that falls no surface of theirs leads on. */
 kernels::OpenSides openSides(const BorderKinds& kinds);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -10,7 +10,7 @@
 #include "neighbourhood/leaf_region.h"
 #include "neighbourhood/vertex_cone.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 using kernels::EdgeCone;
@@ -97,7 +97,7 @@ EdgeCone edgeCone(const std::vector<EdgeRecord>& edges) {
 }
 
 void describe(const MeshSide& side, std::uint32_t index, SurroundingsMemory* surroundings, LeafFeatures* leaf) {
-  const Bvh::Node& node = side.bvh.nodes()[index];
+  const geometry::Bvh::Node& node = side.bvh.nodes()[index];
   assert(node.count <= kernels::MAX_LEAF_ELEMENTS);
   leaf->vertices.clear();
   leaf->faces.clear();
@@ -129,7 +129,7 @@ void describe(const MeshSide& side, std::uint32_t index, SurroundingsMemory* sur
 
 FaceRecord faceRecord(const MeshSide& side, int element) {
   const Vector3i& e = side.mesh.elements[element];
-  const Vector3 normal = MeshTopology::normal(side.mesh, element);
+  const Vector3 normal = geometry::MeshTopology::normal(side.mesh, element);
   FaceRecord record;
   record.plane = vec4(normal, normal.dot(side.mesh.vertices[e[0]]));
   for (int k = 0; k < 3; ++k) {
@@ -141,9 +141,9 @@ FaceRecord faceRecord(const MeshSide& side, int element) {
 }
 
 EdgeRecord edgeRecord(const MeshSide& side, int edge, SurroundingsMemory* surroundings) {
-  const MeshTopology& topology = side.topology;
+  const geometry::MeshTopology& topology = side.topology;
   const std::array<int, 2> ends = topology.ends(side.mesh, edge);
-  const EdgeFaces faces = topology.facesOf(edge);
+  const geometry::EdgeFaces faces = topology.facesOf(edge);
   const Vector3 &start = side.mesh.vertices[ends[0]], along = side.mesh.vertices[ends[1]] - start;
   const double length2 = along.squaredNorm(), length = std::sqrt(length2);
   EdgeRecord record{vec4(start, length2), vec4(along, faces.size() > 2 ? 1 : surroundings->ofEdge(side, edge).is_round ? -1 : 0), {}};
@@ -153,7 +153,7 @@ EdgeRecord edgeRecord(const MeshSide& side, int edge, SurroundingsMemory* surrou
     const Vector3i& e = side.mesh.elements[face];
     const bool forward =
         (e[0] == ends[0] && e[1] == ends[1]) || (e[1] == ends[0] && e[2] == ends[1]) || (e[2] == ends[0] && e[0] == ends[1]);
-    record.inward[k] = vec4(MeshTopology::normal(side.mesh, face).cross(along) / (forward ? length : -length), 0);
+    record.inward[k] = vec4(geometry::MeshTopology::normal(side.mesh, face).cross(along) / (forward ? length : -length), 0);
   }
   for (int k = 0; k < 2; ++k) record.inward[k].w = kernels::nameBits(ends[k]);
   return record;
@@ -190,10 +190,10 @@ KeptLeaf& LeafMemory::find(const MeshSide& side, std::uint32_t leaf, std::uint64
 
 void LeafMemory::describeAnew(const MeshSide& side, std::uint32_t leaf, KeptLeaf* found) {
   if (!found->features) found->features = std::make_unique<LeafFeatures>();
-  blem_sim::describe(side, leaf, &surroundings_, found->features.get());
+  contact::describe(side, leaf, &surroundings_, found->features.get());
   const LeafShapes& shapes = found->features->shapes;
   found->feature_count = shapes.vertex_count + shapes.face_count + shapes.edge_count;
   found->is_described = true;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -11,7 +11,7 @@
 #include "neighbourhood/border_kind.h"
 #include "neighbourhood/surroundings.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 /** The features that the elements of one leaf own: its faces, and those of its edges and vertices that no other element asks for. */
 struct LeafFeatures {
@@ -86,4 +86,4 @@ class LeafMemory {
   std::uint64_t crowded_search_ = 0;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

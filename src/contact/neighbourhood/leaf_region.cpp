@@ -8,7 +8,7 @@
 #include "features/tolerances.h"
 #include "kernels/vectors.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 /** Directions farther than this [rad] from the axis: points may lie anywhere within range. */
@@ -76,7 +76,7 @@ class Directions {
   bool fades_ = false;
 };
 
-void placeBox(const MeshSide& side, const Bvh::Node& node, const Vector3 (&axes)[3], kernels::LeafRegion* region) {
+void placeBox(const MeshSide& side, const geometry::Bvh::Node& node, const Vector3 (&axes)[3], kernels::LeafRegion* region) {
   for (int k = 0; k < 3; ++k) {
     double lower = std::numeric_limits<double>::infinity(), upper = -lower;
     for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
@@ -94,7 +94,7 @@ void placeBox(const MeshSide& side, const Bvh::Node& node, const Vector3 (&axes)
 
 }  // namespace
 
-kernels::LeafRegion leafRegion(const MeshSide& side, const Bvh::Node& node, const LeafFeatures& leaf) {
+kernels::LeafRegion leafRegion(const MeshSide& side, const geometry::Bvh::Node& node, const LeafFeatures& leaf) {
   const Vector3 up = leafAxis(leaf), x = up.unitOrthogonal(), axes[3] = {x, up.cross(x), up};
   kernels::LeafRegion region;
   Directions directions(up);
@@ -108,4 +108,4 @@ kernels::LeafRegion leafRegion(const MeshSide& side, const Bvh::Node& node, cons
   return region;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

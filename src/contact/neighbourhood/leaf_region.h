@@ -3,9 +3,9 @@
 
 #include "neighbourhood/leaf_features.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 /** @param leaf its faces, edges and vertices, with their shapes */
-kernels::LeafRegion leafRegion(const MeshSide& side, const Bvh::Node& node, const LeafFeatures& leaf);
+kernels::LeafRegion leafRegion(const MeshSide& side, const geometry::Bvh::Node& node, const LeafFeatures& leaf);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

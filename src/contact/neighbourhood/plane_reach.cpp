@@ -7,7 +7,7 @@
 #include "kernels/vectors.h"
 #include "neighbourhood/leaf_features.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 using kernels::FaceRecord;
@@ -16,11 +16,11 @@ using kernels::FaceRecord;
 struct PlaneFaces {
   static constexpr int MOST = 64;
 
-  PlaneFaces(const MeshTopology& topology, int face) : of{face} {
+  PlaneFaces(const geometry::MeshTopology& topology, int face) : of{face} {
     for (int i = 0; i < count && !are_many; ++i)
       for (int k = 0; k < 3; ++k) addBehind(topology, topology.edgeOf(of[i], k));
   }
-  void addBehind(const MeshTopology& topology, int edge) {
+  void addBehind(const geometry::MeshTopology& topology, int edge) {
     if (!topology.isFlatEdge(edge)) return;
     for (const int face : topology.facesOf(edge)) {
       if (std::find(of, of + count, face) != of + count) continue;
@@ -63,4 +63,4 @@ PlaneReach planeReach(const MeshSide& side, int face) {
   return {reach.flat / sharpness(own), reach.per_height / sharpness(own)};
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -3,7 +3,7 @@
 
 #include "features/mesh_pair.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 /** Reach of a face's plane beside the face, but not outside of those of its sides behind which the plane goes on. */
 struct PlaneReach {
@@ -17,4 +17,4 @@ struct PlaneReach {
 /** Reach of a face's plane, infinite if that has many faces: to look at all takes longer than to ask those that are near. */
 PlaneReach planeReach(const MeshSide& side, int face);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -4,7 +4,7 @@
 
 #include "features/feature_cones.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 EdgeFromVertex edgeFrom(const MeshSide& side, int vertex, int edge) {
@@ -34,7 +34,7 @@ EdgesAtVertex SurroundingsMemory::ofVertex(const MeshSide& side, int vertex) {
   bool known;
   VertexEdgesKept& kept = vertices_.find(side, vertex, &known);
   if (known && kept.count <= MAX_EDGES) return {kept.edges.data(), kept.count, &kept.block, kernels::directionBlocks(kept.count)};
-  const VertexEdges edges = side.topology.edgesOf(vertex);
+  const geometry::VertexEdges edges = side.topology.edgesOf(vertex);
   kept.count = edges.size();
   const bool many = kept.count > MAX_EDGES;
   if (many) {
@@ -54,7 +54,7 @@ const EdgeSurroundings& SurroundingsMemory::ofEdge(const MeshSide& side, int edg
   if (known) return out;
   const std::array<int, 2> ends = side.topology.ends(side.mesh, edge);
   out.direction = (side.mesh.vertices[ends[1]] - side.mesh.vertices[ends[0]]).normalized();
-  const EdgeFaces faces = side.topology.facesOf(edge);
+  const geometry::EdgeFaces faces = side.topology.facesOf(edge);
   out.faces = faces.size();
   for (int k = 0; k < std::min(out.faces, 2); ++k) out.inward[k] = side.topology.inward(side.mesh, edge, faces[k]);
   out.is_round = !side.topology.isFlatEdge(edge) && out.faces == 2 && isRound(out.inward[0], out.inward[1]);
@@ -83,4 +83,4 @@ bool isRoundVertex(const MeshSide& side, const EdgesAtVertex& edges, const Vecto
   });
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

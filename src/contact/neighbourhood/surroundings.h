@@ -10,7 +10,7 @@
 #include "kernels/edge_directions.h"
 #include "neighbourhood/plane_reach.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 /** An edge from one of its ends; the mesh's frame. */
 struct EdgeFromVertex {
@@ -85,7 +85,7 @@ void forEachInward(const MeshSide& side, int edge, SurroundingsMemory* surroundi
   const EdgeSurroundings& around = surroundings->ofEdge(side, edge);
   for (int k = 0; k < std::min(around.faces, 2); ++k) visit(around.inward[k]);
   if (around.faces <= 2) return;
-  const EdgeFaces faces = side.topology.facesOf(edge);
+  const geometry::EdgeFaces faces = side.topology.facesOf(edge);
   for (int k = 2; k < around.faces; ++k) visit(side.topology.inward(side.mesh, edge, faces[k]));
 }
 
@@ -96,4 +96,4 @@ bool vertexConeAllows(const EdgesAtVertex& edges, const Vector3& direction, doub
 /** Whether the surface around a vertex is convex as seen from `direction` (mesh's frame, not unit), with round or flat edges only. */
 bool isRoundVertex(const MeshSide& side, const EdgesAtVertex& edges, const Vector3& direction, SurroundingsMemory* surroundings);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -6,7 +6,7 @@
 
 #include "features/feature_cones.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 /** Sum of the normals of the faces around; any direction if there is none. */
@@ -18,7 +18,7 @@ Vector3 axisOf(const MeshSide& side, int vertex) {
       // Each face once, at that edge of both that leaves the vertex by the face's winding.
       const Vector3i& e = side.mesh.elements[face];
       const int k = e[0] == vertex ? 1 : e[1] == vertex ? 2 : 0;
-      if (e[k] == other) sum += MeshTopology::normal(side.mesh, face);
+      if (e[k] == other) sum += geometry::MeshTopology::normal(side.mesh, face);
     }
   }
   const double norm = sum.norm();
@@ -61,4 +61,4 @@ kernels::VertexCone vertexCone(const MeshSide& side, int vertex, SurroundingsMem
   return cone;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

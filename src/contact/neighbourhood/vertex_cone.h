@@ -5,9 +5,9 @@
 #include "kernels/records.h"
 #include "neighbourhood/surroundings.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 /** Cone that holds every direction, in the mesh's frame, that vertexConeAllows. */
 kernels::VertexCone vertexCone(const MeshSide& side, int vertex, SurroundingsMemory* surroundings);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

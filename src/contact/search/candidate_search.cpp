@@ -8,7 +8,7 @@
 #include "features/tolerances.h"
 #include "kernels/vectors.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 using kernels::Candidate;
@@ -53,10 +53,11 @@ class Search {
 
   void findLeafPairs() {
     const auto matters = [this](std::uint32_t m, std::uint32_t f) { return (pair_.moving.owners[m] | pair_.fixed.owners[f]) != 0; };
-    visitLeafPairsIf(pair_.moving.bvh, pair_.fixed.bvh, pair_.X_FM, reach_ + rounding_, matters, [this](std::uint32_t m, std::uint32_t f) {
-      const std::uint32_t moving = use(true, m), fixed = use(false, f);
-      listing_.pairs.emplace_back() = {moving, fixed};
-    });
+    geometry::visitLeafPairsIf(pair_.moving.bvh, pair_.fixed.bvh, pair_.X_FM, reach_ + rounding_, matters,
+                               [this](std::uint32_t m, std::uint32_t f) {
+                                 const std::uint32_t moving = use(true, m), fixed = use(false, f);
+                                 listing_.pairs.emplace_back() = {moving, fixed};
+                               });
   }
 
   void lookAt(std::size_t leaf_pairs) {
@@ -306,4 +307,4 @@ void findMoreCandidates(const MeshPair& pair, std::size_t leaf_pairs, CandidateS
   Search(pair, buffers, listing).lookAt(leaf_pairs);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -8,7 +8,7 @@
 #include "kept/direction_ball.h"
 #include "neighbourhood/leaf_features.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 /** Kind of a list: of candidates for contacts, or for crossings. */
 enum class CandidateKind { CONTACTS, CROSSINGS };
@@ -89,4 +89,4 @@ void beginCandidates(const MeshPair& pair, CandidateKind kind, const ListMargin&
                      CandidateListing* listing);
 void findMoreCandidates(const MeshPair& pair, std::size_t leaf_pairs, CandidateSearchBuffers* buffers, CandidateListing* listing);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 // A list is made for so many steps of the present motion, or for the cheapest number if the growth of the pair's lists is known.
@@ -258,4 +258,4 @@ void searchContacts(const MeshPair& pair, ContactSearchMemory* memory, ContactSe
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

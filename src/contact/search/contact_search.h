@@ -6,7 +6,7 @@
 #include "kept/steady_motion.h"
 #include "search/candidate_search.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 
 /** A listing, and its successor, made a part at a time. */
 struct KeptListing {
@@ -47,4 +47,4 @@ struct ContactSearchBuffers {
  */
 void searchContacts(const MeshPair& pair, ContactSearchMemory* memory, ContactSearchBuffers* buffers, FoundContacts* found);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 // Rigid contacts end with their target. Compliant ones may end faster: their springs' push at a departure is real work.
@@ -19,4 +19,4 @@ double apparentWork(const ContactTerm& c, const Vector3& before) {
   return 0.5 * (push * lostDeparture(c, departure) + std::max(0.0, friction.dot(before - c.bend)));
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

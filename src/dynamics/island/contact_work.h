@@ -3,7 +3,7 @@
 
 #include "lanes/contact_term.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 /**
  * [J] An impulse's work is booked as the impulse times the mean of the velocities at the step's start and end. Loads may end a departure or
@@ -14,4 +14,4 @@ namespace blem_sim {
  */
 double apparentWork(const ContactTerm& contact, const Vector3& before);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

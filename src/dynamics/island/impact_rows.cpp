@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 constexpr double IMMOVABLE_POINT = 1e-12;  // [1/kg]
@@ -125,4 +125,4 @@ void ImpactRows::addMomentum(int contact, const Vector3& impulse, Eigen::VectorX
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -8,7 +8,7 @@
 #include "trees/forest_motion.h"
 #include "trees/tree_rows.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 /** Vectors over the forest that impacts are reckoned in, each island in its own trees. */
 struct ImpactSpace {
@@ -74,4 +74,4 @@ class ImpactRows {
   std::vector<double> numbers_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -6,7 +6,7 @@
 #include "island/island_impacts.h"
 #include "island/island_problem.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 /** An island with its contacts, impacts and reports of this step. */
 struct Island {
@@ -19,4 +19,4 @@ struct Island {
   bool followed = true;  ///< no tree was too fast
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

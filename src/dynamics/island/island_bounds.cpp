@@ -4,7 +4,7 @@
 
 #include "island/island_problem.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 constexpr double AT_TARGET = 4;         // times the energy of an island as fast as its fastest target: most that correcting depth may take
@@ -81,4 +81,4 @@ void IslandProblem::boundEnergy() {
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -4,7 +4,7 @@
 
 #include "island/island_problem.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 constexpr int HEAP = 4;         // fewest free bodies of an island that is swept while it tumbles
@@ -76,9 +76,9 @@ void IslandProblem::adoptImpulses() {
     for (int i = p.first; i < p.end; ++i)
       for (int axis = 0; axis < 3; ++axis)
         contact_blocks_[p.first_block + (i - p.first) / LANES].impulse[axis][(i - p.first) % LANES] = contacts[i].impulse[axis];
-  blem_sim::remember(contact_blocks_.data(), contact_blocks_.data() + contact_blocks_.size());
+  blem_sim::dynamics::remember(contact_blocks_.data(), contact_blocks_.data() + contact_blocks_.size());
   double first = 0, second = 0;
-  blem_sim::respond(0, joint_blocks_.data(), joint_blocks_.data() + joint_blocks_.size(), &first, &second);
+  blem_sim::dynamics::respond(0, joint_blocks_.data(), joint_blocks_.data() + joint_blocks_.size(), &first, &second);
   responses_known_ = true;
   evaluateGradient();
   for (const int k : idle_dofs_) s.gradient[k] = s.kinetic[k];
@@ -300,4 +300,4 @@ void IslandProblem::recover(NewtonReport* report) {
   if (least > 1) boundEnergy();
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

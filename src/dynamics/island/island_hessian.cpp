@@ -3,7 +3,7 @@
 
 #include "island/island_problem.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 /** Twists about b's reference point to those about a's. */
@@ -201,4 +201,4 @@ void IslandProblem::findDirection() {
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

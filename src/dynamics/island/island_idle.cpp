@@ -3,7 +3,7 @@
 
 #include "island/island_problem.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 constexpr int FEW = 8;  // joints that stray: the solution without them is near
@@ -93,7 +93,7 @@ bool IslandProblem::isIdle(int dof) const { return !space_->live[forest_->nodeOf
 // Responses of idle joints at the velocities at hand.
 void IslandProblem::respondIdle() {
   double first = 0, second = 0;
-  blem_sim::respond(0, joint_blocks_.data() + live_joint_blocks_, joint_blocks_.data() + joint_blocks_.size(), &first, &second);
+  blem_sim::dynamics::respond(0, joint_blocks_.data() + live_joint_blocks_, joint_blocks_.data() + joint_blocks_.size(), &first, &second);
 }
 
 // Whether the velocities at hand solve the problem. Idle dofs first: they cost least.
@@ -217,4 +217,4 @@ void IslandProblem::rewind() {
   begin();
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

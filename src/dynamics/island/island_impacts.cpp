@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 // An impact bounces if it is faster than the speed that a contact at rest gains in some steps, by gravity and by the forces that press it.
@@ -271,4 +271,4 @@ void IslandImpacts::takeFrom(const Forest& forest, const std::vector<int>& trees
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -6,7 +6,7 @@
 #include "island/impact_rows.h"
 #include "island/island_terms.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 /** The impacts of one island in one step. Used again from step to step, so that it need not allocate. */
 class IslandImpacts {
@@ -77,4 +77,4 @@ class IslandImpacts {
   std::vector<Vector3> impulses_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 // Share of the velocity products that a row's free momentum takes. A free root carries its momentum from middle to middle of its steps,
@@ -347,4 +347,4 @@ bool standsAt(const Forest& forest, int tree, const ForestMotion& motion, const 
   return true;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -5,7 +5,7 @@
 #include "scene/stepper.h"
 #include "trees/free_motion.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 /** Sets the momentum of a free tree that was just read to that of its velocities. */
 void takeMomentum(const Forest& forest, int tree, ForestMotion* motion, SolverSpace* space);
@@ -51,4 +51,4 @@ void restoreTree(const Forest& forest, int tree, ForestMotion* motion, StateRead
 /** Whether the bodies of the scene stand where the tree has them, but for rounding. */
 bool standsAt(const Forest& forest, int tree, const ForestMotion& motion, const Scene& scene);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

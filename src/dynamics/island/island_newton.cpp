@@ -1,7 +1,7 @@
 #include <algorithm>
 #include "island/island_problem.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 constexpr int MAX_LINE_SEARCH = 30;
@@ -166,7 +166,7 @@ void IslandProblem::soften(double contact, double joint) {
   forPatches([&](std::size_t index) {
     const ContactPatch& p = patches[index];
     for (int b = p.first_block, i = p.first; b < p.block_end; ++b, i += LANES)
-      blem_sim::soften(&contacts[i], p.end - i, contact, &contact_blocks_[b]);
+      blem_sim::dynamics::soften(&contacts[i], p.end - i, contact, &contact_blocks_[b]);
   });
   joint_softness_ = joint;
   softenJoints();
@@ -298,4 +298,4 @@ void IslandProblem::finish(const NewtonSettings& settings, NewtonReport* report)
   readTerms();
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 void SolverSpace::resize(const Forest& forest) {
   for (auto* v : {&free_momentum, &velocity, &mass_velocity, &gradient, &direction, &mass_direction, &scale, &kinetic, &anchor, &idle_pull,
@@ -88,7 +88,8 @@ void IslandProblem::setSteps(const Eigen::VectorXd& v) {
   for (const int i : live_nodes_) computeTwist(*forest_, i, *motion_, v, &space_->twist);
   forPatches([&](std::size_t index) {
     const ContactPatch& p = patches[index];
-    blem_sim::setSteps(relativeTwist(p.pair, space_->twist), contact_blocks_.data() + p.first_block, contact_blocks_.data() + p.block_end);
+    blem_sim::dynamics::setSteps(relativeTwist(p.pair, space_->twist), contact_blocks_.data() + p.first_block,
+                                 contact_blocks_.data() + p.block_end);
   });
   for (int b = 0; b < live_joint_blocks_; ++b)
     for (int lane = 0; lane < LANES; ++lane) {
@@ -119,10 +120,11 @@ void IslandProblem::evaluate() {
 // Responses of contacts and live joints at velocity + a step.
 PotentialSlope IslandProblem::respond(double a) {
   slopes_.assign(contact_blocks_.size() / BLOCKS_AT_ONCE + 1, PotentialSlope());
-  forContactRanges([&](std::size_t range, ContactBlock* first, ContactBlock* end) { slopes_[range] = blem_sim::respond(a, first, end); });
+  forContactRanges(
+      [&](std::size_t range, ContactBlock* first, ContactBlock* end) { slopes_[range] = blem_sim::dynamics::respond(a, first, end); });
   PotentialSlope slope = slopes_[0];
   for (std::size_t range = 1; range < slopes_.size(); ++range) slope += slopes_[range];
-  blem_sim::respond(a, joint_blocks_.data(), joint_blocks_.data() + live_joint_blocks_, &slope.first, &slope.second);
+  blem_sim::dynamics::respond(a, joint_blocks_.data(), joint_blocks_.data() + live_joint_blocks_, &slope.first, &slope.second);
   responses_at_ = a;
   responses_known_ = a == 0;
   return slope;
@@ -146,4 +148,4 @@ void IslandProblem::foldGradient() {
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -19,7 +19,7 @@
 #include "trees/team.h"
 #include "trees/tree_rows.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 struct NewtonSettings {
   int max_iterations = 100;           ///< over all proximal steps
@@ -271,4 +271,4 @@ void IslandProblem::forIdleJoints(const Visit& visit) {
       if (joint_blocks_[b].dof[lane] >= 0) visit(&joint_blocks_[b], lane, joint_blocks_[b].dof[lane]);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

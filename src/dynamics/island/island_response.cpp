@@ -4,7 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 using DenseMap = Eigen::Map<Eigen::MatrixXd>;
@@ -251,4 +251,4 @@ void IslandResponse::freeVelocity(const Eigen::VectorXd& momentum, Eigen::Vector
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -8,7 +8,7 @@
 #include "lanes/sweep_lanes.h"
 #include "trees/forest_motion.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 /** Trees whose velocities answer together: one tree, or several that mimic joints tie. Free bodies are no units. */
 class ResponseUnit {
@@ -94,4 +94,4 @@ class IslandResponse {
   std::vector<double> right_hand_side_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 constexpr std::size_t GROUPS_AT_ONCE = 8, IMPULSES_AT_ONCE = 256, DOFS_AT_ONCE = 1024;  // sizes of chunks: some microseconds each
@@ -121,8 +121,8 @@ void IslandSweeps::sweepTrees(std::size_t index, Eigen::VectorXd* velocity) {
     const Vector6 relative = relativeTwist(pairs_[group.patch[lane]], *velocity);
     for (int i = 0; i < 6; ++i) twist[i][lane] = relative[i];
   }
-  blem_sim::sweep(group, contacts_.data() + group.first, contacts_.data() + group.end, impulses_.data() + group.first, twist, &wrench,
-                  &changes_[index]);
+  blem_sim::dynamics::sweep(group, contacts_.data() + group.first, contacts_.data() + group.end, impulses_.data() + group.first, twist,
+                            &wrench, &changes_[index]);
   for (int lane = 0; lane < SWEEP_LANES; ++lane)
     if (group.patch[lane] >= 0) push(pairs_[group.patch[lane]], columnOf(wrench, lane), velocity);
 }
@@ -165,7 +165,7 @@ void IslandSweeps::noteVelocity(const Eigen::VectorXd& velocity) {
 // Moves impulses and velocities by `share` of the last search direction. The next direction is that move and the last sweep's change.
 void IslandSweeps::moveOn(double share, Eigen::VectorXd* velocity) {
   problem_->team->forRanges(0, impulses_.size(), IMPULSES_AT_ONCE, [&](std::size_t first, std::size_t last) {
-    blem_sim::moveOn(share, impulses_.data() + first, impulses_.data() + last);
+    blem_sim::dynamics::moveOn(share, impulses_.data() + first, impulses_.data() + last);
   });
   problem_->team->forRanges(0, dofs_.size(), DOFS_AT_ONCE, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
@@ -200,7 +200,7 @@ SweepReport IslandSweeps::sweep(int most, double enough, Eigen::VectorXd* veloci
 }
 
 void IslandSweeps::scale(double factor, Eigen::VectorXd* velocity) {
-  blem_sim::scale(factor, impulses_.data(), impulses_.data() + impulses_.size());
+  blem_sim::dynamics::scale(factor, impulses_.data(), impulses_.data() + impulses_.size());
   for (JointRow& row : joint_rows_) row.axis.scale(factor);
   for (LoopRow& row : loop_rows_) {
     row.impulse *= factor;
@@ -238,4 +238,4 @@ void IslandSweeps::read(const Eigen::VectorXd& velocity, std::vector<ContactTerm
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

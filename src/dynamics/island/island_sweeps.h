@@ -12,7 +12,7 @@
 #include "lanes/sweep_lanes.h"
 #include "trees/team.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 /** Problem of an island's sweeps: the terms as they were made for the step. */
 struct SweepProblem {
@@ -132,4 +132,4 @@ class IslandSweeps {
   std::vector<double> before_, search_;  // by place among dofs_
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -6,7 +6,7 @@
 
 #include "island/island_sweeps.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 constexpr int COLOURS = 64;             // beyond, patches of one body take turns one by one
@@ -190,7 +190,7 @@ void IslandSweeps::loadContacts(SweepStart start) {
     }
     setGains(group, contacts_.data() + group.first, contacts_.data() + group.end);
   }
-  if (start == SweepStart::NOTHING) blem_sim::scale(0, impulses_.data(), impulses_.data() + impulses_.size());
+  if (start == SweepStart::NOTHING) blem_sim::dynamics::scale(0, impulses_.data(), impulses_.data() + impulses_.size());
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -2,7 +2,7 @@
 
 #include "scene/joint_motion.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 constexpr double CONTACT_PROXIMAL = 1e-4;  // rho = this * inverse mass at the contact: smaller is stiffer and needs more Newton iterations
@@ -237,4 +237,4 @@ void weighContacts(const TermSource& s, IslandProblem* problem) {
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -5,7 +5,7 @@
 #include "scene/step_memory.h"
 #include "scene/stepper.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 /** Input of all terms in one step. */
 struct TermSource {
@@ -32,4 +32,4 @@ void weighContacts(const TermSource& source, IslandProblem* problem);
 /** +1 if the contact's A is the body the term's impulse acts on, -1 if it is B, A being the static world. */
 inline double termSign(const ContactConstraint& contact) { return contact.body_a == WORLD_BODY ? -1 : 1; }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -1,6 +1,6 @@
 #include "island/kept_solution.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 void KeptSolution::take(const Eigen::VectorXd& v, const std::vector<int>& trees, const Forest& forest,
                         const std::vector<ContactTerm>& contacts, const std::vector<JointTerm>& joint_terms,
@@ -24,4 +24,4 @@ void KeptSolution::put(const std::vector<int>& trees, const Forest& forest, Eige
   *loop_terms = loops;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -8,7 +8,7 @@
 #include "lanes/loop_term.h"
 #include "trees/forest.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 /** Velocities, contact impulses, and the joints' and loops' terms, whose proximal points give their impulses. */
 struct KeptSolution {
@@ -23,4 +23,4 @@ struct KeptSolution {
            std::vector<JointTerm>* joint_terms, std::vector<LoopTerm>* loop_terms) const;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -5,7 +5,7 @@
 
 #include "lanes/spatial.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 /** Two nodes that act on each other. */
 struct BodyPair {
@@ -33,4 +33,4 @@ struct MimicFold {
   double multiplier;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -5,7 +5,7 @@
 
 #include "lanes/lane_vectors.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 constexpr double NO_FRICTION = 1e-9;   // of the push: below, the direction of friction is made of rounding errors
@@ -247,4 +247,4 @@ BLEM_SIM_LANES double fastest(const ContactBlock* begin, const ContactBlock* end
   return largestRoot(worst);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

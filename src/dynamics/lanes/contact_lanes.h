@@ -7,7 +7,7 @@
 #include "lanes/lanes.h"
 #include "lanes/spatial.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 /** Four contacts of one patch. A contact's impulse falls with the velocity: its stiffness -d impulse/du is positive semidefinite. */
 struct ContactBlock {
@@ -73,4 +73,4 @@ ContactResidual residual(const ContactBlock* begin, const ContactBlock* end);
 /** [m/s] of the fastest of the points. */
 double fastest(const ContactBlock* begin, const ContactBlock* end);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

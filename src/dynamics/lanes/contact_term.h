@@ -3,7 +3,7 @@
 
 #include "blem_sim/geometry/types.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 /** A contact seen from the body it pushes along its normal. */
 struct ContactTerm {
@@ -23,4 +23,4 @@ struct ContactTerm {
   Vector3 slipVelocity() const { return velocity - normal.dot(velocity) * normal; }
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 void setLane(const JointTerm* term, int lane, JointBlock* b) {
   const JointTerm t = term ? *term : JointTerm();
@@ -85,4 +85,4 @@ BLEM_SIM_LANES double creep(const JointBlock* begin, const JointBlock* end) {
   return std::max({worst[0], worst[1], worst[2], worst[3]});
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

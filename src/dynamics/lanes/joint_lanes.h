@@ -6,7 +6,7 @@
 #include "lanes/joint_term.h"
 #include "lanes/lanes.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 struct JointBlock {
   int dof[LANES];  ///< -1: no joint
@@ -26,4 +26,4 @@ void respond(double a, JointBlock* begin, JointBlock* end, double* first, double
 /** JointTerm::creep, the worst. */
 double creep(const JointBlock* begin, const JointBlock* end);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

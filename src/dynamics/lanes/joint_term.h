@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 struct JointResponse {
   double impulse = 0, stiffness = 0;  ///< the second: -d impulse / dv >= 0
@@ -111,4 +111,4 @@ struct JointTerm {
   }
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

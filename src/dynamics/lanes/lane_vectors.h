@@ -10,7 +10,7 @@
 #define BLEM_SIM_INLINE inline
 #endif
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 struct Triple {
   double x, y, z;
@@ -35,4 +35,4 @@ BLEM_SIM_INLINE Triple either(bool first, const Triple& a, const Triple& b) {
   return {first ? a.x : b.x, first ? a.y : b.y, first ? a.z : b.z};
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

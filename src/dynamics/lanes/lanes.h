@@ -8,7 +8,7 @@
 #define BLEM_SIM_LANES
 #endif
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 constexpr int LANES = 4;
 using Lanes = double[LANES];
@@ -16,4 +16,4 @@ using VectorLanes = double[3][LANES];
 
 inline double sum(const Lanes& x) { return (x[0] + x[1]) + (x[2] + x[3]); }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -4,7 +4,7 @@
 #include "lanes/joint_term.h"
 #include "lanes/spatial.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 struct LoopTerm {
   Vector3 origin;          ///< of the joint frame, in the world
@@ -40,4 +40,4 @@ struct LoopTerm {
   }
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

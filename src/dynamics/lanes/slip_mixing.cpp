@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 constexpr double FARTHEST_MIX = 3;  // misses: farthest that mixing goes beyond the slips found, since nothing is linear there
@@ -37,7 +37,7 @@ void SlipMixing::findSlips(ContactBlock* begin, ContactBlock* end) {
   now_.found.clear();
   now_.miss.clear();
   for (const ContactBlock* b = begin; b != end; ++b) now_.miss.insert(now_.miss.end(), b->slip, b->slip + LANES);
-  blem_sim::remember(begin, end);
+  blem_sim::dynamics::remember(begin, end);
   for (const ContactBlock* b = begin; b != end; ++b) now_.found.insert(now_.found.end(), b->slip, b->slip + LANES);
   std::size_t i = 0;
   for (const ContactBlock* b = begin; b != end; ++b)
@@ -84,4 +84,4 @@ void SlipMixing::remember(ContactBlock* begin, ContactBlock* end) {
   ++steps_;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

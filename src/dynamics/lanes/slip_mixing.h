@@ -6,7 +6,7 @@
 
 #include "lanes/contact_lanes.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 /** Anderson's mixing [1965] of the slips of the last proximal steps. */
 class SlipMixing {
@@ -36,4 +36,4 @@ class SlipMixing {
   std::vector<double> shift_;        ///< lane by lane [m/s], of the slips found
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -4,7 +4,7 @@
 #include "blem_sim/geometry/triangle_mesh.h"
 #include "blem_sim/geometry/types.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 /** Twist (spin, velocity of the reference point) or wrench (torque about it, force). */
 using Vector6 = Eigen::Matrix<double, 6, 1>;
@@ -64,7 +64,8 @@ struct SpatialInertia {
 
   SpatialInertia() = default;
   /** @param com of the body, about the reference point; R_WB turns the body's inertia into world axes */
-  SpatialInertia(const MassProperties& body, const Matrix3& R_WB, const Vector3& com) : mass(body.mass), first_moment(body.mass * com) {
+  SpatialInertia(const geometry::MassProperties& body, const Matrix3& R_WB, const Vector3& com)
+      : mass(body.mass), first_moment(body.mass * com) {
     rotational.noalias() = R_WB * body.inertia * R_WB.transpose();
     rotational -= first_moment * com.transpose();
     rotational.diagonal().array() += first_moment.dot(com);
@@ -87,4 +88,4 @@ struct SpatialInertia {
   }
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -7,7 +7,7 @@
 
 #pragma GCC diagnostic ignored "-Wpsabi"  // of functions that are always inlined
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 /** A lane's relative twist or wrench. */
@@ -304,4 +304,4 @@ BLEM_SIM_LANES void scale(double factor, SweepImpulse* begin, SweepImpulse* end)
       for (int lane = 0; lane < SWEEP_LANES; ++lane) g->now[i][lane] *= factor;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

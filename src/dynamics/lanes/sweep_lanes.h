@@ -5,7 +5,7 @@
 #include "lanes/lanes.h"
 #include "lanes/spatial.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 /** Twice as many as elsewhere: a visit is a long chain of dependent operations, and a processor works on two chains at once. */
 constexpr int SWEEP_LANES = 2 * LANES;
@@ -87,4 +87,4 @@ void moveOn(double share, SweepImpulse* begin, SweepImpulse* end);
 /** Impulses times a factor. */
 void scale(double factor, SweepImpulse* begin, SweepImpulse* end);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -5,7 +5,7 @@
 
 #include "scene/contact_motion.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 // Largest friction coefficient of a pyramid, whose bound is the normal force times it: an infinite one would hold contacts that do not
@@ -74,4 +74,4 @@ std::vector<ContactMemo> ContactJoints::memos(const std::vector<Vector3>& forces
   return memos;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -6,7 +6,7 @@
 #include "scene/contact_law.h"
 #include "scene/scene.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 /** The contacts of one step: made into joints, as often as the step is tried, and read back. */
 class ContactJoints {
@@ -36,4 +36,4 @@ class ContactJoints {
   std::vector<dJointFeedback> feedback_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -5,7 +5,7 @@
 
 #include "lanes/spatial.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 enum MotorRow { PD_ROW, VISCOUS_ROW, DRY_ROW };
@@ -185,4 +185,4 @@ void readEfforts(const Scene& scene, const std::vector<JointDrive>& drives, cons
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

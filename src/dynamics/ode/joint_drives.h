@@ -5,7 +5,7 @@
 
 #include "scene/scene.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 /**
  * Sets every joint's rows for a step of dt from its drive:
@@ -29,4 +29,4 @@ void setDrives(Scene* scene, double dt, const std::vector<JointDrive>& drives, c
 void readEfforts(const Scene& scene, const std::vector<JointDrive>& drives, const std::vector<double>& coupling,
                  const std::vector<Vector3>& axes, SolveResult* result);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

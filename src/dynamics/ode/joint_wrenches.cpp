@@ -2,7 +2,7 @@
 
 #include <Eigen/LU>
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 // The torque ODE adds to every body: implicit in the angular velocity, so that it does not gain energy.
@@ -78,4 +78,4 @@ void jointWrenches(const Scene& scene, const std::vector<BodyBits>& start, const
   for (const int joint : scene.leavesFirst()) settle(joint, open[scene.joints()[joint].spec.child]);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -6,7 +6,7 @@
 #include "scene/scene.h"
 #include "scene/stepper.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 /**
  * Wrench from every joint's parent on its child (constraint, motor and friction together): world axes, about the joint frame's origin at
@@ -19,4 +19,4 @@ namespace blem_sim {
 void jointWrenches(const Scene& scene, const std::vector<BodyBits>& start, const StepInput& input, const SolveResult& result,
                    std::vector<Wrench>* wrenches);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 constexpr double SPEED_TOLERANCE = 1e-10;  // [rad/s or m/s]
@@ -111,4 +111,4 @@ void MimicCoupling::restore(std::size_t joints, StateReader* reader) {
   reader->numbers(inverse_.data(), inverse_.size());
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

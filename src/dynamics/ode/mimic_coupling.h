@@ -8,7 +8,7 @@
 #include "scene/scene.h"
 #include "scene/stepper.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 /**
  * ODE's public joints know two bodies, a mimic relation up to four. So the step is solved with coupling efforts f on the mimic joints and
@@ -47,4 +47,4 @@ class MimicCoupling {
   Eigen::MatrixXd inverse_;  ///< of d residual / d f, times dt
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

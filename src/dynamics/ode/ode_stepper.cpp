@@ -8,7 +8,7 @@
 #include "ode/mimic_coupling.h"
 #include "scene/stepper.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 constexpr int MAX_TRIES = 4;            // of a step whose complementarity problem failed
@@ -134,4 +134,4 @@ std::unique_ptr<Stepper> makeQuickStep(const SolverSettings& settings) {
   return std::make_unique<OdeStepper>(settings, std::make_unique<QuickStepSolver>(settings.quick_step_iterations));
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

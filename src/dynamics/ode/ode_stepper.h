@@ -5,7 +5,7 @@
 
 #include "blem_sim/dynamics/world_types.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 class Stepper;
 
@@ -15,4 +15,4 @@ std::unique_ptr<Stepper> makeWorldStep(const SolverSettings& settings);
 /** dWorldQuickStep: quick_step_iterations sweeps of projected relaxation in random order; fast, loose. */
 std::unique_ptr<Stepper> makeQuickStep(const SolverSettings& settings);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -10,14 +10,14 @@
 #include "blem_sim/geometry/input_error.h"
 #include "scene/scene.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 constexpr double LEAST = 1e-30, MOST = 1e30;  // [kg], and [kg m^2] along a principal axis
 constexpr double MOST_OBLONG = 1e12;          // largest principal inertia over the smallest
 
 void checkBody(const BodySpec& spec) {
-  const MassProperties& m = spec.inertial;
+  const geometry::MassProperties& m = spec.inertial;
   const std::string where = "body '" + spec.name + "': ";
   if (!(m.mass > 0) || !std::isfinite(m.mass))
     throw InputError(fmt::format("{}mass is {:g} kg; give it a finite mass above 0", where, m.mass));
@@ -34,7 +34,7 @@ void checkBody(const BodySpec& spec) {
                     principal[0], principal[2], LEAST, MOST, MOST_OBLONG));
 }
 
-void setMass(dBodyID body, const MassProperties& m) {
+void setMass(dBodyID body, const geometry::MassProperties& m) {
   dMass mass;
   dMassSetParameters(&mass, m.mass, 0, 0, 0, m.inertia(0, 0), m.inertia(1, 1), m.inertia(2, 2), m.inertia(0, 1), m.inertia(0, 2),
                      m.inertia(1, 2));
@@ -54,7 +54,7 @@ int Scene::addBody(const BodySpec& spec) {
   BodySlot slot;
   slot.spec = spec;
   createBody(&slot);
-  const int body = takeSlot(&free_bodies_, &bodies_);
+  const int body = geometry::takeSlot(&free_bodies_, &bodies_);
   bodies_[body] = slot;
   ++structure_;
   BodyState state;
@@ -71,7 +71,7 @@ void Scene::createBody(BodySlot* slot) {
   dBodySetFiniteRotationMode(slot->ode, 1);
 }
 
-void Scene::setInertial(int body, const MassProperties& inertial) {
+void Scene::setInertial(int body, const geometry::MassProperties& inertial) {
   BodySlot& slot = bodies_[body];
   BodySpec spec = slot.spec;
   spec.inertial = inertial;
@@ -170,4 +170,4 @@ void Scene::setBodyState(int body, const BodyState& state) {
 
 Matrix3 Scene::inertiaInWorld(int body, const Matrix3& R_WB) const { return R_WB * bodies_[body].spec.inertial.inertia * R_WB.transpose(); }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 constexpr double STICKING_SPEED = 1e-3;    // [m/s] of slip below which a contact counts as sticking
@@ -107,4 +107,4 @@ ContactRows contactRows(const ContactConstraint& contact, const ContactMotion& m
   return rows;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -6,7 +6,7 @@
 
 #include "blem_sim/dynamics/world_types.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 /** Memory of one contact from one step to the next. */
 struct ContactMemo {
@@ -76,4 +76,4 @@ void addMemo(const ContactConstraint& contact, const ContactRows& rows, const Ve
 ContactRows contactRows(const ContactConstraint& contact, const ContactMotion& motion, const ContactMemo* memo, double dt,
                         const SolverSettings& settings);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -1,6 +1,6 @@
 #include "scene/contact_motion.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 struct PointMotion {
@@ -32,4 +32,4 @@ ContactMotion contactMotion(const Scene& scene, const ContactConstraint& contact
   return {a.velocity - b.velocity, a.acceleration - b.acceleration};
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

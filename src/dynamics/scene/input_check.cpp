@@ -4,7 +4,7 @@
 
 #include "blem_sim/geometry/input_error.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 constexpr double UNIT = 1e-3;  // largest difference of a normal's length from 1
@@ -35,4 +35,4 @@ void checkJointNumbers(const JointSpec& joint, double position) {
   if (!std::isfinite(position)) throw InputError(where + "its position is not finite; give it a number");
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -3,7 +3,7 @@
 
 #include "blem_sim/dynamics/world_types.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 /** Whether the contact is finite where it must be, has nothing negative that has no sign, and a normal of length 1 within 1e-3. */
 bool isSound(const ContactConstraint& contact);
@@ -12,4 +12,4 @@ bool isSound(const JointDrive& drive);
 /** @throws InputError that names the field and the cure */
 void checkJointNumbers(const JointSpec& joint, double position);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

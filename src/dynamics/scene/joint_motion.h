@@ -3,7 +3,7 @@
 
 #include "blem_sim/dynamics/world_types.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 /** Pose of the child in the joint frame at a position, against position 0. */
 inline Pose jointMotion(JointKind kind, const Vector3& axis, double position) {
@@ -13,4 +13,4 @@ inline Pose jointMotion(JointKind kind, const Vector3& axis, double position) {
   return X;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

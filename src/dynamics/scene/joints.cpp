@@ -6,7 +6,7 @@
 #include "scene/input_check.h"
 #include "scene/scene.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 constexpr int MOTOR_ROWS = 3;  // implicit PD, viscous friction, dry friction
@@ -29,7 +29,7 @@ int Scene::addJoint(const JointSpec& spec, double position) {
   checkJoint(spec, *this);
   checkJointNumbers(spec, position);
   const bool is_new = free_joints_.empty();
-  const int joint = takeSlot(&free_joints_, &joints_);
+  const int joint = geometry::takeSlot(&free_joints_, &joints_);
   JointSlot& slot = joints_[joint];
   slot = JointSlot();
   slot.occupant = ++joints_added_;
@@ -166,4 +166,4 @@ void Scene::readJoints(std::vector<JointState>* states) {
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

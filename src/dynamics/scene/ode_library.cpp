@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <mutex>
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 thread_local int lcp_errors = 0;
@@ -66,4 +66,4 @@ int OdeLibrary::takeLcpErrors() {
   return count;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -3,7 +3,7 @@
 
 #include <stdexcept>
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 /** ODE met an internal error it would have ended the process for. */
 class OdeFailure : public std::runtime_error {
@@ -26,4 +26,4 @@ class OdeLibrary {
   static int takeLcpErrors();
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

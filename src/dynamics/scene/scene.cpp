@@ -4,7 +4,7 @@
 #include <limits>
 #include <mutex>
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 // Worlds an ODE failure left half way through a step: they cannot be destroyed safely, so they are kept out of the way.
@@ -169,4 +169,4 @@ void Scene::setBits(const std::vector<BodyBits>& bits) {
     if (bodies_[b].ode) setBits(static_cast<int>(b), bits[b]);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

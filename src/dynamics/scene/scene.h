@@ -11,7 +11,7 @@
 #include "blem_sim/dynamics/world_types.h"
 #include "scene/ode_library.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 inline Vector3 fromOde(const dReal* v) { return {v[0], v[1], v[2]}; }
 inline Quaternion quaternionFromOde(const dReal* q) { return {q[0], q[1], q[2], q[3]}; }
@@ -69,7 +69,7 @@ class Scene {
   void removeBody(int body);
   void removeJoint(int joint);
   /** Gives a body other mass properties; its frame and that frame's motion stay. @throws InputError before anything is changed */
-  void setInertial(int body, const MassProperties& inertial);
+  void setInertial(int body, const geometry::MassProperties& inertial);
   /** Replaces the ODE world, which an internal error left unusable, by a new one from the slots. */
   void rebuild(const std::vector<BodyBits>& state);
 
@@ -147,4 +147,4 @@ class Scene {
   std::uint64_t structure_ = 0;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 const ContactRecord* StepMemory::find(std::uint64_t id) const {
   if (contacts.empty()) return nullptr;
@@ -74,4 +74,4 @@ void StepMemory::restore(const Scene& scene, StateReader* reader) {
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -8,7 +8,7 @@
 #include "scene/scene.h"
 #include "scene/world_state.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 struct ContactRecord {
   std::uint64_t id = 0;
@@ -45,4 +45,4 @@ struct StepMemory {
   std::vector<int> first_;                // per bucket, as many as there are records or up to four times so: its first record
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

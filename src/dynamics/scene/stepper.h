@@ -8,7 +8,7 @@
 #include "scene/scene.h"
 #include "scene/world_state.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 struct StepInput {
   double dt;  ///< [s]
@@ -35,4 +35,4 @@ class Stepper {
   virtual void forgetContacts(const std::vector<std::uint64_t>& ids) = 0;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -6,7 +6,7 @@
 #include "scene/contact_law.h"
 #include "scene/scene.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 std::uint64_t liveBodies(const Scene& scene) {
@@ -113,4 +113,4 @@ void restoreMemory(ContactMemory* memory, StateReader* reader) {
   memory->replace(std::move(memos));
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -3,7 +3,7 @@
 
 #include "blem_sim/dynamics/world_types.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 class StateWriter {
  public:
@@ -45,4 +45,4 @@ void restoreScene(Scene* scene, StateReader* reader);
 void saveMemory(const ContactMemory& memory, StateWriter* writer);
 void restoreMemory(ContactMemory* memory, StateReader* reader);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

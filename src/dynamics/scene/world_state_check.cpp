@@ -6,7 +6,7 @@
 #include "blem_sim/geometry/input_error.h"
 #include "scene/world_state.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 constexpr double FARTHEST = 1e12;       // [m], [m/s], [rad/s]
@@ -43,4 +43,4 @@ void checkNumbers(const Scene& scene, const WorldState& state) {
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

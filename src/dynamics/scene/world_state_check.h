@@ -4,7 +4,7 @@
 #include "blem_sim/dynamics/world_types.h"
 #include "scene/scene.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 /**
  * @throws InputError in one line: a number that is not finite, a body whose quaternion is not unit or whose rotation is another one, or
@@ -12,4 +12,4 @@ namespace blem_sim {
  */
 void checkNumbers(const Scene& scene, const WorldState& state);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

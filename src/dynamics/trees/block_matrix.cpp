@@ -5,7 +5,7 @@
 
 #include "trees/free_blocks.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 using FreeBlock = Eigen::Matrix<double, FREE, FREE>;
@@ -250,4 +250,4 @@ void BlockMatrix::solve(Eigen::Ref<Eigen::VectorXd> x) const {
     if (column->size > 0) backward(*column, x);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

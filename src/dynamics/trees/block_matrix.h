@@ -8,7 +8,7 @@
 #include "trees/elimination_order.h"
 #include "trees/team.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 /**
  * Use: start, couple, analyse; then setZero, fill, factor, solve as often as wished. Blocks are eliminated in an order of least degree
@@ -85,4 +85,4 @@ class BlockMatrix {
   std::vector<std::size_t> targets_;  // in values_: blocks that an entry's outer products are subtracted from; for each chunk of entries
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

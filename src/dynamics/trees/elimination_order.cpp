@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 constexpr std::uint64_t ELIMINATED = ~0ull;
@@ -76,4 +76,4 @@ int EliminationOrder::next(std::vector<int>* neighbours) {
   return block;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 /**
  * Least degree first [Tinney and Walker 1967]; a block's degree is the number of rows of the blocks that it is coupled with by then. Of
@@ -32,4 +32,4 @@ class EliminationOrder {
   std::vector<int> words_of_;         // those of the present block's row that are not zero
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -2,11 +2,11 @@
 
 #include "scene/joint_motion.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 /** Pose of body B from its centre of mass and rotation. */
-Pose bodyPose(const BodyBits& bits, const MassProperties& body) {
+Pose bodyPose(const BodyBits& bits, const geometry::MassProperties& body) {
   Pose X_WB = Pose::Identity();
   X_WB.linear() = bits.rotation();
   X_WB.translation() = bits.com() - bits.rotation() * body.com;
@@ -134,4 +134,4 @@ void Forest::findMimics(const Scene& scene) {
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -6,7 +6,7 @@
 #include "lanes/spatial.h"
 #include "scene/scene.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 /** One body and the joint that moves it. Nodes of a tree are consecutive, parents first, depth first. */
 struct ForestNode {
@@ -18,7 +18,7 @@ struct ForestNode {
   Pose X_PJ = Pose::Identity();  ///< joint frame on the parent (or in the world)
   Pose X_JC = Pose::Identity();  ///< child body against the joint frame at position 0
   Vector3 axis = Vector3::UnitZ();
-  MassProperties inertial;
+  geometry::MassProperties inertial;
   double armature = 0;
   int first_dof = 0;  ///< index of its first degree of freedom
   int dofs = 0;       ///< 6 for a free root, 1 for a moving joint, 0 for a fixed one
@@ -92,4 +92,4 @@ class Forest {
   std::vector<int> row_start_, row_length_, columns_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

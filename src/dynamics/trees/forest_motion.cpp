@@ -4,7 +4,7 @@
 
 #include "lanes/lanes.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 /** Twist about the reference point of a unit joint velocity. */
@@ -200,4 +200,4 @@ void writeTree(const Forest& forest, int tree, const ForestMotion& motion, Scene
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -5,7 +5,7 @@
 
 #include "trees/forest.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 /** Speed of a tree, by how far velocity products turn its velocities in a step. */
 enum class Pace : char {
@@ -92,4 +92,4 @@ void readTree(const Forest& forest, const Scene& scene, int tree, ForestMotion* 
 /** Sets the bodies of the scene to the motion at hand. @param written per node, the bits that its body was given, out */
 void writeTree(const Forest& forest, int tree, const ForestMotion& motion, Scene* scene, std::vector<BodyBits>* written);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -4,7 +4,7 @@
 
 #include "lanes/lanes.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 // A column of a block: four rows and two. Compilers lower them to the processor's own vectors.
@@ -107,4 +107,4 @@ void backwardFree(const double* l, const double* blocks, int count, const int* r
   own[0] = (own[0] - blockDot<5>(l + 1, own + 1)) / l[0];
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 constexpr int FREE = 6;                          ///< dofs of a free body
 constexpr std::size_t FREE_BLOCK = FREE * FREE;  ///< numbers of a block
@@ -20,4 +20,4 @@ void forwardFree(const double* l, const double* blocks, int count, const int* ro
 /** own -= sum of block_i' x[row_i...]; then own := l'^-1 own */
 void backwardFree(const double* l, const double* blocks, int count, const int* rows, double* own, const double* x);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -7,7 +7,7 @@
 #include "lanes/lanes.h"
 #include "trees/rigid_turn.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 constexpr double ENERGY_MISS = 1e-5;   // relative, over a step: raise it for less work; energy that is missed is put right in any case
@@ -373,7 +373,7 @@ void FreeMotion::takeEnd(const Forest& forest, int tree, ForestMotion* motion) c
 }
 
 Vector6 FreeMotion::momentumRate(const Forest& forest, int node, double dt, const ForestMotion& motion) const {
-  const MassProperties& body = forest.nodes()[node].inertial;
+  const geometry::MassProperties& body = forest.nodes()[node].inertial;
   const auto spin = [&](const ForestMotion& m) {
     return Vector3(m.rotation[node] * (body.inertia * (m.rotation[node].transpose() * angular(m.twist[node]))));
   };
@@ -386,4 +386,4 @@ Vector3 FreeMotion::middleJoint(int node, const ForestMotion& motion) const {
   return 0.5 * (motion.joint_origin[node] + at_.joint_origin[node]);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

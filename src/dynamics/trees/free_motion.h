@@ -3,7 +3,7 @@
 
 #include "trees/forest_motion.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 /** Quality of a free motion that was followed. */
 struct FreeMotionReport {
@@ -76,4 +76,4 @@ class FreeMotion {
   std::vector<Vector3> spin_;   ///< [kg m^2/s] of a free tree about it
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

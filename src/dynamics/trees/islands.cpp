@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 void Islands::reset(int trees) {
   parent_.resize(trees);
@@ -32,4 +32,4 @@ int Islands::number() {
   return count;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

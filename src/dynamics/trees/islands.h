@@ -3,7 +3,7 @@
 
 #include <vector>
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 /** Union-find over trees; islands are numbered in the order of their smallest trees. */
 class Islands {
@@ -20,4 +20,4 @@ class Islands {
   std::vector<int> parent_, island_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 constexpr double TURN_STEP = 0.02;  // [rad] about a principal axis
@@ -51,4 +51,4 @@ RigidTurn turnFreely(const Matrix3& inertia, const Vector3& momentum, double dt)
   return {end * axes.transpose(), end * (end.transpose() * momentum).cwiseQuotient(moments)};
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -3,7 +3,7 @@
 
 #include "blem_sim/geometry/types.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 struct RigidTurn {
   Matrix3 turn;  ///< from the start to the end
@@ -17,4 +17,4 @@ struct RigidTurn {
  */
 RigidTurn turnFreely(const Matrix3& inertia, const Vector3& momentum, double dt);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -2,7 +2,7 @@
 
 #include <thread>
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 constexpr int PATIENCE = 2000;  // looks at a loop before a waiting thread yields its processor
@@ -67,4 +67,4 @@ void Team::help() {
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

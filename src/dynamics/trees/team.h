@@ -7,7 +7,7 @@
 #include <atomic>
 #include <cstddef>
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 /**
  * While a thread works `with` helpers, they stand by and take chunks of its loops. Chance decides which thread takes a chunk, so chunks
@@ -63,4 +63,4 @@ class Team {
   alignas(64) std::atomic<bool> dismissed_{true};
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -5,7 +5,7 @@
 
 #include "lanes/lanes.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 static_assert(Forest::ROW_UNIT == LANES, "rows are worked on in whole units");
@@ -120,4 +120,4 @@ BLEM_SIM_LANES void substitute(const Forest& forest, int tree, const TreeFactor&
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -6,7 +6,7 @@
 
 #include "trees/forest.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 
 /** Work space: values along the path from the root to the dof at hand, each tree in its own part. */
 struct TreePaths {
@@ -43,4 +43,4 @@ void reduce(const Forest& forest, int tree, const TreeFactor& factor, Eigen::Vec
 /** The solution on the eliminated dofs, x holding that of the others. */
 void substitute(const Forest& forest, int tree, const TreeFactor& factor, Eigen::VectorXd* x, TreePaths* paths);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

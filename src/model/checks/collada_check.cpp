@@ -10,7 +10,7 @@
 #include "blem_sim/geometry/one_line.h"
 #include "checks/file_check.h"
 
-namespace blem_sim {
+namespace blem_sim::model {
 namespace {
 
 using Element = tinyxml2::XMLElement;
@@ -29,7 +29,7 @@ class ColladaCheck {
 
  private:
   [[noreturn]] void refuse(const std::string& what) const {
-    throw InputError(fmt::format("{}: not a readable dae mesh: {}; export it again", file_, oneLine(what)));
+    throw InputError(fmt::format("{}: not a readable dae mesh: {}; export it again", file_, geometry::oneLine(what)));
   }
 
   std::size_t count(const Element& element, const char* attribute, bool needed) const {
@@ -105,4 +105,4 @@ void checkCollada(const std::string& file, const std::string& bytes) {
   ColladaCheck(file).run(*root);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::model

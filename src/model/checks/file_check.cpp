@@ -11,7 +11,7 @@
 
 #include "blem_sim/geometry/input_error.h"
 
-namespace blem_sim {
+namespace blem_sim::model {
 namespace {
 
 constexpr std::size_t STL_HEADER = 84;    // 80 bytes of text, a 32-bit count
@@ -138,4 +138,4 @@ void checkOff(const std::string& file, const std::string& bytes) {
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::model

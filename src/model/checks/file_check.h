@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace blem_sim {
+namespace blem_sim::model {
 
 /** Bytes of a file. @throws InputError if it is missing, unreadable or empty */
 std::string readBytes(const std::string& file);
@@ -30,4 +30,4 @@ void checkCollada(const std::string& file, const std::string& bytes);
 /** Refuses a PCD too short for the points that its header announces. */
 void checkPcd(const std::string& file, const std::string& bytes);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::model

@@ -9,7 +9,7 @@
 #include "blem_sim/geometry/one_line.h"
 #include "checks/file_check.h"
 
-namespace blem_sim {
+namespace blem_sim::model {
 namespace {
 
 /** LZF, the compression of PCD, turns three bytes into at most 264. */
@@ -22,7 +22,7 @@ struct PcdHeader {
 };
 
 [[noreturn]] void refuseCloud(const std::string& file, const std::string& what) {
-  throw InputError(fmt::format("{}: not a PCD file: {}; write the file anew", file, oneLine(what)));
+  throw InputError(fmt::format("{}: not a PCD file: {}; write the file anew", file, geometry::oneLine(what)));
 }
 
 /** PCL's reader runs off its data where a row is missing or unknown, so the header is held to the letter. */
@@ -111,4 +111,4 @@ void checkPcd(const std::string& file, const std::string& bytes) {
                                  file, points, least, held));
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::model

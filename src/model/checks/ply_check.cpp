@@ -10,7 +10,7 @@
 #include "blem_sim/geometry/one_line.h"
 #include "checks/file_check.h"
 
-namespace blem_sim {
+namespace blem_sim::model {
 namespace {
 
 struct Property {
@@ -87,7 +87,7 @@ PlyHeader readPlyHeader(const std::string& file, const std::string& bytes) {
   PlyHeader header;
   for (next(); line != "end_header"; next())
     if (!addHeaderRow(line, &header))
-      throw InputError(fmt::format("{}: PLY header: '{}' is not understood; write the file anew", file, oneLine(line)));
+      throw InputError(fmt::format("{}: PLY header: '{}' is not understood; write the file anew", file, geometry::oneLine(line)));
   header.data = at;
   if (header.format.empty()) throw InputError(file + ": PLY header: no format; write the file anew");
   return header;
@@ -197,4 +197,4 @@ PlyCounts checkPly(const std::string& file, const std::string& bytes) {
   return counts;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::model

@@ -16,12 +16,12 @@
 #include "checks/urdf_transmissions.h"
 #include "checks/urdf_tree_check.h"
 
-namespace blem_sim {
+namespace blem_sim::model {
 namespace {
 
 using Element = tinyxml2::XMLElement;
 
-[[noreturn]] void refuse(const std::string& where, const std::string& what) { throw InputError(oneLine(where + ": " + what)); }
+[[noreturn]] void refuse(const std::string& where, const std::string& what) { throw InputError(geometry::oneLine(where + ": " + what)); }
 
 std::string attribute(const Element& element, const char* name) {
   const char* value = element.Attribute(name);
@@ -236,4 +236,4 @@ UrdfOutline checkUrdf(const std::string& xml, const std::string& source) {
   return outline;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::model

@@ -6,7 +6,7 @@
 
 #include "blem_sim/model/robot_model.h"
 
-namespace blem_sim {
+namespace blem_sim::model {
 
 /** Names in the file's order (urdfdom sorts them) and notes on blocks left out of the simulation. */
 struct UrdfOutline {
@@ -25,4 +25,4 @@ struct UrdfOutline {
  */
 UrdfOutline checkUrdf(const std::string& xml, const std::string& source);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::model

@@ -8,7 +8,7 @@
 
 #include "blem_sim/geometry/one_line.h"
 
-namespace blem_sim {
+namespace blem_sim::model {
 namespace {
 
 using Element = tinyxml2::XMLElement;
@@ -18,7 +18,7 @@ constexpr int DEEPEST = 12;                                     // elements belo
 constexpr int MOST_VALUES = 30000, MOST_BLOCKS = 10000;         // of a robot
 
 std::string trimmed(const char* text, std::size_t longest) {
-  const std::string all = oneLine(text ? text : "");
+  const std::string all = geometry::oneLine(text ? text : "");
   const std::size_t first = all.find_first_not_of(' ');
   if (first == std::string::npos) return "";
   return all.substr(first, std::min(all.find_last_not_of(' ') + 1 - first, longest));
@@ -99,4 +99,4 @@ std::vector<GazeboBlock> readGazeboBlocks(const Element& robot, std::vector<std:
   return blocks;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::model

@@ -10,7 +10,7 @@ namespace tinyxml2 {
 class XMLElement;
 }
 
-namespace blem_sim {
+namespace blem_sim::model {
 
 /**
  * Blocks of a <robot>, in the file's order. An attribute `value` is its element's text. Texts and names are cut where they are absurdly
@@ -18,4 +18,4 @@ namespace blem_sim {
  */
 std::vector<GazeboBlock> readGazeboBlocks(const tinyxml2::XMLElement& robot, std::vector<std::string>* notes);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::model

@@ -11,7 +11,7 @@
 #include "blem_sim/geometry/input_error.h"
 #include "blem_sim/geometry/one_line.h"
 
-namespace blem_sim {
+namespace blem_sim::model {
 namespace {
 
 using Element = tinyxml2::XMLElement;
@@ -29,7 +29,7 @@ double numberIn(const Element* parent, const char* name, double otherwise, const
   stream.imbue(std::locale::classic());
   double value = 0;
   if (!(stream >> value) || !(stream >> std::ws).eof() || !std::isfinite(value))
-    throw InputError(oneLine(fmt::format("{}: <{}> is no finite number; write a plain number", where, name)));
+    throw InputError(geometry::oneLine(fmt::format("{}: <{}> is no finite number; write a plain number", where, name)));
   return value;
 }
 
@@ -42,7 +42,7 @@ Transmission readTransmission(const Element& element, const std::string& source)
   const double reduction = numberIn(&element, "mechanicalReduction", 1, where);
   transmission.reduction = numberIn(actuator, "mechanicalReduction", reduction, where);
   transmission.offset = numberIn(joint, "offset", 0, where);
-  if (transmission.reduction == 0) throw InputError(oneLine(where + ": <mechanicalReduction> is 0; give the ratio of its gear"));
+  if (transmission.reduction == 0) throw InputError(geometry::oneLine(where + ": <mechanicalReduction> is 0; give the ratio of its gear"));
   return transmission;
 }
 
@@ -57,9 +57,9 @@ std::vector<Transmission> readTransmissions(const Element& robot, const std::vec
       transmissions.push_back(transmission);
     else
       notes->push_back(
-          oneLine(fmt::format("transmission '{}' left out: the robot has no joint '{}'", transmission.name, transmission.joint)));
+          geometry::oneLine(fmt::format("transmission '{}' left out: the robot has no joint '{}'", transmission.name, transmission.joint)));
   }
   return transmissions;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::model

@@ -10,7 +10,7 @@ namespace tinyxml2 {
 class XMLElement;
 }
 
-namespace blem_sim {
+namespace blem_sim::model {
 
 /**
  * Transmissions of a <robot>, in the file's order, as ros_control writes them and as PR2 does. One that names no joint of the robot is left
@@ -20,4 +20,4 @@ namespace blem_sim {
 std::vector<Transmission> readTransmissions(const tinyxml2::XMLElement& robot, const std::vector<std::string>& joints,
                                             const std::string& source, std::vector<std::string>* notes);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::model

@@ -7,7 +7,7 @@
 
 #include "blem_sim/geometry/input_error.h"
 
-namespace blem_sim {
+namespace blem_sim::model {
 namespace {
 
 void checkNames(const std::vector<std::string>& names, const char* kind, const std::string& source) {
@@ -92,4 +92,4 @@ void checkTree(const std::vector<std::string>& links, const std::vector<JointOut
   checkMimics(joints, source);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::model

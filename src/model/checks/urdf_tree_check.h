@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace blem_sim {
+namespace blem_sim::model {
 
 /** A joint by names, as the file gives it. */
 struct JointOutline {
@@ -15,4 +15,4 @@ struct JointOutline {
 /** @throws InputError for names missing or given twice, unknown links, links with two parents, loops, several roots, bad mimic joints. */
 void checkTree(const std::vector<std::string>& links, const std::vector<JointOutline>& joints, const std::string& source);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::model

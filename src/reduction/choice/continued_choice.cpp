@@ -7,7 +7,7 @@
 #include "lanes/reduction_lanes.h"
 #include "lanes/wrench_bounds.h"
 
-namespace blem_sim {
+namespace blem_sim::reduction {
 
 namespace {
 
@@ -36,14 +36,15 @@ struct Before {
   WrenchPointRows rows;  // the same
 
   /** @return false if they are not k */
-  bool find(const std::vector<Contact>& contacts, const std::vector<int>& members, const PatchScale& scale, int k, const ContactIds& ids) {
+  bool find(const std::vector<contact::Contact>& contacts, const std::vector<int>& members, const PatchScale& scale, int k,
+            const ContactIds& ids) {
     if (static_cast<int>(ids.size()) != k) return false;
     const IdFilter filter(ids);
     places.clear();
     points.clear();
     rows.clear();
     for (int m = 0; m < static_cast<int>(members.size()); ++m) {
-      const Contact& contact = contacts[members[m]];
+      const contact::Contact& contact = contacts[members[m]];
       if (!filter.has(contact.id)) continue;
       places.push_back(m);
       points.push_back(wrenchPoint(contact, scale));
@@ -62,7 +63,7 @@ struct Before {
 
 }  // namespace
 
-bool surelyGoesOn(const std::vector<Contact>& contacts, const std::vector<int>& members, const PatchScale& scale, int k,
+bool surelyGoesOn(const std::vector<contact::Contact>& contacts, const std::vector<int>& members, const PatchScale& scale, int k,
                   const ContactIds& chosen_before, std::vector<int>* chosen) {
   static thread_local Before before;
   if (!before.find(contacts, members, scale, k, chosen_before)) return false;
@@ -84,4 +85,4 @@ bool surelyGoesOn(const std::vector<Contact>& contacts, const std::vector<int>& 
   return true;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::reduction

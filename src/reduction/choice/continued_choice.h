@@ -6,7 +6,7 @@
 #include "blem_sim/reduction/reduction.h"
 #include "patches/patch_frame.h"
 
-namespace blem_sim {
+namespace blem_sim::reduction {
 
 // Lack that an earlier choice may have beyond a fresh one, in the direction that lacks most, of a unit force; and [m] in depth.
 constexpr float GOOD_ENOUGH = 0.05f;
@@ -19,7 +19,7 @@ constexpr double DEEP_ENOUGH = 1e-6;
  * @param members indices of the contacts to choose from @param scale of all contacts
  * @param chosen overwritten by indices
  */
-bool surelyGoesOn(const std::vector<Contact>& contacts, const std::vector<int>& members, const PatchScale& scale, int k,
+bool surelyGoesOn(const std::vector<contact::Contact>& contacts, const std::vector<int>& members, const PatchScale& scale, int k,
                   const ContactIds& chosen_before, std::vector<int>* chosen);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::reduction

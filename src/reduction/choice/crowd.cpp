@@ -13,7 +13,7 @@
 #include "lanes/instruction_sets.h"
 #include "lanes/reduction_lanes.h"
 
-namespace blem_sim {
+namespace blem_sim::reduction {
 
 namespace {
 
@@ -89,7 +89,7 @@ class CoarseCells {
 
 /** Input of readMembers: the members' contacts, their scale, and the limits for those that may be spared. */
 struct Reading {
-  const Contact* contacts;
+  const contact::Contact* contacts;
   const int* members;
   int count;
   const double* centre;  // [m]
@@ -110,7 +110,7 @@ BLEM_SIM_LANES int readMembers(const Reading& given, WrenchPoint* points, int* k
   const Doubles gaps = {1, 1, -PER_GAP, 0}, least = {-2, -2, 0, 0};  // handicaps are never negative
   int size = 0;
   for (int m = 0; m < reading.count; ++m) {
-    const Contact& contact = reading.contacts[reading.members[m]];
+    const contact::Contact& contact = reading.contacts[reading.members[m]];
     ContactRow row;
     readRow(contact, &row);
     const Doubles second = row.second * gaps;
@@ -134,7 +134,7 @@ struct CrowdBuffers {
   std::vector<CellExtremes> extremes;
 };
 
-void read(const std::vector<Contact>& contacts, const PatchScale& scale, const std::vector<int>& members, const ContactIds& spared,
+void read(const std::vector<contact::Contact>& contacts, const PatchScale& scale, const std::vector<int>& members, const ContactIds& spared,
           CrowdBuffers* buffers) {
   const IdFilter filter(spared);
   buffers->points.resize(members.size());
@@ -145,7 +145,7 @@ void read(const std::vector<Contact>& contacts, const PatchScale& scale, const s
                         filter.bits()};
   buffers->spared.resize(readMembers(reading, buffers->points.data(), buffers->cell_of.data(), buffers->spared.data()));
   const auto is_not = [&](int m) {
-    const Contact& contact = contacts[members[m]];
+    const contact::Contact& contact = contacts[members[m]];
     return !scale.isDeepest(contact) && !filter.has(contact.id);
   };
   buffers->spared.erase(std::remove_if(buffers->spared.begin(), buffers->spared.end(), is_not), buffers->spared.end());
@@ -166,8 +166,8 @@ void findExtreme(CrowdBuffers* buffers) {
 
 }  // namespace
 
-void thinCrowd(const std::vector<Contact>& contacts, const PatchScale& scale, const std::vector<int>& members, const ContactIds& spared,
-               std::vector<int>* kept) {
+void thinCrowd(const std::vector<contact::Contact>& contacts, const PatchScale& scale, const std::vector<int>& members,
+               const ContactIds& spared, std::vector<int>* kept) {
   static thread_local CrowdBuffers thread_buffers;
   CrowdBuffers& buffers = thread_buffers;
   read(contacts, scale, members, spared, &buffers);
@@ -177,4 +177,4 @@ void thinCrowd(const std::vector<Contact>& contacts, const PatchScale& scale, co
   for (int& m : *kept) m = members[m];
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::reduction

@@ -7,7 +7,7 @@
 #include "blem_sim/reduction/reduction.h"
 #include "patches/patch_frame.h"
 
-namespace blem_sim {
+namespace blem_sim::reduction {
 
 /**
  * Keeps in every cell of alike normals (some degrees) the contacts that are extreme in some mixture of place and tilt across its normal,
@@ -16,7 +16,7 @@ namespace blem_sim {
  * @param scale of all contacts @param members indices of contacts
  * @param kept overwritten by those to keep
  */
-void thinCrowd(const std::vector<Contact>& contacts, const PatchScale& scale, const std::vector<int>& members, const ContactIds& spared,
-               std::vector<int>* kept);
+void thinCrowd(const std::vector<contact::Contact>& contacts, const PatchScale& scale, const std::vector<int>& members,
+               const ContactIds& spared, std::vector<int>* kept);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::reduction

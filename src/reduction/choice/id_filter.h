@@ -7,7 +7,7 @@
 
 #include "blem_sim/reduction/reduction.h"
 
-namespace blem_sim {
+namespace blem_sim::reduction {
 
 /** Ids, most of which can be told from others without a search. */
 class IdFilter {
@@ -29,4 +29,4 @@ class IdFilter {
   std::array<std::uint64_t, 64> bits_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::reduction

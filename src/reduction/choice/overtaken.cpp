@@ -2,7 +2,7 @@
 
 #include "lanes/wrench_bounds.h"
 
-namespace blem_sim {
+namespace blem_sim::reduction {
 
 namespace {
 
@@ -33,7 +33,7 @@ bool isOvertaken(const WrenchPoint& point, const WrenchPoint* pivots) {
 
 }  // namespace
 
-void dropOvertaken(const std::vector<Contact>& contacts, const ContactIds& spared, std::vector<int>* candidates,
+void dropOvertaken(const std::vector<contact::Contact>& contacts, const ContactIds& spared, std::vector<int>* candidates,
                    std::vector<WrenchPoint>* points) {
   WrenchPoint pivots[PIVOTS];
   findPivots(*points, pivots);
@@ -51,4 +51,4 @@ void dropOvertaken(const std::vector<Contact>& contacts, const ContactIds& spare
   points->resize(left);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::reduction

@@ -7,7 +7,7 @@
 #include "blem_sim/reduction/reduction.h"
 #include "lanes/reduction_lanes.h"
 
-namespace blem_sim {
+namespace blem_sim::reduction {
 
 /**
  * Leaves out candidates whose wrenches, less their handicaps, others exceed in every direction: contacts that do not touch yet beside
@@ -15,7 +15,7 @@ namespace blem_sim {
  * @param spared ids of candidates to keep whatever others exceed
  * @param candidates indices of contacts, sorted by id @param points theirs
  */
-void dropOvertaken(const std::vector<Contact>& contacts, const ContactIds& spared, std::vector<int>* candidates,
+void dropOvertaken(const std::vector<contact::Contact>& contacts, const ContactIds& spared, std::vector<int>* candidates,
                    std::vector<WrenchPoint>* points);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::reduction

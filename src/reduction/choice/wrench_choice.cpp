@@ -10,7 +10,7 @@
 #include "choice/overtaken.h"
 #include "lanes/reduction_lanes.h"
 
-namespace blem_sim {
+namespace blem_sim::reduction {
 
 namespace {
 
@@ -51,13 +51,13 @@ WrenchDirections makeDirections() {
 
 // Index of the deepest candidate; of those that are as deep but for rounding the farthest along UNCOMMON_DIRECTION, so that the names of
 // vertices do not decide.
-int deepest(const std::vector<Contact>& contacts, const std::vector<int>& candidates, const PatchScale& scale) {
+int deepest(const std::vector<contact::Contact>& contacts, const std::vector<int>& candidates, const PatchScale& scale) {
   int best = -1;
   double farthest = 0;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const Contact& contact = contacts[candidates[i]];
+    const contact::Contact& contact = contacts[candidates[i]];
     if (!scale.isDeepest(contact)) continue;
-    const double place = UNCOMMON_DIRECTION.dot(contact.point);
+    const double place = contact::UNCOMMON_DIRECTION.dot(contact.point);
     if (best >= 0 && place <= farthest) continue;
     best = static_cast<int>(i);
     farthest = place;
@@ -68,7 +68,8 @@ int deepest(const std::vector<Contact>& contacts, const std::vector<int>& candid
 class Choice {
  public:
   /** Candidates that cannot be extreme are left out. */
-  void start(const std::vector<Contact>& contacts, const PatchScale& scale, const ContactIds& chosen_before, std::vector<int>* candidates) {
+  void start(const std::vector<contact::Contact>& contacts, const PatchScale& scale, const ContactIds& chosen_before,
+             std::vector<int>* candidates) {
     points_.clear();
     for (const int candidate : *candidates) points_.push_back(wrenchPoint(contacts[candidate], scale));
     dropOvertaken(contacts, chosen_before, candidates, &points_);
@@ -77,7 +78,7 @@ class Choice {
   }
 
   /** Makes depth count too from now on. */
-  void countDepth(const std::vector<Contact>& contacts, const std::vector<int>& candidates) {
+  void countDepth(const std::vector<contact::Contact>& contacts, const std::vector<int>& candidates) {
     for (std::size_t i = 0; i < candidates.size(); ++i)
       points_[i].handicap -= static_cast<float>(std::max(0.0, contacts[candidates[i]].depth) / DEPTH_SCALE);
     findWrenchExtremes(components_.data(), points_.data(), static_cast<int>(points_.size()), &extremes_);
@@ -97,10 +98,10 @@ class Choice {
   }
 
   /** Lack of `others` in the wrenches of `contacts`. */
-  float lackOf(const std::vector<Contact>& contacts, const std::vector<Contact>& others, const PatchScale& scale) {
-    const auto findExtremes = [&](const std::vector<Contact>& of, WrenchComponents* extremes) {
+  float lackOf(const std::vector<contact::Contact>& contacts, const std::vector<contact::Contact>& others, const PatchScale& scale) {
+    const auto findExtremes = [&](const std::vector<contact::Contact>& of, WrenchComponents* extremes) {
       points_.clear();
-      for (const Contact& contact : of) points_.push_back(wrenchPoint(contact, scale));
+      for (const contact::Contact& contact : of) points_.push_back(wrenchPoint(contact, scale));
       if (components_.size() < points_.size()) components_.resize(points_.size());
       findWrenches(directions_, points_.data(), static_cast<int>(points_.size()), components_.data(), extremes);
     };
@@ -128,8 +129,8 @@ class Choice {
 };
 
 // Indices of those candidates that were chosen before; none if they are too many. Both are sorted by id.
-void findContinued(const std::vector<Contact>& contacts, const std::vector<int>& candidates, int k, const ContactIds& chosen_before,
-                   std::vector<int>* there) {
+void findContinued(const std::vector<contact::Contact>& contacts, const std::vector<int>& candidates, int k,
+                   const ContactIds& chosen_before, std::vector<int>* there) {
   there->clear();
   auto before = chosen_before.begin();
   for (std::size_t i = 0; i < candidates.size() && before != chosen_before.end(); ++i) {
@@ -141,7 +142,7 @@ void findContinued(const std::vector<Contact>& contacts, const std::vector<int>&
 }
 
 // Adds the deepest of the members not chosen until k are.
-void addDeepest(const std::vector<Contact>& contacts, const std::vector<int>& members, std::size_t k, std::vector<int>* chosen) {
+void addDeepest(const std::vector<contact::Contact>& contacts, const std::vector<int>& members, std::size_t k, std::vector<int>* chosen) {
   static thread_local std::vector<int> rest, taken;
   taken = *chosen;
   std::sort(taken.begin(), taken.end());
@@ -151,7 +152,8 @@ void addDeepest(const std::vector<Contact>& contacts, const std::vector<int>& me
   }
   const std::size_t room = std::min(rest.size(), k - chosen->size());
   std::partial_sort(rest.begin(), rest.begin() + room, rest.end(), [&](int a, int b) {
-    return contacts[a].depth != contacts[b].depth ? contacts[a].depth > contacts[b].depth : contactBefore(contacts[a], contacts[b]);
+    return contacts[a].depth != contacts[b].depth ? contacts[a].depth > contacts[b].depth
+                                                  : contact::contactBefore(contacts[a], contacts[b]);
   });
   chosen->insert(chosen->end(), rest.begin(), rest.begin() + room);
 }
@@ -161,11 +163,11 @@ float atMost(float lack) { return (1 + MORE_BETWEEN) * std::max(0.0f, lack) + BE
 
 }  // namespace
 
-float chooseSpanningContacts(const std::vector<Contact>& contacts, const std::vector<int>& members, const PatchScale& scale, int k,
+float chooseSpanningContacts(const std::vector<contact::Contact>& contacts, const std::vector<int>& members, const PatchScale& scale, int k,
                              const ContactIds& chosen_before, std::vector<int>* candidates, std::vector<int>* chosen) {
   static thread_local Choice choice;
   static thread_local std::vector<int> continued;
-  sortCanonically(contacts, candidates);
+  contact::sortCanonically(contacts, candidates);
   choice.start(contacts, scale, chosen_before, candidates);
   const int deep = deepest(contacts, *candidates, scale);
 
@@ -195,11 +197,11 @@ float chooseSpanningContacts(const std::vector<Contact>& contacts, const std::ve
   return atMost(lack);
 }
 
-float wrenchLack(const std::vector<Contact>& all, const std::vector<Contact>& kept) {
+float wrenchLack(const std::vector<contact::Contact>& all, const std::vector<contact::Contact>& kept) {
   static thread_local Choice choice;
   bool sound = true;
   const PatchScale scale(all, &sound);
   return sound ? atMost(choice.lackOf(all, kept, scale)) : 1;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::reduction

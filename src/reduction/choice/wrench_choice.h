@@ -6,7 +6,7 @@
 #include "blem_sim/reduction/reduction.h"
 #include "patches/patch_frame.h"
 
-namespace blem_sim {
+namespace blem_sim::reduction {
 
 /**
  * Chooses at most k contacts: the deepest, then greedily the extreme contact of that fixed 6-D wrench direction in which the contacts
@@ -22,10 +22,10 @@ namespace blem_sim {
  * @return lack of those chosen in the candidates' wrenches, in the direction that lacks most, of a unit force; lengths in the scale's
  * radius
  */
-float chooseSpanningContacts(const std::vector<Contact>& contacts, const std::vector<int>& members, const PatchScale& scale, int k,
+float chooseSpanningContacts(const std::vector<contact::Contact>& contacts, const std::vector<int>& members, const PatchScale& scale, int k,
                              const ContactIds& chosen_before, std::vector<int>* candidates, std::vector<int>* chosen);
 
 /** Lack of `kept`, as chooseSpanningContacts tells it, in the wrenches of all contacts. @return 1 if some contact is not sound */
-float wrenchLack(const std::vector<Contact>& all, const std::vector<Contact>& kept);
+float wrenchLack(const std::vector<contact::Contact>& all, const std::vector<contact::Contact>& kept);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::reduction

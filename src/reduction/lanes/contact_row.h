@@ -7,7 +7,7 @@
 #include "blem_sim/contact/manifold.h"
 #include "lanes/instruction_sets.h"
 
-namespace blem_sim {
+namespace blem_sim::reduction {
 
 typedef double Doubles __attribute__((vector_size(32)));  // wider ones would be taken apart where processors have none
 
@@ -16,11 +16,11 @@ struct ContactRow {
   Doubles first, second;
 };
 
-static_assert(offsetof(Contact, point) == 0 && offsetof(Contact, normal_BA) == 3 * sizeof(double) &&
-                  offsetof(Contact, depth) == 6 * sizeof(double) && sizeof(Contact) >= sizeof(ContactRow),
+static_assert(offsetof(contact::Contact, point) == 0 && offsetof(contact::Contact, normal_BA) == 3 * sizeof(double) &&
+                  offsetof(contact::Contact, depth) == 6 * sizeof(double) && sizeof(contact::Contact) >= sizeof(ContactRow),
               "a contact starts like a row");
 
-BLEM_SIM_INLINE void readRow(const Contact& contact, ContactRow* row) {
+BLEM_SIM_INLINE void readRow(const contact::Contact& contact, ContactRow* row) {
   typedef long Bits __attribute__((vector_size(32)));
   constexpr Bits NUMBERS = {-1, -1, -1, 0};
   Bits bits;
@@ -29,4 +29,4 @@ BLEM_SIM_INLINE void readRow(const Contact& contact, ContactRow* row) {
   row->second = reinterpret_cast<Doubles>(bits & NUMBERS);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::reduction

@@ -3,7 +3,7 @@
 #include "lanes/instruction_sets.h"
 #include "lanes/wrench_bounds.h"
 
-namespace blem_sim {
+namespace blem_sim::reduction {
 
 namespace {
 
@@ -284,4 +284,4 @@ BLEM_SIM_LANES void findSectors(const Fan& fan, const double* x, const double* y
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::reduction

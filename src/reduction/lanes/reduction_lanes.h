@@ -3,7 +3,7 @@
 
 #include <vector>
 
-namespace blem_sim {
+namespace blem_sim::reduction {
 
 constexpr int WRENCH_DIRECTIONS = 256;  // more cost time, fewer leave extremes unseen
 constexpr int CELL_DIRECTIONS = 16;
@@ -119,4 +119,4 @@ class Fan {
 /** The triangle's index in whose angle each point lies, or the nearest if there is none: into sectors[count]. */
 void findSectors(const Fan& fan, const double* x, const double* y, int count, int* sectors);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::reduction

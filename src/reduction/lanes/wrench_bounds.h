@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace blem_sim {
+namespace blem_sim::reduction {
 
 // A largest component changes by no more than these times the way to another place [radii], and to another normal: both stem from
 // |g.n + mu |g - (g.n) n|| <= sqrt(1 + mu^2) |g|, with mu 0.5, |g| <= sqrt(2), and angles up to pi / 2 times their chords.
@@ -15,4 +15,4 @@ inline float distance(const float (&a)[3], const float (&b)[3]) {
   return std::sqrt(x * x + y * y + z * z);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::reduction

@@ -2,7 +2,7 @@
 
 #include "blem_sim/geometry/roomy.h"
 
-namespace blem_sim {
+namespace blem_sim::reduction {
 
 namespace {
 
@@ -28,11 +28,11 @@ int NormalCells::cellOf(std::uint64_t key) {
   }
 }
 
-bool NormalCells::group(const std::vector<Contact>& contacts) {
+bool NormalCells::group(const std::vector<contact::Contact>& contacts) {
   cells_.clear();
   ends_.clear();
   slots_.fill(-1);
-  resizeRoomy(contacts.size(), &cell_of_);
+  geometry::resizeRoomy(contacts.size(), &cell_of_);
   int last = -1;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const std::uint64_t key = keyOf(contacts[i].normal_BA);
@@ -44,11 +44,11 @@ bool NormalCells::group(const std::vector<Contact>& contacts) {
     cell_of_[i] = static_cast<std::int16_t>(last);
   }
   // Counting sort; ends_[c + 1] is the place of the next member of cell c.
-  makeRoomFor(cells_.size() + 2, &ends_);
+  geometry::makeRoomFor(cells_.size() + 2, &ends_);
   ends_.assign(cells_.size() + 2, 0);
   for (const std::int16_t cell : cell_of_) ++ends_[cell + 2];
   for (std::size_t c = 2; c < ends_.size(); ++c) ends_[c] += ends_[c - 1];
-  resizeRoomy(contacts.size(), &members_);
+  geometry::resizeRoomy(contacts.size(), &members_);
   for (std::size_t i = 0; i < contacts.size(); ++i) members_[ends_[cell_of_[i] + 1]++] = static_cast<int>(i);
   return true;
 }
@@ -58,4 +58,4 @@ Vector3 NormalCells::normal(int cell) const {
   return Vector3(part(32), part(16), part(0)).normalized();
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::reduction

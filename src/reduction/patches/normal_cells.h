@@ -7,7 +7,7 @@
 
 #include "blem_sim/contact/manifold.h"
 
-namespace blem_sim {
+namespace blem_sim::reduction {
 
 /** Contacts by the cell of a fine grid over normals that theirs lies in. Keeps its memory. */
 class NormalCells {
@@ -15,7 +15,7 @@ class NormalCells {
   static constexpr int MOST = 400;  ///< cells
 
   /** @return false if there are more than MOST cells; none is formed then. The outcome does not depend on the order of the contacts. */
-  bool group(const std::vector<Contact>& contacts);
+  bool group(const std::vector<contact::Contact>& contacts);
 
   int count() const { return static_cast<int>(cells_.size()); }
   /** Unit normal in the middle of a cell. */
@@ -35,4 +35,4 @@ class NormalCells {
   std::vector<int> ends_, members_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::reduction

@@ -5,14 +5,14 @@
 
 #include "blem_sim/contact/contact_order.h"
 
-namespace blem_sim {
+namespace blem_sim::reduction {
 
 int PatchDepths::deepestPlace() const {
   const std::vector<double>& depth = places_->depth;
   int best = 0;
   for (int i = 1; i < static_cast<int>(depth.size()); ++i) {
     if (depth[i] < depth[best]) continue;
-    if (depth[i] > depth[best] || contactBefore((*contacts_)[members_[i]], (*contacts_)[members_[best]])) best = i;
+    if (depth[i] > depth[best] || contact::contactBefore((*contacts_)[members_[i]], (*contacts_)[members_[best]])) best = i;
   }
   return best;
 }
@@ -49,8 +49,8 @@ void PatchDepths::hand(int place, const PlanePoint& point, Facet* facet) {
   if (excess <= DEPTH_TIE) return;
   next_[place] = facet->first;
   facet->first = place;
-  const bool higher =
-      excess > facet->most || (excess == facet->most && contactBefore((*contacts_)[point.contact], (*contacts_)[members_[facet->highest]]));
+  const bool higher = excess > facet->most || (excess == facet->most &&
+                                               contact::contactBefore((*contacts_)[point.contact], (*contacts_)[members_[facet->highest]]));
   if (!higher) return;
   facet->highest = place;
   facet->most = excess;
@@ -98,7 +98,7 @@ void PatchDepths::raiseTriangle(const Facet& facet, const PlanePoint& top, std::
   }
 }
 
-void PatchDepths::keepDeeper(const std::vector<Contact>& contacts, const int* members, const PlanePlaces& places,
+void PatchDepths::keepDeeper(const std::vector<contact::Contact>& contacts, const int* members, const PlanePlaces& places,
                              const std::vector<PlanePoint>& corners, std::vector<int>* kept) {
   contacts_ = &contacts;
   members_ = members;
@@ -123,4 +123,4 @@ void PatchDepths::keepDeeper(const std::vector<Contact>& contacts, const int* me
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::reduction

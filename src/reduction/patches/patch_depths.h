@@ -9,7 +9,7 @@
 #include "lanes/reduction_lanes.h"
 #include "patches/patch_frame.h"
 
-namespace blem_sim {
+namespace blem_sim::reduction {
 
 /** [m] A corner that stands out less is none: where vertices coincide, merging moves points about. */
 constexpr double FLATNESS = 1e-7;
@@ -36,7 +36,7 @@ class PatchDepths {
  public:
   /** Appends the contacts that the interpolation was raised to.
    * @param members contacts of the places, by their index @param corners of the hull of the places, counter-clockwise */
-  void keepDeeper(const std::vector<Contact>& contacts, const int* members, const PlanePlaces& places,
+  void keepDeeper(const std::vector<contact::Contact>& contacts, const int* members, const PlanePlaces& places,
                   const std::vector<PlanePoint>& corners, std::vector<int>* kept);
 
  private:
@@ -77,7 +77,7 @@ class PatchDepths {
   void raise(const Facet& facet, std::vector<int>* kept);
   void raiseTriangle(const Facet& facet, const PlanePoint& top, std::vector<int>* kept);
 
-  const std::vector<Contact>* contacts_ = nullptr;
+  const std::vector<contact::Contact>* contacts_ = nullptr;
   const int* members_ = nullptr;
   const PlanePlaces* places_ = nullptr;
   Fan fan_;
@@ -86,4 +86,4 @@ class PatchDepths {
   std::vector<int> next_, sectors_;  // by place
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::reduction

@@ -5,7 +5,7 @@
 
 #include "lanes/contact_row.h"
 
-namespace blem_sim {
+namespace blem_sim::reduction {
 
 namespace {
 
@@ -13,7 +13,7 @@ constexpr double SMALLEST = 1e-6;  // [m] radius
 constexpr double UNIT = 1.9e-14;   // squares of lengths are 1 within it
 
 // The least and the largest numbers of the contacts. @return whether all are finite, with unit normals
-BLEM_SIM_LANES bool findSpan(const Contact* contacts, std::size_t count, ContactRow* lowest, ContactRow* highest) {
+BLEM_SIM_LANES bool findSpan(const contact::Contact* contacts, std::size_t count, ContactRow* lowest, ContactRow* highest) {
   constexpr double INFINITE = std::numeric_limits<double>::infinity();
   ContactRow low{Doubles{} + INFINITE, Doubles{} + INFINITE}, high{-low.first, -low.second};
   Doubles nothing = {};  // 0 while all are finite
@@ -37,7 +37,7 @@ BLEM_SIM_LANES bool findSpan(const Contact* contacts, std::size_t count, Contact
 
 }  // namespace
 
-PatchScale::PatchScale(const std::vector<Contact>& contacts, bool* ready) {
+PatchScale::PatchScale(const std::vector<contact::Contact>& contacts, bool* ready) {
   ContactRow low, high;
   *ready = findSpan(contacts.data(), contacts.size(), &low, &high);
   if (!*ready || contacts.empty()) return;
@@ -47,4 +47,4 @@ PatchScale::PatchScale(const std::vector<Contact>& contacts, bool* ready) {
   depth_ = high.second[2];
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::reduction

@@ -7,7 +7,7 @@
 #include "blem_sim/contact/manifold.h"
 #include "lanes/reduction_lanes.h"
 
-namespace blem_sim {
+namespace blem_sim::reduction {
 
 /** [1/m] A contact that does not touch yet counts less, by this many unit forces per gap: it cannot carry anything now. */
 constexpr double PER_GAP = 5000;
@@ -30,7 +30,7 @@ class PatchScale {
  public:
   PatchScale() = default;
   /** @param ready whether they are all finite, with unit normals; else there is no scale */
-  PatchScale(const std::vector<Contact>& contacts, bool* ready);
+  PatchScale(const std::vector<contact::Contact>& contacts, bool* ready);
 
   const Vector3& centre() const { return centre_; }  ///< [m]
   double perRadius() const { return per_radius_; }   ///< [1/m]
@@ -38,7 +38,7 @@ class PatchScale {
   Vector3 lever(const Vector3& point) const { return (point - centre_) * per_radius_; }
   double depth() const { return depth_; }  ///< [m] of the deepest
   /** Whether no contact is deeper, but for rounding. */
-  bool isDeepest(const Contact& contact) const { return contact.depth >= depth_ - DEPTH_TIE; }
+  bool isDeepest(const contact::Contact& contact) const { return contact.depth >= depth_ - DEPTH_TIE; }
 
  private:
   Vector3 centre_ = Vector3::Zero();
@@ -46,7 +46,7 @@ class PatchScale {
   double depth_ = 0;
 };
 
-inline WrenchPoint wrenchPoint(const Contact& contact, const PatchScale& scale) {
+inline WrenchPoint wrenchPoint(const contact::Contact& contact, const PatchScale& scale) {
   const Vector3 lever = scale.lever(contact.point);
   WrenchPoint point;
   for (int axis = 0; axis < 3; ++axis) {
@@ -57,4 +57,4 @@ inline WrenchPoint wrenchPoint(const Contact& contact, const PatchScale& scale) 
   return point;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::reduction

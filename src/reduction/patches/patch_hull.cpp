@@ -10,7 +10,7 @@
 #include "patches/patch_depths.h"
 #include "patches/patch_frame.h"
 
-namespace blem_sim {
+namespace blem_sim::reduction {
 
 namespace {
 
@@ -25,11 +25,11 @@ struct HullBuffers {
 };
 
 // Total: at the same place the deepest comes first, then the first in canonical order.
-bool planePointBefore(const std::vector<Contact>& contacts, const PlanePoint& a, const PlanePoint& b) {
+bool planePointBefore(const std::vector<contact::Contact>& contacts, const PlanePoint& a, const PlanePoint& b) {
   if (a.x != b.x) return a.x < b.x;
   if (a.y != b.y) return a.y < b.y;
   if (a.depth != b.depth) return a.depth > b.depth;
-  return a.contact != b.contact && contactBefore(contacts[a.contact], contacts[b.contact]);
+  return a.contact != b.contact && contact::contactBefore(contacts[a.contact], contacts[b.contact]);
 }
 
 // The octagon's directions come first, the others between them after those. @return the index of the d-th, counter-clockwise
@@ -57,13 +57,13 @@ const PlaneDirections& planeDirections() {
 bool mayHaveMore(int corners, int members) { return corners < std::min(members, PLANE_DIRECTIONS) && members < 20 * corners; }
 
 // Places of the members in the plane, and their depths.
-void project(const std::vector<Contact>& contacts, const int* begin, const int* end, const Vector3& normal, PlanePlaces* places) {
+void project(const std::vector<contact::Contact>& contacts, const int* begin, const int* end, const Vector3& normal, PlanePlaces* places) {
   const PlaneAxes axes = axesAcross(normal);
   places->x.resize(end - begin);
   places->y.resize(end - begin);
   places->depth.resize(end - begin);
   for (std::size_t i = 0; i < places->x.size(); ++i) {
-    const Contact& contact = contacts[begin[i]];
+    const contact::Contact& contact = contacts[begin[i]];
     places->x[i] = axes.u.dot(contact.point);
     places->y[i] = axes.v.dot(contact.point);
     places->depth[i] = contact.depth;
@@ -130,7 +130,7 @@ void findOuter(HullBuffers* buffers) {
 }
 
 // The outer places as points, sorted, of those at one place the deepest.
-void sortOuter(const std::vector<Contact>& contacts, const int* members, HullBuffers* buffers) {
+void sortOuter(const std::vector<contact::Contact>& contacts, const int* members, HullBuffers* buffers) {
   const PlanePlaces& places = buffers->places;
   std::vector<PlanePoint>& points = buffers->points;
   points.clear();
@@ -218,7 +218,7 @@ void findCorners(HullBuffers* buffers) {
 
 }  // namespace
 
-void patchHull(const std::vector<Contact>& contacts, const int* begin, const int* end, const Vector3& normal, int most,
+void patchHull(const std::vector<contact::Contact>& contacts, const int* begin, const int* end, const Vector3& normal, int most,
                std::vector<int>* kept) {
   static thread_local HullBuffers buffers;
   if (end - begin == 1) return kept->push_back(*begin);
@@ -236,4 +236,4 @@ void patchHull(const std::vector<Contact>& contacts, const int* begin, const int
   buffers.depths.keepDeeper(contacts, begin, buffers.places, buffers.corners, kept);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::reduction

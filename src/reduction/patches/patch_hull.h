@@ -5,7 +5,7 @@
 
 #include "blem_sim/contact/manifold.h"
 
-namespace blem_sim {
+namespace blem_sim::reduction {
 
 /**
  * Appends the contacts to keep, for contacts with (nearly) one normal: the corners of the convex hull of their points in the plane across
@@ -15,7 +15,7 @@ namespace blem_sim {
  * @param begin, end members, indices of contacts; at least one
  * @param most patches with surely more corners than this are not worth their hull: all their members are kept
  */
-void patchHull(const std::vector<Contact>& contacts, const int* begin, const int* end, const Vector3& normal, int most,
+void patchHull(const std::vector<contact::Contact>& contacts, const int* begin, const int* end, const Vector3& normal, int most,
                std::vector<int>* kept);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::reduction

@@ -8,13 +8,13 @@
 #include "messages/conversions.h"
 #include "messages/link_motion.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 namespace {
 
 constexpr int ATTACHMENT_QUEUE = 100;
 
-Attachment attachmentMessage(const Simulator& simulator, const AttachedModel& weld) {
+Attachment attachmentMessage(const sim::Simulator& simulator, const sim::AttachedModel& weld) {
   const Matrix3 R_LW = partMotion(simulator, weld.part).X_WL.linear().transpose();
   Attachment message;
   message.object_name = weld.object;
@@ -27,21 +27,21 @@ Attachment attachmentMessage(const Simulator& simulator, const AttachedModel& we
 
 }  // namespace
 
-AttachmentPublisher::AttachmentPublisher(ros::NodeHandle private_node, const Simulator& simulator, StepSender* sender)
+AttachmentPublisher::AttachmentPublisher(ros::NodeHandle private_node, const sim::Simulator& simulator, StepSender* sender)
     : simulator_(simulator),
       publisher_(ListenedPublisher::advertise<AttachmentArray>(&private_node, "attachments", ATTACHMENT_QUEUE)),
       sender_(sender) {}
 
-void AttachmentPublisher::publish(const StepReport& report) {
+void AttachmentPublisher::publish(const sim::StepReport& report) {
   for (const std::string& object : report.broken_attachments)
     ROS_WARN("t = %.3f s: the weld of '%s' broke; a larger max_force or max_torque of ~attach holds it", report.time, object.c_str());
   if ((simulator_.attachments().empty() && report.broken_attachments.empty()) || !publisher_.listened()) return;
   const auto message = boost::make_shared<AttachmentArray>();
   message->header.stamp = toStamp(report.time);
   message->header.frame_id = WORLD_FRAME;
-  for (const AttachedModel& weld : simulator_.attachments()) message->attachments.push_back(attachmentMessage(simulator_, weld));
+  for (const sim::AttachedModel& weld : simulator_.attachments()) message->attachments.push_back(attachmentMessage(simulator_, weld));
   message->broken = report.broken_attachments;
   sender_->add(&publisher_, message);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -7,7 +7,7 @@
 
 #include "blem_sim/sim/named_parts.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 namespace {
 
@@ -16,12 +16,12 @@ double limitOf(double limit) { return limit == 0 ? std::numeric_limits<double>::
 
 }  // namespace
 
-AttachmentServices::AttachmentServices(const ros::NodeHandle& private_node, Simulator* simulator) : services_(private_node) {
+AttachmentServices::AttachmentServices(const ros::NodeHandle& private_node, sim::Simulator* simulator) : services_(private_node) {
   services_.add<Attach>("attach", [simulator](const auto& request, auto*) {
-    simulator->attach(request.object_name, findLink(*simulator, request.link_name, "link_name"), limitOf(request.max_force),
+    simulator->attach(request.object_name, sim::findLink(*simulator, request.link_name, "link_name"), limitOf(request.max_force),
                       limitOf(request.max_torque));
   });
   services_.add<Detach>("detach", [simulator](const auto& request, auto*) { simulator->detach(request.object_name); });
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

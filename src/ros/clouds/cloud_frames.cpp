@@ -8,7 +8,7 @@
 
 #include "blem_sim/geometry/input_error.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 namespace {
 
 std::string withoutSlash(const std::string& frame) { return !frame.empty() && frame[0] == '/' ? frame.substr(1) : frame; }
@@ -44,4 +44,4 @@ Pose CloudFrames::poseOf(const std::string& given, const std::string& in_frame, 
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -10,7 +10,7 @@
 
 #include "blem_sim/geometry/types.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /** Listens to /tf and /tf_static in a thread of its own. Any thread may ask. */
 class CloudFrames {
@@ -34,4 +34,4 @@ class CloudFrames {
   tf2_ros::TransformListener listener_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -7,7 +7,7 @@
 
 #include "blem_sim/geometry/input_error.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 namespace {
 
 using sensor_msgs::PointCloud2;
@@ -79,4 +79,4 @@ std::vector<Vector3> pointsOf(const PointCloud2& cloud) {
   return points;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -8,7 +8,7 @@
 
 #include "blem_sim/geometry/types.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /** Points of a message, measured or not, beyond which it is refused. */
 constexpr std::uint64_t MOST_CLOUD_POINTS = 10000000;
@@ -21,4 +21,4 @@ constexpr std::uint64_t MOST_CLOUD_POINTS = 10000000;
  */
 std::vector<Vector3> pointsOf(const sensor_msgs::PointCloud2& cloud);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

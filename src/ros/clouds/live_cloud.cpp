@@ -8,19 +8,19 @@
 #include "blem_sim/geometry/input_error.h"
 #include "clouds/cloud_message.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 namespace {
 
 constexpr std::chrono::seconds WARNING_PERIOD(5);
 
-CloudOptions withoutFilters(CloudOptions options) {
+model::CloudOptions withoutFilters(model::CloudOptions options) {
   options.filters.clear();
   return options;
 }
 
 }  // namespace
 
-LiveCloud::LiveCloud(const EnvironmentConfig& config, const CloudFrames& frames, const std::atomic<double>& time)
+LiveCloud::LiveCloud(const sim::EnvironmentConfig& config, const CloudFrames& frames, const std::atomic<double>& time)
     : config_(config), frames_(frames), time_(time), map_(config.live.map), surface_options_(withoutFilters(config.cloud)), thread_([this] {
         run();
       }) {}
@@ -49,7 +49,7 @@ std::optional<BuiltCloud> LiveCloud::take() {
   return std::exchange(ready_, std::nullopt);
 }
 
-void LiveCloud::giveBack(CloudSurface surface) {
+void LiveCloud::giveBack(sim::CloudSurface surface) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     to_free_.push_back(std::move(surface));
@@ -95,7 +95,7 @@ void LiveCloud::run() {
   for (;;) {
     changed_.wait(lock, [this] { return ends_ || waiting_ || !to_free_.empty(); });
     if (ends_) return;
-    std::vector<CloudSurface> old = std::exchange(to_free_, {});
+    std::vector<sim::CloudSurface> old = std::exchange(to_free_, {});
     const sensor_msgs::PointCloud2ConstPtr message = std::exchange(waiting_, nullptr);
     if (std::exchange(restarts_, false)) map_.clear();
     busy_ = message != nullptr;
@@ -136,13 +136,13 @@ BuiltCloud LiveCloud::build(const sensor_msgs::PointCloud2& message) {
   built.stamp = message.header.stamp;
   built.points_received = points.size();
   std::vector<std::string> notes;
-  points = filtered(std::move(points), config_.cloud.filters, "cloud", &notes);
-  if (config_.live.update == LiveConfig::Update::ACCUMULATE) {
+  points = model::filtered(std::move(points), config_.cloud.filters, "cloud", &notes);
+  if (config_.live.update == sim::LiveConfig::Update::ACCUMULATE) {
     map_.add(points, message.header.stamp.isZero() ? time_.load() : message.header.stamp.toSec());
     points = map_.points();
   }
   if (points.empty()) throw InputError("filters and the map left no point");
-  built.surface = makeCloudSurface(std::move(points), surface_options_, topic());
+  built.surface = sim::makeCloudSurface(std::move(points), surface_options_, topic());
   built.surface.report.notes.insert(built.surface.report.notes.begin(), notes.begin(), notes.end());
   // The first cloud's radius stays: one that changed from cloud to cloud would lift and lower what stands there.
   surface_options_.auto_radius = false;
@@ -151,4 +151,4 @@ BuiltCloud LiveCloud::build(const sensor_msgs::PointCloud2& message) {
   return built;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -18,11 +18,11 @@
 #include "blem_sim/sim/simulator_types.h"
 #include "clouds/cloud_frames.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /** A cloud that is ready for contact. */
 struct BuiltCloud {
-  CloudSurface surface;
+  sim::CloudSurface surface;
   ros::Time stamp;  ///< of its message
   std::size_t points_received = 0;
   double seconds = 0;  ///< of wall time that it took
@@ -44,7 +44,7 @@ class LiveCloud {
   static constexpr double MOST_AHEAD = 0.5;
 
   /** @param frames, time [s] simulated: must outlive this */
-  LiveCloud(const EnvironmentConfig& config, const CloudFrames& frames, const std::atomic<double>& time);
+  LiveCloud(const sim::EnvironmentConfig& config, const CloudFrames& frames, const std::atomic<double>& time);
   ~LiveCloud();
   LiveCloud(const LiveCloud&) = delete;
   LiveCloud& operator=(const LiveCloud&) = delete;
@@ -55,7 +55,7 @@ class LiveCloud {
   /** The newest surface that is ready, once. */
   std::optional<BuiltCloud> take();
   /** Frees a surface in this object's thread. */
-  void giveBack(CloudSurface surface);
+  void giveBack(sim::CloudSurface surface);
   /** Returns when all messages received so far are built or refused. False if the deadline came first. */
   bool waitUntilBuilt(std::chrono::steady_clock::time_point deadline);
   /** Forgets the map, with the next message: time has started again. */
@@ -72,20 +72,20 @@ class LiveCloud {
   BuiltCloud build(const sensor_msgs::PointCloud2& message);
   void checkStamp(const ros::Time& stamp) const;
 
-  EnvironmentConfig config_;
+  sim::EnvironmentConfig config_;
   const CloudFrames& frames_;
   const std::atomic<double>& time_;
-  VoxelMap map_;  // of the thread, like the next one
-  CloudOptions surface_options_;
+  model::VoxelMap map_;  // of the thread, like the next one
+  model::CloudOptions surface_options_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   sensor_msgs::PointCloud2ConstPtr waiting_;  // guarded by the mutex, like all that follow
   std::optional<BuiltCloud> ready_;
-  std::vector<CloudSurface> to_free_;
+  std::vector<sim::CloudSurface> to_free_;
   CloudCounts counts_;
   std::chrono::steady_clock::time_point next_warning_;
   bool busy_ = false, ends_ = false, restarts_ = false;
   std::thread thread_;  // last: it uses the others
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -7,7 +7,7 @@
 #include "blem_sim/geometry/input_error.h"
 #include "messages/conversions.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 namespace {
 
 using diagnostic_msgs::DiagnosticStatus;
@@ -25,7 +25,7 @@ LiveClouds::LiveClouds(const ros::NodeHandle& node, ros::NodeHandle private_node
       receiver_(1, &callbacks_) {
   ros::NodeHandle receiving(node);
   receiving.setCallbackQueue(&callbacks_);
-  for (const EnvironmentConfig& environment : loop->simulator().config().environments) {
+  for (const sim::EnvironmentConfig& environment : loop->simulator().config().environments) {
     if (environment.live.topic.empty()) continue;
     clouds_.push_back(std::make_unique<LiveCloud>(environment, frames_, time_));
     LiveCloud* const cloud = clouds_.back().get();
@@ -64,7 +64,7 @@ void LiveClouds::waitUntilBuilt() {
 }
 
 void LiveClouds::exchange(LiveCloud* cloud, BuiltCloud* built) {
-  Simulator& simulator = loop_.simulator();
+  sim::Simulator& simulator = loop_.simulator();
   LiveCloudUpdate update;
   update.points = static_cast<std::uint32_t>(built->surface.report.points);
   update.point_radius = built->surface.radius;
@@ -116,4 +116,4 @@ void LiveClouds::describe(diagnostic_updater::DiagnosticStatusWrapper& status) c
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

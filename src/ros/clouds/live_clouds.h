@@ -15,7 +15,7 @@
 #include "loop/simulation_loop.h"
 #include "sending/step_publisher.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /**
  * Receives clouds beside the steps and exchanges environments for them between steps: while the simulation runs before each step, for calls
@@ -31,7 +31,7 @@ class LiveClouds : public StepPublisher {
   LiveClouds(const ros::NodeHandle& node, ros::NodeHandle private_node, SimulationLoop* loop);
   ~LiveClouds() override;
 
-  void publish(const StepReport& report) override { time_ = report.time; }
+  void publish(const sim::StepReport& report) override { time_ = report.time; }
   void timeRestarted() override;
   /** Counts of messages, and why the last one was refused. */
   void describe(diagnostic_updater::DiagnosticStatusWrapper& status) const;
@@ -54,4 +54,4 @@ class LiveClouds : public StepPublisher {
   bool untold_ = false;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -5,16 +5,16 @@
 
 #include "messages/parameter_yaml.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
-ControllerConfig withParameters(const ros::NodeHandle& robot_node, const ControllerConfig& settings) {
+sim::ControllerConfig withParameters(const ros::NodeHandle& robot_node, const sim::ControllerConfig& settings) {
   const std::string place = robot_node.resolveName(settings.name);
   XmlRpc::XmlRpcValue given;
   if (!ros::param::get(place, given) || given.getType() != XmlRpc::XmlRpcValue::TypeStruct) return settings;
   YAML::Node node(YAML::NodeType::Map);
-  for (const std::string& key : controllerKeys(settings.kind))
+  for (const std::string& key : sim::controllerKeys(settings.kind))
     if (given.hasMember(key)) node[key] = toYaml(given[key]);
-  return parseController(node, place, settings);
+  return sim::parseController(node, place, settings);
 }
 
 std::string controllerType(const ros::NodeHandle& robot_node, const std::string& name) {
@@ -23,4 +23,4 @@ std::string controllerType(const ros::NodeHandle& robot_node, const std::string&
   return type;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -7,15 +7,15 @@
 
 #include "blem_sim/sim/controller_config.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /**
  * The keys below a controller's name over the settings given; keys of other packages there (gains, type) are left alone.
  * @param robot_node in the robot's namespace @throws InputError: a wrong type or range
  */
-ControllerConfig withParameters(const ros::NodeHandle& robot_node, const ControllerConfig& settings);
+sim::ControllerConfig withParameters(const ros::NodeHandle& robot_node, const sim::ControllerConfig& settings);
 
 /** The parameter `type` below a controller's name; empty if there is none. */
 std::string controllerType(const ros::NodeHandle& robot_node, const std::string& name);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /** Commands come in the thread that steps, between two steps. A faulty one changes nothing, and is told in one error line. */
 class ControllerServer {
@@ -20,4 +20,4 @@ class ControllerServer {
   virtual void restartTime() = 0;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

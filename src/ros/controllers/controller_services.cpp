@@ -4,7 +4,7 @@
 
 #include "blem_sim/geometry/input_error.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 namespace {
 
@@ -61,4 +61,4 @@ bool ControllerServices::onSwitch(SwitchController::Request& request, SwitchCont
   return true;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

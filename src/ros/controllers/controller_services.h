@@ -9,7 +9,7 @@
 
 #include "controllers/robot_controllers.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /**
  * `controller_manager/{list_controllers,list_controller_types,load_controller,unload_controller,switch_controller}` in a robot's namespace:
@@ -31,4 +31,4 @@ class ControllerServices {
   ros::ServiceServer list_, list_types_, load_, unload_, switch_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

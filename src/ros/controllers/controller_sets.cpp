@@ -4,9 +4,9 @@
 
 #include <iterator>
 
-namespace blem_sim {
+namespace blem_sim::node {
 
-ControllerSets::ControllerSets(ros::NodeHandle node, Simulator* simulator, StepSender* sender)
+ControllerSets::ControllerSets(ros::NodeHandle node, sim::Simulator* simulator, StepSender* sender)
     : node_(node), simulator_(simulator), sender_(sender) {
   modelsChanged();
 }
@@ -18,7 +18,7 @@ void ControllerSets::modelsChanged() {
 }
 
 void ControllerSets::add(int robot) {
-  const RobotInfo& info = simulator_->robots()[robot];
+  const sim::RobotInfo& info = simulator_->robots()[robot];
   const std::string place = node_.resolveName(info.name_space);
   const auto known = sets_.find(place);
   if (known != sets_.end()) {
@@ -32,7 +32,7 @@ void ControllerSets::add(int robot) {
   sets_[place] = {info.name, std::move(controllers), std::move(services)};
 }
 
-void ControllerSets::publish(const StepReport& report) {
+void ControllerSets::publish(const sim::StepReport& report) {
   for (auto& [place, set] : sets_) set.controllers->step(report.time);
 }
 
@@ -40,4 +40,4 @@ void ControllerSets::timeRestarted() {
   for (auto& [place, set] : sets_) set.controllers->restartTime();
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

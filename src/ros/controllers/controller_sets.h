@@ -11,15 +11,15 @@
 #include "controllers/robot_controllers.h"
 #include "sending/step_publisher.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /** One set of controllers, and its services, for each robot that has its namespace to itself. */
 class ControllerSets : public StepPublisher {
  public:
   /** @throws InputError: wrong settings of a controller */
-  ControllerSets(ros::NodeHandle node, Simulator* simulator, StepSender* sender);
+  ControllerSets(ros::NodeHandle node, sim::Simulator* simulator, StepSender* sender);
 
-  void publish(const StepReport& report) override;
+  void publish(const sim::StepReport& report) override;
   void timeRestarted() override;
   /** All messages about robots that went are out. @throws InputError: wrong settings of a controller */
   void modelsChanged() override;
@@ -34,9 +34,9 @@ class ControllerSets : public StepPublisher {
   void add(int robot);
 
   ros::NodeHandle node_;
-  Simulator* simulator_;
+  sim::Simulator* simulator_;
   StepSender* sender_;
   std::map<std::string, Set> sets_;  // by namespace
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -8,7 +8,7 @@
 
 #include "sending/publish_schedule.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /** Keeps the active goal of an action of one type, and ends it once. */
 template <typename Action>
@@ -73,4 +73,4 @@ class GoalServer {
   Server server_;  // last: it uses the others
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -4,13 +4,13 @@
 
 #include <utility>
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 namespace {
 
 /** The action's result and its feedback have the same fields. */
 template <typename Message>
-Message messageOf(const GripperState& state) {
+Message messageOf(const sim::GripperState& state) {
   Message message;
   message.position = state.position;
   message.effort = state.effort;
@@ -21,7 +21,7 @@ Message messageOf(const GripperState& state) {
 
 }  // namespace
 
-GripperServer::GripperServer(const ros::NodeHandle& robot_node, GripperController controller)
+GripperServer::GripperServer(const ros::NodeHandle& robot_node, sim::GripperController controller)
     : controller_(std::move(controller)),
       goals_(
           ros::NodeHandle(robot_node, controller_.config().name), "gripper_cmd", controller_.config().action_monitor_rate,
@@ -50,16 +50,16 @@ void GripperServer::stop() {
   goals_.preempt(messageOf<GripperCommandResult>(controller_.state()), "the controller was stopped");
 }
 
-void GripperServer::finish(const GoalOutcome& outcome) {
+void GripperServer::finish(const sim::GoalOutcome& outcome) {
   const auto result = messageOf<GripperCommandResult>(controller_.state());
-  if (outcome.end == GoalEnd::SUCCEEDED) return goals_.succeed(result);
-  if (outcome.end == GoalEnd::PREEMPTED) return goals_.preempt(result, outcome.text);
+  if (outcome.end == sim::GoalEnd::SUCCEEDED) return goals_.succeed(result);
+  if (outcome.end == sim::GoalEnd::PREEMPTED) return goals_.preempt(result, outcome.text);
   goals_.abort(result, outcome.text);
 }
 
 void GripperServer::step(double time) {
-  if (const std::optional<GoalOutcome> outcome = controller_.update()) finish(*outcome);
+  if (const std::optional<sim::GoalOutcome> outcome = controller_.update()) finish(*outcome);
   if (goals_.feedbackDue(time)) goals_.publish(messageOf<GripperCommandFeedback>(controller_.state()));
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -11,13 +11,13 @@
 #include "controllers/controller_server.h"
 #include "controllers/goal_server.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /** The action `gripper_cmd` below the controller's name. A goal's max_effort cannot raise or lower the motor's limit: a warning says so. */
 class GripperServer : public ControllerServer {
  public:
   /** @param robot_node in the robot's namespace */
-  GripperServer(const ros::NodeHandle& robot_node, GripperController controller);
+  GripperServer(const ros::NodeHandle& robot_node, sim::GripperController controller);
 
   std::vector<std::string> joints() const override { return controller_.config().joints; }
   void start() override { controller_.start(); }
@@ -29,10 +29,10 @@ class GripperServer : public ControllerServer {
   using Goals = GoalServer<GripperCommandAction>;
 
   void onGoal(Goals::Handle goal);
-  void finish(const GoalOutcome& outcome);
+  void finish(const sim::GoalOutcome& outcome);
 
-  GripperController controller_;
+  sim::GripperController controller_;
   Goals goals_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -12,7 +12,7 @@
 #include "controllers/gripper_server.h"
 #include "controllers/trajectory_server.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 namespace {
 
@@ -20,16 +20,16 @@ namespace {
 struct TypeRow {
   const char* type;
   const char* hardware_interface;
-  std::optional<ControllerKind> kind;
+  std::optional<sim::ControllerKind> kind;
 };
 const std::vector<TypeRow> TYPE_TABLE = {
-    {"position_controllers/JointTrajectoryController", "hardware_interface::PositionJointInterface", ControllerKind::TRAJECTORY},
-    {"velocity_controllers/JointTrajectoryController", "hardware_interface::VelocityJointInterface", ControllerKind::TRAJECTORY},
-    {"effort_controllers/JointTrajectoryController", "hardware_interface::EffortJointInterface", ControllerKind::TRAJECTORY},
-    {"pos_vel_controllers/JointTrajectoryController", "hardware_interface::PosVelJointInterface", ControllerKind::TRAJECTORY},
-    {"pos_vel_acc_controllers/JointTrajectoryController", "hardware_interface::PosVelAccJointInterface", ControllerKind::TRAJECTORY},
-    {"position_controllers/GripperActionController", "hardware_interface::PositionJointInterface", ControllerKind::GRIPPER},
-    {"effort_controllers/GripperActionController", "hardware_interface::EffortJointInterface", ControllerKind::GRIPPER},
+    {"position_controllers/JointTrajectoryController", "hardware_interface::PositionJointInterface", sim::ControllerKind::TRAJECTORY},
+    {"velocity_controllers/JointTrajectoryController", "hardware_interface::VelocityJointInterface", sim::ControllerKind::TRAJECTORY},
+    {"effort_controllers/JointTrajectoryController", "hardware_interface::EffortJointInterface", sim::ControllerKind::TRAJECTORY},
+    {"pos_vel_controllers/JointTrajectoryController", "hardware_interface::PosVelJointInterface", sim::ControllerKind::TRAJECTORY},
+    {"pos_vel_acc_controllers/JointTrajectoryController", "hardware_interface::PosVelAccJointInterface", sim::ControllerKind::TRAJECTORY},
+    {"position_controllers/GripperActionController", "hardware_interface::PositionJointInterface", sim::ControllerKind::GRIPPER},
+    {"effort_controllers/GripperActionController", "hardware_interface::EffortJointInterface", sim::ControllerKind::GRIPPER},
     {"joint_state_controller/JointStateController", "hardware_interface::JointStateInterface", {}},
 };
 
@@ -40,7 +40,7 @@ const TypeRow* rowOf(const std::string& type) {
 }
 
 /** Type of a configured controller: the parameter's if it is of the kind. */
-std::string typeOfController(const std::string& parameter, ControllerKind kind) {
+std::string typeOfController(const std::string& parameter, sim::ControllerKind kind) {
   const TypeRow* given = rowOf(parameter);
   if (given && given->kind == kind) return parameter;
   return std::find_if(TYPE_TABLE.begin(), TYPE_TABLE.end(), [&](const TypeRow& row) { return row.kind == kind; })->type;
@@ -64,8 +64,8 @@ std::string listed(const std::vector<std::string>& words) {
 }
 
 /** Nothing if the robot's configuration names none, or there is no configuration of that robot. */
-std::optional<std::vector<ControllerConfig>> configuredOf(const Simulator& simulator, const std::string& robot) {
-  for (const RobotConfig& config : simulator.config().robots)
+std::optional<std::vector<sim::ControllerConfig>> configuredOf(const sim::Simulator& simulator, const std::string& robot) {
+  for (const sim::RobotConfig& config : simulator.config().robots)
     if (config.name == robot) return config.controllers;
   return {};
 }
@@ -78,10 +78,10 @@ void checkName(const std::string& name) {
 
 }  // namespace
 
-RobotControllers::RobotControllers(ros::NodeHandle node, Simulator* simulator, int robot, StepSender* sender)
+RobotControllers::RobotControllers(ros::NodeHandle node, sim::Simulator* simulator, int robot, StepSender* sender)
     : node_(node, simulator->robots()[robot].name_space), simulator_(simulator), robot_(simulator->robots()[robot].name), sender_(sender) {
   const auto configured = configuredOf(*simulator, robot_);
-  for (const ControllerConfig& config : configured.value_or(std::vector<ControllerConfig>(1))) {
+  for (const sim::ControllerConfig& config : configured.value_or(std::vector<sim::ControllerConfig>(1))) {
     checkName(config.name);
     add(withParameters(node_, config), typeOfController(controllerType(node_, config.name), config.kind));
     controllers_.back().gives_way = !configured;
@@ -133,15 +133,15 @@ std::vector<ControllerState> RobotControllers::list() const {
   return states;
 }
 
-void RobotControllers::add(const ControllerConfig& config, const std::string& type) {
+void RobotControllers::add(const sim::ControllerConfig& config, const std::string& type) {
   Controller controller;
   controller.name = config.name;
   controller.type = type;
-  if (config.kind == ControllerKind::GRIPPER)
-    controller.server = std::make_unique<GripperServer>(node_, GripperController(simulator_, simulator_->robotIndex(robot_), config));
+  if (config.kind == sim::ControllerKind::GRIPPER)
+    controller.server = std::make_unique<GripperServer>(node_, sim::GripperController(simulator_, simulator_->robotIndex(robot_), config));
   else
     controller.server =
-        std::make_unique<TrajectoryServer>(node_, TrajectoryController(simulator_, simulator_->robotIndex(robot_), config), sender_);
+        std::make_unique<TrajectoryServer>(node_, sim::TrajectoryController(simulator_, simulator_->robotIndex(robot_), config), sender_);
   controllers_.push_back(std::move(controller));
 }
 
@@ -156,7 +156,7 @@ void RobotControllers::load(const std::string& name) {
     controllers_.push_back({name, type, nullptr, false, false, false});
     return;
   }
-  ControllerConfig config;
+  sim::ControllerConfig config;
   config.name = name;
   config.kind = *row->kind;
   config = withParameters(node_, config);
@@ -240,4 +240,4 @@ void RobotControllers::stop(Controller* controller) {
   if (controller->server) controller->server->stop();
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -12,7 +12,7 @@
 #include "controllers/controller_server.h"
 #include "sending/step_sender.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /** A change of the controllers that run. */
 struct ControllerChange {
@@ -27,7 +27,7 @@ struct ControllerChange {
 class RobotControllers {
  public:
   /** @throws InputError: wrong settings of a controller */
-  RobotControllers(ros::NodeHandle node, Simulator* simulator, int robot, StepSender* sender);
+  RobotControllers(ros::NodeHandle node, sim::Simulator* simulator, int robot, StepSender* sender);
 
   /** To be called after each step. @param time [s] simulated */
   void step(double time);
@@ -53,7 +53,7 @@ class RobotControllers {
     bool gives_way = false;  ///< the one of all joints that nobody asked for
   };
 
-  void add(const ControllerConfig& config, const std::string& type);
+  void add(const sim::ControllerConfig& config, const std::string& type);
   void startFirst();
   Controller* find(const std::string& name);
   std::vector<std::string> knownNames() const;
@@ -66,10 +66,10 @@ class RobotControllers {
   void stop(Controller* controller);
 
   ros::NodeHandle node_;
-  Simulator* simulator_;
+  sim::Simulator* simulator_;
   std::string robot_;
   StepSender* sender_;
   std::vector<Controller> controllers_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -8,19 +8,19 @@
 #include "messages/conversions.h"
 #include "messages/trajectory_messages.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 namespace {
 
 constexpr int TRAJECTORY_QUEUE = 100;
 
-JointTrajectoryControllerState namedState(const TrajectoryController& controller) {
+JointTrajectoryControllerState namedState(const sim::TrajectoryController& controller) {
   JointTrajectoryControllerState message;
   message.joint_names = controller.joints();
   return message;
 }
 
-FollowJointTrajectoryResult resultOf(GoalError error, const std::string& text) {
+FollowJointTrajectoryResult resultOf(sim::GoalError error, const std::string& text) {
   FollowJointTrajectoryResult result;
   result.error_code = static_cast<int>(error);
   result.error_string = text;
@@ -33,7 +33,7 @@ void tellOldPoints(const std::string& where, int count) {
 
 }  // namespace
 
-TrajectoryServer::TrajectoryServer(ros::NodeHandle robot_node, TrajectoryController controller, StepSender* sender)
+TrajectoryServer::TrajectoryServer(ros::NodeHandle robot_node, sim::TrajectoryController controller, StepSender* sender)
     : controller_(std::move(controller)),
       node_(robot_node, controller_.config().name),
       sender_(sender),
@@ -45,7 +45,7 @@ TrajectoryServer::TrajectoryServer(ros::NodeHandle robot_node, TrajectoryControl
           node_, "follow_joint_trajectory", controller_.config().action_monitor_rate, [this](Goals::Handle goal) { onGoal(goal); },
           [this] {
             controller_.cancel();
-            goals_.preempt(resultOf(GoalError::SUCCESSFUL, ""), "cancelled");
+            goals_.preempt(resultOf(sim::GoalError::SUCCESSFUL, ""), "cancelled");
           }) {
   const boost::function<void(const trajectory_msgs::JointTrajectoryConstPtr&)> on_command =
       [this](const trajectory_msgs::JointTrajectoryConstPtr& message) { onCommand(*message); };
@@ -56,7 +56,7 @@ void TrajectoryServer::onCommand(const trajectory_msgs::JointTrajectory& message
   const std::string topic = commands_.getTopic();
   try {
     const int old_points = controller_.command(fromMessage(message));
-    goals_.preempt(resultOf(GoalError::SUCCESSFUL, ""), "a trajectory came on the topic");
+    goals_.preempt(resultOf(sim::GoalError::SUCCESSFUL, ""), "a trajectory came on the topic");
     tellOldPoints(topic, old_points);
   } catch (const InputError& error) {
     ROS_ERROR("%s: trajectory refused: %s", topic.c_str(), error.what());
@@ -67,23 +67,23 @@ void TrajectoryServer::onGoal(Goals::Handle goal) {
   int old_points = 0;
   try {
     old_points = controller_.accept(fromMessage(*goal.getGoal()));
-  } catch (const GoalRefused& refusal) {
+  } catch (const sim::GoalRefused& refusal) {
     return reject(&goal, refusal.error, refusal.what());
   } catch (const InputError& error) {
-    return reject(&goal, GoalError::INVALID_GOAL, error.what());
+    return reject(&goal, sim::GoalError::INVALID_GOAL, error.what());
   }
   goals_.activate(goal);
   tellOldPoints(goals_.name(), old_points);
 }
 
-void TrajectoryServer::reject(Goals::Handle* goal, GoalError error, const std::string& why) const {
+void TrajectoryServer::reject(Goals::Handle* goal, sim::GoalError error, const std::string& why) const {
   goal->setRejected(resultOf(error, why), why);
   ROS_ERROR("%s: goal refused: %s", goals_.name().c_str(), why.c_str());
 }
 
 bool TrajectoryServer::onQuery(QueryTrajectoryState::Request& request, QueryTrajectoryState::Response& response) {
   try {
-    for (const JointSample& sample : controller_.query(request.time.toSec())) {
+    for (const sim::JointSample& sample : controller_.query(request.time.toSec())) {
       response.position.push_back(sample.position);
       response.velocity.push_back(sample.velocity);
       response.acceleration.push_back(sample.acceleration);
@@ -98,19 +98,19 @@ bool TrajectoryServer::onQuery(QueryTrajectoryState::Request& request, QueryTraj
 
 void TrajectoryServer::stop() {
   controller_.stop();
-  goals_.preempt(resultOf(GoalError::SUCCESSFUL, ""), "the controller was stopped");
+  goals_.preempt(resultOf(sim::GoalError::SUCCESSFUL, ""), "the controller was stopped");
 }
 
-void TrajectoryServer::finish(const GoalOutcome& outcome) {
+void TrajectoryServer::finish(const sim::GoalOutcome& outcome) {
   const FollowJointTrajectoryResult result = resultOf(outcome.error, outcome.text);
-  if (outcome.end == GoalEnd::SUCCEEDED) return goals_.succeed(result);
-  if (outcome.end == GoalEnd::PREEMPTED) return goals_.preempt(result, outcome.text);
+  if (outcome.end == sim::GoalEnd::SUCCEEDED) return goals_.succeed(result);
+  if (outcome.end == sim::GoalEnd::PREEMPTED) return goals_.preempt(result, outcome.text);
   goals_.abort(result, outcome.text);
   ROS_WARN("%s: %s; the motion goes on", goals_.name().c_str(), outcome.text.c_str());
 }
 
 void TrajectoryServer::step(double time) {
-  if (const std::optional<GoalOutcome> outcome = controller_.update()) finish(*outcome);
+  if (const std::optional<sim::GoalOutcome> outcome = controller_.update()) finish(*outcome);
   if (state_schedule_.due(time)) publishState(time);
   if (goals_.feedbackDue(time)) publishFeedback(time);
 }
@@ -136,4 +136,4 @@ void TrajectoryServer::publishFeedback(double time) {
   goals_.publish(feedback);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -17,7 +17,7 @@
 #include "sending/listened_publisher.h"
 #include "sending/step_sender.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /**
  * Below the controller's name: the topic `command` (trajectory_msgs/JointTrajectory), the action `follow_joint_trajectory`, the topic
@@ -26,7 +26,7 @@ namespace blem_sim {
 class TrajectoryServer : public ControllerServer {
  public:
   /** @param robot_node in the robot's namespace */
-  TrajectoryServer(ros::NodeHandle robot_node, TrajectoryController controller, StepSender* sender);
+  TrajectoryServer(ros::NodeHandle robot_node, sim::TrajectoryController controller, StepSender* sender);
 
   std::vector<std::string> joints() const override { return controller_.joints(); }
   void start() override { controller_.start(); }
@@ -41,12 +41,12 @@ class TrajectoryServer : public ControllerServer {
   void onGoal(Goals::Handle goal);
   bool onQuery(QueryTrajectoryState::Request& request, QueryTrajectoryState::Response& response);
 
-  void finish(const GoalOutcome& outcome);
-  void reject(Goals::Handle* goal, GoalError error, const std::string& why) const;
+  void finish(const sim::GoalOutcome& outcome);
+  void reject(Goals::Handle* goal, sim::GoalError error, const std::string& why) const;
   void publishState(double time);
   void publishFeedback(double time);
 
-  TrajectoryController controller_;
+  sim::TrajectoryController controller_;
   ros::NodeHandle node_;  // below the controller's name
   StepSender* sender_;
   PublishSchedule state_schedule_;
@@ -57,4 +57,4 @@ class TrajectoryServer : public ControllerServer {
   Goals goals_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

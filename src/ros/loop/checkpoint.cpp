@@ -7,9 +7,9 @@
 #include "blem_sim/geometry/input_error.h"
 #include "blem_sim/sim/state_file.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
-Checkpoint::Checkpoint(Simulator* simulator, const std::string& file)
+Checkpoint::Checkpoint(sim::Simulator* simulator, const std::string& file)
     : simulator_(simulator), file_(file), schedule_(1 / simulator->config().checkpoint_period) {
   std::error_code error;
   if (std::filesystem::exists(file_, error)) goOn();
@@ -23,7 +23,7 @@ Checkpoint::~Checkpoint() {
 
 void Checkpoint::goOn() {
   try {
-    simulator_->restore(loadState(file_));
+    simulator_->restore(sim::loadState(file_));
     ROS_WARN("checkpoint_file: goes on at t = %.3f s from %s", simulator_->time(), file_.c_str());
   } catch (const InputError& refusal) {
     std::error_code error;
@@ -32,13 +32,13 @@ void Checkpoint::goOn() {
   }
 }
 
-void Checkpoint::publish(const StepReport& report) {
+void Checkpoint::publish(const sim::StepReport& report) {
   if (!schedule_.due(report.time)) return;
   try {
-    saveState(simulator_->save(), file_);
+    sim::saveState(simulator_->save(), file_);
   } catch (const InputError& refusal) {
     ROS_ERROR("checkpoint_file: %s", refusal.what());
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -6,24 +6,24 @@
 #include "sending/publish_schedule.h"
 #include "sending/step_publisher.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /** Writes the state into a file every checkpoint_period; a node that ends in order takes the file away. */
 class Checkpoint : public StepPublisher {
  public:
   /** Goes on from the file, if it is there. One that does not fit is put aside as FILE.refused. @param file absolute */
-  Checkpoint(Simulator* simulator, const std::string& file);
+  Checkpoint(sim::Simulator* simulator, const std::string& file);
   ~Checkpoint() override;
 
-  void publish(const StepReport& report) override;
+  void publish(const sim::StepReport& report) override;
   void timeRestarted() override { schedule_.restart(); }
 
  private:
   void goOn();
 
-  Simulator* simulator_;
+  sim::Simulator* simulator_;
   std::string file_;
   PublishSchedule schedule_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -8,7 +8,7 @@
 
 #include "messages/status_text.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 namespace {
 // Longest wait for a callback, so that a shutdown and the 1 Hz diagnostics are noticed during a pause.
@@ -25,12 +25,12 @@ double threadSeconds() {
 
 }  // namespace
 
-SimulationLoop::SimulationLoop(Simulator* simulator)
+SimulationLoop::SimulationLoop(sim::Simulator* simulator)
     : simulator_(simulator),
       pacer_(simulator->config().real_time_factor, simulator->config().time_step),
       paused_(simulator->config().paused) {}
 
-void SimulationLoop::publish(const StepReport& report) {
+void SimulationLoop::publish(const sim::StepReport& report) {
   const StepPacer::Clock::time_point start = StepPacer::Clock::now();
   const double processor_start = threadSeconds();
   for (const auto& publisher : publishers_) publisher->publish(report);
@@ -40,11 +40,11 @@ void SimulationLoop::publish(const StepReport& report) {
 }
 
 bool SimulationLoop::step() {
-  const StepReport& report = simulator_->step();
+  const sim::StepReport& report = simulator_->step();
   publish(report);
-  if ((report.status & STATE_NOT_FINITE) == 0) return true;
+  if ((report.status & sim::STATE_NOT_FINITE) == 0) return true;
   paused_ = true;
-  ROS_ERROR("t = %.3f s: %s", report.time, statusAdvice(STATE_NOT_FINITE).front().c_str());
+  ROS_ERROR("t = %.3f s: %s", report.time, statusAdvice(sim::STATE_NOT_FINITE).front().c_str());
   return false;
 }
 
@@ -103,7 +103,7 @@ void SimulationLoop::resetSimulation() {
   publish(simulator_->report());
 }
 
-void SimulationLoop::restore(const SimulationState& state) {
+void SimulationLoop::restore(const sim::SimulationState& state) {
   const double before = simulator_->time();
   simulator_->restore(state);
   sender_.drain();
@@ -124,4 +124,4 @@ void SimulationLoop::modelsChanged() {
   for (const auto& publisher : publishers_) publisher->modelsChanged();
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -13,7 +13,7 @@
 #include "sending/step_publisher.h"
 #include "sending/step_sender.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /** Time [s] of publishing in the stepping thread since the start. */
 struct PublishingTime {
@@ -23,9 +23,9 @@ struct PublishingTime {
 
 class SimulationLoop {
  public:
-  explicit SimulationLoop(Simulator* simulator);
+  explicit SimulationLoop(sim::Simulator* simulator);
 
-  Simulator& simulator() { return *simulator_; }
+  sim::Simulator& simulator() { return *simulator_; }
   void add(std::unique_ptr<StepPublisher> publisher) { publishers_.push_back(std::move(publisher)); }
 
   /** Publishes the state at hand, then steps until the node is shut down. @param serve is called between steps with whether it is paused.
@@ -43,7 +43,7 @@ class SimulationLoop {
   void resetWorld() { simulator_->resetWorld(); }
   void resetSimulation();
   /** Goes on from a saved state; if that lies back in time, time has started again for the publishers. @throws InputError */
-  void restore(const SimulationState& state);
+  void restore(const sim::SimulationState& state);
   /** Models came or went. @throws InputError: a name of theirs clashes */
   void modelsChanged();
   /** Lets an action follow on every change of models. */
@@ -64,12 +64,12 @@ class SimulationLoop {
  private:
   /** Makes a step. False if the state stopped being finite: the simulation is paused then. */
   bool step();
-  void publish(const StepReport& report);
+  void publish(const sim::StepReport& report);
   /** Returns when the messages published so far have been offered to the sockets. */
   void flush();
   void drain();
 
-  Simulator* simulator_;
+  sim::Simulator* simulator_;
   std::vector<std::unique_ptr<StepPublisher>> publishers_;
   std::vector<std::function<void()>> on_models_changed_;
   std::vector<std::function<void(bool)>> before_steps_;
@@ -80,4 +80,4 @@ class SimulationLoop {
   StepSender sender_;  // last: its messages need the publishers
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

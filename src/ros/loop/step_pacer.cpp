@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 namespace {
 StepPacer::Clock::duration toDuration(double seconds) {
@@ -21,4 +21,4 @@ double StepPacer::wait(Clock::time_point now) const {
 
 void StepPacer::stepped(Clock::time_point now) { due_ = std::max(due_ + period_, now - toDuration(MAX_BACKLOG)); }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

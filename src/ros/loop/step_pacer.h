@@ -3,7 +3,7 @@
 
 #include <chrono>
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /** Keeps simulated time at real_time_factor times wall time. A late simulation catches up at most MAX_BACKLOG. */
 class StepPacer {
@@ -26,4 +26,4 @@ class StepPacer {
   Clock::time_point due_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

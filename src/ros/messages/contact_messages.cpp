@@ -7,7 +7,7 @@
 
 #include "messages/conversions.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 namespace {
 
@@ -20,13 +20,13 @@ std::string describe(const ContactState& state, double max_of_layer) {
 
 }  // namespace
 
-ContactArray toContactArray(const Simulator& simulator, const StepReport& report) {
-  const std::vector<Collider>& colliders = simulator.colliders();
+ContactArray toContactArray(const sim::Simulator& simulator, const sim::StepReport& report) {
+  const std::vector<contact::Collider>& colliders = simulator.colliders();
   ContactArray array;
   array.header.stamp = toStamp(report.time);
   array.header.frame_id = WORLD_FRAME;
   array.contacts.reserve(report.contacts.size());
-  for (const ContactReport& contact : report.contacts) {
+  for (const sim::ContactReport& contact : report.contacts) {
     ContactPoint point;
     point.body_a = colliders[contact.collider_a].name;
     point.body_b = colliders[contact.collider_b].name;
@@ -41,8 +41,8 @@ ContactArray toContactArray(const Simulator& simulator, const StepReport& report
   return array;
 }
 
-ContactsState toContactsState(const Simulator& simulator, const StepReport& report, const ContactReading& reading) {
-  const std::vector<Collider>& colliders = simulator.colliders();
+ContactsState toContactsState(const sim::Simulator& simulator, const sim::StepReport& report, const sim::ContactReading& reading) {
+  const std::vector<contact::Collider>& colliders = simulator.colliders();
   struct Pair {
     ContactState state;
     Wrench total;
@@ -50,7 +50,7 @@ ContactsState toContactsState(const Simulator& simulator, const StepReport& repo
   };
   std::map<std::pair<int, int>, Pair> pairs;  // (own collider, other collider)
   for (std::size_t i = 0; i < reading.contacts.size(); ++i) {
-    const ContactReport& contact = report.contacts[reading.contacts[i]];
+    const sim::ContactReport& contact = report.contacts[reading.contacts[i]];
     const Wrench& wrench = reading.wrenches[i];
     const bool own_is_a = contact.body_a == reading.link_body;
     const double side = own_is_a ? 1 : -1;  // the report's normal is that of A
@@ -77,4 +77,4 @@ ContactsState toContactsState(const Simulator& simulator, const StepReport& repo
   return message;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

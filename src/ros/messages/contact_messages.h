@@ -6,12 +6,12 @@
 
 #include "blem_sim/sim/simulator.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /** Every contact of the report. */
-ContactArray toContactArray(const Simulator& simulator, const StepReport& report);
+ContactArray toContactArray(const sim::Simulator& simulator, const sim::StepReport& report);
 
 /** A contact sensor's reading: one state per pair of colliders, in the order of the colliders. */
-ContactsState toContactsState(const Simulator& simulator, const StepReport& report, const ContactReading& reading);
+ContactsState toContactsState(const sim::Simulator& simulator, const sim::StepReport& report, const sim::ContactReading& reading);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -4,7 +4,7 @@
 
 #include "blem_sim/geometry/input_error.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 const char* const WORLD_FRAME = "world";
 
@@ -60,7 +60,7 @@ geometry_msgs::Wrench toWrench(const Vector3& force, const Vector3& torque) {
   return message;
 }
 
-std_msgs::ColorRGBA toColour(const Colour& colour) {
+std_msgs::ColorRGBA toColour(const sim::Colour& colour) {
   std_msgs::ColorRGBA message;
   message.r = colour.r;
   message.g = colour.g;
@@ -92,4 +92,4 @@ Pose fromPose(const geometry_msgs::Pose& message, const std::string& source) {
   return X;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

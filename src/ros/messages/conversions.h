@@ -17,7 +17,7 @@
 #include "blem_sim/geometry/types.h"
 #include "blem_sim/sim/drawing.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /** Name of the frame that everything is simulated in. */
 extern const char* const WORLD_FRAME;
@@ -31,7 +31,7 @@ geometry_msgs::Quaternion toQuaternion(const Quaternion& q);
 geometry_msgs::Pose toPose(const Pose& X);
 geometry_msgs::Transform toTransform(const Pose& X);
 geometry_msgs::Wrench toWrench(const Vector3& force, const Vector3& torque);
-std_msgs::ColorRGBA toColour(const Colour& colour);  ///< opaque
+std_msgs::ColorRGBA toColour(const sim::Colour& colour);  ///< opaque
 geometry_msgs::Twist toTwist(const Vector3& linear, const Vector3& angular);
 
 Vector3 fromVector3(const geometry_msgs::Vector3& message);
@@ -43,4 +43,4 @@ Vector3 fromPoint(const geometry_msgs::Point& message);
  */
 Pose fromPose(const geometry_msgs::Pose& message, const std::string& source);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

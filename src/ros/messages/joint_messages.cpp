@@ -2,9 +2,9 @@
 
 #include "messages/conversions.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
-sensor_msgs::JointState statesOf(const RobotInfo& robot) {
+sensor_msgs::JointState statesOf(const sim::RobotInfo& robot) {
   sensor_msgs::JointState message;
   message.name = robot.joint_names;
   message.position.resize(robot.joints.size());
@@ -13,18 +13,18 @@ sensor_msgs::JointState statesOf(const RobotInfo& robot) {
   return message;
 }
 
-void writeStates(const StepReport& report, const RobotInfo& robot, sensor_msgs::JointState* message) {
+void writeStates(const sim::StepReport& report, const sim::RobotInfo& robot, sensor_msgs::JointState* message) {
   message->header.stamp = toStamp(report.time);
   for (std::size_t i = 0; i < robot.joints.size(); ++i) {
-    const JointState& state = report.joints[robot.joints[i]];
+    const dynamics::JointState& state = report.joints[robot.joints[i]];
     message->position[i] = state.position;
     message->velocity[i] = state.velocity;
     message->effort[i] = state.effort;
   }
 }
 
-JointCommandMessage commandOf(const sensor_msgs::JointState& message) {
-  JointCommandMessage command;
+sim::JointCommandMessage commandOf(const sensor_msgs::JointState& message) {
+  sim::JointCommandMessage command;
   command.joints = message.name;
   command.positions = message.position;
   command.velocities = message.velocity;
@@ -32,4 +32,4 @@ JointCommandMessage commandOf(const sensor_msgs::JointState& message) {
   return command;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 namespace {
 /** Motion of a frame F that is fixed on the body. */
-LinkMotion frameMotion(const Simulator& simulator, const StepReport& report, int body, const Pose& X_BF) {
-  const BodyState& state = report.bodies[body];
+LinkMotion frameMotion(const sim::Simulator& simulator, const sim::StepReport& report, int body, const Pose& X_BF) {
+  const dynamics::BodyState& state = report.bodies[body];
   LinkMotion motion;
   motion.X_WL = state.X_WB * X_BF;
   motion.w_WL = state.w_WB;
@@ -17,38 +17,38 @@ LinkMotion frameMotion(const Simulator& simulator, const StepReport& report, int
 }
 }  // namespace
 
-LinkMotion partMotion(const Simulator& simulator, const LinkPart& part) {
-  if (part.body != WORLD_BODY) return frameMotion(simulator, simulator.report(), part.body, part.X_BL);
+LinkMotion partMotion(const sim::Simulator& simulator, const sim::LinkPart& part) {
+  if (part.body != dynamics::WORLD_BODY) return frameMotion(simulator, simulator.report(), part.body, part.X_BL);
   LinkMotion fixed;
   fixed.X_WL = part.X_BL;
   return fixed;
 }
 
-LinkMotion linkMotion(const Simulator& simulator, const StepReport& report, const RobotInfo& robot, int link) {
-  const LinkPlacement& placement = robot.lumped->link_placement[link];
+LinkMotion linkMotion(const sim::Simulator& simulator, const sim::StepReport& report, const sim::RobotInfo& robot, int link) {
+  const model::LinkPlacement& placement = robot.lumped->link_placement[link];
   const int body = robot.bodies[placement.body];
-  if (body != WORLD_BODY) return frameMotion(simulator, report, body, placement.X_BL);
+  if (body != dynamics::WORLD_BODY) return frameMotion(simulator, report, body, placement.X_BL);
   LinkMotion fixed;
   fixed.X_WL = robot.X_WR * placement.X_BL;
   return fixed;
 }
 
-LinkMotion bodyMotion(const Simulator& simulator, const StepReport& report, int body) {
+LinkMotion bodyMotion(const sim::Simulator& simulator, const sim::StepReport& report, int body) {
   return frameMotion(simulator, report, body, Pose::Identity());
 }
 
-LinkMotion modelMotion(const Simulator& simulator, const StepReport& report, int model) {
-  const ModelInfo& info = simulator.models()[model];
-  if (info.kind == ModelKind::ROBOT) {
+LinkMotion modelMotion(const sim::Simulator& simulator, const sim::StepReport& report, int model) {
+  const sim::ModelInfo& info = simulator.models()[model];
+  if (info.kind == sim::ModelKind::ROBOT) {
     // Robots come in the order of their models.
     const auto robot = std::partition_point(simulator.robots().begin(), simulator.robots().end(),
-                                            [model](const RobotInfo& other) { return other.model < model; });
+                                            [model](const sim::RobotInfo& other) { return other.model < model; });
     return linkMotion(simulator, report, *robot, robot->description->root);
   }
-  if (info.kind == ModelKind::OBJECT) return bodyMotion(simulator, report, info.bodies.front());
+  if (info.kind == sim::ModelKind::OBJECT) return bodyMotion(simulator, report, info.bodies.front());
   LinkMotion environment;
   environment.X_WL = info.X_WM;
   return environment;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 template <typename Message>
 class MessagePool {
@@ -32,4 +32,4 @@ class MessagePool {
   std::vector<boost::shared_ptr<Message>> messages_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

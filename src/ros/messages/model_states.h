@@ -8,7 +8,7 @@
 #include "messages/conversions.h"
 #include "messages/link_motion.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /** @tparam States LinkStates or ModelStates */
 template <typename States>
@@ -19,12 +19,12 @@ void append(const std::string& name, const LinkMotion& motion, States* states) {
 }
 
 /** Appends the models that are there: robots, objects and environments. */
-inline void appendModels(const Simulator& simulator, const StepReport& report, ModelStates* states) {
+inline void appendModels(const sim::Simulator& simulator, const sim::StepReport& report, ModelStates* states) {
   const int models = static_cast<int>(simulator.models().size());
   for (int model = 0; model < models; ++model) {
-    const ModelInfo& info = simulator.models()[model];
+    const sim::ModelInfo& info = simulator.models()[model];
     if (info.alive) append(info.name, modelMotion(simulator, report, model), states);
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

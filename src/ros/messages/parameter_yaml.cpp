@@ -7,7 +7,7 @@
 
 #include "blem_sim/geometry/input_error.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 namespace {
 
@@ -47,4 +47,4 @@ YAML::Node toYaml(XmlRpc::XmlRpcValue value) {
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -1,8 +1,8 @@
 #include "messages/physics_message.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
-ODEPhysics toOdePhysics(const SimulationConfig& config) {
+ODEPhysics toOdePhysics(const sim::SimulationConfig& config) {
   ODEPhysics physics;
   physics.sor_pgs_iters = static_cast<std::uint32_t>(config.solver.quick_step_iterations);
   physics.contact_max_correcting_vel = config.solver.max_correction_speed;
@@ -12,7 +12,7 @@ ODEPhysics toOdePhysics(const SimulationConfig& config) {
   return physics;
 }
 
-std::string differencesIn(const ODEPhysics& given, const SimulationConfig& config) {
+std::string differencesIn(const ODEPhysics& given, const sim::SimulationConfig& config) {
   const ODEPhysics own = toOdePhysics(config);
   std::string names;
   const auto compare = [&](const char* name, double value, double here) {
@@ -31,4 +31,4 @@ std::string differencesIn(const ODEPhysics& given, const SimulationConfig& confi
   return names;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -6,13 +6,13 @@
 
 #include "messages/parameter_yaml.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
-std::map<std::string, JointGains> pidGainsIn(const std::string& name_space) {
+std::map<std::string, sim::JointGains> pidGainsIn(const std::string& name_space) {
   const std::string parameter = ros::names::resolve(ros::names::append(name_space, "gazebo_ros_control/pid_gains"));
   XmlRpc::XmlRpcValue given;
   if (!ros::param::get(parameter, given)) return {};
-  return parsePidGains(toYaml(given), parameter);
+  return sim::parsePidGains(toYaml(given), parameter);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -9,7 +9,7 @@
 
 #include "blem_sim/sim/range_view.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 namespace {
 
@@ -17,7 +17,7 @@ constexpr double MOST_MILLIMETRES = 65535;
 
 /** An image of that encoding; pixel(depth) has its number. */
 template <typename Pixel, typename ToPixel>
-sensor_msgs::Image imageOf(const RangeSensorConfig& camera, const char* encoding, const std::vector<float>& depths, ToPixel&& pixel) {
+sensor_msgs::Image imageOf(const sim::RangeSensorConfig& camera, const char* encoding, const std::vector<float>& depths, ToPixel&& pixel) {
   sensor_msgs::Image image;
   image.width = camera.width;
   image.height = camera.height;
@@ -54,19 +54,19 @@ sensor_msgs::PointCloud2 cloudOf(int rows, int columns, Point&& point) {
 
 }  // namespace
 
-sensor_msgs::Image toMetreImage(const RangeSensorConfig& camera, const std::vector<float>& depths) {
+sensor_msgs::Image toMetreImage(const sim::RangeSensorConfig& camera, const std::vector<float>& depths) {
   return imageOf<float>(camera, sensor_msgs::image_encodings::TYPE_32FC1.c_str(), depths, [](float depth) { return depth; });
 }
 
-sensor_msgs::Image toMillimetreImage(const RangeSensorConfig& camera, const std::vector<float>& depths) {
+sensor_msgs::Image toMillimetreImage(const sim::RangeSensorConfig& camera, const std::vector<float>& depths) {
   return imageOf<std::uint16_t>(camera, sensor_msgs::image_encodings::TYPE_16UC1.c_str(), depths, [](float depth) {
     const double millimetres = std::round(1000.0 * depth);
     return static_cast<std::uint16_t>(millimetres <= MOST_MILLIMETRES ? millimetres : 0);
   });
 }
 
-sensor_msgs::CameraInfo toCameraInfo(const RangeSensorConfig& camera) {
-  const auto [f, u, v] = pinholeOf(camera);
+sensor_msgs::CameraInfo toCameraInfo(const sim::RangeSensorConfig& camera) {
+  const auto [f, u, v] = sim::pinholeOf(camera);
   sensor_msgs::CameraInfo info;
   info.width = camera.width;
   info.height = camera.height;
@@ -78,19 +78,19 @@ sensor_msgs::CameraInfo toCameraInfo(const RangeSensorConfig& camera) {
   return info;
 }
 
-sensor_msgs::PointCloud2 toCloud(const RangeSensorConfig& camera, const std::vector<float>& depths) {
-  const Pinhole pinhole = pinholeOf(camera);
+sensor_msgs::PointCloud2 toCloud(const sim::RangeSensorConfig& camera, const std::vector<float>& depths) {
+  const sim::Pinhole pinhole = sim::pinholeOf(camera);
   return cloudOf(camera.height, camera.width, [&](int row, int column) -> Vector3 {
     const double depth = depths[static_cast<std::size_t>(row) * camera.width + column];
     return depth * Vector3((column - pinhole.middle_u) / pinhole.focal_length, (row - pinhole.middle_v) / pinhole.focal_length, 1);
   });
 }
 
-sensor_msgs::LaserScan toScan(const SensorConfig& lidar, const std::vector<float>& ranges) {
-  const RangeSensorConfig& rays = lidar.rays;
+sensor_msgs::LaserScan toScan(const sim::SensorConfig& lidar, const std::vector<float>& ranges) {
+  const sim::RangeSensorConfig& rays = lidar.rays;
   sensor_msgs::LaserScan scan;
   scan.angle_min = rays.first_angle;
-  scan.angle_max = beamAngle(rays, rays.beams - 1);
+  scan.angle_max = sim::beamAngle(rays, rays.beams - 1);
   scan.angle_increment = rays.beams > 1 ? (rays.last_angle - rays.first_angle) / (rays.beams - 1) : 0;
   scan.scan_time = lidar.rate > 0 ? 1 / lidar.rate : 0;
   scan.range_min = rays.nearest;
@@ -99,10 +99,10 @@ sensor_msgs::LaserScan toScan(const SensorConfig& lidar, const std::vector<float
   return scan;
 }
 
-sensor_msgs::PointCloud2 toLayeredCloud(const RangeSensorConfig& lidar, const std::vector<float>& ranges) {
+sensor_msgs::PointCloud2 toLayeredCloud(const sim::RangeSensorConfig& lidar, const std::vector<float>& ranges) {
   return cloudOf(lidar.layers, lidar.beams, [&](int layer, int beam) -> Vector3 {
-    return ranges[static_cast<std::size_t>(layer) * lidar.beams + beam] * beamDirection(lidar, layer, beam);
+    return ranges[static_cast<std::size_t>(layer) * lidar.beams + beam] * sim::beamDirection(lidar, layer, beam);
   });
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -2,11 +2,11 @@
 
 #include "blem_sim/sim/step_status.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 std::vector<std::string> statusNames(std::uint32_t status) {
   std::vector<std::string> names;
-  for (const StatusBit& row : STEP_STATUS) {
+  for (const sim::StatusBit& row : sim::STEP_STATUS) {
     if ((status & row.bit) != 0) names.emplace_back(row.name);
   }
   return names;
@@ -14,7 +14,7 @@ std::vector<std::string> statusNames(std::uint32_t status) {
 
 std::vector<std::string> statusAdvice(std::uint32_t status) {
   std::vector<std::string> texts;
-  for (const StatusBit& row : STEP_STATUS) {
+  for (const sim::StatusBit& row : sim::STEP_STATUS) {
     if ((status & row.bit) != 0 && *row.cure) texts.push_back(std::string(row.meaning) + ": " + row.cure);
   }
   return texts;
@@ -22,7 +22,7 @@ std::vector<std::string> statusAdvice(std::uint32_t status) {
 
 std::string stoppedText(std::uint32_t made, std::uint32_t asked, std::uint32_t status) {
   const std::string text = "stopped after " + std::to_string(made) + " of " + std::to_string(asked) + " steps";
-  return (status & STATE_NOT_FINITE) != 0 ? text + ": " + statusAdvice(STATE_NOT_FINITE).front() : text;
+  return (status & sim::STATE_NOT_FINITE) != 0 ? text + ": " + statusAdvice(sim::STATE_NOT_FINITE).front() : text;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -2,24 +2,24 @@
 
 #include <utility>
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 namespace {
 
-std::vector<GoalTolerance> fromMessages(const std::vector<JointTolerance>& messages) {
-  std::vector<GoalTolerance> tolerances;
+std::vector<sim::GoalTolerance> fromMessages(const std::vector<JointTolerance>& messages) {
+  std::vector<sim::GoalTolerance> tolerances;
   for (const JointTolerance& message : messages) tolerances.push_back({message.name, message.position, message.velocity});
   return tolerances;
 }
 
 }  // namespace
 
-JointTrajectory fromMessage(const trajectory_msgs::JointTrajectory& message) {
-  JointTrajectory trajectory;
+sim::JointTrajectory fromMessage(const trajectory_msgs::JointTrajectory& message) {
+  sim::JointTrajectory trajectory;
   trajectory.joints = message.joint_names;
   trajectory.start_time = message.header.stamp.toSec();
   for (const trajectory_msgs::JointTrajectoryPoint& point : message.points) {
-    TrajectoryPoint knot;
+    sim::TrajectoryPoint knot;
     knot.time_from_start = point.time_from_start.toSec();
     knot.positions = point.positions;
     knot.velocities = point.velocities;
@@ -30,9 +30,9 @@ JointTrajectory fromMessage(const trajectory_msgs::JointTrajectory& message) {
   return trajectory;
 }
 
-TrajectoryGoal fromMessage(const FollowJointTrajectoryGoal& message) {
+sim::TrajectoryGoal fromMessage(const FollowJointTrajectoryGoal& message) {
   return {fromMessage(message.trajectory), fromMessages(message.path_tolerance), fromMessages(message.goal_tolerance),
           message.goal_time_tolerance.toSec()};
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

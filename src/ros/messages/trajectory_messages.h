@@ -9,16 +9,16 @@
 
 #include "blem_sim/sim/trajectory_controller.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
-JointTrajectory fromMessage(const trajectory_msgs::JointTrajectory& message);
-TrajectoryGoal fromMessage(const FollowJointTrajectoryGoal& message);
+sim::JointTrajectory fromMessage(const trajectory_msgs::JointTrajectory& message);
+sim::TrajectoryGoal fromMessage(const FollowJointTrajectoryGoal& message);
 
 /** Fills the three points that the action's feedback and the controller's state share. */
 template <typename Message>
-void setTracking(const std::vector<TrackingState>& states, Message* message) {
+void setTracking(const std::vector<sim::TrackingState>& states, Message* message) {
   trajectory_msgs::JointTrajectoryPoint desired, actual, error;
-  for (const TrackingState& state : states) {
+  for (const sim::TrackingState& state : states) {
     desired.positions.push_back(state.desired.position);
     desired.velocities.push_back(state.desired.velocity);
     desired.accelerations.push_back(state.desired.acceleration);
@@ -32,4 +32,4 @@ void setTracking(const std::vector<TrackingState>& states, Message* message) {
   message->error = error;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

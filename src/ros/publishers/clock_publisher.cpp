@@ -2,7 +2,7 @@
 
 #include "messages/conversions.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 namespace {
 // Queue long enough for every stamp of a batch of steps made between two flushes of the outbox.
@@ -12,7 +12,7 @@ constexpr int CLOCK_QUEUE = 1000;
 ClockPublisher::ClockPublisher(ros::NodeHandle node, double rate, StepSender* sender)
     : publisher_(&node, "/clock", CLOCK_QUEUE), schedule_(rate), sender_(sender) {}
 
-void ClockPublisher::publish(const StepReport& report) {
+void ClockPublisher::publish(const sim::StepReport& report) {
   const ros::Time now = toStamp(report.time);
   if (published_ && now <= last_) return;
   if (!schedule_.due(report.time)) return;
@@ -28,4 +28,4 @@ void ClockPublisher::timeRestarted() {
   published_ = false;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -9,13 +9,13 @@
 #include "sending/step_publisher.h"
 #include "sending/step_sender.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /** /clock: strictly increasing stamps until time is restarted. A node that starts during a pause is told the time. */
 class ClockPublisher : public StepPublisher {
  public:
   ClockPublisher(ros::NodeHandle node, double rate, StepSender* sender);
-  void publish(const StepReport& report) override;
+  void publish(const sim::StepReport& report) override;
   void timeRestarted() override;
 
  private:
@@ -27,4 +27,4 @@ class ClockPublisher : public StepPublisher {
   ros::Time last_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

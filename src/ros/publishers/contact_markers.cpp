@@ -8,7 +8,7 @@
 
 #include "messages/conversions.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 namespace {
 
@@ -44,11 +44,11 @@ void ContactMarkers::publish(const boost::shared_ptr<StampedContacts>& contacts)
   Marker points = makeMarker("points", 0, Marker::SPHERE_LIST, contacts->stamp);
   points.scale.x = points.scale.y = points.scale.z = POINT_SIZE;
   int arrows = 0;
-  for (const ContactReport& contact : contacts->contacts) {
-    const std_msgs::ColorRGBA colour = toColour(contactColour(contact));
+  for (const sim::ContactReport& contact : contacts->contacts) {
+    const std_msgs::ColorRGBA colour = toColour(sim::contactColour(contact));
     points.points.push_back(toPoint(contact.point));
     points.colors.push_back(colour);
-    const Vector3 force = forceOnMovingSide(contact);
+    const Vector3 force = sim::forceOnMovingSide(contact);
     const double length = std::min(LONGEST_ARROW, metres_per_newton_ * force.norm());
     if (length < SHORTEST_ARROW) continue;
     const Vector3 along = length * force.normalized();
@@ -72,4 +72,4 @@ void ContactMarkers::publish(const boost::shared_ptr<StampedContacts>& contacts)
   publisher_.publish(message);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

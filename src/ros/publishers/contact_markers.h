@@ -9,12 +9,12 @@
 #include "blem_sim/sim/step_report.h"
 #include "sending/listened_publisher.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /** The contacts that acted in a step. */
 struct StampedContacts {
   ros::Time stamp;
-  std::vector<ContactReport> contacts;
+  std::vector<sim::ContactReport> contacts;
 };
 
 /** Publishes contacts as points and force arrows, in one thread. */
@@ -33,4 +33,4 @@ class ContactMarkers {
   std::size_t arrows_ = 0;  // shown now
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -9,17 +9,17 @@
 #include "sending/step_publisher.h"
 #include "sending/step_sender.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /** `~contacts`: every contact that acted in the step at hand. Only with subscribers. */
 class ContactPublisher : public StepPublisher {
  public:
-  ContactPublisher(ros::NodeHandle private_node, const Simulator& simulator, StepSender* sender);
-  void publish(const StepReport& report) override;
+  ContactPublisher(ros::NodeHandle private_node, const sim::Simulator& simulator, StepSender* sender);
+  void publish(const sim::StepReport& report) override;
   void timeRestarted() override { schedule_.restart(); }
 
  private:
-  const Simulator& simulator_;
+  const sim::Simulator& simulator_;
   PublishSchedule schedule_;
   ListenedPublisher publisher_;
   StepSender* sender_;
@@ -33,17 +33,17 @@ class ContactPublisher : public StepPublisher {
 class ContactMarkerPublisher : public StepPublisher {
  public:
   static constexpr double LENGTH_OF_WEIGHT = 0.8;  // [m]
-  ContactMarkerPublisher(ros::NodeHandle private_node, const Simulator& simulator, StepSender* sender);
-  void publish(const StepReport& report) override;
+  ContactMarkerPublisher(ros::NodeHandle private_node, const sim::Simulator& simulator, StepSender* sender);
+  void publish(const sim::StepReport& report) override;
   void timeRestarted() override { schedule_.restart(); }
   void modelsChanged() override;
 
  private:
-  const Simulator& simulator_;
+  const sim::Simulator& simulator_;
   PublishSchedule schedule_;
   ContactMarkers markers_;                 // the sender's
   MessagePool<StampedContacts> contacts_;  // to make them from
   StepSender* sender_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

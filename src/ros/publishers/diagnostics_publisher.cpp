@@ -5,7 +5,7 @@
 
 #include "messages/status_text.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 namespace {
 
@@ -58,7 +58,7 @@ void DiagnosticsPublisher::describeSpeed(DiagnosticStatusWrapper& status) const 
   const double asked = simulator_.config().real_time_factor;
   const double reached = statistics_.realTimeFactor();
   const auto slowest = std::max_element(statistics_.stage_seconds.begin(), statistics_.stage_seconds.end());
-  const char* stage = STAGE_NAMES[slowest - statistics_.stage_seconds.begin()];
+  const char* stage = sim::STAGE_NAMES[slowest - statistics_.stage_seconds.begin()];
   if (paused_ || statistics_.steps == 0) {
     status.summary(DiagnosticStatus::OK, paused_ ? "paused" : "no step in the last second");
   } else if (asked > 0 && reached < SLOW * asked) {
@@ -76,25 +76,26 @@ void DiagnosticsPublisher::describeSpeed(DiagnosticStatusWrapper& status) const 
   const double computed = std::accumulate(statistics_.stage_seconds.begin(), statistics_.stage_seconds.end(), 0.0);
   status.addf("mean computing time per step [ms]", "%.4f", 1e3 * computed / steps);
   for (std::size_t i = 0; i < statistics_.stage_seconds.size(); ++i) {
-    status.addf(std::string("stage ") + STAGE_NAMES[i] + " [ms]", "%.4f", 1e3 * statistics_.stage_seconds[i] / steps);
+    status.addf(std::string("stage ") + sim::STAGE_NAMES[i] + " [ms]", "%.4f", 1e3 * statistics_.stage_seconds[i] / steps);
   }
   status.addf("publishing [ms]", "%.4f", 1e3 * publishing_time_.wall / steps);
   status.addf("publishing, processor time [ms]", "%.4f", 1e3 * publishing_time_.processor / steps);
 }
 
 void DiagnosticsPublisher::describeContacts(DiagnosticStatusWrapper& status) const {
-  const StepReport& report = simulator_.report();
+  const sim::StepReport& report = simulator_.report();
   const std::uint32_t bits = statistics_.status;
-  if ((bits & STATE_NOT_FINITE) != 0) {
-    status.summary(DiagnosticStatus::ERROR, joined(statusAdvice(STATE_NOT_FINITE)));
-  } else if ((bits & (CONTACT_UNRELIABLE | SOLVER_TROUBLE | STEP_SHORTENED | ENERGY_GAINED | MOTION_TOO_FAST)) != 0) {
+  if ((bits & sim::STATE_NOT_FINITE) != 0) {
+    status.summary(DiagnosticStatus::ERROR, joined(statusAdvice(sim::STATE_NOT_FINITE)));
+  } else if ((bits & (sim::CONTACT_UNRELIABLE | sim::SOLVER_TROUBLE | sim::STEP_SHORTENED | sim::ENERGY_GAINED | sim::MOTION_TOO_FAST)) !=
+             0) {
     status.summary(DiagnosticStatus::WARN, joined(statusAdvice(bits)));
   } else {
     const std::string advice = joined(statusAdvice(bits));
     status.summary(DiagnosticStatus::OK, advice.empty() ? "within the boundary layers" : advice);
   }
   const auto outside = std::count_if(report.contacts.begin(), report.contacts.end(),
-                                     [](const ContactReport& contact) { return contact.pierced || contact.of_layer > 1; });
+                                     [](const sim::ContactReport& contact) { return contact.pierced || contact.of_layer > 1; });
   status.addf("contacts", "%d", report.reduced_contacts);
   status.addf("contacts before reduction", "%d", report.raw_contacts);
   status.addf("wrench off by contacts left out in the last second, at most, of the normal force", "%.4f", statistics_.wrench_error);
@@ -112,4 +113,4 @@ void DiagnosticsPublisher::describeContacts(DiagnosticStatusWrapper& status) con
   status.add("status", joined(statusNames(bits)));
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -10,13 +10,13 @@
 #include "publishers/step_statistics.h"
 #include "sending/step_publisher.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /** /diagnostics once per second of wall time, also while paused: speed, contacts and settings to change. */
 class DiagnosticsPublisher : public StepPublisher {
  public:
   DiagnosticsPublisher(ros::NodeHandle node, ros::NodeHandle private_node, SimulationLoop* loop);
-  void publish(const StepReport& report) override { collector_.add(report); }
+  void publish(const sim::StepReport& report) override { collector_.add(report); }
   void timeRestarted() override;
   void resumed() override { collector_.resume(); }
   void modelsChanged() override { collector_.forgetColliders(); }
@@ -30,7 +30,7 @@ class DiagnosticsPublisher : public StepPublisher {
   void describeContacts(diagnostic_updater::DiagnosticStatusWrapper& status) const;
 
   const SimulationLoop& loop_;
-  const Simulator& simulator_;
+  const sim::Simulator& simulator_;
   diagnostic_updater::Updater updater_;
   StepStatisticsCollector collector_;
   StepStatistics statistics_;                   // of the last second
@@ -41,4 +41,4 @@ class DiagnosticsPublisher : public StepPublisher {
   std::chrono::steady_clock::time_point next_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -9,14 +9,14 @@
 #include "messages/conversions.h"
 #include "publishers/surface_markers.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 namespace {
 
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
-LoadReportEntry toEntry(const MeshReport& report) {
+LoadReportEntry toEntry(const geometry::MeshReport& report) {
   LoadReportEntry entry;
   entry.name = report.name;
   entry.source = report.source;
@@ -43,19 +43,20 @@ LoadReportEntry toEntry(const MeshReport& report) {
 }
 
 /** All environments, or all objects. They are sent anew, so that nothing unloaded stays in sight. @param up unit, for colours of clouds */
-MarkerArray drawing(ModelKind kind, const std::vector<Collider>& colliders, const std::vector<ModelInfo>& models, const Vector3& up) {
+MarkerArray drawing(sim::ModelKind kind, const std::vector<contact::Collider>& colliders, const std::vector<sim::ModelInfo>& models,
+                    const Vector3& up) {
   MarkerArray array;
   array.markers.emplace_back();
   array.markers.back().action = Marker::DELETEALL;
   array.markers.back().header.frame_id = WORLD_FRAME;
   std::map<std::string, int> next_id;  // by collider name: an object of several shapes has several colliders of that name
-  for (const Collider& collider : colliders) {
+  for (const contact::Collider& collider : colliders) {
     if (!collider.enabled || collider.model < 0) continue;
-    const ModelInfo& model = models[collider.model];
+    const sim::ModelInfo& model = models[collider.model];
     if (!model.alive || model.kind != kind) continue;
-    const bool stands = kind == ModelKind::ENVIRONMENT;
+    const bool stands = kind == sim::ModelKind::ENVIRONMENT;
     const std::string frame = stands ? WORLD_FRAME : model.name;
-    const std_msgs::ColorRGBA colour = toColour(modelColour(kind, collider.model));
+    const std_msgs::ColorRGBA colour = toColour(sim::modelColour(kind, collider.model));
     int& id = next_id[collider.name];
     for (Marker& marker : surfaceMarkers(collider, frame, collider.X_BC, colour, id, stands ? up : Vector3(Vector3::Zero()))) {
       id = marker.id + 1;
@@ -67,7 +68,7 @@ MarkerArray drawing(ModelKind kind, const std::vector<Collider>& colliders, cons
 
 }  // namespace
 
-GeometryMarkerPublisher::GeometryMarkerPublisher(ros::NodeHandle private_node, const Simulator& simulator)
+GeometryMarkerPublisher::GeometryMarkerPublisher(ros::NodeHandle private_node, const sim::Simulator& simulator)
     : simulator_(simulator),
       environments_(private_node.advertise<MarkerArray>("environment_markers", 1, true)),
       objects_(private_node.advertise<MarkerArray>("object_markers", 1, true)) {
@@ -76,19 +77,19 @@ GeometryMarkerPublisher::GeometryMarkerPublisher(ros::NodeHandle private_node, c
 
 void GeometryMarkerPublisher::modelsChanged() {
   thread_.drain();
-  const Vector3 up = upwards(simulator_.gravity());
-  environments_.publish(drawing(ModelKind::ENVIRONMENT, simulator_.colliders(), simulator_.models(), up));
-  objects_.publish(drawing(ModelKind::OBJECT, simulator_.colliders(), simulator_.models(), up));
+  const Vector3 up = sim::upwards(simulator_.gravity());
+  environments_.publish(drawing(sim::ModelKind::ENVIRONMENT, simulator_.colliders(), simulator_.models(), up));
+  objects_.publish(drawing(sim::ModelKind::OBJECT, simulator_.colliders(), simulator_.models(), up));
 }
 
 void GeometryMarkerPublisher::cloudsChanged() {
   if (environments_.getNumSubscribers() == 0) return;
-  thread_.add([this, colliders = simulator_.colliders(), models = simulator_.models(), up = upwards(simulator_.gravity())] {
-    environments_.publish(drawing(ModelKind::ENVIRONMENT, colliders, models, up));
+  thread_.add([this, colliders = simulator_.colliders(), models = simulator_.models(), up = sim::upwards(simulator_.gravity())] {
+    environments_.publish(drawing(sim::ModelKind::ENVIRONMENT, colliders, models, up));
   });
 }
 
-LoadReportPublisher::LoadReportPublisher(ros::NodeHandle private_node, const Simulator& simulator)
+LoadReportPublisher::LoadReportPublisher(ros::NodeHandle private_node, const sim::Simulator& simulator)
     : simulator_(simulator), publisher_(private_node.advertise<LoadReport>("load_report", 1, true)) {
   modelsChanged();
 }
@@ -96,9 +97,9 @@ LoadReportPublisher::LoadReportPublisher(ros::NodeHandle private_node, const Sim
 void LoadReportPublisher::modelsChanged() {
   LoadReport message;
   message.header.stamp = toStamp(simulator_.time());
-  for (const MeshReport& report : simulator_.loadReport()) message.meshes.push_back(toEntry(report));
+  for (const geometry::MeshReport& report : simulator_.loadReport()) message.meshes.push_back(toEntry(report));
   message.notes = simulator_.notes();
   publisher_.publish(message);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

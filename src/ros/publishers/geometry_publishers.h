@@ -6,19 +6,19 @@
 #include "sending/drawing_thread.h"
 #include "sending/step_publisher.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /** `~environment_markers` in the world and `~object_markers` in each object's own frame, which /tf moves. */
 class GeometryMarkerPublisher : public StepPublisher {
  public:
-  GeometryMarkerPublisher(ros::NodeHandle private_node, const Simulator& simulator);
-  void publish(const StepReport&) override {}
+  GeometryMarkerPublisher(ros::NodeHandle private_node, const sim::Simulator& simulator);
+  void publish(const sim::StepReport&) override {}
   void modelsChanged() override;
   /** Draws beside the steps, if anybody looks. */
   void cloudsChanged() override;
 
  private:
-  const Simulator& simulator_;
+  const sim::Simulator& simulator_;
   ros::Publisher environments_, objects_;
   DrawingThread thread_;  // last: it publishes
 };
@@ -26,14 +26,14 @@ class GeometryMarkerPublisher : public StepPublisher {
 /** `~load_report`. */
 class LoadReportPublisher : public StepPublisher {
  public:
-  LoadReportPublisher(ros::NodeHandle private_node, const Simulator& simulator);
-  void publish(const StepReport&) override {}
+  LoadReportPublisher(ros::NodeHandle private_node, const sim::Simulator& simulator);
+  void publish(const sim::StepReport&) override {}
   void modelsChanged() override;
   void cloudsChanged() override { modelsChanged(); }
 
  private:
-  const Simulator& simulator_;
+  const sim::Simulator& simulator_;
   ros::Publisher publisher_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -7,13 +7,13 @@
 #include "messages/conversions.h"
 #include "messages/status_text.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 namespace {
 
 constexpr int UNBOUNDED_QUEUE = 0;
 
-LayerEvent toMessage(const Simulator& simulator, const LayerEventReport& event) {
+LayerEvent toMessage(const sim::Simulator& simulator, const sim::LayerEventReport& event) {
   LayerEvent message;
   message.header.stamp = toStamp(event.time);
   message.header.frame_id = WORLD_FRAME;
@@ -28,7 +28,7 @@ LayerEvent toMessage(const Simulator& simulator, const LayerEventReport& event) 
 
 }  // namespace
 
-LayerEventPublisher::LayerEventPublisher(ros::NodeHandle private_node, const Simulator& simulator, StepSender* sender)
+LayerEventPublisher::LayerEventPublisher(ros::NodeHandle private_node, const sim::Simulator& simulator, StepSender* sender)
     : simulator_(simulator), sender_(sender), publisher_(&private_node, "layer_events", UNBOUNDED_QUEUE) {}
 
 void LayerEventPublisher::timeRestarted() {
@@ -37,8 +37,8 @@ void LayerEventPublisher::timeRestarted() {
   unsaid_ = 0;
 }
 
-void LayerEventPublisher::publish(const StepReport& report) {
-  for (const LayerEventReport& event : report.layer_events) {
+void LayerEventPublisher::publish(const sim::StepReport& report) {
+  for (const sim::LayerEventReport& event : report.layer_events) {
     const auto message = boost::make_shared<LayerEvent>(toMessage(simulator_, event));
     sender_->add(&publisher_, message);
     if (message->outside) warn(*message, event.time);
@@ -52,9 +52,9 @@ void LayerEventPublisher::warn(const LayerEvent& event, double time) {
   }
   const std::string others = unsaid_ > 0 ? fmt::format(" ({} more contacts left theirs since the last warning)", unsaid_) : "";
   ROS_WARN("t = %.3f s: %s and %s left their boundary layers (%.3g m deep, %.2f times the layers): %s%s", time, event.body_a.c_str(),
-           event.body_b.c_str(), event.depth, event.of_layer, statusAdvice(CONTACT_UNRELIABLE).front().c_str(), others.c_str());
+           event.body_b.c_str(), event.depth, event.of_layer, statusAdvice(sim::CONTACT_UNRELIABLE).front().c_str(), others.c_str());
   next_warning_ = time + WARNING_PERIOD;
   unsaid_ = 0;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -7,7 +7,7 @@
 #include "sending/step_publisher.h"
 #include "sending/step_sender.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /**
  * `~layer_events`: one message per contact that leaves its boundary layers or comes back. None is dropped, and late subscribers are told
@@ -16,18 +16,18 @@ namespace blem_sim {
 class LayerEventPublisher : public StepPublisher {
  public:
   static constexpr double WARNING_PERIOD = 1;  // [s] simulated
-  LayerEventPublisher(ros::NodeHandle private_node, const Simulator& simulator, StepSender* sender);
-  void publish(const StepReport& report) override;
+  LayerEventPublisher(ros::NodeHandle private_node, const sim::Simulator& simulator, StepSender* sender);
+  void publish(const sim::StepReport& report) override;
   void timeRestarted() override;
 
  private:
   void warn(const LayerEvent& event, double time);
 
-  const Simulator& simulator_;
+  const sim::Simulator& simulator_;
   StepSender* sender_;
   GreetingPublisher<LayerEvent> publisher_;
   double next_warning_ = 0;  // [s] simulated
   unsigned unsaid_ = 0;      // since the last warning
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -15,7 +15,7 @@
 #include "sending/step_publisher.h"
 #include "sending/step_sender.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /** Topic of a robot. */
 template <typename Message>
@@ -28,14 +28,14 @@ struct RobotTopic {
 /** `joint_states` in each robot's namespace: position, velocity and effort of every movable joint. Told late subscribers. */
 class JointStatePublisher : public StepPublisher {
  public:
-  JointStatePublisher(ros::NodeHandle node, const Simulator& simulator, StepSender* sender);
-  void publish(const StepReport& report) override;
+  JointStatePublisher(ros::NodeHandle node, const sim::Simulator& simulator, StepSender* sender);
+  void publish(const sim::StepReport& report) override;
   void timeRestarted() override { schedule_.restart(); }
   void modelsChanged() override;
 
  private:
   ros::NodeHandle node_;
-  const Simulator& simulator_;
+  const sim::Simulator& simulator_;
   PublishSchedule schedule_;
   StepSender* sender_;
   std::vector<RobotTopic<sensor_msgs::JointState>> topics_;  // per robot; names are filled in once
@@ -44,14 +44,14 @@ class JointStatePublisher : public StepPublisher {
 /** `odom` in each robot's namespace: ground truth of the root link, twist in its own axes. Told late subscribers. */
 class OdometryPublisher : public StepPublisher {
  public:
-  OdometryPublisher(ros::NodeHandle node, const Simulator& simulator, StepSender* sender);
-  void publish(const StepReport& report) override;
+  OdometryPublisher(ros::NodeHandle node, const sim::Simulator& simulator, StepSender* sender);
+  void publish(const sim::StepReport& report) override;
   void timeRestarted() override { schedule_.restart(); }
   void modelsChanged() override;
 
  private:
   ros::NodeHandle node_;
-  const Simulator& simulator_;
+  const sim::Simulator& simulator_;
   PublishSchedule schedule_;
   StepSender* sender_;
   std::vector<RobotTopic<nav_msgs::Odometry>> topics_;  // per robot
@@ -63,16 +63,16 @@ class OdometryPublisher : public StepPublisher {
  */
 class TransformPublisher : public StepPublisher {
  public:
-  TransformPublisher(ros::NodeHandle node, const Simulator& simulator, StepSender* sender);
-  void publish(const StepReport& report) override;
+  TransformPublisher(ros::NodeHandle node, const sim::Simulator& simulator, StepSender* sender);
+  void publish(const sim::StepReport& report) override;
   void timeRestarted() override { schedule_.restart(); }
 
  private:
-  const Simulator& simulator_;
+  const sim::Simulator& simulator_;
   PublishSchedule schedule_;
   StepSender* sender_;
   GreetingPublisher<tf2_msgs::TFMessage> publisher_;
   MessagePool<tf2_msgs::TFMessage> messages_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /**
  * Makes `topics` go with `owners`, one each in the same order: those that are there already are kept, by their key.
@@ -23,4 +23,4 @@ void keepTopics(const std::vector<Owner>& owners, const KeyOf& keyOf, const Make
   topics->swap(kept);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -14,7 +14,7 @@
 #include "messages/conversions.h"
 #include "publishers/robot_topics.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 namespace {
 
@@ -28,8 +28,8 @@ void setVariance(Covariance* covariance, double stddev) {
 
 /** One conversion and one publication per kind of reading; does not compile until a new kind has its own. */
 struct ReadingPublisher {
-  const Simulator& simulator;
-  const StepReport& report;
+  const sim::Simulator& simulator;
+  const sim::StepReport& report;
   const std::string& frame_id;
   const std::string& child_frame_id;  // of odometry
   SensorMessages* messages;
@@ -46,13 +46,13 @@ struct ReadingPublisher {
     return message;
   }
 
-  void operator()(const ForceTorqueReading& reading) const {
+  void operator()(const sim::ForceTorqueReading& reading) const {
     const auto message = startedFrom(&messages->wrenches);
     message->wrench = toWrench(reading.force, reading.torque);
     sender->add(publisher, message);
   }
 
-  void operator()(const ImuReading& reading) const {
+  void operator()(const sim::ImuReading& reading) const {
     const auto message = startedFrom(&messages->imus);
     message->orientation = toQuaternion(reading.orientation);
     message->angular_velocity = toVector3(reading.angular_velocity);
@@ -62,11 +62,11 @@ struct ReadingPublisher {
     sender->add(publisher, message);
   }
 
-  void operator()(const ContactReading& reading) const {
+  void operator()(const sim::ContactReading& reading) const {
     sender->add(publisher, boost::make_shared<ContactsState>(toContactsState(simulator, report, reading)));
   }
 
-  void operator()(const TiltReading& reading) const {
+  void operator()(const sim::TiltReading& reading) const {
     const auto message = startedFrom(&messages->imus);
     message->orientation = toQuaternion(reading.orientation);
     message->angular_velocity = toVector3(reading.angular_velocity);
@@ -74,7 +74,7 @@ struct ReadingPublisher {
     sender->add(publisher, message);
   }
 
-  void operator()(const MotorCurrentReading& reading) const {
+  void operator()(const sim::MotorCurrentReading& reading) const {
     const auto message = startedFrom(&messages->currents);
     message->name = reading.joints;
     message->effort = reading.efforts;
@@ -82,7 +82,7 @@ struct ReadingPublisher {
     sender->add(publisher, message);
   }
 
-  void operator()(const OdometryReading& reading) const {
+  void operator()(const sim::OdometryReading& reading) const {
     const auto message = startedFrom(&messages->odometries);
     message->child_frame_id = child_frame_id;
     message->pose.pose.position = toPoint(reading.position);
@@ -93,33 +93,33 @@ struct ReadingPublisher {
     sender->add(publisher, message);
   }
 
-  void operator()(const DepthCameraReading& reading) const { ranges->publish(topics, report.time, frame_id, reading.view); }
+  void operator()(const sim::DepthCameraReading& reading) const { ranges->publish(topics, report.time, frame_id, reading.view); }
 
-  void operator()(const LidarReading& reading) const { ranges->publish(topics, report.time, frame_id, reading.view); }
+  void operator()(const sim::LidarReading& reading) const { ranges->publish(topics, report.time, frame_id, reading.view); }
 };
 
-ListenedPublisher advertise(ros::NodeHandle* node, SensorType type, const std::string& topic) {
+ListenedPublisher advertise(ros::NodeHandle* node, sim::SensorType type, const std::string& topic) {
   switch (type) {
-    case SensorType::FORCE_TORQUE:
+    case sim::SensorType::FORCE_TORQUE:
       return ListenedPublisher::advertise<geometry_msgs::WrenchStamped>(node, topic, SENSOR_QUEUE);
-    case SensorType::IMU:
-    case SensorType::TILT:
+    case sim::SensorType::IMU:
+    case sim::SensorType::TILT:
       return ListenedPublisher::advertise<sensor_msgs::Imu>(node, topic, SENSOR_QUEUE);
-    case SensorType::CONTACT:
+    case sim::SensorType::CONTACT:
       return ListenedPublisher::advertise<ContactsState>(node, topic, SENSOR_QUEUE);
-    case SensorType::MOTOR_CURRENT:
+    case sim::SensorType::MOTOR_CURRENT:
       return ListenedPublisher::advertise<MotorCurrents>(node, topic, SENSOR_QUEUE);
-    case SensorType::ODOMETRY:
+    case sim::SensorType::ODOMETRY:
       return ListenedPublisher::advertise<nav_msgs::Odometry>(node, topic, SENSOR_QUEUE);
-    case SensorType::DEPTH_CAMERA:
-    case SensorType::LIDAR:
+    case sim::SensorType::DEPTH_CAMERA:
+    case sim::SensorType::LIDAR:
       break;  // RangePublisher's
   }
   throw InputError("sensor topic " + topic + ": this type of sensor has no message");
 }
 
-std::string topicOf(const SensorConfig& sensor) { return sensor.topic.empty() ? sensor.name : sensor.topic; }
-std::string truthTopicOf(const SensorConfig& sensor) { return topicOf(sensor) + "/ground_truth"; }
+std::string topicOf(const sim::SensorConfig& sensor) { return sensor.topic.empty() ? sensor.name : sensor.topic; }
+std::string truthTopicOf(const sim::SensorConfig& sensor) { return topicOf(sensor) + "/ground_truth"; }
 
 /** A sensor's frame of its own in its link. */
 struct Mounting {
@@ -128,25 +128,25 @@ struct Mounting {
 };
 
 /** The optical frame of a camera; the frame of another sensor that sits askew in its link, or has a frame_id; none if it is the link's. */
-std::optional<Mounting> mountingOf(const SensorConfig& sensor) {
-  const std::string told = sensor.type == SensorType::ODOMETRY ? "" : sensor.frame_id;
-  if (sensor.type == SensorType::DEPTH_CAMERA) {
+std::optional<Mounting> mountingOf(const sim::SensorConfig& sensor) {
+  const std::string told = sensor.type == sim::SensorType::ODOMETRY ? "" : sensor.frame_id;
+  if (sensor.type == sim::SensorType::DEPTH_CAMERA) {
     Pose X_SO = Pose::Identity();
-    X_SO.linear() = opticalAxes();
+    X_SO.linear() = sim::opticalAxes();
     return Mounting{told.empty() ? sensor.name + "_optical_frame" : told, sensor.X_LS * X_SO};
   }
-  const bool sits_anyhow = sensor.type == SensorType::IMU || sensor.type == SensorType::TILT || sensor.type == SensorType::ODOMETRY ||
-                           sensor.type == SensorType::LIDAR;
+  const bool sits_anyhow = sensor.type == sim::SensorType::IMU || sensor.type == sim::SensorType::TILT ||
+                           sensor.type == sim::SensorType::ODOMETRY || sensor.type == sim::SensorType::LIDAR;
   if (!sits_anyhow || (told.empty() && sensor.X_LS.isApprox(Pose::Identity(), 1e-12))) return std::nullopt;
   return Mounting{told.empty() ? sensor.name + "_frame" : told, sensor.X_LS};
 }
 
 /** Names of frames in a sensor's messages. */
-void nameFrames(const SensorInfo& sensor, SensorTopic* topic) {
+void nameFrames(const sim::SensorInfo& sensor, SensorTopic* topic) {
   const std::optional<Mounting> mounting = mountingOf(sensor.config);
   const std::string& told = sensor.config.frame_id;
   const std::string own = mounting ? mounting->frame : sensor.frame_id;
-  if (sensor.config.type == SensorType::ODOMETRY) {
+  if (sensor.config.type == sim::SensorType::ODOMETRY) {
     topic->frame = told.empty() ? WORLD_FRAME : told;
     topic->child_frame = own;
   } else {
@@ -154,42 +154,42 @@ void nameFrames(const SensorInfo& sensor, SensorTopic* topic) {
   }
 }
 
-std::vector<std::string> topicsOf(const SensorConfig& sensor) {
-  if (isRangeSensor(sensor.type)) return rangeTopics(topicOf(sensor), sensor);
-  if (hasGroundTruth(sensor)) return {topicOf(sensor), truthTopicOf(sensor)};
+std::vector<std::string> topicsOf(const sim::SensorConfig& sensor) {
+  if (sim::isRangeSensor(sensor.type)) return rangeTopics(topicOf(sensor), sensor);
+  if (sim::hasGroundTruth(sensor)) return {topicOf(sensor), truthTopicOf(sensor)};
   return {topicOf(sensor)};
 }
 
 }  // namespace
 
-SensorPublisher::SensorPublisher(ros::NodeHandle node, const Simulator& simulator, StepSender* sender)
+SensorPublisher::SensorPublisher(ros::NodeHandle node, const sim::Simulator& simulator, StepSender* sender)
     : simulator_(simulator), sender_(sender), node_(node) {
   modelsChanged();
 }
 
 void SensorPublisher::modelsChanged() {
   std::set<std::string> names;
-  for (const SensorInfo& sensor : simulator_.sensors())
+  for (const sim::SensorInfo& sensor : simulator_.sensors())
     for (const std::string& topic : topicsOf(sensor.config)) checkTopic(sensor, topic, &names);
-  const auto keyOf = [this](const SensorInfo& sensor) {
+  const auto keyOf = [this](const sim::SensorInfo& sensor) {
     return std::make_pair(simulator_.robots()[sensor.robot].name, sensor.config.name);
   };
-  const auto make = [this](const SensorInfo& sensor) {
+  const auto make = [this](const sim::SensorInfo& sensor) {
     ros::NodeHandle robot_node = nodeOf(sensor);
     SensorTopic topic;
     nameFrames(sensor, &topic);
-    if (isRangeSensor(sensor.config.type))
+    if (sim::isRangeSensor(sensor.config.type))
       topic.ranges = advertiseRanges(&robot_node, topicOf(sensor.config), sensor.config);
     else
       topic.publisher = advertise(&robot_node, sensor.config.type, topicOf(sensor.config));
-    if (hasGroundTruth(sensor.config)) topic.truth = advertise(&robot_node, sensor.config.type, truthTopicOf(sensor.config));
+    if (sim::hasGroundTruth(sensor.config)) topic.truth = advertise(&robot_node, sensor.config.type, truthTopicOf(sensor.config));
     return topic;
   };
   keepTopics(simulator_.sensors(), keyOf, make, &topics_);
   publishMountings();
 }
 
-void SensorPublisher::checkTopic(const SensorInfo& sensor, const std::string& topic, std::set<std::string>* names) const {
+void SensorPublisher::checkTopic(const sim::SensorInfo& sensor, const std::string& topic, std::set<std::string>* names) const {
   std::string error;
   if (topic.empty() || !ros::names::validate(topic, error))
     throw InputError("sensors: " + sensor.config.name + ": '" + topic + "' is no ROS topic; use letters, digits, _ and /");
@@ -198,13 +198,13 @@ void SensorPublisher::checkTopic(const SensorInfo& sensor, const std::string& to
     throw InputError("sensors: " + sensor.config.name + ": another sensor publishes on " + name + "; set topic");
 }
 
-ros::NodeHandle SensorPublisher::nodeOf(const SensorInfo& sensor) const {
+ros::NodeHandle SensorPublisher::nodeOf(const sim::SensorInfo& sensor) const {
   return ros::NodeHandle(node_, simulator_.robots()[sensor.robot].name_space);
 }
 
 void SensorPublisher::publishMountings() {
   tf2_msgs::TFMessage message;
-  for (const SensorInfo& sensor : simulator_.sensors()) {
+  for (const sim::SensorInfo& sensor : simulator_.sensors()) {
     const std::optional<Mounting> mounting = mountingOf(sensor.config);
     // The robot's own links are on /tf already.
     if (!mounting || simulator_.robots()[sensor.robot].description->linkIndex(mounting->frame) >= 0) continue;
@@ -219,16 +219,16 @@ void SensorPublisher::publishMountings() {
   mountings_.publish(message);
 }
 
-void SensorPublisher::publish(const StepReport& report) {
-  for (const SensorSample& sample : report.samples) {
+void SensorPublisher::publish(const sim::StepReport& report) {
+  for (const sim::SensorSample& sample : report.samples) {
     SensorTopic& topic = topics_[sample.sensor];
     publishReading(report, sample.reading, &topic.publisher, &topic);
     if (sample.truth && topic.truth) publishReading(report, *sample.truth, &topic.truth, &topic);
   }
 }
 
-void SensorPublisher::publishReading(const StepReport& report, const SensorReading& reading, std::optional<ListenedPublisher>* publisher,
-                                     SensorTopic* topic) {
+void SensorPublisher::publishReading(const sim::StepReport& report, const sim::SensorReading& reading,
+                                     std::optional<ListenedPublisher>* publisher, SensorTopic* topic) {
   ListenedPublisher* const listened = *publisher ? &**publisher : nullptr;
   if (listened && !listened->listened()) return;
   std::visit(
@@ -236,4 +236,4 @@ void SensorPublisher::publishReading(const StepReport& report, const SensorReadi
       reading);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

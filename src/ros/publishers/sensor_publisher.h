@@ -19,7 +19,7 @@
 #include "sending/step_publisher.h"
 #include "sending/step_sender.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /** Messages of one sensor: those of its type are used. */
 struct SensorMessages {
@@ -44,21 +44,21 @@ struct SensorTopic {
 class SensorPublisher : public StepPublisher {
  public:
   /** @throws InputError: a sensor's topic is no valid ROS name, or two sensors share one */
-  SensorPublisher(ros::NodeHandle node, const Simulator& simulator, StepSender* sender);
-  void publish(const StepReport& report) override;
+  SensorPublisher(ros::NodeHandle node, const sim::Simulator& simulator, StepSender* sender);
+  void publish(const sim::StepReport& report) override;
   void modelsChanged() override;
   void drain() override { ranges_.drain(); }
 
  private:
   /** @param names those of all topics so far */
-  void checkTopic(const SensorInfo& sensor, const std::string& topic, std::set<std::string>* names) const;
+  void checkTopic(const sim::SensorInfo& sensor, const std::string& topic, std::set<std::string>* names) const;
   void publishMountings();
   /** @param publisher one of the topic's, which may be none */
-  void publishReading(const StepReport& report, const SensorReading& reading, std::optional<ListenedPublisher>* publisher,
+  void publishReading(const sim::StepReport& report, const sim::SensorReading& reading, std::optional<ListenedPublisher>* publisher,
                       SensorTopic* topic);
-  ros::NodeHandle nodeOf(const SensorInfo& sensor) const;
+  ros::NodeHandle nodeOf(const sim::SensorInfo& sensor) const;
 
-  const Simulator& simulator_;
+  const sim::Simulator& simulator_;
   StepSender* sender_;
   ros::NodeHandle node_;
   std::vector<SensorTopic> topics_;  // per sensor
@@ -66,4 +66,4 @@ class SensorPublisher : public StepPublisher {
   ros::Publisher mountings_;  // /tf_static of sensors that sit askew in their link
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

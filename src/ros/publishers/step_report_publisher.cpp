@@ -1,13 +1,14 @@
 #include "publishers/step_report_publisher.h"
 
+#include <blem_sim/StepReport.h>
+
 #include <boost/make_shared.hpp>
 #include <utility>
 
 #include "messages/conversions.h"
 #include "messages/status_text.h"
-#include "messages/step_report_message.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 namespace {
 constexpr int REPORT_QUEUE = 100;
@@ -17,7 +18,7 @@ StepReportPublisher::StepReportPublisher(ros::NodeHandle private_node, Simulatio
     : loop_(*loop),
       simulator_(loop->simulator()),
       schedule_(simulator_.config().rates.step_report),
-      publisher_(ListenedPublisher::advertise<StepReportMessage>(&private_node, "step_report", REPORT_QUEUE)),
+      publisher_(ListenedPublisher::advertise<blem_sim::StepReport>(&private_node, "step_report", REPORT_QUEUE)),
       sender_(loop->sender()) {}
 
 void StepReportPublisher::timeRestarted() {
@@ -26,15 +27,15 @@ void StepReportPublisher::timeRestarted() {
   collector_.resume();
 }
 
-void StepReportPublisher::publish(const StepReport& report) {
+void StepReportPublisher::publish(const sim::StepReport& report) {
   collector_.add(report);
   if (!schedule_.due(report.time)) return;
   const StepStatistics statistics = collector_.take();
   // Publishing time up to the step before; this step's messages are still going out.
   const double published = loop_.publishingTime().wall, publishing = published - std::exchange(published_, published);
   if (!publisher_.listened()) return;
-  const auto sent = boost::make_shared<StepReportMessage>();
-  StepReportMessage& message = *sent;
+  const auto sent = boost::make_shared<blem_sim::StepReport>();
+  blem_sim::StepReport& message = *sent;
   message.header.stamp = toStamp(report.time);
   message.step = report.step;
   message.steps = statistics.steps;
@@ -57,7 +58,7 @@ void StepReportPublisher::publish(const StepReport& report) {
   message.solver_creep = statistics.solver_creep;
   message.solver_iterations = static_cast<double>(statistics.solver_iterations) / statistics.steps;
   for (std::size_t i = 0; i < statistics.stage_seconds.size(); ++i) {
-    message.stages.emplace_back(STAGE_NAMES[i]);
+    message.stages.emplace_back(sim::STAGE_NAMES[i]);
     message.stage_seconds.push_back(statistics.stage_seconds[i] / statistics.steps);
   }
   message.stages.emplace_back("publish");
@@ -65,4 +66,4 @@ void StepReportPublisher::publish(const StepReport& report) {
   sender_->add(&publisher_, sent);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

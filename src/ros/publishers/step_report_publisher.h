@@ -8,20 +8,20 @@
 #include "sending/publish_schedule.h"
 #include "sending/step_publisher.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /** `~step_report`: status bits, real-time factor, contacts, time per stage since the last one, publishing included. */
 class StepReportPublisher : public StepPublisher {
  public:
   StepReportPublisher(ros::NodeHandle private_node, SimulationLoop* loop);
-  void publish(const StepReport& report) override;
+  void publish(const sim::StepReport& report) override;
   void timeRestarted() override;
   void resumed() override { collector_.resume(); }
   void modelsChanged() override { collector_.forgetColliders(); }
 
  private:
   const SimulationLoop& loop_;
-  const Simulator& simulator_;
+  const sim::Simulator& simulator_;
   PublishSchedule schedule_;
   ListenedPublisher publisher_;
   StepSender* sender_;
@@ -29,4 +29,4 @@ class StepReportPublisher : public StepPublisher {
   double published_ = 0;  // [s] loop's publishing time at the last report
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -4,7 +4,7 @@
 
 #include "messages/conversions.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 namespace {
 
@@ -25,7 +25,7 @@ class MarkerLists {
     startIfFull();
     for (const Vector3& corner : corners) markers_->back().points.push_back(toPoint(corner));
   }
-  void addDot(const Vector3& dot, const Colour& colour) {
+  void addDot(const Vector3& dot, const sim::Colour& colour) {
     add({dot});
     markers_->back().colors.push_back(toColour(colour));
   }
@@ -50,7 +50,7 @@ Marker withType(Marker marker, int type, double size) {
   return marker;
 }
 
-void addPlane(const CollisionGeometry& geometry, const Marker& prototype, std::vector<Marker>* markers) {
+void addPlane(const contact::CollisionGeometry& geometry, const Marker& prototype, std::vector<Marker>* markers) {
   const Vector3 normal = geometry.planeNormal();
   const Vector3 centre = geometry.planeOffset() * normal;
   const Vector3 u = 0.5 * PLANE_SIZE * normal.unitOrthogonal();
@@ -65,7 +65,7 @@ void addPoints(const std::vector<Vector3>& points, double radius, const Vector3&
                std::vector<Marker>* markers) {
   const int type = points.size() <= MOST_SPHERES ? Marker::SPHERE_LIST : Marker::POINTS;
   MarkerLists dots(withType(prototype, type, std::max(2 * radius, SMALLEST_POINT)), markers);
-  const std::vector<Colour> colours = up.isZero() ? std::vector<Colour>() : coloursByHeight(points, up);
+  const std::vector<sim::Colour> colours = up.isZero() ? std::vector<sim::Colour>() : sim::coloursByHeight(points, up);
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (colours.empty()) {
       dots.add({points[i]});
@@ -76,7 +76,7 @@ void addPoints(const std::vector<Vector3>& points, double radius, const Vector3&
 }
 
 /** One pass per kind of element, so that each list is contiguous. */
-void addMesh(const TriangleMesh& mesh, double radius, const Vector3& up, const Marker& prototype, std::vector<Marker>* markers) {
+void addMesh(const geometry::TriangleMesh& mesh, double radius, const Vector3& up, const Marker& prototype, std::vector<Marker>* markers) {
   const int count = static_cast<int>(mesh.elements.size());
   const auto vertex = [&](int element, int corner) { return mesh.vertices[mesh.elements[element][corner]]; };
   MarkerLists triangles(withType(prototype, Marker::TRIANGLE_LIST, 1), markers);
@@ -98,8 +98,8 @@ void addMesh(const TriangleMesh& mesh, double radius, const Vector3& up, const M
 
 }  // namespace
 
-std::vector<Marker> surfaceMarkers(const Collider& collider, const std::string& frame, const Pose& X_FC, const std_msgs::ColorRGBA& colour,
-                                   int first_id, const Vector3& up) {
+std::vector<Marker> surfaceMarkers(const contact::Collider& collider, const std::string& frame, const Pose& X_FC,
+                                   const std_msgs::ColorRGBA& colour, int first_id, const Vector3& up) {
   Marker prototype;
   prototype.header.frame_id = frame;
   prototype.ns = collider.name;
@@ -116,4 +116,4 @@ std::vector<Marker> surfaceMarkers(const Collider& collider, const std::string& 
   return markers;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

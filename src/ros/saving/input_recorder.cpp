@@ -7,7 +7,7 @@
 #include "blem_sim/geometry/input_error.h"
 #include "saving/record_bag.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 namespace {
 
@@ -15,7 +15,7 @@ constexpr std::size_t STEPS_PER_MESSAGE = 100;
 
 }  // namespace
 
-InputRecorder::InputRecorder(Simulator* simulator, const std::string& configuration)
+InputRecorder::InputRecorder(sim::Simulator* simulator, const std::string& configuration)
     : simulator_(simulator), configuration_(configuration), first_layout_(simulator->save().layout) {}
 
 InputRecorder::~InputRecorder() {
@@ -62,7 +62,7 @@ std::string InputRecorder::stop() {
   return std::to_string(steps_.first) + " steps, " + std::to_string(inputs_) + " inputs in " + file;
 }
 
-void InputRecorder::told(const SimulatorInput& input) {
+void InputRecorder::told(const sim::SimulatorInput& input) {
   ++inputs_;
   try {
     write(INPUT_TOPIC, toMessage(input, steps_.first + steps_.hashes.size()));
@@ -97,4 +97,4 @@ void InputRecorder::giveUp(const char* why) {
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -8,13 +8,13 @@
 
 #include "blem_sim/sim/simulator.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /** Writes what decides a simulation's bits into a bag, as it is taken. A bag that cannot be written on is closed, and the log says why. */
-class InputRecorder : public SimulatorWatcher {
+class InputRecorder : public sim::SimulatorWatcher {
  public:
   /** @param configuration YAML that the simulation was loaded from, all that has changed since being part of its state */
-  InputRecorder(Simulator* simulator, const std::string& configuration);
+  InputRecorder(sim::Simulator* simulator, const std::string& configuration);
   ~InputRecorder() override;
 
   /** Begins with the state at hand. @throws InputError: it records already, models are not those of the start, the file cannot be written
@@ -23,7 +23,7 @@ class InputRecorder : public SimulatorWatcher {
   /** Ends the record. @return in words, its length @throws InputError if there is none, or its end cannot be written */
   std::string stop();
 
-  void told(const SimulatorInput& input) override;
+  void told(const sim::SimulatorInput& input) override;
   void stepped() override;
 
  private:
@@ -33,7 +33,7 @@ class InputRecorder : public SimulatorWatcher {
   /** Ends the record without its last message. */
   void giveUp(const char* why);
 
-  Simulator* simulator_;
+  sim::Simulator* simulator_;
   std::string configuration_, first_layout_;
   std::string file_;  // empty: nothing is recorded
   rosbag::Bag bag_;
@@ -42,4 +42,4 @@ class InputRecorder : public SimulatorWatcher {
   std::uint64_t inputs_ = 0;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

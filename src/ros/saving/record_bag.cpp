@@ -5,13 +5,13 @@
 #include "blem_sim/geometry/input_error.h"
 #include "blem_sim/sim/state_file.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 namespace {
 
 constexpr std::size_t NUMBERS_PER_GAIN = 4;
 
-RecordedRobot robotMessage(const RobotConfig& robot) {
+RecordedRobot robotMessage(const sim::RobotConfig& robot) {
   RecordedRobot message;
   message.description = robot.urdf_xml;
   for (const auto& [joint, gains] : robot.pid_gains) {
@@ -21,7 +21,7 @@ RecordedRobot robotMessage(const RobotConfig& robot) {
   return message;
 }
 
-void addTo(RobotConfig* robot, const RecordedRobot& message, const std::string& source) {
+void addTo(sim::RobotConfig* robot, const RecordedRobot& message, const std::string& source) {
   if (message.gains.size() != NUMBERS_PER_GAIN * message.gains_joints.size())
     throw InputError(source + ": start: gains are not four for each joint; record it again");
   robot->urdf_xml = message.description;
@@ -41,22 +41,23 @@ YAML::Node documentOf(const std::string& text, const std::string& source) {
 
 }  // namespace
 
-RecordStart startMessage(const Simulator& simulator, const std::string& configuration) {
+RecordStart startMessage(const sim::Simulator& simulator, const std::string& configuration) {
   RecordStart start;
   start.format = RecordStart::FORMAT;
   start.configuration = configuration;
   start.base_directory = simulator.config().base_directory;
-  for (const RobotConfig& robot : simulator.config().robots) start.robots.push_back(robotMessage(robot));
-  const std::string state = stateBytes(simulator.save());
+  for (const sim::RobotConfig& robot : simulator.config().robots) start.robots.push_back(robotMessage(robot));
+  const std::string state = sim::stateBytes(simulator.save());
   start.state.assign(state.begin(), state.end());
   return start;
 }
 
-SimulationConfig configOf(const RecordStart& start, const std::string& source) {
+sim::SimulationConfig configOf(const RecordStart& start, const std::string& source) {
   if (start.format != RecordStart::FORMAT)
     throw InputError(source + ": is of format " + std::to_string(start.format) + ", this version replays " +
                      std::to_string(RecordStart::FORMAT) + "; replay it with the version that recorded it");
-  SimulationConfig config = parseConfig(documentOf(start.configuration, source), source + ": configuration", start.base_directory);
+  sim::SimulationConfig config =
+      sim::parseConfig(documentOf(start.configuration, source), source + ": configuration", start.base_directory);
   if (config.robots.size() != start.robots.size())
     throw InputError(source + ": start: " + std::to_string(start.robots.size()) + " robots of " + std::to_string(config.robots.size()) +
                      "; record it again");
@@ -64,7 +65,7 @@ SimulationConfig configOf(const RecordStart& start, const std::string& source) {
   return config;
 }
 
-RecordedInput toMessage(const SimulatorInput& input, std::uint64_t step) {
+RecordedInput toMessage(const sim::SimulatorInput& input, std::uint64_t step) {
   RecordedInput message;
   message.step = step;
   message.call = input.call;
@@ -74,8 +75,8 @@ RecordedInput toMessage(const SimulatorInput& input, std::uint64_t step) {
   return message;
 }
 
-SimulatorInput fromMessage(const RecordedInput& message) {
+sim::SimulatorInput fromMessage(const RecordedInput& message) {
   return {message.call, message.texts, message.numbers, std::string(message.state.begin(), message.state.end())};
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -9,19 +9,19 @@
 
 #include "blem_sim/sim/simulator.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 constexpr const char* START_TOPIC = "record/start";
 constexpr const char* INPUT_TOPIC = "record/input";
 constexpr const char* STEPS_TOPIC = "record/steps";
 
 /** Beginning of a record, at the state at hand. @param configuration YAML that the simulation was loaded from */
-RecordStart startMessage(const Simulator& simulator, const std::string& configuration);
+RecordStart startMessage(const sim::Simulator& simulator, const std::string& configuration);
 /** Configuration of a simulation that begins so. @param source names the record in errors @throws InputError */
-SimulationConfig configOf(const RecordStart& start, const std::string& source);
+sim::SimulationConfig configOf(const RecordStart& start, const std::string& source);
 
 /** @param step steps made since the record began */
-RecordedInput toMessage(const SimulatorInput& input, std::uint64_t step);
-SimulatorInput fromMessage(const RecordedInput& message);
+RecordedInput toMessage(const sim::SimulatorInput& input, std::uint64_t step);
+sim::SimulatorInput fromMessage(const RecordedInput& message);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -3,7 +3,7 @@
 #include <blem_sim/StartRecord.h>
 #include <blem_sim/StopRecord.h>
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 RecordServices::RecordServices(const ros::NodeHandle& private_node, InputRecorder* recorder, const ServiceFiles& files)
     : services_(private_node) {
@@ -15,4 +15,4 @@ RecordServices::RecordServices(const ros::NodeHandle& private_node, InputRecorde
   services_.add<StopRecord>("stop_record", [recorder](const auto&, auto* response) { response->status_message = recorder->stop(); });
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -4,7 +4,7 @@
 #include "saving/service_files.h"
 #include "services/service_group.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /** `~start_record`, `~stop_record`. */
 class RecordServices {
@@ -16,4 +16,4 @@ class RecordServices {
   ServiceGroup services_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -13,7 +13,7 @@
 #include "blem_sim/sim/state_file.h"
 #include "saving/record_bag.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 namespace {
 
@@ -52,8 +52,8 @@ class Replayer {
 
   void start(const RecordStart& start) {
     if (simulator_) throw InputError(file_ + ": begins twice; record it again");
-    simulator_ = std::make_unique<Simulator>(configOf(start, file_), UriResolver());
-    simulator_->restore(stateOf(std::string(start.state.begin(), start.state.end()), file_));
+    simulator_ = std::make_unique<sim::Simulator>(configOf(start, file_), model::UriResolver());
+    simulator_->restore(sim::stateOf(std::string(start.state.begin(), start.state.end()), file_));
   }
 
   void makeSteps(const RecordedSteps& steps) {
@@ -81,7 +81,7 @@ class Replayer {
 
   bool apply(const RecordedInput& input) {
     try {
-      applyInput(fromMessage(input), simulator_.get());
+      sim::applyInput(fromMessage(input), simulator_.get());
     } catch (const InputError& refusal) {
       result_.difference = fmt::format("step {} differs: its input is refused: {}", result_.steps + 1, refusal.what());
       return false;
@@ -94,7 +94,7 @@ class Replayer {
   std::string last() const { return last_call_.empty() ? "no input came before it" : last_call_; }
 
   std::string file_, last_call_;
-  std::unique_ptr<Simulator> simulator_;
+  std::unique_ptr<sim::Simulator> simulator_;
   std::deque<RecordedInput> inputs_;  // of steps to come
   bool ended_ = false;
   ReplayResult result_;
@@ -123,4 +123,4 @@ ReplayResult replay(const std::string& file) {
   return replayer.finish();
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /** Outcome of a replay. */
 struct ReplayResult {
@@ -19,4 +19,4 @@ struct ReplayResult {
  */
 ReplayResult replay(const std::string& file);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

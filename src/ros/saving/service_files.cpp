@@ -2,7 +2,7 @@
 
 #include "blem_sim/geometry/input_error.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 std::string ServiceFiles::allowed(const std::string& file) const {
   if (file.empty()) throw InputError("file: is empty; give a path");
@@ -11,4 +11,4 @@ std::string ServiceFiles::allowed(const std::string& file) const {
   return path;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -4,7 +4,7 @@
 #include "saving/service_files.h"
 #include "services/service_group.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /** `~save_state`, `~restore_state`, of files below the folders that services may use. */
 class StateServices {
@@ -16,4 +16,4 @@ class StateServices {
   ServiceGroup services_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 namespace {
 constexpr std::size_t MOST_IMAGES = 8;
@@ -47,4 +47,4 @@ void DrawingThread::run() {
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

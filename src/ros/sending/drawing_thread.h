@@ -7,7 +7,7 @@
 #include <mutex>
 #include <thread>
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /** Draws and publishes beside the steps, in order. None is left out: who is many jobs ahead waits. All but the thread's work is called by
  *  one thread. */
@@ -33,4 +33,4 @@ class DrawingThread {
   std::thread thread_;  // last: it uses the others
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -11,7 +11,7 @@
 #include "sending/immediate_queue.h"
 #include "sending/poll_rounds.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /**
  * A publisher that gives a new subscriber the last message. roscpp's own latching does so a moment after the connection, and so gives a
@@ -63,4 +63,4 @@ class GreetingPublisher {
   ros::Publisher publisher_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

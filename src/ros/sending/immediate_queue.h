@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /** Runs callbacks at once, in the thread they come from: roscpp's poll thread for those of subscribers that come and go. */
 class ImmediateQueue : public ros::CallbackQueueInterface {
@@ -21,4 +21,4 @@ class ImmediateQueue : public ros::CallbackQueueInterface {
   ImmediateQueue() = default;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

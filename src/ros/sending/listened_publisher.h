@@ -9,7 +9,7 @@
 
 #include "sending/immediate_queue.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /** Counts subscribers as they come and go: roscpp, asked for them, takes a lock that it holds while it publishes. */
 class ListenedPublisher {
@@ -40,4 +40,4 @@ class ListenedPublisher {
   ros::Publisher publisher_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

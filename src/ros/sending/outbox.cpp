@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <chrono>
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 Outbox::Outbox() : listener_(ros::PollManager::instance()->addPollThreadListener([this] { roundStarted(); })) {}
 
@@ -34,4 +34,4 @@ void Outbox::flush() {
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <mutex>
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /**
  * roscpp's publish() only queues; its poll thread serves the queues, then the sockets. A service's answer goes past those queues, so a
@@ -31,4 +31,4 @@ class Outbox {
   boost::signals2::connection listener_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -5,7 +5,7 @@
 
 #include <chrono>
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 PollRounds& PollRounds::instance() {
   static PollRounds rounds;
@@ -40,4 +40,4 @@ void PollRounds::end() {
   mutex_.unlock();
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

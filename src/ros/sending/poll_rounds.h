@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <mutex>
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /**
  * roscpp's poll thread works in rounds: first it hands queued messages to the links there are, then it serves the sockets, where new links
@@ -39,4 +39,4 @@ class PollRounds {
   bool held_ = false;  ///< of the poll thread: it holds the mutex
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /** Counts periods of simulated time, so that rates hold on average whatever the step. */
 class PublishSchedule {
@@ -28,4 +28,4 @@ class PublishSchedule {
   std::int64_t last_period_ = -1;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -3,13 +3,13 @@
 
 #include "blem_sim/sim/simulator.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 class StepPublisher {
  public:
   virtual ~StepPublisher() = default;
   /** Called after every step, and once with the state at hand when the node is ready or time has started again. */
-  virtual void publish(const StepReport& report) = 0;
+  virtual void publish(const sim::StepReport& report) = 0;
   /** Returns when messages of earlier steps are published that are made beside the steps. */
   virtual void drain() {}
   /** Called when simulated time starts again at 0. */
@@ -22,4 +22,4 @@ class StepPublisher {
   virtual void cloudsChanged() {}
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

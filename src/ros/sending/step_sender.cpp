@@ -5,7 +5,7 @@
 
 #include "sending/poll_rounds.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 namespace {
 // More than the messages of some hundred steps: send() waits for a thread that is so far behind.
@@ -87,4 +87,4 @@ void StepSender::run() {
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

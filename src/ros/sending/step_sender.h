@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /**
  * Serialising messages and waking roscpp's poll thread for each takes longer than filling them: the thread that steps only fills. In order:
@@ -65,4 +65,4 @@ class StepSender {
   std::thread thread_;  // last: it uses the others
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -7,7 +7,7 @@
 #include "blem_sim/geometry/input_error.h"
 #include "messages/conversions.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 namespace {
 
@@ -23,7 +23,7 @@ YAML::Node settingsOf(const std::string& text) {
   return settings;
 }
 
-EnvironmentConfig fromRequest(const LoadEnvironment::Request& request) {
+sim::EnvironmentConfig fromRequest(const LoadEnvironment::Request& request) {
   YAML::Node row = settingsOf(request.settings);
   row["name"] = request.name;
   row["uri"] = request.uri;
@@ -34,7 +34,7 @@ EnvironmentConfig fromRequest(const LoadEnvironment::Request& request) {
   }
   if (request.friction != 0) row["friction"] = request.friction;
   if (request.boundary_width != 0) row["boundary_width"] = request.boundary_width;
-  EnvironmentConfig environment = parseEnvironment(row, "load_environment");
+  sim::EnvironmentConfig environment = sim::parseEnvironment(row, "load_environment");
   environment.X_WE = fromPose(request.pose, "load_environment: " + request.name);
   return environment;
 }
@@ -54,4 +54,4 @@ EnvironmentServices::EnvironmentServices(const ros::NodeHandle& private_node, Si
   });
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

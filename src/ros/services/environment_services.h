@@ -3,7 +3,7 @@
 #include "loop/simulation_loop.h"
 #include "services/service_group.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /** `~load_environment`, `~unload_environment`. A request that cannot be met changes nothing; status_message gives the reason. */
 class EnvironmentServices {
@@ -14,4 +14,4 @@ class EnvironmentServices {
   ServiceGroup services_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -12,7 +12,7 @@
 #include "messages/model_states.h"
 #include "messages/status_text.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 LearnerService::LearnerService(const ros::NodeHandle& private_node, SimulationLoop* loop)
     : loop_(loop), simulator_(loop->simulator()), services_(private_node) {
@@ -26,7 +26,7 @@ LearnerService::LearnerService(const ros::NodeHandle& private_node, SimulationLo
     const std::uint32_t made = loop_->stepPaused(request.steps);
     response->status = readings_->takeStatus();
     observe(response);
-    response->success = made == request.steps && (response->status & STATE_NOT_FINITE) == 0;
+    response->success = made == request.steps && (response->status & sim::STATE_NOT_FINITE) == 0;
     if (!response->success) response->status_message = stoppedText(made, request.steps, response->status);
   });
 }
@@ -41,7 +41,7 @@ int LearnerService::robotOf(const RobotCommand& command) const {
   const int robot = simulator_.robotIndex(command.robot);
   if (robot >= 0) return robot;
   std::string known;
-  for (const RobotInfo& info : simulator_.robots()) known += (known.empty() ? "" : ", ") + info.name;
+  for (const sim::RobotInfo& info : simulator_.robots()) known += (known.empty() ? "" : ", ") + info.name;
   throw InputError(fmt::format("commands: robot: there is no robot '{}'; name one of: {}", command.robot, known));
 }
 
@@ -56,26 +56,26 @@ void LearnerService::observe(StepWithCommands::Response* response) const {
 }
 
 RobotObservation LearnerService::observationOf(int robot) const {
-  const RobotInfo& info = simulator_.robots()[static_cast<std::size_t>(robot)];
+  const sim::RobotInfo& info = simulator_.robots()[static_cast<std::size_t>(robot)];
   RobotObservation observation;
   observation.robot = info.name;
   observation.joints = statesOf(info);
   writeStates(simulator_.report(), info, &observation.joints);
-  for (const SensorInfo& sensor : simulator_.sensors())
+  for (const sim::SensorInfo& sensor : simulator_.sensors())
     if (sensor.robot == robot) observation.sensors.push_back(observationOf(sensor));
   return observation;
 }
 
-ObservedSensor LearnerService::observationOf(const SensorInfo& sensor) const {
+ObservedSensor LearnerService::observationOf(const sim::SensorInfo& sensor) const {
   ObservedSensor observed;
   observed.sensor = sensor.config.name;
   const LatestReadings::Reading* last = readings_->of(sensor);
   if (!last) return observed;
   observed.stamp = toStamp(last->time);
-  SensorValues row = sensorValues(last->reading);
+  sim::SensorValues row = sim::sensorValues(last->reading);
   observed.fields = std::move(row.names);
   observed.values = std::move(row.values);
   return observed;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -7,7 +7,7 @@
 #include "services/latest_readings.h"
 #include "services/service_group.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /** `~step_with_commands`: joint commands, N steps in lock-step with the caller, and what is then known; one call per decision. */
 class LearnerService {
@@ -20,12 +20,12 @@ class LearnerService {
   int robotOf(const RobotCommand& command) const;
   void observe(StepWithCommands::Response* response) const;
   RobotObservation observationOf(int robot) const;
-  ObservedSensor observationOf(const SensorInfo& sensor) const;
+  ObservedSensor observationOf(const sim::SensorInfo& sensor) const;
 
   SimulationLoop* loop_;
-  Simulator& simulator_;
+  sim::Simulator& simulator_;
   LatestReadings* readings_;  // the loop's
   ServiceGroup services_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -7,7 +7,7 @@
 #include "blem_sim/geometry/input_error.h"
 #include "services/reference_frame.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 namespace {
 
@@ -15,12 +15,12 @@ constexpr int MOTION_QUEUE = 100;
 
 }  // namespace
 
-MotionServices::MotionServices(ros::NodeHandle private_node, Simulator* simulator) : simulator_(simulator), services_(private_node) {
+MotionServices::MotionServices(ros::NodeHandle private_node, sim::Simulator* simulator) : simulator_(simulator), services_(private_node) {
   services_.add<SetModelState>("set_model_state", [this](const auto& request, auto*) { setModelState(request.model_state); });
   services_.add<SetLinkState>("set_link_state", [this](const auto& request, auto*) { setLinkState(request.link_state); });
   services_.add<SetModelConfiguration>("set_model_configuration", [this](const auto& request, auto*) { configure(request); });
   services_.add<ResetModel>("reset_model", [this](const auto& request, auto*) {
-    simulator_->resetModel(findModel(*simulator_, request.model_name, "model_name"));
+    simulator_->resetModel(sim::findModel(*simulator_, request.model_name, "model_name"));
   });
   const boost::function<void(const ModelStateConstPtr&)> on_model = [this](const ModelStateConstPtr& state) {
     log("set_model_state", [&] { setModelState(*state); });
@@ -42,7 +42,7 @@ void MotionServices::log(const char* topic, const std::function<void()>& act) co
 
 void MotionServices::setModelState(const ModelState& state) {
   LinkState root;
-  root.link_name = linksOf(*simulator_, findModel(*simulator_, state.model_name, "model_name")).front().name;
+  root.link_name = sim::linksOf(*simulator_, sim::findModel(*simulator_, state.model_name, "model_name")).front().name;
   root.pose = state.pose;
   root.twist = state.twist;
   root.reference_frame = state.reference_frame;
@@ -50,20 +50,20 @@ void MotionServices::setModelState(const ModelState& state) {
 }
 
 void MotionServices::setLinkState(const LinkState& state) {
-  const LinkPart part = findLink(*simulator_, state.link_name, "link_name");
+  const sim::LinkPart part = sim::findLink(*simulator_, state.link_name, "link_name");
   const LinkMotion frame = frameMotion(*simulator_, state.reference_frame, "reference_frame");
   const LinkMotion motion = inWorld(frame, state.pose, state.twist, "'" + state.link_name + "'");
-  if (part.body != WORLD_BODY) return simulator_->moveModel(part.body, bodyStateOf(*simulator_, part, motion));
+  if (part.body != dynamics::WORLD_BODY) return simulator_->moveModel(part.body, bodyStateOf(*simulator_, part, motion));
   constexpr double SAME_PLACE = 1e-6;
   if (motion.X_WL.isApprox(part.X_BL, SAME_PLACE)) return;
   throw InputError("'" + part.name + "' is fixed to the world; delete or unload it and put it elsewhere");
 }
 
 void MotionServices::configure(const SetModelConfiguration::Request& request) {
-  findModel(*simulator_, request.model_name, "model_name");
+  sim::findModel(*simulator_, request.model_name, "model_name");
   const int robot = simulator_->robotIndex(request.model_name);
   if (robot < 0) throw InputError("model_name: '" + request.model_name + "' has no joints");
   simulator_->setJointPositions(robot, request.joint_names, request.joint_positions);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

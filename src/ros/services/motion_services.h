@@ -9,7 +9,7 @@
 #include "loop/simulation_loop.h"
 #include "services/service_group.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /**
  * `~set_model_state`, `~set_link_state`, each a service and a topic, `~set_model_configuration` and `~reset_model`. A model is moved as a
@@ -17,7 +17,7 @@ namespace blem_sim {
  */
 class MotionServices {
  public:
-  MotionServices(ros::NodeHandle private_node, Simulator* simulator);
+  MotionServices(ros::NodeHandle private_node, sim::Simulator* simulator);
 
  private:
   void setModelState(const ModelState& state);
@@ -25,9 +25,9 @@ class MotionServices {
   void configure(const SetModelConfiguration::Request& request);
   void log(const char* topic, const std::function<void()>& act) const;
 
-  Simulator* simulator_;
+  sim::Simulator* simulator_;
   ServiceGroup services_;
   ros::Subscriber model_states_, link_states_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -2,7 +2,7 @@
 
 #include <boost/function.hpp>
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 PhysicsServices::PhysicsServices(ros::NodeHandle private_node, SimulationLoop* loop) {
   advertise(&private_node, "pause_physics", [loop] { loop->pause(); });
@@ -20,4 +20,4 @@ void PhysicsServices::advertise(ros::NodeHandle* node, const std::string& name, 
   servers_.push_back(node->advertiseService<std_srvs::Empty::Request, std_srvs::Empty::Response>(name, callback));
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

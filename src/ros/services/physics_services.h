@@ -8,7 +8,7 @@
 
 #include "loop/simulation_loop.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /** `~pause_physics`, `~unpause_physics`, `~reset_world` (time goes on), `~reset_simulation` (time starts again at 0). */
 class PhysicsServices {
@@ -21,4 +21,4 @@ class PhysicsServices {
   std::vector<ros::ServiceServer> servers_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

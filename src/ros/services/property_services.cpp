@@ -5,7 +5,7 @@
 #include "messages/physics_message.h"
 #include "services/reference_frame.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 namespace {
 
@@ -27,7 +27,7 @@ std::string meaningless(const ODEJointProperties& given) {
   return names;
 }
 
-MassProperties requestedInertial(const SetLinkProperties::Request& request) {
+geometry::MassProperties requestedInertial(const SetLinkProperties::Request& request) {
   const Pose X_LI = fromPose(request.com, "com");
   Matrix3 inertia;
   inertia << request.ixx, request.ixy, request.ixz, request.ixy, request.iyy, request.iyz, request.ixz, request.iyz, request.izz;
@@ -44,7 +44,7 @@ PropertyServices::PropertyServices(const ros::NodeHandle& private_node, Simulati
 }
 
 void PropertyServices::setPhysics(const SetPhysicsProperties::Request& request, SetPhysicsProperties::Response* response) {
-  Simulator& simulator = loop_->simulator();
+  sim::Simulator& simulator = loop_->simulator();
   const std::string differences = differencesIn(request.ode_config, simulator.config());
   simulator.setPhysics(fromVector3(request.gravity), request.time_step, request.max_update_rate * request.time_step);
   loop_->paceChanged();
@@ -54,22 +54,22 @@ void PropertyServices::setPhysics(const SetPhysicsProperties::Request& request, 
 }
 
 void PropertyServices::setLink(const SetLinkProperties::Request& request) {
-  const LinkPart part = findLink(loop_->simulator(), request.link_name, "link_name");
-  if (part.body == WORLD_BODY) throw InputError("link_name: '" + part.name + "' is fixed to the world; its mass means nothing");
+  const sim::LinkPart part = sim::findLink(loop_->simulator(), request.link_name, "link_name");
+  if (part.body == dynamics::WORLD_BODY) throw InputError("link_name: '" + part.name + "' is fixed to the world; its mass means nothing");
   if (!request.gravity_mode)
     throw InputError("gravity_mode: gravity acts on every link here; hold a link by apply_body_wrench with its weight upwards");
-  const MassProperties inertial = requestedInertial(request);
+  const geometry::MassProperties inertial = requestedInertial(request);
   if (!(inertial.mass > 0) || !inertial.inertia.allFinite() || !inertial.com.allFinite() || inertial.inertia.llt().info() != Eigen::Success)
     throw InputError("mass, com, ixx to izz: need a finite mass above 0 and a positive definite inertia");
   loop_->simulator().setLinkInertial(part.body, part.link, inertial);
 }
 
 void PropertyServices::setJoint(const SetJointProperties::Request& request, SetJointProperties::Response* response) {
-  Simulator& simulator = loop_->simulator();
+  sim::Simulator& simulator = loop_->simulator();
   const ODEJointProperties& given = request.ode_joint_config;
-  const JointPart part = findJoint(simulator, request.joint_name, "joint_name");
-  const RobotInfo& robot = simulator.robots()[part.robot];
-  const JointLimits& limits = robot.limits[part.joint];
+  const sim::JointPart part = sim::findJoint(simulator, request.joint_name, "joint_name");
+  const sim::RobotInfo& robot = simulator.robots()[part.robot];
+  const model::JointLimits& limits = robot.limits[part.joint];
   const double present = simulator.jointDamping(robot.joints[part.joint]), damping = valueOr(given.damping, present, "damping");
   const double lower = valueOr(given.loStop, limits.lower, "loStop"), upper = valueOr(given.hiStop, limits.upper, "hiStop");
   simulator.setJointDamping(part.robot, part.joint, damping);
@@ -83,4 +83,4 @@ void PropertyServices::setJoint(const SetJointProperties::Request& request, SetJ
   if (!others.empty()) response->status_message = "damping and limits are taken; these mean nothing here:" + others;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -7,7 +7,7 @@
 #include "loop/simulation_loop.h"
 #include "services/service_group.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /** `~set_physics_properties`, `~set_link_properties`, `~set_joint_properties`; status_message names what has no meaning here. */
 class PropertyServices {
@@ -23,4 +23,4 @@ class PropertyServices {
   ServiceGroup services_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -12,52 +12,52 @@
 #include "messages/physics_message.h"
 #include "services/reference_frame.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 namespace {
 
 std::string frameName(const std::string& given) { return given.empty() ? WORLD_FRAME : given; }
 
-void describeModel(const Simulator& simulator, int index, GetModelProperties::Response* response) {
-  const ModelInfo& model = simulator.models()[index];
-  for (const LinkPart& part : linksOf(simulator, index)) response->body_names.push_back(withoutModel(part.name));
+void describeModel(const sim::Simulator& simulator, int index, GetModelProperties::Response* response) {
+  const sim::ModelInfo& model = simulator.models()[index];
+  for (const sim::LinkPart& part : sim::linksOf(simulator, index)) response->body_names.push_back(sim::withoutModel(part.name));
   response->canonical_body_name = response->body_names.front();
-  for (const Collider& collider : simulator.colliders())
-    if (collider.enabled && collider.model == index) response->geom_names.push_back(withoutModel(collider.name));
+  for (const contact::Collider& collider : simulator.colliders())
+    if (collider.enabled && collider.model == index) response->geom_names.push_back(sim::withoutModel(collider.name));
   const int robot = simulator.robotIndex(model.name);
   if (robot >= 0) response->joint_names = simulator.robots()[robot].joint_names;
-  response->is_static = model.kind == ModelKind::ENVIRONMENT;
+  response->is_static = model.kind == sim::ModelKind::ENVIRONMENT;
 }
 
-std::uint8_t typeOf(const Simulator& simulator, const RobotInfo& robot, const std::string& name) {
-  for (const LumpedJoint& joint : robot.lumped->joints) {
+std::uint8_t typeOf(const sim::Simulator& simulator, const sim::RobotInfo& robot, const std::string& name) {
+  for (const model::LumpedJoint& joint : robot.lumped->joints) {
     if (joint.name != name) continue;
-    if (joint.type == JointType::PRISMATIC) return GetJointProperties::Response::PRISMATIC;
-    if (joint.type == JointType::CONTINUOUS) return GetJointProperties::Response::CONTINUOUS;
+    if (joint.type == model::JointType::PRISMATIC) return GetJointProperties::Response::PRISMATIC;
+    if (joint.type == model::JointType::CONTINUOUS) return GetJointProperties::Response::CONTINUOUS;
   }
   return GetJointProperties::Response::REVOLUTE;
 }
 
-MassProperties inertialOf(const Simulator& simulator, const LinkPart& part) {
-  if (part.body != WORLD_BODY) return simulator.linkInertial(part.body, part.link);
+geometry::MassProperties inertialOf(const sim::Simulator& simulator, const sim::LinkPart& part) {
+  if (part.body != dynamics::WORLD_BODY) return simulator.linkInertial(part.body, part.link);
   if (part.robot < 0) return {};
-  return simulator.robots()[part.robot].description->links[part.link].inertial.value_or(MassProperties());
+  return simulator.robots()[part.robot].description->links[part.link].inertial.value_or(geometry::MassProperties());
 }
 
 }  // namespace
 
 QueryServices::QueryServices(const ros::NodeHandle& private_node, SimulationLoop* loop) : services_(private_node) {
-  const Simulator& simulator = loop->simulator();
+  const sim::Simulator& simulator = loop->simulator();
   addModels(simulator);
   addLinks(simulator);
   addJoints(simulator);
   services_.add<GetWorldProperties>("get_world_properties", [&simulator](const auto&, auto* response) {
     response->sim_time = simulator.time();
-    for (const ModelInfo& model : simulator.models())
+    for (const sim::ModelInfo& model : simulator.models())
       if (model.alive) response->model_names.push_back(model.name);
   });
   services_.add<GetPhysicsProperties>("get_physics_properties", [loop](const auto&, auto* response) {
-    const SimulationConfig& config = loop->simulator().config();
+    const sim::SimulationConfig& config = loop->simulator().config();
     response->time_step = config.time_step;
     response->pause = loop->paused();
     response->max_update_rate = config.real_time_factor / config.time_step;
@@ -66,12 +66,12 @@ QueryServices::QueryServices(const ros::NodeHandle& private_node, SimulationLoop
   });
 }
 
-void QueryServices::addModels(const Simulator& simulator) {
+void QueryServices::addModels(const sim::Simulator& simulator) {
   services_.add<GetModelProperties>("get_model_properties", [&simulator](const auto& request, auto* response) {
-    describeModel(simulator, findModel(simulator, request.model_name, "model_name"), response);
+    describeModel(simulator, sim::findModel(simulator, request.model_name, "model_name"), response);
   });
   services_.add<GetModelState>("get_model_state", [&simulator](const auto& request, auto* response) {
-    const int model = findModel(simulator, request.model_name, "model_name");
+    const int model = sim::findModel(simulator, request.model_name, "model_name");
     const LinkMotion frame = frameMotion(simulator, request.relative_entity_name, "relative_entity_name");
     const LinkMotion motion = seenFrom(frame, modelMotion(simulator, simulator.report(), model));
     response->header.stamp = toStamp(simulator.time());
@@ -81,9 +81,9 @@ void QueryServices::addModels(const Simulator& simulator) {
   });
 }
 
-void QueryServices::addLinks(const Simulator& simulator) {
+void QueryServices::addLinks(const sim::Simulator& simulator) {
   services_.add<GetLinkState>("get_link_state", [&simulator](const auto& request, auto* response) {
-    const LinkPart part = findLink(simulator, request.link_name, "link_name");
+    const sim::LinkPart part = sim::findLink(simulator, request.link_name, "link_name");
     const LinkMotion frame = frameMotion(simulator, request.reference_frame, "reference_frame");
     const LinkMotion motion = seenFrom(frame, partMotion(simulator, part));
     response->link_state.link_name = request.link_name;
@@ -92,7 +92,7 @@ void QueryServices::addLinks(const Simulator& simulator) {
     response->link_state.twist = toTwist(motion.v_WL, motion.w_WL);
   });
   services_.add<GetLinkProperties>("get_link_properties", [&simulator](const auto& request, auto* response) {
-    const MassProperties inertial = inertialOf(simulator, findLink(simulator, request.link_name, "link_name"));
+    const geometry::MassProperties inertial = inertialOf(simulator, sim::findLink(simulator, request.link_name, "link_name"));
     Pose X_LCom = Pose::Identity();
     X_LCom.translation() = inertial.com;
     response->com = toPose(X_LCom);
@@ -104,12 +104,12 @@ void QueryServices::addLinks(const Simulator& simulator) {
   });
 }
 
-void QueryServices::addJoints(const Simulator& simulator) {
+void QueryServices::addJoints(const sim::Simulator& simulator) {
   services_.add<GetJointProperties>("get_joint_properties", [&simulator](const auto& request, auto* response) {
-    const JointPart part = findJoint(simulator, request.joint_name, "joint_name");
-    const RobotInfo& robot = simulator.robots()[part.robot];
+    const sim::JointPart part = sim::findJoint(simulator, request.joint_name, "joint_name");
+    const sim::RobotInfo& robot = simulator.robots()[part.robot];
     const int joint = robot.joints[part.joint];
-    const JointState& state = simulator.report().joints[joint];
+    const dynamics::JointState& state = simulator.report().joints[joint];
     response->type = typeOf(simulator, robot, robot.joint_names[part.joint]);
     response->damping = {simulator.jointDamping(joint)};
     response->position = {state.position};
@@ -117,4 +117,4 @@ void QueryServices::addJoints(const Simulator& simulator) {
   });
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

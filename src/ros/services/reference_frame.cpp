@@ -2,10 +2,10 @@
 
 #include "messages/conversions.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
-LinkMotion frameMotion(const Simulator& simulator, const std::string& frame, const std::string& where) {
-  const std::optional<LinkPart> part = findFrame(simulator, frame, where);
+LinkMotion frameMotion(const sim::Simulator& simulator, const std::string& frame, const std::string& where) {
+  const std::optional<sim::LinkPart> part = sim::findFrame(simulator, frame, where);
   return part ? partMotion(simulator, *part) : LinkMotion();
 }
 
@@ -19,14 +19,14 @@ LinkMotion inWorld(const LinkMotion& frame, const geometry_msgs::Pose& pose, con
   return {frame.X_WL * fromPose(pose, where), R_WF * fromVector3(twist.linear), R_WF * fromVector3(twist.angular)};
 }
 
-BodyState bodyStateOf(const Simulator& simulator, const LinkPart& part, const LinkMotion& motion) {
-  BodyState state;
+dynamics::BodyState bodyStateOf(const sim::Simulator& simulator, const sim::LinkPart& part, const LinkMotion& motion) {
+  dynamics::BodyState state;
   state.X_WB = motion.X_WL * part.X_BL.inverse();
   state.w_WB = motion.w_WL;
   const Vector3 p_WCom =
-      part.body == WORLD_BODY ? state.X_WB.translation() : state.X_WB * simulator.world().bodySpec(part.body).inertial.com;
+      part.body == dynamics::WORLD_BODY ? state.X_WB.translation() : state.X_WB * simulator.world().bodySpec(part.body).inertial.com;
   state.v_WCom = motion.v_WL + motion.w_WL.cross(p_WCom - motion.X_WL.translation());
   return state;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

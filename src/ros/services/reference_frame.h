@@ -8,10 +8,10 @@
 
 #include "messages/link_motion.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /** Motion of the frame of a model or a link; of the world, which stands, for "", "world" and "map". @throws InputError */
-LinkMotion frameMotion(const Simulator& simulator, const std::string& frame, const std::string& where);
+LinkMotion frameMotion(const sim::Simulator& simulator, const std::string& frame, const std::string& where);
 
 /** Motion as seen from a frame: pose in it, difference of velocities in its axes. */
 LinkMotion seenFrom(const LinkMotion& frame, const LinkMotion& motion);
@@ -20,6 +20,6 @@ LinkMotion seenFrom(const LinkMotion& frame, const LinkMotion& motion);
 LinkMotion inWorld(const LinkMotion& frame, const geometry_msgs::Pose& pose, const geometry_msgs::Twist& twist, const std::string& where);
 
 /** State of a part's body when the part moves so. */
-BodyState bodyStateOf(const Simulator& simulator, const LinkPart& part, const LinkMotion& motion);
+dynamics::BodyState bodyStateOf(const sim::Simulator& simulator, const sim::LinkPart& part, const LinkMotion& motion);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

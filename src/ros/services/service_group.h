@@ -12,7 +12,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /** Some services of one namespace. A call always gets an answer; one that is refused changes nothing, and one line says why. */
 class ServiceGroup {
@@ -59,4 +59,4 @@ class ServiceGroup {
   std::vector<ros::ServiceServer> servers_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -11,7 +11,7 @@
 #include "messages/pid_gains.h"
 #include "services/reference_frame.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 namespace {
 
@@ -20,12 +20,12 @@ constexpr std::size_t LARGEST_URDF = 64u << 20;  // [bytes]
 const char* const NO_LIGHTS = "nothing is rendered here, so there are no lights; take the call out";
 
 /** Robot of a request: joints without a <transmission> or gains are free, as in Gazebo. */
-RobotConfig robotOf(const Simulator& simulator, const SpawnModel::Request& request) {
-  RobotConfig robot;
+sim::RobotConfig robotOf(const sim::Simulator& simulator, const SpawnModel::Request& request) {
+  sim::RobotConfig robot;
   robot.name = request.model_name;
   robot.name_space = request.robot_namespace;
   robot.urdf_xml = request.model_xml;
-  robot.motors = MotorDefault::TRANSMISSIONS;
+  robot.motors = sim::MotorDefault::TRANSMISSIONS;
   robot.pid_gains = pidGainsIn(request.robot_namespace);
   const LinkMotion frame = frameMotion(simulator, request.reference_frame, "reference_frame");
   robot.X_WR = inWorld(frame, request.initial_pose, {}, "initial_pose").X_WL;
@@ -42,12 +42,12 @@ void checkRequest(const SpawnModel::Request& request) {
 }
 
 /** Refuses a robot whose topics another one has. */
-void checkTopics(const Simulator& simulator, const std::string& model) {
+void checkTopics(const sim::Simulator& simulator, const std::string& model) {
   const int index = simulator.robotIndex(model);
   if (index < 0) return;
-  const RobotInfo& robot = simulator.robots()[index];
+  const sim::RobotInfo& robot = simulator.robots()[index];
   const auto resolved = [](const std::string& name_space) { return ros::names::clean("/" + name_space); };
-  for (const RobotInfo& other : simulator.robots()) {
+  for (const sim::RobotInfo& other : simulator.robots()) {
     if (other.name == model || resolved(other.name_space) != resolved(robot.name_space)) continue;
     for (const std::string& joint : robot.joint_names)
       if (std::find(other.joint_names.begin(), other.joint_names.end(), joint) != other.joint_names.end())
@@ -75,7 +75,7 @@ void SpawnServices::addRefusals() {
 
 void SpawnServices::spawn(const SpawnModel::Request& request, SpawnModel::Response* response) {
   checkRequest(request);
-  Simulator& simulator = loop_->simulator();
+  sim::Simulator& simulator = loop_->simulator();
   const std::size_t known_notes = simulator.notes().size();
   simulator.spawn(robotOf(simulator, request));
   try {
@@ -97,4 +97,4 @@ void SpawnServices::remove(const std::string& model) {
   loop_->modelsChanged();
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -6,7 +6,7 @@
 #include "loop/simulation_loop.h"
 #include "services/service_group.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /** `~spawn_urdf_model`, `~delete_model`; `~spawn_sdf_model` and the services of lights, which are not supported and say so. */
 class SpawnServices {
@@ -22,4 +22,4 @@ class SpawnServices {
   ServiceGroup services_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -3,19 +3,19 @@
 #include "messages/conversions.h"
 #include "messages/status_text.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 StepService::StepService(ros::NodeHandle private_node, SimulationLoop* loop)
     : loop_(loop), server_(private_node.advertiseService("step", &StepService::onStep, this)) {}
 
 bool StepService::onStep(Step::Request& request, Step::Response& response) {
   const std::uint32_t made = loop_->stepPaused(request.steps);
-  const StepReport& report = loop_->simulator().report();
-  response.success = made == request.steps && (made == 0 || (report.status & STATE_NOT_FINITE) == 0);
+  const sim::StepReport& report = loop_->simulator().report();
+  response.success = made == request.steps && (made == 0 || (report.status & sim::STATE_NOT_FINITE) == 0);
   if (!response.success) response.status_message = stoppedText(made, request.steps, report.status);
   response.step = loop_->simulator().steps();
   response.stamp = toStamp(loop_->simulator().time());
   return true;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -5,7 +5,7 @@
 
 #include "loop/simulation_loop.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 
 /** `~step`: N steps in lock-step with the caller. A running simulation is paused first and stays paused. */
 class StepService {
@@ -19,4 +19,4 @@ class StepService {
   ros::ServiceServer server_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /** The entry that holds for a joint: its own, else "default"; null if there is neither. */
 template <typename Value>
@@ -23,4 +23,4 @@ Value byJoint(const std::map<std::string, Value>& entries, const std::string& jo
   return entry ? *entry : otherwise;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -7,11 +7,11 @@
 
 #include "blem_sim/sim/config.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 struct ContactSettings {
   double boundary_width = 0;  ///< [m]
-  SurfaceProperties surface;
+  contact::SurfaceProperties surface;
   bool shrink = false;
 };
 
@@ -39,4 +39,4 @@ inline const ContactOverrides* overridesOf(const std::map<std::string, ContactOv
   return found == links.end() ? nullptr : &found->second;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

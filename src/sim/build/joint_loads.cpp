@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr double SAG_ANGLE = 1e-3;                 // [rad] by which gravity turns a joint at most; smaller is stiffer
@@ -17,7 +17,7 @@ struct Moments {
   Matrix3 second = Matrix3::Zero();
 
   Moments() = default;
-  Moments(const Pose& X_RB, const Inertial& inertial) : mass(inertial.mass) {
+  Moments(const Pose& X_RB, const model::Inertial& inertial) : mass(inertial.mass) {
     const Vector3 com = X_RB * inertial.com;
     first = mass * com;
     second = X_RB.linear() * inertial.inertia * X_RB.linear().transpose() +
@@ -52,38 +52,38 @@ JointSide sideOf(const Moments& m, const Axis& axis, double gravity) {
   return {std::max(0.0, inertia), gravity * a.cross(m.first - m.mass * axis.point).norm()};
 }
 
-std::vector<Pose> bodyPoses(const LumpedRobot& robot, const std::vector<double>& positions) {
+std::vector<Pose> bodyPoses(const model::LumpedRobot& robot, const std::vector<double>& positions) {
   std::vector<Pose> X_RB(robot.bodies.size(), Pose::Identity());
   for (std::size_t j = 0; j < robot.joints.size(); ++j) {
-    const LumpedJoint& joint = robot.joints[j];
+    const model::LumpedJoint& joint = robot.joints[j];
     X_RB[joint.child] = X_RB[joint.parent] * joint.pose(positions[j]);
   }
   return X_RB;
 }
 
 /** Per body: the moments of all that it carries, itself included. A floating body carries its own tree and is carried by nobody. */
-std::vector<Moments> carriedMoments(const LumpedRobot& robot, const std::vector<Pose>& X_RB) {
+std::vector<Moments> carriedMoments(const model::LumpedRobot& robot, const std::vector<Pose>& X_RB) {
   std::vector<Moments> carried;
   for (std::size_t b = 0; b < robot.bodies.size(); ++b) carried.emplace_back(X_RB[b], robot.bodies[b].inertial);
   for (auto joint = robot.joints.rbegin(); joint != robot.joints.rend(); ++joint)
-    if (joint->type != JointType::FLOATING) carried[joint->parent] += carried[joint->child];
+    if (joint->type != model::JointType::FLOATING) carried[joint->parent] += carried[joint->child];
   return carried;
 }
 
 }  // namespace
 
-std::vector<JointLoad> jointLoads(const LumpedRobot& robot, const std::vector<double>& positions, bool fixed_base, double gravity) {
+std::vector<JointLoad> jointLoads(const model::LumpedRobot& robot, const std::vector<double>& positions, bool fixed_base, double gravity) {
   const std::vector<Pose> X_RB = bodyPoses(robot, positions);
   const std::vector<Moments> carried = carriedMoments(robot, X_RB);
   std::vector<int> root(robot.bodies.size(), 0);  // of each body's tree
   std::vector<JointLoad> loads(robot.joints.size());
   for (std::size_t j = 0; j < robot.joints.size(); ++j) {
-    const LumpedJoint& joint = robot.joints[j];
-    const bool floats = joint.type == JointType::FLOATING;
+    const model::LumpedJoint& joint = robot.joints[j];
+    const bool floats = joint.type == model::JointType::FLOATING;
     root[joint.child] = floats ? joint.child : root[joint.parent];
     if (floats) continue;
     const Pose X_RJ = X_RB[joint.parent] * joint.X_PJ;
-    const Axis axis{joint.type != JointType::PRISMATIC, X_RJ.translation(), X_RJ.linear() * joint.axis};
+    const Axis axis{joint.type != model::JointType::PRISMATIC, X_RJ.translation(), X_RJ.linear() * joint.axis};
     loads[j].child = sideOf(carried[joint.child], axis, gravity);
     const int tree = root[joint.child];
     if (tree != 0 || !fixed_base) loads[j].rest = sideOf(carried[tree] - carried[joint.child], axis, gravity);
@@ -96,9 +96,9 @@ double lightInertia(const JointLoad& load) {
   return rest > 0 ? child * rest / (child + rest) : child;
 }
 
-JointGains computedGains(const JointLoad& load, const LumpedJoint& joint, double effort_limit) {
+JointGains computedGains(const JointLoad& load, const model::LumpedJoint& joint, double effort_limit) {
   constexpr double SQUARED = LEAST_FREQUENCY * LEAST_FREQUENCY;
-  const double sag = joint.type == JointType::PRISMATIC ? SAG_LENGTH : SAG_ANGLE;
+  const double sag = joint.type == model::JointType::PRISMATIC ? SAG_LENGTH : SAG_ANGLE;
   const double weight = std::min(std::max(load.child.weight, load.rest.weight), effort_limit);
   JointGains gains;
   gains.p = std::max(weight / sag, load.child.inertia * SQUARED);
@@ -108,4 +108,4 @@ JointGains computedGains(const JointLoad& load, const LumpedJoint& joint, double
   return gains;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

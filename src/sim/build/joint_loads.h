@@ -6,7 +6,7 @@
 #include "blem_sim/model/robot_model.h"
 #include "blem_sim/sim/config.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /** One side of a joint as its axis meets it, all other joints being stiff. */
 struct JointSide {
@@ -25,7 +25,7 @@ struct JointLoad {
  * @param positions of the joints [rad or m] at which the sides are stiff; gravity: its size [m/s^2]
  * @return one per lumped joint; zero for floating ones, where trees end
  */
-std::vector<JointLoad> jointLoads(const LumpedRobot& robot, const std::vector<double>& positions, bool fixed_base, double gravity);
+std::vector<JointLoad> jointLoads(const model::LumpedRobot& robot, const std::vector<double>& positions, bool fixed_base, double gravity);
 
 /**
  * Inertia that a joint's effort meets at least: both sides in series, since a free robot gives way at both.
@@ -37,6 +37,6 @@ double lightInertia(const JointLoad& load);
  * Gains of the implicit law that hold a pose: p lets the heavier side sag by 1 mrad (sliders 0.1 mm) at most, with no more effort than the
  * limit, and swings the child at 10 Hz at least; d is critical damping of the heavier side.
  */
-JointGains computedGains(const JointLoad& load, const LumpedJoint& joint, double effort_limit);
+JointGains computedGains(const JointLoad& load, const model::LumpedJoint& joint, double effort_limit);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

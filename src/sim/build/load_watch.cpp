@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 LoadWatch::LoadWatch(const LoadLog& log, std::string model) : log_(log), model_(std::move(model)) {
   if (log_.tell) teller_ = std::thread([this] { tellStages(); });
@@ -20,7 +20,7 @@ void LoadWatch::enter(const std::string& stage, double fraction) {
   fraction_ = fraction;
 }
 
-LoadProgress LoadWatch::progress() {
+model::LoadProgress LoadWatch::progress() {
   return [this](const std::string& stage, double fraction) { enter(stage, fraction); };
 }
 
@@ -49,4 +49,4 @@ void LoadWatch::stop() {
   teller_.join();
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -9,7 +9,7 @@
 
 #include "blem_sim/sim/simulator_types.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /**
  * Lives while one model is loaded. Once that has taken log.interval, and each time it passes again, a thread of its own tells the stage, so
@@ -27,7 +27,7 @@ class LoadWatch {
 
   /** @param fraction of the load that lies behind, 0 to 1 */
   void enter(const std::string& stage, double fraction);
-  LoadProgress progress();
+  model::LoadProgress progress();
   /** @param what in words: triangles and memory */
   void loaded(const std::string& what);
 
@@ -49,4 +49,4 @@ class LoadWatch {
   std::thread teller_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

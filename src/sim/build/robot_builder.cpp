@@ -11,7 +11,7 @@
 #include "build/robot_motors.h"
 #include "build/robot_names.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 std::set<std::string> jointsWithSensor(const RobotConfig& config) {
@@ -21,25 +21,25 @@ std::set<std::string> jointsWithSensor(const RobotConfig& config) {
   return joints;
 }
 
-int lumpedJointIndex(const LumpedRobot& robot, const std::string& name) {
+int lumpedJointIndex(const model::LumpedRobot& robot, const std::string& name) {
   for (std::size_t i = 0; i < robot.joints.size(); ++i)
     if (robot.joints[i].name == name) return static_cast<int>(i);
   return -1;
 }
 
-JointKind kindOf(JointType type) {
-  if (type == JointType::FIXED) return JointKind::FIXED;
-  return type == JointType::PRISMATIC ? JointKind::PRISMATIC : JointKind::REVOLUTE;
+dynamics::JointKind kindOf(model::JointType type) {
+  if (type == model::JointType::FIXED) return dynamics::JointKind::FIXED;
+  return type == model::JointType::PRISMATIC ? dynamics::JointKind::PRISMATIC : dynamics::JointKind::REVOLUTE;
 }
 
 /** Joints in an order where those that others mimic come first. */
-std::vector<int> mastersFirst(const LumpedRobot& robot, const std::string& where) {
+std::vector<int> mastersFirst(const model::LumpedRobot& robot, const std::string& where) {
   std::vector<int> order;
   std::vector<bool> placed(robot.joints.size(), false);
   while (order.size() < robot.joints.size()) {
     const std::size_t before = order.size();
     for (std::size_t j = 0; j < robot.joints.size(); ++j) {
-      const LumpedJoint& joint = robot.joints[j];
+      const model::LumpedJoint& joint = robot.joints[j];
       if (placed[j]) continue;
       if (joint.mimic) {
         const int master = lumpedJointIndex(robot, joint.mimic->joint);
@@ -58,28 +58,28 @@ std::vector<int> mastersFirst(const LumpedRobot& robot, const std::string& where
 
 }  // namespace
 
-RobotBuilder::RobotBuilder(const RobotConfig& config, const ContactConfig& contact, const std::shared_ptr<const RobotModel>& model)
+RobotBuilder::RobotBuilder(const RobotConfig& config, const ContactConfig& contact, const std::shared_ptr<const model::RobotModel>& model)
     : RobotBuilder(withGazeboBlocks(config, *model), contact, model) {}
 
-RobotBuilder::RobotBuilder(const GazeboRobot& robot, const ContactConfig& contact, std::shared_ptr<const RobotModel> model)
+RobotBuilder::RobotBuilder(const GazeboRobot& robot, const ContactConfig& contact, std::shared_ptr<const model::RobotModel> model)
     : config_(robot.config), contact_(contact), model_(std::move(model)), start_notes_(robot.notes) {
   // The check below refuses a sensor at an unknown joint.
-  lumped_ = std::make_shared<const LumpedRobot>(lumpFixedJoints(*model_, jointsWithSensor(config_), config_.fixed_base));
+  lumped_ = std::make_shared<const model::LumpedRobot>(model::lumpFixedJoints(*model_, jointsWithSensor(config_), config_.fixed_base));
   checkRobotNames(config_, *model_, *lumped_);
   checkMotors(config_);
   placeBodies();
 }
 
-double RobotBuilder::initialPosition(const LumpedJoint& joint) const {
+double RobotBuilder::initialPosition(const model::LumpedJoint& joint) const {
   const auto given = config_.initial_positions.find(joint.name);
   return given == config_.initial_positions.end() ? 0 : given->second;
 }
 
 void RobotBuilder::placeBodies() {
-  const std::vector<LumpedJoint>& joints = lumped_->joints;
+  const std::vector<model::LumpedJoint>& joints = lumped_->joints;
   positions_.assign(joints.size(), 0);
   for (const int j : mastersFirst(*lumped_, "robots: " + config_.name)) {
-    const LumpedJoint& joint = joints[j];
+    const model::LumpedJoint& joint = joints[j];
     if (!joint.moves()) continue;
     if (joint.mimic) {
       positions_[j] = joint.mimic->multiplier * positions_[lumpedJointIndex(*lumped_, joint.mimic->joint)] + joint.mimic->offset;
@@ -114,7 +114,7 @@ void RobotBuilder::addTo(SimulatedWorld* world, SurfaceLibrary* surfaces) {
   disableListedPairs();
   ModelInfo& model = world->models[info_.model];
   for (const int body : info_.bodies)
-    if (body != WORLD_BODY) model.bodies.push_back(body);
+    if (body != dynamics::WORLD_BODY) model.bodies.push_back(body);
   model.joints = info_.joints;
   model.X_WM = config_.X_WR;
   addSensors(world->addRobot(info_));
@@ -132,10 +132,10 @@ void RobotBuilder::setSelfCollision() {
 void RobotBuilder::addBodies() {
   for (std::size_t b = 0; b < lumped_->bodies.size(); ++b) {
     if (b == 0 && config_.fixed_base) {
-      info_.bodies.push_back(WORLD_BODY);
+      info_.bodies.push_back(dynamics::WORLD_BODY);
       continue;
     }
-    BodySpec spec;
+    dynamics::BodySpec spec;
     spec.name = config_.name + "::" + lumped_->bodies[b].name;
     spec.inertial = lumped_->bodies[b].inertial;
     spec.X_WB = X_WB_[b];
@@ -148,28 +148,28 @@ void RobotBuilder::addJoints() {
   for (const std::string& words : motors.notes) note(words);
   info_.world_joints.assign(lumped_->joints.size(), -1);
   for (const int j : mastersFirst(*lumped_, "robots: " + config_.name))
-    if (lumped_->joints[j].type != JointType::FLOATING) addJoint(j, motors.settings[j]);
+    if (lumped_->joints[j].type != model::JointType::FLOATING) addJoint(j, motors.settings[j]);
   for (std::size_t j = 0; j < lumped_->joints.size(); ++j) {
-    const LumpedJoint& joint = lumped_->joints[j];
+    const model::LumpedJoint& joint = lumped_->joints[j];
     if (!joint.moves()) continue;
     info_.joint_names.push_back(joint.name);
     info_.joints.push_back(info_.world_joints[j]);
     info_.limits.push_back(joint.limits);
-    info_.continuous.push_back(joint.type == JointType::CONTINUOUS);
+    info_.continuous.push_back(joint.type == model::JointType::CONTINUOUS);
     info_.driven.push_back(!joint.mimic);
   }
 }
 
 void RobotBuilder::addJoint(int j, const MotorSettings& motor) {
-  const LumpedJoint& joint = lumped_->joints[j];
-  JointSpec spec;
+  const model::LumpedJoint& joint = lumped_->joints[j];
+  dynamics::JointSpec spec;
   spec.name = config_.name + "::" + joint.name;
   spec.kind = kindOf(joint.type);
   spec.parent = info_.bodies[joint.parent];
   spec.child = info_.bodies[joint.child];
-  spec.X_PJ = spec.parent == WORLD_BODY ? config_.X_WR * joint.X_PJ : joint.X_PJ;
+  spec.X_PJ = spec.parent == dynamics::WORLD_BODY ? config_.X_WR * joint.X_PJ : joint.X_PJ;
   spec.axis = joint.axis;
-  if (joint.type != JointType::CONTINUOUS) {
+  if (joint.type != model::JointType::CONTINUOUS) {
     spec.lower = joint.limits.lower;
     spec.upper = joint.limits.upper;
   }
@@ -191,7 +191,7 @@ void RobotBuilder::addSensors(int robot) {
 
 std::string RobotBuilder::frameOf(const SensorConfig& sensor) const {
   if (sensor.type == SensorType::FORCE_TORQUE) {
-    const JointModel& joint = model_->joints[model_->jointIndex(sensor.joint)];
+    const model::JointModel& joint = model_->joints[model_->jointIndex(sensor.joint)];
     return model_->links[sensor.frame == "parent" ? joint.parent : joint.child].name;
   }
   return sensor.type == SensorType::MOTOR_CURRENT ? info_.root_link : sensor.link;
@@ -203,7 +203,7 @@ void RobotBuilder::checkFrame(const SensorConfig& sensor) {
   if (claimed < 0 || sensor.type == SensorType::ODOMETRY) return;
   Pose X_LS = sensor.X_LS;
   if (sensor.type == SensorType::DEPTH_CAMERA) X_LS.linear() = X_LS.linear() * opticalAxes();
-  const LinkPlacement &at_claimed = lumped_->link_placement[claimed], &at_own = lumped_->link_placement[own];
+  const model::LinkPlacement &at_claimed = lumped_->link_placement[claimed], &at_own = lumped_->link_placement[own];
   const Matrix3 R_FS = at_claimed.X_BL.linear().transpose() * at_own.X_BL.linear() * X_LS.linear();
   if (at_claimed.body == at_own.body && R_FS.isIdentity(1e-6)) return;
   note(
@@ -212,4 +212,4 @@ void RobotBuilder::checkFrame(const SensorConfig& sensor) {
                   sensor.name, sensor.frame_id));
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

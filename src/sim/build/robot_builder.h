@@ -11,20 +11,20 @@
 #include "build/surface_library.h"
 #include "gazebo/gazebo_robot.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /** Lives while one robot is added. */
 class RobotBuilder {
  public:
   /** Checks everything that can be wrong. @throws InputError */
-  RobotBuilder(const RobotConfig& config, const ContactConfig& contact, const std::shared_ptr<const RobotModel>& model);
+  RobotBuilder(const RobotConfig& config, const ContactConfig& contact, const std::shared_ptr<const model::RobotModel>& model);
 
   void addTo(SimulatedWorld* world, SurfaceLibrary* surfaces);
 
  private:
-  RobotBuilder(const GazeboRobot& robot, const ContactConfig& contact, std::shared_ptr<const RobotModel> model);
+  RobotBuilder(const GazeboRobot& robot, const ContactConfig& contact, std::shared_ptr<const model::RobotModel> model);
   void placeBodies();
-  double initialPosition(const LumpedJoint& joint) const;
+  double initialPosition(const model::LumpedJoint& joint) const;
   void addBodies();
   void addJoints();
   void addJoint(int joint, const MotorSettings& motor);
@@ -40,8 +40,8 @@ class RobotBuilder {
 
   const RobotConfig config_;
   const ContactConfig contact_;
-  std::shared_ptr<const RobotModel> model_;
-  std::shared_ptr<const LumpedRobot> lumped_;
+  std::shared_ptr<const model::RobotModel> model_;
+  std::shared_ptr<const model::LumpedRobot> lumped_;
   std::vector<double> positions_;  ///< of lumped joints, at the start
   std::vector<Pose> X_WB_;         ///< of lumped bodies, at the start
   std::vector<std::string> start_notes_;
@@ -49,4 +49,4 @@ class RobotBuilder {
   RobotInfo info_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

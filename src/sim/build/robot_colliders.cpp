@@ -4,24 +4,24 @@
 #include "build/contact_settings.h"
 #include "build/robot_builder.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 void RobotBuilder::addColliders(SurfaceLibrary* surfaces) {
   for (std::size_t link = 0; link < model_->links.size(); ++link) {
-    const LinkModel& description = model_->links[link];
+    const model::LinkModel& description = model_->links[link];
     const ContactSettings settings = contactSettings(
         contact_.boundary_width, contact_,
         {overridesOf(config_.described_links, description.name), &config_.contact, overridesOf(config_.links, description.name)});
-    const LinkPlacement& placement = lumped_->link_placement[link];
+    const model::LinkPlacement& placement = lumped_->link_placement[link];
     const int body = info_.bodies[placement.body];
-    for (const CollisionShape& shape : description.collisions) {
-      Collider collider;
+    for (const model::CollisionShape& shape : description.collisions) {
+      contact::Collider collider;
       collider.name = config_.name + "::" + description.name;
       collider.body = body;
       collider.model = info_.model;
       collider.link = static_cast<int>(link);
-      collider.X_BC = body == WORLD_BODY ? config_.X_WR * placement.X_BL : placement.X_BL;
-      MeshReport report = shape.report;
+      collider.X_BC = body == dynamics::WORLD_BODY ? config_.X_WR * placement.X_BL : placement.X_BL;
+      geometry::MeshReport report = shape.report;
       collider.geometry = surfaces->fitted(surfaces->geometry(shape.mesh), settings, shape.radius, &report);
       world_->addCollider(collider, shape.radius > 0 ? shape.radius : settings.boundary_width, settings.surface, report);
     }
@@ -33,9 +33,9 @@ void RobotBuilder::addColliders(SurfaceLibrary* surfaces) {
 void RobotBuilder::disableNeighbours() {
   const int count = static_cast<int>(lumped_->bodies.size());
   std::vector<int> parent(count, -1), rigid(count, 0);  // rigid: first of the bodies that are held together
-  for (const LumpedJoint& joint : lumped_->joints) {
+  for (const model::LumpedJoint& joint : lumped_->joints) {
     parent[joint.child] = joint.parent;
-    rigid[joint.child] = joint.type == JointType::FIXED ? rigid[joint.parent] : joint.child;
+    rigid[joint.child] = joint.type == model::JointType::FIXED ? rigid[joint.parent] : joint.child;
   }
   const auto above = [&](int first) {
     int p = parent[first];
@@ -50,10 +50,11 @@ void RobotBuilder::disableNeighbours() {
 // A fixed base is the world, which has other models' colliders too, so the base's are listed one by one.
 void RobotBuilder::disableBodies(int lumped_a, int lumped_b) {
   const int body_a = info_.bodies[lumped_a], body_b = info_.bodies[lumped_b];
-  if (body_a != WORLD_BODY) return world_->filter.disableBodies(body_a, body_b);
+  if (body_a != dynamics::WORLD_BODY) return world_->filter.disableBodies(body_a, body_b);
   const int count = static_cast<int>(world_->colliders.size());
   for (int a = 0; a < count; ++a) {
-    if (!world_->colliders[a].enabled || world_->colliders[a].model != info_.model || world_->colliders[a].body != WORLD_BODY) continue;
+    if (!world_->colliders[a].enabled || world_->colliders[a].model != info_.model || world_->colliders[a].body != dynamics::WORLD_BODY)
+      continue;
     for (int b = 0; b < count; ++b)
       if (world_->colliders[b].enabled && world_->colliders[b].body == body_b) world_->disabled_pairs.insert(std::minmax(a, b));
   }
@@ -70,4 +71,4 @@ void RobotBuilder::disableListedPairs() {
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -9,7 +9,7 @@
 #include "blem_sim/geometry/input_error.h"
 #include "build/by_joint.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr std::size_t LISTED_JOINTS = 12;  // in a note
@@ -18,12 +18,13 @@ constexpr double VELOCITY_TIME = 1;        // [s] in which a joint that keeps a 
 /** Writes the motors of one robot, joint by joint. */
 class MotorWriter {
  public:
-  MotorWriter(const RobotConfig& config, const RobotModel& model, RobotMotors* motors) : config_(config), model_(model), motors_(*motors) {}
+  MotorWriter(const RobotConfig& config, const model::RobotModel& model, RobotMotors* motors)
+      : config_(config), model_(model), motors_(*motors) {}
 
-  void add(const LumpedJoint& joint, const JointLoad& load) {
+  void add(const model::LumpedJoint& joint, const JointLoad& load) {
     MotorSettings settings;
     settings.commanded = joint.moves() && !joint.mimic;
-    settings.continuous = joint.type == JointType::CONTINUOUS;
+    settings.continuous = joint.type == model::JointType::CONTINUOUS;
     if (joint.moves()) {
       settings.friction = byJoint(config_.joint_friction, joint.name, JointFriction{joint.dry_friction, joint.viscous_friction});
       settings.effort_limit = byJoint(config_.effort_limits, joint.name, joint.limits.effort);
@@ -64,14 +65,14 @@ class MotorWriter {
     return config_.motors == MotorDefault::FREE;
   }
 
-  double velocityLimit(const LumpedJoint& joint) {
+  double velocityLimit(const model::LumpedJoint& joint) {
     const double limit = byJoint(config_.velocity_limits, joint.name, joint.limits.velocity);
     if (limit > 0) return limit;
     unlimited_.push_back(joint.name);
     return std::numeric_limits<double>::infinity();
   }
 
-  void addGains(const LumpedJoint& joint, const JointLoad& load, MotorSettings* settings) {
+  void addGains(const model::LumpedJoint& joint, const JointLoad& load, MotorSettings* settings) {
     if (const JointGains* given = givenGains(joint.name)) {
       settings->gains = *given;
     } else if (isFree(joint.name)) {
@@ -92,7 +93,7 @@ class MotorWriter {
   }
 
   const RobotConfig& config_;
-  const RobotModel& model_;
+  const model::RobotModel& model_;
   RobotMotors& motors_;
   std::vector<std::string> free_, computed_, not_explicit_, unlimited_;
 };
@@ -121,13 +122,13 @@ void checkMotors(const RobotConfig& config) {
     if (!std::isfinite(position)) refuse("initial_positions", joint);
 }
 
-RobotMotors robotMotors(const RobotConfig& config, const RobotModel& model, const LumpedRobot& robot, const std::vector<double>& positions,
-                        double gravity) {
+RobotMotors robotMotors(const RobotConfig& config, const model::RobotModel& model, const model::LumpedRobot& robot,
+                        const std::vector<double>& positions, double gravity) {
   std::vector<JointLoad> loads = jointLoads(robot, positions, config.fixed_base, gravity);
   RobotMotors motors;
   MotorWriter writer(config, model, &motors);
   for (std::size_t j = 0; j < robot.joints.size(); ++j) {
-    const LumpedJoint& joint = robot.joints[j];
+    const model::LumpedJoint& joint = robot.joints[j];
     if (joint.moves()) loads[j].child.inertia += byJoint(config.armature, joint.name, 0.0);
     writer.add(joint, loads[j]);
   }
@@ -135,4 +136,4 @@ RobotMotors robotMotors(const RobotConfig& config, const RobotModel& model, cons
   return motors;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

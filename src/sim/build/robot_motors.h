@@ -8,7 +8,7 @@
 #include "build/joint_loads.h"
 #include "commands/joint_motor.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /** Checks gains, friction, limits, armatures and initial positions. @throws InputError that names the field and the joint */
 void checkMotors(const RobotConfig& config);
@@ -20,7 +20,7 @@ struct RobotMotors {
 };
 
 /** @param positions of the joints at the start; gravity: its size [m/s^2] */
-RobotMotors robotMotors(const RobotConfig& config, const RobotModel& model, const LumpedRobot& robot, const std::vector<double>& positions,
-                        double gravity);
+RobotMotors robotMotors(const RobotConfig& config, const model::RobotModel& model, const model::LumpedRobot& robot,
+                        const std::vector<double>& positions, double gravity);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

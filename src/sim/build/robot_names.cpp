@@ -7,18 +7,18 @@
 #include "blem_sim/geometry/input_error.h"
 #include "numbers/nearest_name.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 struct Names {
   std::vector<std::string> links, movable, all_joints;
 };
 
-Names namesOf(const RobotModel& model, const LumpedRobot& lumped) {
+Names namesOf(const model::RobotModel& model, const model::LumpedRobot& lumped) {
   Names names;
-  for (const LinkModel& link : model.links) names.links.push_back(link.name);
-  for (const JointModel& joint : model.joints) names.all_joints.push_back(joint.name);
-  for (const LumpedJoint& joint : lumped.joints)
+  for (const model::LinkModel& link : model.links) names.links.push_back(link.name);
+  for (const model::JointModel& joint : model.joints) names.all_joints.push_back(joint.name);
+  for (const model::LumpedJoint& joint : lumped.joints)
     if (joint.moves()) names.movable.push_back(joint.name);
   return names;
 }
@@ -30,12 +30,12 @@ void checkJoints(const std::map<std::string, Value>& by_joint, const std::string
     if (!with_default || entry.first != "default") requireName(entry.first, movable, where, "movable joint");
 }
 
-void checkSensor(const SensorConfig& sensor, const std::string& where, const Names& names, const RobotModel& model) {
+void checkSensor(const SensorConfig& sensor, const std::string& where, const Names& names, const model::RobotModel& model) {
   switch (sensor.type) {
     case SensorType::FORCE_TORQUE: {
       requireName(sensor.joint, names.all_joints, where + ": joint", "joint");
-      const JointType type = model.joints[model.jointIndex(sensor.joint)].type;
-      if (type == JointType::FLOATING || type == JointType::PLANAR)
+      const model::JointType type = model.joints[model.jointIndex(sensor.joint)].type;
+      if (type == model::JointType::FLOATING || type == model::JointType::PLANAR)
         throw InputError(
             fmt::format("{}: joint: '{}' is a floating or planar joint, which carries no wrench; take another", where, sensor.joint));
       requireName(sensor.frame, {"child", "parent", "sensor"}, where + ": frame", "frame");
@@ -58,7 +58,7 @@ void checkSensor(const SensorConfig& sensor, const std::string& where, const Nam
 
 }  // namespace
 
-void checkRobotNames(const RobotConfig& config, const RobotModel& model, const LumpedRobot& lumped) {
+void checkRobotNames(const RobotConfig& config, const model::RobotModel& model, const model::LumpedRobot& lumped) {
   const Names names = namesOf(model, lumped);
   const std::string where = "robots: " + config.name + ": ";
   checkJoints(config.initial_positions, where + "initial_positions", names.movable, false);
@@ -80,4 +80,4 @@ void checkRobotNames(const RobotConfig& config, const RobotModel& model, const L
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

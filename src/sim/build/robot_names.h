@@ -4,9 +4,9 @@
 #include "blem_sim/model/robot_model.h"
 #include "blem_sim/sim/config.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /** @throws InputError naming the entry, the unknown name and the nearest known one */
-void checkRobotNames(const RobotConfig& config, const RobotModel& model, const LumpedRobot& lumped);
+void checkRobotNames(const RobotConfig& config, const model::RobotModel& model, const model::LumpedRobot& lumped);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

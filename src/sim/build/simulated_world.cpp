@@ -8,7 +8,7 @@
 #include "blem_sim/geometry/free_slots.h"
 #include "blem_sim/geometry/input_error.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 void SimulatedWorld::checkNewName(const std::string& name, const std::string& section) const {
   if (name.empty()) throw InputError(fmt::format("{}: an entry has no name; give it one", section));
@@ -20,7 +20,7 @@ int SimulatedWorld::addModel(const std::string& name, ModelKind kind, int max_co
   ModelInfo model;
   model.name = name;
   model.kind = kind;
-  const int index = takeSlot(&free_models_, &models);
+  const int index = geometry::takeSlot(&free_models_, &models);
   budgets.resize(models.size());
   models[index] = model;
   budgets[index] = {max_contacts};
@@ -28,28 +28,29 @@ int SimulatedWorld::addModel(const std::string& name, ModelKind kind, int max_co
   return index;
 }
 
-int SimulatedWorld::addCollider(Collider collider, double width, const SurfaceProperties& surface, MeshReport report) {
+int SimulatedWorld::addCollider(contact::Collider collider, double width, const contact::SurfaceProperties& surface,
+                                geometry::MeshReport report) {
   collider.radius = width;
   collider.surface = surface;
   report.name = collider.name;
   report.boundary_width = width;
   report.bytes = collider.geometry->bytes();
   load_report.push_back(std::move(report));
-  const int index = takeSlot(&free_colliders_, &colliders);
+  const int index = geometry::takeSlot(&free_colliders_, &colliders);
   colliders[index] = std::move(collider);
   return index;
 }
 
-int SimulatedWorld::addBody(const BodySpec& spec, const Vector3& v_WCom, const Vector3& w_WB) {
+int SimulatedWorld::addBody(const dynamics::BodySpec& spec, const Vector3& v_WCom, const Vector3& w_WB) {
   const int body = world.addBody(spec);
-  const BodyState state{spec.X_WB, v_WCom, w_WB};
+  const dynamics::BodyState state{spec.X_WB, v_WCom, w_WB};
   world.setBodyState(body, state);
   start_states.resize(world.bodyCount());
   start_states[body] = state;
   return body;
 }
 
-int SimulatedWorld::addJoint(const JointSpec& spec, double position, const JointMotor& motor) {
+int SimulatedWorld::addJoint(const dynamics::JointSpec& spec, double position, const JointMotor& motor) {
   const int joint = world.addJoint(spec, position);
   motors.resize(world.jointCount());
   start_positions.resize(world.jointCount());
@@ -117,7 +118,7 @@ void SimulatedWorld::removeBodies(const ModelInfo& model) {
   for (const int body : model.bodies) {
     filter.forgetBody(body);
     world.removeBody(body);
-    start_states[body] = BodyState();
+    start_states[body] = dynamics::BodyState();
   }
   for (int joint = 0; joint < world.jointCount(); ++joint) {
     if (world.hasJoint(joint)) continue;
@@ -136,7 +137,7 @@ void SimulatedWorld::removeRobot(int robot) {
 
 void SimulatedWorld::removeReports(const std::string& name) {
   const auto begins = [](const std::string& text, const std::string& start) { return text.compare(0, start.size(), start) == 0; };
-  const auto is_its = [&](const MeshReport& report) { return report.name == name || begins(report.name, name + "::"); };
+  const auto is_its = [&](const geometry::MeshReport& report) { return report.name == name || begins(report.name, name + "::"); };
   load_report.erase(std::remove_if(load_report.begin(), load_report.end(), is_its), load_report.end());
   notes.erase(std::remove_if(notes.begin(), notes.end(), [&](const std::string& note) { return begins(note, name + ": "); }), notes.end());
 }
@@ -159,26 +160,26 @@ int SimulatedWorld::modelIndex(const std::string& name) const {
 }
 
 Pose SimulatedWorld::linkPose(const RobotInfo& robot, int link) const {
-  const LinkPlacement& placement = robot.lumped->link_placement[link];
+  const model::LinkPlacement& placement = robot.lumped->link_placement[link];
   const int body = robot.bodies[placement.body];
-  return (body == WORLD_BODY ? robot.X_WR : world.bodyState(body).X_WB) * placement.X_BL;
+  return (body == dynamics::WORLD_BODY ? robot.X_WR : world.bodyState(body).X_WB) * placement.X_BL;
 }
 
-Pose SimulatedWorld::linkPose(const RobotInfo& robot, int link, const std::vector<BodyState>& bodies) const {
-  const LinkPlacement& placement = robot.lumped->link_placement[link];
+Pose SimulatedWorld::linkPose(const RobotInfo& robot, int link, const std::vector<dynamics::BodyState>& bodies) const {
+  const model::LinkPlacement& placement = robot.lumped->link_placement[link];
   const int body = robot.bodies[placement.body];
-  return (body == WORLD_BODY ? robot.X_WR : bodies[body].X_WB) * placement.X_BL;
+  return (body == dynamics::WORLD_BODY ? robot.X_WR : bodies[body].X_WB) * placement.X_BL;
 }
 
-Vector3 SimulatedWorld::linkOrigin(const Collider& collider, const std::vector<BodyState>& bodies) const {
-  if (collider.body == WORLD_BODY) return Vector3::Zero();
+Vector3 SimulatedWorld::linkOrigin(const contact::Collider& collider, const std::vector<dynamics::BodyState>& bodies) const {
+  if (collider.body == dynamics::WORLD_BODY) return Vector3::Zero();
   if (collider.link < 0) return bodies[collider.body].X_WB.translation();
   return linkPose(robots[robotOf(collider.model)], collider.link, bodies).translation();
 }
 
-void SimulatedWorld::bodyStates(std::vector<BodyState>* out) const {
+void SimulatedWorld::bodyStates(std::vector<dynamics::BodyState>* out) const {
   out->resize(world.bodyCount());
   for (int body = 0; body < world.bodyCount(); ++body) (*out)[body] = world.bodyState(body);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -13,24 +13,24 @@
 #include "blem_sim/sim/simulator_types.h"
 #include "commands/joint_motor.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 struct SimulatedWorld {
-  SimulatedWorld(const Vector3& gravity, const SolverSettings& solver) : world(gravity, solver) {}
+  SimulatedWorld(const Vector3& gravity, const dynamics::SolverSettings& solver) : world(gravity, solver) {}
 
-  World world;
+  dynamics::World world;
   std::vector<ModelInfo> models;
   std::vector<RobotInfo> robots;  ///< in the order of their models
   std::vector<SensorInfo> sensors;
-  std::vector<JointMotor> motors;       ///< one per joint slot of the world
-  std::vector<BodyState> start_states;  ///< one per body slot: where a reset puts the body
-  std::vector<double> start_positions;  ///< [rad or m] one per joint slot
-  std::vector<Collider> colliders;
-  std::vector<ContactBudget> budgets;  ///< one per model
-  CollisionFilter filter;
+  std::vector<JointMotor> motors;                 ///< one per joint slot of the world
+  std::vector<dynamics::BodyState> start_states;  ///< one per body slot: where a reset puts the body
+  std::vector<double> start_positions;            ///< [rad or m] one per joint slot
+  std::vector<contact::Collider> colliders;
+  std::vector<reduction::ContactBudget> budgets;  ///< one per model
+  contact::CollisionFilter filter;
   std::set<std::pair<int, int>> disabled_pairs;  ///< (smaller, larger) index of colliders that never touch
   std::vector<AttachedModel> attachments;        ///< in the order they were made
-  std::vector<MeshReport> load_report;
+  std::vector<geometry::MeshReport> load_report;
   std::vector<std::string> notes;
 
   /** @throws InputError if the name is empty or taken. @param section of the configuration, for the message */
@@ -38,11 +38,11 @@ struct SimulatedWorld {
   /** Adds a model in the lowest free slot. @param max_contacts its k @return its index */
   int addModel(const std::string& name, ModelKind kind, int max_contacts);
   /** Adds a collider and its line in the load report. @param width [m] of the layer @return its index */
-  int addCollider(Collider collider, double width, const SurfaceProperties& surface, MeshReport report);
+  int addCollider(contact::Collider collider, double width, const contact::SurfaceProperties& surface, geometry::MeshReport report);
   /** Adds a body that stands or moves so at the start. @return its index */
-  int addBody(const BodySpec& spec, const Vector3& v_WCom = Vector3::Zero(), const Vector3& w_WB = Vector3::Zero());
+  int addBody(const dynamics::BodySpec& spec, const Vector3& v_WCom = Vector3::Zero(), const Vector3& w_WB = Vector3::Zero());
   /** Adds a joint at its start position [rad or m] with its motor. @return its index */
-  int addJoint(const JointSpec& spec, double position, const JointMotor& motor);
+  int addJoint(const dynamics::JointSpec& spec, double position, const JointMotor& motor);
   void removeJoint(int joint);
   /** Adds a robot, whose model has its slot, in the order of models. @return its index */
   int addRobot(const RobotInfo& robot);
@@ -62,11 +62,11 @@ struct SimulatedWorld {
   /** Pose of a link in the world now. */
   Pose linkPose(const RobotInfo& robot, int link) const;
   /** Pose of a link in the world when the bodies have these states. */
-  Pose linkPose(const RobotInfo& robot, int link, const std::vector<BodyState>& bodies) const;
+  Pose linkPose(const RobotInfo& robot, int link, const std::vector<dynamics::BodyState>& bodies) const;
   /** [m] Origin, in the world, of the link that a collider is on when the bodies have these states; of the body where it is on no link. */
-  Vector3 linkOrigin(const Collider& collider, const std::vector<BodyState>& bodies) const;
+  Vector3 linkOrigin(const contact::Collider& collider, const std::vector<dynamics::BodyState>& bodies) const;
   /** State of every body slot. */
-  void bodyStates(std::vector<BodyState>* out) const;
+  void bodyStates(std::vector<dynamics::BodyState>* out) const;
 
  private:
   void removeColliders(const std::vector<int>& removed);
@@ -78,4 +78,4 @@ struct SimulatedWorld {
   std::set<int> free_models_, free_colliders_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -9,10 +9,10 @@
 #include "blem_sim/geometry/far_origin.h"
 #include "blem_sim/geometry/mesh_shrinking.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
-std::string wordsFor(const MeshShrinking& what, double r) {
+std::string wordsFor(const geometry::MeshShrinking& what, double r) {
   if (!what.refused.empty())
     return fmt::format("not shrunk: {}; every side stands out by its boundary_width, {:.3g} mm", what.refused, 1e3 * r);
   std::string words = fmt::format("shrunk by {:.3g} mm", 1e3 * r);
@@ -25,9 +25,9 @@ std::string wordsFor(const MeshShrinking& what, double r) {
 }
 
 /** All settings of a cloud: equal words, equal clouds. */
-std::string wordsFor(const CloudOptions& cloud) {
+std::string wordsFor(const model::CloudOptions& cloud) {
   std::string words = fmt::format("{} {} {} {}", static_cast<int>(cloud.as), cloud.point_radius, cloud.auto_radius, cloud.max_edge);
-  for (const CloudFilter& f : cloud.filters)
+  for (const model::CloudFilter& f : cloud.filters)
     words += fmt::format("|{} {} {} {} {} {} {}", static_cast<int>(f.kind), f.size, f.neighbours, f.factor, f.axis, f.lower, f.upper);
   return words;
 }
@@ -41,8 +41,8 @@ void forgetExpired(Map* known, std::size_t* enough, const Expired& expired) {
   *enough = 2 * known->size();
 }
 
-std::shared_ptr<const TriangleMesh> movedBy(const TriangleMesh& mesh, const Vector3& way) {
-  const auto moved = std::make_shared<TriangleMesh>(mesh);
+std::shared_ptr<const geometry::TriangleMesh> movedBy(const geometry::TriangleMesh& mesh, const Vector3& way) {
+  const auto moved = std::make_shared<geometry::TriangleMesh>(mesh);
   for (Vector3& p : moved->vertices) p += way;
   return moved;
 }
@@ -63,17 +63,18 @@ void SurfaceLibrary::forgetWhatIsGone() {
   const auto gone = [](const auto& entry) { return entry.geometry.expired(); };
   forgetExpired(&files_, &enough_files_, gone);
   forgetExpired(&shrunk_, &enough_shrunk_, gone);
-  forgetExpired(&meshes_, &enough_meshes_, [](const std::weak_ptr<const CollisionGeometry>& held) { return held.expired(); });
+  forgetExpired(&meshes_, &enough_meshes_, [](const std::weak_ptr<const contact::CollisionGeometry>& held) { return held.expired(); });
 }
 
-SharedSurface SurfaceLibrary::load(const std::string& file, const Vector3& scale, const CloudOptions& cloud, const LoadProgress& progress) {
+SharedSurface SurfaceLibrary::load(const std::string& file, const Vector3& scale, const model::CloudOptions& cloud,
+                                   const model::LoadProgress& progress) {
   const std::string key = fmt::format("{}|{} {} {}|{}", file, scale.x(), scale.y(), scale.z(), wordsFor(cloud));
   forgetWhatIsGone();
   Entry& entry = files_[key];
   if (const auto held = entry.geometry.lock()) return {held, entry.radius, entry.report, entry.origin};
-  LoadedSurface surface = loadSurface(file, scale, cloud, mending_, progress);
-  progress("topology and tree of " + surface.report.name, 1 - TREE_FRACTION);
-  const Vector3 origin = farOrigin(surface.mesh->bounds());
+  model::LoadedSurface surface = model::loadSurface(file, scale, cloud, mending_, progress);
+  progress("topology and tree of " + surface.report.name, 1 - model::TREE_FRACTION);
+  const Vector3 origin = geometry::farOrigin(surface.mesh->bounds());
   if (!origin.isZero(0)) {
     surface.mesh = movedBy(*surface.mesh, -origin);
     surface.report.notes.push_back(farAway(origin));
@@ -83,29 +84,31 @@ SharedSurface SurfaceLibrary::load(const std::string& file, const Vector3& scale
   return {made, surface.radius, surface.report, origin};
 }
 
-std::shared_ptr<const CollisionGeometry> SurfaceLibrary::geometry(const std::shared_ptr<const TriangleMesh>& mesh,
-                                                                  const std::shared_ptr<const MeshTopology>& topology) {
-  std::weak_ptr<const CollisionGeometry>& held = meshes_[mesh.get()];
+std::shared_ptr<const contact::CollisionGeometry> SurfaceLibrary::geometry(const std::shared_ptr<const geometry::TriangleMesh>& mesh,
+                                                                           const std::shared_ptr<const geometry::MeshTopology>& topology) {
+  std::weak_ptr<const contact::CollisionGeometry>& held = meshes_[mesh.get()];
   if (auto known = held.lock()) return known;
-  const auto made = std::make_shared<const CollisionGeometry>(mesh, topology);
+  const auto made = std::make_shared<const contact::CollisionGeometry>(mesh, topology);
   held = made;
   return made;
 }
 
-std::shared_ptr<const CollisionGeometry> SurfaceLibrary::fitted(const std::shared_ptr<const CollisionGeometry>& geometry,
-                                                                const ContactSettings& settings, double own_radius, MeshReport* report) {
+std::shared_ptr<const contact::CollisionGeometry> SurfaceLibrary::fitted(const std::shared_ptr<const contact::CollisionGeometry>& geometry,
+                                                                         const ContactSettings& settings, double own_radius,
+                                                                         geometry::MeshReport* report) {
   const double r = settings.boundary_width;
   if (!settings.shrink || geometry->isHalfSpace() || own_radius > 0 || !(r > 0)) return geometry;
   Shrunk& held = shrunk_[{geometry.get(), r}];
-  std::shared_ptr<const CollisionGeometry> made = held.geometry.lock();
+  std::shared_ptr<const contact::CollisionGeometry> made = held.geometry.lock();
   // Another geometry may have got the address of one that is gone.
   if (!made || held.original.lock() != geometry) {
-    MeshShrinking what;
-    made = std::make_shared<const CollisionGeometry>(std::make_shared<const TriangleMesh>(shrinkMesh(geometry->mesh(), r, &what)));
+    geometry::MeshShrinking what;
+    made = std::make_shared<const contact::CollisionGeometry>(
+        std::make_shared<const geometry::TriangleMesh>(geometry::shrinkMesh(geometry->mesh(), r, &what)));
     held = {geometry, made, wordsFor(what, r)};
   }
   report->notes.push_back(held.note);
   return made;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -11,13 +11,13 @@
 #include "blem_sim/model/loaders.h"
 #include "build/contact_settings.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /** A file's surface as the contact room takes it. */
 struct SharedSurface {
-  std::shared_ptr<const CollisionGeometry> geometry;
+  std::shared_ptr<const contact::CollisionGeometry> geometry;
   double radius = 0;  ///< [m] > 0 for clouds as points
-  MeshReport report;
+  geometry::MeshReport report;
   /** Origin [m] of the geometry's frame in the file's: zero unless the file's coordinates are large, as those of a surveyor's grid. Search
    *  works in floats, which step by half a metre there. */
   Vector3 origin = Vector3::Zero();
@@ -26,18 +26,19 @@ struct SharedSurface {
 /** Gives the same geometry for the same file and settings, or the same mesh, while anybody holds it. */
 class SurfaceLibrary {
  public:
-  explicit SurfaceLibrary(Mending mending = Mending::ON) : mending_(mending) {}
+  explicit SurfaceLibrary(model::Mending mending = model::Mending::ON) : mending_(mending) {}
   /** @throws InputError as loadSurface does */
-  SharedSurface load(const std::string& file, const Vector3& scale, const CloudOptions& cloud, const LoadProgress& progress);
+  SharedSurface load(const std::string& file, const Vector3& scale, const model::CloudOptions& cloud, const model::LoadProgress& progress);
   /** @param topology of the mesh, if it is at hand */
-  std::shared_ptr<const CollisionGeometry> geometry(const std::shared_ptr<const TriangleMesh>& mesh,
-                                                    const std::shared_ptr<const MeshTopology>& topology = nullptr);
+  std::shared_ptr<const contact::CollisionGeometry> geometry(const std::shared_ptr<const geometry::TriangleMesh>& mesh,
+                                                             const std::shared_ptr<const geometry::MeshTopology>& topology = nullptr);
   /**
    * The geometry, moved inwards by its boundary width if the settings ask for it.
    * @param own_radius [m] > 0 if it is its own boundary: then it stays @param report notes what was done, and failures
    */
-  std::shared_ptr<const CollisionGeometry> fitted(const std::shared_ptr<const CollisionGeometry>& geometry, const ContactSettings& settings,
-                                                  double own_radius, MeshReport* report);
+  std::shared_ptr<const contact::CollisionGeometry> fitted(const std::shared_ptr<const contact::CollisionGeometry>& geometry,
+                                                           const ContactSettings& settings, double own_radius,
+                                                           geometry::MeshReport* report);
 
   /** Number of known surfaces, those that nobody holds any more included: at most twice as many as are held, or 48. */
   std::size_t remembered() const;
@@ -46,20 +47,21 @@ class SurfaceLibrary {
   void forgetWhatIsGone();
 
   struct Shrunk {
-    std::weak_ptr<const CollisionGeometry> original, geometry;
+    std::weak_ptr<const contact::CollisionGeometry> original, geometry;
     std::string note;
   };
   struct Entry {
-    std::weak_ptr<const CollisionGeometry> geometry;
+    std::weak_ptr<const contact::CollisionGeometry> geometry;
     double radius = 0;
-    MeshReport report;
+    geometry::MeshReport report;
     Vector3 origin = Vector3::Zero();
   };
-  const Mending mending_;
+  const model::Mending mending_;
   std::map<std::string, Entry> files_;
-  std::map<std::pair<const CollisionGeometry*, double>, Shrunk> shrunk_;
-  std::map<const TriangleMesh*, std::weak_ptr<const CollisionGeometry>> meshes_;  ///< a mesh lives as long as its geometry
-  std::size_t enough_files_ = 0, enough_shrunk_ = 0, enough_meshes_ = 0;          ///< entries at which to look for those that are gone
+  std::map<std::pair<const contact::CollisionGeometry*, double>, Shrunk> shrunk_;
+  std::map<const geometry::TriangleMesh*, std::weak_ptr<const contact::CollisionGeometry>>
+      meshes_;                                                            ///< a mesh lives as long as its geometry
+  std::size_t enough_files_ = 0, enough_shrunk_ = 0, enough_meshes_ = 0;  ///< entries at which to look for those that are gone
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -14,25 +14,25 @@
 #include "build/robot_builder.h"
 #include "gazebo/gazebo_robot.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 // Half the size [m] that a body's mass is spread over at least, so that a point or a line can turn.
 constexpr double SMALLEST_EXTENT = 0.001;
 
 /** Mass properties in the object's frame from its shape, and in words their source. */
-MassProperties massFromShape(const TriangleMesh& mesh_O, bool closed, double mass, std::string* from) {
-  MassProperties properties;
-  if (closed && massFromVolume(mesh_O, mass, &properties)) {
+geometry::MassProperties massFromShape(const geometry::TriangleMesh& mesh_O, bool closed, double mass, std::string* from) {
+  geometry::MassProperties properties;
+  if (closed && geometry::massFromVolume(mesh_O, mass, &properties)) {
     *from = "the enclosed volume";
     return properties;
   }
   *from = closed ? "the surface, as a thin shell (the enclosed volume is not positive)" : "the surface, as a thin shell (it is open)";
-  return massFromSurface(mesh_O, mass);
+  return geometry::massFromSurface(mesh_O, mass);
 }
 
 /** An inertia too small about some axis, as a line's or a point's, gets that of a small ball there. */
-bool floorInertia(double radius, MassProperties* properties) {
+bool floorInertia(double radius, geometry::MassProperties* properties) {
   const double r = std::max(radius, SMALLEST_EXTENT);
   const double least = 0.4 * properties->mass * r * r;
   Eigen::SelfAdjointEigenSolver<Matrix3> eigen(properties->inertia);
@@ -49,11 +49,11 @@ std::string words(const Vector3& v) { return fmt::format("[{:.4g}, {:.4g}, {:.4g
 std::string sizeOf(const SimulatedWorld& world, int model) {
   constexpr double MEGA = 1e6;
   const std::vector<int> own = world.collidersOf(model);
-  const MeshReport* report = world.load_report.data() + world.load_report.size() - own.size();
-  std::set<const CollisionGeometry*> counted;
+  const geometry::MeshReport* report = world.load_report.data() + world.load_report.size() - own.size();
+  std::set<const contact::CollisionGeometry*> counted;
   std::size_t triangles = 0, points = 0, bytes = 0;
   for (const int collider : own) {
-    const MeshReport& shape = *report++;
+    const geometry::MeshReport& shape = *report++;
     if (!counted.insert(world.colliders[collider].geometry.get()).second) continue;
     triangles += static_cast<std::size_t>(shape.triangles);
     points += static_cast<std::size_t>(shape.points);
@@ -67,8 +67,8 @@ UrdfSource sourceOf(const RobotConfig& config) {
   return {"robots: " + config.name, config.urdf, config.urdf_xml, config.description_param};
 }
 
-int addFreeBody(const std::string& name, const MassProperties& inertial, const ObjectConfig& config, SimulatedWorld* world) {
-  BodySpec spec;
+int addFreeBody(const std::string& name, const geometry::MassProperties& inertial, const ObjectConfig& config, SimulatedWorld* world) {
+  dynamics::BodySpec spec;
   spec.name = name;
   spec.inertial = inertial;
   spec.X_WB = config.X_WO;
@@ -78,7 +78,7 @@ int addFreeBody(const std::string& name, const MassProperties& inertial, const O
 
 }  // namespace
 
-SharedSurface WorldBuilder::load(const std::string& uri, const Vector3& scale, const CloudOptions& cloud, const std::string& where,
+SharedSurface WorldBuilder::load(const std::string& uri, const Vector3& scale, const model::CloudOptions& cloud, const std::string& where,
                                  LoadWatch* watch) {
   try {
     return surfaces_.load(resolver_.resolve(uri, base_directory_), scale, cloud, watch->progress());
@@ -100,7 +100,7 @@ void WorldBuilder::addEnvironment(const EnvironmentConfig& config, SimulatedWorl
     const Vector3 normal = config.plane->head<3>();
     if (!config.plane->allFinite() || !(normal.norm() > 0))
       throw InputError(where + ": plane: a x + b y + c z = d needs finite numbers and a direction (a, b, c) that is not zero");
-    surface.geometry = CollisionGeometry::halfSpace(normal, (*config.plane)[3] / normal.norm());
+    surface.geometry = contact::CollisionGeometry::halfSpace(normal, (*config.plane)[3] / normal.norm());
     surface.report.source = fmt::format("half-space below the plane {} . x = {:g}", words(normal), (*config.plane)[3]);
   } else if (!config.uri.empty()) {
     surface = load(config.uri, config.scale, config.cloud, where, &watch);
@@ -108,10 +108,10 @@ void WorldBuilder::addEnvironment(const EnvironmentConfig& config, SimulatedWorl
     throw InputError(where + ": nothing to load; give a uri or a plane");
   }
   const ContactSettings settings = contactSettings(0, contact_, {&config.contact});
-  Collider collider;
+  contact::Collider collider;
   collider.name = config.name;
   collider.X_BC = config.X_WE * Eigen::Translation3d(surface.origin);
-  if (settings.shrink) watch.enter("shrinking", 1 - TREE_FRACTION);
+  if (settings.shrink) watch.enter("shrinking", 1 - model::TREE_FRACTION);
   collider.geometry = surfaces_.fitted(surface.geometry, settings, surface.radius, &surface.report);
   collider.model = world->addModel(config.name, ModelKind::ENVIRONMENT, INT_MAX);
   const double width = surface.radius > 0 ? surface.radius : settings.boundary_width;
@@ -120,7 +120,7 @@ void WorldBuilder::addEnvironment(const EnvironmentConfig& config, SimulatedWorl
   watch.loaded(sizeOf(*world, collider.model));
 }
 
-std::shared_ptr<const RobotModel> WorldBuilder::description(const UrdfSource& urdf, LoadWatch* watch) {
+std::shared_ptr<const model::RobotModel> WorldBuilder::description(const UrdfSource& urdf, LoadWatch* watch) {
   const bool text = !urdf.xml.empty();
   if (!text && urdf.file.empty()) {
     throw InputError(fmt::format("{}: no description; give urdf{}", urdf.where,
@@ -133,20 +133,23 @@ std::shared_ptr<const RobotModel> WorldBuilder::description(const UrdfSource& ur
   for (auto old = descriptions_.begin(); old != descriptions_.end();)
     old = old->second.expired() ? descriptions_.erase(old) : std::next(old);
   const std::string source = urdf.parameter.empty() ? urdf.where : urdf.parameter;
-  const LoadProgress progress = watch ? watch->progress() : LoadProgress();
-  const auto model = std::make_shared<const RobotModel>(text ? loadUrdf(key, source, resolver_, base_directory_, contact_.mending, progress)
-                                                             : loadUrdfFile(key, resolver_, contact_.mending, progress));
+  const model::LoadProgress progress = watch ? watch->progress() : model::LoadProgress();
+  const auto model =
+      std::make_shared<const model::RobotModel>(text ? model::loadUrdf(key, source, resolver_, base_directory_, contact_.mending, progress)
+                                                     : model::loadUrdfFile(key, resolver_, contact_.mending, progress));
   descriptions_[key] = model;
   return model;
 }
 
-std::shared_ptr<const RobotModel> WorldBuilder::describe(const RobotConfig& config) { return description(sourceOf(config), nullptr); }
+std::shared_ptr<const model::RobotModel> WorldBuilder::describe(const RobotConfig& config) {
+  return description(sourceOf(config), nullptr);
+}
 
 void WorldBuilder::addRobot(const RobotConfig& config, SimulatedWorld* world) {
   world->checkNewName(config.name, "robots");
   LoadWatch watch(log_, config.name);
   RobotBuilder builder(config, contact_, description(sourceOf(config), &watch));
-  watch.enter("topology and trees of its links", 1 - TREE_FRACTION);
+  watch.enter("topology and trees of its links", 1 - model::TREE_FRACTION);
   builder.addTo(world, &surfaces_);
   watch.loaded(sizeOf(*world, world->modelIndex(config.name)));
 }
@@ -176,9 +179,9 @@ void WorldBuilder::addMeshObject(const ObjectConfig& config, LoadWatch* watch, S
   const double width = surface.radius > 0 ? surface.radius : settings.boundary_width;
 
   std::string from = "the configuration";
-  MassProperties inertial;
+  geometry::MassProperties inertial;
   if (!config.com || !config.inertia)
-    inertial = massFromShape(transformed(surface.geometry->mesh(), X_OC), surface.report.closed, *config.mass, &from);
+    inertial = massFromShape(geometry::transformed(surface.geometry->mesh(), X_OC), surface.report.closed, *config.mass, &from);
   inertial.mass = *config.mass;
   if (config.com) inertial.com = *config.com;
   if (config.inertia) inertial.inertia = *config.inertia;
@@ -189,12 +192,12 @@ void WorldBuilder::addMeshObject(const ObjectConfig& config, LoadWatch* watch, S
   surface.report.notes.push_back(fmt::format("{} from {}: com {}", what, from, words(inertial.com)));
 
   const int body = addFreeBody(config.name + "::link", inertial, config, world);
-  Collider collider;
+  contact::Collider collider;
   collider.name = config.name;
   collider.model = world->addModel(config.name, ModelKind::OBJECT, config.max_contacts.value_or(contact_.max_contacts_per_object));
   collider.body = body;
   collider.X_BC = X_OC;
-  if (settings.shrink) watch->enter("shrinking", 1 - TREE_FRACTION);
+  if (settings.shrink) watch->enter("shrinking", 1 - model::TREE_FRACTION);
   collider.geometry = surfaces_.fitted(surface.geometry, settings, surface.radius, &surface.report);
   world->addCollider(collider, width, settings.surface, surface.report);
   world->models[collider.model].bodies = {body};
@@ -202,14 +205,14 @@ void WorldBuilder::addMeshObject(const ObjectConfig& config, LoadWatch* watch, S
 
 void WorldBuilder::addUrdfObject(const ObjectConfig& config, LoadWatch* watch, SimulatedWorld* world) {
   const std::string where = "objects: " + config.name;
-  const std::shared_ptr<const RobotModel> held = description({where, config.urdf, config.urdf_xml, ""}, watch);
-  const RobotModel& model = *held;
-  watch->enter("topology and trees of its links", 1 - TREE_FRACTION);
-  const LumpedRobot lumped = lumpFixedJoints(model, {}, false);
+  const std::shared_ptr<const model::RobotModel> held = description({where, config.urdf, config.urdf_xml, ""}, watch);
+  const model::RobotModel& model = *held;
+  watch->enter("topology and trees of its links", 1 - model::TREE_FRACTION);
+  const model::LumpedRobot lumped = model::lumpFixedJoints(model, {}, false);
   if (lumped.bodies.size() != 1)
     throw InputError(fmt::format("{}: urdf: {} has {} bodies that move against each other; load it under robots", where, model.source,
                                  lumped.bodies.size()));
-  MassProperties inertial = lumped.bodies[0].inertial;
+  geometry::MassProperties inertial = lumped.bodies[0].inertial;
   if (config.mass) {
     inertial.inertia *= *config.mass / inertial.mass;
     inertial.mass = *config.mass;
@@ -224,13 +227,13 @@ void WorldBuilder::addUrdfObject(const ObjectConfig& config, LoadWatch* watch, S
   for (std::size_t link = 0; link < model.links.size(); ++link) {
     const ContactSettings settings = contactSettings(
         contact_.boundary_width, contact_, {overridesOf(described.config.described_links, model.links[link].name), &config.contact});
-    for (const CollisionShape& shape : model.links[link].collisions) {
-      Collider collider;
+    for (const model::CollisionShape& shape : model.links[link].collisions) {
+      contact::Collider collider;
       collider.name = config.name + "::" + model.links[link].name;
       collider.model = index;
       collider.body = body;
       collider.X_BC = lumped.link_placement[link].X_BL;
-      MeshReport report = shape.report;
+      geometry::MeshReport report = shape.report;
       collider.geometry = surfaces_.fitted(surfaces_.geometry(shape.mesh), settings, shape.radius, &report);
       world->addCollider(collider, shape.radius > 0 ? shape.radius : settings.boundary_width, settings.surface, report);
     }
@@ -241,4 +244,4 @@ void WorldBuilder::addUrdfObject(const ObjectConfig& config, LoadWatch* watch, S
     for (const std::string& note : *notes) world->notes.push_back(config.name + ": " + note);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

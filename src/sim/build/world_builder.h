@@ -11,7 +11,7 @@
 #include "build/simulated_world.h"
 #include "build/surface_library.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /** Description of a robot or an object: a file, or a text. */
 struct UrdfSource {
@@ -24,7 +24,7 @@ struct UrdfSource {
 class WorldBuilder {
  public:
   /** @param base_directory of relative files */
-  WorldBuilder(const ContactConfig& contact, std::string base_directory, const UriResolver& resolver, LoadLog log)
+  WorldBuilder(const ContactConfig& contact, std::string base_directory, const model::UriResolver& resolver, LoadLog log)
       : contact_(contact),
         base_directory_(std::move(base_directory)),
         resolver_(resolver),
@@ -35,23 +35,24 @@ class WorldBuilder {
   void addRobot(const RobotConfig& config, SimulatedWorld* world);
   void addObject(const ObjectConfig& config, SimulatedWorld* world);
   /** Description of a robot that is not added yet. @throws InputError */
-  std::shared_ptr<const RobotModel> describe(const RobotConfig& config);
+  std::shared_ptr<const model::RobotModel> describe(const RobotConfig& config);
   /** Lets later loads read files below these folders alone. */
-  void restrictFiles(const FileRoots& roots) { resolver_.restrictTo(roots); }
+  void restrictFiles(const model::FileRoots& roots) { resolver_.restrictTo(roots); }
 
  private:
   void addMeshObject(const ObjectConfig& config, LoadWatch* watch, SimulatedWorld* world);
   void addUrdfObject(const ObjectConfig& config, LoadWatch* watch, SimulatedWorld* world);
-  SharedSurface load(const std::string& uri, const Vector3& scale, const CloudOptions& cloud, const std::string& where, LoadWatch* watch);
+  SharedSurface load(const std::string& uri, const Vector3& scale, const model::CloudOptions& cloud, const std::string& where,
+                     LoadWatch* watch);
   /** @param watch may be null */
-  std::shared_ptr<const RobotModel> description(const UrdfSource& urdf, LoadWatch* watch);
+  std::shared_ptr<const model::RobotModel> description(const UrdfSource& urdf, LoadWatch* watch);
 
   const ContactConfig contact_;
   const std::string base_directory_;
-  UriResolver resolver_;
+  model::UriResolver resolver_;
   const LoadLog log_;
   SurfaceLibrary surfaces_;
-  std::map<std::string, std::weak_ptr<const RobotModel>> descriptions_;  ///< by file or text
+  std::map<std::string, std::weak_ptr<const model::RobotModel>> descriptions_;  ///< by file or text
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr double SUNK_AWAY = 0.05;  // [m] points that leave have gone: thicker layers are none
@@ -29,7 +29,7 @@ double sinkIn(const std::vector<SunkPoint>& points, int vertex) {
 }
 
 /** The contact as a smaller ball about the same point has it. @param to_b the ball is B's */
-void sinkContact(double sink, bool to_b, Contact* contact) {
+void sinkContact(double sink, bool to_b, contact::Contact* contact) {
   contact->depth -= sink;
   contact->point += (to_b ? -0.5 : 0.5) * sink * contact->normal_BA;
 }
@@ -52,14 +52,14 @@ double FadingPoints::sinkOf(int collider, int vertex) const {
   return fading ? sinkIn(fading->points, vertex) : 0;
 }
 
-void FadingPoints::apply(ContactManifold* manifold) const {
+void FadingPoints::apply(contact::ContactManifold* manifold) const {
   if (fading_.empty()) return;
   for (const bool to_b : {false, true}) {
     const Fading* fading = of(to_b ? manifold->b : manifold->a);
     if (!fading) continue;
-    std::vector<Contact>& contacts = manifold->contacts;
-    const auto gone = std::remove_if(contacts.begin(), contacts.end(), [&](Contact& contact) {
-      const int vertex = vertexOf(contact.id, !to_b);
+    std::vector<contact::Contact>& contacts = manifold->contacts;
+    const auto gone = std::remove_if(contacts.begin(), contacts.end(), [&](contact::Contact& contact) {
+      const int vertex = contact::vertexOf(contact.id, !to_b);
       const double sink = vertex < 0 || contact.pierced ? 0 : sinkIn(fading->points, vertex);
       if (std::isfinite(sink)) sinkContact(sink, to_b, &contact);
       return !std::isfinite(sink);
@@ -93,7 +93,7 @@ void FadingPoints::append(std::vector<std::uint64_t>* words) const {
   }
 }
 
-bool FadingPoints::read(const std::vector<Collider>& colliders, const std::uint64_t** words, const std::uint64_t* end) {
+bool FadingPoints::read(const std::vector<contact::Collider>& colliders, const std::uint64_t** words, const std::uint64_t* end) {
   const std::uint64_t* word = *words;
   const auto next = [&](std::uint64_t* value) { return word != end && (*value = *word++, true); };
   std::vector<Fading> read;
@@ -119,4 +119,4 @@ bool FadingPoints::read(const std::vector<Collider>& colliders, const std::uint6
   return true;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

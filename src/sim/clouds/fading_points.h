@@ -8,7 +8,7 @@
 #include "blem_sim/contact/collider.h"
 #include "blem_sim/contact/manifold.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /** A point that lies deeper than the cloud has it. */
 struct SunkPoint {
@@ -31,14 +31,14 @@ class FadingPoints {
   /** [m] Sink of a vertex, 0 if it does not fade. */
   double sinkOf(int collider, int vertex) const;
   /** Makes contacts of points that fade as much less deep as they are sunk; those of points that have sunk away are dropped. */
-  void apply(ContactManifold* manifold) const;
+  void apply(contact::ContactManifold* manifold) const;
   /** Lets time pass [s]. */
   void advance(double dt);
   void forget(int collider);
   void clear() { fading_.clear(); }
   void append(std::vector<std::uint64_t>* words) const;
   /** Reads the words of append and moves the cursor behind them. @return false if they are others, or not whole */
-  bool read(const std::vector<Collider>& colliders, const std::uint64_t** words, const std::uint64_t* end);
+  bool read(const std::vector<contact::Collider>& colliders, const std::uint64_t** words, const std::uint64_t* end);
 
  private:
   struct Fading {
@@ -51,4 +51,4 @@ class FadingPoints {
   std::vector<Fading> fading_;  // sorted by collider, none without points
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -9,7 +9,7 @@
 #include "blem_sim/geometry/input_error.h"
 #include "blem_sim/sim/trajectory.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr double ROUNDING = 1e-9;  // [s] of times
@@ -78,7 +78,7 @@ const std::vector<BodyLoad>& AppliedLoads::wrenchesAt(double time) const {
   return acting_;
 }
 
-void AppliedLoads::addEfforts(double time, std::vector<JointDrive>* drives) const {
+void AppliedLoads::addEfforts(double time, std::vector<dynamics::JointDrive>* drives) const {
   for (const Driven& driven : efforts_)
     if (driven.span.holds(time)) (*drives)[driven.joint].outside_effort += driven.effort;
 }
@@ -132,4 +132,4 @@ void AppliedLoads::read(int bodies, int joints, NumberReader* reader) {
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -7,7 +7,7 @@
 #include "blem_sim/sim/simulator_types.h"
 #include "numbers/number_reader.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /** Loads in the order they were applied. State: all of them. */
 class AppliedLoads {
@@ -26,7 +26,7 @@ class AppliedLoads {
   /** Loads that act in a step that starts at `time` [s], on bodies in these states: wrenches about centres of mass. */
   const std::vector<BodyLoad>& wrenchesAt(double time) const;
   /** Adds the efforts of a step that starts at `time` [s]. */
-  void addEfforts(double time, std::vector<JointDrive>* drives) const;
+  void addEfforts(double time, std::vector<dynamics::JointDrive>* drives) const;
   /** Forgets the loads whose time is over. @param time [s] at which the next step starts */
   void expire(double time);
 
@@ -59,4 +59,4 @@ class AppliedLoads {
   mutable std::vector<BodyLoad> acting_;  // work space of wrenchesAt
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -6,7 +6,7 @@
 
 #include "numbers/number_reader.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 // The implicit law's effort is bounded in the solve; beyond this much of the limit, relative, it asked for more.
@@ -87,11 +87,11 @@ double JointMotor::damping() const {
   return mode_ == Mode::VELOCITY ? settings_.velocity_gain.value_or(settings_.gains.d) : settings_.gains.d;
 }
 
-void JointMotor::setVelocities(double position, JointDrive* drive) {
+void JointMotor::setVelocities(double position, dynamics::JointDrive* drive) {
   const double limit = settings_.velocity_limit;
   max_velocity_ = limit;
   min_velocity_ = -limit;
-  const SafetyController safety = settings_.safety.value_or(SafetyController());
+  const model::SafetyController safety = settings_.safety.value_or(model::SafetyController());
   if (safety.k_position > 0 && safety.lower < safety.upper) {
     max_velocity_ = clamped(safety.k_position * (safety.upper - position), limit);
     min_velocity_ = clamped(safety.k_position * (safety.lower - position), limit);
@@ -101,8 +101,8 @@ void JointMotor::setVelocities(double position, JointDrive* drive) {
   drive->min_velocity = min_velocity_;
 }
 
-JointDrive JointMotor::drive(const JointState& state) {
-  JointDrive drive;
+dynamics::JointDrive JointMotor::drive(const dynamics::JointState& state) {
+  dynamics::JointDrive drive;
   drive.dry_friction = settings_.friction.dry;
   drive.viscous_friction = settings_.friction.viscous;
   capped_ = false;
@@ -129,7 +129,7 @@ JointDrive JointMotor::drive(const JointState& state) {
   return drive;
 }
 
-void JointMotor::giveEffort(double effort, double velocity, JointDrive* drive) {
+void JointMotor::giveEffort(double effort, double velocity, dynamics::JointDrive* drive) {
   given_effort_ = clamped(effort, settings_.effort_limit);
   capped_ = *given_effort_ != effort;
   const double limit = std::exchange(drive->max_velocity, INFINITY), lower = std::exchange(drive->min_velocity, -INFINITY);
@@ -148,7 +148,7 @@ bool JointMotor::atVelocityLimit(double effort, double velocity) const {
   return along >= limit - AT_VELOCITY * std::abs(limit);
 }
 
-bool JointMotor::accept(const JointDrive& drive, const JointState& after, double dt) {
+bool JointMotor::accept(const dynamics::JointDrive& drive, const dynamics::JointState& after, double dt) {
   if (!settings_.commanded) return false;
   const double asked =
       given_effort_ ? *given_effort_
@@ -184,4 +184,4 @@ void JointMotor::read(NumberReader* reader) {
   spline_.read(reader);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

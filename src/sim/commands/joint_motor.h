@@ -9,7 +9,7 @@
 #include "blem_sim/sim/config.h"
 #include "blem_sim/sim/trajectory.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 struct MotorSettings {
   JointGains gains;
@@ -18,7 +18,7 @@ struct MotorSettings {
   JointFriction friction;
   double effort_limit = std::numeric_limits<double>::infinity();    ///< [N m or N]
   double velocity_limit = std::numeric_limits<double>::infinity();  ///< [rad/s or m/s] beyond which the motor does not drive
-  std::optional<SafetyController> safety;
+  std::optional<model::SafetyController> safety;
   double inertia = 0;          ///< [kg m^2 or kg] that its effort meets at least; 0: not known, and Eq. 7 knows no velocity limit
   double command_timeout = 0;  ///< [s] after which a velocity or an effort that was commanded ends; 0: never
   bool continuous = false;     ///< positions are meant to the nearest turn
@@ -48,9 +48,9 @@ class JointMotor {
   /** Latches the desired state for the coming (sub)step: Eq. 7 takes that at its start, the implicit law that at its end. */
   void sample(double time, double dt);
   /** Drive of the joint in the coming (sub)step, within effort and velocity limits [Hauser 2013, Eq. 7 and 4.1]. */
-  JointDrive drive(const JointState& state);
+  dynamics::JointDrive drive(const dynamics::JointState& state);
   /** Call after an accepted (sub)step: integrates, and notes whether the effort limit was met. @return true if it was */
-  bool accept(const JointDrive& drive, const JointState& after, double dt);
+  bool accept(const dynamics::JointDrive& drive, const dynamics::JointState& after, double dt);
 
   /** Path that is followed; null while a velocity or an effort is kept. */
   const JointSpline* path() const { return mode_ == Mode::POSITION ? &spline_ : nullptr; }
@@ -67,9 +67,9 @@ class JointMotor {
   bool isOverdue() const;
   double damping() const;
   /** Velocities between which the motor drives in the coming (sub)step. */
-  void setVelocities(double position, JointDrive* drive);
+  void setVelocities(double position, dynamics::JointDrive* drive);
   /** An effort given in advance, ended by the step's solution where it could drive the joint beyond its velocities. */
-  void giveEffort(double effort, double velocity, JointDrive* drive);
+  void giveEffort(double effort, double velocity, dynamics::JointDrive* drive);
   bool atVelocityLimit(double effort, double velocity) const;
   void integrate(double dt);
 
@@ -90,4 +90,4 @@ class JointMotor {
   bool capped_ = false;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -4,7 +4,7 @@
 #include "numbers/nearest_turn.h"
 #include "numbers/number_reader.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 namespace {
 
@@ -140,4 +140,4 @@ void JointSpline::read(NumberReader* reader) {
   if (!std::is_sorted(knots_.begin(), knots_.end(), earlier)) NumberReader::refuseContent("the times of a spline go back");
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -8,7 +8,7 @@
 
 #include "numbers/nearest_name.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 namespace {
 
@@ -66,4 +66,4 @@ void checkTrajectory(const JointTrajectory& trajectory, const std::vector<std::s
   }
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

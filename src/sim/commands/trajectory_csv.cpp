@@ -10,7 +10,7 @@
 #include "blem_sim/sim/trajectory.h"
 #include "numbers/nearest_name.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 namespace {
 
@@ -150,4 +150,4 @@ JointTrajectory loadTrajectoryCsv(const std::string& file, const std::vector<std
   return trajectory;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -9,7 +9,7 @@
 #include "config/scene_limits.h"
 #include "config/yaml_reader.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 /** Checks fields of one part of the configuration. */
@@ -39,7 +39,7 @@ class Fields {
     if (!scale.allFinite() || (scale.array() == 0).any())
       throw InputError(fmt::format("{}scale: needs three finite numbers other than 0", where_));
   }
-  void surface(const SurfaceProperties& s) const {
+  void surface(const contact::SurfaceProperties& s) const {
     number("friction", s.friction, NumberRange::notNegative());
     number("restitution", s.restitution, NumberRange::fraction());
     number("impact_friction_factor", s.impact_friction_factor, NumberRange::fraction());
@@ -64,7 +64,7 @@ class Fields {
   const std::string where_;
 };
 
-void checkSolver(const SolverSettings& solver) {
+void checkSolver(const dynamics::SolverSettings& solver) {
   const Fields fields("solver.");
   fields.atLeastOne("threads", solver.threads);
   fields.atLeastOne("quick_step_iterations", solver.quick_step_iterations);
@@ -83,7 +83,7 @@ void checkContact(const ContactConfig& contact) {
   fields.atLeastOne("max_contacts_per_object", contact.max_contacts_per_object);
 }
 
-void checkArmature(const RobotConfig& robot, const SolverSettings& solver) {
+void checkArmature(const RobotConfig& robot, const dynamics::SolverSettings& solver) {
   if (solver.stepper == "articulated") return;
   for (const auto& [joint, inertia] : robot.armature)
     if (inertia > 0)
@@ -151,4 +151,4 @@ void checkConfig(const SimulationConfig& config) {
   for (const ObjectConfig& object : config.objects) checkObject(object);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -3,7 +3,7 @@
 
 #include "blem_sim/sim/config.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /** @throws InputError that names the field and the cure: a number that is none, or out of its range. The loaders check files and robots'
  * joints. */
@@ -11,4 +11,4 @@ void checkConfig(const SimulationConfig& config);
 void checkEnvironment(const EnvironmentConfig& environment);
 void checkRobot(const RobotConfig& robot);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -4,13 +4,13 @@
 
 #include "config/config_sections.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
-using Kind = CloudFilter::Kind;
+using Kind = model::CloudFilter::Kind;
 
-CloudFilter readOutliers(YamlReader reader, Kind kind) {
-  CloudFilter filter;
+model::CloudFilter readOutliers(YamlReader reader, Kind kind) {
+  model::CloudFilter filter;
   filter.kind = kind;
   filter.neighbours = 16;
   filter.factor = 2;
@@ -22,8 +22,8 @@ CloudFilter readOutliers(YamlReader reader, Kind kind) {
   return filter;
 }
 
-CloudFilter readPassThrough(YamlReader reader) {
-  CloudFilter filter;
+model::CloudFilter readPassThrough(YamlReader reader) {
+  model::CloudFilter filter;
   filter.kind = Kind::PASS_THROUGH;
   const auto axis = reader.choice("axis", {"x", "y", "z"});
   if (!axis) reader.refuse("axis", "is missing; give it x, y or z");
@@ -42,7 +42,7 @@ CloudFilter readPassThrough(YamlReader reader) {
   return filter;
 }
 
-CloudFilter readFilter(YamlReader& reader) {
+model::CloudFilter readFilter(YamlReader& reader) {
   int given = 0;
   for (const char* key : {"voxel_grid", "statistical_outliers", "radius_outliers", "pass_through"}) given += reader.has(key) ? 1 : 0;
   reader.finish();
@@ -50,13 +50,13 @@ CloudFilter readFilter(YamlReader& reader) {
   if (reader.has("statistical_outliers")) return readOutliers(reader.section("statistical_outliers"), Kind::STATISTICAL_OUTLIERS);
   if (reader.has("radius_outliers")) return readOutliers(reader.section("radius_outliers"), Kind::RADIUS_OUTLIERS);
   if (reader.has("pass_through")) return readPassThrough(reader.section("pass_through"));
-  CloudFilter filter;
+  model::CloudFilter filter;
   reader.read("voxel_grid", &filter.size, NumberRange::positive());
   return filter;
 }
 
-VoxelMapOptions readMap(YamlReader reader) {
-  VoxelMapOptions map;
+model::VoxelMapOptions readMap(YamlReader reader) {
+  model::VoxelMapOptions map;
   reader.read("voxel", &map.voxel, NumberRange::positive());
   reader.read("min_hits", &map.min_hits, 1);
   reader.read("memory", &map.memory, 1);
@@ -70,9 +70,10 @@ VoxelMapOptions readMap(YamlReader reader) {
 
 }  // namespace
 
-CloudOptions readCloud(YamlReader reader) {
-  CloudOptions cloud;
-  const std::vector<CloudOptions::As> ways = {CloudOptions::As::AUTO, CloudOptions::As::POINTS, CloudOptions::As::MESH};
+model::CloudOptions readCloud(YamlReader reader) {
+  model::CloudOptions cloud;
+  const std::vector<model::CloudOptions::As> ways = {model::CloudOptions::As::AUTO, model::CloudOptions::As::POINTS,
+                                                     model::CloudOptions::As::MESH};
   if (const auto as = reader.choice("as", {"auto", "points", "mesh"})) cloud.as = ways[*as];
   const YAML::Node radius = reader.node("point_radius");
   cloud.auto_radius = radius.IsDefined() && radius.IsScalar() && radius.Scalar() == "auto";
@@ -83,7 +84,7 @@ CloudOptions readCloud(YamlReader reader) {
   return cloud;
 }
 
-LiveConfig readLive(YamlReader& reader, const CloudOptions& cloud) {
+LiveConfig readLive(YamlReader& reader, const model::CloudOptions& cloud) {
   LiveConfig live;
   reader.read("topic", &live.topic);
   reader.read("frame", &live.frame);
@@ -92,7 +93,7 @@ LiveConfig readLive(YamlReader& reader, const CloudOptions& cloud) {
   if (live.topic.empty()) return live;
   for (const char* key : {"scale", "pose"})
     if (reader.has(key)) reader.refuse(key, "is a file's: a topic's points are placed by tf");
-  if (cloud.as == CloudOptions::As::MESH) reader.refuse("cloud.as", "must be points: a live cloud is no mesh");
+  if (cloud.as == model::CloudOptions::As::MESH) reader.refuse("cloud.as", "must be points: a live cloud is no mesh");
   if (const auto update = reader.choice("update", {"replace", "accumulate"}))
     live.update = *update == 0 ? LiveConfig::Update::REPLACE : LiveConfig::Update::ACCUMULATE;
   if (live.update == LiveConfig::Update::REPLACE && reader.has("map")) reader.refuse("map", "belongs to update: accumulate");
@@ -101,4 +102,4 @@ LiveConfig readLive(YamlReader& reader, const CloudOptions& cloud) {
   return live;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -2,7 +2,7 @@
 #include "blem_sim/reduction/reduction.h"
 #include "config/config_sections.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 ContactConfig readContact(YamlReader reader) {
   ContactConfig contact;
@@ -16,21 +16,22 @@ ContactConfig readContact(YamlReader reader) {
   reader.read("damping", &contact.surface.damping, NumberRange::notNegativeOrInfinite());
   reader.read("max_contacts_per_robot", &contact.max_contacts_per_robot, 1);
   reader.read("max_contacts_per_object", &contact.max_contacts_per_object, 1);
-  const std::vector<FrictionRule> rules = {FrictionRule::MIN, FrictionRule::HARMONIC_MEAN, FrictionRule::MEAN, FrictionRule::PRODUCT};
+  const std::vector<contact::FrictionRule> rules = {contact::FrictionRule::MIN, contact::FrictionRule::HARMONIC_MEAN,
+                                                    contact::FrictionRule::MEAN, contact::FrictionRule::PRODUCT};
   if (const auto rule = reader.choice("friction_rule", {"min", "harmonic_mean", "mean", "product"})) contact.friction_rule = rules[*rule];
   bool mend = true;
   reader.read("mend_meshes", &mend);
-  contact.mending = mend ? Mending::ON : Mending::OFF;
+  contact.mending = mend ? model::Mending::ON : model::Mending::OFF;
   std::vector<std::string> reductions;
-  for (const Reduction& reduction : reductionTable()) reductions.push_back(reduction.name);
+  for (const reduction::Reduction& reduction : reduction::reductionTable()) reductions.push_back(reduction.name);
   if (const auto reduction = reader.choice("reduction", reductions)) contact.reduction = reductions[*reduction];
   reader.finish();
   return contact;
 }
 
-SolverSettings readSolver(YamlReader reader) {
-  SolverSettings solver;
-  const std::vector<std::string> steppers = stepperNames();
+dynamics::SolverSettings readSolver(YamlReader reader) {
+  dynamics::SolverSettings solver;
+  const std::vector<std::string> steppers = dynamics::stepperNames();
   if (const auto stepper = reader.choice("stepper", steppers)) solver.stepper = steppers[*stepper];
   reader.read("threads", &solver.threads, 1);
   reader.read("quick_step_iterations", &solver.quick_step_iterations, 1);
@@ -56,4 +57,4 @@ ContactOverrides readContactOverrides(YamlReader& reader) {
   return contact;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -2,7 +2,7 @@
 
 #include "config/config_sections.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 namespace {
 
@@ -99,4 +99,4 @@ std::optional<std::vector<ControllerConfig>> readControllers(YamlReader& robot) 
   return controllers;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -1,6 +1,6 @@
 #include "config/config_sections.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 namespace {
 
@@ -86,4 +86,4 @@ ObjectConfig readObject(YamlReader& reader) {
   return object;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

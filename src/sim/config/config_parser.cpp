@@ -9,7 +9,7 @@
 #include "config/scene_limits.h"
 #include "config/yaml_size.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 namespace {
 
@@ -110,4 +110,4 @@ EnvironmentConfig parseEnvironment(const YAML::Node& node, const std::string& so
   return environment;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -1,6 +1,6 @@
 #include "config/config_sections.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 namespace {
 
@@ -149,4 +149,4 @@ RobotConfig readRobot(YamlReader& reader) {
   return robot;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -4,16 +4,16 @@
 #include "blem_sim/sim/config.h"
 #include "config/yaml_reader.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 ContactConfig readContact(YamlReader reader);
-SolverSettings readSolver(YamlReader reader);
+dynamics::SolverSettings readSolver(YamlReader reader);
 /** Reads those given of boundary_width, friction, restitution, impact_friction_factor, impact_friction_speed, stiffness, damping, shrink.
  */
 ContactOverrides readContactOverrides(YamlReader& reader);
-CloudOptions readCloud(YamlReader reader);
+model::CloudOptions readCloud(YamlReader reader);
 /** Keys of an environment with a topic. @param cloud its points' settings */
-LiveConfig readLive(YamlReader& environment, const CloudOptions& cloud);
+LiveConfig readLive(YamlReader& environment, const model::CloudOptions& cloud);
 /** A name that models may bear: given, not empty, without "::". */
 std::string readName(YamlReader& reader);
 /** One number or three, none of them 0. */
@@ -30,4 +30,4 @@ std::optional<std::vector<ControllerConfig>> readControllers(YamlReader& robot);
 SimulationConfig parseConfig(const YAML::Node& root, const std::string& source, const std::string& base_directory,
                              std::set<std::string>* known_keys);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

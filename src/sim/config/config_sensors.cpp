@@ -4,7 +4,7 @@
 #include "config/config_sections.h"
 #include "config/range_sensor_check.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 namespace {
 
@@ -191,4 +191,4 @@ std::vector<SensorConfig> readSensors(YamlReader& robot) {
   return sensors;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

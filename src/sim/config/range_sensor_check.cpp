@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr double WIDEST = 3.1;         // [rad] a plane image has no room for half a circle
@@ -60,4 +60,4 @@ std::optional<ConfigFault> faultOf(SensorType type, const RangeSensorConfig& ray
   return type == SensorType::DEPTH_CAMERA ? faultOfCamera(rays) : faultOfLidar(rays);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

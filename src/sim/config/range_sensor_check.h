@@ -6,7 +6,7 @@
 
 #include "blem_sim/sim/config.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /** A setting that cannot be used. */
 struct ConfigFault {
@@ -16,4 +16,4 @@ struct ConfigFault {
 /** First fault of a sensor's rays; nothing for sensors without any. */
 std::optional<ConfigFault> faultOf(SensorType type, const RangeSensorConfig& rays);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -2,9 +2,9 @@
 
 #include <cstddef>
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /** Robots, objects and environments that a simulation takes: each needs some 30 kB. */
 constexpr std::size_t MOST_MODELS = 100000;
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -10,7 +10,7 @@
 #include "blem_sim/geometry/one_line.h"
 #include "numbers/nearest_name.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 namespace {
 
@@ -74,7 +74,7 @@ void YamlReader::refuse(const std::string& key, const std::string& why) const {
   const YAML::Node value = key.empty() ? YAML::Node(YAML::NodeType::Undefined) : lookUp(key);
   const std::string path = pathOf(key);
   throw InputError(
-      oneLine(fmt::format("{}: {}{}{}", place(source_, value.IsDefined() ? value : node_), path, path.empty() ? "" : ": ", why)));
+      geometry::oneLine(fmt::format("{}: {}{}{}", place(source_, value.IsDefined() ? value : node_), path, path.empty() ? "" : ": ", why)));
 }
 
 void YamlReader::finish() const {
@@ -214,4 +214,4 @@ void YamlReader::forEachName(const std::string& key, const std::function<void(co
   for (const std::string& name : names) visit(name, map);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

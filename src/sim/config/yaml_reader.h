@@ -13,7 +13,7 @@
 
 #include "blem_sim/geometry/types.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /** Numbers that a key takes. */
 struct NumberRange {
@@ -88,4 +88,4 @@ class YamlReader {
   std::set<std::string>* log_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

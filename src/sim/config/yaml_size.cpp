@@ -11,7 +11,7 @@
 #include "blem_sim/geometry/one_line.h"
 #include "config/scene_limits.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr std::streamoff SHORTEST_ENTRY = 2;  // [characters], as in [1,2,3]
@@ -60,8 +60,8 @@ class EntryCounter : public YAML::EventHandler {
     std::string path;
     for (std::size_t i = 0; i + 1 < open_.size(); ++i)
       path += open_[i].map ? (path.empty() ? "" : ".") + open_[i].key : fmt::format("[{}]", open_[i].nodes - 1);
-    throw InputError(oneLine(fmt::format("{}:{}: {}{}has more than the {} entries that are simulated; give fewer", file_, mark.line + 1,
-                                         path, path.empty() ? "" : ": ", MOST_MODELS)));
+    throw InputError(geometry::oneLine(fmt::format("{}:{}: {}{}has more than the {} entries that are simulated; give fewer", file_,
+                                                   mark.line + 1, path, path.empty() ? "" : ": ", MOST_MODELS)));
   }
 
   const std::string& file_;
@@ -78,4 +78,4 @@ void checkYamlSize(const std::string& file) {
   YAML::Parser(stream).HandleNextDocument(counter);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

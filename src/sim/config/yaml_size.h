@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /**
  * Reads a YAML file's lists and maps without building any node, which would take kilobytes for each.
@@ -11,4 +11,4 @@ namespace blem_sim {
  */
 void checkYamlSize(const std::string& file);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -3,7 +3,7 @@
 
 #include "build/simulated_world.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /** A body turns about a centre that moves straight. */
 struct BodyTwist {
@@ -24,9 +24,9 @@ struct BodyTwist {
 };
 
 /** Twist of a body about its centre of mass; none of the world's. @param bodies their states, by slot */
-inline BodyTwist twistOf(const SimulatedWorld& world, const std::vector<BodyState>& bodies, int body) {
-  if (body == WORLD_BODY) return {};
+inline BodyTwist twistOf(const SimulatedWorld& world, const std::vector<dynamics::BodyState>& bodies, int body) {
+  if (body == dynamics::WORLD_BODY) return {};
   return {bodies[body].X_WB * world.world.bodySpec(body).inertial.com, bodies[body].v_WCom, bodies[body].w_WB};
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
-constexpr int NO_JOINT = WORLD_BODY - 1;
+constexpr int NO_JOINT = dynamics::WORLD_BODY - 1;
 constexpr double STRAIGHT = 1e-6;  // [rad] turn of a screw whose bend is none
 
 /** Motion of poses of the world for dt [s] by a constant screw, whose point at p moves at v [m/s]. */
@@ -36,7 +36,7 @@ BodyTwist screwOf(const Pose& motion, const Vector3& com, double dt) {
 
 }  // namespace
 
-void BodyWays::start(const SimulatedWorld& world, const std::vector<BodyState>& bodies, double dt) {
+void BodyWays::start(const SimulatedWorld& world, const std::vector<dynamics::BodyState>& bodies, double dt) {
   world_ = &world;
   bodies_ = &bodies;
   dt_ = dt;
@@ -54,7 +54,7 @@ void BodyWays::findParents() {
     for (const int body : model.bodies) swings_[body] = swing;
     for (const int joint : robot.world_joints) {
       if (joint < 0) continue;
-      const JointSpec& spec = world_->world.jointSpec(joint);
+      const dynamics::JointSpec& spec = world_->world.jointSpec(joint);
       if (parents_[spec.child] == NO_JOINT) parents_[spec.child] = spec.parent;
     }
   }
@@ -71,7 +71,7 @@ double BodyWays::swingOf(const ModelInfo& model) const {
 }
 
 double BodyWays::swing(int body) {
-  if (body == WORLD_BODY) return 0;
+  if (body == dynamics::WORLD_BODY) return 0;
   if (!parents_known_) findParents();
   return swings_[body];
 }
@@ -81,7 +81,7 @@ BodyTwist BodyWays::twist(int body) const { return twistOf(*world_, *bodies_, bo
 /** Motion of a body until the end of the solve, by which poses of the world are moved. Seen from its parent, a body on a joint moves by a
  * constant screw. */
 Pose BodyWays::ahead(int body) const {
-  const int parent = body == WORLD_BODY ? NO_JOINT : parents_[body];
+  const int parent = body == dynamics::WORLD_BODY ? NO_JOINT : parents_[body];
   const BodyTwist own = twist(body);
   if (parent == NO_JOINT) return own.moved(Pose::Identity(), dt_);
   const BodyTwist of_parent = twist(parent);
@@ -90,7 +90,7 @@ Pose BodyWays::ahead(int body) const {
 }
 
 bool BodyWays::isOnJoint(int body) {
-  if (body == WORLD_BODY) return false;
+  if (body == dynamics::WORLD_BODY) return false;
   if (!parents_known_) findParents();
   return parents_[body] != NO_JOINT;
 }
@@ -103,4 +103,4 @@ void BodyWays::leadTo(int body, const Pose& X_WB, BodyTwist* way) {
   if (isOnJoint(body)) *way = screwOf(X_WB * (*bodies_)[body].X_WB.inverse(), twist(body).centre, dt_);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -5,12 +5,12 @@
 
 #include "contacts/body_twist.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 class BodyWays {
  public:
   /** Takes the state at hand. @param bodies its states, by slot; read until the next start @param dt [s] of the solve */
-  void start(const SimulatedWorld& world, const std::vector<BodyState>& bodies, double dt);
+  void start(const SimulatedWorld& world, const std::vector<dynamics::BodyState>& bodies, double dt);
   /**
    * Makes a link's way the screw that leads it from its pose to that at the end of the solve, while every joint of its tree keeps its
    * velocity and the root its own: exact there, and all along on one hinge of the world. A body on no joint keeps the way it has.
@@ -33,11 +33,11 @@ class BodyWays {
   BodyTwist twist(int body) const;
 
   const SimulatedWorld* world_ = nullptr;
-  const std::vector<BodyState>* bodies_ = nullptr;
+  const std::vector<dynamics::BodyState>* bodies_ = nullptr;
   double dt_ = 0;
   bool parents_known_ = false;
   std::vector<int> parents_;    // by body
   std::vector<double> swings_;  // by body
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

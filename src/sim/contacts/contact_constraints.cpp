@@ -7,7 +7,7 @@
 #include "blem_sim/contact/collider_pairs.h"
 #include "contacts/contact_stage.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 // Pierced contacts part at this speed; a load on them slows them down by its weight over this rate times the lighter model's mass.
@@ -26,8 +26,9 @@ std::uint64_t contactId(int a, int b, std::uint64_t id) {
 }
 
 /** Constraint of a contact, rigid, without friction. */
-ContactConstraint constraintOf(const SimulatedWorld& world, const ContactManifold& manifold, const Contact& contact) {
-  ContactConstraint constraint;
+dynamics::ContactConstraint constraintOf(const SimulatedWorld& world, const contact::ContactManifold& manifold,
+                                         const contact::Contact& contact) {
+  dynamics::ContactConstraint constraint;
   constraint.body_a = world.colliders[manifold.a].body;
   constraint.body_b = world.colliders[manifold.b].body;
   constraint.point = contact.point;
@@ -38,30 +39,30 @@ ContactConstraint constraintOf(const SimulatedWorld& world, const ContactManifol
 }
 
 /** Mass [kg] of all bodies of the collider's model. */
-double massOf(const SimulatedWorld& world, const Collider& collider) {
-  if (collider.body == WORLD_BODY) return std::numeric_limits<double>::infinity();
+double massOf(const SimulatedWorld& world, const contact::Collider& collider) {
+  if (collider.body == dynamics::WORLD_BODY) return std::numeric_limits<double>::infinity();
   double mass = 0;
   for (const int body : world.models[collider.model].bodies)
-    if (body != WORLD_BODY) mass += world.world.bodySpec(body).inertial.mass;
+    if (body != dynamics::WORLD_BODY) mass += world.world.bodySpec(body).inertial.mass;
   return mass;
 }
 
 /** Identity of the stop below a contact's spring, which is another contact. */
 std::uint64_t stopId(std::uint64_t id) { return mixed(id); }
 
-bool isCompliant(const SurfaceProperties& surface) { return std::isfinite(surface.stiffness) && std::isfinite(surface.damping); }
+bool isCompliant(const contact::SurfaceProperties& surface) { return std::isfinite(surface.stiffness) && std::isfinite(surface.damping); }
 
 /** Makes a contact of meshes that cross a damper that lets go at SEPARATION_SPEED and never bounces: such contacts may contradict each
  *  other. */
-void separate(double mass, double layer, ContactConstraint* contact) {
+void separate(double mass, double layer, dynamics::ContactConstraint* contact) {
   contact->damping = SEPARATION_RATE * mass;
   contact->stiffness = SEPARATION_SPEED * contact->damping / std::max(layer, contact->depth);
   contact->restitution = 0;
 }
 
-int countContacts(const std::vector<ContactManifold>& manifolds) {
+int countContacts(const std::vector<contact::ContactManifold>& manifolds) {
   int count = 0;
-  for (const ContactManifold& manifold : manifolds) count += static_cast<int>(manifold.contacts.size());
+  for (const contact::ContactManifold& manifold : manifolds) count += static_cast<int>(manifold.contacts.size());
   return count;
 }
 
@@ -69,8 +70,8 @@ int countContacts(const std::vector<ContactManifold>& manifolds) {
 
 std::vector<std::uint64_t> ContactStage::forgetCollider(int collider) {
   std::vector<std::uint64_t> ids;
-  for (const ReductionMemory* memory : {&std::as_const(memory_), &stops_.memory()}) {
-    for (const ReductionMemory::Choice& choice : memory->choices()) {
+  for (const reduction::ReductionMemory* memory : {&std::as_const(memory_), &stops_.memory()}) {
+    for (const reduction::ReductionMemory::Choice& choice : memory->choices()) {
       if (choice.a != collider && choice.b != collider) continue;
       for (const std::uint64_t id : choice.ids) {
         const std::uint64_t known_as = contactId(choice.a, choice.b, id);
@@ -91,13 +92,13 @@ int ContactStage::rawContacts() const { return countContacts(current_); }
 int ContactStage::reducedContacts() const { return countContacts(reduced_); }
 
 /** @param all contacts of the pair, of which the manifold's were kept */
-void ContactStage::addConstraints(const SimulatedWorld& world, const ContactManifold& all, ContactManifold& manifold) {
-  const Collider &a = world.colliders[manifold.a], &b = world.colliders[manifold.b];
-  const SurfaceProperties surface = combineSurfaces(a.surface, b.surface, config_.friction_rule);
-  if (std::isfinite(surface.stiffness) || std::isfinite(surface.damping)) weighSprings(manifold.contacts);
+void ContactStage::addConstraints(const SimulatedWorld& world, const contact::ContactManifold& all, contact::ContactManifold& manifold) {
+  const contact::Collider &a = world.colliders[manifold.a], &b = world.colliders[manifold.b];
+  const contact::SurfaceProperties surface = contact::combineSurfaces(a.surface, b.surface, config_.friction_rule);
+  if (std::isfinite(surface.stiffness) || std::isfinite(surface.damping)) reduction::weighSprings(manifold.contacts);
   const bool recovers = current_search_.crossings.find(manifold.a, manifold.b) != nullptr;
-  for (const Contact& contact : manifold.contacts) {
-    ContactConstraint constraint = constraintOf(world, manifold, contact);
+  for (const contact::Contact& contact : manifold.contacts) {
+    dynamics::ContactConstraint constraint = constraintOf(world, manifold, contact);
     constraint.friction = surface.friction;
     constraint.restitution = surface.restitution;
     constraint.impact_friction_factor = surface.impact_friction_factor;
@@ -111,10 +112,10 @@ void ContactStage::addConstraints(const SimulatedWorld& world, const ContactMani
   if (!recovers && isCompliant(surface)) addStops(world, all, surface.friction);
 }
 
-void ContactStage::addStops(const SimulatedWorld& world, const ContactManifold& all, double friction) {
+void ContactStage::addStops(const SimulatedWorld& world, const contact::ContactManifold& all, double friction) {
   const double stop = LayerStops::STOP * all.layer;
-  for (const Contact& contact : stops_.choose(all, *method_)) {
-    ContactConstraint constraint = constraintOf(world, all, contact);
+  for (const contact::Contact& contact : stops_.choose(all, *method_)) {
+    dynamics::ContactConstraint constraint = constraintOf(world, all, contact);
     constraint.friction = friction;
     constraint.id = stopId(constraint.id);
     constraints_.push_back(constraint);
@@ -122,17 +123,18 @@ void ContactStage::addStops(const SimulatedWorld& world, const ContactManifold& 
   }
 }
 
-void ContactStage::reduction(const SimulatedWorld& world, const std::vector<BodyState>& bodies, const Expectation& expected, double dt) {
+void ContactStage::reduction(const SimulatedWorld& world, const std::vector<dynamics::BodyState>& bodies, const Expectation& expected,
+                             double dt) {
   meetings_.look(world, bodies, *this, current_search_.flush, expected, dt);
   meetings_.exchange(&current_);
-  for (ContactManifold& manifold : reduced_) manifold.contacts.clear();  // a pair without contacts now keeps none
+  for (contact::ContactManifold& manifold : reduced_) manifold.contacts.clear();  // a pair without contacts now keeps none
   model_a_.clear();
   model_b_.clear();
-  for (const ContactManifold& manifold : current_) {
+  for (const contact::ContactManifold& manifold : current_) {
     model_a_.push_back(world.colliders[manifold.a].model);
     model_b_.push_back(world.colliders[manifold.b].model);
   }
-  reduction_loss_ = reduceManifolds(current_, model_a_, model_b_, world.budgets, *method_, &memory_, &reduced_);
+  reduction_loss_ = reduction::reduceManifolds(current_, model_a_, model_b_, world.budgets, *method_, &memory_, &reduced_);
   constraints_.clear();
   solved_.clear();
   stops_.start();
@@ -141,4 +143,4 @@ void ContactStage::reduction(const SimulatedWorld& world, const std::vector<Body
   meetings_.exchange(&current_);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -7,7 +7,7 @@
 #include "contacts/body_ways.h"
 #include "contacts/pair_way.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 class ContactStage;
 
@@ -18,8 +18,8 @@ struct PairAside {
 
 /** Way of some pairs that is known better than from the velocities at hand. */
 struct Expectation {
-  std::vector<PairAside> pairs;   ///< sorted by (a, b)
-  std::vector<BodyState> bodies;  ///< states at the end of the solve; empty: contacts that do not touch are left out
+  std::vector<PairAside> pairs;             ///< sorted by (a, b)
+  std::vector<dynamics::BodyState> bodies;  ///< states at the end of the solve; empty: contacts that do not touch are left out
 };
 
 /**
@@ -36,10 +36,10 @@ class ContactMeetings {
    * @param contacts of the state at hand @param bodies its states, by slot @param flush surfaces that meet at it
    * @param expected pairs that go on otherwise than bodies do at hand @param dt [s] of the solve
    */
-  void look(const SimulatedWorld& world, const std::vector<BodyState>& bodies, const ContactStage& contacts, const FlushSurfaces& flush,
-            const Expectation& expected, double dt);
+  void look(const SimulatedWorld& world, const std::vector<dynamics::BodyState>& bodies, const ContactStage& contacts,
+            const FlushSurfaces& flush, const Expectation& expected, double dt);
   /** Exchanges the contacts of these manifolds for those that are to be solved; a second time back. */
-  void exchange(std::vector<ContactManifold>* manifolds);
+  void exchange(std::vector<contact::ContactManifold>* manifolds);
 
  private:
   struct Support {
@@ -48,18 +48,18 @@ class ContactMeetings {
   };
   struct Replaced {
     std::size_t manifold;
-    std::vector<Contact> contacts;
+    std::vector<contact::Contact> contacts;
   };
-  void findSupports(const SimulatedWorld& world, const std::vector<ContactManifold>& manifolds);
-  ColliderWay wayOf(const SimulatedWorld& world, const std::vector<BodyState>& bodies, const ContactStage& contacts, int collider,
+  void findSupports(const SimulatedWorld& world, const std::vector<contact::ContactManifold>& manifolds);
+  ColliderWay wayOf(const SimulatedWorld& world, const std::vector<dynamics::BodyState>& bodies, const ContactStage& contacts, int collider,
                     double dt) const;
   double depthOf(const SimulatedWorld& world, int collider) const;
-  void lookAt(const SimulatedWorld& world, const std::vector<BodyState>& bodies, const ContactStage& contacts, const FlushSurfaces& flush,
-              std::size_t manifold, double dt);
-  void lookAgain(const SimulatedWorld& world, const std::vector<BodyState>& bodies, const ContactStage& contacts,
+  void lookAt(const SimulatedWorld& world, const std::vector<dynamics::BodyState>& bodies, const ContactStage& contacts,
+              const FlushSurfaces& flush, std::size_t manifold, double dt);
+  void lookAgain(const SimulatedWorld& world, const std::vector<dynamics::BodyState>& bodies, const ContactStage& contacts,
                  const FlushSurfaces& flush, const Expectation& expected, std::size_t manifold, double dt);
   void follow(const SimulatedWorld& world, const ContactStage& contacts, const FlushSurfaces& flush, std::size_t manifold, WayOfPair* way);
-  std::vector<Contact>* room(std::size_t manifold);
+  std::vector<contact::Contact>* room(std::size_t manifold);
 
   std::vector<Support> supports_;  // by body
   BodyWays ways_;
@@ -68,4 +68,4 @@ class ContactMeetings {
   std::size_t replaced_count_ = 0;  // of them; the others are room
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

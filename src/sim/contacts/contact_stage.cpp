@@ -9,7 +9,7 @@
 #include "blem_sim/geometry/input_error.h"
 #include "contacts/meeting_speed.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 // Contacts exist before touch, so that none appears with a force: at rest within this of the layer, sooner at speed. Less between small
@@ -27,7 +27,7 @@ constexpr double APART = 0.25;  // of the layer: a pair that crossed is sound ag
 constexpr int MOST_AT_ONE_PLACE = 8;  // pairs of a collider with others at its place (leftOut()) that are looked at
 
 /** Farthest corner of the geometry's box from the body's centre of mass. */
-double armOf(const Collider& collider, const Vector3& com) {
+double armOf(const contact::Collider& collider, const Vector3& com) {
   if (!collider.geometry || collider.geometry->isHalfSpace()) return 0;
   const Box& box = collider.geometry->bounds();
   double arm = 0;
@@ -37,20 +37,20 @@ double armOf(const Collider& collider, const Vector3& com) {
 }
 
 /** Length [m] of the longest edge of a collider's box, layers included. */
-double extentOf(const Collider& collider) {
+double extentOf(const contact::Collider& collider) {
   if (collider.geometry->isHalfSpace()) return std::numeric_limits<double>::infinity();
   return collider.geometry->bounds().sizes().maxCoeff() + 2 * collider.radius;
 }
 
-double baseMargin(const Collider& a, const Collider& b) {
+double baseMargin(const contact::Collider& a, const contact::Collider& b) {
   return std::min(BASE_MARGIN, BASE_MARGIN_OF_LENGTH * std::min(extentOf(a), extentOf(b)));
 }
 
-const Reduction* reductionNamed(const std::string& name) {
-  const Reduction* method = findReduction(name);
+const reduction::Reduction* reductionNamed(const std::string& name) {
+  const reduction::Reduction* method = reduction::findReduction(name);
   if (method) return method;
   std::string names;
-  for (const Reduction& row : reductionTable()) names += (names.empty() ? "" : ", ") + std::string(row.name);
+  for (const reduction::Reduction& row : reduction::reductionTable()) names += (names.empty() ? "" : ", ") + std::string(row.name);
   throw InputError("contact.reduction: '" + name + "' is not known; take one of " + names);
 }
 
@@ -59,25 +59,25 @@ const Reduction* reductionNamed(const std::string& name) {
 ContactStage::ContactStage(const ContactConfig& config, int threads)
     : config_(config), method_(reductionNamed(config.reduction)), searches_(threads) {}
 
-void ContactStage::moveColliders(const SimulatedWorld& world, const std::vector<BodyState>& bodies, const std::vector<BodyState>* faster,
-                                 double dt) {
-  const std::vector<Collider>& colliders = world.colliders;
+void ContactStage::moveColliders(const SimulatedWorld& world, const std::vector<dynamics::BodyState>& bodies,
+                                 const std::vector<dynamics::BodyState>* faster, double dt) {
+  const std::vector<contact::Collider>& colliders = world.colliders;
   for (std::size_t i = arms_.size(); i < colliders.size(); ++i) {
     const int body = colliders[i].body;
-    arms_.push_back(body == WORLD_BODY ? 0 : armOf(colliders[i], world.world.bodySpec(body).inertial.com));
+    arms_.push_back(body == dynamics::WORLD_BODY ? 0 : armOf(colliders[i], world.world.bodySpec(body).inertial.com));
   }
   const double fall = 0.5 * world.world.gravity().norm() * dt * dt;
-  std::vector<ColliderMotion>& motion = search_.motion;
+  std::vector<contact::ColliderMotion>& motion = search_.motion;
   motion.resize(colliders.size());
   for (std::size_t i = 0; i < colliders.size(); ++i) {
-    if (colliders[i].body == WORLD_BODY) {
+    if (colliders[i].body == dynamics::WORLD_BODY) {
       motion[i] = {colliders[i].X_BC, 0};
       continue;
     }
-    const BodyState& state = bodies[colliders[i].body];
+    const dynamics::BodyState& state = bodies[colliders[i].body];
     double speed = state.v_WCom.norm() + state.w_WB.norm() * arms_[i];
     if (faster) {
-      const BodyState& then = (*faster)[colliders[i].body];
+      const dynamics::BodyState& then = (*faster)[colliders[i].body];
       speed = std::max(speed, then.v_WCom.norm() + then.w_WB.norm() * arms_[i]);
     }
     motion[i] = {state.X_WB * colliders[i].X_BC, REACH_FACTOR * speed * dt + fall};
@@ -85,9 +85,9 @@ void ContactStage::moveColliders(const SimulatedWorld& world, const std::vector<
 }
 
 /** WatchedPair::known: most [m] that two colliders can approach each other, moving on as they do, or if one of them is stopped dead. */
-double ContactStage::knownMargin(const SimulatedWorld& world, const std::vector<BodyState>& bodies, const std::vector<BodyState>* faster,
-                                 const ColliderPair& pair, double dt) const {
-  const Collider &a = world.colliders[pair.a], &b = world.colliders[pair.b];
+double ContactStage::knownMargin(const SimulatedWorld& world, const std::vector<dynamics::BodyState>& bodies,
+                                 const std::vector<dynamics::BodyState>* faster, const contact::ColliderPair& pair, double dt) const {
+  const contact::Collider &a = world.colliders[pair.a], &b = world.colliders[pair.b];
   const double layer = a.radius + b.radius;
   const bool guarded = layer > 0 && !a.geometry->isHalfSpace() && !b.geometry->isHalfSpace();
   const double most = std::min(pair.margin, guarded ? std::max(LEAST_MAX_MARGIN, MAX_MARGIN_OF_LAYER * layer) : UNGUARDED_MARGIN);
@@ -109,13 +109,13 @@ bool ContactStage::isAtOnePlace(const SimulatedWorld& world, int a, int b) const
   return boxOf(a).contains(search_.motion[a].X_WC.inverse() * middle_b) && boxOf(b).contains(search_.motion[b].X_WC.inverse() * middle_a);
 }
 
-void ContactStage::broadPhase(const SimulatedWorld& world, const std::vector<BodyState>& bodies, const std::vector<BodyState>* faster,
-                              double dt) {
+void ContactStage::broadPhase(const SimulatedWorld& world, const std::vector<dynamics::BodyState>& bodies,
+                              const std::vector<dynamics::BodyState>* faster, double dt) {
   moveColliders(world, bodies, faster, dt);
   search_.pairs.clear();
   search_.left_out.clear();
   at_one_place_.assign(world.colliders.size(), 0);
-  for (const ColliderPair& pair :
+  for (const contact::ColliderPair& pair :
        pair_search_.find(world.colliders, search_.motion, world.filter, BASE_MARGIN, std::numeric_limits<double>::infinity())) {
     if (world.disabled_pairs.count({pair.a, pair.b}) > 0) continue;
     if (isAtOnePlace(world, pair.a, pair.b)) {
@@ -131,7 +131,7 @@ void ContactStage::broadPhase(const SimulatedWorld& world, const std::vector<Bod
 
 Recovery ContactStage::lastApart(int a, int b) const {
   if (const Recovery* recovery = current_search_.crossings.find(a, b)) return *recovery;
-  if (!known_ || findPair(current_search_.left_out, a, b)) return {a, b, false, Pose::Identity()};
+  if (!known_ || contact::findPair(current_search_.left_out, a, b)) return {a, b, false, Pose::Identity()};
   return {a, b, true, current_search_.motion[a].X_WC.inverse() * current_search_.motion[b].X_WC};
 }
 
@@ -142,11 +142,11 @@ void ContactStage::narrowPhase(const SimulatedWorld& world) {
   search_.last_apart.clear();
   for (const WatchedPair& pair : search_.pairs) search_.last_apart.push_back(lastApart(pair.a, pair.b));
   search_.flush.watch(world.colliders, search_.pairs);
-  searches_.run(search_.pairs, [&](std::size_t i, NarrowPhaseMemory* memory) {
+  searches_.run(search_.pairs, [&](std::size_t i, contact::NarrowPhaseMemory* memory) {
     const WatchedPair& pair = search_.pairs[i];
     const Recovery& last = search_.last_apart[i];
-    blem_sim::narrowPhase(world.colliders[pair.a], search_.motion[pair.a].X_WC, world.colliders[pair.b], search_.motion[pair.b].X_WC,
-                          pair.known, &found_[i], last.known ? &last.X_AB : nullptr, memory);
+    blem_sim::contact::narrowPhase(world.colliders[pair.a], search_.motion[pair.a].X_WC, world.colliders[pair.b],
+                                   search_.motion[pair.b].X_WC, pair.known, &found_[i], last.known ? &last.X_AB : nullptr, memory);
     found_[i].a = pair.a;
     found_[i].b = pair.b;
     search_.flush.dropCovered(world.colliders, search_.motion, &found_[i]);
@@ -160,7 +160,7 @@ void ContactStage::keepWhatWasFound(std::size_t pairs) {
   search_.crossings.clear();
   std::size_t manifolds = 0;
   for (std::size_t i = 0; i < pairs; ++i) {
-    const ContactManifold& manifold = found_[i];
+    const contact::ContactManifold& manifold = found_[i];
     const bool was_recovering = current_search_.crossings.find(manifold.a, manifold.b) != nullptr;
     if (manifold.pierced || (was_recovering && manifold.maxDepth() > APART * manifold.layer)) search_.crossings.add(search_.last_apart[i]);
     if (manifold.contacts.empty()) continue;
@@ -176,4 +176,4 @@ void ContactStage::accept() {
   known_ = true;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

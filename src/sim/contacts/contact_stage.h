@@ -16,7 +16,7 @@
 #include "contacts/layer_stops.h"
 #include "contacts/pair_searches.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /** A contact in the solve: its pair, layer and kind. Goes with the constraint of the same index. */
 struct SolvedContact {
@@ -54,7 +54,8 @@ class ContactStage {
    * @param bodies their states at hand, by slot
    * @param faster states of the same poses whose speeds bodies may reach: the larger speed counts. Null: bodies go on as they do
    */
-  void broadPhase(const SimulatedWorld& world, const std::vector<BodyState>& bodies, const std::vector<BodyState>* faster, double dt);
+  void broadPhase(const SimulatedWorld& world, const std::vector<dynamics::BodyState>& bodies,
+                  const std::vector<dynamics::BodyState>* faster, double dt);
   /** Finds the manifolds of these pairs: found(). */
   void narrowPhase(const SimulatedWorld& world);
   /** Makes found() the manifolds that the next solve starts from: current(). */
@@ -62,8 +63,8 @@ class ContactStage {
   /** Call after bodies or geometry changed other than by a step: no contact is known. */
   void forget() { known_ = false; }
   /** Choice of the last reduction: with stops() and crossings() all that the next step depends on here, beside the bodies' states. */
-  ReductionMemory& memory() { return memory_; }
-  const ReductionMemory& memory() const { return memory_; }
+  reduction::ReductionMemory& memory() { return memory_; }
+  const reduction::ReductionMemory& memory() const { return memory_; }
   LayerStops& stops() { return stops_; }
   const LayerStops& stops() const { return stops_; }
   bool known() const { return known_; }
@@ -72,17 +73,17 @@ class ContactStage {
    * touch are those that will be met (ContactMeetings).
    * @param bodies states at hand, by slot @param expected as ContactMeetings takes it @param dt [s] of the solve
    */
-  void reduction(const SimulatedWorld& world, const std::vector<BodyState>& bodies, const Expectation& expected, double dt);
+  void reduction(const SimulatedWorld& world, const std::vector<dynamics::BodyState>& bodies, const Expectation& expected, double dt);
 
-  const std::vector<ContactManifold>& found() const { return found_; }      ///< sorted by (a, b), none empty
-  const std::vector<ContactManifold>& current() const { return current_; }  ///< of the accepted state, before reduction
-  const std::vector<ContactConstraint>& constraints() const { return constraints_; }
+  const std::vector<contact::ContactManifold>& found() const { return found_; }      ///< sorted by (a, b), none empty
+  const std::vector<contact::ContactManifold>& current() const { return current_; }  ///< of the accepted state, before reduction
+  const std::vector<dynamics::ContactConstraint>& constraints() const { return constraints_; }
   const std::vector<SolvedContact>& solved() const { return solved_; }
   const std::vector<WatchedPair>& watched() const { return current_search_.pairs; }  ///< of the accepted state
   /** [m] by collider: farthest point of its geometry's box from the body's centre of mass; 0 for static ones. */
   double arm(int collider) const { return arms_[collider]; }
   /** Poses of the accepted state, and how far each may move, by collider. */
-  const std::vector<ColliderMotion>& motion() const { return current_search_.motion; }
+  const std::vector<contact::ColliderMotion>& motion() const { return current_search_.motion; }
   /** Points that come and go: contacts that are found from now on are those of points as they are sunk. */
   FadingPoints& fading() { return fading_; }
   const FadingPoints& fading() const { return fading_; }
@@ -101,45 +102,46 @@ class ContactStage {
    * is in the other's; of such pairs only some of each collider are looked at, since their number grows as the colliders' number squared.
    */
   const std::vector<PairLeftOut>& leftOut() const { return current_search_.left_out; }
-  const ReductionLoss& reductionLoss() const { return reduction_loss_; }
+  const reduction::ReductionLoss& reductionLoss() const { return reduction_loss_; }
 
  private:
   struct Search {
-    std::vector<ColliderMotion> motion;
+    std::vector<contact::ColliderMotion> motion;
     std::vector<WatchedPair> pairs;
     std::vector<PairLeftOut> left_out;  // sorted by (a, b)
     std::vector<Recovery> last_apart;   // by pair
     CrossingHistory crossings;
     FlushSurfaces flush;
   };
-  void moveColliders(const SimulatedWorld& world, const std::vector<BodyState>& bodies, const std::vector<BodyState>* faster, double dt);
-  double knownMargin(const SimulatedWorld& world, const std::vector<BodyState>& bodies, const std::vector<BodyState>* faster,
-                     const ColliderPair& pair, double dt) const;
+  void moveColliders(const SimulatedWorld& world, const std::vector<dynamics::BodyState>& bodies,
+                     const std::vector<dynamics::BodyState>* faster, double dt);
+  double knownMargin(const SimulatedWorld& world, const std::vector<dynamics::BodyState>& bodies,
+                     const std::vector<dynamics::BodyState>* faster, const contact::ColliderPair& pair, double dt) const;
   bool isAtOnePlace(const SimulatedWorld& world, int a, int b) const;
   /** Pose in which a pair was last apart, as far as the accepted state knows. */
   Recovery lastApart(int a, int b) const;
   void keepWhatWasFound(std::size_t pairs);
-  void addConstraints(const SimulatedWorld& world, const ContactManifold& all, ContactManifold& manifold);
-  void addStops(const SimulatedWorld& world, const ContactManifold& all, double friction);
+  void addConstraints(const SimulatedWorld& world, const contact::ContactManifold& all, contact::ContactManifold& manifold);
+  void addStops(const SimulatedWorld& world, const contact::ContactManifold& all, double friction);
 
   const ContactConfig config_;
-  const Reduction* method_;
-  ReductionMemory memory_;
+  const reduction::Reduction* method_;
+  reduction::ReductionMemory memory_;
   LayerStops stops_;
   bool known_ = false;
   std::vector<double> arms_;
-  BroadPhase pair_search_;
+  contact::BroadPhase pair_search_;
   Search search_, current_search_;
   std::vector<int> at_one_place_;  // by collider: its pairs at one place
   PairSearches searches_;
   FadingPoints fading_;
   ContactMeetings meetings_;
-  std::vector<ContactManifold> found_, current_, reduced_;
-  std::vector<ContactManifold> spare_;  // only their memory
-  std::vector<ContactConstraint> constraints_;
+  std::vector<contact::ContactManifold> found_, current_, reduced_;
+  std::vector<contact::ContactManifold> spare_;  // only their memory
+  std::vector<dynamics::ContactConstraint> constraints_;
   std::vector<SolvedContact> solved_;
   std::vector<int> model_a_, model_b_;  // of each of current_
-  ReductionLoss reduction_loss_;
+  reduction::ReductionLoss reduction_loss_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

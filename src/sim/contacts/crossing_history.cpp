@@ -2,7 +2,7 @@
 
 #include "blem_sim/contact/collider_pairs.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr std::size_t WORDS = 3, NUMBERS = 16;  // of a recovery
@@ -15,9 +15,9 @@ bool isRigid(const Pose& X) {
 
 }  // namespace
 
-const Recovery* CrossingHistory::find(int a, int b) const { return findPair(recoveries_, a, b); }
+const Recovery* CrossingHistory::find(int a, int b) const { return contact::findPair(recoveries_, a, b); }
 
-void CrossingHistory::forget(int collider) { removePairsOf(collider, &recoveries_); }
+void CrossingHistory::forget(int collider) { contact::removePairsOf(collider, &recoveries_); }
 
 void CrossingHistory::append(std::vector<double>* numbers, std::vector<std::uint64_t>* words) const {
   words->push_back(recoveries_.size());
@@ -27,20 +27,20 @@ void CrossingHistory::append(std::vector<double>* numbers, std::vector<std::uint
   }
 }
 
-bool CrossingHistory::read(const std::vector<Collider>& colliders, const std::uint64_t** words, const std::uint64_t* words_end,
+bool CrossingHistory::read(const std::vector<contact::Collider>& colliders, const std::uint64_t** words, const std::uint64_t* words_end,
                            NumberReader* reader) {
   recoveries_.clear();
   if (*words == words_end) return false;
   const std::uint64_t count = *(*words)++;
   if (static_cast<std::uint64_t>(words_end - *words) / WORDS < count) return false;
   for (std::uint64_t i = 0; i < count; ++i, *words += WORDS) {
-    if (!isPair(colliders, (*words)[0], (*words)[1]) || (*words)[2] > 1) return false;
+    if (!contact::isPair(colliders, (*words)[0], (*words)[1]) || (*words)[2] > 1) return false;
     Recovery recovery{static_cast<int>((*words)[0]), static_cast<int>((*words)[1]), (*words)[2] != 0, Pose()};
     reader->numbers(recovery.X_AB.matrix().data(), NUMBERS);
     if (!isRigid(recovery.X_AB)) return false;
     recoveries_.push_back(recovery);
   }
-  return areSorted(recoveries_);
+  return contact::areSorted(recoveries_);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

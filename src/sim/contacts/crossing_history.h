@@ -9,7 +9,7 @@
 #include "blem_sim/geometry/types.h"
 #include "numbers/number_reader.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /** A pair whose bare meshes cross, or did and are not apart yet. */
 struct Recovery {
@@ -37,10 +37,11 @@ class CrossingHistory {
    * Reads the words and numbers of append and moves the cursor behind the words.
    * @param colliders whose pairs they may be @return false if they are others, or not whole
    */
-  bool read(const std::vector<Collider>& colliders, const std::uint64_t** words, const std::uint64_t* words_end, NumberReader* reader);
+  bool read(const std::vector<contact::Collider>& colliders, const std::uint64_t** words, const std::uint64_t* words_end,
+            NumberReader* reader);
 
  private:
   std::vector<Recovery> recoveries_;  // sorted by (a, b)
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

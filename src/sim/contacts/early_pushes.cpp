@@ -5,41 +5,42 @@
 #include "blem_sim/contact/collider_pairs.h"
 #include "contacts/contact_stage.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 bool isOfRobot(const SimulatedWorld& world, int collider) {
-  const Collider& c = world.colliders[collider];
-  return c.body != WORLD_BODY && world.models[c.model].kind == ModelKind::ROBOT;
+  const contact::Collider& c = world.colliders[collider];
+  return c.body != dynamics::WORLD_BODY && world.models[c.model].kind == ModelKind::ROBOT;
 }
 
-bool touchedBefore(const ContactManifold* before, std::uint64_t id) {
+bool touchedBefore(const contact::ContactManifold* before, std::uint64_t id) {
   return before && std::any_of(before->contacts.begin(), before->contacts.end(),
-                               [id](const Contact& contact) { return contact.id == id && touches(contact); });
+                               [id](const contact::Contact& contact) { return contact.id == id && touches(contact); });
 }
 
 /** Whether a pair touches at the end of a solve where it did not at its start. */
-bool touchesAnew(const ContactManifold* before, const ContactManifold* after) {
+bool touchesAnew(const contact::ContactManifold* before, const contact::ContactManifold* after) {
   return after && std::any_of(after->contacts.begin(), after->contacts.end(),
-                              [before](const Contact& contact) { return touches(contact) && !touchedBefore(before, contact.id); });
+                              [before](const contact::Contact& contact) { return touches(contact) && !touchedBefore(before, contact.id); });
 }
 
 }  // namespace
 
 bool EarlyPushes::isEarly(const SimulatedWorld& world, const ContactStage& contacts, std::size_t constraint,
-                          const std::vector<BodyState>& bodies, double dt) const {
-  const ContactConstraint& contact = contacts.constraints()[constraint];
+                          const std::vector<dynamics::BodyState>& bodies, double dt) const {
+  const dynamics::ContactConstraint& contact = contacts.constraints()[constraint];
   const SolvedContact& of = contacts.solved()[constraint];
   if (of.pierced || of.recovers || (!isOfRobot(world, of.collider_a) && !isOfRobot(world, of.collider_b))) return false;
   const Vector3 sliding =
       twistOf(world, bodies, contact.body_a).at(contact.point) - twistOf(world, bodies, contact.body_b).at(contact.point);
   const Vector3 across = sliding - contact.normal_BA.dot(sliding) * contact.normal_BA;
   if (across.norm() * dt <= ACROSS * of.layer) return false;
-  return !touchesAnew(findPair(contacts.current(), of.collider_a, of.collider_b), findPair(contacts.found(), of.collider_a, of.collider_b));
+  return !touchesAnew(contact::findPair(contacts.current(), of.collider_a, of.collider_b),
+                      contact::findPair(contacts.found(), of.collider_a, of.collider_b));
 }
 
 bool EarlyPushes::find(const SimulatedWorld& world, const ContactStage& contacts, const std::vector<Vector3>& forces,
-                       const std::vector<BodyState>& bodies, double dt) {
+                       const std::vector<dynamics::BodyState>& bodies, double dt) {
   clear();
   std::vector<PairAside>& pairs = expectation_.pairs;
   for (std::size_t i = 0; i < forces.size(); ++i) {
@@ -56,4 +57,4 @@ void EarlyPushes::clear() {
   expectation_.bodies.clear();
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

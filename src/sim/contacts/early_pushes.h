@@ -7,7 +7,7 @@
 #include "blem_sim/dynamics/world_types.h"
 #include "contacts/contact_meetings.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 class ContactStage;
 
@@ -24,17 +24,17 @@ class EarlyPushes {
    * @return whether there are any
    */
   bool find(const SimulatedWorld& world, const ContactStage& contacts, const std::vector<Vector3>& forces,
-            const std::vector<BodyState>& bodies, double dt);
+            const std::vector<dynamics::BodyState>& bodies, double dt);
   /** Tells where a solve without those contacts ends. @param bodies states at its end, by slot */
-  void expect(const std::vector<BodyState>& bodies) { expectation_.bodies = bodies; }
+  void expect(const std::vector<dynamics::BodyState>& bodies) { expectation_.bodies = bodies; }
   void clear();
   const Expectation& expectation() const { return expectation_; }
 
  private:
-  bool isEarly(const SimulatedWorld& world, const ContactStage& contacts, std::size_t constraint, const std::vector<BodyState>& bodies,
-               double dt) const;
+  bool isEarly(const SimulatedWorld& world, const ContactStage& contacts, std::size_t constraint,
+               const std::vector<dynamics::BodyState>& bodies, double dt) const;
 
   Expectation expectation_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -5,26 +5,26 @@
 #include "blem_sim/contact/surface_cover.h"
 #include "contacts/contact_stage.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr double SAME_WIDTH = 1e-6;  // [m] parts that a layer thinner by more leaves uncovered stand out
 
 /** A cloud of points has no surface that another could go on with. */
-bool hasSurface(const Collider& collider) { return collider.geometry->isHalfSpace() || !collider.geometry->mesh().isPoint(0); }
+bool hasSurface(const contact::Collider& collider) { return collider.geometry->isHalfSpace() || !collider.geometry->mesh().isPoint(0); }
 
-SurfaceCover& threadCover() {
-  thread_local SurfaceCover cover;
+contact::SurfaceCover& threadCover() {
+  thread_local contact::SurfaceCover cover;
   return cover;
 }
 
 }  // namespace
 
-void FlushSurfaces::watch(const std::vector<Collider>& colliders, const std::vector<WatchedPair>& pairs) {
+void FlushSurfaces::watch(const std::vector<contact::Collider>& colliders, const std::vector<WatchedPair>& pairs) {
   neighbours_.clear();
   for (const WatchedPair& pair : pairs) {
-    const bool a_is_fixed = colliders[pair.a].body == WORLD_BODY;
-    if ((a_is_fixed || colliders[pair.b].body == WORLD_BODY) && hasSurface(colliders[a_is_fixed ? pair.a : pair.b]))
+    const bool a_is_fixed = colliders[pair.a].body == dynamics::WORLD_BODY;
+    if ((a_is_fixed || colliders[pair.b].body == dynamics::WORLD_BODY) && hasSurface(colliders[a_is_fixed ? pair.a : pair.b]))
       neighbours_.push_back(a_is_fixed ? Neighbour{pair.b, pair.a} : Neighbour{pair.a, pair.b});
   }
   std::sort(neighbours_.begin(), neighbours_.end(),
@@ -38,25 +38,25 @@ void FlushSurfaces::watch(const std::vector<Collider>& colliders, const std::vec
   neighbours_.resize(kept);
 }
 
-void FlushSurfaces::dropCovered(const std::vector<Collider>& colliders, const std::vector<ColliderMotion>& motion,
-                                ContactManifold* manifold) const {
-  const bool a_is_fixed = colliders[manifold->a].body == WORLD_BODY;
-  if (neighbours_.empty() || manifold->pierced || (!a_is_fixed && colliders[manifold->b].body != WORLD_BODY)) return;
+void FlushSurfaces::dropCovered(const std::vector<contact::Collider>& colliders, const std::vector<contact::ColliderMotion>& motion,
+                                contact::ContactManifold* manifold) const {
+  const bool a_is_fixed = colliders[manifold->a].body == dynamics::WORLD_BODY;
+  if (neighbours_.empty() || manifold->pierced || (!a_is_fixed && colliders[manifold->b].body != dynamics::WORLD_BODY)) return;
   const int moving = a_is_fixed ? manifold->b : manifold->a, fixed = a_is_fixed ? manifold->a : manifold->b;
   const auto [first, end] = std::equal_range(neighbours_.begin(), neighbours_.end(), Neighbour{moving, fixed},
                                              [](const Neighbour& a, const Neighbour& b) { return a.moving < b.moving; });
   if (first == end) return;
   const double thinnest = colliders[fixed].radius - SAME_WIDTH;
-  SurfaceCover& cover = threadCover();
-  const auto isCovered = [&, first = first, end = end](const Contact& contact) {
+  contact::SurfaceCover& cover = threadCover();
+  const auto isCovered = [&, first = first, end = end](const contact::Contact& contact) {
     cover.begin(contact, a_is_fixed, colliders[fixed], motion[fixed].X_WC);
     for (auto other = first; other != end; ++other)
       if (other->fixed != fixed && colliders[other->fixed].radius >= thinnest)
         cover.add(colliders[other->fixed], motion[other->fixed].X_WC, other->fixed < fixed);
     return cover.isCovered();
   };
-  std::vector<Contact>& contacts = manifold->contacts;
+  std::vector<contact::Contact>& contacts = manifold->contacts;
   contacts.erase(std::remove_if(contacts.begin(), contacts.end(), isCovered), contacts.end());
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -6,7 +6,7 @@
 #include "blem_sim/contact/broad_phase.h"
 #include "blem_sim/contact/manifold.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 struct WatchedPair;
 
@@ -14,9 +14,10 @@ struct WatchedPair;
 class FlushSurfaces {
  public:
   /** @param pairs of the search at hand */
-  void watch(const std::vector<Collider>& colliders, const std::vector<WatchedPair>& pairs);
+  void watch(const std::vector<contact::Collider>& colliders, const std::vector<WatchedPair>& pairs);
   /** Takes from a pair's contacts with a static surface those that others cover (SurfaceCover). Thread safe. */
-  void dropCovered(const std::vector<Collider>& colliders, const std::vector<ColliderMotion>& motion, ContactManifold* manifold) const;
+  void dropCovered(const std::vector<contact::Collider>& colliders, const std::vector<contact::ColliderMotion>& motion,
+                   contact::ContactManifold* manifold) const;
 
  private:
   struct Neighbour {
@@ -25,4 +26,4 @@ class FlushSurfaces {
   std::vector<Neighbour> neighbours_;  // of moving colliders with several, sorted
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

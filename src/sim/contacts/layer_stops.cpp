@@ -1,18 +1,18 @@
 #include "contacts/layer_stops.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
-const std::vector<Contact>& LayerStops::choose(const ContactManifold& manifold, const Reduction& method) {
-  static const std::vector<Contact> none;
+const std::vector<contact::Contact>& LayerStops::choose(const contact::ContactManifold& manifold, const reduction::Reduction& method) {
+  static const std::vector<contact::Contact> none;
   deep_.clear();
-  for (const Contact& contact : manifold.contacts) {
+  for (const contact::Contact& contact : manifold.contacts) {
     if (!(contact.depth > SEEN * manifold.layer)) continue;
     deep_.push_back(contact);
     deep_.back().depth -= STOP * manifold.layer;
   }
   if (deep_.empty()) return none;
   if (count_ == stops_.size()) stops_.emplace_back();
-  ContactManifold& stops = stops_[count_++];
+  contact::ContactManifold& stops = stops_[count_++];
   stops.a = manifold.a;
   stops.b = manifold.b;
   method.reduce(deep_, MOST, memory_.of(manifold), &stops.contacts);
@@ -39,11 +39,11 @@ void LayerStops::append(std::vector<std::uint64_t>* words) const {
   if (any_) memory_.append(words);
 }
 
-bool LayerStops::read(const std::vector<Collider>& colliders, const std::uint64_t* words, const std::uint64_t* end) {
+bool LayerStops::read(const std::vector<contact::Collider>& colliders, const std::uint64_t* words, const std::uint64_t* end) {
   clear();
   if (words == end) return true;
   any_ = memory_.read(colliders, &words, end) && !memory_.choices().empty();
   return any_ && words == end;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -7,7 +7,7 @@
 #include "blem_sim/contact/manifold.h"
 #include "blem_sim/reduction/reduction.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /**
  * Rigid contacts below the springs of compliant surfaces, where STOP of the layer is used up: a contact answers f = k depth+ - d v+ up to
@@ -23,7 +23,7 @@ class LayerStops {
   /** Call before the first pair of a reduction. */
   void start() { count_ = 0; }
   /** Stops of the next pair, in the order (a, b): its contacts with depths [m] beyond the stop. @param manifold before reduction */
-  const std::vector<Contact>& choose(const ContactManifold& manifold, const Reduction& method);
+  const std::vector<contact::Contact>& choose(const contact::ContactManifold& manifold, const reduction::Reduction& method);
   /** Call after the last pair: the next reduction goes on with the choices of this one. */
   void remember();
 
@@ -31,18 +31,18 @@ class LayerStops {
   /** Forgets the pairs of a collider whose slot another one may take. */
   void forget(int collider);
   /** Choices of the last reduction, by pairs. */
-  const ReductionMemory& memory() const { return memory_; }
+  const reduction::ReductionMemory& memory() const { return memory_; }
   /** The choices as words, for save: none if there are no stops. */
   void append(std::vector<std::uint64_t>* words) const;
   /** Reads the words of append, up to the end. @param colliders whose pairs they may be @return false if the words are others */
-  bool read(const std::vector<Collider>& colliders, const std::uint64_t* words, const std::uint64_t* end);
+  bool read(const std::vector<contact::Collider>& colliders, const std::uint64_t* words, const std::uint64_t* end);
 
  private:
-  ReductionMemory memory_;
-  bool any_ = false;                    // in the memory
-  std::vector<Contact> deep_;           // of the pair at hand
-  std::vector<ContactManifold> stops_;  // pair by pair; beyond count_ there is only memory to be used again
+  reduction::ReductionMemory memory_;
+  bool any_ = false;                             // in the memory
+  std::vector<contact::Contact> deep_;           // of the pair at hand
+  std::vector<contact::ContactManifold> stops_;  // pair by pair; beyond count_ there is only memory to be used again
   std::size_t count_ = 0;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -4,11 +4,11 @@
 
 #include "contacts/body_twist.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 /** World box of a collider's geometry, grown by `margin` [m]; everything for a half-space. */
-Box boxOf(const Collider& collider, const Pose& X_WC, double margin) {
+Box boxOf(const contact::Collider& collider, const Pose& X_WC, double margin) {
   const Box& box = collider.geometry->bounds();
   if (collider.geometry->isHalfSpace()) return box;
   const Vector3 half = X_WC.linear().cwiseAbs() * (0.5 * (box.max() - box.min())) + Vector3::Constant(margin), centre = X_WC * box.center();
@@ -18,9 +18,9 @@ Box boxOf(const Collider& collider, const Pose& X_WC, double margin) {
 }  // namespace
 
 // The speed is a convex function of place, so the corners of the box common to both tell its largest value.
-double meetingSpeed(const SimulatedWorld& world, const std::vector<BodyState>& bodies, const std::vector<ColliderMotion>& motion,
-                    int collider_a, int collider_b, double reach) {
-  const Collider &a = world.colliders[collider_a], &b = world.colliders[collider_b];
+double meetingSpeed(const SimulatedWorld& world, const std::vector<dynamics::BodyState>& bodies,
+                    const std::vector<contact::ColliderMotion>& motion, int collider_a, int collider_b, double reach) {
+  const contact::Collider &a = world.colliders[collider_a], &b = world.colliders[collider_b];
   const Pose &X_WA = motion[collider_a].X_WC, &X_WB = motion[collider_b].X_WC;
   const Box common = boxOf(a, X_WA, reach).intersection(boxOf(b, X_WB, reach));
   if (common.isEmpty()) return 0;
@@ -36,4 +36,4 @@ double meetingSpeed(const SimulatedWorld& world, const std::vector<BodyState>& b
   return fastest;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -5,7 +5,7 @@
 
 #include "build/simulated_world.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /**
  * Largest relative speed of the points that are within `reach` [m] of both colliders, whatever its direction; over a half-space the largest
@@ -13,7 +13,7 @@ namespace blem_sim {
  * @param bodies their states, by slot @param motion poses of the colliders
  * @return [m/s] at least 0
  */
-double meetingSpeed(const SimulatedWorld& world, const std::vector<BodyState>& bodies, const std::vector<ColliderMotion>& motion, int a,
-                    int b, double reach);
+double meetingSpeed(const SimulatedWorld& world, const std::vector<dynamics::BodyState>& bodies,
+                    const std::vector<contact::ColliderMotion>& motion, int a, int b, double reach);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -8,11 +8,11 @@
 #include "blem_sim/contact/collider_pairs.h"
 #include "contacts/contact_stage.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 PairSearches::PairSearches(int threads) : threads_(threads), arena_(std::min(threads, tbb::this_task_arena::max_concurrency())) {}
 
-void PairSearches::run(const std::vector<WatchedPair>& pairs, const std::function<void(std::size_t, NarrowPhaseMemory*)>& search) {
+void PairSearches::run(const std::vector<WatchedPair>& pairs, const std::function<void(std::size_t, contact::NarrowPhaseMemory*)>& search) {
   watch(pairs);
   const auto one = [&](std::size_t i) { search(i, &known_[i].memory); };
   if (threads_ == 1 || pairs.size() < 2) {
@@ -39,7 +39,7 @@ void PairSearches::watch(const std::vector<WatchedPair>& pairs) {
   giveBack(pairs);
   auto old = before_.begin();
   for (const WatchedPair& pair : pairs) {
-    while (old != before_.end() && IsPairBefore()(*old, pair)) ++old;
+    while (old != before_.end() && contact::IsPairBefore()(*old, pair)) ++old;
     known_.push_back(old != before_.end() && same(*old, pair) ? std::move(*old) : Known{pair.a, pair.b, takeSpare()});
   }
   before_.clear();
@@ -49,17 +49,17 @@ void PairSearches::watch(const std::vector<WatchedPair>& pairs) {
 void PairSearches::giveBack(const std::vector<WatchedPair>& pairs) {
   auto pair = pairs.begin();
   for (Known& old : before_) {
-    while (pair != pairs.end() && IsPairBefore()(*pair, old)) ++pair;
+    while (pair != pairs.end() && contact::IsPairBefore()(*pair, old)) ++pair;
     if (pair == pairs.end() || pair->a != old.a || pair->b != old.b) spare_.push_back(std::move(old.memory));
   }
 }
 
 /** A memory whose room serves again; its content is of other meshes or another pose, which the search sees. */
-NarrowPhaseMemory PairSearches::takeSpare() {
-  if (spare_.empty()) return NarrowPhaseMemory();
-  NarrowPhaseMemory memory = std::move(spare_.back());
+contact::NarrowPhaseMemory PairSearches::takeSpare() {
+  if (spare_.empty()) return contact::NarrowPhaseMemory();
+  contact::NarrowPhaseMemory memory = std::move(spare_.back());
   spare_.pop_back();
   return memory;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

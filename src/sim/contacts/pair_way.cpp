@@ -5,7 +5,7 @@
 
 #include "blem_sim/contact/narrow_phase.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr double SEARCH_SPACING = 0.5;  // layers between two searches on the way
@@ -17,18 +17,20 @@ constexpr double SAME_NORMAL = 0.02;  // sine
 Vector3 relativeVelocity(const WayOfPair& pair, const Vector3& point) { return pair.a.twist.at(point) - pair.b.twist.at(point); }
 
 /** Closing speed [m/s]. */
-double closing(const WayOfPair& pair, const Contact& contact) { return -contact.normal_BA.dot(relativeVelocity(pair, contact.point)); }
+double closing(const WayOfPair& pair, const contact::Contact& contact) {
+  return -contact.normal_BA.dot(relativeVelocity(pair, contact.point));
+}
 
 /** Distance [m] that the pair may close along a contact's normal in the solve. */
-double reach(const WayOfPair& pair, const Contact& contact) { return (closing(pair, contact) + pair.swing) * pair.dt; }
+double reach(const WayOfPair& pair, const contact::Contact& contact) { return (closing(pair, contact) + pair.swing) * pair.dt; }
 
-bool acts(const WayOfPair& pair, const Contact& contact) { return !touches(contact) && reach(pair, contact) > -contact.depth; }
+bool acts(const WayOfPair& pair, const contact::Contact& contact) { return !touches(contact) && reach(pair, contact) > -contact.depth; }
 
 /** The contact of a later pose as the bodies have it at the start: with the levers of that pose, and with the gap that their motion closes
  * until then. */
-Contact seenFromStart(const WayOfPair& pair, const Contact& contact, double time) {
-  Contact seen = contact;
-  const bool a_moves = pair.a.collider->body != WORLD_BODY, b_moves = pair.b.collider->body != WORLD_BODY;
+contact::Contact seenFromStart(const WayOfPair& pair, const contact::Contact& contact, double time) {
+  contact::Contact seen = contact;
+  const bool a_moves = pair.a.collider->body != dynamics::WORLD_BODY, b_moves = pair.b.collider->body != dynamics::WORLD_BODY;
   seen.point -= time / (a_moves + b_moves) * (pair.a.twist.at(pair.a.com) + pair.b.twist.at(pair.b.com));
   seen.depth -= time * closing(pair, seen);
   return seen;
@@ -37,7 +39,7 @@ Contact seenFromStart(const WayOfPair& pair, const Contact& contact, double time
 }  // namespace
 
 bool PairWay::isDoubtful(const WayOfPair& pair) const {
-  return std::any_of(pair.now.contacts.begin(), pair.now.contacts.end(), [&](const Contact& contact) {
+  return std::any_of(pair.now.contacts.begin(), pair.now.contacts.end(), [&](const contact::Contact& contact) {
     if (!acts(pair, contact)) return false;
     const Vector3 velocity = relativeVelocity(pair, contact.point);
     const Vector3 across = velocity - contact.normal_BA.dot(velocity) * contact.normal_BA;
@@ -48,12 +50,12 @@ bool PairWay::isDoubtful(const WayOfPair& pair) const {
 bool PairWay::touchesNow(std::uint64_t id) const { return std::binary_search(touching_.begin(), touching_.end(), id); }
 
 /** Time [s] in which the contacts surely do not touch anew: distances of convex features that move on straight shrink ever slower. */
-double PairWay::freeTime(const WayOfPair& pair, const std::vector<Contact>& contacts, double time) const {
+double PairWay::freeTime(const WayOfPair& pair, const std::vector<contact::Contact>& contacts, double time) const {
   double free = pair.dt, fastest = 0;
-  for (const Contact& contact : contacts) {
+  for (const contact::Contact& contact : contacts) {
     fastest = std::max(fastest, relativeVelocity(pair, contact.point).norm());
     if (touchesNow(contact.id)) continue;
-    Contact here = contact;
+    contact::Contact here = contact;
     here.depth = 0;
     const double speed = closing(pair, seenFromStart(pair, here, time));
     if (speed > 0) free = std::min(free, (pair.depth + TOUCHING - contact.depth) / speed);
@@ -63,16 +65,16 @@ double PairWay::freeTime(const WayOfPair& pair, const std::vector<Contact>& cont
 }
 
 /** Depth [m] of the deepest contact that does not touch at the start. */
-double PairWay::newDepth(const std::vector<Contact>& contacts) const {
+double PairWay::newDepth(const std::vector<contact::Contact>& contacts) const {
   double depth = -std::numeric_limits<double>::infinity();
-  for (const Contact& contact : contacts)
+  for (const contact::Contact& contact : contacts)
     if (contact.depth > depth && !touchesNow(contact.id)) depth = contact.depth;
   return depth;
 }
 
 /** Searches the pose where the pair meets, or is nearest: met_, met_time_. @return false if it cannot be told */
-bool PairWay::search(const WayOfPair& pair, const FlushSurfaces& flush, const std::vector<Collider>& colliders,
-                     const std::vector<ColliderMotion>& motion) {
+bool PairWay::search(const WayOfPair& pair, const FlushSurfaces& flush, const std::vector<contact::Collider>& colliders,
+                     const std::vector<contact::ColliderMotion>& motion) {
   double time = std::min(pair.dt, freeTime(pair, pair.now.contacts, 0)), nearest = -std::numeric_limits<double>::infinity();
   at_.a = pair.now.a, at_.b = pair.now.b;
   met_.contacts.clear();
@@ -95,35 +97,36 @@ bool PairWay::search(const WayOfPair& pair, const FlushSurfaces& flush, const st
   return false;
 }
 
-bool PairWay::isMetAsItIs(const Contact& contact) const {
-  return std::any_of(met_.contacts.begin(), met_.contacts.end(),
-                     [&](const Contact& met) { return met.id == contact.id && (met.normal_BA - contact.normal_BA).norm() < SAME_NORMAL; });
+bool PairWay::isMetAsItIs(const contact::Contact& contact) const {
+  return std::any_of(met_.contacts.begin(), met_.contacts.end(), [&](const contact::Contact& met) {
+    return met.id == contact.id && (met.normal_BA - contact.normal_BA).norm() < SAME_NORMAL;
+  });
 }
 
-bool PairWay::follow(const WayOfPair& pair, const FlushSurfaces& flush, const std::vector<Collider>& colliders,
-                     const std::vector<ColliderMotion>& motion, std::vector<Contact>* contacts) {
+bool PairWay::follow(const WayOfPair& pair, const FlushSurfaces& flush, const std::vector<contact::Collider>& colliders,
+                     const std::vector<contact::ColliderMotion>& motion, std::vector<contact::Contact>* contacts) {
   touching_.clear();
-  for (const Contact& contact : pair.now.contacts)
+  for (const contact::Contact& contact : pair.now.contacts)
     if (touches(contact)) touching_.push_back(contact.id);
   std::sort(touching_.begin(), touching_.end());
   if (!search(pair, flush, colliders, motion)) return false;
   contacts->clear();
-  for (const Contact& contact : pair.now.contacts)
+  for (const contact::Contact& contact : pair.now.contacts)
     if (!acts(pair, contact) || (touches_ && isMetAsItIs(contact))) contacts->push_back(contact);
   const std::size_t kept = contacts->size();
   if (kept == pair.now.contacts.size()) return false;
   const auto isKept = [&](std::uint64_t id) {
-    return std::any_of(contacts->begin(), contacts->begin() + kept, [id](const Contact& contact) { return contact.id == id; });
+    return std::any_of(contacts->begin(), contacts->begin() + kept, [id](const contact::Contact& contact) { return contact.id == id; });
   };
-  for (const Contact& contact : met_.contacts) {
+  for (const contact::Contact& contact : met_.contacts) {
     if (isKept(contact.id)) continue;
-    Contact seen = seenFromStart(pair, contact, met_time_);
+    contact::Contact seen = seenFromStart(pair, contact, met_time_);
     if (reach(pair, seen) < -TOUCHING) continue;  // behind the pair by then
     if (!touches_) seen.depth = std::min(seen.depth, -(reach(pair, seen) + TOUCHING));
     contacts->push_back(seen);
   }
-  std::sort(contacts->begin(), contacts->end(), [](const Contact& a, const Contact& b) { return a.id < b.id; });
+  std::sort(contacts->begin(), contacts->end(), [](const contact::Contact& a, const contact::Contact& b) { return a.id < b.id; });
   return true;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

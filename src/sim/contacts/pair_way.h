@@ -9,16 +9,16 @@
 #include "contacts/body_twist.h"
 #include "contacts/flush_surfaces.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 constexpr double TOUCHING = 1e-6;  ///< [m] a contact with no larger gap touches; a touch on the way that is no deeper is none
 constexpr double ACROSS = 0.01;    ///< layers that a pair moves across a normal until its gap is used up: less turns no normal
 
-inline bool touches(const Contact& contact) { return contact.depth > -TOUCHING; }
+inline bool touches(const contact::Contact& contact) { return contact.depth > -TOUCHING; }
 
 /** A collider at the start of the solve. */
 struct ColliderWay {
-  const Collider* collider;
+  const contact::Collider* collider;
   Pose X_WC;
   Vector3 com;      ///< [m] its body's, world
   BodyTwist twist;  ///< its body's way
@@ -26,7 +26,7 @@ struct ColliderWay {
 
 /** First state of a pair, and the time for which it is followed. */
 struct WayOfPair {
-  const ContactManifold& now;  ///< its contacts
+  const contact::ContactManifold& now;  ///< its contacts
   ColliderWay a, b;
   double known = 0;                      ///< [m] distance beyond the layers within which contacts are known
   double depth = 0;                      ///< [m] of the deepest contact that touches, of both bodies; at least 0
@@ -46,21 +46,21 @@ class PairWay {
    * @param contacts to be solved, sorted by id; unchanged if all that would act are met as they are
    * @return false, and nothing is written, if contacts stay as they are: also where bare meshes cross on the way
    */
-  bool follow(const WayOfPair& pair, const FlushSurfaces& flush, const std::vector<Collider>& colliders,
-              const std::vector<ColliderMotion>& motion, std::vector<Contact>* contacts);
+  bool follow(const WayOfPair& pair, const FlushSurfaces& flush, const std::vector<contact::Collider>& colliders,
+              const std::vector<contact::ColliderMotion>& motion, std::vector<contact::Contact>* contacts);
 
  private:
-  bool search(const WayOfPair& pair, const FlushSurfaces& flush, const std::vector<Collider>& colliders,
-              const std::vector<ColliderMotion>& motion);
-  double freeTime(const WayOfPair& pair, const std::vector<Contact>& contacts, double time) const;
-  double newDepth(const std::vector<Contact>& contacts) const;
+  bool search(const WayOfPair& pair, const FlushSurfaces& flush, const std::vector<contact::Collider>& colliders,
+              const std::vector<contact::ColliderMotion>& motion);
+  double freeTime(const WayOfPair& pair, const std::vector<contact::Contact>& contacts, double time) const;
+  double newDepth(const std::vector<contact::Contact>& contacts) const;
   bool touchesNow(std::uint64_t id) const;
-  bool isMetAsItIs(const Contact& contact) const;
+  bool isMetAsItIs(const contact::Contact& contact) const;
 
   std::vector<std::uint64_t> touching_;  // ids, ascending
-  ContactManifold at_, met_;
+  contact::ContactManifold at_, met_;
   double met_time_ = 0;  // [s] of met_
   bool touches_ = false;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -7,7 +7,7 @@
 #include "blem_sim/geometry/input_error.h"
 #include "numbers/nearest_name.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 std::vector<int> drivenJoints(const RobotInfo& robot) {
@@ -32,4 +32,4 @@ std::vector<int> controlledJoints(const RobotInfo& robot, const ControllerConfig
   return joints;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

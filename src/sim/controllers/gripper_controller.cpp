@@ -8,7 +8,7 @@
 #include "controllers/controlled_joints.h"
 #include "numbers/nearest_turn.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 int onlyJoint(const RobotInfo& robot, const ControllerConfig& config) {
@@ -54,7 +54,7 @@ void GripperController::cancel() {
 
 std::optional<GoalOutcome> GripperController::update() {
   if (!goal_) return {};
-  const JointState now = joint();
+  const dynamics::JointState now = joint();
   const double error = errorFrom(now.position), time = simulator_->time();
   if (replaced()) return end(GoalEnd::PREEMPTED, "the joint got another command or was reset");
   reached_ = std::abs(error) < config_.goal_tolerance;
@@ -66,11 +66,11 @@ std::optional<GoalOutcome> GripperController::update() {
 }
 
 GripperState GripperController::state() const {
-  const JointState now = joint();
+  const dynamics::JointState now = joint();
   return {now.position, now.effort, stalled_, reached_};
 }
 
-JointState GripperController::joint() const { return simulator_->world().jointState(robotInfo().joints[joint_]); }
+dynamics::JointState GripperController::joint() const { return simulator_->world().jointState(robotInfo().joints[joint_]); }
 
 double GripperController::errorFrom(double position) const {
   const bool continuous = robotInfo().continuous[joint_];
@@ -87,4 +87,4 @@ GoalOutcome GripperController::end(GoalEnd end, const std::string& text) {
   return {end, GoalError::SUCCESSFUL, text};
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -9,7 +9,7 @@
 #include "controllers/controlled_joints.h"
 #include "numbers/nearest_name.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 // Messages count in nanoseconds: times that are no further apart are the same.
@@ -152,4 +152,4 @@ double TrajectoryController::halt() {
   return now + duration;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -7,7 +7,7 @@
 #include "blem_sim/sim/trajectory_controller.h"
 #include "numbers/nearest_turn.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 // A step's time and a trajectory's end are sums of their own, so that one instant has several numbers.
@@ -89,7 +89,7 @@ TrajectoryController::Goal TrajectoryController::goalFor(const TrajectoryGoal& a
 
 TrackingState TrajectoryController::stateAt(int joint, double time) const {
   const RobotInfo& info = robotInfo();
-  const JointState actual = simulator_->world().jointState(info.joints[joints_[joint]]);
+  const dynamics::JointState actual = simulator_->world().jointState(info.joints[joints_[joint]]);
   TrackingState state{simulator_->desiredState(robot(), joints_[joint], time), actual.position, actual.velocity, 0, 0};
   const double desired = state.desired.position;
   state.position_error = info.continuous[joints_[joint]] ? shortestTurn(actual.position, desired) : desired - actual.position;
@@ -154,4 +154,4 @@ std::optional<GoalOutcome> TrajectoryController::update() {
   return outcome;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

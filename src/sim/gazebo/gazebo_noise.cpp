@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 /** Takes the number of larger size. @return whether they differ */
@@ -42,4 +42,4 @@ GazeboNoise readAxes(GazeboReader* reader, const std::vector<std::string>& axes,
   return largest;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -6,7 +6,7 @@
 
 #include "gazebo/gazebo_reader.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /** Gaussian noise of one axis, in the unit of what is measured. */
 struct GazeboNoise {
@@ -20,4 +20,4 @@ GazeboNoise readNoise(GazeboReader* reader, const std::string& path, const std::
 /** The largest of what axes have; noted if they differ. @param what the axes measure, for the note */
 GazeboNoise readAxes(GazeboReader* reader, const std::vector<std::string>& axes, const std::string& what);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr std::size_t LONGEST_WORDS = 300;  // characters
@@ -37,4 +37,4 @@ std::vector<std::string> GazeboNotes::lines() const {
   return lines;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 class GazeboNotes {
  public:
@@ -52,4 +52,4 @@ class GazeboNotes {
   std::vector<std::string> faults_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

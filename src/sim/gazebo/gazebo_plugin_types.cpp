@@ -7,7 +7,7 @@
 #include <iterator>
 #include <limits>
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 double together(double first_stddev, double second_stddev) { return std::hypot(first_stddev, second_stddev); }
@@ -158,4 +158,4 @@ const GazeboPluginType* gazeboPluginType(const std::string& filename) {
   return found == std::end(PLUGIN_TYPES) ? nullptr : found;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

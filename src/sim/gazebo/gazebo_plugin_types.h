@@ -6,7 +6,7 @@
 #include "blem_sim/sim/config.h"
 #include "gazebo/gazebo_reader.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /** A sensor as its <sensor> and its <plugin> say. */
 struct GazeboSensor {
@@ -26,4 +26,4 @@ const GazeboPluginType* gazeboPluginType(const std::string& filename);
 /** "gazebo_ros_p3d" of "libgazebo_ros_p3d.so" */
 std::string pluginName(const std::string& filename);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

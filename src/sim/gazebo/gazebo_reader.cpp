@@ -7,7 +7,7 @@
 #include <locale>
 #include <sstream>
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr double NEARLY_ZERO = 1e-6;  // written where other programs refuse 0
@@ -16,7 +16,7 @@ constexpr double NEARLY_ZERO = 1e-6;  // written where other programs refuse 0
 
 std::optional<std::string> GazeboReader::text(const std::string& path) {
   known_.insert(path);
-  const auto named = [&](const GazeboValue& value) { return value.path == path; };
+  const auto named = [&](const model::GazeboValue& value) { return value.path == path; };
   const auto found = std::find_if(block_.values.begin(), block_.values.end(), named);
   return found == block_.values.end() ? std::nullopt : std::make_optional(found->text);
 }
@@ -87,7 +87,7 @@ void GazeboReader::read(const std::string& path, Pose* value) {
 bool GazeboReader::skipOne(const std::string& path) {
   const std::string inside = path + "/";
   bool any = false;
-  for (const GazeboValue& value : block_.values) {
+  for (const model::GazeboValue& value : block_.values) {
     if (value.path != path && value.path.compare(0, inside.size(), inside) != 0) continue;
     known_.insert(value.path);
     any = true;
@@ -113,7 +113,7 @@ void GazeboReader::skipZeros(std::initializer_list<const char*> paths) {
 }
 
 void GazeboReader::finish() const {
-  for (const GazeboValue& value : block_.values)
+  for (const model::GazeboValue& value : block_.values)
     if (known_.count(value.path) == 0) notes_.unknown(where(), fmt::format("<{}>", value.path));
 }
 
@@ -126,4 +126,4 @@ std::string GazeboReader::where() const {
   return fmt::format("{} '{}'", block_.element, block_.name.empty() ? block_.type : block_.name);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

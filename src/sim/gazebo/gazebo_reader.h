@@ -11,11 +11,11 @@
 #include "config/yaml_reader.h"
 #include "gazebo/gazebo_notes.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 class GazeboReader {
  public:
-  GazeboReader(const GazeboBlock& block, GazeboNotes* notes) : block_(block), notes_(*notes) {}
+  GazeboReader(const model::GazeboBlock& block, GazeboNotes* notes) : block_(block), notes_(*notes) {}
 
   /** The first text at a path, known from now on; nothing if there is none. */
   std::optional<std::string> text(const std::string& path);
@@ -43,15 +43,15 @@ class GazeboReader {
   /** The block in words, for notes. */
   std::string where() const;
   GazeboNotes& notes() const { return notes_; }
-  const GazeboBlock& block() const { return block_; }
+  const model::GazeboBlock& block() const { return block_; }
 
  private:
   bool skipOne(const std::string& path);
   std::optional<std::vector<double>> numbers(const std::string& path, std::size_t count);
 
-  const GazeboBlock& block_;
+  const model::GazeboBlock& block_;
   GazeboNotes& notes_;
   std::set<std::string> known_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -3,13 +3,13 @@
 #include "gazebo/gazebo_sensors.h"
 #include "gazebo/gazebo_values.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
-GazeboRobot withGazeboBlocks(const RobotConfig& config, const RobotModel& model) {
+GazeboRobot withGazeboBlocks(const RobotConfig& config, const model::RobotModel& model) {
   GazeboRobot robot{config, {}};
   GazeboNotes notes(model.source);
   GazeboSensors sensors(model, &notes, &robot.config);
-  for (const GazeboBlock& block : model.gazebo) {
+  for (const model::GazeboBlock& block : model.gazebo) {
     readGazeboValues(block, model, &notes, &robot.config);
     sensors.read(block);
   }
@@ -17,4 +17,4 @@ GazeboRobot withGazeboBlocks(const RobotConfig& config, const RobotModel& model)
   return robot;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -7,7 +7,7 @@
 #include "blem_sim/model/robot_model.h"
 #include "blem_sim/sim/config.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 struct GazeboRobot {
   RobotConfig config;
@@ -18,6 +18,6 @@ struct GazeboRobot {
  * Adds surfaces, self collision and sensors. The configuration beats the URDF: a sensor whose name or topic it has, and the surfaces that
  * it sets, stay as they are. What is not understood or cannot be used is told in the notes; nothing throws.
  */
-GazeboRobot withGazeboBlocks(const RobotConfig& config, const RobotModel& model);
+GazeboRobot withGazeboBlocks(const RobotConfig& config, const model::RobotModel& model);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -9,7 +9,7 @@
 
 #include "gazebo/gazebo_noise.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 GazeboNoise readVector(GazeboReader* reader, const std::string& path) {
@@ -120,4 +120,4 @@ const GazeboSensorType* gazeboSensorType(const std::string& name) {
   return found == std::end(SENSOR_TYPES) ? nullptr : found;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

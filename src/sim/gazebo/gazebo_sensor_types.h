@@ -6,7 +6,7 @@
 #include "blem_sim/sim/config.h"
 #include "gazebo/gazebo_reader.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /** A kind of <sensor>. */
 struct GazeboSensorType {
@@ -18,4 +18,4 @@ struct GazeboSensorType {
 /** Null if the type is not known. */
 const GazeboSensorType* gazeboSensorType(const std::string& name);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

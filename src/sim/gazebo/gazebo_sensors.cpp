@@ -10,7 +10,7 @@
 #include "gazebo/gazebo_sensor_types.h"
 #include "numbers/nearest_name.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr std::size_t MOST_SENSORS = 1000;   // of a robot
@@ -71,8 +71,8 @@ std::string unknownName(const std::string& kind, const std::string& name, const 
 
 }  // namespace
 
-void GazeboSensors::read(const GazeboBlock& gazebo) {
-  for (const GazeboBlock& block : gazebo.blocks) {
+void GazeboSensors::read(const model::GazeboBlock& gazebo) {
+  for (const model::GazeboBlock& block : gazebo.blocks) {
     if (block.element == "sensor")
       readSensor(block);
     else
@@ -80,7 +80,7 @@ void GazeboSensors::read(const GazeboBlock& gazebo) {
   }
 }
 
-void GazeboSensors::readSensor(const GazeboBlock& block) {
+void GazeboSensors::readSensor(const model::GazeboBlock& block) {
   const GazeboSensorType* type = gazeboSensorType(block.type);
   GazeboReader reader(block, &notes_);
   if (!type) return notes_.unknown(reader.where(), fmt::format("of type '{}'", block.type));
@@ -96,7 +96,7 @@ void GazeboSensors::readSensor(const GazeboBlock& block) {
     reader.fault("pose", "the sensor sits at the joint; it is left out: take it away");
   reader.skip({"always_on", "visualize", "topic", "pose/frame"});
   reader.finish();
-  for (const GazeboBlock& inner : block.blocks) {
+  for (const model::GazeboBlock& inner : block.blocks) {
     const GazeboPluginType* plugin = inner.element == "plugin" ? gazeboPluginType(inner.type) : nullptr;
     GazeboReader plugin_reader(inner, &notes_);
     if (!plugin || plugin->type != config.type) {
@@ -110,7 +110,7 @@ void GazeboSensors::readSensor(const GazeboBlock& block) {
   add(std::move(sensor), block);
 }
 
-void GazeboSensors::readPlugin(const GazeboBlock& block) {
+void GazeboSensors::readPlugin(const model::GazeboBlock& block) {
   const GazeboPluginType* type = gazeboPluginType(block.type);
   if (!type) return readOtherPlugin(block);
   GazeboReader reader(block, &notes_);
@@ -125,7 +125,7 @@ void GazeboSensors::readPlugin(const GazeboBlock& block) {
   add(std::move(sensor), block);
 }
 
-void GazeboSensors::readOtherPlugin(const GazeboBlock& block) {
+void GazeboSensors::readOtherPlugin(const model::GazeboBlock& block) {
   const std::string name = pluginName(block.type);
   GazeboReader reader(block, &notes_);
   if (name == "gazebo_ros_control") {
@@ -154,7 +154,7 @@ std::string GazeboSensors::resolved(const std::string& topic) const {
   return withoutDoubleSlashes(absolute ? topic : "/" + config_.name_space + "/" + topic);
 }
 
-void GazeboSensors::add(GazeboSensor sensor, const GazeboBlock& block) {
+void GazeboSensors::add(GazeboSensor sensor, const model::GazeboBlock& block) {
   const GazeboReader reader(block, &notes_);
   SensorConfig& config = sensor.config;
   if (config_.sensors.size() >= configured_ + MOST_SENSORS)
@@ -204,7 +204,8 @@ bool GazeboSensors::sitsSomewhere(const SensorConfig& sensor, const GazeboReader
     if (model_.linkIndex(sensor.link) < 0) why = unknownName("link", sensor.link, model_.links);
   } else if (const int joint = model_.jointIndex(sensor.joint); joint < 0) {
     why = unknownName("joint", sensor.joint, model_.joints);
-  } else if (const JointType type = model_.joints[joint].type; type == JointType::FLOATING || type == JointType::PLANAR) {
+  } else if (const model::JointType type = model_.joints[joint].type;
+             type == model::JointType::FLOATING || type == model::JointType::PLANAR) {
     why = fmt::format("joint '{}' is floating or planar and carries no wrench", sensor.joint);
   }
   if (!why.empty()) notes_.fault(reader.where(), why + "; it is left out: name another");
@@ -229,4 +230,4 @@ bool GazeboSensors::topicIsFree(const GazeboReader& reader, SensorConfig* sensor
   return true;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

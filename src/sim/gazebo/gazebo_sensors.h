@@ -8,21 +8,22 @@
 #include "gazebo/gazebo_notes.h"
 #include "gazebo/gazebo_plugin_types.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /** Adds sensors to a robot's configuration, one by one. */
 class GazeboSensors {
  public:
-  GazeboSensors(const RobotModel& model, GazeboNotes* notes, RobotConfig* config) : model_(model), notes_(*notes), config_(*config) {}
+  GazeboSensors(const model::RobotModel& model, GazeboNotes* notes, RobotConfig* config)
+      : model_(model), notes_(*notes), config_(*config) {}
 
   /** Reads the sensors and plugins in a <gazebo>. */
-  void read(const GazeboBlock& gazebo);
+  void read(const model::GazeboBlock& gazebo);
 
  private:
-  void readSensor(const GazeboBlock& block);
-  void readPlugin(const GazeboBlock& block);
-  void readOtherPlugin(const GazeboBlock& block);
-  void add(GazeboSensor sensor, const GazeboBlock& block);
+  void readSensor(const model::GazeboBlock& block);
+  void readPlugin(const model::GazeboBlock& block);
+  void readOtherPlugin(const model::GazeboBlock& block);
+  void add(GazeboSensor sensor, const model::GazeboBlock& block);
   void nameTopics(GazeboSensor* sensor);
   void nameFrame(const GazeboReader& reader, SensorConfig* sensor);
   bool sitsSomewhere(const SensorConfig& sensor, const GazeboReader& reader) const;
@@ -30,10 +31,10 @@ class GazeboSensors {
   std::string resolved(const std::string& topic) const;
   const SensorConfig* sensorNamed(const std::string& name) const;
 
-  const RobotModel& model_;
+  const model::RobotModel& model_;
   GazeboNotes& notes_;
   RobotConfig& config_;
   std::size_t configured_ = config_.sensors.size();  ///< sensors of the configuration, which come first
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -4,7 +4,7 @@
 
 #include "gazebo/gazebo_reader.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr double RIGID_FROM = 1e6;     // [N/m] from here on, as URDF's limits are none from 1e6 on
@@ -32,8 +32,8 @@ void readStiffness(GazeboReader* reader, ContactOverrides* surface) {
   reader->read("kd", &damping, NumberRange::notNegative());
   if (!stiffness) return;
   const bool rigid = *stiffness >= RIGID_FROM;
-  surface->stiffness = rigid ? SurfaceProperties().stiffness : *stiffness;
-  surface->damping = rigid ? SurfaceProperties().damping : damping.value_or(GAZEBOS_DAMPING);
+  surface->stiffness = rigid ? contact::SurfaceProperties().stiffness : *stiffness;
+  surface->damping = rigid ? contact::SurfaceProperties().damping : damping.value_or(GAZEBOS_DAMPING);
 }
 
 /** Takes what is given over what an earlier block said. */
@@ -75,7 +75,7 @@ void readRobotValues(GazeboReader* reader, RobotConfig* config) {
 
 }  // namespace
 
-void readGazeboValues(const GazeboBlock& block, const RobotModel& model, GazeboNotes* notes, RobotConfig* config) {
+void readGazeboValues(const model::GazeboBlock& block, const model::RobotModel& model, GazeboNotes* notes, RobotConfig* config) {
   GazeboReader reader(block, notes);
   if (block.reference.empty()) {
     readRobotValues(&reader, config);
@@ -91,4 +91,4 @@ void readGazeboValues(const GazeboBlock& block, const RobotModel& model, GazeboN
   reader.finish();
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

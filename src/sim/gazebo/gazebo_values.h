@@ -5,9 +5,9 @@
 #include "blem_sim/sim/config.h"
 #include "gazebo/gazebo_notes.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /** Reads what stands in a <gazebo> beside its sensors and plugins into described_links and the self collision of a robot. */
-void readGazeboValues(const GazeboBlock& block, const RobotModel& model, GazeboNotes* notes, RobotConfig* config);
+void readGazeboValues(const model::GazeboBlock& block, const model::RobotModel& model, GazeboNotes* notes, RobotConfig* config);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

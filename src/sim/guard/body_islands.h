@@ -3,7 +3,7 @@
 
 #include <vector>
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /** Disjoint sets of bodies [Tarjan 1975]; the least index of a set stands for it. Allocates only when there are more bodies than ever. */
 class BodyIslands {
@@ -36,4 +36,4 @@ class BodyIslands {
   std::vector<int> parent_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

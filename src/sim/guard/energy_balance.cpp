@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 double square(double x) { return x * x; }
 
-bool isSpring(const ContactConstraint& c) { return std::isfinite(c.stiffness) && std::isfinite(c.damping); }
+bool isSpring(const dynamics::ContactConstraint& c) { return std::isfinite(c.stiffness) && std::isfinite(c.damping); }
 
 /** Speed [m/s] at which a contact that is too deep pushes on purpose. */
-double correctionSpeed(const ContactConstraint& c, bool recovers, double dt, const SolverSettings& settings) {
+double correctionSpeed(const dynamics::ContactConstraint& c, bool recovers, double dt, const dynamics::SolverSettings& settings) {
   if (!(c.depth > 0)) return 0;
   if (!isSpring(c)) return std::min(settings.correction_fraction * c.depth / dt, settings.max_correction_speed);
   return recovers && c.damping > 0 ? c.stiffness * c.depth / c.damping : 0;
@@ -20,30 +20,32 @@ double correctionSpeed(const ContactConstraint& c, bool recovers, double dt, con
 /** Displacements of points of bodies; contacts of one body follow on each other. */
 class Displacements {
  public:
-  Displacements(const std::vector<BodyState>& before, const std::vector<BodyState>& after) : before_(before), after_(after) {}
+  Displacements(const std::vector<dynamics::BodyState>& before, const std::vector<dynamics::BodyState>& after)
+      : before_(before), after_(after) {}
 
   Vector3 of(const Vector3& point, int body) {
-    if (body == WORLD_BODY) return Vector3::Zero();
+    if (body == dynamics::WORLD_BODY) return Vector3::Zero();
     if (body != last_) X_BW_before_ = before_[body].X_WB.inverse();
     last_ = body;
     return after_[body].X_WB * (X_BW_before_ * point) - point;
   }
 
  private:
-  const std::vector<BodyState>&before_, &after_;
-  int last_ = WORLD_BODY;
+  const std::vector<dynamics::BodyState>&before_, &after_;
+  int last_ = dynamics::WORLD_BODY;
   Pose X_BW_before_;
 };
 
 }  // namespace
 
-void EnergyBalance::start(const World& world) {
+void EnergyBalance::start(const dynamics::World& world) {
   joints_.resize(world.jointCount());
   for (int joint = 0; joint < world.jointCount(); ++joint) joints_[joint] = world.jointState(joint);
 }
 
-EnergyGain EnergyBalance::addSolve(const World& world, double dt, const ContactStage& contacts, const SolveResult& solved,
-                                   const std::vector<BodyState>& before, const std::vector<BodyState>& after) {
+EnergyGain EnergyBalance::addSolve(const dynamics::World& world, double dt, const ContactStage& contacts,
+                                   const dynamics::SolveResult& solved, const std::vector<dynamics::BodyState>& before,
+                                   const std::vector<dynamics::BodyState>& after) {
   tie(world, contacts, solved.contact_forces);
   bookBodies(world, dt, before, after);
   bookLoads(world, dt, before, after);
@@ -62,10 +64,10 @@ EnergyGain EnergyBalance::addSolve(const World& world, double dt, const ContactS
 }
 
 // A contact without a force passes no energy on.
-void EnergyBalance::tie(const World& world, const ContactStage& contacts, const std::vector<Vector3>& forces) {
+void EnergyBalance::tie(const dynamics::World& world, const ContactStage& contacts, const std::vector<Vector3>& forces) {
   islands_.start(world.bodyCount());
   for (int joint = 0; joint < world.jointCount(); ++joint) {
-    const JointSpec& spec = world.jointSpec(joint);
+    const dynamics::JointSpec& spec = world.jointSpec(joint);
     islands_.tie(spec.parent, spec.child);
     if (spec.mimic_joint >= 0) islands_.tie(spec.child, world.jointSpec(spec.mimic_joint).child);
   }
@@ -74,18 +76,19 @@ void EnergyBalance::tie(const World& world, const ContactStage& contacts, const 
   books_.assign(world.bodyCount(), Book());
 }
 
-EnergyBalance::Book& EnergyBalance::bookOf(const ContactConstraint& contact) {
-  return books_[islands_.islandOf(contact.body_a != WORLD_BODY ? contact.body_a : contact.body_b)];
+EnergyBalance::Book& EnergyBalance::bookOf(const dynamics::ContactConstraint& contact) {
+  return books_[islands_.islandOf(contact.body_a != dynamics::WORLD_BODY ? contact.body_a : contact.body_b)];
 }
 
 // Steppers move bodies by the velocity at a step's end, while kinetic energy changes by forces times mean velocity: the way that weights
 // work along is the mean velocity's. Without this, flight would lose m g^2 dt^2 / 2 a step and a bounce gain it back.
-void EnergyBalance::bookBodies(const World& world, double dt, const std::vector<BodyState>& before, const std::vector<BodyState>& after) {
+void EnergyBalance::bookBodies(const dynamics::World& world, double dt, const std::vector<dynamics::BodyState>& before,
+                               const std::vector<dynamics::BodyState>& after) {
   coms_.resize(after.size());
   held_.resize(after.size(), 0);
   for (std::size_t b = 0; b < after.size(); ++b) {
-    const MassProperties& body = world.bodySpec(static_cast<int>(b)).inertial;
-    const BodyState &old = before[b], &now = after[b];
+    const geometry::MassProperties& body = world.bodySpec(static_cast<int>(b)).inertial;
+    const dynamics::BodyState &old = before[b], &now = after[b];
     coms_[b] = old.X_WB * body.com;
     const Vector3 way = now.X_WB * body.com - coms_[b] - 0.5 * dt * (now.v_WCom - old.v_WCom);
     const Vector3 old_spin = old.X_WB.linear().transpose() * old.w_WB, spin = now.X_WB.linear().transpose() * now.w_WB;
@@ -102,9 +105,10 @@ void EnergyBalance::bookBodies(const World& world, double dt, const std::vector<
 }
 
 // Books the work of wrenches from outside: along the way of the mean velocity, as for weights.
-void EnergyBalance::bookLoads(const World& world, double dt, const std::vector<BodyState>& before, const std::vector<BodyState>& after) {
+void EnergyBalance::bookLoads(const dynamics::World& world, double dt, const std::vector<dynamics::BodyState>& before,
+                              const std::vector<dynamics::BodyState>& after) {
   for (const BodyLoad& load : loads_) {
-    const BodyState &old = before[load.body], &now = after[load.body];
+    const dynamics::BodyState &old = before[load.body], &now = after[load.body];
     const Vector3& com = world.bodySpec(load.body).inertial.com;
     const Vector3 arm = old.X_WB.linear() * (load.p_B - com);
     const Vector3 way = now.X_WB * com - old.X_WB * com - 0.5 * dt * (now.v_WCom - old.v_WCom);
@@ -117,11 +121,11 @@ void EnergyBalance::bookLoads(const World& world, double dt, const std::vector<B
 }
 
 // Books the work of joints: effort times mean velocity, for the same reason.
-void EnergyBalance::bookJoints(const World& world, double dt, const std::vector<double>& efforts) {
+void EnergyBalance::bookJoints(const dynamics::World& world, double dt, const std::vector<double>& efforts) {
   for (int joint = 0; joint < world.jointCount(); ++joint) {
-    const JointSpec& spec = world.jointSpec(joint);
-    const JointState state = world.jointState(joint);
-    JointState& last = joints_[joint];
+    const dynamics::JointSpec& spec = world.jointSpec(joint);
+    const dynamics::JointState state = world.jointState(joint);
+    dynamics::JointState& last = joints_[joint];
     const double work = efforts[joint] * (state.position - last.position - 0.5 * dt * (state.velocity - last.velocity));
     Book& book = books_[islands_.islandOf(spec.child)];
     book.rise += 0.5 * spec.armature * (square(state.velocity) - square(last.velocity)) - work;
@@ -131,10 +135,11 @@ void EnergyBalance::bookJoints(const World& world, double dt, const std::vector<
 }
 
 // Books the energy of springs; those that part crossed meshes hold none.
-void EnergyBalance::bookSprings(const ContactStage& contacts, const std::vector<BodyState>& before, const std::vector<BodyState>& after) {
+void EnergyBalance::bookSprings(const ContactStage& contacts, const std::vector<dynamics::BodyState>& before,
+                                const std::vector<dynamics::BodyState>& after) {
   Displacements a(before, after), b(before, after);
   for (std::size_t i = 0; i < contacts.constraints().size(); ++i) {
-    const ContactConstraint& contact = contacts.constraints()[i];
+    const dynamics::ContactConstraint& contact = contacts.constraints()[i];
     if (!isSpring(contact) || contacts.solved()[i].recovers) continue;
     const Vector3 apart = a.of(contact.point, contact.body_a) - b.of(contact.point, contact.body_b);
     const double old_depth = std::max(0.0, contact.depth), depth = std::max(0.0, contact.depth - contact.normal_BA.dot(apart));
@@ -144,22 +149,22 @@ void EnergyBalance::bookSprings(const ContactStage& contacts, const std::vector<
   }
 }
 
-double EnergyBalance::normalSpeed(const ContactConstraint& contact, const std::vector<BodyState>& states) const {
+double EnergyBalance::normalSpeed(const dynamics::ContactConstraint& contact, const std::vector<dynamics::BodyState>& states) const {
   const auto velocity = [&](int body) -> Vector3 {
-    if (body == WORLD_BODY) return Vector3::Zero();
+    if (body == dynamics::WORLD_BODY) return Vector3::Zero();
     return states[body].v_WCom + states[body].w_WB.cross(contact.point - coms_[body]);
   };
   return contact.normal_BA.dot(velocity(contact.body_a) - velocity(contact.body_b));
 }
 
 // Apparent work of steppers that do not report it is taken as half the loss of a departure that loads brake in this step.
-void EnergyBalance::bookContacts(double dt, const ContactStage& contacts, const SolveResult& solved, const std::vector<BodyState>& before,
-                                 const std::vector<BodyState>& after) {
+void EnergyBalance::bookContacts(double dt, const ContactStage& contacts, const dynamics::SolveResult& solved,
+                                 const std::vector<dynamics::BodyState>& before, const std::vector<dynamics::BodyState>& after) {
   const std::vector<Vector3>& forces = solved.contact_forces;
   landings_.clear();
   for (std::size_t i = 0; i < forces.size(); ++i) {
     if (forces[i].isZero(0)) continue;
-    const ContactConstraint& contact = contacts.constraints()[i];
+    const dynamics::ContactConstraint& contact = contacts.constraints()[i];
     const double impulse = dt * std::max(0.0, contact.normal_BA.dot(forces[i]));
     const double old_speed = normalSpeed(contact, before), speed = normalSpeed(contact, after);
     const double correction = correctionSpeed(contact, contacts.solved()[i].recovers, dt, settings_);
@@ -170,7 +175,7 @@ void EnergyBalance::bookContacts(double dt, const ContactStage& contacts, const 
     book.restitution = std::max(book.restitution, contact.restitution);
     book.approach -= impulse * old_speed;
     const double left = std::max(0.0, 1 - square(std::max(0.0, speed) / (contact.restitution * old_speed)));
-    landings_.push_back({contact.body_a != WORLD_BODY ? contact.body_a : contact.body_b, -impulse * old_speed, left});
+    landings_.push_back({contact.body_a != dynamics::WORLD_BODY ? contact.body_a : contact.body_b, -impulse * old_speed, left});
   }
 }
 
@@ -200,4 +205,4 @@ void EnergyBalance::read(int bodies, NumberReader* reader) {
     NumberReader::refuseContent("energy is held back that is below 0");
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -9,7 +9,7 @@
 #include "guard/body_islands.h"
 #include "numbers/number_reader.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /** [J] that came out of nothing in a solve. */
 struct EnergyGain {
@@ -32,10 +32,10 @@ class EnergyBalance {
   static constexpr double FLOOR = 1e-6;     ///< [J], or [J/kg] below 1 kg: a speed of 1.4 mm/s out of rest
   static constexpr double RELATIVE = 1e-5;  ///< in a solve: 1 % in a thousand of them
 
-  explicit EnergyBalance(const SolverSettings& settings) : settings_(settings) {}
+  explicit EnergyBalance(const dynamics::SolverSettings& settings) : settings_(settings) {}
 
   /** Call at the start of a step; bodies may have been moved since the last one. */
-  void start(const World& world);
+  void start(const dynamics::World& world);
   /** Wrenches from outside in the next solve, whose work comes out of something. */
   void setLoads(const std::vector<BodyLoad>& loads) { loads_ = loads; }
   /**
@@ -47,8 +47,8 @@ class EnergyBalance {
    * @return never below 0. An impact's energy that is still to bounce is held back from one solve to the next: the share that the largest
    * restitution gives back of the energy that the solve before took
    */
-  EnergyGain addSolve(const World& world, double dt, const ContactStage& contacts, const SolveResult& solved,
-                      const std::vector<BodyState>& before, const std::vector<BodyState>& after);
+  EnergyGain addSolve(const dynamics::World& world, double dt, const ContactStage& contacts, const dynamics::SolveResult& solved,
+                      const std::vector<dynamics::BodyState>& before, const std::vector<dynamics::BodyState>& after);
 
   /** Forgets the energy that is held back: no impact is to bounce. */
   void clear() { held_.assign(held_.size(), 0); }
@@ -74,22 +74,25 @@ class EnergyBalance {
     double left;      // part of its bounce that is still to come
   };
 
-  void tie(const World& world, const ContactStage& contacts, const std::vector<Vector3>& forces);
-  void bookBodies(const World& world, double dt, const std::vector<BodyState>& before, const std::vector<BodyState>& after);
-  void bookLoads(const World& world, double dt, const std::vector<BodyState>& before, const std::vector<BodyState>& after);
+  void tie(const dynamics::World& world, const ContactStage& contacts, const std::vector<Vector3>& forces);
+  void bookBodies(const dynamics::World& world, double dt, const std::vector<dynamics::BodyState>& before,
+                  const std::vector<dynamics::BodyState>& after);
+  void bookLoads(const dynamics::World& world, double dt, const std::vector<dynamics::BodyState>& before,
+                 const std::vector<dynamics::BodyState>& after);
   /** @param efforts along the joints' axes */
-  void bookJoints(const World& world, double dt, const std::vector<double>& efforts);
-  void bookSprings(const ContactStage& contacts, const std::vector<BodyState>& before, const std::vector<BodyState>& after);
-  void bookContacts(double dt, const ContactStage& contacts, const SolveResult& solved, const std::vector<BodyState>& before,
-                    const std::vector<BodyState>& after);
+  void bookJoints(const dynamics::World& world, double dt, const std::vector<double>& efforts);
+  void bookSprings(const ContactStage& contacts, const std::vector<dynamics::BodyState>& before,
+                   const std::vector<dynamics::BodyState>& after);
+  void bookContacts(double dt, const ContactStage& contacts, const dynamics::SolveResult& solved,
+                    const std::vector<dynamics::BodyState>& before, const std::vector<dynamics::BodyState>& after);
   void holdBack();
-  Book& bookOf(const ContactConstraint& contact);
+  Book& bookOf(const dynamics::ContactConstraint& contact);
   /** Speed [m/s] of A's point against B's along the normal. */
-  double normalSpeed(const ContactConstraint& contact, const std::vector<BodyState>& states) const;
+  double normalSpeed(const dynamics::ContactConstraint& contact, const std::vector<dynamics::BodyState>& states) const;
 
-  SolverSettings settings_;
-  std::vector<JointState> joints_;  // after the last solve
-  std::vector<double> held_;        // [J] by body: energy that its contacts may give back in the next solve; empty: none
+  dynamics::SolverSettings settings_;
+  std::vector<dynamics::JointState> joints_;  // after the last solve
+  std::vector<double> held_;                  // [J] by body: energy that its contacts may give back in the next solve; empty: none
 
   // The solve at hand.
   std::vector<BodyLoad> loads_;
@@ -99,4 +102,4 @@ class EnergyBalance {
   std::vector<Landing> landings_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

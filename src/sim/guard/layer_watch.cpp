@@ -5,10 +5,10 @@
 
 #include "blem_sim/contact/collider_pairs.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
-LayerEventReport eventOf(const ContactManifold& manifold, double time) {
+LayerEventReport eventOf(const contact::ContactManifold& manifold, double time) {
   LayerEventReport event;
   event.time = time;
   event.collider_a = manifold.a;
@@ -29,7 +29,7 @@ LayerEventReport goneEvent(const std::pair<int, int>& pair, double time) {
 }
 
 /** @param manifold of the pair before it passed, or null */
-LayerEventReport passEvent(const std::pair<int, int>& pair, const ContactManifold* manifold, double time) {
+LayerEventReport passEvent(const std::pair<int, int>& pair, const contact::ContactManifold* manifold, double time) {
   LayerEventReport event = manifold ? eventOf(*manifold, time) : goneEvent(pair, time);
   event.outside = event.pierced = true;
   return event;
@@ -37,7 +37,7 @@ LayerEventReport passEvent(const std::pair<int, int>& pair, const ContactManifol
 
 }  // namespace
 
-void LayerWatch::look(const std::vector<ContactManifold>& manifolds, const std::vector<std::pair<int, int>>& passed, double time,
+void LayerWatch::look(const std::vector<contact::ContactManifold>& manifolds, const std::vector<std::pair<int, int>>& passed, double time,
                       std::vector<LayerEventReport>* events) {
   const std::size_t first = events->size();
   next_outside_.clear();
@@ -46,7 +46,7 @@ void LayerWatch::look(const std::vector<ContactManifold>& manifolds, const std::
   const auto tellGoneBefore = [&](const std::pair<int, int>* pair) {
     for (; known != outside_.end() && (pair == nullptr || *known < *pair); ++known) events->push_back(goneEvent(*known, time));
   };
-  for (const ContactManifold& manifold : manifolds) {
+  for (const contact::ContactManifold& manifold : manifolds) {
     const std::pair<int, int> pair(manifold.a, manifold.b);
     tellGoneBefore(&pair);
     const bool was_outside = known != outside_.end() && *known == pair;
@@ -61,13 +61,13 @@ void LayerWatch::look(const std::vector<ContactManifold>& manifolds, const std::
 }
 
 /** @param first of the events of this look */
-void LayerWatch::addPassed(const std::vector<ContactManifold>& manifolds, const std::vector<std::pair<int, int>>& passed, double time,
-                           std::size_t first, std::vector<LayerEventReport>* events) {
+void LayerWatch::addPassed(const std::vector<contact::ContactManifold>& manifolds, const std::vector<std::pair<int, int>>& passed,
+                           double time, std::size_t first, std::vector<LayerEventReport>* events) {
   for (const std::pair<int, int>& pair : passed) {
     const auto at = std::lower_bound(outside_.begin(), outside_.end(), pair);
     if (at != outside_.end() && *at == pair) continue;
     outside_.insert(at, pair);
-    events->push_back(passEvent(pair, findPair(manifolds, pair.first, pair.second), time));
+    events->push_back(passEvent(pair, contact::findPair(manifolds, pair.first, pair.second), time));
   }
   std::stable_sort(events->begin() + static_cast<std::ptrdiff_t>(first), events->end(), [](const auto& p, const auto& q) {
     return std::make_pair(p.collider_a, p.collider_b) < std::make_pair(q.collider_a, q.collider_b);
@@ -87,7 +87,7 @@ void LayerWatch::forget(int collider) {
   outside_.erase(std::remove_if(outside_.begin(), outside_.end(), has_it), outside_.end());
 }
 
-bool LayerWatch::read(const std::vector<Collider>& colliders, const std::uint64_t** words, const std::uint64_t* end) {
+bool LayerWatch::read(const std::vector<contact::Collider>& colliders, const std::uint64_t** words, const std::uint64_t* end) {
   const std::uint64_t* cursor = *words;
   if (cursor == end) return false;
   const std::uint64_t count = *cursor++;
@@ -104,4 +104,4 @@ bool LayerWatch::read(const std::vector<Collider>& colliders, const std::uint64_
   return true;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -10,7 +10,7 @@
 #include "blem_sim/contact/manifold.h"
 #include "blem_sim/sim/step_report.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /** Remembers the pairs that are outside, so that every change is told once; part of the simulation's state. */
 class LayerWatch {
@@ -20,7 +20,7 @@ class LayerWatch {
    * @param manifolds of the state at `time` [s], sorted by (a, b)
    * @param passed pairs that used up their layers on the way from there to the next state, whatever its contacts; sorted
    */
-  void look(const std::vector<ContactManifold>& manifolds, const std::vector<std::pair<int, int>>& passed, double time,
+  void look(const std::vector<contact::ContactManifold>& manifolds, const std::vector<std::pair<int, int>>& passed, double time,
             std::vector<LayerEventReport>* events);
   /** Forgets all pairs: none is outside. */
   void clear() { outside_.clear(); }
@@ -31,14 +31,14 @@ class LayerWatch {
    * Reads the words of append and moves the cursor behind them.
    * @param colliders whose pairs they may be @return false, and nothing changed, if the words are others or end too early
    */
-  bool read(const std::vector<Collider>& colliders, const std::uint64_t** words, const std::uint64_t* end);
+  bool read(const std::vector<contact::Collider>& colliders, const std::uint64_t** words, const std::uint64_t* end);
 
  private:
-  void addPassed(const std::vector<ContactManifold>& manifolds, const std::vector<std::pair<int, int>>& passed, double time,
+  void addPassed(const std::vector<contact::ContactManifold>& manifolds, const std::vector<std::pair<int, int>>& passed, double time,
                  std::size_t first, std::vector<LayerEventReport>* events);
 
   std::vector<std::pair<int, int>> outside_;       // sorted
   std::vector<std::pair<int, int>> next_outside_;  // work space of look
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

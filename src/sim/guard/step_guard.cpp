@@ -6,7 +6,7 @@
 
 #include "blem_sim/contact/collider_pairs.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr double USED_UP = 0.9;       // of the layer
@@ -15,34 +15,34 @@ constexpr double LEAP = 0.2;    // of the layer in one step: deeper, the solve d
 constexpr double BEYOND = 0.2;  // [m] at most, that a contact is outside the boxes of both colliders, to both sides together
 
 /** Used-up share of the layer; 0 without contact. */
-double used(const ContactManifold& manifold) { return std::max(0.0, manifold.maxDepth() / manifold.layer); }
+double used(const contact::ContactManifold& manifold) { return std::max(0.0, manifold.maxDepth() / manifold.layer); }
 
 bool inDanger(double before, double after) { return after > USED_UP && after - before > LEAST_GROWTH; }
 
 /** Motion of points fixed on the body: from their place in the world before to that after. */
-Pose motionBetween(int body, const std::vector<BodyState>& before, const std::vector<BodyState>& after) {
-  return body == WORLD_BODY ? Pose::Identity() : after[body].X_WB * before[body].X_WB.inverse();
+Pose motionBetween(int body, const std::vector<dynamics::BodyState>& before, const std::vector<dynamics::BodyState>& after) {
+  return body == dynamics::WORLD_BODY ? Pose::Identity() : after[body].X_WB * before[body].X_WB.inverse();
 }
 
 /** [m] Largest extent of the contacts of two colliders; infinite if nothing bounds it. */
-double extent(const Collider& a, const Collider& b) {
+double extent(const contact::Collider& a, const contact::Collider& b) {
   double least = std::numeric_limits<double>::infinity();
-  for (const Collider* collider : {&a, &b})
+  for (const contact::Collider* collider : {&a, &b})
     if (collider->geometry && !collider->geometry->isHalfSpace()) least = std::min(least, collider->geometry->bounds().diagonal().norm());
   return least + 2 * (a.radius + b.radius) + BEYOND;
 }
 
 /** Bound on `carried`: no contact was carried deeper, of the layer. @param size [m] extent of the contacts */
-double mostCarried(const ContactManifold& manifold, double depth, double size, const Pose& motion_a, const Pose& motion_b) {
+double mostCarried(const contact::ContactManifold& manifold, double depth, double size, const Pose& motion_a, const Pose& motion_b) {
   const Vector3& somewhere = manifold.contacts.front().point;
   const double motion = (motion_a * somewhere - motion_b * somewhere).norm() + (motion_a.linear() - motion_b.linear()).norm() * size;
   return (depth + motion) / manifold.layer;
 }
 
 /** Deepest that a contact of the manifold was carried, of the layer. */
-double carried(const ContactManifold& manifold, const Pose& motion_a, const Pose& motion_b) {
+double carried(const contact::ContactManifold& manifold, const Pose& motion_a, const Pose& motion_b) {
   double deepest = 0;
-  for (const Contact& contact : manifold.contacts) {
+  for (const contact::Contact& contact : manifold.contacts) {
     const double parted = contact.normal_BA.dot(motion_a * contact.point - motion_b * contact.point);
     deepest = std::max(deepest, (contact.depth - parted) / manifold.layer);
   }
@@ -51,21 +51,21 @@ double carried(const ContactManifold& manifold, const Pose& motion_a, const Pose
 
 }  // namespace
 
-bool usesUpLayer(const std::vector<Collider>& colliders, const std::vector<ContactManifold>& before,
-                 const std::vector<ContactManifold>& after, const std::vector<BodyState>& bodies_before,
-                 const std::vector<BodyState>& bodies_after) {
-  for (const ContactManifold& now : after) {
+bool usesUpLayer(const std::vector<contact::Collider>& colliders, const std::vector<contact::ContactManifold>& before,
+                 const std::vector<contact::ContactManifold>& after, const std::vector<dynamics::BodyState>& bodies_before,
+                 const std::vector<dynamics::BodyState>& bodies_after) {
+  for (const contact::ContactManifold& now : after) {
     if (!(now.layer > 0)) continue;
     const double used_now = used(now);
     if (!now.pierced && used_now <= LEAP) continue;
-    const ContactManifold* then = findPair(before, now.a, now.b);
+    const contact::ContactManifold* then = contact::findPair(before, now.a, now.b);
     if (now.pierced && !(then && then->pierced)) return true;
     const double used_then = then ? used(*then) : 0;
     if (inDanger(used_then, used_now) || used_now - used_then > LEAP) return true;
   }
-  for (const ContactManifold& then : before) {
+  for (const contact::ContactManifold& then : before) {
     if (!(then.layer > 0) || then.pierced || then.contacts.empty()) continue;
-    const Collider &a = colliders[then.a], &b = colliders[then.b];
+    const contact::Collider &a = colliders[then.a], &b = colliders[then.b];
     const Pose motion_a = motionBetween(a.body, bodies_before, bodies_after), motion_b = motionBetween(b.body, bodies_before, bodies_after);
     const double depth = then.maxDepth();
     if (mostCarried(then, depth, extent(a, b), motion_a, motion_b) <= USED_UP) continue;
@@ -98,4 +98,4 @@ void Substeps::accept() {
   redone_at_hand_ = repeated_at_hand_ = false;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

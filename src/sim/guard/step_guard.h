@@ -7,7 +7,7 @@
 #include "blem_sim/contact/manifold.h"
 #include "build/simulated_world.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /**
  * A pair is in danger if a step
@@ -17,9 +17,9 @@ namespace blem_sim {
  * Pairs without a layer cannot be guarded.
  * @param before, after manifolds at the two ends of the step, sorted by (a, b); bodies_before, bodies_after by body slot
  */
-bool usesUpLayer(const std::vector<Collider>& colliders, const std::vector<ContactManifold>& before,
-                 const std::vector<ContactManifold>& after, const std::vector<BodyState>& bodies_before,
-                 const std::vector<BodyState>& bodies_after);
+bool usesUpLayer(const std::vector<contact::Collider>& colliders, const std::vector<contact::ContactManifold>& before,
+                 const std::vector<contact::ContactManifold>& after, const std::vector<dynamics::BodyState>& bodies_before,
+                 const std::vector<dynamics::BodyState>& bodies_after);
 
 /**
  * Divides one step into substeps of whole ticks. So a step costs at most MAX_SOLVES solves, and as many searches for contacts, whatever
@@ -56,4 +56,4 @@ class Substeps {
   bool redone_at_hand_ = false, repeated_at_hand_ = false;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

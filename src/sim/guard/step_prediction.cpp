@@ -6,7 +6,7 @@
 #include "blem_sim/contact/collider_pairs.h"
 #include "contacts/meeting_speed.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr double USED_UP_AHEAD = 0.9;  // of the distance between bare meshes
@@ -15,11 +15,11 @@ constexpr double PER_SOLVE = 0.5;      // layers that two bodies that touch may 
 constexpr double LEAST_MARGIN = 1.5 * PER_SOLVE;  // layers
 
 /** safeTime of one pair. */
-double safeTimeOf(const WatchedPair& pair, const SimulatedWorld& world, const ContactStage& contacts, const std::vector<BodyState>& bodies,
-                  double time) {
+double safeTimeOf(const WatchedPair& pair, const SimulatedWorld& world, const ContactStage& contacts,
+                  const std::vector<dynamics::BodyState>& bodies, double time) {
   const double layer = world.colliders[pair.a].radius + world.colliders[pair.b].radius;
   if (!(layer > 0) || pair.margin <= LEAST_MARGIN * layer) return time;
-  const ContactManifold* manifold = findPair(contacts.current(), pair.a, pair.b);
+  const contact::ContactManifold* manifold = contact::findPair(contacts.current(), pair.a, pair.b);
   const double gap = std::min(pair.known, manifold ? -manifold->maxDepth() : pair.known);  // between the layers, at least
   const double harmless = std::max(PER_SOLVE * layer, std::min(pair.known, USED_UP_AHEAD * (layer + gap)));
   const double speed = meetingSpeed(world, bodies, contacts.motion(), pair.a, pair.b, layer + pair.margin);
@@ -29,10 +29,10 @@ double safeTimeOf(const WatchedPair& pair, const SimulatedWorld& world, const Co
 
 }  // namespace
 
-double safeTime(const SimulatedWorld& world, const ContactStage& contacts, const std::vector<BodyState>& bodies, double time) {
+double safeTime(const SimulatedWorld& world, const ContactStage& contacts, const std::vector<dynamics::BodyState>& bodies, double time) {
   double safe = time;
   for (const WatchedPair& pair : contacts.watched()) safe = std::min(safe, safeTimeOf(pair, world, contacts, bodies, time));
   return safe;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -6,7 +6,7 @@
 #include "build/simulated_world.h"
 #include "contacts/contact_stage.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /**
  * A pair is in danger if its colliders, moving on as they do, could come so close within `time` that less than a tenth of the layer is left
@@ -17,6 +17,6 @@ namespace blem_sim {
  * @param contacts of the state at hand @param bodies its states, by slot @param time [s] that is left of the step
  * @return [s] at most `time`
  */
-double safeTime(const SimulatedWorld& world, const ContactStage& contacts, const std::vector<BodyState>& bodies, double time);
+double safeTime(const SimulatedWorld& world, const ContactStage& contacts, const std::vector<dynamics::BodyState>& bodies, double time);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -6,7 +6,7 @@
 
 #include "blem_sim/contact/collider_pairs.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr double STILL = 1e-3;         // of the layer: less motion uses up nothing
@@ -18,25 +18,26 @@ constexpr double BENT = 0.02;  // of the layer: a way that bends less is straigh
 /** Turn [rad] between two poses, at least. */
 double turnAtMost(const Pose& from, const Pose& to) { return TURN_OF_CHORD * (to.linear() - from.linear()).norm(); }
 
-bool hasArea(const CollisionGeometry& geometry) { return geometry.mesh().isTriangle(0); }
+bool hasArea(const contact::CollisionGeometry& geometry) { return geometry.mesh().isTriangle(0); }
 
-bool canPass(const Collider& a, const Collider& b) {
+bool canPass(const contact::Collider& a, const contact::Collider& b) {
   return a.radius + b.radius > 0 && !a.geometry->isHalfSpace() && !b.geometry->isHalfSpace();
 }
 
 }  // namespace
 
 const std::vector<ClosePass>& SweepGuard::look(const SimulatedWorld& world, const ContactStage& contacts,
-                                               const std::vector<BodyState>& before, const std::vector<BodyState>& after) {
+                                               const std::vector<dynamics::BodyState>& before,
+                                               const std::vector<dynamics::BodyState>& after) {
   close_.clear();
   before_ = &before;
   after_ = &after;
   moveColliders(world, contacts, before, after);
   for (const WatchedPair& pair : contacts.watched()) {
-    const Collider &a = world.colliders[pair.a], &b = world.colliders[pair.b];
+    const contact::Collider &a = world.colliders[pair.a], &b = world.colliders[pair.b];
     const double layer = a.radius + b.radius, motion = motion_[pair.a].reach + motion_[pair.b].reach;
     if (motion <= STILL * layer || !canPass(a, b)) continue;
-    const ContactManifold* known = findPair(contacts.current(), pair.a, pair.b);
+    const contact::ContactManifold* known = contact::findPair(contacts.current(), pair.a, pair.b);
     if (known && known->pierced) continue;
     const double distance = layer - (known ? known->maxDepth() : -pair.known);
     if (distance - motion < (known ? SPARED : HALF) * layer && !contacts.crossings().find(pair.a, pair.b))
@@ -46,13 +47,13 @@ const std::vector<ClosePass>& SweepGuard::look(const SimulatedWorld& world, cons
   return close_;
 }
 
-void SweepGuard::moveColliders(const SimulatedWorld& world, const ContactStage& contacts, const std::vector<BodyState>& before,
-                               const std::vector<BodyState>& after) {
+void SweepGuard::moveColliders(const SimulatedWorld& world, const ContactStage& contacts, const std::vector<dynamics::BodyState>& before,
+                               const std::vector<dynamics::BodyState>& after) {
   motion_.resize(world.colliders.size());
   for (std::size_t i = 0; i < motion_.size(); ++i) {
     const int body = world.colliders[i].body;
     motion_[i] = {contacts.motion()[i].X_WC, 0};
-    if (body == WORLD_BODY) continue;
+    if (body == dynamics::WORLD_BODY) continue;
     const Vector3& com = world.world.bodySpec(body).inertial.com;
     const Pose &from = before[body].X_WB, &to = after[body].X_WB;
     motion_[i].reach = (to * com - from * com).norm() + turnAtMost(from, to) * contacts.arm(static_cast<int>(i));
@@ -61,16 +62,17 @@ void SweepGuard::moveColliders(const SimulatedWorld& world, const ContactStage& 
 }
 
 /** The middle of a link that turns with its robot's links moves on an arc, whose height over its chord adds to the way. */
-void SweepGuard::bendWays(const SimulatedWorld& world, const std::vector<BodyState>& before, const std::vector<BodyState>& after) {
+void SweepGuard::bendWays(const SimulatedWorld& world, const std::vector<dynamics::BodyState>& before,
+                          const std::vector<dynamics::BodyState>& after) {
   bends_.assign(world.colliders.size(), 0);
   turns_.assign(world.models.size(), 0);
   for (std::size_t m = 0; m < turns_.size(); ++m)
     if (world.models[m].alive && world.models[m].kind == ModelKind::ROBOT)
       for (const int body : world.models[m].bodies)
-        if (body != WORLD_BODY) turns_[m] = std::max(turns_[m], std::min(M_PI, turnAtMost(before[body].X_WB, after[body].X_WB)));
+        if (body != dynamics::WORLD_BODY) turns_[m] = std::max(turns_[m], std::min(M_PI, turnAtMost(before[body].X_WB, after[body].X_WB)));
   for (std::size_t i = 0; i < bends_.size(); ++i) {
-    const Collider& collider = world.colliders[i];
-    if (collider.body == WORLD_BODY || turns_[collider.model] == 0) continue;
+    const contact::Collider& collider = world.colliders[i];
+    if (collider.body == dynamics::WORLD_BODY || turns_[collider.model] == 0) continue;
     const Vector3& com = world.world.bodySpec(collider.body).inertial.com;
     const double chord = (after[collider.body].X_WB * com - before[collider.body].X_WB * com).norm();
     const double height = 0.5 * chord * std::tan(0.25 * turns_[collider.model]);
@@ -80,23 +82,23 @@ void SweepGuard::bendWays(const SimulatedWorld& world, const std::vector<BodySta
   }
 }
 
-GeometrySweep SweepGuard::sweepOf(const SimulatedWorld& world, int collider) const {
-  GeometrySweep sweep;
+contact::GeometrySweep SweepGuard::sweepOf(const SimulatedWorld& world, int collider) const {
+  contact::GeometrySweep sweep;
   sweep.X_WC = motion_[collider].X_WC;
   const int body = world.colliders[collider].body;
-  if (body == WORLD_BODY) return sweep;
+  if (body == dynamics::WORLD_BODY) return sweep;
   const Vector3& com = world.world.bodySpec(body).inertial.com;
   const Pose &from = (*before_)[body].X_WB, &to = (*after_)[body].X_WB;
   sweep.centre = from * com;
   sweep.shift = to * com - sweep.centre;
-  sweep.turn = turnBetween(from, to);
+  sweep.turn = contact::turnBetween(from, to);
   return sweep;
 }
 
 // Whether a collider used up its layer and margin: a pair that is not searched is farther apart than both colliders' together.
 bool SweepGuard::leavesWhatWasSearched(const SimulatedWorld& world, const ContactStage& contacts) const {
   for (std::size_t i = 0; i < motion_.size(); ++i) {
-    const Collider& collider = world.colliders[i];
+    const contact::Collider& collider = world.colliders[i];
     if (collider.enabled && motion_[i].reach > (1 - HALF) * collider.radius + contacts.motion()[i].reach) return true;
   }
   return false;
@@ -105,28 +107,29 @@ bool SweepGuard::leavesWhatWasSearched(const SimulatedWorld& world, const Contac
 void SweepGuard::lookAtOthers(const SimulatedWorld& world, const ContactStage& contacts) {
   const std::size_t watched = close_.size();
   const double any = std::numeric_limits<double>::infinity();
-  for (const ColliderPair& pair : other_pairs_.find(world.colliders, motion_, world.filter, 0, any)) {
-    const Collider &a = world.colliders[pair.a], &b = world.colliders[pair.b];
-    if (!canPass(a, b) || world.disabled_pairs.count({pair.a, pair.b}) > 0 || findPair(contacts.watched(), pair.a, pair.b)) continue;
+  for (const contact::ColliderPair& pair : other_pairs_.find(world.colliders, motion_, world.filter, 0, any)) {
+    const contact::Collider &a = world.colliders[pair.a], &b = world.colliders[pair.b];
+    if (!canPass(a, b) || world.disabled_pairs.count({pair.a, pair.b}) > 0 || contact::findPair(contacts.watched(), pair.a, pair.b))
+      continue;
     lookAt(world, pair.a, pair.b, a.radius + b.radius, false);
   }
-  std::inplace_merge(close_.begin(), close_.begin() + static_cast<std::ptrdiff_t>(watched), close_.end(), IsPairBefore());
+  std::inplace_merge(close_.begin(), close_.begin() + static_cast<std::ptrdiff_t>(watched), close_.end(), contact::IsPairBefore());
 }
 
 /** @param distance [m] of the bare meshes at the start, at least @param known whether its contacts there are known */
 void SweepGuard::lookAt(const SimulatedWorld& world, int a, int b, double distance, bool known) {
-  const CollisionGeometry &geometry_a = *world.colliders[a].geometry, &geometry_b = *world.colliders[b].geometry;
+  const contact::CollisionGeometry &geometry_a = *world.colliders[a].geometry, &geometry_b = *world.colliders[b].geometry;
   const double layer = world.colliders[a].radius + world.colliders[b].radius;
   if (!(distance > 0)) return;
   const bool cross = known || hasArea(geometry_a) || hasArea(geometry_b);
   const double bend = bends_[a] + bends_[b];
   const auto left = [&](double share) { return std::min(share * layer, 0.5 * distance) + bend; };
   const double spared = left(cross ? SPARED : HALF);
-  const GeometrySweep sweep_a = sweepOf(world, a), sweep_b = sweepOf(world, b);
-  const double most = mostApproach(geometry_a, sweep_a, geometry_b, sweep_b) + bend;
-  if (distance - most >= spared - bend || !mayComeWithin(spared, geometry_a, sweep_a, geometry_b, sweep_b)) return;
-  const bool passed = !cross || mayComeWithin(left(NOTHING), geometry_a, sweep_a, geometry_b, sweep_b);
+  const contact::GeometrySweep sweep_a = sweepOf(world, a), sweep_b = sweepOf(world, b);
+  const double most = contact::mostApproach(geometry_a, sweep_a, geometry_b, sweep_b) + bend;
+  if (distance - most >= spared - bend || !contact::mayComeWithin(spared, geometry_a, sweep_a, geometry_b, sweep_b)) return;
+  const bool passed = !cross || contact::mayComeWithin(left(NOTHING), geometry_a, sweep_a, geometry_b, sweep_b);
   close_.push_back({a, b, std::min(1.0, std::max(distance - layer, HALF * layer) / most), passed});
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -8,7 +8,7 @@
 #include "build/simulated_world.h"
 #include "contacts/contact_stage.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /** Two colliders that came too close within a solve. */
 struct ClosePass {
@@ -33,24 +33,24 @@ class SweepGuard {
    * @param contacts of the state where the solve started @param before, after bodies at its ends, by slot
    * @return sorted by (a, b); lives until the next call
    */
-  const std::vector<ClosePass>& look(const SimulatedWorld& world, const ContactStage& contacts, const std::vector<BodyState>& before,
-                                     const std::vector<BodyState>& after);
+  const std::vector<ClosePass>& look(const SimulatedWorld& world, const ContactStage& contacts,
+                                     const std::vector<dynamics::BodyState>& before, const std::vector<dynamics::BodyState>& after);
 
  private:
-  void moveColliders(const SimulatedWorld& world, const ContactStage& contacts, const std::vector<BodyState>& before,
-                     const std::vector<BodyState>& after);
-  void bendWays(const SimulatedWorld& world, const std::vector<BodyState>& before, const std::vector<BodyState>& after);
-  GeometrySweep sweepOf(const SimulatedWorld& world, int collider) const;
+  void moveColliders(const SimulatedWorld& world, const ContactStage& contacts, const std::vector<dynamics::BodyState>& before,
+                     const std::vector<dynamics::BodyState>& after);
+  void bendWays(const SimulatedWorld& world, const std::vector<dynamics::BodyState>& before, const std::vector<dynamics::BodyState>& after);
+  contact::GeometrySweep sweepOf(const SimulatedWorld& world, int collider) const;
   bool leavesWhatWasSearched(const SimulatedWorld& world, const ContactStage& contacts) const;
   void lookAtOthers(const SimulatedWorld& world, const ContactStage& contacts);
   void lookAt(const SimulatedWorld& world, int a, int b, double distance, bool known);
 
-  const std::vector<BodyState>*before_ = nullptr, *after_ = nullptr;
-  std::vector<ColliderMotion> motion_;  // poses at the start, and longest ways in the solve
-  std::vector<double> bends_;           // [m] by collider: how far its way may lie beside a straight one
-  std::vector<double> turns_;           // [rad] by model: largest of its links in the solve
-  BroadPhase other_pairs_;
+  const std::vector<dynamics::BodyState>*before_ = nullptr, *after_ = nullptr;
+  std::vector<contact::ColliderMotion> motion_;  // poses at the start, and longest ways in the solve
+  std::vector<double> bends_;                    // [m] by collider: how far its way may lie beside a straight one
+  std::vector<double> turns_;                    // [rad] by model: largest of its links in the solve
+  contact::BroadPhase other_pairs_;
   std::vector<ClosePass> close_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -8,7 +8,7 @@
 #include "blem_sim/sim/state_file.h"
 #include "inputs/input_reader.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 namespace {
 
@@ -51,7 +51,7 @@ const std::map<std::string, Call> CALLS = {
     {"moveModel",
      [](InputReader& in, Simulator& to) {
        const int body = in.takeBody();
-       to.moveModel(body, in.take<BodyState>());
+       to.moveModel(body, in.take<dynamics::BodyState>());
      }},
     {"setJointPositions",
      [](InputReader& in, Simulator& to) {
@@ -113,4 +113,4 @@ void applyInput(const SimulatorInput& input, Simulator* simulator) {
   arguments.finish();
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -10,7 +10,7 @@
 
 #include "blem_sim/geometry/types.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /**
  * Composes fields of numbers and texts. @tparam Visitor has number(double*), integer(int*), text(std::string*), and count(std::size_t),
@@ -85,4 +85,4 @@ class FieldVisitor {
   }
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -8,7 +8,7 @@
 #include "blem_sim/sim/simulator_types.h"
 #include "blem_sim/sim/trajectory.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 template <typename Visitor>
 void visitFields(Visitor& visit, TrajectoryPoint& point) {
@@ -26,7 +26,7 @@ void visitFields(Visitor& visit, JointCommandMessage& command) {
 }
 
 template <typename Visitor>
-void visitFields(Visitor& visit, BodyState& state) {
+void visitFields(Visitor& visit, dynamics::BodyState& state) {
   visit(state.X_WB, state.v_WCom, state.w_WB);
 }
 
@@ -41,7 +41,7 @@ void visitFields(Visitor& visit, LoadTime& when) {
 }
 
 template <typename Visitor>
-void visitFields(Visitor& visit, MassProperties& inertial) {
+void visitFields(Visitor& visit, geometry::MassProperties& inertial) {
   visit(inertial.mass, inertial.com, inertial.inertia);
 }
 
@@ -52,19 +52,19 @@ void visitFields(Visitor& visit, ContactOverrides& contact) {
 }
 
 template <typename Visitor>
-void visitFields(Visitor& visit, CloudFilter& filter) {
+void visitFields(Visitor& visit, model::CloudFilter& filter) {
   visit.choice(&filter.kind, 4);
   visit(filter.size, filter.neighbours, filter.factor, filter.axis, filter.lower, filter.upper);
 }
 
 template <typename Visitor>
-void visitFields(Visitor& visit, CloudOptions& cloud) {
+void visitFields(Visitor& visit, model::CloudOptions& cloud) {
   visit.choice(&cloud.as, 3);
   visit(cloud.point_radius, cloud.auto_radius, cloud.max_edge, cloud.filters);
 }
 
 template <typename Visitor>
-void visitFields(Visitor& visit, VoxelMapOptions& map) {
+void visitFields(Visitor& visit, model::VoxelMapOptions& map) {
   visit(map.voxel, map.min_hits, map.memory, map.expire_after, map.max_voxels);
 }
 
@@ -81,8 +81,8 @@ void visitFields(Visitor& visit, CloudSurface& surface) {
   if (surface.geometry) points = surface.geometry->mesh().vertices;
   visit(surface.radius, surface.origin, points);
   if (surface.geometry) return;
-  TriangleMesh mesh = pointCloudMesh(points, &surface.report);
-  surface.geometry = std::make_shared<const CollisionGeometry>(std::make_shared<const TriangleMesh>(std::move(mesh)));
+  geometry::TriangleMesh mesh = geometry::pointCloudMesh(points, &surface.report);
+  surface.geometry = std::make_shared<const contact::CollisionGeometry>(std::make_shared<const geometry::TriangleMesh>(std::move(mesh)));
 }
 
 template <typename Visitor>
@@ -103,4 +103,4 @@ void visitFields(Visitor& visit, RobotConfig& robot) {
   visit.choice(&robot.motors, 3);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -7,7 +7,7 @@
 
 #include "blem_sim/geometry/input_error.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 namespace {
 constexpr double TURN_ERROR = 1e-6;  // of matrices that turn, and of symmetric ones
@@ -60,8 +60,8 @@ double InputReader::takeCommand() {
   return value;
 }
 
-MassProperties InputReader::takeInertial() {
-  auto inertial = take<MassProperties>();
+geometry::MassProperties InputReader::takeInertial() {
+  auto inertial = take<geometry::MassProperties>();
   const Matrix3& inertia = inertial.inertia;
   const double skew = (inertia - inertia.transpose()).cwiseAbs().maxCoeff(), largest = inertia.cwiseAbs().maxCoeff();
   if (!inertia.allFinite() || !(skew <= TURN_ERROR * largest)) refuse("an inertia is not symmetric");
@@ -102,4 +102,4 @@ int InputReader::takeLinkOf(int body) {
   return link;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -9,7 +9,7 @@
 #include "inputs/field_visitor.h"
 #include "inputs/input_fields.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /** Reads in the order of writing; throws InputError where arguments are missing, too many, or none that the simulation has. */
 class InputReader : public FieldVisitor<InputReader> {
@@ -26,7 +26,7 @@ class InputReader : public FieldVisitor<InputReader> {
   /** A position that can be commanded. */
   double takeCommand();
   /** Mass properties with an inertia that is symmetric. */
-  MassProperties takeInertial();
+  geometry::MassProperties takeInertial();
   int takeRobot() { return takeIndex("robot", simulator_.robots().size()); }
   int takeJointOf(int robot) { return takeIndex("joint", simulator_.robots()[robot].joint_names.size()); }
   int takeModel();
@@ -53,4 +53,4 @@ class InputReader : public FieldVisitor<InputReader> {
   std::size_t texts_read_ = 0, numbers_read_ = 0;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

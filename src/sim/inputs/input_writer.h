@@ -8,7 +8,7 @@
 #include "inputs/field_visitor.h"
 #include "inputs/input_fields.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 class InputWriter : public FieldVisitor<InputWriter> {
  public:
@@ -36,4 +36,4 @@ SimulatorInput inputOf(const char* call, Arguments... arguments) {
   return writer.take();
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

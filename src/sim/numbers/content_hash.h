@@ -8,7 +8,7 @@
 
 #include "blem_sim/geometry/types.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /** 64 bits. Every word is mixed in by a bijection, so that two contents of the same length that differ in one word never have the same. */
 class ContentHash {
@@ -48,4 +48,4 @@ class ContentHash {
   std::uint64_t hash_ = 0xcbf29ce484222325u;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -7,7 +7,7 @@
 
 #include "blem_sim/geometry/input_error.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr std::size_t LONGEST_NAME = 200;  // characters that are compared and told
@@ -43,4 +43,4 @@ void requireName(const std::string& given, const std::vector<std::string>& known
   throw InputError(fmt::format("{}: no {} '{}'; the nearest is '{}'", where, kind, name, nearestName(name, known)));
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /** The known name with the fewest edits from `name`, the first of them on a tie; empty if none is known. [Levenshtein 1966] */
 std::string nearestName(const std::string& name, const std::vector<std::string>& known);
@@ -12,4 +12,4 @@ std::string nearestName(const std::string& name, const std::vector<std::string>&
 /** @throws InputError "WHERE: no KIND 'name'; the nearest is 'other'" unless `name` is one of `known` */
 void requireName(const std::string& name, const std::vector<std::string>& known, const std::string& where, const std::string& kind);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /**
  * [rad] The multiple of a full turn that brings a position nearest to `present`. Half a turn is as near on either side: the way then goes
@@ -19,4 +19,4 @@ inline double turnsTo(double present, double position) {
 /** [rad] Way from one position to another by less than half a turn, or half a turn. */
 inline double shortestTurn(double from, double to) { return to + turnsTo(from, to) - from; }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

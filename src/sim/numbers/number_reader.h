@@ -9,7 +9,7 @@
 
 #include "blem_sim/geometry/input_error.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /** Reads in the order of writing; throws InputError where the numbers end too early, are not finite, or cannot be. */
 class NumberReader {
@@ -53,4 +53,4 @@ class NumberReader {
   const double *next_, *end_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -6,7 +6,7 @@
 
 #include "blem_sim/geometry/types.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /** splitmix64 [Steele 2014] and Box-Muller. */
 class RandomNumbers {
@@ -39,4 +39,4 @@ class RandomNumbers {
   std::uint64_t state_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

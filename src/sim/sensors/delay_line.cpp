@@ -5,7 +5,7 @@
 
 #include "sensors/reading_numbers.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 DelayLine::DelayLine(double delay, double time_step, SensorReading reading) : steps_(std::lround(delay / time_step)) {
   std::size_t width = 0;
@@ -44,4 +44,4 @@ void DelayLine::read(NumberReader* reader) {
   next_ = 0;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

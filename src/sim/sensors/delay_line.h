@@ -7,7 +7,7 @@
 #include "blem_sim/sim/step_report.h"
 #include "numbers/number_reader.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 class DelayLine {
  public:
@@ -30,4 +30,4 @@ class DelayLine {
   std::size_t next_ = 0, taken_ = 0;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

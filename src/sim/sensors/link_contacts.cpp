@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 auto linkOf(const LinkContacts::Entry& entry) { return std::make_tuple(entry.model, entry.link); }
@@ -18,7 +18,7 @@ struct ByLink {
 void LinkContacts::index(const SimulatedWorld& world, const std::vector<ContactReport>& contacts) {
   entries_.clear();
   for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const Collider &a = world.colliders[contacts[i].collider_a], &b = world.colliders[contacts[i].collider_b];
+    const contact::Collider &a = world.colliders[contacts[i].collider_a], &b = world.colliders[contacts[i].collider_b];
     const Entry on_a{a.model, a.link, static_cast<int>(i), true}, on_b{b.model, b.link, static_cast<int>(i), false};
     entries_.push_back(on_a);
     if (linkOf(on_a) != linkOf(on_b)) entries_.push_back(on_b);
@@ -31,4 +31,4 @@ LinkContacts::Range LinkContacts::of(int model, int link) const {
   return {entries_.data() + (range.first - entries_.begin()), entries_.data() + (range.second - entries_.begin())};
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

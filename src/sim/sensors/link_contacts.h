@@ -6,7 +6,7 @@
 #include "blem_sim/sim/step_report.h"
 #include "build/simulated_world.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 class LinkContacts {
  public:
@@ -32,4 +32,4 @@ class LinkContacts {
   std::vector<Entry> entries_;  // sorted by model, link, contact
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

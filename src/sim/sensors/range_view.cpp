@@ -7,7 +7,7 @@
 
 #include "numbers/random_numbers.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr double INFINITE = std::numeric_limits<double>::infinity();
@@ -19,8 +19,8 @@ double between(double first, double last, int i, int count) { return count > 1 ?
 /** Rays of a sensor in rows: direction(row, column), in the sensor's axes, has the length that ranges are counted in. */
 template <typename Direction>
 std::vector<float> draw(const RangeView& view, int rows, int columns, Direction&& direction) {
-  const RayScene scene(view.targets);
-  const RayScene::Query query{view.rays.farthest, view.model, view.rays.nearest};
+  const contact::RayScene scene(view.targets);
+  const contact::RayScene::Query query{view.rays.farthest, view.model, view.rays.nearest};
   std::vector<float> ranges(static_cast<std::size_t>(rows) * columns);
   tbb::parallel_for(0, rows, [&](int row) {
     for (int column = 0; column < columns; ++column) {
@@ -83,4 +83,4 @@ std::vector<float> rangesOf(const RangeView& lidar) {
   return draw(lidar, lidar.rays.layers, lidar.rays.beams, [&](int layer, int beam) { return beamDirection(lidar.rays, layer, beam); });
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -5,7 +5,7 @@
 
 #include "blem_sim/sim/step_report.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /** Calls use(number, quantity) for each, always in the same order; quantity: index into SensorConfig::limits, -1: none. */
 template <typename Use>
@@ -52,4 +52,4 @@ void forEachNumber(SensorReading* reading, Use use) {
   std::visit(ReadingNumbers<Use>(std::move(use)), *reading);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -1,20 +1,20 @@
 #include "sensors/sensor.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 MountedFrame::MountedFrame(const SimulatedWorld& world, const RobotInfo& robot, const std::string& link, const Pose& X_LS) {
-  const LinkPlacement& placement = robot.lumped->link_placement[robot.description->linkIndex(link)];
+  const model::LinkPlacement& placement = robot.lumped->link_placement[robot.description->linkIndex(link)];
   body_ = robot.bodies[placement.body];
   X_BS_ = placement.X_BL * X_LS;
-  if (body_ == WORLD_BODY)
+  if (body_ == dynamics::WORLD_BODY)
     X_BS_ = robot.X_WR * X_BS_;
   else
     p_BCom_ = world.world.bodySpec(body_).inertial.com;
 }
 
-MountedFrame::Motion MountedFrame::motion(const std::vector<BodyState>& bodies) const {
-  if (body_ == WORLD_BODY) return {X_BS_, Vector3::Zero(), Vector3::Zero()};
-  const BodyState& state = bodies[body_];
+MountedFrame::Motion MountedFrame::motion(const std::vector<dynamics::BodyState>& bodies) const {
+  if (body_ == dynamics::WORLD_BODY) return {X_BS_, Vector3::Zero(), Vector3::Zero()};
+  const dynamics::BodyState& state = bodies[body_];
   Motion motion;
   motion.X_WS = state.X_WB * X_BS_;
   motion.w_WS = state.w_WB;
@@ -43,4 +43,4 @@ std::unique_ptr<Sensor> makeSensor(const SimulatedWorld& world, const SensorInfo
   return nullptr;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

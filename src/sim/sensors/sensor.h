@@ -10,16 +10,16 @@
 #include "numbers/random_numbers.h"
 #include "sensors/link_contacts.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /** Input of sensors: one accepted step. */
 struct StepContext {
   const SimulatedWorld& world;
-  double dt;                                    ///< [s] of the step
-  const std::vector<BodyState>& bodies_before;  ///< at the start of the step
-  const std::vector<BodyState>& bodies;         ///< at its end
-  const std::vector<JointState>& joints;        ///< at its end
-  const std::vector<Wrench>& joint_wrenches;    ///< mean over the step, as SolveResult has them
+  double dt;                                              ///< [s] of the step
+  const std::vector<dynamics::BodyState>& bodies_before;  ///< at the start of the step
+  const std::vector<dynamics::BodyState>& bodies;         ///< at its end
+  const std::vector<dynamics::JointState>& joints;        ///< at its end
+  const std::vector<Wrench>& joint_wrenches;              ///< mean over the step, as SolveResult has them
   const std::vector<ContactReport>& contacts;
   const LinkContacts& link_contacts;  ///< of these contacts, if a sensor that is read has readsContacts()
 };
@@ -70,7 +70,7 @@ class MountedFrame {
     Pose X_WS = Pose::Identity();
     Vector3 v_WS = Vector3::Zero(), w_WS = Vector3::Zero();  ///< of the origin and of the axes, world axes
   };
-  Motion motion(const std::vector<BodyState>& bodies) const;
+  Motion motion(const std::vector<dynamics::BodyState>& bodies) const;
 
  private:
   int body_;
@@ -78,4 +78,4 @@ class MountedFrame {
   Vector3 p_BCom_ = Vector3::Zero();
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

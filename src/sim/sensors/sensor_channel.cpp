@@ -7,7 +7,7 @@
 #include "blem_sim/sim/sensor_values.h"
 #include "sensors/reading_numbers.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 /** A whole number of steps of the resolution within the range, which its ends are not beyond. */
@@ -69,4 +69,4 @@ void SensorChannel::reset() {
   delay_.clear();
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

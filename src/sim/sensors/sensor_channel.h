@@ -9,7 +9,7 @@
 #include "sensors/sensor.h"
 #include "sensors/sensor_schedule.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 class SensorChannel {
  public:
@@ -44,4 +44,4 @@ class SensorChannel {
   DelayLine delay_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

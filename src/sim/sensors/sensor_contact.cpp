@@ -1,6 +1,6 @@
 #include "sensors/sensor.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 /** Contacts of one link, not of the links that are rigidly joined to it. */
@@ -40,4 +40,4 @@ std::unique_ptr<Sensor> makeContactSensor(const SimulatedWorld& world, const Sen
   return std::make_unique<ContactSensor>(world, info);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -1,14 +1,14 @@
 #include "blem_sim/geometry/input_error.h"
 #include "sensors/sensor.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 /** The wrench that a joint carries, about the origin of the child's link frame, where the joint sits. */
 class ForceTorqueSensor : public Sensor {
  public:
   ForceTorqueSensor(const SimulatedWorld& world, const SensorInfo& info) : info_(info), robot_(world.robots[info.robot]) {
-    const JointModel& joint = robot_.description->joints[robot_.description->jointIndex(info.config.joint)];
+    const model::JointModel& joint = robot_.description->joints[robot_.description->jointIndex(info.config.joint)];
     parent_link_ = joint.parent;
     child_link_ = joint.child;
     X_PJ_ = joint.X_PJ;
@@ -52,4 +52,4 @@ std::unique_ptr<Sensor> makeForceTorqueSensor(const SimulatedWorld& world, const
   return std::make_unique<ForceTorqueSensor>(world, info);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

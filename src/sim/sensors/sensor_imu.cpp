@@ -1,6 +1,6 @@
 #include "sensors/sensor.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 /** Specific force and angular velocity of a frame on a link. The acceleration is the step's change of velocity over dt, lever arm included.
@@ -82,4 +82,4 @@ std::unique_ptr<Sensor> makeImuSensor(const SimulatedWorld& world, const SensorI
   return std::make_unique<ImuSensor>(world, info);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

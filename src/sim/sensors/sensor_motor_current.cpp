@@ -1,14 +1,14 @@
 #include "blem_sim/geometry/input_error.h"
 #include "sensors/sensor.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 class MotorCurrentSensor : public Sensor {
  public:
   MotorCurrentSensor(const SimulatedWorld& world, const SensorInfo& info) : robot_(world.robots[info.robot]) {
     for (const std::string& joint : robot_.joint_names) {
-      const Transmission* transmission = robot_.description->transmissionOf(joint);
+      const model::Transmission* transmission = robot_.description->transmissionOf(joint);
       torque_constants_.push_back((transmission ? transmission->reduction : 1) * torqueConstant(info.config, joint));
     }
   }
@@ -45,4 +45,4 @@ std::unique_ptr<Sensor> makeMotorCurrentSensor(const SimulatedWorld& world, cons
   return std::make_unique<MotorCurrentSensor>(world, info);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -1,6 +1,6 @@
 #include "sensors/sensor.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 /** Ground truth of a frame on a link, with noise if told to. */
@@ -44,4 +44,4 @@ std::unique_ptr<Sensor> makeOdometrySensor(const SimulatedWorld& world, const Se
   return std::make_unique<OdometrySensor>(world, info);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -1,7 +1,7 @@
 #include "blem_sim/sim/range_view.h"
 #include "sensors/sensor.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 /** Depth camera or lidar: copies where everything stands, and leaves the rays to who wants to see them. */
@@ -18,9 +18,9 @@ class RangeSensor : public Sensor {
     view->X_WS = frame_.motion(step.bodies).X_WS;
     view->model = model_;
     view->noise_seed = random_.next();
-    for (const Collider& collider : step.world.colliders) {
+    for (const contact::Collider& collider : step.world.colliders) {
       if (!collider.enabled) continue;
-      const Pose X_WC = collider.body == WORLD_BODY ? collider.X_BC : step.bodies[collider.body].X_WB * collider.X_BC;
+      const Pose X_WC = collider.body == dynamics::WORLD_BODY ? collider.X_BC : step.bodies[collider.body].X_WB * collider.X_BC;
       view->targets.push_back({collider.geometry, X_WC, collider.radius, collider.model});
     }
     if (config_.type == SensorType::DEPTH_CAMERA)
@@ -41,4 +41,4 @@ std::unique_ptr<Sensor> makeRangeSensor(const SimulatedWorld& world, const Senso
   return std::make_unique<RangeSensor>(world, info);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /** Counts steps, so that a rate holds on average whatever the step: 300 Hz at 1 ms are 300 readings a second, 3 or 4 steps apart. */
 class SensorSchedule {
@@ -26,4 +26,4 @@ class SensorSchedule {
   double readings_per_step_, period_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

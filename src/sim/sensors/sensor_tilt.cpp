@@ -3,7 +3,7 @@
 
 #include "sensors/sensor.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 class TiltSensor : public Sensor {
@@ -32,4 +32,4 @@ std::unique_ptr<Sensor> makeTiltSensor(const SimulatedWorld& world, const Sensor
   return std::make_unique<TiltSensor>(world, info);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -7,7 +7,7 @@
 
 #include "blem_sim/sim/range_view.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 namespace {
 
@@ -122,4 +122,4 @@ std::vector<std::string> sensorNames(const Simulator& simulator) {
   return names;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

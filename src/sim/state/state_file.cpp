@@ -10,7 +10,7 @@
 #include "blem_sim/geometry/input_error.h"
 #include "state/whole_file.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 namespace {
 
@@ -130,4 +130,4 @@ SimulationState loadState(const std::string& file) {
   return stateOf(buffer.str(), file);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

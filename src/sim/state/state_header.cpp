@@ -5,7 +5,7 @@
 #include "blem_sim/geometry/input_error.h"
 #include "numbers/content_hash.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 // "BLEM" and the version, to be raised whenever the content of a state changes.
@@ -43,4 +43,4 @@ void checkHeader(const SimulationState& state) {
     refuse("was changed after it was saved, its checksum does not fit; save it again");
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

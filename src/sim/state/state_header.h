@@ -3,7 +3,7 @@
 
 #include "blem_sim/sim/simulator_types.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /** The header that goes with a content. */
 StateHeader headerOf(const SimulationState& state);
@@ -11,4 +11,4 @@ StateHeader headerOf(const SimulationState& state);
 /** @throws InputError in one line: another version's, cut short, or changed since it was saved */
 void checkHeader(const SimulationState& state);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -10,26 +10,26 @@
 #include "blem_sim/geometry/input_error.h"
 #include "numbers/content_hash.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 /** Hash of a geometry's content, worked out once for all colliders that share it. */
 class GeometryHashes {
  public:
-  std::uint64_t of(const CollisionGeometry& geometry) {
+  std::uint64_t of(const contact::CollisionGeometry& geometry) {
     const auto [known, is_new] = hashes_.try_emplace(&geometry, 0);
     if (is_new) known->second = hashOf(geometry);
     return known->second;
   }
 
  private:
-  static std::uint64_t hashOf(const CollisionGeometry& geometry) {
+  static std::uint64_t hashOf(const contact::CollisionGeometry& geometry) {
     ContentHash hash;
     if (geometry.isHalfSpace()) return hash.add(geometry.planeNormal()).add(geometry.planeOffset()).value();
     return hash.add(geometry.mesh().vertices).add(geometry.mesh().elements).value();
   }
 
-  std::map<const CollisionGeometry*, std::uint64_t> hashes_;
+  std::map<const contact::CollisionGeometry*, std::uint64_t> hashes_;
 };
 
 class LayoutWriter {
@@ -52,7 +52,7 @@ class LayoutWriter {
 };
 
 void writeSettings(const SimulationConfig& config, LayoutWriter* writer) {
-  const SolverSettings& s = config.solver;
+  const dynamics::SolverSettings& s = config.solver;
   ContentHash solver;
   solver.add(s.stepper).add(s.quick_step_iterations).add(s.cfm).add(s.correction_fraction).add(s.max_correction_speed);
   writer->line("time_step", ContentHash().add(config.time_step));
@@ -72,16 +72,16 @@ void writeModels(const SimulatedWorld& world, LayoutWriter* writer) {
   }
 }
 
-void writeBodies(const World& world, LayoutWriter* writer) {
+void writeBodies(const dynamics::World& world, LayoutWriter* writer) {
   for (int body = 0; body < world.bodyCount(); ++body) {
     if (!world.hasBody(body)) continue;
-    const BodySpec& spec = world.bodySpec(body);
+    const dynamics::BodySpec& spec = world.bodySpec(body);
     writer->line("body", spec.name, "mass", ContentHash().add(spec.inertial.mass));
     writer->line("body", spec.name, "centre of mass or inertia", ContentHash().add(spec.inertial.com).add(spec.inertial.inertia));
   }
 }
 
-ContentHash hashOf(const JointSpec& spec) {
+ContentHash hashOf(const dynamics::JointSpec& spec) {
   ContentHash hash;
   hash.add(static_cast<int>(spec.kind)).add(spec.parent).add(spec.child).add(spec.X_PJ).add(spec.axis);
   hash.add(spec.lower).add(spec.upper).add(spec.mimic_joint).add(spec.mimic_multiplier).add(spec.mimic_offset);
@@ -94,7 +94,7 @@ ContentHash hashOf(const MotorSettings& motor) {
   ContentHash hash;
   hash.add(static_cast<int>(motor.law)).add(motor.friction.dry).add(motor.friction.viscous);
   hash.add(motor.effort_limit).add(motor.velocity_limit).add(motor.command_timeout);
-  const SafetyController safety = motor.safety.value_or(SafetyController());
+  const model::SafetyController safety = motor.safety.value_or(model::SafetyController());
   hash.add(safety.lower).add(safety.upper).add(safety.k_position).add(safety.k_velocity);
   return hash.add(motor.continuous).add(motor.commanded);
 }
@@ -102,7 +102,7 @@ ContentHash hashOf(const MotorSettings& motor) {
 void writeJoints(const SimulatedWorld& world, LayoutWriter* writer) {
   for (int joint = 0; joint < world.world.jointCount(); ++joint) {
     if (!world.world.hasJoint(joint)) continue;
-    const JointSpec& spec = world.world.jointSpec(joint);
+    const dynamics::JointSpec& spec = world.world.jointSpec(joint);
     const MotorSettings& motor = world.motors[joint].settings();
     writer->line("joint", spec.name, "kind, place or limits", hashOf(spec));
     writer->line("joint", spec.name, "armature", ContentHash().add(spec.armature));
@@ -114,7 +114,7 @@ void writeJoints(const SimulatedWorld& world, LayoutWriter* writer) {
 void writeColliders(const SimulatedWorld& world, LayoutWriter* writer) {
   GeometryHashes geometries;
   for (std::size_t i = 0; i < world.colliders.size(); ++i) {
-    const Collider& c = world.colliders[i];
+    const contact::Collider& c = world.colliders[i];
     if (!c.enabled) continue;
     const std::string thing = fmt::format("collider {}", i);
     const auto line = [&](const char* property, const ContentHash& hash) { writer->line(thing, c.name, property, hash); };
@@ -205,4 +205,4 @@ void checkLayout(const std::string& saved, const std::string& here) {
                    "; restore it where the same are loaded");
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -5,7 +5,7 @@
 
 #include "build/simulated_world.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /**
  * Settings, models, bodies, joints, colliders and sensors, line by line: a name, a tab, and the hash of the content (masses, inertias,
@@ -16,4 +16,4 @@ std::string layoutOf(const SimulationConfig& config, const SimulatedWorld& world
 /** @throws InputError in one line that names the first difference */
 void checkLayout(const std::string& saved, const std::string& here);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -10,7 +10,7 @@
 
 #include "blem_sim/geometry/input_error.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 namespace {
 
@@ -64,4 +64,4 @@ void writeWhole(const std::string& file, const std::string& bytes) {
   if (folder.isOpen()) folder.sync();  // else the name may be the old one after a power cut
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /**
  * Writes bytes into FILE.part, sees them onto the disk and renames: after a crash or a power cut the file has its old content or the new
@@ -11,4 +11,4 @@ namespace blem_sim {
  */
 void writeWhole(const std::string& file, const std::string& bytes);
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

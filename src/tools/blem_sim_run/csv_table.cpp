@@ -13,10 +13,11 @@ namespace blem_sim {
 namespace {
 
 /** Bodies whose pose a row holds: the first of each free robot and object. */
-std::vector<int> freeBodies(const Simulator& simulator) {
+std::vector<int> freeBodies(const sim::Simulator& simulator) {
   std::vector<int> bodies;
-  for (const ModelInfo& model : simulator.models())
-    if (model.kind != ModelKind::ENVIRONMENT && !model.bodies.empty() && model.bodies[0] != WORLD_BODY) bodies.push_back(model.bodies[0]);
+  for (const sim::ModelInfo& model : simulator.models())
+    if (model.kind != sim::ModelKind::ENVIRONMENT && !model.bodies.empty() && model.bodies[0] != dynamics::WORLD_BODY)
+      bodies.push_back(model.bodies[0]);
   return bodies;
 }
 
@@ -27,41 +28,43 @@ void put(std::ostream& stream, double value) {
 
 }  // namespace
 
-CsvTable::CsvTable(const Simulator& simulator, const std::string& file, double rate) : simulator_(simulator), stream_(file), rate_(rate) {
+CsvTable::CsvTable(const sim::Simulator& simulator, const std::string& file, double rate)
+    : simulator_(simulator), stream_(file), rate_(rate) {
   if (!stream_) throw InputError(fmt::format("{}: cannot be written; check the folder", file));
-  for (const SensorInfo& sensor : simulator.sensors())
-    readings_.emplace_back(sensorFields(simulator, sensor).size(), std::numeric_limits<double>::quiet_NaN());
+  for (const sim::SensorInfo& sensor : simulator.sensors())
+    readings_.emplace_back(sim::sensorFields(simulator, sensor).size(), std::numeric_limits<double>::quiet_NaN());
   writeHeader();
 }
 
 void CsvTable::writeHeader() {
   stream_ << "time";
-  for (const RobotInfo& robot : simulator_.robots())
+  for (const sim::RobotInfo& robot : simulator_.robots())
     for (const std::string& joint : robot.joint_names)
       for (const char* suffix : {"", "_vel", "_effort", "_desired"}) stream_ << ',' << robot.name << "::" << joint << suffix;
   for (const int body : freeBodies(simulator_))
     for (const char* suffix : {"_x", "_y", "_z", "_qx", "_qy", "_qz", "_qw"}) stream_ << ',' << simulator_.bodyName(body) << suffix;
-  const std::vector<std::string> names = sensorNames(simulator_);
+  const std::vector<std::string> names = sim::sensorNames(simulator_);
   for (std::size_t sensor = 0; sensor < names.size(); ++sensor)
-    for (const std::string& field : sensorFields(simulator_, simulator_.sensors()[sensor])) stream_ << ',' << names[sensor] << '.' << field;
+    for (const std::string& field : sim::sensorFields(simulator_, simulator_.sensors()[sensor]))
+      stream_ << ',' << names[sensor] << '.' << field;
   stream_ << '\n';
 }
 
-void CsvTable::add(const StepReport& report) {
-  for (const SensorSample& sample : report.samples)
-    readings_[static_cast<std::size_t>(sample.sensor)] = sensorValues(sample.reading).values;
+void CsvTable::add(const sim::StepReport& report) {
+  for (const sim::SensorSample& sample : report.samples)
+    readings_[static_cast<std::size_t>(sample.sensor)] = sim::sensorValues(sample.reading).values;
   // Instant n / rate is due in the first step that reaches it; the tolerance absorbs the rounding of step times.
   const double tolerance = 1e-6 * report.dt;
   const bool due = rate_ <= 0 || std::floor((report.time + tolerance) * rate_) > std::floor((report.time - report.dt + tolerance) * rate_);
   if (due) writeRow(report);
 }
 
-void CsvTable::writeRow(const StepReport& report) {
+void CsvTable::writeRow(const sim::StepReport& report) {
   stream_ << fmt::format("{}", report.time);
   for (std::size_t r = 0; r < simulator_.robots().size(); ++r) {
-    const RobotInfo& robot = simulator_.robots()[r];
+    const sim::RobotInfo& robot = simulator_.robots()[r];
     for (std::size_t j = 0; j < robot.joints.size(); ++j) {
-      const JointState& state = report.joints[static_cast<std::size_t>(robot.joints[j])];
+      const dynamics::JointState& state = report.joints[static_cast<std::size_t>(robot.joints[j])];
       const double desired = simulator_.desiredState(static_cast<int>(r), static_cast<int>(j)).position;
       for (const double value : {state.position, state.velocity, state.effort, desired}) put(stream_, value);
     }

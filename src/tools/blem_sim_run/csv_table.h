@@ -16,14 +16,14 @@ namespace blem_sim {
 class CsvTable {
  public:
   /** @param rate [Hz], 0 = every step @throws InputError if the file cannot be written */
-  CsvTable(const Simulator& simulator, const std::string& file, double rate);
-  void add(const StepReport& report);
+  CsvTable(const sim::Simulator& simulator, const std::string& file, double rate);
+  void add(const sim::StepReport& report);
 
  private:
   void writeHeader();
-  void writeRow(const StepReport& report);
+  void writeRow(const sim::StepReport& report);
 
-  const Simulator& simulator_;
+  const sim::Simulator& simulator_;
   std::ofstream stream_;
   double rate_ = 0;
   std::vector<std::vector<double>> readings_;  ///< last ones, per sensor; NaN before the first

@@ -52,15 +52,15 @@ class Progress {
 };
 
 /** Steps until the time is up or the state is not finite. */
-bool stepThrough(const RunOptions& options, Simulator* simulator, RunRecord* record, Progress* progress) {
+bool stepThrough(const RunOptions& options, sim::Simulator* simulator, RunRecord* record, Progress* progress) {
   std::unique_ptr<CsvTable> table;
   if (!options.csv.empty()) table = std::make_unique<CsvTable>(*simulator, options.csv, options.csv_rate);
   const auto steps = static_cast<std::uint64_t>(std::llround(options.duration / simulator->config().time_step));
   for (std::uint64_t step = 0; step < steps; ++step) {
-    const StepReport& report = simulator->step();
+    const sim::StepReport& report = simulator->step();
     record->add(report);
     if (table) table->add(report);
-    if (report.status & STATE_NOT_FINITE) return false;
+    if (report.status & sim::STATE_NOT_FINITE) return false;
     progress->show(step, report.time);
   }
   return true;
@@ -82,11 +82,11 @@ void writeReport(const RunOptions& options, const RunRecord& record, const RunTi
 bool run(const RunOptions& options) {
   std::vector<std::pair<std::string, std::string>> settings = options.settings;
   if (options.seed) settings.emplace_back("random_seed", std::to_string(*options.seed));
-  const SimulationConfig config = readConfig(options.config, settings);
-  const LoadLog log{[](const std::string& line) { std::fprintf(stderr, "blem_sim_run: %s\n", line.c_str()); }};
-  Simulator simulator(config, UriResolver(options.packages), log);
+  const sim::SimulationConfig config = readConfig(options.config, settings);
+  const sim::LoadLog log{[](const std::string& line) { std::fprintf(stderr, "blem_sim_run: %s\n", line.c_str()); }};
+  sim::Simulator simulator(config, model::UriResolver(options.packages), log);
   std::vector<std::string> notes = simulator.notes();
-  if (!options.load_state.empty()) simulator.restore(loadState(options.load_state));
+  if (!options.load_state.empty()) simulator.restore(sim::loadState(options.load_state));
   if (!options.trajectory.empty()) commandTrajectory(options.trajectory, &simulator, &notes);
 
   RunRecord record(simulator, options.stats_from);
@@ -97,7 +97,7 @@ bool run(const RunOptions& options) {
   const RunTimes times{static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC, secondsSince(start)};
   progress.end(notes);
 
-  if (!options.save_state.empty()) saveState(simulator.save(), options.save_state);
+  if (!options.save_state.empty()) sim::saveState(simulator.save(), options.save_state);
   writeReport(options, record, times, notes);
   if (!finite) std::fprintf(stderr, "blem_sim_run: the state stopped being finite at t = %.6g s\n", simulator.time());
   return finite;

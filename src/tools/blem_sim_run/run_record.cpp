@@ -25,10 +25,10 @@ void writeDistribution(JsonWriter& json, const Distribution& distribution) {
 
 }  // namespace
 
-RunRecord::RunRecord(const Simulator& simulator, double stats_from)
-    : simulator_(simulator), stats_from_(stats_from), status_steps_(std::size(STEP_STATUS)), sensors_(simulator.sensors().size()) {}
+RunRecord::RunRecord(const sim::Simulator& simulator, double stats_from)
+    : simulator_(simulator), stats_from_(stats_from), status_steps_(std::size(sim::STEP_STATUS)), sensors_(simulator.sensors().size()) {}
 
-void RunRecord::add(const StepReport& report) {
+void RunRecord::add(const sim::StepReport& report) {
   ++steps_;
   for (std::size_t bit = 0; bit < status_steps_.size(); ++bit) status_steps_[bit] += (report.status >> bit) & 1u;
   for (std::size_t stage = 0; stage < stages_.size(); ++stage) stages_[stage].add(MILLISECONDS * report.profile.seconds[stage]);
@@ -40,17 +40,17 @@ void RunRecord::add(const StepReport& report) {
   addDepth(report);
   trust_.add(report);
   if (report.time <= stats_from_) return;
-  for (const SensorSample& sample : report.samples)
-    sensors_[static_cast<std::size_t>(sample.sensor)].add(sensorValues(sample.reading).values);
+  for (const sim::SensorSample& sample : report.samples)
+    sensors_[static_cast<std::size_t>(sample.sensor)].add(sim::sensorValues(sample.reading).values);
 }
 
-void RunRecord::addDepth(const StepReport& report) {
+void RunRecord::addDepth(const sim::StepReport& report) {
   const bool deeper =
       report.max_of_layer > deepest_.of_layer || (report.max_of_layer == deepest_.of_layer && report.max_depth > deepest_.depth);
   if (!deeper) return;
   deepest_ = {report.max_depth, report.max_of_layer, report.time, report.deepest_a, report.deepest_b};
   // The deepest contact need not be the one that used most of its layer.
-  for (const ContactReport& contact : report.contacts) {
+  for (const sim::ContactReport& contact : report.contacts) {
     if (contact.of_layer != report.max_of_layer) continue;
     deepest_ = {contact.depth, contact.of_layer, report.time, contact.collider_a, contact.collider_b};
     return;
@@ -82,14 +82,14 @@ void RunRecord::write(const RunTimes& times, const std::vector<std::string>& not
 
 void RunRecord::writeStatus(JsonWriter& json) const {
   json.key("status").openObject();
-  for (std::size_t bit = 0; bit < status_steps_.size(); ++bit) json.key(STEP_STATUS[bit].name).value(status_steps_[bit]);
+  for (std::size_t bit = 0; bit < status_steps_.size(); ++bit) json.key(sim::STEP_STATUS[bit].name).value(status_steps_[bit]);
   json.closeObject();
 }
 
 void RunRecord::writeProfile(JsonWriter& json) const {
   json.key("profile_ms").openObject();
   for (std::size_t stage = 0; stage < stages_.size(); ++stage) {
-    json.key(STAGE_NAMES[stage]);
+    json.key(sim::STAGE_NAMES[stage]);
     writeDistribution(json, stages_[stage]);
   }
   json.key("step");
@@ -117,13 +117,13 @@ void RunRecord::writeContacts(JsonWriter& json) const {
 }
 
 void RunRecord::writeBodies(JsonWriter& json) const {
-  const StepReport& report = simulator_.report();
+  const sim::StepReport& report = simulator_.report();
   json.key("bodies").openObject();
-  for (const ModelInfo& model : simulator_.models()) {
+  for (const sim::ModelInfo& model : simulator_.models()) {
     if (!model.alive) continue;
     for (const int body : model.bodies) {
-      if (body == WORLD_BODY) continue;
-      const BodyState& state = report.bodies[static_cast<std::size_t>(body)];
+      if (body == dynamics::WORLD_BODY) continue;
+      const dynamics::BodyState& state = report.bodies[static_cast<std::size_t>(body)];
       const Vector3 com_from_origin = state.X_WB.linear() * simulator_.world().bodySpec(body).inertial.com;
       json.key(simulator_.bodyName(body)).openObject();
       json.key("xyz").value(Vector3(state.X_WB.translation()));
@@ -138,11 +138,11 @@ void RunRecord::writeBodies(JsonWriter& json) const {
 }
 
 void RunRecord::writeJoints(JsonWriter& json) const {
-  const StepReport& report = simulator_.report();
+  const sim::StepReport& report = simulator_.report();
   json.key("joints").openObject();
-  for (const RobotInfo& robot : simulator_.robots()) {
+  for (const sim::RobotInfo& robot : simulator_.robots()) {
     for (std::size_t j = 0; j < robot.joints.size(); ++j) {
-      const JointState& state = report.joints[static_cast<std::size_t>(robot.joints[j])];
+      const dynamics::JointState& state = report.joints[static_cast<std::size_t>(robot.joints[j])];
       json.key(robot.name + "::" + robot.joint_names[j]).openObject();
       json.key("position").value(state.position);
       json.key("velocity").value(state.velocity);
@@ -154,12 +154,12 @@ void RunRecord::writeJoints(JsonWriter& json) const {
 }
 
 void RunRecord::writeSensors(JsonWriter& json) const {
-  const std::vector<std::string> names = sensorNames(simulator_);
+  const std::vector<std::string> names = sim::sensorNames(simulator_);
   json.key("sensors").openObject();
   for (std::size_t sensor = 0; sensor < sensors_.size(); ++sensor) {
     const VectorStatistics& statistics = sensors_[sensor];
     json.key(names[sensor]).openObject();
-    json.key("fields").value(sensorFields(simulator_, simulator_.sensors()[sensor]));
+    json.key("fields").value(sim::sensorFields(simulator_, simulator_.sensors()[sensor]));
     json.key("samples").value(statistics.count());
     json.key("mean").value(statistics.mean());
     json.key("std").value(statistics.standardDeviation());
@@ -172,7 +172,7 @@ void RunRecord::writeSensors(JsonWriter& json) const {
 
 void RunRecord::writeLoadReport(JsonWriter& json) const {
   json.key("load").openList();
-  for (const MeshReport& mesh : simulator_.loadReport()) {
+  for (const geometry::MeshReport& mesh : simulator_.loadReport()) {
     json.openObject();
     json.key("name").value(mesh.name);
     json.key("source").value(mesh.source);

@@ -22,8 +22,8 @@ struct RunTimes {
 class RunRecord {
  public:
   /** @param stats_from [s] simulated time after which sensors count */
-  RunRecord(const Simulator& simulator, double stats_from);
-  void add(const StepReport& report);
+  RunRecord(const sim::Simulator& simulator, double stats_from);
+  void add(const sim::StepReport& report);
   void write(const RunTimes& times, const std::vector<std::string>& notes, std::ostream& stream) const;
 
  private:
@@ -32,7 +32,7 @@ class RunRecord {
     int collider_a = -1, collider_b = -1;
   };
 
-  void addDepth(const StepReport& report);
+  void addDepth(const sim::StepReport& report);
   void writeStatus(JsonWriter& json) const;
   void writeProfile(JsonWriter& json) const;
   void writeContacts(JsonWriter& json) const;
@@ -41,13 +41,13 @@ class RunRecord {
   void writeSensors(JsonWriter& json) const;
   void writeLoadReport(JsonWriter& json) const;
 
-  const Simulator& simulator_;
+  const sim::Simulator& simulator_;
   double stats_from_ = 0;
   std::uint64_t steps_ = 0, raw_contacts_ = 0, reduced_contacts_ = 0;
   int most_reduced_contacts_ = 0;
   double wrench_error_ = 0;
   std::vector<std::uint64_t> status_steps_;  ///< per bit
-  std::array<Distribution, static_cast<int>(Stage::COUNT)> stages_;
+  std::array<Distribution, static_cast<int>(sim::Stage::COUNT)> stages_;
   Distribution step_;
   Deepest deepest_;
   TrustRecord trust_;

@@ -2,18 +2,18 @@
 
 namespace blem_sim {
 
-void TrustRecord::add(const StepReport& report) {
+void TrustRecord::add(const sim::StepReport& report) {
   gained_ += report.energy_gained;
   if (report.energy_gained > worst_gain_) {
     worst_gain_ = report.energy_gained;
     worst_gain_time_ = report.time;
   }
   event_count_ += report.layer_events.size();
-  for (const LayerEventReport& event : report.layer_events)
+  for (const sim::LayerEventReport& event : report.layer_events)
     if (events_.size() < MOST_EVENTS) events_.push_back(event);
 }
 
-void TrustRecord::write(const Simulator& simulator, JsonWriter& json) const {
+void TrustRecord::write(const sim::Simulator& simulator, JsonWriter& json) const {
   json.key("energy").openObject();
   json.key("gained_j").value(gained_);
   json.key("most_in_a_step_j").value(worst_gain_);
@@ -21,7 +21,7 @@ void TrustRecord::write(const Simulator& simulator, JsonWriter& json) const {
   json.closeObject();
   json.key("layer_event_count").value(event_count_);
   json.key("layer_events").openList();
-  for (const LayerEventReport& event : events_) {
+  for (const sim::LayerEventReport& event : events_) {
     json.openObject();
     json.key("time_s").value(event.time);
     json.key("pair").openList();

@@ -12,15 +12,15 @@ namespace blem_sim {
 class TrustRecord {
  public:
   static constexpr std::size_t MOST_EVENTS = 100;  ///< listed; all are counted
-  void add(const StepReport& report);
+  void add(const sim::StepReport& report);
   /** Writes the record as keys of the open object. */
-  void write(const Simulator& simulator, JsonWriter& json) const;
+  void write(const sim::Simulator& simulator, JsonWriter& json) const;
 
  private:
   double gained_ = 0, worst_gain_ = 0;  // [J]
   double worst_gain_time_ = 0;          // [s]
   std::uint64_t event_count_ = 0;
-  std::vector<LayerEventReport> events_;  // the first ones
+  std::vector<sim::LayerEventReport> events_;  // the first ones
 };
 
 }  // namespace blem_sim

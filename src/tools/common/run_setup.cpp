@@ -13,8 +13,8 @@ namespace blem_sim {
 namespace {
 
 /** @throws InputError for what only a node can have */
-void refuseTopics(const SimulationConfig& config) {
-  for (const EnvironmentConfig& environment : config.environments)
+void refuseTopics(const sim::SimulationConfig& config) {
+  for (const sim::EnvironmentConfig& environment : config.environments)
     if (!environment.live.topic.empty())
       throw InputError(
           fmt::format("environments: {}: topic: {}: clouds come to blem_sim_node alone; save one as .pcd or .ply and give its uri",
@@ -23,22 +23,22 @@ void refuseTopics(const SimulationConfig& config) {
 
 }  // namespace
 
-SimulationConfig readConfig(const std::string& file, const std::vector<std::pair<std::string, std::string>>& settings) {
-  YAML::Node root = loadYamlFile(file);
+sim::SimulationConfig readConfig(const std::string& file, const std::vector<std::pair<std::string, std::string>>& settings) {
+  YAML::Node root = sim::loadYamlFile(file);
   for (const auto& [path, value] : settings) overrideSetting(&root, path, value);
-  const SimulationConfig config = parseConfig(root, file, std::filesystem::absolute(file).parent_path().string());
+  const sim::SimulationConfig config = sim::parseConfig(root, file, std::filesystem::absolute(file).parent_path().string());
   refuseTopics(config);
   return config;
 }
 
-void commandTrajectory(const std::string& file, Simulator* simulator, std::vector<std::string>* notes) {
+void commandTrajectory(const std::string& file, sim::Simulator* simulator, std::vector<std::string>* notes) {
   const auto& robots = simulator->robots();
   if (robots.empty()) throw InputError("--trajectory: the configuration has no robot");
   std::string first_refusal;
   for (std::size_t robot = 0; robot < robots.size(); ++robot) {
     std::vector<std::string> ignored;
     try {
-      const JointTrajectory trajectory = loadTrajectoryCsv(file, robots[robot].joint_names, &ignored);
+      const sim::JointTrajectory trajectory = sim::loadTrajectoryCsv(file, robots[robot].joint_names, &ignored);
       simulator->commandTrajectory(static_cast<int>(robot), trajectory);
     } catch (const InputError& error) {
       if (first_refusal.empty()) first_refusal = error.what();

@@ -13,12 +13,12 @@ namespace blem_sim {
  * Reads a configuration. @param settings key.path, value: replaced before it is read, in order
  * @throws InputError for what it is refused for, and for environments that only a node can have
  */
-SimulationConfig readConfig(const std::string& file, const std::vector<std::pair<std::string, std::string>>& settings);
+sim::SimulationConfig readConfig(const std::string& file, const std::vector<std::pair<std::string, std::string>>& settings);
 
 /**
  * Commands the trajectory to the first robot that has joints of its columns.
  * @param notes is added: columns that are no joints @throws InputError: no robot takes it
  */
-void commandTrajectory(const std::string& file, Simulator* simulator, std::vector<std::string>* notes);
+void commandTrajectory(const std::string& file, sim::Simulator* simulator, std::vector<std::string>* notes);
 
 }  // namespace blem_sim

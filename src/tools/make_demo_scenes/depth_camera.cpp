@@ -14,14 +14,14 @@ constexpr double GRAZING = 0.12;          // cosine of the angle of incidence be
 constexpr double DROPOUT = 0.004;         // share of samples that fail for no visible reason
 constexpr double DISPARITY_STEP = 0.125;  // [pixels]
 
-Vector3 normalOf(const TriangleMesh& mesh, int element) {
+Vector3 normalOf(const geometry::TriangleMesh& mesh, int element) {
   const Vector3i& e = mesh.elements[element];
   const Vector3& a = mesh.vertices[e[0]];
   return (mesh.vertices[e[1]] - a).cross(mesh.vertices[e[2]] - a).normalized();
 }
 
 bool isLit(const Scene& scene, const Vector3& point, const Vector3& projector) {
-  return castRay({scene.bvh, scene.mesh}, {projector, point - projector}).t > 1 - 1e-3;
+  return geometry::castRay({scene.bvh, scene.mesh}, {projector, point - projector}).t > 1 - 1e-3;
 }
 
 // Whether a dark spot swallows a sample; spots are ragged at the rim, where some samples come back.
@@ -67,7 +67,7 @@ DepthImage capture(const Scene& scene, const DepthCamera& camera, Noise& noise) 
       const Vector3 direction_C(((column + 0.5) * camera.stride - 0.5 * camera.width) / camera.focal_length,
                                 ((row + 0.5) * camera.stride - 0.5 * camera.height) / camera.focal_length, 1);
       const Vector3 direction = camera.X_WC.linear() * direction_C;
-      const auto [depth, hit] = castRay({scene.bvh, scene.mesh}, {eye, direction});
+      const auto [depth, hit] = geometry::castRay({scene.bvh, scene.mesh}, {eye, direction});
       const bool dropped = noise.uniform() < DROPOUT;
       if (hit < 0 || dropped || depth > FARTHEST) continue;
       if (std::abs(normalOf(scene.mesh, hit).dot(direction.normalized())) < GRAZING) continue;
@@ -79,8 +79,8 @@ DepthImage capture(const Scene& scene, const DepthCamera& camera, Noise& noise) 
   return image;
 }
 
-TriangleMesh triangulated(const DepthImage& image, double max_edge) {
-  TriangleMesh mesh;
+geometry::TriangleMesh triangulated(const DepthImage& image, double max_edge) {
+  geometry::TriangleMesh mesh;
   std::vector<int> vertex_of(image.points.size(), -1);
   const auto isShort = [&](int i, int j) { return (*image.points[i] - *image.points[j]).norm() <= max_edge; };
   const auto vertex = [&](int i) {

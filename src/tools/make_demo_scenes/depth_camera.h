@@ -17,9 +17,10 @@ struct DarkSpot {
 
 /** A mesh with its tree, and the spots of it that a camera does not see. */
 struct Scene {
-  Scene(TriangleMesh triangles, std::vector<DarkSpot> spots) : mesh(std::move(triangles)), bvh(mesh), dark_spots(std::move(spots)) {}
-  TriangleMesh mesh;
-  Bvh bvh;
+  Scene(geometry::TriangleMesh triangles, std::vector<DarkSpot> spots)
+      : mesh(std::move(triangles)), bvh(mesh), dark_spots(std::move(spots)) {}
+  geometry::TriangleMesh mesh;
+  geometry::Bvh bvh;
   std::vector<DarkSpot> dark_spots;
 };
 
@@ -49,6 +50,6 @@ struct DepthImage {
 DepthImage capture(const Scene& scene, const DepthCamera& camera, Noise& noise);
 
 /** Joins neighbouring samples to triangles unless their depths jump. @param max_edge [m] */
-TriangleMesh triangulated(const DepthImage& image, double max_edge);
+geometry::TriangleMesh triangulated(const DepthImage& image, double max_edge);
 
 }  // namespace blem_sim::demo

@@ -14,14 +14,14 @@ namespace {
 
 void report(const std::string& file, std::size_t count, const char* what) { std::printf("%s: %zu %s\n", file.c_str(), count, what); }
 
-void saveStl(const std::string& folder, const std::string& name, const TriangleMesh& mesh) {
+void saveStl(const std::string& folder, const std::string& name, const geometry::TriangleMesh& mesh) {
   writeStl(folder + "/" + name + ".stl", mesh);
   report(name + ".stl", mesh.elements.size(), "triangles");
 }
 
 void makeScenes(const std::string& folder) {
   const Scene floor = workshopFloor();
-  const TriangleMesh scan = scannedFloor(floor);
+  const geometry::TriangleMesh scan = scannedFloor(floor);
   writePly(folder + "/scanned_floor.ply", scan);
   report("scanned_floor.ply", scan.elements.size(), "triangles");
   const std::vector<Vector3> points = scannedFloorPoints(floor);
@@ -29,8 +29,8 @@ void makeScenes(const std::string& folder) {
   report("scanned_floor.pcd", points.size(), "points");
 
   saveStl(folder, "shell_mug", shellMug());
-  saveStl(folder, "cube_10cm", subdivided(boxMesh(Vector3::Constant(0.1)), 2));
-  saveStl(folder, "ground_2m", gridMesh(2, 2, 8, 8));
+  saveStl(folder, "cube_10cm", geometry::subdivided(geometry::boxMesh(Vector3::Constant(0.1)), 2));
+  saveStl(folder, "ground_2m", geometry::gridMesh(2, 2, 8, 8));
   for (const NamedMesh& part : humanoidShells()) saveStl(folder, std::string("humanoid_") + part.name, part.mesh);
   for (const NamedMesh& part : gripperShells()) saveStl(folder, part.name, part.mesh);
   for (const NamedMesh& part : watcherShells()) saveStl(folder, part.name, part.mesh);

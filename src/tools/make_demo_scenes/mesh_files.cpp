@@ -26,7 +26,7 @@ void write(const std::string& file, const std::string& bytes) {
 
 }  // namespace
 
-void writePly(const std::string& file, const TriangleMesh& mesh) {
+void writePly(const std::string& file, const geometry::TriangleMesh& mesh) {
   std::string bytes = "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(mesh.vertices.size()) +
                       "\nproperty float x\nproperty float y\nproperty float z\nelement face " + std::to_string(mesh.elements.size()) +
                       "\nproperty list uchar int vertex_indices\nend_header\n";
@@ -38,7 +38,7 @@ void writePly(const std::string& file, const TriangleMesh& mesh) {
   write(file, bytes);
 }
 
-void writeStl(const std::string& file, const TriangleMesh& mesh) {
+void writeStl(const std::string& file, const geometry::TriangleMesh& mesh) {
   std::string bytes = "blem_sim demo mesh, metres";
   bytes.resize(80, ' ');
   put(bytes, static_cast<std::uint32_t>(mesh.elements.size()));

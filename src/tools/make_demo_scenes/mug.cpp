@@ -11,7 +11,7 @@ constexpr double RADIUS = 0.040, HEIGHT = 0.095;
 constexpr double NOISE = 1.5e-4;  // [m]
 
 // Quads between the points of neighbouring rows. @param wrap the last column meets the first
-void appendStrips(TriangleMesh& mesh, int first, int rows, int columns, bool wrap) {
+void appendStrips(geometry::TriangleMesh& mesh, int first, int rows, int columns, bool wrap) {
   for (int row = 0; row + 1 < rows; ++row) {
     for (int column = 0; column < (wrap ? columns : columns - 1); ++column) {
       const int next = (column + 1) % columns;
@@ -24,9 +24,9 @@ void appendStrips(TriangleMesh& mesh, int first, int rows, int columns, bool wra
 
 }  // namespace
 
-TriangleMesh shellMug() {
+geometry::TriangleMesh shellMug() {
   constexpr int AROUND = 96, UP = 31, ALONG = 41, ACROSS = 12;
-  TriangleMesh mug;
+  geometry::TriangleMesh mug;
   Noise noise(41);
   for (int row = 0; row < UP; ++row) {
     const double z = HEIGHT * row / (UP - 1);

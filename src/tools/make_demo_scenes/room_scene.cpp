@@ -10,19 +10,19 @@ namespace {
 constexpr double TILE = 0.30;       // [m] side of the floor's tiles
 constexpr double MAX_EDGE = 0.045;  // [m] between neighbouring samples of one surface
 
-void append(TriangleMesh& mesh, const TriangleMesh& part) {
+void append(geometry::TriangleMesh& mesh, const geometry::TriangleMesh& part) {
   const int offset = static_cast<int>(mesh.vertices.size());
   mesh.vertices.insert(mesh.vertices.end(), part.vertices.begin(), part.vertices.end());
   for (const Vector3i& e : part.elements) mesh.elements.emplace_back(e + Vector3i::Constant(offset));
 }
 
-void appendBox(TriangleMesh& mesh, const Vector3& size, const Vector3& centre, const Vector3& rpy) {
-  append(mesh, transformed(boxMesh(size), makePose(centre, rpy)));
+void appendBox(geometry::TriangleMesh& mesh, const Vector3& size, const Vector3& centre, const Vector3& rpy) {
+  append(mesh, geometry::transformed(geometry::boxMesh(size), makePose(centre, rpy)));
 }
 
 // A floor of long waves of 1 mm, each tile laid up to 0.5 mm too high and a little askew; smaller near the origin, where the robot stands.
-TriangleMesh unevenFloor() {
-  TriangleMesh floor = gridMesh(4.4, 4.4, 220, 220);
+geometry::TriangleMesh unevenFloor() {
+  geometry::TriangleMesh floor = geometry::gridMesh(4.4, 4.4, 220, 220);
   for (Vector3& v : floor.vertices) {
     const double waves = 0.6e-3 * std::sin(4.1 * v.x() + 0.7) + 0.5e-3 * std::sin(5.3 * v.y() - 1.1 * v.x());
     Noise tile(static_cast<std::uint64_t>(1000 + 100 * std::floor(v.x() / TILE) + std::floor(v.y() / TILE)));
@@ -35,17 +35,17 @@ TriangleMesh unevenFloor() {
   return floor;
 }
 
-void appendStones(TriangleMesh& mesh) {
+void appendStones(geometry::TriangleMesh& mesh) {
   Noise noise(7);
   for (int i = 0; i < 45; ++i) {
     const double angle = 2 * M_PI * noise.uniform(), distance = 0.62 + 1.0 * noise.uniform();
     const Vector3 size(0.02 + 0.03 * noise.uniform(), 0.02 + 0.03 * noise.uniform(), 0.012 + 0.018 * noise.uniform());
     const Pose X_WS = makePose({distance * std::cos(angle), distance * std::sin(angle), 0.2 * size.z()}, {0, 0, 3 * noise.uniform()});
-    append(mesh, transformed(icosphereMesh(1.0, 2), X_WS, size));
+    append(mesh, geometry::transformed(geometry::icosphereMesh(1.0, 2), X_WS, size));
   }
 }
 
-void appendBoards(TriangleMesh& mesh) {
+void appendBoards(geometry::TriangleMesh& mesh) {
   appendBox(mesh, {0.60, 0.14, 0.018}, {0.85, 0.10, 0.009}, {0, 0, 1.45});
   appendBox(mesh, {0.70, 0.12, 0.022}, {-0.15, 0.80, 0.011}, {0, 0, 0.10});
   appendBox(mesh, {0.50, 0.20, 0.015}, {-0.80, -0.25, 0.0075}, {0, 0, 1.75});
@@ -53,12 +53,12 @@ void appendBoards(TriangleMesh& mesh) {
   appendBox(mesh, {0.40, 0.10, 0.020}, {0.35, -0.95, 0.040}, {0.05, 0, 0.9});
 }
 
-void appendClutter(TriangleMesh& mesh) {
+void appendClutter(geometry::TriangleMesh& mesh) {
   appendBox(mesh, {0.40, 0.30, 0.28}, {1.25, 0.75, 0.14}, {0, 0, 0.3});
   appendBox(mesh, {0.60, 0.50, 0.02}, {1.15, -0.70, 0.085}, {0, -0.26, -0.2});
-  append(mesh, transformed(cylinderMesh(0.06, 0.9, 32), makePose({-1.10, 0.75, 0.45})));
-  append(mesh, transformed(icosphereMesh(0.11, 3), makePose({-0.55, 1.15, 0.11})));
-  append(mesh, transformed(cylinderMesh(0.05, 0.7, 24), makePose({-1.05, -0.85, 0.05}, {M_PI_2, 0, 0.6})));
+  append(mesh, geometry::transformed(geometry::cylinderMesh(0.06, 0.9, 32), makePose({-1.10, 0.75, 0.45})));
+  append(mesh, geometry::transformed(geometry::icosphereMesh(0.11, 3), makePose({-0.55, 1.15, 0.11})));
+  append(mesh, geometry::transformed(geometry::cylinderMesh(0.05, 0.7, 24), makePose({-1.05, -0.85, 0.05}, {M_PI_2, 0, 0.6})));
   for (double x : {-0.17, 0.17}) {
     for (double y : {-0.17, 0.17}) appendBox(mesh, {0.035, 0.035, 0.42}, {0.35 + x, 1.35 + y, 0.21}, {0, 0, 0});
   }
@@ -91,21 +91,21 @@ std::vector<Pose> viewpoints() {
 }  // namespace
 
 Scene workshopFloor() {
-  TriangleMesh mesh = unevenFloor();
+  geometry::TriangleMesh mesh = unevenFloor();
   appendBoards(mesh);
   appendStones(mesh);
   appendClutter(mesh);
   return Scene(std::move(mesh), darkSpots());
 }
 
-TriangleMesh scannedFloor(const Scene& scene) {
-  TriangleMesh scan;
+geometry::TriangleMesh scannedFloor(const Scene& scene) {
+  geometry::TriangleMesh scan;
   Noise noise(2013);
   for (const Pose& X_WC : viewpoints()) {
     DepthCamera camera;
     camera.X_WC = X_WC;
-    const TriangleMesh sheet = triangulated(capture(scene, camera, noise), MAX_EDGE);
-    append(scan, transformed(sheet, registrationError(noise)));
+    const geometry::TriangleMesh sheet = triangulated(capture(scene, camera, noise), MAX_EDGE);
+    append(scan, geometry::transformed(sheet, registrationError(noise)));
   }
   return scan;
 }

@@ -11,7 +11,7 @@ namespace blem_sim::demo {
 Scene workshopFloor();
 
 /** The floor scanned from four sides, each view with a small registration error, as one soup of overlapping sheets full of holes. */
-TriangleMesh scannedFloor(const Scene& scene);
+geometry::TriangleMesh scannedFloor(const Scene& scene);
 
 /** The same floor as raw points of three views, fewer frames averaged. */
 std::vector<Vector3> scannedFloorPoints(const Scene& scene);

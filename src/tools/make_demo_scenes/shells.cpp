@@ -49,7 +49,7 @@ Section sole(double z, double heel, double toe, double half_width, double inset)
 }
 
 // Closes an end by shrinking rings around the outline's middle, so that a large cap is not one fan of slivers.
-void appendCap(TriangleMesh& mesh, int ring, int count, bool upwards) {
+void appendCap(geometry::TriangleMesh& mesh, int ring, int count, bool upwards) {
   constexpr int RINGS = 3;
   Vector3 middle = Vector3::Zero();
   for (int i = 0; i < count; ++i) middle += mesh.vertices[ring + i] / count;
@@ -74,8 +74,8 @@ void appendCap(TriangleMesh& mesh, int ring, int count, bool upwards) {
 }
 
 // Skin over sections from below upwards, with caps; closed and wound outwards.
-TriangleMesh loft(const std::vector<Section>& sections) {
-  TriangleMesh mesh;
+geometry::TriangleMesh loft(const std::vector<Section>& sections) {
+  geometry::TriangleMesh mesh;
   const int count = static_cast<int>(sections[0].outline.size());
   for (const Section& section : sections) {
     for (const Eigen::Vector2d& p : section.outline) mesh.vertices.emplace_back(p.x(), p.y(), section.z);
@@ -92,57 +92,57 @@ TriangleMesh loft(const std::vector<Section>& sections) {
   return mesh;
 }
 
-TriangleMesh pelvis() {
+geometry::TriangleMesh pelvis() {
   return loft({oval(-0.045, 0.045, 0.070), oval(-0.025, 0.060, 0.095), oval(0.020, 0.065, 0.105), oval(0.050, 0.055, 0.080)});
 }
 
-TriangleMesh torso() {
+geometry::TriangleMesh torso() {
   return loft({oval(0.005, 0.050, 0.070), oval(0.040, 0.065, 0.095), oval(0.150, 0.080, 0.125), oval(0.240, 0.082, 0.130),
                oval(0.280, 0.065, 0.105), oval(0.300, 0.035, 0.045), oval(0.320, 0.032, 0.038)});
 }
 
-TriangleMesh head() {
+geometry::TriangleMesh head() {
   return loft({oval(0.000, 0.030, 0.035, 0, 0, 2.5), oval(0.020, 0.060, 0.058, 0.005, 0, 2.5), oval(0.070, 0.078, 0.068, 0.008, 0, 2.5),
                oval(0.110, 0.070, 0.062, 0.004, 0, 2.5), oval(0.135, 0.040, 0.038, 0, 0, 2.5)});
 }
 
-TriangleMesh upperArm() {
+geometry::TriangleMesh upperArm() {
   return loft({oval(-0.185, 0.024, 0.024, 0, 0, 2.5), oval(-0.150, 0.030, 0.030, 0, 0, 2.5), oval(-0.030, 0.034, 0.032, 0, 0, 2.5),
                oval(0.015, 0.036, 0.034, 0, 0, 2.5), oval(0.035, 0.022, 0.022, 0, 0, 2.5)});
 }
 
-TriangleMesh forearm() {
+geometry::TriangleMesh forearm() {
   return loft({oval(-0.230, 0.020, 0.016, 0, 0, 2.5), oval(-0.215, 0.034, 0.020, 0, 0, 3), oval(-0.165, 0.034, 0.022, 0, 0, 3),
                oval(-0.145, 0.022, 0.020, 0, 0, 2.5), oval(-0.060, 0.030, 0.028, 0, 0, 2.5), oval(0.010, 0.028, 0.027, 0, 0, 2.5),
                oval(0.025, 0.016, 0.016, 0, 0, 2.5)});
 }
 
-TriangleMesh hipYaw() { return loft({oval(-0.010, 0.040, 0.036), oval(0.010, 0.044, 0.040), oval(0.040, 0.036, 0.034)}); }
+geometry::TriangleMesh hipYaw() { return loft({oval(-0.010, 0.040, 0.036), oval(0.010, 0.044, 0.040), oval(0.040, 0.036, 0.034)}); }
 
-TriangleMesh hipRoll() { return loft({oval(-0.040, 0.036, 0.034), oval(-0.005, 0.048, 0.038), oval(0.015, 0.040, 0.032)}); }
+geometry::TriangleMesh hipRoll() { return loft({oval(-0.040, 0.036, 0.034), oval(-0.005, 0.048, 0.038), oval(0.015, 0.040, 0.032)}); }
 
-TriangleMesh thigh() {
+geometry::TriangleMesh thigh() {
   return loft({oval(-0.275, 0.030, 0.032, 0.004), oval(-0.240, 0.042, 0.042, 0.004), oval(-0.120, 0.050, 0.048, 0.004),
                oval(-0.030, 0.054, 0.050), oval(0.015, 0.036, 0.036)});
 }
 
-TriangleMesh shin() {
+geometry::TriangleMesh shin() {
   return loft({oval(-0.235, 0.030, 0.030), oval(-0.200, 0.036, 0.035, -0.002), oval(-0.090, 0.046, 0.042, -0.008),
                oval(-0.010, 0.040, 0.040), oval(0.025, 0.026, 0.030)});
 }
 
-TriangleMesh anklePitch() { return loft({oval(-0.020, 0.030, 0.026), oval(0.000, 0.036, 0.032), oval(0.025, 0.030, 0.028)}); }
+geometry::TriangleMesh anklePitch() { return loft({oval(-0.020, 0.030, 0.026), oval(0.000, 0.036, 0.032), oval(0.025, 0.030, 0.028)}); }
 
 // The sole lies 60 mm below the ankle, 80 mm to the heel, 140 mm to the toe.
-TriangleMesh foot() {
+geometry::TriangleMesh foot() {
   return loft({sole(-0.060, 0.080, 0.140, 0.055, 0.003), sole(-0.057, 0.080, 0.140, 0.055, 0.000), sole(-0.042, 0.080, 0.140, 0.055, 0.001),
                sole(-0.030, 0.075, 0.110, 0.048, 0.004), sole(-0.012, 0.055, 0.070, 0.036, 0.000)});
 }
 
 }  // namespace
 
-TriangleMesh gridBox(const Vector3& size, double cell) {
-  TriangleMesh box;
+geometry::TriangleMesh gridBox(const Vector3& size, double cell) {
+  geometry::TriangleMesh box;
   for (int axis = 0; axis < 3; ++axis) {
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
     const int nu = std::max(1, static_cast<int>(std::lround(size[u] / cell))),
@@ -153,7 +153,7 @@ TriangleMesh gridBox(const Vector3& size, double cell) {
     face.linear().col(2) = Vector3::Unit(axis);
     for (double side : {-0.5, 0.5}) {
       face.translation() = side * size[axis] * Vector3::Unit(axis);
-      TriangleMesh grid = transformed(gridMesh(size[u], size[v], nu, nv), face);
+      geometry::TriangleMesh grid = geometry::transformed(geometry::gridMesh(size[u], size[v], nu, nv), face);
       const int offset = static_cast<int>(box.vertices.size());
       box.vertices.insert(box.vertices.end(), grid.vertices.begin(), grid.vertices.end());
       for (const Vector3i& e : grid.elements) {
@@ -171,11 +171,13 @@ std::vector<NamedMesh> humanoidShells() {
 }
 
 std::vector<NamedMesh> gripperShells() {
-  const auto box = [](const Vector3& size, const Vector3& centre) { return transformed(boxMesh(size), makePose(centre)); };
+  const auto box = [](const Vector3& size, const Vector3& centre) {
+    return geometry::transformed(geometry::boxMesh(size), makePose(centre));
+  };
   return {{"gripper_carriage", box({0.06, 0.10, 0.06}, {0, 0, 0.125})},
           {"gripper_palm", box({0.05, 0.20, 0.03}, {0, 0, 0.075})},
           {"gripper_finger", box({0.016, 0.010, 0.085}, {0, 0.011, 0.0225})},
-          {"finger_pad", transformed(gridBox({0.020, 0.006, 0.030}, 0.001), makePose({0, 0.003, 0}))}};
+          {"finger_pad", geometry::transformed(gridBox({0.020, 0.006, 0.030}, 0.001), makePose({0, 0.003, 0}))}};
 }
 
 std::vector<NamedMesh> watcherShells() {

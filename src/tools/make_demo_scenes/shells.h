@@ -9,14 +9,14 @@ namespace blem_sim::demo {
 
 /** A thin mug of 80 mm diameter and 95 mm height, its foot's rim in z = 0, handle towards +x: outer side only, no bottom, no inside,
  *  with 0.15 mm of sensor noise. [m] */
-TriangleMesh shellMug();
+geometry::TriangleMesh shellMug();
 
 /** A closed box whose faces are grids. @param size [m] @param cell [m] edge of the grid, rounded so that it fits */
-TriangleMesh gridBox(const Vector3& size, double cell);
+geometry::TriangleMesh gridBox(const Vector3& size, double cell);
 
 struct NamedMesh {
   const char* name;
-  TriangleMesh mesh;
+  geometry::TriangleMesh mesh;
 };
 
 /** The links of the demo humanoid, each closed, in its link's frame: x forward, y left, z up, origin in the joint towards the root. */

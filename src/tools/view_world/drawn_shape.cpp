@@ -20,38 +20,40 @@ Pose alongZ(const Vector3& origin, const Vector3& direction) {
 }
 
 /** Cone about z with its base in z = 0. */
-TriangleMesh coneMesh(double radius, double length) {
-  TriangleMesh cone = cylinderMesh(radius, length, ROUND_SIDES);
+geometry::TriangleMesh coneMesh(double radius, double length) {
+  geometry::TriangleMesh cone = geometry::cylinderMesh(radius, length, ROUND_SIDES);
   for (Vector3& vertex : cone.vertices) vertex = vertex.z() > 0 ? Vector3(0, 0, length) : Vector3(vertex.x(), vertex.y(), 0);
-  return cleanMesh(cone, nullptr);
+  return geometry::cleanMesh(cone, nullptr);
 }
 
 }  // namespace
 
-void append(const TriangleMesh& mesh, TriangleMesh* to) {
+void append(const geometry::TriangleMesh& mesh, geometry::TriangleMesh* to) {
   const int first = static_cast<int>(to->vertices.size());
   to->vertices.insert(to->vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
   for (const Vector3i& element : mesh.elements) to->elements.push_back(element + Vector3i::Constant(first));
 }
 
-void addColoured(const TriangleMesh& mesh, const Colour& colour, DrawnShape* shape) {
+void addColoured(const geometry::TriangleMesh& mesh, const sim::Colour& colour, DrawnShape* shape) {
   append(mesh, &shape->mesh);
   shape->colours.resize(shape->mesh.elements.size(), colour);
 }
 
-TriangleMesh arrowMesh(const Vector3& foot, const Vector3& along, double thickness) {
+geometry::TriangleMesh arrowMesh(const Vector3& foot, const Vector3& along, double thickness) {
   const double length = along.norm();
   const double head = std::min(HEAD * thickness, 0.5 * length);
   const Vector3 neck = foot + (length - head) / length * along;
-  TriangleMesh arrow = transformed(cylinderMesh(0.5 * thickness, length - head, ROUND_SIDES), alongZ(0.5 * (foot + neck), along));
-  append(transformed(coneMesh(HEAD_WIDTH * thickness, head), alongZ(neck, along)), &arrow);
+  geometry::TriangleMesh arrow =
+      geometry::transformed(geometry::cylinderMesh(0.5 * thickness, length - head, ROUND_SIDES), alongZ(0.5 * (foot + neck), along));
+  append(geometry::transformed(coneMesh(HEAD_WIDTH * thickness, head), alongZ(neck, along)), &arrow);
   return arrow;
 }
 
-TriangleMesh capsuleMesh(const Vector3& p, const Vector3& q, double radius) {
-  const TriangleMesh end = icosphereMesh(radius, ROUND_LEVEL);
-  TriangleMesh capsule = transformed(cylinderMesh(radius, (q - p).norm(), ROUND_SIDES), alongZ(0.5 * (p + q), q - p));
-  for (const Vector3& centre : {p, q}) append(transformed(end, makePose(centre)), &capsule);
+geometry::TriangleMesh capsuleMesh(const Vector3& p, const Vector3& q, double radius) {
+  const geometry::TriangleMesh end = geometry::icosphereMesh(radius, ROUND_LEVEL);
+  geometry::TriangleMesh capsule =
+      geometry::transformed(geometry::cylinderMesh(radius, (q - p).norm(), ROUND_SIDES), alongZ(0.5 * (p + q), q - p));
+  for (const Vector3& centre : {p, q}) append(geometry::transformed(end, makePose(centre)), &capsule);
   return capsule;
 }
 

@@ -7,6 +7,6 @@ namespace blem_sim {
 
 /** All that is a distance away from the triangles of a mesh, on both sides, round at edges that are not flat; corners are left open. @param
  * r [m] */
-TriangleMesh layerShell(const TriangleMesh& mesh, const MeshTopology& topology, double r);
+geometry::TriangleMesh layerShell(const geometry::TriangleMesh& mesh, const geometry::MeshTopology& topology, double r);
 
 }  // namespace blem_sim

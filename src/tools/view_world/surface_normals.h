@@ -11,6 +11,6 @@ namespace blem_sim {
  * Unit normals, one per corner of each triangle: the mean over the triangles at its vertex that lie within 40 degrees of its own, weighted
  * by area. Windings may differ. Precondition: triangles only.
  */
-std::vector<Vector3> cornerNormals(const TriangleMesh& mesh);
+std::vector<Vector3> cornerNormals(const geometry::TriangleMesh& mesh);
 
 }  // namespace blem_sim

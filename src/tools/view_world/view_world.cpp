@@ -22,14 +22,14 @@ enum ExitStatus { DRAWN = 0, FAILED = 1, BAD_INPUT = 2 };
 constexpr double WEIGHT_ARROW = 0.25;  // of the camera's distance
 
 void drawWorld(const ViewOptions& options) {
-  Simulator simulator(readConfig(options.config, options.settings), UriResolver(options.packages));
+  sim::Simulator simulator(readConfig(options.config, options.settings), model::UriResolver(options.packages));
   std::vector<std::string> notes;
   if (!options.trajectory.empty()) commandTrajectory(options.trajectory, &simulator, &notes);
   for (const std::string& note : notes) std::fprintf(stderr, "view_world: %s\n", note.c_str());
   PictureWriter writer(options);
   const std::vector<WorldFrame> frames = simulateFrames(options, &simulator);
 
-  const Vector3 up = upwards(simulator.gravity());
+  const Vector3 up = sim::upwards(simulator.gravity());
   const double aspect = static_cast<double>(options.size.width) / options.size.height;
   const ViewCamera camera = options.camera ? *options.camera : framing(worldBox(simulator, frames), up, aspect);
   const double scale = WEIGHT_ARROW * (camera.eye - camera.target).norm();

@@ -10,19 +10,19 @@ namespace blem_sim {
 
 namespace {
 
-WorldFrame frameOf(const StepReport& report) { return {report.bodies, report.contacts}; }
+WorldFrame frameOf(const sim::StepReport& report) { return {report.bodies, report.contacts}; }
 
 /** Steps on until that many are made. */
-void stepUntil(std::uint64_t steps, Simulator* simulator) {
+void stepUntil(std::uint64_t steps, sim::Simulator* simulator) {
   while (simulator->steps() < steps) {
-    if (simulator->step().status & STATE_NOT_FINITE)
+    if (simulator->step().status & sim::STATE_NOT_FINITE)
       throw std::runtime_error(fmt::format("the state stopped being finite at t = {:.6g} s", simulator->time()));
   }
 }
 
 }  // namespace
 
-std::vector<WorldFrame> simulateFrames(const ViewOptions& options, Simulator* simulator) {
+std::vector<WorldFrame> simulateFrames(const ViewOptions& options, sim::Simulator* simulator) {
   const double dt = simulator->config().time_step;
   const auto step_at = [dt](double time) { return static_cast<std::uint64_t>(std::llround(time / dt)); };
   std::vector<WorldFrame> frames;

@@ -45,7 +45,7 @@ vtkSmartPointer<vtkUnsignedCharArray> makeColours() {
   return colours;
 }
 
-void addColour(const Colour& colour, vtkUnsignedCharArray* colours) {
+void addColour(const sim::Colour& colour, vtkUnsignedCharArray* colours) {
   for (const float part : {colour.r, colour.g, colour.b}) colours->InsertNextValue(static_cast<unsigned char>(std::lround(255 * part)));
 }
 
@@ -200,7 +200,7 @@ WorldRenderer::~WorldRenderer() = default;
 
 Picture WorldRenderer::draw(const WorldFrame& frame, const DrawnShape& before_all) {
   for (const Impl::Placed& placed : impl_->placed) {
-    if (placed.body != WORLD_BODY) placed.actor->SetUserMatrix(matrixOf(frame.bodies[placed.body].X_WB));
+    if (placed.body != dynamics::WORLD_BODY) placed.actor->SetUserMatrix(matrixOf(frame.bodies[placed.body].X_WB));
   }
   impl_->before_all->RemoveAllViewProps();
   if (!before_all.mesh.elements.empty()) impl_->before_all->AddActor(triangleActor(before_all));

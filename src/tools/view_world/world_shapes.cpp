@@ -19,7 +19,7 @@ constexpr double ARROW_SIZE = 0.02;    // of the scale: thickness of an arrow
 constexpr double SHORTEST_ARROW = 0.02;
 
 /** Points as balls, or dots if they are many. @param colours one per point, or one */
-void addPoints(const std::vector<Vector3>& points, const std::vector<Colour>& colours, double radius, DrawnShape* shape) {
+void addPoints(const std::vector<Vector3>& points, const std::vector<sim::Colour>& colours, double radius, DrawnShape* shape) {
   const auto colour = [&](std::size_t i) { return colours[colours.size() == 1 ? 0 : i]; };
   if (points.size() > MOST_BALLS) {
     shape->dots = points;
@@ -27,16 +27,16 @@ void addPoints(const std::vector<Vector3>& points, const std::vector<Colour>& co
     for (std::size_t i = 0; i < points.size(); ++i) shape->colours.push_back(colour(i));
     return;
   }
-  const TriangleMesh ball = icosphereMesh(radius, points.size() > MOST_ROUND_BALLS ? 1 : 2);
-  for (std::size_t i = 0; i < points.size(); ++i) addColoured(transformed(ball, makePose(points[i])), colour(i), shape);
+  const geometry::TriangleMesh ball = geometry::icosphereMesh(radius, points.size() > MOST_ROUND_BALLS ? 1 : 2);
+  for (std::size_t i = 0; i < points.size(); ++i) addColoured(geometry::transformed(ball, makePose(points[i])), colour(i), shape);
 }
 
 /** Triangles of a collider's mesh, and rods for its segments. @param points those of its elements that are points, in the body's frame */
-DrawnShape surfaceShape(const Collider& collider, const Colour& colour, std::vector<Vector3>* points) {
+DrawnShape surfaceShape(const contact::Collider& collider, const sim::Colour& colour, std::vector<Vector3>* points) {
   DrawnShape shape;
   shape.body = collider.body;
   shape.colour = colour;
-  const TriangleMesh mesh = transformed(collider.geometry->mesh(), collider.X_BC);
+  const geometry::TriangleMesh mesh = geometry::transformed(collider.geometry->mesh(), collider.X_BC);
   const double radius = std::max(collider.radius, SMALLEST_ROD);
   shape.mesh.vertices = mesh.vertices;
   for (int i = 0; i < static_cast<int>(mesh.elements.size()); ++i) {
@@ -53,7 +53,8 @@ DrawnShape surfaceShape(const Collider& collider, const Colour& colour, std::vec
 }
 
 /** A chequered square of the plane below `middle`. @param cell [m] */
-DrawnShape planeShape(const CollisionGeometry& plane, const Pose& X_WC, const Vector3& middle, double cell, const Colour& colour) {
+DrawnShape planeShape(const contact::CollisionGeometry& plane, const Pose& X_WC, const Vector3& middle, double cell,
+                      const sim::Colour& colour) {
   const Vector3 normal = X_WC.linear() * plane.planeNormal();
   const Vector3 foot = X_WC * (plane.planeOffset() * plane.planeNormal());
   Pose X_WP = Pose::Identity();
@@ -63,28 +64,31 @@ DrawnShape planeShape(const CollisionGeometry& plane, const Pose& X_WC, const Ve
   const Vector3 way = X_WP.inverse() * middle;
   const Vector3 snapped(2 * cell * std::round(way.x() / (2 * cell)), 2 * cell * std::round(way.y() / (2 * cell)), 0);
   DrawnShape shape;
-  const Colour other = mixed(colour, {0.45F, 0.50F, 0.58F}, 0.3);
+  const sim::Colour other = mixed(colour, {0.45F, 0.50F, 0.58F}, 0.3);
   for (int i = 0; i < CELLS; ++i) {
     for (int j = 0; j < CELLS; ++j) {
       const Vector3 centre = snapped + cell * Vector3(i - 0.5 * CELLS + 0.5, j - 0.5 * CELLS + 0.5, 0);
-      addColoured(transformed(gridMesh(cell, cell, 1, 1), X_WP * makePose(centre)), (i + j) % 2 == 0 ? colour : other, &shape);
+      addColoured(geometry::transformed(geometry::gridMesh(cell, cell, 1, 1), X_WP * makePose(centre)), (i + j) % 2 == 0 ? colour : other,
+                  &shape);
     }
   }
   return shape;
 }
 
-bool isDrawn(const Simulator& simulator, const Collider& collider) {
+bool isDrawn(const sim::Simulator& simulator, const contact::Collider& collider) {
   return collider.enabled && collider.model >= 0 && simulator.models()[collider.model].alive;
 }
 
-ModelKind kindOf(const Simulator& simulator, const Collider& collider) { return simulator.models()[collider.model].kind; }
+sim::ModelKind kindOf(const sim::Simulator& simulator, const contact::Collider& collider) {
+  return simulator.models()[collider.model].kind;
+}
 
-Pose poseOf(const Collider& collider, const WorldFrame& frame) {
-  return collider.body == WORLD_BODY ? collider.X_BC : Pose(frame.bodies[collider.body].X_WB * collider.X_BC);
+Pose poseOf(const contact::Collider& collider, const WorldFrame& frame) {
+  return collider.body == dynamics::WORLD_BODY ? collider.X_BC : Pose(frame.bodies[collider.body].X_WB * collider.X_BC);
 }
 
 /** Extends a box by that of a collider, whose sides it turns with it. */
-void extend(const Collider& collider, const WorldFrame& frame, Box* box) {
+void extend(const contact::Collider& collider, const WorldFrame& frame, Box* box) {
   const Box& bounds = collider.geometry->bounds();
   const Pose X_WC = poseOf(collider, frame);
   const Vector3 half = X_WC.linear().cwiseAbs() * Vector3(0.5 * bounds.sizes()) + Vector3::Constant(collider.radius);
@@ -97,11 +101,11 @@ double powerOfTen(double length) { return std::pow(10, std::floor(std::log10(len
 
 }  // namespace
 
-Box worldBox(const Simulator& simulator, const std::vector<WorldFrame>& frames) {
+Box worldBox(const sim::Simulator& simulator, const std::vector<WorldFrame>& frames) {
   Box moving, standing;
-  for (const Collider& collider : simulator.colliders()) {
+  for (const contact::Collider& collider : simulator.colliders()) {
     if (!isDrawn(simulator, collider) || collider.geometry->isHalfSpace()) continue;
-    if (kindOf(simulator, collider) == ModelKind::ENVIRONMENT) {
+    if (kindOf(simulator, collider) == sim::ModelKind::ENVIRONMENT) {
       extend(collider, frames[0], &standing);
     } else {
       for (const WorldFrame& frame : frames) extend(collider, frame, &moving);
@@ -111,13 +115,13 @@ Box worldBox(const Simulator& simulator, const std::vector<WorldFrame>& frames) 
   return standing.isEmpty() ? Box(Vector3::Constant(-0.5), Vector3::Constant(0.5)) : standing;
 }
 
-std::vector<DrawnShape> worldShapes(const Simulator& simulator, const ViewCamera& camera, bool layers) {
+std::vector<DrawnShape> worldShapes(const sim::Simulator& simulator, const ViewCamera& camera, bool layers) {
   const double cell = powerOfTen((camera.target - camera.eye).norm() / 3);
   std::vector<DrawnShape> shapes;
-  for (const Collider& collider : simulator.colliders()) {
+  for (const contact::Collider& collider : simulator.colliders()) {
     if (!isDrawn(simulator, collider)) continue;
-    const ModelKind kind = kindOf(simulator, collider);
-    const Colour colour = modelColour(kind, collider.model);
+    const sim::ModelKind kind = kindOf(simulator, collider);
+    const sim::Colour colour = sim::modelColour(kind, collider.model);
     if (collider.geometry->isHalfSpace()) {
       shapes.push_back(planeShape(*collider.geometry, collider.X_BC, camera.target, cell, colour));
       continue;
@@ -125,17 +129,18 @@ std::vector<DrawnShape> worldShapes(const Simulator& simulator, const ViewCamera
     std::vector<Vector3> points;
     shapes.push_back(surfaceShape(collider, colour, &points));
     if (!points.empty()) {
-      const bool by_height = kind == ModelKind::ENVIRONMENT && points.size() > 1;
+      const bool by_height = kind == sim::ModelKind::ENVIRONMENT && points.size() > 1;
       DrawnShape balls;
       balls.body = collider.body;
-      addPoints(points, by_height ? coloursByHeight(points, upwards(simulator.gravity())) : std::vector<Colour>{colour},
+      addPoints(points, by_height ? sim::coloursByHeight(points, sim::upwards(simulator.gravity())) : std::vector<sim::Colour>{colour},
                 std::max(collider.radius, SMALLEST_ROD), &balls);
       shapes.push_back(balls);
     }
     if (!layers || collider.radius <= 0) continue;
     DrawnShape shell;
     shell.body = collider.body;
-    shell.mesh = transformed(layerShell(collider.geometry->mesh(), collider.geometry->topology(), collider.radius), collider.X_BC);
+    shell.mesh =
+        geometry::transformed(layerShell(collider.geometry->mesh(), collider.geometry->topology(), collider.radius), collider.X_BC);
     shell.colour = mixed(colour, {0.3F, 0.5F, 1.0F}, 0.6);
     shell.opacity = SHELL_OPACITY;
     shapes.push_back(shell);
@@ -143,14 +148,14 @@ std::vector<DrawnShape> worldShapes(const Simulator& simulator, const ViewCamera
   return shapes;
 }
 
-DrawnShape contactShape(const Simulator& simulator, const std::vector<ContactReport>& contacts, double scale) {
-  const double metres_per_newton = scale / std::max(1e-12, movingWeight(simulator));
-  const TriangleMesh ball = icosphereMesh(CONTACT_SIZE * scale, 2);
+DrawnShape contactShape(const sim::Simulator& simulator, const std::vector<sim::ContactReport>& contacts, double scale) {
+  const double metres_per_newton = scale / std::max(1e-12, sim::movingWeight(simulator));
+  const geometry::TriangleMesh ball = geometry::icosphereMesh(CONTACT_SIZE * scale, 2);
   DrawnShape shape;
-  for (const ContactReport& contact : contacts) {
-    const Colour colour = contactColour(contact);
-    addColoured(transformed(ball, makePose(contact.point)), colour, &shape);
-    Vector3 along = metres_per_newton * forceOnMovingSide(contact);
+  for (const sim::ContactReport& contact : contacts) {
+    const sim::Colour colour = sim::contactColour(contact);
+    addColoured(geometry::transformed(ball, makePose(contact.point)), colour, &shape);
+    Vector3 along = metres_per_newton * sim::forceOnMovingSide(contact);
     if (along.norm() < SHORTEST_ARROW * scale) continue;
     if (along.norm() > scale) along *= scale / along.norm();
     addColoured(arrowMesh(contact.point, along, ARROW_SIZE * scale), colour, &shape);

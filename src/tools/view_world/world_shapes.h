@@ -13,12 +13,12 @@ namespace blem_sim {
  * as balls or, beyond 20,000, as dots; half-spaces as chequered squares about what the camera looks at, of cells of a power of ten [m].
  * @param layers boundary layers too, as translucent shells
  */
-std::vector<DrawnShape> worldShapes(const Simulator& simulator, const ViewCamera& camera, bool layers);
+std::vector<DrawnShape> worldShapes(const sim::Simulator& simulator, const ViewCamera& camera, bool layers);
 
 /** Box around everything that moves, in all frames; around all environments but half-spaces if nothing does; else a cube of 1 m. */
-Box worldBox(const Simulator& simulator, const std::vector<WorldFrame>& frames);
+Box worldBox(const sim::Simulator& simulator, const std::vector<WorldFrame>& frames);
 
 /** Contacts as balls, their forces as arrows. @param scale [m]: the weight of all that moves is an arrow of this length */
-DrawnShape contactShape(const Simulator& simulator, const std::vector<ContactReport>& contacts, double scale);
+DrawnShape contactShape(const sim::Simulator& simulator, const std::vector<sim::ContactReport>& contacts, double scale);
 
 }  // namespace blem_sim

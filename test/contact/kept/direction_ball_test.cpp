@@ -10,11 +10,11 @@
 #include "neighbourhood/surroundings.h"
 #include "search/candidate_search.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 TEST(DirectionBall, HoldsWhatWasAdded) {
-  RandomShapes random(3);
+  geometry::RandomShapes random(3);
   DirectionBall ball;
   EXPECT_EQ(ball.most(Vector3::UnitX()), 0);
   std::vector<Vector3> directions;
@@ -35,10 +35,10 @@ TEST(DirectionBall, HoldsWhatWasAdded) {
 
 // The ball of a listing's directions holds the normals of its faces, and all directions that the cones of its vertices allow.
 TEST(DirectionBall, HoldsTheNormalsOfAListing) {
-  RandomShapes random(4);
-  TriangleMesh plain_and_hills = hillMesh(random, 0.1, 60, 0.0001);
+  geometry::RandomShapes random(4);
+  geometry::TriangleMesh plain_and_hills = hillMesh(random, 0.1, 60, 0.0001);
   for (Vector3& v : plain_and_hills.vertices) v.z() *= v.x() < 0 ? 0.01 : 1;
-  const Collider hills = makeCollider(plain_and_hills, 0), cube = makeCollider(boxMesh(Vector3::Constant(0.02)), 0.002);
+  const Collider hills = makeCollider(plain_and_hills, 0), cube = makeCollider(geometry::boxMesh(Vector3::Constant(0.02)), 0.002);
   const MeshPair pair{MeshSide(*cube.geometry), MeshSide(*hills.geometry), makePose({0, 0, 0.0105}), 0.002, 0.002, {}};
   CandidateSearchBuffers buffers;
   CandidateListing listing;
@@ -49,7 +49,7 @@ TEST(DirectionBall, HoldsTheNormalsOfAListing) {
   for (int i = 0; i < 1000; ++i) {
     const Vector3 v = random.point(1);
     const double most = listing.normals.most(v) + 1e-12;
-    for (const int face : near.faces.names) EXPECT_LE(std::abs(v.dot(MeshTopology::normal(pair.fixed.mesh, face))), most);
+    for (const int face : near.faces.names) EXPECT_LE(std::abs(v.dot(geometry::MeshTopology::normal(pair.fixed.mesh, face))), most);
     const Vector3 d = (Vector3::UnitZ() + 0.5 * random.point(1)).normalized();
     for (const int vertex : near.vertices.names) {
       const bool is_normal = vertexConeAllows(surroundings.ofVertex(pair.fixed, vertex), d, CONE_SLACK);
@@ -60,4 +60,4 @@ TEST(DirectionBall, HoldsTheNormalsOfAListing) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 const Vector3 MIDDLE(0.1, -0.2, 0.3);  // of the mesh [m]
@@ -42,4 +42,4 @@ TEST(SteadyMotion, StaysWhereNothingIsKnown) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -13,7 +13,7 @@
 #include "kernels/kernels.h"
 #include "kernels/vectors.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 using namespace kernels;
@@ -23,9 +23,9 @@ constexpr double EDGE_RANGE = 0.3, EDGE_RADIUS_A = 0.2, EDGE_RADIUS_B = 0.1;
 
 struct EdgesNearEdges {
   EdgesNearEdges() : X_WF(makePose({-3, 2, 1}, {0.7, -0.2, 0.1})) {
-    RandomShapes random(29);
+    geometry::RandomShapes random(29);
     for (std::uint32_t i = 0; i < EDGES; ++i) {
-      const Triangle t = random.triangle(1);
+      const geometry::Triangle t = random.triangle(1);
       const Vector3 along = t[1] - t[0];
       const auto inward = [&](int k) { return vec4(random.point(3).cross(along).normalized(), nameBits(vertexAt(i, k))); };
       records.push_back({vec4(t[0], along.squaredNorm()), vec4(along, i % 7 == 0), {inward(0), inward(1)}});
@@ -192,7 +192,7 @@ TEST(EdgeKernels, AllInstructionSetsFindTheSame) {
 }
 
 TEST(EdgeKernels, EdgesAroundAVertexLeadAsTheirDirectionsSay) {
-  RandomShapes random(37);
+  geometry::RandomShapes random(37);
   constexpr double NEAR = 0.01;
   int downs = 0, nears = 0, towards = 0;
   for (int i = 0; i < 600; ++i) {
@@ -233,4 +233,4 @@ TEST(EdgeKernels, EdgesAroundAVertexLeadAsTheirDirectionsSay) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

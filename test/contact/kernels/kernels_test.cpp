@@ -11,7 +11,7 @@
 #include "kernels/kernels.h"
 #include "kernels/vectors.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 using namespace kernels;
@@ -30,10 +30,10 @@ struct Features {
 };
 
 Features randomFeatures() {
-  RandomShapes random(17);
+  geometry::RandomShapes random(17);
   Features out;
   for (std::uint32_t i = 0; i < FEATURES; ++i) {
-    const Triangle t = random.triangle(1);
+    const geometry::Triangle t = random.triangle(1);
     const Vector3 along = t[1] - t[0], normal = along.cross(t[2] - t[0]).normalized();
     out.names.push_back(static_cast<int>(1000 + i));
     out.vertices.push_back(vec4(random.point(1), nameBits(out.names.back())));
@@ -243,7 +243,7 @@ TEST(Kernels, VerticesThatAreSurelyInsideNeedNoTest) {
     EXPECT_TRUE(std::is_sorted(inner.rbegin(), inner.rend()));
     ASSERT_GE(flagged, 24);
     ASSERT_LT(flagged + 8u, inner.size());
-    RandomShapes random(3);
+    geometry::RandomShapes random(3);
     for (int i = 0; i < 20; ++i) {
       const Pose moved = Eigen::Translation3d(0.999 * MARGIN * random.point(1).normalized()) * X_FM;
       const PlainVertexFaces with(*availableKernels().front(), in, faces_move, true, inner, moved),
@@ -258,7 +258,7 @@ TEST(Kernels, VerticesThatAreSurelyInsideNeedNoTest) {
 }
 
 LeafShapes randomLeaf(std::uint64_t seed) {
-  RandomShapes random(seed);
+  geometry::RandomShapes random(seed);
   LeafShapes leaf{};
   leaf.face_count = 8;
   leaf.edge_count = 19;
@@ -330,4 +330,4 @@ TEST(Kernels, AreChosenByName) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -14,7 +14,7 @@
 #include "kernels/kernels.h"
 #include "kernels/vectors.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 using namespace kernels;
@@ -28,9 +28,9 @@ constexpr double FEET_RANGE = 1.2;
 struct SidesAndVertices {
   explicit SidesAndVertices(bool faces_move)
       : faces_move(faces_move), X_FM(makePose({0.1, -0.2, 0.3}, {0.4, 0.5, -0.6})), X_WF(makePose({-3, 2, 1}, {0.7, -0.2, 0.1})) {
-    RandomShapes random(23);
+    geometry::RandomShapes random(23);
     for (std::uint32_t i = 0; i < COUNT; ++i) {
-      const Triangle t = random.triangle(1);
+      const geometry::Triangle t = random.triangle(1);
       const Vector3 normal = (t[1] - t[0]).cross(t[2] - t[0]).normalized(), p = random.point(1);
       placed.push_back(vec4(faces_move ? Vector3(X_FM * p) : p, nameBits(i)));
       faces.push_back({vec4(normal, normal.dot(t[0])), {}});
@@ -132,8 +132,8 @@ TEST(SideFeet, ContactsAreThoseMadeOneByOne) {
     const SidesAndVertices in(faces_move);
     const Feet feet(*availableKernels().front(), in, true), contacts(*availableKernels().front(), in, false);
     ASSERT_EQ(contacts.count, feet.count);
-    const TriangleMesh mesh = boxMesh(Vector3::Constant(1));
-    const CollisionGeometry geometry(std::make_shared<TriangleMesh>(mesh));
+    const geometry::TriangleMesh mesh = geometry::boxMesh(Vector3::Constant(1));
+    const CollisionGeometry geometry(std::make_shared<geometry::TriangleMesh>(mesh));
     const MeshPair pair{
         MeshSide(geometry), MeshSide(geometry), in.X_FM, RADIUS_A + RADIUS_B, 1, {!faces_move, RADIUS_A, RADIUS_B}, in.X_WF};
     for (std::uint32_t i = 0; i < feet.count; ++i) {
@@ -167,7 +167,7 @@ TEST(SideFeet, AllInstructionSetsFindTheSame) {
 }
 
 TEST(LeavingSides, AreAnsweredAsOneByOne) {
-  RandomShapes random(29);
+  geometry::RandomShapes random(29);
   const SidesAndVertices in(false);
   std::vector<FaceRecord> faces = in.faces;
   for (FaceRecord& face : faces)
@@ -207,4 +207,4 @@ TEST(LeavingSides, AreAnsweredAsOneByOne) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

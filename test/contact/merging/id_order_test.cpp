@@ -8,11 +8,11 @@
 
 #include "geometry/random_shapes.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 TEST(IdOrder, IsThatOfIdsThenOfIndices) {
-  RandomShapes random(41);
+  geometry::RandomShapes random(41);
   IdOrder order;
   // Names of few features, of those of large meshes, equal ones, and any bits.
   for (const std::uint64_t mask :
@@ -37,4 +37,4 @@ TEST(IdOrder, IsThatOfIdsThenOfIndices) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -7,7 +7,7 @@
 
 #include "geometry/random_shapes.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 Contact makeContact(std::uint64_t id, const Vector3& point, const Vector3& normal, double depth, bool pierced = false) {
@@ -49,7 +49,7 @@ TEST(MergeContacts, OneIdIsOneContact) {
 }
 
 TEST(MergeContacts, AreSortedById) {
-  RandomShapes random(5);
+  geometry::RandomShapes random(5);
   for (const int count : {7, 400}) {
     std::vector<Contact> contacts;
     std::vector<std::uint64_t> ids;
@@ -67,7 +67,7 @@ TEST(MergeContacts, AreSortedById) {
 }
 
 TEST(MergeContacts, OrderDoesNotMatter) {
-  RandomShapes random(3);
+  geometry::RandomShapes random(3);
   std::vector<Contact> contacts;
   for (int i = 0; i < 400; ++i) {
     contacts.push_back(makeContact(random.integer(0, 250), random.gridPoint(3) + random.point(1e-8), Vector3::Unit(random.integer(0, 2)),
@@ -86,4 +86,4 @@ TEST(MergeContacts, OrderDoesNotMatter) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

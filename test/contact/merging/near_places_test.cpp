@@ -9,11 +9,11 @@
 #include "features/tolerances.h"
 #include "geometry/random_shapes.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 /** Five contacts at nearly each place of a grid, in a row across the slabs, the first and the last nearly as far apart as may be merged. */
-std::vector<Contact> rows(RandomShapes* random, int count) {
+std::vector<Contact> rows(geometry::RandomShapes* random, int count) {
   std::vector<Contact> contacts;
   for (int i = 0; i < count; ++i) {
     const Vector3 place = Vector3(0.01 * (i % 8), 0.01 * (i / 8 % 8), 0.01 * (i / 64) - 5) + random->point(1e-4);
@@ -26,7 +26,7 @@ std::vector<Contact> rows(RandomShapes* random, int count) {
 }
 
 TEST(NearPlaces, AllWithinReachAreVisitedAndFewOthers) {
-  RandomShapes random(17);
+  geometry::RandomShapes random(17);
   NearPlaces places;
   for (const int count : {1, 7, 600}) {
     SCOPED_TRACE(count);
@@ -70,4 +70,4 @@ TEST(NearPlaces, OnesThatAreTakenAreNotAdded) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

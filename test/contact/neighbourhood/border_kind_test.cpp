@@ -5,13 +5,13 @@
 
 #include "contact/contact_shapes.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 // Each face of a box goes on over one side; over the others the surface falls as seen from outside, and rises as seen from inside.
 TEST(OpenSides, FallAwayFromSurfacesOnly) {
   constexpr kernels::OpenSides ABOVE = 7, BELOW = 7 << 3;
-  const Collider box = makeCollider(boxMesh(Vector3::Constant(0.1)), 0);
+  const Collider box = makeCollider(geometry::boxMesh(Vector3::Constant(0.1)), 0);
   const MeshSide side(*box.geometry);
   SurroundingsMemory surroundings;
   for (int face = 0; face < 12; ++face) {
@@ -24,4 +24,4 @@ TEST(OpenSides, FallAwayFromSurfacesOnly) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -6,13 +6,13 @@
 #include "contact/contact_shapes.h"
 #include "neighbourhood/leaf_features.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 // A search that comes to more leaves than are kept must still know which it has seen: else one vertex would count as two. A leaf in a
 // place is not taken for the one that had it before.
 TEST(LeafMemory, OneSearchLosesNoLeaf) {
-  const Collider plane = makeCollider(gridMesh(1, 1, 300, 300), 0);
+  const Collider plane = makeCollider(geometry::gridMesh(1, 1, 300, 300), 0);
   const MeshSide side(*plane.geometry);
   std::vector<std::uint32_t> leaves;
   for (std::uint32_t i = 0; i < side.bvh.nodes().size(); ++i)
@@ -36,4 +36,4 @@ TEST(LeafMemory, OneSearchLosesNoLeaf) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -13,14 +13,14 @@
 #include "neighbourhood/leaf_features.h"
 #include "neighbourhood/plane_reach.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 /** Distance [m] of a point's projection from a face; 0 over it. */
-double besideFace(const TriangleMesh& mesh, int face, const Vector3& p) {
+double besideFace(const geometry::TriangleMesh& mesh, int face, const Vector3& p) {
   const Vector3i& e = mesh.elements[face];
-  const Vector3 normal = MeshTopology::normal(mesh, face), projection = p - normal.dot(p - mesh.vertices[e[0]]) * normal;
-  return closestPointTriangle(projection, triangleOf(mesh, face)).distance;
+  const Vector3 normal = geometry::MeshTopology::normal(mesh, face), projection = p - normal.dot(p - mesh.vertices[e[0]]) * normal;
+  return geometry::closestPointTriangle(projection, geometry::triangleOf(mesh, face)).distance;
 }
 
 /** Whether p is inside all sides of the face, but for so little as counts as over it. */
@@ -41,8 +41,8 @@ bool mayFade(const MeshSide& side, int face, const kernels::FaceRecord& record, 
 }
 
 /** A plate without one of its corners, or with all, its vertices off the plane and its grid's lines by that much [m]. */
-TriangleMesh plateMesh(RandomShapes& random, bool is_whole, double off, double noise) {
-  TriangleMesh plate;
+geometry::TriangleMesh plateMesh(geometry::RandomShapes& random, bool is_whole, double off, double noise) {
+  geometry::TriangleMesh plate;
   for (int y = 0; y < 4; ++y)
     for (int x = 0; x < 4; ++x) {
       const bool inner = x > 0 && x < 3 && y > 0 && y < 3;
@@ -63,10 +63,11 @@ TriangleMesh plateMesh(RandomShapes& random, bool is_whole, double off, double n
 }
 
 TEST(PlaneReach, NothingFartherBesideIsOverAnotherFace) {
-  RandomShapes random(41);
+  geometry::RandomShapes random(41);
   int over = 0;
   for (int round = 0; round < 24; ++round) {
-    const auto mesh = std::make_shared<TriangleMesh>(plateMesh(random, round % 3 == 0, round % 2 ? 2e-8 : 0, round % 4 ? 0.04 : 0));
+    const auto mesh =
+        std::make_shared<geometry::TriangleMesh>(plateMesh(random, round % 3 == 0, round % 2 ? 2e-8 : 0, round % 4 ? 0.04 : 0));
     const CollisionGeometry geometry(mesh);
     const MeshSide side(geometry);
     for (int face = 0; face < static_cast<int>(mesh->elements.size()); ++face) {
@@ -94,10 +95,10 @@ TEST(PlaneReach, NothingFartherBesideIsOverAnotherFace) {
 }
 
 TEST(PlaneReach, IsShortWhereThePlaneIsConvex) {
-  RandomShapes random(43);
-  const auto box = std::make_shared<TriangleMesh>(boxMesh(Vector3(0.1, 0.2, 0.3)));
-  const auto plate = std::make_shared<TriangleMesh>(plateMesh(random, true, 0, 0.02));
-  const auto notched = std::make_shared<TriangleMesh>(plateMesh(random, false, 0, 0));
+  geometry::RandomShapes random(43);
+  const auto box = std::make_shared<geometry::TriangleMesh>(geometry::boxMesh(Vector3(0.1, 0.2, 0.3)));
+  const auto plate = std::make_shared<geometry::TriangleMesh>(plateMesh(random, true, 0, 0.02));
+  const auto notched = std::make_shared<geometry::TriangleMesh>(plateMesh(random, false, 0, 0));
   for (const auto& mesh : {box, plate, notched}) {
     const CollisionGeometry geometry(mesh);
     double longest = 0;
@@ -112,9 +113,9 @@ TEST(PlaneReach, IsShortWhereThePlaneIsConvex) {
 }
 
 TEST(PlaneReach, OfManyFacesIsInfinite) {
-  const CollisionGeometry geometry(std::make_shared<TriangleMesh>(gridMesh(1, 1, 10, 10)));
+  const CollisionGeometry geometry(std::make_shared<geometry::TriangleMesh>(geometry::gridMesh(1, 1, 10, 10)));
   EXPECT_EQ(planeReach(MeshSide(geometry), 0).at(0), std::numeric_limits<double>::infinity());
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

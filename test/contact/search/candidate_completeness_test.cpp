@@ -13,14 +13,14 @@
 #include "search/candidate_search.h"
 #include "support/sanitizers.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 constexpr double SIZE = 0.1, LAYER = 0.015;  // [m]
 constexpr kernels::OpenSides ALL_SIDES = 63;
 
-TriangleMesh torusMesh(double radius, double thickness, int around, int across) {
-  TriangleMesh mesh;
+geometry::TriangleMesh torusMesh(double radius, double thickness, int around, int across) {
+  geometry::TriangleMesh mesh;
   for (int i = 0; i < around; ++i) {
     for (int j = 0; j < across; ++j) {
       const double u = 2 * M_PI * i / around, v = 2 * M_PI * (j + 0.5 * i) / across, r = radius + thickness * std::cos(v);
@@ -36,13 +36,13 @@ TriangleMesh torusMesh(double radius, double thickness, int around, int across) 
 }
 
 /** A mesh of curvatures x and y [1/m] along its axes. */
-TriangleMesh curvedMesh(double x, double y) {
-  TriangleMesh mesh = gridMesh(SIZE, SIZE, 13, 13);
+geometry::TriangleMesh curvedMesh(double x, double y) {
+  geometry::TriangleMesh mesh = geometry::gridMesh(SIZE, SIZE, 13, 13);
   for (Vector3& v : mesh.vertices) v.z() = 0.5 * (x * v.x() * v.x() + y * v.y() * v.y());
   return mesh;
 }
 
-TriangleMesh shaken(TriangleMesh mesh, RandomShapes& random, double by) {
+geometry::TriangleMesh shaken(geometry::TriangleMesh mesh, geometry::RandomShapes& random, double by) {
   for (Vector3& v : mesh.vertices) v += random.point(by);
   return mesh;
 }
@@ -53,11 +53,13 @@ struct Shape {
 };
 
 std::vector<Shape> makeShapes() {
-  RandomShapes random(11);
+  geometry::RandomShapes random(11);
   std::vector<Shape> shapes;
-  const auto add = [&](const char* name, TriangleMesh mesh) { shapes.push_back({name, makeCollider(std::move(mesh), 0.5 * LAYER)}); };
-  add("ball", icosphereMesh(0.5 * SIZE, 2));
-  add("rough ball", shaken(icosphereMesh(0.5 * SIZE, 2), random, 0.0008));
+  const auto add = [&](const char* name, geometry::TriangleMesh mesh) {
+    shapes.push_back({name, makeCollider(std::move(mesh), 0.5 * LAYER)});
+  };
+  add("ball", geometry::icosphereMesh(0.5 * SIZE, 2));
+  add("rough ball", shaken(geometry::icosphereMesh(0.5 * SIZE, 2), random, 0.0008));
   add("torus", torusMesh(0.35 * SIZE, 0.12 * SIZE, 24, 10));
   add("fine torus", torusMesh(0.6 * SIZE, 0.4 * SIZE, 36, 24));
   add("dome", curvedMesh(-7, -5));
@@ -65,10 +67,10 @@ std::vector<Shape> makeShapes() {
   add("rough saddle", shaken(curvedMesh(3, -4), random, 0.0002));
   add("gentle hills", hillMesh(random, SIZE, 10, 0.005 * SIZE));
   add("steep hills", hillMesh(random, SIZE, 8, 0.06 * SIZE));
-  add("cube", subdivided(boxMesh(Vector3::Constant(0.6 * SIZE)), 1));
+  add("cube", geometry::subdivided(geometry::boxMesh(Vector3::Constant(0.6 * SIZE)), 1));
   add("octahedron", octahedronMesh(0.5 * SIZE));
   add("soup", soupMesh(random, 25, 0.4 * SIZE));
-  add("segment", segmentMesh(Vector3(-0.5 * SIZE, 0, 0), Vector3(0.5 * SIZE, 0, 0)));
+  add("segment", geometry::segmentMesh(Vector3(-0.5 * SIZE, 0, 0), Vector3(0.5 * SIZE, 0, 0)));
   return shapes;
 }
 
@@ -147,7 +149,7 @@ std::vector<NamedCrossing> crossingsOf(const MeshPair& pair, CandidateLists* lis
 }
 
 /** A pose in which some vertex of one mesh is within `distance` [m] of some vertex of the other. */
-Pose someMeeting(RandomShapes& random, const Shape& a, const Shape& b, double distance) {
+Pose someMeeting(geometry::RandomShapes& random, const Shape& a, const Shape& b, double distance) {
   Pose X = random.pose(1);
   const auto someVertex = [&](const Shape& shape) {
     const std::vector<Vector3>& vertices = shape.collider.geometry->mesh().vertices;
@@ -158,14 +160,14 @@ Pose someMeeting(RandomShapes& random, const Shape& a, const Shape& b, double di
 }
 
 /** The pose moved and turned within half the margin each. */
-Pose movedALittle(RandomShapes& random, const Pose& X, const ListMargin& margin) {
+Pose movedALittle(geometry::RandomShapes& random, const Pose& X, const ListMargin& margin) {
   const Vector3 turn = random.point(1).normalized() * random.uniform(0, 0.5 * margin.motion / SIZE);
   return makePose(random.point(1).normalized() * random.uniform(0, 0.5 * margin.motion)) * X * makePose(Vector3::Zero(), turn);
 }
 
 TEST(CandidateCompleteness, ListsHoldEveryContact) {
   const std::vector<Shape> shapes = makeShapes();
-  RandomShapes random(12);
+  geometry::RandomShapes random(12);
   CandidateSearchBuffers buffers;
   EvaluationBuffers evaluation;
   CandidateListing listing;
@@ -195,7 +197,7 @@ TEST(CandidateCompleteness, ListsHoldEveryContact) {
 
 TEST(CandidateCompleteness, NearestHoldEveryContact) {
   const std::vector<Shape> shapes = makeShapes();
-  RandomShapes random(15);
+  geometry::RandomShapes random(15);
   EvaluationBuffers evaluation;
   CandidatePairs nearest;
   std::size_t contacts = 0, leading = 0;
@@ -223,7 +225,7 @@ TEST(CandidateCompleteness, NearestHoldEveryContact) {
 
 TEST(CandidateCompleteness, ListsHoldEveryCrossing) {
   const std::vector<Shape> shapes = makeShapes();
-  RandomShapes random(14);
+  geometry::RandomShapes random(14);
   CandidateSearchBuffers buffers;
   EvaluationBuffers evaluation;
   CandidateListing listing;
@@ -257,8 +259,9 @@ TEST(CandidateCompleteness, ListsHoldEveryCrossing) {
 
 // A large mesh in a frame far away, a small one that is looked at in its own: coordinates are rounded as the larger ones are.
 TEST(CandidateCompleteness, LargeMovingMeshesAreRoundedAsSuch) {
-  RandomShapes random(13);
-  const Collider ball = makeCollider(icosphereMesh(0.05, 2), 0.5 * LAYER), large = makeCollider(boxMesh({4, 4, 4}), 0.5 * LAYER);
+  geometry::RandomShapes random(13);
+  const Collider ball = makeCollider(geometry::icosphereMesh(0.05, 2), 0.5 * LAYER),
+                 large = makeCollider(geometry::boxMesh({4, 4, 4}), 0.5 * LAYER);
   CandidateSearchBuffers buffers;
   CandidateListing listing;
   for (int i = 0; i < samples(300); ++i) {
@@ -277,4 +280,4 @@ TEST(CandidateCompleteness, LargeMovingMeshesAreRoundedAsSuch) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -14,7 +14,7 @@
 #include "neighbourhood/surroundings.h"
 #include "neighbourhood/vertex_cone.h"
 
-namespace blem_sim {
+namespace blem_sim::contact {
 namespace {
 
 MeshPair searchedPair(const Collider& moving, const Collider& fixed, const Pose& X_FM) {
@@ -47,8 +47,8 @@ std::vector<NamedPairs> namesOf(const CandidateLists& lists) {
 
 // Between the parts of a search the pair moves on, and other searches ask for the same leaves.
 TEST(CandidateSearch, InPartsAsAtOnce) {
-  RandomShapes random(3);
-  const Collider hills = makeCollider(hillMesh(random, 0.1, 60, 0.001), 0), ball = makeCollider(icosphereMesh(0.02, 4), 0.002);
+  geometry::RandomShapes random(3);
+  const Collider hills = makeCollider(hillMesh(random, 0.1, 60, 0.001), 0), ball = makeCollider(geometry::icosphereMesh(0.02, 4), 0.002);
   const Pose X = makePose({0.001, 0.002, 0.0205}, {0.1, 0.2, 0.3}), other = makePose({-0.004, 0.001, 0.0201}, {0.3, 0, 0.1});
   const ListMargin margin{0.001, 0.02};
   for (const CandidateKind kind : {CandidateKind::CONTACTS, CandidateKind::CROSSINGS}) {
@@ -76,8 +76,9 @@ TEST(CandidateSearch, InPartsAsAtOnce) {
 
 // A box has few faces, hills have many.
 TEST(CandidateLists, AreGroupedByFacesWhereThereAreFew) {
-  RandomShapes random(5);
-  const Collider hills = makeCollider(hillMesh(random, 0.1, 60, 0.001), 0), box = makeCollider(boxMesh(Vector3::Constant(0.06)), 0.002);
+  geometry::RandomShapes random(5);
+  const Collider hills = makeCollider(hillMesh(random, 0.1, 60, 0.001), 0),
+                 box = makeCollider(geometry::boxMesh(Vector3::Constant(0.06)), 0.002);
   const MeshPair pair = searchedPair(box, hills, makePose({0.001, 0.002, 0.0305}, {0.01, 0.02, 0.3}));
   CandidateSearchBuffers buffers;
   CandidateListing listing;
@@ -107,10 +108,10 @@ bool holds(const kernels::VertexCone& cone, const Vector3& direction) {
 
 // A vertex's cone holds every direction in which the vertex is the nearest of its surface.
 TEST(VertexCone, HoldsEveryDirectionThatIsAllowed) {
-  RandomShapes random(4);
+  geometry::RandomShapes random(4);
   int allowed = 0, refused = 0;
-  for (const TriangleMesh& mesh :
-       {boxMesh(Vector3::Constant(0.1)), icosphereMesh(0.1, 2), hillMesh(random, 0.1, 6, 0.01), soupMesh(random, 20, 0.02)}) {
+  for (const geometry::TriangleMesh& mesh : {geometry::boxMesh(Vector3::Constant(0.1)), geometry::icosphereMesh(0.1, 2),
+                                             hillMesh(random, 0.1, 6, 0.01), soupMesh(random, 20, 0.02)}) {
     const Collider collider = makeCollider(mesh, 0);
     const MeshSide side(*collider.geometry);
     SurroundingsMemory surroundings;
@@ -131,4 +132,4 @@ TEST(VertexCone, HoldsEveryDirectionThatIsAllowed) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::contact

@@ -6,7 +6,7 @@
 #include "lanes/contact_lanes.h"
 #include "lanes/joint_lanes.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 class Lane : public ::testing::Test {
@@ -237,4 +237,4 @@ TEST_F(Lane, WithoutAContactNeverActsHoweverFast) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 /** Four contacts over a plane, whose slips are a linear map of De Saxce's terms with rates 0.7 and -0.4. */
@@ -84,4 +84,4 @@ TEST_F(LinearSlips, ImpulsesBecomeTheProximalPointsOwn) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

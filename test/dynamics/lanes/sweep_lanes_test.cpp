@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <random>
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 constexpr int CONTACTS = 5, WITHOUT_B = 1, WITHOUT_PATCH = 3;  // the lanes that meet the static world, and that have no patch
@@ -144,4 +144,4 @@ TEST_F(SweepLanes, MomentumFollowsFromImpulses) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

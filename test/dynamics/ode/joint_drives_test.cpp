@@ -6,7 +6,7 @@
 #include "dynamics/analytic_contacts.h"
 #include "support/standard_values.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 /** One body on one joint to the world, no gravity. */
@@ -185,4 +185,4 @@ TEST(Drives, StiffGainsOnALightLink) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -7,7 +7,7 @@
 #include "stepper_table.h"
 #include "support/standard_values.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 BodySpec wrenchBar(double mass, double length) {
@@ -176,4 +176,4 @@ TEST(JointWrenches, StandingOnAContact) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

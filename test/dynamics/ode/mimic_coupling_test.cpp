@@ -6,7 +6,7 @@
 #include "dynamics/analytic_contacts.h"
 #include "support/standard_values.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 JointSpec coupledJoint(JointKind kind, int parent, int child, const Pose& X_PJ, const Vector3& axis) {
@@ -133,4 +133,4 @@ TEST(Mimic, GripperHoldsACubeWhileShaken) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

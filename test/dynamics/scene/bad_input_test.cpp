@@ -7,7 +7,7 @@
 #include "blem_sim/dynamics/world.h"
 #include "support/input_errors.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 constexpr double INF = std::numeric_limits<double>::infinity();
@@ -100,4 +100,4 @@ TEST(BadInput, AStepSaysThatItIsNotFiniteAndChangesNothing) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

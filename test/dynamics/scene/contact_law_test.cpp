@@ -7,7 +7,7 @@
 #include "scene/contact_law.h"
 #include "support/standard_values.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 /** A cube on the plane z = 0. */
@@ -167,4 +167,4 @@ TEST(ContactRows, FirstAxisFollowsSlipThenForceThenSlipToBe) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -8,7 +8,7 @@
 #include "dynamics/analytic_contacts.h"
 #include "support/standard_values.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 class Slots : public testing::TestWithParam<const char*> {
@@ -116,4 +116,4 @@ TEST_P(Slots, ForgottenContactsAreStrangers) {
 INSTANTIATE_TEST_SUITE_P(Steppers, Slots, testing::Values("world_step", "quick_step", "articulated"));
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -10,7 +10,7 @@
 // A step that ODE breaks off loses its own record of the call; the rest of that world stays reachable.
 extern "C" const char* __lsan_default_suppressions() { return "leak:PreallocateJobInfos"; }
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 /** A bouncing box, a stack of two, and a motor driven arm with a mimic joint. */
@@ -134,4 +134,4 @@ TEST(WorldState, ForeignStateIsRefused) {
 TEST(Steppers, TableNamesAll) { EXPECT_EQ(stepperNames(), (std::vector<std::string>{"world_step", "quick_step", "articulated"})); }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -12,7 +12,7 @@
 
 #include "trees/elimination_order.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 using Couplings = std::vector<std::pair<int, int>>;
@@ -242,4 +242,4 @@ TEST(BlockMatrix, SaysThatItIsNotPositiveDefinite) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

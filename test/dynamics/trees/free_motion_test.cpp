@@ -6,7 +6,7 @@
 #include "support/chains.h"
 #include "support/standard_values.h"
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 const std::vector<ChainLink> TAPER = taper(6, {1, 0.3}, {0.02, 0.05});
@@ -220,4 +220,4 @@ TEST(FreeMotion, ReplaysFromASavedState) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -6,7 +6,7 @@
 #include <thread>
 #include <vector>
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 template <typename Work>
@@ -73,4 +73,4 @@ TEST(Team, WorksAgainAfterItWasDismissed) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

@@ -6,7 +6,7 @@
 #include <Eigen/Cholesky>
 #include <random>
 
-namespace blem_sim {
+namespace blem_sim::dynamics {
 namespace {
 
 /** A free body that carries chains, one of which forks, and a chain that the world holds; on them a random matrix. */
@@ -125,4 +125,4 @@ TEST_F(TreeRows, RefusesWhatIsNotPositive) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::dynamics

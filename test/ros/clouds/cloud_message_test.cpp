@@ -8,7 +8,7 @@
 
 #include "support/input_errors.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 namespace {
 
 using sensor_msgs::PointCloud2;
@@ -113,4 +113,4 @@ TEST(CloudMessage, LiesAreRefusedInOneLine) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::node

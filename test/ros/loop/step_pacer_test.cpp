@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace blem_sim {
+namespace blem_sim::node {
 namespace {
 
 using Clock = StepPacer::Clock;
@@ -69,4 +69,4 @@ TEST(StepPacer, ZeroIsAsFastAsPossible) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::node

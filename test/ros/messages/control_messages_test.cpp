@@ -14,7 +14,7 @@
 
 #include <string>
 
-namespace blem_sim {
+namespace blem_sim::node {
 namespace {
 
 template <typename Message>
@@ -50,4 +50,4 @@ TEST(ControlMessages, ServicesHaveTheLayoutsOfControllerManagerMsgs) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -6,25 +6,25 @@
 #include <memory>
 #include <set>
 
-namespace blem_sim {
+namespace blem_sim::node {
 namespace {
 
 using visualization_msgs::Marker;
 
-Collider colliderOf(const TriangleMesh& mesh, double radius) {
-  Collider collider;
+contact::Collider colliderOf(const geometry::TriangleMesh& mesh, double radius) {
+  contact::Collider collider;
   collider.name = "thing";
-  collider.geometry = std::make_shared<CollisionGeometry>(std::make_shared<TriangleMesh>(mesh));
+  collider.geometry = std::make_shared<contact::CollisionGeometry>(std::make_shared<geometry::TriangleMesh>(mesh));
   collider.radius = radius;
   return collider;
 }
 
-std::vector<Marker> markersOf(const Collider& collider) {
+std::vector<Marker> markersOf(const contact::Collider& collider) {
   return surfaceMarkers(collider, "world", makePose(Vector3(1, 2, 3)), std_msgs::ColorRGBA(), 5);
 }
 
 TEST(SurfaceMarkers, HugeMeshesAreSplitAndNothingIsLost) {
-  const TriangleMesh grid = gridMesh(1, 1, 200, 200);
+  const geometry::TriangleMesh grid = geometry::gridMesh(1, 1, 200, 200);
   const std::vector<Marker> markers = markersOf(colliderOf(grid, 0.0025));
   ASSERT_GT(markers.size(), 3U);
   std::size_t corners = 0;
@@ -43,7 +43,7 @@ TEST(SurfaceMarkers, HugeMeshesAreSplitAndNothingIsLost) {
 }
 
 TEST(SurfaceMarkers, PointsOfACloudHaveTheColoursOfTheirHeightsInTheWorld) {
-  TriangleMesh cloud;
+  geometry::TriangleMesh cloud;
   for (int i = 0; i < 70000; ++i) {
     cloud.vertices.emplace_back(0.001 * i, 0, 0);
     cloud.elements.emplace_back(i, i, i);
@@ -60,7 +60,7 @@ TEST(SurfaceMarkers, PointsOfACloudHaveTheColoursOfTheirHeightsInTheWorld) {
 }
 
 TEST(SurfaceMarkers, PointsAreSpheresOfTheirRadius) {
-  const std::vector<Marker> markers = markersOf(colliderOf(pointMesh(Vector3(1, 0, 0)), 0.004));
+  const std::vector<Marker> markers = markersOf(colliderOf(geometry::pointMesh(Vector3(1, 0, 0)), 0.004));
   ASSERT_EQ(markers.size(), 1U);
   EXPECT_EQ(markers[0].type, Marker::SPHERE_LIST);
   EXPECT_EQ(markers[0].scale.x, 0.008);
@@ -69,7 +69,7 @@ TEST(SurfaceMarkers, PointsAreSpheresOfTheirRadius) {
 }
 
 TEST(SurfaceMarkers, ManyPointsAreNoSpheres) {
-  TriangleMesh cloud;
+  geometry::TriangleMesh cloud;
   for (int i = 0; i < 70000; ++i) {
     cloud.vertices.emplace_back(1e-3 * (i % 300), 1e-3 * (i / 300), 0);
     cloud.elements.emplace_back(i, i, i);
@@ -83,7 +83,7 @@ TEST(SurfaceMarkers, ManyPointsAreNoSpheres) {
 }
 
 TEST(SurfaceMarkers, SegmentsAreLines) {
-  const std::vector<Marker> markers = markersOf(colliderOf(segmentMesh(Vector3(0, 0, 0), Vector3(0, 0, 1)), 0.01));
+  const std::vector<Marker> markers = markersOf(colliderOf(geometry::segmentMesh(Vector3(0, 0, 0), Vector3(0, 0, 1)), 0.01));
   ASSERT_EQ(markers.size(), 1U);
   EXPECT_EQ(markers[0].type, Marker::LINE_LIST);
   ASSERT_EQ(markers[0].points.size(), 2U);
@@ -91,9 +91,9 @@ TEST(SurfaceMarkers, SegmentsAreLines) {
 }
 
 TEST(SurfaceMarkers, AHalfSpaceIsASquareInItsPlane) {
-  Collider collider;
+  contact::Collider collider;
   const Vector3 normal = Vector3(1, 2, 3).normalized();
-  collider.geometry = CollisionGeometry::halfSpace(normal, 0.7);
+  collider.geometry = contact::CollisionGeometry::halfSpace(normal, 0.7);
   const std::vector<Marker> markers = markersOf(collider);
   ASSERT_EQ(markers.size(), 1U);
   ASSERT_EQ(markers[0].points.size(), 6U);
@@ -101,4 +101,4 @@ TEST(SurfaceMarkers, AHalfSpaceIsASquareInItsPlane) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::node

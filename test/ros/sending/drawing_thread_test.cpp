@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-namespace blem_sim {
+namespace blem_sim::node {
 namespace {
 
 void rest() { std::this_thread::sleep_for(std::chrono::milliseconds(2)); }
@@ -53,4 +53,4 @@ TEST(DrawingThread, EndsWithoutTheJobsThatWait) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::node

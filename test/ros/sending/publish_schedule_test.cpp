@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace blem_sim {
+namespace blem_sim::node {
 namespace {
 
 int countDue(double rate, double time_step, int steps) {
@@ -39,4 +39,4 @@ TEST(PublishSchedule, StartsAgain) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::node

@@ -12,7 +12,7 @@
 
 #include "messages/message_pool.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 namespace {
 
 using Clock = StepSender::Clock;
@@ -180,4 +180,4 @@ TEST(MessagePool, GivesOnlyMessagesThatNobodyHolds) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::node

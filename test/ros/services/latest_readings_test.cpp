@@ -3,23 +3,23 @@
 
 #include "sim/simulation_scene.h"
 
-namespace blem_sim {
+namespace blem_sim::node {
 namespace {
 
-RobotConfig pendulumWithTilt(const std::string& name, double rate) {
-  RobotConfig config = robot(name, pendulumUrdf(), true);
-  SensorConfig tilt;
-  tilt.name = "tilt", tilt.type = SensorType::TILT, tilt.link = "arm", tilt.rate = rate;
+sim::RobotConfig pendulumWithTilt(const std::string& name, double rate) {
+  sim::RobotConfig config = sim::robot(name, sim::pendulumUrdf(), true);
+  sim::SensorConfig tilt;
+  tilt.name = "tilt", tilt.type = sim::SensorType::TILT, tilt.link = "arm", tilt.rate = rate;
   config.sensors = {tilt};
   return config;
 }
 
 class LatestReadingsTest : public ::testing::Test {
  protected:
-  LatestReadingsTest() : simulator_(twoPendulums(), UriResolver()), readings_(simulator_) {}
+  LatestReadingsTest() : simulator_(twoPendulums(), model::UriResolver()), readings_(simulator_) {}
 
-  static SimulationConfig twoPendulums() {
-    SimulationConfig config;
+  static sim::SimulationConfig twoPendulums() {
+    sim::SimulationConfig config;
     config.robots = {pendulumWithTilt("fast", 0), pendulumWithTilt("slow", 100)};
     return config;
   }
@@ -31,7 +31,7 @@ class LatestReadingsTest : public ::testing::Test {
     return reading ? reading->time : -1;
   }
 
-  Simulator simulator_;
+  sim::Simulator simulator_;
   LatestReadings readings_;
 };
 
@@ -71,14 +71,14 @@ TEST_F(LatestReadingsTest, NoneIsLeftWhenTimeRestarts) {
 TEST_F(LatestReadingsTest, StatusHasTheBitsOfAllStepsSinceItWasTaken) {
   readings_.keep();
   readings_.takeStatus();
-  StepReport report;
-  for (const std::uint32_t bits : {JOINT_LIMIT_HIT, EFFORT_SATURATED, STEP_OK}) {
+  sim::StepReport report;
+  for (const std::uint32_t bits : {sim::JOINT_LIMIT_HIT, sim::EFFORT_SATURATED, sim::STEP_OK}) {
     report.status = bits;
     readings_.publish(report);
   }
-  EXPECT_EQ(readings_.takeStatus(), std::uint32_t{JOINT_LIMIT_HIT | EFFORT_SATURATED});
-  EXPECT_EQ(readings_.takeStatus(), std::uint32_t{STEP_OK});
+  EXPECT_EQ(readings_.takeStatus(), std::uint32_t{sim::JOINT_LIMIT_HIT | sim::EFFORT_SATURATED});
+  EXPECT_EQ(readings_.takeStatus(), std::uint32_t{sim::STEP_OK});
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::node

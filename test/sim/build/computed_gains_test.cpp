@@ -8,13 +8,13 @@
 #include "build/joint_loads.h"
 #include "sim/simulation_scene.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr double PENDULUM_INERTIA = 0.02 + 2 * 0.25, PENDULUM_WEIGHT = 2 * 0.5 * G;
 
-LumpedRobot lumped(const std::string& urdf, bool fixed_base) {
-  return lumpFixedJoints(loadUrdf(urdf, "test", UriResolver(), ""), {}, fixed_base);
+model::LumpedRobot lumped(const std::string& urdf, bool fixed_base) {
+  return model::lumpFixedJoints(model::loadUrdf(urdf, "test", model::UriResolver(), ""), {}, fixed_base);
 }
 
 SimulationConfig heldPendulum() {
@@ -63,7 +63,7 @@ TEST(JointLoads, OfAFreeChainHaveTwoSides) {
 }
 
 TEST(ComputedGains, SagAndDampingAreAsStated) {
-  const LumpedJoint joint = lumped(pendulumUrdf(), true).joints[0];
+  const model::LumpedJoint joint = lumped(pendulumUrdf(), true).joints[0];
   const JointLoad load{{PENDULUM_INERTIA, PENDULUM_WEIGHT}, {}};
   const double infinity = std::numeric_limits<double>::infinity();
   const JointGains gains = computedGains(load, joint, infinity);
@@ -82,10 +82,10 @@ TEST(ComputedGains, APendulumHoldsItsPoseAndDoesNotRing) {
   for (const char* stepper : {"articulated", "world_step", "quick_step"}) {
     SimulationConfig config = heldPendulum();
     config.solver.stepper = stepper;
-    Simulator simulator(config, UriResolver());
+    Simulator simulator(config, model::UriResolver());
     double last = 0;
     for (int i = 0; i < 10000; ++i) {
-      const JointState state = simulator.step().joints[0];
+      const dynamics::JointState state = simulator.step().joints[0];
       EXPECT_GT(state.position, last - 1e-9) << stepper << " rings at step " << i;
       last = std::max(last, state.position);
     }
@@ -105,10 +105,10 @@ SimulationConfig heldChain(MotorLaw law) {
 // Explicit gains that hold such a chain are not stable, so joints without gains have the implicit law in any case.
 TEST(ComputedGains, HoldEveryPoseWhateverTheMotor) {
   for (const MotorLaw law : {MotorLaw::IMPLICIT_PD, MotorLaw::PID}) {
-    Simulator simulator(heldChain(law), UriResolver());
+    Simulator simulator(heldChain(law), model::UriResolver());
     stepFor(&simulator, 5);
     for (const int j : simulator.robots()[0].joints) {
-      const JointState state = simulator.report().joints[j];
+      const dynamics::JointState state = simulator.report().joints[j];
       EXPECT_NEAR(state.position, simulator.desiredState(0, j).position, 1e-3) << j;
       EXPECT_NEAR(state.velocity, 0, 1e-6) << j;
     }
@@ -118,7 +118,7 @@ TEST(ComputedGains, HoldEveryPoseWhateverTheMotor) {
 // Gravity slows a joint that keeps a velocity by 1 mrad/s at most.
 TEST(ComputedGains, KeepAVelocityUnderLoad) {
   for (const double velocity : {0.0, 0.3}) {
-    Simulator simulator(heldPendulum(), UriResolver());
+    Simulator simulator(heldPendulum(), model::UriResolver());
     simulator.commandJoints(0, {{"hinge"}, {}, {velocity}, {}});
     for (int i = 0; i < 2000; ++i) {
       simulator.step();
@@ -129,7 +129,7 @@ TEST(ComputedGains, KeepAVelocityUnderLoad) {
 }
 
 std::string noteOf(const SimulationConfig& config, const std::string& words) {
-  const Simulator simulator(config, UriResolver());
+  const Simulator simulator(config, model::UriResolver());
   for (const std::string& note : simulator.notes())
     if (note.find(words) != std::string::npos) return note;
   return "";
@@ -158,7 +158,7 @@ TEST(ComputedGains, OnlyForTransmissionsIfAsked) {
     config.robots[0].motors = MotorDefault::TRANSMISSIONS;
     std::string& urdf = config.robots[0].urdf_xml;
     if (with) urdf.insert(urdf.find("</robot>"), R"(<transmission name="t"><joint name="hinge"/></transmission>)");
-    Simulator simulator(config, UriResolver());
+    Simulator simulator(config, model::UriResolver());
     stepFor(&simulator, 1);
     EXPECT_EQ(std::abs(simulator.report().joints[0].position) < 2e-3, with);
   }
@@ -167,27 +167,27 @@ TEST(ComputedGains, OnlyForTransmissionsIfAsked) {
 TEST(ComputedGains, GainsOfGazeboRosControl) {
   SimulationConfig config = heldPendulum();
   config.robots[0].pid_gains = {{"hinge", {500, 0, 40}}, {"of another robot", {1, 1, 1}}};
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   EXPECT_EQ(noteOf(config, "computed gains"), "");
   stepFor(&simulator, 4);
   const double position = simulator.report().joints[0].position;
   EXPECT_NEAR(500 * position, PENDULUM_WEIGHT * std::cos(position), 1e-3);
   config.robots[0].gains["default"] = {1000, 0, 40};
-  Simulator configured(config, UriResolver());
+  Simulator configured(config, model::UriResolver());
   stepFor(&configured, 4);
   EXPECT_LT(configured.report().joints[0].position, 0.6 * position) << "the configuration's beat them";
   config.robots[0].pid_gains["hinge"].d = -1;
-  EXPECT_THROW(Simulator(config, UriResolver()), InputError);
+  EXPECT_THROW(Simulator(config, model::UriResolver()), InputError);
 }
 
 TEST(ComputedGains, GivenGainsStandAsTheyAre) {
   SimulationConfig config = heldPendulum();
   config.robots[0].gains["hinge"] = {};
   EXPECT_EQ(noteOf(config, "computed gains"), "");
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   stepFor(&simulator, 0.1);
   EXPECT_NEAR(simulator.report().joints[0].velocity, PENDULUM_WEIGHT / PENDULUM_INERTIA * 0.1, 0.01) << "gains of 0 are no motor";
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

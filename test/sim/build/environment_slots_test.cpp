@@ -4,7 +4,7 @@
 #include "sim/simulation_scene.h"
 #include "support/sanitizers.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr int SWAPS = SANITIZED ? 1000 : 10000;
@@ -22,7 +22,7 @@ EnvironmentConfig named(EnvironmentConfig environment, const std::string& name) 
 }
 
 TEST(EnvironmentSlots, AreUsedAgainHoweverOften) {
-  Simulator simulator(cubeOnGround(), UriResolver());
+  Simulator simulator(cubeOnGround(), model::UriResolver());
   stepFor(&simulator, 0.01);
   EnvironmentConfig plane = named(EnvironmentConfig(), "ground");
   plane.plane = Eigen::Vector4d(0, 0, 1, 0);
@@ -42,7 +42,7 @@ TEST(EnvironmentSlots, AreUsedAgainHoweverOften) {
 TEST(EnvironmentSlots, TheLowestFreeOneIsTaken) {
   SimulationConfig config = cubeOnGround();
   for (const char* name : {"a", "b", "c"}) config.environments.push_back(named(ground(), name));
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   for (const char* name : {"c", "a", "b"}) simulator.unloadEnvironment(name);
   for (const char* name : {"x", "y", "z"}) simulator.loadEnvironment(named(ground(), name));
   EXPECT_EQ(simulator.modelIndex("x"), 1);
@@ -59,7 +59,7 @@ TEST(EnvironmentSlots, NothingIsTakenForWhatItWasBefore) {
     config.solver.stepper = stepper;
     config.objects[0].contact.restitution = 0.8;
     config.objects[0].X_WO = makePose({0, 0, 0.1});
-    Simulator simulator(config, UriResolver());
+    Simulator simulator(config, model::UriResolver());
     for (int i = 0; i < 1000 && simulator.report().contacts.empty(); ++i) simulator.step();
     ASSERT_FALSE(simulator.report().contacts.empty());
     simulator.unloadEnvironment("ground");
@@ -72,7 +72,7 @@ TEST(EnvironmentSlots, NothingIsTakenForWhatItWasBefore) {
     fresh.objects[0].X_WO = bodyOf(simulator, "cube").X_WB;
     fresh.objects[0].linear_velocity = bodyOf(simulator, "cube").v_WCom;
     fresh.objects[0].angular_velocity = bodyOf(simulator, "cube").w_WB;
-    Simulator other(fresh, UriResolver());
+    Simulator other(fresh, model::UriResolver());
     for (int i = 0; i < 5; ++i) {
       simulator.step();
       other.step();
@@ -85,7 +85,7 @@ TEST(EnvironmentSlots, NothingIsTakenForWhatItWasBefore) {
 TEST(EnvironmentSlots, PairsOutsideTheirLayersAreForgottenWithTheirCollider) {
   SimulationConfig config = cubeOnGround();
   config.objects[0].X_WO = makePose(Vector3::Zero());
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   ASSERT_EQ(simulator.step().layer_events.size(), 1u);
   simulator.unloadEnvironment("ground");
   const SimulationState between = simulator.save();
@@ -102,7 +102,7 @@ TEST(EnvironmentSlots, PairsOutsideTheirLayersAreForgottenWithTheirCollider) {
 TEST(EnvironmentSlots, AStopIsStillSaidAfterAnEnvironmentIsTakenOut) {
   SimulationConfig config = cubeOnGround();
   config.objects[0].linear_velocity = {1e13, 0, 0};
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   ASSERT_TRUE(simulator.step().status & STATE_NOT_FINITE);
   simulator.unloadEnvironment("ground");
   EXPECT_TRUE(simulator.step().status & STATE_NOT_FINITE);
@@ -115,14 +115,14 @@ TEST(EnvironmentSlots, SurfacesThatNobodyHoldsAreForgotten) {
     ContactSettings settings;
     settings.shrink = true;
     settings.boundary_width = 0.001;
-    MeshReport report;
+    geometry::MeshReport report;
     library.fitted(surface.geometry, settings, 0, &report);
     ASSERT_LE(library.remembered(), 3 * 16u) << i;
   }
 }
 
 TEST(EnvironmentSlots, AStateSavedBeforeASwapOfTheSameIsRestoredAfterIt) {
-  Simulator simulator(cubeOnGround(), UriResolver());
+  Simulator simulator(cubeOnGround(), model::UriResolver());
   stepFor(&simulator, 0.02);
   const SimulationState saved = simulator.save();
   stepFor(&simulator, 0.02);
@@ -141,7 +141,7 @@ TEST(EnvironmentSlots, AStateSavedBeforeASwapOfTheSameIsRestoredAfterIt) {
 TEST(EnvironmentSlots, StatesOfOtherSlotsAreRefused) {
   SimulationConfig config = cubeOnGround();
   config.environments.push_back(named(ground(), "second"));
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   const SimulationState saved = simulator.save();
   for (const char* name : {"ground", "second"}) simulator.unloadEnvironment(name);
   for (const char* name : {"second", "ground"}) simulator.loadEnvironment(named(ground(), name));
@@ -149,4 +149,4 @@ TEST(EnvironmentSlots, StatesOfOtherSlotsAreRefused) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -9,7 +9,7 @@
 #include "build/load_watch.h"
 #include "sim/simulation_scene.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 using std::chrono::milliseconds;
@@ -41,7 +41,7 @@ SimulationConfig terrain() {
   SimulationConfig config;
   config.environments = {ground()};
   config.environments[0].name = "terrain";
-  config.environments[0].uri = meshFile("terrain_of_80000", gridMesh(4, 4, 200, 200));
+  config.environments[0].uri = meshFile("terrain_of_80000", geometry::gridMesh(4, 4, 200, 200));
   return config;
 }
 
@@ -77,7 +77,7 @@ TEST(LoadWatch, AShortLoadAndNobodyWhoListensAreSilent) {
 
 TEST(LoadLog, ALongLoadTellsItsProgressAndMemory) {
   Lines lines;
-  Simulator simulator(terrain(), UriResolver(), lines.log(1e-4));
+  Simulator simulator(terrain(), model::UriResolver(), lines.log(1e-4));
   EXPECT_GE(lines.matching("loading terrain: (reading|cleaning|mending) terrain_of_80000\\.off, \\d+ % done, .*"), 1);
   EXPECT_GE(lines.matching("loading terrain: topology and tree of terrain_of_80000, 70 % done, .*"), 1);
   const double megabytes = static_cast<double>(simulator.loadReport()[0].bytes) / 1e6;
@@ -109,19 +109,19 @@ TEST(LoadLog, RobotsAndObjectsAreTold) {
                          "ixz='0' iyz='0'/></inertial><collision><geometry><mesh filename='" +
                              file + "'/></geometry></collision></link></robot>",
                          false)};
-  const Simulator simulator(config, UriResolver(), lines.log(1e-4));
+  const Simulator simulator(config, model::UriResolver(), lines.log(1e-4));
   EXPECT_GE(lines.matching("loading rover: reading link 'base', 0 % done, .*"), 1);
   for (const char* name : {"rover", "mat"}) EXPECT_EQ(lines.matching(std::string("loaded ") + name + ": 80000 triangles, .* MB, .*"), 1);
 }
 
 TEST(LoadLog, ALoadThatFailsInTheMiddleSaysWhereAndTellsNoMore) {
   Lines lines;
-  Simulator simulator(terrain(), UriResolver(), lines.log(1e-4));
+  Simulator simulator(terrain(), model::UriResolver(), lines.log(1e-4));
   const std::size_t before = lines.all().size(), reports = simulator.loadReport().size();
   EnvironmentConfig broken = terrain().environments[0];
   broken.name = "broken";
   // All triangles are read and found to be without area.
-  TriangleMesh line = gridMesh(4, 4, 200, 200);
+  geometry::TriangleMesh line = geometry::gridMesh(4, 4, 200, 200);
   for (Vector3& v : line.vertices) v.y() = v.z() = 0;
   broken.uri = meshFile("terrain_without_area", line);
   EXPECT_THROW(simulator.loadEnvironment(broken), InputError);
@@ -137,4 +137,4 @@ TEST(LoadLog, ALoadThatFailsInTheMiddleSaysWhereAndTellsNoMore) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

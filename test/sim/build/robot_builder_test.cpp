@@ -5,7 +5,7 @@
 #include "blem_sim/geometry/input_error.h"
 #include "sim/simulation_scene.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 /** A torso with an arm of two links, a gripper whose second finger mimics the first, a rigid camera, and a ball that floats off. */
@@ -46,10 +46,10 @@ bool mentions(const std::vector<std::string>& notes, const std::string& words) {
 TEST(RobotBuilder, StandsWhereItIsTold) {
   SimulationConfig config = scene();
   config.robots[0].initial_positions = {{"shoulder", 0.5}, {"finger_a", 0.02}};
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   const RobotInfo& info = simulator.robots()[0];
   EXPECT_EQ(info.joint_names.size(), 3u);
-  EXPECT_EQ(info.bodies[0], WORLD_BODY);
+  EXPECT_EQ(info.bodies[0], dynamics::WORLD_BODY);
   const Pose X_WT = config.robots[0].X_WR;
   EXPECT_TRUE(simulator.linkPose(0, link(simulator, "torso")).isApprox(X_WT, 1e-12));
   EXPECT_TRUE(simulator.linkPose(0, link(simulator, "camera")).isApprox(X_WT * makePose({0.1, 0, 0.3}), 1e-12));
@@ -63,7 +63,7 @@ TEST(RobotBuilder, StandsWhereItIsTold) {
 }
 
 TEST(RobotBuilder, HoldsAndTheMimicFollows) {
-  Simulator simulator(scene(), UriResolver());
+  Simulator simulator(scene(), model::UriResolver());
   simulator.commandJoints(0, {{"finger_a"}, {0.03}, {}, {}});
   stepFor(&simulator, 3);
   const RobotInfo& info = simulator.robots()[0];
@@ -81,7 +81,7 @@ TEST(RobotBuilder, HoldsAndTheMimicFollows) {
 TEST(RobotBuilder, MovesIntoLimitsWithANote) {
   SimulationConfig config = scene();
   config.robots[0].initial_positions = {{"shoulder", 2}};
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   EXPECT_TRUE(mentions(simulator.notes(), "shoulder"));
   const RobotInfo& info = simulator.robots()[0];
   const auto shoulder = std::find(info.joint_names.begin(), info.joint_names.end(), "shoulder") - info.joint_names.begin();
@@ -95,8 +95,8 @@ TEST(RobotBuilder, ContactSettingsOfLinkBeatThoseOfRobotBeatTheDefault) {
   config.robots[0].contact.friction = 0.6;
   config.robots[0].contact.boundary_width = 0.004;
   config.robots[0].links["upper"].friction = 1.2;
-  Simulator simulator(config, UriResolver());
-  for (const Collider& collider : simulator.colliders()) {
+  Simulator simulator(config, model::UriResolver());
+  for (const contact::Collider& collider : simulator.colliders()) {
     EXPECT_EQ(collider.surface.friction, collider.name == "worker::upper" ? 1.2 : 0.6);
     EXPECT_EQ(collider.radius, collider.name == "worker::camera" ? 0.03 : 0.004) << collider.name;
   }
@@ -110,7 +110,7 @@ TEST(RobotBuilder, RefusesUnknownNamesWithTheNearest) {
     SimulationConfig config = scene();
     spoil(&config.robots[0]);
     try {
-      Simulator simulator(config, UriResolver());
+      Simulator simulator(config, model::UriResolver());
     } catch (const InputError& error) {
       return std::string(error.what());
     }
@@ -151,7 +151,7 @@ std::size_t selfContacts(const std::function<void(RobotConfig*)>& change) {
   change(&config.robots[0]);
   std::string& urdf = config.robots[0].urdf_xml;
   urdf.replace(urdf.find("radius=\"0.03\""), 13, "radius=\"0.30\"");
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   simulator.step();
   return simulator.report().contacts.size();
 }
@@ -216,10 +216,10 @@ TEST(RobotBuilder, AFixedBaseStillMeetsTheWorld) {
   config.robots[0].X_WR = makePose({0, 0, 1});
   config.robots[0].self_collision = true;
   config.objects = {box("cube", Vector3::Constant(0.05), 0.5, {0, 0, 1.2 + 0.025 + 0.006})};
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   stepFor(&simulator, 0.3);
   EXPECT_NEAR(bodyOf(simulator, "cube").X_WB.translation().z(), 1.2 + 0.025 + 0.005, 1e-4);
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

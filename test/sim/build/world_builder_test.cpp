@@ -3,12 +3,12 @@
 #include "blem_sim/geometry/input_error.h"
 #include "sim/simulation_scene.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 std::string refusalOfWorld(const SimulationConfig& config) {
   try {
-    Simulator simulator(config, UriResolver());
+    Simulator simulator(config, model::UriResolver());
   } catch (const InputError& error) {
     return error.what();
   }
@@ -26,12 +26,12 @@ TEST(WorldBuilder, SameFileIsOneGeometry) {
   for (int i = 0; i < 18; ++i) config.objects.push_back(box("mug" + std::to_string(i), Vector3::Constant(0.1), 1, {0.2 * i, 0, 1}));
   config.objects.push_back(box("large", Vector3::Constant(0.1), 1, {0, 1, 1}));
   config.objects.back().scale = Vector3::Constant(2);
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   for (int i = 1; i < 18; ++i) EXPECT_EQ(simulator.colliders()[i].geometry, simulator.colliders()[0].geometry);
   EXPECT_NE(simulator.colliders()[18].geometry, simulator.colliders()[0].geometry);
   EXPECT_EQ(simulator.loadReport().size(), 19u);
   EXPECT_EQ(simulator.bodyName(0), "mug0::link");
-  EXPECT_EQ(simulator.bodyName(WORLD_BODY), "world");
+  EXPECT_EQ(simulator.bodyName(dynamics::WORLD_BODY), "world");
 }
 
 TEST(WorldBuilder, MassFromVolumeSurfaceOrConfiguration) {
@@ -39,13 +39,13 @@ TEST(WorldBuilder, MassFromVolumeSurfaceOrConfiguration) {
   const Vector3 size(0.1, 0.2, 0.3);
   config.objects = {box("closed", size, 2, {0, 0, 1}), box("open", size, 2, {1, 0, 1}), box("given", size, 2, {2, 0, 1})};
   config.objects[0].X_OM = makePose({0.05, 0, 0}, {0, 0, M_PI / 2});
-  TriangleMesh open = boxMesh(size);
+  geometry::TriangleMesh open = geometry::boxMesh(size);
   open.elements.pop_back();
   config.objects[1].uri = meshFile("open_box", open);
   config.objects[2].com = Vector3(0.01, 0.02, 0.03);
   config.objects[2].inertia = Matrix3(0.5 * Matrix3::Identity());
-  Simulator simulator(config, UriResolver());
-  const MassProperties closed = simulator.world().bodySpec(0).inertial;
+  Simulator simulator(config, model::UriResolver());
+  const geometry::MassProperties closed = simulator.world().bodySpec(0).inertial;
   EXPECT_EQ(closed.mass, 2);
   EXPECT_LT((closed.com - Vector3(0.05, 0, 0)).norm(), 1e-12);
   // The box is turned by 90 degrees: 0.2 m along x now. The file is read in single precision.
@@ -64,7 +64,7 @@ TEST(WorldBuilder, BoundaryWidths) {
   config.objects = {box("default", Vector3::Constant(0.1), 1, {0, 0, 1}), box("own", Vector3::Constant(0.1), 1, {1, 0, 1})};
   config.objects[1].contact.boundary_width = 0.007;
   config.objects[1].contact.friction = 0.9;
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   EXPECT_EQ(simulator.colliders()[0].radius, 0);
   EXPECT_EQ(simulator.colliders()[1].radius, 0.003);
   EXPECT_EQ(simulator.colliders()[2].radius, 0.007);
@@ -79,7 +79,7 @@ TEST(WorldBuilder, InitialVelocityIsOfTheObjectsOrigin) {
   config.objects[0].com = Vector3(0.02, 0, 0);
   config.objects[0].linear_velocity = {1, 0, 0};
   config.objects[0].angular_velocity = {0, 0, 5};
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   EXPECT_LT((bodyOf(simulator, "spinner").v_WCom - Vector3(1, 0.1, 0)).norm(), 1e-12);
 }
 
@@ -91,8 +91,8 @@ TEST(WorldBuilder, PlanesWithNormalsOfAnyLengthLieWhereTheirEquationSays) {
     ground.name = "ground";
     ground.plane = length * Eigen::Vector4d(0, 0.6, 0.8, 0.5);
     config.environments = {ground};
-    Simulator simulator(config, UriResolver());
-    const CollisionGeometry& plane = *simulator.colliders()[0].geometry;
+    Simulator simulator(config, model::UriResolver());
+    const contact::CollisionGeometry& plane = *simulator.colliders()[0].geometry;
     EXPECT_NEAR(plane.planeOffset(), 0.5, 1e-15) << length;
     EXPECT_LT((plane.planeNormal() - Vector3(0, 0.6, 0.8)).norm(), 1e-15) << length;
   }
@@ -121,4 +121,4 @@ TEST(WorldBuilder, RefusesInWords) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

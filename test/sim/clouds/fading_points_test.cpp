@@ -6,16 +6,16 @@
 #include <limits>
 #include <memory>
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr double FOR_GOOD = std::numeric_limits<double>::infinity();
 
-std::vector<Collider> threePoints() {
-  std::vector<Collider> colliders(2);
-  for (Collider& collider : colliders)
-    collider.geometry = std::make_shared<const CollisionGeometry>(
-        std::make_shared<const TriangleMesh>(pointCloudMesh({Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(2, 0, 0)}, nullptr)));
+std::vector<contact::Collider> threePoints() {
+  std::vector<contact::Collider> colliders(2);
+  for (contact::Collider& collider : colliders)
+    collider.geometry = std::make_shared<const contact::CollisionGeometry>(std::make_shared<const geometry::TriangleMesh>(
+        geometry::pointCloudMesh({Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(2, 0, 0)}, nullptr)));
   return colliders;
 }
 
@@ -27,9 +27,9 @@ FadingPoints comingAndLeaving() {
 }
 
 /** A contact of a vertex of A, or of B, with a face. */
-Contact contactOf(std::uint64_t vertex, bool of_a) {
+contact::Contact contactOf(std::uint64_t vertex, bool of_a) {
   const std::uint64_t face = std::uint64_t{2} << 30;
-  Contact contact;
+  contact::Contact contact;
   contact.point = Vector3::Zero();
   contact.normal_BA = Vector3::UnitZ();
   contact.depth = 0.003;
@@ -39,7 +39,7 @@ Contact contactOf(std::uint64_t vertex, bool of_a) {
 
 TEST(FadingPoints, MakeContactsLessDeepOnTheirOwnSide) {
   const FadingPoints fading = comingAndLeaving();
-  ContactManifold manifold;
+  contact::ContactManifold manifold;
   manifold.a = 0;
   manifold.b = 5;
   manifold.contacts = {contactOf(0, true), contactOf(1, true), contactOf(1, false)};
@@ -86,7 +86,7 @@ TEST(FadingPoints, AreReadAsTheyWereWritten) {
 TEST(FadingPoints, WordsThatLieAreRefused) {
   std::vector<std::uint64_t> words;
   comingAndLeaving().append(&words);
-  const std::vector<Collider> colliders = threePoints();
+  const std::vector<contact::Collider> colliders = threePoints();
   const auto isRead = [&](const std::vector<std::uint64_t>& given) {
     FadingPoints read;
     const std::uint64_t* word = given.data();
@@ -109,4 +109,4 @@ TEST(FadingPoints, WordsThatLieAreRefused) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -5,7 +5,7 @@
 #include "numbers/number_reader.h"
 #include "sim/simulation_scene.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr double STEP = 0.001;
@@ -22,7 +22,7 @@ MotorSettings settings(MotorLaw law, const JointGains& gains, double limit = std
 TEST(JointMotor, Equation7) {
   JointMotor motor(settings(MotorLaw::PID, {100, 20, 3}), 0.5);
   motor.sample(0, STEP);
-  const JointDrive drive = motor.drive({0.3, -0.2, 0});
+  const dynamics::JointDrive drive = motor.drive({0.3, -0.2, 0});
   EXPECT_DOUBLE_EQ(drive.effort, 100 * 0.2 + 3 * 0.2);
   EXPECT_EQ(drive.stiffness, 0);
   EXPECT_FALSE(motor.accept(drive, {0.3, 0, 0}, STEP));
@@ -51,7 +51,7 @@ TEST(JointMotor, IntegralDoesNotWindUpWhileSaturated) {
     // 100 N m/rad ask for 100; the integral holds nothing but its gain of the first steps.
     motor.hold(-0.1, 0);
     motor.sample(5, STEP);
-    const JointDrive drive = motor.drive({0, 0, 0});
+    const dynamics::JointDrive drive = motor.drive({0, 0, 0});
     const double asked = law == MotorLaw::PID ? drive.effort : drive.stiffness * drive.target_position;
     EXPECT_NEAR(asked, -10, 1.1);
   }
@@ -60,7 +60,7 @@ TEST(JointMotor, IntegralDoesNotWindUpWhileSaturated) {
 TEST(JointMotor, EffortIsCappedAndSaid) {
   JointMotor motor(settings(MotorLaw::PID, {1000, 0, 0}, 30), 1);
   motor.sample(0, STEP);
-  const JointDrive drive = motor.drive({0, 0, 0});
+  const dynamics::JointDrive drive = motor.drive({0, 0, 0});
   EXPECT_EQ(drive.effort, 30);
   EXPECT_TRUE(motor.accept(drive, {0, 0, 0}, STEP));
   motor.sample(0, STEP);
@@ -71,7 +71,7 @@ TEST(JointMotor, ImplicitLawBoundsTheSumOfFeedbackAndFeedForward) {
   JointMotor motor(settings(MotorLaw::IMPLICIT_PD, {100, 0, 2}, 30), 0.1);
   motor.addEffort(5);
   motor.sample(0, STEP);
-  const JointDrive drive = motor.drive({0, 0, 0});
+  const dynamics::JointDrive drive = motor.drive({0, 0, 0});
   EXPECT_EQ(drive.effort, 0);
   EXPECT_EQ(drive.stiffness, 100);
   EXPECT_EQ(drive.damping, 2);
@@ -102,14 +102,14 @@ TEST(JointMotor, NothingOfBeforeAddsToAVelocity) {
     }
     motor.keepVelocity(1.5, 0);
     motor.sample(0.1, STEP);
-    const JointDrive drive = motor.drive({0.7, 1, 0});
+    const dynamics::JointDrive drive = motor.drive({0.7, 1, 0});
     EXPECT_DOUBLE_EQ(drive.effort + drive.damping * (drive.target_velocity - 1), 2 * 0.5);
     EXPECT_EQ(drive.stiffness, 0);
     motor.accept(drive, {0.7, 1, 0}, STEP);
     // An effort that is commanded beside it still adds.
     motor.addEffort(3);
     motor.sample(0.101, STEP);
-    const JointDrive pushed = motor.drive({0.7, 1, 0});
+    const dynamics::JointDrive pushed = motor.drive({0.7, 1, 0});
     EXPECT_DOUBLE_EQ(pushed.effort + pushed.damping * (pushed.target_velocity - 1), 2 * 0.5 + 3);
   }
 }
@@ -120,7 +120,7 @@ TEST(JointMotor, WithoutCommandOnlyFrictionActs) {
   mimic.friction = {0.3, 0.1};
   JointMotor motor(mimic, 0);
   motor.sample(0, STEP);
-  const JointDrive drive = motor.drive({1, 1, 0});
+  const dynamics::JointDrive drive = motor.drive({1, 1, 0});
   EXPECT_EQ(drive.effort, 0);
   EXPECT_EQ(drive.dry_friction, 0.3);
   EXPECT_EQ(drive.viscous_friction, 0.1);
@@ -152,14 +152,14 @@ Simulator pendulum(MotorLaw law, const JointGains& gains, const std::string& ext
   config.robots = {robot("pendulum", pendulumUrdf(extras), true)};
   config.robots[0].gains["default"] = gains;
   config.robots[0].motor["default"] = law;
-  return Simulator(config, UriResolver());
+  return Simulator(config, model::UriResolver());
 }
 
 TEST(MotorOnPendulum, StaticErrorIsTorqueOverStiffness) {
   for (const MotorLaw law : {MotorLaw::PID, MotorLaw::IMPLICIT_PD}) {
     Simulator simulator = pendulum(law, {1000, 0, 60});
     stepFor(&simulator, 4);
-    const JointState state = simulator.report().joints[0];
+    const dynamics::JointState state = simulator.report().joints[0];
     EXPECT_NEAR(1000 * state.position, WEIGHT_TORQUE * std::cos(state.position), 1e-6);
     EXPECT_NEAR(state.effort, -WEIGHT_TORQUE * std::cos(state.position), 1e-6);
     EXPECT_FALSE(simulator.report().status & EFFORT_SATURATED);
@@ -187,7 +187,7 @@ TEST(MotorOnPendulum, WeakMotorSaturatesAndSays) {
     config.robots[0].gains["default"] = {1000, 0, 60};
     config.robots[0].motor["default"] = law;
     config.robots[0].effort_limits["hinge"] = 5;
-    Simulator simulator(config, UriResolver());
+    Simulator simulator(config, model::UriResolver());
     stepFor(&simulator, 0.2);
     EXPECT_TRUE(simulator.report().status & EFFORT_SATURATED);
     EXPECT_NEAR(simulator.report().joints[0].effort, -5, 1e-9);
@@ -213,11 +213,11 @@ TEST(MotorOnPendulum, LimitIsSaid) {
   std::string urdf = pendulumUrdf();
   urdf.replace(urdf.find("upper=\"3\""), 9, "upper=\"0.1\"");
   config.robots = {robot("pendulum", urdf, true)};
-  Simulator stopped(config, UriResolver());
+  Simulator stopped(config, model::UriResolver());
   stepFor(&stopped, 1);
   EXPECT_TRUE(stopped.report().status & JOINT_LIMIT_HIT);
   EXPECT_NEAR(stopped.report().joints[0].position, 0.1, 1e-4);
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -6,7 +6,7 @@
 #include "blem_sim/sim/trajectory.h"
 #include "numbers/number_reader.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 using Knot = JointSpline::Knot;
@@ -203,4 +203,4 @@ TEST(JointSpline, SavedAndReadItIsTheSame) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

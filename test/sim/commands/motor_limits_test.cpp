@@ -8,7 +8,7 @@
 #include "blem_sim/geometry/input_error.h"
 #include "sim/simulation_scene.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr double INERTIA = 0.02 + 2 * 0.25;  // [kg m^2] of the pendulum about its hinge
@@ -37,7 +37,7 @@ struct Extremes {
 Extremes extremesOf(Simulator* simulator, double seconds) {
   Extremes most;
   for (long i = std::lround(seconds / simulator->config().time_step); i > 0; --i) {
-    const JointState state = simulator->step().joints[0];
+    const dynamics::JointState state = simulator->step().joints[0];
     most.velocity = std::max(most.velocity, std::abs(state.velocity));
     most.effort = std::max(most.effort, std::abs(state.effort));
   }
@@ -51,7 +51,7 @@ class Motors : public ::testing::TestWithParam<std::tuple<MotorLaw, const char*>
   double tolerance() const { return std::string(std::get<1>(GetParam())) == "quick_step" ? 0.02 : 1e-6; }
   Simulator simulate(SimulationConfig config) const {
     config.solver.stepper = std::get<1>(GetParam());
-    return Simulator(config, UriResolver());
+    return Simulator(config, model::UriResolver());
   }
 };
 
@@ -67,7 +67,7 @@ TEST_P(Motors, ObeyTheVelocityLimitOfTheUrdf) {
     EXPECT_LE(most.velocity, limit * (1 + tolerance()));
     EXPECT_NEAR(simulator.report().joints[0].velocity, -limit, 0.02 * limit) << "it uses the speed it has";
     stepFor(&simulator, 4);
-    const JointState end = simulator.report().joints[0];
+    const dynamics::JointState end = simulator.report().joints[0];
     EXPECT_NEAR(1000 * (end.position + limit), 2 * 0.5 * G * std::cos(end.position), 10 * tolerance()) << "and arrives";
   }
 }
@@ -191,7 +191,7 @@ TEST_P(LightLink, ImplicitGainsAreStable) {
       config.robots[0].effort_limits["hinge"] = effort;
       // ODE's steppers, whose motors have one row, know a step late that a load drives the joint on.
       if (!exact) config.gravity = Vector3::Zero();
-      Simulator simulator(config, UriResolver());
+      Simulator simulator(config, model::UriResolver());
       simulator.commandJoints(0, {{"hinge"}, {1}, {}, {}});
       const Extremes most = extremesOf(&simulator, 2);
       EXPECT_LE(most.velocity, 2 + (exact ? 1e-6 : 0.04)) << stiffness;
@@ -222,7 +222,7 @@ TEST(MotorLaws, PeriodAndStepResponseAreTheClosedForms) {
     config.time_step = 1e-4;
     config.robots[0].gains["default"] = {20, 0, 0};
     config.robots[0].initial_positions["hinge"] = 0;
-    Simulator swings(config, UriResolver());
+    Simulator swings(config, model::UriResolver());
     swings.commandJoints(0, {{"hinge"}, {0.1}, {}, {}});
     std::vector<double> crossings;  // of the target, upwards
     for (double last = 0; crossings.size() < 6;) {
@@ -235,7 +235,7 @@ TEST(MotorLaws, PeriodAndStepResponseAreTheClosedForms) {
 
     const double w = std::sqrt(20 / INERTIA), zeta = 0.3, damped = w * std::sqrt(1 - zeta * zeta);
     config.robots[0].gains["default"] = {20, 0, 2 * zeta * w * INERTIA};
-    Simulator steps(config, UriResolver());
+    Simulator steps(config, model::UriResolver());
     steps.commandJoints(0, {{"hinge"}, {0.5}, {}, {}});
     while (steps.time() < 2) {
       const double q = steps.step().joints[0].position, t = steps.time();
@@ -250,10 +250,10 @@ TEST(MotorLaws, StickAndSlipAtDryFriction) {
     SimulationConfig config = arm({}, MotorLaw::IMPLICIT_PD);
     config.gravity = Vector3::Zero();
     config.robots[0].joint_friction["hinge"] = {3, 0};
-    Simulator simulator(config, UriResolver());
+    Simulator simulator(config, model::UriResolver());
     simulator.commandJoints(0, {{"hinge"}, {}, {}, {share * 3}});
     stepFor(&simulator, 10);
-    const JointState state = simulator.report().joints[0];
+    const dynamics::JointState state = simulator.report().joints[0];
     if (share < 1)
       EXPECT_LT(std::abs(state.position), 1e-9);
     else
@@ -267,7 +267,7 @@ TEST(MotorLaws, IntegralRestsWithinDryFriction) {
     SimulationConfig config = arm({}, law);
     config.robots[0].gains["default"] = {1000, 500, 60};
     config.robots[0].joint_friction["hinge"] = {3, 0};
-    Simulator simulator(config, UriResolver());
+    Simulator simulator(config, model::UriResolver());
     stepFor(&simulator, 10);
     const double position = simulator.report().joints[0].position;
     EXPECT_NEAR(position, 3e-3, 1e-4);
@@ -282,7 +282,7 @@ TEST(MotorLaws, ArmatureIsRefusedWhereItIsNotKnown) {
     config.solver.stepper = stepper;
     config.robots[0].armature["hinge"] = 0.1;
     try {
-      Simulator simulator(config, UriResolver());
+      Simulator simulator(config, model::UriResolver());
       ADD_FAILURE() << stepper << " takes it silently";
     } catch (const InputError& error) {
       EXPECT_NE(std::string(error.what()).find("robots: pendulum: armature: hinge: " + std::string(stepper)), std::string::npos);
@@ -291,4 +291,4 @@ TEST(MotorLaws, ArmatureIsRefusedWhereItIsNotKnown) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

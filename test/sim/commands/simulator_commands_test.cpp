@@ -4,7 +4,7 @@
 #include "blem_sim/geometry/input_error.h"
 #include "sim/simulation_scene.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 SimulationConfig pendulumScene() {
@@ -35,7 +35,7 @@ std::string refusalOfAct(const Act& act) {
 }
 
 TEST(SimulatorCommands, TrajectoryIsFollowed) {
-  Simulator simulator(pendulumScene(), UriResolver());
+  Simulator simulator(pendulumScene(), model::UriResolver());
   stepFor(&simulator, 0.1);
   simulator.commandTrajectory(0, reach(1, 1));
   EXPECT_NEAR(simulator.desiredState(0, 0).position, 0, 1e-12);
@@ -48,7 +48,7 @@ TEST(SimulatorCommands, TrajectoryIsFollowed) {
 }
 
 TEST(SimulatorCommands, ANewTrajectoryTakesOverAtItsStart) {
-  Simulator simulator(pendulumScene(), UriResolver());
+  Simulator simulator(pendulumScene(), model::UriResolver());
   simulator.commandTrajectory(0, reach(1, 1));
   simulator.commandTrajectory(0, reach(-1, 1, 2.0));
   stepFor(&simulator, 1.5);
@@ -58,7 +58,7 @@ TEST(SimulatorCommands, ANewTrajectoryTakesOverAtItsStart) {
 }
 
 TEST(SimulatorCommands, NoPointsIsHold) {
-  Simulator simulator(pendulumScene(), UriResolver());
+  Simulator simulator(pendulumScene(), model::UriResolver());
   simulator.commandTrajectory(0, reach(1, 1));
   stepFor(&simulator, 0.5);
   simulator.commandTrajectory(0, {});
@@ -69,7 +69,7 @@ TEST(SimulatorCommands, NoPointsIsHold) {
 }
 
 TEST(SimulatorCommands, JointTargets) {
-  Simulator simulator(pendulumScene(), UriResolver());
+  Simulator simulator(pendulumScene(), model::UriResolver());
   simulator.commandJoints(0, {{"hinge"}, {0.3}, {}, {}});
   stepFor(&simulator, 1);
   EXPECT_NEAR(simulator.report().joints[0].position, 0.3, 1e-6);
@@ -97,7 +97,7 @@ TEST(SimulatorCommands, VelocityIsReachedAfterAnIntegralHasBuiltUp) {
   for (const MotorLaw law : {MotorLaw::PID, MotorLaw::IMPLICIT_PD}) {
     SimulationConfig config = wheelScene(law, {1000, 2000, 60, 1000});
     config.gravity = {0, 0, 0};
-    Simulator simulator(config, UriResolver());
+    Simulator simulator(config, model::UriResolver());
     simulator.commandJoints(0, {{"hinge"}, {0}, {}, {-20}});
     stepFor(&simulator, 5);
     EXPECT_NEAR(simulator.report().joints[0].position, 0, 1e-3);
@@ -108,7 +108,7 @@ TEST(SimulatorCommands, VelocityIsReachedAfterAnIntegralHasBuiltUp) {
 }
 
 TEST(SimulatorCommands, AJointWithoutEndTakesTheNearestTurn) {
-  Simulator simulator(wheelScene(MotorLaw::IMPLICIT_PD, {1000, 0, 60}), UriResolver());
+  Simulator simulator(wheelScene(MotorLaw::IMPLICIT_PD, {1000, 0, 60}), model::UriResolver());
   const auto turned = [&](double turns, double rest) {
     simulator.commandJoints(0, {{"hinge"}, {2 * M_PI * turns + rest}, {}, {}});
     double fastest = 0;
@@ -133,7 +133,7 @@ TEST(SimulatorCommands, WhatIsTooLargeIsRefused) {
     SimulationConfig config = pendulumScene();
     std::string& urdf = config.robots[0].urdf_xml;
     urdf.replace(urdf.find("revolute"), 8, urdf_joint);
-    Simulator simulator(config, UriResolver());
+    Simulator simulator(config, model::UriResolver());
     const std::uint64_t before = simulator.stateHash();
     for (const double bad : {1e308, -1e308, 1.01e7}) {
       for (const JointCommandMessage& command :
@@ -157,7 +157,7 @@ TEST(SimulatorCommands, WhatIsTooLargeIsRefused) {
 }
 
 TEST(SimulatorCommands, ErrorsNameRobotAndJointAndChangeNothing) {
-  Simulator simulator(pendulumScene(), UriResolver());
+  Simulator simulator(pendulumScene(), model::UriResolver());
   const std::uint64_t before = simulator.stateHash();
   const double nan = std::nan("");
   const auto expectRefused = [&](const std::string& message, const std::string& words) {
@@ -176,4 +176,4 @@ TEST(SimulatorCommands, ErrorsNameRobotAndJointAndChangeNothing) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -5,7 +5,7 @@
 #include "support/shared_data.h"
 #include "support/temporary_folder.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 const std::vector<std::string> COLUMNS = {"hip", "knee", "knee_vel"};
@@ -78,4 +78,4 @@ TEST_F(TrajectoryCsv, ReadsTheSharedSway) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -6,7 +6,7 @@
 
 #include "support/input_errors.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 const std::vector<std::string> JOINTS = {"hip", "knee", "ankle"};
@@ -64,4 +64,4 @@ TEST(CheckTrajectory, ARobotWithoutJointsSaysSo) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

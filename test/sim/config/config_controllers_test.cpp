@@ -4,7 +4,7 @@
 #include "blem_sim/sim/config.h"
 #include "support/input_errors.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 std::optional<std::vector<ControllerConfig>> controllersOf(const std::string& yaml) {
@@ -78,4 +78,4 @@ TEST(ConfigControllers, RefusesInOneLine) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

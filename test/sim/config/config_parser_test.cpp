@@ -11,7 +11,7 @@
 #include "support/input_errors.h"
 #include "support/temporary_folder.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 const double INF = std::numeric_limits<double>::infinity();
@@ -222,14 +222,14 @@ objects:
   - {name: mug, uri: mug.stl, mass: 1, com: [1, 2, 3], inertia: [3, 0.1, 0.2, 4, 0.3, 5], mesh_pose: {xyz: [0, 0, 1]}, linear_velocity: [1, 0, 0]}
   - {name: crate, urdf: crate.urdf, max_contacts_per_object: 7}
 )");
-  EXPECT_EQ(config.contact.friction_rule, FrictionRule::HARMONIC_MEAN);
+  EXPECT_EQ(config.contact.friction_rule, contact::FrictionRule::HARMONIC_MEAN);
   EXPECT_EQ(config.contact.reduction, "kmeans");
   EXPECT_EQ(config.solver.stepper, "quick_step");
   EXPECT_EQ(config.solver.threads, 3);
   EXPECT_EQ(config.solver.quick_step_iterations, 99);
   EXPECT_EQ(config.random_seed, 18446744073709551615u);
   EXPECT_EQ(config.environments[0].scale, Vector3::Constant(0.25));
-  EXPECT_EQ(config.environments[0].cloud.as, CloudOptions::As::MESH);
+  EXPECT_EQ(config.environments[0].cloud.as, model::CloudOptions::As::MESH);
   const LiveConfig& live = config.environments[1].live;
   EXPECT_EQ(live.topic, "/points");
   EXPECT_EQ(live.frame, "map");
@@ -240,7 +240,7 @@ objects:
   EXPECT_EQ(live.map.memory, 50);
   EXPECT_EQ(live.map.expire_after, 2);
   EXPECT_EQ(live.map.max_voxels, 10u);
-  const CloudOptions& cloud = config.environments[1].cloud;
+  const model::CloudOptions& cloud = config.environments[1].cloud;
   EXPECT_TRUE(cloud.auto_radius);
   ASSERT_EQ(cloud.filters.size(), 4u);
   EXPECT_EQ(cloud.filters[0].size, 0.005);
@@ -421,4 +421,4 @@ TEST(ConfigFile, LongListsAreNamedWhereTheyAre) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -7,7 +7,7 @@
 #include "sim/simulation_scene.h"
 #include "support/input_errors.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 SimulationConfig parseSensors(const std::string& sensors) {
@@ -81,12 +81,12 @@ TEST(RangeSensorConfig, ByHandIsRefusedAsWell) {
     eye.type = SensorType::DEPTH_CAMERA;
     eye.link = "base";
     config.robots[0].sensors = {eye};
-    EXPECT_EQ(refusal([&] { Simulator simulator(config, UriResolver()); }), "");
+    EXPECT_EQ(refusal([&] { Simulator simulator(config, model::UriResolver()); }), "");
     set(&config.robots[0].sensors[0]);
-    const std::string text = refusal([&] { Simulator simulator(config, UriResolver()); });
+    const std::string text = refusal([&] { Simulator simulator(config, model::UriResolver()); });
     EXPECT_TRUE(isOneLineWith(text, {words})) << text;
   }
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -10,7 +10,7 @@
 #include "sim/simulation_scene.h"
 #include "support/input_errors.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 RobotConfig parsedRobot(const std::string& keys) {
@@ -74,4 +74,4 @@ TEST(SensorKeys, AreRefusedInOneLine) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

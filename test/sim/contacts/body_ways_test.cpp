@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr double LONG_STEP = 0.005;       // [s]
@@ -15,12 +15,12 @@ Matrix3 turned(double angle) { return Eigen::AngleAxisd(angle, Vector3::UnitY())
 
 /** Two links along x in the plane y = 0. The upper one turns about the origin; the lower one turns, or slides, at the upper one's end. */
 struct TwoLinks {
-  SimulatedWorld world{Vector3::Zero(), SolverSettings()};
-  std::vector<BodyState> bodies;
+  SimulatedWorld world{Vector3::Zero(), dynamics::SolverSettings()};
+  std::vector<dynamics::BodyState> bodies;
   int upper, lower;
 
-  TwoLinks(JointKind elbow, const Vector3& elbow_axis, double upper_speed, double lower_speed) {
-    BodySpec spec;
+  TwoLinks(dynamics::JointKind elbow, const Vector3& elbow_axis, double upper_speed, double lower_speed) {
+    dynamics::BodySpec spec;
     spec.name = "upper";
     spec.inertial.mass = 1;
     spec.inertial.com = {0.5 * UPPER, 0, 0};
@@ -30,7 +30,7 @@ struct TwoLinks {
     spec.inertial.com = {COM, 0, 0};
     spec.X_WB = makePose({UPPER, 0, 0});
     lower = world.world.addBody(spec);
-    JointSpec joint;
+    dynamics::JointSpec joint;
     joint.name = "shoulder";
     joint.child = upper;
     joint.axis = Vector3::UnitY();
@@ -47,7 +47,7 @@ struct TwoLinks {
     world.models[0].bodies = {upper, lower};
     world.bodyStates(&bodies);
     const Vector3 w1(0, upper_speed, 0), com = Vector3(UPPER + COM, 0, 0);
-    const bool turns = elbow == JointKind::REVOLUTE;
+    const bool turns = elbow == dynamics::JointKind::REVOLUTE;
     const Vector3 w2 = turns ? Vector3(lower_speed * elbow_axis) : Vector3(Vector3::Zero());
     const Vector3 slide = turns ? Vector3(Vector3::Zero()) : Vector3(lower_speed * elbow_axis);
     bodies[upper].w_WB = w1;
@@ -73,7 +73,7 @@ void expectSame(const Pose& pose, const Matrix3& turn, const Vector3& place) {
 
 TEST(BodyWays, LinkOnAHingeOfTheWorldIsOnItsArcAllAlong) {
   for (const double speed : {1e-6, 0.1, 30.0, -300.0}) {
-    TwoLinks arm(JointKind::REVOLUTE, Vector3::UnitY(), speed, 0);
+    TwoLinks arm(dynamics::JointKind::REVOLUTE, Vector3::UnitY(), speed, 0);
     for (const double part : {0.1, 0.5, 1.0}) {
       expectSame(arm.ahead(arm.upper, part), turned(part * LONG_STEP * speed), Vector3::Zero());
       expectSame(arm.ahead(arm.lower, part), turned(part * LONG_STEP * speed), turned(part * LONG_STEP * speed) * Vector3(UPPER, 0, 0));
@@ -84,7 +84,7 @@ TEST(BodyWays, LinkOnAHingeOfTheWorldIsOnItsArcAllAlong) {
 TEST(BodyWays, LinkBeyondAnElbowEndsWhereItsJointsLead) {
   for (const double upper : {0.0, 5.0, -40.0})
     for (const double lower : {0.0, 5.0, 90.0}) {
-      TwoLinks arm(JointKind::REVOLUTE, Vector3::UnitY(), upper, lower);
+      TwoLinks arm(dynamics::JointKind::REVOLUTE, Vector3::UnitY(), upper, lower);
       expectSame(arm.ahead(arm.lower, 1), turned(LONG_STEP * (upper + lower)), turned(LONG_STEP * upper) * Vector3(UPPER, 0, 0));
     }
 }
@@ -92,7 +92,7 @@ TEST(BodyWays, LinkBeyondAnElbowEndsWhereItsJointsLead) {
 TEST(BodyWays, LinkOnASliderThatTurnsEndsWhereItsJointsLead) {
   for (const double turn : {0.0, 1e-5, 20.0})
     for (const double slide : {0.0, 2.0}) {
-      TwoLinks arm(JointKind::PRISMATIC, Vector3::UnitX(), turn, slide);
+      TwoLinks arm(dynamics::JointKind::PRISMATIC, Vector3::UnitX(), turn, slide);
       expectSame(arm.ahead(arm.lower, 1), turned(LONG_STEP * turn), turned(LONG_STEP * turn) * Vector3(UPPER + LONG_STEP * slide, 0, 0));
     }
 }
@@ -100,19 +100,19 @@ TEST(BodyWays, LinkOnASliderThatTurnsEndsWhereItsJointsLead) {
 TEST(BodyWays, LinksSwingEachOtherByNoMoreThanIsTold) {
   for (const double upper : {0.0, 5.0, -40.0})
     for (const double lower : {0.0, 5.0, 90.0}) {
-      TwoLinks arm(JointKind::REVOLUTE, Vector3::UnitY(), upper, lower);
+      TwoLinks arm(dynamics::JointKind::REVOLUTE, Vector3::UnitY(), upper, lower);
       BodyWays ways;
       ways.start(arm.world, arm.bodies, LONG_STEP);
       const double w = upper + lower, centripetal = 0.5 * UPPER * upper * upper + COM * w * w;
       EXPECT_GE(ways.swing(arm.lower), LONG_STEP * centripetal * (1 - 1e-12));
       EXPECT_EQ(ways.swing(arm.upper), ways.swing(arm.lower));
-      EXPECT_EQ(ways.swing(WORLD_BODY), 0);
+      EXPECT_EQ(ways.swing(dynamics::WORLD_BODY), 0);
     }
 }
 
 TEST(BodyWays, LinkIsLedToAPose) {
   for (const double turn : {0.0, 1e-5, 0.3}) {
-    TwoLinks arm(JointKind::REVOLUTE, Vector3::UnitY(), 5, 90);
+    TwoLinks arm(dynamics::JointKind::REVOLUTE, Vector3::UnitY(), 5, 90);
     BodyWays ways;
     ways.start(arm.world, arm.bodies, LONG_STEP);
     BodyTwist way = twistOf(arm.world, arm.bodies, arm.upper);
@@ -123,8 +123,8 @@ TEST(BodyWays, LinkIsLedToAPose) {
 }
 
 TEST(BodyWays, BodyOnNoJointGoesStraight) {
-  TwoLinks arm(JointKind::REVOLUTE, Vector3::UnitY(), 0, 0);
-  BodySpec spec;
+  TwoLinks arm(dynamics::JointKind::REVOLUTE, Vector3::UnitY(), 0, 0);
+  dynamics::BodySpec spec;
   spec.name = "free";
   spec.inertial.mass = 1;
   spec.inertial.inertia = Matrix3::Identity();
@@ -139,4 +139,4 @@ TEST(BodyWays, BodyOnNoJointGoesStraight) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -13,7 +13,7 @@
 #include "support/sanitizers.h"
 #include "support/shared_data.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr double BROKEN_LAYER = 0.0025;  // [m]
@@ -29,7 +29,7 @@ struct Stack {
   std::set<int> counts;     ///< of contacts
 };
 
-Stack stackOf(const std::vector<TriangleMesh>& cubes, const std::string& name, const std::string& stepper, double seconds) {
+Stack stackOf(const std::vector<geometry::TriangleMesh>& cubes, const std::string& name, const std::string& stepper, double seconds) {
   SimulationConfig config;
   config.solver.stepper = stepper;
   config.environments = {ground()};
@@ -38,7 +38,7 @@ Stack stackOf(const std::vector<TriangleMesh>& cubes, const std::string& name, c
     cube.uri = meshFile(name + std::to_string(i), cubes[i]);
     config.objects.push_back(cube);
   }
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   stepFor(&simulator, seconds - 1);
   Stack stack;
   double squares = 0;
@@ -46,7 +46,7 @@ Stack stackOf(const std::vector<TriangleMesh>& cubes, const std::string& name, c
   for (int k = 0; k < steps; ++k) {
     const StepReport& report = simulator.step();
     stack.counts.insert(report.reduced_contacts);
-    for (const BodyState& body : report.bodies) squares += body.v_WCom.squaredNorm();
+    for (const dynamics::BodyState& body : report.bodies) squares += body.v_WCom.squaredNorm();
   }
   stack.rms_velocity = std::sqrt(squares / (CUBES * steps));
   for (int i = 0; i < CUBES; ++i) {
@@ -58,9 +58,9 @@ Stack stackOf(const std::vector<TriangleMesh>& cubes, const std::string& name, c
   return stack;
 }
 
-std::vector<TriangleMesh> tenOf(const std::function<TriangleMesh(RandomShapes&)>& make) {
-  RandomShapes random(31);
-  std::vector<TriangleMesh> cubes;
+std::vector<geometry::TriangleMesh> tenOf(const std::function<geometry::TriangleMesh(geometry::RandomShapes&)>& make) {
+  geometry::RandomShapes random(31);
+  std::vector<geometry::TriangleMesh> cubes;
   for (int i = 0; i < CUBES; ++i) cubes.push_back(make(random));
   return cubes;
 }
@@ -71,26 +71,27 @@ void expectStands(const Stack& stack) {
   EXPECT_EQ(stack.counts.size(), 1u);
 }
 
-const TriangleMesh CUBE = boxMesh(Vector3::Constant(0.1));
+const geometry::TriangleMesh CUBE = geometry::boxMesh(Vector3::Constant(0.1));
 
 TEST(BrokenMeshes, TenCrackedCubesStand) {
-  expectStands(stackOf(tenOf([](RandomShapes& random) { return crackedCopy(CUBE, CRACKS, random); }), "cracked", "articulated", SECONDS));
+  expectStands(
+      stackOf(tenOf([](geometry::RandomShapes& random) { return crackedCopy(CUBE, CRACKS, random); }), "cracked", "articulated", SECONDS));
 }
 
 TEST(BrokenMeshes, TenCubesWithTJunctionsStand) {
-  expectStands(stackOf(tenOf([](RandomShapes& random) { return tJunctionCopy(shuffledCopy(CUBE, random)); }), "t_junctions", "articulated",
-                       SECONDS));
+  expectStands(stackOf(tenOf([](geometry::RandomShapes& random) { return tJunctionCopy(shuffledCopy(CUBE, random)); }), "t_junctions",
+                       "articulated", SECONDS));
 }
 
 TEST(BrokenMeshes, TenCrackedCubesWithTJunctionsStand) {
-  expectStands(stackOf(tenOf([](RandomShapes& random) { return crackedCopy(tJunctionCopy(CUBE), CRACKS, random); }), "cracked_t",
+  expectStands(stackOf(tenOf([](geometry::RandomShapes& random) { return crackedCopy(tJunctionCopy(CUBE), CRACKS, random); }), "cracked_t",
                        "articulated", SECONDS));
 }
 
 /** A body on a surface. */
 struct Resting {
   std::string name;
-  TriangleMesh mesh, surface;
+  geometry::TriangleMesh mesh, surface;
   Vector3 start;  ///< [m]
 };
 
@@ -106,17 +107,17 @@ Rest restOfFile(const Resting& scene, const std::string& file, double seconds) {
   SimulationConfig config;
   config.environments = {ground()};
   config.environments[0].uri = meshFile(scene.name + "_surface", scene.surface);
-  const MassProperties inertial = massFromSurface(scene.mesh, 1);
+  const geometry::MassProperties inertial = geometry::massFromSurface(scene.mesh, 1);
   ObjectConfig object = box("body", Vector3::Constant(0.1), 1, scene.start);
   object.uri = file;
   object.com = inertial.com;
   object.inertia = inertial.inertia;
   object.max_contacts = 50;
   config.objects = {object};
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   stepFor(&simulator, seconds);
   Rest rest;
-  const BodyState body = bodyOf(simulator, "body");
+  const dynamics::BodyState body = bodyOf(simulator, "body");
   rest.X_WB = body.X_WB;
   rest.speed = body.v_WCom.norm();
   for (const ContactReport& contact : simulator.report().contacts) {
@@ -127,21 +128,18 @@ Rest restOfFile(const Resting& scene, const std::string& file, double seconds) {
   return rest;
 }
 
-Rest restOf(const Resting& scene, const TriangleMesh& mesh, double seconds) {
+Rest restOf(const Resting& scene, const geometry::TriangleMesh& mesh, double seconds) {
   return restOfFile(scene, meshFile(scene.name, mesh), seconds);
 }
 
 void expectSameRest(const Resting& scene) {
   const double seconds = 3;
-  RandomShapes random(33);
+  geometry::RandomShapes random(33);
   const Rest whole = restOf(scene, scene.mesh, seconds);
-  const std::vector<std::tuple<const char*, TriangleMesh, double>> copies = {
-      {"subdivided", subdivided(scene.mesh, 1), 1e-6},
-      {"shuffled", shuffledCopy(scene.mesh, random), 1e-6},
-      {"rewound", rewoundCopy(scene.mesh, random), 1e-6},
-      {"doubled", doubledCopy(scene.mesh), 1e-6},
-      {"unwelded", crackedCopy(scene.mesh, 0, random), 1e-6},
-      {"T-junctions", tJunctionCopy(scene.mesh), 1e-6},
+  const std::vector<std::tuple<const char*, geometry::TriangleMesh, double>> copies = {
+      {"subdivided", geometry::subdivided(scene.mesh, 1), 1e-6},  {"shuffled", shuffledCopy(scene.mesh, random), 1e-6},
+      {"rewound", rewoundCopy(scene.mesh, random), 1e-6},         {"doubled", doubledCopy(scene.mesh), 1e-6},
+      {"unwelded", crackedCopy(scene.mesh, 0, random), 1e-6},     {"T-junctions", tJunctionCopy(scene.mesh), 1e-6},
       {"cracked", crackedCopy(scene.mesh, CRACKS, random), 1e-4},
   };
   std::printf("%s: speed %.2g m/s\n", scene.name.c_str(), whole.speed);
@@ -161,37 +159,40 @@ void expectSameRest(const Resting& scene) {
   }
 }
 
-TriangleMesh hills(double size, int cells, double height) {
-  RandomShapes random(34);
-  TriangleMesh mesh = gridMesh(size, size, cells, cells);
+geometry::TriangleMesh hills(double size, int cells, double height) {
+  geometry::RandomShapes random(34);
+  geometry::TriangleMesh mesh = geometry::gridMesh(size, size, cells, cells);
   for (Vector3& p : mesh.vertices) p.z() = random.uniform(-height, height);
   return mesh;
 }
 
 /** A mesh moved so that its lowest point is at z = 0. */
-TriangleMesh restingOnGround(const TriangleMesh& mesh) { return transformed(mesh, makePose({0, 0, -mesh.bounds().min().z()})); }
+geometry::TriangleMesh restingOnGround(const geometry::TriangleMesh& mesh) {
+  return geometry::transformed(mesh, makePose({0, 0, -mesh.bounds().min().z()}));
+}
 
 TEST(BrokenMeshes, CubeRestsWhereTheWholeOneDoes) {
-  expectSameRest({"cube_rest", restingOnGround(CUBE), gridMesh(1, 1, 3, 3), {0.013, 0.021, 0.003}});
+  expectSameRest({"cube_rest", restingOnGround(CUBE), geometry::gridMesh(1, 1, 3, 3), {0.013, 0.021, 0.003}});
   expectSameRest({"cube_hills", restingOnGround(CUBE), hills(0.5, 20, 0.002), {0.013, 0.021, 0.006}});
 }
 
 TEST(BrokenMeshes, MugRestsWhereTheWholeOneDoes) {
-  const TriangleMesh mug = restingOnGround(cleanMesh(readStlSoup(BLEM_SIM_SOURCE_DIR "/meshes/shell_mug.stl"), nullptr));
-  expectSameRest({"mug_rest", mug, gridMesh(1, 1, 3, 3), {0.013, 0.021, 0.003}});
+  const geometry::TriangleMesh mug =
+      restingOnGround(geometry::cleanMesh(contact::readStlSoup(BLEM_SIM_SOURCE_DIR "/meshes/shell_mug.stl"), nullptr));
+  expectSameRest({"mug_rest", mug, geometry::gridMesh(1, 1, 3, 3), {0.013, 0.021, 0.003}});
 }
 
 TEST(BrokenMeshes, FootRestsWhereTheWholeOneDoes) {
   const char* const FOOT = "robots/klampt/huboplus/meshes/Body_LAR_col_simple.stl";
   SKIP_WITHOUT_SHARED_DATA(FOOT);
-  const TriangleMesh foot = restingOnGround(cleanMesh(readStlSoup(*sharedData(FOOT)), nullptr));
+  const geometry::TriangleMesh foot = restingOnGround(geometry::cleanMesh(contact::readStlSoup(*sharedData(FOOT)), nullptr));
   expectSameRest({"foot_hills", foot, hills(0.8, 30, 0.002), {0.013, 0.021, 0.006}});
 }
 
 /** Files with the cube's sole. */
 TEST(BrokenMeshes, PathologicalCubesRestWhereTheWholeOneDoes) {
   SKIP_WITHOUT_SHARED_DATA("pathological");
-  const Resting scene = {"pathological", CUBE, gridMesh(1, 1, 3, 3), {0.013, 0.021, 0.053}};
+  const Resting scene = {"pathological", CUBE, geometry::gridMesh(1, 1, 3, 3), {0.013, 0.021, 0.053}};
   const Rest whole = restOf(scene, scene.mesh, 3);
   for (const char* name : {"cube_duplicate_faces", "cube_flipped", "cube_zero_area", "cube_nan", "cube_nested_self_intersecting",
                            "cube_layers", "cube_nonmanifold_fins", "cube_open_bottom", "cube_slivers", "cube_holes"}) {
@@ -208,7 +209,7 @@ TEST(BrokenMeshes, PathologicalCubesRestWhereTheWholeOneDoes) {
 TEST(BrokenMeshes, SoupOfTrianglesStandsOnWhatSticksOut) {
   const char* const SOUP = "pathological/cube_cracked_soup.ply";
   SKIP_WITHOUT_SHARED_DATA(SOUP);
-  const Resting scene = {"soup", CUBE, gridMesh(1, 1, 3, 3), {0.013, 0.021, 0.053}};
+  const Resting scene = {"soup", CUBE, geometry::gridMesh(1, 1, 3, 3), {0.013, 0.021, 0.053}};
   const Rest rest = restOfFile(scene, *sharedData(SOUP), 3);
   EXPECT_LT(rest.speed, 1e-9);
   EXPECT_GT(rest.X_WB.translation().z(), 0.05 + BROKEN_LAYER);
@@ -221,21 +222,21 @@ bool notesHold(const Simulator& simulator, const std::string& words) {
 }
 
 TEST(BrokenMeshes, TheLoadReportSaysWhatWasMended) {
-  RandomShapes random(35);
+  geometry::RandomShapes random(35);
   SimulationConfig config;
   ObjectConfig object = box("body", Vector3::Constant(0.1), 1, {0, 0, 1});
   object.uri = meshFile("told", crackedCopy(tJunctionCopy(CUBE), CRACKS, random));
   config.objects = {object};
-  const Simulator mended(config, UriResolver());
+  const Simulator mended(config, model::UriResolver());
   EXPECT_TRUE(notesHold(mended, "cracks up to"));
   EXPECT_TRUE(notesHold(mended, "edges split at T-junctions"));
   EXPECT_TRUE(notesHold(mended, "onto 6 planes"));
   EXPECT_TRUE(mended.loadReport()[0].closed);
-  config.contact.mending = Mending::OFF;
-  const Simulator as_it_is(config, UriResolver());
+  config.contact.mending = model::Mending::OFF;
+  const Simulator as_it_is(config, model::UriResolver());
   EXPECT_FALSE(notesHold(as_it_is, "cracks"));
   EXPECT_EQ(as_it_is.loadReport()[0].open_edges, 3 * as_it_is.loadReport()[0].triangles);
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -5,7 +5,7 @@
 #include "sim/simulation_scene.h"
 #include "support/sanitizers.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr double SIDE = 0.1, PITCH = 0.13, THICK = 0.05, TRAY_LAYER = 0.0025;
@@ -59,7 +59,7 @@ struct Carried {
 Carried cubesOf(const Simulator& simulator, const SimulationConfig& config, double moved) {
   Carried carried;
   for (const ObjectConfig& object : config.objects) {
-    const BodyState state = bodyOf(simulator, object.name);
+    const dynamics::BodyState state = bodyOf(simulator, object.name);
     const Vector3 off = state.X_WB.translation() - object.X_WO.translation() - Vector3(0, 0, moved);
     carried.fallen += off.z() < -0.01;
     carried.farthest = std::max(carried.farthest, off.norm());
@@ -72,7 +72,7 @@ Carried cubesOf(const Simulator& simulator, const SimulationConfig& config, doub
 TEST(ContactBudget, APalletCarriesMoreThanItsBudgetHasContacts) {
   for (const int rows : SANITIZED ? std::vector<int>{5} : std::vector<int>{4, 5, 7}) {
     const SimulationConfig config = loadedPallet(rows);
-    Simulator simulator(config, UriResolver());
+    Simulator simulator(config, model::UriResolver());
     stepFor(&simulator, SANITIZED ? 0.1 : 1);
     const Carried carried = cubesOf(simulator, config, 0);
     EXPECT_EQ(carried.fallen, 0) << rows;
@@ -89,7 +89,7 @@ TEST(ContactBudget, ATrayOfAHundredIsLifted) {
   const int rows = SANITIZED ? 8 : 10;
   constexpr double LIFT = 0.2;
   const SimulationConfig config = loadedTray(rows);
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   stepFor(&simulator, 0.1);
   JointTrajectory trajectory;
   trajectory.joints = {"lift"};
@@ -106,7 +106,7 @@ TEST(ContactBudget, ATrayOfAHundredIsLifted) {
 // Four cubes and the ground make twenty contacts.
 TEST(ContactBudget, WithinBudgetsNothingIsSaid) {
   const SimulationConfig config = loadedPallet(2);
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   stepFor(&simulator, 0.1);
   EXPECT_FALSE(simulator.report().status & CONTACTS_REDUCED);
   EXPECT_EQ(simulator.report().wrench_error, 0);
@@ -114,4 +114,4 @@ TEST(ContactBudget, WithinBudgetsNothingIsSaid) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -3,13 +3,13 @@
 
 #include "support/surveyed_scan.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 SimulationConfig scanScene(const std::string& name, const Vector3& offset) { return cubesOnSurveyedScan(name, offset, 30, 1); }
 
 TEST(FarScan, IsSimulatedAsOneAtTheOrigin) {
-  Simulator near(scanScene("near", Vector3::Zero()), UriResolver()), far(scanScene("far", EASTING_NORTHING), UriResolver());
+  Simulator near(scanScene("near", Vector3::Zero()), model::UriResolver()), far(scanScene("far", EASTING_NORTHING), model::UriResolver());
   for (int i = 0; i < 400; ++i) {
     near.step();
     far.step();
@@ -28,18 +28,18 @@ TEST(FarScan, IsSimulatedAsOneAtTheOrigin) {
 TEST(FarScan, CarriesWhatStandsThere) {
   SimulationConfig config = movedTo(EASTING_NORTHING, scanScene("far", EASTING_NORTHING));
   config.objects[0].linear_velocity = Vector3::Zero();
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   Simulator near(
       [] {
         SimulationConfig here = scanScene("near", Vector3::Zero());
         here.objects[0].linear_velocity = Vector3::Zero();
         return here;
       }(),
-      UriResolver());
+      model::UriResolver());
   stepFor(&simulator, 0.5);
   stepFor(&near, 0.5);
   EXPECT_LT((bodyOf(simulator, "cube").X_WB.translation() - EASTING_NORTHING - bodyOf(near, "cube").X_WB.translation()).norm(), 1e-4);
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

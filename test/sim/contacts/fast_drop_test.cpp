@@ -1,7 +1,7 @@
 // Fast drops: no body passes any other. A part of the sweep in test/soak/fast_drops_test.cpp.
 #include "sim/contacts/fast_throw.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 struct Drop {
@@ -15,7 +15,7 @@ struct Drop {
 
 ThrowBody thinSheet() { return sheetHit(2, 1); }
 ThrowBody fineSheet() { return sheetHit(0.3, 60); }
-ThrowBody coarseMug() { return {meshFile("pipe", cylinderMesh(0.04, 0.1, 12)), 0.05, 0}; }
+ThrowBody coarseMug() { return {meshFile("pipe", geometry::cylinderMesh(0.04, 0.1, 12)), 0.05, 0}; }
 
 std::vector<Drop> drops() {
   return {{"cube on sheet", cubeThrown, thinSheet},
@@ -36,7 +36,7 @@ TEST(FastDrop, NothingPasses) {
       for (const auto& turn : THROWN_TURNS) {
         ThrowScene scene{drop.thrown(), drop.hit(),      speed,          Vector3(turn[0], turn[1], turn[2]),
                          drop.spin,     Vector3::Zero(), drop.both_move, drop.at_rest};
-        const ThrowOutcome outcome = throwIt(scene, SolverSettings(), [](const auto& step) { step(); });
+        const ThrowOutcome outcome = throwIt(scene, dynamics::SolverSettings(), [](const auto& step) { step(); });
         SCOPED_TRACE(testing::Message() << drop.name << " " << speed << " m/s, turn " << scene.turn.transpose());
         EXPECT_FALSE(outcome.passed);
         EXPECT_EQ(outcome.pierced_steps, 0);
@@ -49,7 +49,7 @@ TEST(FastDrop, NothingPasses) {
 }
 
 TEST(FastDrop, OdesStepperPassesNothingEither) {
-  SolverSettings solver;
+  dynamics::SolverSettings solver;
   solver.stepper = "world_step";
   for (const auto& turn : THROWN_TURNS) {
     ThrowScene scene{cubeThrown(), thinSheet(), 20, Vector3(turn[0], turn[1], turn[2])};
@@ -60,4 +60,4 @@ TEST(FastDrop, OdesStepperPassesNothingEither) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -9,7 +9,7 @@
 #include "sim/simulation_scene.h"
 #include "support/bare_meshes.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /** The thrown body, or the one it is thrown at: mesh, and its extent over and under its frame [m]. */
 struct ThrowBody {
@@ -46,18 +46,21 @@ struct ThrowOutcome {
 constexpr double THROWN_TURNS[][3] = {{0, 0, 0},        {0.3, 0.09, 0},    {0.7, 0.21, 0},  {M_PI / 4, 0, 0}, {0.9553, 0, M_PI / 4},
                                       {0.2, -0.5, 1.1}, {0.01, 0.02, 0.4}, {1.2, 0.6, -0.8}};  // [rad]
 
-inline ThrowBody cubeThrown() { return {meshFile("thrown_cube", boxMesh(Vector3::Constant(0.1))), 0.0867, 0}; }
+inline ThrowBody cubeThrown() { return {meshFile("thrown_cube", geometry::boxMesh(Vector3::Constant(0.1))), 0.0867, 0}; }
 inline ThrowBody plateThrown() {
-  return {meshFile("thrown_plate", transformed(gridMesh(0.1, 0.1, 1, 1), makePose(Vector3::Zero(), {M_PI / 2, 0, 0}))), 0.071, 0};
+  return {meshFile("thrown_plate", geometry::transformed(geometry::gridMesh(0.1, 0.1, 1, 1), makePose(Vector3::Zero(), {M_PI / 2, 0, 0}))),
+          0.071, 0};
 }
 inline ThrowBody mugThrown() { return {std::string(BLEM_SIM_SOURCE_DIR) + "/meshes/shell_mug.stl", 0.12, 0}; }
 inline ThrowBody sheetHit(double size, int cells) {
-  return {meshFile("sheet" + std::to_string(cells), gridMesh(size, size, cells, cells)), 0, 0.5 * size};
+  return {meshFile("sheet" + std::to_string(cells), geometry::gridMesh(size, size, cells, cells)), 0, 0.5 * size};
 }
-inline ThrowBody boxHit() { return {meshFile("hit_box", boxMesh(Vector3::Constant(0.1))), 0.05, 0}; }
+inline ThrowBody boxHit() { return {meshFile("hit_box", geometry::boxMesh(Vector3::Constant(0.1))), 0.05, 0}; }
 /** A plate to be hit, upright, across the plate that is thrown. */
 inline ThrowBody plateHit() {
-  return {meshFile("hit_plate", transformed(gridMesh(0.1, 0.1, 1, 1), makePose(Vector3::Zero(), {M_PI / 2, 0, M_PI / 2}))), 0.05, 0};
+  return {
+      meshFile("hit_plate", geometry::transformed(geometry::gridMesh(0.1, 0.1, 1, 1), makePose(Vector3::Zero(), {M_PI / 2, 0, M_PI / 2}))),
+      0.05, 0};
 }
 inline ThrowBody mugHit() { return {std::string(BLEM_SIM_SOURCE_DIR) + "/meshes/shell_mug.stl", 0.12, 0}; }
 
@@ -89,10 +92,10 @@ inline SimulationConfig configOf(const ThrowScene& scene) {
 
 /** Makes 40 ms of the throw. @param aroundStep is called with the function that makes a step */
 template <typename AroundStep>
-ThrowOutcome throwIt(const ThrowScene& scene, const SolverSettings& solver, AroundStep&& aroundStep) {
+ThrowOutcome throwIt(const ThrowScene& scene, const dynamics::SolverSettings& solver, AroundStep&& aroundStep) {
   SimulationConfig config = configOf(scene);
   config.solver = solver;
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   ThrowOutcome outcome;
   const int thrown = colliderOf(simulator, "thrown"), hit = colliderOf(simulator, "hit");
   CentrePath centre(thrown, hit);
@@ -112,4 +115,4 @@ ThrowOutcome throwIt(const ThrowScene& scene, const SolverSettings& solver, Arou
   return outcome;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

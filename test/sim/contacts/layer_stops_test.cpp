@@ -5,7 +5,7 @@
 #include "contacts/layer_stops.h"
 #include "sim/simulation_scene.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr double STOP_LAYER = 0.0025;                   // [m] of a box on the ground
@@ -58,7 +58,7 @@ class LayerStop : public testing::TestWithParam<const char*> {};
 
 TEST_P(LayerStop, DepthAtRestIsTheSpringsUpToTheStopAndNoMoreBeyond) {
   for (const double load : {0.1, 0.7, 0.99, 1.01, 2.0, 30.0}) {
-    Simulator simulator(softCube(load * BEARS / G, GetParam()), UriResolver());
+    Simulator simulator(softCube(load * BEARS / G, GetParam()), model::UriResolver());
     const Press pressed = press(&simulator, 2);
     EXPECT_NEAR(depthOf(simulator), std::min(1.0, load) * STOP, 2e-3 * STOP) << load;
     EXPECT_LT(pressed.max_of_layer, LayerStops::STOP + 0.02) << load;
@@ -75,7 +75,7 @@ TEST_P(LayerStop, DepthAtRestIsTheSpringsUpToTheStopAndNoMoreBeyond) {
 INSTANTIATE_TEST_SUITE_P(Steppers, LayerStop, testing::Values("articulated", "world_step", "quick_step"));
 
 TEST(LayerStops, RestIsAsExactAsThatOfRigidContacts) {
-  Simulator simulator(softCube(10 * BEARS / G), UriResolver());
+  Simulator simulator(softCube(10 * BEARS / G), model::UriResolver());
   stepFor(&simulator, 1);
   const Vector3 before = bodyOf(simulator, "cube").X_WB.translation();
   stepFor(&simulator, 1);
@@ -84,8 +84,8 @@ TEST(LayerStops, RestIsAsExactAsThatOfRigidContacts) {
 }
 
 /** A manifold of `count` contacts on a circle, all of one depth. */
-ContactManifold ringOf(int count, double depth) {
-  ContactManifold ring;
+contact::ContactManifold ringOf(int count, double depth) {
+  contact::ContactManifold ring;
   ring.a = 3;
   ring.b = 5;
   ring.layer = STOP_LAYER;
@@ -107,33 +107,33 @@ std::vector<std::uint64_t> wordsOf(const LayerStops& stops) {
 }
 
 TEST(LayerStops, NothingIsAddedWhereLayersAreNotUsedUp) {
-  Simulator simulator(softCube(0.7 * BEARS / G), UriResolver());
+  Simulator simulator(softCube(0.7 * BEARS / G), model::UriResolver());
   stepFor(&simulator, 1);
   EXPECT_EQ(simulator.report().contacts.size(), 4u);
   LayerStops stops;
   stops.start();
-  EXPECT_TRUE(stops.choose(ringOf(40, LayerStops::SEEN * STOP_LAYER), *findReduction("hull")).empty());
+  EXPECT_TRUE(stops.choose(ringOf(40, LayerStops::SEEN * STOP_LAYER), *reduction::findReduction("hull")).empty());
   stops.remember();
   EXPECT_TRUE(wordsOf(stops).empty());
 }
 
 TEST(LayerStops, GoOnWithWhatTheyChoseEvenIfRestored) {
-  const auto choose = [](LayerStops* stops, const ContactManifold& manifold) {
+  const auto choose = [](LayerStops* stops, const contact::ContactManifold& manifold) {
     stops->start();
-    ContactIds ids;
-    for (const Contact& contact : stops->choose(manifold, *findReduction("hull"))) ids.push_back(contact.id);
+    reduction::ContactIds ids;
+    for (const contact::Contact& contact : stops->choose(manifold, *reduction::findReduction("hull"))) ids.push_back(contact.id);
     stops->remember();
     return ids;
   };
   LayerStops stops, restored, other;
-  const ContactIds first = choose(&stops, ringOf(40, STOP));
+  const reduction::ContactIds first = choose(&stops, ringOf(40, STOP));
   EXPECT_EQ(first.size(), static_cast<std::size_t>(LayerStops::MOST));
   const std::vector<std::uint64_t> words = wordsOf(stops);
   ASSERT_FALSE(words.empty());
-  const std::vector<Collider> colliders(10);
+  const std::vector<contact::Collider> colliders(10);
   ASSERT_TRUE(restored.read(colliders, words.data(), words.data() + words.size()));
   EXPECT_EQ(wordsOf(restored), words);
-  ContactManifold trembled = ringOf(40, STOP);
+  contact::ContactManifold trembled = ringOf(40, STOP);
   for (int i = 0; i < 40; i += 3) trembled.contacts[i].point *= 1 + 5e-3;
   EXPECT_EQ(choose(&stops, trembled), first);
   EXPECT_EQ(choose(&restored, trembled), first);
@@ -146,7 +146,7 @@ TEST(LayerStops, FrictionBelongsToAllThatIsBorne) {
     SimulationConfig config = softCube(3 * BEARS / G);
     const double angle = std::atan(slope * 0.5);
     config.gravity = G * Vector3(std::sin(angle), 0, -std::cos(angle));
-    Simulator simulator(config, UriResolver());
+    Simulator simulator(config, model::UriResolver());
     stepFor(&simulator, 0.2);
     const double before = bodyOf(simulator, "cube").v_WCom.x();
     stepFor(&simulator, 0.1);
@@ -159,7 +159,7 @@ TEST(LayerStops, AnImpactThatBottomsOutGainsNothing) {
   SimulationConfig config = softCube(0.2 * BEARS / G);
   soften(&config.objects[0], 1);
   config.objects[0].X_WO = makePose({0, 0, 0.05 + STOP_LAYER + 0.05});
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   double gained = 0, deepest = 0, highest = -1;
   for (int i = 0; i < 2000; ++i) {
     const StepReport& report = simulator.step();
@@ -178,7 +178,7 @@ TEST(LayerStops, ATowerUnderAPressDoesNotCross) {
   config.objects.push_back(box("second", Vector3::Constant(0.1), 0.1, {0, 0, 0.15 + 3 * STOP_LAYER}));
   config.objects.push_back(box("press", {0.1, 0.1, 0.2}, 200, {0, 0, 0.3 + 5 * STOP_LAYER}));
   for (ObjectConfig& object : config.objects) soften(&object, 3000);
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   const Press pressed = press(&simulator, 2);
   EXPECT_FALSE(pressed.unreliable);
   EXPECT_GT(pressed.max_of_layer, LayerStops::STOP - 1e-6);
@@ -189,7 +189,7 @@ TEST(LayerStops, ATowerUnderAPressDoesNotCross) {
 TEST(LayerStops, StandBesideTheBudget) {
   SimulationConfig config = softCube(5 * BEARS / G);
   config.contact.max_contacts_per_object = 1;
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   const Press pressed = press(&simulator, 2);
   EXPECT_FALSE(pressed.unreliable);
   EXPECT_LT(pressed.max_of_layer, LayerStops::STOP + 0.05);
@@ -199,20 +199,20 @@ TEST(LayerStops, StandBesideTheBudget) {
 
 TEST(LayerStops, ArePartOfTheState) {
   const SimulationConfig config = softCube(5 * BEARS / G);
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   stepFor(&simulator, 0.5);
   const SimulationState saved = simulator.save();
   stepFor(&simulator, 0.1);
-  Simulator other(config, UriResolver());
+  Simulator other(config, model::UriResolver());
   other.restore(saved);
   stepFor(&other, 0.1);
   EXPECT_EQ(other.stateHash(), simulator.stateHash());
-  Simulator light(softCube(0.5 * BEARS / G), UriResolver());
+  Simulator light(softCube(0.5 * BEARS / G), model::UriResolver());
   stepFor(&light, 0.5);
   EXPECT_EQ(saved.words.size(), light.save().words.size() + 1 + 3 + 4);  // pairs, one with its size, its four stops
   other.resetSimulation();
-  EXPECT_EQ(other.stateHash(), Simulator(config, UriResolver()).stateHash());
+  EXPECT_EQ(other.stateHash(), Simulator(config, model::UriResolver()).stateHash());
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

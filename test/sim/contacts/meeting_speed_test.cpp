@@ -5,7 +5,7 @@
 
 #include "sim/simulation_scene.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr double BOTH_LAYERS = 0.005;  // [m] of two boxes
@@ -21,7 +21,7 @@ SimulationConfig twoCubes(double gap, const Vector3& velocity_a, const Vector3& 
 }
 
 TEST(KnownContacts, ThingsThatMoveTogetherAreFar) {
-  Simulator simulator(twoCubes(0.002, Vector3(0, 1, 0), Vector3(0, 1, 0)), UriResolver());
+  Simulator simulator(twoCubes(0.002, Vector3(0, 1, 0), Vector3(0, 1, 0)), model::UriResolver());
   for (int i = 0; i < 10; ++i) {
     const StepReport& report = simulator.step();
     EXPECT_EQ(report.searched_pairs, 1);
@@ -31,7 +31,7 @@ TEST(KnownContacts, ThingsThatMoveTogetherAreFar) {
 
 TEST(KnownContacts, ThingsThatMeetAreKnownBeforeTheyTouch) {
   for (const double speed : {1.0, 2.0, 3.0}) {
-    Simulator simulator(twoCubes(0.01, Vector3(speed, 8, 0), Vector3(0, 8, 0)), UriResolver());
+    Simulator simulator(twoCubes(0.01, Vector3(speed, 8, 0), Vector3(0, 8, 0)), model::UriResolver());
     double deepest = 0;
     int before_touch = 0;
     for (int i = 0; i < 50; ++i) {
@@ -49,7 +49,7 @@ TEST(KnownContacts, WhatIsStoppedDeadIsKnownToWhatFollows) {
   for (const double speed : {2.0, 4.0, 6.0}) {
     SimulationConfig config = twoCubes(0.001, Vector3(speed, 0, 0), Vector3(speed, 0, 0));
     config.objects.push_back(box("wall", Vector3::Constant(0.1), 1e4, Vector3(2 * (0.1 + BOTH_LAYERS) + 0.02, 0, 5)));
-    Simulator simulator(config, UriResolver());
+    Simulator simulator(config, model::UriResolver());
     double deepest = 0;
     for (int i = 0; i < 30; ++i) {
       const StepReport& report = simulator.step();
@@ -65,10 +65,10 @@ TEST(KnownContacts, SpinCounts) {
   for (const bool spins : {false, true}) {
     SimulationConfig config = twoCubes(0.002, Vector3::Zero(), Vector3::Zero());
     if (spins) config.objects[0].angular_velocity = {40, 0, 0};
-    Simulator simulator(config, UriResolver());
+    Simulator simulator(config, model::UriResolver());
     for (int i = 0; i < 10; ++i) EXPECT_EQ(simulator.step().raw_contacts > 0, spins) << i;
   }
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -11,7 +11,7 @@
 #include "sim/contacts/near_miss_scene.h"
 #include "support/scene_numbers.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 /** A cube of 0.1 m on an arm, its middle 0.5 m from a hinge about y. */
@@ -35,7 +35,7 @@ std::unique_ptr<Simulator> drivenArm(const Drive& drive, const std::vector<Envir
   config.robots = {robot("arm", armUrdf(), true)};
   config.robots[0].gains["default"] = drive.gains;
   config.robots[0].motor["default"] = MotorLaw::IMPLICIT_PD;
-  auto simulator = std::make_unique<Simulator>(config, UriResolver());
+  auto simulator = std::make_unique<Simulator>(config, model::UriResolver());
   const auto asked = [](double value) { return std::isnan(value) ? std::vector<double>() : std::vector<double>{value}; };
   simulator->commandJoints(0, {{"hinge"}, asked(drive.position), asked(drive.velocity), {}});
   return simulator;
@@ -61,7 +61,7 @@ TEST(NearMiss, OfADrivenArmChangesNothing) {
     for (const double dt : {0.0005, 0.001, 0.005}) {
       EnvironmentConfig table;
       table.name = "table";
-      table.uri = meshFile("table_below_arm", gridMesh(0.05, 0.6, 1, 1));
+      table.uri = meshFile("table_below_arm", geometry::gridMesh(0.05, 0.6, 1, 1));
       table.X_WE = makePose({0, 0, -(std::hypot(0.55, 0.05) + LAYER + clearance)});
       for (const Drive* drive : {&slow, &fast, &weak, &held, &step}) {
         const auto [force, change] = feltOf(*drive, table, dt);
@@ -84,7 +84,7 @@ TEST(NearMiss, OfAnArmThatMotorsSpeedUpAtRandomChangesNothing) {
     const double dt = 0.0005 * numbers.count(1, 20), clearance = numbers.spread(1e-6, 5e-4);
     EnvironmentConfig table;
     table.name = "table";
-    table.uri = meshFile("table_below_arm", gridMesh(0.05, 0.6, 1, 1));
+    table.uri = meshFile("table_below_arm", geometry::gridMesh(0.05, 0.6, 1, 1));
     table.X_WE = makePose({0, 0, -(std::hypot(0.55, 0.05) + LAYER + clearance)});
     EXPECT_EQ(feltOf(drive, table, dt).first, 0) << i << ": " << 1000 * clearance << " mm, dt " << dt << ", gains " << drive.gains.p << " "
                                                  << drive.gains.d << ", to " << drive.position << " rad";
@@ -100,7 +100,7 @@ TEST(Passage, OfAnArmThatTurnsFarInOneSolveIsSaid) {
     const double dt = 0.0005 * numbers.count(1, 20);
     EnvironmentConfig table;
     table.name = "table";
-    table.uri = meshFile("table_below_arm", gridMesh(0.05, 0.6, 1, 1));
+    table.uri = meshFile("table_below_arm", geometry::gridMesh(0.05, 0.6, 1, 1));
     table.X_WE = makePose({0, 0, -(std::hypot(0.55, 0.05) + LAYER - numbers.uniform(0.003, 0.023))});
     const auto arm = drivenArm(drive, {table}, dt);
     bool said = false, behind = false;
@@ -136,7 +136,7 @@ std::unique_ptr<Simulator> swingingLeg(const Swing& swing, const std::vector<Env
   config.robots = {robot("swinging", swingingUrdf(), false)};
   config.robots[0].gains["default"] = {0, 0, swing.gain};
   config.robots[0].motor["default"] = MotorLaw::IMPLICIT_PD;
-  auto simulator = std::make_unique<Simulator>(config, UriResolver());
+  auto simulator = std::make_unique<Simulator>(config, model::UriResolver());
   simulator->commandJoints(0, {{"hip"}, {}, {swing.speed}, {}});
   return simulator;
 }
@@ -164,7 +164,7 @@ TEST(NearMiss, OfALegThatSwingsFromAFreeBodyChangesNothing) {
     const double turn = swing.speed * swing.dt, between_steps = 0.125 * turn * turn * 0.72;  // [m] an arc sinks below its ends
     EnvironmentConfig table;
     table.name = "table";
-    table.uri = meshFile("table_below_leg", gridMesh(0.05, 0.6, 1, 1));
+    table.uri = meshFile("table_below_leg", geometry::gridMesh(0.05, 0.6, 1, 1));
     table.X_WE = makePose(lowest - Vector3(0, lowest.y(), between_steps + LAYER + swing.clearance));
     const auto beside = swingingLeg(swing, {table});
     double force = 0;
@@ -175,4 +175,4 @@ TEST(NearMiss, OfALegThatSwingsFromAFreeBodyChangesNothing) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -3,7 +3,7 @@
 
 #include "sim/simulation_scene.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 constexpr double LAYER = 0.0025;  // [m] of objects and robots; environments have none
 
@@ -14,4 +14,4 @@ inline SimulationConfig weightless(double dt) {
   return config;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

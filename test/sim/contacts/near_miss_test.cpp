@@ -9,12 +9,12 @@
 #include "sim/contacts/near_miss_scene.h"
 #include "support/sanitizers.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 /** A mesh that flies beside another. */
 struct Flight {
-  TriangleMesh mesh;
+  geometry::TriangleMesh mesh;
   Vector3 turn = Vector3::Zero();        // [rad]
   Vector3 direction = Vector3::UnitX();  // unit
   Vector3 spin = Vector3::Zero();        // [rad/s]
@@ -30,7 +30,7 @@ double lowestOf(const Flight& flight) {
 }
 
 std::vector<Flight> flights() {
-  const TriangleMesh cube = boxMesh(Vector3::Constant(0.1)), ball = icosphereMesh(0.05, 2);
+  const geometry::TriangleMesh cube = geometry::boxMesh(Vector3::Constant(0.1)), ball = geometry::icosphereMesh(0.05, 2);
   std::vector<Flight> all;
   all.push_back({cube});
   all.push_back({cube, {0, 0, 0.3}});
@@ -39,13 +39,13 @@ std::vector<Flight> flights() {
   all.push_back({cube, {0, 0, 0.2}, Vector3(1, 0.6, 0).normalized()});
   all.push_back({cube, {0, 0, 0}, Vector3::UnitX(), {0, 0, 20}});
   all.push_back({ball, {0.1, 0.2, 0.3}, Vector3::UnitX(), {3, 30, -7}, 0.05});
-  all.push_back({transformed(gridMesh(0.1, 0.1, 1, 1), makePose(Vector3::Zero(), {M_PI / 2, 0, 0})), {0, 0, 0.4}});
+  all.push_back({geometry::transformed(geometry::gridMesh(0.1, 0.1, 1, 1), makePose(Vector3::Zero(), {M_PI / 2, 0, 0})), {0, 0, 0.4}});
   return all;
 }
 
-std::vector<TriangleMesh> tables() {
-  return {gridMesh(0.05, 0.6, 1, 1), gridMesh(0.05, 0.6, 3, 7), transformed(boxMesh({0.05, 0.6, 0.1}), makePose({0, 0, -0.05})),
-          gridMesh(0.001, 0.6, 1, 1)};
+std::vector<geometry::TriangleMesh> tables() {
+  return {geometry::gridMesh(0.05, 0.6, 1, 1), geometry::gridMesh(0.05, 0.6, 3, 7),
+          geometry::transformed(geometry::boxMesh({0.05, 0.6, 0.1}), makePose({0, 0, -0.05})), geometry::gridMesh(0.001, 0.6, 1, 1)};
 }
 
 ObjectConfig flying(const std::string& name, const Flight& flight, const Vector3& position, double speed) {
@@ -64,12 +64,12 @@ ObjectConfig flying(const std::string& name, const Flight& flight, const Vector3
 
 /** Largest change of velocity until the time is over, of the speed; of spin, of the speed per 0.1 m. */
 double largestChange(const SimulationConfig& config, double time, double speed) {
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   double change = 0;
   for (double t = 0; t < time; t += config.time_step) {
     simulator.step();
     for (const ObjectConfig& object : config.objects) {
-      const BodyState state = bodyOf(simulator, object.name);
+      const dynamics::BodyState state = bodyOf(simulator, object.name);
       change = std::max(change, (state.v_WCom - object.linear_velocity).norm() / speed);
       change = std::max(change, 0.1 * (state.w_WB - object.angular_velocity).norm() / speed);
     }
@@ -81,7 +81,7 @@ TEST(NearMiss, OverAnEdgeChangesNothing) {
   const std::vector<double> clearances = SANITIZED ? std::vector<double>{1e-5} : std::vector<double>{1e-5, 1e-4, 5e-4};
   const std::vector<double> speeds = SANITIZED ? std::vector<double>{3.0, 30.0} : std::vector<double>{1.0, 3.0, 10.0, 30.0};
   int table_number = 0;
-  for (const TriangleMesh& table : tables()) {
+  for (const geometry::TriangleMesh& table : tables()) {
     EnvironmentConfig environment;
     environment.name = "table";
     environment.uri = meshFile("table" + std::to_string(table_number++), table);
@@ -111,7 +111,7 @@ TEST(NearMiss, OfTwoBodiesChangesNothing) {
       for (const double speed : {1.0, 10.0, 30.0}) {
         SimulationConfig config = weightless(0.001);
         const double half = 0.5 * (lowestOf(flight) + 0.05) + LAYER + 0.5 * clearance;
-        const Flight other{boxMesh({0.1, 0.3, 0.1}), Vector3::Zero(), -flight.direction};
+        const Flight other{geometry::boxMesh({0.1, 0.3, 0.1}), Vector3::Zero(), -flight.direction};
         config.objects = {flying("upper", flight, -0.2 * flight.direction + Vector3(0, 0, half + 0.5 * (lowestOf(flight) - 0.05)), speed),
                           flying("lower", other, 0.2 * flight.direction - Vector3(0, 0, half + 0.5 * (0.05 - lowestOf(flight))), speed)};
         EXPECT_LT(largestChange(config, 0.25 / speed, speed), 1e-6)
@@ -123,13 +123,13 @@ TEST(NearMiss, OfTwoBodiesChangesNothing) {
 TEST(NearMiss, DescendingPastTheFarEdgeChangesNothing) {
   EnvironmentConfig table;
   table.name = "table";
-  table.uri = meshFile("table_long", transformed(gridMesh(0.4, 0.6, 2, 2), makePose({-0.2, 0, 0})));
+  table.uri = meshFile("table_long", geometry::transformed(geometry::gridMesh(0.4, 0.6, 2, 2), makePose({-0.2, 0, 0})));
   for (const double fall : {0.02, 0.2, 1.0})
     for (const double clearance : {1e-5, 1e-4, 5e-4})
       for (const double speed : {1.0, 10.0, 30.0}) {
         const Vector3 way = Vector3(1, 0, -fall).normalized(), up(-way.z(), 0, way.x());
         SimulationConfig config = weightless(0.001);
-        config.objects = {flying("cube", {boxMesh(Vector3::Constant(0.1)), Vector3::Zero(), way},
+        config.objects = {flying("cube", {geometry::boxMesh(Vector3::Constant(0.1)), Vector3::Zero(), way},
                                  Vector3(0.05, 0, 0.05) + (LAYER + clearance) * up - 0.1 * way, speed)};
         config.environments = {table};
         EXPECT_LT(largestChange(config, 0.3 / speed, speed), 1e-6) << fall << ", " << 1000 * clearance << " mm, " << speed << " m/s";
@@ -140,7 +140,7 @@ TEST(NearMiss, DescendingPastTheFarEdgeChangesNothing) {
 TEST(NearMiss, OnAFallingPathOnlyGravityActs) {
   EnvironmentConfig ridge;
   ridge.name = "ridge";
-  ridge.uri = meshFile("ridge", gridMesh(0.001, 0.6, 1, 1));
+  ridge.uri = meshFile("ridge", geometry::gridMesh(0.001, 0.6, 1, 1));
   for (const double clearance : {1e-5, 1e-4, 5e-4})
     for (const double speed : {1.0, 3.0, 10.0, 30.0})
       for (const double dt : {0.001, 0.005}) {
@@ -149,8 +149,9 @@ TEST(NearMiss, OnAFallingPathOnlyGravityActs) {
         config.environments = {ridge};
         const double start = -0.08 - 0.37 * speed * dt, gone = (0.0506 - start) / speed;  // its last edge is above the ridge's then
         const double steps = std::ceil(gone / dt), fallen = 0.5 * G * dt * dt * steps * (steps + 1);
-        config.objects = {flying("cube", {boxMesh(Vector3::Constant(0.1))}, {start, 0, 0.05 + LAYER + clearance + fallen}, speed)};
-        Simulator simulator(config, UriResolver());
+        config.objects = {
+            flying("cube", {geometry::boxMesh(Vector3::Constant(0.1))}, {start, 0, 0.05 + LAYER + clearance + fallen}, speed)};
+        Simulator simulator(config, model::UriResolver());
         for (int i = 1; i <= steps; ++i) {
           simulator.step();
           const Vector3 expected(speed, 0, -G * dt * i);
@@ -178,7 +179,7 @@ ObjectConfig pointBall(const std::string& name, const Vector3& position, const V
 TEST(NearMiss, BallThatMeetsAnEdgeTurnsAsTheEdgeTellsIt) {
   EnvironmentConfig table;
   table.name = "table";
-  table.uri = meshFile("table_ball", transformed(gridMesh(0.4, 0.6, 2, 2), makePose({0.2, 0, 0})));
+  table.uri = meshFile("table_ball", geometry::transformed(geometry::gridMesh(0.4, 0.6, 2, 2), makePose({0.2, 0, 0})));
   for (const double part : {0.3, 0.6, 0.9, 0.99, 1.0002})  // of its radius, that its middle is higher than the edge
     for (const double speed : {1.0, 3.0, 10.0})
       for (const double dt : {0.0001, 0.0005, 0.001}) {
@@ -186,7 +187,7 @@ TEST(NearMiss, BallThatMeetsAnEdgeTurnsAsTheEdgeTellsIt) {
         config.contact.surface.friction = 0;
         config.environments = {table};
         config.objects = {pointBall("ball", {-0.1 - 0.3 * speed * dt, 0, 0.05 * part}, {speed, 0, 0})};
-        Simulator simulator(config, UriResolver());
+        Simulator simulator(config, model::UriResolver());
         const Vector3 normal = part < 1 ? Vector3(-std::sqrt(1 - part * part), 0, part) : Vector3::UnitZ();
         const Vector3 expected = config.objects[0].linear_velocity - config.objects[0].linear_velocity.dot(normal) * normal;
         stepFor(&simulator, 0.12 / speed);
@@ -207,7 +208,7 @@ TEST(NearMiss, BallsThatMeetOffTheirMiddlesLoseWhatGoesAlongTheirLine) {
       config.contact.surface.friction = 0;
       config.objects = {pointBall("left", {-0.2, 0, 0.05 * part}, {speed, 0, 0}),
                         pointBall("right", {0.2, 0, -0.05 * part}, {-speed, 0, 0})};
-      Simulator simulator(config, UriResolver());
+      Simulator simulator(config, model::UriResolver());
       const Vector3 normal = part < 1 ? Vector3(-std::sqrt(1 - part * part), 0, part) : Vector3::UnitZ(), way(speed, 0, 0);
       stepFor(&simulator, 0.21 / speed);
       const Vector3 expected = way - way.dot(normal) * normal;
@@ -226,14 +227,14 @@ TEST(NearMiss, WhatIsHitHeadOnStops) {
         config.contact.surface.friction = 0;
         EnvironmentConfig block;
         block.name = "block";
-        block.uri = meshFile("block", transformed(boxMesh({0.1, 0.6, 0.4}), makePose({0.05, 0, -0.18})));
+        block.uri = meshFile("block", geometry::transformed(geometry::boxMesh({0.1, 0.6, 0.4}), makePose({0.05, 0, -0.18})));
         config.environments = {block};
-        ObjectConfig cube = flying("cube", {boxMesh(Vector3::Constant(0.1))}, {-0.1, -0.1 * across, 0}, speed);
+        ObjectConfig cube = flying("cube", {geometry::boxMesh(Vector3::Constant(0.1))}, {-0.1, -0.1 * across, 0}, speed);
         cube.linear_velocity = {speed, across * speed, 0};
         config.objects = {cube};
-        Simulator simulator(config, UriResolver());
+        Simulator simulator(config, model::UriResolver());
         stepFor(&simulator, 0.1 / speed + 0.005);
-        const BodyState state = bodyOf(simulator, "cube");
+        const dynamics::BodyState state = bodyOf(simulator, "cube");
         EXPECT_NEAR(state.X_WB.translation().x(), -0.0525, 2e-5) << speed << " m/s, across " << across << ", dt " << dt;
         EXPECT_LT((state.v_WCom - Vector3(0, across * speed, 0)).norm(), 1e-3 * speed)
             << speed << " m/s, across " << across << ", dt " << dt;
@@ -246,12 +247,12 @@ TEST(NearMiss, LandingAcrossStopsAtTheLayer) {
       SimulationConfig config = weightless(dt);
       config.contact.surface.friction = 0;
       config.environments = {ground()};
-      ObjectConfig cube = flying("cube", {boxMesh(Vector3::Constant(0.1)), {0, 0, 0.3}}, {-0.3, 0, 0.0573}, 0);
+      ObjectConfig cube = flying("cube", {geometry::boxMesh(Vector3::Constant(0.1)), {0, 0, 0.3}}, {-0.3, 0, 0.0573}, 0);
       cube.linear_velocity = {speed, 0.2 * speed, -0.5 * speed};
       config.objects = {cube};
-      Simulator simulator(config, UriResolver());
+      Simulator simulator(config, model::UriResolver());
       stepFor(&simulator, 0.1 / speed);
-      const BodyState state = bodyOf(simulator, "cube");
+      const dynamics::BodyState state = bodyOf(simulator, "cube");
       EXPECT_LT((state.v_WCom - Vector3(speed, 0.2 * speed, 0)).norm(), 1e-6 * speed);
       EXPECT_NEAR(state.X_WB.translation().z(), 0.0525, 1e-6);
     }
@@ -263,13 +264,13 @@ TEST(NearMiss, WhatIsStruckOnItsWayOverAnEdgeIsStoppedByIt) {
       SimulationConfig config = weightless(0.001);
       EnvironmentConfig table;
       table.name = "table";
-      table.uri = meshFile("table_struck", transformed(gridMesh(0.4, 0.6, 2, 2), makePose({0.2, 0, 0})));
+      table.uri = meshFile("table_struck", geometry::transformed(geometry::gridMesh(0.4, 0.6, 2, 2), makePose({0.2, 0, 0})));
       config.environments = {table};
       const double flight = 0.03;  // [m] until it is struck
-      config.objects = {flying("cube", {boxMesh(Vector3::Constant(0.1))}, {place - flight, 0, 0.0526}, speed),
+      config.objects = {flying("cube", {geometry::boxMesh(Vector3::Constant(0.1))}, {place - flight, 0, 0.0526}, speed),
                         box("hammer", Vector3::Constant(0.1), 5, {place, 0, 0.0526 + 0.105 + flight})};
       config.objects[1].linear_velocity = {0, 0, -speed};
-      Simulator simulator(config, UriResolver());
+      Simulator simulator(config, model::UriResolver());
       for (double t = 0; t < 2 * flight / speed; t += 0.001) {
         EXPECT_FALSE(simulator.step().status & CONTACT_UNRELIABLE) << speed << " m/s, " << place;
         EXPECT_LT(simulator.report().max_of_layer, 0.9) << speed << " m/s, " << place;
@@ -278,4 +279,4 @@ TEST(NearMiss, WhatIsStruckOnItsWayOverAnEdgeIsStoppedByIt) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -1,7 +1,7 @@
 // Pairs searched at once.
 #include "sim/simulation_scene.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 SimulationConfig heap(int threads) {
@@ -16,7 +16,7 @@ SimulationConfig heap(int threads) {
 }
 
 TEST(PairSearches, AnyNumberOfThreadsGivesTheSameBits) {
-  Simulator one(heap(1), UriResolver()), three(heap(3), UriResolver());
+  Simulator one(heap(1), model::UriResolver()), three(heap(3), model::UriResolver());
   stepFor(&one, 0.6);
   stepFor(&three, 0.6);
   EXPECT_GT(one.report().contacts.size(), 5u);
@@ -25,7 +25,7 @@ TEST(PairSearches, AnyNumberOfThreadsGivesTheSameBits) {
 
 // Memories of searches are no part of it.
 TEST(PairSearches, AStateRestoredElsewhereGoesOnTheSame) {
-  Simulator first(heap(1), UriResolver()), second(heap(1), UriResolver());
+  Simulator first(heap(1), model::UriResolver()), second(heap(1), model::UriResolver());
   stepFor(&first, 0.4);
   second.restore(first.save());
   stepFor(&first, 0.2);
@@ -34,4 +34,4 @@ TEST(PairSearches, AStateRestoredElsewhereGoesOnTheSame) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

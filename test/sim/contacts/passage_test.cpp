@@ -3,7 +3,7 @@
 #include "support/sanitizers.h"
 #include "support/throw_scene.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 /** Passages of bodies through a wall below them, and whether they were said and told. */
@@ -13,7 +13,7 @@ struct Watched {
 
 /** @param body name of the body that must stay over z = 0 */
 Watched watch(const SimulationConfig& config, const std::string& body, int steps, const JointCommandMessage& command = {}) {
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   if (!command.joints.empty()) simulator.commandJoints(0, command);
   const Wall wall = Wall::below(simulator, "ground", 0);
   const int collider = colliderOf(simulator, body);
@@ -37,7 +37,7 @@ SimulationConfig hitPlate(double thickness, double gap, double speed, double res
   config.contact.surface.restitution = restitution;
   config.environments = {ground()};
   ObjectConfig plate = box("plate", {0.1, 0.1, std::max(thickness, 0.001)}, 0.01, {0, 0, 0.005 + 0.5 * thickness});
-  if (thickness == 0) plate.uri = meshFile("resting_plate", gridMesh(0.1, 0.1, 1, 1));
+  if (thickness == 0) plate.uri = meshFile("resting_plate", geometry::gridMesh(0.1, 0.1, 1, 1));
   ObjectConfig hitter = box("hitter", Vector3::Constant(0.1), 10, Vector3::Zero());
   hitter.X_WO = makePose({0, 0, 0.005 + thickness + 0.005 + gap + 0.05});
   hitter.linear_velocity = {0, 0, -speed};
@@ -104,7 +104,7 @@ TEST(Passage, LargeStepsStopWhatIsSmallOrSaySo) {
         config.time_step = dt;
         config.environments = {ground()};
         ObjectConfig small = box("small", Vector3::Constant(0.003), 0.001, {0.01, 0.02, 0.11 + 0.037 * i});
-        if (ball) small.uri = meshFile("ball_2mm", icosphereMesh(0.002, 1));
+        if (ball) small.uri = meshFile("ball_2mm", geometry::icosphereMesh(0.002, 1));
         small.linear_velocity = {0, 0, -40};
         config.objects = {small};
         SCOPED_TRACE(testing::Message() << (ball ? "ball" : "cube") << ", " << dt << " s, height " << small.X_WO.translation().z());
@@ -134,4 +134,4 @@ TEST_P(ThrownScenes, PassNothingUnsaid) {
 INSTANTIATE_TEST_SUITE_P(Groups, ThrownScenes, ::testing::Range(0, 20));
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -5,7 +5,7 @@
 #include "blem_sim/geometry/input_error.h"
 #include "sim/simulation_scene.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr double SEPARATION_SPEED = 0.1;  // [m/s] of a contact
@@ -27,7 +27,7 @@ Outcome recover(Simulator* simulator, double seconds) {
     const StepReport& report = simulator->step();
     EXPECT_FALSE(report.status & STATE_NOT_FINITE) << i;
     double fastest = 0;
-    for (const BodyState& body : report.bodies) fastest = std::max(fastest, body.v_WCom.norm());
+    for (const dynamics::BodyState& body : report.bodies) fastest = std::max(fastest, body.v_WCom.norm());
     outcome.unreliable_at_end = report.status & CONTACT_UNRELIABLE;
     outcome.speed_at_end = fastest;
     if (!outcome.unreliable_at_end) continue;
@@ -44,7 +44,7 @@ TEST(Recovery, CubeStartedInABoxRisesSteadily) {
     config.environments = {ground()};
     config.objects = {box("block", {0.4, 0.4, 0.2}, 50, {0, 0, 0.1025}),
                       box("cube", Vector3::Constant(0.1), 1, {0.05, 0.03, 0.2025 + 0.05 - depth})};
-    Simulator simulator(config, UriResolver());
+    Simulator simulator(config, model::UriResolver());
     const Outcome outcome = recover(&simulator, 1);
     EXPECT_NEAR(outcome.max_of_layer, 1 + depth / 0.005, 1e-6);
     EXPECT_LT(outcome.fastest, SEPARATION_SPEED);
@@ -61,7 +61,7 @@ TEST(Recovery, CubesStartedInEachOtherSpreadAndRest) {
   config.environments = {ground()};
   for (int i = 0; i < 4; ++i)
     config.objects.push_back(box("cube" + std::to_string(i), Vector3::Constant(0.1), 1, {0.08 * (i % 2), 0.08 * (i / 2), 0.0525}));
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   const Outcome outcome = recover(&simulator, 2);
   EXPECT_LT(outcome.fastest, 3 * SEPARATION_SPEED);
   EXPECT_GT(outcome.max_of_layer, 1);
@@ -71,7 +71,7 @@ TEST(Recovery, CubesStartedInEachOtherSpreadAndRest) {
 
 /** Five walls of no thickness. */
 ObjectConfig tray(const std::string& name, const Vector3& xyz, const Vector3& rpy) {
-  TriangleMesh mesh = boxMesh({0.1, 0.1, 0.06});
+  geometry::TriangleMesh mesh = geometry::boxMesh({0.1, 0.1, 0.06});
   const auto top = [&mesh](const Vector3i& e) {
     return mesh.vertices[e[0]].z() > 0 && mesh.vertices[e[1]].z() > 0 && mesh.vertices[e[2]].z() > 0;
   };
@@ -88,7 +88,7 @@ TEST(Recovery, InterlockedTraysPartAndRest) {
   SimulationConfig config;
   config.environments = {ground()};
   config.objects = {tray("tray1", {0, 0, 0.034}, {0, 0, 0}), tray("tray2", {0.05, 0.012, 0.055}, {0.3, 0.2, 0.5})};
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   const Outcome outcome = recover(&simulator, 3);
   EXPECT_LT(outcome.fastest, 0.5);
   EXPECT_GT(outcome.unreliable_steps, 0);
@@ -107,13 +107,13 @@ TEST(Recovery, HandStartedInsideATable) {
   SimulationConfig config;
   EnvironmentConfig table;
   table.name = "table";
-  table.uri = meshFile("table", boxMesh({0.6, 0.6, 0.03}));
+  table.uri = meshFile("table", geometry::boxMesh({0.6, 0.6, 0.03}));
   table.X_WE = makePose({0.4, 0, 0.4});
   config.environments = {table};
   RobotConfig arm = robot("arm", urdf, true);
   arm.X_WR = makePose({0, 0, 0.425});
   config.robots = {arm};
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   const Outcome outcome = recover(&simulator, 1.5);
   EXPECT_LT(outcome.fastest, 1.5 * SEPARATION_SPEED);
   EXPECT_GT(outcome.unreliable_steps, 0);
@@ -138,7 +138,7 @@ SimulationConfig plateThroughSheet() {
 }
 
 TEST(Recovery, WhatWasDrivenInComesOutTheWayItCame) {
-  Simulator simulator(plateThroughSheet(), UriResolver());
+  Simulator simulator(plateThroughSheet(), model::UriResolver());
   double lowest = 1;
   std::uint32_t status = 0;
   for (int i = 0; i < 20; ++i) {
@@ -155,27 +155,27 @@ TEST(Recovery, WhatWasDrivenInComesOutTheWayItCame) {
 }
 
 TEST(Recovery, IsPartOfTheState) {
-  Simulator simulator(plateThroughSheet(), UriResolver());
+  Simulator simulator(plateThroughSheet(), model::UriResolver());
   stepFor(&simulator, 0.02);
   ASSERT_TRUE(simulator.report().status & CONTACT_UNRELIABLE);
   const SimulationState saved = simulator.save();
   const std::uint64_t start = simulator.stateHash();
   stepFor(&simulator, 0.1);
   const std::uint64_t end = simulator.stateHash();
-  Simulator other(plateThroughSheet(), UriResolver());
+  Simulator other(plateThroughSheet(), model::UriResolver());
   other.restore(saved);
   EXPECT_EQ(other.stateHash(), start);
   stepFor(&other, 0.1);
   EXPECT_EQ(other.stateHash(), end);
   simulator.resetSimulation();
-  EXPECT_EQ(simulator.stateHash(), Simulator(plateThroughSheet(), UriResolver()).stateHash());
+  EXPECT_EQ(simulator.stateHash(), Simulator(plateThroughSheet(), model::UriResolver()).stateHash());
 }
 
 TEST(Recovery, StateCutShortIsRefused) {
-  Simulator simulator(plateThroughSheet(), UriResolver());
+  Simulator simulator(plateThroughSheet(), model::UriResolver());
   stepFor(&simulator, 0.02);
   const SimulationState whole = simulator.save();
-  Simulator other(plateThroughSheet(), UriResolver());
+  Simulator other(plateThroughSheet(), model::UriResolver());
   const std::uint64_t untouched = other.stateHash();
   for (const auto& [words, numbers] : {std::pair<int, int>{1, 0}, {3, 0}, {0, 1}, {0, 16}, {3, 16}}) {
     SimulationState cut = whole;
@@ -192,4 +192,4 @@ TEST(Recovery, StateCutShortIsRefused) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

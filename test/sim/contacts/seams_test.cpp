@@ -5,10 +5,10 @@
 
 #include "sim/simulation_scene.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
-EnvironmentConfig piece(const std::string& name, const TriangleMesh& mesh, const Vector3& position = Vector3::Zero()) {
+EnvironmentConfig piece(const std::string& name, const geometry::TriangleMesh& mesh, const Vector3& position = Vector3::Zero()) {
   EnvironmentConfig environment;
   environment.name = name;
   environment.uri = meshFile("piece_" + name, mesh);
@@ -17,7 +17,7 @@ EnvironmentConfig piece(const std::string& name, const TriangleMesh& mesh, const
 }
 
 /** A ground of 4 m x 1 m about the origin. */
-std::vector<EnvironmentConfig> whole() { return {piece("whole", gridMesh(4, 1, 1, 1))}; }
+std::vector<EnvironmentConfig> whole() { return {piece("whole", geometry::gridMesh(4, 1, 1, 1))}; }
 
 struct Cut {
   const char* name;
@@ -26,20 +26,24 @@ struct Cut {
 
 /** The same ground in pieces. */
 std::vector<Cut> cuts() {
-  const auto half = [](double x, double height) { return transformed(boxMesh({2, 1, height}), makePose({x, 0, -height / 2})); };
+  const auto half = [](double x, double height) {
+    return geometry::transformed(geometry::boxMesh({2, 1, height}), makePose({x, 0, -height / 2}));
+  };
   // A seam along a line askew.
-  TriangleMesh left, right;
+  geometry::TriangleMesh left, right;
   left.vertices = {{-2, -0.5, 0}, {-0.1, -0.5, 0}, {0.1, 0.5, 0}, {-2, 0.5, 0}};
   right.vertices = {{-0.1, -0.5, 0}, {2, -0.5, 0}, {2, 0.5, 0}, {0.1, 0.5, 0}};
   left.elements = right.elements = {{0, 1, 2}, {0, 2, 3}};
-  TriangleMesh strip = gridMesh(0.03, 1, 1, 4);
-  return {{"two sheets", {piece("sheet_a", gridMesh(2, 1, 1, 1), {-1, 0, 0}), piece("sheet_b", gridMesh(2, 1, 3, 4), {1, 0, 0})}},
+  geometry::TriangleMesh strip = geometry::gridMesh(0.03, 1, 1, 4);
+  return {{"two sheets",
+           {piece("sheet_a", geometry::gridMesh(2, 1, 1, 1), {-1, 0, 0}), piece("sheet_b", geometry::gridMesh(2, 1, 3, 4), {1, 0, 0})}},
           {"two boxes", {piece("box_a", half(-1, 0.1)), piece("box_b", half(1, 0.2))}},
           {"askew", {piece("left", left), piece("right", right)}},
-          {"overlapping", {piece("sheet_c", gridMesh(2.02, 1, 1, 1), {-1, 0, 0}), piece("sheet_d", gridMesh(2, 1, 1, 1), {1, 0, 0})}},
+          {"overlapping",
+           {piece("sheet_c", geometry::gridMesh(2.02, 1, 1, 1), {-1, 0, 0}), piece("sheet_d", geometry::gridMesh(2, 1, 1, 1), {1, 0, 0})}},
           {"a strip between",
-           {piece("sheet_e", gridMesh(1.985, 1, 1, 1), {-1.0075, 0, 0}), piece("strip", strip),
-            piece("sheet_f", gridMesh(1.985, 1, 1, 1), {1.0075, 0, 0})}}};
+           {piece("sheet_e", geometry::gridMesh(1.985, 1, 1, 1), {-1.0075, 0, 0}), piece("strip", strip),
+            piece("sheet_f", geometry::gridMesh(1.985, 1, 1, 1), {1.0075, 0, 0})}}};
 }
 
 struct Slide {
@@ -47,7 +51,7 @@ struct Slide {
   bool soft;
 };
 
-std::vector<BodyState> slide(const std::vector<EnvironmentConfig>& ground, const Slide& how) {
+std::vector<dynamics::BodyState> slide(const std::vector<EnvironmentConfig>& ground, const Slide& how) {
   SimulationConfig config;
   config.time_step = how.dt;
   config.environments = ground;
@@ -56,8 +60,8 @@ std::vector<BodyState> slide(const std::vector<EnvironmentConfig>& ground, const
   config.objects = {box("cube", Vector3::Constant(0.1), 1, Vector3::Zero())};
   config.objects[0].X_WO = makePose({-0.15, 0.013, 0.0525}, {0, 0, how.yaw});
   config.objects[0].linear_velocity = {how.speed, 0, 0};
-  Simulator simulator(config, UriResolver());
-  std::vector<BodyState> states;
+  Simulator simulator(config, model::UriResolver());
+  std::vector<dynamics::BodyState> states;
   for (double t = 0; t < std::min(0.3, 0.4 / how.speed); t += how.dt) {
     simulator.step();
     states.push_back(bodyOf(simulator, "cube"));
@@ -70,9 +74,9 @@ TEST(Seams, CubeSlidesAsOverOneMesh) {
                                      {3, 0.3, 0.5, 0.001, false}, {3, 0.3, 0, 0.005, false}, {10, 0, 0.2, 0.001, false},
                                      {10, 0.5, 0, 0.001, false},  {3, 0, 0, 0.001, true},    {3, 0.3, 0.5, 0.001, true}};
   for (const Slide& how : slides) {
-    const std::vector<BodyState> expected = slide(whole(), how);
+    const std::vector<dynamics::BodyState> expected = slide(whole(), how);
     for (const Cut& cut : cuts()) {
-      const std::vector<BodyState> states = slide(cut.pieces, how);
+      const std::vector<dynamics::BodyState> states = slide(cut.pieces, how);
       double place = 0, velocity = 0;
       for (std::size_t i = 0; i < states.size(); ++i) {
         place = std::max(place, (states[i].X_WB.translation() - expected[i].X_WB.translation()).norm());
@@ -88,4 +92,4 @@ TEST(Seams, CubeSlidesAsOverOneMesh) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -1,7 +1,7 @@
 // Meshes shrunk by their layers: the size of a model, and the words of the load report.
 #include "sim/simulation_scene.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 TEST(Shrinking, CubesStandAtThePitchOfTheirSize) {
@@ -11,7 +11,7 @@ TEST(Shrinking, CubesStandAtThePitchOfTheirSize) {
     config.objects.push_back(box("cube" + std::to_string(i), Vector3::Constant(0.1), 1, {0, 0, 0.052 + 0.103 * i}));
     config.objects.back().contact.shrink = true;
   }
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   stepFor(&simulator, 1);
   for (int i = 0; i < 5; ++i) EXPECT_NEAR(bodyOf(simulator, "cube" + std::to_string(i)).X_WB.translation().z(), 0.05 + 0.1 * i, 1e-6) << i;
 }
@@ -24,7 +24,7 @@ TEST(Shrinking, ReportSaysWhatStaysAndWhatDoesNot) {
   config.objects = {box("cube", Vector3::Constant(0.1), 1, {0, 0, 0.1}), box("plate", {0.1, 0.1, 0.004}, 1, {1, 0, 0.1}),
                     box("plain", Vector3::Constant(0.1), 1, {2, 0, 0.1})};
   config.objects[2].contact.shrink = false;
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   const auto said = [&simulator](int model) {
     std::string all;
     for (const std::string& note : simulator.loadReport()[model].notes) all += note + "\n";
@@ -37,4 +37,4 @@ TEST(Shrinking, ReportSaysWhatStaysAndWhatDoesNot) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

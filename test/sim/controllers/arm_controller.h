@@ -14,7 +14,7 @@
 #include "sim/simulation_scene.h"
 #include "support/input_errors.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 inline std::string link(const std::string& name) {
   return "<link name='" + name + "'><inertial><origin xyz='0.1 0 0'/><mass value='1'/>" +
@@ -78,8 +78,8 @@ class TrajectoryControllerTest : public testing::Test {
   double position(int joint) const { return controller_->state()[joint].position; }
   double desired(int joint) const { return controller_->state()[joint].desired.position; }
 
-  Simulator simulator_{armScene(), UriResolver()};
+  Simulator simulator_{armScene(), model::UriResolver()};
   std::unique_ptr<TrajectoryController> controller_;
 };
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

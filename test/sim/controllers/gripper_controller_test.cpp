@@ -8,7 +8,7 @@
 #include "sim/simulation_scene.h"
 #include "support/input_errors.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 /** A finger that slides 4 cm and another one that mimics it. */
@@ -51,7 +51,7 @@ class GripperControllerTest : public testing::Test {
     return {};
   }
 
-  Simulator simulator_{gripperScene(), UriResolver()};
+  Simulator simulator_{gripperScene(), model::UriResolver()};
   GripperController controller_{&simulator_, 0, fingerConfig()};
 };
 
@@ -110,4 +110,4 @@ TEST_F(GripperControllerTest, AnotherCommandEndsTheGoal) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -1,6 +1,6 @@
 #include "sim/controllers/arm_controller.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 TEST_F(TrajectoryControllerTest, ControlsAllJointsThatHaveAMotor) {
@@ -186,4 +186,4 @@ TEST_F(TrajectoryControllerTest, HalfATurnGoesTheWayOfTheNumbers) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

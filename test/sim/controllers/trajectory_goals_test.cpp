@@ -2,7 +2,7 @@
 
 #include "sim/controllers/arm_controller.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 class TrajectoryGoalsTest : public TrajectoryControllerTest {};
@@ -144,4 +144,4 @@ TEST_F(TrajectoryGoalsTest, ErrorsOfContinuousJointsGoTheShortWayRound) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -4,7 +4,7 @@
 
 #include "sim/simulation_scene.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 /** Two links that each have a ball, with these blocks. */
@@ -22,8 +22,8 @@ const char* const SURFACES = R"(<gazebo reference="a"><mu1>0.9</mu1><kp>3e4</kp>
   <gazebo reference="b"><mu1>0.8</mu1><kp>1e12</kp><kd>1</kd></gazebo>)";
 const char* const IMU = R"(<gazebo reference="b"><sensor name="imu" type="imu"><update_rate>100</update_rate></sensor></gazebo>)";
 
-SurfaceProperties surfaceOf(const Simulator& simulator, const std::string& collider) {
-  for (const Collider& other : simulator.colliders())
+contact::SurfaceProperties surfaceOf(const Simulator& simulator, const std::string& collider) {
+  for (const contact::Collider& other : simulator.colliders())
     if (other.enabled && other.name == collider) return other.surface;
   ADD_FAILURE() << "no collider " << collider;
   return {};
@@ -44,25 +44,25 @@ SimulationConfig pairScene(const std::string& blocks) {
 
 TEST(GazeboInSimulation, SurfacesBeatTheDefaultsAndTheConfigurationBeatsThem) {
   SimulationConfig config = pairScene(SURFACES);
-  const Simulator described(config, UriResolver());
+  const Simulator described(config, model::UriResolver());
   EXPECT_EQ(surfaceOf(described, "pair::a").friction, 0.9);
   EXPECT_EQ(surfaceOf(described, "pair::a").stiffness, 3e4);
   EXPECT_EQ(surfaceOf(described, "pair::a").damping, 200);
   EXPECT_EQ(surfaceOf(described, "pair::b").friction, 0.8);
   EXPECT_EQ(surfaceOf(described, "pair::b").stiffness, std::numeric_limits<double>::infinity());
   config.robots[0].links["a"].friction = 0.1;
-  const Simulator by_link(config, UriResolver());
+  const Simulator by_link(config, model::UriResolver());
   EXPECT_EQ(surfaceOf(by_link, "pair::a").friction, 0.1);
   EXPECT_EQ(surfaceOf(by_link, "pair::a").stiffness, 3e4);
   config.robots[0].contact.friction = 0.2;
-  const Simulator by_robot(config, UriResolver());
+  const Simulator by_robot(config, model::UriResolver());
   EXPECT_EQ(surfaceOf(by_robot, "pair::a").friction, 0.1);
   EXPECT_EQ(surfaceOf(by_robot, "pair::b").friction, 0.2);
 }
 
 TEST(GazeboInSimulation, ASingleBodyIsAnObjectWithSurfacesOrARobotWithSensors) {
   SimulationConfig config;
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   RobotConfig spawned;
   spawned.name = "object";
   spawned.urdf_xml = pairUrdf(SURFACES);
@@ -90,7 +90,7 @@ TEST(GazeboInSimulation, AnObjectSaysThatItHasNoSensors) {
   object.name = "ball";
   object.urdf_xml = pairUrdf(IMU);
   config.objects = {object};
-  const Simulator simulator(config, UriResolver());
+  const Simulator simulator(config, model::UriResolver());
   EXPECT_TRUE(simulator.sensors().empty());
   EXPECT_TRUE(isTold(simulator, "ball: objects have no sensors"));
 }
@@ -104,7 +104,7 @@ TEST(GazeboInSimulation, AFrameOfOtherAxesIsTold) {
         pairUrdf("<gazebo reference=\"b\"><sensor name=\"imu\" type=\"imu\"><pose>0 0 0 " + rpy + "</pose>" + plugin + "</sensor></gazebo>",
                  joint),
         true)};
-    const Simulator simulator(config, UriResolver());
+    const Simulator simulator(config, model::UriResolver());
     return isTold(simulator, "sensor 'imu': its frame_id says '" + frame + "'");
   };
   EXPECT_FALSE(told("b", "0 0 0"));
@@ -124,11 +124,11 @@ TEST(GazeboInSimulation, ACameraFrameIsOptical) {
     camera.link = camera.frame_id = "a";
     camera.X_LS = turned ? makePose({0, 0, 0}, {0, -M_PI / 2, M_PI / 2}) : Pose::Identity();
     config.robots[0].sensors = {camera};
-    return isTold(Simulator(config, UriResolver()), "sensor 'eye': its frame_id says 'a'");
+    return isTold(Simulator(config, model::UriResolver()), "sensor 'eye': its frame_id says 'a'");
   };
   EXPECT_TRUE(told(false));
   EXPECT_FALSE(told(true));
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

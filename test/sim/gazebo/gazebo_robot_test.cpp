@@ -8,7 +8,7 @@
 
 #include "blem_sim/model/loaders.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr double UNLIMITED = std::numeric_limits<double>::infinity();
@@ -21,7 +21,7 @@ GazeboRobot described(const std::string& blocks, const RobotConfig& config = {})
   };
   const std::string xml = "<robot name=\"r\"><link name=\"base\"/>" + joint("hip", "continuous", "leg") + joint("flange", "fixed", "tool") +
                           joint("drift", "planar", "sled") + blocks + "</robot>";
-  return withGazeboBlocks(config, loadUrdf(xml, "test.urdf", UriResolver()));
+  return withGazeboBlocks(config, model::loadUrdf(xml, "test.urdf", model::UriResolver()));
 }
 
 std::string onLink(const std::string& inside, const std::string& link = "leg") {
@@ -377,4 +377,4 @@ TEST(GazeboSensor, NoMoreThanAThousand) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

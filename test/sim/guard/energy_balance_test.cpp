@@ -5,7 +5,7 @@
 
 #include "sim/simulation_scene.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr double DT = 1e-3;
@@ -14,9 +14,9 @@ constexpr double DT = 1e-3;
 class HandMadeSolve {
  public:
   explicit HandMadeSolve(int bodies, const Vector3& gravity = Vector3::Zero())
-      : world(gravity, SolverSettings()), contacts(ContactConfig(), 1) {
+      : world(gravity, dynamics::SolverSettings()), contacts(ContactConfig(), 1) {
     for (int b = 0; b < bodies; ++b) {
-      BodySpec spec;
+      dynamics::BodySpec spec;
       spec.name = "body" + std::to_string(b);
       spec.inertial.mass = 2;
       spec.inertial.inertia = Vector3(0.1, 0.2, 0.3).asDiagonal();
@@ -27,16 +27,16 @@ class HandMadeSolve {
     after = before;
   }
   EnergyGain gain() {
-    EnergyBalance balance{SolverSettings()};
+    EnergyBalance balance{dynamics::SolverSettings()};
     balance.start(world);
-    SolveResult solved;
+    dynamics::SolveResult solved;
     solved.axis_efforts.assign(world.jointCount(), 0);
     return balance.addSolve(world, DT, contacts, solved, before, after);
   }
 
-  World world;
+  dynamics::World world;
   ContactStage contacts;
-  std::vector<BodyState> before, after;
+  std::vector<dynamics::BodyState> before, after;
 };
 
 TEST(EnergyBalance, OneBodysGainIsNotHiddenByAnothersLoss) {
@@ -51,8 +51,8 @@ TEST(EnergyBalance, OneBodysGainIsNotHiddenByAnothersLoss) {
 
 TEST(EnergyBalance, WhatAJointTiesIsOneIsland) {
   HandMadeSolve solve(3);
-  JointSpec joint;
-  joint.kind = JointKind::PRISMATIC;
+  dynamics::JointSpec joint;
+  joint.kind = dynamics::JointKind::PRISMATIC;
   joint.parent = 0;
   joint.child = 1;
   joint.axis = Vector3::UnitX();
@@ -67,25 +67,25 @@ TEST(EnergyBalance, WhatAJointTiesIsOneIsland) {
 // A slider that its motor pushes against friction of the same size keeps its speed of 1 m/s. The motor's work, 10 mJ in the step, goes into
 // friction and makes up for no gain: a start told 1 mm/s slower is a gain of 0.9995 mJ.
 TEST(EnergyBalance, WorkThatFrictionTakesHidesNoGain) {
-  World world(Vector3::Zero(), SolverSettings());
-  BodySpec slider;
+  dynamics::World world(Vector3::Zero(), dynamics::SolverSettings());
+  dynamics::BodySpec slider;
   slider.name = "slider";
   slider.inertial.mass = 1;
   slider.inertial.inertia.setIdentity();
   world.addBody(slider);
-  JointSpec joint;
-  joint.kind = JointKind::PRISMATIC;
+  dynamics::JointSpec joint;
+  joint.kind = dynamics::JointKind::PRISMATIC;
   joint.child = 0;
   joint.axis = Vector3::UnitX();
   world.addJoint(joint);
   world.setBodyState(0, {Pose::Identity(), Vector3::UnitX(), Vector3::Zero()});
-  JointDrive drive;
+  dynamics::JointDrive drive;
   drive.effort = drive.dry_friction = 10;
-  std::vector<BodyState> before = {world.bodyState(0)};
-  EnergyBalance balance{SolverSettings()};
+  std::vector<dynamics::BodyState> before = {world.bodyState(0)};
+  EnergyBalance balance{dynamics::SolverSettings()};
   balance.start(world);
-  const SolveResult& solved = world.step(DT, {}, {drive});
-  const std::vector<BodyState> after = {world.bodyState(0)};
+  const dynamics::SolveResult& solved = world.step(DT, {}, {drive});
+  const std::vector<dynamics::BodyState> after = {world.bodyState(0)};
   ASSERT_NEAR(after[0].v_WCom.x(), 1, 1e-9);
   before[0].v_WCom.x() -= 1e-3;
   EXPECT_NEAR(balance.addSolve(world, DT, ContactStage(ContactConfig(), 1), solved, before, after).total, 0.9995e-3, 1e-8);
@@ -124,7 +124,7 @@ TEST(EnergyBalance, TheBoundGrowsWithWhatMoves) {
 }
 
 TEST(EnergyBalance, ReadsWhatItWrote) {
-  EnergyBalance balance{SolverSettings()};
+  EnergyBalance balance{dynamics::SolverSettings()};
   std::vector<double> numbers;
   balance.append(&numbers);
   EXPECT_EQ(numbers, std::vector<double>{0});
@@ -142,7 +142,7 @@ TEST(EnergyBalance, ReadsWhatItWrote) {
 
 /** Every bit that was set in so long. */
 std::uint32_t statusOf(const SimulationConfig& config, double seconds, const JointCommandMessage& command = {}) {
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   if (!command.joints.empty()) simulator.commandJoints(0, command);
   std::uint32_t status = 0;
   for (long i = 0; i < std::lround(seconds / config.time_step); ++i) status |= simulator.step().status;
@@ -166,7 +166,7 @@ TEST(EnergyGainedBit, IsNotSetByAStackNorBySlidingNorByAFall) {
 }
 
 TEST(EnergyOutOfNothing, LeavesOutWhatCorrectingDepthTakes) {
-  Simulator simulator(onGround({box("deep", Vector3::Constant(0.1), 1, {0, 0, 0.0515})}), UriResolver());
+  Simulator simulator(onGround({box("deep", Vector3::Constant(0.1), 1, {0, 0, 0.0515})}), model::UriResolver());
   double gained = 0, out_of_nothing = 0;
   for (int i = 0; i < 300; ++i) {
     const StepReport& report = simulator.step();
@@ -189,7 +189,7 @@ TEST(EnergyOutOfNothing, IsNoneWhereAnImpactSetsARodSpinning) {
     ObjectConfig rod = box("rod", {0.006, 0.006, 0.045}, 0.0127, Vector3::Zero());
     rod.X_WO = makePose({0, 0, 0.05}, turn);
     rod.linear_velocity = velocity;
-    Simulator simulator(onGround({rod}), UriResolver());
+    Simulator simulator(onGround({rod}), model::UriResolver());
     double fastest = 0;
     for (int i = 0; i < 40; ++i) {
       const StepReport& report = simulator.step();
@@ -234,4 +234,4 @@ TEST(EnergyGainedBit, IsNotSetByMotorsFrictionAndLimits) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -5,7 +5,7 @@
 
 #include "sim/simulation_scene.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 TEST(Substeps, HalvesAtMostFourTimesAndEndsExactly) {
@@ -71,13 +71,13 @@ class UsesUpLayer : public testing::Test {
   }
 
   /** Body 0 is A, above; the normal is +z. */
-  static ContactManifold manifold(double depth, bool pierced = false) {
-    ContactManifold m;
+  static contact::ContactManifold manifold(double depth, bool pierced = false) {
+    contact::ContactManifold m;
     m.a = 0;
     m.b = 1;
     m.layer = 0.01;
     m.pierced = pierced;
-    Contact contact;
+    contact::Contact contact;
     contact.point = Vector3::Zero();
     contact.normal_BA = Vector3::UnitZ();
     contact.depth = depth;
@@ -85,19 +85,20 @@ class UsesUpLayer : public testing::Test {
     return m;
   }
 
-  bool check(const std::vector<ContactManifold>& then, const std::vector<ContactManifold>& now) {
+  bool check(const std::vector<contact::ContactManifold>& then, const std::vector<contact::ContactManifold>& now) {
     const bool unbounded = usesUpLayer(colliders_, then, now, before_, after_);
-    std::vector<Collider> bounded = colliders_;
-    for (Collider& collider : bounded) {
-      collider.geometry = std::make_shared<const CollisionGeometry>(std::make_shared<const TriangleMesh>(boxMesh(Vector3::Constant(0.1))));
+    std::vector<contact::Collider> bounded = colliders_;
+    for (contact::Collider& collider : bounded) {
+      collider.geometry = std::make_shared<const contact::CollisionGeometry>(
+          std::make_shared<const geometry::TriangleMesh>(geometry::boxMesh(Vector3::Constant(0.1))));
       collider.radius = 0.005;
     }
     EXPECT_EQ(usesUpLayer(bounded, then, now, before_, after_), unbounded);
     return unbounded;
   }
 
-  std::vector<Collider> colliders_;
-  std::vector<BodyState> before_, after_;
+  std::vector<contact::Collider> colliders_;
+  std::vector<dynamics::BodyState> before_, after_;
 };
 
 TEST_F(UsesUpLayer, AcceptsShallowAndSlow) {
@@ -130,7 +131,7 @@ TEST_F(UsesUpLayer, RefusesWhatPassedThrough) {
 }
 
 TEST_F(UsesUpLayer, IgnoresPairsWithoutLayer) {
-  ContactManifold bare = manifold(0.001, true);
+  contact::ContactManifold bare = manifold(0.001, true);
   bare.layer = 0;
   EXPECT_FALSE(check({}, {bare}));
 }
@@ -142,7 +143,7 @@ double thrownAtSheet(double speed, double tilt, bool* pierced) {
   config.objects = {box("cube", Vector3::Constant(0.1), 1, {0, 0, 0.2})};
   config.objects[0].X_WO = makePose({0, 0, 0.2}, {tilt, 0.3 * tilt, 0});
   config.objects[0].linear_velocity = {0, 0, -speed};
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   *pierced = false;
   for (int i = 0; i < 300; ++i) {
     const StepReport& report = simulator.step();
@@ -169,7 +170,7 @@ int mostSubsteps(const Vector3& position, const Vector3& velocity, const Vector3
   config.objects = {box("cube", Vector3::Constant(0.1), 1, position)};
   config.objects[0].linear_velocity = velocity;
   config.objects[0].angular_velocity = spin;
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   int most = 1;
   for (int i = 0; i < 60; ++i) {
     const StepReport& report = simulator.step();
@@ -198,7 +199,7 @@ TEST(StepGuard, ShortensBeforehandInsteadOfSolvingAgain) {
   config.objects = {box("cube", Vector3::Constant(0.1), 1, Vector3::Zero()), box("other", Vector3::Constant(0.1), 1, {1, 0, 0.0525})};
   config.objects[0].X_WO = makePose({0, 0, 0.15}, {0.7, 0.21, 0});
   config.objects[0].linear_velocity = {0, 0, -20};
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   int substeps = 0;
   for (int i = 0; i < 20; ++i) {
     EXPECT_EQ(simulator.step().redone_solves, 0) << i;
@@ -217,7 +218,7 @@ TEST(StepGuard, SoftLayerThatIsUsedUpShortensTheStep) {
     contact->stiffness = 1e5;
     contact->damping = 50;
   }
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   int most_substeps = 1;
   for (int i = 0; i < 10; ++i) {
     const StepReport& report = simulator.step();
@@ -230,4 +231,4 @@ TEST(StepGuard, SoftLayerThatIsUsedUpShortensTheStep) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -4,7 +4,7 @@
 #include "fuzz/seeds.h"
 #include "fuzz/sim_targets.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 const std::map<std::string, FuzzTarget> TARGETS = {{"yaml", fuzzYaml}, {"csv", fuzzCsv}, {"state", fuzzState}, {"input", fuzzInput}};
@@ -17,4 +17,4 @@ INSTANTIATE_TEST_SUITE_P(Targets, SimFuzzSeeds, testing::Values("yaml", "csv", "
                          [](const auto& target) { return target.param; });
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

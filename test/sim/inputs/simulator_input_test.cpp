@@ -12,7 +12,7 @@
 #include "blem_sim/sim/named_parts.h"
 #include "sim/state/saved_scene.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 /** Inputs with the steps made before them, and the hash after every step. */
@@ -32,7 +32,7 @@ class InputNotes : public SimulatorWatcher {
 
 /** Step of the first hash that is another, counted from 1; 0 if there is none. */
 std::size_t firstDifference(const SimulationConfig& config, const InputNotes& notes) {
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   std::size_t next = 0;
   for (std::size_t step = 0; step < notes.hashes.size(); ++step) {
     for (; next < notes.inputs.size() && notes.inputs[next].first == step; ++next) applyInput(notes.inputs[next].second, &simulator);
@@ -56,7 +56,7 @@ CloudSurface cloudBelowCube() {
   std::vector<Vector3> points;
   for (int i = -10; i <= 10; ++i)
     for (int j = -10; j <= 10; ++j) points.emplace_back(0.0101 * i, 0.0099 * j, 1e-4 * (i % 3));
-  return makeCloudSurface(points, CloudOptions(), "live");
+  return makeCloudSurface(points, model::CloudOptions(), "live");
 }
 
 RobotConfig spawned() {
@@ -79,10 +79,10 @@ EnvironmentConfig tilted() {
 /** Every call that changes a simulation. */
 std::vector<std::function<void(Simulator&)>> allCalls(const SimulationState& earlier) {
   CloudSurface cloud = cloudBelowCube();
-  BodyState thrown;
+  dynamics::BodyState thrown;
   thrown.X_WB = makePose({0, 1, 0.5}, {0.3, 0.2, 0.1});
   thrown.v_WCom = {1, 0, 2};
-  MassProperties heavier;
+  geometry::MassProperties heavier;
   heavier.mass = 2;
   heavier.inertia = 0.01 * Matrix3::Identity();
   return {
@@ -123,7 +123,7 @@ std::vector<std::function<void(Simulator&)>> allCalls(const SimulationState& ear
 
 TEST(SimulatorInput, EveryCallPlayedAgainGivesTheSameBits) {
   const SimulationConfig config = sceneWithCloud();
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   setOut(&simulator);
   const SimulationState earlier = simulator.save();
   simulator.resetSimulation();
@@ -140,7 +140,7 @@ TEST(SimulatorInput, EveryCallPlayedAgainGivesTheSameBits) {
 
 TEST(SimulatorInput, AnAlteredNumberShowsInTheNextStep) {
   const SimulationConfig config = sceneWithCloud();
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   InputNotes notes(&simulator);
   stepFor(&simulator, 0.01);
   simulator.commandJoints(0, {{"hinge"}, {0.2}, {}, {}});
@@ -153,7 +153,7 @@ TEST(SimulatorInput, AnAlteredNumberShowsInTheNextStep) {
 }
 
 TEST(SimulatorInput, ARefusedCallIsNotTold) {
-  Simulator simulator(sceneWithCloud(), UriResolver());
+  Simulator simulator(sceneWithCloud(), model::UriResolver());
   InputNotes notes(&simulator);
   EXPECT_THROW(simulator.commandJoints(0, {{"elbow"}, {0.2}, {}, {}}), InputError);
   EXPECT_THROW(simulator.removeModel("nobody"), InputError);
@@ -180,7 +180,7 @@ std::vector<SimulatorInput> altered(const SimulatorInput& input) {
 }
 
 TEST(SimulatorInput, LyingArgumentsAreRefusedInOneLine) {
-  Simulator simulator(sceneWithCloud(), UriResolver());
+  Simulator simulator(sceneWithCloud(), model::UriResolver());
   const SimulationState earlier = simulator.save();
   std::vector<SimulatorInput> inputs;
   {
@@ -207,4 +207,4 @@ TEST(SimulatorInput, LyingArgumentsAreRefusedInOneLine) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -1,7 +1,7 @@
 // Wrenches in a stack of two links that stands on the world, level and tipped, in closed form.
 #include "sim/simulation_scene.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr double MASS = 10;  // [kg] of each link
@@ -35,7 +35,7 @@ TEST_P(WrenchStack, CarriesItsWeight) {
     SimulationConfig config;
     config.gravity = gravity;
     config.robots = {robot("stack", stackUrdf(GetParam()), true)};
-    Simulator simulator(config, UriResolver());
+    Simulator simulator(config, model::UriResolver());
     stepFor(&simulator, 0.1);
     const Vector3 weight = -MASS * gravity, low(0.1, 0, 0.5), high(0.1, 0, 1.5);
     const ForceTorqueReading lower = reading<ForceTorqueReading>(simulator.report(), 0);
@@ -52,4 +52,4 @@ INSTANTIATE_TEST_SUITE_P(JointTypes, WrenchStack, testing::Values("fixed", "revo
                          [](const testing::TestParamInfo<const char*>& info) { return std::string(info.param); });
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -6,7 +6,7 @@
 
 #include "sim/simulation_scene.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr double ASKED = 1e-3;  // of mass times speed
@@ -92,14 +92,14 @@ struct HopperMissed {
 };
 
 HopperMissed land(const Landing& landing) {
-  Simulator simulator(hopperWorld(landing), UriResolver());
+  Simulator simulator(hopperWorld(landing), model::UriResolver());
   const std::vector<int>& bodies = simulator.robots()[0].bodies;
-  const World& world = simulator.world();
+  const dynamics::World& world = simulator.world();
   const double dt = landing.time_step;
   HopperMissed missed;
   for (int i = stepsOf(landing); i > 0; --i) {
-    const BodyState trunk = world.bodyState(bodies[0]), foot = world.bodyState(bodies[1]);
-    const MassProperties &of_trunk = world.bodySpec(bodies[0]).inertial, &of_foot = world.bodySpec(bodies[1]).inertial;
+    const dynamics::BodyState trunk = world.bodyState(bodies[0]), foot = world.bodyState(bodies[1]);
+    const geometry::MassProperties &of_trunk = world.bodySpec(bodies[0]).inertial, &of_foot = world.bodySpec(bodies[1]).inertial;
     const StepReport& report = simulator.step();
     missed.most_parts = std::max(missed.most_parts, report.substeps);
     const Vector3 trunk_change = of_trunk.mass * (report.bodies[bodies[0]].v_WCom - trunk.v_WCom - dt * simulator.gravity());
@@ -107,7 +107,8 @@ HopperMissed land(const Landing& landing) {
 
     missed.sole.add(dt * reading<ContactReading>(report, 0).total.force, trunk_change + foot_change);
     Vector3 on_robot = Vector3::Zero();
-    for (const ContactReport& contact : report.contacts) on_robot += contact.body_a == WORLD_BODY ? Vector3(-contact.force) : contact.force;
+    for (const ContactReport& contact : report.contacts)
+      on_robot += contact.body_a == dynamics::WORLD_BODY ? Vector3(-contact.force) : contact.force;
     missed.contacts.add(dt * on_robot, trunk_change + foot_change);
 
     const ForceTorqueReading wrench = reading<ForceTorqueReading>(report, 1);
@@ -176,7 +177,7 @@ TEST(ImpactReports, TorqueOnABallThatLandsSliding) {
       ball.contact.friction = landing.friction;
       ball.sensors = {sensorOf(SensorType::CONTACT, "ball")};
       config.robots = {ball};
-      Simulator simulator(config, UriResolver());
+      Simulator simulator(config, model::UriResolver());
       const int body = simulator.robots()[0].bodies[0];
       Missed missed;
       int most_parts = 1;
@@ -207,14 +208,14 @@ TEST(ImpactReports, BoxThatTumblesAndBounces) {
         SimulationConfig config = landingWorld(landing, &above);
         config.objects = {box("cube", Vector3::Constant(0.1), 1, Vector3::Zero())};
         config.objects[0].X_WO = makePose(above + Vector3(0, 0, 0.09), {0.3, 0.5, 0.7});
-        Simulator simulator(config, UriResolver());
+        Simulator simulator(config, model::UriResolver());
         const int body = simulator.models()[simulator.modelIndex("cube")].bodies[0];
         Missed momentum, spin;
         int most_parts = 1;
         for (int i = stepsOf(landing); i > 0; --i) {
-          const BodyState before = simulator.world().bodyState(body);
+          const dynamics::BodyState before = simulator.world().bodyState(body);
           const StepReport& report = simulator.step();
-          const BodyState& after = report.bodies[body];
+          const dynamics::BodyState& after = report.bodies[body];
           most_parts = std::max(most_parts, report.substeps);
           Vector3 force = Vector3::Zero(), torque = Vector3::Zero();
           for (const ContactReport& contact : report.contacts) {
@@ -261,14 +262,14 @@ SimulationConfig turntableWorld(double dt, MotorLaw law) {
 TEST(ImpactReports, EffortAndCurrentAreThoseOfTheWholeStep) {
   for (const MotorLaw law : {MotorLaw::PID, MotorLaw::IMPLICIT_PD}) {
     for (const double dt : TIME_STEPS) {
-      Simulator simulator(turntableWorld(dt, law), UriResolver());
+      Simulator simulator(turntableWorld(dt, law), model::UriResolver());
       simulator.commandJoints(0, {{"spin"}, {}, {10.0}, {}});
       double speed = 0;
       int most_parts = 1;
       for (int i = 0; i < 40; ++i) {
         const StepReport& report = simulator.step();
         most_parts = std::max(most_parts, report.substeps);
-        const JointState& joint = report.joints[0];
+        const dynamics::JointState& joint = report.joints[0];
         const double change = 0.2 * (joint.velocity - speed);
         // The motor's own effort: the disc's, and what friction of 0.1 + 0.02 v takes, v being the parts'.
         const double friction = dt * (0.1 + 0.02 * joint.velocity);
@@ -286,7 +287,7 @@ TEST(ImpactReports, EffortAndCurrentAreThoseOfTheWholeStep) {
 
 TEST(ImpactReports, StateKeepsTheEffortOfTheWholeStep) {
   const SimulationConfig config = turntableWorld(5e-3, MotorLaw::PID);
-  Simulator simulator(config, UriResolver()), other(config, UriResolver());
+  Simulator simulator(config, model::UriResolver()), other(config, model::UriResolver());
   simulator.commandJoints(0, {{"spin"}, {}, {10.0}, {}});
   while (simulator.step().substeps == 1) ASSERT_LT(simulator.steps(), 20u);
   other.restore(simulator.save());
@@ -295,4 +296,4 @@ TEST(ImpactReports, StateKeepsTheEffortOfTheWholeStep) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -3,17 +3,17 @@
 
 #include <gtest/gtest.h>
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr int MODELS = 40, LINKS = 25, CONTACTS = 5000;
 
 /** A collider per link of every model, and contacts between any two of them. */
 struct ManyLinks {
-  ManyLinks() : world(Vector3::Zero(), SolverSettings()) {
+  ManyLinks() : world(Vector3::Zero(), dynamics::SolverSettings()) {
     for (int model = 0; model < MODELS; ++model) {
       for (int link = 0; link < LINKS; ++link) {
-        Collider collider;
+        contact::Collider collider;
         collider.model = model;
         collider.link = link;
         world.colliders.push_back(collider);
@@ -57,4 +57,4 @@ TEST(LinkContacts, ForgetsTheLastStep) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

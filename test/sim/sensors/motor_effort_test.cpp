@@ -3,7 +3,7 @@
 
 #include "sim/simulation_scene.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr double STICTION = 25;  // [N m]
@@ -30,7 +30,7 @@ SimulationConfig stickyBar(const char* stepper, MotorLaw law) {
 class MotorEffort : public ::testing::TestWithParam<std::tuple<const char*, MotorLaw>> {};
 
 TEST_P(MotorEffort, OfAMotorThatPushesAgainstStiction) {
-  Simulator simulator(stickyBar(std::get<0>(GetParam()), std::get<1>(GetParam())), UriResolver());
+  Simulator simulator(stickyBar(std::get<0>(GetParam()), std::get<1>(GetParam())), model::UriResolver());
   simulator.commandJoints(0, {{"hinge"}, {1.0}, {}, {}});
   stepFor(&simulator, 0.1);
   EXPECT_LT(std::abs(simulator.report().joints[0].position), 1e-6);
@@ -42,7 +42,7 @@ TEST_P(MotorEffort, OfAMotorThatPushesAgainstStiction) {
 
 // Friction holds what is applied from outside; the motor, on its target, does nothing.
 TEST_P(MotorEffort, IsNotTheEffortFromOutside) {
-  Simulator simulator(stickyBar(std::get<0>(GetParam()), std::get<1>(GetParam())), UriResolver());
+  Simulator simulator(stickyBar(std::get<0>(GetParam()), std::get<1>(GetParam())), model::UriResolver());
   simulator.applyEffort(0, 15, {0, -1});
   stepFor(&simulator, 0.1);
   EXPECT_NEAR(simulator.report().joints[0].effort, 0, 1e-4);
@@ -69,7 +69,7 @@ TEST(MotorEffortOfMimics, IsTheMastersWhole) {
       <limit lower="0" upper="0.04" effort="100" velocity="1"/><mimic joint="left"/></joint></robot>)",
                          true)};
   config.robots[0].gains["default"] = {1000, 0, 50};
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   simulator.commandJoints(0, {{"left"}, {0.05}, {}, {}});
   stepFor(&simulator, 1);
   EXPECT_NEAR(simulator.report().joints[0].position, 0.04, 1e-4);
@@ -78,4 +78,4 @@ TEST(MotorEffortOfMimics, IsTheMastersWhole) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

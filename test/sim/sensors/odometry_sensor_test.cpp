@@ -3,7 +3,7 @@
 
 #include "sim/simulation_scene.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 /** A pendulum that swings freely, with these sensors. */
@@ -27,10 +27,10 @@ SensorConfig odometry(const std::string& twist, double stddev = 0) {
 }
 
 TEST(OdometrySensor, PoseAndVelocitiesOfATurningArm) {
-  Simulator simulator(swinging({odometry("link"), odometry("world")}), UriResolver());
+  Simulator simulator(swinging({odometry("link"), odometry("world")}), model::UriResolver());
   stepFor(&simulator, 0.2);
   const RobotInfo& info = simulator.robots()[0];
-  const JointState joint = simulator.report().joints[info.joints[0]];
+  const dynamics::JointState joint = simulator.report().joints[info.joints[0]];
   const OdometryReading link = reading<OdometryReading>(simulator.report(), 0), world = reading<OdometryReading>(simulator.report(), 1);
   const double q = joint.position, w = joint.velocity;
   ASSERT_GT(w, 1);
@@ -47,7 +47,7 @@ TEST(OdometrySensor, PoseAndVelocitiesOfATurningArm) {
 
 TEST(OdometrySensor, NoiseHasItsDeviation) {
   SimulationConfig config = swinging({odometry("world"), odometry("link", 0.02)});
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   double squares = 0, turns = 0;
   constexpr int STEPS = 3000;
   for (int i = 0; i < STEPS; ++i) {
@@ -70,7 +70,7 @@ TEST(ImuSensor, ConstantBiasesAreDrawnOnceAndReplayed) {
   biased.accel_bias = 0.5;
   biased.gyro_bias = -0.25;
   biased.gyro_bias_spread = 0.01;
-  Simulator simulator(swinging({exact, biased}), UriResolver());
+  Simulator simulator(swinging({exact, biased}), model::UriResolver());
   const auto error = [&](bool gyro) {
     const ImuReading truth = reading<ImuReading>(simulator.report(), 0), imu = reading<ImuReading>(simulator.report(), 1);
     return Vector3(gyro ? imu.angular_velocity - truth.angular_velocity : imu.linear_acceleration - truth.linear_acceleration);
@@ -94,4 +94,4 @@ TEST(ImuSensor, ConstantBiasesAreDrawnOnceAndReplayed) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -10,7 +10,7 @@
 
 #include "numbers/random_numbers.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 ContactReport contact(const Vector3& point, const Vector3& force, double depth = 0) {
@@ -134,4 +134,4 @@ TEST(PartReports, ImpulsesAndMomentsOfRandomPartsAddUp) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -3,7 +3,7 @@
 
 #include "sim/sensors/range_scene.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 TEST(RangeNoise, LidarHasItsDeviation) {
@@ -45,7 +45,7 @@ TEST(RangeNoise, IsTheSameAgainAndNewInEachReading) {
   SimulationConfig config = sceneWith(lidar());
   config.environments = {halfSpace({-1, 0, 0, -2})};
   config.robots[0].sensors[0].rays.stddev = 0.01;
-  Simulator simulator(config, UriResolver()), again(config, UriResolver());
+  Simulator simulator(config, model::UriResolver()), again(config, model::UriResolver());
   const auto ranges = [](Simulator* of) { return rangesOf(*reading<LidarReading>(of->step(), 0).view); };
   const std::vector<float> first = ranges(&simulator), second = ranges(&simulator);
   EXPECT_EQ(first, ranges(&again));
@@ -56,4 +56,4 @@ TEST(RangeNoise, IsTheSameAgainAndNewInEachReading) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -8,7 +8,7 @@
 #include "blem_sim/sim/range_view.h"
 #include "sim/simulation_scene.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /** A mast at the origin without a collision, and a fin of it: a plate of 2 cm from 0.19 to 0.21 m ahead, half a metre to the left. */
 inline const char* const MAST = R"(<robot name="mast">
@@ -56,15 +56,15 @@ inline EnvironmentConfig halfSpace(const Eigen::Vector4d& plane) {
 }
 
 inline std::vector<float> depthsIn(const SimulationConfig& config) {
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   simulator.step();
   return depthsOf(*reading<DepthCameraReading>(simulator.report(), 0).view);
 }
 
 inline std::vector<float> rangesIn(const SimulationConfig& config) {
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   simulator.step();
   return rangesOf(*reading<LidarReading>(simulator.report(), 0).view);
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

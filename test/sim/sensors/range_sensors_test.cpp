@@ -11,7 +11,7 @@
 #include "sim/sensors/range_scene.h"
 #include "support/shared_data.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 constexpr float NOTHING = std::numeric_limits<float>::infinity();
@@ -150,7 +150,7 @@ TEST(RangeView, IsDrawnAsItWasTaken) {
   SimulationConfig config = sceneWith(lidar());
   config.objects = {box("box", {0.2, 0.2, 0.2}, 1, {2, 0, 0})};
   config.objects[0].linear_velocity = {5, 0, 0};
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   const auto view = reading<LidarReading>(simulator.step(), 0).view;
   stepFor(&simulator, 0.2);
   EXPECT_NEAR(rangesOf(*view)[90], 1.9 + 0.005, 1e-6);
@@ -163,7 +163,7 @@ TEST(RangeView, IsTheSameForAnyNumberOfThreads) {
   config.robots[0].sensors[0].rays.noise = RangeNoise::KINECT;
   config.robots[0].sensors[0].rays.width = 320;
   config.robots[0].sensors[0].rays.height = 240;
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   const auto view = reading<DepthCameraReading>(simulator.step(), 0).view;
   const auto drawnBy = [&](int threads) { return tbb::task_arena(threads).execute([&] { return depthsOf(*view); }); };
   const std::vector<float> one = drawnBy(1), four = drawnBy(4);
@@ -172,9 +172,9 @@ TEST(RangeView, IsTheSameForAnyNumberOfThreads) {
 }
 
 /** Depth of the nearest triangle along a ray, by Cramer's rule for every one. */
-double nearestDepth(const std::vector<Triangle>& triangles, const Ray& ray) {
+double nearestDepth(const std::vector<geometry::Triangle>& triangles, const geometry::Ray& ray) {
   double best = std::numeric_limits<double>::infinity();
-  for (const Triangle& t : triangles) {
+  for (const geometry::Triangle& t : triangles) {
     const Vector3 ab = t[1] - t[0], ac = t[2] - t[0], p = ray.direction.cross(ac), s = ray.origin - t[0];
     const double det = ab.dot(p);
     if (det == 0) continue;
@@ -193,15 +193,15 @@ TEST(DepthCamera, EveryRayOnAScanIsThatOfAllItsTriangles) {
   scan.name = "scan";
   scan.uri = *sharedData(file);
   config.environments = {scan};
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   simulator.step();
   const auto view = reading<DepthCameraReading>(simulator.report(), 0).view;
   const std::vector<float> depths = depthsOf(*view);
-  std::vector<Triangle> triangles;
-  for (const Collider& collider : simulator.colliders()) {
+  std::vector<geometry::Triangle> triangles;
+  for (const contact::Collider& collider : simulator.colliders()) {
     if (collider.model == view->model) continue;
     for (int i = 0; i < static_cast<int>(collider.geometry->mesh().elements.size()); ++i)
-      triangles.push_back(triangleOf(collider.geometry->mesh(), i));
+      triangles.push_back(geometry::triangleOf(collider.geometry->mesh(), i));
   }
   const Pinhole pinhole = pinholeOf(view->rays);
   int hits = 0;
@@ -219,4 +219,4 @@ TEST(DepthCamera, EveryRayOnAScanIsThatOfAllItsTriangles) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -6,7 +6,7 @@
 #include "blem_sim/sim/sensor_values.h"
 #include "sim/simulation_scene.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 SensorConfig erringSensor(const std::string& name, SensorType type) {
@@ -40,7 +40,7 @@ std::vector<double> numbersOf(const StepReport& report, int sensor, bool truth =
 
 /** Numbers of a sensor step by step. */
 std::vector<std::vector<double>> record(const SimulationConfig& config, int sensor, bool truth = false, int steps = 60) {
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   std::vector<std::vector<double>> numbers;
   for (int i = 0; i < steps; ++i) numbers.push_back(numbersOf(simulator.step(), sensor, truth));
   return numbers;
@@ -92,7 +92,7 @@ TEST(SensorDelay, IsSavedOnItsWay) {
   SimulationConfig config = swingingScene();
   for (SensorConfig& sensor : config.robots[0].sensors) sensor.delay = 0.01;
   for (const int step : {4, 25}) {  // before and after the first reading
-    Simulator straight(config, UriResolver()), restored(config, UriResolver());
+    Simulator straight(config, model::UriResolver()), restored(config, model::UriResolver());
     for (int i = 0; i < step; ++i) straight.step();
     const SimulationState state = straight.save();
     restored.restore(state);
@@ -109,7 +109,7 @@ TEST(SensorDelay, IsSavedOnItsWay) {
 TEST(SensorDelay, EndsWithAResetOrAnotherTimeStep) {
   SimulationConfig config = swingingScene();
   config.robots[0].sensors[2].delay = 0.01;
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   const auto steps_until_reading = [&] {
     int steps = 1;
     while (numbersOf(simulator.step(), 2).empty()) ++steps;
@@ -161,7 +161,7 @@ TEST(SensorLimits, TurnTheOrientationOfATilt) {
   config.robots[0].X_WR = makePose({0, 0, 0}, {0, 0, 0.7});
   config.robots[0].initial_positions["hinge"] = 0.6;
   config.robots[0].sensors[2].limits[0].saturation = 0.25;
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   const TiltReading held = reading<TiltReading>(simulator.step(), 2);
   EXPECT_EQ(held.pitch, 0.25);
   const Matrix3 expected = makePose(Vector3::Zero(), {0, 0.25, 0.7}).linear();
@@ -192,7 +192,7 @@ TEST(SensorTruth, IsTheReadingWithoutErrors) {
 
 TEST(SensorTruth, IsLeftOutOfSensorsWithoutErrors) {
   SimulationConfig config = swingingScene();
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   simulator.step();
   const std::vector<SensorSample>& samples = simulator.report().samples;
   ASSERT_EQ(samples.size(), 4u);
@@ -209,4 +209,4 @@ TEST(SensorErrors, ChangeNoOtherSensorAndNoMotion) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 int readings(const SensorSchedule& schedule, std::uint64_t first, std::uint64_t end) {
@@ -53,4 +53,4 @@ TEST(SensorSchedule, EveryStepWithoutARateOrWithOneThatIsFasterThanTheSteps) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -3,7 +3,7 @@
 
 #include "sim/simulation_scene.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 SensorConfig sensor(const std::string& name, SensorType type, const std::string& link = "") {
@@ -43,7 +43,7 @@ TEST(ForceTorqueSensor, WeightAndMomentInEveryFrameAndSign) {
   for (const char* frame : {"child", "parent", "sensor"})
     for (const char* measure : {"parent_to_child", "child_to_parent"})
       config.robots[0].sensors.push_back(forceTorque(std::string(frame) + measure, "flange", frame, measure));
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   stepFor(&simulator, 0.2);
 
   // Wrench in the mast's axes: com at R_y(-90) (0.1, 0, 0) = (0, 0, 0.1) from the flange; gravity -y; the wrist is held up by +y.
@@ -68,7 +68,7 @@ TEST(ForceTorqueSensor, AxesOfAMovedHinge) {
   config.robots[0].motor["default"] = MotorLaw::IMPLICIT_PD;
   config.robots[0].sensors = {forceTorque("child", "hinge", "child", "parent_to_child"),
                               forceTorque("sensor", "hinge", "sensor", "parent_to_child")};
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   stepFor(&simulator, 0.5);
   const double q = simulator.report().joints[0].position;
   const ForceTorqueReading child = reading<ForceTorqueReading>(simulator.report(), 0);
@@ -84,7 +84,7 @@ TEST(ForceTorqueSensor, NoiseHasItsDeviation) {
   config.robots = {robot("mast", MAST, true)};
   config.robots[0].sensors = {forceTorque("wrist", "flange", "parent", "parent_to_child")};
   config.robots[0].sensors[0].noise_stddev = 0.5;
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   double sum = 0, sum_of_squares = 0;
   constexpr int COUNT = 4000;
   for (int i = 0; i < COUNT; ++i) {
@@ -102,7 +102,7 @@ TEST(ImuSensor, AtRestItFeelsTheGround) {
   SensorConfig on_base = sensor("imu", SensorType::IMU, "base");
   on_base.X_LS = makePose({0.1, 0.2, 0.3}, {M_PI / 2, 0, 0});
   config.robots[0].sensors = {on_base};
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   simulator.step();
   const ImuReading value = reading<ImuReading>(simulator.report(), 0);
   expectNear(value.linear_acceleration, {0, G, 0}, 1e-12);
@@ -117,7 +117,7 @@ TEST(ImuSensor, InFreeFallItFeelsNothing) {
   SensorConfig imu = sensor("imu", SensorType::IMU, "wrist");
   imu.X_LS = makePose({0.3, 0, 0});
   config.robots[0].sensors = {imu, sensor("tilt", SensorType::TILT, "mast")};
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   stepFor(&simulator, 0.1);
   expectNear(reading<ImuReading>(simulator.report(), 0).linear_acceleration, Vector3::Zero(), 1e-9);
   const TiltReading tilt = reading<TiltReading>(simulator.report(), 1);
@@ -141,7 +141,7 @@ TEST(ImuSensor, OnATurntableItFeelsTheCentre) {
   imu.X_LS = makePose({0.2, 0, 0});
   imu.rate = 200;
   config.robots[0].sensors = {imu};
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   simulator.commandJoints(0, {{"spin"}, {}, {3.0}, {}});
   stepFor(&simulator, 1);
   EXPECT_NEAR(simulator.report().joints[0].velocity, 3, 1e-6);
@@ -157,7 +157,7 @@ TEST(ImuSensor, FeelsTangentialAccelerationAtItsLeverArm) {
   SensorConfig imu = sensor("imu", SensorType::IMU, "disc");
   imu.X_LS = makePose({0.2, 0, 0});
   config.robots[0].sensors = {imu};
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   simulator.commandJoints(0, {{"spin"}, {}, {}, {0.4}});
   simulator.step();
   simulator.step();
@@ -171,7 +171,7 @@ TEST(ImuSensor, BiasWalksAndResets) {
   SensorConfig imu = sensor("imu", SensorType::IMU, "base");
   imu.gyro_bias_stddev = 1;
   config.robots[0].sensors = {imu};
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   stepFor(&simulator, 1);
   const double strayed = reading<ImuReading>(simulator.report(), 0).angular_velocity.norm();
   EXPECT_GT(strayed, 0.1);
@@ -183,7 +183,7 @@ TEST(ImuSensor, BiasWalksAndResets) {
 
 /** Readings of a noisy IMU of the first robot in 100 steps. */
 std::vector<Vector3> imuNoise(const SimulationConfig& config) {
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   std::vector<Vector3> noise;
   for (int i = 0; i < 100; ++i) {
     simulator.step();
@@ -209,7 +209,7 @@ TEST(Sensors, NoiseIsAStreamOfEachSensorsOwn) {
   const std::vector<Vector3> noise = imuNoise(alone);
   ASSERT_EQ(noise.size(), 100u);
   EXPECT_EQ(imuNoise(beside), noise);
-  Simulator two(beside, UriResolver());
+  Simulator two(beside, model::UriResolver());
   two.step();
   EXPECT_NE(reading<ImuReading>(two.report(), 0).angular_velocity, reading<ImuReading>(two.report(), 1).angular_velocity);
   SimulationConfig other_seed = alone;
@@ -226,7 +226,7 @@ TEST(Sensors, RateIsAWholeNumberOfStepsFromStepZero) {
   SensorConfig imu = sensor("imu", SensorType::IMU, "arm");
   imu.rate = 250;
   config.robots[0].sensors = {imu, sensor("tilt", SensorType::TILT, "arm")};
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   for (int i = 1; i <= 12; ++i) EXPECT_EQ(simulator.step().samples.size(), i % 4 == 0 ? 2u : 1u) << i;
 }
 
@@ -243,7 +243,7 @@ TEST(ContactSensor, TotalIsTheWeight) {
   config.robots = {robot("foot", FOOT, false)};
   config.robots[0].X_WR = makePose({0.3, 0.2, 0.0525});
   config.robots[0].sensors = {sensor("sole", SensorType::CONTACT, "body"), sensor("hat", SensorType::CONTACT, "hat")};
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   stepFor(&simulator, 1);
   const ContactReading sole = reading<ContactReading>(simulator.report(), 0);
   EXPECT_EQ(sole.contacts.size(), 4u);
@@ -263,7 +263,7 @@ TEST(MotorCurrentSensor, EffortOverTorqueConstant) {
   SensorConfig motors = sensor("motors", SensorType::MOTOR_CURRENT);
   motors.torque_constant = {{"default", 3}, {"hinge", 0.5}};
   config.robots[0].sensors = {motors};
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   stepFor(&simulator, 0.5);
   const MotorCurrentReading value = reading<MotorCurrentReading>(simulator.report(), 0);
   ASSERT_EQ(value.joints, std::vector<std::string>{"hinge"});
@@ -272,10 +272,10 @@ TEST(MotorCurrentSensor, EffortOverTorqueConstant) {
   std::string& urdf = config.robots[0].urdf_xml;
   urdf.insert(urdf.find("</robot>"),
               R"(<transmission name="t"><joint name="hinge"/><mechanicalReduction>40</mechanicalReduction></transmission>)");
-  Simulator geared(config, UriResolver());
+  Simulator geared(config, model::UriResolver());
   stepFor(&geared, 0.5);
   EXPECT_DOUBLE_EQ(reading<MotorCurrentReading>(geared.report(), 0).currents[0], value.efforts[0] / (40 * 0.5));
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

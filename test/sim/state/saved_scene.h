@@ -11,7 +11,7 @@
 
 #include "sim/simulation_scene.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 
 /** A motor with an integral on its way along a trajectory, sensors with noise and drift; cubes that rest, bounce, and sit on a layer's
  * stop; a plate that crosses the ground, and so is outside its layer and led back. */
@@ -110,4 +110,4 @@ inline std::vector<std::uint64_t> otherWords(std::uint64_t word) {
   return others;
 }
 
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -2,7 +2,7 @@
 #include "blem_sim/geometry/input_error.h"
 #include "sim/simulation_scene.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 /** Cubes that tumble onto each other and a motor that works: something of every kind of state. */
@@ -27,7 +27,7 @@ SimulationConfig busyScene() {
 }
 
 TEST(SimulatorState, SameInputSameHash) {
-  Simulator first(busyScene(), UriResolver()), second(busyScene(), UriResolver());
+  Simulator first(busyScene(), model::UriResolver()), second(busyScene(), model::UriResolver());
   EXPECT_EQ(first.stateHash(), second.stateHash());
   stepFor(&first, 0.5);
   const std::uint64_t middle = first.stateHash();
@@ -38,7 +38,7 @@ TEST(SimulatorState, SameInputSameHash) {
 }
 
 TEST(SimulatorState, RestoredInMidContactItReplaysBitForBit) {
-  Simulator simulator(busyScene(), UriResolver());
+  Simulator simulator(busyScene(), model::UriResolver());
   stepFor(&simulator, 0.25);
   ASSERT_FALSE(simulator.report().contacts.empty());
   const SimulationState saved = simulator.save();
@@ -54,17 +54,17 @@ TEST(SimulatorState, RestoredInMidContactItReplaysBitForBit) {
   EXPECT_EQ(simulator.stateHash(), end);
   EXPECT_EQ(reading<ImuReading>(simulator.report(), 0).linear_acceleration, noisy.linear_acceleration);
 
-  Simulator other(busyScene(), UriResolver());
+  Simulator other(busyScene(), model::UriResolver());
   other.restore(saved);
   stepFor(&other, 0.3);
   EXPECT_EQ(other.stateHash(), end);
 }
 
 TEST(SimulatorState, RefusesAStateOfOtherModels) {
-  Simulator simulator(busyScene(), UriResolver());
+  Simulator simulator(busyScene(), model::UriResolver());
   SimulationConfig fewer = busyScene();
   fewer.objects.pop_back();
-  Simulator other(fewer, UriResolver());
+  Simulator other(fewer, model::UriResolver());
   const std::uint64_t before = other.stateHash();
   EXPECT_THROW(other.restore(simulator.save()), InputError);
   EXPECT_EQ(other.stateHash(), before);
@@ -72,7 +72,7 @@ TEST(SimulatorState, RefusesAStateOfOtherModels) {
 
 /** A state with any part missing at the end, of the dynamics' or of the rest, is refused, and nothing of it is taken. */
 TEST(SimulatorState, RefusesAStateThatIsCutShort) {
-  Simulator simulator(busyScene(), UriResolver()), other(busyScene(), UriResolver());
+  Simulator simulator(busyScene(), model::UriResolver()), other(busyScene(), model::UriResolver());
   stepFor(&simulator, 0.25);
   const SimulationState whole = simulator.save();
   const std::uint64_t untouched = other.stateHash();
@@ -101,7 +101,7 @@ TEST(SimulatorState, RefusesAStateThatIsCutShort) {
 }
 
 TEST(SimulatorState, ResetWorldKeepsTimeResetSimulationStartsAgain) {
-  Simulator simulator(busyScene(), UriResolver());
+  Simulator simulator(busyScene(), model::UriResolver());
   const std::uint64_t fresh = simulator.stateHash();
   stepFor(&simulator, 0.2);
   const std::uint64_t later = simulator.stateHash();
@@ -122,7 +122,7 @@ TEST(SimulatorState, EnvironmentsComeAndGoUnderABox) {
   SimulationConfig config;
   config.environments = {ground()};
   config.objects = {box("cube", Vector3::Constant(0.1), 1, {0, 0, 0.0525})};
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   stepFor(&simulator, 0.1);
   EXPECT_NEAR(bodyOf(simulator, "cube").X_WB.translation().z(), 0.0525, 2e-6);
 
@@ -144,7 +144,7 @@ TEST(SimulatorState, EnvironmentsComeAndGoUnderABox) {
 TEST(SimulatorState, AnUnreadableEnvironmentChangesNothing) {
   SimulationConfig config;
   config.objects = {box("cube", Vector3::Constant(0.1), 1, {0, 0, 0.0525})};
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   EnvironmentConfig missing;
   missing.name = "missing";
   missing.uri = "there_is_no_such_file.stl";
@@ -154,4 +154,4 @@ TEST(SimulatorState, AnUnreadableEnvironmentChangesNothing) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

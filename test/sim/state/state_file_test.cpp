@@ -9,7 +9,7 @@
 #include "support/input_errors.h"
 #include "support/temporary_folder.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 /** Lets files grow no further than this, as a full disk does, while it lives. */
@@ -31,7 +31,7 @@ class FullDisk {
 };
 
 TEST(StateFile, ComesBackBitForBit) {
-  Simulator simulator(sceneOfAllKinds(), UriResolver());
+  Simulator simulator(sceneOfAllKinds(), model::UriResolver());
   setOut(&simulator);
   const TemporaryFolder folder;
   saveState(simulator.save(), folder.path("state"));
@@ -41,7 +41,7 @@ TEST(StateFile, ComesBackBitForBit) {
 }
 
 TEST(StateFile, FullDiskIsToldInOneLineAndTheOldFileStays) {
-  Simulator simulator(sceneOfAllKinds(), UriResolver());
+  Simulator simulator(sceneOfAllKinds(), model::UriResolver());
   const TemporaryFolder folder;
   const std::string file = folder.path("state");
   saveState(simulator.save(), file);
@@ -58,7 +58,7 @@ TEST(StateFile, FullDiskIsToldInOneLineAndTheOldFileStays) {
 }
 
 TEST(StateFile, LinkInTheWayOfTheDraftIsNotFollowed) {
-  Simulator simulator(sceneOfAllKinds(), UriResolver());
+  Simulator simulator(sceneOfAllKinds(), model::UriResolver());
   const TemporaryFolder folder;
   const std::string other = folder.write("other", "mine");
   std::filesystem::create_symlink(other, folder.path("state.part"));
@@ -70,7 +70,7 @@ TEST(StateFile, LinkInTheWayOfTheDraftIsNotFollowed) {
 }
 
 TEST(StateFile, CutAnywhereOrWithABitTurnedItIsRefused) {
-  Simulator simulator(sceneOfAllKinds(), UriResolver());
+  Simulator simulator(sceneOfAllKinds(), model::UriResolver());
   setOut(&simulator);
   const std::string bytes = stateBytes(simulator.save());
   const auto load = [&](const std::string& given) { return refusal([&] { simulator.restore(stateOf(given, "file")); }); };
@@ -84,4 +84,4 @@ TEST(StateFile, CutAnywhereOrWithABitTurnedItIsRefused) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -4,13 +4,13 @@
 #include "state/state_header.h"
 #include "support/sanitizers.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 class StateFuzz : public testing::TestWithParam<const char*> {};
 
 TEST_P(StateFuzz, TheSceneHasEveryKindOfState) {
-  Simulator simulator(sceneOfAllKinds(GetParam()), UriResolver());
+  Simulator simulator(sceneOfAllKinds(GetParam()), model::UriResolver());
   setOut(&simulator);
   EXPECT_GT(simulator.report().contacts.size(), 8u);
   EXPECT_TRUE(simulator.report().status & CONTACT_UNRELIABLE);
@@ -20,7 +20,7 @@ TEST_P(StateFuzz, TheSceneHasEveryKindOfState) {
 }
 
 TEST_P(StateFuzz, OneChangedWordIsRefusedAndNothingIsChanged) {
-  Simulator simulator(sceneOfAllKinds(GetParam()), UriResolver()), other(sceneOfAllKinds(GetParam()), UriResolver());
+  Simulator simulator(sceneOfAllKinds(GetParam()), model::UriResolver()), other(sceneOfAllKinds(GetParam()), model::UriResolver());
   setOut(&simulator);
   stepFor(&other, 0.01);
   const SimulationState saved = simulator.save();
@@ -38,7 +38,7 @@ TEST_P(StateFuzz, OneChangedWordIsRefusedAndNothingIsChanged) {
 }
 
 TEST_P(StateFuzz, OneChangedLetterOfTheLayoutIsRefused) {
-  Simulator simulator(sceneOfAllKinds(GetParam()), UriResolver());
+  Simulator simulator(sceneOfAllKinds(GetParam()), model::UriResolver());
   const SimulationState saved = simulator.save();
   const std::uint64_t untouched = simulator.stateHash();
   for (std::size_t i = 0; i < saved.layout.size(); ++i) {
@@ -53,7 +53,7 @@ TEST_P(StateFuzz, OneChangedLetterOfTheLayoutIsRefused) {
 
 /** A state that is changed together with its checksum is refused in one line with nothing changed, or can be stepped on. */
 TEST_P(StateFuzz, OneChangedWordUnderItsOwnChecksumBreaksNothing) {
-  Simulator simulator(sceneOfAllKinds(GetParam()), UriResolver()), other(sceneOfAllKinds(GetParam()), UriResolver());
+  Simulator simulator(sceneOfAllKinds(GetParam()), model::UriResolver()), other(sceneOfAllKinds(GetParam()), model::UriResolver());
   setOut(&simulator);
   const SimulationState saved = simulator.save();
   const std::vector<std::uint64_t> words = wordsOf(saved);
@@ -91,4 +91,4 @@ TEST_P(StateFuzz, OneChangedWordUnderItsOwnChecksumBreaksNothing) {
 INSTANTIATE_TEST_SUITE_P(Steppers, StateFuzz, testing::Values("articulated", "world_step", "quick_step"));
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

@@ -5,7 +5,7 @@
 #include "sim/state/saved_scene.h"
 #include "state/state_header.h"
 
-namespace blem_sim {
+namespace blem_sim::sim {
 namespace {
 
 /** The words of a refusal; empty if it is restored. */
@@ -30,7 +30,7 @@ TEST(StateLayout, SaysWhatIsNotTheSame) {
   const Change changes[] = {
       {"time_step is", [](SimulationConfig* c) { c->time_step = 0.002; }},
       {"solver settings is", [](SimulationConfig* c) { c->solver.correction_fraction = 0.1; }},
-      {"contact settings is", [](SimulationConfig* c) { c->contact.friction_rule = FrictionRule::MEAN; }},
+      {"contact settings is", [](SimulationConfig* c) { c->contact.friction_rule = contact::FrictionRule::MEAN; }},
       {"model 'cube': kind or settings", [](SimulationConfig* c) { c->objects[0].max_contacts = 7; }},
       {"body 'cube::link': mass is", [](SimulationConfig* c) { c->objects[0].mass = 1.01; }},
       {"body 'ball::link': centre of mass or inertia", [](SimulationConfig* c) { c->objects[1].com = Vector3(0.001, 0, 0); }},
@@ -63,13 +63,13 @@ TEST(StateLayout, SaysWhatIsNotTheSame) {
        }},
       {"is at another place", [](SimulationConfig* c) { std::swap(c->objects[0], c->objects[1]); }},
   };
-  Simulator simulator(sceneOfAllKinds(), UriResolver());
+  Simulator simulator(sceneOfAllKinds(), model::UriResolver());
   setOut(&simulator);
   const SimulationState saved = simulator.save();
   for (const Change& change : changes) {
     SimulationConfig config = sceneOfAllKinds();
     change.change(&config);
-    Simulator other(config, UriResolver());
+    Simulator other(config, model::UriResolver());
     const std::string words = refusalToRestore(&other, saved);
     EXPECT_NE(words.find(change.what), std::string::npos) << change.what << ": " << words;
     EXPECT_EQ(words.find('\n'), std::string::npos) << words;
@@ -79,31 +79,31 @@ TEST(StateLayout, SaysWhatIsNotTheSame) {
 /** A mesh of the same file name, whose vertices were moved by a micrometre. */
 TEST(StateLayout, SeesAMeshThatOnlyItsVerticesTellApart) {
   SimulationConfig config = sceneOfAllKinds();
-  TriangleMesh mesh = boxMesh({0.1, 0.1, 0.1});
+  geometry::TriangleMesh mesh = geometry::boxMesh({0.1, 0.1, 0.1});
   config.objects[0].uri = meshFile("state_layout", mesh);
   config.objects[0].inertia = Matrix3::Identity();
   config.objects[0].com = Vector3::Zero();
-  const SimulationState saved = Simulator(config, UriResolver()).save();
+  const SimulationState saved = Simulator(config, model::UriResolver()).save();
   mesh.vertices[3].x() += 1e-6;
   meshFile("state_layout", mesh);
-  Simulator other(config, UriResolver());
+  Simulator other(config, model::UriResolver());
   EXPECT_NE(refusalToRestore(&other, saved).find("collider 1 'cube': mesh is not the same"), std::string::npos);
 }
 
 TEST(StateLayout, WhatDoesNotChangeResultsMayDiffer) {
   SimulationConfig config = sceneOfAllKinds();
-  Simulator simulator(config, UriResolver());
+  Simulator simulator(config, model::UriResolver());
   setOut(&simulator);
   config.solver.threads = 2;
   config.random_seed = 7;
   config.objects[0].X_WO = makePose({0, 0, 1});
-  Simulator other(config, UriResolver());
+  Simulator other(config, model::UriResolver());
   other.restore(simulator.save());
   EXPECT_EQ(other.stateHash(), simulator.stateHash());
 }
 
 TEST(StateLayout, AnotherVersionIsToldFromWhatIsNoState) {
-  Simulator simulator(sceneOfAllKinds(), UriResolver());
+  Simulator simulator(sceneOfAllKinds(), model::UriResolver());
   SimulationState state = simulator.save();
   ++state.header.format;
   EXPECT_NE(refusalToRestore(&simulator, state).find("this version restores"), std::string::npos);
@@ -112,4 +112,4 @@ TEST(StateLayout, AnotherVersionIsToldFromWhatIsNoState) {
 }
 
 }  // namespace
-}  // namespace blem_sim
+}  // namespace blem_sim::sim

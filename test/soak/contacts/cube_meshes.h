@@ -9,11 +9,11 @@
 
 namespace blem_sim {
 
-inline TriangleMesh coarseCube(RandomShapes&) { return boxMesh(Vector3::Constant(0.1)); }
+inline geometry::TriangleMesh coarseCube(geometry::RandomShapes&) { return geometry::boxMesh(Vector3::Constant(0.1)); }
 
 /** 1,200 triangles, the inner vertices of each side strewn about in its plane. */
-inline TriangleMesh retessellatedCube(RandomShapes& random) {
-  TriangleMesh mesh = griddedBox(Vector3::Constant(0.1), Vector3i::Constant(10));
+inline geometry::TriangleMesh retessellatedCube(geometry::RandomShapes& random) {
+  geometry::TriangleMesh mesh = geometry::griddedBox(Vector3::Constant(0.1), Vector3i::Constant(10));
   for (Vector3& v : mesh.vertices) {
     if ((v.cwiseAbs().array() > 0.0499).count() > 1) continue;
     for (int k = 0; k < 3; ++k)
@@ -23,13 +23,15 @@ inline TriangleMesh retessellatedCube(RandomShapes& random) {
 }
 
 /** Every triangle with corners of its own, each off by up to 10 um along every axis. */
-inline TriangleMesh crackedCube(RandomShapes& random) { return crackedCopy(boxMesh(Vector3::Constant(0.1)), 1e-5, random); }
+inline geometry::TriangleMesh crackedCube(geometry::RandomShapes& random) {
+  return crackedCopy(geometry::boxMesh(Vector3::Constant(0.1)), 1e-5, random);
+}
 
 /** Each side of another tessellation, not conforming with its neighbours along the cube's edges. */
-inline TriangleMesh tJunctionCube(RandomShapes& random) {
-  return boxOfGrids(Vector3::Constant(0.1), [&random](int, double u, double v) {
+inline geometry::TriangleMesh tJunctionCube(geometry::RandomShapes& random) {
+  return geometry::boxOfGrids(Vector3::Constant(0.1), [&random](int, double u, double v) {
     const int along_v = random.integer(1, 7), along_u = random.integer(1, 7);
-    return gridMesh(u, v, along_u, along_v);
+    return geometry::gridMesh(u, v, along_u, along_v);
   });
 }
 

@@ -27,12 +27,12 @@ std::vector<Vector3> floorCloud(std::mt19937* random) {
   return points;
 }
 
-SimulationConfig humanoidOnStream(const std::string& source) {
-  SimulationConfig config = loadConfigFile(source + "/config/demo_point_cloud.yaml");
-  EnvironmentConfig& floor = config.environments[0];
+sim::SimulationConfig humanoidOnStream(const std::string& source) {
+  sim::SimulationConfig config = sim::loadConfigFile(source + "/config/demo_point_cloud.yaml");
+  sim::EnvironmentConfig& floor = config.environments[0];
   floor.uri.clear();
   floor.live.topic = "/points";
-  floor.cloud.point_radius = pointRadius(SIDE / COUNT);
+  floor.cloud.point_radius = model::pointRadius(SIDE / COUNT);
   return config;
 }
 
@@ -44,34 +44,34 @@ struct Stand {
   double fall = 0;  // [m]
 };
 
-double weightOf(const World& world) {
+double weightOf(const dynamics::World& world) {
   double mass = 0;
   for (int body = 0; body < world.bodyCount(); ++body) mass += world.bodySpec(body).inertial.mass;
   return mass * 9.81;
 }
 
-double forceOf(const StepReport& report) {
+double forceOf(const sim::StepReport& report) {
   double force = 0;
-  for (const ContactReport& contact : report.contacts) force += (contact.body_a != WORLD_BODY ? 1 : -1) * contact.force.z();
+  for (const sim::ContactReport& contact : report.contacts) force += (contact.body_a != dynamics::WORLD_BODY ? 1 : -1) * contact.force.z();
   return force;
 }
 
 Stand stand(bool streamed, int steps) {
   const std::string source = BLEM_SIM_SOURCE_DIR;
-  const SimulationConfig config = humanoidOnStream(source);
-  Simulator simulator(config, UriResolver({{"blem_sim", source}}));
+  const sim::SimulationConfig config = humanoidOnStream(source);
+  sim::Simulator simulator(config, model::UriResolver({{"blem_sim", source}}));
   const std::string& floor = config.environments[0].name;
   const double weight = weightOf(simulator.world());
   std::mt19937 random(3);
   Stand stand;
   double force = weight, height = 0;
   for (int i = -2000; i < steps; ++i) {
-    CloudSurface surface;
+    sim::CloudSurface surface;
     const bool exchanged = i == -2000 || (streamed && i % PERIOD == 0);
-    if (exchanged) surface = makeCloudSurface(floorCloud(&random), config.environments[0].cloud, floor);
+    if (exchanged) surface = sim::makeCloudSurface(floorCloud(&random), config.environments[0].cloud, floor);
     const double start = threadSeconds();
     if (exchanged) simulator.updateCloud(floor, &surface);
-    const StepReport& report = simulator.step();
+    const sim::StepReport& report = simulator.step();
     const double seconds = threadSeconds() - start, now = forceOf(report), z = report.bodies[0].X_WB.translation().z();
     if (i >= 0) {
       stand.seconds.push_back(seconds);

@@ -17,26 +17,26 @@ struct Slope {
 class SlidingCube {
  public:
   SlidingCube(const Slope& slope, double degrees, int direction) : angle_(degrees * M_PI / 180), heading_(direction * M_PI / 8) {
-    SimulationConfig config;
+    sim::SimulationConfig config;
     config.solver = soakSettings();
     const double size = slope.cell > 0 ? 0.5 : 40;
-    EnvironmentConfig plane;
+    sim::EnvironmentConfig plane;
     plane.name = "plane";
     const int cells = slope.cell > 0 ? static_cast<int>(size / slope.cell) : 1;
-    plane.uri = meshFile(std::string("slope_") + slope.name, gridMesh(size, size, cells, cells));
+    plane.uri = sim::meshFile(std::string("slope_") + slope.name, geometry::gridMesh(size, size, cells, cells));
     config.environments = {plane};
-    config.gravity = G * (std::sin(angle_) * down() - std::cos(angle_) * Vector3::UnitZ());
-    config.objects = {box("cube", Vector3::Constant(0.1), 1, {-0.1 * down().x(), -0.1 * down().y(), 0.0525})};
-    simulator_ = std::make_unique<Simulator>(config, UriResolver());
+    config.gravity = sim::G * (std::sin(angle_) * down() - std::cos(angle_) * Vector3::UnitZ());
+    config.objects = {sim::box("cube", Vector3::Constant(0.1), 1, {-0.1 * down().x(), -0.1 * down().y(), 0.0525})};
+    simulator_ = std::make_unique<sim::Simulator>(config, model::UriResolver());
   }
-  void run(double seconds) { stepFor(simulator_.get(), seconds); }
+  void run(double seconds) { sim::stepFor(simulator_.get(), seconds); }
   Vector3 down() const { return {std::cos(heading_), std::sin(heading_), 0}; }
-  Vector3 velocity() const { return bodyOf(*simulator_, "cube").v_WCom; }
-  double theory() const { return G * (std::sin(angle_) - 0.5 * std::cos(angle_)); }
+  Vector3 velocity() const { return sim::bodyOf(*simulator_, "cube").v_WCom; }
+  double theory() const { return sim::G * (std::sin(angle_) - 0.5 * std::cos(angle_)); }
 
  private:
   double angle_, heading_;  // [rad]
-  std::unique_ptr<Simulator> simulator_;
+  std::unique_ptr<sim::Simulator> simulator_;
 };
 
 class SoakMeshSlope : public ::testing::TestWithParam<Slope> {};

@@ -14,22 +14,22 @@ constexpr double SIZE = 0.1, GAP = 0.01, SETTLING = 5;  // [m], [m], [s]
 struct Stack {
   const char* name;
   int cubes;
-  TriangleMesh (*mesh)(RandomShapes&);
+  geometry::TriangleMesh (*mesh)(geometry::RandomShapes&);
   double layer, offset;    ///< [m]
   double off_theory, rms;  ///< [m], [m/s] allowed
 };
 
-SimulationConfig configOf(const Stack& stack) {
-  SimulationConfig config;
+sim::SimulationConfig configOf(const Stack& stack) {
+  sim::SimulationConfig config;
   config.solver = soakSettings();
-  config.environments = {ground()};
+  config.environments = {sim::ground()};
   config.contact.boundary_width = stack.layer;
-  RandomShapes random(3);
+  geometry::RandomShapes random(3);
   for (int i = 0; i < stack.cubes; ++i) {
     const std::string name = "cube" + std::to_string(i);
-    ObjectConfig cube;
+    sim::ObjectConfig cube;
     cube.name = name;
-    cube.uri = meshFile(std::string("stack_") + stack.name + std::to_string(i), stack.mesh(random));
+    cube.uri = sim::meshFile(std::string("stack_") + stack.name + std::to_string(i), stack.mesh(random));
     cube.mass = 1;
     cube.com = Vector3::Zero();
     cube.inertia = Matrix3(Matrix3::Identity() * SIZE * SIZE / 6);
@@ -46,9 +46,9 @@ struct StackFigures {
   long speeds = 0;
   Range contacts;
 
-  void add(const Simulator& simulator, const Stack& stack) {
+  void add(const sim::Simulator& simulator, const Stack& stack) {
     for (int i = 0; i < stack.cubes; ++i) {
-      const BodyState state = bodyOf(simulator, "cube" + std::to_string(i));
+      const dynamics::BodyState state = sim::bodyOf(simulator, "cube" + std::to_string(i));
       const Vector3 start = simulator.config().objects[i].X_WO.translation();
       const double z = 0.5 * SIZE + stack.layer + i * (SIZE + 2 * stack.layer);
       height = std::max(height, std::abs(state.X_WB.translation().z() - z));
@@ -64,15 +64,15 @@ class SoakStack : public ::testing::TestWithParam<Stack> {};
 
 TEST_P(SoakStack, StandsTenMinutes) {
   const Stack& stack = GetParam();
-  Simulator simulator(configOf(stack), UriResolver());
-  stepFor(&simulator, SETTLING);
+  sim::Simulator simulator(configOf(stack), model::UriResolver());
+  sim::stepFor(&simulator, SETTLING);
   StackFigures figures;
   StepTimes times;
   for (int k = 0; k < soakSteps(600 - SETTLING, 5); ++k) {
     times.start();
-    const StepReport& report = simulator.step();
+    const sim::StepReport& report = simulator.step();
     times.stop(report);
-    ASSERT_FALSE(report.status & (STATE_NOT_FINITE | CONTACT_UNRELIABLE)) << k;
+    ASSERT_FALSE(report.status & (sim::STATE_NOT_FINITE | sim::CONTACT_UNRELIABLE)) << k;
     figures.add(simulator, stack);
   }
   const double rms = std::sqrt(figures.square_sum / figures.speeds);
@@ -100,15 +100,16 @@ INSTANTIATE_TEST_SUITE_P(Cubes, SoakStack,
 
 /** The data's heavyblocktest: 100 kg fall 34 cm on 1 kg. */
 TEST(SoakHeavyBlock, RestsOnTop) {
-  SimulationConfig config;
+  sim::SimulationConfig config;
   config.solver = soakSettings();
-  config.environments = {ground()};
+  config.environments = {sim::ground()};
   config.contact.surface.restitution = 0.2;
-  config.objects = {box("light", Vector3::Constant(0.1), 1, {0, 0, 0.06}), box("heavy", Vector3::Constant(0.4), 100, {0, 0, 0.65})};
-  Simulator simulator(config, UriResolver());
+  config.objects = {sim::box("light", Vector3::Constant(0.1), 1, {0, 0, 0.06}),
+                    sim::box("heavy", Vector3::Constant(0.4), 100, {0, 0, 0.65})};
+  sim::Simulator simulator(config, model::UriResolver());
   double of_layer = 0;
   for (int k = 0; k < soakSteps(60, 5); ++k) of_layer = std::max(of_layer, simulator.step().max_of_layer);
-  const BodyState light = bodyOf(simulator, "light"), heavy = bodyOf(simulator, "heavy");
+  const dynamics::BodyState light = sim::bodyOf(simulator, "light"), heavy = sim::bodyOf(simulator, "heavy");
   const Vector3 light_off = light.X_WB.translation() - Vector3(0, 0, 0.0525), heavy_off = heavy.X_WB.translation() - Vector3(0, 0, 0.3075);
   figure("light block off theory", 1e6 * light_off.norm(), "um");
   figure("heavy block off theory", 1e6 * heavy_off.norm(), "um");

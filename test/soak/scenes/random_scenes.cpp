@@ -116,7 +116,7 @@ class Summary {
     std::printf("%d scenes, %ld steps, %d failed\n", scenes_, steps_, failed);
     for (const auto& [kind, count] : failures_) std::printf("  %-20s %6d\n", kind.c_str(), count);
     for (int bit = 0; bit < STATUS_BITS; ++bit)
-      std::printf("  %-20s %8ld steps (%.4f %%) in %d scenes\n", STEP_STATUS[bit].name, bits_[bit],
+      std::printf("  %-20s %8ld steps (%.4f %%) in %d scenes\n", sim::STEP_STATUS[bit].name, bits_[bit],
                   100.0 * static_cast<double>(bits_[bit]) / static_cast<double>(std::max(1L, steps_)), scenes_with_[bit]);
     std::printf("  gained over 1 %% of the energy that moved, told or not: %d scenes; most: x %.3g, seed %llu\n", gaining_, most_gained_,
                 static_cast<unsigned long long>(gaining_seed_));
@@ -141,7 +141,7 @@ void tell(const SceneOutcome& outcome, const Options& options) {
               outcome.failed() ? outcome.failure : "ok", outcome.details, scene.description.c_str(), outcome.gained, outcome.of_energy,
               1e3 * outcome.worst_step);
   for (int bit = 0; bit < STATUS_BITS; ++bit)
-    if (outcome.bits[bit] > 0) std::printf(" %s:%d", STEP_STATUS[bit].name, outcome.bits[bit]);
+    if (outcome.bits[bit] > 0) std::printf(" %s:%d", sim::STEP_STATUS[bit].name, outcome.bits[bit]);
   if (outcome.failed()) std::printf(" | scripts/validate_random_scenes --seed %llu", static_cast<unsigned long long>(outcome.seed));
   std::printf("\n");
   std::fflush(stdout);

@@ -9,7 +9,7 @@
 #include "kernels/leaves/leaf_turn.h"
 #include "kernels/leaves/near_features.h"
 
-namespace blem_sim::kernels {
+namespace blem_sim::contact::kernels {
 namespace {
 
 // While features move by no more than the margin, heights and distances change by no more: so the tests are the exact ones, that much
@@ -162,4 +162,4 @@ void leafCrossings(const LeafShapes& a, const LeafShapes& b, const LeafReach& re
 }
 
 }  // namespace
-}  // namespace blem_sim::kernels
+}  // namespace blem_sim::contact::kernels

@@ -3,7 +3,7 @@
 
 #include "kernels/simd.h"
 
-namespace blem_sim::kernels {
+namespace blem_sim::contact::kernels {
 namespace {
 
 inline Floats row(const float* from) { return *reinterpret_cast<const Floats*>(from); }
@@ -94,4 +94,4 @@ inline void forEachBit(std::uint32_t bits, Visit&& visit) {
 }
 
 }  // namespace
-}  // namespace blem_sim::kernels
+}  // namespace blem_sim::contact::kernels

@@ -3,7 +3,7 @@
 
 #include "kernels/leaves/leaf_lanes.h"
 
-namespace blem_sim::kernels {
+namespace blem_sim::contact::kernels {
 namespace {
 
 /** A motion of rows of vectors. */
@@ -91,4 +91,4 @@ void turnLeaf(const LeafShapes& in, const Motion& motion, LeafShapes* out) {
 }
 
 }  // namespace
-}  // namespace blem_sim::kernels
+}  // namespace blem_sim::contact::kernels

@@ -3,7 +3,7 @@
 
 #include "kernels/leaves/leaf_lanes.h"
 
-namespace blem_sim::kernels {
+namespace blem_sim::contact::kernels {
 namespace {
 
 /** Coordinates along the axes of a region [m]. */
@@ -93,4 +93,4 @@ inline std::uint32_t edgesAtBox(const LeafShapes& a, const LeafShapes& b, const 
 }
 
 }  // namespace
-}  // namespace blem_sim::kernels
+}  // namespace blem_sim::contact::kernels
