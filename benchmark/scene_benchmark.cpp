@@ -131,7 +131,7 @@ int main(int argc, char** argv) {
   const auto cubes_on_scan = [](const Vector3& offset) { return cubesOnSurveyedScan("benchmark", offset, 100, 9); };
   add({"scan/at_the_origin", [&] { return cubes_on_scan(Vector3::Zero()); }, 100, 3000, ""});
   add({"scan/surveyed", [&] { return cubes_on_scan(EASTING_NORTHING); }, 100, 3000, ""});
-  add({"scan/surveyed_world", [&] { return model::movedTo(EASTING_NORTHING, cubes_on_scan(EASTING_NORTHING)); }, 100, 3000, ""});
+  add({"scan/surveyed_world", [&] { return movedTo(EASTING_NORTHING, cubes_on_scan(EASTING_NORTHING)); }, 100, 3000, ""});
   if (argc == 2) {
     addPrepared(argv[1], "hubo_plane", 500, 2000);
     addPrepared(argv[1], "hubo_plane_sway", 500, 2000);

@@ -19,7 +19,7 @@ std::string written(const std::string& name, const geometry::TriangleMesh& mesh)
 
 class BlemSim : public Engine {
  public:
-  BlemSim(const StackScene& scene, const std::string& stepper) : simulator_(node::configOf(scene, stepper), model::UriResolver()) {}
+  BlemSim(const StackScene& scene, const std::string& stepper) : simulator_(configOf(scene, stepper), model::UriResolver()) {}
   void step() override { simulator_.step(); }
   std::vector<CubeState> cubes() const override {
     std::vector<CubeState> states;

@@ -61,7 +61,7 @@ struct Pushers : Mechanism {
       const Vector3 p = X_WA * Vector3(HAND.x(), (i & 1 ? 0.5 : -0.5) * HAND.y(), (i & 2 ? 0.5 : -0.5) * HAND.z());
       const double gap = -HAND.x() - (X_WB.inverse() * p).x();
       if (gap < 5 * dynamics::CONTACT_MARGIN)
-        contacts.push_back(contact::contactOf(hands[0], hands[1], p, -X_WB.linear().col(0), -gap, {}, i + 1));
+        contacts.push_back(dynamics::contactOf(hands[0], hands[1], p, -X_WB.linear().col(0), -gap, {}, i + 1));
     }
     return world.step(DT, contacts, drives);
   }

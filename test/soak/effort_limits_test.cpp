@@ -115,7 +115,7 @@ struct HeavyOnLight {
     dynamics::boxOnPlane(world, 0, FOOT, Vector3::UnitZ(), 0, {}, &contacts, 0.01);
     for (int i = 0; i < 8; ++i) {
       const Vector3 p = world.bodyState(body).X_WB * (dynamics::corner(TORSO, i) + Vector3(0, 0, 0.2));
-      if (p.z() < 0.01) contacts.push_back(contact::contactOf(body, dynamics::WORLD_BODY, p, Vector3::UnitZ(), -p.z(), {}, 1000 + i));
+      if (p.z() < 0.01) contacts.push_back(dynamics::contactOf(body, dynamics::WORLD_BODY, p, Vector3::UnitZ(), -p.z(), {}, 1000 + i));
     }
     return world.step(1e-3, contacts, drives);
   }

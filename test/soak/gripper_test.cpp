@@ -82,7 +82,7 @@ struct Gripper {
         const double gap = side * (X_WC.inverse() * (X_WT * p_T)).y() - CUBE / 2;
         if (gap >= dynamics::CONTACT_MARGIN) continue;
         contacts.push_back(
-            contact::contactOf(cube, tips[finger], X_WT * p_T, -side * X_WC.linear().col(1), -gap, {0.8}, 1 + 4 * finger + i));
+            dynamics::contactOf(cube, tips[finger], X_WT * p_T, -side * X_WC.linear().col(1), -gap, {0.8}, 1 + 4 * finger + i));
       }
     }
   }

@@ -158,7 +158,7 @@ void HuboStand::prepare() {
     const Vector3 p = sim_.world.bodyState(point.body).X_WB * point.p_B;
     const double gap = p.z() - ground_;
     if (gap < options_.margin)
-      contacts_.push_back(contact::contactOf(point.body, dynamics::WORLD_BODY, p, Vector3::UnitZ(), -gap, surface_, point.id));
+      contacts_.push_back(dynamics::contactOf(point.body, dynamics::WORLD_BODY, p, Vector3::UnitZ(), -gap, surface_, point.id));
   }
   for (std::size_t j = 0; j < drives_.size(); ++j) {
     sim_.motors[j].sample(time(), DT);

@@ -67,8 +67,8 @@ TEST_P(SoakBounces, NeverGain) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Bodies, SoakBounces,
-                         ::testing::Values(Toss{"a cube", tossCube}, Toss{"two cubes and a ball", tossThree}, Toss{"a rod", tossRod},
-                                           Toss{"a tree", tossTree}));
+                         ::testing::Values(Toss{"a cube", dynamics::tossCube}, Toss{"two cubes and a ball", dynamics::tossThree},
+                                           Toss{"a rod", dynamics::tossRod}, Toss{"a tree", dynamics::tossTree}));
 
 /** A scene of meshes or exact spheres, thrown as the seed says. */
 struct Throw {

@@ -9,7 +9,7 @@
 namespace blem_sim {
 namespace {
 
-void expectSmooth(const dynamics::Scene& scene, double overlap) {
+void expectSmooth(const contact::Scene& scene, double overlap) {
   const contact::Walk w = contact::walk(scene, overlap, soakShort() ? 1 : 4, 1000);
   const std::string name = scene.name;
   figure(name + ": orphans among " + std::to_string(w.steps) + " steps", w.orphans, "");
