@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "kernels/kernels.h"
+
 namespace blem_sim::contact {
 namespace {
 
@@ -15,6 +17,39 @@ Box worldBox(const RayTarget& target) {
   for (int corner = 0; corner < 8; ++corner) box.extend(target.X_WC * bounds.corner(static_cast<Box::CornerType>(corner)));
   const double wider = target.radius + ROUNDING * (box.min().cwiseAbs() + box.max().cwiseAbs()).maxCoeff();
   return Box(box.min().array() - wider, box.max().array() + wider);
+}
+
+static_assert(RayFan::WIDTH == kernels::FAN, "a lane each");
+static_assert(sizeof(geometry::Bvh::Node) == 2 * 3 * sizeof(float) + 2 * sizeof(std::uint32_t), "as the kernels read it");
+static_assert(sizeof(Vector3i) == 3 * sizeof(int) && sizeof(Vector3) == 3 * sizeof(double), "as the kernels read them");
+
+kernels::FanTree treeOf(const geometry::Bvh& tree, double wider) {
+  return {reinterpret_cast<const unsigned char*>(tree.nodes().data()), wider};
+}
+
+RayFan moved(const Pose& X, const RayFan& fan) {
+  RayFan out;
+  out.origin = X * fan.origin;
+  for (int ray = 0; ray < RayFan::WIDTH; ++ray) out.directions[ray] = X.linear() * fan.directions[ray];
+  return out;
+}
+
+kernels::RayFan numbersOf(const RayFan& fan, double nearest) {
+  kernels::RayFan numbers;
+  numbers.nearest = nearest;
+  for (int k = 0; k < 3; ++k) {
+    numbers.origin[k] = fan.origin[k];
+    for (int ray = 0; ray < RayFan::WIDTH; ++ray) numbers.directions[k][ray] = fan.directions[ray][k];
+  }
+  return numbers;
+}
+
+/** Coordinate along which all directions are longest; -1: not the same one, or a direction is zero. */
+int commonAxis(const RayFan& fan) {
+  const int axis = geometry::longestAxis(fan.directions[0]);
+  for (const Vector3& direction : fan.directions)
+    if (geometry::longestAxis(direction) != axis || direction[axis] == 0) return -1;
+  return axis;
 }
 
 }  // namespace
@@ -36,30 +71,95 @@ RayScene::RayScene(std::vector<RayTarget> targets) : targets_(std::move(targets)
   boxes_ = geometry::Bvh(diagonals, 1);
 }
 
-double RayScene::hit(int target, const geometry::Ray& ray, const geometry::RayRange& range) const {
-  const CollisionGeometry& geometry = *targets_[target].geometry;
-  const geometry::Ray ray_C{X_CW_[target] * ray.origin, X_CW_[target].linear() * ray.direction};
-  if (!geometry.isHalfSpace()) return geometry::castRay({geometry.bvh(), geometry.mesh(), targets_[target].radius}, ray_C, range).t;
-  const double fall = geometry.planeNormal().dot(ray_C.direction);
-  const double t = (geometry.planeOffset() - geometry.planeNormal().dot(ray_C.origin)) / fall;
-  return fall != 0 && t >= range.nearest && t <= range.farthest ? t : INFINITE;
-}
+/** The first hits of one fan. */
+class RayScene::Search {
+ public:
+  Search(const RayScene& scene, const RayFan& fan, const Query& query) : scene_(scene), fan_(fan), query_(query) {
+    hits_.fill({query.farthest, -1});
+  }
 
-void RayScene::add(int target, const geometry::Ray& ray, const Query& query, Hit* first) const {
-  const bool own = targets_[target].model == query.own_model && query.own_model >= 0;
-  const double t = hit(target, ray, {own ? query.own_nearest : 0, first->t});
-  if (t == INFINITE || t > first->t) return;
-  if (t < first->t || first->target < 0 || target < first->target) *first = {t, target};
-}
+  Hits firstHits() {
+    for (const int target : scene_.unbounded_) addRays(target, kernels::ALL_OF_FAN);
+    keepEnds();
+    if (!scene_.boxes_.empty()) kernels::kernels().fanLeaves(treeOf(scene_.boxes_, 0), numbersOf(fan_, 0), ends_, {addLeaf, this});
+    for (Hit& hit : hits_)
+      if (hit.target < 0) hit = Hit();
+    return hits_;
+  }
 
-RayScene::Hit RayScene::firstHit(const geometry::Ray& ray, const Query& query) const {
-  Hit first{query.farthest, -1};
-  for (const int target : unbounded_) add(target, ray, query, &first);
-  geometry::visitLeavesAlong(geometry::RaySlabs(ray, 0, 0), boxes_, &first.t, [&](std::uint32_t leaf) {
-    const geometry::Bvh::Node& node = boxes_.nodes()[leaf];
-    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) add(bounded_[boxes_.order()[i]], ray, query, &first);
-  });
-  return first.target < 0 ? Hit() : first;
-}
+ private:
+  static void addLeaf(void* self, std::uint32_t leaf, unsigned lanes) {
+    Search& search = *static_cast<Search*>(self);
+    const geometry::Bvh& boxes = search.scene_.boxes_;
+    const geometry::Bvh::Node& node = boxes.nodes()[leaf];
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) search.addFan(search.scene_.bounded_[boxes.order()[i]], lanes);
+    search.keepEnds();
+  }
+
+  /** @param lanes bits of the rays that count */
+  void addFan(int target, unsigned lanes) {
+    const RayFan fan_C = moved(scene_.X_CW_[target], fan_);
+    const int axis = commonAxis(fan_C);
+    if (axis < 0) return addRays(target, lanes);
+    const RayTarget& of = scene_.targets_[target];
+    const geometry::TriangleMesh& mesh = of.geometry->mesh();
+    const kernels::FanMesh triangles{treeOf(of.geometry->bvh(), of.radius), of.geometry->bvh().order().data(), mesh.elements.data()->data(),
+                                     mesh.vertices.data()->data(), axis};
+    kernels::FanHits found = endsOf(lanes);
+    const bool others = kernels::kernels().fanTriangles(triangles, numbersOf(fan_C, nearest(target)), &found);
+    if (others && of.radius > 0) return addRays(target, lanes);
+    for (int ray = 0; ray < RayFan::WIDTH; ++ray)
+      if (found.element[ray] >= 0) add(target, ray, found.t[ray]);
+  }
+
+  /** One by one: what is no triangle, and rays that lead apart. */
+  void addRays(int target, unsigned lanes) {
+    for (int ray = 0; ray < RayFan::WIDTH; ++ray)
+      if (lanes >> ray & 1) add(target, ray, hit(target, {fan_.origin, fan_.directions[ray]}, {nearest(target), hits_[ray].t}));
+  }
+
+  double hit(int target, const geometry::Ray& ray, const geometry::RayRange& range) const {
+    const CollisionGeometry& geometry = *scene_.targets_[target].geometry;
+    const Pose& X_CW = scene_.X_CW_[target];
+    const geometry::Ray ray_C{X_CW * ray.origin, X_CW.linear() * ray.direction};
+    if (!geometry.isHalfSpace()) {
+      return geometry::castRay({geometry.bvh(), geometry.mesh(), scene_.targets_[target].radius}, ray_C, range).t;
+    }
+    const double fall = geometry.planeNormal().dot(ray_C.direction);
+    const double t = (geometry.planeOffset() - geometry.planeNormal().dot(ray_C.origin)) / fall;
+    return fall != 0 && t >= range.nearest && t <= range.farthest ? t : INFINITE;
+  }
+
+  double nearest(int target) const {
+    return scene_.targets_[target].model == query_.own_model && query_.own_model >= 0 ? query_.own_nearest : 0;
+  }
+
+  void add(int target, int ray, double t) {
+    Hit& first = hits_[ray];
+    if (t == INFINITE || t > first.t) return;
+    if (t < first.t || first.target < 0 || target < first.target) first = {t, target};
+  }
+
+  void keepEnds() {
+    for (int ray = 0; ray < RayFan::WIDTH; ++ray) ends_[ray] = hits_[ray].t;
+  }
+
+  kernels::FanHits endsOf(unsigned lanes) const {
+    kernels::FanHits ends;
+    for (int ray = 0; ray < RayFan::WIDTH; ++ray) {
+      ends.t[ray] = lanes >> ray & 1 ? hits_[ray].t : -INFINITE;
+      ends.element[ray] = -1;
+    }
+    return ends;
+  }
+
+  const RayScene& scene_;
+  const RayFan& fan_;
+  const Query& query_;
+  Hits hits_;
+  double ends_[RayFan::WIDTH];  // where each ray ends to count
+};
+
+RayScene::Hits RayScene::firstHits(const RayFan& fan, const Query& query) const { return Search(*this, fan, query).firstHits(); }
 
 }  // namespace blem_sim::contact

@@ -13,7 +13,7 @@ namespace {
 class ShearedRay {
  public:
   explicit ShearedRay(const Ray& ray) : origin_(ray.origin) {
-    ray.direction.cwiseAbs().maxCoeff(&kz_);
+    kz_ = longestAxis(ray.direction);
     kx_ = (kz_ + 1) % 3;
     ky_ = (kz_ + 2) % 3;
     shear_ = Vector3(ray.direction[kx_], ray.direction[ky_], 1) / ray.direction[kz_];
@@ -113,6 +113,12 @@ class ElementHits {
 };
 
 }  // namespace
+
+int longestAxis(const Vector3& direction) {
+  int axis;
+  direction.cwiseAbs().maxCoeff(&axis);
+  return axis;
+}
 
 double hitBall(const Ray& ray, const RayRange& range, const Vector3& centre, double radius) {
   return roundChord(ray.origin - centre, ray.direction, radius).firstWithin(range);

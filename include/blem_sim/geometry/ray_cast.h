@@ -17,6 +17,9 @@ struct RayMesh {
   double radius = 0;  ///< [m] of its segments and points
 };
 
+/** Coordinate along which a direction is longest, the first of several: rays are sheared along it. */
+int longestAxis(const Vector3& direction);
+
 /** First hit within the range, the smaller element of several. @param ray in the mesh's frame; without a direction it hits nothing */
 RayHit castRay(const RayMesh& target, const Ray& ray, const RayRange& range = {});
 

@@ -5,6 +5,7 @@
 
 #include "kernels/edge_directions.h"
 #include "kernels/edge_records.h"
+#include "kernels/ray_fan.h"
 
 namespace blem_sim::contact::kernels {
 
@@ -70,6 +71,13 @@ struct Kernels {
   /** Edges that pass through a face's plane where the face may be. */
   std::uint32_t (*edgeFaces)(const EdgeRecord* a, const FaceRecord* b, const Candidate* candidates, std::uint32_t count,
                              std::uint32_t* hits);
+
+  /** Leaves of a tree that the rays of a fan may meet, nearer ones first. @param farthest [FAN] where rays end to count, which the visitor
+   * may draw nearer */
+  void (*fanLeaves)(const FanTree& tree, const RayFan& fan, double* farthest, const FanVisitor& visitor);
+  /** First hits of a fan's rays with the triangles of a mesh, those of geometry::castRay.
+   * @return whether elements that are no triangles were near: they are left out */
+  bool (*fanTriangles)(const FanMesh& mesh, const RayFan& fan, FanHits* hits);
 };
 
 /** The fastest set that this machine runs; $BLEM_SIM_KERNELS (avx512, avx2, baseline) forces another one.

@@ -4,6 +4,7 @@
 
 #include "kernels/candidate_kernels.h"
 #include "kernels/edge_kernels.h"
+#include "kernels/fan_kernels.h"
 #include "kernels/kernels.h"
 #include "kernels/leaves/leaf_kernels.h"
 #include "kernels/side_feet.h"
@@ -62,5 +63,5 @@ void turnFaces(const FaceRecord* in, std::uint32_t count, const Motion& motion, 
   {                                                                                                                                   \
     name, turnPoints, turnEdges, turnFaces, turnLeaf, leafContacts, leafCrossings, nearVertexFaces, nearEdgeEdges, nearVertexEdges,   \
         nearVertexVertices, vertexFaces, sideFeet, edgeEdges, fadingEdges, vertexEdges, vertexVertices, leadingEdges, leadingAtSides, \
-        leadTo, edgeFaces                                                                                                             \
+        leadTo, edgeFaces, fanLeaves, fanTriangles                                                                                    \
   }

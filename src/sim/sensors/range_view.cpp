@@ -16,18 +16,33 @@ constexpr double DISPARITY_STDDEV = 0.5;    // steps
 
 double between(double first, double last, int i, int count) { return count > 1 ? first + i * ((last - first) / (count - 1)) : first; }
 
-/** Rays of a sensor in rows: direction(row, column), in the sensor's axes, has the length that ranges are counted in. */
+/** What the sensor reads where its ray is hit at t. */
+double rangeOf(const RangeView& view, std::size_t ray, double t) {
+  if (t < view.rays.nearest) return -INFINITE;
+  return t < INFINITE ? measuredRange(view, ray, t) : INFINITE;
+}
+
+/**
+ * Rays of a sensor in rows: direction(row, column), in the sensor's axes, has the length that ranges are counted in. Fans take four rays of
+ * two rows, or eight of the only one; beyond the last row and column they repeat it.
+ */
 template <typename Direction>
 std::vector<float> draw(const RangeView& view, int rows, int columns, Direction&& direction) {
   const contact::RayScene scene(view.targets);
   const contact::RayScene::Query query{view.rays.farthest, view.model, view.rays.nearest};
+  const int height = std::min(rows, 2), width = contact::RayFan::WIDTH / height;
   std::vector<float> ranges(static_cast<std::size_t>(rows) * columns);
-  tbb::parallel_for(0, rows, [&](int row) {
-    for (int column = 0; column < columns; ++column) {
-      const std::size_t ray = static_cast<std::size_t>(row) * columns + column;
-      const double t = scene.firstHit({view.X_WS.translation(), view.X_WS.linear() * direction(row, column)}, query).t;
-      const double range = t < view.rays.nearest ? -INFINITE : t < INFINITE ? measuredRange(view, ray, t) : INFINITE;
-      ranges[ray] = static_cast<float>(range);
+  tbb::parallel_for(0, (rows + height - 1) / height, [&](int band) {
+    for (int first = 0; first < columns; first += width) {
+      const auto row = [&](int ray) { return std::min(band * height + ray / width, rows - 1); };
+      const auto column = [&](int ray) { return std::min(first + ray % width, columns - 1); };
+      contact::RayFan fan{view.X_WS.translation(), {}};
+      for (int ray = 0; ray < contact::RayFan::WIDTH; ++ray) fan.directions[ray] = view.X_WS.linear() * direction(row(ray), column(ray));
+      const contact::RayScene::Hits hits = scene.firstHits(fan, query);
+      for (int ray = 0; ray < contact::RayFan::WIDTH; ++ray) {
+        const std::size_t place = static_cast<std::size_t>(row(ray)) * columns + column(ray);
+        ranges[place] = static_cast<float>(rangeOf(view, place, hits[ray].t));
+      }
     }
   });
   return ranges;
