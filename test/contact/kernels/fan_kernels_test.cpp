@@ -38,7 +38,8 @@ struct Soup {
 
 /** Rays from a point, longest along one axis; some run along the others exactly. */
 struct Rays {
-  Rays(geometry::RandomShapes* random, int axis, double spread) : origin(random->point(2)) {
+  Rays(geometry::RandomShapes* random, int axis, double spread) : origin(random->point(0.5)) {
+    origin[axis] = random->uniform(-1, 1) > 0 ? 2 : -2;
     const Vector3 ahead = random->point(spread);
     for (int ray = 0; ray < FAN; ++ray) {
       Vector3 direction = ahead + random->point(0.1 * spread);
