@@ -79,7 +79,8 @@ inline bool leftFirst(const RayFan& fan, const FanNode& left, const FanNode& rig
   return ahead >= 0;
 }
 
-/** Calls visit(index, leaf, lanes) for the leaves that some rays may meet before *farthest, which visit may draw nearer; nearer ones first. */
+/** Calls visit(index, leaf, lanes) for the leaves that some rays may meet before *farthest, which visit may draw nearer; nearer ones first.
+ */
 template <typename Visit>
 inline void walkFan(const FanTree& tree, const RayFan& fan, const FanDoubles* farthest, Visit&& visit) {
   const FanSlabs slabs(fan, tree.wider);

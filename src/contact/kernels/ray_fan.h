@@ -38,7 +38,7 @@ struct FanMesh {
 
 /** First hits of a fan's rays. */
 struct FanHits {
-  double t[FAN];  ///< before a search: where the ray ends to count
+  double t[FAN];              ///< before a search: where the ray ends to count
   std::int64_t element[FAN];  ///< -1: none
 };
 

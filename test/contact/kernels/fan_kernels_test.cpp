@@ -43,7 +43,7 @@ struct Rays {
     const Vector3 ahead = random->point(spread);
     for (int ray = 0; ray < FAN; ++ray) {
       Vector3 direction = ahead + random->point(0.1 * spread);
-      if (ray == 3) direction[(axis + 1) % 3] = ray % 2 ? 0.0 : -0.0;
+      if (ray == 3) direction[(axis + 1) % 3] = random->uniform(-1, 1) > 0 ? 0.0 : -0.0;
       direction[axis] = origin[axis] > 0 ? -1 : 1;
       directions.push_back(direction);
     }
@@ -107,8 +107,11 @@ TEST(FanKernels, TellOfWhatIsNoTriangle) {
   rays.directions.assign(FAN, {1, 0.01, 0.02});
   for (const Kernels* kernels : availableKernels()) {
     FanHits found = noneBefore(std::vector<double>(FAN, INFINITE));
-    const FanMesh target{{reinterpret_cast<const unsigned char*>(tree.nodes().data()), 2}, tree.order().data(),
-                         mesh.elements.data()->data(), mesh.vertices.data()->data(), 0};
+    const FanMesh target{{reinterpret_cast<const unsigned char*>(tree.nodes().data()), 2},
+                         tree.order().data(),
+                         mesh.elements.data()->data(),
+                         mesh.vertices.data()->data(),
+                         0};
     EXPECT_TRUE(kernels->fanTriangles(target, rays.numbers(0), &found)) << kernels->name;
     EXPECT_DOUBLE_EQ(found.t[7], 1.5) << kernels->name;
   }
