@@ -124,7 +124,7 @@ struct SensorConfig {
   std::string frame_id;                     ///< of the messages; empty: what the readings are in. odometry: name of the world
   Pose X_LS = Pose::Identity();             ///< imu, tilt, odometry, depth_camera, lidar: sensor in the link
   std::string twist = "link";               ///< odometry: axes of the velocities, link (the sensor's) | world
-  double rate = 0;                          ///< [Hz], 0 = every step
+  double rate = 0;                          ///< [Hz], 0 = every step, RATE_OFF = never
   double noise_stddev = 0;                  ///< force_torque [N, N m]; odometry [m, rad, m/s, rad/s]
   double accel_stddev = 0, gyro_stddev = 0, accel_bias_stddev = 0, gyro_bias_stddev = 0;
   double accel_bias = 0, gyro_bias = 0;                ///< imu: mean of a constant bias of each axis [m/s^2, rad/s]
@@ -134,6 +134,12 @@ struct SensorConfig {
   std::map<std::string, double> torque_constant;  ///< motor_current, by joint, "default"
   RangeSensorConfig rays;                         ///< depth_camera, lidar
   CameraTopics camera_topics;                     ///< depth_camera
+};
+
+/** Ground truth of a robot's root link (node only). */
+struct OdometryConfig {
+  std::string topic = "odom", frame = "world";
+  Pose X_WF = Pose::Identity();  ///< frame in the world
 };
 
 struct RobotConfig {
@@ -163,6 +169,9 @@ struct RobotConfig {
   std::vector<SensorConfig> sensors;
   std::optional<std::vector<ControllerConfig>> controllers;  ///< none given: one of all joints (node only)
   std::optional<int> max_contacts;                           ///< k of this robot
+  std::string tf_prefix;                                     ///< of its frames (node only)
+  bool publish_tf = true;                                    ///< /tf has where its root link is, and children of floating and planar joints
+  OdometryConfig odom;
 };
 
 struct ObjectConfig {
@@ -182,7 +191,7 @@ struct ObjectConfig {
   std::optional<int> max_contacts;
 };
 
-/** Rates of the node [Hz]; 0 = every step. */
+/** Rates of the node [Hz]; 0 = every step, RATE_OFF = never. */
 struct PublishRates {
   double clock = 0, joint_state = 100, tf = 50, odom = 50, contact = 30, markers = 15, link_states = 50, step_report = 10;
 };

@@ -43,6 +43,9 @@ struct RobotInfo {
   std::vector<model::JointLimits> limits;
   std::vector<bool> continuous;  ///< turns without end
   std::vector<bool> driven;      ///< has a motor of its own: no mimic
+  std::string tf_prefix;         ///< of its frames, without slashes at its ends; no other robot has it that has links of the same name
+  bool publish_tf = true;
+  OdometryConfig odom;
 };
 
 struct SensorInfo {

@@ -12,6 +12,7 @@
 #include "blem_sim/sim/sensor_values.h"
 #include "messages/contact_messages.h"
 #include "messages/conversions.h"
+#include "messages/robot_frames.h"
 #include "publishers/robot_topics.h"
 
 namespace blem_sim::node {
@@ -142,15 +143,15 @@ std::optional<Mounting> mountingOf(const sim::SensorConfig& sensor) {
 }
 
 /** Names of frames in a sensor's messages. */
-void nameFrames(const sim::SensorInfo& sensor, SensorTopic* topic) {
+void nameFrames(const sim::RobotInfo& robot, const sim::SensorInfo& sensor, SensorTopic* topic) {
   const std::optional<Mounting> mounting = mountingOf(sensor.config);
   const std::string& told = sensor.config.frame_id;
-  const std::string own = mounting ? mounting->frame : sensor.frame_id;
+  const std::string own = ownFrame(robot, mounting ? mounting->frame : sensor.frame_id);
   if (sensor.config.type == sim::SensorType::ODOMETRY) {
-    topic->frame = told.empty() ? WORLD_FRAME : told;
+    topic->frame = told.empty() ? WORLD_FRAME : namedFrame(robot, told);
     topic->child_frame = own;
   } else {
-    topic->frame = told.empty() ? own : told;
+    topic->frame = told.empty() ? own : namedFrame(robot, told);
   }
 }
 
@@ -177,7 +178,7 @@ void SensorPublisher::modelsChanged() {
   const auto make = [this](const sim::SensorInfo& sensor) {
     ros::NodeHandle robot_node = nodeOf(sensor);
     SensorTopic topic;
-    nameFrames(sensor, &topic);
+    nameFrames(simulator_.robots()[sensor.robot], sensor, &topic);
     if (sim::isRangeSensor(sensor.config.type))
       topic.ranges = advertiseRanges(&robot_node, topicOf(sensor.config), sensor.config);
     else
@@ -206,11 +207,12 @@ void SensorPublisher::publishMountings() {
   tf2_msgs::TFMessage message;
   for (const sim::SensorInfo& sensor : simulator_.sensors()) {
     const std::optional<Mounting> mounting = mountingOf(sensor.config);
+    const sim::RobotInfo& robot = simulator_.robots()[sensor.robot];
     // The robot's own links are on /tf already.
-    if (!mounting || simulator_.robots()[sensor.robot].description->linkIndex(mounting->frame) >= 0) continue;
+    if (!mounting || robot.description->linkIndex(mounting->frame) >= 0) continue;
     geometry_msgs::TransformStamped transform;
-    transform.header.frame_id = sensor.config.link;
-    transform.child_frame_id = mounting->frame;
+    transform.header.frame_id = ownFrame(robot, sensor.config.link);
+    transform.child_frame_id = namedFrame(robot, mounting->frame);
     transform.transform = toTransform(mounting->X_LF);
     message.transforms.push_back(transform);
   }

@@ -9,6 +9,7 @@
 
 #include "blem_sim/geometry/input_error.h"
 #include "messages/pid_gains.h"
+#include "messages/robot_frames.h"
 #include "services/reference_frame.h"
 
 namespace blem_sim::node {
@@ -27,6 +28,7 @@ sim::RobotConfig robotOf(const sim::Simulator& simulator, const SpawnModel::Requ
   robot.urdf_xml = request.model_xml;
   robot.motors = sim::MotorDefault::TRANSMISSIONS;
   robot.pid_gains = pidGainsIn(request.robot_namespace);
+  robot.tf_prefix = tfPrefixIn(request.robot_namespace);
   const LinkMotion frame = frameMotion(simulator, request.reference_frame, "reference_frame");
   robot.X_WR = inWorld(frame, request.initial_pose, {}, "initial_pose").X_WL;
   return robot;

@@ -8,6 +8,7 @@
 #include "blem_sim/geometry/input_error.h"
 #include "blem_sim/sim/range_view.h"
 #include "build/by_joint.h"
+#include "build/frame_prefix.h"
 #include "build/robot_motors.h"
 #include "build/robot_names.h"
 
@@ -103,6 +104,7 @@ void RobotBuilder::addTo(SimulatedWorld* world, SurfaceLibrary* surfaces) {
   info_.lumped = lumped_;
   info_.root_link = model_->links[model_->root].name;
   info_.X_WR = config_.X_WR;
+  nameFrames();
   info_.model = world->addModel(config_.name, ModelKind::ROBOT, config_.max_contacts.value_or(contact_.max_contacts_per_robot));
   for (const auto* notes : {&model_->notes, &lumped_->notes, &std::as_const(start_notes_)})
     for (const std::string& words : *notes) note(words);
@@ -118,6 +120,12 @@ void RobotBuilder::addTo(SimulatedWorld* world, SurfaceLibrary* surfaces) {
   model.joints = info_.joints;
   model.X_WM = config_.X_WR;
   addSensors(world->addRobot(info_));
+}
+
+void RobotBuilder::nameFrames() {
+  info_.publish_tf = config_.publish_tf;
+  info_.odom = config_.odom;
+  info_.tf_prefix = framePrefix(config_, *model_, world_->robots, &start_notes_);
 }
 
 void RobotBuilder::setSelfCollision() {

@@ -32,6 +32,7 @@ class RobotBuilder {
   void disableNeighbours();
   void disableBodies(int lumped_a, int lumped_b);
   void disableListedPairs();
+  void nameFrames();
   void setSelfCollision();
   void addSensors(int robot);
   std::string frameOf(const SensorConfig& sensor) const;

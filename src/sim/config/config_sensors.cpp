@@ -173,7 +173,7 @@ SensorConfig readSensor(YamlReader& reader) {
   sensor.type = SENSOR_TABLE[*type].type;
   sensor.rate = SENSOR_TABLE[*type].rate;
   reader.read("topic", &sensor.topic);
-  reader.read("rate", &sensor.rate, NumberRange::notNegative());
+  reader.readRate("rate", &sensor.rate);
   SENSOR_TABLE[*type].read(reader, &sensor);
   return sensor;
 }

@@ -87,8 +87,10 @@ class GazeboBlocksTest(unittest.TestCase):
         for recorder in first.values():
             recorder.clear()
         sim_client.step(1000)
-        for topic, (_, rate, _) in TOPICS.items():
+        for topic, (_, rate, frame) in TOPICS.items():
             self.assertEqual(len(second[topic].wait_for(rate)), rate, topic)
+            expected = frame if frame == "world" else "second/" + frame
+            self.assertEqual(second[topic].messages()[-1].header.frame_id, expected, "a robot of the same links has a prefix")
             self.assertFalse(first[topic].messages(), topic)
         self.assertAlmostEqual(second["ground_truth/state"].messages()[-1].pose.pose.position.y, -0.6, delta=1e-3)
 

@@ -56,6 +56,39 @@ TEST(SensorKeys, OfErrorsAreRead) {
   EXPECT_EQ(numbers, (std::vector<double>{0.1, 4, 3, 2, 1, 0.2, 40, 30, 20, 10, 0.3, 0.4, inf, 0.2, 0, 1, inf, 8, 7, 0}));
 }
 
+TEST(Rates, MayBeOff) {
+  for (const char* word : {"off", ".off", "Off", "false", "'off'"}) {
+    const std::string off = word;
+    const SimulationConfig config = parseConfig(
+        YAML::Load("{clock_rate: " + off + ", joint_state_rate: " + off + ", tf_rate: " + off + ", odom_rate: " + off +
+                   ", contact_rate: " + off + ", marker_rate: " + off + ", link_states_rate: " + off + ", step_report_rate: " + off + "}"),
+        "scene.yaml", "");
+    const PublishRates& r = config.rates;
+    for (const double rate : {r.clock, r.joint_state, r.tf, r.odom, r.contact, r.markers, r.link_states, r.step_report})
+      EXPECT_EQ(rate, RATE_OFF) << off;
+    const RobotConfig robot =
+        parsedRobot("sensors: [{name: t, type: tilt, link: l, rate: " + off + "}], controllers: [{name: c, state_publish_rate: " + off +
+                    ", action_monitor_rate: " + off + "}]");
+    EXPECT_EQ(robot.sensors[0].rate, RATE_OFF);
+    EXPECT_EQ(robot.controllers->at(0).state_publish_rate, RATE_OFF);
+    EXPECT_EQ(robot.controllers->at(0).action_monitor_rate, RATE_OFF);
+  }
+  EXPECT_TRUE(isOneLineWith(refusal([] { parseConfig(YAML::Load("tf_rate: never"), "scene.yaml", ""); }), {"tf_rate", "or off", "never"}));
+  EXPECT_TRUE(isOneLineWith(refusal([] { parseConfig(YAML::Load("tf_rate: -1"), "scene.yaml", ""); }), {"tf_rate", "or off"}));
+}
+
+TEST(RobotKeys, OfFramesAndOdometryAreRead) {
+  const RobotConfig given =
+      parsedRobot("tf_prefix: left, publish_tf: false, odom: {topic: truth, frame: map, pose: {xyz: [1, 2, 3], rpy: [0, 0, 1.5]}}");
+  EXPECT_EQ(given.tf_prefix + given.odom.topic + given.odom.frame, "lefttruthmap");
+  EXPECT_FALSE(given.publish_tf);
+  EXPECT_TRUE(given.odom.X_WF.isApprox(makePose({1, 2, 3}, {0, 0, 1.5}), 1e-15));
+  const RobotConfig none = parsedRobot("namespace: n");
+  EXPECT_EQ(none.tf_prefix + none.odom.topic + none.odom.frame, "odomworld");
+  EXPECT_TRUE(none.publish_tf);
+  EXPECT_TRUE(none.odom.X_WF.isApprox(Pose::Identity(), 0));
+}
+
 TEST(SensorKeys, AreRefusedInOneLine) {
   for (const auto& [keys, word] :
        {std::make_pair("sensors: [{name: o, type: odometry, link: l, twist: up}]", "twist"),
@@ -68,6 +101,8 @@ TEST(SensorKeys, AreRefusedInOneLine) {
         std::make_pair("sensors: [{name: t, type: tilt, link: l, saturation: {force: 1}}]", "force"),
         std::make_pair("sensors: [{name: t, type: tilt, link: l, saturation: {gyro: 1}, resolution: {gyro: 2}}]", "resolution.gyro"),
         std::make_pair("sensors: [{name: c, type: contact, link: l, delay: 0.1}]", "delay"),
+        std::make_pair("odom: {topic: ''}", "odom.topic"), std::make_pair("odom: {frame: ''}", "odom.frame"),
+        std::make_pair("odom: {child_frame: base}", "odom.child_frame"), std::make_pair("publish_tf: never", "publish_tf"),
         std::make_pair("self_colliding_links: foot", "self_colliding_links"),
         std::make_pair("self_colliding_links: [[foot]]", "self_colliding_links")})
     EXPECT_TRUE(isOneLineWith(refusal([&, k = keys] { parsedRobot(k); }), {word})) << keys;
