@@ -93,6 +93,19 @@ struct QuantityLimits {
 /** force_torque: force [N], torque [N m]; imu: acceleration, rate; tilt: angles, rate; motor_current: current [A], effort. */
 using SensorLimits = std::array<QuantityLimits, 2>;
 
+/** Noise and bias of a quantity that a sensor measures, the same for all of its numbers. */
+struct QuantityNoise {
+  double stddev = 0;       ///< standard deviation of white noise
+  double bias_stddev = 0;  ///< of a bias that walks: its standard deviation after one second
+  double bias = 0;         ///< mean of a constant bias,
+  double bias_spread = 0;  ///< and the standard deviation it is drawn with, with the first reading
+
+  bool remembers() const { return bias_stddev > 0 || bias != 0 || bias_spread > 0; }
+  bool any() const { return stddev > 0 || remembers(); }
+};
+/** Of the quantities of SensorLimits; those of odometry have the first one's stddev [m, rad, m/s, rad/s]. */
+using SensorNoise = std::array<QuantityNoise, 2>;
+
 /** Rays of a depth camera or a lidar. */
 struct RangeSensorConfig {
   double nearest = 0.4, farthest = 5;  ///< [m] along the optical axis of a camera, along the beam of a lidar
@@ -125,10 +138,7 @@ struct SensorConfig {
   Pose X_LS = Pose::Identity();             ///< imu, tilt, odometry, depth_camera, lidar: sensor in the link
   std::string twist = "link";               ///< odometry: axes of the velocities, link (the sensor's) | world
   double rate = 0;                          ///< [Hz], 0 = every step, RATE_OFF = never
-  double noise_stddev = 0;                  ///< force_torque [N, N m]; odometry [m, rad, m/s, rad/s]
-  double accel_stddev = 0, gyro_stddev = 0, accel_bias_stddev = 0, gyro_bias_stddev = 0;
-  double accel_bias = 0, gyro_bias = 0;                ///< imu: mean of a constant bias of each axis [m/s^2, rad/s]
-  double accel_bias_spread = 0, gyro_bias_spread = 0;  ///< imu: standard deviation of it, drawn with the first reading
+  SensorNoise noise;
   SensorLimits limits;
   double delay = 0;                               ///< [s] by which readings are old; not of contact, odometry and those that look
   std::map<std::string, double> torque_constant;  ///< motor_current, by joint, "default"

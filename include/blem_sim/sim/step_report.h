@@ -71,6 +71,7 @@ struct TiltReading {
   Quaternion orientation;
   Vector3 angular_velocity;
   double roll = 0, pitch = 0;  ///< [rad]
+  double angle_stddev = 0, gyro_stddev = 0;
 };
 struct MotorCurrentReading {
   std::vector<std::string> joints;

@@ -71,6 +71,8 @@ struct ReadingPublisher {
     const auto message = startedFrom(&messages->imus);
     message->orientation = toQuaternion(reading.orientation);
     message->angular_velocity = toVector3(reading.angular_velocity);
+    setVariance(&message->orientation_covariance, reading.angle_stddev);
+    setVariance(&message->angular_velocity_covariance, reading.gyro_stddev);
     message->linear_acceleration_covariance[0] = -1;  // sensor_msgs: not measured
     sender->add(publisher, message);
   }
@@ -122,6 +124,13 @@ ListenedPublisher advertise(ros::NodeHandle* node, sim::SensorType type, const s
 std::string topicOf(const sim::SensorConfig& sensor) { return sensor.topic.empty() ? sensor.name : sensor.topic; }
 std::string truthTopicOf(const sim::SensorConfig& sensor) { return topicOf(sensor) + "/ground_truth"; }
 
+/** The same sensor where it tells the truth: topics below its own. */
+sim::SensorConfig truthOf(sim::SensorConfig sensor) {
+  sensor.topic = truthTopicOf(sensor);
+  sensor.camera_topics = {};
+  return sensor;
+}
+
 /** A sensor's frame of its own in its link. */
 struct Mounting {
   std::string frame;
@@ -155,10 +164,21 @@ void nameFrames(const sim::RobotInfo& robot, const sim::SensorInfo& sensor, Sens
   }
 }
 
+std::vector<std::string> readingTopicsOf(const sim::SensorConfig& sensor) {
+  return sim::isRangeSensor(sensor.type) ? rangeTopics(topicOf(sensor), sensor) : std::vector<std::string>{topicOf(sensor)};
+}
+
 std::vector<std::string> topicsOf(const sim::SensorConfig& sensor) {
-  if (sim::isRangeSensor(sensor.type)) return rangeTopics(topicOf(sensor), sensor);
-  if (sim::hasGroundTruth(sensor)) return {topicOf(sensor), truthTopicOf(sensor)};
-  return {topicOf(sensor)};
+  std::vector<std::string> topics = readingTopicsOf(sensor);
+  if (!sim::hasGroundTruth(sensor)) return topics;
+  const std::vector<std::string> truth = readingTopicsOf(truthOf(sensor));
+  topics.insert(topics.end(), truth.begin(), truth.end());
+  return topics;
+}
+
+SensorOutlet outletOf(ros::NodeHandle* node, const sim::SensorConfig& sensor) {
+  if (sim::isRangeSensor(sensor.type)) return {{}, advertiseRanges(node, topicOf(sensor), sensor)};
+  return {advertise(node, sensor.type, topicOf(sensor)), {}};
 }
 
 }  // namespace
@@ -179,11 +199,8 @@ void SensorPublisher::modelsChanged() {
     ros::NodeHandle robot_node = nodeOf(sensor);
     SensorTopic topic;
     nameFrames(simulator_.robots()[sensor.robot], sensor, &topic);
-    if (sim::isRangeSensor(sensor.config.type))
-      topic.ranges = advertiseRanges(&robot_node, topicOf(sensor.config), sensor.config);
-    else
-      topic.publisher = advertise(&robot_node, sensor.config.type, topicOf(sensor.config));
-    if (sim::hasGroundTruth(sensor.config)) topic.truth = advertise(&robot_node, sensor.config.type, truthTopicOf(sensor.config));
+    topic.readings = outletOf(&robot_node, sensor.config);
+    if (sim::hasGroundTruth(sensor.config)) topic.truth = outletOf(&robot_node, truthOf(sensor.config));
     return topic;
   };
   keepTopics(simulator_.sensors(), keyOf, make, &topics_);
@@ -224,17 +241,17 @@ void SensorPublisher::publishMountings() {
 void SensorPublisher::publish(const sim::StepReport& report) {
   for (const sim::SensorSample& sample : report.samples) {
     SensorTopic& topic = topics_[sample.sensor];
-    publishReading(report, sample.reading, &topic.publisher, &topic);
-    if (sample.truth && topic.truth) publishReading(report, *sample.truth, &topic.truth, &topic);
+    publishReading(report, sample.reading, &topic.readings, &topic);
+    if (sample.truth) publishReading(report, *sample.truth, &topic.truth, &topic);
   }
 }
 
-void SensorPublisher::publishReading(const sim::StepReport& report, const sim::SensorReading& reading,
-                                     std::optional<ListenedPublisher>* publisher, SensorTopic* topic) {
-  ListenedPublisher* const listened = *publisher ? &**publisher : nullptr;
-  if (listened && !listened->listened()) return;
+void SensorPublisher::publishReading(const sim::StepReport& report, const sim::SensorReading& reading, SensorOutlet* outlet,
+                                     SensorTopic* topic) {
+  ListenedPublisher* const listened = outlet->publisher ? &*outlet->publisher : nullptr;
+  if (listened ? !listened->listened() : !outlet->ranges) return;
   std::visit(
-      ReadingPublisher{simulator_, report, topic->frame, topic->child_frame, &topic->messages, listened, topic->ranges, &ranges_, sender_},
+      ReadingPublisher{simulator_, report, topic->frame, topic->child_frame, &topic->messages, listened, outlet->ranges, &ranges_, sender_},
       reading);
 }
 

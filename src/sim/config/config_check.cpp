@@ -117,12 +117,11 @@ void checkRobot(const RobotConfig& robot) {
     const Fields of_sensor("robots: " + robot.name + ": sensors: " + sensor.name + ": ");
     of_sensor.pose("pose", sensor.X_LS);
     if (sensor.rate != RATE_OFF) of_sensor.number("rate", sensor.rate, NumberRange::notNegative());
-    for (const double deviation :
-         {sensor.noise_stddev, sensor.accel_stddev, sensor.gyro_stddev, sensor.accel_bias_stddev, sensor.gyro_bias_stddev})
-      of_sensor.number("noise", deviation, NumberRange::notNegative());
-    for (const double bias : {sensor.accel_bias, sensor.gyro_bias}) of_sensor.number("noise", bias, NumberRange::any());
-    for (const double spread : {sensor.accel_bias_spread, sensor.gyro_bias_spread})
-      of_sensor.number("noise", spread, NumberRange::notNegative());
+    for (const QuantityNoise& noise : sensor.noise) {
+      of_sensor.number("noise", noise.bias, NumberRange::any());
+      for (const double deviation : {noise.stddev, noise.bias_stddev, noise.bias_spread})
+        of_sensor.number("noise", deviation, NumberRange::notNegative());
+    }
     of_sensor.rays(sensor);
   }
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sensors/delay_line.h"
+#include "sensors/reading_noise.h"
 #include "sensors/sensor.h"
 #include "sensors/sensor_schedule.h"
 
@@ -31,17 +32,25 @@ class SensorChannel {
   /** Forgets what the sensor remembers and what is on its way, without touching the random numbers. */
   void reset();
 
-  Sensor& sensor() { return *sensor_; }
-  const Sensor& sensor() const { return *sensor_; }
-  DelayLine& delay() { return delay_; }
-  const DelayLine& delay() const { return delay_; }
+  /** What a sensor remembers from reading to reading. */
+  struct Memory {
+    ReadingNoise noise;
+    DelayLine delay;
+
+    void append(std::vector<double>* numbers) const;
+    void read(NumberReader* reader);
+  };
+  Memory& memory() { return memory_; }
+  const Memory& memory() const { return memory_; }
+  RandomNumbers& random() { return sensor_->random(); }
+  const RandomNumbers& random() const { return sensor_->random(); }
 
  private:
   SensorConfig config_;
   bool has_truth_;
   std::unique_ptr<Sensor> sensor_;
   SensorSchedule schedule_;
-  DelayLine delay_;
+  Memory memory_;
 };
 
 }  // namespace blem_sim::sim

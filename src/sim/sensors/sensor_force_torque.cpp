@@ -31,13 +31,6 @@ class ForceTorqueSensor : public Sensor {
     reading.frame_id = info_.frame_id;
   }
 
-  void addNoise(double, SensorReading* out) override {
-    if (info_.config.noise_stddev == 0) return;
-    ForceTorqueReading& reading = std::get<ForceTorqueReading>(*out);
-    reading.force += info_.config.noise_stddev * random_.gaussianVector();
-    reading.torque += info_.config.noise_stddev * random_.gaussianVector();
-  }
-
  private:
   const SensorInfo info_;
   const RobotInfo robot_;

@@ -20,8 +20,8 @@ class OdometrySensor : public Sensor {
     reading.stddev = 0;
   }
 
-  void addNoise(double, SensorReading* out) override {
-    if (config_.noise_stddev > 0) disturb(config_.noise_stddev, &std::get<OdometryReading>(*out));
+  void addNoise(SensorReading* out) override {
+    if (config_.noise[0].stddev > 0) disturb(config_.noise[0].stddev, &std::get<OdometryReading>(*out));
   }
 
  private:

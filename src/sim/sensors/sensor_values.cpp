@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <map>
 
 #include "blem_sim/sim/range_view.h"
@@ -98,12 +97,9 @@ SensorReading blankReading(SensorType type, const std::vector<std::string>& join
 }
 
 bool hasGroundTruth(const SensorConfig& sensor) {
-  if (isRangeSensor(sensor.type)) return false;
-  const double errors[] = {sensor.noise_stddev,     sensor.accel_stddev, sensor.gyro_stddev, sensor.accel_bias_stddev,
-                           sensor.gyro_bias_stddev, sensor.accel_bias,   sensor.gyro_bias,   sensor.accel_bias_spread,
-                           sensor.gyro_bias_spread, sensor.delay};
-  return std::any_of(std::begin(errors), std::end(errors), [](double error) { return error != 0; }) || sensor.limits[0].any() ||
-         sensor.limits[1].any();
+  const bool noisy_rays = isRangeSensor(sensor.type) && (sensor.rays.stddev > 0 || sensor.rays.noise != RangeNoise::GAUSSIAN);
+  const auto any = [](const auto& of) { return of[0].any() || of[1].any(); };
+  return noisy_rays || sensor.delay > 0 || any(sensor.noise) || any(sensor.limits);
 }
 
 std::vector<std::string> sensorFields(const Simulator& simulator, const SensorInfo& sensor) {

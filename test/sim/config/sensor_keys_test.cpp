@@ -28,10 +28,10 @@ TEST(SensorKeys, AreRead) {
   EXPECT_EQ(sensors[0].type, SensorType::ODOMETRY);
   EXPECT_EQ(sensors[0].rate, 50);
   EXPECT_EQ(sensors[0].twist + sensors[0].frame_id, "worldmap");
-  EXPECT_EQ(sensors[0].noise_stddev, 0.1);
+  EXPECT_EQ(sensors[0].noise[0].stddev, 0.1);
   EXPECT_EQ(sensors[0].X_LS.translation(), Vector3(1, 2, 3));
   EXPECT_EQ(sensors[1].frame_id + sensors[2].frame_id + sensors[3].frame_id + sensors[4].frame_id + sensors[5].frame_id, "platexyzw");
-  EXPECT_EQ((std::vector<double>{sensors[4].accel_bias, sensors[4].gyro_bias, sensors[4].accel_bias_spread, sensors[4].gyro_bias_spread}),
+  EXPECT_EQ((std::vector<double>{sensors[4].noise[0].bias, sensors[4].noise[1].bias, sensors[4].noise[0].bias_spread, sensors[4].noise[1].bias_spread}),
             (std::vector<double>{-1, 2, 3, 4}));
   const CameraTopics& topics = sensors[5].camera_topics;
   EXPECT_EQ(topics.image_raw + topics.image + topics.camera_info + topics.points, "abcd");
@@ -56,6 +56,19 @@ TEST(SensorKeys, OfErrorsAreRead) {
   EXPECT_EQ(numbers, (std::vector<double>{0.1, 4, 3, 2, 1, 0.2, 40, 30, 20, 10, 0.3, 0.4, inf, 0.2, 0, 1, inf, 8, 7, 0}));
 }
 
+TEST(SensorKeys, OfNoiseAreRead) {
+  const auto sensors = parsedRobot(R"(sensors: [
+    {name: f, type: force_torque, joint: j, noise: {stddev: 5, torque_stddev: 1, force_bias: -2, torque_bias_spread: 3}},
+    {name: t, type: tilt, link: l, noise: {angle_stddev: 1, gyro_bias_stddev: 2}},
+    {name: m, type: motor_current, noise: {current_bias: 1, effort_stddev: 2}}])")
+                           .sensors;
+  std::vector<double> numbers;
+  for (const SensorConfig& sensor : sensors)
+    for (const QuantityNoise& noise : sensor.noise)
+      for (const double number : {noise.stddev, noise.bias_stddev, noise.bias, noise.bias_spread}) numbers.push_back(number);
+  EXPECT_EQ(numbers, (std::vector<double>{5, 0, -2, 0, 1, 0, 0, 3, 1, 0, 0, 0, 0, 2, 0, 0, 0, 0, 1, 0, 2, 0, 0, 0}));
+}
+
 TEST(Rates, MayBeOff) {
   for (const char* word : {"off", ".off", "Off", "false", "'off'"}) {
     const std::string off = word;
@@ -66,9 +79,8 @@ TEST(Rates, MayBeOff) {
     const PublishRates& r = config.rates;
     for (const double rate : {r.clock, r.joint_state, r.tf, r.odom, r.contact, r.markers, r.link_states, r.step_report})
       EXPECT_EQ(rate, RATE_OFF) << off;
-    const RobotConfig robot =
-        parsedRobot("sensors: [{name: t, type: tilt, link: l, rate: " + off + "}], controllers: [{name: c, state_publish_rate: " + off +
-                    ", action_monitor_rate: " + off + "}]");
+    const RobotConfig robot = parsedRobot("sensors: [{name: t, type: tilt, link: l, rate: " + off +
+                                          "}], controllers: [{name: c, state_publish_rate: " + off + ", action_monitor_rate: " + off + "}]");
     EXPECT_EQ(robot.sensors[0].rate, RATE_OFF);
     EXPECT_EQ(robot.controllers->at(0).state_publish_rate, RATE_OFF);
     EXPECT_EQ(robot.controllers->at(0).action_monitor_rate, RATE_OFF);
@@ -96,6 +108,8 @@ TEST(SensorKeys, AreRefusedInOneLine) {
         std::make_pair("sensors: [{name: c, type: contact, link: l, frame_id: x}]", "frame_id"),
         std::make_pair("sensors: [{name: i, type: imu, link: l, noise: {gyro_bias_spread: -1}}]", "gyro_bias_spread"),
         std::make_pair("sensors: [{name: t, type: tilt, link: l, delay: 1.5}]", "delay"),
+        std::make_pair("sensors: [{name: t, type: tilt, link: l, noise: {stddev: 1}}]", "noise.stddev"),
+        std::make_pair("sensors: [{name: m, type: motor_current, noise: {effort_bias_stddev: -1}}]", "effort_bias_stddev"),
         std::make_pair("sensors: [{name: t, type: tilt, link: l, saturation: {angle: 0}}]", "saturation.angle"),
         std::make_pair("sensors: [{name: t, type: tilt, link: l, resolution: {angle: -1}}]", "resolution.angle"),
         std::make_pair("sensors: [{name: t, type: tilt, link: l, saturation: {force: 1}}]", "force"),

@@ -22,7 +22,7 @@ SensorConfig odometry(const std::string& twist, double stddev = 0) {
   config.link = "arm";
   config.twist = twist;
   config.X_LS = makePose({1, 0, 0});
-  config.noise_stddev = stddev;
+  config.noise[0].stddev = stddev;
   return config;
 }
 
@@ -67,9 +67,9 @@ TEST(ImuSensor, ConstantBiasesAreDrawnOnceAndReplayed) {
   exact.link = "arm";
   biased = exact;
   biased.name = "biased";
-  biased.accel_bias = 0.5;
-  biased.gyro_bias = -0.25;
-  biased.gyro_bias_spread = 0.01;
+  biased.noise[0].bias = 0.5;
+  biased.noise[1].bias = -0.25;
+  biased.noise[1].bias_spread = 0.01;
   Simulator simulator(swinging({exact, biased}), model::UriResolver());
   const auto error = [&](bool gyro) {
     const ImuReading truth = reading<ImuReading>(simulator.report(), 0), imu = reading<ImuReading>(simulator.report(), 1);

@@ -83,7 +83,7 @@ TEST(ForceTorqueSensor, NoiseHasItsDeviation) {
   SimulationConfig config;
   config.robots = {robot("mast", MAST, true)};
   config.robots[0].sensors = {forceTorque("wrist", "flange", "parent", "parent_to_child")};
-  config.robots[0].sensors[0].noise_stddev = 0.5;
+  config.robots[0].sensors[0].noise[0].stddev = 0.5;
   Simulator simulator(config, model::UriResolver());
   double sum = 0, sum_of_squares = 0;
   constexpr int COUNT = 4000;
@@ -169,7 +169,7 @@ TEST(ImuSensor, BiasWalksAndResets) {
   SimulationConfig config;
   config.robots = {robot("pendulum", pendulumUrdf(), true)};
   SensorConfig imu = sensor("imu", SensorType::IMU, "base");
-  imu.gyro_bias_stddev = 1;
+  imu.noise[1].bias_stddev = 1;
   config.robots[0].sensors = {imu};
   Simulator simulator(config, model::UriResolver());
   stepFor(&simulator, 1);
@@ -196,7 +196,7 @@ std::vector<Vector3> imuNoise(const SimulationConfig& config) {
 
 TEST(Sensors, NoiseIsAStreamOfEachSensorsOwn) {
   SensorConfig imu = sensor("imu", SensorType::IMU, "base");
-  imu.gyro_stddev = 0.1;
+  imu.noise[1].stddev = 0.1;
   SimulationConfig alone;
   alone.robots = {robot("pendulum", pendulumUrdf(), true)};
   alone.robots[0].sensors = {imu};

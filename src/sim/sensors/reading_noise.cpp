@@ -1,0 +1,60 @@
+#include "sensors/reading_noise.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sensors/reading_numbers.h"
+
+namespace blem_sim::sim {
+
+ReadingNoise::ReadingNoise(const SensorNoise& noise, SensorReading blank) {
+  for (std::size_t q = 0; q < quantities_.size(); ++q) quantities_[q].noise = noise[q];
+  forEachNumber(&blank, [this](double&, int quantity) {
+    if (quantity >= 0 && quantities_[quantity].noise.remembers()) quantities_[quantity].biases.push_back(0);
+  });
+}
+
+void ReadingNoise::drawBiases(RandomNumbers* random) {
+  if (drawn_) return;
+  drawn_ = true;
+  for (Quantity& quantity : quantities_)
+    for (double& bias : quantity.biases)
+      bias = quantity.noise.bias + (quantity.noise.bias_spread > 0 ? quantity.noise.bias_spread * random->gaussian() : 0);
+}
+
+void ReadingNoise::add(double period, RandomNumbers* random, SensorReading* reading) {
+  drawBiases(random);
+  for (std::size_t q = 0; q < quantities_.size(); ++q) {
+    const QuantityNoise& noise = quantities_[q].noise;
+    if (!noise.any()) continue;
+    const double walk = noise.bias_stddev * std::sqrt(period);
+    if (walk > 0)
+      for (double& bias : quantities_[q].biases) bias += walk * random->gaussian();
+    numbers_.clear();
+    forEachNumber(reading, [&](double& number, int quantity) {
+      if (quantity == static_cast<int>(q)) numbers_.push_back(&number);
+    });
+    if (noise.stddev > 0)
+      for (double* number : numbers_) *number += noise.stddev * random->gaussian();
+    for (std::size_t i = 0; i < quantities_[q].biases.size(); ++i) *numbers_[i] += quantities_[q].biases[i];
+  }
+}
+
+void ReadingNoise::reset() {
+  drawn_ = false;
+  for (Quantity& quantity : quantities_) std::fill(quantity.biases.begin(), quantity.biases.end(), 0);
+}
+
+void ReadingNoise::append(std::vector<double>* numbers) const {
+  if (quantities_[0].biases.empty() && quantities_[1].biases.empty()) return;
+  numbers->push_back(drawn_ ? 1 : 0);
+  for (const Quantity& quantity : quantities_) numbers->insert(numbers->end(), quantity.biases.begin(), quantity.biases.end());
+}
+
+void ReadingNoise::read(NumberReader* reader) {
+  if (quantities_[0].biases.empty() && quantities_[1].biases.empty()) return;
+  drawn_ = reader->choice(2) == 1;
+  for (Quantity& quantity : quantities_) reader->numbers(quantity.biases.data(), quantity.biases.size());
+}
+
+}  // namespace blem_sim::sim
