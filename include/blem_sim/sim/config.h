@@ -79,7 +79,7 @@ struct JointFriction {
   double dry = 0, viscous = 0;
 };
 
-enum class SensorType { FORCE_TORQUE, IMU, CONTACT, TILT, MOTOR_CURRENT, ODOMETRY, DEPTH_CAMERA, LIDAR };
+enum class SensorType { FORCE_TORQUE, IMU, CONTACT, CONTACT_SWITCH, CENTRE_OF_PRESSURE, TILT, MOTOR_CURRENT, ODOMETRY, DEPTH_CAMERA, LIDAR };
 
 enum class RangeNoise { GAUSSIAN, KINECT };
 
@@ -90,7 +90,8 @@ struct QuantityLimits {
 
   bool any() const { return resolution > 0 || saturation < std::numeric_limits<double>::infinity(); }
 };
-/** force_torque: force [N], torque [N m]; imu: acceleration, rate; tilt: angles, rate; motor_current: current [A], effort. */
+/** force_torque: force [N], torque [N m]; imu: acceleration, rate; tilt: angles, rate; motor_current: current [A], effort;
+ *  contact_switch: force; centre_of_pressure: position [m]. */
 using SensorLimits = std::array<QuantityLimits, 2>;
 
 /** Noise and bias of a quantity that a sensor measures, the same for all of its numbers. */
@@ -132,10 +133,11 @@ struct SensorConfig {
   std::string joint;                        ///< force_torque
   std::string frame = "child";              ///< force_torque: child | parent | sensor (axes of the joint frame)
   std::string measure = "parent_to_child";  ///< force_torque: parent_to_child (the wrench on the child) | child_to_parent
-  std::string link;                         ///< imu, contact, tilt, odometry, depth_camera, lidar
+  std::string link;                         ///< that the sensor sits on; not of force_torque and motor_current
   std::string topic;                        ///< empty: the sensor's name
   std::string frame_id;                     ///< of the messages; empty: what the readings are in. odometry: name of the world
-  Pose X_LS = Pose::Identity();             ///< imu, tilt, odometry, depth_camera, lidar: sensor in the link
+  Pose X_LS = Pose::Identity();             ///< sensor in the link; centre_of_pressure: z is the sole's normal. Not of contacts
+  double threshold = 0;                     ///< [N] contact_switch, centre_of_pressure: force beyond which there is contact
   std::string twist = "link";               ///< odometry: axes of the velocities, link (the sensor's) | world
   double rate = 0;                          ///< [Hz], 0 = every step, RATE_OFF = never
   SensorNoise noise;

@@ -67,6 +67,15 @@ struct ContactReading {
   int link_body = -1;
   Wrench total;  ///< their sum
 };
+struct ContactSwitchReading {
+  double force = 0;  ///< [N] by which the link is pressed: sum of its contacts' forces along their normals, mean over the step
+  bool closed = false;
+};
+/** There is none while nothing presses on the sole. */
+struct CentreOfPressureReading {
+  double x = 0, y = 0;  ///< [m] in the sensor's plane of x and y, where contacts' forces have no moment about x and y
+  double force = 0;     ///< [N] along z on the link
+};
 struct TiltReading {
   Quaternion orientation;
   Vector3 angular_velocity;
@@ -94,7 +103,7 @@ struct LidarReading {
 };
 /** A new sensor is one alternative; sensorValues and the visits in ros do not compile until they know it. */
 using SensorReading = std::variant<ForceTorqueReading, ImuReading, ContactReading, TiltReading, MotorCurrentReading, OdometryReading,
-                                   DepthCameraReading, LidarReading>;
+                                   DepthCameraReading, LidarReading, ContactSwitchReading, CentreOfPressureReading>;
 
 struct SensorSample {
   int sensor = 0;  ///< index into Simulator::sensors()

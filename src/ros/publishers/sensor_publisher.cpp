@@ -67,6 +67,18 @@ struct ReadingPublisher {
     sender->add(publisher, boost::make_shared<ContactsState>(toContactsState(simulator, report, reading)));
   }
 
+  void operator()(const sim::ContactSwitchReading& reading) const {
+    const auto message = messages->switches.spare();
+    message->data = reading.closed;
+    sender->add(publisher, message);
+  }
+
+  void operator()(const sim::CentreOfPressureReading& reading) const {
+    const auto message = startedFrom(&messages->points);
+    message->point = toPoint({reading.x, reading.y, 0});
+    sender->add(publisher, message);
+  }
+
   void operator()(const sim::TiltReading& reading) const {
     const auto message = startedFrom(&messages->imus);
     message->orientation = toQuaternion(reading.orientation);
@@ -110,6 +122,10 @@ ListenedPublisher advertise(ros::NodeHandle* node, sim::SensorType type, const s
       return ListenedPublisher::advertise<sensor_msgs::Imu>(node, topic, SENSOR_QUEUE);
     case sim::SensorType::CONTACT:
       return ListenedPublisher::advertise<ContactsState>(node, topic, SENSOR_QUEUE);
+    case sim::SensorType::CONTACT_SWITCH:
+      return ListenedPublisher::advertise<std_msgs::Bool>(node, topic, SENSOR_QUEUE);
+    case sim::SensorType::CENTRE_OF_PRESSURE:
+      return ListenedPublisher::advertise<geometry_msgs::PointStamped>(node, topic, SENSOR_QUEUE);
     case sim::SensorType::MOTOR_CURRENT:
       return ListenedPublisher::advertise<MotorCurrents>(node, topic, SENSOR_QUEUE);
     case sim::SensorType::ODOMETRY:
@@ -145,8 +161,9 @@ std::optional<Mounting> mountingOf(const sim::SensorConfig& sensor) {
     X_SO.linear() = sim::opticalAxes();
     return Mounting{told.empty() ? sensor.name + "_optical_frame" : told, sensor.X_LS * X_SO};
   }
-  const bool sits_anyhow = sensor.type == sim::SensorType::IMU || sensor.type == sim::SensorType::TILT ||
-                           sensor.type == sim::SensorType::ODOMETRY || sensor.type == sim::SensorType::LIDAR;
+  const std::set<sim::SensorType> sit_anyhow = {sim::SensorType::IMU, sim::SensorType::TILT, sim::SensorType::ODOMETRY,
+                                                sim::SensorType::LIDAR, sim::SensorType::CENTRE_OF_PRESSURE};
+  const bool sits_anyhow = sit_anyhow.count(sensor.type) > 0;
   if (!sits_anyhow || (told.empty() && sensor.X_LS.isApprox(Pose::Identity(), 1e-12))) return std::nullopt;
   return Mounting{told.empty() ? sensor.name + "_frame" : told, sensor.X_LS};
 }

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <blem_sim/MotorCurrents.h>
+#include <geometry_msgs/PointStamped.h>
 #include <geometry_msgs/WrenchStamped.h>
 #include <nav_msgs/Odometry.h>
 #include <ros/node_handle.h>
 #include <sensor_msgs/Imu.h>
+#include <std_msgs/Bool.h>
 
 #include <memory>
 #include <optional>
@@ -27,6 +29,8 @@ struct SensorMessages {
   MessagePool<sensor_msgs::Imu> imus;
   MessagePool<MotorCurrents> currents;
   MessagePool<nav_msgs::Odometry> odometries;
+  MessagePool<std_msgs::Bool> switches;
+  MessagePool<geometry_msgs::PointStamped> points;
 };
 
 /** Where readings go out. */

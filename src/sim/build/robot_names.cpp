@@ -44,6 +44,8 @@ void checkSensor(const SensorConfig& sensor, const std::string& where, const Nam
     }
     case SensorType::IMU:
     case SensorType::CONTACT:
+    case SensorType::CONTACT_SWITCH:
+    case SensorType::CENTRE_OF_PRESSURE:
     case SensorType::TILT:
     case SensorType::ODOMETRY:
     case SensorType::DEPTH_CAMERA:

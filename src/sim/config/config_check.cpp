@@ -122,6 +122,7 @@ void checkRobot(const RobotConfig& robot) {
       for (const double deviation : {noise.stddev, noise.bias_stddev, noise.bias_spread})
         of_sensor.number("noise", deviation, NumberRange::notNegative());
     }
+    of_sensor.number("threshold", sensor.threshold, NumberRange::notNegative());
     of_sensor.rays(sensor);
   }
 }

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 
@@ -90,6 +92,19 @@ void readImu(YamlReader& reader, SensorConfig* sensor) {
 
 void readContactSensor(YamlReader& reader, SensorConfig* sensor) { requireText(reader, "link", &sensor->link); }
 
+void readContactSwitch(YamlReader& reader, SensorConfig* sensor) {
+  requireText(reader, "link", &sensor->link);
+  reader.read("threshold", &sensor->threshold, NumberRange::notNegative());
+  readDelay(reader, sensor);
+  readNoise(reader, {"force"}, sensor);
+}
+
+void readCentreOfPressure(YamlReader& reader, SensorConfig* sensor) {
+  readMounting(reader, sensor);
+  reader.read("threshold", &sensor->threshold, NumberRange::notNegative());
+  readErrors(reader, {"position"}, sensor);
+}
+
 void readOdometry(YamlReader& reader, SensorConfig* sensor) {
   readMounting(reader, sensor);
   const std::vector<std::string> axes = {"link", "world"};
@@ -172,6 +187,8 @@ const std::vector<SensorRow> SENSOR_TABLE = {
     {"force_torque", SensorType::FORCE_TORQUE, 0, readForceTorque},
     {"imu", SensorType::IMU, 0, readImu},
     {"contact", SensorType::CONTACT, 0, readContactSensor},
+    {"contact_switch", SensorType::CONTACT_SWITCH, 0, readContactSwitch},
+    {"centre_of_pressure", SensorType::CENTRE_OF_PRESSURE, 0, readCentreOfPressure},
     {"tilt", SensorType::TILT, 0, readTilt},
     {"motor_current", SensorType::MOTOR_CURRENT, 0, readMotorCurrent},
     {"odometry", SensorType::ODOMETRY, 50, readOdometry},
@@ -185,7 +202,7 @@ SensorConfig readSensor(YamlReader& reader) {
   std::vector<std::string> types;
   for (const SensorRow& row : SENSOR_TABLE) types.push_back(row.name);
   const auto type = reader.choice("type", types);
-  if (!type) reader.refuse("type", "is missing; one of force_torque, imu, contact, tilt, motor_current, odometry, depth_camera, lidar");
+  if (!type) reader.refuse("type", fmt::format("is missing; one of {}", fmt::join(types, ", ")));
   sensor.type = SENSOR_TABLE[*type].type;
   sensor.rate = SENSOR_TABLE[*type].rate;
   reader.read("topic", &sensor.topic);

@@ -33,6 +33,8 @@ class Sensor {
   virtual void addNoise(SensorReading* reading) {}
   /** Lets what follows from a reading's numbers follow from them as they are read, noise and limits included. */
   virtual void settle(SensorReading* reading) const {}
+  /** False: there was nothing to measure, so there is no reading. */
+  virtual bool measured(const SensorReading& reading) const { return true; }
   virtual bool readsContacts() const { return false; }
 
   RandomNumbers& random() { return random_; }
@@ -51,6 +53,8 @@ Reading& readingIn(SensorReading* out) {
 std::unique_ptr<Sensor> makeForceTorqueSensor(const SimulatedWorld& world, const SensorInfo& info);
 std::unique_ptr<Sensor> makeImuSensor(const SimulatedWorld& world, const SensorInfo& info);
 std::unique_ptr<Sensor> makeContactSensor(const SimulatedWorld& world, const SensorInfo& info);
+std::unique_ptr<Sensor> makeContactSwitch(const SimulatedWorld& world, const SensorInfo& info);
+std::unique_ptr<Sensor> makeCentreOfPressureSensor(const SimulatedWorld& world, const SensorInfo& info);
 std::unique_ptr<Sensor> makeTiltSensor(const SimulatedWorld& world, const SensorInfo& info);
 std::unique_ptr<Sensor> makeMotorCurrentSensor(const SimulatedWorld& world, const SensorInfo& info);
 std::unique_ptr<Sensor> makeOdometrySensor(const SimulatedWorld& world, const SensorInfo& info);

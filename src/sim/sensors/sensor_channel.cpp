@@ -50,14 +50,15 @@ bool SensorChannel::read(const StepContext& step, std::uint64_t number, SensorSa
   const bool due = schedule_.due(number);
   if (!due && memory_.delay.steps() == 0) return false;
   sensor_->measure(step, &out->reading);
-  if (!has_truth_) return due;
+  if (!has_truth_) return due && sensor_->measured(out->reading);
   out->truth = out->reading;
   if (!memory_.delay.pass(&out->reading) || !due) return false;
   memory_.noise.add(schedule_.period(), &sensor_->random(), &out->reading);
   sensor_->addNoise(&out->reading);
   limit(config_.limits, &out->reading);
   sensor_->settle(&out->reading);
-  return true;
+  if (!sensor_->measured(*out->truth)) out->truth.reset();
+  return sensor_->measured(out->reading);
 }
 
 void SensorChannel::remake(const SimulatedWorld& world, const SensorInfo& info, double time_step) {

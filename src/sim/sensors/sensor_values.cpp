@@ -49,6 +49,8 @@ struct ToRow {
     row.add("position", r.position).add(r.orientation);
     return row.add("linear_velocity", r.linear_velocity).add("angular_velocity", r.angular_velocity);
   }
+  SensorValues operator()(const ContactSwitchReading& r) const { return Row().add("force", r.force).add("closed", r.closed ? 1 : 0); }
+  SensorValues operator()(const CentreOfPressureReading& r) const { return Row().add("x", r.x).add("y", r.y).add("force", r.force); }
   SensorValues operator()(const DepthCameraReading& r) const { return summary(r.view ? depthsOf(*r.view) : std::vector<float>()); }
   SensorValues operator()(const LidarReading& r) const { return summary(r.view ? rangesOf(*r.view) : std::vector<float>()); }
 
@@ -82,6 +84,10 @@ SensorReading blankReading(SensorType type, const std::vector<std::string>& join
       return ImuReading{Quaternion::Identity(), zero, zero, 0, 0};
     case SensorType::CONTACT:
       return ContactReading();
+    case SensorType::CONTACT_SWITCH:
+      return ContactSwitchReading();
+    case SensorType::CENTRE_OF_PRESSURE:
+      return CentreOfPressureReading();
     case SensorType::TILT:
       return TiltReading{Quaternion::Identity(), zero, 0, 0};
     case SensorType::MOTOR_CURRENT:
