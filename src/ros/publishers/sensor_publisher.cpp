@@ -137,8 +137,7 @@ ListenedPublisher advertise(ros::NodeHandle* node, sim::SensorType type, const s
   throw InputError("sensor topic " + topic + ": this type of sensor has no message");
 }
 
-std::string topicOf(const sim::SensorConfig& sensor) { return sensor.topic.empty() ? sensor.name : sensor.topic; }
-std::string truthTopicOf(const sim::SensorConfig& sensor) { return topicOf(sensor) + "/ground_truth"; }
+std::string truthTopicOf(const sim::SensorConfig& sensor) { return sim::sensorTopic(sensor) + "/ground_truth"; }
 
 /** The same sensor where it tells the truth: topics below its own. */
 sim::SensorConfig truthOf(sim::SensorConfig sensor) {
@@ -182,7 +181,7 @@ void nameFrames(const sim::RobotInfo& robot, const sim::SensorInfo& sensor, Sens
 }
 
 std::vector<std::string> readingTopicsOf(const sim::SensorConfig& sensor) {
-  return sim::isRangeSensor(sensor.type) ? rangeTopics(topicOf(sensor), sensor) : std::vector<std::string>{topicOf(sensor)};
+  return sim::isRangeSensor(sensor.type) ? rangeTopics(sim::sensorTopic(sensor), sensor) : std::vector<std::string>{sim::sensorTopic(sensor)};
 }
 
 std::vector<std::string> topicsOf(const sim::SensorConfig& sensor) {
@@ -194,8 +193,8 @@ std::vector<std::string> topicsOf(const sim::SensorConfig& sensor) {
 }
 
 SensorOutlet outletOf(ros::NodeHandle* node, const sim::SensorConfig& sensor) {
-  if (sim::isRangeSensor(sensor.type)) return {{}, advertiseRanges(node, topicOf(sensor), sensor)};
-  return {advertise(node, sensor.type, topicOf(sensor)), {}};
+  if (sim::isRangeSensor(sensor.type)) return {{}, advertiseRanges(node, sim::sensorTopic(sensor), sensor)};
+  return {advertise(node, sensor.type, sim::sensorTopic(sensor)), {}};
 }
 
 }  // namespace

@@ -29,14 +29,22 @@ SensorReading blankOf(const SimulatedWorld& world, const SensorInfo& info) {
 
 }  // namespace
 
+void SensorChannel::Memory::reset() {
+  noise.reset();
+  delay.clear();
+  tare.reset();
+}
+
 void SensorChannel::Memory::append(std::vector<double>* numbers) const {
   noise.append(numbers);
   delay.append(numbers);
+  tare.append(numbers);
 }
 
 void SensorChannel::Memory::read(NumberReader* reader) {
   noise.read(reader);
   delay.read(reader);
+  tare.read(reader);
 }
 
 SensorChannel::SensorChannel(const SimulatedWorld& world, const SensorInfo& info, double time_step)
@@ -44,12 +52,13 @@ SensorChannel::SensorChannel(const SimulatedWorld& world, const SensorInfo& info
       has_truth_(hasGroundTruth(info.config)),
       sensor_(makeSensor(world, info)),
       schedule_(info.config.rate, time_step),
-      memory_{{info.config.noise, blankOf(world, info)}, {info.config.delay, time_step, blankOf(world, info)}} {}
+      memory_{{info.config.noise, blankOf(world, info)}, {info.config.delay, time_step, blankOf(world, info)}, {}} {}
 
 bool SensorChannel::read(const StepContext& step, std::uint64_t number, SensorSample* out) {
   const bool due = schedule_.due(number);
   if (!due && memory_.delay.steps() == 0) return false;
   sensor_->measure(step, &out->reading);
+  memory_.tare.apply(&out->reading);
   if (!has_truth_) return due && sensor_->measured(out->reading);
   out->truth = out->reading;
   if (!memory_.delay.pass(&out->reading) || !due) return false;
@@ -65,13 +74,9 @@ void SensorChannel::remake(const SimulatedWorld& world, const SensorInfo& info, 
   SensorChannel made(world, info, time_step);
   made.sensor_->random() = sensor_->random();
   made.memory_.noise = std::move(memory_.noise);
+  made.memory_.tare = memory_.tare;
   if (made.memory_.delay.steps() == memory_.delay.steps()) made.memory_.delay = std::move(memory_.delay);
   *this = std::move(made);
-}
-
-void SensorChannel::reset() {
-  memory_.noise.reset();
-  memory_.delay.clear();
 }
 
 }  // namespace blem_sim::sim

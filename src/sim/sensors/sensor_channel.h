@@ -9,6 +9,7 @@
 #include "sensors/reading_noise.h"
 #include "sensors/sensor.h"
 #include "sensors/sensor_schedule.h"
+#include "sensors/wrench_tare.h"
 
 namespace blem_sim::sim {
 
@@ -30,13 +31,15 @@ class SensorChannel {
   /** Makes the sensor again, as its bodies are now. With another time step, readings on their way are lost. */
   void remake(const SimulatedWorld& world, const SensorInfo& info, double time_step);
   /** Forgets what the sensor remembers and what is on its way, without touching the random numbers. */
-  void reset();
+  void reset() { memory_.reset(); }
 
   /** What a sensor remembers from reading to reading. */
   struct Memory {
     ReadingNoise noise;
     DelayLine delay;
+    WrenchTare tare;
 
+    void reset();
     void append(std::vector<double>* numbers) const;
     void read(NumberReader* reader);
   };
