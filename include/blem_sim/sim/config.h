@@ -131,12 +131,13 @@ struct SensorConfig {
   std::string name;
   SensorType type = SensorType::IMU;
   std::string joint;                        ///< force_torque
-  std::string frame = "child";              ///< force_torque: child | parent | sensor (axes of the joint frame)
+  std::string frame = "child";              ///< force_torque: axes and origin, child | parent | sensor (the joint's at 0) | a link
   std::string measure = "parent_to_child";  ///< force_torque: parent_to_child (the wrench on the child) | child_to_parent
   std::string link;                         ///< that the sensor sits on; not of force_torque and motor_current
   std::string topic;                        ///< empty: the sensor's name
   std::string frame_id;                     ///< of the messages; empty: what the readings are in. odometry: name of the world
   Pose X_LS = Pose::Identity();             ///< sensor in the link; centre_of_pressure: z is the sole's normal. Not of contacts
+  Pose X_offset = Pose::Identity();         ///< odometry: shift [m] of what is told, and turn about the world's axes
   double threshold = 0;                     ///< [N] contact_switch, centre_of_pressure: force beyond which there is contact
   std::string twist = "link";               ///< odometry: axes of the velocities, link (the sensor's) | world
   double rate = 0;                          ///< [Hz], 0 = every step, RATE_OFF = never

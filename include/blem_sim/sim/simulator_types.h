@@ -50,8 +50,8 @@ struct RobotInfo {
 
 struct SensorInfo {
   int robot = 0;
-  SensorConfig config;
-  std::string frame_id;  ///< link the reading is expressed in
+  SensorConfig config;   ///< of a force_torque, link and X_LS say where its axes and their origin are
+  std::string frame_id;  ///< link the reading's axes are fixed in
 };
 
 /**

@@ -53,7 +53,7 @@ struct LayerEventReport {
 
 struct ForceTorqueReading {
   Vector3 force, torque;  ///< means over the step, in the frame, as it begins, and of the sign the sensor's configuration asks for
-  std::string frame_id;   ///< link whose axes (and, for the torque, whose joint frame origin) they are in
+  std::string frame_id;   ///< link that frame is fixed in
 };
 struct ImuReading {
   Quaternion orientation;       ///< sensor in the world

@@ -116,6 +116,7 @@ void checkRobot(const RobotConfig& robot) {
   for (const SensorConfig& sensor : robot.sensors) {
     const Fields of_sensor("robots: " + robot.name + ": sensors: " + sensor.name + ": ");
     of_sensor.pose("pose", sensor.X_LS);
+    of_sensor.pose("offset", sensor.X_offset);
     if (sensor.rate != RATE_OFF) of_sensor.number("rate", sensor.rate, NumberRange::notNegative());
     for (const QuantityNoise& noise : sensor.noise) {
       of_sensor.number("noise", noise.bias, NumberRange::any());

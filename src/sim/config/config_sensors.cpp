@@ -64,10 +64,9 @@ void readErrors(YamlReader& reader, const Quantities& quantities, SensorConfig* 
 }
 
 void readForceTorque(YamlReader& reader, SensorConfig* sensor) {
-  const std::vector<std::string> frames = {"child", "parent", "sensor"};
   const std::vector<std::string> senses = {"parent_to_child", "child_to_parent"};
   requireText(reader, "joint", &sensor->joint);
-  if (const auto frame = reader.choice("frame", frames)) sensor->frame = frames[*frame];
+  reader.read("frame", &sensor->frame);
   reader.read("frame_id", &sensor->frame_id);
   if (const auto sense = reader.choice("measure", senses)) sensor->measure = senses[*sense];
   readErrors(reader, {"force", "torque"}, sensor);
@@ -109,6 +108,7 @@ void readOdometry(YamlReader& reader, SensorConfig* sensor) {
   readMounting(reader, sensor);
   const std::vector<std::string> axes = {"link", "world"};
   if (const auto twist = reader.choice("twist", axes)) sensor->twist = axes[*twist];
+  reader.read("offset", &sensor->X_offset);
   YamlReader noise = reader.section("noise");
   noise.read("stddev", &sensor->noise[0].stddev, NumberRange::notNegative());
   noise.finish();

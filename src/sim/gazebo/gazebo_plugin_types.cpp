@@ -85,11 +85,10 @@ void readP3d(GazeboReader* reader, GazeboSensor* sensor) {
   reader->read("bodyName", &config.link);
   config.twist = "world";
   config.noise[0].stddev = gaussianNoise(reader);
-  for (const char* path : {"xyzOffsets", "rpyOffsets", "xyzOffset", "rpyOffset"}) {
-    Vector3 offset = Vector3::Zero();
-    reader->read(path, &offset);
-    if (!offset.isZero()) reader->fault(path, "the world is not shifted; it is left out: write 0 0 0");
-  }
+  Vector3 xyz = Vector3::Zero(), rpy = Vector3::Zero();
+  for (const char* path : {"xyzOffset", "xyzOffsets"}) reader->read(path, &xyz);
+  for (const char* path : {"rpyOffset", "rpyOffsets"}) reader->read(path, &rpy);
+  config.X_offset = makePose(xyz, rpy);
 }
 
 void readLidarPlugin(GazeboReader* reader, GazeboSensor* sensor) {

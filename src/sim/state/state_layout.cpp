@@ -151,7 +151,7 @@ void writeSensors(const SimulatedWorld& world, LayoutWriter* writer) {
     if (c.delay > 0 || c.limits[0].any() || c.limits[1].any())
       for (const QuantityLimits& limits : c.limits) hash.add(c.delay).add(limits.saturation).add(limits.resolution);
     hash.add(c.threshold);
-    if (c.type == SensorType::ODOMETRY) hash.add(c.twist);
+    if (c.type == SensorType::ODOMETRY) hash.add(c.twist).add(c.X_offset);
     if (isRangeSensor(c.type)) hash.add(raysHash(c.rays));
     writer->line("sensor", c.name, "kind or settings", hash);
   }
