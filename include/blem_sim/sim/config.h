@@ -79,7 +79,18 @@ struct JointFriction {
   double dry = 0, viscous = 0;
 };
 
-enum class SensorType { FORCE_TORQUE, IMU, CONTACT, CONTACT_SWITCH, CENTRE_OF_PRESSURE, TILT, MOTOR_CURRENT, ODOMETRY, DEPTH_CAMERA, LIDAR };
+enum class SensorType {
+  FORCE_TORQUE,
+  IMU,
+  CONTACT,
+  CONTACT_SWITCH,
+  CENTRE_OF_PRESSURE,
+  TILT,
+  MOTOR_CURRENT,
+  ODOMETRY,
+  DEPTH_CAMERA,
+  LIDAR
+};
 
 enum class RangeNoise { GAUSSIAN, KINECT };
 
@@ -166,6 +177,7 @@ struct RobotConfig {
   std::map<std::string, double> initial_positions;
   std::optional<bool> self_collision;          ///< links touch each other; none given: what the URDF says, else they do not
   std::set<std::string> self_colliding_links;  ///< links that touch any other of the robot, if self_collision is not given
+  std::set<std::string> weightless_links;      ///< that gravity does not act on
   std::vector<std::pair<std::string, std::string>> disable_collisions;
   ContactOverrides contact;
   std::map<std::string, ContactOverrides> links;

@@ -17,6 +17,12 @@ namespace blem_sim::sim {
 
 enum class ModelKind { ENVIRONMENT, ROBOT, OBJECT };
 
+/** Something that gravity does not act on. */
+struct WeightlessPart {
+  int body = 0;
+  int link = -1;  ///< of the robot's description; -1: the whole body
+};
+
 /** A robot, object or environment in the simulation. */
 struct ModelInfo {
   std::string name;
@@ -24,7 +30,8 @@ struct ModelInfo {
   std::vector<int> bodies;       ///< world bodies; [0] holds the root link
   std::vector<int> joints;       ///< world joints, movable ones, in the robot's order
   Pose X_WM = Pose::Identity();  ///< root link, object's frame or environment at the start
-  bool alive = true;             ///< false: unloaded, and its slot is free
+  std::vector<WeightlessPart> weightless;
+  bool alive = true;  ///< false: unloaded, and its slot is free
 };
 
 /** A robot as publishers and commands see it. */

@@ -12,7 +12,7 @@
 #include "blem_sim/sim/sensor_values.h"
 #include "messages/contact_messages.h"
 #include "messages/conversions.h"
-#include "messages/robot_frames.h"
+#include "messages/robot_names.h"
 #include "publishers/robot_topics.h"
 
 namespace blem_sim::node {
@@ -181,7 +181,8 @@ void nameFrames(const sim::RobotInfo& robot, const sim::SensorInfo& sensor, Sens
 }
 
 std::vector<std::string> readingTopicsOf(const sim::SensorConfig& sensor) {
-  return sim::isRangeSensor(sensor.type) ? rangeTopics(sim::sensorTopic(sensor), sensor) : std::vector<std::string>{sim::sensorTopic(sensor)};
+  return sim::isRangeSensor(sensor.type) ? rangeTopics(sim::sensorTopic(sensor), sensor)
+                                         : std::vector<std::string>{sim::sensorTopic(sensor)};
 }
 
 std::vector<std::string> topicsOf(const sim::SensorConfig& sensor) {

@@ -33,7 +33,7 @@ struct SensorMessages {
   MessagePool<geometry_msgs::PointStamped> points;
 };
 
-/** Where readings go out. */
+/** Publishers of a sensor's readings. */
 struct SensorOutlet {
   std::optional<ListenedPublisher> publisher;  ///< none for cameras and lidars
   std::shared_ptr<const RangeTopics> ranges;   ///< for them alone

@@ -27,12 +27,14 @@ ros::ServiceServer SensorServices::advertiseTare(const sim::SensorInfo& sensor, 
       [this, names](std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
         const auto& sensors = simulator_->sensors();
         for (std::size_t i = 0; i < sensors.size(); ++i)
-          if (Names(simulator_->robots()[sensors[i].robot].name, sensors[i].config.name) == names) simulator_->tareSensor(static_cast<int>(i));
+          if (Names(simulator_->robots()[sensors[i].robot].name, sensors[i].config.name) == names)
+            simulator_->tareSensor(static_cast<int>(i));
         response.success = true;
         response.message = "what " + names.second + " measures next is its zero";
         return true;
       };
-  return robot_node.advertiseService<std_srvs::Trigger::Request, std_srvs::Trigger::Response>(sim::sensorTopic(sensor.config) + "/tare", tare);
+  return robot_node.advertiseService<std_srvs::Trigger::Request, std_srvs::Trigger::Response>(sim::sensorTopic(sensor.config) + "/tare",
+                                                                                              tare);
 }
 
 }  // namespace blem_sim::node

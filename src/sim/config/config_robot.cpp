@@ -93,7 +93,7 @@ std::set<std::string> readNames(YamlReader& reader, const std::string& key) {
   return names;
 }
 
-OdometryConfig readOdometry(YamlReader reader) {
+OdometryConfig readOdometryTopic(YamlReader reader) {
   OdometryConfig odometry;
   reader.read("topic", &odometry.topic);
   reader.read("frame", &odometry.frame);
@@ -159,7 +159,7 @@ RobotConfig readRobot(YamlReader& reader) {
   robot.controllers = readControllers(reader);
   reader.read("tf_prefix", &robot.tf_prefix);
   reader.read("publish_tf", &robot.publish_tf);
-  robot.odom = readOdometry(reader.section("odom"));
+  robot.odom = readOdometryTopic(reader.section("odom"));
   return robot;
 }
 

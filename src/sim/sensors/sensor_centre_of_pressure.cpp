@@ -27,7 +27,9 @@ class CentreOfPressureSensor : public Sensor {
     reading.y = torque.x() / force.z();
   }
 
-  bool measured(const SensorReading& reading) const override { return std::get<CentreOfPressureReading>(reading).force > config_.threshold; }
+  bool measured(const SensorReading& reading) const override {
+    return std::get<CentreOfPressureReading>(reading).force > config_.threshold;
+  }
   bool readsContacts() const override { return true; }
 
  private:

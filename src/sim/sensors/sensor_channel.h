@@ -26,14 +26,16 @@ class SensorChannel {
    */
   bool read(const StepContext& step, std::uint64_t number, SensorSample* out);
   /** Whether read() will need the contacts of that step. */
-  bool readsContacts(std::uint64_t number) const { return sensor_->readsContacts() && (schedule_.due(number) || memory_.delay.steps() > 0); }
+  bool readsContacts(std::uint64_t number) const {
+    return sensor_->readsContacts() && (schedule_.due(number) || memory_.delay.steps() > 0);
+  }
 
   /** Makes the sensor again, as its bodies are now. With another time step, readings on their way are lost. */
   void remake(const SimulatedWorld& world, const SensorInfo& info, double time_step);
   /** Forgets what the sensor remembers and what is on its way, without touching the random numbers. */
   void reset() { memory_.reset(); }
 
-  /** What a sensor remembers from reading to reading. */
+  /** Memory of a sensor from reading to reading. */
   struct Memory {
     ReadingNoise noise;
     DelayLine delay;

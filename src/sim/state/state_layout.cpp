@@ -68,6 +68,7 @@ void writeModels(const SimulatedWorld& world, LayoutWriter* writer) {
     ContentHash hash;
     hash.add(static_cast<int>(model.kind)).add(world.budgets[i].max_contacts).add(self_collides);
     for (const int link : world.filter.selfCollidingLinks(static_cast<int>(i))) hash.add(link);
+    for (const WeightlessPart& part : model.weightless) hash.add(part.body).add(part.link);
     writer->line("model", model.name, "kind or settings", hash.add(model.bodies).add(model.joints));
   }
 }

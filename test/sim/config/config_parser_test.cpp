@@ -102,7 +102,7 @@ TEST(Manual, HoldsEveryKnownKey) {
   std::set<std::string> known, written;
   const SimulationConfig config = parseConfig(document, "default.yaml", "", &known);
   EXPECT_EQ(config.robots.size(), 2u);
-  EXPECT_EQ(config.robots[0].sensors.size(), 8u);
+  EXPECT_EQ(config.robots[0].sensors.size(), 10u);
   ASSERT_TRUE(config.robots[0].controllers);
   EXPECT_EQ(config.robots[0].controllers->size(), 3u);
   EXPECT_FALSE(config.robots[1].controllers);

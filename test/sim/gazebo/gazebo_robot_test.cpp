@@ -87,10 +87,10 @@ TEST(GazeboSurface, WhatCannotBeSaysSo) {
              "</preserveFixedJoint><springStiffness>0</springStiffness>",
              "hip") +
       "<gazebo><static>true</static></gazebo>");
-  EXPECT_EQ(told(robot, "gravity acts on links that are to have none: leg, tool;"), 1) << allNotes(robot);
+  EXPECT_EQ(robot.config.weightless_links, (std::set<std::string>{"leg", "tool"}));
   EXPECT_EQ(told(robot, "without effect here: minDepth, maxVel, provideFeedback, implicitSpringDamper;"), 1) << allNotes(robot);
   EXPECT_EQ(told(robot, "<static>: "), 1) << allNotes(robot);
-  EXPECT_EQ(robot.notes.size(), 3u) << allNotes(robot);
+  EXPECT_EQ(robot.notes.size(), 2u) << allNotes(robot);
   EXPECT_EQ(told(described(onLink("<springStiffness>3</springStiffness>", "hip")), "not read: 'hip' <springStiffness>"), 1);
 }
 
@@ -161,9 +161,9 @@ INSTANTIATE_TEST_SUITE_P(
                  "b</topicName></plugin></gazebo>",
                  "'a b' is no ROS topic"},
         BadBlock{"shifted",
-                 "<gazebo><plugin name=\"p\" filename=\"libgazebo_ros_p3d.so\"><bodyName>leg</bodyName><xyzOffsets>1 0 "
-                 "0</xyzOffsets></plugin></gazebo>",
-                 "<xyzOffsets>: the world is not shifted"},
+                 "<gazebo><plugin name=\"p\" filename=\"libgazebo_ros_p3d.so\"><bodyName>leg</bodyName><xyzOffset>1 0"
+                 "</xyzOffset></plugin></gazebo>",
+                 "<xyzOffset>: '1 0' is not 3 numbers"},
         BadBlock{"relative",
                  "<gazebo><plugin name=\"p\" "
                  "filename=\"libgazebo_ros_p3d.so\"><bodyName>leg</bodyName><frameName>base</frameName></plugin></gazebo>",
@@ -272,7 +272,9 @@ TEST(GazeboSensor, BumperAndP3d) {
       "<gazebo>" +
       plugin("p3d", "<bodyName>tool</bodyName><topicName>truth</topicName><frameName>map</frameName><gaussianNoise>0.01</gaussianNoise>") +
       plugin("joint_state_publisher", "<jointName>hip</jointName>") +
-      plugin("p3d", "<bodyName>leg</bodyName><topicName>odom</topicName>", "second") + "</gazebo>");
+      plugin("p3d", "<bodyName>leg</bodyName><topicName>odom</topicName><xyzOffset>1 2 3</xyzOffset><rpyOffset>0 0 0.5</rpyOffset>",
+             "second") +
+      "</gazebo>");
   ASSERT_EQ(robot.config.sensors.size(), 3u) << allNotes(robot);
   const SensorConfig &bumper = robot.config.sensors[0], &truth = robot.config.sensors[1], &second = robot.config.sensors[2];
   EXPECT_EQ(bumper.type, SensorType::CONTACT);
@@ -280,6 +282,8 @@ TEST(GazeboSensor, BumperAndP3d) {
   EXPECT_EQ(truth.type, SensorType::ODOMETRY);
   EXPECT_EQ(truth.link + " " + truth.topic + " " + truth.frame_id + " " + truth.twist, "tool truth map world");
   EXPECT_EQ(truth.noise[0].stddev, 0.01);
+  EXPECT_TRUE(truth.X_offset.isApprox(Pose::Identity(), 0));
+  EXPECT_TRUE(second.X_offset.isApprox(makePose({1, 2, 3}, {0, 0, 0.5}), 1e-15));
   EXPECT_EQ(second.topic, "") << "odom is the robot's own";
   EXPECT_EQ(told(robot, "its topic odom is the robot's own"), 1) << allNotes(robot);
   EXPECT_EQ(told(robot, "without effect here: jointName"), 1) << allNotes(robot);

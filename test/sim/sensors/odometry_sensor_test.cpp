@@ -26,6 +26,20 @@ SensorConfig odometry(const std::string& twist, double stddev = 0) {
   return config;
 }
 
+TEST(OdometrySensor, OffsetShiftsThePositionAndTurnsTheOrientation) {
+  SensorConfig shifted = odometry("world");
+  shifted.name = "shifted";
+  shifted.X_offset = makePose({1, -2, 3}, {0.1, 0.2, 0.3});
+  Simulator simulator(swinging({odometry("world"), shifted}), model::UriResolver());
+  stepFor(&simulator, 0.2);
+  const OdometryReading plain = reading<OdometryReading>(simulator.report(), 0), told = reading<OdometryReading>(simulator.report(), 1);
+  EXPECT_LT((told.position - plain.position - Vector3(1, -2, 3)).norm(), 1e-12);
+  const Quaternion turned = Quaternion(shifted.X_offset.linear()) * plain.orientation;
+  EXPECT_LT(told.orientation.angularDistance(turned), 1e-7);
+  EXPECT_EQ(told.linear_velocity, plain.linear_velocity);
+  EXPECT_EQ(told.angular_velocity, plain.angular_velocity);
+}
+
 TEST(OdometrySensor, PoseAndVelocitiesOfATurningArm) {
   Simulator simulator(swinging({odometry("link"), odometry("world")}), model::UriResolver());
   stepFor(&simulator, 0.2);

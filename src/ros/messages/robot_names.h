@@ -1,9 +1,9 @@
-// Names of a robot's frames on /tf and in messages.
+// Names of a robot's frames on /tf and in messages, and of what it listens to.
 #pragma once
 
 #include <string>
 
-#include "blem_sim/sim/simulator_types.h"
+#include "blem_sim/sim/simulator.h"
 
 namespace blem_sim::node {
 
@@ -15,5 +15,8 @@ std::string namedFrame(const sim::RobotInfo& robot, const std::string& name);
 
 /** The parameter tf_prefix that robot_state_publisher finds in a name space or above it; empty if there is none. */
 std::string tfPrefixIn(const std::string& name_space);
+
+/** @param field of the robot's namespace, for the message @throws InputError if another robot would take its commands */
+void checkNamespace(const sim::Simulator& simulator, const sim::RobotInfo& robot, const std::string& field);
 
 }  // namespace blem_sim::node
