@@ -1,4 +1,5 @@
 // Save, restore, reset, hash.
+#include <algorithm>
 #include <utility>
 
 #include "blem_sim/sim/state_file.h"
@@ -43,7 +44,7 @@ struct StateParts {
 /** Words of a state: whether the simulation has stopped, then of each sensor its random numbers, then those of contacts. */
 std::size_t contactWords(std::size_t sensors) { return 1 + sensors; }
 
-/** Reads the numbers at the end, which only states with loads or another time step have. */
+/** Reads the numbers at the end, which only states with loads, another time step or tared sensors have. */
 void readLoads(const SimulationState& state, const SimulatedWorld& world, NumberReader* reader, StateParts* parts) {
   if (reader->left() == 0) return;
   parts->epoch.time = reader->number();
@@ -52,6 +53,8 @@ void readLoads(const SimulationState& state, const SimulatedWorld& world, Number
     NumberReader::refuseContent("the time step was set at a step that is still to come");
   parts->epoch.step = static_cast<std::uint64_t>(step);
   parts->loads.read(world.world.bodyCount(), world.world.jointCount(), reader);
+  if (reader->left() == 0) return;
+  for (SensorChannel::Memory& sensor : parts->sensors) sensor.tare.read(reader);
 }
 
 /** @param first word @param live there are live environments, of whose points the state tells */
@@ -79,6 +82,7 @@ void readParts(const SimulationState& state, const SimulatedWorld& world, const 
   for (const SensorChannel& sensor : sensors) {
     parts->sensors.push_back(sensor.memory());
     parts->sensors.back().read(&reader);
+    parts->sensors.back().tare.reset();
   }
   readContacts(state, world.colliders, contacts, live, &reader, parts);
   readLoads(state, world, &reader, parts);
@@ -109,9 +113,13 @@ SimulationState Simulator::Impl::content() const {
   contacts_.crossings().append(&state.numbers, &state.words);
   if (!live_.empty()) contacts_.fading().append(&state.words);
   contacts_.stops().append(&state.words);
-  if (loads_.empty() && epoch_.step == 0) return state;
+  const auto tared = [](const SensorChannel& sensor) { return sensor.memory().tare.any(); };
+  const bool any_tare = std::any_of(sensors_.begin(), sensors_.end(), tared);
+  if (loads_.empty() && epoch_.step == 0 && !any_tare) return state;
   state.numbers.insert(state.numbers.end(), {epoch_.time, static_cast<double>(epoch_.step)});
   loads_.append(&state.numbers);
+  if (any_tare)
+    for (const SensorChannel& sensor : sensors_) sensor.memory().tare.append(&state.numbers);
   return state;
 }
 

@@ -160,8 +160,8 @@ std::optional<Mounting> mountingOf(const sim::SensorConfig& sensor) {
     X_SO.linear() = sim::opticalAxes();
     return Mounting{told.empty() ? sensor.name + "_optical_frame" : told, sensor.X_LS * X_SO};
   }
-  const std::set<sim::SensorType> sit_anyhow = {sim::SensorType::IMU, sim::SensorType::TILT, sim::SensorType::ODOMETRY,
-                                                sim::SensorType::LIDAR, sim::SensorType::CENTRE_OF_PRESSURE};
+  const std::set<sim::SensorType> sit_anyhow = {sim::SensorType::FORCE_TORQUE, sim::SensorType::IMU,   sim::SensorType::TILT,
+                                                sim::SensorType::ODOMETRY,     sim::SensorType::LIDAR, sim::SensorType::CENTRE_OF_PRESSURE};
   const bool sits_anyhow = sit_anyhow.count(sensor.type) > 0;
   if (!sits_anyhow || (told.empty() && sensor.X_LS.isApprox(Pose::Identity(), 1e-12))) return std::nullopt;
   return Mounting{told.empty() ? sensor.name + "_frame" : told, sensor.X_LS};

@@ -8,14 +8,18 @@
 namespace blem_sim::sim {
 
 ReadingNoise::ReadingNoise(const SensorNoise& noise, SensorReading blank) {
-  for (std::size_t q = 0; q < quantities_.size(); ++q) quantities_[q].noise = noise[q];
-  forEachNumber(&blank, [this](double&, int quantity) {
-    if (quantity >= 0 && quantities_[quantity].noise.remembers()) quantities_[quantity].biases.push_back(0);
+  const bool is_imu = std::holds_alternative<ImuReading>(blank);  // its biases are part of every state
+  for (std::size_t q = 0; q < quantities_.size(); ++q) {
+    quantities_[q].noise = noise[q];
+    draws_ = draws_ || noise[q].bias != 0 || noise[q].bias_spread > 0;
+  }
+  forEachNumber(&blank, [&](double&, int quantity) {
+    if (quantity >= 0 && (is_imu || quantities_[quantity].noise.remembers())) quantities_[quantity].biases.push_back(0);
   });
 }
 
 void ReadingNoise::drawBiases(RandomNumbers* random) {
-  if (drawn_) return;
+  if (!draws_ || drawn_) return;
   drawn_ = true;
   for (Quantity& quantity : quantities_)
     for (double& bias : quantity.biases)
@@ -46,15 +50,13 @@ void ReadingNoise::reset() {
 }
 
 void ReadingNoise::append(std::vector<double>* numbers) const {
-  if (quantities_[0].biases.empty() && quantities_[1].biases.empty()) return;
-  numbers->push_back(drawn_ ? 1 : 0);
   for (const Quantity& quantity : quantities_) numbers->insert(numbers->end(), quantity.biases.begin(), quantity.biases.end());
+  if (draws_) numbers->push_back(drawn_ ? 1 : 0);
 }
 
 void ReadingNoise::read(NumberReader* reader) {
-  if (quantities_[0].biases.empty() && quantities_[1].biases.empty()) return;
-  drawn_ = reader->choice(2) == 1;
   for (Quantity& quantity : quantities_) reader->numbers(quantity.biases.data(), quantity.biases.size());
+  if (draws_) drawn_ = reader->choice(2) == 1;
 }
 
 }  // namespace blem_sim::sim

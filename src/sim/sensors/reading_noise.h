@@ -33,8 +33,8 @@ class ReadingNoise {
     std::vector<double> biases;  ///< of each of its numbers; none if they have no bias
   };
   std::array<Quantity, 2> quantities_;
-  bool drawn_ = false;
-  std::vector<double*> numbers_;  // of a quantity
+  bool draws_ = false, drawn_ = false;  // constant biases
+  std::vector<double*> numbers_;        // of a quantity
 };
 
 }  // namespace blem_sim::sim

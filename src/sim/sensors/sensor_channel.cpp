@@ -38,13 +38,11 @@ void SensorChannel::Memory::reset() {
 void SensorChannel::Memory::append(std::vector<double>* numbers) const {
   noise.append(numbers);
   delay.append(numbers);
-  tare.append(numbers);
 }
 
 void SensorChannel::Memory::read(NumberReader* reader) {
   noise.read(reader);
   delay.read(reader);
-  tare.read(reader);
 }
 
 SensorChannel::SensorChannel(const SimulatedWorld& world, const SensorInfo& info, double time_step)

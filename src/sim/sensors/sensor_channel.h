@@ -42,6 +42,7 @@ class SensorChannel {
     WrenchTare tare;
 
     void reset();
+    /** Appends all but the tare. */
     void append(std::vector<double>* numbers) const;
     void read(NumberReader* reader);
   };

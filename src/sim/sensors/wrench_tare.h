@@ -15,6 +15,8 @@ class WrenchTare {
   void reset() { *this = WrenchTare(); }
 
   void apply(SensorReading* reading);
+  /** True once it was asked for. */
+  bool any() const { return asked_ || !force_.isZero(0) || !torque_.isZero(0); }
 
   void append(std::vector<double>* numbers) const;
   void read(NumberReader* reader);

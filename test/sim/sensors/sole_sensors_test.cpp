@@ -119,6 +119,29 @@ TEST(CentreOfPressure, IsThatOfTheContacts) {
   EXPECT_NEAR(at.y, sum.y() / force, 1e-5);
 }
 
+TEST(CentreOfPressure, IsThatOfTheAnklesWrench) {
+  const char* const LEG = R"(<robot name="leg"><link name="shank"><inertial><origin xyz="0.03 -0.02 0.1"/><mass value="9"/>
+    <inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+    <link name="sole"><inertial><mass value="1"/><inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial>
+    <collision><geometry><box size="0.2 0.1 0.05"/></geometry></collision></link>
+    <joint name="ankle" type="fixed"><parent link="shank"/><child link="sole"/></joint></robot>)";
+  SensorConfig ankle = onSole("ankle", SensorType::FORCE_TORQUE, 0);
+  ankle.joint = "ankle";
+  SimulationConfig config = footAt(STANDING, {onSole("sole", SensorType::CENTRE_OF_PRESSURE, 0), ankle});
+  config.robots[0].urdf_xml = LEG;
+  Simulator simulator(config, model::UriResolver());
+  stepFor(&simulator, 1);
+  const auto centre = reading<CentreOfPressureReading>(simulator.report(), 0);
+  const auto wrench = reading<ForceTorqueReading>(simulator.report(), 1);
+  // The ground bears the sole's own weight, too, which acts at its origin.
+  const double ground = -wrench.force.z() + 1 * G;
+  EXPECT_NEAR(ground / (10 * G), 1, 1e-6);
+  EXPECT_NEAR(centre.force / ground, 1, 1e-6);
+  EXPECT_NEAR(centre.x, wrench.torque.y() / ground, 1e-5);
+  EXPECT_NEAR(centre.y, -wrench.torque.x() / ground, 1e-5);
+  EXPECT_NEAR(centre.x, 0.027, 1e-5);
+}
+
 TEST(CentreOfPressure, IsNotReadWhileNothingPresses) {
   SensorConfig late = onSole("late", SensorType::CENTRE_OF_PRESSURE, 0);
   late.delay = 0.02;

@@ -36,7 +36,7 @@ inline SimulationConfig sceneOfAllKinds(const std::string& stepper = "articulate
   wrench.name = "wrench";
   wrench.type = SensorType::FORCE_TORQUE;
   wrench.joint = "hinge";
-  wrench.noise[0].stddev = 0.1;
+  for (QuantityNoise& noise : wrench.noise) noise.stddev = 0.1;
   pendulum.sensors = {imu, wrench};
   config.robots = {pendulum};
   return config;
