@@ -14,6 +14,7 @@
 #include "blem_sim/geometry/input_error.h"
 #include "messages/parameter_yaml.h"
 #include "messages/pid_gains.h"
+#include "messages/robot_names.h"
 
 namespace blem_sim::node {
 
@@ -152,7 +153,10 @@ NodeParameters readParameters(const ros::NodeHandle& private_node) {
   }
   sim::SimulationConfig config = sim::parseConfig(parameters, source, directoryOf(config_file));
   fetchDescriptions(source, &config);
-  for (sim::RobotConfig& robot : config.robots) robot.pid_gains = pidGainsIn(robot.name_space);
+  for (sim::RobotConfig& robot : config.robots) {
+    robot.pid_gains = pidGainsIn(robot.name_space);
+    if (robot.tf_prefix.empty()) robot.tf_prefix = tfPrefixIn(robot.name_space);
+  }
   return {config, YAML::Dump(parameters)};
 }
 

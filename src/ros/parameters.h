@@ -21,7 +21,7 @@ struct NodeParameters {
  * `config_file` (relative files are meant against its folder), `environment` (URI of one more environment, of that name) and, if there is
  * no key `robots`, for one robot that is made then: `robot_description_file` (URDF file; else the parameter `robot_description` if it is
  * set), `robot_pose` ({xyz, rpy} of its root link) and `robot_fixed_base`. Fetches every `description_param`, and
- * `gazebo_ros_control/pid_gains` in the namespace of each robot.
+ * `gazebo_ros_control/pid_gains` in the namespace of each robot, and `tf_prefix` there or above it for one that has none.
  * @throws InputError
  */
 NodeParameters readParameters(const ros::NodeHandle& private_node);

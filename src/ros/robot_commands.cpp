@@ -7,6 +7,7 @@
 
 #include "blem_sim/geometry/input_error.h"
 #include "messages/joint_messages.h"
+#include "messages/robot_names.h"
 #include "messages/trajectory_messages.h"
 
 namespace blem_sim::node {
@@ -20,8 +21,11 @@ RobotCommands::RobotCommands(ros::NodeHandle node, sim::Simulator* simulator) : 
 void RobotCommands::modelsChanged() {
   for (auto robot = subscribers_.begin(); robot != subscribers_.end();)
     robot = simulator_->robotIndex(robot->first) < 0 ? subscribers_.erase(robot) : std::next(robot);
-  for (const sim::RobotInfo& robot : simulator_->robots())
-    if (subscribers_.count(robot.name) == 0) subscribers_[robot.name] = subscribe(robot);
+  for (const sim::RobotInfo& robot : simulator_->robots()) {
+    if (subscribers_.count(robot.name) > 0) continue;
+    checkNamespace(*simulator_, robot, "robots: " + robot.name + ": namespace");
+    subscribers_[robot.name] = subscribe(robot);
+  }
 }
 
 std::vector<ros::Subscriber> RobotCommands::subscribe(const sim::RobotInfo& info) {

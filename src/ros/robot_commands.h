@@ -19,8 +19,9 @@ namespace blem_sim::node {
  */
 class RobotCommands {
  public:
+  /** @throws InputError: robots of one namespace have joints of one name */
   RobotCommands(ros::NodeHandle node, sim::Simulator* simulator);
-  /** Robots came or went. */
+  /** Robots came or went. @throws InputError as above */
   void modelsChanged();
 
  private:

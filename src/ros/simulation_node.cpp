@@ -33,6 +33,7 @@
 #include "services/physics_services.h"
 #include "services/property_services.h"
 #include "services/query_services.h"
+#include "services/sensor_services.h"
 #include "services/spawn_services.h"
 #include "services/step_service.h"
 
@@ -73,6 +74,7 @@ struct SimulationNode::Impl {
   std::unique_ptr<ForceServices> forces;
   std::unique_ptr<AttachmentServices> attachments;
   std::unique_ptr<SpawnServices> spawns;
+  std::unique_ptr<SensorServices> sensors;
   std::unique_ptr<PropertyServices> properties;
   std::unique_ptr<StateServices> states;
   std::unique_ptr<RecordServices> records;
@@ -119,7 +121,11 @@ struct SimulationNode::Impl {
     physics = std::make_unique<PhysicsServices>(private_node, &loop);
     step = std::make_unique<StepService>(private_node, &loop);
     learner = std::make_unique<LearnerService>(private_node, &loop);
-    loop.onModelsChanged([this] { commands->modelsChanged(); });
+    sensors = std::make_unique<SensorServices>(node, &simulator);
+    loop.onModelsChanged([this] {
+      commands->modelsChanged();
+      sensors->modelsChanged();
+    });
     const model::FileRoots roots(serviceFolders(simulator.config()));
     simulator.restrictFiles(roots);
     environments = std::make_unique<EnvironmentServices>(private_node, &loop);

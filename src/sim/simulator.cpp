@@ -183,6 +183,14 @@ void Simulator::clearEfforts(int joint) {
   impl_->tell("clearEfforts", joint);
 }
 
+void Simulator::tareSensor(int sensor) {
+  const SensorConfig& config = sensors().at(static_cast<std::size_t>(sensor)).config;
+  if (config.type != SensorType::FORCE_TORQUE)
+    throw InputError(fmt::format("sensor '{}' has no zero to be set; tare one of type force_torque", config.name));
+  impl_->sensors_[sensor].memory().tare.ask();
+  impl_->tell("tareSensor", sensor);
+}
+
 void Simulator::setPhysics(const Vector3& gravity, double time_step, double real_time_factor) {
   impl_->setPhysics(gravity, time_step, real_time_factor);
   impl_->tell("setPhysics", gravity, time_step, real_time_factor);

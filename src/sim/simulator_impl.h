@@ -47,6 +47,8 @@ struct Simulator::Impl {
   void planSubstep();
   void sampleCommands();
   void motorTorque();
+  /** Wrenches from outside in the solve to come. */
+  const std::vector<BodyLoad>& loadsNow();
   void broadPhase();
   void narrowPhase();
   void reduction();
@@ -157,6 +159,7 @@ struct Simulator::Impl {
   void restart(const ModelInfo& model, int robot);
   void resetWorld();
   int modelOfBody(int body) const;
+  geometry::MassProperties linkInertial(int body, int link) const;
 
   /** Tells the watcher, if there is one, of a call that was taken. */
   template <typename... Arguments>
@@ -182,6 +185,7 @@ struct Simulator::Impl {
   std::vector<SensorChannel> sensors_;
   std::vector<SensorSample> spare_samples_;  ///< [sensors] whose memory the next reading uses
   AppliedLoads loads_;
+  std::vector<BodyLoad> loads_now_;
   Epoch epoch_;
   mutable std::string layout_;  ///< empty: not known
 

@@ -135,15 +135,17 @@ void Simulator::Impl::setLinkInertial(int body, int link, const geometry::MassPr
   reportWithoutStep();
 }
 
-geometry::MassProperties Simulator::linkInertial(int body, int link) const {
-  const int robot = link < 0 ? -1 : impl_->world_.robotOf(impl_->modelOfBody(body));
-  if (robot < 0) return world().bodySpec(body).inertial;
-  const RobotInfo& info = robots()[robot];
+geometry::MassProperties Simulator::Impl::linkInertial(int body, int link) const {
+  const int robot = link < 0 ? -1 : world_.robotOf(modelOfBody(body));
+  if (robot < 0) return world_.world.bodySpec(body).inertial;
+  const RobotInfo& info = world_.robots[robot];
   const model::LumpedBody& lumped = info.lumped->bodies[info.lumped->link_placement[link].body];
   const std::optional<model::Inertial>& own = info.description->links[link].inertial;
   if (own) return *own;
   return lumped.links.size() == 1 ? lumped.inertial : geometry::MassProperties();
 }
+
+geometry::MassProperties Simulator::linkInertial(int body, int link) const { return impl_->linkInertial(body, link); }
 
 void Simulator::Impl::setJointLimits(int robot, int joint, double lower, double upper) {
   RobotInfo& info = world_.robots.at(robot);

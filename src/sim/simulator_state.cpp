@@ -1,4 +1,5 @@
 // Save, restore, reset, hash.
+#include <algorithm>
 #include <utility>
 
 #include "blem_sim/sim/state_file.h"
@@ -30,8 +31,7 @@ std::string namesOfAll(const SimulatedWorld& world) {
 struct StateParts {
   EnergyBalance energy_balance;
   std::vector<JointMotor> motors;
-  std::vector<std::vector<double>> sensors;  // numbers of each
-  std::vector<DelayLine> delays;             // of each
+  std::vector<SensorChannel::Memory> sensors;
   reduction::ReductionMemory choices;
   LayerWatch layer_watch;
   CrossingHistory crossings;
@@ -41,18 +41,10 @@ struct StateParts {
   Epoch epoch;
 };
 
-/** The next numbers of the state, as many as the sensor has. */
-std::vector<double> numbersOf(const Sensor& sensor, NumberReader* reader) {
-  std::vector<double> numbers;
-  sensor.append(&numbers);
-  reader->numbers(numbers.data(), numbers.size());
-  return numbers;
-}
-
 /** Words of a state: whether the simulation has stopped, then of each sensor its random numbers, then those of contacts. */
 std::size_t contactWords(std::size_t sensors) { return 1 + sensors; }
 
-/** Reads the numbers at the end, which only states with loads or another time step have. */
+/** Reads the numbers at the end, which only states with loads, another time step or tared sensors have. */
 void readLoads(const SimulationState& state, const SimulatedWorld& world, NumberReader* reader, StateParts* parts) {
   if (reader->left() == 0) return;
   parts->epoch.time = reader->number();
@@ -61,6 +53,8 @@ void readLoads(const SimulationState& state, const SimulatedWorld& world, Number
     NumberReader::refuseContent("the time step was set at a step that is still to come");
   parts->epoch.step = static_cast<std::uint64_t>(step);
   parts->loads.read(world.world.bodyCount(), world.world.jointCount(), reader);
+  if (reader->left() == 0) return;
+  for (SensorChannel::Memory& sensor : parts->sensors) sensor.tare.read(reader);
 }
 
 /** @param first word @param live there are live environments, of whose points the state tells */
@@ -86,9 +80,9 @@ void readParts(const SimulationState& state, const SimulatedWorld& world, const 
   for (std::size_t joint = 0; joint < parts->motors.size(); ++joint)
     if (world.world.hasJoint(static_cast<int>(joint))) parts->motors[joint].read(&reader);
   for (const SensorChannel& sensor : sensors) {
-    parts->sensors.push_back(numbersOf(sensor.sensor(), &reader));
-    parts->delays.push_back(sensor.delay());
-    parts->delays.back().read(&reader);
+    parts->sensors.push_back(sensor.memory());
+    parts->sensors.back().read(&reader);
+    parts->sensors.back().tare.reset();
   }
   readContacts(state, world.colliders, contacts, live, &reader, parts);
   readLoads(state, world, &reader, parts);
@@ -111,18 +105,21 @@ SimulationState Simulator::Impl::content() const {
   for (std::size_t joint = 0; joint < world_.motors.size(); ++joint)
     if (world_.world.hasJoint(static_cast<int>(joint))) world_.motors[joint].append(&state.numbers);
   for (const SensorChannel& sensor : sensors_) {
-    sensor.sensor().append(&state.numbers);
-    sensor.delay().append(&state.numbers);
-    state.words.push_back(sensor.sensor().random().state());
+    sensor.memory().append(&state.numbers);
+    state.words.push_back(sensor.random().state());
   }
   contacts_.memory().append(&state.words);
   layer_watch_.append(&state.words);
   contacts_.crossings().append(&state.numbers, &state.words);
   if (!live_.empty()) contacts_.fading().append(&state.words);
   contacts_.stops().append(&state.words);
-  if (loads_.empty() && epoch_.step == 0) return state;
+  const auto tared = [](const SensorChannel& sensor) { return sensor.memory().tare.any(); };
+  const bool any_tare = std::any_of(sensors_.begin(), sensors_.end(), tared);
+  if (loads_.empty() && epoch_.step == 0 && !any_tare) return state;
   state.numbers.insert(state.numbers.end(), {epoch_.time, static_cast<double>(epoch_.step)});
   loads_.append(&state.numbers);
+  if (any_tare)
+    for (const SensorChannel& sensor : sensors_) sensor.memory().tare.append(&state.numbers);
   return state;
 }
 
@@ -136,7 +133,7 @@ SimulationState Simulator::Impl::save() const {
 void Simulator::Impl::restore(const SimulationState& state) {
   checkHeader(state);
   checkLayout(state.layout, layout());
-  StateParts parts{energy_balance_, world_.motors, {}, {}, {}, {}, {}, {}, {}, {}, {}};
+  StateParts parts{energy_balance_, world_.motors, {}, {}, {}, {}, {}, {}, {}, {}};
   readParts(state, world_, sensors_, !live_.empty(), &parts);
   world_.world.restoreChecked(state.world);
   // Nothing below throws.
@@ -145,10 +142,8 @@ void Simulator::Impl::restore(const SimulationState& state) {
   energy_balance_ = std::move(parts.energy_balance);
   world_.motors = std::move(parts.motors);
   for (std::size_t i = 0; i < sensors_.size(); ++i) {
-    NumberReader reader(parts.sensors[i]);
-    sensors_[i].sensor().restore(&reader);
-    sensors_[i].sensor().random().setState(state.words[1 + i]);
-    sensors_[i].delay() = std::move(parts.delays[i]);
+    sensors_[i].memory() = std::move(parts.sensors[i]);
+    sensors_[i].random().setState(state.words[1 + i]);
   }
   contacts_.memory() = std::move(parts.choices);
   contacts_.fading() = std::move(parts.fading);
@@ -166,7 +161,7 @@ void Simulator::Impl::seedSensor(std::size_t sensor) {
   const SensorInfo& info = world_.sensors[sensor];
   ContentHash seed;
   seed.add(config_.random_seed).add(world_.robots[info.robot].name).add(info.config.name);
-  sensors_[sensor].sensor().random().setState(seed.value());
+  sensors_[sensor].random().setState(seed.value());
 }
 
 SimulationState Simulator::save() const { return impl_->save(); }

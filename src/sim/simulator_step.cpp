@@ -114,11 +114,26 @@ void Simulator::Impl::reduction() {
   contacts_.reduction(world_, bodies_, early_pushes_.expectation(), substepLength());
 }
 
+// Gravity acts on all bodies; a force against it bears what it is not to act on.
+const std::vector<BodyLoad>& Simulator::Impl::loadsNow() {
+  loads_now_ = loads_.wrenchesAt(time());
+  for (std::size_t model = 0; model < world_.models.size(); ++model) {
+    for (const WeightlessPart& part : world_.models[model].weightless) {
+      const geometry::MassProperties inertial = linkInertial(part.body, part.link);
+      Vector3 p_BCom = inertial.com;
+      if (const int robot = world_.robotOf(static_cast<int>(model)); robot >= 0)
+        p_BCom = world_.robots[robot].lumped->link_placement[part.link].X_BL * inertial.com;
+      loads_now_.push_back({part.body, {-inertial.mass * world_.world.gravity(), Vector3::Zero()}, p_BCom});
+    }
+  }
+  return loads_now_;
+}
+
 bool Simulator::Impl::solve() {
   const StageTimer timer(&report_.profile, Stage::SOLVE);
   world_.world.save(&substep_start_);
   bodies_before_substep_ = bodies_;
-  const std::vector<BodyLoad>& loads = loads_.wrenchesAt(time());
+  const std::vector<BodyLoad>& loads = loadsNow();
   for (const BodyLoad& load : loads) world_.world.applyWrench(load.body, load.wrench, bodies_[load.body].X_WB * load.p_B);
   energy_balance_.setLoads(loads);
   solved_ = &world_.world.step(substepLength(), contacts_.constraints(), drives_);

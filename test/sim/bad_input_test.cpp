@@ -72,7 +72,7 @@ std::vector<BadField> badFields() {
       {"robots: arm: initial_positions", [](C c, double x) { c->robots[0].initial_positions["hinge"] = x; }, NO_NUMBER},
       {"links.arm: friction", [](C c, double x) { c->robots[0].links["arm"].friction = x; }, NEGATIVE},
       {"sensors: imu: rate", [](C c, double x) { c->robots[0].sensors[0].rate = x; }, NEGATIVE},
-      {"sensors: imu: noise", [](C c, double x) { c->robots[0].sensors[0].accel_stddev = x; }, NEGATIVE},
+      {"sensors: imu: noise", [](C c, double x) { c->robots[0].sensors[0].noise[0].stddev = x; }, NEGATIVE},
   };
 }
 

@@ -27,7 +27,7 @@ RobotConfig pendulumAt(const std::string& name, const Vector3& place) {
   SensorConfig imu;
   imu.name = "imu";
   imu.link = "arm";
-  imu.accel_stddev = 0.1;
+  imu.noise[0].stddev = 0.1;
   config.sensors = {imu};
   return config;
 }

@@ -79,7 +79,18 @@ struct JointFriction {
   double dry = 0, viscous = 0;
 };
 
-enum class SensorType { FORCE_TORQUE, IMU, CONTACT, TILT, MOTOR_CURRENT, ODOMETRY, DEPTH_CAMERA, LIDAR };
+enum class SensorType {
+  FORCE_TORQUE,
+  IMU,
+  CONTACT,
+  CONTACT_SWITCH,
+  CENTRE_OF_PRESSURE,
+  TILT,
+  MOTOR_CURRENT,
+  ODOMETRY,
+  DEPTH_CAMERA,
+  LIDAR
+};
 
 enum class RangeNoise { GAUSSIAN, KINECT };
 
@@ -90,8 +101,22 @@ struct QuantityLimits {
 
   bool any() const { return resolution > 0 || saturation < std::numeric_limits<double>::infinity(); }
 };
-/** force_torque: force [N], torque [N m]; imu: acceleration, rate; tilt: angles, rate; motor_current: current [A], effort. */
+/** force_torque: force [N], torque [N m]; imu: acceleration, rate; tilt: angles, rate; motor_current: current [A], effort;
+ *  contact_switch: force; centre_of_pressure: position [m]. */
 using SensorLimits = std::array<QuantityLimits, 2>;
+
+/** Noise and bias of a quantity that a sensor measures, the same for all of its numbers. */
+struct QuantityNoise {
+  double stddev = 0;       ///< standard deviation of white noise
+  double bias_stddev = 0;  ///< of a bias that walks: its standard deviation after one second
+  double bias = 0;         ///< mean of a constant bias,
+  double bias_spread = 0;  ///< and the standard deviation it is drawn with, with the first reading
+
+  bool remembers() const { return bias_stddev > 0 || bias != 0 || bias_spread > 0; }
+  bool any() const { return stddev > 0 || remembers(); }
+};
+/** Of the quantities of SensorLimits; those of odometry have the first one's stddev [m, rad, m/s, rad/s]. */
+using SensorNoise = std::array<QuantityNoise, 2>;
 
 /** Rays of a depth camera or a lidar. */
 struct RangeSensorConfig {
@@ -117,23 +142,28 @@ struct SensorConfig {
   std::string name;
   SensorType type = SensorType::IMU;
   std::string joint;                        ///< force_torque
-  std::string frame = "child";              ///< force_torque: child | parent | sensor (axes of the joint frame)
+  std::string frame = "child";              ///< force_torque: axes and origin, child | parent | sensor (the joint's at 0) | a link
   std::string measure = "parent_to_child";  ///< force_torque: parent_to_child (the wrench on the child) | child_to_parent
-  std::string link;                         ///< imu, contact, tilt, odometry, depth_camera, lidar
+  std::string link;                         ///< that the sensor sits on; not of force_torque and motor_current
   std::string topic;                        ///< empty: the sensor's name
   std::string frame_id;                     ///< of the messages; empty: what the readings are in. odometry: name of the world
-  Pose X_LS = Pose::Identity();             ///< imu, tilt, odometry, depth_camera, lidar: sensor in the link
+  Pose X_LS = Pose::Identity();             ///< sensor in the link; centre_of_pressure: z is the sole's normal. Not of contacts
+  Pose X_offset = Pose::Identity();         ///< odometry: shift [m] of what is told, and turn about the world's axes
+  double threshold = 0;                     ///< [N] contact_switch, centre_of_pressure: force beyond which there is contact
   std::string twist = "link";               ///< odometry: axes of the velocities, link (the sensor's) | world
-  double rate = 0;                          ///< [Hz], 0 = every step
-  double noise_stddev = 0;                  ///< force_torque [N, N m]; odometry [m, rad, m/s, rad/s]
-  double accel_stddev = 0, gyro_stddev = 0, accel_bias_stddev = 0, gyro_bias_stddev = 0;
-  double accel_bias = 0, gyro_bias = 0;                ///< imu: mean of a constant bias of each axis [m/s^2, rad/s]
-  double accel_bias_spread = 0, gyro_bias_spread = 0;  ///< imu: standard deviation of it, drawn with the first reading
+  double rate = 0;                          ///< [Hz], 0 = every step, RATE_OFF = never
+  SensorNoise noise;
   SensorLimits limits;
   double delay = 0;                               ///< [s] by which readings are old; not of contact, odometry and those that look
   std::map<std::string, double> torque_constant;  ///< motor_current, by joint, "default"
   RangeSensorConfig rays;                         ///< depth_camera, lidar
   CameraTopics camera_topics;                     ///< depth_camera
+};
+
+/** Ground truth of a robot's root link (node only). */
+struct OdometryConfig {
+  std::string topic = "odom", frame = "world";
+  Pose X_WF = Pose::Identity();  ///< frame in the world
 };
 
 struct RobotConfig {
@@ -147,6 +177,7 @@ struct RobotConfig {
   std::map<std::string, double> initial_positions;
   std::optional<bool> self_collision;          ///< links touch each other; none given: what the URDF says, else they do not
   std::set<std::string> self_colliding_links;  ///< links that touch any other of the robot, if self_collision is not given
+  std::set<std::string> weightless_links;      ///< that gravity does not act on
   std::vector<std::pair<std::string, std::string>> disable_collisions;
   ContactOverrides contact;
   std::map<std::string, ContactOverrides> links;
@@ -163,6 +194,9 @@ struct RobotConfig {
   std::vector<SensorConfig> sensors;
   std::optional<std::vector<ControllerConfig>> controllers;  ///< none given: one of all joints (node only)
   std::optional<int> max_contacts;                           ///< k of this robot
+  std::string tf_prefix;                                     ///< of its frames (node only)
+  bool publish_tf = true;                                    ///< /tf has where its root link is, and children of floating and planar joints
+  OdometryConfig odom;
 };
 
 struct ObjectConfig {
@@ -182,7 +216,7 @@ struct ObjectConfig {
   std::optional<int> max_contacts;
 };
 
-/** Rates of the node [Hz]; 0 = every step. */
+/** Rates of the node [Hz]; 0 = every step, RATE_OFF = never. */
 struct PublishRates {
   double clock = 0, joint_state = 100, tf = 50, odom = 50, contact = 30, markers = 15, link_states = 50, step_report = 10;
 };

@@ -11,6 +11,9 @@ class Node;
 
 namespace blem_sim::sim {
 
+/** Rate of what is never due, in place of a number of Hz. */
+constexpr double RATE_OFF = -1;
+
 /** Position errors [rad or m] that a joint may have; 0: any. */
 struct JointConstraint {
   double trajectory = 0;  ///< on the way
@@ -23,9 +26,9 @@ struct ControllerConfig {
   std::string name = "joint_trajectory_controller";
   ControllerKind kind = ControllerKind::TRAJECTORY;
   std::vector<std::string> joints;  ///< of a trajectory controller, empty: all that have a motor; of a gripper the one that its motor moves
-  double action_monitor_rate = 20;  ///< [Hz] of the action's feedback; 0 = every step
+  double action_monitor_rate = 20;  ///< [Hz] of the action's feedback; 0 = every step, RATE_OFF = never
   // Keys of trajectory controllers.
-  double state_publish_rate = 50;            ///< [Hz]; 0 = every step
+  double state_publish_rate = 50;            ///< [Hz]; 0 = every step, RATE_OFF = never
   double stop_trajectory_duration = 0;       ///< [s]; 0: an empty trajectory holds the actual position at once
   bool allow_partial_joints_goal = false;    ///< commands may leave joints out
   double goal_time = 0;                      ///< [s] after a trajectory's end, to reach the goal tolerances

@@ -19,8 +19,11 @@ SensorValues sensorValues(const SensorReading& reading);
 /** A reading of a type of sensor that holds nothing yet. @param joints of its robot */
 SensorReading blankReading(SensorType type, const std::vector<std::string>& joints);
 
-/** Whether a sensor's samples hold the truth beside the reading: it has noise, a bias, limits or a delay. False for those that look. */
+/** Whether a sensor's samples hold the truth beside the reading: it has noise, a bias, limits or a delay. */
 bool hasGroundTruth(const SensorConfig& sensor);
+
+/** Topic of a sensor's readings, in its robot's namespace unless it begins with /. */
+inline const std::string& sensorTopic(const SensorConfig& sensor) { return sensor.topic.empty() ? sensor.name : sensor.topic; }
 
 /** Names of the fields of a sensor's readings, known before the first one. */
 std::vector<std::string> sensorFields(const Simulator& simulator, const SensorInfo& sensor);

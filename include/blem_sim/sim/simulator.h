@@ -127,6 +127,9 @@ class Simulator {
   void clearLoads(int body);
   void clearEfforts(int joint);
 
+  /** Lets a force-torque sensor take what it measures next for zero. @throws InputError: it is none */
+  void tareSensor(int sensor);
+
   /** @param gravity [m/s^2], time_step [s]; all or nothing is taken. @throws InputError */
   void setPhysics(const Vector3& gravity, double time_step, double real_time_factor);
   /** Gives a robot's link, or an object's body, other mass properties in the link's frame. @throws InputError, nothing being changed */

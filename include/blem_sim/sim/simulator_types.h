@@ -17,6 +17,12 @@ namespace blem_sim::sim {
 
 enum class ModelKind { ENVIRONMENT, ROBOT, OBJECT };
 
+/** Something that gravity does not act on. */
+struct WeightlessPart {
+  int body = 0;
+  int link = -1;  ///< of the robot's description; -1: the whole body
+};
+
 /** A robot, object or environment in the simulation. */
 struct ModelInfo {
   std::string name;
@@ -24,7 +30,8 @@ struct ModelInfo {
   std::vector<int> bodies;       ///< world bodies; [0] holds the root link
   std::vector<int> joints;       ///< world joints, movable ones, in the robot's order
   Pose X_WM = Pose::Identity();  ///< root link, object's frame or environment at the start
-  bool alive = true;             ///< false: unloaded, and its slot is free
+  std::vector<WeightlessPart> weightless;
+  bool alive = true;  ///< false: unloaded, and its slot is free
 };
 
 /** A robot as publishers and commands see it. */
@@ -43,12 +50,15 @@ struct RobotInfo {
   std::vector<model::JointLimits> limits;
   std::vector<bool> continuous;  ///< turns without end
   std::vector<bool> driven;      ///< has a motor of its own: no mimic
+  std::string tf_prefix;         ///< of its frames, without slashes at its ends; no other robot has it that has links of the same name
+  bool publish_tf = true;
+  OdometryConfig odom;
 };
 
 struct SensorInfo {
   int robot = 0;
-  SensorConfig config;
-  std::string frame_id;  ///< link the reading is expressed in
+  SensorConfig config;   ///< of a force_torque, link and X_LS say where its axes and their origin are
+  std::string frame_id;  ///< link the reading's axes are fixed in
 };
 
 /**

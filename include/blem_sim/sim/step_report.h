@@ -53,7 +53,7 @@ struct LayerEventReport {
 
 struct ForceTorqueReading {
   Vector3 force, torque;  ///< means over the step, in the frame, as it begins, and of the sign the sensor's configuration asks for
-  std::string frame_id;   ///< link whose axes (and, for the torque, whose joint frame origin) they are in
+  std::string frame_id;   ///< link that frame is fixed in
 };
 struct ImuReading {
   Quaternion orientation;       ///< sensor in the world
@@ -67,10 +67,20 @@ struct ContactReading {
   int link_body = -1;
   Wrench total;  ///< their sum
 };
+struct ContactSwitchReading {
+  double force = 0;  ///< [N] by which the link is pressed: sum of its contacts' forces along their normals, mean over the step
+  bool closed = false;
+};
+/** There is none while nothing presses on the sole. */
+struct CentreOfPressureReading {
+  double x = 0, y = 0;  ///< [m] in the sensor's plane of x and y, where contacts' forces have no moment about x and y
+  double force = 0;     ///< [N] along z on the link
+};
 struct TiltReading {
   Quaternion orientation;
   Vector3 angular_velocity;
   double roll = 0, pitch = 0;  ///< [rad]
+  double angle_stddev = 0, gyro_stddev = 0;
 };
 struct MotorCurrentReading {
   std::vector<std::string> joints;
@@ -93,7 +103,7 @@ struct LidarReading {
 };
 /** A new sensor is one alternative; sensorValues and the visits in ros do not compile until they know it. */
 using SensorReading = std::variant<ForceTorqueReading, ImuReading, ContactReading, TiltReading, MotorCurrentReading, OdometryReading,
-                                   DepthCameraReading, LidarReading>;
+                                   DepthCameraReading, LidarReading, ContactSwitchReading, CentreOfPressureReading>;
 
 struct SensorSample {
   int sensor = 0;  ///< index into Simulator::sensors()

@@ -1,8 +1,12 @@
 #include "publishers/robot_publishers.h"
 
+#include <ros/names.h>
+
+#include "blem_sim/geometry/input_error.h"
 #include "messages/conversions.h"
 #include "messages/joint_messages.h"
 #include "messages/link_motion.h"
+#include "messages/robot_names.h"
 #include "publishers/robot_topics.h"
 
 namespace blem_sim::node {
@@ -11,6 +15,29 @@ namespace {
 constexpr int ROBOT_QUEUE = 100;
 
 const std::string& nameOf(const sim::RobotInfo& robot) { return robot.name; }
+
+/** Topic of a robot's odometry. @throws InputError if it is none */
+const std::string& topicOf(const sim::RobotInfo& robot) {
+  std::string error;
+  if (ros::names::validate(robot.odom.topic, error)) return robot.odom.topic;
+  throw InputError("robots: " + robot.name + ": odom.topic: '" + robot.odom.topic + "' is no ROS topic; use letters, digits, _ and /");
+}
+
+/** A frame in another one. */
+struct Frame {
+  std::string parent, name;
+  Pose X_PF;
+};
+
+void add(const Frame& frame, double time, tf2_msgs::TFMessage* message) {
+  geometry_msgs::TransformStamped transform;
+  transform.header.stamp = toStamp(time);
+  transform.header.frame_id = frame.parent;
+  transform.child_frame_id = frame.name;
+  transform.transform = toTransform(frame.X_PF);
+  message->transforms.push_back(transform);
+}
+
 }  // namespace
 
 JointStatePublisher::JointStatePublisher(ros::NodeHandle node, const sim::Simulator& simulator, StepSender* sender)
@@ -44,7 +71,7 @@ OdometryPublisher::OdometryPublisher(ros::NodeHandle node, const sim::Simulator&
 void OdometryPublisher::modelsChanged() {
   const auto make = [this](const sim::RobotInfo& robot) {
     ros::NodeHandle robot_node(node_, robot.name_space);
-    return RobotTopic<nav_msgs::Odometry>{"", {&robot_node, "odom", ROBOT_QUEUE}, MessagePool<nav_msgs::Odometry>()};
+    return RobotTopic<nav_msgs::Odometry>{"", {&robot_node, topicOf(robot), ROBOT_QUEUE}, MessagePool<nav_msgs::Odometry>()};
   };
   keepTopics(simulator_.robots(), nameOf, make, &topics_);
 }
@@ -56,9 +83,9 @@ void OdometryPublisher::publish(const sim::StepReport& report) {
     const LinkMotion root = linkMotion(simulator_, report, robot, robot.description->root);
     const auto message = topics_[i].messages.spare();
     message->header.stamp = toStamp(report.time);
-    message->header.frame_id = WORLD_FRAME;
-    message->child_frame_id = robot.root_link;
-    message->pose.pose = toPose(root.X_WL);
+    message->header.frame_id = namedFrame(robot, robot.odom.frame);
+    message->child_frame_id = ownFrame(robot, robot.root_link);
+    message->pose.pose = toPose(robot.odom.X_WF.inverse() * root.X_WL);
     const Matrix3 R_LW = root.X_WL.linear().transpose();
     message->twist.twist = toTwist(R_LW * root.v_WL, R_LW * root.w_WL);
     sender_->add(&topics_[i].publisher, message);
@@ -72,21 +99,25 @@ void TransformPublisher::publish(const sim::StepReport& report) {
   if (!schedule_.due(report.time)) return;
   const auto message = messages_.spare();
   message->transforms.clear();
-  const auto add = [&](const std::string& frame, const Pose& X_WF) {
-    geometry_msgs::TransformStamped transform;
-    transform.header.stamp = toStamp(report.time);
-    transform.header.frame_id = WORLD_FRAME;
-    transform.child_frame_id = frame;
-    transform.transform = toTransform(X_WF);
-    message->transforms.push_back(transform);
-  };
-  for (const sim::RobotInfo& robot : simulator_.robots()) {
-    if (robot.root_link != WORLD_FRAME) add(robot.root_link, linkMotion(simulator_, report, robot, robot.description->root).X_WL);
-  }
+  for (const sim::RobotInfo& robot : simulator_.robots())
+    if (robot.publish_tf) addRobot(report, robot, message.get());
   for (const sim::ModelInfo& model : simulator_.models()) {
-    if (model.kind == sim::ModelKind::OBJECT && model.alive) add(model.name, bodyMotion(simulator_, report, model.bodies.front()).X_WL);
+    if (model.kind == sim::ModelKind::OBJECT && model.alive)
+      add({WORLD_FRAME, model.name, bodyMotion(simulator_, report, model.bodies.front()).X_WL}, report.time, message.get());
   }
   if (!message->transforms.empty()) sender_->add(&publisher_, message);
+}
+
+void TransformPublisher::addRobot(const sim::StepReport& report, const sim::RobotInfo& robot, tf2_msgs::TFMessage* message) const {
+  const auto poseOf = [&](int link) { return linkMotion(simulator_, report, robot, link).X_WL; };
+  const auto frameOf = [&](int link) { return ownFrame(robot, robot.description->links[link].name); };
+  const std::string root = ownFrame(robot, robot.root_link), odom = namedFrame(robot, robot.odom.frame);
+  if (root != WORLD_FRAME) add({WORLD_FRAME, root, poseOf(robot.description->root)}, report.time, message);
+  if (odom != WORLD_FRAME) add({WORLD_FRAME, odom, robot.odom.X_WF}, report.time, message);
+  for (const model::JointModel& joint : robot.description->joints) {
+    if (joint.type != model::JointType::FLOATING && joint.type != model::JointType::PLANAR) continue;
+    add({frameOf(joint.parent), frameOf(joint.child), poseOf(joint.parent).inverse() * poseOf(joint.child)}, report.time, message);
+  }
 }
 
 }  // namespace blem_sim::node

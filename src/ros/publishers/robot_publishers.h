@@ -41,7 +41,7 @@ class JointStatePublisher : public StepPublisher {
   std::vector<RobotTopic<sensor_msgs::JointState>> topics_;  // per robot; names are filled in once
 };
 
-/** `odom` in each robot's namespace: ground truth of the root link, twist in its own axes. Told late subscribers. */
+/** `odom`, or as told, in each robot's namespace: ground truth of the root link, twist in its own axes. Told late subscribers. */
 class OdometryPublisher : public StepPublisher {
  public:
   OdometryPublisher(ros::NodeHandle node, const sim::Simulator& simulator, StepSender* sender);
@@ -58,7 +58,8 @@ class OdometryPublisher : public StepPublisher {
 };
 
 /**
- * /tf: world to the root link of each robot whose root is not itself called world, and world to each object. Told late
+ * /tf: world to each object, and of each robot with publish_tf: world to the root link, unless that is the frame world itself, and to
+ * its odometry's frame, and what robot_state_publisher leaves out: children of floating and planar joints in their parents. Told late
  * subscribers during a pause, so that rviz sees where everything stands.
  */
 class TransformPublisher : public StepPublisher {
@@ -68,6 +69,8 @@ class TransformPublisher : public StepPublisher {
   void timeRestarted() override { schedule_.restart(); }
 
  private:
+  void addRobot(const sim::StepReport& report, const sim::RobotInfo& robot, tf2_msgs::TFMessage* message) const;
+
   const sim::Simulator& simulator_;
   PublishSchedule schedule_;
   StepSender* sender_;

@@ -12,6 +12,7 @@
 #include "blem_sim/sim/sensor_values.h"
 #include "messages/contact_messages.h"
 #include "messages/conversions.h"
+#include "messages/robot_names.h"
 #include "publishers/robot_topics.h"
 
 namespace blem_sim::node {
@@ -66,10 +67,24 @@ struct ReadingPublisher {
     sender->add(publisher, boost::make_shared<ContactsState>(toContactsState(simulator, report, reading)));
   }
 
+  void operator()(const sim::ContactSwitchReading& reading) const {
+    const auto message = messages->switches.spare();
+    message->data = reading.closed;
+    sender->add(publisher, message);
+  }
+
+  void operator()(const sim::CentreOfPressureReading& reading) const {
+    const auto message = startedFrom(&messages->points);
+    message->point = toPoint({reading.x, reading.y, 0});
+    sender->add(publisher, message);
+  }
+
   void operator()(const sim::TiltReading& reading) const {
     const auto message = startedFrom(&messages->imus);
     message->orientation = toQuaternion(reading.orientation);
     message->angular_velocity = toVector3(reading.angular_velocity);
+    setVariance(&message->orientation_covariance, reading.angle_stddev);
+    setVariance(&message->angular_velocity_covariance, reading.gyro_stddev);
     message->linear_acceleration_covariance[0] = -1;  // sensor_msgs: not measured
     sender->add(publisher, message);
   }
@@ -107,6 +122,10 @@ ListenedPublisher advertise(ros::NodeHandle* node, sim::SensorType type, const s
       return ListenedPublisher::advertise<sensor_msgs::Imu>(node, topic, SENSOR_QUEUE);
     case sim::SensorType::CONTACT:
       return ListenedPublisher::advertise<ContactsState>(node, topic, SENSOR_QUEUE);
+    case sim::SensorType::CONTACT_SWITCH:
+      return ListenedPublisher::advertise<std_msgs::Bool>(node, topic, SENSOR_QUEUE);
+    case sim::SensorType::CENTRE_OF_PRESSURE:
+      return ListenedPublisher::advertise<geometry_msgs::PointStamped>(node, topic, SENSOR_QUEUE);
     case sim::SensorType::MOTOR_CURRENT:
       return ListenedPublisher::advertise<MotorCurrents>(node, topic, SENSOR_QUEUE);
     case sim::SensorType::ODOMETRY:
@@ -118,8 +137,14 @@ ListenedPublisher advertise(ros::NodeHandle* node, sim::SensorType type, const s
   throw InputError("sensor topic " + topic + ": this type of sensor has no message");
 }
 
-std::string topicOf(const sim::SensorConfig& sensor) { return sensor.topic.empty() ? sensor.name : sensor.topic; }
-std::string truthTopicOf(const sim::SensorConfig& sensor) { return topicOf(sensor) + "/ground_truth"; }
+std::string truthTopicOf(const sim::SensorConfig& sensor) { return sim::sensorTopic(sensor) + "/ground_truth"; }
+
+/** The same sensor where it tells the truth: topics below its own. */
+sim::SensorConfig truthOf(sim::SensorConfig sensor) {
+  sensor.topic = truthTopicOf(sensor);
+  sensor.camera_topics = {};
+  return sensor;
+}
 
 /** A sensor's frame of its own in its link. */
 struct Mounting {
@@ -135,29 +160,42 @@ std::optional<Mounting> mountingOf(const sim::SensorConfig& sensor) {
     X_SO.linear() = sim::opticalAxes();
     return Mounting{told.empty() ? sensor.name + "_optical_frame" : told, sensor.X_LS * X_SO};
   }
-  const bool sits_anyhow = sensor.type == sim::SensorType::IMU || sensor.type == sim::SensorType::TILT ||
-                           sensor.type == sim::SensorType::ODOMETRY || sensor.type == sim::SensorType::LIDAR;
+  const std::set<sim::SensorType> sit_anyhow = {sim::SensorType::FORCE_TORQUE, sim::SensorType::IMU,   sim::SensorType::TILT,
+                                                sim::SensorType::ODOMETRY,     sim::SensorType::LIDAR, sim::SensorType::CENTRE_OF_PRESSURE};
+  const bool sits_anyhow = sit_anyhow.count(sensor.type) > 0;
   if (!sits_anyhow || (told.empty() && sensor.X_LS.isApprox(Pose::Identity(), 1e-12))) return std::nullopt;
   return Mounting{told.empty() ? sensor.name + "_frame" : told, sensor.X_LS};
 }
 
 /** Names of frames in a sensor's messages. */
-void nameFrames(const sim::SensorInfo& sensor, SensorTopic* topic) {
+void nameFrames(const sim::RobotInfo& robot, const sim::SensorInfo& sensor, SensorTopic* topic) {
   const std::optional<Mounting> mounting = mountingOf(sensor.config);
   const std::string& told = sensor.config.frame_id;
-  const std::string own = mounting ? mounting->frame : sensor.frame_id;
+  const std::string own = ownFrame(robot, mounting ? mounting->frame : sensor.frame_id);
   if (sensor.config.type == sim::SensorType::ODOMETRY) {
-    topic->frame = told.empty() ? WORLD_FRAME : told;
+    topic->frame = told.empty() ? WORLD_FRAME : namedFrame(robot, told);
     topic->child_frame = own;
   } else {
-    topic->frame = told.empty() ? own : told;
+    topic->frame = told.empty() ? own : namedFrame(robot, told);
   }
 }
 
+std::vector<std::string> readingTopicsOf(const sim::SensorConfig& sensor) {
+  return sim::isRangeSensor(sensor.type) ? rangeTopics(sim::sensorTopic(sensor), sensor)
+                                         : std::vector<std::string>{sim::sensorTopic(sensor)};
+}
+
 std::vector<std::string> topicsOf(const sim::SensorConfig& sensor) {
-  if (sim::isRangeSensor(sensor.type)) return rangeTopics(topicOf(sensor), sensor);
-  if (sim::hasGroundTruth(sensor)) return {topicOf(sensor), truthTopicOf(sensor)};
-  return {topicOf(sensor)};
+  std::vector<std::string> topics = readingTopicsOf(sensor);
+  if (!sim::hasGroundTruth(sensor)) return topics;
+  const std::vector<std::string> truth = readingTopicsOf(truthOf(sensor));
+  topics.insert(topics.end(), truth.begin(), truth.end());
+  return topics;
+}
+
+SensorOutlet outletOf(ros::NodeHandle* node, const sim::SensorConfig& sensor) {
+  if (sim::isRangeSensor(sensor.type)) return {{}, advertiseRanges(node, sim::sensorTopic(sensor), sensor)};
+  return {advertise(node, sensor.type, sim::sensorTopic(sensor)), {}};
 }
 
 }  // namespace
@@ -177,12 +215,9 @@ void SensorPublisher::modelsChanged() {
   const auto make = [this](const sim::SensorInfo& sensor) {
     ros::NodeHandle robot_node = nodeOf(sensor);
     SensorTopic topic;
-    nameFrames(sensor, &topic);
-    if (sim::isRangeSensor(sensor.config.type))
-      topic.ranges = advertiseRanges(&robot_node, topicOf(sensor.config), sensor.config);
-    else
-      topic.publisher = advertise(&robot_node, sensor.config.type, topicOf(sensor.config));
-    if (sim::hasGroundTruth(sensor.config)) topic.truth = advertise(&robot_node, sensor.config.type, truthTopicOf(sensor.config));
+    nameFrames(simulator_.robots()[sensor.robot], sensor, &topic);
+    topic.readings = outletOf(&robot_node, sensor.config);
+    if (sim::hasGroundTruth(sensor.config)) topic.truth = outletOf(&robot_node, truthOf(sensor.config));
     return topic;
   };
   keepTopics(simulator_.sensors(), keyOf, make, &topics_);
@@ -206,11 +241,12 @@ void SensorPublisher::publishMountings() {
   tf2_msgs::TFMessage message;
   for (const sim::SensorInfo& sensor : simulator_.sensors()) {
     const std::optional<Mounting> mounting = mountingOf(sensor.config);
+    const sim::RobotInfo& robot = simulator_.robots()[sensor.robot];
     // The robot's own links are on /tf already.
-    if (!mounting || simulator_.robots()[sensor.robot].description->linkIndex(mounting->frame) >= 0) continue;
+    if (!mounting || robot.description->linkIndex(mounting->frame) >= 0) continue;
     geometry_msgs::TransformStamped transform;
-    transform.header.frame_id = sensor.config.link;
-    transform.child_frame_id = mounting->frame;
+    transform.header.frame_id = ownFrame(robot, sensor.config.link);
+    transform.child_frame_id = namedFrame(robot, mounting->frame);
     transform.transform = toTransform(mounting->X_LF);
     message.transforms.push_back(transform);
   }
@@ -222,17 +258,17 @@ void SensorPublisher::publishMountings() {
 void SensorPublisher::publish(const sim::StepReport& report) {
   for (const sim::SensorSample& sample : report.samples) {
     SensorTopic& topic = topics_[sample.sensor];
-    publishReading(report, sample.reading, &topic.publisher, &topic);
-    if (sample.truth && topic.truth) publishReading(report, *sample.truth, &topic.truth, &topic);
+    publishReading(report, sample.reading, &topic.readings, &topic);
+    if (sample.truth) publishReading(report, *sample.truth, &topic.truth, &topic);
   }
 }
 
-void SensorPublisher::publishReading(const sim::StepReport& report, const sim::SensorReading& reading,
-                                     std::optional<ListenedPublisher>* publisher, SensorTopic* topic) {
-  ListenedPublisher* const listened = *publisher ? &**publisher : nullptr;
-  if (listened && !listened->listened()) return;
+void SensorPublisher::publishReading(const sim::StepReport& report, const sim::SensorReading& reading, SensorOutlet* outlet,
+                                     SensorTopic* topic) {
+  ListenedPublisher* const listened = outlet->publisher ? &*outlet->publisher : nullptr;
+  if (listened ? !listened->listened() : !outlet->ranges) return;
   std::visit(
-      ReadingPublisher{simulator_, report, topic->frame, topic->child_frame, &topic->messages, listened, topic->ranges, &ranges_, sender_},
+      ReadingPublisher{simulator_, report, topic->frame, topic->child_frame, &topic->messages, listened, outlet->ranges, &ranges_, sender_},
       reading);
 }
 

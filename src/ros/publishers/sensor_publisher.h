@@ -1,10 +1,12 @@
 #pragma once
 
 #include <blem_sim/MotorCurrents.h>
+#include <geometry_msgs/PointStamped.h>
 #include <geometry_msgs/WrenchStamped.h>
 #include <nav_msgs/Odometry.h>
 #include <ros/node_handle.h>
 #include <sensor_msgs/Imu.h>
+#include <std_msgs/Bool.h>
 
 #include <memory>
 #include <optional>
@@ -27,16 +29,23 @@ struct SensorMessages {
   MessagePool<sensor_msgs::Imu> imus;
   MessagePool<MotorCurrents> currents;
   MessagePool<nav_msgs::Odometry> odometries;
+  MessagePool<std_msgs::Bool> switches;
+  MessagePool<geometry_msgs::PointStamped> points;
+};
+
+/** Publishers of a sensor's readings. */
+struct SensorOutlet {
+  std::optional<ListenedPublisher> publisher;  ///< none for cameras and lidars
+  std::shared_ptr<const RangeTopics> ranges;   ///< for them alone
 };
 
 /** Topic of a sensor. */
 struct SensorTopic {
-  std::pair<std::string, std::string> key;     ///< names of the robot and the sensor
-  std::string frame;                           ///< frame_id of its messages
-  std::string child_frame;                     ///< child_frame_id of odometry
-  std::optional<ListenedPublisher> publisher;  ///< none for cameras and lidars
-  std::optional<ListenedPublisher> truth;      ///< of what the sensor would read without error, if it makes any
-  std::shared_ptr<const RangeTopics> ranges;   ///< for them alone
+  std::pair<std::string, std::string> key;  ///< names of the robot and the sensor
+  std::string frame;                        ///< frame_id of its messages
+  std::string child_frame;                  ///< child_frame_id of odometry
+  SensorOutlet readings;
+  SensorOutlet truth;  ///< of what the sensor would read without error, if it makes any
   SensorMessages messages;
 };
 
@@ -53,9 +62,8 @@ class SensorPublisher : public StepPublisher {
   /** @param names those of all topics so far */
   void checkTopic(const sim::SensorInfo& sensor, const std::string& topic, std::set<std::string>* names) const;
   void publishMountings();
-  /** @param publisher one of the topic's, which may be none */
-  void publishReading(const sim::StepReport& report, const sim::SensorReading& reading, std::optional<ListenedPublisher>* publisher,
-                      SensorTopic* topic);
+  /** @param outlet one of the topic's, which may be none */
+  void publishReading(const sim::StepReport& report, const sim::SensorReading& reading, SensorOutlet* outlet, SensorTopic* topic);
   ros::NodeHandle nodeOf(const sim::SensorInfo& sensor) const;
 
   const sim::Simulator& simulator_;

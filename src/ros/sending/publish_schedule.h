@@ -9,12 +9,12 @@ namespace blem_sim::node {
 /** Counts periods of simulated time, so that rates hold on average whatever the step. */
 class PublishSchedule {
  public:
-  /** @param rate [Hz]; 0 = every step */
+  /** @param rate [Hz]; 0 = every step, below 0 = never */
   explicit PublishSchedule(double rate) : rate_(rate) {}
 
   /** True once per period: at the first step at or after each multiple of it. @param time [s] simulated */
   bool due(double time) {
-    if (rate_ <= 0) return true;
+    if (rate_ <= 0) return rate_ == 0;
     // A multiple of the step may fall short of a multiple of the period by rounding.
     const auto period = static_cast<std::int64_t>(std::floor(time * rate_ + 1e-6));
     if (period == last_period_) return false;

@@ -5,10 +5,9 @@
 #include <blem_sim/SetLightProperties.h>
 #include <ros/names.h>
 
-#include <algorithm>
-
 #include "blem_sim/geometry/input_error.h"
 #include "messages/pid_gains.h"
+#include "messages/robot_names.h"
 #include "services/reference_frame.h"
 
 namespace blem_sim::node {
@@ -27,6 +26,7 @@ sim::RobotConfig robotOf(const sim::Simulator& simulator, const SpawnModel::Requ
   robot.urdf_xml = request.model_xml;
   robot.motors = sim::MotorDefault::TRANSMISSIONS;
   robot.pid_gains = pidGainsIn(request.robot_namespace);
+  robot.tf_prefix = tfPrefixIn(request.robot_namespace);
   const LinkMotion frame = frameMotion(simulator, request.reference_frame, "reference_frame");
   robot.X_WR = inWorld(frame, request.initial_pose, {}, "initial_pose").X_WL;
   return robot;
@@ -39,21 +39,6 @@ void checkRequest(const SpawnModel::Request& request) {
   std::string error;
   if (!request.robot_namespace.empty() && !ros::names::validate(request.robot_namespace, error))
     throw InputError("robot_namespace: '" + request.robot_namespace + "' is no ROS name; use letters, digits, _ and /");
-}
-
-/** Refuses a robot whose topics another one has. */
-void checkTopics(const sim::Simulator& simulator, const std::string& model) {
-  const int index = simulator.robotIndex(model);
-  if (index < 0) return;
-  const sim::RobotInfo& robot = simulator.robots()[index];
-  const auto resolved = [](const std::string& name_space) { return ros::names::clean("/" + name_space); };
-  for (const sim::RobotInfo& other : simulator.robots()) {
-    if (other.name == model || resolved(other.name_space) != resolved(robot.name_space)) continue;
-    for (const std::string& joint : robot.joint_names)
-      if (std::find(other.joint_names.begin(), other.joint_names.end(), joint) != other.joint_names.end())
-        throw InputError("robot_namespace: '" + other.name + "' has a joint '" + joint + "' in this namespace too; give '" + model +
-                         "' one of its own");
-  }
 }
 
 }  // namespace
@@ -79,7 +64,8 @@ void SpawnServices::spawn(const SpawnModel::Request& request, SpawnModel::Respon
   const std::size_t known_notes = simulator.notes().size();
   simulator.spawn(robotOf(simulator, request));
   try {
-    checkTopics(simulator, request.model_name);
+    if (const int robot = simulator.robotIndex(request.model_name); robot >= 0)
+      checkNamespace(simulator, simulator.robots()[robot], "robot_namespace");
     loop_->modelsChanged();
   } catch (const InputError&) {
     remove(request.model_name);

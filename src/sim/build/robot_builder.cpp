@@ -8,6 +8,7 @@
 #include "blem_sim/geometry/input_error.h"
 #include "blem_sim/sim/range_view.h"
 #include "build/by_joint.h"
+#include "build/frame_prefix.h"
 #include "build/robot_motors.h"
 #include "build/robot_names.h"
 
@@ -103,6 +104,7 @@ void RobotBuilder::addTo(SimulatedWorld* world, SurfaceLibrary* surfaces) {
   info_.lumped = lumped_;
   info_.root_link = model_->links[model_->root].name;
   info_.X_WR = config_.X_WR;
+  nameFrames();
   info_.model = world->addModel(config_.name, ModelKind::ROBOT, config_.max_contacts.value_or(contact_.max_contacts_per_robot));
   for (const auto* notes : {&model_->notes, &lumped_->notes, &std::as_const(start_notes_)})
     for (const std::string& words : *notes) note(words);
@@ -116,8 +118,18 @@ void RobotBuilder::addTo(SimulatedWorld* world, SurfaceLibrary* surfaces) {
   for (const int body : info_.bodies)
     if (body != dynamics::WORLD_BODY) model.bodies.push_back(body);
   model.joints = info_.joints;
+  for (const std::string& link : config_.weightless_links) {
+    const int index = model_->linkIndex(link), body = info_.bodies[lumped_->link_placement[index].body];
+    if (body != dynamics::WORLD_BODY) model.weightless.push_back({body, index});
+  }
   model.X_WM = config_.X_WR;
   addSensors(world->addRobot(info_));
+}
+
+void RobotBuilder::nameFrames() {
+  info_.publish_tf = config_.publish_tf;
+  info_.odom = config_.odom;
+  info_.tf_prefix = framePrefix(config_, *model_, world_->robots, &start_notes_);
 }
 
 void RobotBuilder::setSelfCollision() {
@@ -183,24 +195,28 @@ void RobotBuilder::addJoint(int j, const MotorSettings& motor) {
 }
 
 void RobotBuilder::addSensors(int robot) {
-  for (const SensorConfig& config : config_.sensors) {
-    world_->sensors.push_back({robot, config, frameOf(config)});
-    checkFrame(config);
+  for (SensorConfig sensor : config_.sensors) {
+    if (sensor.type == SensorType::FORCE_TORQUE) placeWrench(&sensor);
+    const std::string frame = sensor.type == SensorType::MOTOR_CURRENT ? info_.root_link : sensor.link;
+    world_->sensors.push_back({robot, sensor, frame});
+    checkFrame(sensor);
   }
 }
 
-std::string RobotBuilder::frameOf(const SensorConfig& sensor) const {
-  if (sensor.type == SensorType::FORCE_TORQUE) {
-    const model::JointModel& joint = model_->joints[model_->jointIndex(sensor.joint)];
-    return model_->links[sensor.frame == "parent" ? joint.parent : joint.child].name;
-  }
-  return sensor.type == SensorType::MOTOR_CURRENT ? info_.root_link : sensor.link;
+void RobotBuilder::placeWrench(SensorConfig* sensor) const {
+  const model::JointModel& joint = model_->joints[model_->jointIndex(sensor->joint)];
+  const bool of_joint = sensor->frame == "sensor";
+  sensor->X_LS = of_joint ? joint.X_PJ : Pose::Identity();
+  if (of_joint || sensor->frame == "parent")
+    sensor->link = model_->links[joint.parent].name;
+  else
+    sensor->link = sensor->frame == "child" ? model_->links[joint.child].name : sensor->frame;
 }
 
 // A frame_id that is a link's name claims that the readings are in that link's axes.
 void RobotBuilder::checkFrame(const SensorConfig& sensor) {
-  const int claimed = model_->linkIndex(sensor.frame_id), own = model_->linkIndex(frameOf(sensor));
-  if (claimed < 0 || sensor.type == SensorType::ODOMETRY) return;
+  const int claimed = model_->linkIndex(sensor.frame_id), own = model_->linkIndex(sensor.link);
+  if (claimed < 0 || own < 0 || sensor.type == SensorType::ODOMETRY) return;
   Pose X_LS = sensor.X_LS;
   if (sensor.type == SensorType::DEPTH_CAMERA) X_LS.linear() = X_LS.linear() * opticalAxes();
   const model::LinkPlacement &at_claimed = lumped_->link_placement[claimed], &at_own = lumped_->link_placement[own];

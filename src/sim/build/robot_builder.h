@@ -32,9 +32,11 @@ class RobotBuilder {
   void disableNeighbours();
   void disableBodies(int lumped_a, int lumped_b);
   void disableListedPairs();
+  void nameFrames();
   void setSelfCollision();
   void addSensors(int robot);
-  std::string frameOf(const SensorConfig& sensor) const;
+  /** Says where the axes of a wrench and their origin are. */
+  void placeWrench(SensorConfig* sensor) const;
   void checkFrame(const SensorConfig& sensor);
   void note(const std::string& words) { world_->notes.push_back(config_.name + ": " + words); }
 

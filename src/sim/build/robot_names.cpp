@@ -38,12 +38,16 @@ void checkSensor(const SensorConfig& sensor, const std::string& where, const Nam
       if (type == model::JointType::FLOATING || type == model::JointType::PLANAR)
         throw InputError(
             fmt::format("{}: joint: '{}' is a floating or planar joint, which carries no wrench; take another", where, sensor.joint));
-      requireName(sensor.frame, {"child", "parent", "sensor"}, where + ": frame", "frame");
+      std::vector<std::string> frames = {"child", "parent", "sensor"};
+      frames.insert(frames.end(), names.links.begin(), names.links.end());
+      requireName(sensor.frame, frames, where + ": frame", "frame");
       requireName(sensor.measure, {"parent_to_child", "child_to_parent"}, where + ": measure", "direction");
       return;
     }
     case SensorType::IMU:
     case SensorType::CONTACT:
+    case SensorType::CONTACT_SWITCH:
+    case SensorType::CENTRE_OF_PRESSURE:
     case SensorType::TILT:
     case SensorType::ODOMETRY:
     case SensorType::DEPTH_CAMERA:

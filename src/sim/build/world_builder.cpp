@@ -224,6 +224,11 @@ void WorldBuilder::addUrdfObject(const ObjectConfig& config, LoadWatch* watch, S
   const int body = addFreeBody(name, inertial, config, world);
   const int index = world->addModel(config.name, ModelKind::OBJECT, config.max_contacts.value_or(contact_.max_contacts_per_object));
   world->models[index].bodies = {body};
+  const std::set<std::string>& weightless = described.config.weightless_links;
+  if (weightless.size() == model.links.size()) world->models[index].weightless = {{body, -1}};
+  if (!weightless.empty() && weightless.size() < model.links.size())
+    world->notes.push_back(config.name +
+                           ": gravity acts on all links of an object or on none; load it under robots, or turn it off for all");
   for (std::size_t link = 0; link < model.links.size(); ++link) {
     const ContactSettings settings = contactSettings(
         contact_.boundary_width, contact_, {overridesOf(described.config.described_links, model.links[link].name), &config.contact});

@@ -109,19 +109,21 @@ void checkObject(const ObjectConfig& object) {
 void checkRobot(const RobotConfig& robot) {
   const Fields fields("robots: " + robot.name + ": ");
   fields.pose("pose", robot.X_WR);
+  fields.pose("odom.pose", robot.odom.X_WF);
   fields.overrides(robot.contact);
   if (robot.max_contacts) fields.atLeastOne("max_contacts", *robot.max_contacts);
   for (const auto& [link, contact] : robot.links) Fields("robots: " + robot.name + ": links." + link + ": ").overrides(contact);
   for (const SensorConfig& sensor : robot.sensors) {
     const Fields of_sensor("robots: " + robot.name + ": sensors: " + sensor.name + ": ");
     of_sensor.pose("pose", sensor.X_LS);
-    of_sensor.number("rate", sensor.rate, NumberRange::notNegative());
-    for (const double deviation :
-         {sensor.noise_stddev, sensor.accel_stddev, sensor.gyro_stddev, sensor.accel_bias_stddev, sensor.gyro_bias_stddev})
-      of_sensor.number("noise", deviation, NumberRange::notNegative());
-    for (const double bias : {sensor.accel_bias, sensor.gyro_bias}) of_sensor.number("noise", bias, NumberRange::any());
-    for (const double spread : {sensor.accel_bias_spread, sensor.gyro_bias_spread})
-      of_sensor.number("noise", spread, NumberRange::notNegative());
+    of_sensor.pose("offset", sensor.X_offset);
+    if (sensor.rate != RATE_OFF) of_sensor.number("rate", sensor.rate, NumberRange::notNegative());
+    for (const QuantityNoise& noise : sensor.noise) {
+      of_sensor.number("noise", noise.bias, NumberRange::any());
+      for (const double deviation : {noise.stddev, noise.bias_stddev, noise.bias_spread})
+        of_sensor.number("noise", deviation, NumberRange::notNegative());
+    }
+    of_sensor.number("threshold", sensor.threshold, NumberRange::notNegative());
     of_sensor.rays(sensor);
   }
 }

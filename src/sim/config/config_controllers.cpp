@@ -46,7 +46,7 @@ void readConstraints(YamlReader& controller, ControllerConfig* config) {
 
 void readTrajectorySettings(YamlReader& reader, ControllerConfig* config) {
   readJoints(reader, &config->joints);
-  reader.read("state_publish_rate", &config->state_publish_rate, NumberRange::notNegative());
+  reader.readRate("state_publish_rate", &config->state_publish_rate);
   reader.read("stop_trajectory_duration", &config->stop_trajectory_duration, NumberRange::notNegative());
   reader.read("allow_partial_joints_goal", &config->allow_partial_joints_goal);
   readConstraints(reader, config);
@@ -63,7 +63,7 @@ void readGripperSettings(YamlReader& reader, ControllerConfig* config) {
 }
 
 void readSettings(YamlReader& reader, ControllerConfig* config) {
-  reader.read("action_monitor_rate", &config->action_monitor_rate, NumberRange::notNegative());
+  reader.readRate("action_monitor_rate", &config->action_monitor_rate);
   if (config->kind == ControllerKind::GRIPPER)
     readGripperSettings(reader, config);
   else

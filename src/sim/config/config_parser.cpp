@@ -15,15 +15,14 @@ namespace {
 
 PublishRates readRates(YamlReader& reader) {
   PublishRates rates;
-  const NumberRange range = NumberRange::notNegative();
-  reader.read("clock_rate", &rates.clock, range);
-  reader.read("joint_state_rate", &rates.joint_state, range);
-  reader.read("tf_rate", &rates.tf, range);
-  reader.read("odom_rate", &rates.odom, range);
-  reader.read("contact_rate", &rates.contact, range);
-  reader.read("marker_rate", &rates.markers, range);
-  reader.read("link_states_rate", &rates.link_states, range);
-  reader.read("step_report_rate", &rates.step_report, range);
+  reader.readRate("clock_rate", &rates.clock);
+  reader.readRate("joint_state_rate", &rates.joint_state);
+  reader.readRate("tf_rate", &rates.tf);
+  reader.readRate("odom_rate", &rates.odom);
+  reader.readRate("contact_rate", &rates.contact);
+  reader.readRate("marker_rate", &rates.markers);
+  reader.readRate("link_states_rate", &rates.link_states);
+  reader.readRate("step_report_rate", &rates.step_report);
   return rates;
 }
 

@@ -93,6 +93,17 @@ std::set<std::string> readNames(YamlReader& reader, const std::string& key) {
   return names;
 }
 
+OdometryConfig readOdometryTopic(YamlReader reader) {
+  OdometryConfig odometry;
+  reader.read("topic", &odometry.topic);
+  reader.read("frame", &odometry.frame);
+  reader.read("pose", &odometry.X_WF);
+  for (const auto& [key, given] : {std::make_pair("topic", odometry.topic), std::make_pair("frame", odometry.frame)})
+    if (given.empty()) reader.refuse(key, "is empty; leave it out, or give it a name");
+  reader.finish();
+  return odometry;
+}
+
 void readSource(YamlReader& reader, RobotConfig* robot) {
   reader.read("urdf", &robot->urdf);
   reader.read("description_param", &robot->description_param);
@@ -146,6 +157,9 @@ RobotConfig readRobot(YamlReader& reader) {
   robot.armature = readNumbers(reader, "armature", NumberRange::notNegative());
   robot.sensors = readSensors(reader);
   robot.controllers = readControllers(reader);
+  reader.read("tf_prefix", &robot.tf_prefix);
+  reader.read("publish_tf", &robot.publish_tf);
+  robot.odom = readOdometryTopic(reader.section("odom"));
   return robot;
 }
 

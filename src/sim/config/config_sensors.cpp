@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 
@@ -17,12 +19,17 @@ void requireText(YamlReader& reader, const std::string& key, std::string* value)
 
 constexpr double LONGEST_DELAY = 1;  // [s]
 
-/** Delay, range and resolution. @param first, second what the sensor measures, in the order of its limits */
-void readErrors(YamlReader& reader, const std::string& first, const std::string& second, SensorConfig* sensor) {
+/** What a sensor measures, in the order of its limits and noise. */
+using Quantities = std::vector<std::string>;
+
+void readDelay(YamlReader& reader, SensorConfig* sensor) {
   reader.read("delay", &sensor->delay, {0, LONGEST_DELAY, false, "a number from 0 to 1 s"});
+}
+
+void readLimits(YamlReader& reader, const Quantities& quantities, SensorConfig* sensor) {
   YamlReader saturation = reader.section("saturation"), resolution = reader.section("resolution");
   QuantityLimits* limits = sensor->limits.data();
-  for (const std::string& quantity : {first, second}) {
+  for (const std::string& quantity : quantities) {
     saturation.read(quantity, &limits->saturation, NumberRange::positiveOrInfinite());
     resolution.read(quantity, &limits->resolution, NumberRange::notNegative());
     if (limits->resolution > limits->saturation) resolution.refuse(quantity, "is coarser than its saturation; give a smaller step");
@@ -32,17 +39,37 @@ void readErrors(YamlReader& reader, const std::string& first, const std::string&
   resolution.finish();
 }
 
+void readNoise(YamlReader& reader, const Quantities& quantities, SensorConfig* sensor) {
+  YamlReader noise = reader.section("noise");
+  if (sensor->type == SensorType::FORCE_TORQUE) {
+    noise.read("stddev", &sensor->noise[0].stddev, NumberRange::notNegative());  // of both
+    sensor->noise[1] = sensor->noise[0];
+  }
+  QuantityNoise* of = sensor->noise.data();
+  for (const std::string& quantity : quantities) {
+    noise.read(quantity + "_stddev", &of->stddev, NumberRange::notNegative());
+    noise.read(quantity + "_bias_stddev", &of->bias_stddev, NumberRange::notNegative());
+    noise.read(quantity + "_bias", &of->bias, NumberRange::any());
+    noise.read(quantity + "_bias_spread", &of->bias_spread, NumberRange::notNegative());
+    ++of;
+  }
+  noise.finish();
+}
+
+/** Delay, noise, range and resolution. */
+void readErrors(YamlReader& reader, const Quantities& quantities, SensorConfig* sensor) {
+  readDelay(reader, sensor);
+  readNoise(reader, quantities, sensor);
+  readLimits(reader, quantities, sensor);
+}
+
 void readForceTorque(YamlReader& reader, SensorConfig* sensor) {
-  const std::vector<std::string> frames = {"child", "parent", "sensor"};
   const std::vector<std::string> senses = {"parent_to_child", "child_to_parent"};
   requireText(reader, "joint", &sensor->joint);
-  if (const auto frame = reader.choice("frame", frames)) sensor->frame = frames[*frame];
+  reader.read("frame", &sensor->frame);
   reader.read("frame_id", &sensor->frame_id);
   if (const auto sense = reader.choice("measure", senses)) sensor->measure = senses[*sense];
-  readErrors(reader, "force", "torque", sensor);
-  YamlReader noise = reader.section("noise");
-  noise.read("stddev", &sensor->noise_stddev, NumberRange::notNegative());
-  noise.finish();
+  readErrors(reader, {"force", "torque"}, sensor);
 }
 
 /** The link that a sensor sits on, its pose there, and its messages' frame. */
@@ -54,37 +81,41 @@ void readMounting(YamlReader& reader, SensorConfig* sensor) {
 
 void readTilt(YamlReader& reader, SensorConfig* sensor) {
   readMounting(reader, sensor);
-  readErrors(reader, "angle", "gyro", sensor);
+  readErrors(reader, {"angle", "gyro"}, sensor);
 }
 
 void readImu(YamlReader& reader, SensorConfig* sensor) {
   readMounting(reader, sensor);
-  readErrors(reader, "accel", "gyro", sensor);
-  YamlReader noise = reader.section("noise");
-  noise.read("accel_stddev", &sensor->accel_stddev, NumberRange::notNegative());
-  noise.read("gyro_stddev", &sensor->gyro_stddev, NumberRange::notNegative());
-  noise.read("accel_bias_stddev", &sensor->accel_bias_stddev, NumberRange::notNegative());
-  noise.read("gyro_bias_stddev", &sensor->gyro_bias_stddev, NumberRange::notNegative());
-  noise.read("accel_bias", &sensor->accel_bias, NumberRange::any());
-  noise.read("gyro_bias", &sensor->gyro_bias, NumberRange::any());
-  noise.read("accel_bias_spread", &sensor->accel_bias_spread, NumberRange::notNegative());
-  noise.read("gyro_bias_spread", &sensor->gyro_bias_spread, NumberRange::notNegative());
-  noise.finish();
+  readErrors(reader, {"accel", "gyro"}, sensor);
 }
 
 void readContactSensor(YamlReader& reader, SensorConfig* sensor) { requireText(reader, "link", &sensor->link); }
+
+void readContactSwitch(YamlReader& reader, SensorConfig* sensor) {
+  requireText(reader, "link", &sensor->link);
+  reader.read("threshold", &sensor->threshold, NumberRange::notNegative());
+  readDelay(reader, sensor);
+  readNoise(reader, {"force"}, sensor);
+}
+
+void readCentreOfPressure(YamlReader& reader, SensorConfig* sensor) {
+  readMounting(reader, sensor);
+  reader.read("threshold", &sensor->threshold, NumberRange::notNegative());
+  readErrors(reader, {"position"}, sensor);
+}
 
 void readOdometry(YamlReader& reader, SensorConfig* sensor) {
   readMounting(reader, sensor);
   const std::vector<std::string> axes = {"link", "world"};
   if (const auto twist = reader.choice("twist", axes)) sensor->twist = axes[*twist];
+  reader.read("offset", &sensor->X_offset);
   YamlReader noise = reader.section("noise");
-  noise.read("stddev", &sensor->noise_stddev, NumberRange::notNegative());
+  noise.read("stddev", &sensor->noise[0].stddev, NumberRange::notNegative());
   noise.finish();
 }
 
 void readMotorCurrent(YamlReader& reader, SensorConfig* sensor) {
-  readErrors(reader, "current", "effort", sensor);
+  readErrors(reader, {"current", "effort"}, sensor);
   reader.forEachName("torque_constant", [&](const std::string& joint, YamlReader& map) {
     map.read(joint, &sensor->torque_constant[joint], NumberRange::positive());
   });
@@ -156,6 +187,8 @@ const std::vector<SensorRow> SENSOR_TABLE = {
     {"force_torque", SensorType::FORCE_TORQUE, 0, readForceTorque},
     {"imu", SensorType::IMU, 0, readImu},
     {"contact", SensorType::CONTACT, 0, readContactSensor},
+    {"contact_switch", SensorType::CONTACT_SWITCH, 0, readContactSwitch},
+    {"centre_of_pressure", SensorType::CENTRE_OF_PRESSURE, 0, readCentreOfPressure},
     {"tilt", SensorType::TILT, 0, readTilt},
     {"motor_current", SensorType::MOTOR_CURRENT, 0, readMotorCurrent},
     {"odometry", SensorType::ODOMETRY, 50, readOdometry},
@@ -169,11 +202,11 @@ SensorConfig readSensor(YamlReader& reader) {
   std::vector<std::string> types;
   for (const SensorRow& row : SENSOR_TABLE) types.push_back(row.name);
   const auto type = reader.choice("type", types);
-  if (!type) reader.refuse("type", "is missing; one of force_torque, imu, contact, tilt, motor_current, odometry, depth_camera, lidar");
+  if (!type) reader.refuse("type", fmt::format("is missing; one of {}", fmt::join(types, ", ")));
   sensor.type = SENSOR_TABLE[*type].type;
   sensor.rate = SENSOR_TABLE[*type].rate;
   reader.read("topic", &sensor.topic);
-  reader.read("rate", &sensor.rate, NumberRange::notNegative());
+  reader.readRate("rate", &sensor.rate);
   SENSOR_TABLE[*type].read(reader, &sensor);
   return sensor;
 }

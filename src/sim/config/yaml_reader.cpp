@@ -8,6 +8,7 @@
 
 #include "blem_sim/geometry/input_error.h"
 #include "blem_sim/geometry/one_line.h"
+#include "blem_sim/sim/controller_config.h"
 #include "numbers/nearest_name.h"
 
 namespace blem_sim::sim {
@@ -25,6 +26,12 @@ const char* kind(const YAML::Node& node) {
   if (node.IsMap()) return "a map";
   if (node.IsSequence()) return "a list";
   return node.IsNull() ? "nothing" : "a text";
+}
+
+// YAML's readers take off for a text or for false, whichever they were made for.
+bool isOff(const YAML::Node& node) {
+  static const std::set<std::string> WORDS = {"off", "Off", "OFF", ".off", "false", "False"};
+  return node.IsScalar() && WORDS.count(node.Scalar()) > 0;
 }
 
 std::string quoted(const YAML::Node& node) { return node.IsScalar() ? "'" + node.Scalar() + "'" : kind(node); }
@@ -124,6 +131,12 @@ void YamlReader::read(const std::string& key, double* value, const NumberRange& 
 
 void YamlReader::read(const std::string& key, std::optional<double>* value, const NumberRange& range) {
   if (const YAML::Node found = node(key); found.IsDefined()) *value = number(key, found, range);
+}
+
+void YamlReader::readRate(const std::string& key, double* value) {
+  NumberRange range = NumberRange::notNegative();
+  range.words = "a finite number of at least 0, or off";
+  if (const YAML::Node found = node(key); found.IsDefined()) *value = isOff(found) ? RATE_OFF : number(key, found, range);
 }
 
 void YamlReader::read(const std::string& key, std::optional<int>* value, int lower) {

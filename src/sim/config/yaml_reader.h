@@ -52,6 +52,8 @@ class YamlReader {
   void read(const std::string& key, std::uint64_t* value);
   void read(const std::string& key, Vector3* value);
   void read(const std::string& key, std::optional<Vector3>* value);
+  /** A rate [Hz]; off, .off or false reads as RATE_OFF. */
+  void readRate(const std::string& key, double* value);
   /** A map {xyz: [m], rpy: [rad]}, both optional. */
   void read(const std::string& key, Pose* value);
   /** @return index into `names` of the text given, or nothing */

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "blem_sim/sim/config.h"
 #include "gazebo/gazebo_reader.h"
 
 namespace blem_sim::sim {
@@ -12,6 +13,8 @@ namespace blem_sim::sim {
 struct GazeboNoise {
   double mean = 0, stddev = 0;
   double bias_mean = 0, bias_stddev = 0;  ///< of a bias drawn at the start
+
+  QuantityNoise quantity() const { return {stddev, 0, mean + bias_mean, bias_stddev}; }
 };
 
 /** The noise at a path ("imu/noise/accel"), whose kind stands at type_path; none if it is not gaussian, which is noted. */

@@ -30,7 +30,6 @@ std::vector<std::string> GazeboNotes::lines() const {
   unknown_.tell("<gazebo>: not read", "; docs/gazebo_urdf.md lists what is", &lines);
   without_effect_.tell("<gazebo>: without effect here", "; docs/gazebo_urdf.md says why", &lines);
   anisotropic_.tell("<mu2> other than <mu1>, which friction of all directions is taken from", "", &lines);
-  weightless_.tell("gravity acts on links that are to have none", "; give them little mass instead", &lines);
   lines.insert(lines.end(), faults_.begin(), faults_.begin() + static_cast<std::ptrdiff_t>(std::min(faults_.size(), LISTED)));
   if (faults_.size() > LISTED)
     lines.push_back(fmt::format("{}: {} more faults in <gazebo> blocks; correct these first", source_, faults_.size() - LISTED));

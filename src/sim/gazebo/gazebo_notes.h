@@ -22,8 +22,6 @@ class GazeboNotes {
   }
   /** A link whose friction along the second direction is another one. */
   void anisotropic(const std::string& link) { anisotropic_.add(link); }
-  /** A link that should not feel gravity. */
-  void weightless(const std::string& link) { weightless_.add(link); }
   /** A sensor that was made. @param words its name and kind */
   void sensor(const std::string& words) { sensors_.add(words); }
 
@@ -48,7 +46,7 @@ class GazeboNotes {
   };
 
   std::string source_;
-  List unknown_, without_effect_, anisotropic_, weightless_, sensors_;
+  List unknown_, without_effect_, anisotropic_, sensors_;
   std::vector<std::string> faults_;
 };
 

@@ -46,8 +46,8 @@ void readImuSensorPlugin(GazeboReader* reader, GazeboSensor* sensor) {
   reader->read("rpyOffset", &rpy);
   config.X_LS = config.X_LS * makePose(xyz, rpy);
   const double stddev = gaussianNoise(reader);
-  config.accel_stddev = together(config.accel_stddev, stddev);
-  config.gyro_stddev = together(config.gyro_stddev, stddev);
+  config.noise[0].stddev = together(config.noise[0].stddev, stddev);
+  config.noise[1].stddev = together(config.noise[1].stddev, stddev);
   std::optional<bool> first_is_zero;
   reader->read("initialOrientationAsReference", &first_is_zero);
   if (first_is_zero.value_or(false))
@@ -66,7 +66,8 @@ void readForceTorquePlugin(GazeboReader* reader, GazeboSensor* sensor) {
   reader->read("jointName", &sensor->config.joint);
   sensor->config.frame = "child";
   sensor->config.measure = "child_to_parent";
-  sensor->config.noise_stddev = together(sensor->config.noise_stddev, gaussianNoise(reader));
+  const double stddev = gaussianNoise(reader);
+  for (QuantityNoise& noise : sensor->config.noise) noise.stddev = together(noise.stddev, stddev);
 }
 
 void readBumper(GazeboReader* reader, GazeboSensor* sensor) {
@@ -83,12 +84,11 @@ void readP3d(GazeboReader* reader, GazeboSensor* sensor) {
   readCommon(reader, sensor);
   reader->read("bodyName", &config.link);
   config.twist = "world";
-  config.noise_stddev = gaussianNoise(reader);
-  for (const char* path : {"xyzOffsets", "rpyOffsets", "xyzOffset", "rpyOffset"}) {
-    Vector3 offset = Vector3::Zero();
-    reader->read(path, &offset);
-    if (!offset.isZero()) reader->fault(path, "the world is not shifted; it is left out: write 0 0 0");
-  }
+  config.noise[0].stddev = gaussianNoise(reader);
+  Vector3 xyz = Vector3::Zero(), rpy = Vector3::Zero();
+  for (const char* path : {"xyzOffset", "xyzOffsets"}) reader->read(path, &xyz);
+  for (const char* path : {"rpyOffset", "rpyOffsets"}) reader->read(path, &rpy);
+  config.X_offset = makePose(xyz, rpy);
 }
 
 void readLidarPlugin(GazeboReader* reader, GazeboSensor* sensor) {

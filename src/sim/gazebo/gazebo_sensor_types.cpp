@@ -26,12 +26,7 @@ GazeboNoise readImuNoise(GazeboReader* reader, const std::string& axes, const st
 void readImuSensor(GazeboReader* reader, SensorConfig* sensor) {
   const GazeboNoise gyro = readImuNoise(reader, "angular_velocity", "rate");
   const GazeboNoise accel = readImuNoise(reader, "linear_acceleration", "accel");
-  sensor->gyro_stddev = gyro.stddev;
-  sensor->gyro_bias = gyro.mean + gyro.bias_mean;
-  sensor->gyro_bias_spread = gyro.bias_stddev;
-  sensor->accel_stddev = accel.stddev;
-  sensor->accel_bias = accel.mean + accel.bias_mean;
-  sensor->accel_bias_spread = accel.bias_stddev;
+  sensor->noise = {accel.quantity(), gyro.quantity()};
   reader->skip({"imu/topic"});
 }
 
@@ -49,9 +44,7 @@ void readWrenchSensor(GazeboReader* reader, SensorConfig* sensor) {
   choose("force_torque/frame", {"child", "parent", "sensor"}, &sensor->frame);
   choose("force_torque/measure_direction", {"child_to_parent", "parent_to_child"}, &sensor->measure);
   const GazeboNoise force = readVector(reader, "force_torque/force"), torque = readVector(reader, "force_torque/torque");
-  sensor->noise_stddev = std::max(force.stddev, torque.stddev);
-  if (force.stddev != torque.stddev)
-    reader->fault("force_torque", "force and torque have different noise; the larger is taken for both: give both the same");
+  sensor->noise = {force.quantity(), torque.quantity()};
 }
 
 void readTouchSensor(GazeboReader* reader, SensorConfig*) { reader->skip({"contact"}); }

@@ -6,6 +6,7 @@
 #include <cctype>
 #include <utility>
 
+#include "blem_sim/sim/sensor_values.h"
 #include "config/range_sensor_check.h"
 #include "gazebo/gazebo_sensor_types.h"
 #include "numbers/nearest_name.h"
@@ -39,8 +40,6 @@ std::string withoutDoubleSlashes(std::string topic) {
   topic.erase(std::unique(topic.begin(), topic.end(), twice), topic.end());
   return topic;
 }
-
-std::string topicOf(const SensorConfig& sensor) { return sensor.topic.empty() ? sensor.name : sensor.topic; }
 
 const char* wordOf(SensorType type) {
   switch (type) {
@@ -170,7 +169,7 @@ void GazeboSensors::add(GazeboSensor sensor, const model::GazeboBlock& block) {
   if (const auto fault = faultOf(config.type, config.rays))
     return notes_.fault(reader.where(), fmt::format("its {} {}; it is left out", fault->key, fault->why));
   if (sensorNamed(config.name)) return notes_.fault(reader.where(), "is there twice; it is left out: rename it");
-  notes_.sensor(fmt::format("{} ({} of '{}' on {})", config.name, wordOf(config.type), seat, resolved(topicOf(config))));
+  notes_.sensor(fmt::format("{} ({} of '{}' on {})", config.name, wordOf(config.type), seat, resolved(sensorTopic(config))));
   config_.sensors.push_back(config);
 }
 
@@ -213,18 +212,18 @@ bool GazeboSensors::sitsSomewhere(const SensorConfig& sensor, const GazeboReader
 }
 
 bool GazeboSensors::topicIsFree(const GazeboReader& reader, SensorConfig* sensor) const {
-  const auto is = [&](const std::string& topic) { return resolved(topicOf(*sensor)) == resolved(topic); };
+  const auto is = [&](const std::string& topic) { return resolved(sensorTopic(*sensor)) == resolved(topic); };
   for (const char* taken : TAKEN_TOPICS) {
     if (!is(taken)) continue;
     notes_.fault(reader.where(), fmt::format("its topic {} is the robot's own; it is on {}: give it another", taken, sensor->name));
     sensor->topic.clear();
   }
   for (const SensorConfig& other : config_.sensors) {
-    if (!is(topicOf(other))) continue;
+    if (!is(sensorTopic(other))) continue;
     const bool configured = &other < config_.sensors.data() + configured_;
     if (!configured)
       notes_.fault(reader.where(),
-                   fmt::format("sensor '{}' has its topic {}; it is left out: give it another", other.name, topicOf(other)));
+                   fmt::format("sensor '{}' has its topic {}; it is left out: give it another", other.name, sensorTopic(other)));
     return false;
   }
   return true;

@@ -52,7 +52,7 @@ void readLink(GazeboReader* reader, RobotConfig* config) {
   if (either(reader, "selfCollide", "self_collide").value_or(false)) config->self_colliding_links.insert(link);
   std::optional<bool> gravity;
   reader->read("gravity", &gravity);
-  if (either(reader, "turnGravityOff", "turn_gravity_off").value_or(!gravity.value_or(true))) reader->notes().weightless(link);
+  if (either(reader, "turnGravityOff", "turn_gravity_off").value_or(!gravity.value_or(true))) config->weightless_links.insert(link);
   reader->skip({"material", "visual", "laserRetro", "laser_retro"});
   reader->skipWithoutEffect({"minDepth", "min_depth", "maxVel", "max_vel", "maxContacts", "max_contacts"});
 }

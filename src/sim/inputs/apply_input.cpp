@@ -75,6 +75,7 @@ const std::map<std::string, Call> CALLS = {
      }},
     {"clearLoads", [](InputReader& in, Simulator& to) { to.clearLoads(in.takeBody()); }},
     {"clearEfforts", [](InputReader& in, Simulator& to) { to.clearEfforts(in.takeJoint()); }},
+    {"tareSensor", [](InputReader& in, Simulator& to) { to.tareSensor(in.takeSensor()); }},
     {"setPhysics",
      [](InputReader& in, Simulator& to) {
        const auto gravity = in.take<Vector3>();

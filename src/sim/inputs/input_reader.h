@@ -29,6 +29,7 @@ class InputReader : public FieldVisitor<InputReader> {
   geometry::MassProperties takeInertial();
   int takeRobot() { return takeIndex("robot", simulator_.robots().size()); }
   int takeJointOf(int robot) { return takeIndex("joint", simulator_.robots()[robot].joint_names.size()); }
+  int takeSensor() { return takeIndex("sensor", simulator_.sensors().size()); }
   int takeModel();
   int takeBody();
   /** A joint of the world. */

@@ -15,6 +15,11 @@ struct ByLink {
 
 }  // namespace
 
+Wrench wrenchOfContact(const ContactReport& contact, bool on_a, const Vector3& p_WL) {
+  const Vector3 force = on_a ? contact.force : Vector3(-contact.force);
+  return {force, (contact.point - p_WL).cross(force) + (on_a ? contact.moment_a : contact.moment_b)};
+}
+
 void LinkContacts::index(const SimulatedWorld& world, const std::vector<ContactReport>& contacts) {
   entries_.clear();
   for (std::size_t i = 0; i < contacts.size(); ++i) {

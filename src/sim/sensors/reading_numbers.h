@@ -32,6 +32,12 @@ class ReadingNumbers {
     for (double& current : r.currents) use_(current, 0);
     for (double& effort : r.efforts) use_(effort, 1);
   }
+  void operator()(ContactSwitchReading& r) { use_(r.force, 0); }
+  void operator()(CentreOfPressureReading& r) {
+    use_(r.x, 0);
+    use_(r.y, 0);
+    use_(r.force, -1);
+  }
   // Contacts belong to their step, and pictures are drawn elsewhere.
   void operator()(ContactReading&) {}
   void operator()(OdometryReading&) {}

@@ -30,6 +30,10 @@ std::unique_ptr<Sensor> makeSensor(const SimulatedWorld& world, const SensorInfo
       return makeImuSensor(world, info);
     case SensorType::CONTACT:
       return makeContactSensor(world, info);
+    case SensorType::CONTACT_SWITCH:
+      return makeContactSwitch(world, info);
+    case SensorType::CENTRE_OF_PRESSURE:
+      return makeCentreOfPressureSensor(world, info);
     case SensorType::TILT:
       return makeTiltSensor(world, info);
     case SensorType::MOTOR_CURRENT:

@@ -29,14 +29,13 @@ class Sensor {
   virtual ~Sensor() = default;
   /** The truth. @param out overwritten; if it holds a reading of this sensor already, its memory is used again */
   virtual void measure(const StepContext& step, SensorReading* out) = 0;
-  /** Noise and bias upon a reading of measure(), of this step or an earlier one. @param period [s] between two readings, on average */
-  virtual void addNoise(double period, SensorReading* reading) {}
+  /** Noise upon a reading of measure(), of this step or an earlier one, beside that of ReadingNoise. */
+  virtual void addNoise(SensorReading* reading) {}
+  /** Lets what follows from a reading's numbers follow from them as they are read, noise and limits included. */
+  virtual void settle(SensorReading* reading) const {}
+  /** False: there was nothing to measure, so there is no reading. */
+  virtual bool measured(const SensorReading& reading) const { return true; }
   virtual bool readsContacts() const { return false; }
-  /** Forgets the sensor's memory (a drifting bias), without touching the random numbers. */
-  virtual void reset() {}
-  /** Appends the sensor's memory. */
-  virtual void append(std::vector<double>* numbers) const {}
-  virtual void restore(NumberReader* reader) {}
 
   RandomNumbers& random() { return random_; }
   const RandomNumbers& random() const { return random_; }
@@ -54,6 +53,8 @@ Reading& readingIn(SensorReading* out) {
 std::unique_ptr<Sensor> makeForceTorqueSensor(const SimulatedWorld& world, const SensorInfo& info);
 std::unique_ptr<Sensor> makeImuSensor(const SimulatedWorld& world, const SensorInfo& info);
 std::unique_ptr<Sensor> makeContactSensor(const SimulatedWorld& world, const SensorInfo& info);
+std::unique_ptr<Sensor> makeContactSwitch(const SimulatedWorld& world, const SensorInfo& info);
+std::unique_ptr<Sensor> makeCentreOfPressureSensor(const SimulatedWorld& world, const SensorInfo& info);
 std::unique_ptr<Sensor> makeTiltSensor(const SimulatedWorld& world, const SensorInfo& info);
 std::unique_ptr<Sensor> makeMotorCurrentSensor(const SimulatedWorld& world, const SensorInfo& info);
 std::unique_ptr<Sensor> makeOdometrySensor(const SimulatedWorld& world, const SensorInfo& info);

@@ -17,56 +17,64 @@ double limited(double value, const QuantityLimits& limits) {
   return limits.resolution * std::clamp(std::round(value / limits.resolution), -most, most);
 }
 
-/** Orientation of a tilt's angles as they are read, with the heading that it has. */
-void turnToAngles(const Vector3& x_W, TiltReading* reading) {
-  const double yaw = std::atan2(x_W.y(), x_W.x());
-  reading->orientation = Eigen::AngleAxisd(yaw, Vector3::UnitZ()) * Eigen::AngleAxisd(reading->pitch, Vector3::UnitY()) *
-                         Eigen::AngleAxisd(reading->roll, Vector3::UnitX());
-}
-
 void limit(const SensorLimits& limits, SensorReading* reading) {
   forEachNumber(reading, [&](double& number, int quantity) {
     if (quantity >= 0) number = limited(number, limits[static_cast<std::size_t>(quantity)]);
   });
-  auto* const tilt = std::get_if<TiltReading>(reading);
-  if (tilt && limits[0].any()) turnToAngles(tilt->orientation * Vector3::UnitX(), tilt);
+}
+
+SensorReading blankOf(const SimulatedWorld& world, const SensorInfo& info) {
+  return blankReading(info.config.type, world.robots[info.robot].joint_names);
 }
 
 }  // namespace
+
+void SensorChannel::Memory::reset() {
+  noise.reset();
+  delay.clear();
+  tare.reset();
+}
+
+void SensorChannel::Memory::append(std::vector<double>* numbers) const {
+  noise.append(numbers);
+  delay.append(numbers);
+}
+
+void SensorChannel::Memory::read(NumberReader* reader) {
+  noise.read(reader);
+  delay.read(reader);
+}
 
 SensorChannel::SensorChannel(const SimulatedWorld& world, const SensorInfo& info, double time_step)
     : config_(info.config),
       has_truth_(hasGroundTruth(info.config)),
       sensor_(makeSensor(world, info)),
       schedule_(info.config.rate, time_step),
-      delay_(info.config.delay, time_step, blankReading(info.config.type, world.robots[info.robot].joint_names)) {}
+      memory_{{info.config.noise, blankOf(world, info)}, {info.config.delay, time_step, blankOf(world, info)}, {}} {}
 
 bool SensorChannel::read(const StepContext& step, std::uint64_t number, SensorSample* out) {
   const bool due = schedule_.due(number);
-  if (!due && delay_.steps() == 0) return false;
+  if (!due && memory_.delay.steps() == 0) return false;
   sensor_->measure(step, &out->reading);
-  if (!has_truth_) return due;
+  memory_.tare.apply(&out->reading);
+  if (!has_truth_) return due && sensor_->measured(out->reading);
   out->truth = out->reading;
-  if (!delay_.pass(&out->reading) || !due) return false;
-  sensor_->addNoise(schedule_.period(), &out->reading);
+  if (!memory_.delay.pass(&out->reading) || !due) return false;
+  memory_.noise.add(schedule_.period(), &sensor_->random(), &out->reading);
+  sensor_->addNoise(&out->reading);
   limit(config_.limits, &out->reading);
-  return true;
+  sensor_->settle(&out->reading);
+  if (!sensor_->measured(*out->truth)) out->truth.reset();
+  return sensor_->measured(out->reading);
 }
 
 void SensorChannel::remake(const SimulatedWorld& world, const SensorInfo& info, double time_step) {
   SensorChannel made(world, info, time_step);
-  std::vector<double> numbers;
-  sensor_->append(&numbers);
-  NumberReader reader(numbers);
-  made.sensor_->restore(&reader);
   made.sensor_->random() = sensor_->random();
-  if (made.delay_.steps() == delay_.steps()) made.delay_ = std::move(delay_);
+  made.memory_.noise = std::move(memory_.noise);
+  made.memory_.tare = memory_.tare;
+  if (made.memory_.delay.steps() == memory_.delay.steps()) made.memory_.delay = std::move(memory_.delay);
   *this = std::move(made);
-}
-
-void SensorChannel::reset() {
-  sensor_->reset();
-  delay_.clear();
 }
 
 }  // namespace blem_sim::sim

@@ -6,8 +6,10 @@
 #include <vector>
 
 #include "sensors/delay_line.h"
+#include "sensors/reading_noise.h"
 #include "sensors/sensor.h"
 #include "sensors/sensor_schedule.h"
+#include "sensors/wrench_tare.h"
 
 namespace blem_sim::sim {
 
@@ -24,24 +26,37 @@ class SensorChannel {
    */
   bool read(const StepContext& step, std::uint64_t number, SensorSample* out);
   /** Whether read() will need the contacts of that step. */
-  bool readsContacts(std::uint64_t number) const { return sensor_->readsContacts() && schedule_.due(number); }
+  bool readsContacts(std::uint64_t number) const {
+    return sensor_->readsContacts() && (schedule_.due(number) || memory_.delay.steps() > 0);
+  }
 
   /** Makes the sensor again, as its bodies are now. With another time step, readings on their way are lost. */
   void remake(const SimulatedWorld& world, const SensorInfo& info, double time_step);
   /** Forgets what the sensor remembers and what is on its way, without touching the random numbers. */
-  void reset();
+  void reset() { memory_.reset(); }
 
-  Sensor& sensor() { return *sensor_; }
-  const Sensor& sensor() const { return *sensor_; }
-  DelayLine& delay() { return delay_; }
-  const DelayLine& delay() const { return delay_; }
+  /** Memory of a sensor from reading to reading. */
+  struct Memory {
+    ReadingNoise noise;
+    DelayLine delay;
+    WrenchTare tare;
+
+    void reset();
+    /** Appends all but the tare. */
+    void append(std::vector<double>* numbers) const;
+    void read(NumberReader* reader);
+  };
+  Memory& memory() { return memory_; }
+  const Memory& memory() const { return memory_; }
+  RandomNumbers& random() { return sensor_->random(); }
+  const RandomNumbers& random() const { return sensor_->random(); }
 
  private:
   SensorConfig config_;
   bool has_truth_;
   std::unique_ptr<Sensor> sensor_;
   SensorSchedule schedule_;
-  DelayLine delay_;
+  Memory memory_;
 };
 
 }  // namespace blem_sim::sim

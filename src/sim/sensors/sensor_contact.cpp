@@ -18,13 +18,11 @@ class ContactSensor : public Sensor {
     // Contact points and forces belong to the start of the step.
     const Vector3 p_WL = step.world.linkPose(robot_, link_, step.bodies_before).translation();
     for (const LinkContacts::Entry& entry : step.link_contacts.of(robot_.model, link_)) {
-      const ContactReport& contact = step.contacts[entry.contact];
-      const Vector3 force = entry.on_a ? contact.force : Vector3(-contact.force);
-      const Vector3 torque = (contact.point - p_WL).cross(force) + (entry.on_a ? contact.moment_a : contact.moment_b);
+      const Wrench wrench = wrenchOfContact(step.contacts[entry.contact], entry.on_a, p_WL);
       reading.contacts.push_back(entry.contact);
-      reading.wrenches.push_back({force, torque});
-      reading.total.force += force;
-      reading.total.torque += torque;
+      reading.wrenches.push_back(wrench);
+      reading.total.force += wrench.force;
+      reading.total.torque += wrench.torque;
     }
   }
   bool readsContacts() const override { return true; }

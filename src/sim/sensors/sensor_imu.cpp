@@ -23,57 +23,15 @@ class ImuSensor : public Sensor {
     reading.accel_stddev = reading.gyro_stddev = 0;
   }
 
-  void addNoise(double period, SensorReading* out) override {
+  void addNoise(SensorReading* out) override {
     ImuReading& reading = std::get<ImuReading>(*out);
-    reading.accel_stddev = config_.accel_stddev;
-    reading.gyro_stddev = config_.gyro_stddev;
-    drawBiases();
-    disturb(config_.accel_stddev, config_.accel_bias_stddev, period, &accel_bias_, &reading.linear_acceleration);
-    disturb(config_.gyro_stddev, config_.gyro_bias_stddev, period, &gyro_bias_, &reading.angular_velocity);
-  }
-
-  void reset() override {
-    accel_bias_ = gyro_bias_ = Vector3::Zero();
-    drawn_ = 0;
-  }
-  void append(std::vector<double>* numbers) const override {
-    for (const Vector3* bias : {&accel_bias_, &gyro_bias_}) numbers->insert(numbers->end(), bias->data(), bias->data() + 3);
-    if (hasConstantBias()) numbers->push_back(drawn_);
-  }
-  void restore(NumberReader* reader) override {
-    for (Vector3* bias : {&accel_bias_, &gyro_bias_}) reader->numbers(bias->data(), 3);
-    if (hasConstantBias()) reader->numbers(&drawn_, 1);
+    reading.accel_stddev = config_.noise[0].stddev;
+    reading.gyro_stddev = config_.noise[1].stddev;
   }
 
  private:
-  bool hasConstantBias() const {
-    return config_.accel_bias != 0 || config_.gyro_bias != 0 || config_.accel_bias_spread > 0 || config_.gyro_bias_spread > 0;
-  }
-
-  /** Draws the constant biases, which those that walk start from. */
-  void drawBiases() {
-    if (!hasConstantBias() || drawn_ != 0) return;
-    drawn_ = 1;
-    const auto draw = [&](double mean, double spread) {
-      Vector3 bias = Vector3::Constant(mean);
-      if (spread > 0) bias += spread * random_.gaussianVector();
-      return bias;
-    };
-    accel_bias_ += draw(config_.accel_bias, config_.accel_bias_spread);
-    gyro_bias_ += draw(config_.gyro_bias, config_.gyro_bias_spread);
-  }
-
-  /** Adds white noise, and a bias that walks: bias_stddev is its standard deviation after one second. */
-  void disturb(double stddev, double bias_stddev, double period, Vector3* bias, Vector3* value) {
-    if (bias_stddev > 0) *bias += bias_stddev * std::sqrt(period) * random_.gaussianVector();
-    if (stddev > 0) *value += stddev * random_.gaussianVector();
-    *value += *bias;
-  }
-
   const SensorConfig config_;
   const MountedFrame frame_;
-  Vector3 accel_bias_ = Vector3::Zero(), gyro_bias_ = Vector3::Zero();
-  double drawn_ = 0;  // 1: the constant biases are drawn
 };
 
 }  // namespace

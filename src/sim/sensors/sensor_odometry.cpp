@@ -13,15 +13,15 @@ class OdometrySensor : public Sensor {
     const MountedFrame::Motion motion = frame_.motion(step.bodies);
     const Matrix3 R_AW = config_.twist == "world" ? Matrix3(Matrix3::Identity()) : Matrix3(motion.X_WS.linear().transpose());
     OdometryReading& reading = readingIn<OdometryReading>(out);
-    reading.position = motion.X_WS.translation();
-    reading.orientation = Quaternion(motion.X_WS.linear()).normalized();
+    reading.position = motion.X_WS.translation() + config_.X_offset.translation();
+    reading.orientation = Quaternion(config_.X_offset.linear() * motion.X_WS.linear()).normalized();
     reading.linear_velocity = R_AW * motion.v_WS;
     reading.angular_velocity = R_AW * motion.w_WS;
     reading.stddev = 0;
   }
 
-  void addNoise(double, SensorReading* out) override {
-    if (config_.noise_stddev > 0) disturb(config_.noise_stddev, &std::get<OdometryReading>(*out));
+  void addNoise(SensorReading* out) override {
+    if (config_.noise[0].stddev > 0) disturb(config_.noise[0].stddev, &std::get<OdometryReading>(*out));
   }
 
  private:

@@ -15,6 +15,8 @@ class RangeSensor : public Sensor {
   void measure(const StepContext& step, SensorReading* out) override {
     auto view = std::make_shared<RangeView>();
     view->rays = config_.rays;
+    view->rays.noise = RangeNoise::GAUSSIAN;
+    view->rays.stddev = 0;
     view->X_WS = frame_.motion(step.bodies).X_WS;
     view->model = model_;
     view->noise_seed = random_.next();
@@ -27,6 +29,13 @@ class RangeSensor : public Sensor {
       *out = DepthCameraReading{std::move(view)};
     else
       *out = LidarReading{std::move(view)};
+  }
+
+  void addNoise(SensorReading* out) override {
+    auto& view = config_.type == SensorType::DEPTH_CAMERA ? std::get<DepthCameraReading>(*out).view : std::get<LidarReading>(*out).view;
+    auto noisy = std::make_shared<RangeView>(*view);
+    noisy->rays = config_.rays;
+    view = std::move(noisy);
   }
 
  private:

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <map>
 
 #include "blem_sim/sim/range_view.h"
@@ -50,6 +49,8 @@ struct ToRow {
     row.add("position", r.position).add(r.orientation);
     return row.add("linear_velocity", r.linear_velocity).add("angular_velocity", r.angular_velocity);
   }
+  SensorValues operator()(const ContactSwitchReading& r) const { return Row().add("force", r.force).add("closed", r.closed ? 1 : 0); }
+  SensorValues operator()(const CentreOfPressureReading& r) const { return Row().add("x", r.x).add("y", r.y).add("force", r.force); }
   SensorValues operator()(const DepthCameraReading& r) const { return summary(r.view ? depthsOf(*r.view) : std::vector<float>()); }
   SensorValues operator()(const LidarReading& r) const { return summary(r.view ? rangesOf(*r.view) : std::vector<float>()); }
 
@@ -83,6 +84,10 @@ SensorReading blankReading(SensorType type, const std::vector<std::string>& join
       return ImuReading{Quaternion::Identity(), zero, zero, 0, 0};
     case SensorType::CONTACT:
       return ContactReading();
+    case SensorType::CONTACT_SWITCH:
+      return ContactSwitchReading();
+    case SensorType::CENTRE_OF_PRESSURE:
+      return CentreOfPressureReading();
     case SensorType::TILT:
       return TiltReading{Quaternion::Identity(), zero, 0, 0};
     case SensorType::MOTOR_CURRENT:
@@ -98,12 +103,9 @@ SensorReading blankReading(SensorType type, const std::vector<std::string>& join
 }
 
 bool hasGroundTruth(const SensorConfig& sensor) {
-  if (isRangeSensor(sensor.type)) return false;
-  const double errors[] = {sensor.noise_stddev,     sensor.accel_stddev, sensor.gyro_stddev, sensor.accel_bias_stddev,
-                           sensor.gyro_bias_stddev, sensor.accel_bias,   sensor.gyro_bias,   sensor.accel_bias_spread,
-                           sensor.gyro_bias_spread, sensor.delay};
-  return std::any_of(std::begin(errors), std::end(errors), [](double error) { return error != 0; }) || sensor.limits[0].any() ||
-         sensor.limits[1].any();
+  const bool noisy_rays = isRangeSensor(sensor.type) && (sensor.rays.stddev > 0 || sensor.rays.noise != RangeNoise::GAUSSIAN);
+  const auto any = [](const auto& of) { return of[0].any() || of[1].any(); };
+  return noisy_rays || sensor.delay > 0 || any(sensor.noise) || any(sensor.limits);
 }
 
 std::vector<std::string> sensorFields(const Simulator& simulator, const SensorInfo& sensor) {

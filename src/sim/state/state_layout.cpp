@@ -68,6 +68,7 @@ void writeModels(const SimulatedWorld& world, LayoutWriter* writer) {
     ContentHash hash;
     hash.add(static_cast<int>(model.kind)).add(world.budgets[i].max_contacts).add(self_collides);
     for (const int link : world.filter.selfCollidingLinks(static_cast<int>(i))) hash.add(link);
+    for (const WeightlessPart& part : model.weightless) hash.add(part.body).add(part.link);
     writer->line("model", model.name, "kind or settings", hash.add(model.bodies).add(model.joints));
   }
 }
@@ -146,13 +147,12 @@ void writeSensors(const SimulatedWorld& world, LayoutWriter* writer) {
     const SensorConfig& c = sensor.config;
     ContentHash hash;
     hash.add(sensor.robot).add(static_cast<int>(c.type)).add(c.joint).add(c.frame).add(c.measure).add(c.link).add(c.X_LS).add(c.rate);
-    hash.add(c.noise_stddev).add(c.accel_stddev).add(c.gyro_stddev).add(c.accel_bias_stddev).add(c.gyro_bias_stddev);
+    for (const QuantityNoise& noise : c.noise) hash.add(noise.stddev).add(noise.bias_stddev).add(noise.bias).add(noise.bias_spread);
     for (const auto& [joint, constant] : c.torque_constant) hash.add(joint).add(constant);
-    if (c.accel_bias != 0 || c.gyro_bias != 0 || c.accel_bias_spread != 0 || c.gyro_bias_spread != 0)
-      hash.add(c.accel_bias).add(c.gyro_bias).add(c.accel_bias_spread).add(c.gyro_bias_spread);
     if (c.delay > 0 || c.limits[0].any() || c.limits[1].any())
       for (const QuantityLimits& limits : c.limits) hash.add(c.delay).add(limits.saturation).add(limits.resolution);
-    if (c.type == SensorType::ODOMETRY) hash.add(c.twist);
+    hash.add(c.threshold);
+    if (c.type == SensorType::ODOMETRY) hash.add(c.twist).add(c.X_offset);
     if (isRangeSensor(c.type)) hash.add(raysHash(c.rays));
     writer->line("sensor", c.name, "kind or settings", hash);
   }

@@ -13,7 +13,7 @@ from sensor_msgs.msg import CameraInfo, Image, Imu, LaserScan, PointCloud2
 from tf2_msgs.msg import TFMessage
 
 from blem_sim import srv
-from blem_sim.msg import ContactsState
+from blem_sim.msg import ContactsState, LoadReport
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 import sim_client
@@ -69,6 +69,10 @@ class GazeboBlocksTest(unittest.TestCase):
         for words in ("imu_sensor (imu of 'imu_link' on /first/imu/data)", "not read: plugin 'lamp'", "'paw' <glitter>", "<mu2> other than <mu1>",
                       "without effect here: controlPeriod"):
             self.assertEqual(answer.status_message.count(words), 1, words + " in " + answer.status_message)
+        report = Recorder("/gazebo/load_report", LoadReport)
+        self.addCleanup(report.stop)
+        for words in ("not read: plugin 'lamp'", "<mu2> other than <mu1>", "without effect here: controlPeriod"):
+            wait_until(lambda: report.messages() and sum(words in note for note in report.messages()[-1].notes) == 1, words + " in ~load_report")
         first = self.listen("first")
         frames = Recorder("/tf_static", TFMessage)
         self.addCleanup(frames.stop)
@@ -87,8 +91,10 @@ class GazeboBlocksTest(unittest.TestCase):
         for recorder in first.values():
             recorder.clear()
         sim_client.step(1000)
-        for topic, (_, rate, _) in TOPICS.items():
+        for topic, (_, rate, frame) in TOPICS.items():
             self.assertEqual(len(second[topic].wait_for(rate)), rate, topic)
+            expected = frame if frame == "world" else "second/" + frame
+            self.assertEqual(second[topic].messages()[-1].header.frame_id, expected, "a robot of the same links has a prefix")
             self.assertFalse(first[topic].messages(), topic)
         self.assertAlmostEqual(second["ground_truth/state"].messages()[-1].pose.pose.position.y, -0.6, delta=1e-3)
 

@@ -14,6 +14,8 @@ int countDue(double rate, double time_step, int steps) {
 
 TEST(PublishSchedule, ZeroIsEveryStep) { EXPECT_EQ(countDue(0, 0.001, 1000), 1000); }
 
+TEST(PublishSchedule, BelowZeroIsNever) { EXPECT_EQ(countDue(-1, 0.001, 1000), 0); }
+
 TEST(PublishSchedule, HoldsTheRateWhateverTheStep) {
   // The first step is due as well, in the period of time 0.
   EXPECT_EQ(countDue(100, 0.001, 10000), 1001);

@@ -90,6 +90,18 @@ class RangeSensorsTest(unittest.TestCase):
         self.assertEqual(scan.ranges[0], float("inf"))
         self.assertAlmostEqual(scan.scan_time, 1 / 40.0, places=6)
 
+    def test_truth_beside_noise(self):
+        noisy, truth = record("/noisy_scan", LaserScan)[0], record("/noisy_scan/ground_truth", LaserScan)[0]
+        self.assertEqual((truth.header.frame_id, len(truth.ranges)), (noisy.header.frame_id, len(noisy.ranges)))
+        self.assertAlmostEqual(truth.ranges[90], WALL, delta=1e-6)
+        self.assertGreater(max(abs(a - WALL) for a in noisy.ranges[85:96]), 0.01)
+        depth = record("/kinect/ground_truth/depth/points", PointCloud2)[0]
+        for _, _, z in point_cloud2.read_points(depth, ("x", "y", "z")):
+            self.assertAlmostEqual(z, WALL, delta=1e-6)
+        topics = [name for name, _ in rospy.get_published_topics()]
+        self.assertIn("/cloud", topics)
+        self.assertNotIn("/scan/ground_truth", topics)
+
     def test_a_step_answers_when_its_images_are_out(self):
         recorder = Recorder("/camera/depth/image_raw", Image)
         recorder.wait_for(1)

@@ -102,7 +102,7 @@ TEST(Manual, HoldsEveryKnownKey) {
   std::set<std::string> known, written;
   const SimulationConfig config = parseConfig(document, "default.yaml", "", &known);
   EXPECT_EQ(config.robots.size(), 2u);
-  EXPECT_EQ(config.robots[0].sensors.size(), 8u);
+  EXPECT_EQ(config.robots[0].sensors.size(), 10u);
   ASSERT_TRUE(config.robots[0].controllers);
   EXPECT_EQ(config.robots[0].controllers->size(), 3u);
   EXPECT_FALSE(config.robots[1].controllers);
@@ -198,10 +198,10 @@ robots:
   EXPECT_EQ(sensors[0].type, SensorType::FORCE_TORQUE);
   EXPECT_EQ(sensors[0].frame, "sensor");
   EXPECT_EQ(sensors[0].measure, "child_to_parent");
-  EXPECT_EQ(sensors[0].noise_stddev, 0.5);
+  for (const QuantityNoise& noise : sensors[0].noise) EXPECT_EQ(noise.stddev, 0.5);
   EXPECT_EQ(sensors[1].X_LS.translation().z(), 0.1);
-  EXPECT_EQ(sensors[1].accel_stddev, 0.1);
-  EXPECT_EQ(sensors[1].gyro_bias_stddev, 0.2);
+  EXPECT_EQ(sensors[1].noise[0].stddev, 0.1);
+  EXPECT_EQ(sensors[1].noise[1].bias_stddev, 0.2);
   EXPECT_EQ(sensors[1].rate, 200);
   EXPECT_EQ(sensors[2].topic, "soles/left");
   EXPECT_EQ(sensors[3].type, SensorType::TILT);

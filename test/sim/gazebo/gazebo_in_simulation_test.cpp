@@ -130,5 +130,60 @@ TEST(GazeboInSimulation, ACameraFrameIsOptical) {
   EXPECT_FALSE(told(true));
 }
 
+const char* const WEIGHTLESS_B = "<gazebo reference=\"b\"><turnGravityOff>true</turnGravityOff></gazebo>";
+const char* const WEIGHTLESS = R"(<gazebo reference="a"><gravity>false</gravity></gazebo>
+  <gazebo reference="b"><turnGravityOff>1</turnGravityOff></gazebo>)";
+
+class Weightless : public testing::TestWithParam<const char*> {};
+
+TEST_P(Weightless, LinksDoNotFall) {
+  SimulationConfig config;
+  config.solver.stepper = GetParam();
+  Simulator simulator(config, model::UriResolver());
+  RobotConfig hinged = robot("hinged", pairUrdf(WEIGHTLESS, "continuous"), false), object = robot("object", pairUrdf(WEIGHTLESS), false);
+  object.X_WR = makePose({3, 0, 0});
+  simulator.spawn(hinged);
+  simulator.spawn(object);
+  stepFor(&simulator, 0.5);
+  for (const char* model : {"hinged", "object"}) EXPECT_LT(bodyOf(simulator, model).v_WCom.norm(), 1e-9) << model;
+  EXPECT_LT(simulator.report().energy_out_of_nothing, 1e-9);
+}
+
+TEST_P(Weightless, AreThoseThatSaySo) {
+  for (const char* joint : {"fixed", "continuous"}) {
+    SimulationConfig config;
+    config.solver.stepper = GetParam();
+    config.robots = {robot("pair", pairUrdf(WEIGHTLESS_B, joint), false)};
+    Simulator simulator(config, model::UriResolver());
+    simulator.step();
+    double momentum = 0;  // [N s]
+    for (const int body : simulator.models()[0].bodies)
+      momentum += simulator.world().bodySpec(body).inertial.mass * simulator.report().bodies[body].v_WCom.z();
+    EXPECT_NEAR(momentum, -1 * G * 0.001, 1e-9) << joint << ", only one link of 1 kg has weight";
+  }
+}
+
+TEST_P(Weightless, FollowGravityAndMassesThatAreSet) {
+  SimulationConfig config;
+  config.solver.stepper = GetParam();
+  config.robots = {robot("pair", pairUrdf(WEIGHTLESS, "continuous"), false)};
+  Simulator simulator(config, model::UriResolver());
+  simulator.setPhysics({0, 3, -5}, 0.001, 1);
+  geometry::MassProperties heavier = simulator.linkInertial(simulator.robots()[0].bodies[1], 1);
+  heavier.mass = 7;
+  simulator.setLinkInertial(simulator.robots()[0].bodies[1], 1, heavier);
+  stepFor(&simulator, 0.1);
+  EXPECT_LT(bodyOf(simulator, "pair").v_WCom.norm(), 1e-9);
+}
+
+INSTANTIATE_TEST_SUITE_P(Steppers, Weightless, testing::Values("articulated", "world_step", "quick_step"));
+
+TEST(GazeboInSimulation, GravityIsTurnedOffForAllOfAnObjectOrForNone) {
+  SimulationConfig config;
+  Simulator simulator(config, model::UriResolver());
+  simulator.spawn(robot("object", pairUrdf(WEIGHTLESS_B), false));
+  EXPECT_TRUE(isTold(simulator, "object: gravity acts on all links of an object or on none"));
+}
+
 }  // namespace
 }  // namespace blem_sim::sim

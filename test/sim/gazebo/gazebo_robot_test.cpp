@@ -87,10 +87,10 @@ TEST(GazeboSurface, WhatCannotBeSaysSo) {
              "</preserveFixedJoint><springStiffness>0</springStiffness>",
              "hip") +
       "<gazebo><static>true</static></gazebo>");
-  EXPECT_EQ(told(robot, "gravity acts on links that are to have none: leg, tool;"), 1) << allNotes(robot);
+  EXPECT_EQ(robot.config.weightless_links, (std::set<std::string>{"leg", "tool"}));
   EXPECT_EQ(told(robot, "without effect here: minDepth, maxVel, provideFeedback, implicitSpringDamper;"), 1) << allNotes(robot);
   EXPECT_EQ(told(robot, "<static>: "), 1) << allNotes(robot);
-  EXPECT_EQ(robot.notes.size(), 3u) << allNotes(robot);
+  EXPECT_EQ(robot.notes.size(), 2u) << allNotes(robot);
   EXPECT_EQ(told(described(onLink("<springStiffness>3</springStiffness>", "hip")), "not read: 'hip' <springStiffness>"), 1);
 }
 
@@ -161,9 +161,9 @@ INSTANTIATE_TEST_SUITE_P(
                  "b</topicName></plugin></gazebo>",
                  "'a b' is no ROS topic"},
         BadBlock{"shifted",
-                 "<gazebo><plugin name=\"p\" filename=\"libgazebo_ros_p3d.so\"><bodyName>leg</bodyName><xyzOffsets>1 0 "
-                 "0</xyzOffsets></plugin></gazebo>",
-                 "<xyzOffsets>: the world is not shifted"},
+                 "<gazebo><plugin name=\"p\" filename=\"libgazebo_ros_p3d.so\"><bodyName>leg</bodyName><xyzOffset>1 0"
+                 "</xyzOffset></plugin></gazebo>",
+                 "<xyzOffset>: '1 0' is not 3 numbers"},
         BadBlock{"relative",
                  "<gazebo><plugin name=\"p\" "
                  "filename=\"libgazebo_ros_p3d.so\"><bodyName>leg</bodyName><frameName>base</frameName></plugin></gazebo>",
@@ -197,7 +197,7 @@ TEST(GazeboSensor, ForceTorqueByPluginAndBySensor) {
   EXPECT_EQ(ft.type, SensorType::FORCE_TORQUE);
   EXPECT_EQ(ft.name + " " + ft.joint + " " + ft.topic + " " + ft.frame + " " + ft.measure, "ft flange flange/wrench child child_to_parent");
   EXPECT_EQ(ft.rate, 100);
-  EXPECT_EQ(ft.noise_stddev, 0.5);
+  for (const QuantityNoise& noise : ft.noise) EXPECT_EQ(noise.stddev, 0.5);
   EXPECT_EQ(hip.joint + " " + hip.frame + " " + hip.measure, "hip parent parent_to_child");
   EXPECT_EQ(hip.rate, 30);
   EXPECT_EQ(plain.frame + " " + plain.measure, "child child_to_parent");
@@ -222,14 +222,14 @@ TEST(GazeboSensor, ImuNoiseInBothLayouts) {
     EXPECT_EQ(imu.link, "leg");
     EXPECT_EQ(imu.rate, 200);
     EXPECT_TRUE(imu.X_LS.isApprox(makePose({1, 2, 3}, {0, 0, 0.5})));
-    EXPECT_EQ(imu.gyro_stddev, 0.01);
-    EXPECT_EQ(imu.accel_stddev, 0.2);
-    EXPECT_DOUBLE_EQ(imu.accel_bias, 0.4);
-    EXPECT_EQ(imu.accel_bias_spread, 0.4);
+    EXPECT_EQ(imu.noise[1].stddev, 0.01);
+    EXPECT_EQ(imu.noise[0].stddev, 0.2);
+    EXPECT_DOUBLE_EQ(imu.noise[0].bias, 0.4);
+    EXPECT_EQ(imu.noise[0].bias_spread, 0.4);
   }
   const GazeboRobot uneven =
       described(onLink(sensorBlock("imu", "<imu><angular_velocity><x><noise><stddev>0.3</stddev></noise></x></angular_velocity></imu>")));
-  EXPECT_EQ(uneven.config.sensors[0].gyro_stddev, 0.3);
+  EXPECT_EQ(uneven.config.sensors[0].noise[1].stddev, 0.3);
   EXPECT_EQ(told(uneven, "different noise"), 1);
 }
 
@@ -258,8 +258,8 @@ TEST(GazeboSensor, ImuPlugins) {
   const SensorConfig &model = robot.config.sensors[0], &inside = robot.config.sensors[1];
   EXPECT_EQ(model.name + " " + model.link + " " + model.topic + " " + model.frame_id, "p tool data tool_imu");
   EXPECT_EQ(model.rate, 50);
-  EXPECT_EQ(model.accel_stddev, 0.3);
-  EXPECT_EQ(model.gyro_stddev, 0.3);
+  EXPECT_EQ(model.noise[0].stddev, 0.3);
+  EXPECT_EQ(model.noise[1].stddev, 0.3);
   EXPECT_TRUE(model.X_LS.isApprox(makePose({0, 0, 1}, {0, 0, 1})));
   EXPECT_EQ(inside.name + " " + inside.link + " " + inside.topic, "s leg b");
   EXPECT_EQ(inside.rate, 100) << "the slower one";
@@ -272,14 +272,18 @@ TEST(GazeboSensor, BumperAndP3d) {
       "<gazebo>" +
       plugin("p3d", "<bodyName>tool</bodyName><topicName>truth</topicName><frameName>map</frameName><gaussianNoise>0.01</gaussianNoise>") +
       plugin("joint_state_publisher", "<jointName>hip</jointName>") +
-      plugin("p3d", "<bodyName>leg</bodyName><topicName>odom</topicName>", "second") + "</gazebo>");
+      plugin("p3d", "<bodyName>leg</bodyName><topicName>odom</topicName><xyzOffset>1 2 3</xyzOffset><rpyOffset>0 0 0.5</rpyOffset>",
+             "second") +
+      "</gazebo>");
   ASSERT_EQ(robot.config.sensors.size(), 3u) << allNotes(robot);
   const SensorConfig &bumper = robot.config.sensors[0], &truth = robot.config.sensors[1], &second = robot.config.sensors[2];
   EXPECT_EQ(bumper.type, SensorType::CONTACT);
   EXPECT_EQ(bumper.topic + bumper.frame_id, "bump");
   EXPECT_EQ(truth.type, SensorType::ODOMETRY);
   EXPECT_EQ(truth.link + " " + truth.topic + " " + truth.frame_id + " " + truth.twist, "tool truth map world");
-  EXPECT_EQ(truth.noise_stddev, 0.01);
+  EXPECT_EQ(truth.noise[0].stddev, 0.01);
+  EXPECT_TRUE(truth.X_offset.isApprox(Pose::Identity(), 0));
+  EXPECT_TRUE(second.X_offset.isApprox(makePose({1, 2, 3}, {0, 0, 0.5}), 1e-15));
   EXPECT_EQ(second.topic, "") << "odom is the robot's own";
   EXPECT_EQ(told(robot, "its topic odom is the robot's own"), 1) << allNotes(robot);
   EXPECT_EQ(told(robot, "without effect here: jointName"), 1) << allNotes(robot);

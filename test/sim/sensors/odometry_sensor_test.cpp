@@ -22,8 +22,22 @@ SensorConfig odometry(const std::string& twist, double stddev = 0) {
   config.link = "arm";
   config.twist = twist;
   config.X_LS = makePose({1, 0, 0});
-  config.noise_stddev = stddev;
+  config.noise[0].stddev = stddev;
   return config;
+}
+
+TEST(OdometrySensor, OffsetShiftsThePositionAndTurnsTheOrientation) {
+  SensorConfig shifted = odometry("world");
+  shifted.name = "shifted";
+  shifted.X_offset = makePose({1, -2, 3}, {0.1, 0.2, 0.3});
+  Simulator simulator(swinging({odometry("world"), shifted}), model::UriResolver());
+  stepFor(&simulator, 0.2);
+  const OdometryReading plain = reading<OdometryReading>(simulator.report(), 0), told = reading<OdometryReading>(simulator.report(), 1);
+  EXPECT_LT((told.position - plain.position - Vector3(1, -2, 3)).norm(), 1e-12);
+  const Quaternion turned = Quaternion(shifted.X_offset.linear()) * plain.orientation;
+  EXPECT_LT(told.orientation.angularDistance(turned), 1e-7);
+  EXPECT_EQ(told.linear_velocity, plain.linear_velocity);
+  EXPECT_EQ(told.angular_velocity, plain.angular_velocity);
 }
 
 TEST(OdometrySensor, PoseAndVelocitiesOfATurningArm) {
@@ -67,9 +81,9 @@ TEST(ImuSensor, ConstantBiasesAreDrawnOnceAndReplayed) {
   exact.link = "arm";
   biased = exact;
   biased.name = "biased";
-  biased.accel_bias = 0.5;
-  biased.gyro_bias = -0.25;
-  biased.gyro_bias_spread = 0.01;
+  biased.noise[0].bias = 0.5;
+  biased.noise[1].bias = -0.25;
+  biased.noise[1].bias_spread = 0.01;
   Simulator simulator(swinging({exact, biased}), model::UriResolver());
   const auto error = [&](bool gyro) {
     const ImuReading truth = reading<ImuReading>(simulator.report(), 0), imu = reading<ImuReading>(simulator.report(), 1);

@@ -55,5 +55,18 @@ TEST(RangeNoise, IsTheSameAgainAndNewInEachReading) {
   EXPECT_EQ(ranges(&simulator), ranges(&again));
 }
 
+TEST(RangeNoise, IsNotInTheTruthBesideIt) {
+  SimulationConfig config = sceneWith(lidar());
+  config.environments = {halfSpace({-1, 0, 0, -2})};
+  Simulator exact(config, model::UriResolver());
+  config.robots[0].sensors[0].rays.stddev = 0.01;
+  Simulator noisy(config, model::UriResolver());
+  const SensorSample plain = exact.step().samples.at(0), erring = noisy.step().samples.at(0);
+  const auto ranges = [](const SensorReading& reading) { return rangesOf(*std::get<LidarReading>(reading).view); };
+  EXPECT_FALSE(plain.truth.has_value());
+  EXPECT_EQ(ranges(erring.truth.value()), ranges(plain.reading));
+  EXPECT_NE(ranges(erring.reading), ranges(plain.reading));
+}
+
 }  // namespace
 }  // namespace blem_sim::sim

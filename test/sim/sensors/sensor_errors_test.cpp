@@ -1,6 +1,8 @@
 // Delay, range and resolution of sensors, and the truth beside them.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include "blem_sim/sim/sensor_values.h"
@@ -26,8 +28,8 @@ SimulationConfig swingingScene() {
   pendulum.gains["default"] = {20, 0, 1};
   pendulum.sensors = {erringSensor("imu", SensorType::IMU), erringSensor("wrench", SensorType::FORCE_TORQUE),
                       erringSensor("tilt", SensorType::TILT), erringSensor("motors", SensorType::MOTOR_CURRENT)};
-  pendulum.sensors[0].accel_stddev = pendulum.sensors[0].gyro_bias_stddev = 0.1;
-  pendulum.sensors[1].noise_stddev = 0.5;
+  pendulum.sensors[0].noise[0].stddev = pendulum.sensors[0].noise[1].bias_stddev = 0.1;
+  for (QuantityNoise& noise : pendulum.sensors[1].noise) noise.stddev = 0.5;
   return config;
 }
 
@@ -52,7 +54,7 @@ TEST(SensorDelay, ReadsWhatWasThereBefore) {
     SimulationConfig late = at_once;
     SensorConfig& sensor = late.robots[0].sensors[which];
     sensor.delay = 0.0069;
-    sensor.accel_stddev = sensor.gyro_bias_stddev = sensor.noise_stddev = 0;
+    sensor.noise = {};
     SimulationConfig exact = late;
     exact.robots[0].sensors[which].delay = 0;
     const auto before = record(exact, which), after = record(late, which);
@@ -147,7 +149,7 @@ TEST(SensorLimits, HoldEveryQuantity) {
 TEST(SensorLimits, ReadingsAreWholeStepsWithinTheRange) {
   SimulationConfig config = swingingScene();
   config.robots[0].sensors[1].limits[0] = {10, 3};
-  config.robots[0].sensors[1].noise_stddev = 50;
+  config.robots[0].sensors[1].noise[0].stddev = 50;
   double most = 0;
   for (const auto& numbers : record(config, 1)) {
     for (int i = 0; i < 3; ++i) EXPECT_EQ(std::remainder(numbers[i], 3), 0);
@@ -168,17 +170,105 @@ TEST(SensorLimits, TurnTheOrientationOfATilt) {
   EXPECT_LT((held.orientation.toRotationMatrix() - expected).norm(), 1e-12);
 }
 
+/** Errors of a number, over all readings of a sensor that reads at 100 Hz. */
+std::vector<double> errorsOf(SimulationConfig config, int which, std::size_t number, int readings) {
+  config.robots[0].sensors[which].rate = 100;
+  Simulator simulator(config, model::UriResolver());
+  std::vector<double> errors;
+  while (static_cast<int>(errors.size()) < readings) {
+    const auto read = numbersOf(simulator.step(), which);
+    if (!read.empty()) errors.push_back(read[number] - numbersOf(simulator.report(), which, true)[number]);
+  }
+  return errors;
+}
+
+double meanOf(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0) / values.size(); }
+
+double deviationOf(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double value : values) sum += (value - meanOf(values)) * (value - meanOf(values));
+  return std::sqrt(sum / values.size());
+}
+
+/** A number of each quantity of the wrench, the tilt and the motors, by sensor. */
+const std::vector<std::pair<int, std::array<std::size_t, 2>>> QUANTITIES = {{1, {0, 3}}, {2, {0, 2}}, {3, {0, 1}}};
+
+TEST(SensorNoise, OfEachQuantityHasItsDeviationAndBias) {
+  for (const auto& [which, numbers] : QUANTITIES)
+    for (const std::size_t quantity : {0u, 1u}) {
+      SimulationConfig config = swingingScene();
+      config.robots[0].sensors[which].noise = {};
+      config.robots[0].sensors[which].noise[quantity].stddev = 0.5;
+      config.robots[0].sensors[which].noise[quantity].bias = 3;
+      constexpr int COUNT = 3000;
+      const auto errors = errorsOf(config, which, numbers[quantity], COUNT), others = errorsOf(config, which, numbers[1 - quantity], 100);
+      EXPECT_NEAR(meanOf(errors), 3, 3 * 0.5 / std::sqrt(COUNT)) << which << " " << quantity;
+      EXPECT_NEAR(deviationOf(errors), 0.5, 3 * 0.5 / std::sqrt(2 * COUNT)) << which << " " << quantity;
+      for (const double error : others) ASSERT_EQ(error, 0) << which << " " << quantity;
+    }
+}
+
+TEST(SensorNoise, BiasIsDrawnOncePerNumberAndWalks) {
+  for (const auto& [which, numbers] : QUANTITIES)
+    for (const std::size_t quantity : {0u, 1u}) {
+      SimulationConfig config = swingingScene();
+      QuantityNoise& noise = config.robots[0].sensors[which].noise[quantity];
+      config.robots[0].sensors[which].noise = {};
+      noise.bias_spread = 2;
+      const auto constant = errorsOf(config, which, numbers[quantity], 50);
+      EXPECT_GT(std::abs(constant[0]), 1e-3);
+      for (const double error : constant) EXPECT_NEAR(error, constant[0], 1e-12);
+      noise.bias_stddev = 0.7;
+      const auto walking = errorsOf(config, which, numbers[quantity], 3001);
+      std::vector<double> ways;
+      for (std::size_t i = 1; i < walking.size(); ++i) ways.push_back(walking[i] - walking[i - 1]);
+      EXPECT_NEAR(deviationOf(ways), 0.07, 3 * 0.07 / std::sqrt(6000)) << which << " " << quantity;
+    }
+}
+
+TEST(SensorNoise, OfATiltTurnsItsOrientation) {
+  SimulationConfig config = swingingScene();
+  config.robots[0].X_WR = makePose({0, 0, 0}, {0, 0, 0.7});
+  config.robots[0].sensors[2].noise[0].bias = 0.1;
+  config.robots[0].sensors[2].noise[0].stddev = 1e-9;
+  Simulator simulator(config, model::UriResolver());
+  const TiltReading read = reading<TiltReading>(simulator.step(), 2);
+  EXPECT_NEAR(read.roll, 0.1, 1e-8);
+  EXPECT_EQ(read.angle_stddev, 1e-9);
+  EXPECT_LT((read.orientation.toRotationMatrix() - makePose(Vector3::Zero(), {read.roll, read.pitch, 0.7}).linear()).norm(), 1e-9);
+}
+
+TEST(SensorNoise, IsSavedAndResetWithTheSensor) {
+  SimulationConfig config = swingingScene();
+  for (SensorConfig& sensor : config.robots[0].sensors)
+    for (QuantityNoise& noise : sensor.noise) noise = {0.1, 0.2, 0.3, 0.4};
+  Simulator straight(config, model::UriResolver()), restored(config, model::UriResolver());
+  for (int i = 0; i < 20; ++i) straight.step();
+  restored.restore(straight.save());
+  ASSERT_EQ(restored.stateHash(), straight.stateHash());
+  for (int i = 0; i < 20; ++i) {
+    straight.step();
+    restored.step();
+    for (const int sensor : {0, 1, 2, 3}) ASSERT_EQ(numbersOf(restored.report(), sensor), numbersOf(straight.report(), sensor)) << i;
+  }
+  EXPECT_EQ(restored.stateHash(), straight.stateHash());
+  straight.resetSimulation();
+  Simulator fresh(config, model::UriResolver());
+  for (const int sensor : {0, 1, 2, 3}) EXPECT_EQ(numbersOf(straight.step(), sensor).size(), numbersOf(fresh.step(), sensor).size());
+  EXPECT_EQ(straight.stateHash(), fresh.stateHash());
+}
+
 TEST(SensorTruth, IsTheReadingWithoutErrors) {
   SimulationConfig config = swingingScene();
   std::vector<SensorConfig>& sensors = config.robots[0].sensors;
   for (SensorConfig& sensor : sensors) {
-    sensor.accel_stddev = sensor.gyro_bias_stddev = sensor.noise_stddev = 0;
+    sensor.noise = {};
     sensor.limits = {};
   }
   std::vector<std::vector<std::vector<double>>> exact;
   for (const int which : {0, 1, 2, 3}) exact.push_back(record(config, which));
-  sensors[0].accel_stddev = sensors[0].gyro_bias = 0.2;
-  sensors[1].noise_stddev = 1;
+  sensors[0].noise[0].stddev = sensors[0].noise[1].bias = 0.2;
+  sensors[1].noise[0].stddev = sensors[2].noise[1].bias = sensors[3].noise[0].bias_spread = 1;
   for (SensorConfig& sensor : sensors) {
     sensor.delay = 0.005;
     sensor.limits = {QuantityLimits{2, 0.5}, QuantityLimits{2, 0.5}};

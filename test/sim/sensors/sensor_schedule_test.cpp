@@ -44,6 +44,8 @@ TEST(SensorSchedule, RoundingDelaysNoReading) {
   EXPECT_EQ(readings(SensorSchedule(290, 0.001), 1, 101), 29);
 }
 
+TEST(SensorSchedule, NeverBelowZero) { EXPECT_EQ(readings(SensorSchedule(-1, 0.001), 1, 1001), 0); }
+
 TEST(SensorSchedule, EveryStepWithoutARateOrWithOneThatIsFasterThanTheSteps) {
   for (const double rate : {0.0, 1000.0, 1500.0, 1e9}) {
     const SensorSchedule schedule(rate, 0.001);

@@ -40,23 +40,24 @@ TEST(ForceTorqueSensor, WeightAndMomentInEveryFrameAndSign) {
   config.robots = {robot("mast", MAST, true)};
   // The base is turned by 90 degrees about x: gravity is along -y of the mast.
   config.robots[0].X_WR = makePose({0, 0, 1}, {M_PI / 2, 0, 0});
-  for (const char* frame : {"child", "parent", "sensor"})
+  for (const char* frame : {"child", "parent", "sensor", "mast"})
     for (const char* measure : {"parent_to_child", "child_to_parent"})
       config.robots[0].sensors.push_back(forceTorque(std::string(frame) + measure, "flange", frame, measure));
   Simulator simulator(config, model::UriResolver());
   stepFor(&simulator, 0.2);
 
   // Wrench in the mast's axes: com at R_y(-90) (0.1, 0, 0) = (0, 0, 0.1) from the flange; gravity -y; the wrist is held up by +y.
-  const Vector3 force_P(0, 2 * G, 0), torque_P = Vector3(0, 0, 0.1).cross(force_P);
+  const Vector3 force_P(0, 2 * G, 0), p_PF(0.3, 0, 0.5), arm(0, 0, 0.1);
   const Matrix3 R_CP = makePose(Vector3::Zero(), {0, -M_PI / 2, 0}).linear().transpose();
-  for (int i = 0; i < 6; ++i) {
+  for (int i = 0; i < 8; ++i) {
     const ForceTorqueReading value = reading<ForceTorqueReading>(simulator.report(), i);
     const double sign = i % 2 == 0 ? 1 : -1;
-    const bool parent = i / 2 == 1;
-    const Matrix3 R_AP = parent ? Matrix3(Matrix3::Identity()) : R_CP;
+    const bool of_mast = i / 2 == 1 || i / 2 == 3;
+    const Matrix3 R_AP = of_mast ? Matrix3(Matrix3::Identity()) : R_CP;
+    const Vector3 torque_P = (of_mast ? Vector3(p_PF + arm) : arm).cross(force_P);
     expectNear(value.force, sign * (R_AP * force_P), 1e-6);
     expectNear(value.torque, sign * (R_AP * torque_P), 1e-6);
-    EXPECT_EQ(value.frame_id, parent ? "mast" : "wrist");
+    EXPECT_EQ(value.frame_id, i / 2 == 0 ? "wrist" : "mast") << "the joint's frame is fixed in the parent";
   }
 }
 
@@ -83,7 +84,7 @@ TEST(ForceTorqueSensor, NoiseHasItsDeviation) {
   SimulationConfig config;
   config.robots = {robot("mast", MAST, true)};
   config.robots[0].sensors = {forceTorque("wrist", "flange", "parent", "parent_to_child")};
-  config.robots[0].sensors[0].noise_stddev = 0.5;
+  config.robots[0].sensors[0].noise[0].stddev = 0.5;
   Simulator simulator(config, model::UriResolver());
   double sum = 0, sum_of_squares = 0;
   constexpr int COUNT = 4000;
@@ -169,7 +170,7 @@ TEST(ImuSensor, BiasWalksAndResets) {
   SimulationConfig config;
   config.robots = {robot("pendulum", pendulumUrdf(), true)};
   SensorConfig imu = sensor("imu", SensorType::IMU, "base");
-  imu.gyro_bias_stddev = 1;
+  imu.noise[1].bias_stddev = 1;
   config.robots[0].sensors = {imu};
   Simulator simulator(config, model::UriResolver());
   stepFor(&simulator, 1);
@@ -196,7 +197,7 @@ std::vector<Vector3> imuNoise(const SimulationConfig& config) {
 
 TEST(Sensors, NoiseIsAStreamOfEachSensorsOwn) {
   SensorConfig imu = sensor("imu", SensorType::IMU, "base");
-  imu.gyro_stddev = 0.1;
+  imu.noise[1].stddev = 0.1;
   SimulationConfig alone;
   alone.robots = {robot("pendulum", pendulumUrdf(), true)};
   alone.robots[0].sensors = {imu};

@@ -31,12 +31,12 @@ inline SimulationConfig sceneOfAllKinds(const std::string& stepper = "articulate
   SensorConfig imu;
   imu.name = "imu";
   imu.link = "arm";
-  imu.accel_stddev = imu.accel_bias_stddev = 0.1;
+  imu.noise[0].stddev = imu.noise[0].bias_stddev = 0.1;
   SensorConfig wrench;
   wrench.name = "wrench";
   wrench.type = SensorType::FORCE_TORQUE;
   wrench.joint = "hinge";
-  wrench.noise_stddev = 0.1;
+  for (QuantityNoise& noise : wrench.noise) noise.stddev = 0.1;
   pendulum.sensors = {imu, wrench};
   config.robots = {pendulum};
   return config;

@@ -19,8 +19,8 @@ SimulationConfig busyScene() {
   SensorConfig imu;
   imu.name = "imu";
   imu.link = "arm";
-  imu.accel_stddev = 0.1;
-  imu.accel_bias_stddev = 0.1;
+  imu.noise[0].stddev = 0.1;
+  imu.noise[0].bias_stddev = 0.1;
   pendulum.sensors = {imu};
   config.robots = {pendulum};
   return config;

@@ -55,7 +55,7 @@ TEST(StateLayout, SaysWhatIsNotTheSame) {
       {"collider 1 'cube': layer or surface", [](SimulationConfig* c) { c->objects[0].contact.boundary_width = 0.002; }},
       {"collider 1 'cube': layer or surface", [](SimulationConfig* c) { c->objects[0].contact.impact_friction_factor = 0.5; }},
       {"collider 1 'cube': layer or surface", [](SimulationConfig* c) { c->objects[0].contact.impact_friction_speed = 0.1; }},
-      {"sensor 'imu'", [](SimulationConfig* c) { c->robots[0].sensors[0].accel_stddev = 0.2; }},
+      {"sensor 'imu'", [](SimulationConfig* c) { c->robots[0].sensors[0].noise[0].stddev = 0.2; }},
       {"model 'plate': kind or settings is not here", [](SimulationConfig* c) { c->objects.pop_back(); }},
       {"model 'more': kind or settings was not there",
        [](SimulationConfig* c) {

@@ -1,0 +1,22 @@
+// Names of a robot's frames on /tf and in messages, and of what it listens to.
+#pragma once
+
+#include <string>
+
+#include "blem_sim/sim/simulator.h"
+
+namespace blem_sim::node {
+
+/** Frame of a robot's link, or of what a sensor's name stands for: its tf_prefix before the name, as robot_state_publisher puts it. */
+std::string ownFrame(const sim::RobotInfo& robot, const std::string& name);
+
+/** Frame that a user named for a robot's messages: as ownFrame, but world, map, and what begins with / are no robot's. */
+std::string namedFrame(const sim::RobotInfo& robot, const std::string& name);
+
+/** The parameter tf_prefix that robot_state_publisher finds in a name space or above it; empty if there is none. */
+std::string tfPrefixIn(const std::string& name_space);
+
+/** @param field of the robot's namespace, for the message @throws InputError if another robot would take its commands */
+void checkNamespace(const sim::Simulator& simulator, const sim::RobotInfo& robot, const std::string& field);
+
+}  // namespace blem_sim::node
