@@ -115,11 +115,11 @@ SimulationState Simulator::Impl::content() const {
     sensor.delay().append(&state.numbers);
     state.words.push_back(sensor.sensor().random().state());
   }
-  contacts_.memory().append(&state.words);
+  constraint_maker_.memory().append(&state.words);
   layer_watch_.append(&state.words);
-  contacts_.crossings().append(&state.numbers, &state.words);
-  if (!live_.empty()) contacts_.fading().append(&state.words);
-  contacts_.stops().append(&state.words);
+  at_hand_.crossings.append(&state.numbers, &state.words);
+  if (!live_.empty()) fading_.append(&state.words);
+  constraint_maker_.stops().append(&state.words);
   if (loads_.empty() && epoch_.step == 0) return state;
   state.numbers.insert(state.numbers.end(), {epoch_.time, static_cast<double>(epoch_.step)});
   loads_.append(&state.numbers);
@@ -150,14 +150,14 @@ void Simulator::Impl::restore(const SimulationState& state) {
     sensors_[i].sensor().random().setState(state.words[1 + i]);
     sensors_[i].delay() = std::move(parts.delays[i]);
   }
-  contacts_.memory() = std::move(parts.choices);
-  contacts_.fading() = std::move(parts.fading);
-  contacts_.stops() = std::move(parts.stops);
-  contacts_.crossings() = std::move(parts.crossings);
+  constraint_maker_.memory() = std::move(parts.choices);
+  fading_ = std::move(parts.fading);
+  constraint_maker_.stops() = std::move(parts.stops);
+  at_hand_.crossings = std::move(parts.crossings);
   layer_watch_ = std::move(parts.layer_watch);
   loads_ = std::move(parts.loads);
   epoch_ = parts.epoch;
-  contacts_.forget();
+  at_hand_.known = false;
   reportWithoutStep();
 }
 

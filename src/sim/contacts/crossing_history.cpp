@@ -5,6 +5,7 @@
 namespace blem_sim::sim {
 namespace {
 
+constexpr double APART = 0.25;                  // of the layer: a pair that crossed is sound again when its deepest contact uses up less
 constexpr std::size_t WORDS = 3, NUMBERS = 16;  // of a recovery
 
 bool isRigid(const Pose& X) {
@@ -16,6 +17,16 @@ bool isRigid(const Pose& X) {
 }  // namespace
 
 const Recovery* CrossingHistory::find(int a, int b) const { return contact::findPair(recoveries_, a, b); }
+
+void CrossingHistory::goOn(const CrossingHistory& before, const std::vector<Recovery>& last_apart,
+                           const std::vector<contact::ContactManifold>& manifolds) {
+  recoveries_.clear();
+  for (std::size_t i = 0; i < last_apart.size(); ++i) {
+    const contact::ContactManifold& manifold = manifolds[i];
+    const bool was_recovering = before.find(manifold.a, manifold.b) != nullptr;
+    if (manifold.pierced || (was_recovering && manifold.maxDepth() > APART * manifold.layer)) recoveries_.push_back(last_apart[i]);
+  }
+}
 
 void CrossingHistory::forget(int collider) { contact::removePairsOf(collider, &recoveries_); }
 

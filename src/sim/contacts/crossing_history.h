@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "blem_sim/contact/collider.h"
+#include "blem_sim/contact/manifold.h"
 #include "blem_sim/geometry/types.h"
 #include "numbers/number_reader.h"
 
@@ -28,8 +29,11 @@ class CrossingHistory {
   /** The pair's recovery; null if it is apart. */
   const Recovery* find(int a, int b) const;
   void clear() { recoveries_.clear(); }
-  /** Adds a pair that comes after all that are there. */
-  void add(const Recovery& recovery) { recoveries_.push_back(recovery); }
+  /**
+   * Becomes the history of the next state: pairs that cross there, and those of the history before that are not apart yet.
+   * @param last_apart of the pairs searched, sorted by (a, b) @param manifolds of the first of them each
+   */
+  void goOn(const CrossingHistory& before, const std::vector<Recovery>& last_apart, const std::vector<contact::ContactManifold>& manifolds);
   void forget(int collider);
   /** The history as numbers and words, for save: the last numbers of a state. */
   void append(std::vector<double>* numbers, std::vector<std::uint64_t>* words) const;
