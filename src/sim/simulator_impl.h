@@ -104,6 +104,8 @@ struct Simulator::Impl {
   SimulationState save() const;
   /** A state that is refused changes nothing. */
   void restore(const SimulationState& state);
+  struct StateParts;
+  StateParts partsOf(const SimulationState& state) const;
   /** Layout of the state, made on demand; models come and go seldom. */
   const std::string& layout() const;
   void seedSensor(std::size_t sensor);

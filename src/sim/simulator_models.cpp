@@ -12,7 +12,6 @@
 #include "config/scene_limits.h"
 #include "gazebo/gazebo_robot.h"
 #include "numbers/nearest_name.h"
-#include "numbers/number_reader.h"
 #include "simulator_impl.h"
 
 namespace blem_sim::sim {

@@ -1,9 +1,9 @@
 // Save, restore, reset, hash.
 #include <utility>
 
+#include "blem_sim/geometry/state_stream.h"
 #include "blem_sim/sim/state_file.h"
 #include "numbers/content_hash.h"
-#include "numbers/number_reader.h"
 #include "simulator_impl.h"
 #include "state/state_header.h"
 #include "state/state_layout.h"
@@ -26,76 +26,37 @@ std::string namesOfAll(const SimulatedWorld& world) {
   return names;
 }
 
+/** Saves the time step's epoch and loads: nothing if there are none, so they are the last numbers of a state. */
+void saveLoads(const Epoch& epoch, const AppliedLoads& loads, geometry::StateWriter* writer) {
+  if (loads.empty() && epoch.step == 0) return;
+  writer->numbers({epoch.time, static_cast<double>(epoch.step)});
+  loads.save(writer);
+}
+
+/** @param steps of the state */
+Epoch epochFrom(std::uint64_t steps, geometry::StateReader* reader) {
+  const double time = reader->number(), step = reader->number();
+  if (!(time >= 0) || !(step >= 0 && step <= static_cast<double>(steps)))
+    reader->refuseContent("the time step was set at a step that is still to come");
+  return {time, static_cast<std::uint64_t>(step)};
+}
+
+}  // namespace
+
 /** Parts of a state except the world's, read and found sound, and not in force yet. */
-struct StateParts {
+struct Simulator::Impl::StateParts {
+  bool stopped;
   EnergyBalance energy_balance;
   std::vector<JointMotor> motors;
-  std::vector<std::vector<double>> sensors;  // numbers of each
-  std::vector<DelayLine> delays;             // of each
+  std::vector<SensorChannel> sensors;
   reduction::ReductionMemory choices;
   LayerWatch layer_watch;
   CrossingHistory crossings;
   FadingPoints fading;
   LayerStops stops;
-  AppliedLoads loads;
   Epoch epoch;
+  AppliedLoads loads;
 };
-
-/** The next numbers of the state, as many as the sensor has. */
-std::vector<double> numbersOf(const Sensor& sensor, NumberReader* reader) {
-  std::vector<double> numbers;
-  sensor.append(&numbers);
-  reader->numbers(numbers.data(), numbers.size());
-  return numbers;
-}
-
-/** Words of a state: whether the simulation has stopped, then of each sensor its random numbers, then those of contacts. */
-std::size_t contactWords(std::size_t sensors) { return 1 + sensors; }
-
-/** Reads the numbers at the end, which only states with loads or another time step have. */
-void readLoads(const SimulationState& state, const SimulatedWorld& world, NumberReader* reader, StateParts* parts) {
-  if (reader->left() == 0) return;
-  parts->epoch.time = reader->number();
-  const double step = reader->number();
-  if (!(parts->epoch.time >= 0) || !(step >= 0 && step <= static_cast<double>(state.step)))
-    NumberReader::refuseContent("the time step was set at a step that is still to come");
-  parts->epoch.step = static_cast<std::uint64_t>(step);
-  parts->loads.read(world.world.bodyCount(), world.world.jointCount(), reader);
-}
-
-/** @param first word @param live there are live environments, of whose points the state tells */
-void readContacts(const SimulationState& state, const std::vector<contact::Collider>& colliders, std::size_t first, bool live,
-                  NumberReader* reader, StateParts* parts) {
-  const std::uint64_t *words = state.words.data() + first, *end = state.words.data() + state.words.size();
-  if (!parts->choices.read(colliders, &words, end) || !parts->layer_watch.read(colliders, &words, end) ||
-      !parts->crossings.read(colliders, &words, end, reader) || (live && !parts->fading.read(colliders, &words, end)) ||
-      !parts->stops.read(colliders, words, end))
-    NumberReader::refuseContent("memories of contacts are of no pairs of these colliders");
-}
-
-/** @param parts as they are now, overwritten @throws InputError */
-void readParts(const SimulationState& state, const SimulatedWorld& world, const std::vector<SensorChannel>& sensors, bool live,
-               StateParts* parts) {
-  constexpr std::uint64_t MOST_STEPS = std::uint64_t{1} << 53;  // up to here the times of all steps are different
-  if (state.step > MOST_STEPS) NumberReader::refuseContent("there are more steps than time can count");
-  const std::size_t contacts = contactWords(sensors.size());
-  if (state.words.size() < contacts) NumberReader::refuse();
-  if (state.words[0] > 1) NumberReader::refuseContent("a flag is neither 0 nor 1");
-  NumberReader reader(state.numbers);
-  parts->energy_balance.read(world.world.bodyCount(), &reader);
-  for (std::size_t joint = 0; joint < parts->motors.size(); ++joint)
-    if (world.world.hasJoint(static_cast<int>(joint))) parts->motors[joint].read(&reader);
-  for (const SensorChannel& sensor : sensors) {
-    parts->sensors.push_back(numbersOf(sensor.sensor(), &reader));
-    parts->delays.push_back(sensor.delay());
-    parts->delays.back().read(&reader);
-  }
-  readContacts(state, world.colliders, contacts, live, &reader, parts);
-  readLoads(state, world, &reader, parts);
-  reader.finish();
-}
-
-}  // namespace
 
 const std::string& Simulator::Impl::layout() const {
   if (layout_.empty()) layout_ = layoutOf(config_, world_);
@@ -106,24 +67,45 @@ SimulationState Simulator::Impl::content() const {
   SimulationState state;
   state.step = step_count_;
   state.world = world_.world.save();
-  state.words.push_back(stopped_ ? 1 : 0);
-  energy_balance_.append(&state.numbers);
+  geometry::StateWriter writer(&state);
+  writer.flag(stopped_);
+  energy_balance_.save(&writer);
   for (std::size_t joint = 0; joint < world_.motors.size(); ++joint)
-    if (world_.world.hasJoint(static_cast<int>(joint))) world_.motors[joint].append(&state.numbers);
-  for (const SensorChannel& sensor : sensors_) {
-    sensor.sensor().append(&state.numbers);
-    sensor.delay().append(&state.numbers);
-    state.words.push_back(sensor.sensor().random().state());
-  }
-  constraint_maker_.memory().append(&state.words);
-  layer_watch_.append(&state.words);
-  at_hand_.crossings.append(&state.numbers, &state.words);
-  if (!live_.empty()) fading_.append(&state.words);
-  constraint_maker_.stops().append(&state.words);
-  if (loads_.empty() && epoch_.step == 0) return state;
-  state.numbers.insert(state.numbers.end(), {epoch_.time, static_cast<double>(epoch_.step)});
-  loads_.append(&state.numbers);
+    if (world_.world.hasJoint(static_cast<int>(joint))) world_.motors[joint].save(&writer);
+  for (const SensorChannel& sensor : sensors_) sensor.save(&writer);
+  constraint_maker_.memory().save(&writer);
+  layer_watch_.save(&writer);
+  at_hand_.crossings.save(&writer);
+  if (!live_.empty()) fading_.save(&writer);
+  constraint_maker_.stops().save(&writer);
+  saveLoads(epoch_, loads_, &writer);
   return state;
+}
+
+Simulator::Impl::StateParts Simulator::Impl::partsOf(const SimulationState& state) const {
+  constexpr std::uint64_t MOST_STEPS = std::uint64_t{1} << 53;  // up to here the times of all steps are different
+  geometry::StateReader reader(state);
+  if (state.step > MOST_STEPS) reader.refuseContent("there are more steps than time can count");
+  reader.requireFinite();
+  StateParts parts{reader.flag(), energy_balance_, world_.motors, {}, {}, {}, {}, {}, {}, {}, {}};
+  parts.energy_balance.restore(world_.world.bodyCount(), &reader);
+  for (std::size_t joint = 0; joint < parts.motors.size(); ++joint)
+    if (world_.world.hasJoint(static_cast<int>(joint))) parts.motors[joint].restore(&reader);
+  for (const SensorInfo& sensor : world_.sensors) {
+    parts.sensors.emplace_back(world_, sensor, config_.time_step);
+    parts.sensors.back().restore(&reader);
+  }
+  parts.choices.restore(world_.colliders, &reader);
+  parts.layer_watch.restore(world_.colliders, &reader);
+  parts.crossings.restore(world_.colliders, &reader);
+  if (!live_.empty()) parts.fading.restore(world_.colliders, &reader);
+  parts.stops.restore(world_.colliders, &reader);
+  if (reader.numbersLeft() > 0) {
+    parts.epoch = epochFrom(state.step, &reader);
+    parts.loads.restore(world_.world.bodyCount(), world_.world.jointCount(), &reader);
+  }
+  reader.finish();
+  return parts;
 }
 
 SimulationState Simulator::Impl::save() const {
@@ -136,20 +118,14 @@ SimulationState Simulator::Impl::save() const {
 void Simulator::Impl::restore(const SimulationState& state) {
   checkHeader(state);
   checkLayout(state.layout, layout());
-  StateParts parts{energy_balance_, world_.motors, {}, {}, {}, {}, {}, {}, {}, {}, {}};
-  readParts(state, world_, sensors_, !live_.empty(), &parts);
+  StateParts parts = partsOf(state);
   world_.world.restoreChecked(state.world);
   // Nothing below throws.
   step_count_ = state.step;
-  stopped_ = state.words[0] != 0;
+  stopped_ = parts.stopped;
   energy_balance_ = std::move(parts.energy_balance);
   world_.motors = std::move(parts.motors);
-  for (std::size_t i = 0; i < sensors_.size(); ++i) {
-    NumberReader reader(parts.sensors[i]);
-    sensors_[i].sensor().restore(&reader);
-    sensors_[i].sensor().random().setState(state.words[1 + i]);
-    sensors_[i].delay() = std::move(parts.delays[i]);
-  }
+  sensors_ = std::move(parts.sensors);
   constraint_maker_.memory() = std::move(parts.choices);
   fading_ = std::move(parts.fading);
   constraint_maker_.stops() = std::move(parts.stops);
@@ -166,7 +142,7 @@ void Simulator::Impl::seedSensor(std::size_t sensor) {
   const SensorInfo& info = world_.sensors[sensor];
   ContentHash seed;
   seed.add(config_.random_seed).add(world_.robots[info.robot].name).add(info.config.name);
-  sensors_[sensor].sensor().random().setState(seed.value());
+  sensors_[sensor].random().setState(seed.value());
 }
 
 SimulationState Simulator::save() const { return impl_->save(); }

@@ -187,20 +187,20 @@ void EnergyBalance::holdBack() {
   }
 }
 
-void EnergyBalance::append(std::vector<double>* numbers) const {
+void EnergyBalance::save(geometry::StateWriter* writer) const {
   const bool any = std::any_of(held_.begin(), held_.end(), [](double held) { return held != 0; });
-  numbers->push_back(any ? static_cast<double>(held_.size()) : 0);
-  if (any) numbers->insert(numbers->end(), held_.begin(), held_.end());
+  writer->number(any ? static_cast<double>(held_.size()) : 0);
+  if (any) writer->numbers(held_.data(), held_.size());
 }
 
-void EnergyBalance::read(int bodies, NumberReader* reader) {
+void EnergyBalance::restore(int bodies, geometry::StateReader* reader) {
   const double count = reader->number();
-  if (count != 0 && count != bodies) NumberReader::refuse();
-  reader->require(static_cast<std::size_t>(count));
+  if (count != 0 && count != bodies) reader->refuse();
+  reader->requireNumbers(static_cast<std::size_t>(count));
   held_.assign(static_cast<std::size_t>(count), 0);
   reader->numbers(held_.data(), held_.size());
   if (std::any_of(held_.begin(), held_.end(), [](double held) { return held < 0; }))
-    NumberReader::refuseContent("energy is held back that is below 0");
+    reader->refuseContent("energy is held back that is below 0");
 }
 
 }  // namespace blem_sim::sim

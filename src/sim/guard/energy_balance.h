@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "blem_sim/dynamics/world.h"
+#include "blem_sim/geometry/state_stream.h"
 #include "blem_sim/sim/simulator_types.h"
 #include "contacts/made_solve.h"
 #include "guard/body_islands.h"
-#include "numbers/number_reader.h"
 
 namespace blem_sim::sim {
 
@@ -47,9 +47,9 @@ class EnergyBalance {
 
   /** Forgets the energy that is held back: no impact is to bounce. */
   void clear() { held_.assign(held_.size(), 0); }
-  void append(std::vector<double>* numbers) const;
+  void save(geometry::StateWriter* writer) const;
   /** @param bodies number of the world's bodies: energy is held back for each of them, or for none */
-  void read(int bodies, NumberReader* reader);
+  void restore(int bodies, geometry::StateReader* reader);
 
  private:
   /** Book of an island, kept at its least body. */

@@ -4,9 +4,9 @@
 #include <memory>
 #include <vector>
 
+#include "blem_sim/geometry/state_stream.h"
 #include "blem_sim/sim/step_report.h"
 #include "build/simulated_world.h"
-#include "numbers/number_reader.h"
 #include "numbers/random_numbers.h"
 #include "sensors/link_contacts.h"
 
@@ -34,9 +34,9 @@ class Sensor {
   virtual bool readsContacts() const { return false; }
   /** Forgets the sensor's memory (a drifting bias), without touching the random numbers. */
   virtual void reset() {}
-  /** Appends the sensor's memory. */
-  virtual void append(std::vector<double>* numbers) const {}
-  virtual void restore(NumberReader* reader) {}
+  /** Saves the sensor's memory, without the random numbers. */
+  virtual void save(geometry::StateWriter* writer) const {}
+  virtual void restore(geometry::StateReader* reader) {}
 
   RandomNumbers& random() { return random_; }
   const RandomNumbers& random() const { return random_; }

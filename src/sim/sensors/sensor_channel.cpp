@@ -55,13 +55,26 @@ bool SensorChannel::read(const StepContext& step, std::uint64_t number, SensorSa
 
 void SensorChannel::remake(const SimulatedWorld& world, const SensorInfo& info, double time_step) {
   SensorChannel made(world, info, time_step);
-  std::vector<double> numbers;
-  sensor_->append(&numbers);
-  NumberReader reader(numbers);
+  geometry::StateContent memory;
+  geometry::StateWriter writer(&memory);
+  sensor_->save(&writer);
+  geometry::StateReader reader(memory);
   made.sensor_->restore(&reader);
   made.sensor_->random() = sensor_->random();
   if (made.delay_.steps() == delay_.steps()) made.delay_ = std::move(delay_);
   *this = std::move(made);
+}
+
+void SensorChannel::save(geometry::StateWriter* writer) const {
+  writer->word(sensor_->random().state());
+  sensor_->save(writer);
+  delay_.save(writer);
+}
+
+void SensorChannel::restore(geometry::StateReader* reader) {
+  sensor_->random().setState(reader->word());
+  sensor_->restore(reader);
+  delay_.restore(reader);
 }
 
 void SensorChannel::reset() {

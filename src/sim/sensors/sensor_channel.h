@@ -31,10 +31,10 @@ class SensorChannel {
   /** Forgets what the sensor remembers and what is on its way, without touching the random numbers. */
   void reset();
 
-  Sensor& sensor() { return *sensor_; }
-  const Sensor& sensor() const { return *sensor_; }
-  DelayLine& delay() { return delay_; }
-  const DelayLine& delay() const { return delay_; }
+  RandomNumbers& random() { return sensor_->random(); }
+  /** Saves what the sensor remembers, its random numbers and the readings that are on their way. */
+  void save(geometry::StateWriter* writer) const;
+  void restore(geometry::StateReader* reader);
 
  private:
   SensorConfig config_;

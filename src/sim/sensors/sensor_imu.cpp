@@ -34,15 +34,15 @@ class ImuSensor : public Sensor {
 
   void reset() override {
     accel_bias_ = gyro_bias_ = Vector3::Zero();
-    drawn_ = 0;
+    drawn_ = false;
   }
-  void append(std::vector<double>* numbers) const override {
-    for (const Vector3* bias : {&accel_bias_, &gyro_bias_}) numbers->insert(numbers->end(), bias->data(), bias->data() + 3);
-    if (hasConstantBias()) numbers->push_back(drawn_);
+  void save(geometry::StateWriter* writer) const override {
+    for (const Vector3* bias : {&accel_bias_, &gyro_bias_}) writer->vector(*bias);
+    if (hasConstantBias()) writer->number(drawn_ ? 1 : 0);
   }
-  void restore(NumberReader* reader) override {
-    for (Vector3* bias : {&accel_bias_, &gyro_bias_}) reader->numbers(bias->data(), 3);
-    if (hasConstantBias()) reader->numbers(&drawn_, 1);
+  void restore(geometry::StateReader* reader) override {
+    for (Vector3* bias : {&accel_bias_, &gyro_bias_}) *bias = reader->vector();
+    if (hasConstantBias()) drawn_ = reader->choice(2) == 1;
   }
 
  private:
@@ -52,8 +52,8 @@ class ImuSensor : public Sensor {
 
   /** Draws the constant biases, which those that walk start from. */
   void drawBiases() {
-    if (!hasConstantBias() || drawn_ != 0) return;
-    drawn_ = 1;
+    if (!hasConstantBias() || drawn_) return;
+    drawn_ = true;
     const auto draw = [&](double mean, double spread) {
       Vector3 bias = Vector3::Constant(mean);
       if (spread > 0) bias += spread * random_.gaussianVector();
@@ -73,7 +73,7 @@ class ImuSensor : public Sensor {
   const SensorConfig config_;
   const MountedFrame frame_;
   Vector3 accel_bias_ = Vector3::Zero(), gyro_bias_ = Vector3::Zero();
-  double drawn_ = 0;  // 1: the constant biases are drawn
+  bool drawn_ = false;  // the constant biases
 };
 
 }  // namespace

@@ -130,19 +130,22 @@ TEST(EnergyBalance, TheBoundGrowsWithWhatMoves) {
 
 TEST(EnergyBalance, ReadsWhatItWrote) {
   EnergyBalance balance{dynamics::SolverSettings()};
-  std::vector<double> numbers;
-  balance.append(&numbers);
-  EXPECT_EQ(numbers, std::vector<double>{0});
+  const auto numbers_of_balance = [&] {
+    geometry::StateContent saved;
+    geometry::StateWriter writer(&saved);
+    balance.save(&writer);
+    return saved.numbers;
+  };
+  EXPECT_EQ(numbers_of_balance(), std::vector<double>{0});
   for (const std::vector<double>& bad : {std::vector<double>{}, {2, 1}, {-1}, {NAN}, {1e300}}) {
-    NumberReader reader(bad);
-    EXPECT_THROW(balance.read(2, &reader), InputError);
+    const geometry::StateContent content{bad, {}};
+    geometry::StateReader reader(content);
+    EXPECT_THROW(balance.restore(2, &reader), InputError);
   }
-  const std::vector<double> held = {2, 0.5, 0};
-  NumberReader reader(held);
-  balance.read(2, &reader);
-  numbers.clear();
-  balance.append(&numbers);
-  EXPECT_EQ(numbers, held);
+  const geometry::StateContent held{{2, 0.5, 0}, {}};
+  geometry::StateReader reader(held);
+  balance.restore(2, &reader);
+  EXPECT_EQ(numbers_of_balance(), held.numbers);
 }
 
 /** Every bit that was set in so long. */
