@@ -37,8 +37,8 @@ class ArticulatedStepper : public Stepper {
       : settings_(settings), arena_(std::min(settings.threads, tbb::this_task_arena::max_concurrency())) {}
 
   void step(Scene* scene, const StepInput& input, SolveResult* result) override;
-  void save(const Scene& scene, StateWriter* writer) const override;
-  void restore(const Scene& scene, StateReader* reader) override;
+  void save(const Scene& scene, geometry::StateWriter* writer) const override;
+  void restore(const Scene& scene, geometry::StateReader* reader) override;
   bool agreesWith(const Scene& scene) const override;
   void forgetContacts(const std::vector<std::uint64_t>& ids) override { memory_.forgetContacts(ids); }
 
@@ -359,7 +359,7 @@ void ArticulatedStepper::step(Scene* scene, const StepInput& input, SolveResult*
 
 // The same words for a world that was just made and for one that was brought back to its beginning: trees changed from outside are left
 // out.
-void ArticulatedStepper::save(const Scene& scene, StateWriter* writer) const {
+void ArticulatedStepper::save(const Scene& scene, geometry::StateWriter* writer) const {
   memory_.save(scene, writer);
   const int trees = structure_ == scene.structure() ? static_cast<int>(forest_.trees().size()) : 0;
   for (int tree = 0; tree < trees; ++tree) {
@@ -370,13 +370,13 @@ void ArticulatedStepper::save(const Scene& scene, StateWriter* writer) const {
   writer->word(NO_MORE_TREES);
 }
 
-void ArticulatedStepper::restore(const Scene& scene, StateReader* reader) {
+void ArticulatedStepper::restore(const Scene& scene, geometry::StateReader* reader) {
   rebuild(scene);
   memory_.restore(scene, reader);
   for (BodyBits& bits : written_) bits.numbers[0] = NAN;
   std::uint64_t least = 0;
   for (std::uint64_t tree = reader->word(); tree != NO_MORE_TREES; tree = reader->word(), ++least) {
-    if (tree < least || tree >= forest_.trees().size()) StateReader::refuse();
+    if (tree < least || tree >= forest_.trees().size()) reader->refuse();
     least = tree;
     restoreTree(forest_, static_cast<int>(tree), &motion_, reader);
     noteWritten(scene, static_cast<int>(tree));

@@ -25,7 +25,7 @@ std::vector<ForestNode> nodesOf(const Forest& forest, int tree) {
 
 void KeptTrees::keep(const Forest& forest, int tree, const ForestMotion& motion) {
   trees_.push_back({nodesOf(forest, tree), {}});
-  StateWriter writer(&trees_.back().state);
+  geometry::StateWriter writer(&trees_.back().state);
   saveTree(forest, tree, motion, &writer);
 }
 
@@ -35,7 +35,7 @@ bool KeptTrees::restore(const Forest& forest, int tree, ForestMotion* motion) co
   if (kept == trees_.end() || kept->nodes.size() != nodes.size()) return false;
   const auto same = [](const ForestNode& a, const ForestNode& b) { return isSame(a, b); };
   if (!std::equal(nodes.begin(), nodes.end(), kept->nodes.begin(), same)) return false;
-  StateReader reader(kept->state);
+  geometry::StateReader reader(kept->state);
   restoreTree(forest, tree, motion, &reader);
   return true;
 }

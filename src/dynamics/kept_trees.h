@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "scene/world_state.h"
+#include "blem_sim/dynamics/world_types.h"
 #include "trees/forest.h"
 #include "trees/forest_motion.h"
 

@@ -195,8 +195,8 @@ WorldState World::save() const {
 void World::save(WorldState* state) const {
   state->numbers.clear();
   state->words.clear();
-  StateWriter writer(state);
-  saveScene(impl_->scene, &writer);
+  geometry::StateWriter writer(state);
+  impl_->scene.save(&writer);
   impl_->stepper->save(impl_->scene, &writer);
 }
 
@@ -216,7 +216,7 @@ void World::restoreChecked(const WorldState& state) {
   const WorldState before = save();
   try {
     restore(state);
-    if (!impl_->stepper->agreesWith(impl_->scene)) StateReader::refuse();
+    if (!impl_->stepper->agreesWith(impl_->scene)) readerOf(state).refuse();
   } catch (...) {
     restore(before);
     throw;
@@ -225,8 +225,8 @@ void World::restoreChecked(const WorldState& state) {
 
 void World::restore(const WorldState& state) {
   impl_->joints_known = false;
-  StateReader reader(state);
-  restoreScene(&impl_->scene, &reader);
+  geometry::StateReader reader = readerOf(state);
+  impl_->scene.restore(&reader);
   impl_->stepper->restore(impl_->scene, &reader);
   reader.finish();
 }

@@ -23,28 +23,26 @@ void ReductionMemory::remember(const std::vector<contact::ContactManifold>& mani
   }
 }
 
-void ReductionMemory::append(std::vector<std::uint64_t>* words) const {
-  words->push_back(choices_.size());
+void ReductionMemory::save(geometry::StateWriter* writer) const {
+  writer->word(choices_.size());
   for (const Choice& choice : choices_) {
-    words->insert(words->end(), {static_cast<std::uint64_t>(choice.a), static_cast<std::uint64_t>(choice.b), choice.ids.size()});
-    words->insert(words->end(), choice.ids.begin(), choice.ids.end());
+    writer->integer(choice.a);
+    writer->integer(choice.b);
+    writer->word(choice.ids.size());
+    writer->words(choice.ids);
   }
 }
 
 void ReductionMemory::forget(int collider) { contact::removePairsOf(collider, &choices_); }
 
-bool ReductionMemory::read(const std::vector<contact::Collider>& colliders, const std::uint64_t** cursor, const std::uint64_t* end) {
-  const auto left = [&] { return static_cast<std::uint64_t>(end - *cursor); };
+void ReductionMemory::restore(const std::vector<contact::Collider>& colliders, geometry::StateReader* reader) {
   choices_.clear();
-  if (left() < 1) return false;
-  for (std::uint64_t pairs = *(*cursor)++; pairs > 0; --pairs) {
-    if (left() < 3 || left() - 3 < (*cursor)[2]) return false;
-    const std::uint64_t *ids = *cursor + 3, *ids_end = ids + (*cursor)[2];
-    if (!contact::isPair(colliders, (*cursor)[0], (*cursor)[1]) || !std::is_sorted(ids, ids_end)) return false;
-    choices_.push_back({static_cast<int>((*cursor)[0]), static_cast<int>((*cursor)[1]), ContactIds(ids, ids_end)});
-    *cursor = ids_end;
+  for (std::size_t pairs = reader->count(3, 0); pairs > 0; --pairs) {
+    const auto [a, b] = contact::readPair(colliders, reader);
+    choices_.push_back({a, b, reader->words(reader->count(1, 0))});
+    if (!std::is_sorted(choices_.back().ids.begin(), choices_.back().ids.end())) contact::refusePairs(*reader);
   }
-  return contact::areSorted(choices_);
+  if (!contact::areSorted(choices_)) contact::refusePairs(*reader);
 }
 
 }  // namespace blem_sim::reduction

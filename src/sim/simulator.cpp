@@ -24,7 +24,8 @@ Simulator::Impl::Impl(const SimulationConfig& config, const model::UriResolver& 
     : config_((checkConfig(config), config)),
       world_(config.gravity, config.solver),
       builder_(config.contact, config.base_directory, resolver, std::move(log)),
-      contacts_(config.contact, config.solver.threads),
+      pair_searches_(config.solver.threads),
+      constraint_maker_(config.contact),
       energy_balance_(config.solver) {
   for (const EnvironmentConfig& environment : config_.environments) {
     builder_.addEnvironment(environment, &world_);
@@ -54,7 +55,7 @@ void Simulator::Impl::loadEnvironment(const EnvironmentConfig& environment) {
 void Simulator::Impl::forgetLayers(const std::string& model) {
   // The next step tells that pairs of the slots' earlier colliders are gone, unless the slots are taken by then, as here.
   for (const int collider : world_.collidersOf(world_.modelIndex(model))) layer_watch_.forget(collider);
-  contacts_.forget();
+  at_hand_.known = false;
   layout_.clear();
 }
 
@@ -187,7 +188,7 @@ void Simulator::tareSensor(int sensor) {
   const SensorConfig& config = sensors().at(static_cast<std::size_t>(sensor)).config;
   if (config.type != SensorType::FORCE_TORQUE)
     throw InputError(fmt::format("sensor '{}' has no zero to be set; tare one of type force_torque", config.name));
-  impl_->sensors_[sensor].memory().tare.ask();
+  impl_->sensors_[sensor].tare().ask();
   impl_->tell("tareSensor", sensor);
 }
 

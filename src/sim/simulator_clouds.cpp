@@ -37,19 +37,19 @@ void Simulator::Impl::addLive(const EnvironmentConfig& environment) {
 void Simulator::Impl::addStoodOn(const contact::ContactManifold& manifold, bool is_a, std::vector<LeavingPoint>* points) const {
   const int index = is_a ? manifold.a : manifold.b;
   const contact::Collider& collider = world_.colliders[index];
-  const reduction::ContactIds& chosen = contacts_.memory().of(manifold);
+  const reduction::ContactIds& chosen = constraint_maker_.memory().of(manifold);
   const std::size_t most = points->size() + MOST_LEFT;
   for (const contact::Contact& contact : manifold.contacts) {
     const int vertex = contact::vertexOf(contact.id, is_a);
     if (vertex < 0 || contact.pierced || contact.depth < -TOUCH) continue;
     if (chosen.empty() ? points->size() == most : !std::binary_search(chosen.begin(), chosen.end(), contact.id)) continue;
-    points->push_back({collider.X_BC * collider.geometry->mesh().vertices[vertex], contacts_.fading().sinkOf(index, vertex)});
+    points->push_back({collider.X_BC * collider.geometry->mesh().vertices[vertex], fading_.sinkOf(index, vertex)});
   }
 }
 
 std::vector<Simulator::Impl::LeavingPoint> Simulator::Impl::pointsStoodOn(int model) const {
   std::vector<LeavingPoint> points;
-  for (const contact::ContactManifold& manifold : contacts_.current())
+  for (const contact::ContactManifold& manifold : at_hand_.manifolds)
     for (const bool is_a : {true, false})
       if (world_.colliders[is_a ? manifold.a : manifold.b].model == model) addStoodOn(manifold, is_a, &points);
   const auto key = [](const LeavingPoint& p) { return std::make_tuple(p.p_W.x(), p.p_W.y(), p.p_W.z(), p.sink); };
@@ -76,12 +76,12 @@ void Simulator::Impl::addLeaving(int model, const std::vector<LeavingPoint>& poi
   report.source = "points that sink away below what stood on them";
   const int collider = world_.addCollider(leaving, leaving.radius, leaving.surface, report);
   layer_watch_.forget(collider);
-  contacts_.fading().add(collider, speed, std::move(sunk));
+  fading_.add(collider, speed, std::move(sunk));
 }
 
 std::vector<SunkPoint> Simulator::Impl::sunkIntoTouch(int cloud) const {
   std::vector<SunkPoint> sunk = innerPoints(world_, bodies_, cloud);
-  for (const contact::ContactManifold& manifold : contacts_.found()) {
+  for (const contact::ContactManifold& manifold : found_.manifolds) {
     if (manifold.a != cloud && manifold.b != cloud) continue;
     for (const contact::Contact& contact : manifold.contacts) {
       const int vertex = contact::vertexOf(contact.id, manifold.a == cloud);
@@ -97,12 +97,12 @@ void Simulator::Impl::updateCloud(const std::string& environment, CloudSurface* 
   LiveGround& live = known->second;
   const int model = world_.modelIndex(environment);
   world_.bodyStates(&bodies_);
-  if (!contacts_.known()) findFirstContacts();
+  if (!at_hand_.known) findFirstContacts();
   const std::vector<LeavingPoint> leaving = pointsStoodOn(model);
   CloudSurface before;
   if (live.cloud >= 0) before.geometry = world_.colliders[live.cloud].geometry;
   forgetContacts(world_.collidersOf(model));
-  for (const int collider : world_.removeShapes(model)) contacts_.fading().forget(collider);
+  for (const int collider : world_.removeShapes(model)) fading_.forget(collider);
 
   contact::Collider cloud;
   cloud.name = environment;
@@ -113,16 +113,16 @@ void Simulator::Impl::updateCloud(const std::string& environment, CloudSurface* 
   layer_watch_.forget(live.cloud);
   addLeaving(model, leaving, live.fade_speed);
 
-  contacts_.broadPhase(world_, bodies_, nullptr, config_.time_step);
-  contacts_.narrowPhase(world_);
-  contacts_.fading().add(live.cloud, -live.fade_speed, sunkIntoTouch(live.cloud));
-  contacts_.forget();
+  pair_watch_.find({world_, bodies_, nullptr, config_.time_step}, &pairs_);
+  pair_searches_.find(world_, at_hand_, fading_, &pairs_, &found_);
+  fading_.add(live.cloud, -live.fade_speed, sunkIntoTouch(live.cloud));
+  at_hand_.known = false;
   layout_.clear();
   *surface = std::move(before);
 }
 
 void Simulator::Impl::endFading() {
-  contacts_.fading().clear();
+  fading_.clear();
   for (const auto& [name, live] : live_) {
     const int model = world_.modelIndex(name);
     for (const int collider : world_.collidersOf(model)) {

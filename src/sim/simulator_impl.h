@@ -4,6 +4,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,9 +12,12 @@
 #include "blem_sim/sim/simulator.h"
 #include "build/simulated_world.h"
 #include "build/world_builder.h"
+#include "clouds/fading_points.h"
 #include "commands/applied_loads.h"
-#include "contacts/contact_stage.h"
+#include "contacts/constraint_maker.h"
 #include "contacts/early_pushes.h"
+#include "contacts/made_solve.h"
+#include "contacts/pair_searches.h"
 #include "guard/energy_balance.h"
 #include "guard/layer_watch.h"
 #include "guard/step_guard.h"
@@ -41,42 +45,49 @@ struct LiveGround {
 struct Simulator::Impl {
   Impl(const SimulationConfig& config, const model::UriResolver& resolver, LoadLog log);
 
-  // One step, stage by stage: simulator_step.cpp.
+  // One step, stage by stage: simulator_step.cpp. Values that a stage gives are valid until it gives the next.
   const StepReport& step();
   void startStep();
   void planSubstep();
   void sampleCommands();
-  void motorTorque();
+  const std::vector<dynamics::JointDrive>& motorTorque();
+  const SolverContacts& reduction();
   /** Wrenches from outside in the solve to come. */
   const std::vector<BodyLoad>& loadsNow();
-  void broadPhase();
-  void narrowPhase();
-  void reduction();
-  bool hasEarlyPushes();
-  void stepGuard();
-  /** Solves the substep. False if the state is not finite any more; the last finite one is then restored. */
-  bool solve();
-  void readSensors();
-  void acceptSubstep();
-  void redoSubstep(const std::vector<ClosePass>& close);
+  /** Solves the substep. None if the state is not finite any more; the last finite one is then restored. */
+  std::optional<MadeSolve> solve(const SolverContacts& contacts, const std::vector<dynamics::JointDrive>& drives);
+  WatchedPairs& broadPhase();
+  /** @param pairs swapped for those of a state before */
+  const FoundContacts& narrowPhase(WatchedPairs* pairs);
+  bool hasEarlyPushes(const MadeSolve& made, const FoundContacts& found);
   /** Makes the substep again, with the ways of early pushes' pairs as a solve without them shows them. */
-  void repeatSubstep();
+  void repeatSubstep(const std::vector<dynamics::JointDrive>& drives);
+  /** Accepts the solve, or has the substep made again, shorter. */
+  void stepGuard(const MadeSolve& made, const FoundContacts& found);
+  void acceptSubstep(const MadeSolve& made);
+  void redoSubstep(const std::vector<ClosePass>& close);
+  void readSensors();
   /** Bodies go back to where the substep started. */
   void rewind();
   /** States that bodies may reach in the rest of the step, if a solve that was thrown away has shown them; else null. */
   const std::vector<dynamics::BodyState>* foreseen();
   const StepReport& stop();
+  /** Contacts of the state at hand become those that the next solve starts from. */
   void findFirstContacts();
+  /** Contacts at the end of the last solve become those that the next one starts from. */
+  void startFromFound() { std::swap(at_hand_, found_); }
   void jointStates(std::vector<dynamics::JointState>* out) const;
   bool bodiesAreFinite() const;
 
   // simulator_report.cpp
-  void recordContacts();
+  void recordContacts(const MadeSolve& made);
+  /** @param found contacts where the part started, before reduction */
+  void recordFound(const FoundContacts& found);
   /** A contact of the part at hand, with its moments: its links have moved on since the step began. */
   ContactReport withMoments(ContactReport contact) const;
-  void recordSolve();
-  void recordEnergy();
-  void recordSaturation();
+  void recordSolve(const dynamics::SolveResult& solved);
+  void recordEnergy(const MadeSolve& made);
+  void recordSaturation(const std::vector<dynamics::JointDrive>& drives);
   void report();
   /** Report of the state at hand, nothing having happened. */
   void reportWithoutStep();
@@ -95,6 +106,8 @@ struct Simulator::Impl {
   SimulationState save() const;
   /** A state that is refused changes nothing. */
   void restore(const SimulationState& state);
+  struct StateParts;
+  StateParts partsOf(const SimulationState& state) const;
   /** Layout of the state, made on demand; models come and go seldom. */
   const std::string& layout() const;
   void seedSensor(std::size_t sensor);
@@ -176,7 +189,11 @@ struct Simulator::Impl {
   SimulationConfig config_;
   SimulatedWorld world_;
   WorldBuilder builder_;
-  ContactStage contacts_;
+  PairWatch pair_watch_;
+  PairSearches pair_searches_;
+  ConstraintMaker constraint_maker_;
+  FoundContacts at_hand_;  ///< of the accepted state; its crossings are part of the saved state
+  FadingPoints fading_;    ///< points that come and go: contacts that are found from now on are those of points as they are sunk
   EarlyPushes early_pushes_;
   SweepGuard sweep_guard_;
   LayerWatch layer_watch_;
@@ -196,6 +213,8 @@ struct Simulator::Impl {
   Substeps substeps_;
   StepReport report_;
   std::vector<dynamics::JointDrive> drives_;
+  WatchedPairs pairs_;
+  FoundContacts found_;  ///< of the state that the last solve led to
   dynamics::WorldState substep_start_;
   std::vector<dynamics::BodyState> bodies_before_;  ///< at the start of the step
   std::vector<dynamics::BodyState> bodies_before_substep_, bodies_;
@@ -205,7 +224,6 @@ struct Simulator::Impl {
   std::vector<dynamics::JointState> joints_;
   PartReports part_reports_;
   LinkContacts link_contacts_;
-  const dynamics::SolveResult* solved_ = nullptr;
 };
 
 }  // namespace blem_sim::sim

@@ -12,7 +12,6 @@
 #include "config/scene_limits.h"
 #include "gazebo/gazebo_robot.h"
 #include "numbers/nearest_name.h"
-#include "numbers/number_reader.h"
 #include "simulator_impl.h"
 
 namespace blem_sim::sim {
@@ -111,8 +110,13 @@ void Simulator::Impl::remakeSensors() {
 }
 
 void Simulator::Impl::forgetContacts(const std::vector<int>& colliders) {
-  for (const int collider : colliders) world_.world.forgetContacts(contacts_.forgetCollider(collider));
-  contacts_.forget();
+  for (const int collider : colliders) {
+    world_.world.forgetContacts(constraint_maker_.forget(collider));
+    pair_searches_.forget(collider);
+    at_hand_.crossings.forget(collider);
+  }
+  pair_watch_.forget();
+  at_hand_.known = false;
 }
 
 void Simulator::Impl::setLinkInertial(int body, int link, const geometry::MassProperties& inertial) {
@@ -188,7 +192,7 @@ void Simulator::Impl::setPhysics(const Vector3& gravity, double time_step, doubl
   config_.time_step = time_step;
   layout_.clear();
   remakeSensors();
-  contacts_.forget();
+  at_hand_.known = false;
 }
 
 }  // namespace blem_sim::sim

@@ -211,12 +211,12 @@ void Simulator::Impl::resetWorld() {
   world_.world.forgetHistory();
   stopped_ = false;
   endFading();
-  contacts_.memory().clear();
-  contacts_.stops().clear();
-  contacts_.crossings().clear();
+  constraint_maker_.memory().clear();
+  constraint_maker_.stops().clear();
+  at_hand_.crossings.clear();
   layer_watch_.clear();
   energy_balance_.clear();
-  contacts_.forget();
+  at_hand_.known = false;
   reportWithoutStep();
 }
 

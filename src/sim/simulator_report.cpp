@@ -14,28 +14,28 @@ constexpr double RESIDUAL_IS_TROUBLE = 0.01;  // of the largest contact force
 
 }  // namespace
 
-void Simulator::Impl::recordSolve() {
+void Simulator::Impl::recordSolve(const dynamics::SolveResult& solved) {
   double largest = 0;
-  for (const Vector3& force : solved_->contact_forces) largest = std::max(largest, force.norm());
-  if (solved_->lcp_errors > 0 || solved_->residual > RESIDUAL_IS_TROUBLE * largest || solved_->creep > CREEP_IS_TROUBLE)
+  for (const Vector3& force : solved.contact_forces) largest = std::max(largest, force.norm());
+  if (solved.lcp_errors > 0 || solved.residual > RESIDUAL_IS_TROUBLE * largest || solved.creep > CREEP_IS_TROUBLE)
     report_.status |= SOLVER_TROUBLE;
-  if (solved_->too_fast) report_.status |= MOTION_TOO_FAST;
-  report_.solver_residual += substeps_.fraction() * solved_->residual;
-  report_.solver_creep = std::max(report_.solver_creep, solved_->creep);
-  report_.solver_iterations += solved_->iterations;
+  if (solved.too_fast) report_.status |= MOTION_TOO_FAST;
+  report_.solver_residual += substeps_.fraction() * solved.residual;
+  report_.solver_creep = std::max(report_.solver_creep, solved.creep);
+  report_.solver_iterations += solved.iterations;
 }
 
-void Simulator::Impl::recordEnergy() {
-  const EnergyGain gain = energy_balance_.addSolve(world_.world, substepLength(), contacts_, *solved_, bodies_before_substep_, bodies_);
+void Simulator::Impl::recordEnergy(const MadeSolve& made) {
+  const EnergyGain gain = energy_balance_.addSolve(world_.world, made);
   report_.energy_gained += gain.total;
   report_.energy_out_of_nothing += gain.out_of_nothing;
   if (gain.beyond_bound) report_.status |= ENERGY_GAINED;
 }
 
-void Simulator::Impl::recordSaturation() {
-  for (std::size_t j = 0; j < drives_.size(); ++j) {
+void Simulator::Impl::recordSaturation(const std::vector<dynamics::JointDrive>& drives) {
+  for (std::size_t j = 0; j < drives.size(); ++j) {
     const dynamics::JointState state = world_.world.jointState(static_cast<int>(j));
-    if (world_.motors[j].accept(drives_[j], state, substepLength())) report_.status |= EFFORT_SATURATED;
+    if (world_.motors[j].accept(drives[j], state, substepLength())) report_.status |= EFFORT_SATURATED;
     const dynamics::JointSpec& spec = world_.world.jointSpec(static_cast<int>(j));
     if (spec.kind == dynamics::JointKind::FIXED) continue;
     if (state.position < spec.lower + LIMIT_REACHED || state.position > spec.upper - LIMIT_REACHED) report_.status |= JOINT_LIMIT_HIT;
@@ -43,23 +43,28 @@ void Simulator::Impl::recordSaturation() {
 }
 
 // Speculative contacts that did not act are left out.
-void Simulator::Impl::recordContacts() {
-  report_.raw_contacts = contacts_.rawContacts();
-  report_.reduced_contacts = contacts_.reducedContacts();
-  for (std::size_t i = 0; i < contacts_.constraints().size(); ++i) {
-    const dynamics::ContactConstraint& constraint = contacts_.constraints()[i];
-    const SolvedContact& solved = contacts_.solved()[i];
-    const Vector3& force = solved_->contact_forces[i];
+void Simulator::Impl::recordContacts(const MadeSolve& made) {
+  report_.reduced_contacts = made.contacts.reduced;
+  for (std::size_t i = 0; i < made.contacts.constraints.size(); ++i) {
+    const dynamics::ContactConstraint& constraint = made.contacts.constraints[i];
+    const SolvedContact& solved = made.contacts.solved[i];
+    const Vector3& force = made.result.contact_forces[i];
     if (constraint.depth < 0 && force.isZero(0)) continue;
     const double depth = constraint.depth + solved.stop, of_layer = solved.layer > 0 ? std::max(0.0, depth) / solved.layer : 0;
     part_reports_.addContact(constraint.id, withMoments({solved.collider_a, solved.collider_b, constraint.body_a, constraint.body_b,
                                                          constraint.point, constraint.normal_BA, depth, of_layer, force, solved.pierced}));
   }
-  if (contacts_.reductionLoss().cut_pairs > 0) report_.status |= CONTACTS_REDUCED;
-  report_.wrench_error = std::max(report_.wrench_error, contacts_.reductionLoss().wrench);
-  if (!contacts_.crossings().empty()) report_.status |= CONTACT_UNRELIABLE;
-  if (!contacts_.leftOut().empty()) report_.status |= CONTACT_UNRELIABLE | CONTACTS_REDUCED;
-  for (const contact::ContactManifold& manifold : contacts_.current()) {
+  if (made.contacts.loss.cut_pairs > 0) report_.status |= CONTACTS_REDUCED;
+  report_.wrench_error = std::max(report_.wrench_error, made.contacts.loss.wrench);
+  recordFound(made.start);
+}
+
+void Simulator::Impl::recordFound(const FoundContacts& found) {
+  if (!found.crossings.empty()) report_.status |= CONTACT_UNRELIABLE;
+  if (!found.watched.left_out.empty()) report_.status |= CONTACT_UNRELIABLE | CONTACTS_REDUCED;
+  report_.raw_contacts = 0;
+  for (const contact::ContactManifold& manifold : found.manifolds) {
+    report_.raw_contacts += static_cast<int>(manifold.contacts.size());
     const double depth = manifold.maxDepth();
     if (manifold.layer > 0) report_.max_of_layer = std::max(report_.max_of_layer, depth / manifold.layer);
     if (depth <= report_.max_depth) continue;
@@ -84,7 +89,7 @@ void Simulator::Impl::report() {
   const StageTimer timer(&report_.profile, Stage::REPORT);
   report_.step = step_count_;
   report_.time = time();
-  report_.searched_pairs = static_cast<int>(contacts_.watched().size());
+  report_.searched_pairs = static_cast<int>(at_hand_.watched.pairs.size());
   report_.substeps = substeps_.count();
   report_.redone_solves = substeps_.redone();
   if (report_.substeps > 1) report_.status |= STEP_SHORTENED;

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "blem_sim/geometry/state_stream.h"
 #include "blem_sim/sim/state_file.h"
 #include "numbers/content_hash.h"
-#include "numbers/number_reader.h"
 #include "simulator_impl.h"
 #include "state/state_header.h"
 #include "state/state_layout.h"
@@ -27,69 +27,40 @@ std::string namesOfAll(const SimulatedWorld& world) {
   return names;
 }
 
+/** Saves the time step's epoch, loads and, if there are any, tares: nothing without all of them, so they are the last numbers of a state. */
+void saveLoads(const Epoch& epoch, const AppliedLoads& loads, const std::vector<SensorChannel>& sensors, geometry::StateWriter* writer) {
+  const bool tared = std::any_of(sensors.begin(), sensors.end(), [](const SensorChannel& sensor) { return sensor.tare().any(); });
+  if (loads.empty() && epoch.step == 0 && !tared) return;
+  writer->numbers({epoch.time, static_cast<double>(epoch.step)});
+  loads.save(writer);
+  if (!tared) return;
+  for (const SensorChannel& sensor : sensors) sensor.tare().save(writer);
+}
+
+/** @param steps of the state */
+Epoch epochFrom(std::uint64_t steps, geometry::StateReader* reader) {
+  const double time = reader->number(), step = reader->number();
+  if (!(time >= 0) || !(step >= 0 && step <= static_cast<double>(steps)))
+    reader->refuseContent("the time step was set at a step that is still to come");
+  return {time, static_cast<std::uint64_t>(step)};
+}
+
+}  // namespace
+
 /** Parts of a state except the world's, read and found sound, and not in force yet. */
-struct StateParts {
+struct Simulator::Impl::StateParts {
+  bool stopped;
   EnergyBalance energy_balance;
   std::vector<JointMotor> motors;
-  std::vector<SensorChannel::Memory> sensors;
+  std::vector<SensorChannel> sensors;
   reduction::ReductionMemory choices;
   LayerWatch layer_watch;
   CrossingHistory crossings;
   FadingPoints fading;
   LayerStops stops;
-  AppliedLoads loads;
   Epoch epoch;
+  AppliedLoads loads;
 };
-
-/** Words of a state: whether the simulation has stopped, then of each sensor its random numbers, then those of contacts. */
-std::size_t contactWords(std::size_t sensors) { return 1 + sensors; }
-
-/** Reads the numbers at the end, which only states with loads, another time step or tared sensors have. */
-void readLoads(const SimulationState& state, const SimulatedWorld& world, NumberReader* reader, StateParts* parts) {
-  if (reader->left() == 0) return;
-  parts->epoch.time = reader->number();
-  const double step = reader->number();
-  if (!(parts->epoch.time >= 0) || !(step >= 0 && step <= static_cast<double>(state.step)))
-    NumberReader::refuseContent("the time step was set at a step that is still to come");
-  parts->epoch.step = static_cast<std::uint64_t>(step);
-  parts->loads.read(world.world.bodyCount(), world.world.jointCount(), reader);
-  if (reader->left() == 0) return;
-  for (SensorChannel::Memory& sensor : parts->sensors) sensor.tare.read(reader);
-}
-
-/** @param first word @param live there are live environments, of whose points the state tells */
-void readContacts(const SimulationState& state, const std::vector<contact::Collider>& colliders, std::size_t first, bool live,
-                  NumberReader* reader, StateParts* parts) {
-  const std::uint64_t *words = state.words.data() + first, *end = state.words.data() + state.words.size();
-  if (!parts->choices.read(colliders, &words, end) || !parts->layer_watch.read(colliders, &words, end) ||
-      !parts->crossings.read(colliders, &words, end, reader) || (live && !parts->fading.read(colliders, &words, end)) ||
-      !parts->stops.read(colliders, words, end))
-    NumberReader::refuseContent("memories of contacts are of no pairs of these colliders");
-}
-
-/** @param parts as they are now, overwritten @throws InputError */
-void readParts(const SimulationState& state, const SimulatedWorld& world, const std::vector<SensorChannel>& sensors, bool live,
-               StateParts* parts) {
-  constexpr std::uint64_t MOST_STEPS = std::uint64_t{1} << 53;  // up to here the times of all steps are different
-  if (state.step > MOST_STEPS) NumberReader::refuseContent("there are more steps than time can count");
-  const std::size_t contacts = contactWords(sensors.size());
-  if (state.words.size() < contacts) NumberReader::refuse();
-  if (state.words[0] > 1) NumberReader::refuseContent("a flag is neither 0 nor 1");
-  NumberReader reader(state.numbers);
-  parts->energy_balance.read(world.world.bodyCount(), &reader);
-  for (std::size_t joint = 0; joint < parts->motors.size(); ++joint)
-    if (world.world.hasJoint(static_cast<int>(joint))) parts->motors[joint].read(&reader);
-  for (const SensorChannel& sensor : sensors) {
-    parts->sensors.push_back(sensor.memory());
-    parts->sensors.back().read(&reader);
-    parts->sensors.back().tare.reset();
-  }
-  readContacts(state, world.colliders, contacts, live, &reader, parts);
-  readLoads(state, world, &reader, parts);
-  reader.finish();
-}
-
-}  // namespace
 
 const std::string& Simulator::Impl::layout() const {
   if (layout_.empty()) layout_ = layoutOf(config_, world_);
@@ -100,27 +71,47 @@ SimulationState Simulator::Impl::content() const {
   SimulationState state;
   state.step = step_count_;
   state.world = world_.world.save();
-  state.words.push_back(stopped_ ? 1 : 0);
-  energy_balance_.append(&state.numbers);
+  geometry::StateWriter writer(&state);
+  writer.flag(stopped_);
+  energy_balance_.save(&writer);
   for (std::size_t joint = 0; joint < world_.motors.size(); ++joint)
-    if (world_.world.hasJoint(static_cast<int>(joint))) world_.motors[joint].append(&state.numbers);
-  for (const SensorChannel& sensor : sensors_) {
-    sensor.memory().append(&state.numbers);
-    state.words.push_back(sensor.random().state());
-  }
-  contacts_.memory().append(&state.words);
-  layer_watch_.append(&state.words);
-  contacts_.crossings().append(&state.numbers, &state.words);
-  if (!live_.empty()) contacts_.fading().append(&state.words);
-  contacts_.stops().append(&state.words);
-  const auto tared = [](const SensorChannel& sensor) { return sensor.memory().tare.any(); };
-  const bool any_tare = std::any_of(sensors_.begin(), sensors_.end(), tared);
-  if (loads_.empty() && epoch_.step == 0 && !any_tare) return state;
-  state.numbers.insert(state.numbers.end(), {epoch_.time, static_cast<double>(epoch_.step)});
-  loads_.append(&state.numbers);
-  if (any_tare)
-    for (const SensorChannel& sensor : sensors_) sensor.memory().tare.append(&state.numbers);
+    if (world_.world.hasJoint(static_cast<int>(joint))) world_.motors[joint].save(&writer);
+  for (const SensorChannel& sensor : sensors_) sensor.save(&writer);
+  constraint_maker_.memory().save(&writer);
+  layer_watch_.save(&writer);
+  at_hand_.crossings.save(&writer);
+  if (!live_.empty()) fading_.save(&writer);
+  constraint_maker_.stops().save(&writer);
+  saveLoads(epoch_, loads_, sensors_, &writer);
   return state;
+}
+
+Simulator::Impl::StateParts Simulator::Impl::partsOf(const SimulationState& state) const {
+  constexpr std::uint64_t MOST_STEPS = std::uint64_t{1} << 53;  // up to here the times of all steps are different
+  geometry::StateReader reader(state);
+  if (state.step > MOST_STEPS) reader.refuseContent("there are more steps than time can count");
+  reader.requireFinite();
+  StateParts parts{reader.flag(), energy_balance_, world_.motors, {}, {}, {}, {}, {}, {}, {}, {}};
+  parts.energy_balance.restore(world_.world.bodyCount(), &reader);
+  for (std::size_t joint = 0; joint < parts.motors.size(); ++joint)
+    if (world_.world.hasJoint(static_cast<int>(joint))) parts.motors[joint].restore(&reader);
+  for (const SensorInfo& sensor : world_.sensors) {
+    parts.sensors.emplace_back(world_, sensor, config_.time_step);
+    parts.sensors.back().restore(&reader);
+  }
+  parts.choices.restore(world_.colliders, &reader);
+  parts.layer_watch.restore(world_.colliders, &reader);
+  parts.crossings.restore(world_.colliders, &reader);
+  if (!live_.empty()) parts.fading.restore(world_.colliders, &reader);
+  parts.stops.restore(world_.colliders, &reader);
+  if (reader.numbersLeft() > 0) {
+    parts.epoch = epochFrom(state.step, &reader);
+    parts.loads.restore(world_.world.bodyCount(), world_.world.jointCount(), &reader);
+  }
+  if (reader.numbersLeft() > 0)
+    for (SensorChannel& sensor : parts.sensors) sensor.tare().restore(&reader);
+  reader.finish();
+  return parts;
 }
 
 SimulationState Simulator::Impl::save() const {
@@ -133,26 +124,22 @@ SimulationState Simulator::Impl::save() const {
 void Simulator::Impl::restore(const SimulationState& state) {
   checkHeader(state);
   checkLayout(state.layout, layout());
-  StateParts parts{energy_balance_, world_.motors, {}, {}, {}, {}, {}, {}, {}, {}};
-  readParts(state, world_, sensors_, !live_.empty(), &parts);
+  StateParts parts = partsOf(state);
   world_.world.restoreChecked(state.world);
   // Nothing below throws.
   step_count_ = state.step;
-  stopped_ = state.words[0] != 0;
+  stopped_ = parts.stopped;
   energy_balance_ = std::move(parts.energy_balance);
   world_.motors = std::move(parts.motors);
-  for (std::size_t i = 0; i < sensors_.size(); ++i) {
-    sensors_[i].memory() = std::move(parts.sensors[i]);
-    sensors_[i].random().setState(state.words[1 + i]);
-  }
-  contacts_.memory() = std::move(parts.choices);
-  contacts_.fading() = std::move(parts.fading);
-  contacts_.stops() = std::move(parts.stops);
-  contacts_.crossings() = std::move(parts.crossings);
+  sensors_ = std::move(parts.sensors);
+  constraint_maker_.memory() = std::move(parts.choices);
+  fading_ = std::move(parts.fading);
+  constraint_maker_.stops() = std::move(parts.stops);
+  at_hand_.crossings = std::move(parts.crossings);
   layer_watch_ = std::move(parts.layer_watch);
   loads_ = std::move(parts.loads);
   epoch_ = parts.epoch;
-  contacts_.forget();
+  at_hand_.known = false;
   reportWithoutStep();
 }
 

@@ -23,21 +23,22 @@ const StepReport& Simulator::Impl::step() {
   if (stopped_) return report_;
   startStep();
   if (!bodiesAreFinite()) return stop();
-  if (!contacts_.known()) findFirstContacts();
-  contacts_.fading().advance(config_.time_step);  // after contacts of the state at hand, as they are after a restore
+  if (!at_hand_.known) findFirstContacts();
+  fading_.advance(config_.time_step);  // after contacts of the state at hand, as they are after a restore
   while (!substeps_.finished()) {
     planSubstep();
     sampleCommands();
-    motorTorque();
-    reduction();
-    if (!solve()) return stop();
+    const std::vector<dynamics::JointDrive>& drives = motorTorque();
+    const SolverContacts& constraints = reduction();
+    const std::optional<MadeSolve> made = solve(constraints, drives);
+    if (!made) return stop();
     // Contacts at the new state: the guard judges by them, and the next solve starts from them.
-    broadPhase();
-    narrowPhase();
-    if (hasEarlyPushes())
-      repeatSubstep();
+    WatchedPairs& pairs = broadPhase();
+    const FoundContacts& found = narrowPhase(&pairs);
+    if (hasEarlyPushes(*made, found))
+      repeatSubstep(drives);
     else
-      stepGuard();
+      stepGuard(*made, found);
   }
   ++step_count_;
   loads_.expire(time());
@@ -70,18 +71,17 @@ void Simulator::Impl::startStep() {
 }
 
 void Simulator::Impl::findFirstContacts() {
-  broadPhase();
-  narrowPhase();
-  contacts_.accept();
+  narrowPhase(&broadPhase());
+  startFromFound();
 }
 
 void Simulator::Impl::planSubstep() {
   const StageTimer timer(&report_.profile, Stage::STEP_GUARD);
   // Pairs are left out only where many bodies cross each other already: shorter substeps would cost time and keep nothing apart.
-  if (substeps_.isRedone() || !contacts_.leftOut().empty()) return;
+  if (substeps_.isRedone() || !at_hand_.watched.left_out.empty()) return;
   const double left = substeps_.fractionLeft() * config_.time_step;
-  double safe = safeTime(world_, contacts_, bodies_, left);
-  if (const std::vector<dynamics::BodyState>* faster = foreseen()) safe = safeTime(world_, contacts_, *faster, safe);
+  double safe = safeTime(world_, at_hand_, bodies_, left);
+  if (const std::vector<dynamics::BodyState>* faster = foreseen()) safe = safeTime(world_, at_hand_, *faster, safe);
   substeps_.plan(safe / left);
 }
 
@@ -90,28 +90,18 @@ void Simulator::Impl::sampleCommands() {
   for (JointMotor& motor : world_.motors) motor.sample(substepTime(), substepLength());
 }
 
-void Simulator::Impl::motorTorque() {
+const std::vector<dynamics::JointDrive>& Simulator::Impl::motorTorque() {
   const StageTimer timer(&report_.profile, Stage::MOTOR_TORQUE);
   drives_.resize(world_.motors.size());
   for (std::size_t j = 0; j < drives_.size(); ++j) drives_[j] = world_.motors[j].drive(world_.world.jointState(static_cast<int>(j)));
   loads_.addEfforts(time(), &drives_);
+  return drives_;
 }
 
-void Simulator::Impl::broadPhase() {
-  const StageTimer timer(&report_.profile, Stage::BROAD_PHASE);
-  // The next solve goes on with the rest of the step, or with the next one.
-  const double left = substeps_.fractionAfter();
-  contacts_.broadPhase(world_, bodies_, left > 0 ? foreseen() : nullptr, (left > 0 ? left : 1) * config_.time_step);
-}
-
-void Simulator::Impl::narrowPhase() {
-  const StageTimer timer(&report_.profile, Stage::NARROW_PHASE);
-  contacts_.narrowPhase(world_);
-}
-
-void Simulator::Impl::reduction() {
+const SolverContacts& Simulator::Impl::reduction() {
   const StageTimer timer(&report_.profile, Stage::REDUCTION);
-  contacts_.reduction(world_, bodies_, early_pushes_.expectation(), substepLength());
+  const SolveAhead ahead{world_, bodies_, at_hand_, fading_, early_pushes_.expectation(), substepLength()};
+  return constraint_maker_.make(ahead, &at_hand_.manifolds);
 }
 
 // Gravity acts on all bodies; a force against it bears what it is not to act on.
@@ -129,39 +119,54 @@ const std::vector<BodyLoad>& Simulator::Impl::loadsNow() {
   return loads_now_;
 }
 
-bool Simulator::Impl::solve() {
+std::optional<MadeSolve> Simulator::Impl::solve(const SolverContacts& contacts, const std::vector<dynamics::JointDrive>& drives) {
   const StageTimer timer(&report_.profile, Stage::SOLVE);
   world_.world.save(&substep_start_);
   bodies_before_substep_ = bodies_;
   const std::vector<BodyLoad>& loads = loadsNow();
   for (const BodyLoad& load : loads) world_.world.applyWrench(load.body, load.wrench, bodies_[load.body].X_WB * load.p_B);
   energy_balance_.setLoads(loads);
-  solved_ = &world_.world.step(substepLength(), contacts_.constraints(), drives_);
-  if (solved_->finite) world_.bodyStates(&bodies_);
-  if (solved_->finite && bodiesAreFinite()) return true;
+  const dynamics::SolveResult& result = world_.world.step(substepLength(), contacts.constraints, drives);
+  if (result.finite) world_.bodyStates(&bodies_);
+  if (result.finite && bodiesAreFinite())
+    return MadeSolve{at_hand_, contacts, drives, result, bodies_before_substep_, bodies_, substepLength()};
   rewind();
-  return false;
+  return std::nullopt;
 }
 
-bool Simulator::Impl::hasEarlyPushes() {
+WatchedPairs& Simulator::Impl::broadPhase() {
+  const StageTimer timer(&report_.profile, Stage::BROAD_PHASE);
+  // The next solve goes on with the rest of the step, or with the next one.
+  const double left = substeps_.fractionAfter();
+  pair_watch_.find({world_, bodies_, left > 0 ? foreseen() : nullptr, (left > 0 ? left : 1) * config_.time_step}, &pairs_);
+  return pairs_;
+}
+
+const FoundContacts& Simulator::Impl::narrowPhase(WatchedPairs* pairs) {
+  const StageTimer timer(&report_.profile, Stage::NARROW_PHASE);
+  pair_searches_.find(world_, at_hand_, fading_, pairs, &found_);
+  return found_;
+}
+
+bool Simulator::Impl::hasEarlyPushes(const MadeSolve& made, const FoundContacts& found) {
   const StageTimer timer(&report_.profile, Stage::STEP_GUARD);
-  return substeps_.canRepeat() && early_pushes_.find(world_, contacts_, solved_->contact_forces, bodies_, substepLength());
+  return substeps_.canRepeat() && early_pushes_.find(world_, made, found);
 }
 
-void Simulator::Impl::stepGuard() {
+void Simulator::Impl::stepGuard(const MadeSolve& made, const FoundContacts& found) {
   const StageTimer timer(&report_.profile, Stage::STEP_GUARD);
   passed_.clear();
-  if (contacts_.leftOut().empty()) {
-    const std::vector<ClosePass>& close = sweep_guard_.look(world_, contacts_, bodies_before_substep_, bodies_);
+  if (made.start.watched.left_out.empty()) {
+    const std::vector<ClosePass>& close = sweep_guard_.look(world_, made, pair_watch_.arms());
     if (substeps_.canRedo() &&
-        (!close.empty() || usesUpLayer(world_.colliders, contacts_.current(), contacts_.found(), bodies_before_substep_, bodies_))) {
+        (!close.empty() || usesUpLayer(world_.colliders, made.start.manifolds, found.manifolds, made.before, made.after))) {
       redoSubstep(close);
       return;
     }
     for (const ClosePass& pass : close)
       if (pass.passed) passed_.emplace_back(pass.a, pass.b);
   }
-  acceptSubstep();
+  acceptSubstep(made);
 }
 
 void Simulator::Impl::rewind() {
@@ -169,10 +174,9 @@ void Simulator::Impl::rewind() {
   bodies_ = bodies_before_substep_;
 }
 
-void Simulator::Impl::repeatSubstep() {
+void Simulator::Impl::repeatSubstep(const std::vector<dynamics::JointDrive>& drives) {
   rewind();
-  reduction();
-  if (solve())
+  if (solve(reduction(), drives))
     early_pushes_.expect(bodies_);
   else
     early_pushes_.clear();
@@ -187,10 +191,10 @@ void Simulator::Impl::redoSubstep(const std::vector<ClosePass>& close) {
   foreseen_ = bodies_;
   rewind();
   early_pushes_.clear();
-  contacts_.broadPhase(world_, bodies_, foreseen(), substeps_.fractionLeft() * config_.time_step);
-  contacts_.narrowPhase(world_);
-  contacts_.accept();
-  substeps_.redo(std::min(part, safeTime(world_, contacts_, foreseen_, substepLength()) / substepLength()));
+  pair_watch_.find({world_, bodies_, foreseen(), substeps_.fractionLeft() * config_.time_step}, &pairs_);
+  pair_searches_.find(world_, at_hand_, fading_, &pairs_, &found_);
+  startFromFound();
+  substeps_.redo(std::min(part, safeTime(world_, at_hand_, foreseen_, substepLength()) / substepLength()));
 }
 
 const std::vector<dynamics::BodyState>* Simulator::Impl::foreseen() {
@@ -199,16 +203,16 @@ const std::vector<dynamics::BodyState>* Simulator::Impl::foreseen() {
   return &foreseen_;
 }
 
-void Simulator::Impl::acceptSubstep() {
-  recordSolve();
+void Simulator::Impl::acceptSubstep(const MadeSolve& made) {
+  recordSolve(made.result);
   part_reports_.startPart(substeps_.fraction());
-  part_reports_.addJoints(solved_->joint_wrenches, solved_->motor_efforts);
-  recordSaturation();
-  recordContacts();
+  part_reports_.addJoints(made.result.joint_wrenches, made.result.motor_efforts);
+  recordSaturation(made.drives);
+  recordContacts(made);
   if (!passed_.empty()) report_.status |= CONTACT_UNRELIABLE;
-  layer_watch_.look(contacts_.current(), passed_, substepTime(), &report_.layer_events);
-  recordEnergy();
-  contacts_.accept();
+  layer_watch_.look(made.start.manifolds, passed_, substepTime(), &report_.layer_events);
+  recordEnergy(made);
+  startFromFound();
   substeps_.accept();
   early_pushes_.clear();
 }

@@ -77,16 +77,19 @@ TEST(ReductionMemory, IsSavedAndReadBack) {
   geometry::RandomShapes random(4);
   ReductionMemory memory, copy;
   const ContactIds ids = reduced(rim(random, 1e-8), 20, &memory);
-  std::vector<std::uint64_t> words = {42};
-  memory.append(&words);
-  const std::uint64_t* cursor = words.data() + 1;
+  geometry::StateContent saved{{}, {42}};
+  geometry::StateWriter writer(&saved);
+  memory.save(&writer);
   const std::vector<contact::Collider> colliders(10);
-  ASSERT_TRUE(copy.read(colliders, &cursor, words.data() + words.size()));
-  EXPECT_EQ(cursor, words.data() + words.size());
+  geometry::StateReader reader(saved);
+  ASSERT_EQ(reader.word(), 42u);
+  copy.restore(colliders, &reader);
+  EXPECT_EQ(reader.wordsLeft(), 0u);
   EXPECT_EQ(copy.of(rim(random, 0)), ids);
-  words.pop_back();
-  cursor = words.data() + 1;
-  EXPECT_FALSE(copy.read(colliders, &cursor, words.data() + words.size()));
+  saved.words.pop_back();
+  geometry::StateReader cut(saved);
+  cut.word();
+  EXPECT_THROW(copy.restore(colliders, &cut), InputError);
 }
 
 }  // namespace

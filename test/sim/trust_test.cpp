@@ -72,18 +72,19 @@ TEST(LayerWatch, TellsWhatPassedThoughNeitherEndIsOutside) {
 TEST(LayerWatch, ReadsWhatItWroteAndNothingLess) {
   LayerWatch watch;
   lookAt(&watch, {manifoldOf(0, 1, 0.006), manifoldOf(4, 9, 0.006)}, 0);
-  std::vector<std::uint64_t> words;
-  watch.append(&words);
+  geometry::StateContent saved;
+  geometry::StateWriter writer(&saved);
+  watch.save(&writer);
   LayerWatch other;
   const std::vector<contact::Collider> colliders(10);
-  for (std::size_t size = 0; size < words.size(); ++size) {
-    const std::uint64_t* cursor = words.data();
-    EXPECT_FALSE(other.read(colliders, &cursor, words.data() + size)) << size;
-    EXPECT_EQ(cursor, words.data());
+  for (geometry::StateContent cut = saved; !cut.words.empty();) {
+    cut.words.pop_back();
+    geometry::StateReader reader(cut);
+    EXPECT_THROW(other.restore(colliders, &reader), InputError) << cut.words.size();
   }
-  const std::uint64_t* cursor = words.data();
-  EXPECT_TRUE(other.read(colliders, &cursor, words.data() + words.size()));
-  EXPECT_EQ(cursor, words.data() + words.size());
+  geometry::StateReader reader(saved);
+  other.restore(colliders, &reader);
+  EXPECT_EQ(reader.wordsLeft(), 0u);
   EXPECT_EQ(lookAt(&other, {}, 1).size(), 2u);
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "blem_sim/contact/collider.h"
+#include "blem_sim/geometry/state_stream.h"
 
 namespace blem_sim::contact {
 
@@ -26,9 +27,24 @@ const Item* findPair(const std::vector<Item>& items, int a, int b) {
   return at != items.end() && at->a == a && at->b == b ? &*at : nullptr;
 }
 
-/** Whether two words of a saved state name two colliders that are there, in order. */
-inline bool isPair(const std::vector<Collider>& colliders, std::uint64_t a, std::uint64_t b) {
-  return a < b && b < colliders.size() && colliders[a].enabled && colliders[b].enabled;
+/** Refuses a saved state whose memories are of other pairs. */
+[[noreturn]] inline void refusePairs(const geometry::StateReader& reader) {
+  reader.refuseContent("memories of contacts are of no pairs of these colliders");
+}
+
+/** Two words of a saved state that name two slots of colliders, in order; others are refused. */
+inline std::pair<int, int> readSlots(const std::vector<Collider>& colliders, geometry::StateReader* reader) {
+  const std::uint64_t a = reader->word(), b = reader->word();
+  if (a >= b || b >= colliders.size()) refusePairs(*reader);
+  return {static_cast<int>(a), static_cast<int>(b)};
+}
+
+/** The same for two colliders that are there. */
+inline std::pair<int, int> readPair(const std::vector<Collider>& colliders, geometry::StateReader* reader) {
+  const std::pair<int, int> pair = readSlots(colliders, reader);
+  if (!colliders[static_cast<std::size_t>(pair.first)].enabled || !colliders[static_cast<std::size_t>(pair.second)].enabled)
+    refusePairs(*reader);
+  return pair;
 }
 
 /** Whether every pair of a list comes after the one before it, none twice. */

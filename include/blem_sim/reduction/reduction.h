@@ -7,6 +7,7 @@
 
 #include "blem_sim/contact/collider.h"
 #include "blem_sim/contact/manifold.h"
+#include "blem_sim/geometry/state_stream.h"
 
 namespace blem_sim::reduction {
 
@@ -61,10 +62,9 @@ class ReductionMemory {
   void clear() { choices_.clear(); }
   /** Forgets the pairs of a collider whose slot another one may take. */
   void forget(int collider);
-  /** State as words, for save and restore. */
-  void append(std::vector<std::uint64_t>* words) const;
-  /** @param colliders whose pairs they may be @return false if the words up to `end` are none that append wrote */
-  bool read(const std::vector<contact::Collider>& colliders, const std::uint64_t** cursor, const std::uint64_t* end);
+  void save(geometry::StateWriter* writer) const;
+  /** @param colliders whose pairs they may be */
+  void restore(const std::vector<contact::Collider>& colliders, geometry::StateReader* reader);
 
   struct Choice {
     int a, b;

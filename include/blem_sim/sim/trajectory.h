@@ -6,10 +6,9 @@
 #include <vector>
 
 #include "blem_sim/geometry/input_error.h"
+#include "blem_sim/geometry/state_stream.h"
 
 namespace blem_sim::sim {
-
-class NumberReader;
 
 /** Largest position, velocity, acceleration and effort that may be commanded, in its SI unit. */
 constexpr double LARGEST_COMMAND = 1e7;
@@ -60,9 +59,8 @@ class JointSpline {
   double startTime() const;  ///< [s] of what is known of the path: earlier times are held at its first position
   double endTime() const;
   Knot lastKnot() const;
-  /** State as numbers, for save and restore. */
-  void append(std::vector<double>* numbers) const;
-  void read(NumberReader* reader);
+  void save(geometry::StateWriter* writer) const;
+  void restore(geometry::StateReader* reader);
 
  private:
   std::vector<Knot> knots_;

@@ -311,7 +311,7 @@ void advanceIsland(const Forest& forest, const IslandProblem& problem, double dt
   if (std::any_of(problem.trees.begin(), problem.trees.end(), tooFast)) brake(forest, problem, motion, space);
 }
 
-void saveTree(const Forest& forest, int tree, const ForestMotion& motion, StateWriter* writer) {
+void saveTree(const Forest& forest, int tree, const ForestMotion& motion, geometry::StateWriter* writer) {
   const ForestTree& t = forest.trees()[tree];
   writer->numbers(motion.rotation[t.first_node].data(), 9);
   writer->vector(motion.origin[t.first_node]);
@@ -322,7 +322,7 @@ void saveTree(const Forest& forest, int tree, const ForestMotion& motion, StateW
   writer->numbers(motion.owed.data() + t.first_dof, t.dofCount());
 }
 
-void restoreTree(const Forest& forest, int tree, ForestMotion* motion, StateReader* reader) {
+void restoreTree(const Forest& forest, int tree, ForestMotion* motion, geometry::StateReader* reader) {
   const ForestTree& t = forest.trees()[tree];
   reader->numbers(motion->rotation[t.first_node].data(), 9);
   motion->origin[t.first_node] = reader->vector();

@@ -46,8 +46,8 @@ void computeWrenches(const Forest& forest, const Scene& scene, const IslandProbl
 void advanceIsland(const Forest& forest, const IslandProblem& problem, double dt, const FreeMotion& way, ForestMotion* motion,
                    SolverSpace* space);
 
-void saveTree(const Forest& forest, int tree, const ForestMotion& motion, StateWriter* writer);
-void restoreTree(const Forest& forest, int tree, ForestMotion* motion, StateReader* reader);
+void saveTree(const Forest& forest, int tree, const ForestMotion& motion, geometry::StateWriter* writer);
+void restoreTree(const Forest& forest, int tree, ForestMotion* motion, geometry::StateReader* reader);
 /** Whether the bodies of the scene stand where the tree has them, but for rounding. */
 bool standsAt(const Forest& forest, int tree, const ForestMotion& motion, const Scene& scene);
 

@@ -95,16 +95,16 @@ void MimicCoupling::solve(const Scene& scene, double dt, const SolverSettings& s
   iterate(scene, dt, solve);
 }
 
-void MimicCoupling::save(StateWriter* writer) const {
+void MimicCoupling::save(geometry::StateWriter* writer) const {
   writer->word(f_.size());
   writer->word(inverse_.rows());
   writer->numbers(f_.data(), f_.size());
   writer->numbers(inverse_.data(), inverse_.size());
 }
 
-void MimicCoupling::restore(std::size_t joints, StateReader* reader) {
+void MimicCoupling::restore(std::size_t joints, geometry::StateReader* reader) {
   const std::uint64_t relations = reader->word(), rows = reader->word();
-  if (relations > joints || (rows != 0 && rows != relations)) StateReader::refuse();
+  if (relations > joints || (rows != 0 && rows != relations)) reader->refuse();
   f_.resize(relations);
   inverse_.resize(rows, rows);
   reader->numbers(f_.data(), f_.size());

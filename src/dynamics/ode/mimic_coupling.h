@@ -25,9 +25,9 @@ class MimicCoupling {
   void solve(const Scene& scene, double dt, const SolverSettings& settings, const Solve& solve);
   const std::vector<double>& efforts() const { return efforts_; }
 
-  void save(StateWriter* writer) const;
+  void save(geometry::StateWriter* writer) const;
   /** @param joints of the scene: a state has no more relations */
-  void restore(std::size_t joints, StateReader* reader);
+  void restore(std::size_t joints, geometry::StateReader* reader);
 
  private:
   struct Relation {

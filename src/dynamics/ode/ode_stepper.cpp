@@ -21,8 +21,8 @@ class OdeSolver {
   virtual void solve(dWorldID world, double dt) = 0;
   /** The last solve is the one that counts. */
   virtual void accept() {}
-  virtual void save(StateWriter*) const {}
-  virtual void restore(StateReader*) {}
+  virtual void save(geometry::StateWriter*) const {}
+  virtual void restore(geometry::StateReader*) {}
 };
 
 class WorldStepSolver : public OdeSolver {
@@ -44,8 +44,8 @@ class QuickStepSolver : public OdeSolver {
     next_seed_ = dRandGetSeed();
   }
   void accept() override { seed_ = next_seed_; }
-  void save(StateWriter* writer) const override { writer->word(seed_); }
-  void restore(StateReader* reader) override { seed_ = static_cast<unsigned long>(reader->word()); }
+  void save(geometry::StateWriter* writer) const override { writer->word(seed_); }
+  void restore(geometry::StateReader* reader) override { seed_ = static_cast<unsigned long>(reader->word()); }
 
  private:
   int iterations_;
@@ -74,13 +74,13 @@ class OdeStepper : public Stepper {
     jointWrenches(*scene, start_, input, *result, &result->joint_wrenches);
   }
 
-  void save(const Scene&, StateWriter* writer) const override {
-    saveMemory(memory_, writer);
+  void save(const Scene&, geometry::StateWriter* writer) const override {
+    memory_.save(writer);
     solver_->save(writer);
     mimics_.save(writer);
   }
-  void restore(const Scene& scene, StateReader* reader) override {
-    restoreMemory(&memory_, reader);
+  void restore(const Scene& scene, geometry::StateReader* reader) override {
+    memory_.restore(reader);
     solver_->restore(reader);
     mimics_.restore(scene.joints().size(), reader);
   }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "blem_sim/dynamics/world_types.h"
+#include "blem_sim/geometry/state_stream.h"
 
 namespace blem_sim::dynamics {
 
@@ -22,7 +23,8 @@ class ContactMemory {
   void replace(std::vector<ContactMemo> memos);
   /** @param ids ascending */
   void forget(const std::vector<std::uint64_t>& ids);
-  const std::vector<ContactMemo>& memos() const { return memos_; }
+  void save(geometry::StateWriter* writer) const;
+  void restore(geometry::StateReader* reader);
 
  private:
   std::vector<ContactMemo> memos_;

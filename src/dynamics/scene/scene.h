@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "blem_sim/dynamics/world_types.h"
+#include "blem_sim/geometry/state_stream.h"
 #include "scene/ode_library.h"
 
 namespace blem_sim::dynamics {
@@ -112,6 +113,10 @@ class Scene {
   double jointVelocity(int joint) const;
   /** Inverse inertia along the joint's axis of its two bodies alone, [1/(kg m^2) or 1/kg]: an upper bound of the articulated one. */
   double inverseInertia(int joint) const;
+  /** Bodies, and the positions of joints that the next step goes on from. */
+  void save(geometry::StateWriter* writer) const;
+  /** Refuses a state of other numbers of bodies or joints. */
+  void restore(geometry::StateReader* reader);
   /** States of all joints; notes their positions, which tell the full turns. */
   void readJoints(std::vector<JointState>* states);
 

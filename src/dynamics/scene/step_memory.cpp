@@ -40,7 +40,7 @@ void StepMemory::forgetContacts(const std::vector<std::uint64_t>& ids) {
   index();
 }
 
-void StepMemory::save(const Scene& scene, StateWriter* writer) const {
+void StepMemory::save(const Scene& scene, geometry::StateWriter* writer) const {
   writer->word(contacts.size());
   for (const ContactRecord& c : contacts) {
     writer->word(c.id);
@@ -56,7 +56,7 @@ void StepMemory::save(const Scene& scene, StateWriter* writer) const {
   }
 }
 
-void StepMemory::restore(const Scene& scene, StateReader* reader) {
+void StepMemory::restore(const Scene& scene, geometry::StateReader* reader) {
   contacts.resize(reader->count(1, 4));
   for (ContactRecord& c : contacts) {
     c.id = reader->word();
@@ -64,7 +64,7 @@ void StepMemory::restore(const Scene& scene, StateReader* reader) {
     c.slip = reader->number();
   }
   const auto follows = [](const ContactRecord& a, const ContactRecord& b) { return b.id < a.id; };
-  if (std::adjacent_find(contacts.begin(), contacts.end(), follows) != contacts.end()) StateReader::refuse();
+  if (std::adjacent_find(contacts.begin(), contacts.end(), follows) != contacts.end()) reader->refuse();
   index();
   resize(scene);
   for (std::size_t j = 0; j < joints.size(); ++j) {

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "blem_sim/geometry/state_stream.h"
 #include "lanes/spatial.h"
 #include "scene/scene.h"
-#include "scene/world_state.h"
 
 namespace blem_sim::dynamics {
 
@@ -34,8 +34,8 @@ struct StepMemory {
   void resize(const Scene& scene);
   /** @param ids ascending */
   void forgetContacts(const std::vector<std::uint64_t>& ids);
-  void save(const Scene& scene, StateWriter* writer) const;
-  void restore(const Scene& scene, StateReader* reader);
+  void save(const Scene& scene, geometry::StateWriter* writer) const;
+  void restore(const Scene& scene, geometry::StateReader* reader);
 
  private:
   bool knows(const Scene& scene, std::size_t joint) const;

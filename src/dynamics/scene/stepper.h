@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "blem_sim/geometry/state_stream.h"
 #include "scene/contact_law.h"
 #include "scene/scene.h"
-#include "scene/world_state.h"
 
 namespace blem_sim::dynamics {
 
@@ -26,9 +26,9 @@ class Stepper {
   /** Advances the bodies by input.dt under gravity, pending wrenches, drives and contacts, and fills the result.
    *  A stepper that notices that a step broke down says finite = false and leaves the scene as it was. */
   virtual void step(Scene* scene, const StepInput& input, SolveResult* result) = 0;
-  virtual void save(const Scene& scene, StateWriter* writer) const = 0;
+  virtual void save(const Scene& scene, geometry::StateWriter* writer) const = 0;
   /** The scene is already restored. */
-  virtual void restore(const Scene& scene, StateReader* reader) = 0;
+  virtual void restore(const Scene& scene, geometry::StateReader* reader) = 0;
   /** Whether, after a restore, the stepper's memory of bodies agrees with their states. */
   virtual bool agreesWith(const Scene&) const { return true; }
   /** Forgets the contacts with these ids. @param ids ascending */

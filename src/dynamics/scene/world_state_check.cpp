@@ -31,7 +31,7 @@ void checkBits(const BodyBits& bits, const std::string& name) {
 
 void checkNumbers(const Scene& scene, const WorldState& state) {
   if (!std::all_of(state.numbers.begin(), state.numbers.end(), [](double x) { return std::isfinite(x); })) refuse("a number is not finite");
-  StateReader reader(state);
+  geometry::StateReader reader = readerOf(state);
   reader.vector();  // gravity
   for (const BodySlot& slot : scene.bodies()) {
     if (!slot.ode) continue;

@@ -23,6 +23,10 @@ double fromBits(std::uint64_t bits) {
   return value;
 }
 
+[[noreturn]] void refusePoints(const geometry::StateReader& reader) {
+  reader.refuseContent("points that come or go are of no cloud that is there");
+}
+
 double sinkIn(const std::vector<SunkPoint>& points, int vertex) {
   const auto at = std::lower_bound(points.begin(), points.end(), vertex, [](const SunkPoint& p, int v) { return p.vertex < v; });
   return at != points.end() && at->vertex == vertex ? at->sink : 0;
@@ -84,39 +88,43 @@ void FadingPoints::forget(int collider) {
   fading_.erase(std::remove_if(fading_.begin(), fading_.end(), [=](const Fading& f) { return f.collider == collider; }), fading_.end());
 }
 
-void FadingPoints::append(std::vector<std::uint64_t>* words) const {
-  words->push_back(fading_.size());
+void FadingPoints::save(geometry::StateWriter* writer) const {
+  writer->word(fading_.size());
   for (const Fading& fading : fading_) {
-    words->insert(words->end(), {static_cast<std::uint64_t>(fading.collider), bitsOf(fading.speed), fading.points.size()});
-    for (const SunkPoint& point : fading.points)
-      words->insert(words->end(), {static_cast<std::uint64_t>(point.vertex), bitsOf(point.sink)});
+    writer->integer(fading.collider);
+    writer->word(bitsOf(fading.speed));
+    writer->word(fading.points.size());
+    for (const SunkPoint& point : fading.points) {
+      writer->integer(point.vertex);
+      writer->word(bitsOf(point.sink));
+    }
   }
 }
 
-bool FadingPoints::read(const std::vector<contact::Collider>& colliders, const std::uint64_t** words, const std::uint64_t* end) {
-  const std::uint64_t* word = *words;
-  const auto next = [&](std::uint64_t* value) { return word != end && (*value = *word++, true); };
-  std::vector<Fading> read;
-  std::uint64_t count = 0, collider = 0, speed = 0, points = 0;
-  if (!next(&count)) return false;
-  for (std::uint64_t i = 0; i < count; ++i) {
-    if (!next(&collider) || !next(&speed) || !next(&points)) return false;
-    if (collider >= colliders.size() || !colliders[collider].enabled || !std::isfinite(fromBits(speed))) return false;
-    if (!read.empty() && read.back().collider >= static_cast<int>(collider)) return false;
-    if (points == 0 || points > static_cast<std::uint64_t>(end - word) / 2) return false;
-    Fading fading{static_cast<int>(collider), fromBits(speed), {}};
-    const std::size_t vertices = colliders[collider].geometry->isHalfSpace() ? 0 : colliders[collider].geometry->mesh().vertices.size();
-    for (; points > 0; --points, word += 2) {
-      if (word[0] >= vertices || !(fromBits(word[1]) > 0)) return false;
-      const int vertex = static_cast<int>(word[0]);
-      if (!fading.points.empty() && fading.points.back().vertex >= vertex) return false;
-      fading.points.push_back({vertex, fromBits(word[1])});
-    }
-    read.push_back(std::move(fading));
+FadingPoints::Fading FadingPoints::fadingFrom(const std::vector<contact::Collider>& colliders, geometry::StateReader* reader) {
+  const std::uint64_t collider = reader->word();
+  const double speed = fromBits(reader->word());
+  if (collider >= colliders.size() || !colliders[collider].enabled || !std::isfinite(speed)) refusePoints(*reader);
+  const std::size_t vertices = colliders[collider].geometry->isHalfSpace() ? 0 : colliders[collider].geometry->mesh().vertices.size();
+  Fading fading{static_cast<int>(collider), speed, {}};
+  for (std::size_t points = reader->count(2, 0); points > 0; --points) {
+    const std::uint64_t vertex = reader->word();
+    const double sink = fromBits(reader->word());
+    if (vertex >= vertices || !(sink > 0)) refusePoints(*reader);
+    if (!fading.points.empty() && fading.points.back().vertex >= static_cast<int>(vertex)) refusePoints(*reader);
+    fading.points.push_back({static_cast<int>(vertex), sink});
   }
-  fading_ = std::move(read);
-  *words = word;
-  return true;
+  if (fading.points.empty()) refusePoints(*reader);
+  return fading;
+}
+
+void FadingPoints::restore(const std::vector<contact::Collider>& colliders, geometry::StateReader* reader) {
+  fading_.clear();
+  for (std::size_t left = reader->count(3, 0); left > 0; --left) {
+    Fading fading = fadingFrom(colliders, reader);
+    if (!fading_.empty() && fading_.back().collider >= fading.collider) refusePoints(*reader);
+    fading_.push_back(std::move(fading));
+  }
 }
 
 }  // namespace blem_sim::sim

@@ -7,6 +7,7 @@
 
 #include "blem_sim/contact/collider.h"
 #include "blem_sim/contact/manifold.h"
+#include "blem_sim/geometry/state_stream.h"
 
 namespace blem_sim::sim {
 
@@ -36,9 +37,9 @@ class FadingPoints {
   void advance(double dt);
   void forget(int collider);
   void clear() { fading_.clear(); }
-  void append(std::vector<std::uint64_t>* words) const;
-  /** Reads the words of append and moves the cursor behind them. @return false if they are others, or not whole */
-  bool read(const std::vector<contact::Collider>& colliders, const std::uint64_t** words, const std::uint64_t* end);
+  void save(geometry::StateWriter* writer) const;
+  /** @param colliders whose points they may be */
+  void restore(const std::vector<contact::Collider>& colliders, geometry::StateReader* reader);
 
  private:
   struct Fading {
@@ -47,6 +48,7 @@ class FadingPoints {
     std::vector<SunkPoint> points;
   };
   const Fading* of(int collider) const;
+  static Fading fadingFrom(const std::vector<contact::Collider>& colliders, geometry::StateReader* reader);
 
   std::vector<Fading> fading_;  // sorted by collider, none without points
 };

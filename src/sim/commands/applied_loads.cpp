@@ -88,45 +88,43 @@ void AppliedLoads::expire(double time) {
   removeIf(&efforts_, [&](const Driven& driven) { return driven.span.isOver(time); });
 }
 
-void AppliedLoads::append(const Span& span, std::vector<double>* numbers) {
-  numbers->insert(numbers->end(), {span.start, std::isinf(span.end) ? ENDLESS : span.end});
+void AppliedLoads::Span::save(geometry::StateWriter* writer) const { writer->numbers({start, std::isinf(end) ? ENDLESS : end}); }
+
+void AppliedLoads::Span::restore(geometry::StateReader* reader) {
+  start = reader->number();
+  end = reader->number();
+  if (end == ENDLESS) end = std::numeric_limits<double>::infinity();
 }
 
-AppliedLoads::Span AppliedLoads::readSpan(NumberReader* reader) {
-  const double start = reader->number(), end = reader->number();
-  return {start, end == ENDLESS ? std::numeric_limits<double>::infinity() : end};
-}
-
-void AppliedLoads::append(std::vector<double>* numbers) const {
-  numbers->insert(numbers->end(), {static_cast<double>(wrenches_.size()), static_cast<double>(efforts_.size())});
+void AppliedLoads::save(geometry::StateWriter* writer) const {
+  writer->numbers({static_cast<double>(wrenches_.size()), static_cast<double>(efforts_.size())});
   for (const Pushed& pushed : wrenches_) {
-    append(pushed.span, numbers);
-    numbers->push_back(pushed.load.body);
-    for (const Vector3* v : {&pushed.load.wrench.force, &pushed.load.wrench.torque, &pushed.load.p_B})
-      numbers->insert(numbers->end(), v->data(), v->data() + 3);
+    pushed.span.save(writer);
+    writer->number(pushed.load.body);
+    for (const Vector3* v : {&pushed.load.wrench.force, &pushed.load.wrench.torque, &pushed.load.p_B}) writer->vector(*v);
   }
   for (const Driven& driven : efforts_) {
-    append(driven.span, numbers);
-    numbers->insert(numbers->end(), {static_cast<double>(driven.joint), driven.effort});
+    driven.span.save(writer);
+    writer->numbers({static_cast<double>(driven.joint), driven.effort});
   }
 }
 
-void AppliedLoads::read(int bodies, int joints, NumberReader* reader) {
+void AppliedLoads::restore(int bodies, int joints, geometry::StateReader* reader) {
   const auto number = [&](double below) {
     const double x = reader->number();
-    if (!(x >= 0 && x < below) || x != std::floor(x)) NumberReader::refuseContent("a load is on nothing that is there");
+    if (!(x >= 0 && x < below) || x != std::floor(x)) reader->refuseContent("a load is on nothing that is there");
     return static_cast<int>(x);
   };
   clear();
   wrenches_.resize(number(MOST + 1));
   efforts_.resize(number(MOST + 1));
   for (Pushed& pushed : wrenches_) {
-    pushed.span = readSpan(reader);
+    pushed.span.restore(reader);
     pushed.load.body = number(bodies);
-    for (Vector3* v : {&pushed.load.wrench.force, &pushed.load.wrench.torque, &pushed.load.p_B}) reader->numbers(v->data(), 3);
+    for (Vector3* v : {&pushed.load.wrench.force, &pushed.load.wrench.torque, &pushed.load.p_B}) *v = reader->vector();
   }
   for (Driven& driven : efforts_) {
-    driven.span = readSpan(reader);
+    driven.span.restore(reader);
     driven.joint = number(joints);
     driven.effort = reader->number();
   }

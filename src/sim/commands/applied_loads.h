@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "blem_sim/geometry/state_stream.h"
 #include "blem_sim/sim/simulator_types.h"
-#include "numbers/number_reader.h"
 
 namespace blem_sim::sim {
 
@@ -30,13 +30,15 @@ class AppliedLoads {
   /** Forgets the loads whose time is over. @param time [s] at which the next step starts */
   void expire(double time);
 
-  void append(std::vector<double>* numbers) const;
-  /** @param bodies, joints slots that loads can be on @throws InputError */
-  void read(int bodies, int joints, NumberReader* reader);
+  void save(geometry::StateWriter* writer) const;
+  /** @param bodies, joints slots that loads can be on */
+  void restore(int bodies, int joints, geometry::StateReader* reader);
 
  private:
   struct Span {
     double start, end;  // [s] simulated; an endless one's end is infinite
+    void save(geometry::StateWriter* writer) const;
+    void restore(geometry::StateReader* reader);
     bool holds(double time) const;
     bool isOver(double time) const;
   };
@@ -50,8 +52,6 @@ class AppliedLoads {
     double effort;
   };
   static Span spanOf(const LoadTime& when, const LoadTime& next_step);
-  static void append(const Span& span, std::vector<double>* numbers);
-  static Span readSpan(NumberReader* reader);
   void requireRoom() const;
 
   std::vector<Pushed> wrenches_;

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "numbers/number_reader.h"
-
 namespace blem_sim::sim {
 namespace {
 
@@ -169,19 +167,19 @@ void JointMotor::integrate(double dt) {
   integral_ = clamped(integral_ + gains.i * error_ * dt, gains.i_clamp);
 }
 
-void JointMotor::append(std::vector<double>* numbers) const {
-  numbers->insert(numbers->end(), {static_cast<double>(mode_), velocity_target_, added_effort_, integral_});
-  if (mode_ != Mode::POSITION) numbers->push_back(command_time_);
-  spline_.append(numbers);
+void JointMotor::save(geometry::StateWriter* writer) const {
+  writer->numbers({static_cast<double>(mode_), velocity_target_, added_effort_, integral_});
+  if (mode_ != Mode::POSITION) writer->number(command_time_);
+  spline_.save(writer);
 }
 
-void JointMotor::read(NumberReader* reader) {
+void JointMotor::restore(geometry::StateReader* reader) {
   mode_ = static_cast<Mode>(reader->choice(static_cast<int>(Mode::COUNT)));
   velocity_target_ = reader->number();
   added_effort_ = reader->number();
   integral_ = reader->number();
   command_time_ = mode_ == Mode::POSITION ? 0 : reader->number();
-  spline_.read(reader);
+  spline_.restore(reader);
 }
 
 }  // namespace blem_sim::sim

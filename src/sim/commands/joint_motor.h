@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "blem_sim/dynamics/world_types.h"
+#include "blem_sim/geometry/state_stream.h"
 #include "blem_sim/model/robot_model.h"
 #include "blem_sim/sim/config.h"
 #include "blem_sim/sim/trajectory.h"
@@ -57,8 +58,8 @@ class JointMotor {
 
   const MotorSettings& settings() const { return settings_; }
   void setViscousFriction(double friction) { settings_.friction.viscous = friction; }
-  void append(std::vector<double>* numbers) const;
-  void read(NumberReader* reader);
+  void save(geometry::StateWriter* writer) const;
+  void restore(geometry::StateReader* reader);
 
  private:
   enum class Mode { POSITION, VELOCITY, EFFORT, COUNT };

@@ -2,7 +2,6 @@
 
 #include "blem_sim/sim/trajectory.h"
 #include "numbers/nearest_turn.h"
-#include "numbers/number_reader.h"
 
 namespace blem_sim::sim {
 
@@ -118,26 +117,25 @@ void JointSpline::splice(double now, double start, std::vector<Knot> knots, bool
   knots_ = std::move(spliced);
 }
 
-void JointSpline::append(std::vector<double>* numbers) const {
-  numbers->push_back(static_cast<double>(knots_.size()));
+void JointSpline::save(geometry::StateWriter* writer) const {
+  writer->number(static_cast<double>(knots_.size()));
   for (const Knot& knot : knots_)
-    numbers->insert(numbers->end(),
-                    {knot.time, knot.position, knot.velocity, knot.acceleration, knot.effort, static_cast<double>(knot.order)});
+    writer->numbers({knot.time, knot.position, knot.velocity, knot.acceleration, knot.effort, static_cast<double>(knot.order)});
 }
 
-void JointSpline::read(NumberReader* reader) {
+void JointSpline::restore(geometry::StateReader* reader) {
   constexpr std::size_t NUMBERS = 6;
   const double count = reader->number();
-  if (!(count >= 1 && count <= static_cast<double>(reader->left() / NUMBERS))) NumberReader::refuse();
+  if (!(count >= 1 && count <= static_cast<double>(reader->numbersLeft() / NUMBERS))) reader->refuse();
   knots_.resize(static_cast<std::size_t>(count));
   for (Knot& knot : knots_) {
     double numbers[NUMBERS];
     reader->numbers(numbers, NUMBERS);
-    if (numbers[5] != 1 && numbers[5] != 3 && numbers[5] != 5) NumberReader::refuseContent("a knot's order is none of 1, 3 and 5");
+    if (numbers[5] != 1 && numbers[5] != 3 && numbers[5] != 5) reader->refuseContent("a knot's order is none of 1, 3 and 5");
     knot = {numbers[0], numbers[1], numbers[2], numbers[3], numbers[4], static_cast<int>(numbers[5])};
   }
   const auto earlier = [](const Knot& a, const Knot& b) { return a.time < b.time; };
-  if (!std::is_sorted(knots_.begin(), knots_.end(), earlier)) NumberReader::refuseContent("the times of a spline go back");
+  if (!std::is_sorted(knots_.begin(), knots_.end(), earlier)) reader->refuseContent("the times of a spline go back");
 }
 
 }  // namespace blem_sim::sim

@@ -4,7 +4,6 @@
 #include <iterator>
 
 #include "blem_sim/contact/collider_pairs.h"
-#include "contacts/contact_stage.h"
 
 namespace blem_sim::sim {
 namespace {
@@ -13,8 +12,9 @@ constexpr double BEARING_GAP = 1e-6;  // [m] largest gap of a contact that bears
 
 /** Largest change [m/s] of a contact's velocity from that at hand to that of the pair's way. The solve begins with the slip at hand: where
  * the gap spares less than friction makes of that change, contacts that are not met would push. */
-double changeOf(const SimulatedWorld& world, const std::vector<dynamics::BodyState>& bodies, const WayOfPair& way) {
-  const BodyTwist a = twistOf(world, bodies, way.a.collider->body), b = twistOf(world, bodies, way.b.collider->body);
+double changeOf(const SolveAhead& ahead, const WayOfPair& way) {
+  const BodyTwist a = twistOf(ahead.world, ahead.bodies, way.a.collider->body),
+                  b = twistOf(ahead.world, ahead.bodies, way.b.collider->body);
   double largest = 0;
   for (const contact::Contact& contact : way.now.contacts) {
     const Vector3& p = contact.point;
@@ -45,13 +45,25 @@ double ContactMeetings::depthOf(const SimulatedWorld& world, int collider) const
 }
 
 /** Way of a collider. An object that touches nothing falls; other bodies are borne by their contacts or motors. */
-ColliderWay ContactMeetings::wayOf(const SimulatedWorld& world, const std::vector<dynamics::BodyState>& bodies,
-                                   const ContactStage& contacts, int collider, double dt) const {
+ColliderWay ContactMeetings::wayOf(const SolveAhead& ahead, int collider) const {
+  const SimulatedWorld& world = ahead.world;
   const contact::Collider& c = world.colliders[collider];
-  const BodyTwist now = twistOf(world, bodies, c.body);
-  ColliderWay way{&c, contacts.motion()[collider].X_WC, now.centre, now};
+  const BodyTwist now = twistOf(world, ahead.bodies, c.body);
+  ColliderWay way{&c, ahead.contacts.watched.motion[collider].X_WC, now.centre, now};
   if (c.body != dynamics::WORLD_BODY && world.models[c.model].kind == ModelKind::OBJECT && !supports_[c.body].touches)
-    way.twist.v += dt * world.world.gravity();
+    way.twist.v += ahead.dt * world.world.gravity();
+  return way;
+}
+
+/** Way of a collider to where it is expected at the end of the solve. */
+ColliderWay ContactMeetings::expectedWayOf(const SolveAhead& ahead, int collider) {
+  const contact::Collider& c = ahead.world.colliders[collider];
+  const BodyTwist now = twistOf(ahead.world, ahead.bodies, c.body);
+  ColliderWay way{&c, ahead.contacts.watched.motion[collider].X_WC, now.centre, now};
+  if (c.body == dynamics::WORLD_BODY) return way;
+  const dynamics::BodyState& then = ahead.expected.bodies[c.body];
+  way.twist = {now.centre, then.v_WCom, then.w_WB};
+  ways_.leadTo(c.body, then.X_WB, &way.twist);
   return way;
 }
 
@@ -63,66 +75,56 @@ std::vector<contact::Contact>* ContactMeetings::room(std::size_t manifold) {
 }
 
 /** @param way of the pair until the end of the solve */
-void ContactMeetings::follow(const SimulatedWorld& world, const ContactStage& contacts, const FlushSurfaces& flush, std::size_t manifold,
-                             WayOfPair* way) {
+void ContactMeetings::follow(const SolveAhead& ahead, std::size_t manifold, WayOfPair* way) {
   const int a = way->now.a, b = way->now.b;
-  way->fading = &contacts.fading();
-  way->known = contact::findPair(contacts.watched(), a, b)->known;
-  way->depth = std::max(depthOf(world, a), depthOf(world, b));
-  if (way_.follow(*way, flush, world.colliders, contacts.motion(), room(manifold))) ++replaced_count_;
+  const FoundContacts& contacts = ahead.contacts;
+  way->dt = ahead.dt;
+  way->fading = &ahead.fading;
+  way->known = contact::findPair(contacts.watched.pairs, a, b)->known;
+  way->depth = std::max(depthOf(ahead.world, a), depthOf(ahead.world, b));
+  if (way_.follow(*way, contacts.flush, ahead.world.colliders, contacts.watched.motion, room(manifold))) ++replaced_count_;
 }
 
-void ContactMeetings::lookAt(const SimulatedWorld& world, const std::vector<dynamics::BodyState>& bodies, const ContactStage& contacts,
-                             const FlushSurfaces& flush, std::size_t manifold, double dt) {
-  const contact::ContactManifold& now = contacts.current()[manifold];
-  const contact::Collider &a = world.colliders[now.a], &b = world.colliders[now.b];
+void ContactMeetings::lookAt(const SolveAhead& ahead, std::size_t manifold) {
+  const contact::ContactManifold& now = ahead.contacts.manifolds[manifold];
+  const contact::Collider &a = ahead.world.colliders[now.a], &b = ahead.world.colliders[now.b];
   if (a.geometry->isHalfSpace() || b.geometry->isHalfSpace()) return;
-  if (now.pierced || contacts.crossings().find(now.a, now.b)) return;
-  WayOfPair way{now, wayOf(world, bodies, contacts, now.a, dt), wayOf(world, bodies, contacts, now.b, dt)};
-  way.dt = dt;
+  if (now.pierced || ahead.contacts.crossings.find(now.a, now.b)) return;
+  WayOfPair way{now, wayOf(ahead, now.a), wayOf(ahead, now.b)};
+  way.dt = ahead.dt;
   way.swing = ways_.swing(a.body) + ways_.swing(b.body);
   if (!way_.isDoubtful(way)) return;
   ways_.lead(a.body, &way.a.twist);
   ways_.lead(b.body, &way.b.twist);
-  follow(world, contacts, flush, manifold, &way);
+  follow(ahead, manifold, &way);
 }
 
-void ContactMeetings::lookAgain(const SimulatedWorld& world, const std::vector<dynamics::BodyState>& bodies, const ContactStage& contacts,
-                                const FlushSurfaces& flush, const Expectation& expected, std::size_t manifold, double dt) {
-  const contact::ContactManifold& now = contacts.current()[manifold];
-  if (expected.bodies.empty()) {
-    std::vector<contact::Contact>* kept = room(manifold);
-    kept->clear();
-    std::copy_if(now.contacts.begin(), now.contacts.end(), std::back_inserter(*kept), touches);
-    ++replaced_count_;
-    return;
-  }
-  const auto way_of = [&](int collider) {
-    const int body = world.colliders[collider].body;
-    const BodyTwist at_hand = twistOf(world, bodies, body);
-    ColliderWay way{&world.colliders[collider], contacts.motion()[collider].X_WC, at_hand.centre, at_hand};
-    if (body == dynamics::WORLD_BODY) return way;
-    way.twist = {at_hand.centre, expected.bodies[body].v_WCom, expected.bodies[body].w_WB};
-    ways_.leadTo(body, expected.bodies[body].X_WB, &way.twist);
-    return way;
-  };
-  WayOfPair way{now, way_of(now.a), way_of(now.b)};
-  way.dt = dt;
-  way.swing = changeOf(world, bodies, way);
-  follow(world, contacts, flush, manifold, &way);
+void ContactMeetings::keepWhatTouches(const SolveAhead& ahead, std::size_t manifold) {
+  const std::vector<contact::Contact>& now = ahead.contacts.manifolds[manifold].contacts;
+  std::vector<contact::Contact>* kept = room(manifold);
+  kept->clear();
+  std::copy_if(now.begin(), now.end(), std::back_inserter(*kept), touches);
+  ++replaced_count_;
 }
 
-void ContactMeetings::look(const SimulatedWorld& world, const std::vector<dynamics::BodyState>& bodies, const ContactStage& contacts,
-                           const FlushSurfaces& flush, const Expectation& expected, double dt) {
-  const std::vector<contact::ContactManifold>& manifolds = contacts.current();
+void ContactMeetings::lookAgain(const SolveAhead& ahead, std::size_t manifold) {
+  if (ahead.expected.bodies.empty()) return keepWhatTouches(ahead, manifold);
+  const contact::ContactManifold& now = ahead.contacts.manifolds[manifold];
+  WayOfPair way{now, expectedWayOf(ahead, now.a), expectedWayOf(ahead, now.b)};
+  way.swing = changeOf(ahead, way);
+  follow(ahead, manifold, &way);
+}
+
+void ContactMeetings::look(const SolveAhead& ahead) {
+  const std::vector<contact::ContactManifold>& manifolds = ahead.contacts.manifolds;
   replaced_count_ = 0;
-  ways_.start(world, bodies, dt);
-  findSupports(world, manifolds);
+  ways_.start(ahead.world, ahead.bodies, ahead.dt);
+  findSupports(ahead.world, manifolds);
   for (std::size_t m = 0; m < manifolds.size(); ++m) {
-    if (contact::findPair(expected.pairs, manifolds[m].a, manifolds[m].b))
-      lookAgain(world, bodies, contacts, flush, expected, m, dt);
+    if (contact::findPair(ahead.expected.pairs, manifolds[m].a, manifolds[m].b))
+      lookAgain(ahead, m);
     else
-      lookAt(world, bodies, contacts, flush, m, dt);
+      lookAt(ahead, m);
   }
 }
 

@@ -5,11 +5,10 @@
 #include <vector>
 
 #include "contacts/body_ways.h"
+#include "contacts/found_contacts.h"
 #include "contacts/pair_way.h"
 
 namespace blem_sim::sim {
-
-class ContactStage;
 
 /** Two colliders whose contacts before touch are looked at once more. */
 struct PairAside {
@@ -22,6 +21,16 @@ struct Expectation {
   std::vector<dynamics::BodyState> bodies;  ///< states at the end of the solve; empty: contacts that do not touch are left out
 };
 
+/** A solve that is to be made. */
+struct SolveAhead {
+  const SimulatedWorld& world;
+  const std::vector<dynamics::BodyState>& bodies;  ///< of the state at hand, by slot
+  const FoundContacts& contacts;                   ///< of that state
+  const FadingPoints& fading;                      ///< applied to contacts that are found on the way
+  const Expectation& expected;                     ///< pairs that go on otherwise than bodies do at hand
+  double dt;                                       ///< [s] its length
+};
+
 /**
  * A contact before touch bounds the closing speed along the normal of its pose. While a body moves across that normal, the contact's
  * features pass each other, or meet along another normal. So a pair that, moving on freely, would use up a gap while it moves across it is
@@ -32,12 +41,7 @@ struct Expectation {
  */
 class ContactMeetings {
  public:
-  /**
-   * @param contacts of the state at hand @param bodies its states, by slot @param flush surfaces that meet at it
-   * @param expected pairs that go on otherwise than bodies do at hand @param dt [s] of the solve
-   */
-  void look(const SimulatedWorld& world, const std::vector<dynamics::BodyState>& bodies, const ContactStage& contacts,
-            const FlushSurfaces& flush, const Expectation& expected, double dt);
+  void look(const SolveAhead& ahead);
   /** Exchanges the contacts of these manifolds for those that are to be solved; a second time back. */
   void exchange(std::vector<contact::ContactManifold>* manifolds);
 
@@ -51,14 +55,13 @@ class ContactMeetings {
     std::vector<contact::Contact> contacts;
   };
   void findSupports(const SimulatedWorld& world, const std::vector<contact::ContactManifold>& manifolds);
-  ColliderWay wayOf(const SimulatedWorld& world, const std::vector<dynamics::BodyState>& bodies, const ContactStage& contacts, int collider,
-                    double dt) const;
+  ColliderWay wayOf(const SolveAhead& ahead, int collider) const;
+  ColliderWay expectedWayOf(const SolveAhead& ahead, int collider);
   double depthOf(const SimulatedWorld& world, int collider) const;
-  void lookAt(const SimulatedWorld& world, const std::vector<dynamics::BodyState>& bodies, const ContactStage& contacts,
-              const FlushSurfaces& flush, std::size_t manifold, double dt);
-  void lookAgain(const SimulatedWorld& world, const std::vector<dynamics::BodyState>& bodies, const ContactStage& contacts,
-                 const FlushSurfaces& flush, const Expectation& expected, std::size_t manifold, double dt);
-  void follow(const SimulatedWorld& world, const ContactStage& contacts, const FlushSurfaces& flush, std::size_t manifold, WayOfPair* way);
+  void lookAt(const SolveAhead& ahead, std::size_t manifold);
+  void lookAgain(const SolveAhead& ahead, std::size_t manifold);
+  void keepWhatTouches(const SolveAhead& ahead, std::size_t manifold);
+  void follow(const SolveAhead& ahead, std::size_t manifold, WayOfPair* way);
   std::vector<contact::Contact>* room(std::size_t manifold);
 
   std::vector<Support> supports_;  // by body

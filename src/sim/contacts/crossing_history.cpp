@@ -5,6 +5,7 @@
 namespace blem_sim::sim {
 namespace {
 
+constexpr double APART = 0.25;                  // of the layer: a pair that crossed is sound again when its deepest contact uses up less
 constexpr std::size_t WORDS = 3, NUMBERS = 16;  // of a recovery
 
 bool isRigid(const Pose& X) {
@@ -17,30 +18,38 @@ bool isRigid(const Pose& X) {
 
 const Recovery* CrossingHistory::find(int a, int b) const { return contact::findPair(recoveries_, a, b); }
 
-void CrossingHistory::forget(int collider) { contact::removePairsOf(collider, &recoveries_); }
-
-void CrossingHistory::append(std::vector<double>* numbers, std::vector<std::uint64_t>* words) const {
-  words->push_back(recoveries_.size());
-  for (const Recovery& recovery : recoveries_) {
-    for (const int word : {recovery.a, recovery.b, static_cast<int>(recovery.known)}) words->push_back(static_cast<std::uint64_t>(word));
-    numbers->insert(numbers->end(), recovery.X_AB.matrix().data(), recovery.X_AB.matrix().data() + NUMBERS);
+void CrossingHistory::goOn(const CrossingHistory& before, const std::vector<Recovery>& last_apart,
+                           const std::vector<contact::ContactManifold>& manifolds) {
+  recoveries_.clear();
+  for (std::size_t i = 0; i < last_apart.size(); ++i) {
+    const contact::ContactManifold& manifold = manifolds[i];
+    const bool was_recovering = before.find(manifold.a, manifold.b) != nullptr;
+    if (manifold.pierced || (was_recovering && manifold.maxDepth() > APART * manifold.layer)) recoveries_.push_back(last_apart[i]);
   }
 }
 
-bool CrossingHistory::read(const std::vector<contact::Collider>& colliders, const std::uint64_t** words, const std::uint64_t* words_end,
-                           NumberReader* reader) {
+void CrossingHistory::forget(int collider) { contact::removePairsOf(collider, &recoveries_); }
+
+void CrossingHistory::save(geometry::StateWriter* writer) const {
+  writer->word(recoveries_.size());
+  for (const Recovery& recovery : recoveries_) {
+    writer->integer(recovery.a);
+    writer->integer(recovery.b);
+    writer->flag(recovery.known);
+    writer->numbers(recovery.X_AB.matrix().data(), NUMBERS);
+  }
+}
+
+void CrossingHistory::restore(const std::vector<contact::Collider>& colliders, geometry::StateReader* reader) {
   recoveries_.clear();
-  if (*words == words_end) return false;
-  const std::uint64_t count = *(*words)++;
-  if (static_cast<std::uint64_t>(words_end - *words) / WORDS < count) return false;
-  for (std::uint64_t i = 0; i < count; ++i, *words += WORDS) {
-    if (!contact::isPair(colliders, (*words)[0], (*words)[1]) || (*words)[2] > 1) return false;
-    Recovery recovery{static_cast<int>((*words)[0]), static_cast<int>((*words)[1]), (*words)[2] != 0, Pose()};
+  for (std::size_t left = reader->count(WORDS, NUMBERS); left > 0; --left) {
+    const auto [a, b] = contact::readPair(colliders, reader);
+    Recovery recovery{a, b, reader->flag(), Pose()};
     reader->numbers(recovery.X_AB.matrix().data(), NUMBERS);
-    if (!isRigid(recovery.X_AB)) return false;
+    if (!isRigid(recovery.X_AB)) reader->refuseContent("a pose in which a pair was last apart is none");
     recoveries_.push_back(recovery);
   }
-  return contact::areSorted(recoveries_);
+  if (!contact::areSorted(recoveries_)) contact::refusePairs(*reader);
 }
 
 }  // namespace blem_sim::sim

@@ -1,13 +1,12 @@
 // Pairs of colliders whose bare meshes cross, and the poses in which they were last apart.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
 #include <vector>
 
 #include "blem_sim/contact/collider.h"
+#include "blem_sim/contact/manifold.h"
+#include "blem_sim/geometry/state_stream.h"
 #include "blem_sim/geometry/types.h"
-#include "numbers/number_reader.h"
 
 namespace blem_sim::sim {
 
@@ -28,17 +27,15 @@ class CrossingHistory {
   /** The pair's recovery; null if it is apart. */
   const Recovery* find(int a, int b) const;
   void clear() { recoveries_.clear(); }
-  /** Adds a pair that comes after all that are there. */
-  void add(const Recovery& recovery) { recoveries_.push_back(recovery); }
-  void forget(int collider);
-  /** The history as numbers and words, for save: the last numbers of a state. */
-  void append(std::vector<double>* numbers, std::vector<std::uint64_t>* words) const;
   /**
-   * Reads the words and numbers of append and moves the cursor behind the words.
-   * @param colliders whose pairs they may be @return false if they are others, or not whole
+   * Becomes the history of the next state: pairs that cross there, and those of the history before that are not apart yet.
+   * @param last_apart of the pairs searched, sorted by (a, b) @param manifolds of the first of them each
    */
-  bool read(const std::vector<contact::Collider>& colliders, const std::uint64_t** words, const std::uint64_t* words_end,
-            NumberReader* reader);
+  void goOn(const CrossingHistory& before, const std::vector<Recovery>& last_apart, const std::vector<contact::ContactManifold>& manifolds);
+  void forget(int collider);
+  void save(geometry::StateWriter* writer) const;
+  /** @param colliders whose pairs they may be */
+  void restore(const std::vector<contact::Collider>& colliders, geometry::StateReader* reader);
 
  private:
   std::vector<Recovery> recoveries_;  // sorted by (a, b)

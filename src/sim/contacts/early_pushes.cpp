@@ -1,9 +1,9 @@
 #include "contacts/early_pushes.h"
 
 #include <algorithm>
+#include <cstdint>
 
 #include "blem_sim/contact/collider_pairs.h"
-#include "contacts/contact_stage.h"
 
 namespace blem_sim::sim {
 namespace {
@@ -26,28 +26,27 @@ bool touchesAnew(const contact::ContactManifold* before, const contact::ContactM
 
 }  // namespace
 
-bool EarlyPushes::isEarly(const SimulatedWorld& world, const ContactStage& contacts, std::size_t constraint,
-                          const std::vector<dynamics::BodyState>& bodies, double dt) const {
-  const dynamics::ContactConstraint& contact = contacts.constraints()[constraint];
-  const SolvedContact& of = contacts.solved()[constraint];
+bool EarlyPushes::isEarly(const SimulatedWorld& world, const MadeSolve& made, const FoundContacts& found, std::size_t constraint) const {
+  const dynamics::ContactConstraint& contact = made.contacts.constraints[constraint];
+  const SolvedContact& of = made.contacts.solved[constraint];
   if (of.pierced || of.recovers || (!isOfRobot(world, of.collider_a) && !isOfRobot(world, of.collider_b))) return false;
   const Vector3 sliding =
-      twistOf(world, bodies, contact.body_a).at(contact.point) - twistOf(world, bodies, contact.body_b).at(contact.point);
+      twistOf(world, made.after, contact.body_a).at(contact.point) - twistOf(world, made.after, contact.body_b).at(contact.point);
   const Vector3 across = sliding - contact.normal_BA.dot(sliding) * contact.normal_BA;
-  if (across.norm() * dt <= ACROSS * of.layer) return false;
-  return !touchesAnew(contact::findPair(contacts.current(), of.collider_a, of.collider_b),
-                      contact::findPair(contacts.found(), of.collider_a, of.collider_b));
+  if (across.norm() * made.dt <= ACROSS * of.layer) return false;
+  return !touchesAnew(contact::findPair(made.start.manifolds, of.collider_a, of.collider_b),
+                      contact::findPair(found.manifolds, of.collider_a, of.collider_b));
 }
 
-bool EarlyPushes::find(const SimulatedWorld& world, const ContactStage& contacts, const std::vector<Vector3>& forces,
-                       const std::vector<dynamics::BodyState>& bodies, double dt) {
+bool EarlyPushes::find(const SimulatedWorld& world, const MadeSolve& made, const FoundContacts& found) {
   clear();
   std::vector<PairAside>& pairs = expectation_.pairs;
+  const std::vector<Vector3>& forces = made.result.contact_forces;
   for (std::size_t i = 0; i < forces.size(); ++i) {
-    if (contacts.constraints()[i].depth >= -TOUCHING || forces[i].isZero(0)) continue;
-    const PairAside pair{contacts.solved()[i].collider_a, contacts.solved()[i].collider_b};
+    if (made.contacts.constraints[i].depth >= -TOUCHING || forces[i].isZero(0)) continue;
+    const PairAside pair{made.contacts.solved[i].collider_a, made.contacts.solved[i].collider_b};
     const bool known = !pairs.empty() && pairs.back().a == pair.a && pairs.back().b == pair.b;
-    if (!known && isEarly(world, contacts, i, bodies, dt)) pairs.push_back(pair);
+    if (!known && isEarly(world, made, found, i)) pairs.push_back(pair);
   }
   return !pairs.empty();
 }

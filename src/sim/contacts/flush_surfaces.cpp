@@ -2,9 +2,6 @@
 
 #include <algorithm>
 
-#include "blem_sim/contact/surface_cover.h"
-#include "contacts/contact_stage.h"
-
 namespace blem_sim::sim {
 namespace {
 
@@ -12,11 +9,6 @@ constexpr double SAME_WIDTH = 1e-6;  // [m] parts that a layer thinner by more l
 
 /** A cloud of points has no surface that another could go on with. */
 bool hasSurface(const contact::Collider& collider) { return collider.geometry->isHalfSpace() || !collider.geometry->mesh().isPoint(0); }
-
-contact::SurfaceCover& threadCover() {
-  thread_local contact::SurfaceCover cover;
-  return cover;
-}
 
 }  // namespace
 
@@ -39,7 +31,7 @@ void FlushSurfaces::watch(const std::vector<contact::Collider>& colliders, const
 }
 
 void FlushSurfaces::dropCovered(const std::vector<contact::Collider>& colliders, const std::vector<contact::ColliderMotion>& motion,
-                                contact::ContactManifold* manifold) const {
+                                contact::SurfaceCover* cover, contact::ContactManifold* manifold) const {
   const bool a_is_fixed = colliders[manifold->a].body == dynamics::WORLD_BODY;
   if (neighbours_.empty() || manifold->pierced || (!a_is_fixed && colliders[manifold->b].body != dynamics::WORLD_BODY)) return;
   const int moving = a_is_fixed ? manifold->b : manifold->a, fixed = a_is_fixed ? manifold->a : manifold->b;
@@ -47,13 +39,12 @@ void FlushSurfaces::dropCovered(const std::vector<contact::Collider>& colliders,
                                              [](const Neighbour& a, const Neighbour& b) { return a.moving < b.moving; });
   if (first == end) return;
   const double thinnest = colliders[fixed].radius - SAME_WIDTH;
-  contact::SurfaceCover& cover = threadCover();
   const auto isCovered = [&, first = first, end = end](const contact::Contact& contact) {
-    cover.begin(contact, a_is_fixed, colliders[fixed], motion[fixed].X_WC);
+    cover->begin(contact, a_is_fixed, colliders[fixed], motion[fixed].X_WC);
     for (auto other = first; other != end; ++other)
       if (other->fixed != fixed && colliders[other->fixed].radius >= thinnest)
-        cover.add(colliders[other->fixed], motion[other->fixed].X_WC, other->fixed < fixed);
-    return cover.isCovered();
+        cover->add(colliders[other->fixed], motion[other->fixed].X_WC, other->fixed < fixed);
+    return cover->isCovered();
   };
   std::vector<contact::Contact>& contacts = manifold->contacts;
   contacts.erase(std::remove_if(contacts.begin(), contacts.end(), isCovered), contacts.end());

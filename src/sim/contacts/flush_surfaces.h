@@ -5,19 +5,19 @@
 
 #include "blem_sim/contact/broad_phase.h"
 #include "blem_sim/contact/manifold.h"
+#include "blem_sim/contact/surface_cover.h"
+#include "contacts/pair_watch.h"
 
 namespace blem_sim::sim {
-
-struct WatchedPair;
 
 /** Static colliders near each moving one: where there are several, their surfaces may go over into each other. */
 class FlushSurfaces {
  public:
   /** @param pairs of the search at hand */
   void watch(const std::vector<contact::Collider>& colliders, const std::vector<WatchedPair>& pairs);
-  /** Takes from a pair's contacts with a static surface those that others cover (SurfaceCover). Thread safe. */
+  /** Takes from a pair's contacts with a static surface those that others cover. @param cover work space, of one call at a time */
   void dropCovered(const std::vector<contact::Collider>& colliders, const std::vector<contact::ColliderMotion>& motion,
-                   contact::ContactManifold* manifold) const;
+                   contact::SurfaceCover* cover, contact::ContactManifold* manifold) const;
 
  private:
   struct Neighbour {

@@ -1,5 +1,7 @@
 #include "contacts/layer_stops.h"
 
+#include "blem_sim/contact/collider_pairs.h"
+
 namespace blem_sim::sim {
 
 const std::vector<contact::Contact>& LayerStops::choose(const contact::ContactManifold& manifold, const reduction::Reduction& method) {
@@ -35,15 +37,16 @@ void LayerStops::forget(int collider) {
   any_ = !memory_.choices().empty();
 }
 
-void LayerStops::append(std::vector<std::uint64_t>* words) const {
-  if (any_) memory_.append(words);
+void LayerStops::save(geometry::StateWriter* writer) const {
+  if (any_) memory_.save(writer);
 }
 
-bool LayerStops::read(const std::vector<contact::Collider>& colliders, const std::uint64_t* words, const std::uint64_t* end) {
+void LayerStops::restore(const std::vector<contact::Collider>& colliders, geometry::StateReader* reader) {
   clear();
-  if (words == end) return true;
-  any_ = memory_.read(colliders, &words, end) && !memory_.choices().empty();
-  return any_ && words == end;
+  if (reader->wordsLeft() == 0) return;
+  memory_.restore(colliders, reader);
+  any_ = !memory_.choices().empty();
+  if (!any_) contact::refusePairs(*reader);
 }
 
 }  // namespace blem_sim::sim

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "blem_sim/contact/manifold.h"
+#include "blem_sim/geometry/state_stream.h"
 #include "blem_sim/reduction/reduction.h"
 
 namespace blem_sim::sim {
@@ -32,10 +33,10 @@ class LayerStops {
   void forget(int collider);
   /** Choices of the last reduction, by pairs. */
   const reduction::ReductionMemory& memory() const { return memory_; }
-  /** The choices as words, for save: none if there are no stops. */
-  void append(std::vector<std::uint64_t>* words) const;
-  /** Reads the words of append, up to the end. @param colliders whose pairs they may be @return false if the words are others */
-  bool read(const std::vector<contact::Collider>& colliders, const std::uint64_t* words, const std::uint64_t* end);
+  /** Saves the choices: nothing if there are no stops, so they are the last words of a state. */
+  void save(geometry::StateWriter* writer) const;
+  /** @param colliders whose pairs they may be */
+  void restore(const std::vector<contact::Collider>& colliders, geometry::StateReader* reader);
 
  private:
   reduction::ReductionMemory memory_;

@@ -5,29 +5,83 @@
 #include <algorithm>
 #include <utility>
 
-#include "blem_sim/contact/collider_pairs.h"
-#include "contacts/contact_stage.h"
-
 namespace blem_sim::sim {
+namespace {
 
-PairSearches::PairSearches(int threads) : threads_(threads), arena_(std::min(threads, tbb::this_task_arena::max_concurrency())) {}
+/** Pose in which a pair was last apart, as far as the last accepted state knows. */
+Recovery lastApart(const FoundContacts& before, int a, int b) {
+  if (const Recovery* recovery = before.crossings.find(a, b)) return *recovery;
+  if (!before.known || contact::findPair(before.watched.left_out, a, b)) return {a, b, false, Pose::Identity()};
+  return {a, b, true, before.watched.motion[a].X_WC.inverse() * before.watched.motion[b].X_WC};
+}
 
-void PairSearches::run(const std::vector<WatchedPair>& pairs, const std::function<void(std::size_t, contact::NarrowPhaseMemory*)>& search) {
-  watch(pairs);
-  const auto one = [&](std::size_t i) { search(i, &known_[i].memory); };
-  if (threads_ == 1 || pairs.size() < 2) {
-    for (std::size_t i = 0; i < pairs.size(); ++i) one(i);
-  } else {
-    // One by one: some searches take a thousand times as long as others.
-    arena_.execute([&] {
-      tbb::parallel_for(
-          tbb::blocked_range<std::size_t>(0, pairs.size(), 1),
-          [&](const auto& range) {
-            for (std::size_t i = range.begin(); i < range.end(); ++i) one(i);
-          },
-          tbb::simple_partitioner());
-    });
+}  // namespace
+
+PairSearches::PairSearches(int threads)
+    : threads_(threads),
+      arena_(std::min(threads, tbb::this_task_arena::max_concurrency())),
+      covers_(static_cast<std::size_t>(arena_.max_concurrency())) {}
+
+/** Calls search(pair, thread) for all pairs, in any order and at once. */
+template <typename SearchOfOne>
+void PairSearches::run(std::size_t pairs, const SearchOfOne& search) {
+  if (threads_ == 1 || pairs < 2) {
+    for (std::size_t i = 0; i < pairs; ++i) search(i, 0);
+    return;
   }
+  // One by one: some searches take a thousand times as long as others.
+  arena_.execute([&] {
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, pairs, 1),
+        [&](const auto& range) {
+          const auto thread = static_cast<std::size_t>(tbb::this_task_arena::current_thread_index());
+          for (std::size_t i = range.begin(); i < range.end(); ++i) search(i, thread);
+        },
+        tbb::simple_partitioner());
+  });
+}
+
+void PairSearches::find(const SimulatedWorld& world, const FoundContacts& before, const FadingPoints& fading, WatchedPairs* pairs,
+                        FoundContacts* found) {
+  std::swap(*pairs, found->watched);
+  const std::vector<WatchedPair>& watched = found->watched.pairs;
+  const std::vector<contact::ColliderMotion>& motion = found->watched.motion;
+  makeRoom(watched.size(), &found->manifolds);
+  last_apart_.clear();
+  for (const WatchedPair& pair : watched) last_apart_.push_back(lastApart(before, pair.a, pair.b));
+  found->flush.watch(world.colliders, watched);
+  watch(watched);
+  run(watched.size(), [&](std::size_t i, std::size_t thread) {
+    const WatchedPair& pair = watched[i];
+    const Recovery& last = last_apart_[i];
+    contact::ContactManifold& manifold = found->manifolds[i];
+    contact::narrowPhase(world.colliders[pair.a], motion[pair.a].X_WC, world.colliders[pair.b], motion[pair.b].X_WC, pair.known, &manifold,
+                         last.known ? &last.X_AB : nullptr, &known_[i].memory);
+    manifold.a = pair.a;
+    manifold.b = pair.b;
+    found->flush.dropCovered(world.colliders, motion, &covers_[thread], &manifold);
+    fading.apply(&manifold);
+  });
+  found->crossings.goOn(before.crossings, last_apart_, found->manifolds);
+  keepWhatWasFound(watched.size(), &found->manifolds);
+  found->known = true;
+}
+
+void PairSearches::makeRoom(std::size_t pairs, std::vector<contact::ContactManifold>* manifolds) {
+  for (; manifolds->size() < pairs && !spare_manifolds_.empty(); spare_manifolds_.pop_back())
+    manifolds->push_back(std::move(spare_manifolds_.back()));
+  if (manifolds->size() < pairs) manifolds->resize(pairs);
+}
+
+/** Keeps the manifolds with contacts. */
+void PairSearches::keepWhatWasFound(std::size_t pairs, std::vector<contact::ContactManifold>* manifolds) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < pairs; ++i) {
+    if ((*manifolds)[i].contacts.empty()) continue;
+    if (kept != i) std::swap((*manifolds)[kept], (*manifolds)[i]);
+    ++kept;
+  }
+  for (; manifolds->size() > kept; manifolds->pop_back()) spare_manifolds_.push_back(std::move(manifolds->back()));
 }
 
 /** Makes known_ the memories of these pairs, in their order. */

@@ -82,7 +82,7 @@ bool PairWay::search(const WayOfPair& pair, const FlushSurfaces& flush, const st
     narrowPhase(*pair.a.collider, pair.a.twist.moved(pair.a.X_WC, time), *pair.b.collider, pair.b.twist.moved(pair.b.X_WC, time),
                 pair.known, &at_);
     if (at_.pierced) return false;
-    flush.dropCovered(colliders, motion, &at_);
+    flush.dropCovered(colliders, motion, &cover_, &at_);
     pair.fading->apply(&at_);
     const double depth = newDepth(at_.contacts), next = time + freeTime(pair, at_.contacts, time);
     touches_ = depth > pair.depth + 0.5 * TOUCHING;

@@ -58,6 +58,7 @@ class PairWay {
   bool isMetAsItIs(const contact::Contact& contact) const;
 
   std::vector<std::uint64_t> touching_;  // ids, ascending
+  contact::SurfaceCover cover_;
   contact::ContactManifold at_, met_;
   double met_time_ = 0;  // [s] of met_
   bool touches_ = false;

@@ -43,15 +43,13 @@ void EnergyBalance::start(const dynamics::World& world) {
   for (int joint = 0; joint < world.jointCount(); ++joint) joints_[joint] = world.jointState(joint);
 }
 
-EnergyGain EnergyBalance::addSolve(const dynamics::World& world, double dt, const ContactStage& contacts,
-                                   const dynamics::SolveResult& solved, const std::vector<dynamics::BodyState>& before,
-                                   const std::vector<dynamics::BodyState>& after) {
-  tie(world, contacts, solved.contact_forces);
-  bookBodies(world, dt, before, after);
-  bookLoads(world, dt, before, after);
-  bookJoints(world, dt, solved.axis_efforts);
-  bookSprings(contacts, before, after);
-  bookContacts(dt, contacts, solved, before, after);
+EnergyGain EnergyBalance::addSolve(const dynamics::World& world, const MadeSolve& made) {
+  tie(world, made);
+  bookBodies(world, made.dt, made.before, made.after);
+  bookLoads(world, made.dt, made.before, made.after);
+  bookJoints(world, made.dt, made.result.axis_efforts);
+  bookSprings(made);
+  bookContacts(made);
   EnergyGain gain;
   for (const Book& book : books_) {
     const double rise = book.rise - book.held;
@@ -64,15 +62,16 @@ EnergyGain EnergyBalance::addSolve(const dynamics::World& world, double dt, cons
 }
 
 // A contact without a force passes no energy on.
-void EnergyBalance::tie(const dynamics::World& world, const ContactStage& contacts, const std::vector<Vector3>& forces) {
+void EnergyBalance::tie(const dynamics::World& world, const MadeSolve& made) {
   islands_.start(world.bodyCount());
   for (int joint = 0; joint < world.jointCount(); ++joint) {
     const dynamics::JointSpec& spec = world.jointSpec(joint);
     islands_.tie(spec.parent, spec.child);
     if (spec.mimic_joint >= 0) islands_.tie(spec.child, world.jointSpec(spec.mimic_joint).child);
   }
-  for (std::size_t i = 0; i < forces.size(); ++i)
-    if (!forces[i].isZero(0)) islands_.tie(contacts.constraints()[i].body_a, contacts.constraints()[i].body_b);
+  const std::vector<dynamics::ContactConstraint>& contacts = made.contacts.constraints;
+  for (std::size_t i = 0; i < contacts.size(); ++i)
+    if (!made.result.contact_forces[i].isZero(0)) islands_.tie(contacts[i].body_a, contacts[i].body_b);
   books_.assign(world.bodyCount(), Book());
 }
 
@@ -135,12 +134,11 @@ void EnergyBalance::bookJoints(const dynamics::World& world, double dt, const st
 }
 
 // Books the energy of springs; those that part crossed meshes hold none.
-void EnergyBalance::bookSprings(const ContactStage& contacts, const std::vector<dynamics::BodyState>& before,
-                                const std::vector<dynamics::BodyState>& after) {
-  Displacements a(before, after), b(before, after);
-  for (std::size_t i = 0; i < contacts.constraints().size(); ++i) {
-    const dynamics::ContactConstraint& contact = contacts.constraints()[i];
-    if (!isSpring(contact) || contacts.solved()[i].recovers) continue;
+void EnergyBalance::bookSprings(const MadeSolve& made) {
+  Displacements a(made.before, made.after), b(made.before, made.after);
+  for (std::size_t i = 0; i < made.contacts.constraints.size(); ++i) {
+    const dynamics::ContactConstraint& contact = made.contacts.constraints[i];
+    if (!isSpring(contact) || made.contacts.solved[i].recovers) continue;
     const Vector3 apart = a.of(contact.point, contact.body_a) - b.of(contact.point, contact.body_b);
     const double old_depth = std::max(0.0, contact.depth), depth = std::max(0.0, contact.depth - contact.normal_BA.dot(apart));
     Book& book = bookOf(contact);
@@ -158,19 +156,19 @@ double EnergyBalance::normalSpeed(const dynamics::ContactConstraint& contact, co
 }
 
 // Apparent work of steppers that do not report it is taken as half the loss of a departure that loads brake in this step.
-void EnergyBalance::bookContacts(double dt, const ContactStage& contacts, const dynamics::SolveResult& solved,
-                                 const std::vector<dynamics::BodyState>& before, const std::vector<dynamics::BodyState>& after) {
-  const std::vector<Vector3>& forces = solved.contact_forces;
+void EnergyBalance::bookContacts(const MadeSolve& made) {
+  const std::vector<Vector3>& forces = made.result.contact_forces;
+  const std::vector<double>& apparent = made.result.apparent_work;
   landings_.clear();
   for (std::size_t i = 0; i < forces.size(); ++i) {
     if (forces[i].isZero(0)) continue;
-    const dynamics::ContactConstraint& contact = contacts.constraints()[i];
-    const double impulse = dt * std::max(0.0, contact.normal_BA.dot(forces[i]));
-    const double old_speed = normalSpeed(contact, before), speed = normalSpeed(contact, after);
-    const double correction = correctionSpeed(contact, contacts.solved()[i].recovers, dt, settings_);
+    const dynamics::ContactConstraint& contact = made.contacts.constraints[i];
+    const double impulse = made.dt * std::max(0.0, contact.normal_BA.dot(forces[i]));
+    const double old_speed = normalSpeed(contact, made.before), speed = normalSpeed(contact, made.after);
+    const double correction = correctionSpeed(contact, made.contacts.solved[i].recovers, made.dt, settings_);
     Book& book = bookOf(contact);
     const double braked = 0.5 * impulse * std::max(0.0, std::max(0.0, old_speed) - std::max(0.0, speed));
-    book.on_purpose += impulse * correction + (solved.apparent_work.empty() ? braked : solved.apparent_work[i]);
+    book.on_purpose += impulse * correction + (apparent.empty() ? braked : apparent[i]);
     if (!(contact.restitution > 0) || old_speed >= 0) continue;
     book.restitution = std::max(book.restitution, contact.restitution);
     book.approach -= impulse * old_speed;
@@ -189,20 +187,20 @@ void EnergyBalance::holdBack() {
   }
 }
 
-void EnergyBalance::append(std::vector<double>* numbers) const {
+void EnergyBalance::save(geometry::StateWriter* writer) const {
   const bool any = std::any_of(held_.begin(), held_.end(), [](double held) { return held != 0; });
-  numbers->push_back(any ? static_cast<double>(held_.size()) : 0);
-  if (any) numbers->insert(numbers->end(), held_.begin(), held_.end());
+  writer->number(any ? static_cast<double>(held_.size()) : 0);
+  if (any) writer->numbers(held_.data(), held_.size());
 }
 
-void EnergyBalance::read(int bodies, NumberReader* reader) {
+void EnergyBalance::restore(int bodies, geometry::StateReader* reader) {
   const double count = reader->number();
-  if (count != 0 && count != bodies) NumberReader::refuse();
-  reader->require(static_cast<std::size_t>(count));
+  if (count != 0 && count != bodies) reader->refuse();
+  reader->requireNumbers(static_cast<std::size_t>(count));
   held_.assign(static_cast<std::size_t>(count), 0);
   reader->numbers(held_.data(), held_.size());
   if (std::any_of(held_.begin(), held_.end(), [](double held) { return held < 0; }))
-    NumberReader::refuseContent("energy is held back that is below 0");
+    reader->refuseContent("energy is held back that is below 0");
 }
 
 }  // namespace blem_sim::sim

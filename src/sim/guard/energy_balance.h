@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "blem_sim/dynamics/world.h"
+#include "blem_sim/geometry/state_stream.h"
 #include "blem_sim/sim/simulator_types.h"
-#include "contacts/contact_stage.h"
+#include "contacts/made_solve.h"
 #include "guard/body_islands.h"
-#include "numbers/number_reader.h"
 
 namespace blem_sim::sim {
 
@@ -39,22 +39,17 @@ class EnergyBalance {
   /** Wrenches from outside in the next solve, whose work comes out of something. */
   void setLoads(const std::vector<BodyLoad>& loads) { loads_ = loads; }
   /**
-   * After a solve that was accepted.
-   * @param dt [s] its length
-   * @param contacts it was made with
-   * @param solved forces of those contacts
-   * @param before, after bodies at its start and end
+   * Books a solve that was accepted.
    * @return never below 0. An impact's energy that is still to bounce is held back from one solve to the next: the share that the largest
    * restitution gives back of the energy that the solve before took
    */
-  EnergyGain addSolve(const dynamics::World& world, double dt, const ContactStage& contacts, const dynamics::SolveResult& solved,
-                      const std::vector<dynamics::BodyState>& before, const std::vector<dynamics::BodyState>& after);
+  EnergyGain addSolve(const dynamics::World& world, const MadeSolve& made);
 
   /** Forgets the energy that is held back: no impact is to bounce. */
   void clear() { held_.assign(held_.size(), 0); }
-  void append(std::vector<double>* numbers) const;
+  void save(geometry::StateWriter* writer) const;
   /** @param bodies number of the world's bodies: energy is held back for each of them, or for none */
-  void read(int bodies, NumberReader* reader);
+  void restore(int bodies, geometry::StateReader* reader);
 
  private:
   /** Book of an island, kept at its least body. */
@@ -74,17 +69,15 @@ class EnergyBalance {
     double left;      // part of its bounce that is still to come
   };
 
-  void tie(const dynamics::World& world, const ContactStage& contacts, const std::vector<Vector3>& forces);
+  void tie(const dynamics::World& world, const MadeSolve& made);
   void bookBodies(const dynamics::World& world, double dt, const std::vector<dynamics::BodyState>& before,
                   const std::vector<dynamics::BodyState>& after);
   void bookLoads(const dynamics::World& world, double dt, const std::vector<dynamics::BodyState>& before,
                  const std::vector<dynamics::BodyState>& after);
   /** @param efforts along the joints' axes */
   void bookJoints(const dynamics::World& world, double dt, const std::vector<double>& efforts);
-  void bookSprings(const ContactStage& contacts, const std::vector<dynamics::BodyState>& before,
-                   const std::vector<dynamics::BodyState>& after);
-  void bookContacts(double dt, const ContactStage& contacts, const dynamics::SolveResult& solved,
-                    const std::vector<dynamics::BodyState>& before, const std::vector<dynamics::BodyState>& after);
+  void bookSprings(const MadeSolve& made);
+  void bookContacts(const MadeSolve& made);
   void holdBack();
   Book& bookOf(const dynamics::ContactConstraint& contact);
   /** Speed [m/s] of A's point against B's along the normal. */

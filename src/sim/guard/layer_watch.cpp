@@ -74,11 +74,11 @@ void LayerWatch::addPassed(const std::vector<contact::ContactManifold>& manifold
   });
 }
 
-void LayerWatch::append(std::vector<std::uint64_t>* words) const {
-  words->push_back(outside_.size());
+void LayerWatch::save(geometry::StateWriter* writer) const {
+  writer->word(outside_.size());
   for (const auto& [a, b] : outside_) {
-    words->push_back(static_cast<std::uint64_t>(a));
-    words->push_back(static_cast<std::uint64_t>(b));
+    writer->integer(a);
+    writer->integer(b);
   }
 }
 
@@ -87,21 +87,14 @@ void LayerWatch::forget(int collider) {
   outside_.erase(std::remove_if(outside_.begin(), outside_.end(), has_it), outside_.end());
 }
 
-bool LayerWatch::read(const std::vector<contact::Collider>& colliders, const std::uint64_t** words, const std::uint64_t* end) {
-  const std::uint64_t* cursor = *words;
-  if (cursor == end) return false;
-  const std::uint64_t count = *cursor++;
-  if (static_cast<std::uint64_t>(end - cursor) / 2 < count) return false;
-  std::vector<std::pair<int, int>> outside;
-  for (std::uint64_t i = 0; i < count; ++i, cursor += 2) {
+void LayerWatch::restore(const std::vector<contact::Collider>& colliders, geometry::StateReader* reader) {
+  outside_.clear();
+  for (std::size_t left = reader->count(2, 0); left > 0; --left) {
     // A collider that was just taken out is still to be told gone.
-    if (cursor[0] >= cursor[1] || cursor[1] >= colliders.size()) return false;
-    outside.emplace_back(static_cast<int>(cursor[0]), static_cast<int>(cursor[1]));
-    if (i > 0 && outside[i] <= outside[i - 1]) return false;
+    const std::pair<int, int> pair = contact::readSlots(colliders, reader);
+    if (!outside_.empty() && pair <= outside_.back()) contact::refusePairs(*reader);
+    outside_.push_back(pair);
   }
-  outside_ = std::move(outside);
-  *words = cursor;
-  return true;
 }
 
 }  // namespace blem_sim::sim

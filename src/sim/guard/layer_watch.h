@@ -2,12 +2,12 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <utility>
 #include <vector>
 
 #include "blem_sim/contact/collider.h"
 #include "blem_sim/contact/manifold.h"
+#include "blem_sim/geometry/state_stream.h"
 #include "blem_sim/sim/step_report.h"
 
 namespace blem_sim::sim {
@@ -26,12 +26,9 @@ class LayerWatch {
   void clear() { outside_.clear(); }
   /** Forgets the pairs of a collider whose slot another one may take; no event tells it. */
   void forget(int collider);
-  void append(std::vector<std::uint64_t>* words) const;
-  /**
-   * Reads the words of append and moves the cursor behind them.
-   * @param colliders whose pairs they may be @return false, and nothing changed, if the words are others or end too early
-   */
-  bool read(const std::vector<contact::Collider>& colliders, const std::uint64_t** words, const std::uint64_t* end);
+  void save(geometry::StateWriter* writer) const;
+  /** @param colliders whose pairs they may be */
+  void restore(const std::vector<contact::Collider>& colliders, geometry::StateReader* reader);
 
  private:
   void addPassed(const std::vector<contact::ContactManifold>& manifolds, const std::vector<std::pair<int, int>>& passed, double time,

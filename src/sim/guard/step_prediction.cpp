@@ -15,23 +15,23 @@ constexpr double PER_SOLVE = 0.5;      // layers that two bodies that touch may 
 constexpr double LEAST_MARGIN = 1.5 * PER_SOLVE;  // layers
 
 /** safeTime of one pair. */
-double safeTimeOf(const WatchedPair& pair, const SimulatedWorld& world, const ContactStage& contacts,
+double safeTimeOf(const WatchedPair& pair, const SimulatedWorld& world, const FoundContacts& contacts,
                   const std::vector<dynamics::BodyState>& bodies, double time) {
   const double layer = world.colliders[pair.a].radius + world.colliders[pair.b].radius;
   if (!(layer > 0) || pair.margin <= LEAST_MARGIN * layer) return time;
-  const contact::ContactManifold* manifold = contact::findPair(contacts.current(), pair.a, pair.b);
+  const contact::ContactManifold* manifold = contact::findPair(contacts.manifolds, pair.a, pair.b);
   const double gap = std::min(pair.known, manifold ? -manifold->maxDepth() : pair.known);  // between the layers, at least
   const double harmless = std::max(PER_SOLVE * layer, std::min(pair.known, USED_UP_AHEAD * (layer + gap)));
-  const double speed = meetingSpeed(world, bodies, contacts.motion(), pair.a, pair.b, layer + pair.margin);
+  const double speed = meetingSpeed(world, bodies, contacts.watched.motion, pair.a, pair.b, layer + pair.margin);
   if (speed * time <= harmless) return time;
   return std::min(time, std::max(gap, PER_SOLVE * layer) / speed);
 }
 
 }  // namespace
 
-double safeTime(const SimulatedWorld& world, const ContactStage& contacts, const std::vector<dynamics::BodyState>& bodies, double time) {
+double safeTime(const SimulatedWorld& world, const FoundContacts& contacts, const std::vector<dynamics::BodyState>& bodies, double time) {
   double safe = time;
-  for (const WatchedPair& pair : contacts.watched()) safe = std::min(safe, safeTimeOf(pair, world, contacts, bodies, time));
+  for (const WatchedPair& pair : contacts.watched.pairs) safe = std::min(safe, safeTimeOf(pair, world, contacts, bodies, time));
   return safe;
 }
 

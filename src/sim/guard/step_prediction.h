@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "build/simulated_world.h"
-#include "contacts/contact_stage.h"
+#include "contacts/found_contacts.h"
 
 namespace blem_sim::sim {
 
@@ -17,6 +17,6 @@ namespace blem_sim::sim {
  * @param contacts of the state at hand @param bodies its states, by slot @param time [s] that is left of the step
  * @return [s] at most `time`
  */
-double safeTime(const SimulatedWorld& world, const ContactStage& contacts, const std::vector<dynamics::BodyState>& bodies, double time);
+double safeTime(const SimulatedWorld& world, const FoundContacts& contacts, const std::vector<dynamics::BodyState>& bodies, double time);
 
 }  // namespace blem_sim::sim

@@ -26,39 +26,36 @@ bool canPass(const contact::Collider& a, const contact::Collider& b) {
 
 }  // namespace
 
-const std::vector<ClosePass>& SweepGuard::look(const SimulatedWorld& world, const ContactStage& contacts,
-                                               const std::vector<dynamics::BodyState>& before,
-                                               const std::vector<dynamics::BodyState>& after) {
+const std::vector<ClosePass>& SweepGuard::look(const SimulatedWorld& world, const MadeSolve& made, const std::vector<double>& arms) {
   close_.clear();
-  before_ = &before;
-  after_ = &after;
-  moveColliders(world, contacts, before, after);
-  for (const WatchedPair& pair : contacts.watched()) {
+  before_ = &made.before;
+  after_ = &made.after;
+  moveColliders(world, made, arms);
+  for (const WatchedPair& pair : made.start.watched.pairs) {
     const contact::Collider &a = world.colliders[pair.a], &b = world.colliders[pair.b];
     const double layer = a.radius + b.radius, motion = motion_[pair.a].reach + motion_[pair.b].reach;
     if (motion <= STILL * layer || !canPass(a, b)) continue;
-    const contact::ContactManifold* known = contact::findPair(contacts.current(), pair.a, pair.b);
+    const contact::ContactManifold* known = contact::findPair(made.start.manifolds, pair.a, pair.b);
     if (known && known->pierced) continue;
     const double distance = layer - (known ? known->maxDepth() : -pair.known);
-    if (distance - motion < (known ? SPARED : HALF) * layer && !contacts.crossings().find(pair.a, pair.b))
+    if (distance - motion < (known ? SPARED : HALF) * layer && !made.start.crossings.find(pair.a, pair.b))
       lookAt(world, pair.a, pair.b, distance, known != nullptr);
   }
-  if (leavesWhatWasSearched(world, contacts)) lookAtOthers(world, contacts);
+  if (leavesWhatWasSearched(world, made.start.watched)) lookAtOthers(world, made.start.watched);
   return close_;
 }
 
-void SweepGuard::moveColliders(const SimulatedWorld& world, const ContactStage& contacts, const std::vector<dynamics::BodyState>& before,
-                               const std::vector<dynamics::BodyState>& after) {
+void SweepGuard::moveColliders(const SimulatedWorld& world, const MadeSolve& made, const std::vector<double>& arms) {
   motion_.resize(world.colliders.size());
   for (std::size_t i = 0; i < motion_.size(); ++i) {
     const int body = world.colliders[i].body;
-    motion_[i] = {contacts.motion()[i].X_WC, 0};
+    motion_[i] = {made.start.watched.motion[i].X_WC, 0};
     if (body == dynamics::WORLD_BODY) continue;
     const Vector3& com = world.world.bodySpec(body).inertial.com;
-    const Pose &from = before[body].X_WB, &to = after[body].X_WB;
-    motion_[i].reach = (to * com - from * com).norm() + turnAtMost(from, to) * contacts.arm(static_cast<int>(i));
+    const Pose &from = made.before[body].X_WB, &to = made.after[body].X_WB;
+    motion_[i].reach = (to * com - from * com).norm() + turnAtMost(from, to) * arms[i];
   }
-  bendWays(world, before, after);
+  bendWays(world, made.before, made.after);
 }
 
 /** The middle of a link that turns with its robot's links moves on an arc, whose height over its chord adds to the way. */
@@ -96,24 +93,23 @@ contact::GeometrySweep SweepGuard::sweepOf(const SimulatedWorld& world, int coll
 }
 
 // Whether a collider used up its layer and margin: a pair that is not searched is farther apart than both colliders' together.
-bool SweepGuard::leavesWhatWasSearched(const SimulatedWorld& world, const ContactStage& contacts) const {
+bool SweepGuard::leavesWhatWasSearched(const SimulatedWorld& world, const WatchedPairs& watched) const {
   for (std::size_t i = 0; i < motion_.size(); ++i) {
     const contact::Collider& collider = world.colliders[i];
-    if (collider.enabled && motion_[i].reach > (1 - HALF) * collider.radius + contacts.motion()[i].reach) return true;
+    if (collider.enabled && motion_[i].reach > (1 - HALF) * collider.radius + watched.motion[i].reach) return true;
   }
   return false;
 }
 
-void SweepGuard::lookAtOthers(const SimulatedWorld& world, const ContactStage& contacts) {
-  const std::size_t watched = close_.size();
+void SweepGuard::lookAtOthers(const SimulatedWorld& world, const WatchedPairs& watched) {
+  const std::size_t of_watched = close_.size();
   const double any = std::numeric_limits<double>::infinity();
   for (const contact::ColliderPair& pair : other_pairs_.find(world.colliders, motion_, world.filter, 0, any)) {
     const contact::Collider &a = world.colliders[pair.a], &b = world.colliders[pair.b];
-    if (!canPass(a, b) || world.disabled_pairs.count({pair.a, pair.b}) > 0 || contact::findPair(contacts.watched(), pair.a, pair.b))
-      continue;
+    if (!canPass(a, b) || world.disabled_pairs.count({pair.a, pair.b}) > 0 || contact::findPair(watched.pairs, pair.a, pair.b)) continue;
     lookAt(world, pair.a, pair.b, a.radius + b.radius, false);
   }
-  std::inplace_merge(close_.begin(), close_.begin() + static_cast<std::ptrdiff_t>(watched), close_.end(), contact::IsPairBefore());
+  std::inplace_merge(close_.begin(), close_.begin() + static_cast<std::ptrdiff_t>(of_watched), close_.end(), contact::IsPairBefore());
 }
 
 /** @param distance [m] of the bare meshes at the start, at least @param known whether its contacts there are known */

@@ -6,7 +6,7 @@
 #include "blem_sim/contact/broad_phase.h"
 #include "blem_sim/contact/sweep.h"
 #include "build/simulated_world.h"
-#include "contacts/contact_stage.h"
+#include "contacts/made_solve.h"
 
 namespace blem_sim::sim {
 
@@ -29,20 +29,15 @@ class SweepGuard {
  public:
   static constexpr double SPARED = 0.1, NOTHING = 0.02;  ///< of the layer
 
-  /**
-   * @param contacts of the state where the solve started @param before, after bodies at its ends, by slot
-   * @return sorted by (a, b); lives until the next call
-   */
-  const std::vector<ClosePass>& look(const SimulatedWorld& world, const ContactStage& contacts,
-                                     const std::vector<dynamics::BodyState>& before, const std::vector<dynamics::BodyState>& after);
+  /** @param arms as PairWatch knows them @return sorted by (a, b); lives until the next call */
+  const std::vector<ClosePass>& look(const SimulatedWorld& world, const MadeSolve& made, const std::vector<double>& arms);
 
  private:
-  void moveColliders(const SimulatedWorld& world, const ContactStage& contacts, const std::vector<dynamics::BodyState>& before,
-                     const std::vector<dynamics::BodyState>& after);
+  void moveColliders(const SimulatedWorld& world, const MadeSolve& made, const std::vector<double>& arms);
   void bendWays(const SimulatedWorld& world, const std::vector<dynamics::BodyState>& before, const std::vector<dynamics::BodyState>& after);
   contact::GeometrySweep sweepOf(const SimulatedWorld& world, int collider) const;
-  bool leavesWhatWasSearched(const SimulatedWorld& world, const ContactStage& contacts) const;
-  void lookAtOthers(const SimulatedWorld& world, const ContactStage& contacts);
+  bool leavesWhatWasSearched(const SimulatedWorld& world, const WatchedPairs& watched) const;
+  void lookAtOthers(const SimulatedWorld& world, const WatchedPairs& watched);
   void lookAt(const SimulatedWorld& world, int a, int b, double distance, bool known);
 
   const std::vector<dynamics::BodyState>*before_ = nullptr, *after_ = nullptr;

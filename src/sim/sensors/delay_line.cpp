@@ -29,15 +29,14 @@ void DelayLine::clear() {
   next_ = taken_ = 0;
 }
 
-void DelayLine::append(std::vector<double>* numbers) const {
+void DelayLine::save(geometry::StateWriter* writer) const {
   if (steps_ == 0) return;
-  const auto oldest = numbers_.begin() + static_cast<std::ptrdiff_t>(next_);
-  numbers->push_back(static_cast<double>(taken_));
-  numbers->insert(numbers->end(), oldest, numbers_.end());
-  numbers->insert(numbers->end(), numbers_.begin(), oldest);
+  writer->number(static_cast<double>(taken_));
+  writer->numbers(numbers_.data() + next_, numbers_.size() - next_);
+  writer->numbers(numbers_.data(), next_);
 }
 
-void DelayLine::read(NumberReader* reader) {
+void DelayLine::restore(geometry::StateReader* reader) {
   if (steps_ == 0) return;
   taken_ = static_cast<std::size_t>(reader->choice(static_cast<int>(steps_) + 1));
   reader->numbers(numbers_.data(), numbers_.size());

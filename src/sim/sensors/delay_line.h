@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "blem_sim/geometry/state_stream.h"
 #include "blem_sim/sim/step_report.h"
-#include "numbers/number_reader.h"
 
 namespace blem_sim::sim {
 
@@ -20,9 +20,9 @@ class DelayLine {
   /** Nothing is on its way any more. */
   void clear();
 
-  /** Appends what is on its way; nothing without a delay. */
-  void append(std::vector<double>* numbers) const;
-  void read(NumberReader* reader);
+  /** Saves the readings that are on their way; nothing without a delay. */
+  void save(geometry::StateWriter* writer) const;
+  void restore(geometry::StateReader* reader);
 
  private:
   std::size_t steps_;

@@ -49,12 +49,12 @@ void ReadingNoise::reset() {
   for (Quantity& quantity : quantities_) std::fill(quantity.biases.begin(), quantity.biases.end(), 0);
 }
 
-void ReadingNoise::append(std::vector<double>* numbers) const {
-  for (const Quantity& quantity : quantities_) numbers->insert(numbers->end(), quantity.biases.begin(), quantity.biases.end());
-  if (draws_) numbers->push_back(drawn_ ? 1 : 0);
+void ReadingNoise::save(geometry::StateWriter* writer) const {
+  for (const Quantity& quantity : quantities_) writer->numbers(quantity.biases.data(), quantity.biases.size());
+  if (draws_) writer->number(drawn_ ? 1 : 0);
 }
 
-void ReadingNoise::read(NumberReader* reader) {
+void ReadingNoise::restore(geometry::StateReader* reader) {
   for (Quantity& quantity : quantities_) reader->numbers(quantity.biases.data(), quantity.biases.size());
   if (draws_) drawn_ = reader->choice(2) == 1;
 }

@@ -4,8 +4,8 @@
 #include <array>
 #include <vector>
 
+#include "blem_sim/geometry/state_stream.h"
 #include "blem_sim/sim/step_report.h"
-#include "numbers/number_reader.h"
 #include "numbers/random_numbers.h"
 
 namespace blem_sim::sim {
@@ -21,9 +21,9 @@ class ReadingNoise {
   /** Forgets the biases, which are drawn again. */
   void reset();
 
-  /** Appends the biases; nothing if there are none. */
-  void append(std::vector<double>* numbers) const;
-  void read(NumberReader* reader);
+  /** Saves the biases; nothing if there are none. */
+  void save(geometry::StateWriter* writer) const;
+  void restore(geometry::StateReader* reader);
 
  private:
   void drawBiases(RandomNumbers* random);

@@ -4,9 +4,9 @@
 #include <memory>
 #include <vector>
 
+#include "blem_sim/geometry/state_stream.h"
 #include "blem_sim/sim/step_report.h"
 #include "build/simulated_world.h"
-#include "numbers/number_reader.h"
 #include "numbers/random_numbers.h"
 #include "sensors/link_contacts.h"
 

@@ -29,38 +29,23 @@ SensorReading blankOf(const SimulatedWorld& world, const SensorInfo& info) {
 
 }  // namespace
 
-void SensorChannel::Memory::reset() {
-  noise.reset();
-  delay.clear();
-  tare.reset();
-}
-
-void SensorChannel::Memory::append(std::vector<double>* numbers) const {
-  noise.append(numbers);
-  delay.append(numbers);
-}
-
-void SensorChannel::Memory::read(NumberReader* reader) {
-  noise.read(reader);
-  delay.read(reader);
-}
-
 SensorChannel::SensorChannel(const SimulatedWorld& world, const SensorInfo& info, double time_step)
     : config_(info.config),
       has_truth_(hasGroundTruth(info.config)),
       sensor_(makeSensor(world, info)),
       schedule_(info.config.rate, time_step),
-      memory_{{info.config.noise, blankOf(world, info)}, {info.config.delay, time_step, blankOf(world, info)}, {}} {}
+      noise_(info.config.noise, blankOf(world, info)),
+      delay_(info.config.delay, time_step, blankOf(world, info)) {}
 
 bool SensorChannel::read(const StepContext& step, std::uint64_t number, SensorSample* out) {
   const bool due = schedule_.due(number);
-  if (!due && memory_.delay.steps() == 0) return false;
+  if (!due && delay_.steps() == 0) return false;
   sensor_->measure(step, &out->reading);
-  memory_.tare.apply(&out->reading);
+  tare_.apply(&out->reading);
   if (!has_truth_) return due && sensor_->measured(out->reading);
   out->truth = out->reading;
-  if (!memory_.delay.pass(&out->reading) || !due) return false;
-  memory_.noise.add(schedule_.period(), &sensor_->random(), &out->reading);
+  if (!delay_.pass(&out->reading) || !due) return false;
+  noise_.add(schedule_.period(), &sensor_->random(), &out->reading);
   sensor_->addNoise(&out->reading);
   limit(config_.limits, &out->reading);
   sensor_->settle(&out->reading);
@@ -71,10 +56,29 @@ bool SensorChannel::read(const StepContext& step, std::uint64_t number, SensorSa
 void SensorChannel::remake(const SimulatedWorld& world, const SensorInfo& info, double time_step) {
   SensorChannel made(world, info, time_step);
   made.sensor_->random() = sensor_->random();
-  made.memory_.noise = std::move(memory_.noise);
-  made.memory_.tare = memory_.tare;
-  if (made.memory_.delay.steps() == memory_.delay.steps()) made.memory_.delay = std::move(memory_.delay);
+  made.noise_ = std::move(noise_);
+  made.tare_ = tare_;
+  if (made.delay_.steps() == delay_.steps()) made.delay_ = std::move(delay_);
   *this = std::move(made);
+}
+
+void SensorChannel::save(geometry::StateWriter* writer) const {
+  writer->word(sensor_->random().state());
+  noise_.save(writer);
+  delay_.save(writer);
+}
+
+void SensorChannel::restore(geometry::StateReader* reader) {
+  sensor_->random().setState(reader->word());
+  noise_.restore(reader);
+  delay_.restore(reader);
+  tare_.reset();
+}
+
+void SensorChannel::reset() {
+  noise_.reset();
+  delay_.clear();
+  tare_.reset();
 }
 
 }  // namespace blem_sim::sim

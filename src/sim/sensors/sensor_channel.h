@@ -27,36 +27,29 @@ class SensorChannel {
   bool read(const StepContext& step, std::uint64_t number, SensorSample* out);
   /** Whether read() will need the contacts of that step. */
   bool readsContacts(std::uint64_t number) const {
-    return sensor_->readsContacts() && (schedule_.due(number) || memory_.delay.steps() > 0);
+    return sensor_->readsContacts() && (schedule_.due(number) || delay_.steps() > 0);
   }
 
   /** Makes the sensor again, as its bodies are now. With another time step, readings on their way are lost. */
   void remake(const SimulatedWorld& world, const SensorInfo& info, double time_step);
   /** Forgets what the sensor remembers and what is on its way, without touching the random numbers. */
-  void reset() { memory_.reset(); }
+  void reset();
 
-  /** Memory of a sensor from reading to reading. */
-  struct Memory {
-    ReadingNoise noise;
-    DelayLine delay;
-    WrenchTare tare;
-
-    void reset();
-    /** Appends all but the tare. */
-    void append(std::vector<double>* numbers) const;
-    void read(NumberReader* reader);
-  };
-  Memory& memory() { return memory_; }
-  const Memory& memory() const { return memory_; }
   RandomNumbers& random() { return sensor_->random(); }
-  const RandomNumbers& random() const { return sensor_->random(); }
+  WrenchTare& tare() { return tare_; }
+  const WrenchTare& tare() const { return tare_; }
+  /** Saves what the sensor remembers but its tare, its random numbers and the readings that are on their way. */
+  void save(geometry::StateWriter* writer) const;
+  void restore(geometry::StateReader* reader);
 
  private:
   SensorConfig config_;
   bool has_truth_;
   std::unique_ptr<Sensor> sensor_;
   SensorSchedule schedule_;
-  Memory memory_;
+  ReadingNoise noise_;
+  DelayLine delay_;
+  WrenchTare tare_;
 };
 
 }  // namespace blem_sim::sim

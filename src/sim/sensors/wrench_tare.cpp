@@ -14,14 +14,14 @@ void WrenchTare::apply(SensorReading* reading) {
   wrench->torque -= torque_;
 }
 
-void WrenchTare::append(std::vector<double>* numbers) const {
-  numbers->push_back(asked_ ? 1 : 0);
-  for (const Vector3* zero : {&force_, &torque_}) numbers->insert(numbers->end(), zero->data(), zero->data() + 3);
+void WrenchTare::save(geometry::StateWriter* writer) const {
+  writer->number(asked_ ? 1 : 0);
+  for (const Vector3* zero : {&force_, &torque_}) writer->vector(*zero);
 }
 
-void WrenchTare::read(NumberReader* reader) {
+void WrenchTare::restore(geometry::StateReader* reader) {
   asked_ = reader->choice(2) == 1;
-  for (Vector3* zero : {&force_, &torque_}) reader->numbers(zero->data(), 3);
+  for (Vector3* zero : {&force_, &torque_}) *zero = reader->vector();
 }
 
 }  // namespace blem_sim::sim

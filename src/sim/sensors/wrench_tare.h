@@ -1,10 +1,8 @@
 // Zero of a force-torque sensor.
 #pragma once
 
-#include <vector>
-
+#include "blem_sim/geometry/state_stream.h"
 #include "blem_sim/sim/step_report.h"
-#include "numbers/number_reader.h"
 
 namespace blem_sim::sim {
 
@@ -18,8 +16,8 @@ class WrenchTare {
   /** True once it was asked for. */
   bool any() const { return asked_ || !force_.isZero(0) || !torque_.isZero(0); }
 
-  void append(std::vector<double>* numbers) const;
-  void read(NumberReader* reader);
+  void save(geometry::StateWriter* writer) const;
+  void restore(geometry::StateReader* reader);
 
  private:
   Vector3 force_ = Vector3::Zero(), torque_ = Vector3::Zero();  // that are told as zero, sensor axes

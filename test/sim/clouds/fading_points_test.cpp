@@ -11,6 +11,13 @@ namespace {
 
 constexpr double FOR_GOOD = std::numeric_limits<double>::infinity();
 
+geometry::StateContent contentOf(const FadingPoints& fading) {
+  geometry::StateContent content;
+  geometry::StateWriter writer(&content);
+  fading.save(&writer);
+  return content;
+}
+
 std::vector<contact::Collider> threePoints() {
   std::vector<contact::Collider> colliders(2);
   for (contact::Collider& collider : colliders)
@@ -73,24 +80,26 @@ TEST(FadingPoints, ComeAndLeaveAtTheirSpeed) {
 }
 
 TEST(FadingPoints, AreReadAsTheyWereWritten) {
-  std::vector<std::uint64_t> words, again;
-  comingAndLeaving().append(&words);
+  const geometry::StateContent saved = contentOf(comingAndLeaving());
   FadingPoints read;
-  const std::uint64_t* word = words.data();
-  ASSERT_TRUE(read.read(threePoints(), &word, words.data() + words.size()));
-  EXPECT_EQ(word, words.data() + words.size());
-  read.append(&again);
-  EXPECT_EQ(words, again);
+  geometry::StateReader reader(saved);
+  read.restore(threePoints(), &reader);
+  EXPECT_EQ(reader.wordsLeft(), 0u);
+  EXPECT_EQ(contentOf(read).words, saved.words);
 }
 
 TEST(FadingPoints, WordsThatLieAreRefused) {
-  std::vector<std::uint64_t> words;
-  comingAndLeaving().append(&words);
+  const std::vector<std::uint64_t> words = contentOf(comingAndLeaving()).words;
   const std::vector<contact::Collider> colliders = threePoints();
   const auto isRead = [&](const std::vector<std::uint64_t>& given) {
-    FadingPoints read;
-    const std::uint64_t* word = given.data();
-    return read.read(colliders, &word, given.data() + given.size());
+    const geometry::StateContent content{{}, given};
+    geometry::StateReader reader(content);
+    try {
+      FadingPoints().restore(colliders, &reader);
+    } catch (const InputError&) {
+      return false;
+    }
+    return true;
   };
   for (std::size_t length = 0; length < words.size(); ++length)
     EXPECT_FALSE(isRead({words.begin(), words.begin() + static_cast<std::ptrdiff_t>(length)})) << length;

@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "numbers/number_reader.h"
 #include "sim/simulation_scene.h"
 
 namespace blem_sim::sim {
@@ -132,12 +131,13 @@ TEST(JointMotor, StateGoesThroughNumbers) {
   motor.sample(0, STEP);
   motor.accept(motor.drive({0, 0, 0}), {}, STEP);
   motor.keepVelocity(0.4, 0);
-  std::vector<double> numbers;
-  motor.append(&numbers);
+  geometry::StateContent saved;
+  geometry::StateWriter writer(&saved);
+  motor.save(&writer);
   JointMotor copy(settings(MotorLaw::PID, {100, 10, 2}), 0);
-  NumberReader reader(numbers);
-  copy.read(&reader);
-  EXPECT_EQ(reader.left(), 0u);
+  geometry::StateReader reader(saved);
+  copy.restore(&reader);
+  EXPECT_EQ(reader.numbersLeft(), 0u);
   for (JointMotor* m : {&motor, &copy}) m->sample(STEP, STEP);
   EXPECT_EQ(motor.drive({0.1, 0.1, 0}).effort, copy.drive({0.1, 0.1, 0}).effort);
   copy.reset();

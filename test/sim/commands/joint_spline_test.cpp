@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "blem_sim/sim/trajectory.h"
-#include "numbers/number_reader.h"
 
 namespace blem_sim::sim {
 namespace {
@@ -187,14 +186,15 @@ TEST(JointSpline, EffortIsInterpolatedAndHeld) {
 TEST(JointSpline, SavedAndReadItIsTheSame) {
   JointSpline first(0.3), second(0);
   first.splice(0.1, 0.1, {cubic(1, 1, 2), quintic(3, -1, 0.1, 0.7)}, false);
-  std::vector<double> numbers;
-  first.append(&numbers);
-  second.append(&numbers);
-  NumberReader reader(numbers);
+  geometry::StateContent saved;
+  geometry::StateWriter writer(&saved);
+  first.save(&writer);
+  second.save(&writer);
+  geometry::StateReader reader(saved);
   JointSpline read_first, read_second(7);
-  read_first.read(&reader);
-  read_second.read(&reader);
-  EXPECT_EQ(reader.left(), 0u);
+  read_first.restore(&reader);
+  read_second.restore(&reader);
+  EXPECT_EQ(reader.numbersLeft(), 0u);
   for (double t = 0; t < 4; t += 0.037) {
     EXPECT_EQ(read_first.sample(t).position, first.sample(t).position);
     EXPECT_EQ(read_first.sample(t).acceleration, first.sample(t).acceleration);

@@ -101,9 +101,17 @@ contact::ContactManifold ringOf(int count, double depth) {
 }
 
 std::vector<std::uint64_t> wordsOf(const LayerStops& stops) {
-  std::vector<std::uint64_t> words;
-  stops.append(&words);
-  return words;
+  geometry::StateContent content;
+  geometry::StateWriter writer(&content);
+  stops.save(&writer);
+  return content.words;
+}
+
+void restore(const std::vector<std::uint64_t>& words, LayerStops* stops) {
+  const geometry::StateContent content{{}, words};
+  geometry::StateReader reader(content);
+  stops->restore(std::vector<contact::Collider>(10), &reader);
+  reader.finish();
 }
 
 TEST(LayerStops, NothingIsAddedWhereLayersAreNotUsedUp) {
@@ -130,15 +138,15 @@ TEST(LayerStops, GoOnWithWhatTheyChoseEvenIfRestored) {
   EXPECT_EQ(first.size(), static_cast<std::size_t>(LayerStops::MOST));
   const std::vector<std::uint64_t> words = wordsOf(stops);
   ASSERT_FALSE(words.empty());
-  const std::vector<contact::Collider> colliders(10);
-  ASSERT_TRUE(restored.read(colliders, words.data(), words.data() + words.size()));
+  restore(words, &restored);
   EXPECT_EQ(wordsOf(restored), words);
   contact::ContactManifold trembled = ringOf(40, STOP);
   for (int i = 0; i < 40; i += 3) trembled.contacts[i].point *= 1 + 5e-3;
   EXPECT_EQ(choose(&stops, trembled), first);
   EXPECT_EQ(choose(&restored, trembled), first);
   EXPECT_NE(choose(&other, trembled), first);
-  EXPECT_FALSE(restored.read(colliders, words.data(), words.data() + words.size() - 1));
+  EXPECT_THROW(restore({words.begin(), words.end() - 1}, &restored), InputError);
+  EXPECT_THROW(restore({0}, &restored), InputError);
 }
 
 TEST(LayerStops, FrictionBelongsToAllThatIsBorne) {

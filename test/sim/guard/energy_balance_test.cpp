@@ -13,8 +13,7 @@ constexpr double DT = 1e-3;
 /** Bodies of 2 kg in free space, and the result of a solve made by hand. */
 class HandMadeSolve {
  public:
-  explicit HandMadeSolve(int bodies, const Vector3& gravity = Vector3::Zero())
-      : world(gravity, dynamics::SolverSettings()), contacts(ContactConfig(), 1) {
+  explicit HandMadeSolve(int bodies, const Vector3& gravity = Vector3::Zero()) : world(gravity, dynamics::SolverSettings()) {
     for (int b = 0; b < bodies; ++b) {
       dynamics::BodySpec spec;
       spec.name = "body" + std::to_string(b);
@@ -31,11 +30,13 @@ class HandMadeSolve {
     balance.start(world);
     dynamics::SolveResult solved;
     solved.axis_efforts.assign(world.jointCount(), 0);
-    return balance.addSolve(world, DT, contacts, solved, before, after);
+    return balance.addSolve(world, {start, contacts, drives, solved, before, after, DT});
   }
 
   dynamics::World world;
-  ContactStage contacts;
+  FoundContacts start;
+  SolverContacts contacts;
+  std::vector<dynamics::JointDrive> drives;
   std::vector<dynamics::BodyState> before, after;
 };
 
@@ -88,7 +89,11 @@ TEST(EnergyBalance, WorkThatFrictionTakesHidesNoGain) {
   const std::vector<dynamics::BodyState> after = {world.bodyState(0)};
   ASSERT_NEAR(after[0].v_WCom.x(), 1, 1e-9);
   before[0].v_WCom.x() -= 1e-3;
-  EXPECT_NEAR(balance.addSolve(world, DT, ContactStage(ContactConfig(), 1), solved, before, after).total, 0.9995e-3, 1e-8);
+  const FoundContacts start;
+  const SolverContacts contacts;
+  const std::vector<dynamics::JointDrive> drives = {drive};
+  const MadeSolve made{start, contacts, drives, solved, before, after, DT};
+  EXPECT_NEAR(balance.addSolve(world, made).total, 0.9995e-3, 1e-8);
 }
 
 TEST(EnergyBalance, FlightGainsNothing) {
@@ -125,19 +130,22 @@ TEST(EnergyBalance, TheBoundGrowsWithWhatMoves) {
 
 TEST(EnergyBalance, ReadsWhatItWrote) {
   EnergyBalance balance{dynamics::SolverSettings()};
-  std::vector<double> numbers;
-  balance.append(&numbers);
-  EXPECT_EQ(numbers, std::vector<double>{0});
+  const auto numbers_of_balance = [&] {
+    geometry::StateContent saved;
+    geometry::StateWriter writer(&saved);
+    balance.save(&writer);
+    return saved.numbers;
+  };
+  EXPECT_EQ(numbers_of_balance(), std::vector<double>{0});
   for (const std::vector<double>& bad : {std::vector<double>{}, {2, 1}, {-1}, {NAN}, {1e300}}) {
-    NumberReader reader(bad);
-    EXPECT_THROW(balance.read(2, &reader), InputError);
+    const geometry::StateContent content{bad, {}};
+    geometry::StateReader reader(content);
+    EXPECT_THROW(balance.restore(2, &reader), InputError);
   }
-  const std::vector<double> held = {2, 0.5, 0};
-  NumberReader reader(held);
-  balance.read(2, &reader);
-  numbers.clear();
-  balance.append(&numbers);
-  EXPECT_EQ(numbers, held);
+  const geometry::StateContent held{{2, 0.5, 0}, {}};
+  geometry::StateReader reader(held);
+  balance.restore(2, &reader);
+  EXPECT_EQ(numbers_of_balance(), held.numbers);
 }
 
 /** Every bit that was set in so long. */

@@ -1,11 +1,12 @@
-// From the manifolds of the state at hand to the constraints of the solve.
+#include "contacts/constraint_maker.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <utility>
 
-#include "blem_sim/contact/collider_pairs.h"
-#include "contacts/contact_stage.h"
+#include "blem_sim/geometry/input_error.h"
 
 namespace blem_sim::sim {
 namespace {
@@ -60,15 +61,19 @@ void separate(double mass, double layer, dynamics::ContactConstraint* contact) {
   contact->restitution = 0;
 }
 
-int countContacts(const std::vector<contact::ContactManifold>& manifolds) {
-  int count = 0;
-  for (const contact::ContactManifold& manifold : manifolds) count += static_cast<int>(manifold.contacts.size());
-  return count;
+const reduction::Reduction* reductionNamed(const std::string& name) {
+  const reduction::Reduction* method = reduction::findReduction(name);
+  if (method) return method;
+  std::string names;
+  for (const reduction::Reduction& row : reduction::reductionTable()) names += (names.empty() ? "" : ", ") + std::string(row.name);
+  throw InputError("contact.reduction: '" + name + "' is not known; take one of " + names);
 }
 
 }  // namespace
 
-std::vector<std::uint64_t> ContactStage::forgetCollider(int collider) {
+ConstraintMaker::ConstraintMaker(const ContactConfig& config) : config_(config), method_(reductionNamed(config.reduction)) {}
+
+std::vector<std::uint64_t> ConstraintMaker::forget(int collider) {
   std::vector<std::uint64_t> ids;
   for (const reduction::ReductionMemory* memory : {&std::as_const(memory_), &stops_.memory()}) {
     for (const reduction::ReductionMemory::Choice& choice : memory->choices()) {
@@ -81,22 +86,16 @@ std::vector<std::uint64_t> ContactStage::forgetCollider(int collider) {
   }
   memory_.forget(collider);
   stops_.forget(collider);
-  searches_.forget(collider);
-  current_search_.crossings.forget(collider);
-  arms_.clear();
-  known_ = false;
   return ids;
 }
 
-int ContactStage::rawContacts() const { return countContacts(current_); }
-int ContactStage::reducedContacts() const { return countContacts(reduced_); }
-
 /** @param all contacts of the pair, of which the manifold's were kept */
-void ContactStage::addConstraints(const SimulatedWorld& world, const contact::ContactManifold& all, contact::ContactManifold& manifold) {
+void ConstraintMaker::addConstraints(const SolveAhead& ahead, const contact::ContactManifold& all, contact::ContactManifold& manifold) {
+  const SimulatedWorld& world = ahead.world;
   const contact::Collider &a = world.colliders[manifold.a], &b = world.colliders[manifold.b];
   const contact::SurfaceProperties surface = contact::combineSurfaces(a.surface, b.surface, config_.friction_rule);
   if (std::isfinite(surface.stiffness) || std::isfinite(surface.damping)) reduction::weighSprings(manifold.contacts);
-  const bool recovers = current_search_.crossings.find(manifold.a, manifold.b) != nullptr;
+  const bool recovers = ahead.contacts.crossings.find(manifold.a, manifold.b) != nullptr;
   for (const contact::Contact& contact : manifold.contacts) {
     dynamics::ContactConstraint constraint = constraintOf(world, manifold, contact);
     constraint.friction = surface.friction;
@@ -106,41 +105,47 @@ void ContactStage::addConstraints(const SimulatedWorld& world, const contact::Co
     constraint.stiffness = contact.weight * surface.stiffness;
     constraint.damping = contact.weight * surface.damping;
     if (recovers && contact.depth > 0) separate(std::min(massOf(world, a), massOf(world, b)), manifold.layer, &constraint);
-    constraints_.push_back(constraint);
-    solved_.push_back({manifold.a, manifold.b, manifold.layer, contact.pierced, 0, recovers});
+    made_.constraints.push_back(constraint);
+    made_.solved.push_back({manifold.a, manifold.b, manifold.layer, contact.pierced, 0, recovers});
   }
+  made_.reduced += static_cast<int>(manifold.contacts.size());
   if (!recovers && isCompliant(surface)) addStops(world, all, surface.friction);
 }
 
-void ContactStage::addStops(const SimulatedWorld& world, const contact::ContactManifold& all, double friction) {
+void ConstraintMaker::addStops(const SimulatedWorld& world, const contact::ContactManifold& all, double friction) {
   const double stop = LayerStops::STOP * all.layer;
   for (const contact::Contact& contact : stops_.choose(all, *method_)) {
     dynamics::ContactConstraint constraint = constraintOf(world, all, contact);
     constraint.friction = friction;
     constraint.id = stopId(constraint.id);
-    constraints_.push_back(constraint);
-    solved_.push_back({all.a, all.b, all.layer, false, stop, false});
+    made_.constraints.push_back(constraint);
+    made_.solved.push_back({all.a, all.b, all.layer, false, stop, false});
   }
 }
 
-void ContactStage::reduction(const SimulatedWorld& world, const std::vector<dynamics::BodyState>& bodies, const Expectation& expected,
-                             double dt) {
-  meetings_.look(world, bodies, *this, current_search_.flush, expected, dt);
-  meetings_.exchange(&current_);
+void ConstraintMaker::reduce(const SimulatedWorld& world, const std::vector<contact::ContactManifold>& manifolds) {
   for (contact::ContactManifold& manifold : reduced_) manifold.contacts.clear();  // a pair without contacts now keeps none
   model_a_.clear();
   model_b_.clear();
-  for (const contact::ContactManifold& manifold : current_) {
+  for (const contact::ContactManifold& manifold : manifolds) {
     model_a_.push_back(world.colliders[manifold.a].model);
     model_b_.push_back(world.colliders[manifold.b].model);
   }
-  reduction_loss_ = reduction::reduceManifolds(current_, model_a_, model_b_, world.budgets, *method_, &memory_, &reduced_);
-  constraints_.clear();
-  solved_.clear();
+  made_.loss = reduction::reduceManifolds(manifolds, model_a_, model_b_, world.budgets, *method_, &memory_, &reduced_);
+}
+
+const SolverContacts& ConstraintMaker::make(const SolveAhead& ahead, std::vector<contact::ContactManifold>* manifolds) {
+  meetings_.look(ahead);
+  meetings_.exchange(manifolds);
+  reduce(ahead.world, *manifolds);
+  made_.constraints.clear();
+  made_.solved.clear();
+  made_.reduced = 0;
   stops_.start();
-  for (std::size_t m = 0; m < reduced_.size(); ++m) addConstraints(world, current_[m], reduced_[m]);
+  for (std::size_t m = 0; m < reduced_.size(); ++m) addConstraints(ahead, (*manifolds)[m], reduced_[m]);
   stops_.remember();
-  meetings_.exchange(&current_);
+  meetings_.exchange(manifolds);
+  return made_;
 }
 
 }  // namespace blem_sim::sim
