@@ -27,15 +27,15 @@ void IslandSweeps::push(const Pair& pair, const Vector6& wrench, Eigen::VectorXd
   if (pair.pair.b >= 0) response_.push(pair.b, -moveWrench(wrench, -pair.pair.shift), velocity);
 }
 
-bool IslandSweeps::load(const SweepProblem& problem, SweepStart start, Eigen::VectorXd* velocity) {
-  problem_.emplace(problem);
-  if (!loadResponse(problem, *velocity)) return false;
+bool IslandSweeps::load(const IslandAtHand& island, SweepStart start, Eigen::VectorXd* velocity) {
+  island_ = &island;
+  if (!loadResponse(*velocity)) return false;
   pairs_.clear();
-  for (const ContactPatch& patch : problem.patches)
+  for (const ContactPatch& patch : island.model.patches)
     pairs_.push_back({patch.pair, response_.side(patch.pair.a), response_.side(patch.pair.b)});
   loadJoints(start);
   loadLoops(start);
-  orderPatches(problem.up);
+  orderPatches(island.model.up);
   colourPatches();
   layGroups();
   loadContacts(start);
@@ -57,8 +57,8 @@ void IslandSweeps::findVelocity(Eigen::VectorXd* velocity) {
   for (std::size_t l = 0; l < loop_rows_.size(); ++l) {
     const LoopRow& row = loop_rows_[l];
     Vector6 impulse = row.impulse;
-    if (problem_->loops[l].rows < 6) impulse[5] = row.axis.sum();
-    push(loop_pairs_[l], problem_->loops[l].basis * impulse, velocity);
+    if (island_->terms()->loops[l].rows < 6) impulse[5] = row.axis.sum();
+    push(loop_pairs_[l], island_->terms()->loops[l].basis * impulse, velocity);
   }
 }
 
@@ -92,14 +92,14 @@ void IslandSweeps::AxisRow::scale(double factor) {
 
 void IslandSweeps::sweepJoints(Eigen::VectorXd* velocity) {
   for (JointRow& row : joint_rows_) {
-    const double change = row.axis.visit(problem_->joints[row.term], (*velocity)[row.dof]);
+    const double change = row.axis.visit(island_->terms()->joints[row.term], (*velocity)[row.dof]);
     if (change != 0) response_.push(row.unit, row.column, change, velocity);
   }
 }
 
 void IslandSweeps::sweepLoops(Eigen::VectorXd* velocity) {
   for (std::size_t l = 0; l < loop_rows_.size(); ++l) {
-    const LoopTerm& loop = problem_->loops[l];
+    const LoopTerm& loop = island_->terms()->loops[l];
     LoopRow& row = loop_rows_[l];
     const Vector6 forbidden = row.inverse * (loop.target - loop.basis.transpose() * relativeTwist(loop_pairs_[l], *velocity));
     row.impulse += forbidden;
@@ -138,7 +138,7 @@ void IslandSweeps::sweepGroup(std::size_t index, Eigen::VectorXd* velocity) {
 void IslandSweeps::sweepColour(std::size_t colour, Eigen::VectorXd* velocity) {
   const std::size_t begin = group_start_[colour], end = group_start_[colour + 1];
   const bool shared = colour + 2 < group_start_.size();
-  problem_->team->forRanges(begin, end, shared ? GROUPS_AT_ONCE : end - begin, [&](std::size_t first, std::size_t last) {
+  island_->team->forRanges(begin, end, shared ? GROUPS_AT_ONCE : end - begin, [&](std::size_t first, std::size_t last) {
     for (std::size_t g = first; g < last; ++g) sweepGroup(g, velocity);
   });
 }
@@ -157,17 +157,17 @@ void IslandSweeps::plainSweep(Eigen::VectorXd* velocity) {
 }
 
 void IslandSweeps::noteVelocity(const Eigen::VectorXd& velocity) {
-  problem_->team->forRanges(0, dofs_.size(), DOFS_AT_ONCE, [&](std::size_t first, std::size_t last) {
+  island_->team->forRanges(0, dofs_.size(), DOFS_AT_ONCE, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) before_[i] = velocity[dofs_[i]];
   });
 }
 
 // Moves impulses and velocities by `share` of the last search direction. The next direction is that move and the last sweep's change.
 void IslandSweeps::moveOn(double share, Eigen::VectorXd* velocity) {
-  problem_->team->forRanges(0, impulses_.size(), IMPULSES_AT_ONCE, [&](std::size_t first, std::size_t last) {
+  island_->team->forRanges(0, impulses_.size(), IMPULSES_AT_ONCE, [&](std::size_t first, std::size_t last) {
     blem_sim::dynamics::moveOn(share, impulses_.data() + first, impulses_.data() + last);
   });
-  problem_->team->forRanges(0, dofs_.size(), DOFS_AT_ONCE, [&](std::size_t first, std::size_t last) {
+  island_->team->forRanges(0, dofs_.size(), DOFS_AT_ONCE, [&](std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       double& v = (*velocity)[dofs_[i]];
       const double along = share * search_[i], change = v - before_[i];
@@ -209,15 +209,14 @@ void IslandSweeps::scale(double factor, Eigen::VectorXd* velocity) {
   findVelocity(velocity);
 }
 
-void IslandSweeps::read(const Eigen::VectorXd& velocity, std::vector<ContactTerm>* contacts, std::vector<JointTerm>* joints,
-                        std::vector<LoopTerm>* loops) const {
+void IslandSweeps::read(const Eigen::VectorXd& velocity, IslandTerms* terms) const {
   for (const SweepGroup& group : groups_) {
     for (int lane = 0; lane < SWEEP_LANES; ++lane) {
       if (group.patch[lane] < 0) continue;
-      const ContactPatch& patch = problem_->patches[group.patch[lane]];
+      const ContactPatch& patch = island_->model.patches[group.patch[lane]];
       for (int i = patch.first; i < patch.end; ++i) {
         const int at = group.first + i - patch.first;
-        (*contacts)[i].impulse = readLane(contacts_[at], impulses_[at], lane);
+        terms->contacts[i].impulse = readLane(contacts_[at], impulses_[at], lane);
       }
     }
   }
@@ -227,9 +226,9 @@ void IslandSweeps::read(const Eigen::VectorXd& velocity, std::vector<ContactTerm
     j->lower_previous = row.lower > 0 ? row.lower - gain * (j->lower_velocity - v) : 0;
     j->upper_previous = row.upper > 0 ? row.upper - gain * (v - j->upper_velocity) : 0;
   };
-  for (const JointRow& row : joint_rows_) adopt(row.axis, velocity[row.dof], &(*joints)[row.term]);
+  for (const JointRow& row : joint_rows_) adopt(row.axis, velocity[row.dof], &terms->joints[row.term]);
   for (std::size_t l = 0; l < loop_rows_.size(); ++l) {
-    LoopTerm& loop = (*loops)[l];
+    LoopTerm& loop = terms->loops[l];
     const LoopRow& row = loop_rows_[l];
     const Vector6 v = loop.basis.transpose() * relativeTwist(loop_pairs_[l], velocity);
     for (int r = 0; r < loop.rows; ++r)

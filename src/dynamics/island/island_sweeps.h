@@ -3,32 +3,13 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "island/island_response.h"
-#include "lanes/joint_term.h"
-#include "lanes/loop_term.h"
 #include "lanes/sweep_lanes.h"
-#include "trees/team.h"
+#include "problem/island_at_hand.h"
 
 namespace blem_sim::dynamics {
-
-/** Problem of an island's sweeps: the terms as they were made for the step. */
-struct SweepProblem {
-  const Forest& forest;
-  const ForestMotion& motion;
-  const std::vector<int>& trees;
-  const std::vector<ContactPatch>& patches;
-  const std::vector<ContactTerm>& contacts;
-  const std::vector<JointTerm>& joints;
-  const std::vector<LoopTerm>& loops;
-  const std::vector<BodyPair>& loop_pairs;
-  const std::vector<MimicFold>& mimics;
-  const Eigen::VectorXd& free_momentum;  ///< by dof
-  Vector3 up;                            ///< against gravity; zero without
-  Team* team;                            ///< shares the loops
-};
 
 /** First impulses of sweeps: the terms' previous impulses, or none. */
 enum class SweepStart { PREVIOUS, NOTHING };
@@ -42,11 +23,11 @@ struct SweepReport {
 class IslandSweeps {
  public:
   /**
-   * Takes a problem.
+   * Takes the terms at hand, as they were made for the step.
    * @param velocity by dof, at the start of the step: by it motors are taken to be saturated or not; out: that of the impulses
    * @return false if a mass matrix is not positive definite
    */
-  bool load(const SweepProblem& problem, SweepStart start, Eigen::VectorXd* velocity);
+  bool load(const IslandAtHand& island, SweepStart start, Eigen::VectorXd* velocity);
   /** Sweeps until the largest change of an impulse is below `enough` of the largest impulse, at most `most` times. */
   SweepReport sweep(int most, double enough, Eigen::VectorXd* velocity);
   /** Whether, at a velocity, exactly those motors stay within their efforts that were taken to answer linearly. */
@@ -57,8 +38,7 @@ class IslandSweeps {
   void scale(double factor, Eigen::VectorXd* velocity);
 
   /** The impulses found: of contacts, world axes; of joints and loops, as proximal points that answer so at the velocity. */
-  void read(const Eigen::VectorXd& velocity, std::vector<ContactTerm>* contacts, std::vector<JointTerm>* joints,
-            std::vector<LoopTerm>* loops) const;
+  void read(const Eigen::VectorXd& velocity, IslandTerms* terms) const;
 
  private:
   struct Pair {
@@ -89,7 +69,7 @@ class IslandSweeps {
     Vector6 impulse;  // of forbidden rows
     AxisRow axis;     // the free one
   };
-  bool loadResponse(const SweepProblem& problem, const Eigen::VectorXd& velocity);
+  bool loadResponse(const Eigen::VectorXd& velocity);
   void loadJoints(SweepStart start);
   void loadLoops(SweepStart start);
   void orderPatches(const Vector3& up);
@@ -109,7 +89,7 @@ class IslandSweeps {
   void noteVelocity(const Eigen::VectorXd& velocity);
   void moveOn(double share, Eigen::VectorXd* velocity);
 
-  std::optional<SweepProblem> problem_;
+  const IslandAtHand* island_ = nullptr;
   IslandResponse response_;
   Eigen::VectorXd gains_, momentum_;   // by dof of the forest
   std::vector<JointResponse> motors_;  // the line of each joint term's motor

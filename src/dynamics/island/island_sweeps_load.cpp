@@ -16,25 +16,25 @@ constexpr double LOOP_SOFTNESS = 1e-9;  // of the largest response: rows that de
 
 bool IslandSweeps::motorsAgree(const Eigen::VectorXd& velocity) const {
   for (std::size_t i = 0; i < motors_.size(); ++i)
-    if (!(problem_->joints[i].motorLine(velocity[problem_->joints[i].dof]) == motors_[i])) return false;
+    if (!(island_->terms()->joints[i].motorLine(velocity[island_->terms()->joints[i].dof]) == motors_[i])) return false;
   return true;
 }
 
-bool IslandSweeps::loadResponse(const SweepProblem& problem, const Eigen::VectorXd& velocity) {
-  response_.start(problem.forest, problem.motion, problem.trees, problem.mimics);
+bool IslandSweeps::loadResponse(const Eigen::VectorXd& velocity) {
+  response_.start(island_->forest, island_->motion, island_->model.trees, island_->model.mimics);
   gains_.resize(velocity.size());
   momentum_.resize(velocity.size());
   dofs_.clear();
-  for (const int tree : problem.trees) {
-    const ForestTree& t = problem.forest.trees()[tree];
+  for (const int tree : island_->model.trees) {
+    const ForestTree& t = island_->forest.trees()[tree];
     for (int k = t.first_dof; k < t.dof_end; ++k) {
       dofs_.push_back(k);
       gains_[k] = 0;
-      momentum_[k] = problem.free_momentum[k];
+      momentum_[k] = island_->space->free_momentum[k];
     }
   }
   motors_.clear();
-  for (const JointTerm& j : problem.joints) {
+  for (const JointTerm& j : island_->terms()->joints) {
     const JointResponse motor = j.motorLine(velocity[j.dof]);
     motors_.push_back(motor);
     gains_[j.dof] = j.viscous + motor.stiffness;
@@ -52,13 +52,13 @@ IslandSweeps::AxisRow::AxisRow(const JointTerm& joint, double axis_response, Swe
 
 void IslandSweeps::loadJoints(SweepStart start) {
   joint_rows_.clear();
-  for (std::size_t i = 0; i < problem_->joints.size(); ++i) {
-    const JointTerm& j = problem_->joints[i];
+  for (std::size_t i = 0; i < island_->terms()->joints.size(); ++i) {
+    const JointTerm& j = island_->terms()->joints[i];
     if (!(j.dry_bound > 0) && !(j.limit_gain > 0)) continue;
     JointRow row;
     row.term = static_cast<int>(i);
     row.dof = j.dof;
-    row.unit = response_.unitOf(problem_->forest.nodeOfDof(j.dof));
+    row.unit = response_.unitOf(island_->forest.nodeOfDof(j.dof));
     row.column = response_.column(j.dof);
     row.axis = AxisRow(j, response_.entry(row.column, response_.units()[row.unit].rowOf(j.dof)), start);
     if (row.axis.response > 0) joint_rows_.push_back(row);
@@ -68,9 +68,9 @@ void IslandSweeps::loadJoints(SweepStart start) {
 void IslandSweeps::loadLoops(SweepStart start) {
   loop_pairs_.clear();
   loop_rows_.clear();
-  for (std::size_t l = 0; l < problem_->loops.size(); ++l) {
-    const LoopTerm& loop = problem_->loops[l];
-    const BodyPair& pair = problem_->loop_pairs[l];
+  for (std::size_t l = 0; l < island_->terms()->loops.size(); ++l) {
+    const LoopTerm& loop = island_->terms()->loops[l];
+    const BodyPair& pair = island_->model.loop_pairs[l];
     loop_pairs_.push_back({pair, response_.side(pair.a), response_.side(pair.b)});
     const Matrix6 response = response_.relative(pair, loop_pairs_.back().a, loop_pairs_.back().b);
     const Matrix6 along = loop.basis.transpose() * response * loop.basis;
@@ -96,9 +96,9 @@ void IslandSweeps::loadLoops(SweepStart start) {
 // Orders the patches from the ground up.
 void IslandSweeps::orderPatches(const Vector3& up) {
   heights_.clear();
-  for (const ContactPatch& patch : problem_->patches) {
-    const Vector3& reference = problem_->motion.reference[problem_->forest.nodes()[patch.pair.a].tree];
-    heights_.push_back(up.dot(reference + problem_->contacts[patch.first].point));
+  for (const ContactPatch& patch : island_->model.patches) {
+    const Vector3& reference = island_->motion.reference[island_->forest.nodes()[patch.pair.a].tree];
+    heights_.push_back(up.dot(reference + island_->terms()->contacts[patch.first].point));
   }
   order_.resize(heights_.size());
   std::iota(order_.begin(), order_.end(), 0);
@@ -133,7 +133,7 @@ void IslandSweeps::layGroups() {
   by_colour_.resize(order_.size());
   chosen_.assign(colour_start_.begin(), colour_start_.end() - 1);
   for (const int p : order_) by_colour_[chosen_[colour_[p]]++] = p;
-  const auto contactsOf = [this](int p) { return problem_->patches[p].end - problem_->patches[p].first; };
+  const auto contactsOf = [this](int p) { return island_->model.patches[p].end - island_->model.patches[p].first; };
   for (int c = 0; c <= COLOURS; ++c) {
     const auto begin = by_colour_.begin() + colour_start_[c], end = by_colour_.begin() + colour_start_[c + 1];
     if (c < COLOURS)
@@ -183,9 +183,9 @@ void IslandSweeps::loadContacts(SweepStart start) {
       for (int r = 0, at = 0; r < 6; ++r)
         for (int c = 0; c <= r; ++c, ++at) group.response[at][lane] = response(r, c);
       for (int i = group.first; i < group.end; ++i) {
-        const int contact = p < 0 ? -1 : problem_->patches[p].first + i - group.first;
-        const bool exists = contact >= 0 && contact < problem_->patches[p].end;
-        setLane(exists ? &problem_->contacts[contact] : nullptr, lane, &contacts_[i], &impulses_[i]);
+        const int contact = p < 0 ? -1 : island_->model.patches[p].first + i - group.first;
+        const bool exists = contact >= 0 && contact < island_->model.patches[p].end;
+        setLane(exists ? &island_->terms()->contacts[contact] : nullptr, lane, &contacts_[i], &impulses_[i]);
       }
     }
     setGains(group, contacts_.data() + group.first, contacts_.data() + group.end);
