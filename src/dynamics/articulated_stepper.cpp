@@ -7,10 +7,10 @@
 #include <cmath>
 
 #include "blem_sim/geometry/roomy.h"
-#include "island/contact_work.h"
 #include "island/island.h"
 #include "island/island_motion.h"
 #include "kept_trees.h"
+#include "problem/contact_work.h"
 #include "problem/make_terms.h"
 #include "scene/contact_motion.h"
 #include "trees/islands.h"

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "problem/island_velocity.h"
+
 namespace blem_sim::dynamics {
 namespace {
 
@@ -13,13 +15,6 @@ double fastestTarget(const IslandAtHand& island) {
   double fastest = 0;
   for (const ContactTerm& c : island.terms()->contacts) fastest = std::max(fastest, c.target);
   return fastest;
-}
-
-// Kinetic energy [J] at a velocity. Overwrites space->mass_direction.
-double kineticEnergy(const IslandAtHand& island, const Eigen::VectorXd& velocity) {
-  SolverSpace& s = *island.space;
-  for (const int tree : island.model.trees) multiply(island.forest, tree, island.motion.mass, velocity, &s.mass_direction, &s.paths);
-  return 0.5 * dotProduct(island.forest, island.model.trees, velocity, s.mass_direction);
 }
 
 // Contacts of a body that friction locks, as in a groove, correct depth by no force, however large: they only keep bodies from coming

@@ -2,6 +2,7 @@
 
 #include "island/island_bounds.h"
 #include "newton/island_faults.h"
+#include "problem/island_velocity.h"
 
 namespace blem_sim::dynamics {
 namespace {
@@ -31,15 +32,15 @@ NewtonReport IslandSolver::solveFirst(const NewtonSettings& settings) {
     steps_.finish(settings, &report);
     return report;
   }
-  newton_.keepFirst();
+  keepFirst(*island_);
   report = island_->model.isHeap() ? heap_.solve(settings) : steps_.solvePredicted(settings);
   recoverFromFaults(&report);
   return report;
 }
 
 NewtonReport IslandSolver::solveAgain(const NewtonSettings& settings) {
-  newton_.takeMomentum();
-  newton_.keepFirst();
+  setKinetic(*island_);
+  keepFirst(*island_);
   NewtonReport report;
   team_->with(settings.helpers, [&] {
     report = island_->model.isHeap() ? heap_.solve(settings) : steps_.solve(settings);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "problem/island_velocity.h"
+
 namespace blem_sim::dynamics {
 namespace {
 
@@ -87,7 +89,7 @@ double IdleBranches::findVelocities() {
   iterate_->respondIdle();
   iterate_->joints().forIdle([&s](const JointBlock& b, int lane, int dof) { s.gradient[dof] = s.kinetic[dof] - b.impulse[lane]; });
   iterate_->live().forDofs([&s](int k) { s.mass_velocity[k] = s.free_momentum[k] + s.kinetic[k]; });
-  return iterate_->gradientNorm(idle);
+  return gradientNorm(*island_, idle);
 }
 
 IdleBranches::Outcome IdleBranches::settle(double enough, double* missed) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "newton/line_search.h"
+#include "problem/island_velocity.h"
 
 namespace blem_sim::dynamics {
 namespace {
@@ -35,7 +36,7 @@ void NewtonLoop::begin() {
 
 void NewtonLoop::beginAllLive() {
   iterate_.wakeAll();
-  iterate_.returnToFirst();
+  returnToFirst(*island_);
   begin();
 }
 
@@ -51,7 +52,6 @@ void NewtonLoop::rememberUnmixed() {
 
 // Idle dofs first: they cost least.
 double NewtonLoop::firstGradient(double tolerance) {
-  iterate_.respondIdle();
   const double idle = iterate_.evaluateIdleGradient();
   return idle > tolerance ? idle : std::max(idle, iterate_.evaluateGradient());
 }
@@ -135,12 +135,12 @@ void NewtonLoop::finish(NewtonReport* report) {
 }
 
 double NewtonLoop::adopt() {
-  SolverSpace& s = *island_->space;
-  for (const int tree : island_->model.trees) multiply(island_->forest, tree, island_->motion.mass, s.velocity, &s.mass_velocity, &s.paths);
-  iterate_.setKinetic();
+  multiplyMass(*island_, island_->space->velocity, &island_->space->mass_velocity);
+  setKinetic(*island_);
   begin();
   iterate_.adoptImpulses();
-  return std::max(iterate_.evaluateGradient(), iterate_.evaluateIdleGradient());
+  const double live = iterate_.evaluateGradient();
+  return std::max(live, iterate_.evaluateIdleGradient());
 }
 
 }  // namespace blem_sim::dynamics

@@ -13,8 +13,7 @@ struct RunLimits {
   double tolerance = 0;    ///< [sqrt(kg) m/s] gradient that is none
   double exactness = 0;    ///< share of the first gradient that is enough, if it is above the tolerance
   int most = 0;            ///< iterations
-  int patience = ENDLESS;  ///< iterations after which one that does not lead on is the last. One who has none left begins again
-                           ///< where idle joints stray.
+  int patience = ENDLESS;  ///< iterations that need not lead on; with less than `most`, a run ends where idle joints have strayed
 };
 
 /** A run of iterations. */
@@ -55,12 +54,8 @@ class NewtonLoop {
   void read() { iterate_.read(); }
   /** The same, and fills the report's qualities. */
   void finish(NewtonReport* report);
-  /** The free momentum in the space has changed. */
-  void takeMomentum() { iterate_.setKinetic(); }
   /** Changes of contacts' velocities that go with a change of the dofs' velocities, in place of those along the direction. */
   void setSteps(const Eigen::VectorXd& change) { iterate_.setSteps(change); }
-  /** Keeps the velocities at hand as those to begin from again. */
-  void keepFirst() { iterate_.keepFirst(); }
 
   const IslandIterate& iterate() const { return iterate_; }
 

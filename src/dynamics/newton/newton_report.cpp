@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "problem/island_velocity.h"
+
 namespace blem_sim::dynamics {
 namespace {
 
@@ -10,7 +12,7 @@ constexpr double OF_FIRST_SPEED = 1e-3;  // creep of contacts that is none: of t
 }  // namespace
 
 void assess(const IslandAtHand& island, const IslandIterate& iterate, NewtonReport* report) {
-  report->imbalance = iterate.imbalance();
+  report->imbalance = imbalance(island);
   const ContactResidual contact = iterate.contacts().residual();
   report->contact_residual = contact.impulse;
   report->contact_creep = std::max(0.0, contact.speed - OF_FIRST_SPEED * iterate.firstSpeed());

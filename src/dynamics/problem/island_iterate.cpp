@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "problem/island_velocity.h"
+
 namespace blem_sim::dynamics {
 
 void IslandIterate::start(const IslandAtHand& island) {
@@ -10,10 +12,9 @@ void IslandIterate::start(const IslandAtHand& island) {
   SolverSpace& s = *island.space;
   const std::vector<MimicFold>& mimics = island.model.mimics;
   for (const MimicFold& m : mimics) s.velocity[m.dof] = m.multiplier * s.velocity[m.master];
-  if (!mimics.empty())
-    for (const int tree : island.model.trees) multiply(island.forest, tree, island.motion.mass, s.velocity, &s.mass_velocity, &s.paths);
+  if (!mimics.empty()) multiplyMass(island, s.velocity, &s.mass_velocity);
   forDofs(island, [&](int k) { s.scale[k] = 1 / std::sqrt(island.motion.mass[island.forest.diagonal(k)]); });
-  setKinetic();
+  setKinetic(island);
   live_.find(island);
   begin();
   first_speed_ = contacts_.fastest();
@@ -37,27 +38,6 @@ void IslandIterate::takeWoken() {
   joints_.softenAgain();
 }
 
-void IslandIterate::setKinetic() {
-  SolverSpace& s = *island_->space;
-  forDofs(*island_, [&s](int k) { s.kinetic[k] = s.mass_velocity[k] - s.free_momentum[k]; });
-}
-
-void IslandIterate::keepFirst() {
-  SolverSpace& s = *island_->space;
-  forDofs(*island_, [&s](int k) {
-    s.first_velocity[k] = s.velocity[k];
-    s.first_kinetic[k] = s.kinetic[k];
-  });
-}
-
-void IslandIterate::returnToFirst() {
-  SolverSpace& s = *island_->space;
-  forDofs(*island_, [&s](int k) {
-    s.velocity[k] = s.first_velocity[k];
-    s.kinetic[k] = s.first_kinetic[k];
-  });
-}
-
 void IslandIterate::soften(double contact, double joint) {
   responses_at_ = UNKNOWN;
   contacts_.soften(contact);
@@ -79,8 +59,9 @@ void IslandIterate::expect() {
 }
 
 void IslandIterate::adoptImpulses() {
+  PotentialSlope unused;
   contacts_.adoptImpulses();
-  joints_.respondAll();
+  joints_.respondLive(0, &unused);
   responses_at_ = 0;
 }
 
@@ -111,28 +92,15 @@ double IslandIterate::evaluateGradient() {
     s.gradient[m.master] += m.multiplier * s.gradient[m.dof];
     s.gradient[m.dof] = 0;
   }
-  return gradientNorm(live_.dofs());
+  return gradientNorm(*island_, live_.dofs());
 }
 
 double IslandIterate::evaluateIdleGradient() {
+  respondIdle();
   SolverSpace& s = *island_->space;
   for (const int k : live_.idleDofs()) s.gradient[k] = s.kinetic[k];
   joints_.forIdle([&s](const JointBlock& b, int lane, int dof) { s.gradient[dof] -= b.impulse[lane]; });
-  return gradientNorm(live_.idleDofs());
-}
-
-double IslandIterate::gradientNorm(const std::vector<int>& dofs) const {
-  const SolverSpace& s = *island_->space;
-  double worst = 0;
-  for (const int k : dofs) worst = std::max(worst, std::abs(s.gradient[k]) * s.scale[k]);
-  return worst;
-}
-
-double IslandIterate::imbalance() const {
-  const SolverSpace& s = *island_->space;
-  double worst = 0;
-  forDofs(*island_, [&](int k) { worst = std::max(worst, std::abs(s.gradient[k]) * s.scale[k] * s.scale[k]); });
-  return worst;
+  return gradientNorm(*island_, live_.idleDofs());
 }
 
 void IslandIterate::setDirection() {
@@ -159,14 +127,17 @@ PotentialSlope IslandIterate::respond(double a) {
   return slope;
 }
 
-void IslandIterate::addLoopSlope(double a, PotentialSlope* slope) const {
+PotentialSlope IslandIterate::slope(double a, const PotentialSlope& kinetic) {
+  PotentialSlope slope = respond(a);
+  slope += kinetic;
   for (const LoopTerm& loop : island_->terms()->loops) {
     for (int r = 0; r < 6; ++r) {
       const double d = loop.step[r], v = loop.velocity[r] + a * d;
-      slope->first -= loop.impulse(r, v) * d;
-      slope->second += loop.stiffness(r, v) * d * d;
+      slope.first -= loop.impulse(r, v) * d;
+      slope.second += loop.stiffness(r, v) * d * d;
     }
   }
+  return slope;
 }
 
 double IslandIterate::move(double a) {

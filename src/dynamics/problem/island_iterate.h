@@ -21,10 +21,6 @@ class IslandIterate {
   void wakeAll() { live_.wakeAll(); }
   /** Goes on with the parts that were woken meanwhile. */
   void takeWoken();
-  /** M (v - v*) at the velocities at hand, all of them known, M times them given. */
-  void setKinetic();
-  void keepFirst();
-  void returnToFirst();
 
   /** Softness of contacts, of friction and limits of live joints: proximal weights over those of the hard problem. */
   void soften(double contact, double joint);
@@ -39,21 +35,15 @@ class IslandIterate {
 
   /** Fills the gradient on live dofs. @return [sqrt(kg) m/s] its norm there */
   double evaluateGradient();
-  /** The same on idle dofs, by their joints' responses at hand. */
+  /** The same on idle dofs, by their joints' responses at the velocities in the space. */
   double evaluateIdleGradient();
-  /** [sqrt(kg) m/s] Largest gradient of some dofs, over the root of the dof's own inertia. */
-  double gradientNorm(const std::vector<int>& dofs) const;
-  /** [rad/s or m/s] Largest gradient of a dof, over the dof's own inertia. */
-  double imbalance() const;
 
   /** Changes along the direction: of momenta on live dofs, of relative velocities of contacts, joints and loops. */
   void setDirection();
   /** Changes of contacts', live joints' and loops' velocities that go with a change of the dofs' velocities. */
   void setSteps(const Eigen::VectorXd& change);
-  /** Potential of contacts and live joints at a along the direction. */
-  PotentialSlope respond(double a);
-  /** Adds that of loops. */
-  void addLoopSlope(double a, PotentialSlope* slope) const;
+  /** Slope of the objective at a along the direction, and its derivative. @param kinetic those of the kinetic part */
+  PotentialSlope slope(double a, const PotentialSlope& kinetic);
   /** Moves by a along the direction. @return [rad/s or m/s] largest change of a velocity */
   double move(double a);
 
@@ -71,6 +61,7 @@ class IslandIterate {
 
  private:
   static constexpr double UNKNOWN = -1;  // no step length
+  PotentialSlope respond(double a);
   void evaluate();
   void gradient();
 

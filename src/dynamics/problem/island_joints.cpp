@@ -69,11 +69,6 @@ void IslandJoints::respondIdle() {
   dynamics::respond(0, blocks_.data() + live_blocks_, blocks_.data() + blocks_.size(), &first, &second);
 }
 
-void IslandJoints::respondAll() {
-  double first = 0, second = 0;
-  dynamics::respond(0, blocks_.data(), blocks_.data() + blocks_.size(), &first, &second);
-}
-
 void IslandJoints::remember() {
   for (JointTerm& j : island_->terms()->joints) j.remember(island_->space->velocity[j.dof]);
   setLanes();

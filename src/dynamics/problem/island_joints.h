@@ -28,7 +28,6 @@ class IslandJoints {
   void respondLive(double a, PotentialSlope* slope);
   /** Responses of idle joints at the velocities in the space. */
   void respondIdle();
-  void respondAll();
   /** The impulses at the velocities in the space become the proximal points. */
   void remember();
   /** [rad/s or m/s] of the worst joint. */
