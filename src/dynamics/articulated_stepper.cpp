@@ -7,11 +7,11 @@
 #include <cmath>
 
 #include "blem_sim/geometry/roomy.h"
-#include "island/contact_work.h"
 #include "island/island.h"
 #include "island/island_motion.h"
-#include "island/island_terms.h"
 #include "kept_trees.h"
+#include "problem/contact_work.h"
+#include "problem/make_terms.h"
 #include "scene/contact_motion.h"
 #include "trees/islands.h"
 
@@ -49,10 +49,10 @@ class ArticulatedStepper : public Stepper {
   void findIslands(const Scene& scene, const std::vector<ContactConstraint>& contacts);
   bool isMoved(const ContactConstraint& contact) const;
   void makeTerms(const TermSource& source, Island* island);
-  NewtonSettings settingsFor(const IslandProblem& problem) const;
+  NewtonSettings settingsFor(const IslandModel& model) const;
   bool leap(const TermSource& source, Island* island);
-  NewtonReport solveTwice(const StepInput& input, const NewtonSettings& newton, IslandProblem* problem);
-  NewtonReport solveBounded(const StepInput& input, IslandProblem* problem);
+  NewtonReport solveTwice(const StepInput& input, const NewtonSettings& newton, Island* island);
+  NewtonReport solveBounded(const StepInput& input, Island* island);
   void reckonWork(bool leaps, Island* island);
   void solveIsland(const Scene& scene, const StepInput& input, Island* island);
   void finishIsland(const Scene& scene, const StepInput& input, Island* island, SolveResult* result);
@@ -137,11 +137,11 @@ void ArticulatedStepper::findIslands(const Scene& scene, const std::vector<Conta
   if (static_cast<int>(islands_of_step_.size()) < island_count_) islands_of_step_.resize(island_count_);
   for (int i = 0; i < island_count_; ++i) {
     Island& island = islands_of_step_[i];
-    island.problem.clear();
+    island.model.clear();
     for (auto* list : {&island.contacts, &island.mimics, &island.loops}) list->clear();
   }
   for (std::size_t t = 0; t < forest_.trees().size(); ++t)
-    islands_of_step_[islands_.islandOf(static_cast<int>(t))].problem.trees.push_back(static_cast<int>(t));
+    islands_of_step_[islands_.islandOf(static_cast<int>(t))].model.trees.push_back(static_cast<int>(t));
   const auto islandOfNode = [&](int node) { return &islands_of_step_[islands_.islandOf(treeOfNode(node))]; };
   for (std::size_t m = 0; m < forest_.mimics().size(); ++m) islandOfNode(forest_.mimics()[m].node)->mimics.push_back(static_cast<int>(m));
   for (std::size_t l = 0; l < forest_.loops().size(); ++l) islandOfNode(forest_.loops()[l].child)->loops.push_back(static_cast<int>(l));
@@ -154,111 +154,114 @@ void ArticulatedStepper::findIslands(const Scene& scene, const std::vector<Conta
 }
 
 void ArticulatedStepper::makeTerms(const TermSource& source, Island* island) {
-  IslandProblem& problem = island->problem;
-  for (const int tree : problem.trees) {
+  IslandModel& model = island->model;
+  for (const int tree : model.trees) {
     for (int i = forest_.trees()[tree].first_node; i < forest_.trees()[tree].node_end; ++i)
-      if (forest_.nodes()[i].dofs == 1) problem.joints.push_back(jointTerm(source, i));
+      if (forest_.nodes()[i].dofs == 1) model.terms.joints.push_back(jointTerm(source, i));
   }
   for (const int index : island->mimics) {
     const MimicRelation& m = forest_.mimics()[index];
-    problem.mimics.push_back({forest_.nodes()[m.node].first_dof, forest_.nodes()[m.master].first_dof, m.multiplier});
+    model.mimics.push_back({forest_.nodes()[m.node].first_dof, forest_.nodes()[m.master].first_dof, m.multiplier});
   }
   for (const int l : island->loops) {
     BodyPair pair;
-    problem.loops.push_back(loopTerm(source, l, &pair));
-    problem.loop_pairs.push_back(pair);
+    model.terms.loops.push_back(loopTerm(source, l, &pair));
+    model.loop_pairs.push_back(pair);
   }
-  for (const int index : island->contacts) addContact(source, source.input.contacts[index], &problem);
-  weighContacts(source, &problem);
+  for (const int index : island->contacts) addContact(source, source.input.contacts[index], &model);
+  weighContacts(source, &model);
 }
 
 // Tolerances shrink with the lightest tree, below 10 g: those of heavier trees would let it creep.
-NewtonSettings ArticulatedStepper::settingsFor(const IslandProblem& problem) const {
+NewtonSettings ArticulatedStepper::settingsFor(const IslandModel& model) const {
   NewtonSettings settings;
   double lightest = LIGHT;
-  for (const int tree : problem.trees) lightest = std::min(lightest, motion_.composite[forest_.trees()[tree].first_node].mass);
+  for (const int tree : model.trees) lightest = std::min(lightest, motion_.composite[forest_.trees()[tree].first_node].mass);
   settings.contact_tolerance *= lightest / LIGHT;
   settings.gradient_tolerance *= std::sqrt(lightest / LIGHT);
-  settings.helpers = problem.contacts.size() >= SHARED ? settings_.threads - 1 : 0;
+  settings.helpers = model.terms.contacts.size() >= SHARED ? settings_.threads - 1 : 0;
   return settings;
 }
 
 // Solves with velocity products at the middle of the step, again where their first guess was not good enough.
-NewtonReport ArticulatedStepper::solveTwice(const StepInput& input, const NewtonSettings& newton, IslandProblem* problem) {
-  const NewtonReport first = problem->solve(forest_, motion_, newton, &space_);
+NewtonReport ArticulatedStepper::solveTwice(const StepInput& input, const NewtonSettings& newton, Island* island) {
+  const NewtonReport first = island->solver.solve(forest_, motion_, island->model, newton, &space_);
   double change = 0;
-  for (const int tree : problem->trees) change = std::max(change, correctProducts(forest_, input, tree, &motion_, &space_));
-  return change <= SAME_PRODUCTS ? first : afterAll(first, problem->solveAgain(newton));
+  for (const int tree : island->model.trees) change = std::max(change, correctProducts(forest_, input, tree, &motion_, &space_));
+  return change <= SAME_PRODUCTS ? first : afterAll(first, island->solver.solveAgain(newton));
 }
 
-NewtonReport ArticulatedStepper::solveBounded(const StepInput& input, IslandProblem* problem) {
-  const NewtonSettings newton = settingsFor(*problem);
-  const NewtonReport report = solveTwice(input, newton, problem);
-  return problem->limitCorrections(settings_.max_correction_speed) ? afterAll(report, problem->solveAgain(newton)) : report;
+NewtonReport ArticulatedStepper::solveBounded(const StepInput& input, Island* island) {
+  const NewtonSettings newton = settingsFor(island->model);
+  const NewtonReport report = solveTwice(input, newton, island);
+  if (!island->solver.limitCorrections(settings_.max_correction_speed)) return report;
+  return afterAll(report, island->solver.solveAgain(newton));
 }
 
 // Trees that an impact meets are followed as if they were fast: their speed after it is not known yet. @return whether an impact happened
 bool ArticulatedStepper::leap(const TermSource& source, Island* island) {
-  const IslandProblem& problem = island->problem;
-  if (!island->impacts.expect(source, island->contacts, problem)) return false;
-  for (const int tree : problem.trees) followAlone(forest_, source.input, tree, &motion_, &space_);
-  return island->impacts.happen(source, island->contacts, problem, &impact_space_, &space_);
+  const IslandModel& model = island->model;
+  if (!island->impacts.expect(source, island->contacts, model)) return false;
+  for (const int tree : model.trees) followAlone(forest_, source.input, tree, &motion_, &space_);
+  return island->impacts.happen(source, island->contacts, model, &impact_space_, &space_);
 }
 
 // Precondition: solved, impacts not added yet.
 void ArticulatedStepper::reckonWork(bool leaps, Island* island) {
-  const IslandProblem& problem = island->problem;
+  const IslandModel& model = island->model;
+  const std::vector<ContactTerm>& contacts = island->solver.found().terms.contacts;
   if (leaps)
-    for (const int tree : problem.trees) computeTwists(forest_, tree, motion_, impact_space_.leap, &impact_space_.twist);
-  geometry::makeRoomFor(problem.contacts.size(), &island->apparent_work);
-  island->apparent_work.assign(problem.contacts.size(), 0);
-  for (const ContactPatch& patch : problem.patches) {
+    for (const int tree : model.trees) computeTwists(forest_, tree, motion_, impact_space_.leap, &impact_space_.twist);
+  geometry::makeRoomFor(contacts.size(), &island->apparent_work);
+  island->apparent_work.assign(contacts.size(), 0);
+  for (const ContactPatch& patch : model.patches) {
     Vector6 before = relativeTwist(patch.pair, motion_.twist);
     if (leaps) before += relativeTwist(patch.pair, impact_space_.twist);
     for (int i = patch.first; i < patch.end; ++i) {
-      const ContactTerm& contact = problem.contacts[i];
+      const ContactTerm& contact = contacts[i];
       if (!contact.impulse.isZero(0)) island->apparent_work[i] = apparentWork(contact, velocityAt(before, contact.point));
     }
   }
 }
 
 void ArticulatedStepper::solveIsland(const Scene& scene, const StepInput& input, Island* island) {
-  IslandProblem& problem = island->problem;
+  IslandModel& model = island->model;
   const TermSource source{scene, forest_, motion_, input, settings_, memory_};
-  for (const int tree : problem.trees) setFreeMomentum(forest_, scene, input, !island->contacts.empty(), tree, &motion_, &space_);
+  for (const int tree : model.trees) setFreeMomentum(forest_, scene, input, !island->contacts.empty(), tree, &motion_, &space_);
   makeTerms(source, island);
-  problem.up = -scene.gravity();
-  addEfforts(input, problem, &space_);
+  model.up = -scene.gravity();
+  addEfforts(input, model, &space_);
   const bool leaps = leap(source, island);
-  island->report = solveBounded(input, &problem);
+  island->report = solveBounded(input, island);
   reckonWork(leaps, island);
-  if (leaps) island->impacts.addTo(&problem);
+  if (leaps) island->impacts.addTo(island->solver.terms());
 }
 
 void ArticulatedStepper::finishIsland(const Scene& scene, const StepInput& input, Island* island, SolveResult* result) {
-  const IslandProblem& problem = island->problem;
+  const IslandModel& model = island->model;
   readContacts(input, *island, result);
   readJoints(input, *island, result);
-  for (const int tree : problem.trees) {
+  for (const int tree : model.trees) {
     const ForestTree& t = forest_.trees()[tree];
     motion_.next_velocity.segment(t.first_dof, t.dofCount()) = space_.velocity.segment(t.first_dof, t.dofCount());
   }
-  island->followed = followFast(forest_, problem, input.dt, motion_, space_, &way_);
-  computeWrenches(forest_, scene, problem, input.dt, way_, &motion_, &space_, &result->joint_wrenches);
-  advanceIsland(forest_, problem, input.dt, way_, &motion_, &space_);
-  island->impacts.takeFrom(forest_, problem.trees, &motion_.change);
+  const SolvedIsland solved{forest_, scene, model, island->solver.found().terms, input.dt};
+  island->followed = followFast(solved, motion_, space_, &way_);
+  computeWrenches(solved, way_, &motion_, &space_, &result->joint_wrenches);
+  advanceIsland(solved, way_, &motion_, &space_);
+  island->impacts.takeFrom(forest_, model.trees, &motion_.change);
 }
 
 void ArticulatedStepper::readContacts(const StepInput& input, const Island& island, SolveResult* result) const {
   for (std::size_t i = 0; i < island.contacts.size(); ++i) {
     const ContactConstraint& c = input.contacts[island.contacts[i]];
-    result->contact_forces[island.contacts[i]] = termSign(c) / input.dt * island.problem.contacts[i].impulse;
+    result->contact_forces[island.contacts[i]] = termSign(c) / input.dt * island.solver.found().terms.contacts[i].impulse;
     result->apparent_work[island.contacts[i]] = island.apparent_work[i];
   }
 }
 
 void ArticulatedStepper::readJoints(const StepInput& input, const Island& island, SolveResult* result) {
-  const IslandProblem& problem = island.problem;
+  const IslandAnswer& found = island.solver.found();
   const auto read = [&](const JointTerm& j, double v) {
     JointRecord& record = memory_.joints[j.joint];
     const double last = record.dry, bound = j.dry_bound / input.dt;
@@ -270,16 +273,16 @@ void ArticulatedStepper::readJoints(const StepInput& input, const Island& island
     result->motor_efforts[j.joint] = drive.effort + j.motorImpulse(v) / input.dt;
     result->axis_efforts[j.joint] = drive.givenEffort() + (j.motorImpulse(v) + j.dryImpulse(v) - j.viscous * v) / input.dt;
   };
-  for (const JointTerm& j : problem.joints) read(j, space_.velocity[j.dof]);
+  for (const JointTerm& j : found.terms.joints) read(j, space_.velocity[j.dof]);
   for (std::size_t l = 0; l < island.loops.size(); ++l) {
-    const LoopTerm& loop = problem.loops[l];
+    const LoopTerm& loop = found.terms.loops[l];
     memory_.joints[forest_.loops()[island.loops[l]].joint].loop = loop.impulses() / input.dt;
     if (loop.rows < 6) read(loop.drive, loop.velocity[5]);
   }
   // A mimic joint feels its master's pull, the master its reaction.
   for (std::size_t i = 0; i < island.mimics.size(); ++i) {
     const MimicRelation& m = forest_.mimics()[island.mimics[i]];
-    const double effort = problem.mimic_impulses[i] / input.dt;
+    const double effort = found.mimic_impulses[i] / input.dt;
     result->axis_efforts[forest_.nodes()[m.node].joint] += effort;
     result->axis_efforts[forest_.nodes()[m.master].joint] -= m.multiplier * effort;
   }
@@ -295,7 +298,7 @@ void ArticulatedStepper::remember(const StepInput& input, const SolveResult& res
       Vector3 force = result.contact_forces[island.contacts[i]];
       if (island.impacts.any()) force -= termSign(c) / input.dt * island.impacts.impulse(i);
       const bool pushes = c.normal_BA.dot(force) > 0;
-      if (pushes) next_contacts_.push_back({c.id, force, island.problem.contacts[i].slipVelocity().norm()});
+      if (pushes) next_contacts_.push_back({c.id, force, island.solver.found().terms.contacts[i].slipVelocity().norm()});
     }
   }
   std::sort(next_contacts_.begin(), next_contacts_.end(), [](const ContactRecord& a, const ContactRecord& b) { return a.id < b.id; });

@@ -1,5 +1,5 @@
 // Apparent work of contacts: departures and slips that loads end, and bent paths count; work beyond the contact's law does not.
-#include "island/contact_work.h"
+#include "problem/contact_work.h"
 
 #include <gtest/gtest.h>
 

@@ -39,7 +39,7 @@ struct HitTrees {
       for (int k = t.first_dof; k < t.dof_end; ++k) motion.velocity[k] = any();
       computeInertias(forest, tree, &motion);
       takeMomentum(forest, tree, &motion, &solver);
-      problem.trees.push_back(tree);
+      model.trees.push_back(tree);
     }
   }
 
@@ -70,7 +70,7 @@ struct HitTrees {
       c.id = i;
       constraints.push_back(c);
       indices.push_back(i);
-      addContact(source(), c, &problem);
+      addContact(source(), c, &model);
     }
   }
   TermSource source() const { return {scene, forest, motion, input, settings, memory}; }
@@ -95,13 +95,13 @@ struct HitTrees {
     leap.setZero(forest.dofCount());
     before = kineticEnergy();
     const Eigen::VectorXd free = solver.free_momentum;
-    const bool any = impacts.happen(source(), indices, problem, &space, &solver);
+    const bool any = impacts.happen(source(), indices, model, &space, &solver);
     leap = solver.free_momentum - free;
     return any;
   }
   double approach(int contact) const {
-    const ContactTerm& term = problem.contacts[contact];
-    for (const ContactPatch& patch : problem.patches) {
+    const ContactTerm& term = model.terms.contacts[contact];
+    for (const ContactPatch& patch : model.patches) {
       if (contact < patch.first || contact >= patch.end) continue;
       std::vector<Vector6> twist(forest.nodes().size());
       for (int tree = 0; tree < 3; ++tree) computeTwists(forest, tree, motion, space.velocity, &twist);
@@ -124,7 +124,7 @@ struct HitTrees {
   std::vector<ContactConstraint> constraints;
   std::vector<int> indices;
   StepInput input{DT, constraints, drives};
-  IslandProblem problem;
+  IslandModel model;
   IslandImpacts impacts;
   Eigen::VectorXd start, leap;
   double before = 0;
@@ -152,9 +152,9 @@ TEST(IslandImpacts, NeverGainAndKeepToCoulombsLaw) {
       EXPECT_LT(trees.kineticEnergy(), trees.before * (1 + 1e-12)) << seed;
       for (int i = 0; i < 8; ++i) {
         const Vector3& impulse = trees.impacts.impulse(i);
-        const double push = trees.problem.contacts[i].normal.dot(impulse);
+        const double push = trees.model.terms.contacts[i].normal.dot(impulse);
         EXPECT_GE(push, 0);
-        EXPECT_LE((impulse - push * trees.problem.contacts[i].normal).norm(), friction * push * (1 + 1e-9) + 1e-12);
+        EXPECT_LE((impulse - push * trees.model.terms.contacts[i].normal).norm(), friction * push * (1 + 1e-9) + 1e-12);
       }
     }
   }

@@ -12,7 +12,7 @@ FLOORS = {
     "model": ["checks"],
     "contact": ["features", "kernels", "neighbourhood", "kept", "evaluation", "merging", "search"],
     "reduction": ["lanes", "patches", "choice"],
-    "dynamics": ["lanes", "scene", "trees", "island", "ode"],
+    "dynamics": ["lanes", "scene", "trees", "problem", "newton", "island", "ode"],
     "sim": ["numbers", "config", "gazebo", "commands", "build", "clouds", "contacts", "guard", "sensors", "state", "inputs", "controllers"],
     "ros": ["messages", "sending", "loop", "clouds", "publishers", "services", "saving", "attachments", "controllers"],
 }

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "island/island_problem.h"
+#include "lanes/body_pair.h"
 #include "lanes/contact_term.h"
 #include "trees/forest_motion.h"
 #include "trees/tree_rows.h"

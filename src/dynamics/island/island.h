@@ -4,13 +4,14 @@
 #include <vector>
 
 #include "island/island_impacts.h"
-#include "island/island_problem.h"
+#include "island/island_solver.h"
 
 namespace blem_sim::dynamics {
 
 /** An island with its contacts, impacts and reports of this step. */
 struct Island {
-  IslandProblem problem;
+  IslandModel model;
+  IslandSolver solver;
   std::vector<int> contacts;          ///< of the step's input
   std::vector<int> mimics, loops;     ///< of the forest's
   std::vector<double> apparent_work;  ///< of the contacts [J]

@@ -31,24 +31,24 @@ double slowestBounce(const TermSource& s, double kick) {
 }  // namespace
 
 // Velocities with half of the step's forces approach by no more than these times 4/3, then 5/3, if the bounds on rest are to be passed.
-bool IslandImpacts::expect(const TermSource& s, const std::vector<int>& contacts, const IslandProblem& problem) {
+bool IslandImpacts::expect(const TermSource& s, const std::vector<int>& contacts, const IslandModel& model) {
   impulses_.clear();
   const double slowest = slowestBounce(s, 0);
-  for (const ContactPatch& patch : problem.patches)
+  for (const ContactPatch& patch : model.patches)
     for (int i = patch.first; i < patch.end; ++i) {
       const ContactConstraint& c = s.input.contacts[contacts[i]];
-      if (!hasImpacts(c, problem.contacts[i])) continue;
-      const double closing = -normalSpeed(patch.pair, problem.contacts[i], s.motion.twist);
+      if (!hasImpacts(c, model.terms.contacts[i])) continue;
+      const double closing = -normalSpeed(patch.pair, model.terms.contacts[i], s.motion.twist);
       if (4 * closing > 3 * slowest && 5 * s.input.dt * closing > -3 * c.depth) return true;
     }
   return false;
 }
 
-void IslandImpacts::begin(const TermSource& s, const std::vector<int>& contacts, const IslandProblem& problem, const SolverSpace& solver) {
+void IslandImpacts::begin(const TermSource& s, const std::vector<int>& contacts, const IslandModel& model, const SolverSpace& solver) {
   bouncers_.clear();
   rows_.clear();
   work_left_ = MAX_WORK;
-  for (const int tree : problem.trees) {
+  for (const int tree : model.trees) {
     const ForestTree& t = s.forest.trees()[tree];
     const int first = t.first_dof, count = t.dofCount();
     factorMass(s.forest, tree, s.motion, space_);
@@ -61,43 +61,42 @@ void IslandImpacts::begin(const TermSource& s, const std::vector<int>& contacts,
     space_->leap.segment(first, count).setZero();
     space_->momentum.segment(first, count).setZero();
   }
-  for (const ContactPatch& patch : problem.patches)
+  for (const ContactPatch& patch : model.patches)
     for (int i = patch.first; i < patch.end; ++i) {
       const ContactConstraint& c = s.input.contacts[contacts[i]];
-      if (!hasImpacts(c, problem.contacts[i])) continue;
+      if (!hasImpacts(c, model.terms.contacts[i])) continue;
       Bouncer bouncer;
       bouncer.contact = i;
       bouncer.pair = &patch.pair;
       bouncer.restitution = c.restitution;
-      bouncer.slow_friction = problem.contacts[i].friction;
+      bouncer.slow_friction = model.terms.contacts[i].friction;
       bouncer.friction = c.impact_friction_factor * bouncer.slow_friction;
       bouncer.friction_speed = c.impact_friction_speed;
       bouncer.depth = c.depth;
       bouncers_.push_back(bouncer);
     }
-  setSpeeds(s.forest, s.motion, problem, space_->column);
+  setSpeeds(s.forest, s.motion, model, space_->column);
   for (Bouncer& b : bouncers_) {
     b.kick = b.speed;
     b.slowest = slowestBounce(s, b.kick);
   }
 }
 
-void IslandImpacts::setSpeeds(const Forest& forest, const ForestMotion& motion, const IslandProblem& problem,
-                              const Eigen::VectorXd& velocity) {
-  for (const int tree : problem.trees) computeTwists(forest, tree, motion, velocity, &space_->twist);
-  for (Bouncer& b : bouncers_) b.speed = normalSpeed(*b.pair, problem.contacts[b.contact], space_->twist);
+void IslandImpacts::setSpeeds(const Forest& forest, const ForestMotion& motion, const IslandModel& model, const Eigen::VectorXd& velocity) {
+  for (const int tree : model.trees) computeTwists(forest, tree, motion, velocity, &space_->twist);
+  for (Bouncer& b : bouncers_) b.speed = normalSpeed(*b.pair, model.terms.contacts[b.contact], space_->twist);
 }
 
 // Finds the contacts that approach so fast that they will meet within the step, and the share of its speed that each will keep: restitution
 // is that at the surface, which is a gap's fall away.
-bool IslandImpacts::findMeetings(const TermSource& s, const IslandProblem& problem) {
+bool IslandImpacts::findMeetings(const TermSource& s, const IslandModel& model) {
   meetings_.clear();
   const double dt = s.input.dt;
-  setSpeeds(s.forest, s.motion, problem, space_->velocity);
+  setSpeeds(s.forest, s.motion, model, space_->velocity);
   for (Bouncer& b : bouncers_) {
     const double closing = -b.speed;
     if (!(closing > b.slowest) || b.depth - dt * (b.speed + b.kick) <= 0) continue;
-    if (b.row < 0) b.row = rows_.add(s.forest, s.motion, *b.pair, problem.contacts[b.contact], space_);
+    if (b.row < 0) b.row = rows_.add(s.forest, s.motion, *b.pair, model.terms.contacts[b.contact], space_);
     if (!(rows_.inverseMass(b.row) > 0)) continue;
     const double e2 = b.restitution * b.restitution, fall = 4 * b.kick * b.depth / (dt * closing * closing);
     Meeting meeting;
@@ -107,17 +106,17 @@ bool IslandImpacts::findMeetings(const TermSource& s, const IslandProblem& probl
     if (b.restitution > 0) meeting.restitution = std::sqrt(std::clamp(e2 - (1 - e2) * fall, 0.0, 1.0));
     meetings_.push_back(meeting);
   }
-  findGroups(s.forest, problem);
+  findGroups(s.forest, model);
   return !meetings_.empty();
 }
 
 // Groups the meetings: those that no moved tree ties together do not act on each other.
-void IslandImpacts::findGroups(const Forest& forest, const IslandProblem& problem) {
+void IslandImpacts::findGroups(const Forest& forest, const IslandModel& model) {
   const auto treeOf = [&](int node) {
-    const auto at = std::lower_bound(problem.trees.begin(), problem.trees.end(), forest.nodes()[node].tree);
-    return static_cast<int>(at - problem.trees.begin());
+    const auto at = std::lower_bound(model.trees.begin(), model.trees.end(), forest.nodes()[node].tree);
+    return static_cast<int>(at - model.trees.begin());
   };
-  groups_.reset(static_cast<int>(problem.trees.size()));
+  groups_.reset(static_cast<int>(model.trees.size()));
   for (const Meeting& m : meetings_) {
     const BodyPair& pair = *bouncers_[m.bouncer].pair;
     if (pair.b >= 0) groups_.join(treeOf(pair.a), treeOf(pair.b));
@@ -225,11 +224,11 @@ void IslandImpacts::expand(Meeting* first, Meeting* end, double lost) {
   for (Meeting* m = first; m != end; ++m) bouncers_[m->bouncer].impulse += m->impulse;
 }
 
-bool IslandImpacts::happen(const TermSource& s, const std::vector<int>& contacts, const IslandProblem& problem, ImpactSpace* space,
+bool IslandImpacts::happen(const TermSource& s, const std::vector<int>& contacts, const IslandModel& model, ImpactSpace* space,
                            SolverSpace* solver) {
   space_ = space;
-  begin(s, contacts, problem, *solver);
-  for (int round = 0; round < MAX_ROUNDS && work_left_ > 0 && findMeetings(s, problem); ++round) {
+  begin(s, contacts, model, *solver);
+  for (int round = 0; round < MAX_ROUNDS && work_left_ > 0 && findMeetings(s, model); ++round) {
     for (Meeting *first = meetings_.data(), *last = first + meetings_.size(); first != last;) {
       Meeting* end = first;
       while (end != last && end->group == first->group) ++end;
@@ -238,19 +237,19 @@ bool IslandImpacts::happen(const TermSource& s, const std::vector<int>& contacts
     }
   }
   if (rows_.empty()) return false;
-  finish(s.forest, problem, solver);
+  finish(s.forest, model, solver);
   return true;
 }
 
-void IslandImpacts::finish(const Forest& forest, const IslandProblem& problem, SolverSpace* solver) {
-  impulses_.assign(problem.contacts.size(), Vector3::Zero());
+void IslandImpacts::finish(const Forest& forest, const IslandModel& model, SolverSpace* solver) {
+  impulses_.assign(model.terms.contacts.size(), Vector3::Zero());
   for (const Bouncer& b : bouncers_) {
     if (b.row < 0) continue;
     rows_.addMomentum(b.row, b.impulse, &space_->momentum);
     rows_.push(b.row, b.impulse, &space_->leap);
     impulses_[b.contact] = rows_.inWorld(b.row, b.impulse);
   }
-  for (const int tree : problem.trees) {
+  for (const int tree : model.trees) {
     const ForestTree& t = forest.trees()[tree];
     const int first = t.first_dof, count = t.dofCount();
     solver->free_momentum.segment(first, count) += space_->momentum.segment(first, count);
@@ -259,8 +258,8 @@ void IslandImpacts::finish(const Forest& forest, const IslandProblem& problem, S
   }
 }
 
-void IslandImpacts::addTo(IslandProblem* problem) const {
-  for (std::size_t i = 0; i < impulses_.size(); ++i) problem->contacts[i].impulse += impulses_[i];
+void IslandImpacts::addTo(IslandTerms* terms) const {
+  for (std::size_t i = 0; i < impulses_.size(); ++i) terms->contacts[i].impulse += impulses_[i];
 }
 
 void IslandImpacts::takeFrom(const Forest& forest, const std::vector<int>& trees, Eigen::VectorXd* change) const {

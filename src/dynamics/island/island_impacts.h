@@ -4,7 +4,9 @@
 #include <vector>
 
 #include "island/impact_rows.h"
-#include "island/island_terms.h"
+#include "problem/make_terms.h"
+#include "problem/solver_space.h"
+#include "trees/islands.h"
 
 namespace blem_sim::dynamics {
 
@@ -12,31 +14,31 @@ namespace blem_sim::dynamics {
 class IslandImpacts {
  public:
   /** Forgets the last step's impacts. @return whether any contact that has impacts may meet within this step */
-  bool expect(const TermSource& source, const std::vector<int>& contacts, const IslandProblem& problem);
+  bool expect(const TermSource& source, const std::vector<int>& contacts, const IslandModel& model);
   /**
    * Contacts that have impacts and will meet within the step reflect velocities as often as it takes until none approaches any more, or
    * the bounds on work are reached; contacts that then still approach are left to the solve, where they do not bounce. No reflection adds
    * kinetic energy. If any happens, the free momentum of `solver` and its first guess of the velocities change by the impulses.
-   * @param contacts of the step's input, those of the problem
+   * @param contacts of the step's input, those of the model
    * @return whether anything met; if not, nothing was changed
    * Precondition: expect() was true
    */
-  bool happen(const TermSource& source, const std::vector<int>& contacts, const IslandProblem& problem, ImpactSpace* space,
+  bool happen(const TermSource& source, const std::vector<int>& contacts, const IslandModel& model, ImpactSpace* space,
               SolverSpace* solver);
 
   /** Whether anything met in the step at hand. */
   bool any() const { return !impulses_.empty(); }
-  /** Impulse [N s] of a contact of the problem, in the sense of its term. Precondition: any() */
+  /** Impulse [N s] of a contact of the model, in the sense of its term. Precondition: any() */
   const Vector3& impulse(std::size_t contact) const { return impulses_[contact]; }
   /** Adds the impulses to those that the solve found. Precondition: any() */
-  void addTo(IslandProblem* problem) const;
+  void addTo(IslandTerms* terms) const;
   /** Takes the leaps of velocity, if any, away from changes that are to be extrapolated. */
   void takeFrom(const Forest& forest, const std::vector<int>& trees, Eigen::VectorXd* change) const;
 
  private:
   /** A contact that has restitution, or a friction of its own in impacts. */
   struct Bouncer {
-    int contact = 0;  ///< of the problem
+    int contact = 0;  ///< of the model
     const BodyPair* pair = nullptr;
     int row = -1;  ///< of rows_, once it has met
     double restitution = 0;
@@ -56,24 +58,24 @@ class IslandImpacts {
     Vector3 impulse = Vector3::Zero();  ///< [N s] of the phase at hand
   };
 
-  void begin(const TermSource& source, const std::vector<int>& contacts, const IslandProblem& problem, const SolverSpace& solver);
-  void setSpeeds(const Forest& forest, const ForestMotion& motion, const IslandProblem& problem, const Eigen::VectorXd& velocity);
-  bool findMeetings(const TermSource& source, const IslandProblem& problem);
-  void findGroups(const Forest& forest, const IslandProblem& problem);
+  void begin(const TermSource& source, const std::vector<int>& contacts, const IslandModel& model, const SolverSpace& solver);
+  void setSpeeds(const Forest& forest, const ForestMotion& motion, const IslandModel& model, const Eigen::VectorXd& velocity);
+  bool findMeetings(const TermSource& source, const IslandModel& model);
+  void findGroups(const Forest& forest, const IslandModel& model);
   double compress(Meeting* first, Meeting* end);
   void expand(Meeting* first, Meeting* end, double lost);
   double push(const Vector3& impulse, Meeting* meeting);
   double stop(Meeting* meeting);
   double rub(double most, Meeting* meeting);
   void scale(double factor, Meeting* first, Meeting* end);
-  void finish(const Forest& forest, const IslandProblem& problem, SolverSpace* solver);
+  void finish(const Forest& forest, const IslandModel& model, SolverSpace* solver);
 
   ImpactSpace* space_ = nullptr;
   int work_left_ = 0;
   std::vector<Bouncer> bouncers_;
   std::vector<Meeting> meetings_;
   ImpactRows rows_;
-  Islands groups_;  ///< of the problem's trees
+  Islands groups_;  ///< of the model's trees
   std::vector<Vector3> impulses_;
 };
 

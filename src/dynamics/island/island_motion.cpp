@@ -110,26 +110,27 @@ void followMomentum(const Forest& forest, int tree, const Vector3& target, Fores
 }
 
 // Wrenches on the nodes from contacts, and from loops whose joints' wrenches are noted on the way, about the trees' reference points.
-void addReactions(const Forest& forest, const IslandProblem& problem, const ForestMotion& motion, double dt, std::vector<Vector6>* on_node,
-                  std::vector<Wrench>* wrenches) {
-  const auto add = [&](const BodyPair& pair, const Vector6& wrench) {
-    (*on_node)[pair.a] += wrench;
-    if (pair.b >= 0) (*on_node)[pair.b] -= moveWrench(wrench, -pair.shift);
-  };
-  for (const ContactPatch& patch : problem.patches)
-    for (int i = patch.first; i < patch.end; ++i) add(patch.pair, wrenchOf(problem.contacts[i].impulse / dt, problem.contacts[i].point));
-  for (std::size_t l = 0; l < problem.loops.size(); ++l) {
-    const LoopTerm& loop = problem.loops[l];
+void addReactions(const SolvedIsland& island, const ForestMotion& motion, std::vector<Vector6>* on_node, std::vector<Wrench>* wrenches) {
+  const double dt = island.dt;
+  const std::vector<ContactTerm>& contacts = island.found.contacts;
+  for (const ContactPatch& patch : island.model.patches)
+    for (int i = patch.first; i < patch.end; ++i) addWrench(patch.pair, wrenchOf(contacts[i].impulse / dt, contacts[i].point), on_node);
+  for (std::size_t l = 0; l < island.found.loops.size(); ++l) {
+    const LoopTerm& loop = island.found.loops[l];
+    const BodyPair& pair = island.model.loop_pairs[l];
     const Vector6 wrench = loop.basis * loop.impulses() / dt;
-    add(problem.loop_pairs[l], wrench);
-    const Vector6 at_origin = moveWrench(wrench, motion.reference[forest.nodes()[problem.loop_pairs[l].a].tree] - loop.origin);
+    addWrench(pair, wrench, on_node);
+    const Vector6 at_origin = moveWrench(wrench, motion.reference[island.forest.nodes()[pair.a].tree] - loop.origin);
     (*wrenches)[loop.drive.joint] = {linear(at_origin), angular(at_origin)};
   }
 }
 
 // Wrenches of a fast tree's joints, from momenta at the start and at the end; forces act at the middle of the way. Overwrites on_node.
-void addFastWrenches(const Forest& forest, const Scene& scene, int tree, double dt, const FreeMotion& way, const ForestMotion& motion,
-                     std::vector<Vector6>* on_node, std::vector<Wrench>* wrenches) {
+void addFastWrenches(const SolvedIsland& island, int tree, const FreeMotion& way, const ForestMotion& motion, std::vector<Vector6>* on_node,
+                     std::vector<Wrench>* wrenches) {
+  const Forest& forest = island.forest;
+  const Scene& scene = island.scene;
+  const double dt = island.dt;
   const ForestTree& t = forest.trees()[tree];
   for (int i = t.node_end - 1; i >= t.first_node; --i) {
     const ForestNode& node = forest.nodes()[i];
@@ -151,12 +152,12 @@ void addFastWrenches(const Forest& forest, const Scene& scene, int tree, double 
 
 // The velocities of the solve, taken on to the end of the step without velocity products, may have more energy there. The island loses it:
 // all velocities shrink alike, so that mimic joints and loops keep their relations.
-void brake(const Forest& forest, const IslandProblem& problem, ForestMotion* motion, SolverSpace* space) {
-  const double solved = dotProduct(forest, problem.trees, space->velocity, space->mass_velocity);
-  for (const int tree : problem.trees) multiply(forest, tree, motion->mass, motion->velocity, &space->mass_velocity, &space->paths);
-  const double there = dotProduct(forest, problem.trees, motion->velocity, space->mass_velocity);
+void brake(const Forest& forest, const std::vector<int>& trees, ForestMotion* motion, SolverSpace* space) {
+  const double solved = dotProduct(forest, trees, space->velocity, space->mass_velocity);
+  for (const int tree : trees) multiply(forest, tree, motion->mass, motion->velocity, &space->mass_velocity, &space->paths);
+  const double there = dotProduct(forest, trees, motion->velocity, space->mass_velocity);
   if (!(there > solved)) return;
-  for (const int tree : problem.trees) {
+  for (const int tree : trees) {
     const ForestTree& t = forest.trees()[tree];
     motion->velocity.segment(t.first_dof, t.dofCount()) *= std::sqrt(solved / there);
     takeMomentum(forest, tree, motion, space);
@@ -202,8 +203,8 @@ void followAlone(const Forest& forest, const StepInput& input, int tree, ForestM
   }
 }
 
-void addEfforts(const StepInput& input, const IslandProblem& problem, SolverSpace* space) {
-  for (const JointTerm& j : problem.joints) space->free_momentum[j.dof] += input.dt * input.drives[j.joint].givenEffort();
+void addEfforts(const StepInput& input, const IslandModel& model, SolverSpace* space) {
+  for (const JointTerm& j : model.terms.joints) space->free_momentum[j.dof] += input.dt * input.drives[j.joint].givenEffort();
 }
 
 double correctProducts(const Forest& forest, const StepInput& input, int tree, ForestMotion* motion, SolverSpace* space) {
@@ -228,32 +229,35 @@ double correctProducts(const Forest& forest, const StepInput& input, int tree, F
   return worst;
 }
 
-bool followFast(const Forest& forest, const IslandProblem& problem, double dt, const ForestMotion& motion, const SolverSpace& space,
-                FreeMotion* way) {
+bool followFast(const SolvedIsland& island, const ForestMotion& motion, const SolverSpace& space, FreeMotion* way) {
+  const std::vector<int>& trees = island.model.trees;
   const auto turns = [&](int tree) { return motion.pace[tree] != Pace::SLOW; };
-  if (std::none_of(problem.trees.begin(), problem.trees.end(), turns)) return true;
+  if (std::none_of(trees.begin(), trees.end(), turns)) return true;
   bool followed = true;
-  for (const JointTerm& j : problem.joints) setHold(j, space.velocity[j.dof], motion.mass[forest.diagonal(j.dof)], way);
-  for (const int tree : problem.trees) {
+  for (const JointTerm& j : island.found.joints) setHold(j, space.velocity[j.dof], motion.mass[island.forest.diagonal(j.dof)], way);
+  for (const int tree : trees) {
     followed &= motion.pace[tree] != Pace::TOO_FAST;
     if (!isFast(motion, tree)) continue;
-    followed &= way->follow(forest, tree, dt, motion, space.velocity, space.mass_velocity).followed;
+    followed &= way->follow(island.forest, tree, island.dt, motion, space.velocity, space.mass_velocity).followed;
   }
   return followed;
 }
 
-void computeWrenches(const Forest& forest, const Scene& scene, const IslandProblem& problem, double dt, const FreeMotion& way,
-                     ForestMotion* motion, SolverSpace* space, std::vector<Wrench>* wrenches) {
+void computeWrenches(const SolvedIsland& island, const FreeMotion& way, ForestMotion* motion, SolverSpace* space,
+                     std::vector<Wrench>* wrenches) {
+  const Forest& forest = island.forest;
+  const Scene& scene = island.scene;
+  const double dt = island.dt;
   std::vector<Vector6>& reaction = space->wrench;
-  for (const int tree : problem.trees) {
+  for (const int tree : island.model.trees) {
     const ForestTree& t = forest.trees()[tree];
     for (int i = t.first_node; i < t.node_end; ++i) reaction[i].setZero();
   }
-  addReactions(forest, problem, *motion, dt, &reaction, wrenches);
-  for (const int tree : problem.trees) {
+  addReactions(island, *motion, &reaction, wrenches);
+  for (const int tree : island.model.trees) {
     const ForestTree& t = forest.trees()[tree];
     if (isFast(*motion, tree)) {
-      addFastWrenches(forest, scene, tree, dt, way, *motion, &reaction, wrenches);
+      addFastWrenches(island, tree, way, *motion, &reaction, wrenches);
       continue;
     }
     space->gradient.segment(t.first_dof, t.dofCount()) =
@@ -279,10 +283,11 @@ void computeWrenches(const Forest& forest, const Scene& scene, const IslandProbl
   }
 }
 
-void advanceIsland(const Forest& forest, const IslandProblem& problem, double dt, const FreeMotion& way, ForestMotion* motion,
-                   SolverSpace* space) {
-  const bool flies = problem.contacts.empty() && problem.loops.empty();
-  for (const int tree : problem.trees) {
+void advanceIsland(const SolvedIsland& island, const FreeMotion& way, ForestMotion* motion, SolverSpace* space) {
+  const Forest& forest = island.forest;
+  const double dt = island.dt;
+  const bool flies = island.found.contacts.empty() && island.found.loops.empty();
+  for (const int tree : island.model.trees) {
     const ForestTree& t = forest.trees()[tree];
     if (t.free) motion->momentum[tree] = space->mass_velocity.segment<6>(t.first_dof) + 0.5 * dt * motion->products.segment<6>(t.first_dof);
     if (isFast(*motion, tree)) {
@@ -295,9 +300,9 @@ void advanceIsland(const Forest& forest, const IslandProblem& problem, double dt
     }
   }
   for (const MimicRelation& m : forest.mimics())
-    if (std::binary_search(problem.trees.begin(), problem.trees.end(), forest.nodes()[m.node].tree))
+    if (std::binary_search(island.model.trees.begin(), island.model.trees.end(), forest.nodes()[m.node].tree))
       motion->position[m.node] = m.multiplier * motion->position[m.master] + m.offset;
-  for (const int tree : problem.trees) {
+  for (const int tree : island.model.trees) {
     const ForestTree& t = forest.trees()[tree];
     const Vector3 reference = motion->reference[tree];
     const Vector3 com = reference + motion->tree_com[tree] + dt * linear(motion->momentum[tree]) / motion->composite[t.first_node].mass;
@@ -308,7 +313,7 @@ void advanceIsland(const Forest& forest, const IslandProblem& problem, double dt
     motion->momentum[tree] = moveWrench(motion->momentum[tree], reference - motion->reference[tree]);
   }
   const auto tooFast = [&](int tree) { return motion->pace[tree] == Pace::TOO_FAST; };
-  if (std::any_of(problem.trees.begin(), problem.trees.end(), tooFast)) brake(forest, problem, motion, space);
+  if (std::any_of(island.model.trees.begin(), island.model.trees.end(), tooFast)) brake(forest, island.model.trees, motion, space);
 }
 
 void saveTree(const Forest& forest, int tree, const ForestMotion& motion, geometry::StateWriter* writer) {

@@ -1,11 +1,21 @@
 // Motion of an island's trees before and after its problem is solved.
 #pragma once
 
-#include "island/island_problem.h"
+#include "problem/island_model.h"
+#include "problem/solver_space.h"
 #include "scene/stepper.h"
 #include "trees/free_motion.h"
 
 namespace blem_sim::dynamics {
+
+/** An island on its way from the solve to the end of the step. */
+struct SolvedIsland {
+  const Forest& forest;
+  const Scene& scene;
+  const IslandModel& model;
+  const IslandTerms& found;
+  double dt;  ///< [s]
+};
 
 /** Sets the momentum of a free tree that was just read to that of its velocities. */
 void takeMomentum(const Forest& forest, int tree, ForestMotion* motion, SolverSpace* space);
@@ -24,11 +34,10 @@ void setFreeMomentum(const Forest& forest, const Scene& scene, const StepInput& 
 void followAlone(const Forest& forest, const StepInput& input, int tree, ForestMotion* motion, SolverSpace* space);
 
 /** Follows the free motion of fast trees from the velocities that were solved. @return false if one was too fast to be followed */
-bool followFast(const Forest& forest, const IslandProblem& problem, double dt, const ForestMotion& motion, const SolverSpace& space,
-                FreeMotion* way);
+bool followFast(const SolvedIsland& island, const ForestMotion& motion, const SolverSpace& space, FreeMotion* way);
 
 /** Adds the efforts given in advance. */
-void addEfforts(const StepInput& input, const IslandProblem& problem, SolverSpace* space);
+void addEfforts(const StepInput& input, const IslandModel& model, SolverSpace* space);
 
 /**
  * Takes the velocity products at the middle of the step that was solved. A tree that nothing drives or ties, and that an impact of this
@@ -39,12 +48,11 @@ double correctProducts(const Forest& forest, const StepInput& input, int tree, F
 
 /** Wrench from each joint's parent on its child: Newton-Euler backwards over the step, about the joint frame's origin at the step's start,
  *  for a fast tree at its middle. */
-void computeWrenches(const Forest& forest, const Scene& scene, const IslandProblem& problem, double dt, const FreeMotion& way,
-                     ForestMotion* motion, SolverSpace* space, std::vector<Wrench>* wrenches);
+void computeWrenches(const SolvedIsland& island, const FreeMotion& way, ForestMotion* motion, SolverSpace* space,
+                     std::vector<Wrench>* wrenches);
 
 /** Moves the trees to the end of the step. Islands with a tree that is too fast gain no energy on the way. */
-void advanceIsland(const Forest& forest, const IslandProblem& problem, double dt, const FreeMotion& way, ForestMotion* motion,
-                   SolverSpace* space);
+void advanceIsland(const SolvedIsland& island, const FreeMotion& way, ForestMotion* motion, SolverSpace* space);
 
 void saveTree(const Forest& forest, int tree, const ForestMotion& motion, geometry::StateWriter* writer);
 void restoreTree(const Forest& forest, int tree, ForestMotion* motion, geometry::StateReader* reader);

@@ -192,6 +192,19 @@ void IslandResponse::push(const ResponseSide& side, const Vector6& wrench, Eigen
     for (int r = 0; r < n; ++r) (*velocity)[unit.dofs[r]] += column[r] * wrench[d];
 }
 
+ResponsePair IslandResponse::pair(const BodyPair& pair) { return {pair, side(pair.a), side(pair.b)}; }
+
+Vector6 IslandResponse::relativeTwist(const ResponsePair& pair, const Eigen::VectorXd& velocity) const {
+  const Vector6 a = twist(pair.a, velocity);
+  if (pair.b.node < 0) return a;
+  return a - moveTwist(twist(pair.b, velocity), -pair.pair.shift);
+}
+
+void IslandResponse::push(const ResponsePair& pair, const Vector6& wrench, Eigen::VectorXd* velocity) const {
+  push(pair.a, wrench, velocity);
+  if (pair.b.node >= 0) push(pair.b, -moveWrench(wrench, -pair.pair.shift), velocity);
+}
+
 void IslandResponse::setLane(const ResponseSide& side, int lane, BodyLanes* bodies) const {
   const FreeBody* body = side.node < 0 ? nullptr : &free_[side.base];
   bodies->first_dof[lane] = body ? body->first_dof : -1;
@@ -225,12 +238,13 @@ Matrix6 IslandResponse::between(const ResponseSide& of, const ResponseSide& to) 
   return out;
 }
 
-Matrix6 IslandResponse::relative(const BodyPair& pair, const ResponseSide& a, const ResponseSide& b) const {
+Matrix6 IslandResponse::relative(const ResponsePair& pair) const {
+  const ResponseSide &a = pair.a, &b = pair.b;
   Matrix6 out = between(a, a);
-  if (pair.b < 0) return out;
+  if (b.node < 0) return out;
   // A wrench about a's reference point, about b's; its transpose moves twists back.
   Matrix6 move = Matrix6::Identity();
-  move.topRightCorner<3, 3>() = crossMatrix(-pair.shift);
+  move.topRightCorner<3, 3>() = crossMatrix(-pair.pair.shift);
   out += move.transpose() * between(b, b) * move;
   if (a.unit < 0 || a.unit != b.unit) return out;
   const Matrix6 cross = between(a, b) * move;

@@ -40,6 +40,12 @@ struct ResponseSide {
   std::size_t base = 0;  ///< of a free body: its place among the free bodies; else of its six columns
 };
 
+/** Two bodies that act on each other. */
+struct ResponsePair {
+  BodyPair pair;
+  ResponseSide a, b;
+};
+
 class IslandResponse {
  public:
   /** Begins an island. @param trees ascending */
@@ -48,6 +54,7 @@ class IslandResponse {
   bool factor(const Eigen::VectorXd& gains);
   /** Side of a node; asked for again, the same columns serve. Precondition: factor */
   ResponseSide side(int node);
+  ResponsePair pair(const BodyPair& pair);
   /** Column of (M + D)^-1 that belongs to a dof of a unit. Precondition: factor. @return its place among the columns */
   std::size_t column(int dof);
 
@@ -59,12 +66,16 @@ class IslandResponse {
 
   Vector6 twist(const ResponseSide& side, const Eigen::VectorXd& velocity) const;
   void push(const ResponseSide& side, const Vector6& wrench, Eigen::VectorXd* velocity) const;
+  /** Twist of a against b, about a's reference point. */
+  Vector6 relativeTwist(const ResponsePair& pair, const Eigen::VectorXd& velocity) const;
+  /** A wrench on a, about its reference point, and its reaction on b. */
+  void push(const ResponsePair& pair, const Vector6& wrench, Eigen::VectorXd* velocity) const;
   /** A free body, or the static world, as a lane of a group that is swept. */
   void setLane(const ResponseSide& side, int lane, BodyLanes* bodies) const;
   /** A joint impulse on a dof whose column was made. */
   void push(int unit, std::size_t column, double impulse, Eigen::VectorXd* velocity) const;
   /** Response of the relative twist to a wrench on a and its reaction on b, about a's reference point. */
-  Matrix6 relative(const BodyPair& pair, const ResponseSide& a, const ResponseSide& b) const;
+  Matrix6 relative(const ResponsePair& pair) const;
   /** Velocities that the momentum at hand gives alone. @param momentum M v* + D v of the motors, by dof */
   void freeVelocity(const Eigen::VectorXd& momentum, Eigen::VectorXd* velocity);
   double entry(std::size_t column, int row) const { return columns_[column + row]; }

@@ -20,11 +20,16 @@ inline Vector6 relativeTwist(const BodyPair& pair, const std::vector<Vector6>& t
   return twist[pair.a] - moveTwist(twist[pair.b], -pair.shift);
 }
 
+/** Adds a wrench on a pair's a, and its reaction on b. @param on_node sums per node, about the trees' reference points */
+inline void addWrench(const BodyPair& pair, const Vector6& wrench, std::vector<Vector6>* on_node) {
+  (*on_node)[pair.a] += wrench;
+  if (pair.b >= 0) (*on_node)[pair.b] -= moveWrench(wrench, -pair.shift);
+}
+
 /** Contacts of one pair, consecutive among the problem's contacts. */
 struct ContactPatch {
   BodyPair pair;
   int first = 0, end = 0;
-  int first_block = 0, block_end = 0;  ///< of the problem's blocks, while it is solved
 };
 
 /** v[dof] = multiplier * v[master], kept exactly: the column of dof is folded into that of its master. */

@@ -1,9 +1,10 @@
-// From contacts, drives and loops of the scene to the terms of an island's problem.
+// From contacts, drives and loops of the scene to the terms of an island's model.
 #pragma once
 
-#include "island/island_problem.h"
+#include "problem/island_model.h"
 #include "scene/step_memory.h"
 #include "scene/stepper.h"
+#include "trees/forest_motion.h"
 
 namespace blem_sim::dynamics {
 
@@ -23,11 +24,11 @@ JointTerm jointTerm(const TermSource& source, int node);
 /** @param index of the loop in the forest; pair: child and parent */
 LoopTerm loopTerm(const TermSource& source, int index, BodyPair* pair);
 
-/** Adds a usable contact to the problem, to the last patch if it is of the same pair. */
-void addContact(const TermSource& source, const ContactConstraint& contact, IslandProblem* problem);
+/** Adds a usable contact to the model, to the last patch if it is of the same pair. */
+void addContact(const TermSource& source, const ContactConstraint& contact, IslandModel* model);
 
 /** Proximal weights of the patches' contacts, once all are added. */
-void weighContacts(const TermSource& source, IslandProblem* problem);
+void weighContacts(const TermSource& source, IslandModel* model);
 
 /** +1 if the contact's A is the body the term's impulse acts on, -1 if it is B, A being the static world. */
 inline double termSign(const ContactConstraint& contact) { return contact.body_a == WORLD_BODY ? -1 : 1; }

@@ -1,4 +1,4 @@
-#include "island/contact_work.h"
+#include "problem/contact_work.h"
 
 #include <algorithm>
 

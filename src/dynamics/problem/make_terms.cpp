@@ -1,4 +1,4 @@
-#include "island/island_terms.h"
+#include "problem/make_terms.h"
 
 #include "scene/joint_motion.h"
 
@@ -183,15 +183,15 @@ LoopTerm loopTerm(const TermSource& s, int index, BodyPair* pair) {
   return term;
 }
 
-void addContact(const TermSource& s, const ContactConstraint& c, IslandProblem* problem) {
+void addContact(const TermSource& s, const ContactConstraint& c, IslandModel* model) {
   const bool grounded = c.body_a == WORLD_BODY;
   const int a = s.forest.nodeOfBody(grounded ? c.body_b : c.body_a);
   const int b = grounded || c.body_b == WORLD_BODY ? -1 : s.forest.nodeOfBody(c.body_b);
-  if (problem->patches.empty() || problem->patches.back().pair.a != a || problem->patches.back().pair.b != b) {
+  if (model->patches.empty() || model->patches.back().pair.a != a || model->patches.back().pair.b != b) {
     ContactPatch patch;
     patch.pair = makePair(s, a, b);
-    patch.first = static_cast<int>(problem->contacts.size());
-    problem->patches.push_back(patch);
+    patch.first = static_cast<int>(model->terms.contacts.size());
+    model->patches.push_back(patch);
   }
   const ContactRecord* record = s.memory.find(c.id);
   const NormalRow row = surfaceRow(c, s.input.dt, 0, s.settings);
@@ -199,7 +199,7 @@ void addContact(const TermSource& s, const ContactConstraint& c, IslandProblem* 
   term.point = c.point - s.motion.reference[s.forest.nodes()[a].tree];
   term.normal = termSign(c) * c.normal_BA;
   // A sticking contact shall not have moved at the end of the step, along paths that bend.
-  const Vector3 drift = pairDrift(s, problem->patches.back().pair, term.point).point;
+  const Vector3 drift = pairDrift(s, model->patches.back().pair, term.point).point;
   term.bend = 0.5 * s.input.dt * (drift - drift.dot(term.normal) * term.normal);
   term.friction = c.friction;
   term.target = row.speed;
@@ -208,27 +208,27 @@ void addContact(const TermSource& s, const ContactConstraint& c, IslandProblem* 
     term.previous = termSign(c) * s.input.dt * record->force;
     term.slip = record->slip;
   }
-  problem->contacts.push_back(term);
-  problem->patches.back().end = static_cast<int>(problem->contacts.size());
+  model->terms.contacts.push_back(term);
+  model->patches.back().end = static_cast<int>(model->terms.contacts.size());
 }
 
-void weighContacts(const TermSource& s, IslandProblem* problem) {
+void weighContacts(const TermSource& s, IslandModel* model) {
   double heaviest = 0;
-  problem->mass = 0;
-  for (const int tree : problem->trees) {
+  model->mass = 0;
+  for (const int tree : model->trees) {
     const double own = s.motion.composite[s.forest.trees()[tree].first_node].mass;
     heaviest = std::max(heaviest, own);
-    problem->mass += own;
+    model->mass += own;
   }
-  const double hard = problem->hardPush(s.settings.max_correction_speed);
-  for (const ContactPatch& patch : problem->patches) {
+  const double hard = model->hardPush(s.settings.max_correction_speed);
+  for (const ContactPatch& patch : model->patches) {
     Vector3 middle = Vector3::Zero();
-    for (int i = patch.first; i < patch.end; ++i) middle += problem->contacts[i].point;
+    for (int i = patch.first; i < patch.end; ++i) middle += model->terms.contacts[i].point;
     middle /= patch.end - patch.first;
     double inverse = inverseMass(s, patch.pair.a, middle);
     if (patch.pair.b >= 0) inverse += inverseMass(s, patch.pair.b, middle - patch.pair.shift);
     for (int i = patch.first; i < patch.end; ++i) {
-      ContactTerm& c = problem->contacts[i];
+      ContactTerm& c = model->terms.contacts[i];
       c.inverse_mass = inverse;
       c.stiffest_rho = CONTACT_PROXIMAL * std::min(inverse, HEAVIEST / heaviest);
       // The impulse of a blow does not go on, and that of a squeeze that friction has locked need not.

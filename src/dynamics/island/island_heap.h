@@ -1,0 +1,30 @@
+// Heaps: many bodies that push each other. Newton's method where it may succeed at its price, else sweeps, polished where they are quiet.
+#pragma once
+
+#include "island/swept_island.h"
+#include "newton/proximal_steps.h"
+
+namespace blem_sim::dynamics {
+
+class IslandHeap {
+ public:
+  void start(const IslandAtHand& island, NewtonLoop* newton, ProximalSteps* steps, SweptIsland* swept);
+  NewtonReport solve(const NewtonSettings& settings);
+
+ private:
+  bool turnsSlowly() const;
+  bool solveWithoutSweeps(const NewtonSettings& settings, NewtonReport* report);
+  bool solveStanding(const NewtonSettings& settings, NewtonReport* report);
+  bool solveFew(const NewtonSettings& settings, NewtonReport* report);
+  void sweepAndPolish(const NewtonSettings& settings, NewtonReport* report);
+  SweepReport sweepOn(bool quiet);
+  NewtonReport adoptSwept(int* sweeps);
+  bool polish(const NewtonSettings& settings, const NewtonReport& swept, NewtonReport* report);
+
+  const IslandAtHand* island_ = nullptr;
+  NewtonLoop* newton_ = nullptr;
+  ProximalSteps* steps_ = nullptr;
+  SweptIsland* swept_ = nullptr;
+};
+
+}  // namespace blem_sim::dynamics

@@ -1,0 +1,62 @@
+#include "island/island_solver.h"
+
+#include "island/island_bounds.h"
+#include "newton/island_faults.h"
+#include "problem/island_velocity.h"
+
+namespace blem_sim::dynamics {
+namespace {
+
+constexpr double HEAP_TOLERANCE = 100;  // times the gradient's tolerance: of a heap that goes on as it did
+
+}  // namespace
+
+NewtonReport IslandSolver::solve(const Forest& forest, const ForestMotion& motion, const IslandModel& model, const NewtonSettings& settings,
+                                 SolverSpace* space) {
+  found_.start(model.terms);
+  island_.emplace(IslandAtHand{forest, motion, model, &found_, space, team_.get()});
+  NewtonReport report;
+  team_->with(settings.helpers, [&] { report = solveFirst(settings); });
+  return report;
+}
+
+NewtonReport IslandSolver::solveFirst(const NewtonSettings& settings) {
+  newton_.start(*island_);
+  steps_.start(*island_, &newton_);
+  swept_.start(*island_, &newton_);
+  heap_.start(*island_, &newton_, &steps_, &swept_);
+  const double tolerance = island_->model.isHeap() ? HEAP_TOLERANCE * settings.gradient_tolerance : settings.gradient_tolerance;
+  NewtonReport report;
+  report.gradient = newton_.firstGradient(tolerance);
+  if (report.gradient <= tolerance) {
+    steps_.finish(settings, &report);
+    return report;
+  }
+  keepFirst(*island_);
+  report = island_->model.isHeap() ? heap_.solve(settings) : steps_.solvePredicted(settings);
+  recoverFromFaults(&report);
+  return report;
+}
+
+NewtonReport IslandSolver::solveAgain(const NewtonSettings& settings) {
+  setKinetic(*island_);
+  keepFirst(*island_);
+  NewtonReport report;
+  team_->with(settings.helpers, [&] {
+    report = island_->model.isHeap() ? heap_.solve(settings) : steps_.solve(settings);
+    recoverFromFaults(&report);
+  });
+  return report;
+}
+
+void IslandSolver::recoverFromFaults(NewtonReport* report) {
+  if (faults(*report, found_.terms.contacts) > 1) last_resort_.recover(*island_, &swept_, &newton_, report);
+}
+
+bool IslandSolver::limitCorrections(double speed) {
+  if (!boundCorrections(*island_, speed)) return false;
+  newton_.begin();
+  return true;
+}
+
+}  // namespace blem_sim::dynamics

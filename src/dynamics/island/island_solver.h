@@ -1,0 +1,50 @@
+// Solver of one island's step problem: Newton's method, sweeps for heaps, and what is left where neither helps. See docs/solver.md.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "island/island_heap.h"
+#include "island/last_resort.h"
+#include "newton/proximal_steps.h"
+
+namespace blem_sim::dynamics {
+
+/** Used again from step to step, so that it need not allocate. */
+class IslandSolver {
+ public:
+  /**
+   * Solves for space->velocity, which holds the first guess, space->mass_velocity M times it. The arguments must stay until the step's end.
+   */
+  NewtonReport solve(const Forest& forest, const ForestMotion& motion, const IslandModel& model, const NewtonSettings& settings,
+                     SolverSpace* space);
+  /** Goes on from the last solve's velocities after space->free_momentum has changed a little. */
+  NewtonReport solveAgain(const NewtonSettings& settings);
+  /**
+   * After solve: contacts and loops that have added far more energy than moving the island at their speed takes are to correct less,
+   * contacts that push hard nothing. Overwrites space->mass_direction.
+   * @param speed [m/s] at which contacts correct depth at most
+   * @return whether there were such: solveAgain solves the step with the rest of their corrections
+   */
+  bool limitCorrections(double speed);
+
+  /** The answer to the last solve. */
+  const IslandAnswer& found() const { return found_; }
+  /** Terms of the answer, for reactions that act beside the solve. */
+  IslandTerms* terms() { return &found_.terms; }
+
+ private:
+  NewtonReport solveFirst(const NewtonSettings& settings);
+  void recoverFromFaults(NewtonReport* report);
+
+  std::optional<IslandAtHand> island_;
+  IslandAnswer found_;
+  std::unique_ptr<Team> team_ = std::make_unique<Team>();
+  NewtonLoop newton_;
+  ProximalSteps steps_;
+  SweptIsland swept_;
+  IslandHeap heap_;
+  LastResort last_resort_;
+};
+
+}  // namespace blem_sim::dynamics

@@ -1,0 +1,47 @@
+// An island that is swept: sweeps on its terms, and their impulses as the iterate of Newton's method.
+#pragma once
+
+#include "island/island_sweeps.h"
+#include "newton/newton_loop.h"
+
+namespace blem_sim::dynamics {
+
+class SweptIsland {
+ public:
+  static constexpr int MOST_SWEEPS = 240;
+
+  void start(const IslandAtHand& island, NewtonLoop* newton);
+  /** Loads the terms at hand, and the velocities that the island came with. @return false if a mass matrix is not positive definite */
+  bool load(SweepStart start);
+  /** Sweeps the velocities in the space on. Precondition: loaded */
+  SweepReport sweep(int most, double enough) { return sweeps_.sweep(most, enough, &island_->space->velocity); }
+  /** The same until motors are taken to be at their bounds exactly where the velocities found say so. @return false as load() */
+  bool sweepWithMotors(SweepStart start, SweepReport* report);
+  /** Change of impulses, over the largest, by one sweep from the last step's; infinite if a mass matrix is not positive definite.
+   * Overwrites space->direction. */
+  double changeByOne();
+
+  /** The impulses found become the terms' and the iterate's, scaled down if they would add kinetic energy to that of free motion.
+   *  @return [sqrt(kg) m/s] gradient */
+  double adopt();
+  /** The same again, after something else was tried. */
+  double adoptAgain();
+  /** Velocities without any impulse of contacts, joint friction, limits and loops. */
+  void freeVelocity(Eigen::VectorXd* velocity) { sweeps_.freeVelocity(velocity); }
+
+ private:
+  /** Work [J] of the contacts' impulses, at the mean of the velocities with and without them. */
+  struct ImpulseWork {
+    double gained = 0;     // by the bodies, without correcting depth
+    double exchanged = 0;  // sum without signs
+    double change = 0;     // impulses times the change of velocities that they make
+  };
+  double adoptImpulses();
+  ImpulseWork impulseWork();
+
+  const IslandAtHand* island_ = nullptr;
+  NewtonLoop* newton_ = nullptr;
+  IslandSweeps sweeps_;
+};
+
+}  // namespace blem_sim::dynamics

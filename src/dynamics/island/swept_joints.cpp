@@ -1,0 +1,177 @@
+#include "island/swept_joints.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+namespace blem_sim::dynamics {
+namespace {
+
+constexpr double LOOP_SOFTNESS = 1e-9;  // of the largest response: rows that depend on each other
+
+// Inverse of the response of a loop's forbidden rows, zero elsewhere. @param along all rows' response
+Matrix6 forbiddenInverse(const LoopTerm& loop, const Matrix6& along) {
+  const auto isRow = [&](int r) { return r < loop.rows && std::isfinite(loop.rho[r]); };
+  Matrix6 forbidden = Matrix6::Identity();
+  const double softness = LOOP_SOFTNESS * along.diagonal().maxCoeff();
+  for (int r = 0; r < loop.rows; ++r) {
+    if (!isRow(r)) continue;
+    for (int c = 0; c < loop.rows; ++c)
+      if (isRow(c)) forbidden(r, c) = along(r, c);
+    forbidden(r, r) += softness;
+  }
+  Matrix6 inverse = forbidden.inverse();
+  for (int r = 0; r < 6; ++r)
+    if (!isRow(r)) inverse.row(r).setZero();
+  return inverse;
+}
+
+}  // namespace
+
+SweptJoints::AxisRow::AxisRow(const JointTerm& joint, double axis_response, SweepStart start) : response(axis_response) {
+  if (start == SweepStart::NOTHING) return;
+  dry = joint.dry_previous;
+  lower = joint.lower_previous;
+  upper = joint.upper_previous;
+}
+
+double SweptJoints::AxisRow::visit(const JointTerm& joint, double v, double change) {
+  const double gain = 1 / response;
+  const auto set = [&](double* impulse, double sign, double now) {
+    const double by = sign * (now - *impulse);
+    *impulse = now;
+    change += by;
+    v += response * by;
+  };
+  if (joint.dry_bound > 0) set(&dry, 1, std::clamp(dry - gain * v, -joint.dry_bound, joint.dry_bound));
+  if (joint.limit_gain > 0) {
+    set(&lower, 1, std::max(0.0, lower + gain * (joint.lower_velocity - v)));
+    set(&upper, -1, std::max(0.0, upper + gain * (v - joint.upper_velocity)));
+  }
+  return change;
+}
+
+double SweptJoints::AxisRow::visitMotor(const JointTerm& joint, double v) {
+  const double gain = joint.motor_gain, before = motor;
+  if (!(gain > 0)) return 0;
+  const double wanted = motor + (gain * (joint.motor_velocity - v) - motor) / (1 + gain * response);
+  motor = std::clamp(wanted, -joint.motor_bound, joint.motor_bound);
+  return motor - before;
+}
+
+void SweptJoints::AxisRow::scale(double factor) {
+  for (double* impulse : {&motor, &dry, &lower, &upper}) *impulse *= factor;
+}
+
+void SweptJoints::AxisRow::read(double v, JointTerm* joint) const {
+  joint->dry_previous = dry + joint->dry_gain / joint->softness * v;
+  const double gain = joint->limit_gain / joint->softness;
+  joint->lower_previous = lower > 0 ? lower - gain * (joint->lower_velocity - v) : 0;
+  joint->upper_previous = upper > 0 ? upper - gain * (v - joint->upper_velocity) : 0;
+}
+
+void SweptJoints::loadMotors(const IslandAtHand& island, const Eigen::VectorXd& velocity, Eigen::VectorXd* gains,
+                             Eigen::VectorXd* momentum) {
+  island_ = &island;
+  motors_.clear();
+  for (const JointTerm& j : island.terms()->joints) {
+    const JointResponse motor = j.motorLine(velocity[j.dof]);
+    motors_.push_back(motor);
+    (*gains)[j.dof] = j.viscous + motor.stiffness;
+    (*momentum)[j.dof] += motor.impulse;
+  }
+}
+
+bool SweptJoints::motorsAgree(const Eigen::VectorXd& velocity) const {
+  const std::vector<JointTerm>& joints = island_->terms()->joints;
+  for (std::size_t i = 0; i < motors_.size(); ++i)
+    if (!(joints[i].motorLine(velocity[joints[i].dof]) == motors_[i])) return false;
+  return true;
+}
+
+void SweptJoints::load(SweepStart start, IslandResponse* response) {
+  joint_rows_.clear();
+  loop_rows_.clear();
+  for (std::size_t i = 0; i < island_->terms()->joints.size(); ++i) loadJoint(static_cast<int>(i), start, response);
+  for (std::size_t l = 0; l < island_->terms()->loops.size(); ++l) loadLoop(l, start, response);
+}
+
+void SweptJoints::loadJoint(int term, SweepStart start, IslandResponse* response) {
+  const JointTerm& j = island_->terms()->joints[term];
+  if (!(j.dry_bound > 0) && !(j.limit_gain > 0)) return;
+  JointRow row;
+  row.term = term;
+  row.dof = j.dof;
+  row.unit = response->unitOf(island_->forest.nodeOfDof(j.dof));
+  row.column = response->column(j.dof);
+  row.axis = AxisRow(j, response->entry(row.column, response->units()[row.unit].rowOf(j.dof)), start);
+  if (row.axis.response > 0) joint_rows_.push_back(row);
+}
+
+void SweptJoints::loadLoop(std::size_t index, SweepStart start, IslandResponse* response) {
+  const LoopTerm& loop = island_->terms()->loops[index];
+  LoopRow row;
+  row.pair = response->pair(island_->model.loop_pairs[index]);
+  const Matrix6 moves = response->relative(row.pair);
+  const Matrix6 along = loop.basis.transpose() * moves * loop.basis;
+  row.inverse = forbiddenInverse(loop, along);
+  row.impulse = start == SweepStart::PREVIOUS ? loop.previous : Vector6::Zero();
+  if (loop.rows < 6) row.impulse[5] = 0;
+  row.axis = AxisRow(loop.drive, along(5, 5), start);
+  loop_rows_.push_back(row);
+}
+
+void SweptJoints::sweep(const IslandResponse& response, Eigen::VectorXd* velocity) {
+  for (JointRow& row : joint_rows_) {
+    const double change = row.axis.visit(island_->terms()->joints[row.term], (*velocity)[row.dof]);
+    if (change != 0) response.push(row.unit, row.column, change, velocity);
+  }
+  for (std::size_t l = 0; l < loop_rows_.size(); ++l) sweepLoop(l, response, velocity);
+}
+
+void SweptJoints::sweepLoop(std::size_t index, const IslandResponse& response, Eigen::VectorXd* velocity) {
+  const LoopTerm& loop = island_->terms()->loops[index];
+  LoopRow& row = loop_rows_[index];
+  const Vector6 forbidden = row.inverse * (loop.target - loop.basis.transpose() * response.relativeTwist(row.pair, *velocity));
+  row.impulse += forbidden;
+  response.push(row.pair, loop.basis * forbidden, velocity);
+  if (loop.rows == 6 || !(row.axis.response > 0)) return;
+  const double v = (loop.basis.transpose() * response.relativeTwist(row.pair, *velocity))[5];
+  const double by_motor = row.axis.visitMotor(loop.drive, v);
+  const double change = row.axis.visit(loop.drive, v + row.axis.response * by_motor, by_motor);
+  response.push(row.pair, change * loop.basis.col(5), velocity);
+}
+
+void SweptJoints::push(const IslandResponse& response, Eigen::VectorXd* velocity) const {
+  for (const JointRow& row : joint_rows_) response.push(row.unit, row.column, row.axis.sum(), velocity);
+  for (std::size_t l = 0; l < loop_rows_.size(); ++l) {
+    const LoopRow& row = loop_rows_[l];
+    const LoopTerm& loop = island_->terms()->loops[l];
+    Vector6 impulse = row.impulse;
+    if (loop.rows < 6) impulse[5] = row.axis.sum();
+    response.push(row.pair, loop.basis * impulse, velocity);
+  }
+}
+
+void SweptJoints::scale(double factor) {
+  for (JointRow& row : joint_rows_) row.axis.scale(factor);
+  for (LoopRow& row : loop_rows_) {
+    row.impulse *= factor;
+    row.axis.scale(factor);
+  }
+}
+
+void SweptJoints::read(const IslandResponse& response, const Eigen::VectorXd& velocity, IslandTerms* terms) const {
+  for (const JointRow& row : joint_rows_) row.axis.read(velocity[row.dof], &terms->joints[row.term]);
+  for (std::size_t l = 0; l < loop_rows_.size(); ++l) readLoop(l, response, velocity, &terms->loops[l]);
+}
+
+void SweptJoints::readLoop(std::size_t index, const IslandResponse& response, const Eigen::VectorXd& velocity, LoopTerm* loop) const {
+  const LoopRow& row = loop_rows_[index];
+  const Vector6 v = loop->basis.transpose() * response.relativeTwist(row.pair, velocity);
+  for (int r = 0; r < loop->rows; ++r)
+    if (std::isfinite(loop->rho[r])) loop->previous[r] = row.impulse[r] - (loop->target[r] - v[r]) / loop->rho[r];
+  if (loop->rows < 6) row.axis.read(v[5], &loop->drive);
+}
+
+}  // namespace blem_sim::dynamics

@@ -1,0 +1,71 @@
+// Joint friction, limits and loops of an island while it is swept, and the motors that its response holds.
+#pragma once
+
+#include <vector>
+
+#include "island/island_response.h"
+#include "problem/island_at_hand.h"
+
+namespace blem_sim::dynamics {
+
+/** First impulses of sweeps: the terms' previous impulses, or none. */
+enum class SweepStart { PREVIOUS, NOTHING };
+
+class SweptJoints {
+ public:
+  /** Takes the motors as they answer at a velocity: saturated or not. Adds their gains, and viscous friction, and their impulses. */
+  void loadMotors(const IslandAtHand& island, const Eigen::VectorXd& velocity, Eigen::VectorXd* gains, Eigen::VectorXd* momentum);
+  /** Takes friction, limits and loops of the terms at hand. Precondition: the response is factored */
+  void load(SweepStart start, IslandResponse* response);
+  bool empty() const { return joint_rows_.empty() && loop_rows_.empty(); }
+
+  /** Visits all in turn. @param velocity with their impulses, by dof */
+  void sweep(const IslandResponse& response, Eigen::VectorXd* velocity);
+  /** Adds what their impulses make of a velocity. */
+  void push(const IslandResponse& response, Eigen::VectorXd* velocity) const;
+  void scale(double factor);
+  /** Whether, at a velocity, exactly those motors stay within their efforts that were taken to answer linearly. */
+  bool motorsAgree(const Eigen::VectorXd& velocity) const;
+  /** The impulses found, as proximal points that answer so at the velocity. */
+  void read(const IslandResponse& response, const Eigen::VectorXd& velocity, IslandTerms* terms) const;
+
+ private:
+  /** Impulses along the axis of a joint. */
+  struct AxisRow {
+    double response = 0;  // [1/kg or 1/(kg m^2)] of the joint's velocity
+    double motor = 0, dry = 0, lower = 0, upper = 0;
+
+    AxisRow() = default;
+    AxisRow(const JointTerm& joint, double axis_response, SweepStart start);
+    double sum() const { return motor + dry + lower - upper; }
+    void scale(double factor);
+    /** Visits friction and limits at a velocity. @return `change` plus the change of their sum */
+    double visit(const JointTerm& joint, double v, double change = 0);
+    /** Change of the impulse of a motor that is not folded into the mass matrix. */
+    double visitMotor(const JointTerm& joint, double v);
+    /** Proximal points of friction and limits. */
+    void read(double v, JointTerm* joint) const;
+  };
+  struct JointRow {
+    int term, unit, dof;
+    std::size_t column;
+    AxisRow axis;
+  };
+  struct LoopRow {
+    ResponsePair pair;
+    Matrix6 inverse;  // of the forbidden rows' response
+    Vector6 impulse;  // of forbidden rows
+    AxisRow axis;     // the free one
+  };
+  void loadJoint(int term, SweepStart start, IslandResponse* response);
+  void loadLoop(std::size_t loop, SweepStart start, IslandResponse* response);
+  void sweepLoop(std::size_t loop, const IslandResponse& response, Eigen::VectorXd* velocity);
+  void readLoop(std::size_t row, const IslandResponse& response, const Eigen::VectorXd& velocity, LoopTerm* loop) const;
+
+  const IslandAtHand* island_ = nullptr;
+  std::vector<JointResponse> motors_;  // the line of each joint term's motor
+  std::vector<JointRow> joint_rows_;
+  std::vector<LoopRow> loop_rows_;
+};
+
+}  // namespace blem_sim::dynamics

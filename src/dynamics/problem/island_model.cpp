@@ -1,0 +1,47 @@
+#include "problem/island_model.h"
+
+#include <algorithm>
+
+#include "blem_sim/geometry/roomy.h"
+
+namespace blem_sim::dynamics {
+namespace {
+
+constexpr int HEAP = 4;      // fewest free bodies of an island that is swept while it tumbles
+constexpr int CROWD = 150;   // most trees of an island whose Hessian is cheap to factor
+constexpr double HARD = 10;  // times the fastest correction of depth: a push that makes the whole island so fast is hard
+
+}  // namespace
+
+void IslandTerms::clear() {
+  joints.clear();
+  contacts.clear();
+  loops.clear();
+}
+
+void IslandAnswer::start(const IslandTerms& asked) {
+  geometry::makeRoomFor(asked.contacts.size(), &terms.contacts);
+  terms = asked;
+  mimic_impulses.clear();
+}
+
+void IslandModel::clear() {
+  trees.clear();
+  terms.clear();
+  patches.clear();
+  loop_pairs.clear();
+  mimics.clear();
+}
+
+bool IslandModel::isTied() const {
+  return !mimics.empty() || !terms.loops.empty() ||
+         std::any_of(patches.begin(), patches.end(), [](const ContactPatch& p) { return p.pair.b >= 0; });
+}
+
+bool IslandModel::isHeap() const { return treeCount() >= HEAP && terms.loops.empty() && mimics.empty() && terms.joints.empty(); }
+
+bool IslandModel::isCrowd() const { return treeCount() > CROWD; }
+
+double IslandModel::hardPush(double speed) const { return HARD * speed * mass; }
+
+}  // namespace blem_sim::dynamics

@@ -1,0 +1,200 @@
+// The parts of an island's solver on their own: what is live, when idle branches stray, and a question that stays as it was asked.
+#include "island/island_solver.h"
+
+#include <gtest/gtest.h>
+
+#include "island/island_motion.h"
+#include "problem/island_velocity.h"
+#include "problem/make_terms.h"
+#include "support/standard_values.h"
+
+namespace blem_sim::dynamics {
+namespace {
+
+/** A box that touches the ground and carries a chain of links, level, by joints with dry friction. */
+struct ChainOnBox {
+  explicit ChainOnBox(int links, double friction) : scene({0, 0, -9.81}, {}) {
+    int parent = body(20);
+    for (int i = 0; i < links; ++i) {
+      JointSpec joint;
+      joint.name = "joint";
+      joint.parent = parent;
+      joint.child = parent = body(0.1);
+      joint.axis = Vector3::UnitY();
+      joint.X_PJ = makePose({0.1, 0, 0});
+      scene.addJoint(joint, 0);
+    }
+    drives.resize(links);
+    for (JointDrive& drive : drives) drive.dry_friction = friction;
+    forest.build(scene);
+    motion.resize(forest);
+    space.resize(forest);
+    memory.resize(scene);
+    readTree(forest, scene, 0, &motion);
+    placeBodies(forest, 0, &motion);
+    computeInertias(forest, 0, &motion);
+    takeMomentum(forest, 0, &motion, &space);
+    ask();
+  }
+
+  int body(double mass) {
+    BodySpec spec;
+    spec.name = "body";
+    spec.inertial.mass = mass;
+    spec.inertial.com = {0.05, 0, 0};
+    spec.inertial.inertia = mass * Vector3(0.01, 0.01, 0.01).asDiagonal();
+    return scene.addBody(spec);
+  }
+  void ask() {
+    const TermSource source{scene, forest, motion, input, settings, memory};
+    model.trees = {0};
+    for (std::size_t i = 1; i < forest.nodes().size(); ++i) model.terms.joints.push_back(jointTerm(source, static_cast<int>(i)));
+    for (int corner = 0; corner < 4; ++corner) {
+      ContactConstraint c;
+      c.body_a = 0;
+      c.body_b = WORLD_BODY;
+      c.point = Vector3(corner % 2 ? 0.3 : -0.3, corner / 2 ? 0.3 : -0.3, -0.1);
+      c.normal_BA = Vector3::UnitZ();
+      c.friction = 0.5;
+      c.id = corner;
+      addContact(source, c, &model);
+    }
+    weighContacts(source, &model);
+    start();
+  }
+  /** Velocities as before the solve. */
+  void start() { setFreeMomentum(forest, scene, input, true, 0, &motion, &space); }
+  IslandAtHand atHand() {
+    answer.start(model.terms);
+    return {forest, motion, model, &answer, &space, &team};
+  }
+
+  Scene scene;
+  Forest forest;
+  ForestMotion motion;
+  SolverSpace space;
+  StepMemory memory;
+  SolverSettings settings;
+  std::vector<JointDrive> drives;
+  std::vector<ContactConstraint> contacts;
+  StepInput input{DT, contacts, drives};
+  IslandModel model;
+  IslandAnswer answer;
+  Team team;
+};
+
+TEST(LiveParts, AreWhatIsTouchedAndWhatCarriesThat) {
+  ChainOnBox chain(3, 0);
+  const IslandAtHand island = chain.atHand();
+  LiveParts live;
+  live.find(island);
+  live.list();
+  EXPECT_EQ(live.nodes(), std::vector<int>{0});
+  EXPECT_EQ(live.dofs(), (std::vector<int>{0, 1, 2, 3, 4, 5}));
+  EXPECT_EQ(live.idleDofs(), (std::vector<int>{6, 7, 8}));
+  live.wake(7);
+  live.list();
+  EXPECT_EQ(live.nodes(), (std::vector<int>{0, 1, 2}));
+  EXPECT_EQ(live.idleDofs(), std::vector<int>{8});
+  EXPECT_TRUE(live.isIdle(8));
+  EXPECT_FALSE(live.isIdle(6));
+  live.wakeAll();
+  live.list();
+  EXPECT_TRUE(live.idleDofs().empty());
+}
+
+/** Idle branches of a chain that follow its box, which stands still. */
+struct Following {
+  explicit Following(ChainOnBox* chain) : island(chain->atHand()) {
+    iterate.start(island);
+    keepFirst(island);
+    idle.start(island, &iterate);
+    idle.forget();
+  }
+  IdleBranches::Outcome follow() {
+    iterate.respondIdle();
+    EXPECT_TRUE(idle.isBaseCurrent() || idle.eliminateIdle());
+    idle.follow();
+    EXPECT_TRUE(idle.areFollowing());
+    const IdleBranches::Outcome outcome = idle.settle(1e-10, &missed);
+    EXPECT_FALSE(idle.areFollowing());
+    if (outcome != IdleBranches::Outcome::FOLLOWED) iterate.takeWoken();
+    return outcome;
+  }
+
+  IslandAtHand island;
+  IslandIterate iterate;
+  IdleBranches idle;
+  double missed = 0;
+};
+
+TEST(IdleBranches, FollowWhileFrictionSticks) {
+  ChainOnBox chain(12, 100);
+  Following branches(&chain);
+  EXPECT_EQ(branches.follow(), IdleBranches::Outcome::FOLLOWED);
+  EXPECT_LE(branches.missed, 1e-10);
+  EXPECT_TRUE(branches.idle.isBaseCurrent());
+  EXPECT_EQ(branches.iterate.live().idleDofs().size(), 12u);
+}
+
+TEST(IdleBranches, FewThatSlipAreWokenAndIfItHappensAgainAllAre) {
+  ChainOnBox chain(3, 100);
+  chain.model.terms.joints[0].dry_bound = 1e-6;
+  Following branches(&chain);
+  EXPECT_EQ(branches.follow(), IdleBranches::Outcome::FEW_STRAYED);
+  EXPECT_GT(branches.missed, 1e-10);
+  EXPECT_FALSE(branches.idle.isBaseCurrent());
+  EXPECT_EQ(branches.iterate.live().idleDofs(), (std::vector<int>{7, 8}));
+  chain.answer.terms.joints[1].dry_bound = 1e-6;
+  returnToFirst(branches.island);
+  branches.iterate.takeWoken();
+  EXPECT_EQ(branches.follow(), IdleBranches::Outcome::STRAYED);
+  EXPECT_TRUE(branches.iterate.live().idleDofs().empty());
+}
+
+TEST(IdleBranches, AllAreWokenIfManySlip) {
+  ChainOnBox chain(12, 1e-3);
+  Following branches(&chain);
+  EXPECT_EQ(branches.follow(), IdleBranches::Outcome::STRAYED);
+  EXPECT_TRUE(branches.iterate.live().idleDofs().empty());
+}
+
+TEST(IslandSolver, AnswersAQuestionAskedAgainInTheSameWords) {
+  ChainOnBox chain(3, 0.01);
+  IslandSolver solver;
+  const NewtonReport first = solver.solve(chain.forest, chain.motion, chain.model, {}, &chain.space);
+  const Eigen::VectorXd velocity = chain.space.velocity;
+  const IslandTerms terms = solver.found().terms;
+  EXPECT_GT(first.iterations, 0);
+  EXPECT_GT(terms.contacts[0].impulse.z(), 0);
+  chain.start();
+  const NewtonReport again = solver.solve(chain.forest, chain.motion, chain.model, {}, &chain.space);
+  EXPECT_EQ(again.iterations, first.iterations);
+  EXPECT_EQ(chain.space.velocity, velocity);
+  for (std::size_t i = 0; i < terms.contacts.size(); ++i) EXPECT_EQ(solver.found().terms.contacts[i].impulse, terms.contacts[i].impulse);
+}
+
+TEST(IslandModel, IsAHeapOfFreeBodiesAlone) {
+  IslandModel model;
+  model.trees = {0, 1, 2};
+  EXPECT_FALSE(model.isHeap());
+  model.trees.push_back(3);
+  EXPECT_TRUE(model.isHeap());
+  EXPECT_FALSE(model.isCrowd());
+  EXPECT_FALSE(model.isTied());
+  model.terms.joints.emplace_back();
+  EXPECT_FALSE(model.isHeap());
+  model.loop_pairs.emplace_back();
+  model.terms.loops.emplace_back();
+  EXPECT_TRUE(model.isTied());
+  model.clear();
+  ContactPatch patch;
+  patch.pair.b = 1;
+  model.patches.push_back(patch);
+  EXPECT_TRUE(model.isTied());
+  model.mass = 2;
+  EXPECT_DOUBLE_EQ(model.hardPush(0.1), 2);
+}
+
+}  // namespace
+}  // namespace blem_sim::dynamics
