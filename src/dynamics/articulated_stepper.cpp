@@ -9,6 +9,7 @@
 #include "blem_sim/geometry/roomy.h"
 #include "island/island.h"
 #include "island/island_motion.h"
+#include "island/island_wrenches.h"
 #include "kept_trees.h"
 #include "problem/contact_work.h"
 #include "problem/make_terms.h"

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "island/impact_rows.h"
+#include "problem/impact_rows.h"
 #include "problem/make_terms.h"
 #include "problem/solver_space.h"
 #include "trees/islands.h"

@@ -1,21 +1,12 @@
 // Motion of an island's trees before and after its problem is solved.
 #pragma once
 
-#include "problem/island_model.h"
+#include "problem/solved_island.h"
 #include "problem/solver_space.h"
 #include "scene/stepper.h"
 #include "trees/free_motion.h"
 
 namespace blem_sim::dynamics {
-
-/** An island on its way from the solve to the end of the step. */
-struct SolvedIsland {
-  const Forest& forest;
-  const Scene& scene;
-  const IslandModel& model;
-  const IslandTerms& found;
-  double dt;  ///< [s]
-};
 
 /** Sets the momentum of a free tree that was just read to that of its velocities. */
 void takeMomentum(const Forest& forest, int tree, ForestMotion* motion, SolverSpace* space);
@@ -45,11 +36,6 @@ void addEfforts(const StepInput& input, const IslandModel& model, SolverSpace* s
  * @return [sqrt(kg) m/s] change of the free momentum, infinite for such a tree
  */
 double correctProducts(const Forest& forest, const StepInput& input, int tree, ForestMotion* motion, SolverSpace* space);
-
-/** Wrench from each joint's parent on its child: Newton-Euler backwards over the step, about the joint frame's origin at the step's start,
- *  for a fast tree at its middle. */
-void computeWrenches(const SolvedIsland& island, const FreeMotion& way, ForestMotion* motion, SolverSpace* space,
-                     std::vector<Wrench>* wrenches);
 
 /** Moves the trees to the end of the step. Islands with a tree that is too fast gain no energy on the way. */
 void advanceIsland(const SolvedIsland& island, const FreeMotion& way, ForestMotion* motion, SolverSpace* space);

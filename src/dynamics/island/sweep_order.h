@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "island/island_response.h"
 #include "problem/island_at_hand.h"
+#include "trees/island_response.h"
 
 namespace blem_sim::dynamics {
 

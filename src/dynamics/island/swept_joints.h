@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "island/island_response.h"
 #include "problem/island_at_hand.h"
+#include "trees/island_response.h"
 
 namespace blem_sim::dynamics {
 

@@ -1,4 +1,4 @@
-#include "island/impact_rows.h"
+#include "problem/impact_rows.h"
 
 #include <algorithm>
 #include <cmath>
