@@ -57,11 +57,8 @@ TEST(StateStream, ListsThatEndTooEarlyOrTooLateAreRefused) {
   EXPECT_TRUE(is_cut([](StateReader* reader) {
     for (int i = 0; i < 3; ++i) reader->word();
   }));
-  EXPECT_TRUE(is_cut([](StateReader* reader) { reader->finish(); }));
-  EXPECT_TRUE(is_cut([](StateReader* reader) {
-    reader->vector();
-    reader->finish();
-  }));
+  for (const StateContent& longer : {StateContent{{1}, {}}, StateContent{{}, {1}}})
+    EXPECT_TRUE(has(refusal(longer, [](StateReader* reader) { reader->finish(); }), "cut short"));
 }
 
 TEST(StateStream, CountsThatTheRestCannotHoldAreRefused) {
