@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "blem_sim/sim/config.h"
 #include "blem_sim/sim/step_report.h"
 #include "numbers/number_reader.h"
 #include "numbers/random_numbers.h"
