@@ -14,7 +14,7 @@
 #include "blem_sim/geometry/input_error.h"
 #include "messages/parameter_yaml.h"
 #include "messages/pid_gains.h"
-#include "messages/robot_names.h"
+#include "messages/ros_names.h"
 
 namespace blem_sim::node {
 

@@ -7,7 +7,7 @@
 
 #include "blem_sim/geometry/input_error.h"
 #include "messages/joint_messages.h"
-#include "messages/robot_names.h"
+#include "messages/ros_names.h"
 #include "messages/trajectory_messages.h"
 
 namespace blem_sim::node {

@@ -27,7 +27,8 @@ std::string namesOfAll(const SimulatedWorld& world) {
   return names;
 }
 
-/** Saves the time step's epoch, loads and, if there are any, tares: nothing without all of them, so they are the last numbers of a state. */
+/** Saves the time step's epoch, loads and, if there are any, tares: nothing without all of them, so they are the last numbers of a state.
+ */
 void saveLoads(const Epoch& epoch, const AppliedLoads& loads, const std::vector<SensorChannel>& sensors, geometry::StateWriter* writer) {
   const bool tared = std::any_of(sensors.begin(), sensors.end(), [](const SensorChannel& sensor) { return sensor.tare().any(); });
   if (loads.empty() && epoch.step == 0 && !tared) return;

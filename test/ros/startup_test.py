@@ -56,7 +56,7 @@ class StartupTest(unittest.TestCase):
 
     def test_two_robots_of_one_namespace_would_take_each_others_commands(self):
         self.parameters["robots"].append(dict(self.parameters["robots"][0], name="other", sensors=[]))
-        self.assert_refused(self.parameters, "robots: other: namespace", "'shoulder'")
+        self.assert_refused(self.parameters, ": namespace: ", "'other'", "'shoulder'")
 
     def test_unknown_parameter_names_the_nearest(self):
         self.parameters["time_stp"] = 0.001

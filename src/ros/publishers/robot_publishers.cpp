@@ -6,7 +6,7 @@
 #include "messages/conversions.h"
 #include "messages/joint_messages.h"
 #include "messages/link_motion.h"
-#include "messages/robot_names.h"
+#include "messages/ros_names.h"
 #include "publishers/robot_topics.h"
 
 namespace blem_sim::node {

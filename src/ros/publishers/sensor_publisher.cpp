@@ -12,7 +12,7 @@
 #include "blem_sim/sim/sensor_values.h"
 #include "messages/contact_messages.h"
 #include "messages/conversions.h"
-#include "messages/robot_names.h"
+#include "messages/ros_names.h"
 #include "publishers/robot_topics.h"
 
 namespace blem_sim::node {

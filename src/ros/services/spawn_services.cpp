@@ -7,7 +7,7 @@
 
 #include "blem_sim/geometry/input_error.h"
 #include "messages/pid_gains.h"
-#include "messages/robot_names.h"
+#include "messages/ros_names.h"
 #include "services/reference_frame.h"
 
 namespace blem_sim::node {

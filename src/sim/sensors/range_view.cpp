@@ -16,7 +16,7 @@ constexpr double DISPARITY_STDDEV = 0.5;    // steps
 
 double between(double first, double last, int i, int count) { return count > 1 ? first + i * ((last - first) / (count - 1)) : first; }
 
-/** What the sensor reads where its ray is hit at t. */
+/** The sensor's reading if its ray is hit at t. */
 double rangeOf(const RangeView& view, std::size_t ray, double t) {
   if (t < view.rays.nearest) return -INFINITE;
   return t < INFINITE ? measuredRange(view, ray, t) : INFINITE;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "blem_sim/geometry/state_stream.h"
+#include "blem_sim/sim/config.h"
 #include "blem_sim/sim/step_report.h"
 #include "numbers/random_numbers.h"
 

@@ -26,9 +26,7 @@ class SensorChannel {
    */
   bool read(const StepContext& step, std::uint64_t number, SensorSample* out);
   /** Whether read() will need the contacts of that step. */
-  bool readsContacts(std::uint64_t number) const {
-    return sensor_->readsContacts() && (schedule_.due(number) || delay_.steps() > 0);
-  }
+  bool readsContacts(std::uint64_t number) const { return sensor_->readsContacts() && (schedule_.due(number) || delay_.steps() > 0); }
 
   /** Makes the sensor again, as its bodies are now. With another time step, readings on their way are lost. */
   void remake(const SimulatedWorld& world, const SensorInfo& info, double time_step);

@@ -13,7 +13,7 @@ namespace {
 
 using namespace kernels;
 
-constexpr double INFINITE = std::numeric_limits<double>::infinity();
+constexpr double ENDLESS = std::numeric_limits<double>::infinity();
 
 /** Triangles with a tree; every third one is there twice, so that hits tie. */
 struct Soup {
@@ -80,7 +80,7 @@ TEST(FanKernels, FindWhatEachRayFindsAlone) {
       const double nearest = random.uniform(-0.5, 1.5);
       std::vector<double> farthest(FAN);
       for (double& end : farthest) end = random.uniform(-1, 4);
-      if (trial % 5 == 0) farthest.assign(FAN, INFINITE);
+      if (trial % 5 == 0) farthest.assign(FAN, ENDLESS);
       FanHits found = noneBefore(farthest);
       EXPECT_FALSE(kernels->fanTriangles(soup.numbers(axis), rays.numbers(nearest), &found));
       for (int ray = 0; ray < FAN; ++ray) {
@@ -106,7 +106,7 @@ TEST(FanKernels, TellOfWhatIsNoTriangle) {
   rays.origin = {-2, 0, 0};
   rays.directions.assign(FAN, {1, 0.01, 0.02});
   for (const Kernels* kernels : availableKernels()) {
-    FanHits found = noneBefore(std::vector<double>(FAN, INFINITE));
+    FanHits found = noneBefore(std::vector<double>(FAN, ENDLESS));
     const FanMesh target{{reinterpret_cast<const unsigned char*>(tree.nodes().data()), 2},
                          tree.order().data(),
                          mesh.elements.data()->data(),

@@ -1,4 +1,4 @@
-#include "messages/robot_names.h"
+#include "messages/ros_names.h"
 
 #include <ros/names.h>
 #include <ros/node_handle.h>
