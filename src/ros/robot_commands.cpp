@@ -21,11 +21,19 @@ RobotCommands::RobotCommands(ros::NodeHandle node, sim::Simulator* simulator) : 
 void RobotCommands::modelsChanged() {
   for (auto robot = subscribers_.begin(); robot != subscribers_.end();)
     robot = simulator_->robotIndex(robot->first) < 0 ? subscribers_.erase(robot) : std::next(robot);
-  for (const sim::RobotInfo& robot : simulator_->robots()) {
-    if (subscribers_.count(robot.name) > 0) continue;
-    checkNamespace(*simulator_, robot, "robots: " + robot.name + ": namespace");
-    subscribers_[robot.name] = subscribe(robot);
+  for (const sim::RobotInfo& robot : simulator_->robots())
+    if (subscribers_.count(robot.name) == 0 && takesItsOwn(robot)) subscribers_[robot.name] = subscribe(robot);
+}
+
+bool RobotCommands::takesItsOwn(const sim::RobotInfo& robot) const {
+  for (const sim::RobotInfo& other : simulator_->robots()) {
+    const std::string joint = subscribers_.count(other.name) > 0 ? sharedJoint(robot, other) : "";
+    if (joint.empty()) continue;
+    ROS_WARN("robots: %s: takes no commands: '%s' has a joint '%s' in its namespace too; set namespace", robot.name.c_str(),
+             other.name.c_str(), joint.c_str());
+    return false;
   }
+  return true;
 }
 
 std::vector<ros::Subscriber> RobotCommands::subscribe(const sim::RobotInfo& info) {

@@ -15,16 +15,17 @@ namespace blem_sim::node {
 /**
  * Commands to a robot past its controllers, in its namespace: `joint_trajectory` (trajectory_msgs/JointTrajectory for some or all joints;
  * stamp 0 = now, no points = hold) and `joint_command` (sensor_msgs/JointState: targets by joint name). A faulty message changes nothing;
- * one error line names the fault.
+ * one error line names the fault. Of robots of one namespace that have a joint of one name, the first alone takes commands; a line says so.
  */
 class RobotCommands {
  public:
-  /** @throws InputError: robots of one namespace have joints of one name */
   RobotCommands(ros::NodeHandle node, sim::Simulator* simulator);
-  /** Robots came or went. @throws InputError as above */
+  /** Robots came or went. */
   void modelsChanged();
 
  private:
+  /** False if commands of the robot are those of another one. */
+  bool takesItsOwn(const sim::RobotInfo& robot) const;
   std::vector<ros::Subscriber> subscribe(const sim::RobotInfo& robot);
   void onTrajectory(const std::string& robot, const std::string& topic, const trajectory_msgs::JointTrajectory& message);
   void onJointCommand(const std::string& robot, const std::string& topic, const sensor_msgs::JointState& message);

@@ -54,10 +54,6 @@ class StartupTest(unittest.TestCase):
         clock.stop()
         self.assertIsNone(process.poll())
 
-    def test_two_robots_of_one_namespace_would_take_each_others_commands(self):
-        self.parameters["robots"].append(dict(self.parameters["robots"][0], name="other", sensors=[]))
-        self.assert_refused(self.parameters, ": namespace: ", "'other'", "'shoulder'")
-
     def test_unknown_parameter_names_the_nearest(self):
         self.parameters["time_stp"] = 0.001
         self.assert_refused(self.parameters, "time_stp", "time_step")

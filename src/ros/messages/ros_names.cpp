@@ -5,7 +5,6 @@
 
 #include <algorithm>
 
-#include "blem_sim/geometry/input_error.h"
 #include "messages/conversions.h"
 
 namespace blem_sim::node {
@@ -26,15 +25,14 @@ std::string tfPrefixIn(const std::string& name_space) {
   return prefix;
 }
 
-void checkNamespace(const sim::Simulator& simulator, const sim::RobotInfo& robot, const std::string& field) {
-  const auto resolved = [](const std::string& name_space) { return ros::names::clean("/" + name_space); };
-  for (const sim::RobotInfo& other : simulator.robots()) {
-    if (other.name == robot.name || resolved(other.name_space) != resolved(robot.name_space)) continue;
-    for (const std::string& joint : robot.joint_names)
-      if (std::find(other.joint_names.begin(), other.joint_names.end(), joint) != other.joint_names.end())
-        throw InputError(field + ": '" + other.name + "' has a joint '" + joint + "' in this namespace too; give '" + robot.name +
-                         "' one of its own");
-  }
+std::string sharedJoint(const sim::RobotInfo& a, const sim::RobotInfo& b) {
+  const auto resolved = [](const sim::RobotInfo& robot) { return ros::names::clean("/" + robot.name_space); };
+  if (resolved(a) != resolved(b)) return "";
+  const auto has = [&](const std::string& joint) {
+    return std::find(b.joint_names.begin(), b.joint_names.end(), joint) != b.joint_names.end();
+  };
+  const auto found = std::find_if(a.joint_names.begin(), a.joint_names.end(), has);
+  return found == a.joint_names.end() ? "" : *found;
 }
 
 }  // namespace blem_sim::node

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "blem_sim/sim/simulator.h"
+#include "blem_sim/sim/simulator_types.h"
 
 namespace blem_sim::node {
 
@@ -16,7 +16,7 @@ std::string namedFrame(const sim::RobotInfo& robot, const std::string& name);
 /** The parameter tf_prefix that robot_state_publisher finds in a name space or above it; empty if there is none. */
 std::string tfPrefixIn(const std::string& name_space);
 
-/** @param field of the robot's namespace, for the message @throws InputError if another robot would take its commands */
-void checkNamespace(const sim::Simulator& simulator, const sim::RobotInfo& robot, const std::string& field);
+/** Name of a joint that two robots of one namespace both have, so that they would take each other's commands; empty if there is none. */
+std::string sharedJoint(const sim::RobotInfo& a, const sim::RobotInfo& b);
 
 }  // namespace blem_sim::node

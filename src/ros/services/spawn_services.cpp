@@ -41,6 +41,18 @@ void checkRequest(const SpawnModel::Request& request) {
     throw InputError("robot_namespace: '" + request.robot_namespace + "' is no ROS name; use letters, digits, _ and /");
 }
 
+/** Refuses a robot that would take another one's commands. */
+void checkJoints(const sim::Simulator& simulator, const std::string& model) {
+  const int index = simulator.robotIndex(model);
+  if (index < 0) return;
+  for (const sim::RobotInfo& other : simulator.robots()) {
+    const std::string joint = other.name == model ? "" : sharedJoint(simulator.robots()[index], other);
+    if (joint.empty()) continue;
+    throw InputError("robot_namespace: '" + other.name + "' has a joint '" + joint + "' in this namespace too; give '" + model +
+                     "' one of its own");
+  }
+}
+
 }  // namespace
 
 SpawnServices::SpawnServices(const ros::NodeHandle& private_node, SimulationLoop* loop) : loop_(loop), services_(private_node) {
@@ -64,8 +76,7 @@ void SpawnServices::spawn(const SpawnModel::Request& request, SpawnModel::Respon
   const std::size_t known_notes = simulator.notes().size();
   simulator.spawn(robotOf(simulator, request));
   try {
-    if (const int robot = simulator.robotIndex(request.model_name); robot >= 0)
-      checkNamespace(simulator, simulator.robots()[robot], "robot_namespace");
+    checkJoints(simulator, request.model_name);
     loop_->modelsChanged();
   } catch (const InputError&) {
     remove(request.model_name);

@@ -119,6 +119,22 @@ class ControllerSetsTest(ControllerTestCase):
         self.assertAlmostEqual(last()[0], 0, delta=1e-9)
         self.assertAlmostEqual(last()[1], 0.5, delta=1e-3)
 
+    def test_two_robots_of_one_namespace_do_not_take_each_others_commands(self):
+        command = rospy.Publisher("/joint_command", JointState, queue_size=1)
+        recorder = Recorder("/joint_states", JointState)
+        wait_until(lambda: recorder.connected() and command.get_num_connections(), "the node to listen")
+        command.publish(JointState(name=["weak"], position=[0.4]))
+        rospy.rostime.wallsleep(sim_client.SETTLE)
+        answer = sim_client.step(3000)
+
+        def last():
+            return [m.position[m.name.index("weak")] for m in recorder.messages() if m.header.stamp == answer.stamp]
+        wait_until(lambda: len(last()) == 2, "the last joint states of both robots")
+        recorder.stop()
+        command.unregister()
+        self.assertAlmostEqual(min(last()), 0, delta=1e-9)
+        self.assertGreater(max(last()), 0.1)
+
     def test_lock_step_gives_the_same_motion(self):
         def run():
             sim_client.reset_simulation()

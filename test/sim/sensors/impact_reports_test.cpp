@@ -115,7 +115,7 @@ HopperMissed land(const Landing& landing) {
     const Matrix3 R = trunk.X_WB.linear(), R_after = report.bodies[bodies[0]].X_WB.linear();
     const Vector3 on_trunk = -dt * (R * wrench.force);
     missed.ankle.add(on_trunk, trunk_change);
-    const Vector3 arm = R * (Vector3(0, 0, -0.3) - of_trunk.com);
+    const Vector3 arm = R * -of_trunk.com;  // of the trunk's origin, which the torque is about
     const Matrix3& inertia = of_trunk.inertia;
     const Vector3 spin = R_after * inertia * R_after.transpose() * report.bodies[bodies[0]].w_WB - R * inertia * R.transpose() * trunk.w_WB;
     missed.ankle_torque.add(-dt * (R * wrench.torque) + arm.cross(on_trunk), spin);
