@@ -64,8 +64,8 @@ class SensorErrorsTest(unittest.TestCase):
         self.assertNotEqual(frames["joint_wrench_frame"].header.frame_id, "hand")
 
     def test_switches_and_soles(self):
-        self.assertEqual([message.data for message in record("/block/switch", Bool)], 20 * [True])
-        self.assertEqual([message.data for message in record("/arm/switch", Bool)], 20 * [False])
+        self.assertEqual({message.data for message in record("/block/switch", Bool)}, {True})
+        self.assertEqual({message.data for message in record("/arm/switch", Bool)}, {False})
         sole = record("/block/sole", PointStamped)[-1]
         self.assertEqual(sole.header.frame_id, "sole_frame")
         for value, expected in ((sole.point.x, 0.02), (sole.point.y, 0.01), (sole.point.z, 0)):
