@@ -20,6 +20,8 @@ Box worldBox(const RayTarget& target) {
 }
 
 static_assert(RayFan::WIDTH == kernels::FAN, "a lane each");
+static_assert(kernels::DEEPEST_TREE == geometry::Bvh::MAX_DEPTH && kernels::FAN_ROUNDING == geometry::bvh_detail::ROUNDING,
+              "walks are the same");
 static_assert(sizeof(geometry::Bvh::Node) == 2 * 3 * sizeof(float) + 2 * sizeof(std::uint32_t), "as the kernels read it");
 static_assert(sizeof(Vector3i) == 3 * sizeof(int) && sizeof(Vector3) == 3 * sizeof(double), "as the kernels read them");
 
@@ -34,8 +36,8 @@ RayFan moved(const Pose& X, const RayFan& fan) {
   return out;
 }
 
-kernels::RayFan numbersOf(const RayFan& fan, double nearest) {
-  kernels::RayFan numbers;
+kernels::FanRays numbersOf(const RayFan& fan, double nearest) {
+  kernels::FanRays numbers;
   numbers.nearest = nearest;
   for (int k = 0; k < 3; ++k) {
     numbers.origin[k] = fan.origin[k];

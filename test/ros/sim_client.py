@@ -46,6 +46,14 @@ class Recorder(object):
         self._subscriber.unregister()
 
 
+def record(topic, message_type, count=1):
+    """The first messages of a topic, `count` at least."""
+    recorder = Recorder(topic, message_type)
+    messages = recorder.wait_for(count)
+    recorder.stop()
+    return messages
+
+
 def wait_until(condition, text, detail=lambda: ""):
     """Polls on the wall clock; raises AssertionError after PATIENCE."""
     deadline = time.time() + PATIENCE

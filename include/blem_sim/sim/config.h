@@ -15,6 +15,7 @@
 #include "blem_sim/model/loaders.h"
 #include "blem_sim/model/voxel_map.h"
 #include "blem_sim/sim/controller_config.h"
+#include "blem_sim/sim/rates.h"
 
 namespace YAML {
 class Node;
@@ -115,7 +116,7 @@ struct QuantityNoise {
   bool remembers() const { return bias_stddev > 0 || bias != 0 || bias_spread > 0; }
   bool any() const { return stddev > 0 || remembers(); }
 };
-/** Of the quantities of SensorLimits; those of odometry have the first one's stddev [m, rad, m/s, rad/s]. */
+/** Noise of the quantities of SensorLimits; all of odometry's have the first one's stddev [m, rad, m/s, rad/s]. */
 using SensorNoise = std::array<QuantityNoise, 2>;
 
 /** Rays of a depth camera or a lidar. */
@@ -214,11 +215,6 @@ struct ObjectConfig {
   model::CloudOptions cloud;
   ContactOverrides contact;
   std::optional<int> max_contacts;
-};
-
-/** Rates of the node [Hz]; 0 = every step, RATE_OFF = never. */
-struct PublishRates {
-  double clock = 0, joint_state = 100, tf = 50, odom = 50, contact = 30, markers = 15, link_states = 50, step_report = 10;
 };
 
 struct SimulationConfig {

@@ -1,7 +1,6 @@
 // Settings of a controller: the keys of ros_controllers' joint_trajectory_controller and gripper_action_controller.
 #pragma once
 
-#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -11,9 +10,6 @@ class Node;
 }
 
 namespace blem_sim::sim {
-
-/** Rate of what is never due, in place of a number of Hz. */
-constexpr double RATE_OFF = -std::numeric_limits<double>::infinity();
 
 /** Position errors [rad or m] that a joint may have; 0: any. */
 struct JointConstraint {

@@ -9,8 +9,6 @@ namespace blem_sim::contact::kernels {
 namespace {
 
 constexpr int FAN_PARTS = FAN / LANES;
-constexpr double FAN_ROUNDING = 16 * 0x1p-52;  // as of bvh_detail::ROUNDING
-constexpr int DEEPEST_TREE = 64;               // Bvh::MAX_DEPTH
 
 /** One number of each ray of a fan, in as many vectors as the instruction set needs. */
 struct FanDoubles {
@@ -36,7 +34,7 @@ inline FanNode nodeAt(const FanTree& tree, std::uint32_t index) {
 /** A fan against boxes; as geometry::RaySlabs. */
 class FanSlabs {
  public:
-  FanSlabs(const RayFan& fan, double wider) : fan_(fan), wider_(wider) {
+  FanSlabs(const FanRays& fan, double wider) : fan_(fan), wider_(wider) {
     for (int k = 0; k < 3; ++k)
       for (int part = 0; part < FAN_PARTS; ++part) {
         inverse_[k].part[part] = 1 / fanDoubles(fan.directions[k]).part[part];
@@ -66,14 +64,14 @@ class FanSlabs {
   }
 
  private:
-  const RayFan& fan_;
+  const FanRays& fan_;
   const double wider_;
   FanDoubles inverse_[3];
   Mask forward_[3][FAN_PARTS];
 };
 
 /** Whether the first ray comes to the middle of the left box before that of the right one. */
-inline bool leftFirst(const RayFan& fan, const FanNode& left, const FanNode& right) {
+inline bool leftFirst(const FanRays& fan, const FanNode& left, const FanNode& right) {
   double ahead = 0;
   for (int k = 0; k < 3; ++k) ahead += fan.directions[k][0] * (right.lower[k] + right.upper[k] - left.lower[k] - left.upper[k]);
   return ahead >= 0;
@@ -82,7 +80,7 @@ inline bool leftFirst(const RayFan& fan, const FanNode& left, const FanNode& rig
 /** Calls visit(index, leaf, lanes) for the leaves that some rays may meet before *farthest, which visit may draw nearer; nearer ones first.
  */
 template <typename Visit>
-inline void walkFan(const FanTree& tree, const RayFan& fan, const FanDoubles* farthest, Visit&& visit) {
+inline void walkFan(const FanTree& tree, const FanRays& fan, const FanDoubles* farthest, Visit&& visit) {
   const FanSlabs slabs(fan, tree.wider);
   std::uint32_t stack[DEEPEST_TREE + 1];
   int depth = 0;
@@ -102,7 +100,7 @@ inline void walkFan(const FanTree& tree, const RayFan& fan, const FanDoubles* fa
   }
 }
 
-void fanLeaves(const FanTree& tree, const RayFan& fan, double* farthest, const FanVisitor& visitor) {
+void fanLeaves(const FanTree& tree, const FanRays& fan, double* farthest, const FanVisitor& visitor) {
   FanDoubles ends = fanDoubles(farthest);
   walkFan(tree, fan, &ends, [&](std::uint32_t index, const FanNode&, unsigned lanes) {
     visitor.visit(visitor.self, index, lanes);
@@ -113,7 +111,7 @@ void fanLeaves(const FanTree& tree, const RayFan& fan, double* farthest, const F
 /** A fan seen along its rays; as ShearedRay in geometry. [Woop 2013] */
 class ShearedFan {
  public:
-  ShearedFan(const RayFan& fan, int axis) : kx_((axis + 1) % 3), ky_((axis + 2) % 3), kz_(axis) {
+  ShearedFan(const FanRays& fan, int axis) : kx_((axis + 1) % 3), ky_((axis + 2) % 3), kz_(axis) {
     for (int k = 0; k < 3; ++k) origin_[k] = fan.origin[k];
     for (int part = 0; part < FAN_PARTS; ++part) {
       const auto directions = [&](int k) { return fanDoubles(fan.directions[k]).part[part]; };
@@ -175,7 +173,7 @@ struct FirstOfFan {
   }
 };
 
-bool fanTriangles(const FanMesh& mesh, const RayFan& fan, FanHits* hits) {
+bool fanTriangles(const FanMesh& mesh, const FanRays& fan, FanHits* hits) {
   const ShearedFan sheared(fan, mesh.axis);
   FirstOfFan first;
   first.t = fanDoubles(hits->t);

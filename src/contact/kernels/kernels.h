@@ -74,10 +74,10 @@ struct Kernels {
 
   /** Leaves of a tree that the rays of a fan may meet, nearer ones first. @param farthest [FAN] where rays end to count, which the visitor
    * may draw nearer */
-  void (*fanLeaves)(const FanTree& tree, const RayFan& fan, double* farthest, const FanVisitor& visitor);
+  void (*fanLeaves)(const FanTree& tree, const FanRays& fan, double* farthest, const FanVisitor& visitor);
   /** First hits of a fan's rays with the triangles of a mesh, those of geometry::castRay.
    * @return whether elements that are no triangles were near: they are left out */
-  bool (*fanTriangles)(const FanMesh& mesh, const RayFan& fan, FanHits* hits);
+  bool (*fanTriangles)(const FanMesh& mesh, const FanRays& fan, FanHits* hits);
 };
 
 /** The fastest set that this machine runs; $BLEM_SIM_KERNELS (avx512, avx2, baseline) forces another one.

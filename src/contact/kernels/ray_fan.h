@@ -7,9 +7,11 @@ namespace blem_sim::contact::kernels {
 
 constexpr int FAN = 8;  // rays of a fan
 constexpr unsigned ALL_OF_FAN = (1u << FAN) - 1;
+constexpr int DEEPEST_TREE = 64;               // edges from the root to the deepest leaf
+constexpr double FAN_ROUNDING = 16 * 0x1p-52;  // of the place where a ray enters a box, relative to it
 
 /** Rays from one point, side by side, in a tree's frame. Lengths along a ray are in units of its direction. */
-struct RayFan {
+struct FanRays {
   double origin[3];
   double directions[3][FAN];  ///< by coordinate, none zero
   double nearest;             ///< where all rays begin to count

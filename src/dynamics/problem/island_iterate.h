@@ -16,7 +16,7 @@ class IslandIterate {
   void start(const IslandAtHand& island);
   /** Begins the hard problem from the velocities at hand, with the live parts that are marked. */
   void begin();
-  /** What moves a dof is live, from begin() or takeWoken() on. */
+  /** The node that a dof moves is live, from begin() or takeWoken() on. */
   void wake(int dof) { live_.wake(dof); }
   void wakeAll() { live_.wakeAll(); }
   /** Goes on with the parts that were woken meanwhile. */

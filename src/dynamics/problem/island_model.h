@@ -21,7 +21,7 @@ struct IslandTerms {
   void clear();
 };
 
-/** What an island's solve found: terms with their reactions, proximal points that give these at the velocities found. */
+/** Answer of an island's solve: terms with their reactions, and proximal points that give these at the velocities found. */
 struct IslandAnswer {
   IslandTerms terms;
   std::vector<double> mimic_impulses;  ///< by which each mimic's dof follows its master

@@ -11,7 +11,7 @@ class LiveParts {
  public:
   /** Marks nodes that contacts, loops or mimic joints act on, and those that carry them; list() lists them. */
   void find(const IslandAtHand& island);
-  /** Marks what moves a dof, too. */
+  /** Marks the node that a dof moves, too. */
   void wake(int dof) { mark(island_->forest.nodeOfDof(dof)); }
   void wakeAll();
   /** Lists the parts as they are marked. */

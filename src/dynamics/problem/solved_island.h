@@ -6,7 +6,7 @@
 
 namespace blem_sim::dynamics {
 
-/** What is known of it: the scene as it was at the start, the question, and the terms with their reactions. */
+/** The scene as it was at the step's start, the question, and its terms with their reactions. */
 struct SolvedIsland {
   const Forest& forest;
   const Scene& scene;

@@ -19,7 +19,7 @@ void requireText(YamlReader& reader, const std::string& key, std::string* value)
 
 constexpr double LONGEST_DELAY = 1;  // [s]
 
-/** What a sensor measures, in the order of its limits and noise. */
+/** Names of the quantities that a sensor measures, in the order of its limits and noise. */
 using Quantities = std::vector<std::string>;
 
 void readDelay(YamlReader& reader, SensorConfig* sensor) {

@@ -8,7 +8,7 @@
 
 #include "blem_sim/geometry/input_error.h"
 #include "blem_sim/geometry/one_line.h"
-#include "blem_sim/sim/controller_config.h"
+#include "blem_sim/sim/rates.h"
 #include "numbers/nearest_name.h"
 
 namespace blem_sim::sim {

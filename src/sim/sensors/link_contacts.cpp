@@ -15,9 +15,9 @@ struct ByLink {
 
 }  // namespace
 
-Wrench wrenchOfContact(const ContactReport& contact, bool on_a, const Vector3& p_WL) {
+Wrench wrenchOfContact(const ContactReport& contact, bool on_a, const Vector3& p_WO) {
   const Vector3 force = on_a ? contact.force : Vector3(-contact.force);
-  return {force, (contact.point - p_WL).cross(force) + (on_a ? contact.moment_a : contact.moment_b)};
+  return {force, (contact.point - p_WO).cross(force) + (on_a ? contact.moment_a : contact.moment_b)};
 }
 
 void LinkContacts::index(const SimulatedWorld& world, const std::vector<ContactReport>& contacts) {

@@ -8,8 +8,8 @@
 
 namespace blem_sim::sim {
 
-/** Wrench of a step's contact on a link [N, N m], about the link's origin at the start of the step, world axes. */
-Wrench wrenchOfContact(const ContactReport& contact, bool on_a, const Vector3& p_WL);
+/** Wrench of a step's contact on a link [N, N m], about a point at the start of the step, world axes. */
+Wrench wrenchOfContact(const ContactReport& contact, bool on_a, const Vector3& p_WO);
 
 class LinkContacts {
  public:

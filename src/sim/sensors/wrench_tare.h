@@ -13,7 +13,7 @@ class WrenchTare {
   void reset() { *this = WrenchTare(); }
 
   void apply(SensorReading* reading);
-  /** True once it was asked for. */
+  /** Whether readings are told otherwise than measured, or will be. */
   bool any() const { return asked_ || !force_.isZero(0) || !torque_.isZero(0); }
 
   void save(geometry::StateWriter* writer) const;

@@ -48,8 +48,8 @@ struct Rays {
       directions.push_back(direction);
     }
   }
-  kernels::RayFan numbers(double nearest) const {
-    kernels::RayFan fan;
+  FanRays numbers(double nearest) const {
+    FanRays fan;
     fan.nearest = nearest;
     for (int k = 0; k < 3; ++k) {
       fan.origin[k] = origin[k];

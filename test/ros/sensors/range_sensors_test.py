@@ -13,17 +13,10 @@ from sensor_msgs.msg import CameraInfo, Image, LaserScan, PointCloud2
 from tf2_msgs.msg import TFMessage
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
-from sim_client import Recorder, pause, stamps, step, unpause
+from sim_client import Recorder, pause, record, stamps, step, unpause
 
 WIDTH, HEIGHT, HFOV = 64, 48, 0.6
 WALL = 2.0
-
-
-def record(topic, message_type, count=1):
-    recorder = Recorder(topic, message_type)
-    messages = recorder.wait_for(count)
-    recorder.stop()
-    return messages
 
 
 class RangeSensorsTest(unittest.TestCase):
