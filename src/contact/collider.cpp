@@ -50,6 +50,8 @@ CollisionGeometry::CollisionGeometry(std::shared_ptr<const geometry::TriangleMes
   bvh_ = geometry::Bvh(*mesh_, kernels::MAX_LEAF_ELEMENTS);
   static std::atomic<std::uint64_t> last_identity{0};
   identity_ = ++last_identity;
+  only_triangles_ = std::all_of(mesh_->elements.begin(), mesh_->elements.end(),
+                                [](const Vector3i& e) { return e[0] != e[1] && e[1] != e[2] && e[2] != e[0]; });
   findOwners();
   bounds_ = mesh_->bounds();
 }

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "kernels/kernels.h"
+#include "ray_turns.h"
 
 namespace blem_sim::contact {
 namespace {
@@ -32,7 +33,7 @@ kernels::FanTree treeOf(const geometry::Bvh& tree, double wider) {
 RayFan moved(const Pose& X, const RayFan& fan) {
   RayFan out;
   out.origin = X * fan.origin;
-  for (int ray = 0; ray < RayFan::WIDTH; ++ray) out.directions[ray] = X.linear() * fan.directions[ray];
+  for (int ray = 0; ray < RayFan::WIDTH; ++ray) out.directions[ray] = turned(X.linear(), fan.directions[ray]);
   return out;
 }
 
@@ -123,7 +124,7 @@ class RayScene::Search {
   double hit(int target, const geometry::Ray& ray, const geometry::RayRange& range) const {
     const CollisionGeometry& geometry = *scene_.targets_[target].geometry;
     const Pose& X_CW = scene_.X_CW_[target];
-    const geometry::Ray ray_C{X_CW * ray.origin, X_CW.linear() * ray.direction};
+    const geometry::Ray ray_C{X_CW * ray.origin, turned(X_CW.linear(), ray.direction)};
     if (!geometry.isHalfSpace()) {
       return geometry::castRay({geometry.bvh(), geometry.mesh(), scene_.targets_[target].radius}, ray_C, range).t;
     }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry/random_shapes.h"
+#include "ray_turns.h"
 
 namespace blem_sim::contact {
 namespace {
@@ -38,7 +39,7 @@ RayScene::Hit firstByAsking(const std::vector<RayTarget>& targets, const geometr
   for (int i = 0; i < static_cast<int>(targets.size()); ++i) {
     const double nearest = targets[i].model == query.own_model ? query.own_nearest : 0;
     const Pose X_CW = targets[i].X_WC.inverse();
-    const geometry::Ray ray_C{X_CW * ray.origin, X_CW.linear() * ray.direction};
+    const geometry::Ray ray_C{X_CW * ray.origin, turned(X_CW.linear(), ray.direction)};
     const CollisionGeometry& geometry = *targets[i].geometry;
     double t;
     if (geometry.isHalfSpace()) {

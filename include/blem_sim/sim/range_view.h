@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "blem_sim/contact/ray_scene.h"
+#include "blem_sim/contact/depth_scene.h"
 #include "blem_sim/sim/config.h"
 
 namespace blem_sim::sim {
@@ -21,11 +21,7 @@ struct RangeView {
   std::uint64_t noise_seed = 0;
 };
 
-/** [pixels] A camera without distortion; whole numbers are the middles of pixels. */
-struct Pinhole {
-  double focal_length, middle_u, middle_v;
-};
-Pinhole pinholeOf(const RangeSensorConfig& camera);
+contact::Pinhole pinholeOf(const RangeSensorConfig& camera);
 
 /** Axes of a camera's optical frame (z ahead, x right, y down [REP 103]) in the sensor's frame. */
 Matrix3 opticalAxes();

@@ -5,7 +5,8 @@
 
 #include "kernels/edge_directions.h"
 #include "kernels/edge_records.h"
-#include "kernels/ray_fan.h"
+#include "kernels/rays/pixel_rays.h"
+#include "kernels/rays/ray_fan.h"
 
 namespace blem_sim::contact::kernels {
 
@@ -78,6 +79,9 @@ struct Kernels {
   /** First hits of a fan's rays with the triangles of a mesh, those of geometry::castRay.
    * @return whether elements that are no triangles were near: they are left out */
   bool (*fanTriangles)(const FanMesh& mesh, const FanRays& fan, FanHits* hits);
+  /** Draws a mesh of triangles into rows of a depth image: each pixel's depth becomes that of geometry::castRay along its ray, if that is
+   * less. */
+  void (*drawDepths)(const PixelMesh& mesh, const PixelRays& rays, const DepthBand& band);
 };
 
 /** The fastest set that this machine runs; $BLEM_SIM_KERNELS (avx512, avx2, baseline) forces another one.

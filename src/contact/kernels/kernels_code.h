@@ -4,9 +4,10 @@
 
 #include "kernels/candidate_kernels.h"
 #include "kernels/edge_kernels.h"
-#include "kernels/fan_kernels.h"
 #include "kernels/kernels.h"
 #include "kernels/leaves/leaf_kernels.h"
+#include "kernels/rays/depth_kernels.h"
+#include "kernels/rays/fan_kernels.h"
 #include "kernels/side_feet.h"
 #include "kernels/simd.h"
 #include "kernels/vertex_face_kernels.h"
@@ -63,5 +64,5 @@ void turnFaces(const FaceRecord* in, std::uint32_t count, const Motion& motion, 
   {                                                                                                                                   \
     name, turnPoints, turnEdges, turnFaces, turnLeaf, leafContacts, leafCrossings, nearVertexFaces, nearEdgeEdges, nearVertexEdges,   \
         nearVertexVertices, vertexFaces, sideFeet, edgeEdges, fadingEdges, vertexEdges, vertexVertices, leadingEdges, leadingAtSides, \
-        leadTo, edgeFaces, fanLeaves, fanTriangles                                                                                    \
+        leadTo, edgeFaces, fanLeaves, fanTriangles, drawDepths                                                                        \
   }

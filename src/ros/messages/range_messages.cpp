@@ -66,10 +66,10 @@ sensor_msgs::Image toMillimetreImage(const sim::RangeSensorConfig& camera, const
 }
 
 sensor_msgs::CameraInfo toCameraInfo(const sim::RangeSensorConfig& camera) {
-  const auto [f, u, v] = sim::pinholeOf(camera);
+  const auto [width, height, f, u, v] = sim::pinholeOf(camera);
   sensor_msgs::CameraInfo info;
-  info.width = camera.width;
-  info.height = camera.height;
+  info.width = width;
+  info.height = height;
   info.distortion_model = sensor_msgs::distortion_models::PLUMB_BOB;
   info.D.assign(5, 0);
   info.K = {f, 0, u, 0, f, v, 0, 0, 1};
@@ -79,7 +79,7 @@ sensor_msgs::CameraInfo toCameraInfo(const sim::RangeSensorConfig& camera) {
 }
 
 sensor_msgs::PointCloud2 toCloud(const sim::RangeSensorConfig& camera, const std::vector<float>& depths) {
-  const sim::Pinhole pinhole = sim::pinholeOf(camera);
+  const contact::Pinhole pinhole = sim::pinholeOf(camera);
   return cloudOf(camera.height, camera.width, [&](int row, int column) -> Vector3 {
     const double depth = depths[static_cast<std::size_t>(row) * camera.width + column];
     return depth * Vector3((column - pinhole.middle_u) / pinhole.focal_length, (row - pinhole.middle_v) / pinhole.focal_length, 1);

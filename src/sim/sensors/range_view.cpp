@@ -22,25 +22,23 @@ double rangeOf(const RangeView& view, std::size_t ray, double t) {
   return t < INFINITE ? measuredRange(view, ray, t) : INFINITE;
 }
 
-/**
- * Rays of a sensor in rows: direction(row, column), in the sensor's axes, has the length that ranges are counted in. Fans take four rays of
- * two rows, or eight of the only one; beyond the last row and column they repeat it.
- */
-template <typename Direction>
-std::vector<float> draw(const RangeView& view, int rows, int columns, Direction&& direction) {
+/** A lidar's beams in fans: four of two layers, or eight of the only one; beyond the last layer and beam they repeat it. */
+std::vector<float> drawBeams(const RangeView& view) {
   const contact::RayScene scene(view.targets);
   const contact::RayScene::Query query{view.rays.farthest, view.model, view.rays.nearest};
-  const int height = std::min(rows, 2), width = contact::RayFan::WIDTH / height;
-  std::vector<float> ranges(static_cast<std::size_t>(rows) * columns);
-  tbb::parallel_for(0, (rows + height - 1) / height, [&](int band) {
-    for (int first = 0; first < columns; first += width) {
-      const auto row = [&](int ray) { return std::min(band * height + ray / width, rows - 1); };
-      const auto column = [&](int ray) { return std::min(first + ray % width, columns - 1); };
+  const int layers = view.rays.layers, beams = view.rays.beams;
+  const int height = std::min(layers, 2), width = contact::RayFan::WIDTH / height;
+  std::vector<float> ranges(static_cast<std::size_t>(layers) * beams);
+  tbb::parallel_for(0, (layers + height - 1) / height, [&](int band) {
+    for (int first = 0; first < beams; first += width) {
+      const auto layer = [&](int ray) { return std::min(band * height + ray / width, layers - 1); };
+      const auto beam = [&](int ray) { return std::min(first + ray % width, beams - 1); };
       contact::RayFan fan{view.X_WS.translation(), {}};
-      for (int ray = 0; ray < contact::RayFan::WIDTH; ++ray) fan.directions[ray] = view.X_WS.linear() * direction(row(ray), column(ray));
+      for (int ray = 0; ray < contact::RayFan::WIDTH; ++ray)
+        fan.directions[ray] = view.X_WS.linear() * beamDirection(view.rays, layer(ray), beam(ray));
       const contact::RayScene::Hits hits = scene.firstHits(fan, query);
       for (int ray = 0; ray < contact::RayFan::WIDTH; ++ray) {
-        const std::size_t place = static_cast<std::size_t>(row(ray)) * columns + column(ray);
+        const std::size_t place = static_cast<std::size_t>(layer(ray)) * beams + beam(ray);
         ranges[place] = static_cast<float>(rangeOf(view, place, hits[ray].t));
       }
     }
@@ -50,8 +48,8 @@ std::vector<float> draw(const RangeView& view, int rows, int columns, Direction&
 
 }  // namespace
 
-Pinhole pinholeOf(const RangeSensorConfig& camera) {
-  return {camera.width / (2 * std::tan(camera.hfov / 2)), (camera.width - 1) / 2.0, (camera.height - 1) / 2.0};
+contact::Pinhole pinholeOf(const RangeSensorConfig& camera) {
+  return {camera.width, camera.height, camera.width / (2 * std::tan(camera.hfov / 2)), (camera.width - 1) / 2.0, (camera.height - 1) / 2.0};
 }
 
 Matrix3 opticalAxes() {
@@ -84,18 +82,23 @@ double measuredRange(const RangeView& view, std::size_t ray, double range) {
 }
 
 std::vector<float> depthsOf(const RangeView& camera) {
-  const Pinhole pinhole = pinholeOf(camera.rays);
-  const Matrix3 R_SO = opticalAxes();
-  std::vector<float> depths = draw(camera, camera.rays.height, camera.rays.width, [&](int row, int column) -> Vector3 {
-    return R_SO * Vector3((column - pinhole.middle_u) / pinhole.focal_length, (row - pinhole.middle_v) / pinhole.focal_length, 1);
+  const contact::DepthScene scene(camera.targets);
+  const contact::PinholeRays rays{pinholeOf(camera.rays), camera.X_WS};
+  const contact::RayScene::Query query{camera.rays.farthest, camera.model, camera.rays.nearest};
+  const int rows = contact::DepthScene::BAND_ROWS, height = camera.rays.height, width = camera.rays.width;
+  std::vector<float> depths(static_cast<std::size_t>(height) * width);
+  tbb::parallel_for(0, (height + rows - 1) / rows, [&](int band) {
+    std::vector<double> drawn(static_cast<std::size_t>(std::min(rows, height - band * rows)) * width);
+    scene.drawBand(rays, query, band, drawn.data());
+    const std::size_t first = static_cast<std::size_t>(band) * rows * width;
+    for (std::size_t i = 0; i < drawn.size(); ++i) {
+      const float depth = static_cast<float>(rangeOf(camera, first + i, drawn[i]));
+      depths[first + i] = std::isinf(depth) ? std::numeric_limits<float>::quiet_NaN() : depth;
+    }
   });
-  for (float& depth : depths)
-    if (std::isinf(depth)) depth = std::numeric_limits<float>::quiet_NaN();
   return depths;
 }
 
-std::vector<float> rangesOf(const RangeView& lidar) {
-  return draw(lidar, lidar.rays.layers, lidar.rays.beams, [&](int layer, int beam) { return beamDirection(lidar.rays, layer, beam); });
-}
+std::vector<float> rangesOf(const RangeView& lidar) { return drawBeams(lidar); }
 
 }  // namespace blem_sim::sim

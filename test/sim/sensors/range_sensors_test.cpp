@@ -27,7 +27,7 @@ TEST(DepthCamera, FloorGrowsDownwardsAndLeftIsLeft) {
   SimulationConfig config = sceneWith(depthCamera());
   config.environments = {halfSpace({0, 0, 1, -0.5})};
   const RangeSensorConfig& rays = config.robots[0].sensors[0].rays;
-  const Pinhole pinhole = pinholeOf(rays);
+  const contact::Pinhole pinhole = pinholeOf(rays);
   EXPECT_NEAR(std::atan(rays.width / 2.0 / pinhole.focal_length), rays.hfov / 2, 1e-15);
   const std::vector<float> depths = depthsIn(config);
   int floor = 0, fin = 0;
@@ -63,7 +63,7 @@ TEST(DepthCamera, SphereBoxAndLayer) {
   SimulationConfig config = sceneWith(depthCamera());
   config.robots.push_back(robot("ball", BALL, true));
   config.robots[1].X_WR = makePose({2, 0, 0});
-  const Pinhole pinhole = pinholeOf(config.robots[0].sensors[0].rays);
+  const contact::Pinhole pinhole = pinholeOf(config.robots[0].sensors[0].rays);
   const std::vector<float> depths = depthsIn(config);
   int hits = 0;
   for (int v = 0; v < 17; ++v) {
@@ -203,7 +203,7 @@ TEST(DepthCamera, EveryRayOnAScanIsThatOfAllItsTriangles) {
     for (int i = 0; i < static_cast<int>(collider.geometry->mesh().elements.size()); ++i)
       triangles.push_back(geometry::triangleOf(collider.geometry->mesh(), i));
   }
-  const Pinhole pinhole = pinholeOf(view->rays);
+  const contact::Pinhole pinhole = pinholeOf(view->rays);
   int hits = 0;
   for (int i = 0; i < static_cast<int>(depths.size()); ++i) {
     const double x = (i % 33 - pinhole.middle_u) / pinhole.focal_length, y = (i / 33 - pinhole.middle_v) / pinhole.focal_length;

@@ -2,7 +2,7 @@
 // kernels_code.h only.
 #pragma once
 
-#include "kernels/ray_fan.h"
+#include "kernels/rays/ray_fan.h"
 #include "kernels/simd.h"
 
 namespace blem_sim::contact::kernels {
@@ -108,7 +108,27 @@ void fanLeaves(const FanTree& tree, const FanRays& fan, double* farthest, const 
   });
 }
 
-/** A fan seen along its rays; as ShearedRay in geometry. [Woop 2013] */
+/** Vertices seen from the origin of rays, along the axes of their shear: of one triangle, or one triangle per lane. */
+template <typename Number>
+using Corner = VectorsOf<Number>;
+
+/** Rays that pass through the triangle, before or behind their origin; as ShearedRay in geometry. @param t where [Woop 2013] */
+template <typename Number>
+inline Mask passThrough(const Vectors& shear, const Corner<Number> (&corners)[3], Doubles* t) {
+  Doubles x[3], y[3];
+  for (int i = 0; i < 3; ++i) {
+    x[i] = corners[i].x - shear.x * corners[i].z;
+    y[i] = corners[i].y - shear.y * corners[i].z;
+  }
+  const Doubles u = x[2] * y[1] - y[2] * x[1], v = x[0] * y[2] - y[0] * x[2], w = x[1] * y[0] - y[1] * x[0];
+  const Mask passes = ~(((u < 0) | (v < 0) | (w < 0)) & ((u > 0) | (v > 0) | (w > 0)));
+  if (bitsOf(passes) == 0) return passes;
+  const Doubles det = u + v + w;
+  *t = (u * (shear.z * corners[0].z) + v * (shear.z * corners[1].z) + w * (shear.z * corners[2].z)) / det;
+  return passes & (det != 0);
+}
+
+/** A fan seen along its rays; as ShearedRay in geometry. */
 class ShearedFan {
  public:
   ShearedFan(const FanRays& fan, int axis) : kx_((axis + 1) % 3), ky_((axis + 2) % 3), kz_(axis) {
@@ -119,27 +139,10 @@ class ShearedFan {
     }
   }
 
-  /** A vertex seen from the origin, along the axes of the shear. */
-  struct Corner {
-    double x, y, z;
-  };
-  Corner corner(const double* v) const { return {v[kx_] - origin_[kx_], v[ky_] - origin_[ky_], v[kz_] - origin_[kz_]}; }
+  Corner<double> corner(const double* v) const { return {v[kx_] - origin_[kx_], v[ky_] - origin_[ky_], v[kz_] - origin_[kz_]}; }
 
   /** Rays of a part that pass through the triangle, before or behind the origin. @param t where */
-  Mask through(int part, const Corner (&corners)[3], Doubles* t) const {
-    const Vectors& shear = shear_[part];
-    Doubles x[3], y[3];
-    for (int i = 0; i < 3; ++i) {
-      x[i] = corners[i].x - shear.x * corners[i].z;
-      y[i] = corners[i].y - shear.y * corners[i].z;
-    }
-    const Doubles u = x[2] * y[1] - y[2] * x[1], v = x[0] * y[2] - y[0] * x[2], w = x[1] * y[0] - y[1] * x[0];
-    const Mask passes = ~(((u < 0) | (v < 0) | (w < 0)) & ((u > 0) | (v > 0) | (w > 0)));
-    if (bitsOf(passes) == 0) return passes;
-    const Doubles det = u + v + w;
-    *t = (u * (shear.z * corners[0].z) + v * (shear.z * corners[1].z) + w * (shear.z * corners[2].z)) / det;
-    return passes & (det != 0);
-  }
+  Mask through(int part, const Corner<double> (&corners)[3], Doubles* t) const { return passThrough(shear_[part], corners, t); }
 
  private:
   const int kx_, ky_, kz_;
@@ -159,7 +162,7 @@ struct FirstOfFan {
   FanDoubles t;
   Mask element[FAN_PARTS];
 
-  void add(const ShearedFan& sheared, const ShearedFan::Corner (&corners)[3], std::int64_t number, double nearest, unsigned lanes) {
+  void add(const ShearedFan& sheared, const Corner<double> (&corners)[3], std::int64_t number, double nearest, unsigned lanes) {
     for (int part = 0; part < FAN_PARTS; ++part) {
       Doubles there;
       Mask takes = sheared.through(part, corners, &there);
