@@ -96,8 +96,9 @@ struct SimulationNode::Impl {
     auto diagnostics_publisher = std::make_unique<DiagnosticsPublisher>(node, private_node, &loop);
     diagnostics = diagnostics_publisher.get();
     loop.add(std::move(diagnostics_publisher));
+    diagnostics->add("refused messages", [this](auto& status) { loop.refusals()->describe(status); });
     addLiveClouds();
-    loop.add(std::make_unique<ControllerSets>(node, &simulator, loop.sender()));
+    loop.add(std::make_unique<ControllerSets>(node, &loop));
     loop.add(std::make_unique<ClockPublisher>(node, simulator.config().rates.clock, loop.sender()));
   }
 
@@ -117,7 +118,7 @@ struct SimulationNode::Impl {
   }
 
   void addInputs() {
-    commands = std::make_unique<RobotCommands>(node, &simulator);
+    commands = std::make_unique<RobotCommands>(node, &loop);
     physics = std::make_unique<PhysicsServices>(private_node, &loop);
     step = std::make_unique<StepService>(private_node, &loop);
     learner = std::make_unique<LearnerService>(private_node, &loop);
@@ -130,7 +131,7 @@ struct SimulationNode::Impl {
     simulator.restrictFiles(roots);
     environments = std::make_unique<EnvironmentServices>(private_node, &loop);
     queries = std::make_unique<QueryServices>(private_node, &loop);
-    motions = std::make_unique<MotionServices>(private_node, &simulator);
+    motions = std::make_unique<MotionServices>(private_node, &loop);
     forces = std::make_unique<ForceServices>(private_node, &simulator);
     attachments = std::make_unique<AttachmentServices>(private_node, &simulator);
     spawns = std::make_unique<SpawnServices>(private_node, &loop);
