@@ -36,6 +36,7 @@
 #include "services/sensor_services.h"
 #include "services/spawn_services.h"
 #include "services/step_service.h"
+#include "settings/live_settings.h"
 
 namespace blem_sim::node {
 
@@ -76,6 +77,7 @@ struct SimulationNode::Impl {
   std::unique_ptr<SpawnServices> spawns;
   std::unique_ptr<SensorServices> sensors;
   std::unique_ptr<PropertyServices> properties;
+  std::unique_ptr<LiveSettings> settings;
   std::unique_ptr<StateServices> states;
   std::unique_ptr<RecordServices> records;
 
@@ -136,6 +138,7 @@ struct SimulationNode::Impl {
     attachments = std::make_unique<AttachmentServices>(private_node, &simulator);
     spawns = std::make_unique<SpawnServices>(private_node, &loop);
     properties = std::make_unique<PropertyServices>(private_node, &loop);
+    settings = std::make_unique<LiveSettings>(private_node, &loop);
     const ServiceFiles files(roots, simulator.config().base_directory);
     states = std::make_unique<StateServices>(private_node, &loop, files);
     records = std::make_unique<RecordServices>(private_node, &recorder, files);
