@@ -7,8 +7,8 @@
 namespace blem_sim::node {
 
 /**
- * While it lives, operator new of this thread refuses larger blocks by std::bad_alloc (in programs with ros_node/limited_new.cpp): a list in a
- * message may claim a length that it has not, and roscpp makes room before it looks for the entries. The innermost limit holds.
+ * While it lives, operator new of this thread refuses larger blocks by std::bad_alloc (in programs with ros_node/limited_new.cpp): a list
+ * in a message may claim a length that it has not, and roscpp makes room before it looks for the entries. The innermost limit holds.
  */
 class AllocationLimit {
  public:

@@ -17,7 +17,8 @@ void StampedCommands::check(int robot, const sim::JointCommandMessage& command, 
   simulator_.checkJointCommand(robot, command);
   const double ahead = stamp - simulator_.time();
   if (ahead > FARTHEST_AHEAD)
-    throw InputError(fmt::format("header.stamp: lies {:.6g} s ahead of simulated time; stamp by /clock, or leave it 0, which means now", ahead));
+    throw InputError(
+        fmt::format("header.stamp: lies {:.6g} s ahead of simulated time; stamp by /clock, or leave it 0, which means now", ahead));
   if (!isDue(stamp) && waiting_.size() >= MOST)
     throw InputError(fmt::format("header.stamp: {} commands wait for their steps, which is the most; send them later", MOST));
 }

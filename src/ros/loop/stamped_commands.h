@@ -15,8 +15,8 @@ namespace blem_sim::node {
  */
 class StampedCommands {
  public:
-  static constexpr std::size_t MOST = 10000;        ///< that wait at once
-  static constexpr double FARTHEST_AHEAD = 3600;    ///< [s]
+  static constexpr std::size_t MOST = 10000;      ///< that wait at once
+  static constexpr double FARTHEST_AHEAD = 3600;  ///< [s]
 
   explicit StampedCommands(sim::Simulator* simulator) : simulator_(*simulator) {}
 

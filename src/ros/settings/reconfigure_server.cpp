@@ -52,7 +52,8 @@ void ReconfigureServer::tellValues() {
 const Setting& ReconfigureServer::settingOf(const std::string& name) const {
   const auto known = std::find_if(settings_.begin(), settings_.end(), [&](const Setting& setting) { return setting.name == name; });
   if (known == settings_.end())
-    throw InputError(fmt::format("there is no setting '{}'; parameter_descriptions has their names", geometry::oneLine(name.substr(0, LONGEST_NAME))));
+    throw InputError(
+        fmt::format("there is no setting '{}'; parameter_descriptions has their names", geometry::oneLine(name.substr(0, LONGEST_NAME))));
   return *known;
 }
 

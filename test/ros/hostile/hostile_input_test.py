@@ -9,7 +9,6 @@ import tempfile
 import time
 import unittest
 
-import actionlib
 import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus
@@ -25,6 +24,7 @@ import sim_client
 from sim_client import Recorder, service, wait_until
 
 UNMOVED = 1e-9  # [m]
+ACTION = "/joint_trajectory_controller/follow_joint_trajectory"
 TOPICS = {"joint_command": "/joint_command", "joint_trajectory": "/joint_trajectory", "command": "/joint_trajectory_controller/command",
           "set_model_state": "/blem_sim/set_model_state", "set_link_state": "/blem_sim/set_link_state", "points": "/points"}
 MESSAGES = {"joint_command": malformed.joint_command, "joint_trajectory": malformed.trajectory, "command": malformed.controller_trajectory,
@@ -84,8 +84,10 @@ class Hostile(object):
         valid = malformed.valid_messages()
         self.raw = {topic: malformed.raw_type(type(message)) for topic, message in valid.items()}
         self.publishers = {topic: rospy.Publisher(name, self.raw[topic], queue_size=100) for topic, name in TOPICS.items()}
-        self.goals = actionlib.SimpleActionClient("/joint_trajectory_controller/follow_joint_trajectory", msg.FollowJointTrajectoryAction)
-        assert self.goals.wait_for_server(rospy.Duration(sim_client.PATIENCE))
+        # Not by a SimpleActionClient, which loses a result that comes before its send_goal is through.
+        self.goals = rospy.Publisher(ACTION + "/goal", msg.FollowJointTrajectoryActionGoal, queue_size=10)
+        self.results = Recorder(ACTION + "/result", msg.FollowJointTrajectoryActionResult)
+        wait_until(lambda: self.goals.get_num_connections() and self.results.connected(), "the action's server")
         wait_until(lambda: all(publisher.get_num_connections() for publisher in self.publishers.values()), "the node to listen")
         self.state_file = os.path.join(folder, "spoiled.state")
         state = os.path.join(folder, "whole.state")
@@ -153,11 +155,14 @@ class Hostile(object):
         self.note("restore state", not answer.success and len(answer.status_message) > 10, answer.status_message)
 
     def goal(self):
-        goal = malformed.goal(self.rng)
-        self.goals.send_goal(goal)
-        ended = self.goals.wait_for_result(rospy.Duration(10))
-        refused = ended and self.goals.get_state() == GoalStatus.REJECTED and len(self.goals.get_goal_status_text()) > 10
-        self.note("goal", refused, self.goals.get_goal_status_text() if refused else "taken: %.500s" % str(goal).replace("\n", " "))
+        goal = msg.FollowJointTrajectoryActionGoal(goal=malformed.goal(self.rng))
+        goal.goal_id.id = "goal %d" % self.answered.get("goal", 0)
+        mine = lambda: [result.status for result in self.results.messages() if result.status.goal_id.id == goal.goal_id.id]
+        self.goals.publish(goal)
+        wait_until(mine, "an answer to %s" % goal.goal)
+        refused = mine()[0].status == GoalStatus.REJECTED and len(mine()[0].text) > 10
+        self.note("goal", refused, mine()[0].text if refused else "taken: %.500s" % str(goal.goal).replace("\n", " "))
+        self.results.clear()
 
 
 def counted(diagnostics):

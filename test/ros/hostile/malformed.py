@@ -17,6 +17,8 @@ NAMES = ("", "nobody", "nobody::link", "::", "arm_on_base::", "x" * 100000, "a\n
 COUNTS = (0x7fffffff, 0x20000001, 0x10000000, 0xffffffff, 1000000)  # entries that lists claim to have
 HEAD = '<robot name="r"><link name="a"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>'
 BALL = HEAD + "</robot>"
+TWIN = HEAD + """<link name="b"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<joint name="shoulder" type="continuous"><parent link="a"/><child link="b"/></joint></robot>"""  # has a joint of the robot that is there
 
 
 def bad(random):
@@ -226,6 +228,8 @@ def spawn(random):
 
 
 def spawn_names(random):
+    if random.random() < 0.5:
+        return srv.SpawnModelRequest("new", TWIN, "", pose(), "")
     return srv.SpawnModelRequest("new", BALL, random.choice(("no name!", "a b", "\n", "1a", "a//\x00")), pose(), "")
 
 
