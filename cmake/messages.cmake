@@ -4,6 +4,7 @@ set(BLEM_SIM_CATKIN_COMPONENTS
   actionlib_msgs
   diagnostic_msgs
   diagnostic_updater
+  dynamic_reconfigure
   geometry_msgs
   nav_msgs
   rosbag_storage

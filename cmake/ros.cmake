@@ -5,7 +5,7 @@ target_include_directories(blem_sim_ros SYSTEM PUBLIC ${CATKIN_DEVEL_PREFIX}/inc
 target_link_libraries(blem_sim_ros PUBLIC ${catkin_LIBRARIES})
 blem_sim_precompile(blem_sim_ros ${common_headers} ${ros_headers})
 
-add_executable(blem_sim_node ${PROJECT_SOURCE_DIR}/src/ros_node/blem_sim_node.cpp)
+add_executable(blem_sim_node ${PROJECT_SOURCE_DIR}/src/ros_node/blem_sim_node.cpp ${PROJECT_SOURCE_DIR}/src/ros_node/limited_new.cpp)
 target_include_directories(blem_sim_node PRIVATE ${PROJECT_SOURCE_DIR}/src/ros)
 target_link_libraries(blem_sim_node blem_sim_ros)
 add_executable(replay ${PROJECT_SOURCE_DIR}/src/ros_node/replay_main.cpp)

@@ -56,3 +56,5 @@ file(GLOB soak_scenes_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/test/soak/
 add_long_run(soak_scenes ${soak_scenes_sources})
 file(GLOB soak_throws_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/test/soak/throws/*.cpp)
 add_long_run(soak_throws ${soak_throws_sources})
+file(GLOB soak_hours_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/test/soak/hours/*.cpp)
+add_long_run(soak_hours ${soak_hours_sources})

@@ -1,22 +1,21 @@
 #include "robot_commands.h"
 
 #include <ros/console.h>
+#include <sensor_msgs/JointState.h>
+#include <trajectory_msgs/JointTrajectory.h>
 
-#include <boost/function.hpp>
 #include <iterator>
 
-#include "blem_sim/geometry/input_error.h"
 #include "messages/joint_messages.h"
 #include "messages/ros_names.h"
 #include "messages/trajectory_messages.h"
 
 namespace blem_sim::node {
 
-namespace {
-constexpr int COMMAND_QUEUE = 100;
+RobotCommands::RobotCommands(ros::NodeHandle node, SimulationLoop* loop)
+    : node_(node), simulator_(&loop->simulator()), stamped_(loop->stampedCommands()), refusals_(loop->refusals()) {
+  modelsChanged();
 }
-
-RobotCommands::RobotCommands(ros::NodeHandle node, sim::Simulator* simulator) : node_(node), simulator_(simulator) { modelsChanged(); }
 
 void RobotCommands::modelsChanged() {
   for (auto robot = subscribers_.begin(); robot != subscribers_.end();)
@@ -37,33 +36,16 @@ bool RobotCommands::takesItsOwn(const sim::RobotInfo& robot) const {
 }
 
 std::vector<ros::Subscriber> RobotCommands::subscribe(const sim::RobotInfo& info) {
+  const ros::NodeHandle robot_node(node_, info.name_space);
+  const auto robot = [simulator = simulator_, name = info.name] { return simulator->robotIndex(name); };
   std::vector<ros::Subscriber> subscribers;
-  ros::NodeHandle robot_node(node_, info.name_space);
-  const std::string robot = info.name;
-  const std::string trajectories = robot_node.resolveName("joint_trajectory"), commands = robot_node.resolveName("joint_command");
-  const boost::function<void(const trajectory_msgs::JointTrajectoryConstPtr&)> on_trajectory =
-      [this, robot, trajectories](const trajectory_msgs::JointTrajectoryConstPtr& message) { onTrajectory(robot, trajectories, *message); };
-  const boost::function<void(const sensor_msgs::JointStateConstPtr&)> on_command =
-      [this, robot, commands](const sensor_msgs::JointStateConstPtr& message) { onJointCommand(robot, commands, *message); };
-  subscribers.push_back(robot_node.subscribe<trajectory_msgs::JointTrajectory>("joint_trajectory", COMMAND_QUEUE, on_trajectory));
-  subscribers.push_back(robot_node.subscribe<sensor_msgs::JointState>("joint_command", COMMAND_QUEUE, on_command));
+  subscribers.push_back(subscribeCounted<trajectory_msgs::JointTrajectory>(
+      robot_node, "joint_trajectory", "trajectory refused", refusals_,
+      [this, robot](const auto& message) { simulator_->commandTrajectory(robot(), fromMessage(message)); }));
+  subscribers.push_back(subscribeCounted<sensor_msgs::JointState>(
+      robot_node, "joint_command", "command refused", refusals_,
+      [this, robot](const auto& message) { stamped_->give(robot(), commandOf(message), message.header.stamp.toSec()); }));
   return subscribers;
-}
-
-void RobotCommands::onTrajectory(const std::string& robot, const std::string& topic, const trajectory_msgs::JointTrajectory& message) {
-  try {
-    simulator_->commandTrajectory(simulator_->robotIndex(robot), fromMessage(message));
-  } catch (const InputError& error) {
-    ROS_ERROR("%s: trajectory refused: %s", topic.c_str(), error.what());
-  }
-}
-
-void RobotCommands::onJointCommand(const std::string& robot, const std::string& topic, const sensor_msgs::JointState& message) {
-  try {
-    simulator_->commandJoints(simulator_->robotIndex(robot), commandOf(message));
-  } catch (const InputError& error) {
-    ROS_ERROR("%s: command refused: %s", topic.c_str(), error.what());
-  }
 }
 
 }  // namespace blem_sim::node

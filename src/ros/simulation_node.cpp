@@ -36,6 +36,7 @@
 #include "services/sensor_services.h"
 #include "services/spawn_services.h"
 #include "services/step_service.h"
+#include "settings/live_settings.h"
 
 namespace blem_sim::node {
 
@@ -76,6 +77,7 @@ struct SimulationNode::Impl {
   std::unique_ptr<SpawnServices> spawns;
   std::unique_ptr<SensorServices> sensors;
   std::unique_ptr<PropertyServices> properties;
+  std::unique_ptr<LiveSettings> settings;
   std::unique_ptr<StateServices> states;
   std::unique_ptr<RecordServices> records;
 
@@ -96,8 +98,9 @@ struct SimulationNode::Impl {
     auto diagnostics_publisher = std::make_unique<DiagnosticsPublisher>(node, private_node, &loop);
     diagnostics = diagnostics_publisher.get();
     loop.add(std::move(diagnostics_publisher));
+    diagnostics->add("refused messages", [this](auto& status) { loop.refusals()->describe(status); });
     addLiveClouds();
-    loop.add(std::make_unique<ControllerSets>(node, &simulator, loop.sender()));
+    loop.add(std::make_unique<ControllerSets>(node, &loop));
     loop.add(std::make_unique<ClockPublisher>(node, simulator.config().rates.clock, loop.sender()));
   }
 
@@ -117,7 +120,7 @@ struct SimulationNode::Impl {
   }
 
   void addInputs() {
-    commands = std::make_unique<RobotCommands>(node, &simulator);
+    commands = std::make_unique<RobotCommands>(node, &loop);
     physics = std::make_unique<PhysicsServices>(private_node, &loop);
     step = std::make_unique<StepService>(private_node, &loop);
     learner = std::make_unique<LearnerService>(private_node, &loop);
@@ -130,11 +133,12 @@ struct SimulationNode::Impl {
     simulator.restrictFiles(roots);
     environments = std::make_unique<EnvironmentServices>(private_node, &loop);
     queries = std::make_unique<QueryServices>(private_node, &loop);
-    motions = std::make_unique<MotionServices>(private_node, &simulator);
+    motions = std::make_unique<MotionServices>(private_node, &loop);
     forces = std::make_unique<ForceServices>(private_node, &simulator);
     attachments = std::make_unique<AttachmentServices>(private_node, &simulator);
     spawns = std::make_unique<SpawnServices>(private_node, &loop);
     properties = std::make_unique<PropertyServices>(private_node, &loop);
+    settings = std::make_unique<LiveSettings>(private_node, &loop);
     const ServiceFiles files(roots, simulator.config().base_directory);
     states = std::make_unique<StateServices>(private_node, &loop, files);
     records = std::make_unique<RecordServices>(private_node, &recorder, files);

@@ -177,10 +177,45 @@ void Simulator::setJointDamping(int robot, int joint, double damping) {
 
 double Simulator::jointDamping(int world_joint) const { return impl_->world_.motors.at(world_joint).settings().friction.viscous; }
 
+void Simulator::setMotorGains(int robot, int joint, const JointGains& gains) {
+  const std::string where = fmt::format("joint '{}': ", robots().at(robot).joint_names.at(joint));
+  JointMotor& motor = impl_->world_.motors[robots()[robot].joints[joint]];
+  if (!motor.settings().commanded) throw InputError(where + "has no motor of its own; set the gains of the one that it follows");
+  for (const double gain : {gains.p, gains.i, gains.d})
+    if (!(gain >= 0) || !isCommand(gain))
+      throw InputError(fmt::format("{}a gain is {:g}; give it a finite number of at least 0", where, gain));
+  if (!(gains.i_clamp >= 0)) throw InputError(where + "i_clamp: needs a number of at least 0");
+  motor.setGains(gains);
+  impl_->layout_.clear();
+  impl_->tell("setMotorGains", robot, joint, gains);
+}
+
+JointGains Simulator::motorGains(int robot, int joint) const {
+  return impl_->world_.motors.at(robots().at(robot).joints.at(joint)).settings().gains;
+}
+
+void Simulator::setFriction(int model, double friction) {
+  const std::string& name = models().at(model).name;
+  if (!(friction >= 0) || !isCommand(friction))
+    throw InputError(fmt::format("'{}': friction: is {:g}; give it a finite number of at least 0", name, friction));
+  for (const int collider : impl_->world_.collidersOf(model)) impl_->world_.colliders[collider].surface.friction = friction;
+  const auto live = impl_->live_.find(name);
+  if (live != impl_->live_.end()) live->second.surface.friction = friction;
+  impl_->layout_.clear();
+  impl_->tell("setFriction", model, friction);
+}
+
+double Simulator::friction(int model) const {
+  const auto live = impl_->live_.find(models().at(model).name);
+  if (live != impl_->live_.end()) return live->second.surface.friction;
+  const std::vector<int> colliders = impl_->world_.collidersOf(model);
+  return colliders.empty() ? 0 : impl_->world_.colliders[colliders.front()].surface.friction;
+}
+
 void Simulator::Impl::setPhysics(const Vector3& gravity, double time_step, double real_time_factor) {
   if (!(time_step >= SHORTEST_STEP && time_step <= LONGEST_STEP))
     throw InputError(fmt::format("time_step: is {:g}; give it {:g} to {:g} s", time_step, SHORTEST_STEP, LONGEST_STEP));
-  if (!(gravity.cwiseAbs().maxCoeff() <= LARGEST_GRAVITY))
+  if (!(gravity.array().abs() <= LARGEST_GRAVITY).all())
     throw InputError(fmt::format("gravity: needs three numbers, not beyond {:g} m/s^2", LARGEST_GRAVITY));
   if (!(real_time_factor >= 0) || !std::isfinite(real_time_factor))
     throw InputError("max_update_rate: needs a finite number of at least 0");

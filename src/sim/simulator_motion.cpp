@@ -22,7 +22,7 @@ struct FrameMotion {
 };
 
 void checkState(const dynamics::BodyState& state) {
-  const auto within = [](const Vector3& v, double most) { return v.cwiseAbs().maxCoeff() <= most; };
+  const auto within = [](const Vector3& v, double most) { return (v.array().abs() <= most).all(); };
   if (!state.X_WB.matrix().allFinite() || !within(state.X_WB.translation(), FARTHEST))
     throw InputError(fmt::format("pose: needs finite numbers, not beyond {:g} m", FARTHEST));
   if (!within(state.v_WCom, FASTEST) || !within(state.w_WB, FASTEST))

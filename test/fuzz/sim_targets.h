@@ -80,7 +80,8 @@ inline void fuzzInput(const std::uint8_t* data, std::size_t size) {
   static const char* const CALLS[] = {
       "commandTrajectory", "commandJoints",     "holdJoint",       "loadEnvironment", "unloadEnvironment", "updateCloud", "removeModel",
       "moveModel",         "setJointPositions", "resetModel",      "applyLoad",       "applyEffort",       "clearLoads",  "clearEfforts",
-      "setPhysics",        "setLinkInertial",   "setJointDamping", "setJointLimits",  "resetWorld",        "restore",     "spawn"};
+      "setPhysics",        "setLinkInertial",   "setJointDamping", "setJointLimits",  "resetWorld",        "restore",     "spawn",
+      "setMotorGains",     "setFriction"};
   if (size < 2) return;
   sim::SimulatorInput input;
   input.call = CALLS[data[0] % (sizeof CALLS / sizeof *CALLS)];

@@ -158,5 +158,39 @@ TEST(BadInput, ManyStartedInsideEachOtherSayThatContactsAreUnreliable) {
   for (int i = 0; i < 20; ++i) EXPECT_NE(simulator.step().status & CONTACT_UNRELIABLE, 0u) << i;
 }
 
+TEST(BadInput, NoComponentOfAVectorIsOverlooked) {
+  Simulator simulator(soundScene(), model::UriResolver());
+  const int cube = simulator.models()[simulator.modelIndex("cube")].bodies[0];
+  const std::uint64_t before = simulator.stateHash();
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), INFINITE, -INFINITE, 1e9}) {
+    for (int i = 0; i < 3; ++i) {
+      Vector3 spoiled = Vector3::Zero();
+      spoiled[i] = bad;
+      dynamics::BodyState moving = simulator.report().bodies[cube], turning = moving, away = moving;
+      moving.v_WCom = spoiled;
+      turning.w_WB = spoiled;
+      away.X_WB.translation() = spoiled;
+      EXPECT_THROW(simulator.setPhysics(spoiled, 0.001, 1), InputError) << i << ": " << bad;
+      for (const dynamics::BodyState& state : {moving, turning, away})
+        EXPECT_THROW(simulator.moveModel(cube, state), InputError) << i << ": " << bad;
+    }
+  }
+  EXPECT_EQ(simulator.stateHash(), before);
+}
+
+TEST(BadInput, GainsAndFrictionAreChecked) {
+  Simulator simulator(soundScene(), model::UriResolver());
+  const std::uint64_t before = simulator.stateHash();
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), INFINITE, -1.0, 1e9}) {
+    EXPECT_THROW(simulator.setFriction(simulator.modelIndex("cube"), bad), InputError) << bad;
+    for (const JointGains& gains : {JointGains{bad, 0, 0, 1}, JointGains{1, bad, 0, 1}, JointGains{1, 0, bad, 1}})
+      EXPECT_THROW(simulator.setMotorGains(0, 0, gains), InputError) << bad;
+  }
+  EXPECT_THROW(simulator.setMotorGains(0, 0, {1, 0, 1, -1}), InputError);
+  EXPECT_EQ(simulator.stateHash(), before);
+  EXPECT_EQ(simulator.friction(simulator.modelIndex("cube")), 0.5);
+  EXPECT_EQ(simulator.motorGains(0, 0).p, 100);
+}
+
 }  // namespace
 }  // namespace blem_sim::sim

@@ -14,7 +14,7 @@ FLOORS = {
     "reduction": ["lanes", "patches", "choice"],
     "dynamics": ["lanes", "scene", "trees", "problem", "newton", "island", "ode"],
     "sim": ["numbers", "config", "gazebo", "commands", "build", "clouds", "contacts", "guard", "sensors", "state", "inputs", "controllers"],
-    "ros": ["messages", "sending", "loop", "clouds", "publishers", "services", "saving", "attachments", "controllers"],
+    "ros": ["messages", "sending", "loop", "clouds", "publishers", "services", "settings", "saving", "attachments", "controllers"],
 }
 
 

@@ -138,6 +138,13 @@ class Simulator {
   void setJointDamping(int robot, int joint, double damping);
   /** @throws InputError: limits that do not hold the joint's position, or of a joint that takes none */
   void setJointLimits(int robot, int joint, double lower, double upper);
+  /** Gives the motor of a robot's joint other gains; its targets and its integral term stay. @param joint index into joint_names
+   *  @throws InputError: numbers that are none or below 0, a joint that has no motor of its own */
+  void setMotorGains(int robot, int joint, const JointGains& gains);
+  JointGains motorGains(int robot, int joint) const;
+  /** Gives all surfaces of a model this Coulomb coefficient. @throws InputError: it is no number, or below 0 */
+  void setFriction(int model, double friction);
+  double friction(int model) const;            ///< of its first surface, and of clouds to come; 0: it has none
   double jointDamping(int world_joint) const;  ///< [N m s/rad or N s/m]
 
   /** Models back to their start poses, at rest (objects at their configured velocity), commands and sensors cleared; time goes on. */

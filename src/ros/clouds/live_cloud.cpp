@@ -44,6 +44,14 @@ void LiveCloud::receive(const sensor_msgs::PointCloud2ConstPtr& message) {
   changed_.notify_all();
 }
 
+void LiveCloud::refuseUnread(const std::string& why) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ++counts_.received;
+  }
+  refuse(why);
+}
+
 std::optional<BuiltCloud> LiveCloud::take() {
   const std::lock_guard<std::mutex> lock(mutex_);
   return std::exchange(ready_, std::nullopt);

@@ -51,6 +51,8 @@ class LiveCloud {
 
   const std::string& name() const { return config_.name; }
   const std::string& topic() const { return config_.live.topic; }
+  /** Counts a message that is none. */
+  void refuseUnread(const std::string& why);
   void receive(const sensor_msgs::PointCloud2ConstPtr& message);
   /** The newest surface that is ready, once. */
   std::optional<BuiltCloud> take();

@@ -32,7 +32,9 @@ LiveClouds::LiveClouds(const ros::NodeHandle& node, ros::NodeHandle private_node
     const boost::function<void(const sensor_msgs::PointCloud2ConstPtr&)> receive = [cloud](const auto& message) {
       cloud->receive(message);
     };
-    subscribers_.push_back(receiving.subscribe<sensor_msgs::PointCloud2>(environment.live.topic, QUEUE_SIZE, receive));
+    ros::SubscribeOptions options = checkedSubscription<sensor_msgs::PointCloud2>(
+        environment.live.topic, QUEUE_SIZE, receive, [cloud](const std::string& why) { cloud->refuseUnread(why); });
+    subscribers_.push_back(receiving.subscribe(options));
   }
   loop->beforeSteps([this](bool wait) { takeUpdates(wait); });
   receiver_.start();

@@ -3,6 +3,7 @@
 #include <ros/console.h>
 
 #include "blem_sim/geometry/input_error.h"
+#include "loop/checked_transport.h"
 
 namespace blem_sim::node {
 
@@ -29,7 +30,8 @@ ControllerServices::ControllerServices(RobotControllers* controllers)
       list_types_(node_.advertiseService("list_controller_types", &ControllerServices::onListTypes, this)),
       load_(node_.advertiseService("load_controller", &ControllerServices::onLoad, this)),
       unload_(node_.advertiseService("unload_controller", &ControllerServices::onUnload, this)),
-      switch_(node_.advertiseService("switch_controller", &ControllerServices::onSwitch, this)) {}
+      switch_(advertiseChecked<SwitchController>(node_, "switch_controller",
+                                                 [this](auto& request, auto& response) { return onSwitch(request, response); })) {}
 
 bool ControllerServices::onList(ListControllers::Request&, ListControllers::Response& response) {
   response.controller = controllers_->list();

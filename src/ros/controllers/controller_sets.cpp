@@ -6,8 +6,7 @@
 
 namespace blem_sim::node {
 
-ControllerSets::ControllerSets(ros::NodeHandle node, sim::Simulator* simulator, StepSender* sender)
-    : node_(node), simulator_(simulator), sender_(sender) {
+ControllerSets::ControllerSets(ros::NodeHandle node, SimulationLoop* loop) : node_(node), loop_(loop), simulator_(&loop->simulator()) {
   modelsChanged();
 }
 
@@ -27,7 +26,7 @@ void ControllerSets::add(int robot) {
                known->second.robot.c_str());
     return;
   }
-  auto controllers = std::make_unique<RobotControllers>(node_, simulator_, robot, sender_);
+  auto controllers = std::make_unique<RobotControllers>(node_, loop_, robot);
   auto services = std::make_unique<ControllerServices>(controllers.get());
   sets_[place] = {info.name, std::move(controllers), std::move(services)};
 }

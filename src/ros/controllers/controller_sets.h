@@ -17,7 +17,7 @@ namespace blem_sim::node {
 class ControllerSets : public StepPublisher {
  public:
   /** @throws InputError: wrong settings of a controller */
-  ControllerSets(ros::NodeHandle node, sim::Simulator* simulator, StepSender* sender);
+  ControllerSets(ros::NodeHandle node, SimulationLoop* loop);
 
   void publish(const sim::StepReport& report) override;
   void timeRestarted() override;
@@ -34,8 +34,8 @@ class ControllerSets : public StepPublisher {
   void add(int robot);
 
   ros::NodeHandle node_;
+  SimulationLoop* loop_;
   sim::Simulator* simulator_;
-  StepSender* sender_;
   std::map<std::string, Set> sets_;  // by namespace
 };
 

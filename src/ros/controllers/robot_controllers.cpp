@@ -78,9 +78,12 @@ void checkName(const std::string& name) {
 
 }  // namespace
 
-RobotControllers::RobotControllers(ros::NodeHandle node, sim::Simulator* simulator, int robot, StepSender* sender)
-    : node_(node, simulator->robots()[robot].name_space), simulator_(simulator), robot_(simulator->robots()[robot].name), sender_(sender) {
-  const auto configured = configuredOf(*simulator, robot_);
+RobotControllers::RobotControllers(ros::NodeHandle node, SimulationLoop* loop, int robot)
+    : node_(node, loop->simulator().robots()[robot].name_space),
+      loop_(loop),
+      simulator_(&loop->simulator()),
+      robot_(simulator_->robots()[robot].name) {
+  const auto configured = configuredOf(*simulator_, robot_);
   for (const sim::ControllerConfig& config : configured.value_or(std::vector<sim::ControllerConfig>(1))) {
     checkName(config.name);
     add(withParameters(node_, config), typeOfController(controllerType(node_, config.name), config.kind));
@@ -141,7 +144,7 @@ void RobotControllers::add(const sim::ControllerConfig& config, const std::strin
     controller.server = std::make_unique<GripperServer>(node_, sim::GripperController(simulator_, simulator_->robotIndex(robot_), config));
   else
     controller.server =
-        std::make_unique<TrajectoryServer>(node_, sim::TrajectoryController(simulator_, simulator_->robotIndex(robot_), config), sender_);
+        std::make_unique<TrajectoryServer>(node_, sim::TrajectoryController(simulator_, simulator_->robotIndex(robot_), config), loop_);
   controllers_.push_back(std::move(controller));
 }
 
@@ -168,7 +171,7 @@ void RobotControllers::unload(const std::string& name) {
   const Controller* controller = find(name);
   if (!controller) throw InputError("there is no controller '" + name + "'; there are: " + listed(knownNames()));
   if (controller->running) throw InputError("controller '" + name + "' runs; stop it by switch_controller first");
-  sender_->drain();  // its messages need its publisher
+  loop_->sender()->drain();  // its messages need its publisher
   controllers_.erase(controllers_.begin() + (controller - controllers_.data()));
 }
 

@@ -8,9 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "blem_sim/sim/simulator.h"
 #include "controllers/controller_server.h"
-#include "sending/step_sender.h"
+#include "loop/simulation_loop.h"
 
 namespace blem_sim::node {
 
@@ -27,7 +26,7 @@ struct ControllerChange {
 class RobotControllers {
  public:
   /** @throws InputError: wrong settings of a controller */
-  RobotControllers(ros::NodeHandle node, sim::Simulator* simulator, int robot, StepSender* sender);
+  RobotControllers(ros::NodeHandle node, SimulationLoop* loop, int robot);
 
   /** To be called after each step. @param time [s] simulated */
   void step(double time);
@@ -66,9 +65,9 @@ class RobotControllers {
   void stop(Controller* controller);
 
   ros::NodeHandle node_;
+  SimulationLoop* loop_;
   sim::Simulator* simulator_;
   std::string robot_;
-  StepSender* sender_;
   std::vector<Controller> controllers_;
 };
 

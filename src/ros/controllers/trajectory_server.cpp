@@ -2,7 +2,6 @@
 
 #include <ros/console.h>
 
-#include <boost/function.hpp>
 #include <utility>
 
 #include "messages/conversions.h"
@@ -33,10 +32,10 @@ void tellOldPoints(const std::string& where, int count) {
 
 }  // namespace
 
-TrajectoryServer::TrajectoryServer(ros::NodeHandle robot_node, sim::TrajectoryController controller, StepSender* sender)
+TrajectoryServer::TrajectoryServer(ros::NodeHandle robot_node, sim::TrajectoryController controller, SimulationLoop* loop)
     : controller_(std::move(controller)),
       node_(robot_node, controller_.config().name),
-      sender_(sender),
+      sender_(loop->sender()),
       state_schedule_(controller_.config().state_publish_rate),
       state_publisher_(ListenedPublisher::advertise<JointTrajectoryControllerState>(&node_, "state", TRAJECTORY_QUEUE)),
       states_(namedState(controller_)),
@@ -47,20 +46,14 @@ TrajectoryServer::TrajectoryServer(ros::NodeHandle robot_node, sim::TrajectoryCo
             controller_.cancel();
             goals_.preempt(resultOf(sim::GoalError::SUCCESSFUL, ""), "cancelled");
           }) {
-  const boost::function<void(const trajectory_msgs::JointTrajectoryConstPtr&)> on_command =
-      [this](const trajectory_msgs::JointTrajectoryConstPtr& message) { onCommand(*message); };
-  commands_ = node_.subscribe<trajectory_msgs::JointTrajectory>("command", TRAJECTORY_QUEUE, on_command);
+  commands_ = subscribeCounted<trajectory_msgs::JointTrajectory>(node_, "command", "trajectory refused", loop->refusals(),
+                                                                 [this](const auto& message) { onCommand(message); });
 }
 
 void TrajectoryServer::onCommand(const trajectory_msgs::JointTrajectory& message) {
-  const std::string topic = commands_.getTopic();
-  try {
-    const int old_points = controller_.command(fromMessage(message));
-    goals_.preempt(resultOf(sim::GoalError::SUCCESSFUL, ""), "a trajectory came on the topic");
-    tellOldPoints(topic, old_points);
-  } catch (const InputError& error) {
-    ROS_ERROR("%s: trajectory refused: %s", topic.c_str(), error.what());
-  }
+  const int old_points = controller_.command(fromMessage(message));
+  goals_.preempt(resultOf(sim::GoalError::SUCCESSFUL, ""), "a trajectory came on the topic");
+  tellOldPoints(commands_.getTopic(), old_points);
 }
 
 void TrajectoryServer::onGoal(Goals::Handle goal) {

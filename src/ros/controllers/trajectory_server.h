@@ -13,9 +13,9 @@
 #include "blem_sim/sim/trajectory_controller.h"
 #include "controllers/controller_server.h"
 #include "controllers/goal_server.h"
+#include "loop/simulation_loop.h"
 #include "messages/message_pool.h"
 #include "sending/listened_publisher.h"
-#include "sending/step_sender.h"
 
 namespace blem_sim::node {
 
@@ -26,7 +26,7 @@ namespace blem_sim::node {
 class TrajectoryServer : public ControllerServer {
  public:
   /** @param robot_node in the robot's namespace */
-  TrajectoryServer(ros::NodeHandle robot_node, sim::TrajectoryController controller, StepSender* sender);
+  TrajectoryServer(ros::NodeHandle robot_node, sim::TrajectoryController controller, SimulationLoop* loop);
 
   std::vector<std::string> joints() const override { return controller_.joints(); }
   void start() override { controller_.start(); }

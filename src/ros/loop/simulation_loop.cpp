@@ -15,6 +15,8 @@ namespace {
 constexpr double LONGEST_WAIT = 0.05;  // [s]
 // Steps made without a look at the sockets; below the publishers' queue lengths, so that no message of a batch is dropped.
 constexpr std::uint32_t STEPS_PER_FLUSH = 50;
+// Largest block [bytes] for messages that are read by others, such as goals of actions.
+constexpr std::size_t LARGEST_BLOCK = 1u << 30;
 
 /** Processor time [s] of this thread. */
 double threadSeconds() {
@@ -28,6 +30,7 @@ double threadSeconds() {
 SimulationLoop::SimulationLoop(sim::Simulator* simulator)
     : simulator_(simulator),
       pacer_(simulator->config().real_time_factor, simulator->config().time_step),
+      stamped_commands_(simulator),
       paused_(simulator->config().paused) {}
 
 void SimulationLoop::publish(const sim::StepReport& report) {
@@ -40,6 +43,7 @@ void SimulationLoop::publish(const sim::StepReport& report) {
 }
 
 bool SimulationLoop::step() {
+  stamped_commands_.giveDue();
   const sim::StepReport& report = simulator_->step();
   publish(report);
   if ((report.status & sim::STATE_NOT_FINITE) == 0) return true;
@@ -54,13 +58,18 @@ void SimulationLoop::run(ros::CallbackQueue* callbacks, const std::function<void
   pacer_.restart(StepPacer::Clock::now());
   while (ros::ok()) {
     const double wait = paused_ ? LONGEST_WAIT : std::min(LONGEST_WAIT, pacer_.wait(StepPacer::Clock::now()));
-    callbacks->callAvailable(ros::WallDuration(wait));
+    serveCallbacks(callbacks, wait);
     serve(paused_);
     if (paused_ || pacer_.wait(StepPacer::Clock::now()) > 0) continue;
     for (const auto& act : before_steps_) act(false);
     step();
     pacer_.stepped(StepPacer::Clock::now());
   }
+}
+
+void SimulationLoop::serveCallbacks(ros::CallbackQueue* callbacks, double wait) {
+  const AllocationLimit limit(LARGEST_BLOCK);
+  callbacks->callAvailable(ros::WallDuration(wait));
 }
 
 void SimulationLoop::unpause() {
@@ -98,6 +107,7 @@ void SimulationLoop::flush() {
 
 void SimulationLoop::resetSimulation() {
   drain();  // messages of earlier steps go out before those that are published directly
+  stamped_commands_.clear();
   simulator_->resetSimulation();
   for (const auto& publisher : publishers_) publisher->timeRestarted();
   publish(simulator_->report());
@@ -106,13 +116,17 @@ void SimulationLoop::resetSimulation() {
 void SimulationLoop::restore(const sim::SimulationState& state) {
   const double before = simulator_->time();
   simulator_->restore(state);
+  stamped_commands_.clear();
   sender_.drain();
   if (simulator_->time() < before)
     for (const auto& publisher : publishers_) publisher->timeRestarted();
   publish(simulator_->report());
 }
 
-void SimulationLoop::paceChanged() { pacer_ = StepPacer(simulator_->config().real_time_factor, simulator_->config().time_step); }
+void SimulationLoop::paceChanged() {
+  pacer_ = StepPacer(simulator_->config().real_time_factor, simulator_->config().time_step);
+  for (const auto& act : on_pace_changed_) act();
+}
 
 void SimulationLoop::cloudsChanged() {
   for (const auto& publisher : publishers_) publisher->cloudsChanged();

@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "loop/refusals.h"
+#include "loop/stamped_commands.h"
 #include "loop/step_pacer.h"
 #include "sending/outbox.h"
 #include "sending/step_publisher.h"
@@ -40,7 +42,10 @@ class SimulationLoop {
    *  stopped being finite */
   std::uint32_t stepPaused(std::uint32_t count);
 
-  void resetWorld() { simulator_->resetWorld(); }
+  void resetWorld() {
+    stamped_commands_.clear();
+    simulator_->resetWorld();
+  }
   void resetSimulation();
   /** Goes on from a saved state; if that lies back in time, time has started again for the publishers. @throws InputError */
   void restore(const sim::SimulationState& state);
@@ -55,13 +60,20 @@ class SimulationLoop {
   void cloudsChanged();
   /** The time step or the real-time factor was set. */
   void paceChanged();
+  void onPaceChanged(std::function<void()> act) { on_pace_changed_.push_back(std::move(act)); }
 
   /** Sender for the messages of every step's publishers. */
   StepSender* sender() { return &sender_; }
 
+  /** Commands that wait for their steps. */
+  StampedCommands* stampedCommands() { return &stamped_commands_; }
+  /** Counts of refused messages. */
+  Refusals* refusals() { return &refusals_; }
+
   const PublishingTime& publishingTime() const { return publishing_time_; }
 
  private:
+  void serveCallbacks(ros::CallbackQueue* callbacks, double wait);
   /** Makes a step. False if the state stopped being finite: the simulation is paused then. */
   bool step();
   void publish(const sim::StepReport& report);
@@ -71,10 +83,12 @@ class SimulationLoop {
 
   sim::Simulator* simulator_;
   std::vector<std::unique_ptr<StepPublisher>> publishers_;
-  std::vector<std::function<void()>> on_models_changed_;
+  std::vector<std::function<void()>> on_models_changed_, on_pace_changed_;
   std::vector<std::function<void(bool)>> before_steps_;
   StepPacer pacer_;
   Outbox outbox_;
+  Refusals refusals_;
+  StampedCommands stamped_commands_;
   bool paused_;
   PublishingTime publishing_time_;
   StepSender sender_;  // last: its messages need the publishers

@@ -32,8 +32,10 @@ LearnerService::LearnerService(const ros::NodeHandle& private_node, SimulationLo
 }
 
 void LearnerService::command(const StepWithCommands::Request& request) {
-  for (const RobotCommand& c : request.commands) simulator_.checkJointCommand(robotOf(c), commandOf(c.command));
-  for (const RobotCommand& c : request.commands) simulator_.commandJoints(robotOf(c), commandOf(c.command));
+  StampedCommands& stamped = *loop_->stampedCommands();
+  const auto stampOf = [](const RobotCommand& c) { return c.command.header.stamp.toSec(); };
+  for (const RobotCommand& c : request.commands) stamped.check(robotOf(c), commandOf(c.command), stampOf(c));
+  for (const RobotCommand& c : request.commands) stamped.give(robotOf(c), commandOf(c.command), stampOf(c));
 }
 
 int LearnerService::robotOf(const RobotCommand& command) const {

@@ -9,35 +9,18 @@
 
 namespace blem_sim::node {
 
-namespace {
-
-constexpr int MOTION_QUEUE = 100;
-
-}  // namespace
-
-MotionServices::MotionServices(ros::NodeHandle private_node, sim::Simulator* simulator) : simulator_(simulator), services_(private_node) {
+MotionServices::MotionServices(ros::NodeHandle private_node, SimulationLoop* loop)
+    : simulator_(&loop->simulator()), services_(private_node) {
   services_.add<SetModelState>("set_model_state", [this](const auto& request, auto*) { setModelState(request.model_state); });
   services_.add<SetLinkState>("set_link_state", [this](const auto& request, auto*) { setLinkState(request.link_state); });
   services_.add<SetModelConfiguration>("set_model_configuration", [this](const auto& request, auto*) { configure(request); });
   services_.add<ResetModel>("reset_model", [this](const auto& request, auto*) {
     simulator_->resetModel(sim::findModel(*simulator_, request.model_name, "model_name"));
   });
-  const boost::function<void(const ModelStateConstPtr&)> on_model = [this](const ModelStateConstPtr& state) {
-    log("set_model_state", [&] { setModelState(*state); });
-  };
-  const boost::function<void(const LinkStateConstPtr&)> on_link = [this](const LinkStateConstPtr& state) {
-    log("set_link_state", [&] { setLinkState(*state); });
-  };
-  model_states_ = private_node.subscribe<ModelState>("set_model_state", MOTION_QUEUE, on_model);
-  link_states_ = private_node.subscribe<LinkState>("set_link_state", MOTION_QUEUE, on_link);
-}
-
-void MotionServices::log(const char* topic, const std::function<void()>& act) const {
-  try {
-    act();
-  } catch (const InputError& error) {
-    ROS_ERROR("%s: message refused: %s", topic, error.what());
-  }
+  model_states_ = subscribeCounted<ModelState>(private_node, "set_model_state", "message refused", loop->refusals(),
+                                               [this](const ModelState& state) { setModelState(state); });
+  link_states_ = subscribeCounted<LinkState>(private_node, "set_link_state", "message refused", loop->refusals(),
+                                             [this](const LinkState& state) { setLinkState(state); });
 }
 
 void MotionServices::setModelState(const ModelState& state) {

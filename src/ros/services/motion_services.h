@@ -4,8 +4,6 @@
 #include <blem_sim/ModelState.h>
 #include <blem_sim/SetModelConfiguration.h>
 
-#include <functional>
-
 #include "loop/simulation_loop.h"
 #include "services/service_group.h"
 
@@ -13,17 +11,16 @@ namespace blem_sim::node {
 
 /**
  * `~set_model_state`, `~set_link_state`, each a service and a topic, `~set_model_configuration` and `~reset_model`. A model is moved as a
- * whole; a message of a topic that is refused is told in the log.
+ * whole; a message of a topic that is refused is counted, and told in the log.
  */
 class MotionServices {
  public:
-  MotionServices(ros::NodeHandle private_node, sim::Simulator* simulator);
+  MotionServices(ros::NodeHandle private_node, SimulationLoop* loop);
 
  private:
   void setModelState(const ModelState& state);
   void setLinkState(const LinkState& state);
   void configure(const SetModelConfiguration::Request& request);
-  void log(const char* topic, const std::function<void()>& act) const;
 
   sim::Simulator* simulator_;
   ServiceGroup services_;

@@ -12,6 +12,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "loop/checked_transport.h"
+
 namespace blem_sim::node {
 
 /** Some services of one namespace. A call always gets an answer; one that is refused changes nothing, and one line says why. */
@@ -27,6 +29,7 @@ class ServiceGroup {
     const boost::function<bool(Request&, Response&)> serve = [name, act](Request& request, Response& response) {
       try {
         setOutcome(&response, true, "done");
+        const AllocationLimit none(AllocationLimit::NONE);  // files may be large
         act(request, &response);
       } catch (const std::exception& error) {
         const std::string why = inOneLine(error.what());
@@ -36,7 +39,7 @@ class ServiceGroup {
       }
       return true;
     };
-    servers_.push_back(node_.advertiseService<Request, Response>(name, serve));
+    servers_.push_back(advertiseChecked<Service>(node_, name, serve));
   }
 
  private:

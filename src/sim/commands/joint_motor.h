@@ -57,6 +57,11 @@ class JointMotor {
   const JointSpline* path() const { return mode_ == Mode::POSITION ? &spline_ : nullptr; }
 
   const MotorSettings& settings() const { return settings_; }
+  /** The gain for velocities becomes that of the others, too. */
+  void setGains(const JointGains& gains) {
+    settings_.gains = gains;
+    settings_.velocity_gain.reset();
+  }
   void setViscousFriction(double friction) { settings_.friction.viscous = friction; }
   void save(geometry::StateWriter* writer) const;
   void restore(geometry::StateReader* reader);

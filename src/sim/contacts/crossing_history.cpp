@@ -10,7 +10,7 @@ constexpr std::size_t WORDS = 3, NUMBERS = 16;  // of a recovery
 
 bool isRigid(const Pose& X) {
   constexpr double ROUNDING = 1e-6;
-  return (X.linear() * X.linear().transpose() - Matrix3::Identity()).cwiseAbs().maxCoeff() <= ROUNDING &&
+  return ((X.linear() * X.linear().transpose() - Matrix3::Identity()).array().abs() <= ROUNDING).all() &&
          X.matrix().row(3) == Eigen::RowVector4d(0, 0, 0, 1);
 }
 

@@ -64,8 +64,9 @@ void TrajectoryController::checkJoints(const JointTrajectory& trajectory) const 
   if (trajectory.joints.empty()) refuse("there are none; name the controller's joints");
   for (const std::string& joint : trajectory.joints) {
     if (!contains(joint_names_, joint))
-      refuse(fmt::format("'{}' is no joint of this controller; the nearest is '{}'", joint, nearestName(joint, joint_names_)));
-    if (std::count(trajectory.joints.begin(), trajectory.joints.end(), joint) > 1) refuse("'" + joint + "' is there twice; name it once");
+      refuse(fmt::format("'{}' is no joint of this controller; the nearest is '{}'", shownName(joint), nearestName(joint, joint_names_)));
+    if (std::count(trajectory.joints.begin(), trajectory.joints.end(), joint) > 1)
+      refuse("'" + shownName(joint) + "' is there twice; name it once");
   }
   if (config_.allow_partial_joints_goal) return;
   for (const std::string& joint : joint_names_)

@@ -92,6 +92,16 @@ const std::map<std::string, Call> CALLS = {
        const int robot = in.takeRobot(), joint = in.takeJointOf(robot);
        to.setJointDamping(robot, joint, in.take<double>());
      }},
+    {"setMotorGains",
+     [](InputReader& in, Simulator& to) {
+       const int robot = in.takeRobot(), joint = in.takeJointOf(robot);
+       to.setMotorGains(robot, joint, in.take<JointGains>());
+     }},
+    {"setFriction",
+     [](InputReader& in, Simulator& to) {
+       const int model = in.takeModel();
+       to.setFriction(model, in.take<double>());
+     }},
     {"setJointLimits",
      [](InputReader& in, Simulator& to) {
        const int robot = in.takeRobot(), joint = in.takeJointOf(robot);

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "blem_sim/geometry/input_error.h"
+#include "blem_sim/geometry/one_line.h"
 
 namespace blem_sim::sim {
 namespace {
@@ -29,7 +30,10 @@ int editDistance(const std::string& a, const std::string& b) {
 
 }  // namespace
 
-std::string nearestName(const std::string& name, const std::vector<std::string>& known) {
+std::string shownName(const std::string& name) { return geometry::oneLine(name.substr(0, LONGEST_NAME)); }
+
+std::string nearestName(const std::string& given, const std::vector<std::string>& known) {
+  const std::string name = given.substr(0, LONGEST_NAME);
   const auto nearest = std::min_element(known.begin(), known.end(), [&](const std::string& a, const std::string& b) {
     return editDistance(name, a) < editDistance(name, b);
   });
@@ -38,7 +42,7 @@ std::string nearestName(const std::string& name, const std::vector<std::string>&
 
 void requireName(const std::string& given, const std::vector<std::string>& known, const std::string& where, const std::string& kind) {
   if (std::find(known.begin(), known.end(), given) != known.end()) return;
-  const std::string name = given.substr(0, LONGEST_NAME);
+  const std::string name = shownName(given);
   if (known.empty()) throw InputError(fmt::format("{}: no {} '{}'; there is none at all", where, kind, name));
   throw InputError(fmt::format("{}: no {} '{}'; the nearest is '{}'", where, kind, name, nearestName(name, known)));
 }

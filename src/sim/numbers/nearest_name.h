@@ -6,7 +6,11 @@
 
 namespace blem_sim::sim {
 
-/** The known name with the fewest edits from `name`, the first of them on a tie; empty if none is known. [Levenshtein 1966] */
+/** A name as messages show it: its first 200 characters, in one line. */
+std::string shownName(const std::string& name);
+
+/** The known name with the fewest edits from `name`, the first of them on a tie; empty if none is known. Its
+ * first 200 characters count. [Levenshtein 1966] */
 std::string nearestName(const std::string& name, const std::vector<std::string>& known);
 
 /** @throws InputError "WHERE: no KIND 'name'; the nearest is 'other'" unless `name` is one of `known` */

@@ -104,6 +104,10 @@ std::vector<std::function<void(Simulator&)>> allCalls(const SimulationState& ear
       },
       [](Simulator& s) { s.setJointPositions(1, {"hinge"}, {0.7}); },
       [](Simulator& s) { s.setJointDamping(1, 0, 0.7); },
+      [](Simulator& s) {
+        s.setMotorGains(1, 0, {90, 4, 3, 50});
+      },
+      [](Simulator& s) { s.setFriction(s.modelIndex("cube"), 0.11); },
       [](Simulator& s) { s.setJointLimits(1, 0, -2, 2); },
       [=](Simulator& s) { s.setLinkInertial(s.robots()[1].bodies[1], 1, heavier); },
       [](Simulator& s) {

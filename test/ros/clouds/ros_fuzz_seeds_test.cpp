@@ -1,0 +1,13 @@
+// Targets of scripts/fuzz on their seeds and on bytes near these, without clang.
+#include <gtest/gtest.h>
+
+#include "fuzz/ros_targets.h"
+#include "fuzz/seeds.h"
+
+namespace blem_sim::node {
+namespace {
+
+TEST(RosFuzzSeeds, PointsAreReadOrRefusedInOneLine) { runSeeds("points", fuzzPoints); }
+
+}  // namespace
+}  // namespace blem_sim::node
