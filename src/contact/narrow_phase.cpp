@@ -47,7 +47,7 @@ MeshPair aLittleApart(const MeshPair& pair) {
 
 /** Depths of contacts that were found a little apart, as they are where the meshes lie. */
 void takeBack(const MeshPair& pair, std::vector<Contact>* contacts) {
-  const Vector3 way = (pair.roles.first_is_a ? 1 : -1) * (pair.X_WF.linear() * littleWay(pair));
+  const Vector3 way = (pair.roles.a == Side::MOVING ? 1 : -1) * (pair.X_WF.linear() * littleWay(pair));
   for (Contact& contact : *contacts) contact.depth += contact.normal_BA.dot(way);
 }
 
@@ -60,7 +60,7 @@ void meshMesh(const Collider& a, const Pose& X_WA, const Collider& b, const Pose
                       X_WF.inverse() * X_WM,
                       a.radius + b.radius,
                       range,
-                      {a_moves, a.radius, b.radius},
+                      {a_moves ? Side::MOVING : Side::FIXED, {a_moves ? a.radius : b.radius, a_moves ? b.radius : a.radius}},
                       X_WF};
   Buffers& buffers = threadBuffers();
   FoundContacts& found = buffers.found;
@@ -138,9 +138,9 @@ void narrowPhase(const Collider& a, const Pose& X_WA, const Collider& b, const P
   if (a.geometry->isHalfSpace() && b.geometry->isHalfSpace()) {
     out->contacts.clear();
   } else if (b.geometry->isHalfSpace()) {
-    meshHalfSpace(a, X_WA, b, X_WB, range, {true, a.radius, b.radius}, out);
+    meshHalfSpace(a, X_WA, b, X_WB, range, {Side::MOVING, {a.radius, b.radius}}, out);
   } else if (a.geometry->isHalfSpace()) {
-    meshHalfSpace(b, X_WB, a, X_WA, range, {false, a.radius, b.radius}, out);
+    meshHalfSpace(b, X_WB, a, X_WA, range, {Side::FIXED, {b.radius, a.radius}}, out);
   } else {
     meshMesh(a, X_WA, b, X_WB, range, X_AB_apart, memory ? &memory->impl_->search : nullptr, out);
   }

@@ -48,14 +48,14 @@ class BorderFades {
 
   /** Lists, in order, those of the hits that fade: nothing takes over behind one of the sides that the vertex lies outside of, and neither
    * the plane, behind one of them, nor a round edge is asked instead. @param candidates whose hits they are */
-  void list(bool vertices_move, const kernels::Candidate* candidates, const kernels::VertexFaceHit* hits, std::uint32_t count,
+  void list(Side side, const kernels::Candidate* candidates, const kernels::VertexFaceHit* hits, std::uint32_t count,
             LeavingBuffers* buffers, BesideFaces* fading);
 
  private:
-  void listOpen(bool vertices_move, const kernels::Candidate* candidates, const kernels::VertexFaceHit* hits, std::uint32_t count,
+  void listOpen(Side side, const kernels::Candidate* candidates, const kernels::VertexFaceHit* hits, std::uint32_t count,
                 LeavingBuffers* buffers, BesideFaces* fading);
-  void answer(bool vertices_move, LeavingBuffers* buffers, const BesideFaces& fading);
-  bool isTakenOver(bool vertices_move, const kernels::Candidate& c, const kernels::LeavingSide& leaving);
+  void answer(Side side, LeavingBuffers* buffers, const BesideFaces& fading);
+  bool isTakenOver(Side side, const kernels::Candidate& c, const kernels::LeavingSide& leaving);
 
   const MeshPair& pair_;
   CandidateLists& lists_;

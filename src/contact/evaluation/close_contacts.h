@@ -20,14 +20,14 @@ class CloseContacts {
     placed_.overwrite(&room_);
   }
 
-  /** The contact of a feature with one of the other mesh, whichever of them moves. @param points, normal in frame F, normal from the fixed
+  /** The contact of a feature of a side with one of the other. @param points, normal in frame F, normal from the fixed
    * mesh to the moving one */
-  void add(const MeshPair& pair, bool first_moves, const Feature& first, const Feature& second, const Vector3& point_first,
+  void add(const MeshPair& pair, Side side, const Feature& first, const Feature& second, const Vector3& point_first,
            const Vector3& point_second, const Vector3& normal, double gap) {
     if (!keeps_witnesses_) {
-      placeInWorld(pair, first_moves, first, second, point_first, point_second, normal, gap, placed_.room(1));
+      placeInWorld(pair, side, first, second, point_first, point_second, normal, gap, placed_.room(1));
       placed_.advance(1);
-    } else if (first_moves) {
+    } else if (side == Side::MOVING) {
       witnessed_.push_back({first, second, point_first, point_second, normal, gap});
     } else {
       witnessed_.push_back({second, first, point_second, point_first, normal, gap});
@@ -64,7 +64,7 @@ class CloseContacts {
   /** All contacts, in the world. */
   const ContactWriter& placed(const MeshPair& pair) {
     for (const FeatureContact& c : witnessed_) {
-      placeInWorld(pair, true, c.moving, c.fixed, c.point_M, c.point_F, c.normal, c.gap, placed_.room(1));
+      placeInWorld(pair, Side::MOVING, c.moving, c.fixed, c.point_M, c.point_F, c.normal, c.gap, placed_.room(1));
       placed_.room(1)->pierced = c.pierced;
       placed_.advance(1);
     }

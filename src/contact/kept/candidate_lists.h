@@ -49,14 +49,13 @@ struct NearFeatures {
   void reserve(std::size_t count);  ///< room for so many features of each kind
 };
 
-/** Pairs of features, in an order that the meshes alone decide. An index [moves] tells whether the feature named first is the moving
- * mesh's; Candidate::a is that one's. */
+/** Pairs of features, in an order that the meshes alone decide, by the side of the feature named first, which Candidate::first is. */
 struct CandidatePairs {
   using Candidates = std::vector<kernels::Candidate>;
-  Candidates vertex_face[2], vertex_edge[2], edge_face[2];
+  PerSide<Candidates> vertex_face, vertex_edge, edge_face;
   /** Per candidate of vertex_face: 1 where the vertex is surely over its face, not near a border, while the list is good; empty: unknown */
-  std::vector<std::uint8_t> inner[2];
-  Candidates edge_edge, vertex_vertex;  ///< a is the moving mesh's
+  PerSide<std::vector<std::uint8_t>> inner;
+  Candidates edge_edge, vertex_vertex;  ///< first is the moving mesh's
 
   void clear();
   void reserve(std::size_t count);  ///< room for so many candidates of each kind
@@ -64,7 +63,7 @@ struct CandidatePairs {
 };
 
 struct CandidateLists {
-  NearFeatures near[2];  ///< [1] of the moving mesh, [0] of the fixed one
+  PerSide<NearFeatures> near;
   CandidatePairs pairs;
 
   void clear();
@@ -82,7 +81,7 @@ struct TurnedFeatures {
   void turnForCrossings(const CandidateLists& lists, const Pose& X_FM);
 
   /** The vertices of the moving mesh, or of the fixed one, near the other's faces, for kernels. */
-  kernels::NearVertices nearFaces(const CandidateLists& lists, bool moves, const Pose& X_FM) const;
+  kernels::NearVertices nearFaces(const CandidateLists& lists, Side side, const Pose& X_FM) const;
 };
 
 /** Puts candidates of vertices with the same face one after the other, in the order of the faces, where a mesh has so few that each is near

@@ -71,13 +71,13 @@ std::uint32_t nearEdgeEdges(const EdgeRecord* a, const EdgeRecord* b, const Cand
                             Candidate* out) {
   const double range = reach.range + reach.margin, limit = deepestInside(range) + reach.margin;
   return copied(in, count, out, [&](const Batch& batch) {
-    const Rows start_a = batch.field(a, OF_A, &EdgeRecord::start), start_b = batch.field(b, OF_B, &EdgeRecord::start);
-    const Vectors p = batch.field(a, OF_A, &EdgeRecord::along).v, q = batch.field(b, OF_B, &EdgeRecord::along).v;
+    const Rows start_a = batch.field(a, OF_FIRST, &EdgeRecord::start), start_b = batch.field(b, OF_SECOND, &EdgeRecord::start);
+    const Vectors p = batch.field(a, OF_FIRST, &EdgeRecord::along).v, q = batch.field(b, OF_SECOND, &EdgeRecord::along).v;
     const Vectors r = start_b.v - start_a.v, back = start_a.v - start_b.v;
     Mask inside{};
     for (int k = 0; k < 2; ++k) {
-      inside |= liesInside(r, r + q, batch.inward(a, OF_A, k).v, limit);
-      inside |= liesInside(back, back + p, batch.inward(b, OF_B, k).v, limit);
+      inside |= liesInside(r, r + q, batch.inward(a, OF_FIRST, k).v, limit);
+      inside |= liesInside(back, back + p, batch.inward(b, OF_SECOND, k).v, limit);
     }
     const unsigned crosswise = ~bitsOf(inside) & ALL_LANES;
     if (crosswise == 0) return 0u;
@@ -88,8 +88,8 @@ std::uint32_t nearEdgeEdges(const EdgeRecord* a, const EdgeRecord* b, const Cand
     const unsigned near = crosswise & ~bitsOf(dot(d, d) > range * range);
     if (near == 0) return 0u;
     const Vectors n = cross(p, q);
-    return near & bitsOf(conesMayAllow(n, coneBound(dot(n, n), pp * qq, reach.turn), batch.inward(a, OF_A, 0).v, batch.inward(a, OF_A, 1).v,
-                                       batch.inward(b, OF_B, 0).v, batch.inward(b, OF_B, 1).v));
+    return near & bitsOf(conesMayAllow(n, coneBound(dot(n, n), pp * qq, reach.turn), batch.inward(a, OF_FIRST, 0).v,
+                                       batch.inward(a, OF_FIRST, 1).v, batch.inward(b, OF_SECOND, 0).v, batch.inward(b, OF_SECOND, 1).v));
   });
 }
 
@@ -97,13 +97,13 @@ std::uint32_t nearVertexEdges(const Vec4* a, const EdgeRecord* b, const Candidat
                               Candidate* out) {
   const double range = reach.range + reach.margin, margin = reach.margin + 3 * CLOSED, limit = 2 * CONE_SLACK * range + margin;
   return copied(in, count, out, [&](const Batch& batch) {
-    const Rows start = batch.field(b, OF_B, &EdgeRecord::start);
-    const Vectors r = batch.points(a, OF_A).v - start.v;
-    const Vectors u = batch.inward(b, OF_B, 0).v, v = batch.inward(b, OF_B, 1).v, both = u + v;
+    const Rows start = batch.field(b, OF_SECOND, &EdgeRecord::start);
+    const Vectors r = batch.points(a, OF_FIRST).v - start.v;
+    const Vectors u = batch.inward(b, OF_SECOND, 0).v, v = batch.inward(b, OF_SECOND, 1).v, both = u + v;
     const Doubles inside = dot(u, r), also = dot(v, r);
     const unsigned beside = bitsOf(maximum(inside, also) <= limit);
     if (beside == 0) return 0u;
-    const Rows along = batch.field(b, OF_B, &EdgeRecord::along);
+    const Rows along = batch.field(b, OF_SECOND, &EdgeRecord::along);
     const Doubles part = dot(r, along.v) / start.w, length = squareRoot(start.w);
     const Vectors d = r - part * along.v;
     const AtEdge<Doubles> vertex{{inside, also}, squareRoot(dot(d, d)), maximum(-part, part - 1) * length};
@@ -115,7 +115,7 @@ std::uint32_t nearVertexVertices(const Vec4* a, const Vec4* b, const Candidate* 
                                  Candidate* out) {
   const double range = reach.range + reach.margin;
   return copied(in, count, out, [&](const Batch& batch) {
-    const Vectors d = batch.points(a, OF_A).v - batch.points(b, OF_B).v;
+    const Vectors d = batch.points(a, OF_FIRST).v - batch.points(b, OF_SECOND).v;
     return bitsOf(dot(d, d) <= range * range);
   });
 }
@@ -128,14 +128,14 @@ inline Doubles beyondEnds(Doubles part, Doubles n2) { return maximum(maximum(-pa
 std::uint32_t vertexVertices(const Vec4* a, const Vec4* b, const Candidate* candidates, std::uint32_t count, double range,
                              std::uint32_t* hits) {
   return listed(candidates, count, hits, [&](const Batch& batch) {
-    const Vectors d = batch.points(a, OF_A).v - batch.points(b, OF_B).v;
+    const Vectors d = batch.points(a, OF_FIRST).v - batch.points(b, OF_SECOND).v;
     return bitsOf(dot(d, d) <= range * range);
   });
 }
 
 std::uint32_t edgeFaces(const EdgeRecord* a, const FaceRecord* b, const Candidate* candidates, std::uint32_t count, std::uint32_t* hits) {
   return listed(candidates, count, hits, [&](const Batch& batch) {
-    const Vectors start = batch.field(a, OF_A, &EdgeRecord::start).v, along = batch.field(a, OF_A, &EdgeRecord::along).v;
+    const Vectors start = batch.field(a, OF_FIRST, &EdgeRecord::start).v, along = batch.field(a, OF_FIRST, &EdgeRecord::along).v;
     return withFaces(batch, b, [&](const auto& faces) {
       const Rows plane = faces.plane();
       const Doubles first = above(start, plane), second = above(start + along, plane);

@@ -22,9 +22,9 @@ struct Kernels {
 
   /** Pairs of features of two leaves that can have a contact within the range while nothing moves or turns by more than it says;
    * conservative, if the reach has room for the rounding of floats. */
-  void (*leafContacts)(const LeafShapes& a, const LeafShapes& b, const LeafReach& reach, LeafHits* hits);
+  void (*leafContacts)(const LeafShapes& moving, const LeafShapes& fixed, const LeafReach& reach, LeafHits* hits);
   /** The same of edges that pass through faces. */
-  void (*leafCrossings)(const LeafShapes& a, const LeafShapes& b, const LeafReach& reach, LeafHits* hits);
+  void (*leafCrossings)(const LeafShapes& moving, const LeafShapes& fixed, const LeafReach& reach, LeafHits* hits);
 
   /** Copies, in order, the candidates that can have a contact within the range while nothing moves or turns by more than the reach says.
    * @param inner as them: 1 where the vertex stays over its face and away from its border, else 0 @return their number */

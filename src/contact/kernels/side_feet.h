@@ -64,12 +64,12 @@ std::uint32_t sideFeet(const ContactPlace& place, const NearVertices& vertices, 
   out->asked_count = 0;
   for (std::uint32_t first = 0; first < count; first += LANES) {
     const Batch batch(pairs, first, count);
-    const Rows points = batch.points(vertices.records, OF_A);
+    const Rows points = batch.points(vertices.records, OF_FIRST);
     const Vectors &at = points.v, p = seenByFaces(vertices, at);
-    const Rows plane = batch.field(faces, OF_B, &FaceRecord::plane);
+    const Rows plane = batch.field(faces, OF_SECOND, &FaceRecord::plane);
     auto [foot, lost] = nearestFeet(sides + first, count - first, corners, p - above(p, plane) * plane.v);
-    if (vertices.faces_move) foot = turnedPoint(place.X_FM, foot);
-    const bool from_foot = place.keeps_feet ? !vertices.faces_move : place.vertices_are_a;
+    if (vertices.facesMove()) foot = turnedPoint(place.X_FM, foot);
+    const bool from_foot = place.keeps_feet ? !vertices.facesMove() : place.verticesAreA();
     const Vectors d = from_foot ? at - foot : foot - at;
     const Doubles distance = squareRoot(dot(d, d)), gap = distance + lost;
     const Vectors normal{d.x / distance, d.y / distance, d.z / distance};

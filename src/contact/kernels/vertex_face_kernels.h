@@ -13,7 +13,7 @@ std::uint32_t nearVertexFaces(const NearVertices& a, const FaceRecord* b, const 
   const double range = reach.range + reach.margin, beside = reach.margin + 3 * CLOSED;
   unsigned is_inner = 0;
   const auto test = [&](const Batch& batch) {
-    const Vectors p = seenByFaces(a, batch.points(a.records, OF_A).v);
+    const Vectors p = seenByFaces(a, batch.points(a.records, OF_FIRST).v);
     return withFaces(batch, b, [&](const auto& faces) {
       const Doubles height = above(p, faces.plane()), most = range - absolute(height);
       const unsigned near = bitsOf(most >= 0);
@@ -58,7 +58,7 @@ class VertexFaceTest {
 
   /** Appends contacts of vertices that are surely over their faces and not near a border. @return false: one needs a closer look */
   bool appendInner(const Batch& batch) {
-    const Rows vertices = batch.points(vertices_.records, OF_A);
+    const Rows vertices = batch.points(vertices_.records, OF_FIRST);
     return withFaces(batch, faces_, [&](const auto& faces) {
       const auto& plane = planes_.of(faces);
       const Doubles height = plane.height(vertices.v);
@@ -74,7 +74,7 @@ class VertexFaceTest {
   }
   template <typename Faces>
   void test(const Batch& batch, const Faces& faces, std::uint32_t first) {
-    const Rows vertices = batch.points(vertices_.records, OF_A);
+    const Rows vertices = batch.points(vertices_.records, OF_FIRST);
     const auto& plane = planes_.of(faces);
     const Doubles height = plane.height(vertices.v), most = range_ - absolute(height);
     const InsideSides sides(faces, seenByFaces(vertices_, vertices.v));

@@ -183,7 +183,7 @@ KeptLeaf& LeafMemory::findCrowdedOut(const MeshSide& side, std::uint32_t leaf, s
 
 KeptLeaf& LeafMemory::find(const MeshSide& side, std::uint32_t leaf, std::uint64_t search) {
   KeptLeaf& found = findKept(side, leaf, search);
-  if (found.search != search) found.index[0] = found.index[1] = KeptLeaf::NO_INDEX;
+  if (found.search != search) found.index = {KeptLeaf::NO_INDEX, KeptLeaf::NO_INDEX};
   found.search = search;
   return found;
 }

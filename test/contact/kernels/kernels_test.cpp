@@ -59,16 +59,16 @@ Features randomFeatures() {
 
 /** Vertices and faces as one set finds them, the features being those of either mesh. */
 struct PlainVertexFaces {
-  PlainVertexFaces(const Kernels& set, const Features& in, bool faces_move, bool takes_plain, const std::vector<std::uint8_t>& inner = {},
+  PlainVertexFaces(const Kernels& set, const Features& in, Side side, bool takes_plain, const std::vector<std::uint8_t>& inner = {},
                    const Pose& X_FM = makePose({0.1, -0.2, 0.3}, {0.4, 0.5, -0.6}))
       : X_FM(X_FM),
-        vertices{in.vertices.data(), faces_move, motionOf(X_FM.inverse()), motionOf(X_FM)},
+        vertices{in.vertices.data(), side, motionOf(X_FM.inverse()), motionOf(X_FM)},
         X_WF(makePose({-3, 2, 1}, {0.7, -0.2, 0.1})),
         hits(CANDIDATES + 1),
         rows(CANDIDATES + 1) {
     const Feature vertex{FeatureKind::VERTEX, 0}, face{FeatureKind::FACE, 0};
-    // The vertices are A's: the moving mesh is A unless its faces are asked.
-    plain = {{in.names.data(), true, motionOf(X_FM), motionOf(X_WF), RADIUS_A + RADIUS_B, 0.5 * (RADIUS_B - RADIUS_A),
+    // The vertices are A's.
+    plain = {{in.names.data(), side, side, motionOf(X_FM), motionOf(X_WF), RADIUS_A + RADIUS_B, 0.5 * (RADIUS_B - RADIUS_A),
               contactId(vertex, face), false},
              rows.data(),
              0,
@@ -93,8 +93,8 @@ struct Found {
   std::vector<double> numbers;
 };
 
-void addPlainVertexFaces(const Kernels& set, const Features& in, bool faces_move, Found* out) {
-  const PlainVertexFaces found(set, in, faces_move, true);
+void addPlainVertexFaces(const Kernels& set, const Features& in, Side side, Found* out) {
+  const PlainVertexFaces found(set, in, side, true);
   out->counts.insert(out->counts.end(), {found.plain.count, static_cast<std::uint32_t>(found.hits.size())});
   for (const VertexFaceHit& hit : found.hits) {
     out->indices.insert(out->indices.end(), {hit.candidate, hit.bits});
@@ -113,7 +113,7 @@ Found found(const Kernels& set, const Features& in) {
   Found out;
   const auto add = [&](std::uint32_t count) { out.counts.push_back(count); };
   const Candidate* candidates = in.candidates.data();
-  for (const bool faces_move : {false, true}) addPlainVertexFaces(set, in, faces_move, &out);
+  for (const Side side : SIDES) addPlainVertexFaces(set, in, side, &out);
   std::vector<std::uint32_t> hits(CANDIDATES);
   const auto addHits = [&](std::uint32_t count) {
     add(count);
@@ -130,13 +130,13 @@ Found found(const Kernels& set, const Features& in) {
   std::vector<Candidate> near(CANDIDATES);
   const auto addNear = [&](std::uint32_t count) {
     add(count);
-    for (std::uint32_t i = 0; i < count; ++i) out.indices.insert(out.indices.end(), {near[i].a, near[i].b});
+    for (std::uint32_t i = 0; i < count; ++i) out.indices.insert(out.indices.end(), {near[i].first, near[i].second});
   };
   const Reach reach{RANGE, 0.1, 0.02};
   std::vector<std::uint8_t> inner(CANDIDATES);
-  for (const bool faces_move : {false, true}) {
+  for (const Side side : SIDES) {
     const Motion X_MF = motionOf(makePose({0.1, -0.2, 0.3}, {0.4, 0.5, -0.6}));
-    const NearVertices vertices{in.vertices.data(), faces_move, X_MF, X_MF};
+    const NearVertices vertices{in.vertices.data(), side, X_MF, X_MF};
     addNear(set.nearVertexFaces(vertices, in.faces.data(), in.open.data(), candidates, CANDIDATES, reach, near.data(), inner.data()));
     out.indices.insert(out.indices.end(), inner.begin(), inner.begin() + out.counts.back());
   }
@@ -173,10 +173,9 @@ TEST(Kernels, AllInstructionSetsFindTheSame) {
 
 TEST(Kernels, PlainContactsAreThoseMadeOneByOne) {
   const Features in = randomFeatures();
-  for (const bool faces_move : {false, true}) {
-    SCOPED_TRACE(faces_move);
-    const PlainVertexFaces written(*availableKernels().front(), in, faces_move, true),
-        all(*availableKernels().front(), in, faces_move, false);
+  for (const Side side : SIDES) {
+    SCOPED_TRACE(static_cast<int>(side));
+    const PlainVertexFaces written(*availableKernels().front(), in, side, true), all(*availableKernels().front(), in, side, false);
     std::uint32_t count = 0, close = 0;
     double deepest = -1;
     for (const VertexFaceHit& hit : all.hits) {
@@ -185,12 +184,12 @@ TEST(Kernels, PlainContactsAreThoseMadeOneByOne) {
         continue;
       }
       const Candidate& c = in.candidates[hit.candidate];
-      const Vector3 p = vector3(in.vertices[c.a]), plane = vector3(in.faces[c.b].plane),
-                    up = faces_move ? Vector3(all.X_FM.linear() * plane) : plane;
+      const Vector3 p = vector3(in.vertices[c.first]), plane = vector3(in.faces[c.second].plane),
+                    up = side == Side::FIXED ? Vector3(all.X_FM.linear() * plane) : plane;
       // The normal points from the faces' mesh, which is B, to the vertices'.
-      const ContactRoles roles{true, all.RADIUS_A, all.RADIUS_B};
-      Contact one = contactOf(roles, {FeatureKind::VERTEX, in.names[c.a]}, {FeatureKind::FACE, in.names[c.b]}, p, p - hit.height * up,
-                              hit.height > 0 ? up : Vector3(-up), std::abs(hit.height));
+      const ContactRoles roles{Side::MOVING, {all.RADIUS_A, all.RADIUS_B}};
+      Contact one = contactOf(roles, {FeatureKind::VERTEX, in.names[c.first]}, {FeatureKind::FACE, in.names[c.second]}, p,
+                              p - hit.height * up, hit.height > 0 ? up : Vector3(-up), std::abs(hit.height));
       one.point = all.X_WF * one.point;
       one.normal_BA = all.X_WF.linear() * one.normal_BA;
       ASSERT_LT(count, written.plain.count);
@@ -234,10 +233,10 @@ std::vector<std::uint8_t> sortByFlags(const NearVertices& vertices, const Reach&
 TEST(Kernels, VerticesThatAreSurelyInsideNeedNoTest) {
   constexpr double MARGIN = 0.02;
   const Pose X_FM = makePose({0.1, -0.2, 0.3}, {0.4, 0.5, -0.6});
-  for (const bool faces_move : {false, true}) {
-    SCOPED_TRACE(faces_move);
+  for (const Side side : SIDES) {
+    SCOPED_TRACE(static_cast<int>(side));
     Features in = randomFeatures();
-    const NearVertices vertices{in.vertices.data(), faces_move, motionOf(X_FM.inverse()), motionOf(X_FM)};
+    const NearVertices vertices{in.vertices.data(), side, motionOf(X_FM.inverse()), motionOf(X_FM)};
     const std::vector<std::uint8_t> inner = sortByFlags(vertices, {RANGE, MARGIN, 0}, &in);
     const auto flagged = std::count(inner.begin(), inner.end(), 1);
     EXPECT_TRUE(std::is_sorted(inner.rbegin(), inner.rend()));
@@ -246,8 +245,8 @@ TEST(Kernels, VerticesThatAreSurelyInsideNeedNoTest) {
     geometry::RandomShapes random(3);
     for (int i = 0; i < 20; ++i) {
       const Pose moved = Eigen::Translation3d(0.999 * MARGIN * random.point(1).normalized()) * X_FM;
-      const PlainVertexFaces with(*availableKernels().front(), in, faces_move, true, inner, moved),
-          without(*availableKernels().front(), in, faces_move, true, {}, moved);
+      const PlainVertexFaces with(*availableKernels().front(), in, side, true, inner, moved),
+          without(*availableKernels().front(), in, side, true, {}, moved);
       ASSERT_EQ(with.plain.count, without.plain.count);
       EXPECT_GT(with.plain.count, 10u);
       EXPECT_EQ(std::memcmp(with.rows.data(), without.rows.data(), with.plain.count * sizeof(ContactRow)), 0);
@@ -306,10 +305,10 @@ std::vector<std::uint32_t> leafHits(const Kernels& set, const LeafShapes& a, con
   };
   add(hits.vertex_vertex, hits.vertex_vertices);
   add(hits.edge_edge, hits.edge_edges);
-  for (int order = 0; order < 2; ++order) {
-    add(hits.vertex_face[order], hits.vertex_faces[order]);
-    add(hits.vertex_edge[order], hits.vertex_edges[order]);
-    add(hits.edge_face[order], hits.edge_faces[order]);
+  for (const Side side : SIDES) {
+    add(hits.vertex_face[side], hits.vertex_faces[side]);
+    add(hits.vertex_edge[side], hits.vertex_edges[side]);
+    add(hits.edge_face[side], hits.edge_faces[side]);
   }
   return out;
 }
