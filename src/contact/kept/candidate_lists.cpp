@@ -6,6 +6,7 @@
 
 #include "blem_sim/geometry/roomy.h"
 #include "features/tolerances.h"
+#include "kept/list_schedule.h"
 #include "kernels/vectors.h"
 
 namespace blem_sim::contact {
@@ -158,12 +159,11 @@ void TurnedFeatures::turnForCrossings(const CandidateLists& lists, const Pose& X
 }
 
 void groupByFaces(const MeshPair& pair, CandidateLists* lists, CandidatePairs* room) {
-  constexpr std::size_t FEW_FACES = 256;
   for (const Side side : SIDES) {
-    if (pair.side(!side).mesh.elements.size() > FEW_FACES) continue;
+    if (pair.side(!side).mesh.elements.size() > ListSchedule::FEW_FACES) continue;
     const std::vector<int>& faces = lists->near[!side].faces.names;
     CandidatePairs::Candidates &candidates = lists->pairs.vertex_face[side], &grouped = room->vertex_face[side];
-    std::array<std::uint32_t, FEW_FACES> places{};
+    std::array<std::uint32_t, ListSchedule::FEW_FACES> places{};
     for (const Candidate& c : candidates) ++places[faces[c.second]];
     std::uint32_t end = 0;
     for (std::uint32_t& place : places) end += std::exchange(place, end);
