@@ -81,6 +81,7 @@ class LeafMemory {
 
   std::vector<Set> sets_ = std::vector<Set>(1u << SET_BITS);
   SurroundingsMemory surroundings_;
+  std::vector<double> angles_;  // room of vertexCone
   // Leaves of the search at hand whose places others of its leaves hold.
   std::map<std::uint64_t, KeptLeaf> crowded_out_;
   std::uint64_t crowded_search_ = 0;

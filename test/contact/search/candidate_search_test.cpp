@@ -115,8 +115,9 @@ TEST(VertexCone, HoldsEveryDirectionThatIsAllowed) {
     const Collider collider = makeCollider(mesh, 0);
     const MeshSide side(*collider.geometry);
     SurroundingsMemory surroundings;
+    std::vector<double> angles;
     for (int vertex = 0; vertex < static_cast<int>(side.mesh.vertices.size()); ++vertex) {
-      const kernels::VertexCone cone = vertexCone(side, vertex, &surroundings);
+      const kernels::VertexCone cone = vertexCone(side, vertex, &surroundings, &angles);
       const Vector3 axis(cone.axis[0], cone.axis[1], cone.axis[2]);
       for (int i = 0; i < 200; ++i) {
         const Vector3 direction = (random.point(1) + (i % 4) * random.uniform(-3, 3) * axis).normalized();
