@@ -96,25 +96,23 @@ class KnownPairs {
     turned_.turnForContacts(lists_, X_FM_);
     const contact::kernels::Kernels& k = contact::kernels::kernels();
     const contact::CandidatePairs& pairs = lists_.pairs;
-    const auto count = [](const Candidates& candidates) { return static_cast<std::uint32_t>(candidates.size()); };
+    const auto runOf = [](const Candidates& candidates) {
+      return contact::kernels::CandidateRun{candidates.data(), static_cast<std::uint32_t>(candidates.size())};
+    };
     const contact::NearFeatures& fixed = lists_.near.fixed;
     const contact::kernels::Vec4 *moving_vertices = turned_.vertices.data(), *fixed_vertices = fixed.vertices.records.data();
     const contact::kernels::EdgeRecord *moving_edges = turned_.edges.data(), *fixed_edges = fixed.edges.records.data();
     std::uint32_t hits = 0;
     for (const contact::Side side : contact::SIDES) {
       const Candidates &faces = pairs.vertex_face[side], &edges = pairs.vertex_edge[side];
-      hits += k.vertexFaces(turned_.nearFaces(lists_, side, X_FM_), lists_.near[!side].faces.records.data(), lists_.near[!side].open.data(),
-                            faces.data(), count(faces), nullptr, range_, nullptr, vertex_faces_.data());
+      hits += k.vertexFaces(turned_.atFaces(lists_, side, X_FM_), {runOf(faces), nullptr}, range_, nullptr, vertex_faces_.data());
       hits += k.vertexEdges(side == contact::Side::MOVING ? moving_vertices : fixed_vertices,
-                            side == contact::Side::MOVING ? fixed_edges : moving_edges, edges.data(), count(edges), range_,
-                            vertex_edges_.data());
+                            side == contact::Side::MOVING ? fixed_edges : moving_edges, runOf(edges), range_, vertex_edges_.data());
     }
     contact::kernels::LeftEdges left{edges_left_.data(), 0};
-    hits +=
-        k.edgeEdges(moving_edges, fixed_edges, pairs.edge_edge.data(), count(pairs.edge_edge), range_, nullptr, &left, edge_edges_.data());
+    hits += k.edgeEdges(moving_edges, fixed_edges, runOf(pairs.edge_edge), range_, {nullptr, &left, edge_edges_.data()});
     hits += left.count;
-    hits +=
-        k.vertexVertices(moving_vertices, fixed_vertices, pairs.vertex_vertex.data(), count(pairs.vertex_vertex), range_, others_.data());
+    hits += k.vertexVertices(moving_vertices, fixed_vertices, runOf(pairs.vertex_vertex), range_, others_.data());
     return hits;
   }
 

@@ -9,11 +9,6 @@
 #include "search/contact_search.h"
 
 namespace blem_sim::contact {
-namespace {
-
-// Copies at one place have bounds that agree within the first of these parts of their diagonal; moved by the second, they cross.
-constexpr double AT_ONE_PLACE = 1e-6, APART = 1e-5;
-constexpr double IN_EACH_OTHER = 1e-9;  // of the layers: a gap that is none
 
 /** Room of searches. */
 struct SearchRoom {
@@ -22,6 +17,12 @@ struct SearchRoom {
   std::vector<Contact> below_plane;
   ContactMerge merge;
 };
+
+namespace {
+
+// Copies at one place have bounds that agree within the first of these parts of their diagonal; moved by the second, they cross.
+constexpr double AT_ONE_PLACE = 1e-6, APART = 1e-5;
+constexpr double IN_EACH_OTHER = 1e-9;  // of the layers: a gap that is none
 
 /** Whether two bodies share one place: their faces coincide, so that none crosses another, however deep the bodies are in each other. */
 bool areAtOnePlace(const MeshPair& pair) {
@@ -113,7 +114,7 @@ void meshHalfSpace(const MeshOverPlane& pair, double range, SearchRoom* room, Co
         const double height = normal.dot(p) - offset;
         if (height > range) continue;
         found.push_back(
-            contactOf(pair.roles, {FeatureKind::VERTEX, vertex}, {FeatureKind::HALF_SPACE, 0}, p, p - height * normal, normal, height));
+            contactOf(pair.roles, {{FeatureKind::VERTEX, vertex}, {FeatureKind::HALF_SPACE, 0}, p, p - height * normal, normal, height}));
       }
     }
   });

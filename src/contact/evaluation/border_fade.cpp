@@ -12,9 +12,8 @@ using kernels::Candidate;
 using kernels::LeavingSide;
 using kernels::VertexFaceHit;
 
-void BorderFades::list(Side side, const Candidate* candidates, const VertexFaceHit* hits, std::uint32_t count, LeavingBuffers* buffers,
-                       BesideFaces* fading) {
-  listOpen(side, candidates, hits, count, buffers, fading);
+void BorderFades::list(Side side, const VertexFaceHits& hits, LeavingBuffers* buffers, BesideFaces* fading) {
+  listOpen(side, hits, buffers, fading);
   answer(side, buffers, *fading);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < fading->pairs.size(); ++i) {
@@ -27,17 +26,16 @@ void BorderFades::list(Side side, const Candidate* candidates, const VertexFaceH
 
 /** Lists the pairs that fade unless something takes over, and the questions about them. Numbers are written one by one where they stay: a
  * copy of several would wait for each. */
-void BorderFades::listOpen(Side side, const Candidate* candidates, const VertexFaceHit* hits, std::uint32_t count, LeavingBuffers* buffers,
-                           BesideFaces* fading) {
-  fading->resize(count);
-  buffers->makeRoom(count);
+void BorderFades::listOpen(Side side, const VertexFaceHits& hits, LeavingBuffers* buffers, BesideFaces* fading) {
+  fading->resize(hits.count);
+  buffers->makeRoom(hits.count);
   NearFeatures &own = lists_.near[side], &partner = lists_.near[!side];
   for (NearFeatures* near : {&own, &partner}) near->fading.makePlaces(near->vertices.names.size(), near->faces.names.size());
   std::uint32_t pairs = 0;
   LeavingSide* question = buffers->questions.data();
-  for (const VertexFaceHit* hit = hits; hit != hits + count; ++hit) {
+  for (const VertexFaceHit* hit = hits.data; hit != hits.data + hits.count; ++hit) {
     if (!hit->has(VertexFaceHit::BESIDE)) continue;
-    const Candidate& c = candidates[hit->candidate];
+    const Candidate& c = hits.candidates[hit->candidate];
     const bool is_above = hit->height > 0;
     const BorderKinds::Seen& kinds = partner.borders[c.second].seen[is_above];
     const std::uint32_t outside = hit->bits & VertexFaceHit::OUTSIDE;
@@ -76,7 +74,7 @@ void BorderFades::answer(Side side, LeavingBuffers* buffers, const BesideFaces& 
   if (buffers->question_count == 0) return;
   const kernels::Motion to_vertices = motionOf(Pose(side == Side::MOVING ? R_MF_ : R_FM_));
   kernels::kernels().leadingAtSides(lists_.near[side].fading.directions(), lists_.near[!side].faces.records.data(), to_vertices,
-                                    fading.pairs.data(), buffers->questions.data(), buffers->question_count, buffers->answers.data());
+                                    {fading.pairs.data(), buffers->questions.data(), buffers->question_count}, buffers->answers.data());
   for (std::uint32_t i = 0; i < buffers->question_count; ++i) {
     const LeavingSide& leaving = buffers->questions[i];
     const kernels::LeadingEdges& leading = buffers->answers[i];

@@ -11,6 +11,10 @@ namespace {
 using kernels::Candidate;
 using kernels::Vec4;
 
+kernels::CandidateRun runOf(const std::vector<Candidate>& candidates) {
+  return {candidates.data(), static_cast<std::uint32_t>(candidates.size())};
+}
+
 }  // namespace
 
 void FoundContacts::clear() {
@@ -42,7 +46,7 @@ void Evaluation::findCrossings() {
     const std::vector<Candidate>& candidates = pairs_.edge_face[side];
     const auto& edges = side == Side::MOVING ? turned.edges : lists_.near.fixed.edges.records;
     const auto& faces = side == Side::MOVING ? lists_.near.fixed.faces.records : turned.faces;
-    forEachHit(candidates, kernels::kernels().edgeFaces(edges.data(), faces.data(), candidates.data(), candidates.size(), room(candidates)),
+    forEachHit(candidates, kernels::kernels().edgeFaces(edges.data(), faces.data(), runOf(candidates), room(candidates)),
                [&](const Candidate& c) {
                  const Crossing crossing{side, lists_.near[side].edges.names[c.first], lists_.near[!side].faces.names[c.second]};
                  if (crosses(pair_, crossing)) found_.crossings.push_back(crossing);
@@ -74,8 +78,8 @@ std::uint32_t Evaluation::findEdgeEdges(const kernels::EdgeRecord* moving, const
   kernels::LeftEdges left{buffers_.edges_left.data(), 0};
   const std::uint32_t count =
       testBlocks(candidates.size(), &buffers_.edge_edges, &plain, [&](std::uint32_t first, std::uint32_t size, kernels::EdgeEdgeHit* hits) {
-        return kernels::kernels().edgeEdges(moving, fixed, candidates.data() + first, size, pair_.range,
-                                            found_.crossings.empty() ? &plain : nullptr, &left, hits);
+        return kernels::kernels().edgeEdges(moving, fixed, {candidates.data() + first, size}, pair_.range,
+                                            {found_.crossings.empty() ? &plain : nullptr, &left, hits});
       });
   buffers_.edges_left_count = left.count;
   return count;
@@ -89,7 +93,7 @@ void Evaluation::edgeEdges(const kernels::EdgeRecord* moving, const kernels::Edg
     const Candidate& c = pairs_.edge_edge[hit.candidate];
     const Feature m{FeatureKind::EDGE, lists_.near.moving.edges.names[c.first]},
         f{FeatureKind::EDGE, lists_.near.fixed.edges.names[c.second]};
-    found_.close.add(pair_, Side::MOVING, m, f, Vector3(hit.point_m), Vector3(hit.point_f), Vector3(hit.normal), hit.gap);
+    found_.close.add(pair_, {m, f, Vector3(hit.point_m), Vector3(hit.point_f), Vector3(hit.normal), hit.gap});
   }
   fadingEdges(moving, fixed);
 }
@@ -98,7 +102,8 @@ void Evaluation::fadingEdges(const kernels::EdgeRecord* moving, const kernels::E
   const std::vector<Candidate>& left = buffers_.edges_left;
   const std::uint32_t total = buffers_.edges_left_count;
   EvaluationBuffers::makeRoom(total + 1, &buffers_.fading_edges);
-  const std::uint32_t count = kernels::kernels().fadingEdges(moving, fixed, left.data(), total, pair_.range, buffers_.fading_edges.data());
+  const std::uint32_t count =
+      kernels::kernels().fadingEdges(moving, fixed, {left.data(), total}, pair_.range, buffers_.fading_edges.data());
   for (std::uint32_t i = 0; i < count; ++i) {
     const kernels::FadingEdgesHit& hit = buffers_.fading_edges[i];
     const Candidate& c = left[hit.candidate];
@@ -113,11 +118,9 @@ void Evaluation::fadingEdges(const kernels::EdgeRecord* moving, const kernels::E
 
 void Evaluation::vertexEdges(Side side, const Vec4* vertices, const kernels::EdgeRecord* edges) {
   const std::vector<Candidate>& candidates = pairs_.vertex_edge[side];
-  const auto total = static_cast<std::uint32_t>(candidates.size());
-  EvaluationBuffers::makeRoom(total, &buffers_.vertex_edges);
+  EvaluationBuffers::makeRoom(candidates.size(), &buffers_.vertex_edges);
   const kernels::VertexEdgeHit* const hits = buffers_.vertex_edges.data();
-  const std::uint32_t count =
-      kernels::kernels().vertexEdges(vertices, edges, candidates.data(), total, pair_.range, buffers_.vertex_edges.data());
+  const std::uint32_t count = kernels::kernels().vertexEdges(vertices, edges, runOf(candidates), pair_.range, buffers_.vertex_edges.data());
   for (std::uint32_t i = 0; i < count; ++i) {
     const Candidate& c = candidates[hits[i].candidate];
     const int vertex = lists_.near[side].vertices.names[c.first];
@@ -129,8 +132,7 @@ void Evaluation::vertexEdges(Side side, const Vec4* vertices, const kernels::Edg
 
 void Evaluation::vertexVertices(const Vec4* moving, const Vec4* fixed) {
   const std::vector<Candidate>& candidates = pairs_.vertex_vertex;
-  forEachHit(candidates,
-             kernels::kernels().vertexVertices(moving, fixed, candidates.data(), candidates.size(), pair_.range, room(candidates)),
+  forEachHit(candidates, kernels::kernels().vertexVertices(moving, fixed, runOf(candidates), pair_.range, room(candidates)),
              [&](const Candidate& c) {
                exact_.vertexVertex(lists_.near.moving.vertices.names[c.first], lists_.near.fixed.vertices.names[c.second]);
              });

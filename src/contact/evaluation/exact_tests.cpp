@@ -26,7 +26,7 @@ bool ExactTests::vertexFace(Side side, int name, int element) {
     if (!reachesOver(side, name, p, face)) return true;
     normal = side == Side::MOVING ? towardsMoving(pair_, normal, vertex, patch, p) : towardsMoving(pair_, normal, patch, vertex, p);
   }
-  contacts_.add(pair_, side, vertex, patch, p, p - height * face.normal, normal, std::abs(height));
+  contacts_.add(pair_, contactBetween(side, {vertex, p}, {patch, p - height * face.normal}, normal, std::abs(height)));
   return true;
 }
 
@@ -49,13 +49,13 @@ bool ExactTests::reachesOver(Side side, int vertex, const Vector3& p, const Face
 void ExactTests::edgeEdge(int moving, int fixed, const kernels::EdgeRecord& record_m, const kernels::EdgeRecord& record_f) {
   const Vector3 p = vector3(record_m.start), q = vector3(record_f.start);
   EdgePair feet;
-  if (!findEdgePair(p, p + vector3(record_m.along), q, q + vector3(record_f.along), pair_.range, &feet)) return;
+  if (!findEdgePair({p, p + vector3(record_m.along)}, {q, q + vector3(record_f.along)}, pair_.range, &feet)) return;
   const Feature m{FeatureKind::EDGE, moving}, f{FeatureKind::EDGE, fixed};
   Vector3 normal = feet.offset < 0 ? Vector3(-feet.axis) : feet.axis;
   const double gap = std::abs(feet.offset);
   if (gap <= TOUCH) normal = towardsMoving(pair_, normal, m, f, feet.point_q);
   if (gap <= pair_.range && conesAllow(m, f, normal, EDGE_CONE_SLACK))
-    contacts_.add(pair_, Side::MOVING, m, f, feet.point_p, feet.point_q, normal, gap);
+    contacts_.add(pair_, {m, f, feet.point_p, feet.point_q, normal, gap});
 }
 
 void ExactTests::fadingEdges(int moving, int fixed, const kernels::FadingEdgesHit& hit) {
@@ -69,7 +69,7 @@ void ExactTests::fadingEdges(int moving, int fixed, const kernels::FadingEdgesHi
                      (hit.end_f >= 0 && leaves(hit.end_f, Side::FIXED, moving, R_FM_.transpose(), axis));
   if (!fades) return;
   const Vector3 point_m(hit.point_m), point_f(hit.point_f);
-  contacts_.add(pair_, Side::MOVING, m, f, point_m, point_f, (point_m - point_f) / hit.distance, hit.gap);
+  contacts_.add(pair_, {m, f, point_m, point_f, (point_m - point_f) / hit.distance, hit.gap});
 }
 
 // ---- vertex and edge, vertex and vertex: where each is the other's local minimum, and around round edges and vertices
@@ -113,8 +113,8 @@ bool ExactTests::addAtRoundEdge(Side side, int vertex, int edge, const Vector3& 
     const EdgesAtVertex edges = surroundings_.ofVertex(partner, static_cast<int>(kernels::nameOf(record.inward[part > 1].w)));
     if (isRoundVertex(partner, edges, side == Side::MOVING ? d : Vector3(R_FM_.transpose() * d), &surroundings_)) return true;
   }
-  contacts_.add(pair_, side, {FeatureKind::VERTEX, vertex}, {FeatureKind::EDGE, edge}, p, foot,
-                (side == Side::MOVING ? 1 : -1) / distance * d, gap);
+  const Witness at{{FeatureKind::VERTEX, vertex}, p}, on{{FeatureKind::EDGE, edge}, foot};
+  contacts_.add(pair_, contactBetween(side, at, on, (side == Side::MOVING ? 1 : -1) / distance * d, gap));
   return true;
 }
 
@@ -138,7 +138,7 @@ void ExactTests::vertexVertex(int moving, int fixed) {
     const auto [m_allows, m_round] = cone(Side::MOVING, moving, inverse);
     if (!m_round && !(f_allows && m_allows)) return;
   }
-  contacts_.add(pair_, Side::MOVING, m, f, p, q, normal, gap);
+  contacts_.add(pair_, {m, f, p, q, normal, gap});
 }
 
 /** @param along direction of the edge, to which the normal is square; zero if there is none */
@@ -146,7 +146,7 @@ void ExactTests::addLocalMinimum(const Feature& m, const Feature& f, const Vecto
   const Vector3 d = point_M - point_F;
   const double gap = d.norm();
   const Vector3 normal = gap > TOUCH ? Vector3(d / gap) : touchNormal(pair_, m, f, point_F, along);
-  if (conesAllow(m, f, normal, CONE_SLACK)) contacts_.add(pair_, Side::MOVING, m, f, point_M, point_F, normal, gap);
+  if (conesAllow(m, f, normal, CONE_SLACK)) contacts_.add(pair_, {m, f, point_M, point_F, normal, gap});
 }
 
 bool ExactTests::conesAllow(const Feature& m, const Feature& f, const Vector3& normal, double slack) const {

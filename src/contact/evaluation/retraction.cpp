@@ -112,8 +112,8 @@ class Retraction {
     const std::array<int, 2> ends_m = pair_.moving.topology.ends(pair_.moving.mesh, m),
                              ends_f = pair_.fixed.topology.ends(pair_.fixed.mesh, f);
     EdgePair feet;
-    if (!findEdgePair(position(pair_.moving, ends_m[0]), position(pair_.moving, ends_m[1]), position(pair_.fixed, ends_f[0]),
-                      position(pair_.fixed, ends_f[1]), longest_, &feet)) {
+    if (!findEdgePair({position(pair_.moving, ends_m[0]), position(pair_.moving, ends_m[1])},
+                      {position(pair_.fixed, ends_f[0]), position(pair_.fixed, ends_f[1])}, longest_, &feet)) {
       return false;
     }
     // Crossed: the moving edge lies on the far side of the fixed one.

@@ -32,14 +32,12 @@ kernels::ContactPlace Evaluation::place(Side side) const {
 /** @return number of those that need a closer look; the plain ones are written */
 std::uint32_t Evaluation::findVertexFaces(Side side) {
   const std::vector<Candidate>& candidates = pairs_.vertex_face[side];
-  const kernels::NearVertices vertices = buffers_.turned.nearFaces(lists_, side, pair_.X_FM);
+  const kernels::VerticesAtFaces features = buffers_.turned.atFaces(lists_, side, pair_.X_FM);
   const std::vector<std::uint8_t>& inner = pairs_.inner[side];
-  const NearFeatures& partner = lists_.near[!side];
   kernels::PlainContacts plain{place(side), nullptr, 0, found_.deepest_plain};
   return testBlocks(candidates.size(), &buffers_.vertex_faces, &plain, [&](std::uint32_t first, std::uint32_t size, VertexFaceHit* hits) {
-    return kernels::kernels().vertexFaces(vertices, partner.faces.records.data(), partner.open.data(), candidates.data() + first, size,
-                                          inner.empty() ? nullptr : inner.data() + first, pair_.range,
-                                          found_.crossings.empty() ? &plain : nullptr, hits);
+    const kernels::VertexFaceRun run{{candidates.data() + first, size}, inner.empty() ? nullptr : inner.data() + first};
+    return kernels::kernels().vertexFaces(features, run, pair_.range, found_.crossings.empty() ? &plain : nullptr, hits);
   });
 }
 
@@ -64,7 +62,7 @@ void Evaluation::vertexFaces(Side side) {
       }
     }
   }
-  fades_.list(side, candidates.data(), hits.data(), count, &buffers_.leaving, &buffers_.fading);
+  fades_.list(side, {candidates.data(), hits.data(), count}, &buffers_.leaving, &buffers_.fading);
   if (buffers_.fading.pairs.empty()) return;
   dropCovered(side, addFading(side));
 }
@@ -76,7 +74,7 @@ void Evaluation::addPlain(Side side, const Candidate& c, double height) {
   const Vector3 p = vector3(side == Side::MOVING ? buffers_.turned.vertices[c.first] : lists_.near.fixed.vertices.records[c.first]);
   const Vector3 up = pair_.turned(vector3(faces.records[c.second].plane), !side), foot = p - height * up;
   const Vector3 normal = (height > 0) == (side == Side::MOVING) ? up : Vector3(-up);
-  found_.close.add(pair_, side, vertex, patch, p, foot, normal, std::abs(height));
+  found_.close.add(pair_, contactBetween(side, {vertex, p}, {patch, foot}, normal, std::abs(height)));
 }
 
 /** Adds the contact of each vertex with a face at the nearest of the sides. @return number of contacts */
@@ -87,9 +85,9 @@ std::uint32_t Evaluation::addFading(Side side) {
   buffers_.asked_fading.resize(size);
   const NearFeatures& partner = lists_.near[!side];
   kernels::FadingContacts out{keeps_feet ? buffers_.feet.data() : found_.close.rows(size + 1), buffers_.asked_fading.data(), 0};
-  const std::uint32_t count = kernels::kernels().sideFeet(
-      place(side), buffers_.turned.nearFaces(lists_, side, pair_.X_FM), partner.faces.records.data(), partner.fading.corners(),
-      buffers_.fading.sides.data(), buffers_.fading.pairs.data(), size, pair_.range, &out);
+  const kernels::VerticesBesideFaces features{buffers_.turned.nearFaces(lists_, side, pair_.X_FM), partner.faces.records.data(),
+                                              partner.fading.corners(), buffers_.fading.sides.data()};
+  const std::uint32_t count = kernels::kernels().sideFeet(place(side), features, {buffers_.fading.pairs.data(), size}, pair_.range, &out);
   buffers_.asked_fading.resize(out.asked_count);
   if (keeps_feet) {
     addFeet(side);
@@ -104,9 +102,10 @@ void Evaluation::addFeet(Side side) {
   for (const kernels::FadingContact& each : buffers_.asked_fading) {
     const Candidate& c = buffers_.fading.pairs[each.pair];
     const kernels::ContactRow& foot = buffers_.feet[each.row];
-    found_.close.add(pair_, side, {FeatureKind::VERTEX, lists_.near[side].vertices.names[c.first]},
-                     {FeatureKind::FACE, lists_.near[!side].patches[c.second]}, vector3(vertices[c.first]), Vector3(foot.point),
-                     Vector3(foot.normal), foot.depth);
+    const Feature vertex{FeatureKind::VERTEX, lists_.near[side].vertices.names[c.first]},
+        patch{FeatureKind::FACE, lists_.near[!side].patches[c.second]};
+    const Witness at{vertex, vector3(vertices[c.first])}, on{patch, Vector3(foot.point)};
+    found_.close.add(pair_, contactBetween(side, at, on, Vector3(foot.normal), foot.depth));
   }
 }
 
@@ -143,10 +142,9 @@ void Evaluation::listCovering(Side side) {
   }
   EvaluationBuffers::makeRoom(asked.size() + 1, &buffers_.vertex_faces);
   VertexFaceHit* const hits = buffers_.vertex_faces.data();
-  const NearFeatures& partner = lists_.near[!side];
+  const kernels::VertexFaceRun run{{asked.data(), static_cast<std::uint32_t>(asked.size())}, nullptr};
   const std::uint32_t count =
-      kernels::kernels().vertexFaces(buffers_.turned.nearFaces(lists_, side, pair_.X_FM), partner.faces.records.data(), partner.open.data(),
-                                     asked.data(), static_cast<std::uint32_t>(asked.size()), nullptr, pair_.range, nullptr, hits);
+      kernels::kernels().vertexFaces(buffers_.turned.atFaces(lists_, side, pair_.X_FM), run, pair_.range, nullptr, hits);
   for (std::uint32_t i = 0; i < count; ++i)
     if (hits[i].has(VertexFaceHit::PLAIN)) buffers_.over.push_back(asked[hits[i].candidate]);
 }

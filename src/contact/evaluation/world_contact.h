@@ -26,28 +26,27 @@ inline std::uint64_t contactId(const ContactRoles& roles, Side side, const Featu
   return side == roles.a ? contactId(first, second) : contactId(second, first);
 }
 
-/** A contact in the frame of the points. @param normal from the fixed side to the moving one */
-inline Contact contactOf(const ContactRoles& roles, const Feature& moving, const Feature& fixed, const Vector3& point_moving,
-                         const Vector3& point_fixed, const Vector3& normal, double gap) {
+/** The contact in the frame of its points. */
+inline Contact contactOf(const ContactRoles& roles, const FeatureContact& found) {
   Contact contact;
-  contact.normal_BA = roles.normalBA(normal);
-  contact.point = placeOf(roles, point_moving, point_fixed, contact.normal_BA);
-  contact.depth = roles.layer() - gap;
-  contact.id = contactId(roles, Side::MOVING, moving, fixed);
+  contact.normal_BA = roles.normalBA(found.normal);
+  contact.point = placeOf(roles, found.point_M, found.point_F, contact.normal_BA);
+  contact.depth = roles.layer() - found.gap;
+  contact.id = contactId(roles, Side::MOVING, found.moving, found.fixed);
+  contact.pierced = found.pierced;
   return contact;
 }
 
-/** A contact of a pair in the world. @param normal from the fixed mesh to the moving one, as the points in frame F */
-inline void placeInWorld(const MeshPair& pair, Side side, const Feature& first, const Feature& second, const Vector3& point_first,
-                         const Vector3& point_second, const Vector3& normal, double gap, Contact* out) {
+/** The contact in the world. */
+inline void placeInWorld(const MeshPair& pair, const FeatureContact& found, Contact* out) {
   const ContactRoles& roles = pair.roles;
-  const Vector3 normal_BA = roles.normalBA(normal);
-  out->point = pair.X_WF * placeOf(roles, point_first, point_second, normal_BA);
+  const Vector3 normal_BA = roles.normalBA(found.normal);
+  out->point = pair.X_WF * placeOf(roles, found.point_M, found.point_F, normal_BA);
   out->normal_BA = pair.X_WF.linear() * normal_BA;
-  out->depth = roles.layer() - gap;
-  out->id = contactId(roles, side, first, second);
+  out->depth = roles.layer() - found.gap;
+  out->id = contactId(roles, Side::MOVING, found.moving, found.fixed);
   out->weight = 1;
-  out->pierced = false;
+  out->pierced = found.pierced;
 }
 
 static_assert(offsetof(Contact, point) == offsetof(kernels::ContactRow, point) &&

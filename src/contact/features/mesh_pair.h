@@ -87,4 +87,16 @@ struct FeatureContact {
   bool pierced = false;
 };
 
+/** A feature and its witness point [m], frame F. */
+struct Witness {
+  Feature feature;
+  Vector3 point;
+};
+
+/** The contact of a feature of a side with one of the other. @param normal from the fixed mesh to the moving one */
+inline FeatureContact contactBetween(Side side, const Witness& own, const Witness& other, const Vector3& normal, double gap) {
+  if (side == Side::MOVING) return {own.feature, other.feature, own.point, other.point, normal, gap};
+  return {other.feature, own.feature, other.point, own.point, normal, gap};
+}
+
 }  // namespace blem_sim::contact

@@ -179,36 +179,34 @@ namespace {
 template <typename Kernel>
 void keep(Kernel&& kernel, const kernels::Reach& reach, const std::vector<Candidate>& from, std::vector<Candidate>* to) {
   geometry::resizeRoomy(from.size(), to);
-  to->resize(kernel(from.data(), static_cast<std::uint32_t>(from.size()), reach, to->data()));
+  to->resize(kernel(kernels::CandidateRun{from.data(), static_cast<std::uint32_t>(from.size())}, reach, to->data()));
 }
+/** The kernel on these features. */
 template <typename Kernel, typename First, typename Second>
-void keep(Kernel&& kernel, const std::vector<First>& a, const std::vector<Second>& b, const kernels::Reach& reach,
-          const std::vector<Candidate>& from, std::vector<Candidate>* to) {
-  keep([&](auto&&... rest) { return kernel(a.data(), b.data(), rest...); }, reach, from, to);
+auto on(Kernel kernel, const std::vector<First>& first, const std::vector<Second>& second) {
+  return [kernel, &first, &second](auto&&... rest) { return kernel(first.data(), second.data(), rest...); };
 }
 
 }  // namespace
 
-std::size_t findNearest(const MeshPair& pair, const TurnedFeatures& turned, const ListMargin& margin, const CandidateLists& lists,
-                        SurroundingsMemory* surroundings, CandidatePairs* nearest) {
+std::size_t findNearest(const MeshPair& pair, const TurnedLists& listed, const ListMargin& margin, SurroundingsMemory* surroundings,
+                        CandidatePairs* nearest) {
+  const CandidateLists& lists = listed.lists;
+  const TurnedFeatures& turned = listed.turned;
   const kernels::Kernels& kernels = kernels::kernels();
   const kernels::Reach reach{pair.range, margin.motion, margin.turn};
   const NearFeatures& fixed = lists.near.fixed;
   const CandidatePairs& all = lists.pairs;
   for (const Side side : SIDES) {
-    const NearFeatures& partner = lists.near[!side];
-    const kernels::NearVertices vertices = turned.nearFaces(lists, side, pair.X_FM);
+    const kernels::VerticesAtFaces features = turned.atFaces(lists, side, pair.X_FM);
     geometry::resizeRoomy(all.vertex_face[side].size(), &nearest->inner[side]);
-    keep(
-        [&](auto&&... rest) {
-          return kernels.nearVertexFaces(vertices, partner.faces.records.data(), partner.open.data(), rest..., nearest->inner[side].data());
-        },
-        reach, all.vertex_face[side], &nearest->vertex_face[side]);
+    keep([&](auto&&... rest) { return kernels.nearVertexFaces(features, rest..., nearest->inner[side].data()); }, reach,
+         all.vertex_face[side], &nearest->vertex_face[side]);
   }
-  keep(kernels.nearVertexEdges, turned.vertices, fixed.edges.records, reach, all.vertex_edge.moving, &nearest->vertex_edge.moving);
-  keep(kernels.nearVertexEdges, fixed.vertices.records, turned.edges, reach, all.vertex_edge.fixed, &nearest->vertex_edge.fixed);
-  keep(kernels.nearEdgeEdges, turned.edges, fixed.edges.records, reach, all.edge_edge, &nearest->edge_edge);
-  keep(kernels.nearVertexVertices, turned.vertices, fixed.vertices.records, reach, all.vertex_vertex, &nearest->vertex_vertex);
+  keep(on(kernels.nearVertexEdges, turned.vertices, fixed.edges.records), reach, all.vertex_edge.moving, &nearest->vertex_edge.moving);
+  keep(on(kernels.nearVertexEdges, fixed.vertices.records, turned.edges), reach, all.vertex_edge.fixed, &nearest->vertex_edge.fixed);
+  keep(on(kernels.nearEdgeEdges, turned.edges, fixed.edges.records), reach, all.edge_edge, &nearest->edge_edge);
+  keep(on(kernels.nearVertexVertices, turned.vertices, fixed.vertices.records), reach, all.vertex_vertex, &nearest->vertex_vertex);
   const std::size_t near = nearest->contacts();
   LeadingVertices leading(pair, margin, lists, surroundings);
   leading.dropFrom(Side::MOVING, turned.vertices, fixed.edges.records, &nearest->vertex_edge.moving);

@@ -82,6 +82,17 @@ struct TurnedFeatures {
 
   /** The vertices of the moving mesh, or of the fixed one, near the other's faces, for kernels. */
   kernels::NearVertices nearFaces(const CandidateLists& lists, Side side, const Pose& X_FM) const;
+  /** The same, with those faces. */
+  kernels::VerticesAtFaces atFaces(const CandidateLists& lists, Side side, const Pose& X_FM) const {
+    const NearFeatures& partner = lists.near[!side];
+    return {nearFaces(lists, side, X_FM), partner.faces.records.data(), partner.open.data()};
+  }
+};
+
+/** Lists, and their features as they are turned. */
+struct TurnedLists {
+  const CandidateLists& lists;
+  const TurnedFeatures& turned;
 };
 
 /** Puts candidates of vertices with the same face one after the other, in the order of the faces, where a mesh has so few that each is near
@@ -91,10 +102,10 @@ void groupByFaces(const MeshPair& pair, CandidateLists* lists, CandidatePairs* r
 /**
  * Selects the candidates for contacts that can have one within pair.range while nothing moves or turns by more than the margin, in their
  * order.
- * @param turned of these lists at the pair's pose
+ * @param listed turned at the pair's pose
  * @return number of candidates that are near, with those that can have none since a vertex leads towards the other feature
  */
-std::size_t findNearest(const MeshPair& pair, const TurnedFeatures& turned, const ListMargin& margin, const CandidateLists& lists,
-                        SurroundingsMemory* surroundings, CandidatePairs* nearest);
+std::size_t findNearest(const MeshPair& pair, const TurnedLists& listed, const ListMargin& margin, SurroundingsMemory* surroundings,
+                        CandidatePairs* nearest);
 
 }  // namespace blem_sim::contact

@@ -18,8 +18,8 @@ constexpr Which OF_FIRST = &Candidate::first, OF_SECOND = &Candidate::second;
 /** Candidates in the lanes: behind the last one it is repeated, and masked. */
 class Batch {
  public:
-  Batch(const Candidate* candidates, std::uint32_t first, std::uint32_t count) : lanes(candidates + first), valid(ALL_LANES) {
-    const std::uint32_t left = count - first;
+  Batch(CandidateRun run, std::uint32_t first) : lanes(run.data + first), valid(ALL_LANES) {
+    const std::uint32_t left = run.count - first;
     if (left >= LANES) return;
     for (std::uint32_t i = 0; i < LANES; ++i) padded_[i] = lanes[i < left ? i : left - 1];
     lanes = padded_;

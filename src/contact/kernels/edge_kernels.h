@@ -78,12 +78,12 @@ inline void appendLeft(const Batch& batch, unsigned bits, LeftEdges* left) {
   }
 }
 
-std::uint32_t edgeEdges(const EdgeRecord* moving, const EdgeRecord* fixed, const Candidate* candidates, std::uint32_t count, double range,
-                        PlainEdges* plain, LeftEdges* left, EdgeEdgeHit* hits) {
+std::uint32_t edgeEdges(const EdgeRecord* moving, const EdgeRecord* fixed, CandidateRun run, double range, const EdgeEdgeResults& out) {
+  PlainEdges* const plain = out.plain;
   std::uint32_t found = 0;
   Doubles deepest = all(plain ? plain->deepest : 0);
-  for (std::uint32_t first = 0; first < count; first += LANES) {
-    const Batch batch(candidates, first, count);
+  for (std::uint32_t first = 0; first < run.count; first += LANES) {
+    const Batch batch(run, first);
     EdgeBatch edges(batch, moving, fixed);
     const Perpendiculars lines(edges);
     const Mask within = lines.within(edges, range);
@@ -104,8 +104,8 @@ std::uint32_t edgeEdges(const EdgeRecord* moving, const EdgeRecord* fixed, const
       deepest = maximum(deepest, clear ? depth : deepest);
     }
     const unsigned is_plain = hit & bitsOf(stands);
-    found = appendHits(first, feet, is_plain & ~is_clear, found, hits);
-    appendLeft(batch, hit & ~is_plain, left);
+    found = appendHits(first, feet, is_plain & ~is_clear, found, out.hits);
+    appendLeft(batch, hit & ~is_plain, out.left);
   }
   raiseDeepest(deepest, plain);
   return found;

@@ -29,6 +29,15 @@ struct LeftEdges {
   std::uint32_t count;  ///< so far; they are appended
 };
 
+struct EdgeEdgeHit;
+
+/** Results of edges near edges. Room for one more of each than there are candidates. */
+struct EdgeEdgeResults {
+  PlainEdges* plain;  ///< takes those that are plain and not near a border, instead of the hits; null: nothing does
+  LeftEdges* left;    ///< takes those that are not plain
+  EdgeEdgeHit* hits;
+};
+
 /** Two edges near each other, feet inside both, not touching, whose common perpendicular points out of their faces. In the frame of the
  * records. */
 struct EdgeEdgeHit {

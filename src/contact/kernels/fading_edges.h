@@ -100,11 +100,10 @@ inline std::uint32_t appendHits(std::uint32_t first, const EdgesBeyond& edges, u
   return found;
 }
 
-std::uint32_t fadingEdges(const EdgeRecord* moving, const EdgeRecord* fixed, const Candidate* candidates, std::uint32_t count, double range,
-                          FadingEdgesHit* hits) {
+std::uint32_t fadingEdges(const EdgeRecord* moving, const EdgeRecord* fixed, CandidateRun run, double range, FadingEdgesHit* hits) {
   std::uint32_t found = 0;
-  for (std::uint32_t first = 0; first < count; first += LANES) {
-    const Batch batch(candidates, first, count);
+  for (std::uint32_t first = 0; first < run.count; first += LANES) {
+    const Batch batch(run, first);
     EdgeBatch edges(batch, moving, fixed);
     edges.takeInwards(batch, moving, fixed);
     const EdgesBeyond beyond(edges, range);

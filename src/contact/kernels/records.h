@@ -51,6 +51,12 @@ struct Candidate {
   std::uint32_t first, second;
 };
 
+/** Candidates one after the other. */
+struct CandidateRun {
+  const Candidate* data;
+  std::uint32_t count;
+};
+
 /** Elements of a leaf; room for their features, in blocks of so many side by side. */
 constexpr int MAX_LEAF_ELEMENTS = 8, LEAF_BLOCK = 8, LEAF_BLOCKS = 3, MAX_LEAF_FEATURES = LEAF_BLOCKS * LEAF_BLOCK;
 static_assert(MAX_LEAF_ELEMENTS <= LEAF_BLOCK && 3 * MAX_LEAF_ELEMENTS <= MAX_LEAF_FEATURES, "elements own up to three edges and vertices");
@@ -175,6 +181,19 @@ struct NearVertices {
   bool facesMove() const { return side == Side::FIXED; }
 };
 
+/** Vertices and the faces that candidates pair them with. */
+struct VerticesAtFaces {
+  NearVertices vertices;
+  const FaceRecord* faces;
+  const OpenSides* open;  ///< per face
+};
+
+/** Candidates of vertices with faces. */
+struct VertexFaceRun {
+  CandidateRun candidates;
+  const std::uint8_t* inner;  ///< as of nearVertexFaces, which changes no contact; null: not known
+};
+
 /** Data that place contacts of vertices of one mesh with faces of the other in the world, and name them. */
 struct ContactPlace {
   const int* face_names;  ///< per face
@@ -206,6 +225,14 @@ struct BesideSides {
   std::uint32_t outside;  ///< bits k: outside its side k; not none
   std::uint32_t face;     ///< among FaceCorners
   double reach;           ///< [m] farther beside the face the vertex lies over no other face of the plane
+};
+
+/** Vertices and the faces that they lie beside. */
+struct VerticesBesideFaces {
+  NearVertices vertices;
+  const FaceRecord* faces;
+  const FaceCorners* corners;
+  const BesideSides* sides;  ///< per pair
 };
 
 /** The row of a contact that fades, and its pair. */

@@ -140,7 +140,7 @@ class ContactSearch {
     const MeshPair ahead = this->ahead(margin);
     buffers_.evaluation.turned.turnForContacts(all.lists, ahead.X_FM);
     const std::size_t near =
-        findNearest(ahead, buffers_.evaluation.turned, margin, all.lists, &buffers_.evaluation.surroundings, &memory_.nearest);
+        findNearest(ahead, {all.lists, buffers_.evaluation.turned}, margin, &buffers_.evaluation.surroundings, &memory_.nearest);
     memory_.nearest_origin = {true, ahead.X_FM, pair_.range, margin};
     memory_.growth = ListSchedule::growth(near, margin.motion, now);
     return memory_.nearest;

@@ -61,12 +61,12 @@ struct FoundEdges {
   FoundEdges(const Kernels& set, const EdgesNearEdges& in, Side a, bool takes_plain)
       : hits(EDGE_PAIRS + 1), left(EDGE_PAIRS + 1), fading(EDGE_PAIRS + 1), rows(EDGE_PAIRS + 1), plain{in.place(a), rows.data(), 0, -1} {
     const EdgeRecord* const records = in.records.data();
+    const CandidateRun run{in.candidates.data(), EDGE_PAIRS};
     LeftEdges to_left{left.data(), 0};
-    hits.resize(set.edgeEdges(records, records, in.candidates.data(), EDGE_PAIRS, EDGE_RANGE, takes_plain ? &plain : nullptr, &to_left,
-                              hits.data()));
+    hits.resize(set.edgeEdges(records, records, run, EDGE_RANGE, {takes_plain ? &plain : nullptr, &to_left, hits.data()}));
     left.resize(to_left.count);
     rows.resize(plain.count);
-    fading.resize(set.fadingEdges(records, records, in.candidates.data(), EDGE_PAIRS, EDGE_RANGE, fading.data()));
+    fading.resize(set.fadingEdges(records, records, run, EDGE_RANGE, fading.data()));
   }
   std::vector<EdgeEdgeHit> hits;
   std::vector<Candidate> left;
@@ -94,8 +94,9 @@ TEST(EdgeKernels, PlainContactsAreThoseMadeOneByOne) {
       const Candidate& c = in.candidates[hit.candidate];
       const Vector3 point_m(hit.point_m), point_f(hit.point_f), normal(hit.normal);
       EXPECT_NEAR((point_m - point_f - hit.gap * normal).norm(), 0, 1e-13);
-      Contact one = contactOf(in.roles(a), {FeatureKind::EDGE, in.names[c.first]}, {FeatureKind::EDGE, in.names[c.second]}, point_m,
-                              point_f, normal, hit.gap);
+      Contact one =
+          contactOf(in.roles(a),
+                    {{FeatureKind::EDGE, in.names[c.first]}, {FeatureKind::EDGE, in.names[c.second]}, point_m, point_f, normal, hit.gap});
       one.point = in.X_WF * one.point;
       one.normal_BA = in.X_WF.linear() * one.normal_BA;
       ASSERT_LT(count, written.rows.size());
@@ -124,7 +125,7 @@ TEST(EdgeKernels, FadingContactsAreWhereTheEdgesAreClosest) {
     const Vector3 p = vector3(in.records[c.first].start), q = vector3(in.records[c.second].start), along_p = alongOf(in, hit, true),
                   along_q = alongOf(in, hit, false);
     EdgePair feet;
-    const bool is_inside = findEdgePair(p, p + along_p, q, q + along_q, EDGE_RANGE, &feet);
+    const bool is_inside = findEdgePair({p, p + along_p}, {q, q + along_q}, EDGE_RANGE, &feet);
     EXPECT_EQ(hit.is_inside, is_inside);
     inside += is_inside;
     if (is_inside) continue;

@@ -57,6 +57,8 @@ Features randomFeatures() {
   return out;
 }
 
+CandidateRun runOf(const Features& in) { return {in.candidates.data(), static_cast<std::uint32_t>(in.candidates.size())}; }
+
 /** Vertices and faces as one set finds them, the features being those of either mesh. */
 struct PlainVertexFaces {
   PlainVertexFaces(const Kernels& set, const Features& in, Side side, bool takes_plain, const std::vector<std::uint8_t>& inner = {},
@@ -73,8 +75,7 @@ struct PlainVertexFaces {
              rows.data(),
              0,
              -1};
-    hits.resize(set.vertexFaces(vertices, in.faces.data(), in.open.data(), in.candidates.data(),
-                                static_cast<std::uint32_t>(in.candidates.size()), inner.empty() ? nullptr : inner.data(), RANGE,
+    hits.resize(set.vertexFaces({vertices, in.faces.data(), in.open.data()}, {runOf(in), inner.empty() ? nullptr : inner.data()}, RANGE,
                                 takes_plain ? &plain : nullptr, hits.data()));
   }
 
@@ -112,7 +113,7 @@ void addPlainVertexFaces(const Kernels& set, const Features& in, Side side, Foun
 Found found(const Kernels& set, const Features& in) {
   Found out;
   const auto add = [&](std::uint32_t count) { out.counts.push_back(count); };
-  const Candidate* candidates = in.candidates.data();
+  const CandidateRun candidates = runOf(in);
   for (const Side side : SIDES) addPlainVertexFaces(set, in, side, &out);
   std::vector<std::uint32_t> hits(CANDIDATES);
   const auto addHits = [&](std::uint32_t count) {
@@ -120,13 +121,13 @@ Found found(const Kernels& set, const Features& in) {
     out.indices.insert(out.indices.end(), hits.begin(), hits.begin() + count);
   };
   std::vector<VertexEdgeHit> vertex_edges(CANDIDATES);
-  add(set.vertexEdges(in.vertices.data(), in.edges.data(), candidates, CANDIDATES, 3 * RANGE, vertex_edges.data()));
+  add(set.vertexEdges(in.vertices.data(), in.edges.data(), candidates, 3 * RANGE, vertex_edges.data()));
   for (std::uint32_t i = 0; i < out.counts.back(); ++i) {
     out.indices.push_back(vertex_edges[i].candidate);
     out.numbers.insert(out.numbers.end(), vertex_edges[i].offset, vertex_edges[i].offset + 3);
   }
-  addHits(set.vertexVertices(in.vertices.data(), in.vertices.data(), candidates, CANDIDATES, RANGE, hits.data()));
-  addHits(set.edgeFaces(in.edges.data(), in.faces.data(), candidates, CANDIDATES, hits.data()));
+  addHits(set.vertexVertices(in.vertices.data(), in.vertices.data(), candidates, RANGE, hits.data()));
+  addHits(set.edgeFaces(in.edges.data(), in.faces.data(), candidates, hits.data()));
   std::vector<Candidate> near(CANDIDATES);
   const auto addNear = [&](std::uint32_t count) {
     add(count);
@@ -137,12 +138,12 @@ Found found(const Kernels& set, const Features& in) {
   for (const Side side : SIDES) {
     const Motion X_MF = motionOf(makePose({0.1, -0.2, 0.3}, {0.4, 0.5, -0.6}));
     const NearVertices vertices{in.vertices.data(), side, X_MF, X_MF};
-    addNear(set.nearVertexFaces(vertices, in.faces.data(), in.open.data(), candidates, CANDIDATES, reach, near.data(), inner.data()));
+    addNear(set.nearVertexFaces({vertices, in.faces.data(), in.open.data()}, candidates, reach, near.data(), inner.data()));
     out.indices.insert(out.indices.end(), inner.begin(), inner.begin() + out.counts.back());
   }
-  addNear(set.nearEdgeEdges(in.edges.data(), in.edges.data(), candidates, CANDIDATES, reach, near.data()));
-  addNear(set.nearVertexEdges(in.vertices.data(), in.edges.data(), candidates, CANDIDATES, reach, near.data()));
-  addNear(set.nearVertexVertices(in.vertices.data(), in.vertices.data(), candidates, CANDIDATES, reach, near.data()));
+  addNear(set.nearEdgeEdges(in.edges.data(), in.edges.data(), candidates, reach, near.data()));
+  addNear(set.nearVertexEdges(in.vertices.data(), in.edges.data(), candidates, reach, near.data()));
+  addNear(set.nearVertexVertices(in.vertices.data(), in.vertices.data(), candidates, reach, near.data()));
   const Motion motion = motionOf(makePose({0.1, -0.2, 0.3}, {0.4, 0.5, -0.6}));
   std::vector<EdgeRecord> turned(FEATURES);
   set.turnEdges(in.edges.data(), FEATURES, motion, turned.data());
@@ -188,8 +189,12 @@ TEST(Kernels, PlainContactsAreThoseMadeOneByOne) {
                     up = side == Side::FIXED ? Vector3(all.X_FM.linear() * plane) : plane;
       // The normal points from the faces' mesh, which is B, to the vertices'.
       const ContactRoles roles{Side::MOVING, {all.RADIUS_A, all.RADIUS_B}};
-      Contact one = contactOf(roles, {FeatureKind::VERTEX, in.names[c.first]}, {FeatureKind::FACE, in.names[c.second]}, p,
-                              p - hit.height * up, hit.height > 0 ? up : Vector3(-up), std::abs(hit.height));
+      Contact one = contactOf(roles, {{FeatureKind::VERTEX, in.names[c.first]},
+                                      {FeatureKind::FACE, in.names[c.second]},
+                                      p,
+                                      p - hit.height * up,
+                                      hit.height > 0 ? up : Vector3(-up),
+                                      std::abs(hit.height)});
       one.point = all.X_WF * one.point;
       one.normal_BA = all.X_WF.linear() * one.normal_BA;
       ASSERT_LT(count, written.plain.count);
@@ -219,8 +224,8 @@ std::vector<std::uint8_t> sortByFlags(const NearVertices& vertices, const Reach&
   std::vector<std::uint8_t> inner(CANDIDATES);
   for (int pass = 0; pass < 2; ++pass) {
     std::vector<Candidate>& all = features->candidates;
-    const std::uint32_t count = set.nearVertexFaces(vertices, features->faces.data(), features->open.data(), all.data(),
-                                                    static_cast<std::uint32_t>(all.size()), reach, near.data(), inner.data());
+    const std::uint32_t count =
+        set.nearVertexFaces({vertices, features->faces.data(), features->open.data()}, runOf(*features), reach, near.data(), inner.data());
     inner.resize(count);
     all.clear();
     for (const int flag : {1, 0})

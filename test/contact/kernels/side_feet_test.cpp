@@ -68,8 +68,11 @@ struct SidesAndVertices {
 struct Feet {
   Feet(const Kernels& set, const SidesAndVertices& in, bool keeps_feet) : rows(COUNT + 1), asked(COUNT) {
     FadingContacts out{rows.data(), asked.data(), 0};
-    count = set.sideFeet(in.place(keeps_feet), {in.placed.data(), in.vertices, motionOf(in.X_FM.inverse()), motionOf(in.X_FM)},
-                         in.faces.data(), in.corners.data(), in.sides.data(), in.pairs.data(), COUNT, FEET_RANGE, &out);
+    const VerticesBesideFaces features{{in.placed.data(), in.vertices, motionOf(in.X_FM.inverse()), motionOf(in.X_FM)},
+                                       in.faces.data(),
+                                       in.corners.data(),
+                                       in.sides.data()};
+    count = set.sideFeet(in.place(keeps_feet), features, {in.pairs.data(), COUNT}, FEET_RANGE, &out);
     rows.resize(count);
     asked.resize(out.asked_count);
   }
@@ -143,8 +146,9 @@ TEST(SideFeet, ContactsAreThoseMadeOneByOne) {
     for (std::uint32_t i = 0; i < feet.count; ++i) {
       const std::uint32_t pair_index = feet.asked[i].pair;
       Contact one;
-      placeInWorld(pair, vertices, {FeatureKind::VERTEX, static_cast<int>(pair_index)}, {FeatureKind::FACE, in.patches[pair_index]},
-                   vector3(in.placed[pair_index]), Vector3(feet.rows[i].point), Vector3(feet.rows[i].normal), feet.rows[i].depth, &one);
+      const Witness at{{FeatureKind::VERTEX, static_cast<int>(pair_index)}, vector3(in.placed[pair_index])},
+          on{{FeatureKind::FACE, in.patches[pair_index]}, Vector3(feet.rows[i].point)};
+      placeInWorld(pair, contactBetween(vertices, at, on, Vector3(feet.rows[i].normal), feet.rows[i].depth), &one);
       EXPECT_EQ(std::memcmp(&contacts.rows[i], &one, sizeof(double[7])), 0);
       EXPECT_EQ(contacts.rows[i].id, one.id);
       EXPECT_EQ(contacts.rows[i].weight, 1);
@@ -193,7 +197,7 @@ TEST(LeavingSides, AreAnsweredAsOneByOne) {
   for (const Kernels* set : availableKernels()) {
     SCOPED_TRACE(set->name);
     std::vector<LeadingEdges> leading(COUNT);
-    set->leadingAtSides(directions.data(), faces.data(), motionOf(Pose(R)), in.pairs.data(), sides.data(), COUNT, leading.data());
+    set->leadingAtSides(directions.data(), faces.data(), motionOf(Pose(R)), {in.pairs.data(), sides.data(), COUNT}, leading.data());
     for (std::uint32_t i = 0; i < COUNT; ++i) {
       const FaceRecord& face = faces[sides[i].pair];
       const Vector3 down = R * ((sides[i].is_above ? -1 : 1) * vector3(face.plane)), aside = R * vector3(face.sides[sides[i].side]);

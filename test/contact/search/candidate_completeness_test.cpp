@@ -186,7 +186,7 @@ TEST(CandidateCompleteness, ListsHoldEveryContact) {
       const MeshPair pair = pairOf(a.collider, b.collider, movedALittle(random, X, margin));
       const std::vector<NamedContact> expected = contactsOf(pair, &all, all.pairs, &evaluation);
       ASSERT_EQ(contactsOf(pair, &listing.lists, listing.lists.pairs, &evaluation), expected);
-      findNearest(pair, evaluation.turned, {0.2 * margin.motion, 0.2 * margin.turn}, listing.lists, &evaluation.surroundings, &nearest);
+      findNearest(pair, {listing.lists, evaluation.turned}, {0.2 * margin.motion, 0.2 * margin.turn}, &evaluation.surroundings, &nearest);
       ASSERT_EQ(contactsOf(pair, &listing.lists, nearest, &evaluation), expected);
       contacts += expected.size();
     }
@@ -211,7 +211,7 @@ TEST(CandidateCompleteness, NearestHoldEveryContact) {
     LeafMemory leaves;
     CandidateLists all = everything(pair, &leaves);
     evaluation.turned.turnForContacts(all, X);
-    leading += findNearest(pair, evaluation.turned, margin, all, &evaluation.surroundings, &nearest) - nearest.contacts();
+    leading += findNearest(pair, {all, evaluation.turned}, margin, &evaluation.surroundings, &nearest) - nearest.contacts();
     for (int move = 0; move < 4; ++move) {
       const MeshPair moved = pairOf(a.collider, b.collider, movedALittle(random, X, margin));
       const std::vector<NamedContact> expected = contactsOf(moved, &all, all.pairs, &evaluation);
