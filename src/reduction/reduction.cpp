@@ -204,7 +204,14 @@ ReductionLoss reduceManifolds(const ManifoldsToReduce& asked, const Reduction& m
   return loss;
 }
 
-ReductionWorkspace::ReductionWorkspace() : room_(std::make_unique<Room>()) {}
+// Most patches have fewer corners: so a warm step that sees the largest one so far finds room for it.
+ReductionWorkspace::ReductionWorkspace() : room_(std::make_unique<Room>()) {
+  constexpr std::size_t CORNERS = 256;
+  PatchHullRoom& patch = room_->hull.patch;
+  for (std::vector<PlanePoint>* points : {&patch.points, &patch.half, &patch.hull, &patch.ring, &patch.corners}) points->reserve(CORNERS);
+  for (std::vector<double>* numbers : {&patch.places.x, &patch.places.y, &patch.places.depth}) numbers->reserve(CORNERS);
+  for (std::vector<int>* indices : {&patch.farthest, &patch.outside}) indices->reserve(CORNERS);
+}
 ReductionWorkspace::~ReductionWorkspace() = default;
 ReductionWorkspace::ReductionWorkspace(ReductionWorkspace&&) noexcept = default;
 ReductionWorkspace& ReductionWorkspace::operator=(ReductionWorkspace&&) noexcept = default;
