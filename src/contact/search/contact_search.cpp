@@ -154,34 +154,12 @@ class ContactSearch {
   ListMargin motion_;  // since the last search
 };
 
-/** Whether a pair that was apart and without candidates has surely moved by so little that it is so still: a bound on the motion of all
- * points tells. Apart by more than the margin when last seen, it did not cross where the list was made. */
-bool staysEmpty(const MeshPair& pair, const ContactSearchMemory& memory) {
-  const CandidateListing& list = memory.contacts.now;
-  const ListOrigin& origin = list.origin;
-  if (!isOf(memory, pair) || !memory.visited || !origin.known) return false;
-  if (list.lists.pairs.contacts() > 0 || memory.distance <= origin.margin.motion) return false;
-  const Box& bounds = pair.moving.bounds;
-  const Vector3 middle = bounds.center();
-  const double reach = 0.5 * bounds.diagonal().norm() + std::sqrt(3.0) * pair.range, turn = largestTurn(pair.X_FM, origin.X_FM),
-               motion = (pair.X_FM * middle - origin.X_FM * middle).norm() + reach * turn;
-  return usedMargin(origin, pair.range, motion, turn) <= 1;
-}
-
 }  // namespace
 
 void searchContacts(const MeshPair& pair, ContactSearchMemory* memory, ContactSearchBuffers* buffers, FoundContacts* found) {
   found->clear();
-  if (memory && staysEmpty(pair, *memory)) {
-    memory->X_FM = pair.X_FM;
-    memory->motion = SteadyMotion();
-    memory->distance = pair.range;
-  } else if (!memory) {
-    buffers->unknown.moving = 0;
-    ContactSearch(pair, &buffers->unknown, buffers, found).run(false);
-  } else {
-    ContactSearch(pair, memory, buffers, found).run(true);
-  }
+  if (!memory) buffers->unknown.moving = 0;
+  ContactSearch(pair, memory ? memory : &buffers->unknown, buffers, found).run(memory != nullptr);
 }
 
 }  // namespace blem_sim::contact
