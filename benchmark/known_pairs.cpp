@@ -96,74 +96,71 @@ class KnownPairs {
     turned_.turnForContacts(lists_, X_FM_);
     const contact::kernels::Kernels& k = contact::kernels::kernels();
     const contact::CandidatePairs& pairs = lists_.pairs;
-    const auto count = [](const Candidates& candidates) { return static_cast<std::uint32_t>(candidates.size()); };
-    const contact::NearFeatures& fixed = lists_.near[0];
+    const auto runOf = [](const Candidates& candidates) {
+      return contact::kernels::CandidateRun{candidates.data(), static_cast<std::uint32_t>(candidates.size())};
+    };
+    const contact::NearFeatures& fixed = lists_.near.fixed;
     const contact::kernels::Vec4 *moving_vertices = turned_.vertices.data(), *fixed_vertices = fixed.vertices.records.data();
     const contact::kernels::EdgeRecord *moving_edges = turned_.edges.data(), *fixed_edges = fixed.edges.records.data();
     std::uint32_t hits = 0;
-    for (const bool moves : {true, false}) {
-      const Candidates &faces = pairs.vertex_face[moves], &edges = pairs.vertex_edge[moves];
-      hits += k.vertexFaces(turned_.nearFaces(lists_, moves, X_FM_), lists_.near[!moves].faces.records.data(),
-                            lists_.near[!moves].open.data(), faces.data(), count(faces), nullptr, range_, nullptr, vertex_faces_.data());
-      hits += k.vertexEdges(moves ? moving_vertices : fixed_vertices, moves ? fixed_edges : moving_edges, edges.data(), count(edges),
-                            range_, vertex_edges_.data());
+    for (const contact::Side side : contact::SIDES) {
+      const Candidates &faces = pairs.vertex_face[side], &edges = pairs.vertex_edge[side];
+      hits += k.vertexFaces(turned_.atFaces(lists_, side, X_FM_), {runOf(faces), nullptr}, range_, nullptr, vertex_faces_.data());
+      hits += k.vertexEdges(side == contact::Side::MOVING ? moving_vertices : fixed_vertices,
+                            side == contact::Side::MOVING ? fixed_edges : moving_edges, runOf(edges), range_, vertex_edges_.data());
     }
     contact::kernels::LeftEdges left{edges_left_.data(), 0};
-    hits +=
-        k.edgeEdges(moving_edges, fixed_edges, pairs.edge_edge.data(), count(pairs.edge_edge), range_, nullptr, &left, edge_edges_.data());
+    hits += k.edgeEdges(moving_edges, fixed_edges, runOf(pairs.edge_edge), range_, {nullptr, &left, edge_edges_.data()});
     hits += left.count;
-    hits +=
-        k.vertexVertices(moving_vertices, fixed_vertices, pairs.vertex_vertex.data(), count(pairs.vertex_vertex), range_, others_.data());
+    hits += k.vertexVertices(moving_vertices, fixed_vertices, runOf(pairs.vertex_vertex), range_, others_.data());
     return hits;
   }
 
  private:
   void dropUnknown(KnownContacts known) {
-    const auto drop = [&](Candidates* candidates, auto&& feature_a, auto&& feature_b, bool a_moves) {
+    const auto drop = [&](Candidates* candidates, auto&& first_of, auto&& second_of, contact::Side side) {
       const auto unknown = [&](const Candidate& c) {
-        const contact::Feature a = feature_a(c.a), b = feature_b(c.b);
-        return !(a_moves ? known.take(a, b) : known.take(b, a));
+        const contact::Feature first = first_of(c.first), second = second_of(c.second);
+        return !(side == contact::Side::MOVING ? known.take(first, second) : known.take(second, first));
       };
       candidates->erase(std::remove_if(candidates->begin(), candidates->end(), unknown), candidates->end());
     };
-    const auto vertexOf = [this](bool moves) {
-      return [this, moves](std::uint32_t i) {
-        return contact::Feature{contact::FeatureKind::VERTEX, lists_.near[moves].vertices.names[i]};
-      };
+    const auto vertexOf = [this](contact::Side side) {
+      return [this, side](std::uint32_t i) { return contact::Feature{contact::FeatureKind::VERTEX, lists_.near[side].vertices.names[i]}; };
     };
-    const auto edgeOf = [this](bool moves) {
-      return [this, moves](std::uint32_t i) { return contact::Feature{contact::FeatureKind::EDGE, lists_.near[moves].edges.names[i]}; };
+    const auto edgeOf = [this](contact::Side side) {
+      return [this, side](std::uint32_t i) { return contact::Feature{contact::FeatureKind::EDGE, lists_.near[side].edges.names[i]}; };
     };
-    const auto patchOf = [this](bool moves) {
-      return [this, moves](std::uint32_t i) { return contact::Feature{contact::FeatureKind::FACE, lists_.near[moves].patches[i]}; };
+    const auto patchOf = [this](contact::Side side) {
+      return [this, side](std::uint32_t i) { return contact::Feature{contact::FeatureKind::FACE, lists_.near[side].patches[i]}; };
     };
-    for (const bool moves : {true, false}) {
-      drop(&lists_.pairs.vertex_face[moves], vertexOf(moves), patchOf(!moves), moves);
-      drop(&lists_.pairs.vertex_edge[moves], vertexOf(moves), edgeOf(!moves), moves);
+    for (const contact::Side side : contact::SIDES) {
+      drop(&lists_.pairs.vertex_face[side], vertexOf(side), patchOf(!side), side);
+      drop(&lists_.pairs.vertex_edge[side], vertexOf(side), edgeOf(!side), side);
     }
-    drop(&lists_.pairs.edge_edge, edgeOf(true), edgeOf(false), true);
-    drop(&lists_.pairs.vertex_vertex, vertexOf(true), vertexOf(false), true);
+    drop(&lists_.pairs.edge_edge, edgeOf(contact::Side::MOVING), edgeOf(contact::Side::FIXED), contact::Side::MOVING);
+    drop(&lists_.pairs.vertex_vertex, vertexOf(contact::Side::MOVING), vertexOf(contact::Side::FIXED), contact::Side::MOVING);
   }
 
   void compactFeatures() {
     contact::CandidatePairs& pairs = lists_.pairs;
-    std::vector<std::uint32_t*> vertices[2], edges[2], faces[2];
-    const auto note = [](Candidates* candidates, std::vector<std::uint32_t*>* as, std::vector<std::uint32_t*>* bs) {
+    contact::PerSide<std::vector<std::uint32_t*>> vertices, edges, faces;
+    const auto note = [](Candidates* candidates, std::vector<std::uint32_t*>* firsts, std::vector<std::uint32_t*>* seconds) {
       for (Candidate& c : *candidates) {
-        as->push_back(&c.a);
-        bs->push_back(&c.b);
+        firsts->push_back(&c.first);
+        seconds->push_back(&c.second);
       }
     };
-    for (const bool moves : {true, false}) {
-      note(&pairs.vertex_face[moves], &vertices[moves], &faces[!moves]);
-      note(&pairs.vertex_edge[moves], &vertices[moves], &edges[!moves]);
+    for (const contact::Side side : contact::SIDES) {
+      note(&pairs.vertex_face[side], &vertices[side], &faces[!side]);
+      note(&pairs.vertex_edge[side], &vertices[side], &edges[!side]);
     }
-    note(&pairs.edge_edge, &edges[1], &edges[0]);
-    note(&pairs.vertex_vertex, &vertices[1], &vertices[0]);
-    for (const bool moves : {true, false}) {
-      compact(vertices[moves], &lists_.near[moves].vertices);
-      compact(edges[moves], &lists_.near[moves].edges);
-      compact(faces[moves], &lists_.near[moves].faces, &lists_.near[moves].open);
+    note(&pairs.edge_edge, &edges.moving, &edges.fixed);
+    note(&pairs.vertex_vertex, &vertices.moving, &vertices.fixed);
+    for (const contact::Side side : contact::SIDES) {
+      compact(vertices[side], &lists_.near[side].vertices);
+      compact(edges[side], &lists_.near[side].edges);
+      compact(faces[side], &lists_.near[side].faces, &lists_.near[side].open);
     }
   }
 

@@ -58,6 +58,7 @@ void run(benchmark::State& state, const Patch& patch, int count, int k) {
   const std::vector<reduction::Contacts> steps = stepsOf(patch.make(count));
   reduction::Contacts reduced;
   reduction::ContactIds before;
+  reduction::ReductionWorkspace workspace;
   std::vector<double> times;
   long allocated = 0;
   for (auto _ : state) {
@@ -65,7 +66,7 @@ void run(benchmark::State& state, const Patch& patch, int count, int k) {
       const reduction::Contacts& contacts = steps[(call + WARM_UP) % STEPS];
       const long allocated_before = allocations;
       const double start = threadSeconds();
-      reduction::reduceHull(contacts, k, before, &reduced);
+      reduction::reduceHull(contacts, k, before, &workspace, &reduced);
       const double time = threadSeconds() - start;
       allocated += call >= 0 ? allocations - allocated_before : 0;
       if (call >= 0) times.push_back(time);
@@ -76,7 +77,7 @@ void run(benchmark::State& state, const Patch& patch, int count, int k) {
     std::sort(times.begin(), times.end());
     state.SetIterationTime(times[times.size() / 2]);
   }
-  reduction::reduceHull(steps[0], k, {}, &reduced);
+  reduction::reduceHull(steps[0], k, {}, &workspace, &reduced);
   const reduction::SupportError error = reduction::supportError(touching(steps[0]), reduced);
   state.counters["min_us"] = 1e6 * times[0];
   state.counters["kept"] = static_cast<double>(reduced.size());

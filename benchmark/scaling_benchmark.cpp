@@ -100,12 +100,13 @@ using MakeScene = std::unique_ptr<ContactScene> (*)(int size);
 double reductionTime(const ContactScene& scene, int k) {
   std::vector<contact::Contact> reduced;
   std::vector<std::uint64_t> before;
+  reduction::ReductionWorkspace workspace;
   double total = 0;
   for (int step = -1; step < STEPS; ++step) {
     const contact::ContactManifold manifold =
         contact::contactsOf(scene.moving[0], scene.pose(0, step), scene.standing, Pose::Identity(), 0);
     const double start = threadSeconds();
-    reduction::reduceHull(manifold.contacts, k, before, &reduced);
+    reduction::reduceHull(manifold.contacts, k, before, &workspace, &reduced);
     if (step >= 0) total += threadSeconds() - start;
     before.clear();
     for (const contact::Contact& contact : reduced) before.push_back(contact.id);

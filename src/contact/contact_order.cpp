@@ -46,17 +46,12 @@ void makeCanonical(std::vector<Contact>& contacts) {
   if (!std::is_sorted(contacts.begin(), contacts.end(), contactBefore)) std::sort(contacts.begin(), contacts.end(), contactBefore);
 }
 
-void sortCanonically(const std::vector<Contact>& contacts, std::vector<int>* indices) {
-  struct Key {
-    std::uint64_t id;
-    int index;
-  };
-  static thread_local std::vector<Key> keys;
-  keys.clear();
-  for (const int index : *indices) keys.push_back({contacts[index].id, index});
-  std::sort(keys.begin(), keys.end(),
+void CanonicalOrder::sort(const std::vector<Contact>& contacts, std::vector<int>* indices) {
+  keys_.clear();
+  for (const int index : *indices) keys_.push_back({contacts[index].id, index});
+  std::sort(keys_.begin(), keys_.end(),
             [&](const Key& a, const Key& b) { return a.id != b.id ? a.id < b.id : contactBefore(contacts[a.index], contacts[b.index]); });
-  for (std::size_t i = 0; i < keys.size(); ++i) (*indices)[i] = keys[i].index;
+  for (std::size_t i = 0; i < keys_.size(); ++i) (*indices)[i] = keys_[i].index;
 }
 
 }  // namespace blem_sim::contact

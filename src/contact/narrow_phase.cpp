@@ -9,24 +9,20 @@
 #include "search/contact_search.h"
 
 namespace blem_sim::contact {
-namespace {
 
-// Copies at one place have bounds that agree within the first of these parts of their diagonal; moved by the second, they cross.
-constexpr double AT_ONE_PLACE = 1e-6, APART = 1e-5;
-constexpr double IN_EACH_OTHER = 1e-9;  // of the layers: a gap that is none
-
-/** Buffers of a thread's searches. */
-struct Buffers {
+/** Room of searches. */
+struct SearchRoom {
   ContactSearchBuffers search;
   FoundContacts found;
   std::vector<Contact> below_plane;
   ContactMerge merge;
 };
 
-Buffers& threadBuffers() {
-  thread_local Buffers buffers;
-  return buffers;
-}
+namespace {
+
+// Copies at one place have bounds that agree within the first of these parts of their diagonal; moved by the second, they cross.
+constexpr double AT_ONE_PLACE = 1e-6, APART = 1e-5;
+constexpr double IN_EACH_OTHER = 1e-9;  // of the layers: a gap that is none
 
 /** Whether two bodies share one place: their faces coincide, so that none crosses another, however deep the bodies are in each other. */
 bool areAtOnePlace(const MeshPair& pair) {
@@ -47,26 +43,31 @@ MeshPair aLittleApart(const MeshPair& pair) {
 
 /** Depths of contacts that were found a little apart, as they are where the meshes lie. */
 void takeBack(const MeshPair& pair, std::vector<Contact>* contacts) {
-  const Vector3 way = (pair.roles.first_is_a ? 1 : -1) * (pair.X_WF.linear() * littleWay(pair));
+  const Vector3 way = (pair.roles.a == Side::MOVING ? 1 : -1) * (pair.X_WF.linear() * littleWay(pair));
   for (Contact& contact : *contacts) contact.depth += contact.normal_BA.dot(way);
 }
 
-void meshMesh(const Collider& a, const Pose& X_WA, const Collider& b, const Pose& X_WB, double range, const Pose* X_AB_apart,
-              ContactSearchMemory* memory, ContactManifold* out) {
-  const bool a_moves = a.geometry->mesh().elements.size() <= b.geometry->mesh().elements.size();
-  const Pose &X_WM = a_moves ? X_WA : X_WB, &X_WF = a_moves ? X_WB : X_WA;
-  const MeshPair pair{MeshSide(a_moves ? *a.geometry : *b.geometry),
-                      MeshSide(a_moves ? *b.geometry : *a.geometry),
-                      X_WF.inverse() * X_WM,
-                      a.radius + b.radius,
-                      range,
-                      {a_moves, a.radius, b.radius},
-                      X_WF};
-  Buffers& buffers = threadBuffers();
-  FoundContacts& found = buffers.found;
+/** The pair as the search sees it. */
+MeshPair meshPair(const PlacedCollider& a, const PlacedCollider& b, double margin) {
+  const Collider &first = a.collider, &second = b.collider;
+  const bool a_moves = first.geometry->mesh().elements.size() <= second.geometry->mesh().elements.size();
+  const PlacedCollider &moving = a_moves ? a : b, &fixed = a_moves ? b : a;
+  const double layer = first.radius + second.radius;
+  return {MeshSide(*moving.collider.geometry),
+          MeshSide(*fixed.collider.geometry),
+          fixed.X_WC.inverse() * moving.X_WC,
+          layer,
+          layer + margin,
+          {a_moves ? Side::MOVING : Side::FIXED, {moving.collider.radius, fixed.collider.radius}},
+          fixed.X_WC};
+}
+
+/** @param X_AB_apart as narrowPhase knows it @param memory of the pair, or null */
+void meshMesh(const MeshPair& pair, const Pose* X_AB_apart, ContactSearchMemory* memory, SearchRoom* room, ContactManifold* out) {
+  FoundContacts& found = room->found;
   const auto cross = [&](const MeshPair& at, ContactSearchMemory* known) {
     found.plain.overwrite(&out->contacts);
-    searchContacts(at, known, &buffers.search, &found);
+    searchContacts(at, known, &room->search, &found);
     return !found.crossings.empty();
   };
   const bool copies = areAtOnePlace(pair);
@@ -77,24 +78,30 @@ void meshMesh(const Collider& a, const Pose& X_WA, const Collider& b, const Pose
   out->pierced = !found.crossings.empty();
   if (out->pierced) {
     Pose X_FM_apart;
-    if (X_AB_apart) X_FM_apart = a_moves ? X_AB_apart->inverse() : *X_AB_apart;
+    if (X_AB_apart) X_FM_apart = pair.roles.a == Side::MOVING ? X_AB_apart->inverse() : *X_AB_apart;
     addRetractions(pair, X_AB_apart ? &X_FM_apart : nullptr, found.crossings, &found.close.witnessed());
   }
   const ContactWriter& close = found.close.placed(pair);
-  found.plain.advance(buffers.merge.run(close.begin(), close.size(), found.plain.room(close.size())));
+  found.plain.advance(room->merge.run(close.begin(), close.size(), found.plain.room(close.size())));
   found.plain.finish();
   if (in_each_other && !out->pierced) takeBack(pair, &out->contacts);
 }
 
+/** A mesh over a half-space. */
+struct MeshOverPlane {
+  const PlacedCollider &mesh, &half_space;
+  ContactRoles roles;
+};
+
 /** Vertices of the mesh near or below the plane; however deep, each knows its way out. */
-void meshHalfSpace(const Collider& mesh, const Pose& X_WM, const Collider& half_space, const Pose& X_WH, double range,
-                   const ContactRoles& roles, ContactManifold* out) {
-  const MeshSide side(*mesh.geometry);
-  const Pose X_MH = X_WM.inverse() * X_WH;
-  const Vector3 normal = X_MH.linear() * half_space.geometry->planeNormal();
-  const double offset = half_space.geometry->planeOffset() + normal.dot(X_MH.translation());
-  Buffers& buffers = threadBuffers();
-  std::vector<Contact>& found = buffers.below_plane;
+void meshHalfSpace(const MeshOverPlane& pair, double range, SearchRoom* room, ContactManifold* out) {
+  const MeshSide side(*pair.mesh.collider.geometry);
+  const Pose& X_WM = pair.mesh.X_WC;
+  const Pose X_MH = X_WM.inverse() * pair.half_space.X_WC;
+  const CollisionGeometry& plane = *pair.half_space.collider.geometry;
+  const Vector3 normal = X_MH.linear() * plane.planeNormal();
+  const double offset = plane.planeOffset() + normal.dot(X_MH.translation());
+  std::vector<Contact>& found = room->below_plane;
   found.clear();
   geometry::visitLeavesBelowPlane(side.bvh, normal, offset, range, [&](std::uint32_t leaf) {
     const geometry::Bvh::Node& node = side.bvh.nodes()[leaf];
@@ -107,12 +114,12 @@ void meshHalfSpace(const Collider& mesh, const Pose& X_WM, const Collider& half_
         const double height = normal.dot(p) - offset;
         if (height > range) continue;
         found.push_back(
-            contactOf(roles, {FeatureKind::VERTEX, vertex}, {FeatureKind::HALF_SPACE, 0}, p, p - height * normal, normal, height));
+            contactOf(pair.roles, {{FeatureKind::VERTEX, vertex}, {FeatureKind::HALF_SPACE, 0}, p, p - height * normal, normal, height}));
       }
     }
   });
   out->contacts.resize(found.size());
-  out->contacts.resize(buffers.merge.run(found.data(), found.size(), out->contacts.data()));
+  out->contacts.resize(room->merge.run(found.data(), found.size(), out->contacts.data()));
   for (Contact& contact : out->contacts) {
     contact.point = X_WM * contact.point;
     contact.normal_BA = X_WM.linear() * contact.normal_BA;
@@ -130,19 +137,31 @@ NarrowPhaseMemory::~NarrowPhaseMemory() = default;
 NarrowPhaseMemory::NarrowPhaseMemory(NarrowPhaseMemory&&) noexcept = default;
 NarrowPhaseMemory& NarrowPhaseMemory::operator=(NarrowPhaseMemory&&) noexcept = default;
 
-void narrowPhase(const Collider& a, const Pose& X_WA, const Collider& b, const Pose& X_WB, double margin, ContactManifold* out,
-                 const Pose* X_AB_apart, NarrowPhaseMemory* memory) {
-  out->layer = a.radius + b.radius;
+struct NarrowPhaseWorkspace::Impl {
+  SearchRoom room;
+};
+
+NarrowPhaseWorkspace::NarrowPhaseWorkspace() = default;
+NarrowPhaseWorkspace::~NarrowPhaseWorkspace() = default;
+NarrowPhaseWorkspace::NarrowPhaseWorkspace(NarrowPhaseWorkspace&&) noexcept = default;
+NarrowPhaseWorkspace& NarrowPhaseWorkspace::operator=(NarrowPhaseWorkspace&&) noexcept = default;
+
+void narrowPhase(const PlacedCollider& a, const PlacedCollider& b, const NarrowPhaseQuestion& asked, NarrowPhaseWorkspace* workspace,
+                 ContactManifold* out) {
+  if (!workspace->impl_) workspace->impl_ = std::make_unique<NarrowPhaseWorkspace::Impl>();
+  SearchRoom* const room = &workspace->impl_->room;
+  const double r_a = a.collider.radius, r_b = b.collider.radius;
+  out->layer = r_a + r_b;
   out->pierced = false;
-  const double range = out->layer + margin;
-  if (a.geometry->isHalfSpace() && b.geometry->isHalfSpace()) {
+  const bool a_is_half_space = a.collider.geometry->isHalfSpace(), b_is_half_space = b.collider.geometry->isHalfSpace();
+  if (a_is_half_space && b_is_half_space) {
     out->contacts.clear();
-  } else if (b.geometry->isHalfSpace()) {
-    meshHalfSpace(a, X_WA, b, X_WB, range, {true, a.radius, b.radius}, out);
-  } else if (a.geometry->isHalfSpace()) {
-    meshHalfSpace(b, X_WB, a, X_WA, range, {false, a.radius, b.radius}, out);
+  } else if (b_is_half_space) {
+    meshHalfSpace({a, b, {Side::MOVING, {r_a, r_b}}}, out->layer + asked.margin, room, out);
+  } else if (a_is_half_space) {
+    meshHalfSpace({b, a, {Side::FIXED, {r_b, r_a}}}, out->layer + asked.margin, room, out);
   } else {
-    meshMesh(a, X_WA, b, X_WB, range, X_AB_apart, memory ? &memory->impl_->search : nullptr, out);
+    meshMesh(meshPair(a, b, asked.margin), asked.X_AB_apart, asked.memory ? &asked.memory->impl_->search : nullptr, room, out);
   }
 }
 

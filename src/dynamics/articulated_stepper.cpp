@@ -228,7 +228,7 @@ void ArticulatedStepper::reckonWork(bool leaps, Island* island) {
 void ArticulatedStepper::solveIsland(const Scene& scene, const StepInput& input, Island* island) {
   IslandModel& model = island->model;
   const TermSource source{scene, forest_, motion_, input, settings_, memory_};
-  for (const int tree : model.trees) setFreeMomentum(forest_, scene, input, !island->contacts.empty(), tree, &motion_, &space_);
+  for (const int tree : model.trees) setFreeMomentum({forest_, scene, input, tree, !island->contacts.empty()}, &motion_, &space_);
   makeTerms(source, island);
   model.up = -scene.gravity();
   addEfforts(input, model, &space_);

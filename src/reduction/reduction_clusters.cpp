@@ -156,7 +156,8 @@ class Linkage {
 
 }  // namespace
 
-void reduceKmeans(const std::vector<contact::Contact>& contacts, int k, const ContactIds&, std::vector<contact::Contact>* reduced) {
+void reduceKmeans(const std::vector<contact::Contact>& contacts, int k, const ContactIds&, ReductionWorkspace*,
+                  std::vector<contact::Contact>* reduced) {
   *reduced = contacts;
   contact::makeCanonical(*reduced);
   if (static_cast<int>(reduced->size()) <= k) return;
@@ -168,12 +169,13 @@ void reduceKmeans(const std::vector<contact::Contact>& contacts, int k, const Co
   takeMeans(*reduced, cluster_of, k);
 }
 
-void reduceHierarchical(const std::vector<contact::Contact>& contacts, int k, const ContactIds&, std::vector<contact::Contact>* reduced) {
+void reduceHierarchical(const std::vector<contact::Contact>& contacts, int k, const ContactIds&, ReductionWorkspace* workspace,
+                        std::vector<contact::Contact>* reduced) {
   *reduced = contacts;
   contact::makeCanonical(*reduced);
   const int count = static_cast<int>(reduced->size());
   if (count <= k) return;
-  if (reduced->size() > MANY) return reduceKmeans(contacts, k, {}, reduced);
+  if (reduced->size() > MANY) return reduceKmeans(contacts, k, {}, workspace, reduced);
   Linkage linkage(featuresOf(*reduced));
   std::vector<int> cluster_of(reduced->size());
   for (int i = 0; i < count; ++i) cluster_of[i] = i;

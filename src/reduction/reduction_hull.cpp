@@ -7,12 +7,8 @@
 #include "blem_sim/contact/contact_order.h"
 #include "blem_sim/geometry/roomy.h"
 #include "blem_sim/reduction/reduction.h"
-#include "choice/continued_choice.h"
-#include "choice/crowd.h"
-#include "choice/wrench_choice.h"
 #include "hull_stages.h"
-#include "patches/normal_cells.h"
-#include "patches/patch_hull.h"
+#include "reduction_room.h"
 
 namespace blem_sim::reduction {
 
@@ -21,18 +17,6 @@ namespace {
 constexpr double STAIR = 1e-3;      // [m] parallel patches with this much air between their heights are two patches
 constexpr std::size_t CROWD = 100;  // more than this many contacts are thinned before the choice, to save time,
 constexpr int FEW = 100;            // if no more than this many are chosen
-
-struct PatchBuffers {
-  NormalCells cells;
-  std::vector<double> heights;
-  std::vector<std::pair<double, int>> stairs;
-  std::vector<int> candidates, chosen;
-};
-
-PatchBuffers& threadBuffers() {
-  static thread_local PatchBuffers buffers;
-  return buffers;
-}
 
 // Whether parallel patches lie among these: then some gap between one height and the next is wider than STAIR.
 bool mayHaveStairs(const std::vector<double>& heights) {
@@ -44,13 +28,14 @@ bool mayHaveStairs(const std::vector<double>& heights) {
 }
 
 // Appends the hull of every patch among contacts of one cell, two at least. Reorders the members.
-void keepHullsOfCell(const std::vector<contact::Contact>& contacts, int* begin, int* end, const Vector3& normal, int k,
-                     PatchBuffers* buffers, std::vector<int>* kept) {
-  std::vector<double>& heights = buffers->heights;
+void keepHullsOfCell(const std::vector<contact::Contact>& contacts, int cell, int k, HullRoom* room, std::vector<int>* kept) {
+  int *const begin = room->cells.begin(cell), *const end = room->cells.end(cell);
+  const Vector3 normal = room->cells.normal(cell);
+  std::vector<double>& heights = room->heights;
   heights.clear();
   for (const int* member = begin; member != end; ++member) heights.push_back(normal.dot(contacts[*member].point));
-  if (!mayHaveStairs(heights)) return patchHull(contacts, begin, end, normal, k, kept);
-  std::vector<std::pair<double, int>>& stairs = buffers->stairs;
+  if (!mayHaveStairs(heights)) return patchHull({contacts, begin, end}, normal, k, &room->patch, kept);
+  std::vector<std::pair<double, int>>& stairs = room->stairs;
   stairs.clear();
   for (const int* member = begin; member != end; ++member) stairs.emplace_back(heights[member - begin], *member);
   std::sort(stairs.begin(), stairs.end());
@@ -59,14 +44,14 @@ void keepHullsOfCell(const std::vector<contact::Contact>& contacts, int* begin, 
     begin[i] = stairs[i].second;
     if (i + 1 < stairs.size() && stairs[i + 1].first - stairs[i].first <= STAIR) continue;
     int* patch_end = begin + i + 1;
-    patchHull(contacts, patch, patch_end, normal, k, kept);
+    patchHull({contacts, patch, patch_end}, normal, k, &room->patch, kept);
     patch = patch_end;
   }
 }
 
 // Keeps the hull of each patch of equal normals; all contacts where normals are too many for patches to matter.
-void keepPatchHulls(const std::vector<contact::Contact>& contacts, int k, PatchBuffers* buffers, std::vector<int>* kept) {
-  NormalCells& cells = buffers->cells;
+void keepPatchHulls(const std::vector<contact::Contact>& contacts, int k, HullRoom* room, std::vector<int>* kept) {
+  NormalCells& cells = room->cells;
   if (!cells.group(contacts)) {
     kept->resize(contacts.size());
     std::iota(kept->begin(), kept->end(), 0);
@@ -77,63 +62,65 @@ void keepPatchHulls(const std::vector<contact::Contact>& contacts, int k, PatchB
     if (cells.end(cell) - cells.begin(cell) == 1) {
       kept->push_back(*cells.begin(cell));
     } else {
-      keepHullsOfCell(contacts, cells.begin(cell), cells.end(cell), cells.normal(cell), k, buffers, kept);
+      keepHullsOfCell(contacts, cell, k, room, kept);
     }
   }
 }
 
-float choose(const std::vector<contact::Contact>& contacts, const ThinnedContacts& thinned, int k, const ContactIds& chosen_before,
-             PatchBuffers* buffers) {
-  if (thinned.kept.size() > CROWD && k <= FEW) {
-    thinCrowd(contacts, thinned.scale, thinned.kept, chosen_before, &buffers->candidates);
+float choose(const HullChoice& asked, HullRoom* room) {
+  const ThinnedContacts& thinned = asked.thinned;
+  const ChoiceQuestion question{asked.contacts, thinned.kept, thinned.scale, asked.k, asked.chosen_before};
+  if (thinned.kept.size() > CROWD && asked.k <= FEW) {
+    room->crowd.thin(question, &room->candidates);
   } else {
-    if (surelyGoesOn(contacts, thinned.kept, thinned.scale, k, chosen_before, &buffers->chosen)) return GOOD_ENOUGH;
-    buffers->candidates = thinned.kept;
+    if (surelyGoesOn(question, &room->before, &room->chosen)) return GOOD_ENOUGH;
+    room->candidates = thinned.kept;
   }
-  return chooseSpanningContacts(contacts, thinned.kept, thinned.scale, k, chosen_before, &buffers->candidates, &buffers->chosen);
+  return room->choice.choose(question, &room->candidates, &room->chosen);
 }
 
 }  // namespace
 
-bool thinToHulls(const std::vector<contact::Contact>& contacts, int k, ThinnedContacts* thinned) {
+bool thinToHulls(const std::vector<contact::Contact>& contacts, int k, HullRoom* room, ThinnedContacts* thinned) {
   bool ready = true;
   thinned->scale = PatchScale(contacts, &ready);
-  if (ready) keepPatchHulls(contacts, k, &threadBuffers(), &thinned->kept);
+  if (ready) keepPatchHulls(contacts, k, room, &thinned->kept);
   return ready;
 }
 
-float chooseFromHulls(const std::vector<contact::Contact>& contacts, const ThinnedContacts& thinned, int k, const ContactIds& chosen_before,
-                      std::vector<contact::Contact>* reduced) {
-  const bool few = static_cast<int>(thinned.kept.size()) <= k;
-  PatchBuffers& buffers = threadBuffers();
-  geometry::makeRoomFor(thinned.kept.size(), &buffers.chosen);
-  if (few) buffers.chosen = thinned.kept;
-  const float lack = few ? 0 : choose(contacts, thinned, k, chosen_before, &buffers);
-  contact::sortCanonically(contacts, &buffers.chosen);
+float chooseFromHulls(const HullChoice& asked, HullRoom* room, std::vector<contact::Contact>* reduced) {
+  const std::vector<int>& kept = asked.thinned.kept;
+  const bool few = static_cast<int>(kept.size()) <= asked.k;
+  geometry::makeRoomFor(kept.size(), &room->chosen);
+  if (few) room->chosen = kept;
+  const float lack = few ? 0 : choose(asked, room);
+  room->order.sort(asked.contacts, &room->chosen);
   reduced->clear();
-  for (const int i : buffers.chosen) reduced->push_back(contacts[i]);
+  for (const int i : room->chosen) reduced->push_back(asked.contacts[i]);
   return lack;
 }
 
-void reduceHull(const std::vector<contact::Contact>& contacts, int k, const ContactIds& chosen_before,
+void reduceHull(const std::vector<contact::Contact>& contacts, int k, const ContactIds& chosen_before, ReductionWorkspace* workspace,
                 std::vector<contact::Contact>* reduced) {
-  static thread_local ThinnedContacts thinned;
-  if (thinToHulls(contacts, k, &thinned)) {
-    chooseFromHulls(contacts, thinned, k, chosen_before, reduced);
+  HullRoom* const room = &(*workspace)->hull;
+  ThinnedContacts& thinned = room->thinned;
+  if (thinToHulls(contacts, k, room, &thinned)) {
+    chooseFromHulls({contacts, thinned, k, chosen_before}, room, reduced);
     return;
   }
-  static thread_local std::vector<contact::Contact> usable;
+  std::vector<contact::Contact>& usable = room->usable;
   usable = contacts;
   contact::makeUsable(usable);
   bool ready = true;
   thinned.scale = PatchScale(usable, &ready);
-  keepPatchHulls(usable, k, &threadBuffers(), &thinned.kept);
-  chooseFromHulls(usable, thinned, k, chosen_before, reduced);
+  keepPatchHulls(usable, k, room, &thinned.kept);
+  chooseFromHulls({usable, thinned, k, chosen_before}, room, reduced);
 }
 
 void reduceHull(std::vector<contact::Contact>& contacts, int k, const ContactIds& chosen_before) {
   const std::vector<contact::Contact> all = contacts;
-  reduceHull(all, k, chosen_before, &contacts);
+  ReductionWorkspace workspace;
+  reduceHull(all, k, chosen_before, &workspace, &contacts);
 }
 
 }  // namespace blem_sim::reduction

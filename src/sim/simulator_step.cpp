@@ -100,7 +100,7 @@ const std::vector<dynamics::JointDrive>& Simulator::Impl::motorTorque() {
 
 const SolverContacts& Simulator::Impl::reduction() {
   const StageTimer timer(&report_.profile, Stage::REDUCTION);
-  const SolveAhead ahead{world_, bodies_, at_hand_, fading_, early_pushes_.expectation(), substepLength()};
+  const SolveAhead ahead{world_, bodies_, at_hand_, fading_, early_pushes_.expectation(), substepLength(), pair_searches_.workspace()};
   return constraint_maker_.make(ahead, &at_hand_.manifolds);
 }
 

@@ -62,9 +62,15 @@ inline geometry::TriangleMesh hillMesh(geometry::RandomShapes& random, double si
   return mesh;
 }
 
+/** Room for searches of a test. */
+inline NarrowPhaseWorkspace* searchRoom() {
+  static NarrowPhaseWorkspace workspace;
+  return &workspace;
+}
+
 inline ContactManifold contactsOf(const Collider& a, const Pose& X_WA, const Collider& b, const Pose& X_WB, double margin = 0) {
   ContactManifold manifold;
-  narrowPhase(a, X_WA, b, X_WB, margin, &manifold);
+  narrowPhase({a, X_WA}, {b, X_WB}, {margin}, searchRoom(), &manifold);
   return manifold;
 }
 

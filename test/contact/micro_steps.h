@@ -31,8 +31,9 @@ struct Springs {
   double weight = 0;
 
   explicit Springs(std::vector<Contact> contacts) {
+    reduction::ReductionWorkspace workspace;
     reduction::reduceHull(contacts, 1000);
-    reduction::weighSprings(contacts);
+    reduction::weighSprings(contacts, &workspace);
     for (const Contact& c : contacts) {
       if (c.depth <= 0) continue;
       sum += c.weight * c.depth * c.normal_BA;

@@ -30,8 +30,8 @@ Followed follow(const Collider& a, const Collider& b, int steps, const std::func
   Followed out;
   for (int step = 0; step < steps; ++step) {
     const Pose X = path(step);
-    narrowPhase(a, X, b, Pose::Identity(), margin(step), &remembered, nullptr, &memory);
-    narrowPhase(a, X, b, Pose::Identity(), margin(step), &fresh);
+    narrowPhase({a, X}, {b, Pose::Identity()}, {margin(step), nullptr, &memory}, searchRoom(), &remembered);
+    narrowPhase({a, X}, {b, Pose::Identity()}, {margin(step)}, searchRoom(), &fresh);
     EXPECT_EQ(remembered.pierced, fresh.pierced) << step;
     if (remembered.contacts.size() != fresh.contacts.size()) {
       ADD_FAILURE() << "step " << step << ": " << remembered.contacts.size() << " contacts instead of " << fresh.contacts.size();
@@ -166,8 +166,8 @@ TEST(NarrowPhaseMemory, AnotherGeometryIsNotTakenForTheOneBefore) {
     const Collider cube = makeCollider(geometry::boxMesh(Vector3::Constant(size)), R);
     NarrowPhaseMemory none;
     ContactManifold remembered, fresh;
-    narrowPhase(cube, X, hills, Pose::Identity(), 0, &remembered, nullptr, &memory);
-    narrowPhase(cube, X, hills, Pose::Identity(), 0, &fresh, nullptr, &none);
+    narrowPhase({cube, X}, {hills, Pose::Identity()}, {0, nullptr, &memory}, searchRoom(), &remembered);
+    narrowPhase({cube, X}, {hills, Pose::Identity()}, {0, nullptr, &none}, searchRoom(), &fresh);
     ASSERT_GT(fresh.contacts.size(), 10u);
     ASSERT_EQ(remembered.contacts.size(), fresh.contacts.size());
     for (std::size_t i = 0; i < fresh.contacts.size(); ++i) EXPECT_TRUE(sameBits(remembered.contacts[i], fresh.contacts[i]));

@@ -51,7 +51,7 @@ TEST(NarrowPhase, WhatAManifoldHeldDoesNotMatter) {
         other.pierced = true;
         ContactManifold manifold;
         manifold.contacts.assign(held, other);
-        narrowPhase(cube(0.003), X_WA, *standing, Pose::Identity(), 0, &manifold);
+        narrowPhase({cube(0.003), X_WA}, {*standing, Pose::Identity()}, {0}, searchRoom(), &manifold);
         ASSERT_EQ(manifold.contacts.size(), fresh.contacts.size());
         for (std::size_t i = 0; i < fresh.contacts.size(); ++i) {
           EXPECT_EQ(manifold.contacts[i].id, fresh.contacts[i].id);

@@ -58,9 +58,9 @@ TEST(Retraction, WayBackIsTheOneFromWhereThePairWasApart) {
         ContactManifold manifold;
         const Pose X_AB_apart = a_is_cube ? X_BA_apart.inverse() : X_BA_apart;
         if (a_is_cube) {
-          narrowPhase(retractedCube(), X_WB * X_BA, sheet, X_WB, 0, &manifold, &X_AB_apart);
+          narrowPhase({retractedCube(), X_WB * X_BA}, {sheet, X_WB}, {0, &X_AB_apart}, searchRoom(), &manifold);
         } else {
-          narrowPhase(sheet, X_WB, retractedCube(), X_WB * X_BA, 0, &manifold, &X_AB_apart);
+          narrowPhase({sheet, X_WB}, {retractedCube(), X_WB * X_BA}, {0, &X_AB_apart}, searchRoom(), &manifold);
         }
         EXPECT_TRUE(manifold.pierced);
         ASSERT_EQ(countPierced(manifold), 4);

@@ -36,7 +36,7 @@ Nearest nearestTo(const Vector3& p, const geometry::TriangleMesh& mesh) {
 /** Depth of the deepest contact of A's vertex 0. */
 double depthOfFirstVertex(const Collider& a, const Collider& b) {
   ContactManifold manifold;
-  narrowPhase(a, Pose::Identity(), b, Pose::Identity(), 0, &manifold);
+  narrowPhase({a, Pose::Identity()}, {b, Pose::Identity()}, {0}, searchRoom(), &manifold);
   EXPECT_FALSE(manifold.pierced);
   double depth = -1;
   for (const Contact& c : manifold.contacts)

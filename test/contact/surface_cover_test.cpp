@@ -26,7 +26,7 @@ Counts countCovered(const geometry::TriangleMesh& mesh, const Pose& X_WM, const 
   const Collider sheet = colliderOf(geometry::gridMesh(0.4, 0.4, 1, 1)), body = colliderOf(mesh, 0.0025);
   const Pose X_WS = makePose({-0.2, 0, 0});
   ContactManifold manifold;
-  narrowPhase(sheet, X_WS, body, X_WM, 0.01, &manifold);
+  narrowPhase({sheet, X_WS}, {body, X_WM}, {0.01}, searchRoom(), &manifold);
   SurfaceCover cover;
   Counts counts;
   for (const Contact& contact : manifold.contacts) {
@@ -69,7 +69,7 @@ TEST(SurfaceCover, OfSheetsThatLieInEachOtherTheFirstHasTheContact) {
                  ball = colliderOf(geometry::pointMesh(Vector3::Zero()), 0.0025);
   const Pose X_WM = makePose({-0.003, 0.02, 0.002});
   ContactManifold manifold;
-  narrowPhase(sheet, Pose::Identity(), ball, X_WM, 0.01, &manifold);
+  narrowPhase({sheet, Pose::Identity()}, {ball, X_WM}, {0.01}, searchRoom(), &manifold);
   ASSERT_EQ(manifold.contacts.size(), 1u);
   SurfaceCover cover;
   for (const bool first : {true, false}) {

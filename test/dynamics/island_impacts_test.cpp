@@ -90,7 +90,7 @@ struct HitTrees {
     return sum;
   }
   bool happen() {
-    for (int tree = 0; tree < 3; ++tree) setFreeMomentum(forest, scene, input, true, tree, &motion, &solver);
+    for (int tree = 0; tree < 3; ++tree) setFreeMomentum({forest, scene, input, tree, true}, &motion, &solver);
     start = solver.mass_velocity;
     leap.setZero(forest.dofCount());
     before = kineticEnergy();

@@ -63,7 +63,7 @@ struct ChainOnBox {
     start();
   }
   /** Velocities as before the solve. */
-  void start() { setFreeMomentum(forest, scene, input, true, 0, &motion, &space); }
+  void start() { setFreeMomentum({forest, scene, input, 0, true}, &motion, &space); }
   IslandAtHand atHand() {
     answer.start(model.terms);
     return {forest, motion, model, &answer, &space, &team};

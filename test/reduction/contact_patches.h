@@ -90,7 +90,8 @@ inline contact::ContactManifold rim(geometry::RandomShapes& random, double tremb
 
 inline Contacts reducedBy(const Reduction& method, const Contacts& contacts, int k) {
   Contacts reduced;
-  method.reduce(contacts, k, {}, &reduced);
+  ReductionWorkspace workspace;
+  method.reduce(contacts, k, {}, &workspace, &reduced);
   return reduced;
 }
 
@@ -99,7 +100,8 @@ inline ReductionLoss reduceAll(std::vector<contact::ContactManifold>& manifolds,
                                const std::vector<int>& model_b, const std::vector<ContactBudget>& budgets, const Reduction& method,
                                ReductionMemory* memory) {
   std::vector<contact::ContactManifold> reduced;
-  const ReductionLoss loss = reduceManifolds(manifolds, model_a, model_b, budgets, method, memory, &reduced);
+  ReductionWorkspace workspace;
+  const ReductionLoss loss = reduceManifolds({manifolds, model_a, model_b, budgets}, method, memory, &workspace, &reduced);
   manifolds = std::move(reduced);
   return loss;
 }

@@ -44,6 +44,8 @@ std::vector<int> sorted(std::vector<int> indices) {
 TEST(ContinuedChoice, GoesOnOnlyWhereTheChoiceByWrenchesDoes) {
   Noise noise(11);
   int sure = 0, unsure = 0;
+  ChosenBefore room;
+  WrenchChoice choice;
   for (int round = 0; round < 4000; ++round) {
     const double tilts[] = {0, 0.005, 0.1}, gaps[] = {0, 1e-5, 5e-4};
     const Contacts contacts = variedRing(&noise, round % 2 ? 0.049 : 0.03, tilts[round % 3], gaps[round / 3 % 3]);
@@ -54,13 +56,14 @@ TEST(ContinuedChoice, GoesOnOnlyWhereTheChoiceByWrenchesDoes) {
     bool ready = true;
     const PatchScale scale(contacts, &ready);
     ASSERT_TRUE(ready);
-    if (!surelyGoesOn(contacts, members, scale, k, before, &went_on)) {
+    const ChoiceQuestion asked{contacts, members, scale, k, before};
+    if (!surelyGoesOn(asked, &room, &went_on)) {
       ++unsure;
       continue;
     }
     ++sure;
     std::vector<int> candidates = members;
-    chooseSpanningContacts(contacts, members, scale, k, before, &candidates, &chosen);
+    choice.choose(asked, &candidates, &chosen);
     ASSERT_EQ(sorted(went_on), sorted(chosen)) << round;
   }
   EXPECT_GT(sure, 400);
@@ -77,7 +80,9 @@ TEST(ContinuedChoice, IsNotSureWithoutTheDeepestOrWithOthersThanK) {
   std::iota(members.begin(), members.end(), 0);
   const auto goes_on = [&](int k) {
     bool ready = true;
-    return surelyGoesOn(contacts, members, PatchScale(contacts, &ready), k, before, &chosen);
+    const PatchScale scale(contacts, &ready);
+    ChosenBefore room;
+    return surelyGoesOn({contacts, members, scale, k, before}, &room, &chosen);
   };
   EXPECT_TRUE(goes_on(20));
   EXPECT_FALSE(goes_on(19));

@@ -8,8 +8,13 @@
 namespace blem_sim::reduction {
 namespace {
 
+void weigh(std::vector<contact::Contact>& contacts) {
+  ReductionWorkspace workspace;
+  weighSprings(contacts, &workspace);
+}
+
 double totalWeight(std::vector<contact::Contact> contacts) {
-  weighSprings(contacts);
+  weigh(contacts);
   double total = 0;
   for (const contact::Contact& c : contacts) total += c.weight;
   return total;
@@ -27,7 +32,7 @@ TEST(SpringWeights, CountFullyUpToTheCornersOfARectangle) {
     }
     for (int count = 1; count <= 4; ++count) {
       std::vector<contact::Contact> some(contacts.begin(), contacts.begin() + count);
-      weighSprings(some);
+      weigh(some);
       for (const contact::Contact& c : some) EXPECT_EQ(c.weight, 1) << count;
     }
   }
@@ -64,7 +69,7 @@ double weightByDefinition(const std::vector<contact::Contact>& contacts, std::si
 TEST(SpringWeights, AreWhatTheirDefinitionSays) {
   std::vector<contact::Contact> contacts = noisyPatch(30);
   for (const contact::Contact& c : flatPatch(20, {0.2, 0.1, 1}, {0.03, 0, 0})) contacts.push_back(c);
-  weighSprings(contacts);
+  weigh(contacts);
   double least = 1;
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const double expected = weightByDefinition(contacts, i);
@@ -88,7 +93,7 @@ TEST(SpringWeights, OfSidesOfACornerAreTheirOwn) {
       contacts.push_back(contact);
     }
   }
-  weighSprings(contacts);
+  weigh(contacts);
   for (const contact::Contact& c : contacts) EXPECT_EQ(c.weight, 1);
 }
 

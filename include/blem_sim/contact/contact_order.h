@@ -1,6 +1,7 @@
 // A total order of contacts, so that no result depends on the order they came in.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "blem_sim/contact/manifold.h"
@@ -19,7 +20,18 @@ void makeCanonical(std::vector<Contact>& contacts);
 /** Drops contacts as makeCanonical does, and makes the normals unit length, in the order given. */
 void makeUsable(std::vector<Contact>& contacts);
 
-/** Sorts indices of contacts by contactBefore. */
-void sortCanonically(const std::vector<Contact>& contacts, std::vector<int>* indices);
+/** Sorts indices of contacts; keeps its room. */
+class CanonicalOrder {
+ public:
+  /** Sorts by contactBefore. */
+  void sort(const std::vector<Contact>& contacts, std::vector<int>* indices);
+
+ private:
+  struct Key {
+    std::uint64_t id;
+    int index;
+  };
+  std::vector<Key> keys_;
+};
 
 }  // namespace blem_sim::contact

@@ -8,6 +8,23 @@
 
 namespace blem_sim::contact {
 
+class NarrowPhaseMemory;
+class NarrowPhaseWorkspace;
+
+/** A collider and where its geometry is. */
+struct PlacedCollider {
+  const Collider& collider;
+  const Pose& X_WC;
+};
+
+/** Contacts that are asked for, and what is known of the pair. */
+struct NarrowPhaseQuestion {
+  double margin = 0;                    ///< [m] largest gap of contacts beyond the layers
+  const Pose* X_AB_apart = nullptr;     ///< geometry of B in A's where they last did not cross; null: unknown, then the smaller body's
+                                        ///< middle is on its own side
+  NarrowPhaseMemory* memory = nullptr;  ///< of this pair alone, or null
+};
+
 /** Memory of the search for the contacts of one pair, from step to step. It saves time and changes no result: it is no state. */
 class NarrowPhaseMemory {
  public:
@@ -17,10 +34,26 @@ class NarrowPhaseMemory {
   NarrowPhaseMemory& operator=(NarrowPhaseMemory&&) noexcept;
 
  private:
-  friend void narrowPhase(const Collider&, const Pose&, const Collider&, const Pose&, double, ContactManifold*, const Pose*,
-                          NarrowPhaseMemory*);
+  friend void narrowPhase(const PlacedCollider&, const PlacedCollider&, const NarrowPhaseQuestion&, NarrowPhaseWorkspace*,
+                          ContactManifold*);
   struct Impl;
   std::unique_ptr<Impl> impl_;
+};
+
+/** Room for one search at a time, and descriptions of the leaves that searches looked at lately (at most 100 MB): whoever searches has one
+ * per thread. It saves time and changes no result. */
+class NarrowPhaseWorkspace {
+ public:
+  NarrowPhaseWorkspace();
+  ~NarrowPhaseWorkspace();
+  NarrowPhaseWorkspace(NarrowPhaseWorkspace&&) noexcept;
+  NarrowPhaseWorkspace& operator=(NarrowPhaseWorkspace&&) noexcept;
+
+ private:
+  friend void narrowPhase(const PlacedCollider&, const PlacedCollider&, const NarrowPhaseQuestion&, NarrowPhaseWorkspace*,
+                          ContactManifold*);
+  struct Impl;
+  std::unique_ptr<Impl> impl_;  // none before the first search
 };
 
 /**
@@ -32,10 +65,8 @@ class NarrowPhaseMemory {
  * meshes cross, contacts beside these are the fallback's: one per crossing of an edge and a face, whose depth grows past rA + rB with the
  * way that has to be taken back, and whose direction is the way back to where the pair was apart.
  * @param out overwritten; contacts in the world frame
- * @param memory of this pair alone, or null
- * @param X_AB_apart geometry of B in A's where they last did not cross; null: unknown, then the smaller body's middle is on its own side
  */
-void narrowPhase(const Collider& a, const Pose& X_WA, const Collider& b, const Pose& X_WB, double margin, ContactManifold* out,
-                 const Pose* X_AB_apart = nullptr, NarrowPhaseMemory* memory = nullptr);
+void narrowPhase(const PlacedCollider& a, const PlacedCollider& b, const NarrowPhaseQuestion& asked, NarrowPhaseWorkspace* workspace,
+                 ContactManifold* out);
 
 }  // namespace blem_sim::contact

@@ -12,10 +12,9 @@ using kernels::Candidate;
 using kernels::LeavingSide;
 using kernels::VertexFaceHit;
 
-void BorderFades::list(bool vertices_move, const Candidate* candidates, const VertexFaceHit* hits, std::uint32_t count,
-                       LeavingBuffers* buffers, BesideFaces* fading) {
-  listOpen(vertices_move, candidates, hits, count, buffers, fading);
-  answer(vertices_move, buffers, *fading);
+void BorderFades::list(Side side, const VertexFaceHits& hits, LeavingBuffers* buffers, BesideFaces* fading) {
+  listOpen(side, hits, buffers, fading);
+  answer(side, buffers, *fading);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < fading->pairs.size(); ++i) {
     fading->pairs[kept] = fading->pairs[i];
@@ -27,25 +26,24 @@ void BorderFades::list(bool vertices_move, const Candidate* candidates, const Ve
 
 /** Lists the pairs that fade unless something takes over, and the questions about them. Numbers are written one by one where they stay: a
  * copy of several would wait for each. */
-void BorderFades::listOpen(bool vertices_move, const Candidate* candidates, const VertexFaceHit* hits, std::uint32_t count,
-                           LeavingBuffers* buffers, BesideFaces* fading) {
-  fading->resize(count);
-  buffers->makeRoom(count);
-  NearFeatures &own = lists_.near[vertices_move], &partner = lists_.near[!vertices_move];
-  for (NearFeatures& near : lists_.near) near.fading.makePlaces(near.vertices.names.size(), near.faces.names.size());
+void BorderFades::listOpen(Side side, const VertexFaceHits& hits, LeavingBuffers* buffers, BesideFaces* fading) {
+  fading->resize(hits.count);
+  buffers->makeRoom(hits.count);
+  NearFeatures &own = lists_.near[side], &partner = lists_.near[!side];
+  for (NearFeatures* near : {&own, &partner}) near->fading.makePlaces(near->vertices.names.size(), near->faces.names.size());
   std::uint32_t pairs = 0;
   LeavingSide* question = buffers->questions.data();
-  for (const VertexFaceHit* hit = hits; hit != hits + count; ++hit) {
+  for (const VertexFaceHit* hit = hits.data; hit != hits.data + hits.count; ++hit) {
     if (!hit->has(VertexFaceHit::BESIDE)) continue;
-    const Candidate& c = candidates[hit->candidate];
+    const Candidate& c = hits.candidates[hit->candidate];
     const bool is_above = hit->height > 0;
-    const BorderKinds::Seen& kinds = partner.borders[c.b].seen[is_above];
+    const BorderKinds::Seen& kinds = partner.borders[c.second].seen[is_above];
     const std::uint32_t outside = hit->bits & VertexFaceHit::OUTSIDE;
     if ((outside & (kinds.flat | kinds.round)) != 0 || (outside & (kinds.falling | kinds.rising)) == 0) continue;
     const bool fades = (outside & kinds.rising) != 0;
     if (!fades) {
       const FadingRecords::Directions& edges =
-          own.fading.directionsAt(pair_.side(vertices_move), c.a, own.vertices.names[c.a], &surroundings_);
+          own.fading.directionsAt(pair_.side(side), c.first, own.vertices.names[c.first], &surroundings_);
       for (unsigned falling = outside & kinds.falling; falling != 0; falling &= falling - 1, ++question) {
         question->pair = pairs;
         question->side = static_cast<std::uint16_t>(__builtin_ctz(falling));
@@ -56,12 +54,12 @@ void BorderFades::listOpen(bool vertices_move, const Candidate* candidates, cons
     }
     buffers->fades[pairs] = fades;
     Candidate& pair = fading->pairs[pairs];
-    pair.a = c.a;
-    pair.b = c.b;
+    pair.first = c.first;
+    pair.second = c.second;
     kernels::BesideSides& sides = fading->sides[pairs];
     sides.outside = outside;
     const std::uint32_t face =
-        partner.fading.shapeOf(pair_.side(!vertices_move), c.b, partner.faces.names[c.b], kinds.flat != 0, &surroundings_);
+        partner.fading.shapeOf(pair_.side(!side), c.second, partner.faces.names[c.second], kinds.flat != 0, &surroundings_);
     sides.face = face;
     sides.reach = partner.fading.reach(face).at(std::abs(hit->height));
     ++pairs;
@@ -72,26 +70,25 @@ void BorderFades::listOpen(bool vertices_move, const Candidate* candidates, cons
 
 /** Marks the pairs where nothing takes over from a vertex that leaves over a border behind which the surface falls: isTakenOver in a few
  * products, since over such a border the partner allows the vertex's own contact. */
-void BorderFades::answer(bool vertices_move, LeavingBuffers* buffers, const BesideFaces& fading) {
+void BorderFades::answer(Side side, LeavingBuffers* buffers, const BesideFaces& fading) {
   if (buffers->question_count == 0) return;
-  const kernels::Motion to_vertices = motionOf(Pose(vertices_move ? R_MF_ : R_FM_));
-  kernels::kernels().leadingAtSides(lists_.near[vertices_move].fading.directions(), lists_.near[!vertices_move].faces.records.data(),
-                                    to_vertices, fading.pairs.data(), buffers->questions.data(), buffers->question_count,
-                                    buffers->answers.data());
+  const kernels::Motion to_vertices = motionOf(Pose(side == Side::MOVING ? R_MF_ : R_FM_));
+  kernels::kernels().leadingAtSides(lists_.near[side].fading.directions(), lists_.near[!side].faces.records.data(), to_vertices,
+                                    {fading.pairs.data(), buffers->questions.data(), buffers->question_count}, buffers->answers.data());
   for (std::uint32_t i = 0; i < buffers->question_count; ++i) {
     const LeavingSide& leaving = buffers->questions[i];
     const kernels::LeadingEdges& leading = buffers->answers[i];
-    if (leading.near ? !isTakenOver(vertices_move, fading.pairs[leaving.pair], leaving) : leading.down) buffers->fades[leaving.pair] = 1;
+    if (leading.near ? !isTakenOver(side, fading.pairs[leaving.pair], leaving) : leading.down) buffers->fades[leaving.pair] = 1;
   }
 }
 
-bool BorderFades::isTakenOver(bool vertex_moves, const Candidate& c, const LeavingSide& leaving) {
-  const MeshSide &side = pair_.side(vertex_moves), &partner = pair_.side(!vertex_moves);
-  const NearFeatures& faces = lists_.near[!vertex_moves];
-  const Vector3 normal = vector3(faces.faces.records[c.b].plane), down = leaving.is_above ? Vector3(-normal) : normal;
-  const Matrix3& R_PS = vertex_moves ? R_FM_ : R_MF_;
-  const int edge = partner.topology.edgeOf(faces.faces.names[c.b], leaving.side);
-  return blem_sim::contact::isTakenOver({side, partner, lists_.near[vertex_moves].vertices.names[c.a], edge, R_PS, R_PS.transpose() * down},
+bool BorderFades::isTakenOver(Side side, const Candidate& c, const LeavingSide& leaving) {
+  const MeshSide &own = pair_.side(side), &partner = pair_.side(!side);
+  const NearFeatures& faces = lists_.near[!side];
+  const Vector3 normal = vector3(faces.faces.records[c.second].plane), down = leaving.is_above ? Vector3(-normal) : normal;
+  const Matrix3& R_PS = side == Side::MOVING ? R_FM_ : R_MF_;
+  const int edge = partner.topology.edgeOf(faces.faces.names[c.second], leaving.side);
+  return blem_sim::contact::isTakenOver({own, partner, lists_.near[side].vertices.names[c.first], edge, R_PS, R_PS.transpose() * down},
                                         &surroundings_);
 }
 

@@ -11,6 +11,13 @@
 
 namespace blem_sim::contact {
 
+/** Hits of some candidates. */
+struct VertexFaceHits {
+  const kernels::Candidate* candidates;
+  const kernels::VertexFaceHit* data;
+  std::uint32_t count;
+};
+
 /** Vertices beside faces whose contacts fade. */
 struct BesideFaces {
   std::vector<kernels::Candidate> pairs;
@@ -47,15 +54,13 @@ class BorderFades {
       : pair_(pair), lists_(*lists), surroundings_(*surroundings), R_FM_(pair.X_FM.linear()), R_MF_(R_FM_.transpose()) {}
 
   /** Lists, in order, those of the hits that fade: nothing takes over behind one of the sides that the vertex lies outside of, and neither
-   * the plane, behind one of them, nor a round edge is asked instead. @param candidates whose hits they are */
-  void list(bool vertices_move, const kernels::Candidate* candidates, const kernels::VertexFaceHit* hits, std::uint32_t count,
-            LeavingBuffers* buffers, BesideFaces* fading);
+   * the plane, behind one of them, nor a round edge is asked instead. */
+  void list(Side side, const VertexFaceHits& hits, LeavingBuffers* buffers, BesideFaces* fading);
 
  private:
-  void listOpen(bool vertices_move, const kernels::Candidate* candidates, const kernels::VertexFaceHit* hits, std::uint32_t count,
-                LeavingBuffers* buffers, BesideFaces* fading);
-  void answer(bool vertices_move, LeavingBuffers* buffers, const BesideFaces& fading);
-  bool isTakenOver(bool vertices_move, const kernels::Candidate& c, const kernels::LeavingSide& leaving);
+  void listOpen(Side side, const VertexFaceHits& hits, LeavingBuffers* buffers, BesideFaces* fading);
+  void answer(Side side, LeavingBuffers* buffers, const BesideFaces& fading);
+  bool isTakenOver(Side side, const kernels::Candidate& c, const kernels::LeavingSide& leaving);
 
   const MeshPair& pair_;
   CandidateLists& lists_;

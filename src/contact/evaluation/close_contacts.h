@@ -20,18 +20,10 @@ class CloseContacts {
     placed_.overwrite(&room_);
   }
 
-  /** The contact of a feature with one of the other mesh, whichever of them moves. @param points, normal in frame F, normal from the fixed
-   * mesh to the moving one */
-  void add(const MeshPair& pair, bool first_moves, const Feature& first, const Feature& second, const Vector3& point_first,
-           const Vector3& point_second, const Vector3& normal, double gap) {
-    if (!keeps_witnesses_) {
-      placeInWorld(pair, first_moves, first, second, point_first, point_second, normal, gap, placed_.room(1));
-      placed_.advance(1);
-    } else if (first_moves) {
-      witnessed_.push_back({first, second, point_first, point_second, normal, gap});
-    } else {
-      witnessed_.push_back({second, first, point_second, point_first, normal, gap});
-    }
+  void add(const MeshPair& pair, const FeatureContact& contact) {
+    if (keeps_witnesses_) return witnessed_.push_back(contact);
+    placeInWorld(pair, contact, placed_.room(1));
+    placed_.advance(1);
   }
 
   // Contacts that are in the world already, where no witnesses are kept: room for so many more, and the number that was written there.
@@ -64,8 +56,7 @@ class CloseContacts {
   /** All contacts, in the world. */
   const ContactWriter& placed(const MeshPair& pair) {
     for (const FeatureContact& c : witnessed_) {
-      placeInWorld(pair, true, c.moving, c.fixed, c.point_M, c.point_F, c.normal, c.gap, placed_.room(1));
-      placed_.room(1)->pierced = c.pierced;
+      placeInWorld(pair, c, placed_.room(1));
       placed_.advance(1);
     }
     witnessed_.clear();

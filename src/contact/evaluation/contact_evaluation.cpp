@@ -11,6 +11,10 @@ namespace {
 using kernels::Candidate;
 using kernels::Vec4;
 
+kernels::CandidateRun runOf(const std::vector<Candidate>& candidates) {
+  return {candidates.data(), static_cast<std::uint32_t>(candidates.size())};
+}
+
 }  // namespace
 
 void FoundContacts::clear() {
@@ -27,24 +31,24 @@ void Evaluation::findContacts() {
   found_.close.begin(!found_.crossings.empty());
   const auto& vertices = buffers_.turned.vertices;
   const auto& edges = buffers_.turned.edges;
-  for (const bool moves : {true, false}) {
-    vertexFaces(moves);
-    vertexEdges(moves, moves ? vertices.data() : lists_.near[0].vertices.records.data(),
-                moves ? lists_.near[0].edges.records.data() : edges.data());
+  for (const Side side : SIDES) {
+    vertexFaces(side);
+    vertexEdges(side, side == Side::MOVING ? vertices.data() : lists_.near.fixed.vertices.records.data(),
+                side == Side::MOVING ? lists_.near.fixed.edges.records.data() : edges.data());
   }
-  edgeEdges(edges.data(), lists_.near[0].edges.records.data());
-  vertexVertices(vertices.data(), lists_.near[0].vertices.records.data());
+  edgeEdges(edges.data(), lists_.near.fixed.edges.records.data());
+  vertexVertices(vertices.data(), lists_.near.fixed.vertices.records.data());
 }
 
 void Evaluation::findCrossings() {
   const TurnedFeatures& turned = buffers_.turned;
-  for (const bool moves : {true, false}) {
-    const std::vector<Candidate>& candidates = pairs_.edge_face[moves];
-    const auto& edges = moves ? turned.edges : lists_.near[0].edges.records;
-    const auto& faces = moves ? lists_.near[0].faces.records : turned.faces;
-    forEachHit(candidates, kernels::kernels().edgeFaces(edges.data(), faces.data(), candidates.data(), candidates.size(), room(candidates)),
+  for (const Side side : SIDES) {
+    const std::vector<Candidate>& candidates = pairs_.edge_face[side];
+    const auto& edges = side == Side::MOVING ? turned.edges : lists_.near.fixed.edges.records;
+    const auto& faces = side == Side::MOVING ? lists_.near.fixed.faces.records : turned.faces;
+    forEachHit(candidates, kernels::kernels().edgeFaces(edges.data(), faces.data(), runOf(candidates), room(candidates)),
                [&](const Candidate& c) {
-                 const Crossing crossing{moves, lists_.near[moves].edges.names[c.a], lists_.near[!moves].faces.names[c.b]};
+                 const Crossing crossing{side, lists_.near[side].edges.names[c.first], lists_.near[!side].faces.names[c.second]};
                  if (crosses(pair_, crossing)) found_.crossings.push_back(crossing);
                });
   }
@@ -65,8 +69,8 @@ std::uint32_t Evaluation::findEdgeEdges(const kernels::EdgeRecord* moving, const
   const std::vector<Candidate>& candidates = pairs_.edge_edge;
   const ContactRoles& roles = pair_.roles;
   const Feature edge{FeatureKind::EDGE, 0};
-  kernels::PlainEdges plain{{lists_.near[1].edges.names.data(), lists_.near[0].edges.names.data(), roles.first_is_a, motionOf(pair_.X_WF),
-                             roles.r_a + roles.r_b, 0.5 * (roles.r_b - roles.r_a), contactId(edge, edge)},
+  kernels::PlainEdges plain{{lists_.near.moving.edges.names.data(), lists_.near.fixed.edges.names.data(), roles.a, motionOf(pair_.X_WF),
+                             roles.layer(), roles.shift(), contactId(edge, edge)},
                             nullptr,
                             0,
                             found_.deepest_plain};
@@ -74,8 +78,8 @@ std::uint32_t Evaluation::findEdgeEdges(const kernels::EdgeRecord* moving, const
   kernels::LeftEdges left{buffers_.edges_left.data(), 0};
   const std::uint32_t count =
       testBlocks(candidates.size(), &buffers_.edge_edges, &plain, [&](std::uint32_t first, std::uint32_t size, kernels::EdgeEdgeHit* hits) {
-        return kernels::kernels().edgeEdges(moving, fixed, candidates.data() + first, size, pair_.range,
-                                            found_.crossings.empty() ? &plain : nullptr, &left, hits);
+        return kernels::kernels().edgeEdges(moving, fixed, {candidates.data() + first, size}, pair_.range,
+                                            {found_.crossings.empty() ? &plain : nullptr, &left, hits});
       });
   buffers_.edges_left_count = left.count;
   return count;
@@ -87,8 +91,9 @@ void Evaluation::edgeEdges(const kernels::EdgeRecord* moving, const kernels::Edg
   for (std::uint32_t i = 0; i < count; ++i) {
     const kernels::EdgeEdgeHit& hit = buffers_.edge_edges[i];
     const Candidate& c = pairs_.edge_edge[hit.candidate];
-    const Feature m{FeatureKind::EDGE, lists_.near[1].edges.names[c.a]}, f{FeatureKind::EDGE, lists_.near[0].edges.names[c.b]};
-    found_.close.add(pair_, true, m, f, Vector3(hit.point_a), Vector3(hit.point_b), Vector3(hit.normal), hit.gap);
+    const Feature m{FeatureKind::EDGE, lists_.near.moving.edges.names[c.first]},
+        f{FeatureKind::EDGE, lists_.near.fixed.edges.names[c.second]};
+    found_.close.add(pair_, {m, f, Vector3(hit.point_m), Vector3(hit.point_f), Vector3(hit.normal), hit.gap});
   }
   fadingEdges(moving, fixed);
 }
@@ -97,40 +102,40 @@ void Evaluation::fadingEdges(const kernels::EdgeRecord* moving, const kernels::E
   const std::vector<Candidate>& left = buffers_.edges_left;
   const std::uint32_t total = buffers_.edges_left_count;
   EvaluationBuffers::makeRoom(total + 1, &buffers_.fading_edges);
-  const std::uint32_t count = kernels::kernels().fadingEdges(moving, fixed, left.data(), total, pair_.range, buffers_.fading_edges.data());
+  const std::uint32_t count =
+      kernels::kernels().fadingEdges(moving, fixed, {left.data(), total}, pair_.range, buffers_.fading_edges.data());
   for (std::uint32_t i = 0; i < count; ++i) {
     const kernels::FadingEdgesHit& hit = buffers_.fading_edges[i];
     const Candidate& c = left[hit.candidate];
-    const int m = lists_.near[1].edges.names[c.a], f = lists_.near[0].edges.names[c.b];
+    const int m = lists_.near.moving.edges.names[c.first], f = lists_.near.fixed.edges.names[c.second];
     if (hit.is_inside) {
-      exact_.edgeEdge(m, f, moving[c.a], fixed[c.b]);
+      exact_.edgeEdge(m, f, moving[c.first], fixed[c.second]);
     } else {
       exact_.fadingEdges(m, f, hit);
     }
   }
 }
 
-void Evaluation::vertexEdges(bool moves, const Vec4* vertices, const kernels::EdgeRecord* edges) {
-  const std::vector<Candidate>& candidates = pairs_.vertex_edge[moves];
-  const auto total = static_cast<std::uint32_t>(candidates.size());
-  EvaluationBuffers::makeRoom(total, &buffers_.vertex_edges);
+void Evaluation::vertexEdges(Side side, const Vec4* vertices, const kernels::EdgeRecord* edges) {
+  const std::vector<Candidate>& candidates = pairs_.vertex_edge[side];
+  EvaluationBuffers::makeRoom(candidates.size(), &buffers_.vertex_edges);
   const kernels::VertexEdgeHit* const hits = buffers_.vertex_edges.data();
-  const std::uint32_t count =
-      kernels::kernels().vertexEdges(vertices, edges, candidates.data(), total, pair_.range, buffers_.vertex_edges.data());
+  const std::uint32_t count = kernels::kernels().vertexEdges(vertices, edges, runOf(candidates), pair_.range, buffers_.vertex_edges.data());
   for (std::uint32_t i = 0; i < count; ++i) {
     const Candidate& c = candidates[hits[i].candidate];
-    const int vertex = lists_.near[moves].vertices.names[c.a];
-    const bool is_round = edges[c.b].along.w < 0;
-    if (!is_round && exact_.leadsTo(moves, vertex, Vector3(hits[i].offset))) continue;
-    exact_.vertexEdge(moves, vertex, lists_.near[!moves].edges.names[c.b], vector3(vertices[c.a]), edges[c.b]);
+    const int vertex = lists_.near[side].vertices.names[c.first];
+    const bool is_round = edges[c.second].along.w < 0;
+    if (!is_round && exact_.leadsTo(side, vertex, Vector3(hits[i].offset))) continue;
+    exact_.vertexEdge(side, vertex, lists_.near[!side].edges.names[c.second], vector3(vertices[c.first]), edges[c.second]);
   }
 }
 
 void Evaluation::vertexVertices(const Vec4* moving, const Vec4* fixed) {
   const std::vector<Candidate>& candidates = pairs_.vertex_vertex;
-  forEachHit(candidates,
-             kernels::kernels().vertexVertices(moving, fixed, candidates.data(), candidates.size(), pair_.range, room(candidates)),
-             [&](const Candidate& c) { exact_.vertexVertex(lists_.near[1].vertices.names[c.a], lists_.near[0].vertices.names[c.b]); });
+  forEachHit(candidates, kernels::kernels().vertexVertices(moving, fixed, runOf(candidates), pair_.range, room(candidates)),
+             [&](const Candidate& c) {
+               exact_.vertexVertex(lists_.near.moving.vertices.names[c.first], lists_.near.fixed.vertices.names[c.second]);
+             });
 }
 
 }  // namespace blem_sim::contact

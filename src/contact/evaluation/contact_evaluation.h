@@ -84,20 +84,20 @@ class Evaluation {
   template <typename Visit>
   void forEachHit(const std::vector<kernels::Candidate>& candidates, std::uint32_t count, Visit&& visit) const;
 
-  void vertexFaces(bool moves);
-  std::uint32_t findVertexFaces(bool moves);
-  kernels::ContactPlace place(bool vertices_move) const;
-  void addPlain(bool moves, const kernels::Candidate& c, double height);
-  std::uint32_t addFading(bool moves);
-  void addFeet(bool moves);
-  void dropCovered(bool moves, std::uint32_t count);
-  void listCovering(bool moves);
+  void vertexFaces(Side side);
+  std::uint32_t findVertexFaces(Side side);
+  kernels::ContactPlace place(Side side) const;
+  void addPlain(Side side, const kernels::Candidate& c, double height);
+  std::uint32_t addFading(Side side);
+  void addFeet(Side side);
+  void dropCovered(Side side, std::uint32_t count);
+  void listCovering(Side side);
   template <typename Visit>
-  void forEachBeside(bool moves, const kernels::Candidate& c, Visit&& visit);
+  void forEachBeside(Side side, const kernels::Candidate& c, Visit&& visit);
   std::uint32_t findEdgeEdges(const kernels::EdgeRecord* moving, const kernels::EdgeRecord* fixed);
   void fadingEdges(const kernels::EdgeRecord* moving, const kernels::EdgeRecord* fixed);
   void edgeEdges(const kernels::EdgeRecord* moving, const kernels::EdgeRecord* fixed);
-  void vertexEdges(bool moves, const kernels::Vec4* vertices, const kernels::EdgeRecord* edges);
+  void vertexEdges(Side side, const kernels::Vec4* vertices, const kernels::EdgeRecord* edges);
   void vertexVertices(const kernels::Vec4* moving, const kernels::Vec4* fixed);
 
   const MeshPair& pair_;

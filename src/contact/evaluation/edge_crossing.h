@@ -7,7 +7,7 @@ namespace blem_sim::contact {
 
 /** An edge of one mesh passes through a face of the other. */
 struct Crossing {
-  bool edge_of_moving;
+  Side edge_side;
   int edge;
   int face;  ///< element
 };

@@ -34,8 +34,8 @@ class Sides {
   }
 
   /** The side along a face's normal, at a point where an edge passes through it. */
-  double through(const Vector3& point, const Vector3& normal, bool face_moves) const {
-    const Vector3 then = known_ && face_moves ? Vector3(back_.linear() * normal) : normal;
+  double through(const Vector3& point, const Vector3& normal, Side face_side) const {
+    const Vector3 then = known_ && face_side == Side::MOVING ? Vector3(back_.linear() * normal) : normal;
     return between(point, point).dot(then);
   }
 
@@ -51,12 +51,12 @@ class Retraction {
       : pair_(pair), sides_(sides), longest_(0.5 * std::min(pair.moving.bounds.diagonal().norm(), pair.fixed.bounds.diagonal().norm())) {}
 
   FeatureContact shortest(const Crossing& crossing) const {
-    const MeshSide &edge_side = crossing.edge_of_moving ? pair_.moving : pair_.fixed,
-                   &face_side = crossing.edge_of_moving ? pair_.fixed : pair_.moving;
+    const MeshSide &edge_side = pair_.side(crossing.edge_side), &face_side = pair_.side(!crossing.edge_side);
+    const bool edge_moves = crossing.edge_side == Side::MOVING;
     FeatureContact best = byEnd(crossing, edge_side, face_side);
     forEachBorderNear(face_side, crossing.face, [&](int border) {
       FeatureContact over_border;
-      const int m = crossing.edge_of_moving ? crossing.edge : border, f = crossing.edge_of_moving ? border : crossing.edge;
+      const int m = edge_moves ? crossing.edge : border, f = edge_moves ? border : crossing.edge;
       if (overEdges(m, f, &over_border) && over_border.gap > best.gap) best = over_border;
     });
     return best;
@@ -86,6 +86,7 @@ class Retraction {
   }
 
   FeatureContact byEnd(const Crossing& crossing, const MeshSide& edge_side, const MeshSide& face_side) const {
+    const bool edge_moves = crossing.edge_side == Side::MOVING;
     const std::array<int, 2> ends = edge_side.topology.ends(edge_side.mesh, crossing.edge);
     const Vector3 p0 = position(edge_side, ends[0]), p1 = position(edge_side, ends[1]);
     Vector3 normal = geometry::MeshTopology::normal(face_side.mesh, crossing.face);
@@ -93,17 +94,17 @@ class Retraction {
     const Vector3 corner = position(face_side, face_side.mesh.elements[crossing.face][0]);
     const double h0 = normal.dot(p0 - corner), h1 = normal.dot(p1 - corner);
     const Vector3 through = p0 + h0 / (h0 - h1) * (p1 - p0);
-    double side = sides_.through(through, normal, !crossing.edge_of_moving);
-    if (side == 0) side = (std::abs(h0) < std::abs(h1) ? -h0 : -h1) * (crossing.edge_of_moving ? 1 : -1);
+    double side = sides_.through(through, normal, !crossing.edge_side);
+    if (side == 0) side = (std::abs(h0) < std::abs(h1) ? -h0 : -h1) * (edge_moves ? 1 : -1);
     if (side < 0) normal = -normal;
     // The end behind the face if the edge moves, in front of it if the face moves.
-    const bool first = (normal.dot(p0 - through) < 0) == crossing.edge_of_moving;
+    const bool first = (normal.dot(p0 - through) < 0) == edge_moves;
     const Vector3 out = (first ? p0 : p1) - through;
     const Vector3 end = through + out * std::min(1.0, longest_ / out.norm());
     const Vector3 foot = end - normal * normal.dot(end - through);
     const Feature vertex{FeatureKind::VERTEX, ends[first ? 0 : 1]}, patch{FeatureKind::FACE, face_side.topology.patchOf(crossing.face)};
     const double gap = -std::abs(normal.dot(end - through));
-    if (crossing.edge_of_moving) return {vertex, patch, end, foot, normal, gap, true};
+    if (edge_moves) return {vertex, patch, end, foot, normal, gap, true};
     return {patch, vertex, foot, end, normal, gap, true};
   }
 
@@ -111,8 +112,8 @@ class Retraction {
     const std::array<int, 2> ends_m = pair_.moving.topology.ends(pair_.moving.mesh, m),
                              ends_f = pair_.fixed.topology.ends(pair_.fixed.mesh, f);
     EdgePair feet;
-    if (!findEdgePair(position(pair_.moving, ends_m[0]), position(pair_.moving, ends_m[1]), position(pair_.fixed, ends_f[0]),
-                      position(pair_.fixed, ends_f[1]), longest_, &feet)) {
+    if (!findEdgePair({position(pair_.moving, ends_m[0]), position(pair_.moving, ends_m[1])},
+                      {position(pair_.fixed, ends_f[0]), position(pair_.fixed, ends_f[1])}, longest_, &feet)) {
       return false;
     }
     // Crossed: the moving edge lies on the far side of the fixed one.

@@ -13,7 +13,7 @@ namespace blem_sim::contact {
 
 /** The middle of the overlap of the layers [Hauser 2013, 3.2]. @param p, q witness points @param normal from B to A */
 inline Vector3 placeOf(const ContactRoles& roles, const Vector3& p, const Vector3& q, const Vector3& normal) {
-  return 0.5 * (p + q) + 0.5 * (roles.r_b - roles.r_a) * normal;
+  return 0.5 * (p + q) + roles.shift() * normal;
 }
 
 /** Point of A's bare mesh, or of B's, of radius r [m], at a contact. */
@@ -21,33 +21,32 @@ inline Vector3 witnessOf(const Contact& contact, double radius, bool of_a) {
   return contact.point + (of_a ? 1 : -1) * (radius - 0.5 * contact.depth) * contact.normal_BA;
 }
 
-/** A contact in the frame of the points. @param normal from second to first */
-inline Contact contactOf(const ContactRoles& roles, const Feature& first, const Feature& second, const Vector3& point_first,
-                         const Vector3& point_second, const Vector3& normal, double gap) {
+/** Id of a contact of a feature of a side with one of the other. */
+inline std::uint64_t contactId(const ContactRoles& roles, Side side, const Feature& first, const Feature& second) {
+  return side == roles.a ? contactId(first, second) : contactId(second, first);
+}
+
+/** The contact in the frame of its points. */
+inline Contact contactOf(const ContactRoles& roles, const FeatureContact& found) {
   Contact contact;
-  contact.normal_BA = roles.first_is_a ? normal : Vector3(-normal);
-  contact.point = placeOf(roles, point_first, point_second, contact.normal_BA);
-  contact.depth = roles.r_a + roles.r_b - gap;
-  contact.id = roles.first_is_a ? contactId(first, second) : contactId(second, first);
+  contact.normal_BA = roles.normalBA(found.normal);
+  contact.point = placeOf(roles, found.point_M, found.point_F, contact.normal_BA);
+  contact.depth = roles.layer() - found.gap;
+  contact.id = contactId(roles, Side::MOVING, found.moving, found.fixed);
+  contact.pierced = found.pierced;
   return contact;
 }
 
-/** Id of a contact of a feature with one of the other mesh, whichever of them moves. */
-inline std::uint64_t contactId(const ContactRoles& roles, bool first_moves, const Feature& first, const Feature& second) {
-  return first_moves == roles.first_is_a ? contactId(first, second) : contactId(second, first);
-}
-
-/** A contact of a pair in the world. @param normal from the fixed mesh to the moving one, as the points in frame F */
-inline void placeInWorld(const MeshPair& pair, bool first_moves, const Feature& first, const Feature& second, const Vector3& point_first,
-                         const Vector3& point_second, const Vector3& normal, double gap, Contact* out) {
+/** The contact in the world. */
+inline void placeInWorld(const MeshPair& pair, const FeatureContact& found, Contact* out) {
   const ContactRoles& roles = pair.roles;
-  const Vector3 normal_BA = roles.first_is_a ? normal : Vector3(-normal);
-  out->point = pair.X_WF * placeOf(roles, point_first, point_second, normal_BA);
+  const Vector3 normal_BA = roles.normalBA(found.normal);
+  out->point = pair.X_WF * placeOf(roles, found.point_M, found.point_F, normal_BA);
   out->normal_BA = pair.X_WF.linear() * normal_BA;
-  out->depth = roles.r_a + roles.r_b - gap;
-  out->id = contactId(roles, first_moves, first, second);
+  out->depth = roles.layer() - found.gap;
+  out->id = contactId(roles, Side::MOVING, found.moving, found.fixed);
   out->weight = 1;
-  out->pierced = false;
+  out->pierced = found.pierced;
 }
 
 static_assert(offsetof(Contact, point) == offsetof(kernels::ContactRow, point) &&

@@ -9,7 +9,12 @@
 
 namespace blem_sim::contact {
 
-/** Segments p0 p1 and q0 q1 where their lines are closest. */
+/** An edge in the frame of the search. */
+struct EdgeSegment {
+  const Vector3 &start, &end;  ///< [m]
+};
+
+/** Two edges p and q where their lines are closest. */
 struct EdgePair {
   Vector3 axis;              ///< unit, square to both
   double offset;             ///< [m] axis . (p - q)
@@ -28,8 +33,9 @@ inline bool isInside(double numerator, double denominator, double squared_length
 }  // namespace edge_pair_detail
 
 /** @return false if they are parallel, farther than `range` [m] apart, or a foot lies outside its segment */
-inline bool findEdgePair(const Vector3& p0, const Vector3& p1, const Vector3& q0, const Vector3& q1, double range, EdgePair* out) {
-  const Vector3 p = p1 - p0, q = q1 - q0, r = q0 - p0, n = p.cross(q);
+inline bool findEdgePair(const EdgeSegment& edge_p, const EdgeSegment& edge_q, double range, EdgePair* out) {
+  const Vector3 &p0 = edge_p.start, &q0 = edge_q.start;
+  const Vector3 p = edge_p.end - p0, q = edge_q.end - q0, r = q0 - p0, n = p.cross(q);
   const double n2 = n.squaredNorm(), rn = r.dot(n), p2 = p.squaredNorm(), q2 = q.squaredNorm();
   if (rn * rn > range * range * n2 || n2 <= MIN_EDGE_SINE * MIN_EDGE_SINE * p2 * q2) return false;
   const double s = r.cross(q).dot(n), t = r.cross(p).dot(n);

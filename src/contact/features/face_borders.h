@@ -16,10 +16,10 @@ inline int cornerAt(const FaceShape& face, const Vector3& p) {
 }
 
 /** Whether p is within CLOSED of the edge. */
-inline bool liesOn(const MeshPair& pair, bool edge_moves, int edge, const Vector3& p) {
-  const MeshSide& side = pair.side(edge_moves);
+inline bool liesOn(const MeshPair& pair, Side edge_side, int edge, const Vector3& p) {
+  const MeshSide& side = pair.side(edge_side);
   const std::array<int, 2> ends = side.topology.ends(side.mesh, edge);
-  const Vector3 q = pair.placed(side.mesh.vertices[ends[0]], edge_moves), along = pair.placed(side.mesh.vertices[ends[1]], edge_moves) - q;
+  const Vector3 q = pair.placed(side.mesh.vertices[ends[0]], edge_side), along = pair.placed(side.mesh.vertices[ends[1]], edge_side) - q;
   const double length2 = along.squaredNorm(), part = std::min(std::max((p - q).dot(along), 0.0), length2);
   return (p - q - part / length2 * along).squaredNorm() <= CLOSED * CLOSED;
 }
@@ -36,9 +36,9 @@ void visitIfBorder(const geometry::MeshTopology& topology, int edge, int patch, 
 
 /** Calls visit(edge, face) for each edge where the plane of `face` ends within CLOSED of p (frame F), with the plane's face there. */
 template <typename Visit>
-void forEachBorderAt(const MeshPair& pair, const FaceShape& face, bool face_moves, const Vector3& p, Visit&& visit) {
+void forEachBorderAt(const MeshPair& pair, const FaceShape& face, Side face_side, const Vector3& p, Visit&& visit) {
   using namespace face_borders_detail;
-  const MeshSide& side = pair.side(face_moves);
+  const MeshSide& side = pair.side(face_side);
   const geometry::MeshTopology& topology = side.topology;
   const auto forEachEdgeAt = [&](int k, auto&& visit_edge) {
     const int vertex = side.mesh.elements[face.element][k];
@@ -53,7 +53,7 @@ void forEachBorderAt(const MeshPair& pair, const FaceShape& face, bool face_move
   // A border that p lies on need not be a side of this face where two sides meet at a small angle, but it ends at one of its corners.
   for (int k = 0; k < 3; ++k) {
     forEachEdgeAt(k, [&](int edge) {
-      if (liesOn(pair, face_moves, edge, p)) visitIfBorder(topology, edge, topology.patchOf(face.element), visit);
+      if (liesOn(pair, face_side, edge, p)) visitIfBorder(topology, edge, topology.patchOf(face.element), visit);
     });
   }
 }
@@ -63,15 +63,15 @@ void forEachBorderAt(const MeshPair& pair, const FaceShape& face, bool face_move
  * @return whether it does
  */
 template <typename Visit>
-bool forEachNeighbourAt(const MeshPair& pair, const FaceShape& face, bool face_moves, const Vector3& p, Visit&& visit) {
-  const MeshSide& side = pair.side(face_moves);
+bool forEachNeighbourAt(const MeshPair& pair, const FaceShape& face, Side face_side, const Vector3& p, Visit&& visit) {
+  const MeshSide& side = pair.side(face_side);
   const geometry::MeshTopology& topology = side.topology;
   const auto visitFacesOf = [&](int edge) {
     for (const int neighbour : topology.facesOf(edge)) {
       if (topology.patchOf(neighbour) == topology.patchOf(face.element)) continue;
       const Vector3i& v = side.mesh.elements[neighbour];
       const Vector3 middle = (side.mesh.vertices[v[0]] + side.mesh.vertices[v[1]] + side.mesh.vertices[v[2]]) / 3;
-      visit(pair.placed(middle, face_moves) - p, pair.turned(geometry::MeshTopology::normal(side.mesh, neighbour), face_moves));
+      visit(pair.placed(middle, face_side) - p, pair.turned(geometry::MeshTopology::normal(side.mesh, neighbour), face_side));
     }
   };
   const int corner = face_borders_detail::cornerAt(face, p);
@@ -81,7 +81,7 @@ bool forEachNeighbourAt(const MeshPair& pair, const FaceShape& face, bool face_m
     return !topology.isFlatVertex(vertex);
   }
   bool at_border = false;
-  forEachBorderAt(pair, face, face_moves, p, [&](int edge, int) {
+  forEachBorderAt(pair, face, face_side, p, [&](int edge, int) {
     at_border = true;
     visitFacesOf(edge);
   });

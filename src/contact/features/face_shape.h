@@ -19,12 +19,12 @@ struct FaceShape {
 
 inline constexpr int NEXT[3] = {1, 2, 0};
 
-inline FaceShape faceShape(const MeshPair& pair, bool face_moves, int element) {
-  const MeshSide& side = pair.side(face_moves);
+inline FaceShape faceShape(const MeshPair& pair, Side face_side, int element) {
+  const MeshSide& side = pair.side(face_side);
   FaceShape shape;
   shape.element = element;
-  for (int k = 0; k < 3; ++k) shape.corners[k] = pair.placed(side.mesh.vertices[side.mesh.elements[element][k]], face_moves);
-  shape.normal = pair.turned(geometry::MeshTopology::normal(side.mesh, element), face_moves);
+  for (int k = 0; k < 3; ++k) shape.corners[k] = pair.placed(side.mesh.vertices[side.mesh.elements[element][k]], face_side);
+  shape.normal = pair.turned(geometry::MeshTopology::normal(side.mesh, element), face_side);
   for (int k = 0; k < 3; ++k) {
     const Vector3 along = shape.corners[NEXT[k]] - shape.corners[k];
     shape.inward[k] = shape.normal.cross(along);

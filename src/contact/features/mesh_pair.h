@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "blem_sim/contact/collider.h"
+#include "features/side.h"
 
 namespace blem_sim::contact {
 
@@ -50,10 +51,15 @@ struct MeshSide {
   std::uint64_t identity;  ///< of the geometry, its own for as long as the program runs
 };
 
-/** Roles of the two meshes, A or B, and the widths of their layers. */
+/** Names that the two sides have outside of the search: one is A, the other B. And the widths of their layers. */
 struct ContactRoles {
-  bool first_is_a = true;   ///< the moving one, or the mesh on a half-space
-  double r_a = 0, r_b = 0;  ///< [m]
+  Side a = Side::MOVING;
+  PerSide<double> radius{0, 0};  ///< [m]
+
+  double layer() const { return radius.moving + radius.fixed; }    ///< [m] rA + rB
+  double shift() const { return 0.5 * (radius[!a] - radius[a]); }  ///< [m] (rB - rA) / 2
+  /** @param normal from the fixed side to the moving one */
+  Vector3 normalBA(const Vector3& normal) const { return a == Side::MOVING ? normal : Vector3(-normal); }
 };
 
 /** The moving mesh M, the one with fewer elements, is seen from the frame F of the other, fixed one: near the geometry wherever the pair is
@@ -66,10 +72,10 @@ struct MeshPair {
   ContactRoles roles;
   Pose X_WF = Pose::Identity();
 
-  const MeshSide& side(bool moves) const { return moves ? moving : fixed; }
+  const MeshSide& side(Side side) const { return side == Side::MOVING ? moving : fixed; }
   /** Direction and point of either mesh in frame F. */
-  Vector3 turned(const Vector3& direction, bool of_moving) const { return of_moving ? Vector3(X_FM.linear() * direction) : direction; }
-  Vector3 placed(const Vector3& p, bool of_moving) const { return of_moving ? Vector3(X_FM * p) : p; }
+  Vector3 turned(const Vector3& direction, Side of) const { return of == Side::MOVING ? Vector3(X_FM.linear() * direction) : direction; }
+  Vector3 placed(const Vector3& p, Side of) const { return of == Side::MOVING ? Vector3(X_FM * p) : p; }
 };
 
 /** A contact in frame F; its normal points from the fixed mesh to the moving one. */
@@ -80,5 +86,17 @@ struct FeatureContact {
   double gap;                ///< [m] distance of the witness points; negative where pierced
   bool pierced = false;
 };
+
+/** A feature and its witness point [m], frame F. */
+struct Witness {
+  Feature feature;
+  Vector3 point;
+};
+
+/** The contact of a feature of a side with one of the other. @param normal from the fixed mesh to the moving one */
+inline FeatureContact contactBetween(Side side, const Witness& own, const Witness& other, const Vector3& normal, double gap) {
+  if (side == Side::MOVING) return {own.feature, other.feature, own.point, other.point, normal, gap};
+  return {other.feature, own.feature, other.point, own.point, normal, gap};
+}
 
 }  // namespace blem_sim::contact

@@ -6,6 +6,7 @@
 
 #include "blem_sim/geometry/roomy.h"
 #include "features/tolerances.h"
+#include "kept/list_schedule.h"
 #include "kernels/vectors.h"
 
 namespace blem_sim::contact {
@@ -26,21 +27,22 @@ class LeadingVertices {
         limit_(margin.motion + (margin.turn + 2 * CONE_SLACK) * (pair.range + margin.motion) + 2 * TOUCH) {}
 
   /** Drops vertices whose surface leads towards edges that are not round. */
-  void dropFrom(bool moves, const std::vector<Vec4>& vertices, const std::vector<EdgeRecord>& edges, std::vector<Candidate>* candidates) {
+  void dropFrom(Side side, const std::vector<Vec4>& vertices, const std::vector<EdgeRecord>& edges, std::vector<Candidate>* candidates) {
     drop(candidates, [&](const Candidate& c) {
-      const EdgeRecord& edge = edges[c.b];
+      const EdgeRecord& edge = edges[c.second];
       if (edge.along.w < 0) return false;
-      const Vector3 along = vector3(edge.along), back = vector3(edge.start) - vector3(vertices[c.a]);
-      return leads(moves, c.a, back - back.dot(along) / edge.start.w * along);
+      const Vector3 along = vector3(edge.along), back = vector3(edge.start) - vector3(vertices[c.first]);
+      return leads(side, c.first, back - back.dot(along) / edge.start.w * along);
     });
   }
 
   /** Drops pairs of vertices of which both lead, or one does and the other, nearer than its surroundings, is not round. */
   void dropFrom(const std::vector<Vec4>& moving, const std::vector<Vec4>& fixed, std::vector<Candidate>* candidates) {
     drop(candidates, [&](const Candidate& c) {
-      const Vector3 d = vector3(fixed[c.b]) - vector3(moving[c.a]);
-      const bool moving_leads = leads(true, c.a, d), fixed_leads = leads(false, c.b, -d);
-      return (moving_leads || fixed_leads) && (moving_leads || !isRound(true, c.a)) && (fixed_leads || !isRound(false, c.b));
+      const Vector3 d = vector3(fixed[c.second]) - vector3(moving[c.first]);
+      const bool moving_leads = leads(Side::MOVING, c.first, d), fixed_leads = leads(Side::FIXED, c.second, -d);
+      return (moving_leads || fixed_leads) && (moving_leads || !isRound(Side::MOVING, c.first)) &&
+             (fixed_leads || !isRound(Side::FIXED, c.second));
     });
   }
 
@@ -50,22 +52,22 @@ class LeadingVertices {
     candidates->erase(std::remove_if(candidates->begin(), candidates->end(), has_none), candidates->end());
   }
 
-  EdgesAtVertex edgesOf(bool moves, std::uint32_t vertex) {
-    return surroundings_.ofVertex(pair_.side(moves), lists_.near[moves].vertices.names[vertex]);
+  EdgesAtVertex edgesOf(Side side, std::uint32_t vertex) {
+    return surroundings_.ofVertex(pair_.side(side), lists_.near[side].vertices.names[vertex]);
   }
 
   /** @param d [m] from the vertex to the other mesh, frame F: it changes by no more than the motion, and with the turn */
-  bool leads(bool moves, std::uint32_t vertex, const Vector3& d) {
-    const Vector3 towards = moves ? Vector3(R_MF_ * d) : d;
-    const EdgesAtVertex edges = edgesOf(moves, vertex);
+  bool leads(Side side, std::uint32_t vertex, const Vector3& d) {
+    const Vector3 towards = side == Side::MOVING ? Vector3(R_MF_ * d) : d;
+    const EdgesAtVertex edges = edgesOf(side, vertex);
     return kernels::kernels().leadTo(edges.blocks, edges.block_count, towards.data(), limit_ * limit_);
   }
 
   /** Whether the vertex has flat and round edges only. */
-  bool isRound(bool moves, std::uint32_t vertex) {
-    const EdgesAtVertex edges = edgesOf(moves, vertex);
+  bool isRound(Side side, std::uint32_t vertex) {
+    const EdgesAtVertex edges = edgesOf(side, vertex);
     return std::all_of(edges.begin(), edges.end(), [&](const EdgeFromVertex& edge) {
-      return edge.is_flat || surroundings_.ofEdge(pair_.side(moves), edge.edge).is_round;
+      return edge.is_flat || surroundings_.ofEdge(pair_.side(side), edge.edge).is_round;
     });
   }
 
@@ -105,27 +107,25 @@ void NearFeatures::reserve(std::size_t count) {
 }
 
 void CandidatePairs::clear() {
-  for (Candidates* candidates :
-       {&vertex_face[0], &vertex_face[1], &vertex_edge[0], &vertex_edge[1], &edge_face[0], &edge_face[1], &edge_edge, &vertex_vertex}) {
-    candidates->clear();
-  }
-  for (std::vector<std::uint8_t>& each : inner) each.clear();
+  for (PerSide<Candidates>* candidates : {&vertex_face, &vertex_edge, &edge_face})
+    for (const Side side : SIDES) (*candidates)[side].clear();
+  for (Candidates* candidates : {&edge_edge, &vertex_vertex}) candidates->clear();
+  for (const Side side : SIDES) inner[side].clear();
 }
 
 void CandidatePairs::reserve(std::size_t count) {
-  for (Candidates* candidates :
-       {&vertex_face[0], &vertex_face[1], &vertex_edge[0], &vertex_edge[1], &edge_face[0], &edge_face[1], &edge_edge, &vertex_vertex}) {
-    candidates->reserve(count);
-  }
+  for (PerSide<Candidates>* candidates : {&vertex_face, &vertex_edge, &edge_face})
+    for (const Side side : SIDES) (*candidates)[side].reserve(count);
+  for (Candidates* candidates : {&edge_edge, &vertex_vertex}) candidates->reserve(count);
 }
 
 std::size_t CandidatePairs::contacts() const {
-  return vertex_face[0].size() + vertex_face[1].size() + vertex_edge[0].size() + vertex_edge[1].size() + edge_edge.size() +
+  return vertex_face.fixed.size() + vertex_face.moving.size() + vertex_edge.fixed.size() + vertex_edge.moving.size() + edge_edge.size() +
          vertex_vertex.size();
 }
 
 void CandidateLists::clear() {
-  for (NearFeatures& features : near) features.clear();
+  for (const Side side : SIDES) near[side].clear();
   pairs.clear();
 }
 
@@ -141,34 +141,34 @@ void turn(void (*kernel)(const Record*, std::uint32_t, const kernels::Motion&, R
 
 }  // namespace
 
-kernels::NearVertices TurnedFeatures::nearFaces(const CandidateLists& lists, bool moves, const Pose& X_FM) const {
-  return {moves ? vertices.data() : lists.near[0].vertices.records.data(), !moves, motionOf(X_FM.inverse()), motionOf(X_FM)};
+kernels::NearVertices TurnedFeatures::nearFaces(const CandidateLists& lists, Side side, const Pose& X_FM) const {
+  return {side == Side::MOVING ? vertices.data() : lists.near.fixed.vertices.records.data(), side, motionOf(X_FM.inverse()),
+          motionOf(X_FM)};
 }
 
 void TurnedFeatures::turnForContacts(const CandidateLists& lists, const Pose& X_FM) {
   const kernels::Kernels& kernels = kernels::kernels();
   const kernels::Motion to_fixed = motionOf(X_FM);
-  turn(kernels.turnPoints, lists.near[1].vertices.records, to_fixed, &vertices);
-  turn(kernels.turnEdges, lists.near[1].edges.records, to_fixed, &edges);
+  turn(kernels.turnPoints, lists.near.moving.vertices.records, to_fixed, &vertices);
+  turn(kernels.turnEdges, lists.near.moving.edges.records, to_fixed, &edges);
 }
 
 void TurnedFeatures::turnForCrossings(const CandidateLists& lists, const Pose& X_FM) {
-  turn(kernels::kernels().turnEdges, lists.near[1].edges.records, motionOf(X_FM), &edges);
-  turn(kernels::kernels().turnFaces, lists.near[1].faces.records, motionOf(X_FM), &faces);
+  turn(kernels::kernels().turnEdges, lists.near.moving.edges.records, motionOf(X_FM), &edges);
+  turn(kernels::kernels().turnFaces, lists.near.moving.faces.records, motionOf(X_FM), &faces);
 }
 
 void groupByFaces(const MeshPair& pair, CandidateLists* lists, CandidatePairs* room) {
-  constexpr std::size_t FEW_FACES = 256;
-  for (const bool moves : {true, false}) {
-    if (pair.side(!moves).mesh.elements.size() > FEW_FACES) continue;
-    const std::vector<int>& faces = lists->near[!moves].faces.names;
-    CandidatePairs::Candidates &candidates = lists->pairs.vertex_face[moves], &grouped = room->vertex_face[moves];
-    std::array<std::uint32_t, FEW_FACES> places{};
-    for (const Candidate& c : candidates) ++places[faces[c.b]];
+  for (const Side side : SIDES) {
+    if (pair.side(!side).mesh.elements.size() > ListSchedule::FEW_FACES) continue;
+    const std::vector<int>& faces = lists->near[!side].faces.names;
+    CandidatePairs::Candidates &candidates = lists->pairs.vertex_face[side], &grouped = room->vertex_face[side];
+    std::array<std::uint32_t, ListSchedule::FEW_FACES> places{};
+    for (const Candidate& c : candidates) ++places[faces[c.second]];
     std::uint32_t end = 0;
     for (std::uint32_t& place : places) end += std::exchange(place, end);
     geometry::resizeRoomy(candidates.size(), &grouped);
-    for (const Candidate& c : candidates) grouped[places[faces[c.b]]++] = c;
+    for (const Candidate& c : candidates) grouped[places[faces[c.second]]++] = c;
     candidates.swap(grouped);
   }
 }
@@ -179,41 +179,38 @@ namespace {
 template <typename Kernel>
 void keep(Kernel&& kernel, const kernels::Reach& reach, const std::vector<Candidate>& from, std::vector<Candidate>* to) {
   geometry::resizeRoomy(from.size(), to);
-  to->resize(kernel(from.data(), static_cast<std::uint32_t>(from.size()), reach, to->data()));
+  to->resize(kernel(kernels::CandidateRun{from.data(), static_cast<std::uint32_t>(from.size())}, reach, to->data()));
 }
+/** The kernel on these features. */
 template <typename Kernel, typename First, typename Second>
-void keep(Kernel&& kernel, const std::vector<First>& a, const std::vector<Second>& b, const kernels::Reach& reach,
-          const std::vector<Candidate>& from, std::vector<Candidate>* to) {
-  keep([&](auto&&... rest) { return kernel(a.data(), b.data(), rest...); }, reach, from, to);
+auto on(Kernel kernel, const std::vector<First>& first, const std::vector<Second>& second) {
+  return [kernel, &first, &second](auto&&... rest) { return kernel(first.data(), second.data(), rest...); };
 }
 
 }  // namespace
 
-std::size_t findNearest(const MeshPair& pair, const TurnedFeatures& turned, const ListMargin& margin, const CandidateLists& lists,
-                        SurroundingsMemory* surroundings, CandidatePairs* nearest) {
+std::size_t findNearest(const MeshPair& pair, const TurnedLists& listed, const ListMargin& margin, SurroundingsMemory* surroundings,
+                        CandidatePairs* nearest) {
+  const CandidateLists& lists = listed.lists;
+  const TurnedFeatures& turned = listed.turned;
   const kernels::Kernels& kernels = kernels::kernels();
   const kernels::Reach reach{pair.range, margin.motion, margin.turn};
-  const NearFeatures& fixed = lists.near[0];
+  const NearFeatures& fixed = lists.near.fixed;
   const CandidatePairs& all = lists.pairs;
-  for (const bool moves : {true, false}) {
-    const NearFeatures& partner = lists.near[!moves];
-    const kernels::NearVertices vertices = turned.nearFaces(lists, moves, pair.X_FM);
-    geometry::resizeRoomy(all.vertex_face[moves].size(), &nearest->inner[moves]);
-    keep(
-        [&](auto&&... rest) {
-          return kernels.nearVertexFaces(vertices, partner.faces.records.data(), partner.open.data(), rest...,
-                                         nearest->inner[moves].data());
-        },
-        reach, all.vertex_face[moves], &nearest->vertex_face[moves]);
+  for (const Side side : SIDES) {
+    const kernels::VerticesAtFaces features = turned.atFaces(lists, side, pair.X_FM);
+    geometry::resizeRoomy(all.vertex_face[side].size(), &nearest->inner[side]);
+    keep([&](auto&&... rest) { return kernels.nearVertexFaces(features, rest..., nearest->inner[side].data()); }, reach,
+         all.vertex_face[side], &nearest->vertex_face[side]);
   }
-  keep(kernels.nearVertexEdges, turned.vertices, fixed.edges.records, reach, all.vertex_edge[1], &nearest->vertex_edge[1]);
-  keep(kernels.nearVertexEdges, fixed.vertices.records, turned.edges, reach, all.vertex_edge[0], &nearest->vertex_edge[0]);
-  keep(kernels.nearEdgeEdges, turned.edges, fixed.edges.records, reach, all.edge_edge, &nearest->edge_edge);
-  keep(kernels.nearVertexVertices, turned.vertices, fixed.vertices.records, reach, all.vertex_vertex, &nearest->vertex_vertex);
+  keep(on(kernels.nearVertexEdges, turned.vertices, fixed.edges.records), reach, all.vertex_edge.moving, &nearest->vertex_edge.moving);
+  keep(on(kernels.nearVertexEdges, fixed.vertices.records, turned.edges), reach, all.vertex_edge.fixed, &nearest->vertex_edge.fixed);
+  keep(on(kernels.nearEdgeEdges, turned.edges, fixed.edges.records), reach, all.edge_edge, &nearest->edge_edge);
+  keep(on(kernels.nearVertexVertices, turned.vertices, fixed.vertices.records), reach, all.vertex_vertex, &nearest->vertex_vertex);
   const std::size_t near = nearest->contacts();
   LeadingVertices leading(pair, margin, lists, surroundings);
-  leading.dropFrom(true, turned.vertices, fixed.edges.records, &nearest->vertex_edge[1]);
-  leading.dropFrom(false, fixed.vertices.records, turned.edges, &nearest->vertex_edge[0]);
+  leading.dropFrom(Side::MOVING, turned.vertices, fixed.edges.records, &nearest->vertex_edge.moving);
+  leading.dropFrom(Side::FIXED, fixed.vertices.records, turned.edges, &nearest->vertex_edge.fixed);
   leading.dropFrom(turned.vertices, fixed.vertices.records, &nearest->vertex_vertex);
   return near;
 }

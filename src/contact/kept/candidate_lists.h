@@ -49,14 +49,13 @@ struct NearFeatures {
   void reserve(std::size_t count);  ///< room for so many features of each kind
 };
 
-/** Pairs of features, in an order that the meshes alone decide. An index [moves] tells whether the feature named first is the moving
- * mesh's; Candidate::a is that one's. */
+/** Pairs of features, in an order that the meshes alone decide, by the side of the feature named first, which Candidate::first is. */
 struct CandidatePairs {
   using Candidates = std::vector<kernels::Candidate>;
-  Candidates vertex_face[2], vertex_edge[2], edge_face[2];
+  PerSide<Candidates> vertex_face, vertex_edge, edge_face;
   /** Per candidate of vertex_face: 1 where the vertex is surely over its face, not near a border, while the list is good; empty: unknown */
-  std::vector<std::uint8_t> inner[2];
-  Candidates edge_edge, vertex_vertex;  ///< a is the moving mesh's
+  PerSide<std::vector<std::uint8_t>> inner;
+  Candidates edge_edge, vertex_vertex;  ///< first is the moving mesh's
 
   void clear();
   void reserve(std::size_t count);  ///< room for so many candidates of each kind
@@ -64,7 +63,7 @@ struct CandidatePairs {
 };
 
 struct CandidateLists {
-  NearFeatures near[2];  ///< [1] of the moving mesh, [0] of the fixed one
+  PerSide<NearFeatures> near;
   CandidatePairs pairs;
 
   void clear();
@@ -82,7 +81,18 @@ struct TurnedFeatures {
   void turnForCrossings(const CandidateLists& lists, const Pose& X_FM);
 
   /** The vertices of the moving mesh, or of the fixed one, near the other's faces, for kernels. */
-  kernels::NearVertices nearFaces(const CandidateLists& lists, bool moves, const Pose& X_FM) const;
+  kernels::NearVertices nearFaces(const CandidateLists& lists, Side side, const Pose& X_FM) const;
+  /** The same, with those faces. */
+  kernels::VerticesAtFaces atFaces(const CandidateLists& lists, Side side, const Pose& X_FM) const {
+    const NearFeatures& partner = lists.near[!side];
+    return {nearFaces(lists, side, X_FM), partner.faces.records.data(), partner.open.data()};
+  }
+};
+
+/** Lists, and their features as they are turned. */
+struct TurnedLists {
+  const CandidateLists& lists;
+  const TurnedFeatures& turned;
 };
 
 /** Puts candidates of vertices with the same face one after the other, in the order of the faces, where a mesh has so few that each is near
@@ -92,10 +102,10 @@ void groupByFaces(const MeshPair& pair, CandidateLists* lists, CandidatePairs* r
 /**
  * Selects the candidates for contacts that can have one within pair.range while nothing moves or turns by more than the margin, in their
  * order.
- * @param turned of these lists at the pair's pose
+ * @param listed turned at the pair's pose
  * @return number of candidates that are near, with those that can have none since a vertex leads towards the other feature
  */
-std::size_t findNearest(const MeshPair& pair, const TurnedFeatures& turned, const ListMargin& margin, const CandidateLists& lists,
-                        SurroundingsMemory* surroundings, CandidatePairs* nearest);
+std::size_t findNearest(const MeshPair& pair, const TurnedLists& listed, const ListMargin& margin, SurroundingsMemory* surroundings,
+                        CandidatePairs* nearest);
 
 }  // namespace blem_sim::contact

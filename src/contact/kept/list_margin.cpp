@@ -6,11 +6,10 @@
 #include <cmath>
 #include <limits>
 
+#include "kept/list_schedule.h"
+
 namespace blem_sim::contact {
 namespace {
-
-/** Distance of pairs from their expected way, as part of its length. */
-constexpr double BEND = 0.05;
 
 /** Box in the moving mesh's frame that is near the fixed mesh: where that mesh's own box, wider by the range, meets the fixed one's, wider
  * by twice the range. */
@@ -64,7 +63,7 @@ double NearRegion::used(const ListOrigin& origin, const Pose& X_FM, double range
 ListMargin marginAlong(const NearRegion::Motions& step, double steps, double least) {
   const Eigen::SelfAdjointEigenSolver<Matrix3> spread(step * step.transpose());
   const Matrix3 axes = spread.eigenvectors().transpose();
-  const double bend = BEND * std::sqrt(step.colwise().squaredNorm().maxCoeff());
+  const double bend = ListSchedule::BEND * std::sqrt(step.colwise().squaredNorm().maxCoeff());
   const Vector3 farthest = (axes * step).cwiseAbs().rowwise().maxCoeff();
   const Vector3 lengths = steps * (farthest + Vector3::Constant(bend)) + Vector3::Constant(least);
   return {lengths.norm(), 0, lengths.asDiagonal() * axes};

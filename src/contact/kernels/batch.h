@@ -13,13 +13,13 @@ inline Doubles above(const Vectors& p, const Rows& plane) { return dot(p, plane.
 
 /** One of a candidate's two features. */
 using Which = std::uint32_t Candidate::*;
-constexpr Which OF_A = &Candidate::a, OF_B = &Candidate::b;
+constexpr Which OF_FIRST = &Candidate::first, OF_SECOND = &Candidate::second;
 
 /** Candidates in the lanes: behind the last one it is repeated, and masked. */
 class Batch {
  public:
-  Batch(const Candidate* candidates, std::uint32_t first, std::uint32_t count) : lanes(candidates + first), valid(ALL_LANES) {
-    const std::uint32_t left = count - first;
+  Batch(CandidateRun run, std::uint32_t first) : lanes(run.data + first), valid(ALL_LANES) {
+    const std::uint32_t left = run.count - first;
     if (left >= LANES) return;
     for (std::uint32_t i = 0; i < LANES; ++i) padded_[i] = lanes[i < left ? i : left - 1];
     lanes = padded_;
@@ -36,7 +36,7 @@ class Batch {
     return rows(of, [=](std::uint32_t i) { return &(from[i].*member); });
   }
   Rows side(const FaceRecord* from, int k) const {
-    return rows(OF_B, [=](std::uint32_t i) { return &from[i].sides[k]; });
+    return rows(OF_SECOND, [=](std::uint32_t i) { return &from[i].sides[k]; });
   }
   Rows inward(const EdgeRecord* from, Which of, int k) const {
     return rows(of, [=](std::uint32_t i) { return &from[i].inward[k]; });
@@ -47,16 +47,16 @@ class Batch {
     return numbers;
   }
 
-  /** Whether all lanes have the same feature b. */
-  bool hasOneB() const {
+  /** Whether all lanes have the same second feature. */
+  bool hasOneSecond() const {
     static_assert(sizeof(Candidate) == sizeof(Mask) / LANES, "a candidate is as wide as a lane");
-    constexpr Candidate ONLY_B{0, 0xFFFFFFFF};
+    constexpr Candidate ONLY_SECOND{0, 0xFFFFFFFF};
     Mask pairs;
-    long first, only_b;
+    long first, only_second;
     __builtin_memcpy(&pairs, lanes, sizeof pairs);
     __builtin_memcpy(&first, lanes, sizeof first);
-    __builtin_memcpy(&only_b, &ONLY_B, sizeof only_b);
-    return bitsOf(((pairs ^ first) & only_b) != 0) == 0;
+    __builtin_memcpy(&only_second, &ONLY_SECOND, sizeof only_second);
+    return bitsOf(((pairs ^ first) & only_second) != 0) == 0;
   }
 
   const Candidate* lanes;
@@ -73,11 +73,11 @@ class Batch {
   Candidate padded_[LANES];
 };
 
-/** The lanes' features b, each its own. */
+/** The lanes' second features, each its own. */
 struct EachFace {
-  Rows plane() const { return batch.field(faces, OF_B, &FaceRecord::plane); }
+  Rows plane() const { return batch.field(faces, OF_SECOND, &FaceRecord::plane); }
   Rows side(int k) const { return batch.side(faces, k); }
-  Mask numbers(const std::int32_t* from) const { return batch.numbers(from, OF_B); }
+  Mask numbers(const std::int32_t* from) const { return batch.numbers(from, OF_SECOND); }
 
   const Batch& batch;
   const FaceRecord* faces;
@@ -96,8 +96,8 @@ struct OneFace {
 /** Calls visit with the lanes' faces. @return visit's result */
 template <typename Visit>
 inline auto withFaces(const Batch& batch, const FaceRecord* faces, Visit&& visit) {
-  const std::uint32_t first = batch.lanes[0].b;
-  return batch.hasOneB() ? visit(OneFace{faces[first], first}) : visit(EachFace{batch, faces});
+  const std::uint32_t first = batch.lanes[0].second;
+  return batch.hasOneSecond() ? visit(OneFace{faces[first], first}) : visit(EachFace{batch, faces});
 }
 
 }  // namespace

@@ -12,9 +12,9 @@ namespace {
 
 /** Calls test(batch) for all; where its bits are set, take(candidate's index, lane). */
 template <typename Test, typename Take>
-inline void forEachHit(const Candidate* candidates, std::uint32_t count, Test&& test, Take&& take) {
-  for (std::uint32_t first = 0; first < count; first += LANES) {
-    const Batch batch(candidates, first, count);
+inline void forEachHit(CandidateRun run, Test&& test, Take&& take) {
+  for (std::uint32_t first = 0; first < run.count; first += LANES) {
+    const Batch batch(run, first);
     for (unsigned bits = test(batch) & batch.valid; bits != 0; bits &= bits - 1) {
       const int lane = __builtin_ctz(bits);
       take(first + lane, lane);
@@ -23,9 +23,9 @@ inline void forEachHit(const Candidate* candidates, std::uint32_t count, Test&& 
 }
 
 template <typename Test>
-inline std::uint32_t listed(const Candidate* candidates, std::uint32_t count, std::uint32_t* hits, Test&& test) {
+inline std::uint32_t listed(CandidateRun run, std::uint32_t* hits, Test&& test) {
   std::uint32_t found = 0;
-  forEachHit(candidates, count, test, [&](std::uint32_t i, int) { hits[found++] = i; });
+  forEachHit(run, test, [&](std::uint32_t i, int) { hits[found++] = i; });
   return found;
 }
 
@@ -42,10 +42,10 @@ struct InsideSides {
 /** Copies the candidates for which test(batch) sets bits. @param also is called with the first lane's place among them and its bits, before
  * all of them */
 template <typename Test, typename Also>
-inline std::uint32_t copied(const Candidate* in, std::uint32_t count, Candidate* out, Test&& test, Also&& also) {
+inline std::uint32_t copied(CandidateRun in, Candidate* out, Test&& test, Also&& also) {
   std::uint32_t kept = 0;
-  for (std::uint32_t first = 0; first < count; first += LANES) {
-    const Batch batch(in, first, count);
+  for (std::uint32_t first = 0; first < in.count; first += LANES) {
+    const Batch batch(in, first);
     const unsigned bits = test(batch) & batch.valid;
     also(kept, bits);
     if (bits == ALL_LANES) {
@@ -58,8 +58,8 @@ inline std::uint32_t copied(const Candidate* in, std::uint32_t count, Candidate*
   return kept;
 }
 template <typename Test>
-inline std::uint32_t copied(const Candidate* in, std::uint32_t count, Candidate* out, Test&& test) {
-  return copied(in, count, out, test, [](std::uint32_t, unsigned) {});
+inline std::uint32_t copied(CandidateRun in, Candidate* out, Test&& test) {
+  return copied(in, out, test, [](std::uint32_t, unsigned) {});
 }
 
 /** Whether both ends of an edge, seen from the start of another, are farther than the limit inside a face of that one. */
@@ -67,43 +67,42 @@ inline Mask liesInside(const Vectors& first, const Vectors& second, const Vector
   return minimum(dot(inward, first), dot(inward, second)) > limit;
 }
 
-std::uint32_t nearEdgeEdges(const EdgeRecord* a, const EdgeRecord* b, const Candidate* in, std::uint32_t count, const Reach& reach,
-                            Candidate* out) {
+std::uint32_t nearEdgeEdges(const EdgeRecord* moving, const EdgeRecord* fixed, CandidateRun in, const Reach& reach, Candidate* out) {
   const double range = reach.range + reach.margin, limit = deepestInside(range) + reach.margin;
-  return copied(in, count, out, [&](const Batch& batch) {
-    const Rows start_a = batch.field(a, OF_A, &EdgeRecord::start), start_b = batch.field(b, OF_B, &EdgeRecord::start);
-    const Vectors p = batch.field(a, OF_A, &EdgeRecord::along).v, q = batch.field(b, OF_B, &EdgeRecord::along).v;
-    const Vectors r = start_b.v - start_a.v, back = start_a.v - start_b.v;
+  return copied(in, out, [&](const Batch& batch) {
+    const Rows start_m = batch.field(moving, OF_FIRST, &EdgeRecord::start), start_f = batch.field(fixed, OF_SECOND, &EdgeRecord::start);
+    const Vectors p = batch.field(moving, OF_FIRST, &EdgeRecord::along).v, q = batch.field(fixed, OF_SECOND, &EdgeRecord::along).v;
+    const Vectors r = start_f.v - start_m.v, back = start_m.v - start_f.v;
     Mask inside{};
     for (int k = 0; k < 2; ++k) {
-      inside |= liesInside(r, r + q, batch.inward(a, OF_A, k).v, limit);
-      inside |= liesInside(back, back + p, batch.inward(b, OF_B, k).v, limit);
+      inside |= liesInside(r, r + q, batch.inward(moving, OF_FIRST, k).v, limit);
+      inside |= liesInside(back, back + p, batch.inward(fixed, OF_SECOND, k).v, limit);
     }
     const unsigned crosswise = ~bitsOf(inside) & ALL_LANES;
     if (crosswise == 0) return 0u;
-    const Doubles pp = start_a.w, qq = start_b.w, pq = dot(p, q), pr = dot(p, r), qr = dot(q, r), denominator = pp * qq - pq * pq;
+    const Doubles pp = start_m.w, qq = start_f.w, pq = dot(p, q), pr = dot(p, r), qr = dot(q, r), denominator = pp * qq - pq * pq;
     const Doubles first = denominator > 0 ? clampedToUnit((pr * qq - pq * qr) / denominator) : Doubles{};
     const Doubles t = clampedToUnit((pq * first - qr) / qq), s = clampedToUnit((pq * t + pr) / pp);
     const Vectors d = r + t * q - s * p;
     const unsigned near = crosswise & ~bitsOf(dot(d, d) > range * range);
     if (near == 0) return 0u;
     const Vectors n = cross(p, q);
-    return near & bitsOf(conesMayAllow(n, coneBound(dot(n, n), pp * qq, reach.turn), batch.inward(a, OF_A, 0).v, batch.inward(a, OF_A, 1).v,
-                                       batch.inward(b, OF_B, 0).v, batch.inward(b, OF_B, 1).v));
+    return near & bitsOf(conesMayAllow(n, coneBound(dot(n, n), pp * qq, reach.turn), batch.inward(moving, OF_FIRST, 0).v,
+                                       batch.inward(moving, OF_FIRST, 1).v, batch.inward(fixed, OF_SECOND, 0).v,
+                                       batch.inward(fixed, OF_SECOND, 1).v));
   });
 }
 
-std::uint32_t nearVertexEdges(const Vec4* a, const EdgeRecord* b, const Candidate* in, std::uint32_t count, const Reach& reach,
-                              Candidate* out) {
+std::uint32_t nearVertexEdges(const Vec4* vertices, const EdgeRecord* edges, CandidateRun in, const Reach& reach, Candidate* out) {
   const double range = reach.range + reach.margin, margin = reach.margin + 3 * CLOSED, limit = 2 * CONE_SLACK * range + margin;
-  return copied(in, count, out, [&](const Batch& batch) {
-    const Rows start = batch.field(b, OF_B, &EdgeRecord::start);
-    const Vectors r = batch.points(a, OF_A).v - start.v;
-    const Vectors u = batch.inward(b, OF_B, 0).v, v = batch.inward(b, OF_B, 1).v, both = u + v;
+  return copied(in, out, [&](const Batch& batch) {
+    const Rows start = batch.field(edges, OF_SECOND, &EdgeRecord::start);
+    const Vectors r = batch.points(vertices, OF_FIRST).v - start.v;
+    const Vectors u = batch.inward(edges, OF_SECOND, 0).v, v = batch.inward(edges, OF_SECOND, 1).v, both = u + v;
     const Doubles inside = dot(u, r), also = dot(v, r);
     const unsigned beside = bitsOf(maximum(inside, also) <= limit);
     if (beside == 0) return 0u;
-    const Rows along = batch.field(b, OF_B, &EdgeRecord::along);
+    const Rows along = batch.field(edges, OF_SECOND, &EdgeRecord::along);
     const Doubles part = dot(r, along.v) / start.w, length = squareRoot(start.w);
     const Vectors d = r - part * along.v;
     const AtEdge<Doubles> vertex{{inside, also}, squareRoot(dot(d, d)), maximum(-part, part - 1) * length};
@@ -111,11 +110,10 @@ std::uint32_t nearVertexEdges(const Vec4* a, const EdgeRecord* b, const Candidat
   });
 }
 
-std::uint32_t nearVertexVertices(const Vec4* a, const Vec4* b, const Candidate* in, std::uint32_t count, const Reach& reach,
-                                 Candidate* out) {
+std::uint32_t nearVertexVertices(const Vec4* moving, const Vec4* fixed, CandidateRun in, const Reach& reach, Candidate* out) {
   const double range = reach.range + reach.margin;
-  return copied(in, count, out, [&](const Batch& batch) {
-    const Vectors d = batch.points(a, OF_A).v - batch.points(b, OF_B).v;
+  return copied(in, out, [&](const Batch& batch) {
+    const Vectors d = batch.points(moving, OF_FIRST).v - batch.points(fixed, OF_SECOND).v;
     return bitsOf(dot(d, d) <= range * range);
   });
 }
@@ -125,23 +123,22 @@ std::uint32_t nearVertexVertices(const Vec4* a, const Vec4* b, const Candidate* 
 /** Excess of a part of an edge, times n2, beyond the edge's ends; 0 inside. */
 inline Doubles beyondEnds(Doubles part, Doubles n2) { return maximum(maximum(-part, part - n2), Doubles{}); }
 
-std::uint32_t vertexVertices(const Vec4* a, const Vec4* b, const Candidate* candidates, std::uint32_t count, double range,
-                             std::uint32_t* hits) {
-  return listed(candidates, count, hits, [&](const Batch& batch) {
-    const Vectors d = batch.points(a, OF_A).v - batch.points(b, OF_B).v;
+std::uint32_t vertexVertices(const Vec4* moving, const Vec4* fixed, CandidateRun run, double range, std::uint32_t* hits) {
+  return listed(run, hits, [&](const Batch& batch) {
+    const Vectors d = batch.points(moving, OF_FIRST).v - batch.points(fixed, OF_SECOND).v;
     return bitsOf(dot(d, d) <= range * range);
   });
 }
 
-std::uint32_t edgeFaces(const EdgeRecord* a, const FaceRecord* b, const Candidate* candidates, std::uint32_t count, std::uint32_t* hits) {
-  return listed(candidates, count, hits, [&](const Batch& batch) {
-    const Vectors start = batch.field(a, OF_A, &EdgeRecord::start).v, along = batch.field(a, OF_A, &EdgeRecord::along).v;
-    return withFaces(batch, b, [&](const auto& faces) {
-      const Rows plane = faces.plane();
+std::uint32_t edgeFaces(const EdgeRecord* edges, const FaceRecord* faces, CandidateRun run, std::uint32_t* hits) {
+  return listed(run, hits, [&](const Batch& batch) {
+    const Vectors start = batch.field(edges, OF_FIRST, &EdgeRecord::start).v, along = batch.field(edges, OF_FIRST, &EdgeRecord::along).v;
+    return withFaces(batch, faces, [&](const auto& here) {
+      const Rows plane = here.plane();
       const Doubles first = above(start, plane), second = above(start + along, plane);
       const unsigned through = bitsOf((minimum(first, second) < -TOUCH) & (maximum(first, second) > TOUCH));
       if (through == 0) return 0u;
-      return through & bitsOf(InsideSides(faces, start + first / (first - second) * along).least() >= -2 * CLOSED);
+      return through & bitsOf(InsideSides(here, start + first / (first - second) * along).least() >= -2 * CLOSED);
     });
   });
 }

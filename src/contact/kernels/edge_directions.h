@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "kernels/records.h"
+
 namespace blem_sim::contact::kernels {
 
 constexpr int DIRECTION_BLOCK = 8;
@@ -27,6 +29,13 @@ struct LeavingSide {
   std::uint16_t side;
   bool is_above;                ///< the vertex is over the face, not under it
   std::uint32_t first, blocks;  ///< blocks of the vertex's EdgeDirections: the first, and their number
+};
+
+/** Vertices that leave faces over their sides. */
+struct LeavingRun {
+  const Candidate* pairs;
+  const LeavingSide* sides;  ///< each of one of the pairs
+  std::uint32_t count;       ///< of sides
 };
 
 }  // namespace blem_sim::contact::kernels

@@ -10,8 +10,8 @@ namespace {
 
 /** Closest points of the lines through edges: at parts s / n2 and t / n2 of them. */
 struct Perpendiculars {
-  explicit Perpendiculars(const EdgeBatch& edges) : n(cross(edges.along_a.v, edges.along_b.v)), n2(dot(n, n)), rn(dot(edges.between, n)) {
-    s = dot(cross(edges.between, edges.along_b.v), n), t = dot(cross(edges.between, edges.along_a.v), n);
+  explicit Perpendiculars(const EdgeBatch& edges) : n(cross(edges.along_m.v, edges.along_f.v)), n2(dot(n, n)), rn(dot(edges.between, n)) {
+    s = dot(cross(edges.between, edges.along_f.v), n), t = dot(cross(edges.between, edges.along_m.v), n);
     over_s = beyondEnds(s, n2), over_t = beyondEnds(t, n2);
   }
 
@@ -19,14 +19,14 @@ struct Perpendiculars {
    * edges. */
   Mask within(const EdgeBatch& edges, double range) const {
     const double most = range / FADE_SLOPE;
-    const Doubles pp = edges.start_a.w, qq = edges.start_b.w, most2 = most * most * n2 * n2;
+    const Doubles pp = edges.start_m.w, qq = edges.start_f.w, most2 = most * most * n2 * n2;
     return (rn * rn <= range * range * n2) & (n2 > MIN_EDGE_SINE * MIN_EDGE_SINE * pp * qq) & (over_s * over_s * pp <= most2) &
            (over_t * over_t * qq <= most2);
   }
   /** Whether a foot is within NEAR_BORDER of an end of its edge. */
   Mask nearBorder(const EdgeBatch& edges) const {
     const Doubles border2 = NEAR_BORDER * NEAR_BORDER * n2 * n2, end_s = minimum(s, n2 - s), end_t = minimum(t, n2 - t);
-    return (end_s * end_s * edges.start_a.w < border2) | (end_t * end_t * edges.start_b.w < border2);
+    return (end_s * end_s * edges.start_m.w < border2) | (end_t * end_t * edges.start_f.w < border2);
   }
 
   const Vectors n;
@@ -34,23 +34,23 @@ struct Perpendiculars {
   Doubles s, t, over_s, over_t;
 };
 
-/** Whether a normal from b to a points into no face of either edge. */
+/** Whether a normal from the fixed edge to the moving one points into no face of either edge. */
 inline Mask conesAllow(const EdgeBatch& edges, const Vectors& normal) {
-  Mask allowed = dot(edges.inward_b[0], normal) <= EDGE_CONE_SLACK;
-  allowed &= dot(edges.inward_b[1], normal) <= EDGE_CONE_SLACK;
-  allowed &= dot(edges.inward_a[0], normal) >= -EDGE_CONE_SLACK;
-  allowed &= dot(edges.inward_a[1], normal) >= -EDGE_CONE_SLACK;
+  Mask allowed = dot(edges.inward_f[0], normal) <= EDGE_CONE_SLACK;
+  allowed &= dot(edges.inward_f[1], normal) <= EDGE_CONE_SLACK;
+  allowed &= dot(edges.inward_m[0], normal) >= -EDGE_CONE_SLACK;
+  allowed &= dot(edges.inward_m[1], normal) >= -EDGE_CONE_SLACK;
   return allowed;
 }
 
 /** @param bits of the lanes that have a contact @return depths */
 inline Doubles appendEdges(const Batch& batch, const EdgeFeet& feet, unsigned bits, PlainEdges* out) {
   const EdgePlace& place = out->place;
-  const Vectors normal_BA = all(place.first_is_a ? 1 : -1) * feet.normal;
+  const Vectors normal_BA = all(place.a == Side::MOVING ? 1 : -1) * feet.normal;
   const Doubles depth = place.layer - feet.gap;
-  const Mask first = batch.numbers(place.names_a, OF_A), second = batch.numbers(place.names_b, OF_B);
-  const Mask ids = (place.first_is_a ? first << 32 | second : second << 32 | first) | static_cast<long>(place.kinds);
-  const ContactRow* const end = appendRows(inWorld(place, feet.point_a, feet.point_b, normal_BA), depth, ids, bits, out->rows + out->count);
+  const Mask first = batch.numbers(place.names_m, OF_FIRST), second = batch.numbers(place.names_f, OF_SECOND);
+  const Mask ids = (place.a == Side::MOVING ? first << 32 | second : second << 32 | first) | static_cast<long>(place.kinds);
+  const ContactRow* const end = appendRows(inWorld(place, feet.point_m, feet.point_f, normal_BA), depth, ids, bits, out->rows + out->count);
   out->count = static_cast<std::uint32_t>(end - out->rows);
   return depth;
 }
@@ -62,8 +62,8 @@ inline std::uint32_t appendHits(std::uint32_t first, const EdgeFeet& feet, unsig
     EdgeEdgeHit& hit = hits[found++];
     hit.candidate = first + i;
     const auto write = [i](const Vectors& v, double* out) { out[0] = v.x[i], out[1] = v.y[i], out[2] = v.z[i]; };
-    write(feet.point_a, hit.point_a);
-    write(feet.point_b, hit.point_b);
+    write(feet.point_m, hit.point_m);
+    write(feet.point_f, hit.point_f);
     write(feet.normal, hit.normal);
     hit.gap = feet.gap[i];
   }
@@ -78,25 +78,25 @@ inline void appendLeft(const Batch& batch, unsigned bits, LeftEdges* left) {
   }
 }
 
-std::uint32_t edgeEdges(const EdgeRecord* a, const EdgeRecord* b, const Candidate* candidates, std::uint32_t count, double range,
-                        PlainEdges* plain, LeftEdges* left, EdgeEdgeHit* hits) {
+std::uint32_t edgeEdges(const EdgeRecord* moving, const EdgeRecord* fixed, CandidateRun run, double range, const EdgeEdgeResults& out) {
+  PlainEdges* const plain = out.plain;
   std::uint32_t found = 0;
   Doubles deepest = all(plain ? plain->deepest : 0);
-  for (std::uint32_t first = 0; first < count; first += LANES) {
-    const Batch batch(candidates, first, count);
-    EdgeBatch edges(batch, a, b);
+  for (std::uint32_t first = 0; first < run.count; first += LANES) {
+    const Batch batch(run, first);
+    EdgeBatch edges(batch, moving, fixed);
     const Perpendiculars lines(edges);
     const Mask within = lines.within(edges, range);
     if ((bitsOf(within) & batch.valid) == 0) continue;
-    edges.takeInwards(batch, a, b);
+    edges.takeInwards(batch, moving, fixed);
     const Doubles norm = squareRoot(lines.n2), gap = absolute(lines.rn) / norm;
     const Vectors normal = (lines.rn > 0 ? all(-1) : all(1)) / norm * lines.n;
     const Mask touch = gap <= TOUCH, is = within & (conesAllow(edges, normal) | touch);
     const unsigned hit = bitsOf(is) & batch.valid;
     if (hit == 0) continue;
-    const EdgeFeet feet{edges.start_a.v + lines.s / lines.n2 * edges.along_a.v, edges.start_b.v + lines.t / lines.n2 * edges.along_b.v,
+    const EdgeFeet feet{edges.start_m.v + lines.s / lines.n2 * edges.along_m.v, edges.start_f.v + lines.t / lines.n2 * edges.along_f.v,
                         normal, gap, gap};
-    const Mask stands = (lines.over_s == 0) & (lines.over_t == 0) & ~touch & (maximum(edges.along_a.w, edges.along_b.w) <= 0),
+    const Mask stands = (lines.over_s == 0) & (lines.over_t == 0) & ~touch & (maximum(edges.along_m.w, edges.along_f.w) <= 0),
                clear = is & stands & ~lines.nearBorder(edges);
     const unsigned is_clear = plain ? bitsOf(clear) & batch.valid : 0;
     if (is_clear) {
@@ -104,8 +104,8 @@ std::uint32_t edgeEdges(const EdgeRecord* a, const EdgeRecord* b, const Candidat
       deepest = maximum(deepest, clear ? depth : deepest);
     }
     const unsigned is_plain = hit & bitsOf(stands);
-    found = appendHits(first, feet, is_plain & ~is_clear, found, hits);
-    appendLeft(batch, hit & ~is_plain, left);
+    found = appendHits(first, feet, is_plain & ~is_clear, found, out.hits);
+    appendLeft(batch, hit & ~is_plain, out.left);
   }
   raiseDeepest(deepest, plain);
   return found;

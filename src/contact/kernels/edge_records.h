@@ -7,8 +7,8 @@ namespace blem_sim::contact::kernels {
 
 /** Data that place contacts of two meshes' edges in the world, and name them. */
 struct EdgePlace {
-  const int *names_a, *names_b;  ///< of the edges
-  bool first_is_a;               ///< A is the mesh of the edges named first
+  const int *names_m, *names_f;  ///< of the edges
+  Side a;                        ///< the side that is A
   Motion X_WF;
   double layer;         ///< [m] rA + rB
   double shift;         ///< [m] (rB - rA) / 2
@@ -29,11 +29,20 @@ struct LeftEdges {
   std::uint32_t count;  ///< so far; they are appended
 };
 
+struct EdgeEdgeHit;
+
+/** Results of edges near edges. Room for one more of each than there are candidates. */
+struct EdgeEdgeResults {
+  PlainEdges* plain;  ///< takes those that are plain and not near a border, instead of the hits; null: nothing does
+  LeftEdges* left;    ///< takes those that are not plain
+  EdgeEdgeHit* hits;
+};
+
 /** Two edges near each other, feet inside both, not touching, whose common perpendicular points out of their faces. In the frame of the
  * records. */
 struct EdgeEdgeHit {
   std::uint32_t candidate;
-  double point_a[3], point_b[3], normal[3];  ///< witness points [m]; unit, from b to a
+  double point_m[3], point_f[3], normal[3];  ///< witness points [m]; unit, from the fixed edge to the moving one
   double gap;                                ///< [m]
 };
 
@@ -42,10 +51,10 @@ struct FadingEdgesHit {
   std::uint32_t candidate;
   bool is_inside;                 ///< the feet lie inside both, but for CLOSED, and more is to be asked: nothing else is told
   bool cones_known;               ///< whether the normal is known to point into none of their faces
-  std::int32_t end_a, end_b;      ///< the vertex at the end beyond which the foot lies; -1 if it lies inside
-  double point_a[3], point_b[3];  ///< [m] witness points
+  std::int32_t end_m, end_f;      ///< the vertex at the end beyond which the foot lies; -1 if it lies inside
+  double point_m[3], point_f[3];  ///< [m] witness points
   double distance, gap;           ///< [m] of these; and with the depth that is lost beyond the ends
-  double normal[3];               ///< unit, from b to a, square to both edges
+  double normal[3];               ///< unit, from the fixed edge to the moving one, square to both edges
 };
 
 /** A vertex near an edge, over none of its first two faces. */

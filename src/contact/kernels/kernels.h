@@ -23,55 +23,46 @@ struct Kernels {
 
   /** Pairs of features of two leaves that can have a contact within the range while nothing moves or turns by more than it says;
    * conservative, if the reach has room for the rounding of floats. */
-  void (*leafContacts)(const LeafShapes& a, const LeafShapes& b, const LeafReach& reach, LeafHits* hits);
+  void (*leafContacts)(const LeafShapes& moving, const LeafShapes& fixed, const LeafReach& reach, LeafHits* hits);
   /** The same of edges that pass through faces. */
-  void (*leafCrossings)(const LeafShapes& a, const LeafShapes& b, const LeafReach& reach, LeafHits* hits);
+  void (*leafCrossings)(const LeafShapes& moving, const LeafShapes& fixed, const LeafReach& reach, LeafHits* hits);
 
   /** Copies, in order, the candidates that can have a contact within the range while nothing moves or turns by more than the reach says.
    * @param inner as them: 1 where the vertex stays over its face and away from its border, else 0 @return their number */
-  std::uint32_t (*nearVertexFaces)(const NearVertices& a, const FaceRecord* b, const OpenSides* open, const Candidate* in,
-                                   std::uint32_t count, const Reach& reach, Candidate* out, std::uint8_t* inner);
-  std::uint32_t (*nearEdgeEdges)(const EdgeRecord* a, const EdgeRecord* b, const Candidate* in, std::uint32_t count, const Reach& reach,
-                                 Candidate* out);
-  std::uint32_t (*nearVertexEdges)(const Vec4* a, const EdgeRecord* b, const Candidate* in, std::uint32_t count, const Reach& reach,
-                                   Candidate* out);
-  std::uint32_t (*nearVertexVertices)(const Vec4* a, const Vec4* b, const Candidate* in, std::uint32_t count, const Reach& reach,
-                                      Candidate* out);
+  std::uint32_t (*nearVertexFaces)(const VerticesAtFaces& features, CandidateRun in, const Reach& reach, Candidate* out,
+                                   std::uint8_t* inner);
+  std::uint32_t (*nearEdgeEdges)(const EdgeRecord* moving, const EdgeRecord* fixed, CandidateRun in, const Reach& reach, Candidate* out);
+  std::uint32_t (*nearVertexEdges)(const Vec4* vertices, const EdgeRecord* edges, CandidateRun in, const Reach& reach, Candidate* out);
+  std::uint32_t (*nearVertexVertices)(const Vec4* moving, const Vec4* fixed, CandidateRun in, const Reach& reach, Candidate* out);
 
   /** Candidates with a contact within `range`, and those that need a closer look. Room for one more hit than candidates.
-   * @param inner as of nearVertexFaces, which changes no contact; null: not known
    * @param plain takes those that are plain and not near a border, instead of the hits; null: nothing does @return number of hits */
-  std::uint32_t (*vertexFaces)(const NearVertices& a, const FaceRecord* b, const OpenSides* open, const Candidate* candidates,
-                               std::uint32_t count, const std::uint8_t* inner, double range, PlainContacts* plain, VertexFaceHit* hits);
+  std::uint32_t (*vertexFaces)(const VerticesAtFaces& features, const VertexFaceRun& run, double range, PlainContacts* plain,
+                               VertexFaceHit* hits);
   /** The contacts within `range` of vertices with the nearest of those sides of faces that they lie outside of. Where witness points are
    * asked for a row has the foot on the side and the normal from the fixed mesh to the moving one, in frame F, and the gap as its depth.
-   * @param sides per pair @return number of contacts */
-  std::uint32_t (*sideFeet)(const ContactPlace& place, const NearVertices& vertices, const FaceRecord* faces, const FaceCorners* corners,
-                            const BesideSides* sides, const Candidate* pairs, std::uint32_t count, double range, FadingContacts* out);
-  /** As vertexFaces. @param left takes those that are not plain */
-  std::uint32_t (*edgeEdges)(const EdgeRecord* a, const EdgeRecord* b, const Candidate* candidates, std::uint32_t count, double range,
-                             PlainEdges* plain, LeftEdges* left, EdgeEdgeHit* hits);
+   * @return number of contacts */
+  std::uint32_t (*sideFeet)(const ContactPlace& place, const VerticesBesideFaces& features, CandidateRun pairs, double range,
+                            FadingContacts* out);
+  /** As vertexFaces. */
+  std::uint32_t (*edgeEdges)(const EdgeRecord* moving, const EdgeRecord* fixed, CandidateRun run, double range, const EdgeEdgeResults& out);
   /** Candidates, among those that are not plain, with a contact within `range` if nothing takes over, or that need a closer look. Room for
    * one more hit than candidates. */
-  std::uint32_t (*fadingEdges)(const EdgeRecord* a, const EdgeRecord* b, const Candidate* candidates, std::uint32_t count, double range,
-                               FadingEdgesHit* hits);
+  std::uint32_t (*fadingEdges)(const EdgeRecord* moving, const EdgeRecord* fixed, CandidateRun run, double range, FadingEdgesHit* hits);
   /** Candidates that need a closer look. @return their number */
-  std::uint32_t (*vertexEdges)(const Vec4* a, const EdgeRecord* b, const Candidate* candidates, std::uint32_t count, double range,
-                               VertexEdgeHit* hits);
+  std::uint32_t (*vertexEdges)(const Vec4* vertices, const EdgeRecord* edges, CandidateRun run, double range, VertexEdgeHit* hits);
   /** The same for two vertices; hits are indices of candidates. */
-  std::uint32_t (*vertexVertices)(const Vec4* a, const Vec4* b, const Candidate* candidates, std::uint32_t count, double range,
-                                  std::uint32_t* hits);
+  std::uint32_t (*vertexVertices)(const Vec4* moving, const Vec4* fixed, CandidateRun run, double range, std::uint32_t* hits);
   /** Leading edges among a vertex's edges, in `count` blocks. @param down, aside unit, three numbers each, in the edges' frame */
   LeadingEdges (*leadingEdges)(const EdgeDirections* blocks, int count, const double* down, const double* aside);
   /** Leading edges of vertices that leave faces over their sides: down, to the face, and aside, into it.
    * @param directions of all vertices @param to_vertices turns directions of the faces */
-  void (*leadingAtSides)(const EdgeDirections* directions, const FaceRecord* faces, const Motion& to_vertices, const Candidate* pairs,
-                         const LeavingSide* sides, std::uint32_t count, LeadingEdges* leading);
+  void (*leadingAtSides)(const EdgeDirections* directions, const FaceRecord* faces, const Motion& to_vertices, const LeavingRun& leaving,
+                         LeadingEdges* leading);
   /** Whether an edge has a part along `towards` whose square is larger than `least2`. */
   bool (*leadTo)(const EdgeDirections* blocks, int count, const double* towards, double least2);
   /** Edges that pass through a face's plane where the face may be. */
-  std::uint32_t (*edgeFaces)(const EdgeRecord* a, const FaceRecord* b, const Candidate* candidates, std::uint32_t count,
-                             std::uint32_t* hits);
+  std::uint32_t (*edgeFaces)(const EdgeRecord* edges, const FaceRecord* faces, CandidateRun run, std::uint32_t* hits);
 
   /** Leaves of a tree that the rays of a fan may meet, nearer ones first. @param farthest [FAN] where rays end to count, which the visitor
    * may draw nearer */

@@ -19,7 +19,7 @@ inline Vectors turnedPoint(const Motion& X, const Vectors& p) {
 
 /** Points in the frame of the faces' mesh. @param at in frame F */
 inline Vectors seenByFaces(const NearVertices& vertices, const Vectors& at) {
-  return vertices.faces_move ? turnedPoint(vertices.X_MF, at) : at;
+  return vertices.facesMove() ? turnedPoint(vertices.X_MF, at) : at;
 }
 
 /** A face's plane in frame F: of lanes, or of one face. */
@@ -27,7 +27,7 @@ template <typename Lanes>
 struct PlaneInF {
   /** @param normal, offset in the face's mesh's frame */
   PlaneInF(const NearVertices& vertices, const VectorsOf<Lanes>& normal, Lanes offset) : up(normal), offset(offset) {
-    if (!vertices.faces_move) return;
+    if (!vertices.facesMove()) return;
     const double* const t = vertices.X_FM.t;
     up = turnedDirection(vertices.X_FM, normal);
     this->offset = offset + (t[0] * up.x + t[1] * up.y + t[2] * up.z);
@@ -78,7 +78,7 @@ inline void raiseDeepest(Doubles deepest, Plain* plain) {
 template <typename Faces>
 inline Mask idsOf(const Rows& vertices, const Faces& faces, const ContactPlace& place) {
   const Mask vertex = reinterpret_cast<Mask>(vertices.w), face = faces.numbers(place.face_names);
-  const Mask names = place.vertices_are_a ? vertex << 32 | face : face << 32 | vertex;
+  const Mask names = place.verticesAreA() ? vertex << 32 | face : face << 32 | vertex;
   return names | static_cast<long>(place.kinds);
 }
 
@@ -87,7 +87,7 @@ template <typename Faces, typename Lanes>
 [[gnu::always_inline]] inline Doubles appendPlain(const Faces& faces, const Rows& vertices, const VectorsOf<Lanes>& up_W, Doubles height,
                                                   unsigned bits, PlainContacts* out) {
   const ContactPlace& place = out->place;
-  const Mask to_a = place.vertices_are_a ? height > 0 : height <= 0;
+  const Mask to_a = place.verticesAreA() ? height > 0 : height <= 0;
   const Doubles sign = to_a ? all(1) : all(-1), depth = place.layer - absolute(height), beside = sign * place.shift - 0.5 * height;
   const Vectors at = turnedPoint(place.X_WF, vertices.v);
   const WorldContacts contacts{{at.x + beside * up_W.x, at.y + beside * up_W.y, at.z + beside * up_W.z},

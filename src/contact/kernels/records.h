@@ -3,6 +3,8 @@
 
 #include <cstdint>
 
+#include "features/side.h"
+
 namespace blem_sim::contact::kernels {
 
 struct alignas(32) Vec4 {
@@ -46,7 +48,13 @@ struct Motion {
 
 /** A pair of features that may have a contact: indices into arrays of records. */
 struct Candidate {
-  std::uint32_t a, b;
+  std::uint32_t first, second;
+};
+
+/** Candidates one after the other. */
+struct CandidateRun {
+  const Candidate* data;
+  std::uint32_t count;
 };
 
 /** Elements of a leaf; room for their features, in blocks of so many side by side. */
@@ -132,12 +140,12 @@ struct LeafHit {
   std::uint32_t feature, bits;
 };
 
-/** Pairs of features of two leaves that may have a contact, or a crossing. [0]: the first kind is the first leaf's, bits are the second
- * one's; [1]: the other way round. */
+/** Pairs of features of two leaves that may have a contact, or a crossing, by the side of the first kind; bits are the other leaf's. */
 struct LeafHits {
-  LeafHit vertex_face[2][MAX_LEAF_FEATURES], vertex_edge[2][MAX_LEAF_FEATURES], edge_face[2][MAX_LEAF_FEATURES];
+  PerSide<LeafHit[MAX_LEAF_FEATURES]> vertex_face, vertex_edge, edge_face;
   LeafHit vertex_vertex[MAX_LEAF_FEATURES], edge_edge[MAX_LEAF_FEATURES];
-  int vertex_faces[2], vertex_edges[2], edge_faces[2], vertex_vertices, edge_edges;
+  PerSide<int> vertex_faces, vertex_edges, edge_faces;
+  int vertex_vertices, edge_edges;
 };
 
 /** A vertex near a face. */
@@ -167,19 +175,36 @@ struct ContactRow {
 /** Vertices of one mesh near faces of the other. */
 struct NearVertices {
   const Vec4* records;  ///< in frame F; w: nameBits
-  bool faces_move;      ///< their records are in the moving mesh's frame
-  Motion X_MF, X_FM;    ///< read only then
+  Side side;            ///< of the vertices
+  Motion X_MF, X_FM;    ///< read only if the faces move, whose records are in frame M then
+
+  bool facesMove() const { return side == Side::FIXED; }
+};
+
+/** Vertices and the faces that candidates pair them with. */
+struct VerticesAtFaces {
+  NearVertices vertices;
+  const FaceRecord* faces;
+  const OpenSides* open;  ///< per face
+};
+
+/** Candidates of vertices with faces. */
+struct VertexFaceRun {
+  CandidateRun candidates;
+  const std::uint8_t* inner;  ///< as of nearVertexFaces, which changes no contact; null: not known
 };
 
 /** Data that place contacts of vertices of one mesh with faces of the other in the world, and name them. */
 struct ContactPlace {
   const int* face_names;  ///< per face
-  bool vertices_are_a;    ///< A is the mesh of the vertices
+  Side vertices, a;       ///< side of the vertices, and the one that is A
   Motion X_FM, X_WF;
   double layer;         ///< [m] rA + rB
   double shift;         ///< [m] (rB - rA) / 2
   std::uint64_t kinds;  ///< contactId of features 0
   bool keeps_feet;      ///< witness points are asked for
+
+  bool verticesAreA() const { return vertices == a; }
 };
 
 /** Contacts that need no closer look, as kernels write them. Room for one more than there are candidates. */
@@ -200,6 +225,14 @@ struct BesideSides {
   std::uint32_t outside;  ///< bits k: outside its side k; not none
   std::uint32_t face;     ///< among FaceCorners
   double reach;           ///< [m] farther beside the face the vertex lies over no other face of the plane
+};
+
+/** Vertices and the faces that they lie beside. */
+struct VerticesBesideFaces {
+  NearVertices vertices;
+  const FaceRecord* faces;
+  const FaceCorners* corners;
+  const BesideSides* sides;  ///< per pair
 };
 
 /** The row of a contact that fades, and its pair. */

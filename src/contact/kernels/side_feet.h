@@ -58,18 +58,22 @@ inline Doubles reaches(const BesideSides* sides, std::uint32_t count) {
   return reach;
 }
 
-std::uint32_t sideFeet(const ContactPlace& place, const NearVertices& vertices, const FaceRecord* faces, const FaceCorners* corners,
-                       const BesideSides* sides, const Candidate* pairs, std::uint32_t count, double range, FadingContacts* out) {
+std::uint32_t sideFeet(const ContactPlace& place, const VerticesBesideFaces& features, CandidateRun pairs, double range,
+                       FadingContacts* out) {
+  const NearVertices& vertices = features.vertices;
+  const FaceRecord* const faces = features.faces;
+  const BesideSides* const sides = features.sides;
+  const std::uint32_t count = pairs.count;
   ContactRow* row = out->rows;
   out->asked_count = 0;
   for (std::uint32_t first = 0; first < count; first += LANES) {
-    const Batch batch(pairs, first, count);
-    const Rows points = batch.points(vertices.records, OF_A);
+    const Batch batch(pairs, first);
+    const Rows points = batch.points(vertices.records, OF_FIRST);
     const Vectors &at = points.v, p = seenByFaces(vertices, at);
-    const Rows plane = batch.field(faces, OF_B, &FaceRecord::plane);
-    auto [foot, lost] = nearestFeet(sides + first, count - first, corners, p - above(p, plane) * plane.v);
-    if (vertices.faces_move) foot = turnedPoint(place.X_FM, foot);
-    const bool from_foot = place.keeps_feet ? !vertices.faces_move : place.vertices_are_a;
+    const Rows plane = batch.field(faces, OF_SECOND, &FaceRecord::plane);
+    auto [foot, lost] = nearestFeet(sides + first, count - first, features.corners, p - above(p, plane) * plane.v);
+    if (vertices.facesMove()) foot = turnedPoint(place.X_FM, foot);
+    const bool from_foot = place.keeps_feet ? !vertices.facesMove() : place.verticesAreA();
     const Vectors d = from_foot ? at - foot : foot - at;
     const Doubles distance = squareRoot(dot(d, d)), gap = distance + lost;
     const Vectors normal{d.x / distance, d.y / distance, d.z / distance};

@@ -8,22 +8,22 @@
 namespace blem_sim::contact::kernels {
 namespace {
 
-std::uint32_t nearVertexFaces(const NearVertices& a, const FaceRecord* b, const OpenSides* open, const Candidate* in, std::uint32_t count,
-                              const Reach& reach, Candidate* out, std::uint8_t* inner) {
+std::uint32_t nearVertexFaces(const VerticesAtFaces& features, CandidateRun in, const Reach& reach, Candidate* out, std::uint8_t* inner) {
+  const NearVertices& vertices = features.vertices;
   const double range = reach.range + reach.margin, beside = reach.margin + 3 * CLOSED;
   unsigned is_inner = 0;
   const auto test = [&](const Batch& batch) {
-    const Vectors p = seenByFaces(a, batch.points(a.records, OF_A).v);
-    return withFaces(batch, b, [&](const auto& faces) {
+    const Vectors p = seenByFaces(vertices, batch.points(vertices.records, OF_FIRST).v);
+    return withFaces(batch, features.faces, [&](const auto& faces) {
       const Doubles height = above(p, faces.plane()), most = range - absolute(height);
       const unsigned near = bitsOf(most >= 0);
       if (near == 0) return 0u;
       const InsideSides sides(faces, p);
       is_inner = bitsOf(sides.least() >= NEAR_BORDER + beside);
-      return near & bitsOf(isOverOrFades(sides.of, openSides(faces.numbers(open), height, reach.margin), most, beside));
+      return near & bitsOf(isOverOrFades(sides.of, openSides(faces.numbers(features.open), height, reach.margin), most, beside));
     });
   };
-  return copied(in, count, out, test, [&](std::uint32_t at, unsigned bits) {
+  return copied(in, out, test, [&](std::uint32_t at, unsigned bits) {
     for (; bits != 0; bits &= bits - 1) inner[at++] = is_inner >> __builtin_ctz(bits) & 1;
   });
 }
@@ -45,20 +45,19 @@ inline bool areAll(const std::uint8_t* flags, std::uint32_t first, const Batch& 
 /** Tests vertices over faces, or little beside them. */
 class VertexFaceTest {
  public:
-  VertexFaceTest(const NearVertices& vertices, const FaceRecord* faces, const OpenSides* open, double range, PlainContacts* plain,
-                 VertexFaceHit* hits)
-      : vertices_(vertices),
-        faces_(faces),
-        open_(open),
+  VertexFaceTest(const VerticesAtFaces& features, double range, PlainContacts* plain, VertexFaceHit* hits)
+      : vertices_(features.vertices),
+        faces_(features.faces),
+        open_(features.open),
         range_(range),
         plain_(plain),
-        planes_(vertices, plain),
+        planes_(features.vertices, plain),
         hits_(hits),
         deepest_(all(plain ? plain->deepest : 0)) {}
 
   /** Appends contacts of vertices that are surely over their faces and not near a border. @return false: one needs a closer look */
   bool appendInner(const Batch& batch) {
-    const Rows vertices = batch.points(vertices_.records, OF_A);
+    const Rows vertices = batch.points(vertices_.records, OF_FIRST);
     return withFaces(batch, faces_, [&](const auto& faces) {
       const auto& plane = planes_.of(faces);
       const Doubles height = plane.height(vertices.v);
@@ -74,7 +73,7 @@ class VertexFaceTest {
   }
   template <typename Faces>
   void test(const Batch& batch, const Faces& faces, std::uint32_t first) {
-    const Rows vertices = batch.points(vertices_.records, OF_A);
+    const Rows vertices = batch.points(vertices_.records, OF_FIRST);
     const auto& plane = planes_.of(faces);
     const Doubles height = plane.height(vertices.v), most = range_ - absolute(height);
     const InsideSides sides(faces, seenByFaces(vertices_, vertices.v));
@@ -121,12 +120,12 @@ class VertexFaceTest {
   Doubles deepest_;
 };
 
-std::uint32_t vertexFaces(const NearVertices& a, const FaceRecord* b, const OpenSides* open, const Candidate* candidates,
-                          std::uint32_t count, const std::uint8_t* inner, double range, PlainContacts* plain, VertexFaceHit* hits) {
-  VertexFaceTest test(a, b, open, range, plain, hits);
-  for (std::uint32_t first = 0; first < count; first += LANES) {
-    const Batch batch(candidates, first, count);
-    if (plain && areAll(inner, first, batch) && test.appendInner(batch)) continue;
+std::uint32_t vertexFaces(const VerticesAtFaces& features, const VertexFaceRun& run, double range, PlainContacts* plain,
+                          VertexFaceHit* hits) {
+  VertexFaceTest test(features, range, plain, hits);
+  for (std::uint32_t first = 0; first < run.candidates.count; first += LANES) {
+    const Batch batch(run.candidates, first);
+    if (plain && areAll(run.inner, first, batch) && test.appendInner(batch)) continue;
     test.test(batch, first);
   }
   return test.finish();

@@ -32,13 +32,15 @@ LeadingEdges leadingEdges(const EdgeDirections* blocks, int count, const double*
   return {bitsOf(leads) != 0, bitsOf(is_near) != 0};
 }
 
-void leadingAtSides(const EdgeDirections* directions, const FaceRecord* faces, const Motion& to_vertices, const Candidate* pairs,
-                    const LeavingSide* sides, std::uint32_t count, LeadingEdges* leading) {
+void leadingAtSides(const EdgeDirections* directions, const FaceRecord* faces, const Motion& to_vertices, const LeavingRun& leaving,
+                    LeadingEdges* leading) {
+  const LeavingSide* const sides = leaving.sides;
+  const std::uint32_t count = leaving.count;
   for (std::uint32_t first = 0; first < count; first += LANES) {
     const Vec4 *planes[LANES], *inward[LANES];
     for (std::uint32_t i = 0; i < LANES; ++i) {
       const LeavingSide& side = sides[first + i < count ? first + i : first];
-      const FaceRecord& face = faces[pairs[side.pair].b];
+      const FaceRecord& face = faces[leaving.pairs[side.pair].second];
       planes[i] = &face.plane;
       inward[i] = &face.sides[side.side];
     }
@@ -74,14 +76,13 @@ inline EdgeOffset offsetFrom(const Rows& start, const Vectors& along, const Vect
   return {r - part * along, part};
 }
 
-std::uint32_t vertexEdges(const Vec4* a, const EdgeRecord* b, const Candidate* candidates, std::uint32_t count, double range,
-                          VertexEdgeHit* hits) {
+std::uint32_t vertexEdges(const Vec4* vertices, const EdgeRecord* edges, CandidateRun run, double range, VertexEdgeHit* hits) {
   std::uint32_t found = 0;
   double offsets[3][LANES];
   const auto test = [&](const Batch& batch) {
-    const Rows start = batch.field(b, OF_B, &EdgeRecord::start);
-    const Rows along = batch.field(b, OF_B, &EdgeRecord::along);
-    const EdgeOffset offset = offsetFrom(start, along.v, batch.points(a, OF_A).v);
+    const Rows start = batch.field(edges, OF_SECOND, &EdgeRecord::start);
+    const Rows along = batch.field(edges, OF_SECOND, &EdgeRecord::along);
+    const EdgeOffset offset = offsetFrom(start, along.v, batch.points(vertices, OF_FIRST).v);
     const Doubles d2 = dot(offset.d, offset.d), over = beyondEnds(offset.part, all(1)), distance = squareRoot(d2);
     // Beyond the ends of round edges contacts fade.
     const Doubles most = along.w < 0 ? (range - distance) / FADE_SLOPE : Doubles{};
@@ -92,11 +93,10 @@ std::uint32_t vertexEdges(const Vec4* a, const EdgeRecord* b, const Candidate* c
     __builtin_memcpy(offsets[0], &offset.d.x, sizeof offsets[0]);
     __builtin_memcpy(offsets[1], &offset.d.y, sizeof offsets[1]);
     __builtin_memcpy(offsets[2], &offset.d.z, sizeof offsets[2]);
-    return near & bitsOf((dot(batch.inward(b, OF_B, 0).v, offset.d) <= limit) & (dot(batch.inward(b, OF_B, 1).v, offset.d) <= limit));
+    return near & bitsOf((dot(batch.inward(edges, OF_SECOND, 0).v, offset.d) <= limit) &
+                         (dot(batch.inward(edges, OF_SECOND, 1).v, offset.d) <= limit));
   };
-  forEachHit(candidates, count, test, [&](std::uint32_t i, int lane) {
-    hits[found++] = {i, {offsets[0][lane], offsets[1][lane], offsets[2][lane]}};
-  });
+  forEachHit(run, test, [&](std::uint32_t i, int lane) { hits[found++] = {i, {offsets[0][lane], offsets[1][lane], offsets[2][lane]}}; });
   return found;
 }
 

@@ -67,12 +67,12 @@ void describeEdge(const MeshSide& side, int edge, SurroundingsMemory* surroundin
   edges.folds[i] = static_cast<float>(record.along.w < 0 ? -fold : fold);
 }
 
-void describeVertex(const MeshSide& side, int vertex, SurroundingsMemory* surroundings, LeafFeatures* leaf) {
+void describeVertex(const MeshSide& side, int vertex, SurroundingsMemory* surroundings, std::vector<double>* angles, LeafFeatures* leaf) {
   const Vec4 record = vertexRecord(side, vertex);
   const std::uint32_t i = leaf->vertices.add(vertex, record);
   const std::uint32_t block = i / kernels::LEAF_BLOCK, column = i % kernels::LEAF_BLOCK;
   place(record, column, leaf->shapes.vertices[block].points);
-  const kernels::VertexCone cone = vertexCone(side, vertex, surroundings);
+  const kernels::VertexCone cone = vertexCone(side, vertex, surroundings, angles);
   placeCone(cone, column, &leaf->shapes.cones[block]);
   leaf->shapes.nearest |= static_cast<std::uint32_t>(cone.up >= 0 || cone.down >= 0) << i;
 }
@@ -96,7 +96,8 @@ EdgeCone edgeCone(const std::vector<EdgeRecord>& edges) {
   return {{number(axis.x()), number(axis.y()), number(axis.z())}, number(std::cos(spread)), number(std::sin(spread))};
 }
 
-void describe(const MeshSide& side, std::uint32_t index, SurroundingsMemory* surroundings, LeafFeatures* leaf) {
+void describe(const MeshSide& side, std::uint32_t index, SurroundingsMemory* surroundings, std::vector<double>* angles,
+              LeafFeatures* leaf) {
   const geometry::Bvh::Node& node = side.bvh.nodes()[index];
   assert(node.count <= kernels::MAX_LEAF_ELEMENTS);
   leaf->vertices.clear();
@@ -113,7 +114,7 @@ void describe(const MeshSide& side, std::uint32_t index, SurroundingsMemory* sur
     if (side.topology.isFace(element)) describeFace(side, element, surroundings, leaf);
     for (int k = 0; k < 3; ++k) {
       if (side.topology.ownsEdge(element, k)) describeEdge(side, side.topology.edgeOf(element, k), surroundings, leaf);
-      if (side.topology.ownsVertex(element, k)) describeVertex(side, side.mesh.elements[element][k], surroundings, leaf);
+      if (side.topology.ownsVertex(element, k)) describeVertex(side, side.mesh.elements[element][k], surroundings, angles, leaf);
     }
   }
   Eigen::Map<Eigen::Vector3f>(shapes.middle) = 0.5f * (node.lower + node.upper);
@@ -183,14 +184,14 @@ KeptLeaf& LeafMemory::findCrowdedOut(const MeshSide& side, std::uint32_t leaf, s
 
 KeptLeaf& LeafMemory::find(const MeshSide& side, std::uint32_t leaf, std::uint64_t search) {
   KeptLeaf& found = findKept(side, leaf, search);
-  if (found.search != search) found.index[0] = found.index[1] = KeptLeaf::NO_INDEX;
+  if (found.search != search) found.index = {KeptLeaf::NO_INDEX, KeptLeaf::NO_INDEX};
   found.search = search;
   return found;
 }
 
 void LeafMemory::describeAnew(const MeshSide& side, std::uint32_t leaf, KeptLeaf* found) {
   if (!found->features) found->features = std::make_unique<LeafFeatures>();
-  contact::describe(side, leaf, &surroundings_, found->features.get());
+  contact::describe(side, leaf, &surroundings_, &angles_, found->features.get());
   const LeafShapes& shapes = found->features->shapes;
   found->feature_count = shapes.vertex_count + shapes.face_count + shapes.edge_count;
   found->is_described = true;

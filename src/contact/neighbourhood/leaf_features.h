@@ -51,8 +51,8 @@ struct KeptLeaf {
 
   std::unique_ptr<LeafFeatures> features;  ///< the leaf's once it is described
   std::uint64_t search = 0;                ///< the last one that came here
-  std::uint32_t index[2];  ///< its index in that search, as a leaf of the moving mesh [1] and of the fixed one [0]; NO_INDEX: none yet
-  std::uint32_t feature_count = 0;  ///< vertices, faces and edges
+  PerSide<std::uint32_t> index;            ///< in that search, as a leaf of either mesh; NO_INDEX: none yet
+  std::uint32_t feature_count = 0;         ///< vertices, faces and edges
   bool is_described = false;
 };
 
@@ -81,6 +81,7 @@ class LeafMemory {
 
   std::vector<Set> sets_ = std::vector<Set>(1u << SET_BITS);
   SurroundingsMemory surroundings_;
+  std::vector<double> angles_;  // room of vertexCone
   // Leaves of the search at hand whose places others of its leaves hold.
   std::map<std::uint64_t, KeptLeaf> crowded_out_;
   std::uint64_t crowded_search_ = 0;

@@ -27,12 +27,12 @@ Vector3 axisOf(const MeshSide& side, int vertex) {
 
 }  // namespace
 
-kernels::VertexCone vertexCone(const MeshSide& side, int vertex, SurroundingsMemory* surroundings) {
+kernels::VertexCone vertexCone(const MeshSide& side, int vertex, SurroundingsMemory* surroundings, std::vector<double>* room) {
   constexpr double ANY = 1e6, ROUNDING = 0.002, LEAST_COSINE = 0.15;  // cosine: of half the widest gap between edges, seen along the axis
   const Vector3 axis = axisOf(side, vertex), x = axis.unitOrthogonal(), y = axis.cross(x);
   double up = -ANY, down = -ANY, least_across = 1;
   bool is_round = true;
-  thread_local std::vector<double> angles;
+  std::vector<double>& angles = *room;
   angles.clear();
   for (const int edge : side.topology.edgesOf(vertex)) {
     const Vector3 w = (side.mesh.vertices[side.topology.otherEnd(side.mesh, edge, vertex)] - side.mesh.vertices[vertex]).normalized();

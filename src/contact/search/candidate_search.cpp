@@ -48,14 +48,14 @@ class Search {
         buffers_(*buffers),
         listing_(*listing),
         search_(++buffers->searches) {
-    for (const bool moves : {true, false}) buffers_.found[moves].assign(listing_.leaves[moves].size(), {});
+    for (const Side side : SIDES) buffers_.found[side].assign(listing_.leaves[side].size(), {});
   }
 
   void findLeafPairs() {
     const auto matters = [this](std::uint32_t m, std::uint32_t f) { return (pair_.moving.owners[m] | pair_.fixed.owners[f]) != 0; };
     geometry::visitLeafPairsIf(pair_.moving.bvh, pair_.fixed.bvh, pair_.X_FM, reach_ + rounding_, matters,
                                [this](std::uint32_t m, std::uint32_t f) {
-                                 const std::uint32_t moving = use(true, m), fixed = use(false, f);
+                                 const std::uint32_t moving = use(Side::MOVING, m), fixed = use(Side::FIXED, f);
                                  listing_.pairs.emplace_back() = {moving, fixed};
                                });
   }
@@ -83,7 +83,7 @@ class Search {
     const std::size_t end = std::min(listing_.done + count, listing_.pairs.size());
     for (std::size_t& i = listing_.done; i < end; ++i) {
       const CandidateListing::LeafPair& pair = listing_.pairs[i];
-      const LeafInUse moving = leaf(true, pair.moving), fixed = leaf(false, pair.fixed);
+      const LeafInUse moving = leaf(Side::MOVING, pair.moving), fixed = leaf(Side::FIXED, pair.fixed);
       if (i + 1 < end) prefetch(listing_.pairs[i + 1], pair);
       visit(moving, fixed);
     }
@@ -107,17 +107,17 @@ class Search {
   }
 
   // Place of a leaf's feature among the near features of its mesh.
-  std::uint32_t vertex(bool moves, const LeafInUse& leaf, std::uint32_t i) {
-    return place(leaf, leaf.slots + i, i, listing_.lists.near[moves].vertices, &buffers_.new_features[moves].vertices);
+  std::uint32_t vertex(Side side, const LeafInUse& leaf, std::uint32_t i) {
+    return place(leaf, leaf.slots + i, i, listing_.lists.near[side].vertices, &buffers_.new_features[side].vertices);
   }
-  std::uint32_t face(bool moves, const LeafInUse& leaf, std::uint32_t i) {
-    return place(leaf, leaf.slots + leaf.features.shapes.vertex_count + i, i, listing_.lists.near[moves].faces,
-                 &buffers_.new_features[moves].faces);
+  std::uint32_t face(Side side, const LeafInUse& leaf, std::uint32_t i) {
+    return place(leaf, leaf.slots + leaf.features.shapes.vertex_count + i, i, listing_.lists.near[side].faces,
+                 &buffers_.new_features[side].faces);
   }
-  std::uint32_t edge(bool moves, const LeafInUse& leaf, std::uint32_t i) {
+  std::uint32_t edge(Side side, const LeafInUse& leaf, std::uint32_t i) {
     const kernels::LeafShapes& shapes = leaf.features.shapes;
-    return place(leaf, leaf.slots + shapes.vertex_count + shapes.face_count + i, i, listing_.lists.near[moves].edges,
-                 &buffers_.new_features[moves].edges);
+    return place(leaf, leaf.slots + shapes.vertex_count + shapes.face_count + i, i, listing_.lists.near[side].edges,
+                 &buffers_.new_features[side].edges);
   }
 
   /** Appends visit(i, j) for the features i of the moving leaf and j of the fixed one: in place, for a copy of both numbers at once would
@@ -133,28 +133,28 @@ class Search {
   void appendContacts(const LeafInUse& m, const LeafInUse& f) {
     const kernels::LeafHits& hits = buffers_.hits;
     CandidatePairs& pairs = listing_.lists.pairs;
-    for (const bool moves : {true, false}) {
-      const LeafInUse &own = moves ? m : f, &partner = moves ? f : m;
-      append(hits.vertex_face[!moves], hits.vertex_faces[!moves], &pairs.vertex_face[moves], [&](auto i, auto j) -> Candidate {
-        return {vertex(moves, own, i), face(!moves, partner, j)};
+    for (const Side side : SIDES) {
+      const LeafInUse &own = side == Side::MOVING ? m : f, &partner = side == Side::MOVING ? f : m;
+      append(hits.vertex_face[side], hits.vertex_faces[side], &pairs.vertex_face[side], [&](auto i, auto j) -> Candidate {
+        return {vertex(side, own, i), face(!side, partner, j)};
       });
-      append(hits.vertex_edge[!moves], hits.vertex_edges[!moves], &pairs.vertex_edge[moves], [&](auto i, auto j) -> Candidate {
-        return {vertex(moves, own, i), edge(!moves, partner, j)};
+      append(hits.vertex_edge[side], hits.vertex_edges[side], &pairs.vertex_edge[side], [&](auto i, auto j) -> Candidate {
+        return {vertex(side, own, i), edge(!side, partner, j)};
       });
     }
     append(hits.vertex_vertex, hits.vertex_vertices, &pairs.vertex_vertex, [&](auto i, auto j) -> Candidate {
-      return {vertex(true, m, i), vertex(false, f, j)};
+      return {vertex(Side::MOVING, m, i), vertex(Side::FIXED, f, j)};
     });
     append(hits.edge_edge, hits.edge_edges, &pairs.edge_edge, [&](auto i, auto j) -> Candidate {
-      return {edge(true, m, i), edge(false, f, j)};
+      return {edge(Side::MOVING, m, i), edge(Side::FIXED, f, j)};
     });
   }
 
   void appendCrossings(const LeafInUse& m, const LeafInUse& f) {
     const kernels::LeafHits& hits = buffers_.hits;
-    for (const bool moves : {true, false}) {
-      append(hits.edge_face[!moves], hits.edge_faces[!moves], &listing_.lists.pairs.edge_face[moves], [&](auto i, auto j) -> Candidate {
-        return {edge(moves, moves ? m : f, i), face(!moves, moves ? f : m, j)};
+    for (const Side side : SIDES) {
+      append(hits.edge_face[side], hits.edge_faces[side], &listing_.lists.pairs.edge_face[side], [&](auto i, auto j) -> Candidate {
+        return {edge(side, side == Side::MOVING ? m : f, i), face(!side, side == Side::MOVING ? f : m, j)};
       });
     }
   }
@@ -166,38 +166,38 @@ class Search {
     return FLOAT_ROUNDING * (std::max(largest(pair_.fixed.bounds), largest(pair_.moving.bounds) + shift) + reach_) + 3 * CLOSED;
   }
 
-  KeptLeaf& find(bool moves, std::uint32_t node) { return buffers_.leaves.find(pair_.side(moves), node, search_); }
+  KeptLeaf& find(Side side, std::uint32_t node) { return buffers_.leaves.find(pair_.side(side), node, search_); }
 
   /** Index of the node among the listing's leaves. */
-  std::uint32_t use(bool moves, std::uint32_t node) {
-    LeafUsed& last = last_[moves];
-    if (last.node != node) last = {node, indexOf(moves, node)};
+  std::uint32_t use(Side side, std::uint32_t node) {
+    LeafUsed& last = last_[side];
+    if (last.node != node) last = {node, indexOf(side, node)};
     return last.index;
   }
 
-  std::uint32_t indexOf(bool moves, std::uint32_t node) {
-    KeptLeaf& found = find(moves, node);
-    std::uint32_t& index = found.index[moves];
+  std::uint32_t indexOf(Side side, std::uint32_t node) {
+    KeptLeaf& found = find(side, node);
+    std::uint32_t& index = found.index[side];
     if (index != KeptLeaf::NO_INDEX) return index;
-    std::vector<CandidateListing::Leaf>& leaves = listing_.leaves[moves];
+    std::vector<CandidateListing::Leaf>& leaves = listing_.leaves[side];
     index = static_cast<std::uint32_t>(leaves.size());
     leaves.push_back({node});
-    buffers_.found[moves].push_back({found.is_described ? &describe(moves, &found, &leaves.back()) : nullptr, nullptr});
+    buffers_.found[side].push_back({found.is_described ? &describe(side, &found, &leaves.back()) : nullptr, nullptr});
     return index;
   }
 
-  LeafInUse leaf(bool moves, std::uint32_t index) {
-    FoundLeaf& found = buffers_.found[moves][index];
-    CandidateListing::Leaf& leaf = listing_.leaves[moves][index];
+  LeafInUse leaf(Side side, std::uint32_t index) {
+    FoundLeaf& found = buffers_.found[side][index];
+    CandidateListing::Leaf& leaf = listing_.leaves[side][index];
     if (!found.shapes) {
-      if (!found.features) found.features = &describe(moves, &find(moves, leaf.node), &leaf);
-      found.shapes = moves ? turned(found.features->shapes, index) : &found.features->shapes;
+      if (!found.features) found.features = &describe(side, &find(side, leaf.node), &leaf);
+      found.shapes = side == Side::MOVING ? turned(found.features->shapes, index) : &found.features->shapes;
     }
     return {*found.features, *found.shapes, leaf.slots};
   }
 
-  const LeafFeatures& describe(bool moves, KeptLeaf* kept, CandidateListing::Leaf* leaf) {
-    const LeafFeatures& features = buffers_.leaves.describe(pair_.side(moves), leaf->node, kept);
+  const LeafFeatures& describe(Side side, KeptLeaf* kept, CandidateListing::Leaf* leaf) {
+    const LeafFeatures& features = buffers_.leaves.describe(pair_.side(side), leaf->node, kept);
     if (leaf->slots == NOWHERE) {
       leaf->slots = static_cast<std::uint32_t>(listing_.slots.size());
       listing_.slots.resize(leaf->slots + kept->feature_count, NOWHERE);
@@ -215,15 +215,15 @@ class Search {
   }
 
   void prefetch(const CandidateListing::LeafPair& next, const CandidateListing::LeafPair& now) {
-    if (next.moving != now.moving) prefetch(true, next.moving);
-    if (next.fixed != now.fixed) prefetch(false, next.fixed);
+    if (next.moving != now.moving) prefetch(Side::MOVING, next.moving);
+    if (next.fixed != now.fixed) prefetch(Side::FIXED, next.fixed);
   }
   /** New leaves lie far away in memory; of others only the part that is always read does. */
-  void prefetch(bool moves, std::uint32_t index) {
+  void prefetch(Side side, std::uint32_t index) {
     using Shapes = kernels::LeafShapes;
     constexpr std::size_t LINE = 64, FEW = offsetof(Shapes, faces), MOST = offsetof(Shapes, edges) + sizeof(kernels::LeafEdges);
-    const std::size_t size = buffers_.found[moves][index].shapes ? FEW : MOST;
-    const char* const begin = reinterpret_cast<const char*>(&leaf(moves, index).shapes);
+    const std::size_t size = buffers_.found[side][index].shapes ? FEW : MOST;
+    const char* const begin = reinterpret_cast<const char*>(&leaf(side, index).shapes);
     for (std::size_t at = 0; at < size; at += LINE) __builtin_prefetch(begin + at);
   }
 
@@ -240,10 +240,10 @@ class Search {
 
   /** Copies the features that were placed, at once: records lie far away in memory, and so they are fetched side by side. */
   void copyNew() {
-    for (const bool moves : {true, false}) {
-      NearFeatures& near = listing_.lists.near[moves];
-      const bool near_points = isPoints(pair_.side(!moves));
-      NewFeatures& added = buffers_.new_features[moves];
+    for (const Side side : SIDES) {
+      NearFeatures& near = listing_.lists.near[side];
+      const bool near_points = isPoints(pair_.side(!side));
+      NewFeatures& added = buffers_.new_features[side];
       for (const LeafFeature& v : added.vertices) near.vertices.add(v.leaf->vertices.records[v.i], v.leaf->vertices.names[v.i]);
       for (const LeafFeature& e : added.edges) near.edges.add(e.leaf->edges.records[e.i], e.leaf->edges.names[e.i]);
       for (const LeafFeature& f : added.faces) {
@@ -256,7 +256,7 @@ class Search {
 
   /** Adds the normals of the fixed leaves that were looked at: directions within an angle of an axis are in a ball. */
   void addNormals() {
-    for (const FoundLeaf& found : buffers_.found[false]) {
+    for (const FoundLeaf& found : buffers_.found.fixed) {
       if (!found.shapes) continue;
       const kernels::LeafRegion& region = found.shapes->region;
       const double lean = region.lean;
@@ -273,14 +273,15 @@ class Search {
   const std::uint64_t search_;
   struct LeafUsed {
     std::uint32_t node = NOWHERE, index = NOWHERE;
-  } last_[2];
+  };
+  PerSide<LeafUsed> last_;
 };
 
 void clear(const MeshPair& pair, CandidateKind kind, const ListMargin& margin, CandidateListing* listing) {
   listing->kind = kind;
   listing->lists.clear();
   listing->origin = {true, pair.X_FM, pair.range, margin};
-  for (std::vector<CandidateListing::Leaf>& leaves : listing->leaves) leaves.clear();
+  for (const Side side : SIDES) listing->leaves[side].clear();
   listing->slots.clear();
   listing->pairs.clear();
   listing->done = 0;

@@ -25,9 +25,9 @@ struct CandidateListing {
     std::uint32_t node, slots = NOWHERE;  ///< slots: NOWHERE until it is described
   };
   struct LeafPair {
-    std::uint32_t moving, fixed;  ///< indices into leaves[1], leaves[0]
+    std::uint32_t moving, fixed;  ///< indices into leaves.moving, leaves.fixed
   };
-  std::vector<Leaf> leaves[2];  ///< [1] of the moving mesh, [0] of the fixed one
+  PerSide<std::vector<Leaf>> leaves;
   std::vector<std::uint32_t> slots;
   std::vector<LeafPair> pairs;
   std::size_t done = 0;   ///< number of pairs that were looked at
@@ -37,10 +37,12 @@ struct CandidateListing {
   bool isComplete() const { return origin.known && left() == 0; }
   /** Makes room for so many leaves, features and candidates of each kind, and as many pairs of leaves. */
   void reserve(std::size_t count) {
-    for (std::vector<Leaf>& of_mesh : leaves) of_mesh.reserve(count);
+    for (const Side side : SIDES) {
+      leaves[side].reserve(count);
+      lists.near[side].reserve(count);
+    }
     slots.reserve(count);
     pairs.reserve(count);
-    for (NearFeatures& features : lists.near) features.reserve(count);
     lists.pairs.reserve(count);
   }
 };
@@ -69,9 +71,9 @@ struct NewFeatures {
 /** Buffers of searches for candidates. */
 struct CandidateSearchBuffers {
   LeafMemory leaves;
-  std::vector<FoundLeaf> found[2];                           ///< per leaf of the listing
+  PerSide<std::vector<FoundLeaf>> found;                     ///< per leaf of the listing
   std::vector<std::unique_ptr<kernels::LeafShapes>> turned;  ///< of the moving leaves that were looked at
-  NewFeatures new_features[2];                               ///< [1] of the moving mesh, [0] of the fixed one
+  PerSide<NewFeatures> new_features;
   kernels::LeafHits hits;
   std::uint64_t searches = 0;
 };

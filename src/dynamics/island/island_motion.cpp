@@ -132,8 +132,8 @@ void takeMomentum(const Forest& forest, int tree, ForestMotion* motion, SolverSp
   motion->momentum[tree] = space->mass_velocity.segment<6>(t.first_dof);
 }
 
-void setFreeMomentum(const Forest& forest, const Scene& scene, const StepInput& input, bool touched, int tree, ForestMotion* motion,
-                     SolverSpace* space) {
+void setFreeMomentum(const TreeAhead& ahead, ForestMotion* motion, SolverSpace* space) {
+  const auto& [forest, scene, input, tree, touched] = ahead;
   const ForestTree& t = forest.trees()[tree];
   const int first = t.first_dof, count = t.dofCount();
   computeApplied(forest, scene, tree, motion);

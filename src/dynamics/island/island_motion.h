@@ -11,15 +11,22 @@ namespace blem_sim::dynamics {
 /** Sets the momentum of a free tree that was just read to that of its velocities. */
 void takeMomentum(const Forest& forest, int tree, ForestMotion* motion, SolverSpace* space);
 
+/** A tree before the solve of its island. */
+struct TreeAhead {
+  const Forest& forest;
+  const Scene& scene;
+  const StepInput& input;
+  int tree;
+  bool touched;  ///< contacts act on its island
+};
+
 /**
  * Fills space->free_momentum, M v*, the first guess of the velocities, and M times them, space->mass_velocity. A free root's rows carry its
  * momentum from step to step, so that none is lost to the change of the mass matrix; velocity products are those of the middle of the step,
  * guessed from the last one. A tree whose velocities they change by too much for one guess is fast: they act on its way instead, after the
  * solve.
- * @param touched whether contacts act on the tree's island
  */
-void setFreeMomentum(const Forest& forest, const Scene& scene, const StepInput& input, bool touched, int tree, ForestMotion* motion,
-                     SolverSpace* space);
+void setFreeMomentum(const TreeAhead& ahead, ForestMotion* motion, SolverSpace* space);
 
 /** A tree that nothing drives or ties is fast in this step, whatever its speed. After setFreeMomentum, before the solve. */
 void followAlone(const Forest& forest, const StepInput& input, int tree, ForestMotion* motion, SolverSpace* space);

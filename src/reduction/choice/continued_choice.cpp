@@ -4,8 +4,6 @@
 #include <limits>
 
 #include "choice/id_filter.h"
-#include "lanes/reduction_lanes.h"
-#include "lanes/wrench_bounds.h"
 
 namespace blem_sim::reduction {
 
@@ -29,56 +27,50 @@ bool addsLittleBetween(const WrenchPoint& point, const WrenchPoint& a, const Wre
   return PER_PLACE * distance(point.x, between) + PER_NORMAL * tilt + lead <= MOST_LACK;
 }
 
-/** Contacts chosen before among the members. */
-struct Before {
-  std::vector<int> places;  // in the list of members, ascending
-  std::vector<WrenchPoint> points;
-  WrenchPointRows rows;  // the same
-
-  /** @return false if they are not k */
-  bool find(const std::vector<contact::Contact>& contacts, const std::vector<int>& members, const PatchScale& scale, int k,
-            const ContactIds& ids) {
-    if (static_cast<int>(ids.size()) != k) return false;
-    const IdFilter filter(ids);
-    places.clear();
-    points.clear();
-    rows.clear();
-    for (int m = 0; m < static_cast<int>(members.size()); ++m) {
-      const contact::Contact& contact = contacts[members[m]];
-      if (!filter.has(contact.id)) continue;
-      places.push_back(m);
-      points.push_back(wrenchPoint(contact, scale));
-      rows.add(points.back());
-    }
-    return static_cast<int>(places.size()) == k;
+/** @return false if they are not k */
+bool findChosenBefore(const ChoiceQuestion& asked, ChosenBefore* before) {
+  if (static_cast<int>(asked.chosen_before.size()) != asked.k) return false;
+  const IdFilter filter(asked.chosen_before);
+  before->places.clear();
+  before->points.clear();
+  before->rows.clear();
+  for (int m = 0; m < static_cast<int>(asked.members.size()); ++m) {
+    const contact::Contact& contact = asked.contacts[asked.members[m]];
+    if (!filter.has(contact.id)) continue;
+    before->places.push_back(m);
+    before->points.push_back(wrenchPoint(contact, asked.scale));
+    before->rows.add(before->points.back());
   }
+  return static_cast<int>(before->places.size()) == asked.k;
+}
 
-  /** @param following of the points, the first that comes after this one */
-  bool span(const WrenchPoint& point, std::size_t following) const {
-    if (point.handicap > FARTHEST) return false;
-    const WrenchPoint &next = points[following % points.size()], &last = points[(following + points.size() - 1) % points.size()];
-    return addsLittleBetween(point, last, next) || addsLittleBeside(rows, point, MOST_LACK);
-  }
-};
+/** @param following of the points, the first that comes after this one */
+bool isSpanned(const ChosenBefore& before, const WrenchPoint& point, std::size_t following) {
+  if (point.handicap > FARTHEST) return false;
+  const std::vector<WrenchPoint>& points = before.points;
+  const WrenchPoint &next = points[following % points.size()], &last = points[(following + points.size() - 1) % points.size()];
+  return addsLittleBetween(point, last, next) || addsLittleBeside(before.rows, point, MOST_LACK);
+}
 
 }  // namespace
 
-bool surelyGoesOn(const std::vector<contact::Contact>& contacts, const std::vector<int>& members, const PatchScale& scale, int k,
-                  const ContactIds& chosen_before, std::vector<int>* chosen) {
-  static thread_local Before before;
-  if (!before.find(contacts, members, scale, k, chosen_before)) return false;
+bool surelyGoesOn(const ChoiceQuestion& asked, ChosenBefore* before, std::vector<int>* chosen) {
+  if (!findChosenBefore(asked, before)) return false;
+  const std::vector<contact::Contact>& contacts = asked.contacts;
+  const std::vector<int>& members = asked.members;
+  const PatchScale& scale = asked.scale;
   double depth = -std::numeric_limits<double>::infinity();
   chosen->clear();
-  for (const int place : before.places) {
+  for (const int place : before->places) {
     chosen->push_back(members[place]);
     depth = std::max(depth, contacts[members[place]].depth);
   }
   if (depth < scale.depth() - DEEP_ENOUGH) return false;
   std::size_t following = 0;  // the first of those chosen before that comes after the member
   for (int m = 0; m < static_cast<int>(members.size()); ++m) {
-    if (following < before.places.size() && before.places[following] == m) {
+    if (following < before->places.size() && before->places[following] == m) {
       ++following;
-    } else if (!before.span(wrenchPoint(contacts[members[m]], scale), following)) {
+    } else if (!isSpanned(*before, wrenchPoint(contacts[members[m]], scale), following)) {
       return false;
     }
   }

@@ -51,6 +51,8 @@ CellDirections directionsAcross(const Vector3& normal) {
   return directions;
 }
 
+}  // namespace
+
 // Cells of a coarse grid over normals, numbered as they come.
 class CoarseCells {
  public:
@@ -86,6 +88,8 @@ class CoarseCells {
   std::vector<int> keys_;
   std::vector<CellDirections> directions_;
 };
+
+namespace {
 
 /** Input of readMembers: the members' contacts, their scale, and the limits for those that may be spared. */
 struct Reading {
@@ -127,54 +131,59 @@ BLEM_SIM_LANES int readMembers(const Reading& given, WrenchPoint* points, int* k
   return size;
 }
 
-struct CrowdBuffers {
+}  // namespace
+
+struct CrowdThinner::Room {
   CoarseCells cells;
   std::vector<WrenchPoint> points;
   std::vector<int> cell_of, extreme, spared;
   std::vector<CellExtremes> extremes;
+
+  void read(const ChoiceQuestion& asked);
+  void findExtreme();
 };
 
-void read(const std::vector<contact::Contact>& contacts, const PatchScale& scale, const std::vector<int>& members, const ContactIds& spared,
-          CrowdBuffers* buffers) {
-  const IdFilter filter(spared);
-  buffers->points.resize(members.size());
-  buffers->cell_of.resize(members.size());
-  buffers->spared.resize(members.size());
+void CrowdThinner::Room::read(const ChoiceQuestion& asked) {
+  const std::vector<contact::Contact>& contacts = asked.contacts;
+  const std::vector<int>& members = asked.members;
+  const PatchScale& scale = asked.scale;
+  const IdFilter filter(asked.chosen_before);
+  points.resize(members.size());
+  cell_of.resize(members.size());
+  spared.resize(members.size());
   const Reading reading{contacts.data(),       members.data(),    static_cast<int>(members.size()),
                         scale.centre().data(), scale.perRadius(), scale.depth() - DEPTH_TIE,
                         filter.bits()};
-  buffers->spared.resize(readMembers(reading, buffers->points.data(), buffers->cell_of.data(), buffers->spared.data()));
+  spared.resize(readMembers(reading, points.data(), cell_of.data(), spared.data()));
   const auto is_not = [&](int m) {
     const contact::Contact& contact = contacts[members[m]];
     return !scale.isDeepest(contact) && !filter.has(contact.id);
   };
-  buffers->spared.erase(std::remove_if(buffers->spared.begin(), buffers->spared.end(), is_not), buffers->spared.end());
-  buffers->cells.clear();
-  buffers->cells.number(&buffers->cell_of);
+  spared.erase(std::remove_if(spared.begin(), spared.end(), is_not), spared.end());
+  cells.clear();
+  cells.number(&cell_of);
 }
 
 // Indices of the members that are extreme in their cells, ascending.
-void findExtreme(CrowdBuffers* buffers) {
+void CrowdThinner::Room::findExtreme() {
   CellExtremes lowest;
   std::fill(std::begin(lowest.value), std::end(lowest.value), -std::numeric_limits<float>::infinity());
-  buffers->extremes.assign(buffers->cells.directions().size(), lowest);
-  const CellPoints points{buffers->points.data(), buffers->cell_of.data(), buffers->cells.directions().data(), buffers->extremes.data()};
-  buffers->extreme.resize(buffers->points.size());
-  const int raising = raiseCellExtremes(points, static_cast<int>(buffers->points.size()), buffers->extreme.data());
-  buffers->extreme.resize(keepExtremePoints(points, raising, buffers->extreme.data()));
+  extremes.assign(cells.directions().size(), lowest);
+  const CellPoints in_cells{points.data(), cell_of.data(), cells.directions().data(), extremes.data()};
+  extreme.resize(points.size());
+  const int raising = raiseCellExtremes(in_cells, static_cast<int>(points.size()), extreme.data());
+  extreme.resize(keepExtremePoints(in_cells, raising, extreme.data()));
 }
 
-}  // namespace
+CrowdThinner::CrowdThinner() : room_(std::make_unique<Room>()) {}
+CrowdThinner::~CrowdThinner() = default;
 
-void thinCrowd(const std::vector<contact::Contact>& contacts, const PatchScale& scale, const std::vector<int>& members,
-               const ContactIds& spared, std::vector<int>* kept) {
-  static thread_local CrowdBuffers thread_buffers;
-  CrowdBuffers& buffers = thread_buffers;
-  read(contacts, scale, members, spared, &buffers);
-  findExtreme(&buffers);
+void CrowdThinner::thin(const ChoiceQuestion& asked, std::vector<int>* kept) {
+  room_->read(asked);
+  room_->findExtreme();
   kept->clear();
-  std::set_union(buffers.extreme.begin(), buffers.extreme.end(), buffers.spared.begin(), buffers.spared.end(), std::back_inserter(*kept));
-  for (int& m : *kept) m = members[m];
+  std::set_union(room_->extreme.begin(), room_->extreme.end(), room_->spared.begin(), room_->spared.end(), std::back_inserter(*kept));
+  for (int& m : *kept) m = asked.members[m];
 }
 
 }  // namespace blem_sim::reduction

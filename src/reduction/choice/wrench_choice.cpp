@@ -65,7 +65,10 @@ int deepest(const std::vector<contact::Contact>& contacts, const std::vector<int
   return best;
 }
 
-class Choice {
+}  // namespace
+
+/** The wrenches that candidates reach, and those that the chosen ones do. */
+class WrenchChoice::Spans {
  public:
   /** Candidates that cannot be extreme are left out. */
   void start(const std::vector<contact::Contact>& contacts, const PatchScale& scale, const ContactIds& chosen_before,
@@ -128,6 +131,8 @@ class Choice {
   WrenchComponents extremes_, reached_;
 };
 
+namespace {
+
 // Indices of those candidates that were chosen before; none if they are too many. Both are sorted by id.
 void findContinued(const std::vector<contact::Contact>& contacts, const std::vector<int>& candidates, int k,
                    const ContactIds& chosen_before, std::vector<int>* there) {
@@ -141,67 +146,68 @@ void findContinued(const std::vector<contact::Contact>& contacts, const std::vec
   if (static_cast<int>(there->size()) > k) there->clear();
 }
 
-// Adds the deepest of the members not chosen until k are.
-void addDeepest(const std::vector<contact::Contact>& contacts, const std::vector<int>& members, std::size_t k, std::vector<int>* chosen) {
-  static thread_local std::vector<int> rest, taken;
-  taken = *chosen;
-  std::sort(taken.begin(), taken.end());
-  rest.clear();
-  for (const int member : members) {
-    if (!std::binary_search(taken.begin(), taken.end(), member)) rest.push_back(member);
-  }
-  const std::size_t room = std::min(rest.size(), k - chosen->size());
-  std::partial_sort(rest.begin(), rest.begin() + room, rest.end(), [&](int a, int b) {
-    return contacts[a].depth != contacts[b].depth ? contacts[a].depth > contacts[b].depth
-                                                  : contact::contactBefore(contacts[a], contacts[b]);
-  });
-  chosen->insert(chosen->end(), rest.begin(), rest.begin() + room);
-}
-
 /** Bound on the lack in any direction. */
 float atMost(float lack) { return (1 + MORE_BETWEEN) * std::max(0.0f, lack) + BETWEEN; }
 
 }  // namespace
 
-float chooseSpanningContacts(const std::vector<contact::Contact>& contacts, const std::vector<int>& members, const PatchScale& scale, int k,
-                             const ContactIds& chosen_before, std::vector<int>* candidates, std::vector<int>* chosen) {
-  static thread_local Choice choice;
-  static thread_local std::vector<int> continued;
-  contact::sortCanonically(contacts, candidates);
-  choice.start(contacts, scale, chosen_before, candidates);
-  const int deep = deepest(contacts, *candidates, scale);
+WrenchChoice::WrenchChoice() : spans_(std::make_unique<Spans>()) {}
+WrenchChoice::~WrenchChoice() = default;
 
-  findContinued(contacts, *candidates, k, chosen_before, &continued);
+// Adds the deepest of the members not chosen until k are.
+void WrenchChoice::addDeepest(const ChoiceQuestion& asked, std::vector<int>* chosen) {
+  const std::vector<contact::Contact>& contacts = asked.contacts;
+  taken_ = *chosen;
+  std::sort(taken_.begin(), taken_.end());
+  rest_.clear();
+  for (const int member : asked.members) {
+    if (!std::binary_search(taken_.begin(), taken_.end(), member)) rest_.push_back(member);
+  }
+  const std::size_t room = std::min(rest_.size(), static_cast<std::size_t>(asked.k) - chosen->size());
+  std::partial_sort(rest_.begin(), rest_.begin() + room, rest_.end(), [&](int a, int b) {
+    return contacts[a].depth != contacts[b].depth ? contacts[a].depth > contacts[b].depth
+                                                  : contact::contactBefore(contacts[a], contacts[b]);
+  });
+  chosen->insert(chosen->end(), rest_.begin(), rest_.begin() + room);
+}
+
+float WrenchChoice::choose(const ChoiceQuestion& asked, std::vector<int>* candidates, std::vector<int>* chosen) {
+  const std::vector<contact::Contact>& contacts = asked.contacts;
+  const int k = asked.k;
+  order_.sort(contacts, candidates);
+  spans_->start(contacts, asked.scale, asked.chosen_before, candidates);
+  const int deep = deepest(contacts, *candidates, asked.scale);
+
+  findContinued(contacts, *candidates, k, asked.chosen_before, &continued_);
   float lack = std::numeric_limits<float>::infinity();
-  if (!continued.empty()) {
-    lack = choice.addExtremes(k, &continued);
+  if (!continued_.empty()) {
+    lack = spans_->addExtremes(k, &continued_);
     double depth = -std::numeric_limits<double>::infinity();
-    for (const int i : continued) depth = std::max(depth, contacts[(*candidates)[i]].depth);
+    for (const int i : continued_) depth = std::max(depth, contacts[(*candidates)[i]].depth);
     if (depth < contacts[(*candidates)[deep]].depth - DEEP_ENOUGH) lack = std::numeric_limits<float>::infinity();
   }
   if (lack <= GOOD_ENOUGH) {  // a fresh choice lacks nothing at best
-    chosen->swap(continued);
+    chosen->swap(continued_);
   } else {
     chosen->assign(1, deep);
-    const float fresh = choice.addExtremes(k, chosen);
+    const float fresh = spans_->addExtremes(k, chosen);
     const bool goes_on = lack <= fresh + GOOD_ENOUGH;
-    if (goes_on) chosen->swap(continued);
+    if (goes_on) chosen->swap(continued_);
     if (!goes_on) lack = fresh;
   }
   if (static_cast<int>(chosen->size()) < k) {
-    choice.countDepth(contacts, *candidates);
-    choice.addExtremes(k, chosen);
+    spans_->countDepth(contacts, *candidates);
+    spans_->addExtremes(k, chosen);
   }
   for (int& i : *chosen) i = (*candidates)[i];
-  if (static_cast<int>(chosen->size()) < k) addDeepest(contacts, members, static_cast<std::size_t>(k), chosen);
+  if (static_cast<int>(chosen->size()) < k) addDeepest(asked, chosen);
   return atMost(lack);
 }
 
-float wrenchLack(const std::vector<contact::Contact>& all, const std::vector<contact::Contact>& kept) {
-  static thread_local Choice choice;
+float WrenchChoice::lack(const std::vector<contact::Contact>& all, const std::vector<contact::Contact>& kept) {
   bool sound = true;
   const PatchScale scale(all, &sound);
-  return sound ? atMost(choice.lackOf(all, kept, scale)) : 1;
+  return sound ? atMost(spans_->lackOf(all, kept, scale)) : 1;
 }
 
 }  // namespace blem_sim::reduction

@@ -6,8 +6,6 @@
 #include <utility>
 
 #include "blem_sim/contact/contact_order.h"
-#include "lanes/reduction_lanes.h"
-#include "patches/patch_depths.h"
 #include "patches/patch_frame.h"
 
 namespace blem_sim::reduction {
@@ -15,14 +13,6 @@ namespace blem_sim::reduction {
 namespace {
 
 constexpr int WORTHWHILE = 40;  // places: of fewer, none are sorted out before the hull
-
-struct HullBuffers {
-  PlanePlaces places;
-  std::vector<int> farthest, outside;
-  PlaneExtremes extremes;
-  std::vector<PlanePoint> points, half, hull, ring, corners;
-  PatchDepths depths;
-};
 
 // Total: at the same place the deepest comes first, then the first in canonical order.
 bool planePointBefore(const std::vector<contact::Contact>& contacts, const PlanePoint& a, const PlanePoint& b) {
@@ -71,33 +61,33 @@ void project(const std::vector<contact::Contact>& contacts, const int* begin, co
 }
 
 // Finds the places that are farthest out, along the octagon's directions at least; few places need none.
-void findExtremes(int most, HullBuffers* buffers) {
-  const PlanePlaces& places = buffers->places;
+void findExtremes(int most, PatchHullRoom* room) {
+  const PlanePlaces& places = room->places;
   const int count = static_cast<int>(places.x.size());
   const bool all_directions = mayHaveMore(most, count);
   if (!all_directions && count < WORTHWHILE) return;
-  buffers->farthest.resize(count);
+  room->farthest.resize(count);
   const auto find = all_directions ? findFarthest : findFarthestOfOctagon;
-  const int found = find(planeDirections(), places.x.data(), places.y.data(), count, &buffers->extremes, buffers->farthest.data());
-  buffers->farthest.resize(found);
+  const int found = find(planeDirections(), places.x.data(), places.y.data(), count, &room->extremes, room->farthest.data());
+  room->farthest.resize(found);
 }
 
 // The first place that is farthest along a direction.
-int farthestAlong(int direction, const HullBuffers& buffers) {
-  const PlanePlaces& places = buffers.places;
-  return *std::find_if(buffers.farthest.begin(), buffers.farthest.end(), [&](int i) {
-    return planeDirections().along(direction, places.x[i], places.y[i]) == buffers.extremes.value[direction];
+int farthestAlong(int direction, const PatchHullRoom& room) {
+  const PlanePlaces& places = room.places;
+  return *std::find_if(room.farthest.begin(), room.farthest.end(), [&](int i) {
+    return planeDirections().along(direction, places.x[i], places.y[i]) == room.extremes.value[direction];
   });
 }
 
 // Whether the hull surely has more corners than that: so many extremes apart from each other follow around it.
-bool hasMoreCorners(int than, const HullBuffers& buffers) {
+bool hasMoreCorners(int than, const PatchHullRoom& room) {
   constexpr double APART = 1e-6;  // [m]
-  if (!mayHaveMore(than, static_cast<int>(buffers.places.x.size())) || static_cast<int>(buffers.farthest.size()) <= than) return false;
-  const std::vector<double>&x = buffers.places.x, &y = buffers.places.y;
+  if (!mayHaveMore(than, static_cast<int>(room.places.x.size())) || static_cast<int>(room.farthest.size()) <= than) return false;
+  const std::vector<double>&x = room.places.x, &y = room.places.y;
   int corners = 0;
-  for (int d = 0, last = farthestAlong(inOrder(PLANE_DIRECTIONS - 1), buffers); d < PLANE_DIRECTIONS; ++d) {
-    const int next = farthestAlong(inOrder(d), buffers);
+  for (int d = 0, last = farthestAlong(inOrder(PLANE_DIRECTIONS - 1), room); d < PLANE_DIRECTIONS; ++d) {
+    const int next = farthestAlong(inOrder(d), room);
     corners += std::abs(x[next] - x[last]) + std::abs(y[next] - y[last]) > APART;
     last = next;
   }
@@ -105,15 +95,15 @@ bool hasMoreCorners(int than, const HullBuffers& buffers) {
 }
 
 // Indices of the places that may be corners: others lie inside the octagon of extremes. This saves most of the sorting of large patches.
-void findOuter(HullBuffers* buffers) {
-  const std::vector<double>&x = buffers->places.x, &y = buffers->places.y;
+void findOuter(PatchHullRoom* room) {
+  const std::vector<double>&x = room->places.x, &y = room->places.y;
   const int count = static_cast<int>(x.size());
-  std::vector<int>& outside = buffers->outside;
+  std::vector<int>& outside = room->outside;
   outside.resize(count);
   std::iota(outside.begin(), outside.end(), 0);
   if (count < WORTHWHILE) return;
   int corners[OCTAGON_SIDES];
-  for (int d = 0; d < OCTAGON_SIDES; ++d) corners[d] = farthestAlong(d, *buffers);
+  for (int d = 0; d < OCTAGON_SIDES; ++d) corners[d] = farthestAlong(d, *room);
   Octagon octagon;
   int sides = 0;
   for (int d = 0; d < OCTAGON_SIDES; ++d) {
@@ -130,11 +120,11 @@ void findOuter(HullBuffers* buffers) {
 }
 
 // The outer places as points, sorted, of those at one place the deepest.
-void sortOuter(const std::vector<contact::Contact>& contacts, const int* members, HullBuffers* buffers) {
-  const PlanePlaces& places = buffers->places;
-  std::vector<PlanePoint>& points = buffers->points;
+void sortOuter(const std::vector<contact::Contact>& contacts, const int* members, PatchHullRoom* room) {
+  const PlanePlaces& places = room->places;
+  std::vector<PlanePoint>& points = room->points;
   points.clear();
-  for (const int i : buffers->outside) points.push_back({places.x[i], places.y[i], places.depth[i], members[i]});
+  for (const int i : room->outside) points.push_back({places.x[i], places.y[i], places.depth[i], members[i]});
   std::sort(points.begin(), points.end(), [&](const PlanePoint& a, const PlanePoint& b) { return planePointBefore(contacts, a, b); });
   const auto samePlace = [](const PlanePoint& a, const PlanePoint& b) {
     return std::abs(a.x - b.x) <= FLATNESS && std::abs(a.y - b.y) <= FLATNESS && b.depth <= a.depth + DEPTH_TIE;
@@ -152,11 +142,11 @@ void halfHull(Iterator begin, Iterator end, std::vector<PlanePoint>* half) {
   }
 }
 
-void convexHull(HullBuffers* buffers) {
-  halfHull(buffers->points.begin(), buffers->points.end(), &buffers->hull);
-  halfHull(buffers->points.rbegin(), buffers->points.rend(), &buffers->half);
-  buffers->hull.pop_back();
-  buffers->hull.insert(buffers->hull.end(), buffers->half.begin(), buffers->half.end() - 1);
+void convexHull(PatchHullRoom* room) {
+  halfHull(room->points.begin(), room->points.end(), &room->hull);
+  halfHull(room->points.rbegin(), room->points.rend(), &room->half);
+  room->hull.pop_back();
+  room->hull.insert(room->hull.end(), room->half.begin(), room->half.end() - 1);
 }
 
 std::size_t farthestFrom(const std::vector<PlanePoint>& hull, std::size_t from) {
@@ -201,39 +191,38 @@ void appendProminent(const std::vector<PlanePoint>& chain, std::size_t from, std
 
 // The hull without corners that stand out less than FLATNESS: decided from the whole hull, since along a side noise decides what comes
 // first in any order, and a chain thinned on the way can lose a true corner.
-void findCorners(HullBuffers* buffers) {
-  buffers->corners = buffers->points;
-  if (buffers->points.size() <= 2) return;
-  convexHull(buffers);
-  const std::vector<PlanePoint>& hull = buffers->hull;
-  buffers->corners = hull;
+void findCorners(PatchHullRoom* room) {
+  room->corners = room->points;
+  if (room->points.size() <= 2) return;
+  convexHull(room);
+  const std::vector<PlanePoint>& hull = room->hull;
+  room->corners = hull;
   if (hull.size() <= 2) return;
   const auto [first, second] = farthestPair(hull);
-  buffers->ring.assign(hull.begin() + first, hull.end());
-  buffers->ring.insert(buffers->ring.end(), hull.begin(), hull.begin() + first + 1);
-  buffers->corners.clear();
-  appendProminent(buffers->ring, 0, second - first, &buffers->corners);
-  appendProminent(buffers->ring, second - first, hull.size(), &buffers->corners);
+  room->ring.assign(hull.begin() + first, hull.end());
+  room->ring.insert(room->ring.end(), hull.begin(), hull.begin() + first + 1);
+  room->corners.clear();
+  appendProminent(room->ring, 0, second - first, &room->corners);
+  appendProminent(room->ring, second - first, hull.size(), &room->corners);
 }
 
 }  // namespace
 
-void patchHull(const std::vector<contact::Contact>& contacts, const int* begin, const int* end, const Vector3& normal, int most,
-               std::vector<int>* kept) {
-  static thread_local HullBuffers buffers;
+void patchHull(const PatchMembers& members, const Vector3& normal, int most, PatchHullRoom* room, std::vector<int>* kept) {
+  const auto& [contacts, begin, end] = members;
   if (end - begin == 1) return kept->push_back(*begin);
-  project(contacts, begin, end, normal, &buffers.places);
-  findExtremes(most, &buffers);
-  if (hasMoreCorners(most, buffers)) {
+  project(contacts, begin, end, normal, &room->places);
+  findExtremes(most, room);
+  if (hasMoreCorners(most, *room)) {
     kept->insert(kept->end(), begin, end);
     return;
   }
-  findOuter(&buffers);
-  sortOuter(contacts, begin, &buffers);
-  findCorners(&buffers);
-  for (const PlanePoint& corner : buffers.corners) kept->push_back(corner.contact);
-  if (buffers.corners.size() == buffers.places.x.size()) return;  // no other
-  buffers.depths.keepDeeper(contacts, begin, buffers.places, buffers.corners, kept);
+  findOuter(room);
+  sortOuter(contacts, begin, room);
+  findCorners(room);
+  for (const PlanePoint& corner : room->corners) kept->push_back(corner.contact);
+  if (room->corners.size() == room->places.x.size()) return;  // no other
+  room->depths.keepDeeper(contacts, begin, room->places, room->corners, kept);
 }
 
 }  // namespace blem_sim::reduction

@@ -94,7 +94,7 @@ void ConstraintMaker::addConstraints(const SolveAhead& ahead, const contact::Con
   const SimulatedWorld& world = ahead.world;
   const contact::Collider &a = world.colliders[manifold.a], &b = world.colliders[manifold.b];
   const contact::SurfaceProperties surface = contact::combineSurfaces(a.surface, b.surface, config_.friction_rule);
-  if (std::isfinite(surface.stiffness) || std::isfinite(surface.damping)) reduction::weighSprings(manifold.contacts);
+  if (std::isfinite(surface.stiffness) || std::isfinite(surface.damping)) reduction::weighSprings(manifold.contacts, &workspace_);
   const bool recovers = ahead.contacts.crossings.find(manifold.a, manifold.b) != nullptr;
   for (const contact::Contact& contact : manifold.contacts) {
     dynamics::ContactConstraint constraint = constraintOf(world, manifold, contact);
@@ -114,7 +114,7 @@ void ConstraintMaker::addConstraints(const SolveAhead& ahead, const contact::Con
 
 void ConstraintMaker::addStops(const SimulatedWorld& world, const contact::ContactManifold& all, double friction) {
   const double stop = LayerStops::STOP * all.layer;
-  for (const contact::Contact& contact : stops_.choose(all, *method_)) {
+  for (const contact::Contact& contact : stops_.choose(all, *method_, &workspace_)) {
     dynamics::ContactConstraint constraint = constraintOf(world, all, contact);
     constraint.friction = friction;
     constraint.id = stopId(constraint.id);
@@ -131,7 +131,7 @@ void ConstraintMaker::reduce(const SimulatedWorld& world, const std::vector<cont
     model_a_.push_back(world.colliders[manifold.a].model);
     model_b_.push_back(world.colliders[manifold.b].model);
   }
-  made_.loss = reduction::reduceManifolds(manifolds, model_a_, model_b_, world.budgets, *method_, &memory_, &reduced_);
+  made_.loss = reduction::reduceManifolds({manifolds, model_a_, model_b_, world.budgets}, *method_, &memory_, &workspace_, &reduced_);
 }
 
 const SolverContacts& ConstraintMaker::make(const SolveAhead& ahead, std::vector<contact::ContactManifold>* manifolds) {

@@ -61,6 +61,7 @@ class ConstraintMaker {
   const ContactConfig config_;
   const reduction::Reduction* method_;
   reduction::ReductionMemory memory_;
+  reduction::ReductionWorkspace workspace_;
   LayerStops stops_;
   ContactMeetings meetings_;
   std::vector<contact::ContactManifold> reduced_;

@@ -80,6 +80,7 @@ void ContactMeetings::follow(const SolveAhead& ahead, std::size_t manifold, WayO
   const FoundContacts& contacts = ahead.contacts;
   way->dt = ahead.dt;
   way->fading = &ahead.fading;
+  way->workspace = ahead.workspace;
   way->known = contact::findPair(contacts.watched.pairs, a, b)->known;
   way->depth = std::max(depthOf(ahead.world, a), depthOf(ahead.world, b));
   if (way_.follow(*way, contacts.flush, ahead.world.colliders, contacts.watched.motion, room(manifold))) ++replaced_count_;

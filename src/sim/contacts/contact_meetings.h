@@ -29,6 +29,7 @@ struct SolveAhead {
   const FadingPoints& fading;                      ///< applied to contacts that are found on the way
   const Expectation& expected;                     ///< pairs that go on otherwise than bodies do at hand
   double dt;                                       ///< [s] its length
+  contact::NarrowPhaseWorkspace* workspace;        ///< for searches on the way
 };
 
 /**

@@ -4,7 +4,8 @@
 
 namespace blem_sim::sim {
 
-const std::vector<contact::Contact>& LayerStops::choose(const contact::ContactManifold& manifold, const reduction::Reduction& method) {
+const std::vector<contact::Contact>& LayerStops::choose(const contact::ContactManifold& manifold, const reduction::Reduction& method,
+                                                        reduction::ReductionWorkspace* workspace) {
   static const std::vector<contact::Contact> none;
   deep_.clear();
   for (const contact::Contact& contact : manifold.contacts) {
@@ -17,7 +18,7 @@ const std::vector<contact::Contact>& LayerStops::choose(const contact::ContactMa
   contact::ContactManifold& stops = stops_[count_++];
   stops.a = manifold.a;
   stops.b = manifold.b;
-  method.reduce(deep_, MOST, memory_.of(manifold), &stops.contacts);
+  method.reduce(deep_, MOST, memory_.of(manifold), workspace, &stops.contacts);
   return stops.contacts;
 }
 

@@ -24,7 +24,8 @@ class LayerStops {
   /** Call before the first pair of a reduction. */
   void start() { count_ = 0; }
   /** Stops of the next pair, in the order (a, b): its contacts with depths [m] beyond the stop. @param manifold before reduction */
-  const std::vector<contact::Contact>& choose(const contact::ContactManifold& manifold, const reduction::Reduction& method);
+  const std::vector<contact::Contact>& choose(const contact::ContactManifold& manifold, const reduction::Reduction& method,
+                                              reduction::ReductionWorkspace* workspace);
   /** Call after the last pair: the next reduction goes on with the choices of this one. */
   void remember();
 

@@ -20,7 +20,7 @@ Recovery lastApart(const FoundContacts& before, int a, int b) {
 PairSearches::PairSearches(int threads)
     : threads_(threads),
       arena_(std::min(threads, tbb::this_task_arena::max_concurrency())),
-      covers_(static_cast<std::size_t>(arena_.max_concurrency())) {}
+      workspaces_(static_cast<std::size_t>(arena_.max_concurrency())) {}
 
 /** Calls search(pair, thread) for all pairs, in any order and at once. */
 template <typename SearchOfOne>
@@ -55,11 +55,11 @@ void PairSearches::find(const SimulatedWorld& world, const FoundContacts& before
     const WatchedPair& pair = watched[i];
     const Recovery& last = last_apart_[i];
     contact::ContactManifold& manifold = found->manifolds[i];
-    contact::narrowPhase(world.colliders[pair.a], motion[pair.a].X_WC, world.colliders[pair.b], motion[pair.b].X_WC, pair.known, &manifold,
-                         last.known ? &last.X_AB : nullptr, &known_[i].memory);
+    contact::narrowPhase({world.colliders[pair.a], motion[pair.a].X_WC}, {world.colliders[pair.b], motion[pair.b].X_WC},
+                         {pair.known, last.known ? &last.X_AB : nullptr, &known_[i].memory}, &workspaces_[thread].search, &manifold);
     manifold.a = pair.a;
     manifold.b = pair.b;
-    found->flush.dropCovered(world.colliders, motion, &covers_[thread], &manifold);
+    found->flush.dropCovered(world.colliders, motion, &workspaces_[thread].cover, &manifold);
     fading.apply(&manifold);
   });
   found->crossings.goOn(before.crossings, last_apart_, found->manifolds);

@@ -29,6 +29,8 @@ class PairSearches {
    */
   void find(const SimulatedWorld& world, const FoundContacts& before, const FadingPoints& fading, WatchedPairs* pairs,
             FoundContacts* found);
+  /** Room for searches between calls of find, on its caller's thread. */
+  contact::NarrowPhaseWorkspace* workspace() { return &workspaces_.front().search; }
   /** Forgets the pairs of a collider whose slot another one may take. */
   void forget(int collider) { contact::removePairsOf(collider, &known_); }
 
@@ -49,7 +51,12 @@ class PairSearches {
   std::vector<contact::NarrowPhaseMemory> spare_;  // of pairs that went
   int threads_;
   tbb::task_arena arena_;
-  std::vector<contact::SurfaceCover> covers_;              // work space of each thread
+  /** Room of one thread. */
+  struct Workspace {
+    contact::NarrowPhaseWorkspace search;
+    contact::SurfaceCover cover;
+  };
+  std::vector<Workspace> workspaces_;                      // by thread
   std::vector<Recovery> last_apart_;                       // by pair
   std::vector<contact::ContactManifold> spare_manifolds_;  // only their memory
 };

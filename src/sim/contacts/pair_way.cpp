@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "blem_sim/contact/narrow_phase.h"
-
 namespace blem_sim::sim {
 namespace {
 
@@ -79,8 +77,8 @@ bool PairWay::search(const WayOfPair& pair, const FlushSurfaces& flush, const st
   at_.a = pair.now.a, at_.b = pair.now.b;
   met_.contacts.clear();
   for (int i = 0; i < MOST_SEARCHES; ++i) {
-    narrowPhase(*pair.a.collider, pair.a.twist.moved(pair.a.X_WC, time), *pair.b.collider, pair.b.twist.moved(pair.b.X_WC, time),
-                pair.known, &at_);
+    contact::narrowPhase({*pair.a.collider, pair.a.twist.moved(pair.a.X_WC, time)},
+                         {*pair.b.collider, pair.b.twist.moved(pair.b.X_WC, time)}, {pair.known}, pair.workspace, &at_);
     if (at_.pierced) return false;
     flush.dropCovered(colliders, motion, &cover_, &at_);
     pair.fading->apply(&at_);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "blem_sim/contact/manifold.h"
+#include "blem_sim/contact/narrow_phase.h"
 #include "clouds/fading_points.h"
 #include "contacts/body_twist.h"
 #include "contacts/flush_surfaces.h"
@@ -28,11 +29,12 @@ struct ColliderWay {
 struct WayOfPair {
   const contact::ContactManifold& now;  ///< its contacts
   ColliderWay a, b;
-  double known = 0;                      ///< [m] distance beyond the layers within which contacts are known
-  double depth = 0;                      ///< [m] of the deepest contact that touches, of both bodies; at least 0
-  double dt = 0;                         ///< [s]
-  const FadingPoints* fading = nullptr;  ///< applied to what is found on the way
-  double swing = 0;                      ///< [m/s] by which velocities may change within dt though nothing touches
+  double known = 0;                                    ///< [m] distance beyond the layers within which contacts are known
+  double depth = 0;                                    ///< [m] of the deepest contact that touches, of both bodies; at least 0
+  double dt = 0;                                       ///< [s]
+  const FadingPoints* fading = nullptr;                ///< applied to what is found on the way
+  contact::NarrowPhaseWorkspace* workspace = nullptr;  ///< for searches on the way
+  double swing = 0;                                    ///< [m/s] by which velocities may change within dt though nothing touches
 };
 
 /** Follows pairs on their ways, in memory that is kept between pairs. */

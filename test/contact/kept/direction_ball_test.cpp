@@ -43,7 +43,7 @@ TEST(DirectionBall, HoldsTheNormalsOfAListing) {
   CandidateSearchBuffers buffers;
   CandidateListing listing;
   findCandidates(pair, CandidateKind::CONTACTS, {0.001, 0.01}, &buffers, &listing);
-  const NearFeatures& near = listing.lists.near[0];
+  const NearFeatures& near = listing.lists.near.fixed;
   ASSERT_GT(near.faces.names.size(), 50u);
   SurroundingsMemory surroundings;
   for (int i = 0; i < 1000; ++i) {

@@ -38,14 +38,15 @@ struct EdgesNearEdges {
   /** @param end -1: none */
   static int vertexAt(std::uint32_t edge, int end) { return end < 0 ? -1 : static_cast<int>(3000 + 2 * edge) + end; }
 
-  EdgePlace place(bool first_is_a) const {
+  static ContactRoles roles(Side a) {
+    ContactRoles roles{a, {}};
+    roles.radius[a] = EDGE_RADIUS_A;
+    roles.radius[!a] = EDGE_RADIUS_B;
+    return roles;
+  }
+  EdgePlace place(Side a) const {
     const Feature edge{FeatureKind::EDGE, 0};
-    return {names.data(),
-            names.data(),
-            first_is_a,
-            motionOf(X_WF),
-            EDGE_RADIUS_A + EDGE_RADIUS_B,
-            0.5 * (EDGE_RADIUS_B - EDGE_RADIUS_A),
+    return {names.data(),         names.data(), a, motionOf(X_WF), EDGE_RADIUS_A + EDGE_RADIUS_B, 0.5 * (EDGE_RADIUS_B - EDGE_RADIUS_A),
             contactId(edge, edge)};
   }
 
@@ -57,19 +58,15 @@ struct EdgesNearEdges {
 
 /** Contacts that one instruction set finds. */
 struct FoundEdges {
-  FoundEdges(const Kernels& set, const EdgesNearEdges& in, bool first_is_a, bool takes_plain)
-      : hits(EDGE_PAIRS + 1),
-        left(EDGE_PAIRS + 1),
-        fading(EDGE_PAIRS + 1),
-        rows(EDGE_PAIRS + 1),
-        plain{in.place(first_is_a), rows.data(), 0, -1} {
+  FoundEdges(const Kernels& set, const EdgesNearEdges& in, Side a, bool takes_plain)
+      : hits(EDGE_PAIRS + 1), left(EDGE_PAIRS + 1), fading(EDGE_PAIRS + 1), rows(EDGE_PAIRS + 1), plain{in.place(a), rows.data(), 0, -1} {
     const EdgeRecord* const records = in.records.data();
+    const CandidateRun run{in.candidates.data(), EDGE_PAIRS};
     LeftEdges to_left{left.data(), 0};
-    hits.resize(set.edgeEdges(records, records, in.candidates.data(), EDGE_PAIRS, EDGE_RANGE, takes_plain ? &plain : nullptr, &to_left,
-                              hits.data()));
+    hits.resize(set.edgeEdges(records, records, run, EDGE_RANGE, {takes_plain ? &plain : nullptr, &to_left, hits.data()}));
     left.resize(to_left.count);
     rows.resize(plain.count);
-    fading.resize(set.fadingEdges(records, records, in.candidates.data(), EDGE_PAIRS, EDGE_RANGE, fading.data()));
+    fading.resize(set.fadingEdges(records, records, run, EDGE_RANGE, fading.data()));
   }
   std::vector<EdgeEdgeHit> hits;
   std::vector<Candidate> left;
@@ -81,13 +78,13 @@ struct FoundEdges {
 template <typename Hit>
 Vector3 alongOf(const EdgesNearEdges& in, const Hit& hit, bool first) {
   const Candidate& c = in.candidates[hit.candidate];
-  return vector3(in.records[first ? c.a : c.b].along);
+  return vector3(in.records[first ? c.first : c.second].along);
 }
 
 TEST(EdgeKernels, PlainContactsAreThoseMadeOneByOne) {
   const EdgesNearEdges in;
-  for (const bool first_is_a : {false, true}) {
-    const FoundEdges written(*availableKernels().front(), in, first_is_a, true), all(*availableKernels().front(), in, first_is_a, false);
+  for (const Side a : SIDES) {
+    const FoundEdges written(*availableKernels().front(), in, a, true), all(*availableKernels().front(), in, a, false);
     std::uint32_t count = 0, close = 0;
     double deepest = -1;
     for (const EdgeEdgeHit& hit : all.hits) {
@@ -95,10 +92,11 @@ TEST(EdgeKernels, PlainContactsAreThoseMadeOneByOne) {
       close += again;
       if (again) continue;
       const Candidate& c = in.candidates[hit.candidate];
-      const Vector3 point_a(hit.point_a), point_b(hit.point_b), normal(hit.normal);
-      EXPECT_NEAR((point_a - point_b - hit.gap * normal).norm(), 0, 1e-13);
-      Contact one = contactOf({first_is_a, EDGE_RADIUS_A, EDGE_RADIUS_B}, {FeatureKind::EDGE, in.names[c.a]},
-                              {FeatureKind::EDGE, in.names[c.b]}, point_a, point_b, normal, hit.gap);
+      const Vector3 point_m(hit.point_m), point_f(hit.point_f), normal(hit.normal);
+      EXPECT_NEAR((point_m - point_f - hit.gap * normal).norm(), 0, 1e-13);
+      Contact one =
+          contactOf(in.roles(a),
+                    {{FeatureKind::EDGE, in.names[c.first]}, {FeatureKind::EDGE, in.names[c.second]}, point_m, point_f, normal, hit.gap});
       one.point = in.X_WF * one.point;
       one.normal_BA = in.X_WF.linear() * one.normal_BA;
       ASSERT_LT(count, written.rows.size());
@@ -122,16 +120,16 @@ TEST(EdgeKernels, PlainContactsAreThoseMadeOneByOne) {
 TEST(EdgeKernels, FadingContactsAreWhereTheEdgesAreClosest) {
   const EdgesNearEdges in;
   int beyond_one = 0, beyond_both = 0, inside = 0;
-  for (const FadingEdgesHit& hit : FoundEdges(*availableKernels().front(), in, true, false).fading) {
+  for (const FadingEdgesHit& hit : FoundEdges(*availableKernels().front(), in, Side::MOVING, false).fading) {
     const Candidate& c = in.candidates[hit.candidate];
-    const Vector3 p = vector3(in.records[c.a].start), q = vector3(in.records[c.b].start), along_p = alongOf(in, hit, true),
+    const Vector3 p = vector3(in.records[c.first].start), q = vector3(in.records[c.second].start), along_p = alongOf(in, hit, true),
                   along_q = alongOf(in, hit, false);
     EdgePair feet;
-    const bool is_inside = findEdgePair(p, p + along_p, q, q + along_q, EDGE_RANGE, &feet);
+    const bool is_inside = findEdgePair({p, p + along_p}, {q, q + along_q}, EDGE_RANGE, &feet);
     EXPECT_EQ(hit.is_inside, is_inside);
     inside += is_inside;
     if (is_inside) continue;
-    const Vector3 point_a(hit.point_a), point_b(hit.point_b), normal(hit.normal);
+    const Vector3 point_a(hit.point_m), point_b(hit.point_f), normal(hit.normal);
     EXPECT_NEAR((point_a - point_b).norm(), hit.distance, 1e-13);
     EXPECT_NEAR(std::abs(normal.dot(along_p.normalized())) + std::abs(normal.dot(along_q.normalized())), 0, 1e-9);
     EXPECT_GE(normal.dot(p - q), 0);
@@ -142,16 +140,16 @@ TEST(EdgeKernels, FadingContactsAreWhereTheEdgesAreClosest) {
                  t = (q - p).cross(along_p).dot(across) / across.squaredNorm();
     const auto end = [](double part) { return part < 0 ? 0 : part > 1 ? 1 : -1; };
     const auto past = [](double part, const Vector3& along) { return std::max({-part, part - 1, 0.0}) * along.norm(); };
-    EXPECT_EQ(hit.end_a, in.vertexAt(c.a, end(s)));
-    EXPECT_EQ(hit.end_b, in.vertexAt(c.b, end(t)));
+    EXPECT_EQ(hit.end_m, in.vertexAt(c.first, end(s)));
+    EXPECT_EQ(hit.end_f, in.vertexAt(c.second, end(t)));
     EXPECT_NEAR(hit.gap - hit.distance, FADE_SLOPE * std::max(past(s, along_p), past(t, along_q)), 1e-9);
-    const bool both = hit.end_a >= 0 && hit.end_b >= 0;
+    const bool both = hit.end_m >= 0 && hit.end_f >= 0;
     (both ? beyond_both : beyond_one) += 1;
     if (both) continue;
     // No other point of either edge is closer to the other's point.
     for (double part = 0; part <= 1; part += 0.125)
       EXPECT_GE(std::min((p + part * along_p - point_b).norm(), (q + part * along_q - point_a).norm()), hit.distance - 1e-12);
-    EXPECT_EQ(hit.cones_known, c.a % 7 != 0 && c.b % 7 != 0);
+    EXPECT_EQ(hit.cones_known, c.first % 7 != 0 && c.second % 7 != 0);
   }
   EXPECT_GT(beyond_one, 20);
   EXPECT_GT(beyond_both, 2);
@@ -162,15 +160,15 @@ TEST(EdgeKernels, AllInstructionSetsFindTheSame) {
   const EdgesNearEdges in;
   const auto same = [](const double* a, const double* b, std::size_t count) { return std::memcmp(a, b, sizeof(double) * count) == 0; };
   for (const bool takes_plain : {false, true}) {
-    const FoundEdges baseline(*availableKernels().back(), in, true, takes_plain);
+    const FoundEdges baseline(*availableKernels().back(), in, Side::MOVING, takes_plain);
     for (const Kernels* set : availableKernels()) {
       SCOPED_TRACE(set->name);
-      const FoundEdges each(*set, in, true, takes_plain);
+      const FoundEdges each(*set, in, Side::MOVING, takes_plain);
       ASSERT_EQ(each.hits.size(), baseline.hits.size());
       for (std::size_t i = 0; i < each.hits.size(); ++i) {
         const EdgeEdgeHit &a = each.hits[i], &b = baseline.hits[i];
         EXPECT_EQ(a.candidate, b.candidate);
-        EXPECT_TRUE(same(a.point_a, b.point_a, 3) && same(a.point_b, b.point_b, 3) && same(a.normal, b.normal, 3) && a.gap == b.gap);
+        EXPECT_TRUE(same(a.point_m, b.point_m, 3) && same(a.point_f, b.point_f, 3) && same(a.normal, b.normal, 3) && a.gap == b.gap);
       }
       ASSERT_EQ(each.left.size(), baseline.left.size());
       EXPECT_EQ(std::memcmp(each.left.data(), baseline.left.data(), sizeof(Candidate) * each.left.size()), 0);
@@ -183,9 +181,9 @@ TEST(EdgeKernels, AllInstructionSetsFindTheSame) {
         EXPECT_EQ(a.candidate, b.candidate);
         EXPECT_EQ(a.is_inside, b.is_inside);
         EXPECT_EQ(a.cones_known, b.cones_known);
-        EXPECT_EQ(a.end_a, b.end_a);
-        EXPECT_EQ(a.end_b, b.end_b);
-        EXPECT_TRUE(a.is_inside || (same(a.point_a, b.point_a, 8) && same(a.normal, b.normal, 3)));
+        EXPECT_EQ(a.end_m, b.end_m);
+        EXPECT_EQ(a.end_f, b.end_f);
+        EXPECT_TRUE(a.is_inside || (same(a.point_m, b.point_m, 8) && same(a.normal, b.normal, 3)));
       }
     }
   }

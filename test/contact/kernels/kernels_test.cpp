@@ -57,24 +57,25 @@ Features randomFeatures() {
   return out;
 }
 
+CandidateRun runOf(const Features& in) { return {in.candidates.data(), static_cast<std::uint32_t>(in.candidates.size())}; }
+
 /** Vertices and faces as one set finds them, the features being those of either mesh. */
 struct PlainVertexFaces {
-  PlainVertexFaces(const Kernels& set, const Features& in, bool faces_move, bool takes_plain, const std::vector<std::uint8_t>& inner = {},
+  PlainVertexFaces(const Kernels& set, const Features& in, Side side, bool takes_plain, const std::vector<std::uint8_t>& inner = {},
                    const Pose& X_FM = makePose({0.1, -0.2, 0.3}, {0.4, 0.5, -0.6}))
       : X_FM(X_FM),
-        vertices{in.vertices.data(), faces_move, motionOf(X_FM.inverse()), motionOf(X_FM)},
+        vertices{in.vertices.data(), side, motionOf(X_FM.inverse()), motionOf(X_FM)},
         X_WF(makePose({-3, 2, 1}, {0.7, -0.2, 0.1})),
         hits(CANDIDATES + 1),
         rows(CANDIDATES + 1) {
     const Feature vertex{FeatureKind::VERTEX, 0}, face{FeatureKind::FACE, 0};
-    // The vertices are A's: the moving mesh is A unless its faces are asked.
-    plain = {{in.names.data(), true, motionOf(X_FM), motionOf(X_WF), RADIUS_A + RADIUS_B, 0.5 * (RADIUS_B - RADIUS_A),
+    // The vertices are A's.
+    plain = {{in.names.data(), side, side, motionOf(X_FM), motionOf(X_WF), RADIUS_A + RADIUS_B, 0.5 * (RADIUS_B - RADIUS_A),
               contactId(vertex, face), false},
              rows.data(),
              0,
              -1};
-    hits.resize(set.vertexFaces(vertices, in.faces.data(), in.open.data(), in.candidates.data(),
-                                static_cast<std::uint32_t>(in.candidates.size()), inner.empty() ? nullptr : inner.data(), RANGE,
+    hits.resize(set.vertexFaces({vertices, in.faces.data(), in.open.data()}, {runOf(in), inner.empty() ? nullptr : inner.data()}, RANGE,
                                 takes_plain ? &plain : nullptr, hits.data()));
   }
 
@@ -93,8 +94,8 @@ struct Found {
   std::vector<double> numbers;
 };
 
-void addPlainVertexFaces(const Kernels& set, const Features& in, bool faces_move, Found* out) {
-  const PlainVertexFaces found(set, in, faces_move, true);
+void addPlainVertexFaces(const Kernels& set, const Features& in, Side side, Found* out) {
+  const PlainVertexFaces found(set, in, side, true);
   out->counts.insert(out->counts.end(), {found.plain.count, static_cast<std::uint32_t>(found.hits.size())});
   for (const VertexFaceHit& hit : found.hits) {
     out->indices.insert(out->indices.end(), {hit.candidate, hit.bits});
@@ -112,37 +113,37 @@ void addPlainVertexFaces(const Kernels& set, const Features& in, bool faces_move
 Found found(const Kernels& set, const Features& in) {
   Found out;
   const auto add = [&](std::uint32_t count) { out.counts.push_back(count); };
-  const Candidate* candidates = in.candidates.data();
-  for (const bool faces_move : {false, true}) addPlainVertexFaces(set, in, faces_move, &out);
+  const CandidateRun candidates = runOf(in);
+  for (const Side side : SIDES) addPlainVertexFaces(set, in, side, &out);
   std::vector<std::uint32_t> hits(CANDIDATES);
   const auto addHits = [&](std::uint32_t count) {
     add(count);
     out.indices.insert(out.indices.end(), hits.begin(), hits.begin() + count);
   };
   std::vector<VertexEdgeHit> vertex_edges(CANDIDATES);
-  add(set.vertexEdges(in.vertices.data(), in.edges.data(), candidates, CANDIDATES, 3 * RANGE, vertex_edges.data()));
+  add(set.vertexEdges(in.vertices.data(), in.edges.data(), candidates, 3 * RANGE, vertex_edges.data()));
   for (std::uint32_t i = 0; i < out.counts.back(); ++i) {
     out.indices.push_back(vertex_edges[i].candidate);
     out.numbers.insert(out.numbers.end(), vertex_edges[i].offset, vertex_edges[i].offset + 3);
   }
-  addHits(set.vertexVertices(in.vertices.data(), in.vertices.data(), candidates, CANDIDATES, RANGE, hits.data()));
-  addHits(set.edgeFaces(in.edges.data(), in.faces.data(), candidates, CANDIDATES, hits.data()));
+  addHits(set.vertexVertices(in.vertices.data(), in.vertices.data(), candidates, RANGE, hits.data()));
+  addHits(set.edgeFaces(in.edges.data(), in.faces.data(), candidates, hits.data()));
   std::vector<Candidate> near(CANDIDATES);
   const auto addNear = [&](std::uint32_t count) {
     add(count);
-    for (std::uint32_t i = 0; i < count; ++i) out.indices.insert(out.indices.end(), {near[i].a, near[i].b});
+    for (std::uint32_t i = 0; i < count; ++i) out.indices.insert(out.indices.end(), {near[i].first, near[i].second});
   };
   const Reach reach{RANGE, 0.1, 0.02};
   std::vector<std::uint8_t> inner(CANDIDATES);
-  for (const bool faces_move : {false, true}) {
+  for (const Side side : SIDES) {
     const Motion X_MF = motionOf(makePose({0.1, -0.2, 0.3}, {0.4, 0.5, -0.6}));
-    const NearVertices vertices{in.vertices.data(), faces_move, X_MF, X_MF};
-    addNear(set.nearVertexFaces(vertices, in.faces.data(), in.open.data(), candidates, CANDIDATES, reach, near.data(), inner.data()));
+    const NearVertices vertices{in.vertices.data(), side, X_MF, X_MF};
+    addNear(set.nearVertexFaces({vertices, in.faces.data(), in.open.data()}, candidates, reach, near.data(), inner.data()));
     out.indices.insert(out.indices.end(), inner.begin(), inner.begin() + out.counts.back());
   }
-  addNear(set.nearEdgeEdges(in.edges.data(), in.edges.data(), candidates, CANDIDATES, reach, near.data()));
-  addNear(set.nearVertexEdges(in.vertices.data(), in.edges.data(), candidates, CANDIDATES, reach, near.data()));
-  addNear(set.nearVertexVertices(in.vertices.data(), in.vertices.data(), candidates, CANDIDATES, reach, near.data()));
+  addNear(set.nearEdgeEdges(in.edges.data(), in.edges.data(), candidates, reach, near.data()));
+  addNear(set.nearVertexEdges(in.vertices.data(), in.edges.data(), candidates, reach, near.data()));
+  addNear(set.nearVertexVertices(in.vertices.data(), in.vertices.data(), candidates, reach, near.data()));
   const Motion motion = motionOf(makePose({0.1, -0.2, 0.3}, {0.4, 0.5, -0.6}));
   std::vector<EdgeRecord> turned(FEATURES);
   set.turnEdges(in.edges.data(), FEATURES, motion, turned.data());
@@ -173,10 +174,9 @@ TEST(Kernels, AllInstructionSetsFindTheSame) {
 
 TEST(Kernels, PlainContactsAreThoseMadeOneByOne) {
   const Features in = randomFeatures();
-  for (const bool faces_move : {false, true}) {
-    SCOPED_TRACE(faces_move);
-    const PlainVertexFaces written(*availableKernels().front(), in, faces_move, true),
-        all(*availableKernels().front(), in, faces_move, false);
+  for (const Side side : SIDES) {
+    SCOPED_TRACE(static_cast<int>(side));
+    const PlainVertexFaces written(*availableKernels().front(), in, side, true), all(*availableKernels().front(), in, side, false);
     std::uint32_t count = 0, close = 0;
     double deepest = -1;
     for (const VertexFaceHit& hit : all.hits) {
@@ -185,12 +185,16 @@ TEST(Kernels, PlainContactsAreThoseMadeOneByOne) {
         continue;
       }
       const Candidate& c = in.candidates[hit.candidate];
-      const Vector3 p = vector3(in.vertices[c.a]), plane = vector3(in.faces[c.b].plane),
-                    up = faces_move ? Vector3(all.X_FM.linear() * plane) : plane;
+      const Vector3 p = vector3(in.vertices[c.first]), plane = vector3(in.faces[c.second].plane),
+                    up = side == Side::FIXED ? Vector3(all.X_FM.linear() * plane) : plane;
       // The normal points from the faces' mesh, which is B, to the vertices'.
-      const ContactRoles roles{true, all.RADIUS_A, all.RADIUS_B};
-      Contact one = contactOf(roles, {FeatureKind::VERTEX, in.names[c.a]}, {FeatureKind::FACE, in.names[c.b]}, p, p - hit.height * up,
-                              hit.height > 0 ? up : Vector3(-up), std::abs(hit.height));
+      const ContactRoles roles{Side::MOVING, {all.RADIUS_A, all.RADIUS_B}};
+      Contact one = contactOf(roles, {{FeatureKind::VERTEX, in.names[c.first]},
+                                      {FeatureKind::FACE, in.names[c.second]},
+                                      p,
+                                      p - hit.height * up,
+                                      hit.height > 0 ? up : Vector3(-up),
+                                      std::abs(hit.height)});
       one.point = all.X_WF * one.point;
       one.normal_BA = all.X_WF.linear() * one.normal_BA;
       ASSERT_LT(count, written.plain.count);
@@ -220,8 +224,8 @@ std::vector<std::uint8_t> sortByFlags(const NearVertices& vertices, const Reach&
   std::vector<std::uint8_t> inner(CANDIDATES);
   for (int pass = 0; pass < 2; ++pass) {
     std::vector<Candidate>& all = features->candidates;
-    const std::uint32_t count = set.nearVertexFaces(vertices, features->faces.data(), features->open.data(), all.data(),
-                                                    static_cast<std::uint32_t>(all.size()), reach, near.data(), inner.data());
+    const std::uint32_t count =
+        set.nearVertexFaces({vertices, features->faces.data(), features->open.data()}, runOf(*features), reach, near.data(), inner.data());
     inner.resize(count);
     all.clear();
     for (const int flag : {1, 0})
@@ -234,10 +238,10 @@ std::vector<std::uint8_t> sortByFlags(const NearVertices& vertices, const Reach&
 TEST(Kernels, VerticesThatAreSurelyInsideNeedNoTest) {
   constexpr double MARGIN = 0.02;
   const Pose X_FM = makePose({0.1, -0.2, 0.3}, {0.4, 0.5, -0.6});
-  for (const bool faces_move : {false, true}) {
-    SCOPED_TRACE(faces_move);
+  for (const Side side : SIDES) {
+    SCOPED_TRACE(static_cast<int>(side));
     Features in = randomFeatures();
-    const NearVertices vertices{in.vertices.data(), faces_move, motionOf(X_FM.inverse()), motionOf(X_FM)};
+    const NearVertices vertices{in.vertices.data(), side, motionOf(X_FM.inverse()), motionOf(X_FM)};
     const std::vector<std::uint8_t> inner = sortByFlags(vertices, {RANGE, MARGIN, 0}, &in);
     const auto flagged = std::count(inner.begin(), inner.end(), 1);
     EXPECT_TRUE(std::is_sorted(inner.rbegin(), inner.rend()));
@@ -246,8 +250,8 @@ TEST(Kernels, VerticesThatAreSurelyInsideNeedNoTest) {
     geometry::RandomShapes random(3);
     for (int i = 0; i < 20; ++i) {
       const Pose moved = Eigen::Translation3d(0.999 * MARGIN * random.point(1).normalized()) * X_FM;
-      const PlainVertexFaces with(*availableKernels().front(), in, faces_move, true, inner, moved),
-          without(*availableKernels().front(), in, faces_move, true, {}, moved);
+      const PlainVertexFaces with(*availableKernels().front(), in, side, true, inner, moved),
+          without(*availableKernels().front(), in, side, true, {}, moved);
       ASSERT_EQ(with.plain.count, without.plain.count);
       EXPECT_GT(with.plain.count, 10u);
       EXPECT_EQ(std::memcmp(with.rows.data(), without.rows.data(), with.plain.count * sizeof(ContactRow)), 0);
@@ -306,10 +310,10 @@ std::vector<std::uint32_t> leafHits(const Kernels& set, const LeafShapes& a, con
   };
   add(hits.vertex_vertex, hits.vertex_vertices);
   add(hits.edge_edge, hits.edge_edges);
-  for (int order = 0; order < 2; ++order) {
-    add(hits.vertex_face[order], hits.vertex_faces[order]);
-    add(hits.vertex_edge[order], hits.vertex_edges[order]);
-    add(hits.edge_face[order], hits.edge_faces[order]);
+  for (const Side side : SIDES) {
+    add(hits.vertex_face[side], hits.vertex_faces[side]);
+    add(hits.vertex_edge[side], hits.vertex_edges[side]);
+    add(hits.edge_face[side], hits.edge_faces[side]);
   }
   return out;
 }

@@ -26,13 +26,13 @@ constexpr double FEET_RANGE = 1.2;
 
 /** A vertex beside some sides of a face each. */
 struct SidesAndVertices {
-  explicit SidesAndVertices(bool faces_move)
-      : faces_move(faces_move), X_FM(makePose({0.1, -0.2, 0.3}, {0.4, 0.5, -0.6})), X_WF(makePose({-3, 2, 1}, {0.7, -0.2, 0.1})) {
+  explicit SidesAndVertices(Side vertices)
+      : vertices(vertices), X_FM(makePose({0.1, -0.2, 0.3}, {0.4, 0.5, -0.6})), X_WF(makePose({-3, 2, 1}, {0.7, -0.2, 0.1})) {
     geometry::RandomShapes random(23);
     for (std::uint32_t i = 0; i < COUNT; ++i) {
       const geometry::Triangle t = random.triangle(1);
       const Vector3 normal = (t[1] - t[0]).cross(t[2] - t[0]).normalized(), p = random.point(1);
-      placed.push_back(vec4(faces_move ? Vector3(X_FM * p) : p, nameBits(i)));
+      placed.push_back(vec4(vertices == Side::FIXED ? Vector3(X_FM * p) : p, nameBits(i)));
       faces.push_back({vec4(normal, normal.dot(t[0])), {}});
       corners.push_back({{vec4(t[0], 0), vec4(t[1], 0), vec4(t[2], 0)}});
       sides.push_back({static_cast<std::uint32_t>(random.integer(1, 7)), i, random.uniform(0, 0.5)});
@@ -42,9 +42,10 @@ struct SidesAndVertices {
   }
 
   ContactPlace place(bool keeps_feet) const {
-    // The vertices are A's: the moving mesh is A unless its faces are asked.
+    // The vertices are A's.
     return {patches.data(),
-            true,
+            vertices,
+            vertices,
             motionOf(X_FM),
             motionOf(X_WF),
             RADIUS_A + RADIUS_B,
@@ -53,7 +54,7 @@ struct SidesAndVertices {
             keeps_feet};
   }
 
-  bool faces_move;
+  Side vertices;
   Pose X_FM, X_WF;
   std::vector<Vec4> placed;  // vertices in frame F
   std::vector<FaceRecord> faces;
@@ -67,8 +68,11 @@ struct SidesAndVertices {
 struct Feet {
   Feet(const Kernels& set, const SidesAndVertices& in, bool keeps_feet) : rows(COUNT + 1), asked(COUNT) {
     FadingContacts out{rows.data(), asked.data(), 0};
-    count = set.sideFeet(in.place(keeps_feet), {in.placed.data(), in.faces_move, motionOf(in.X_FM.inverse()), motionOf(in.X_FM)},
-                         in.faces.data(), in.corners.data(), in.sides.data(), in.pairs.data(), COUNT, FEET_RANGE, &out);
+    const VerticesBesideFaces features{{in.placed.data(), in.vertices, motionOf(in.X_FM.inverse()), motionOf(in.X_FM)},
+                                       in.faces.data(),
+                                       in.corners.data(),
+                                       in.sides.data()};
+    count = set.sideFeet(in.place(keeps_feet), features, {in.pairs.data(), COUNT}, FEET_RANGE, &out);
     rows.resize(count);
     asked.resize(out.asked_count);
   }
@@ -79,13 +83,13 @@ struct Feet {
 };
 
 TEST(SideFeet, AreTheClosestPointsOfTheNearestSides) {
-  for (const bool faces_move : {false, true}) {
-    const SidesAndVertices in(faces_move);
+  for (const Side vertices : SIDES) {
+    const SidesAndVertices in(vertices);
     const Feet feet(*availableKernels().front(), in, true), contacts(*availableKernels().front(), in, false);
     std::uint32_t found = 0, ends = 0;
     std::uint32_t within = 0;
     for (std::uint32_t i = 0; i < COUNT; ++i) {
-      const Vector3 placed = vector3(in.placed[i]), p = faces_move ? Vector3(in.X_FM.inverse() * placed) : placed,
+      const Vector3 placed = vector3(in.placed[i]), p = vertices == Side::FIXED ? Vector3(in.X_FM.inverse() * placed) : placed,
                     normal = vector3(in.faces[i].plane), projection = p - (normal.dot(p) - in.faces[i].plane.w) * normal;
       double beside = 1e9, part = 0;
       Vector3 foot = Vector3::Zero();
@@ -111,7 +115,8 @@ TEST(SideFeet, AreTheClosestPointsOfTheNearestSides) {
       EXPECT_EQ(feet.asked[found].row, found);
       EXPECT_EQ(feet.asked[found].pair, i);
       const ContactRow& row = feet.rows[found++];
-      const Vector3 foot_F = faces_move ? Vector3(in.X_FM * foot) : foot, from_fixed = (faces_move ? -1 : 1) * (placed - foot_F);
+      const Vector3 foot_F = vertices == Side::FIXED ? Vector3(in.X_FM * foot) : foot,
+                    from_fixed = (vertices == Side::FIXED ? -1 : 1) * (placed - foot_F);
       EXPECT_NEAR((Vector3(row.point) - foot_F).norm(), 0, 1e-13);
       EXPECT_NEAR((Vector3(row.normal) - from_fixed.normalized()).norm(), 0, 1e-13);
       EXPECT_NEAR(row.depth, gap, 1e-13);
@@ -128,19 +133,22 @@ TEST(SideFeet, AreTheClosestPointsOfTheNearestSides) {
 }
 
 TEST(SideFeet, ContactsAreThoseMadeOneByOne) {
-  for (const bool faces_move : {false, true}) {
-    const SidesAndVertices in(faces_move);
+  for (const Side vertices : SIDES) {
+    const SidesAndVertices in(vertices);
     const Feet feet(*availableKernels().front(), in, true), contacts(*availableKernels().front(), in, false);
     ASSERT_EQ(contacts.count, feet.count);
     const geometry::TriangleMesh mesh = geometry::boxMesh(Vector3::Constant(1));
     const CollisionGeometry geometry(std::make_shared<geometry::TriangleMesh>(mesh));
-    const MeshPair pair{
-        MeshSide(geometry), MeshSide(geometry), in.X_FM, RADIUS_A + RADIUS_B, 1, {!faces_move, RADIUS_A, RADIUS_B}, in.X_WF};
+    ContactRoles roles{vertices, {}};
+    roles.radius[vertices] = RADIUS_A;
+    roles.radius[!vertices] = RADIUS_B;
+    const MeshPair pair{MeshSide(geometry), MeshSide(geometry), in.X_FM, RADIUS_A + RADIUS_B, 1, roles, in.X_WF};
     for (std::uint32_t i = 0; i < feet.count; ++i) {
       const std::uint32_t pair_index = feet.asked[i].pair;
       Contact one;
-      placeInWorld(pair, !faces_move, {FeatureKind::VERTEX, static_cast<int>(pair_index)}, {FeatureKind::FACE, in.patches[pair_index]},
-                   vector3(in.placed[pair_index]), Vector3(feet.rows[i].point), Vector3(feet.rows[i].normal), feet.rows[i].depth, &one);
+      const Witness at{{FeatureKind::VERTEX, static_cast<int>(pair_index)}, vector3(in.placed[pair_index])},
+          on{{FeatureKind::FACE, in.patches[pair_index]}, Vector3(feet.rows[i].point)};
+      placeInWorld(pair, contactBetween(vertices, at, on, Vector3(feet.rows[i].normal), feet.rows[i].depth), &one);
       EXPECT_EQ(std::memcmp(&contacts.rows[i], &one, sizeof(double[7])), 0);
       EXPECT_EQ(contacts.rows[i].id, one.id);
       EXPECT_EQ(contacts.rows[i].weight, 1);
@@ -150,9 +158,9 @@ TEST(SideFeet, ContactsAreThoseMadeOneByOne) {
 }
 
 TEST(SideFeet, AllInstructionSetsFindTheSame) {
-  for (const bool faces_move : {false, true}) {
+  for (const Side vertices : SIDES) {
     for (const bool keeps_feet : {false, true}) {
-      const SidesAndVertices in(faces_move);
+      const SidesAndVertices in(vertices);
       const Feet baseline(*availableKernels().back(), in, keeps_feet);
       for (const Kernels* set : availableKernels()) {
         SCOPED_TRACE(set->name);
@@ -168,7 +176,7 @@ TEST(SideFeet, AllInstructionSetsFindTheSame) {
 
 TEST(LeavingSides, AreAnsweredAsOneByOne) {
   geometry::RandomShapes random(29);
-  const SidesAndVertices in(false);
+  const SidesAndVertices in(Side::MOVING);
   std::vector<FaceRecord> faces = in.faces;
   for (FaceRecord& face : faces)
     for (Vec4& side : face.sides) side = vec4(random.point(1).normalized(), 0);
@@ -189,7 +197,7 @@ TEST(LeavingSides, AreAnsweredAsOneByOne) {
   for (const Kernels* set : availableKernels()) {
     SCOPED_TRACE(set->name);
     std::vector<LeadingEdges> leading(COUNT);
-    set->leadingAtSides(directions.data(), faces.data(), motionOf(Pose(R)), in.pairs.data(), sides.data(), COUNT, leading.data());
+    set->leadingAtSides(directions.data(), faces.data(), motionOf(Pose(R)), {in.pairs.data(), sides.data(), COUNT}, leading.data());
     for (std::uint32_t i = 0; i < COUNT; ++i) {
       const FaceRecord& face = faces[sides[i].pair];
       const Vector3 down = R * ((sides[i].is_above ? -1 : 1) * vector3(face.plane)), aside = R * vector3(face.sides[sides[i].side]);

@@ -22,13 +22,13 @@ TEST(LeafMemory, OneSearchLosesNoLeaf) {
   for (const std::uint64_t search : {1, 2}) {
     for (const std::uint32_t leaf : leaves) {
       KeptLeaf& found = memory.find(side, leaf, search);
-      ASSERT_EQ(found.index[1], KeptLeaf::NO_INDEX);
-      found.index[1] = leaf;
+      ASSERT_EQ(found.index.moving, KeptLeaf::NO_INDEX);
+      found.index.moving = leaf;
       memory.describe(side, leaf, &found);
     }
     for (const std::uint32_t leaf : leaves) {
       KeptLeaf& found = memory.find(side, leaf, search);
-      ASSERT_EQ(found.index[1], leaf);
+      ASSERT_EQ(found.index.moving, leaf);
       ASSERT_EQ(memory.describe(side, leaf, &found).faces.names[0], static_cast<int>(side.bvh.order()[side.bvh.nodes()[leaf].first]));
     }
     std::reverse(leaves.begin(), leaves.end());

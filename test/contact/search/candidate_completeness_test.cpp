@@ -105,16 +105,16 @@ std::vector<kernels::Candidate> allPairs(const FeatureRecords<A>& a, const Featu
 
 CandidateLists everything(const MeshPair& pair, LeafMemory* leaves) {
   CandidateLists lists;
-  for (const bool moves : {true, false}) lists.near[moves] = allFeatures(pair.side(moves), leaves);
-  const NearFeatures &m = lists.near[1], &f = lists.near[0];
-  lists.pairs.vertex_face[1] = allPairs(m.vertices, f.faces);
-  lists.pairs.vertex_face[0] = allPairs(f.vertices, m.faces);
-  lists.pairs.vertex_edge[1] = allPairs(m.vertices, f.edges);
-  lists.pairs.vertex_edge[0] = allPairs(f.vertices, m.edges);
+  for (const Side side : SIDES) lists.near[side] = allFeatures(pair.side(side), leaves);
+  const NearFeatures &m = lists.near.moving, &f = lists.near.fixed;
+  lists.pairs.vertex_face.moving = allPairs(m.vertices, f.faces);
+  lists.pairs.vertex_face.fixed = allPairs(f.vertices, m.faces);
+  lists.pairs.vertex_edge.moving = allPairs(m.vertices, f.edges);
+  lists.pairs.vertex_edge.fixed = allPairs(f.vertices, m.edges);
   lists.pairs.edge_edge = allPairs(m.edges, f.edges);
   lists.pairs.vertex_vertex = allPairs(m.vertices, f.vertices);
-  lists.pairs.edge_face[1] = allPairs(m.edges, f.faces);
-  lists.pairs.edge_face[0] = allPairs(f.edges, m.faces);
+  lists.pairs.edge_face.moving = allPairs(m.edges, f.faces);
+  lists.pairs.edge_face.fixed = allPairs(f.edges, m.faces);
   return lists;
 }
 
@@ -136,14 +136,14 @@ std::vector<NamedContact> contactsOf(const MeshPair& pair, CandidateLists* lists
   return out;
 }
 
-using NamedCrossing = std::tuple<bool, int, int>;
+using NamedCrossing = std::tuple<Side, int, int>;
 
 std::vector<NamedCrossing> crossingsOf(const MeshPair& pair, CandidateLists* lists, EvaluationBuffers* buffers) {
   FoundContacts found;
   buffers->turned.turnForCrossings(*lists, pair.X_FM);
   Evaluation(pair, lists, lists->pairs, buffers, &found).findCrossings();
   std::vector<NamedCrossing> out;
-  for (const Crossing& c : found.crossings) out.emplace_back(c.edge_of_moving, c.edge, c.face);
+  for (const Crossing& c : found.crossings) out.emplace_back(c.edge_side, c.edge, c.face);
   std::sort(out.begin(), out.end());
   return out;
 }
@@ -186,7 +186,7 @@ TEST(CandidateCompleteness, ListsHoldEveryContact) {
       const MeshPair pair = pairOf(a.collider, b.collider, movedALittle(random, X, margin));
       const std::vector<NamedContact> expected = contactsOf(pair, &all, all.pairs, &evaluation);
       ASSERT_EQ(contactsOf(pair, &listing.lists, listing.lists.pairs, &evaluation), expected);
-      findNearest(pair, evaluation.turned, {0.2 * margin.motion, 0.2 * margin.turn}, listing.lists, &evaluation.surroundings, &nearest);
+      findNearest(pair, {listing.lists, evaluation.turned}, {0.2 * margin.motion, 0.2 * margin.turn}, &evaluation.surroundings, &nearest);
       ASSERT_EQ(contactsOf(pair, &listing.lists, nearest, &evaluation), expected);
       contacts += expected.size();
     }
@@ -211,7 +211,7 @@ TEST(CandidateCompleteness, NearestHoldEveryContact) {
     LeafMemory leaves;
     CandidateLists all = everything(pair, &leaves);
     evaluation.turned.turnForContacts(all, X);
-    leading += findNearest(pair, evaluation.turned, margin, all, &evaluation.surroundings, &nearest) - nearest.contacts();
+    leading += findNearest(pair, {all, evaluation.turned}, margin, &evaluation.surroundings, &nearest) - nearest.contacts();
     for (int move = 0; move < 4; ++move) {
       const MeshPair moved = pairOf(a.collider, b.collider, movedALittle(random, X, margin));
       const std::vector<NamedContact> expected = contactsOf(moved, &all, all.pairs, &evaluation);
@@ -275,7 +275,7 @@ TEST(CandidateCompleteness, LargeMovingMeshesAreRoundedAsSuch) {
     Pose X_FM = X_BM;
     X_FM.translation() = lowest - X_FM.linear() * place;
     findCandidates(pairOf(large, ball, X_FM), CandidateKind::CONTACTS, {}, &buffers, &listing);
-    ASSERT_FALSE(listing.lists.pairs.vertex_face[0].empty()) << i;
+    ASSERT_FALSE(listing.lists.pairs.vertex_face.fixed.empty()) << i;
   }
 }
 

@@ -27,21 +27,21 @@ using NamedPairs = std::vector<std::pair<int, int>>;
 template <typename First, typename Second>
 NamedPairs named(const std::vector<kernels::Candidate>& candidates, const FeatureRecords<First>& a, const FeatureRecords<Second>& b) {
   NamedPairs out;
-  for (const kernels::Candidate& c : candidates) out.emplace_back(a.names[c.a], b.names[c.b]);
+  for (const kernels::Candidate& c : candidates) out.emplace_back(a.names[c.first], b.names[c.second]);
   return out;
 }
 
 /** All candidates, by the names of their features, in their order. */
 std::vector<NamedPairs> namesOf(const CandidateLists& lists) {
   std::vector<NamedPairs> out;
-  for (const bool moves : {true, false}) {
-    const NearFeatures &own = lists.near[moves], &partner = lists.near[!moves];
-    out.push_back(named(lists.pairs.vertex_face[moves], own.vertices, partner.faces));
-    out.push_back(named(lists.pairs.vertex_edge[moves], own.vertices, partner.edges));
-    out.push_back(named(lists.pairs.edge_face[moves], own.edges, partner.faces));
+  for (const Side side : SIDES) {
+    const NearFeatures &own = lists.near[side], &partner = lists.near[!side];
+    out.push_back(named(lists.pairs.vertex_face[side], own.vertices, partner.faces));
+    out.push_back(named(lists.pairs.vertex_edge[side], own.vertices, partner.edges));
+    out.push_back(named(lists.pairs.edge_face[side], own.edges, partner.faces));
   }
-  out.push_back(named(lists.pairs.edge_edge, lists.near[1].edges, lists.near[0].edges));
-  out.push_back(named(lists.pairs.vertex_vertex, lists.near[1].vertices, lists.near[0].vertices));
+  out.push_back(named(lists.pairs.edge_edge, lists.near.moving.edges, lists.near.fixed.edges));
+  out.push_back(named(lists.pairs.vertex_vertex, lists.near.moving.vertices, lists.near.fixed.vertices));
   return out;
 }
 
@@ -64,8 +64,8 @@ TEST(CandidateSearch, InPartsAsAtOnce) {
       findCandidates(searchedPair(hills, ball, other.inverse()), CandidateKind::CONTACTS, margin, &buffers, &between);
     }
     EXPECT_EQ(namesOf(parts.lists), namesOf(whole.lists));
-    for (const bool moves : {true, false}) {
-      const NearFeatures &near = parts.lists.near[moves], &expected = whole.lists.near[moves];
+    for (const Side side : SIDES) {
+      const NearFeatures &near = parts.lists.near[side], &expected = whole.lists.near[side];
       EXPECT_EQ(near.vertices.names, expected.vertices.names);
       EXPECT_EQ(near.edges.names, expected.edges.names);
       EXPECT_EQ(near.faces.names, expected.faces.names);
@@ -115,8 +115,9 @@ TEST(VertexCone, HoldsEveryDirectionThatIsAllowed) {
     const Collider collider = makeCollider(mesh, 0);
     const MeshSide side(*collider.geometry);
     SurroundingsMemory surroundings;
+    std::vector<double> angles;
     for (int vertex = 0; vertex < static_cast<int>(side.mesh.vertices.size()); ++vertex) {
-      const kernels::VertexCone cone = vertexCone(side, vertex, &surroundings);
+      const kernels::VertexCone cone = vertexCone(side, vertex, &surroundings, &angles);
       const Vector3 axis(cone.axis[0], cone.axis[1], cone.axis[2]);
       for (int i = 0; i < 200; ++i) {
         const Vector3 direction = (random.point(1) + (i % 4) * random.uniform(-3, 3) * axis).normalized();

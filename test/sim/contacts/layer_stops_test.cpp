@@ -119,17 +119,20 @@ TEST(LayerStops, NothingIsAddedWhereLayersAreNotUsedUp) {
   stepFor(&simulator, 1);
   EXPECT_EQ(simulator.report().contacts.size(), 4u);
   LayerStops stops;
+  reduction::ReductionWorkspace workspace;
   stops.start();
-  EXPECT_TRUE(stops.choose(ringOf(40, LayerStops::SEEN * STOP_LAYER), *reduction::findReduction("hull")).empty());
+  EXPECT_TRUE(stops.choose(ringOf(40, LayerStops::SEEN * STOP_LAYER), *reduction::findReduction("hull"), &workspace).empty());
   stops.remember();
   EXPECT_TRUE(wordsOf(stops).empty());
 }
 
 TEST(LayerStops, GoOnWithWhatTheyChoseEvenIfRestored) {
-  const auto choose = [](LayerStops* stops, const contact::ContactManifold& manifold) {
+  reduction::ReductionWorkspace workspace;
+  const auto choose = [&workspace](LayerStops* stops, const contact::ContactManifold& manifold) {
     stops->start();
     reduction::ContactIds ids;
-    for (const contact::Contact& contact : stops->choose(manifold, *reduction::findReduction("hull"))) ids.push_back(contact.id);
+    for (const contact::Contact& contact : stops->choose(manifold, *reduction::findReduction("hull"), &workspace))
+      ids.push_back(contact.id);
     stops->remember();
     return ids;
   };

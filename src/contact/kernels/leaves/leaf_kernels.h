@@ -103,16 +103,16 @@ inline bool mayShareNormal(const EdgeCone& a, const EdgeCone& b, float turn) {
   return (cosine < 0 ? -cosine : cosine) >= least;
 }
 
-/** The vertices of one leaf, by their bits, at the faces and edges of another. */
-inline void findAtVertices(const LeafShapes& a, std::uint32_t vertices, const LeafShapes& b, const LeafReach& reach, int order,
+/** The vertices of one leaf, by their bits, at the faces and edges of another. @param side of the vertices */
+inline void findAtVertices(const LeafShapes& a, std::uint32_t vertices, const LeafShapes& b, const LeafReach& reach, Side side,
                            LeafHits* hits) {
-  hits->vertex_faces[order] = hits->vertex_edges[order] = 0;
+  hits->vertex_faces[side] = hits->vertex_edges[side] = 0;
   forEachBit(vertices, [&](std::uint32_t i) {
     const FloatVectors p = oneVertex(a, i);
     const std::uint32_t faces = bitsWhere(b.face_count, [&](auto j) { return mayTouch(p, FloatFaces(b.faces, j), reach); });
-    append(i, faces, hits->vertex_face[order], &hits->vertex_faces[order]);
+    append(i, faces, hits->vertex_face[side], &hits->vertex_faces[side]);
     const std::uint32_t edges = edgesWhere(b, [&](const LeafEdges& block, auto j) { return mayTouch(p, block, j, reach); });
-    append(i, edges, hits->vertex_edge[order], &hits->vertex_edges[order]);
+    append(i, edges, hits->vertex_edge[side], &hits->vertex_edges[side]);
   });
 }
 
@@ -137,28 +137,28 @@ inline void findEdgeEdges(const LeafShapes& a, const LeafShapes& b, const LeafRe
   });
 }
 
-void leafContacts(const LeafShapes& a, const LeafShapes& b, const LeafReach& reach, LeafHits* hits) {
-  const std::uint32_t near_a = verticesNear(a, b, reach), near_b = verticesNear(b, a, reach);
-  findAtVertices(a, near_a, b, reach, 0, hits);
-  findAtVertices(b, near_b, a, reach, 1, hits);
+void leafContacts(const LeafShapes& moving, const LeafShapes& fixed, const LeafReach& reach, LeafHits* hits) {
+  const std::uint32_t near_m = verticesNear(moving, fixed, reach), near_f = verticesNear(fixed, moving, reach);
+  findAtVertices(moving, near_m, fixed, reach, Side::MOVING, hits);
+  findAtVertices(fixed, near_f, moving, reach, Side::FIXED, hits);
   hits->vertex_vertices = hits->edge_edges = 0;
-  findVertexVertices(a, near_a, b, near_b, reach, hits);
-  findEdgeEdges(a, b, reach, hits);
+  findVertexVertices(moving, near_m, fixed, near_f, reach, hits);
+  findEdgeEdges(moving, fixed, reach, hits);
 }
 
-inline void findCrossings(const LeafShapes& a, const LeafShapes& b, const LeafReach& reach, int order, LeafHits* hits) {
-  hits->edge_faces[order] = 0;
+inline void findCrossings(const LeafShapes& a, const LeafShapes& b, const LeafReach& reach, Side side, LeafHits* hits) {
+  hits->edge_faces[side] = 0;
   forEachBit(edgesAtBox(a, b, reach), [&](std::uint32_t i) {
     const FloatEdge edge = oneEdge(a, i);
     const FloatVectors start = edge.start, end = start + edge.along;
     const std::uint32_t faces = bitsWhere(b.face_count, [&](auto j) { return mayCross(start, end, FloatFaces(b.faces, j), reach); });
-    append(i, faces, hits->edge_face[order], &hits->edge_faces[order]);
+    append(i, faces, hits->edge_face[side], &hits->edge_faces[side]);
   });
 }
 
-void leafCrossings(const LeafShapes& a, const LeafShapes& b, const LeafReach& reach, LeafHits* hits) {
-  findCrossings(a, b, reach, 0, hits);
-  findCrossings(b, a, reach, 1, hits);
+void leafCrossings(const LeafShapes& moving, const LeafShapes& fixed, const LeafReach& reach, LeafHits* hits) {
+  findCrossings(moving, fixed, reach, Side::MOVING, hits);
+  findCrossings(fixed, moving, reach, Side::FIXED, hits);
 }
 
 }  // namespace
