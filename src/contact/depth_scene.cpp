@@ -76,11 +76,16 @@ class BandArrays {
   const int first_row_, columns_;
 };
 
-/** Fans of four rays of two rows. @param depths of the band, which come nearer where something is met */
-void addFans(const RayScene& scene, const PinholeRays& rays, const RayScene::Query& query, int first_row, int rows, double* depths) {
+/** Rows of an image. */
+struct RowRange {
+  int first, count;
+};
+
+/** Fans of four rays of two rows. @param depths of those rows, which come nearer where something is met */
+void addFans(const RayScene& scene, const PinholeRays& rays, const RayScene::Query& query, const RowRange& rows, double* depths) {
   constexpr int ROWS = 2, COLUMNS = RayFan::WIDTH / ROWS;
-  const int last_row = first_row + rows - 1, last_column = rays.pinhole.width - 1;
-  for (int top = first_row; top <= last_row; top += ROWS)
+  const int last_row = rows.first + rows.count - 1, last_column = rays.pinhole.width - 1;
+  for (int top = rows.first; top <= last_row; top += ROWS)
     for (int left = 0; left <= last_column; left += COLUMNS) {
       const auto row = [&](int ray) { return std::min(top + ray / COLUMNS, last_row); };
       const auto column = [&](int ray) { return std::min(left + ray % COLUMNS, last_column); };
@@ -88,7 +93,7 @@ void addFans(const RayScene& scene, const PinholeRays& rays, const RayScene::Que
       for (int ray = 0; ray < RayFan::WIDTH; ++ray) fan.directions[ray] = rays.direction(row(ray), column(ray));
       const RayScene::Hits hits = scene.firstHits(fan, query);
       for (int ray = 0; ray < RayFan::WIDTH; ++ray) {
-        double& depth = depths[static_cast<std::size_t>(row(ray) - first_row) * rays.pinhole.width + column(ray)];
+        double& depth = depths[static_cast<std::size_t>(row(ray) - rows.first) * rays.pinhole.width + column(ray)];
         depth = std::min(depth, hits[ray].t);
       }
     }
@@ -128,7 +133,7 @@ void DepthScene::drawBand(const PinholeRays& rays, const RayScene::Query& query,
   for (int row = 0; row < arrays.rows(); ++row)
     std::transform(arrays.row(row), arrays.row(row) + pinhole.width, depths + static_cast<std::size_t>(row) * pinhole.width,
                    [&](double depth) { return depth <= query.farthest ? depth : NO_DEPTH; });
-  if (has_others_) addFans(others_, rays, query, first_row, arrays.rows(), depths);
+  if (has_others_) addFans(others_, rays, query, {first_row, arrays.rows()}, depths);
 }
 
 }  // namespace blem_sim::contact

@@ -17,12 +17,13 @@ class BandPixels {
   explicit BandPixels(const DepthBand& band) : band_(band) {}
 
   int placeOf(int row, int column) const { return (row - band_.first_row) * band_.stride + column; }
-  PixelRange all() const { return {0, band_.columns - 1, band_.first_row, band_.first_row + band_.rows - 1}; }
+  PixelRange all() const { return {{0, band_.columns - 1}, {band_.first_row, band_.first_row + band_.rows - 1}}; }
 
   /** Calls visit(place) for each group that has pixels of a row's range. */
   template <typename Visit>
   void visitGroups(const PixelRange& row, Visit&& visit) const {
-    for (int column = row.first_column / LANES * LANES; column <= row.last_column; column += LANES) visit(placeOf(row.first_row, column));
+    for (int column = row.columns.first / LANES * LANES; column <= row.columns.last; column += LANES)
+      visit(placeOf(row.rows.first, column));
   }
 
   static Doubles read(const double* from) {
@@ -46,8 +47,8 @@ class DepthTiles {
   /** Whether all pixels of a small range are nearer than something. */
   bool hide(const PixelRange& range, double near) {
     if (range.count() <= FEW) return allNearer(range, near);
-    const int left = range.first_column / TILE, right = range.last_column / TILE;
-    const int top = (range.first_row - band_.first_row) / TILE, bottom = (range.last_row - band_.first_row) / TILE;
+    const int left = range.columns.first / TILE, right = range.columns.last / TILE;
+    const int top = (range.rows.first - band_.first_row) / TILE, bottom = (range.rows.last - band_.first_row) / TILE;
     if ((right - left + 1) * (bottom - top + 1) > LARGEST) return false;
     for (int y = top; y <= bottom; ++y)
       for (int x = left; x <= right; ++x)
@@ -61,9 +62,9 @@ class DepthTiles {
   static constexpr std::uint32_t MANY_WRITES = 8;  // after which it pays to look at a tile again
 
   bool allNearer(const PixelRange& range, double near) const {
-    for (int row = range.first_row; row <= range.last_row; ++row) {
+    for (int row = range.rows.first; row <= range.rows.last; ++row) {
       const double* const depths = band_.depths + (row - band_.first_row) * band_.stride;
-      for (int column = range.first_column; column <= range.last_column; ++column)
+      for (int column = range.columns.first; column <= range.columns.last; ++column)
         if (!(depths[column] < near)) return false;
     }
     return true;
@@ -93,9 +94,9 @@ class PixelShears {
   PixelShears(const PixelRays& rays, const DepthBand& band) : rays_(rays), band_(band), pixels_(band) {}
 
   void fill(const PixelRange& range) const {
-    for (int row = range.first_row; row <= range.last_row; ++row) {
+    for (int row = range.rows.first; row <= range.rows.last; ++row) {
       const double down = (row - rays_.middle_v) / rays_.focal_length;
-      for (int column = range.first_column / TILE * TILE; column <= range.last_column; column += TILE) {
+      for (int column = range.columns.first / TILE * TILE; column <= range.columns.last; column += TILE) {
         unsigned axes = 0;
         for (int part = 0; part < TILE; part += LANES) axes |= fillGroup(down, column + part, pixels_.placeOf(row, column + part));
         band_.tile_axes[pixels_.placeOf(row, column) / TILE] = AXIS_OF_BITS[axes];

@@ -92,12 +92,12 @@ class TriangleDrawing {
     const PixelRange& range = entry.range;
     PixelPlane::Sides sides;
     plane_.sidesOf(corners, range, &sides);
-    for (int row = range.first_row; row <= range.last_row; ++row) {
+    for (int row = range.rows.first; row <= range.rows.last; ++row) {
       LaneFloats rest[3];
-      for (int i = 0; i < 3; ++i) rest[i] = sides.v[i] * static_cast<float>(row - range.first_row) + sides.rest[i];
+      for (int i = 0; i < 3; ++i) rest[i] = sides.v[i] * static_cast<float>(row - range.rows.first) + sides.rest[i];
       const double* const depths = band_.depths + pixels_.placeOf(row, 0);
-      for (int column = range.first_column; column <= range.last_column; ++column) {
-        const auto distance = [&](int i) { return sides.u[i] * static_cast<float>(column - range.first_column) + rest[i]; };
+      for (int column = range.columns.first; column <= range.columns.last; ++column) {
+        const auto distance = [&](int i) { return sides.u[i] * static_cast<float>(column - range.columns.first) + rest[i]; };
         if (bitsNotNegative(smaller(smaller(distance(0), distance(1)), distance(2))) == 0) continue;
         if (depths[column] >= entry.near) meetPixel(corners, row, column);
       }
@@ -139,7 +139,7 @@ class TriangleDrawing {
       one[i][1] = corners[i].y[lane];
       one[i][2] = corners[i].z[lane];
     }
-    for (int row = range.first_row; row <= range.last_row; ++row)
+    for (int row = range.rows.first; row <= range.rows.last; ++row)
       pixels_.visitGroups(rows.row(row), [&](int place) { meetGroup(one, row, place); });
   }
 

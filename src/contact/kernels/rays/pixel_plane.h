@@ -33,21 +33,27 @@ typedef double Pair __attribute__((vector_size(16)));
 inline Pair pairOf(double first, double second) { return Pair{first, second}; }
 inline Pair magnitude(Pair a) { return a < 0 ? -a : a; }
 
-/** Pixels, both ends included. */
-struct PixelRange {
-  int first_column, last_column, first_row, last_row;
-  bool empty() const { return first_column > last_column || first_row > last_row; }
-  int count() const { return (last_column - first_column + 1) * (last_row - first_row + 1); }
+/** Whole numbers, both ends included. */
+struct Span {
+  int first, last;
+  int count() const { return last - first + 1; }
 };
 
-/** Whole numbers between two places, from `least` to `most`. */
-inline void wholeBetween(double low, double high, int least, int most, int* first, int* last) {
+/** Whole numbers of a span between two places. */
+inline Span wholeBetween(double low, double high, const Span& of) {
   // Truncation rounds down what is not negative; a whole number is at least the slack away from the ends.
-  low = low > least ? low : least - 0.5;
-  high = high < most ? high : most + 0.5;
-  *first = low < most + 1 ? static_cast<int>(low - least + 1) + least : most + 1;
-  *last = high > least - 1 ? static_cast<int>(high - least + 1) + least - 1 : least - 1;
+  low = low > of.first ? low : of.first - 0.5;
+  high = high < of.last ? high : of.last + 0.5;
+  return {low < of.last + 1 ? static_cast<int>(low - of.first + 1) + of.first : of.last + 1,
+          high > of.first - 1 ? static_cast<int>(high - of.first + 1) + of.first - 1 : of.first - 1};
 }
+
+/** Pixels of an image. */
+struct PixelRange {
+  Span columns, rows;
+  bool empty() const { return columns.first > columns.last || rows.first > rows.last; }
+  int count() const { return columns.count() * rows.count(); }
+};
 
 /** A mesh as a pinhole sees it: x right, y down, z ahead [m], and the pixels. */
 class PixelPlane {
@@ -90,10 +96,7 @@ class PixelPlane {
   /** Pixels of a range that one of the boxes may cover. */
   PixelRange pixelsOf(const Boxes& boxes, int which, const PixelRange& of) const {
     if (!(boxes.near[which] > 0)) return of;
-    PixelRange range;
-    wholeBetween(boxes.left[which], boxes.right[which], of.first_column, of.last_column, &range.first_column, &range.last_column);
-    wholeBetween(boxes.up[which], boxes.below[which], of.first_row, of.last_row, &range.first_row, &range.last_row);
-    return range;
+    return {wholeBetween(boxes.left[which], boxes.right[which], of.columns), wholeBetween(boxes.up[which], boxes.below[which], of.rows)};
   }
 
   /** A triangle in the image. */
@@ -122,8 +125,8 @@ class PixelPlane {
     const Projected seen = project(corners);
     Doubles u[3], v[3], area = all(0);
     for (int i = 0; i < 3; ++i) {
-      u[i] = seen.u[i] - range.first_column;
-      v[i] = seen.v[i] - range.first_row;
+      u[i] = seen.u[i] - range.columns.first;
+      v[i] = seen.v[i] - range.rows.first;
     }
     for (int i = 0; i < 3; ++i) area += u[i] * v[(i + 1) % 3] - u[(i + 1) % 3] * v[i];
     const Mask known = seen.near > FAR_ASIDE * seen.far;
@@ -141,12 +144,8 @@ class PixelPlane {
 
   PixelRange pixelsOf(const Triangle& triangle, const PixelRange& of) const {
     if (!(triangle.near > 0)) return of;
-    PixelRange range;
-    wholeBetween(least(triangle.u) - triangle.slack, most(triangle.u) + triangle.slack, of.first_column, of.last_column,
-                 &range.first_column, &range.last_column);
-    wholeBetween(least(triangle.v) - triangle.slack, most(triangle.v) + triangle.slack, of.first_row, of.last_row, &range.first_row,
-                 &range.last_row);
-    return range;
+    return {wholeBetween(least(triangle.u) - triangle.slack, most(triangle.u) + triangle.slack, of.columns),
+            wholeBetween(least(triangle.v) - triangle.slack, most(triangle.v) + triangle.slack, of.rows)};
   }
 
  private:
@@ -199,16 +198,13 @@ class PixelPlane {
 class TriangleRows {
  public:
   TriangleRows(const PixelPlane::Triangle& triangle, const PixelRange& range)
-      : triangle_(triangle), range_(range), narrow_(range.last_column - range.first_column < 4 * TILE || !(triangle.near > 0)) {}
+      : triangle_(triangle), range_(range), narrow_(range.columns.last - range.columns.first < 4 * TILE || !(triangle.near > 0)) {}
 
   PixelRange row(int row) const {
-    PixelRange range{range_.first_column, range_.last_column, row, row};
-    if (narrow_) return range;
+    if (narrow_) return {range_.columns, {row, row}};
     double left = __builtin_inf(), right = -__builtin_inf();
     for (int i = 0; i < 3; ++i) addSide(i, (i + 1) % 3, row, &left, &right);
-    wholeBetween(left - triangle_.slack, right + triangle_.slack, range_.first_column, range_.last_column, &range.first_column,
-                 &range.last_column);
-    return range;
+    return {wholeBetween(left - triangle_.slack, right + triangle_.slack, range_.columns), {row, row}};
   }
 
  private:
