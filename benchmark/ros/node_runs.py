@@ -1,10 +1,5 @@
 #!/usr/bin/python3
-"""What publishing takes of the node's step, in real use: roscore, the node under roslaunch, subscribers in another process.
-
-Usage: ros_side.py OUT.csv [SECONDS a run]     expects the built package on this shell
-hubo_plane of the shared data at 1 kHz of wall time; joint states and four wrenches at every step, contact markers at 100 Hz. Runs with
-and without subscribers take turns. Says so and writes nothing if the shared data are not here.
-"""
+"""The node under roslaunch with subscribers in another process, for benchmarks of it. Run alone: counts messages of TOPIC ..."""
 import collections
 import contextlib
 import csv
@@ -21,20 +16,13 @@ import xmlrpc.client
 import yaml
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent / "test" / "support"))
-from scene_runs import world  # noqa: E402
+sys.path.insert(0, str(HERE.parents[1] / "test" / "support"))
 from shared_data import shared_data  # noqa: E402
 
 PORT = 11733
-WRENCHES = ["LF_ForceSensor", "RF_ForceSensor", "LH_ForceSensor", "RH_ForceSensor"]
-RATES = {"joint_state_rate": 0, "marker_rate": 100}  # [Hz], 0 = every step
-TOPICS = ["/joint_states", "/blem_sim/contact_markers"] + ["/" + name for name in WRENCHES]
 # Others want the processors too: wall time says little without it. Only root may.
 URGENT = ["nice", "-n", "-15"] if os.geteuid() == 0 else []
-SETTLE, ROUNDS = 3.0, 3  # [s], runs of each kind
-# us a step; "cpu" is processor time, the others wall time. The step is all that its thread does but publishing.
-COLUMNS = ["subscribers", "steps", "step_cpu_us", "publish_cpu_us", "publish_over_step_cpu", "stages_us", "publish_us", "other_threads_cpu_us",
-           "real_time_factor", "messages_per_step"]
+SETTLE = 3.0  # [s]
 
 
 @contextlib.contextmanager
@@ -52,12 +40,12 @@ def running(command, **options):
             os.killpg(process.pid, signal.SIGKILL)
 
 
-def listen():
+def listen(topics):
     """The process of the subscribers: counts raw messages, without looking into them, until it is told to end."""
     import rospy
     rospy.init_node("listener", disable_rostime=True, disable_signals=True)
     counts = collections.Counter()
-    for topic in TOPICS:
+    for topic in topics:
         rospy.Subscriber(topic, rospy.AnyMsg, lambda _, topic=topic: counts.update([topic]), tcp_nodelay=True)
     with contextlib.suppress(KeyboardInterrupt):
         for _ in sys.stdin:  # a line asks for the counts so far
@@ -65,8 +53,10 @@ def listen():
 
 
 class Listener(object):
-    def __init__(self, stack):
-        self._process = stack.enter_context(running([sys.executable, __file__, "--listen"], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+    """Counts messages of topics in another process, as long as the stack lives."""
+
+    def __init__(self, stack, topics):
+        self._process = stack.enter_context(running([sys.executable, __file__] + topics, stdin=subprocess.PIPE, stdout=subprocess.PIPE,
                                                     universal_newlines=True, bufsize=1))
 
     def count(self):
@@ -93,9 +83,9 @@ def node_process():
         with contextlib.suppress(OSError):
             code, _, api = master.lookupNode("/blem_sim")
             if code == 1:
-                return xmlrpc.client.ServerProxy(api).getPid("/ros_side")[2]
+                return xmlrpc.client.ServerProxy(api).getPid("/node_runs")[2]
         time.sleep(0.2)
-    sys.exit("ros_side: the node did not start within 60 s")
+    sys.exit("the node did not start within 60 s")
 
 
 class Reports(object):
@@ -137,58 +127,57 @@ class Reports(object):
         return steps, sum(mean.values()), published, statistics.mean(self._published), factor
 
 
-def run(config_file, duration, subscribes):
-    """One row."""
+Measured = collections.namedtuple("Measured", "pid steps stages published published_cpu factor threads heard seconds")
+
+
+def measure(config_file, duration, topics):
+    """Runs a configuration. threads: processor time of each [s]; heard: messages of the topics; stages, published: mean of a step [us]."""
     with contextlib.ExitStack() as stack:
         stack.enter_context(running(URGENT + ["roslaunch", "blem_sim", "simulate.launch", "config:=" + config_file], stdout=subprocess.DEVNULL))
         pid = node_process()
         reports = Reports()
-        listener = Listener(stack) if subscribes else None
+        listener = Listener(stack, topics) if topics else None
         time.sleep(SETTLE)
         while not reports.come():
             time.sleep(0.1)
         reports.clear()
-        before, heard = thread_seconds(pid), listener.count() if listener else 0
+        before, heard, start = thread_seconds(pid), listener.count() if listener else 0, time.time()
         time.sleep(duration)
-        after, heard = thread_seconds(pid), (listener.count() if listener else 0) - heard
-        steps, stages, published, published_cpu, factor = reports.means()
+        after, heard, seconds = thread_seconds(pid), (listener.count() if listener else 0) - heard, time.time() - start
+        means = reports.means()
         reports.stop()
-    used = {thread: 1e6 * (seconds - before.get(thread, 0.0)) / steps for thread, seconds in after.items()}
-    step = used.pop(pid) - published_cpu
-    return [len(TOPICS) if subscribes else 0, steps, step, published_cpu, published_cpu / step, stages, published, sum(used.values()), factor,
-            heard / steps]
+    return Measured(pid, *means, {thread: used - before.get(thread, 0.0) for thread, used in after.items()}, heard, seconds)
 
 
-def main(out, duration):
-    if shared_data("worlds") is None:
-        print("ros_side: skipped, the shared data are not here (set BLEM_SIM_SHARED_DATA to their folder)")
-        return
+@contextlib.contextmanager
+def on_a_master():
+    """A roscore of its own until the block ends; gives a function that writes a configuration into a file and returns its path."""
     os.environ["ROS_MASTER_URI"] = "http://localhost:%d" % PORT
     os.environ["ROS_PACKAGE_PATH"] = "%s:%s" % (os.environ.get("ROS_PACKAGE_PATH", ""), shared_data("robots/klampt"))
-    config = dict(world("hubo_plane"), **RATES)
-    for sensor in config["robots"][0]["sensors"]:
-        sensor["rate"] = 0
     with tempfile.TemporaryDirectory() as folder, running(["roscore", "-p", str(PORT)], stdout=subprocess.DEVNULL):
         os.environ["ROS_LOG_DIR"] = folder
-        config_file = os.path.join(folder, "hubo_plane.yaml")
-        with open(config_file, "w") as stream:
-            yaml.safe_dump(config, stream, sort_keys=False)
         import rospy
         time.sleep(3)
-        rospy.init_node("ros_side", disable_rostime=True, disable_signals=True)
-        rows = [run(config_file, duration, subscribes) for _ in range(ROUNDS) for subscribes in (False, True)]
+        rospy.init_node("node_runs", disable_rostime=True, disable_signals=True)
+
+        def written(config):
+            path = os.path.join(folder, "config.yaml")
+            with open(path, "w") as stream:
+                yaml.safe_dump(config, stream, sort_keys=False)
+            return path
+
+        yield written
+
+
+def write_table(out, columns, rows):
+    """Writes rows as CSV and prints them."""
     with open(out, "w") as stream:
         table = csv.writer(stream, lineterminator="\n")
-        table.writerow(COLUMNS)
+        table.writerow(columns)
         for row in rows:
             table.writerow(["%.4g" % value if isinstance(value, float) else value for value in row])
-            print(dict(zip(COLUMNS, row)))
+            print(dict(zip(columns, row)))
 
 
 if __name__ == "__main__":
-    if sys.argv[1:] == ["--listen"]:
-        listen()
-    elif len(sys.argv) in (2, 3):
-        main(sys.argv[1], float(sys.argv[2]) if len(sys.argv) == 3 else 10.0)
-    else:
-        sys.exit(__doc__)
+    listen(sys.argv[1:])
