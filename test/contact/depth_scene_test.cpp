@@ -98,6 +98,21 @@ TEST(DepthScene, SeesAFineSurfaceWithoutAHole) {
       << "two triangles fill the image";
 }
 
+TEST(DepthScene, SeesTheNearerOfSurfacesThatPassThroughEachOther) {
+  geometry::RandomShapes random(9);
+  geometry::TriangleMesh both;
+  for (int sheet = 0; sheet < 2; ++sheet) {
+    const geometry::TriangleMesh grid = geometry::gridMesh(4, 4, 120, 120);
+    const Vector3i first = Vector3i::Constant(static_cast<int>(both.vertices.size()));
+    for (const Vector3& v : grid.vertices) both.vertices.push_back(v + Vector3(0, 0, random.uniform(-5e-3, 5e-3)));
+    for (const Vector3i& element : grid.elements) both.elements.push_back(element + first);
+  }
+  for (const double turn : {0.5, 0.9, 1.4}) {
+    const PinholeRays rays = camera(makePose({0, 0, 0.6}, {0.1, turn, 0.4}));
+    EXPECT_GT(compare({placed(both, Pose::Identity())}, rays, {}), 500) << turn;
+  }
+}
+
 TEST(DepthScene, EndsAtTheFarthestDepthItself) {
   const PinholeRays rays{{8, 8, 60.0, 3.5, 3.5}, Pose::Identity()};
   const std::vector<RayTarget> wall = {placed(geometry::boxMesh({2, 9, 9}), makePose({3, 0, 0}))};
