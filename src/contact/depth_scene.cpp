@@ -123,8 +123,7 @@ void DepthScene::drawBand(const PinholeRays& rays, const RayScene::Query& query,
   const kernels::DepthBand numbers = arrays.numbers();
   for (std::size_t i = 0; i < meshes_.size(); ++i) {
     const CollisionGeometry& geometry = *meshes_[i].geometry;
-    const kernels::PixelRays seen =
-        pixelRaysOf(rays, X_CW_[i], meshes_[i].model == query.own_model && query.own_model >= 0 ? query.own_nearest : 0);
+    const kernels::PixelRays seen = pixelRaysOf(rays, X_CW_[i], query.nearestOf(meshes_[i].model));
     const double slack = slacks_[i] + PLACE_ROUNDING * (std::abs(seen.origin[0]) + std::abs(seen.origin[1]) + std::abs(seen.origin[2]));
     const kernels::PixelMesh mesh{reinterpret_cast<const unsigned char*>(geometry.bvh().nodes().data()), geometry.bvh().order().data(),
                                   geometry.mesh().elements.data()->data(), geometry.mesh().vertices.data()->data(), slack};

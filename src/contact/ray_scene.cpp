@@ -133,9 +133,7 @@ class RayScene::Search {
     return fall != 0 && t >= range.nearest && t <= range.farthest ? t : INFINITE;
   }
 
-  double nearest(int target) const {
-    return scene_.targets_[target].model == query_.own_model && query_.own_model >= 0 ? query_.own_nearest : 0;
-  }
+  double nearest(int target) const { return query_.nearestOf(scene_.targets_[target].model); }
 
   void add(int target, int ray, double t) {
     Hit& first = hits_[ray];

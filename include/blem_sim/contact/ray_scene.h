@@ -35,6 +35,9 @@ class RayScene {
     double farthest = std::numeric_limits<double>::infinity();
     int own_model = -1;
     double own_nearest = 0;
+
+    /** Where rays begin to count on a model. */
+    double nearestOf(int model) const { return model == own_model && own_model >= 0 ? own_nearest : 0; }
   };
   struct Hit {
     double t = std::numeric_limits<double>::infinity();  ///< in units of the ray's direction
