@@ -36,7 +36,7 @@ class RayScene {
     int own_model = -1;
     double own_nearest = 0;
 
-    /** Where rays begin to count on a model. */
+    /** Place along a ray from which a model counts. */
     double nearestOf(int model) const { return model == own_model && own_model >= 0 ? own_nearest : 0; }
   };
   struct Hit {
