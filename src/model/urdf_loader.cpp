@@ -174,19 +174,18 @@ RobotModel readRobot(const std::string& xml, const std::string& source, Collisio
 
 }  // namespace
 
-RobotModel loadUrdf(const std::string& xml, const std::string& source, const UriResolver& resolver, const std::string& base,
-                    Mending mending, const LoadProgress& progress) {
-  CollisionShapeReader shapes(resolver, base, mending);
+RobotModel loadUrdf(const std::string& xml, const std::string& source, const UriResolver& resolver, const UrdfOptions& options) {
+  CollisionShapeReader shapes(resolver, options.base, options.mending);
   try {
-    return readRobot(xml, source, &shapes, progress);
+    return readRobot(xml, source, &shapes, options.progress);
   } catch (const InputError& error) {
     throw InputError(geometry::oneLine(error.what()));  // names in a URDF may hold anything
   }
 }
 
-RobotModel loadUrdfFile(const std::string& file, const UriResolver& resolver, Mending mending, const LoadProgress& progress) {
-  const std::string base = std::filesystem::absolute(file).parent_path().string();
-  return loadUrdf(readBytes(file), file, resolver, base, mending, progress);
+RobotModel loadUrdfFile(const std::string& file, const UriResolver& resolver, UrdfOptions options) {
+  if (options.base.empty()) options.base = std::filesystem::absolute(file).parent_path().string();
+  return loadUrdf(readBytes(file), file, resolver, options);
 }
 
 }  // namespace blem_sim::model

@@ -14,18 +14,18 @@
 #include "build/world_builder.h"
 #include "clouds/fading_points.h"
 #include "commands/applied_loads.h"
-#include "contacts/constraint_maker.h"
-#include "contacts/early_pushes.h"
-#include "contacts/made_solve.h"
-#include "contacts/pair_searches.h"
+#include "contacts/constraints/constraint_maker.h"
+#include "contacts/constraints/early_pushes.h"
+#include "contacts/constraints/made_solve.h"
+#include "contacts/search/pair_searches.h"
 #include "guard/energy_balance.h"
 #include "guard/layer_watch.h"
 #include "guard/step_guard.h"
 #include "guard/sweep_guard.h"
 #include "inputs/input_writer.h"
 #include "part_reports.h"
-#include "sensors/link_contacts.h"
 #include "sensors/sensor_channel.h"
+#include "sensors/types/link_contacts.h"
 
 namespace blem_sim::sim {
 
@@ -66,7 +66,8 @@ struct Simulator::Impl {
   void stepGuard(const MadeSolve& made, const FoundContacts& found);
   void acceptSubstep(const MadeSolve& made);
   void redoSubstep(const std::vector<ClosePass>& close);
-  void readSensors();
+  /** Reads sensors whose time has come. */
+  void sensors();
   /** Bodies go back to where the substep started. */
   void rewind();
   /** States that bodies may reach in the rest of the step, if a solve that was thrown away has shown them; else null. */

@@ -43,7 +43,7 @@ const StepReport& Simulator::Impl::step() {
   ++step_count_;
   loads_.expire(time());
   if (substeps_.count() > 1) world_.world.setJointEfforts(part_reports_.efforts());
-  readSensors();
+  sensors();
   report();
   watchAttachments();
   return report_;
@@ -217,7 +217,7 @@ void Simulator::Impl::acceptSubstep(const MadeSolve& made) {
   early_pushes_.clear();
 }
 
-void Simulator::Impl::readSensors() {
+void Simulator::Impl::sensors() {
   const StageTimer timer(&report_.profile, Stage::SENSORS);
   jointStates(&joints_);
   const auto reads_contacts = [this](const SensorChannel& sensor) { return sensor.readsContacts(step_count_); };

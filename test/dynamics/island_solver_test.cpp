@@ -112,7 +112,7 @@ struct Following {
     idle.forget();
   }
   IdleBranches::Outcome follow() {
-    iterate.respondIdle();
+    iterate.reactions().respondIdle();
     EXPECT_TRUE(idle.isBaseCurrent() || idle.eliminateIdle());
     idle.follow();
     EXPECT_TRUE(idle.areFollowing());

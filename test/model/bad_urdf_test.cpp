@@ -138,7 +138,7 @@ TEST(BadUrdf, damagedMeshIsNamedWithItsLink) {
   folder.write("a.stl", "short");
   const std::string text = refusal([&] {
     loadUrdf(arm("continuous", "", "<collision><geometry><mesh filename=\"a.stl\"/></geometry></collision>"), "test.urdf", UriResolver(),
-             folder.path());
+             {folder.path()});
   });
   EXPECT_TRUE(isOneLineWith(text, {"test.urdf", "link 'b' collision 1", folder.path("a.stl"), "truncated"})) << text;
 }

@@ -21,7 +21,7 @@ class SharedRobots : public testing::TestWithParam<RobotRow> {};
 TEST_P(SharedRobots, loadsWithMassAndJointsOfItsReadme) {
   const RobotRow& row = GetParam();
   SKIP_WITHOUT_SHARED_DATA(row.file);
-  const RobotModel robot = loadUrdfFile(*sharedData(row.file), UriResolver(sharedPackages()), Mending::OFF);
+  const RobotModel robot = loadUrdfFile(*sharedData(row.file), UriResolver(sharedPackages()), {"", Mending::OFF});
   const LumpedRobot lumped = lumpFixedJoints(robot, {}, true);
   EXPECT_EQ(robot.links.size(), row.links);
   EXPECT_EQ(static_cast<int>(lumped.joints.size()), row.moving_joints);

@@ -14,7 +14,7 @@ namespace {
 constexpr double INFINITE = std::numeric_limits<double>::infinity();
 
 RobotModel load(const std::string& inside, const std::string& base = "") {
-  return loadUrdf("<?xml version=\"1.0\"?><robot name=\"r\">" + inside + "</robot>", "test.urdf", UriResolver(), base);
+  return loadUrdf("<?xml version=\"1.0\"?><robot name=\"r\">" + inside + "</robot>", "test.urdf", UriResolver(), {base});
 }
 
 bool noted(const std::vector<std::string>& notes, const std::string& words) {

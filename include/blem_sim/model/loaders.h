@@ -72,16 +72,20 @@ LoadedSurface loadSurface(const std::string& file, const Vector3& scale = Vector
  */
 LoadedSurface cloudSurface(std::vector<Vector3> points, const CloudOptions& cloud, const std::string& source);
 
+/** Choices for loading a URDF. */
+struct UrdfOptions {
+  std::string base;               ///< directory for relative mesh paths; empty: the working directory, or that of the file
+  Mending mending = Mending::ON;  ///< of its meshes
+  LoadProgress progress = {};     ///< told link by link; may be empty
+};
+
 /**
  * Parses URDF text. Limits of 1e6 and more mean none. Elements that are not simulated are noted; <gazebo> blocks are kept as texts.
- * @param source for messages; @param base directory for relative mesh paths. @param progress told link by link; may be empty
- * @throws InputError
+ * @param source for messages @throws InputError
  */
-RobotModel loadUrdf(const std::string& xml, const std::string& source, const UriResolver& resolver, const std::string& base = "",
-                    Mending mending = Mending::ON, const LoadProgress& progress = {});
+RobotModel loadUrdf(const std::string& xml, const std::string& source, const UriResolver& resolver, const UrdfOptions& options = {});
 
 /** Reads the file and parses it. */
-RobotModel loadUrdfFile(const std::string& file, const UriResolver& resolver, Mending mending = Mending::ON,
-                        const LoadProgress& progress = {});
+RobotModel loadUrdfFile(const std::string& file, const UriResolver& resolver, UrdfOptions options = {});
 
 }  // namespace blem_sim::model

@@ -15,7 +15,8 @@
 
 namespace blem_sim::sim {
 
-enum class Stage { SAMPLE_COMMANDS, MOTOR_TORQUE, BROAD_PHASE, NARROW_PHASE, REDUCTION, STEP_GUARD, SOLVE, SENSORS, REPORT, COUNT };
+/** Stages of a step, as the table of docs/architecture.md has them. */
+enum class Stage { SAMPLE_COMMANDS, MOTOR_TORQUE, BROAD_PHASE, NARROW_PHASE, REDUCTION, SOLVE, STEP_GUARD, SENSORS, REPORT, COUNT };
 extern const std::array<const char*, static_cast<int>(Stage::COUNT)> STAGE_NAMES;  ///< "sample_commands", ...
 
 /** Wall time [s] per stage of one step. */

@@ -21,8 +21,8 @@ constexpr double HOLDS = 0.5;  // of a dof's inertia: a joint that answers more 
 
 // Change of the velocities of a tree by its velocity products in a step, over the velocities in the frame of its centre of mass; in the
 // norm of the energy, each dof's inertia taken alone; the more, the further the root turns. `mass_velocity`: M times the velocity.
-double turning(const Forest& forest, int tree, double dt, const ForestMotion& motion, const Eigen::VectorXd& velocity,
-               const Eigen::VectorXd& mass_velocity) {
+double turning(const FreeStart& start, const Eigen::VectorXd& mass_velocity) {
+  const auto& [forest, tree, dt, motion, velocity] = start;
   const ForestTree& t = forest.trees()[tree];
   double change = 0, energy = 0;
   for (int k = t.first_dof; k < t.dof_end; ++k) {
@@ -113,7 +113,7 @@ void followMomentum(const Forest& forest, int tree, const Vector3& target, Fores
 // all velocities shrink alike, so that mimic joints and loops keep their relations.
 void brake(const Forest& forest, const std::vector<int>& trees, ForestMotion* motion, SolverSpace* space) {
   const double solved = dotProduct(forest, trees, space->velocity, space->mass_velocity);
-  for (const int tree : trees) multiply(forest, tree, motion->mass, motion->velocity, &space->mass_velocity, &space->paths);
+  for (const int tree : trees) multiply({forest, tree, motion->mass}, motion->velocity, &space->mass_velocity, &space->paths);
   const double there = dotProduct(forest, trees, motion->velocity, space->mass_velocity);
   if (!(there > solved)) return;
   for (const int tree : trees) {
@@ -128,7 +128,7 @@ void brake(const Forest& forest, const std::vector<int>& trees, ForestMotion* mo
 void takeMomentum(const Forest& forest, int tree, ForestMotion* motion, SolverSpace* space) {
   const ForestTree& t = forest.trees()[tree];
   if (!t.free) return;
-  multiply(forest, tree, motion->mass, motion->velocity, &space->mass_velocity, &space->paths);
+  multiply({forest, tree, motion->mass}, motion->velocity, &space->mass_velocity, &space->paths);
   motion->momentum[tree] = space->mass_velocity.segment<6>(t.first_dof);
 }
 
@@ -139,8 +139,8 @@ void setFreeMomentum(const TreeAhead& ahead, ForestMotion* motion, SolverSpace* 
   computeApplied(forest, scene, tree, motion);
   space->direction.segment(first, count) = motion->velocity.segment(first, count) + 0.5 * motion->change.segment(first, count);
   computeProducts(forest, tree, space->direction, motion);
-  multiply(forest, tree, motion->mass, motion->velocity, &space->mass_velocity, &space->paths);
-  const double fast = turning(forest, tree, input.dt, *motion, motion->velocity, space->mass_velocity);
+  multiply({forest, tree, motion->mass}, motion->velocity, &space->mass_velocity, &space->paths);
+  const double fast = turning({forest, tree, input.dt, *motion, motion->velocity}, space->mass_velocity);
   motion->pace[tree] = fast > FAST_ALONE ? paceOf(forest, input, touched, tree, fast) : Pace::SLOW;
   if (motion->pace[tree] != Pace::SLOW) motion->products.segment(first, count).setZero();
   space->free_momentum.segment(first, count) = space->mass_velocity.segment(first, count);
@@ -174,7 +174,7 @@ double correctProducts(const Forest& forest, const StepInput& input, int tree, F
   space->direction.segment(first, count) = 0.5 * (motion->velocity.segment(first, count) + space->velocity.segment(first, count));
   computeProducts(forest, tree, space->direction, motion);
   if (mayFollowAlone(forest, input, tree, *motion) &&
-      turning(forest, tree, input.dt, *motion, space->velocity, space->mass_velocity) > FAST_ALONE) {
+      turning({forest, tree, input.dt, *motion, space->velocity}, space->mass_velocity) > FAST_ALONE) {
     motion->products.segment(first, count) = space->gradient.segment(first, count);
     followAlone(forest, input, tree, motion, space);
     return INFINITY;
@@ -197,7 +197,7 @@ bool followFast(const SolvedIsland& island, const ForestMotion& motion, const So
   for (const int tree : trees) {
     followed &= motion.pace[tree] != Pace::TOO_FAST;
     if (!isFast(motion, tree)) continue;
-    followed &= way->follow(island.forest, tree, island.dt, motion, space.velocity, space.mass_velocity).followed;
+    followed &= way->follow({island.forest, tree, island.dt, motion, space.velocity}, space.mass_velocity).followed;
   }
   return followed;
 }

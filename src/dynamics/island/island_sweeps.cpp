@@ -90,7 +90,7 @@ void IslandSweeps::findVelocity(Eigen::VectorXd* velocity) {
   response_.freeVelocity(momentum_, velocity);
   TwistLanes wrench;
   for (const SweepGroup& group : groups_) {
-    wrenchOf(contacts_.data() + group.first, contacts_.data() + group.end, impulses_.data() + group.first, &wrench);
+    wrenchOf(contactsOf(group), &wrench);
     push(group, wrench, velocity);
   }
   joints_.push(response_, velocity);
@@ -110,16 +110,14 @@ void IslandSweeps::sweepTrees(std::size_t index, Eigen::VectorXd* velocity) {
     const Vector6 relative = response_.relativeTwist(pairs_[group.patch[lane]], *velocity);
     for (int i = 0; i < 6; ++i) twist[i][lane] = relative[i];
   }
-  dynamics::sweep(group, contacts_.data() + group.first, contacts_.data() + group.end, impulses_.data() + group.first, twist, &wrench,
-                  &changes_[index]);
+  dynamics::sweep(group, contactsOf(group), twist, &wrench, &changes_[index]);
   push(group, wrench, velocity);
 }
 
 void IslandSweeps::sweepGroup(std::size_t index, Eigen::VectorXd* velocity) {
   const SweepGroup& group = groups_[index];
   if (!group.free) return sweepTrees(index, velocity);
-  sweepFree(bodies_[index], contacts_.data() + group.first, contacts_.data() + group.end, impulses_.data() + group.first, velocity->data(),
-            &changes_[index]);
+  sweepFree(bodies_[index], contactsOf(group), velocity->data(), &changes_[index]);
 }
 
 // Groups of one colour have no body in common, so threads share them. Groups of the last colour may have: one thread sweeps them.

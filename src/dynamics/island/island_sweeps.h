@@ -46,6 +46,9 @@ class IslandSweeps {
   void sweepGroup(std::size_t group, Eigen::VectorXd* velocity);
   void sweepTrees(std::size_t group, Eigen::VectorXd* velocity);
   void push(const SweepGroup& group, const TwistLanes& wrench, Eigen::VectorXd* velocity) const;
+  SweptContacts contactsOf(const SweepGroup& group) {
+    return {contacts_.data() + group.first, contacts_.data() + group.end, impulses_.data() + group.first};
+  }
   void noteVelocity(const Eigen::VectorXd& velocity);
   void moveOn(double share, Eigen::VectorXd* velocity);
 

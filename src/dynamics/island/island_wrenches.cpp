@@ -19,9 +19,17 @@ void addReactions(const SolvedIsland& island, const ForestMotion& motion, std::v
   }
 }
 
+// A tree that has followed its free motion through the step.
+struct FastTree {
+  const SolvedIsland& island;
+  int tree;
+  const FreeMotion& way;
+  const ForestMotion& motion;
+};
+
 // Wrenches of a fast tree's joints, from momenta at the start and at the end; forces act at the middle of the way. Overwrites on_node.
-void addFastWrenches(const SolvedIsland& island, int tree, const FreeMotion& way, const ForestMotion& motion, std::vector<Vector6>* on_node,
-                     std::vector<Wrench>* wrenches) {
+void addFastWrenches(const FastTree& fast, std::vector<Vector6>* on_node, std::vector<Wrench>* wrenches) {
+  const auto& [island, tree, way, motion] = fast;
   const Forest& forest = island.forest;
   const Scene& scene = island.scene;
   const double dt = island.dt;
@@ -84,7 +92,7 @@ void computeWrenches(const SolvedIsland& island, const FreeMotion& way, ForestMo
   addReactions(island, *motion, &reaction, wrenches);
   for (const int tree : island.model.trees) {
     if (motion->pace[tree] == Pace::FAST)
-      addFastWrenches(island, tree, way, *motion, &reaction, wrenches);
+      addFastWrenches({island, tree, way, *motion}, &reaction, wrenches);
     else
       addSlowWrenches(island, tree, motion, space, wrenches);
   }

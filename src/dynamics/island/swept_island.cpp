@@ -52,7 +52,7 @@ SweptIsland::ImpulseWork SweptIsland::impulseWork() {
   ImpulseWork work;
   sweeps_.freeVelocity(&island_->space->direction);
   newton_->setSteps(island_->space->direction);
-  const IslandContacts& contacts = newton_->iterate().contacts();
+  const IslandContacts& contacts = newton_->iterate().reactions().contacts();
   contacts.forEach([&](int contact, std::size_t block, int lane) {
     const ContactTerm& term = island_->terms()->contacts[contact];
     const ContactBlock& b = contacts.blocks()[block];

@@ -232,10 +232,11 @@ Vector3 readLane(const SweepContact& contact, const SweepImpulse& impulse, int l
   return out;
 }
 
-BLEM_SIM_LANES void wrenchOf(const SweepContact* begin, const SweepContact* end, const SweepImpulse* impulse, TwistLanes* wrench) {
+BLEM_SIM_LANES void wrenchOf(const SweptContacts& contacts, TwistLanes* wrench) {
+  const SweepImpulse* impulse = contacts.impulses;
   for (int i = 0; i < 6; ++i)
     for (int lane = 0; lane < SWEEP_LANES; ++lane) (*wrench)[i][lane] = 0;
-  for (const SweepContact* c = begin; c != end; ++c, ++impulse) {
+  for (const SweepContact* c = contacts.begin; c != contacts.end; ++c, ++impulse) {
     for (int lane = 0; lane < SWEEP_LANES; ++lane) {
       const Triple f = impulse->now[0][lane] * at(c->axis[0], lane) + impulse->now[1][lane] * at(c->axis[1], lane) +
                        impulse->now[2][lane] * at(c->axis[2], lane);
@@ -244,13 +245,14 @@ BLEM_SIM_LANES void wrenchOf(const SweepContact* begin, const SweepContact* end,
   }
 }
 
-BLEM_SIM_LANES void sweep(const SweepGroup& group, const SweepContact* begin, const SweepContact* end, SweepImpulse* impulse,
-                          const TwistLanes& start, TwistLanes* wrench, SweepChange* change) {
+BLEM_SIM_LANES void sweep(const SweepGroup& group, const SweptContacts& contacts, const TwistLanes& start, TwistLanes* wrench,
+                          SweepChange* change) {
+  SweepImpulse* impulse = contacts.impulses;
   WideChanges changes;
   TwistLanes twist, given_so_far = {};
   for (int i = 0; i < 6; ++i)
     for (int lane = 0; lane < SWEEP_LANES; ++lane) twist[i][lane] = start[i][lane];
-  for (const SweepContact* c = begin; c != end; ++c, ++impulse) {
+  for (const SweepContact* c = contacts.begin; c != contacts.end; ++c, ++impulse) {
     const WideTriples p = all(c->point), w = {wide(twist[0]), wide(twist[1]), wide(twist[2])};
     const WideTriples v = {wide(twist[3]), wide(twist[4]), wide(twist[5])};
     const WideTriples f = visit(*c, v + cross(w, p), impulse, &changes), m = cross(p, f);
@@ -265,8 +267,8 @@ BLEM_SIM_LANES void sweep(const SweepGroup& group, const SweepContact* begin, co
   changes.put(change);
 }
 
-BLEM_SIM_LANES void sweepFree(const SweepBodies& bodies, const SweepContact* begin, const SweepContact* end, SweepImpulse* impulse,
-                              double* velocity, SweepChange* change) {
+BLEM_SIM_LANES void sweepFree(const SweepBodies& bodies, const SweptContacts& contacts, double* velocity, SweepChange* change) {
+  SweepImpulse* impulse = contacts.impulses;
   double nothing[6] = {};
   double *of_a[SWEEP_LANES], *of_b[SWEEP_LANES];
   for (int lane = 0; lane < SWEEP_LANES; ++lane) {
@@ -276,7 +278,7 @@ BLEM_SIM_LANES void sweepFree(const SweepBodies& bodies, const SweepContact* beg
   WideChanges changes;
   WideBodies a = gather(of_a), b = gather(of_b);
   const WideTriples shift = all(bodies.shift);
-  for (const SweepContact* c = begin; c != end; ++c, ++impulse) {
+  for (const SweepContact* c = contacts.begin; c != contacts.end; ++c, ++impulse) {
     const WideTriples p_a = all(c->point), p_b = p_a - shift;
     const WideTriples u = (a.linear + cross(a.angular, p_a)) - (b.linear + cross(b.angular, p_b));
     const WideTriples f = visit(*c, u, impulse, &changes);

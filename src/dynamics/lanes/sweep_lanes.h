@@ -53,6 +53,12 @@ struct SweepBodies {
   SweepVectors shift;  ///< from a's reference point to b's
 };
 
+/** Contacts of a group, and their impulses in the same order. */
+struct SweptContacts {
+  const SweepContact *begin, *end;
+  SweepImpulse* impulses;
+};
+
 /** A lane's contact from a term; null: one that never acts. */
 void setLane(const ContactTerm* term, int lane, SweepContact* contact, SweepImpulse* impulse);
 /** Gains of the contacts, once all their lanes and the group's responses are set. */
@@ -61,7 +67,7 @@ void setGains(const SweepGroup& group, SweepContact* begin, SweepContact* end);
 Vector3 readLane(const SweepContact& contact, const SweepImpulse& impulse, int lane);
 
 /** Sum of the impulses' wrenches, about the patches' reference points. */
-void wrenchOf(const SweepContact* begin, const SweepContact* end, const SweepImpulse* impulse, TwistLanes* wrench);
+void wrenchOf(const SweptContacts& contacts, TwistLanes* wrench);
 
 /** Changes of impulses by a sweep over contacts. */
 struct SweepChange {
@@ -75,12 +81,10 @@ struct SweepChange {
  * @param twist relative, at the present impulses
  * @param wrench change of the impulses' wrenches, out
  */
-void sweep(const SweepGroup& group, const SweepContact* begin, const SweepContact* end, SweepImpulse* impulse, const TwistLanes& twist,
-           TwistLanes* wrench, SweepChange* change);
+void sweep(const SweepGroup& group, const SweptContacts& contacts, const TwistLanes& twist, TwistLanes* wrench, SweepChange* change);
 
 /** The same with the bodies' velocities instead of twists and wrenches. @param velocity by dof: angular, then linear */
-void sweepFree(const SweepBodies& bodies, const SweepContact* begin, const SweepContact* end, SweepImpulse* impulse, double* velocity,
-               SweepChange* change);
+void sweepFree(const SweepBodies& bodies, const SweptContacts& contacts, double* velocity, SweepChange* change);
 
 /** Impulses move on by `share` of the last search direction, which the last changes join. */
 void moveOn(double share, SweepImpulse* begin, SweepImpulse* end);

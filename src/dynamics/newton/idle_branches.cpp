@@ -22,7 +22,7 @@ bool IdleBranches::isBaseCurrent() const {
   if (base_ == Base::UNKNOWN) return false;
   bool current = true;
   const double* known = joint_stiffness_.data();
-  iterate_->joints().forIdle([&](const JointBlock& b, int lane, int) { current &= b.stiffness[lane] == *known++; });
+  iterate_->reactions().joints().forIdle([&](const JointBlock& b, int lane, int) { current &= b.stiffness[lane] == *known++; });
   return current;
 }
 
@@ -38,7 +38,7 @@ bool IdleBranches::eliminateIdle() {
     const int first = forest.rowStart(t.first_dof), end = forest.rowEnd(t.dof_end - 1);
     std::copy(island_->motion.mass.begin() + first, island_->motion.mass.begin() + end, idle.rows.begin() + first);
   }
-  iterate_->joints().forIdle([&](const JointBlock& b, int lane, int dof) {
+  iterate_->reactions().joints().forIdle([&](const JointBlock& b, int lane, int dof) {
     joint_stiffness_.push_back(b.stiffness[lane]);
     idle.rows[forest.diagonal(dof)] += b.stiffness[lane];
   });
@@ -60,7 +60,7 @@ void IdleBranches::follow() {
     s.anchor[k] = s.velocity[k];
     s.idle_pull[k] = -s.kinetic[k];
   });
-  iterate_->joints().forIdle([&s](const JointBlock& b, int lane, int dof) { s.idle_pull[dof] += b.impulse[lane]; });
+  iterate_->reactions().joints().forIdle([&s](const JointBlock& b, int lane, int dof) { s.idle_pull[dof] += b.impulse[lane]; });
   for (const int tree : island_->model.trees) reduce(island_->forest, tree, s.idle, &s.idle_pull, &s.paths);
   for (const int k : iterate_->live().dofs()) s.kinetic[k] = -s.idle_pull[k];
 }
@@ -84,10 +84,11 @@ double IdleBranches::findVelocities() {
     s.velocity[k] = s.anchor[k] + s.direction[k];
     s.kinetic[k] = s.gradient[k] = 0;
   }
-  iterate_->joints().forIdle(
+  iterate_->reactions().joints().forIdle(
       [&s](const JointBlock& b, int lane, int dof) { s.kinetic[dof] = b.impulse[lane] - b.stiffness[lane] * s.direction[dof]; });
-  iterate_->respondIdle();
-  iterate_->joints().forIdle([&s](const JointBlock& b, int lane, int dof) { s.gradient[dof] = s.kinetic[dof] - b.impulse[lane]; });
+  iterate_->reactions().respondIdle();
+  iterate_->reactions().joints().forIdle(
+      [&s](const JointBlock& b, int lane, int dof) { s.gradient[dof] = s.kinetic[dof] - b.impulse[lane]; });
   iterate_->live().forDofs([&s](int k) { s.mass_velocity[k] = s.free_momentum[k] + s.kinetic[k]; });
   return gradientNorm(*island_, idle);
 }
@@ -105,7 +106,7 @@ IdleBranches::Outcome IdleBranches::wakeStrays(double enough) {
   const auto strays = [&](int dof) { return std::abs(s.gradient[dof]) * s.scale[dof] > enough; };
   const bool all = have_strayed_ || std::count_if(idle.begin(), idle.end(), strays) > FEW;
   for (const int k : idle)
-    if (all || strays(k)) iterate_->wake(k);
+    if (all || strays(k)) iterate_->live().wake(k);
   have_strayed_ = true;
   forget();
   return all ? Outcome::STRAYED : Outcome::FEW_STRAYED;

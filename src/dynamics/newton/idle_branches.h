@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "problem/island_iterate.h"
+#include "iterate/island_iterate.h"
 
 namespace blem_sim::dynamics {
 

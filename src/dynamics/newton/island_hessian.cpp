@@ -113,7 +113,7 @@ void IslandHessian::addStiffness() {
   if (tied_) matrix_.setZero();
   patch_stiffness_.resize(patches.size());
   patch_is_stiff_.resize(patches.size());
-  forPatches(*island_, [&](std::size_t p) { patch_is_stiff_[p] = iterate_->contacts().stiffnessOf(p, &patch_stiffness_[p]); });
+  forPatches(*island_, [&](std::size_t p) { patch_is_stiff_[p] = iterate_->reactions().contacts().stiffnessOf(p, &patch_stiffness_[p]); });
   for (std::size_t p = 0; p < patches.size(); ++p)
     if (patch_is_stiff_[p]) stiffenPair(patches[p].pair, patch_stiffness_[p]);
   const std::vector<LoopTerm>& loops = island_->terms()->loops;
@@ -176,17 +176,17 @@ void IslandHessian::startFromBase() {
   const double* base = s.idle.rows.data();
   for (const int k : iterate_->live().dofs())
     std::copy(base + forest.rowStart(k), base + forest.rowEnd(k), s.hessian.rows.data() + forest.rowStart(k));
-  iterate_->joints().forLive(
+  iterate_->reactions().joints().forLive(
       [&](const JointBlock& block, int lane, int dof) { s.hessian.rows[forest.diagonal(dof)] += block.stiffness[lane]; });
 }
 
 void IslandHessian::noteKinds() {
   joint_stiffness_.clear();
-  const IslandJoints& joints = iterate_->joints();
+  const IslandJoints& joints = iterate_->reactions().joints();
   for (const JointBlock* b = joints.liveBegin(); b != joints.liveEnd(); ++b)
     joint_stiffness_.insert(joint_stiffness_.end(), b->stiffness, b->stiffness + LANES);
   kinds_.clear();
-  for (const ContactBlock& b : iterate_->contacts().blocks()) kinds_.insert(kinds_.end(), b.kind, b.kind + LANES);
+  for (const ContactBlock& b : iterate_->reactions().contacts().blocks()) kinds_.insert(kinds_.end(), b.kind, b.kind + LANES);
 }
 
 bool IslandHessian::eliminateTrees() {
@@ -197,10 +197,10 @@ bool IslandHessian::eliminateTrees() {
 bool IslandHessian::isCurrent() const {
   if (!isFactored()) return false;
   const double *kind = kinds_.data(), *stiffness = joint_stiffness_.data();
-  for (const ContactBlock& b : iterate_->contacts().blocks())
+  for (const ContactBlock& b : iterate_->reactions().contacts().blocks())
     for (int lane = 0; lane < LANES; ++lane)
       if (b.kind[lane] != *kind++) return false;
-  const IslandJoints& joints = iterate_->joints();
+  const IslandJoints& joints = iterate_->reactions().joints();
   for (const JointBlock* b = joints.liveBegin(); b != joints.liveEnd(); ++b)
     for (int lane = 0; lane < LANES; ++lane)
       if (b->stiffness[lane] != *stiffness++) return false;

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "problem/island_iterate.h"
+#include "iterate/island_iterate.h"
 #include "trees/block_matrix.h"
 #include "trees/islands.h"
 

@@ -31,7 +31,7 @@ double searchLine(const IslandAtHand& island, IslandIterate* iterate) {
   const DirectionSlopes slopes = slopesOf(*island.space, iterate->live().dofs());
   double low = 0, high = -1, a = 1;
   for (int it = 0; it < MAX_LINE_SEARCH; ++it) {
-    const PotentialSlope here = iterate->slope(a, {slopes.linear + a * slopes.quadratic, slopes.quadratic});
+    const PotentialSlope here = iterate->reactions().slope(a, {slopes.linear + a * slopes.quadratic, slopes.quadratic});
     if (std::abs(here.first) <= LINE_SEARCH_SLOPE * std::abs(slopes.start)) break;
     (here.first < 0 ? low : high) = a;
     double next = a - here.first / here.second;

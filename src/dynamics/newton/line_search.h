@@ -1,7 +1,7 @@
 // Line search of Newton's method: a safeguarded Newton's method in one dimension, on the slope.
 #pragma once
 
-#include "problem/island_iterate.h"
+#include "iterate/island_iterate.h"
 
 namespace blem_sim::dynamics {
 

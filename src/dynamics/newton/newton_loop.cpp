@@ -35,19 +35,19 @@ void NewtonLoop::begin() {
 }
 
 void NewtonLoop::beginAllLive() {
-  iterate_.wakeAll();
+  iterate_.live().wakeAll();
   returnToFirst(*island_);
   begin();
 }
 
 void NewtonLoop::soften(double contact, double joint) {
   hessian_.forgetFactor();
-  iterate_.soften(contact, joint);
+  iterate_.reactions().soften(contact, joint);
 }
 
 void NewtonLoop::rememberUnmixed() {
-  iterate_.forgetSlips();
-  iterate_.remember();
+  iterate_.reactions().forgetSlips();
+  iterate_.reactions().remember();
 }
 
 // Idle dofs first: they cost least.
@@ -57,7 +57,7 @@ double NewtonLoop::firstGradient(double tolerance) {
 }
 
 void NewtonLoop::predict() {
-  iterate_.expect();
+  iterate_.reactions().expect();
   if (!follow()) return;
   iterate_.evaluateGradient();
   if (!hessian_.factor()) return;
@@ -71,7 +71,7 @@ NewtonRun NewtonLoop::run(const RunLimits& limits) {
   double enough = limits.tolerance, last = INFINITY;
   for (;; ++run.iterations) {
     if (!idle_.areFollowing()) {
-      iterate_.respondIdle();
+      iterate_.reactions().respondIdle();
       if (!follow()) return {run.iterations, INFINITY, run.strayed};
     }
     run.gradient = iterate_.evaluateGradient();
@@ -125,7 +125,7 @@ IdleBranches::Outcome NewtonLoop::settle(double enough, double* gradient) {
 // nevertheless, once it has led on. @param last gradient of the last iteration, infinite before the first one
 bool NewtonLoop::keepsFactor(double gradient, double last) const {
   if (!(gradient < CHORD_PROGRESS * last)) return false;
-  const bool is_dear = island_->model.isCrowd() && iterate_.contacts().isSoft();
+  const bool is_dear = island_->model.isCrowd() && iterate_.reactions().contacts().isSoft();
   return hessian_.isCurrent() || (is_dear && hessian_.isFactored() && std::isfinite(last));
 }
 
@@ -138,7 +138,7 @@ double NewtonLoop::adopt() {
   multiplyMass(*island_, island_->space->velocity, &island_->space->mass_velocity);
   setKinetic(*island_);
   begin();
-  iterate_.adoptImpulses();
+  iterate_.reactions().adoptImpulses();
   const double live = iterate_.evaluateGradient();
   return std::max(live, iterate_.evaluateIdleGradient());
 }

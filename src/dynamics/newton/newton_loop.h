@@ -34,11 +34,11 @@ class NewtonLoop {
   /** Softness of contacts and of joints' friction and limits. */
   void soften(double contact, double joint);
   /** The iterate becomes the proximal point, its slips mixed with those of the last ones. */
-  void remember() { iterate_.remember(); }
+  void remember() { iterate_.reactions().remember(); }
   /** The same, its slips as they are. */
   void rememberUnmixed();
   /** Slips are mixed anew from here on. */
-  void forgetSlips() { iterate_.forgetSlips(); }
+  void forgetSlips() { iterate_.reactions().forgetSlips(); }
 
   /** [sqrt(kg) m/s] Gradient of the velocities that the island came with; of idle dofs alone if that is above the tolerance. */
   double firstGradient(double tolerance);
@@ -55,7 +55,7 @@ class NewtonLoop {
   /** The same, and fills the report's qualities. */
   void finish(NewtonReport* report);
   /** Changes of contacts' velocities that go with a change of the dofs' velocities, in place of those along the direction. */
-  void setSteps(const Eigen::VectorXd& change) { iterate_.setSteps(change); }
+  void setSteps(const Eigen::VectorXd& change) { iterate_.reactions().setSteps(change); }
 
   const IslandIterate& iterate() const { return iterate_; }
 

@@ -13,10 +13,10 @@ constexpr double OF_FIRST_SPEED = 1e-3;  // creep of contacts that is none: of t
 
 void assess(const IslandAtHand& island, const IslandIterate& iterate, NewtonReport* report) {
   report->imbalance = imbalance(island);
-  const ContactResidual contact = iterate.contacts().residual();
+  const ContactResidual contact = iterate.reactions().contacts().residual();
   report->contact_residual = contact.impulse;
   report->contact_creep = std::max(0.0, contact.speed - OF_FIRST_SPEED * iterate.firstSpeed());
-  report->joint_creep = iterate.joints().creep();
+  report->joint_creep = iterate.reactions().joints().creep();
   for (const LoopTerm& loop : island.terms()->loops) report->joint_creep = std::max(report->joint_creep, loop.creep());
 }
 

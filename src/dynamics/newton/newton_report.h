@@ -1,7 +1,7 @@
 // Settings of Newton's method, and what it reports.
 #pragma once
 
-#include "problem/island_iterate.h"
+#include "iterate/island_iterate.h"
 
 namespace blem_sim::dynamics {
 

@@ -84,7 +84,7 @@ void ProximalSteps::solveSoft(const NewtonSettings& settings, NewtonReport* repo
 // but together they let it sway.
 bool ProximalSteps::isLawful(const NewtonSettings& settings, const NewtonReport& report) const {
   const bool sways = island_->model.isHeap() && !island_->model.isCrowd();
-  if (sways && !newton_->iterate().contacts().areSettled(SETTLED)) return false;
+  if (sways && !newton_->iterate().reactions().contacts().areSettled(SETTLED)) return false;
   return report.contact_residual <= settings.contact_tolerance && report.joint_creep <= settings.joint_tolerance;
 }
 
@@ -116,7 +116,7 @@ void ProximalSteps::finish(const NewtonSettings& settings, NewtonReport* report)
 void ProximalSteps::keepBalanced(const NewtonReport& report, double* least) {
   if (!island_->model.isHeap() || !(report.imbalance <= BALANCED) || !(report.contact_residual < *least)) return;
   *least = report.contact_residual;
-  newton_->iterate().readContacts();
+  newton_->iterate().reactions().contacts().read();
   balanced_.take(*island_);
 }
 

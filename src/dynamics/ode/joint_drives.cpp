@@ -112,8 +112,9 @@ double returnSpeed(double gap, double dt, const SolverSettings& settings) {
 }
 
 // ODE's stop is a row v+ >= -stop_erp/dt * error; the error is held at -1 (lower) or 1 (upper) and the speed put into stop_erp.
-void setStop(const JointSlot& slot, double q, double velocity, double dt, const SolverSettings& settings, double cfm) {
+void setStop(const JointSlot& slot, const JointMotion& motion, double dt, const SolverSettings& settings, double cfm) {
   clearStop(slot);
+  const auto& [q, velocity] = motion;
   const JointSpec& spec = slot.spec;
   const double below = q - spec.lower, above = spec.upper - q;
   const double reach = LIMIT_REACH + 2 * dt * std::abs(velocity);
@@ -152,20 +153,20 @@ double ofMotor(double of_rows, const JointDrive& drive, const JointMotion& end) 
 
 }  // namespace
 
-void setDrives(Scene* scene, double dt, const std::vector<JointDrive>& drives, const std::vector<double>& coupling,
-               const SolverSettings& settings, double cfm_scale) {
+void setDrives(Scene* scene, const StepInput& input, const std::vector<double>& coupling, const SolverSettings& settings,
+               double cfm_scale) {
+  const double dt = input.dt;
   const double cfm = settings.joint_cfm * cfm_scale;
   const std::vector<double> inertias = carriedInertias(*scene);
   for (std::size_t j = 0; j < scene->joints().size(); ++j) {
     const JointSlot& slot = scene->joints()[j];
     if (!slot.motor) continue;
     const int joint = static_cast<int>(j);
-    const double q = scene->jointPosition(joint);
     const double inverse_inertia = inertias[j] > 0 ? 1 / inertias[j] : scene->inverseInertia(joint);
-    const double velocity = scene->jointVelocity(joint);
-    setMotorRows(slot, drives[j], {q, velocity}, dt, std::max(cfm, DRY_SOFTNESS * dt * (inverse_inertia * cfm_scale)));
-    setStop(slot, q, velocity, dt, settings, cfm);
-    addEffort(slot, drives[j].givenEffort() + coupling[j]);
+    const JointMotion motion{scene->jointPosition(joint), scene->jointVelocity(joint)};
+    setMotorRows(slot, input.drives[j], motion, dt, std::max(cfm, DRY_SOFTNESS * dt * (inverse_inertia * cfm_scale)));
+    setStop(slot, motion, dt, settings, cfm);
+    addEffort(slot, input.drives[j].givenEffort() + coupling[j]);
   }
 }
 

@@ -3,12 +3,12 @@
 
 #include <vector>
 
-#include "scene/scene.h"
+#include "scene/stepper.h"
 
 namespace blem_sim::dynamics {
 
 /**
- * Sets every joint's rows for a step of dt from its drive:
+ * Sets every joint's rows for a step from its drive:
  * - effort given in advance: applied to both bodies;
  * - implicit PD [N m or N]: k (target - q+) + d (target_v - v+) with q+ = q + dt v+ is the row v+ = (k (target - q) + d target_v) / (dt k +
  * d)
@@ -19,8 +19,7 @@ namespace blem_sim::dynamics {
  * Precondition: one drive per joint slot, and one effort of `coupling` (added to the drive's).
  * @param cfm_scale of the friction rows and limits; above 1 when a step is done again
  */
-void setDrives(Scene* scene, double dt, const std::vector<JointDrive>& drives, const std::vector<double>& coupling,
-               const SolverSettings& settings, double cfm_scale);
+void setDrives(Scene* scene, const StepInput& input, const std::vector<double>& coupling, const SolverSettings& settings, double cfm_scale);
 
 /**
  * Efforts [N m or N] along the axes, after the step: those given in advance and those of the rows; of the motors alone, and of all.

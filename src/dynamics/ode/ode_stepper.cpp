@@ -108,7 +108,7 @@ class OdeStepper : public Stepper {
       dBodySetForce(slot.ode, slot.pending.force.x(), slot.pending.force.y(), slot.pending.force.z());
       dBodySetTorque(slot.ode, slot.pending.torque.x(), slot.pending.torque.y(), slot.pending.torque.z());
     }
-    setDrives(scene, input.dt, input.drives, coupling, settings_, cfm_scale);
+    setDrives(scene, input, coupling, settings_, cfm_scale);
     contacts_.create(scene, cfm_scale);
     OdeLibrary::takeLcpErrors();
     solver_->solve(scene->ode(), input.dt);

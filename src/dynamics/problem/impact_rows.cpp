@@ -41,18 +41,17 @@ void ImpactRows::addSide(const Forest& forest, int tree, Entry* entry) {
   numbers_.resize(numbers_.size() + 6 * t.dofCount(), 0.0);
 }
 
-// Adds the motion of a node's point to the rows of the last side. @param shift from the point's reference point to the node's
-void ImpactRows::fill(const Forest& forest, const ForestMotion& motion, int node, const Vector3& shift, const Vector3& point, double sign,
-                      const Entry& entry) {
-  const int last = forest.nodes()[node].last_dof;
+// Adds the motion of a partner's point to the rows of the last side.
+void ImpactRows::fill(const Forest& forest, const ForestMotion& motion, const Partner& partner, const Vector3& point, const Entry& entry) {
+  const int last = forest.nodes()[partner.node].last_dof;
   if (last < 0) return;
   const Side& side = entry.sides[entry.side_count - 1];
   for (int d = 0; d < 3; ++d) {
-    const Vector6 wrench = moveWrench(wrenchOf(entry.basis.col(d), point), -shift);
+    const Vector6 wrench = moveWrench(wrenchOf(entry.basis.col(d), point), -partner.shift);
     double* row = numbers_.data() + side.rows + d * side.dofs - side.first_dof;
     for (int e = 0; e < forest.rowLength(last); ++e) {
       const int k = forest.columns(last)[e];
-      row[k] += sign * motion.subspace[k].dot(wrench);
+      row[k] += partner.sign * motion.subspace[k].dot(wrench);
     }
   }
 }
@@ -72,10 +71,10 @@ int ImpactRows::add(const Forest& forest, const ForestMotion& motion, const Body
   entry.basis << term.normal, across, term.normal.cross(across);
   const int tree_a = forest.nodes()[pair.a].tree, tree_b = pair.b >= 0 ? forest.nodes()[pair.b].tree : -1;
   addSide(forest, tree_a, &entry);
-  fill(forest, motion, pair.a, Vector3::Zero(), term.point, 1, entry);
+  fill(forest, motion, {pair.a, Vector3::Zero(), 1}, term.point, entry);
   if (pair.b >= 0) {
     if (tree_b != tree_a) addSide(forest, tree_b, &entry);
-    fill(forest, motion, pair.b, pair.shift, term.point, -1, entry);
+    fill(forest, motion, {pair.b, pair.shift, -1}, term.point, entry);
   }
   respond(forest, tree_a, entry.sides[0], space);
   if (entry.side_count > 1) respond(forest, tree_b, entry.sides[1], space);

@@ -66,8 +66,13 @@ class ImpactRows {
     double normal = 0, across = 0;
   };
   void addSide(const Forest& forest, int tree, Entry* entry);
-  void fill(const Forest& forest, const ForestMotion& motion, int node, const Vector3& shift, const Vector3& point, double sign,
-            const Entry& entry);
+  /** A contact's body, as it takes part in the motion of A against B. */
+  struct Partner {
+    int node;
+    Vector3 shift;  ///< from the reference point of the contact to the node's
+    double sign;    ///< 1: A, -1: B
+  };
+  void fill(const Forest& forest, const ForestMotion& motion, const Partner& partner, const Vector3& point, const Entry& entry);
   void respond(const Forest& forest, int tree, const Side& side, ImpactSpace* space);
 
   std::vector<Entry> contacts_;

@@ -6,7 +6,7 @@
 namespace blem_sim::dynamics {
 
 void multiplyMass(const IslandAtHand& island, const Eigen::VectorXd& v, Eigen::VectorXd* out) {
-  for (const int tree : island.model.trees) multiply(island.forest, tree, island.motion.mass, v, out, &island.space->paths);
+  for (const int tree : island.model.trees) multiply({island.forest, tree, island.motion.mass}, v, out, &island.space->paths);
 }
 
 double kineticEnergy(const IslandAtHand& island, const Eigen::VectorXd& velocity) {

@@ -27,6 +27,7 @@ double reboundSpeed(double impact, double acceleration, double depth, double dt,
   return std::sqrt(std::max(0.0, half * half + square)) - half;
 }
 
+/** @param approach [m/s] remembered of the last step, 0 if none */
 void setRestitution(const ContactConstraint& c, const ContactMotion& motion, double approach, double dt, NormalRow* row) {
   if (!(c.restitution > 0)) return;
   const double acceleration = -c.normal_BA.dot(motion.acceleration_BA);
@@ -40,17 +41,16 @@ void setRestitution(const ContactConstraint& c, const ContactMotion& motion, dou
 // it exceeds the creep, and the last force below; an axis of the last force alone turns sideways once sliding starts.
 Vector3 frictionToBe(const Vector3& last_force, const Vector3& slip, double cfm) { return last_force - slip / cfm; }
 
-void setFriction(const ContactConstraint& c, const ContactMotion& motion, const ContactMemo* memo, double dt,
-                 const SolverSettings& settings, ContactRows* rows) {
-  rows->tangent_cfm = settings.cfm;
+// Precondition: the softness of the rows is set.
+void setFriction(const ContactConstraint& c, const ContactMotion& motion, const ContactMemo* memo, double dt, ContactRows* rows) {
   const Vector3 slip = tangential(motion.velocity_BA, c.normal_BA);
   const Vector3 slip_to_be = tangential(motion.velocity_BA + dt * motion.acceleration_BA, c.normal_BA);
   const Vector3 last = memo ? tangential(memo->friction, c.normal_BA) : Vector3::Zero();
-  const Vector3 force = frictionToBe(last, last.norm() > NO_FORCE ? slip : slip_to_be, settings.cfm);
+  const Vector3 force = frictionToBe(last, last.norm() > NO_FORCE ? slip : slip_to_be, rows->tangent_cfm);
   rows->first_axis = force.norm() > NO_FORCE ? force.normalized() : c.normal_BA.unitOrthogonal();
   // Feed-forward of the last force: one proximal point step, so that the creep of the regularisation vanishes at rest.
   if (slip.norm() > STICKING_SPEED) return;
-  rows->tangent_velocity = settings.cfm * last;
+  rows->tangent_velocity = rows->tangent_cfm * last;
   const double speed = rows->tangent_velocity.norm();
   if (speed > MAX_FEED_FORWARD) rows->tangent_velocity *= MAX_FEED_FORWARD / speed;
 }
@@ -89,21 +89,16 @@ NormalRow surfaceRow(const ContactConstraint& c, double dt, double softness, con
   return row;
 }
 
-NormalRow normalRow(const ContactConstraint& contact, const ContactMotion& motion, double approach, double dt, double softness,
-                    const SolverSettings& settings) {
-  NormalRow row = surfaceRow(contact, dt, softness, settings);
-  setRestitution(contact, motion, approach, dt, &row);
-  return row;
-}
-
 ContactRows contactRows(const ContactConstraint& contact, const ContactMotion& motion, const ContactMemo* memo, double dt,
                         const SolverSettings& settings) {
-  const NormalRow normal = normalRow(contact, motion, memo ? memo->approach : 0, dt, settings.cfm, settings);
+  NormalRow normal = surfaceRow(contact, dt, settings.cfm, settings);
+  setRestitution(contact, motion, memo ? memo->approach : 0, dt, &normal);
   ContactRows rows;
   rows.normal_speed = normal.speed;
   rows.normal_cfm = normal.compliance;
   rows.approach = normal.approach;
-  setFriction(contact, motion, memo, dt, settings, &rows);
+  rows.tangent_cfm = settings.cfm;
+  setFriction(contact, motion, memo, dt, &rows);
   return rows;
 }
 

@@ -46,11 +46,6 @@ struct NormalRow {
 /** Normal row without restitution. @param softness [m/s per N] least compliance that the solver needs */
 NormalRow surfaceRow(const ContactConstraint& contact, double dt, double softness, const SolverSettings& settings);
 
-/** Normal row with restitution. @param approach [m/s] remembered of the last step, 0 if none; softness [m/s per N] least compliance that
- * the solver needs */
-NormalRow normalRow(const ContactConstraint& contact, const ContactMotion& motion, double approach, double dt, double softness,
-                    const SolverSettings& settings);
-
 /**
  * The rows of one contact: v_n+ >= normal_speed - normal_cfm f_n, and in the tangent plane v_t+ = tangent_velocity - tangent_cfm f_t within
  * the friction pyramid whose first axis is `first_axis`. Velocities of A against B, forces on A, cfm in m/s per N.

@@ -221,10 +221,8 @@ bool BlockMatrix::factor(Team* team) {
 
 void BlockMatrix::forward(const Column& column, Eigen::Ref<Eigen::VectorXd> x) const {
   const double* diagonal = values_.data() + column.diagonal;
-  if (column.free) {
-    const int count = column.end - column.first;
-    return forwardFree(diagonal, diagonal + FREE_BLOCK, count, rows_.data() + column.first, x.data() + column.offset, x.data());
-  }
+  if (column.free)
+    return forwardFree({diagonal, column.end - column.first, rows_.data() + column.first}, x.data() + column.offset, x.data());
   auto own = x.segment(column.offset, column.size);
   Eigen::Map<const Eigen::MatrixXd>(diagonal, column.size, column.size).triangularView<Eigen::Lower>().solveInPlace(own);
   for (int e = column.first; e < column.end; ++e)
@@ -233,10 +231,8 @@ void BlockMatrix::forward(const Column& column, Eigen::Ref<Eigen::VectorXd> x) c
 
 void BlockMatrix::backward(const Column& column, Eigen::Ref<Eigen::VectorXd> x) const {
   const double* diagonal = values_.data() + column.diagonal;
-  if (column.free) {
-    const int count = column.end - column.first;
-    return backwardFree(diagonal, diagonal + FREE_BLOCK, count, rows_.data() + column.first, x.data() + column.offset, x.data());
-  }
+  if (column.free)
+    return backwardFree({diagonal, column.end - column.first, rows_.data() + column.first}, x.data() + column.offset, x.data());
   auto own = x.segment(column.offset, column.size);
   for (int e = column.first; e < column.end; ++e)
     own -= entryBlock(column, entries_[e]).transpose().lazyProduct(x.segment(rows_[e], columns_[entries_[e].column].size));

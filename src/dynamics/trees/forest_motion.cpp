@@ -127,7 +127,7 @@ BLEM_SIM_LANES void computeProducts(const Forest& forest, int tree, const Eigen:
     force[i] = motion->inertia[i].times(drift) + crossForce(twist[i], motion->inertia[i].times(twist[i]));
   }
   motion->products.segment(t.first_dof, t.dofCount()).setZero();
-  addProjected(forest, tree, *motion, 1, &force, &motion->products);
+  WrenchProjection{forest, *motion, 1, &force, &motion->products}.addTree(tree);
 }
 
 void computeApplied(const Forest& forest, const Scene& scene, int tree, ForestMotion* motion) {
@@ -151,11 +151,10 @@ void computeApplied(const Forest& forest, const Scene& scene, int tree, ForestMo
     const Wrench& pending = scene.bodies()[forest.nodes()[i].body].pending;
     motion->node_force[i] = spatial(motion->com[i].cross(pending.force) + pending.torque, pending.force);
   }
-  addProjected(forest, tree, *motion, 1, &motion->node_force, &motion->applied);
+  WrenchProjection{forest, *motion, 1, &motion->node_force, &motion->applied}.addTree(tree);
 }
 
-void addProjectedNode(const Forest& forest, int node, const ForestMotion& motion, double sign, std::vector<Vector6>* wrench,
-                      Eigen::VectorXd* out) {
+void WrenchProjection::addNode(int node) const {
   const ForestNode& n = forest.nodes()[node];
   const Vector6& w = (*wrench)[node];
   if (n.joint < 0)
@@ -165,10 +164,9 @@ void addProjectedNode(const Forest& forest, int node, const ForestMotion& motion
   if (n.parent >= 0) (*wrench)[n.parent] += w;
 }
 
-void addProjected(const Forest& forest, int tree, const ForestMotion& motion, double sign, std::vector<Vector6>* wrench,
-                  Eigen::VectorXd* out) {
+void WrenchProjection::addTree(int tree) const {
   const ForestTree& t = forest.trees()[tree];
-  for (int i = t.node_end - 1; i >= t.first_node; --i) addProjectedNode(forest, i, motion, sign, wrench, out);
+  for (int i = t.node_end - 1; i >= t.first_node; --i) addNode(i);
 }
 
 void readTree(const Forest& forest, const Scene& scene, int tree, ForestMotion* motion) {

@@ -78,13 +78,19 @@ void computeProducts(const Forest& forest, int tree, const Eigen::VectorXd& velo
 /** Fills applied: gravity and the bodies' pending wrenches. */
 void computeApplied(const Forest& forest, const Scene& scene, int tree, ForestMotion* motion);
 
-/** Adds S' w of a node to its dofs of `out`, and w to its parent's wrench. */
-void addProjectedNode(const Forest& forest, int node, const ForestMotion& motion, double sign, std::vector<Vector6>* wrench,
-                      Eigen::VectorXd* out);
+/** Wrenches on nodes, as efforts on the dofs that move them: nodes' wrenches w are summed towards the root in place. */
+struct WrenchProjection {
+  const Forest& forest;
+  const ForestMotion& motion;
+  double sign;
+  std::vector<Vector6>* wrench;  ///< per node
+  Eigen::VectorXd* out;          ///< per dof
 
-/** Adds S' w along the tree to the dofs of `out`; the nodes' wrenches are summed towards the root in place. */
-void addProjected(const Forest& forest, int tree, const ForestMotion& motion, double sign, std::vector<Vector6>* wrench,
-                  Eigen::VectorXd* out);
+  /** Adds sign S' w of a node to its dofs of `out`, and w to its parent's wrench. */
+  void addNode(int node) const;
+  /** The same for all nodes of a tree, leaves first. */
+  void addTree(int tree) const;
+};
 
 /** Positions, velocities and a free root's pose from the bodies of the scene, which were set from outside. */
 void readTree(const Forest& forest, const Scene& scene, int tree, ForestMotion* motion);

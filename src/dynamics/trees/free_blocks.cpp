@@ -79,26 +79,28 @@ BLEM_SIM_LANES void subtractFree(const double* b, const double* a, int count, co
   }
 }
 
-BLEM_SIM_LANES void forwardFree(const double* l, const double* blocks, int count, const int* rows, double* own, double* x) {
+BLEM_SIM_LANES void forwardFree(const FreeColumn& column, double* own, double* x) {
+  const double *l = column.l, *blocks = column.blocks();
   for (int k = 0; k < FREE; ++k) {
     own[k] /= l[FREE * k + k];
     for (int i = k + 1; i < FREE; ++i) own[i] -= own[k] * l[FREE * k + i];
   }
-  for (int n = 0; n < count; ++n, blocks += FREE_BLOCK) {
+  for (int n = 0; n < column.count; ++n, blocks += FREE_BLOCK) {
     FourRows upper = fourRows(blocks) * own[0];
     Two lower = two(blocks) * own[0];
     for (int k = 1; k < FREE; ++k) {
       upper += fourRows(blocks + FREE * k) * own[k];
       lower += two(blocks + FREE * k) * own[k];
     }
-    fourRows(x + rows[n]) -= upper;
-    two(x + rows[n]) -= lower;
+    fourRows(x + column.rows[n]) -= upper;
+    two(x + column.rows[n]) -= lower;
   }
 }
 
-void backwardFree(const double* l, const double* blocks, int count, const int* rows, double* own, const double* x) {
-  for (int n = 0; n < count; ++n, blocks += FREE_BLOCK)
-    for (int i = 0; i < FREE; ++i) own[i] -= blockDot<FREE>(blocks + FREE * i, x + rows[n]);
+void backwardFree(const FreeColumn& column, double* own, const double* x) {
+  const double *l = column.l, *blocks = column.blocks();
+  for (int n = 0; n < column.count; ++n, blocks += FREE_BLOCK)
+    for (int i = 0; i < FREE; ++i) own[i] -= blockDot<FREE>(blocks + FREE * i, x + column.rows[n]);
   own[5] /= l[35];
   own[4] = (own[4] - blockDot<1>(l + 29, own + 5)) / l[28];
   own[3] = (own[3] - blockDot<2>(l + 22, own + 4)) / l[21];

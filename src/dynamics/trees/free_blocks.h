@@ -15,9 +15,19 @@ bool factorFree(double* block);
 void divideFree(const double* l, int count, double* blocks);
 /** values[at[i]...] -= a_i b' */
 void subtractFree(const double* b, const double* a, int count, const std::size_t* at, double* values);
+
+/** A factored column of a matrix: its diagonal block l, and the blocks below it, which begin at the given rows. */
+struct FreeColumn {
+  const double* l;
+  int count;  ///< of blocks below the diagonal; they lie behind l
+  const int* rows;
+
+  const double* blocks() const { return l + FREE_BLOCK; }
+};
+
 /** own := l^-1 own; then x[row_i...] -= block_i own */
-void forwardFree(const double* l, const double* blocks, int count, const int* rows, double* own, double* x);
+void forwardFree(const FreeColumn& column, double* own, double* x);
 /** own -= sum of block_i' x[row_i...]; then own := l'^-1 own */
-void backwardFree(const double* l, const double* blocks, int count, const int* rows, double* own, const double* x);
+void backwardFree(const FreeColumn& column, double* own, const double* x);
 
 }  // namespace blem_sim::dynamics

@@ -183,7 +183,8 @@ void FreeMotion::subStep(const Forest& forest, int tree, double dt, RootPose* ro
 }
 
 // Places the tree at the start of the step; a free tree seen from its centre of mass.
-void FreeMotion::start(const Forest& forest, int tree, const ForestMotion& motion, const Eigen::VectorXd& velocity) {
+void FreeMotion::setOut(const FreeStart& start) {
+  const auto& [forest, tree, dt, motion, velocity] = start;
   const ForestTree& t = forest.trees()[tree];
   std::copy(motion.position.begin() + t.first_node, motion.position.begin() + t.node_end, at_.position.begin() + t.first_node);
   at_.velocity.segment(t.first_dof, t.dofCount()) = velocity.segment(t.first_dof, t.dofCount());
@@ -197,12 +198,12 @@ void FreeMotion::start(const Forest& forest, int tree, const ForestMotion& motio
   place(forest, tree, root);
 }
 
-void FreeMotion::run(const Forest& forest, int tree, double dt, int steps, const ForestMotion& motion, const Eigen::VectorXd& velocity) {
-  const ForestTree& t = forest.trees()[tree];
-  start(forest, tree, motion, velocity);
+void FreeMotion::run(const FreeStart& start, int steps) {
+  const ForestTree& t = start.forest.trees()[start.tree];
+  setOut(start);
   RootPose root{Eigen::Vector4d::UnitW(), Vector3::Zero()};
-  if (t.free) root = {Quaternion(motion.rotation[t.first_node]).coeffs(), motion.origin[t.first_node]};
-  for (int i = 0; i < steps; ++i) subStep(forest, tree, dt / steps, &root);
+  if (t.free) root = {Quaternion(start.motion.rotation[t.first_node]).coeffs(), start.motion.origin[t.first_node]};
+  for (int i = 0; i < steps; ++i) subStep(start.forest, start.tree, start.dt / steps, &root);
 }
 
 double FreeMotion::energy(const Forest& forest, int tree) const {
@@ -244,8 +245,8 @@ int FreeMotion::firstSteps(const Forest& forest, int tree, double dt) const {
   return steps < MAX_SUB_STEPS ? std::max(1, static_cast<int>(steps)) : MAX_SUB_STEPS;
 }
 
-FreeMotionReport FreeMotion::follow(const Forest& forest, int tree, double dt, const ForestMotion& motion, const Eigen::VectorXd& velocity,
-                                    const Eigen::VectorXd& mass_velocity) {
+FreeMotionReport FreeMotion::follow(const FreeStart& start, const Eigen::VectorXd& mass_velocity) {
+  const auto& [forest, tree, dt, motion, velocity] = start;
   const ForestTree& t = forest.trees()[tree];
   if (t.free) {
     const Vector6 momentum = mass_velocity.segment<6>(t.first_dof);
@@ -253,19 +254,19 @@ FreeMotionReport FreeMotion::follow(const Forest& forest, int tree, double dt, c
     spin_[tree] = angular(momentum) - motion.tree_com[tree].cross(linear(momentum));
   }
   FreeMotionReport report;
-  start(forest, tree, motion, velocity);
+  setOut(start);
   if (t.free && t.dofCount() == 6) {
-    turnRigid(forest, tree, dt, motion);
-    leaveFrame(forest, tree, dt, motion);
+    turnRigid(start);
+    leaveFrame(start);
     return report;
   }
   const double first = energy(forest, tree);
   double wanted = first;
   for (int steps = firstSteps(forest, tree, dt);; steps = moreSteps(steps, report.miss)) {
-    run(forest, tree, dt, steps, motion, velocity);
+    run(start, steps);
     report.evaluations += 4 * steps;
     if (letGo(forest, tree)) {
-      run(forest, tree, dt, steps, motion, velocity);
+      run(start, steps);
       report.evaluations += 4 * steps;
     }
     wanted = first + work(forest, tree);
@@ -276,21 +277,22 @@ FreeMotionReport FreeMotion::follow(const Forest& forest, int tree, double dt, c
   if (report.followed)
     correct(forest, tree, wanted);
   else
-    wait(forest, tree, dt, motion, velocity);
-  leaveFrame(forest, tree, dt, motion);
+    wait(start);
+  leaveFrame(start);
   return report;
 }
 
 // Way of a tree that sub-steps cannot follow: it keeps its shape for this step, turns as one body, and its joints lose half their speed.
 // Momenta are kept, energy is lost.
-void FreeMotion::wait(const Forest& forest, int tree, double dt, const ForestMotion& motion, const Eigen::VectorXd& velocity) {
+void FreeMotion::wait(const FreeStart& start) {
+  const auto& [forest, tree, dt, motion, velocity] = start;
   const ForestTree& t = forest.trees()[tree];
-  start(forest, tree, motion, velocity);
+  setOut(start);
   if (t.free) {
     const Vector3& com = motion.tree_com[tree];
     const Vector6 first = at_.velocity.segment<6>(t.first_dof);
     const Vector6 inner = first - turnAbout(centralInertia(motion.composite[t.first_node]).llt().solve(spin_[tree]), com);
-    const Matrix3 turn = turnRigid(forest, tree, dt, motion);
+    const Matrix3 turn = turnRigid(start);
     const Vector3 spin = turn * angular(inner), at_com = turn * velocityAt(inner, com);
     at_.velocity.segment<6>(t.first_dof) += 0.5 * (turnAbout(spin, com) + spatial(Vector3::Zero(), at_com));
   }
@@ -328,8 +330,9 @@ void FreeMotion::correct(const Forest& forest, int tree, double energy_wanted) {
 }
 
 // Back to world axes at rest: a free tree's centre of mass has moved straight on.
-void FreeMotion::leaveFrame(const Forest& forest, int tree, double dt, const ForestMotion& motion) {
-  const ForestTree& t = forest.trees()[tree];
+void FreeMotion::leaveFrame(const FreeStart& start) {
+  const int tree = start.tree;
+  const ForestTree& t = start.forest.trees()[tree];
   if (!t.free) return;
   Vector3 moment = Vector3::Zero();
   double mass = 0;
@@ -337,7 +340,7 @@ void FreeMotion::leaveFrame(const Forest& forest, int tree, double dt, const For
     moment += at_.inertia[i].first_moment;
     mass += at_.inertia[i].mass;
   }
-  const Vector3 shift = motion.tree_com[tree] + dt * drift_[tree] - moment / mass;
+  const Vector3 shift = start.motion.tree_com[tree] + start.dt * drift_[tree] - moment / mass;
   for (int i = t.first_node; i < t.node_end; ++i) {
     at_.origin[i] += shift;
     at_.joint_origin[i] += shift;
@@ -348,7 +351,8 @@ void FreeMotion::leaveFrame(const Forest& forest, int tree, double dt, const For
 }
 
 // Turns a free tree as one body through the step. @return its turn
-Matrix3 FreeMotion::turnRigid(const Forest& forest, int tree, double dt, const ForestMotion& motion) {
+Matrix3 FreeMotion::turnRigid(const FreeStart& start) {
+  const auto& [forest, tree, dt, motion, velocity] = start;
   const ForestTree& t = forest.trees()[tree];
   const RigidTurn way = turnFreely(centralInertia(motion.composite[t.first_node]), spin_[tree], dt);
   const Vector3 com = motion.reference[tree] + motion.tree_com[tree];

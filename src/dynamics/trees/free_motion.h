@@ -5,6 +5,15 @@
 
 namespace blem_sim::dynamics {
 
+/** A tree at the start of a step, and the velocities of all dofs with which it sets out. */
+struct FreeStart {
+  const Forest& forest;
+  int tree;
+  double dt;
+  const ForestMotion& motion;
+  const Eigen::VectorXd& velocity;
+};
+
 /** Quality of a free motion that was followed. */
 struct FreeMotionReport {
   double miss = 0;       ///< of kinetic energy, relative, before it was put right
@@ -27,12 +36,8 @@ class FreeMotion {
   /** Per dof [N m s or N s]: least and largest impulse that it can supply to do so. */
   std::vector<double> least, most;
 
-  /**
-   * Follows a tree from its present poses.
-   * @param velocity of the dofs at the start; mass_velocity: M times it
-   */
-  FreeMotionReport follow(const Forest& forest, int tree, double dt, const ForestMotion& motion, const Eigen::VectorXd& velocity,
-                          const Eigen::VectorXd& mass_velocity);
+  /** Follows a tree from its present poses. @param mass_velocity M times the velocity at the start */
+  FreeMotionReport follow(const FreeStart& start, const Eigen::VectorXd& mass_velocity);
 
   /** Takes the end of the way: positions, velocities of the dofs, owed impulses, a free root's pose. Then placeBodies, computeInertias. */
   void takeEnd(const Forest& forest, int tree, ForestMotion* motion) const;
@@ -53,15 +58,15 @@ class FreeMotion {
   void accelerate(const Forest& forest, int tree);
   void articulate(const Forest& forest, int node);
   void subStep(const Forest& forest, int tree, double dt, RootPose* root);
-  void run(const Forest& forest, int tree, double dt, int steps, const ForestMotion& motion, const Eigen::VectorXd& velocity);
+  void run(const FreeStart& start, int steps);
   double energy(const Forest& forest, int tree) const;
   double work(const Forest& forest, int tree) const;
   bool letGo(const Forest& forest, int tree);
   void correct(const Forest& forest, int tree, double energy_wanted);
-  void leaveFrame(const Forest& forest, int tree, double dt, const ForestMotion& motion);
-  Matrix3 turnRigid(const Forest& forest, int tree, double dt, const ForestMotion& motion);
-  void start(const Forest& forest, int tree, const ForestMotion& motion, const Eigen::VectorXd& velocity);
-  void wait(const Forest& forest, int tree, double dt, const ForestMotion& motion, const Eigen::VectorXd& velocity);
+  void leaveFrame(const FreeStart& start);
+  Matrix3 turnRigid(const FreeStart& start);
+  void setOut(const FreeStart& start);
+  void wait(const FreeStart& start);
   int firstSteps(const Forest& forest, int tree, double dt) const;
 
   ForestMotion at_;  ///< at the instant at hand; the reference is that of the step's start, a free tree's centre of mass stands still

@@ -44,8 +44,8 @@ void TreeFactor::resize(const Forest& forest) {
   inverse.assign(forest.dofCount(), 0);
 }
 
-BLEM_SIM_LANES void multiply(const Forest& forest, int tree, const std::vector<double>& rows, const Eigen::VectorXd& v,
-                             Eigen::VectorXd* out, TreePaths* paths, const std::vector<char>* chosen) {
+BLEM_SIM_LANES void multiply(const TreeMatrix& matrix, const Eigen::VectorXd& v, Eigen::VectorXd* out, TreePaths* paths) {
+  const auto& [forest, tree, rows, chosen] = matrix;
   const ForestTree& t = forest.trees()[tree];
   clear(forest, tree, &paths->values);
   clear(forest, tree, &paths->sums);

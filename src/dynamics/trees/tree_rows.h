@@ -24,12 +24,16 @@ struct TreeFactor {
   void resize(const Forest& forest);
 };
 
-/**
- * out = M v on the dofs of a tree.
- * @param rows zero in the room at their ends; chosen: per node, those whose dofs are meant, their ancestors among them; null: all
- */
-void multiply(const Forest& forest, int tree, const std::vector<double>& rows, const Eigen::VectorXd& v, Eigen::VectorXd* out,
-              TreePaths* paths, const std::vector<char>* chosen = nullptr);
+/** A packed matrix M on the dofs of a tree. */
+struct TreeMatrix {
+  const Forest& forest;
+  int tree;
+  const std::vector<double>& rows;            ///< zero in the room at their ends
+  const std::vector<char>* chosen = nullptr;  ///< per node, those whose dofs are meant, their ancestors among them; null: all
+};
+
+/** out = M v on the dofs of a tree. */
+void multiply(const TreeMatrix& matrix, const Eigen::VectorXd& v, Eigen::VectorXd* out, TreePaths* paths);
 
 /** a . b on the dofs of some trees. */
 double dotProduct(const Forest& forest, const std::vector<int>& trees, const Eigen::VectorXd& a, const Eigen::VectorXd& b);

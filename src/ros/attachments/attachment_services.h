@@ -1,7 +1,7 @@
 #pragma once
 
 #include "blem_sim/sim/simulator.h"
-#include "services/service_group.h"
+#include "services/door/service_group.h"
 
 namespace blem_sim::node {
 

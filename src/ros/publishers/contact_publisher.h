@@ -3,7 +3,7 @@
 #include <ros/node_handle.h>
 
 #include "messages/message_pool.h"
-#include "publishers/contact_markers.h"
+#include "publishers/markers/contact_markers.h"
 #include "sending/listened_publisher.h"
 #include "sending/publish_schedule.h"
 #include "sending/step_publisher.h"

@@ -2,7 +2,7 @@
 
 #include "saving/input_recorder.h"
 #include "saving/service_files.h"
-#include "services/service_group.h"
+#include "services/door/service_group.h"
 
 namespace blem_sim::node {
 

@@ -2,7 +2,7 @@
 
 #include "loop/simulation_loop.h"
 #include "saving/service_files.h"
-#include "services/service_group.h"
+#include "services/door/service_group.h"
 
 namespace blem_sim::node {
 

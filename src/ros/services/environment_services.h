@@ -1,7 +1,7 @@
 #pragma once
 
 #include "loop/simulation_loop.h"
-#include "services/service_group.h"
+#include "services/door/service_group.h"
 
 namespace blem_sim::node {
 

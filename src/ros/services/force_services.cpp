@@ -5,7 +5,7 @@
 
 #include "blem_sim/geometry/input_error.h"
 #include "messages/conversions.h"
-#include "services/reference_frame.h"
+#include "services/door/reference_frame.h"
 
 namespace blem_sim::node {
 

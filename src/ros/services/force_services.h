@@ -4,7 +4,7 @@
 #include <blem_sim/ApplyJointEffort.h>
 
 #include "loop/simulation_loop.h"
-#include "services/service_group.h"
+#include "services/door/service_group.h"
 
 namespace blem_sim::node {
 

@@ -4,8 +4,8 @@
 #include <blem_sim/StepWithCommands.h>
 
 #include "loop/simulation_loop.h"
-#include "services/latest_readings.h"
-#include "services/service_group.h"
+#include "services/door/latest_readings.h"
+#include "services/door/service_group.h"
 
 namespace blem_sim::node {
 

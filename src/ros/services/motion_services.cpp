@@ -5,7 +5,7 @@
 #include <blem_sim/SetModelState.h>
 
 #include "blem_sim/geometry/input_error.h"
-#include "services/reference_frame.h"
+#include "services/door/reference_frame.h"
 
 namespace blem_sim::node {
 

@@ -10,7 +10,7 @@
 
 #include "messages/conversions.h"
 #include "messages/physics_message.h"
-#include "services/reference_frame.h"
+#include "services/door/reference_frame.h"
 
 namespace blem_sim::node {
 

@@ -8,7 +8,7 @@
 #include "blem_sim/geometry/input_error.h"
 #include "messages/pid_gains.h"
 #include "messages/ros_names.h"
-#include "services/reference_frame.h"
+#include "services/door/reference_frame.h"
 
 namespace blem_sim::node {
 

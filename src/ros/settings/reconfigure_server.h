@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "services/service_group.h"
+#include "services/door/service_group.h"
 
 namespace blem_sim::node {
 

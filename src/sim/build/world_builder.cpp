@@ -133,10 +133,12 @@ std::shared_ptr<const model::RobotModel> WorldBuilder::description(const UrdfSou
   for (auto old = descriptions_.begin(); old != descriptions_.end();)
     old = old->second.expired() ? descriptions_.erase(old) : std::next(old);
   const std::string source = urdf.parameter.empty() ? urdf.where : urdf.parameter;
-  const model::LoadProgress progress = watch ? watch->progress() : model::LoadProgress();
-  const auto model =
-      std::make_shared<const model::RobotModel>(text ? model::loadUrdf(key, source, resolver_, base_directory_, contact_.mending, progress)
-                                                     : model::loadUrdfFile(key, resolver_, contact_.mending, progress));
+  model::UrdfOptions options;
+  options.mending = contact_.mending;
+  if (watch) options.progress = watch->progress();
+  if (text) options.base = base_directory_;
+  const auto model = std::make_shared<const model::RobotModel>(text ? model::loadUrdf(key, source, resolver_, options)
+                                                                    : model::loadUrdfFile(key, resolver_, options));
   descriptions_[key] = model;
   return model;
 }

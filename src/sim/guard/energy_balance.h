@@ -6,7 +6,7 @@
 #include "blem_sim/dynamics/world.h"
 #include "blem_sim/geometry/state_stream.h"
 #include "blem_sim/sim/simulator_types.h"
-#include "contacts/made_solve.h"
+#include "contacts/constraints/made_solve.h"
 #include "guard/body_islands.h"
 
 namespace blem_sim::sim {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "blem_sim/contact/collider_pairs.h"
-#include "contacts/meeting_speed.h"
+#include "contacts/motion/meeting_speed.h"
 
 namespace blem_sim::sim {
 namespace {
@@ -22,7 +22,7 @@ double safeTimeOf(const WatchedPair& pair, const SimulatedWorld& world, const Fo
   const contact::ContactManifold* manifold = contact::findPair(contacts.manifolds, pair.a, pair.b);
   const double gap = std::min(pair.known, manifold ? -manifold->maxDepth() : pair.known);  // between the layers, at least
   const double harmless = std::max(PER_SOLVE * layer, std::min(pair.known, USED_UP_AHEAD * (layer + gap)));
-  const double speed = meetingSpeed(world, bodies, contacts.watched.motion, pair.a, pair.b, layer + pair.margin);
+  const double speed = meetingSpeed(world, bodies, contacts.watched.motion, pair);
   if (speed * time <= harmless) return time;
   return std::min(time, std::max(gap, PER_SOLVE * layer) / speed);
 }

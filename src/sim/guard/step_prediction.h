@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "build/simulated_world.h"
-#include "contacts/found_contacts.h"
+#include "contacts/search/found_contacts.h"
 
 namespace blem_sim::sim {
 

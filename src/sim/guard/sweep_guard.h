@@ -6,7 +6,7 @@
 #include "blem_sim/contact/broad_phase.h"
 #include "blem_sim/contact/sweep.h"
 #include "build/simulated_world.h"
-#include "contacts/made_solve.h"
+#include "contacts/constraints/made_solve.h"
 
 namespace blem_sim::sim {
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "blem_sim/sim/sensor_values.h"
-#include "sensors/reading_numbers.h"
+#include "sensors/readings/reading_numbers.h"
 
 namespace blem_sim::sim {
 namespace {

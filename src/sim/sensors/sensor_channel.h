@@ -5,11 +5,11 @@
 #include <memory>
 #include <vector>
 
-#include "sensors/delay_line.h"
-#include "sensors/reading_noise.h"
-#include "sensors/sensor.h"
-#include "sensors/sensor_schedule.h"
-#include "sensors/wrench_tare.h"
+#include "sensors/readings/delay_line.h"
+#include "sensors/readings/reading_noise.h"
+#include "sensors/readings/sensor_schedule.h"
+#include "sensors/readings/wrench_tare.h"
+#include "sensors/types/sensor.h"
 
 namespace blem_sim::sim {
 

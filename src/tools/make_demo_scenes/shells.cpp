@@ -16,12 +16,12 @@ struct Section {
 };
 
 // An outline between an ellipse (exponent 2) and a rectangle (large exponent).
-Section oval(double z, double half_x, double half_y, double centre_x = 0, double centre_y = 0, double exponent = 4) {
+Section oval(double z, double half_x, double half_y, double centre_x = 0, double exponent = 4) {
   Section section{z, {}};
   for (int i = 0; i < SEGMENTS; ++i) {
     const double angle = 2 * M_PI * (i + 0.5) / SEGMENTS, c = std::cos(angle), s = std::sin(angle);
     const double x = std::copysign(std::pow(std::abs(c), 2 / exponent), c), y = std::copysign(std::pow(std::abs(s), 2 / exponent), s);
-    section.outline.emplace_back(centre_x + half_x * x, centre_y + half_y * y);
+    section.outline.emplace_back(centre_x + half_x * x, half_y * y);
   }
   return section;
 }
@@ -102,19 +102,19 @@ geometry::TriangleMesh torso() {
 }
 
 geometry::TriangleMesh head() {
-  return loft({oval(0.000, 0.030, 0.035, 0, 0, 2.5), oval(0.020, 0.060, 0.058, 0.005, 0, 2.5), oval(0.070, 0.078, 0.068, 0.008, 0, 2.5),
-               oval(0.110, 0.070, 0.062, 0.004, 0, 2.5), oval(0.135, 0.040, 0.038, 0, 0, 2.5)});
+  return loft({oval(0.000, 0.030, 0.035, 0, 2.5), oval(0.020, 0.060, 0.058, 0.005, 2.5), oval(0.070, 0.078, 0.068, 0.008, 2.5),
+               oval(0.110, 0.070, 0.062, 0.004, 2.5), oval(0.135, 0.040, 0.038, 0, 2.5)});
 }
 
 geometry::TriangleMesh upperArm() {
-  return loft({oval(-0.185, 0.024, 0.024, 0, 0, 2.5), oval(-0.150, 0.030, 0.030, 0, 0, 2.5), oval(-0.030, 0.034, 0.032, 0, 0, 2.5),
-               oval(0.015, 0.036, 0.034, 0, 0, 2.5), oval(0.035, 0.022, 0.022, 0, 0, 2.5)});
+  return loft({oval(-0.185, 0.024, 0.024, 0, 2.5), oval(-0.150, 0.030, 0.030, 0, 2.5), oval(-0.030, 0.034, 0.032, 0, 2.5),
+               oval(0.015, 0.036, 0.034, 0, 2.5), oval(0.035, 0.022, 0.022, 0, 2.5)});
 }
 
 geometry::TriangleMesh forearm() {
-  return loft({oval(-0.230, 0.020, 0.016, 0, 0, 2.5), oval(-0.215, 0.034, 0.020, 0, 0, 3), oval(-0.165, 0.034, 0.022, 0, 0, 3),
-               oval(-0.145, 0.022, 0.020, 0, 0, 2.5), oval(-0.060, 0.030, 0.028, 0, 0, 2.5), oval(0.010, 0.028, 0.027, 0, 0, 2.5),
-               oval(0.025, 0.016, 0.016, 0, 0, 2.5)});
+  return loft({oval(-0.230, 0.020, 0.016, 0, 2.5), oval(-0.215, 0.034, 0.020, 0, 3), oval(-0.165, 0.034, 0.022, 0, 3),
+               oval(-0.145, 0.022, 0.020, 0, 2.5), oval(-0.060, 0.030, 0.028, 0, 2.5), oval(0.010, 0.028, 0.027, 0, 2.5),
+               oval(0.025, 0.016, 0.016, 0, 2.5)});
 }
 
 geometry::TriangleMesh hipYaw() { return loft({oval(-0.010, 0.040, 0.036), oval(0.010, 0.044, 0.040), oval(0.040, 0.036, 0.034)}); }
@@ -184,9 +184,9 @@ std::vector<NamedMesh> watcherShells() {
   // The lidar's drum sits around the mast, its middle 0.2 m above the ground.
   return {
       {"watcher_foot", loft({oval(0.000, 0.155, 0.125), oval(0.004, 0.160, 0.130), oval(0.060, 0.160, 0.130), oval(0.080, 0.120, 0.090)})},
-      {"watcher_mast", loft({oval(0.070, 0.030, 0.030, 0, 0, 2), oval(0.160, 0.030, 0.030, 0, 0, 2), oval(0.165, 0.055, 0.055, 0, 0, 2),
-                             oval(0.235, 0.055, 0.055, 0, 0, 2), oval(0.240, 0.024, 0.024, 0, 0, 2), oval(0.580, 0.020, 0.020, 0, 0, 2)})},
-      {"watcher_neck", loft({oval(0.000, 0.026, 0.026, 0, 0, 2), oval(0.030, 0.026, 0.030, 0, 0, 3), oval(0.045, 0.018, 0.018, 0, 0, 3)})},
+      {"watcher_mast", loft({oval(0.070, 0.030, 0.030, 0, 2), oval(0.160, 0.030, 0.030, 0, 2), oval(0.165, 0.055, 0.055, 0, 2),
+                             oval(0.235, 0.055, 0.055, 0, 2), oval(0.240, 0.024, 0.024, 0, 2), oval(0.580, 0.020, 0.020, 0, 2)})},
+      {"watcher_neck", loft({oval(0.000, 0.026, 0.026, 0, 2), oval(0.030, 0.026, 0.030, 0, 3), oval(0.045, 0.018, 0.018, 0, 3)})},
       {"watcher_head", loft({oval(-0.025, 0.030, 0.070, 0.015), oval(-0.018, 0.040, 0.085, 0.015), oval(0.022, 0.040, 0.085, 0.015),
                              oval(0.030, 0.030, 0.070, 0.015)})}};
 }

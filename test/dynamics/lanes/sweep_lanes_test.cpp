@@ -112,8 +112,8 @@ TEST_F(SweepLanes, OfFreeBodiesDoWhatThoseOfTreesDo) {
   SweepChange change, free_change;
   for (int sweeps = 0; sweeps < 3; ++sweeps) {
     TwistLanes wrench;
-    sweep(group_, contacts_, contacts_ + CONTACTS, impulses_, twist_, &wrench, &change);
-    sweepFree(bodies_, contacts_, contacts_ + CONTACTS, free, velocity_.data(), &free_change);
+    sweep(group_, {contacts_, contacts_ + CONTACTS, impulses_}, twist_, &wrench, &change);
+    sweepFree(bodies_, {contacts_, contacts_ + CONTACTS, free}, velocity_.data(), &free_change);
     for (int lane = 0; lane < SWEEP_LANES; ++lane) {
       const Vector6 now = relativeVelocity(lane);
       for (int i = 0; i < 6; ++i) twist_[i][lane] = now[i];
@@ -130,7 +130,7 @@ TEST_F(SweepLanes, OfFreeBodiesDoWhatThoseOfTreesDo) {
 TEST_F(SweepLanes, MomentumFollowsFromImpulses) {
   const Eigen::VectorXd before = velocity_;
   SweepChange change;
-  sweepFree(bodies_, contacts_, contacts_ + CONTACTS, impulses_, velocity_.data(), &change);
+  sweepFree(bodies_, {contacts_, contacts_ + CONTACTS, impulses_}, velocity_.data(), &change);
   for (int lane = 0; lane < SWEEP_LANES; ++lane) {
     if (lane == WITHOUT_PATCH) continue;
     Vector3 force = Vector3::Zero();

@@ -69,7 +69,7 @@ class TreeRows : public ::testing::Test {
 TEST_F(TreeRows, Multiply) {
   ASSERT_EQ(trees(), 2);
   Eigen::VectorXd out = Eigen::VectorXd::Constant(x_.size(), 99);
-  for (int tree = 0; tree < trees(); ++tree) multiply(forest_, tree, rows_, x_, &out, &paths_);
+  for (int tree = 0; tree < trees(); ++tree) multiply({forest_, tree, rows_}, x_, &out, &paths_);
   EXPECT_LT((out - dense_ * x_).norm(), 1e-12);
 }
 

@@ -1,4 +1,4 @@
-#include "publishers/surface_markers.h"
+#include "publishers/markers/surface_markers.h"
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ contact::Collider colliderOf(const geometry::TriangleMesh& mesh, double radius) 
 }
 
 std::vector<Marker> markersOf(const contact::Collider& collider) {
-  return surfaceMarkers(collider, "world", makePose(Vector3(1, 2, 3)), std_msgs::ColorRGBA(), 5);
+  return surfaceMarkers(collider, {"world", makePose(Vector3(1, 2, 3)), std_msgs::ColorRGBA(), 5});
 }
 
 TEST(SurfaceMarkers, HugeMeshesAreSplitAndNothingIsLost) {
@@ -49,7 +49,7 @@ TEST(SurfaceMarkers, PointsOfACloudHaveTheColoursOfTheirHeightsInTheWorld) {
     cloud.elements.emplace_back(i, i, i);
   }
   const Pose X_WC = makePose(Vector3(1, 2, 3), Vector3(0, -M_PI_2, 0));  // the cloud's x is up
-  const std::vector<Marker> markers = surfaceMarkers(colliderOf(cloud, 0.004), "world", X_WC, std_msgs::ColorRGBA(), 0, Vector3::UnitZ());
+  const std::vector<Marker> markers = surfaceMarkers(colliderOf(cloud, 0.004), {"world", X_WC, std_msgs::ColorRGBA(), 0, Vector3::UnitZ()});
   ASSERT_EQ(markers.size(), 2U);
   for (const Marker& marker : markers) EXPECT_EQ(marker.colors.size(), marker.points.size());
   const auto &lowest = markers.front().colors.front(), &highest = markers.back().colors.back();

@@ -1,5 +1,5 @@
 // What is kept for a learner's next answer: readings until their sensor's next one, status bits until they are taken.
-#include "services/latest_readings.h"
+#include "services/door/latest_readings.h"
 
 #include "sim/simulation_scene.h"
 

@@ -14,7 +14,7 @@ namespace {
 constexpr double PENDULUM_INERTIA = 0.02 + 2 * 0.25, PENDULUM_WEIGHT = 2 * 0.5 * G;
 
 model::LumpedRobot lumped(const std::string& urdf, bool fixed_base) {
-  return model::lumpFixedJoints(model::loadUrdf(urdf, "test", model::UriResolver(), ""), {}, fixed_base);
+  return model::lumpFixedJoints(model::loadUrdf(urdf, "test", model::UriResolver()), {}, fixed_base);
 }
 
 SimulationConfig heldPendulum() {

@@ -1,5 +1,5 @@
 // Ways of links through a solve against their closed forms.
-#include "contacts/body_ways.h"
+#include "contacts/motion/body_ways.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contacts/layer_stops.h"
+#include "contacts/constraints/layer_stops.h"
 #include "sim/simulation_scene.h"
 
 namespace blem_sim::sim {

@@ -1,5 +1,5 @@
 // Contacts are known as far away as two things can approach each other in a step.
-#include "contacts/meeting_speed.h"
+#include "contacts/motion/meeting_speed.h"
 
 #include <algorithm>
 

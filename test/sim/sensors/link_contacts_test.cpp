@@ -1,5 +1,5 @@
 // Contacts by link: each link's own, in order, whichever side it is on.
-#include "sensors/link_contacts.h"
+#include "sensors/types/link_contacts.h"
 
 #include <gtest/gtest.h>
 

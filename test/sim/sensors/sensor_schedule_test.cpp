@@ -1,4 +1,4 @@
-#include "sensors/sensor_schedule.h"
+#include "sensors/readings/sensor_schedule.h"
 
 #include <gtest/gtest.h>
 

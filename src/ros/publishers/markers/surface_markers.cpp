@@ -1,0 +1,118 @@
+#include "publishers/markers/surface_markers.h"
+
+#include <algorithm>
+
+#include "messages/conversions.h"
+
+namespace blem_sim::node {
+
+namespace {
+
+using visualization_msgs::Marker;
+
+constexpr std::size_t CORNERS_PER_MARKER = 60000;
+constexpr std::size_t MOST_SPHERES = 20000;
+constexpr double PLANE_SIZE = 20;         // [m] edge of the square that stands for a half-space
+constexpr double LINE_WIDTH = 0.002;      // [m]
+constexpr double SMALLEST_POINT = 0.002;  // [m]
+
+/** Lists of one kind of element, split into markers that share everything but their points. */
+class MarkerLists {
+ public:
+  MarkerLists(Marker prototype, std::vector<Marker>* markers) : prototype_(std::move(prototype)), markers_(markers) {}
+
+  void add(std::initializer_list<Vector3> corners) {
+    startIfFull();
+    for (const Vector3& corner : corners) markers_->back().points.push_back(toPoint(corner));
+  }
+  void addDot(const Vector3& dot, const sim::Colour& colour) {
+    add({dot});
+    markers_->back().colors.push_back(toColour(colour));
+  }
+
+ private:
+  void startIfFull() {
+    if (!full()) return;
+    prototype_.id = markers_->empty() ? prototype_.id : markers_->back().id + 1;
+    markers_->push_back(prototype_);
+    started_ = true;
+  }
+  bool full() const { return !started_ || markers_->back().points.size() + 3 > CORNERS_PER_MARKER; }
+
+  Marker prototype_;
+  std::vector<Marker>* markers_;
+  bool started_ = false;
+};
+
+Marker withType(Marker marker, int type, double size) {
+  marker.type = type;
+  marker.scale.x = marker.scale.y = marker.scale.z = size;
+  return marker;
+}
+
+void addPlane(const contact::CollisionGeometry& geometry, const Marker& prototype, std::vector<Marker>* markers) {
+  const Vector3 normal = geometry.planeNormal();
+  const Vector3 centre = geometry.planeOffset() * normal;
+  const Vector3 u = 0.5 * PLANE_SIZE * normal.unitOrthogonal();
+  const Vector3 v = normal.cross(u);
+  MarkerLists triangles(withType(prototype, Marker::TRIANGLE_LIST, 1), markers);
+  triangles.add({centre - u - v, centre + u - v, centre + u + v});
+  triangles.add({centre - u - v, centre + u + v, centre - u + v});
+}
+
+/** Points as spheres or squares. @param up unit; if not zero, they have the colours of their heights along it */
+void addPoints(const std::vector<Vector3>& points, double radius, const Vector3& up, const Marker& prototype,
+               std::vector<Marker>* markers) {
+  const int type = points.size() <= MOST_SPHERES ? Marker::SPHERE_LIST : Marker::POINTS;
+  MarkerLists dots(withType(prototype, type, std::max(2 * radius, SMALLEST_POINT)), markers);
+  const std::vector<sim::Colour> colours = up.isZero() ? std::vector<sim::Colour>() : sim::coloursByHeight(points, up);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (colours.empty()) {
+      dots.add({points[i]});
+    } else {
+      dots.addDot(points[i], colours[i]);
+    }
+  }
+}
+
+/** One pass per kind of element, so that each list is contiguous. */
+void addMesh(const geometry::TriangleMesh& mesh, double radius, const Vector3& up, const Marker& prototype, std::vector<Marker>* markers) {
+  const int count = static_cast<int>(mesh.elements.size());
+  const auto vertex = [&](int element, int corner) { return mesh.vertices[mesh.elements[element][corner]]; };
+  MarkerLists triangles(withType(prototype, Marker::TRIANGLE_LIST, 1), markers);
+  for (int i = 0; i < count; ++i) {
+    if (mesh.isTriangle(i)) triangles.add({vertex(i, 0), vertex(i, 1), vertex(i, 2)});
+  }
+  MarkerLists lines(withType(prototype, Marker::LINE_LIST, std::max(2 * radius, LINE_WIDTH)), markers);
+  for (int i = 0; i < count; ++i) {
+    if (!mesh.isTriangle(i) && !mesh.isPoint(i)) {
+      lines.add({vertex(i, 0), mesh.elements[i][1] == mesh.elements[i][0] ? vertex(i, 2) : vertex(i, 1)});
+    }
+  }
+  std::vector<Vector3> points;
+  for (int i = 0; i < count; ++i) {
+    if (mesh.isPoint(i)) points.push_back(vertex(i, 0));
+  }
+  addPoints(points, radius, up, prototype, markers);
+}
+
+}  // namespace
+
+std::vector<Marker> surfaceMarkers(const contact::Collider& collider, const MarkerStyle& style) {
+  Marker prototype;
+  prototype.header.frame_id = style.frame;
+  prototype.ns = collider.name;
+  prototype.id = style.first_id;
+  prototype.pose = toPose(style.X_FC);
+  prototype.color = style.colour;
+  prototype.frame_locked = true;
+  std::vector<Marker> markers;
+  if (collider.geometry->isHalfSpace()) {
+    addPlane(*collider.geometry, prototype, &markers);
+  } else {
+    addMesh(collider.geometry->mesh(), collider.radius, style.X_FC.linear().transpose() * style.up, prototype, &markers);
+  }
+  return markers;
+}
+
+}  // namespace blem_sim::node

@@ -1,0 +1,119 @@
+#include "contacts/search/pair_searches.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace blem_sim::sim {
+namespace {
+
+/** Pose in which a pair was last apart, as far as the last accepted state knows. */
+Recovery lastApart(const FoundContacts& before, int a, int b) {
+  if (const Recovery* recovery = before.crossings.find(a, b)) return *recovery;
+  if (!before.known || contact::findPair(before.watched.left_out, a, b)) return {a, b, false, Pose::Identity()};
+  return {a, b, true, before.watched.motion[a].X_WC.inverse() * before.watched.motion[b].X_WC};
+}
+
+}  // namespace
+
+PairSearches::PairSearches(int threads)
+    : threads_(threads),
+      arena_(std::min(threads, tbb::this_task_arena::max_concurrency())),
+      workspaces_(static_cast<std::size_t>(arena_.max_concurrency())) {}
+
+/** Calls search(pair, thread) for all pairs, in any order and at once. */
+template <typename SearchOfOne>
+void PairSearches::run(std::size_t pairs, const SearchOfOne& search) {
+  if (threads_ == 1 || pairs < 2) {
+    for (std::size_t i = 0; i < pairs; ++i) search(i, 0);
+    return;
+  }
+  // One by one: some searches take a thousand times as long as others.
+  arena_.execute([&] {
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, pairs, 1),
+        [&](const auto& range) {
+          const auto thread = static_cast<std::size_t>(tbb::this_task_arena::current_thread_index());
+          for (std::size_t i = range.begin(); i < range.end(); ++i) search(i, thread);
+        },
+        tbb::simple_partitioner());
+  });
+}
+
+void PairSearches::find(const SimulatedWorld& world, const FoundContacts& before, const FadingPoints& fading, WatchedPairs* pairs,
+                        FoundContacts* found) {
+  std::swap(*pairs, found->watched);
+  const std::vector<WatchedPair>& watched = found->watched.pairs;
+  const std::vector<contact::ColliderMotion>& motion = found->watched.motion;
+  makeRoom(watched.size(), &found->manifolds);
+  last_apart_.clear();
+  for (const WatchedPair& pair : watched) last_apart_.push_back(lastApart(before, pair.a, pair.b));
+  found->flush.watch(world.colliders, watched);
+  watch(watched);
+  run(watched.size(), [&](std::size_t i, std::size_t thread) {
+    const WatchedPair& pair = watched[i];
+    const Recovery& last = last_apart_[i];
+    contact::ContactManifold& manifold = found->manifolds[i];
+    contact::narrowPhase({world.colliders[pair.a], motion[pair.a].X_WC}, {world.colliders[pair.b], motion[pair.b].X_WC},
+                         {pair.known, last.known ? &last.X_AB : nullptr, &known_[i].memory}, &workspaces_[thread].search, &manifold);
+    manifold.a = pair.a;
+    manifold.b = pair.b;
+    found->flush.dropCovered(world.colliders, motion, &workspaces_[thread].cover, &manifold);
+    fading.apply(&manifold);
+  });
+  found->crossings.goOn(before.crossings, last_apart_, found->manifolds);
+  keepWhatWasFound(watched.size(), &found->manifolds);
+  found->known = true;
+}
+
+void PairSearches::makeRoom(std::size_t pairs, std::vector<contact::ContactManifold>* manifolds) {
+  for (; manifolds->size() < pairs && !spare_manifolds_.empty(); spare_manifolds_.pop_back())
+    manifolds->push_back(std::move(spare_manifolds_.back()));
+  if (manifolds->size() < pairs) manifolds->resize(pairs);
+}
+
+/** Keeps the manifolds with contacts. */
+void PairSearches::keepWhatWasFound(std::size_t pairs, std::vector<contact::ContactManifold>* manifolds) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < pairs; ++i) {
+    if ((*manifolds)[i].contacts.empty()) continue;
+    if (kept != i) std::swap((*manifolds)[kept], (*manifolds)[i]);
+    ++kept;
+  }
+  for (; manifolds->size() > kept; manifolds->pop_back()) spare_manifolds_.push_back(std::move(manifolds->back()));
+}
+
+/** Makes known_ the memories of these pairs, in their order. */
+void PairSearches::watch(const std::vector<WatchedPair>& pairs) {
+  const auto same = [](const Known& known, const WatchedPair& pair) { return known.a == pair.a && known.b == pair.b; };
+  if (std::equal(known_.begin(), known_.end(), pairs.begin(), pairs.end(), same)) return;
+  std::swap(known_, before_);
+  known_.clear();
+  giveBack(pairs);
+  auto old = before_.begin();
+  for (const WatchedPair& pair : pairs) {
+    while (old != before_.end() && contact::IsPairBefore()(*old, pair)) ++old;
+    known_.push_back(old != before_.end() && same(*old, pair) ? std::move(*old) : Known{pair.a, pair.b, takeSpare()});
+  }
+  before_.clear();
+}
+
+/** Takes back the memories of pairs that are watched no more. */
+void PairSearches::giveBack(const std::vector<WatchedPair>& pairs) {
+  auto pair = pairs.begin();
+  for (Known& old : before_) {
+    while (pair != pairs.end() && contact::IsPairBefore()(*pair, old)) ++pair;
+    if (pair == pairs.end() || pair->a != old.a || pair->b != old.b) spare_.push_back(std::move(old.memory));
+  }
+}
+
+/** A memory whose room serves again; its content is of other meshes or another pose, which the search sees. */
+contact::NarrowPhaseMemory PairSearches::takeSpare() {
+  if (spare_.empty()) return contact::NarrowPhaseMemory();
+  contact::NarrowPhaseMemory memory = std::move(spare_.back());
+  spare_.pop_back();
+  return memory;
+}
+
+}  // namespace blem_sim::sim
