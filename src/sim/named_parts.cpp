@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "blem_sim/geometry/input_error.h"
+#include "build/simulated_world.h"
 #include "numbers/nearest_name.h"
 
 namespace blem_sim::sim {
@@ -19,13 +20,6 @@ LinkPart linkOfRobot(const Simulator& simulator, int robot, int link) {
       info.name + SCOPE + info.description->links[link].name, info.model, robot, link, info.bodies[placement.body], placement.X_BL};
   if (part.body == dynamics::WORLD_BODY) part.X_BL = info.X_WR * placement.X_BL;
   return part;
-}
-
-std::vector<std::string> modelNames(const Simulator& simulator) {
-  std::vector<std::string> names;
-  for (const ModelInfo& model : simulator.models())
-    if (model.alive) names.push_back(model.name);
-  return names;
 }
 
 /** The model's name in front of a scoped one; empty if there is no such model. */
@@ -85,7 +79,7 @@ std::vector<LinkPart> linksOf(const Simulator& simulator, int index) {
 }
 
 int findModel(const Simulator& simulator, const std::string& name, const std::string& where) {
-  if (simulator.modelIndex(name) < 0) refuseName(name, modelNames(simulator), where, "model");
+  if (simulator.modelIndex(name) < 0) refuseName(name, modelNames(simulator.models()), where, "model");
   return simulator.modelIndex(name);
 }
 

@@ -33,7 +33,7 @@ Simulator::Impl::Impl(const SimulationConfig& config, const model::UriResolver& 
   }
   for (const RobotConfig& robot : config_.robots) builder_.addRobot(robot, &world_);
   for (const ObjectConfig& object : config_.objects) builder_.addObject(object, &world_);
-  makeSensors();
+  sensors_.make(world_, config_.time_step, config_.random_seed);
   reportWithoutStep();
 }
 
@@ -188,7 +188,7 @@ void Simulator::tareSensor(int sensor) {
   const SensorConfig& config = sensors().at(static_cast<std::size_t>(sensor)).config;
   if (config.type != SensorType::FORCE_TORQUE)
     throw InputError(fmt::format("sensor '{}' has no zero to be set; tare one of type force_torque", config.name));
-  impl_->sensors_[sensor].tare().ask();
+  impl_->sensors_.tare(sensor).ask();
   impl_->tell("tareSensor", sensor);
 }
 

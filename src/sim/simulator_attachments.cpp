@@ -70,10 +70,7 @@ const AttachedModel* Simulator::Impl::carrierOf(int model) const {
 }
 
 void Simulator::Impl::attach(const std::string& object, const LinkPart& part, double max_force, double max_torque) {
-  std::vector<std::string> names;
-  for (const ModelInfo& model : world_.models)
-    if (model.alive) names.push_back(model.name);
-  requireName(object, names, "attach", "model");
+  requireName(object, modelNames(world_.models), "attach", "model");
   const int model = world_.modelIndex(object), robot = world_.robotOf(model);
   if (world_.models[model].kind == ModelKind::ENVIRONMENT || (robot >= 0 && world_.robots[robot].fixed_base))
     throw InputError(fmt::format("'{}' is fixed to the world; attach something that can move", object));

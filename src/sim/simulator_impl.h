@@ -24,8 +24,7 @@
 #include "guard/sweep_guard.h"
 #include "inputs/input_writer.h"
 #include "part_reports.h"
-#include "sensors/sensor_channel.h"
-#include "sensors/types/link_contacts.h"
+#include "sensors/sensor_set.h"
 
 namespace blem_sim::sim {
 
@@ -111,7 +110,6 @@ struct Simulator::Impl {
   StateParts partsOf(const SimulationState& state) const;
   /** Layout of the state, made on demand; models come and go seldom. */
   const std::string& layout() const;
-  void seedSensor(std::size_t sensor);
 
   void loadEnvironment(const EnvironmentConfig& environment);
   void unloadEnvironment(const std::string& name);
@@ -137,11 +135,6 @@ struct Simulator::Impl {
   // simulator_models.cpp
   void spawn(RobotConfig robot);
   void removeModel(const std::string& name);
-  /** Makes sensors of the world's that have none yet. */
-  void makeSensors();
-  void removeSensors(int robot);
-  /** Makes all sensors again, as their bodies are now. */
-  void remakeSensors();
   /** A model's colliders are elsewhere, or others: nothing is remembered of their contacts. */
   void forgetContacts(const std::vector<int>& colliders);
   void setLinkInertial(int body, int link, const geometry::MassProperties& inertial);
@@ -200,8 +193,7 @@ struct Simulator::Impl {
   LayerWatch layer_watch_;
   EnergyBalance energy_balance_;
   std::map<std::string, LiveGround> live_;  ///< by environment
-  std::vector<SensorChannel> sensors_;
-  std::vector<SensorSample> spare_samples_;  ///< [sensors] whose memory the next reading uses
+  SensorSet sensors_;
   AppliedLoads loads_;
   std::vector<BodyLoad> loads_now_;
   Epoch epoch_;
@@ -224,7 +216,6 @@ struct Simulator::Impl {
   std::vector<std::pair<int, int>> passed_;  ///< colliders, in the substep at hand
   std::vector<dynamics::JointState> joints_;
   PartReports part_reports_;
-  LinkContacts link_contacts_;
 };
 
 }  // namespace blem_sim::sim

@@ -62,19 +62,19 @@ void Simulator::Impl::spawn(RobotConfig robot) {
   else
     builder_.addRobot(robot, &world_);
   report_.samples.clear();
-  makeSensors();
+  sensors_.make(world_, config_.time_step, config_.random_seed);
   forgetLayers(robot.name);
   reportWithoutStep();
 }
 
 void Simulator::Impl::removeModel(const std::string& name) {
-  std::vector<std::string> names;
-  for (const ModelInfo& model : world_.models)
-    if (model.alive) names.push_back(model.name);
-  requireName(name, names, "delete_model", "model");
+  requireName(name, modelNames(world_.models), "delete_model", "model");
   const int model = world_.modelIndex(name);
   detachAll(model);
-  if (world_.robotOf(model) >= 0) removeSensors(world_.robotOf(model));
+  if (world_.robotOf(model) >= 0) {
+    report_.samples.clear();
+    sensors_.removeOf(world_, world_.robotOf(model));
+  }
   const std::vector<int> bodies = world_.models[model].bodies;
   for (const int body : bodies) loads_.clearBody(body);
   for (int joint = 0; joint < world_.world.jointCount(); ++joint) {
@@ -86,27 +86,6 @@ void Simulator::Impl::removeModel(const std::string& name) {
   live_.erase(name);
   layout_.clear();
   reportWithoutStep();
-}
-
-void Simulator::Impl::makeSensors() {
-  for (std::size_t i = sensors_.size(); i < world_.sensors.size(); ++i) {
-    sensors_.emplace_back(world_, world_.sensors[i], config_.time_step);
-    seedSensor(i);
-  }
-  spare_samples_.resize(sensors_.size());
-}
-
-void Simulator::Impl::removeSensors(int robot) {
-  report_.samples.clear();
-  for (std::size_t i = sensors_.size(); i-- > 0;) {
-    if (world_.sensors[i].robot != robot) continue;
-    sensors_.erase(sensors_.begin() + static_cast<std::ptrdiff_t>(i));
-    spare_samples_.erase(spare_samples_.begin() + static_cast<std::ptrdiff_t>(i));
-  }
-}
-
-void Simulator::Impl::remakeSensors() {
-  for (std::size_t i = 0; i < sensors_.size(); ++i) sensors_[i].remake(world_, world_.sensors[i], config_.time_step);
 }
 
 void Simulator::Impl::forgetContacts(const std::vector<int>& colliders) {
@@ -132,7 +111,7 @@ void Simulator::Impl::setLinkInertial(int body, int link, const geometry::MassPr
     world_.world.setInertial(body, lumped->bodies[robot.lumped->link_placement[link].body].inertial);
     robot.description = description;
     robot.lumped = lumped;
-    remakeSensors();
+    sensors_.remake(world_, config_.time_step);
   }
   forgetContacts(world_.collidersOf(model));
   layout_.clear();
@@ -226,7 +205,7 @@ void Simulator::Impl::setPhysics(const Vector3& gravity, double time_step, doubl
   epoch_ = {time(), step_count_};
   config_.time_step = time_step;
   layout_.clear();
-  remakeSensors();
+  sensors_.remake(world_, config_.time_step);
   at_hand_.known = false;
 }
 

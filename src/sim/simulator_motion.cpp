@@ -192,8 +192,7 @@ void Simulator::Impl::restart(const ModelInfo& model, int robot) {
     world_.motors[joint].reset();
     loads_.clearJoint(joint);
   }
-  for (std::size_t i = 0; i < sensors_.size(); ++i)
-    if (world_.sensors[i].robot == robot) sensors_[i].reset();
+  sensors_.resetOf(world_, robot);
 }
 
 void Simulator::Impl::resetModel(int index) {

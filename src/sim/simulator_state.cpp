@@ -29,13 +29,11 @@ std::string namesOfAll(const SimulatedWorld& world) {
 
 /** Saves the time step's epoch, loads and, if there are any, tares: nothing without all of them, so they are the last numbers of a state.
  */
-void saveLoads(const Epoch& epoch, const AppliedLoads& loads, const std::vector<SensorChannel>& sensors, geometry::StateWriter* writer) {
-  const bool tared = std::any_of(sensors.begin(), sensors.end(), [](const SensorChannel& sensor) { return sensor.tare().any(); });
-  if (loads.empty() && epoch.step == 0 && !tared) return;
+void saveLoads(const Epoch& epoch, const AppliedLoads& loads, const SensorSet& sensors, geometry::StateWriter* writer) {
+  if (loads.empty() && epoch.step == 0 && !sensors.isTared()) return;
   writer->numbers({epoch.time, static_cast<double>(epoch.step)});
   loads.save(writer);
-  if (!tared) return;
-  for (const SensorChannel& sensor : sensors) sensor.tare().save(writer);
+  if (sensors.isTared()) sensors.saveTares(writer);
 }
 
 /** @param steps of the state */
@@ -53,7 +51,7 @@ struct Simulator::Impl::StateParts {
   bool stopped;
   EnergyBalance energy_balance;
   std::vector<JointMotor> motors;
-  std::vector<SensorChannel> sensors;
+  SensorSet sensors;
   reduction::ReductionMemory choices;
   LayerWatch layer_watch;
   CrossingHistory crossings;
@@ -77,7 +75,7 @@ SimulationState Simulator::Impl::content() const {
   energy_balance_.save(&writer);
   for (std::size_t joint = 0; joint < world_.motors.size(); ++joint)
     if (world_.world.hasJoint(static_cast<int>(joint))) world_.motors[joint].save(&writer);
-  for (const SensorChannel& sensor : sensors_) sensor.save(&writer);
+  sensors_.save(&writer);
   constraint_maker_.memory().save(&writer);
   layer_watch_.save(&writer);
   at_hand_.crossings.save(&writer);
@@ -96,10 +94,7 @@ Simulator::Impl::StateParts Simulator::Impl::partsOf(const SimulationState& stat
   parts.energy_balance.restore(world_.world.bodyCount(), &reader);
   for (std::size_t joint = 0; joint < parts.motors.size(); ++joint)
     if (world_.world.hasJoint(static_cast<int>(joint))) parts.motors[joint].restore(&reader);
-  for (const SensorInfo& sensor : world_.sensors) {
-    parts.sensors.emplace_back(world_, sensor, config_.time_step);
-    parts.sensors.back().restore(&reader);
-  }
+  parts.sensors.restore(world_, config_.time_step, &reader);
   parts.choices.restore(world_.colliders, &reader);
   parts.layer_watch.restore(world_.colliders, &reader);
   parts.crossings.restore(world_.colliders, &reader);
@@ -109,8 +104,7 @@ Simulator::Impl::StateParts Simulator::Impl::partsOf(const SimulationState& stat
     parts.epoch = epochFrom(state.step, &reader);
     parts.loads.restore(world_.world.bodyCount(), world_.world.jointCount(), &reader);
   }
-  if (reader.numbersLeft() > 0)
-    for (SensorChannel& sensor : parts.sensors) sensor.tare().restore(&reader);
+  if (reader.numbersLeft() > 0) parts.sensors.restoreTares(&reader);
   reader.finish();
   return parts;
 }
@@ -144,14 +138,6 @@ void Simulator::Impl::restore(const SimulationState& state) {
   reportWithoutStep();
 }
 
-// A sensor's noise is a stream of its own, told by names: other sensors and robots change nothing in it.
-void Simulator::Impl::seedSensor(std::size_t sensor) {
-  const SensorInfo& info = world_.sensors[sensor];
-  ContentHash seed;
-  seed.add(config_.random_seed).add(world_.robots[info.robot].name).add(info.config.name);
-  sensors_[sensor].random().setState(seed.value());
-}
-
 SimulationState Simulator::save() const { return impl_->save(); }
 void Simulator::restore(const SimulationState& state) {
   impl_->restore(state);
@@ -165,7 +151,7 @@ void Simulator::resetWorld() {
 void Simulator::resetSimulation() {
   impl_->step_count_ = 0;
   impl_->epoch_ = Epoch();
-  for (std::size_t i = 0; i < impl_->sensors_.size(); ++i) impl_->seedSensor(i);
+  impl_->sensors_.seed(impl_->world_, impl_->config_.random_seed);
   impl_->resetWorld();
   impl_->tell("resetSimulation");
 }

@@ -53,8 +53,7 @@ void Simulator::Impl::startStep() {
   substeps_ = Substeps();
   report_.status = STEP_OK;
   report_.profile = StepProfile();
-  for (SensorSample& sample : report_.samples) spare_samples_[sample.sensor] = std::move(sample);
-  report_.samples.clear();
+  sensors_.takeBack(&report_.samples);
   report_.layer_events.clear();
   report_.broken_attachments.clear();
   report_.energy_gained = report_.energy_out_of_nothing = 0;
@@ -220,15 +219,15 @@ void Simulator::Impl::acceptSubstep(const MadeSolve& made) {
 void Simulator::Impl::sensors() {
   const StageTimer timer(&report_.profile, Stage::SENSORS);
   jointStates(&joints_);
-  const auto reads_contacts = [this](const SensorChannel& sensor) { return sensor.readsContacts(step_count_); };
-  if (std::any_of(sensors_.begin(), sensors_.end(), reads_contacts)) link_contacts_.index(world_, part_reports_.contacts());
-  const StepContext context{
-      world_, config_.time_step, bodies_before_, bodies_, joints_, part_reports_.jointWrenches(), part_reports_.contacts(), link_contacts_};
-  for (std::size_t i = 0; i < sensors_.size(); ++i) {
-    if (!sensors_[i].read(context, step_count_, &spare_samples_[i])) continue;
-    spare_samples_[i].sensor = static_cast<int>(i);
-    report_.samples.push_back(std::move(spare_samples_[i]));
-  }
+  const StepContext step{world_,
+                         config_.time_step,
+                         bodies_before_,
+                         bodies_,
+                         joints_,
+                         part_reports_.jointWrenches(),
+                         part_reports_.contacts(),
+                         sensors_.linkContacts()};
+  sensors_.read(step, step_count_, &report_.samples);
 }
 
 bool Simulator::Impl::bodiesAreFinite() const {

@@ -22,7 +22,7 @@ constexpr double HOLDS = 0.5;  // of a dof's inertia: a joint that answers more 
 // Change of the velocities of a tree by its velocity products in a step, over the velocities in the frame of its centre of mass; in the
 // norm of the energy, each dof's inertia taken alone; the more, the further the root turns. `mass_velocity`: M times the velocity.
 double turning(const FreeStart& start, const Eigen::VectorXd& mass_velocity) {
-  const auto& [forest, tree, dt, motion, velocity] = start;
+  const auto [forest, tree, dt, motion, velocity] = start;
   const ForestTree& t = forest.trees()[tree];
   double change = 0, energy = 0;
   for (int k = t.first_dof; k < t.dof_end; ++k) {

@@ -81,6 +81,7 @@ BLEM_SIM_LANES void subtractFree(const double* b, const double* a, int count, co
 
 BLEM_SIM_LANES void forwardFree(const FreeColumn& column, double* own, double* x) {
   const double *l = column.l, *blocks = column.blocks();
+  const int* rows = column.rows;
   for (int k = 0; k < FREE; ++k) {
     own[k] /= l[FREE * k + k];
     for (int i = k + 1; i < FREE; ++i) own[i] -= own[k] * l[FREE * k + i];
@@ -92,15 +93,16 @@ BLEM_SIM_LANES void forwardFree(const FreeColumn& column, double* own, double* x
       upper += fourRows(blocks + FREE * k) * own[k];
       lower += two(blocks + FREE * k) * own[k];
     }
-    fourRows(x + column.rows[n]) -= upper;
-    two(x + column.rows[n]) -= lower;
+    fourRows(x + rows[n]) -= upper;
+    two(x + rows[n]) -= lower;
   }
 }
 
 void backwardFree(const FreeColumn& column, double* own, const double* x) {
   const double *l = column.l, *blocks = column.blocks();
+  const int* rows = column.rows;
   for (int n = 0; n < column.count; ++n, blocks += FREE_BLOCK)
-    for (int i = 0; i < FREE; ++i) own[i] -= blockDot<FREE>(blocks + FREE * i, x + column.rows[n]);
+    for (int i = 0; i < FREE; ++i) own[i] -= blockDot<FREE>(blocks + FREE * i, x + rows[n]);
   own[5] /= l[35];
   own[4] = (own[4] - blockDot<1>(l + 29, own + 5)) / l[28];
   own[3] = (own[3] - blockDot<2>(l + 22, own + 4)) / l[21];

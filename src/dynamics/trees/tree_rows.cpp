@@ -45,7 +45,7 @@ void TreeFactor::resize(const Forest& forest) {
 }
 
 BLEM_SIM_LANES void multiply(const TreeMatrix& matrix, const Eigen::VectorXd& v, Eigen::VectorXd* out, TreePaths* paths) {
-  const auto& [forest, tree, rows, chosen] = matrix;
+  const auto [forest, tree, rows, chosen] = matrix;
   const ForestTree& t = forest.trees()[tree];
   clear(forest, tree, &paths->values);
   clear(forest, tree, &paths->sums);

@@ -1,23 +1,21 @@
 #include "services/physics_services.h"
 
-#include <boost/function.hpp>
+#include <std_srvs/Empty.h>
+
+#include <functional>
+#include <string>
+#include <utility>
 
 namespace blem_sim::node {
 
-PhysicsServices::PhysicsServices(ros::NodeHandle private_node, SimulationLoop* loop) {
-  advertise(&private_node, "pause_physics", [loop] { loop->pause(); });
-  advertise(&private_node, "unpause_physics", [loop] { loop->unpause(); });
-  advertise(&private_node, "reset_world", [loop] { loop->resetWorld(); });
-  advertise(&private_node, "reset_simulation", [loop] { loop->resetSimulation(); });
-}
-
-void PhysicsServices::advertise(ros::NodeHandle* node, const std::string& name, const std::function<void()>& act) {
-  const boost::function<bool(std_srvs::Empty::Request&, std_srvs::Empty::Response&)> callback = [act](std_srvs::Empty::Request&,
-                                                                                                      std_srvs::Empty::Response&) {
-    act();
-    return true;
+PhysicsServices::PhysicsServices(const ros::NodeHandle& private_node, SimulationLoop* loop) : services_(private_node) {
+  const auto add = [this](const std::string& name, std::function<void()> act) {
+    services_.add<std_srvs::Empty>(name, [act = std::move(act)](const auto&, auto*) { act(); });
   };
-  servers_.push_back(node->advertiseService<std_srvs::Empty::Request, std_srvs::Empty::Response>(name, callback));
+  add("pause_physics", [loop] { loop->pause(); });
+  add("unpause_physics", [loop] { loop->unpause(); });
+  add("reset_world", [loop] { loop->resetWorld(); });
+  add("reset_simulation", [loop] { loop->resetSimulation(); });
 }
 
 }  // namespace blem_sim::node

@@ -182,4 +182,11 @@ void SimulatedWorld::bodyStates(std::vector<dynamics::BodyState>* out) const {
   for (int body = 0; body < world.bodyCount(); ++body) (*out)[body] = world.bodyState(body);
 }
 
+std::vector<std::string> modelNames(const std::vector<ModelInfo>& models) {
+  std::vector<std::string> names;
+  for (const ModelInfo& model : models)
+    if (model.alive) names.push_back(model.name);
+  return names;
+}
+
 }  // namespace blem_sim::sim

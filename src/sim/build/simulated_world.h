@@ -78,4 +78,7 @@ struct SimulatedWorld {
   std::set<int> free_models_, free_colliders_;
 };
 
+/** Names of the models that are alive. */
+std::vector<std::string> modelNames(const std::vector<ModelInfo>& models);
+
 }  // namespace blem_sim::sim
