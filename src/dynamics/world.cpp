@@ -6,7 +6,7 @@
 
 #include "lanes/lanes.h"
 #include "scene/input_check.h"
-#include "scene/scene.h"
+#include "scene/joint_readings.h"
 #include "scene/world_state.h"
 #include "scene/world_state_check.h"
 #include "stepper_table.h"
@@ -110,7 +110,7 @@ void World::setBodyState(int body, const BodyState& state) {
 
 JointState World::jointState(int joint) const {
   if (impl_->joints_known) return impl_->joints[joint];
-  return {impl_->scene.jointPosition(joint), impl_->scene.jointVelocity(joint), impl_->scene.joints()[joint].last_effort};
+  return {jointPosition(impl_->scene, joint), jointVelocity(impl_->scene, joint), impl_->scene.joints()[joint].last_effort};
 }
 
 void World::resetJointPosition(int joint, double position) {
@@ -154,7 +154,7 @@ const SolveResult& World::step(double dt, const std::vector<ContactConstraint>& 
   impl.result.finite = impl.advance(input);
   if (impl.result.finite) {
     for (std::size_t j = 0; j < drives.size(); ++j) impl.scene.joints()[j].last_effort = impl.result.motor_efforts[j];
-    impl.scene.readJoints(&impl.joints);
+    readJoints(&impl.scene, &impl.joints);
     impl.joints_known = true;
   } else {
     impl.result.contact_forces.assign(contacts.size(), Vector3::Zero());

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "lanes/spatial.h"
+#include "scene/joint_readings.h"
 
 namespace blem_sim::dynamics {
 namespace {
@@ -66,9 +67,9 @@ std::vector<double> carriedInertias(const Scene& scene) {
   for (const int joint : scene.leavesFirst()) {
     const JointSlot& slot = scene.joints()[joint];
     if (slot.spec.kind != JointKind::FIXED) {
-      const Vector3 axis = scene.jointAxis(joint);
+      const Vector3 axis = jointAxis(scene, joint);
       const bool turns = slot.spec.kind == JointKind::REVOLUTE;
-      const Vector6 twist = turns ? spatial(axis, scene.jointOrigin(joint, bits).cross(axis)) : spatial(Vector3::Zero(), axis);
+      const Vector6 twist = turns ? spatial(axis, jointOrigin(scene, joint, bits).cross(axis)) : spatial(Vector3::Zero(), axis);
       inertias[joint] = twist.dot(carried[slot.spec.child].times(twist));
     }
     if (slot.spec.parent != WORLD_BODY) carried[slot.spec.parent].add(carried[slot.spec.child]);
@@ -162,8 +163,8 @@ void setDrives(Scene* scene, const StepInput& input, const std::vector<double>& 
     const JointSlot& slot = scene->joints()[j];
     if (!slot.motor) continue;
     const int joint = static_cast<int>(j);
-    const double inverse_inertia = inertias[j] > 0 ? 1 / inertias[j] : scene->inverseInertia(joint);
-    const JointMotion motion{scene->jointPosition(joint), scene->jointVelocity(joint)};
+    const double inverse_inertia = inertias[j] > 0 ? 1 / inertias[j] : inverseInertia(*scene, joint);
+    const JointMotion motion{jointPosition(*scene, joint), jointVelocity(*scene, joint)};
     setMotorRows(slot, input.drives[j], motion, dt, std::max(cfm, DRY_SOFTNESS * dt * (inverse_inertia * cfm_scale)));
     setStop(slot, motion, dt, settings, cfm);
     addEffort(slot, input.drives[j].givenEffort() + coupling[j]);
@@ -182,7 +183,7 @@ void readEfforts(const Scene& scene, const std::vector<JointDrive>& drives, cons
     const double of_rows = axes[j].dot(on_child);
     result->axis_efforts[j] = drives[j].givenEffort() + coupling[j] + of_rows;
     const int joint = static_cast<int>(j);
-    result->motor_efforts[j] = drives[j].effort + ofMotor(of_rows, drives[j], {scene.jointPosition(joint), scene.jointVelocity(joint)});
+    result->motor_efforts[j] = drives[j].effort + ofMotor(of_rows, drives[j], {jointPosition(scene, joint), jointVelocity(scene, joint)});
   }
 }
 

@@ -1,4 +1,5 @@
 #include "ode/joint_wrenches.h"
+#include "scene/joint_readings.h"
 
 #include <Eigen/LU>
 
@@ -30,7 +31,7 @@ void addWrench(const Wrench& w, double sign, Wrench* to) {
 Wrench needed(const Scene& scene, int body, const BodyBits& start, double dt) {
   const BodySlot& slot = scene.bodies()[body];
   const BodyBits end = scene.bits(body);
-  const Matrix3 I = scene.inertiaInWorld(body, start.rotation());
+  const Matrix3 I = inertiaInWorld(scene, body, start.rotation());
   Wrench w;
   w.force = slot.spec.inertial.mass * ((end.velocity() - start.velocity()) / dt - scene.gravity()) - slot.pending.force;
   w.torque = I * (end.spin() - start.spin()) / dt - gyroscopicTorque(I, start.spin(), dt) - slot.pending.torque;
@@ -42,7 +43,7 @@ Wrench feedbackOnChild(const JointSlot& slot, int joint, const Scene& scene, dou
   if (!slot.motor) return w;
   w.force += fromOde(slot.motor_feedback.f1);
   w.torque += fromOde(slot.motor_feedback.t1);
-  const Vector3 axis = scene.jointAxis(joint);
+  const Vector3 axis = jointAxis(scene, joint);
   (slot.spec.kind == JointKind::REVOLUTE ? w.torque : w.force) += given_effort * axis;
   return w;
 }
@@ -65,7 +66,7 @@ void jointWrenches(const Scene& scene, const std::vector<BodyBits>& start, const
   const auto settle = [&](int joint, const Wrench& on_child) {
     const JointSpec& spec = scene.joints()[joint].spec;
     const Vector3 child = start[spec.child].com();
-    (*wrenches)[joint] = moved(on_child, child, scene.jointOrigin(joint, start));
+    (*wrenches)[joint] = moved(on_child, child, jointOrigin(scene, joint, start));
     if (spec.parent != WORLD_BODY) addWrench(moved(on_child, child, start[spec.parent].com()), 1, &open[spec.parent]);
   };
   for (std::size_t j = 0; j < scene.joints().size(); ++j) {

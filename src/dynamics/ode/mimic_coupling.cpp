@@ -1,4 +1,5 @@
 #include "ode/mimic_coupling.h"
+#include "scene/joint_readings.h"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -21,7 +22,7 @@ void MimicCoupling::findRelations(const Scene& scene, double dt, const SolverSet
     const int joint = static_cast<int>(j), master = slot.spec.mimic_joint;
     if (!slot.motor || master < 0 || !scene.joints()[master].motor) continue;
     const double multiplier = slot.spec.mimic_multiplier;
-    const double error = scene.jointPosition(joint) - multiplier * scene.jointPosition(master) - slot.spec.mimic_offset;
+    const double error = jointPosition(scene, joint) - multiplier * jointPosition(scene, master) - slot.spec.mimic_offset;
     const double cap = settings.max_correction_speed;
     relations_.push_back({joint, master, multiplier, std::max(-cap, std::min(cap, -settings.joint_erp * error / dt))});
   }
@@ -37,7 +38,7 @@ Eigen::VectorXd MimicCoupling::residual(const Scene& scene, const Eigen::VectorX
   last_f_ = f;
   Eigen::VectorXd r(relations_.size());
   for (std::size_t i = 0; i < relations_.size(); ++i)
-    r[i] = scene.jointVelocity(relations_[i].joint) - relations_[i].multiplier * scene.jointVelocity(relations_[i].master) -
+    r[i] = jointVelocity(scene, relations_[i].joint) - relations_[i].multiplier * jointVelocity(scene, relations_[i].master) -
            relations_[i].speed;
   return r;
 }
@@ -48,7 +49,7 @@ void MimicCoupling::probe(const Scene& scene, double dt, const Eigen::VectorXd& 
   for (int i = 0; i < n; ++i) {
     const Relation& relation = relations_[i];
     const double inverse_inertia =
-        scene.inverseInertia(relation.joint) + relation.multiplier * relation.multiplier * scene.inverseInertia(relation.master);
+        inverseInertia(scene, relation.joint) + relation.multiplier * relation.multiplier * inverseInertia(scene, relation.master);
     const double effort = PROBE_SPEED / (dt * inverse_inertia);
     derivative.col(i) = (residual(scene, f + effort * Eigen::VectorXd::Unit(n, i), solve) - r) / (dt * effort);
   }

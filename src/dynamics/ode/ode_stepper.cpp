@@ -6,6 +6,7 @@
 #include "ode/joint_drives.h"
 #include "ode/joint_wrenches.h"
 #include "ode/mimic_coupling.h"
+#include "scene/joint_readings.h"
 #include "scene/stepper.h"
 
 namespace blem_sim::dynamics {
@@ -61,7 +62,7 @@ class OdeStepper : public Stepper {
     scene->bits(&start_);
     axes_.resize(scene->joints().size());
     for (std::size_t j = 0; j < axes_.size(); ++j)
-      if (scene->joints()[j].motor) axes_[j] = scene->jointAxis(static_cast<int>(j));
+      if (scene->joints()[j].motor) axes_[j] = jointAxis(*scene, static_cast<int>(j));
     contacts_.prepare(*scene, input.contacts, memory_, input.dt, settings_);
     mimics_.solve(*scene, input.dt, settings_, [&](const std::vector<double>& coupling) {
       scene->setBits(start_);

@@ -1,6 +1,7 @@
 #include "problem/make_terms.h"
 
 #include "scene/joint_motion.h"
+#include "scene/joint_readings.h"
 
 namespace blem_sim::dynamics {
 namespace {
@@ -155,7 +156,7 @@ JointTerm jointTerm(const TermSource& s, int node) {
 LoopTerm loopTerm(const TermSource& s, int index, BodyPair* pair) {
   const LoopClosure& loop = s.forest.loops()[index];
   *pair = makePair(s, loop.child, loop.parent);
-  const double q = s.scene.jointPosition(loop.joint);
+  const double q = jointPosition(s.scene, loop.joint);
   const LoopFrames frames = loopFrames(s, loop, q);
   const PairDrift drift = pairDrift(s, *pair, frames.anchor);
   // Directions in the joint frame, the free axis last: of translation for a slider, of rotation for a hinge.

@@ -168,6 +168,4 @@ void Scene::setBodyState(int body, const BodyState& state) {
   dBodySetAngularVel(ode, state.w_WB.x(), state.w_WB.y(), state.w_WB.z());
 }
 
-Matrix3 Scene::inertiaInWorld(int body, const Matrix3& R_WB) const { return R_WB * bodies_[body].spec.inertial.inertia * R_WB.transpose(); }
-
 }  // namespace blem_sim::dynamics

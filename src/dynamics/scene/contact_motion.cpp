@@ -1,4 +1,5 @@
 #include "scene/contact_motion.h"
+#include "scene/joint_readings.h"
 
 namespace blem_sim::dynamics {
 namespace {
@@ -15,7 +16,7 @@ PointMotion pointMotion(const Scene& scene, int body, const Vector3& point) {
   motion.velocity = scene.velocity(body) + scene.spin(body).cross(arm);
   motion.acceleration = scene.gravity() + slot.pending.force / slot.spec.inertial.mass;
   if (!slot.pending.torque.isZero(0))
-    motion.acceleration += (scene.inertiaInWorld(body, scene.rotation(body)).inverse() * slot.pending.torque).cross(arm);
+    motion.acceleration += (inertiaInWorld(scene, body, scene.rotation(body)).inverse() * slot.pending.torque).cross(arm);
   return motion;
 }
 

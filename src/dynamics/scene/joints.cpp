@@ -1,6 +1,4 @@
 // Joints of the scene. ODE's first body is the child, so its angles, positions and motor efforts are the child's against the parent.
-#include <cmath>
-
 #include "blem_sim/geometry/free_slots.h"
 #include "blem_sim/geometry/input_error.h"
 #include "scene/input_check.h"
@@ -93,77 +91,6 @@ void Scene::createMotor(JointSlot* slot, dBodyID child, dBodyID parent, const Ve
       dJointSetLMotorAxis(slot->motor, row, FIXED_TO_CHILD, axis.x(), axis.y(), axis.z());
   }
   dJointSetFeedback(slot->motor, &slot->motor_feedback);
-}
-
-Vector3 Scene::jointAxis(int joint) const {
-  const JointSlot& slot = joints_[joint];
-  dVector3 axis;
-  if (slot.spec.kind == JointKind::REVOLUTE)
-    dJointGetHingeAxis(slot.joint, axis);
-  else
-    dJointGetSliderAxis(slot.joint, axis);
-  return fromOde(axis);
-}
-
-Vector3 Scene::jointOrigin(int joint, const std::vector<BodyBits>& bits) const {
-  const JointSpec& spec = joints_[joint].spec;
-  const Vector3& p_PJ = spec.X_PJ.translation();
-  if (spec.parent == WORLD_BODY) return p_PJ;
-  const BodyBits& parent = bits[spec.parent];
-  return parent.com() + parent.rotation() * (p_PJ - bodies_[spec.parent].spec.inertial.com);
-}
-
-// Angle of a hinge since it was assembled. The same as ODE's, which takes longer to compute.
-double Scene::hingeAngle(const JointSlot& slot) const {
-  Quaternion turn = quaternionFromOde(dBodyGetQuaternion(bodies_[slot.spec.child].ode));
-  if (slot.spec.parent != WORLD_BODY) turn = quaternionFromOde(dBodyGetQuaternion(bodies_[slot.spec.parent].ode)).conjugate() * turn;
-  turn = turn * slot.assembled_turn.conjugate();
-  return 2 * std::atan2(slot.parent_axis.dot(turn.vec()), turn.w());
-}
-
-double Scene::jointPosition(int joint) const {
-  const JointSlot& slot = joints_[joint];
-  if (!slot.joint || slot.spec.kind == JointKind::FIXED) return 0;
-  if (slot.spec.kind == JointKind::PRISMATIC) return slot.assembled_position + dJointGetSliderPosition(slot.joint);
-  const double one_turn = slot.assembled_position + hingeAngle(slot);
-  return one_turn + 2 * M_PI * std::round((slot.last_position - one_turn) / (2 * M_PI));
-}
-
-double Scene::jointVelocity(int joint) const {
-  const JointSlot& slot = joints_[joint];
-  if (!slot.joint || slot.spec.kind == JointKind::FIXED) return 0;
-  const int child = slot.spec.child, parent = slot.spec.parent;
-  const bool grounded = parent == WORLD_BODY;
-  Vector3 axis = slot.parent_axis, parent_spin = Vector3::Zero();
-  if (!grounded) {
-    axis = rotation(parent) * axis;
-    parent_spin = spin(parent);
-  }
-  if (slot.spec.kind == JointKind::REVOLUTE) return axis.dot(spin(child) - parent_spin);
-  if (grounded) return axis.dot(velocity(child));
-  return axis.dot(velocity(child) - velocity(parent) - parent_spin.cross(com(child) - com(parent)));
-}
-
-double Scene::inverseInertia(int joint) const {
-  const JointSlot& slot = joints_[joint];
-  const Vector3 axis = jointAxis(joint);
-  double sum = 0;
-  for (const int body : {slot.spec.child, slot.spec.parent}) {
-    if (body == WORLD_BODY) continue;
-    sum += slot.spec.kind == JointKind::PRISMATIC ? 1 / bodies_[body].spec.inertial.mass
-                                                  : axis.dot(inertiaInWorld(body, rotation(body)).inverse() * axis);
-  }
-  return sum;
-}
-
-void Scene::readJoints(std::vector<JointState>* states) {
-  states->resize(joints_.size());
-  for (std::size_t j = 0; j < joints_.size(); ++j) {
-    const int joint = static_cast<int>(j);
-    JointSlot& slot = joints_[j];
-    (*states)[j] = {jointPosition(joint), jointVelocity(joint), slot.last_effort};
-    if (slot.joint) slot.last_position = (*states)[j].position;
-  }
 }
 
 }  // namespace blem_sim::dynamics

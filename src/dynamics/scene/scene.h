@@ -103,25 +103,13 @@ class Scene {
   void setBits(const std::vector<BodyBits>& bits);
   BodyState bodyState(int body) const;
   void setBodyState(int body, const BodyState& state);
-  Matrix3 inertiaInWorld(int body, const Matrix3& R_WB) const;
 
-  /** World axis of a moving joint. */
-  Vector3 jointAxis(int joint) const;
-  /** Origin of the joint frame J in the world, J being fixed to the parent, whose state is given by the slot's bits. */
-  Vector3 jointOrigin(int joint, const std::vector<BodyBits>& bits) const;
-  double jointPosition(int joint) const;
-  double jointVelocity(int joint) const;
-  /** Inverse inertia along the joint's axis of its two bodies alone, [1/(kg m^2) or 1/kg]: an upper bound of the articulated one. */
-  double inverseInertia(int joint) const;
   /** Bodies, and the positions of joints that the next step goes on from. */
   void save(geometry::StateWriter* writer) const;
   /** Refuses a state of other numbers of bodies or joints. */
   void restore(geometry::StateReader* reader);
-  /** States of all joints; notes their positions, which tell the full turns. */
-  void readJoints(std::vector<JointState>* states);
 
  private:
-  double hingeAngle(const JointSlot& slot) const;
   void createWorld();
   void createBody(BodySlot* slot);
   void createJointWhereAssembled(JointSlot* slot);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "lanes/lanes.h"
+#include "scene/joint_readings.h"
 
 namespace blem_sim::dynamics {
 namespace {
@@ -180,8 +181,8 @@ void readTree(const Forest& forest, const Scene& scene, int tree, ForestMotion* 
       motion->origin[i] = body.X_WB.translation();
       motion->velocity.segment<6>(node.first_dof) = spatial(body.w_WB, body.v_WCom);
     } else if (node.dofs == 1) {
-      motion->position[i] = scene.jointPosition(node.joint);
-      motion->velocity[node.first_dof] = scene.jointVelocity(node.joint);
+      motion->position[i] = jointPosition(scene, node.joint);
+      motion->velocity[node.first_dof] = jointVelocity(scene, node.joint);
     }
   }
   motion->change.segment(t.first_dof, t.dofCount()).setZero();

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "dynamics/analytic_contacts.h"
+#include "scene/joint_readings.h"
 #include "stepper_table.h"
 #include "support/standard_values.h"
 
@@ -120,7 +121,7 @@ TEST(JointWrenches, AgreeWithOdesFeedback) {
     const std::vector<ContactConstraint> contacts = {contactOf(2, WORLD_BODY, tip, Vector3::UnitZ(), -1.0 - tip.z(), {}, 1)};
     std::vector<Vector3> axes;
     std::vector<double> gaps;
-    for (int j = 0; j < 3; ++j) axes.push_back(scene.jointAxis(j)), gaps.push_back(hingeGap(scene.joints()[j]));
+    for (int j = 0; j < 3; ++j) axes.push_back(jointAxis(scene, j)), gaps.push_back(hingeGap(scene.joints()[j]));
     const StepInput input{DT, contacts, drives};
     SolveResult result;
     stepper->step(&scene, input, &result);
@@ -132,7 +133,7 @@ TEST(JointWrenches, AgreeWithOdesFeedback) {
       Vector3 torque = fromOde(slot.joint_feedback.t1) + fromOde(slot.motor_feedback.t1);
       const Vector3 com = start[slot.spec.child].com();
       (j == 1 ? force : torque) += drives[j].effort * axes[j];
-      torque += (com - scene.jointOrigin(j, start)).cross(force);
+      torque += (com - jointOrigin(scene, j, start)).cross(force);
       ASSERT_NEAR((wrenches[j].force - force).norm(), 0, 1e-8 * (1 + force.norm())) << i << " " << j;
       ASSERT_NEAR((wrenches[j].torque - torque).norm(), 0, 1e-8 * (1 + torque.norm()) + 1.01 * gap_moment) << i << " " << j;
       gap_moment += gaps[j] * force.norm();
