@@ -25,9 +25,9 @@ struct HullChoice {
   const ContactIds& chosen_before;
 };
 
-/** Leaves out contacts that the corners of flat patches imply; of patches that have more than k corners, nothing. @return false if some
- * contact is not finite or its normal not unit: nothing is done */
-bool thinToHulls(const std::vector<contact::Contact>& contacts, int k, HullRoom* room, ThinnedContacts* thinned);
+/** Leaves out contacts that the corners of flat patches imply. @return false if some contact is not finite or its normal not unit: nothing
+ * is done */
+bool thinToHulls(const std::vector<contact::Contact>& contacts, HullRoom* room, ThinnedContacts* thinned);
 
 /** Chooses all thinned contacts, or k of them that span the wrenches best. @param reduced overwritten; sorted by id
  * @return largest lack of the choice in any wrench, as WrenchChoice tells it; 0 if nothing is left out */

@@ -119,7 +119,7 @@ bool hasPierced(const std::vector<contact::Contact>& contacts) {
 int prepare(const contact::ContactManifold& manifold, int limit, const Reducing& how, ThinnedContacts* thinned,
             std::vector<contact::Contact>* reduced) {
   const bool in_steps = how.method.reduce == static_cast<ReduceFunction>(reduceHull) && !hasPierced(manifold.contacts);
-  if (in_steps && thinToHulls(manifold.contacts, limit, &(*how.workspace)->hull, thinned))
+  if (in_steps && thinToHulls(manifold.contacts, &(*how.workspace)->hull, thinned))
     return std::min(limit, static_cast<int>(thinned->kept.size()));
   thinned->kept.clear();
   reduceContacts(manifold.contacts, limit, how, reduced);

@@ -28,13 +28,13 @@ bool mayHaveStairs(const std::vector<double>& heights) {
 }
 
 // Appends the hull of every patch among contacts of one cell, two at least. Reorders the members.
-void keepHullsOfCell(const std::vector<contact::Contact>& contacts, int cell, int k, HullRoom* room, std::vector<int>* kept) {
+void keepHullsOfCell(const std::vector<contact::Contact>& contacts, int cell, HullRoom* room, std::vector<int>* kept) {
   int *const begin = room->cells.begin(cell), *const end = room->cells.end(cell);
   const Vector3 normal = room->cells.normal(cell);
   std::vector<double>& heights = room->heights;
   heights.clear();
   for (const int* member = begin; member != end; ++member) heights.push_back(normal.dot(contacts[*member].point));
-  if (!mayHaveStairs(heights)) return patchHull({contacts, begin, end}, normal, k, &room->patch, kept);
+  if (!mayHaveStairs(heights)) return patchHull({contacts, begin, end}, normal, &room->patch, kept);
   std::vector<std::pair<double, int>>& stairs = room->stairs;
   stairs.clear();
   for (const int* member = begin; member != end; ++member) stairs.emplace_back(heights[member - begin], *member);
@@ -44,13 +44,13 @@ void keepHullsOfCell(const std::vector<contact::Contact>& contacts, int cell, in
     begin[i] = stairs[i].second;
     if (i + 1 < stairs.size() && stairs[i + 1].first - stairs[i].first <= STAIR) continue;
     int* patch_end = begin + i + 1;
-    patchHull({contacts, patch, patch_end}, normal, k, &room->patch, kept);
+    patchHull({contacts, patch, patch_end}, normal, &room->patch, kept);
     patch = patch_end;
   }
 }
 
 // Keeps the hull of each patch of equal normals; all contacts where normals are too many for patches to matter.
-void keepPatchHulls(const std::vector<contact::Contact>& contacts, int k, HullRoom* room, std::vector<int>* kept) {
+void keepPatchHulls(const std::vector<contact::Contact>& contacts, HullRoom* room, std::vector<int>* kept) {
   NormalCells& cells = room->cells;
   if (!cells.group(contacts)) {
     kept->resize(contacts.size());
@@ -62,7 +62,7 @@ void keepPatchHulls(const std::vector<contact::Contact>& contacts, int k, HullRo
     if (cells.end(cell) - cells.begin(cell) == 1) {
       kept->push_back(*cells.begin(cell));
     } else {
-      keepHullsOfCell(contacts, cell, k, room, kept);
+      keepHullsOfCell(contacts, cell, room, kept);
     }
   }
 }
@@ -81,10 +81,10 @@ float choose(const HullChoice& asked, HullRoom* room) {
 
 }  // namespace
 
-bool thinToHulls(const std::vector<contact::Contact>& contacts, int k, HullRoom* room, ThinnedContacts* thinned) {
+bool thinToHulls(const std::vector<contact::Contact>& contacts, HullRoom* room, ThinnedContacts* thinned) {
   bool ready = true;
   thinned->scale = PatchScale(contacts, &ready);
-  if (ready) keepPatchHulls(contacts, k, room, &thinned->kept);
+  if (ready) keepPatchHulls(contacts, room, &thinned->kept);
   return ready;
 }
 
@@ -104,7 +104,7 @@ void reduceHull(const std::vector<contact::Contact>& contacts, int k, const Cont
                 std::vector<contact::Contact>* reduced) {
   HullRoom* const room = &(*workspace)->hull;
   ThinnedContacts& thinned = room->thinned;
-  if (thinToHulls(contacts, k, room, &thinned)) {
+  if (thinToHulls(contacts, room, &thinned)) {
     chooseFromHulls({contacts, thinned, k, chosen_before}, room, reduced);
     return;
   }
@@ -113,7 +113,7 @@ void reduceHull(const std::vector<contact::Contact>& contacts, int k, const Cont
   contact::makeUsable(usable);
   bool ready = true;
   thinned.scale = PatchScale(usable, &ready);
-  keepPatchHulls(usable, k, room, &thinned.kept);
+  keepPatchHulls(usable, room, &thinned.kept);
   chooseFromHulls({usable, thinned, k, chosen_before}, room, reduced);
 }
 

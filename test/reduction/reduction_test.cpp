@@ -7,7 +7,9 @@
 #include <random>
 #include <tuple>
 
+#include "hull_stages.h"
 #include "reduction/contact_patches.h"
+#include "reduction_room.h"
 
 namespace blem_sim::reduction {
 namespace {
@@ -349,9 +351,8 @@ TEST(ReduceHull, KeepsTheExtremesOfWhatHardlyTouches) {
   }
 }
 
-// A wheel with more corners than may be kept: no hull, and still as good a choice as any.
+// A wheel with more corners than may be kept, and contacts inside of it: those are left out, and the choice is as good as any.
 TEST(ReduceHull, SpansAPatchOfManyCorners) {
-  Noise noise(42);
   Contacts all;
   for (int i = 0; i < 90; ++i) {
     const double angle = 2 * M_PI * i / 90, radius = i % 3 ? 0.05 : 0.03;
@@ -360,6 +361,10 @@ TEST(ReduceHull, SpansAPatchOfManyCorners) {
   const Contacts reduced = reducedBy(*findReduction("hull"), all, 20);
   EXPECT_EQ(reduced.size(), 20u);
   EXPECT_LT(supportError(all, reduced).mean, 0.01);
+  HullRoom room;
+  ThinnedContacts thinned;
+  ASSERT_TRUE(thinToHulls(all, &room, &thinned));
+  EXPECT_EQ(thinned.kept.size(), 60u);
 }
 
 // Vertices that coincide but for rounding are one corner, however many they are.

@@ -7,7 +7,6 @@
 
 #include "blem_sim/contact/contact_order.h"
 #include "choice/continued_choice.h"
-#include "choice/overtaken.h"
 #include "lanes/reduction_lanes.h"
 
 namespace blem_sim::reduction {
@@ -70,12 +69,9 @@ int deepest(const std::vector<contact::Contact>& contacts, const std::vector<int
 /** The wrenches that candidates reach, and those that the chosen ones do. */
 class WrenchChoice::Spans {
  public:
-  /** Candidates that cannot be extreme are left out. */
-  void start(const std::vector<contact::Contact>& contacts, const PatchScale& scale, const ContactIds& chosen_before,
-             std::vector<int>* candidates) {
+  void start(const std::vector<contact::Contact>& contacts, const PatchScale& scale, const std::vector<int>& candidates) {
     points_.clear();
-    for (const int candidate : *candidates) points_.push_back(wrenchPoint(contacts[candidate], scale));
-    dropOvertaken(contacts, chosen_before, candidates, &points_);
+    for (const int candidate : candidates) points_.push_back(wrenchPoint(contacts[candidate], scale));
     if (components_.size() < points_.size()) components_.resize(points_.size());
     findWrenches(directions_, points_.data(), static_cast<int>(points_.size()), components_.data(), &extremes_);
   }
@@ -175,7 +171,7 @@ float WrenchChoice::choose(const ChoiceQuestion& asked, std::vector<int>* candid
   const std::vector<contact::Contact>& contacts = asked.contacts;
   const int k = asked.k;
   order_.sort(contacts, candidates);
-  spans_->start(contacts, asked.scale, asked.chosen_before, candidates);
+  spans_->start(contacts, asked.scale, *candidates);
   const int deep = deepest(contacts, *candidates, asked.scale);
 
   findContinued(contacts, *candidates, k, asked.chosen_before, &continued_);

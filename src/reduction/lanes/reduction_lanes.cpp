@@ -172,17 +172,15 @@ BLEM_SIM_LANES int keepExtremePoints(const CellPoints& points, int count, int* a
   return size;
 }
 
-namespace {
-
-template <int DIRECTIONS>
-BLEM_SIM_INLINE int farthestOf(const PlaneDirections& directions, const double* x, const double* y, int count, PlaneExtremes* extremes,
-                               int* found) {
-  for (int d = 0; d < DIRECTIONS; ++d) extremes->value[d] = -__builtin_inf();
+BLEM_SIM_LANES int findFarthest(const PlaneDirections& directions, const PlanePlaces& places, PlaneExtremes* extremes, int* found) {
+  const double *x = places.x.data(), *y = places.y.data();
+  const int count = static_cast<int>(places.x.size());
+  for (int d = 0; d < OCTAGON_SIDES; ++d) extremes->value[d] = -__builtin_inf();
   int raising = 0;
   for (int i = 0; i < count; ++i) {
     const double px = x[i], py = y[i];
     long raises = 0;
-    for (int d = 0; d < DIRECTIONS; ++d) {
+    for (int d = 0; d < OCTAGON_SIDES; ++d) {
       const double along = directions.along(d, px, py), before = extremes->value[d];
       raises |= along >= before;
       extremes->value[d] = along > before ? along : before;
@@ -194,26 +192,16 @@ BLEM_SIM_INLINE int farthestOf(const PlaneDirections& directions, const double* 
   for (int r = 0; r < raising; ++r) {
     const double px = x[found[r]], py = y[found[r]];
     long extreme = 0;
-    for (int d = 0; d < DIRECTIONS; ++d) extreme |= directions.along(d, px, py) == extremes->value[d];
+    for (int d = 0; d < OCTAGON_SIDES; ++d) extreme |= directions.along(d, px, py) == extremes->value[d];
     found[size] = found[r];
     size += extreme != 0;
   }
   return size;
 }
 
-}  // namespace
-
-BLEM_SIM_LANES int findFarthest(const PlaneDirections& directions, const double* x, const double* y, int count, PlaneExtremes* extremes,
-                                int* found) {
-  return farthestOf<PLANE_DIRECTIONS>(directions, x, y, count, extremes, found);
-}
-
-BLEM_SIM_LANES int findFarthestOfOctagon(const PlaneDirections& directions, const double* x, const double* y, int count,
-                                         PlaneExtremes* extremes, int* found) {
-  return farthestOf<OCTAGON_SIDES>(directions, x, y, count, extremes, found);
-}
-
-BLEM_SIM_LANES int findOutside(const Octagon& octagon, const double* x, const double* y, int count, int* found) {
+BLEM_SIM_LANES int findOutside(const Octagon& octagon, const PlanePlaces& places, int* found) {
+  const double *x = places.x.data(), *y = places.y.data();
+  const int count = static_cast<int>(places.x.size());
   constexpr int BLOCK = 64;
   int size = 0;
   for (int first = 0; first < count; first += BLOCK) {

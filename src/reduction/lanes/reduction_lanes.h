@@ -7,7 +7,6 @@ namespace blem_sim::reduction {
 
 constexpr int WRENCH_DIRECTIONS = 256;  // more cost time, fewer leave extremes unseen
 constexpr int CELL_DIRECTIONS = 16;
-constexpr int PLANE_DIRECTIONS = 32;
 constexpr int OCTAGON_SIDES = 8;
 
 /** Directions in the space of wrenches: force and torque parts by axis. */
@@ -81,26 +80,23 @@ struct PlanePlaces {
 
 /** Directions in a plane, and the farthest that points reach along them. */
 struct alignas(64) PlaneDirections {
-  double x[PLANE_DIRECTIONS], y[PLANE_DIRECTIONS];
+  double x[OCTAGON_SIDES], y[OCTAGON_SIDES];
   double along(int d, double px, double py) const { return x[d] * px + y[d] * py; }
 };
 struct alignas(64) PlaneExtremes {
-  double value[PLANE_DIRECTIONS];
+  double value[OCTAGON_SIDES];
 };
 
-/** Indices of the points that are farthest along some direction, ascending, into found[count]. @return their number */
-int findFarthest(const PlaneDirections& directions, const double* x, const double* y, int count, PlaneExtremes* extremes, int* found);
-/** The same along the first OCTAGON_SIDES directions alone. */
-int findFarthestOfOctagon(const PlaneDirections& directions, const double* x, const double* y, int count, PlaneExtremes* extremes,
-                          int* found);
+/** Indices of the points that are farthest along some direction, ascending, into found[number of places]. @return their number */
+int findFarthest(const PlaneDirections& directions, const PlanePlaces& places, PlaneExtremes* extremes, int* found);
 
 /** Lines through (x, y) along (dx, dy): points more than `limit` / length to their left are inside. */
 struct Octagon {
   double x[OCTAGON_SIDES], y[OCTAGON_SIDES], dx[OCTAGON_SIDES], dy[OCTAGON_SIDES], limit[OCTAGON_SIDES];
 };
 
-/** Indices of the points that are not inside all sides, ascending, into found[count]. @return their number */
-int findOutside(const Octagon& octagon, const double* x, const double* y, int count, int* found);
+/** Indices of the points that are not inside all sides, ascending, into found[number of places]. @return their number */
+int findOutside(const Octagon& octagon, const PlanePlaces& places, int* found);
 
 /** Triangles around a point, counter-clockwise. Keeps its memory. */
 class Fan {

@@ -22,29 +22,19 @@ bool planePointBefore(const std::vector<contact::Contact>& contacts, const Plane
   return a.contact != b.contact && contact::contactBefore(contacts[a.contact], contacts[b.contact]);
 }
 
-// The octagon's directions come first, the others between them after those. @return the index of the d-th, counter-clockwise
-int inOrder(int d) {
-  constexpr int BETWEEN = PLANE_DIRECTIONS / OCTAGON_SIDES - 1;
-  const int side = d / (BETWEEN + 1), after = d % (BETWEEN + 1);
-  return after == 0 ? side : OCTAGON_SIDES + side * BETWEEN + after - 1;
-}
-
 // Directions across which no mesh has sides.
 const PlaneDirections& planeDirections() {
   static const PlaneDirections directions = [] {
     constexpr double FIRST = 0.1234;  // [rad]
     PlaneDirections made;
-    for (int d = 0; d < PLANE_DIRECTIONS; ++d) {
-      made.x[inOrder(d)] = std::cos(FIRST + 2 * M_PI * d / PLANE_DIRECTIONS);
-      made.y[inOrder(d)] = std::sin(FIRST + 2 * M_PI * d / PLANE_DIRECTIONS);
+    for (int d = 0; d < OCTAGON_SIDES; ++d) {
+      made.x[d] = std::cos(FIRST + 2 * M_PI * d / OCTAGON_SIDES);
+      made.y[d] = std::sin(FIRST + 2 * M_PI * d / OCTAGON_SIDES);
     }
     return made;
   }();
   return directions;
 }
-
-// Whether a patch may have more corners than that and a look is worth it: large patches are mostly inside.
-bool mayHaveMore(int corners, int members) { return corners < std::min(members, PLANE_DIRECTIONS) && members < 20 * corners; }
 
 // Places of the members in the plane, and their depths.
 void project(const std::vector<contact::Contact>& contacts, const int* begin, const int* end, const Vector3& normal, PlanePlaces* places) {
@@ -60,16 +50,11 @@ void project(const std::vector<contact::Contact>& contacts, const int* begin, co
   }
 }
 
-// Finds the places that are farthest out, along the octagon's directions at least; few places need none.
-void findExtremes(int most, PatchHullRoom* room) {
+// Finds the places that are farthest out along the octagon's directions.
+void findExtremes(PatchHullRoom* room) {
   const PlanePlaces& places = room->places;
-  const int count = static_cast<int>(places.x.size());
-  const bool all_directions = mayHaveMore(most, count);
-  if (!all_directions && count < WORTHWHILE) return;
-  room->farthest.resize(count);
-  const auto find = all_directions ? findFarthest : findFarthestOfOctagon;
-  const int found = find(planeDirections(), places.x.data(), places.y.data(), count, &room->extremes, room->farthest.data());
-  room->farthest.resize(found);
+  room->farthest.resize(places.x.size());
+  room->farthest.resize(findFarthest(planeDirections(), places, &room->extremes, room->farthest.data()));
 }
 
 // The first place that is farthest along a direction.
@@ -80,20 +65,6 @@ int farthestAlong(int direction, const PatchHullRoom& room) {
   });
 }
 
-// Whether the hull surely has more corners than that: so many extremes apart from each other follow around it.
-bool hasMoreCorners(int than, const PatchHullRoom& room) {
-  constexpr double APART = 1e-6;  // [m]
-  if (!mayHaveMore(than, static_cast<int>(room.places.x.size())) || static_cast<int>(room.farthest.size()) <= than) return false;
-  const std::vector<double>&x = room.places.x, &y = room.places.y;
-  int corners = 0;
-  for (int d = 0, last = farthestAlong(inOrder(PLANE_DIRECTIONS - 1), room); d < PLANE_DIRECTIONS; ++d) {
-    const int next = farthestAlong(inOrder(d), room);
-    corners += std::abs(x[next] - x[last]) + std::abs(y[next] - y[last]) > APART;
-    last = next;
-  }
-  return corners > than;
-}
-
 // Indices of the places that may be corners: others lie inside the octagon of extremes. This saves most of the sorting of large patches.
 void findOuter(PatchHullRoom* room) {
   const std::vector<double>&x = room->places.x, &y = room->places.y;
@@ -102,6 +73,7 @@ void findOuter(PatchHullRoom* room) {
   outside.resize(count);
   std::iota(outside.begin(), outside.end(), 0);
   if (count < WORTHWHILE) return;
+  findExtremes(room);
   int corners[OCTAGON_SIDES];
   for (int d = 0; d < OCTAGON_SIDES; ++d) corners[d] = farthestAlong(d, *room);
   Octagon octagon;
@@ -116,7 +88,7 @@ void findOuter(PatchHullRoom* room) {
     sides += from != to;
   }
   if (sides < 3) return;  // all at one place, or in a line
-  outside.resize(findOutside(octagon, x.data(), y.data(), count, outside.data()));
+  outside.resize(findOutside(octagon, room->places, outside.data()));
 }
 
 // The outer places as points, sorted, of those at one place the deepest.
@@ -208,15 +180,10 @@ void findCorners(PatchHullRoom* room) {
 
 }  // namespace
 
-void patchHull(const PatchMembers& members, const Vector3& normal, int most, PatchHullRoom* room, std::vector<int>* kept) {
+void patchHull(const PatchMembers& members, const Vector3& normal, PatchHullRoom* room, std::vector<int>* kept) {
   const auto& [contacts, begin, end] = members;
   if (end - begin == 1) return kept->push_back(*begin);
   project(contacts, begin, end, normal, &room->places);
-  findExtremes(most, room);
-  if (hasMoreCorners(most, *room)) {
-    kept->insert(kept->end(), begin, end);
-    return;
-  }
   findOuter(room);
   sortOuter(contacts, begin, room);
   findCorners(room);

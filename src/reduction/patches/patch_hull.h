@@ -29,8 +29,7 @@ struct PatchHullRoom {
  * `normal`, and contacts deeper than the interpolation of the kept ones' depths. The constraint of every contact left out is a convex
  * combination of kept ones' or weaker, so no wrench is lost [Hauser 2013, 5]. The choice depends on the set of members only, not on their
  * order.
- * @param most patches with surely more corners than this are not worth their hull: all their members are kept
  */
-void patchHull(const PatchMembers& members, const Vector3& normal, int most, PatchHullRoom* room, std::vector<int>* kept);
+void patchHull(const PatchMembers& members, const Vector3& normal, PatchHullRoom* room, std::vector<int>* kept);
 
 }  // namespace blem_sim::reduction
