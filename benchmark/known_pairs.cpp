@@ -72,7 +72,7 @@ class KnownPairs {
  public:
   KnownPairs(const contact::MeshPair& pair, contact::ContactSearchBuffers* buffers) : X_FM_(pair.X_FM), range_(pair.range) {
     std::vector<contact::Contact> plain;
-    contact::FoundContacts found;
+    contact::EvaluatedContacts found;
     found.plain.overwrite(&plain);
     contact::searchContacts(pair, nullptr, buffers, &found);
     found.plain.finish();

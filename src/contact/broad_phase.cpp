@@ -33,9 +33,21 @@ double boxAbovePlane(const CollisionGeometry& half_space, const Pose& X_WH, cons
 
 class BroadPhase::Search {
  public:
-  Search(BroadPhase* space, const std::vector<Collider>& colliders, const std::vector<ColliderMotion>& motion,
-         const CollisionFilter& filter, double base_margin, double max_margin)
-      : space_(*space), colliders_(colliders), motion_(motion), filter_(filter), base_margin_(base_margin), max_margin_(max_margin) {}
+  /** As BroadPhase::find has it. */
+  struct Question {
+    const std::vector<Collider>& colliders;
+    const std::vector<ColliderMotion>& motion;
+    const CollisionFilter& filter;
+    double base_margin, max_margin;
+  };
+
+  Search(const Question& asked, BroadPhase* space)
+      : space_(*space),
+        colliders_(asked.colliders),
+        motion_(asked.motion),
+        filter_(asked.filter),
+        base_margin_(asked.base_margin),
+        max_margin_(asked.max_margin) {}
 
   void run() {
     space_.half_spaces_.clear();
@@ -274,7 +286,7 @@ bool CollisionFilter::allows(const Collider& a, const Collider& b) const {
 
 const std::vector<ColliderPair>& BroadPhase::find(const std::vector<Collider>& colliders, const std::vector<ColliderMotion>& motion,
                                                   const CollisionFilter& filter, double base_margin, double max_margin) {
-  Search(this, colliders, motion, filter, base_margin, max_margin).run();
+  Search({colliders, motion, filter, base_margin, max_margin}, this).run();
   return pairs_;
 }
 

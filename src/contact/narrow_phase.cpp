@@ -13,7 +13,7 @@ namespace blem_sim::contact {
 /** Room of searches. */
 struct SearchRoom {
   ContactSearchBuffers search;
-  FoundContacts found;
+  EvaluatedContacts found;
   std::vector<Contact> below_plane;
   ContactMerge merge;
 };
@@ -64,7 +64,7 @@ MeshPair meshPair(const PlacedCollider& a, const PlacedCollider& b, double margi
 
 /** @param X_AB_apart as narrowPhase knows it @param memory of the pair, or null */
 void meshMesh(const MeshPair& pair, const Pose* X_AB_apart, ContactSearchMemory* memory, SearchRoom* room, ContactManifold* out) {
-  FoundContacts& found = room->found;
+  EvaluatedContacts& found = room->found;
   const auto cross = [&](const MeshPair& at, ContactSearchMemory* known) {
     found.plain.overwrite(&out->contacts);
     searchContacts(at, known, &room->search, &found);

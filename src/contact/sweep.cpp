@@ -18,7 +18,7 @@ Matrix3 turned(const Vector3& turn) {
 bool areWithin(double distance, const CollisionGeometry& a, const CollisionGeometry& b, const Pose& X_BA) {
   bool found = false;
   const auto looking = [&found](std::uint32_t, std::uint32_t) { return !found; };
-  geometry::visitLeafPairsIf(a.bvh(), b.bvh(), X_BA, distance, looking, [&](std::uint32_t leaf_a, std::uint32_t leaf_b) {
+  geometry::visitLeafPairsIf({a.bvh(), b.bvh(), X_BA}, distance, looking, [&](std::uint32_t leaf_a, std::uint32_t leaf_b) {
     const geometry::Bvh::Node &node_a = a.bvh().nodes()[leaf_a], &node_b = b.bvh().nodes()[leaf_b];
     for (std::uint32_t i = node_a.first; i < node_a.first + node_a.count && !found; ++i) {
       geometry::Triangle t = geometry::triangleOf(a.mesh(), a.bvh().order()[i]);

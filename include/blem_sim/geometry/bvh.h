@@ -45,9 +45,16 @@ class Bvh {
 template <typename Visit>
 void visitLeafPairs(const Bvh& a, const Bvh& b, const Pose& X_BA, double margin, Visit&& visit);
 
+/** Two trees. */
+struct BvhPair {
+  const Bvh& a;
+  const Bvh& b;
+  const Pose& X_BA;  ///< pose of A's frame in B's
+};
+
 /** The same below pairs of nodes for which matters(node_a, node_b) holds. */
 template <typename Matters, typename Visit>
-void visitLeafPairsIf(const Bvh& a, const Bvh& b, const Pose& X_BA, double margin, Matters&& matters, Visit&& visit);
+void visitLeafPairsIf(const BvhPair& trees, double margin, Matters&& matters, Visit&& visit);
 
 /** Calls visit(leaf) for every leaf whose box meets `box` (tree's frame). In bvh_traversal.h. */
 template <typename Visit>

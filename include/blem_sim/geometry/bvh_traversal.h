@@ -95,14 +95,15 @@ void visitLeavesIf(const Bvh& tree, Meets&& meets, Visit&& visit) {
 }  // namespace bvh_detail
 
 template <typename Matters, typename Visit>
-void visitLeafPairsIf(const Bvh& a, const Bvh& b, const Pose& X_BA, double margin, Matters&& matters, Visit&& visit) {
+void visitLeafPairsIf(const BvhPair& trees, double margin, Matters&& matters, Visit&& visit) {
   using namespace bvh_detail;
+  const Bvh &a = trees.a, &b = trees.b;
   if (a.empty() || b.empty() || margin < 0) return;
   struct Pair {
     std::uint32_t a, b;
     FloatBox box_a;  // box of node a in B's frame: turned once when a is opened, kept while b is
   };
-  const FrameChange change(X_BA);
+  const FrameChange change(trees.X_BA);
   const WithinMargin near(margin);
   std::array<Pair, 2 * Bvh::MAX_DEPTH + 1> stack;
   int depth = 0;
@@ -127,7 +128,7 @@ void visitLeafPairsIf(const Bvh& a, const Bvh& b, const Pose& X_BA, double margi
 template <typename Visit>
 void visitLeafPairs(const Bvh& a, const Bvh& b, const Pose& X_BA, double margin, Visit&& visit) {
   visitLeafPairsIf(
-      a, b, X_BA, margin, [](std::uint32_t, std::uint32_t) { return true; }, visit);
+      {a, b, X_BA}, margin, [](std::uint32_t, std::uint32_t) { return true; }, visit);
 }
 
 template <typename Visit>

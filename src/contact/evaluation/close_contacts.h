@@ -27,7 +27,7 @@ class CloseContacts {
   }
 
   // Contacts that are in the world already, where no witnesses are kept: room for so many more, and the number that was written there.
-  kernels::ContactRow* rows(std::size_t more) { return placed_.rows(more); }
+  kernels::ContactNumbers* rows(std::size_t more) { return placed_.rows(more); }
   void advance(std::size_t written) { placed_.advance(written); }
 
   bool keepsWitnesses() const { return keeps_witnesses_; }

@@ -17,13 +17,13 @@ kernels::CandidateRun runOf(const std::vector<Candidate>& candidates) {
 
 }  // namespace
 
-void FoundContacts::clear() {
+void EvaluatedContacts::clear() {
   deepest_plain = -std::numeric_limits<double>::infinity();
   close.begin(false);
   crossings.clear();
 }
 
-double FoundContacts::leastGap(const MeshPair& pair) const {
+double EvaluatedContacts::leastGap(const MeshPair& pair) const {
   return std::min({pair.range, pair.layer - deepest_plain, close.leastGap(pair.layer)});
 }
 

@@ -15,7 +15,7 @@
 namespace blem_sim::contact {
 
 /** Contacts and crossings that a search finds. */
-struct FoundContacts {
+struct EvaluatedContacts {
   ContactWriter plain;       ///< in the world; each in a place of its own; none where meshes cross
   double deepest_plain = 0;  ///< [m] largest depth of the plain ones
   CloseContacts close;       ///< the others
@@ -35,8 +35,10 @@ struct FadingCover {
 struct EvaluationBuffers {
   static constexpr std::uint32_t BLOCK = 256;  ///< candidates that are tested at once: there is room for contacts of all
 
+  explicit EvaluationBuffers(SurroundingsMemory* surroundings) : surroundings(*surroundings) {}
+
+  SurroundingsMemory& surroundings;
   TurnedFeatures turned;
-  SurroundingsMemory surroundings;
   std::vector<kernels::VertexFaceHit> vertex_faces;
   std::vector<kernels::VertexEdgeHit> vertex_edges;
   std::vector<kernels::EdgeEdgeHit> edge_edges;
@@ -48,7 +50,7 @@ struct EvaluationBuffers {
   std::vector<kernels::Candidate> asked;  ///< vertices that may be over such faces
   LeavingBuffers leaving;
   BesideFaces fading;
-  std::vector<kernels::ContactRow> feet;             ///< per pair that fades
+  std::vector<kernels::ContactNumbers> feet;         ///< per pair that fades
   std::vector<kernels::FadingContact> asked_fading;  ///< those that may be covered
   std::vector<FadingCover> covers;                   ///< per contact of asked_fading
   std::vector<std::uint32_t> last_fading;            ///< per vertex: the last one of asked_fading; none between evaluations
@@ -63,7 +65,7 @@ struct EvaluationBuffers {
 class Evaluation {
  public:
   /** @param pairs of the lists, all or those that matter; the features of the lists must have been turned */
-  Evaluation(const MeshPair& pair, CandidateLists* lists, const CandidatePairs& pairs, EvaluationBuffers* buffers, FoundContacts* found)
+  Evaluation(const MeshPair& pair, CandidateLists* lists, const CandidatePairs& pairs, EvaluationBuffers* buffers, EvaluatedContacts* found)
       : pair_(pair),
         lists_(*lists),
         pairs_(pairs),
@@ -104,7 +106,7 @@ class Evaluation {
   CandidateLists& lists_;
   const CandidatePairs& pairs_;
   EvaluationBuffers& buffers_;
-  FoundContacts& found_;
+  EvaluatedContacts& found_;
   ExactTests exact_;
   BorderFades fades_;
 };

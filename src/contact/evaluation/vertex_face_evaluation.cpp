@@ -101,7 +101,7 @@ void Evaluation::addFeet(Side side) {
   const auto& vertices = side == Side::MOVING ? buffers_.turned.vertices : lists_.near.fixed.vertices.records;
   for (const kernels::FadingContact& each : buffers_.asked_fading) {
     const Candidate& c = buffers_.fading.pairs[each.pair];
-    const kernels::ContactRow& foot = buffers_.feet[each.row];
+    const kernels::ContactNumbers& foot = buffers_.feet[each.row];
     const Feature vertex{FeatureKind::VERTEX, lists_.near[side].vertices.names[c.first]},
         patch{FeatureKind::FACE, lists_.near[!side].patches[c.second]};
     const Witness at{vertex, vector3(vertices[c.first])}, on{patch, Vector3(foot.point)};

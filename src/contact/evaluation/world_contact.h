@@ -49,12 +49,13 @@ inline void placeInWorld(const MeshPair& pair, const FeatureContact& found, Cont
   out->pierced = found.pierced;
 }
 
-static_assert(offsetof(Contact, point) == offsetof(kernels::ContactRow, point) &&
-                  offsetof(Contact, normal_BA) == offsetof(kernels::ContactRow, normal) &&
-                  offsetof(Contact, depth) == offsetof(kernels::ContactRow, depth) &&
-                  offsetof(Contact, id) == offsetof(kernels::ContactRow, id) &&
-                  offsetof(Contact, weight) == offsetof(kernels::ContactRow, weight) &&
-                  offsetof(Contact, pierced) == offsetof(kernels::ContactRow, pierced) && sizeof(Contact) == sizeof(kernels::ContactRow),
+static_assert(offsetof(Contact, point) == offsetof(kernels::ContactNumbers, point) &&
+                  offsetof(Contact, normal_BA) == offsetof(kernels::ContactNumbers, normal) &&
+                  offsetof(Contact, depth) == offsetof(kernels::ContactNumbers, depth) &&
+                  offsetof(Contact, id) == offsetof(kernels::ContactNumbers, id) &&
+                  offsetof(Contact, weight) == offsetof(kernels::ContactNumbers, weight) &&
+                  offsetof(Contact, pierced) == offsetof(kernels::ContactNumbers, pierced) &&
+                  sizeof(Contact) == sizeof(kernels::ContactNumbers),
               "kernels write contacts as they are");
 
 /** A list of contacts that is written anew, over those that it holds: none is made only to be overwritten. */
@@ -69,7 +70,7 @@ class ContactWriter {
     if (contacts_->size() < count_ + more) geometry::resizeRoomy(count_ + more, contacts_);
     return contacts_->data() + count_;
   }
-  kernels::ContactRow* rows(std::size_t more) { return reinterpret_cast<kernels::ContactRow*>(room(more)); }
+  kernels::ContactNumbers* rows(std::size_t more) { return reinterpret_cast<kernels::ContactNumbers*>(room(more)); }
   /** Counts contacts that were written. */
   void advance(std::size_t written) { count_ += written; }
   /** Drops so many of the last contacts. */

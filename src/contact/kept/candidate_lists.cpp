@@ -1,12 +1,9 @@
 #include "kept/candidate_lists.h"
 
 #include <algorithm>
-#include <array>
-#include <utility>
 
 #include "blem_sim/geometry/roomy.h"
 #include "features/tolerances.h"
-#include "kept/list_schedule.h"
 #include "kernels/vectors.h"
 
 namespace blem_sim::contact {
@@ -156,21 +153,6 @@ void TurnedFeatures::turnForContacts(const CandidateLists& lists, const Pose& X_
 void TurnedFeatures::turnForCrossings(const CandidateLists& lists, const Pose& X_FM) {
   turn(kernels::kernels().turnEdges, lists.near.moving.edges.records, motionOf(X_FM), &edges);
   turn(kernels::kernels().turnFaces, lists.near.moving.faces.records, motionOf(X_FM), &faces);
-}
-
-void groupByFaces(const MeshPair& pair, CandidateLists* lists, CandidatePairs* room) {
-  for (const Side side : SIDES) {
-    if (pair.side(!side).mesh.elements.size() > ListSchedule::FEW_FACES) continue;
-    const std::vector<int>& faces = lists->near[!side].faces.names;
-    CandidatePairs::Candidates &candidates = lists->pairs.vertex_face[side], &grouped = room->vertex_face[side];
-    std::array<std::uint32_t, ListSchedule::FEW_FACES> places{};
-    for (const Candidate& c : candidates) ++places[faces[c.second]];
-    std::uint32_t end = 0;
-    for (std::uint32_t& place : places) end += std::exchange(place, end);
-    geometry::resizeRoomy(candidates.size(), &grouped);
-    for (const Candidate& c : candidates) grouped[places[faces[c.second]]++] = c;
-    candidates.swap(grouped);
-  }
 }
 
 namespace {

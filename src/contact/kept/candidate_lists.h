@@ -95,10 +95,6 @@ struct TurnedLists {
   const TurnedFeatures& turned;
 };
 
-/** Puts candidates of vertices with the same face one after the other, in the order of the faces, where a mesh has so few that each is near
- * many vertices. @param room overwritten */
-void groupByFaces(const MeshPair& pair, CandidateLists* lists, CandidatePairs* room);
-
 /**
  * Selects the candidates for contacts that can have one within pair.range while nothing moves or turns by more than the margin, in their
  * order.

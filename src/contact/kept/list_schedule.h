@@ -60,7 +60,6 @@ struct ListSchedule {
   static constexpr double MOST_NEAREST_PART = 0.4;   ///< part of the list's margin; raise if lists are long though margins are small
   static constexpr double LEAST_NEAREST_MARGIN = 0.005;  ///< part; raise if what trembles chooses anew
   static constexpr double LEAST_NEAREST_TURN = 0.001;    ///< of unit vectors; raise if what rocks chooses anew
-  static constexpr std::size_t FEW_FACES = 256;  ///< of a mesh whose candidates stand face by face; raise if sorting has become cheaper
 
   // ---- lists for crossings
   static constexpr double CROSSING_STEPS = 10;  ///< steps of the present motion, or those that fit into the largest margin; raise if what

@@ -86,10 +86,9 @@ std::uint32_t nearEdgeEdges(const EdgeRecord* moving, const EdgeRecord* fixed, C
     const Vectors d = r + t * q - s * p;
     const unsigned near = crosswise & ~bitsOf(dot(d, d) > range * range);
     if (near == 0) return 0u;
-    const Vectors n = cross(p, q);
-    return near & bitsOf(conesMayAllow(n, coneBound(dot(n, n), pp * qq, reach.turn), batch.inward(moving, OF_FIRST, 0).v,
-                                       batch.inward(moving, OF_FIRST, 1).v, batch.inward(fixed, OF_SECOND, 0).v,
-                                       batch.inward(fixed, OF_SECOND, 1).v));
+    const Vectors n = cross(p, q), into_m[] = {batch.inward(moving, OF_FIRST, 0).v, batch.inward(moving, OF_FIRST, 1).v},
+                  into_f[] = {batch.inward(fixed, OF_SECOND, 0).v, batch.inward(fixed, OF_SECOND, 1).v};
+    return near & bitsOf(conesMayAllow(n, coneBound(dot(n, n), pp * qq, reach.turn), into_m, into_f));
   });
 }
 
@@ -106,7 +105,7 @@ std::uint32_t nearVertexEdges(const Vec4* vertices, const EdgeRecord* edges, Can
     const Doubles part = dot(r, along.v) / start.w, length = squareRoot(start.w);
     const Vectors d = r - part * along.v;
     const AtEdge<Doubles> vertex{{inside, also}, squareRoot(dot(d, d)), maximum(-part, part - 1) * length};
-    return beside & bitsOf(isAtEdge(vertex, squareRoot(dot(both, both)), along.w < 0, range, margin, 3 * CLOSED));
+    return beside & bitsOf(isAtEdge(vertex, squareRoot(dot(both, both)), along.w < 0, EdgeReach<double>{range, margin, 3 * CLOSED}));
   });
 }
 

@@ -17,10 +17,10 @@ inline Lanes coneBound(Lanes n2, Lanes pp_qq, Number turn) {
   return (slack + turn) * squareRoot(n2) + 2 * turn * squareRoot(pp_qq);
 }
 
-/** Whether n or -n, from b to a, may be a contact's normal; which of them, is not asked. */
+/** Whether n or -n, from b to a, may be a contact's normal; which of them, is not asked. @param a, b into the faces of either edge */
 template <typename V, typename Lanes>
-inline auto conesMayAllow(const V& n, Lanes bound, const V& a0, const V& a1, const V& b0, const V& b1) {
-  const Lanes into_a0 = dot(a0, n), into_a1 = dot(a1, n), into_b0 = dot(b0, n), into_b1 = dot(b1, n);
+inline auto conesMayAllow(const V& n, Lanes bound, const V (&a)[2], const V (&b)[2]) {
+  const Lanes into_a0 = dot(a[0], n), into_a1 = dot(a[1], n), into_b0 = dot(b[0], n), into_b1 = dot(b[1], n);
   const Lanes most = maximum(maximum(into_b0, into_b1), -minimum(into_a0, into_a1));
   const Lanes least = minimum(minimum(into_b0, into_b1), -maximum(into_a0, into_a1));
   return (most <= bound) | (least >= -bound);

@@ -50,7 +50,8 @@ inline Doubles appendEdges(const Batch& batch, const EdgeFeet& feet, unsigned bi
   const Doubles depth = place.layer - feet.gap;
   const Mask first = batch.numbers(place.names_m, OF_FIRST), second = batch.numbers(place.names_f, OF_SECOND);
   const Mask ids = (place.a == Side::MOVING ? first << 32 | second : second << 32 | first) | static_cast<long>(place.kinds);
-  const ContactRow* const end = appendRows(inWorld(place, feet.point_m, feet.point_f, normal_BA), depth, ids, bits, out->rows + out->count);
+  const ContactNumbers* const end =
+      appendRows(inWorld(place, feet.point_m, feet.point_f, normal_BA), depth, ids, bits, out->rows + out->count);
   out->count = static_cast<std::uint32_t>(end - out->rows);
   return depth;
 }

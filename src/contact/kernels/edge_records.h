@@ -18,7 +18,7 @@ struct EdgePlace {
 /** Contacts of edges that need no closer look, as kernels write them. Room for one more than there are candidates. */
 struct PlainEdges {
   EdgePlace place;
-  ContactRow* rows;
+  ContactNumbers* rows;
   std::uint32_t count;  ///< so far; they are appended
   double deepest;       ///< [m] their largest depth so far
 };

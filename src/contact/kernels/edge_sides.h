@@ -15,15 +15,22 @@ struct AtEdge {
   Lanes beyond;     ///< beyond the edge's ends
 };
 
+/** Lengths [m] within which vertices matter to edges. */
+template <typename Number>
+struct EdgeReach {
+  Number range;     ///< of distance, and the margin
+  Number margin;    ///< that the vertex may move
+  Number rounding;  ///< that AtEdge::inside may be wrong by
+};
+
 /** Whether a vertex that is over neither of the edge's faces is not behind both, within range, and no farther beyond an end than a contact
  * fades: it does so at round edges.
- * @param fold length of the sum of the directions into the faces @param round whether the edge is @param range [m] of distance, and the
- * margin @param margin [m] that the vertex may move @param rounding [m] that `inside` may be wrong by */
+ * @param fold length of the sum of the directions into the faces @param round whether the edge is */
 template <typename Lanes, typename Bits, typename Number>
-inline auto isAtEdge(const AtEdge<Lanes>& vertex, Lanes fold, Bits round, Number range, Number margin, Number rounding) {
-  const Number slack = static_cast<Number>(2 * CONE_SLACK) * range + rounding;
-  const Lanes most = range - vertex.distance, fades = round ? most / static_cast<Number>(FADE_SLOPE) : Lanes{};
-  return (vertex.inside[0] + vertex.inside[1] <= fold * margin + 2 * slack) & (most >= 0) & (vertex.beyond <= fades + margin);
+inline auto isAtEdge(const AtEdge<Lanes>& vertex, Lanes fold, Bits round, const EdgeReach<Number>& reach) {
+  const Number slack = static_cast<Number>(2 * CONE_SLACK) * reach.range + reach.rounding;
+  const Lanes most = reach.range - vertex.distance, fades = round ? most / static_cast<Number>(FADE_SLOPE) : Lanes{};
+  return (vertex.inside[0] + vertex.inside[1] <= fold * reach.margin + 2 * slack) & (most >= 0) & (vertex.beyond <= fades + reach.margin);
 }
 
 }  // namespace

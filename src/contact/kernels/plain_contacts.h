@@ -49,7 +49,7 @@ inline WorldContacts inWorld(const Place& place, const Vectors& at, const Vector
   return {turnedPoint(place.X_WF, middle), turnedDirection(place.X_WF, normal)};
 }
 
-/** ContactRow::weight and the fields behind it. */
+/** ContactNumbers::weight and the fields behind it. */
 constexpr struct {
   double weight;
   std::uint64_t pierced;
@@ -57,7 +57,7 @@ constexpr struct {
 
 /** Writes a row for every lane; where its bit is not set the next one is written over it. @param bits of the lanes that have a contact
  * @return the last row's end */
-inline ContactRow* appendRows(const WorldContacts& contacts, Doubles depth, Mask ids, unsigned bits, ContactRow* row) {
+inline ContactNumbers* appendRows(const WorldContacts& contacts, Doubles depth, Mask ids, unsigned bits, ContactNumbers* row) {
   const auto& [point, normal] = contacts;
   transposed({point.x, point.y, point.z, normal.x, normal.y, normal.z, depth, reinterpret_cast<Doubles>(ids)}, [&](int lane) {
     double* const now = row->point;
@@ -82,17 +82,28 @@ inline Mask idsOf(const Rows& vertices, const Faces& faces, const ContactPlace& 
   return names | static_cast<long>(place.kinds);
 }
 
-/** @param up the faces' normals @param bits of the lanes that have a contact @return depths */
+/** Vertices over faces, or beside them. */
+template <typename Faces>
+struct OverFaces {
+  const Faces& faces;
+  Rows vertices;
+  Doubles height;  ///< [m] over the faces' planes
+};
+template <typename Faces>
+OverFaces(const Faces&, const Rows&, Doubles) -> OverFaces<Faces>;
+
+/** @param up_W the faces' normals @param bits of the lanes that have a contact @return depths */
 template <typename Faces, typename Lanes>
-[[gnu::always_inline]] inline Doubles appendPlain(const Faces& faces, const Rows& vertices, const VectorsOf<Lanes>& up_W, Doubles height,
-                                                  unsigned bits, PlainContacts* out) {
+[[gnu::always_inline]] inline Doubles appendPlain(const OverFaces<Faces>& lanes, const VectorsOf<Lanes>& up_W, unsigned bits,
+                                                  PlainContacts* out) {
   const ContactPlace& place = out->place;
+  const Doubles height = lanes.height;
   const Mask to_a = place.verticesAreA() ? height > 0 : height <= 0;
   const Doubles sign = to_a ? all(1) : all(-1), depth = place.layer - absolute(height), beside = sign * place.shift - 0.5 * height;
-  const Vectors at = turnedPoint(place.X_WF, vertices.v);
+  const Vectors at = turnedPoint(place.X_WF, lanes.vertices.v);
   const WorldContacts contacts{{at.x + beside * up_W.x, at.y + beside * up_W.y, at.z + beside * up_W.z},
                                {sign * up_W.x, sign * up_W.y, sign * up_W.z}};
-  const ContactRow* const end = appendRows(contacts, depth, idsOf(vertices, faces, place), bits, out->rows + out->count);
+  const ContactNumbers* const end = appendRows(contacts, depth, idsOf(lanes.vertices, lanes.faces, place), bits, out->rows + out->count);
   out->count = static_cast<std::uint32_t>(end - out->rows);
   return depth;
 }

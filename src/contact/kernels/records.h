@@ -163,7 +163,7 @@ struct VertexFaceHit {
 };
 
 /** A Contact, number by number. */
-struct ContactRow {
+struct ContactNumbers {
   double point[3];   ///< [m] world
   double normal[3];  ///< unit, world, from B to A
   double depth;      ///< [m]
@@ -210,7 +210,7 @@ struct ContactPlace {
 /** Contacts that need no closer look, as kernels write them. Room for one more than there are candidates. */
 struct PlainContacts {
   ContactPlace place;
-  ContactRow* rows;
+  ContactNumbers* rows;
   std::uint32_t count;  ///< so far; they are appended
   double deepest;       ///< [m] their largest depth so far
 };
@@ -242,7 +242,7 @@ struct FadingContact {
 
 /** Contacts that fade, as kernels write them. Room for one more row than there are pairs. */
 struct FadingContacts {
-  ContactRow* rows;
+  ContactNumbers* rows;
   FadingContact* asked;  ///< those within the face's reach; where witness points are asked for, all
   std::uint32_t asked_count;
 };

@@ -64,7 +64,7 @@ std::uint32_t sideFeet(const ContactPlace& place, const VerticesBesideFaces& fea
   const FaceRecord* const faces = features.faces;
   const BesideSides* const sides = features.sides;
   const std::uint32_t count = pairs.count;
-  ContactRow* row = out->rows;
+  ContactNumbers* row = out->rows;
   out->asked_count = 0;
   for (std::uint32_t first = 0; first < count; first += LANES) {
     const Batch batch(pairs, first);

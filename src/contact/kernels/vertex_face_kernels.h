@@ -62,7 +62,8 @@ class VertexFaceTest {
       const auto& plane = planes_.of(faces);
       const Doubles height = plane.height(vertices.v);
       if (bitsOf(absolute(height) <= TOUCH)) return false;
-      append(batch, faces, vertices, plane, height, range_ - absolute(height) >= 0);
+      const Mask near = range_ - absolute(height) >= 0;
+      append(OverFaces{faces, vertices, height}, plane, bitsOf(near), near);
       return true;
     });
   }
@@ -75,11 +76,12 @@ class VertexFaceTest {
   void test(const Batch& batch, const Faces& faces, std::uint32_t first) {
     const Rows vertices = batch.points(vertices_.records, OF_FIRST);
     const auto& plane = planes_.of(faces);
-    const Doubles height = plane.height(vertices.v), most = range_ - absolute(height);
+    const OverFaces lanes{faces, vertices, plane.height(vertices.v)};
+    const Doubles height = lanes.height, most = range_ - absolute(height);
     const InsideSides sides(faces, seenByFaces(vertices_, vertices.v));
     const Doubles inside = sides.least();
     const Mask touches = absolute(height) <= TOUCH, near = most >= 0, clear = (inside >= NEAR_BORDER) & ~touches & near;
-    const unsigned is_clear = plain_ ? append(batch, faces, vertices, plane, height, clear) : 0;
+    const unsigned is_clear = plain_ ? append(lanes, plane, bitsOf(clear) & batch.valid, clear) : 0;
     const Mask over = isOverOrFades(sides.of, openSides(faces.numbers(open_), height, 0.0), most, 2 * CLOSED);
     const Mask bits = vertexFaceBits(sides, inside, (inside >= 0) & ~touches);
     const unsigned is_hit = bitsOf(over & near) & batch.valid & ~is_clear;
@@ -99,12 +101,10 @@ class VertexFaceTest {
   }
 
  private:
-  /** Appends plain contacts of the lanes where there is one. @return their bits */
+  /** Appends plain contacts. @param bits of the lanes that have one @param is those lanes, and others perhaps @return the bits */
   template <typename Faces, typename Plane>
-  [[gnu::always_inline]] unsigned append(const Batch& batch, const Faces& faces, const Rows& vertices, const Plane& plane, Doubles height,
-                                         Mask is) {
-    const unsigned bits = bitsOf(is) & batch.valid;
-    const Doubles depth = appendPlain(faces, vertices, planes_.upInWorld(plane), height, bits, plain_);
+  [[gnu::always_inline]] unsigned append(const OverFaces<Faces>& lanes, const Plane& plane, unsigned bits, Mask is) {
+    const Doubles depth = appendPlain(lanes, planes_.upInWorld(plane), bits, plain_);
     deepest_ = maximum(deepest_, is ? depth : deepest_);
     return bits;
   }

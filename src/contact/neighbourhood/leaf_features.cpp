@@ -189,9 +189,9 @@ KeptLeaf& LeafMemory::find(const MeshSide& side, std::uint32_t leaf, std::uint64
   return found;
 }
 
-void LeafMemory::describeAnew(const MeshSide& side, std::uint32_t leaf, KeptLeaf* found) {
+void LeafMemory::describeAnew(const MeshSide& side, std::uint32_t leaf, SurroundingsMemory* surroundings, KeptLeaf* found) {
   if (!found->features) found->features = std::make_unique<LeafFeatures>();
-  contact::describe(side, leaf, &surroundings_, &angles_, found->features.get());
+  contact::describe(side, leaf, surroundings, &angles_, found->features.get());
   const LeafShapes& shapes = found->features->shapes;
   found->feature_count = shapes.vertex_count + shapes.face_count + shapes.edge_count;
   found->is_described = true;

@@ -62,8 +62,8 @@ class LeafMemory {
   /** @return the leaf's place until the search ends */
   KeptLeaf& find(const MeshSide& side, std::uint32_t leaf, std::uint64_t search);
   /** Describes the leaf that was found, if it is not described yet. */
-  const LeafFeatures& describe(const MeshSide& side, std::uint32_t leaf, KeptLeaf* found) {
-    if (!found->is_described) describeAnew(side, leaf, found);
+  const LeafFeatures& describe(const MeshSide& side, std::uint32_t leaf, SurroundingsMemory* surroundings, KeptLeaf* found) {
+    if (!found->is_described) describeAnew(side, leaf, surroundings, found);
     return *found->features;
   }
 
@@ -75,12 +75,11 @@ class LeafMemory {
     KeptLeaf leaves[WAYS];
   };
   static std::uint64_t keyOf(const MeshSide& side, std::uint32_t leaf) { return side.identity << 32 | leaf; }
-  void describeAnew(const MeshSide& side, std::uint32_t leaf, KeptLeaf* found);
+  void describeAnew(const MeshSide& side, std::uint32_t leaf, SurroundingsMemory* surroundings, KeptLeaf* found);
   KeptLeaf& findKept(const MeshSide& side, std::uint32_t leaf, std::uint64_t search);
   KeptLeaf& findCrowdedOut(const MeshSide& side, std::uint32_t leaf, std::uint64_t search);
 
   std::vector<Set> sets_ = std::vector<Set>(1u << SET_BITS);
-  SurroundingsMemory surroundings_;
   std::vector<double> angles_;  // room of vertexCone
   // Leaves of the search at hand whose places others of its leaves hold.
   std::map<std::uint64_t, KeptLeaf> crowded_out_;

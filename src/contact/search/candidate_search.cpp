@@ -53,7 +53,7 @@ class Search {
 
   void findLeafPairs() {
     const auto matters = [this](std::uint32_t m, std::uint32_t f) { return (pair_.moving.owners[m] | pair_.fixed.owners[f]) != 0; };
-    geometry::visitLeafPairsIf(pair_.moving.bvh, pair_.fixed.bvh, pair_.X_FM, reach_ + rounding_, matters,
+    geometry::visitLeafPairsIf({pair_.moving.bvh, pair_.fixed.bvh, pair_.X_FM}, reach_ + rounding_, matters,
                                [this](std::uint32_t m, std::uint32_t f) {
                                  const std::uint32_t moving = use(Side::MOVING, m), fixed = use(Side::FIXED, f);
                                  listing_.pairs.emplace_back() = {moving, fixed};
@@ -197,7 +197,7 @@ class Search {
   }
 
   const LeafFeatures& describe(Side side, KeptLeaf* kept, CandidateListing::Leaf* leaf) {
-    const LeafFeatures& features = buffers_.leaves.describe(pair_.side(side), leaf->node, kept);
+    const LeafFeatures& features = buffers_.leaves.describe(pair_.side(side), leaf->node, &buffers_.surroundings, kept);
     if (leaf->slots == NOWHERE) {
       leaf->slots = static_cast<std::uint32_t>(listing_.slots.size());
       listing_.slots.resize(leaf->slots + kept->feature_count, NOWHERE);

@@ -71,6 +71,7 @@ struct NewFeatures {
 /** Buffers of searches for candidates. */
 struct CandidateSearchBuffers {
   LeafMemory leaves;
+  SurroundingsMemory surroundings;                           ///< evaluations use it too
   PerSide<std::vector<FoundLeaf>> found;                     ///< per leaf of the listing
   std::vector<std::unique_ptr<kernels::LeafShapes>> turned;  ///< of the moving leaves that were looked at
   PerSide<NewFeatures> new_features;

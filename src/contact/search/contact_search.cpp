@@ -19,7 +19,7 @@ bool isOf(const ContactSearchMemory& memory, const MeshPair& pair) {
 /** One search, with the memory of the pair. */
 class ContactSearch {
  public:
-  ContactSearch(const MeshPair& pair, ContactSearchMemory* memory, ContactSearchBuffers* buffers, FoundContacts* found)
+  ContactSearch(const MeshPair& pair, ContactSearchMemory* memory, ContactSearchBuffers* buffers, EvaluatedContacts* found)
       : pair_(pair), memory_(*memory), buffers_(*buffers), found_(*found), region_(pair) {
     if (!isOf(*memory, pair)) forget();
     if (!memory_.visited) return;
@@ -120,9 +120,7 @@ class ContactSearch {
   void replace(CandidateKind kind, KeptListing* kept) {
     std::swap(kept->now, kept->next);
     kept->next.origin.known = false;
-    if (kind != CandidateKind::CONTACTS) return;
-    memory_.nearest_origin.known = false;
-    groupByFaces(pair_, &kept->now.lists, &memory_.nearest);
+    if (kind == CandidateKind::CONTACTS) memory_.nearest_origin.known = false;
   }
 
   /** Whether lists of that origin will be used up while the next one is made. */
@@ -149,17 +147,39 @@ class ContactSearch {
   const MeshPair& pair_;
   ContactSearchMemory& memory_;
   ContactSearchBuffers& buffers_;
-  FoundContacts& found_;
+  EvaluatedContacts& found_;
   const NearRegion region_;
   ListMargin motion_;  // since the last search
 };
 
+/** Whether a pair that was apart and without candidates has surely moved by so little that it is so still: a bound on the motion of all
+ * points tells. Apart by more than the margin when last seen, it did not cross where the list was made. */
+bool staysEmpty(const MeshPair& pair, const ContactSearchMemory& memory) {
+  const CandidateListing& list = memory.contacts.now;
+  const ListOrigin& origin = list.origin;
+  if (!isOf(memory, pair) || !memory.visited || !origin.known) return false;
+  if (list.lists.pairs.contacts() > 0 || memory.distance <= origin.margin.motion) return false;
+  const Box& bounds = pair.moving.bounds;
+  const Vector3 middle = bounds.center();
+  const double reach = 0.5 * bounds.diagonal().norm() + std::sqrt(3.0) * pair.range, turn = largestTurn(pair.X_FM, origin.X_FM),
+               motion = (pair.X_FM * middle - origin.X_FM * middle).norm() + reach * turn;
+  return usedMargin(origin, pair.range, motion, turn) <= 1;
+}
+
 }  // namespace
 
-void searchContacts(const MeshPair& pair, ContactSearchMemory* memory, ContactSearchBuffers* buffers, FoundContacts* found) {
+void searchContacts(const MeshPair& pair, ContactSearchMemory* memory, ContactSearchBuffers* buffers, EvaluatedContacts* found) {
   found->clear();
-  if (!memory) buffers->unknown.moving = 0;
-  ContactSearch(pair, memory ? memory : &buffers->unknown, buffers, found).run(memory != nullptr);
+  if (memory && staysEmpty(pair, *memory)) {
+    memory->X_FM = pair.X_FM;
+    memory->motion = SteadyMotion();
+    memory->distance = pair.range;
+  } else if (!memory) {
+    buffers->unknown.moving = 0;
+    ContactSearch(pair, &buffers->unknown, buffers, found).run(false);
+  } else {
+    ContactSearch(pair, memory, buffers, found).run(true);
+  }
 }
 
 }  // namespace blem_sim::contact

@@ -36,7 +36,7 @@ struct ContactSearchBuffers {
   }
 
   CandidateSearchBuffers search;
-  EvaluationBuffers evaluation;
+  EvaluationBuffers evaluation{&search.surroundings};
   ContactSearchMemory unknown;  ///< for searches without a memory
 };
 
@@ -45,6 +45,6 @@ struct ContactSearchBuffers {
  * depends on the pair alone.
  * @param memory of this pair; null: everything is searched anew
  */
-void searchContacts(const MeshPair& pair, ContactSearchMemory* memory, ContactSearchBuffers* buffers, FoundContacts* found);
+void searchContacts(const MeshPair& pair, ContactSearchMemory* memory, ContactSearchBuffers* buffers, EvaluatedContacts* found);
 
 }  // namespace blem_sim::contact

@@ -71,7 +71,7 @@ struct FoundEdges {
   std::vector<EdgeEdgeHit> hits;
   std::vector<Candidate> left;
   std::vector<FadingEdgesHit> fading;
-  std::vector<ContactRow> rows;
+  std::vector<ContactNumbers> rows;
   PlainEdges plain;
 };
 
@@ -100,7 +100,7 @@ TEST(EdgeKernels, PlainContactsAreThoseMadeOneByOne) {
       one.point = in.X_WF * one.point;
       one.normal_BA = in.X_WF.linear() * one.normal_BA;
       ASSERT_LT(count, written.rows.size());
-      const ContactRow& row = written.rows[count++];
+      const ContactNumbers& row = written.rows[count++];
       deepest = std::max(deepest, one.depth);
       EXPECT_EQ(row.id, one.id);
       EXPECT_EQ(row.depth, one.depth);

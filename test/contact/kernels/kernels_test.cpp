@@ -84,7 +84,7 @@ struct PlainVertexFaces {
   NearVertices vertices;
   Pose X_WF;
   std::vector<VertexFaceHit> hits;
-  std::vector<ContactRow> rows;
+  std::vector<ContactNumbers> rows;
   PlainContacts plain;
 };
 
@@ -102,7 +102,7 @@ void addPlainVertexFaces(const Kernels& set, const Features& in, Side side, Foun
     out->numbers.push_back(hit.height);
   }
   for (std::uint32_t i = 0; i < found.plain.count; ++i) {
-    const ContactRow& row = found.rows[i];
+    const ContactNumbers& row = found.rows[i];
     out->numbers.insert(out->numbers.end(), row.point, row.point + 3);
     out->numbers.insert(out->numbers.end(), row.normal, row.normal + 3);
     out->numbers.push_back(row.depth);
@@ -198,7 +198,7 @@ TEST(Kernels, PlainContactsAreThoseMadeOneByOne) {
       one.point = all.X_WF * one.point;
       one.normal_BA = all.X_WF.linear() * one.normal_BA;
       ASSERT_LT(count, written.plain.count);
-      const ContactRow& row = written.rows[count];
+      const ContactNumbers& row = written.rows[count];
       deepest = std::max(deepest, one.depth);
       EXPECT_EQ(row.id, one.id);
       EXPECT_EQ(row.depth, one.depth);
@@ -254,7 +254,7 @@ TEST(Kernels, VerticesThatAreSurelyInsideNeedNoTest) {
           without(*availableKernels().front(), in, side, true, {}, moved);
       ASSERT_EQ(with.plain.count, without.plain.count);
       EXPECT_GT(with.plain.count, 10u);
-      EXPECT_EQ(std::memcmp(with.rows.data(), without.rows.data(), with.plain.count * sizeof(ContactRow)), 0);
+      EXPECT_EQ(std::memcmp(with.rows.data(), without.rows.data(), with.plain.count * sizeof(ContactNumbers)), 0);
       EXPECT_EQ(with.hits.size(), without.hits.size());
       EXPECT_EQ(with.plain.deepest, without.plain.deepest);
     }

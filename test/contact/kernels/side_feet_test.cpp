@@ -77,7 +77,7 @@ struct Feet {
     asked.resize(out.asked_count);
   }
 
-  std::vector<ContactRow> rows;
+  std::vector<ContactNumbers> rows;
   std::vector<FadingContact> asked;
   std::uint32_t count;
 };
@@ -114,7 +114,7 @@ TEST(SideFeet, AreTheClosestPointsOfTheNearestSides) {
       ASSERT_LT(found, feet.asked.size());
       EXPECT_EQ(feet.asked[found].row, found);
       EXPECT_EQ(feet.asked[found].pair, i);
-      const ContactRow& row = feet.rows[found++];
+      const ContactNumbers& row = feet.rows[found++];
       const Vector3 foot_F = vertices == Side::FIXED ? Vector3(in.X_FM * foot) : foot,
                     from_fixed = (vertices == Side::FIXED ? -1 : 1) * (placed - foot_F);
       EXPECT_NEAR((Vector3(row.point) - foot_F).norm(), 0, 1e-13);
@@ -167,7 +167,7 @@ TEST(SideFeet, AllInstructionSetsFindTheSame) {
         const Feet each(*set, in, keeps_feet);
         ASSERT_EQ(each.count, baseline.count);
         ASSERT_EQ(each.asked.size(), baseline.asked.size());
-        EXPECT_EQ(std::memcmp(each.rows.data(), baseline.rows.data(), each.count * sizeof(ContactRow)), 0);
+        EXPECT_EQ(std::memcmp(each.rows.data(), baseline.rows.data(), each.count * sizeof(ContactNumbers)), 0);
         EXPECT_EQ(std::memcmp(each.asked.data(), baseline.asked.data(), each.asked.size() * sizeof(FadingContact)), 0);
       }
     }

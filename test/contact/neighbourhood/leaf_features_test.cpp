@@ -19,17 +19,19 @@ TEST(LeafMemory, OneSearchLosesNoLeaf) {
     if (side.bvh.nodes()[i].isLeaf()) leaves.push_back(i);
   ASSERT_GT(leaves.size(), 17000u);
   LeafMemory memory;
+  SurroundingsMemory surroundings;
   for (const std::uint64_t search : {1, 2}) {
     for (const std::uint32_t leaf : leaves) {
       KeptLeaf& found = memory.find(side, leaf, search);
       ASSERT_EQ(found.index.moving, KeptLeaf::NO_INDEX);
       found.index.moving = leaf;
-      memory.describe(side, leaf, &found);
+      memory.describe(side, leaf, &surroundings, &found);
     }
     for (const std::uint32_t leaf : leaves) {
       KeptLeaf& found = memory.find(side, leaf, search);
       ASSERT_EQ(found.index.moving, leaf);
-      ASSERT_EQ(memory.describe(side, leaf, &found).faces.names[0], static_cast<int>(side.bvh.order()[side.bvh.nodes()[leaf].first]));
+      ASSERT_EQ(memory.describe(side, leaf, &surroundings, &found).faces.names[0],
+                static_cast<int>(side.bvh.order()[side.bvh.nodes()[leaf].first]));
     }
     std::reverse(leaves.begin(), leaves.end());
   }

@@ -78,11 +78,11 @@ MeshPair pairOf(const Collider& moving, const Collider& fixed, const Pose& X_FM)
   return {MeshSide(*moving.geometry), MeshSide(*fixed.geometry), X_FM, LAYER, LAYER, {}};
 }
 
-NearFeatures allFeatures(const MeshSide& side, LeafMemory* leaves) {
+NearFeatures allFeatures(const MeshSide& side, LeafMemory* leaves, SurroundingsMemory* surroundings) {
   NearFeatures all;
   for (std::uint32_t node = 0; node < side.bvh.nodes().size(); ++node) {
     if (!side.bvh.nodes()[node].isLeaf()) continue;
-    const LeafFeatures& leaf = leaves->describe(side, node, &leaves->find(side, node, 1));
+    const LeafFeatures& leaf = leaves->describe(side, node, surroundings, &leaves->find(side, node, 1));
     const auto add = [](const auto& kind, auto* to) {
       for (std::size_t i = 0; i < kind.records.size(); ++i) to->add(kind.records[i], kind.names[i]);
     };
@@ -103,9 +103,10 @@ std::vector<kernels::Candidate> allPairs(const FeatureRecords<A>& a, const Featu
   return all;
 }
 
-CandidateLists everything(const MeshPair& pair, LeafMemory* leaves) {
+CandidateLists everything(const MeshPair& pair, SurroundingsMemory* surroundings) {
+  LeafMemory leaves;
   CandidateLists lists;
-  for (const Side side : SIDES) lists.near[side] = allFeatures(pair.side(side), leaves);
+  for (const Side side : SIDES) lists.near[side] = allFeatures(pair.side(side), &leaves, surroundings);
   const NearFeatures &m = lists.near.moving, &f = lists.near.fixed;
   lists.pairs.vertex_face.moving = allPairs(m.vertices, f.faces);
   lists.pairs.vertex_face.fixed = allPairs(f.vertices, m.faces);
@@ -122,7 +123,7 @@ using NamedContact = std::tuple<int, int, int, int, double>;
 
 std::vector<NamedContact> contactsOf(const MeshPair& pair, CandidateLists* lists, const CandidatePairs& pairs, EvaluationBuffers* buffers) {
   std::vector<Contact> plain;
-  FoundContacts found;
+  EvaluatedContacts found;
   found.plain.overwrite(&plain);
   found.clear();
   buffers->turned.turnForContacts(*lists, pair.X_FM);
@@ -139,7 +140,7 @@ std::vector<NamedContact> contactsOf(const MeshPair& pair, CandidateLists* lists
 using NamedCrossing = std::tuple<Side, int, int>;
 
 std::vector<NamedCrossing> crossingsOf(const MeshPair& pair, CandidateLists* lists, EvaluationBuffers* buffers) {
-  FoundContacts found;
+  EvaluatedContacts found;
   buffers->turned.turnForCrossings(*lists, pair.X_FM);
   Evaluation(pair, lists, lists->pairs, buffers, &found).findCrossings();
   std::vector<NamedCrossing> out;
@@ -169,7 +170,7 @@ TEST(CandidateCompleteness, ListsHoldEveryContact) {
   const std::vector<Shape> shapes = makeShapes();
   geometry::RandomShapes random(12);
   CandidateSearchBuffers buffers;
-  EvaluationBuffers evaluation;
+  EvaluationBuffers evaluation(&buffers.surroundings);
   CandidateListing listing;
   CandidatePairs nearest;
   std::size_t contacts = 0;
@@ -180,8 +181,7 @@ TEST(CandidateCompleteness, ListsHoldEveryContact) {
     const double part = i % 4 == 0 ? 0 : std::pow(10, random.uniform(-3, -0.5));
     const ListMargin margin{part * LAYER, part * LAYER / SIZE};
     findCandidates(pairOf(a.collider, b.collider, X), CandidateKind::CONTACTS, margin, &buffers, &listing);
-    LeafMemory leaves;
-    CandidateLists all = everything(pairOf(a.collider, b.collider, X), &leaves);
+    CandidateLists all = everything(pairOf(a.collider, b.collider, X), &evaluation.surroundings);
     for (int move = 0; move < 3; ++move) {
       const MeshPair pair = pairOf(a.collider, b.collider, movedALittle(random, X, margin));
       const std::vector<NamedContact> expected = contactsOf(pair, &all, all.pairs, &evaluation);
@@ -198,7 +198,8 @@ TEST(CandidateCompleteness, ListsHoldEveryContact) {
 TEST(CandidateCompleteness, NearestHoldEveryContact) {
   const std::vector<Shape> shapes = makeShapes();
   geometry::RandomShapes random(15);
-  EvaluationBuffers evaluation;
+  SurroundingsMemory surroundings;
+  EvaluationBuffers evaluation(&surroundings);
   CandidatePairs nearest;
   std::size_t contacts = 0, leading = 0;
   for (int i = 0; i < samples(60); ++i) {
@@ -208,8 +209,7 @@ TEST(CandidateCompleteness, NearestHoldEveryContact) {
     const double part = std::pow(10, random.uniform(-3, -1));
     const ListMargin margin{part * LAYER, part * LAYER / SIZE};
     const MeshPair pair = pairOf(a.collider, b.collider, X);
-    LeafMemory leaves;
-    CandidateLists all = everything(pair, &leaves);
+    CandidateLists all = everything(pair, &evaluation.surroundings);
     evaluation.turned.turnForContacts(all, X);
     leading += findNearest(pair, {all, evaluation.turned}, margin, &evaluation.surroundings, &nearest) - nearest.contacts();
     for (int move = 0; move < 4; ++move) {
@@ -227,7 +227,7 @@ TEST(CandidateCompleteness, ListsHoldEveryCrossing) {
   const std::vector<Shape> shapes = makeShapes();
   geometry::RandomShapes random(14);
   CandidateSearchBuffers buffers;
-  EvaluationBuffers evaluation;
+  EvaluationBuffers evaluation(&buffers.surroundings);
   CandidateListing listing;
   std::size_t crossings = 0, poses = 0;
   for (int i = 0; i < samples(120); ++i) {
@@ -241,8 +241,7 @@ TEST(CandidateCompleteness, ListsHoldEveryCrossing) {
     const auto after = [&](double count) { return makePose(count * shift) * X * makePose(Vector3::Zero(), count * turn); };
     const ListMargin margin = marginAlong(NearRegion(pair).motions(X, after(-1)), steps, 0.01 * step);
     findCandidates(pair, CandidateKind::CROSSINGS, margin, &buffers, &listing);
-    LeafMemory leaves;
-    CandidateLists all = everything(pair, &leaves);
+    CandidateLists all = everything(pair, &evaluation.surroundings);
     for (int move = 0; move < 4; ++move) {
       const Pose Y = makePose(random.point(0.04 * steps * step)) * after(random.uniform(-steps, steps));
       const MeshPair moved = pairOf(a.collider, b.collider, Y);

@@ -74,32 +74,6 @@ TEST(CandidateSearch, InPartsAsAtOnce) {
   }
 }
 
-// A box has few faces, hills have many.
-TEST(CandidateLists, AreGroupedByFacesWhereThereAreFew) {
-  geometry::RandomShapes random(5);
-  const Collider hills = makeCollider(hillMesh(random, 0.1, 60, 0.001), 0),
-                 box = makeCollider(geometry::boxMesh(Vector3::Constant(0.06)), 0.002);
-  const MeshPair pair = searchedPair(box, hills, makePose({0.001, 0.002, 0.0305}, {0.01, 0.02, 0.3}));
-  CandidateSearchBuffers buffers;
-  CandidateListing listing;
-  findCandidates(pair, CandidateKind::CONTACTS, {0.001, 0.02}, &buffers, &listing);
-  const std::vector<NamedPairs> before = namesOf(listing.lists);
-  CandidatePairs room;
-  groupByFaces(pair, &listing.lists, &room);
-  const std::vector<NamedPairs> after = namesOf(listing.lists);
-  constexpr std::size_t OVER_BOX = 3;  // place of the hills' vertices over the box's faces
-  for (std::size_t i = 0; i < before.size(); ++i) {
-    NamedPairs expected = before[i];
-    const auto byFace = [](const auto& a, const auto& b) { return a.second < b.second; };
-    if (i == OVER_BOX) {
-      ASSERT_GT(expected.size(), 100u);
-      EXPECT_FALSE(std::is_sorted(expected.begin(), expected.end(), byFace));
-      std::stable_sort(expected.begin(), expected.end(), byFace);
-    }
-    EXPECT_EQ(after[i], expected) << i;
-  }
-}
-
 bool holds(const kernels::VertexCone& cone, const Vector3& direction) {
   const Vector3 axis(cone.axis[0], cone.axis[1], cone.axis[2]);
   const double along = axis.dot(direction), most = std::abs(along) * (along > 0 ? cone.up : cone.down);

@@ -30,14 +30,25 @@ inline FloatMask mayTouch(const FloatVectors& p, const LeafEdges& edges, std::ui
   const Floats along = dot(r, direction), fold = row(&edges.folds[first]);
   const FloatVectors d = r - along * direction;
   const AtEdge<Floats> vertex{{inside, also}, squareRoot(dot(d, d)), maximum(-along, along - row(&edges.lengths[first]))};
-  return beside & isAtEdge(vertex, absolute(fold), fold < 0, reach.range, reach.margin, reach.rounding);
+  return beside & isAtEdge(vertex, absolute(fold), fold < 0, EdgeReach<float>{reach.range, reach.margin, reach.rounding});
+}
+
+/** Cones of vertices: of one in all lanes, or of several. */
+struct FloatCones {
+  FloatVectors axis;
+  Floats up, down, per_slack;
+};
+inline FloatCones oneCone(const LeafCones& cones, std::uint32_t k) {
+  return {oneVector(cones.axes, k), allFloats(cones.up[k]), allFloats(cones.down[k]), allFloats(cones.per_slack[k])};
+}
+inline FloatCones severalCones(const LeafCones& cones, std::uint32_t first) {
+  return {severalVectors(cones.axes, first), row(&cones.up[first]), row(&cones.down[first]), row(&cones.per_slack[first])};
 }
 
 /** Whether these vertices may be nearest: perhaps no edge of them leads along d. @param d from the vertices, d2 its square
  * @param slack [m] */
-inline FloatMask mayBeNearest(const FloatVectors& axis, Floats up, Floats down, Floats per_slack, const FloatVectors& d, Floats d2,
-                              float slack) {
-  const Floats along = dot(axis, d), most = per_slack * slack + absolute(along) * (along > 0 ? up : down);
+inline FloatMask mayBeNearest(const FloatCones& of, const FloatVectors& d, Floats d2, float slack) {
+  const Floats along = dot(of.axis, d), most = of.per_slack * slack + absolute(along) * (along > 0 ? of.up : of.down);
   return (most >= 0) & (d2 - along * along <= most * most);
 }
 
@@ -50,10 +61,7 @@ inline FloatMask mayTouch(const LeafShapes& a, std::uint32_t i, const LeafShapes
   const float slack = static_cast<float>(CONE_SLACK) * reach.range + reach.margin;
   const LeafCones &one = blockOf(a.cones, i), &several = blockOf(b.cones, first);
   const std::uint32_t k = i % LEAF_BLOCK, j = first % LEAF_BLOCK;
-  const FloatMask a_may =
-      mayBeNearest(oneVector(one.axes, k), allFloats(one.up[k]), allFloats(one.down[k]), allFloats(one.per_slack[k]), back, d2, slack);
-  const FloatMask b_may =
-      mayBeNearest(severalVectors(several.axes, j), row(&several.up[j]), row(&several.down[j]), row(&several.per_slack[j]), d, d2, slack);
+  const FloatMask a_may = mayBeNearest(oneCone(one, k), back, d2, slack), b_may = mayBeNearest(severalCones(several, j), d, d2, slack);
   const FloatMask b_round = maskRow(&several.round[j]);
   return near & ((a_may & b_may) | (b_may & b_round) | (a_may & one.round[k]));
 }
@@ -70,7 +78,7 @@ inline FloatMask mayTouch(const FloatEdge& a, const FloatEdge& b, const LeafReac
   if (bitsOf(may) == 0) return may;
   const Floats pp = dot(p, p), qq = dot(q, q);
   const FloatVectors n = cross(p, q);
-  may &= conesMayAllow(n, coneBound(dot(n, n), pp * qq, reach.turn), a.inward[0], a.inward[1], b.inward[0], b.inward[1]);
+  may &= conesMayAllow(n, coneBound(dot(n, n), pp * qq, reach.turn), a.inward, b.inward);
   if (bitsOf(may) == 0) return may;
   // Closest points of the segments [Ericson 2005, 5.1.9].
   const Floats pq = dot(p, q), pr = dot(p, r), qr = dot(q, r), denominator = pp * qq - pq * pq;
@@ -103,12 +111,17 @@ inline bool mayShareNormal(const EdgeCone& a, const EdgeCone& b, float turn) {
   return (cosine < 0 ? -cosine : cosine) >= least;
 }
 
-/** The vertices of one leaf, by their bits, at the faces and edges of another. @param side of the vertices */
-inline void findAtVertices(const LeafShapes& a, std::uint32_t vertices, const LeafShapes& b, const LeafReach& reach, Side side,
-                           LeafHits* hits) {
+/** A leaf, and the bits of its vertices near the other one. */
+struct LeafAndNear {
+  const LeafShapes& leaf;
+  std::uint32_t near;
+};
+
+/** The near vertices of one leaf at the faces and edges of another. @param side of the vertices */
+inline void findAtVertices(const LeafAndNear& a, const LeafShapes& b, const LeafReach& reach, Side side, LeafHits* hits) {
   hits->vertex_faces[side] = hits->vertex_edges[side] = 0;
-  forEachBit(vertices, [&](std::uint32_t i) {
-    const FloatVectors p = oneVertex(a, i);
+  forEachBit(a.near, [&](std::uint32_t i) {
+    const FloatVectors p = oneVertex(a.leaf, i);
     const std::uint32_t faces = bitsWhere(b.face_count, [&](auto j) { return mayTouch(p, FloatFaces(b.faces, j), reach); });
     append(i, faces, hits->vertex_face[side], &hits->vertex_faces[side]);
     const std::uint32_t edges = edgesWhere(b, [&](const LeafEdges& block, auto j) { return mayTouch(p, block, j, reach); });
@@ -117,12 +130,11 @@ inline void findAtVertices(const LeafShapes& a, std::uint32_t vertices, const Le
 }
 
 /** Vertices that can each be the nearest of their surface, or one can and is round: it sees the other one near its leaf. */
-inline void findVertexVertices(const LeafShapes& a, std::uint32_t near_a, const LeafShapes& b, std::uint32_t near_b, const LeafReach& reach,
-                               LeafHits* hits) {
-  const std::uint32_t of_a = near_b == 0 ? 0 : a.nearest, of_b = near_a == 0 ? 0 : b.nearest;
-  forEachBit(of_a | (of_b == 0 ? 0 : near_a), [&](std::uint32_t i) {
-    const std::uint32_t seen = ((of_a >> i & 1) != 0 ? near_b : 0) | ((near_a >> i & 1) != 0 ? of_b : 0);
-    const std::uint32_t vertices = bitsWhere(b.vertex_count, [&](auto j) { return mayTouch(a, i, b, j, reach); });
+inline void findVertexVertices(const LeafAndNear& a, const LeafAndNear& b, const LeafReach& reach, LeafHits* hits) {
+  const std::uint32_t of_a = b.near == 0 ? 0 : a.leaf.nearest, of_b = a.near == 0 ? 0 : b.leaf.nearest;
+  forEachBit(of_a | (of_b == 0 ? 0 : a.near), [&](std::uint32_t i) {
+    const std::uint32_t seen = ((of_a >> i & 1) != 0 ? b.near : 0) | ((a.near >> i & 1) != 0 ? of_b : 0);
+    const std::uint32_t vertices = bitsWhere(b.leaf.vertex_count, [&](auto j) { return mayTouch(a.leaf, i, b.leaf, j, reach); });
     append(i, vertices & seen, hits->vertex_vertex, &hits->vertex_vertices);
   });
 }
@@ -138,11 +150,11 @@ inline void findEdgeEdges(const LeafShapes& a, const LeafShapes& b, const LeafRe
 }
 
 void leafContacts(const LeafShapes& moving, const LeafShapes& fixed, const LeafReach& reach, LeafHits* hits) {
-  const std::uint32_t near_m = verticesNear(moving, fixed, reach), near_f = verticesNear(fixed, moving, reach);
-  findAtVertices(moving, near_m, fixed, reach, Side::MOVING, hits);
-  findAtVertices(fixed, near_f, moving, reach, Side::FIXED, hits);
+  const LeafAndNear m{moving, verticesNear(moving, fixed, reach)}, f{fixed, verticesNear(fixed, moving, reach)};
+  findAtVertices(m, fixed, reach, Side::MOVING, hits);
+  findAtVertices(f, moving, reach, Side::FIXED, hits);
   hits->vertex_vertices = hits->edge_edges = 0;
-  findVertexVertices(moving, near_m, fixed, near_f, reach, hits);
+  findVertexVertices(m, f, reach, hits);
   findEdgeEdges(moving, fixed, reach, hits);
 }
 
