@@ -215,10 +215,10 @@ void ArticulatedStepper::reckonWork(bool leaps, Island* island) {
     for (const int tree : model.trees) computeTwists(forest_, tree, motion_, impact_space_.leap, &impact_space_.twist);
   geometry::makeRoomFor(contacts.size(), &island->apparent_work);
   island->apparent_work.assign(contacts.size(), 0);
-  for (const ContactPatch& patch : model.patches) {
-    Vector6 before = relativeTwist(patch.pair, motion_.twist);
-    if (leaps) before += relativeTwist(patch.pair, impact_space_.twist);
-    for (int i = patch.first; i < patch.end; ++i) {
+  for (const PairContacts& of_pair : model.pairs) {
+    Vector6 before = relativeTwist(of_pair.pair, motion_.twist);
+    if (leaps) before += relativeTwist(of_pair.pair, impact_space_.twist);
+    for (int i = of_pair.first; i < of_pair.end; ++i) {
       const ContactTerm& contact = contacts[i];
       if (!contact.impulse.isZero(0)) island->apparent_work[i] = apparentWork(contact, velocityAt(before, contact.point));
     }

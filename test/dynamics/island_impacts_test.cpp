@@ -56,7 +56,7 @@ struct HitTrees {
     spec.inertial.inertia = Vector3(0.02, 0.03, 0.04).asDiagonal();
     return scene.addBody(spec);
   }
-  /** Bodies of one patch after the other. @param least of the restitutions, which are 1 at most */
+  /** Bodies of one pair after the other. @param least of the restitutions, which are 1 at most */
   void hit(int contacts, double least, double friction) {
     for (int i = 0; i < contacts; ++i) {
       ContactConstraint c;
@@ -101,12 +101,12 @@ struct HitTrees {
   }
   double approach(int contact) const {
     const ContactTerm& term = model.terms.contacts[contact];
-    for (const ContactPatch& patch : model.patches) {
-      if (contact < patch.first || contact >= patch.end) continue;
+    for (const PairContacts& of_pair : model.pairs) {
+      if (contact < of_pair.first || contact >= of_pair.end) continue;
       std::vector<Vector6> twist(forest.nodes().size());
       for (int tree = 0; tree < 3; ++tree) computeTwists(forest, tree, motion, space.velocity, &twist);
-      Vector6 relative = twist[patch.pair.a];
-      if (patch.pair.b >= 0) relative -= moveTwist(twist[patch.pair.b], -patch.pair.shift);
+      Vector6 relative = twist[of_pair.pair.a];
+      if (of_pair.pair.b >= 0) relative -= moveTwist(twist[of_pair.pair.b], -of_pair.pair.shift);
       return -term.normal.dot(velocityAt(relative, term.point));
     }
     return 0;

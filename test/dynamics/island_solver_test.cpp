@@ -188,9 +188,9 @@ TEST(IslandModel, IsAHeapOfFreeBodiesAlone) {
   model.terms.loops.emplace_back();
   EXPECT_TRUE(model.isTied());
   model.clear();
-  ContactPatch patch;
-  patch.pair.b = 1;
-  model.patches.push_back(patch);
+  PairContacts of_pair;
+  of_pair.pair.b = 1;
+  model.pairs.push_back(of_pair);
   EXPECT_TRUE(model.isTied());
   model.mass = 2;
   EXPECT_DOUBLE_EQ(model.hardPush(0.1), 2);

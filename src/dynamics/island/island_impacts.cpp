@@ -34,11 +34,11 @@ double slowestBounce(const TermSource& s, double kick) {
 bool IslandImpacts::expect(const TermSource& s, const std::vector<int>& contacts, const IslandModel& model) {
   impulses_.clear();
   const double slowest = slowestBounce(s, 0);
-  for (const ContactPatch& patch : model.patches)
-    for (int i = patch.first; i < patch.end; ++i) {
+  for (const PairContacts& of_pair : model.pairs)
+    for (int i = of_pair.first; i < of_pair.end; ++i) {
       const ContactConstraint& c = s.input.contacts[contacts[i]];
       if (!hasImpacts(c, model.terms.contacts[i])) continue;
-      const double closing = -normalSpeed(patch.pair, model.terms.contacts[i], s.motion.twist);
+      const double closing = -normalSpeed(of_pair.pair, model.terms.contacts[i], s.motion.twist);
       if (4 * closing > 3 * slowest && 5 * s.input.dt * closing > -3 * c.depth) return true;
     }
   return false;
@@ -61,13 +61,13 @@ void IslandImpacts::begin(const TermSource& s, const std::vector<int>& contacts,
     space_->leap.segment(first, count).setZero();
     space_->momentum.segment(first, count).setZero();
   }
-  for (const ContactPatch& patch : model.patches)
-    for (int i = patch.first; i < patch.end; ++i) {
+  for (const PairContacts& of_pair : model.pairs)
+    for (int i = of_pair.first; i < of_pair.end; ++i) {
       const ContactConstraint& c = s.input.contacts[contacts[i]];
       if (!hasImpacts(c, model.terms.contacts[i])) continue;
       Bouncer bouncer;
       bouncer.contact = i;
-      bouncer.pair = &patch.pair;
+      bouncer.pair = &of_pair.pair;
       bouncer.restitution = c.restitution;
       bouncer.slow_friction = model.terms.contacts[i].friction;
       bouncer.friction = c.impact_friction_factor * bouncer.slow_friction;

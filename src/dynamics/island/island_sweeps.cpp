@@ -20,7 +20,7 @@ bool IslandSweeps::load(const IslandAtHand& island, SweepStart start, Eigen::Vec
   island_ = &island;
   if (!loadResponse(*velocity)) return false;
   pairs_.clear();
-  for (const ContactPatch& patch : island.model.patches) pairs_.push_back(response_.pair(patch.pair));
+  for (const PairContacts& of_pair : island.model.pairs) pairs_.push_back(response_.pair(of_pair.pair));
   joints_.load(start, &response_);
   order_.find(island, response_, pairs_, &groups_);
   loadContacts(start);
@@ -58,16 +58,16 @@ void IslandSweeps::loadContacts(SweepStart start) {
   if (start == SweepStart::NOTHING) dynamics::scale(0, impulses_.data(), impulses_.data() + impulses_.size());
 }
 
-// Response and contacts of a lane's patch.
+// Response and contacts of a lane's pair.
 void IslandSweeps::loadLane(int lane, SweepGroup* group) {
-  const int p = group->patch[lane];
+  const int p = group->pair[lane];
   Matrix6 response = Matrix6::Identity();
   if (p >= 0) response = response_.relative(pairs_[p]);
   for (int r = 0, at = 0; r < 6; ++r)
     for (int c = 0; c <= r; ++c, ++at) group->response[at][lane] = response(r, c);
   for (int i = group->first; i < group->end; ++i) {
-    const int contact = p < 0 ? -1 : island_->model.patches[p].first + i - group->first;
-    const bool exists = contact >= 0 && contact < island_->model.patches[p].end;
+    const int contact = p < 0 ? -1 : island_->model.pairs[p].first + i - group->first;
+    const bool exists = contact >= 0 && contact < island_->model.pairs[p].end;
     setLane(exists ? &island_->terms()->contacts[contact] : nullptr, lane, &contacts_[i], &impulses_[i]);
   }
 }
@@ -75,7 +75,7 @@ void IslandSweeps::loadLane(int lane, SweepGroup* group) {
 void IslandSweeps::loadBodies(SweepGroup* group, SweepBodies* bodies) const {
   group->free = true;
   for (int lane = 0; lane < SWEEP_LANES; ++lane) {
-    const int p = group->patch[lane];
+    const int p = group->pair[lane];
     const ResponseSide none, &a = p < 0 ? none : pairs_[p].a, &b = p < 0 ? none : pairs_[p].b;
     group->free = group->free && a.unit < 0 && b.unit < 0;
     if (!group->free) return;
@@ -98,7 +98,7 @@ void IslandSweeps::findVelocity(Eigen::VectorXd* velocity) {
 
 void IslandSweeps::push(const SweepGroup& group, const TwistLanes& wrench, Eigen::VectorXd* velocity) const {
   for (int lane = 0; lane < SWEEP_LANES; ++lane)
-    if (group.patch[lane] >= 0) response_.push(pairs_[group.patch[lane]], columnOf(wrench, lane), velocity);
+    if (group.pair[lane] >= 0) response_.push(pairs_[group.pair[lane]], columnOf(wrench, lane), velocity);
 }
 
 // Sweeps a group in which a tree takes part.
@@ -106,8 +106,8 @@ void IslandSweeps::sweepTrees(std::size_t index, Eigen::VectorXd* velocity) {
   const SweepGroup& group = groups_[index];
   TwistLanes twist = {}, wrench;
   for (int lane = 0; lane < SWEEP_LANES; ++lane) {
-    if (group.patch[lane] < 0) continue;
-    const Vector6 relative = response_.relativeTwist(pairs_[group.patch[lane]], *velocity);
+    if (group.pair[lane] < 0) continue;
+    const Vector6 relative = response_.relativeTwist(pairs_[group.pair[lane]], *velocity);
     for (int i = 0; i < 6; ++i) twist[i][lane] = relative[i];
   }
   dynamics::sweep(group, contactsOf(group), twist, &wrench, &changes_[index]);
@@ -192,10 +192,10 @@ void IslandSweeps::scale(double factor, Eigen::VectorXd* velocity) {
 void IslandSweeps::read(const Eigen::VectorXd& velocity, IslandTerms* terms) const {
   for (const SweepGroup& group : groups_) {
     for (int lane = 0; lane < SWEEP_LANES; ++lane) {
-      if (group.patch[lane] < 0) continue;
-      const ContactPatch& patch = island_->model.patches[group.patch[lane]];
-      for (int i = patch.first; i < patch.end; ++i) {
-        const int at = group.first + i - patch.first;
+      if (group.pair[lane] < 0) continue;
+      const PairContacts& of_pair = island_->model.pairs[group.pair[lane]];
+      for (int i = of_pair.first; i < of_pair.end; ++i) {
+        const int at = group.first + i - of_pair.first;
         terms->contacts[i].impulse = readLane(contacts_[at], impulses_[at], lane);
       }
     }

@@ -7,8 +7,9 @@ namespace {
 void addReactions(const SolvedIsland& island, const ForestMotion& motion, std::vector<Vector6>* on_node, std::vector<Wrench>* wrenches) {
   const double dt = island.dt;
   const std::vector<ContactTerm>& contacts = island.found.contacts;
-  for (const ContactPatch& patch : island.model.patches)
-    for (int i = patch.first; i < patch.end; ++i) addWrench(patch.pair, wrenchOf(contacts[i].impulse / dt, contacts[i].point), on_node);
+  for (const PairContacts& of_pair : island.model.pairs)
+    for (int i = of_pair.first; i < of_pair.end; ++i)
+      addWrench(of_pair.pair, wrenchOf(contacts[i].impulse / dt, contacts[i].point), on_node);
   for (std::size_t l = 0; l < island.found.loops.size(); ++l) {
     const LoopTerm& loop = island.found.loops[l];
     const BodyPair& pair = island.model.loop_pairs[l];

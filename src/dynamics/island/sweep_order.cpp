@@ -6,7 +6,7 @@
 namespace blem_sim::dynamics {
 namespace {
 
-constexpr int COLOURS = 64;  // beyond, patches of one body take turns one by one
+constexpr int COLOURS = 64;  // beyond, pairs of one body take turns one by one
 
 }  // namespace
 
@@ -14,19 +14,19 @@ void SweepOrder::find(const IslandAtHand& island, const IslandResponse& response
                       std::vector<SweepGroup>* groups) {
   island_ = &island;
   sortByHeight();
-  colourPatches(response, pairs);
+  colourPairs(response, pairs);
   sortByColour();
   groups->clear();
   group_start_.assign(1, 0);
   for (int c = 0; c <= COLOURS; ++c) layGroups(c, groups);
 }
 
-// Orders the patches from the ground up.
+// Orders the pairs from the ground up.
 void SweepOrder::sortByHeight() {
   heights_.clear();
-  for (const ContactPatch& patch : island_->model.patches) {
-    const Vector3& reference = island_->motion.reference[island_->forest.nodes()[patch.pair.a].tree];
-    heights_.push_back(island_->model.up.dot(reference + island_->terms()->contacts[patch.first].point));
+  for (const PairContacts& of_pair : island_->model.pairs) {
+    const Vector3& reference = island_->motion.reference[island_->forest.nodes()[of_pair.pair.a].tree];
+    heights_.push_back(island_->model.up.dot(reference + island_->terms()->contacts[of_pair.first].point));
   }
   order_.resize(heights_.size());
   std::iota(order_.begin(), order_.end(), 0);
@@ -34,7 +34,7 @@ void SweepOrder::sortByHeight() {
             [this](int a, int b) { return heights_[a] < heights_[b] || (heights_[a] == heights_[b] && a < b); });
 }
 
-void SweepOrder::colourPatches(const IslandResponse& response, const std::vector<ResponsePair>& pairs) {
+void SweepOrder::colourPairs(const IslandResponse& response, const std::vector<ResponsePair>& pairs) {
   used_colours_.assign(response.movers(), 0);
   colour_.resize(order_.size());
   for (const int p : order_) {
@@ -50,7 +50,7 @@ void SweepOrder::colourPatches(const IslandResponse& response, const std::vector
   }
 }
 
-// Patches of a colour are sorted by size, so that those of a group have about as many contacts; those without a colour keep their order.
+// Pairs of a colour are sorted by size, so that those of a group have about as many contacts; those without a colour keep their order.
 void SweepOrder::sortByColour() {
   colour_start_.assign(COLOURS + 2, 0);
   for (const int p : order_) ++colour_start_[colour_[p] + 1];
@@ -71,8 +71,8 @@ void SweepOrder::layGroups(int colour, std::vector<SweepGroup>* groups) {
     group.first = groups->empty() ? 0 : groups->back().end;
     int longest = 0;
     for (int lane = 0; lane < SWEEP_LANES; ++lane) {
-      group.patch[lane] = lane < width && p != end ? *p++ : -1;
-      if (group.patch[lane] >= 0) longest = std::max(longest, contactsOf(group.patch[lane]));
+      group.pair[lane] = lane < width && p != end ? *p++ : -1;
+      if (group.pair[lane] >= 0) longest = std::max(longest, contactsOf(group.pair[lane]));
     }
     group.end = group.first + longest;
     groups->push_back(group);

@@ -1,4 +1,4 @@
-// Order in which an island's patches are swept: from the ground up, in groups of eight, each between bodies of its own.
+// Order in which an island's pairs are swept: from the ground up, in groups of eight, each between bodies of its own.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +9,10 @@
 
 namespace blem_sim::dynamics {
 
-/** Groups of one colour have no body in common. Those of the last colour may have: their patches found no colour, and take turns. */
+/** Groups of one colour have no body in common. Those of the last colour may have: their pairs found no colour, and take turns. */
 class SweepOrder {
  public:
-  /** @param pairs of the island's patches; groups: their patches and contacts, out */
+  /** @param pairs responses of the island's pairs; groups: their pairs and contacts, out */
   void find(const IslandAtHand& island, const IslandResponse& response, const std::vector<ResponsePair>& pairs,
             std::vector<SweepGroup>* groups);
 
@@ -23,10 +23,10 @@ class SweepOrder {
 
  private:
   void sortByHeight();
-  void colourPatches(const IslandResponse& response, const std::vector<ResponsePair>& pairs);
+  void colourPairs(const IslandResponse& response, const std::vector<ResponsePair>& pairs);
   void sortByColour();
   void layGroups(int colour, std::vector<SweepGroup>* groups);
-  int contactsOf(int patch) const { return island_->model.patches[patch].end - island_->model.patches[patch].first; }
+  int contactsOf(int pair) const { return island_->model.pairs[pair].end - island_->model.pairs[pair].first; }
 
   const IslandAtHand* island_ = nullptr;
   std::vector<double> heights_;

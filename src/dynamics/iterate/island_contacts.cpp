@@ -21,7 +21,7 @@ void IslandContacts::fill(const IslandAtHand& island) {
   blocks_.clear();
   ranges_.clear();
   const std::vector<ContactTerm>& terms = island.terms()->contacts;
-  for (const ContactPatch& p : island.model.patches) {
+  for (const PairContacts& p : island.model.pairs) {
     const std::size_t start = blocks_.size();
     for (int first = p.first; first < p.end; first += LANES) {
       blocks_.emplace_back();
@@ -34,8 +34,8 @@ void IslandContacts::fill(const IslandAtHand& island) {
 void IslandContacts::soften(double softness) {
   softness_ = softness;
   const std::vector<ContactTerm>& terms = island_->terms()->contacts;
-  forPatches(*island_, [&](std::size_t index) {
-    const ContactPatch& p = island_->model.patches[index];
+  forPairs(*island_, [&](std::size_t index) {
+    const PairContacts& p = island_->model.pairs[index];
     int i = p.first;
     for (std::size_t b = ranges_[index].first; b < ranges_[index].end; ++b, i += LANES)
       dynamics::soften(&terms[i], p.end - i, softness, &blocks_[b]);
@@ -43,8 +43,8 @@ void IslandContacts::soften(double softness) {
 }
 
 void IslandContacts::setSteps() {
-  forPatches(*island_, [&](std::size_t p) {
-    dynamics::setSteps(relativeTwist(island_->model.patches[p].pair, island_->space->twist), begin() + ranges_[p].first,
+  forPairs(*island_, [&](std::size_t p) {
+    dynamics::setSteps(relativeTwist(island_->model.pairs[p].pair, island_->space->twist), begin() + ranges_[p].first,
                        begin() + ranges_[p].end);
   });
 }
@@ -77,13 +77,13 @@ void IslandContacts::read() const {
 }
 
 void IslandContacts::addWrenches() {
-  patch_wrenches_.resize(ranges_.size());
-  forPatches(*island_, [&](std::size_t p) { patch_wrenches_[p] = wrenchOf(begin() + ranges_[p].first, begin() + ranges_[p].end); });
-  for (std::size_t p = 0; p < ranges_.size(); ++p) addWrench(island_->model.patches[p].pair, patch_wrenches_[p], &island_->space->wrench);
+  pair_wrenches_.resize(ranges_.size());
+  forPairs(*island_, [&](std::size_t p) { pair_wrenches_[p] = wrenchOf(begin() + ranges_[p].first, begin() + ranges_[p].end); });
+  for (std::size_t p = 0; p < ranges_.size(); ++p) addWrench(island_->model.pairs[p].pair, pair_wrenches_[p], &island_->space->wrench);
 }
 
-bool IslandContacts::stiffnessOf(std::size_t patch, Matrix6* out) const {
-  return dynamics::stiffnessOf(begin() + ranges_[patch].first, begin() + ranges_[patch].end, out);
+bool IslandContacts::stiffnessOf(std::size_t pair, Matrix6* out) const {
+  return dynamics::stiffnessOf(begin() + ranges_[pair].first, begin() + ranges_[pair].end, out);
 }
 
 bool IslandContacts::areSettled(double share) const {

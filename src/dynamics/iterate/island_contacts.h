@@ -1,4 +1,4 @@
-// Contacts of an island while they are iterated: blocks of four, patch by patch, in loops that threads share.
+// Contacts of an island while they are iterated: blocks of four, pair by pair, in loops that threads share.
 #pragma once
 
 #include <vector>
@@ -38,8 +38,8 @@ class IslandContacts {
 
   /** Adds the impulses' wrenches on the nodes to those in the space. */
   void addWrenches();
-  /** Stiffness of a patch, about the reference point of its first body. @return false if no contact acts */
-  bool stiffnessOf(std::size_t patch, Matrix6* out) const;
+  /** Stiffness of a pair, about the reference point of its first body. @return false if no contact acts */
+  bool stiffnessOf(std::size_t pair, Matrix6* out) const;
   /** [m/s] of the fastest contact. */
   double fastest() const { return dynamics::fastest(begin(), end()); }
   ContactResidual residual() const { return dynamics::residual(begin(), end()); }
@@ -51,9 +51,9 @@ class IslandContacts {
   template <typename Visit>
   void forEach(const Visit& visit) const {
     for (std::size_t p = 0; p < ranges_.size(); ++p) {
-      const ContactPatch& patch = island_->model.patches[p];
-      for (int i = patch.first; i < patch.end; ++i)
-        visit(i, ranges_[p].first + static_cast<std::size_t>(i - patch.first) / LANES, (i - patch.first) % LANES);
+      const PairContacts& of_pair = island_->model.pairs[p];
+      for (int i = of_pair.first; i < of_pair.end; ++i)
+        visit(i, ranges_[p].first + static_cast<std::size_t>(i - of_pair.first) / LANES, (i - of_pair.first) % LANES);
     }
   }
 
@@ -70,11 +70,11 @@ class IslandContacts {
 
   const IslandAtHand* island_ = nullptr;
   std::vector<ContactBlock> blocks_;  // responses: at the line search's last step length
-  std::vector<BlockRange> ranges_;    // by patch
+  std::vector<BlockRange> ranges_;    // by pair
   double softness_ = 1;
   SlipMixing slip_mixing_;
-  std::vector<PotentialSlope> slopes_;   // by range of blocks
-  std::vector<Vector6> patch_wrenches_;  // by patch
+  std::vector<PotentialSlope> slopes_;  // by range of blocks
+  std::vector<Vector6> pair_wrenches_;  // by pair
 };
 
 }  // namespace blem_sim::dynamics

@@ -9,7 +9,7 @@ void LiveParts::find(const IslandAtHand& island) {
   std::vector<char>& live = island.space->live;
   for (const int tree : island.model.trees)
     std::fill(live.begin() + island.tree(tree).first_node, live.begin() + island.tree(tree).node_end, 0);
-  for (const ContactPatch& p : island.model.patches) {
+  for (const PairContacts& p : island.model.pairs) {
     mark(p.pair.a);
     mark(p.pair.b);
   }

@@ -27,7 +27,7 @@ inline void addWrench(const BodyPair& pair, const Vector6& wrench, std::vector<V
 }
 
 /** Contacts of one pair, consecutive among the problem's contacts. */
-struct ContactPatch {
+struct PairContacts {
   BodyPair pair;
   int first = 0, end = 0;
 };

@@ -9,7 +9,7 @@
 
 namespace blem_sim::dynamics {
 
-/** Four contacts of one patch. A contact's impulse falls with the velocity: its stiffness -d impulse/du is positive semidefinite. */
+/** Four contacts of one pair. A contact's impulse falls with the velocity: its stiffness -d impulse/du is positive semidefinite. */
 struct ContactBlock {
   static constexpr double OPEN = 0, STICK = 1, SLIP = 2;
 
@@ -53,7 +53,7 @@ PotentialSlope respond(double a, ContactBlock* begin, ContactBlock* end);
 
 /** Sum of the impulses' wrenches about the points' origin. */
 Vector6 wrenchOf(const ContactBlock* begin, const ContactBlock* end);
-/** Stiffness of the patch: the 6 x 6 sum of J' k J, k being the responses' stiffnesses. @return false if no contact acts */
+/** Stiffness of the pair: the 6 x 6 sum of J' k J, k being the responses' stiffnesses. @return false if no contact acts */
 bool stiffnessOf(const ContactBlock* begin, const ContactBlock* end, Matrix6* out);
 /** The steps of the points that a twist carries along. */
 void setSteps(const Vector6& twist, ContactBlock* begin, ContactBlock* end);

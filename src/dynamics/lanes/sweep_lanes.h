@@ -1,4 +1,4 @@
-// Contacts while they are swept: impulses improved one contact after the other, eight patches at a time, each between bodies of its own.
+// Contacts while they are swept: impulses improved one contact after the other, eight pairs at a time, each between bodies of its own.
 #pragma once
 
 #include "lanes/contact_term.h"
@@ -13,9 +13,9 @@ using SweepLanes = double[SWEEP_LANES];
 using SweepVectors = double[3][SWEEP_LANES];
 using TwistLanes = double[6][SWEEP_LANES];
 
-/** One contact of each of eight patches: its constants while they are swept. */
+/** One contact of each of eight pairs: its constants while they are swept. */
 struct alignas(8 * SWEEP_LANES) SweepContact {
-  SweepVectors point;    ///< about the reference point of the patch's first body
+  SweepVectors point;    ///< about the reference point of the pair's first body
   SweepVectors axis[3];  ///< the normal, and two directions across it
   SweepLanes friction, compliance, target;
   SweepLanes offset[2];           ///< [m/s] across the normal: by which the bodies' paths bend apart
@@ -32,15 +32,15 @@ struct alignas(8 * SWEEP_LANES) SweepImpulse {
   SweepVectors search;  ///< along which the conjugate steps lead
 };
 
-/** Eight patches at most, no body in two of them. Lanes without a patch have contacts that never act. */
+/** Eight pairs at most, no body in two of them. Lanes without a pair have contacts that never act. */
 struct SweepGroup {
-  int patch[SWEEP_LANES];            ///< -1: none
-  int first = 0, end = 0;            ///< contacts: as many as the largest patch has
+  int pair[SWEEP_LANES];             ///< -1: none
+  int first = 0, end = 0;            ///< contacts: as many as the largest pair has
   bool free = false;                 ///< all bodies are free, or the static world
   double response[21][SWEEP_LANES];  ///< of the relative twist to a wrench, about the first body's reference point; lower triangle by rows
 };
 
-/** Velocity of eight bodies, and their inverse inertias. Lanes of the static world, or without a patch, stay at zero. */
+/** Velocity of eight bodies, and their inverse inertias. Lanes of the static world, or without a pair, stay at zero. */
 struct alignas(8 * SWEEP_LANES) BodyLanes {
   int first_dof[SWEEP_LANES];              ///< -1: none
   double inverse_inertia[6][SWEEP_LANES];  ///< [1/(kg m^2)] lower triangle by rows, world axes
@@ -66,7 +66,7 @@ void setGains(const SweepGroup& group, SweepContact* begin, SweepContact* end);
 /** Impulse of a lane's contact, world axes. */
 Vector3 readLane(const SweepContact& contact, const SweepImpulse& impulse, int lane);
 
-/** Sum of the impulses' wrenches, about the patches' reference points. */
+/** Sum of the impulses' wrenches, about the pairs' reference points. */
 void wrenchOf(const SweptContacts& contacts, TwistLanes* wrench);
 
 /** Changes of impulses by a sweep over contacts. */

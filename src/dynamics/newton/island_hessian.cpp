@@ -54,7 +54,7 @@ void IslandHessian::coupleTrees() {
     const int a = block[treeOf(pair.a)], b = block[treeOf(pair.b)];
     if (a != b) matrix_.couple(a, b);
   };
-  for (const ContactPatch& p : island_->model.patches) couple(p.pair);
+  for (const PairContacts& p : island_->model.pairs) couple(p.pair);
   for (const BodyPair& pair : island_->model.loop_pairs) couple(pair);
   matrix_.analyse();
 }
@@ -108,14 +108,14 @@ void IslandHessian::coupleBlocks(const BodyPair& pair, const Matrix6& stiffness)
 
 // Adds the stiffnesses of contacts and loops at the present iterate to the bodies.
 void IslandHessian::addStiffness() {
-  const std::vector<ContactPatch>& patches = island_->model.patches;
+  const std::vector<PairContacts>& pairs = island_->model.pairs;
   for (const int i : iterate_->live().nodes()) island_->space->stiff[i] = 0;
   if (tied_) matrix_.setZero();
-  patch_stiffness_.resize(patches.size());
-  patch_is_stiff_.resize(patches.size());
-  forPatches(*island_, [&](std::size_t p) { patch_is_stiff_[p] = iterate_->reactions().contacts().stiffnessOf(p, &patch_stiffness_[p]); });
-  for (std::size_t p = 0; p < patches.size(); ++p)
-    if (patch_is_stiff_[p]) stiffenPair(patches[p].pair, patch_stiffness_[p]);
+  pair_stiffness_.resize(pairs.size());
+  pair_is_stiff_.resize(pairs.size());
+  forPairs(*island_, [&](std::size_t p) { pair_is_stiff_[p] = iterate_->reactions().contacts().stiffnessOf(p, &pair_stiffness_[p]); });
+  for (std::size_t p = 0; p < pairs.size(); ++p)
+    if (pair_is_stiff_[p]) stiffenPair(pairs[p].pair, pair_stiffness_[p]);
   const std::vector<LoopTerm>& loops = island_->terms()->loops;
   for (std::size_t l = 0; l < loops.size(); ++l) {
     Vector6 gain;

@@ -52,8 +52,8 @@ class IslandHessian {
   bool tied_ = false;  // two branches or two trees are tied: it is a matrix of blocks, one per tree
   State state_ = State::NEW;
   std::vector<double> kinds_, joint_stiffness_;  // lane by lane, of the factor at hand
-  std::vector<Matrix6> patch_stiffness_;
-  std::vector<char> patch_is_stiff_;
+  std::vector<Matrix6> pair_stiffness_;
+  std::vector<char> pair_is_stiff_;
   Islands tree_blocks_;  // trees that mimic joints tie are one block
   std::vector<int> block_sizes_;
   BlockMatrix matrix_;

@@ -21,11 +21,11 @@ struct IslandAtHand {
   IslandTerms* terms() const { return &found->terms; }
 };
 
-/** Visits the patches, which threads share: visit(index). */
+/** Visits the pairs, which threads share: visit(index). */
 template <typename Visit>
-void forPatches(const IslandAtHand& island, const Visit& visit) {
+void forPairs(const IslandAtHand& island, const Visit& visit) {
   constexpr std::size_t AT_ONCE = 64;  // the size of a chunk: some microseconds
-  island.team->forRanges(0, island.model.patches.size(), AT_ONCE, [&](std::size_t first, std::size_t end) {
+  island.team->forRanges(0, island.model.pairs.size(), AT_ONCE, [&](std::size_t first, std::size_t end) {
     for (std::size_t p = first; p < end; ++p) visit(p);
   });
 }

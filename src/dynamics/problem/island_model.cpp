@@ -28,14 +28,14 @@ void IslandAnswer::start(const IslandTerms& asked) {
 void IslandModel::clear() {
   trees.clear();
   terms.clear();
-  patches.clear();
+  pairs.clear();
   loop_pairs.clear();
   mimics.clear();
 }
 
 bool IslandModel::isTied() const {
   return !mimics.empty() || !terms.loops.empty() ||
-         std::any_of(patches.begin(), patches.end(), [](const ContactPatch& p) { return p.pair.b >= 0; });
+         std::any_of(pairs.begin(), pairs.end(), [](const PairContacts& p) { return p.pair.b >= 0; });
 }
 
 bool IslandModel::isHeap() const { return treeCount() >= HEAP && terms.loops.empty() && mimics.empty() && terms.joints.empty(); }

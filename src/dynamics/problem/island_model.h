@@ -35,7 +35,7 @@ struct IslandAnswer {
 struct IslandModel {
   std::vector<int> trees;  ///< ascending
   IslandTerms terms;
-  std::vector<ContactPatch> patches;
+  std::vector<PairContacts> pairs;
   std::vector<BodyPair> loop_pairs;  ///< of each loop, a the child
   std::vector<MimicFold> mimics;
   Vector3 up = Vector3::Zero();  ///< against gravity; zero without

@@ -188,11 +188,11 @@ void addContact(const TermSource& s, const ContactConstraint& c, IslandModel* mo
   const bool grounded = c.body_a == WORLD_BODY;
   const int a = s.forest.nodeOfBody(grounded ? c.body_b : c.body_a);
   const int b = grounded || c.body_b == WORLD_BODY ? -1 : s.forest.nodeOfBody(c.body_b);
-  if (model->patches.empty() || model->patches.back().pair.a != a || model->patches.back().pair.b != b) {
-    ContactPatch patch;
-    patch.pair = makePair(s, a, b);
-    patch.first = static_cast<int>(model->terms.contacts.size());
-    model->patches.push_back(patch);
+  if (model->pairs.empty() || model->pairs.back().pair.a != a || model->pairs.back().pair.b != b) {
+    PairContacts of_pair;
+    of_pair.pair = makePair(s, a, b);
+    of_pair.first = static_cast<int>(model->terms.contacts.size());
+    model->pairs.push_back(of_pair);
   }
   const ContactRecord* record = s.memory.find(c.id);
   const NormalRow row = surfaceRow(c, s.input.dt, 0, s.settings);
@@ -200,7 +200,7 @@ void addContact(const TermSource& s, const ContactConstraint& c, IslandModel* mo
   term.point = c.point - s.motion.reference[s.forest.nodes()[a].tree];
   term.normal = termSign(c) * c.normal_BA;
   // A sticking contact shall not have moved at the end of the step, along paths that bend.
-  const Vector3 drift = pairDrift(s, model->patches.back().pair, term.point).point;
+  const Vector3 drift = pairDrift(s, model->pairs.back().pair, term.point).point;
   term.bend = 0.5 * s.input.dt * (drift - drift.dot(term.normal) * term.normal);
   term.friction = c.friction;
   term.target = row.speed;
@@ -210,7 +210,7 @@ void addContact(const TermSource& s, const ContactConstraint& c, IslandModel* mo
     term.slip = record->slip;
   }
   model->terms.contacts.push_back(term);
-  model->patches.back().end = static_cast<int>(model->terms.contacts.size());
+  model->pairs.back().end = static_cast<int>(model->terms.contacts.size());
 }
 
 void weighContacts(const TermSource& s, IslandModel* model) {
@@ -222,13 +222,13 @@ void weighContacts(const TermSource& s, IslandModel* model) {
     model->mass += own;
   }
   const double hard = model->hardPush(s.settings.max_correction_speed);
-  for (const ContactPatch& patch : model->patches) {
+  for (const PairContacts& of_pair : model->pairs) {
     Vector3 middle = Vector3::Zero();
-    for (int i = patch.first; i < patch.end; ++i) middle += model->terms.contacts[i].point;
-    middle /= patch.end - patch.first;
-    double inverse = inverseMass(s, patch.pair.a, middle);
-    if (patch.pair.b >= 0) inverse += inverseMass(s, patch.pair.b, middle - patch.pair.shift);
-    for (int i = patch.first; i < patch.end; ++i) {
+    for (int i = of_pair.first; i < of_pair.end; ++i) middle += model->terms.contacts[i].point;
+    middle /= of_pair.end - of_pair.first;
+    double inverse = inverseMass(s, of_pair.pair.a, middle);
+    if (of_pair.pair.b >= 0) inverse += inverseMass(s, of_pair.pair.b, middle - of_pair.pair.shift);
+    for (int i = of_pair.first; i < of_pair.end; ++i) {
       ContactTerm& c = model->terms.contacts[i];
       c.inverse_mass = inverse;
       c.stiffest_rho = CONTACT_PROXIMAL * std::min(inverse, HEAVIEST / heaviest);

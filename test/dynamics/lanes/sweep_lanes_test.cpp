@@ -9,7 +9,7 @@
 namespace blem_sim::dynamics {
 namespace {
 
-constexpr int CONTACTS = 5, WITHOUT_B = 1, WITHOUT_PATCH = 3;  // the lanes that meet the static world, and that have no patch
+constexpr int CONTACTS = 5, WITHOUT_B = 1, WITHOUT_PAIR = 3;  // the lanes that meet the static world, and that have no pair
 
 struct Body {
   Matrix3 inverse_inertia = Matrix3::Zero();
@@ -71,7 +71,7 @@ class SweepLanes : public ::testing::Test {
   }
 
   void addLane(int lane) {
-    const bool exists = lane != WITHOUT_PATCH, has_b = exists && lane != WITHOUT_B;
+    const bool exists = lane != WITHOUT_PAIR, has_b = exists && lane != WITHOUT_B;
     const Body a = exists ? body() : Body(), b = has_b ? body() : Body();
     shift_[lane] = has_b ? vector() : Vector3::Zero();
     setBody(a, lane, exists ? 12 * lane : -1, &bodies_.a);
@@ -91,7 +91,7 @@ class SweepLanes : public ::testing::Test {
   }
 
   Vector6 relativeVelocity(int lane) const {
-    if (lane == WITHOUT_PATCH) return Vector6::Zero();
+    if (lane == WITHOUT_PAIR) return Vector6::Zero();
     const Vector6 a = velocity_.segment<6>(12 * lane);
     return lane == WITHOUT_B ? a : Vector6(a - moved(velocity_.segment<6>(12 * lane + 6), -shift_[lane]));
   }
@@ -132,7 +132,7 @@ TEST_F(SweepLanes, MomentumFollowsFromImpulses) {
   SweepChange change;
   sweepFree(bodies_, {contacts_, contacts_ + CONTACTS, impulses_}, velocity_.data(), &change);
   for (int lane = 0; lane < SWEEP_LANES; ++lane) {
-    if (lane == WITHOUT_PATCH) continue;
+    if (lane == WITHOUT_PAIR) continue;
     Vector3 force = Vector3::Zero();
     for (int c = 0; c < CONTACTS; ++c)
       for (int axis = 0; axis < 3; ++axis)

@@ -22,7 +22,7 @@ std::uint64_t mixed(std::uint64_t x) {  // splitmix64's finalizer [Steele 2014]
 }
 
 /** Identity of a contact of a pair among those of all pairs. */
-std::uint64_t contactId(int a, int b, std::uint64_t id) {
+std::uint64_t worldContactId(int a, int b, std::uint64_t id) {
   return mixed(id + mixed((static_cast<std::uint64_t>(a) << 32) + static_cast<std::uint64_t>(b) + 1));
 }
 
@@ -35,7 +35,7 @@ dynamics::ContactConstraint constraintOf(const SimulatedWorld& world, const cont
   constraint.point = contact.point;
   constraint.normal_BA = contact.normal_BA;
   constraint.depth = contact.depth;
-  constraint.id = contactId(manifold.a, manifold.b, contact.id);
+  constraint.id = worldContactId(manifold.a, manifold.b, contact.id);
   return constraint;
 }
 
@@ -79,7 +79,7 @@ std::vector<std::uint64_t> ConstraintMaker::forget(int collider) {
     for (const reduction::ReductionMemory::Choice& choice : memory->choices()) {
       if (choice.a != collider && choice.b != collider) continue;
       for (const std::uint64_t id : choice.ids) {
-        const std::uint64_t known_as = contactId(choice.a, choice.b, id);
+        const std::uint64_t known_as = worldContactId(choice.a, choice.b, id);
         ids.push_back(memory == &memory_ ? known_as : stopId(known_as));
       }
     }
