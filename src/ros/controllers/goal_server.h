@@ -6,11 +6,19 @@
 
 #include <string>
 
+#include "loop/refusals.h"
 #include "sending/publish_schedule.h"
 
 namespace blem_sim::node {
 
-/** Keeps the active goal of an action of one type, and ends it once. */
+struct ActionSettings {
+  ros::NodeHandle node;
+  std::string name;          ///< below the node's
+  double feedback_rate = 0;  ///< [1/s simulated]
+  Refusals* refusals;        ///< lives longer than the action
+};
+
+/** Keeps the active goal of an action of one type, and ends it once. Refused goals are told and counted by the action's name. */
 template <typename Action>
 class GoalServer {
  public:
@@ -21,11 +29,12 @@ class GoalServer {
 
   /** @param take gets each goal, and rejects it or makes it active @param cancel is called when the active goal is cancelled */
   template <typename Take, typename Cancel>
-  GoalServer(const ros::NodeHandle& node, const std::string& name, double feedback_rate, Take take, Cancel cancel)
-      : name_(node.resolveName(name)),
-        feedback_schedule_(feedback_rate),
+  GoalServer(const ActionSettings& settings, Take take, Cancel cancel)
+      : name_(settings.node.resolveName(settings.name)),
+        refusals_(settings.refusals),
+        feedback_schedule_(settings.feedback_rate),
         server_(
-            node, name, [take](Handle goal) { take(goal); },
+            settings.node, settings.name, [take](Handle goal) { take(goal); },
             [this, cancel](Handle goal) {
               if (active_ && goal == goal_) cancel();
             },
@@ -43,6 +52,10 @@ class GoalServer {
     goal_ = goal;
     active_ = true;
     feedback_schedule_.restart();
+  }
+  void reject(Handle* goal, const Result& result, const std::string& why) {
+    goal->setRejected(result, why);
+    refusals_->add(name_, "goal refused", why);
   }
   void preempt(const Result& result, const std::string& why) {
     if (release()) goal_.setCanceled(result, why);
@@ -67,6 +80,7 @@ class GoalServer {
   }
 
   std::string name_;
+  Refusals* refusals_;
   PublishSchedule feedback_schedule_;
   bool active_ = false;
   Handle goal_;

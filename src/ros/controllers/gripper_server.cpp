@@ -21,10 +21,10 @@ Message messageOf(const sim::GripperState& state) {
 
 }  // namespace
 
-GripperServer::GripperServer(const ros::NodeHandle& robot_node, sim::GripperController controller)
+GripperServer::GripperServer(const ros::NodeHandle& robot_node, sim::GripperController controller, Refusals* refusals)
     : controller_(std::move(controller)),
       goals_(
-          ros::NodeHandle(robot_node, controller_.config().name), "gripper_cmd", controller_.config().action_monitor_rate,
+          {ros::NodeHandle(robot_node, controller_.config().name), "gripper_cmd", controller_.config().action_monitor_rate, refusals},
           [this](Goals::Handle goal) { onGoal(goal); },
           [this] {
             controller_.cancel();
@@ -36,9 +36,7 @@ void GripperServer::onGoal(Goals::Handle goal) {
   try {
     controller_.accept(command.position);
   } catch (const InputError& error) {
-    goal.setRejected(messageOf<GripperCommandResult>(controller_.state()), error.what());
-    ROS_ERROR("%s: goal refused: %s", goals_.name().c_str(), error.what());
-    return;
+    return goals_.reject(&goal, messageOf<GripperCommandResult>(controller_.state()), error.what());
   }
   goals_.activate(goal);
   if (command.max_effort != 0)

@@ -17,7 +17,7 @@ namespace blem_sim::node {
 class GripperServer : public ControllerServer {
  public:
   /** @param robot_node in the robot's namespace */
-  GripperServer(const ros::NodeHandle& robot_node, sim::GripperController controller);
+  GripperServer(const ros::NodeHandle& robot_node, sim::GripperController controller, Refusals* refusals);
 
   std::vector<std::string> joints() const override { return controller_.config().joints; }
   void start() override { controller_.start(); }

@@ -141,7 +141,8 @@ void RobotControllers::add(const sim::ControllerConfig& config, const std::strin
   controller.name = config.name;
   controller.type = type;
   if (config.kind == sim::ControllerKind::GRIPPER)
-    controller.server = std::make_unique<GripperServer>(node_, sim::GripperController(simulator_, simulator_->robotIndex(robot_), config));
+    controller.server = std::make_unique<GripperServer>(node_, sim::GripperController(simulator_, simulator_->robotIndex(robot_), config),
+                                                        loop_->refusals());
   else
     controller.server =
         std::make_unique<TrajectoryServer>(node_, sim::TrajectoryController(simulator_, simulator_->robotIndex(robot_), config), loop_);

@@ -41,7 +41,8 @@ TrajectoryServer::TrajectoryServer(ros::NodeHandle robot_node, sim::TrajectoryCo
       states_(namedState(controller_)),
       query_(node_.advertiseService("query_state", &TrajectoryServer::onQuery, this)),
       goals_(
-          node_, "follow_joint_trajectory", controller_.config().action_monitor_rate, [this](Goals::Handle goal) { onGoal(goal); },
+          {node_, "follow_joint_trajectory", controller_.config().action_monitor_rate, loop->refusals()},
+          [this](Goals::Handle goal) { onGoal(goal); },
           [this] {
             controller_.cancel();
             goals_.preempt(resultOf(sim::GoalError::SUCCESSFUL, ""), "cancelled");
@@ -61,17 +62,12 @@ void TrajectoryServer::onGoal(Goals::Handle goal) {
   try {
     old_points = controller_.accept(fromMessage(*goal.getGoal()));
   } catch (const sim::GoalRefused& refusal) {
-    return reject(&goal, refusal.error, refusal.what());
+    return goals_.reject(&goal, resultOf(refusal.error, refusal.what()), refusal.what());
   } catch (const InputError& error) {
-    return reject(&goal, sim::GoalError::INVALID_GOAL, error.what());
+    return goals_.reject(&goal, resultOf(sim::GoalError::INVALID_GOAL, error.what()), error.what());
   }
   goals_.activate(goal);
   tellOldPoints(goals_.name(), old_points);
-}
-
-void TrajectoryServer::reject(Goals::Handle* goal, sim::GoalError error, const std::string& why) const {
-  goal->setRejected(resultOf(error, why), why);
-  ROS_ERROR("%s: goal refused: %s", goals_.name().c_str(), why.c_str());
 }
 
 bool TrajectoryServer::onQuery(QueryTrajectoryState::Request& request, QueryTrajectoryState::Response& response) {

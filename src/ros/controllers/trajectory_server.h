@@ -42,7 +42,6 @@ class TrajectoryServer : public ControllerServer {
   bool onQuery(QueryTrajectoryState::Request& request, QueryTrajectoryState::Response& response);
 
   void finish(const sim::GoalOutcome& outcome);
-  void reject(Goals::Handle* goal, sim::GoalError error, const std::string& why) const;
   void publishState(double time);
   void publishFeedback(double time);
 

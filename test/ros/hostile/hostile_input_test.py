@@ -210,7 +210,9 @@ class HostileInputTest(unittest.TestCase):
         print("%d requests and messages of %d kinds in %.0f s" % (self.requests, len(kinds), seconds))
 
     def check_counts(self):
-        """Every message to a topic was counted as refused; clouds that a newer one overtook are counted as such."""
+        """Every message to a topic and every goal was counted as refused; clouds that a newer one overtook are counted as such."""
+        of_goals = lambda: counted(self.diagnostics).get("/joint_trajectory_controller/follow_joint_trajectory", 0)
+        wait_until(lambda: of_goals() == self.hostile.answered["goal"], "%d goals to be counted, got %%s" % self.hostile.answered["goal"], of_goals)
         for topic, sent in self.hostile.sent.items():
             if topic == "points":
                 of_clouds = lambda: sum(counted(self.diagnostics).get(key, 0) for key in ("live clouds refused", "live clouds overtaken by newer ones", "/points"))

@@ -84,6 +84,16 @@ TEST_F(TrajectoryControllerTest, BadPointsAreAnInvalidGoalAsAWhole) {
   EXPECT_EQ(position(0), 0);
 }
 
+TEST_F(TrajectoryControllerTest, TolerancesAreForItsJoints) {
+  make();
+  TrajectoryGoal path_goal = goalOf(path({{1, {0.3, 0.4}}})), end_goal = path_goal;
+  path_goal.path_tolerance = end_goal.goal_tolerance = {{"swing", 1, 0}, {"swnig", 1, 0}};
+  EXPECT_EQ(refusalOf(path_goal), GoalError::INVALID_JOINTS);
+  EXPECT_EQ(refusalOf(end_goal), GoalError::INVALID_JOINTS);
+  EXPECT_FALSE(outcomeWithin(0.2));
+  EXPECT_EQ(position(0), 0);
+}
+
 TEST_F(TrajectoryControllerTest, OldPointsAreDroppedAndAllOldIsRefused) {
   make();
   stepFor(&simulator_, 1);
