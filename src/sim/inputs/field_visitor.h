@@ -75,9 +75,9 @@ class FieldVisitor {
   void one(std::optional<T>* value) {
     bool given = value->has_value();
     one(&given);
-    T content = value->value_or(T());
-    if (given) one(&content);
-    *value = given ? std::optional<T>(content) : std::nullopt;
+    if (!given) return value->reset();
+    if (!value->has_value()) value->emplace();
+    one(&**value);
   }
   template <typename Struct>
   void one(Struct* value) {
