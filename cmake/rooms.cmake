@@ -20,9 +20,9 @@ target_link_libraries(blem_sim_model PRIVATE PkgConfig::URDFDOM PkgConfig::CONSO
   ${PCL_COMMON_LIBRARIES} ${PCL_IO_LIBRARIES} ${PCL_FEATURES_LIBRARIES} ${PCL_FILTERS_LIBRARIES} ${PCL_KDTREE_LIBRARIES}
   ${PCL_SEARCH_LIBRARIES} ${PCL_SURFACE_LIBRARIES})
 blem_sim_room(contact blem_sim_geometry)
-blem_sim_precompiled_as(blem_sim_contact blem_sim_geometry)
+blem_sim_precompile(blem_sim_contact ${common_headers})
 blem_sim_room(reduction blem_sim_contact)
-blem_sim_precompiled_as(blem_sim_reduction blem_sim_geometry)
+blem_sim_precompiled_as(blem_sim_reduction blem_sim_contact)
 
 # The kernels of the contact search, one source for several instruction sets; the fastest that the machine has is chosen when it runs.
 set(kernels ${PROJECT_SOURCE_DIR}/src/contact/kernels)
@@ -43,7 +43,10 @@ foreach(lanes reduction/lanes/reduction_lanes dynamics/lanes/contact_lanes dynam
     SKIP_PRECOMPILE_HEADERS ON)
 endforeach()
 blem_sim_room(dynamics blem_sim_contact blem_sim_model)
-blem_sim_precompiled_as(blem_sim_dynamics blem_sim_geometry)
+blem_sim_precompiled_as(blem_sim_dynamics blem_sim_contact)
+foreach(room contact reduction dynamics)
+  target_compile_options(blem_sim_${room} PRIVATE ${without_pointer_checks})
+endforeach()
 target_link_libraries(blem_sim_dynamics PRIVATE PkgConfig::ODE PkgConfig::TBB fmt::fmt)
 blem_sim_room(sim blem_sim_dynamics blem_sim_reduction)
 blem_sim_precompiled_as(blem_sim_sim blem_sim_geometry)
