@@ -9,7 +9,7 @@ namespace blem_sim::geometry {
 namespace {
 
 /** Coordinates of size 1 differ by rounding below this. */
-constexpr double ROUNDING = 16 * std::numeric_limits<double>::epsilon();
+constexpr double RELATIVE_ROUNDING = 16 * std::numeric_limits<double>::epsilon();
 /** A triangle lower than this part of its longest side is its sides: its normal would be rounding, and its inside is as near as they. */
 constexpr double FLAT_HEIGHT = 1e-10;
 
@@ -200,7 +200,7 @@ ClosestPoints closestTriangleTriangle(const Triangle& a, const Triangle& b) {
       return {0, crossing, crossing};
     }
   }
-  const double rounding = ROUNDING * std::max(largestCoordinate(a), largestCoordinate(b));
+  const double rounding = RELATIVE_ROUNDING * std::max(largestCoordinate(a), largestCoordinate(b));
   const ClosestPair best = closestFeatures(face_a, face_b, rounding / 16);
   // Triangles that meet within a plane or along a side have a distance of rounding's size; its direction would mean nothing.
   if (best.squared_distance <= rounding * rounding) return {0, best.point_a, best.point_a};
@@ -212,7 +212,7 @@ bool segmentCrossesTriangle(const Vector3& p, const Vector3& q, const Triangle& 
   const Face face(t);
   const double height_p = face.height(p), height_q = face.height(q);
   const double rounding =
-      2 * ROUNDING * std::sqrt(face.normal2) * std::max({largestCoordinate(t), p.cwiseAbs().maxCoeff(), q.cwiseAbs().maxCoeff()});
+      2 * RELATIVE_ROUNDING * std::sqrt(face.normal2) * std::max({largestCoordinate(t), p.cwiseAbs().maxCoeff(), q.cwiseAbs().maxCoeff()});
   if (!face.flat && (std::min(height_p, height_q) > rounding || std::max(height_p, height_q) < -rounding)) return false;
   return closestTriangleTriangle({p, q, q}, t).distance == 0;
 }

@@ -11,7 +11,7 @@
 namespace blem_sim::contact {
 namespace {
 
-constexpr double R = 0.002;
+constexpr double KEPT_WIDTH = 0.002;
 
 bool sameBits(const Contact& a, const Contact& b) {
   return a.id == b.id && a.pierced == b.pierced && std::memcmp(a.point.data(), b.point.data(), sizeof(Vector3)) == 0 &&
@@ -59,8 +59,9 @@ double noMargin(int) { return 0; }
 TEST(NarrowPhaseMemory, ContactsAreTheSameBits) {
   geometry::RandomShapes random(5);
   const Collider hills = makeCollider(hillMesh(random, 0.3, 60, 0.001), 0),
-                 cube = makeCollider(geometry::boxMesh(Vector3::Constant(0.05)), R),
-                 ball = makeCollider(geometry::icosphereMesh(0.02, 3), R), soup = makeCollider(soupMesh(random, 60, 0.02), R);
+                 cube = makeCollider(geometry::boxMesh(Vector3::Constant(0.05)), KEPT_WIDTH),
+                 ball = makeCollider(geometry::icosphereMesh(0.02, 3), KEPT_WIDTH),
+                 soup = makeCollider(soupMesh(random, 60, 0.02), KEPT_WIDTH);
   for (const double speed : {0.001, 0.02, 0.2}) {
     EXPECT_GT(follow(cube, hills, 300, wandering({0, 0, 0.026}, 0.004, speed), noMargin).contacts, 300u);
     EXPECT_GT(follow(ball, hills, 300, wandering({0, 0, 0.0215}, 0.003, speed), noMargin).contacts, 300u);
@@ -70,7 +71,8 @@ TEST(NarrowPhaseMemory, ContactsAreTheSameBits) {
 
 TEST(NarrowPhaseMemory, JerksAreNoSurprise) {
   geometry::RandomShapes random(9);
-  const Collider hills = makeCollider(hillMesh(random, 0.3, 60, 0.001), 0), ball = makeCollider(geometry::icosphereMesh(0.02, 3), R);
+  const Collider hills = makeCollider(hillMesh(random, 0.3, 60, 0.001), 0),
+                 ball = makeCollider(geometry::icosphereMesh(0.02, 3), KEPT_WIDTH);
   std::vector<Pose> path = {makePose({0, 0, 0.0215})};
   // The same way for some steps, then, up to ten thousand times slower or faster, another.
   for (int jerk = 0; jerk < 80; ++jerk) {
@@ -87,8 +89,9 @@ TEST(NarrowPhaseMemory, JerksAreNoSurprise) {
 
 /** Pairs that had no candidates for a while. */
 TEST(NarrowPhaseMemory, FromAfarByTurningAndByJumping) {
-  const Collider ground = makeCollider(geometry::gridMesh(2, 2, 20, 20), 0), pole = makeCollider(geometry::boxMesh({1, 0.01, 0.01}), R),
-                 cube = makeCollider(geometry::boxMesh(Vector3::Constant(0.05)), R);
+  const Collider ground = makeCollider(geometry::gridMesh(2, 2, 20, 20), 0),
+                 pole = makeCollider(geometry::boxMesh({1, 0.01, 0.01}), KEPT_WIDTH),
+                 cube = makeCollider(geometry::boxMesh(Vector3::Constant(0.05)), KEPT_WIDTH);
   const auto tilting = [](int step) { return makePose({0, 0, 0.02}, {0, 2e-4 * step, 0}); };
   EXPECT_GT(follow(pole, ground, 150, tilting, noMargin).contacts, 10u);
   const auto jumping = [](int step) { return makePose({1e-6 * step, 0, step < 20 ? 0.03 : 0.022}); };
@@ -97,7 +100,8 @@ TEST(NarrowPhaseMemory, FromAfarByTurningAndByJumping) {
 
 TEST(NarrowPhaseMemory, CrossingsAreFoundAndLost) {
   geometry::RandomShapes random(6);
-  const Collider hills = makeCollider(hillMesh(random, 0.3, 60, 0.001), 0), ball = makeCollider(geometry::icosphereMesh(0.02, 3), R);
+  const Collider hills = makeCollider(hillMesh(random, 0.3, 60, 0.001), 0),
+                 ball = makeCollider(geometry::icosphereMesh(0.02, 3), KEPT_WIDTH);
   for (const double speed : {0.002, 0.05}) {
     const Followed found = follow(ball, hills, 1500, wandering({0, 0, 0.019}, 0.004, speed), noMargin);
     EXPECT_TRUE(found.crossed);
@@ -109,7 +113,7 @@ TEST(NarrowPhaseMemory, CrossingsAreFoundAndLost) {
 TEST(NarrowPhaseMemory, EdgesThatMeetAreFound) {
   geometry::TriangleMesh ridge = geometry::boxMesh({0.02, 0.1, 0.02});
   for (Vector3& v : ridge.vertices) v = makePose(Vector3::Zero(), {0, M_PI / 4, 0}) * v;
-  const Collider below = makeCollider(ridge, 0), above = makeCollider(geometry::boxMesh({0.1, 0.02, 0.02}), R);
+  const Collider below = makeCollider(ridge, 0), above = makeCollider(geometry::boxMesh({0.1, 0.02, 0.02}), KEPT_WIDTH);
   const double touch = 0.02 * std::sqrt(2.0);
   const auto path = [&](int step) { return makePose({0.001, 0.002, touch + 0.001 - 3e-4 * step}, {M_PI / 4, 0, 0}); };
   const Followed found = follow(above, below, 8, path, noMargin);
@@ -133,7 +137,7 @@ TEST(NarrowPhaseMemory, WhatSlidesIntoAStepIsFound) {
 TEST(NarrowPhaseMemory, MarginsMayChange) {
   geometry::RandomShapes random(7);
   const Collider hills = makeCollider(hillMesh(random, 0.3, 60, 0.001), 0),
-                 cube = makeCollider(geometry::boxMesh(Vector3::Constant(0.05)), R);
+                 cube = makeCollider(geometry::boxMesh(Vector3::Constant(0.05)), KEPT_WIDTH);
   const auto margin = [](int step) { return 0.001 * (1 + std::sin(0.3 * step)); };
   EXPECT_GT(follow(cube, hills, 300, wandering({0, 0, 0.027}, 0.003, 0.01), margin).contacts, 300u);
 }
@@ -141,7 +145,8 @@ TEST(NarrowPhaseMemory, MarginsMayChange) {
 /** A chip, its lists made in straight flight, turns on the spot until edges have contacts that had none: little moves, but much turns. */
 TEST(NarrowPhaseMemory, TurningOnTheSpot) {
   geometry::RandomShapes random(10);
-  const Collider hills = makeCollider(hillMesh(random, 0.02, 40, 0.0001), 0), chip = makeCollider(hillMesh(random, 0.001, 4, 0.0001), R);
+  const Collider hills = makeCollider(hillMesh(random, 0.02, 40, 0.0001), 0),
+                 chip = makeCollider(hillMesh(random, 0.001, 4, 0.0001), KEPT_WIDTH);
   const auto path = [](int step) {
     const int turned = std::max(0, step - 5) % 40;
     return makePose({-1.5e-4 * std::max(0, 5 - step), 0, 0.0008}, {0.01 * turned, 0, 0.02 * turned});
@@ -153,7 +158,7 @@ TEST(NarrowPhaseMemory, FarFromTheOriginToo) {
   geometry::RandomShapes random(8);
   geometry::TriangleMesh far = hillMesh(random, 0.3, 40, 0.001);
   for (Vector3& v : far.vertices) v += Vector3(90, -40, 3);
-  const Collider hills = makeCollider(far, 0), cube = makeCollider(geometry::boxMesh(Vector3::Constant(0.05)), R);
+  const Collider hills = makeCollider(far, 0), cube = makeCollider(geometry::boxMesh(Vector3::Constant(0.05)), KEPT_WIDTH);
   EXPECT_GT(follow(cube, hills, 200, wandering({90, -40, 3.027}, 0.003, 0.02), noMargin).contacts, 200u);
 }
 
@@ -163,7 +168,7 @@ TEST(NarrowPhaseMemory, AnotherGeometryIsNotTakenForTheOneBefore) {
   const Pose X = makePose({0, 0, 0.0275});
   NarrowPhaseMemory memory;
   for (const double size : {0.05, 0.051, 0.05}) {
-    const Collider cube = makeCollider(geometry::boxMesh(Vector3::Constant(size)), R);
+    const Collider cube = makeCollider(geometry::boxMesh(Vector3::Constant(size)), KEPT_WIDTH);
     NarrowPhaseMemory none;
     ContactManifold remembered, fresh;
     narrowPhase({cube, X}, {hills, Pose::Identity()}, {0, nullptr, &memory}, searchRoom(), &remembered);

@@ -22,8 +22,8 @@ constexpr double MOTION = 1e-5;   // [m]
 constexpr double OVERLAP = 1e-3;  // [m] of the layers
 constexpr double ARM = 0.05;      // [m] that makes turns shifts
 constexpr int BUDGET = 50;
-constexpr double SAME = 1e-9;   // [m] of support, where the surface is the same
-constexpr double ALIKE = 1e-4;  // [m] where it was cracked
+constexpr double SAME = 1e-9;         // [m] of support, where the surface is the same
+constexpr double SOUPS_ALIKE = 1e-4;  // [m] where it was cracked
 
 Collider loaded(const geometry::TriangleMesh& soup) {
   geometry::MeshReport report;
@@ -67,8 +67,8 @@ std::vector<Copy> copiesOf(const geometry::TriangleMesh& mesh) {
           {"doubled", doubledCopy(mesh), SAME},
           {"unwelded", crackedCopy(mesh, 0, random), SAME},
           {"T-junctions", tJunctionCopy(mesh), SAME},
-          {"cracked", crackedCopy(mesh, CRACKS, random), ALIKE},
-          {"cracked with T-junctions", crackedCopy(tJunctionCopy(mesh), CRACKS, random), ALIKE}};
+          {"cracked", crackedCopy(mesh, CRACKS, random), SOUPS_ALIKE},
+          {"cracked with T-junctions", crackedCopy(tJunctionCopy(mesh), CRACKS, random), SOUPS_ALIKE}};
 }
 
 void expectSameSupports(const SoupScene& scene, const std::vector<Copy>& copies, int poses) {
@@ -100,11 +100,11 @@ geometry::TriangleMesh hills(double size, int cells, double height) {
   return hillMesh(random, size, cells, height);
 }
 
-const geometry::TriangleMesh CUBE = geometry::boxMesh(Vector3::Constant(0.1));
+const geometry::TriangleMesh SOUP_CUBE = geometry::boxMesh(Vector3::Constant(0.1));
 
 TEST(SoupInvariance, CubeOnCubeAndHills) {
-  expectSameSupports({"cube on cube", CUBE, loaded(CUBE), 0.2}, copiesOf(CUBE), 200);
-  expectSameSupports({"cube on hills", CUBE, makeCollider(hills(0.6, 30, 0.002), 0), 0.2}, copiesOf(CUBE), 200);
+  expectSameSupports({"cube on cube", SOUP_CUBE, loaded(SOUP_CUBE), 0.2}, copiesOf(SOUP_CUBE), 200);
+  expectSameSupports({"cube on hills", SOUP_CUBE, makeCollider(hills(0.6, 30, 0.002), 0), 0.2}, copiesOf(SOUP_CUBE), 200);
 }
 
 TEST(SoupInvariance, MugOnPlaneAndHills) {

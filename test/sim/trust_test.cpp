@@ -8,13 +8,13 @@
 namespace blem_sim::sim {
 namespace {
 
-constexpr double LAYER = 0.005;  // [m] of two boxes
+constexpr double TRUST_LAYER = 0.005;  // [m] of two boxes
 
 contact::ContactManifold manifoldOf(int a, int b, double depth, bool pierced = false) {
   contact::ContactManifold manifold;
   manifold.a = a;
   manifold.b = b;
-  manifold.layer = LAYER;
+  manifold.layer = TRUST_LAYER;
   manifold.pierced = pierced;
   contact::Contact contact;
   contact.depth = depth;
@@ -32,7 +32,7 @@ std::vector<LayerEventReport> lookAt(LayerWatch* watch, const std::vector<contac
 
 TEST(LayerWatch, TellsEveryChangeOnceInOrderOfPairs) {
   LayerWatch watch;
-  EXPECT_TRUE(lookAt(&watch, {manifoldOf(0, 1, LAYER), manifoldOf(2, 3, -0.001)}, 0).empty());
+  EXPECT_TRUE(lookAt(&watch, {manifoldOf(0, 1, TRUST_LAYER), manifoldOf(2, 3, -0.001)}, 0).empty());
   std::vector<LayerEventReport> events = lookAt(&watch, {manifoldOf(0, 1, 0.006), manifoldOf(0, 2, 0.001, true), manifoldOf(2, 3, 0)}, 1);
   ASSERT_EQ(events.size(), 2u);
   EXPECT_EQ(events[0].collider_b, 1);

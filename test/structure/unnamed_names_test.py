@@ -14,15 +14,17 @@ FUNCTION = re.compile(r"^(?!constexpr|const |using|return|TEST|TYPED_TEST|INSTAN
                       re.MULTILINE)
 
 
+def constants_of(text):
+    return set(CONSTANT.findall(text)) | {name for line in text.splitlines() if line.startswith("constexpr ") for name in FURTHER_CONSTANT.findall(line)}
+
+
 def names_of(text):
     """Types, constants and functions of a file's unnamed namespaces. An alias may be declared twice alike."""
     names = set()
     for block in UNNAMED.findall(text):
         for rule in (TYPE, CONSTANT, FUNCTION):
             names.update(rule.findall(block))
-        for line in block.splitlines():
-            if line.startswith("constexpr "):
-                names.update(FURTHER_CONSTANT.findall(line))
+        names |= constants_of(block)
     return names
 
 
@@ -37,16 +39,22 @@ def test_files_compiled_together_share_no_name():
     assert not shared, "rename in all but one file:\n" + "\n".join(shared)
 
 
-def test_no_type_is_named_like_one_of_a_header():
-    known = set()
+def test_no_name_is_that_of_a_header():
+    """One in an unnamed namespace hides the header's from all files that are compiled with it: types of the rooms, and constants of a room
+    and of its tests."""
+    types = set()
     for path in sources("include", "src"):
         if path.suffix == ".h":
-            known.update(TYPE.findall(path.read_text()))
+            types.update(TYPE.findall(path.read_text()))
     hidden = []
     for program in PROGRAMS:
+        room = program.split("/")[1]
+        headers = [path for folder in ("include/blem_sim/" + room, "src/" + room, "test/" + room, "test/support") for path in (ROOT / folder).rglob("*.h")]
+        constants = set().union(*(constants_of(path.read_text()) for path in headers))
         for path in sorted((ROOT / program).rglob("*.cpp")):
-            types = {name for block in UNNAMED.findall(path.read_text()) for name in TYPE.findall(block)}
-            hidden += ["%s: %s" % (path.relative_to(ROOT), name) for name in sorted(types & known)]
+            blocks = UNNAMED.findall(path.read_text())
+            names = {name for block in blocks for name in set(TYPE.findall(block)) & types | constants_of(block) & constants}
+            hidden += ["%s: %s" % (path.relative_to(ROOT), name) for name in sorted(names)]
     assert not hidden, "rename:\n" + "\n".join(hidden)
 
 

@@ -71,21 +71,21 @@ void expectStands(const Stack& stack) {
   EXPECT_EQ(stack.counts.size(), 1u);
 }
 
-const geometry::TriangleMesh CUBE = geometry::boxMesh(Vector3::Constant(0.1));
+const geometry::TriangleMesh BROKEN_CUBE = geometry::boxMesh(Vector3::Constant(0.1));
 
 TEST(BrokenMeshes, TenCrackedCubesStand) {
-  expectStands(
-      stackOf(tenOf([](geometry::RandomShapes& random) { return crackedCopy(CUBE, CRACKS, random); }), "cracked", "articulated", SECONDS));
+  expectStands(stackOf(tenOf([](geometry::RandomShapes& random) { return crackedCopy(BROKEN_CUBE, CRACKS, random); }), "cracked",
+                       "articulated", SECONDS));
 }
 
 TEST(BrokenMeshes, TenCubesWithTJunctionsStand) {
-  expectStands(stackOf(tenOf([](geometry::RandomShapes& random) { return tJunctionCopy(shuffledCopy(CUBE, random)); }), "t_junctions",
-                       "articulated", SECONDS));
+  expectStands(stackOf(tenOf([](geometry::RandomShapes& random) { return tJunctionCopy(shuffledCopy(BROKEN_CUBE, random)); }),
+                       "t_junctions", "articulated", SECONDS));
 }
 
 TEST(BrokenMeshes, TenCrackedCubesWithTJunctionsStand) {
-  expectStands(stackOf(tenOf([](geometry::RandomShapes& random) { return crackedCopy(tJunctionCopy(CUBE), CRACKS, random); }), "cracked_t",
-                       "articulated", SECONDS));
+  expectStands(stackOf(tenOf([](geometry::RandomShapes& random) { return crackedCopy(tJunctionCopy(BROKEN_CUBE), CRACKS, random); }),
+                       "cracked_t", "articulated", SECONDS));
 }
 
 /** A body on a surface. */
@@ -172,8 +172,8 @@ geometry::TriangleMesh restingOnGround(const geometry::TriangleMesh& mesh) {
 }
 
 TEST(BrokenMeshes, CubeRestsWhereTheWholeOneDoes) {
-  expectSameRest({"cube_rest", restingOnGround(CUBE), geometry::gridMesh(1, 1, 3, 3), {0.013, 0.021, 0.003}});
-  expectSameRest({"cube_hills", restingOnGround(CUBE), hills(0.5, 20, 0.002), {0.013, 0.021, 0.006}});
+  expectSameRest({"cube_rest", restingOnGround(BROKEN_CUBE), geometry::gridMesh(1, 1, 3, 3), {0.013, 0.021, 0.003}});
+  expectSameRest({"cube_hills", restingOnGround(BROKEN_CUBE), hills(0.5, 20, 0.002), {0.013, 0.021, 0.006}});
 }
 
 TEST(BrokenMeshes, MugRestsWhereTheWholeOneDoes) {
@@ -192,7 +192,7 @@ TEST(BrokenMeshes, FootRestsWhereTheWholeOneDoes) {
 /** Files with the cube's sole. */
 TEST(BrokenMeshes, PathologicalCubesRestWhereTheWholeOneDoes) {
   SKIP_WITHOUT_SHARED_DATA("pathological");
-  const Resting scene = {"pathological", CUBE, geometry::gridMesh(1, 1, 3, 3), {0.013, 0.021, 0.053}};
+  const Resting scene = {"pathological", BROKEN_CUBE, geometry::gridMesh(1, 1, 3, 3), {0.013, 0.021, 0.053}};
   const Rest whole = restOf(scene, scene.mesh, 3);
   for (const char* name : {"cube_duplicate_faces", "cube_flipped", "cube_zero_area", "cube_nan", "cube_nested_self_intersecting",
                            "cube_layers", "cube_nonmanifold_fins", "cube_open_bottom", "cube_slivers", "cube_holes"}) {
@@ -209,7 +209,7 @@ TEST(BrokenMeshes, PathologicalCubesRestWhereTheWholeOneDoes) {
 TEST(BrokenMeshes, SoupOfTrianglesStandsOnWhatSticksOut) {
   const char* const SOUP = "pathological/cube_cracked_soup.ply";
   SKIP_WITHOUT_SHARED_DATA(SOUP);
-  const Resting scene = {"soup", CUBE, geometry::gridMesh(1, 1, 3, 3), {0.013, 0.021, 0.053}};
+  const Resting scene = {"soup", BROKEN_CUBE, geometry::gridMesh(1, 1, 3, 3), {0.013, 0.021, 0.053}};
   const Rest rest = restOfFile(scene, *sharedData(SOUP), 3);
   EXPECT_LT(rest.speed, 1e-9);
   EXPECT_GT(rest.X_WB.translation().z(), 0.05 + BROKEN_LAYER);
@@ -225,7 +225,7 @@ TEST(BrokenMeshes, TheLoadReportSaysWhatWasMended) {
   geometry::RandomShapes random(35);
   SimulationConfig config;
   ObjectConfig object = box("body", Vector3::Constant(0.1), 1, {0, 0, 1});
-  object.uri = meshFile("told", crackedCopy(tJunctionCopy(CUBE), CRACKS, random));
+  object.uri = meshFile("told", crackedCopy(tJunctionCopy(BROKEN_CUBE), CRACKS, random));
   config.objects = {object};
   const Simulator mended(config, model::UriResolver());
   EXPECT_TRUE(notesHold(mended, "cracks up to"));

@@ -8,7 +8,7 @@
 namespace blem_sim::sim {
 namespace {
 
-constexpr double DT = 1e-3;
+constexpr double BALANCE_STEP = 1e-3;
 
 /** Bodies of 2 kg in free space, and the result of a solve made by hand. */
 class HandMadeSolve {
@@ -30,7 +30,7 @@ class HandMadeSolve {
     balance.start(world);
     dynamics::SolveResult solved;
     solved.axis_efforts.assign(world.jointCount(), 0);
-    return balance.addSolve(world, {start, contacts, drives, solved, before, after, DT});
+    return balance.addSolve(world, {start, contacts, drives, solved, before, after, BALANCE_STEP});
   }
 
   dynamics::World world;
@@ -85,22 +85,22 @@ TEST(EnergyBalance, WorkThatFrictionTakesHidesNoGain) {
   std::vector<dynamics::BodyState> before = {world.bodyState(0)};
   EnergyBalance balance{dynamics::SolverSettings()};
   balance.start(world);
-  const dynamics::SolveResult& solved = world.step(DT, {}, {drive});
+  const dynamics::SolveResult& solved = world.step(BALANCE_STEP, {}, {drive});
   const std::vector<dynamics::BodyState> after = {world.bodyState(0)};
   ASSERT_NEAR(after[0].v_WCom.x(), 1, 1e-9);
   before[0].v_WCom.x() -= 1e-3;
   const FoundContacts start;
   const SolverContacts contacts;
   const std::vector<dynamics::JointDrive> drives = {drive};
-  const MadeSolve made{start, contacts, drives, solved, before, after, DT};
+  const MadeSolve made{start, contacts, drives, solved, before, after, BALANCE_STEP};
   EXPECT_NEAR(balance.addSolve(world, made).total, 0.9995e-3, 1e-8);
 }
 
 TEST(EnergyBalance, FlightGainsNothing) {
   HandMadeSolve solve(1, {0, 0, -G});
   solve.before[0].v_WCom = {20, 0, 30};
-  solve.after[0].v_WCom = {20, 0, 30 - G * DT};
-  solve.after[0].X_WB.translation() += DT * solve.after[0].v_WCom;
+  solve.after[0].v_WCom = {20, 0, 30 - G * BALANCE_STEP};
+  solve.after[0].X_WB.translation() += BALANCE_STEP * solve.after[0].v_WCom;
   EXPECT_LT(solve.gain().total, 1e-11);
 }
 
