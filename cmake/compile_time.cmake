@@ -1,7 +1,7 @@
 # Two ways to compile faster where ccache is not at hand. Off unless asked for: ccache keeps nothing that is built with precompiled headers,
 # and builds without either show what a file forgets to include (so does test/structure/includes_test.py). CMake has both since 3.16.
 option(BLEM_SIM_PRECOMPILED_HEADERS "Precompile headers of other projects: a quarter to a third of what a file costs to compile" OFF)
-option(BLEM_SIM_COMPILE_TOGETHER "Compile sixteen files of a target at once: half of what they cost one by one" OFF)
+option(BLEM_SIM_COMPILE_TOGETHER "Compile sixteen files of a target at once, which share templates: less than three fifths of what they cost one by one" OFF)
 if(BLEM_SIM_COMPILE_TOGETHER)
   # Files of a target share no name in their unnamed namespaces (test/structure/unnamed_names_test.py).
   set(CMAKE_UNITY_BUILD ON)

@@ -116,6 +116,8 @@ class TrajectoryController {
 
   int indexOf(const std::string& joint) const;
   void checkRunning() const;
+  /** @param field that names the joint, for the refusal */
+  void checkJoint(const char* field, const std::string& joint) const;
   void checkJoints(const JointTrajectory& trajectory) const;
   Plan planFor(const JointTrajectory& trajectory) const;
   void follow(const Plan& plan);

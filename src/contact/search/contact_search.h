@@ -34,6 +34,7 @@ struct ContactSearchBuffers {
   ContactSearchBuffers() {
     for (KeptListing* listing : {&unknown.contacts, &unknown.crossings}) listing->now.reserve(ROOM);
   }
+  ContactSearchBuffers(const ContactSearchBuffers&) = delete;  // the evaluation's buffers refer to the search's
 
   CandidateSearchBuffers search;
   EvaluationBuffers evaluation{&search.surroundings};

@@ -1,7 +1,8 @@
 #include "ode/joint_wrenches.h"
-#include "scene/joint_readings.h"
 
 #include <Eigen/LU>
+
+#include "scene/joint_readings.h"
 
 namespace blem_sim::dynamics {
 namespace {

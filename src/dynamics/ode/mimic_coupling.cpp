@@ -1,9 +1,10 @@
 #include "ode/mimic_coupling.h"
-#include "scene/joint_readings.h"
 
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+
+#include "scene/joint_readings.h"
 
 namespace blem_sim::dynamics {
 namespace {

@@ -1,4 +1,5 @@
 #include "scene/contact_motion.h"
+
 #include "scene/joint_readings.h"
 
 namespace blem_sim::dynamics {

@@ -11,6 +11,7 @@
 
 namespace blem_sim::node {
 
+/** Name of an action, how often it tells feedback, and where its refused goals are counted. */
 struct ActionSettings {
   ros::NodeHandle node;
   std::string name;          ///< below the node's

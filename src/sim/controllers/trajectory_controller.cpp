@@ -59,12 +59,17 @@ void TrajectoryController::checkRunning() const {
     throw GoalRefused(GoalError::INVALID_GOAL, fmt::format("controller '{}' is stopped; start it by switch_controller", config_.name));
 }
 
+void TrajectoryController::checkJoint(const char* field, const std::string& joint) const {
+  if (!contains(joint_names_, joint))
+    throw GoalRefused(GoalError::INVALID_JOINTS, fmt::format("{}: '{}' is no joint of this controller; the nearest is '{}'", field,
+                                                             shownName(joint), nearestName(joint, joint_names_)));
+}
+
 void TrajectoryController::checkJoints(const JointTrajectory& trajectory) const {
   const auto refuse = [](const std::string& why) { throw GoalRefused(GoalError::INVALID_JOINTS, "trajectory: joint_names: " + why); };
   if (trajectory.joints.empty()) refuse("there are none; name the controller's joints");
   for (const std::string& joint : trajectory.joints) {
-    if (!contains(joint_names_, joint))
-      refuse(fmt::format("'{}' is no joint of this controller; the nearest is '{}'", shownName(joint), nearestName(joint, joint_names_)));
+    checkJoint("trajectory: joint_names", joint);
     if (std::count(trajectory.joints.begin(), trajectory.joints.end(), joint) > 1)
       refuse("'" + shownName(joint) + "' is there twice; name it once");
   }

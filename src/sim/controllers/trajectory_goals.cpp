@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "blem_sim/sim/trajectory_controller.h"
-#include "numbers/nearest_name.h"
 #include "numbers/nearest_turn.h"
 
 namespace blem_sim::sim {
@@ -21,17 +20,13 @@ void takeOver(double asked, double* tolerance) {
   if (asked != 0) *tolerance = std::max(asked, 0.0);
 }
 
-void check(const char* field, const std::vector<GoalTolerance>& tolerances, const std::vector<std::string>& joints) {
-  for (const GoalTolerance& tolerance : tolerances) {
-    if (std::find(joints.begin(), joints.end(), tolerance.joint) == joints.end())
-      throw GoalRefused(GoalError::INVALID_JOINTS, fmt::format("{}: '{}' is no joint of this controller; the nearest is '{}'", field,
-                                                               shownName(tolerance.joint), nearestName(tolerance.joint, joints)));
+void checkFinite(const char* field, const std::vector<GoalTolerance>& tolerances) {
+  for (const GoalTolerance& tolerance : tolerances)
     if (!std::isfinite(tolerance.position) || !std::isfinite(tolerance.velocity))
       throw GoalRefused(GoalError::INVALID_GOAL,
                         fmt::format("{}: joint '{}' has a number that is not finite; 0 means the controller's own tolerance, a negative "
                                     "one none",
                                     field, tolerance.joint));
-  }
 }
 
 /** Takes the tolerances of a joint over those in force. */
@@ -65,8 +60,10 @@ TrackingTolerance TrajectoryController::ownTolerance(int joint) const {
 }
 
 void TrajectoryController::checkTolerances(const TrajectoryGoal& goal) const {
-  check("path_tolerance", goal.path_tolerance, joint_names_);
-  check("goal_tolerance", goal.goal_tolerance, joint_names_);
+  for (const GoalTolerance& tolerance : goal.path_tolerance) checkJoint("path_tolerance", tolerance.joint);
+  for (const GoalTolerance& tolerance : goal.goal_tolerance) checkJoint("goal_tolerance", tolerance.joint);
+  checkFinite("path_tolerance", goal.path_tolerance);
+  checkFinite("goal_tolerance", goal.goal_tolerance);
 }
 
 TrajectoryController::GoalJoint TrajectoryController::goalJoint(int joint) const {
