@@ -1,6 +1,6 @@
 #include "contact_generation.h"
 
-#include "blem_sim/contact/narrow_phase.h"
+#include "contact/contact_shapes.h"
 #include "plain_tree.h"
 
 namespace blem_sim {
@@ -16,15 +16,15 @@ Generation generate(const ContactScene& scene, bool remembers, int steps) {
   std::vector<contact::NarrowPhaseMemory> memories(scene.moving.size());
   std::vector<Pose> poses(scene.moving.size());
   std::vector<contact::ContactManifold> manifolds(scene.moving.size());  // of each pair its own, as a simulation keeps them
-  contact::NarrowPhaseWorkspace workspace;
   Generation out;
+  // One room for all searches of the program, as a simulation's thread has: leaves that an earlier search described are known to it.
   for (int step = -1; step < steps; ++step) {
     for (std::size_t i = 0; i < scene.moving.size(); ++i) poses[i] = scene.pose(static_cast<int>(i), step);
     std::size_t contacts = 0;
     out.times.start();
     for (std::size_t i = 0; i < scene.moving.size(); ++i) {
       contact::narrowPhase({scene.moving[i], poses[i]}, {scene.standing, Pose::Identity()},
-                           {0, nullptr, remembers ? &memories[i] : nullptr}, &workspace, &manifolds[i]);
+                           {0, nullptr, remembers ? &memories[i] : nullptr}, contact::searchRoom(), &manifolds[i]);
       contacts += manifolds[i].contacts.size();
     }
     out.times.stop();
