@@ -50,7 +50,7 @@ class ArticulatedStepper : public Stepper {
   void findIslands(const Scene& scene, const std::vector<ContactConstraint>& contacts);
   bool isMoved(const ContactConstraint& contact) const;
   void makeTerms(const TermSource& source, Island* island);
-  NewtonSettings settingsFor(const IslandModel& model) const;
+  NewtonSettings settingsFor(const Island& island) const;
   bool leap(const TermSource& source, Island* island);
   NewtonReport solveTwice(const StepInput& input, const NewtonSettings& newton, Island* island);
   NewtonReport solveBounded(const StepInput& input, Island* island);
@@ -156,31 +156,34 @@ void ArticulatedStepper::findIslands(const Scene& scene, const std::vector<Conta
 
 void ArticulatedStepper::makeTerms(const TermSource& source, Island* island) {
   IslandModel& model = island->model;
+  IslandTerms& terms = *island->solver.terms();
+  terms.clear();
   for (const int tree : model.trees) {
     for (int i = forest_.trees()[tree].first_node; i < forest_.trees()[tree].node_end; ++i)
-      if (forest_.nodes()[i].dofs == 1) model.terms.joints.push_back(jointTerm(source, i));
+      if (forest_.nodes()[i].dofs == 1) terms.joints.push_back(jointTerm(source, i));
   }
+  model.joints = static_cast<int>(terms.joints.size());
   for (const int index : island->mimics) {
     const MimicRelation& m = forest_.mimics()[index];
     model.mimics.push_back({forest_.nodes()[m.node].first_dof, forest_.nodes()[m.master].first_dof, m.multiplier});
   }
   for (const int l : island->loops) {
     BodyPair pair;
-    model.terms.loops.push_back(loopTerm(source, l, &pair));
+    terms.loops.push_back(loopTerm(source, l, &pair));
     model.loop_pairs.push_back(pair);
   }
-  for (const int index : island->contacts) addContact(source, source.input.contacts[index], &model);
-  weighContacts(source, &model);
+  for (const int index : island->contacts) addContact(source, source.input.contacts[index], &model, &terms);
+  weighContacts(source, &model, &terms);
 }
 
 // Tolerances shrink with the lightest tree, below 10 g: those of heavier trees would let it creep.
-NewtonSettings ArticulatedStepper::settingsFor(const IslandModel& model) const {
+NewtonSettings ArticulatedStepper::settingsFor(const Island& island) const {
   NewtonSettings settings;
   double lightest = LIGHT;
-  for (const int tree : model.trees) lightest = std::min(lightest, motion_.composite[forest_.trees()[tree].first_node].mass);
+  for (const int tree : island.model.trees) lightest = std::min(lightest, motion_.composite[forest_.trees()[tree].first_node].mass);
   settings.contact_tolerance *= lightest / LIGHT;
   settings.gradient_tolerance *= std::sqrt(lightest / LIGHT);
-  settings.helpers = model.terms.contacts.size() >= SHARED ? settings_.threads - 1 : 0;
+  settings.helpers = island.contacts.size() >= SHARED ? settings_.threads - 1 : 0;
   return settings;
 }
 
@@ -193,7 +196,7 @@ NewtonReport ArticulatedStepper::solveTwice(const StepInput& input, const Newton
 }
 
 NewtonReport ArticulatedStepper::solveBounded(const StepInput& input, Island* island) {
-  const NewtonSettings newton = settingsFor(island->model);
+  const NewtonSettings newton = settingsFor(*island);
   const NewtonReport report = solveTwice(input, newton, island);
   if (!island->solver.limitCorrections(settings_.max_correction_speed)) return report;
   return afterAll(report, island->solver.solveAgain(newton));
@@ -201,10 +204,10 @@ NewtonReport ArticulatedStepper::solveBounded(const StepInput& input, Island* is
 
 // Trees that an impact meets are followed as if they were fast: their speed after it is not known yet. @return whether an impact happened
 bool ArticulatedStepper::leap(const TermSource& source, Island* island) {
-  const IslandModel& model = island->model;
-  if (!island->impacts.expect(source, island->contacts, model)) return false;
-  for (const int tree : model.trees) followAlone(forest_, source.input, tree, &motion_, &space_);
-  return island->impacts.happen(source, island->contacts, model, &impact_space_, &space_);
+  const TouchedIsland touched{island->model, *island->solver.terms(), island->contacts};
+  if (!island->impacts.expect(source, touched)) return false;
+  for (const int tree : island->model.trees) followAlone(forest_, source.input, tree, &motion_, &space_);
+  return island->impacts.happen(source, touched, &impact_space_, &space_);
 }
 
 // Precondition: solved, impacts not added yet.
@@ -231,7 +234,7 @@ void ArticulatedStepper::solveIsland(const Scene& scene, const StepInput& input,
   for (const int tree : model.trees) setFreeMomentum({forest_, scene, input, tree, !island->contacts.empty()}, &motion_, &space_);
   makeTerms(source, island);
   model.up = -scene.gravity();
-  addEfforts(input, model, &space_);
+  addEfforts(input, *island->solver.terms(), &space_);
   const bool leaps = leap(source, island);
   island->report = solveBounded(input, island);
   reckonWork(leaps, island);

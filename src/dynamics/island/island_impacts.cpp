@@ -31,24 +31,24 @@ double slowestBounce(const TermSource& s, double kick) {
 }  // namespace
 
 // Velocities with half of the step's forces approach by no more than these times 4/3, then 5/3, if the bounds on rest are to be passed.
-bool IslandImpacts::expect(const TermSource& s, const std::vector<int>& contacts, const IslandModel& model) {
+bool IslandImpacts::expect(const TermSource& s, const TouchedIsland& island) {
   impulses_.clear();
   const double slowest = slowestBounce(s, 0);
-  for (const PairContacts& of_pair : model.pairs)
+  for (const PairContacts& of_pair : island.model.pairs)
     for (int i = of_pair.first; i < of_pair.end; ++i) {
-      const ContactConstraint& c = s.input.contacts[contacts[i]];
-      if (!hasImpacts(c, model.terms.contacts[i])) continue;
-      const double closing = -normalSpeed(of_pair.pair, model.terms.contacts[i], s.motion.twist);
+      const ContactConstraint& c = s.input.contacts[island.contacts[i]];
+      if (!hasImpacts(c, island.terms.contacts[i])) continue;
+      const double closing = -normalSpeed(of_pair.pair, island.terms.contacts[i], s.motion.twist);
       if (4 * closing > 3 * slowest && 5 * s.input.dt * closing > -3 * c.depth) return true;
     }
   return false;
 }
 
-void IslandImpacts::begin(const TermSource& s, const std::vector<int>& contacts, const IslandModel& model, const SolverSpace& solver) {
+void IslandImpacts::begin(const TermSource& s, const TouchedIsland& island, const SolverSpace& solver) {
   bouncers_.clear();
   rows_.clear();
   work_left_ = MAX_WORK;
-  for (const int tree : model.trees) {
+  for (const int tree : island.model.trees) {
     const ForestTree& t = s.forest.trees()[tree];
     const int first = t.first_dof, count = t.dofCount();
     factorMass(s.forest, tree, s.motion, space_);
@@ -61,42 +61,42 @@ void IslandImpacts::begin(const TermSource& s, const std::vector<int>& contacts,
     space_->leap.segment(first, count).setZero();
     space_->momentum.segment(first, count).setZero();
   }
-  for (const PairContacts& of_pair : model.pairs)
+  for (const PairContacts& of_pair : island.model.pairs)
     for (int i = of_pair.first; i < of_pair.end; ++i) {
-      const ContactConstraint& c = s.input.contacts[contacts[i]];
-      if (!hasImpacts(c, model.terms.contacts[i])) continue;
+      const ContactConstraint& c = s.input.contacts[island.contacts[i]];
+      if (!hasImpacts(c, island.terms.contacts[i])) continue;
       Bouncer bouncer;
       bouncer.contact = i;
       bouncer.pair = &of_pair.pair;
       bouncer.restitution = c.restitution;
-      bouncer.slow_friction = model.terms.contacts[i].friction;
+      bouncer.slow_friction = island.terms.contacts[i].friction;
       bouncer.friction = c.impact_friction_factor * bouncer.slow_friction;
       bouncer.friction_speed = c.impact_friction_speed;
       bouncer.depth = c.depth;
       bouncers_.push_back(bouncer);
     }
-  setSpeeds(s.forest, s.motion, model, space_->column);
+  setSpeeds(s, island, space_->column);
   for (Bouncer& b : bouncers_) {
     b.kick = b.speed;
     b.slowest = slowestBounce(s, b.kick);
   }
 }
 
-void IslandImpacts::setSpeeds(const Forest& forest, const ForestMotion& motion, const IslandModel& model, const Eigen::VectorXd& velocity) {
-  for (const int tree : model.trees) computeTwists(forest, tree, motion, velocity, &space_->twist);
-  for (Bouncer& b : bouncers_) b.speed = normalSpeed(*b.pair, model.terms.contacts[b.contact], space_->twist);
+void IslandImpacts::setSpeeds(const TermSource& s, const TouchedIsland& island, const Eigen::VectorXd& velocity) {
+  for (const int tree : island.model.trees) computeTwists(s.forest, tree, s.motion, velocity, &space_->twist);
+  for (Bouncer& b : bouncers_) b.speed = normalSpeed(*b.pair, island.terms.contacts[b.contact], space_->twist);
 }
 
 // Finds the contacts that approach so fast that they will meet within the step, and the share of its speed that each will keep: restitution
 // is that at the surface, which is a gap's fall away.
-bool IslandImpacts::findMeetings(const TermSource& s, const IslandModel& model) {
+bool IslandImpacts::findMeetings(const TermSource& s, const TouchedIsland& island) {
   meetings_.clear();
   const double dt = s.input.dt;
-  setSpeeds(s.forest, s.motion, model, space_->velocity);
+  setSpeeds(s, island, space_->velocity);
   for (Bouncer& b : bouncers_) {
     const double closing = -b.speed;
     if (!(closing > b.slowest) || b.depth - dt * (b.speed + b.kick) <= 0) continue;
-    if (b.row < 0) b.row = rows_.add(s.forest, s.motion, *b.pair, model.terms.contacts[b.contact], space_);
+    if (b.row < 0) b.row = rows_.add(s.forest, s.motion, *b.pair, island.terms.contacts[b.contact], space_);
     if (!(rows_.inverseMass(b.row) > 0)) continue;
     const double e2 = b.restitution * b.restitution, fall = 4 * b.kick * b.depth / (dt * closing * closing);
     Meeting meeting;
@@ -106,7 +106,7 @@ bool IslandImpacts::findMeetings(const TermSource& s, const IslandModel& model) 
     if (b.restitution > 0) meeting.restitution = std::sqrt(std::clamp(e2 - (1 - e2) * fall, 0.0, 1.0));
     meetings_.push_back(meeting);
   }
-  findGroups(s.forest, model);
+  findGroups(s.forest, island.model);
   return !meetings_.empty();
 }
 
@@ -224,11 +224,10 @@ void IslandImpacts::expand(Meeting* first, Meeting* end, double lost) {
   for (Meeting* m = first; m != end; ++m) bouncers_[m->bouncer].impulse += m->impulse;
 }
 
-bool IslandImpacts::happen(const TermSource& s, const std::vector<int>& contacts, const IslandModel& model, ImpactSpace* space,
-                           SolverSpace* solver) {
+bool IslandImpacts::happen(const TermSource& s, const TouchedIsland& island, ImpactSpace* space, SolverSpace* solver) {
   space_ = space;
-  begin(s, contacts, model, *solver);
-  for (int round = 0; round < MAX_ROUNDS && work_left_ > 0 && findMeetings(s, model); ++round) {
+  begin(s, island, *solver);
+  for (int round = 0; round < MAX_ROUNDS && work_left_ > 0 && findMeetings(s, island); ++round) {
     for (Meeting *first = meetings_.data(), *last = first + meetings_.size(); first != last;) {
       Meeting* end = first;
       while (end != last && end->group == first->group) ++end;
@@ -237,19 +236,19 @@ bool IslandImpacts::happen(const TermSource& s, const std::vector<int>& contacts
     }
   }
   if (rows_.empty()) return false;
-  finish(s.forest, model, solver);
+  finish(s.forest, island, solver);
   return true;
 }
 
-void IslandImpacts::finish(const Forest& forest, const IslandModel& model, SolverSpace* solver) {
-  impulses_.assign(model.terms.contacts.size(), Vector3::Zero());
+void IslandImpacts::finish(const Forest& forest, const TouchedIsland& island, SolverSpace* solver) {
+  impulses_.assign(island.terms.contacts.size(), Vector3::Zero());
   for (const Bouncer& b : bouncers_) {
     if (b.row < 0) continue;
     rows_.addMomentum(b.row, b.impulse, &space_->momentum);
     rows_.push(b.row, b.impulse, &space_->leap);
     impulses_[b.contact] = rows_.inWorld(b.row, b.impulse);
   }
-  for (const int tree : model.trees) {
+  for (const int tree : island.model.trees) {
     const ForestTree& t = forest.trees()[tree];
     const int first = t.first_dof, count = t.dofCount();
     solver->free_momentum.segment(first, count) += space_->momentum.segment(first, count);

@@ -10,25 +10,30 @@
 
 namespace blem_sim::dynamics {
 
+/** An island whose terms are made, before its solve. */
+struct TouchedIsland {
+  const IslandModel& model;
+  const IslandTerms& terms;
+  const std::vector<int>& contacts;  ///< of the step's input: which constraint each contact term is of
+};
+
 /** The impacts of one island in one step. Used again from step to step, so that it need not allocate. */
 class IslandImpacts {
  public:
   /** Forgets the last step's impacts. @return whether any contact that has impacts may meet within this step */
-  bool expect(const TermSource& source, const std::vector<int>& contacts, const IslandModel& model);
+  bool expect(const TermSource& source, const TouchedIsland& island);
   /**
    * Contacts that have impacts and will meet within the step reflect velocities as often as it takes until none approaches any more, or
    * the bounds on work are reached; contacts that then still approach are left to the solve, where they do not bounce. No reflection adds
    * kinetic energy. If any happens, the free momentum of `solver` and its first guess of the velocities change by the impulses.
-   * @param contacts of the step's input, those of the model
    * @return whether anything met; if not, nothing was changed
    * Precondition: expect() was true
    */
-  bool happen(const TermSource& source, const std::vector<int>& contacts, const IslandModel& model, ImpactSpace* space,
-              SolverSpace* solver);
+  bool happen(const TermSource& source, const TouchedIsland& island, ImpactSpace* space, SolverSpace* solver);
 
   /** Whether anything met in the step at hand. */
   bool any() const { return !impulses_.empty(); }
-  /** Impulse [N s] of a contact of the model, in the sense of its term. Precondition: any() */
+  /** Impulse [N s] of a contact of the island, in the sense of its term. Precondition: any() */
   const Vector3& impulse(std::size_t contact) const { return impulses_[contact]; }
   /** Adds the impulses to those that the solve found. Precondition: any() */
   void addTo(IslandTerms* terms) const;
@@ -38,7 +43,7 @@ class IslandImpacts {
  private:
   /** A contact that has restitution, or a friction of its own in impacts. */
   struct Bouncer {
-    int contact = 0;  ///< of the model
+    int contact = 0;  ///< of the island
     const BodyPair* pair = nullptr;
     int row = -1;  ///< of rows_, once it has met
     double restitution = 0;
@@ -58,9 +63,9 @@ class IslandImpacts {
     Vector3 impulse = Vector3::Zero();  ///< [N s] of the phase at hand
   };
 
-  void begin(const TermSource& source, const std::vector<int>& contacts, const IslandModel& model, const SolverSpace& solver);
-  void setSpeeds(const Forest& forest, const ForestMotion& motion, const IslandModel& model, const Eigen::VectorXd& velocity);
-  bool findMeetings(const TermSource& source, const IslandModel& model);
+  void begin(const TermSource& source, const TouchedIsland& island, const SolverSpace& solver);
+  void setSpeeds(const TermSource& source, const TouchedIsland& island, const Eigen::VectorXd& velocity);
+  bool findMeetings(const TermSource& source, const TouchedIsland& island);
   void findGroups(const Forest& forest, const IslandModel& model);
   double compress(Meeting* first, Meeting* end);
   void expand(Meeting* first, Meeting* end, double lost);
@@ -68,7 +73,7 @@ class IslandImpacts {
   double stop(Meeting* meeting);
   double rub(double most, Meeting* meeting);
   void scale(double factor, Meeting* first, Meeting* end);
-  void finish(const Forest& forest, const IslandModel& model, SolverSpace* solver);
+  void finish(const Forest& forest, const TouchedIsland& island, SolverSpace* solver);
 
   ImpactSpace* space_ = nullptr;
   int work_left_ = 0;

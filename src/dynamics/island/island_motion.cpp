@@ -162,8 +162,8 @@ void followAlone(const Forest& forest, const StepInput& input, int tree, ForestM
   }
 }
 
-void addEfforts(const StepInput& input, const IslandModel& model, SolverSpace* space) {
-  for (const JointTerm& j : model.terms.joints) space->free_momentum[j.dof] += input.dt * input.drives[j.joint].givenEffort();
+void addEfforts(const StepInput& input, const IslandTerms& terms, SolverSpace* space) {
+  for (const JointTerm& j : terms.joints) space->free_momentum[j.dof] += input.dt * input.drives[j.joint].givenEffort();
 }
 
 double correctProducts(const Forest& forest, const StepInput& input, int tree, ForestMotion* motion, SolverSpace* space) {

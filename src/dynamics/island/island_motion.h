@@ -35,7 +35,7 @@ void followAlone(const Forest& forest, const StepInput& input, int tree, ForestM
 bool followFast(const SolvedIsland& island, const ForestMotion& motion, const SolverSpace& space, FreeMotion* way);
 
 /** Adds the efforts given in advance. */
-void addEfforts(const StepInput& input, const IslandModel& model, SolverSpace* space);
+void addEfforts(const StepInput& input, const IslandTerms& terms, SolverSpace* space);
 
 /**
  * Takes the velocity products at the middle of the step that was solved. A tree that nothing drives or ties, and that an impact of this

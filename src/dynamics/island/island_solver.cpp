@@ -13,7 +13,7 @@ constexpr double HEAP_TOLERANCE = 100;  // times the gradient's tolerance: of a 
 
 NewtonReport IslandSolver::solve(const Forest& forest, const ForestMotion& motion, const IslandModel& model, const NewtonSettings& settings,
                                  SolverSpace* space) {
-  found_.start(model.terms);
+  found_.mimic_impulses.clear();
   island_.emplace(IslandAtHand{forest, motion, model, &found_, space, team_.get()});
   NewtonReport report;
   team_->with(settings.helpers, [&] { report = solveFirst(settings); });

@@ -14,7 +14,8 @@ namespace blem_sim::dynamics {
 class IslandSolver {
  public:
   /**
-   * Solves for space->velocity, which holds the first guess, space->mass_velocity M times it. The arguments must stay until the step's end.
+   * Solves for space->velocity, which holds the first guess, space->mass_velocity M times it, with the terms that were made in terms().
+   * The arguments must stay until the step's end.
    */
   NewtonReport solve(const Forest& forest, const ForestMotion& motion, const IslandModel& model, const NewtonSettings& settings,
                      SolverSpace* space);
@@ -30,7 +31,7 @@ class IslandSolver {
 
   /** The answer to the last solve. */
   const IslandAnswer& found() const { return found_; }
-  /** Terms of the answer, for reactions that act beside the solve. */
+  /** Terms of the island: before a solve to be made, after it those of the answer, for reactions that act beside the solve. */
   IslandTerms* terms() { return &found_.terms; }
 
  private:

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "blem_sim/geometry/roomy.h"
-
 namespace blem_sim::dynamics {
 namespace {
 
@@ -19,26 +17,20 @@ void IslandTerms::clear() {
   loops.clear();
 }
 
-void IslandAnswer::start(const IslandTerms& asked) {
-  geometry::makeRoomFor(asked.contacts.size(), &terms.contacts);
-  terms = asked;
-  mimic_impulses.clear();
-}
-
 void IslandModel::clear() {
   trees.clear();
-  terms.clear();
+  joints = 0;
   pairs.clear();
   loop_pairs.clear();
   mimics.clear();
 }
 
 bool IslandModel::isTied() const {
-  return !mimics.empty() || !terms.loops.empty() ||
+  return !mimics.empty() || !loop_pairs.empty() ||
          std::any_of(pairs.begin(), pairs.end(), [](const PairContacts& p) { return p.pair.b >= 0; });
 }
 
-bool IslandModel::isHeap() const { return treeCount() >= HEAP && terms.loops.empty() && mimics.empty() && terms.joints.empty(); }
+bool IslandModel::isHeap() const { return treeCount() >= HEAP && loop_pairs.empty() && mimics.empty() && joints == 0; }
 
 bool IslandModel::isCrowd() const { return treeCount() > CROWD; }
 

@@ -12,7 +12,7 @@
 
 namespace blem_sim::dynamics {
 
-/** Terms of the objective. A model holds them as they were asked; the solver answers in a copy. */
+/** Terms of the objective: made before a solve, which answers in them. */
 struct IslandTerms {
   std::vector<JointTerm> joints;
   std::vector<ContactTerm> contacts;
@@ -25,16 +25,12 @@ struct IslandTerms {
 struct IslandAnswer {
   IslandTerms terms;
   std::vector<double> mimic_impulses;  ///< by which each mimic's dof follows its master
-
-  /** Begins with the terms as they are asked. */
-  void start(const IslandTerms& asked);
 };
 
-/** One island: trees that something ties together, and the terms that act on them. Used again from step to step, so it need not allocate.
- */
+/** One island: trees that something ties together, and how. Used again from step to step, so it need not allocate. */
 struct IslandModel {
   std::vector<int> trees;  ///< ascending
-  IslandTerms terms;
+  int joints = 0;          ///< that have terms
   std::vector<PairContacts> pairs;
   std::vector<BodyPair> loop_pairs;  ///< of each loop, a the child
   std::vector<MimicFold> mimics;

@@ -184,14 +184,14 @@ LoopTerm loopTerm(const TermSource& s, int index, BodyPair* pair) {
   return term;
 }
 
-void addContact(const TermSource& s, const ContactConstraint& c, IslandModel* model) {
+void addContact(const TermSource& s, const ContactConstraint& c, IslandModel* model, IslandTerms* terms) {
   const bool grounded = c.body_a == WORLD_BODY;
   const int a = s.forest.nodeOfBody(grounded ? c.body_b : c.body_a);
   const int b = grounded || c.body_b == WORLD_BODY ? -1 : s.forest.nodeOfBody(c.body_b);
   if (model->pairs.empty() || model->pairs.back().pair.a != a || model->pairs.back().pair.b != b) {
     PairContacts of_pair;
     of_pair.pair = makePair(s, a, b);
-    of_pair.first = static_cast<int>(model->terms.contacts.size());
+    of_pair.first = static_cast<int>(terms->contacts.size());
     model->pairs.push_back(of_pair);
   }
   const ContactRecord* record = s.memory.find(c.id);
@@ -209,11 +209,11 @@ void addContact(const TermSource& s, const ContactConstraint& c, IslandModel* mo
     term.previous = termSign(c) * s.input.dt * record->force;
     term.slip = record->slip;
   }
-  model->terms.contacts.push_back(term);
-  model->pairs.back().end = static_cast<int>(model->terms.contacts.size());
+  terms->contacts.push_back(term);
+  model->pairs.back().end = static_cast<int>(terms->contacts.size());
 }
 
-void weighContacts(const TermSource& s, IslandModel* model) {
+void weighContacts(const TermSource& s, IslandModel* model, IslandTerms* terms) {
   double heaviest = 0;
   model->mass = 0;
   for (const int tree : model->trees) {
@@ -224,12 +224,12 @@ void weighContacts(const TermSource& s, IslandModel* model) {
   const double hard = model->hardPush(s.settings.max_correction_speed);
   for (const PairContacts& of_pair : model->pairs) {
     Vector3 middle = Vector3::Zero();
-    for (int i = of_pair.first; i < of_pair.end; ++i) middle += model->terms.contacts[i].point;
+    for (int i = of_pair.first; i < of_pair.end; ++i) middle += terms->contacts[i].point;
     middle /= of_pair.end - of_pair.first;
     double inverse = inverseMass(s, of_pair.pair.a, middle);
     if (of_pair.pair.b >= 0) inverse += inverseMass(s, of_pair.pair.b, middle - of_pair.pair.shift);
     for (int i = of_pair.first; i < of_pair.end; ++i) {
-      ContactTerm& c = model->terms.contacts[i];
+      ContactTerm& c = terms->contacts[i];
       c.inverse_mass = inverse;
       c.stiffest_rho = CONTACT_PROXIMAL * std::min(inverse, HEAVIEST / heaviest);
       // The impulse of a blow does not go on, and that of a squeeze that friction has locked need not.

@@ -24,11 +24,11 @@ JointTerm jointTerm(const TermSource& source, int node);
 /** @param index of the loop in the forest; pair: child and parent */
 LoopTerm loopTerm(const TermSource& source, int index, BodyPair* pair);
 
-/** Adds a usable contact to the model, to the last patch if it is of the same pair. */
-void addContact(const TermSource& source, const ContactConstraint& contact, IslandModel* model);
+/** Adds a usable contact to the terms, and to the model's last patch if it is of the same pair. */
+void addContact(const TermSource& source, const ContactConstraint& contact, IslandModel* model, IslandTerms* terms);
 
 /** Proximal weights of the patches' contacts, once all are added. */
-void weighContacts(const TermSource& source, IslandModel* model);
+void weighContacts(const TermSource& source, IslandModel* model, IslandTerms* terms);
 
 /** +1 if the contact's A is the body the term's impulse acts on, -1 if it is B, A being the static world. */
 inline double termSign(const ContactConstraint& contact) { return contact.body_a == WORLD_BODY ? -1 : 1; }
