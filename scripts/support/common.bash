@@ -26,6 +26,12 @@ blem_sim_ros_environment() {
   fi
 }
 
+# Writes a JUnit file that says that a program ended before it wrote its own, so that this counts as a failure. Arguments: program, file.
+blem_sim_report_crash() {
+  printf '<testsuite name="%s"><testcase name="ran to its end"><failure/></testcase></testsuite>\n' "$1" >"$2"
+}
+export -f blem_sim_report_crash
+
 # Puts a built tree on this shell. Argument: its build folder.
 blem_sim_use_build() {
   blem_sim_ros_environment
