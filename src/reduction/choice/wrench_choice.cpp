@@ -7,6 +7,7 @@
 
 #include "blem_sim/contact/contact_order.h"
 #include "choice/continued_choice.h"
+#include "choice/overtaken.h"
 #include "lanes/reduction_lanes.h"
 
 namespace blem_sim::reduction {
@@ -69,9 +70,11 @@ int deepest(const std::vector<contact::Contact>& contacts, const std::vector<int
 /** The wrenches that candidates reach, and those that the chosen ones do. */
 class WrenchChoice::Spans {
  public:
-  void start(const std::vector<contact::Contact>& contacts, const PatchScale& scale, const std::vector<int>& candidates) {
+  /** Candidates that cannot be extreme are left out. */
+  void start(const ChoiceQuestion& asked, std::vector<int>* candidates) {
     points_.clear();
-    for (const int candidate : candidates) points_.push_back(wrenchPoint(contacts[candidate], scale));
+    for (const int candidate : *candidates) points_.push_back(wrenchPoint(asked.contacts[candidate], asked.scale));
+    dropOvertaken(asked.contacts, asked.chosen_before, candidates, &points_);
     if (components_.size() < points_.size()) components_.resize(points_.size());
     findWrenches(directions_, points_.data(), static_cast<int>(points_.size()), components_.data(), &extremes_);
   }
@@ -171,7 +174,7 @@ float WrenchChoice::choose(const ChoiceQuestion& asked, std::vector<int>* candid
   const std::vector<contact::Contact>& contacts = asked.contacts;
   const int k = asked.k;
   order_.sort(contacts, candidates);
-  spans_->start(contacts, asked.scale, *candidates);
+  spans_->start(asked, candidates);
   const int deep = deepest(contacts, *candidates, asked.scale);
 
   findContinued(contacts, *candidates, k, asked.chosen_before, &continued_);
