@@ -49,7 +49,6 @@ class ArticulatedStepper : public Stepper {
   void readEdits(const Scene& scene);
   void findIslands(const Scene& scene, const std::vector<ContactConstraint>& contacts);
   bool isMoved(const ContactConstraint& contact) const;
-  void makeTerms(const TermSource& source, Island* island);
   NewtonSettings settingsFor(const Island& island) const;
   bool leap(const TermSource& source, Island* island);
   NewtonReport solveTwice(const StepInput& input, const NewtonSettings& newton, Island* island);
@@ -152,28 +151,6 @@ void ArticulatedStepper::findIslands(const Scene& scene, const std::vector<Conta
     const int body = c.body_a != WORLD_BODY ? c.body_a : c.body_b;
     islands_of_step_[islands_.islandOf(treeOfBody(body))].contacts.push_back(static_cast<int>(i));
   }
-}
-
-void ArticulatedStepper::makeTerms(const TermSource& source, Island* island) {
-  IslandModel& model = island->model;
-  IslandTerms& terms = *island->solver.terms();
-  terms.clear();
-  for (const int tree : model.trees) {
-    for (int i = forest_.trees()[tree].first_node; i < forest_.trees()[tree].node_end; ++i)
-      if (forest_.nodes()[i].dofs == 1) terms.joints.push_back(jointTerm(source, i));
-  }
-  model.joints = static_cast<int>(terms.joints.size());
-  for (const int index : island->mimics) {
-    const MimicRelation& m = forest_.mimics()[index];
-    model.mimics.push_back({forest_.nodes()[m.node].first_dof, forest_.nodes()[m.master].first_dof, m.multiplier});
-  }
-  for (const int l : island->loops) {
-    BodyPair pair;
-    terms.loops.push_back(loopTerm(source, l, &pair));
-    model.loop_pairs.push_back(pair);
-  }
-  for (const int index : island->contacts) addContact(source, source.input.contacts[index], &model, &terms);
-  weighContacts(source, &model, &terms);
 }
 
 // Tolerances shrink with the lightest tree, below 10 g: those of heavier trees would let it creep.

@@ -20,4 +20,7 @@ struct Island {
   bool followed = true;  ///< no tree was too fast
 };
 
+/** Model and terms of an island, from its trees, contacts, mimic joints and loops. */
+void makeTerms(const TermSource& source, Island* island);
+
 }  // namespace blem_sim::dynamics
