@@ -6,7 +6,7 @@ function(blem_sim_room room)
   add_library(blem_sim_${room} ${sources})
   target_include_directories(blem_sim_${room} PUBLIC ${PROJECT_SOURCE_DIR}/include PRIVATE ${PROJECT_SOURCE_DIR}/src/${room})
   target_link_libraries(blem_sim_${room} PUBLIC ${ARGN})
-  # All but the loaders of files.
+  # Loaders of files alone keep the checks of pointers.
   if(NOT room STREQUAL model)
     target_compile_options(blem_sim_${room} PRIVATE ${without_pointer_checks})
   endif()

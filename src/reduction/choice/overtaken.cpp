@@ -3,7 +3,6 @@
 #include "lanes/wrench_bounds.h"
 
 namespace blem_sim::reduction {
-
 namespace {
 
 constexpr int PIVOTS = 7;
