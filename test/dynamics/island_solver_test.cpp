@@ -1,5 +1,5 @@
 // The parts of an island's solver on their own: what is live, when idle branches stray, and a question that is asked twice.
-#include "island/island_solver.h"
+#include "island/island.h"
 
 #include <gtest/gtest.h>
 
@@ -173,6 +173,18 @@ TEST(IslandSolver, AnswersAQuestionAskedAgainInTheSameWords) {
   EXPECT_EQ(again.iterations, first.iterations);
   EXPECT_EQ(chain.space.velocity, velocity);
   for (std::size_t i = 0; i < terms.contacts.size(); ++i) EXPECT_EQ(solver.found().terms.contacts[i].impulse, terms.contacts[i].impulse);
+}
+
+TEST(Island, TermsAreMadeAnewInEveryStepAndItsModelTellsOfJoints) {
+  ChainOnBox chain(3, 0.01);
+  const TermSource source{chain.scene, chain.forest, chain.motion, chain.input, chain.settings, chain.memory};
+  Island island;
+  island.model.trees = {0};
+  for (int step = 0; step < 2; ++step) {
+    makeTerms(source, &island);
+    EXPECT_EQ(island.solver.terms()->joints.size(), 3u);
+    EXPECT_EQ(island.model.joints, 3);
+  }
 }
 
 TEST(IslandModel, IsAHeapOfFreeBodiesAlone) {
