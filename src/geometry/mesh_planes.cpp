@@ -300,7 +300,8 @@ class VertexPlanes {
   /** The shortest way onto all planes of a vertex, or as near as they let. */
   Vector3 moveOnto(std::size_t begin, std::size_t end) const {
     const Vector3& p = mesh_.vertices[pairs_[begin].first];
-    Eigen::Matrix<double, Eigen::Dynamic, 3> normals(end - begin, 3);
+    // Rows as curved_patches.cpp has them: two kinds of decompositions take a compiler twice 20 s.
+    Eigen::MatrixXd normals(end - begin, 3);
     Eigen::VectorXd gaps(end - begin);
     int count = 0;
     for (std::size_t i = begin; i < end; ++i) {
@@ -310,12 +311,11 @@ class VertexPlanes {
       gaps[count++] = patch.normal.dot(patch.centre - p);
     }
     if (count == 1) return gaps[0] * normals.row(0).transpose();
-    Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix<double, Eigen::Dynamic, 3>> onto;
+    normals.conservativeResize(count, Eigen::NoChange);
+    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> onto;
     onto.setThreshold(PARALLEL);
-    onto.compute(normals.topRows(count));
-    const Eigen::VectorXd here = gaps.head(count);
-    const Vector3 move = onto.solve(here);
-    const Eigen::VectorXd left = here - normals.topRows(count) * move;
+    onto.compute(normals);
+    const Eigen::VectorXd here = gaps.head(count), move = onto.solve(here), left = here - normals * move;
     return move + onto.solve(left);
   }
 
