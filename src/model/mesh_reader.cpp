@@ -118,7 +118,7 @@ SurfaceSoup readMesh(const std::string& file, const std::string& extension) {
   std::string bytes = readBytes(file);
   PlyCounts announced;
   if (extension == "stl") checkStl(file, &bytes, &soup.notes);
-  if (extension == "off") checkOff(file, bytes);
+  if (extension == "off") checkOff(file, &bytes);
   if (extension == "dae") checkCollada(file, bytes);
   if (extension == "ply") announced = checkPly(file, bytes);
 

@@ -127,16 +127,24 @@ std::vector<JointModel> parentsFirst(const std::vector<JointModel>& joints, std:
   return sorted;
 }
 
+/** @param read of that name by urdfdom, whose XML reader has another way with entities that are none
+ *  @throws InputError if there is nothing */
+template <typename T>
+const T& found(const std::shared_ptr<T>& read, const std::string& kind, const std::string& name, const std::string& source) {
+  if (!read) throw InputError(fmt::format("{}: {} '{}': the name is not readable XML; write & as &amp; and < as &lt;", source, kind, name));
+  return *read;
+}
+
 void readLinks(const urdf::ModelInterface& model, const UrdfOutline& outline, const LoadProgress& progress, CollisionShapeReader* shapes,
                RobotModel* robot) {
   for (const std::string& name : outline.links) {
     const double read = static_cast<double>(robot->links.size()) / static_cast<double>(outline.links.size());
     if (progress) progress(fmt::format("reading link '{}'", name), (1 - TREE_FRACTION) * read);
-    const urdf::LinkConstSharedPtr given = model.getLink(name);
+    const urdf::Link& given = found(model.getLink(name), "link", name, robot->source);
     LinkModel link;
     link.name = name;
-    link.inertial = toInertial(*given);
-    link.collisions = shapes->read(*given, fmt::format("{}: link '{}'", robot->source, name), &robot->notes);
+    link.inertial = toInertial(given);
+    link.collisions = shapes->read(given, fmt::format("{}: link '{}'", robot->source, name), &robot->notes);
     for (CollisionShape& shape : link.collisions) shape.report.name = robot->name + "::" + name;
     robot->links.push_back(link);
   }
@@ -166,7 +174,7 @@ RobotModel readRobot(const std::string& xml, const std::string& source, Collisio
   readLinks(*model, outline, progress, shapes, &robot);
   robot.root = robot.linkIndex(model->getRoot()->name);
   std::vector<JointModel> joints;
-  for (const std::string& name : outline.joints) joints.push_back(toJoint(*model->getJoint(name), robot));
+  for (const std::string& name : outline.joints) joints.push_back(toJoint(found(model->getJoint(name), "joint", name, source), robot));
   robot.joints = parentsFirst(joints, robot.links.size(), robot.root);
   addNotes(&robot);
   return robot;

@@ -59,6 +59,10 @@ INSTANTIATE_TEST_SUITE_P(
     All, BadUrdfs,
     testing::Values(
         BadUrdfRow{"empty", "", {"empty"}}, BadUrdfRow{"not_xml", "# this is a\ntext file", {"not XML"}},
+        BadUrdfRow{"entity",
+                   "<robot name=\"r\"><link name=\"a\"/><link name=\"b\"/><joint name=\"&b\" type=\"fixed\"><parent link=\"a\"/>"
+                   "<child link=\"b\"/></joint></robot>",
+                   {"joint '&b'", "&amp;"}},
         BadUrdfRow{"cut", "<robot name=\"r\"><link name=\"a\">", {"not XML", "line 1"}},
         BadUrdfRow{"other_root", "<sdf version=\"1.6\"/>", {"<sdf>", "<robot"}},
         BadUrdfRow{"no_name", "<robot><link name=\"a\"/></robot>", {"name"}},

@@ -83,6 +83,10 @@ const char* const PLY =
 const char* const OBJ = "v 0 0 0\nv 1 0 0\nv 0 2 0\nv 0 0 3\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
 const char* const OFF = "OFF # a comment\n4 4 6\n0 0 0\n1 0 0\n\n0 2 0\n0 0 3\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
 
+// Comments and blank rows anywhere, counts behind the keyword, none of edges.
+const char* const LOOSE_OFF =
+    "OFF 4 4\n# vertices\n0 0 0\n# more\n1 0 0\n\n0 2 0 # third\n0 0 3\n3 0 2 1\n# f\n3 0 1 3\n\n3 0 3 2\n3 1 2 3\n";
+
 struct FormatRow {
   const char* name;
   std::string bytes;
@@ -105,7 +109,8 @@ TEST_P(Formats, giveTheSameTetrahedron) {
 INSTANTIATE_TEST_SUITE_P(All, Formats,
                          testing::Values(FormatRow{"a.stl", binaryStl("binary", 4)}, FormatRow{"b.STL", binaryStl("solid binary", 4)},
                                          FormatRow{"trailing.stl", binaryStl("binary", 4) + "more"}, FormatRow{"c.stl", ASCII_STL},
-                                         FormatRow{"d.ply", PLY}, FormatRow{"e.obj", OBJ}, FormatRow{"f.off", OFF}));
+                                         FormatRow{"d.ply", PLY}, FormatRow{"e.obj", OBJ}, FormatRow{"f.off", OFF},
+                                         FormatRow{"g.off", LOOSE_OFF}));
 
 TEST(SurfaceLoader, colladaUnitsAreAppliedAndTheUpAxisIsNot) {
   expectBounds(loadSurface(dataFile("millimetre_z_up.dae")), Vector3::Zero(), Vector3(0.001, 0.002, 0.003));

@@ -1,7 +1,9 @@
 """What the rostests share: a recorder of topics, and the simulation's services."""
 import threading
 import time
+from xmlrpc.client import ServerProxy
 
+import rosgraph
 import rospy
 from std_srvs.srv import Empty
 
@@ -35,7 +37,8 @@ class Recorder(object):
             self._messages = []
 
     def connected(self):
-        return self._subscriber.get_num_connections() > 0
+        """Whether messages come through: the node's side of a connection stands a moment after the subscriber's."""
+        return self._subscriber.get_num_connections() > 0 and (not publishes(NODE, self.topic) or sends_here(NODE, self.topic))
 
     def wait_for(self, count):
         """The first `count` messages; fails the test if they do not come."""
@@ -44,6 +47,22 @@ class Recorder(object):
 
     def stop(self):
         self._subscriber.unregister()
+
+
+def master():
+    return rosgraph.Master(rospy.get_name())
+
+
+def publishes(node, topic):
+    publishers, _, _ = master().getSystemState()
+    return node in dict(publishers).get(rospy.resolve_name(topic), [])
+
+
+def sends_here(node, topic):
+    """Whether a node's side of a connection to this process stands."""
+    code, text, connections = ServerProxy(master().lookupNode(node)).getBusInfo(rospy.get_name())
+    assert code == 1, text
+    return any(to == rospy.get_name() and way == "o" and name == rospy.resolve_name(topic) for _, to, way, _, name, *_ in connections)
 
 
 def record(topic, message_type, count=1):

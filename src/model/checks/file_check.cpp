@@ -5,6 +5,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <regex>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -67,15 +68,29 @@ class TextRows {
   std::istringstream stream_;
 };
 
-/** Vertex and face counts of an OFF, which may stand behind the keyword or on the next row. */
-bool offCounts(TextRows* rows, long* vertices, long* faces) {
-  std::istringstream row;
-  if (!rows->next(&row)) return false;
+struct OffHeader {
   std::string keyword;
-  row >> keyword;
-  if (keyword.size() < 3 || keyword.compare(keyword.size() - 3, 3, "OFF") != 0) return false;
-  if (row >> *vertices >> *faces) return true;
-  return rows->next(&row) && row >> *vertices >> *faces;
+  long vertices = 0;
+  long faces = 0;
+};
+
+/** Colours, normals and such before "OFF" add columns; "nOFF" has dimensions of its own. */
+bool isOffKeyword(const std::string& keyword) {
+  static const std::regex KNOWN("(ST)?C?N?4?OFF");
+  return std::regex_match(keyword, KNOWN);
+}
+
+/** The counts stand behind the keyword or on the next row, all on one. */
+bool readOffHeader(TextRows* rows, OffHeader* header) {
+  std::istringstream row;
+  if (!rows->next(&row) || !(row >> header->keyword) || !isOffKeyword(header->keyword)) return false;
+  if ((row >> std::ws).eof() && !rows->next(&row)) return false;
+  return row >> header->vertices >> header->faces && header->vertices >= 0 && header->faces >= 0;
+}
+
+void checkOffVertex(const std::string& file, std::istringstream* row, long vertex) {
+  double x = 0, y = 0, z = 0;
+  if (!(*row >> x >> y >> z)) throw InputError(fmt::format("{}: vertex {} has not three numbers; write the file anew", file, vertex));
 }
 
 void checkOffFace(const std::string& file, std::istringstream* row, long face, long vertices) {
@@ -121,21 +136,28 @@ void checkStl(const std::string& file, std::string* bytes, std::vector<std::stri
   }
 }
 
-void checkOff(const std::string& file, const std::string& bytes) {
-  TextRows rows(bytes);
-  long vertices = 0, faces = 0;
-  if (!offCounts(&rows, &vertices, &faces) || vertices < 0 || faces < 0)
+void checkOff(const std::string& file, std::string* bytes) {
+  TextRows rows(*bytes);
+  OffHeader header;
+  if (!readOffHeader(&rows, &header))
     throw InputError(file + ": not an OFF file: no 'OFF' with the counts of vertices and faces; write the file anew");
+  const auto [keyword, vertices, faces] = header;
   if (vertices == 0) throw InputError(file + ": the OFF holds no vertex; export the mesh again");
+  std::string checked = fmt::format("{}\n{} {} 0\n", keyword, vertices, faces);
   std::istringstream row;
-  for (long vertex = 0; vertex < vertices; ++vertex)
+  for (long vertex = 0; vertex < vertices; ++vertex) {
     if (!rows.next(&row))
       throw InputError(fmt::format("{}: truncated OFF: {} vertices announced, {} there; write the file anew", file, vertices, vertex));
+    checkOffVertex(file, &row, vertex);
+    checked += row.str() + '\n';
+  }
   for (long face = 0; face < faces; ++face) {
     if (!rows.next(&row))
       throw InputError(fmt::format("{}: truncated OFF: {} faces announced, {} there; write the file anew", file, faces, face));
     checkOffFace(file, &row, face, vertices);
+    checked += row.str() + '\n';
   }
+  *bytes = checked;
 }
 
 }  // namespace blem_sim::model

@@ -12,8 +12,9 @@ std::string readBytes(const std::string& file);
 /** Refuses a truncated STL, binary or ASCII. Bytes beyond the announced triangles of a binary one are cut off, with a note. */
 void checkStl(const std::string& file, std::string* bytes, std::vector<std::string>* notes);
 
-/** Refuses an OFF whose header, rows or face indices are wrong. */
-void checkOff(const std::string& file, const std::string& bytes);
+/** Refuses an OFF whose header, rows or face indices are wrong. What was checked is left: without comments, one row each, the counts on
+ *  a row of their own; another reader cannot take the rows otherwise. */
+void checkOff(const std::string& file, std::string* bytes);
 
 /** Counts that a PLY's header announces. */
 struct PlyCounts {

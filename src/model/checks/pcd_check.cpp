@@ -15,6 +15,8 @@ namespace {
 /** LZF, the compression of PCD, turns three bytes into at most 264. */
 constexpr double MOST_COMPRESSED = 88;
 
+const std::set<std::string> KEYWORDS = {"VERSION", "FIELDS", "SIZE", "TYPE", "COUNT", "WIDTH", "HEIGHT", "VIEWPOINT", "POINTS", "DATA"};
+
 /** Rows of the header by keyword. */
 struct PcdHeader {
   std::map<std::string, std::vector<std::string>> rows;
@@ -27,8 +29,6 @@ struct PcdHeader {
 
 /** PCL's reader runs off its data where a row is missing or unknown, so the header is held to the letter. */
 PcdHeader readPcdHeader(const std::string& file, const std::string& bytes) {
-  static const std::set<std::string> KEYWORDS = {"VERSION", "FIELDS", "SIZE",      "TYPE",   "COUNT",
-                                                 "WIDTH",   "HEIGHT", "VIEWPOINT", "POINTS", "DATA"};
   PcdHeader header;
   while (header.data < bytes.size() && header.rows.count("DATA") == 0) {
     const std::size_t end = std::min(bytes.find('\n', header.data), bytes.size());
@@ -48,6 +48,21 @@ PcdHeader readPcdHeader(const std::string& file, const std::string& bytes) {
   for (const char* keyword : {"FIELDS", "SIZE", "TYPE", "WIDTH", "HEIGHT", "POINTS", "DATA"})
     if (header.rows.count(keyword) == 0) refuseCloud(file, fmt::format("its header has no {}", keyword));
   return header;
+}
+
+/** PCL's reader goes on behind DATA until a row begins with no keyword, and sizes the cloud anew by those that do. */
+void checkDataBegin(const std::string& file, const std::string& bytes, std::size_t data) {
+  while (data < bytes.size()) {
+    const std::size_t end = std::min(bytes.find('\n', data), bytes.size());
+    std::istringstream row(bytes.substr(data, end - data));
+    data = end + 1;
+    std::string word;
+    if (!(row >> word) || word[0] == '#') continue;
+    const auto begins = [&word](const std::string& keyword) { return word.compare(0, keyword.size(), keyword) == 0; };
+    if (begins("COLUMNS") || std::any_of(KEYWORDS.begin(), KEYWORDS.end(), begins))
+      refuseCloud(file, "its data begin like a row of a header");
+    return;
+  }
 }
 
 std::size_t toNumber(const std::string& file, const std::string& keyword, const std::string& word) {
@@ -83,6 +98,7 @@ void checkFields(const std::string& file, const PcdHeader& header) {
 void checkPcd(const std::string& file, const std::string& bytes) {
   const PcdHeader header = readPcdHeader(file, bytes);
   checkFields(file, header);
+  checkDataBegin(file, bytes, header.data);
   const std::vector<std::size_t> sizes = numbersOf(file, header, "SIZE");
   std::vector<std::size_t> counts(sizes.size(), 1);
   if (header.rows.count("COUNT") == 1) counts = numbersOf(file, header, "COUNT");
