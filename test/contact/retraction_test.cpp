@@ -1,6 +1,7 @@
 // Beyond the layer: contacts of the fallback where bare meshes cross.
 #include <gtest/gtest.h>
 
+#include "blem_sim/geometry/shortest_turn.h"
 #include "contact/contact_shapes.h"
 
 namespace blem_sim::contact {
@@ -92,7 +93,7 @@ TEST(Retraction, CornerAndEdgeThroughASheet) {
   const Collider sheet = makeCollider(geometry::gridMesh(1, 1, 20, 20), SUM_OF_WIDTHS / 2);
   const double corner = SIDE / 2 * std::sqrt(3.0), edge = SIDE / 2 * std::sqrt(2.0), sunk = 0.001;
   Pose X_WA = Pose::Identity();
-  X_WA.linear() = Quaternion::FromTwoVectors(Vector3(1, 1, 1), Vector3(0, 0, -1)).toRotationMatrix();
+  X_WA.linear() = geometry::shortestTurn(Vector3(1, 1, 1), Vector3(0, 0, -1)).toRotationMatrix();
   X_WA.translation() = Vector3(0.011, 0.007, corner - sunk);
   ContactManifold manifold = contactsOf(retractedCube(), X_WA, sheet, Pose::Identity());
   EXPECT_TRUE(manifold.pierced);

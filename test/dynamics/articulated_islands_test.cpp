@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "blem_sim/geometry/shortest_turn.h"
 #include "dynamics/analytic_contacts.h"
 #include "support/standard_values.h"
 
@@ -13,7 +14,7 @@ namespace {
 int addBar(World* world, const Vector3& from, const Vector3& to) {
   BodySpec bar = boxBody("bar", 0.4, {0.02, 0.02, (to - from).norm()}, Vector3::Zero());
   bar.X_WB.translation() = from;
-  bar.X_WB.linear() = Quaternion::FromTwoVectors(Vector3::UnitZ(), to - from).toRotationMatrix();
+  bar.X_WB.linear() = geometry::shortestTurn(Vector3::UnitZ(), to - from).toRotationMatrix();
   bar.inertial.com = {0, 0, 0.5 * (to - from).norm()};
   return world->addBody(bar);
 }

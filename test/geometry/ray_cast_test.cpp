@@ -25,7 +25,7 @@ TriangleMesh randomTriangles(RandomShapes& random, int count) {
 double solvedHit(const Ray& ray, const Triangle& t) {
   Matrix3 system;
   system << t[1] - t[0], t[2] - t[0], -ray.direction;
-  const Vector3 x = system.fullPivLu().solve(ray.origin - t[0]);
+  const Vector3 x = system.inverse() * (ray.origin - t[0]);
   return x[0] >= 0 && x[1] >= 0 && x[0] + x[1] <= 1 ? x[2] : INFINITY;
 }
 

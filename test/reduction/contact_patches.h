@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "blem_sim/geometry/shortest_turn.h"
 #include "blem_sim/reduction/reduction.h"
 #include "geometry/random_shapes.h"
 
@@ -36,7 +37,7 @@ class Noise {
 // A 10 cm square in the plane across `normal`, all contacts at one depth: contacts of a tessellated cube on a plane.
 inline Contacts flatPatch(int count, const Vector3& normal, const Vector3& centre, unsigned seed = 1) {
   Noise noise(seed);
-  const Quaternion tilt = Quaternion::FromTwoVectors(Vector3::UnitZ(), normal);
+  const Quaternion tilt = geometry::shortestTurn(Vector3::UnitZ(), normal);
   Contacts contacts;
   for (int i = 0; i < count; ++i) {
     const Vector3 p(0.05 * noise(), 0.05 * noise(), 0);

@@ -7,6 +7,7 @@
 #include <random>
 #include <tuple>
 
+#include "blem_sim/geometry/shortest_turn.h"
 #include "hull_stages.h"
 #include "reduction/contact_patches.h"
 #include "reduction_room.h"
@@ -212,7 +213,7 @@ TEST(ReduceHull, KeepsExactlyTheCornersOfAGridOnAPlane) {
 TEST(ReduceHull, KeepsTheFourCornersHoweverTheSidesTremble) {
   Noise noise(12);
   for (int trial = 0; trial < 300; ++trial) {
-    const Quaternion turn = Quaternion::FromTwoVectors(Vector3::UnitX(), Vector3(noise(), noise(), noise()));
+    const Quaternion turn = geometry::shortestTurn(Vector3::UnitX(), Vector3(noise(), noise(), noise()));
     const double tremble = std::pow(10, -8.5 + noise());  // up to 32 nm
     Contacts contacts;
     for (int i = 0; i <= 4; ++i) {

@@ -5,7 +5,6 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <regex>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -76,8 +75,10 @@ struct OffHeader {
 
 /** Colours, normals and such before "OFF" add columns; "nOFF" has dimensions of its own. */
 bool isOffKeyword(const std::string& keyword) {
-  static const std::regex KNOWN("(ST)?C?N?4?OFF");
-  return std::regex_match(keyword, KNOWN);
+  std::size_t at = 0;
+  for (const std::string columns : {"ST", "C", "N", "4"})
+    if (keyword.compare(at, columns.size(), columns) == 0) at += columns.size();
+  return keyword.compare(at, std::string::npos, "OFF") == 0;
 }
 
 /** The counts stand behind the keyword or on the next row, all on one. */

@@ -1,6 +1,7 @@
 #include "drawn_shape.h"
 
 #include <algorithm>
+#include "blem_sim/geometry/shortest_turn.h"
 
 namespace blem_sim {
 
@@ -14,7 +15,7 @@ constexpr double HEAD_WIDTH = 1.5;  // radius of its head, likewise
 /** Pose whose z axis runs along a direction. */
 Pose alongZ(const Vector3& origin, const Vector3& direction) {
   Pose pose = Pose::Identity();
-  pose.linear() = Quaternion::FromTwoVectors(Vector3::UnitZ(), direction).toRotationMatrix();
+  pose.linear() = geometry::shortestTurn(Vector3::UnitZ(), direction).toRotationMatrix();
   pose.translation() = origin;
   return pose;
 }

@@ -1,6 +1,7 @@
 #include "layer_shell.h"
 
 #include <array>
+#include "blem_sim/geometry/shortest_turn.h"
 
 namespace blem_sim {
 
@@ -24,7 +25,7 @@ void addFace(const geometry::TriangleMesh& mesh, int face, const Vector3& away, 
 
 /** Part of a tube along an edge, from one unit direction to another by the shorter way. */
 void addTube(const std::array<Vector3, 2>& ends, const Vector3& from, const Vector3& to, double r, geometry::TriangleMesh* shell) {
-  const Quaternion turn = Quaternion::FromTwoVectors(from, to);
+  const Quaternion turn = geometry::shortestTurn(from, to);
   Vector3 last = r * from;
   for (int step = 1; step <= ARC_STEPS; ++step) {
     const Vector3 next = r * (Quaternion::Identity().slerp(static_cast<double>(step) / ARC_STEPS, turn) * from);

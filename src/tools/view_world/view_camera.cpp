@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include "blem_sim/geometry/shortest_turn.h"
 
 namespace blem_sim {
 
@@ -17,7 +18,7 @@ ViewCamera framing(const Box& box, const Vector3& up, double aspect) {
   const double radius = std::max(SMALLEST_RADIUS, 0.5 * box.diagonal().norm());
   const double half_height = 0.5 * FIELD_OF_VIEW;
   const double half_view = std::min(half_height, std::atan(aspect * std::tan(half_height)));
-  const Vector3 from = Quaternion::FromTwoVectors(Vector3::UnitZ(), up) * FROM.normalized();
+  const Vector3 from = geometry::shortestTurn(Vector3::UnitZ(), up) * FROM.normalized();
   return {box.center() + ROOM * radius / std::sin(half_view) * from, box.center()};
 }
 

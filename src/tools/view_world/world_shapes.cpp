@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "blem_sim/geometry/shortest_turn.h"
 #include "layer_shell.h"
 
 namespace blem_sim {
@@ -58,7 +59,7 @@ DrawnShape planeShape(const contact::CollisionGeometry& plane, const Pose& X_WC,
   const Vector3 normal = X_WC.linear() * plane.planeNormal();
   const Vector3 foot = X_WC * (plane.planeOffset() * plane.planeNormal());
   Pose X_WP = Pose::Identity();
-  X_WP.linear() = Quaternion::FromTwoVectors(Vector3::UnitZ(), normal).toRotationMatrix();
+  X_WP.linear() = geometry::shortestTurn(Vector3::UnitZ(), normal).toRotationMatrix();
   X_WP.translation() = foot;
   // A whole number of pairs of cells away from the foot point: the pattern stays where it is in the world.
   const Vector3 way = X_WP.inverse() * middle;

@@ -1,6 +1,7 @@
 // Curved and noisy bodies come to rest and stay: they neither wander nor change their contacts.
 #include <gtest/gtest.h>
 
+#include "blem_sim/geometry/shortest_turn.h"
 #include "geometry/random_shapes.h"
 #include "sim/simulation_scene.h"
 #include "soak/figures.h"
@@ -103,7 +104,7 @@ TEST(SoakRest, BallOnItsFacet) {
   if (facet.dot(p) < 0) facet = -facet;
   sim::SimulationConfig config = scene(environment("two_triangles", geometry::gridMesh(1, 1, 1, 1)));
   sim::ObjectConfig resting = object("ball", ball(), makePose({0.013, 0.007, 0.0325}));
-  resting.X_WO.linear() = Quaternion::FromTwoVectors(facet, -Vector3::UnitZ()).toRotationMatrix();
+  resting.X_WO.linear() = geometry::shortestTurn(facet, -Vector3::UnitZ()).toRotationMatrix();
   config.objects = {resting};
   expectRest("ball on its facet", config, 0, 1e-4);
 }
