@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draws what scripts/benchmark wrote: benchmark_contacts.png, benchmark_peers.png, benchmark_scaling.png, benchmark_scenes.png.
+"""Draws what scripts/benchmark wrote: benchmark_contacts.png, benchmark_peers.png, benchmark_scaling.png, benchmark_scenes.png, soak.png.
 
 Usage: plot_results.py FOLDER_OF_TABLES FOLDER_OF_PICTURES     a picture whose table is missing is left out in words
 """
@@ -17,6 +17,7 @@ STAGES = (("broad_phase", "#c9c9c9"), ("narrow_phase", "#1f5fa8"), ("reduction",
 OTHER_STAGES = ("sample_commands", "motor_torque", "step_guard", "sensors", "report")
 SCENES = {"hubo_on_1M": "Hubo on 1 M", "hubo_on_100k": "Hubo on 100 k", "hubo_on_1M_points": "Hubo on 1 M points", "cube_on_1M": "cube on 1 M",
           "mug_on_fractal_500k": "mug on 0.5 M", "mug_beside_mug": "mug beside mug"}
+SOAKS = {"soak_ten_cubes": "ten cubes of 12 triangles, stacked", "soak_humanoid": "a humanoid on a scan"}
 PEERS = {"ode_opcode": ("ODE OPCODE: crossing triangles only", "#c0504d"), "bullet_gimpact": ("Bullet GImpact: pairs within margins", "#9b7bb8"),
          "fcl_distance": ("FCL: one closest pair", "#d9a441"), "fcl_collide": ("FCL: crossing triangles only", "#8c8c5a")}
 
@@ -50,6 +51,15 @@ def rows(folder, name):
     lines = path.read_text().splitlines()
     begin = next((i for i, line in enumerate(lines) if line.startswith("name,")), len(lines))  # Google Benchmark's own words go before
     return [Row(fields) for fields in csv.DictReader(lines[begin:]) if fields["error_occurred"] != "true"]
+
+
+def plain_rows(path):
+    """Of a table without names, [] where it is missing."""
+    if not path.exists():
+        print("plot_results: %s is not there" % path.name)
+        return []
+    with path.open() as table:
+        return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(table)]
 
 
 def label_bars(axes, bars, texts):
@@ -214,12 +224,34 @@ def draw_scenes(folder):
     return figure
 
 
+def draw_soak(folder):
+    """Memory, cost of a step and energy over the hours of soak_hours, a column for each scene."""
+    scenes = [(title, plain_rows(folder / (name + ".csv"))) for name, title in SOAKS.items()]
+    if not all(table for _, table in scenes):
+        return None
+    figure, axes = plt.subplots(3, len(scenes), figsize=(10, 5.6), sharex="col")
+    for column, (title, table) in zip(axes.T, scenes):
+        hours = [row["time_s"] / 3600 for row in table]
+        first = table[0]["energy_J"]
+        for plot, values, label in zip(column, ([row["resident_kB"] / 1024 for row in table], [row["step_us"] for row in table],
+                                                [row["energy_J"] - first for row in table]), ("resident [MB]", "a step [us]", "energy since [J]")):
+            plot.plot(hours, values, color=OURS, lw=1)
+            plot.set_ylabel(label)
+        for plot in column[:2]:
+            plot.set_ylim(0, None)
+        column[0].set_title(title, fontsize=9)
+        column[2].set_xlabel("simulated time [h]")
+    figure.tight_layout()
+    return figure
+
+
 def main(tables, pictures):
-    for name, draw in (("contacts", draw_contacts), ("peers", draw_peers), ("scaling", draw_scaling), ("scenes", draw_scenes)):
+    for name, draw in (("benchmark_contacts", draw_contacts), ("benchmark_peers", draw_peers), ("benchmark_scaling", draw_scaling),
+                       ("benchmark_scenes", draw_scenes), ("soak", draw_soak)):
         figure = draw(tables)
         if figure is None:
             continue
-        out = pictures / ("benchmark_%s.png" % name)
+        out = pictures / (name + ".png")
         figure.savefig(str(out), metadata={"Software": None})
         print("drawn: %s" % out.name)
 
