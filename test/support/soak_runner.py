@@ -24,7 +24,9 @@ def built(options, program):
     if options.program:
         return options.program
     subprocess.run([str(SOURCE_DIR / "scripts" / "build"), "--target", program], check=True, stdout=subprocess.DEVNULL)
-    return str(SOURCE_DIR / "build_release" / program)
+    # Unit tests of a build with ROS lie where catkin puts programs.
+    folder = SOURCE_DIR / "build_release"
+    return str(next(path for path in (folder / program, folder / "devel/lib/blem_sim" / program) if path.exists()))
 
 
 def run(command, environment):
