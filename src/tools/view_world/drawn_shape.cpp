@@ -1,6 +1,7 @@
 #include "drawn_shape.h"
 
 #include <algorithm>
+
 #include "blem_sim/geometry/shortest_turn.h"
 
 namespace blem_sim {

@@ -1,6 +1,7 @@
 #include "layer_shell.h"
 
 #include <array>
+
 #include "blem_sim/geometry/shortest_turn.h"
 
 namespace blem_sim {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+
 #include "blem_sim/geometry/shortest_turn.h"
 
 namespace blem_sim {
