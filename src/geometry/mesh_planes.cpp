@@ -300,7 +300,7 @@ class VertexPlanes {
   /** The shortest way onto all planes of a vertex, or as near as they let. */
   Vector3 moveOnto(std::size_t begin, std::size_t end) const {
     const Vector3& p = mesh_.vertices[pairs_[begin].first];
-    // Rows as curved_patches.cpp has them: two kinds of decompositions take a compiler twice 20 s.
+    // Rows as curved_patches.cpp has them: a second kind of decomposition takes a compiler ten seconds more.
     Eigen::MatrixXd normals(end - begin, 3);
     Eigen::VectorXd gaps(end - begin);
     int count = 0;

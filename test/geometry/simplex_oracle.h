@@ -16,7 +16,7 @@ using Real = long double;
 using RealPoint = Eigen::Matrix<Real, 3, 1>;
 
 /** Weights x of at most three columns that bring their sum nearest to a point, by Gram and Schmidt; not where the columns depend on each
- *  other. Plain loops, for Eigen's decompositions of long doubles take a compiler ten seconds. */
+ *  other. Plain loops, for Eigen's decompositions of long doubles take a compiler some ten seconds. */
 inline bool leastSquares(const std::vector<RealPoint>& columns, RealPoint point, std::array<Real, 3>* x) {
   std::array<RealPoint, 3> axes;
   std::array<std::array<Real, 3>, 3> r;

@@ -6,7 +6,7 @@ namespace blem_sim::geometry {
 
 /**
  * Turn of one direction into another by the shortest way; about any axis across where they are opposite. Directions may have any length
- * but zero. Eigen's FromTwoVectors does the same with a singular value decomposition, which takes a compiler seven seconds.
+ * but zero. Eigen's FromTwoVectors does the same with a singular value decomposition, which takes a compiler some seconds in every file.
  */
 inline Quaternion shortestTurn(const Vector3& from, const Vector3& to) {
   const Vector3 a = from.normalized(), sum = a + to.normalized();
