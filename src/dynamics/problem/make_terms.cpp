@@ -68,11 +68,23 @@ double inverseInertia(const TermSource& s, int node, const Vector6& wrench) {
   return sum;
 }
 
+// Velocity of a point that moves with a twist, in the order in which the dot product with each axis' wrench adds.
+Vector3 leversAt(const Vector6& t, const Vector3& point) {
+  const double x = point.x(), y = point.y(), z = point.z();
+  return {-t[2] * y + (t[1] * z + t[3]), -t[0] * z + (t[2] * x + t[4]), t[0] * y + (-t[1] * x + t[5])};
+}
+
 // The same at a point, mean over the directions of force.
 double inverseMass(const TermSource& s, int node, const Vector3& point) {
-  double sum = 0;
-  for (int axis = 0; axis < 3; ++axis) sum += inverseInertia(s, node, wrenchOf(Vector3::Unit(axis), point)) / 3;
-  return sum;
+  if (node < 0) return 0;
+  const int last = s.forest.nodes()[node].last_dof;
+  if (last < 0) return 0;
+  Vector3 sums = Vector3::Zero();
+  for (int e = 0; e < s.forest.rowLength(last); ++e) {
+    const int k = s.forest.columns(last)[e];
+    sums += leversAt(s.motion.subspace[k], point).cwiseAbs2() / massEntry(s, k);
+  }
+  return sums[0] / 3 + sums[1] / 3 + sums[2] / 3;
 }
 
 Pose nodePose(const TermSource& s, int node) {

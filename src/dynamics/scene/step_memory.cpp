@@ -7,9 +7,9 @@ namespace blem_sim::dynamics {
 const ContactRecord* StepMemory::find(std::uint64_t id) const {
   if (contacts.empty()) return nullptr;
   const std::size_t bucket = id >> shift_;
-  const auto end = contacts.begin() + first_[bucket + 1];
-  const auto it =
-      std::lower_bound(contacts.begin() + first_[bucket], end, id, [](const ContactRecord& c, std::uint64_t i) { return c.id < i; });
+  const auto first = contacts.begin() + first_[bucket], end = contacts.begin() + first_[bucket + 1];
+  if (first != end && first->id == id) return &*first;
+  const auto it = std::lower_bound(first, end, id, [](const ContactRecord& c, std::uint64_t i) { return c.id < i; });
   return it != end && it->id == id ? &*it : nullptr;
 }
 
