@@ -4,7 +4,7 @@
 #include "messages/message_pool.h"
 #include "sending/step_sender.h"
 
-#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 
 #include "support/counted_allocations.h"
 

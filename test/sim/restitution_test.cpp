@@ -95,7 +95,9 @@ TEST(BouncingMeshes, NeverGain) {
     EXPECT_LT(worst, restitution < 1 ? 1e-5 : 1e-6) << restitution;
     EXPECT_LT(out_of_nothing, 1e-9) << restitution;
     EXPECT_LT(simulator.report().energy, start * (1 + 1e-3)) << restitution;
-    if (restitution == 1) EXPECT_GT(simulator.report().energy, 0.95 * start);
+    if (restitution == 1) {
+      EXPECT_GT(simulator.report().energy, 0.95 * start);
+    }
   }
 }
 
