@@ -8,7 +8,7 @@
 
 #include "blem_sim/geometry/input_error.h"
 #include "checks/file_check.h"
-#include "quiet_pcl.h"
+#include "clouds/quiet_pcl.h"
 #include "surface_soup.h"
 
 namespace blem_sim::model {
@@ -71,6 +71,7 @@ SurfaceSoup readPcd(const std::string& file) {
   }
   if (!origin.head<3>().isZero(0) || !orientation.coeffs().isApprox(Eigen::Quaternionf::Identity().coeffs()))
     soup.notes.push_back("the sensor's VIEWPOINT is not applied: coordinates are taken as they stand");
+  if (!origin.head<3>().isZero(0)) soup.viewpoint = origin.head<3>().cast<double>();
   return soup;
 }
 

@@ -46,38 +46,26 @@ void checkOptions(const std::string& file, const Vector3& scale, const CloudOpti
     throw InputError(fmt::format("{}: scale {} {} {}: every factor must be finite and not zero", file, scale.x(), scale.y(), scale.z()));
   if (!cloud.auto_radius && (!(cloud.point_radius > 0) || !std::isfinite(cloud.point_radius)))
     throw InputError(fmt::format("{}: point_radius {} m must be greater than zero", file, cloud.point_radius));
-  if (!(cloud.max_edge > 0) || !std::isfinite(cloud.max_edge))
-    throw InputError(fmt::format("{}: max_edge {} m must be greater than zero", file, cloud.max_edge));
+  for (const auto& [name, length] : {std::pair("max_edge", cloud.max_edge), std::pair("cell", cloud.cell)})
+    if (!(length > 0) || !std::isfinite(length)) throw InputError(fmt::format("{}: {} {} m must be greater than zero", file, name, length));
+  if (!(cloud.max_depth_jump > 0))
+    throw InputError(fmt::format("{}: max_depth_jump {} must be greater than zero", file, cloud.max_depth_jump));
+  if (cloud.viewpoint && !cloud.viewpoint->allFinite()) throw InputError(file + ": viewpoint: must be three finite numbers");
   checkFilters(cloud.filters, file);
 }
 
 /** Scales in place; a mirroring scale turns the winding, so that outside stays outside. */
-void scaleSoup(const Vector3& scale, geometry::TriangleMesh* mesh) {
+void scaleSoup(const Vector3& scale, SurfaceSoup* soup) {
   if (scale == Vector3::Ones()) return;
-  for (Vector3& p : mesh->vertices) p = p.cwiseProduct(scale);
+  for (Vector3& p : soup->mesh.vertices) p = p.cwiseProduct(scale);
+  if (soup->viewpoint) soup->viewpoint = soup->viewpoint->cwiseProduct(scale);
   if (scale.prod() < 0)
-    for (Vector3i& e : mesh->elements)
+    for (Vector3i& e : soup->mesh.elements)
       if (e[0] != e[1] && e[1] != e[2]) std::swap(e[1], e[2]);
 }
 
 bool wantsPoints(const SurfaceSoup& soup, CloudOptions::As as) {
   return as == CloudOptions::As::POINTS || (as == CloudOptions::As::AUTO && soup.mesh.elements.empty());
-}
-
-/** Triangles from points. A grid keeps its places; else points that are not finite or there twice go first, as they confuse normals. */
-void joinCloud(double max_edge, SurfaceSoup* soup, geometry::MeshReport* report) {
-  const bool grid = soup->width > 1 && soup->height > 1;
-  geometry::MeshReport points;
-  geometry::TriangleMesh unique = geometry::pointCloudMesh(soup->mesh.vertices, &points);
-  report->nonfinite = points.nonfinite;
-  report->welded = points.welded;
-  if (!grid) soup->mesh.vertices = std::move(unique.vertices);
-  soup->mesh.elements = meshCloud(*soup, max_edge);
-  if (soup->mesh.elements.empty())
-    throw InputError(fmt::format("{}: no triangle joins its {} points with edges up to {} m; raise max_edge or load it as points",
-                                 report->source, points.points, max_edge));
-  report->notes.push_back(fmt::format("{} triangles joined from {} points by {}, edges up to {} m", soup->mesh.elements.size(),
-                                      points.points, grid ? "the pixel grid" : "greedy projection", max_edge));
 }
 
 /** cleanMesh, counting in the elements that were left out before. The soup is given up. */
@@ -141,7 +129,7 @@ LoadedSurface loadSurface(const std::string& file, const Vector3& scale, const C
   };
   enter("reading", 0);
   SurfaceSoup soup = readSurface(file);
-  scaleSoup(scale, &soup.mesh);
+  scaleSoup(scale, &soup);
   LoadedSurface surface;
   surface.report.name = std::filesystem::path(file).stem().string();
   surface.report.source = file;
@@ -150,7 +138,7 @@ LoadedSurface loadSurface(const std::string& file, const Vector3& scale, const C
   filterSoup(cloud.filters, points, &soup, &surface.report);
   if (!points && soup.mesh.elements.empty()) {
     enter("joining the points of", CLEANING_FRACTION);
-    joinCloud(cloud.max_edge, &soup, &surface.report);
+    joinCloud(cloud, &soup, &surface.report);
   }
   enter("cleaning", CLEANING_FRACTION);
   geometry::TriangleMesh cleaned =

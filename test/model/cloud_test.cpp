@@ -99,6 +99,26 @@ TEST(CloudFilters, passThroughIsExactAlsoFarAwayAndOpen) {
   }
 }
 
+TEST(CloudFilters, movingLeastSquaresTakeNoiseAway) {
+  std::mt19937 random(2);
+  std::normal_distribution<double> noise(0, 0.001);
+  std::vector<Vector3> points = grid(0.005, 60);
+  for (Vector3& p : points) p.z() = 0.2 * p.x() * p.x() + noise(random);
+  CloudFilter filter;
+  filter.kind = Kind::MOVING_LEAST_SQUARES;
+  filter.size = 0.04;
+  const std::vector<Vector3> smooth = left(points, {filter});
+  EXPECT_EQ(smooth.size(), points.size());
+  EXPECT_EQ(smooth, left(points, {filter}));
+  double squares = 0;
+  for (const Vector3& p : smooth) squares += std::pow(p.z() - 0.2 * p.x() * p.x(), 2);
+  EXPECT_LT(std::sqrt(squares / smooth.size()), 0.0003);
+  filter.order = 6;
+  EXPECT_TRUE(isOneLineWith(refusal([&] { left(points, {filter}); }), {"moving_least_squares", "order"}));
+  filter.size = 0;
+  EXPECT_TRUE(isOneLineWith(refusal([&] { left(points, {filter}); }), {"moving_least_squares", "radius"}));
+}
+
 TEST(CloudFilters, badOnesAreRefusedInOneLine) {
   const auto fault = [](const CloudFilter& filter) { return refusal([&] { left(grid(0.01, 30), {filter}); }); };
   EXPECT_TRUE(isOneLineWith(fault(voxels(0)), {"test", "voxel_grid", "above 0"}));

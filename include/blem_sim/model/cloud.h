@@ -1,6 +1,7 @@
 // Clouds of points: filters, the boundary of each point, the surface that contact meets.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,7 +15,8 @@ struct CloudFilter {
     VOXEL_GRID,            ///< one point, the mean, per cube of edge `size`
     STATISTICAL_OUTLIERS,  ///< drops points whose mean distance to `neighbours` others is `factor` deviations above the cloud's mean
     RADIUS_OUTLIERS,       ///< drops points with fewer than `neighbours` others within `size`
-    PASS_THROUGH           ///< keeps points whose coordinate along `axis` is from `lower` to `upper`
+    PASS_THROUGH,          ///< keeps points whose coordinate along `axis` is from `lower` to `upper`
+    MOVING_LEAST_SQUARES   ///< moves points onto polynomials of degree `order` through those within `size`; drops those with fewer than 3
   };
   Kind kind = Kind::VOXEL_GRID;
   double size = 0;  ///< [m]
@@ -22,15 +24,24 @@ struct CloudFilter {
   double factor = 0;
   int axis = 2;                 ///< 0, 1, 2
   double lower = 0, upper = 0;  ///< [m], also infinite
+  int order = 2;                ///< 1 to 5
 };
 
 /** Settings of a cloud of points in the simulation. */
 struct CloudOptions {
   enum class As { AUTO, POINTS, MESH };
-  As as = As::AUTO;                  ///< AUTO: points for a file without faces, triangles otherwise
-  double point_radius = 0.004;       ///< [m] boundary of each point
-  bool auto_radius = false;          ///< true: pointRadius of the filtered points instead of point_radius
-  double max_edge = 0.05;            ///< [m] as: mesh; longest edge that joins neighbours of an organized cloud or of the projection mesher
+  /** AUTO: ORGANIZED for a cloud with a pixel grid, GREEDY_PROJECTION for others. */
+  enum class Mesher { AUTO, ORGANIZED, GREEDY_PROJECTION, MARCHING_CUBES, POISSON };
+  As as = As::AUTO;             ///< AUTO: points for a file without faces, triangles otherwise
+  double point_radius = 0.004;  ///< [m] boundary of each point
+  bool auto_radius = false;     ///< true: pointRadius of the filtered points instead of point_radius
+  // As a mesh.
+  Mesher mesher = Mesher::AUTO;
+  double max_edge = 0.05;            ///< [m] ORGANIZED, GREEDY_PROJECTION: longest edge; the others: holes wider than that stay
+  double max_depth_jump = 0.05;      ///< ORGANIZED: change of the distance to the viewpoint along an edge, over the smaller distance
+  double cell = 0.01;                ///< [m] MARCHING_CUBES: edge of a cube; POISSON: about that of the smallest
+  bool fill_holes = false;           ///< POISSON
+  std::optional<Vector3> viewpoint;  ///< [m] of the sensor, which sees outsides; none: a PCD's own, or a pixel grid's camera in the origin
   std::vector<CloudFilter> filters;  ///< in their order; they give up a cloud's pixel grid
 };
 

@@ -26,9 +26,12 @@ std::string wordsFor(const geometry::MeshShrinking& what, double r) {
 
 /** All settings of a cloud: equal words, equal clouds. */
 std::string wordsFor(const model::CloudOptions& cloud) {
-  std::string words = fmt::format("{} {} {} {}", static_cast<int>(cloud.as), cloud.point_radius, cloud.auto_radius, cloud.max_edge);
+  std::string words = fmt::format("{} {} {} {} {} {} {} {}", static_cast<int>(cloud.as), cloud.point_radius, cloud.auto_radius,
+                                  static_cast<int>(cloud.mesher), cloud.max_edge, cloud.max_depth_jump, cloud.cell, cloud.fill_holes);
+  if (cloud.viewpoint) words += fmt::format(" {} {} {}", cloud.viewpoint->x(), cloud.viewpoint->y(), cloud.viewpoint->z());
   for (const model::CloudFilter& f : cloud.filters)
-    words += fmt::format("|{} {} {} {} {} {} {}", static_cast<int>(f.kind), f.size, f.neighbours, f.factor, f.axis, f.lower, f.upper);
+    words += fmt::format("|{} {} {} {} {} {} {} {}", static_cast<int>(f.kind), f.size, f.neighbours, f.factor, f.axis, f.lower, f.upper,
+                         f.order);
   return words;
 }
 

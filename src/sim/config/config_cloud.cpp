@@ -42,11 +42,24 @@ model::CloudFilter readPassThrough(YamlReader reader) {
   return filter;
 }
 
+model::CloudFilter readLeastSquares(YamlReader reader) {
+  model::CloudFilter filter;
+  filter.kind = Kind::MOVING_LEAST_SQUARES;
+  filter.size = 0.02;
+  reader.read("radius", &filter.size, NumberRange::positive());
+  reader.read("order", &filter.order, 1);
+  reader.finish();
+  return filter;
+}
+
 model::CloudFilter readFilter(YamlReader& reader) {
   int given = 0;
-  for (const char* key : {"voxel_grid", "statistical_outliers", "radius_outliers", "pass_through"}) given += reader.has(key) ? 1 : 0;
+  for (const char* key : {"voxel_grid", "statistical_outliers", "radius_outliers", "pass_through", "moving_least_squares"})
+    given += reader.has(key) ? 1 : 0;
   reader.finish();
-  if (given != 1) reader.refuse("", "needs exactly one of voxel_grid, statistical_outliers, radius_outliers or pass_through");
+  if (given != 1)
+    reader.refuse("", "needs exactly one of voxel_grid, statistical_outliers, radius_outliers, pass_through or moving_least_squares");
+  if (reader.has("moving_least_squares")) return readLeastSquares(reader.section("moving_least_squares"));
   if (reader.has("statistical_outliers")) return readOutliers(reader.section("statistical_outliers"), Kind::STATISTICAL_OUTLIERS);
   if (reader.has("radius_outliers")) return readOutliers(reader.section("radius_outliers"), Kind::RADIUS_OUTLIERS);
   if (reader.has("pass_through")) return readPassThrough(reader.section("pass_through"));
@@ -78,7 +91,18 @@ model::CloudOptions readCloud(YamlReader reader) {
   const YAML::Node radius = reader.node("point_radius");
   cloud.auto_radius = radius.IsDefined() && radius.IsScalar() && radius.Scalar() == "auto";
   if (!cloud.auto_radius) reader.read("point_radius", &cloud.point_radius, NumberRange::positive());
+  using Mesher = model::CloudOptions::Mesher;
+  const std::vector<Mesher> meshers = {Mesher::AUTO, Mesher::ORGANIZED, Mesher::GREEDY_PROJECTION, Mesher::MARCHING_CUBES, Mesher::POISSON};
+  if (const auto mesher = reader.choice("mesher", {"auto", "organized", "greedy_projection", "marching_cubes", "poisson"}))
+    cloud.mesher = meshers[*mesher];
+  if (reader.has("mesher") && cloud.as != model::CloudOptions::As::MESH) reader.refuse("mesher", "belongs to as: mesh");
   reader.read("max_edge", &cloud.max_edge, NumberRange::positive());
+  reader.read("max_depth_jump", &cloud.max_depth_jump, NumberRange::positiveOrInfinite());
+  reader.read("cell", &cloud.cell, NumberRange::positive());
+  reader.read("fill_holes", &cloud.fill_holes);
+  Vector3 viewpoint = Vector3::Zero();
+  reader.read("viewpoint", &viewpoint);
+  if (reader.has("viewpoint")) cloud.viewpoint = viewpoint;
   reader.forEachItem("filters", [&](YamlReader& filter) { cloud.filters.push_back(readFilter(filter)); });
   reader.finish();
   return cloud;

@@ -53,14 +53,16 @@ void visitFields(Visitor& visit, ContactOverrides& contact) {
 
 template <typename Visitor>
 void visitFields(Visitor& visit, model::CloudFilter& filter) {
-  visit.choice(&filter.kind, 4);
-  visit(filter.size, filter.neighbours, filter.factor, filter.axis, filter.lower, filter.upper);
+  visit.choice(&filter.kind, 5);
+  visit(filter.size, filter.neighbours, filter.factor, filter.axis, filter.lower, filter.upper, filter.order);
 }
 
 template <typename Visitor>
 void visitFields(Visitor& visit, model::CloudOptions& cloud) {
   visit.choice(&cloud.as, 3);
-  visit(cloud.point_radius, cloud.auto_radius, cloud.max_edge, cloud.filters);
+  visit.choice(&cloud.mesher, 5);
+  visit(cloud.point_radius, cloud.auto_radius, cloud.max_edge, cloud.max_depth_jump, cloud.cell, cloud.fill_holes, cloud.viewpoint,
+        cloud.filters);
 }
 
 template <typename Visitor>

@@ -4,6 +4,8 @@
 #include <pcl/filters/statistical_outlier_removal.h>
 #include <pcl/filters/voxel_grid.h>
 #include <pcl/point_types.h>
+#include <pcl/search/kdtree.h>
+#include <pcl/surface/mls.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,16 +14,16 @@
 #include "blem_sim/geometry/far_origin.h"
 #include "blem_sim/geometry/input_error.h"
 #include "blem_sim/model/cloud.h"
-#include "quiet_pcl.h"
+#include "clouds/float_clouds.h"
+#include "clouds/quiet_pcl.h"
 
 namespace blem_sim::model {
 namespace {
 
-using FloatCloud = pcl::PointCloud<pcl::PointXYZ>;
 using Kind = CloudFilter::Kind;
 
 const char* const AXES[] = {"x", "y", "z"};
-constexpr int MOST_NEIGHBOURS = 1000;
+constexpr int MOST_NEIGHBOURS = 1000, MOST_ORDER = 5;
 
 bool isLength(double value) { return value > 0 && std::isfinite(value); }
 
@@ -36,6 +38,10 @@ std::string faultOf(const CloudFilter& filter) {
     return fmt::format("radius: is {}; give it a number of metres above 0", filter.size);
   if (filter.kind == Kind::STATISTICAL_OUTLIERS && !(filter.factor >= 0 && std::isfinite(filter.factor)))
     return fmt::format("factor: is {}; give it a number of at least 0", filter.factor);
+  if (filter.kind == Kind::MOVING_LEAST_SQUARES && !isLength(filter.size))
+    return fmt::format("radius: is {}; give it a number of metres above 0", filter.size);
+  if (filter.kind == Kind::MOVING_LEAST_SQUARES && (filter.order < 1 || filter.order > MOST_ORDER))
+    return fmt::format("order: is {}; give it a whole number from 1 to {}", filter.order, MOST_ORDER);
   if (filter.kind != Kind::PASS_THROUGH) return "";
   if (filter.axis < 0 || filter.axis > 2) return "axis: is none of x, y, z";
   if (!(filter.lower <= filter.upper)) return fmt::format("range: [{}, {}]: the lower comes first", filter.lower, filter.upper);
@@ -52,6 +58,8 @@ const char* filterName(Kind kind) {
       return "radius_outliers";
     case Kind::PASS_THROUGH:
       return "pass_through";
+    case Kind::MOVING_LEAST_SQUARES:
+      return "moving_least_squares";
   }
   return "";
 }
@@ -81,6 +89,17 @@ void makeVoxels(double size, const std::string& source, FloatCloud::Ptr* cloud) 
   run(grid, cloud);
 }
 
+void moveOntoPolynomials(double radius, int order, FloatCloud::Ptr* cloud) {
+  const FloatCloud::Ptr moved(new FloatCloud);
+  pcl::MovingLeastSquares<pcl::PointXYZ, pcl::PointXYZ> surface;
+  surface.setInputCloud(*cloud);
+  surface.setSearchMethod(pcl::search::KdTree<pcl::PointXYZ>::Ptr(new pcl::search::KdTree<pcl::PointXYZ>));
+  surface.setSearchRadius(radius);
+  surface.setPolynomialOrder(order);
+  surface.process(*moved);
+  *cloud = moved;
+}
+
 /** @param origin [m] of the cloud's floats */
 void apply(const CloudFilter& filter, const Vector3& origin, const std::string& source, FloatCloud::Ptr* cloud) {
   if (filter.kind == Kind::VOXEL_GRID) return makeVoxels(filter.size, source, cloud);
@@ -96,6 +115,7 @@ void apply(const CloudFilter& filter, const Vector3& origin, const std::string& 
     outliers.setMinNeighborsInRadius(filter.neighbours);
     return run(outliers, cloud);
   }
+  if (filter.kind == Kind::MOVING_LEAST_SQUARES) return moveOntoPolynomials(filter.size, filter.order, cloud);
   // PCL takes no infinite bounds.
   constexpr double FARTHEST = std::numeric_limits<float>::max();
   const auto bound = [&](double value) { return static_cast<float>(std::clamp(value - origin[filter.axis], -FARTHEST, FARTHEST)); };
@@ -103,16 +123,6 @@ void apply(const CloudFilter& filter, const Vector3& origin, const std::string& 
   pass.setFilterFieldName(AXES[filter.axis]);
   pass.setFilterLimits(bound(filter.lower), bound(filter.upper));
   run(pass, cloud);
-}
-
-FloatCloud::Ptr toFloats(const std::vector<Vector3>& points, const Vector3& origin) {
-  FloatCloud::Ptr cloud(new FloatCloud);
-  cloud->reserve(points.size());
-  for (const Vector3& p : points) {
-    const Eigen::Vector3f q = (p - origin).cast<float>();
-    cloud->push_back(pcl::PointXYZ(q.x(), q.y(), q.z()));
-  }
-  return cloud;
 }
 
 }  // namespace

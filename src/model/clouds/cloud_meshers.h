@@ -1,0 +1,49 @@
+// Triangles from points.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "blem_sim/model/cloud.h"
+
+namespace blem_sim::model {
+
+/** Points of an image: that of (row, column) is row * width + column; NaN where nothing was measured. */
+struct PixelGrid {
+  std::vector<Vector3> points;  ///< [m]
+  int width = 0, height = 0;
+};
+
+/** Finite points, each place once, and where they were seen from. */
+struct SeenPoints {
+  std::vector<Vector3> points;       ///< [m]
+  std::optional<Vector3> viewpoint;  ///< [m]
+};
+
+/** Name of a mesher in configurations and messages. */
+const char* mesherName(CloudOptions::Mesher mesher);
+
+/**
+ * Triangles over a grid's points: a cell of four measured corners gives two, split along its shorter diagonal, one
+ * of three gives one. No edge is longer than max_edge; from one corner to another the distance to the viewpoint changes by no more than
+ * max_depth_jump of the smaller one.
+ */
+std::vector<Vector3i> gridTriangles(const PixelGrid& grid, const Vector3& viewpoint, const CloudOptions& options);
+
+/**
+ * Greedy projection. [Marton, Rusu, Beetz 2009, On Fast Surface Reconstruction Methods for Large and Noisy Datasets]
+ * @return triangles over the points, edges up to max_edge
+ */
+std::vector<Vector3i> projectionTriangles(const std::vector<Vector3>& points, double max_edge);
+
+/**
+ * Surface by marching cubes of the distance to the nearest point's tangent plane [Hoppe et al. 1992, Surface Reconstruction from
+ * Unorganized Points], or by Poisson's equation [Kazhdan, Bolitho, Hoppe 2006, Poisson Surface Reconstruction]: vertices of its own.
+ * What is farther than half of max_edge from every point is left out, unless holes are filled.
+ * @throws InputError: no viewpoint; more cells than there is room for. @param source begins the message
+ */
+geometry::TriangleMesh marchingCubesMesh(const SeenPoints& cloud, const CloudOptions& options, const std::string& source);
+geometry::TriangleMesh poissonMesh(const SeenPoints& cloud, const CloudOptions& options, const std::string& source);
+
+}  // namespace blem_sim::model
