@@ -2,4 +2,4 @@
 
 /** assimp keeps the content read from a file that it then refuses. @return suppressions in LeakSanitizer's format */
 extern "C" const char* __lsan_default_suppressions();
-extern "C" const char* __lsan_default_suppressions() { return "leak:libassimp\n"; }
+extern "C" const char* __lsan_default_suppressions() { return "leak:libassimp\nleak:libpcl_surface\n"; }

@@ -1,6 +1,7 @@
 // Clouds of points: filters, the boundary of each point, the surface that contact meets.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,8 +38,9 @@ struct CloudOptions {
   bool auto_radius = false;     ///< true: pointRadius of the filtered points instead of point_radius
   // As a mesh.
   Mesher mesher = Mesher::AUTO;
-  double max_edge = 0.05;            ///< [m] ORGANIZED, GREEDY_PROJECTION: longest edge; the others: holes wider than that stay
-  double max_depth_jump = 0.05;      ///< ORGANIZED: change of the distance to the viewpoint along an edge, over the smaller distance
+  double max_edge = 0.05;  ///< [m] ORGANIZED, GREEDY_PROJECTION: longest edge; the others: holes wider than that stay
+  /** ORGANIZED: change of the distance to the viewpoint along an edge, over the smaller distance; infinite: not looked at. */
+  double max_depth_jump = std::numeric_limits<double>::infinity();
   double cell = 0.01;                ///< [m] MARCHING_CUBES: edge of a cube; POISSON: about that of the smallest
   bool fill_holes = false;           ///< POISSON
   std::optional<Vector3> viewpoint;  ///< [m] of the sensor, which sees outsides; none: a PCD's own, or a pixel grid's camera in the origin

@@ -20,10 +20,10 @@ class GridMesher {
 
  private:
   double edge(int a, int b) const { return (grid_.points[a] - grid_.points[b]).norm(); }
-  // NaN compares false: nothing joins a point that was not measured.
+  // NaN compares false: nothing joins a point that was not measured, and an infinite jump is none at the viewpoint itself.
   bool joins(int a, int b) const {
     const auto [near, far] = std::minmax(ranges_[a], ranges_[b]);
-    return edge(a, b) <= options_.max_edge && far - near <= options_.max_depth_jump * near;
+    return edge(a, b) <= options_.max_edge && !(far - near > options_.max_depth_jump * near);
   }
   bool add(int a, int b, int c) {
     if (!(joins(a, b) && joins(b, c) && joins(c, a))) return false;

@@ -107,7 +107,7 @@ TEST(Manual, HoldsEveryKnownKey) {
   EXPECT_EQ(config.robots[0].controllers->size(), 3u);
   EXPECT_FALSE(config.robots[1].controllers);
   EXPECT_EQ(config.objects.size(), 2u);
-  EXPECT_EQ(config.environments.size(), 4u);
+  EXPECT_EQ(config.environments.size(), 5u);
   collectKeys(document, "", &written);
   EXPECT_GT(known.size(), 90u);
   for (const std::string& key : known) EXPECT_TRUE(holdsKey(written, key)) << key << " is not in config/default.yaml";
