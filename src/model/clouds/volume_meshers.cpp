@@ -69,13 +69,16 @@ class FarPlaces {
   mutable std::vector<float> squared_ = {0};
 };
 
-/** Triangles of a surface whose corners are near enough. */
-geometry::TriangleMesh nearTriangles(const FloatCloud& vertices, const std::vector<pcl::Vertices>& polygons, const OrientedCloud& cloud,
-                                     const CloudOptions& options) {
+/** Triangles of a mesher's surface whose corners are near enough. */
+geometry::TriangleMesh nearTriangles(const OrientedCloud& cloud, const CloudOptions& options,
+                                     pcl::SurfaceReconstruction<pcl::PointNormal>* mesher) {
+  FloatNormals vertices;
+  std::vector<pcl::Vertices> polygons;
+  mesher->reconstruct(vertices, polygons);
   const FarPlaces far(cloud.points, options);
   std::vector<bool> is_far;
   geometry::TriangleMesh mesh;
-  for (const pcl::PointXYZ& p : vertices) {
+  for (const pcl::PointNormal& p : vertices) {
     is_far.push_back(far.has(p.getVector3fMap()));
     mesh.vertices.push_back(cloud.origin + p.getVector3fMap().cast<double>());
   }
@@ -166,12 +169,7 @@ geometry::TriangleMesh marchingCubesMesh(const SeenPoints& seen, const CloudOpti
   mesher.setGridResolution(static_cast<int>(counts.x()), static_cast<int>(counts.y()), static_cast<int>(counts.z()));
   mesher.setInputCloud(wider);
   mesher.setSearchMethod(pcl::search::KdTree<pcl::PointNormal>::Ptr(new pcl::search::KdTree<pcl::PointNormal>));
-  FloatNormals surface;
-  std::vector<pcl::Vertices> polygons;
-  mesher.reconstruct(surface, polygons);
-  FloatCloud vertices;
-  for (const pcl::PointNormal& p : surface) vertices.push_back(pcl::PointXYZ(p.x, p.y, p.z));
-  return nearTriangles(vertices, polygons, cloud, options);
+  return nearTriangles(cloud, options, &mesher);
 }
 
 geometry::TriangleMesh poissonMesh(const SeenPoints& seen, const CloudOptions& options, const std::string& source) {
@@ -185,12 +183,7 @@ geometry::TriangleMesh poissonMesh(const SeenPoints& seen, const CloudOptions& o
   mesher.setSolverDivide(std::max(2, depth));
   mesher.setIsoDivide(std::max(2, depth));
   mesher.setInputCloud(cloud.points);
-  FloatNormals surface;
-  std::vector<pcl::Vertices> polygons;
-  mesher.reconstruct(surface, polygons);
-  FloatCloud vertices;
-  for (const pcl::PointNormal& p : surface) vertices.push_back(pcl::PointXYZ(p.x, p.y, p.z));
-  return nearTriangles(vertices, polygons, cloud, options);
+  return nearTriangles(cloud, options, &mesher);
 }
 
 }  // namespace blem_sim::model
