@@ -12,19 +12,17 @@ namespace {
 using Mesher = CloudOptions::Mesher;
 
 Mesher mesherFor(const SurfaceSoup& soup, Mesher wanted, const std::string& source) {
-  const bool grid = soup.width > 1 && soup.height > 1;
-  if (wanted == Mesher::AUTO) return grid ? Mesher::ORGANIZED : Mesher::GREEDY_PROJECTION;
-  if (wanted == Mesher::ORGANIZED && !grid)
+  if (wanted == Mesher::AUTO) return soup.hasPixelGrid() ? Mesher::ORGANIZED : Mesher::GREEDY_PROJECTION;
+  if (wanted == Mesher::ORGANIZED && !soup.hasPixelGrid())
     throw InputError(source + ": mesher organized: the cloud has no pixel grid (filters give it up); use another mesher");
   return wanted;
 }
 
-/** Where the points were seen from, if that is known. */
+/** The sensor's place, if it is known. */
 std::optional<Vector3> viewpointOf(const SurfaceSoup& soup, const CloudOptions& options) {
   if (options.viewpoint) return options.viewpoint;
   if (soup.viewpoint) return soup.viewpoint;
-  const bool grid = soup.width > 1 && soup.height > 1;
-  return grid ? std::optional<Vector3>(Vector3::Zero()) : std::nullopt;
+  return soup.hasPixelGrid() ? std::optional<Vector3>(Vector3::Zero()) : std::nullopt;
 }
 
 /** @param unique finite points, each place once */

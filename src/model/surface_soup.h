@@ -17,18 +17,20 @@ struct SurfaceSoup {
   int collapsed = 0;                 ///< faces that name a vertex twice; left out, as they are no segments
   std::optional<Vector3> viewpoint;  ///< [m] of a cloud's sensor, if the file tells it
   std::vector<std::string> notes;    ///< repairs, in words
+
+  bool hasPixelGrid() const { return width > 1 && height > 1; }
 };
 
 /** Mesh by assimp. @param extension "stl", "ply", "obj", "off" or "dae" @throws InputError */
 SurfaceSoup readMesh(const std::string& file, const std::string& extension);
+
+/** Cloud by PCL: PCD in all its encodings; points that were not measured stay as NaN. @throws InputError */
+SurfaceSoup readPcd(const std::string& file);
 
 /**
  * Triangles from the points of a soup, which keeps its vertices or gets others; the report tells how many. @throws InputError: a mesher
  * that the cloud does not suit, no triangle
  */
 void joinCloud(const CloudOptions& options, SurfaceSoup* soup, geometry::MeshReport* report);
-
-/** Cloud by PCL: PCD in all its encodings; points that were not measured stay as NaN. @throws InputError */
-SurfaceSoup readPcd(const std::string& file);
 
 }  // namespace blem_sim::model

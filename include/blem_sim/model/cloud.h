@@ -47,6 +47,9 @@ struct CloudOptions {
   std::vector<CloudFilter> filters;  ///< in their order; they give up a cloud's pixel grid
 };
 
+/** Name of a mesher in configurations and messages. */
+const char* mesherName(CloudOptions::Mesher mesher);
+
 /** @throws InputError in one line, if a filter's numbers are none that it takes. @param source begins the message */
 void checkFilters(const std::vector<CloudFilter>& filters, const std::string& source);
 

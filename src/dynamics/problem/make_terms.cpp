@@ -74,7 +74,7 @@ Vector3 leversAt(const Vector6& t, const Vector3& point) {
   return {-t[2] * y + (t[1] * z + t[3]), -t[0] * z + (t[2] * x + t[4]), t[0] * y + (-t[1] * x + t[5])};
 }
 
-// The same at a point, mean over the directions of force.
+// Inverse of the mass that a force at a point of a node meets, mean over the axes.
 double inverseMass(const TermSource& s, int node, const Vector3& point) {
   if (node < 0) return 0;
   const int last = s.forest.nodes()[node].last_dof;

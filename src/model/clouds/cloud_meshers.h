@@ -21,9 +21,6 @@ struct SeenPoints {
   std::optional<Vector3> viewpoint;  ///< [m]
 };
 
-/** Name of a mesher in configurations and messages. */
-const char* mesherName(CloudOptions::Mesher mesher);
-
 /**
  * Triangles over a grid's points: a cell of four measured corners gives two, split along its shorter diagonal, one
  * of three gives one. No edge is longer than max_edge; from one corner to another the distance to the viewpoint changes by no more than
@@ -40,7 +37,7 @@ std::vector<Vector3i> projectionTriangles(const std::vector<Vector3>& points, do
 /**
  * Surface by marching cubes of the distance to the nearest point's tangent plane [Hoppe et al. 1992, Surface Reconstruction from
  * Unorganized Points], or by Poisson's equation [Kazhdan, Bolitho, Hoppe 2006, Poisson Surface Reconstruction]: vertices of its own.
- * What is farther than half of max_edge from every point is left out, unless holes are filled.
+ * Triangles with a corner farther than half of max_edge from every point are left out, unless holes are filled.
  * @throws InputError: no viewpoint; more cells than there is room for. @param source begins the message
  */
 geometry::TriangleMesh marchingCubesMesh(const SeenPoints& cloud, const CloudOptions& options, const std::string& source);

@@ -93,8 +93,9 @@ model::CloudOptions readCloud(YamlReader reader) {
   if (!cloud.auto_radius) reader.read("point_radius", &cloud.point_radius, NumberRange::positive());
   using Mesher = model::CloudOptions::Mesher;
   const std::vector<Mesher> meshers = {Mesher::AUTO, Mesher::ORGANIZED, Mesher::GREEDY_PROJECTION, Mesher::MARCHING_CUBES, Mesher::POISSON};
-  if (const auto mesher = reader.choice("mesher", {"auto", "organized", "greedy_projection", "marching_cubes", "poisson"}))
-    cloud.mesher = meshers[*mesher];
+  std::vector<std::string> names;
+  for (const Mesher mesher : meshers) names.push_back(model::mesherName(mesher));
+  if (const auto mesher = reader.choice("mesher", names)) cloud.mesher = meshers[*mesher];
   if (reader.has("mesher") && cloud.as != model::CloudOptions::As::MESH) reader.refuse("mesher", "belongs to as: mesh");
   reader.read("max_edge", &cloud.max_edge, NumberRange::positive());
   reader.read("max_depth_jump", &cloud.max_depth_jump, NumberRange::positiveOrInfinite());
