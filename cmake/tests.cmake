@@ -13,7 +13,7 @@ endif()
 foreach(room ${tested_rooms})
   file(GLOB_RECURSE tests CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/test/${room}/*_test.cpp)
   if(tests)
-    add_executable(test_${room} ${tests})
+    add_executable(test_${room} ${tests} ${PROJECT_SOURCE_DIR}/test/support/leaks_of_libraries.cpp)
     target_include_directories(test_${room} PRIVATE ${PROJECT_SOURCE_DIR}/test ${PROJECT_SOURCE_DIR}/src/${room})
     # The room's own libraries too: tests may include its private headers.
     get_target_property(room_libraries blem_sim_${room} LINK_LIBRARIES)

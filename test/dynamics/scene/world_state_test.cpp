@@ -7,9 +7,6 @@
 #include "dynamics/analytic_contacts.h"
 #include "support/standard_values.h"
 
-// A step that ODE breaks off loses its own record of the call; the rest of that world stays reachable.
-extern "C" const char* __lsan_default_suppressions() { return "leak:PreallocateJobInfos"; }
-
 namespace blem_sim::dynamics {
 namespace {
 
