@@ -23,7 +23,7 @@ int indexOf(const std::vector<Named>& items, const std::string& name) {
 Simulator::Impl::Impl(const SimulationConfig& config, const model::UriResolver& resolver, LoadLog log)
     : config_((checkConfig(config), config)),
       world_(config.gravity, config.solver),
-      builder_(config.contact, config.base_directory, resolver, std::move(log)),
+      builder_(config.contact, config.time_step, config.base_directory, resolver, std::move(log)),
       pair_searches_(config.solver.threads),
       constraint_maker_(config.contact),
       energy_balance_(config.solver) {

@@ -29,7 +29,7 @@ std::vector<SunkPoint> byVertex(std::vector<SunkPoint> points) {
 
 void Simulator::Impl::addLive(const EnvironmentConfig& environment) {
   if (environment.live.topic.empty()) return;
-  const ContactSettings settings = contactSettings(0, config_.contact, {&environment.contact});
+  const ContactSettings settings = contactSettings(BoundaryWidth(), config_.contact, {&environment.contact});
   live_[environment.name] = {settings.surface, environment.live.fade_speed, -1};
 }
 

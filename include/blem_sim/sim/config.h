@@ -23,15 +23,29 @@ class Node;
 
 namespace blem_sim::sim {
 
+/** Width r of the layer around a mesh: a length, or chosen when the mesh is loaded (docs/boundary_widths.md). */
+struct BoundaryWidth {
+  BoundaryWidth(double metres = 0) : metres(metres) {}
+  static BoundaryWidth chosen() {
+    BoundaryWidth width;
+    width.automatic = true;
+    return width;
+  }
+
+  double metres;  ///< [m]
+  bool automatic = false;
+};
+
 /** Contact settings that may be set again per environment, robot, object or link; unset ones inherit. */
 struct ContactOverrides {
-  std::optional<double> boundary_width, friction, restitution, impact_friction_factor, impact_friction_speed, stiffness, damping;
+  std::optional<BoundaryWidth> boundary_width;
+  std::optional<double> friction, restitution, impact_friction_factor, impact_friction_speed, stiffness, damping;
   std::optional<bool> shrink;
 };
 
 struct ContactConfig {
-  double boundary_width = 0.0025;  ///< [m] robots and objects; environments default to 0
-  bool shrink = false;             ///< meshes by their boundary_width, so that outer dimensions stay (shrinkMesh)
+  BoundaryWidth boundary_width = 0.0025;  ///< robots and objects; environments default to 0, or are chosen as well
+  bool shrink = false;                    ///< meshes by their boundary_width, so that outer dimensions stay (shrinkMesh)
   contact::SurfaceProperties surface;
   contact::FrictionRule friction_rule = contact::FrictionRule::MIN;
   int max_contacts_per_robot = 50;

@@ -10,13 +10,18 @@
 namespace blem_sim::sim {
 
 struct ContactSettings {
-  double boundary_width = 0;  ///< [m]
+  BoundaryWidth boundary_width;
   contact::SurfaceProperties surface;
   bool shrink = false;
 };
 
-/** @param boundary_width [m] to start from @param overrides outermost first */
-inline ContactSettings contactSettings(double boundary_width, const ContactConfig& defaults,
+/** Width that environments start from. */
+inline BoundaryWidth widthOfEnvironments(const ContactConfig& defaults) {
+  return defaults.boundary_width.automatic ? defaults.boundary_width : BoundaryWidth();
+}
+
+/** @param boundary_width to start from @param overrides outermost first */
+inline ContactSettings contactSettings(const BoundaryWidth& boundary_width, const ContactConfig& defaults,
                                        std::initializer_list<const ContactOverrides*> overrides) {
   ContactSettings settings{boundary_width, defaults.surface, defaults.shrink};
   for (const ContactOverrides* o : overrides) {

@@ -7,9 +7,11 @@
 namespace blem_sim::sim {
 
 void RobotBuilder::addColliders(SurfaceLibrary* surfaces) {
+  double weight = 0;
+  for (const model::LumpedBody& body : lumped_->bodies) weight += body.inertial.mass * world_->world.gravity().norm();
   for (std::size_t link = 0; link < model_->links.size(); ++link) {
     const model::LinkModel& description = model_->links[link];
-    const ContactSettings settings = contactSettings(
+    const ContactSettings of_link = contactSettings(
         contact_.boundary_width, contact_,
         {overridesOf(config_.described_links, description.name), &config_.contact, overridesOf(config_.links, description.name)});
     const model::LinkPlacement& placement = lumped_->link_placement[link];
@@ -22,8 +24,11 @@ void RobotBuilder::addColliders(SurfaceLibrary* surfaces) {
       collider.link = static_cast<int>(link);
       collider.X_BC = body == dynamics::WORLD_BODY ? config_.X_WR * placement.X_BL : placement.X_BL;
       geometry::MeshReport report = shape.report;
-      collider.geometry = surfaces->fitted(surfaces->geometry(shape.mesh), settings, shape.radius, &report);
-      world_->addCollider(collider, shape.radius > 0 ? shape.radius : settings.boundary_width, settings.surface, report);
+      ContactSettings settings = of_link;
+      const auto geometry = surfaces->geometry(shape.mesh);
+      surfaces->chooseWidth(*geometry, weight, shape.radius, &settings, &report);
+      collider.geometry = surfaces->fitted(geometry, settings, shape.radius, &report);
+      world_->addCollider(collider, shape.radius > 0 ? shape.radius : settings.boundary_width.metres, settings.surface, report);
     }
   }
 }

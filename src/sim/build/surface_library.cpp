@@ -8,6 +8,8 @@
 
 #include "blem_sim/geometry/far_origin.h"
 #include "blem_sim/geometry/mesh_shrinking.h"
+#include "build/widths/chosen_width.h"
+#include "build/widths/scan_noise.h"
 
 namespace blem_sim::sim {
 namespace {
@@ -66,7 +68,7 @@ void SurfaceLibrary::forgetWhatIsGone() {
   const auto gone = [](const auto& entry) { return entry.geometry.expired(); };
   forgetExpired(&files_, &enough_files_, gone);
   forgetExpired(&shrunk_, &enough_shrunk_, gone);
-  forgetExpired(&meshes_, &enough_meshes_, [](const std::weak_ptr<const contact::CollisionGeometry>& held) { return held.expired(); });
+  forgetExpired(&meshes_, &enough_meshes_, gone);
 }
 
 SharedSurface SurfaceLibrary::load(const std::string& file, const Vector3& scale, const model::CloudOptions& cloud,
@@ -89,17 +91,39 @@ SharedSurface SurfaceLibrary::load(const std::string& file, const Vector3& scale
 
 std::shared_ptr<const contact::CollisionGeometry> SurfaceLibrary::geometry(const std::shared_ptr<const geometry::TriangleMesh>& mesh,
                                                                            const std::shared_ptr<const geometry::MeshTopology>& topology) {
-  std::weak_ptr<const contact::CollisionGeometry>& held = meshes_[mesh.get()];
-  if (auto known = held.lock()) return known;
+  OfMesh& held = meshes_[mesh.get()];
+  if (auto known = held.geometry.lock()) return known;
   const auto made = std::make_shared<const contact::CollisionGeometry>(mesh, topology);
-  held = made;
+  held = {made, std::nullopt};
   return made;
+}
+
+double SurfaceLibrary::noiseOf(const contact::CollisionGeometry& geometry) {
+  if (geometry.isHalfSpace()) return 0;
+  std::optional<double>& noise = meshes_.at(&geometry.mesh()).noise;
+  if (!noise) noise = scanNoise(geometry.mesh(), geometry.topology());
+  return *noise;
+}
+
+void SurfaceLibrary::chooseWidth(const contact::CollisionGeometry& geometry, std::optional<double> weight, double own_radius,
+                                 ContactSettings* settings, geometry::MeshReport* report) {
+  if (!settings->boundary_width.automatic || own_radius > 0) return;
+  WidthNeeds needs;
+  needs.side = geometry.isHalfSpace() ? 0 : smallestSide(geometry.mesh(), report->closed);
+  needs.noise = noiseOf(geometry);
+  needs.moves = weight.has_value();
+  needs.weight = weight.value_or(0);
+  needs.stiffness = settings->surface.stiffness;
+  needs.time_step = time_step_;
+  const ChosenWidth chosen = chosenWidth(needs);
+  settings->boundary_width = chosen.width;
+  report->notes.push_back(fmt::format("boundary_width: auto is {:.3g} mm: {}", 1e3 * chosen.width, chosen.why));
 }
 
 std::shared_ptr<const contact::CollisionGeometry> SurfaceLibrary::fitted(const std::shared_ptr<const contact::CollisionGeometry>& geometry,
                                                                          const ContactSettings& settings, double own_radius,
                                                                          geometry::MeshReport* report) {
-  const double r = settings.boundary_width;
+  const double r = settings.boundary_width.metres;
   if (!settings.shrink || geometry->isHalfSpace() || own_radius > 0 || !(r > 0)) return geometry;
   Shrunk& held = shrunk_[{geometry.get(), r}];
   std::shared_ptr<const contact::CollisionGeometry> made = held.geometry.lock();

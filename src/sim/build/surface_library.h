@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -26,12 +27,21 @@ struct SharedSurface {
 /** Gives the same geometry for the same file and settings, or the same mesh, while anybody holds it. */
 class SurfaceLibrary {
  public:
-  explicit SurfaceLibrary(model::Mending mending = model::Mending::ON) : mending_(mending) {}
+  /** @param time_step [s] by which boundary widths are chosen */
+  explicit SurfaceLibrary(model::Mending mending = model::Mending::ON, double time_step = 0.001)
+      : mending_(mending), time_step_(time_step) {}
   /** @throws InputError as loadSurface does */
   SharedSurface load(const std::string& file, const Vector3& scale, const model::CloudOptions& cloud, const model::LoadProgress& progress);
   /** @param topology of the mesh, if it is at hand */
   std::shared_ptr<const contact::CollisionGeometry> geometry(const std::shared_ptr<const geometry::TriangleMesh>& mesh,
                                                              const std::shared_ptr<const geometry::MeshTopology>& topology = nullptr);
+  /**
+   * Chooses the boundary width where the settings leave it open.
+   * @param weight [N] that a contact may have to carry; nothing: an environment @param own_radius as in fitted
+   * @param report of the geometry: notes the choice and why
+   */
+  void chooseWidth(const contact::CollisionGeometry& geometry, std::optional<double> weight, double own_radius, ContactSettings* settings,
+                   geometry::MeshReport* report);
   /**
    * The geometry, moved inwards by its boundary width if the settings ask for it.
    * @param own_radius [m] > 0 if it is its own boundary: then it stays @param report notes what was done, and failures
@@ -45,6 +55,7 @@ class SurfaceLibrary {
 
  private:
   void forgetWhatIsGone();
+  double noiseOf(const contact::CollisionGeometry& geometry);
 
   struct Shrunk {
     std::weak_ptr<const contact::CollisionGeometry> original, geometry;
@@ -56,11 +67,16 @@ class SurfaceLibrary {
     geometry::MeshReport report;
     Vector3 origin = Vector3::Zero();
   };
+  /** A mesh lives as long as its geometry. */
+  struct OfMesh {
+    std::weak_ptr<const contact::CollisionGeometry> geometry;
+    std::optional<double> noise;  ///< [m] once somebody asked
+  };
   const model::Mending mending_;
+  const double time_step_;
   std::map<std::string, Entry> files_;
   std::map<std::pair<const contact::CollisionGeometry*, double>, Shrunk> shrunk_;
-  std::map<const geometry::TriangleMesh*, std::weak_ptr<const contact::CollisionGeometry>>
-      meshes_;                                                            ///< a mesh lives as long as its geometry
+  std::map<const geometry::TriangleMesh*, OfMesh> meshes_;
   std::size_t enough_files_ = 0, enough_shrunk_ = 0, enough_meshes_ = 0;  ///< entries at which to look for those that are gone
 };
 

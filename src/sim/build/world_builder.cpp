@@ -107,14 +107,15 @@ void WorldBuilder::addEnvironment(const EnvironmentConfig& config, SimulatedWorl
   } else {
     throw InputError(where + ": nothing to load; give a uri or a plane");
   }
-  const ContactSettings settings = contactSettings(0, contact_, {&config.contact});
+  ContactSettings settings = contactSettings(widthOfEnvironments(contact_), contact_, {&config.contact});
   contact::Collider collider;
   collider.name = config.name;
   collider.X_BC = config.X_WE * Eigen::Translation3d(surface.origin);
+  surfaces_.chooseWidth(*surface.geometry, std::nullopt, surface.radius, &settings, &surface.report);
   if (settings.shrink) watch.enter("shrinking", 1 - model::TREE_FRACTION);
   collider.geometry = surfaces_.fitted(surface.geometry, settings, surface.radius, &surface.report);
   collider.model = world->addModel(config.name, ModelKind::ENVIRONMENT, INT_MAX);
-  const double width = surface.radius > 0 ? surface.radius : settings.boundary_width;
+  const double width = surface.radius > 0 ? surface.radius : settings.boundary_width.metres;
   world->models[collider.model].X_WM = config.X_WE;
   world->addCollider(collider, width, settings.surface, surface.report);
   watch.loaded(sizeOf(*world, collider.model));
@@ -177,8 +178,9 @@ void WorldBuilder::addMeshObject(const ObjectConfig& config, LoadWatch* watch, S
     throw InputError(where + ": mass: needs a finite number of kg above 0");
   SharedSurface surface = load(config.uri, config.scale, config.cloud, where, watch);
   const Pose X_OC = config.X_OM * Eigen::Translation3d(surface.origin);
-  const ContactSettings settings = contactSettings(contact_.boundary_width, contact_, {&config.contact});
-  const double width = surface.radius > 0 ? surface.radius : settings.boundary_width;
+  ContactSettings settings = contactSettings(contact_.boundary_width, contact_, {&config.contact});
+  surfaces_.chooseWidth(*surface.geometry, *config.mass * world->world.gravity().norm(), surface.radius, &settings, &surface.report);
+  const double width = surface.radius > 0 ? surface.radius : settings.boundary_width.metres;
 
   std::string from = "the configuration";
   geometry::MassProperties inertial;
@@ -232,7 +234,7 @@ void WorldBuilder::addUrdfObject(const ObjectConfig& config, LoadWatch* watch, S
     world->notes.push_back(config.name +
                            ": gravity acts on all links of an object or on none; load it under robots, or turn it off for all");
   for (std::size_t link = 0; link < model.links.size(); ++link) {
-    const ContactSettings settings = contactSettings(
+    const ContactSettings of_link = contactSettings(
         contact_.boundary_width, contact_, {overridesOf(described.config.described_links, model.links[link].name), &config.contact});
     for (const model::CollisionShape& shape : model.links[link].collisions) {
       contact::Collider collider;
@@ -241,8 +243,11 @@ void WorldBuilder::addUrdfObject(const ObjectConfig& config, LoadWatch* watch, S
       collider.body = body;
       collider.X_BC = lumped.link_placement[link].X_BL;
       geometry::MeshReport report = shape.report;
-      collider.geometry = surfaces_.fitted(surfaces_.geometry(shape.mesh), settings, shape.radius, &report);
-      world->addCollider(collider, shape.radius > 0 ? shape.radius : settings.boundary_width, settings.surface, report);
+      ContactSettings settings = of_link;
+      const auto geometry = surfaces_.geometry(shape.mesh);
+      surfaces_.chooseWidth(*geometry, inertial.mass * world->world.gravity().norm(), shape.radius, &settings, &report);
+      collider.geometry = surfaces_.fitted(geometry, settings, shape.radius, &report);
+      world->addCollider(collider, shape.radius > 0 ? shape.radius : settings.boundary_width.metres, settings.surface, report);
     }
   }
   if (!described.config.sensors.empty())

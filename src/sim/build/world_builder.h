@@ -23,13 +23,13 @@ struct UrdfSource {
 /** Adds models one by one. Each function throws InputError before it changes the world. */
 class WorldBuilder {
  public:
-  /** @param base_directory of relative files */
-  WorldBuilder(const ContactConfig& contact, std::string base_directory, const model::UriResolver& resolver, LoadLog log)
+  /** @param time_step [s] @param base_directory of relative files */
+  WorldBuilder(const ContactConfig& contact, double time_step, std::string base_directory, const model::UriResolver& resolver, LoadLog log)
       : contact_(contact),
         base_directory_(std::move(base_directory)),
         resolver_(resolver),
         log_(std::move(log)),
-        surfaces_(contact.mending) {}
+        surfaces_(contact.mending, time_step) {}
 
   void addEnvironment(const EnvironmentConfig& config, SimulatedWorld* world);
   void addRobot(const RobotConfig& config, SimulatedWorld* world);

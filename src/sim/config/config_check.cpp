@@ -51,7 +51,7 @@ class Fields {
     if (const auto fault = faultOf(sensor.type, sensor.rays)) throw InputError(where_ + fault->key + ": " + fault->why);
   }
   void overrides(const ContactOverrides& o) const {
-    number("boundary_width", o.boundary_width, NumberRange::notNegative());
+    if (o.boundary_width) number("boundary_width", o.boundary_width->metres, NumberRange::notNegative());
     number("friction", o.friction, NumberRange::notNegative());
     number("restitution", o.restitution, NumberRange::fraction());
     number("impact_friction_factor", o.impact_friction_factor, NumberRange::fraction());
@@ -77,7 +77,7 @@ void checkSolver(const dynamics::SolverSettings& solver) {
 
 void checkContact(const ContactConfig& contact) {
   const Fields fields("contact.");
-  fields.number("boundary_width", contact.boundary_width, NumberRange::notNegative());
+  fields.number("boundary_width", contact.boundary_width.metres, NumberRange::notNegative());
   fields.surface(contact.surface);
   fields.atLeastOne("max_contacts_per_robot", contact.max_contacts_per_robot);
   fields.atLeastOne("max_contacts_per_object", contact.max_contacts_per_object);

@@ -3,10 +3,24 @@
 #include "config/config_sections.h"
 
 namespace blem_sim::sim {
+namespace {
+
+std::optional<BoundaryWidth> readWidth(YamlReader* reader) {
+  const YAML::Node node = reader->node("boundary_width");
+  if (node.IsDefined() && node.IsScalar() && node.Scalar() == "auto") return BoundaryWidth::chosen();
+  NumberRange range = NumberRange::notNegative();
+  range.words = "a finite number of at least 0, or auto";
+  std::optional<double> metres;
+  reader->read("boundary_width", &metres, range);
+  if (!metres) return std::nullopt;
+  return BoundaryWidth(*metres);
+}
+
+}  // namespace
 
 ContactConfig readContact(YamlReader reader) {
   ContactConfig contact;
-  reader.read("boundary_width", &contact.boundary_width, NumberRange::notNegative());
+  contact.boundary_width = readWidth(&reader).value_or(contact.boundary_width);
   reader.read("shrink", &contact.shrink);
   reader.read("friction", &contact.surface.friction, NumberRange::notNegative());
   reader.read("restitution", &contact.surface.restitution, NumberRange::fraction());
@@ -46,7 +60,7 @@ dynamics::SolverSettings readSolver(YamlReader reader) {
 
 ContactOverrides readContactOverrides(YamlReader& reader) {
   ContactOverrides contact;
-  reader.read("boundary_width", &contact.boundary_width, NumberRange::notNegative());
+  contact.boundary_width = readWidth(&reader);
   reader.read("shrink", &contact.shrink);
   reader.read("friction", &contact.friction, NumberRange::notNegative());
   reader.read("restitution", &contact.restitution, NumberRange::fraction());

@@ -46,6 +46,11 @@ void visitFields(Visitor& visit, geometry::MassProperties& inertial) {
 }
 
 template <typename Visitor>
+void visitFields(Visitor& visit, BoundaryWidth& width) {
+  visit(width.metres, width.automatic);
+}
+
+template <typename Visitor>
 void visitFields(Visitor& visit, ContactOverrides& contact) {
   visit(contact.boundary_width, contact.friction, contact.restitution, contact.impact_friction_factor, contact.impact_friction_speed,
         contact.stiffness, contact.damping, contact.shrink);

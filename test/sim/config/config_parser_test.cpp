@@ -73,7 +73,7 @@ TEST(Manual, SaysWhatHoldsWithoutIt) {
   EXPECT_EQ(manual_config.solver.max_correction_speed, defaults.solver.max_correction_speed);
   EXPECT_EQ(manual_config.solver.joint_erp, defaults.solver.joint_erp);
   EXPECT_EQ(manual_config.solver.joint_cfm, defaults.solver.joint_cfm);
-  EXPECT_EQ(manual_config.contact.boundary_width, defaults.contact.boundary_width);
+  EXPECT_EQ(manual_config.contact.boundary_width.metres, defaults.contact.boundary_width.metres);
   EXPECT_EQ(manual_config.contact.surface.friction, defaults.contact.surface.friction);
   EXPECT_EQ(manual_config.contact.surface.restitution, defaults.contact.surface.restitution);
   EXPECT_EQ(manual_config.contact.surface.impact_friction_factor, defaults.contact.surface.impact_friction_factor);

@@ -73,6 +73,7 @@ EnvironmentConfig tilted() {
   plane.name = "tilted";
   plane.plane = Eigen::Vector4d(0.1, 0, 1, -0.3);
   plane.contact.friction = 0.123456789;
+  plane.contact.boundary_width = BoundaryWidth::chosen();
   return plane;
 }
 
@@ -163,6 +164,19 @@ TEST(SimulatorInput, ARefusedCallIsNotTold) {
   EXPECT_THROW(simulator.commandJoints(0, {{"elbow"}, {0.2}, {}, {}}), InputError);
   EXPECT_THROW(simulator.removeModel("nobody"), InputError);
   EXPECT_TRUE(notes.inputs.empty());
+}
+
+TEST(SimulatorInput, ABoundaryWidthToBeChosenIsChosenAgain) {
+  Simulator simulator(sceneWithCloud(), model::UriResolver()), again(sceneWithCloud(), model::UriResolver());
+  InputNotes notes(&simulator);
+  RobotConfig part = robot("part", R"(<robot name="part"><link name="part"><inertial><mass value="0.1"/><inertia ixx="1" iyy="1" izz="1"
+    ixy="0" ixz="0" iyz="0"/></inertial><collision><geometry><box size="0.02 0.03 0.01"/></geometry></collision></link></robot>)",
+                           false);
+  part.contact.boundary_width = BoundaryWidth::chosen();
+  simulator.spawn(part);
+  applyInput(notes.inputs.at(0).second, &again);
+  EXPECT_DOUBLE_EQ(simulator.colliders().back().radius, 0.05 * 0.01);
+  EXPECT_EQ(again.colliders().back().radius, simulator.colliders().back().radius);
 }
 
 /** All inputs of a run, one of their arguments being another. */
