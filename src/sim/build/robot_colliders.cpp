@@ -7,8 +7,9 @@
 namespace blem_sim::sim {
 
 void RobotBuilder::addColliders(SurfaceLibrary* surfaces) {
-  double weight = 0;
-  for (const model::LumpedBody& body : lumped_->bodies) weight += body.inertial.mass * world_->world.gravity().norm();
+  double mass = 0;
+  for (const model::LumpedBody& body : lumped_->bodies) mass += body.inertial.mass;
+  const WidthNeeds needs = needsOfLink(mass * world_->world.gravity().norm());
   for (std::size_t link = 0; link < model_->links.size(); ++link) {
     const model::LinkModel& description = model_->links[link];
     const ContactSettings of_link = contactSettings(
@@ -26,7 +27,7 @@ void RobotBuilder::addColliders(SurfaceLibrary* surfaces) {
       geometry::MeshReport report = shape.report;
       ContactSettings settings = of_link;
       const auto geometry = surfaces->geometry(shape.mesh);
-      surfaces->chooseWidth(*geometry, weight, shape.radius, &settings, &report);
+      surfaces->chooseWidth(*geometry, needs, shape.radius, &settings, &report);
       collider.geometry = surfaces->fitted(geometry, settings, shape.radius, &report);
       world_->addCollider(collider, shape.radius > 0 ? shape.radius : settings.boundary_width.metres, settings.surface, report);
     }

@@ -8,7 +8,6 @@
 
 #include "blem_sim/geometry/far_origin.h"
 #include "blem_sim/geometry/mesh_shrinking.h"
-#include "build/widths/chosen_width.h"
 #include "build/widths/scan_noise.h"
 
 namespace blem_sim::sim {
@@ -105,14 +104,12 @@ double SurfaceLibrary::noiseOf(const contact::CollisionGeometry& geometry) {
   return *noise;
 }
 
-void SurfaceLibrary::chooseWidth(const contact::CollisionGeometry& geometry, std::optional<double> weight, double own_radius,
-                                 ContactSettings* settings, geometry::MeshReport* report) {
+void SurfaceLibrary::chooseWidth(const contact::CollisionGeometry& geometry, WidthNeeds needs, double own_radius, ContactSettings* settings,
+                                 geometry::MeshReport* report) {
   if (!settings->boundary_width.automatic || own_radius > 0) return;
-  WidthNeeds needs;
   needs.side = geometry.isHalfSpace() ? 0 : smallestSide(geometry.mesh(), report->closed);
-  needs.noise = noiseOf(geometry);
-  needs.moves = weight.has_value();
-  needs.weight = weight.value_or(0);
+  // Scans have borders; small parts of closed CAD models bend from vertex to vertex as noise does.
+  needs.noise = needs.drawn || report->closed ? 0 : noiseOf(geometry);
   needs.stiffness = settings->surface.stiffness;
   needs.time_step = time_step_;
   const ChosenWidth chosen = chosenWidth(needs);

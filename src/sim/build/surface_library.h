@@ -11,6 +11,7 @@
 #include "blem_sim/contact/collider.h"
 #include "blem_sim/model/loaders.h"
 #include "build/contact_settings.h"
+#include "build/widths/chosen_width.h"
 
 namespace blem_sim::sim {
 
@@ -37,10 +38,10 @@ class SurfaceLibrary {
                                                              const std::shared_ptr<const geometry::MeshTopology>& topology = nullptr);
   /**
    * Chooses the boundary width where the settings leave it open.
-   * @param weight [N] that a contact may have to carry; nothing: an environment @param own_radius as in fitted
+   * @param needs of its use; those of the geometry and the settings are found here @param own_radius as in fitted
    * @param report of the geometry: notes the choice and why
    */
-  void chooseWidth(const contact::CollisionGeometry& geometry, std::optional<double> weight, double own_radius, ContactSettings* settings,
+  void chooseWidth(const contact::CollisionGeometry& geometry, WidthNeeds needs, double own_radius, ContactSettings* settings,
                    geometry::MeshReport* report);
   /**
    * The geometry, moved inwards by its boundary width if the settings ask for it.

@@ -111,7 +111,7 @@ void WorldBuilder::addEnvironment(const EnvironmentConfig& config, SimulatedWorl
   contact::Collider collider;
   collider.name = config.name;
   collider.X_BC = config.X_WE * Eigen::Translation3d(surface.origin);
-  surfaces_.chooseWidth(*surface.geometry, std::nullopt, surface.radius, &settings, &surface.report);
+  surfaces_.chooseWidth(*surface.geometry, needsOfEnvironment(), surface.radius, &settings, &surface.report);
   if (settings.shrink) watch.enter("shrinking", 1 - model::TREE_FRACTION);
   collider.geometry = surfaces_.fitted(surface.geometry, settings, surface.radius, &surface.report);
   collider.model = world->addModel(config.name, ModelKind::ENVIRONMENT, INT_MAX);
@@ -179,7 +179,8 @@ void WorldBuilder::addMeshObject(const ObjectConfig& config, LoadWatch* watch, S
   SharedSurface surface = load(config.uri, config.scale, config.cloud, where, watch);
   const Pose X_OC = config.X_OM * Eigen::Translation3d(surface.origin);
   ContactSettings settings = contactSettings(contact_.boundary_width, contact_, {&config.contact});
-  surfaces_.chooseWidth(*surface.geometry, *config.mass * world->world.gravity().norm(), surface.radius, &settings, &surface.report);
+  const WidthNeeds needs = needsOfMeshObject(*config.mass * world->world.gravity().norm());
+  surfaces_.chooseWidth(*surface.geometry, needs, surface.radius, &settings, &surface.report);
   const double width = surface.radius > 0 ? surface.radius : settings.boundary_width.metres;
 
   std::string from = "the configuration";
@@ -233,6 +234,7 @@ void WorldBuilder::addUrdfObject(const ObjectConfig& config, LoadWatch* watch, S
   if (!weightless.empty() && weightless.size() < model.links.size())
     world->notes.push_back(config.name +
                            ": gravity acts on all links of an object or on none; load it under robots, or turn it off for all");
+  const WidthNeeds needs = needsOfLink(inertial.mass * world->world.gravity().norm());
   for (std::size_t link = 0; link < model.links.size(); ++link) {
     const ContactSettings of_link = contactSettings(
         contact_.boundary_width, contact_, {overridesOf(described.config.described_links, model.links[link].name), &config.contact});
@@ -245,7 +247,7 @@ void WorldBuilder::addUrdfObject(const ObjectConfig& config, LoadWatch* watch, S
       geometry::MeshReport report = shape.report;
       ContactSettings settings = of_link;
       const auto geometry = surfaces_.geometry(shape.mesh);
-      surfaces_.chooseWidth(*geometry, inertial.mass * world->world.gravity().norm(), shape.radius, &settings, &report);
+      surfaces_.chooseWidth(*geometry, needs, shape.radius, &settings, &report);
       collider.geometry = surfaces_.fitted(geometry, settings, shape.radius, &report);
       world->addCollider(collider, shape.radius > 0 ? shape.radius : settings.boundary_width.metres, settings.surface, report);
     }

@@ -29,7 +29,8 @@ TEST(WidthConfig, TheInnermostCounts) {
   EXPECT_FALSE(config.environments[0].contact.boundary_width->automatic);
   EXPECT_FALSE(config.robots[0].contact.boundary_width.has_value());
   EXPECT_TRUE(config.robots[0].links.at("hand").boundary_width->automatic);
-  EXPECT_TRUE(parseEnvironment(YAML::Load("{name: e, uri: a.ply, boundary_width: auto}"), "~load_environment").contact.boundary_width->automatic);
+  EXPECT_TRUE(
+      parseEnvironment(YAML::Load("{name: e, uri: a.ply, boundary_width: auto}"), "~load_environment").contact.boundary_width->automatic);
 }
 
 }  // namespace

@@ -10,8 +10,8 @@
 namespace blem_sim::sim {
 namespace {
 
-constexpr double ROOM = 1024, KILOMETRE = 1000;   // [m]
-constexpr double FAR_FILE = 5e6;                  // [m] where the coordinates of a file lie
+constexpr double ROOM = 1024, KILOMETRE = 1000;  // [m]
+constexpr double FAR_FILE = 5e6;                 // [m] where the coordinates of a file lie
 constexpr double FRICTION = 0.5, SIDES_SLID = 20;
 
 enum class Place { ORIGIN, WORLD_A_KILOMETRE_AWAY, FILE_FAR_AWAY };
@@ -53,7 +53,8 @@ TEST(Scales, PartsRestAndSlideAlikeWhereverTheyAre) {
       EXPECT_NEAR(here.x(), slid, 0.02 * slid) << side;
       EXPECT_NEAR(here.z(), 0.5 + std::min(0.002 / std::sqrt(side), 0.05), 1e-6) << side;
       for (const Place place : {Place::WORLD_A_KILOMETRE_AWAY, Place::FILE_FAR_AWAY})
-        EXPECT_LT((restInSides(side, slid, place) - here).norm(), 1e-6 * std::max(1.0, slid)) << side << " m, place " << static_cast<int>(place);
+        EXPECT_LT((restInSides(side, slid, place) - here).norm(), 1e-6 * std::max(1.0, slid))
+            << side << " m, place " << static_cast<int>(place);
     }
   }
 }

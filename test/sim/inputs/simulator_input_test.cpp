@@ -73,7 +73,6 @@ EnvironmentConfig tilted() {
   plane.name = "tilted";
   plane.plane = Eigen::Vector4d(0.1, 0, 1, -0.3);
   plane.contact.friction = 0.123456789;
-  plane.contact.boundary_width = BoundaryWidth::chosen();
   return plane;
 }
 
@@ -169,13 +168,15 @@ TEST(SimulatorInput, ARefusedCallIsNotTold) {
 TEST(SimulatorInput, ABoundaryWidthToBeChosenIsChosenAgain) {
   Simulator simulator(sceneWithCloud(), model::UriResolver()), again(sceneWithCloud(), model::UriResolver());
   InputNotes notes(&simulator);
-  RobotConfig part = robot("part", R"(<robot name="part"><link name="part"><inertial><mass value="0.1"/><inertia ixx="1" iyy="1" izz="1"
-    ixy="0" ixz="0" iyz="0"/></inertial><collision><geometry><box size="0.02 0.03 0.01"/></geometry></collision></link></robot>)",
-                           false);
-  part.contact.boundary_width = BoundaryWidth::chosen();
-  simulator.spawn(part);
+  geometry::TriangleMesh rough = geometry::gridMesh(1, 1, 30, 30);
+  for (std::size_t i = 0; i < rough.vertices.size(); ++i) rough.vertices[i].z() = 0.001 * std::sin(17.0 * static_cast<double>(i * i));
+  EnvironmentConfig scan;
+  scan.name = "scan";
+  scan.uri = meshFile("rough_floor", rough);
+  scan.contact.boundary_width = BoundaryWidth::chosen();
+  simulator.loadEnvironment(scan);
   applyInput(notes.inputs.at(0).second, &again);
-  EXPECT_DOUBLE_EQ(simulator.colliders().back().radius, 0.05 * 0.01);
+  EXPECT_GT(simulator.colliders().back().radius, 0.001);
   EXPECT_EQ(again.colliders().back().radius, simulator.colliders().back().radius);
 }
 

@@ -9,7 +9,7 @@
 namespace blem_sim::sim {
 namespace {
 
-constexpr int MOST_VERTICES = 5000, LEAST_VERTICES = 100;
+constexpr int MOST_VERTICES = 5000, LEAST_VERTICES = 300;
 constexpr double SHARP_COSINE = 0.5;
 constexpr double MEDIAN_OF_NORMAL = 0.67448975;  // of absolute values, in standard deviations
 

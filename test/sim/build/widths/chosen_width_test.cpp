@@ -120,6 +120,28 @@ TEST(ChosenWidth, OfARobotIsForEachShapeOfALink) {
   EXPECT_NEAR(simulator.colliders()[1].radius, 0.0002, 1e-12);
 }
 
+// Small rounded parts bend from vertex to vertex as noise does.
+TEST(ChosenWidth, NoiseIsOfScansAlone) {
+  geometry::TriangleMesh rough = geometry::icosphereMesh(0.1, 3);
+  for (std::size_t i = 0; i < rough.vertices.size(); ++i) rough.vertices[i] *= i % 2 == 0 ? 1 : 1.03;
+  SimulationConfig config;
+  config.contact.boundary_width = BoundaryWidth::chosen();
+  config.objects = {box("closed", Vector3::Ones(), 1, {0, 0, 1}), box("open", Vector3::Ones(), 1, {1, 0, 1})};
+  config.objects[0].uri = meshFile("rough", rough);
+  rough.elements.pop_back();
+  config.objects[1].uri = meshFile("rough_open", rough);
+  config.robots = {robot("drawn",
+                         R"(<robot name="drawn"><link name="base"><inertial><mass value="5"/><inertia ixx="1" iyy="1" izz="1" ixy="0"
+    ixz="0" iyz="0"/></inertial><collision><geometry><mesh filename="file://)" +
+                             config.objects[1].uri + R"("/></geometry></collision>
+    </link></robot>)",
+                         false)};
+  const Simulator simulator(config, model::UriResolver());
+  EXPECT_DOUBLE_EQ(simulator.colliders()[0].radius, 0.001) << "of the robot";
+  EXPECT_DOUBLE_EQ(simulator.colliders()[1].radius, 0.001) << "closed";
+  EXPECT_GT(simulator.colliders()[2].radius, 0.003);
+}
+
 // Small and large things rest on noise, none of them beyond its layer.
 TEST(ChosenWidth, CarriesPartsOnAScan) {
   SimulationConfig config;
@@ -127,8 +149,8 @@ TEST(ChosenWidth, CarriesPartsOnAScan) {
   config.environments = {noisyFloor(0.0005)};
   double x = -0.6;
   for (const double side : {0.004, 0.02, 0.1, 0.3}) {
-    config.objects.push_back(box("cube" + std::to_string(config.objects.size()), Vector3::Constant(side), 500 * side * side * side,
-                                 {x, 0, 0.5 * side + 0.004}));
+    config.objects.push_back(
+        box("cube" + std::to_string(config.objects.size()), Vector3::Constant(side), 500 * side * side * side, {x, 0, 0.5 * side + 0.004}));
     x += 0.3;
   }
   Simulator simulator(config, model::UriResolver());
