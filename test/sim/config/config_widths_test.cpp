@@ -26,11 +26,12 @@ TEST(WidthConfig, TheInnermostCounts) {
                                                          "environments: [{name: e, uri: e.ply, boundary_width: 0}]\n"
                                                          "robots: [{name: r, urdf: r.urdf, links: {hand: {boundary_width: auto}}}]\n"),
                                               "world.yaml", "");
-  EXPECT_FALSE(config.environments[0].contact.boundary_width->automatic);
+  EXPECT_FALSE(config.environments[0].contact.boundary_width.value().automatic);
   EXPECT_FALSE(config.robots[0].contact.boundary_width.has_value());
-  EXPECT_TRUE(config.robots[0].links.at("hand").boundary_width->automatic);
-  EXPECT_TRUE(
-      parseEnvironment(YAML::Load("{name: e, uri: a.ply, boundary_width: auto}"), "~load_environment").contact.boundary_width->automatic);
+  EXPECT_TRUE(config.robots[0].links.at("hand").boundary_width.value().automatic);
+  EXPECT_TRUE(parseEnvironment(YAML::Load("{name: e, uri: a.ply, boundary_width: auto}"), "~load_environment")
+                  .contact.boundary_width.value()
+                  .automatic);
 }
 
 }  // namespace
