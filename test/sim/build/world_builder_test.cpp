@@ -98,6 +98,52 @@ TEST(WorldBuilder, PlanesWithNormalsOfAnyLengthLieWhereTheirEquationSays) {
   }
 }
 
+/** Whether the file of an environment is said to show it. */
+bool isShownByItsFile(const EnvironmentConfig& environment) {
+  SimulationConfig config;
+  config.environments = {environment};
+  return Simulator(config, model::UriResolver()).models()[0].file.has_value();
+}
+
+TEST(WorldBuilder, AFileShowsAnEnvironmentThatIsNotChanged) {
+  EnvironmentConfig terrain = ground();
+  terrain.scale = Vector3(1, 2, 3);
+  SimulationConfig config;
+  config.environments = {terrain};
+  const Simulator simulator(config, model::UriResolver());
+  const std::optional<SurfaceFile>& file = simulator.models()[0].file;
+  ASSERT_TRUE(file.has_value());
+  EXPECT_EQ(file->path, terrain.uri);
+  EXPECT_EQ(file->uri, "file://" + terrain.uri);
+  EXPECT_EQ(file->scale, terrain.scale);
+}
+
+TEST(WorldBuilder, AFileDoesNotShowAnEnvironmentThatIsChanged) {
+  ASSERT_TRUE(isShownByItsFile(ground()));
+  EnvironmentConfig mirrored = ground();
+  mirrored.scale.x() = -1;
+  EXPECT_FALSE(isShownByItsFile(mirrored));
+  EnvironmentConfig shrunk = ground();
+  shrunk.uri = meshFile("block_to_shrink", geometry::boxMesh(Vector3::Ones()));
+  shrunk.contact.boundary_width = 0.01;
+  ASSERT_TRUE(isShownByItsFile(shrunk));
+  shrunk.contact.shrink = true;
+  EXPECT_FALSE(isShownByItsFile(shrunk));
+  EnvironmentConfig far_away = ground();
+  geometry::TriangleMesh grid = geometry::gridMesh(4, 4, 1, 1);
+  for (Vector3& vertex : grid.vertices) vertex.x() += 1e6;
+  far_away.uri = meshFile("ground_far_away", grid);
+  EXPECT_FALSE(isShownByItsFile(far_away));
+  EnvironmentConfig points = ground();
+  points.cloud.as = model::CloudOptions::As::POINTS;
+  EXPECT_FALSE(isShownByItsFile(points));
+  EXPECT_FALSE(isShownByItsFile(pointCloud("cloud", {Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(0, 1, 0)})));
+  EnvironmentConfig plane;
+  plane.name = "plane";
+  plane.plane = Eigen::Vector4d(0, 0, 1, 0);
+  EXPECT_FALSE(isShownByItsFile(plane));
+}
+
 TEST(WorldBuilder, RefusesInWords) {
   SimulationConfig config;
   config.environments = {ground(), ground()};
