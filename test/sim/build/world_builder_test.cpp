@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <limits>
+#include <optional>
 
 #include "blem_sim/geometry/input_error.h"
 #include "sim/simulation_scene.h"
@@ -134,6 +136,11 @@ TEST(WorldBuilder, AFileDoesNotShowAnEnvironmentThatIsChanged) {
   for (Vector3& vertex : grid.vertices) vertex.x() += 1e6;
   far_away.uri = meshFile("ground_far_away", grid);
   EXPECT_FALSE(isShownByItsFile(far_away));
+  EnvironmentConfig damaged = ground();
+  grid = geometry::gridMesh(4, 4, 2, 2);
+  grid.vertices[0].z() = std::numeric_limits<double>::quiet_NaN();
+  damaged.uri = meshFile("ground_with_a_hole", grid);
+  EXPECT_FALSE(isShownByItsFile(damaged));
   EnvironmentConfig points = ground();
   points.cloud.as = model::CloudOptions::As::POINTS;
   EXPECT_FALSE(isShownByItsFile(points));

@@ -45,7 +45,7 @@ LoadReportEntry toEntry(const geometry::MeshReport& report) {
   return entry;
 }
 
-/** They are sent anew, so that nothing unloaded stays in sight. */
+/** Markers are sent anew, so that nothing unloaded stays in sight. */
 MarkerArray withoutOldOnes() {
   MarkerArray array;
   array.markers.emplace_back();

@@ -27,7 +27,7 @@ bool goesUp(const TriangleMesh& mesh, const MeshTopology& topology, int face, in
   return corners[k] < corners[(k + 1) % 3];
 }
 
-/** How the faces of a mesh meet. */
+/** Neighbourhood of a mesh's faces. */
 struct Winding {
   bool alike = true;   ///< no edge has more than two faces, and two go along it in opposite directions
   bool closed = true;  ///< no edge has one face
