@@ -69,7 +69,8 @@ std::string sizeOf(const SimulatedWorld& world, int model) {
  * coordinates. */
 std::optional<SurfaceFile> fileThatShows(const SharedSurface& surface, const EnvironmentConfig& config) {
   const bool sound = surface.report.nonfinite == 0 && surface.report.invalid == 0;
-  const bool faces = sound && !config.uri.empty() && config.cloud.as == model::CloudOptions::As::AUTO && surface.geometry->hasOnlyTriangles();
+  const bool faces =
+      sound && !config.uri.empty() && config.cloud.as == model::CloudOptions::As::AUTO && surface.geometry->hasOnlyTriangles();
   if (!faces || !surface.origin.isZero(0) || config.scale.minCoeff() <= 0) return std::nullopt;
   const std::string path = std::filesystem::absolute(surface.report.source).string();
   return SurfaceFile{path, config.uri.rfind("package://", 0) == 0 ? config.uri : "file://" + path, config.scale};

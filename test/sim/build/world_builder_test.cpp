@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <limits>
 #include <optional>
 
 #include "blem_sim/geometry/input_error.h"
@@ -137,9 +136,10 @@ TEST(WorldBuilder, AFileDoesNotShowAnEnvironmentThatIsChanged) {
   far_away.uri = meshFile("ground_far_away", grid);
   EXPECT_FALSE(isShownByItsFile(far_away));
   EnvironmentConfig damaged = ground();
-  grid = geometry::gridMesh(4, 4, 2, 2);
-  grid.vertices[0].z() = std::numeric_limits<double>::quiet_NaN();
-  damaged.uri = meshFile("ground_with_a_hole", grid);
+  damaged.uri = sceneFile("ground_with_a_hole.ply", [](std::ofstream& out) {
+    out << "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 2\n"
+           "property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\nnan 1 0\n3 0 1 2\n3 1 3 2\n";
+  });
   EXPECT_FALSE(isShownByItsFile(damaged));
   EnvironmentConfig points = ground();
   points.cloud.as = model::CloudOptions::As::POINTS;
