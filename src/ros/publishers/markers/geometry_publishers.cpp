@@ -86,6 +86,17 @@ MarkerStyle styleOf(const contact::Collider& collider, const sim::ModelInfo& mod
           toColour(sim::modelColour(model.kind, collider.model)), first_id};
 }
 
+void tellPieces(const contact::Collider& collider, const std::string& name, std::size_t pieces) {
+  const std::size_t elements = collider.geometry->mesh().elements.size();
+  if (collider.geometry->hasOnlyTriangles())
+    ROS_INFO(
+        "%s: rviz gets its %zu triangles in %zu pieces; it draws a mesh of over %zu in one piece where that is a binary .stl, .ply or "
+        ".obj file, not mirrored, shrunk or joined from points",
+        name.c_str(), elements, pieces, MOST_TRIANGLES);
+  else
+    ROS_INFO("%s: rviz gets its %zu points in %zu pieces; a voxel_grid leaves fewer than %zu", name.c_str(), elements, pieces, MOST_DOTS);
+}
+
 MarkerArray drawnEnvironments(const Geometry& geometry, std::set<std::string>* told) {
   MarkerArray array = withoutOldOnes();
   const auto draw = [&](const contact::Collider& collider, const sim::ModelInfo& model, int first_id) {
@@ -93,11 +104,7 @@ MarkerArray drawnEnvironments(const Geometry& geometry, std::set<std::string>* t
     style.up = geometry.up;
     style.file = model.file;
     const std::vector<Marker> markers = surfaceMarkers(collider, style);
-    if (markers.size() > 1 && collider.geometry->hasOnlyTriangles() && told->insert(model.name).second)
-      ROS_INFO(
-          "%s: rviz gets its %zu triangles in %zu pieces; it draws a mesh of over %zu in one piece where that is a binary .stl, .ply or "
-          ".obj file, not mirrored, shrunk or joined from points",
-          model.name.c_str(), collider.geometry->mesh().elements.size(), markers.size(), MOST_TRIANGLES);
+    if (markers.size() > 1 && told->insert(model.name).second) tellPieces(collider, model.name, markers.size());
     return markers;
   };
   addMarkers(geometry, sim::ModelKind::ENVIRONMENT, draw, &array);
