@@ -18,6 +18,7 @@ from sim_client import Recorder, stamps, wait_until
 G = 9.81
 ROBOT_MASS = 5.7
 HAND_MASS = 0.2
+CUBE_HALF, LAYER = 0.1, 0.0025  # [m]
 
 
 class TopicsTest(unittest.TestCase):
@@ -133,6 +134,13 @@ class TopicsTest(unittest.TestCase):
         self.assertEqual({marker.header.frame_id for marker in triangles}, {"world"})
         objects = self.record("/blem_sim/object_markers", MarkerArray, 1)[0].markers
         self.assertEqual({marker.header.frame_id for marker in objects if marker.action == Marker.ADD}, {"cube"})
+
+    def test_layer_markers(self):
+        layers = [marker for marker in self.record("/blem_sim/layer_markers", MarkerArray, 1)[0].markers if marker.action == Marker.ADD]
+        self.assertEqual({marker.header.frame_id for marker in layers}, {"base", "arm", "cube"})
+        self.assertTrue(all(marker.type == Marker.TRIANGLE_LIST and 0 < marker.color.a < 1 for marker in layers))
+        cube = [point for marker in layers if marker.ns.startswith("cube") for point in marker.points]
+        self.assertAlmostEqual(max(point.z for point in cube), CUBE_HALF + LAYER, delta=1e-6)
 
     def test_gazebo_layouts(self):
         """Clients built against gazebo_msgs connect if the sums of the layouts are gazebo_msgs' own."""

@@ -56,6 +56,33 @@ class Grasp:
         return hand_pose(xyz, self.closing_angle), OPEN - SQUEEZE * closed
 
 
+RESTS = {"paper_gripper_block": 0.6875, "paper_gripper_mug": 0.6958}  # [m] height of the object's origin on the table
+TRAY_BOTTOM = 0.645  # [m]
+
+
+def grasp_scene(config, rest, hand_height, closing_angle, reach_back, shaking):
+    """A world of the gripper and one object, ready to be grasped: changes the configuration. Returns (motion, its joints' rows).
+
+    rest [m]: height of the object's origin; hand_height [m]: of the hand's origin above it; reach_back [m]: of the hand, in the object's x.
+    """
+    pose = config["objects"][0]["pose"]
+    (x, y, _), yaw = pose["xyz"], pose["rpy"][2]
+    motion = Grasp((x + reach_back * math.cos(yaw), y + reach_back * math.sin(yaw), rest + hand_height), yaw + closing_angle, shaking)
+    rows = joint_rows(motion)
+    robot = config["robots"][0]
+    robot["initial_positions"] = rows[0][1]
+    robot["gains"][FINGER]["i_clamp"] = robot["effort_limits"][FINGER]  # no more integral than the motor can give, or it never opens
+    return motion, rows
+
+
+def stir_scene(config, stirring):
+    """The tray of mugs, ready to be stirred for some time [s]: changes the configuration. Returns (motion, its joints' rows)."""
+    motion = Stir((0.6, 0.13), (0.6, 0.383), TRAY_BOTTOM + 0.015 + 0.167, stirring)
+    rows = joint_rows(motion)
+    config["robots"][0]["initial_positions"] = rows[0][1]
+    return motion, rows
+
+
 def joint_rows(motion, step=ROW_STEP):
     """The motion's joint positions at every step: a list of (time, map by joint). Raises ValueError where the arm cannot follow."""
     tree, rows, positions = Tree(shared_data(URDF)), [], dict(zip(ARM, ELBOW_UP))

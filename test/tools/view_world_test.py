@@ -7,10 +7,14 @@ import os
 import pathlib
 import shutil
 import subprocess
+import sys
 
 import pytest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "test" / "support"))
+from shared_data import shared_data  # noqa: E402
+
 CUBE = ROOT / "meshes" / "cube_10cm.stl"
 PROGRAM = pathlib.Path(os.environ.get("BLEM_SIM_RUN", "")).parent / "view_world"
 HALF_HEIGHT = math.radians(20)  # of the view
@@ -195,6 +199,19 @@ def test_same_input_same_bytes(options, tmp_path):
     """Neither a display nor the number of threads that draw shows."""
     pictures = [draw(tmp_path, RESTING, "--at", "0.1", *options, name=name, DISPLAY=display, LP_NUM_THREADS=threads).read_bytes()
                 for name, display, threads in (("a.png", "", "1"), ("b.png", ":77", "3"))]
+    assert pictures[0] == pictures[1]
+
+
+@pytest.mark.parametrize("name", ["stack3", "ladder"])
+def test_worlds_of_the_paper_are_the_same_picture_each_time(name, tmp_path):
+    """A stack of cubes, a humanoid that leans on a ladder, as docs/worlds.md shows them."""
+    if shared_data("worlds") is None:
+        pytest.skip("the shared data are not here")
+    pictures = []
+    for run in ("first", "second"):
+        (tmp_path / run).mkdir()
+        subprocess.run([str(ROOT / "docs" / "images" / "worlds" / "make_pictures"), name, "--out", str(tmp_path / run)], check=True, timeout=120)
+        pictures.append((tmp_path / run / (name + ".png")).read_bytes())
     assert pictures[0] == pictures[1]
 
 

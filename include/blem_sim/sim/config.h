@@ -243,6 +243,7 @@ struct SimulationConfig {
   std::vector<RobotConfig> robots;
   std::vector<ObjectConfig> objects;
   PublishRates rates;
+  bool layer_markers = false;           ///< of the node: boundary layers for rviz
   double checkpoint_period = 0;         ///< [s] simulated; 0: the node keeps no checkpoint
   std::string checkpoint_file;          ///< of the node; empty: below ROS_HOME, named after the node
   std::string record_file;              ///< of the node: all inputs from the first step on; empty: none

@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,6 +24,12 @@ struct WeightlessPart {
   int link = -1;  ///< of the robot's description; -1: the whole body
 };
 
+/** A file whose faces are a surface that is simulated: scaled as told, otherwise where they are but for repairs too small to see. */
+struct SurfaceFile {
+  std::string path, uri;  ///< the file, and its name for other programs: package:// as configured, else file://
+  Vector3 scale = Vector3::Ones();
+};
+
 /** A robot, object or environment in the simulation. */
 struct ModelInfo {
   std::string name;
@@ -31,7 +38,8 @@ struct ModelInfo {
   std::vector<int> joints;       ///< world joints, movable ones, in the robot's order
   Pose X_WM = Pose::Identity();  ///< root link, object's frame or environment at the start
   std::vector<WeightlessPart> weightless;
-  bool alive = true;  ///< false: unloaded, and its slot is free
+  std::optional<SurfaceFile> file;  ///< of an environment, if it shows what is simulated
+  bool alive = true;                ///< false: unloaded, and its slot is free
 };
 
 /** A robot as publishers and commands see it. */

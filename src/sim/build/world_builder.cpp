@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <climits>
 #include <cmath>
+#include <filesystem>
 #include <iterator>
+#include <optional>
 #include <set>
 
 #include "blem_sim/geometry/input_error.h"
@@ -63,6 +65,17 @@ std::string sizeOf(const SimulatedWorld& world, int model) {
   return points > 0 ? fmt::format("{} points, {}", points, words) : words;
 }
 
+/** The file, if its faces are the surface: no joined points, none that is no triangle, not mirrored, and so near that floats tell its
+ * coordinates. */
+std::optional<SurfaceFile> fileThatShows(const SharedSurface& surface, const EnvironmentConfig& config) {
+  const bool sound = surface.report.nonfinite == 0 && surface.report.invalid == 0;
+  const bool faces =
+      sound && !config.uri.empty() && config.cloud.as == model::CloudOptions::As::AUTO && surface.geometry->hasOnlyTriangles();
+  if (!faces || !surface.origin.isZero(0) || config.scale.minCoeff() <= 0) return std::nullopt;
+  const std::string path = std::filesystem::absolute(surface.report.source).string();
+  return SurfaceFile{path, config.uri.rfind("package://", 0) == 0 ? config.uri : "file://" + path, config.scale};
+}
+
 UrdfSource sourceOf(const RobotConfig& config) {
   return {"robots: " + config.name, config.urdf, config.urdf_xml, config.description_param};
 }
@@ -117,6 +130,7 @@ void WorldBuilder::addEnvironment(const EnvironmentConfig& config, SimulatedWorl
   collider.model = world->addModel(config.name, ModelKind::ENVIRONMENT, INT_MAX);
   const double width = surface.radius > 0 ? surface.radius : settings.boundary_width.metres;
   world->models[collider.model].X_WM = config.X_WE;
+  if (collider.geometry == surface.geometry) world->models[collider.model].file = fileThatShows(surface, config);
   world->addCollider(collider, width, settings.surface, surface.report);
   watch.loaded(sizeOf(*world, collider.model));
 }

@@ -75,6 +75,7 @@ SimulationConfig parseConfig(const YAML::Node& root, const std::string& source, 
   config.solver = readSolver(reader.section("solver"));
   config.contact = readContact(reader.section("contact"));
   config.rates = readRates(reader);
+  reader.read("layer_markers", &config.layer_markers);
   std::set<std::string> names;
   config.environments = readModels<EnvironmentConfig>(reader, "environments", &names, readEnvironment);
   config.robots = readModels<RobotConfig>(reader, "robots", &names, readRobot);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <optional>
 
 #include "blem_sim/geometry/input_error.h"
 #include "sim/simulation_scene.h"
@@ -96,6 +97,58 @@ TEST(WorldBuilder, PlanesWithNormalsOfAnyLengthLieWhereTheirEquationSays) {
     EXPECT_NEAR(plane.planeOffset(), 0.5, 1e-15) << length;
     EXPECT_LT((plane.planeNormal() - Vector3(0, 0.6, 0.8)).norm(), 1e-15) << length;
   }
+}
+
+/** Whether the file of an environment is said to show it. */
+bool isShownByItsFile(const EnvironmentConfig& environment) {
+  SimulationConfig config;
+  config.environments = {environment};
+  return Simulator(config, model::UriResolver()).models()[0].file.has_value();
+}
+
+TEST(WorldBuilder, AFileShowsAnEnvironmentThatIsNotChanged) {
+  EnvironmentConfig terrain = ground();
+  terrain.scale = Vector3(1, 2, 3);
+  SimulationConfig config;
+  config.environments = {terrain};
+  const Simulator simulator(config, model::UriResolver());
+  const std::optional<SurfaceFile>& file = simulator.models()[0].file;
+  ASSERT_TRUE(file.has_value());
+  EXPECT_EQ(file->path, terrain.uri);
+  EXPECT_EQ(file->uri, "file://" + terrain.uri);
+  EXPECT_EQ(file->scale, terrain.scale);
+}
+
+TEST(WorldBuilder, AFileDoesNotShowAnEnvironmentThatIsChanged) {
+  ASSERT_TRUE(isShownByItsFile(ground()));
+  EnvironmentConfig mirrored = ground();
+  mirrored.scale.x() = -1;
+  EXPECT_FALSE(isShownByItsFile(mirrored));
+  EnvironmentConfig shrunk = ground();
+  shrunk.uri = meshFile("block_to_shrink", geometry::boxMesh(Vector3::Ones()));
+  shrunk.contact.boundary_width = 0.01;
+  ASSERT_TRUE(isShownByItsFile(shrunk));
+  shrunk.contact.shrink = true;
+  EXPECT_FALSE(isShownByItsFile(shrunk));
+  EnvironmentConfig far_away = ground();
+  geometry::TriangleMesh grid = geometry::gridMesh(4, 4, 1, 1);
+  for (Vector3& vertex : grid.vertices) vertex.x() += 1e6;
+  far_away.uri = meshFile("ground_far_away", grid);
+  EXPECT_FALSE(isShownByItsFile(far_away));
+  EnvironmentConfig damaged = ground();
+  damaged.uri = sceneFile("ground_with_a_hole.ply", [](std::ofstream& out) {
+    out << "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 2\n"
+           "property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\nnan 1 0\n3 0 1 2\n3 1 3 2\n";
+  });
+  EXPECT_FALSE(isShownByItsFile(damaged));
+  EnvironmentConfig points = ground();
+  points.cloud.as = model::CloudOptions::As::POINTS;
+  EXPECT_FALSE(isShownByItsFile(points));
+  EXPECT_FALSE(isShownByItsFile(pointCloud("cloud", {Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(0, 1, 0)})));
+  EnvironmentConfig plane;
+  plane.name = "plane";
+  plane.plane = Eigen::Vector4d(0, 0, 1, 0);
+  EXPECT_FALSE(isShownByItsFile(plane));
 }
 
 TEST(WorldBuilder, RefusesInWords) {

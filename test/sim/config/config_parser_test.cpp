@@ -269,6 +269,7 @@ TEST(ConfigParser, TakesWhatXmlRpcMakesOfNumbers) {
   root["gravity"].push_back(-9);
   root["real_time_factor"] = 2;
   root["paused"] = true;
+  root["layer_markers"] = true;
   root["contact"]["stiffness"] = std::string(".inf");
   root["contact"]["max_contacts_per_robot"] = 30.0;
   const SimulationConfig config = parseConfig(root, "/blem_sim", "");
@@ -276,6 +277,7 @@ TEST(ConfigParser, TakesWhatXmlRpcMakesOfNumbers) {
   EXPECT_EQ(config.gravity, Vector3(0, 0, -9));
   EXPECT_EQ(config.real_time_factor, 2);
   EXPECT_TRUE(config.paused);
+  EXPECT_TRUE(config.layer_markers);
   EXPECT_EQ(config.contact.surface.stiffness, INF);
   EXPECT_EQ(config.contact.max_contacts_per_robot, 30);
   root["contact"]["frction"] = 1;
@@ -358,8 +360,9 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"objects: [{name: o, mass: 1}]", {"objects[0]", "uri or urdf"}}, BadInput{"time_step: 0", {"time_step", "above 0"}},
         BadInput{"time_step: .nan", {"time_step"}}, BadInput{"time_step: fast", {"time_step", "'fast'"}},
         BadInput{"time_step: [1]", {"time_step", "a list"}}, BadInput{"time_step: .inf", {"time_step", "finite"}},
-        BadInput{"paused: maybe", {"paused", "true or false"}}, BadInput{"random_seed: -1", {"random_seed", "'-1'"}},
-        BadInput{"random_seed: 1.5", {"random_seed"}}, BadInput{"contact: {friction: .inf}", {"contact.friction", "finite"}},
+        BadInput{"paused: maybe", {"paused", "true or false"}}, BadInput{"layer_markers: some", {"layer_markers", "true or false"}},
+        BadInput{"random_seed: -1", {"random_seed", "'-1'"}}, BadInput{"random_seed: 1.5", {"random_seed"}},
+        BadInput{"contact: {friction: .inf}", {"contact.friction", "finite"}},
         BadInput{"contact: {restitution: 1.1}", {"contact.restitution"}},
         BadInput{"contact: {impact_friction_factor: 1.1}", {"contact.impact_friction_factor"}},
         BadInput{"contact: {impact_friction_speed: -1}", {"contact.impact_friction_speed"}},

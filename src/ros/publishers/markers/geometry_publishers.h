@@ -3,12 +3,16 @@
 
 #include <ros/node_handle.h>
 
+#include <set>
+#include <string>
+
 #include "sending/drawing_thread.h"
 #include "sending/step_publisher.h"
 
 namespace blem_sim::node {
 
-/** `~environment_markers` in the world and `~object_markers` in each object's own frame, which /tf moves. */
+/** `~environment_markers` in the world, `~object_markers` in each object's own frame, which /tf moves, and on request `~layer_markers` in
+ * the frames of links and objects. */
 class GeometryMarkerPublisher : public StepPublisher {
  public:
   GeometryMarkerPublisher(ros::NodeHandle private_node, const sim::Simulator& simulator);
@@ -20,7 +24,9 @@ class GeometryMarkerPublisher : public StepPublisher {
  private:
   const sim::Simulator& simulator_;
   ros::Publisher environments_, objects_;
-  DrawingThread thread_;  // last: it publishes
+  ros::Publisher layers_;       // none unless the configuration asks for them
+  std::set<std::string> told_;  // environments that are sent in pieces
+  DrawingThread thread_;        // last: it publishes
 };
 
 /** `~load_report`. */

@@ -1,6 +1,10 @@
 #include "publishers/markers/surface_markers.h"
 
 #include <algorithm>
+#include <cctype>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
 
 #include "messages/conversions.h"
 
@@ -10,7 +14,6 @@ namespace {
 
 using visualization_msgs::Marker;
 
-constexpr std::size_t CORNERS_PER_MARKER = 60000;
 constexpr std::size_t MOST_SPHERES = 20000;
 constexpr double PLANE_SIZE = 20;         // [m] edge of the square that stands for a half-space
 constexpr double LINE_WIDTH = 0.002;      // [m]
@@ -19,7 +22,8 @@ constexpr double SMALLEST_POINT = 0.002;  // [m]
 /** Lists of one kind of element, split into markers that share everything but their points. */
 class MarkerLists {
  public:
-  MarkerLists(Marker prototype, std::vector<Marker>* markers) : prototype_(std::move(prototype)), markers_(markers) {}
+  MarkerLists(Marker prototype, std::size_t most, std::vector<Marker>* markers)
+      : prototype_(std::move(prototype)), most_(most), markers_(markers) {}
 
   void add(std::initializer_list<Vector3> corners) {
     startIfFull();
@@ -32,14 +36,14 @@ class MarkerLists {
 
  private:
   void startIfFull() {
-    if (!full()) return;
+    if (started_ && markers_->back().points.size() < most_) return;
     prototype_.id = markers_->empty() ? prototype_.id : markers_->back().id + 1;
     markers_->push_back(prototype_);
     started_ = true;
   }
-  bool full() const { return !started_ || markers_->back().points.size() + 3 > CORNERS_PER_MARKER; }
 
   Marker prototype_;
+  std::size_t most_;  // points of a marker, a multiple of those of its elements
   std::vector<Marker>* markers_;
   bool started_ = false;
 };
@@ -55,7 +59,7 @@ void addPlane(const contact::CollisionGeometry& geometry, const Marker& prototyp
   const Vector3 centre = geometry.planeOffset() * normal;
   const Vector3 u = 0.5 * PLANE_SIZE * normal.unitOrthogonal();
   const Vector3 v = normal.cross(u);
-  MarkerLists triangles(withType(prototype, Marker::TRIANGLE_LIST, 1), markers);
+  MarkerLists triangles(withType(prototype, Marker::TRIANGLE_LIST, 1), 3 * MOST_TRIANGLES, markers);
   triangles.add({centre - u - v, centre + u - v, centre + u + v});
   triangles.add({centre - u - v, centre + u + v, centre - u + v});
 }
@@ -64,7 +68,7 @@ void addPlane(const contact::CollisionGeometry& geometry, const Marker& prototyp
 void addPoints(const std::vector<Vector3>& points, double radius, const Vector3& up, const Marker& prototype,
                std::vector<Marker>* markers) {
   const int type = points.size() <= MOST_SPHERES ? Marker::SPHERE_LIST : Marker::POINTS;
-  MarkerLists dots(withType(prototype, type, std::max(2 * radius, SMALLEST_POINT)), markers);
+  MarkerLists dots(withType(prototype, type, std::max(2 * radius, SMALLEST_POINT)), MOST_DOTS, markers);
   const std::vector<sim::Colour> colours = up.isZero() ? std::vector<sim::Colour>() : sim::coloursByHeight(points, up);
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (colours.empty()) {
@@ -75,15 +79,12 @@ void addPoints(const std::vector<Vector3>& points, double radius, const Vector3&
   }
 }
 
-/** One pass per kind of element, so that each list is contiguous. */
-void addMesh(const geometry::TriangleMesh& mesh, double radius, const Vector3& up, const Marker& prototype, std::vector<Marker>* markers) {
+/** Elements that are no triangles, a pass per kind, so that each list is contiguous. */
+void addOthers(const geometry::TriangleMesh& mesh, double radius, const Vector3& up, const Marker& prototype,
+               std::vector<Marker>* markers) {
   const int count = static_cast<int>(mesh.elements.size());
   const auto vertex = [&](int element, int corner) { return mesh.vertices[mesh.elements[element][corner]]; };
-  MarkerLists triangles(withType(prototype, Marker::TRIANGLE_LIST, 1), markers);
-  for (int i = 0; i < count; ++i) {
-    if (mesh.isTriangle(i)) triangles.add({vertex(i, 0), vertex(i, 1), vertex(i, 2)});
-  }
-  MarkerLists lines(withType(prototype, Marker::LINE_LIST, std::max(2 * radius, LINE_WIDTH)), markers);
+  MarkerLists lines(withType(prototype, Marker::LINE_LIST, std::max(2 * radius, LINE_WIDTH)), MOST_DOTS, markers);
   for (int i = 0; i < count; ++i) {
     if (!mesh.isTriangle(i) && !mesh.isPoint(i)) {
       lines.add({vertex(i, 0), mesh.elements[i][1] == mesh.elements[i][0] ? vertex(i, 2) : vertex(i, 1)});
@@ -96,22 +97,62 @@ void addMesh(const geometry::TriangleMesh& mesh, double radius, const Vector3& u
   addPoints(points, radius, up, prototype, markers);
 }
 
+/** An ASCII file begins so; rviz reads the binary kind alone. */
+bool beginsAsAsciiStl(const std::string& path) {
+  std::ifstream stream(path, std::ios::binary);
+  std::string start(5, ' ');
+  return !stream.read(start.data(), static_cast<std::streamsize>(start.size())) || start == "solid";
+}
+
+Marker fileMarker(const sim::SurfaceFile& file, Marker marker) {
+  marker.type = Marker::MESH_RESOURCE;
+  marker.mesh_resource = file.uri;
+  marker.scale.x = file.scale.x();
+  marker.scale.y = file.scale.y();
+  marker.scale.z = file.scale.z();
+  return marker;
+}
+
 }  // namespace
 
+bool rvizReads(const sim::SurfaceFile& file) {
+  const bool plain =
+      std::all_of(file.uri.begin(), file.uri.end(), [](unsigned char c) { return std::isalnum(c) || std::strchr("/._-+:", c) != nullptr; });
+  const std::string extension = std::filesystem::path(file.path).extension().string();
+  if (extension == ".stl") return plain && !beginsAsAsciiStl(file.path);
+  return plain && (extension == ".ply" || extension == ".obj");
+}
+
+Marker markerOf(const contact::Collider& collider, const MarkerStyle& style) {
+  Marker marker;
+  marker.header.frame_id = style.frame;
+  marker.ns = collider.name;
+  marker.id = style.first_id;
+  marker.pose = toPose(style.X_FC);
+  marker.color = style.colour;
+  marker.frame_locked = true;
+  return marker;
+}
+
+void addTriangles(const geometry::TriangleMesh& mesh, const Marker& prototype, std::vector<Marker>* markers) {
+  MarkerLists triangles(withType(prototype, Marker::TRIANGLE_LIST, 1), 3 * MOST_TRIANGLES, markers);
+  for (int i = 0; i < static_cast<int>(mesh.elements.size()); ++i) {
+    const Vector3i& e = mesh.elements[i];
+    if (mesh.isTriangle(i)) triangles.add({mesh.vertices[e[0]], mesh.vertices[e[1]], mesh.vertices[e[2]]});
+  }
+}
+
 std::vector<Marker> surfaceMarkers(const contact::Collider& collider, const MarkerStyle& style) {
-  Marker prototype;
-  prototype.header.frame_id = style.frame;
-  prototype.ns = collider.name;
-  prototype.id = style.first_id;
-  prototype.pose = toPose(style.X_FC);
-  prototype.color = style.colour;
-  prototype.frame_locked = true;
+  const Marker prototype = markerOf(collider, style);
   std::vector<Marker> markers;
   if (collider.geometry->isHalfSpace()) {
     addPlane(*collider.geometry, prototype, &markers);
-  } else {
-    addMesh(collider.geometry->mesh(), collider.radius, style.X_FC.linear().transpose() * style.up, prototype, &markers);
+    return markers;
   }
+  const geometry::TriangleMesh& mesh = collider.geometry->mesh();
+  if (style.file && mesh.elements.size() > MOST_TRIANGLES && rvizReads(*style.file)) return {fileMarker(*style.file, prototype)};
+  addTriangles(mesh, prototype, &markers);
+  addOthers(mesh, collider.radius, style.X_FC.linear().transpose() * style.up, prototype, &markers);
   return markers;
 }
 
