@@ -32,9 +32,11 @@ inline std::string damaged(std::string bytes, std::mt19937* random) {
 
 /** One number of a text, or four bytes of another file, replaced by one that is large, negative or none. */
 inline std::string withAbsurdNumber(std::string bytes, std::mt19937* random) {
-  static const std::string WORDS[] = {"1e39", "-1e300", "nan", "inf", "-1", "4294967295", "2147483648", "99999999999999999999", "1e-320", "0"};
-  static const std::string BYTES[] = {std::string("\0\0\300\177", 4), std::string("\0\0\200\377", 4), std::string("\377\377\177\177", 4),
-                                      std::string("\377\377\377\377", 4), std::string("\0\0\0\200", 4), std::string("\1\0\0\0", 4)};
+  static const std::string WORDS[] = {"1e39",   "-1e300", "nan", "inf", "-1", "4294967295", "2147483648", "99999999999999999999",
+                                      "1e-320", "0"};
+  static const std::string BYTES[] = {std::string("\0\0\300\177", 4),     std::string("\0\0\200\377", 4),
+                                      std::string("\377\377\177\177", 4), std::string("\377\377\377\377", 4),
+                                      std::string("\0\0\0\200", 4),       std::string("\1\0\0\0", 4)};
   const std::size_t place = (*random)() % bytes.size();
   const std::size_t digit = bytes.find_first_of("0123456789", place);
   const bool text = bytes.find('\0') == std::string::npos;

@@ -10,20 +10,22 @@
 #include <set>
 
 #include "blem_sim/sim/simulator.h"
+#include "fuzz/damaged_bytes.h"
 #include "fuzz/model_targets.h"
 #include "fuzz/seeds.h"
-#include "fuzz/damaged_bytes.h"
 
-/** Memory beyond this ends the child with a report. */
+/** Memory beyond the limit ends the child with a report; little of what was freed is kept, and short call stacks, since files are many. */
 extern "C" const char* __asan_default_options();
-extern "C" const char* __asan_default_options() { return "hard_rss_limit_mb=4096:detect_leaks=0"; }
+extern "C" const char* __asan_default_options() {
+  return "hard_rss_limit_mb=4096:detect_leaks=0:quarantine_size_mb=16:malloc_context_size=5";
+}
 
 namespace blem_sim {
 namespace {
 
-constexpr int PATIENCE = 10;           // [s] of processor time
-constexpr int MUTATIONS_A_CHILD = 50;  // no more is lost when one of them ends it
-constexpr int SIMULATED = 10;          // each tenth mutation is simulated, too
+constexpr int PATIENCE = 10;            // [s] of processor time
+constexpr int MUTATIONS_A_CHILD = 200;  // no more is lost when one of them ends it
+constexpr int SIMULATED = 10;           // each tenth mutation is simulated, too
 constexpr int STEPS = 10;
 
 /** Memory that a child shares with its parent. */
@@ -57,10 +59,10 @@ void simulate(const std::string& file, const Box& extents) {
   config.environments[0].uri = file;
   sim::ObjectConfig body;
   body.name = "body";
-  body.uri = std::string(BLEM_SIM_SOURCE_DIR) + "/meshes/shell_mug.stl";
+  body.uri = std::string(BLEM_SIM_SOURCE_DIR) + "/meshes/cube_10cm.stl";
   body.mass = 1;
   const Vector3 middle = extents.center();
-  body.X_WO = makePose({middle.x(), middle.y(), extents.max().z() + 0.13});
+  body.X_WO = makePose({middle.x(), middle.y(), extents.max().z() + 0.06});
   body.linear_velocity = {0, 0, -10};
   config.objects = {body};
   sim::Simulator simulator(config, model::UriResolver());
@@ -129,8 +131,8 @@ class DamagedFile {
       findings += well ? 0 : 1;
     }
     std::printf("%-36s %6d loaded, %6d refused, %5d simulated; slowest %.2f s (mutation %d), largest %ld MB; findings: %d\n", name_.c_str(),
-                progress_->loaded, progress_->refused, progress_->simulated, progress_->slowest, progress_->slowest_mutation, largest_ / 1024,
-                findings);
+                progress_->loaded, progress_->refused, progress_->simulated, progress_->slowest, progress_->slowest_mutation,
+                largest_ / 1024, findings);
     std::fflush(stdout);
     return findings;
   }

@@ -22,8 +22,8 @@ struct RainOutcome {
   int untold = 0;   ///< of these, without a layer event of the ball up to the next step
   bool finite = true;
   int unreliable_steps = 0, troubled_steps = 0, gained_steps = 0;
-  double max_of_layer = 0;   ///< of contacts with the file's mesh or cloud
-  double fastest = 0;        ///< [m/s]
+  double max_of_layer = 0;     ///< of contacts with the file's mesh or cloud
+  double fastest = 0;          ///< [m/s]
   std::string first_crossing;  ///< in words
 };
 
@@ -31,7 +31,7 @@ namespace rain {
 
 constexpr int BALLS = 36;              // about
 constexpr double LEAST_CELL = 0.025;   // [m] holds a ball of 4 mm, its layer, and the way it is put aside
-constexpr double BALL_LAYER = 0.0025;       // [m] the default
+constexpr double BALL_LAYER = 0.0025;  // [m] the default
 constexpr int BALL_LEVEL = 2;          // subdivisions of balls that are meshes
 
 struct Ball {
