@@ -1,5 +1,5 @@
-// A ball dropped into a mug as a stereo camera saw it, from one side, stays in it: points and triangles. The lower half of the back wall was
-// not seen, so the table leans towards the camera.
+// A ball dropped into a mug as a stereo camera saw it, from one side, stays in it: points and triangles. The lower half of the back wall
+// was not seen, so the table leans towards the camera.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,16 +13,16 @@ namespace blem_sim::sim {
 namespace {
 
 constexpr const char* MUG = "scans/real/stereomug_mug.ply";  // 28,628 triangles; the table is z = 0, what is below 15 mm was cut
-constexpr double BALL = 0.024;                               // [m] radius
+constexpr double MUG_BALL = 0.024;                           // [m] radius
 constexpr double LEAN = 0.5;                                 // [rad]
 const Vector3 MIDDLE(-0.002, 0.013, 0);                      // [m] of the rim
 
 std::string ballUrdf(double mass) {
-  const double inertia = 0.4 * mass * BALL * BALL;
+  const double inertia = 0.4 * mass * MUG_BALL * MUG_BALL;
   return fmt::format(
       R"(<robot name="ball"><link name="link"><inertial><mass value="{0}"/><inertia ixx="{1}" iyy="{1}" izz="{1}" ixy="0" ixz="0" iyz="0"/>)"
       R"(</inertial><collision><geometry><sphere radius="{2}"/></geometry></collision></link></robot>)",
-      mass, inertia, BALL);
+      mass, inertia, MUG_BALL);
 }
 
 SimulationConfig mugConfig(model::CloudOptions::As as, bool exact_ball, double direction) {
@@ -40,7 +40,7 @@ SimulationConfig mugConfig(model::CloudOptions::As as, bool exact_ball, double d
   if (exact_ball)
     ball.urdf_xml = ballUrdf(0.05);
   else
-    ball.uri = meshFile("ball_for_mug", geometry::icosphereMesh(BALL - config.contact.boundary_width, 2));
+    ball.uri = meshFile("ball_for_mug", geometry::icosphereMesh(MUG_BALL - config.contact.boundary_width, 2));
   ball.X_WO = makePose(MIDDLE + Vector3(0.004, 0, 0.115));
   ball.linear_velocity = 0.1 * Vector3(std::cos(direction), std::sin(direction), 0);
   config.objects = {ball};
@@ -64,11 +64,11 @@ TEST(MugCloud, ABallDroppedIntoItStaysIn) {
         farthest = std::max(farthest, end.head<2>().norm());
         highest = std::max(highest, end.z());
         EXPECT_LT(end.head<2>().norm(), 0.018) << direction << " " << exact_ball << " " << end.transpose();
-        EXPECT_LT(end.z(), BALL + 0.03) << direction << " " << exact_ball << " " << end.transpose();
-        EXPECT_GT(end.z(), BALL - 0.001) << direction << " " << exact_ball;
+        EXPECT_LT(end.z(), MUG_BALL + 0.03) << direction << " " << exact_ball << " " << end.transpose();
+        EXPECT_GT(end.z(), MUG_BALL - 0.001) << direction << " " << exact_ball;
         EXPECT_LT(max_of_layer, 1);
       }
-  std::printf("at the end at most %.1f mm off the middle, %.1f mm over the table\n", 1e3 * farthest, 1e3 * (highest - BALL));
+  std::printf("at the end at most %.1f mm off the middle, %.1f mm over the table\n", 1e3 * farthest, 1e3 * (highest - MUG_BALL));
 }
 
 }  // namespace
