@@ -56,3 +56,7 @@ file(GLOB soak_throws_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/test/soak/
 add_long_run(soak_throws ${soak_throws_sources})
 file(GLOB soak_hours_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/test/soak/hours/*.cpp)
 add_long_run(soak_hours ${soak_hours_sources})
+file(GLOB soak_rain_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/test/soak/rain/*.cpp)
+add_long_run(soak_rain ${soak_rain_sources})
+file(GLOB soak_damaged_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/test/soak/damaged/*.cpp)
+add_long_run(soak_damaged ${soak_damaged_sources})

@@ -22,12 +22,17 @@ std::unique_ptr<Primitive[]> primitivesOf(const TriangleMesh& mesh) {
 
 /** Makes the subtrees of runs, large ones by several threads; which ones does not show in the tree. */
 class Builder {
+  struct Part;
+
  public:
   Builder(Primitive* begin, Primitive* end, int leaf_size)
       : all_(boundedRun(begin, end)), leaf_size_(static_cast<std::size_t>(std::max(1, leaf_size))) {}
 
-  std::vector<Bvh::Node> build() {
-    const Part root = partOf({all_, 0});
+  /** Puts the primitives into the tree's order. */
+  Part build() const { return partOf({all_, 0}); }
+
+  /** The tree whose root that is; needs no primitives. */
+  static std::vector<Bvh::Node> nodesOf(const Part& root) {
     std::vector<Bvh::Node> nodes(1 + root.below());
     place(root, 0, 1, &nodes);
     return nodes;
@@ -130,10 +135,12 @@ class Builder {
 
 Bvh::Bvh(const TriangleMesh& mesh, int leaf_size) {
   if (mesh.elements.empty()) return;
-  const std::unique_ptr<Primitive[]> primitives = primitivesOf(mesh);
-  nodes_ = Builder(primitives.get(), primitives.get() + mesh.elements.size(), leaf_size).build();
+  std::unique_ptr<Primitive[]> primitives = primitivesOf(mesh);
+  const auto root = Builder(primitives.get(), primitives.get() + mesh.elements.size(), leaf_size).build();
   order_.resize(mesh.elements.size());
   tbb::parallel_for(std::size_t{0}, order_.size(), [&](std::size_t i) { order_[i] = primitives[i].element(); });
+  primitives.reset();  // before the nodes take memory a second time
+  nodes_ = Builder::nodesOf(root);
 }
 
 }  // namespace blem_sim::geometry

@@ -65,23 +65,22 @@ bool closeCracks(const MeshTopology& topology, TriangleMesh* mesh, std::vector<d
 
 }  // namespace
 
-TriangleMesh mendMesh(const TriangleMesh& mesh, MeshReport* report, MeshMending* what, MeshTopology* topology) {
+TriangleMesh mendMesh(TriangleMesh mesh, MeshReport* report, MeshMending* what, MeshTopology* topology) {
   MeshReport unwanted_report;
   MeshMending unwanted;
   if (!report) report = &unwanted_report;
   if (!what) what = &unwanted;
   *what = MeshMending();
-  TriangleMesh mended = mesh;
   MeshTopology unwanted_topology;
   if (!topology) topology = &unwanted_topology;
   *topology = MeshTopology(mesh);
   std::vector<double> noise;
-  if (closeCracks(*topology, &mended, &noise, report, what)) *topology = MeshTopology(mended);
-  flattenPlanes(*topology, noise, &mended, what);
-  if (what->flattened == 0) return mended;
-  report->extents = mended.bounds();
-  if (topology != &unwanted_topology) *topology = MeshTopology(mended);
-  return mended;
+  if (closeCracks(*topology, &mesh, &noise, report, what)) *topology = MeshTopology(mesh);
+  flattenPlanes(*topology, noise, &mesh, what);
+  if (what->flattened == 0) return mesh;
+  report->extents = mesh.bounds();
+  if (topology != &unwanted_topology) *topology = MeshTopology(mesh);
+  return mesh;
 }
 
 }  // namespace blem_sim::geometry

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -80,10 +81,10 @@ geometry::TriangleMesh cleanSoup(SurfaceSoup&& soup, geometry::MeshReport* repor
 }
 
 /** mendMesh, told in words. */
-geometry::TriangleMesh mended(const geometry::TriangleMesh& cleaned, geometry::MeshReport* report, geometry::MeshTopology* topology) {
+geometry::TriangleMesh mended(geometry::TriangleMesh&& cleaned, geometry::MeshReport* report, geometry::MeshTopology* topology) {
   constexpr double MICRO = 1e-6;
   geometry::MeshMending what;
-  geometry::TriangleMesh mesh = geometry::mendMesh(cleaned, report, &what, topology);
+  geometry::TriangleMesh mesh = geometry::mendMesh(std::move(cleaned), report, &what, topology);
   if (what.cracks > 0) report->notes.push_back(fmt::format("{} cracks up to {:.3g} um closed", what.cracks, what.widest_crack / MICRO));
   if (what.split_edges > 0) report->notes.push_back(fmt::format("{} edges split at T-junctions", what.split_edges));
   if (what.flattened > 0)
@@ -146,7 +147,7 @@ LoadedSurface loadSurface(const std::string& file, const Vector3& scale, const C
   if (!points && mending == Mending::ON) {
     enter("mending", MENDING_FRACTION);
     const auto topology = std::make_shared<geometry::MeshTopology>();
-    cleaned = mended(cleaned, &surface.report, topology.get());
+    cleaned = mended(std::move(cleaned), &surface.report, topology.get());
     surface.topology = topology;
   }
   if (points) setRadius(cloud, cleaned, &surface);

@@ -1,13 +1,10 @@
-// operator new of the node, which keeps to AllocationLimit.
-#include <cstdlib>
-#include <new>
-
+// operator new of the node, which keeps to AllocationLimit, with huge pages for large blocks.
+#include "blem_sim/geometry/large_blocks.h"
 #include "loop/allocation_limit.h"
 
 void* operator new(std::size_t size) {
   if (size > blem_sim::node::AllocationLimit::present()) throw std::bad_alloc();
-  if (void* block = std::malloc(size == 0 ? 1 : size)) return block;
-  throw std::bad_alloc();
+  return blem_sim::geometry::blockOfMemory(size);
 }
 
 void operator delete(void* block) noexcept { std::free(block); }

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "blem_sim/model/loaders.h"
+#include "fuzz/damaged_bytes.h"
 #include "support/input_errors.h"
 #include "support/sanitizers.h"
 #include "support/temporary_folder.h"
@@ -35,28 +36,6 @@ struct DamagedRow {
 };
 
 class DamagedBytes : public testing::TestWithParam<DamagedRow> {};
-
-/** One to three changes; half of them in the first 200 bytes, where headers are. */
-std::string damaged(std::string bytes, std::mt19937* random) {
-  const auto below = [&](std::size_t n) { return static_cast<std::size_t>((*random)()) % n; };
-  for (std::size_t change = 1 + below(3); change > 0; --change) {
-    const std::size_t at = below(2) == 0 ? below(bytes.size()) : below(std::min<std::size_t>(200, bytes.size()));
-    switch (below(4)) {
-      case 0:
-        bytes[at] = static_cast<char>(below(256));
-        break;
-      case 1:
-        bytes[at] = static_cast<char>(bytes[at] ^ (1 << below(8)));
-        break;
-      case 2:
-        bytes.resize(at + 1);
-        break;
-      default:
-        bytes.insert(at, 1, "0123456789-. \n"[below(14)]);
-    }
-  }
-  return bytes;
-}
 
 TEST_P(DamagedBytes, areLoadedOrRefusedInOneLine) {
   const TemporaryFolder folder;

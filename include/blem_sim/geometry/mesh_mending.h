@@ -41,6 +41,6 @@ constexpr double PLANE_DEVIATION = 2e-5;
  * @param report of cleanMesh: counts and extents are brought up to date; may be null @param what may be null
  * @param topology of the mesh that comes back, which mending has at hand; may be null
  */
-TriangleMesh mendMesh(const TriangleMesh& mesh, MeshReport* report, MeshMending* what = nullptr, MeshTopology* topology = nullptr);
+TriangleMesh mendMesh(TriangleMesh mesh, MeshReport* report, MeshMending* what = nullptr, MeshTopology* topology = nullptr);
 
 }  // namespace blem_sim::geometry
