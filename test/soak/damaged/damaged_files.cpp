@@ -27,6 +27,7 @@ constexpr int PATIENCE = 10;            // [s] of processor time
 constexpr int MUTATIONS_A_CHILD = 200;  // no more is lost when one of them ends it
 constexpr int SIMULATED = 10;           // each tenth mutation is simulated, too
 constexpr int STEPS = 10;
+constexpr double FARTHEST = 1e6;  // [m] in each coordinate where the body is put, as for poses that messages ask for
 
 /** Memory that a child shares with its parent. */
 struct Progress {
@@ -61,8 +62,9 @@ void simulate(const std::string& file, const Box& extents) {
   body.name = "body";
   body.uri = std::string(BLEM_SIM_SOURCE_DIR) + "/meshes/cube_10cm.stl";
   body.mass = 1;
-  const Vector3 middle = extents.center();
-  body.X_WO = makePose({middle.x(), middle.y(), extents.max().z() + 0.06});
+  Vector3 place = extents.center();
+  place.z() = extents.max().z() + 0.06;
+  body.X_WO = makePose(place.cwiseMax(-FARTHEST).cwiseMin(FARTHEST));
   body.linear_velocity = {0, 0, -10};
   config.objects = {body};
   sim::Simulator simulator(config, model::UriResolver());
