@@ -40,7 +40,7 @@ SimulationConfig mugConfig(model::CloudOptions::As as, bool exact_ball, double d
   if (exact_ball)
     ball.urdf_xml = ballUrdf(0.05);
   else
-    ball.uri = meshFile("ball_for_mug", geometry::icosphereMesh(MUG_BALL - config.contact.boundary_width, 2));
+    ball.uri = meshFile("ball_for_mug", geometry::icosphereMesh(MUG_BALL - config.contact.boundary_width.metres, 2));
   ball.X_WO = makePose(MIDDLE + Vector3(0.004, 0, 0.115));
   ball.linear_velocity = 0.1 * Vector3(std::cos(direction), std::sin(direction), 0);
   config.objects = {ball};
