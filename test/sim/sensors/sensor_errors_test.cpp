@@ -7,7 +7,6 @@
 
 #include "blem_sim/sim/sensor_values.h"
 #include "sim/simulation_scene.h"
-#include "support/sanitizers.h"
 
 namespace blem_sim::sim {
 namespace {
@@ -201,10 +200,10 @@ TEST(SensorNoise, OfEachQuantityHasItsDeviationAndBias) {
       config.robots[0].sensors[which].noise = {};
       config.robots[0].sensors[which].noise[quantity].stddev = 0.5;
       config.robots[0].sensors[which].noise[quantity].bias = 3;
-      const int count = samples(3000);
-      const auto errors = errorsOf(config, which, numbers[quantity], count), others = errorsOf(config, which, numbers[1 - quantity], 100);
-      EXPECT_NEAR(meanOf(errors), 3, 3 * 0.5 / std::sqrt(count)) << which << " " << quantity;
-      EXPECT_NEAR(deviationOf(errors), 0.5, 3 * 0.5 / std::sqrt(2 * count)) << which << " " << quantity;
+      constexpr int COUNT = 3000;
+      const auto errors = errorsOf(config, which, numbers[quantity], COUNT), others = errorsOf(config, which, numbers[1 - quantity], 100);
+      EXPECT_NEAR(meanOf(errors), 3, 3 * 0.5 / std::sqrt(COUNT)) << which << " " << quantity;
+      EXPECT_NEAR(deviationOf(errors), 0.5, 3 * 0.5 / std::sqrt(2 * COUNT)) << which << " " << quantity;
       for (const double error : others) ASSERT_EQ(error, 0) << which << " " << quantity;
     }
 }
@@ -220,11 +219,10 @@ TEST(SensorNoise, BiasIsDrawnOncePerNumberAndWalks) {
       EXPECT_GT(std::abs(constant[0]), 1e-3);
       for (const double error : constant) EXPECT_NEAR(error, constant[0], 1e-12);
       noise.bias_stddev = 0.7;
-      const int count = samples(3000);
-      const auto walking = errorsOf(config, which, numbers[quantity], count + 1);
+      const auto walking = errorsOf(config, which, numbers[quantity], 3001);
       std::vector<double> ways;
       for (std::size_t i = 1; i < walking.size(); ++i) ways.push_back(walking[i] - walking[i - 1]);
-      EXPECT_NEAR(deviationOf(ways), 0.07, 3 * 0.07 / std::sqrt(2 * count)) << which << " " << quantity;
+      EXPECT_NEAR(deviationOf(ways), 0.07, 3 * 0.07 / std::sqrt(6000)) << which << " " << quantity;
     }
 }
 
