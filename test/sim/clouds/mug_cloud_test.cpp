@@ -52,10 +52,11 @@ TEST(MugCloud, ABallDroppedIntoItStaysIn) {
   double farthest = 0, highest = 0;
   for (const auto as : {model::CloudOptions::As::POINTS, model::CloudOptions::As::MESH})
     for (const bool exact_ball : {true, false})
-      for (int direction = 0; direction < 8; direction += SANITIZED ? 4 : 1) {
+      for (int direction = 0; direction < 8; ++direction) {
+        if (SANITIZED && (direction > 0 || !exact_ball)) continue;
         Simulator simulator(mugConfig(as, exact_ball, direction * M_PI / 4), model::UriResolver());
         double max_of_layer = 0;
-        for (int i = 0; i < (SANITIZED ? 300 : 1000); ++i) {
+        for (int i = 0; i < 1000; ++i) {
           const StepReport& report = simulator.step();
           max_of_layer = std::max(max_of_layer, report.max_of_layer);
           ASSERT_FALSE(report.status & (CONTACT_UNRELIABLE | STATE_NOT_FINITE)) << report.time;
