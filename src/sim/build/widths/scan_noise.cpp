@@ -57,7 +57,7 @@ std::optional<std::map<int, double>> secondDifference(const Surface& surface, in
   return weights;
 }
 
-/** What the noise around a vertex may be, in its standard deviations. */
+/** Size of the second difference at a vertex, in those of noise of 1 m. Nothing at borders and sharp edges. */
 std::optional<double> deviation(const Surface& surface, int vertex) {
   const auto weights = secondDifference(surface, vertex);
   const auto normal = weights ? surface.normal(vertex) : std::nullopt;
