@@ -1,6 +1,7 @@
 // Small scenes for the tests of the simulation: mesh files in a folder of their own, configurations by hand, inline robots.
 #pragma once
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -87,6 +88,18 @@ inline ObjectConfig box(const std::string& name, const Vector3& size, double mas
                         geometry::boxMesh(size));
   object.mass = mass;
   object.X_WO = makePose(position);
+  return object;
+}
+
+/** A solid sphere that is no mesh. */
+inline ObjectConfig exactBall(const std::string& name, double radius, double mass) {
+  ObjectConfig object;
+  object.name = name;
+  object.mass = mass;
+  object.urdf_xml = fmt::format(
+      R"(<robot name="ball"><link name="link"><inertial><mass value="{0}"/><inertia ixx="{1}" iyy="{1}" izz="{1}" ixy="0" ixz="0" iyz="0"/>)"
+      R"(</inertial><collision><geometry><sphere radius="{2}"/></geometry></collision></link></robot>)",
+      mass, 0.4 * mass * radius * radius, radius);
   return object;
 }
 

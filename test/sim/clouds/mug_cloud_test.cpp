@@ -17,14 +17,6 @@ constexpr double MUG_BALL = 0.024;                           // [m] radius
 constexpr double LEAN = 0.5;                                 // [rad]
 const Vector3 MIDDLE(-0.002, 0.013, 0);                      // [m] of the rim
 
-std::string ballUrdf(double mass) {
-  const double inertia = 0.4 * mass * MUG_BALL * MUG_BALL;
-  return fmt::format(
-      R"(<robot name="ball"><link name="link"><inertial><mass value="{0}"/><inertia ixx="{1}" iyy="{1}" izz="{1}" ixy="0" ixz="0" iyz="0"/>)"
-      R"(</inertial><collision><geometry><sphere radius="{2}"/></geometry></collision></link></robot>)",
-      mass, inertia, MUG_BALL);
-}
-
 SimulationConfig mugConfig(model::CloudOptions::As as, bool exact_ball, double direction) {
   SimulationConfig config;
   EnvironmentConfig mug;
@@ -34,13 +26,11 @@ SimulationConfig mugConfig(model::CloudOptions::As as, bool exact_ball, double d
   mug.cloud.auto_radius = true;
   config.environments = {mug, ground(1)};
   config.gravity = G * Vector3(-std::sin(LEAN), 0, -std::cos(LEAN));
-  ObjectConfig ball;
-  ball.name = "ball";
-  ball.mass = 0.05;
-  if (exact_ball)
-    ball.urdf_xml = ballUrdf(0.05);
-  else
+  ObjectConfig ball = exactBall("ball", MUG_BALL, 0.05);
+  if (!exact_ball) {
+    ball.urdf_xml.clear();
     ball.uri = meshFile("ball_for_mug", geometry::icosphereMesh(MUG_BALL - config.contact.boundary_width.metres, 2));
+  }
   ball.X_WO = makePose(MIDDLE + Vector3(0.004, 0, 0.115));
   ball.linear_velocity = 0.1 * Vector3(std::cos(direction), std::sin(direction), 0);
   config.objects = {ball};

@@ -88,20 +88,13 @@ inline std::vector<Ball> ballsOver(const Box& bounds, double least_height, Eleme
 }
 
 inline sim::ObjectConfig objectOf(const Ball& ball, const std::string& name) {
-  sim::ObjectConfig object;
-  object.name = name;
-  object.mass = 4e3 * std::pow(ball.radius, 3);
+  sim::ObjectConfig object = sim::exactBall(name, ball.radius, 4e3 * std::pow(ball.radius, 3));
   object.linear_velocity = {0, 0, -ball.speed};
   object.X_WO = makePose(ball.start);
   if (ball.is_mesh) {
+    object.urdf_xml.clear();
     object.uri = sim::meshFile("rain_ball", geometry::icosphereMesh(1, BALL_LEVEL));
     object.scale = Vector3::Constant(ball.radius);
-  } else {
-    const double inertia = 0.4 * *object.mass * ball.radius * ball.radius;
-    object.urdf_xml = fmt::format(
-        R"(<robot name="ball"><link name="link"><inertial><mass value="{0}"/><inertia ixx="{1}" iyy="{1}" izz="{1}" ixy="0" ixz="0" iyz="0"/>)"
-        R"(</inertial><collision><geometry><sphere radius="{2}"/></geometry></collision></link></robot>)",
-        *object.mass, inertia, ball.radius);
   }
   return object;
 }
