@@ -1,5 +1,8 @@
 #include "blem_sim/geometry/triangle_mesh.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
 #include <array>
 #include <cstdint>
 #include <unordered_map>
@@ -8,11 +11,13 @@
 namespace blem_sim::geometry {
 
 Box TriangleMesh::bounds() const {
-  Box box;
-  for (const Vector3i& e : elements) {
-    for (int k = 0; k < 3; ++k) box.extend(vertices[e[k]]);
-  }
-  return box;
+  using Range = tbb::blocked_range<std::size_t>;
+  const auto extended = [this](const Range& range, Box box) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i)
+      for (int k = 0; k < 3; ++k) box.extend(vertices[elements[i][k]]);
+    return box;
+  };
+  return tbb::parallel_reduce(Range(0, elements.size()), Box(), extended, [](const Box& a, const Box& b) { return a.merged(b); });
 }
 
 TriangleMesh transformed(const TriangleMesh& mesh, const Pose& X_AB, const Vector3& scale) {

@@ -4,7 +4,7 @@
 
 #include "blem_sim/geometry/input_error.h"
 #include "clouds/cloud_meshers.h"
-#include "surface_soup.h"
+#include "soup/surface_soup.h"
 
 namespace blem_sim::model {
 namespace {

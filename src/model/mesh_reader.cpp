@@ -9,8 +9,9 @@
 #include "blem_sim/geometry/input_error.h"
 #include "blem_sim/geometry/one_line.h"
 #include "checks/file_check.h"
-#include "polygon_split.h"
-#include "surface_soup.h"
+#include "ply/ply_rows.h"
+#include "soup/soup_faces.h"
+#include "soup/surface_soup.h"
 
 namespace blem_sim::model {
 namespace {
@@ -38,7 +39,7 @@ void checkIndices(const std::string& file, const aiScene& scene) {
 /** Gathers the meshes of a scene. */
 class SoupBuilder {
  public:
-  SoupBuilder(const aiScene& scene, SurfaceSoup* soup) : scene_(scene), soup_(*soup) {}
+  SoupBuilder(const aiScene& scene, SurfaceSoup* soup) : scene_(scene), soup_(*soup), faces_(soup) {}
 
   void appendNode(const aiNode& node, const Matrix4& X_MP) {
     const Matrix4 X_MN = X_MP * toMatrix(node.mTransformation);
@@ -46,7 +47,7 @@ class SoupBuilder {
     for (unsigned c = 0; c < node.mNumChildren; ++c) appendNode(*node.mChildren[c], X_MN);
   }
 
-  std::size_t polygons() const { return polygons_; }
+  void tell() const { faces_.tell(); }
 
  private:
   void appendMesh(const aiMesh& mesh, const Matrix4& X_MN) {
@@ -69,46 +70,30 @@ class SoupBuilder {
     if (needed > items->capacity()) items->reserve(std::max(needed, 2 * items->capacity()));
   }
 
-  /** Polygon, triangle, line or point. A mirroring node turns the winding, so that outside stays outside. */
+  /** A mirroring node turns the winding, so that outside stays outside. */
   void appendFace(const aiFace& face, int first, bool mirrored) {
-    std::vector<int>& corners = corners_;
-    corners.assign(face.mIndices, face.mIndices + face.mNumIndices);
-    for (int& corner : corners) corner += first;
-    if (mirrored) std::reverse(corners.begin(), corners.end());
-    if (corners.size() > 3) {
-      ++polygons_;
-      // assimp's own triangulation splits some concave quadrilaterals along the outer diagonal.
-      for (const Vector3i& triangle : splitPolygon(soup_.mesh.vertices, corners)) appendTriangle(triangle);
-    } else if (corners.size() == 3) {
-      appendTriangle(Vector3i(corners[0], corners[1], corners[2]));
-    } else if (!corners.empty()) {
-      soup_.mesh.elements.emplace_back(corners.front(), corners.back(), corners.back());
-    }
-  }
-
-  void appendTriangle(const Vector3i& t) {
-    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0])
-      ++soup_.collapsed;
-    else
-      soup_.mesh.elements.push_back(t);
+    corners_.assign(face.mIndices, face.mIndices + face.mNumIndices);
+    for (int& corner : corners_) corner += first;
+    if (mirrored) std::reverse(corners_.begin(), corners_.end());
+    faces_.append(corners_);
   }
 
   const aiScene& scene_;
   SurfaceSoup& soup_;
+  SoupFaces faces_;
   std::vector<int> corners_;  // of the face at hand
-  std::size_t polygons_ = 0;
 };
 
 /** Refuses a PLY of fewer vertices or faces than its header announces: assimp ends early without a word where rows are missing. */
-void checkPlyArrived(const std::string& file, const PlyCounts& announced, const aiScene& scene) {
+void checkPlyArrived(const std::string& file, const PlyHeader& announced, const aiScene& scene) {
   std::size_t vertices = 0, faces = 0;
   for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
     vertices += scene.mMeshes[m]->mNumVertices;
     faces += scene.mMeshes[m]->mNumFaces;
   }
-  if (vertices < announced.vertices || faces < announced.faces)
+  if (vertices < announced.countOf("vertex") || faces < announced.countOf("face"))
     throw InputError(fmt::format("{}: truncated PLY: {} vertices and {} faces announced, {} and {} there; write the file anew", file,
-                                 announced.vertices, announced.faces, vertices, faces));
+                                 announced.countOf("vertex"), announced.countOf("face"), vertices, faces));
 }
 
 }  // namespace
@@ -116,11 +101,15 @@ void checkPlyArrived(const std::string& file, const PlyCounts& announced, const 
 SurfaceSoup readMesh(const std::string& file, const std::string& extension) {
   SurfaceSoup soup;
   std::string bytes = readBytes(file);
-  PlyCounts announced;
+  PlyHeader announced;
   if (extension == "stl") checkStl(file, &bytes, &soup.notes);
   if (extension == "off") checkOff(file, &bytes);
   if (extension == "dae") checkCollada(file, bytes);
-  if (extension == "ply") announced = checkPly(file, bytes);
+  if (extension == "ply") {
+    announced = readPlyHeader(file, bytes);
+    if (announced.format != PlyHeader::Format::ASCII) return readBinaryPly(file, bytes, announced);
+    checkAsciiPly(file, bytes, announced);
+  }
 
   Assimp::Importer importer;
   // Root transformation: units stay, the turn to y-up goes, see loadSurface.
@@ -136,7 +125,7 @@ SurfaceSoup readMesh(const std::string& file, const std::string& extension) {
   checkIndices(file, *scene);
   SoupBuilder builder(*scene, &soup);
   builder.appendNode(*scene->mRootNode, Matrix4::Identity());
-  if (builder.polygons() > 0) soup.notes.push_back(fmt::format("{} polygons split into triangles", builder.polygons()));
+  builder.tell();
   soup.width = static_cast<int>(soup.mesh.vertices.size());
   return soup;
 }

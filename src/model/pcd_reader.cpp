@@ -9,7 +9,7 @@
 #include "blem_sim/geometry/input_error.h"
 #include "checks/file_check.h"
 #include "clouds/quiet_pcl.h"
-#include "surface_soup.h"
+#include "soup/surface_soup.h"
 
 namespace blem_sim::model {
 namespace {

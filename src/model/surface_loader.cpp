@@ -8,7 +8,7 @@
 
 #include "blem_sim/geometry/mesh_mending.h"
 #include "blem_sim/model/loaders.h"
-#include "surface_soup.h"
+#include "soup/surface_soup.h"
 
 namespace blem_sim::model {
 namespace {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "blem_sim/geometry/far_origin.h"
 #include "blem_sim/geometry/input_error.h"
 #include "numbers/nearest_name.h"
 #include "simulator_impl.h"
@@ -12,8 +13,8 @@
 namespace blem_sim::sim {
 namespace {
 
-constexpr double FARTHEST = 1e6, FASTEST = 1e5;  // [m]; [m/s] and [rad/s]
-constexpr double SAME_PLACE = 1e-6;              // of a fixed base's pose
+constexpr double FASTEST = 1e5;      // [m/s] and [rad/s]
+constexpr double SAME_PLACE = 1e-6;  // of a fixed base's pose
 
 /** Motion of a frame of a robot: its pose, and the velocity of its origin and of its axes. */
 struct FrameMotion {
@@ -23,8 +24,8 @@ struct FrameMotion {
 
 void checkState(const dynamics::BodyState& state) {
   const auto within = [](const Vector3& v, double most) { return (v.array().abs() <= most).all(); };
-  if (!state.X_WB.matrix().allFinite() || !within(state.X_WB.translation(), FARTHEST))
-    throw InputError(fmt::format("pose: needs finite numbers, not beyond {:g} m", FARTHEST));
+  if (!state.X_WB.matrix().allFinite() || !within(state.X_WB.translation(), geometry::FARTHEST_PLACE))
+    throw InputError(fmt::format("pose: needs finite numbers, not beyond {:g} m", geometry::FARTHEST_PLACE));
   if (!within(state.v_WCom, FASTEST) || !within(state.w_WB, FASTEST))
     throw InputError(fmt::format("twist: needs finite numbers, not beyond {:g} m/s and rad/s", FASTEST));
 }

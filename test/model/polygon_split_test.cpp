@@ -1,4 +1,4 @@
-#include "polygon_split.h"
+#include "soup/polygon_split.h"
 
 #include <gtest/gtest.h>
 

@@ -30,6 +30,7 @@ struct BadField {
 };
 
 const std::vector<double> NO_NUMBER = {NAN, INFINITE, -INFINITE};
+const std::vector<double> NO_PLACE = {NAN, INFINITE, -INFINITE, 1e8, -1e8};
 const std::vector<double> NOT_POSITIVE = {NAN, INFINITE, -INFINITE, 0, -1};
 const std::vector<double> NEGATIVE = {NAN, INFINITE, -1};
 const std::vector<double> NEGATIVE_OR_NAN = {NAN, -1};
@@ -52,18 +53,18 @@ std::vector<BadField> badFields() {
       {"contact.boundary_width", [](C c, double x) { c->contact.boundary_width = x; }, NEGATIVE},
       {"contact.max_contacts_per_object", [](C c, double x) { c->contact.max_contacts_per_object = static_cast<int>(x); }, {0, -1}},
       {"environments: ground: friction", [](C c, double x) { c->environments[0].contact.friction = x; }, NEGATIVE},
-      {"environments: ground: pose", [](C c, double x) { c->environments[0].X_WE.translation().x() = x; }, NO_NUMBER},
+      {"environments: ground: pose", [](C c, double x) { c->environments[0].X_WE.translation().x() = x; }, NO_PLACE},
       {"environments: ground: pose", [](C c, double x) { c->environments[0].X_WE.linear() *= x; }, {NAN, 0, -1, 2}},
       {"environments: ground: scale", [](C c, double x) { c->environments[0].scale.y() = x; }, {NAN, INFINITE, 0}},
       {"objects: cube: mass", [](C c, double x) { c->objects[0].mass = x; }, NOT_POSITIVE},
       {"objects: cube: stiffness", [](C c, double x) { c->objects[0].contact.stiffness = x; }, {NAN, 0, -1e5}},
-      {"objects: cube: pose", [](C c, double x) { c->objects[0].X_WO.translation().z() = x; }, NO_NUMBER},
+      {"objects: cube: pose", [](C c, double x) { c->objects[0].X_WO.translation().z() = x; }, NO_PLACE},
       {"objects: cube: mesh_pose", [](C c, double x) { c->objects[0].X_OM.linear()(0, 0) = x; }, {NAN, 3}},
       {"objects: cube: velocity", [](C c, double x) { c->objects[0].angular_velocity.x() = x; }, NO_NUMBER},
       {"objects: cube: inertia", [](C c, double x) { c->objects[0].inertia = Matrix3(x * Matrix3::Identity()); }, {NAN, INFINITE, 0, -1}},
       {"objects: cube: max_contacts", [](C c, double x) { c->objects[0].max_contacts = static_cast<int>(x); }, {0, -7}},
       {"objects: cube: com", [](C c, double x) { c->objects[0].com = Vector3(0, x, 0); }, NO_NUMBER},
-      {"robots: arm: pose", [](C c, double x) { c->robots[0].X_WR.translation().z() = x; }, NO_NUMBER},
+      {"robots: arm: pose", [](C c, double x) { c->robots[0].X_WR.translation().z() = x; }, NO_PLACE},
       {"robots: arm: gains", [](C c, double x) { c->robots[0].gains["hinge"].p = x; }, NEGATIVE},
       {"robots: arm: gains", [](C c, double x) { c->robots[0].gains["hinge"].i_clamp = x; }, NEGATIVE_OR_NAN},
       {"robots: arm: joint_friction", [](C c, double x) { c->robots[0].joint_friction["hinge"].dry = x; }, NEGATIVE},

@@ -9,7 +9,7 @@ MOST_FILES = 25
 # Floors of each room, and of its larger floors, the lowest first; files of a folder itself stand above its floors.
 FLOORS = {
     "geometry": [],
-    "model": ["checks", "clouds"],
+    "model": ["checks", "soup", "ply", "clouds"],
     "contact": ["features", "kernels", "neighbourhood", "kept", "evaluation", "merging", "search"],
     "reduction": ["lanes", "patches", "choice"],
     "dynamics": ["lanes", "scene", "trees", "problem", "iterate", "newton", "island", "ode"],

@@ -16,15 +16,6 @@ void checkStl(const std::string& file, std::string* bytes, std::vector<std::stri
  *  a row of their own; another reader cannot take the rows otherwise. */
 void checkOff(const std::string& file, std::string* bytes);
 
-/** Counts that a PLY's header announces. */
-struct PlyCounts {
-  std::size_t vertices = 0;
-  std::size_t faces = 0;
-};
-
-/** Refuses a PLY too short for the rows that its header announces. */
-PlyCounts checkPly(const std::string& file, const std::string& bytes);
-
 /** Refuses a COLLADA file that is not XML, or whose references and counts lead nowhere. */
 void checkCollada(const std::string& file, const std::string& bytes);
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "blem_sim/geometry/far_origin.h"
 #include "blem_sim/geometry/input_error.h"
 #include "config/range_sensor_check.h"
 #include "config/scene_limits.h"
@@ -32,6 +33,9 @@ class Fields {
   }
   void pose(const char* field, const Pose& X) const {
     finite(field, X.matrix().allFinite());
+    if ((X.translation().array().abs() > geometry::FARTHEST_PLACE).any())
+      throw InputError(
+          fmt::format("{}{}: lies beyond {:g} m; give it metres from a place near the robot", where_, field, geometry::FARTHEST_PLACE));
     if (!X.linear().isUnitary(1e-6) || X.linear().determinant() < 0)
       throw InputError(fmt::format("{}{}: is no rotation; give it orthogonal unit axes, right-handed", where_, field));
   }
