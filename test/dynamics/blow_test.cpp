@@ -6,6 +6,7 @@
 
 #include "dynamics/analytic_contacts.h"
 #include "geometry/random_shapes.h"
+#include "support/sanitizers.h"
 
 namespace blem_sim::dynamics {
 namespace {
@@ -71,7 +72,7 @@ struct Blow {
 // Bounds on impulses by the largest one do not tell: a thousandth of what stops the ball throws the plate.
 TEST(Blow, NothingGivesWay) {
   int iterations = 0;
-  for (int seed = 1; seed <= 2000; ++seed) {
+  for (int seed = 1; seed <= samples(2000); ++seed) {
     Blow blow(seed, 1e4);
     const SolveResult& result = blow.world.step(blow.dt, blow.contacts, {});
     iterations += result.iterations;
@@ -84,7 +85,7 @@ TEST(Blow, NothingGivesWay) {
 // Beyond the ratios that are solved, what gives way is told.
 TEST(Blow, TellsWhatGivesWay) {
   int told = 0;
-  for (int seed = 1; seed <= 2000; ++seed) {
+  for (int seed = 1; seed <= samples(2000); ++seed) {
     Blow blow(seed, 1e12);
     const SolveResult& result = blow.world.step(blow.dt, blow.contacts, {});
     if (blow.sinking() <= 0.03 * blow.speed + 0.02) continue;

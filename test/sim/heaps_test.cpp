@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "soak/heap.h"
+#include "support/sanitizers.h"
 
 namespace blem_sim::sim {
 namespace {
@@ -42,7 +44,7 @@ SimulationConfig tower(int cubes) {
 
 TEST(Heaps, SixtyCubesTumbleWithoutTrouble) {
   Simulator simulator(heapInBin(60, 1, dynamics::SolverSettings()), model::UriResolver());
-  const Seen seen = run(&simulator, 0.6);
+  const Seen seen = run(&simulator, SANITIZED ? 0.2 : 0.6);
   EXPECT_EQ(seen.trouble, 0);
   EXPECT_FALSE(seen.status & (STATE_NOT_FINITE | CONTACT_UNRELIABLE));
   EXPECT_LT(seen.deepest, 0.25);
@@ -60,14 +62,14 @@ TEST(Heaps, WhatAHitBringsDownDoesNotLeapIntoItsLayer) {
 // Energy gained below the bound of ENERGY_GAINED corrects depth.
 TEST(Heaps, PouredSpheresGainNoEnergy) {
   Simulator simulator(spheresInBin(64, 3, dynamics::SolverSettings()), model::UriResolver());
-  const Seen seen = run(&simulator, 0.6);
+  const Seen seen = run(&simulator, SANITIZED ? 0.2 : 0.6);
   EXPECT_EQ(seen.trouble, 0);
   EXPECT_FALSE(seen.status & (STATE_NOT_FINITE | CONTACT_UNRELIABLE | ENERGY_GAINED));
   EXPECT_LT(seen.gained, 3e-6);
 }
 
 TEST(Heaps, TowersOfTwentyAndThirtyRest) {
-  for (const int cubes : {20, 30}) {
+  for (const int cubes : SANITIZED ? std::vector<int>{20} : std::vector<int>{20, 30}) {
     Simulator simulator(tower(cubes), model::UriResolver());
     const Seen seen = run(&simulator, 2);
     EXPECT_EQ(seen.trouble, 0) << cubes;
@@ -125,12 +127,11 @@ TEST_P(Loads, RestOnTwentyPebbles) {
   expectRests(config, {0.3, 0.3, 0.05}, {0, 0, 0.0453}, 0.0425);
 }
 
-INSTANTIATE_TEST_SUITE_P(Heaps, Loads,
-                         ::testing::Values(Load{0.01, 100, 0}, Load{0.01, 100, 0.05}, Load{0.01, 100, 2}, Load{0.01, 1000, 0.3},
-                                           Load{0.005, 50, 0.1}, Load{0.02, 30, 0.3}));
+const std::vector<Load> LOADS = {{0.01, 100, 0}, {0.01, 100, 0.05}, {0.01, 100, 2}, {0.01, 1000, 0.3}, {0.005, 50, 0.1}, {0.02, 30, 0.3}};
+INSTANTIATE_TEST_SUITE_P(Heaps, Loads, ::testing::ValuesIn(LOADS.begin(), LOADS.begin() + (SANITIZED ? 2 : 6)));
 
 TEST(Heaps, APyramidRests) {
-  constexpr int ROWS = 10;
+  constexpr int ROWS = SANITIZED ? 6 : 10;
   SimulationConfig config;
   config.environments = {ground()};
   for (int row = 0; row < ROWS; ++row)
@@ -174,7 +175,7 @@ TEST(Heaps, AreTheSameOnOneThreadAndTwo) {
     dynamics::SolverSettings solver;
     solver.threads = threads;
     Simulator simulator(heapInBin(40, 2, solver), model::UriResolver());
-    run(&simulator, 0.4);
+    run(&simulator, SANITIZED ? 0.1 : 0.4);
     hashes[threads - 1] = simulator.stateHash();
   }
   EXPECT_EQ(hashes[0], hashes[1]);
@@ -182,7 +183,7 @@ TEST(Heaps, AreTheSameOnOneThreadAndTwo) {
 
 TEST(Heaps, ReplayFromAStateSavedWhileTheyTumble) {
   Simulator simulator(heapInBin(40, 2, dynamics::SolverSettings()), model::UriResolver());
-  run(&simulator, 0.3);
+  run(&simulator, SANITIZED ? 0.1 : 0.3);
   const SimulationState state = simulator.save();
   run(&simulator, 0.1);
   const std::uint64_t hash = simulator.stateHash();

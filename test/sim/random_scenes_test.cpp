@@ -31,7 +31,7 @@ class RandomScenesFound : public ::testing::TestWithParam<std::pair<int, double>
 
 TEST_P(RandomScenesFound, AreSound) {
   const auto [seed, duration] = GetParam();
-  expectSound(static_cast<std::uint64_t>(seed), SANITIZED ? 0.1 * duration : duration);
+  expectSound(static_cast<std::uint64_t>(seed), SANITIZED ? 0.05 * duration : duration);
 }
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomScenesFound,
                          ::testing::Values(std::pair(28, 1.0), std::pair(52, 1.0), std::pair(61, 1.0), std::pair(74, 1.0),
