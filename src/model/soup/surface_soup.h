@@ -21,7 +21,7 @@ struct SurfaceSoup {
   bool hasPixelGrid() const { return width > 1 && height > 1; }
 };
 
-/** Mesh by assimp. @param extension "stl", "ply", "obj", "off" or "dae" @throws InputError */
+/** Mesh by assimp; binary PLY by readBinaryPly. @param extension "stl", "ply", "obj", "off" or "dae" @throws InputError */
 SurfaceSoup readMesh(const std::string& file, const std::string& extension);
 
 /** Cloud by PCL: PCD in all its encodings; points that were not measured stay as NaN. @throws InputError */
