@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <set>
 
+#include "blem_sim/geometry/far_origin.h"
 #include "blem_sim/sim/simulator.h"
 #include "fuzz/damaged_bytes.h"
 #include "fuzz/model_targets.h"
@@ -27,7 +28,6 @@ constexpr int PATIENCE = 10;            // [s] of processor time
 constexpr int MUTATIONS_A_CHILD = 200;  // no more is lost when one of them ends it
 constexpr int SIMULATED = 10;           // each tenth mutation is simulated, too
 constexpr int STEPS = 10;
-constexpr double FARTHEST = 1e6;  // [m] in each coordinate where the body is put, as for poses that messages ask for
 
 /** Memory that a child shares with its parent. */
 struct Progress {
@@ -64,7 +64,7 @@ void simulate(const std::string& file, const Box& extents) {
   body.mass = 1;
   Vector3 place = extents.center();
   place.z() = extents.max().z() + 0.06;
-  body.X_WO = makePose(place.cwiseMax(-FARTHEST).cwiseMin(FARTHEST));
+  body.X_WO = makePose(place.cwiseMax(-geometry::FARTHEST_PLACE).cwiseMin(geometry::FARTHEST_PLACE));
   body.linear_velocity = {0, 0, -10};
   config.objects = {body};
   sim::Simulator simulator(config, model::UriResolver());
