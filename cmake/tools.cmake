@@ -7,6 +7,10 @@ target_link_libraries(blem_sim_tools PUBLIC blem_sim_sim)
 file(GLOB run_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/tools/blem_sim_run/*.cpp)
 if(run_sources)
   add_executable(blem_sim_run ${run_sources})
+  file(STRINGS ${PROJECT_SOURCE_DIR}/package.xml version REGEX "<version>")
+  string(REGEX REPLACE ".*<version>(.*)</version>.*" "\\1" version "${version}")
+  target_compile_definitions(blem_sim_run PRIVATE
+    BLEM_SIM_VERSION="${version} \(${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}\)")
   target_link_libraries(blem_sim_run blem_sim_tools)
 endif()
 

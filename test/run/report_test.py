@@ -2,12 +2,14 @@
 import csv
 import json
 import math
+import re
 import statistics
 import sys
 import unittest
+import xml.etree.ElementTree
 
 sys.path.insert(0, __file__.rsplit("/", 1)[0])
-from run_scene import RunCase  # noqa: E402
+from run_scene import RunCase, SOURCE_DIR  # noqa: E402
 
 STAGES = ["sample_commands", "motor_torque", "broad_phase", "narrow_phase", "reduction", "step_guard", "solve", "sensors", "report"]
 
@@ -140,6 +142,12 @@ class ReportTest(RunCase):
         self.assertEqual(done.returncode, 0)
         for option in ("--duration", "--set", "--trajectory", "--stats-from", "--csv", "--csv-rate", "--report", "--seed", "--package"):
             self.assertIn(option, done.stdout)
+
+    def test_version(self):
+        done = self.run_program("--version")
+        self.assertEqual(done.returncode, 0)
+        package = xml.etree.ElementTree.parse(SOURCE_DIR / "package.xml")
+        self.assertRegex(done.stdout, r"^blem_sim %s \(\w+ [0-9.]+\)\n$" % re.escape(package.findtext("version")))
 
 
 if __name__ == "__main__":

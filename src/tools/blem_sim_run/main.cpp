@@ -21,6 +21,10 @@ int main(int argc, char** argv) {
       std::fputs(blem_sim::RUN_USAGE, stdout);
       return FINISHED;
     }
+    if (options.version) {
+      std::puts("blem_sim " BLEM_SIM_VERSION);
+      return FINISHED;
+    }
     return blem_sim::run(options) ? FINISHED : NOT_FINITE;
   } catch (const blem_sim::InputError& error) {
     std::fprintf(stderr, "blem_sim_run: %s\n", error.what());

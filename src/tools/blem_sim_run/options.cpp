@@ -25,6 +25,7 @@ blem_sim_run CONFIG.yaml [options]
   --csv-rate HZ           rows per simulated second (100); 0 = every step
   --save-state FILE       writes the state at the end
   --load-state FILE       starts from a state that the same CONFIG.yaml has saved
+  --version               the version of blem_sim, and the compiler that made it
   --help                  this text
 Exit status: 0 finished; 2 bad input, told in one line; 3 the state stopped being finite.
 )";
@@ -62,8 +63,8 @@ const OptionTable<RunOptions>& optionTable() {
 
 RunOptions parseOptions(const std::vector<std::string>& arguments) {
   RunOptions options;
-  const std::vector<std::string> files = readArguments(arguments, optionTable(), {}, &options);
-  if (options.help) return options;
+  const std::vector<std::string> files = readArguments(arguments, optionTable(), {{"--version", &RunOptions::version}}, &options);
+  if (options.help || options.version) return options;
   if (files.empty()) throw InputError("CONFIG.yaml is missing; --help says more");
   if (files.size() > 1) throw InputError(fmt::format("'{}': there is a configuration already, {}", files[1], files[0]));
   options.config = files[0];

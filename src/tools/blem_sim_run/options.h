@@ -11,7 +11,7 @@
 namespace blem_sim {
 
 struct RunOptions {
-  bool help = false;
+  bool help = false, version = false;
   std::string config;
   double duration = 10;                                       ///< [s] simulated
   std::vector<std::pair<std::string, std::string>> settings;  ///< --set key.path=value, in order
