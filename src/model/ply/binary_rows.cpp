@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <cstring>
 #include <map>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -57,18 +58,33 @@ class BinaryValues {
   bool swapped_;
 };
 
-/** Walks over the rows of a binary PLY. */
+/** The rows of a binary PLY. */
 class BinaryRows {
  public:
+  /** @throws InputError where the file ends before its rows */
   BinaryRows(const std::string& file, const std::string& bytes, const PlyHeader& header)
-      : values(bytes, header.format == PlyHeader::Format::BIG), file_(file), size_(bytes.size()) {}
+      : file(file), values(bytes, header.format == PlyHeader::Format::BIG), size_(bytes.size()) {
+    std::size_t at = header.data;
+    for (const PlyElement& element : header.elements) {
+      places_[element.name] = {&element, at};
+      at = walkFrom(at, element, [](std::size_t, const PlyProperty&, std::size_t, std::size_t) {});
+    }
+  }
 
-  /**
-   * Calls visit(row, property, place of its first value, number of its values) for each row of an element and each of its properties.
-   * @param at first byte of the rows @return the first byte after them @throws InputError where the file ends before
-   */
+  /** Calls visit(row, property, place of its first value, number of its values) for each row of an element, if it is there, and each of
+   * its properties. */
   template <typename Visit>
-  std::size_t walk(const PlyElement& element, std::size_t at, Visit&& visit) const {
+  void walk(const std::string& element, Visit&& visit) const {
+    if (const auto found = places_.find(element); found != places_.end()) walkFrom(found->second.second, *found->second.first, visit);
+  }
+
+  const std::string& file;
+  const BinaryValues values;
+
+ private:
+  /** @param at first byte of the rows @return the first byte after them */
+  template <typename Visit>
+  std::size_t walkFrom(std::size_t at, const PlyElement& element, Visit&& visit) const {
     if (element.properties.empty()) return at;
     for (std::size_t row = 0; row < element.count; ++row) {
       for (const PlyProperty& property : element.properties) {
@@ -86,37 +102,28 @@ class BinaryRows {
     return at;
   }
 
-  const BinaryValues values;
-
- private:
   std::size_t countAt(const PlyElement& element, std::size_t row, std::size_t at, PlyType type) const {
     const double count = values.at(at, type);
     if (count < 0)
       throw InputError(
-          fmt::format("{}: PLY: row {} of element {} has a list of {:.0f} values; write the file anew", file_, row, element.name, count));
+          fmt::format("{}: PLY: row {} of element {} has a list of {:.0f} values; write the file anew", file, row, element.name, count));
     return static_cast<std::size_t>(count);
   }
 
   void require(const PlyElement& element, std::size_t row, std::size_t at, std::size_t bytes) const {
     if (bytes > size_ - at)
-      throw InputError(fmt::format("{}: truncated PLY: {} rows of element {} announced, {} there; write the file anew", file_,
-                                   element.count, element.name, row));
+      throw InputError(fmt::format("{}: truncated PLY: {} rows of element {} announced, {} there; write the file anew", file, element.count,
+                                   element.name, row));
   }
 
-  const std::string& file_;
   std::size_t size_;
+  std::map<std::string, std::pair<const PlyElement*, std::size_t>> places_;  // with the first byte of its rows
 };
 
-/** An element and the first byte of its rows. */
-struct PlyRows {
-  const PlyElement* element;
-  std::size_t at;
-};
-
-void readVertices(const BinaryRows& rows, const PlyRows& element, SurfaceSoup* soup) {
+void readVertices(const BinaryRows& rows, std::size_t count, SurfaceSoup* soup) {
   std::vector<Vector3>& vertices = soup->mesh.vertices;
-  vertices.resize(element.element->count);
-  rows.walk(*element.element, element.at, [&](std::size_t row, const PlyProperty& property, std::size_t place, std::size_t) {
+  vertices.resize(count);
+  rows.walk("vertex", [&](std::size_t row, const PlyProperty& property, std::size_t place, std::size_t) {
     if (property.name.size() != 1 || property.count_type) return;
     const int axis = property.name[0] - 'x';
     if (axis >= 0 && axis < 3) vertices[row][axis] = rows.values.at(place, property.type);
@@ -126,20 +133,19 @@ void readVertices(const BinaryRows& rows, const PlyRows& element, SurfaceSoup* s
 /** Reads the rows that name vertices. */
 class CornerRows {
  public:
-  CornerRows(const std::string& file, const BinaryRows& rows, std::size_t vertices)
-      : file_(file), rows_(rows), vertices_(static_cast<double>(vertices)) {}
+  CornerRows(const BinaryRows& rows, std::size_t vertices) : rows_(rows), vertices_(static_cast<double>(vertices)) {}
 
-  /** Calls visit(corners) for each row. @param lowest index that may be there: 0, or -1 as a separator */
+  /** Calls visit(corners) for each row of an element. @param lowest index that may be there: 0, or -1 as a separator */
   template <typename Visit>
-  void walk(const PlyRows& element, int lowest, Visit&& visit) {
-    rows_.walk(*element.element, element.at, [&](std::size_t row, const PlyProperty& property, std::size_t place, std::size_t count) {
+  void walk(const std::string& element, int lowest, Visit&& visit) {
+    rows_.walk(element, [&](std::size_t row, const PlyProperty& property, std::size_t place, std::size_t count) {
       if (!property.isCorners()) return;
       corners_.resize(count);
       for (std::size_t i = 0; i < count; ++i) {
         const double index = rows_.values.at(place + i * bytesOf(property.type), property.type);
         if (!(index >= lowest && index < vertices_))
-          throw InputError(fmt::format("{}: {} {} names vertex {:.0f}, but there are only {:.0f}; write the file anew", file_,
-                                       element.element->name, row, index, vertices_));
+          throw InputError(fmt::format("{}: {} {} names vertex {:.0f}, but there are only {:.0f}; write the file anew", rows_.file, element,
+                                       row, index, vertices_));
         corners_[i] = static_cast<int>(index);
       }
       visit(corners_);
@@ -147,7 +153,6 @@ class CornerRows {
   }
 
  private:
-  const std::string& file_;
   const BinaryRows& rows_;
   double vertices_;
   std::vector<int> corners_;
@@ -167,23 +172,15 @@ void appendStrips(const std::vector<int>& corners, SoupFaces* faces) {
 }  // namespace
 
 SurfaceSoup readBinaryPly(const std::string& file, const std::string& bytes, const PlyHeader& header) {
-  const BinaryRows rows(file, bytes, header);
   // All rows are there before memory is asked for; faces may come before their vertices.
-  std::map<std::string, PlyRows> places;
-  std::size_t at = header.data;
-  for (const PlyElement& element : header.elements) {
-    places[element.name] = {&element, at};
-    at = rows.walk(element, at, [](std::size_t, const PlyProperty&, std::size_t, std::size_t) {});
-  }
+  const BinaryRows rows(file, bytes, header);
   SurfaceSoup soup;
-  readVertices(rows, places.at("vertex"), &soup);
+  readVertices(rows, header.countOf("vertex"), &soup);
   soup.mesh.elements.reserve(header.countOf("face"));
   SoupFaces faces(&soup);
-  CornerRows corner_rows(file, rows, soup.mesh.vertices.size());
-  if (const auto found = places.find("face"); found != places.end())
-    corner_rows.walk(found->second, 0, [&](const std::vector<int>& corners) { faces.append(corners); });
-  if (const auto found = places.find("tristrips"); found != places.end())
-    corner_rows.walk(found->second, -1, [&](const std::vector<int>& corners) { appendStrips(corners, &faces); });
+  CornerRows corner_rows(rows, soup.mesh.vertices.size());
+  corner_rows.walk("face", 0, [&](const std::vector<int>& corners) { faces.append(corners); });
+  corner_rows.walk("tristrips", -1, [&](const std::vector<int>& corners) { appendStrips(corners, &faces); });
   faces.tell();
   soup.width = static_cast<int>(soup.mesh.vertices.size());
   return soup;

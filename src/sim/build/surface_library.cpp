@@ -55,8 +55,7 @@ std::string farAway(const Vector3& origin) {
   const double farthest = origin.cwiseAbs().maxCoeff(), step = std::nextafter(static_cast<float>(farthest), INFINITY) - farthest;
   return fmt::format(
       "lies around ({:.0f}, {:.0f}, {:.0f}) m: searched about that place; where the file is read as floats (all but .pcd and binary .ply) "
-      "it is rounded to "
-      "{:.2g} m: take that place off its coordinates and add it to the pose",
+      "it is rounded to {:.2g} m: take that place off its coordinates and add it to the pose",
       origin.x(), origin.y(), origin.z(), step);
 }
 
