@@ -59,6 +59,7 @@ class ArticulatedStepper : public Stepper {
   template <typename Work>
   void forEachIsland(const Work& work);
   void report(double dt, SolveResult* result) const;
+  void addFreeWays(const Island& island, double dt, double sign, const std::vector<Vector6>& twist, SolveResult* result) const;
   void readContacts(const StepInput& input, const Island& island, SolveResult* result) const;
   void readJoints(const StepInput& input, const Island& island, SolveResult* result);
   void remember(const StepInput& input, const SolveResult& result);
@@ -229,8 +230,24 @@ void ArticulatedStepper::finishIsland(const Scene& scene, const StepInput& input
   const SolvedIsland solved{forest_, scene, model, island->solver.found().terms, input.dt};
   island->followed = followFast(solved, motion_, space_, &way_);
   computeWrenches(solved, way_, &motion_, &space_, &result->joint_wrenches);
+  for (const int tree : model.trees)
+    if (motion_.pace[tree] == Pace::FAST) computeTwists(forest_, tree, motion_, space_.velocity, &space_.twist);
+  addFreeWays(*island, input.dt, -1, space_.twist, result);
   advanceIsland(solved, way_, &motion_, &space_);
+  addFreeWays(*island, input.dt, 1, motion_.twist, result);
   island->impacts.takeFrom(forest_, model.trees, &motion_.change);
+}
+
+// Adds, before and after the free way of fast trees, what free_ways consists of. @param sign -1 and 1 @param twist there
+void ArticulatedStepper::addFreeWays(const Island& island, double dt, double sign, const std::vector<Vector6>& twist,
+                                     SolveResult* result) const {
+  for (const int tree : island.model.trees) {
+    if (motion_.pace[tree] != Pace::FAST) continue;
+    const ForestTree& t = forest_.trees()[tree];
+    for (int i = t.first_node; i < t.node_end; ++i)
+      result->free_ways[forest_.nodes()[i].body] +=
+          sign * (motion_.reference[tree] + motion_.com[i]) - 0.5 * dt * velocityAt(twist[i], motion_.com[i]);
+  }
 }
 
 void ArticulatedStepper::readContacts(const StepInput& input, const Island& island, SolveResult* result) const {
@@ -335,6 +352,8 @@ void ArticulatedStepper::step(Scene* scene, const StepInput& input, SolveResult*
   // Nothing was changed yet: a step that broke down leaves everything as it was.
   result->finite = (space_.velocity.array().abs() < FASTEST).all();
   if (!result->finite) return;
+  const bool fast = std::find(motion_.pace.begin(), motion_.pace.end(), Pace::FAST) != motion_.pace.end();
+  result->free_ways.assign(fast ? scene->bodies().size() : 0, Vector3::Zero());
   forEachIsland([&](Island* island) { finishIsland(*scene, input, island, result); });
   report(input.dt, result);
   remember(input, *result);

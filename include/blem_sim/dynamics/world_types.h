@@ -101,6 +101,8 @@ struct SolveResult {
   std::vector<double> axis_efforts;     ///< [N m or N] of motors, outside efforts, friction and mimic joints' pull along the axes
   std::vector<double> apparent_work;    ///< [J] per contact: apparent work, at most, of departures and slips that loads end within the
                                         ///< step, and of bent paths; empty where a stepper does not know it
+  std::vector<Vector3> free_ways;       ///< [m] per body: by how much its centre of mass went beside the way of the mean velocity over what
+                                        ///< forces did to it, where a tree was followed on its free way; empty if none was
   double residual = 0;                  ///< [N] largest miss of Coulomb's law by a contact's force; 0 where a stepper does not know it
   double creep = 0;       ///< [rad/s or m/s] largest miss of velocities to momentum's balance, contacts, sticking joints, limits or loops
   int iterations = 0;     ///< of the solver, over all islands

@@ -10,9 +10,15 @@ namespace {
 // half a step beside the poses where the mass matrix holds.
 double productsShare(const ForestTree& tree, int dof) { return tree.free && dof < tree.first_dof + 6 ? 0.5 : 1; }
 
-// Change of the velocities by velocity products in a step, over the velocities: beyond, a tree is fast. One that nothing drives has an
-// energy to keep; where motors act against contacts, forces of both sides are best found together with the products.
-constexpr double FAST_ALONE = 1e-4, FAST = 0.005, FAST_AT_WORK = 0.1;
+/** A tree is fast beyond one of these. */
+struct SlowMotion {
+  double turning;  ///< change of the velocities by velocity products in a step, over the velocities
+  double bend;     ///< [rad] of a hinge in a step: products that are none at its start, as of a stretched arm, may be there at its end
+};
+
+// A tree that nothing drives has an energy to keep, and friction tells how much of it may go; where motors or friction act against
+// contacts, forces of both sides are best found together with the products.
+constexpr SlowMotion ALONE{1e-4, 1e-3}, WITH_FRICTION{1e-3, 1e-3}, WITH_MOTORS{0.005, 0.003}, AT_WORK{0.1, INFINITY};
 constexpr double SMALL_TURN = 0.05;  // [rad] of a free root in a step: beyond, products of the step's start are not those of its end
 // Trees in loops, and those with mimic joints, are solved with their products. Beyond this the products would add energy without bound:
 // they are left out, and the trees are braked.
@@ -38,13 +44,17 @@ double turning(const FreeStart& start, const Eigen::VectorXd& mass_velocity) {
 
 bool isFast(const ForestMotion& motion, int tree) { return motion.pace[tree] == Pace::FAST; }
 
-bool isDriven(const Forest& forest, int tree, const StepInput& input) {
+// A motor that may not push is none.
+bool hasMotor(const JointDrive& d) { return d.givenEffort() != 0 || (d.max_effort > 0 && (d.stiffness > 0 || d.damping > 0)); }
+
+bool isDriven(const JointDrive& d) { return hasMotor(d) || d.dry_friction > 0 || d.viscous_friction > 0; }
+
+/** Whether any joint of the tree is so. */
+template <typename Is>
+bool hasJoint(const Forest& forest, int tree, const StepInput& input, const Is& is) {
   const ForestTree& t = forest.trees()[tree];
-  return std::any_of(forest.nodes().begin() + t.first_node, forest.nodes().begin() + t.node_end, [&](const ForestNode& n) {
-    if (n.dofs != 1) return false;
-    const JointDrive& d = input.drives[n.joint];
-    return d.givenEffort() != 0 || d.stiffness > 0 || d.damping > 0 || d.dry_friction > 0 || d.viscous_friction > 0;
-  });
+  return std::any_of(forest.nodes().begin() + t.first_node, forest.nodes().begin() + t.node_end,
+                     [&](const ForestNode& n) { return n.dofs == 1 && is(input.drives[n.joint]); });
 }
 
 bool isTied(const Forest& forest, int tree) {
@@ -55,15 +65,34 @@ bool isTied(const Forest& forest, int tree) {
          std::any_of(loops.begin(), loops.end(), [&](const LoopClosure& l) { return belongs(l.child) || belongs(l.parent); });
 }
 
-bool mayFollowAlone(const Forest& forest, const StepInput& input, int tree, const ForestMotion& motion) {
-  return motion.pace[tree] == Pace::SLOW && !isTied(forest, tree) && !isDriven(forest, tree, input);
+/** [rad] Largest turn of a hinge in a step at these velocities, if the tree's mass matrix depends on it. */
+double bend(const FreeStart& start) {
+  const ForestTree& t = start.forest.trees()[start.tree];
+  if (t.dofCount() < 2) return 0;
+  double most = 0;
+  for (int i = t.first_node; i < t.node_end; ++i) {
+    const ForestNode& n = start.forest.nodes()[i];
+    if (n.dofs == 1 && n.kind == JointKind::REVOLUTE) most = std::max(most, start.dt * std::abs(start.velocity[n.first_dof]));
+  }
+  return most;
 }
 
-Pace paceOf(const Forest& forest, const StepInput& input, bool touched, int tree, double turning) {
-  if (isTied(forest, tree)) return turning > TOO_FAST ? Pace::TOO_FAST : Pace::SLOW;
-  const bool driven = isDriven(forest, tree, input);
-  const double fast = !driven ? FAST_ALONE : touched ? FAST_AT_WORK : FAST;
-  return turning > fast ? Pace::FAST : Pace::SLOW;
+bool isBeyond(const SlowMotion& slow, const FreeStart& start, double turning) { return turning > slow.turning || bend(start) > slow.bend; }
+
+bool mayFollowAlone(const Forest& forest, const StepInput& input, int tree, const ForestMotion& motion) {
+  return motion.pace[tree] == Pace::SLOW && !isTied(forest, tree) && !hasJoint(forest, tree, input, isDriven);
+}
+
+const SlowMotion& slowMotion(const Forest& forest, int tree, const StepInput& input, bool touched) {
+  if (!hasJoint(forest, tree, input, isDriven)) return ALONE;
+  if (touched) return AT_WORK;
+  return hasJoint(forest, tree, input, hasMotor) ? WITH_MOTORS : WITH_FRICTION;
+}
+
+Pace paceOf(const FreeStart& start, const StepInput& input, bool touched, double turning) {
+  if (!isBeyond(ALONE, start, turning)) return Pace::SLOW;
+  if (isTied(start.forest, start.tree)) return turning > TOO_FAST ? Pace::TOO_FAST : Pace::SLOW;
+  return isBeyond(slowMotion(start.forest, start.tree, input, touched), start, turning) ? Pace::FAST : Pace::SLOW;
 }
 
 // Joints that answer stiffly keep their velocity on the way, as far as motor, friction and limits reach.
@@ -140,8 +169,8 @@ void setFreeMomentum(const TreeAhead& ahead, ForestMotion* motion, SolverSpace* 
   space->direction.segment(first, count) = motion->velocity.segment(first, count) + 0.5 * motion->change.segment(first, count);
   computeProducts(forest, tree, space->direction, motion);
   multiply({forest, tree, motion->mass}, motion->velocity, &space->mass_velocity, &space->paths);
-  const double fast = turning({forest, tree, input.dt, *motion, motion->velocity}, space->mass_velocity);
-  motion->pace[tree] = fast > FAST_ALONE ? paceOf(forest, input, touched, tree, fast) : Pace::SLOW;
+  const FreeStart start{forest, tree, input.dt, *motion, motion->velocity};
+  motion->pace[tree] = paceOf(start, input, touched, turning(start, space->mass_velocity));
   if (motion->pace[tree] != Pace::SLOW) motion->products.segment(first, count).setZero();
   space->free_momentum.segment(first, count) = space->mass_velocity.segment(first, count);
   if (t.free) space->free_momentum.segment<6>(first) = motion->momentum[tree];
@@ -174,7 +203,7 @@ double correctProducts(const Forest& forest, const StepInput& input, int tree, F
   space->direction.segment(first, count) = 0.5 * (motion->velocity.segment(first, count) + space->velocity.segment(first, count));
   computeProducts(forest, tree, space->direction, motion);
   if (mayFollowAlone(forest, input, tree, *motion) &&
-      turning({forest, tree, input.dt, *motion, space->velocity}, space->mass_velocity) > FAST_ALONE) {
+      turning({forest, tree, input.dt, *motion, space->velocity}, space->mass_velocity) > ALONE.turning) {
     motion->products.segment(first, count) = space->gradient.segment(first, count);
     followAlone(forest, input, tree, motion, space);
     return INFINITY;

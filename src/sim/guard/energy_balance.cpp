@@ -45,7 +45,7 @@ void EnergyBalance::start(const dynamics::World& world) {
 
 EnergyGain EnergyBalance::addSolve(const dynamics::World& world, const MadeSolve& made) {
   tie(world, made);
-  bookBodies(world, made.dt, made.before, made.after);
+  bookBodies(world, made);
   bookLoads(world, made.dt, made.before, made.after);
   bookJoints(world, made.dt, made.result.axis_efforts);
   bookSprings(made);
@@ -81,20 +81,22 @@ EnergyBalance::Book& EnergyBalance::bookOf(const dynamics::ContactConstraint& co
 
 // Steppers move bodies by the velocity at a step's end, while kinetic energy changes by forces times mean velocity: the way that weights
 // work along is the mean velocity's. Without this, flight would lose m g^2 dt^2 / 2 a step and a bounce gain it back.
-void EnergyBalance::bookBodies(const dynamics::World& world, double dt, const std::vector<dynamics::BodyState>& before,
-                               const std::vector<dynamics::BodyState>& after) {
+void EnergyBalance::bookBodies(const dynamics::World& world, const MadeSolve& made) {
+  const std::vector<dynamics::BodyState>&before = made.before, &after = made.after;
   coms_.resize(after.size());
+  ways_.resize(after.size());
   held_.resize(after.size(), 0);
   for (std::size_t b = 0; b < after.size(); ++b) {
     const geometry::MassProperties& body = world.bodySpec(static_cast<int>(b)).inertial;
     const dynamics::BodyState &old = before[b], &now = after[b];
     coms_[b] = old.X_WB * body.com;
-    const Vector3 way = now.X_WB * body.com - coms_[b] - 0.5 * dt * (now.v_WCom - old.v_WCom);
+    ways_[b] = now.X_WB * body.com - coms_[b] - 0.5 * made.dt * (now.v_WCom - old.v_WCom);
+    if (!made.result.free_ways.empty()) ways_[b] -= made.result.free_ways[b];
     const Vector3 old_spin = old.X_WB.linear().transpose() * old.w_WB, spin = now.X_WB.linear().transpose() * now.w_WB;
     const double kinetic = 0.5 * (body.mass * now.v_WCom.squaredNorm() + spin.dot(body.inertia * spin));
     const double kinetic_rise = 0.5 * (body.mass * (now.v_WCom - old.v_WCom).dot(now.v_WCom + old.v_WCom) +
                                        (spin - old_spin).dot(body.inertia * (spin + old_spin)));
-    const double work = body.mass * world.gravity().dot(way);
+    const double work = body.mass * world.gravity().dot(ways_[b]);
     Book& book = books_[islands_.islandOf(static_cast<int>(b))];
     book.rise += kinetic_rise - work;
     book.moved += kinetic + std::abs(work);
@@ -110,9 +112,8 @@ void EnergyBalance::bookLoads(const dynamics::World& world, double dt, const std
     const dynamics::BodyState &old = before[load.body], &now = after[load.body];
     const Vector3& com = world.bodySpec(load.body).inertial.com;
     const Vector3 arm = old.X_WB.linear() * (load.p_B - com);
-    const Vector3 way = now.X_WB * com - old.X_WB * com - 0.5 * dt * (now.v_WCom - old.v_WCom);
     const Vector3 turn = 0.5 * dt * (old.w_WB + now.w_WB);
-    const double work = load.wrench.force.dot(way) + (load.wrench.torque + arm.cross(load.wrench.force)).dot(turn);
+    const double work = load.wrench.force.dot(ways_[load.body]) + (load.wrench.torque + arm.cross(load.wrench.force)).dot(turn);
     Book& book = books_[islands_.islandOf(load.body)];
     book.rise -= work;
     book.moved += std::abs(work);

@@ -70,8 +70,7 @@ class EnergyBalance {
   };
 
   void tie(const dynamics::World& world, const MadeSolve& made);
-  void bookBodies(const dynamics::World& world, double dt, const std::vector<dynamics::BodyState>& before,
-                  const std::vector<dynamics::BodyState>& after);
+  void bookBodies(const dynamics::World& world, const MadeSolve& made);
   void bookLoads(const dynamics::World& world, double dt, const std::vector<dynamics::BodyState>& before,
                  const std::vector<dynamics::BodyState>& after);
   /** @param efforts along the joints' axes */
@@ -92,6 +91,7 @@ class EnergyBalance {
   BodyIslands islands_;
   std::vector<Book> books_;
   std::vector<Vector3> coms_;  // [m] of bodies at its start, world axes
+  std::vector<Vector3> ways_;  // [m] of theirs that weights work along: those of the mean velocity over what forces did to it
   std::vector<Landing> landings_;
 };
 

@@ -209,6 +209,49 @@ TEST(EnergyOutOfNothing, IsNoneWhereAnImpactSetsARodSpinning) {
   EXPECT_LT(out_of_nothing, 1e-9);
 }
 
+/** An arm of two bars, level at first, that falls and stretches again and again. @param elbow more of its second joint */
+RobotConfig fallingArm(const std::string& type, const std::string& elbow) {
+  const auto bar = [](const std::string& name) {
+    return "<link name=\"" + name + R"("><inertial><origin xyz="0.15 0 0"/><mass value="1"/>
+      <inertia ixx="0.0007" iyy="0.008" izz="0.008" ixy="0" ixz="0" iyz="0"/></inertial></link>)";
+  };
+  return robot("arm",
+               "<robot name=\"arm\"><link name=\"base\"/>" + bar("upper") + bar("lower") +
+                   R"(<joint name="shoulder" type="continuous"><parent link="base"/><child link="upper"/><axis xyz="0 1 0"/></joint>
+      <joint name="elbow" type=")" +
+                   type + R"("><parent link="upper"/><child link="lower"/><origin xyz="0.3 0 0"/><axis xyz="0 1 0"/>)" + elbow +
+                   "</joint></robot>",
+               true);
+}
+
+/** Velocity products of a straight arm do not tell how fast its mass matrix changes. */
+TEST(EnergyOutOfNothing, IsNoneWhereAnArmStretches) {
+  struct Elbow {
+    const char *type, *more;
+    double most;  // [J]
+  };
+  const Elbow elbows[] = {{"continuous", "", 1e-7},
+                          {"continuous", R"(<dynamics damping="0.001"/>)", 3e-6},
+                          {"continuous", R"(<dynamics damping="0" friction="0.01"/>)", 3e-6},
+                          {"revolute", R"(<limit lower="-1" upper="1" effort="0" velocity="10"/>)", 1e-6}};
+  for (const Elbow& elbow : elbows) {
+    SimulationConfig config;
+    config.robots = {fallingArm(elbow.type, elbow.more)};
+    Simulator simulator(config, model::UriResolver());
+    double out_of_nothing = 0, fastest = 0;
+    std::uint32_t status = 0;
+    for (int i = 0; i < 4000; ++i) {
+      const StepReport& report = simulator.step();
+      out_of_nothing = std::max(out_of_nothing, report.energy_out_of_nothing);
+      fastest = std::max(fastest, std::abs(simulator.world().jointState(1).velocity));
+      status |= report.status;
+    }
+    EXPECT_LT(out_of_nothing, elbow.most) << elbow.more;
+    EXPECT_EQ(status & ENERGY_GAINED, 0u) << elbow.more;
+    EXPECT_GT(fastest, 10) << elbow.more;
+  }
+}
+
 TEST(EnergyGainedBit, IsNotSetByWhatContactsDoOnPurpose) {
   const Vector3 size = Vector3::Constant(0.1);
   EXPECT_EQ(statusOf(onGround({box("deep", size, 1, {0, 0, 0.0515})}), 0.3) & ENERGY_GAINED, 0u);
