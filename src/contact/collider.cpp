@@ -59,16 +59,17 @@ CollisionGeometry::CollisionGeometry(std::shared_ptr<const geometry::TriangleMes
 // Children lie behind their parents.
 void CollisionGeometry::findOwners() {
   const std::vector<geometry::Bvh::Node>& nodes = bvh_.nodes();
-  owners_.assign(nodes.size(), 0);
+  const auto asks = [&topology = *topology_](std::uint32_t element) {
+    return topology.ownedVertices(static_cast<int>(element)) != 0 || topology.ownedEdges(static_cast<int>(element)) != 0;
+  };
+  owners_.resize(nodes.size());
   for (std::size_t n = nodes.size(); n-- > 0;) {
     if (!nodes[n].isLeaf()) {
       owners_[n] = owners_[nodes[n].first] | owners_[nodes[n].first + 1];
       continue;
     }
-    for (std::uint32_t i = nodes[n].first; i < nodes[n].first + nodes[n].count; ++i) {
-      const int element = static_cast<int>(bvh_.order()[i]);
-      owners_[n] |= topology_->ownedVertices(element) != 0 || topology_->ownedEdges(element) != 0;
-    }
+    const std::uint32_t* const first = bvh_.order().data() + nodes[n].first;
+    owners_[n] = std::any_of(first, first + nodes[n].count, asks);
   }
 }
 

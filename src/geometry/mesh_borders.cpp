@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
+#include "blem_sim/geometry/collected.h"
 #include "place_hash.h"
 
 namespace blem_sim::geometry {
@@ -115,19 +115,17 @@ class Matcher {
 }  // namespace
 
 std::vector<Border> bordersOf(const TriangleMesh& mesh, const MeshTopology& topology) {
-  std::vector<Border> borders;
-  for (std::size_t face = 0; face < mesh.elements.size(); ++face) {
-    if (!topology.isFace(static_cast<int>(face))) continue;
+  return collected<Border>(static_cast<int>(mesh.elements.size()), [&](int face, std::vector<Border>* borders) {
+    if (!topology.isFace(face)) return;
     const Vector3i& corners = mesh.elements[face];
     for (int side = 0; side < 3; ++side) {
-      const int edge = topology.edgeOf(static_cast<int>(face), side);
+      const int edge = topology.edgeOf(face, side);
       if (topology.facesOf(edge).size() != 1) continue;
       const int a = corners[side], b = corners[(side + 1) % 3];
       const double length = (mesh.vertices[b] - mesh.vertices[a]).norm();
-      borders.push_back({static_cast<int>(face), side, a, b, length, topology.inward(mesh, edge, static_cast<int>(face)), corners});
+      borders->push_back({face, side, a, b, length, topology.inward(mesh, edge, face), corners});
     }
-  }
-  return borders;
+  });
 }
 
 bool mayContinue(const Border& e, const Border& f) {
@@ -145,24 +143,12 @@ bool areNeighbours(const TriangleMesh& mesh, const MeshTopology& topology, int v
   return std::any_of(edges.begin(), edges.end(), [&](int edge) { return topology.otherEnd(mesh, edge, vertex) == other; });
 }
 
-VertexClusters::VertexClusters(int vertices) : parent_(vertices) { std::iota(parent_.begin(), parent_.end(), 0); }
-
-int VertexClusters::root(int vertex) {
-  while (parent_[vertex] != vertex) vertex = parent_[vertex] = parent_[parent_[vertex]];
-  return vertex;
-}
-
-void VertexClusters::join(int vertex, int other) {
-  const int a = root(vertex), b = root(other);
-  parent_[std::max(a, b)] = std::min(a, b);
-}
-
 TriangleMesh VertexClusters::applied(const TriangleMesh& mesh, const std::vector<Vector3>& places) {
   TriangleMesh joined;
   joined.vertices = places;
   std::vector<int> members(places.size(), 1);
   for (int i = 0; i < static_cast<int>(places.size()); ++i) {
-    const int into = root(i);
+    const int into = sets_.first(i);
     if (into == i) continue;
     ++members[into];
     joined.vertices[into] += places[i] - places[into];
@@ -173,7 +159,7 @@ TriangleMesh VertexClusters::applied(const TriangleMesh& mesh, const std::vector
   joined.elements.reserve(mesh.elements.size());
   for (std::size_t i = 0; i < mesh.elements.size(); ++i) {
     const Vector3i& e = mesh.elements[i];
-    const Vector3i into(root(e[0]), root(e[1]), root(e[2]));
+    const Vector3i into(sets_.first(e[0]), sets_.first(e[1]), sets_.first(e[2]));
     const bool collapsed = into[0] == into[1] || into[1] == into[2] || into[2] == into[0];
     if (!collapsed || !mesh.isTriangle(static_cast<int>(i))) joined.elements.push_back(into);
   }
@@ -183,7 +169,7 @@ TriangleMesh VertexClusters::applied(const TriangleMesh& mesh, const std::vector
 std::vector<double> VertexClusters::spreads(const TriangleMesh& joined, const std::vector<Vector3>& places) {
   std::vector<double> spreads(places.size(), 0);
   for (int i = 0; i < static_cast<int>(places.size()); ++i) {
-    const int into = root(i);
+    const int into = sets_.first(i);
     spreads[into] = std::max(spreads[into], (places[i] - joined.vertices[into]).norm());
   }
   return spreads;

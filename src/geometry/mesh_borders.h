@@ -5,6 +5,7 @@
 
 #include "blem_sim/geometry/mesh_mending.h"
 #include "blem_sim/geometry/mesh_topology.h"
+#include "threads/disjoint_sets.h"
 
 namespace blem_sim::geometry {
 
@@ -31,9 +32,8 @@ bool areNeighbours(const TriangleMesh& mesh, const MeshTopology& topology, int v
 /** Sets of vertices that become one, at the mean of their places. */
 class VertexClusters {
  public:
-  explicit VertexClusters(int vertices);
-  int root(int vertex);
-  void join(int vertex, int other);
+  explicit VertexClusters(int vertices) : sets_(vertices) {}
+  void join(int vertex, int other) { sets_.join(vertex, other); }
 
   /** The mesh with one vertex per cluster; triangles that lose a corner are dropped. @param places of the vertices before any joining */
   TriangleMesh applied(const TriangleMesh& mesh, const std::vector<Vector3>& places);
@@ -42,7 +42,7 @@ class VertexClusters {
   std::vector<double> spreads(const TriangleMesh& joined, const std::vector<Vector3>& places);
 
  private:
-  std::vector<int> parent_;
+  DisjointSets sets_;
 };
 
 /** Joins the ends of borders that lie side by side from end to end. */

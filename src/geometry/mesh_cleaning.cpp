@@ -3,15 +3,16 @@
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <functional>
 #include <utility>
 
 #include "blem_sim/geometry/triangle_mesh.h"
-#include "first_equals.h"
 #include "place_hash.h"
 #include "sides_by_vertex.h"
+#include "threads/first_equals.h"
 
 namespace blem_sim::geometry {
 namespace {
@@ -47,19 +48,32 @@ std::uint64_t elementHash(const Vector3i& sorted_corners) {
   return h;
 }
 
+/** Keeps the items for whose index isKept(index) holds, in their order. */
+template <typename T, typename IsKept>
+void keepOnly(IsKept&& isKept, std::vector<T>* items) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < items->size(); ++i) {
+    if (isKept(i)) (*items)[kept++] = (*items)[i];
+  }
+  items->resize(kept);
+}
+
+/** Whether firstEquals found no equal ones. */
+bool allDiffer(const std::vector<int>& first) {
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    if (first[i] != static_cast<int>(i)) return false;
+  }
+  return true;
+}
+
 /** Drops elements that repeat an earlier one, either winding. @return their number */
 int dropRepeated(std::vector<Vector3i>* elements) {
-  std::vector<Vector3i> keys(elements->size());
-  tbb::parallel_for(std::size_t{0}, keys.size(), [&](std::size_t i) { keys[i] = sorted((*elements)[i]); });
+  const auto key = [elements](int i) { return sorted((*elements)[static_cast<std::size_t>(i)]); };
+  const std::size_t given = elements->size();
   const std::vector<int> first = firstEquals(
-      static_cast<int>(keys.size()), [&](int i) { return elementHash(keys[i]); }, [&](int i, int j) { return keys[i] == keys[j]; });
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < elements->size(); ++i) {
-    if (first[i] == static_cast<int>(i)) (*elements)[kept++] = (*elements)[i];
-  }
-  const int dropped = static_cast<int>(elements->size() - kept);
-  elements->resize(kept);
-  return dropped;
+      static_cast<int>(given), [&](int i) { return elementHash(key(i)); }, [&](int i, int j) { return key(i) == key(j); });
+  if (!allDiffer(first)) keepOnly([&](std::size_t i) { return first[i] == static_cast<int>(i); }, elements);
+  return static_cast<int>(given - elements->size());
 }
 
 /** Counts the edges of triangles by their numbers of triangles. */
@@ -92,29 +106,25 @@ void countEdges(const TriangleMesh& mesh, MeshReport* report) {
 enum class Fate : std::uint8_t { KEPT, INVALID, NONFINITE, DEGENERATE };
 
 /** Drops the elements whose indices or coordinates cannot be used, and those without area. */
-std::vector<Vector3i> usableElements(const TriangleMesh& soup, RepeatedIndices repeated, MeshReport* report) {
-  const int vertex_count = static_cast<int>(soup.vertices.size());
+void dropUnusable(RepeatedIndices repeated, TriangleMesh* mesh, MeshReport* report) {
+  const int vertex_count = static_cast<int>(mesh->vertices.size());
   // Triangles are told from segments by the file's own indices: after welding a collapsed triangle would look like a segment.
   const bool segments_allowed = repeated == RepeatedIndices::ARE_SEGMENTS_AND_POINTS;
   const auto fateOf = [&](const Vector3i& e) {
     if (e.minCoeff() < 0 || e.maxCoeff() >= vertex_count) return Fate::INVALID;
-    const Vector3 &a = soup.vertices[e[0]], &b = soup.vertices[e[1]], &c = soup.vertices[e[2]];
+    const Vector3 &a = mesh->vertices[e[0]], &b = mesh->vertices[e[1]], &c = mesh->vertices[e[2]];
     if (!isFinite(a) || !isFinite(b) || !isFinite(c)) return Fate::NONFINITE;
     const bool is_triangle = e[0] != e[1] && e[1] != e[2] && e[2] != e[0];
     return (is_triangle ? hasArea(a, b, c) : segments_allowed) ? Fate::KEPT : Fate::DEGENERATE;
   };
-  std::vector<Fate> fates(soup.elements.size());
-  tbb::parallel_for(std::size_t{0}, fates.size(), [&](std::size_t i) { fates[i] = fateOf(soup.elements[i]); });
+  std::vector<Fate> fates(mesh->elements.size());
+  tbb::parallel_for(std::size_t{0}, fates.size(), [&](std::size_t i) { fates[i] = fateOf(mesh->elements[i]); });
   const auto count = [&](Fate fate) { return static_cast<int>(std::count(fates.begin(), fates.end(), fate)); };
   report->invalid = count(Fate::INVALID);
   report->nonfinite = count(Fate::NONFINITE);
   report->degenerate = count(Fate::DEGENERATE);
-  std::vector<Vector3i> usable;
-  usable.reserve(static_cast<std::size_t>(count(Fate::KEPT)));
-  for (std::size_t i = 0; i < fates.size(); ++i) {
-    if (fates[i] == Fate::KEPT) usable.push_back(soup.elements[i]);
-  }
-  return usable;
+  if (report->invalid + report->nonfinite + report->degenerate == 0) return;
+  keepOnly([&](std::size_t i) { return fates[i] == Fate::KEPT; }, &mesh->elements);
 }
 
 /** For each vertex the first one at exactly its position; a vertex that is not finite is alone. */
@@ -128,6 +138,7 @@ std::vector<int> firstAt(const std::vector<Vector3>& vertices) {
 /** Lets equal positions share the vertex there that is used first. */
 void weld(const std::vector<Vector3>& vertices, std::vector<Vector3i>* elements, MeshReport* report) {
   const std::vector<int> first = firstAt(vertices);
+  if (allDiffer(first)) return;
   std::vector<int> used_at(vertices.size(), NONE);
   std::vector<std::uint8_t> used(vertices.size(), 0);
   for (Vector3i& e : *elements) {
@@ -141,34 +152,47 @@ void weld(const std::vector<Vector3>& vertices, std::vector<Vector3i>* elements,
   }
 }
 
-/** Drops the vertices that no element uses; the others keep their order. */
-TriangleMesh withoutUnusedVertices(const std::vector<Vector3>& vertices, std::vector<Vector3i> elements) {
-  std::vector<int> new_index(vertices.size(), NONE);
-  for (const Vector3i& e : elements) {
-    for (int k = 0; k < 3; ++k) new_index[e[k]] = 0;
-  }
-  TriangleMesh mesh;
-  mesh.vertices.reserve(vertices.size() - static_cast<std::size_t>(std::count(new_index.begin(), new_index.end(), NONE)));
-  for (std::size_t i = 0; i < vertices.size(); ++i) {
-    if (new_index[i] == NONE) continue;
-    new_index[i] = static_cast<int>(mesh.vertices.size());
-    mesh.vertices.push_back(vertices[i]);
-  }
-  tbb::parallel_for(std::size_t{0}, elements.size(), [&](std::size_t i) {
-    Vector3i& e = elements[i];
-    e = {new_index[e[0]], new_index[e[1]], new_index[e[2]]};
+/** Whether an element uses the vertex, by vertex. */
+std::vector<std::uint8_t> usedVertices(const TriangleMesh& mesh) {
+  std::vector<std::atomic<std::uint8_t>> used(mesh.vertices.size());
+  tbb::parallel_for(std::size_t{0}, mesh.elements.size(), [&](std::size_t i) {
+    for (int k = 0; k < 3; ++k) used[mesh.elements[i][k]].store(1, std::memory_order_relaxed);
   });
-  elements.shrink_to_fit();
-  mesh.elements = std::move(elements);
-  return mesh;
+  return std::vector<std::uint8_t>(used.begin(), used.end());
+}
+
+/** Drops the vertices that no element uses; the others keep their order. */
+void dropUnusedVertices(TriangleMesh* mesh) {
+  const std::vector<std::uint8_t> used = usedVertices(*mesh);
+  if (std::find(used.begin(), used.end(), 0) == used.end()) return;
+  std::vector<int> used_below(used.size());
+  int count = 0;
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    used_below[i] = count;
+    count += used[i];
+  }
+  tbb::parallel_for(std::size_t{0}, mesh->elements.size(), [&](std::size_t i) {
+    Vector3i& e = mesh->elements[i];
+    e = {used_below[e[0]], used_below[e[1]], used_below[e[2]]};
+  });
+  keepOnly([&](std::size_t i) { return used[i] != 0; }, &mesh->vertices);
 }
 
 void describeResult(const TriangleMesh& mesh, MeshReport* report) {
+  const int elements = static_cast<int>(mesh.elements.size());
+  const auto count = [elements](auto&& isOne) {
+    return tbb::parallel_reduce(
+        tbb::blocked_range<int>(0, elements), 0,
+        [&](const tbb::blocked_range<int>& range, int sum) {
+          for (int i = range.begin(); i < range.end(); ++i) sum += isOne(i);
+          return sum;
+        },
+        std::plus<int>());
+  };
   report->vertices = static_cast<int>(mesh.vertices.size());
-  report->triangles = report->segments = report->points = 0;
-  for (int i = 0; i < static_cast<int>(mesh.elements.size()); ++i) {
-    ++(mesh.isTriangle(i) ? report->triangles : mesh.isPoint(i) ? report->points : report->segments);
-  }
+  report->triangles = count([&](int i) { return mesh.isTriangle(i); });
+  report->points = report->triangles == elements ? 0 : count([&](int i) { return mesh.isPoint(i); });
+  report->segments = elements - report->triangles - report->points;
   report->extents = mesh.bounds();
   countEdges(mesh, report);
 }
@@ -177,14 +201,16 @@ void clearCounts(MeshReport* report) { report->degenerate = report->duplicate = 
 
 }  // namespace
 
-TriangleMesh cleanMesh(const TriangleMesh& soup, MeshReport* report, RepeatedIndices repeated) {
+TriangleMesh cleanMesh(TriangleMesh mesh, MeshReport* report, RepeatedIndices repeated) {
   MeshReport unwanted;
   if (!report) report = &unwanted;
   clearCounts(report);
-  std::vector<Vector3i> elements = usableElements(soup, repeated, report);
-  weld(soup.vertices, &elements, report);
-  report->duplicate = dropRepeated(&elements);
-  TriangleMesh mesh = withoutUnusedVertices(soup.vertices, std::move(elements));
+  dropUnusable(repeated, &mesh, report);
+  weld(mesh.vertices, &mesh.elements, report);
+  report->duplicate = dropRepeated(&mesh.elements);
+  dropUnusedVertices(&mesh);
+  mesh.vertices.shrink_to_fit();
+  mesh.elements.shrink_to_fit();
   describeResult(mesh, report);
   return mesh;
 }

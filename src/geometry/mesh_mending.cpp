@@ -41,25 +41,23 @@ std::vector<double> kept(const std::vector<double>& values, const TriangleMesh& 
 bool closeCracks(const MeshTopology& topology, TriangleMesh* mesh, std::vector<double>* noise, MeshReport* report, MeshMending* what) {
   const std::vector<Border> borders = bordersOf(*mesh, topology);
   if (borders.empty()) return false;
-  const std::vector<Vector3> places = mesh->vertices;
-  VertexClusters clusters(static_cast<int>(places.size()));
+  VertexClusters clusters(static_cast<int>(mesh->vertices.size()));
   joinMatching(*mesh, topology, borders, &clusters, what);
-  std::optional<MeshTopology> joined_topology;
-  const std::size_t given = mesh->elements.size();
-  if (what->cracks > 0) {
-    *mesh = clusters.applied(*mesh, places);
-    joined_topology.emplace(*mesh);
-  }
-  const MeshTopology& current = joined_topology ? *joined_topology : topology;
-  const std::vector<Border> left = joined_topology ? bordersOf(*mesh, current) : borders;
-  const std::vector<EdgeSplit> splits = joinOverlapping(*mesh, current, left, &clusters, what);
+  std::optional<TriangleMesh> matched;
+  std::optional<MeshTopology> matched_topology;
+  if (what->cracks > 0) matched_topology.emplace(matched.emplace(clusters.applied(*mesh, mesh->vertices)));
+  const TriangleMesh& current = matched ? *matched : *mesh;
+  const MeshTopology& current_topology = matched ? *matched_topology : topology;
+  const std::vector<Border> left = matched ? bordersOf(current, current_topology) : borders;
+  const std::vector<EdgeSplit> splits = joinOverlapping(current, current_topology, left, &clusters, what);
   if (what->cracks == 0 && splits.empty()) return false;
-  std::size_t lost = given - mesh->elements.size();
-  const TriangleMesh split = splitMesh(*mesh, splits, what);
-  const TriangleMesh joined = clusters.applied(split, places);
+  std::size_t lost = mesh->elements.size() - current.elements.size();
+  const TriangleMesh split = splitMesh(current, splits, what);
+  const TriangleMesh joined = clusters.applied(split, mesh->vertices);
   lost += split.elements.size() - joined.elements.size();
+  const std::vector<double> spreads = clusters.spreads(joined, mesh->vertices);
   *mesh = recleaned(joined, static_cast<int>(lost), report);
-  *noise = kept(clusters.spreads(joined, places), joined, *mesh);
+  *noise = kept(spreads, joined, *mesh);
   return true;
 }
 

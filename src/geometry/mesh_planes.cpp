@@ -5,11 +5,14 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
-#include <numeric>
+#include <optional>
 #include <utility>
 
+#include "blem_sim/geometry/collected.h"
 #include "curved_patches.h"
+#include "threads/disjoint_sets.h"
 
 namespace blem_sim::geometry {
 namespace {
@@ -35,12 +38,29 @@ constexpr double MAX_MOVE = 4;
 /** Planes whose normals differ by less than this have no intersection worth the name. */
 constexpr double PARALLEL = 1e-3;
 
-/** Triangles that continue one another, with sums for their least-squares plane. */
-struct Patch {
-  Vector3 reference = Vector3::Zero();  ///< [m] near the patch, to sum from
+/** Sums over triangles for their least-squares plane. */
+struct Moments {
   double area = 0;
   Vector3 first = Vector3::Zero();   ///< [m^3]
   Matrix3 second = Matrix3::Zero();  ///< [m^4]
+
+  /** Those of one triangle. */
+  static Moments of(const Vector3& a, const Vector3& b, const Vector3& c) {
+    const Vector3 sum = a + b + c;
+    const double area = 0.5 * (b - a).cross(c - a).norm();
+    return {area, area / 3 * sum, area / 12 * (a * a.transpose() + b * b.transpose() + c * c.transpose() + sum * sum.transpose())};
+  }
+  void add(const Moments& other) {
+    area += other.area;
+    first += other.first;
+    second += other.second;
+  }
+};
+
+/** Triangles that continue one another. */
+struct Patch {
+  Vector3 reference = Vector3::Zero();  ///< [m] near the patch, to sum from
+  Moments moments;
   Vector3 centre = Vector3::Zero(), normal = Vector3::Zero();
   double width = 0;                             ///< [m] shorter side of the rectangle that has the same second moments
   double deviation = 0;                         ///< [m] distance of the farthest vertex from the plane
@@ -54,20 +74,16 @@ struct Patch {
 class PlaneFinder {
  public:
   PlaneFinder(const MeshTopology& topology, const TriangleMesh& mesh, const std::vector<double>& noise)
-      : topology_(topology), mesh_(mesh), noise_(noise), parent_(mesh.elements.size()), bends_(topology.edgeCount(), Bend::NONE) {
-    for (std::size_t i = 0; i < parent_.size(); ++i) parent_[i] = topology.patchOf(static_cast<int>(i));
-  }
+      : topology_(topology), mesh_(mesh), noise_(noise), bends_(topology.edgeCount(), Bend::NONE) {}
 
   /** @return false if nothing is to be done */
   bool find() {
-    joinFaces();
-    if (rough_edges_.empty()) return false;
+    if (!joinFaces()) return false;
     numberPatches();
-    addOutlines();
-    for (const int edge : rough_edges_) patches_[patch_of_[faceOf(edge)]].rough = true;
+    describeEdges();
     if (std::none_of(patches_.begin(), patches_.end(), [this](const Patch& patch) { return patch.rough && mayBePlane(patch); }))
       return false;
-    for (std::size_t i = 0; i < patch_of_.size(); ++i) addFace(static_cast<int>(i));
+    addFaces();
     for (Patch& patch : patches_) fit(&patch);
     measureDeviations();
     for (Patch& patch : patches_) patch.plane = isPlane(patch);
@@ -82,13 +98,6 @@ class PlaneFinder {
  private:
   enum class Bend : std::uint8_t { NONE, SMOOTH, DOUBTFUL, CREASE, SHARP };
 
-  int faceOf(int edge) const { return topology_.facesOf(edge)[0]; }
-
-  int root(int i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-
   double height(int edge, int face, const Vector3& inward) const {
     const auto [start, end] = topology_.ends(mesh_, edge);
     const int opposite = mesh_.elements[face].sum() - start - end;
@@ -96,8 +105,10 @@ class PlaneFinder {
   }
 
   Bend bendOf(int edge, int face, int other) const {
-    if (std::abs(MeshTopology::normal(mesh_, face).dot(MeshTopology::normal(mesh_, other))) < std::cos(MIN_CREASE)) return Bend::SHARP;
-    const Vector3 u = topology_.inward(mesh_, edge, face), v = topology_.inward(mesh_, edge, other);
+    static const double CREASE_COSINE = std::cos(MIN_CREASE);
+    const Vector3 normal = MeshTopology::normal(mesh_, face), other_normal = MeshTopology::normal(mesh_, other);
+    if (std::abs(normal.dot(other_normal)) < CREASE_COSINE) return Bend::SHARP;
+    const Vector3 u = topology_.inward(mesh_, edge, face, normal), v = topology_.inward(mesh_, edge, other, other_normal);
     if (u.dot(v) > 0) return Bend::SHARP;
     const double bend = (u + v).norm(), noise = BEND_HEIGHT / std::min(height(edge, face, u), height(edge, other, v));
     if (bend <= std::min(noise, MAX_BEND)) return Bend::SMOOTH;
@@ -105,92 +116,116 @@ class PlaneFinder {
     return bend <= MIN_CREASE ? Bend::CREASE : Bend::SHARP;
   }
 
-  /** Bends of the edges where two faces meet. */
-  void findBends() {
-    tbb::parallel_for(0, topology_.edgeCount(), [this](int edge) {
-      const EdgeFaces faces = topology_.facesOf(edge);
-      if (topology_.isFlatEdge(edge) || faces.size() != 2) return;
-      bends_[edge] = bendOf(edge, faces[0], faces[1]);
+  bool isRough(int edge) const { return bends_[edge] == Bend::SMOOTH && topology_.facesOf(edge).size() == 2; }
+
+  /** Finds the bends; faces that continue each other become one patch, from the flat patches of the topology on. @return whether there is
+   * a patch with an edge inside that is not flat */
+  bool joinFaces() {
+    sets_.emplace(static_cast<int>(mesh_.elements.size()), [this](int face) { return topology_.patchOf(face); });
+    std::atomic<bool> some_rough{false};
+    tbb::parallel_for(0, topology_.edgeCount(), [&](int edge) {
+      if (topology_.isFlatEdge(edge)) return;
+      joinFacesOf(edge);
+      if (isRough(edge) && !some_rough.load(std::memory_order_relaxed)) some_rough.store(true, std::memory_order_relaxed);
     });
+    return some_rough;
   }
 
-  /** Starts from the flat patches of the topology. */
-  void joinFaces() {
-    findBends();
-    for (int edge = 0; edge < topology_.edgeCount(); ++edge) {
-      const EdgeFaces faces = topology_.facesOf(edge);
-      if (topology_.isFlatEdge(edge) || faces.size() < 2) continue;
-      bool smooth = false;
-      for (int i = 0; i < faces.size(); ++i) {
-        for (int j = i + 1; j < faces.size(); ++j) {
-          const int face = faces[i], other = faces[j];
-          const Bend bend = faces.size() == 2 ? bends_[edge] : bendOf(edge, face, other);
-          bends_[edge] = std::max(bends_[edge], bend);
-          if (bend != Bend::SMOOTH) continue;
-          smooth = true;
-          const int a = root(face), b = root(other);
-          parent_[std::max(a, b)] = std::min(a, b);
-        }
+  void joinFacesOf(int edge) {
+    const EdgeFaces faces = topology_.facesOf(edge);
+    for (int i = 0; i < faces.size(); ++i) {
+      for (int j = i + 1; j < faces.size(); ++j) {
+        const Bend bend = bendOf(edge, faces[i], faces[j]);
+        bends_[edge] = std::max(bends_[edge], bend);
+        if (bend == Bend::SMOOTH) sets_->join(faces[i], faces[j]);
       }
-      if (smooth && faces.size() == 2) rough_edges_.push_back(edge);
     }
   }
 
   /** Triangles alone are no patches. */
   void numberPatches() {
-    std::vector<int> faces(parent_.size(), 0);
-    for (int i = 0; i < static_cast<int>(parent_.size()); ++i) ++faces[root(i)];
-    patch_of_.assign(parent_.size(), NO_PATCH);
-    for (int i = 0; i < static_cast<int>(parent_.size()); ++i) {
-      const int first = root(i);
-      if (faces[first] == 1) continue;
-      if (first == i) {
+    const int count = static_cast<int>(mesh_.elements.size());
+    patch_of_.resize(mesh_.elements.size());  // first the first face of each patch
+    tbb::parallel_for(0, count, [this](int i) { patch_of_[i] = sets_->first(i); });
+    sets_.reset();
+    std::vector<int> faces(patch_of_.size(), 0);
+    for (const int first : patch_of_) ++faces[first];
+    for (int i = 0; i < count; ++i) {
+      const int first = patch_of_[i];
+      if (faces[first] == 1) {
+        patch_of_[i] = NO_PATCH;
+      } else if (first < i) {
+        patch_of_[i] = patch_of_[first];
+      } else {
         patch_of_[i] = static_cast<int>(patches_.size());
         patches_.emplace_back();
         patches_.back().reference = mesh_.vertices[mesh_.elements[i][0]];
         patches_.back().faces = faces[i];
-      } else {
-        patch_of_[i] = patch_of_[first];
       }
     }
   }
 
-  /** Lengths [m] of each patch's outline: of all, of the doubtful part, where a curved surface might go on, and of the blunt part, which
-   * bends by less than MIN_CREASE or is a border. */
-  void addOutlines() {
-    for (int edge = 0; edge < topology_.edgeCount(); ++edge) {
+  bool isInsidePatch(const EdgeFaces& faces) const {
+    const int patch = patch_of_[faces[0]];
+    return faces.size() > 1 && std::all_of(faces.begin(), faces.end(), [&](int face) { return patch_of_[face] == patch; });
+  }
+
+  /** Which patches are rough, and their outlines. */
+  void describeEdges() {
+    std::vector<std::atomic<bool>> rough(patches_.size());
+    const std::vector<int> outlines = collected<int>(topology_.edgeCount(), [&](int edge, std::vector<int>* edges) {
       const EdgeFaces faces = topology_.facesOf(edge);
-      if (topology_.isFlatEdge(edge) || faces.size() == 0) continue;
-      const int patch = patch_of_[faces[0]];
-      const bool inside = faces.size() > 1 && std::all_of(faces.begin(), faces.end(), [&](int face) { return patch_of_[face] == patch; });
-      if (inside) continue;
-      const auto [start, end] = topology_.ends(mesh_, edge);
-      const double length = (mesh_.vertices[end] - mesh_.vertices[start]).norm();
-      for (const int face : faces) {
-        if (patch_of_[face] == NO_PATCH) continue;
-        Patch& own = patches_[patch_of_[face]];
-        own.outline += length;
-        if (bends_[edge] == Bend::DOUBTFUL) own.doubtful += length;
-        if (bends_[edge] != Bend::SHARP) own.blunt += length;
+      if (topology_.isFlatEdge(edge) || faces.size() == 0) return;
+      if (!isInsidePatch(faces)) {
+        edges->push_back(edge);
+      } else if (isRough(edge) && !rough[patch_of_[faces[0]]].load(std::memory_order_relaxed)) {
+        rough[patch_of_[faces[0]]].store(true, std::memory_order_relaxed);
+      }
+    });
+    for (std::size_t i = 0; i < patches_.size(); ++i) patches_[i].rough = rough[i];
+    for (const int edge : outlines) addOutline(edge);
+  }
+
+  /** Adds an edge's length [m] to its patches' outlines, to their doubtful parts, where a curved surface might go on, and to the blunt
+   * ones, which bend by less than MIN_CREASE or are borders. */
+  void addOutline(int edge) {
+    const auto [start, end] = topology_.ends(mesh_, edge);
+    const double length = (mesh_.vertices[end] - mesh_.vertices[start]).norm();
+    for (const int face : topology_.facesOf(edge)) {
+      if (patch_of_[face] == NO_PATCH) continue;
+      Patch& own = patches_[patch_of_[face]];
+      own.outline += length;
+      if (bends_[edge] == Bend::DOUBTFUL) own.doubtful += length;
+      if (bends_[edge] != Bend::SHARP) own.blunt += length;
+    }
+  }
+
+  /** Some faces at a time: their moments by several threads, the sums in order. */
+  void addFaces() {
+    constexpr std::size_t SOME = 1 << 13;
+    std::vector<Moments> moments(std::min(SOME, patch_of_.size()));
+    for (std::size_t begin = 0, end = 0; begin < patch_of_.size(); begin = end) {
+      end = std::min(begin + SOME, patch_of_.size());
+      tbb::parallel_for(begin, end, [&](std::size_t i) {
+        if (patch_of_[i] != NO_PATCH) moments[i - begin] = momentsOf(i);
+      });
+      for (std::size_t i = begin; i < end; ++i) {
+        if (patch_of_[i] != NO_PATCH) patches_[patch_of_[i]].moments.add(moments[i - begin]);
       }
     }
   }
 
-  void addFace(int face) {
-    if (patch_of_[face] == NO_PATCH) return;
-    Patch& patch = patches_[patch_of_[face]];
+  /** About its patch's reference. */
+  Moments momentsOf(std::size_t face) const {
     const Vector3i& e = mesh_.elements[face];
-    const Vector3 a = mesh_.vertices[e[0]] - patch.reference, b = mesh_.vertices[e[1]] - patch.reference,
-                  c = mesh_.vertices[e[2]] - patch.reference, sum = a + b + c;
-    const double area = 0.5 * (b - a).cross(c - a).norm();
-    patch.area += area;
-    patch.first += area / 3 * sum;
-    patch.second += area / 12 * (a * a.transpose() + b * b.transpose() + c * c.transpose() + sum * sum.transpose());
+    const Vector3& reference = patches_[patch_of_[face]].reference;
+    return Moments::of(mesh_.vertices[e[0]] - reference, mesh_.vertices[e[1]] - reference, mesh_.vertices[e[2]] - reference);
   }
 
   static void fit(Patch* patch) {
-    const Vector3 mean = patch->first / patch->area;
-    const Matrix3 covariance = patch->second / patch->area - mean * mean.transpose();
+    const Moments& moments = patch->moments;
+    const Vector3 mean = moments.first / moments.area;
+    const Matrix3 covariance = moments.second / moments.area - mean * mean.transpose();
     const Eigen::SelfAdjointEigenSolver<Matrix3> eigen(covariance);
     patch->centre = patch->reference + mean;
     patch->normal = eigen.eigenvectors().col(0);
@@ -201,6 +236,7 @@ class PlaneFinder {
     for (std::size_t i = 0; i < patch_of_.size(); ++i) {
       if (patch_of_[i] == NO_PATCH) continue;
       Patch& patch = patches_[patch_of_[i]];
+      if (patch.deviation > PLANE_DEVIATION) continue;  // no plane, whatever the others are
       for (int k = 0; k < 3; ++k) {
         const int vertex = mesh_.elements[i][k];
         const double off = std::abs(patch.normal.dot(mesh_.vertices[vertex] - patch.centre));
@@ -241,9 +277,8 @@ class PlaneFinder {
   const MeshTopology& topology_;
   const TriangleMesh& mesh_;
   const std::vector<double>& noise_;
-  std::vector<int> parent_;
+  std::optional<DisjointSets> sets_;
   std::vector<Bend> bends_;
-  std::vector<int> rough_edges_;
   std::vector<int> patch_of_;
   std::vector<Patch> patches_;
 };

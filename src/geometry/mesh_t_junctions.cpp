@@ -33,8 +33,11 @@ class OverlapFinder {
 
   void find() {
     TriangleMesh segments;
-    segments.vertices = mesh_.vertices;
-    for (const Border& border : borders_) segments.elements.push_back({border.a, border.b, border.b});
+    for (const Border& border : borders_) {
+      const int first = static_cast<int>(segments.vertices.size());
+      segments.vertices.insert(segments.vertices.end(), {place(border.a), place(border.b)});
+      segments.elements.emplace_back(first, first + 1, first + 1);
+    }
     const Bvh tree(segments);
     visitLeafPairs(tree, tree, Pose::Identity(), CRACK_WIDTH, [&](std::uint32_t leaf, std::uint32_t other) {
       const Bvh::Node &first = tree.nodes()[leaf], &second = tree.nodes()[other];

@@ -3,11 +3,12 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
-#include <numeric>
 
-#include "grouped.h"
 #include "sides_by_vertex.h"
+#include "threads/disjoint_sets.h"
+#include "threads/grouped.h"
 
 namespace blem_sim::geometry {
 namespace {
@@ -28,11 +29,6 @@ Vector3 unitNormal(const Vector3& a, const Vector3& b, const Vector3& c) {
   return has_area ? Vector3(n / norm) : Vector3(Vector3::Zero());
 }
 
-int root(std::vector<int>& parent, int i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
-
 }  // namespace
 
 MeshTopology::MeshTopology(const TriangleMesh& mesh) {
@@ -43,8 +39,7 @@ MeshTopology::MeshTopology(const TriangleMesh& mesh) {
     findEdges(by_vertex, vertices);
     findRings(by_vertex, vertices);
   }
-  findFlatness(mesh, normals);
-  findPatches(static_cast<int>(mesh.elements.size()));
+  if (findFlatness(mesh, normals)) findPatches(static_cast<int>(mesh.elements.size()));
   findOwners(mesh);
 }
 
@@ -58,13 +53,6 @@ std::size_t MeshTopology::bytes() const {
   return of(edge_sides_, many_faces_, higher_begin_, lower_begin_, lower_edges_, element_edges_, vertex_kinds_, patches_, owned_);
 }
 
-EdgeFaces MeshTopology::facesOf(int edge) const {
-  const EdgeSides& sides = edge_sides_[edge];
-  const std::uint32_t other = sides.other >> 2;
-  if (sides.other & MANY) return {&many_faces_[other + 1], many_faces_[other]};
-  return {static_cast<int>(sides.side >> 2), static_cast<int>(other), other == NO_FACE ? 0 : other == NO_SECOND ? 1 : 2};
-}
-
 Vector3 MeshTopology::inward(const TriangleMesh& mesh, int edge, int face, const Vector3& face_normal) const {
   const auto [start, end] = ends(mesh, edge);
   const int opposite = mesh.elements[face].sum() - start - end;
@@ -75,8 +63,10 @@ Vector3 MeshTopology::inward(const TriangleMesh& mesh, int edge, int face, const
 /** @return the normals, while they are at hand */
 std::vector<Vector3> MeshTopology::findFaces(const TriangleMesh& mesh) {
   std::vector<Vector3> normals(mesh.elements.size());
-  owned_.resize(mesh.elements.size());
+  owned_.resize(normals.size());
+  element_edges_.resize(normals.size());
   tbb::parallel_for(std::size_t{0}, normals.size(), [&](std::size_t i) {
+    element_edges_[i].setConstant(NO_EDGE);
     normals[i] = normal(mesh, static_cast<int>(i));
     owned_[i] = normals[i].isZero(0) ? 0 : FACE;
   });
@@ -98,7 +88,6 @@ void MeshTopology::findEdges(const SidesByVertex& by_vertex, int vertex_count) {
   });
   accumulate(&higher_begin_);
   accumulate(&many_begin);
-  element_edges_.assign(owned_.size(), {NO_EDGE, NO_EDGE, NO_EDGE});
   edge_sides_.resize(higher_begin_.back());
   many_faces_.resize(many_begin.back());
   tbb::parallel_for(0, vertex_count, [&](int v) {
@@ -164,9 +153,13 @@ bool MeshTopology::isStraight(const TriangleMesh& mesh, int vertex) const {
   return sum.norm() <= FLAT_SINE;
 }
 
-void MeshTopology::findFlatness(const TriangleMesh& mesh, const std::vector<Vector3>& normals) {
+/** @return whether an edge is flat */
+bool MeshTopology::findFlatness(const TriangleMesh& mesh, const std::vector<Vector3>& normals) {
+  std::atomic<bool> some{false};
   tbb::parallel_for(0, edgeCount(), [&](int edge) {
-    if (isFlat(mesh, edge, normals)) edge_sides_[edge].other |= FLAT;
+    if (!isFlat(mesh, edge, normals)) return;
+    edge_sides_[edge].other |= FLAT;
+    if (!some.load(std::memory_order_relaxed)) some.store(true, std::memory_order_relaxed);
   });
   vertex_kinds_.resize(mesh.vertices.size());
   tbb::parallel_for(std::size_t{0}, mesh.vertices.size(), [&](std::size_t v) {
@@ -175,27 +168,23 @@ void MeshTopology::findFlatness(const TriangleMesh& mesh, const std::vector<Vect
     const bool flat = !around.empty() && std::all_of(around.begin(), around.end(), [this](int edge) { return isFlatEdge(edge); });
     vertex_kinds_[v] = (flat ? FLAT_VERTEX : 0) | (isStraight(mesh, vertex) ? STRAIGHT_VERTEX : 0);
   });
+  return some;
 }
 
 void MeshTopology::findPatches(int element_count) {
-  const auto isFlatOne = [](const EdgeSides& sides) { return (sides.other & FLAT) != 0; };
-  if (std::none_of(edge_sides_.begin(), edge_sides_.end(), isFlatOne)) return;
-  patches_.resize(element_count);
-  std::iota(patches_.begin(), patches_.end(), 0);
-  for (int edge = 0; edge < edgeCount(); ++edge) {
-    if (!isFlatEdge(edge)) continue;
+  DisjointSets sets(element_count);
+  tbb::parallel_for(0, edgeCount(), [&](int edge) {
+    if (!isFlatEdge(edge)) return;
     const EdgeFaces faces = facesOf(edge);
-    for (int i = 1; i < faces.size(); ++i) {
-      const int a = root(patches_, faces[i - 1]), b = root(patches_, faces[i]);
-      patches_[std::max(a, b)] = std::min(a, b);
-    }
-  }
-  for (int i = 0; i < element_count; ++i) patches_[i] = root(patches_, i);
+    for (int i = 1; i < faces.size(); ++i) sets.join(faces[i - 1], faces[i]);
+  });
+  patches_.resize(element_count);
+  tbb::parallel_for(0, element_count, [&](int i) { patches_[i] = sets.first(i); });
 }
 
 void MeshTopology::findOwners(const TriangleMesh& mesh) {
   std::vector<std::uint8_t> vertex_taken = vertex_kinds_, edge_taken(edge_sides_.size());
-  for (int edge = 0; edge < edgeCount(); ++edge) edge_taken[edge] = isFlatEdge(edge);
+  tbb::parallel_for(0, edgeCount(), [&](int edge) { edge_taken[edge] = isFlatEdge(edge); });
   for (std::size_t i = 0; i < mesh.elements.size(); ++i) {
     for (int k = 0; k < 3; ++k) {
       const int vertex = mesh.elements[i][k], edge = element_edges_[i][k];

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "grouped.h"
+#include "threads/grouped.h"
 
 namespace blem_sim::geometry {
 

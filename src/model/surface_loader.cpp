@@ -72,8 +72,7 @@ bool wantsPoints(const SurfaceSoup& soup, CloudOptions::As as) {
 /** cleanMesh, counting in the elements that were left out before. The soup is given up. */
 geometry::TriangleMesh cleanSoup(SurfaceSoup&& soup, geometry::MeshReport* report) {
   const geometry::MeshReport before = *report;
-  geometry::TriangleMesh cleaned = geometry::cleanMesh(soup.mesh, report);
-  soup.mesh = geometry::TriangleMesh();
+  geometry::TriangleMesh cleaned = geometry::cleanMesh(std::move(soup.mesh), report);
   report->nonfinite += before.nonfinite;
   report->welded += before.welded;
   report->degenerate += soup.collapsed;

@@ -6,11 +6,13 @@
 #include <map>
 
 #include "blem_sim/geometry/bvh.h"
+#include "blem_sim/geometry/collected.h"
 #include "blem_sim/geometry/mesh_mending.h"
 #include "blem_sim/geometry/mesh_topology.h"
-#include "first_equals.h"
 #include "geometry/random_shapes.h"
-#include "grouped.h"
+#include "threads/disjoint_sets.h"
+#include "threads/first_equals.h"
+#include "threads/grouped.h"
 
 namespace blem_sim::geometry {
 namespace {
@@ -110,6 +112,28 @@ TEST(Threads, OfEqualItemsTheFirstIsFound) {
       [&](int i, int j) { return items[i] == items[j]; });
   std::map<int, int> expected;
   for (int i = 0; i < static_cast<int>(items.size()); ++i) ASSERT_EQ(first[i], expected.try_emplace(items[i], i).first->second);
+}
+
+TEST(Threads, ListsKeepTheOrderOfItems) {
+  for (const int count : {0, 1, 1 << 14, 50000}) {
+    const std::vector<int> list = collected<int>(count, [](int item, std::vector<int>* out) {
+      for (int i = 0; i < item % 3; ++i) out->push_back(item);
+    });
+    std::vector<int> expected;
+    for (int item = 0; item < count; ++item) expected.insert(expected.end(), static_cast<std::size_t>(item % 3), item);
+    EXPECT_EQ(list, expected);
+  }
+}
+
+TEST(Threads, SetsAreToldByTheirFirstItems) {
+  constexpr int COUNT = 100000, RESIDUES = 77;
+  RandomShapes random(5);
+  std::vector<std::pair<int, int>> pairs;
+  for (int i = RESIDUES; i < COUNT; ++i) pairs.emplace_back(i, i % RESIDUES + RESIDUES * random.integer(0, i / RESIDUES - 1));
+  for (std::size_t i = pairs.size() - 1; i > 0; --i) std::swap(pairs[i], pairs[random.integer(0, static_cast<int>(i))]);
+  DisjointSets sets(COUNT);
+  tbb::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t i) { sets.join(pairs[i].first, pairs[i].second); });
+  for (int i = 0; i < COUNT; ++i) ASSERT_EQ(sets.first(i), i % RESIDUES);
 }
 
 TEST(Threads, GroupsKeepTheOrderOfItems) {

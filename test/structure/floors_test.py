@@ -8,7 +8,7 @@ MOST_FILES = 25
 
 # Floors of each room, and of its larger floors, the lowest first; files of a folder itself stand above its floors.
 FLOORS = {
-    "geometry": [],
+    "geometry": ["threads"],
     "model": ["checks", "soup", "ply", "clouds"],
     "contact": ["features", "kernels", "neighbourhood", "kept", "evaluation", "merging", "search"],
     "reduction": ["lanes", "patches", "choice"],

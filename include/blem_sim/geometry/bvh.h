@@ -16,6 +16,7 @@ namespace blem_sim::geometry {
 class Bvh {
  public:
   struct Node {
+    Node() {}                      ///< not set: there are millions
     Eigen::Vector3f lower, upper;  ///< [m] mesh frame
     std::uint32_t first;           ///< leaf: first index into order(); inner: index of the left child, the right one follows it
     std::uint32_t count;           ///< elements of a leaf; 0 for an inner node

@@ -95,7 +95,12 @@ class MeshTopology {
     return from < to ? std::array<int, 2>{from, to} : std::array<int, 2>{to, from};
   }
   int otherEnd(const TriangleMesh& mesh, int edge, int end) const { return fromOf(mesh, edge) ^ toOf(mesh, edge) ^ end; }
-  EdgeFaces facesOf(int edge) const;
+  EdgeFaces facesOf(int edge) const {
+    const EdgeSides& sides = edge_sides_[edge];
+    const std::uint32_t other = sides.other >> 2;
+    if (sides.other & MANY) return {&many_faces_[other + 1], many_faces_[other]};
+    return {static_cast<int>(sides.side >> 2), static_cast<int>(other), other == NO_FACE ? 0 : other == NO_SECOND ? 1 : 2};
+  }
   VertexEdges edgesOf(int vertex) const {
     const int from_lower = lower_begin_[vertex], higher = higher_begin_[vertex];
     return {lower_edges_.data() + from_lower, lower_begin_[vertex + 1] - from_lower, higher, higher_begin_[vertex + 1] - higher};
@@ -126,10 +131,15 @@ class MeshTopology {
 
   /** Unit direction in the face's plane, square to the edge, into the face. @param face one of the edge's faces */
   Vector3 inward(const TriangleMesh& mesh, int edge, int face) const { return inward(mesh, edge, face, normal(mesh, face)); }
+  /** The same where the face's normal is at hand. */
+  Vector3 inward(const TriangleMesh& mesh, int edge, int face, const Vector3& face_normal) const;
 
  private:
   /** An edge is told by a side of its first face, or of its first element where it has none: 4 times the element, and the corner. */
   struct EdgeSides {
+    EdgeSides() {}  // not set: there are millions
+    EdgeSides(std::uint32_t side_of_first, std::uint32_t other_and_bits) : side(side_of_first), other(other_and_bits) {}
+
     std::uint32_t side;
     std::uint32_t other;  ///< 4 times the second face, NO_SECOND, NO_FACE or (MANY) the place of all in many_faces_; and FLAT, MANY
   };
@@ -148,18 +158,17 @@ class MeshTopology {
   std::vector<Vector3> findFaces(const TriangleMesh& mesh);
   void findEdges(const SidesByVertex& by_vertex, int vertex_count);
   void findRings(const SidesByVertex& by_vertex, int vertex_count);
-  void findFlatness(const TriangleMesh& mesh, const std::vector<Vector3>& normals);
+  bool findFlatness(const TriangleMesh& mesh, const std::vector<Vector3>& normals);
   void findPatches(int element_count);
   void findOwners(const TriangleMesh& mesh);
   bool isFlat(const TriangleMesh& mesh, int edge, const std::vector<Vector3>& normals) const;
   bool isStraight(const TriangleMesh& mesh, int vertex) const;
-  Vector3 inward(const TriangleMesh& mesh, int edge, int face, const Vector3& face_normal) const;
 
   std::vector<EdgeSides> edge_sides_;
-  std::vector<int> many_faces_;                    // per edge with more than two faces: their number, then all
-  std::vector<int> higher_begin_;                  // size vertices + 1: edges to higher vertices
-  std::vector<int> lower_begin_, lower_edges_;     // size vertices + 1: beginnings of lower_edges_ per vertex
-  std::vector<std::array<int, 3>> element_edges_;  // per corner
+  std::vector<int> many_faces_;                 // per edge with more than two faces: their number, then all
+  std::vector<int> higher_begin_;               // size vertices + 1: edges to higher vertices
+  std::vector<int> lower_begin_, lower_edges_;  // size vertices + 1: beginnings of lower_edges_ per vertex
+  std::vector<Vector3i> element_edges_;         // per corner
   std::vector<std::uint8_t> vertex_kinds_;
   std::vector<int> patches_;         // empty: nothing is flat
   std::vector<std::uint8_t> owned_;  // bits 0-2 vertices, 3-5 edges, 6 FACE

@@ -62,7 +62,7 @@ enum class RepeatedIndices { ARE_SEGMENTS_AND_POINTS, ARE_DEGENERATE };
  * The result may be empty; the caller decides whether that is an error. Order is kept.
  * @param report its counts, extents are set; may be null
  */
-TriangleMesh cleanMesh(const TriangleMesh& soup, MeshReport* report, RepeatedIndices repeated = RepeatedIndices::ARE_SEGMENTS_AND_POINTS);
+TriangleMesh cleanMesh(TriangleMesh soup, MeshReport* report, RepeatedIndices repeated = RepeatedIndices::ARE_SEGMENTS_AND_POINTS);
 
 /** One element {i, i, i} per finite point; non-finite ones are counted in the report. Points at exactly the same position are merged. */
 TriangleMesh pointCloudMesh(const std::vector<Vector3>& points, MeshReport* report);

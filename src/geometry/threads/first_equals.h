@@ -7,7 +7,8 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <cstdint>
+#include <cstddef>
+#include <memory>
 #include <vector>
 
 namespace blem_sim::geometry {
@@ -22,7 +23,8 @@ std::vector<int> firstEquals(int count, Hash&& hash, Equal&& equal) {
   constexpr int BATCH = 32, GRAIN = 4096;
   std::size_t slots = 16;
   while (slots < 2 * static_cast<std::size_t>(count)) slots *= 2;
-  std::vector<std::atomic<int>> items(slots);  // one more than the item; 0: empty
+  const std::unique_ptr<std::atomic<int>[]> items(new std::atomic<int>[slots]);  // one more than the item; 0: empty
+  tbb::parallel_for(std::size_t{0}, slots, [&](std::size_t slot) { items[slot].store(0, std::memory_order_relaxed); });
   const auto insert = [&](int item, std::size_t slot) {
     for (;; slot = (slot + 1) & (slots - 1)) {
       int there = items[slot].load(std::memory_order_relaxed);
