@@ -20,7 +20,7 @@ blem_sim_precompile(blem_sim_geometry ${common_headers})
 blem_sim_room(model blem_sim_geometry)
 blem_sim_precompile(blem_sim_model ${common_headers})
 target_include_directories(blem_sim_model SYSTEM PRIVATE ${PCL_INCLUDE_DIRS} ${ASSIMP_INCLUDE_DIRS})
-target_link_libraries(blem_sim_model PRIVATE PkgConfig::URDFDOM PkgConfig::CONSOLE_BRIDGE PkgConfig::TINYXML2 assimp fmt::fmt
+target_link_libraries(blem_sim_model PRIVATE PkgConfig::URDFDOM PkgConfig::CONSOLE_BRIDGE PkgConfig::TINYXML2 PkgConfig::TBB assimp fmt::fmt
   ${PCL_COMMON_LIBRARIES} ${PCL_IO_LIBRARIES} ${PCL_FEATURES_LIBRARIES} ${PCL_FILTERS_LIBRARIES} ${PCL_KDTREE_LIBRARIES}
   ${PCL_SEARCH_LIBRARIES} ${PCL_SURFACE_LIBRARIES})
 blem_sim_room(contact blem_sim_geometry)

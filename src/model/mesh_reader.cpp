@@ -39,7 +39,7 @@ void checkIndices(const std::string& file, const aiScene& scene) {
 /** Gathers the meshes of a scene. */
 class SoupBuilder {
  public:
-  SoupBuilder(const aiScene& scene, SurfaceSoup* soup) : scene_(scene), soup_(*soup), faces_(soup) {}
+  SoupBuilder(const aiScene& scene, SurfaceSoup* soup) : scene_(scene), soup_(*soup), faces_(1, SoupFaces(&soup->mesh.vertices)) {}
 
   void appendNode(const aiNode& node, const Matrix4& X_MP) {
     const Matrix4 X_MN = X_MP * toMatrix(node.mTransformation);
@@ -47,13 +47,14 @@ class SoupBuilder {
     for (unsigned c = 0; c < node.mNumChildren; ++c) appendNode(*node.mChildren[c], X_MN);
   }
 
-  void tell() const { faces_.tell(); }
+  /** The last call: the soup gets its faces. */
+  void finish() { SoupFaces::give(std::move(faces_), &soup_); }
 
  private:
   void appendMesh(const aiMesh& mesh, const Matrix4& X_MN) {
     const int first = static_cast<int>(soup_.mesh.vertices.size());
     makeRoom(mesh.mNumVertices, &soup_.mesh.vertices);
-    makeRoom(mesh.mNumFaces, &soup_.mesh.elements);
+    faces_.front().makeRoom(mesh.mNumFaces);
     const bool moved = X_MN != Matrix4::Identity();
     for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
       const Vector3 p(mesh.mVertices[v].x, mesh.mVertices[v].y, mesh.mVertices[v].z);
@@ -63,25 +64,18 @@ class SoupBuilder {
     for (unsigned f = 0; f < mesh.mNumFaces; ++f) appendFace(mesh.mFaces[f], first, mirrored);
   }
 
-  /** Reserves memory for `more` items, without another copy where many small meshes follow each other. */
-  template <typename T>
-  static void makeRoom(std::size_t more, std::vector<T>* items) {
-    const std::size_t needed = items->size() + more;
-    if (needed > items->capacity()) items->reserve(std::max(needed, 2 * items->capacity()));
-  }
-
   /** A mirroring node turns the winding, so that outside stays outside. */
   void appendFace(const aiFace& face, int first, bool mirrored) {
     corners_.assign(face.mIndices, face.mIndices + face.mNumIndices);
     for (int& corner : corners_) corner += first;
     if (mirrored) std::reverse(corners_.begin(), corners_.end());
-    faces_.append(corners_);
+    faces_.front().append(corners_);
   }
 
   const aiScene& scene_;
   SurfaceSoup& soup_;
-  SoupFaces faces_;
-  std::vector<int> corners_;  // of the face at hand
+  std::vector<SoupFaces> faces_;  // one list
+  std::vector<int> corners_;      // of the face at hand
 };
 
 /** Refuses a PLY of fewer vertices or faces than its header announces: assimp ends early without a word where rows are missing. */
@@ -125,7 +119,7 @@ SurfaceSoup readMesh(const std::string& file, const std::string& extension) {
   checkIndices(file, *scene);
   SoupBuilder builder(*scene, &soup);
   builder.appendNode(*scene->mRootNode, Matrix4::Identity());
-  builder.tell();
+  builder.finish();
   soup.width = static_cast<int>(soup.mesh.vertices.size());
   return soup;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "blem_sim/model/loaders.h"
 #include "support/input_errors.h"
@@ -93,6 +94,54 @@ TEST(BinaryPlyFaces, StripsAlternateAndBeginAnew) {
   for (const Vector3i& e : surface.mesh->elements) {
     const auto& p = surface.mesh->vertices;
     EXPECT_EQ((p[e[1]] - p[e[0]]).cross(p[e[2]] - p[e[0]]), Vector3(0, 0, 1));
+  }
+}
+
+/** Triangles of a long ribbon, if asked with a quadrilateral for two of them, and with rows that name a vertex that is not there. */
+class Ribbon {
+ public:
+  static constexpr int TRIANGLES = 50000, QUADRILATERAL = 20000;
+
+  explicit Ribbon(bool with_quadrilateral, const std::vector<int>& wrong_rows = {}) {
+    for (int i = 0; i < TRIANGLES + 2; ++i) rows_.add(0.5f * static_cast<float>(i)).add(static_cast<float>(i % 2)).add(0.f);
+    for (int i = 0; i < TRIANGLES; ++i, ++faces_) {
+      const bool quadrilateral = with_quadrilateral && i == QUADRILATERAL;
+      const int last = std::count(wrong_rows.begin(), wrong_rows.end(), i) > 0 ? TRIANGLES + 2 : i + 2;
+      rows_.add(static_cast<std::uint8_t>(quadrilateral ? 4 : 3)).add(i).add(i + 1);
+      if (quadrilateral) rows_.add(++i + 2);
+      rows_.add(last);
+    }
+  }
+
+  LoadedSurface loaded(const TemporaryFolder& folder) const {
+    const std::string header = "element vertex " + std::to_string(TRIANGLES + 2) + "\n" + FLOAT_PLACES + "element face " +
+                               std::to_string(faces_) + "\nproperty list uchar int vertex_indices\n";
+    return loadSurface(folder.write("a.ply", plyFile(false, header, rows_)), Vector3::Ones(), {}, Mending::OFF);
+  }
+
+ private:
+  NumberBytes rows_;
+  int faces_ = 0;
+};
+
+TEST(BinaryPlyFaces, ManyKeepTheirOrder) {
+  const TemporaryFolder folder;
+  for (const bool with_quadrilateral : {false, true}) {
+    const LoadedSurface surface = Ribbon(with_quadrilateral).loaded(folder);
+    ASSERT_EQ(surface.mesh->vertices.size(), static_cast<std::size_t>(Ribbon::TRIANGLES + 2));
+    ASSERT_EQ(surface.mesh->elements.size(), static_cast<std::size_t>(Ribbon::TRIANGLES));
+    for (int i = 0; i < Ribbon::TRIANGLES; ++i) {
+      if (with_quadrilateral && i / 2 == Ribbon::QUADRILATERAL / 2) continue;
+      ASSERT_EQ(surface.mesh->elements[i], Vector3i(i, i + 1, i + 2));
+    }
+  }
+}
+
+TEST(BinaryPlyFaces, TheFirstWrongOneIsTold) {
+  const TemporaryFolder folder;
+  for (int attempt = 0; attempt < 5; ++attempt) {
+    const std::string text = refusal([&] { Ribbon(false, {49000, 40000, 17000, 17001}).loaded(folder); });
+    EXPECT_NE(text.find("face 17000 names vertex 50002"), std::string::npos) << text;
   }
 }
 

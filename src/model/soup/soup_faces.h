@@ -7,20 +7,25 @@
 
 namespace blem_sim::model {
 
-/** Appends faces to a soup, whose vertices they name: triangles, polygons as triangles, lines, points. */
+/** A list of faces: triangles, polygons as triangles, lines, points. */
 class SoupFaces {
  public:
-  explicit SoupFaces(SurfaceSoup* soup) : soup_(*soup) {}
+  /** @param vertices that the faces name; they may grow, and must outlive this */
+  explicit SoupFaces(const std::vector<Vector3>* vertices) : vertices_(vertices) {}
 
+  /** Memory for `more` triangles. */
+  void makeRoom(std::size_t more);
   /** @param corners indices of vertices, any number; in range */
   void append(const std::vector<int>& corners);
-  /** Notes what became of the faces. */
-  void tell() const;
+  /** Makes the faces of some lists, one list behind the other, those of a soup, and notes what became of them. */
+  static void give(std::vector<SoupFaces>&& lists, SurfaceSoup* soup);
 
  private:
   void appendTriangle(const Vector3i& t);
 
-  SurfaceSoup& soup_;
+  const std::vector<Vector3>* vertices_;
+  std::vector<Vector3i> elements_;
+  int collapsed_ = 0;
   std::size_t polygons_ = 0;
 };
 

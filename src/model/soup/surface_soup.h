@@ -1,6 +1,7 @@
 // Content of a mesh or cloud file, before scaling and cleaning.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,6 +21,13 @@ struct SurfaceSoup {
 
   bool hasPixelGrid() const { return width > 1 && height > 1; }
 };
+
+/** Reserves memory for `more` items, without another copy where many small meshes follow each other. */
+template <typename T>
+void makeRoom(std::size_t more, std::vector<T>* items) {
+  const std::size_t needed = items->size() + more;
+  if (needed > items->capacity()) items->reserve(std::max(needed, 2 * items->capacity()));
+}
 
 /** Mesh by assimp; binary PLY by readBinaryPly. @param extension "stl", "ply", "obj", "off" or "dae" @throws InputError */
 SurfaceSoup readMesh(const std::string& file, const std::string& extension);
