@@ -1,11 +1,11 @@
 #include "blem_sim/geometry/bvh.h"
 
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <memory>
 
+#include "blem_sim/geometry/for_all.h"
 #include "bvh_split.h"
 
 namespace blem_sim::geometry {
@@ -13,7 +13,7 @@ namespace {
 
 std::unique_ptr<Primitive[]> primitivesOf(const TriangleMesh& mesh) {
   std::unique_ptr<Primitive[]> primitives(new Primitive[mesh.elements.size()]);
-  tbb::parallel_for(std::size_t{0}, mesh.elements.size(), [&](std::size_t i) {
+  forAll(mesh.elements.size(), [&](std::size_t i) {
     const Vector3i& e = mesh.elements[i];
     primitives[i].set(mesh.vertices[e[0]], mesh.vertices[e[1]], mesh.vertices[e[2]], static_cast<std::uint32_t>(i));
   });
@@ -138,7 +138,7 @@ Bvh::Bvh(const TriangleMesh& mesh, int leaf_size) {
   std::unique_ptr<Primitive[]> primitives = primitivesOf(mesh);
   const auto root = Builder(primitives.get(), primitives.get() + mesh.elements.size(), leaf_size).build();
   order_.resize(mesh.elements.size());
-  tbb::parallel_for(std::size_t{0}, order_.size(), [&](std::size_t i) { order_[i] = primitives[i].element(); });
+  forAll(order_.size(), [&](std::size_t i) { order_[i] = primitives[i].element(); });
   primitives.reset();  // before the nodes take memory a second time
   nodes_ = Builder::nodesOf(root);
 }

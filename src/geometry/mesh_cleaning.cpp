@@ -1,5 +1,4 @@
 #include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
@@ -9,6 +8,7 @@
 #include <functional>
 #include <utility>
 
+#include "blem_sim/geometry/for_all.h"
 #include "blem_sim/geometry/triangle_mesh.h"
 #include "place_hash.h"
 #include "sides_by_vertex.h"
@@ -118,7 +118,7 @@ void dropUnusable(RepeatedIndices repeated, TriangleMesh* mesh, MeshReport* repo
     return (is_triangle ? hasArea(a, b, c) : segments_allowed) ? Fate::KEPT : Fate::DEGENERATE;
   };
   std::vector<Fate> fates(mesh->elements.size());
-  tbb::parallel_for(std::size_t{0}, fates.size(), [&](std::size_t i) { fates[i] = fateOf(mesh->elements[i]); });
+  forAll(fates.size(), [&](std::size_t i) { fates[i] = fateOf(mesh->elements[i]); });
   const auto count = [&](Fate fate) { return static_cast<int>(std::count(fates.begin(), fates.end(), fate)); };
   report->invalid = count(Fate::INVALID);
   report->nonfinite = count(Fate::NONFINITE);
@@ -155,7 +155,7 @@ void weld(const std::vector<Vector3>& vertices, std::vector<Vector3i>* elements,
 /** Whether an element uses the vertex, by vertex. */
 std::vector<std::uint8_t> usedVertices(const TriangleMesh& mesh) {
   std::vector<std::atomic<std::uint8_t>> used(mesh.vertices.size());
-  tbb::parallel_for(std::size_t{0}, mesh.elements.size(), [&](std::size_t i) {
+  forAll(mesh.elements.size(), [&](std::size_t i) {
     for (int k = 0; k < 3; ++k) used[mesh.elements[i][k]].store(1, std::memory_order_relaxed);
   });
   return std::vector<std::uint8_t>(used.begin(), used.end());
@@ -171,7 +171,7 @@ void dropUnusedVertices(TriangleMesh* mesh) {
     used_below[i] = count;
     count += used[i];
   }
-  tbb::parallel_for(std::size_t{0}, mesh->elements.size(), [&](std::size_t i) {
+  forAll(mesh->elements.size(), [&](std::size_t i) {
     Vector3i& e = mesh->elements[i];
     e = {used_below[e[0]], used_below[e[1]], used_below[e[2]]};
   });

@@ -1,7 +1,5 @@
 #include "mesh_planes.h"
 
-#include <tbb/parallel_for.h>
-
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <algorithm>
@@ -11,6 +9,7 @@
 #include <utility>
 
 #include "blem_sim/geometry/collected.h"
+#include "blem_sim/geometry/for_all.h"
 #include "curved_patches.h"
 #include "threads/disjoint_sets.h"
 
@@ -123,7 +122,7 @@ class PlaneFinder {
   bool joinFaces() {
     sets_.emplace(static_cast<int>(mesh_.elements.size()), [this](int face) { return topology_.patchOf(face); });
     std::atomic<bool> some_rough{false};
-    tbb::parallel_for(0, topology_.edgeCount(), [&](int edge) {
+    forAll(topology_.edgeCount(), [&](int edge) {
       if (topology_.isFlatEdge(edge)) return;
       joinFacesOf(edge);
       if (isRough(edge) && !some_rough.load(std::memory_order_relaxed)) some_rough.store(true, std::memory_order_relaxed);
@@ -146,7 +145,7 @@ class PlaneFinder {
   void numberPatches() {
     const int count = static_cast<int>(mesh_.elements.size());
     patch_of_.resize(mesh_.elements.size());  // first the first face of each patch
-    tbb::parallel_for(0, count, [this](int i) { patch_of_[i] = sets_->first(i); });
+    forAll(count, [this](int i) { patch_of_[i] = sets_->first(i); });
     sets_.reset();
     std::vector<int> faces(patch_of_.size(), 0);
     for (const int first : patch_of_) ++faces[first];
@@ -206,8 +205,8 @@ class PlaneFinder {
     std::vector<Moments> moments(std::min(SOME, patch_of_.size()));
     for (std::size_t begin = 0, end = 0; begin < patch_of_.size(); begin = end) {
       end = std::min(begin + SOME, patch_of_.size());
-      tbb::parallel_for(begin, end, [&](std::size_t i) {
-        if (patch_of_[i] != NO_PATCH) moments[i - begin] = momentsOf(i);
+      forAll(end - begin, [&](std::size_t i) {
+        if (patch_of_[begin + i] != NO_PATCH) moments[i] = momentsOf(begin + i);
       });
       for (std::size_t i = begin; i < end; ++i) {
         if (patch_of_[i] != NO_PATCH) patches_[patch_of_[i]].moments.add(moments[i - begin]);

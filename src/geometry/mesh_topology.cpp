@@ -1,11 +1,10 @@
 #include "blem_sim/geometry/mesh_topology.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 
+#include "blem_sim/geometry/for_all.h"
 #include "sides_by_vertex.h"
 #include "threads/disjoint_sets.h"
 #include "threads/grouped.h"
@@ -65,7 +64,7 @@ std::vector<Vector3> MeshTopology::findFaces(const TriangleMesh& mesh) {
   std::vector<Vector3> normals(mesh.elements.size());
   owned_.resize(normals.size());
   element_edges_.resize(normals.size());
-  tbb::parallel_for(std::size_t{0}, normals.size(), [&](std::size_t i) {
+  forAll(normals.size(), [&](std::size_t i) {
     element_edges_[i].setConstant(NO_EDGE);
     normals[i] = normal(mesh, static_cast<int>(i));
     owned_[i] = normals[i].isZero(0) ? 0 : FACE;
@@ -79,7 +78,7 @@ void MeshTopology::findEdges(const SidesByVertex& by_vertex, int vertex_count) {
   // Beginnings of the edges of a vertex, and of the lists of many faces: first their lengths.
   std::vector<int> many_begin(vertex_count + 1, 0);
   higher_begin_.assign(vertex_count + 1, 0);
-  tbb::parallel_for(0, vertex_count, [&](int v) {
+  forAll(vertex_count, [&](int v) {
     visitEdges(by_vertex, v, [&](const Side* first, const Side* last) {
       ++higher_begin_[v + 1];
       const int faces = last - first > 2 ? facesAmong(first, last) : 0;
@@ -90,7 +89,7 @@ void MeshTopology::findEdges(const SidesByVertex& by_vertex, int vertex_count) {
   accumulate(&many_begin);
   edge_sides_.resize(higher_begin_.back());
   many_faces_.resize(many_begin.back());
-  tbb::parallel_for(0, vertex_count, [&](int v) {
+  forAll(vertex_count, [&](int v) {
     int edge = higher_begin_[v], many = many_begin[v];
     visitEdges(by_vertex, v, [&](const Side* first, const Side* last) {
       for (const Side* side = first; side != last; ++side) element_edges_[side->element()][side->corner()] = edge;
@@ -156,13 +155,13 @@ bool MeshTopology::isStraight(const TriangleMesh& mesh, int vertex) const {
 /** @return whether an edge is flat */
 bool MeshTopology::findFlatness(const TriangleMesh& mesh, const std::vector<Vector3>& normals) {
   std::atomic<bool> some{false};
-  tbb::parallel_for(0, edgeCount(), [&](int edge) {
+  forAll(edgeCount(), [&](int edge) {
     if (!isFlat(mesh, edge, normals)) return;
     edge_sides_[edge].other |= FLAT;
     if (!some.load(std::memory_order_relaxed)) some.store(true, std::memory_order_relaxed);
   });
   vertex_kinds_.resize(mesh.vertices.size());
-  tbb::parallel_for(std::size_t{0}, mesh.vertices.size(), [&](std::size_t v) {
+  forAll(mesh.vertices.size(), [&](std::size_t v) {
     const int vertex = static_cast<int>(v);
     const VertexEdges around = edgesOf(vertex);
     const bool flat = !around.empty() && std::all_of(around.begin(), around.end(), [this](int edge) { return isFlatEdge(edge); });
@@ -173,18 +172,18 @@ bool MeshTopology::findFlatness(const TriangleMesh& mesh, const std::vector<Vect
 
 void MeshTopology::findPatches(int element_count) {
   DisjointSets sets(element_count);
-  tbb::parallel_for(0, edgeCount(), [&](int edge) {
+  forAll(edgeCount(), [&](int edge) {
     if (!isFlatEdge(edge)) return;
     const EdgeFaces faces = facesOf(edge);
     for (int i = 1; i < faces.size(); ++i) sets.join(faces[i - 1], faces[i]);
   });
   patches_.resize(element_count);
-  tbb::parallel_for(0, element_count, [&](int i) { patches_[i] = sets.first(i); });
+  forAll(element_count, [&](int i) { patches_[i] = sets.first(i); });
 }
 
 void MeshTopology::findOwners(const TriangleMesh& mesh) {
   std::vector<std::uint8_t> vertex_taken = vertex_kinds_, edge_taken(edge_sides_.size());
-  tbb::parallel_for(0, edgeCount(), [&](int edge) { edge_taken[edge] = isFlatEdge(edge); });
+  forAll(edgeCount(), [&](int edge) { edge_taken[edge] = isFlatEdge(edge); });
   for (std::size_t i = 0; i < mesh.elements.size(); ++i) {
     for (int k = 0; k < 3; ++k) {
       const int vertex = mesh.elements[i][k], edge = element_edges_[i][k];

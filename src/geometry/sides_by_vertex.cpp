@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "blem_sim/geometry/for_all.h"
 #include "threads/grouped.h"
 
 namespace blem_sim::geometry {
@@ -19,7 +20,7 @@ SidesByVertex::SidesByVertex(const TriangleMesh& mesh) {
     sides.reset(new Side[count]);
     return sides.get();
   });
-  tbb::parallel_for(0, vertices, [this](int v) { std::sort(sides.get() + begin[v], sides.get() + begin[v + 1]); });
+  forAll(vertices, [this](int v) { std::sort(sides.get() + begin[v], sides.get() + begin[v + 1]); });
 }
 
 }  // namespace blem_sim::geometry

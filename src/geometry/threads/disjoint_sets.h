@@ -1,11 +1,11 @@
 // Sets of items, which several threads join.
 #pragma once
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <atomic>
 #include <memory>
+
+#include "blem_sim/geometry/for_all.h"
 
 namespace blem_sim::geometry {
 
@@ -13,13 +13,12 @@ namespace blem_sim::geometry {
 class DisjointSets {
  public:
   /** Each item alone. */
-  explicit DisjointSets(int count)
-      : DisjointSets(count, [](int item) { return item; }) {}
+  explicit DisjointSets(int count) : DisjointSets(count, [](int item) { return item; }) {}
 
   /** @param firstOf of an item: the first item of its set */
   template <typename FirstOf>
   DisjointSets(int count, FirstOf&& firstOf) : parents_(new std::atomic<int>[static_cast<std::size_t>(count)]) {
-    tbb::parallel_for(0, count, [&](int i) { parents_[i].store(firstOf(i), std::memory_order_relaxed); });
+    forAll(count, [&](int i) { parents_[i].store(firstOf(i), std::memory_order_relaxed); });
   }
 
   /** First item of the set that this one is in. */

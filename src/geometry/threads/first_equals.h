@@ -11,6 +11,8 @@
 #include <memory>
 #include <vector>
 
+#include "blem_sim/geometry/for_all.h"
+
 namespace blem_sim::geometry {
 
 /**
@@ -24,7 +26,7 @@ std::vector<int> firstEquals(int count, Hash&& hash, Equal&& equal) {
   std::size_t slots = 16;
   while (slots < 2 * static_cast<std::size_t>(count)) slots *= 2;
   const std::unique_ptr<std::atomic<int>[]> items(new std::atomic<int>[slots]);  // one more than the item; 0: empty
-  tbb::parallel_for(std::size_t{0}, slots, [&](std::size_t slot) { items[slot].store(0, std::memory_order_relaxed); });
+  forAll(slots, [&](std::size_t slot) { items[slot].store(0, std::memory_order_relaxed); });
   const auto insert = [&](int item, std::size_t slot) {
     for (;; slot = (slot + 1) & (slots - 1)) {
       int there = items[slot].load(std::memory_order_relaxed);
@@ -47,7 +49,7 @@ std::vector<int> firstEquals(int count, Hash&& hash, Equal&& equal) {
       for (int i = 0; i < size; ++i) first[begin + i] = static_cast<int>(insert(begin + i, slot[i]));
     }
   });
-  tbb::parallel_for(0, count, [&](int i) { first[i] = items[static_cast<unsigned>(first[i])].load(std::memory_order_relaxed) - 1; });
+  forAll(count, [&](int i) { first[i] = items[static_cast<unsigned>(first[i])].load(std::memory_order_relaxed) - 1; });
   return first;
 }
 

@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "blem_sim/geometry/for_all.h"
 #include "blem_sim/geometry/input_error.h"
 #include "ply/ply_rows.h"
 #include "soup/soup_faces.h"
@@ -130,7 +131,7 @@ class BinaryRows {
     if (element.count > (bytes_.size() - at) / length) return 0;
     const char* const first = bytes_.data() + at;
     std::atomic<bool> common{true};
-    tbb::parallel_for(std::size_t{0}, element.count, [&](std::size_t row) {
+    geometry::forAll(element.count, [&](std::size_t row) {
       for (const auto& [place, bytes] : counts)
         if (std::memcmp(first + place, first + row * length + place, bytes) != 0) common.store(false, std::memory_order_relaxed);
     });
