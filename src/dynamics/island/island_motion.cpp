@@ -18,16 +18,17 @@ struct SlowMotion {
 
 // A tree that nothing drives has an energy to keep, and friction tells how much of it may go; where motors or friction act against
 // contacts, forces of both sides are best found together with the products.
-constexpr SlowMotion ALONE{1e-4, 1e-3}, WITH_FRICTION{1e-3, 1e-3}, WITH_MOTORS{0.005, 0.003}, AT_WORK{0.1, INFINITY};
+constexpr SlowMotion ALONE{1e-4, 1e-3}, WITH_FRICTION{1e-3, 1e-3}, RUBBING{0.005, 0.01}, WITH_MOTORS{0.005, 0.003}, AT_WORK{0.1, INFINITY};
 constexpr double SMALL_TURN = 0.05;  // [rad] of a free root in a step: beyond, products of the step's start are not those of its end
-// Trees in loops, and those with mimic joints, are solved with their products. Beyond this the products would add energy without bound:
+// Trees that are tied are solved with their products. Beyond this the products would add energy without bound:
 // they are left out, and the trees are braked.
 constexpr double TOO_FAST = 0.1;
-constexpr double HOLDS = 0.5;  // of a dof's inertia: a joint that answers more stiffly keeps its velocity on the way
+constexpr double HELD_AT_MOST = 1e-3;  // of a tree's energy: share of joints that follow each other, which are held where it is fast
+constexpr double HOLDS = 0.5;          // of a dof's inertia: a joint that answers more stiffly keeps its velocity on the way
 
 // Change of the velocities of a tree by its velocity products in a step, over the velocities in the frame of its centre of mass; in the
 // norm of the energy, each dof's inertia taken alone; the more, the further the root turns. `mass_velocity`: M times the velocity.
-double turning(const FreeStart& start, const Eigen::VectorXd& mass_velocity) {
+double turningOf(const FreeStart& start, const Eigen::VectorXd& mass_velocity) {
   const auto [forest, tree, dt, motion, velocity] = start;
   const ForestTree& t = forest.trees()[tree];
   double change = 0, energy = 0;
@@ -57,12 +58,25 @@ bool hasJoint(const Forest& forest, int tree, const StepInput& input, const Is& 
                      [&](const ForestNode& n) { return n.dofs == 1 && is(input.drives[n.joint]); });
 }
 
-bool isTied(const Forest& forest, int tree) {
-  const auto belongs = [&](int node) { return node >= 0 && forest.nodes()[node].tree == tree; };
-  const auto& mimics = forest.mimics();
-  const auto& loops = forest.loops();
-  return std::any_of(mimics.begin(), mimics.end(), [&](const MimicRelation& m) { return belongs(m.node) || belongs(m.master); }) ||
-         std::any_of(loops.begin(), loops.end(), [&](const LoopClosure& l) { return belongs(l.child) || belongs(l.parent); });
+/** Whether the tree cannot go its way by itself: loops tie it, mimic joints to another tree, or some that move. Fingers that follow each
+ * other and hardly move are held. @param mass_velocity M times the velocity */
+bool isTied(const FreeStart& start, const Eigen::VectorXd& mass_velocity) {
+  const Forest& forest = start.forest;
+  const auto belongs = [&](int node) { return node >= 0 && forest.nodes()[node].tree == start.tree; };
+  const auto ties = [&](const LoopClosure& l) { return belongs(l.child) || belongs(l.parent); };
+  if (std::any_of(forest.loops().begin(), forest.loops().end(), ties)) return true;
+  double held = 0;
+  for (const MimicRelation& m : forest.mimics()) {
+    if (belongs(m.node) != belongs(m.master)) return true;
+    if (!belongs(m.node)) continue;
+    for (const int node : {m.node, m.master}) {
+      const int k = forest.nodes()[node].first_dof;
+      held += start.motion.mass[forest.diagonal(k)] * start.velocity[k] * start.velocity[k];
+    }
+  }
+  if (held == 0) return false;
+  const ForestTree& t = forest.trees()[start.tree];
+  return held > HELD_AT_MOST * start.velocity.segment(t.first_dof, t.dofCount()).dot(mass_velocity.segment(t.first_dof, t.dofCount()));
 }
 
 /** [rad] Largest turn of a hinge in a step at these velocities, if the tree's mass matrix depends on it. */
@@ -79,20 +93,24 @@ double bend(const FreeStart& start) {
 
 bool isBeyond(const SlowMotion& slow, const FreeStart& start, double turning) { return turning > slow.turning || bend(start) > slow.bend; }
 
-bool mayFollowAlone(const Forest& forest, const StepInput& input, int tree, const ForestMotion& motion) {
-  return motion.pace[tree] == Pace::SLOW && !isTied(forest, tree) && !hasJoint(forest, tree, input, isDriven);
-}
-
 const SlowMotion& slowMotion(const Forest& forest, int tree, const StepInput& input, bool touched) {
   if (!hasJoint(forest, tree, input, isDriven)) return ALONE;
-  if (touched) return AT_WORK;
-  return hasJoint(forest, tree, input, hasMotor) ? WITH_MOTORS : WITH_FRICTION;
+  if (hasJoint(forest, tree, input, hasMotor)) return touched ? AT_WORK : WITH_MOTORS;
+  return touched ? RUBBING : WITH_FRICTION;
 }
 
-Pace paceOf(const FreeStart& start, const StepInput& input, bool touched, double turning) {
+Pace paceOf(const FreeStart& start, const StepInput& input, bool touched, const Eigen::VectorXd& mass_velocity) {
+  const double turning = turningOf(start, mass_velocity);
   if (!isBeyond(ALONE, start, turning)) return Pace::SLOW;
-  if (isTied(start.forest, start.tree)) return turning > TOO_FAST ? Pace::TOO_FAST : Pace::SLOW;
+  if (isTied(start, mass_velocity)) return turning > TOO_FAST ? Pace::TOO_FAST : Pace::SLOW;
   return isBeyond(slowMotion(start.forest, start.tree, input, touched), start, turning) ? Pace::FAST : Pace::SLOW;
+}
+
+/** Whether a tree without motors was set spinning by this step: at the velocities that were solved it is fast. */
+bool isSpinning(const FreeStart& solved, const StepInput& input, const Eigen::VectorXd& mass_velocity) {
+  const auto has = [&](bool is(const JointDrive&)) { return hasJoint(solved.forest, solved.tree, input, is); };
+  const double slow = has(isDriven) ? RUBBING.turning : ALONE.turning;
+  return turningOf(solved, mass_velocity) > slow && !has(hasMotor) && !isTied(solved, mass_velocity);
 }
 
 // Joints that answer stiffly keep their velocity on the way, as far as motor, friction and limits reach.
@@ -102,6 +120,19 @@ void setHold(const JointTerm& joint, double velocity, double inertia, FreeMotion
   way->held[joint.dof] = holds;
   way->most[joint.dof] = joint.lowerImpulse(velocity) > 0 ? INFINITY : reach;
   way->least[joint.dof] = joint.upperImpulse(velocity) > 0 ? -INFINITY : -reach;
+}
+
+// Joints that follow each other keep their velocities on the way, and so their relation.
+void holdMimics(const Forest& forest, int tree, FreeMotion* way) {
+  for (const MimicRelation& mimic : forest.mimics()) {
+    if (forest.nodes()[mimic.node].tree != tree) continue;
+    for (const int node : {mimic.node, mimic.master}) {
+      const int dof = forest.nodes()[node].first_dof;
+      way->held[dof] = true;
+      way->least[dof] = -INFINITY;
+      way->most[dof] = INFINITY;
+    }
+  }
 }
 
 void turn(double dt, const Vector3& spin, Matrix3* R) {
@@ -152,6 +183,16 @@ void brake(const Forest& forest, const std::vector<int>& trees, ForestMotion* mo
   }
 }
 
+// The tree is followed on its way from now on, without the products that its free momentum took.
+void setFast(const Forest& forest, const StepInput& input, int tree, ForestMotion* motion, SolverSpace* space) {
+  const ForestTree& t = forest.trees()[tree];
+  motion->pace[tree] = Pace::FAST;
+  for (int k = t.first_dof; k < t.dof_end; ++k) {
+    space->free_momentum[k] += input.dt * productsShare(t, k) * motion->products[k];
+    motion->products[k] = 0;
+  }
+}
+
 }  // namespace
 
 void takeMomentum(const Forest& forest, int tree, ForestMotion* motion, SolverSpace* space) {
@@ -170,7 +211,7 @@ void setFreeMomentum(const TreeAhead& ahead, ForestMotion* motion, SolverSpace* 
   computeProducts(forest, tree, space->direction, motion);
   multiply({forest, tree, motion->mass}, motion->velocity, &space->mass_velocity, &space->paths);
   const FreeStart start{forest, tree, input.dt, *motion, motion->velocity};
-  motion->pace[tree] = paceOf(start, input, touched, turning(start, space->mass_velocity));
+  motion->pace[tree] = paceOf(start, input, touched, space->mass_velocity);
   if (motion->pace[tree] != Pace::SLOW) motion->products.segment(first, count).setZero();
   space->free_momentum.segment(first, count) = space->mass_velocity.segment(first, count);
   if (t.free) space->free_momentum.segment<6>(first) = motion->momentum[tree];
@@ -182,13 +223,9 @@ void setFreeMomentum(const TreeAhead& ahead, ForestMotion* motion, SolverSpace* 
 }
 
 void followAlone(const Forest& forest, const StepInput& input, int tree, ForestMotion* motion, SolverSpace* space) {
-  if (!mayFollowAlone(forest, input, tree, *motion)) return;
-  const ForestTree& t = forest.trees()[tree];
-  motion->pace[tree] = Pace::FAST;
-  for (int k = t.first_dof; k < t.dof_end; ++k) {
-    space->free_momentum[k] += input.dt * productsShare(t, k) * motion->products[k];
-    motion->products[k] = 0;
-  }
+  const FreeStart start{forest, tree, input.dt, *motion, motion->velocity};
+  const bool follows = motion->pace[tree] == Pace::SLOW && !hasJoint(forest, tree, input, isDriven) && !isTied(start, space->mass_velocity);
+  if (follows) setFast(forest, input, tree, motion, space);
 }
 
 void addEfforts(const StepInput& input, const IslandTerms& terms, SolverSpace* space) {
@@ -202,10 +239,9 @@ double correctProducts(const Forest& forest, const StepInput& input, int tree, F
   space->gradient.segment(first, count) = motion->products.segment(first, count);
   space->direction.segment(first, count) = 0.5 * (motion->velocity.segment(first, count) + space->velocity.segment(first, count));
   computeProducts(forest, tree, space->direction, motion);
-  if (mayFollowAlone(forest, input, tree, *motion) &&
-      turning({forest, tree, input.dt, *motion, space->velocity}, space->mass_velocity) > ALONE.turning) {
+  if (isSpinning({forest, tree, input.dt, *motion, space->velocity}, input, space->mass_velocity)) {
     motion->products.segment(first, count) = space->gradient.segment(first, count);
-    followAlone(forest, input, tree, motion, space);
+    setFast(forest, input, tree, motion, space);
     return INFINITY;
   }
   double worst = 0;
@@ -226,6 +262,7 @@ bool followFast(const SolvedIsland& island, const ForestMotion& motion, const So
   for (const int tree : trees) {
     followed &= motion.pace[tree] != Pace::TOO_FAST;
     if (!isFast(motion, tree)) continue;
+    holdMimics(island.forest, tree, way);
     followed &= way->follow({island.forest, tree, island.dt, motion, space.velocity}, space.mass_velocity).followed;
   }
   return followed;

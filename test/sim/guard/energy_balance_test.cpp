@@ -209,34 +209,46 @@ TEST(EnergyOutOfNothing, IsNoneWhereAnImpactSetsARodSpinning) {
   EXPECT_LT(out_of_nothing, 1e-9);
 }
 
-/** An arm of two bars, level at first, that falls and stretches again and again. @param elbow more of its second joint */
-RobotConfig fallingArm(const std::string& type, const std::string& elbow) {
-  const auto bar = [](const std::string& name) {
-    return "<link name=\"" + name + R"("><inertial><origin xyz="0.15 0 0"/><mass value="1"/>
-      <inertia ixx="0.0007" iyy="0.008" izz="0.008" ixy="0" ixz="0" iyz="0"/></inertial></link>)";
-  };
+/** Fingers of 50 g on the lower bar that follow each other. */
+const char* const FINGERS =
+    R"(<link name="left"><inertial><mass value="0.05"/><inertia ixx="1e-5" iyy="1e-5" izz="1e-5" ixy="0" ixz="0" iyz="0"/></inertial></link>
+    <link name="right"><inertial><mass value="0.05"/><inertia ixx="1e-5" iyy="1e-5" izz="1e-5" ixy="0" ixz="0" iyz="0"/></inertial></link>
+    <joint name="first" type="prismatic"><parent link="elbow_bar"/><child link="left"/><origin xyz="0.3 0.02 0"/><axis xyz="0 1 0"/>
+      <limit lower="-0.1" upper="0.1" effort="0" velocity="1"/></joint>
+    <joint name="second" type="prismatic"><parent link="elbow_bar"/><child link="right"/><origin xyz="0.3 -0.02 0"/><axis xyz="0 -1 0"/>
+      <limit lower="-0.1" upper="0.1" effort="0" velocity="1"/><mimic joint="first"/></joint>)";
+
+/** A joint about y and a bar of 1 kg and 0.3 m behind it. @param more of the joint */
+std::string barAfter(const std::string& parent, const std::string& joint, const std::string& more) {
+  return fmt::format(
+      R"(<link name="{1}_bar"><inertial><origin xyz="0.15 0 0"/><mass value="1"/>
+      <inertia ixx="0.0007" iyy="0.008" izz="0.008" ixy="0" ixz="0" iyz="0"/></inertial></link>
+      <joint name="{1}" {2}<parent link="{0}"/><child link="{1}_bar"/><origin xyz="{3} 0 0"/><axis xyz="0 1 0"/></joint>)",
+      parent, joint, more, parent == "base" ? 0 : 0.3);
+}
+
+/** An arm of two bars, level at first, that falls and stretches again and again. @param elbow type and more of its second joint */
+RobotConfig fallingArm(const std::string& elbow, const std::string& hand) {
   return robot("arm",
-               "<robot name=\"arm\"><link name=\"base\"/>" + bar("upper") + bar("lower") +
-                   R"(<joint name="shoulder" type="continuous"><parent link="base"/><child link="upper"/><axis xyz="0 1 0"/></joint>
-      <joint name="elbow" type=")" +
-                   type + R"("><parent link="upper"/><child link="lower"/><origin xyz="0.3 0 0"/><axis xyz="0 1 0"/>)" + elbow +
-                   "</joint></robot>",
+               "<robot name=\"arm\"><link name=\"base\"/>" + barAfter("base", "shoulder", "type=\"continuous\">") +
+                   barAfter("shoulder_bar", "elbow", elbow) + hand + "</robot>",
                true);
 }
 
 /** Velocity products of a straight arm do not tell how fast its mass matrix changes. */
 TEST(EnergyOutOfNothing, IsNoneWhereAnArmStretches) {
-  struct Elbow {
-    const char *type, *more;
+  struct Arm {
+    const char *elbow, *hand;
     double most;  // [J]
   };
-  const Elbow elbows[] = {{"continuous", "", 1e-7},
-                          {"continuous", R"(<dynamics damping="0.001"/>)", 3e-6},
-                          {"continuous", R"(<dynamics damping="0" friction="0.01"/>)", 3e-6},
-                          {"revolute", R"(<limit lower="-1" upper="1" effort="0" velocity="10"/>)", 1e-6}};
-  for (const Elbow& elbow : elbows) {
+  const Arm arms[] = {{R"(type="continuous">)", "", 1e-7},
+                      {R"(type="continuous"><dynamics damping="0.001"/>)", "", 3e-6},
+                      {R"(type="continuous"><dynamics damping="0" friction="0.01"/>)", "", 3e-6},
+                      {R"(type="revolute"><limit lower="-1" upper="1" effort="0" velocity="10"/>)", "", 1e-6},
+                      {R"(type="continuous">)", FINGERS, 1e-6}};
+  for (const Arm& arm : arms) {
     SimulationConfig config;
-    config.robots = {fallingArm(elbow.type, elbow.more)};
+    config.robots = {fallingArm(arm.elbow, arm.hand)};
     Simulator simulator(config, model::UriResolver());
     double out_of_nothing = 0, fastest = 0;
     std::uint32_t status = 0;
@@ -246,9 +258,9 @@ TEST(EnergyOutOfNothing, IsNoneWhereAnArmStretches) {
       fastest = std::max(fastest, std::abs(simulator.world().jointState(1).velocity));
       status |= report.status;
     }
-    EXPECT_LT(out_of_nothing, elbow.most) << elbow.more;
-    EXPECT_EQ(status & ENERGY_GAINED, 0u) << elbow.more;
-    EXPECT_GT(fastest, 10) << elbow.more;
+    EXPECT_LT(out_of_nothing, arm.most) << arm.elbow << arm.hand;
+    EXPECT_EQ(status & ENERGY_GAINED, 0u) << arm.elbow << arm.hand;
+    EXPECT_GT(fastest, 10) << arm.elbow << arm.hand;
   }
 }
 
