@@ -60,6 +60,10 @@ class ArticulatedStepper : public Stepper {
   void forEachIsland(const Work& work);
   void report(double dt, SolveResult* result) const;
   void addFreeWays(const Island& island, double dt, double sign, const std::vector<Vector6>& twist, SolveResult* result) const;
+  template <typename Work>
+  void addFreeWork(const Island& island, const Work& work, SolveResult* result) const;
+  void workBefore(const Island& island, double dt, SolveResult* result) const;
+  void workAfter(const Island& island, double dt, SolveResult* result) const;
   void readContacts(const StepInput& input, const Island& island, SolveResult* result) const;
   void readJoints(const StepInput& input, const Island& island, SolveResult* result);
   void remember(const StepInput& input, const SolveResult& result);
@@ -233,7 +237,9 @@ void ArticulatedStepper::finishIsland(const Scene& scene, const StepInput& input
   for (const int tree : model.trees)
     if (motion_.pace[tree] == Pace::FAST) computeTwists(forest_, tree, motion_, space_.velocity, &space_.twist);
   addFreeWays(*island, input.dt, -1, space_.twist, result);
+  workBefore(*island, input.dt, result);
   advanceIsland(solved, way_, &motion_, &space_);
+  workAfter(*island, input.dt, result);
   addFreeWays(*island, input.dt, 1, motion_.twist, result);
   island->impacts.takeFrom(forest_, model.trees, &motion_.change);
 }
@@ -248,6 +254,35 @@ void ArticulatedStepper::addFreeWays(const Island& island, double dt, double sig
       result->free_ways[forest_.nodes()[i].body] +=
           sign * (motion_.reference[tree] + motion_.com[i]) - 0.5 * dt * velocityAt(twist[i], motion_.com[i]);
   }
+}
+
+/** Adds work(node, dof, effort) [J] of each joint of the island's trees. */
+template <typename Work>
+void ArticulatedStepper::addFreeWork(const Island& island, const Work& work, SolveResult* result) const {
+  for (const int tree : island.model.trees) {
+    const ForestTree& t = forest_.trees()[tree];
+    for (int i = t.first_node; i < t.node_end; ++i) {
+      const ForestNode& n = forest_.nodes()[i];
+      if (n.dofs == 1) result->free_work[n.joint] += work(i, n.first_dof, result->axis_efforts[n.joint]);
+    }
+  }
+}
+
+// Part of free_work before the trees move: debts of the last step are paid along the mean velocity.
+void ArticulatedStepper::workBefore(const Island& island, double dt, SolveResult* result) const {
+  const auto work = [&](int node, int k, double effort) {
+    const double solved = motion_.next_velocity[k];
+    return effort * (motion_.position[node] + 0.5 * dt * solved) - 0.5 * motion_.owed[k] * (motion_.velocity[k] + solved);
+  };
+  addFreeWork(island, work, result);
+}
+
+// The other part, at the end of their way: held joints went it at the velocity that was solved.
+void ArticulatedStepper::workAfter(const Island& island, double dt, SolveResult* result) const {
+  const auto work = [&](int node, int k, double effort) {
+    return motion_.owed[k] * motion_.next_velocity[k] - effort * (motion_.position[node] - 0.5 * dt * motion_.velocity[k]);
+  };
+  addFreeWork(island, work, result);
 }
 
 void ArticulatedStepper::readContacts(const StepInput& input, const Island& island, SolveResult* result) const {
@@ -348,6 +383,7 @@ void ArticulatedStepper::step(Scene* scene, const StepInput& input, SolveResult*
   result->motor_efforts.assign(scene->joints().size(), 0);
   result->axis_efforts.assign(scene->joints().size(), 0);
   result->joint_wrenches.assign(scene->joints().size(), Wrench());
+  result->free_work.assign(scene->joints().size(), 0);
   forEachIsland([&](Island* island) { solveIsland(*scene, input, island); });
   // Nothing was changed yet: a step that broke down leaves everything as it was.
   result->finite = (space_.velocity.array().abs() < FASTEST).all();

@@ -16,9 +16,9 @@ struct SlowMotion {
   double bend;     ///< [rad] of a hinge in a step: products that are none at its start, as of a stretched arm, may be there at its end
 };
 
-// A tree that nothing drives has an energy to keep, and friction tells how much of it may go; where motors or friction act against
+// A tree that nothing drives has an energy to keep, and motors and friction tell how much of it comes and goes; where they act against
 // contacts, forces of both sides are best found together with the products.
-constexpr SlowMotion ALONE{1e-4, 1e-3}, WITH_FRICTION{1e-3, 1e-3}, RUBBING{0.005, 0.01}, WITH_MOTORS{0.005, 0.003}, AT_WORK{0.1, INFINITY};
+constexpr SlowMotion ALONE{1e-4, 1e-3}, IN_THE_AIR{1e-3, 1e-3}, RUBBING{0.005, 0.01}, AT_WORK{0.1, INFINITY};
 constexpr double SMALL_TURN = 0.05;  // [rad] of a free root in a step: beyond, products of the step's start are not those of its end
 // Trees that are tied are solved with their products. Beyond this the products would add energy without bound:
 // they are left out, and the trees are braked.
@@ -95,8 +95,8 @@ bool isBeyond(const SlowMotion& slow, const FreeStart& start, double turning) { 
 
 const SlowMotion& slowMotion(const Forest& forest, int tree, const StepInput& input, bool touched) {
   if (!hasJoint(forest, tree, input, isDriven)) return ALONE;
-  if (hasJoint(forest, tree, input, hasMotor)) return touched ? AT_WORK : WITH_MOTORS;
-  return touched ? RUBBING : WITH_FRICTION;
+  if (!touched) return IN_THE_AIR;
+  return hasJoint(forest, tree, input, hasMotor) ? AT_WORK : RUBBING;
 }
 
 Pace paceOf(const FreeStart& start, const StepInput& input, bool touched, const Eigen::VectorXd& mass_velocity) {

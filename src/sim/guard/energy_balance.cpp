@@ -47,7 +47,7 @@ EnergyGain EnergyBalance::addSolve(const dynamics::World& world, const MadeSolve
   tie(world, made);
   bookBodies(world, made);
   bookLoads(world, made.dt, made.before, made.after);
-  bookJoints(world, made.dt, made.result.axis_efforts);
+  bookJoints(world, made.dt, made.result);
   bookSprings(made);
   bookContacts(made);
   EnergyGain gain;
@@ -121,12 +121,13 @@ void EnergyBalance::bookLoads(const dynamics::World& world, double dt, const std
 }
 
 // Books the work of joints: effort times mean velocity, for the same reason.
-void EnergyBalance::bookJoints(const dynamics::World& world, double dt, const std::vector<double>& efforts) {
+void EnergyBalance::bookJoints(const dynamics::World& world, double dt, const dynamics::SolveResult& result) {
   for (int joint = 0; joint < world.jointCount(); ++joint) {
     const dynamics::JointSpec& spec = world.jointSpec(joint);
     const dynamics::JointState state = world.jointState(joint);
     dynamics::JointState& last = joints_[joint];
-    const double work = efforts[joint] * (state.position - last.position - 0.5 * dt * (state.velocity - last.velocity));
+    double work = result.axis_efforts[joint] * (state.position - last.position - 0.5 * dt * (state.velocity - last.velocity));
+    if (!result.free_work.empty()) work += result.free_work[joint];
     Book& book = books_[islands_.islandOf(spec.child)];
     book.rise += 0.5 * spec.armature * (square(state.velocity) - square(last.velocity)) - work;
     book.moved += 0.5 * spec.armature * square(state.velocity) + std::abs(work);

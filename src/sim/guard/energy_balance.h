@@ -73,8 +73,7 @@ class EnergyBalance {
   void bookBodies(const dynamics::World& world, const MadeSolve& made);
   void bookLoads(const dynamics::World& world, double dt, const std::vector<dynamics::BodyState>& before,
                  const std::vector<dynamics::BodyState>& after);
-  /** @param efforts along the joints' axes */
-  void bookJoints(const dynamics::World& world, double dt, const std::vector<double>& efforts);
+  void bookJoints(const dynamics::World& world, double dt, const dynamics::SolveResult& result);
   void bookSprings(const MadeSolve& made);
   void bookContacts(const MadeSolve& made);
   void holdBack();
