@@ -51,8 +51,9 @@ class ArticulatedStepper : public Stepper {
   bool isMoved(const ContactConstraint& contact) const;
   NewtonSettings settingsFor(const Island& island) const;
   bool leap(const TermSource& source, Island* island);
-  NewtonReport solveTwice(const StepInput& input, const NewtonSettings& newton, Island* island);
-  NewtonReport solveBounded(const StepInput& input, Island* island);
+  TreeAhead ahead(const TermSource& source, const Island& island, int tree) const;
+  NewtonReport solveTwice(const TermSource& source, const NewtonSettings& newton, Island* island);
+  NewtonReport solveBounded(const TermSource& source, Island* island);
   void reckonWork(bool leaps, Island* island);
   void solveIsland(const Scene& scene, const StepInput& input, Island* island);
   void finishIsland(const Scene& scene, const StepInput& input, Island* island, SolveResult* result);
@@ -169,17 +170,21 @@ NewtonSettings ArticulatedStepper::settingsFor(const Island& island) const {
   return settings;
 }
 
+TreeAhead ArticulatedStepper::ahead(const TermSource& source, const Island& island, int tree) const {
+  return {forest_, source.scene, source.input, tree, !island.contacts.empty()};
+}
+
 // Solves with velocity products at the middle of the step, again where their first guess was not good enough.
-NewtonReport ArticulatedStepper::solveTwice(const StepInput& input, const NewtonSettings& newton, Island* island) {
+NewtonReport ArticulatedStepper::solveTwice(const TermSource& source, const NewtonSettings& newton, Island* island) {
   const NewtonReport first = island->solver.solve(forest_, motion_, island->model, newton, &space_);
   double change = 0;
-  for (const int tree : island->model.trees) change = std::max(change, correctProducts(forest_, input, tree, &motion_, &space_));
+  for (const int tree : island->model.trees) change = std::max(change, correctProducts(ahead(source, *island, tree), &motion_, &space_));
   return change <= SAME_PRODUCTS ? first : afterAll(first, island->solver.solveAgain(newton));
 }
 
-NewtonReport ArticulatedStepper::solveBounded(const StepInput& input, Island* island) {
+NewtonReport ArticulatedStepper::solveBounded(const TermSource& source, Island* island) {
   const NewtonSettings newton = settingsFor(*island);
-  const NewtonReport report = solveTwice(input, newton, island);
+  const NewtonReport report = solveTwice(source, newton, island);
   if (!island->solver.limitCorrections(settings_.max_correction_speed)) return report;
   return afterAll(report, island->solver.solveAgain(newton));
 }
@@ -213,12 +218,12 @@ void ArticulatedStepper::reckonWork(bool leaps, Island* island) {
 void ArticulatedStepper::solveIsland(const Scene& scene, const StepInput& input, Island* island) {
   IslandModel& model = island->model;
   const TermSource source{scene, forest_, motion_, input, settings_, memory_};
-  for (const int tree : model.trees) setFreeMomentum({forest_, scene, input, tree, !island->contacts.empty()}, &motion_, &space_);
+  for (const int tree : model.trees) setFreeMomentum(ahead(source, *island, tree), &motion_, &space_);
   makeTerms(source, island);
   model.up = -scene.gravity();
   addEfforts(input, *island->solver.terms(), &space_);
   const bool leaps = leap(source, island);
-  island->report = solveBounded(input, island);
+  island->report = solveBounded(source, island);
   reckonWork(leaps, island);
   if (leaps) island->impacts.addTo(island->solver.terms());
 }

@@ -106,11 +106,10 @@ Pace paceOf(const FreeStart& start, const StepInput& input, bool touched, const 
   return isBeyond(slowMotion(start.forest, start.tree, input, touched), start, turning) ? Pace::FAST : Pace::SLOW;
 }
 
-/** Whether a tree without motors was set spinning by this step: at the velocities that were solved it is fast. */
-bool isSpinning(const FreeStart& solved, const StepInput& input, const Eigen::VectorXd& mass_velocity) {
-  const auto has = [&](bool is(const JointDrive&)) { return hasJoint(solved.forest, solved.tree, input, is); };
-  const double slow = has(isDriven) ? RUBBING.turning : ALONE.turning;
-  return turningOf(solved, mass_velocity) > slow && !has(hasMotor) && !isTied(solved, mass_velocity);
+/** Whether this step made the tree fast: at the velocities that were solved it is beyond what may be solved with products. */
+bool isSpinning(const FreeStart& solved, const StepInput& input, bool touched, const Eigen::VectorXd& mass_velocity) {
+  const SlowMotion& slow = slowMotion(solved.forest, solved.tree, input, touched);
+  return &slow != &AT_WORK && isBeyond(slow, solved, turningOf(solved, mass_velocity)) && !isTied(solved, mass_velocity);
 }
 
 // Joints that answer stiffly keep their velocity on the way, as far as motor, friction and limits reach.
@@ -232,14 +231,15 @@ void addEfforts(const StepInput& input, const IslandTerms& terms, SolverSpace* s
   for (const JointTerm& j : terms.joints) space->free_momentum[j.dof] += input.dt * input.drives[j.joint].givenEffort();
 }
 
-double correctProducts(const Forest& forest, const StepInput& input, int tree, ForestMotion* motion, SolverSpace* space) {
+double correctProducts(const TreeAhead& ahead, ForestMotion* motion, SolverSpace* space) {
+  const auto& [forest, scene, input, tree, touched] = ahead;
   if (motion->pace[tree] != Pace::SLOW) return 0;
   const ForestTree& t = forest.trees()[tree];
   const int first = t.first_dof, count = t.dofCount();
   space->gradient.segment(first, count) = motion->products.segment(first, count);
   space->direction.segment(first, count) = 0.5 * (motion->velocity.segment(first, count) + space->velocity.segment(first, count));
   computeProducts(forest, tree, space->direction, motion);
-  if (isSpinning({forest, tree, input.dt, *motion, space->velocity}, input, space->mass_velocity)) {
+  if (isSpinning({forest, tree, input.dt, *motion, space->velocity}, input, touched, space->mass_velocity)) {
     motion->products.segment(first, count) = space->gradient.segment(first, count);
     setFast(forest, input, tree, motion, space);
     return INFINITY;

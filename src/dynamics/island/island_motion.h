@@ -38,11 +38,11 @@ bool followFast(const SolvedIsland& island, const ForestMotion& motion, const So
 void addEfforts(const StepInput& input, const IslandTerms& terms, SolverSpace* space);
 
 /**
- * Takes the velocity products at the middle of the step that was solved. A tree that nothing drives or ties, and that an impact of this
- * step set spinning, is fast from now on.
+ * Takes the velocity products at the middle of the step that was solved. A tree that this step made fast, as an impact or a motor does
+ * that tears it out of rest, is fast from now on, unless motors act against contacts.
  * @return [sqrt(kg) m/s] change of the free momentum, infinite for such a tree
  */
-double correctProducts(const Forest& forest, const StepInput& input, int tree, ForestMotion* motion, SolverSpace* space);
+double correctProducts(const TreeAhead& ahead, ForestMotion* motion, SolverSpace* space);
 
 /** Moves the trees to the end of the step. Islands with a tree that is too fast gain no energy on the way. */
 void advanceIsland(const SolvedIsland& island, const FreeMotion& way, ForestMotion* motion, SolverSpace* space);

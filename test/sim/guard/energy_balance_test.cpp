@@ -264,8 +264,8 @@ TEST(EnergyOutOfNothing, IsNoneWhereAnArmStretches) {
   }
 }
 
-/** Bounds the bit to steps in which motors without an effort limit tear the arm out of rest: how fast it will be is not known before. */
-TEST(EnergyGainedBit, IsNotSetByAnArmThatMotorsThrowAbout) {
+/** Motors without an effort limit tear the arm out of rest; stiff joints keep their velocity on the free way, and pay in the next step. */
+TEST(EnergyOutOfNothing, IsHardlyAnyWhereMotorsThrowAnArmAbout) {
   SimulationConfig config;
   config.robots = {fallingArm(R"(type="continuous">)", "")};
   for (const char* joint : {"shoulder", "elbow"}) {
@@ -275,15 +275,14 @@ TEST(EnergyGainedBit, IsNotSetByAnArmThatMotorsThrowAbout) {
   config.robots[0].motor["default"] = MotorLaw::IMPLICIT_PD;
   Simulator simulator(config, model::UriResolver());
   constexpr int JUMPS = 10;
-  double fastest = 0;
-  int told = 0;
+  double fastest = 0, out_of_nothing = 0;
   for (int i = 0; i < 200 * JUMPS; ++i) {
     const double target = i / 200 % 2 == 0 ? 1 : -1;
     if (i % 200 == 0) simulator.commandJoints(0, {{"shoulder", "elbow"}, {target, -2 * target}, {}, {}});
-    told += (simulator.step().status & ENERGY_GAINED) != 0;
+    out_of_nothing = std::max(out_of_nothing, simulator.step().energy_out_of_nothing);
     fastest = std::max(fastest, std::abs(simulator.world().jointState(1).velocity));
   }
-  EXPECT_LE(told, JUMPS);
+  EXPECT_LT(out_of_nothing, 3e-6);
   EXPECT_GT(fastest, 10);
 }
 
