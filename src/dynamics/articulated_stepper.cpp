@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "blem_sim/geometry/roomy.h"
+#include "free_way_books.h"
 #include "island/island.h"
 #include "island/island_motion.h"
 #include "island/island_wrenches.h"
@@ -60,11 +61,6 @@ class ArticulatedStepper : public Stepper {
   template <typename Work>
   void forEachIsland(const Work& work);
   void report(double dt, SolveResult* result) const;
-  void addFreeWays(const Island& island, double dt, double sign, const std::vector<Vector6>& twist, SolveResult* result) const;
-  template <typename Work>
-  void addFreeWork(const Island& island, const Work& work, SolveResult* result) const;
-  void workBefore(const Island& island, double dt, SolveResult* result) const;
-  void workAfter(const Island& island, double dt, SolveResult* result) const;
   void readContacts(const StepInput& input, const Island& island, SolveResult* result) const;
   void readJoints(const StepInput& input, const Island& island, SolveResult* result);
   void remember(const StepInput& input, const SolveResult& result);
@@ -239,55 +235,10 @@ void ArticulatedStepper::finishIsland(const Scene& scene, const StepInput& input
   const SolvedIsland solved{forest_, scene, model, island->solver.found().terms, input.dt};
   island->followed = followFast(solved, motion_, space_, &way_);
   computeWrenches(solved, way_, &motion_, &space_, &result->joint_wrenches);
-  for (const int tree : model.trees)
-    if (motion_.pace[tree] == Pace::FAST) computeTwists(forest_, tree, motion_, space_.velocity, &space_.twist);
-  addFreeWays(*island, input.dt, -1, space_.twist, result);
-  workBefore(*island, input.dt, result);
+  bookBeforeWay(solved, motion_, &space_, result);
   advanceIsland(solved, way_, &motion_, &space_);
-  workAfter(*island, input.dt, result);
-  addFreeWays(*island, input.dt, 1, motion_.twist, result);
+  bookAfterWay(solved, motion_, result);
   island->impacts.takeFrom(forest_, model.trees, &motion_.change);
-}
-
-// Adds, before and after the free way of fast trees, what free_ways consists of. @param sign -1 and 1 @param twist there
-void ArticulatedStepper::addFreeWays(const Island& island, double dt, double sign, const std::vector<Vector6>& twist,
-                                     SolveResult* result) const {
-  for (const int tree : island.model.trees) {
-    if (motion_.pace[tree] != Pace::FAST) continue;
-    const ForestTree& t = forest_.trees()[tree];
-    for (int i = t.first_node; i < t.node_end; ++i)
-      result->free_ways[forest_.nodes()[i].body] +=
-          sign * (motion_.reference[tree] + motion_.com[i]) - 0.5 * dt * velocityAt(twist[i], motion_.com[i]);
-  }
-}
-
-/** Adds work(node, dof, effort) [J] of each joint of the island's trees. */
-template <typename Work>
-void ArticulatedStepper::addFreeWork(const Island& island, const Work& work, SolveResult* result) const {
-  for (const int tree : island.model.trees) {
-    const ForestTree& t = forest_.trees()[tree];
-    for (int i = t.first_node; i < t.node_end; ++i) {
-      const ForestNode& n = forest_.nodes()[i];
-      if (n.dofs == 1) result->free_work[n.joint] += work(i, n.first_dof, result->axis_efforts[n.joint]);
-    }
-  }
-}
-
-// Part of free_work before the trees move: debts of the last step are paid along the mean velocity.
-void ArticulatedStepper::workBefore(const Island& island, double dt, SolveResult* result) const {
-  const auto work = [&](int node, int k, double effort) {
-    const double solved = motion_.next_velocity[k];
-    return effort * (motion_.position[node] + 0.5 * dt * solved) - 0.5 * motion_.owed[k] * (motion_.velocity[k] + solved);
-  };
-  addFreeWork(island, work, result);
-}
-
-// The other part, at the end of their way: held joints went it at the velocity that was solved.
-void ArticulatedStepper::workAfter(const Island& island, double dt, SolveResult* result) const {
-  const auto work = [&](int node, int k, double effort) {
-    return motion_.owed[k] * motion_.next_velocity[k] - effort * (motion_.position[node] - 0.5 * dt * motion_.velocity[k]);
-  };
-  addFreeWork(island, work, result);
 }
 
 void ArticulatedStepper::readContacts(const StepInput& input, const Island& island, SolveResult* result) const {

@@ -24,7 +24,7 @@ std::vector<T> concatenated(std::vector<std::vector<T>> lists) {
   return all;
 }
 
-/** What append(item, &list) adds to a list for each of `count` items, in their order. */
+/** A list to which append(item, &list) has added for each of `count` items, in their order. */
 template <typename T, typename Append>
 std::vector<T> collected(int count, Append&& append) {
   constexpr int ITEMS = 1 << 14;

@@ -1,0 +1,16 @@
+// Free ways of fast trees in the result of a solve, for those who book energy.
+#pragma once
+
+#include "problem/solved_island.h"
+#include "problem/solver_space.h"
+#include "trees/forest_motion.h"
+
+namespace blem_sim::dynamics {
+
+/** First part of the result's free_ways and free_work, which were set to zero. After the solve, before the island's trees move. */
+void bookBeforeWay(const SolvedIsland& island, const ForestMotion& motion, SolverSpace* space, SolveResult* result);
+
+/** The other part, at the end of their way. */
+void bookAfterWay(const SolvedIsland& island, const ForestMotion& motion, SolveResult* result);
+
+}  // namespace blem_sim::dynamics
