@@ -103,9 +103,8 @@ struct SolveResult {
                                         ///< step, and of bent paths; empty where a stepper does not know it
   std::vector<Vector3> free_ways;       ///< [m] per body: by how much its centre of mass went beside the way of the mean velocity over what
                                         ///< forces did to it, where a tree was followed on its free way; empty if none was
-  std::vector<double> free_work;        ///< [J] per joint, beside its effort along the way of its mean velocity: what it took to keep its
-                                  ///< velocity on a free way, which the next step pays, less what this one paid of the last one's, and
-                                  ///< less what its effort did not do there; empty where a stepper follows none
+  std::vector<double> free_work;        ///< [J] per joint: what it took to keep its velocity on a free way, which the next step pays, less
+                                  ///< what this one paid of the last; what its effort did beside its mean velocity's way; empty: none known
   double residual = 0;    ///< [N] largest miss of Coulomb's law by a contact's force; 0 where a stepper does not know it
   double creep = 0;       ///< [rad/s or m/s] largest miss of velocities to momentum's balance, contacts, sticking joints, limits or loops
   int iterations = 0;     ///< of the solver, over all islands

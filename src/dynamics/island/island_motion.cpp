@@ -108,8 +108,9 @@ Pace paceOf(const FreeStart& start, const StepInput& input, bool touched, const 
 
 /** Whether this step made the tree fast: at the velocities that were solved it is beyond what may be solved with products. */
 bool isSpinning(const FreeStart& solved, const StepInput& input, bool touched, const Eigen::VectorXd& mass_velocity) {
+  if (touched && hasJoint(solved.forest, solved.tree, input, hasMotor)) return false;
   const SlowMotion& slow = slowMotion(solved.forest, solved.tree, input, touched);
-  return &slow != &AT_WORK && isBeyond(slow, solved, turningOf(solved, mass_velocity)) && !isTied(solved, mass_velocity);
+  return isBeyond(slow, solved, turningOf(solved, mass_velocity)) && !isTied(solved, mass_velocity);
 }
 
 // Joints that answer stiffly keep their velocity on the way, as far as motor, friction and limits reach.
