@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "island/island_motion.h"
+#include "island/swept_island.h"
+#include "newton/island_faults.h"
 #include "problem/island_velocity.h"
 #include "problem/make_terms.h"
 #include "support/standard_values.h"
@@ -174,6 +176,62 @@ TEST(IslandSolver, AnswersAQuestionAskedAgainInTheSameWords) {
   EXPECT_EQ(chain.space.velocity, velocity);
   for (std::size_t i = 0; i < terms.contacts.size(); ++i) EXPECT_EQ(solver.found().terms.contacts[i].impulse, terms.contacts[i].impulse);
 }
+
+/** What sweeps alone make of the problem of a chain on a box. */
+struct SweptChain {
+  explicit SweptChain(const ChainOnBox& chain) : island{chain.forest, chain.motion, chain.model, &answer, &space, &team} {
+    answer = chain.answer;
+    space = chain.space;
+    newton.start(island);
+    newton.firstGradient(0);
+    keepFirst(island);
+    newton.beginAllLive();
+    swept.start(island, &newton);
+    EXPECT_TRUE(swept.sweepWithMotors(SweepStart::NOTHING, &sweeps));
+    report.gradient = swept.adopt();
+    newton.finish(&report);
+  }
+
+  IslandAnswer answer;
+  SolverSpace space;
+  Team team;
+  IslandAtHand island;
+  NewtonLoop newton;
+  SweptIsland swept;
+  SweepReport sweeps;
+  NewtonReport report;
+};
+
+/** A chain whose motors want a velocity. */
+struct DrivenChain : ChainOnBox {
+  DrivenChain(double max_effort, double velocity, double friction) : ChainOnBox(4, friction) {
+    for (JointTerm& joint : answer.terms.joints) {
+      joint.motor_gain = 1;
+      joint.motor_velocity = velocity;
+      joint.motor_bound = DT * max_effort;
+    }
+  }
+};
+
+void expectAsSolved(DrivenChain&& chain) {
+  const SweptChain swept(chain);
+  EXPECT_LT(faults(swept.report, swept.answer.terms.contacts), 1);
+  IslandSolver solver;
+  *solver.terms() = chain.answer.terms;
+  EXPECT_LT(faults(solver.solve(chain.forest, chain.motion, chain.model, {}, &chain.space), solver.found().terms.contacts), 1);
+  for (int dof = 0; dof < chain.space.velocity.size(); ++dof)
+    EXPECT_NEAR(swept.space.velocity[dof], chain.space.velocity[dof], 1e-5) << dof;
+}
+
+TEST(SweptIsland, SolvesWithMotorsThatHold) { expectAsSolved({100, 0, 0}); }
+
+// Taken to push with all their strength until the next round, such motors throw light links to and fro.
+TEST(SweptIsland, SolvesWithMotorsThatLeaveTheirBounds) { expectAsSolved({10, -1, 0}); }
+
+TEST(SweptIsland, SolvesWithMotorsAtTheirBounds) { expectAsSolved({0.1, -10, 0}); }
+
+// By a rounding inside its bound, friction would be said to stick.
+TEST(SweptIsland, SolvesWithFrictionThatSlips) { expectAsSolved({0.1, -10, 0.01}); }
 
 TEST(Island, TermsAreMadeAnewInEveryStepAndItsModelTellsOfJoints) {
   ChainOnBox chain(3, 0.01);

@@ -28,7 +28,10 @@ class IslandSweeps {
   /** Whether, at a velocity, exactly those motors stay within their efforts that were taken to answer linearly. */
   bool motorsAgree(const Eigen::VectorXd& velocity) const { return joints_.motorsAgree(velocity); }
   /** Velocities without any impulse of contacts, joint friction, limits and loops. */
-  void freeVelocity(Eigen::VectorXd* velocity) { response_.freeVelocity(momentum_, velocity); }
+  void freeVelocity(Eigen::VectorXd* velocity) {
+    response_.freeVelocity(momentum_, velocity);
+    joints_.pushMotors(response_, velocity);
+  }
   /** Multiplies all impulses by a factor. @param velocity with these impulses, out */
   void scale(double factor, Eigen::VectorXd* velocity);
 

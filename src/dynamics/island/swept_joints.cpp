@@ -35,36 +35,33 @@ SweptJoints::AxisRow::AxisRow(const JointTerm& joint, double axis_response, Swee
   upper = joint.upper_previous;
 }
 
-double SweptJoints::AxisRow::visit(const JointTerm& joint, double v, double change) {
+double SweptJoints::AxisRow::visit(const JointTerm& joint, bool has_motor, double v) {
   const double gain = 1 / response;
+  double sum = 0;
   const auto set = [&](double* impulse, double sign, double now) {
     const double by = sign * (now - *impulse);
     *impulse = now;
-    change += by;
+    sum += by;
     v += response * by;
   };
+  if (has_motor) set(&motor, 1, joint.motorImpulse(v - response * motor, response));
   if (joint.dry_bound > 0) set(&dry, 1, std::clamp(dry - gain * v, -joint.dry_bound, joint.dry_bound));
   if (joint.limit_gain > 0) {
     set(&lower, 1, std::max(0.0, lower + gain * (joint.lower_velocity - v)));
     set(&upper, -1, std::max(0.0, upper + gain * (v - joint.upper_velocity)));
   }
-  return change;
-}
-
-double SweptJoints::AxisRow::visitMotor(const JointTerm& joint, double v) {
-  const double gain = joint.motor_gain, before = motor;
-  if (!(gain > 0)) return 0;
-  const double wanted = motor + (gain * (joint.motor_velocity - v) - motor) / (1 + gain * response);
-  motor = std::clamp(wanted, -joint.motor_bound, joint.motor_bound);
-  return motor - before;
+  return sum;
 }
 
 void SweptJoints::AxisRow::scale(double factor) {
-  for (double* impulse : {&motor, &dry, &lower, &upper}) *impulse *= factor;
+  for (double* impulse : {&dry, &lower, &upper}) *impulse *= factor;
 }
 
 void SweptJoints::AxisRow::read(double v, JointTerm* joint) const {
-  joint->dry_previous = dry + joint->dry_gain / joint->softness * v;
+  // Friction that slips stays at its bound, whatever rounding does: short of it, it would be taken to stick.
+  const double dry_by = joint->dry_gain / joint->softness * v;
+  const bool sticks = std::abs(dry) < joint->dry_bound;
+  joint->dry_previous = dry + (sticks ? dry_by : dry > 0 ? std::max(0.0, dry_by) : std::min(0.0, dry_by));
   const double gain = joint->limit_gain / joint->softness;
   joint->lower_previous = lower > 0 ? lower - gain * (joint->lower_velocity - v) : 0;
   joint->upper_previous = upper > 0 ? upper - gain * (v - joint->upper_velocity) : 0;
@@ -78,7 +75,7 @@ void SweptJoints::loadMotors(const IslandAtHand& island, const Eigen::VectorXd& 
     const JointResponse motor = j.motorLine(velocity[j.dof]);
     motors_.push_back(motor);
     (*gains)[j.dof] = j.viscous + motor.stiffness;
-    (*momentum)[j.dof] += motor.impulse;
+    if (motor.stiffness > 0) (*momentum)[j.dof] += motor.impulse;
   }
 }
 
@@ -98,13 +95,16 @@ void SweptJoints::load(SweepStart start, IslandResponse* response) {
 
 void SweptJoints::loadJoint(int term, SweepStart start, IslandResponse* response) {
   const JointTerm& j = island_->terms()->joints[term];
-  if (!(j.dry_bound > 0) && !(j.limit_gain > 0)) return;
+  const bool has_motor = motors_[term].stiffness == 0 && motors_[term].impulse != 0;
+  if (!has_motor && !(j.dry_bound > 0) && !(j.limit_gain > 0)) return;
   JointRow row;
+  row.has_motor = has_motor;
   row.term = term;
   row.dof = j.dof;
   row.unit = response->unitOf(island_->forest.nodeOfDof(j.dof));
   row.column = response->column(j.dof);
   row.axis = AxisRow(j, response->entry(row.column, response->units()[row.unit].rowOf(j.dof)), start);
+  if (has_motor) row.axis.motor = motors_[term].impulse;
   if (row.axis.response > 0) joint_rows_.push_back(row);
 }
 
@@ -123,7 +123,8 @@ void SweptJoints::loadLoop(std::size_t index, SweepStart start, IslandResponse* 
 
 void SweptJoints::sweep(const IslandResponse& response, Eigen::VectorXd* velocity) {
   for (JointRow& row : joint_rows_) {
-    const double change = row.axis.visit(island_->terms()->joints[row.term], (*velocity)[row.dof]);
+    const double change = row.axis.visit(island_->terms()->joints[row.term], row.has_motor, (*velocity)[row.dof]);
+    if (row.has_motor) motors_[row.term].impulse = row.axis.motor;
     if (change != 0) response.push(row.unit, row.column, change, velocity);
   }
   for (std::size_t l = 0; l < loop_rows_.size(); ++l) sweepLoop(l, response, velocity);
@@ -137,8 +138,7 @@ void SweptJoints::sweepLoop(std::size_t index, const IslandResponse& response, E
   response.push(row.pair, loop.basis * forbidden, velocity);
   if (loop.rows == 6 || !(row.axis.response > 0)) return;
   const double v = (loop.basis.transpose() * response.relativeTwist(row.pair, *velocity))[5];
-  const double by_motor = row.axis.visitMotor(loop.drive, v);
-  const double change = row.axis.visit(loop.drive, v + row.axis.response * by_motor, by_motor);
+  const double change = row.axis.visit(loop.drive, loop.drive.motor_gain > 0, v);
   response.push(row.pair, change * loop.basis.col(5), velocity);
 }
 
@@ -151,6 +151,12 @@ void SweptJoints::push(const IslandResponse& response, Eigen::VectorXd* velocity
     if (loop.rows < 6) impulse[5] = row.axis.sum();
     response.push(row.pair, loop.basis * impulse, velocity);
   }
+}
+
+void SweptJoints::pushMotors(const IslandResponse& response, Eigen::VectorXd* velocity) const {
+  for (const JointRow& row : joint_rows_) response.push(row.unit, row.column, row.axis.motor, velocity);
+  for (std::size_t l = 0; l < loop_rows_.size(); ++l)
+    response.push(loop_rows_[l].pair, loop_rows_[l].axis.motor * island_->terms()->loops[l].basis.col(5), velocity);
 }
 
 void SweptJoints::scale(double factor) {

@@ -13,7 +13,8 @@ enum class SweepStart { PREVIOUS, NOTHING };
 
 class SweptJoints {
  public:
-  /** Takes the motors as they answer at a velocity: saturated or not. Adds their gains, and viscous friction, and their impulses. */
+  /** Takes the motors as they answer at a velocity. Those within their efforts are folded into the mass matrix: adds their gains, and
+   * viscous friction, and their impulses. Those at a bound are swept. */
   void loadMotors(const IslandAtHand& island, const Eigen::VectorXd& velocity, Eigen::VectorXd* gains, Eigen::VectorXd* momentum);
   /** Takes friction, limits and loops of the terms at hand. Precondition: the response is factored */
   void load(SweepStart start, IslandResponse* response);
@@ -23,8 +24,11 @@ class SweptJoints {
   void sweep(const IslandResponse& response, Eigen::VectorXd* velocity);
   /** Adds what their impulses make of a velocity. */
   void push(const IslandResponse& response, Eigen::VectorXd* velocity) const;
+  /** The same of the motors that are swept, alone. */
+  void pushMotors(const IslandResponse& response, Eigen::VectorXd* velocity) const;
+  /** Multiplies all impulses but those of motors. */
   void scale(double factor);
-  /** Whether, at a velocity, exactly those motors stay within their efforts that were taken to answer linearly. */
+  /** Whether, at a velocity, exactly those motors stay within their efforts that were folded. */
   bool motorsAgree(const Eigen::VectorXd& velocity) const;
   /** The impulses found, as proximal points that answer so at the velocity. */
   void read(const IslandResponse& response, const Eigen::VectorXd& velocity, IslandTerms* terms) const;
@@ -38,17 +42,16 @@ class SweptJoints {
     AxisRow() = default;
     AxisRow(const JointTerm& joint, double axis_response, SweepStart start);
     double sum() const { return motor + dry + lower - upper; }
+    /** Visits all of them at a velocity. @return change of their sum */
+    double visit(const JointTerm& joint, bool has_motor, double v);
     void scale(double factor);
-    /** Visits friction and limits at a velocity. @return `change` plus the change of their sum */
-    double visit(const JointTerm& joint, double v, double change = 0);
-    /** Change of the impulse of a motor that is not folded into the mass matrix. */
-    double visitMotor(const JointTerm& joint, double v);
     /** Proximal points of friction and limits. */
     void read(double v, JointTerm* joint) const;
   };
   struct JointRow {
     int term, unit, dof;
     std::size_t column;
+    bool has_motor;  // that is swept
     AxisRow axis;
   };
   struct LoopRow {
@@ -63,7 +66,7 @@ class SweptJoints {
   void readLoop(std::size_t row, const IslandResponse& response, const Eigen::VectorXd& velocity, LoopTerm* loop) const;
 
   const IslandAtHand* island_ = nullptr;
-  std::vector<JointResponse> motors_;  // the line of each joint term's motor
+  std::vector<JointResponse> motors_;  // the line of each joint term's motor; the impulse of a flat one is swept
   std::vector<JointRow> joint_rows_;
   std::vector<LoopRow> loop_rows_;
 };

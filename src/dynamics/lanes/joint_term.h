@@ -47,6 +47,13 @@ struct JointTerm {
     return {motor_gain, motor_velocity};
   }
   double motorImpulse(double v) const { return std::clamp(motorPiece(v).impulse(v), -motor_bound, motor_bound); }
+  /** Motor's impulse p with p = motorImpulse(v + response p): each piece falls, so that the smaller of two has the smaller solution.
+   *  @param response [1/kg or 1/(kg m^2)] of the joint's velocity to an impulse */
+  double motorImpulse(double v, double response) const {
+    const auto solve = [&](double gain, double velocity) { return gain * (velocity - v) / (1 + gain * response); };
+    const double most = solve(velocity_gain, max_velocity), least = solve(velocity_gain, min_velocity);
+    return std::clamp(std::max(least, std::min(most, solve(motor_gain, motor_velocity))), -motor_bound, motor_bound);
+  }
   /** The motor's impulse about v as a straight line: impulse - stiffness * velocity. */
   JointResponse motorLine(double v) const {
     const MotorPiece piece = motorPiece(v);
