@@ -177,7 +177,7 @@ TEST(IslandSolver, AnswersAQuestionAskedAgainInTheSameWords) {
   for (std::size_t i = 0; i < terms.contacts.size(); ++i) EXPECT_EQ(solver.found().terms.contacts[i].impulse, terms.contacts[i].impulse);
 }
 
-/** What sweeps alone make of the problem of a chain on a box. */
+/** The problem of a chain on a box, solved by sweeps alone. */
 struct SweptChain {
   explicit SweptChain(const ChainOnBox& chain) : island{chain.forest, chain.motion, chain.model, &answer, &space, &team} {
     answer = chain.answer;

@@ -4,12 +4,11 @@
 #include <vector>
 
 #include "iterate/island_iterate.h"
-#include "trees/block_matrix.h"
-#include "trees/islands.h"
+#include "newton/hessian_blocks.h"
 
 namespace blem_sim::dynamics {
 
-/** Trees that nothing ties have a factor each, without fill-in; tied ones are blocks of one matrix. */
+/** Trees that nothing ties have a factor each, without fill-in; tied ones are a matrix of blocks. */
 class IslandHessian {
  public:
   void start(const IslandAtHand& island, const IslandIterate& iterate);
@@ -28,36 +27,25 @@ class IslandHessian {
  private:
   enum class State {
     NEW,      ///< live dofs and pairs are not known to the matrix
-    LAID,     ///< the matrix has a block for every pair that is tied
+    LAID,     ///< the blocks are those of both
     FACTORED  ///< at the kinds and stiffnesses that are noted
   };
-  int treeOf(int node) const { return island_->forest.nodes()[node].tree; }
-  int treeOfDof(int dof) const { return treeOf(island_->forest.nodeOfDof(dof)); }
-  void lay();
-  void joinTrees();
-  void coupleTrees();
   void startFromBase();
   void noteKinds();
   void stiffen(int node, const Matrix6& stiffness);
   void stiffenPair(const BodyPair& pair, const Matrix6& stiffness);
-  void coupleBlocks(const BodyPair& pair, const Matrix6& stiffness);
   void addStiffness();
   void pushStiffness();
-  void fillMatrix();
   bool eliminateTrees();
-  void solveBlocks();
 
   const IslandAtHand* island_ = nullptr;
   const IslandIterate* iterate_ = nullptr;
-  bool tied_ = false;  // two branches or two trees are tied: it is a matrix of blocks, one per tree
+  bool tied_ = false;  // two branches or two trees are tied
   State state_ = State::NEW;
   std::vector<double> kinds_, joint_stiffness_;  // lane by lane, of the factor at hand
   std::vector<Matrix6> pair_stiffness_;
   std::vector<char> pair_is_stiff_;
-  Islands tree_blocks_;  // trees that mimic joints tie are one block
-  std::vector<int> block_sizes_;
-  BlockMatrix matrix_;
-  Eigen::VectorXd block_vector_;
+  HessianBlocks blocks_;
 };
 
 }  // namespace blem_sim::dynamics

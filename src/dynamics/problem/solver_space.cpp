@@ -12,8 +12,6 @@ void SolverSpace::resize(const Forest& forest) {
   for (auto* v : {&twist, &wrench}) v->resize(forest.nodes().size());
   stiffness.resize(forest.nodes().size());
   for (auto* v : {&stiff, &live}) v->resize(forest.nodes().size());
-  block.resize(forest.trees().size());
-  block_row.resize(forest.dofCount());
 }
 
 }  // namespace blem_sim::dynamics

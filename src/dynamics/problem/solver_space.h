@@ -24,8 +24,6 @@ struct SolverSpace {
   std::vector<Matrix6> stiffness;      ///< per node
   std::vector<char> stiff;             ///< per node: stiffness is not zero
   std::vector<char> live;              ///< per node: contacts, loops or mimic joints act on it or on a node that it carries
-  std::vector<int> block;              ///< per tree: its block in the island's matrix
-  std::vector<int> block_row;          ///< per dof: its row in that block
 
   void resize(const Forest& forest);
 };
