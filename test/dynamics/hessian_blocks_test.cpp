@@ -102,9 +102,7 @@ void expectSolvesAsWritten(ArmsAndBall* scene, const Eigen::MatrixXd& moves) {
   EXPECT_LT((x - expected).norm(), 1e-9 * expected.norm());
 }
 
-Eigen::MatrixXd allMove(const ArmsAndBall& scene) {
-  return Eigen::MatrixXd::Identity(scene.forest.dofCount(), scene.forest.dofCount());
-}
+Eigen::MatrixXd allMove(const ArmsAndBall& scene) { return Eigen::MatrixXd::Identity(scene.forest.dofCount(), scene.forest.dofCount()); }
 
 TEST(HessianBlocks, OfATree) {
   ArmsAndBall scene;

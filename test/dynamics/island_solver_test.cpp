@@ -187,7 +187,7 @@ struct SweptChain {
     keepFirst(island);
     newton.beginAllLive();
     swept.start(island, &newton);
-    EXPECT_TRUE(swept.sweepWithMotors(SweepStart::NOTHING, &sweeps));
+    EXPECT_TRUE(swept.sweepWithMotors(SweepStart::NOTHING, 1e-7, &sweeps));
     report.gradient = swept.adopt();
     newton.finish(&report);
   }
@@ -254,6 +254,10 @@ TEST(IslandModel, IsAHeapOfFreeBodiesAlone) {
   EXPECT_FALSE(model.isCrowd());
   EXPECT_FALSE(model.isTied());
   model.joints = 1;
+  EXPECT_FALSE(model.isHeap());
+  EXPECT_FALSE(model.isMixedHeap());
+  model.trees.resize(64);
+  EXPECT_TRUE(model.isMixedHeap());
   EXPECT_FALSE(model.isHeap());
   model.loop_pairs.emplace_back();
   EXPECT_TRUE(model.isTied());

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "soak/heap.h"
+#include "soak/stirred_heap.h"
 #include "support/sanitizers.h"
 
 namespace blem_sim::sim {
@@ -48,6 +48,24 @@ TEST(Heaps, SixtyCubesTumbleWithoutTrouble) {
   EXPECT_EQ(seen.trouble, 0);
   EXPECT_FALSE(seen.status & (STATE_NOT_FINITE | CONTACT_UNRELIABLE));
   EXPECT_LT(seen.deepest, 0.25);
+}
+
+// Newton's method alone, and sweeps that took a motor at its bound for a constant push, were in trouble in a fifth of the steps.
+TEST(Heaps, AreStirredByAMotorAtItsBoundWithoutTrouble) {
+  Simulator simulator(stirredHeap(100, 1, dynamics::SolverSettings()), model::UriResolver());
+  int trouble = 0, saturated = 0;
+  double out_of_nothing = 0;
+  for (int i = 0; i < (SANITIZED ? 50 : 700); ++i) {
+    stir(&simulator);
+    const StepReport& report = simulator.step();
+    ASSERT_FALSE(report.status & (STATE_NOT_FINITE | CONTACT_UNRELIABLE)) << i;
+    trouble += (report.status & SOLVER_TROUBLE) != 0;
+    saturated += (report.status & EFFORT_SATURATED) != 0;
+    out_of_nothing = std::max(out_of_nothing, report.energy_out_of_nothing);
+  }
+  EXPECT_EQ(trouble, 0);
+  EXPECT_GT(saturated, SANITIZED ? 0 : 500);
+  EXPECT_LT(out_of_nothing, 1e-5);
 }
 
 /** One of the cubes lands on a corner, is hit from above, and its other corner comes down within the step, where nothing had foreseen it.

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "soak/figures.h"
-#include "soak/heap.h"
+#include "soak/stirred_heap.h"
 
 namespace blem_sim {
 namespace {
@@ -133,6 +133,44 @@ INSTANTIATE_TEST_SUITE_P(Heaps, Poured,
                            std::replace(name.begin(), name.end(), ' ', '_');
                            return name;
                          });
+
+class Stirred : public ::testing::TestWithParam<int> {};
+
+TEST_P(Stirred, WithoutTrouble) {
+  sim::Simulator simulator(stirredHeap(GetParam(), 1, soakSettings()), model::UriResolver());
+  int trouble = 0, told = 0, saturated = 0;
+  double out_of_nothing = 0, sum = 0, deepest = 0, speed = 0;
+  StepTimes times;
+  const int steps = soakSteps(4, 0.3);
+  for (int k = 0; k < steps; ++k) {
+    stir(&simulator);
+    times.start();
+    const sim::StepReport& report = simulator.step();
+    times.stop(report);
+    ASSERT_FALSE(report.status & sim::STATE_NOT_FINITE) << k;
+    trouble += (report.status & sim::SOLVER_TROUBLE) != 0;
+    told += (report.status & sim::ENERGY_GAINED) != 0;
+    saturated += (report.status & sim::EFFORT_SATURATED) != 0;
+    out_of_nothing = std::max(out_of_nothing, report.energy_out_of_nothing);
+    sum += report.energy_out_of_nothing;
+    deepest = std::max(deepest, report.max_of_layer);
+    for (const dynamics::BodyState& body : report.bodies) speed = std::max(speed, body.v_WCom.norm());
+  }
+  const std::string name = std::to_string(GetParam()) + " cubes that are stirred";
+  figure(name + ": steps in trouble", trouble, "");
+  figure(name + ": steps with a motor at its bound", saturated, "");
+  figure(name + ": steps that said ENERGY_GAINED", told, "");
+  figure(name + ": most energy out of nothing in a step", out_of_nothing, "J");
+  figure(name + ": in all", sum, "J");
+  figure(name + ": deepest of layer", deepest, "");
+  figure(name + ": fastest", speed, "m/s");
+  times.print(name);
+  EXPECT_LT(trouble, 1e-3 * steps);
+  EXPECT_LT(sum, 1e-3);
+  EXPECT_LT(deepest, 0.25);
+}
+
+INSTANTIATE_TEST_SUITE_P(Cubes, Stirred, ::testing::Values(40, 100, 300));
 
 }  // namespace
 }  // namespace blem_sim

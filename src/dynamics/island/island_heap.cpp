@@ -12,8 +12,8 @@ constexpr int LARGE_HEAP = 32;  // fewest that are swept first; of fewer only if
 constexpr double TURNS = 0.03;  // [rad/s] fastest turn of a heap that stands, slides or lands flat: Newton's method solves it
 constexpr int FEW_ITERATIONS = 30, CROWD_ITERATIONS = 8;  // most of Newton's method on a small heap that tumbles, on a crowd at rest
 // A heap tumbles if the first sweep changes impulses by more than this share of the largest. Sweeps end when they change impulses by less;
-// a quiet crowd sways for ever if they leave more.
-constexpr double TUMBLES = 1e-2, SWEPT = 1e-3, SWEPT_FEW = 2e-5, SWEPT_QUIET = 1e-5;
+// a quiet crowd sways for ever if they leave more, and motors of robots in a heap push as hard as the largest impulse.
+constexpr double TUMBLES = 1e-2, SWEPT = 1e-3, SWEPT_MIXED = 1e-4, SWEPT_FEW = 2e-5, SWEPT_QUIET = 1e-5;
 constexpr int FEW_SWEEPS = 60;
 // Newton's method on a crowd fails where one sweep changes impulses by more than this share of the largest: the hard problem, and
 // polishing.
@@ -33,7 +33,11 @@ void IslandHeap::start(const IslandAtHand& island, NewtonLoop* newton, ProximalS
 
 NewtonReport IslandHeap::solve(const NewtonSettings& settings) {
   NewtonReport report;
-  if (!solveWithoutSweeps(settings, &report)) sweepAndPolish(settings, &report);
+  if (island_->model.isMixedHeap()) {
+    if (!solveFew(settings, &report)) sweepMixed(settings, &report);
+  } else if (!solveWithoutSweeps(settings, &report)) {
+    sweepAndPolish(settings, &report);
+  }
   return report;
 }
 
@@ -81,12 +85,25 @@ void IslandHeap::sweepAndPolish(const NewtonSettings& settings, NewtonReport* re
   report->iterations += 1 + sweeps.sweeps;
   const NewtonReport found = adoptSwept(&report->iterations);
   // Sweeps do not converge in towers, where a push has a long way to go.
-  const bool worthwhile = island_->model.isCrowd() ? first_change <= NEARLY : quiet || sweeps.last_change > SWEPT;
-  if (worthwhile && !isExact(settings, found)) {
+  finishSwept(settings, found, island_->model.isCrowd() ? first_change <= NEARLY : quiet || sweeps.last_change > SWEPT, report);
+}
+
+void IslandHeap::finishSwept(const NewtonSettings& settings, const NewtonReport& found, bool polishes, NewtonReport* report) {
+  if (polishes && !isExact(settings, found)) {
     if (polish(settings, found, report)) return;
     swept_->adoptAgain();
   }
   newton_->finish(report);
+}
+
+// Sweeps with motors of robots find what gives way; where it is quiet, or they leave faults, Newton's method goes on.
+void IslandHeap::sweepMixed(const NewtonSettings& settings, NewtonReport* report) {
+  SweepReport sweeps;
+  if (!swept_->sweepWithMotors(SweepStart::PREVIOUS, SWEPT_MIXED, &sweeps)) return;
+  report->iterations += sweeps.sweeps;
+  const NewtonReport found = adoptSwept(&report->iterations);
+  const bool faulty = faultsWithCreep(found, island_->terms()->contacts) > 1;
+  finishSwept(settings, found, faulty || sweeps.first_change <= TUMBLES, report);
 }
 
 SweepReport IslandHeap::sweepOn(bool quiet) {

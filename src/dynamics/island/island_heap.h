@@ -17,6 +17,8 @@ class IslandHeap {
   bool solveStanding(const NewtonSettings& settings, NewtonReport* report);
   bool solveFew(const NewtonSettings& settings, NewtonReport* report);
   void sweepAndPolish(const NewtonSettings& settings, NewtonReport* report);
+  void sweepMixed(const NewtonSettings& settings, NewtonReport* report);
+  void finishSwept(const NewtonSettings& settings, const NewtonReport& found, bool polishes, NewtonReport* report);
   SweepReport sweepOn(bool quiet);
   NewtonReport adoptSwept(int* sweeps);
   bool polish(const NewtonSettings& settings, const NewtonReport& swept, NewtonReport* report);

@@ -33,8 +33,8 @@ NewtonReport IslandSolver::solveFirst(const NewtonSettings& settings) {
     return report;
   }
   keepFirst(*island_);
-  report = island_->model.isHeap() ? heap_.solve(settings) : steps_.solvePredicted(settings);
-  recoverFromFaults(&report);
+  report = isSwept() ? heap_.solve(settings) : steps_.solvePredicted(settings);
+  recoverFromFaults(settings, &report);
   return report;
 }
 
@@ -43,14 +43,14 @@ NewtonReport IslandSolver::solveAgain(const NewtonSettings& settings) {
   keepFirst(*island_);
   NewtonReport report;
   team_->with(settings.helpers, [&] {
-    report = island_->model.isHeap() ? heap_.solve(settings) : steps_.solve(settings);
-    recoverFromFaults(&report);
+    report = isSwept() ? heap_.solve(settings) : steps_.solve(settings);
+    recoverFromFaults(settings, &report);
   });
   return report;
 }
 
-void IslandSolver::recoverFromFaults(NewtonReport* report) {
-  if (faults(*report, found_.terms.contacts) > 1) last_resort_.recover(*island_, &swept_, &newton_, report);
+void IslandSolver::recoverFromFaults(const NewtonSettings& settings, NewtonReport* report) {
+  if (faults(*report, found_.terms.contacts) > 1) last_resort_.recover(*island_, {&swept_, &newton_, &steps_}, settings, report);
 }
 
 bool IslandSolver::limitCorrections(double speed) {

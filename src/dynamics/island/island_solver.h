@@ -36,7 +36,8 @@ class IslandSolver {
 
  private:
   NewtonReport solveFirst(const NewtonSettings& settings);
-  void recoverFromFaults(NewtonReport* report);
+  bool isSwept() const { return island_->model.isHeap() || island_->model.isMixedHeap(); }
+  void recoverFromFaults(const NewtonSettings& settings, NewtonReport* report);
 
   std::optional<IslandAtHand> island_;
   IslandAnswer found_;

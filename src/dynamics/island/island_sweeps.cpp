@@ -18,7 +18,13 @@ Vector6 columnOf(const TwistLanes& lanes, int lane) {
 
 bool IslandSweeps::load(const IslandAtHand& island, SweepStart start, Eigen::VectorXd* velocity) {
   island_ = &island;
-  if (!loadResponse(*velocity)) return false;
+  joints_.takeMotors(island, *velocity);
+  return arrange(start, velocity);
+}
+
+bool IslandSweeps::arrange(SweepStart start, Eigen::VectorXd* velocity) {
+  const IslandAtHand& island = *island_;
+  if (!loadResponse()) return false;
   pairs_.clear();
   for (const PairContacts& of_pair : island.model.pairs) pairs_.push_back(response_.pair(of_pair.pair));
   joints_.load(start, &response_);
@@ -29,17 +35,17 @@ bool IslandSweeps::load(const IslandAtHand& island, SweepStart start, Eigen::Vec
   return true;
 }
 
-bool IslandSweeps::loadResponse(const Eigen::VectorXd& velocity) {
+bool IslandSweeps::loadResponse() {
   response_.start(island_->forest, island_->motion, island_->model.trees, island_->model.mimics);
-  gains_.resize(velocity.size());
-  momentum_.resize(velocity.size());
+  gains_.resize(island_->forest.dofCount());
+  momentum_.resize(island_->forest.dofCount());
   dofs_.clear();
   forDofs(*island_, [this](int k) {
     dofs_.push_back(k);
     gains_[k] = 0;
     momentum_[k] = island_->space->free_momentum[k];
   });
-  joints_.loadMotors(*island_, velocity, &gains_, &momentum_);
+  joints_.foldMotors(&gains_, &momentum_);
   return response_.factor(gains_);
 }
 

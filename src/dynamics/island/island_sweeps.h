@@ -23,11 +23,13 @@ class IslandSweeps {
    * @return false if a mass matrix is not positive definite
    */
   bool load(const IslandAtHand& island, SweepStart start, Eigen::VectorXd* velocity);
+  /** The same from the terms' previous impulses, motors as motorsAgree() took them. */
+  bool loadAgain(Eigen::VectorXd* velocity) { return arrange(SweepStart::PREVIOUS, velocity); }
   /** Sweeps until the largest change of an impulse is below `enough` of the largest impulse, at most `most` times. */
   SweepReport sweep(int most, double enough, Eigen::VectorXd* velocity);
-  /** Whether, at a velocity, exactly those motors stay within their efforts that were taken to answer linearly. */
-  bool motorsAgree(const Eigen::VectorXd& velocity) const { return joints_.motorsAgree(velocity); }
-  /** Velocities without any impulse of contacts, joint friction, limits and loops. */
+  /** Whether motors do exactly what their laws say at a velocity. Those that do not are taken for something else by loadAgain(). */
+  bool motorsAgree(const Eigen::VectorXd& velocity) { return joints_.motorsAgree(velocity); }
+  /** Velocities without any impulse of contacts, joint friction, limits and loops, but with motors. */
   void freeVelocity(Eigen::VectorXd* velocity) {
     response_.freeVelocity(momentum_, velocity);
     joints_.pushMotors(response_, velocity);
@@ -39,7 +41,8 @@ class IslandSweeps {
   void read(const Eigen::VectorXd& velocity, IslandTerms* terms) const;
 
  private:
-  bool loadResponse(const Eigen::VectorXd& velocity);
+  bool arrange(SweepStart start, Eigen::VectorXd* velocity);
+  bool loadResponse();
   void loadContacts(SweepStart start);
   void loadBodies(SweepGroup* group, SweepBodies* bodies) const;
   void loadLane(int lane, SweepGroup* group);

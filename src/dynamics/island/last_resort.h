@@ -2,21 +2,34 @@
 #pragma once
 
 #include "island/swept_island.h"
+#include "newton/proximal_steps.h"
 #include "problem/kept_solution.h"
 
 namespace blem_sim::dynamics {
 
+/** The ways to solve an island. */
+struct IslandWays {
+  SweptIsland* swept;
+  NewtonLoop* newton;
+  ProximalSteps* steps;
+};
+
 class LastResort {
  public:
   /**
-   * Sweeps from the last step's impulses, and from none. Their results balance momentum and add no energy to free motion. The result of the
-   * smallest faults is taken: one of theirs, or the one found before. If it has faults even so, the island's energy is bounded.
+   * Sweeps from the last step's impulses, and from none; each time Newton's method goes on from what they found. The result of sweeps
+   * balances momentum and adds no energy to free motion. The result of the smallest faults is taken: one of theirs, or the one found
+   * before. If it has faults even so, the island's energy is bounded.
    * @param report of what was found before
    */
-  void recover(const IslandAtHand& island, SweptIsland* swept, NewtonLoop* newton, NewtonReport* report);
+  void recover(const IslandAtHand& island, const IslandWays& ways, const NewtonSettings& settings, NewtonReport* report);
 
  private:
+  void take(const IslandAtHand& island, const NewtonReport& found);
+  int polish(const IslandAtHand& island, const IslandWays& ways, const NewtonSettings& settings);
+
   KeptSolution best_;
+  double least_ = 0;  // faults of the best
 };
 
 }  // namespace blem_sim::dynamics

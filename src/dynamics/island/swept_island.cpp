@@ -6,7 +6,6 @@
 namespace blem_sim::dynamics {
 namespace {
 
-constexpr double RECOVERED = 1e-7;                           // of the largest impulse: change by which sweeps with motors end
 constexpr int MOTOR_ROUNDS = 4;                              // searches for the motors that are at their bounds
 constexpr double FREE_ENERGY = 1e-9, GAIN_OF_MOTION = 1e-6;  // [J], and of the work that contacts exchange: most that sweeps may gain
 
@@ -23,15 +22,15 @@ bool SweptIsland::load(SweepStart start) {
   return sweeps_.load(*island_, start, &s.velocity);
 }
 
-bool SweptIsland::sweepWithMotors(SweepStart start, SweepReport* report) {
+bool SweptIsland::sweepWithMotors(SweepStart start, double enough, SweepReport* report) {
   Eigen::VectorXd* velocity = &island_->space->velocity;
   if (!load(start)) return false;
-  *report = sweep(MOST_SWEEPS, RECOVERED);
+  *report = sweep(MOST_SWEEPS, enough);
   for (int round = 1; round < MOTOR_ROUNDS && !sweeps_.motorsAgree(*velocity); ++round) {
     sweeps_.read(*velocity, island_->terms());
     for (ContactTerm& c : island_->terms()->contacts) c.previous = c.impulse;
-    if (!sweeps_.load(*island_, SweepStart::PREVIOUS, velocity)) return false;
-    report->sweeps += sweep(MOST_SWEEPS, RECOVERED).sweeps;
+    if (!sweeps_.loadAgain(velocity)) return false;
+    report->sweeps += sweep(MOST_SWEEPS, enough).sweeps;
   }
   return true;
 }

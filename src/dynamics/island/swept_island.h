@@ -15,8 +15,9 @@ class SweptIsland {
   bool load(SweepStart start);
   /** Sweeps the velocities in the space on. Precondition: loaded */
   SweepReport sweep(int most, double enough) { return sweeps_.sweep(most, enough, &island_->space->velocity); }
-  /** The same until motors are taken to be at their bounds exactly where the velocities found say so. @return false as load() */
-  bool sweepWithMotors(SweepStart start, SweepReport* report);
+  /** Loads, and sweeps until impulses change by less than `enough` of the largest; again, four times at most, until exactly those motors
+   * are at their bounds that were swept. @return false as load() */
+  bool sweepWithMotors(SweepStart start, double enough, SweepReport* report);
   /** Change of impulses, over the largest, by one sweep from the last step's; infinite if a mass matrix is not positive definite.
    * Overwrites space->direction. */
   double changeByOne();
@@ -26,7 +27,7 @@ class SweptIsland {
   double adopt();
   /** The same again, after something else was tried. */
   double adoptAgain();
-  /** Velocities without any impulse of contacts, joint friction, limits and loops. */
+  /** Velocities without any impulse of contacts, joint friction, limits and loops, but with motors. */
   void freeVelocity(Eigen::VectorXd* velocity) { sweeps_.freeVelocity(velocity); }
 
  private:

@@ -67,23 +67,43 @@ void SweptJoints::AxisRow::read(double v, JointTerm* joint) const {
   joint->upper_previous = upper > 0 ? upper - gain * (v - joint->upper_velocity) : 0;
 }
 
-void SweptJoints::loadMotors(const IslandAtHand& island, const Eigen::VectorXd& velocity, Eigen::VectorXd* gains,
-                             Eigen::VectorXd* momentum) {
+void SweptJoints::takeMotors(const IslandAtHand& island, const Eigen::VectorXd& velocity) {
   island_ = &island;
   motors_.clear();
   for (const JointTerm& j : island.terms()->joints) {
-    const JointResponse motor = j.motorLine(velocity[j.dof]);
-    motors_.push_back(motor);
-    (*gains)[j.dof] = j.viscous + motor.stiffness;
-    if (motor.stiffness > 0) (*momentum)[j.dof] += motor.impulse;
+    const JointResponse line = j.motorLine(velocity[j.dof]);
+    motors_.push_back({line, line.stiffness == 0 && line.impulse != 0});
   }
 }
 
-bool SweptJoints::motorsAgree(const Eigen::VectorXd& velocity) const {
+void SweptJoints::foldMotors(Eigen::VectorXd* gains, Eigen::VectorXd* momentum) const {
+  for (std::size_t i = 0; i < motors_.size(); ++i) {
+    const JointTerm& j = island_->terms()->joints[i];
+    (*gains)[j.dof] = j.viscous + motors_[i].line.stiffness;
+    if (!motors_[i].is_swept) (*momentum)[j.dof] += motors_[i].line.impulse;
+  }
+}
+
+bool SweptJoints::motorsAgree(const Eigen::VectorXd& velocity) {
   const std::vector<JointTerm>& joints = island_->terms()->joints;
-  for (std::size_t i = 0; i < motors_.size(); ++i)
-    if (!(joints[i].motorLine(velocity[joints[i].dof]) == motors_[i])) return false;
-  return true;
+  bool agree = true;
+  for (std::size_t i = 0; i < motors_.size(); ++i) {
+    const double v = velocity[joints[i].dof];
+    if (motors_[i].is_swept || joints[i].motorLine(v) == motors_[i].line) continue;
+    motors_[i] = {{joints[i].motorImpulse(v), 0}, true};
+    agree = false;
+  }
+  // Of a swept motor its impulse tells the piece, not its velocity: at the end of a motor's velocities a millionth of one is the whole
+  // effort.
+  for (const JointRow& row : joint_rows_) {
+    const JointTerm& j = joints[row.term];
+    const double impulse = row.axis.motor, response = row.axis.response;
+    if (!row.has_motor || std::abs(impulse) == j.motor_bound) continue;
+    const JointResponse line = j.motorLine(velocity[row.dof] - response * impulse, response);
+    motors_[row.term] = {line, line.stiffness == 0};
+    agree = false;
+  }
+  return agree;
 }
 
 void SweptJoints::load(SweepStart start, IslandResponse* response) {
@@ -95,7 +115,7 @@ void SweptJoints::load(SweepStart start, IslandResponse* response) {
 
 void SweptJoints::loadJoint(int term, SweepStart start, IslandResponse* response) {
   const JointTerm& j = island_->terms()->joints[term];
-  const bool has_motor = motors_[term].stiffness == 0 && motors_[term].impulse != 0;
+  const bool has_motor = motors_[term].is_swept;
   if (!has_motor && !(j.dry_bound > 0) && !(j.limit_gain > 0)) return;
   JointRow row;
   row.has_motor = has_motor;
@@ -104,7 +124,7 @@ void SweptJoints::loadJoint(int term, SweepStart start, IslandResponse* response
   row.unit = response->unitOf(island_->forest.nodeOfDof(j.dof));
   row.column = response->column(j.dof);
   row.axis = AxisRow(j, response->entry(row.column, response->units()[row.unit].rowOf(j.dof)), start);
-  if (has_motor) row.axis.motor = motors_[term].impulse;
+  if (has_motor) row.axis.motor = motors_[term].line.impulse;
   if (row.axis.response > 0) joint_rows_.push_back(row);
 }
 
@@ -124,7 +144,7 @@ void SweptJoints::loadLoop(std::size_t index, SweepStart start, IslandResponse* 
 void SweptJoints::sweep(const IslandResponse& response, Eigen::VectorXd* velocity) {
   for (JointRow& row : joint_rows_) {
     const double change = row.axis.visit(island_->terms()->joints[row.term], row.has_motor, (*velocity)[row.dof]);
-    if (row.has_motor) motors_[row.term].impulse = row.axis.motor;
+    if (row.has_motor) motors_[row.term].line.impulse = row.axis.motor;
     if (change != 0) response.push(row.unit, row.column, change, velocity);
   }
   for (std::size_t l = 0; l < loop_rows_.size(); ++l) sweepLoop(l, response, velocity);

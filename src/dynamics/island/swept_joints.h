@@ -13,9 +13,11 @@ enum class SweepStart { PREVIOUS, NOTHING };
 
 class SweptJoints {
  public:
-  /** Takes the motors as they answer at a velocity. Those within their efforts are folded into the mass matrix: adds their gains, and
-   * viscous friction, and their impulses. Those at a bound are swept. */
-  void loadMotors(const IslandAtHand& island, const Eigen::VectorXd& velocity, Eigen::VectorXd* gains, Eigen::VectorXd* momentum);
+  /** Takes the motors as they answer at a velocity: those within their efforts are folded into the mass matrix, those at a bound are swept.
+   */
+  void takeMotors(const IslandAtHand& island, const Eigen::VectorXd& velocity);
+  /** Adds the gains and impulses of those that are folded, and viscous friction. */
+  void foldMotors(Eigen::VectorXd* gains, Eigen::VectorXd* momentum) const;
   /** Takes friction, limits and loops of the terms at hand. Precondition: the response is factored */
   void load(SweepStart start, IslandResponse* response);
   bool empty() const { return joint_rows_.empty() && loop_rows_.empty(); }
@@ -28,8 +30,9 @@ class SweptJoints {
   void pushMotors(const IslandResponse& response, Eigen::VectorXd* velocity) const;
   /** Multiplies all impulses but those of motors. */
   void scale(double factor);
-  /** Whether, at a velocity, exactly those motors stay within their efforts that were folded. */
-  bool motorsAgree(const Eigen::VectorXd& velocity) const;
+  /** Takes motors that have left the piece of their law that was folded as swept, and folds those that are swept but at no bound.
+   *  @return whether there were none, so that motors do exactly what their laws say */
+  bool motorsAgree(const Eigen::VectorXd& velocity);
   /** The impulses found, as proximal points that answer so at the velocity. */
   void read(const IslandResponse& response, const Eigen::VectorXd& velocity, IslandTerms* terms) const;
 
@@ -47,6 +50,11 @@ class SweptJoints {
     void scale(double factor);
     /** Proximal points of friction and limits. */
     void read(double v, JointTerm* joint) const;
+  };
+  /** A joint term's motor: a straight piece of its law, or, if it is swept, the impulse found so far. */
+  struct Motor {
+    JointResponse line;
+    bool is_swept;
   };
   struct JointRow {
     int term, unit, dof;
@@ -66,7 +74,7 @@ class SweptJoints {
   void readLoop(std::size_t row, const IslandResponse& response, const Eigen::VectorXd& velocity, LoopTerm* loop) const;
 
   const IslandAtHand* island_ = nullptr;
-  std::vector<JointResponse> motors_;  // the line of each joint term's motor; the impulse of a flat one is swept
+  std::vector<Motor> motors_;  // by joint term
   std::vector<JointRow> joint_rows_;
   std::vector<LoopRow> loop_rows_;
 };

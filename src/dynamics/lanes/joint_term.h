@@ -16,7 +16,8 @@ struct JointResponse {
 struct MotorPiece {
   double gain = 0, velocity = 0;
 
-  double impulse(double v) const { return gain * (velocity - v); }
+  /** p = gain (velocity - v - response p) */
+  double impulse(double v, double response = 0) const { return gain * (velocity - v) / (1 + gain * response); }
 };
 
 /** Units for a revolute joint; a prismatic one has N s and m/s. */
@@ -39,25 +40,24 @@ struct JointTerm {
   double lower_velocity = 0, lower_previous = 0;  ///< impulse max(0, lower_previous + limit_gain / softness * (lower_velocity - v))
   double upper_velocity = 0, upper_previous = 0;  ///< impulse -max(0, upper_previous + limit_gain / softness * (v - upper_velocity))
 
-  /** Velocity that the motor wants at v, and how stiffly: its law, or the end of its velocities that lies before that. */
-  MotorPiece motorPiece(double v) const {
-    const double law = motor_gain * (motor_velocity - v);
-    if (law > velocity_gain * (max_velocity - v)) return {velocity_gain, max_velocity};
-    if (law < velocity_gain * (min_velocity - v)) return {velocity_gain, min_velocity};
-    return {motor_gain, motor_velocity};
+  /**
+   * Velocity that the motor wants, and how stiffly: its law, or the end of its velocities that lies before that. At v + response p, if that
+   * is where its impulse p leads: each piece falls, so that the smaller of two has the smaller solution.
+   * @param response [1/kg or 1/(kg m^2)] of the velocity to an impulse; 0: at v
+   */
+  MotorPiece motorPiece(double v, double response = 0) const {
+    const MotorPiece law{motor_gain, motor_velocity}, most{velocity_gain, max_velocity}, least{velocity_gain, min_velocity};
+    const double wanted = law.impulse(v, response);
+    if (wanted > most.impulse(v, response)) return most;
+    return wanted < least.impulse(v, response) ? least : law;
   }
-  double motorImpulse(double v) const { return std::clamp(motorPiece(v).impulse(v), -motor_bound, motor_bound); }
-  /** Motor's impulse p with p = motorImpulse(v + response p): each piece falls, so that the smaller of two has the smaller solution.
-   *  @param response [1/kg or 1/(kg m^2)] of the joint's velocity to an impulse */
-  double motorImpulse(double v, double response) const {
-    const auto solve = [&](double gain, double velocity) { return gain * (velocity - v) / (1 + gain * response); };
-    const double most = solve(velocity_gain, max_velocity), least = solve(velocity_gain, min_velocity);
-    return std::clamp(std::max(least, std::min(most, solve(motor_gain, motor_velocity))), -motor_bound, motor_bound);
+  double motorImpulse(double v, double response = 0) const {
+    return std::clamp(motorPiece(v, response).impulse(v, response), -motor_bound, motor_bound);
   }
-  /** The motor's impulse about v as a straight line: impulse - stiffness * velocity. */
-  JointResponse motorLine(double v) const {
-    const MotorPiece piece = motorPiece(v);
-    const double wanted = piece.impulse(v);
+  /** The motor's impulse about v, or about where it leads, as a straight line: impulse - stiffness * velocity. */
+  JointResponse motorLine(double v, double response = 0) const {
+    const MotorPiece piece = motorPiece(v, response);
+    const double wanted = piece.impulse(v, response);
     if (wanted > motor_bound) return {motor_bound, 0};
     if (wanted < -motor_bound) return {-motor_bound, 0};
     return {piece.gain * piece.velocity, piece.gain};

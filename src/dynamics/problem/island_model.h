@@ -43,6 +43,8 @@ struct IslandModel {
   bool isTied() const;
   /** Whether it is of free bodies alone, so many that it is swept while it tumbles. */
   bool isHeap() const;
+  /** Whether robots are among so many bodies that it is swept while these tumble. */
+  bool isMixedHeap() const;
   /** Whether its Hessian takes long to factor: as long as dozens of sweeps. */
   bool isCrowd() const;
   /** [N s] A push that no load needs: it would make the whole island ten times as fast as depth is corrected. @param speed [m/s] of that */
