@@ -256,7 +256,7 @@ TEST(IslandModel, IsAHeapOfFreeBodiesAlone) {
   model.joints = 1;
   EXPECT_FALSE(model.isHeap());
   EXPECT_FALSE(model.isMixedHeap());
-  model.trees.resize(64);
+  model.trees.resize(9);
   EXPECT_TRUE(model.isMixedHeap());
   EXPECT_FALSE(model.isHeap());
   model.loop_pairs.emplace_back();

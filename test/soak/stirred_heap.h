@@ -15,7 +15,8 @@ inline std::string stirrerUrdf() {
            "\"/><inertia ixx=\"0.01\" iyy=\"0.02\" izz=\"0.02\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial><collision>" + origin +
            "<geometry><box size=\"" + size + "\"/></geometry></collision></link>";
   };
-  return "<robot name=\"stirrer\"><link name=\"base\"/>" + link("paddle", "0.5 0.05 0.05", 2, 0) + link("flap", "0.1 0.03 0.05", 0.2, 0.05) +
+  return "<robot name=\"stirrer\"><link name=\"base\"/>" + link("paddle", "0.5 0.05 0.05", 2, 0) +
+         link("flap", "0.1 0.03 0.05", 0.2, 0.05) +
          R"(<joint name="turn" type="revolute"><parent link="base"/><child link="paddle"/><origin xyz="0 0 0.06"/><axis xyz="0 0 1"/>
               <limit lower="-10" upper="10" effort="60" velocity="3"/></joint>
             <joint name="hinge" type="revolute"><parent link="paddle"/><child link="flap"/><origin xyz="0.26 0 0"/><axis xyz="0 0 1"/>

@@ -99,7 +99,8 @@ void IslandHeap::finishSwept(const NewtonSettings& settings, const NewtonReport&
 // Sweeps with motors of robots find what gives way; where it is quiet, or they leave faults, Newton's method goes on.
 void IslandHeap::sweepMixed(const NewtonSettings& settings, NewtonReport* report) {
   SweepReport sweeps;
-  if (!swept_->sweepWithMotors(SweepStart::PREVIOUS, SWEPT_MIXED, &sweeps)) return;
+  const double enough = island_->model.treeCount() < LARGE_HEAP ? SWEPT_FEW : SWEPT_MIXED;
+  if (!swept_->sweepWithMotors(SweepStart::PREVIOUS, enough, &sweeps)) return;
   report->iterations += sweeps.sweeps;
   const NewtonReport found = adoptSwept(&report->iterations);
   const bool faulty = faultsWithCreep(found, island_->terms()->contacts) > 1;
