@@ -68,6 +68,22 @@ TEST(Heaps, AreStirredByAMotorAtItsBoundWithoutTrouble) {
   EXPECT_LT(out_of_nothing, 1e-5);
 }
 
+TEST(Heaps, AreStirredToTheSameBitsByAnyNumberOfThreads) {
+  std::vector<std::vector<double>> ends;
+  for (const int threads : {1, 2}) {
+    dynamics::SolverSettings solver;
+    solver.threads = threads;
+    Simulator simulator(stirredHeap(100, 1, solver), model::UriResolver());
+    for (int i = 0; i < (SANITIZED ? 30 : 450); ++i) {
+      stir(&simulator);
+      simulator.step();
+    }
+    EXPECT_GT(simulator.report().reduced_contacts, SANITIZED ? -1 : 300);  // threads share islands of so many
+    ends.push_back(simulator.world().save().numbers);
+  }
+  EXPECT_EQ(ends[0], ends[1]);
+}
+
 /** One of the cubes lands on a corner, is hit from above, and its other corner comes down within the step, where nothing had foreseen it.
  */
 TEST(Heaps, WhatAHitBringsDownDoesNotLeapIntoItsLayer) {
