@@ -92,8 +92,9 @@ void expectSolvesAsWritten(ArmsAndBall* scene, const Eigen::MatrixXd& moves) {
   Eigen::VectorXd x = Eigen::VectorXd::NullaryExpr(scene->forest.dofCount(), [&] { return uniform(generator); });
   const Eigen::MatrixXd reduced = moves.transpose() * scene->written(stiffness) * moves;
   const Eigen::VectorXd expected = moves * reduced.llt().solve(moves.transpose() * x);
+  const IslandAtHand island{scene->forest, scene->motion, scene->model, &scene->answer, &scene->space, &scene->team};
   HessianBlocks blocks;
-  blocks.lay({scene->forest, scene->motion, scene->model, &scene->answer, &scene->space, &scene->team}, scene->dofs);
+  blocks.lay(island, scene->dofs);
   blocks.setZero();
   for (const PairContacts& p : scene->model.pairs) blocks.tie(p.pair, stiffness);
   blocks.add(scene->motion.mass);

@@ -16,7 +16,7 @@ namespace blem_sim::dynamics {
  */
 class HessianBlocks {
  public:
-  /** Makes the blocks. @param dofs the live ones, ascending */
+  /** Makes the blocks. @param dofs the live ones, ascending; it and the island are kept until the next call */
   void lay(const IslandAtHand& island, const std::vector<int>& dofs);
   void setZero() { matrix_.setZero(); }
   /** Subtracts what a stiffness between two bodies makes the dofs of one feel of those of the other. */
