@@ -93,8 +93,7 @@ bool SweptJoints::motorsAgree(const Eigen::VectorXd& velocity) {
     motors_[i] = {{joints[i].motorImpulse(v), 0}, true};
     agree = false;
   }
-  // Of a swept motor its impulse tells the piece, not its velocity: at the end of a motor's velocities a millionth of one is the whole
-  // effort.
+  // The impulse of a swept motor tells its piece. Its velocity does not: at the end of its velocities a millionth of one is all its effort.
   for (const JointRow& row : joint_rows_) {
     const JointTerm& j = joints[row.term];
     const double impulse = row.axis.motor, response = row.axis.response;

@@ -29,7 +29,7 @@ class HessianBlocks {
   void solve(Eigen::VectorXd* x);
 
  private:
-  /** Of the matrix, rows of one block and columns of another one. */
+  /** Part of the matrix: rows of one block, columns of another one. */
   struct Cells {
     double* first;
     Eigen::Index down, across;  // to the next row, to the next column
