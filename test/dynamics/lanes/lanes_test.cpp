@@ -203,6 +203,21 @@ TEST_F(Lane, AMotorsImpulseFallsAndIsItsLine) {
   }
 }
 
+TEST_F(Lane, AMotorsImpulseIsThatOfTheVelocityItLeadsTo) {
+  for (int round = 0; round < 1000; ++round) {
+    const JointTerm term = joint();
+    for (const double response : {0.01, 1.0, 100.0}) {
+      for (double v = -1; v < 1; v += 0.1) {
+        const double impulse = term.motorImpulse(v, response), there = v + response * impulse;
+        const double error = 1e-12 * (1 + response * std::max(term.motor_gain, term.velocity_gain));
+        EXPECT_NEAR(term.motorImpulse(there), impulse, error);
+        const JointResponse line = term.motorLine(v, response);
+        EXPECT_NEAR(line.impulse - line.stiffness * there, impulse, error);
+      }
+    }
+  }
+}
+
 TEST(JointExpectation, IsTheLineThroughTheProximalPoint) {
   JointTerm term;
   term.dry_gain = 10;
