@@ -22,6 +22,7 @@
 #include "guard/layer_watch.h"
 #include "guard/step_guard.h"
 #include "guard/sweep_guard.h"
+#include "guard/taut_links.h"
 #include "inputs/input_writer.h"
 #include "part_reports.h"
 #include "sensors/sensor_set.h"
@@ -63,6 +64,8 @@ struct Simulator::Impl {
   void repeatSubstep(const std::vector<dynamics::JointDrive>& drives);
   /** Accepts the solve, or has the substep made again, shorter. */
   void stepGuard(const MadeSolve& made, const FoundContacts& found);
+  /** Whether a layer was used up, or links in tension swing too fast for it. @param close from the sweep guard */
+  bool isTooLong(const MadeSolve& made, const FoundContacts& found, const std::vector<ClosePass>& close) const;
   void acceptSubstep(const MadeSolve& made);
   void redoSubstep(const std::vector<ClosePass>& close);
   /** Reads sensors whose time has come. */
@@ -103,6 +106,8 @@ struct Simulator::Impl {
   // simulator_state.cpp
   /** Content of the next save, without a header. */
   SimulationState content() const;
+  /** Loads, a time step that was set, tares, steps in even parts. */
+  void saveRarities(geometry::StateWriter* writer) const;
   SimulationState save() const;
   /** A state that is refused changes nothing. */
   void restore(const SimulationState& state);
@@ -190,6 +195,7 @@ struct Simulator::Impl {
   FadingPoints fading_;    ///< points that come and go: contacts that are found from now on are those of points as they are sunk
   EarlyPushes early_pushes_;
   SweepGuard sweep_guard_;
+  TautLinks taut_links_;
   LayerWatch layer_watch_;
   EnergyBalance energy_balance_;
   std::map<std::string, LiveGround> live_;  ///< by environment
@@ -200,7 +206,8 @@ struct Simulator::Impl {
   mutable std::string layout_;  ///< empty: not known
 
   std::uint64_t step_count_ = 0;
-  bool stopped_ = false;  ///< the state is not finite any more
+  int most_ticks_ = Substeps::MAX_SUBSTEPS;  ///< of the next step's substeps, as links in tension can take them
+  bool stopped_ = false;                     ///< the state is not finite any more
 
   // The step at hand.
   Substeps substeps_;

@@ -216,6 +216,7 @@ void Simulator::Impl::resetWorld() {
   at_hand_.crossings.clear();
   layer_watch_.clear();
   energy_balance_.clear();
+  most_ticks_ = Substeps::MAX_SUBSTEPS;
   at_hand_.known = false;
   reportWithoutStep();
 }

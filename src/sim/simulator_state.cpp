@@ -27,21 +27,20 @@ std::string namesOfAll(const SimulatedWorld& world) {
   return names;
 }
 
-/** Saves the time step's epoch, loads and, if there are any, tares: nothing without all of them, so they are the last numbers of a state.
- */
-void saveLoads(const Epoch& epoch, const AppliedLoads& loads, const SensorSet& sensors, geometry::StateWriter* writer) {
-  if (loads.empty() && epoch.step == 0 && !sensors.isTared()) return;
-  writer->numbers({epoch.time, static_cast<double>(epoch.step)});
-  loads.save(writer);
-  if (sensors.isTared()) sensors.saveTares(writer);
-}
-
 /** @param steps of the state */
 Epoch epochFrom(std::uint64_t steps, geometry::StateReader* reader) {
   const double time = reader->number(), step = reader->number();
   if (!(time >= 0) || !(step >= 0 && step <= static_cast<double>(steps)))
     reader->refuseContent("the time step was set at a step that is still to come");
   return {time, static_cast<std::uint64_t>(step)};
+}
+
+/** Ticks of a substep: half of those of a step, or half of that, and so on. */
+int mostTicksFrom(geometry::StateReader* reader) {
+  const double ticks = reader->number();
+  for (int most = Substeps::MAX_SUBSTEPS / 2; most > 0; most /= 2)
+    if (ticks == most) return most;
+  reader->refuseContent("a step is divided into no even parts");
 }
 
 }  // namespace
@@ -59,6 +58,7 @@ struct Simulator::Impl::StateParts {
   LayerStops stops;
   Epoch epoch;
   AppliedLoads loads;
+  int most_ticks = Substeps::MAX_SUBSTEPS;
 };
 
 const std::string& Simulator::Impl::layout() const {
@@ -81,8 +81,18 @@ SimulationState Simulator::Impl::content() const {
   at_hand_.crossings.save(&writer);
   if (!live_.empty()) fading_.save(&writer);
   constraint_maker_.stops().save(&writer);
-  saveLoads(epoch_, loads_, sensors_, &writer);
+  saveRarities(&writer);
   return state;
+}
+
+// Most simulations have none of these, and their states none of these numbers. Whatever is rare brings what stands before it.
+void Simulator::Impl::saveRarities(geometry::StateWriter* writer) const {
+  const bool divided = most_ticks_ != Substeps::MAX_SUBSTEPS, tared = sensors_.isTared() || divided;
+  if (loads_.empty() && epoch_.step == 0 && !tared) return;
+  writer->numbers({epoch_.time, static_cast<double>(epoch_.step)});
+  loads_.save(writer);
+  if (tared) sensors_.saveTares(writer);
+  if (divided) writer->number(most_ticks_);
 }
 
 Simulator::Impl::StateParts Simulator::Impl::partsOf(const SimulationState& state) const {
@@ -105,6 +115,7 @@ Simulator::Impl::StateParts Simulator::Impl::partsOf(const SimulationState& stat
     parts.loads.restore(world_.world.bodyCount(), world_.world.jointCount(), &reader);
   }
   if (reader.numbersLeft() > 0) parts.sensors.restoreTares(&reader);
+  if (reader.numbersLeft() > 0) parts.most_ticks = mostTicksFrom(&reader);
   reader.finish();
   return parts;
 }
@@ -134,6 +145,7 @@ void Simulator::Impl::restore(const SimulationState& state) {
   layer_watch_ = std::move(parts.layer_watch);
   loads_ = std::move(parts.loads);
   epoch_ = parts.epoch;
+  most_ticks_ = parts.most_ticks;
   at_hand_.known = false;
   reportWithoutStep();
 }

@@ -11,6 +11,7 @@ namespace blem_sim::sim {
 namespace {
 
 constexpr double FARTHEST_FINITE = 1e12;  // [m], [m/s], [rad/s]: larger numbers have no meaning any more
+constexpr double STILL_HOLDS = 0.75;      // of a solve's length: links in tension that could take no more begin to swing
 
 bool withinReach(const dynamics::BodyState& state) {
   const auto small = [](const Vector3& v) { return v.allFinite() && v.cwiseAbs().maxCoeff() < FARTHEST_FINITE; };
@@ -41,6 +42,7 @@ const StepReport& Simulator::Impl::step() {
       stepGuard(*made, found);
   }
   ++step_count_;
+  most_ticks_ = substeps_.nextMost();
   loads_.expire(time());
   if (substeps_.count() > 1) world_.world.setJointEfforts(part_reports_.efforts());
   sensors();
@@ -50,7 +52,7 @@ const StepReport& Simulator::Impl::step() {
 }
 
 void Simulator::Impl::startStep() {
-  substeps_ = Substeps();
+  substeps_ = Substeps(most_ticks_);
   report_.status = STEP_OK;
   report_.profile = StepProfile();
   sensors_.takeBack(&report_.samples);
@@ -155,17 +157,24 @@ bool Simulator::Impl::hasEarlyPushes(const MadeSolve& made, const FoundContacts&
 void Simulator::Impl::stepGuard(const MadeSolve& made, const FoundContacts& found) {
   const StageTimer timer(&report_.profile, Stage::STEP_GUARD);
   passed_.clear();
+  const double longest = taut_links_.longestSolve(world_.world, made);
+  substeps_.bound(longest / config_.time_step);
   if (made.start.watched.left_out.empty()) {
     const std::vector<ClosePass>& close = sweep_guard_.look(world_, made, pair_watch_.arms());
-    if (substeps_.canRedo() &&
-        (!close.empty() || usesUpLayer(world_.colliders, made.start.manifolds, found.manifolds, made.before, made.after))) {
+    if (substeps_.canRedo() && isTooLong(made, found, close)) {
       redoSubstep(close);
       return;
     }
     for (const ClosePass& pass : close)
       if (pass.passed) passed_.emplace_back(pass.a, pass.b);
   }
+  if (longest < STILL_HOLDS * made.dt) report_.status |= MOTION_TOO_FAST;
   acceptSubstep(made);
+}
+
+bool Simulator::Impl::isTooLong(const MadeSolve& made, const FoundContacts& found, const std::vector<ClosePass>& close) const {
+  return substeps_.isBeyondBound() || !close.empty() ||
+         usesUpLayer(world_.colliders, made.start.manifolds, found.manifolds, made.before, made.after);
 }
 
 void Simulator::Impl::rewind() {

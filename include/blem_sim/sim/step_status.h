@@ -28,8 +28,9 @@ struct StatusBit {
 
 /** In bit order. msg/StepReport.msg repeats it. */
 inline constexpr StatusBit STEP_STATUS[] = {
-    {STEP_SHORTENED, "STEP_SHORTENED", "bodies were so fast that they could use up a boundary layer, the step was made in parts",
-     "raise boundary_width or lower time_step"},
+    {STEP_SHORTENED, "STEP_SHORTENED",
+     "bodies could use up a boundary layer, or light links in tension swing too fast, the step was made in parts",
+     "raise boundary_width, give the links armature or damping, or lower time_step"},
     {CONTACT_UNRELIABLE, "CONTACT_UNRELIABLE", "bare meshes cross, or crossed within the step, forces there are a guess",
      "raise boundary_width, lower time_step, or start from a better pose"},
     {CONTACTS_REDUCED, "CONTACTS_REDUCED", "contacts were left out, wrench_error tells by how much wrenches may be off",

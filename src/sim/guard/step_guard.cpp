@@ -12,6 +12,7 @@ namespace {
 constexpr double USED_UP = 0.9;       // of the layer
 constexpr double LEAST_GROWTH = 0.1;  // of the layer in one step: slower sinking is not for the guard
 constexpr double LEAP = 0.2;    // of the layer in one step: deeper, the solve did not know of the contact, or springs take shorter steps
+constexpr double ROOM = 1.3;    // times a longer part: links in tension can take it, and go on to
 constexpr double BEYOND = 0.2;  // [m] at most, that a contact is outside the boxes of both colliders, to both sides together
 
 /** Used-up share of the layer; 0 without contact. */
@@ -76,11 +77,19 @@ bool usesUpLayer(const std::vector<contact::Collider>& colliders, const std::vec
 
 void Substeps::plan(double part) {
   const int left = MAX_SUBSTEPS - done_;
-  size_ = std::clamp(static_cast<int>(std::floor(part * left)), 1, left);
+  size_ = std::clamp(static_cast<int>(std::floor(part * left)), 1, std::min(left, most_));
 }
 
+void Substeps::bound(double part) {
+  const double ticks = part * MAX_SUBSTEPS;
+  longest_ = std::min(longest_, ticks);
+  while (most_ > 1 && size_ > ticks && most_ > ticks) most_ /= 2;
+}
+
+int Substeps::nextMost() const { return longest_ < ROOM * 2 * most_ ? most_ : std::min(2 * most_, MAX_SUBSTEPS); }
+
 void Substeps::redo(double part) {
-  size_ = std::clamp(static_cast<int>(std::floor(part * size_)), 1, std::max(1, size_ / 2));
+  size_ = std::clamp(static_cast<int>(std::floor(part * size_)), 1, std::clamp(size_ / 2, 1, most_));
   ++redone_;
   redone_at_hand_ = true;
   repeated_at_hand_ = false;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "blem_sim/contact/manifold.h"
@@ -30,6 +31,9 @@ class Substeps {
   static constexpr int MAX_SUBSTEPS = 16, MAX_REDONE = 4, MAX_REPEATED = 4;
   static constexpr int MAX_SOLVES = MAX_SUBSTEPS + MAX_REDONE + 2 * MAX_REPEATED;
 
+  /** @param most [ticks] of a substep, a power of 2 */
+  explicit Substeps(int most = MAX_SUBSTEPS) : most_(most), size_(most) {}
+
   bool finished() const { return done_ == MAX_SUBSTEPS; }
   double fraction() const { return static_cast<double>(size_) / MAX_SUBSTEPS; }  ///< of the step, the substep at hand
   double fractionDone() const { return static_cast<double>(done_) / MAX_SUBSTEPS; }
@@ -41,6 +45,13 @@ class Substeps {
   /** Makes the substep at hand again, in this part (0 to 1) of its length in whole ticks, half of it at most, at least one. A substep of
    * one tick is made again once: its contacts are known farther then. */
   void redo(double part);
+  /** Takes the longest solve, as a part of the step, that links in tension can take. If the substep at hand is longer, it and all that
+   * follow are even parts of the step: swings that grow with the length of solves grow as well where it changes. */
+  void bound(double part);
+  /** The substep at hand is longer than that. */
+  bool isBeyondBound() const { return size_ > most_; }
+  /** [ticks] of the next step's substeps at most: twice as many as in this one where links could take them with some room. */
+  int nextMost() const;
   bool canRepeat() const { return repeated_ < MAX_REPEATED && !repeated_at_hand_; }
   /** Makes the substep at hand again as long as it is, once: with contacts that are known better. */
   void repeat();
@@ -51,7 +62,9 @@ class Substeps {
   bool isRedone() const { return redone_at_hand_ || repeated_at_hand_; }
 
  private:
-  int size_ = MAX_SUBSTEPS, done_ = 0, count_ = 0, redone_ = 0;
+  int most_, size_;                                           // ticks
+  double longest_ = std::numeric_limits<double>::infinity();  // ticks that links in tension can take
+  int done_ = 0, count_ = 0, redone_ = 0;
   int repeated_ = 0;
   bool redone_at_hand_ = false, repeated_at_hand_ = false;
 };

@@ -63,6 +63,39 @@ TEST(Substeps, APartIsRepeatedAsLongAsItIsAndOnce) {
   EXPECT_TRUE(substeps.canRepeat());
 }
 
+TEST(Substeps, BoundByLinksInTensionAreEven) {
+  Substeps substeps;
+  substeps.bound(0.3);
+  EXPECT_TRUE(substeps.isBeyondBound());
+  substeps.redo(1);
+  EXPECT_FALSE(substeps.isBeyondBound());
+  for (; !substeps.finished(); substeps.accept()) {
+    if (!substeps.isRedone()) substeps.plan(1);
+    EXPECT_EQ(substeps.fraction(), 0.25);
+    substeps.bound(0.3);
+  }
+  EXPECT_EQ(substeps.nextMost(), 4);
+}
+
+TEST(Substeps, GrowTwofoldOnceLinksTakeThemWithRoom) {
+  Substeps tight(4), roomy(4), free(4);
+  for (Substeps* substeps : {&tight, &roomy, &free}) EXPECT_EQ(substeps->fraction(), 0.25);
+  tight.bound(0.6);
+  roomy.bound(0.7);
+  EXPECT_EQ(tight.nextMost(), 4);
+  EXPECT_EQ(roomy.nextMost(), 8);
+  EXPECT_EQ(free.nextMost(), 8);
+  EXPECT_EQ(Substeps().nextMost(), Substeps::MAX_SUBSTEPS);
+}
+
+TEST(Substeps, OfOneTickAreBoundNoFurther) {
+  Substeps substeps;
+  substeps.bound(1e-9);
+  while (substeps.canRedo()) substeps.redo(1);
+  EXPECT_EQ(substeps.fraction(), 1.0 / 16);
+  EXPECT_FALSE(substeps.isBeyondBound());
+}
+
 class UsesUpLayer : public testing::Test {
  protected:
   UsesUpLayer() : colliders_(2), before_(2), after_(2) {
