@@ -1,5 +1,7 @@
 #include "blem_sim/contact/sweep.h"
 
+#include <algorithm>
+
 #include "blem_sim/geometry/bvh_traversal.h"
 #include "blem_sim/geometry/closest_points.h"
 
@@ -14,6 +16,35 @@ Matrix3 turned(const Vector3& turn) {
   return angle > 0 ? Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix() : Matrix3::Identity();
 }
 
+/** Three corners, their box and the normal of their plane, of any length. */
+struct Facet {
+  explicit Facet(const geometry::Triangle& triangle)
+      : corners(triangle),
+        low(triangle[0].cwiseMin(triangle[1]).cwiseMin(triangle[2])),
+        high(triangle[0].cwiseMax(triangle[1]).cwiseMax(triangle[2])),
+        normal((triangle[1] - triangle[0]).cross(triangle[2] - triangle[0])) {}
+
+  geometry::Triangle corners;
+  Vector3 low, high, normal;
+};
+
+/** Whether all corners are on one side of a facet's plane, farther away than a distance [m]. */
+bool isBesidePlane(const Facet& plane, const geometry::Triangle& corners, double distance) {
+  const double h0 = plane.normal.dot(corners[0] - plane.corners[0]), h1 = plane.normal.dot(corners[1] - plane.corners[0]),
+               h2 = plane.normal.dot(corners[2] - plane.corners[0]);
+  const double nearest = std::max(std::min({h0, h1, h2}), -std::max({h0, h1, h2}));
+  return nearest > 0 && nearest * nearest > distance * distance * plane.normal.squaredNorm();
+}
+
+/** Whether two triangles are certainly farther apart than a distance [m]: by their boxes or by one's plane. Most pairs of leaves that are
+ *  near each other by their boxes are, as flanks of threads or teeth: exact distances cost twenty times as much. */
+bool areApart(const Facet& a, const Facet& b, double distance) {
+  constexpr double ROUNDING = 1e-9;  // of the distance
+  const double least = (1 + ROUNDING) * distance;
+  const Vector3 gap = (a.low - b.high).cwiseMax(b.low - a.high).cwiseMax(0.0);
+  return gap.squaredNorm() > least * least || isBesidePlane(a, b.corners, least) || isBesidePlane(b, a.corners, least);
+}
+
 /** Whether two meshes are within a distance [m] of each other. */
 bool areWithin(double distance, const CollisionGeometry& a, const CollisionGeometry& b, const Pose& X_BA) {
   bool found = false;
@@ -23,8 +54,11 @@ bool areWithin(double distance, const CollisionGeometry& a, const CollisionGeome
     for (std::uint32_t i = node_a.first; i < node_a.first + node_a.count && !found; ++i) {
       geometry::Triangle t = geometry::triangleOf(a.mesh(), a.bvh().order()[i]);
       for (Vector3& corner : t) corner = X_BA * corner;
-      for (std::uint32_t j = node_b.first; j < node_b.first + node_b.count && !found; ++j)
-        found = geometry::closestTriangleTriangle(t, geometry::triangleOf(b.mesh(), b.bvh().order()[j])).distance <= distance;
+      const Facet facet(t);
+      for (std::uint32_t j = node_b.first; j < node_b.first + node_b.count && !found; ++j) {
+        const Facet other(geometry::triangleOf(b.mesh(), b.bvh().order()[j]));
+        found = !areApart(facet, other, distance) && geometry::closestTriangleTriangle(t, other.corners).distance <= distance;
+      }
     }
   });
   return found;

@@ -44,6 +44,30 @@ TEST(Sweep, PointsPassEachOtherAtTheirDistance) {
   EXPECT_FALSE(mayComeWithin(0.01, point, sweep({-1, 0, 0}, {2, 0, 0}), point, sweep({0, -1, 0.013}, {0, 2, 0})));
 }
 
+TEST(Sweep, OfWhatStandsStillIsItsDistance) {
+  std::mt19937_64 generator(7);
+  const auto uniform = [&generator](double size) { return size * (2 * static_cast<double>(generator() >> 11) * 0x1p-53 - 1); };
+  const auto vector = [&uniform](double size) {
+    const double x = uniform(size), y = uniform(size), z = uniform(size);
+    return Vector3(x, y, z);
+  };
+  const geometry::TriangleMesh meshes[] = {geometry::boxMesh({0.1, 0.05, 0.02}), geometry::gridMesh(0.2, 0.1, 1, 1),
+                                           geometry::segmentMesh({0, 0, 0}, {0.1, 0, 0})};
+  int apart = 0;
+  for (int i = 0; i < 300; ++i) {
+    const geometry::TriangleMesh &a = meshes[i % 3], &b = meshes[i / 3 % 3];
+    GeometrySweep at_a, at_b;
+    at_a.X_WC = makePose(vector(0.1), vector(3));
+    at_b.X_WC = makePose(vector(0.1), vector(3));
+    const double distance = geometry::closestMeshMeshBruteForce(a, b, at_b.X_WC.inverse() * at_a.X_WC).distance;
+    EXPECT_TRUE(mayComeWithin((1 + 1e-7) * distance + 1e-15, sweptGeometry(a), at_a, sweptGeometry(b), at_b)) << i;
+    if (distance < 1e-6) continue;
+    EXPECT_FALSE(mayComeWithin((1 - 1e-7) * distance, sweptGeometry(a), at_a, sweptGeometry(b), at_b)) << i;
+    ++apart;
+  }
+  EXPECT_GT(apart, 150);
+}
+
 /** Sweeps against the distance at 300 poses on the way. */
 TEST(Sweep, NeverMissesWhatSamplesFind) {
   std::mt19937_64 generator(3);

@@ -28,9 +28,9 @@ class TautLinks {
   void findTouched(const dynamics::World& world, const MadeSolve& made);
 
   // All of them are of the solve at hand.
-  std::vector<int> hinges_;      // free ones
-  std::vector<int> inner_;       // by body: the free hinge that carries it, or -1
-  BodyIslands trees_;            // bodies that joints tie together
+  std::vector<int> hinges_;       // free ones
+  std::vector<int> inner_;        // by body: the free hinge that carries it, or -1
+  BodyIslands trees_;             // bodies that joints tie together
   std::vector<char> is_touched_;  // by body, at the least body of each tree
 };
 

@@ -10,13 +10,13 @@ namespace blem_sim::sim {
 
 /** Links of the rope are balls at its hinges, which turn about y; the drum is a mesh. */
 struct RopeOverDrum {
-  int around = 16, hanging = 5;    // hinges that bend about the drum, and links that hang on each side
-  double length = 0.01;            // [m] of a link
-  double radius = 0.002;           // [m] of its ball
-  double link_mass = 2e-4;         // [kg]
-  double left = 1, right = 1;      // [kg] of the weights
+  int around = 16, hanging = 5;  // hinges that bend about the drum, and links that hang on each side
+  double length = 0.01;          // [m] of a link
+  double radius = 0.002;         // [m] of its ball
+  double link_mass = 2e-4;       // [kg]
+  double left = 1, right = 1;    // [kg] of the weights
   double friction = 0.3;
-  double armature = 0;             // [kg m^2] of each hinge
+  double armature = 0;  // [kg m^2] of each hinge
 
   int links() const { return around + 2 * hanging; }
   double turn() const { return M_PI / around; }
