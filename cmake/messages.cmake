@@ -11,6 +11,7 @@ set(BLEM_SIM_CATKIN_COMPONENTS
   roscpp
   rosgraph_msgs
   sensor_msgs
+  shape_msgs
   std_msgs
   std_srvs
   tf2_msgs

@@ -110,6 +110,24 @@ void setRadius(const CloudOptions& cloud, const geometry::TriangleMesh& mesh, Lo
   if (cloud.auto_radius) surface->report.notes.back() += fmt::format(", from their spacing of {:.4g} m", spacing);
 }
 
+/** Cleans the soup's triangles and mends them, if asked for. */
+void setTriangles(SurfaceSoup&& soup, Mending mending, const std::function<void(const char*, double)>& enter, LoadedSurface* surface) {
+  geometry::TriangleMesh mesh = cleanSoup(std::move(soup), &surface->report);
+  if (mending == Mending::ON) {
+    enter("mending", MENDING_FRACTION);
+    const auto topology = std::make_shared<geometry::MeshTopology>();
+    mesh = mended(std::move(mesh), &surface->report, topology.get());
+    surface->topology = topology;
+  }
+  surface->mesh = std::make_shared<const geometry::TriangleMesh>(std::move(mesh));
+}
+
+void setPoints(const std::vector<Vector3>& points, const CloudOptions& cloud, LoadedSurface* surface) {
+  geometry::TriangleMesh mesh = geometry::pointCloudMesh(points, &surface->report);
+  setRadius(cloud, mesh, surface);
+  surface->mesh = std::make_shared<const geometry::TriangleMesh>(std::move(mesh));
+}
+
 void noteDropped(geometry::MeshReport* report) {
   if (report->nonfinite > 0)
     report->notes.push_back(fmt::format("{} elements with a coordinate that is not finite dropped", report->nonfinite));
@@ -141,32 +159,43 @@ LoadedSurface loadSurface(const std::string& file, const Vector3& scale, const C
     joinCloud(cloud, &soup, &surface.report);
   }
   enter("cleaning", CLEANING_FRACTION);
-  geometry::TriangleMesh cleaned =
-      points ? geometry::pointCloudMesh(soup.mesh.vertices, &surface.report) : cleanSoup(std::move(soup), &surface.report);
-  if (!points && mending == Mending::ON) {
-    enter("mending", MENDING_FRACTION);
-    const auto topology = std::make_shared<geometry::MeshTopology>();
-    cleaned = mended(std::move(cleaned), &surface.report, topology.get());
-    surface.topology = topology;
-  }
-  if (points) setRadius(cloud, cleaned, &surface);
+  if (points)
+    setPoints(soup.mesh.vertices, cloud, &surface);
+  else
+    setTriangles(std::move(soup), mending, enter, &surface);
   noteDropped(&surface.report);
-  if (cleaned.elements.empty())
+  if (surface.mesh->elements.empty())
     throw InputError(fmt::format("{}: nothing is left after cleaning ({} not finite, {} without area); check the file and its scale", file,
                                  surface.report.nonfinite, surface.report.degenerate));
-  surface.mesh = std::make_shared<const geometry::TriangleMesh>(std::move(cleaned));
   return surface;
 }
 
-LoadedSurface cloudSurface(std::vector<Vector3> points, const CloudOptions& cloud, const std::string& source) {
+LoadedSurface cloudSurface(SensedCloud cloud, const CloudOptions& options, const std::string& source) {
   LoadedSurface surface;
   surface.report.name = surface.report.source = source;
-  points = filtered(std::move(points), cloud.filters, source, &surface.report.notes);
-  geometry::TriangleMesh mesh = geometry::pointCloudMesh(points, &surface.report);
-  if (mesh.elements.empty()) throw InputError(source + ": no finite point is left; check the sensor, and the filters");
-  setRadius(cloud, mesh, &surface);
+  SurfaceSoup soup{{std::move(cloud.points), {}}, cloud.width, cloud.height, 0, cloud.viewpoint, {}};
+  filterSoup(options.filters, true, &soup, &surface.report);
+  if (std::none_of(soup.mesh.vertices.begin(), soup.mesh.vertices.end(), [](const Vector3& p) { return p.allFinite(); }))
+    throw InputError(source + ": no finite point is left; check the sensor, and the filters");
+  if (options.as == CloudOptions::As::MESH) {
+    joinCloud(options, &soup, &surface.report);
+    setTriangles(
+        std::move(soup), Mending::ON, [](const char*, double) {}, &surface);
+  } else {
+    setPoints(soup.mesh.vertices, options, &surface);
+  }
   noteDropped(&surface.report);
-  surface.mesh = std::make_shared<const geometry::TriangleMesh>(std::move(mesh));
+  if (surface.mesh->elements.empty()) throw InputError(source + ": nothing is left after cleaning; check the sensor, and the filters");
+  return surface;
+}
+
+LoadedSurface meshSurface(geometry::TriangleMesh mesh, const std::string& source) {
+  LoadedSurface surface;
+  surface.report.name = surface.report.source = source;
+  setTriangles(
+      {std::move(mesh), 0, 1, 0, {}, {}}, Mending::ON, [](const char*, double) {}, &surface);
+  noteDropped(&surface.report);
+  if (surface.mesh->elements.empty()) throw InputError(source + ": no triangle with an area is left");
   return surface;
 }
 

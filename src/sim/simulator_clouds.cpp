@@ -7,14 +7,20 @@
 
 #include "blem_sim/geometry/input_error.h"
 #include "build/contact_settings.h"
+#include "build/widths/chosen_width.h"
+#include "build/widths/scan_noise.h"
 #include "clouds/inner_points.h"
+#include "clouds/leaving_triangles.h"
 #include "simulator_impl.h"
 
 namespace blem_sim::sim {
 namespace {
 
 constexpr double TOUCH = 1e-5;          // [m] largest gap of a point that something stands on
-constexpr std::size_t MOST_LEFT = 200;  // points of a pair without a choice of the last step
+constexpr std::size_t MOST_LEFT = 200;  // contacts of a pair without a choice of the last step
+constexpr double LOOK_AHEAD = 0.2;      // [s] for which what moves shall find triangles ahead that fade as those below it
+constexpr double FARTHEST_AHEAD = 0.1;  // [m] of them: an exchange must cost no step
+constexpr double STAYS = 0.001;         // [m] in that time: no more is standing
 
 /** Points that fade by vertex, one each: of two bodies the deeper one's. */
 std::vector<SunkPoint> byVertex(std::vector<SunkPoint> points) {
@@ -25,97 +31,219 @@ std::vector<SunkPoint> byVertex(std::vector<SunkPoint> points) {
   return points;
 }
 
+bool isAnyOf(const Vector3i& corners, const std::vector<SunkPoint>& points) {
+  return std::any_of(corners.data(), corners.data() + 3, [&](int corner) {
+    const auto at = std::lower_bound(points.begin(), points.end(), corner, [](const SunkPoint& p, int v) { return p.vertex < v; });
+    return at != points.end() && at->vertex == corner;
+  });
+}
+
+/** Adds the other corners of triangles that have one of these. @param points sorted by vertex, sunk for good; stay sorted */
+void addNeighbours(const geometry::TriangleMesh& mesh, std::vector<SunkPoint>* points) {
+  if (points->empty()) return;
+  std::vector<SunkPoint> all = *points;
+  for (const Vector3i& corners : mesh.elements)
+    if (isAnyOf(corners, *points))
+      for (int k = 0; k < 3; ++k) all.push_back({corners[k], points->front().sink});
+  *points = byVertex(std::move(all));
+}
+
 }  // namespace
 
 void Simulator::Impl::addLive(const EnvironmentConfig& environment) {
   if (environment.live.topic.empty()) return;
-  const ContactSettings settings = contactSettings(BoundaryWidth(), config_.contact, {&environment.contact});
-  live_[environment.name] = {settings.surface, environment.live.fade_speed, -1};
+  const ContactSettings settings = contactSettings(widthOfEnvironments(config_.contact), config_.contact, {&environment.contact});
+  LiveGround& live = live_[environment.name];
+  live.surface = settings.surface;
+  live.width = settings.boundary_width;
+  live.fade_speed = environment.live.fade_speed;
+  live.is_mesh = environment.live.type != LiveConfig::Type::CLOUD || environment.cloud.as == model::CloudOptions::As::MESH;
 }
 
-/** Adds the points of one collider of a pair that the other one stands on: those that the last step chose, if it chose some. */
-void Simulator::Impl::addStoodOn(const contact::ContactManifold& manifold, bool is_a, std::vector<LeavingPoint>* points) const {
-  const int index = is_a ? manifold.a : manifold.b;
-  const contact::Collider& collider = world_.colliders[index];
-  const reduction::ContactIds& chosen = constraint_maker_.memory().of(manifold);
-  const std::size_t most = points->size() + MOST_LEFT;
-  for (const contact::Contact& contact : manifold.contacts) {
-    const int vertex = contact::vertexOf(contact.id, is_a);
-    if (vertex < 0 || contact.pierced || contact.depth < -TOUCH) continue;
-    if (chosen.empty() ? points->size() == most : !std::binary_search(chosen.begin(), chosen.end(), contact.id)) continue;
-    points->push_back({collider.X_BC * collider.geometry->mesh().vertices[vertex], fading_.sinkOf(index, vertex)});
+double Simulator::Impl::layerOf(const CloudSurface& surface, LiveGround* live) const {
+  if (!surface.isMesh()) return surface.radius;
+  if (live->width.automatic) {
+    WidthNeeds needs = needsOfEnvironment();
+    if (!surface.report.closed) needs.noise = scanNoise(surface.geometry->mesh(), surface.geometry->topology());
+    needs.stiffness = live->surface.stiffness;
+    needs.time_step = config_.time_step;
+    live->width = chosenWidth(needs).width;
   }
+  return live->width.metres;
 }
 
-std::vector<Simulator::Impl::LeavingPoint> Simulator::Impl::pointsStoodOn(int model) const {
-  std::vector<LeavingPoint> points;
+/** Tells contacts by which something stands on a model: those of a pair that the last step chose, if it chose some. */
+void Simulator::Impl::forStoodOn(int model, const std::function<void(const StoodOn&)>& tell) const {
   for (const contact::ContactManifold& manifold : at_hand_.manifolds)
-    for (const bool is_a : {true, false})
-      if (world_.colliders[is_a ? manifold.a : manifold.b].model == model) addStoodOn(manifold, is_a, &points);
-  const auto key = [](const LeavingPoint& p) { return std::make_tuple(p.p_W.x(), p.p_W.y(), p.p_W.z(), p.sink); };
-  std::sort(points.begin(), points.end(), [&](const LeavingPoint& a, const LeavingPoint& b) { return key(a) < key(b); });
-  points.erase(std::unique(points.begin(), points.end(), [](const LeavingPoint& a, const LeavingPoint& b) { return a.p_W == b.p_W; }),
-               points.end());
-  return points;
+    for (const bool is_a : {true, false}) {
+      if (world_.colliders[is_a ? manifold.a : manifold.b].model != model) continue;
+      const reduction::ContactIds& chosen = constraint_maker_.memory().of(manifold);
+      std::size_t told = 0;
+      for (const contact::Contact& contact : manifold.contacts) {
+        if (contact.pierced || contact.depth < -TOUCH) continue;
+        if (chosen.empty() ? told == MOST_LEFT : !std::binary_search(chosen.begin(), chosen.end(), contact.id)) continue;
+        tell({contact, is_a ? manifold.a : manifold.b, is_a ? manifold.b : manifold.a, is_a});
+        ++told;
+      }
+    }
 }
 
-void Simulator::Impl::addLeaving(int model, const std::vector<LeavingPoint>& points, double speed) {
-  if (points.empty()) return;
-  const LiveGround& live = live_.at(world_.models[model].name);
-  contact::Collider leaving = world_.colliders[live.cloud];
-  leaving.name += "::leaving";
+SunkSurface Simulator::Impl::pointsStoodOn(int model, const Pose& X_CW, double least) const {
+  struct Point {
+    Vector3 p_W;
+    double sink;
+  };
+  std::vector<Point> points;
+  forStoodOn(model, [&](const StoodOn& on) {
+    const contact::Collider& collider = world_.colliders[on.live];
+    const int vertex = contact::vertexOf(on.contact.id, on.is_a);
+    points.push_back({collider.X_BC * collider.geometry->mesh().vertices[vertex], fading_.sinkOf(on.live, vertex)});
+  });
+  const auto key = [](const Point& p) { return std::make_tuple(p.p_W.x(), p.p_W.y(), p.p_W.z(), p.sink); };
+  std::sort(points.begin(), points.end(), [&](const Point& a, const Point& b) { return key(a) < key(b); });
+  points.erase(std::unique(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.p_W == b.p_W; }), points.end());
+  SunkSurface surface;
   std::vector<Vector3> places;
-  std::vector<SunkPoint> sunk;
-  for (const LeavingPoint& point : points) {
-    sunk.push_back({static_cast<int>(places.size()), std::max(point.sink, speed * config_.time_step)});
-    places.push_back(leaving.X_BC.inverse() * point.p_W);
+  for (const Point& point : points) {
+    surface.sunk.push_back({static_cast<int>(places.size()), std::max(point.sink, least)});
+    places.push_back(X_CW * point.p_W);
   }
-  geometry::MeshReport report;
-  leaving.geometry = std::make_shared<const contact::CollisionGeometry>(
-      std::make_shared<const geometry::TriangleMesh>(geometry::pointCloudMesh(places, &report)));
-  report.source = "points that sink away below what stood on them";
-  const int collider = world_.addCollider(leaving, leaving.radius, leaving.surface, report);
-  layer_watch_.forget(collider);
-  fading_.add(collider, speed, std::move(sunk));
+  surface.mesh = geometry::pointCloudMesh(places, nullptr);
+  return surface;
 }
 
-std::vector<SunkPoint> Simulator::Impl::sunkIntoTouch(int cloud) const {
-  std::vector<SunkPoint> sunk = innerPoints(world_, bodies_, cloud);
+Vector3 Simulator::Impl::wayAhead(int collider, const Vector3& p_W) const {
+  const int index = world_.colliders[collider].body;
+  if (index == dynamics::WORLD_BODY) return Vector3::Zero();
+  const dynamics::BodyState& body = bodies_[index];
+  const Vector3 com = body.X_WB * world_.world.bodySpec(index).inertial.com;
+  const Vector3 way = LOOK_AHEAD * (body.v_WCom + body.w_WB.cross(p_W - com));
+  return way * std::min(1.0, FARTHEST_AHEAD / std::max(way.norm(), STAYS));
+}
+
+SunkSurface Simulator::Impl::trianglesStoodOn(int model, const Pose& X_CW, double least) const {
+  LeavingTriangles triangles(world_.colliders);
+  forStoodOn(model, [&](const StoodOn& on) {
+    const contact::Collider& live = world_.colliders[on.live];
+    triangles.addTouched(on.live, touchedPlace(live, on.contact, on.is_a), wayAhead(on.other, on.contact.point),
+                         fading_.sinkOf(live, on.live, on.contact, on.is_a));
+  });
+  return triangles.surface(X_CW, fading_, least);
+}
+
+std::map<int, double> Simulator::Impl::depthsOn(int model) const {
+  std::map<int, double> depths;
+  for (const contact::ContactManifold& manifold : at_hand_.manifolds)
+    for (const bool is_a : {true, false}) {
+      if (world_.colliders[is_a ? manifold.a : manifold.b].model != model) continue;
+      double& depth = depths[is_a ? manifold.b : manifold.a];
+      depth = std::max(depth, manifold.maxDepth());
+    }
+  return depths;
+}
+
+void Simulator::Impl::sinkBorders(int leaving, const std::map<int, double>& depths) {
+  std::vector<SunkPoint> more;
   for (const contact::ContactManifold& manifold : found_.manifolds) {
-    if (manifold.a != cloud && manifold.b != cloud) continue;
+    const bool is_a = manifold.a == leaving;
+    if (!is_a && manifold.b != leaving) continue;
+    if (manifold.pierced) fading_.addCrossing(manifold.a, manifold.b);
+    const auto before = depths.find(is_a ? manifold.b : manifold.a);
+    const double depth = before == depths.end() ? 0 : before->second;
     for (const contact::Contact& contact : manifold.contacts) {
-      const int vertex = contact::vertexOf(contact.id, manifold.a == cloud);
-      if (vertex >= 0 && !contact.pierced && contact.depth > 0) sunk.push_back({vertex, contact.depth});
+      if (contact.depth < depth + TOUCH) continue;
+      const contact::MeshPlace place = touchedPlace(world_.colliders[leaving], contact, is_a);
+      for (int k = 0; k < 3; ++k)
+        if (place.weights[k] > 0) more.push_back({place.corners[k], contact.depth - depth});
     }
   }
-  return byVertex(std::move(sunk));
+  fading_.deepen(leaving, byVertex(std::move(more)));
+}
+
+int Simulator::Impl::addLeaving(const LiveGround& live, SunkSurface surface) {
+  if (surface.mesh.elements.empty()) return -1;
+  contact::Collider leaving = world_.colliders[live.cloud];
+  leaving.name += "::leaving";
+  geometry::MeshReport report;
+  report.source = "a surface that sinks away below what stood on it";
+  report.vertices = static_cast<int>(surface.mesh.vertices.size());
+  (live.is_mesh ? report.triangles : report.points) = static_cast<int>(surface.mesh.elements.size());
+  report.extents = surface.mesh.bounds();
+  leaving.geometry =
+      std::make_shared<const contact::CollisionGeometry>(std::make_shared<const geometry::TriangleMesh>(std::move(surface.mesh)));
+  const int collider = world_.addCollider(leaving, leaving.radius, leaving.surface, report);
+  layer_watch_.forget(collider);
+  fading_.add(collider, live.fade_speed, std::move(surface.sunk));
+  return collider;
+}
+
+void Simulator::Impl::addSunk(const LiveGround& live, const contact::ContactManifold& manifold, const std::vector<SunkPoint>& inner,
+                              std::vector<SunkPoint>* sunk) const {
+  const contact::Collider& surface = world_.colliders[live.cloud];
+  const bool is_a = manifold.a == live.cloud;
+  for (const contact::Contact& contact : manifold.contacts) {
+    if (!(contact.depth > 0) || contact.pierced) continue;
+    const contact::MeshPlace place = touchedPlace(surface, contact, is_a);
+    if (isAnyOf(place.corners, inner)) continue;
+    for (int k = 0; k < 3; ++k)
+      if (place.weights[k] > 0) sunk->push_back({place.corners[k], contact.depth});
+    const Vector3 way = wayAhead(is_a ? manifold.b : manifold.a, contact.point);
+    if (!live.is_mesh || way.norm() < STAYS) continue;
+    visitTouched(surface, place, way, [&](int element) {
+      const Vector3i& corners = surface.geometry->mesh().elements[element];
+      for (int k = 0; k < 3; ++k) sunk->push_back({corners[k], contact.depth});
+    });
+  }
+}
+
+void Simulator::Impl::sinkIntoTouch(const LiveGround& live) {
+  std::vector<SunkPoint> inner = byVertex(innerPoints(world_, bodies_, live.cloud));
+  if (live.is_mesh) addNeighbours(world_.colliders[live.cloud].geometry->mesh(), &inner);
+  std::vector<SunkPoint> sunk = inner;
+  for (const contact::ContactManifold& manifold : found_.manifolds) {
+    if (manifold.a != live.cloud && manifold.b != live.cloud) continue;
+    addSunk(live, manifold, inner, &sunk);
+    if (manifold.pierced) fading_.addCrossing(manifold.a, manifold.b);
+  }
+  fading_.add(live.cloud, -live.fade_speed, byVertex(std::move(sunk)));
 }
 
 void Simulator::Impl::updateCloud(const std::string& environment, CloudSurface* surface) {
   const auto known = live_.find(environment);
   if (known == live_.end()) throw InputError(fmt::format("environments: {}: is no live one, or was unloaded", environment));
   LiveGround& live = known->second;
+  if (surface->isMesh() != live.is_mesh)
+    throw InputError(fmt::format("environments: {}: is made of {}, and these are {}; set cloud.as to what is sent", environment,
+                                 live.is_mesh ? "triangles" : "points", live.is_mesh ? "points" : "triangles"));
+  if (surface->geometry->mesh().elements.empty())
+    throw InputError(fmt::format("environments: {}: the surface is empty; the environment stays as it is", environment));
   const int model = world_.modelIndex(environment);
   world_.bodyStates(&bodies_);
   if (!at_hand_.known) findFirstContacts();
-  const std::vector<LeavingPoint> leaving = pointsStoodOn(model);
-  CloudSurface before;
-  if (live.cloud >= 0) before.geometry = world_.colliders[live.cloud].geometry;
-  forgetContacts(world_.collidersOf(model));
-  for (const int collider : world_.removeShapes(model)) fading_.forget(collider);
-
   contact::Collider cloud;
   cloud.name = environment;
   cloud.model = model;
   cloud.X_BC = makePose(surface->origin);
   cloud.geometry = surface->geometry;
-  live.cloud = world_.addCollider(cloud, surface->radius, live.surface, surface->report);
+  const Pose X_CW = cloud.X_BC.inverse();
+  const double least = live.fade_speed * config_.time_step;
+  const std::map<int, double> depths = depthsOn(model);
+  SunkSurface remains = live.is_mesh ? trianglesStoodOn(model, X_CW, least) : pointsStoodOn(model, X_CW, least);
+  CloudSurface before;
+  if (live.cloud >= 0) {
+    before.geometry = world_.colliders[live.cloud].geometry;
+    before.radius = surface->radius;
+  }
+  forgetContacts(world_.collidersOf(model));
+  world_.removeShapes(model);
+  live.cloud = world_.addCollider(cloud, layerOf(*surface, &live), live.surface, surface->report);
   layer_watch_.forget(live.cloud);
-  addLeaving(model, leaving, live.fade_speed);
+  const int leaving = addLeaving(live, std::move(remains));
 
   pair_watch_.find({world_, bodies_, nullptr, config_.time_step}, &pairs_);
   pair_searches_.find(world_, at_hand_, fading_, &pairs_, &found_);
-  fading_.add(live.cloud, -live.fade_speed, sunkIntoTouch(live.cloud));
+  if (live.is_mesh) sinkBorders(leaving, depths);
+  sinkIntoTouch(live);
   at_hand_.known = false;
   layout_.clear();
   *surface = std::move(before);

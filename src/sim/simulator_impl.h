@@ -2,6 +2,7 @@
 // simulator_commands.cpp, simulator_clouds.cpp, simulator_models.cpp, simulator_attachments.cpp, simulator_motion.cpp, simulator_state.cpp.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -13,6 +14,7 @@
 #include "build/simulated_world.h"
 #include "build/world_builder.h"
 #include "clouds/fading_points.h"
+#include "clouds/leaving_triangles.h"
 #include "commands/applied_loads.h"
 #include "contacts/constraints/constraint_maker.h"
 #include "contacts/constraints/early_pushes.h"
@@ -38,8 +40,10 @@ struct Epoch {
 /** A live environment. */
 struct LiveGround {
   contact::SurfaceProperties surface;
+  BoundaryWidth width;    ///< of triangles; chosen with the first ones if it is automatic
   double fade_speed = 0;  ///< [m/s]
-  int cloud = -1;         ///< collider of its points; -1: none have come
+  bool is_mesh = false;   ///< made of triangles
+  int cloud = -1;         ///< collider of its points or triangles; -1: none have come
 };
 
 struct Simulator::Impl {
@@ -124,16 +128,31 @@ struct Simulator::Impl {
   // simulator_clouds.cpp
   void addLive(const EnvironmentConfig& environment);
   void updateCloud(const std::string& environment, CloudSurface* surface);
-  /** Points that something stands on now, in the world. */
-  struct LeavingPoint {
-    Vector3 p_W;
-    double sink;  ///< [m] at hand
+  /** [m] Layer of a live surface; an automatic one is chosen with the first mesh, and stays. */
+  double layerOf(const CloudSurface& surface, LiveGround* live) const;
+  /** A contact by which something stands on a live environment. */
+  struct StoodOn {
+    const contact::Contact& contact;
+    int live, other;  ///< colliders
+    bool is_a;        ///< the environment is the contact's A
   };
-  std::vector<LeavingPoint> pointsStoodOn(int model) const;
-  void addStoodOn(const contact::ContactManifold& manifold, bool is_a, std::vector<LeavingPoint>* points) const;
-  void addLeaving(int model, const std::vector<LeavingPoint>& points, double speed);
-  /** Sinks of a new cloud's points that are inside layers, so that they touch and no more. */
-  std::vector<SunkPoint> sunkIntoTouch(int cloud) const;
+  void forStoodOn(int model, const std::function<void(const StoodOn&)>& tell) const;
+  /** Points, or triangles, that something stands on now, sunk by `least` [m] at least. @param X_CW from the world to the frame wanted */
+  SunkSurface pointsStoodOn(int model, const Pose& X_CW, double least) const;
+  SunkSurface trianglesStoodOn(int model, const Pose& X_CW, double least) const;
+  /** @return its collider, -1 if the surface is empty */
+  int addLeaving(const LiveGround& live, SunkSurface surface);
+  /** [m] Deepest contact with a model, by the other collider; those that touch no more are 0. */
+  std::map<int, double> depthsOn(int model) const;
+  /** Sinks what has become a border of triangles that leave, and would push more than the mesh did. @param depths before the exchange */
+  void sinkBorders(int leaving, const std::map<int, double>& depths);
+  /** [m] Way that a place on a collider's body makes while a live environment is exchanged some times, world. */
+  Vector3 wayAhead(int collider, const Vector3& p_W) const;
+  /** Sinks those vertices of a new cloud or mesh that are inside layers, so that they touch and no more; crossings count for nothing. */
+  void sinkIntoTouch(const LiveGround& live);
+  /** @param inner vertices inside bodies, sorted @param sunk gets those that the pair's contacts touch, some perhaps twice */
+  void addSunk(const LiveGround& live, const contact::ContactManifold& manifold, const std::vector<SunkPoint>& inner,
+               std::vector<SunkPoint>* sunk) const;
   /** Nothing comes or goes any more: clouds are as they were last sent. */
   void endFading();
 

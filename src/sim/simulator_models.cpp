@@ -93,6 +93,7 @@ void Simulator::Impl::forgetContacts(const std::vector<int>& colliders) {
     world_.world.forgetContacts(constraint_maker_.forget(collider));
     pair_searches_.forget(collider);
     at_hand_.crossings.forget(collider);
+    fading_.forget(collider);
   }
   pair_watch_.forget();
   at_hand_.known = false;

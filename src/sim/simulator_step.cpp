@@ -160,7 +160,7 @@ void Simulator::Impl::stepGuard(const MadeSolve& made, const FoundContacts& foun
   const double longest = taut_links_.longestSolve(world_.world, made);
   substeps_.bound(longest / config_.time_step);
   if (made.start.watched.left_out.empty()) {
-    const std::vector<ClosePass>& close = sweep_guard_.look(world_, made, pair_watch_.arms());
+    const std::vector<ClosePass>& close = sweep_guard_.look(world_, made, pair_watch_.arms(), fading_);
     if (substeps_.canRedo() && isTooLong(made, found, close)) {
       redoSubstep(close);
       return;

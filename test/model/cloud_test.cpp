@@ -146,8 +146,8 @@ TEST(CloudFilters, workOnFilesOfPointsAndOnTheirsAlone) {
 }
 
 TEST(CloudSurface, ofNoPointIsRefused) {
-  EXPECT_TRUE(isOneLineWith(refusal([] { cloudSurface({}, {}, "live"); }), {"live", "no finite point"}));
-  EXPECT_EQ(cloudSurface({{0, 0, 0}, {NAN, 0, 0}}, {}, "live").report.points, 1);
+  EXPECT_TRUE(isOneLineWith(refusal([] { cloudSurface(SensedCloud({}), {}, "live"); }), {"live", "no finite point"}));
+  EXPECT_EQ(cloudSurface(SensedCloud({{0, 0, 0}, {NAN, 0, 0}}), {}, "live").report.points, 1);
 }
 
 }  // namespace

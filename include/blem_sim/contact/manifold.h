@@ -31,6 +31,20 @@ inline int vertexOf(std::uint64_t id, bool of_a) {
   return feature >> 30 == 0 ? static_cast<int>(feature) : -1;
 }
 
+class CollisionGeometry;
+
+/** Place on a mesh: a vertex, or a mean of an edge's or a triangle's. */
+struct MeshPlace {
+  Vector3i corners = Vector3i::Zero();  ///< vertices
+  Vector3 weights = Vector3::UnitX();   ///< of the corners, none negative, 1 in all
+};
+
+/**
+ * Place where a feature of A, or of B, made a contact of this id. @param geometry of that collider, a mesh
+ * @param p [m] in its frame; only its foot on the feature counts
+ */
+MeshPlace placeOf(std::uint64_t id, bool of_a, const CollisionGeometry& geometry, const Vector3& p);
+
 /** All contacts of one pair of colliders; a < b. */
 struct ContactManifold {
   int a = -1, b = -1;    ///< indices of the colliders

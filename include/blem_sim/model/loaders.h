@@ -6,6 +6,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "blem_sim/geometry/input_error.h"
 #include "blem_sim/geometry/mesh_topology.h"
@@ -65,12 +67,24 @@ struct LoadedSurface {
 LoadedSurface loadSurface(const std::string& file, const Vector3& scale = Vector3::Ones(), const CloudOptions& cloud = {},
                           Mending mending = Mending::ON, const LoadProgress& progress = {});
 
+/** Points of a sensor. */
+struct SensedCloud {
+  SensedCloud(std::vector<Vector3> all) : points(std::move(all)), width(static_cast<int>(points.size())) {}
+
+  std::vector<Vector3> points;       ///< [m] in the surface's frame; NaN where nothing was measured
+  int width = 0, height = 1;         ///< > 1 both: a pixel grid, point (row, column) is row * width + column
+  std::optional<Vector3> viewpoint;  ///< [m] of the sensor, unless the options name one
+};
+
 /**
- * Points that do not come from a file, filtered, as loadSurface makes them of a file of points.
- * @param points [m] in the surface's frame @param cloud its `as` and `max_edge` are not used @param source for messages and the report
- * @throws InputError: filters that cannot be met, no finite point left
+ * Points that do not come from a file, filtered, as loadSurface makes a surface of a file of points: triangles as: mesh, else points.
+ * @param source for messages and the report
+ * @throws InputError: filters that cannot be met, no finite point left, a mesher that the cloud does not suit, no triangle
  */
-LoadedSurface cloudSurface(std::vector<Vector3> points, const CloudOptions& cloud, const std::string& source);
+LoadedSurface cloudSurface(SensedCloud cloud, const CloudOptions& options, const std::string& source);
+
+/** A mesh that does not come from a file, cleaned and mended as loadSurface does. @throws InputError: nothing is left */
+LoadedSurface meshSurface(geometry::TriangleMesh mesh, const std::string& source);
 
 /** Choices for loading a URDF. */
 struct UrdfOptions {

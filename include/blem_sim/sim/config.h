@@ -54,14 +54,18 @@ struct ContactConfig {
   model::Mending mending = model::Mending::ON;  ///< of the meshes of robots, objects and environments
 };
 
-/** A cloud that a sensor sends anew again and again. */
+/** A cloud, a mesh or a map that is sent anew again and again. */
 struct LiveConfig {
+  enum class Type { CLOUD, MESH, GRID };
   enum class Update { REPLACE, ACCUMULATE };
-  std::string topic;            ///< sensor_msgs/PointCloud2; empty: the environment is no live one
-  std::string frame = "world";  ///< that points are turned into, taken for the world's
+  std::string topic;            ///< empty: the environment is no live one
+  Type type = Type::CLOUD;      ///< of the messages: sensor_msgs/PointCloud2, shape_msgs/Mesh, nav_msgs/OccupancyGrid
+  std::string frame = "world";  ///< that clouds and grids are turned into, taken for the world's; of a mesh, which names none, its own
   Update update = Update::REPLACE;
   model::VoxelMapOptions map;   ///< of ACCUMULATE
-  double fade_speed = 0.00025;  ///< [m/s] at which points come and go below what stands on them
+  double fade_speed = 0.00025;  ///< [m/s] at which points and triangles come and go below what stands on them
+  int occupied = 50;            ///< GRID: value of a cell from which it is a wall
+  double wall_height = 1;       ///< [m] GRID
 };
 
 struct EnvironmentConfig {

@@ -75,11 +75,12 @@ class Simulator {
   void unloadEnvironment(const std::string& name);
 
   /**
-   * Makes a live environment that of these points, between steps. Points that appear inside a layer of something rise into it, and points
-   * that something stood on sink away, both at the environment's fade_speed: nothing is thrown or let fall. Points inside a closed mesh
-   * count for nothing until the next update. Its slots are used again; contacts with it are new ones.
+   * Makes a live environment that of these points or triangles, between steps. Those that appear inside a layer of something rise into it,
+   * and those that something stood on sink away, both at the environment's fade_speed: nothing is thrown or let fall. Points inside a
+   * closed mesh, and triangles with such corners, count for nothing until the next update. Its slots are used again; contacts with it are
+   * new ones.
    * @param surface made for it; what was there before after the call, for the caller to free where it takes no time from steps
-   * @throws InputError if there is no such live environment; nothing is changed then
+   * @throws InputError if there is no such live environment, or it is of the other kind, or the surface is empty; nothing is changed then
    */
   void updateCloud(const std::string& environment, CloudSurface* surface);
 

@@ -100,19 +100,26 @@ struct AttachedModel {
   std::vector<std::pair<int, int>> never_touch;  ///< colliders that do not meet while it lasts, sorted pairs
 };
 
-/** Points of a live cloud as contact takes them. */
+/** Points or triangles of a live environment as contact takes them. */
 struct CloudSurface {
   std::shared_ptr<const contact::CollisionGeometry> geometry;
-  double radius = 0;                 ///< [m] of each point
-  Vector3 origin = Vector3::Zero();  ///< [m] of the geometry's frame in the world: zero unless the cloud is far away
+  double radius = 0;                 ///< [m] of each point; 0: triangles, whose layer is the environment's boundary_width
+  Vector3 origin = Vector3::Zero();  ///< [m] of the geometry's frame in the world: zero unless the surface is far away
   geometry::MeshReport report;
+
+  bool isMesh() const { return radius == 0; }
 };
 
 /**
- * Filters points and makes their tree. Any thread may call it, beside the steps; that is where the time of an update goes.
- * @param points [m] in the world @param name of the environment, in messages @throws InputError: filters that cannot be met, no point left
+ * Filters points, joins them to triangles if `as` is MESH, and makes their tree. Any thread may call it, beside the steps; that is where
+ * the time of an update goes.
+ * @param cloud [m] in the world @param name of the environment, in messages
+ * @throws InputError: filters that cannot be met, no point left, a mesher that does not suit the cloud, no triangle
  */
-CloudSurface makeCloudSurface(std::vector<Vector3> points, const model::CloudOptions& cloud, const std::string& name);
+CloudSurface makeCloudSurface(model::SensedCloud cloud, const model::CloudOptions& options, const std::string& name);
+
+/** Cleans and mends triangles and makes their tree, as makeCloudSurface. @param mesh [m] in the world @throws InputError: none is left */
+CloudSurface makeMeshSurface(geometry::TriangleMesh mesh, const std::string& name);
 
 /** A time of simulation in which a load acts, from a step's start to another's. */
 struct LoadTime {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstring>
+#include <limits>
 
 #include "blem_sim/geometry/input_error.h"
 
@@ -63,19 +64,24 @@ std::uint64_t checkSizes(const PointCloud2& cloud) {
 
 }  // namespace
 
-std::vector<Vector3> pointsOf(const PointCloud2& cloud) {
+std::vector<Vector3> pointsOf(const PointCloud2& cloud, bool all) {
   const std::uint64_t count = checkSizes(cloud);
   const std::array<Coordinate, 3> xyz = {coordinateOf(cloud, "x"), coordinateOf(cloud, "y"), coordinateOf(cloud, "z")};
   std::vector<Vector3> points;
   points.reserve(count);
+  std::uint64_t measured = 0;
   for (std::uint64_t row = 0; row < cloud.height; ++row) {
     const std::uint8_t* point = cloud.data.data() + row * cloud.row_step;
     for (std::uint32_t column = 0; column < cloud.width; ++column, point += cloud.point_step) {
       const Vector3 p(xyz[0].of(point), xyz[1].of(point), xyz[2].of(point));
-      if (p.allFinite()) points.push_back(p);
+      measured += p.allFinite() ? 1 : 0;
+      if (p.allFinite())
+        points.push_back(p);
+      else if (all)
+        points.push_back(Vector3::Constant(std::numeric_limits<double>::quiet_NaN()));
     }
   }
-  if (points.empty()) throw InputError(fmt::format("none of its {} points is finite", count));
+  if (measured == 0) throw InputError(fmt::format("none of its {} points is finite", count));
   return points;
 }
 

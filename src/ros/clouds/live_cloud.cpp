@@ -1,29 +1,18 @@
 #include "clouds/live_cloud.h"
 
-#include <fmt/format.h>
 #include <ros/console.h>
 
 #include <utility>
-
-#include "blem_sim/geometry/input_error.h"
-#include "clouds/cloud_message.h"
 
 namespace blem_sim::node {
 namespace {
 
 constexpr std::chrono::seconds WARNING_PERIOD(5);
 
-model::CloudOptions withoutFilters(model::CloudOptions options) {
-  options.filters.clear();
-  return options;
-}
-
 }  // namespace
 
 LiveCloud::LiveCloud(const sim::EnvironmentConfig& config, const CloudFrames& frames, const std::atomic<double>& time)
-    : config_(config), frames_(frames), time_(time), map_(config.live.map), surface_options_(withoutFilters(config.cloud)), thread_([this] {
-        run();
-      }) {}
+    : name_(config.name), topic_(config.live.topic), builder_(config, frames, time), thread_([this] { run(); }) {}
 
 LiveCloud::~LiveCloud() {
   {
@@ -34,7 +23,7 @@ LiveCloud::~LiveCloud() {
   thread_.join();
 }
 
-void LiveCloud::receive(const sensor_msgs::PointCloud2ConstPtr& message) {
+void LiveCloud::receive(const LiveMessage& message) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     ++counts_.received;
@@ -95,7 +84,7 @@ void LiveCloud::refuse(const std::string& why) {
     tell = now >= next_warning_;
     if (tell) next_warning_ = now + WARNING_PERIOD;
   }
-  if (tell) ROS_WARN("environments: %s: a cloud on %s is refused: %s", name().c_str(), topic().c_str(), why.c_str());
+  if (tell) ROS_WARN("environments: %s: a message on %s is refused: %s", name().c_str(), topic().c_str(), why.c_str());
 }
 
 void LiveCloud::run() {
@@ -104,9 +93,9 @@ void LiveCloud::run() {
     changed_.wait(lock, [this] { return ends_ || waiting_ || !to_free_.empty(); });
     if (ends_) return;
     std::vector<sim::CloudSurface> old = std::exchange(to_free_, {});
-    const sensor_msgs::PointCloud2ConstPtr message = std::exchange(waiting_, nullptr);
-    if (std::exchange(restarts_, false)) map_.clear();
-    busy_ = message != nullptr;
+    const std::optional<LiveMessage> message = std::exchange(waiting_, std::nullopt);
+    if (std::exchange(restarts_, false)) builder_.restart();
+    busy_ = message.has_value();
     lock.unlock();
     old.clear();
     if (message) work(*message);
@@ -116,10 +105,12 @@ void LiveCloud::run() {
   }
 }
 
-void LiveCloud::work(const sensor_msgs::PointCloud2& message) {
+void LiveCloud::work(const LiveMessage& message) {
   std::optional<BuiltCloud> built;
   try {
-    built = build(message);
+    const auto start = std::chrono::steady_clock::now();
+    built = std::visit([this](const auto& given) { return builder_.build(*given); }, message);
+    built->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   } catch (const std::exception& error) {
     return refuse(error.what());
   }
@@ -127,36 +118,6 @@ void LiveCloud::work(const sensor_msgs::PointCloud2& message) {
   const std::lock_guard<std::mutex> lock(mutex_);
   std::swap(ready_, built);
   counts_.overtaken += built ? 1 : 0;
-}
-
-void LiveCloud::checkStamp(const ros::Time& stamp) const {
-  if (stamp.toSec() > time_ + MOST_AHEAD)
-    throw InputError(fmt::format("header.stamp: {:.3f} s lies in the future of simulated time, {:.3f} s", stamp.toSec(), time_.load()));
-}
-
-BuiltCloud LiveCloud::build(const sensor_msgs::PointCloud2& message) {
-  const auto start = std::chrono::steady_clock::now();
-  checkStamp(message.header.stamp);
-  std::vector<Vector3> points = pointsOf(message);
-  const Pose X_WC = frames_.poseOf(message.header.frame_id, config_.live.frame, message.header.stamp);
-  for (Vector3& p : points) p = X_WC * p;
-  BuiltCloud built;
-  built.stamp = message.header.stamp;
-  built.points_received = points.size();
-  std::vector<std::string> notes;
-  points = model::filtered(std::move(points), config_.cloud.filters, "cloud", &notes);
-  if (config_.live.update == sim::LiveConfig::Update::ACCUMULATE) {
-    map_.add(points, message.header.stamp.isZero() ? time_.load() : message.header.stamp.toSec());
-    points = map_.points();
-  }
-  if (points.empty()) throw InputError("filters and the map left no point");
-  built.surface = sim::makeCloudSurface(std::move(points), surface_options_, topic());
-  built.surface.report.notes.insert(built.surface.report.notes.begin(), notes.begin(), notes.end());
-  // The first cloud's radius stays: one that changed from cloud to cloud would lift and lower what stands there.
-  surface_options_.auto_radius = false;
-  surface_options_.point_radius = built.surface.radius;
-  built.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return built;
 }
 
 }  // namespace blem_sim::node

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <ros/subscriber.h>
-#include <sensor_msgs/PointCloud2.h>
 
 #include <atomic>
 #include <chrono>
@@ -12,21 +11,15 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <variant>
 #include <vector>
 
-#include "blem_sim/model/voxel_map.h"
-#include "blem_sim/sim/simulator_types.h"
-#include "clouds/cloud_frames.h"
+#include "clouds/surface_builder.h"
 
 namespace blem_sim::node {
 
-/** A cloud that is ready for contact. */
-struct BuiltCloud {
-  sim::CloudSurface surface;
-  ros::Time stamp;  ///< of its message
-  std::size_t points_received = 0;
-  double seconds = 0;  ///< of wall time that it took
-};
+/** Message of a live environment. */
+using LiveMessage = std::variant<sensor_msgs::PointCloud2ConstPtr, shape_msgs::MeshConstPtr, nav_msgs::OccupancyGridConstPtr>;
 
 /** Messages of a live environment since the start. */
 struct CloudCounts {
@@ -40,20 +33,17 @@ struct CloudCounts {
  */
 class LiveCloud {
  public:
-  /** [s] by which a stamp may be ahead of simulated time. */
-  static constexpr double MOST_AHEAD = 0.5;
-
   /** @param frames, time [s] simulated: must outlive this */
   LiveCloud(const sim::EnvironmentConfig& config, const CloudFrames& frames, const std::atomic<double>& time);
   ~LiveCloud();
   LiveCloud(const LiveCloud&) = delete;
   LiveCloud& operator=(const LiveCloud&) = delete;
 
-  const std::string& name() const { return config_.name; }
-  const std::string& topic() const { return config_.live.topic; }
+  const std::string& name() const { return name_; }
+  const std::string& topic() const { return topic_; }
   /** Counts a message that is none. */
   void refuseUnread(const std::string& why);
-  void receive(const sensor_msgs::PointCloud2ConstPtr& message);
+  void receive(const LiveMessage& message);
   /** The newest surface that is ready, once. */
   std::optional<BuiltCloud> take();
   /** Frees a surface in this object's thread. */
@@ -70,18 +60,13 @@ class LiveCloud {
  private:
   void run();
   /** Makes the message's surface ready, or refuses it. */
-  void work(const sensor_msgs::PointCloud2& message);
-  BuiltCloud build(const sensor_msgs::PointCloud2& message);
-  void checkStamp(const ros::Time& stamp) const;
+  void work(const LiveMessage& message);
 
-  sim::EnvironmentConfig config_;
-  const CloudFrames& frames_;
-  const std::atomic<double>& time_;
-  model::VoxelMap map_;  // of the thread, like the next one
-  model::CloudOptions surface_options_;
+  const std::string name_, topic_;
+  SurfaceBuilder builder_;  // of the thread
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  sensor_msgs::PointCloud2ConstPtr waiting_;  // guarded by the mutex, like all that follow
+  std::optional<LiveMessage> waiting_;  // guarded by the mutex, like all that follow
   std::optional<BuiltCloud> ready_;
   std::vector<sim::CloudSurface> to_free_;
   CloudCounts counts_;

@@ -16,6 +16,24 @@ constexpr int QUEUE_SIZE = 10;  // of messages, which a callback takes at once
 constexpr int UPDATES_KEPT = 100;
 constexpr std::chrono::seconds TELLING_PERIOD(1);  // of markers and the load report
 
+template <typename Message>
+ros::SubscribeOptions subscriptionTo(LiveCloud* cloud) {
+  const boost::function<void(const boost::shared_ptr<const Message>&)> receive = [cloud](const auto& message) { cloud->receive(message); };
+  return checkedSubscription<Message>(cloud->topic(), QUEUE_SIZE, receive, [cloud](const std::string& why) { cloud->refuseUnread(why); });
+}
+
+ros::SubscribeOptions subscriptionOf(sim::LiveConfig::Type type, LiveCloud* cloud) {
+  switch (type) {
+    case sim::LiveConfig::Type::CLOUD:
+      return subscriptionTo<sensor_msgs::PointCloud2>(cloud);
+    case sim::LiveConfig::Type::MESH:
+      return subscriptionTo<shape_msgs::Mesh>(cloud);
+    case sim::LiveConfig::Type::GRID:
+      return subscriptionTo<nav_msgs::OccupancyGrid>(cloud);
+  }
+  return {};
+}
+
 }  // namespace
 
 LiveClouds::LiveClouds(const ros::NodeHandle& node, ros::NodeHandle private_node, SimulationLoop* loop)
@@ -28,12 +46,7 @@ LiveClouds::LiveClouds(const ros::NodeHandle& node, ros::NodeHandle private_node
   for (const sim::EnvironmentConfig& environment : loop->simulator().config().environments) {
     if (environment.live.topic.empty()) continue;
     clouds_.push_back(std::make_unique<LiveCloud>(environment, frames_, time_));
-    LiveCloud* const cloud = clouds_.back().get();
-    const boost::function<void(const sensor_msgs::PointCloud2ConstPtr&)> receive = [cloud](const auto& message) {
-      cloud->receive(message);
-    };
-    ros::SubscribeOptions options = checkedSubscription<sensor_msgs::PointCloud2>(
-        environment.live.topic, QUEUE_SIZE, receive, [cloud](const std::string& why) { cloud->refuseUnread(why); });
+    ros::SubscribeOptions options = subscriptionOf(environment.live.type, clouds_.back().get());
     subscribers_.push_back(receiving.subscribe(options));
   }
   loop->beforeSteps([this](bool wait) { takeUpdates(wait); });
@@ -68,7 +81,8 @@ void LiveClouds::waitUntilBuilt() {
 void LiveClouds::exchange(LiveCloud* cloud, BuiltCloud* built) {
   sim::Simulator& simulator = loop_.simulator();
   LiveCloudUpdate update;
-  update.points = static_cast<std::uint32_t>(built->surface.report.points);
+  const geometry::MeshReport& report = built->surface.report;
+  update.points = static_cast<std::uint32_t>(built->surface.isMesh() ? report.vertices : report.points);
   update.point_radius = built->surface.radius;
   try {
     simulator.updateCloud(cloud->name(), &built->surface);

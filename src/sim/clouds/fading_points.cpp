@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "blem_sim/contact/collider_pairs.h"
+
 namespace blem_sim::sim {
 namespace {
 
@@ -32,13 +34,36 @@ double sinkIn(const std::vector<SunkPoint>& points, int vertex) {
   return at != points.end() && at->vertex == vertex ? at->sink : 0;
 }
 
-/** The contact as a smaller ball about the same point has it. @param to_b the ball is B's */
+/** Mean sink at a place; infinite if that of one of its corners is. */
+double sinkAt(const std::vector<SunkPoint>& points, const contact::MeshPlace& place) {
+  double sink = 0;
+  for (int k = 0; k < 3; ++k) {
+    const double of_corner = sinkIn(points, place.corners[k]);
+    if (!std::isfinite(of_corner)) return of_corner;
+    sink += place.weights[k] * of_corner;
+  }
+  return sink;
+}
+
+/** The contact as a thinner layer about the same place has it. @param to_b the layer is B's */
 void sinkContact(double sink, bool to_b, contact::Contact* contact) {
   contact->depth -= sink;
   contact->point += (to_b ? -0.5 : 0.5) * sink * contact->normal_BA;
 }
 
+void dropPierced(contact::ContactManifold* manifold) {
+  const auto isPierced = [](const contact::Contact& contact) { return contact.pierced; };
+  manifold->contacts.erase(std::remove_if(manifold->contacts.begin(), manifold->contacts.end(), isPierced), manifold->contacts.end());
+  manifold->pierced = false;
+}
+
 }  // namespace
+
+contact::MeshPlace touchedPlace(const contact::Collider& collider, const contact::Contact& contact, bool is_a) {
+  const double way = collider.radius - 0.5 * contact.depth;  // a sink shifts it along the normal, which moves no foot
+  const Vector3 p_W = contact.point + (is_a ? way : -way) * contact.normal_BA;
+  return contact::placeOf(contact.id, is_a, *collider.geometry, collider.X_BC.inverse() * p_W);
+}
 
 const FadingPoints::Fading* FadingPoints::of(int collider) const {
   const auto at = std::lower_bound(fading_.begin(), fading_.end(), collider, [](const Fading& f, int c) { return f.collider < c; });
@@ -56,19 +81,27 @@ double FadingPoints::sinkOf(int collider, int vertex) const {
   return fading ? sinkIn(fading->points, vertex) : 0;
 }
 
-void FadingPoints::apply(contact::ContactManifold* manifold) const {
-  if (fading_.empty()) return;
+double FadingPoints::sinkOf(const contact::Collider& collider, int index, const contact::Contact& contact, bool is_a) const {
+  const Fading* fading = of(index);
+  return fading ? sinkAt(fading->points, touchedPlace(collider, contact, is_a)) : 0;
+}
+
+void FadingPoints::apply(const std::vector<contact::Collider>& colliders, contact::ContactManifold* manifold) const {
+  if (empty()) return;
+  if (manifold->pierced && crosses(manifold->a, manifold->b)) dropPierced(manifold);
   for (const bool to_b : {false, true}) {
     const Fading* fading = of(to_b ? manifold->b : manifold->a);
     if (!fading) continue;
+    const contact::Collider& collider = colliders[fading->collider];
     std::vector<contact::Contact>& contacts = manifold->contacts;
     const auto gone = std::remove_if(contacts.begin(), contacts.end(), [&](contact::Contact& contact) {
-      const int vertex = contact::vertexOf(contact.id, !to_b);
-      const double sink = vertex < 0 || contact.pierced ? 0 : sinkIn(fading->points, vertex);
+      const double sink = sinkAt(fading->points, touchedPlace(collider, contact, !to_b));
       if (std::isfinite(sink)) sinkContact(sink, to_b, &contact);
       return !std::isfinite(sink);
     });
+    if (gone == contacts.end()) continue;
     contacts.erase(gone, contacts.end());
+    manifold->pierced = std::any_of(contacts.begin(), contacts.end(), [](const contact::Contact& c) { return c.pierced; });
   }
 }
 
@@ -84,7 +117,20 @@ void FadingPoints::advance(double dt) {
   fading_.erase(std::remove_if(fading_.begin(), fading_.end(), [](const Fading& f) { return f.points.empty(); }), fading_.end());
 }
 
+void FadingPoints::deepen(int collider, const std::vector<SunkPoint>& more) {
+  for (Fading& fading : fading_)
+    if (fading.collider == collider)
+      for (SunkPoint& point : fading.points) point.sink += sinkIn(more, point.vertex);
+}
+
+void FadingPoints::addCrossing(int a, int b) {
+  crossings_.emplace_back(a, b);
+  std::sort(crossings_.begin(), crossings_.end());
+}
+
 void FadingPoints::forget(int collider) {
+  const auto has_it = [=](const std::pair<int, int>& pair) { return pair.first == collider || pair.second == collider; };
+  crossings_.erase(std::remove_if(crossings_.begin(), crossings_.end(), has_it), crossings_.end());
   fading_.erase(std::remove_if(fading_.begin(), fading_.end(), [=](const Fading& f) { return f.collider == collider; }), fading_.end());
 }
 
@@ -98,6 +144,11 @@ void FadingPoints::save(geometry::StateWriter* writer) const {
       writer->integer(point.vertex);
       writer->word(bitsOf(point.sink));
     }
+  }
+  writer->word(crossings_.size());
+  for (const auto& [a, b] : crossings_) {
+    writer->integer(a);
+    writer->integer(b);
   }
 }
 
@@ -124,6 +175,12 @@ void FadingPoints::restore(const std::vector<contact::Collider>& colliders, geom
     Fading fading = fadingFrom(colliders, reader);
     if (!fading_.empty() && fading_.back().collider >= fading.collider) refusePoints(*reader);
     fading_.push_back(std::move(fading));
+  }
+  crossings_.clear();
+  for (std::size_t left = reader->count(2, 0); left > 0; --left) {
+    const std::pair<int, int> pair = contact::readSlots(colliders, reader);
+    if (!crossings_.empty() && pair <= crossings_.back()) refusePoints(*reader);
+    crossings_.push_back(pair);
   }
 }
 

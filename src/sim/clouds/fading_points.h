@@ -1,8 +1,10 @@
-// Points of a static cloud that come or go below the bodies that stand on them.
+// Points and triangles of a live environment that come or go below the bodies that stand on them.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "blem_sim/contact/collider.h"
@@ -11,32 +13,44 @@
 
 namespace blem_sim::sim {
 
-/** A point that lies deeper than the cloud has it. */
+/** A vertex that lies deeper than the surface has it. */
 struct SunkPoint {
   int vertex;   ///< of its collider's mesh
   double sink;  ///< [m] by which its contacts are less deep than its place says; infinite: it has none
 };
 
+/** Place of a static collider, points or a mesh, where a contact touches it. @param is_a the collider is the contact's A */
+contact::MeshPlace touchedPlace(const contact::Collider& collider, const contact::Contact& contact, bool is_a);
+
 /**
- * Sinks of points, by collider. Points that come rise to where they are, points that leave sink until nothing stands on them, so a cloud
- * that is exchanged for another neither throws what stands on it nor lets it fall. Part of the saved state.
+ * Sinks of vertices, by collider; between the vertices of a triangle the sink is their mean. What comes rises to where it is, what leaves
+ * sinks until nothing stands on it, so an environment that is exchanged for another neither throws what stands on it nor lets it fall. Part
+ * of the saved state.
  */
 class FadingPoints {
  public:
-  bool empty() const { return fading_.empty(); }
+  bool empty() const { return fading_.empty() && crossings_.empty(); }
   /**
    * Points of a collider that has none yet. @param speed [m/s] at which sinks change: below 0 points come, above 0 they leave
    * @param points sorted by vertex, none twice
    */
   void add(int collider, double speed, std::vector<SunkPoint> points);
+  /** Sinks vertices that fade already some more. @param more sorted by vertex, none twice */
+  void deepen(int collider, const std::vector<SunkPoint>& more);
+  /** A pair that crosses since an exchange, as a mesh that a camera saw of the robot does: its pierced contacts count for nothing. */
+  void addCrossing(int a, int b);
+  bool crosses(int a, int b) const { return std::binary_search(crossings_.begin(), crossings_.end(), std::make_pair(a, b)); }
+  bool fades(int collider) const { return of(collider) != nullptr; }
   /** [m] Sink of a vertex, 0 if it does not fade. */
   double sinkOf(int collider, int vertex) const;
-  /** Makes contacts of points that fade as much less deep as they are sunk; those of points that have sunk away are dropped. */
-  void apply(contact::ContactManifold* manifold) const;
+  /** [m] Sink of a contact with a collider, as apply takes it off. @param is_a the collider is the contact's A */
+  double sinkOf(const contact::Collider& collider, int index, const contact::Contact& contact, bool is_a) const;
+  /** Makes contacts of what fades as much less deep as it is sunk; those that touch a vertex that has sunk away are dropped. */
+  void apply(const std::vector<contact::Collider>& colliders, contact::ContactManifold* manifold) const;
   /** Lets time pass [s]. */
   void advance(double dt);
   void forget(int collider);
-  void clear() { fading_.clear(); }
+  void clear() { *this = FadingPoints(); }
   void save(geometry::StateWriter* writer) const;
   /** @param colliders whose points they may be */
   void restore(const std::vector<contact::Collider>& colliders, geometry::StateReader* reader);
@@ -50,7 +64,8 @@ class FadingPoints {
   const Fading* of(int collider) const;
   static Fading fadingFrom(const std::vector<contact::Collider>& colliders, geometry::StateReader* reader);
 
-  std::vector<Fading> fading_;  // sorted by collider, none without points
+  std::vector<Fading> fading_;                  // sorted by collider, none without points
+  std::vector<std::pair<int, int>> crossings_;  // sorted, the smaller collider first
 };
 
 }  // namespace blem_sim::sim

@@ -1,5 +1,6 @@
 #include "clouds/inner_points.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "blem_sim/geometry/ray_cast.h"
@@ -45,11 +46,14 @@ void addInside(const contact::CollisionGeometry& geometry, const contact::Collis
   geometry::visitLeaves(cloud.bvh(), turned(geometry.bounds(), X_GC.inverse()), [&](std::uint32_t leaf) {
     const geometry::Bvh::Node& node = cloud.bvh().nodes()[leaf];
     for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      const int vertex = cloud.mesh().elements[cloud.bvh().order()[i]][0];
-      if (geometry.bounds().contains(X_GC * cloud.mesh().vertices[vertex])) candidates.push_back(vertex);
+      const Vector3i& element = cloud.mesh().elements[cloud.bvh().order()[i]];
+      for (const int vertex : {element[0], element[1], element[2]})
+        if (geometry.bounds().contains(X_GC * cloud.mesh().vertices[vertex])) candidates.push_back(vertex);
     }
   });
   if (candidates.empty() || !isClosed(geometry)) return;
+  std::sort(candidates.begin(), candidates.end());
+  candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
   for (const int vertex : candidates)
     if (isInside(geometry, X_GC * cloud.mesh().vertices[vertex])) inner->push_back({vertex, std::numeric_limits<double>::infinity()});
 }

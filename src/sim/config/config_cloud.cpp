@@ -81,6 +81,20 @@ model::VoxelMapOptions readMap(YamlReader reader) {
   return map;
 }
 
+/** Kind of the messages, and keys that belong to one kind. */
+void readType(YamlReader& reader, LiveConfig* live) {
+  using Type = LiveConfig::Type;
+  const std::vector<Type> types = {Type::CLOUD, Type::MESH, Type::GRID};
+  if (const auto type = reader.choice("type", {"cloud", "mesh", "grid"})) live->type = types[*type];
+  for (const char* key : {"cloud", "update", "map"})
+    if (live->type != Type::CLOUD && reader.has(key)) reader.refuse(key, "belongs to type: cloud; leave it out");
+  for (const char* key : {"occupied", "wall_height"})
+    if (live->type != Type::GRID && reader.has(key)) reader.refuse(key, "belongs to type: grid; leave it out");
+  reader.read("occupied", &live->occupied, 1);
+  if (live->occupied > 100) reader.refuse("occupied", "must be from 1 to 100, as cells of a nav_msgs/OccupancyGrid are");
+  reader.read("wall_height", &live->wall_height, NumberRange::positive());
+}
+
 }  // namespace
 
 model::CloudOptions readCloud(YamlReader reader) {
@@ -113,17 +127,20 @@ LiveConfig readLive(YamlReader& reader, const model::CloudOptions& cloud) {
   LiveConfig live;
   reader.read("topic", &live.topic);
   reader.read("frame", &live.frame);
-  for (const char* key : {"frame", "update", "map", "fade_speed"})
+  for (const char* key : {"type", "frame", "update", "map", "fade_speed", "occupied", "wall_height"})
     if (live.topic.empty() && reader.has(key)) reader.refuse(key, "belongs to topic: a file does not change, and its place is its pose");
   if (live.topic.empty()) return live;
   for (const char* key : {"scale", "pose"})
     if (reader.has(key)) reader.refuse(key, "is a file's: a topic's points are placed by tf");
-  if (cloud.as == model::CloudOptions::As::MESH) reader.refuse("cloud.as", "must be points: a live cloud is no mesh");
+  readType(reader, &live);
   if (const auto update = reader.choice("update", {"replace", "accumulate"}))
     live.update = *update == 0 ? LiveConfig::Update::REPLACE : LiveConfig::Update::ACCUMULATE;
   if (live.update == LiveConfig::Update::REPLACE && reader.has("map")) reader.refuse("map", "belongs to update: accumulate");
   live.map = readMap(reader.section("map"));
   reader.read("fade_speed", &live.fade_speed, NumberRange::positive());
+  const bool has_grid = cloud.filters.empty() && live.update == LiveConfig::Update::REPLACE;
+  if (cloud.mesher == model::CloudOptions::Mesher::ORGANIZED && !has_grid)
+    reader.refuse("cloud.mesher", "must be another than organized: filters and update: accumulate give up the pixel grid");
   return live;
 }
 

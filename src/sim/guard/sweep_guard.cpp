@@ -26,7 +26,8 @@ bool canPass(const contact::Collider& a, const contact::Collider& b) {
 
 }  // namespace
 
-const std::vector<ClosePass>& SweepGuard::look(const SimulatedWorld& world, const MadeSolve& made, const std::vector<double>& arms) {
+const std::vector<ClosePass>& SweepGuard::look(const SimulatedWorld& world, const MadeSolve& made, const std::vector<double>& arms,
+                                               const FadingPoints& fading) {
   close_.clear();
   before_ = &made.before;
   after_ = &made.after;
@@ -34,7 +35,7 @@ const std::vector<ClosePass>& SweepGuard::look(const SimulatedWorld& world, cons
   for (const WatchedPair& pair : made.start.watched.pairs) {
     const contact::Collider &a = world.colliders[pair.a], &b = world.colliders[pair.b];
     const double layer = a.radius + b.radius, motion = motion_[pair.a].reach + motion_[pair.b].reach;
-    if (motion <= STILL * layer || !canPass(a, b)) continue;
+    if (motion <= STILL * layer || !canPass(a, b) || fading.crosses(pair.a, pair.b)) continue;
     const contact::ContactManifold* known = contact::findPair(made.start.manifolds, pair.a, pair.b);
     if (known && known->pierced) continue;
     const double distance = layer - (known ? known->maxDepth() : -pair.known);

@@ -6,6 +6,7 @@
 #include "blem_sim/contact/broad_phase.h"
 #include "blem_sim/contact/sweep.h"
 #include "build/simulated_world.h"
+#include "clouds/fading_points.h"
 #include "contacts/constraints/made_solve.h"
 
 namespace blem_sim::sim {
@@ -29,8 +30,9 @@ class SweepGuard {
  public:
   static constexpr double SPARED = 0.1, NOTHING = 0.02;  ///< of the layer
 
-  /** @param arms as PairWatch knows them @return sorted by (a, b); lives until the next call */
-  const std::vector<ClosePass>& look(const SimulatedWorld& world, const MadeSolve& made, const std::vector<double>& arms);
+  /** @param arms as PairWatch knows them @param fading its crossings pass @return sorted by (a, b); lives until the next call */
+  const std::vector<ClosePass>& look(const SimulatedWorld& world, const MadeSolve& made, const std::vector<double>& arms,
+                                     const FadingPoints& fading);
 
  private:
   void moveColliders(const SimulatedWorld& world, const MadeSolve& made, const std::vector<double>& arms);

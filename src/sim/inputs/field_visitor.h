@@ -47,8 +47,8 @@ class FieldVisitor {
     self().integer(&number, 0, 1 << 30);
     *value = static_cast<std::size_t>(number);
   }
-  template <int rows, int columns>
-  void one(Eigen::Matrix<double, rows, columns>* matrix) {
+  template <typename Number, int rows, int columns>
+  void one(Eigen::Matrix<Number, rows, columns>* matrix) {
     for (int i = 0; i < rows * columns; ++i) one(matrix->data() + i);
   }
   void one(Pose* pose) {

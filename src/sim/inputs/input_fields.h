@@ -77,18 +77,21 @@ void visitFields(Visitor& visit, model::VoxelMapOptions& map) {
 
 template <typename Visitor>
 void visitFields(Visitor& visit, LiveConfig& live) {
+  visit.choice(&live.type, 3);
   visit.choice(&live.update, 2);
-  visit(live.topic, live.frame, live.map, live.fade_speed);
+  visit(live.topic, live.frame, live.map, live.fade_speed, live.occupied, live.wall_height);
 }
 
-/** Its points, of which geometry is made again. */
+/** Its vertices, and its triangles if it has some, of which geometry is made again. */
 template <typename Visitor>
 void visitFields(Visitor& visit, CloudSurface& surface) {
-  std::vector<Vector3> points;
-  if (surface.geometry) points = surface.geometry->mesh().vertices;
-  visit(surface.radius, surface.origin, points);
+  geometry::TriangleMesh mesh;
+  if (surface.geometry) mesh.vertices = surface.geometry->mesh().vertices;
+  if (surface.geometry && surface.isMesh()) mesh.elements = surface.geometry->mesh().elements;
+  visit(surface.radius, surface.origin, mesh.vertices, mesh.elements);
   if (surface.geometry) return;
-  geometry::TriangleMesh mesh = geometry::pointCloudMesh(points, &surface.report);
+  mesh = surface.isMesh() ? geometry::cleanMesh(std::move(mesh), &surface.report, geometry::RepeatedIndices::ARE_DEGENERATE)
+                          : geometry::pointCloudMesh(mesh.vertices, &surface.report);
   surface.geometry = std::make_shared<const contact::CollisionGeometry>(std::make_shared<const geometry::TriangleMesh>(std::move(mesh)));
 }
 

@@ -58,6 +58,17 @@ TEST(CloudMessage, AnyLegalLayoutIsRead) {
   }
 }
 
+TEST(CloudMessage, AGridKeepsThePlacesOfWhatWasNotMeasured) {
+  PointCloud2 cloud = cloudOf<float>(5, 4, 0, 0);
+  const float none = std::nanf("");
+  std::memcpy(cloud.data.data() + 7 * cloud.point_step + 4, &none, sizeof none);
+  EXPECT_EQ(pointsOf(cloud).size(), 19u);
+  const std::vector<Vector3> points = pointsOf(cloud, true);
+  ASSERT_EQ(points.size(), 20u);
+  EXPECT_FALSE(points[7].allFinite());
+  EXPECT_EQ(points[8], Vector3(3, 1, 0.5));
+}
+
 TEST(CloudMessage, TheLastRowNeedsNoPadding) {
   PointCloud2 cloud = cloudOf<float>(5, 4, 3, 7);
   cloud.data.resize(cloud.data.size() - 7);

@@ -28,6 +28,7 @@ std::vector<contact::Collider> threePoints() {
 
 FadingPoints comingAndLeaving() {
   FadingPoints fading;
+  fading.addCrossing(0, 1);
   fading.add(1, 0.001, {{0, 0.0001}, {2, FOR_GOOD}});
   fading.add(0, -0.001, {{1, 0.002}});
   return fading;
@@ -46,11 +47,12 @@ contact::Contact contactOf(std::uint64_t vertex, bool of_a) {
 
 TEST(FadingPoints, MakeContactsLessDeepOnTheirOwnSide) {
   const FadingPoints fading = comingAndLeaving();
+  const std::vector<contact::Collider> colliders = threePoints();
   contact::ContactManifold manifold;
   manifold.a = 0;
   manifold.b = 5;
   manifold.contacts = {contactOf(0, true), contactOf(1, true), contactOf(1, false)};
-  fading.apply(&manifold);
+  fading.apply(colliders, &manifold);
   ASSERT_EQ(manifold.contacts.size(), 3u);
   EXPECT_EQ(manifold.contacts[0].depth, 0.003);
   EXPECT_DOUBLE_EQ(manifold.contacts[1].depth, 0.001);
@@ -59,10 +61,50 @@ TEST(FadingPoints, MakeContactsLessDeepOnTheirOwnSide) {
   manifold.a = -1;
   manifold.b = 1;
   manifold.contacts = {contactOf(0, false), contactOf(2, false)};
-  fading.apply(&manifold);
+  fading.apply(colliders, &manifold);
   ASSERT_EQ(manifold.contacts.size(), 1u);
   EXPECT_DOUBLE_EQ(manifold.contacts[0].depth, 0.0029);
   EXPECT_DOUBLE_EQ(manifold.contacts[0].point.z(), -0.00005);
+}
+
+TEST(FadingPoints, OfATriangleSinkByTheirMean) {
+  std::vector<contact::Collider> colliders(2);
+  for (contact::Collider& collider : colliders)
+    collider.geometry = std::make_shared<const contact::CollisionGeometry>(std::make_shared<const geometry::TriangleMesh>(
+        geometry::TriangleMesh{{Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(0, 1, 0)}, {Vector3i(0, 1, 2)}}));
+  FadingPoints fading;
+  fading.add(1, -0.001, {{1, 0.001}, {2, 0.002}});
+  contact::ContactManifold manifold;
+  manifold.a = 0;
+  manifold.b = 1;
+  manifold.contacts = {contactOf(0, true)};
+  contact::Contact& contact = manifold.contacts[0];
+  contact.point = Vector3(0.5, 0.25, -0.0015);  // of a face of B, as it has no layer
+  contact.id = std::uint64_t{2} << 30;
+  fading.apply(colliders, &manifold);
+  EXPECT_NEAR(contact.depth, 0.003 - 0.5 * 0.001 - 0.25 * 0.002, 1e-12);
+  EXPECT_NEAR(fading.sinkOf(colliders[1], 1, contact, false), 0.001, 1e-12);
+  fading.forget(1);
+  fading.add(1, -0.001, {{1, FOR_GOOD}});
+  fading.apply(colliders, &manifold);
+  EXPECT_TRUE(manifold.contacts.empty());
+}
+
+TEST(FadingPoints, PiercedContactsOfACrossingCountForNothing) {
+  const std::vector<contact::Collider> colliders = threePoints();
+  FadingPoints fading;
+  fading.addCrossing(0, 1);
+  contact::ContactManifold manifold;
+  manifold.a = 0;
+  for (const int other : {1, 2}) {
+    manifold.b = other;
+    manifold.pierced = true;
+    manifold.contacts = {contactOf(0, true), contactOf(1, true)};
+    manifold.contacts[1].pierced = true;
+    fading.apply(colliders, &manifold);
+    EXPECT_EQ(manifold.contacts.size(), other == 1 ? 1u : 2u);
+    EXPECT_EQ(manifold.pierced, other != 1);
+  }
 }
 
 TEST(FadingPoints, ComeAndLeaveAtTheirSpeed) {
@@ -75,6 +117,7 @@ TEST(FadingPoints, ComeAndLeaveAtTheirSpeed) {
   EXPECT_EQ(fading.sinkOf(0, 1), 0);
   fading.advance(100);
   EXPECT_EQ(fading.sinkOf(1, 0), FOR_GOOD);
+  EXPECT_FALSE(fading.empty());
   fading.forget(1);
   EXPECT_TRUE(fading.empty());
 }
@@ -103,6 +146,13 @@ TEST(FadingPoints, WordsThatLieAreRefused) {
   };
   for (std::size_t length = 0; length < words.size(); ++length)
     EXPECT_FALSE(isRead({words.begin(), words.begin() + static_cast<std::ptrdiff_t>(length)})) << length;
+  // Number of crossings, and one of them.
+  for (const std::size_t back : {1, 2, 3})
+    for (const std::uint64_t lie : {std::uint64_t{7}, ~std::uint64_t{0}}) {
+      std::vector<std::uint64_t> lying = words;
+      lying[words.size() - back] = lie;
+      EXPECT_FALSE(isRead(lying)) << back << " " << lie;
+    }
   // Number of colliders, collider, speed, number of points, vertex, sink.
   for (const std::size_t at : {0, 1, 3, 4})
     for (const std::uint64_t lie : {std::uint64_t{7}, ~std::uint64_t{0}, std::uint64_t{1} << 63}) {

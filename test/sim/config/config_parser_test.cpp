@@ -107,7 +107,9 @@ TEST(Manual, HoldsEveryKnownKey) {
   EXPECT_EQ(config.robots[0].controllers->size(), 3u);
   EXPECT_FALSE(config.robots[1].controllers);
   EXPECT_EQ(config.objects.size(), 2u);
-  EXPECT_EQ(config.environments.size(), 5u);
+  ASSERT_EQ(config.environments.size(), 6u);
+  EXPECT_EQ(config.environments[4].live.type, LiveConfig::Type::GRID);
+  EXPECT_EQ(config.environments[4].live.wall_height, 1);
   collectKeys(document, "", &written);
   EXPECT_GT(known.size(), 90u);
   for (const std::string& key : known) EXPECT_TRUE(holdsKey(written, key)) << key << " is not in config/default.yaml";
@@ -339,7 +341,16 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"environments: [{name: e, topic: a, map: {voxel: 1}}]", {"environments[0].map", "accumulate"}},
         BadInput{"environments: [{name: e, topic: a, update: accumulate, map: {voxel: 0}}]", {"map.voxel", "above 0"}},
         BadInput{"environments: [{name: e, topic: a, fade_speed: 0}]", {"fade_speed", "above 0"}},
-        BadInput{"environments: [{name: e, topic: a, cloud: {as: mesh}}]", {"cloud.as", "points"}},
+        BadInput{"environments: [{name: e, uri: a, type: mesh}]", {"environments[0].type", "topic"}},
+        BadInput{"environments: [{name: e, topic: a, type: map}]", {"environments[0].type", "cloud, mesh, grid", "'map'"}},
+        BadInput{"environments: [{name: e, topic: a, type: mesh, cloud: {as: mesh}}]", {"environments[0].cloud", "type: cloud"}},
+        BadInput{"environments: [{name: e, topic: a, type: grid, update: accumulate}]", {"environments[0].update", "type: cloud"}},
+        BadInput{"environments: [{name: e, topic: a, type: mesh, occupied: 3}]", {"environments[0].occupied", "type: grid"}},
+        BadInput{"environments: [{name: e, topic: a, type: grid, occupied: 101}]", {"environments[0].occupied", "1 to 100"}},
+        BadInput{"environments: [{name: e, topic: a, type: grid, wall_height: 0}]", {"environments[0].wall_height", "above 0"}},
+        BadInput{"environments: [{name: e, topic: a, update: accumulate, cloud: {as: mesh, mesher: organized}}]", {"cloud.mesher", "grid"}},
+        BadInput{"environments: [{name: e, topic: a, cloud: {as: mesh, mesher: organized, filters: [{voxel_grid: 1}]}}]",
+                 {"cloud.mesher", "grid"}},
         BadInput{"environments: [{name: e, uri: a, cloud: {point_radius: big}}]", {"cloud.point_radius", "'big'"}},
         BadInput{"environments: [{name: e, uri: a, cloud: {filters: [{voxels: 1}]}}]", {"filters[0].voxels", "'voxel_grid'"}},
         BadInput{"environments: [{name: e, uri: a, cloud: {filters: [{}]}}]", {"filters[0]", "exactly one"}},

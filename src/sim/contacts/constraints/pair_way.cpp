@@ -81,7 +81,7 @@ bool PairWay::search(const WayOfPair& pair, const FlushSurfaces& flush, const st
                          {*pair.b.collider, pair.b.twist.moved(pair.b.X_WC, time)}, {pair.known}, pair.workspace, &at_);
     if (at_.pierced) return false;
     flush.dropCovered(colliders, motion, &cover_, &at_);
-    pair.fading->apply(&at_);
+    pair.fading->apply(colliders, &at_);
     const double depth = newDepth(at_.contacts), next = time + freeTime(pair, at_.contacts, time);
     touches_ = depth > pair.depth + 0.5 * TOUCHING;
     if (touches_ || depth > nearest) {

@@ -12,12 +12,15 @@ bool hasSurface(const contact::Collider& collider) { return collider.geometry->i
 
 }  // namespace
 
-void FlushSurfaces::watch(const std::vector<contact::Collider>& colliders, const std::vector<WatchedPair>& pairs) {
+void FlushSurfaces::watch(const std::vector<contact::Collider>& colliders, const std::vector<WatchedPair>& pairs,
+                          const FadingPoints& fading) {
   neighbours_.clear();
   for (const WatchedPair& pair : pairs) {
     const bool a_is_fixed = colliders[pair.a].body == dynamics::WORLD_BODY;
-    if ((a_is_fixed || colliders[pair.b].body == dynamics::WORLD_BODY) && hasSurface(colliders[a_is_fixed ? pair.a : pair.b]))
-      neighbours_.push_back(a_is_fixed ? Neighbour{pair.b, pair.a} : Neighbour{pair.a, pair.b});
+    const int fixed = a_is_fixed ? pair.a : pair.b, moving = a_is_fixed ? pair.b : pair.a;
+    // What fades carries less than its place says, and must not take over.
+    if (colliders[fixed].body == dynamics::WORLD_BODY && hasSurface(colliders[fixed]) && !fading.fades(fixed))
+      neighbours_.push_back({moving, fixed});
   }
   std::sort(neighbours_.begin(), neighbours_.end(),
             [](const Neighbour& a, const Neighbour& b) { return a.moving != b.moving ? a.moving < b.moving : a.fixed < b.fixed; });

@@ -6,6 +6,7 @@
 #include "blem_sim/contact/broad_phase.h"
 #include "blem_sim/contact/manifold.h"
 #include "blem_sim/contact/surface_cover.h"
+#include "clouds/fading_points.h"
 #include "contacts/search/pair_watch.h"
 
 namespace blem_sim::sim {
@@ -13,8 +14,8 @@ namespace blem_sim::sim {
 /** Static colliders near each moving one: where there are several, their surfaces may go over into each other. */
 class FlushSurfaces {
  public:
-  /** @param pairs of the search at hand */
-  void watch(const std::vector<contact::Collider>& colliders, const std::vector<WatchedPair>& pairs);
+  /** @param pairs of the search at hand @param fading surfaces that fade are left out */
+  void watch(const std::vector<contact::Collider>& colliders, const std::vector<WatchedPair>& pairs, const FadingPoints& fading);
   /** Takes from a pair's contacts with a static surface those that others cover. @param cover work space, of one call at a time */
   void dropCovered(const std::vector<contact::Collider>& colliders, const std::vector<contact::ColliderMotion>& motion,
                    contact::SurfaceCover* cover, contact::ContactManifold* manifold) const;

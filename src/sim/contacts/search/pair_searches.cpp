@@ -49,7 +49,7 @@ void PairSearches::find(const SimulatedWorld& world, const FoundContacts& before
   makeRoom(watched.size(), &found->manifolds);
   last_apart_.clear();
   for (const WatchedPair& pair : watched) last_apart_.push_back(lastApart(before, pair.a, pair.b));
-  found->flush.watch(world.colliders, watched);
+  found->flush.watch(world.colliders, watched, fading);
   watch(watched);
   run(watched.size(), [&](std::size_t i, std::size_t thread) {
     const WatchedPair& pair = watched[i];
@@ -60,7 +60,7 @@ void PairSearches::find(const SimulatedWorld& world, const FoundContacts& before
     manifold.a = pair.a;
     manifold.b = pair.b;
     found->flush.dropCovered(world.colliders, motion, &workspaces_[thread].cover, &manifold);
-    fading.apply(&manifold);
+    fading.apply(world.colliders, &manifold);
   });
   found->crossings.goOn(before.crossings, last_apart_, found->manifolds);
   keepWhatWasFound(watched.size(), &found->manifolds);
