@@ -74,14 +74,27 @@ class Times {
   std::vector<double> all_;
 };
 
+double fastest(const sim::StepReport& report) {
+  double fastest = 0;
+  for (const dynamics::BodyState& body : report.bodies) fastest = std::max(fastest, body.v_WCom.norm());
+  return fastest;
+}
+
+/** A heap tumbles while it has a contact per body and something in it is this fast; it rests below the other speed. [m/s] */
+constexpr double TUMBLES = 0.1, RESTS = 1e-6;
+
 /** Results of a run. */
 struct Figures {
   Times step, bullet;
+  Times solve_tumbling, solve_resting;
   std::array<Times, STAGES> stages;
   Times residual_of_force;  // in millionths
   double trouble = 0, crossing = 0, shortened = 0, deepest = 0, gained = 0, bullet_deepest = 0;
   void add(const sim::StepReport& report) {
     for (std::size_t s = 0; s < STAGES; ++s) stages[s].add(report.profile.seconds[s]);
+    const double solve = report.profile.seconds[static_cast<std::size_t>(sim::Stage::SOLVE)], speed = fastest(report);
+    if (speed > TUMBLES && report.contacts.size() >= report.bodies.size()) solve_tumbling.add(solve);
+    if (speed < RESTS) solve_resting.add(solve);
     trouble += report.status & sim::SOLVER_TROUBLE ? 1 : 0;
     crossing += report.status & sim::CONTACT_UNRELIABLE ? 1 : 0;
     shortened += report.substeps > 1 ? 1 : 0;
@@ -114,12 +127,6 @@ Figures run(sim::Simulator* simulator, BulletHeap* bullet) {
   return figures;
 }
 
-double fastest(const sim::Simulator& simulator) {
-  double fastest = 0;
-  for (const dynamics::BodyState& body : simulator.report().bodies) fastest = std::max(fastest, body.v_WCom.norm());
-  return fastest;
-}
-
 /** Bodies that are not in the bin any more. */
 int lost(const sim::Simulator& simulator, double width) {
   int lost = 0;
@@ -150,7 +157,7 @@ void count(const Heap& heap, const Figures& figures, const sim::Simulator& simul
   counters["residual_of_force_worst"] = 1e-6 * figures.residual_of_force.quantile(1);
   counters["deepest_of_layer"] = figures.deepest;
   counters["energy_gained_J"] = figures.gained;
-  counters["speed_at_end"] = fastest(simulator);
+  counters["speed_at_end"] = fastest(simulator.report());
   counters["lost"] = lost(simulator, heap.scene(heap.count).bin_width);
   counters["bullet_mean_us"] = bullet ? figures.bullet.mean() : NAN;
   counters["bullet_p99_us"] = bullet ? figures.bullet.quantile(0.99) : NAN;
@@ -159,13 +166,17 @@ void count(const Heap& heap, const Figures& figures, const sim::Simulator& simul
   counters["solve_over_bullet"] = bullet ? solve.mean() / figures.bullet.mean() : NAN;
   counters["step_over_bullet"] = bullet ? figures.step.mean() / figures.bullet.mean() : NAN;
   // Growth against the heap of 100 of this run.
-  static double solve_of_100 = NAN, step_of_100 = NAN;
+  static double solve_of_100 = NAN, step_of_100 = NAN, tumbling_of_100 = NAN;
   if (heap.name == "cubes" && heap.count == 100) {
     solve_of_100 = solve.mean();
     step_of_100 = figures.step.mean();
+    tumbling_of_100 = figures.solve_tumbling.mean();
   }
   counters["solve_over_100"] = solve.mean() / solve_of_100;
   counters["step_over_100"] = figures.step.mean() / step_of_100;
+  counters["solve_tumbling_mean_us"] = figures.solve_tumbling.mean();
+  counters["solve_tumbling_over_100"] = figures.solve_tumbling.mean() / tumbling_of_100;
+  counters["solve_resting_over_tumbling"] = figures.solve_resting.mean() / figures.solve_tumbling.mean();
 }
 
 void measure(const Heap& heap, benchmark::State& state) {
