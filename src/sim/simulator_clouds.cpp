@@ -215,9 +215,8 @@ void Simulator::Impl::updateCloud(const std::string& environment, CloudSurface* 
   if (surface->isMesh() != live.is_mesh)
     throw InputError(fmt::format("environments: {}: is made of {}, and these are {}; set cloud.as to what is sent", environment,
                                  live.is_mesh ? "triangles" : "points", live.is_mesh ? "points" : "triangles"));
-  if (surface->geometry->mesh().elements.empty())
-    throw InputError(fmt::format("environments: {}: the surface is empty; the environment stays as it is", environment));
   const int model = world_.modelIndex(environment);
+  if (!surface->geometry) return clearCloud(model, &live, surface);
   world_.bodyStates(&bodies_);
   if (!at_hand_.known) findFirstContacts();
   contact::Collider cloud;
@@ -247,6 +246,16 @@ void Simulator::Impl::updateCloud(const std::string& environment, CloudSurface* 
   at_hand_.known = false;
   layout_.clear();
   *surface = std::move(before);
+}
+
+void Simulator::Impl::clearCloud(int model, LiveGround* live, CloudSurface* surface) {
+  if (live->cloud < 0) return;
+  surface->geometry = world_.colliders[live->cloud].geometry;
+  forgetContacts(world_.collidersOf(model));
+  world_.removeShapes(model);
+  live->cloud = -1;
+  at_hand_.known = false;
+  layout_.clear();
 }
 
 void Simulator::Impl::endFading() {

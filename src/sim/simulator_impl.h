@@ -128,6 +128,8 @@ struct Simulator::Impl {
   // simulator_clouds.cpp
   void addLive(const EnvironmentConfig& environment);
   void updateCloud(const std::string& environment, CloudSurface* surface);
+  /** Takes the surface and its remains away. @param surface what was there, out */
+  void clearCloud(int model, LiveGround* live, CloudSurface* surface);
   /** [m] Layer of a live surface; an automatic one is chosen with the first mesh, and stays. */
   double layerOf(const CloudSurface& surface, LiveGround* live) const;
   /** A contact by which something stands on a live environment. */

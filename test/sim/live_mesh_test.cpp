@@ -300,6 +300,31 @@ TEST(LiveMesh, SlotsAreUsedAgainHoweverOften) {
   EXPECT_LT(bodyOf(simulator, "cube").v_WCom.norm(), 0.001);
 }
 
+TEST(LiveMesh, IsTakenAwayByASurfaceOfNothing) {
+  Simulator simulator(cubeAboveMesh(), model::UriResolver()), replayed(cubeAboveMesh(), model::UriResolver());
+  Twin twin(&replayed);
+  simulator.watch(&twin);
+  SeenFloor floor(0.2);
+  CloudSurface nothing;
+  simulator.updateCloud("live", &nothing);
+  EXPECT_EQ(simulator.colliders().size(), 1u);
+  exchange(&simulator, floor.next());
+  stepFor(&simulator, 0.2);
+  exchange(&simulator, floor.next());
+  stepFor(&simulator, 0.01);
+  EXPECT_NEAR(carriedBy(simulator.report()), G, 0.1 * G);
+  simulator.updateCloud("live", &nothing);
+  EXPECT_TRUE(nothing.geometry) << "the caller frees what was there";
+  const double before = bodyOf(simulator, "cube").v_WCom.z();
+  stepFor(&simulator, 0.1);
+  EXPECT_NEAR(bodyOf(simulator, "cube").v_WCom.z(), before - 0.1 * G, 1e-9);
+  exchange(&simulator, floor.next(-0.2));
+  stepFor(&simulator, 0.5);
+  EXPECT_NEAR(carriedBy(simulator.report()), G, 0.1 * G);
+  simulator.watch(nullptr);
+  EXPECT_EQ(simulator.stateHash(), replayed.stateHash());
+}
+
 TEST(LiveMesh, PointsAreNoTriangles) {
   Simulator simulator(cubeAboveMesh(), model::UriResolver());
   CloudSurface points = makeCloudSurface(std::vector<Vector3>{{0, 0, 0}}, model::CloudOptions(), "live");

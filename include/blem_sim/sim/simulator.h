@@ -79,8 +79,9 @@ class Simulator {
    * and those that something stood on sink away, both at the environment's fade_speed: nothing is thrown or let fall. Points inside a
    * closed mesh, and triangles with such corners, count for nothing until the next update. Its slots are used again; contacts with it are
    * new ones.
-   * @param surface made for it; what was there before after the call, for the caller to free where it takes no time from steps
-   * @throws InputError if there is no such live environment, or it is of the other kind, or the surface is empty; nothing is changed then
+   * @param surface made for it; one of triangles without geometry takes all away at once. What was there before after the call, for the
+   * caller to free where it takes no time from steps
+   * @throws InputError if there is no such live environment, or it is of the other kind; nothing is changed then
    */
   void updateCloud(const std::string& environment, CloudSurface* surface);
 

@@ -102,7 +102,7 @@ struct AttachedModel {
 
 /** Points or triangles of a live environment as contact takes them. */
 struct CloudSurface {
-  std::shared_ptr<const contact::CollisionGeometry> geometry;
+  std::shared_ptr<const contact::CollisionGeometry> geometry;  ///< null: no triangle, as a map without walls
   double radius = 0;                 ///< [m] of each point; 0: triangles, whose layer is the environment's boundary_width
   Vector3 origin = Vector3::Zero();  ///< [m] of the geometry's frame in the world: zero unless the surface is far away
   geometry::MeshReport report;

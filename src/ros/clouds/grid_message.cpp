@@ -127,9 +127,7 @@ class WallBuilder {
 
 geometry::TriangleMesh wallsOf(const nav_msgs::OccupancyGrid& grid, const GridWalls& walls) {
   checkGrid(grid);
-  geometry::TriangleMesh mesh = WallBuilder(grid, walls).build();
-  if (mesh.elements.empty()) throw InputError(fmt::format("data: no cell is occupied, {} or more", walls.occupied));
-  return mesh;
+  return WallBuilder(grid, walls).build();
 }
 
 }  // namespace blem_sim::node

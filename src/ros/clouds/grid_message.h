@@ -20,9 +20,10 @@ struct GridWalls {
 
 /**
  * Walls over the occupied cells, from z = 0 of the grid's origin up, in the message's frame [m]: tops, and sides between occupied and free
- * cells or the border. Sides of one straight run are one rectangle, tops of equal rows as well. Normals point outwards.
- * @throws InputError in one line: a resolution that is none, sizes that are not those of the data, an origin that is no pose, no occupied
- * cell, too many cells or triangles
+ * cells or the border. Sides of one straight run are one rectangle, tops of equal rows as well. Normals point outwards. None if no cell is
+ * occupied.
+ * @throws InputError in one line: a resolution that is none, sizes that are not those of the data, an origin that is no pose, too many
+ * cells or triangles
  */
 geometry::TriangleMesh wallsOf(const nav_msgs::OccupancyGrid& grid, const GridWalls& walls);
 

@@ -90,7 +90,7 @@ BuiltCloud SurfaceBuilder::build(const nav_msgs::OccupancyGrid& message) {
   BuiltCloud built;
   built.stamp = message.header.stamp;
   built.points_received = message.data.size();
-  built.surface = sim::makeMeshSurface(std::move(mesh), config_.live.topic);
+  if (!mesh.elements.empty()) built.surface = sim::makeMeshSurface(std::move(mesh), config_.live.topic);
   return built;
 }
 

@@ -89,7 +89,7 @@ void visitFields(Visitor& visit, CloudSurface& surface) {
   if (surface.geometry) mesh.vertices = surface.geometry->mesh().vertices;
   if (surface.geometry && surface.isMesh()) mesh.elements = surface.geometry->mesh().elements;
   visit(surface.radius, surface.origin, mesh.vertices, mesh.elements);
-  if (surface.geometry) return;
+  if (surface.geometry || mesh.vertices.empty()) return;
   mesh = surface.isMesh() ? geometry::cleanMesh(std::move(mesh), &surface.report, geometry::RepeatedIndices::ARE_DEGENERATE)
                           : geometry::pointCloudMesh(mesh.vertices, &surface.report);
   surface.geometry = std::make_shared<const contact::CollisionGeometry>(std::make_shared<const geometry::TriangleMesh>(std::move(mesh)));

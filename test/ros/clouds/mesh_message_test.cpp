@@ -122,9 +122,9 @@ TEST(GridMessage, LiesAreRefusedInOneLine) {
   nav_msgs::OccupancyGrid lie = gridOf({"#."});
   lie.info.origin.orientation.w = 0;
   EXPECT_TRUE(isOneLineWith(refusalOf(lie), {"info.origin"}));
-  lie = gridOf({".?"});
-  EXPECT_TRUE(isOneLineWith(refusalOf(lie), {"no cell is occupied"}));
 }
+
+TEST(GridMessage, WithoutAWallHasNoTriangle) { EXPECT_TRUE(wallsOf(gridOf({".?"}), {}).elements.empty()); }
 
 }  // namespace
 }  // namespace blem_sim::node
