@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <random>
 
 #include "blem_sim/geometry/closest_points.h"
@@ -16,6 +17,16 @@ CollisionGeometry sweptGeometry(const geometry::TriangleMesh& mesh) {
 
 GeometrySweep sweep(const Vector3& from, const Vector3& shift, const Vector3& turn = Vector3::Zero()) {
   return {makePose(from), from, shift, turn};
+}
+
+Vector3 randomVector(double size, std::mt19937_64* generator) {
+  const auto uniform = [=] { return size * (2 * static_cast<double>((*generator)() >> 11) * 0x1p-53 - 1); };
+  const double x = uniform(), y = uniform(), z = uniform();
+  return {x, y, z};
+}
+
+std::array<geometry::TriangleMesh, 3> smallMeshes() {
+  return {geometry::boxMesh({0.1, 0.05, 0.02}), geometry::gridMesh(0.2, 0.1, 1, 1), geometry::segmentMesh({0, 0, 0}, {0.1, 0, 0})};
 }
 
 TEST(Sweep, EndsWhereItsTurnAndShiftLead) {
@@ -46,13 +57,8 @@ TEST(Sweep, PointsPassEachOtherAtTheirDistance) {
 
 TEST(Sweep, OfWhatStandsStillIsItsDistance) {
   std::mt19937_64 generator(7);
-  const auto uniform = [&generator](double size) { return size * (2 * static_cast<double>(generator() >> 11) * 0x1p-53 - 1); };
-  const auto vector = [&uniform](double size) {
-    const double x = uniform(size), y = uniform(size), z = uniform(size);
-    return Vector3(x, y, z);
-  };
-  const geometry::TriangleMesh meshes[] = {geometry::boxMesh({0.1, 0.05, 0.02}), geometry::gridMesh(0.2, 0.1, 1, 1),
-                                           geometry::segmentMesh({0, 0, 0}, {0.1, 0, 0})};
+  const auto vector = [&generator](double size) { return randomVector(size, &generator); };
+  const std::array<geometry::TriangleMesh, 3> meshes = smallMeshes();
   int apart = 0;
   for (int i = 0; i < 300; ++i) {
     const geometry::TriangleMesh &a = meshes[i % 3], &b = meshes[i / 3 % 3];
@@ -71,13 +77,8 @@ TEST(Sweep, OfWhatStandsStillIsItsDistance) {
 /** Sweeps against the distance at 300 poses on the way. */
 TEST(Sweep, NeverMissesWhatSamplesFind) {
   std::mt19937_64 generator(3);
-  const auto uniform = [&generator](double size) { return size * (2 * static_cast<double>(generator() >> 11) * 0x1p-53 - 1); };
-  const auto vector = [&uniform](double size) {
-    const double x = uniform(size), y = uniform(size), z = uniform(size);
-    return Vector3(x, y, z);
-  };
-  const geometry::TriangleMesh meshes[] = {geometry::boxMesh({0.1, 0.05, 0.02}), geometry::gridMesh(0.2, 0.1, 1, 1),
-                                           geometry::segmentMesh({0, 0, 0}, {0.1, 0, 0})};
+  const auto vector = [&generator](double size) { return randomVector(size, &generator); };
+  const std::array<geometry::TriangleMesh, 3> meshes = smallMeshes();
   int seen = 0, cleared = 0;
   for (int i = 0; i < 150; ++i) {
     const geometry::TriangleMesh &a = meshes[i % 3], &b = meshes[i / 3 % 3];

@@ -18,7 +18,7 @@ void FlushSurfaces::watch(const std::vector<contact::Collider>& colliders, const
   for (const WatchedPair& pair : pairs) {
     const bool a_is_fixed = colliders[pair.a].body == dynamics::WORLD_BODY;
     const int fixed = a_is_fixed ? pair.a : pair.b, moving = a_is_fixed ? pair.b : pair.a;
-    // What fades carries less than its place says, and must not take over.
+    // Surfaces that fade carry less than their places say, and must not take over.
     if (colliders[fixed].body == dynamics::WORLD_BODY && hasSurface(colliders[fixed]) && !fading.fades(fixed))
       neighbours_.push_back({moving, fixed});
   }
