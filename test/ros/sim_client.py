@@ -49,6 +49,18 @@ class Recorder(object):
         self._subscriber.unregister()
 
 
+def newest_status(diagnostics, name):
+    """Values of the node's status that ends in this name, as they are from now on. diagnostics: Recorder of /diagnostics"""
+    diagnostics.clear()
+
+    def latest():
+        statuses = [status for message in diagnostics.messages() for status in message.status if status.name.endswith(name)]
+        return {pair.key: pair.value for pair in statuses[-1].values} if statuses else None
+
+    wait_until(latest, "diagnostics of " + name)
+    return latest()
+
+
 def master():
     return rosgraph.Master(rospy.get_name())
 

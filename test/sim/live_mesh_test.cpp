@@ -315,6 +315,9 @@ TEST(LiveMesh, IsTakenAwayByASurfaceOfNothing) {
   EXPECT_NEAR(carriedBy(simulator.report()), G, 0.1 * G);
   simulator.updateCloud("live", &nothing);
   EXPECT_TRUE(nothing.geometry) << "the caller frees what was there";
+  CloudSurface again;
+  simulator.updateCloud("live", &again);
+  EXPECT_FALSE(again.geometry);
   const double before = bodyOf(simulator, "cube").v_WCom.z();
   stepFor(&simulator, 0.1);
   EXPECT_NEAR(bodyOf(simulator, "cube").v_WCom.z(), before - 0.1 * G, 1e-9);

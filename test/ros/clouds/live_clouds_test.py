@@ -60,15 +60,7 @@ class LiveCloudsTest(unittest.TestCase):
             recorder.stop()
 
     def counts(self):
-        """Values of the node's diagnostics of live clouds, as they are from now on."""
-        self.diagnostics.clear()
-
-        def latest():
-            statuses = [status for message in self.diagnostics.messages() for status in message.status if status.name.endswith("live clouds")]
-            return {pair.key: pair.value for pair in statuses[-1].values} if statuses else None
-
-        sim_client.wait_until(latest, "diagnostics of live clouds")
-        return latest()
+        return sim_client.newest_status(self.diagnostics, "live clouds")
 
     def wait_for_count(self, key, least):
         sim_client.wait_until(lambda: int(self.counts()[key]) >= least, "%s of %d" % (key, least))

@@ -70,14 +70,7 @@ class LiveMeshesTest(unittest.TestCase):
             recorder.stop()
 
     def counts(self):
-        self.diagnostics.clear()
-
-        def latest():
-            statuses = [status for message in self.diagnostics.messages() for status in message.status if status.name.endswith("live clouds")]
-            return {pair.key: pair.value for pair in statuses[-1].values} if statuses else None
-
-        sim_client.wait_until(latest, "diagnostics of live clouds")
-        return latest()
+        return sim_client.newest_status(self.diagnostics, "live clouds")
 
     def send(self, environment, message, counted="received"):
         """Publishes a message and returns when the node has received, or refused it."""
@@ -129,6 +122,13 @@ class LiveMeshesTest(unittest.TestCase):
             self.assertIn(why, self.counts()["grid last refusal"])
         self.assertTrue(self.step(50, []).success)
         self.assertAlmostEqual(self.place("resting").z, height, delta=1e-4)
+
+    def test_4_a_grid_without_walls_takes_them_away(self):
+        empty = walls()
+        empty.data = [0] * len(empty.data)
+        self.send("grid", empty)
+        self.assertTrue(self.step(1, []).success)
+        self.assertEqual([update.points for update in self.updates.wait_for(1) if update.environment == "grid"][-1], 0)
 
 
 if __name__ == "__main__":
