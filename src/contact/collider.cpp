@@ -52,6 +52,8 @@ CollisionGeometry::CollisionGeometry(std::shared_ptr<const geometry::TriangleMes
   identity_ = ++last_identity;
   only_triangles_ = std::all_of(mesh_->elements.begin(), mesh_->elements.end(),
                                 [](const Vector3i& e) { return e[0] != e[1] && e[1] != e[2] && e[2] != e[0]; });
+  only_points_ =
+      std::all_of(mesh_->elements.begin(), mesh_->elements.end(), [](const Vector3i& e) { return e[0] == e[1] && e[1] == e[2]; });
   findOwners();
   bounds_ = mesh_->bounds();
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "blem_sim/contact/collider.h"
 #include "blem_sim/geometry/bvh_traversal.h"
@@ -44,7 +45,20 @@ MeshPlace placeInPlane(const CollisionGeometry& geometry, int first, const Vecto
   return best;
 }
 
+/** [1/m] Curvature of the layer on which a contact lies. */
+double curvature(const Collider& collider, std::uint64_t id, bool is_a, double depth) {
+  const FeatureKind kind = featureOf(id, is_a).kind;
+  if (kind == FeatureKind::FACE || kind == FeatureKind::HALF_SPACE) return 0;
+  const double radius = collider.geometry->hasOnlyPoints() ? collider.radius - 0.5 * depth : 0;
+  return radius > 0 ? 1 / radius : std::numeric_limits<double>::infinity();
+}
+
 }  // namespace
+
+double rollingRadius(const Collider& a, const Collider& b, const Contact& contact) {
+  const double sum = curvature(a, contact.id, true, contact.depth) + curvature(b, contact.id, false, contact.depth);
+  return sum > 0 ? 1 / sum : 0;
+}
 
 MeshPlace placeOf(std::uint64_t id, bool of_a, const CollisionGeometry& geometry, const Vector3& p) {
   const Feature feature = featureOf(id, of_a);

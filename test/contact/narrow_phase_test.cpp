@@ -133,6 +133,25 @@ TEST(NarrowPhase, SphereOnPlaneBoxEdgeAndCorner) {
   expectOne(box, {h + 0.01, h + 0.015, -h - 0.01}, {h, h, -h});
 }
 
+TEST(NarrowPhase, BallsRollAndEdgesDoNot) {
+  const Collider ball = makeCollider(geometry::pointMesh(Vector3::Zero()), 0.03),
+                 small = makeCollider(geometry::pointMesh(Vector3::Zero()), 0.02), floor = makeHalfSpace(Vector3::UnitZ(), 0, 0.002),
+                 box = cube(0.002);
+  const auto rolling = [](const Collider& a, const Vector3& p, const Collider& b) {
+    const ContactManifold manifold = contactsOf(a, makePose(p), b, Pose::Identity());
+    EXPECT_FALSE(manifold.contacts.empty());
+    return manifold.contacts.empty() ? NAN : rollingRadius(a, b, manifold.contacts[0]);
+  };
+  const double h = EDGE / 2;
+  EXPECT_NEAR(rolling(ball, {0, 0, 0.032}, floor), 0.03, 1e-15);
+  EXPECT_NEAR(rolling(ball, {0, 0, 0.030}, floor), 0.029, 1e-12);  // half of the depth is the ball's
+  EXPECT_NEAR(rolling(ball, {0.01, 0.02, h + 0.032}, box), 0.03, 1e-12);
+  EXPECT_NEAR(rolling(box, {-0.01, -0.02, -h - 0.032}, ball), 0.03, 1e-12);
+  EXPECT_NEAR(rolling(ball, {0, 0, 0.05}, small), 0.012, 1e-12);
+  EXPECT_EQ(rolling(ball, {0.01, h + 0.01, h + 0.02}, box), 0);  // an edge
+  EXPECT_EQ(rolling(box, {0, 0, h + 0.0035}, floor), 0);
+}
+
 TEST(NarrowPhase, SpheresAndCapsules) {
   const Collider sphere = makeCollider(geometry::pointMesh({0.001, 0, 0}), 0.03),
                  ball = makeCollider(geometry::pointMesh(Vector3::Zero()), 0.02);

@@ -82,9 +82,9 @@ struct HitTrees {
       const ForestTree& t = forest.trees()[tree];
       const int first = t.first_dof, count = t.dofCount();
       const Eigen::VectorXd p = 0.5 * (start + solver.free_momentum).segment(first, count) + 0.5 * leap.segment(first, count);
-      factorMass(forest, tree, motion, &space);
+      factorTree({forest, tree, motion.mass}, &space.factor);
       space.column.segment(first, count) = p;
-      solveMass(forest, tree, &space);
+      solveTree(forest, tree, space.factor, &space.column, &space.paths);
       sum += 0.5 * p.dot(space.column.segment(first, count));
     }
     return sum;

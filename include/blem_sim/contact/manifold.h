@@ -32,6 +32,7 @@ inline int vertexOf(std::uint64_t id, bool of_a) {
 }
 
 class CollisionGeometry;
+struct Collider;
 
 /** Place on a mesh: a vertex, or a mean of an edge's or a triangle's. */
 struct MeshPlace {
@@ -44,6 +45,12 @@ struct MeshPlace {
  * @param p [m] in its frame; only its foot on the feature counts
  */
 MeshPlace placeOf(std::uint64_t id, bool of_a, const CollisionGeometry& geometry, const Vector3& p);
+
+/**
+ * [m] Radius on which a contact rolls over both colliders [Montana 1988]: the ball's if a ball meets something flat, of two balls half
+ * their harmonic mean. Edges and corners of meshes stand on one point of theirs, 0: their layers are thin.
+ */
+double rollingRadius(const Collider& a, const Collider& b, const Contact& contact);
 
 /** All contacts of one pair of colliders; a < b. */
 struct ContactManifold {

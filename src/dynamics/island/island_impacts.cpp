@@ -51,12 +51,12 @@ void IslandImpacts::begin(const TermSource& s, const TouchedIsland& island, cons
   for (const int tree : island.model.trees) {
     const ForestTree& t = s.forest.trees()[tree];
     const int first = t.first_dof, count = t.dofCount();
-    factorMass(s.forest, tree, s.motion, space_);
+    factorTree({s.forest, tree, s.motion.mass}, &space_->factor);
     space_->column.segment(first, count) = 0.5 * (solver.free_momentum.segment(first, count) - solver.mass_velocity.segment(first, count));
     // A slow step's momentum is half a step beside its velocities; a fast tree takes that difference at once.
     if (t.free && s.motion.pace[tree] == Pace::FAST)
       space_->column.segment<6>(first) += 0.5 * (s.motion.momentum[tree] - solver.mass_velocity.segment<6>(first));
-    solveMass(s.forest, tree, space_);
+    solveTree(s.forest, tree, space_->factor, &space_->column, &space_->paths);
     space_->velocity.segment(first, count) = solver.velocity.segment(first, count) + space_->column.segment(first, count);
     space_->leap.segment(first, count).setZero();
     space_->momentum.segment(first, count).setZero();

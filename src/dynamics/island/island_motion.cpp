@@ -183,6 +183,16 @@ void brake(const Forest& forest, const std::vector<int>& trees, ForestMotion* mo
   }
 }
 
+// Drift takes on what velocity products do to a fast tree on its way: contacts follow its path (bendAt in make_terms.cpp).
+void addFreeAcceleration(const Forest& forest, int tree, ForestMotion* motion, SolverSpace* space) {
+  const ForestTree& t = forest.trees()[tree];
+  space->direction.segment(t.first_dof, t.dofCount()) = -motion->products.segment(t.first_dof, t.dofCount());
+  factorTree({forest, tree, motion->mass}, &space->hessian);
+  solveTree(forest, tree, space->hessian, &space->direction, &space->paths);
+  computeTwists(forest, tree, *motion, space->direction, &space->twist);
+  for (int i = t.first_node; i < t.node_end; ++i) motion->drift[i] += space->twist[i];
+}
+
 // The tree is followed on its way from now on, without the products that its free momentum took.
 void setFast(const Forest& forest, const StepInput& input, int tree, ForestMotion* motion, SolverSpace* space) {
   const ForestTree& t = forest.trees()[tree];
@@ -212,6 +222,7 @@ void setFreeMomentum(const TreeAhead& ahead, ForestMotion* motion, SolverSpace* 
   multiply({forest, tree, motion->mass}, motion->velocity, &space->mass_velocity, &space->paths);
   const FreeStart start{forest, tree, input.dt, *motion, motion->velocity};
   motion->pace[tree] = paceOf(start, input, touched, space->mass_velocity);
+  if (isFast(*motion, tree) && touched && !hasJoint(forest, tree, input, isDriven)) addFreeAcceleration(forest, tree, motion, space);
   if (motion->pace[tree] != Pace::SLOW) motion->products.segment(first, count).setZero();
   space->free_momentum.segment(first, count) = space->mass_velocity.segment(first, count);
   if (t.free) space->free_momentum.segment<6>(first) = motion->momentum[tree];

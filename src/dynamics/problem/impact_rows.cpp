@@ -17,19 +17,6 @@ void ImpactSpace::resize(const Forest& forest) {
   twist.resize(forest.nodes().size());
 }
 
-void factorMass(const Forest& forest, int tree, const ForestMotion& motion, ImpactSpace* space) {
-  const ForestTree& t = forest.trees()[tree];
-  if (t.first_dof == t.dof_end) return;
-  const int first = forest.rowStart(t.first_dof), end = forest.rowEnd(t.dof_end - 1);
-  std::copy(motion.mass.begin() + first, motion.mass.begin() + end, space->factor.rows.begin() + first);
-  for (int k = t.dof_end - 1; k >= t.first_dof; --k) eliminate(forest, k, &space->factor);
-}
-
-void solveMass(const Forest& forest, int tree, ImpactSpace* space) {
-  reduce(forest, tree, space->factor, &space->column, &space->paths);
-  substitute(forest, tree, space->factor, &space->column, &space->paths);
-}
-
 void ImpactRows::clear() {
   contacts_.clear();
   numbers_.clear();
@@ -60,7 +47,7 @@ void ImpactRows::respond(const Forest& forest, int tree, const Side& side, Impac
   for (int d = 0; d < 3; ++d) {
     const double* row = numbers_.data() + side.rows + d * side.dofs;
     std::copy(row, row + side.dofs, space->column.data() + side.first_dof);
-    solveMass(forest, tree, space);
+    solveTree(forest, tree, space->factor, &space->column, &space->paths);
     std::copy_n(space->column.data() + side.first_dof, side.dofs, numbers_.data() + side.rows + (3 + d) * side.dofs);
   }
 }

@@ -23,12 +23,6 @@ struct ImpactSpace {
   void resize(const Forest& forest);
 };
 
-/** Factors the mass matrix of a tree. Precondition: it is positive definite. */
-void factorMass(const Forest& forest, int tree, const ForestMotion& motion, ImpactSpace* space);
-
-/** space->column = M^-1 space->column on a factored tree. */
-void solveMass(const Forest& forest, int tree, ImpactSpace* space);
-
 /**
  * Contacts as three directions each, the normal first, along which their bodies' points move against each other (A against B) and impulses
  * act on A. Used again from step to step, so that it need not allocate.

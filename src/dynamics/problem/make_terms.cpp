@@ -143,6 +143,18 @@ PairDrift pairDrift(const TermSource& s, const BodyPair& pair, const Vector3& an
   return drift;
 }
 
+// A sticking contact shall not have moved at the end of the step, along paths that bend. One that rolls goes on over both bodies: where
+// they spin about its normal, it does not take part in the bend of a point that it leaves.
+Vector3 bendAt(const TermSource& s, const BodyPair& pair, const ContactTerm& contact, double rolling) {
+  Vector3 drift = pairDrift(s, pair, contact.point).point;
+  if (rolling > 0) {
+    Vector3 spin = angular(s.motion.node_twist[pair.a]);
+    if (pair.b >= 0) spin -= angular(s.motion.node_twist[pair.b]);
+    drift += rolling * spin.dot(contact.normal) * spin;
+  }
+  return 0.5 * s.input.dt * (drift - drift.dot(contact.normal) * contact.normal);
+}
+
 // Proximal weights and points of a loop's rows. A direction in which nothing can move, such as out of a planar loop's plane, needs no row.
 void weighLoop(const TermSource& s, const BodyPair& pair, const Vector6& force, LoopTerm* term) {
   for (int r = 0; r < 6; ++r) {
@@ -211,9 +223,7 @@ void addContact(const TermSource& s, const ContactConstraint& c, IslandModel* mo
   ContactTerm term;
   term.point = c.point - s.motion.reference[s.forest.nodes()[a].tree];
   term.normal = termSign(c) * c.normal_BA;
-  // A sticking contact shall not have moved at the end of the step, along paths that bend.
-  const Vector3 drift = pairDrift(s, model->pairs.back().pair, term.point).point;
-  term.bend = 0.5 * s.input.dt * (drift - drift.dot(term.normal) * term.normal);
+  term.bend = bendAt(s, model->pairs.back().pair, term, c.rolling);
   term.friction = c.friction;
   term.target = row.speed;
   term.compliance = row.compliance / s.input.dt;

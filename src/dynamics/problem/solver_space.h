@@ -18,7 +18,7 @@ struct SolverSpace {
   Eigen::VectorXd anchor;                         ///< the velocities from which idle dofs follow
   Eigen::VectorXd idle_pull;                      ///< the right-hand side there, reduced: by it idle dofs move if live ones do not
   TreeFactor idle;                                ///< of idle dofs; the rows of live ones hold the rest of M, the base of their Hessian
-  TreeFactor hessian;                             ///< of live dofs, in the end
+  TreeFactor hessian;                             ///< of live dofs, in the end; before a solve, work space
   TreePaths paths;
   std::vector<Vector6> twist, wrench;  ///< per node
   std::vector<Matrix6> stiffness;      ///< per node

@@ -46,7 +46,8 @@ struct ForestMotion {
   std::vector<Pace> pace;         ///< in this step
 
   // Work space, per node.
-  std::vector<Vector6> drift;  ///< acceleration that goes with node_twist and constant velocities of the dofs, of computeProducts
+  std::vector<Vector6> drift;  ///< acceleration that goes with node_twist and constant velocities of the dofs, of computeProducts; of a
+                               ///< fast tree that nothing drives, but contacts touch, the one of its free motion
   std::vector<Vector6> node_twist, node_force, node_change;
   std::vector<SpatialInertia> composite;
 

@@ -120,4 +120,18 @@ BLEM_SIM_LANES void substitute(const Forest& forest, int tree, const TreeFactor&
   }
 }
 
+void factorTree(const TreeMatrix& matrix, TreeFactor* factor) {
+  const Forest& forest = matrix.forest;
+  const ForestTree& t = forest.trees()[matrix.tree];
+  if (t.dofCount() == 0) return;
+  const int first = forest.rowStart(t.first_dof), end = forest.rowEnd(t.dof_end - 1);
+  std::copy(matrix.rows.begin() + first, matrix.rows.begin() + end, factor->rows.begin() + first);
+  for (int k = t.dof_end - 1; k >= t.first_dof; --k) eliminate(forest, k, factor);
+}
+
+void solveTree(const Forest& forest, int tree, const TreeFactor& factor, Eigen::VectorXd* x, TreePaths* paths) {
+  reduce(forest, tree, factor, x, paths);
+  substitute(forest, tree, factor, x, paths);
+}
+
 }  // namespace blem_sim::dynamics

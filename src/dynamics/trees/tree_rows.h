@@ -35,6 +35,12 @@ struct TreeMatrix {
 /** out = M v on the dofs of a tree. */
 void multiply(const TreeMatrix& matrix, const Eigen::VectorXd& v, Eigen::VectorXd* out, TreePaths* paths);
 
+/** Factors M on all dofs of a tree. Precondition: it is positive definite. */
+void factorTree(const TreeMatrix& matrix, TreeFactor* factor);
+
+/** Solves in place on the dofs of a tree that factorTree factored. */
+void solveTree(const Forest& forest, int tree, const TreeFactor& factor, Eigen::VectorXd* x, TreePaths* paths);
+
 /** a . b on the dofs of some trees. */
 double dotProduct(const Forest& forest, const std::vector<int>& trees, const Eigen::VectorXd& a, const Eigen::VectorXd& b);
 

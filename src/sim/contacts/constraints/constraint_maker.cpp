@@ -29,12 +29,14 @@ std::uint64_t worldContactId(int a, int b, std::uint64_t id) {
 /** Constraint of a contact, rigid, without friction. */
 dynamics::ContactConstraint constraintOf(const SimulatedWorld& world, const contact::ContactManifold& manifold,
                                          const contact::Contact& contact) {
+  const contact::Collider &a = world.colliders[manifold.a], &b = world.colliders[manifold.b];
   dynamics::ContactConstraint constraint;
-  constraint.body_a = world.colliders[manifold.a].body;
-  constraint.body_b = world.colliders[manifold.b].body;
+  constraint.body_a = a.body;
+  constraint.body_b = b.body;
   constraint.point = contact.point;
   constraint.normal_BA = contact.normal_BA;
   constraint.depth = contact.depth;
+  constraint.rolling = contact::rollingRadius(a, b, contact);
   constraint.id = worldContactId(manifold.a, manifold.b, contact.id);
   return constraint;
 }
