@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <tuple>
 #include <utility>
 
@@ -9,18 +10,18 @@
 #include "build/contact_settings.h"
 #include "build/widths/chosen_width.h"
 #include "build/widths/scan_noise.h"
-#include "clouds/inner_points.h"
 #include "clouds/leaving_triangles.h"
 #include "simulator_impl.h"
 
 namespace blem_sim::sim {
 namespace {
 
-constexpr double TOUCH = 1e-5;          // [m] largest gap of a point that something stands on
-constexpr std::size_t MOST_LEFT = 200;  // contacts of a pair without a choice of the last step
-constexpr double LOOK_AHEAD = 0.2;      // [s] for which what moves shall find triangles ahead that fade as those below it
-constexpr double FARTHEST_AHEAD = 0.1;  // [m] of them: an exchange must cost no step
-constexpr double STAYS = 0.001;         // [m] in that time: no more is standing
+constexpr double TOUCH = 1e-5;             // [m] largest gap of a point that something stands on
+constexpr std::size_t MOST_RISING = 5000;  // points below a body that is buried
+constexpr std::size_t MOST_LEFT = 200;     // contacts of a pair without a choice of the last step
+constexpr double LOOK_AHEAD = 0.2;         // [s] for which what moves shall find triangles ahead that fade as those below it
+constexpr double FARTHEST_AHEAD = 0.1;     // [m] of them: an exchange must cost no step
+constexpr double STAYS = 0.001;            // [m] in that time: no more is standing
 
 /** Points that fade by vertex, one each: of two bodies the deeper one's. */
 std::vector<SunkPoint> byVertex(std::vector<SunkPoint> points) {
@@ -58,6 +59,13 @@ void Simulator::Impl::addLive(const EnvironmentConfig& environment) {
   live.width = settings.boundary_width;
   live.fade_speed = environment.live.fade_speed;
   live.is_mesh = environment.live.type != LiveConfig::Type::CLOUD || environment.cloud.as == model::CloudOptions::As::MESH;
+  if (!live.is_mesh) return;
+  const std::string& name = environment.name;
+  if (settings.shrink)
+    world_.notes.push_back(name +
+                           ": shrink does not reach meshes of topics, which are surfaces without an inside; set shrink: false there");
+  if (config_.contact.mending == model::Mending::OFF)
+    world_.notes.push_back(name + ": contact.mend_meshes: false does not reach meshes of topics, which are mended beside the steps");
 }
 
 double Simulator::Impl::layerOf(const CloudSurface& surface, LiveGround* live) const {
@@ -91,18 +99,20 @@ void Simulator::Impl::forStoodOn(int model, const std::function<void(const Stood
 SunkSurface Simulator::Impl::pointsStoodOn(int model, const Pose& X_CW, double least) const {
   struct Point {
     Vector3 p_W;
-    double sink;
+    double sink, radius;
   };
+  SunkSurface surface;
   std::vector<Point> points;
   forStoodOn(model, [&](const StoodOn& on) {
     const contact::Collider& collider = world_.colliders[on.live];
     const int vertex = contact::vertexOf(on.contact.id, on.is_a);
-    points.push_back({collider.X_BC * collider.geometry->mesh().vertices[vertex], fading_.sinkOf(on.live, vertex)});
+    points.push_back({collider.X_BC * collider.geometry->mesh().vertices[vertex], fading_.sinkOf(on.live, vertex), collider.radius});
+    surface.radius = std::max(surface.radius, collider.radius);
   });
+  for (Point& point : points) point.sink += surface.radius - point.radius;
   const auto key = [](const Point& p) { return std::make_tuple(p.p_W.x(), p.p_W.y(), p.p_W.z(), p.sink); };
   std::sort(points.begin(), points.end(), [&](const Point& a, const Point& b) { return key(a) < key(b); });
   points.erase(std::unique(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.p_W == b.p_W; }), points.end());
-  SunkSurface surface;
   std::vector<Vector3> places;
   for (const Point& point : points) {
     surface.sunk.push_back({static_cast<int>(places.size()), std::max(point.sink, least)});
@@ -119,6 +129,11 @@ Vector3 Simulator::Impl::wayAhead(int collider, const Vector3& p_W) const {
   const Vector3 com = body.X_WB * world_.world.bodySpec(index).inertial.com;
   const Vector3 way = LOOK_AHEAD * (body.v_WCom + body.w_WB.cross(p_W - com));
   return way * std::min(1.0, FARTHEST_AHEAD / std::max(way.norm(), STAYS));
+}
+
+Vector3 Simulator::Impl::wayUp() const {
+  const Vector3& gravity = world_.world.gravity();
+  return gravity.isZero() ? Vector3::Zero() : Vector3(-gravity.normalized());
 }
 
 SunkSurface Simulator::Impl::trianglesStoodOn(int model, const Pose& X_CW, double least) const {
@@ -147,7 +162,6 @@ void Simulator::Impl::sinkBorders(int leaving, const std::map<int, double>& dept
   for (const contact::ContactManifold& manifold : found_.manifolds) {
     const bool is_a = manifold.a == leaving;
     if (!is_a && manifold.b != leaving) continue;
-    if (manifold.pierced) fading_.addCrossing(manifold.a, manifold.b);
     const auto before = depths.find(is_a ? manifold.b : manifold.a);
     const double depth = before == depths.end() ? 0 : before->second;
     for (const contact::Contact& contact : manifold.contacts) {
@@ -160,52 +174,106 @@ void Simulator::Impl::sinkBorders(int leaving, const std::map<int, double>& dept
   fading_.deepen(leaving, byVertex(std::move(more)));
 }
 
-int Simulator::Impl::addLeaving(const LiveGround& live, SunkSurface surface) {
+int Simulator::Impl::addFading(const LiveGround& live, SunkSurface surface, bool leaves) {
   if (surface.mesh.elements.empty()) return -1;
-  contact::Collider leaving = world_.colliders[live.cloud];
-  leaving.name += "::leaving";
+  contact::Collider fading = world_.colliders[live.cloud];
+  fading.name += leaves ? "::leaving" : "::rising";
+  fading.radius = surface.radius;
   geometry::MeshReport report;
-  report.source = "a surface that sinks away below what stood on it";
+  report.source = leaves ? "a surface that sinks away below what stood on it" : "points that rise below what has sunk into the surface";
   report.vertices = static_cast<int>(surface.mesh.vertices.size());
-  (live.is_mesh ? report.triangles : report.points) = static_cast<int>(surface.mesh.elements.size());
+  (leaves && live.is_mesh ? report.triangles : report.points) = static_cast<int>(surface.mesh.elements.size());
   report.extents = surface.mesh.bounds();
-  leaving.geometry =
+  fading.geometry =
       std::make_shared<const contact::CollisionGeometry>(std::make_shared<const geometry::TriangleMesh>(std::move(surface.mesh)));
-  const int collider = world_.addCollider(leaving, leaving.radius, leaving.surface, report);
+  const int collider = world_.addCollider(fading, fading.radius, fading.surface, report);
   layer_watch_.forget(collider);
-  fading_.add(collider, live.fade_speed, std::move(surface.sunk));
+  fading_.add(collider, leaves ? live.fade_speed : -live.fade_speed, std::move(surface.sunk));
   return collider;
 }
 
-void Simulator::Impl::addSunk(const LiveGround& live, const contact::ContactManifold& manifold, const std::vector<SunkPoint>& inner,
+SunkSurface Simulator::Impl::belowBuried(const LiveGround& live, const InnerPoints& inner) const {
+  const contact::Collider& surface = world_.colliders[live.cloud];
+  double farthest = 0;
+  for (const BuriedPoints& buried : inner.buried) farthest = std::max(farthest, wayOut(buried, live));
+  SunkSurface below;
+  below.radius = surface.radius + farthest;
+  std::vector<Vector3> places;
+  for (const BuriedPoints& buried : inner.buried) {
+    const std::size_t stride = 1 + buried.vertices.size() / MOST_RISING;
+    for (std::size_t i = 0; i < buried.vertices.size(); i += stride) {
+      below.sunk.push_back({static_cast<int>(places.size()), wayOut(buried, live) - buried.way + buried.ways[i]});
+      places.push_back(surface.geometry->mesh().vertices[buried.vertices[i]] - farthest * (surface.X_BC.linear().transpose() * wayUp()));
+    }
+  }
+  below.mesh = geometry::pointCloudMesh(places, nullptr);
+  return below;
+}
+
+double Simulator::Impl::wayOut(const BuriedPoints& buried, const LiveGround& live) const {
+  return buried.way + world_.colliders[buried.body_collider].radius + world_.colliders[live.cloud].radius;
+}
+
+double Simulator::Impl::sinkTouched(const LiveGround& live, const contact::ContactManifold& manifold, const contact::Contact& contact,
+                                    const BuriedPoints* buried) const {
+  constexpr double FOR_GOOD = std::numeric_limits<double>::infinity();
+  const bool is_a = manifold.a == live.cloud;
+  const double upwards = (is_a ? -1 : 1) * contact.normal_BA.dot(wayUp());
+  if (upwards >= FadingPoints::UPWARDS || !fading_.crosses(manifold.a, manifold.b))
+    return buried ? std::max(contact.depth, wayOut(*buried, live)) : contact.depth;
+  if (!buried) return FOR_GOOD;
+  const Vector3i corners = touchedPlace(world_.colliders[live.cloud], contact, is_a).corners;
+  const auto isBuried = [&](int vertex) { return std::binary_search(buried->vertices.begin(), buried->vertices.end(), vertex); };
+  const bool is_above = upwards <= -FadingPoints::UPWARDS && std::none_of(corners.data(), corners.data() + 3, isBuried);
+  return is_above ? FOR_GOOD : wayOut(*buried, live);
+}
+
+void Simulator::Impl::addSunk(const LiveGround& live, const contact::ContactManifold& manifold, const BuriedPoints* buried,
                               std::vector<SunkPoint>* sunk) const {
   const contact::Collider& surface = world_.colliders[live.cloud];
   const bool is_a = manifold.a == live.cloud;
   for (const contact::Contact& contact : manifold.contacts) {
     if (!(contact.depth > 0) || contact.pierced) continue;
     const contact::MeshPlace place = touchedPlace(surface, contact, is_a);
-    if (isAnyOf(place.corners, inner)) continue;
+    const double depth = sinkTouched(live, manifold, contact, buried);
     for (int k = 0; k < 3; ++k)
-      if (place.weights[k] > 0) sunk->push_back({place.corners[k], contact.depth});
+      if (place.weights[k] > 0) sunk->push_back({place.corners[k], depth});
     const Vector3 way = wayAhead(is_a ? manifold.b : manifold.a, contact.point);
     if (!live.is_mesh || way.norm() < STAYS) continue;
     visitTouched(surface, place, way, [&](int element) {
       const Vector3i& corners = surface.geometry->mesh().elements[element];
-      for (int k = 0; k < 3; ++k) sunk->push_back({corners[k], contact.depth});
+      for (int k = 0; k < 3; ++k) sunk->push_back({corners[k], depth});
     });
   }
 }
 
-void Simulator::Impl::sinkIntoTouch(const LiveGround& live) {
-  std::vector<SunkPoint> inner = byVertex(innerPoints(world_, bodies_, live.cloud));
-  if (live.is_mesh) addNeighbours(world_.colliders[live.cloud].geometry->mesh(), &inner);
-  std::vector<SunkPoint> sunk = inner;
+void Simulator::Impl::sinkIntoTouch(const LiveGround& live, const InnerPoints& inner) {
+  std::vector<SunkPoint> sunk = byVertex(inner.gone);
+  if (live.is_mesh) addNeighbours(world_.colliders[live.cloud].geometry->mesh(), &sunk);
+  for (const BuriedPoints& buried : inner.buried)
+    for (const int vertex : buried.around) sunk.push_back({vertex, wayOut(buried, live)});
   for (const contact::ContactManifold& manifold : found_.manifolds) {
     if (manifold.a != live.cloud && manifold.b != live.cloud) continue;
-    addSunk(live, manifold, inner, &sunk);
-    if (manifold.pierced) fading_.addCrossing(manifold.a, manifold.b);
+    const int other = manifold.a == live.cloud ? manifold.b : manifold.a;
+    const auto buried = std::find_if(inner.buried.begin(), inner.buried.end(), [&](const auto& b) { return b.body_collider == other; });
+    addSunk(live, manifold, buried == inner.buried.end() ? nullptr : &*buried, &sunk);
   }
   fading_.add(live.cloud, -live.fade_speed, byVertex(std::move(sunk)));
+}
+
+void Simulator::Impl::searchBeside(int model) {
+  const auto search = [this] {
+    pair_watch_.find({world_, bodies_, nullptr, config_.time_step}, &pairs_);
+    pair_searches_.find(world_, at_hand_, fading_, &pairs_, &found_);
+  };
+  search();
+  bool crosses = false;
+  for (const contact::ContactManifold& manifold : found_.manifolds) {
+    if (!manifold.pierced || (world_.colliders[manifold.a].model != model && world_.colliders[manifold.b].model != model)) continue;
+    fading_.addCrossing(manifold.a, manifold.b);
+    crosses = true;
+  }
+  if (crosses) search();
 }
 
 void Simulator::Impl::updateCloud(const std::string& environment, CloudSurface* surface) {
@@ -237,12 +305,15 @@ void Simulator::Impl::updateCloud(const std::string& environment, CloudSurface* 
   world_.removeShapes(model);
   live.cloud = world_.addCollider(cloud, layerOf(*surface, &live), live.surface, surface->report);
   layer_watch_.forget(live.cloud);
-  const int leaving = addLeaving(live, std::move(remains));
+  const int leaving = addFading(live, std::move(remains), true);
+  const InnerPoints inner = innerPoints(world_, bodies_, live.cloud, live.is_mesh ? wayUp() : Vector3::Zero());
+  const int rising = addFading(live, belowBuried(live, inner), false);
 
-  pair_watch_.find({world_, bodies_, nullptr, config_.time_step}, &pairs_);
-  pair_searches_.find(world_, at_hand_, fading_, &pairs_, &found_);
+  fading_.setUp(wayUp());
+  searchBeside(model);
   if (live.is_mesh) sinkBorders(leaving, depths);
-  sinkIntoTouch(live);
+  sinkBorders(rising, {});
+  sinkIntoTouch(live, inner);
   at_hand_.known = false;
   layout_.clear();
   *surface = std::move(before);

@@ -14,6 +14,7 @@
 #include "build/simulated_world.h"
 #include "build/world_builder.h"
 #include "clouds/fading_points.h"
+#include "clouds/inner_points.h"
 #include "clouds/leaving_triangles.h"
 #include "commands/applied_loads.h"
 #include "contacts/constraints/constraint_maker.h"
@@ -142,18 +143,35 @@ struct Simulator::Impl {
   /** Points, or triangles, that something stands on now, sunk by `least` [m] at least. @param X_CW from the world to the frame wanted */
   SunkSurface pointsStoodOn(int model, const Pose& X_CW, double least) const;
   SunkSurface trianglesStoodOn(int model, const Pose& X_CW, double least) const;
-  /** @return its collider, -1 if the surface is empty */
-  int addLeaving(const LiveGround& live, SunkSurface surface);
+  /** Adds what sinks away, or else rises. @return its collider, -1 if the surface is empty */
+  int addFading(const LiveGround& live, SunkSurface surface, bool leaves);
+  /**
+   * Buried points, so far below their places that they just touch, sunk in thicker layers: as balls they rise to where they are. A body
+   * stands on them until it is out of the new surface.
+   */
+  SunkSurface belowBuried(const LiveGround& live, const InnerPoints& inner) const;
+  /** [m] Way up after which a body only touches what it is buried in. */
+  double wayOut(const BuriedPoints& buried, const LiveGround& live) const;
+  /**
+   * [m] Sink of what a contact touches, infinite for what lies in each other and pushes otherwise than up. What lies around a buried body
+   * must not hold it: that rises no sooner than the body. @param buried null: the other body is not
+   */
+  double sinkTouched(const LiveGround& live, const contact::ContactManifold& manifold, const contact::Contact& contact,
+                     const BuriedPoints* buried) const;
   /** [m] Deepest contact with a model, by the other collider; those that touch no more are 0. */
   std::map<int, double> depthsOn(int model) const;
   /** Sinks what has become a border of triangles that leave, and would push more than the mesh did. @param depths before the exchange */
   void sinkBorders(int leaving, const std::map<int, double>& depths);
   /** [m] Way that a place on a collider's body makes while a live environment is exchanged some times, world. */
   Vector3 wayAhead(int collider, const Vector3& p_W) const;
-  /** Sinks those vertices of a new cloud or mesh that are inside layers, so that they touch and no more; crossings count for nothing. */
-  void sinkIntoTouch(const LiveGround& live);
-  /** @param inner vertices inside bodies, sorted @param sunk gets those that the pair's contacts touch, some perhaps twice */
-  void addSunk(const LiveGround& live, const contact::ContactManifold& manifold, const std::vector<SunkPoint>& inner,
+  /** Finds contacts with a live environment's new surfaces, those that will be found from now on: what crosses them counts for nothing. */
+  void searchBeside(int model);
+  /** Unit vector against gravity; zero without gravity. */
+  Vector3 wayUp() const;
+  /** Sinks those vertices of a new cloud or mesh that are inside layers, so that they touch and no more. */
+  void sinkIntoTouch(const LiveGround& live, const InnerPoints& inner);
+  /** @param buried as sinkTouched takes it @param sunk gets those that the pair's contacts touch, some perhaps twice */
+  void addSunk(const LiveGround& live, const contact::ContactManifold& manifold, const BuriedPoints* buried,
                std::vector<SunkPoint>* sunk) const;
   /** Nothing comes or goes any more: clouds are as they were last sent. */
   void endFading();

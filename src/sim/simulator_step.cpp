@@ -25,7 +25,8 @@ const StepReport& Simulator::Impl::step() {
   startStep();
   if (!bodiesAreFinite()) return stop();
   if (!at_hand_.known) findFirstContacts();
-  fading_.advance(config_.time_step);  // after contacts of the state at hand, as they are after a restore
+  fading_.advance(config_.time_step, world_.colliders,
+                  at_hand_.manifolds);  // after contacts of the state at hand, as they are after a restore
   while (!substeps_.finished()) {
     planSubstep();
     sampleCommands();
@@ -52,6 +53,7 @@ const StepReport& Simulator::Impl::step() {
 }
 
 void Simulator::Impl::startStep() {
+  fading_.setUp(wayUp());
   substeps_ = Substeps(most_ticks_);
   report_.status = STEP_OK;
   report_.profile = StepProfile();

@@ -328,6 +328,112 @@ TEST(LiveMesh, IsTakenAwayByASurfaceOfNothing) {
   EXPECT_EQ(simulator.stateHash(), replayed.stateHash());
 }
 
+/** Sum of the sizes of all contact forces [N]: above the weight where a body is squeezed. */
+double pushesOf(const StepReport& report) {
+  double force = 0;
+  for (const ContactReport& contact : report.contacts) force += contact.force.norm();
+  return force;
+}
+
+TEST(LiveMesh, ASheetThatACameraSawOfABodySqueezesNothing) {
+  for (const double height : {0.0, 0.002, 0.003}) {
+    SimulationConfig config = cubeAboveMesh();
+    EnvironmentConfig ground;
+    ground.name = "ground";
+    ground.plane = Eigen::Vector4d(0, 0, 1, 0);
+    config.environments.push_back(ground);
+    Simulator simulator(config, model::UriResolver());
+    SeenFloor top(0.09);
+    stepFor(&simulator, 0.5);
+    const double rest = bodyOf(simulator, "cube").X_WB.translation().z();
+    for (int i = 0; i < 3; ++i) {
+      exchange(&simulator, top.next(rest + 0.05 + height));
+      for (int k = 0; k < 200; ++k) ASSERT_NEAR(pushesOf(simulator.step()), G, 0.01 * G) << height << " " << i << " " << k;
+    }
+    EXPECT_NEAR(bodyOf(simulator, "cube").X_WB.translation().z(), rest, 1e-6) << height;
+  }
+}
+
+constexpr double FAST_FADE = 0.002;  // [m/s] so that tests take less time
+
+SimulationConfig cubeAboveFastMesh() {
+  SimulationConfig config = cubeAboveMesh();
+  config.environments[0].live.fade_speed = FAST_FADE;
+  return config;
+}
+
+TEST(LiveMesh, AMeshThatComesIntoABodyLiftsItOut) {
+  Simulator simulator(cubeAboveFastMesh(), model::UriResolver());
+  SeenFloor floor(0.3, 0);
+  exchange(&simulator, floor.next());
+  stepFor(&simulator, 0.5);
+  const double rest = bodyOf(simulator, "cube").X_WB.translation().z();
+  exchange(&simulator, floor.next(0.004));
+  for (int i = 0; i < 2000; ++i) {
+    simulator.step();
+    ASSERT_LT(bodyOf(simulator, "cube").v_WCom.norm(), 1.1 * FAST_FADE) << i;
+  }
+  EXPECT_NEAR(bodyOf(simulator, "cube").X_WB.translation().z(), rest + 0.004, 2e-5);
+  stepFor(&simulator, 1);
+  EXPECT_NEAR(bodyOf(simulator, "cube").X_WB.translation().z(), rest + 0.004, 1e-5);
+  EXPECT_EQ(simulator.report().status, STEP_OK);
+}
+
+TEST(LiveMesh, NothingSinksThroughAStreamThatComesHigher) {
+  Simulator simulator(cubeAboveFastMesh(), model::UriResolver());
+  SeenFloor floor(0.2);
+  exchange(&simulator, floor.next());
+  stepFor(&simulator, 0.5);
+  const double rest = bodyOf(simulator, "cube").X_WB.translation().z();
+  for (int i = 0; i < (SANITIZED ? 4 : 40); ++i) {
+    exchange(&simulator, floor.next(0.004));
+    for (int k = 0; k < 100; ++k) {
+      simulator.step();
+      ASSERT_LT(bodyOf(simulator, "cube").v_WCom.norm(), 0.1) << i << " " << k;
+      ASSERT_GT(bodyOf(simulator, "cube").X_WB.translation().z(), rest - 0.001) << i << " " << k;
+    }
+  }
+}
+
+TEST(LiveMesh, WhatFallsIsCaughtByAMeshThatComesIntoIt) {
+  Simulator simulator(cubeAboveMesh(0.1), model::UriResolver());
+  SeenFloor floor(0.3, 0);
+  stepFor(&simulator, 0.05);
+  const double z = bodyOf(simulator, "cube").X_WB.translation().z();
+  exchange(&simulator, floor.next(z - 0.05 + 0.003));
+  stepFor(&simulator, 0.5);
+  EXPECT_NEAR(carriedBy(simulator.report()), G, 0.01 * G);
+  EXPECT_GT(bodyOf(simulator, "cube").X_WB.translation().z(), z - 0.001);
+}
+
+TEST(LiveMesh, AStateSavedWhileABodyIsLiftedIsRestoredToTheSameBits) {
+  Simulator simulator(cubeAboveMesh(), model::UriResolver());
+  SeenFloor floor(0.2);
+  exchange(&simulator, floor.next());
+  stepFor(&simulator, 0.5);
+  exchange(&simulator, floor.next(0.004));
+  stepFor(&simulator, 0.1);
+  const SimulationState state = simulator.save();
+  stepFor(&simulator, 0.2);
+  const std::uint64_t end = simulator.stateHash();
+  simulator.restore(state);
+  stepFor(&simulator, 0.2);
+  EXPECT_EQ(simulator.stateHash(), end);
+}
+
+TEST(LiveMesh, SettingsThatDoNotReachItAreTold) {
+  SimulationConfig config = cubeAboveMesh();
+  EXPECT_TRUE(Simulator(config, model::UriResolver()).notes().empty());
+  config.contact.mending = model::Mending::OFF;
+  config.environments[0].contact.shrink = true;
+  const std::vector<std::string> notes = Simulator(config, model::UriResolver()).notes();
+  ASSERT_EQ(notes.size(), 2u);
+  EXPECT_EQ(notes[0].find("live: shrink does not reach meshes of topics"), 0u);
+  EXPECT_EQ(notes[1].find("live: contact.mend_meshes: false does not reach meshes of topics"), 0u);
+  config.environments[0].cloud.as = model::CloudOptions::As::POINTS;
+  EXPECT_TRUE(Simulator(config, model::UriResolver()).notes().empty());
+}
+
 TEST(LiveMesh, PointsAreNoTriangles) {
   Simulator simulator(cubeAboveMesh(), model::UriResolver());
   CloudSurface points = makeCloudSurface(std::vector<Vector3>{{0, 0, 0}}, model::CloudOptions(), "live");

@@ -88,7 +88,8 @@ double FadingPoints::sinkOf(const contact::Collider& collider, int index, const 
 
 void FadingPoints::apply(const std::vector<contact::Collider>& colliders, contact::ContactManifold* manifold) const {
   if (empty()) return;
-  if (manifold->pierced && crosses(manifold->a, manifold->b)) dropPierced(manifold);
+  const bool crossing = crosses(manifold->a, manifold->b);
+  if (manifold->pierced && crossing) dropPierced(manifold);
   for (const bool to_b : {false, true}) {
     const Fading* fading = of(to_b ? manifold->b : manifold->a);
     if (!fading) continue;
@@ -96,8 +97,11 @@ void FadingPoints::apply(const std::vector<contact::Collider>& colliders, contac
     std::vector<contact::Contact>& contacts = manifold->contacts;
     const auto gone = std::remove_if(contacts.begin(), contacts.end(), [&](contact::Contact& contact) {
       const double sink = sinkAt(fading->points, touchedPlace(collider, contact, !to_b));
-      if (std::isfinite(sink)) sinkContact(sink, to_b, &contact);
-      return !std::isfinite(sink);
+      if (!std::isfinite(sink)) return true;
+      sinkContact(sink, to_b, &contact);
+      if (!(fading->speed < 0 && sink > 0) || mayPush(contact, !to_b)) return false;
+      if (contact.depth > 0) sinkContact(contact.depth, to_b, &contact);
+      return crossing;  // what lies in each other pushes inwards
     });
     if (gone == contacts.end()) continue;
     contacts.erase(gone, contacts.end());
@@ -105,10 +109,37 @@ void FadingPoints::apply(const std::vector<contact::Collider>& colliders, contac
   }
 }
 
-void FadingPoints::advance(double dt) {
+/** Whether a contact pushes a body upwards. @param is_a what comes is the contact's A */
+bool FadingPoints::mayPush(const contact::Contact& contact, bool is_a) const {
+  return (is_a ? -1 : 1) * contact.normal_BA.dot(up_) >= UPWARDS;
+}
+
+/** Colliders and vertices that wait, sorted: they touch, or would within the time [s]. */
+std::vector<std::pair<int, int>> FadingPoints::waiting(double dt, const std::vector<contact::Collider>& colliders,
+                                                       const std::vector<contact::ContactManifold>& manifolds) const {
+  std::vector<std::pair<int, int>> waiting;
+  for (const contact::ContactManifold& manifold : manifolds)
+    for (const bool is_a : {true, false}) {
+      const Fading* fading = of(is_a ? manifold.a : manifold.b);
+      if (!fading || !(fading->speed < 0)) continue;
+      for (const contact::Contact& contact : manifold.contacts) {
+        if (contact.depth < dt * fading->speed || mayPush(contact, is_a)) continue;
+        const contact::MeshPlace place = touchedPlace(colliders[fading->collider], contact, is_a);
+        for (int k = 0; k < 3; ++k) waiting.emplace_back(fading->collider, place.corners[k]);
+      }
+    }
+  std::sort(waiting.begin(), waiting.end());
+  return waiting;
+}
+
+void FadingPoints::advance(double dt, const std::vector<contact::Collider>& colliders,
+                           const std::vector<contact::ContactManifold>& manifolds) {
+  if (fading_.empty()) return;
+  const std::vector<std::pair<int, int>> waits = waiting(dt, colliders, manifolds);
   for (Fading& fading : fading_) {
     std::vector<SunkPoint>& points = fading.points;
     for (SunkPoint& point : points) {
+      if (std::binary_search(waits.begin(), waits.end(), std::make_pair(fading.collider, point.vertex))) continue;
       point.sink += fading.speed * dt;
       if (fading.speed > 0 && point.sink > SUNK_AWAY) point.sink = std::numeric_limits<double>::infinity();
     }

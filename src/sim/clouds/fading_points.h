@@ -29,6 +29,8 @@ contact::MeshPlace touchedPlace(const contact::Collider& collider, const contact
  */
 class FadingPoints {
  public:
+  static constexpr double UPWARDS = 0.5;  ///< cosine to the way up from which on a push bears
+
   bool empty() const { return fading_.empty() && crossings_.empty(); }
   /**
    * Points of a collider that has none yet. @param speed [m/s] at which sinks change: below 0 points come, above 0 they leave
@@ -45,10 +47,15 @@ class FadingPoints {
   double sinkOf(int collider, int vertex) const;
   /** [m] Sink of a contact with a collider, as apply takes it off. @param is_a the collider is the contact's A */
   double sinkOf(const contact::Collider& collider, int index, const contact::Contact& contact, bool is_a) const;
-  /** Makes contacts of what fades as much less deep as it is sunk; those that touch a vertex that has sunk away are dropped. */
+  /**
+   * Makes contacts of what fades as much less deep as it is sunk; those that touch a vertex that has sunk away are dropped. What comes
+   * pushes nothing but upwards: elsewhere its contacts touch at most, so that it holds a body and never squeezes it.
+   */
   void apply(const std::vector<contact::Collider>& colliders, contact::ContactManifold* manifold) const;
-  /** Lets time pass [s]. */
-  void advance(double dt);
+  /** Tells the way up, zero where there is none. */
+  void setUp(const Vector3& up) { up_ = up; }
+  /** Lets time pass [s]. What comes and may not push waits where it touches. @param manifolds as apply left them */
+  void advance(double dt, const std::vector<contact::Collider>& colliders, const std::vector<contact::ContactManifold>& manifolds);
   void forget(int collider);
   void clear() { *this = FadingPoints(); }
   void save(geometry::StateWriter* writer) const;
@@ -62,10 +69,14 @@ class FadingPoints {
     std::vector<SunkPoint> points;
   };
   const Fading* of(int collider) const;
+  bool mayPush(const contact::Contact& contact, bool is_a) const;
+  std::vector<std::pair<int, int>> waiting(double dt, const std::vector<contact::Collider>& colliders,
+                                           const std::vector<contact::ContactManifold>& manifolds) const;
   static Fading fadingFrom(const std::vector<contact::Collider>& colliders, geometry::StateReader* reader);
 
   std::vector<Fading> fading_;                  // sorted by collider, none without points
   std::vector<std::pair<int, int>> crossings_;  // sorted, the smaller collider first
+  Vector3 up_ = Vector3::Zero();
 };
 
 }  // namespace blem_sim::sim

@@ -46,10 +46,12 @@ void LeavingTriangles::addTouched(int mesh, const contact::MeshPlace& place, con
 
 SunkSurface LeavingTriangles::surface(const Pose& X_CW, const FadingPoints& fading, double least) const {
   SunkSurface surface;
+  for (const auto& touched : touched_) surface.radius = std::max(surface.radius, colliders_[touched.first.first].radius);
   std::map<std::pair<int, int>, int> vertices;  // by collider and vertex there
   for (const auto& [key, sink] : touched_) {
     const auto& [mesh, element] = key;
     const contact::Collider& collider = colliders_[mesh];
+    const double thicker = surface.radius - collider.radius;
     Vector3i corners;
     for (int k = 0; k < 3; ++k) {
       const int vertex = collider.geometry->mesh().elements[element][k], next = static_cast<int>(surface.sunk.size());
@@ -57,10 +59,10 @@ SunkSurface LeavingTriangles::surface(const Pose& X_CW, const FadingPoints& fadi
       corners[k] = known->second;
       if (is_new) {
         surface.mesh.vertices.push_back(X_CW * (collider.X_BC * collider.geometry->mesh().vertices[vertex]));
-        surface.sunk.push_back({next, std::max(least, fading.sinkOf(mesh, vertex))});
+        surface.sunk.push_back({next, std::max(least, thicker + fading.sinkOf(mesh, vertex))});
       }
       SunkPoint& point = surface.sunk[known->second];
-      if (held_.count({mesh, vertex}) == 0) point.sink = std::max(point.sink, sink);
+      if (held_.count({mesh, vertex}) == 0) point.sink = std::max(point.sink, thicker + sink);
     }
     surface.mesh.elements.push_back(corners);
   }

@@ -16,6 +16,7 @@ namespace blem_sim::sim {
 /** A surface and how far it is sunk. */
 struct SunkSurface {
   geometry::TriangleMesh mesh;
+  double radius = 0;            ///< [m] of its layer
   std::vector<SunkPoint> sunk;  ///< of all vertices, sorted
 };
 
@@ -34,7 +35,8 @@ class LeavingTriangles {
   /** @param mesh static collider; place and way as visitTouched takes them @param sink [m] at that place */
   void addTouched(int mesh, const contact::MeshPlace& place, const Vector3& way, double sink);
   /**
-   * All of them, each once. Around what is touched they are sunk as much at least. @param X_CW from the world to the frame of the surface
+   * All of them, each once, with the thickest of their layers: those of thinner ones are sunk by what is more. Around what is touched they
+   * are sunk as much at least. @param X_CW from the world to the frame of the surface
    * @param fading vertices that were sunk before
    * @param least sink [m]
    */

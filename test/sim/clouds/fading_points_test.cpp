@@ -28,6 +28,7 @@ std::vector<contact::Collider> threePoints() {
 
 FadingPoints comingAndLeaving() {
   FadingPoints fading;
+  fading.setUp(-Vector3::UnitZ());
   fading.addCrossing(0, 1);
   fading.add(1, 0.001, {{0, 0.0001}, {2, FOR_GOOD}});
   fading.add(0, -0.001, {{1, 0.002}});
@@ -73,6 +74,7 @@ TEST(FadingPoints, OfATriangleSinkByTheirMean) {
     collider.geometry = std::make_shared<const contact::CollisionGeometry>(std::make_shared<const geometry::TriangleMesh>(
         geometry::TriangleMesh{{Vector3(0, 0, 0), Vector3(1, 0, 0), Vector3(0, 1, 0)}, {Vector3i(0, 1, 2)}}));
   FadingPoints fading;
+  fading.setUp(Vector3::UnitZ());
   fading.add(1, -0.001, {{1, 0.001}, {2, 0.002}});
   contact::ContactManifold manifold;
   manifold.a = 0;
@@ -109,17 +111,39 @@ TEST(FadingPoints, PiercedContactsOfACrossingCountForNothing) {
 
 TEST(FadingPoints, ComeAndLeaveAtTheirSpeed) {
   FadingPoints fading = comingAndLeaving();
-  fading.advance(1);
+  fading.advance(1, threePoints(), {});
   EXPECT_NEAR(fading.sinkOf(0, 1), 0.001, 1e-12);
   EXPECT_NEAR(fading.sinkOf(1, 0), 0.0011, 1e-12);
   EXPECT_EQ(fading.sinkOf(1, 2), FOR_GOOD);
-  fading.advance(1.5);
+  fading.advance(1.5, threePoints(), {});
   EXPECT_EQ(fading.sinkOf(0, 1), 0);
-  fading.advance(100);
+  fading.advance(100, threePoints(), {});
   EXPECT_EQ(fading.sinkOf(1, 0), FOR_GOOD);
   EXPECT_FALSE(fading.empty());
   fading.forget(1);
   EXPECT_TRUE(fading.empty());
+}
+
+TEST(FadingPoints, ThatComeWaitWhereTheyTouchUnlessTheyPushUpwards) {
+  const std::vector<contact::Collider> colliders = threePoints();
+  for (const double height : {1.0, -1.0, 0.0}) {
+    FadingPoints fading;
+    fading.setUp(height * Vector3::UnitZ());
+    fading.add(1, -0.001, {{1, 0.002}, {2, 0.002}});
+    contact::ContactManifold manifold;
+    manifold.a = 0;
+    manifold.b = 1;
+    manifold.contacts = {contactOf(1, false)};  // pushes A along z
+    fading.apply(colliders, &manifold);
+    EXPECT_DOUBLE_EQ(manifold.contacts[0].depth, height > 0 ? 0.001 : 0);
+    fading.advance(1, colliders, {manifold});
+    EXPECT_DOUBLE_EQ(fading.sinkOf(1, 1), height > 0 ? 0.001 : 0.002);
+    EXPECT_DOUBLE_EQ(fading.sinkOf(1, 2), 0.001);
+    fading.addCrossing(0, 1);
+    manifold.contacts = {contactOf(1, false)};
+    fading.apply(colliders, &manifold);
+    EXPECT_EQ(manifold.contacts.empty(), height <= 0) << "what lies in each other pushes inwards";
+  }
 }
 
 TEST(FadingPoints, AreReadAsTheyWereWritten) {

@@ -8,8 +8,10 @@
 namespace blem_sim::sim {
 namespace {
 
-/** Pose in which a pair was last apart, as far as the last accepted state knows. */
-Recovery lastApart(const FoundContacts& before, int a, int b) {
+/** Pose in which a pair was last apart, as far as the last accepted state knows. What crosses since an exchange counts as apart now. */
+Recovery lastApart(const FoundContacts& before, const Pose& X_AB_now, bool crosses, const WatchedPair& pair) {
+  const int a = pair.a, b = pair.b;
+  if (crosses) return {a, b, true, X_AB_now};
   if (const Recovery* recovery = before.crossings.find(a, b)) return *recovery;
   if (!before.known || contact::findPair(before.watched.left_out, a, b)) return {a, b, false, Pose::Identity()};
   return {a, b, true, before.watched.motion[a].X_WC.inverse() * before.watched.motion[b].X_WC};
@@ -48,7 +50,8 @@ void PairSearches::find(const SimulatedWorld& world, const FoundContacts& before
   const std::vector<contact::ColliderMotion>& motion = found->watched.motion;
   makeRoom(watched.size(), &found->manifolds);
   last_apart_.clear();
-  for (const WatchedPair& pair : watched) last_apart_.push_back(lastApart(before, pair.a, pair.b));
+  for (const WatchedPair& pair : watched)
+    last_apart_.push_back(lastApart(before, motion[pair.a].X_WC.inverse() * motion[pair.b].X_WC, fading.crosses(pair.a, pair.b), pair));
   found->flush.watch(world.colliders, watched, fading);
   watch(watched);
   run(watched.size(), [&](std::size_t i, std::size_t thread) {
