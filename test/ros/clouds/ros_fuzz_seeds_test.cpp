@@ -8,6 +8,9 @@ namespace blem_sim::node {
 namespace {
 
 TEST(RosFuzzSeeds, PointsAreReadOrRefusedInOneLine) { runSeeds("points", fuzzPoints); }
+TEST(RosFuzzSeeds, PointsAreJoinedOrRefusedInOneLine) { runSeeds("joined", fuzzJoined); }
+TEST(RosFuzzSeeds, TrianglesAreReadOrRefusedInOneLine) { runSeeds("triangles", fuzzTriangles); }
+TEST(RosFuzzSeeds, GridsAreReadOrRefusedInOneLine) { runSeeds("grid", fuzzGrid); }
 
 }  // namespace
 }  // namespace blem_sim::node
