@@ -37,7 +37,8 @@ ObjectConfig rollingBall(const Vector3& inertia, const Vector3& spin) {
 /** [N] of all contacts on the ball. */
 Vector3 pushOfPlane(const Simulator& simulator) {
   Vector3 force = Vector3::Zero();
-  for (const ContactReport& contact : simulator.report().contacts) force += contact.body_a == dynamics::WORLD_BODY ? -contact.force : contact.force;
+  for (const ContactReport& contact : simulator.report().contacts)
+    force += contact.body_a == dynamics::WORLD_BODY ? -contact.force : contact.force;
   return force;
 }
 
@@ -87,7 +88,8 @@ TEST(Rolling, ABallWithAGyroscopeKeepsItsEnergy) {
     <link name="shell"><inertial><mass value="0.6"/><inertia ixx="0.003" iyy="0.003" izz="0.003" ixy="0" ixz="0" iyz="0"/></inertial>
       <collision><geometry><sphere radius="0.1"/></geometry></collision></link>
     <link name="rotor"><inertial><mass value="0.4"/><inertia ixx="2e-4" iyy="2e-4" izz="4e-4" ixy="0" ixz="0" iyz="0"/></inertial></link>
-    <joint name="hinge" type="continuous"><parent link="shell"/><child link="rotor"/><axis xyz="0 0 1"/></joint></robot>)", false);
+    <joint name="hinge" type="continuous"><parent link="shell"/><child link="rotor"/><axis xyz="0 0 1"/></joint></robot>)",
+                           false);
   ball.X_WR = makePose(UP, {0.9, 0, 0});
   config.robots.push_back(ball);
   Simulator simulator(config, model::UriResolver());
@@ -109,10 +111,13 @@ TEST(Rolling, ABallOnATurntableTurnsBySevenths) {
   SimulationConfig config;
   config.contact.surface.friction = 2;
   const std::string table = meshFile("turntable", geometry::cylinderMesh(3, 0.02, 64));
-  RobotConfig turntable = robot("table", fmt::format(R"(<robot name="table"><link name="stand"/><link name="disc">
+  RobotConfig turntable = robot("table",
+                                fmt::format(R"(<robot name="table"><link name="stand"/><link name="disc">
     <inertial><mass value="10"/><inertia ixx="10" iyy="10" izz="10" ixy="0" ixz="0" iyz="0"/></inertial>
     <collision><geometry><mesh filename="file://{}"/></geometry></collision></link>
-    <joint name="turn" type="continuous"><parent link="stand"/><child link="disc"/><axis xyz="0 0 1"/></joint></robot>)", table), true);
+    <joint name="turn" type="continuous"><parent link="stand"/><child link="disc"/><axis xyz="0 0 1"/></joint></robot>)",
+                                            table),
+                                true);
   turntable.X_WR = makePose({0, 0, -0.015});
   turntable.motors = MotorDefault::COMPUTED;
   config.robots.push_back(turntable);
