@@ -187,7 +187,7 @@ TEST(LiveMesh, ABodySeenInItsOwnCloudIsNotThrown) {
   SeenFloor floor(0.3, 0.0002);
   std::mt19937 random(3);
   const Vector3 rest = bodyOf(simulator, "cube").X_WB.translation();
-  for (int i = 0; i < 5; ++i) {
+  for (int i = 0; i < (SANITIZED ? 2 : 5); ++i) {
     exchange(&simulator, floorWithCube(&floor, rest, &random));
     for (int k = 0; k < 100; ++k) {
       EXPECT_EQ(simulator.step().status & (CONTACT_UNRELIABLE | SOLVER_TROUBLE | STEP_SHORTENED), 0u) << i << " " << k;
@@ -336,7 +336,7 @@ double pushesOf(const StepReport& report) {
 }
 
 TEST(LiveMesh, ASheetThatACameraSawOfABodySqueezesNothing) {
-  for (const double height : {0.0, 0.002, 0.003}) {
+  for (const double height : SANITIZED ? std::vector<double>{0.002} : std::vector<double>{0, 0.002, 0.003}) {
     SimulationConfig config = cubeAboveMesh();
     EnvironmentConfig ground;
     ground.name = "ground";
@@ -344,9 +344,9 @@ TEST(LiveMesh, ASheetThatACameraSawOfABodySqueezesNothing) {
     config.environments.push_back(ground);
     Simulator simulator(config, model::UriResolver());
     SeenFloor top(0.09);
-    stepFor(&simulator, 0.5);
+    stepFor(&simulator, 0.2);
     const double rest = bodyOf(simulator, "cube").X_WB.translation().z();
-    for (int i = 0; i < 3; ++i) {
+    for (int i = 0; i < (SANITIZED ? 1 : 3); ++i) {
       exchange(&simulator, top.next(rest + 0.05 + height));
       for (int k = 0; k < 200; ++k) ASSERT_NEAR(pushesOf(simulator.step()), G, 0.01 * G) << height << " " << i << " " << k;
     }
@@ -385,7 +385,7 @@ TEST(LiveMesh, NothingSinksThroughAStreamThatComesHigher) {
   exchange(&simulator, floor.next());
   stepFor(&simulator, 0.5);
   const double rest = bodyOf(simulator, "cube").X_WB.translation().z();
-  for (int i = 0; i < (SANITIZED ? 4 : 40); ++i) {
+  for (int i = 0; i < (SANITIZED ? 2 : 40); ++i) {
     exchange(&simulator, floor.next(0.004));
     for (int k = 0; k < 100; ++k) {
       simulator.step();
@@ -410,14 +410,14 @@ TEST(LiveMesh, AStateSavedWhileABodyIsLiftedIsRestoredToTheSameBits) {
   Simulator simulator(cubeAboveMesh(), model::UriResolver());
   SeenFloor floor(0.2);
   exchange(&simulator, floor.next());
-  stepFor(&simulator, 0.5);
-  exchange(&simulator, floor.next(0.004));
-  stepFor(&simulator, 0.1);
-  const SimulationState state = simulator.save();
   stepFor(&simulator, 0.2);
+  exchange(&simulator, floor.next(0.004));
+  stepFor(&simulator, 0.05);
+  const SimulationState state = simulator.save();
+  stepFor(&simulator, 0.1);
   const std::uint64_t end = simulator.stateHash();
   simulator.restore(state);
-  stepFor(&simulator, 0.2);
+  stepFor(&simulator, 0.1);
   EXPECT_EQ(simulator.stateHash(), end);
 }
 
