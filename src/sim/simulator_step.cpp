@@ -25,8 +25,8 @@ const StepReport& Simulator::Impl::step() {
   startStep();
   if (!bodiesAreFinite()) return stop();
   if (!at_hand_.known) findFirstContacts();
-  fading_.advance(config_.time_step, world_.colliders,
-                  at_hand_.manifolds);  // after contacts of the state at hand, as they are after a restore
+  // Sinks change after contacts of the state at hand were found, as they are after a restore.
+  fading_.advance(config_.time_step, world_.colliders, at_hand_.manifolds);
   while (!substeps_.finished()) {
     planSubstep();
     sampleCommands();

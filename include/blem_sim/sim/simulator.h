@@ -77,8 +77,8 @@ class Simulator {
   /**
    * Makes a live environment that of these points or triangles, between steps. Those that appear inside a layer of something rise into it,
    * and those that something stood on sink away, both at the environment's fade_speed: nothing is thrown or let fall. Points inside a
-   * closed mesh, and triangles with such corners, count for nothing until the next update. Its slots are used again; contacts with it are
-   * new ones.
+   * closed mesh, and triangles with such corners, count for nothing until the next update. Corners of triangles that have come into a
+   * body's lower side, by 2 cm at most, lift it out instead. Its slots are used again; contacts with it are new ones.
    * @param surface made for it; one of triangles without geometry takes all away at once. What was there before after the call, for the
    * caller to free where it takes no time from steps
    * @throws InputError if there is no such live environment, or it is of the other kind; nothing is changed then

@@ -99,7 +99,9 @@ std::vector<int> cornersAround(const contact::CollisionGeometry& geometry, const
   return corners;
 }
 
-/** Parts vertices inside a body. Those near its rim lie as deep as others of one floor, though a side is nearer. @param down unit or zero
+/**
+ * Depth of what a body is buried in. Vertices near its rim lie as deep as others of one floor, though a side is nearer.
+ * @param down unit or zero @param ways [m] of each point down to the surface; none if down is zero
  */
 BuriedPoints partInside(const contact::CollisionGeometry& geometry, const std::vector<Vector3>& points, const Vector3& down,
                         std::vector<double>* ways) {

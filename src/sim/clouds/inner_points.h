@@ -31,7 +31,7 @@ struct InnerPoints {
  */
 InnerPoints innerPoints(const SimulatedWorld& world, const std::vector<dynamics::BodyState>& bodies, int cloud, const Vector3& up);
 
-/** [m] */
+/** [m] Longest way down to a body's surface at which a vertex inside the body is buried. */
 constexpr double MOST_BURIED = 0.02;
 
 }  // namespace blem_sim::sim
