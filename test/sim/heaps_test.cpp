@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <vector>
 
 #include "soak/stirred_heap.h"
@@ -164,19 +165,66 @@ TEST_P(Loads, RestOnTwentyPebbles) {
 const std::vector<Load> LOADS = {{0.01, 100, 0}, {0.01, 100, 0.05}, {0.01, 100, 2}, {0.01, 1000, 0.3}, {0.005, 50, 0.1}, {0.02, 30, 0.3}};
 INSTANTIATE_TEST_SUITE_P(Heaps, Loads, ::testing::ValuesIn(LOADS.begin(), LOADS.begin() + (SANITIZED ? 2 : 6)));
 
-TEST(Heaps, APyramidRests) {
-  constexpr int ROWS = SANITIZED ? 6 : 10;
+/** Rows of cubes of 1 kg, each one shorter than the one below; they fall onto each other by some millimetres. */
+SimulationConfig wall(int length, int rows) {
   SimulationConfig config;
-  config.environments = {ground()};
-  for (int row = 0; row < ROWS; ++row)
-    for (int i = 0; i < ROWS - row; ++i)
+  config.environments = {ground(20)};
+  for (int row = 0; row < rows; ++row)
+    for (int i = 0; i < length - row; ++i)
       config.objects.push_back(box("cube" + std::to_string(config.objects.size()), Vector3::Constant(0.1), 1,
                                    {0.11 * i + 0.055 * row - 0.5, 0, 0.055 + 0.106 * row}));
-  Simulator simulator(config, model::UriResolver());
+  return config;
+}
+
+TEST(Heaps, APyramidRests) {
+  constexpr int ROWS = SANITIZED ? 6 : 10;
+  Simulator simulator(wall(ROWS, ROWS), model::UriResolver());
   const Seen seen = run(&simulator, 0.5);
   EXPECT_EQ(seen.trouble, 0);
   EXPECT_FALSE(seen.status & ENERGY_GAINED);
   EXPECT_LT(seen.speed, 1e-9);
+}
+
+/** [N] by which the ground pushes. */
+Vector3 groundForce(const StepReport& report) {
+  Vector3 sum = Vector3::Zero();
+  for (const ContactReport& c : report.contacts)
+    if (c.body_a < 0 || c.body_b < 0) sum += c.body_a < 0 ? -c.force : c.force;
+  return sum;
+}
+
+/** A wall of 159 cubes: more than 150 are a crowd, whose results must be exact or set it in motion again. */
+class CrowdAtRest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (SANITIZED) GTEST_SKIP() << "159 cubes take long under sanitizers";
+    simulator_ = std::make_unique<Simulator>(wall(80, 2), model::UriResolver());
+    const Seen seen = run(simulator_.get(), 0.6);
+    EXPECT_EQ(seen.trouble, 0);
+    EXPECT_FALSE(seen.status & ENERGY_GAINED);
+    EXPECT_LT(seen.speed, 1e-9);
+  }
+  /** Pushes the last cube of the top row, at its centre, along x, from now on. */
+  void push(double force) {
+    const int body = simulator_->models()[simulator_->modelIndex("cube158")].bodies[0];
+    simulator_->applyLoad({body, {{force, 0, 0}, Vector3::Zero()}, Vector3::Zero()}, {0, -1});
+  }
+
+  std::unique_ptr<Simulator> simulator_;
+};
+
+TEST_F(CrowdAtRest, HoldsWhatFrictionCarries) {
+  push(1);
+  const Seen seen = run(simulator_.get(), 0.1);
+  EXPECT_EQ(seen.trouble, 0);
+  EXPECT_LT(seen.speed, 1e-9);
+  EXPECT_LT((groundForce(simulator_->report()) - Vector3(-1, 0, 159 * G)).norm(), 1e-5);
+}
+
+TEST_F(CrowdAtRest, LetsSlideWhatFrictionDoesNotCarry) {
+  push(8);
+  run(simulator_.get(), 0.05);
+  EXPECT_NEAR(bodyOf(*simulator_, "cube158").v_WCom.x(), 0.05 * (8 - 0.5 * G), 1e-3);
 }
 
 TEST(Heaps, AThousandTonsRestOnAKilogram) {
