@@ -60,8 +60,7 @@ inline void fuzzPoints(const std::uint8_t* data, std::size_t size) {
   expectReadOrRefused([&] { node::pointsOf(cloud); });
 }
 
-/** Points that are joined to triangles: a byte for the mesher, then a cloud. Without poisson: PCL's can take long for an outlier.
- */
+/** Points that are joined to triangles: a byte for the mesher, then a cloud. Without poisson: PCL's can take long for an outlier. */
 inline void fuzzJoined(const std::uint8_t* data, std::size_t size) {
   FuzzBytes bytes(data, size);
   model::CloudOptions options;

@@ -185,14 +185,6 @@ TEST(Heaps, APyramidRests) {
   EXPECT_LT(seen.speed, 1e-9);
 }
 
-/** [N] by which the ground pushes. */
-Vector3 groundForce(const StepReport& report) {
-  Vector3 sum = Vector3::Zero();
-  for (const ContactReport& c : report.contacts)
-    if (c.body_a < 0 || c.body_b < 0) sum += c.body_a < 0 ? -c.force : c.force;
-  return sum;
-}
-
 /** A wall of 159 cubes: more than 150 are a crowd, whose results must be exact or set it in motion again. */
 class CrowdAtRest : public ::testing::Test {
  protected:
@@ -218,7 +210,7 @@ TEST_F(CrowdAtRest, HoldsWhatFrictionCarries) {
   const Seen seen = run(simulator_.get(), 0.1);
   EXPECT_EQ(seen.trouble, 0);
   EXPECT_LT(seen.speed, 1e-9);
-  EXPECT_LT((groundForce(simulator_->report()) - Vector3(-1, 0, 159 * G)).norm(), 1e-5);
+  EXPECT_LT((forceOfWorld(simulator_->report()) - Vector3(-1, 0, 159 * G)).norm(), 1e-5);
 }
 
 TEST_F(CrowdAtRest, LetsSlideWhatFrictionDoesNotCarry) {

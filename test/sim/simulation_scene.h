@@ -135,6 +135,16 @@ inline dynamics::BodyState bodyOf(const Simulator& simulator, const std::string&
   return simulator.report().bodies[simulator.models()[simulator.modelIndex(model)].bodies[0]];
 }
 
+/** [N] of all contacts that fixed surfaces have with bodies. */
+inline Vector3 forceOfWorld(const StepReport& report) {
+  Vector3 force = Vector3::Zero();
+  for (const ContactReport& contact : report.contacts) {
+    if (contact.body_a == dynamics::WORLD_BODY) force -= contact.force;
+    if (contact.body_b == dynamics::WORLD_BODY) force += contact.force;
+  }
+  return force;
+}
+
 /** The last reading of a sensor of the report. */
 template <typename Reading>
 Reading reading(const StepReport& report, int sensor) {
