@@ -146,7 +146,7 @@ TEST(StepAllocation, NoneInWarmStepsOfAHangingChain) {
   }
   config.objects.back().linear_velocity = {0.3, 0.2, 0};
   Simulator simulator(config, model::UriResolver());
-  EXPECT_EQ(allocationsOfWarmSteps(&simulator, 6000, 2000), 0);
+  EXPECT_EQ(allocationsOfWarmSteps(&simulator, 16000, 2000), 0);
   EXPECT_GT(bodyOf(simulator, "ring5").v_WCom.norm(), 1e-3);
   EXPECT_GT(bodyOf(simulator, "ring5").X_WB.translation().z(), 0.6);
   EXPECT_GE(simulator.report().reduced_contacts, RINGS);

@@ -185,7 +185,25 @@ TEST(Heaps, APyramidRests) {
   EXPECT_LT(seen.speed, 1e-9);
 }
 
-/** A wall of 159 cubes: more than 150 are a crowd, whose results must be exact or set it in motion again. */
+/** Length of the lowest row, and number of rows. */
+class StandingWalls : public ::testing::TestWithParam<std::pair<int, int>> {};
+
+// Their proximal steps end balanced, within their iterations: swept ones, or none of them exact, would sway for ever.
+TEST_P(StandingWalls, RestAndBearTheirWeight) {
+  const auto [length, rows] = GetParam();
+  Simulator simulator(wall(length, rows), model::UriResolver());
+  const Seen seen = run(&simulator, 0.3);
+  EXPECT_EQ(seen.trouble, 0);
+  EXPECT_FALSE(seen.status & (ENERGY_GAINED | CONTACT_UNRELIABLE));
+  EXPECT_LT(seen.speed, 1e-6);
+  const double weight = simulator.report().bodies.size() * G;
+  EXPECT_LT((forceOfWorld(simulator.report()) - Vector3(0, 0, weight)).norm(), 1e-5 * weight);
+}
+
+const std::vector<std::pair<int, int>> WALLS = {{8, 8}, {16, 16}, {18, 18}, {36, 5}, {36, 9}};
+INSTANTIATE_TEST_SUITE_P(Heaps, StandingWalls, ::testing::ValuesIn(WALLS.begin(), WALLS.begin() + (SANITIZED ? 1 : 5)));
+
+/** A wall of 159 cubes: more than 150 are a crowd. */
 class CrowdAtRest : public ::testing::Test {
  protected:
   void SetUp() override {

@@ -10,14 +10,13 @@ namespace {
 
 constexpr int LARGE_HEAP = 32;  // fewest that are swept first; of fewer only if Newton's first iterations fail
 constexpr double TURNS = 0.03;  // [rad/s] fastest turn of a heap that stands, slides or lands flat: Newton's method solves it
-constexpr int FEW_ITERATIONS = 30, CROWD_ITERATIONS = 8;  // most of Newton's method on a small heap that tumbles, on a crowd at rest
+constexpr int FEW_ITERATIONS = 30, CROWD_ITERATIONS = 8;  // most of Newton's method on a small heap that tumbles, on a mixed crowd
+constexpr int CROWD_STEPS = 3;                            // proximal steps of a crowd that stands
 // A heap tumbles if the first sweep changes impulses by more than this share of the largest. Sweeps end when they change impulses by less;
 // a quiet crowd sways for ever if they leave more, and motors of robots in a heap push as hard as the largest impulse.
 constexpr double TUMBLES = 1e-2, SWEPT = 1e-3, SWEPT_MIXED = 1e-4, SWEPT_FEW = 2e-5, SWEPT_QUIET = 1e-5;
 constexpr int FEW_SWEEPS = 60;
-// Newton's method on a crowd fails where one sweep changes impulses by more than this share of the largest: the hard problem, and
-// polishing.
-constexpr double LIKE_BEFORE = 1e-6, NEARLY = 1e-4;
+constexpr double NEARLY = 1e-4;  // change of a crowd's impulses by the first sweep, beyond which polishing fails
 // Softness of contacts while a quiet heap is polished: stiffer ones change their kinds too often.
 constexpr double POLISH_SOFTNESS = 300, KEPT_SOFTNESS = 100, INEXACT_POLISH = 0.02;
 constexpr int POLISH_WORK = 6000, FEWEST_POLISHES = 10, MOST_POLISHES = 60;  // iterations times trees
@@ -52,18 +51,18 @@ bool IslandHeap::turnsSlowly() const {
 // Runs Newton's method where it may succeed at its price. @return whether it did
 bool IslandHeap::solveWithoutSweeps(const NewtonSettings& settings, NewtonReport* report) {
   if (!turnsSlowly()) return island_->model.treeCount() < LARGE_HEAP && solveFew(settings, report);
-  if (!island_->model.isCrowd()) return solveStanding(settings, report);
-  // The last step's impulses must nearly solve this one: one sweep tells.
-  return swept_->changeByOne() <= LIKE_BEFORE && solveFew(settings, report);
+  return solveStanding(settings, report);
 }
 
 bool IslandHeap::solveStanding(const NewtonSettings& settings, NewtonReport* report) {
-  *report = steps_->solvePredicted(settings);
-  return faults(*report, island_->terms()->contacts) <= 1;
+  NewtonSettings few = settings;
+  if (island_->model.isCrowd()) few.max_outer = std::min(few.max_outer, CROWD_STEPS);
+  *report = steps_->solvePredicted(few);
+  return faultsWithCreep(*report, island_->terms()->contacts) <= 1;
 }
 
-// Solves the hard problem alone, in few iterations: for a few bodies that tumble, but move much as in the step before, or for a crowd at
-// rest. A crowd's result must be exact: the least imbalance would set it in motion again.
+// Solves the hard problem alone, in few iterations: for bodies that tumble, but move much as in the step before. A crowd's result must be
+// exact: the least imbalance would set it in motion again.
 bool IslandHeap::solveFew(const NewtonSettings& settings, NewtonReport* report) {
   const bool crowd = island_->model.isCrowd();
   NewtonSettings few = settings;
@@ -74,7 +73,7 @@ bool IslandHeap::solveFew(const NewtonSettings& settings, NewtonReport* report) 
   report->gradient = run.gradient;
   if (run.gradient > few.gradient_tolerance) return false;
   steps_->finish(few, report);
-  return crowd ? isExact(settings, *report) : faults(*report, island_->terms()->contacts) <= 1;
+  return crowd ? isExact(settings, *report) : faultsWithCreep(*report, island_->terms()->contacts) <= 1;
 }
 
 void IslandHeap::sweepAndPolish(const NewtonSettings& settings, NewtonReport* report) {

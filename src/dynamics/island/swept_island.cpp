@@ -35,11 +35,6 @@ bool SweptIsland::sweepWithMotors(SweepStart start, double enough, SweepReport* 
   return true;
 }
 
-double SweptIsland::changeByOne() {
-  Eigen::VectorXd* velocity = &island_->space->direction;
-  return sweeps_.load(*island_, SweepStart::PREVIOUS, velocity) ? sweeps_.sweep(1, 0, velocity).first_change : INFINITY;
-}
-
 double SweptIsland::adoptImpulses() {
   sweeps_.read(island_->space->velocity, island_->terms());
   return newton_->adopt();

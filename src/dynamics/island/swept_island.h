@@ -18,9 +18,6 @@ class SweptIsland {
   /** Loads, and sweeps until impulses change by less than `enough` of the largest; again, four times at most, until exactly those motors
    * are at their bounds that were swept. @return false as load() */
   bool sweepWithMotors(SweepStart start, double enough, SweepReport* report);
-  /** Change of impulses, over the largest, by one sweep from the last step's; infinite if a mass matrix is not positive definite.
-   * Overwrites space->direction. */
-  double changeByOne();
 
   /** The impulses found become the terms' and the iterate's, scaled down if they would add kinetic energy to that of free motion.
    *  @return [sqrt(kg) m/s] gradient */

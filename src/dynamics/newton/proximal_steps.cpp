@@ -13,6 +13,7 @@ constexpr double INEXACT = 0.02, INEXACT_MIXED = 1e-4;  // mixed slips begin far
 constexpr int SOFT_STAGES = 2;
 constexpr double CONTACT_SOFTNESS[SOFT_STAGES] = {1000, 30};
 constexpr double JOINT_SOFTNESS[SOFT_STAGES] = {10, 3};
+constexpr double CROWD_SOFTNESS = 10;       // of the last one's: stiff contacts of a crowd change their kinds in many dear iterations
 constexpr int EASY = 10, ENOUGH_LEFT = 20;  // iterations of a proximal step whose slips are mixed, and of those that are left then
 // Contacts of a light body between heavy ones still creep so fast after the proximal steps that suffice elsewhere: they
 // get more, as long as a step takes an iteration.
@@ -76,15 +77,14 @@ void ProximalSteps::solveSoft(const NewtonSettings& settings, NewtonReport* repo
     count(newton_->run(limitsOf(settings, INEXACT, *report)), report);
     newton_->rememberUnmixed();
   }
-  newton_->soften(1, 1);
+  newton_->soften(island_->model.isHeap() && island_->model.isCrowd() ? CROWD_SOFTNESS : 1, 1);
   count(newton_->run(limitsOf(settings, INEXACT, *report)), report);
 }
 
 // Impulses of a heap must be settled, too. Residuals alone do not tell: each contact of a tower that leans misses Coulomb's law by little,
 // but together they let it sway.
 bool ProximalSteps::isLawful(const NewtonSettings& settings, const NewtonReport& report) const {
-  const bool sways = island_->model.isHeap() && !island_->model.isCrowd();
-  if (sways && !newton_->iterate().reactions().contacts().areSettled(SETTLED)) return false;
+  if (island_->model.isHeap() && !newton_->iterate().reactions().contacts().areSettled(SETTLED)) return false;
   return report.contact_residual <= settings.contact_tolerance && report.joint_creep <= settings.joint_tolerance;
 }
 
@@ -98,12 +98,13 @@ void ProximalSteps::finish(const NewtonSettings& settings, NewtonReport* report)
     const int left = settings.max_iterations - report->iterations;
     if ((lawful && report->gradient <= settings.gradient_tolerance) || left <= 0) break;
     if (step + 1 == steps && last > 0 && left >= ENOUGH_TO_END && report->contact_creep > CREEPS) ++steps;
-    // The last step is led on until momentum is balanced; it does not mix slips: mixing leads beyond those that were found.
-    const bool is_last = step + 1 == steps;
+    // The last step is led on until momentum is balanced, and so is a heap's each from half of its iterations on: an unbalanced one sways.
+    // The last one does not mix slips: mixing leads beyond those that were found.
+    const bool is_last = step + 1 == steps, balances = is_last || (island_->model.isHeap() && 2 * left <= settings.max_iterations);
     const bool mixes = step > 1 && last <= EASY && left >= ENOUGH_LEFT && !is_last;
     if (!mixes) newton_->forgetSlips();
     if (!lawful) newton_->remember();
-    const NewtonRun run = newton_->run(limitsOf(settings, lawful || is_last ? 0 : mixes ? INEXACT_MIXED : INEXACT, *report));
+    const NewtonRun run = newton_->run(limitsOf(settings, lawful || balances ? 0 : mixes ? INEXACT_MIXED : INEXACT, *report));
     count(run, report);
     last = run.iterations;
   }

@@ -8,6 +8,7 @@ namespace {
 
 constexpr double CONTACT_PROXIMAL = 1e-4;  // rho = this * inverse mass at the contact: smaller is stiffer and needs more Newton iterations
 constexpr double HEAVIEST = 1e3;           // contacts are no softer than those of a mass this many times below the heaviest tree
+constexpr double NO_GAP = 1e-11;           // [m] made of rounding: gaps that contradict each other would lead bodies at rest on for ever
 constexpr double JOINT_PROXIMAL = 1e-3;    // gain of friction and limits = inertia / this
 constexpr double VELOCITY_END = 1e-6;      // gain at the end of a motor's velocities = inertia / this
 constexpr double DRY_MOMENTUM = 0.9;  // share of its last change that stuck friction is expected to change by: all of it would never settle
@@ -225,7 +226,7 @@ void addContact(const TermSource& s, const ContactConstraint& c, IslandModel* mo
   term.normal = termSign(c) * c.normal_BA;
   term.bend = bendAt(s, model->pairs.back().pair, term, c.rolling);
   term.friction = c.friction;
-  term.target = row.speed;
+  term.target = std::abs(c.depth) > NO_GAP ? row.speed : 0;
   term.compliance = row.compliance / s.input.dt;
   if (record) {
     term.previous = termSign(c) * s.input.dt * record->force;
