@@ -69,6 +69,7 @@ class SensorErrorsTest(unittest.TestCase):
         self.assertFalse(in_air.messages(), "what nothing presses on has no centre of pressure")
 
     def test_a_sensor_without_errors_has_no_truth_beside_it(self):
+        record("/arm/tilt", Imu, 1)
         topics = [name for name, _ in rospy.get_published_topics("/arm")]
         self.assertIn("/arm/tilt", topics)
         self.assertNotIn("/arm/tilt/ground_truth", topics)
