@@ -2,11 +2,30 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace blem_sim::dynamics {
 namespace {
 
 constexpr std::size_t GROUPS_AT_ONCE = 8, IMPULSES_AT_ONCE = 256, DOFS_AT_ONCE = 1024;  // sizes of chunks: some microseconds each
+constexpr double MOST_GROWTH = 1.5;  // of squared changes since their least, while sweeps are led on
+
+/** How far sweeps are led on: the further the longer they go well; from the beginning again once they do not. */
+class Lead {
+ public:
+  /** @param change [N^2 s^2] sum of the squares of a sweep's changes. @return share of the last search direction */
+  double share(double change) {
+    ++sweeps_;
+    const bool well = change <= MOST_GROWTH * least_;
+    if (!well) sweeps_ = 0;
+    least_ = well ? std::min(least_, change) : change;
+    return sweeps_ / (sweeps_ + 3.0);
+  }
+
+ private:
+  int sweeps_ = 0;
+  double least_ = std::numeric_limits<double>::infinity();  // change since the beginning
+};
 
 Vector6 columnOf(const TwistLanes& lanes, int lane) {
   Vector6 out;
@@ -169,21 +188,18 @@ void IslandSweeps::moveOn(double share, Eigen::VectorXd* velocity) {
 
 SweepReport IslandSweeps::sweep(int most, double enough, Eigen::VectorXd* velocity) {
   SweepReport report;
-  double last = 0;
+  Lead lead;
   before_.resize(dofs_.size());
-  const bool conjugate = joints_.empty();
+  const bool leads = joints_.empty();
   while (report.sweeps < most) {
     noteVelocity(*velocity);
     plainSweep(velocity);
     const double relative = change_.impulse > 0 ? std::sqrt(change_.largest / change_.impulse) : 0;
     if (report.sweeps++ == 0) report.first_change = relative;
     report.last_change = relative;
-    // The last sweep is a plain one: conjugate steps lead out of the cones.
+    // The last sweep is a plain one: steps ahead lead out of the cones.
     if (relative <= enough || report.sweeps == most) break;
-    if (!conjugate) continue;
-    const double share = last > 0 ? squared_change_ / last : 0;
-    moveOn(share <= 1 ? share : 0, velocity);
-    last = squared_change_;
+    if (leads) moveOn(lead.share(squared_change_), velocity);
   }
   findVelocity(velocity);
   return report;

@@ -1,5 +1,5 @@
-// The step problem of one island on its impulses: sweeps over contacts, joint friction, limits and loops, led on by conjugate steps
-// [Silcowitz, Niebe and Erleben 2010]. Momentum is exact whatever the number of sweeps; Coulomb's law is approached. See docs/solver.md.
+// The step problem of one island on its impulses: sweeps over contacts, joint friction, limits and loops, led on by Nesterov's steps
+// [Nesterov 1983]. Momentum is exact whatever the number of sweeps; Coulomb's law is approached. See docs/solver.md.
 #pragma once
 
 #include <vector>

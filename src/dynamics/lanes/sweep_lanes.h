@@ -29,7 +29,7 @@ struct alignas(8 * SWEEP_LANES) SweepContact {
 struct alignas(8 * SWEEP_LANES) SweepImpulse {
   SweepVectors now;     ///< those found
   SweepVectors change;  ///< by the last sweep
-  SweepVectors search;  ///< along which the conjugate steps lead
+  SweepVectors search;  ///< along which sweeps are led on
 };
 
 /** Eight pairs at most, no body in two of them. Lanes without a pair have contacts that never act. */
