@@ -16,7 +16,7 @@ constexpr int CROWD_STEPS = 3;                            // proximal steps of a
 // a quiet crowd sways for ever if they leave more, and motors of robots in a heap push as hard as the largest impulse.
 constexpr double TUMBLES = 1e-2, SWEPT = 1e-3, SWEPT_MIXED = 1e-4, SWEPT_FEW = 2e-5, SWEPT_QUIET = 1e-5;
 constexpr int FEW_SWEEPS = 30, CROWD_SWEEPS = 100;  // most of a quiet heap, which Newton's method polishes, and of a quiet crowd
-constexpr double NEARLY = 1e-4;  // change of a crowd's impulses by the first sweep, beyond which polishing fails
+constexpr double NEARLY = 1e-4;                     // change of a crowd's impulses by the first sweep, beyond which polishing fails
 // Softness of contacts while a quiet heap is polished: stiffer ones change their kinds too often.
 constexpr double POLISH_SOFTNESS = 300, KEPT_SOFTNESS = 100, INEXACT_POLISH = 0.02;
 constexpr int POLISH_WORK = 6000, FEWEST_POLISHES = 10, MOST_POLISHES = 60;  // iterations times trees
