@@ -10,6 +10,7 @@ namespace {
 
 constexpr int LARGE_HEAP = 32;  // fewest that are swept first; of fewer only if Newton's first iterations fail
 constexpr double TURNS = 0.03;  // [rad/s] fastest turn of a heap that stands, slides or lands flat: Newton's method solves it
+constexpr double STILL = 1e-4;  // [rad/s] fastest turn of a crowd whose contacts keep their kinds
 constexpr int FEW_ITERATIONS = 30, CROWD_ITERATIONS = 8;  // most of Newton's method on a small heap that tumbles, on a mixed crowd
 constexpr int CROWD_STEPS = 3;                            // proximal steps of a crowd that stands
 // A heap tumbles if the first sweep changes impulses by more than this share of the largest. Sweeps end when they change impulses by less;
@@ -40,24 +41,28 @@ NewtonReport IslandHeap::solve(const NewtonSettings& settings) {
   return report;
 }
 
-// Contacts of a heap that turns slowly hardly ever change their kinds: a tower, a wall, a heap at rest, a stack that slides.
-bool IslandHeap::turnsSlowly() const {
+/** [rad/s] */
+double IslandHeap::fastestTurn() const {
   double fastest = 0;
   for (const int tree : island_->model.trees)
     fastest = std::max(fastest, island_->space->first_velocity.segment<3>(island_->tree(tree).first_dof).squaredNorm());
-  return fastest <= TURNS * TURNS;
+  return std::sqrt(fastest);
 }
 
-// Runs Newton's method where it may succeed at its price. @return whether it did
+// Contacts of a heap that turns slowly hardly ever change their kinds: a tower, a wall, a heap at rest, a stack that slides. Newton's
+// method runs where it may succeed at its price. @return whether it did
 bool IslandHeap::solveWithoutSweeps(const NewtonSettings& settings, NewtonReport* report) {
-  if (!turnsSlowly()) return island_->model.treeCount() < LARGE_HEAP && solveFew(settings, report);
-  return solveStanding(settings, report);
+  const double turn = fastestTurn();
+  if (turn <= TURNS) return solveStanding(settings, turn <= STILL, report);
+  return island_->model.treeCount() < LARGE_HEAP && solveFew(settings, report);
 }
 
-bool IslandHeap::solveStanding(const NewtonSettings& settings, NewtonReport* report) {
+// Contacts of a crowd that settles do change their kinds: softer ones alone take half as many iterations.
+bool IslandHeap::solveStanding(const NewtonSettings& settings, bool still, NewtonReport* report) {
   NewtonSettings few = settings;
-  if (island_->model.isCrowd()) few.max_outer = std::min(few.max_outer, CROWD_STEPS);
-  *report = steps_->solvePredicted(few);
+  const bool crowd = island_->model.isCrowd();
+  if (crowd) few.max_outer = std::min(few.max_outer, CROWD_STEPS);
+  *report = crowd && !still ? steps_->solveSoftened(few) : steps_->solvePredicted(few);
   return faultsWithCreep(*report, island_->terms()->contacts) <= 1;
 }
 

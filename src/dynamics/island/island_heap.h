@@ -12,9 +12,9 @@ class IslandHeap {
   NewtonReport solve(const NewtonSettings& settings);
 
  private:
-  bool turnsSlowly() const;
+  double fastestTurn() const;
   bool solveWithoutSweeps(const NewtonSettings& settings, NewtonReport* report);
-  bool solveStanding(const NewtonSettings& settings, NewtonReport* report);
+  bool solveStanding(const NewtonSettings& settings, bool still, NewtonReport* report);
   bool solveFew(const NewtonSettings& settings, NewtonReport* report);
   void sweepAndPolish(const NewtonSettings& settings, NewtonReport* report);
   void sweepMixed(const NewtonSettings& settings, NewtonReport* report);

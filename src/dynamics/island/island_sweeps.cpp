@@ -10,7 +10,7 @@ namespace {
 constexpr std::size_t GROUPS_AT_ONCE = 8, IMPULSES_AT_ONCE = 256, DOFS_AT_ONCE = 1024;  // sizes of chunks: some microseconds each
 constexpr double MOST_GROWTH = 1.5;  // of squared changes since their least, while sweeps are led on
 
-/** How far sweeps are led on: the further the longer they go well; from the beginning again once they do not. */
+/** Lead of sweeps: the further the longer they go well, and nothing once they do not. */
 class Lead {
  public:
   /** @param change [N^2 s^2] sum of the squares of a sweep's changes. @return share of the last search direction */

@@ -55,6 +55,14 @@ NewtonReport ProximalSteps::solvePredicted(const NewtonSettings& settings) {
   return report;
 }
 
+NewtonReport ProximalSteps::solveSoftened(const NewtonSettings& settings) {
+  NewtonReport report;
+  newton_->soften(CROWD_SOFTNESS, 1);
+  count(newton_->run(limitsOf(settings, INEXACT, report)), &report);
+  finish(settings, &report);
+  return report;
+}
+
 // Most steps are like the one before: the hard problem is solved in a few iterations. If idle joints stray, or are not known to do right,
 // all are live, and everything is begun again.
 bool ProximalSteps::solveHard(const NewtonSettings& settings, NewtonReport* report) {

@@ -13,6 +13,8 @@ class ProximalSteps {
   NewtonReport solve(const NewtonSettings& settings);
   /** The same from the iterate that a first step as if all went on as it was leads to. */
   NewtonReport solvePredicted(const NewtonSettings& settings);
+  /** The same from the iterate at hand with softer contacts alone, for crowds: stiff ones change their kinds in many dear iterations. */
+  NewtonReport solveSoftened(const NewtonSettings& settings);
   /** Goes on from an iterate until momentum, joints and Coulomb's law hold, and reads the answer. @param report of what led to it */
   void finish(const NewtonSettings& settings, NewtonReport* report);
 
