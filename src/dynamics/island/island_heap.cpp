@@ -41,7 +41,7 @@ NewtonReport IslandHeap::solve(const NewtonSettings& settings) {
   return report;
 }
 
-/** [rad/s] */
+/** [rad/s] of the body that turns fastest. */
 double IslandHeap::fastestTurn() const {
   double fastest = 0;
   for (const int tree : island_->model.trees)

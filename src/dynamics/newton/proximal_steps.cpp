@@ -57,8 +57,7 @@ NewtonReport ProximalSteps::solvePredicted(const NewtonSettings& settings) {
 
 NewtonReport ProximalSteps::solveSoftened(const NewtonSettings& settings) {
   NewtonReport report;
-  newton_->soften(CROWD_SOFTNESS, 1);
-  count(newton_->run(limitsOf(settings, INEXACT, report)), &report);
+  runSoftened(CROWD_SOFTNESS, 1, settings, &report);
   finish(settings, &report);
   return report;
 }
@@ -81,11 +80,14 @@ bool ProximalSteps::solveHard(const NewtonSettings& settings, NewtonReport* repo
 
 void ProximalSteps::solveSoft(const NewtonSettings& settings, NewtonReport* report) {
   for (int stage = 0; stage < SOFT_STAGES; ++stage) {
-    newton_->soften(CONTACT_SOFTNESS[stage], JOINT_SOFTNESS[stage]);
-    count(newton_->run(limitsOf(settings, INEXACT, *report)), report);
+    runSoftened(CONTACT_SOFTNESS[stage], JOINT_SOFTNESS[stage], settings, report);
     newton_->rememberUnmixed();
   }
-  newton_->soften(island_->model.isHeap() && island_->model.isCrowd() ? CROWD_SOFTNESS : 1, 1);
+  runSoftened(island_->model.isHeap() && island_->model.isCrowd() ? CROWD_SOFTNESS : 1, 1, settings, report);
+}
+
+void ProximalSteps::runSoftened(double contact, double joint, const NewtonSettings& settings, NewtonReport* report) {
+  newton_->soften(contact, joint);
   count(newton_->run(limitsOf(settings, INEXACT, *report)), report);
 }
 

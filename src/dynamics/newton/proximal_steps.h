@@ -21,6 +21,7 @@ class ProximalSteps {
  private:
   bool solveHard(const NewtonSettings& settings, NewtonReport* report);
   void solveSoft(const NewtonSettings& settings, NewtonReport* report);
+  void runSoftened(double contact, double joint, const NewtonSettings& settings, NewtonReport* report);
   bool isLawful(const NewtonSettings& settings, const NewtonReport& report) const;
   void keepBalanced(const NewtonReport& report, double* least);
   void returnToBalanced(double least, NewtonReport* report);
