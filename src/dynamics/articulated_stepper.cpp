@@ -42,7 +42,7 @@ class ArticulatedStepper : public Stepper {
   void save(const Scene& scene, geometry::StateWriter* writer) const override;
   void restore(const Scene& scene, geometry::StateReader* reader) override;
   bool agreesWith(const Scene& scene) const override;
-  void forgetContacts(const std::vector<std::uint64_t>& ids) override { memory_.forgetContacts(ids); }
+  void forgetContacts(const std::vector<std::uint64_t>& ids, const ContactRenames& go_on) override { memory_.forgetContacts(ids, go_on); }
 
  private:
   void rebuild(const Scene& scene);

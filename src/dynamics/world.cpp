@@ -206,9 +206,9 @@ void World::forgetHistory() {
   impl_->clearPending();
 }
 
-void World::forgetContacts(std::vector<std::uint64_t> ids) {
+void World::forgetContacts(std::vector<std::uint64_t> ids, const ContactRenames& go_on) {
   std::sort(ids.begin(), ids.end());
-  impl_->stepper->forgetContacts(ids);
+  impl_->stepper->forgetContacts(ids, go_on);
 }
 
 void World::restoreChecked(const WorldState& state) {

@@ -85,7 +85,7 @@ void countEdges(const TriangleMesh& mesh, MeshReport* report) {
   const SidesByVertex by_vertex(mesh);
   const auto isOfTriangle = [&](const Side& side) { return mesh.isTriangle(side.element()); };
   const Counts counts = tbb::parallel_reduce(
-      tbb::blocked_range<int>(0, static_cast<int>(mesh.vertices.size())), Counts(),
+      tbb::blocked_range<int>(0, static_cast<int>(mesh.vertices.size()), FEW_ITEMS), Counts(),
       [&](const tbb::blocked_range<int>& range, Counts sum) {
         for (int v = range.begin(); v < range.end(); ++v) {
           visitEdges(by_vertex, v, [&](const Side* first, const Side* last) {
@@ -182,7 +182,7 @@ void describeResult(const TriangleMesh& mesh, MeshReport* report) {
   const int elements = static_cast<int>(mesh.elements.size());
   const auto count = [elements](auto&& isOne) {
     return tbb::parallel_reduce(
-        tbb::blocked_range<int>(0, elements), 0,
+        tbb::blocked_range<int>(0, elements, FEW_ITEMS), 0,
         [&](const tbb::blocked_range<int>& range, int sum) {
           for (int i = range.begin(); i < range.end(); ++i) sum += isOne(i);
           return sum;

@@ -128,9 +128,11 @@ void Simulator::unloadEnvironment(const std::string& name) {
   impl_->tell("unloadEnvironment", name);
 }
 
-void Simulator::updateCloud(const std::string& environment, CloudSurface* surface) {
+CloudNeighbours Simulator::cloudNeighbours(const std::string& environment) const { return impl_->cloudNeighbours(environment); }
+
+void Simulator::updateCloud(const std::string& environment, CloudSurface* surface, std::vector<SearchedAhead> ahead) {
   const CloudSurface taken = *surface;
-  impl_->updateCloud(environment, surface);
+  impl_->updateCloud(environment, surface, &ahead);
   impl_->tell("updateCloud", environment, taken);
 }
 

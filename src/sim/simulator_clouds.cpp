@@ -10,6 +10,7 @@
 #include "build/contact_settings.h"
 #include "build/widths/chosen_width.h"
 #include "build/widths/scan_noise.h"
+#include "clouds/carried_contacts.h"
 #include "clouds/leaving_triangles.h"
 #include "simulator_impl.h"
 
@@ -276,7 +277,21 @@ void Simulator::Impl::searchBeside(int model) {
   if (crosses) search();
 }
 
-void Simulator::Impl::updateCloud(const std::string& environment, CloudSurface* surface) {
+CloudNeighbours Simulator::Impl::cloudNeighbours(const std::string& environment) const {
+  const auto known = live_.find(environment);
+  if (known == live_.end()) throw InputError(fmt::format("environments: {}: is no live one, or was unloaded", environment));
+  CloudNeighbours neighbours;
+  if (known->second.is_mesh && !known->second.width.automatic) neighbours.width = known->second.width.metres;
+  for (std::size_t i = 0; i < world_.colliders.size(); ++i) {
+    const contact::Collider& collider = world_.colliders[i];
+    if (!collider.enabled || collider.body == dynamics::WORLD_BODY || collider.geometry->isHalfSpace()) continue;
+    neighbours.colliders.push_back(
+        {static_cast<int>(i), collider.geometry, collider.radius, world_.world.bodyState(collider.body).X_WB * collider.X_BC});
+  }
+  return neighbours;
+}
+
+void Simulator::Impl::updateCloud(const std::string& environment, CloudSurface* surface, std::vector<SearchedAhead>* ahead) {
   const auto known = live_.find(environment);
   if (known == live_.end()) throw InputError(fmt::format("environments: {}: is no live one, or was unloaded", environment));
   LiveGround& live = known->second;
@@ -301,16 +316,20 @@ void Simulator::Impl::updateCloud(const std::string& environment, CloudSurface* 
     before.geometry = world_.colliders[live.cloud].geometry;
     before.radius = surface->radius;
   }
-  forgetContacts(world_.collidersOf(model));
+  CarriedContacts carried;
+  forStoodOn(model, [&](const StoodOn& on) { carried.add(on.live, on.other, on.contact, on.is_a); });
+  const std::vector<std::uint64_t> gone = forgetPairs(world_.collidersOf(model));
   world_.removeShapes(model);
   live.cloud = world_.addCollider(cloud, layerOf(*surface, &live), live.surface, surface->report);
   layer_watch_.forget(live.cloud);
+  for (SearchedAhead& searched : *ahead) pair_searches_.know(live.cloud, searched.collider, std::move(searched.memory));
   const int leaving = addFading(live, std::move(remains), true);
   const InnerPoints inner = innerPoints(world_, bodies_, live.cloud, live.is_mesh ? wayUp() : Vector3::Zero());
   const int rising = addFading(live, belowBuried(live, inner), false);
 
   fading_.setUp(wayUp());
   searchBeside(model);
+  world_.world.forgetContacts(gone, carried.onto(leaving, found_.manifolds));
   if (live.is_mesh) sinkBorders(leaving, depths);
   sinkBorders(rising, {});
   sinkIntoTouch(live, inner);

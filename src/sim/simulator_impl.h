@@ -128,7 +128,8 @@ struct Simulator::Impl {
 
   // simulator_clouds.cpp
   void addLive(const EnvironmentConfig& environment);
-  void updateCloud(const std::string& environment, CloudSurface* surface);
+  void updateCloud(const std::string& environment, CloudSurface* surface, std::vector<SearchedAhead>* ahead);
+  CloudNeighbours cloudNeighbours(const std::string& environment) const;
   /** Takes the surface and its remains away. @param surface what was there, out */
   void clearCloud(int model, LiveGround* live, CloudSurface* surface);
   /** [m] Layer of a live surface; an automatic one is chosen with the first mesh, and stays. */
@@ -181,6 +182,8 @@ struct Simulator::Impl {
   void removeModel(const std::string& name);
   /** A model's colliders are elsewhere, or others: nothing is remembered of their contacts. */
   void forgetContacts(const std::vector<int>& colliders);
+  /** The same, but what the solver knows of them. @return their ids there */
+  std::vector<std::uint64_t> forgetPairs(const std::vector<int>& colliders);
   void setLinkInertial(int body, int link, const geometry::MassProperties& inertial);
   void setJointLimits(int robot, int joint, double lower, double upper);
   void setPhysics(const Vector3& gravity, double time_step, double real_time_factor);

@@ -88,15 +88,20 @@ void Simulator::Impl::removeModel(const std::string& name) {
   reportWithoutStep();
 }
 
-void Simulator::Impl::forgetContacts(const std::vector<int>& colliders) {
+void Simulator::Impl::forgetContacts(const std::vector<int>& colliders) { world_.world.forgetContacts(forgetPairs(colliders)); }
+
+std::vector<std::uint64_t> Simulator::Impl::forgetPairs(const std::vector<int>& colliders) {
+  std::vector<std::uint64_t> ids;
   for (const int collider : colliders) {
-    world_.world.forgetContacts(constraint_maker_.forget(collider));
+    const std::vector<std::uint64_t> gone = constraint_maker_.forget(collider);
+    ids.insert(ids.end(), gone.begin(), gone.end());
     pair_searches_.forget(collider);
     at_hand_.crossings.forget(collider);
     fading_.forget(collider);
   }
   pair_watch_.forget();
   at_hand_.known = false;
+  return ids;
 }
 
 void Simulator::Impl::setLinkInertial(int body, int link, const geometry::MassProperties& inertial) {

@@ -28,8 +28,11 @@ class World {
   void removeBody(int body);
   /** Takes a joint out of the world; joints that mimic it are free then. */
   void removeJoint(int joint);
-  /** Contacts with these ids (ContactConstraint::id) are strangers in the next step. */
-  void forgetContacts(std::vector<std::uint64_t> ids);
+  /**
+   * Contacts with these ids (ContactConstraint::id) are strangers in the next step.
+   * @param go_on those that are known there under another id: the old one and the new one of each
+   */
+  void forgetContacts(std::vector<std::uint64_t> ids, const ContactRenames& go_on = {});
 
   int bodyCount() const;  ///< slots, removed ones included
   int jointCount() const;

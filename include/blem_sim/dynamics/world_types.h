@@ -69,6 +69,13 @@ struct JointDrive {
   double givenEffort() const { return effort + outside_effort; }
 };
 
+/** A contact that goes on under another id (ContactConstraint::id). */
+struct ContactRename {
+  std::uint64_t from, to;
+  bool turned;  ///< the body that was A is B there
+};
+using ContactRenames = std::vector<ContactRename>;
+
 /** One contact as the solver takes it. */
 struct ContactConstraint {
   int body_a = WORLD_BODY, body_b = WORLD_BODY;

@@ -81,9 +81,12 @@ class Simulator {
    * body's lower side, by 2 cm at most, lift it out instead. Its slots are used again; contacts with it are new ones.
    * @param surface made for it; one of triangles without geometry takes all away at once. What was there before after the call, for the
    * caller to free where it takes no time from steps
+   * @param ahead from searchAhead with this surface, or nothing
    * @throws InputError if there is no such live environment, or it is of the other kind; nothing is changed then
    */
-  void updateCloud(const std::string& environment, CloudSurface* surface);
+  void updateCloud(const std::string& environment, CloudSurface* surface, std::vector<SearchedAhead> ahead = {});
+  /** What a live environment may touch, for searchAhead. @throws InputError if there is no such live environment */
+  CloudNeighbours cloudNeighbours(const std::string& environment) const;
 
   /**
    * Adds a robot between steps; one of a single free body becomes an object, and one whose root link is called world has a fixed base.

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "blem_sim/contact/narrow_phase.h"
 #include "blem_sim/dynamics/world_types.h"
 #include "blem_sim/model/robot_model.h"
 #include "blem_sim/sim/config.h"
@@ -100,6 +101,19 @@ struct AttachedModel {
   std::vector<std::pair<int, int>> never_touch;  ///< colliders that do not meet while it lasts, sorted pairs
 };
 
+/** Colliders that move and the layer of a live environment, as they are between two steps. */
+struct CloudNeighbours {
+  /** A collider and where its geometry is. */
+  struct Neighbour {
+    int collider;
+    std::shared_ptr<const contact::CollisionGeometry> geometry;
+    double radius;  ///< [m] of its layer
+    Pose X_WC;
+  };
+  double width = 0;  ///< [m] of the environment's layer
+  std::vector<Neighbour> colliders;
+};
+
 /** Points or triangles of a live environment as contact takes them. */
 struct CloudSurface {
   std::shared_ptr<const contact::CollisionGeometry> geometry;  ///< null: no triangle, as a map without walls
@@ -120,6 +134,18 @@ CloudSurface makeCloudSurface(model::SensedCloud cloud, const model::CloudOption
 
 /** Cleans and mends triangles and makes their tree, as makeCloudSurface. @param mesh [m] in the world @throws InputError: none is left */
 CloudSurface makeMeshSurface(geometry::TriangleMesh mesh, const std::string& name);
+
+/** What searches for contacts of a collider with a live environment's next surface have learnt. */
+struct SearchedAhead {
+  int collider;
+  contact::NarrowPhaseMemory memory;
+};
+
+/**
+ * Searches the contacts of a surface with what is near it, so that Simulator::updateCloud need not: it takes less time then, the less
+ * things move in between, and its result is the same. Any thread may call it, beside the steps.
+ */
+std::vector<SearchedAhead> searchAhead(const CloudNeighbours& neighbours, const CloudSurface& surface);
 
 /** A time of simulation in which a load acts, from a step's start to another's. */
 struct LoadTime {

@@ -85,7 +85,7 @@ class OdeStepper : public Stepper {
     solver_->restore(reader);
     mimics_.restore(scene.joints().size(), reader);
   }
-  void forgetContacts(const std::vector<std::uint64_t>& ids) override { memory_.forget(ids); }
+  void forgetContacts(const std::vector<std::uint64_t>& ids, const ContactRenames& go_on) override { memory_.forget(ids, go_on); }
 
  private:
   // A failed complementarity problem leaves its forces at 0: the step is done again, softer.

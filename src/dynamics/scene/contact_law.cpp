@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/contact_records.h"
+
 namespace blem_sim::dynamics {
 namespace {
 
@@ -67,10 +69,7 @@ void ContactMemory::replace(std::vector<ContactMemo> memos) {
   std::stable_sort(memos_.begin(), memos_.end(), [](const ContactMemo& a, const ContactMemo& b) { return a.id < b.id; });
 }
 
-void ContactMemory::forget(const std::vector<std::uint64_t>& ids) {
-  const auto is_gone = [&](const ContactMemo& memo) { return std::binary_search(ids.begin(), ids.end(), memo.id); };
-  memos_.erase(std::remove_if(memos_.begin(), memos_.end(), is_gone), memos_.end());
-}
+void ContactMemory::forget(const std::vector<std::uint64_t>& ids, const ContactRenames& go_on) { forgetRecords(ids, go_on, &memos_); }
 
 void addMemo(const ContactConstraint& contact, const ContactRows& rows, const Vector3& force, std::vector<ContactMemo>* memos) {
   const double push = contact.normal_BA.dot(force);

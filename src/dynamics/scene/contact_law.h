@@ -16,13 +16,15 @@ struct ContactMemo {
   double approach = 0;                 ///< [m/s] closing speed of an impact that landed in the last step and is still to bounce
 };
 
+inline void turnOver(ContactMemo* memo) { memo->friction = -memo->friction; }
+
 /** Memos of the contacts of the last step, sorted by id. */
 class ContactMemory {
  public:
   const ContactMemo* find(std::uint64_t id) const;
   void replace(std::vector<ContactMemo> memos);
-  /** @param ids ascending */
-  void forget(const std::vector<std::uint64_t>& ids);
+  /** @param ids ascending @param go_on as World::forgetContacts has it */
+  void forget(const std::vector<std::uint64_t>& ids, const ContactRenames& go_on);
   void save(geometry::StateWriter* writer) const;
   void restore(geometry::StateReader* reader);
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "scene/contact_records.h"
+
 namespace blem_sim::dynamics {
 
 const ContactRecord* StepMemory::find(std::uint64_t id) const {
@@ -34,9 +36,8 @@ void StepMemory::resize(const Scene& scene) {
   for (const JointSlot& slot : scene.joints()) occupants_.push_back(slot.occupant);
 }
 
-void StepMemory::forgetContacts(const std::vector<std::uint64_t>& ids) {
-  const auto is_gone = [&](const ContactRecord& c) { return std::binary_search(ids.begin(), ids.end(), c.id); };
-  contacts.erase(std::remove_if(contacts.begin(), contacts.end(), is_gone), contacts.end());
+void StepMemory::forgetContacts(const std::vector<std::uint64_t>& ids, const ContactRenames& go_on) {
+  forgetRecords(ids, go_on, &contacts);
   index();
 }
 

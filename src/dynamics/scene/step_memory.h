@@ -16,6 +16,8 @@ struct ContactRecord {
   double slip = 0;                  ///< [m/s]
 };
 
+inline void turnOver(ContactRecord* record) { record->force = -record->force; }
+
 /** [N m or N] */
 struct JointRecord {
   double dry = 0, lower = 0, upper = 0;
@@ -32,8 +34,8 @@ struct StepMemory {
   void index();
   /** A record per joint slot; that of a slot with another joint than before is empty. */
   void resize(const Scene& scene);
-  /** @param ids ascending */
-  void forgetContacts(const std::vector<std::uint64_t>& ids);
+  /** @param ids ascending @param go_on as World::forgetContacts has it */
+  void forgetContacts(const std::vector<std::uint64_t>& ids, const ContactRenames& go_on);
   void save(const Scene& scene, geometry::StateWriter* writer) const;
   void restore(const Scene& scene, geometry::StateReader* reader);
 

@@ -31,8 +31,8 @@ class Stepper {
   virtual void restore(const Scene& scene, geometry::StateReader* reader) = 0;
   /** Whether, after a restore, the stepper's memory of bodies agrees with their states. */
   virtual bool agreesWith(const Scene&) const { return true; }
-  /** Forgets the contacts with these ids. @param ids ascending */
-  virtual void forgetContacts(const std::vector<std::uint64_t>& ids) = 0;
+  /** Forgets the contacts with these ids. @param ids ascending @param go_on as World::forgetContacts has it */
+  virtual void forgetContacts(const std::vector<std::uint64_t>& ids, const ContactRenames& go_on) = 0;
 };
 
 }  // namespace blem_sim::dynamics

@@ -21,11 +21,6 @@ std::uint64_t mixed(std::uint64_t x) {  // splitmix64's finalizer [Steele 2014]
   return x ^ (x >> 31);
 }
 
-/** Identity of a contact of a pair among those of all pairs. */
-std::uint64_t worldContactId(int a, int b, std::uint64_t id) {
-  return mixed(id + mixed((static_cast<std::uint64_t>(a) << 32) + static_cast<std::uint64_t>(b) + 1));
-}
-
 /** Constraint of a contact, rigid, without friction. */
 dynamics::ContactConstraint constraintOf(const SimulatedWorld& world, const contact::ContactManifold& manifold,
                                          const contact::Contact& contact) {
@@ -72,6 +67,10 @@ const reduction::Reduction* reductionNamed(const std::string& name) {
 }
 
 }  // namespace
+
+std::uint64_t worldContactId(int a, int b, std::uint64_t id) {
+  return mixed(id + mixed((static_cast<std::uint64_t>(a) << 32) + static_cast<std::uint64_t>(b) + 1));
+}
 
 ConstraintMaker::ConstraintMaker(const ContactConfig& config) : config_(config), method_(reductionNamed(config.reduction)) {}
 

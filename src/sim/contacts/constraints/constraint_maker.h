@@ -13,6 +13,9 @@
 
 namespace blem_sim::sim {
 
+/** Identity of a contact of a pair of colliders among those of all pairs, as the solver knows it (dynamics::ContactConstraint::id). */
+std::uint64_t worldContactId(int a, int b, std::uint64_t id);
+
 /** A contact in the solve: its pair, layer and kind. Goes with the constraint of the same index. */
 struct SolvedContact {
   int collider_a, collider_b;

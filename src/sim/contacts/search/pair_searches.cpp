@@ -70,6 +70,17 @@ void PairSearches::find(const SimulatedWorld& world, const FoundContacts& before
   found->known = true;
 }
 
+void PairSearches::know(int a, int b, contact::NarrowPhaseMemory memory) {
+  Known known{std::min(a, b), std::max(a, b), std::move(memory)};
+  known_.insert(std::lower_bound(known_.begin(), known_.end(), known, contact::IsPairBefore()), std::move(known));
+}
+
+void PairSearches::forget(int collider) {
+  for (Known& known : known_)
+    if (known.a == collider || known.b == collider) spare_.push_back(std::move(known.memory));
+  contact::removePairsOf(collider, &known_);
+}
+
 void PairSearches::makeRoom(std::size_t pairs, std::vector<contact::ContactManifold>* manifolds) {
   for (; manifolds->size() < pairs && !spare_manifolds_.empty(); spare_manifolds_.pop_back())
     manifolds->push_back(std::move(spare_manifolds_.back()));

@@ -29,10 +29,12 @@ class PairSearches {
    */
   void find(const SimulatedWorld& world, const FoundContacts& before, const FadingPoints& fading, WatchedPairs* pairs,
             FoundContacts* found);
+  /** Takes over what a search of a pair beside the steps has learnt. */
+  void know(int a, int b, contact::NarrowPhaseMemory memory);
   /** Room for searches between calls of find, on its caller's thread. */
   contact::NarrowPhaseWorkspace* workspace() { return &workspaces_.front().search; }
   /** Forgets the pairs of a collider whose slot another one may take. */
-  void forget(int collider) { contact::removePairsOf(collider, &known_); }
+  void forget(int collider);
 
  private:
   struct Known {
