@@ -278,9 +278,9 @@ void Simulator::Impl::searchBeside(int model) {
 }
 
 CloudNeighbours Simulator::Impl::cloudNeighbours(const std::string& environment) const {
-  const auto known = live_.find(environment);
-  if (known == live_.end()) throw InputError(fmt::format("environments: {}: is no live one, or was unloaded", environment));
   CloudNeighbours neighbours;
+  const auto known = live_.find(environment);
+  if (known == live_.end()) return neighbours;
   if (known->second.is_mesh && !known->second.width.automatic) neighbours.width = known->second.width.metres;
   for (std::size_t i = 0; i < world_.colliders.size(); ++i) {
     const contact::Collider& collider = world_.colliders[i];

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <utility>
 #include <string>
 #include <vector>
 
@@ -253,6 +254,35 @@ TEST(LiveCloud, TheSameUpdatesGiveTheSameBits) {
     hash = simulator.stateHash();
   }
   EXPECT_EQ(hashes[0], hashes[1]);
+}
+
+TEST(LiveCloud, SearchesAheadChangeNoBit) {
+  std::uint64_t hashes[2];
+  for (const bool ahead : {false, true}) {
+    Simulator simulator(cubeAboveLive(), model::UriResolver());
+    NoisyFloor floor(0.3, 0.005, NOISE);
+    for (int i = 0; i < 5; ++i) {
+      CloudSurface surface = makeCloudSurface(floor.next(), live().cloud, "live");
+      std::vector<SearchedAhead> searched = searchAhead(simulator.cloudNeighbours("live"), surface);
+      EXPECT_EQ(searched.size(), i < 1 ? 0 : 1) << i;
+      stepFor(&simulator, 0.02);
+      simulator.updateCloud("live", &surface, ahead ? std::move(searched) : std::vector<SearchedAhead>());
+      stepFor(&simulator, 0.1);
+    }
+    hashes[ahead] = simulator.stateHash();
+  }
+  EXPECT_EQ(hashes[0], hashes[1]);
+}
+
+TEST(LiveCloud, ContactsGoOnWhenItIsExchanged) {
+  Simulator simulator(cubeAboveLive(), model::UriResolver());
+  NoisyFloor floor(0.3, 0.005, NOISE);
+  update(&simulator, floor.next());
+  stepFor(&simulator, 0.5);
+  std::vector<Vector3> lower = floor.next();
+  for (Vector3& point : lower) point.z() -= 0.02;
+  update(&simulator, lower);
+  EXPECT_LE(simulator.step().solver_iterations, 2);
 }
 
 TEST(LiveCloud, IsUnloadedWithAllThatFades) {

@@ -8,6 +8,7 @@ namespace blem_sim::node {
 namespace {
 
 constexpr std::chrono::seconds WARNING_PERIOD(5);
+constexpr std::chrono::milliseconds LONGEST_ASKING(20);  // beyond, steps are paused or slow, and need no search ahead
 
 }  // namespace
 
@@ -41,8 +42,15 @@ void LiveCloud::refuseUnread(const std::string& why) {
   refuse(why);
 }
 
-std::optional<BuiltCloud> LiveCloud::take() {
+void LiveCloud::answer(const Neighbours& neighbours) {
+  if (!std::exchange(asks_, false)) return;
+  neighbours_ = neighbours();
+  changed_.notify_all();
+}
+
+std::optional<BuiltCloud> LiveCloud::take(const Neighbours& neighbours) {
   const std::lock_guard<std::mutex> lock(mutex_);
+  answer(neighbours);
   return std::exchange(ready_, std::nullopt);
 }
 
@@ -54,9 +62,12 @@ void LiveCloud::giveBack(sim::CloudSurface surface) {
   changed_.notify_all();
 }
 
-bool LiveCloud::waitUntilBuilt(std::chrono::steady_clock::time_point deadline) {
+bool LiveCloud::waitUntilBuilt(std::chrono::steady_clock::time_point deadline, const Neighbours& neighbours) {
   std::unique_lock<std::mutex> lock(mutex_);
-  return changed_.wait_until(lock, deadline, [this] { return !waiting_ && !busy_; });
+  return changed_.wait_until(lock, deadline, [&] {
+    answer(neighbours);
+    return !waiting_ && !busy_;
+  });
 }
 
 void LiveCloud::restart() {
@@ -114,10 +125,22 @@ void LiveCloud::work(const LiveMessage& message) {
   } catch (const std::exception& error) {
     return refuse(error.what());
   }
+  searchAhead(&*built);
   // Freed after the lock: what was ready before.
   const std::lock_guard<std::mutex> lock(mutex_);
   std::swap(ready_, built);
   counts_.overtaken += built ? 1 : 0;
+}
+
+void LiveCloud::searchAhead(BuiltCloud* built) {
+  std::unique_lock<std::mutex> lock(mutex_);
+  asks_ = true;
+  changed_.notify_all();
+  changed_.wait_for(lock, LONGEST_ASKING, [this] { return ends_ || neighbours_; });
+  asks_ = false;
+  const std::optional<sim::CloudNeighbours> neighbours = std::exchange(neighbours_, std::nullopt);
+  lock.unlock();
+  if (neighbours) built->ahead = sim::searchAhead(*neighbours, built->surface);
 }
 
 }  // namespace blem_sim::node

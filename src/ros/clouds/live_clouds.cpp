@@ -67,14 +67,18 @@ void LiveClouds::timeRestarted() {
 void LiveClouds::takeUpdates(bool wait) {
   if (wait) waitUntilBuilt();
   for (const auto& cloud : clouds_)
-    if (std::optional<BuiltCloud> built = cloud->take()) exchange(cloud.get(), &*built);
+    if (std::optional<BuiltCloud> built = cloud->take(neighboursOf(*cloud))) exchange(cloud.get(), &*built);
   tellChanges();
+}
+
+LiveCloud::Neighbours LiveClouds::neighboursOf(const LiveCloud& cloud) const {
+  return [&] { return loop_.simulator().cloudNeighbours(cloud.name()); };
 }
 
 void LiveClouds::waitUntilBuilt() {
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(LONGEST_WAIT);
   for (const auto& cloud : clouds_)
-    if (!cloud->waitUntilBuilt(deadline))
+    if (!cloud->waitUntilBuilt(deadline, neighboursOf(*cloud)))
       ROS_WARN("environments: %s: a cloud takes longer than %d s: the steps go on without it", cloud->name().c_str(), LONGEST_WAIT);
 }
 
@@ -85,7 +89,7 @@ void LiveClouds::exchange(LiveCloud* cloud, BuiltCloud* built) {
   update.points = static_cast<std::uint32_t>(built->surface.isMesh() ? report.vertices : report.points);
   update.point_radius = built->surface.radius;
   try {
-    simulator.updateCloud(cloud->name(), &built->surface);
+    simulator.updateCloud(cloud->name(), &built->surface, std::move(built->ahead));
   } catch (const InputError& error) {
     cloud->refuse(error.what());
     return;

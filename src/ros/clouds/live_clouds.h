@@ -40,6 +40,7 @@ class LiveClouds : public StepPublisher {
   void takeUpdates(bool wait);
   void exchange(LiveCloud* cloud, BuiltCloud* built);
   void waitUntilBuilt();
+  LiveCloud::Neighbours neighboursOf(const LiveCloud& cloud) const;
   void tellChanges();
 
   SimulationLoop& loop_;

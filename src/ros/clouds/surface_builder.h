@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <cstddef>
+#include <vector>
 
 #include "blem_sim/model/voxel_map.h"
 #include "blem_sim/sim/simulator_types.h"
@@ -17,6 +18,7 @@ namespace blem_sim::node {
 /** A cloud or mesh that is ready for contact. */
 struct BuiltCloud {
   sim::CloudSurface surface;
+  std::vector<sim::SearchedAhead> ahead;  ///< its contacts where things were a few steps ago
   ros::Time stamp;                  ///< of its message
   std::size_t points_received = 0;  ///< or vertices, or cells
   double seconds = 0;               ///< of wall time that it took

@@ -33,7 +33,9 @@ std::vector<SearchedAhead> searchAhead(const CloudNeighbours& neighbours, const 
     const Box near = boxOf(*other.geometry, neighbour.X_WC);
     if (!box.intersects(Box(near.min() - reach, near.max() + reach))) continue;
     SearchedAhead searched{neighbour.collider, {}};
-    contact::narrowPhase({own, X_WC}, {other, neighbour.X_WC}, {MARGIN, nullptr, &searched.memory}, &workspace, &found);
+    // The second search chooses the nearest candidates, and so the next one need not.
+    for (int search = 0; search < 2; ++search)
+      contact::narrowPhase({own, X_WC}, {other, neighbour.X_WC}, {MARGIN, nullptr, &searched.memory}, &workspace, &found);
     all.push_back(std::move(searched));
   }
   return all;

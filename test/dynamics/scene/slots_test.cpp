@@ -113,6 +113,29 @@ TEST_P(Slots, ForgottenContactsAreStrangers) {
   EXPECT_NEAR((world.bodyState(0).v_WCom - fresh.bodyState(0).v_WCom).norm(), 0, tolerance());
 }
 
+TEST_P(Slots, RenamedContactsGoOn) {
+  world.addBody(boxBody("box", 1, CUBE, {0, 0, 0.05}));
+  std::vector<ContactConstraint> contacts;
+  boxOnPlane(world, 0, CUBE, Vector3::UnitZ(), 0, Surface(), &contacts);
+  BodyState sliding = world.bodyState(0);
+  sliding.v_WCom = {0.5, 0, 0};
+  world.setBodyState(0, sliding);
+  ASSERT_TRUE(world.step(DT, contacts, {}).finite);
+  const WorldState met = world.save();
+  std::vector<std::uint64_t> before, after;
+  ContactRenames there, back;
+  for (const ContactConstraint& contact : contacts) {
+    before.push_back(contact.id);
+    after.push_back(~contact.id);
+    there.push_back({contact.id, ~contact.id, true});
+    back.push_back({~contact.id, contact.id, true});
+  }
+  world.forgetContacts(before, there);
+  EXPECT_FALSE(world.save() == met);
+  world.forgetContacts(after, back);
+  EXPECT_TRUE(world.save() == met);
+}
+
 INSTANTIATE_TEST_SUITE_P(Steppers, Slots, testing::Values("world_step", "quick_step", "articulated"));
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "blem_sim/sim/simulator.h"
@@ -75,9 +76,13 @@ Stand stand(As as, bool streamed, int steps) {
   for (int i = -2000; i < steps; ++i) {
     sim::CloudSurface surface;
     const bool exchanged = i == -2000 || (streamed && i % PERIOD == 0);
-    if (exchanged) surface = sim::makeCloudSurface(floorCloud(&random), config.environments[0].cloud, floor);
+    std::vector<sim::SearchedAhead> ahead;
+    if (exchanged) {
+      surface = sim::makeCloudSurface(floorCloud(&random), config.environments[0].cloud, floor);
+      ahead = sim::searchAhead(simulator.cloudNeighbours(floor), surface);
+    }
     const double start = threadSeconds();
-    if (exchanged) simulator.updateCloud(floor, &surface);
+    if (exchanged) simulator.updateCloud(floor, &surface, std::move(ahead));
     const sim::StepReport& report = simulator.step();
     const double seconds = threadSeconds() - start, now = forceOf(report), z = report.bodies[0].X_WB.translation().z();
     if (i >= 0) {
