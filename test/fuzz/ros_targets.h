@@ -60,12 +60,12 @@ inline void fuzzPoints(const std::uint8_t* data, std::size_t size) {
   expectReadOrRefused([&] { node::pointsOf(cloud); });
 }
 
-/** Points that are joined to triangles: a byte for the mesher, then a cloud. Without poisson: PCL's can take long for an outlier. */
+/** Points that are joined to triangles: a byte for the mesher, then a cloud. */
 inline void fuzzJoined(const std::uint8_t* data, std::size_t size) {
   FuzzBytes bytes(data, size);
   model::CloudOptions options;
   options.as = model::CloudOptions::As::MESH;
-  options.mesher = static_cast<model::CloudOptions::Mesher>(bytes.take<std::uint8_t>() % 4);
+  options.mesher = static_cast<model::CloudOptions::Mesher>(bytes.take<std::uint8_t>() % 5);
   const sensor_msgs::PointCloud2 cloud = cloudFrom(bytes);
   expectReadOrRefused([&] {
     model::SensedCloud sensed(node::pointsOf(cloud, cloud.height > 1));

@@ -130,6 +130,21 @@ TEST_F(CloudMeshers, FillHolesOnlyWhenAsked) {
   EXPECT_LT(nearestMiddle(*load(holedSquare(0), options).mesh, 0, 0), 0.03);
 }
 
+TEST_F(CloudMeshers, OfPoissonJoinPartsByThemselves) {
+  std::vector<Vector3> points = holedSquare(0);
+  const LoadedSurface alone = load(points, by(Mesher::POISSON));
+  std::vector<Vector3> far = {{0, 0, 4e3}, {0.01, 0, 4e3}, {0, 0.01, 4e3}, {0.01, 0.01, 4e3}};
+  for (Vector3& p : points) {
+    if (p.allFinite() || far.empty()) continue;
+    p = far.back();
+    far.pop_back();
+  }
+  const LoadedSurface beside = load(points, by(Mesher::POISSON));
+  ASSERT_GE(beside.mesh->vertices.size(), alone.mesh->vertices.size());
+  for (std::size_t i = 0; i < alone.mesh->vertices.size(); ++i)
+    EXPECT_EQ(beside.mesh->vertices[i], alone.mesh->vertices[i]) << i;
+}
+
 TEST_F(CloudMeshers, OfABoxKeepItsSides) {
   std::vector<Vector3> points;
   for (int i = 0; i <= 20; ++i)

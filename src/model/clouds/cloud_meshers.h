@@ -21,6 +21,9 @@ struct SeenPoints {
   std::optional<Vector3> viewpoint;  ///< [m]
 };
 
+/** Parts of a cloud: points of different ones are farther apart than a distance [m]. Each has its points in the cloud's order. */
+std::vector<SeenPoints> partsApart(const SeenPoints& cloud, double distance);
+
 /**
  * Triangles over a grid's points: a cell of four measured corners gives two, split along its shorter diagonal, one
  * of three gives one. No edge is longer than max_edge; from one corner to another the distance to the viewpoint changes by no more than
@@ -37,7 +40,8 @@ std::vector<Vector3i> projectionTriangles(const std::vector<Vector3>& points, do
 /**
  * Surface by marching cubes of the distance to the nearest point's tangent plane [Hoppe et al. 1992, Surface Reconstruction from
  * Unorganized Points], or by Poisson's equation [Kazhdan, Bolitho, Hoppe 2006, Poisson Surface Reconstruction]: vertices of its own.
- * Triangles with a corner farther than half of max_edge from every point are left out, unless holes are filled.
+ * Triangles with a corner farther than half of max_edge from every point are left out, unless holes are filled. So Poisson's equation is
+ * solved for each part of the cloud by itself: PCL's time and memory grow with the square of size over cell, however few the points.
  * @throws InputError: no viewpoint; more cells than there is room for. @param source begins the message
  */
 geometry::TriangleMesh marchingCubesMesh(const SeenPoints& cloud, const CloudOptions& options, const std::string& source);

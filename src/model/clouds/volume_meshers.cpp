@@ -172,9 +172,10 @@ geometry::TriangleMesh marchingCubesMesh(const SeenPoints& seen, const CloudOpti
   return nearTriangles(cloud, options, &mesher);
 }
 
-geometry::TriangleMesh poissonMesh(const SeenPoints& seen, const CloudOptions& options, const std::string& source) {
+namespace {
+
+geometry::TriangleMesh poissonPart(const SeenPoints& seen, const CloudOptions& options, const std::string& source) {
   if (seen.points.size() < 3) return {};
-  const QuietPcl quiet;
   const OrientedCloud cloud(seen, options, source);
   pcl::Poisson<pcl::PointNormal> mesher;
   const int depth = static_cast<int>(std::ceil(std::log2(std::max(1.0, cloud.size.maxCoeff() * mesher.getScale() / options.cell))));
@@ -184,6 +185,22 @@ geometry::TriangleMesh poissonMesh(const SeenPoints& seen, const CloudOptions& o
   mesher.setIsoDivide(std::max(2, depth));
   mesher.setInputCloud(cloud.points);
   return nearTriangles(cloud, options, &mesher);
+}
+
+void append(const geometry::TriangleMesh& part, geometry::TriangleMesh* mesh) {
+  const auto first = static_cast<int>(mesh->vertices.size());
+  mesh->vertices.insert(mesh->vertices.end(), part.vertices.begin(), part.vertices.end());
+  for (const Vector3i& e : part.elements) mesh->elements.push_back(e + Vector3i::Constant(first));
+}
+
+}  // namespace
+
+geometry::TriangleMesh poissonMesh(const SeenPoints& seen, const CloudOptions& options, const std::string& source) {
+  const QuietPcl quiet;
+  if (options.fill_holes) return poissonPart(seen, options, source);
+  geometry::TriangleMesh mesh;
+  for (const SeenPoints& part : partsApart(seen, options.max_edge)) append(poissonPart(part, options, source), &mesh);
+  return mesh;
 }
 
 }  // namespace blem_sim::model
