@@ -10,8 +10,8 @@
 #include "build/contact_settings.h"
 #include "build/widths/chosen_width.h"
 #include "build/widths/scan_noise.h"
-#include "clouds/carried_contacts.h"
 #include "clouds/leaving_triangles.h"
+#include "contacts/constraints/carried_contacts.h"
 #include "simulator_impl.h"
 
 namespace blem_sim::sim {

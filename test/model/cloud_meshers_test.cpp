@@ -141,8 +141,7 @@ TEST_F(CloudMeshers, OfPoissonJoinPartsByThemselves) {
   }
   const LoadedSurface beside = load(points, by(Mesher::POISSON));
   ASSERT_GE(beside.mesh->vertices.size(), alone.mesh->vertices.size());
-  for (std::size_t i = 0; i < alone.mesh->vertices.size(); ++i)
-    EXPECT_EQ(beside.mesh->vertices[i], alone.mesh->vertices[i]) << i;
+  for (std::size_t i = 0; i < alone.mesh->vertices.size(); ++i) EXPECT_EQ(beside.mesh->vertices[i], alone.mesh->vertices[i]) << i;
 }
 
 TEST_F(CloudMeshers, OfABoxKeepItsSides) {

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
-#include <utility>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "blem_sim/geometry/input_error.h"

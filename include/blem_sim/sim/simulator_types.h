@@ -135,7 +135,7 @@ CloudSurface makeCloudSurface(model::SensedCloud cloud, const model::CloudOption
 /** Cleans and mends triangles and makes their tree, as makeCloudSurface. @param mesh [m] in the world @throws InputError: none is left */
 CloudSurface makeMeshSurface(geometry::TriangleMesh mesh, const std::string& name);
 
-/** What searches for contacts of a collider with a live environment's next surface have learnt. */
+/** Memory of searches for a collider's contacts with the next surface of a live environment. */
 struct SearchedAhead {
   int collider;
   contact::NarrowPhaseMemory memory;

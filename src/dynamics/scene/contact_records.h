@@ -9,7 +9,8 @@
 
 namespace blem_sim::dynamics {
 
-/** Takes out the records with these ids. A record that is turned over tells the same with A and B exchanged (turnOver). @param ids ascending
+/** Takes out the records with these ids. A record that is turned over tells the same with A and B exchanged (turnOver). @param ids
+ * ascending
  *  @param go_on as World::forgetContacts has it */
 template <typename Record>
 void forgetRecords(const std::vector<std::uint64_t>& ids, const ContactRenames& go_on, std::vector<Record>* records) {

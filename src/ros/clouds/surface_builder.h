@@ -19,9 +19,9 @@ namespace blem_sim::node {
 struct BuiltCloud {
   sim::CloudSurface surface;
   std::vector<sim::SearchedAhead> ahead;  ///< its contacts where things were a few steps ago
-  ros::Time stamp;                  ///< of its message
-  std::size_t points_received = 0;  ///< or vertices, or cells
-  double seconds = 0;               ///< of wall time that it took
+  ros::Time stamp;                        ///< of its message
+  std::size_t points_received = 0;        ///< or vertices, or cells
+  double seconds = 0;                     ///< of wall time that it took
 };
 
 /** Turns one environment's messages into surfaces, one after the other. */

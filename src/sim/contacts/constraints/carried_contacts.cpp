@@ -1,4 +1,4 @@
-#include "clouds/carried_contacts.h"
+#include "contacts/constraints/carried_contacts.h"
 
 #include <algorithm>
 
@@ -7,8 +7,8 @@
 namespace blem_sim::sim {
 namespace {
 
-constexpr double SAME_WAY = 1e-6;    // of unit vectors
-constexpr double SAME_PLACE = 1e-7;  // [m] beside the normal; along it a layer of another width moves the point
+constexpr double SAME_WAY = 1e-6;      // of unit vectors
+constexpr double AT_ITS_PLACE = 1e-7;  // [m] beside the normal; along it a layer of another width moves the point
 
 Vector3 awayFrom(const contact::Contact& contact, bool of_a) { return of_a ? Vector3(-contact.normal_BA) : contact.normal_BA; }
 
@@ -29,7 +29,7 @@ dynamics::ContactRenames CarriedContacts::onto(int remains, const std::vector<co
       if (carried.other != other) continue;
       const auto isSame = [&](const contact::Contact& contact) {
         const Vector3 apart = contact.point - carried.point;
-        return (awayFrom(contact, of_a) - carried.away).norm() < SAME_WAY && carried.away.cross(apart).norm() < SAME_PLACE;
+        return (awayFrom(contact, of_a) - carried.away).norm() < SAME_WAY && carried.away.cross(apart).norm() < AT_ITS_PLACE;
       };
       const auto found = std::find_if(manifold.contacts.begin(), manifold.contacts.end(), isSame);
       if (found == manifold.contacts.end()) continue;
