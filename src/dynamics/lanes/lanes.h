@@ -4,6 +4,7 @@
 // Compiled for several processors, chosen when the program starts. None may fuse a product into a sum (-ffp-contract=off).
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define BLEM_SIM_LANES __attribute__((target_clones("avx2", "default")))
+#define BLEM_SIM_AVX512 __attribute__((target("avx512f,avx512vl,avx512dq")))  // for functions called where hasAvx512 says so
 #else
 #define BLEM_SIM_LANES
 #endif

@@ -177,9 +177,10 @@ bool BlockMatrix::factorColumn(const Column& column) {
 void BlockMatrix::findTargets(const Column& column, int e, std::size_t* targets) const {
   const Column& target = columns_[entries_[e].column];
   targets[0] = target.diagonal;
+  const int* const rows = rows_.data();
   int slot = target.first;
-  for (int f = e + 1; f < column.end; ++f) {
-    while (entries_[slot].column != entries_[f].column) ++slot;
+  for (int f = e + 1; f < column.end; ++f, ++slot) {
+    while (rows[slot] != rows[f]) ++slot;
     targets[f - e] = entries_[slot].value;
   }
 }

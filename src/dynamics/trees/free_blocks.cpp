@@ -4,6 +4,10 @@
 
 #include "lanes/lanes.h"
 
+#ifdef BLEM_SIM_AVX512
+#include <immintrin.h>
+#endif
+
 namespace blem_sim::dynamics {
 namespace {
 
@@ -63,7 +67,9 @@ BLEM_SIM_LANES void divideFree(const double* l, int count, double* blocks) {
   }
 }
 
-BLEM_SIM_LANES void subtractFree(const double* b, const double* a, int count, const std::size_t* at, double* values) {
+namespace {
+
+BLEM_SIM_LANES void subtractNarrow(const double* b, const double* a, int count, const std::size_t* at, double* values) {
   for (int n = 0; n < count; ++n, a += FREE_BLOCK) {
     double* c = values + at[n];
     for (int j = 0; j < FREE; ++j, c += FREE) {
@@ -77,6 +83,42 @@ BLEM_SIM_LANES void subtractFree(const double* b, const double* a, int count, co
       two(c) -= lower;
     }
   }
+}
+
+#ifdef BLEM_SIM_AVX512
+
+bool hasAvx512() { return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq"); }
+
+/** The same sums, a column of six rows in a vector of eight. */
+BLEM_SIM_AVX512 void subtractWide(const double* b, const double* a, int count, const std::size_t* at, double* values) {
+  constexpr __mmask8 ALL = 0xff;
+  const __m512i last_six = _mm512_set_epi64(7, 7, 7, 6, 5, 4, 3, 2);
+  for (int n = 0; n < count; ++n, a += FREE_BLOCK) {
+    __m512d columns[FREE];  // the last two numbers of each are the next column's, and nobody's
+    for (int k = 0; k + 1 < FREE; ++k) columns[k] = _mm512_loadu_pd(a + FREE * k);
+    columns[FREE - 1] = _mm512_maskz_permutexvar_pd(ALL, last_six, _mm512_loadu_pd(a + FREE_BLOCK - 8));
+    double* c = values + at[n];
+    for (int j = 0; j < FREE; ++j, c += FREE) {
+      __m512d sum = _mm512_mul_pd(columns[0], _mm512_set1_pd(b[j]));
+      for (int k = 1; k < FREE; ++k) sum = _mm512_add_pd(sum, _mm512_mul_pd(columns[k], _mm512_set1_pd(b[FREE * k + j])));
+      const __m256d upper = _mm512_maskz_extractf64x4_pd(ALL, sum, 0);
+      const __m128d lower = _mm512_maskz_extractf64x2_pd(ALL, sum, 2);
+      _mm256_storeu_pd(c, _mm256_sub_pd(_mm256_loadu_pd(c), upper));
+      _mm_storeu_pd(c + 4, _mm_sub_pd(_mm_loadu_pd(c + 4), lower));
+    }
+  }
+}
+
+#endif
+
+}  // namespace
+
+void subtractFree(const double* b, const double* a, int count, const std::size_t* at, double* values) {
+#ifdef BLEM_SIM_AVX512
+  static const bool wide = hasAvx512();
+  if (wide) return subtractWide(b, a, count, at, values);
+#endif
+  subtractNarrow(b, a, count, at, values);
 }
 
 BLEM_SIM_LANES void forwardFree(const FreeColumn& column, double* own, double* x) {
