@@ -9,9 +9,10 @@
 
 namespace blem_sim::dynamics {
 
-/** Takes out the records with these ids. A record that is turned over tells the same with A and B exchanged (turnOver). @param ids
- * ascending
- *  @param go_on as World::forgetContacts has it */
+/**
+ * Takes out the records with these ids; one that is turned over tells the same of A and B exchanged (turnOver).
+ * @param ids ascending @param go_on as World::forgetContacts has it
+ */
 template <typename Record>
 void forgetRecords(const std::vector<std::uint64_t>& ids, const ContactRenames& go_on, std::vector<Record>* records) {
   const auto precedes = [](const Record& a, const Record& b) { return a.id < b.id; };

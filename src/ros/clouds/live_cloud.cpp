@@ -122,10 +122,10 @@ void LiveCloud::work(const LiveMessage& message) {
     const auto start = std::chrono::steady_clock::now();
     built = std::visit([this](const auto& given) { return builder_.build(*given); }, message);
     built->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    searchAhead(&*built);
   } catch (const std::exception& error) {
     return refuse(error.what());
   }
-  searchAhead(&*built);
   // Freed after the lock: what was ready before.
   const std::lock_guard<std::mutex> lock(mutex_);
   std::swap(ready_, built);
