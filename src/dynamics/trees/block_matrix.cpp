@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "trees/free_blocks.h"
+#include "trees/wait.h"
 
 namespace blem_sim::dynamics {
 namespace {
@@ -11,8 +12,8 @@ namespace {
 using FreeBlock = Eigen::Matrix<double, FREE, FREE>;
 using FreeMap = Eigen::Map<FreeBlock>;
 
-constexpr int ENTRIES_AT_ONCE = 6;  // of a column: the fewest for which a chunk is worth a thread
-constexpr int MOST_CHUNKS = 8;
+constexpr int MANY_ENTRIES = 200;  // of a matrix: the fewest that are worth another thread
+constexpr int MOST_CHUNKS = 8;     // threads that take part
 
 /** Rows of a block below the diagonal times the inverse of the diagonal's transposed factor. */
 template <typename Rows, typename Factor>
@@ -74,12 +75,16 @@ void BlockMatrix::sortEntries() {
   for (const Entry& entry : entries_) ++row_start_[entry.column + 1];
   for (int row = 0; row < count; ++row) row_start_[row + 1] += row_start_[row];
   row_columns_.resize(entries_.size());
+  row_entries_.resize(entries_.size());
   filled_.assign(row_start_.begin(), row_start_.end());
   for (int column = 0; column < count; ++column)
     for (int e = columns_[column].first; e < columns_[column].end; ++e) row_columns_[filled_[entries_[e].column]++] = column;
   for (int column = 0; column < count; ++column) filled_[column] = columns_[column].first;
   for (int row = 0; row < count; ++row)
-    for (int i = row_start_[row]; i < row_start_[row + 1]; ++i) entries_[filled_[row_columns_[i]]++].column = row;
+    for (int i = row_start_[row]; i < row_start_[row + 1]; ++i) {
+      row_entries_[i] = filled_[row_columns_[i]]++;
+      entries_[row_entries_[i]].column = row;
+    }
 }
 
 void BlockMatrix::place() {
@@ -202,22 +207,47 @@ void BlockMatrix::subtractOuter(const Column& column, int e, std::size_t* target
   }
 }
 
-// No two entries change the same block, so threads share them. Early entries have the most products: a chunk takes entries in steps of
-// the number of chunks.
-void BlockMatrix::subtractAllOuter(const Column& column, Team* team) {
-  const int chunks = std::clamp((column.end - column.first) / ENTRIES_AT_ONCE, 1, MOST_CHUNKS);
-  team->forChunks(chunks, [&](int chunk) {
-    for (int e = column.first + chunk; e < column.end; e += chunks) subtractOuter(column, e, targets_.data() + chunk * most_entries_);
-  });
+// Left-looking: a column takes the outer products of those before it, in their order, and is factored. Each block's sum is the same
+// whichever thread makes it. @param shared other threads factor columns before it
+bool BlockMatrix::eliminate(int at, bool shared, std::size_t* targets) {
+  if (columns_[at].size == 0) return true;
+  for (int i = row_start_[at]; i < row_start_[at + 1]; ++i) {
+    const int before = row_columns_[i];
+    if (columns_[before].size == 0) continue;
+    if (shared)
+      for (Wait wait; !done_[before].load(std::memory_order_acquire);) wait.once();
+    subtractOuter(columns_[before], row_entries_[i], targets);
+  }
+  return factorColumn(columns_[at]);
+}
+
+// Takes columns while there are any, in their order, so that those that a column waits for are taken. One that fails is as good as done.
+bool BlockMatrix::eliminateByTurns(std::size_t* targets, std::atomic<int>* next) {
+  bool all = true;
+  for (int at = 0; (at = next->fetch_add(1, std::memory_order_relaxed)) < static_cast<int>(columns_.size());) {
+    all = eliminate(at, true, targets) && all;
+    done_[at].store(1, std::memory_order_release);
+  }
+  return all;
 }
 
 bool BlockMatrix::factor(Team* team) {
-  for (const Column& column : columns_) {
-    if (column.size == 0) continue;
-    if (!factorColumn(column)) return false;
-    subtractAllOuter(column, team);
+  const auto count = static_cast<int>(columns_.size());
+  if (!team->isGathered() || entries_.size() < MANY_ENTRIES) {
+    for (int at = 0; at < count; ++at)
+      if (!eliminate(at, false, targets_.data())) return false;
+    return true;
   }
-  return true;
+  if (done_room_ < columns_.size()) {
+    done_room_ = columns_.size();
+    done_ = std::make_unique<std::atomic<char>[]>(done_room_);
+  }
+  for (int at = 0; at < count; ++at) done_[at].store(0, std::memory_order_relaxed);
+  std::atomic<int> next{0}, failed{0};
+  team->forChunks(MOST_CHUNKS, [&](int chunk) {
+    if (!eliminateByTurns(targets_.data() + chunk * most_entries_, &next)) failed.store(1, std::memory_order_relaxed);
+  });
+  return failed.load(std::memory_order_relaxed) == 0;
 }
 
 void BlockMatrix::forward(const Column& column, Eigen::Ref<Eigen::VectorXd> x) const {

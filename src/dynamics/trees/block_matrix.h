@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <atomic>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -37,7 +39,7 @@ class BlockMatrix {
   int offset(int block) const { return offsets_[block]; }
   int size() const { return size_; }
 
-  /** @param team its threads share the outer products of a column. @return false if the matrix is not positive definite */
+  /** @param team its threads share the columns. @return false if the matrix is not positive definite */
   bool factor(Team* team);
   /** Solves in place. Precondition: factor */
   void solve(Eigen::Ref<Eigen::VectorXd> x) const;
@@ -63,7 +65,8 @@ class BlockMatrix {
   bool factorColumn(const Column& column);
   void findTargets(const Column& column, int e, std::size_t* targets) const;
   void subtractOuter(const Column& column, int e, std::size_t* targets);
-  void subtractAllOuter(const Column& column, Team* team);
+  bool eliminate(int at, bool shared, std::size_t* targets);
+  bool eliminateByTurns(std::size_t* targets, std::atomic<int>* next);
   void forward(const Column& column, Eigen::Ref<Eigen::VectorXd> x) const;
   void backward(const Column& column, Eigen::Ref<Eigen::VectorXd> x) const;
 
@@ -74,15 +77,18 @@ class BlockMatrix {
   std::vector<int> analysed_sizes_;
   std::vector<std::pair<int, int>> analysed_couplings_;
   EliminationOrder order_;
-  std::vector<int> neighbours_;                        // of the block that is eliminated
-  std::vector<int> row_start_, row_columns_, filled_;  // the entries row by row, while they are sorted
-  std::vector<int> position_;                          // per block: its column
+  std::vector<int> neighbours_;                             // of the block that is eliminated
+  std::vector<int> row_start_, row_columns_, row_entries_;  // row by row: the columns with an entry there, ascending, and the entries
+  std::vector<int> filled_;                                 // of columns or rows, while entries are sorted
+  std::vector<int> position_;                               // per block: its column
   std::vector<Column> columns_;
   std::vector<Entry> entries_;
   std::vector<int> rows_;  // per entry: first row of its row's block in a vector
   std::vector<double> values_;
-  std::size_t most_entries_ = 0;      // of a column
-  std::vector<std::size_t> targets_;  // in values_: blocks that an entry's outer products are subtracted from; for each chunk of entries
+  std::size_t most_entries_ = 0;               // of a column
+  std::vector<std::size_t> targets_;           // in values_: blocks that an entry's outer products are subtracted from; for each chunk
+  std::unique_ptr<std::atomic<char>[]> done_;  // per column, while threads share them: whether it is factored
+  std::size_t done_room_ = 0;
 };
 
 }  // namespace blem_sim::dynamics

@@ -1,27 +1,8 @@
 #include "trees/team.h"
 
-#include <thread>
+#include "trees/wait.h"
 
 namespace blem_sim::dynamics {
-namespace {
-
-constexpr int PATIENCE = 2000;  // looks at a loop before a waiting thread yields its processor
-
-/** A wait of microseconds: the thread looks again and again, and yields the processor only after PATIENCE looks. */
-class Wait {
- public:
-  void once() {
-    if (++looks_ > PATIENCE) return std::this_thread::yield();
-#if defined(__x86_64__) || defined(__i386__)
-    __builtin_ia32_pause();
-#endif
-  }
-
- private:
-  int looks_ = 0;
-};
-
-}  // namespace
 
 void Team::gather(int helpers, tbb::task_group* group) {
   gathered_ = true;

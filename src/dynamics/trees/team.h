@@ -26,6 +26,8 @@ class Team {
     dismiss(&group);
   }
 
+  bool isGathered() const { return gathered_; }
+
   /** Calls body(chunk) for chunks 0 to count - 1, in any order and at once; returns when all are done. */
   template <typename Body>
   void forChunks(int count, const Body& body) {
