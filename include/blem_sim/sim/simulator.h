@@ -85,7 +85,7 @@ class Simulator {
    * @throws InputError if there is no such live environment, or it is of the other kind; nothing is changed then
    */
   void updateCloud(const std::string& environment, CloudSurface* surface, std::vector<SearchedAhead> ahead = {});
-  /** What a live environment may touch, for searchAhead; nothing if there is no such live environment. */
+  /** Colliders that a live environment may touch, for searchAhead; none if there is no such live environment. */
   CloudNeighbours cloudNeighbours(const std::string& environment) const;
 
   /**

@@ -6,6 +6,7 @@
 #include "blem_sim/geometry/bvh_traversal.h"
 #include "blem_sim/geometry/closest_points.h"
 #include "blem_sim/geometry/ray_cast.h"
+#include "clouds/turned_box.h"
 
 namespace blem_sim::sim {
 namespace {
@@ -33,13 +34,6 @@ bool isInside(const contact::CollisionGeometry& geometry, const Vector3& p) {
     ++crossings;
   }
   return false;
-}
-
-/** Box in another frame that holds the box. */
-Box turned(const Box& box, const Pose& X) {
-  Box all;
-  for (int corner = 0; corner < 8; ++corner) all.extend(X * box.corner(static_cast<Box::CornerType>(corner)));
-  return all;
 }
 
 /** [m] From a point inside straight down to the surface; infinity if nothing is there. @param down unit, in the geometry's frame */

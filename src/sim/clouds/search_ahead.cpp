@@ -1,18 +1,12 @@
 // Contacts of a live environment's next surface, before it is exchanged.
 #include "blem_sim/contact/narrow_phase.h"
 #include "blem_sim/sim/simulator_types.h"
+#include "clouds/turned_box.h"
 
 namespace blem_sim::sim {
 namespace {
 
 constexpr double MARGIN = 0.001;  // [m] beyond the layers
-
-/** Box of a geometry in the world. */
-Box worldBox(const contact::CollisionGeometry& geometry, const Pose& X_WC) {
-  Box box;
-  for (int corner = 0; corner < 8; ++corner) box.extend(X_WC * geometry.bounds().corner(static_cast<Box::CornerType>(corner)));
-  return box;
-}
 
 }  // namespace
 
@@ -23,14 +17,14 @@ std::vector<SearchedAhead> searchAhead(const CloudNeighbours& neighbours, const 
   own.geometry = surface.geometry;
   own.radius = surface.isMesh() ? neighbours.width : surface.radius;
   const Pose X_WC = makePose(surface.origin);
-  const Box box = worldBox(*own.geometry, X_WC);
+  const Box box = turned(own.geometry->bounds(), X_WC);
   contact::NarrowPhaseWorkspace workspace;
   contact::ContactManifold found;
   for (const CloudNeighbours::Neighbour& neighbour : neighbours.colliders) {
     other.geometry = neighbour.geometry;
     other.radius = neighbour.radius;
     const Vector3 reach = Vector3::Constant(own.radius + other.radius + MARGIN);
-    const Box near = worldBox(*other.geometry, neighbour.X_WC);
+    const Box near = turned(other.geometry->bounds(), neighbour.X_WC);
     if (!box.intersects(Box(near.min() - reach, near.max() + reach))) continue;
     SearchedAhead searched{neighbour.collider, {}};
     // The second search chooses the nearest candidates, and so the next one need not.
