@@ -27,6 +27,7 @@ blem_sim_room(contact blem_sim_geometry)
 blem_sim_precompiled_as(blem_sim_contact blem_sim_geometry)
 blem_sim_room(reduction blem_sim_contact)
 blem_sim_precompiled_as(blem_sim_reduction blem_sim_geometry)
+target_link_libraries(blem_sim_reduction PRIVATE PkgConfig::TBB)
 
 # The kernels of the contact search, one source for several instruction sets; the fastest that the machine has is chosen when it runs.
 set(kernels ${PROJECT_SOURCE_DIR}/src/contact/kernels)

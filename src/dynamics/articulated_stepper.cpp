@@ -162,7 +162,6 @@ NewtonSettings ArticulatedStepper::settingsFor(const Island& island) const {
   for (const int tree : island.model.trees) lightest = std::min(lightest, motion_.composite[forest_.trees()[tree].first_node].mass);
   settings.contact_tolerance *= lightest / LIGHT;
   settings.gradient_tolerance *= std::sqrt(lightest / LIGHT);
-  settings.helpers = island.contacts.size() >= SHARED ? settings_.threads - 1 : 0;
   return settings;
 }
 
@@ -201,20 +200,21 @@ void ArticulatedStepper::reckonWork(bool leaps, Island* island) {
     for (const int tree : model.trees) computeTwists(forest_, tree, motion_, impact_space_.leap, &impact_space_.twist);
   geometry::makeRoomFor(contacts.size(), &island->apparent_work);
   island->apparent_work.assign(contacts.size(), 0);
-  for (const PairContacts& of_pair : model.pairs) {
+  forPairs(island->solver.atHand(), [&](std::size_t index) {
+    const PairContacts& of_pair = model.pairs[index];
     Vector6 before = relativeTwist(of_pair.pair, motion_.twist);
     if (leaps) before += relativeTwist(of_pair.pair, impact_space_.twist);
     for (int i = of_pair.first; i < of_pair.end; ++i) {
       const ContactTerm& contact = contacts[i];
       if (!contact.impulse.isZero(0)) island->apparent_work[i] = apparentWork(contact, velocityAt(before, contact.point));
     }
-  }
+  });
 }
 
 void ArticulatedStepper::solveIsland(const Scene& scene, const StepInput& input, Island* island) {
   IslandModel& model = island->model;
   const TermSource source{scene, forest_, motion_, input, settings_, memory_};
-  for (const int tree : model.trees) setFreeMomentum(ahead(source, *island, tree), &motion_, &space_);
+  forTrees(model.trees, island->solver.team(), [&](int tree) { setFreeMomentum(ahead(source, *island, tree), &motion_, &space_); });
   makeTerms(source, island);
   model.up = -scene.gravity();
   addEfforts(input, *island->solver.terms(), &space_);
@@ -232,7 +232,7 @@ void ArticulatedStepper::finishIsland(const Scene& scene, const StepInput& input
     const ForestTree& t = forest_.trees()[tree];
     motion_.next_velocity.segment(t.first_dof, t.dofCount()) = space_.velocity.segment(t.first_dof, t.dofCount());
   }
-  const SolvedIsland solved{forest_, scene, model, island->solver.found().terms, input.dt};
+  const SolvedIsland solved{forest_, scene, model, island->solver.found().terms, input.dt, island->solver.team()};
   island->followed = followFast(solved, motion_, space_, &way_);
   computeWrenches(solved, way_, &motion_, &space_, &result->joint_wrenches);
   bookBeforeWay(solved, motion_, &space_, result);
@@ -242,11 +242,15 @@ void ArticulatedStepper::finishIsland(const Scene& scene, const StepInput& input
 }
 
 void ArticulatedStepper::readContacts(const StepInput& input, const Island& island, SolveResult* result) const {
-  for (std::size_t i = 0; i < island.contacts.size(); ++i) {
-    const ContactConstraint& c = input.contacts[island.contacts[i]];
-    result->contact_forces[island.contacts[i]] = termSign(c) / input.dt * island.solver.found().terms.contacts[i].impulse;
-    result->apparent_work[island.contacts[i]] = island.apparent_work[i];
-  }
+  forPairs(island.solver.atHand(), [&](std::size_t index) {
+    const PairContacts& of_pair = island.model.pairs[index];
+    for (int i = of_pair.first; i < of_pair.end; ++i) {
+      const int contact = island.contacts[i];
+      const double sign = termSign(input.contacts[contact]);
+      result->contact_forces[contact] = sign / input.dt * island.solver.found().terms.contacts[i].impulse;
+      result->apparent_work[contact] = island.apparent_work[i];
+    }
+  });
 }
 
 void ArticulatedStepper::readJoints(const StepInput& input, const Island& island, SolveResult* result) {
@@ -311,7 +315,11 @@ void ArticulatedStepper::forEachIsland(const Work& work) {
   if (settings_.threads == 1 || alone) {
     for (int i = 0; i < island_count_; ++i) work(&islands_of_step_[i]);
   } else {
-    arena_.execute([&] { tbb::parallel_for(0, island_count_, [&](int i) { work(&islands_of_step_[i]); }); });
+    const auto share = [&](Island* island) {
+      const int helpers = island->contacts.size() >= SHARED ? settings_.threads - 1 : 0;
+      island->solver.team()->with(helpers, [&] { work(island); });
+    };
+    arena_.execute([&] { tbb::parallel_for(0, island_count_, [&](int i) { share(&islands_of_step_[i]); }); });
   }
 }
 

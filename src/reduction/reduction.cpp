@@ -1,5 +1,9 @@
 #include "blem_sim/reduction/reduction.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <climits>
 
@@ -147,6 +151,23 @@ bool isCut(const contact::ContactManifold& manifold, int limit, const ThinnedCon
   return static_cast<int>(manifold.contacts.size()) > limit;
 }
 
+/** Calls work(manifold, workspace) for all, many on the threads of the TBB arena at hand. */
+template <typename Work>
+void forManifolds(int count, ReductionWorkspace* workspace, const Work& work) {
+  constexpr int AT_ONCE = 16;  // the size of a chunk: some ten microseconds
+  const int threads = tbb::this_task_arena::max_concurrency();
+  if (threads == 1 || count <= AT_ONCE) {
+    for (int m = 0; m < count; ++m) work(m, workspace);
+    return;
+  }
+  std::vector<ReductionWorkspace>& of_threads = (*workspace)->of_threads;
+  if (static_cast<int>(of_threads.size()) < threads) of_threads.resize(threads);
+  tbb::parallel_for(tbb::blocked_range<int>(0, count, AT_ONCE), [&](const tbb::blocked_range<int>& range) {
+    ReductionWorkspace* const of_thread = &of_threads[tbb::this_task_arena::current_thread_index()];
+    for (int m = range.begin(); m < range.end(); ++m) work(m, of_thread);
+  });
+}
+
 }  // namespace
 
 const std::vector<Reduction>& reductionTable() {
@@ -182,22 +203,25 @@ ReductionLoss reduceManifolds(const ManifoldsToReduce& asked, const Reduction& m
   room.sizes.resize(count);
   if (static_cast<int>(room.thinned.size()) < count) room.thinned.resize(count);
   reduced->resize(count);
-  const auto how = [&](int m) { return Reducing{method, memory->of(manifolds[m]), workspace}; };
-  for (int m = 0; m < count; ++m) {
+  const std::vector<ContactBudget>& budgets = asked.budgets;
+  forManifolds(count, workspace, [&](int m, ReductionWorkspace* of_thread) {
+    const Reducing how{method, memory->of(manifolds[m]), of_thread};
     copyAllButContacts(manifolds[m], &(*reduced)[m]);
-    const std::vector<ContactBudget>& budgets = asked.budgets;
     room.limits[m] = all ? INT_MAX : std::min(budgets[asked.model_a[m]].max_contacts, budgets[asked.model_b[m]].max_contacts);
-    room.sizes[m] = prepare(manifolds[m], room.limits[m], how(m), &room.thinned[m], &(*reduced)[m].contacts);
-  }
+    room.sizes[m] = prepare(manifolds[m], room.limits[m], how, &room.thinned[m], &(*reduced)[m].contacts);
+  });
   if (all) return {};
   applyBudgets(asked, &room);
+  room.lacks.resize(count);
+  forManifolds(count, workspace, [&](int m, ReductionWorkspace* of_thread) {
+    const Reducing how{method, memory->of(manifolds[m]), of_thread};
+    room.lacks[m] = finish(manifolds[m], room.limits[m], how, room.thinned[m], &(*reduced)[m].contacts);
+  });
   ReductionLoss loss;
   for (int m = 0; m < count; ++m) {
-    std::vector<contact::Contact>& kept = (*reduced)[m].contacts;
-    const float lack = finish(manifolds[m], room.limits[m], how(m), room.thinned[m], &kept);
-    if (!isCut(manifolds[m], room.limits[m], room.thinned[m], kept)) continue;
+    if (!isCut(manifolds[m], room.limits[m], room.thinned[m], (*reduced)[m].contacts)) continue;
     ++loss.cut_pairs;
-    loss.wrench = std::max(loss.wrench, static_cast<double>(lack));
+    loss.wrench = std::max(loss.wrench, static_cast<double>(room.lacks[m]));
   }
   memory->remember(*reduced);
   loss.contacts = countContacts(manifolds) - countContacts(*reduced);

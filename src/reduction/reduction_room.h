@@ -21,6 +21,7 @@ struct BudgetRoom {
   std::vector<contact::Contact> sound, pierced, more, again;
   std::vector<ThinnedContacts> thinned;  ///< manifold by manifold
   std::vector<int> limits, sizes;        ///< manifold by manifold: numbers of contacts that may be kept, and would be
+  std::vector<float> lacks;              ///< manifold by manifold: largest lack of what is kept in any wrench
   std::vector<int> touching, counts, shares;
   std::vector<std::pair<int, int>> of_models;  ///< (model, manifold)
   std::vector<std::pair<int, int>> order;      ///< (count, party)
@@ -45,6 +46,7 @@ struct ReductionWorkspace::Room {
   BudgetRoom budgets;
   HullRoom hull;
   SpringRoom springs;
+  std::vector<ReductionWorkspace> of_threads;  ///< of others that reduce manifolds at the same time
 };
 
 }  // namespace blem_sim::reduction

@@ -25,7 +25,7 @@ Simulator::Impl::Impl(const SimulationConfig& config, const model::UriResolver& 
       world_(config.gravity, config.solver),
       builder_(config.contact, config.time_step, config.base_directory, resolver, std::move(log)),
       pair_searches_(config.solver.threads),
-      constraint_maker_(config.contact),
+      constraint_maker_(config.contact, config.solver.threads),
       energy_balance_(config.solver) {
   for (const EnvironmentConfig& environment : config_.environments) {
     builder_.addEnvironment(environment, &world_);

@@ -88,6 +88,12 @@ TEST(ArticulatedLoop, CarriesItsWeight) {
   EXPECT_GT(result.joint_wrenches[bar.closing].force.norm(), 0.1);
 }
 
+double largestForce(const SolveResult& result) {
+  double largest = 0;
+  for (const Vector3& force : result.contact_forces) largest = std::max(largest, force.norm());
+  return largest;
+}
+
 TEST(ArticulatedThreads, AnyNumberGivesTheSameBits) {
   const auto run = [](int threads) {
     SolverSettings settings;
@@ -107,6 +113,65 @@ TEST(ArticulatedThreads, AnyNumberGivesTheSameBits) {
   const WorldState one = run(1);
   EXPECT_EQ(run(2), one);
   EXPECT_EQ(run(4), one);
+}
+
+/** Gears in a wall, each turning against its neighbours and rubbing on them: one island, which is swept in regions. */
+struct Gears {
+  static constexpr int COLUMNS = 30, ROWS = 10;
+  static constexpr double RADIUS = 0.1;
+
+  explicit Gears(int threads) : world(Vector3::Zero(), settingsOf(threads)) {
+    for (int i = 0; i < COLUMNS * ROWS; ++i) {
+      world.addBody(boxBody("gear", 1, Vector3::Constant(RADIUS), {2 * RADIUS * (i % COLUMNS), 0, 2 * RADIUS * (i / COLUMNS)}));
+      BodyState state = world.bodyState(i);
+      state.w_WB = {0, (i % COLUMNS + i / COLUMNS) % 2 ? 1.0 : 1.5, 0};
+      state.v_WCom = {i % COLUMNS < COLUMNS / 2 ? 0.5 : -0.5, 0, 0};
+      world.setBodyState(i, state);
+      if (i % COLUMNS > 0) touch(i, i - 1, Vector3::UnitX());
+      if (i >= COLUMNS) touch(i, i - COLUMNS, Vector3::UnitZ());
+    }
+  }
+  static SolverSettings settingsOf(int threads) {
+    SolverSettings settings;
+    settings.threads = threads;
+    return settings;
+  }
+  void touch(int a, int b, const Vector3& normal) {
+    ContactConstraint c;
+    c.body_a = a;
+    c.body_b = b;
+    c.normal_BA = normal;
+    c.point = world.bodyState(a).X_WB.translation() - RADIUS * normal;
+    c.friction = 0.5;
+    c.id = contacts.size();
+    contacts.push_back(c);
+  }
+  Vector3 momentum() const {
+    Vector3 sum = Vector3::Zero();
+    for (int i = 0; i < COLUMNS * ROWS; ++i) sum += world.bodyState(i).v_WCom;
+    return sum;
+  }
+
+  World world;
+  std::vector<ContactConstraint> contacts;
+};
+
+TEST(ArticulatedThreads, RegionsOfALargeIslandAreSweptToTheSameBits) {
+  const auto run = [](int threads) {
+    Gears gears(threads);
+    const double before = gears.world.kineticEnergy();
+    for (int i = 0; i < 3; ++i) {
+      const SolveResult& result = gears.world.step(DT, gears.contacts, {});
+      EXPECT_TRUE(result.finite);
+      EXPECT_LT(result.residual, 0.01 * largestForce(result)) << "of Coulomb's law, step " << i;
+    }
+    EXPECT_LT(gears.momentum().norm(), 1e-10);
+    EXPECT_LT(gears.world.kineticEnergy(), 0.7 * before);
+    return gears.world.save();
+  };
+  const WorldState one = run(1);
+  EXPECT_EQ(run(2), one);
+  EXPECT_EQ(run(3), one);
 }
 
 // A rotor's inertia adds to the link's: the same effort turns the joint more slowly, and the same gravity too.

@@ -70,8 +70,9 @@ struct HitTrees {
       c.id = i;
       constraints.push_back(c);
       indices.push_back(i);
-      addContact(source(), c, &model, &terms);
     }
+    Team team;
+    makeContactTerms(source(), indices, &team, &model, &terms);
   }
   TermSource source() const { return {scene, forest, motion, input, settings, memory}; }
 

@@ -4,11 +4,11 @@
 #include <gtest/gtest.h>
 
 #include "island/island_motion.h"
-#include "island/swept_island.h"
 #include "newton/island_faults.h"
 #include "problem/island_velocity.h"
 #include "problem/make_terms.h"
 #include "support/standard_values.h"
+#include "sweeps/swept_island.h"
 
 namespace blem_sim::dynamics {
 namespace {
@@ -61,9 +61,9 @@ struct ChainOnBox {
       c.normal_BA = Vector3::UnitZ();
       c.friction = 0.5;
       c.id = corner;
-      addContact(source, c, &model, &terms);
+      contacts.push_back(c);
     }
-    weighContacts(source, &model, &terms);
+    makeContactTerms(source, {0, 1, 2, 3}, &team, &model, &terms);
     start();
   }
   /** Velocities as before the solve. */

@@ -1,5 +1,6 @@
 // Budgets hold over several manifolds, for every reduction.
 #include <gtest/gtest.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <climits>
@@ -47,6 +48,32 @@ TEST_P(Budgets, HoldForRobotObjectsAndStaticWorld) {
   EXPECT_LE(contactsOf(2, manifolds, model_a, model_b), 20);
   EXPECT_LE(contactsOf(3, manifolds, model_a, model_b), 20);
   EXPECT_GT(contactsOf(1, manifolds, model_a, model_b), 25);
+}
+
+TEST_P(Budgets, AreTheSameForAnyNumberOfThreads) {
+  std::vector<contact::ContactManifold> manifolds[2];
+  ReductionLoss loss[2];
+  for (const int threads : {1, 3}) {
+    std::vector<contact::ContactManifold>& of_run = manifolds[threads / 2];
+    std::vector<int> model_a, model_b;
+    for (int m = 0; m < 60; ++m) {
+      of_run.push_back(manifoldOf(m, m + 1, noisyPatch(20 + m, 10 + m)));
+      model_a.push_back(1 + m / 4);
+      model_b.push_back(m % 3 ? 0 : 1 + m / 5);
+    }
+    ReductionMemory memory;
+    const std::vector<ContactBudget> budgets(20, {30});
+    tbb::task_arena(threads).execute([&] { loss[threads / 2] = reduceAll(of_run, model_a, model_b, budgets, method(), &memory); });
+  }
+  EXPECT_EQ(loss[0].contacts, loss[1].contacts);
+  EXPECT_EQ(loss[0].wrench, loss[1].wrench);
+  for (int m = 0; m < 60; ++m) {
+    ASSERT_EQ(manifolds[0][m].contacts.size(), manifolds[1][m].contacts.size());
+    for (std::size_t c = 0; c < manifolds[0][m].contacts.size(); ++c) {
+      EXPECT_EQ(manifolds[0][m].contacts[c].id, manifolds[1][m].contacts[c].id);
+      EXPECT_EQ(manifolds[0][m].contacts[c].point, manifolds[1][m].contacts[c].point);
+    }
+  }
 }
 
 TEST_P(Budgets, LeaveThreeOfEveryPairHoweverManyThereAre) {

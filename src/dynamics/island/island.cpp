@@ -21,8 +21,7 @@ void makeTerms(const TermSource& source, Island* island) {
     terms.loops.push_back(loopTerm(source, l, &pair));
     model.loop_pairs.push_back(pair);
   }
-  for (const int index : island->contacts) addContact(source, source.input.contacts[index], &model, &terms);
-  weighContacts(source, &model, &terms);
+  makeContactTerms(source, island->contacts, island->solver.team(), &model, &terms);
 }
 
 }  // namespace blem_sim::dynamics

@@ -1,8 +1,8 @@
 // Heaps: many bodies that push each other. Newton's method where it may succeed at its price, else sweeps, polished where they are quiet.
 #pragma once
 
-#include "island/swept_island.h"
 #include "newton/proximal_steps.h"
+#include "sweeps/swept_island.h"
 
 namespace blem_sim::dynamics {
 

@@ -284,7 +284,7 @@ void advanceIsland(const SolvedIsland& island, const FreeMotion& way, ForestMoti
   const Forest& forest = island.forest;
   const double dt = island.dt;
   const bool flies = island.found.contacts.empty() && island.found.loops.empty();
-  for (const int tree : island.model.trees) {
+  forTrees(island.model.trees, island.team, [&](int tree) {
     const ForestTree& t = forest.trees()[tree];
     if (t.free) motion->momentum[tree] = space->mass_velocity.segment<6>(t.first_dof) + 0.5 * dt * motion->products.segment<6>(t.first_dof);
     if (isFast(*motion, tree)) {
@@ -295,20 +295,20 @@ void advanceIsland(const SolvedIsland& island, const FreeMotion& way, ForestMoti
       motion->owed.segment(t.first_dof, t.dofCount()).setZero();
       integrate(forest, tree, dt, motion);
     }
-  }
+  });
   for (const MimicRelation& m : forest.mimics())
     if (std::binary_search(island.model.trees.begin(), island.model.trees.end(), forest.nodes()[m.node].tree))
       motion->position[m.node] = m.multiplier * motion->position[m.master] + m.offset;
-  for (const int tree : island.model.trees) {
+  forTrees(island.model.trees, island.team, [&](int tree) {
     const ForestTree& t = forest.trees()[tree];
     const Vector3 reference = motion->reference[tree];
     const Vector3 com = reference + motion->tree_com[tree] + dt * linear(motion->momentum[tree]) / motion->composite[t.first_node].mass;
     placeBodies(forest, tree, motion);
     computeInertias(forest, tree, motion);
-    if (!t.free) continue;
+    if (!t.free) return;
     if (flies && !isFast(*motion, tree) && t.node_end - t.first_node > 1) followMomentum(forest, tree, com, motion);
     motion->momentum[tree] = moveWrench(motion->momentum[tree], reference - motion->reference[tree]);
-  }
+  });
   const auto tooFast = [&](int tree) { return motion->pace[tree] == Pace::TOO_FAST; };
   if (std::any_of(island.model.trees.begin(), island.model.trees.end(), tooFast)) brake(forest, island.model.trees, motion, space);
 }

@@ -15,12 +15,6 @@ NewtonReport IslandSolver::solve(const Forest& forest, const ForestMotion& motio
                                  SolverSpace* space) {
   found_.mimic_impulses.clear();
   island_.emplace(IslandAtHand{forest, motion, model, &found_, space, team_.get()});
-  NewtonReport report;
-  team_->with(settings.helpers, [&] { report = solveFirst(settings); });
-  return report;
-}
-
-NewtonReport IslandSolver::solveFirst(const NewtonSettings& settings) {
   newton_.start(*island_);
   steps_.start(*island_, &newton_);
   swept_.start(*island_, &newton_);
@@ -41,11 +35,8 @@ NewtonReport IslandSolver::solveFirst(const NewtonSettings& settings) {
 NewtonReport IslandSolver::solveAgain(const NewtonSettings& settings) {
   setKinetic(*island_);
   keepFirst(*island_);
-  NewtonReport report;
-  team_->with(settings.helpers, [&] {
-    report = isSwept() ? heap_.solve(settings) : steps_.solve(settings);
-    recoverFromFaults(settings, &report);
-  });
+  NewtonReport report = isSwept() ? heap_.solve(settings) : steps_.solve(settings);
+  recoverFromFaults(settings, &report);
   return report;
 }
 

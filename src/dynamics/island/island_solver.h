@@ -29,13 +29,16 @@ class IslandSolver {
    */
   bool limitCorrections(double speed);
 
+  /** Threads that share the loops of the island, as long as they are gathered. */
+  Team* team() { return team_.get(); }
+  /** The island of the last solve. */
+  const IslandAtHand& atHand() const { return *island_; }
   /** The answer to the last solve. */
   const IslandAnswer& found() const { return found_; }
   /** Terms of the island: before a solve to be made, after it those of the answer, for reactions that act beside the solve. */
   IslandTerms* terms() { return &found_.terms; }
 
  private:
-  NewtonReport solveFirst(const NewtonSettings& settings);
   bool isSwept() const { return island_->model.isHeap() || island_->model.isMixedHeap(); }
   void recoverFromFaults(const NewtonSettings& settings, NewtonReport* report);
 

@@ -1,9 +1,9 @@
 // Sweeps for an island that Newton's method and the heap's policy did not solve; if they fail, too, a bound on its energy.
 #pragma once
 
-#include "island/swept_island.h"
 #include "newton/proximal_steps.h"
 #include "problem/kept_solution.h"
+#include "sweeps/swept_island.h"
 
 namespace blem_sim::dynamics {
 

@@ -18,17 +18,23 @@ void IslandContacts::forRanges(const Visit& visit) {
 
 void IslandContacts::fill(const IslandAtHand& island) {
   island_ = &island;
-  blocks_.clear();
   ranges_.clear();
   const std::vector<ContactTerm>& terms = island.terms()->contacts;
+  std::size_t count = 0;
   for (const PairContacts& p : island.model.pairs) {
-    const std::size_t start = blocks_.size();
-    for (int first = p.first; first < p.end; first += LANES) {
-      blocks_.emplace_back();
-      for (int lane = 0; lane < LANES; ++lane) setLane(first + lane < p.end ? &terms[first + lane] : nullptr, lane, &blocks_.back());
-    }
-    ranges_.push_back({start, blocks_.size()});
+    const std::size_t start = count;
+    count += (p.end - p.first + LANES - 1) / LANES;
+    ranges_.push_back({start, count});
   }
+  blocks_.resize(count);
+  forPairs(island, [&](std::size_t index) {
+    const PairContacts& p = island.model.pairs[index];
+    std::size_t b = ranges_[index].first;
+    for (int first = p.first; first < p.end; first += LANES, ++b) {
+      blocks_[b] = ContactBlock();
+      for (int lane = 0; lane < LANES; ++lane) setLane(first + lane < p.end ? &terms[first + lane] : nullptr, lane, &blocks_[b]);
+    }
+  });
 }
 
 void IslandContacts::soften(double softness) {

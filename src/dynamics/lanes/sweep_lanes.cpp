@@ -272,8 +272,8 @@ BLEM_SIM_LANES void sweepFree(const SweepBodies& bodies, const SweptContacts& co
   double nothing[6] = {};
   double *of_a[SWEEP_LANES], *of_b[SWEEP_LANES];
   for (int lane = 0; lane < SWEEP_LANES; ++lane) {
-    of_a[lane] = bodies.a.first_dof[lane] < 0 ? nothing : velocity + bodies.a.first_dof[lane];
-    of_b[lane] = bodies.b.first_dof[lane] < 0 ? nothing : velocity + bodies.b.first_dof[lane];
+    of_a[lane] = bodies.a.first[lane] < 0 ? nothing : velocity + bodies.a.first[lane];
+    of_b[lane] = bodies.b.first[lane] < 0 ? nothing : velocity + bodies.b.first[lane];
   }
   WideChanges changes;
   WideBodies a = gather(of_a), b = gather(of_b);

@@ -42,7 +42,7 @@ struct SweepGroup {
 
 /** Velocity of eight bodies, and their inverse inertias. Lanes of the static world, or without a pair, stay at zero. */
 struct alignas(8 * SWEEP_LANES) BodyLanes {
-  int first_dof[SWEEP_LANES];              ///< -1: none
+  int first[SWEEP_LANES];                  ///< of the six numbers of its velocity; -1: none
   double inverse_inertia[6][SWEEP_LANES];  ///< [1/(kg m^2)] lower triangle by rows, world axes
   SweepLanes inverse_mass;                 ///< [1/kg]
 };
@@ -83,7 +83,7 @@ struct SweepChange {
  */
 void sweep(const SweepGroup& group, const SweptContacts& contacts, const TwistLanes& twist, TwistLanes* wrench, SweepChange* change);
 
-/** The same with the bodies' velocities instead of twists and wrenches. @param velocity by dof: angular, then linear */
+/** The same with the bodies' velocities instead of twists and wrenches. @param velocity of all bodies, each angular, then linear */
 void sweepFree(const SweepBodies& bodies, const SweptContacts& contacts, double* velocity, SweepChange* change);
 
 /** Impulses move on by `share` of the last search direction, which the last changes join. */

@@ -14,7 +14,6 @@ struct NewtonSettings {
   double gradient_tolerance = 1e-10;  ///< [sqrt(kg) m/s]
   double contact_tolerance = 1e-7;    ///< [N s]
   double joint_tolerance = 1e-7;      ///< [rad/s or m/s]
-  int helpers = 0;                    ///< threads that take part in the loops of one island, beside the caller
 };
 
 /** Effort and quality of a solve. */

@@ -12,8 +12,9 @@ constexpr double NO_GAP = 1e-11;           // [m] made of rounding: gaps that co
 constexpr double JOINT_PROXIMAL = 1e-3;    // gain of friction and limits = inertia / this
 constexpr double VELOCITY_END = 1e-6;      // gain at the end of a motor's velocities = inertia / this
 constexpr double DRY_MOMENTUM = 0.9;  // share of its last change that stuck friction is expected to change by: all of it would never settle
-constexpr double LOOP_PROXIMAL = 1e-4;  // rho = this * inverse inertia
-constexpr double IMMOVABLE = 1e-12;     // [1/kg or 1/(kg m^2)]
+constexpr double LOOP_PROXIMAL = 1e-4;       // rho = this * inverse inertia
+constexpr double IMMOVABLE = 1e-12;          // [1/kg or 1/(kg m^2)]
+constexpr std::size_t PATCHES_AT_ONCE = 16;  // the size of a chunk: some microseconds
 
 double massEntry(const TermSource& s, int dof) { return s.motion.mass[s.forest.diagonal(dof)]; }
 
@@ -169,6 +170,72 @@ void weighLoop(const TermSource& s, const BodyPair& pair, const Vector6& force, 
   }
 }
 
+void makePatches(const TermSource& s, const std::vector<int>& contacts, IslandModel* model) {
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const ContactConstraint& c = s.input.contacts[contacts[i]];
+    const bool grounded = c.body_a == WORLD_BODY;
+    const int a = s.forest.nodeOfBody(grounded ? c.body_b : c.body_a);
+    const int b = grounded || c.body_b == WORLD_BODY ? -1 : s.forest.nodeOfBody(c.body_b);
+    if (model->pairs.empty() || model->pairs.back().pair.a != a || model->pairs.back().pair.b != b) {
+      PairContacts patch;
+      patch.pair = makePair(s, a, b);
+      patch.first = static_cast<int>(i);
+      model->pairs.push_back(patch);
+    }
+    model->pairs.back().end = static_cast<int>(i) + 1;
+  }
+}
+
+ContactTerm contactTerm(const TermSource& s, const ContactConstraint& c, const BodyPair& pair) {
+  const ContactRecord* record = s.memory.find(c.id);
+  const NormalRow row = surfaceRow(c, s.input.dt, 0, s.settings);
+  ContactTerm term;
+  term.point = c.point - s.motion.reference[s.forest.nodes()[pair.a].tree];
+  term.normal = termSign(c) * c.normal_BA;
+  term.bend = bendAt(s, pair, term, c.rolling);
+  term.friction = c.friction;
+  term.target = std::abs(c.depth) > NO_GAP ? row.speed : 0;
+  term.compliance = row.compliance / s.input.dt;
+  if (record) {
+    term.previous = termSign(c) * s.input.dt * record->force;
+    term.slip = record->slip;
+  }
+  return term;
+}
+
+/** Figures that the weights of an island's contacts have in common. */
+struct ContactWeights {
+  double heaviest;  // [kg] tree
+  double hard;      // [N s] push of a blow
+};
+
+ContactWeights weightsOf(const TermSource& s, IslandModel* model) {
+  ContactWeights weights{0, 0};
+  model->mass = 0;
+  for (const int tree : model->trees) {
+    const double own = s.motion.composite[s.forest.trees()[tree].first_node].mass;
+    weights.heaviest = std::max(weights.heaviest, own);
+    model->mass += own;
+  }
+  weights.hard = model->hardPush(s.settings.max_correction_speed);
+  return weights;
+}
+
+void weighPatch(const TermSource& s, const ContactWeights& weights, const PairContacts& patch, IslandTerms* terms) {
+  Vector3 middle = Vector3::Zero();
+  for (int i = patch.first; i < patch.end; ++i) middle += terms->contacts[i].point;
+  middle /= patch.end - patch.first;
+  double inverse = inverseMass(s, patch.pair.a, middle);
+  if (patch.pair.b >= 0) inverse += inverseMass(s, patch.pair.b, middle - patch.pair.shift);
+  for (int i = patch.first; i < patch.end; ++i) {
+    ContactTerm& c = terms->contacts[i];
+    c.inverse_mass = inverse;
+    c.stiffest_rho = CONTACT_PROXIMAL * std::min(inverse, HEAVIEST / weights.heaviest);
+    // The impulse of a blow does not go on, and that of a squeeze that friction has locked need not.
+    if (c.normal.dot(c.previous) > weights.hard) c.previous.setZero();
+  }
+}
+
 }  // namespace
 
 JointTerm jointTerm(const TermSource& s, int node) {
@@ -209,56 +276,18 @@ LoopTerm loopTerm(const TermSource& s, int index, BodyPair* pair) {
   return term;
 }
 
-void addContact(const TermSource& s, const ContactConstraint& c, IslandModel* model, IslandTerms* terms) {
-  const bool grounded = c.body_a == WORLD_BODY;
-  const int a = s.forest.nodeOfBody(grounded ? c.body_b : c.body_a);
-  const int b = grounded || c.body_b == WORLD_BODY ? -1 : s.forest.nodeOfBody(c.body_b);
-  if (model->pairs.empty() || model->pairs.back().pair.a != a || model->pairs.back().pair.b != b) {
-    PairContacts of_pair;
-    of_pair.pair = makePair(s, a, b);
-    of_pair.first = static_cast<int>(terms->contacts.size());
-    model->pairs.push_back(of_pair);
-  }
-  const ContactRecord* record = s.memory.find(c.id);
-  const NormalRow row = surfaceRow(c, s.input.dt, 0, s.settings);
-  ContactTerm term;
-  term.point = c.point - s.motion.reference[s.forest.nodes()[a].tree];
-  term.normal = termSign(c) * c.normal_BA;
-  term.bend = bendAt(s, model->pairs.back().pair, term, c.rolling);
-  term.friction = c.friction;
-  term.target = std::abs(c.depth) > NO_GAP ? row.speed : 0;
-  term.compliance = row.compliance / s.input.dt;
-  if (record) {
-    term.previous = termSign(c) * s.input.dt * record->force;
-    term.slip = record->slip;
-  }
-  terms->contacts.push_back(term);
-  model->pairs.back().end = static_cast<int>(terms->contacts.size());
-}
-
-void weighContacts(const TermSource& s, IslandModel* model, IslandTerms* terms) {
-  double heaviest = 0;
-  model->mass = 0;
-  for (const int tree : model->trees) {
-    const double own = s.motion.composite[s.forest.trees()[tree].first_node].mass;
-    heaviest = std::max(heaviest, own);
-    model->mass += own;
-  }
-  const double hard = model->hardPush(s.settings.max_correction_speed);
-  for (const PairContacts& of_pair : model->pairs) {
-    Vector3 middle = Vector3::Zero();
-    for (int i = of_pair.first; i < of_pair.end; ++i) middle += terms->contacts[i].point;
-    middle /= of_pair.end - of_pair.first;
-    double inverse = inverseMass(s, of_pair.pair.a, middle);
-    if (of_pair.pair.b >= 0) inverse += inverseMass(s, of_pair.pair.b, middle - of_pair.pair.shift);
-    for (int i = of_pair.first; i < of_pair.end; ++i) {
-      ContactTerm& c = terms->contacts[i];
-      c.inverse_mass = inverse;
-      c.stiffest_rho = CONTACT_PROXIMAL * std::min(inverse, HEAVIEST / heaviest);
-      // The impulse of a blow does not go on, and that of a squeeze that friction has locked need not.
-      if (c.normal.dot(c.previous) > hard) c.previous.setZero();
+void makeContactTerms(const TermSource& source, const std::vector<int>& contacts, Team* team, IslandModel* model, IslandTerms* terms) {
+  makePatches(source, contacts, model);
+  terms->contacts.resize(contacts.size());
+  const ContactWeights weights = weightsOf(source, model);
+  team->forRanges(0, model->pairs.size(), PATCHES_AT_ONCE, [&](std::size_t first, std::size_t end) {
+    for (std::size_t p = first; p < end; ++p) {
+      const PairContacts& patch = model->pairs[p];
+      for (int i = patch.first; i < patch.end; ++i)
+        terms->contacts[i] = contactTerm(source, source.input.contacts[contacts[i]], patch.pair);
+      weighPatch(source, weights, patch, terms);
     }
-  }
+  });
 }
 
 }  // namespace blem_sim::dynamics

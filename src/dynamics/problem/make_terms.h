@@ -1,10 +1,13 @@
 // From contacts, drives and loops of the scene to the terms of an island's model.
 #pragma once
 
+#include <vector>
+
 #include "problem/island_model.h"
 #include "scene/step_memory.h"
 #include "scene/stepper.h"
 #include "trees/forest_motion.h"
+#include "trees/team.h"
 
 namespace blem_sim::dynamics {
 
@@ -24,11 +27,11 @@ JointTerm jointTerm(const TermSource& source, int node);
 /** @param index of the loop in the forest; pair: child and parent */
 LoopTerm loopTerm(const TermSource& source, int index, BodyPair* pair);
 
-/** Adds a usable contact to the terms, and to the model's last patch if it is of the same pair. */
-void addContact(const TermSource& source, const ContactConstraint& contact, IslandModel* model, IslandTerms* terms);
-
-/** Proximal weights of the patches' contacts, once all are added. */
-void weighContacts(const TermSource& source, IslandModel* model, IslandTerms* terms);
+/**
+ * Patches of the model and terms of usable contacts, each with its proximal weight.
+ * @param contacts of the input, those of a pair one after the other; team: its threads share the patches
+ */
+void makeContactTerms(const TermSource& source, const std::vector<int>& contacts, Team* team, IslandModel* model, IslandTerms* terms);
 
 /** +1 if the contact's A is the body the term's impulse acts on, -1 if it is B, A being the static world. */
 inline double termSign(const ContactConstraint& contact) { return contact.body_a == WORLD_BODY ? -1 : 1; }

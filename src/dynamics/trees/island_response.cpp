@@ -116,7 +116,7 @@ std::size_t IslandResponse::column(int dof) {
 }
 
 int IslandResponse::moverOf(const ResponseSide& side) const {
-  return side.unit < 0 ? static_cast<int>(side.base) : static_cast<int>(free_.size()) + side.unit;
+  return side.unit < 0 ? static_cast<int>(side.base) : freeBodies() + side.unit;
 }
 
 Vector6 IslandResponse::twist(const ResponseSide& side, const Eigen::VectorXd& velocity) const {
@@ -157,9 +157,9 @@ void IslandResponse::push(const ResponsePair& pair, const Vector6& wrench, Eigen
   if (pair.b.node >= 0) push(pair.b, -moveWrench(wrench, -pair.pair.shift), velocity);
 }
 
-void IslandResponse::setLane(const ResponseSide& side, int lane, BodyLanes* bodies) const {
+void IslandResponse::setLane(const ResponseSide& side, int lane, int first, BodyLanes* bodies) const {
   const FreeBody* body = side.node < 0 ? nullptr : &free_[side.base];
-  bodies->first_dof[lane] = body ? body->first_dof : -1;
+  bodies->first[lane] = first;
   bodies->inverse_mass[lane] = body ? body->inverse_mass : 0;
   for (int r = 0, at = 0; r < 3; ++r)
     for (int c = 0; c <= r; ++c, ++at) bodies->inverse_inertia[at][lane] = body ? body->inverse_inertia(r, c) : 0;

@@ -38,8 +38,13 @@ class IslandResponse {
   int unitOf(int node) const;
   const std::vector<ResponseUnit>& units() const { return units_; }
   /** Number of free bodies and units, and which of them a side belongs to. */
-  int movers() const { return static_cast<int>(free_.size()) + unit_count_; }
+  int movers() const { return freeBodies() + unit_count_; }
   int moverOf(const ResponseSide& side) const;
+  /** The same of a tree, by its place among the island's. */
+  int moverOfTree(std::size_t place) const { return mover_[place] >= 0 ? mover_[place] : freeBodies() - 1 - mover_[place]; }
+  /** Free bodies, which are the first movers. */
+  int freeBodies() const { return static_cast<int>(free_.size()); }
+  int firstDof(int free_body) const { return free_[free_body].first_dof; }
 
   Vector6 twist(const ResponseSide& side, const Eigen::VectorXd& velocity) const;
   void push(const ResponseSide& side, const Vector6& wrench, Eigen::VectorXd* velocity) const;
@@ -47,8 +52,8 @@ class IslandResponse {
   Vector6 relativeTwist(const ResponsePair& pair, const Eigen::VectorXd& velocity) const;
   /** A wrench on a, about its reference point, and its reaction on b. */
   void push(const ResponsePair& pair, const Vector6& wrench, Eigen::VectorXd* velocity) const;
-  /** A free body, or the static world, as a lane of a group that is swept. */
-  void setLane(const ResponseSide& side, int lane, BodyLanes* bodies) const;
+  /** A free body, or the static world, as a lane of a group that is swept. @param first of the body's velocity in the sweep */
+  void setLane(const ResponseSide& side, int lane, int first, BodyLanes* bodies) const;
   /** A joint impulse on a dof whose column was made. */
   void push(int unit, std::size_t column, double impulse, Eigen::VectorXd* velocity) const;
   /** Response of the relative twist to a wrench on a and its reaction on b, about a's reference point. */

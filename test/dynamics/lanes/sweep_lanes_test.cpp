@@ -63,7 +63,7 @@ class SweepLanes : public ::testing::Test {
   }
 
   void setBody(const Body& body, int lane, int first_dof, BodyLanes* lanes) {
-    lanes->first_dof[lane] = first_dof;
+    lanes->first[lane] = first_dof;
     lanes->inverse_mass[lane] = body.inverse_mass;
     for (int r = 0, at = 0; r < 3; ++r)
       for (int c = 0; c <= r; ++c, ++at) lanes->inverse_inertia[at][lane] = body.inverse_inertia(r, c);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "geometry/random_shapes.h"
 #include "sim/simulation_scene.h"
 
 namespace blem_sim::sim {
@@ -68,6 +69,49 @@ TEST(KnownContacts, SpinCounts) {
     Simulator simulator(config, model::UriResolver());
     for (int i = 0; i < 10; ++i) EXPECT_EQ(simulator.step().raw_contacts > 0, spins) << i;
   }
+}
+
+/** Two cubes anywhere near each other, the second one perhaps the static world's, in any motion. */
+TEST(MeetingSpeed, IsNoMoreThanItsBound) {
+  geometry::RandomShapes random(7);
+  int meet = 0, tight = 0;
+  for (int i = 0; i < 300; ++i) {
+    SimulatedWorld world{Vector3::Zero(), dynamics::SolverSettings()};
+    std::vector<dynamics::BodyState> bodies;
+    std::vector<contact::ColliderMotion> motion;
+    const auto number = [&](double most) { return random.uniform(-most, most); };
+    const auto vector = [&](double most) { return Vector3(number(most), number(most), number(most)); };
+    for (int c = 0; c < 2; ++c) {
+      dynamics::BodySpec spec;
+      spec.name = "body";
+      spec.inertial.mass = 1;
+      spec.inertial.com = vector(0.02);
+      spec.inertial.inertia = Matrix3::Identity();
+      contact::Collider collider;
+      collider.geometry = std::make_shared<const contact::CollisionGeometry>(
+          std::make_shared<const geometry::TriangleMesh>(geometry::boxMesh({0.1, 0.08, 0.06})));
+      collider.radius = 0.002;
+      collider.body = c == 1 && i % 3 == 0 ? dynamics::WORLD_BODY : world.world.addBody(spec);
+      world.colliders.push_back(collider);
+      dynamics::BodyState state;
+      state.X_WB = makePose(vector(0.08), vector(3));
+      state.v_WCom = vector(i % 2 ? 0.01 : 3);
+      state.w_WB = vector(i % 5 ? 20 : 0);
+      if (collider.body != dynamics::WORLD_BODY) bodies.push_back(state);
+      motion.emplace_back();
+      motion.back().X_WC = state.X_WB;
+    }
+    contact::ColliderPair pair;
+    pair.a = 0;
+    pair.b = 1;
+    pair.margin = 0.01;
+    const double speed = meetingSpeed(world, bodies, motion, pair), bound = meetingSpeedBound(world, bodies, motion, pair);
+    EXPECT_LE(speed, bound * (1 + 1e-12)) << i;
+    meet += speed > 0;
+    tight += speed > 0.5 * bound;
+  }
+  EXPECT_GT(meet, 200);
+  EXPECT_GT(tight, 100);
 }
 
 }  // namespace

@@ -72,7 +72,8 @@ std::uint64_t worldContactId(int a, int b, std::uint64_t id) {
   return mixed(id + mixed((static_cast<std::uint64_t>(a) << 32) + static_cast<std::uint64_t>(b) + 1));
 }
 
-ConstraintMaker::ConstraintMaker(const ContactConfig& config) : config_(config), method_(reductionNamed(config.reduction)) {}
+ConstraintMaker::ConstraintMaker(const ContactConfig& config, int threads)
+    : config_(config), arena_(std::min(threads, tbb::this_task_arena::max_concurrency())), method_(reductionNamed(config.reduction)) {}
 
 std::vector<std::uint64_t> ConstraintMaker::forget(int collider) {
   std::vector<std::uint64_t> ids;
@@ -132,7 +133,9 @@ void ConstraintMaker::reduce(const SimulatedWorld& world, const std::vector<cont
     model_a_.push_back(world.colliders[manifold.a].model);
     model_b_.push_back(world.colliders[manifold.b].model);
   }
-  made_.loss = reduction::reduceManifolds({manifolds, model_a_, model_b_, world.budgets}, *method_, &memory_, &workspace_, &reduced_);
+  arena_.execute([&] {
+    made_.loss = reduction::reduceManifolds({manifolds, model_a_, model_b_, world.budgets}, *method_, &memory_, &workspace_, &reduced_);
+  });
 }
 
 const SolverContacts& ConstraintMaker::make(const SolveAhead& ahead, std::vector<contact::ContactManifold>* manifolds) {

@@ -1,6 +1,8 @@
 // Reduction: from the manifolds of the state at hand to the constraints of the solve.
 #pragma once
 
+#include <tbb/task_arena.h>
+
 #include <cstdint>
 #include <vector>
 
@@ -36,7 +38,8 @@ struct SolverContacts {
 /** Makes at most k constraints per model, but three of each pair, and the stops below soft ones. */
 class ConstraintMaker {
  public:
-  explicit ConstraintMaker(const ContactConfig& config);
+  /** @param threads at most that reduce at the same time; they change no result */
+  ConstraintMaker(const ContactConfig& config, int threads);
 
   /**
    * Contacts before touch are those that will be met (ContactMeetings).
@@ -62,6 +65,7 @@ class ConstraintMaker {
   void addStops(const SimulatedWorld& world, const contact::ContactManifold& all, double friction);
 
   const ContactConfig config_;
+  tbb::task_arena arena_;
   const reduction::Reduction* method_;
   reduction::ReductionMemory memory_;
   reduction::ReductionWorkspace workspace_;

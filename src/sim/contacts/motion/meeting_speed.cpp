@@ -1,6 +1,7 @@
 #include "contacts/motion/meeting_speed.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "contacts/motion/body_twist.h"
 
@@ -16,6 +17,19 @@ Box boxOf(const contact::Collider& collider, const Pose& X_WC, double margin) {
 }
 
 }  // namespace
+
+// Speed at the centre of a collider's box, and what the difference in turning adds at its corners.
+double meetingSpeedBound(const SimulatedWorld& world, const std::vector<dynamics::BodyState>& bodies,
+                         const std::vector<contact::ColliderMotion>& motion, const contact::ColliderPair& pair) {
+  const contact::Collider &a = world.colliders[pair.a], &b = world.colliders[pair.b];
+  const bool from_a = !a.geometry->isHalfSpace();
+  const contact::Collider& bounded = from_a ? a : b;
+  if (bounded.geometry->isHalfSpace()) return std::numeric_limits<double>::infinity();
+  const BodyTwist twist_a = twistOf(world, bodies, a.body), twist_b = twistOf(world, bodies, b.body);
+  const Box box = boxOf(bounded, motion[from_a ? pair.a : pair.b].X_WC, a.radius + b.radius + pair.margin);
+  const Vector3 centre = box.center();
+  return (twist_a.at(centre) - twist_b.at(centre)).norm() + (twist_a.w - twist_b.w).norm() * 0.5 * box.diagonal().norm();
+}
 
 // The speed is a convex function of place, so the corners of the box common to both tell its largest value.
 double meetingSpeed(const SimulatedWorld& world, const std::vector<dynamics::BodyState>& bodies,

@@ -16,4 +16,8 @@ namespace blem_sim::sim {
 double meetingSpeed(const SimulatedWorld& world, const std::vector<dynamics::BodyState>& bodies,
                     const std::vector<contact::ColliderMotion>& motion, const contact::ColliderPair& pair);
 
+/** No less than that, for a fraction of its cost. */
+double meetingSpeedBound(const SimulatedWorld& world, const std::vector<dynamics::BodyState>& bodies,
+                         const std::vector<contact::ColliderMotion>& motion, const contact::ColliderPair& pair);
+
 }  // namespace blem_sim::sim

@@ -49,10 +49,13 @@ double knownMargin(const StateAhead& ahead, const std::vector<contact::ColliderM
   const double most = std::min(pair.margin, guarded ? std::max(LEAST_MAX_MARGIN, MAX_MARGIN_OF_LAYER * layer) : UNGUARDED_MARGIN);
   const double base = baseMargin(a, b);
   if (most <= base) return most;
-  double speed = meetingSpeed(ahead.world, ahead.bodies, motion, pair);
-  if (ahead.faster) speed = std::max(speed, meetingSpeed(ahead.world, *ahead.faster, motion, pair));
-  const double alone = std::max(motion[pair.a].reach, motion[pair.b].reach) / REACH_FACTOR;
-  return std::clamp(std::max(REACH_FACTOR * speed * ahead.dt, alone), base, most);
+  const double alone = std::max(motion[pair.a].reach, motion[pair.b].reach) / REACH_FACTOR, least = std::max(alone, base);
+  const auto reachAt = [&](const std::vector<dynamics::BodyState>& bodies) {
+    const double bound = REACH_FACTOR * ahead.dt * meetingSpeedBound(ahead.world, bodies, motion, pair);
+    return bound <= least ? 0 : REACH_FACTOR * meetingSpeed(ahead.world, bodies, motion, pair) * ahead.dt;
+  };
+  const double reach = std::max(reachAt(ahead.bodies), ahead.faster ? reachAt(*ahead.faster) : 0);
+  return std::clamp(std::max(reach, alone), base, most);
 }
 
 bool isAtOnePlace(const std::vector<contact::Collider>& colliders, const std::vector<contact::ColliderMotion>& motion, int a, int b) {

@@ -1,4 +1,4 @@
-#include "island/swept_island.h"
+#include "sweeps/swept_island.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,8 +4,10 @@
 
 #include <vector>
 
-#include "island/sweep_order.h"
-#include "island/swept_joints.h"
+#include "sweeps/sweep_lead.h"
+#include "sweeps/sweep_order.h"
+#include "sweeps/swept_joints.h"
+#include "sweeps/swept_velocities.h"
 
 namespace blem_sim::dynamics {
 
@@ -41,38 +43,45 @@ class IslandSweeps {
   void read(const Eigen::VectorXd& velocity, IslandTerms* terms) const;
 
  private:
+  /** Places from `first` on, before `end`. */
+  struct Range {
+    int first, end;
+  };
   bool arrange(SweepStart start, Eigen::VectorXd* velocity);
   bool loadResponse();
   void loadContacts(SweepStart start);
   void loadBodies(SweepGroup* group, SweepBodies* bodies) const;
   void loadLane(int lane, SweepGroup* group);
   void findVelocity(Eigen::VectorXd* velocity);
-  void plainSweep(Eigen::VectorXd* velocity);
+  template <typename Visit>
+  void forGroups(const GroupRange& groups, const Visit& visit) const;
+  void pushGroups(const GroupRange& groups, Eigen::VectorXd* velocity);
+  void sweepOnce(Eigen::VectorXd* velocity);
+  void sweepRegion(int region, Eigen::VectorXd* velocity);
+  void sweepBorder(Eigen::VectorXd* velocity);
   void sweepColour(int colour, Eigen::VectorXd* velocity);
   void sweepGroup(std::size_t group, Eigen::VectorXd* velocity);
   void sweepTrees(std::size_t group, Eigen::VectorXd* velocity);
   void push(const SweepGroup& group, const TwistLanes& wrench, Eigen::VectorXd* velocity) const;
+  Range contactsOf(const GroupRange& groups) const;
   SweptContacts contactsOf(const SweepGroup& group) {
     return {contacts_.data() + group.first, contacts_.data() + group.end, impulses_.data() + group.first};
   }
-  void noteVelocity(const Eigen::VectorXd& velocity);
-  void moveOn(double share, Eigen::VectorXd* velocity);
-
   const IslandAtHand* island_ = nullptr;
   IslandResponse response_;
   Eigen::VectorXd gains_, momentum_;  // by dof of the forest
-  std::vector<int> dofs_;
-  std::vector<ResponsePair> pairs_;  // by patch
+  std::vector<ResponsePair> pairs_;   // by patch
   SweptJoints joints_;
   SweepOrder order_;
   std::vector<SweepGroup> groups_;
   std::vector<SweepBodies> bodies_;  // by group, of those that are free
   std::vector<SweepContact> contacts_;
   std::vector<SweepImpulse> impulses_;
-  std::vector<SweepChange> changes_;     // by group
-  SweepChange change_;                   // of the last sweep, but for the sum of squares
-  double squared_change_ = 0;            // [N^2 s^2] that sum over all contacts
-  std::vector<double> before_, search_;  // by place among dofs_
+  std::vector<SweepChange> changes_;  // by group
+  SweepChange change_;                // of the last sweep, but for the sum of squares
+  double squared_change_ = 0;         // [N^2 s^2] that sum over all contacts
+  SweptVelocities velocities_;
+  SweepLead lead_;
 };
 
 }  // namespace blem_sim::dynamics

@@ -1,8 +1,8 @@
 // An island that is swept: sweeps on its terms, and their impulses as the iterate of Newton's method.
 #pragma once
 
-#include "island/island_sweeps.h"
 #include "newton/newton_loop.h"
+#include "sweeps/island_sweeps.h"
 
 namespace blem_sim::dynamics {
 

@@ -1,32 +1,12 @@
-#include "island/island_sweeps.h"
+#include "sweeps/island_sweeps.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace blem_sim::dynamics {
 namespace {
 
-constexpr std::size_t GROUPS_AT_ONCE = 8, IMPULSES_AT_ONCE = 256, DOFS_AT_ONCE = 1024;  // sizes of chunks: some microseconds each
-constexpr double MOST_GROWTH = 1.5;  // of squared changes since their least, while sweeps are led on
-
-/** Lead of sweeps: the further the longer they go well, and nothing once they do not. */
-class Lead {
- public:
-  /** @param change [N^2 s^2] sum of the squares of a sweep's changes. @return share of the last search direction */
-  double share(double change) {
-    ++sweeps_;
-    const bool well = change <= MOST_GROWTH * least_;
-    if (!well) sweeps_ = 0;
-    least_ = well ? std::min(least_, change) : change;
-    return sweeps_ / (sweeps_ + 3.0);
-  }
-
- private:
-  int sweeps_ = 0;
-  double least_ = std::numeric_limits<double>::infinity();  // change since the beginning
-};
-
+constexpr std::size_t GROUPS_AT_ONCE = 8, IMPULSES_AT_ONCE = 256, NUMBERS_AT_ONCE = 1024;  // sizes of chunks: some microseconds each
 Vector6 columnOf(const TwistLanes& lanes, int lane) {
   Vector6 out;
   for (int i = 0; i < 6; ++i) out[i] = lanes[i][lane];
@@ -34,6 +14,14 @@ Vector6 columnOf(const TwistLanes& lanes, int lane) {
 }
 
 }  // namespace
+
+// Groups that threads share.
+template <typename Visit>
+void IslandSweeps::forGroups(const GroupRange& groups, const Visit& visit) const {
+  island_->team->forRanges(groups.first, groups.end, GROUPS_AT_ONCE, [&](std::size_t first, std::size_t end) {
+    for (std::size_t g = first; g < end; ++g) visit(g);
+  });
+}
 
 bool IslandSweeps::load(const IslandAtHand& island, SweepStart start, Eigen::VectorXd* velocity) {
   island_ = &island;
@@ -48,9 +36,10 @@ bool IslandSweeps::arrange(SweepStart start, Eigen::VectorXd* velocity) {
   for (const PairContacts& of_pair : island.model.pairs) pairs_.push_back(response_.pair(of_pair.pair));
   joints_.load(start, &response_);
   order_.find(island, response_, pairs_, &groups_);
+  velocities_.arrange(island, response_, order_.regions());
   loadContacts(start);
   findVelocity(velocity);
-  search_.assign(dofs_.size(), 0);
+  lead_.start(velocities_.size());
   return true;
 }
 
@@ -58,9 +47,7 @@ bool IslandSweeps::loadResponse() {
   response_.start(island_->forest, island_->motion, island_->model.trees, island_->model.mimics);
   gains_.resize(island_->forest.dofCount());
   momentum_.resize(island_->forest.dofCount());
-  dofs_.clear();
   forDofs(*island_, [this](int k) {
-    dofs_.push_back(k);
     gains_[k] = 0;
     momentum_[k] = island_->space->free_momentum[k];
   });
@@ -74,12 +61,12 @@ void IslandSweeps::loadContacts(SweepStart start) {
   impulses_.resize(count);
   changes_.resize(groups_.size());
   bodies_.resize(groups_.size());
-  for (std::size_t g = 0; g < groups_.size(); ++g) {
+  forGroups({0, groups_.size()}, [this](std::size_t g) {
     SweepGroup& group = groups_[g];
     loadBodies(&group, &bodies_[g]);
     for (int lane = 0; lane < SWEEP_LANES; ++lane) loadLane(lane, &group);
     setGains(group, contacts_.data() + group.first, contacts_.data() + group.end);
-  }
+  });
   if (start == SweepStart::NOTHING) dynamics::scale(0, impulses_.data(), impulses_.data() + impulses_.size());
 }
 
@@ -104,8 +91,8 @@ void IslandSweeps::loadBodies(SweepGroup* group, SweepBodies* bodies) const {
     const ResponseSide none, &a = p < 0 ? none : pairs_[p].a, &b = p < 0 ? none : pairs_[p].b;
     group->free = group->free && a.unit < 0 && b.unit < 0;
     if (!group->free) return;
-    response_.setLane(a, lane, &bodies->a);
-    response_.setLane(b, lane, &bodies->b);
+    response_.setLane(a, lane, velocities_.placeOf(a), &bodies->a);
+    response_.setLane(b, lane, velocities_.placeOf(b), &bodies->b);
     for (int i = 0; i < 3; ++i) bodies->shift[i][lane] = p < 0 ? 0 : pairs_[p].pair.shift[i];
   }
 }
@@ -113,12 +100,17 @@ void IslandSweeps::loadBodies(SweepGroup* group, SweepBodies* bodies) const {
 // Velocity with the impulses at hand.
 void IslandSweeps::findVelocity(Eigen::VectorXd* velocity) {
   response_.freeVelocity(momentum_, velocity);
-  TwistLanes wrench;
-  for (const SweepGroup& group : groups_) {
-    wrenchOf(contactsOf(group), &wrench);
-    push(group, wrench, velocity);
-  }
+  island_->team->forChunks(order_.regions().count(), [&](int region) { pushGroups(order_.groupsOf(region), velocity); });
+  pushGroups(order_.groupsOf(order_.regions().count()), velocity);
   joints_.push(response_, velocity);
+}
+
+void IslandSweeps::pushGroups(const GroupRange& groups, Eigen::VectorXd* velocity) {
+  TwistLanes wrench;
+  for (std::size_t g = groups.first; g < groups.end; ++g) {
+    wrenchOf(contactsOf(groups_[g]), &wrench);
+    push(groups_[g], wrench, velocity);
+  }
 }
 
 void IslandSweeps::push(const SweepGroup& group, const TwistLanes& wrench, Eigen::VectorXd* velocity) const {
@@ -142,20 +134,48 @@ void IslandSweeps::sweepTrees(std::size_t index, Eigen::VectorXd* velocity) {
 void IslandSweeps::sweepGroup(std::size_t index, Eigen::VectorXd* velocity) {
   const SweepGroup& group = groups_[index];
   if (!group.free) return sweepTrees(index, velocity);
-  sweepFree(bodies_[index], contactsOf(group), velocity->data(), &changes_[index]);
+  sweepFree(bodies_[index], contactsOf(group), velocities_.numbers(), &changes_[index]);
+}
+
+IslandSweeps::Range IslandSweeps::contactsOf(const GroupRange& groups) const {
+  return groups.first == groups.end ? Range{0, 0} : Range{groups_[groups.first].first, groups_[groups.end - 1].end};
+}
+
+// Regions have no body in common, so threads share them, and each stays with its own.
+void IslandSweeps::sweepRegion(int region, Eigen::VectorXd* velocity) {
+  const GroupRange groups = order_.groupsOf(region);
+  const Range contacts = contactsOf(groups);
+  lead_.move(impulses_.data() + contacts.first, impulses_.data() + contacts.end);
+  for (const NumberRange* v = velocities_.begin(region); v != velocities_.end(region); ++v)
+    lead_.move(v->first, v->end, velocities_.numbers());
+  for (std::size_t g = groups.first; g < groups.end; ++g) sweepGroup(g, velocity);
+}
+
+// The border is all there is of an island without regions.
+void IslandSweeps::sweepBorder(Eigen::VectorXd* velocity) {
+  const int border = order_.regions().count();
+  const Range contacts = contactsOf(order_.groupsOf(border));
+  island_->team->forRanges(contacts.first, contacts.end, IMPULSES_AT_ONCE,
+                           [&](std::size_t first, std::size_t end) { lead_.move(impulses_.data() + first, impulses_.data() + end); });
+  for (const NumberRange* v = velocities_.begin(border); v != velocities_.end(border); ++v)
+    island_->team->forRanges(v->first, v->end, NUMBERS_AT_ONCE,
+                             [&](std::size_t first, std::size_t end) { lead_.move(first, end, velocities_.numbers()); });
+  for (int c = 0; c < order_.colours(); ++c) sweepColour(c, velocity);
 }
 
 // Groups of one colour have no body in common, so threads share them. Groups of the last colour may have: one thread sweeps them.
 void IslandSweeps::sweepColour(int colour, Eigen::VectorXd* velocity) {
-  const std::size_t begin = order_.firstGroup(colour), end = order_.groupEnd(colour);
-  island_->team->forRanges(begin, end, order_.isLast(colour) ? end - begin : GROUPS_AT_ONCE, [&](std::size_t first, std::size_t last) {
-    for (std::size_t g = first; g < last; ++g) sweepGroup(g, velocity);
-  });
+  const GroupRange groups = order_.groupsOfColour(colour);
+  if (order_.isLast(colour))
+    for (std::size_t g = groups.first; g < groups.end; ++g) sweepGroup(g, velocity);
+  else
+    forGroups(groups, [&](std::size_t g) { sweepGroup(g, velocity); });
 }
 
-void IslandSweeps::plainSweep(Eigen::VectorXd* velocity) {
+void IslandSweeps::sweepOnce(Eigen::VectorXd* velocity) {
   joints_.sweep(response_, velocity);
-  for (int c = 0; c < order_.colours(); ++c) sweepColour(c, velocity);
+  island_->team->forChunks(order_.regions().count(), [&](int region) { sweepRegion(region, velocity); });
+  sweepBorder(velocity);
   change_ = SweepChange();
   squared_change_ = 0;
   for (const SweepChange& group : changes_) {
@@ -165,41 +185,18 @@ void IslandSweeps::plainSweep(Eigen::VectorXd* velocity) {
   }
 }
 
-void IslandSweeps::noteVelocity(const Eigen::VectorXd& velocity) {
-  island_->team->forRanges(0, dofs_.size(), DOFS_AT_ONCE, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) before_[i] = velocity[dofs_[i]];
-  });
-}
-
-// Moves impulses and velocities by `share` of the last search direction. The next direction is that move and the last sweep's change.
-void IslandSweeps::moveOn(double share, Eigen::VectorXd* velocity) {
-  island_->team->forRanges(0, impulses_.size(), IMPULSES_AT_ONCE, [&](std::size_t first, std::size_t last) {
-    dynamics::moveOn(share, impulses_.data() + first, impulses_.data() + last);
-  });
-  island_->team->forRanges(0, dofs_.size(), DOFS_AT_ONCE, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-      double& v = (*velocity)[dofs_[i]];
-      const double along = share * search_[i], change = v - before_[i];
-      v += along;
-      search_[i] = along + change;
-    }
-  });
-}
-
 SweepReport IslandSweeps::sweep(int most, double enough, Eigen::VectorXd* velocity) {
   SweepReport report;
-  Lead lead;
-  before_.resize(dofs_.size());
-  const bool leads = joints_.empty();
+  lead_.beginRun();
+  velocities_.take(velocity);
   while (report.sweeps < most) {
-    noteVelocity(*velocity);
-    plainSweep(velocity);
+    sweepOnce(velocity);
     const double relative = change_.impulse > 0 ? std::sqrt(change_.largest / change_.impulse) : 0;
     if (report.sweeps++ == 0) report.first_change = relative;
     report.last_change = relative;
     // The last sweep is a plain one: steps ahead lead out of the cones.
-    if (relative <= enough || report.sweeps == most) break;
-    if (leads) moveOn(lead.share(squared_change_), velocity);
+    if (relative <= enough) break;
+    if (joints_.empty()) lead_.take(squared_change_);
   }
   findVelocity(velocity);
   return report;
@@ -212,7 +209,8 @@ void IslandSweeps::scale(double factor, Eigen::VectorXd* velocity) {
 }
 
 void IslandSweeps::read(const Eigen::VectorXd& velocity, IslandTerms* terms) const {
-  for (const SweepGroup& group : groups_) {
+  forGroups({0, groups_.size()}, [&](std::size_t g) {
+    const SweepGroup& group = groups_[g];
     for (int lane = 0; lane < SWEEP_LANES; ++lane) {
       if (group.pair[lane] < 0) continue;
       const PairContacts& of_pair = island_->model.pairs[group.pair[lane]];
@@ -221,7 +219,7 @@ void IslandSweeps::read(const Eigen::VectorXd& velocity, IslandTerms* terms) con
         terms->contacts[i].impulse = readLane(contacts_[at], impulses_[at], lane);
       }
     }
-  }
+  });
   joints_.read(response_, velocity, terms);
 }
 

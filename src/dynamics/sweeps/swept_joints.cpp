@@ -1,4 +1,4 @@
-#include "island/swept_joints.h"
+#include "sweeps/swept_joints.h"
 
 #include <Eigen/LU>
 #include <algorithm>
