@@ -144,23 +144,37 @@ IslandSweeps::Range IslandSweeps::contactsOf(const GroupRange& groups) const {
 // Regions have no body in common, so threads share them, and each stays with its own.
 void IslandSweeps::sweepRegion(int region, Eigen::VectorXd* velocity) {
   const GroupRange groups = order_.groupsOf(region);
-  const Range contacts = contactsOf(groups);
-  lead_.move(impulses_.data() + contacts.first, impulses_.data() + contacts.end);
-  for (const NumberRange* v = velocities_.begin(region); v != velocities_.end(region); ++v)
-    lead_.move(v->first, v->end, velocities_.numbers());
+  if (joints_.empty()) {
+    const Range contacts = contactsOf(groups);
+    lead_.move(impulses_.data() + contacts.first, impulses_.data() + contacts.end);
+    for (const NumberRange* v = velocities_.begin(region); v != velocities_.end(region); ++v)
+      lead_.move(v->first, v->end, velocities_.numbers());
+  }
   for (std::size_t g = groups.first; g < groups.end; ++g) sweepGroup(g, velocity);
 }
 
 // The border is all there is of an island without regions.
 void IslandSweeps::sweepBorder(Eigen::VectorXd* velocity) {
-  const int border = order_.regions().count();
-  const Range contacts = contactsOf(order_.groupsOf(border));
+  if (joints_.empty()) leadTogether(order_.regions().count());
+  for (int c = 0; c < order_.colours(); ++c) sweepColour(c, velocity);
+}
+
+// All threads lead one region on.
+void IslandSweeps::leadTogether(int region) {
+  const Range contacts = contactsOf(order_.groupsOf(region));
   island_->team->forRanges(contacts.first, contacts.end, IMPULSES_AT_ONCE,
                            [&](std::size_t first, std::size_t end) { lead_.move(impulses_.data() + first, impulses_.data() + end); });
-  for (const NumberRange* v = velocities_.begin(border); v != velocities_.end(border); ++v)
+  for (const NumberRange* v = velocities_.begin(region); v != velocities_.end(region); ++v)
     island_->team->forRanges(v->first, v->end, NUMBERS_AT_ONCE,
                              [&](std::size_t first, std::size_t end) { lead_.move(first, end, velocities_.numbers()); });
-  for (int c = 0; c < order_.colours(); ++c) sweepColour(c, velocity);
+}
+
+// Joints of any region are visited first, so all regions are led on before.
+void IslandSweeps::sweepJoints(Eigen::VectorXd* velocity) {
+  if (joints_.empty()) return;
+  for (int r = 0; r <= order_.regions().count(); ++r) leadTogether(r);
+  joints_.lead(lead_);
+  joints_.sweep(response_, velocity);
 }
 
 // Groups of one colour have no body in common, so threads share them. Groups of the last colour may have: one thread sweeps them.
@@ -173,7 +187,7 @@ void IslandSweeps::sweepColour(int colour, Eigen::VectorXd* velocity) {
 }
 
 void IslandSweeps::sweepOnce(Eigen::VectorXd* velocity) {
-  joints_.sweep(response_, velocity);
+  sweepJoints(velocity);
   island_->team->forChunks(order_.regions().count(), [&](int region) { sweepRegion(region, velocity); });
   sweepBorder(velocity);
   change_ = SweepChange();
@@ -196,7 +210,7 @@ SweepReport IslandSweeps::sweep(int most, double enough, Eigen::VectorXd* veloci
     report.last_change = relative;
     // The last sweep is a plain one: steps ahead lead out of the cones.
     if (relative <= enough) break;
-    if (joints_.empty()) lead_.take(squared_change_);
+    lead_.take(squared_change_);
   }
   findVelocity(velocity);
   return report;

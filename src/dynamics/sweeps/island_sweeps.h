@@ -59,6 +59,8 @@ class IslandSweeps {
   void sweepOnce(Eigen::VectorXd* velocity);
   void sweepRegion(int region, Eigen::VectorXd* velocity);
   void sweepBorder(Eigen::VectorXd* velocity);
+  void leadTogether(int region);
+  void sweepJoints(Eigen::VectorXd* velocity);
   void sweepColour(int colour, Eigen::VectorXd* velocity);
   void sweepGroup(std::size_t group, Eigen::VectorXd* velocity);
   void sweepTrees(std::size_t group, Eigen::VectorXd* velocity);

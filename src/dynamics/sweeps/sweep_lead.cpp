@@ -33,6 +33,15 @@ void SweepLead::move(SweepImpulse* begin, SweepImpulse* end) const {
   if (moves_) moveOn(share(), begin, end);
 }
 
+void SweepLead::move(double* number, Led* led) const {
+  if (moves_) {
+    const double along = share() * led->search, change = *number - led->before;
+    *number += along;
+    led->search = along + change;
+  }
+  led->before = *number;
+}
+
 void SweepLead::move(int first, int end, double* velocities) {
   for (int i = first; i < end; ++i) {
     double& v = velocities[i];

@@ -7,6 +7,11 @@
 
 namespace blem_sim::dynamics {
 
+/** A number's way through the sweeps. */
+struct Led {
+  double before = 0, search = 0;  ///< the number before the last sweep, and its direction
+};
+
 /** The further the longer sweeps go well, and nothing once they do not. Threads may move different ranges at once. */
 class SweepLead {
  public:
@@ -19,6 +24,8 @@ class SweepLead {
 
   /** Moves impulses on. */
   void move(SweepImpulse* begin, SweepImpulse* end) const;
+  /** Moves a number on. */
+  void move(double* number, Led* led) const;
   /** Moves velocities from `first` on, before `end`. @param velocities all of them */
   void move(int first, int end, double* velocities);
 

@@ -57,6 +57,11 @@ void SweptJoints::AxisRow::scale(double factor) {
   for (double* impulse : {&dry, &lower, &upper}) *impulse *= factor;
 }
 
+void SweptJoints::AxisRow::lead(const SweepLead& lead) {
+  Led* of = led;
+  for (double* impulse : {&motor, &dry, &lower, &upper}) lead.move(impulse, of++);
+}
+
 void SweptJoints::AxisRow::read(double v, JointTerm* joint) const {
   // Friction that slips stays at its bound, whatever rounding does: short of it, it would be taken to stick.
   const double dry_by = joint->dry_gain / joint->softness * v;
@@ -138,6 +143,14 @@ void SweptJoints::loadLoop(std::size_t index, SweepStart start, IslandResponse* 
   if (loop.rows < 6) row.impulse[5] = 0;
   row.axis = AxisRow(loop.drive, along(5, 5), start);
   loop_rows_.push_back(row);
+}
+
+void SweptJoints::lead(const SweepLead& lead) {
+  for (JointRow& row : joint_rows_) row.axis.lead(lead);
+  for (LoopRow& row : loop_rows_) {
+    for (int r = 0; r < 6; ++r) lead.move(&row.impulse[r], &row.led[r]);
+    row.axis.lead(lead);
+  }
 }
 
 void SweptJoints::sweep(const IslandResponse& response, Eigen::VectorXd* velocity) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "problem/island_at_hand.h"
+#include "sweeps/sweep_lead.h"
 #include "trees/island_response.h"
 
 namespace blem_sim::dynamics {
@@ -22,6 +23,8 @@ class SweptJoints {
   void load(SweepStart start, IslandResponse* response);
   bool empty() const { return joint_rows_.empty() && loop_rows_.empty(); }
 
+  /** Moves their impulses on. */
+  void lead(const SweepLead& lead);
   /** Visits all in turn. @param velocity with their impulses, by dof */
   void sweep(const IslandResponse& response, Eigen::VectorXd* velocity);
   /** Adds what their impulses make of a velocity. */
@@ -41,6 +44,7 @@ class SweptJoints {
   struct AxisRow {
     double response = 0;  // [1/kg or 1/(kg m^2)] of the joint's velocity
     double motor = 0, dry = 0, lower = 0, upper = 0;
+    Led led[4];  // the ways of those
 
     AxisRow() = default;
     AxisRow(const JointTerm& joint, double axis_response, SweepStart start);
@@ -48,6 +52,7 @@ class SweptJoints {
     /** Visits all of them at a velocity. @return change of their sum */
     double visit(const JointTerm& joint, bool has_motor, double v);
     void scale(double factor);
+    void lead(const SweepLead& lead);
     /** Proximal points of friction and limits. */
     void read(double v, JointTerm* joint) const;
   };
@@ -66,6 +71,7 @@ class SweptJoints {
     ResponsePair pair;
     Matrix6 inverse;  // of the forbidden rows' response
     Vector6 impulse;  // of forbidden rows
+    Led led[6];       // its way
     AxisRow axis;     // the free one
   };
   void loadJoint(int term, SweepStart start, IslandResponse* response);
