@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "dynamics/analytic_contacts.h"
 #include "island/island_motion.h"
 #include "newton/island_faults.h"
 #include "problem/island_velocity.h"
@@ -243,6 +244,44 @@ TEST(Island, TermsAreMadeAnewInEveryStepAndItsModelTellsOfJoints) {
     EXPECT_EQ(island.solver.terms()->joints.size(), 3u);
     EXPECT_EQ(island.model.joints, 3);
   }
+}
+
+// Velocities below rounding have products that are, against them, without bound: a hand that rests is not too fast.
+TEST(Pace, OfAHandAtRestWhoseFingersFollowEachOtherIsSlow) {
+  Scene scene(Vector3::Zero(), {});
+  JointSpec joint;
+  joint.parent = WORLD_BODY;
+  for (int i = 0; i < 2; ++i) {
+    joint.name = i == 0 ? "finger" : "follower";
+    joint.child = scene.addBody(boxBody("link", 0.1, {0.1, 0.02, 0.02}, {0.1 * i, 0.01 * i, 0}));
+    joint.axis = i == 0 ? Vector3::UnitY() : Vector3(0, 1, 1).normalized();
+    joint.X_PJ = makePose({-0.05, 0, 0});
+    if (i == 1) joint.mimic_joint = 0;
+    scene.addJoint(joint, 0);
+    joint.parent = joint.child;
+  }
+  const std::vector<ContactConstraint> contacts;
+  const std::vector<JointDrive> drives(2);
+  const StepInput input{DT, contacts, drives};
+  Forest forest;
+  ForestMotion motion;
+  SolverSpace space;
+  forest.build(scene);
+  motion.resize(forest);
+  space.resize(forest);
+  readTree(forest, scene, 0, &motion);
+  placeBodies(forest, 0, &motion);
+  computeInertias(forest, 0, &motion);
+  for (const double velocity : {0.0, 1e-17}) {
+    motion.velocity.setConstant(velocity);
+    motion.change.setConstant(1e-17);
+    setFreeMomentum({forest, scene, input, 0, true}, &motion, &space);
+    EXPECT_EQ(motion.pace[0], Pace::SLOW);
+    EXPECT_GT(motion.products.norm(), 0) << "the case this is about";
+  }
+  motion.velocity.setConstant(3000);
+  setFreeMomentum({forest, scene, input, 0, true}, &motion, &space);
+  EXPECT_EQ(motion.pace[0], Pace::TOO_FAST);
 }
 
 TEST(IslandModel, IsAHeapOfFreeBodiesAlone) {

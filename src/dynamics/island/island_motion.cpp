@@ -23,6 +23,7 @@ constexpr double SMALL_TURN = 0.05;  // [rad] of a free root in a step: beyond, 
 // Trees that are tied are solved with their products. Beyond this the products would add energy without bound:
 // they are left out, and the trees are braked.
 constexpr double TOO_FAST = 0.1;
+constexpr double AT_REST = 1e-30;      // [J] twice the energy of a tree whose velocities are rounding: so are its products
 constexpr double HELD_AT_MOST = 1e-3;  // of a tree's energy: share of joints that follow each other, which are held where it is fast
 constexpr double HOLDS = 0.5;          // of a dof's inertia: a joint that answers more stiffly keeps its velocity on the way
 
@@ -37,10 +38,10 @@ double turningOf(const FreeStart& start, const Eigen::VectorXd& mass_velocity) {
     energy += velocity[k] * mass_velocity[k];
   }
   if (!(change > 0)) return 0;
-  if (!t.free) return dt * std::sqrt(change / energy);
+  if (!t.free) return dt * std::sqrt(change / std::max(energy, AT_REST));
   const double inner = energy - mass_velocity.segment<3>(t.first_dof + 3).squaredNorm() / motion.composite[t.first_node].mass;
   const double turn = dt * velocity.segment<3>(t.first_dof).norm();
-  return dt * std::sqrt(change / std::max(inner, 1e-12 * energy)) * std::max(1.0, turn / SMALL_TURN);
+  return dt * std::sqrt(change / std::max({inner, 1e-12 * energy, AT_REST})) * std::max(1.0, turn / SMALL_TURN);
 }
 
 bool isFast(const ForestMotion& motion, int tree) { return motion.pace[tree] == Pace::FAST; }
@@ -178,7 +179,7 @@ void brake(const Forest& forest, const std::vector<int>& trees, ForestMotion* mo
   if (!(there > solved)) return;
   for (const int tree : trees) {
     const ForestTree& t = forest.trees()[tree];
-    motion->velocity.segment(t.first_dof, t.dofCount()) *= std::sqrt(solved / there);
+    motion->velocity.segment(t.first_dof, t.dofCount()) *= std::sqrt(std::max(0.0, solved) / there);  // below nothing by rounding
     takeMomentum(forest, tree, motion, space);
   }
 }
