@@ -7,6 +7,7 @@ namespace blem_sim::dynamics {
 namespace {
 
 constexpr std::size_t GROUPS_AT_ONCE = 8, IMPULSES_AT_ONCE = 256, NUMBERS_AT_ONCE = 1024;  // sizes of chunks: some microseconds each
+
 Vector6 columnOf(const TwistLanes& lanes, int lane) {
   Vector6 out;
   for (int i = 0; i < 6; ++i) out[i] = lanes[i][lane];

@@ -69,6 +69,7 @@ class IslandSweeps {
   SweptContacts contactsOf(const SweepGroup& group) {
     return {contacts_.data() + group.first, contacts_.data() + group.end, impulses_.data() + group.first};
   }
+
   const IslandAtHand* island_ = nullptr;
   IslandResponse response_;
   Eigen::VectorXd gains_, momentum_;  // by dof of the forest
