@@ -200,7 +200,7 @@ void ArticulatedStepper::reckonWork(bool leaps, Island* island) {
     for (const int tree : model.trees) computeTwists(forest_, tree, motion_, impact_space_.leap, &impact_space_.twist);
   geometry::makeRoomFor(contacts.size(), &island->apparent_work);
   island->apparent_work.assign(contacts.size(), 0);
-  forPairs(island->solver.atHand(), [&](std::size_t index) {
+  forPairs(model, island->solver.team(), [&](std::size_t index) {
     const PairContacts& of_pair = model.pairs[index];
     Vector6 before = relativeTwist(of_pair.pair, motion_.twist);
     if (leaps) before += relativeTwist(of_pair.pair, impact_space_.twist);
@@ -214,7 +214,7 @@ void ArticulatedStepper::reckonWork(bool leaps, Island* island) {
 void ArticulatedStepper::solveIsland(const Scene& scene, const StepInput& input, Island* island) {
   IslandModel& model = island->model;
   const TermSource source{scene, forest_, motion_, input, settings_, memory_};
-  forTrees(model.trees, island->solver.team(), [&](int tree) { setFreeMomentum(ahead(source, *island, tree), &motion_, &space_); });
+  forTrees(model, island->solver.team(), [&](int tree) { setFreeMomentum(ahead(source, *island, tree), &motion_, &space_); });
   makeTerms(source, island);
   model.up = -scene.gravity();
   addEfforts(input, *island->solver.terms(), &space_);

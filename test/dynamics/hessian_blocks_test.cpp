@@ -7,6 +7,7 @@
 #include <random>
 
 #include "island/island_motion.h"
+#include "dynamics/standing_trees.h"
 #include "support/standard_values.h"
 
 namespace blem_sim::dynamics {
@@ -20,14 +21,7 @@ struct ArmsAndBall {
     finger = link(left);
     link(left);
     ball = body();
-    forest.build(scene);
-    motion.resize(forest);
-    space.resize(forest);
-    for (int tree = 0; tree < 2; ++tree) {
-      readTree(forest, scene, tree, &motion);
-      placeBodies(forest, tree, &motion);
-      computeInertias(forest, tree, &motion);
-    }
+    standTrees(scene, &forest, &motion, &space);
     model.trees = {0, 1};
     tips = {forest.nodeOfBody(finger), forest.nodeOfBody(right), forest.nodeOfBody(torso)};
     for (int k = 0; k < forest.dofCount(); ++k) dofs.push_back(k);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "dynamics/analytic_contacts.h"
+#include "dynamics/standing_trees.h"
 #include "island/island_motion.h"
 #include "newton/island_faults.h"
 #include "problem/island_velocity.h"
@@ -29,13 +30,8 @@ struct ChainOnBox {
     }
     drives.resize(links);
     for (JointDrive& drive : drives) drive.dry_friction = friction;
-    forest.build(scene);
-    motion.resize(forest);
-    space.resize(forest);
+    standTrees(scene, &forest, &motion, &space);
     memory.resize(scene);
-    readTree(forest, scene, 0, &motion);
-    placeBodies(forest, 0, &motion);
-    computeInertias(forest, 0, &motion);
     takeMomentum(forest, 0, &motion, &space);
     ask();
   }
@@ -266,12 +262,7 @@ TEST(Pace, OfAHandAtRestWhoseFingersFollowEachOtherIsSlow) {
   Forest forest;
   ForestMotion motion;
   SolverSpace space;
-  forest.build(scene);
-  motion.resize(forest);
-  space.resize(forest);
-  readTree(forest, scene, 0, &motion);
-  placeBodies(forest, 0, &motion);
-  computeInertias(forest, 0, &motion);
+  standTrees(scene, &forest, &motion, &space);
   for (const double velocity : {0.0, 1e-17}) {
     motion.velocity.setConstant(velocity);
     motion.change.setConstant(1e-17);

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "dynamics/analytic_contacts.h"
-#include "island/island_motion.h"
+#include "dynamics/standing_trees.h"
 
 namespace blem_sim::dynamics {
 namespace {
@@ -19,15 +19,8 @@ struct Wall {
     for (int row = 0; row < rows; ++row)
       for (int column = 0; column < columns; ++column)
         scene.addBody(boxBody("cube", 1, Vector3::Constant(SIDE), {SIDE * column, 0, SIDE * row}));
-    forest.build(scene);
-    motion.resize(forest);
-    space.resize(forest);
-    for (int tree = 0; tree < columns * rows; ++tree) {
-      readTree(forest, scene, tree, &motion);
-      placeBodies(forest, tree, &motion);
-      computeInertias(forest, tree, &motion);
-      model.trees.push_back(tree);
-    }
+    standTrees(scene, &forest, &motion, &space);
+    for (int tree = 0; tree < columns * rows; ++tree) model.trees.push_back(tree);
     response.start(forest, motion, model.trees, model.mimics);
     response.factor(Eigen::VectorXd::Zero(forest.dofCount()));
     for (int i = 0; i < columns * rows; ++i) {

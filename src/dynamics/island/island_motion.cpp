@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "problem/island_at_hand.h"
+
 namespace blem_sim::dynamics {
 namespace {
 
@@ -285,7 +287,7 @@ void advanceIsland(const SolvedIsland& island, const FreeMotion& way, ForestMoti
   const Forest& forest = island.forest;
   const double dt = island.dt;
   const bool flies = island.found.contacts.empty() && island.found.loops.empty();
-  forTrees(island.model.trees, island.team, [&](int tree) {
+  forTrees(island.model, island.team, [&](int tree) {
     const ForestTree& t = forest.trees()[tree];
     if (t.free) motion->momentum[tree] = space->mass_velocity.segment<6>(t.first_dof) + 0.5 * dt * motion->products.segment<6>(t.first_dof);
     if (isFast(*motion, tree)) {
@@ -300,7 +302,7 @@ void advanceIsland(const SolvedIsland& island, const FreeMotion& way, ForestMoti
   for (const MimicRelation& m : forest.mimics())
     if (std::binary_search(island.model.trees.begin(), island.model.trees.end(), forest.nodes()[m.node].tree))
       motion->position[m.node] = m.multiplier * motion->position[m.master] + m.offset;
-  forTrees(island.model.trees, island.team, [&](int tree) {
+  forTrees(island.model, island.team, [&](int tree) {
     const ForestTree& t = forest.trees()[tree];
     const Vector3 reference = motion->reference[tree];
     const Vector3 com = reference + motion->tree_com[tree] + dt * linear(motion->momentum[tree]) / motion->composite[t.first_node].mass;

@@ -21,12 +21,25 @@ struct IslandAtHand {
   IslandTerms* terms() const { return &found->terms; }
 };
 
-/** Visits the pairs, which threads share: visit(index). */
+/** Visits the pairs of an island, which threads share: visit(index). */
+template <typename Visit>
+void forPairs(const IslandModel& model, Team* team, const Visit& visit) {
+  constexpr std::size_t AT_ONCE = 64;  // the size of a chunk: some microseconds
+  team->forRanges(0, model.pairs.size(), AT_ONCE, [&](std::size_t first, std::size_t end) {
+    for (std::size_t p = first; p < end; ++p) visit(p);
+  });
+}
 template <typename Visit>
 void forPairs(const IslandAtHand& island, const Visit& visit) {
-  constexpr std::size_t AT_ONCE = 64;  // the size of a chunk: some microseconds
-  island.team->forRanges(0, island.model.pairs.size(), AT_ONCE, [&](std::size_t first, std::size_t end) {
-    for (std::size_t p = first; p < end; ++p) visit(p);
+  forPairs(island.model, island.team, visit);
+}
+
+/** Visits the trees of an island, which threads share: visit(tree). */
+template <typename Visit>
+void forTrees(const IslandModel& model, Team* team, const Visit& visit) {
+  constexpr std::size_t AT_ONCE = 32;  // the size of a chunk: some microseconds
+  team->forRanges(0, model.trees.size(), AT_ONCE, [&](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i) visit(model.trees[i]);
   });
 }
 

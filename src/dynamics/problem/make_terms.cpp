@@ -1,5 +1,6 @@
 #include "problem/make_terms.h"
 
+#include "problem/island_at_hand.h"
 #include "scene/joint_motion.h"
 #include "scene/joint_readings.h"
 
@@ -14,7 +15,6 @@ constexpr double VELOCITY_END = 1e-6;      // gain at the end of a motor's veloc
 constexpr double DRY_MOMENTUM = 0.9;  // share of its last change that stuck friction is expected to change by: all of it would never settle
 constexpr double LOOP_PROXIMAL = 1e-4;       // rho = this * inverse inertia
 constexpr double IMMOVABLE = 1e-12;          // [1/kg or 1/(kg m^2)]
-constexpr std::size_t PATCHES_AT_ONCE = 16;  // the size of a chunk: some microseconds
 
 double massEntry(const TermSource& s, int dof) { return s.motion.mass[s.forest.diagonal(dof)]; }
 
@@ -280,13 +280,10 @@ void makeContactTerms(const TermSource& source, const std::vector<int>& contacts
   makePatches(source, contacts, model);
   terms->contacts.resize(contacts.size());
   const ContactWeights weights = weightsOf(source, model);
-  team->forRanges(0, model->pairs.size(), PATCHES_AT_ONCE, [&](std::size_t first, std::size_t end) {
-    for (std::size_t p = first; p < end; ++p) {
-      const PairContacts& patch = model->pairs[p];
-      for (int i = patch.first; i < patch.end; ++i)
-        terms->contacts[i] = contactTerm(source, source.input.contacts[contacts[i]], patch.pair);
-      weighPatch(source, weights, patch, terms);
-    }
+  forPairs(*model, team, [&](std::size_t p) {
+    const PairContacts& patch = model->pairs[p];
+    for (int i = patch.first; i < patch.end; ++i) terms->contacts[i] = contactTerm(source, source.input.contacts[contacts[i]], patch.pair);
+    weighPatch(source, weights, patch, terms);
   });
 }
 

@@ -17,13 +17,4 @@ struct SolvedIsland {
   Team* team;  ///< shares loops over trees
 };
 
-/** Visits the trees of an island, which threads share: visit(tree). */
-template <typename Visit>
-void forTrees(const std::vector<int>& trees, Team* team, const Visit& visit) {
-  constexpr std::size_t AT_ONCE = 32;  // the size of a chunk: some microseconds
-  team->forRanges(0, trees.size(), AT_ONCE, [&](std::size_t first, std::size_t end) {
-    for (std::size_t i = first; i < end; ++i) visit(trees[i]);
-  });
-}
-
 }  // namespace blem_sim::dynamics
