@@ -6,8 +6,8 @@
 #include <Eigen/Cholesky>
 #include <random>
 
-#include "island/island_motion.h"
 #include "dynamics/standing_trees.h"
+#include "island/island_motion.h"
 #include "support/standard_values.h"
 
 namespace blem_sim::dynamics {

@@ -13,8 +13,8 @@ constexpr double NO_GAP = 1e-11;           // [m] made of rounding: gaps that co
 constexpr double JOINT_PROXIMAL = 1e-3;    // gain of friction and limits = inertia / this
 constexpr double VELOCITY_END = 1e-6;      // gain at the end of a motor's velocities = inertia / this
 constexpr double DRY_MOMENTUM = 0.9;  // share of its last change that stuck friction is expected to change by: all of it would never settle
-constexpr double LOOP_PROXIMAL = 1e-4;       // rho = this * inverse inertia
-constexpr double IMMOVABLE = 1e-12;          // [1/kg or 1/(kg m^2)]
+constexpr double LOOP_PROXIMAL = 1e-4;  // rho = this * inverse inertia
+constexpr double IMMOVABLE = 1e-12;     // [1/kg or 1/(kg m^2)]
 
 double massEntry(const TermSource& s, int dof) { return s.motion.mass[s.forest.diagonal(dof)]; }
 
