@@ -20,7 +20,7 @@ struct SlowMotion {
 
 // A tree that nothing drives has an energy to keep, and motors and friction tell how much of it comes and goes; where they act against
 // contacts, forces of both sides are best found together with the products.
-constexpr SlowMotion ALONE{1e-4, 1e-3}, IN_THE_AIR{1e-3, 1e-3}, RUBBING{0.005, 0.01}, AT_WORK{0.1, INFINITY};
+constexpr SlowMotion ALONE{1e-4, 1e-3}, IN_THE_AIR{1e-3, 1e-3}, RUBBING{0.005, 0.01}, AT_WORK{1e-3, INFINITY};
 constexpr double SMALL_TURN = 0.05;  // [rad] of a free root in a step: beyond, products of the step's start are not those of its end
 // Trees that are tied are solved with their products. Beyond this the products would add energy without bound:
 // they are left out, and the trees are braked.

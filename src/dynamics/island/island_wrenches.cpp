@@ -20,41 +20,21 @@ void addReactions(const SolvedIsland& island, const ForestMotion& motion, std::v
   }
 }
 
-// A tree that has followed its free motion through the step.
-struct FastTree {
-  const SolvedIsland& island;
-  int tree;
-  const FreeMotion& way;
-  const ForestMotion& motion;
-};
-
-// Wrenches of a fast tree's joints, from momenta at the start and at the end; forces act at the middle of the way. Overwrites on_node.
-void addFastWrenches(const FastTree& fast, std::vector<Vector6>* on_node, std::vector<Wrench>* wrenches) {
-  const auto& [island, tree, way, motion] = fast;
-  const Forest& forest = island.forest;
-  const Scene& scene = island.scene;
-  const double dt = island.dt;
-  const ForestTree& t = forest.trees()[tree];
-  for (int i = t.node_end - 1; i >= t.first_node; --i) {
-    const ForestNode& node = forest.nodes()[i];
-    const Wrench& pending = scene.bodies()[node.body].pending;
-    const Vector3 middle = way.middleCom(i, motion), force = node.inertial.mass * scene.gravity() + pending.force;
-    Vector6& through = (*on_node)[i];
-    through = moveWrench(through, middle - motion.com[i]);
-    through += spatial(middle.cross(force) + pending.torque, force);
-    through = way.momentumRate(forest, i, dt, motion) - through;
-  }
-  for (int i = t.node_end - 1; i >= t.first_node; --i) {
-    const ForestNode& node = forest.nodes()[i];
-    if (node.parent >= 0) (*on_node)[node.parent] += (*on_node)[i];
-    if (node.joint < 0) continue;
-    const Vector6 at_origin = moveWrench((*on_node)[i], motion.reference[tree] - way.middleJoint(i, motion));
-    (*wrenches)[node.joint] = {linear(at_origin), angular(at_origin)};
-  }
+/** [N m, N] Wrench through a node's joint about the joint's origin. @param through about the tree's reference @param arm from the origin to it */
+Wrench atJoint(const Vector6& through, const Vector3& arm) {
+  const Vector6 at_origin = moveWrench(through, arm);
+  return {linear(at_origin), angular(at_origin)};
 }
 
-// Wrenches of a slow tree's joints: of the mean acceleration over the step, less what acts on the bodies from outside and in contacts.
-void addSlowWrenches(const SolvedIsland& island, int tree, ForestMotion* motion, SolverSpace* space, std::vector<Wrench>* wrenches) {
+/** Adds an effort [N m or N] along the axis of a node's joint. */
+void addEffort(const ForestNode& node, double effort, const Vector3& axis, Wrench* wrench) {
+  (node.kind == JointKind::REVOLUTE ? wrench->torque : wrench->force) += effort * axis;
+}
+
+// Wrenches of a tree's joints in the solve, what they owe from the way before included: of the change of its velocities, less what acts on the bodies from outside and in contacts.
+// @param products whether velocity products are in that change
+void setSolvedWrenches(const SolvedIsland& island, int tree, bool products, ForestMotion* motion, SolverSpace* space,
+                       std::vector<Wrench>* wrenches) {
   const Forest& forest = island.forest;
   const Scene& scene = island.scene;
   const double dt = island.dt;
@@ -73,11 +53,33 @@ void addSlowWrenches(const SolvedIsland& island, int tree, ForestMotion* motion,
   }
   for (int i = t.node_end - 1; i >= t.first_node; --i) {
     const ForestNode& node = forest.nodes()[i];
-    const Vector6& through = motion->node_change[i];
+    Vector6 through = motion->node_change[i];
     if (node.parent >= 0) motion->node_change[node.parent] += through;
     if (node.joint < 0) continue;
-    const Vector6 at_origin = moveWrench(through + motion->node_force[i], motion->reference[tree] - motion->joint_origin[i]);
-    (*wrenches)[node.joint] = {linear(at_origin), angular(at_origin)};
+    if (products) through += motion->node_force[i];
+    Wrench& wrench = (*wrenches)[node.joint];
+    wrench = atJoint(through, motion->reference[tree] - motion->joint_origin[i]);
+    if (node.dofs == 1) addEffort(node, motion->owed[node.first_dof] / dt, motion->joint_axis[i], &wrench);
+  }
+}
+
+// Adds what keeps a fast tree's joints together on its free way, from momenta at both ends, at the middle of the way, without what joints
+// that keep their velocities owe to the next step. Overwrites the space's twists and wrenches.
+void addWayWrenches(const SolvedIsland& island, int tree, const FreeMotion& way, const ForestMotion& motion, SolverSpace* space,
+                    std::vector<Wrench>* wrenches) {
+  const Forest& forest = island.forest;
+  const ForestTree& t = forest.trees()[tree];
+  computeTwists(forest, tree, motion, space->velocity, &space->twist);
+  for (int i = t.first_node; i < t.node_end; ++i) space->wrench[i] = way.momentumRate(forest, i, island.dt, motion, space->twist[i]);
+  for (int i = t.node_end - 1; i >= t.first_node; --i) {
+    const ForestNode& node = forest.nodes()[i];
+    if (node.parent >= 0) space->wrench[node.parent] += space->wrench[i];
+    if (node.joint < 0) continue;
+    Wrench& wrench = (*wrenches)[node.joint];
+    const Wrench added = atJoint(space->wrench[i], motion.reference[tree] - way.middleJoint(i, motion));
+    wrench.force += added.force;
+    wrench.torque += added.torque;
+    if (node.dofs == 1) addEffort(node, -way.owed(node.first_dof) / island.dt, motion.joint_axis[i], &wrench);
   }
 }
 
@@ -92,10 +94,9 @@ void computeWrenches(const SolvedIsland& island, const FreeMotion& way, ForestMo
   }
   addReactions(island, *motion, &reaction, wrenches);
   for (const int tree : island.model.trees) {
-    if (motion->pace[tree] == Pace::FAST)
-      addFastWrenches({island, tree, way, *motion}, &reaction, wrenches);
-    else
-      addSlowWrenches(island, tree, motion, space, wrenches);
+    const bool fast = motion->pace[tree] == Pace::FAST;
+    setSolvedWrenches(island, tree, !fast, motion, space, wrenches);
+    if (fast) addWayWrenches(island, tree, way, *motion, space, wrenches);
   }
 }
 

@@ -376,14 +376,14 @@ void FreeMotion::takeEnd(const Forest& forest, int tree, ForestMotion* motion) c
   motion->origin[t.first_node] = at_.origin[t.first_node];
 }
 
-Vector6 FreeMotion::momentumRate(const Forest& forest, int node, double dt, const ForestMotion& motion) const {
+Vector6 FreeMotion::momentumRate(const Forest& forest, int node, double dt, const ForestMotion& motion, const Vector6& set_out) const {
   const geometry::MassProperties& body = forest.nodes()[node].inertial;
-  const auto spin = [&](const ForestMotion& m) {
-    return Vector3(m.rotation[node] * (body.inertia * (m.rotation[node].transpose() * angular(m.twist[node]))));
+  const auto spin = [&](const ForestMotion& m, const Vector6& twist) {
+    return Vector3(m.rotation[node] * (body.inertia * (m.rotation[node].transpose() * angular(twist))));
   };
-  const Vector3 velocity = velocityAt(at_.twist[node], at_.com[node]) - velocityAt(motion.twist[node], motion.com[node]);
-  const Vector3 force = body.mass / dt * velocity, middle = middleCom(node, motion);
-  return spatial(middle.cross(force) + (spin(at_) - spin(motion)) / dt, force);
+  const Vector3 velocity = velocityAt(at_.twist[node], at_.com[node]) - velocityAt(set_out, motion.com[node]);
+  const Vector3 force = body.mass / dt * velocity, middle = 0.5 * (motion.com[node] + at_.com[node]);
+  return spatial(middle.cross(force) + (spin(at_, at_.twist[node]) - spin(motion, set_out)) / dt, force);
 }
 
 Vector3 FreeMotion::middleJoint(int node, const ForestMotion& motion) const {

@@ -42,10 +42,11 @@ class FreeMotion {
   /** Takes the end of the way: positions, velocities of the dofs, owed impulses, a free root's pose. Then placeBodies, computeInertias. */
   void takeEnd(const Forest& forest, int tree, ForestMotion* motion) const;
 
-  /** Rate of change of a node's momentum over the step, at the middle of its centre of mass's way, about the reference at the start. */
-  Vector6 momentumRate(const Forest& forest, int node, double dt, const ForestMotion& motion) const;
-  /** Centre of mass of a node at the middle of the step, about the reference at the start. */
-  Vector3 middleCom(int node, const ForestMotion& motion) const { return 0.5 * (motion.com[node] + at_.com[node]); }
+  /** Rate of change of a node's momentum on the way, at the middle of its centre of mass's, about the reference at the start.
+   *  @param motion at the start @param set_out twist with which the node sets out */
+  Vector6 momentumRate(const Forest& forest, int node, double dt, const ForestMotion& motion, const Vector6& set_out) const;
+  /** [N m s or N s] Impulse by which a held dof kept its velocity on the way. */
+  double owed(int dof) const { return owed_[dof]; }
   /** Origin of a node's joint at the middle of the step, in the world. */
   Vector3 middleJoint(int node, const ForestMotion& motion) const;
 
