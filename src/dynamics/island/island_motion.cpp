@@ -18,9 +18,8 @@ struct SlowMotion {
   double bend;     ///< [rad] of a hinge in a step: products that are none at its start, as of a stretched arm, may be there at its end
 };
 
-// A tree that nothing drives has an energy to keep, and motors and friction tell how much of it comes and goes; where they act against
-// contacts, forces of both sides are best found together with the products.
-constexpr SlowMotion ALONE{1e-4, 1e-3}, IN_THE_AIR{1e-3, 1e-3}, RUBBING{0.005, 0.01}, AT_WORK{1e-3, INFINITY};
+// A tree that nothing drives has an energy to keep, to which motors and friction add and from which they take.
+constexpr SlowMotion ALONE{1e-4, 1e-3}, DRIVEN{1e-3, 1e-3};
 constexpr double SMALL_TURN = 0.05;  // [rad] of a free root in a step: beyond, products of the step's start are not those of its end
 // Trees that are tied are solved with their products. Beyond this the products would add energy without bound:
 // they are left out, and the trees are braked.
@@ -96,23 +95,20 @@ double bend(const FreeStart& start) {
 
 bool isBeyond(const SlowMotion& slow, const FreeStart& start, double turning) { return turning > slow.turning || bend(start) > slow.bend; }
 
-const SlowMotion& slowMotion(const Forest& forest, int tree, const StepInput& input, bool touched) {
-  if (!hasJoint(forest, tree, input, isDriven)) return ALONE;
-  if (!touched) return IN_THE_AIR;
-  return hasJoint(forest, tree, input, hasMotor) ? AT_WORK : RUBBING;
+const SlowMotion& slowMotion(const Forest& forest, int tree, const StepInput& input) {
+  return hasJoint(forest, tree, input, isDriven) ? DRIVEN : ALONE;
 }
 
-Pace paceOf(const FreeStart& start, const StepInput& input, bool touched, const Eigen::VectorXd& mass_velocity) {
+Pace paceOf(const FreeStart& start, const StepInput& input, const Eigen::VectorXd& mass_velocity) {
   const double turning = turningOf(start, mass_velocity);
   if (!isBeyond(ALONE, start, turning)) return Pace::SLOW;
   if (isTied(start, mass_velocity)) return turning > TOO_FAST ? Pace::TOO_FAST : Pace::SLOW;
-  return isBeyond(slowMotion(start.forest, start.tree, input, touched), start, turning) ? Pace::FAST : Pace::SLOW;
+  return isBeyond(slowMotion(start.forest, start.tree, input), start, turning) ? Pace::FAST : Pace::SLOW;
 }
 
 /** Whether this step made the tree fast: at the velocities that were solved it is beyond what may be solved with products. */
-bool isSpinning(const FreeStart& solved, const StepInput& input, bool touched, const Eigen::VectorXd& mass_velocity) {
-  if (touched && hasJoint(solved.forest, solved.tree, input, hasMotor)) return false;
-  const SlowMotion& slow = slowMotion(solved.forest, solved.tree, input, touched);
+bool isSpinning(const FreeStart& solved, const StepInput& input, const Eigen::VectorXd& mass_velocity) {
+  const SlowMotion& slow = slowMotion(solved.forest, solved.tree, input);
   return isBeyond(slow, solved, turningOf(solved, mass_velocity)) && !isTied(solved, mass_velocity);
 }
 
@@ -224,7 +220,7 @@ void setFreeMomentum(const TreeAhead& ahead, ForestMotion* motion, SolverSpace* 
   computeProducts(forest, tree, space->direction, motion);
   multiply({forest, tree, motion->mass}, motion->velocity, &space->mass_velocity, &space->paths);
   const FreeStart start{forest, tree, input.dt, *motion, motion->velocity};
-  motion->pace[tree] = paceOf(start, input, touched, space->mass_velocity);
+  motion->pace[tree] = paceOf(start, input, space->mass_velocity);
   if (isFast(*motion, tree) && touched && !hasJoint(forest, tree, input, isDriven)) addFreeAcceleration(forest, tree, motion, space);
   if (motion->pace[tree] != Pace::SLOW) motion->products.segment(first, count).setZero();
   space->free_momentum.segment(first, count) = space->mass_velocity.segment(first, count);
@@ -254,7 +250,7 @@ double correctProducts(const TreeAhead& ahead, ForestMotion* motion, SolverSpace
   space->gradient.segment(first, count) = motion->products.segment(first, count);
   space->direction.segment(first, count) = 0.5 * (motion->velocity.segment(first, count) + space->velocity.segment(first, count));
   computeProducts(forest, tree, space->direction, motion);
-  if (isSpinning({forest, tree, input.dt, *motion, space->velocity}, input, touched, space->mass_velocity)) {
+  if (isSpinning({forest, tree, input.dt, *motion, space->velocity}, input, space->mass_velocity)) {
     motion->products.segment(first, count) = space->gradient.segment(first, count);
     setFast(forest, input, tree, motion, space);
     return INFINITY;
