@@ -12,14 +12,10 @@ namespace {
 // half a step beside the poses where the mass matrix holds.
 double productsShare(const ForestTree& tree, int dof) { return tree.free && dof < tree.first_dof + 6 ? 0.5 : 1; }
 
-/** A tree is fast beyond one of these. */
-struct SlowMotion {
-  double turning;  ///< change of the velocities by velocity products in a step, over the velocities
-  double bend;     ///< [rad] of a hinge in a step: products that are none at its start, as of a stretched arm, may be there at its end
-};
-
-// A tree that nothing drives has an energy to keep, to which motors and friction add and from which they take.
-constexpr SlowMotion ALONE{1e-4, 1e-3}, DRIVEN{1e-3, 1e-3};
+// A tree is fast beyond one of these.
+constexpr double SLOW_TURNING = 1e-4;  // change of the velocities by velocity products in a step, over the velocities
+constexpr double SLOW_BEND =
+    1e-3;  // [rad] of a hinge in a step: products that are none at its start, as of a stretched arm, may be there at its end
 constexpr double SMALL_TURN = 0.05;  // [rad] of a free root in a step: beyond, products of the step's start are not those of its end
 // Trees that are tied are solved with their products. Beyond this the products would add energy without bound:
 // they are left out, and the trees are braked.
@@ -47,17 +43,15 @@ double turningOf(const FreeStart& start, const Eigen::VectorXd& mass_velocity) {
 
 bool isFast(const ForestMotion& motion, int tree) { return motion.pace[tree] == Pace::FAST; }
 
-// A motor that may not push is none.
-bool hasMotor(const JointDrive& d) { return d.givenEffort() != 0 || (d.max_effort > 0 && (d.stiffness > 0 || d.damping > 0)); }
-
-bool isDriven(const JointDrive& d) { return hasMotor(d) || d.dry_friction > 0 || d.viscous_friction > 0; }
-
-/** Whether any joint of the tree is so. */
-template <typename Is>
-bool hasJoint(const Forest& forest, int tree, const StepInput& input, const Is& is) {
+// Whether motors or friction act on any joint of the tree. A motor that may not push is none.
+bool isDriven(const Forest& forest, int tree, const StepInput& input) {
+  const auto drives = [](const JointDrive& d) {
+    const bool motor = d.givenEffort() != 0 || (d.max_effort > 0 && (d.stiffness > 0 || d.damping > 0));
+    return motor || d.dry_friction > 0 || d.viscous_friction > 0;
+  };
   const ForestTree& t = forest.trees()[tree];
   return std::any_of(forest.nodes().begin() + t.first_node, forest.nodes().begin() + t.node_end,
-                     [&](const ForestNode& n) { return n.dofs == 1 && is(input.drives[n.joint]); });
+                     [&](const ForestNode& n) { return n.dofs == 1 && drives(input.drives[n.joint]); });
 }
 
 /** Whether the tree cannot go its way by itself: loops tie it, mimic joints to another tree, or some that move. Fingers that follow each
@@ -93,23 +87,18 @@ double bend(const FreeStart& start) {
   return most;
 }
 
-bool isBeyond(const SlowMotion& slow, const FreeStart& start, double turning) { return turning > slow.turning || bend(start) > slow.bend; }
+bool isSlow(const FreeStart& start, double turning) { return turning <= SLOW_TURNING && bend(start) <= SLOW_BEND; }
 
-const SlowMotion& slowMotion(const Forest& forest, int tree, const StepInput& input) {
-  return hasJoint(forest, tree, input, isDriven) ? DRIVEN : ALONE;
-}
-
-Pace paceOf(const FreeStart& start, const StepInput& input, const Eigen::VectorXd& mass_velocity) {
+Pace paceOf(const FreeStart& start, const Eigen::VectorXd& mass_velocity) {
   const double turning = turningOf(start, mass_velocity);
-  if (!isBeyond(ALONE, start, turning)) return Pace::SLOW;
-  if (isTied(start, mass_velocity)) return turning > TOO_FAST ? Pace::TOO_FAST : Pace::SLOW;
-  return isBeyond(slowMotion(start.forest, start.tree, input), start, turning) ? Pace::FAST : Pace::SLOW;
+  if (isSlow(start, turning)) return Pace::SLOW;
+  if (!isTied(start, mass_velocity)) return Pace::FAST;
+  return turning > TOO_FAST ? Pace::TOO_FAST : Pace::SLOW;
 }
 
 /** Whether this step made the tree fast: at the velocities that were solved it is beyond what may be solved with products. */
-bool isSpinning(const FreeStart& solved, const StepInput& input, const Eigen::VectorXd& mass_velocity) {
-  const SlowMotion& slow = slowMotion(solved.forest, solved.tree, input);
-  return isBeyond(slow, solved, turningOf(solved, mass_velocity)) && !isTied(solved, mass_velocity);
+bool isSpinning(const FreeStart& solved, const Eigen::VectorXd& mass_velocity) {
+  return !isSlow(solved, turningOf(solved, mass_velocity)) && !isTied(solved, mass_velocity);
 }
 
 // Joints that answer stiffly keep their velocity on the way, as far as motor, friction and limits reach.
@@ -220,8 +209,8 @@ void setFreeMomentum(const TreeAhead& ahead, ForestMotion* motion, SolverSpace* 
   computeProducts(forest, tree, space->direction, motion);
   multiply({forest, tree, motion->mass}, motion->velocity, &space->mass_velocity, &space->paths);
   const FreeStart start{forest, tree, input.dt, *motion, motion->velocity};
-  motion->pace[tree] = paceOf(start, input, space->mass_velocity);
-  if (isFast(*motion, tree) && touched && !hasJoint(forest, tree, input, isDriven)) addFreeAcceleration(forest, tree, motion, space);
+  motion->pace[tree] = paceOf(start, space->mass_velocity);
+  if (isFast(*motion, tree) && touched && !isDriven(forest, tree, input)) addFreeAcceleration(forest, tree, motion, space);
   if (motion->pace[tree] != Pace::SLOW) motion->products.segment(first, count).setZero();
   space->free_momentum.segment(first, count) = space->mass_velocity.segment(first, count);
   if (t.free) space->free_momentum.segment<6>(first) = motion->momentum[tree];
@@ -234,7 +223,7 @@ void setFreeMomentum(const TreeAhead& ahead, ForestMotion* motion, SolverSpace* 
 
 void followAlone(const Forest& forest, const StepInput& input, int tree, ForestMotion* motion, SolverSpace* space) {
   const FreeStart start{forest, tree, input.dt, *motion, motion->velocity};
-  const bool follows = motion->pace[tree] == Pace::SLOW && !hasJoint(forest, tree, input, isDriven) && !isTied(start, space->mass_velocity);
+  const bool follows = motion->pace[tree] == Pace::SLOW && !isDriven(forest, tree, input) && !isTied(start, space->mass_velocity);
   if (follows) setFast(forest, input, tree, motion, space);
 }
 
@@ -250,7 +239,7 @@ double correctProducts(const TreeAhead& ahead, ForestMotion* motion, SolverSpace
   space->gradient.segment(first, count) = motion->products.segment(first, count);
   space->direction.segment(first, count) = 0.5 * (motion->velocity.segment(first, count) + space->velocity.segment(first, count));
   computeProducts(forest, tree, space->direction, motion);
-  if (isSpinning({forest, tree, input.dt, *motion, space->velocity}, input, space->mass_velocity)) {
+  if (isSpinning({forest, tree, input.dt, *motion, space->velocity}, space->mass_velocity)) {
     motion->products.segment(first, count) = space->gradient.segment(first, count);
     setFast(forest, input, tree, motion, space);
     return INFINITY;

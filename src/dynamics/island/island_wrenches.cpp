@@ -20,7 +20,8 @@ void addReactions(const SolvedIsland& island, const ForestMotion& motion, std::v
   }
 }
 
-/** [N m, N] Wrench through a node's joint about the joint's origin. @param through about the tree's reference @param arm from the origin to it */
+/** [N m, N] Wrench through a node's joint about the joint's origin. @param through about the tree's reference @param arm from the origin to
+ * it */
 Wrench atJoint(const Vector6& through, const Vector3& arm) {
   const Vector6 at_origin = moveWrench(through, arm);
   return {linear(at_origin), angular(at_origin)};
@@ -31,7 +32,8 @@ void addEffort(const ForestNode& node, double effort, const Vector3& axis, Wrenc
   (node.kind == JointKind::REVOLUTE ? wrench->torque : wrench->force) += effort * axis;
 }
 
-// Wrenches of a tree's joints in the solve, what they owe from the way before included: of the change of its velocities, less what acts on the bodies from outside and in contacts.
+// Wrenches of a tree's joints in the solve, what they owe from the way before included: of the change of its velocities, less what acts on
+// the bodies from outside and in contacts.
 // @param products whether velocity products are in that change
 void setSolvedWrenches(const SolvedIsland& island, int tree, bool products, ForestMotion* motion, SolverSpace* space,
                        std::vector<Wrench>* wrenches) {
