@@ -26,9 +26,9 @@ const char* const UR5 = "robots/example-robot-data/robots/ur_description/urdf/ur
 const char* const TX90L = "robots/klampt/tx90l/tx90l.urdf";
 const char* const PANDA = "robots/example-robot-data/robots/panda_description/urdf/panda.urdf";
 
-const Fall FALLS[] = {{"UR5, held", UR5, sim::MotorDefault::COMPUTED, 5},      {"UR5, limp", UR5, sim::MotorDefault::FREE, 5},
-                      {"TX90L, held", TX90L, sim::MotorDefault::COMPUTED, 15}, {"TX90L, limp", TX90L, sim::MotorDefault::FREE, 15},
-                      {"Panda, held", PANDA, sim::MotorDefault::COMPUTED, 40}, {"Panda, limp", PANDA, sim::MotorDefault::FREE, 40}};
+const Fall FALLS[] = {{"UR5, held", UR5, sim::MotorDefault::COMPUTED, 5},     {"UR5, limp", UR5, sim::MotorDefault::FREE, 5},
+                      {"TX90L, held", TX90L, sim::MotorDefault::COMPUTED, 5}, {"TX90L, limp", TX90L, sim::MotorDefault::FREE, 5},
+                      {"Panda, held", PANDA, sim::MotorDefault::COMPUTED, 5}, {"Panda, limp", PANDA, sim::MotorDefault::FREE, 20}};
 
 sim::SimulationConfig falling(const Fall& fall, const Vector3& rpy) {
   sim::SimulationConfig config;

@@ -12,10 +12,16 @@ namespace {
 // half a step beside the poses where the mass matrix holds.
 double productsShare(const ForestTree& tree, int dof) { return tree.free && dof < tree.first_dof + 6 ? 0.5 : 1; }
 
-// A tree is fast beyond one of these.
-constexpr double SLOW_TURNING = 1e-4;  // change of the velocities by velocity products in a step, over the velocities
-constexpr double SLOW_BEND =
-    1e-3;  // [rad] of a hinge in a step: products that are none at its start, as of a stretched arm, may be there at its end
+/** A tree is fast beyond one of these. */
+struct SlowMotion {
+  double turning;  ///< change of the velocities by velocity products in a step, over the velocities
+  double bend;     ///< [rad] of a hinge in a step: products that are none at its start, as of a stretched arm, may be there at its end
+};
+
+// A tree that nothing drives has an energy to keep, and one that tumbles momenta as well. Of a robot that stands, or is bolted down, motors
+// and friction tell how much energy comes and goes.
+constexpr SlowMotion ALONE{1e-4, 1e-3}, AT_WORK{1e-3, 1e-3};
+constexpr double TUMBLING = 0.4;     // [rad/s] of a free root: a robot that sways on its feet turns less
 constexpr double SMALL_TURN = 0.05;  // [rad] of a free root in a step: beyond, products of the step's start are not those of its end
 // Trees that are tied are solved with their products. Beyond this the products would add energy without bound:
 // they are left out, and the trees are braked.
@@ -87,18 +93,23 @@ double bend(const FreeStart& start) {
   return most;
 }
 
-bool isSlow(const FreeStart& start, double turning) { return turning <= SLOW_TURNING && bend(start) <= SLOW_BEND; }
+bool isSlow(const FreeStart& start, const StepInput& input, double turning) {
+  const ForestTree& t = start.forest.trees()[start.tree];
+  const bool tumbles = t.free && start.velocity.segment<3>(t.first_dof).norm() > TUMBLING;
+  const SlowMotion& slow = !tumbles && isDriven(start.forest, start.tree, input) ? AT_WORK : ALONE;
+  return turning <= slow.turning && bend(start) <= slow.bend;
+}
 
-Pace paceOf(const FreeStart& start, const Eigen::VectorXd& mass_velocity) {
+Pace paceOf(const FreeStart& start, const StepInput& input, const Eigen::VectorXd& mass_velocity) {
   const double turning = turningOf(start, mass_velocity);
-  if (isSlow(start, turning)) return Pace::SLOW;
+  if (isSlow(start, input, turning)) return Pace::SLOW;
   if (!isTied(start, mass_velocity)) return Pace::FAST;
   return turning > TOO_FAST ? Pace::TOO_FAST : Pace::SLOW;
 }
 
 /** Whether this step made the tree fast: at the velocities that were solved it is beyond what may be solved with products. */
-bool isSpinning(const FreeStart& solved, const Eigen::VectorXd& mass_velocity) {
-  return !isSlow(solved, turningOf(solved, mass_velocity)) && !isTied(solved, mass_velocity);
+bool isSpinning(const FreeStart& solved, const StepInput& input, const Eigen::VectorXd& mass_velocity) {
+  return !isSlow(solved, input, turningOf(solved, mass_velocity)) && !isTied(solved, mass_velocity);
 }
 
 // Joints that answer stiffly keep their velocity on the way, as far as motor, friction and limits reach.
@@ -209,7 +220,7 @@ void setFreeMomentum(const TreeAhead& ahead, ForestMotion* motion, SolverSpace* 
   computeProducts(forest, tree, space->direction, motion);
   multiply({forest, tree, motion->mass}, motion->velocity, &space->mass_velocity, &space->paths);
   const FreeStart start{forest, tree, input.dt, *motion, motion->velocity};
-  motion->pace[tree] = paceOf(start, space->mass_velocity);
+  motion->pace[tree] = paceOf(start, input, space->mass_velocity);
   if (isFast(*motion, tree) && touched && !isDriven(forest, tree, input)) addFreeAcceleration(forest, tree, motion, space);
   if (motion->pace[tree] != Pace::SLOW) motion->products.segment(first, count).setZero();
   space->free_momentum.segment(first, count) = space->mass_velocity.segment(first, count);
@@ -239,7 +250,7 @@ double correctProducts(const TreeAhead& ahead, ForestMotion* motion, SolverSpace
   space->gradient.segment(first, count) = motion->products.segment(first, count);
   space->direction.segment(first, count) = 0.5 * (motion->velocity.segment(first, count) + space->velocity.segment(first, count));
   computeProducts(forest, tree, space->direction, motion);
-  if (isSpinning({forest, tree, input.dt, *motion, space->velocity}, space->mass_velocity)) {
+  if (isSpinning({forest, tree, input.dt, *motion, space->velocity}, input, space->mass_velocity)) {
     motion->products.segment(first, count) = space->gradient.segment(first, count);
     setFast(forest, input, tree, motion, space);
     return INFINITY;
