@@ -19,16 +19,16 @@ struct Fall {
   const char* name;
   const char* urdf;  ///< below the shared robots
   sim::MotorDefault motors;
-  int told;  ///< most steps that may say ENERGY_GAINED: while links that begin inside each other part, and in hard landings
+  int told;  ///< most steps that may say ENERGY_GAINED
 };
 
 const char* const UR5 = "robots/example-robot-data/robots/ur_description/urdf/ur5_robot.urdf";
 const char* const TX90L = "robots/klampt/tx90l/tx90l.urdf";
 const char* const PANDA = "robots/example-robot-data/robots/panda_description/urdf/panda.urdf";
 
-const Fall FALLS[] = {{"UR5, held", UR5, sim::MotorDefault::COMPUTED, 5},     {"UR5, limp", UR5, sim::MotorDefault::FREE, 5},
-                      {"TX90L, held", TX90L, sim::MotorDefault::COMPUTED, 5}, {"TX90L, limp", TX90L, sim::MotorDefault::FREE, 5},
-                      {"Panda, held", PANDA, sim::MotorDefault::COMPUTED, 5}, {"Panda, limp", PANDA, sim::MotorDefault::FREE, 20}};
+const Fall FALLS[] = {{"UR5, held", UR5, sim::MotorDefault::COMPUTED, 2},     {"UR5, limp", UR5, sim::MotorDefault::FREE, 2},
+                      {"TX90L, held", TX90L, sim::MotorDefault::COMPUTED, 2}, {"TX90L, limp", TX90L, sim::MotorDefault::FREE, 2},
+                      {"Panda, held", PANDA, sim::MotorDefault::COMPUTED, 2}, {"Panda, limp", PANDA, sim::MotorDefault::FREE, 5}};
 
 sim::SimulationConfig falling(const Fall& fall, const Vector3& rpy) {
   sim::SimulationConfig config;

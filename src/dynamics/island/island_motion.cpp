@@ -12,15 +12,11 @@ namespace {
 // half a step beside the poses where the mass matrix holds.
 double productsShare(const ForestTree& tree, int dof) { return tree.free && dof < tree.first_dof + 6 ? 0.5 : 1; }
 
-/** A tree is fast beyond one of these. */
-struct SlowMotion {
-  double turning;  ///< change of the velocities by velocity products in a step, over the velocities
-  double bend;     ///< [rad] of a hinge in a step: products that are none at its start, as of a stretched arm, may be there at its end
-};
-
-// A tree that nothing drives has an energy to keep, and one that tumbles momenta as well. Of a robot that stands, or is bolted down, motors
-// and friction tell how much energy comes and goes.
-constexpr SlowMotion ALONE{1e-4, 1e-3}, AT_WORK{1e-3, 1e-3};
+// A tree is fast if velocity products change its velocities by more than a share of them in a step. A tree that nothing drives has an
+// energy to keep, and one that tumbles momenta as well. Of a robot that stands, or is bolted down, motors and friction tell how much energy
+// comes and goes.
+constexpr double SLOW_ALONE = 1e-4, SLOW_AT_WORK = 1e-3;
+constexpr double SLOW_BEND = 1e-3;   // [rad] of a hinge in a step: beyond, products that are none at its start may be there at its end
 constexpr double TUMBLING = 0.4;     // [rad/s] of a free root: a robot that sways on its feet turns less
 constexpr double SMALL_TURN = 0.05;  // [rad] of a free root in a step: beyond, products of the step's start are not those of its end
 // Trees that are tied are solved with their products. Beyond this the products would add energy without bound:
@@ -94,10 +90,11 @@ double bend(const FreeStart& start) {
 }
 
 bool isSlow(const FreeStart& start, const StepInput& input, double turning) {
+  if (turning > SLOW_AT_WORK || bend(start) > SLOW_BEND) return false;
+  if (turning <= SLOW_ALONE) return true;
   const ForestTree& t = start.forest.trees()[start.tree];
   const bool tumbles = t.free && start.velocity.segment<3>(t.first_dof).norm() > TUMBLING;
-  const SlowMotion& slow = !tumbles && isDriven(start.forest, start.tree, input) ? AT_WORK : ALONE;
-  return turning <= slow.turning && bend(start) <= slow.bend;
+  return !tumbles && isDriven(start.forest, start.tree, input);
 }
 
 Pace paceOf(const FreeStart& start, const StepInput& input, const Eigen::VectorXd& mass_velocity) {

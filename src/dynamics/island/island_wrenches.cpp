@@ -20,23 +20,29 @@ void addReactions(const SolvedIsland& island, const ForestMotion& motion, std::v
   }
 }
 
-/** [N m, N] Wrench through a node's joint about the joint's origin. @param through about the tree's reference @param arm from the origin to
- * it */
+/** Wrench through a node's joint, about its origin. @param through about the tree's reference @param arm to that from the origin */
 Wrench atJoint(const Vector6& through, const Vector3& arm) {
   const Vector6 at_origin = moveWrench(through, arm);
   return {linear(at_origin), angular(at_origin)};
 }
 
 /** Adds an effort [N m or N] along the axis of a node's joint. */
-void addEffort(const ForestNode& node, double effort, const Vector3& axis, Wrench* wrench) {
+void addAlongAxis(const ForestNode& node, double effort, const Vector3& axis, Wrench* wrench) {
   (node.kind == JointKind::REVOLUTE ? wrench->torque : wrench->force) += effort * axis;
 }
 
-// Wrenches of a tree's joints in the solve, what they owe from the way before included: of the change of its velocities, less what acts on
-// the bodies from outside and in contacts.
-// @param products whether velocity products are in that change
-void setSolvedWrenches(const SolvedIsland& island, int tree, bool products, ForestMotion* motion, SolverSpace* space,
-                       std::vector<Wrench>* wrenches) {
+/** An island's motion at the start of its way, room to reckon in, and the wrenches that are asked for. */
+struct WrenchBooks {
+  const SolvedIsland& island;
+  ForestMotion* motion;
+  SolverSpace* space;
+  std::vector<Wrench>* wrenches;
+};
+
+// Wrenches of a tree's joints in the solve: of the change of its velocities, less what acts on the bodies from outside and in contacts; and
+// what its joints pay for the way before.
+void setSolvedWrenches(const WrenchBooks& books, int tree) {
+  const auto& [island, motion, space, wrenches] = books;
   const Forest& forest = island.forest;
   const Scene& scene = island.scene;
   const double dt = island.dt;
@@ -58,30 +64,30 @@ void setSolvedWrenches(const SolvedIsland& island, int tree, bool products, Fore
     Vector6 through = motion->node_change[i];
     if (node.parent >= 0) motion->node_change[node.parent] += through;
     if (node.joint < 0) continue;
-    if (products) through += motion->node_force[i];
+    if (motion->pace[tree] != Pace::FAST) through += motion->node_force[i];
     Wrench& wrench = (*wrenches)[node.joint];
     wrench = atJoint(through, motion->reference[tree] - motion->joint_origin[i]);
-    if (node.dofs == 1) addEffort(node, motion->owed[node.first_dof] / dt, motion->joint_axis[i], &wrench);
+    if (node.dofs == 1) addAlongAxis(node, motion->owed[node.first_dof] / dt, motion->joint_axis[i], &wrench);
   }
 }
 
 // Adds what keeps a fast tree's joints together on its free way, from momenta at both ends, at the middle of the way, without what joints
 // that keep their velocities owe to the next step. Overwrites the space's twists and wrenches.
-void addWayWrenches(const SolvedIsland& island, int tree, const FreeMotion& way, const ForestMotion& motion, SolverSpace* space,
-                    std::vector<Wrench>* wrenches) {
+void addWayWrenches(const WrenchBooks& books, const FreeMotion& way, int tree) {
+  const auto& [island, motion, space, wrenches] = books;
   const Forest& forest = island.forest;
   const ForestTree& t = forest.trees()[tree];
-  computeTwists(forest, tree, motion, space->velocity, &space->twist);
-  for (int i = t.first_node; i < t.node_end; ++i) space->wrench[i] = way.momentumRate(forest, i, island.dt, motion, space->twist[i]);
+  computeTwists(forest, tree, *motion, space->velocity, &space->twist);
+  for (int i = t.first_node; i < t.node_end; ++i) space->wrench[i] = way.momentumRate(forest, i, island.dt, *motion, space->twist[i]);
   for (int i = t.node_end - 1; i >= t.first_node; --i) {
     const ForestNode& node = forest.nodes()[i];
     if (node.parent >= 0) space->wrench[node.parent] += space->wrench[i];
     if (node.joint < 0) continue;
     Wrench& wrench = (*wrenches)[node.joint];
-    const Wrench added = atJoint(space->wrench[i], motion.reference[tree] - way.middleJoint(i, motion));
+    const Wrench added = atJoint(space->wrench[i], motion->reference[tree] - way.middleJoint(i, *motion));
     wrench.force += added.force;
     wrench.torque += added.torque;
-    if (node.dofs == 1) addEffort(node, -way.owed(node.first_dof) / island.dt, motion.joint_axis[i], &wrench);
+    if (node.dofs == 1) addAlongAxis(node, -way.owed(node.first_dof) / island.dt, motion->joint_axis[i], &wrench);
   }
 }
 
@@ -95,10 +101,10 @@ void computeWrenches(const SolvedIsland& island, const FreeMotion& way, ForestMo
     for (int i = t.first_node; i < t.node_end; ++i) reaction[i].setZero();
   }
   addReactions(island, *motion, &reaction, wrenches);
+  const WrenchBooks books{island, motion, space, wrenches};
   for (const int tree : island.model.trees) {
-    const bool fast = motion->pace[tree] == Pace::FAST;
-    setSolvedWrenches(island, tree, !fast, motion, space, wrenches);
-    if (fast) addWayWrenches(island, tree, way, *motion, space, wrenches);
+    setSolvedWrenches(books, tree);
+    if (motion->pace[tree] == Pace::FAST) addWayWrenches(books, way, tree);
   }
 }
 

@@ -114,6 +114,7 @@ void RobotBuilder::addTo(SimulatedWorld* world, SurfaceLibrary* surfaces) {
   setSelfCollision();
   disableNeighbours();
   disableListedPairs();
+  disableCrossings();
   ModelInfo& model = world->models[info_.model];
   for (const int body : info_.bodies)
     if (body != dynamics::WORLD_BODY) model.bodies.push_back(body);

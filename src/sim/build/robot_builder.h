@@ -32,6 +32,8 @@ class RobotBuilder {
   void disableNeighbours();
   void disableBodies(int lumped_a, int lumped_b);
   void disableListedPairs();
+  void disableCrossings();
+  Pose startOf(const contact::Collider& collider) const;  ///< geometry frame in the world
   void nameFrames();
   void setSelfCollision();
   void addSensors(int robot);

@@ -1,10 +1,22 @@
 // Colliders of a robot, and the pairs of them that never touch.
-#include <algorithm>
+#include <fmt/format.h>
 
+#include <algorithm>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "blem_sim/contact/narrow_phase.h"
 #include "build/contact_settings.h"
 #include "build/robot_builder.h"
 
 namespace blem_sim::sim {
+namespace {
+
+constexpr double CROSSED = 0.1;  // of the layers: what crosses by less, as fingers that are closed, contacts part
+
+}  // namespace
 
 void RobotBuilder::addColliders(SurfaceLibrary* surfaces) {
   double mass = 0;
@@ -75,6 +87,35 @@ void RobotBuilder::disableListedPairs() {
       for (const int b : own)
         if (link(a) == link_a && link(b) == link_b) world_->disabled_pairs.insert(std::minmax(a, b));
   }
+}
+
+Pose RobotBuilder::startOf(const contact::Collider& collider) const {
+  return collider.body == dynamics::WORLD_BODY ? collider.X_BC : X_WB_[lumped_->link_placement[collider.link].body] * collider.X_BC;
+}
+
+// Contacts of links that cross from the start, as neighbours' neighbours in wrists do, would tear at joints that cannot part them.
+void RobotBuilder::disableCrossings() {
+  const std::vector<int> own = world_->collidersOf(info_.model);
+  contact::NarrowPhaseWorkspace workspace;
+  contact::ContactManifold found;
+  std::set<std::pair<int, int>> links;
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    for (std::size_t j = i + 1; j < own.size(); ++j) {
+      const contact::Collider &a = world_->colliders[own[i]], &b = world_->colliders[own[j]];
+      const std::pair<int, int> pair = std::minmax(own[i], own[j]);
+      if (!world_->filter.allows(a, b) || world_->disabled_pairs.count(pair) > 0) continue;
+      const Pose X_WA = startOf(a), X_WB = startOf(b);
+      contact::narrowPhase({a, X_WA}, {b, X_WB}, {}, &workspace, &found);
+      if (!found.pierced || found.maxDepth() < (1 + CROSSED) * (a.radius + b.radius)) continue;
+      world_->disabled_pairs.insert(pair);
+      links.insert(std::minmax(a.link, b.link));
+    }
+  }
+  if (links.empty()) return;
+  std::string words;
+  for (const auto& [a, b] : links)
+    words += fmt::format("{}{} and {}", words.empty() ? "" : ", ", model_->links[a].name, model_->links[b].name);
+  note("links that cross where the robot starts never touch each other: " + words + "; initial_positions may part them");
 }
 
 }  // namespace blem_sim::sim

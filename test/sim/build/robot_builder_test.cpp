@@ -210,6 +210,37 @@ TEST(RobotBuilder, AForceTorqueSensorAtAFixedJointMakesNoSelfCollisions) {
   }
 }
 
+/** A wrist whose hand starts this far [m] above the arm's end, two joints away: below 0 it crosses. @return contacts between them, notes */
+std::pair<std::size_t, std::vector<std::string>> wristContacts(double gap) {
+  const std::string link = R"(<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>)"
+                           R"(<collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>)";
+  SimulationConfig config;
+  config.robots = {robot(
+      "wrist",
+      R"(<robot name="wrist"><link name="arm">)" + link +
+          R"(<link name="cross"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+    <link name="hand">)" +
+          link +
+          R"(<joint name="bend" type="continuous"><parent link="arm"/><child link="cross"/><axis xyz="0 1 0"/></joint>
+    <joint name="twist" type="continuous"><parent link="cross"/><child link="hand"/><origin xyz="0 0 )" +
+          std::to_string(0.1 + gap) + R"("/><axis xyz="0 0 1"/></joint></robot>)",
+      true)};
+  config.robots[0].self_collision = true;
+  Simulator simulator(config, model::UriResolver());
+  simulator.step();
+  return {simulator.report().contacts.size(), simulator.notes()};
+}
+
+TEST(RobotBuilder, LinksThatCrossFromTheStartNeverTouch) {
+  const auto [crossed, notes] = wristContacts(-0.01);
+  EXPECT_EQ(crossed, 0u);
+  EXPECT_TRUE(mentions(notes, "never touch each other: arm and hand")) << ::testing::PrintToString(notes);
+  const auto [touching, none] = wristContacts(-0.0001);
+  EXPECT_GT(touching, 0u);
+  EXPECT_FALSE(mentions(none, "never touch"));
+  EXPECT_GT(wristContacts(0.002).first, 0u);
+}
+
 TEST(RobotBuilder, AFixedBaseStillMeetsTheWorld) {
   SimulationConfig config;
   config.robots = {robot("worker", ROBOT, true)};
