@@ -9,7 +9,7 @@ void SolverSpace::resize(const Forest& forest) {
   idle.resize(forest);
   hessian.resize(forest);
   paths.resize(forest);
-  for (auto* v : {&twist, &wrench}) v->resize(forest.nodes().size());
+  for (auto* v : {&twist, &wrench}) v->assign(forest.nodes().size(), Vector6::Zero());
   stiffness.resize(forest.nodes().size());
   for (auto* v : {&stiff, &live}) v->resize(forest.nodes().size());
 }

@@ -18,7 +18,7 @@ Vector6 jointTwist(JointKind kind, const Vector3& axis_W, const Vector3& origin)
 void ForestMotion::resize(const Forest& forest) {
   const std::size_t nodes = forest.nodes().size(), dofs = forest.dofCount(), trees = forest.trees().size();
   for (auto* v : {&origin, &com, &joint_origin, &joint_axis}) v->resize(nodes);
-  for (auto* v : {&twist, &node_twist, &node_force, &node_change, &drift}) v->resize(nodes);
+  for (auto* v : {&twist, &node_twist, &node_force, &node_change, &drift}) v->assign(nodes, Vector6::Zero());
   for (auto* v : {&inertia, &composite}) v->resize(nodes);
   rotation.resize(nodes);
   position.resize(nodes);
