@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <string>
-#include <utility>
 
 #include "blem_sim/sim/simulator.h"
 #include "soak/figures.h"

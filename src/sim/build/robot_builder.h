@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "blem_sim/contact/narrow_phase.h"
 #include "blem_sim/model/robot_model.h"
 #include "blem_sim/sim/config.h"
 #include "build/simulated_world.h"
@@ -33,7 +34,7 @@ class RobotBuilder {
   void disableBodies(int lumped_a, int lumped_b);
   void disableListedPairs();
   void disableCrossings();
-  Pose startOf(const contact::Collider& collider) const;  ///< geometry frame in the world
+  bool crossAtStart(const contact::Collider& a, const contact::Collider& b, contact::NarrowPhaseWorkspace* workspace) const;
   void nameFrames();
   void setSelfCollision();
   void addSensors(int robot);

@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "blem_sim/contact/narrow_phase.h"
 #include "build/contact_settings.h"
 #include "build/robot_builder.h"
 
@@ -89,24 +88,27 @@ void RobotBuilder::disableListedPairs() {
   }
 }
 
-Pose RobotBuilder::startOf(const contact::Collider& collider) const {
-  return collider.body == dynamics::WORLD_BODY ? collider.X_BC : X_WB_[lumped_->link_placement[collider.link].body] * collider.X_BC;
+bool RobotBuilder::crossAtStart(const contact::Collider& a, const contact::Collider& b, contact::NarrowPhaseWorkspace* workspace) const {
+  const auto start = [this](const contact::Collider& c) -> Pose {
+    return c.body == dynamics::WORLD_BODY ? c.X_BC : X_WB_[lumped_->link_placement[c.link].body] * c.X_BC;
+  };
+  const Pose X_WA = start(a), X_WB = start(b);
+  contact::ContactManifold found;
+  contact::narrowPhase({a, X_WA}, {b, X_WB}, {}, workspace, &found);
+  return found.pierced && found.maxDepth() >= (1 + CROSSED) * (a.radius + b.radius);
 }
 
 // Contacts of links that cross from the start, as neighbours' neighbours in wrists do, would tear at joints that cannot part them.
 void RobotBuilder::disableCrossings() {
   const std::vector<int> own = world_->collidersOf(info_.model);
   contact::NarrowPhaseWorkspace workspace;
-  contact::ContactManifold found;
   std::set<std::pair<int, int>> links;
   for (std::size_t i = 0; i < own.size(); ++i) {
     for (std::size_t j = i + 1; j < own.size(); ++j) {
       const contact::Collider &a = world_->colliders[own[i]], &b = world_->colliders[own[j]];
       const std::pair<int, int> pair = std::minmax(own[i], own[j]);
       if (!world_->filter.allows(a, b) || world_->disabled_pairs.count(pair) > 0) continue;
-      const Pose X_WA = startOf(a), X_WB = startOf(b);
-      contact::narrowPhase({a, X_WA}, {b, X_WB}, {}, &workspace, &found);
-      if (!found.pierced || found.maxDepth() < (1 + CROSSED) * (a.radius + b.radius)) continue;
+      if (!crossAtStart(a, b, &workspace)) continue;
       world_->disabled_pairs.insert(pair);
       links.insert(std::minmax(a.link, b.link));
     }

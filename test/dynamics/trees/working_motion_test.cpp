@@ -7,7 +7,8 @@
 namespace blem_sim::dynamics {
 namespace {
 
-/** Two links without weight, the second across the first, whose motor presses it against a stop on the first: one rigid body, in theory. */
+/** Two links without gravity, the second across the first, whose motor presses it against a stop on the first: one rigid body, in theory.
+ */
 class PressedElbow {
  public:
   /** @param held the first link turns about the origin; else all of it flies @param spin [rad/s] of all of it about the origin */
