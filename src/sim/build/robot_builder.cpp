@@ -114,7 +114,7 @@ void RobotBuilder::addTo(SimulatedWorld* world, SurfaceLibrary* surfaces) {
   setSelfCollision();
   disableNeighbours();
   disableListedPairs();
-  disableCrossings();
+  partAtStart();
   ModelInfo& model = world->models[info_.model];
   for (const int body : info_.bodies)
     if (body != dynamics::WORLD_BODY) model.bodies.push_back(body);

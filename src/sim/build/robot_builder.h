@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "blem_sim/contact/narrow_phase.h"
@@ -33,8 +34,14 @@ class RobotBuilder {
   void disableNeighbours();
   void disableBodies(int lumped_a, int lumped_b);
   void disableListedPairs();
-  void disableCrossings();
-  bool crossAtStart(const contact::Collider& a, const contact::Collider& b, contact::NarrowPhaseWorkspace* workspace) const;
+  // robot_start.cpp
+  /** Links that start within each other's layers: what crosses or is caught never touches, layers of the others are narrowed. */
+  void partAtStart();
+  contact::ContactManifold meetingAtStart(const contact::Collider& a, const contact::Collider& b,
+                                          contact::NarrowPhaseWorkspace* workspace) const;
+  void separate(const std::vector<std::pair<int, int>>& pairs);
+  void narrowLayers(const std::vector<double>& shares);
+  std::string linkOf(const contact::Collider& collider) const { return model_->links[collider.link].name; }
   void nameFrames();
   void setSelfCollision();
   void addSensors(int robot);
@@ -50,8 +57,15 @@ class RobotBuilder {
   std::vector<double> positions_;  ///< of lumped joints, at the start
   std::vector<Pose> X_WB_;         ///< of lumped bodies, at the start
   std::vector<std::string> start_notes_;
+  /** A collider of the robot. */
+  struct OwnCollider {
+    int collider;
+    double layer;  ///< [m] that may be narrowed; 0: its radius is part of its shape
+  };
+
   SimulatedWorld* world_ = nullptr;
   RobotInfo info_;
+  std::vector<OwnCollider> own_;  ///< in the order of the load report
 };
 
 }  // namespace blem_sim::sim

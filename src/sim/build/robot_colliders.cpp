@@ -11,12 +11,6 @@
 #include "build/robot_builder.h"
 
 namespace blem_sim::sim {
-namespace {
-
-constexpr double CROSSED = 0.1;  // of the layers: what crosses by less, as fingers that are closed, contacts part
-
-}  // namespace
-
 void RobotBuilder::addColliders(SurfaceLibrary* surfaces) {
   double mass = 0;
   for (const model::LumpedBody& body : lumped_->bodies) mass += body.inertial.mass;
@@ -40,7 +34,9 @@ void RobotBuilder::addColliders(SurfaceLibrary* surfaces) {
       const auto geometry = surfaces->geometry(shape.mesh);
       surfaces->chooseWidth(*geometry, needs, shape.radius, &settings, &report);
       collider.geometry = surfaces->fitted(geometry, settings, shape.radius, &report);
-      world_->addCollider(collider, shape.radius > 0 ? shape.radius : settings.boundary_width.metres, settings.surface, report);
+      const bool has_layer = !(shape.radius > 0) && !settings.shrink;
+      const double width = shape.radius > 0 ? shape.radius : settings.boundary_width.metres;
+      own_.push_back({world_->addCollider(collider, width, settings.surface, report), has_layer ? width : 0});
     }
   }
 }
@@ -86,38 +82,6 @@ void RobotBuilder::disableListedPairs() {
       for (const int b : own)
         if (link(a) == link_a && link(b) == link_b) world_->disabled_pairs.insert(std::minmax(a, b));
   }
-}
-
-bool RobotBuilder::crossAtStart(const contact::Collider& a, const contact::Collider& b, contact::NarrowPhaseWorkspace* workspace) const {
-  const auto start = [this](const contact::Collider& c) -> Pose {
-    return c.body == dynamics::WORLD_BODY ? c.X_BC : X_WB_[lumped_->link_placement[c.link].body] * c.X_BC;
-  };
-  const Pose X_WA = start(a), X_WB = start(b);
-  contact::ContactManifold found;
-  contact::narrowPhase({a, X_WA}, {b, X_WB}, {}, workspace, &found);
-  return found.pierced && found.maxDepth() >= (1 + CROSSED) * (a.radius + b.radius);
-}
-
-// Contacts of links that cross from the start, as neighbours' neighbours in wrists do, would tear at joints that cannot part them.
-void RobotBuilder::disableCrossings() {
-  const std::vector<int> own = world_->collidersOf(info_.model);
-  contact::NarrowPhaseWorkspace workspace;
-  std::set<std::pair<int, int>> links;
-  for (std::size_t i = 0; i < own.size(); ++i) {
-    for (std::size_t j = i + 1; j < own.size(); ++j) {
-      const contact::Collider &a = world_->colliders[own[i]], &b = world_->colliders[own[j]];
-      const std::pair<int, int> pair = std::minmax(own[i], own[j]);
-      if (!world_->filter.allows(a, b) || world_->disabled_pairs.count(pair) > 0) continue;
-      if (!crossAtStart(a, b, &workspace)) continue;
-      world_->disabled_pairs.insert(pair);
-      links.insert(std::minmax(a.link, b.link));
-    }
-  }
-  if (links.empty()) return;
-  std::string words;
-  for (const auto& [a, b] : links)
-    words += fmt::format("{}{} and {}", words.empty() ? "" : ", ", model_->links[a].name, model_->links[b].name);
-  note("links that cross where the robot starts never touch each other: " + words + "; initial_positions may part them");
 }
 
 }  // namespace blem_sim::sim

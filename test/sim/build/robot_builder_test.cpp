@@ -210,25 +210,28 @@ TEST(RobotBuilder, AForceTorqueSensorAtAFixedJointMakesNoSelfCollisions) {
   }
 }
 
-/** A wrist whose hand starts this far [m] above the arm's end, two joints away: below 0 it crosses. @return contacts between them, notes */
-std::pair<std::size_t, std::vector<std::string>> wristContacts(double gap) {
-  const std::string link = R"(<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>)"
-                           R"(<collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>)";
+/** A wrist: the arm's end is these boxes, the hand, two joints away, a cube of 0.1 m this far [m] above its origin. @return contacts
+ * between them, notes */
+std::pair<std::size_t, std::vector<std::string>> wristContacts(double height, const std::string& arm) {
+  const std::string inertial = R"(<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>)";
   SimulationConfig config;
-  config.robots = {robot(
-      "wrist",
-      R"(<robot name="wrist"><link name="arm">)" + link +
-          R"(<link name="cross"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
-    <link name="hand">)" +
-          link +
-          R"(<joint name="bend" type="continuous"><parent link="arm"/><child link="cross"/><axis xyz="0 1 0"/></joint>
+  config.robots = {robot("wrist",
+                         R"(<robot name="wrist"><link name="arm">)" + inertial + arm + R"(</link><link name="cross">)" + inertial +
+                             R"(</link><link name="hand">)" + inertial +
+                             R"(<collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
+    <joint name="bend" type="continuous"><parent link="arm"/><child link="cross"/><axis xyz="0 1 0"/></joint>
     <joint name="twist" type="continuous"><parent link="cross"/><child link="hand"/><origin xyz="0 0 )" +
-          std::to_string(0.1 + gap) + R"("/><axis xyz="0 0 1"/></joint></robot>)",
-      true)};
+                             std::to_string(height) + R"("/><axis xyz="0 0 1"/></joint></robot>)",
+                         true)};
   config.robots[0].self_collision = true;
   Simulator simulator(config, model::UriResolver());
   simulator.step();
   return {simulator.report().contacts.size(), simulator.notes()};
+}
+
+/** The hand starts this far [m] above the arm's end: below 0 it crosses. */
+std::pair<std::size_t, std::vector<std::string>> wristContacts(double gap) {
+  return wristContacts(0.1 + gap, R"(<collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision>)");
 }
 
 TEST(RobotBuilder, LinksThatCrossFromTheStartNeverTouch) {
@@ -238,7 +241,23 @@ TEST(RobotBuilder, LinksThatCrossFromTheStartNeverTouch) {
   const auto [touching, none] = wristContacts(-0.0001);
   EXPECT_GT(touching, 0u);
   EXPECT_FALSE(mentions(none, "never touch"));
-  EXPECT_GT(wristContacts(0.002).first, 0u);
+}
+
+TEST(RobotBuilder, LayersOfLinksThatStartNearEachOtherAreNarrowed) {
+  const auto [contacts, notes] = wristContacts(0.002);  // in layers of 2.5 mm each
+  EXPECT_EQ(contacts, 0u);
+  EXPECT_TRUE(mentions(notes, "arm 0.9 mm, hand 0.9 mm")) << ::testing::PrintToString(notes);
+  EXPECT_FALSE(mentions(wristContacts(0.006).second, "narrower"));
+  EXPECT_GT(wristContacts(0.0001).first, 0u);  // closed fingers touch
+}
+
+TEST(RobotBuilder, ALinkThatStartsInARecessNeverTouchesItsSides) {
+  std::string recess;  // 0.1 mm wider than the hand on either side
+  for (const double x : {-0.0751, 0.0751})
+    recess += R"(<collision><origin xyz=")" + std::to_string(x) + R"( 0 0"/><geometry><box size="0.05 0.1 0.1"/></geometry></collision>)";
+  const auto [contacts, notes] = wristContacts(0, recess);
+  EXPECT_EQ(contacts, 0u);
+  EXPECT_TRUE(mentions(notes, "caught in each other, never touch each other: arm and hand")) << ::testing::PrintToString(notes);
 }
 
 TEST(RobotBuilder, AFixedBaseStillMeetsTheWorld) {
