@@ -25,8 +25,8 @@ class Builder {
   struct Part;
 
  public:
-  Builder(Primitive* begin, Primitive* end, int leaf_size)
-      : all_(boundedRun(begin, end)), leaf_size_(static_cast<std::size_t>(std::max(1, leaf_size))) {}
+  Builder(Primitive* begin, Primitive* end, int leaf_size, SplitBy by)
+      : all_(boundedRun(begin, end)), leaf_size_(static_cast<std::size_t>(std::max(1, leaf_size))), by_(by) {}
 
   /** Puts the primitives into the tree's order. */
   Part build() const { return partOf({all_, 0}); }
@@ -40,7 +40,7 @@ class Builder {
 
  private:
   /** Deeper nodes are split at the median, so that no input makes a deep tree. */
-  static constexpr int MAX_SAH_DEPTH = Bvh::MAX_DEPTH / 2;
+  static constexpr int MAX_CHOSEN_DEPTH = Bvh::MAX_DEPTH / 2;
 
   struct Run : PrimitiveRun {
     Run() = default;
@@ -67,7 +67,7 @@ class Builder {
     node->count = static_cast<std::uint32_t>(run.size());
     if (run.size() <= leaf_size_) return false;
     node->count = 0;
-    splitRun(run, run.depth < MAX_SAH_DEPTH ? SplitBy::COST : SplitBy::MEDIAN, left, right);
+    splitRun(run, run.depth < MAX_CHOSEN_DEPTH ? by_ : SplitBy::MEDIAN, left, right);
     left->depth = right->depth = run.depth + 1;
     return true;
   }
@@ -129,6 +129,7 @@ class Builder {
 
   const PrimitiveRun all_;
   const std::size_t leaf_size_;
+  const SplitBy by_;
 };
 
 }  // namespace
@@ -136,7 +137,10 @@ class Builder {
 Bvh::Bvh(const TriangleMesh& mesh, int leaf_size) {
   if (mesh.elements.empty()) return;
   std::unique_ptr<Primitive[]> primitives = primitivesOf(mesh);
-  const auto root = Builder(primitives.get(), primitives.get() + mesh.elements.size(), leaf_size).build();
+  const bool only_points =
+      std::all_of(mesh.elements.begin(), mesh.elements.end(), [](const Vector3i& e) { return e[0] == e[1] && e[1] == e[2]; });
+  const SplitBy by = only_points ? SplitBy::MIDDLE : SplitBy::COST;
+  const auto root = Builder(primitives.get(), primitives.get() + mesh.elements.size(), leaf_size, by).build();
   order_.resize(mesh.elements.size());
   forAll(order_.size(), [&](std::size_t i) { order_[i] = primitives[i].element(); });
   primitives.reset();  // before the nodes take memory a second time

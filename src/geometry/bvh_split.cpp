@@ -1,10 +1,11 @@
 #include "bvh_split.h"
 
 #include <tbb/blocked_range.h>
-#include <tbb/parallel_reduce.h>
 
 #include <array>
 #include <cmath>
+
+#include "blem_sim/geometry/for_all.h"
 
 namespace blem_sim::geometry {
 namespace {
@@ -119,7 +120,7 @@ void addAllByTurns(const Primitive* begin, const Primitive* end, const Binning& 
 }
 
 void addByThreads(const PrimitiveRun& run, const Binning& binning, Bins* bins) {
-  *bins = tbb::parallel_reduce(
+  *bins = sumOfParts(
       tbb::blocked_range<const Primitive*>(run.begin, run.end, MANY / 4), *bins,
       [&](const tbb::blocked_range<const Primitive*>& range, Bins sum) {
         addAllByTurns(range.begin(), range.end(), binning, &sum);
@@ -168,13 +169,19 @@ RunBounds boundsOf(const Primitive* begin, const Primitive* end) {
   return bounds;
 }
 
-/** Halves along the widest axis, in a total order. */
-Primitive* halved(const PrimitiveRun& run) {
+/** Axis along which middles are spread most. */
+int widestAxis(const PrimitiveRun& run) {
   const BuildBox& middles = run.bounds.middles;
   int widest = 0;
   for (int axis = 1; axis < 3; ++axis) {
     if (middles.upper[axis] - middles.lower[axis] > middles.upper[widest] - middles.lower[widest]) widest = axis;
   }
+  return widest;
+}
+
+/** Halves along the widest axis, in a total order. */
+Primitive* halved(const PrimitiveRun& run) {
+  const int widest = widestAxis(run);
   Primitive* const middle = run.begin + run.size() / 2;
   std::nth_element(run.begin, middle, run.end, [widest](const Primitive& p, const Primitive& q) {
     return p.middle(widest) != q.middle(widest) ? p.middle(widest) < q.middle(widest) : p.element() < q.element();
@@ -185,7 +192,7 @@ Primitive* halved(const PrimitiveRun& run) {
 }  // namespace
 
 PrimitiveRun boundedRun(Primitive* begin, Primitive* end) {
-  const RunBounds bounds = tbb::parallel_reduce(
+  const RunBounds bounds = sumOfParts(
       tbb::blocked_range<const Primitive*>(begin, end, MANY / 4), RunBounds(),
       [](const tbb::blocked_range<const Primitive*>& range, RunBounds sum) {
         for (const Primitive& p : range) sum.extend(p);
@@ -199,6 +206,13 @@ PrimitiveRun boundedRun(Primitive* begin, Primitive* end) {
 }
 
 void splitRun(const PrimitiveRun& run, SplitBy by, PrimitiveRun* left, PrimitiveRun* right) {
+  if (by == SplitBy::MIDDLE) {
+    const int axis = widestAxis(run);
+    const float border = 0.5f * run.bounds.middles.lower[axis] + 0.5f * run.bounds.middles.upper[axis];
+    partition(
+        run, [=](const Primitive& p) { return p.middle(axis) < border; }, left, right);
+    if (left->size() > 0 && right->size() > 0) return;
+  }
   const Binning binning(run.bounds.middles);
   const Split split = by == SplitBy::COST ? splitByCost(run, binning) : Split();
   if (split.axis >= 0) {

@@ -1,5 +1,4 @@
 #include <tbb/blocked_range.h>
-#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <atomic>
@@ -84,7 +83,7 @@ void countEdges(const TriangleMesh& mesh, MeshReport* report) {
   };
   const SidesByVertex by_vertex(mesh);
   const auto isOfTriangle = [&](const Side& side) { return mesh.isTriangle(side.element()); };
-  const Counts counts = tbb::parallel_reduce(
+  const Counts counts = sumOfParts(
       tbb::blocked_range<int>(0, static_cast<int>(mesh.vertices.size()), FEW_ITEMS), Counts(),
       [&](const tbb::blocked_range<int>& range, Counts sum) {
         for (int v = range.begin(); v < range.end(); ++v) {
@@ -181,13 +180,10 @@ void dropUnusedVertices(TriangleMesh* mesh) {
 void describeResult(const TriangleMesh& mesh, MeshReport* report) {
   const int elements = static_cast<int>(mesh.elements.size());
   const auto count = [elements](auto&& isOne) {
-    return tbb::parallel_reduce(
-        tbb::blocked_range<int>(0, elements, FEW_ITEMS), 0,
-        [&](const tbb::blocked_range<int>& range, int sum) {
-          for (int i = range.begin(); i < range.end(); ++i) sum += isOne(i);
-          return sum;
-        },
-        std::plus<int>());
+    return sumOfParts(tbb::blocked_range<int>(0, elements, FEW_ITEMS), 0, [&](const tbb::blocked_range<int>& range, int sum) {
+      for (int i = range.begin(); i < range.end(); ++i) sum += isOne(i);
+      return sum;
+    });
   };
   report->vertices = static_cast<int>(mesh.vertices.size());
   report->triangles = count([&](int i) { return mesh.isTriangle(i); });

@@ -1,7 +1,6 @@
 #include "blem_sim/geometry/triangle_mesh.h"
 
 #include <tbb/blocked_range.h>
-#include <tbb/parallel_reduce.h>
 
 #include <array>
 #include <cstdint>
@@ -19,8 +18,7 @@ Box TriangleMesh::bounds() const {
       for (int k = 0; k < 3; ++k) box.extend(vertices[elements[i][k]]);
     return box;
   };
-  return tbb::parallel_reduce(Range(0, elements.size(), FEW_ITEMS), Box(), extended,
-                              [](const Box& a, const Box& b) { return a.merged(b); });
+  return sumOfParts(Range(0, elements.size(), FEW_ITEMS), Box(), extended, [](const Box& a, const Box& b) { return a.merged(b); });
 }
 
 TriangleMesh transformed(const TriangleMesh& mesh, const Pose& X_AB, const Vector3& scale) {

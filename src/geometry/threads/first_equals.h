@@ -1,9 +1,6 @@
 // Equal items, found by a hash table that several threads fill.
 #pragma once
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -38,7 +35,7 @@ std::vector<int> firstEquals(int count, Hash&& hash, Equal&& equal) {
     }
   };
   std::vector<int> first(count);  // until all are in: their slots
-  tbb::parallel_for(tbb::blocked_range<int>(0, count, GRAIN), [&](const tbb::blocked_range<int>& range) {
+  forParts(count, GRAIN, [&](const tbb::blocked_range<int>& range) {
     std::array<std::size_t, BATCH> slot;
     for (int begin = range.begin(); begin < range.end(); begin += BATCH) {
       const int size = std::min(BATCH, range.end() - begin);

@@ -1,12 +1,12 @@
 // A counting sort that several threads share.
 #pragma once
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <vector>
+
+#include "blem_sim/geometry/for_all.h"
 
 namespace blem_sim::geometry {
 
@@ -27,11 +27,12 @@ std::vector<int> grouped(int items, int groups, VisitValues&& visitValues, MakeR
   const auto first = [&](int part) { return static_cast<int>(static_cast<long long>(items) * part / parts); };
   // Per part, first the number of values that each group gets, then the place of its next one.
   std::vector<std::unique_ptr<int[]>> next(static_cast<std::size_t>(parts));
-  tbb::parallel_for(0, parts, [&](int part) {
+  const auto countPart = [&](int part) {
     next[part] = std::make_unique<int[]>(static_cast<std::size_t>(groups));
     int* const counts = next[part].get();
     for (int i = first(part); i < first(part + 1); ++i) visitValues(i, [counts](int group, auto) { ++counts[group]; });
-  });
+  };
+  forAll(parts, countPart, 1);
   std::vector<int> begin(static_cast<std::size_t>(groups) + 1);
   int total = 0;
   for (int group = 0; group < groups; ++group) {
@@ -44,10 +45,11 @@ std::vector<int> grouped(int items, int groups, VisitValues&& visitValues, MakeR
   }
   begin[groups] = total;
   auto* const values = makeRoom(static_cast<std::size_t>(total));
-  tbb::parallel_for(0, parts, [&](int part) {
+  const auto placePart = [&](int part) {
     int* const places = next[part].get();
     for (int i = first(part); i < first(part + 1); ++i) visitValues(i, [=](int group, auto value) { values[places[group]++] = value; });
-  });
+  };
+  forAll(parts, placePart, 1);
   return begin;
 }
 
