@@ -20,6 +20,7 @@ namespace {
 constexpr double TOUCH = 1e-5;             // [m] largest gap of a point that something stands on
 constexpr std::size_t MOST_RISING = 5000;  // points below a body that is buried
 constexpr std::size_t MOST_LEFT = 200;     // contacts of a pair without a choice of the last step
+constexpr double BEGUN = 1e-9;             // [m] sink of what begins to leave: in the step of an exchange it bears as before
 constexpr double LOOK_AHEAD = 0.2;         // [s] for which what moves shall find triangles ahead that fade as those below it
 constexpr double FARTHEST_AHEAD = 0.1;     // [m] of them: an exchange must cost no step
 constexpr double STAYS = 0.001;            // [m] in that time: no more is standing
@@ -97,7 +98,7 @@ void Simulator::Impl::forStoodOn(int model, const std::function<void(const Stood
     }
 }
 
-SunkSurface Simulator::Impl::pointsStoodOn(int model, const Pose& X_CW, double least) const {
+SunkSurface Simulator::Impl::pointsStoodOn(int model, const Pose& X_CW) const {
   struct Point {
     Vector3 p_W;
     double sink, radius;
@@ -116,7 +117,7 @@ SunkSurface Simulator::Impl::pointsStoodOn(int model, const Pose& X_CW, double l
   points.erase(std::unique(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.p_W == b.p_W; }), points.end());
   std::vector<Vector3> places;
   for (const Point& point : points) {
-    surface.sunk.push_back({static_cast<int>(places.size()), std::max(point.sink, least)});
+    surface.sunk.push_back({static_cast<int>(places.size()), std::max(point.sink, BEGUN)});
     places.push_back(X_CW * point.p_W);
   }
   surface.mesh = geometry::pointCloudMesh(places, nullptr);
@@ -137,14 +138,14 @@ Vector3 Simulator::Impl::wayUp() const {
   return gravity.isZero() ? Vector3::Zero() : Vector3(-gravity.normalized());
 }
 
-SunkSurface Simulator::Impl::trianglesStoodOn(int model, const Pose& X_CW, double least) const {
+SunkSurface Simulator::Impl::trianglesStoodOn(int model, const Pose& X_CW) const {
   LeavingTriangles triangles(world_.colliders);
   forStoodOn(model, [&](const StoodOn& on) {
     const contact::Collider& live = world_.colliders[on.live];
     triangles.addTouched(on.live, touchedPlace(live, on.contact, on.is_a), wayAhead(on.other, on.contact.point),
                          fading_.sinkOf(live, on.live, on.contact, on.is_a));
   });
-  return triangles.surface(X_CW, fading_, least);
+  return triangles.surface(X_CW, fading_, BEGUN);
 }
 
 std::map<int, double> Simulator::Impl::depthsOn(int model) const {
@@ -236,7 +237,8 @@ void Simulator::Impl::addSunk(const LiveGround& live, const contact::ContactMani
   for (const contact::Contact& contact : manifold.contacts) {
     if (!(contact.depth > 0) || contact.pierced) continue;
     const contact::MeshPlace place = touchedPlace(surface, contact, is_a);
-    const double depth = sinkTouched(live, manifold, contact, buried);
+    // New places touch once old ones have begun to sink, in the step after the exchange.
+    const double depth = sinkTouched(live, manifold, contact, buried) + live.fade_speed * config_.time_step;
     for (int k = 0; k < 3; ++k)
       if (place.weights[k] > 0) sunk->push_back({place.corners[k], depth});
     const Vector3 way = wayAhead(is_a ? manifold.b : manifold.a, contact.point);
@@ -308,9 +310,8 @@ void Simulator::Impl::updateCloud(const std::string& environment, CloudSurface* 
   cloud.X_BC = makePose(surface->origin);
   cloud.geometry = surface->geometry;
   const Pose X_CW = cloud.X_BC.inverse();
-  const double least = live.fade_speed * config_.time_step;
   const std::map<int, double> depths = depthsOn(model);
-  SunkSurface remains = live.is_mesh ? trianglesStoodOn(model, X_CW, least) : pointsStoodOn(model, X_CW, least);
+  SunkSurface remains = live.is_mesh ? trianglesStoodOn(model, X_CW) : pointsStoodOn(model, X_CW);
   CloudSurface before;
   if (live.cloud >= 0) {
     before.geometry = world_.colliders[live.cloud].geometry;
@@ -334,6 +335,7 @@ void Simulator::Impl::updateCloud(const std::string& environment, CloudSurface* 
   sinkBorders(rising, {});
   sinkIntoTouch(live, inner);
   at_hand_.known = false;
+  findFirstContacts();  // in the time between steps
   layout_.clear();
   *surface = std::move(before);
 }

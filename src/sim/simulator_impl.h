@@ -141,9 +141,9 @@ struct Simulator::Impl {
     bool is_a;        ///< the environment is the contact's A
   };
   void forStoodOn(int model, const std::function<void(const StoodOn&)>& tell) const;
-  /** Points, or triangles, that something stands on now, sunk by `least` [m] at least. @param X_CW from the world to the frame wanted */
-  SunkSurface pointsStoodOn(int model, const Pose& X_CW, double least) const;
-  SunkSurface trianglesStoodOn(int model, const Pose& X_CW, double least) const;
+  /** Points, or triangles, that something stands on now, where they are sunk to. @param X_CW from the world to the frame wanted */
+  SunkSurface pointsStoodOn(int model, const Pose& X_CW) const;
+  SunkSurface trianglesStoodOn(int model, const Pose& X_CW) const;
   /** Adds what sinks away, or else rises. @return its collider, -1 if the surface is empty */
   int addFading(const LiveGround& live, SunkSurface surface, bool leaves);
   /**

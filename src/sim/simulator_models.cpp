@@ -207,12 +207,12 @@ void Simulator::Impl::setPhysics(const Vector3& gravity, double time_step, doubl
   world_.world.setGravity(gravity);
   config_.gravity = gravity;
   config_.real_time_factor = real_time_factor;
+  at_hand_.known = false;  // what fades pushes upwards only
   if (time_step == config_.time_step) return;
   epoch_ = {time(), step_count_};
   config_.time_step = time_step;
   layout_.clear();
   sensors_.remake(world_, config_.time_step);
-  at_hand_.known = false;
 }
 
 }  // namespace blem_sim::sim

@@ -18,7 +18,7 @@
 namespace blem_sim::node {
 
 /**
- * Receives clouds beside the steps and exchanges environments for them between steps: while the simulation runs before each step, for calls
+ * Receives clouds beside the steps and exchanges environments for them between steps: while the simulation runs after each step, for calls
  * of `~step` and `~step_with_commands` once, before their first step and after all messages received so far are built. Publishes
  * `~live_cloud_updates`.
  */

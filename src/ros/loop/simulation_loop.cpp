@@ -61,9 +61,9 @@ void SimulationLoop::run(ros::CallbackQueue* callbacks, const std::function<void
     serveCallbacks(callbacks, wait);
     serve(paused_);
     if (paused_ || pacer_.wait(StepPacer::Clock::now()) > 0) continue;
-    for (const auto& act : before_steps_) act(false);
-    step();
+    if (!step()) continue;
     pacer_.stepped(StepPacer::Clock::now());
+    actBeforeSteps(false);  // in the time until the next step is due
   }
 }
 
@@ -72,9 +72,14 @@ void SimulationLoop::serveCallbacks(ros::CallbackQueue* callbacks, double wait) 
   callbacks->callAvailable(ros::WallDuration(wait));
 }
 
+void SimulationLoop::actBeforeSteps(bool asked_for) {
+  for (const auto& act : before_steps_) act(asked_for);
+}
+
 void SimulationLoop::unpause() {
   if (!paused_) return;
   paused_ = false;
+  actBeforeSteps(false);
   pacer_.restart(StepPacer::Clock::now());
   for (const auto& publisher : publishers_) publisher->resumed();
 }
@@ -82,8 +87,7 @@ void SimulationLoop::unpause() {
 std::uint32_t SimulationLoop::stepPaused(std::uint32_t count) {
   paused_ = true;
   for (const auto& publisher : publishers_) publisher->resumed();
-  if (count > 0)
-    for (const auto& act : before_steps_) act(true);
+  if (count > 0) actBeforeSteps(true);
   std::uint32_t made = 0;
   bool finite = true;
   while (made < count && finite && ros::ok()) {

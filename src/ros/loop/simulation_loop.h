@@ -53,8 +53,8 @@ class SimulationLoop {
   void modelsChanged();
   /** Lets an action follow on every change of models. */
   void onModelsChanged(std::function<void()> act) { on_models_changed_.push_back(std::move(act)); }
-  /** Lets an action take place before steps: before each while the simulation runs (with false), once before those that stepPaused makes
-   *  (with true: what was sent before shall count). */
+  /** Lets an action take place between steps: after each while the simulation runs, in the time until the next one is due, and when it
+   *  goes on (with false); once before those that stepPaused makes (with true: what was sent before shall count). */
   void beforeSteps(std::function<void(bool asked_for)> act) { before_steps_.push_back(std::move(act)); }
   /** Live environments were exchanged. */
   void cloudsChanged();
@@ -76,6 +76,7 @@ class SimulationLoop {
   void serveCallbacks(ros::CallbackQueue* callbacks, double wait);
   /** Makes a step. False if the state stopped being finite: the simulation is paused then. */
   bool step();
+  void actBeforeSteps(bool asked_for);
   void publish(const sim::StepReport& report);
   /** Returns when the messages published so far have been offered to the sockets. */
   void flush();

@@ -1,3 +1,6 @@
+#include <tbb/task_arena.h>
+
+#include <algorithm>
 #include <utility>
 
 #include "blem_sim/geometry/far_origin.h"
@@ -17,14 +20,23 @@ CloudSurface surfaceOf(model::LoadedSurface loaded) {
   return surface;
 }
 
+/** Calls make() with all processors but one, which the steps have: threads that come and go there would cool its caches. */
+template <typename Make>
+CloudSurface madeBesideSteps(const Make& make) {
+  tbb::task_arena arena(std::max(1, tbb::this_task_arena::max_concurrency() - 1));
+  CloudSurface surface;
+  arena.execute([&] { surface = make(); });
+  return surface;
+}
+
 }  // namespace
 
 CloudSurface makeCloudSurface(model::SensedCloud cloud, const model::CloudOptions& options, const std::string& name) {
-  return surfaceOf(model::cloudSurface(std::move(cloud), options, name));
+  return madeBesideSteps([&] { return surfaceOf(model::cloudSurface(std::move(cloud), options, name)); });
 }
 
 CloudSurface makeMeshSurface(geometry::TriangleMesh mesh, const std::string& name) {
-  return surfaceOf(model::meshSurface(std::move(mesh), name));
+  return madeBesideSteps([&] { return surfaceOf(model::meshSurface(std::move(mesh), name)); });
 }
 
 }  // namespace blem_sim::sim
