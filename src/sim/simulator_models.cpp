@@ -207,7 +207,7 @@ void Simulator::Impl::setPhysics(const Vector3& gravity, double time_step, doubl
   world_.world.setGravity(gravity);
   config_.gravity = gravity;
   config_.real_time_factor = real_time_factor;
-  at_hand_.known = false;  // what fades pushes upwards only
+  at_hand_.known = false;  // contacts with what fades depend on the way up
   if (time_step == config_.time_step) return;
   epoch_ = {time(), step_count_};
   config_.time_step = time_step;

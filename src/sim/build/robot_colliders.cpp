@@ -1,16 +1,12 @@
 // Colliders of a robot, and the pairs of them that never touch.
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <set>
-#include <string>
-#include <utility>
 #include <vector>
 
 #include "build/contact_settings.h"
 #include "build/robot_builder.h"
 
 namespace blem_sim::sim {
+
 void RobotBuilder::addColliders(SurfaceLibrary* surfaces) {
   double mass = 0;
   for (const model::LumpedBody& body : lumped_->bodies) mass += body.inertial.mass;

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <set>
 #include <string>
@@ -17,6 +18,12 @@ constexpr double CROSSED = 0.1;      // of the layers: what crosses by less, as 
 constexpr double GAP_FILLED = 0.9;   // share of a gap that narrowed layers take
 constexpr double LEAST_SHARE = 0.1;  // of a layer that is left; links nearer than that are meant to touch
 constexpr double TO_MILLI = 1000;
+
+/** Two links, some of whose colliders are nearer to each other than layers can be narrowed. */
+struct TightLinks {
+  std::vector<std::pair<int, int>> colliders;
+  std::vector<contact::Contact> contacts;
+};
 
 /** Whether contacts push one link both ways, so that no motion parts them all: it lies in a recess of the other. */
 bool isCaught(const std::vector<contact::Contact>& contacts) {
@@ -44,15 +51,14 @@ contact::ContactManifold RobotBuilder::meetingAtStart(const contact::Collider& a
 void RobotBuilder::partAtStart() {
   contact::NarrowPhaseWorkspace workspace;
   std::vector<double> shares(own_.size(), 1);
-  std::vector<std::pair<int, int>> crossing;                              // colliders
-  std::map<std::pair<int, int>, std::vector<std::pair<int, int>>> tight;  // by links: colliders whose gaps are too narrow for layers
-  std::map<std::pair<int, int>, std::vector<contact::Contact>> of_tight;  // by links
+  std::vector<std::pair<int, int>> crossing;        // colliders
+  std::map<std::pair<int, int>, TightLinks> tight;  // by links
   for (std::size_t i = 0; i < own_.size(); ++i) {
     for (std::size_t j = i + 1; j < own_.size(); ++j) {
       const contact::Collider &a = world_->colliders[own_[i].collider], &b = world_->colliders[own_[j].collider];
       const std::pair<int, int> pair = std::minmax(own_[i].collider, own_[j].collider), links{a.link, b.link};
       if (!world_->filter.allows(a, b) || world_->disabled_pairs.count(pair) > 0) continue;
-      contact::ContactManifold found = meetingAtStart(a, b, &workspace);
+      const contact::ContactManifold found = meetingAtStart(a, b, &workspace);
       const double depth = found.maxDepth(), layers = own_[i].layer + own_[j].layer;
       if (!(depth > 0)) continue;
       const double share = layers > 0 ? GAP_FILLED * (layers - depth) / layers : 0;
@@ -61,14 +67,14 @@ void RobotBuilder::partAtStart() {
       } else if (share >= LEAST_SHARE) {
         for (const std::size_t own : {i, j}) shares[own] = std::min(shares[own], share);
       } else {
-        tight[links].push_back(pair);
-        for (const contact::Contact& contact : found.contacts)
-          if (contact.depth > 0) of_tight[links].push_back(contact);
+        tight[links].colliders.push_back(pair);
+        std::copy_if(found.contacts.begin(), found.contacts.end(), std::back_inserter(tight[links].contacts),
+                     [](const contact::Contact& contact) { return contact.depth > 0; });
       }
     }
   }
-  for (const auto& [links, pairs] : tight)
-    if (isCaught(of_tight[links])) crossing.insert(crossing.end(), pairs.begin(), pairs.end());
+  for (const auto& [links, of_links] : tight)
+    if (isCaught(of_links.contacts)) crossing.insert(crossing.end(), of_links.colliders.begin(), of_links.colliders.end());
   separate(crossing);
   narrowLayers(shares);
 }

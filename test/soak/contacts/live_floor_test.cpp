@@ -128,15 +128,14 @@ class BesideTheSteps {
       return Built{std::move(surface), std::move(ahead)};
     });
   }
-  /** Exchanges the floor if a surface is ready. @return whether it was */
-  bool exchange(sim::Simulator* simulator, std::vector<double>* seconds) {
-    if (!isReady(searched_)) return false;
+  /** Exchanges the floor if a surface is ready. @param seconds of exchanges, to which that is added */
+  void exchange(sim::Simulator* simulator, std::vector<double>* seconds) {
+    if (!isReady(searched_)) return;
     Built built = searched_.get();
     const double start = threadSeconds();
     simulator->updateCloud(floor_, &built.surface, std::move(built.ahead));
     seconds->push_back(threadSeconds() - start);
     freed_ = std::async(std::launch::async, [old = std::move(built)] {});
-    return true;
   }
   sim::CloudSurface make(const model::SensedCloud& cloud) const {
     return sim::makeCloudSurface(cloud, simulator_.config().environments[0].cloud, floor_);
