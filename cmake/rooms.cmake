@@ -24,6 +24,7 @@ target_link_libraries(blem_sim_model PRIVATE PkgConfig::URDFDOM PkgConfig::CONSO
   ${PCL_COMMON_LIBRARIES} ${PCL_IO_LIBRARIES} ${PCL_FEATURES_LIBRARIES} ${PCL_FILTERS_LIBRARIES} ${PCL_KDTREE_LIBRARIES}
   ${PCL_SEARCH_LIBRARIES} ${PCL_SURFACE_LIBRARIES})
 blem_sim_room(contact blem_sim_geometry)
+target_link_libraries(blem_sim_contact PRIVATE PkgConfig::TBB)
 blem_sim_precompiled_as(blem_sim_contact blem_sim_geometry)
 blem_sim_room(reduction blem_sim_contact)
 blem_sim_precompiled_as(blem_sim_reduction blem_sim_geometry)

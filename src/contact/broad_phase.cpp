@@ -1,15 +1,20 @@
 #include "blem_sim/contact/broad_phase.h"
 
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <tuple>
+
+#include "blem_sim/geometry/for_all.h"
 
 namespace blem_sim::contact {
 namespace {
 
 constexpr std::size_t SWEPT_AT_ONCE = 64;  // boxes: so few need no cells
 constexpr double CELL_OF_BOX = 2;          // cells are so many times as wide as the median box
+constexpr std::size_t SWEPT_IN_A_PIECE = 256;  // entries of boxes in cells, which a thread sweeps at once: some ten microseconds
 constexpr int LARGE = 16;                  // cells that a box may cover
 
 Vector3 halfExtents(const Box& box) { return 0.5 * (box.max() - box.min()); }
@@ -52,8 +57,7 @@ class BroadPhase::Search {
   void run() {
     space_.half_spaces_.clear();
     space_.boxes_.clear();
-    space_.pairs_.clear();
-    space_.compared_ = 0;
+    clear(&space_.all_);
     for (int i = 0; i < static_cast<int>(colliders_.size()); ++i) {
       if (colliders_[i].enabled && colliders_[i].geometry) enter(i);
     }
@@ -66,7 +70,7 @@ class BroadPhase::Search {
     } else {
       sweepCells();
     }
-    std::sort(space_.pairs_.begin(), space_.pairs_.end(),
+    std::sort(space_.all_.pairs.begin(), space_.all_.pairs.end(),
               [](const ColliderPair& p, const ColliderPair& q) { return std::tie(p.a, p.b) < std::tie(q.a, q.b); });
   }
 
@@ -88,14 +92,19 @@ class BroadPhase::Search {
   /** Furthest distance [m] at which the pair matters. */
   double range(int i, int j) const { return colliders_[i].radius + colliders_[j].radius + margin(i, j); }
 
-  void add(int i, int j) { space_.pairs_.push_back({std::min(i, j), std::max(i, j), margin(i, j)}); }
+  static void clear(Found* found) {
+    found->pairs.clear();
+    found->compared = 0;
+  }
+
+  void add(int i, int j, Found* found) const { found->pairs.push_back({std::min(i, j), std::max(i, j), margin(i, j)}); }
 
   void meetHalfSpace(int half_space, const SweepBox& box) {
     const int i = box.collider;
     if (!filter_.allows(colliders_[half_space], colliders_[i])) return;
     const double height =
         boxAbovePlane(*colliders_[half_space].geometry, motion_[half_space].X_WC, colliders_[i].geometry->bounds(), motion_[i].X_WC);
-    if (height <= range(half_space, i)) add(half_space, i);
+    if (height <= range(half_space, i)) add(half_space, i, &space_.all_);
   }
 
   /** The axis along which the boxes' centres are spread most, if rank is 0; that of the next spread, if it is 1, 2. */
@@ -136,7 +145,7 @@ class BroadPhase::Search {
   }
 
   void meetStart(const SweepBox& box, const SweepStart& other) {
-    if (box.model < 0 || other.model != box.model) meet(box, space_.boxes_[other.box]);
+    if (box.model < 0 || other.model != box.model) meet(box, space_.boxes_[other.box], &space_.all_);
   }
 
   // Boxes beside each other along two axes are never compared; those of many cells are, with all boxes that overlap them along one axis.
@@ -155,12 +164,37 @@ class BroadPhase::Search {
     std::vector<CellEntry>& entries = space_.entries_;
     std::sort(entries.begin(), entries.end(),
               [](const CellEntry& p, const CellEntry& q) { return std::tie(p.cell, p.at, p.box) < std::tie(q.cell, q.at, q.box); });
-    for (std::size_t i = 0; i < entries.size(); ++i) {
+    sweepPieces();
+  }
+
+  // Threads share the pieces; which one finds a pair shows nowhere, since pairs are sorted in the end.
+  void sweepPieces() {
+    const std::size_t entries = space_.entries_.size(), pieces = (entries + SWEPT_IN_A_PIECE - 1) / SWEPT_IN_A_PIECE;
+    if (space_.found_.size() < pieces) space_.found_.resize(pieces);
+    const auto sweepPiece = [&](std::size_t piece) {
+      Found* found = &space_.found_[piece];
+      clear(found);
+      sweepEntries(piece * SWEPT_IN_A_PIECE, std::min(entries, (piece + 1) * SWEPT_IN_A_PIECE), found);
+    };
+    if (tbb::this_task_arena::max_concurrency() == 1)
+      for (std::size_t piece = 0; piece < pieces; ++piece) sweepPiece(piece);
+    else
+      geometry::forAll(pieces, sweepPiece, 1);
+    for (std::size_t piece = 0; piece < pieces; ++piece) {
+      const Found& found = space_.found_[piece];
+      space_.all_.pairs.insert(space_.all_.pairs.end(), found.pairs.begin(), found.pairs.end());
+      space_.all_.compared += found.compared;
+    }
+  }
+
+  void sweepEntries(std::size_t first, std::size_t last, Found* found) const {
+    const std::vector<CellEntry>& entries = space_.entries_;
+    for (std::size_t i = first; i < last; ++i) {
       const SweepBox& box = space_.boxes_[entries[i].box];
       const double to = end(box, axis_);
       for (std::size_t j = i + 1; j < entries.size() && entries[j].cell == entries[i].cell && entries[j].at <= to; ++j) {
         const SweepBox& other = space_.boxes_[entries[j].box];
-        if ((box.model < 0 || other.model != box.model) && firstCommonCell(box, other) == entries[i].cell) meet(box, other);
+        if ((box.model < 0 || other.model != box.model) && firstCommonCell(box, other) == entries[i].cell) meet(box, other, found);
       }
     }
   }
@@ -229,12 +263,12 @@ class BroadPhase::Search {
     axis_ = third_axis;
   }
 
-  void meet(const SweepBox& box, const SweepBox& other) {
-    ++space_.compared_;
+  void meet(const SweepBox& box, const SweepBox& other, Found* found) const {
+    ++found->compared;
     const Vector3 gap = (box.lower - other.upper).cwiseMax(other.lower - box.upper).cwiseMax(0.0);
     const double furthest = range(box.collider, other.collider);
     if (gap.squaredNorm() > furthest * furthest) return;
-    if (filter_.allows(colliders_[box.collider], colliders_[other.collider])) add(box.collider, other.collider);
+    if (filter_.allows(colliders_[box.collider], colliders_[other.collider])) add(box.collider, other.collider, found);
   }
 
   BroadPhase& space_;
@@ -287,7 +321,7 @@ bool CollisionFilter::allows(const Collider& a, const Collider& b) const {
 const std::vector<ColliderPair>& BroadPhase::find(const std::vector<Collider>& colliders, const std::vector<ColliderMotion>& motion,
                                                   const CollisionFilter& filter, double base_margin, double max_margin) {
   Search({colliders, motion, filter, base_margin, max_margin}, this).run();
-  return pairs_;
+  return all_.pairs;
 }
 
 }  // namespace blem_sim::contact

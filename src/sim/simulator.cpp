@@ -24,8 +24,11 @@ Simulator::Impl::Impl(const SimulationConfig& config, const model::UriResolver& 
     : config_((checkConfig(config), config)),
       world_(config.gravity, config.solver),
       builder_(config.contact, config.time_step, config.base_directory, resolver, std::move(log)),
-      pair_searches_(config.solver.threads),
-      constraint_maker_(config.contact, config.solver.threads),
+      threads_(config.solver.threads),
+      pair_watch_(&threads_),
+      pair_searches_(&threads_),
+      constraint_maker_(config.contact, &threads_),
+      sweep_guard_(&threads_),
       energy_balance_(config.solver) {
   for (const EnvironmentConfig& environment : config_.environments) {
     builder_.addEnvironment(environment, &world_);

@@ -29,6 +29,7 @@
 #include "inputs/input_writer.h"
 #include "part_reports.h"
 #include "sensors/sensor_set.h"
+#include "step_threads.h"
 
 namespace blem_sim::sim {
 
@@ -70,7 +71,7 @@ struct Simulator::Impl {
   /** Accepts the solve, or has the substep made again, shorter. */
   void stepGuard(const MadeSolve& made, const FoundContacts& found);
   /** Whether a layer was used up, or links in tension swing too fast for it. @param close from the sweep guard */
-  bool isTooLong(const MadeSolve& made, const FoundContacts& found, const std::vector<ClosePass>& close) const;
+  bool isTooLong(const MadeSolve& made, const FoundContacts& found, const std::vector<ClosePass>& close);
   void acceptSubstep(const MadeSolve& made);
   void redoSubstep(const std::vector<ClosePass>& close);
   /** Reads sensors whose time has come. */
@@ -230,6 +231,7 @@ struct Simulator::Impl {
   SimulationConfig config_;
   SimulatedWorld world_;
   WorldBuilder builder_;
+  StepThreads threads_;
   PairWatch pair_watch_;
   PairSearches pair_searches_;
   ConstraintMaker constraint_maker_;

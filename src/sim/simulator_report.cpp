@@ -65,7 +65,7 @@ void Simulator::Impl::recordFound(const FoundContacts& found) {
   report_.raw_contacts = 0;
   for (const contact::ContactManifold& manifold : found.manifolds) {
     report_.raw_contacts += static_cast<int>(manifold.contacts.size());
-    const double depth = manifold.maxDepth();
+    const double depth = found.depthOf(manifold);
     if (manifold.layer > 0) report_.max_of_layer = std::max(report_.max_of_layer, depth / manifold.layer);
     if (depth <= report_.max_depth) continue;
     report_.max_depth = depth;

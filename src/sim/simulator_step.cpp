@@ -174,9 +174,9 @@ void Simulator::Impl::stepGuard(const MadeSolve& made, const FoundContacts& foun
   acceptSubstep(made);
 }
 
-bool Simulator::Impl::isTooLong(const MadeSolve& made, const FoundContacts& found, const std::vector<ClosePass>& close) const {
+bool Simulator::Impl::isTooLong(const MadeSolve& made, const FoundContacts& found, const std::vector<ClosePass>& close) {
   return substeps_.isBeyondBound() || !close.empty() ||
-         usesUpLayer(world_.colliders, made.start.manifolds, found.manifolds, made.before, made.after);
+         usesUpLayer(world_.colliders, made, found, &threads_);
 }
 
 void Simulator::Impl::rewind() {
@@ -220,7 +220,7 @@ void Simulator::Impl::acceptSubstep(const MadeSolve& made) {
   recordSaturation(made.drives);
   recordContacts(made);
   if (!passed_.empty()) report_.status |= CONTACT_UNRELIABLE;
-  layer_watch_.look(made.start.manifolds, passed_, substepTime(), &report_.layer_events);
+  layer_watch_.look(made.start, passed_, substepTime(), &report_.layer_events);
   recordEnergy(made);
   startFromFound();
   substeps_.accept();

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "guard/layer_watch.h"
+#include "sim/found_contacts_of.h"
 #include "sim/simulation_scene.h"
 
 namespace blem_sim::sim {
@@ -26,7 +27,7 @@ contact::ContactManifold manifoldOf(int a, int b, double depth, bool pierced = f
 std::vector<LayerEventReport> lookAt(LayerWatch* watch, const std::vector<contact::ContactManifold>& manifolds, double time,
                                      const std::vector<std::pair<int, int>>& passed = {}) {
   std::vector<LayerEventReport> events;
-  watch->look(manifolds, passed, time, &events);
+  watch->look(foundContactsOf(manifolds), passed, time, &events);
   return events;
 }
 

@@ -49,13 +49,13 @@ class BroadPhase {
   /**
    * Pairs whose layers may come within reach, sorted by (a, b): a sweep along one axis over world boxes, from 64 boxes on within cells of
    * the two other axes, so that the cost grows with the number of boxes. A pair's margin is
-   * min(max_margin, max(base_margin, reach_a + reach_b)).
+   * min(max_margin, max(base_margin, reach_a + reach_b)). Threads of the TBB arena at hand share the search of many boxes.
    * @return lives until the next search
    */
   const std::vector<ColliderPair>& find(const std::vector<Collider>& colliders, const std::vector<ColliderMotion>& motion,
                                         const CollisionFilter& filter, double base_margin, double max_margin);
   /** Number of pairs of boxes that the last search compared. */
-  std::int64_t compared() const { return compared_; }
+  std::int64_t compared() const { return all_.compared; }
 
  private:
   /** A collider in the sweep: its box in the world, and its reach beyond it. */
@@ -75,6 +75,11 @@ class BroadPhase {
     double at;  // [m] where it starts along the third axis
     int box;
   };
+  /** Pairs that a piece of the search finds, in its order. */
+  struct Found {
+    std::vector<ColliderPair> pairs;
+    std::int64_t compared = 0;
+  };
   class Search;
 
   std::vector<int> half_spaces_;
@@ -83,9 +88,9 @@ class BroadPhase {
   std::vector<CellEntry> entries_;
   std::vector<double> sizes_;      // [m] of boxes along an axis
   std::vector<int> large_starts_;  // those of starts_ whose boxes have so many cells that they are swept by themselves
-  std::int64_t compared_ = 0;
-  std::vector<char> large_;  // box by box
-  std::vector<ColliderPair> pairs_;
+  std::vector<char> large_;        // box by box
+  std::vector<Found> found_;       // piece by piece of entries_
+  Found all_;                      // pairs sorted by (a, b)
 };
 
 }  // namespace blem_sim::contact

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "blem_sim/contact/collider.h"
-#include "blem_sim/contact/manifold.h"
 #include "blem_sim/geometry/state_stream.h"
 #include "blem_sim/sim/step_report.h"
+#include "contacts/search/found_contacts.h"
 
 namespace blem_sim::sim {
 
@@ -17,10 +17,10 @@ class LayerWatch {
  public:
   /**
    * Appends the events of pairs that changed, in order of the pairs.
-   * @param manifolds of the state at `time` [s], sorted by (a, b)
+   * @param found contacts of the state at `time` [s]
    * @param passed pairs that used up their layers on the way from there to the next state, whatever its contacts; sorted
    */
-  void look(const std::vector<contact::ContactManifold>& manifolds, const std::vector<std::pair<int, int>>& passed, double time,
+  void look(const FoundContacts& found, const std::vector<std::pair<int, int>>& passed, double time,
             std::vector<LayerEventReport>* events);
   /** Forgets all pairs: none is outside. */
   void clear() { outside_.clear(); }
@@ -31,7 +31,7 @@ class LayerWatch {
   void restore(const std::vector<contact::Collider>& colliders, geometry::StateReader* reader);
 
  private:
-  void addPassed(const std::vector<contact::ContactManifold>& manifolds, const std::vector<std::pair<int, int>>& passed, double time,
+  void addPassed(const FoundContacts& found, const std::vector<std::pair<int, int>>& passed, double time,
                  std::size_t first, std::vector<LayerEventReport>* events);
 
   std::vector<std::pair<int, int>> outside_;       // sorted

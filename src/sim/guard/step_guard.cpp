@@ -15,8 +15,10 @@ constexpr double LEAP = 0.2;    // of the layer in one step: deeper, the solve d
 constexpr double ROOM = 1.3;    // times a longer part: links in tension can take it, and go on to
 constexpr double BEYOND = 0.2;  // [m] at most, that a contact is outside the boxes of both colliders, to both sides together
 
-/** Used-up share of the layer; 0 without contact. */
-double used(const contact::ContactManifold& manifold) { return std::max(0.0, manifold.maxDepth() / manifold.layer); }
+/** Used-up share of the layer; 0 without contact. @param of contacts of a state @param manifold one of theirs */
+double used(const FoundContacts& of, const contact::ContactManifold& manifold) {
+  return std::max(0.0, of.depthOf(manifold) / manifold.layer);
+}
 
 bool inDanger(double before, double after) { return after > USED_UP && after - before > LEAST_GROWTH; }
 
@@ -50,29 +52,32 @@ double carried(const contact::ContactManifold& manifold, const Pose& motion_a, c
   return deepest;
 }
 
+/** @param now of the contacts after the step */
+bool isTooDeep(const contact::ContactManifold& now, const FoundContacts& before, const FoundContacts& after) {
+  if (!(now.layer > 0)) return false;
+  const double used_now = used(after, now);
+  if (!now.pierced && used_now <= LEAP) return false;
+  const contact::ContactManifold* then = contact::findPair(before.manifolds, now.a, now.b);
+  if (now.pierced && !(then && then->pierced)) return true;
+  const double used_then = then ? used(before, *then) : 0;
+  return inDanger(used_then, used_now) || used_now - used_then > LEAP;
+}
+
+/** @param then of the contacts before the step */
+bool isCarriedTooFar(const contact::ContactManifold& then, const std::vector<contact::Collider>& colliders, const MadeSolve& made) {
+  if (!(then.layer > 0) || then.pierced || then.contacts.empty()) return false;
+  const contact::Collider &a = colliders[then.a], &b = colliders[then.b];
+  const Pose motion_a = motionBetween(a.body, made.before, made.after), motion_b = motionBetween(b.body, made.before, made.after);
+  if (mostCarried(then, made.start.depthOf(then), extent(a, b), motion_a, motion_b) <= USED_UP) return false;
+  return inDanger(used(made.start, then), carried(then, motion_a, motion_b));
+}
+
 }  // namespace
 
-bool usesUpLayer(const std::vector<contact::Collider>& colliders, const std::vector<contact::ContactManifold>& before,
-                 const std::vector<contact::ContactManifold>& after, const std::vector<dynamics::BodyState>& bodies_before,
-                 const std::vector<dynamics::BodyState>& bodies_after) {
-  for (const contact::ContactManifold& now : after) {
-    if (!(now.layer > 0)) continue;
-    const double used_now = used(now);
-    if (!now.pierced && used_now <= LEAP) continue;
-    const contact::ContactManifold* then = contact::findPair(before, now.a, now.b);
-    if (now.pierced && !(then && then->pierced)) return true;
-    const double used_then = then ? used(*then) : 0;
-    if (inDanger(used_then, used_now) || used_now - used_then > LEAP) return true;
-  }
-  for (const contact::ContactManifold& then : before) {
-    if (!(then.layer > 0) || then.pierced || then.contacts.empty()) continue;
-    const contact::Collider &a = colliders[then.a], &b = colliders[then.b];
-    const Pose motion_a = motionBetween(a.body, bodies_before, bodies_after), motion_b = motionBetween(b.body, bodies_before, bodies_after);
-    const double depth = then.maxDepth();
-    if (mostCarried(then, depth, extent(a, b), motion_a, motion_b) <= USED_UP) continue;
-    if (inDanger(std::max(0.0, depth / then.layer), carried(then, motion_a, motion_b))) return true;
-  }
-  return false;
+bool usesUpLayer(const std::vector<contact::Collider>& colliders, const MadeSolve& made, const FoundContacts& after, StepThreads* threads) {
+  const std::vector<contact::ContactManifold>&before = made.start.manifolds, &now = after.manifolds;
+  return threads->anyOf(now.size(), PAIRS_AT_ONCE, [&](std::size_t m) { return isTooDeep(now[m], made.start, after); }) ||
+         threads->anyOf(before.size(), PAIRS_AT_ONCE, [&](std::size_t m) { return isCarriedTooFar(before[m], colliders, made); });
 }
 
 void Substeps::plan(double part) {

@@ -5,8 +5,9 @@
 #include <limits>
 #include <vector>
 
-#include "blem_sim/contact/manifold.h"
-#include "build/simulated_world.h"
+#include "blem_sim/contact/collider.h"
+#include "contacts/constraints/made_solve.h"
+#include "step_threads.h"
 
 namespace blem_sim::sim {
 
@@ -16,11 +17,9 @@ namespace blem_sim::sim {
  * - used up more than 0.9 of its layer, at least 0.1 of it in this step, or more than 0.2 of it in this step, or
  * - carried a contact that existed before it, solved or left out, as far: then the pair may have passed through.
  * Pairs without a layer cannot be guarded.
- * @param before, after manifolds at the two ends of the step, sorted by (a, b); bodies_before, bodies_after by body slot
+ * @param made the step @param after contacts at its end @param threads that look at pairs at once
  */
-bool usesUpLayer(const std::vector<contact::Collider>& colliders, const std::vector<contact::ContactManifold>& before,
-                 const std::vector<contact::ContactManifold>& after, const std::vector<dynamics::BodyState>& bodies_before,
-                 const std::vector<dynamics::BodyState>& bodies_after);
+bool usesUpLayer(const std::vector<contact::Collider>& colliders, const MadeSolve& made, const FoundContacts& after, StepThreads* threads);
 
 /**
  * Divides one step into substeps of whole ticks. So a step costs at most MAX_SOLVES solves, and as many searches for contacts, whatever

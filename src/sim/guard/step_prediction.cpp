@@ -21,7 +21,7 @@ double safeTimeOf(const WatchedPair& pair, const SimulatedWorld& world, const Fo
   if (!(layer > 0) || pair.margin <= LEAST_MARGIN * layer) return time;
   if (meetingSpeedBound(world, bodies, contacts.watched.motion, pair) * time <= PER_SOLVE * layer) return time;
   const contact::ContactManifold* manifold = contact::findPair(contacts.manifolds, pair.a, pair.b);
-  const double gap = std::min(pair.known, manifold ? -manifold->maxDepth() : pair.known);  // between the layers, at least
+  const double gap = std::min(pair.known, manifold ? -contacts.depthOf(*manifold) : pair.known);  // between the layers, at least
   const double harmless = std::max(PER_SOLVE * layer, std::min(pair.known, USED_UP_AHEAD * (layer + gap)));
   const double speed = meetingSpeed(world, bodies, contacts.watched.motion, pair);
   if (speed * time <= harmless) return time;

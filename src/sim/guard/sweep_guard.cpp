@@ -32,18 +32,26 @@ const std::vector<ClosePass>& SweepGuard::look(const SimulatedWorld& world, cons
   before_ = &made.before;
   after_ = &made.after;
   moveColliders(world, made, arms);
-  for (const WatchedPair& pair : made.start.watched.pairs) {
-    const contact::Collider &a = world.colliders[pair.a], &b = world.colliders[pair.b];
-    const double layer = a.radius + b.radius, motion = motion_[pair.a].reach + motion_[pair.b].reach;
-    if (motion <= STILL * layer || !canPass(a, b) || fading.crosses(pair.a, pair.b)) continue;
-    const contact::ContactManifold* known = contact::findPair(made.start.manifolds, pair.a, pair.b);
-    if (known && known->pierced) continue;
-    const double distance = layer - (known ? known->maxDepth() : -pair.known);
-    if (distance - motion < (known ? SPARED : HALF) * layer && !made.start.crossings.find(pair.a, pair.b))
-      lookAt(world, pair.a, pair.b, distance, known != nullptr);
-  }
+  const std::vector<WatchedPair>& pairs = made.start.watched.pairs;
+  nearness_.resize(pairs.size());
+  threads_->forAll(pairs.size(), PAIRS_AT_ONCE, [&](std::size_t i, std::size_t) { nearness_[i] = nearnessOf(world, made, fading, pairs[i]); });
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    if (std::isfinite(nearness_[i].distance)) lookAt(world, pairs[i].a, pairs[i].b, nearness_[i]);
   if (leavesWhatWasSearched(world, made.start.watched)) lookAtOthers(world, made.start.watched);
   return close_;
+}
+
+SweepGuard::Nearness SweepGuard::nearnessOf(const SimulatedWorld& world, const MadeSolve& made, const FadingPoints& fading,
+                                            const WatchedPair& pair) const {
+  constexpr Nearness NOT_NEAR{std::numeric_limits<double>::infinity(), false};
+  const contact::Collider &a = world.colliders[pair.a], &b = world.colliders[pair.b];
+  const double layer = a.radius + b.radius, motion = motion_[pair.a].reach + motion_[pair.b].reach;
+  if (motion <= STILL * layer || !canPass(a, b) || fading.crosses(pair.a, pair.b)) return NOT_NEAR;
+  const contact::ContactManifold* known = contact::findPair(made.start.manifolds, pair.a, pair.b);
+  if (known && known->pierced) return NOT_NEAR;
+  const double distance = layer - (known ? made.start.depthOf(*known) : -pair.known);
+  const bool near = distance - motion < (known ? SPARED : HALF) * layer && !made.start.crossings.find(pair.a, pair.b);
+  return near ? Nearness{distance, known != nullptr} : NOT_NEAR;
 }
 
 void SweepGuard::moveColliders(const SimulatedWorld& world, const MadeSolve& made, const std::vector<double>& arms) {
@@ -108,17 +116,17 @@ void SweepGuard::lookAtOthers(const SimulatedWorld& world, const WatchedPairs& w
   for (const contact::ColliderPair& pair : other_pairs_.find(world.colliders, motion_, world.filter, 0, any)) {
     const contact::Collider &a = world.colliders[pair.a], &b = world.colliders[pair.b];
     if (!canPass(a, b) || world.disabled_pairs.count({pair.a, pair.b}) > 0 || contact::findPair(watched.pairs, pair.a, pair.b)) continue;
-    lookAt(world, pair.a, pair.b, a.radius + b.radius, false);
+    lookAt(world, pair.a, pair.b, {a.radius + b.radius, false});
   }
   std::inplace_merge(close_.begin(), close_.begin() + static_cast<std::ptrdiff_t>(of_watched), close_.end(), contact::IsPairBefore());
 }
 
-/** @param distance [m] of the bare meshes at the start, at least @param known whether its contacts there are known */
-void SweepGuard::lookAt(const SimulatedWorld& world, int a, int b, double distance, bool known) {
+void SweepGuard::lookAt(const SimulatedWorld& world, int a, int b, const Nearness& nearness) {
+  const double distance = nearness.distance;
   const contact::CollisionGeometry &geometry_a = *world.colliders[a].geometry, &geometry_b = *world.colliders[b].geometry;
   const double layer = world.colliders[a].radius + world.colliders[b].radius;
   if (!(distance > 0)) return;
-  const bool cross = known || hasArea(geometry_a) || hasArea(geometry_b);
+  const bool cross = nearness.known || hasArea(geometry_a) || hasArea(geometry_b);
   const double bend = bends_[a] + bends_[b];
   const auto left = [&](double share) { return std::min(share * layer, 0.5 * distance) + bend; };
   const double spared = left(cross ? SPARED : HALF);

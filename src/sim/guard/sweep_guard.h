@@ -8,6 +8,7 @@
 #include "build/simulated_world.h"
 #include "clouds/fading_points.h"
 #include "contacts/constraints/made_solve.h"
+#include "step_threads.h"
 
 namespace blem_sim::sim {
 
@@ -28,6 +29,9 @@ struct ClosePass {
  */
 class SweepGuard {
  public:
+  /** @param threads that look at pairs at once */
+  explicit SweepGuard(StepThreads* threads) : threads_(threads) {}
+
   static constexpr double SPARED = 0.1, NOTHING = 0.02;  ///< of the layer
 
   /** @param arms as PairWatch knows them @param fading its crossings pass @return sorted by (a, b); lives until the next call */
@@ -35,18 +39,26 @@ class SweepGuard {
                                      const FadingPoints& fading);
 
  private:
+  /** Of a pair at the start of the solve. */
+  struct Nearness {
+    double distance;  // [m] of the bare meshes, at least; infinite: they cannot come close in the solve
+    bool known;       // contacts are known
+  };
   void moveColliders(const SimulatedWorld& world, const MadeSolve& made, const std::vector<double>& arms);
   void bendWays(const SimulatedWorld& world, const std::vector<dynamics::BodyState>& before, const std::vector<dynamics::BodyState>& after);
   contact::GeometrySweep sweepOf(const SimulatedWorld& world, int collider) const;
+  Nearness nearnessOf(const SimulatedWorld& world, const MadeSolve& made, const FadingPoints& fading, const WatchedPair& pair) const;
   bool leavesWhatWasSearched(const SimulatedWorld& world, const WatchedPairs& watched) const;
   void lookAtOthers(const SimulatedWorld& world, const WatchedPairs& watched);
-  void lookAt(const SimulatedWorld& world, int a, int b, double distance, bool known);
+  void lookAt(const SimulatedWorld& world, int a, int b, const Nearness& nearness);
 
+  StepThreads* threads_;
   const std::vector<dynamics::BodyState>*before_ = nullptr, *after_ = nullptr;
   std::vector<contact::ColliderMotion> motion_;  // poses at the start, and longest ways in the solve
   std::vector<double> bends_;                    // [m] by collider: how far its way may lie beside a straight one
   std::vector<double> turns_;                    // [rad] by model: largest of its links in the solve
   contact::BroadPhase other_pairs_;
+  std::vector<Nearness> nearness_;               // by watched pair
   std::vector<ClosePass> close_;
 };
 

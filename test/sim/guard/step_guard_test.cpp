@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "sim/found_contacts_of.h"
 #include "sim/simulation_scene.h"
 
 namespace blem_sim::sim {
@@ -119,15 +120,26 @@ class UsesUpLayer : public testing::Test {
   }
 
   bool check(const std::vector<contact::ContactManifold>& then, const std::vector<contact::ContactManifold>& now) {
-    const bool unbounded = usesUpLayer(colliders_, then, now, before_, after_);
+    const bool unbounded = usesUpLayer(colliders_, then, now);
     std::vector<contact::Collider> bounded = colliders_;
     for (contact::Collider& collider : bounded) {
       collider.geometry = std::make_shared<const contact::CollisionGeometry>(
           std::make_shared<const geometry::TriangleMesh>(geometry::boxMesh(Vector3::Constant(0.1))));
       collider.radius = 0.005;
     }
-    EXPECT_EQ(usesUpLayer(bounded, then, now, before_, after_), unbounded);
+    EXPECT_EQ(usesUpLayer(bounded, then, now), unbounded);
     return unbounded;
+  }
+
+  bool usesUpLayer(const std::vector<contact::Collider>& colliders, const std::vector<contact::ContactManifold>& then,
+                   const std::vector<contact::ContactManifold>& now) {
+    const FoundContacts start = foundContactsOf(then), end = foundContactsOf(now);
+    const SolverContacts contacts;
+    const std::vector<dynamics::JointDrive> drives;
+    const dynamics::SolveResult result;
+    const MadeSolve made{start, contacts, drives, result, before_, after_, 0.001};
+    StepThreads threads(1);
+    return sim::usesUpLayer(colliders, made, end, &threads);
   }
 
   std::vector<contact::Collider> colliders_;

@@ -72,8 +72,8 @@ std::uint64_t worldContactId(int a, int b, std::uint64_t id) {
   return mixed(id + mixed((static_cast<std::uint64_t>(a) << 32) + static_cast<std::uint64_t>(b) + 1));
 }
 
-ConstraintMaker::ConstraintMaker(const ContactConfig& config, int threads)
-    : config_(config), arena_(std::min(threads, tbb::this_task_arena::max_concurrency())), method_(reductionNamed(config.reduction)) {}
+ConstraintMaker::ConstraintMaker(const ContactConfig& config, StepThreads* threads)
+    : config_(config), threads_(threads), method_(reductionNamed(config.reduction)), meetings_(threads) {}
 
 std::vector<std::uint64_t> ConstraintMaker::forget(int collider) {
   std::vector<std::uint64_t> ids;
@@ -133,7 +133,7 @@ void ConstraintMaker::reduce(const SimulatedWorld& world, const std::vector<cont
     model_a_.push_back(world.colliders[manifold.a].model);
     model_b_.push_back(world.colliders[manifold.b].model);
   }
-  arena_.execute([&] {
+  threads_->with([&] {
     made_.loss = reduction::reduceManifolds({manifolds, model_a_, model_b_, world.budgets}, *method_, &memory_, &workspace_, &reduced_);
   });
 }

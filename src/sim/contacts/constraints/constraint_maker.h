@@ -1,8 +1,6 @@
 // Reduction: from the manifolds of the state at hand to the constraints of the solve.
 #pragma once
 
-#include <tbb/task_arena.h>
-
 #include <cstdint>
 #include <vector>
 
@@ -12,6 +10,7 @@
 #include "build/simulated_world.h"
 #include "contacts/constraints/contact_meetings.h"
 #include "contacts/constraints/layer_stops.h"
+#include "step_threads.h"
 
 namespace blem_sim::sim {
 
@@ -38,8 +37,8 @@ struct SolverContacts {
 /** Makes at most k constraints per model, but three of each pair, and the stops below soft ones. */
 class ConstraintMaker {
  public:
-  /** @param threads at most that reduce at the same time; they change no result */
-  ConstraintMaker(const ContactConfig& config, int threads);
+  /** @param threads that look at pairs and reduce them at once */
+  ConstraintMaker(const ContactConfig& config, StepThreads* threads);
 
   /**
    * Contacts before touch are those that will be met (ContactMeetings).
@@ -65,7 +64,7 @@ class ConstraintMaker {
   void addStops(const SimulatedWorld& world, const contact::ContactManifold& all, double friction);
 
   const ContactConfig config_;
-  tbb::task_arena arena_;
+  StepThreads* threads_;
   const reduction::Reduction* method_;
   reduction::ReductionMemory memory_;
   reduction::ReductionWorkspace workspace_;

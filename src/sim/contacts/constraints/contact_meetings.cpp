@@ -25,10 +25,10 @@ double changeOf(const SolveAhead& ahead, const WayOfPair& way) {
 
 }  // namespace
 
-void ContactMeetings::findSupports(const SimulatedWorld& world, const std::vector<contact::ContactManifold>& manifolds) {
+void ContactMeetings::findSupports(const SimulatedWorld& world, const FoundContacts& contacts) {
   supports_.assign(world.world.bodyCount(), Support());
-  for (const contact::ContactManifold& manifold : manifolds) {
-    const double depth = manifold.maxDepth();
+  for (const contact::ContactManifold& manifold : contacts.manifolds) {
+    const double depth = contacts.depthOf(manifold);
     if (depth < -BEARING_GAP) continue;
     for (const int collider : {manifold.a, manifold.b}) {
       const int body = world.colliders[collider].body;
@@ -56,7 +56,7 @@ ColliderWay ContactMeetings::wayOf(const SolveAhead& ahead, int collider) const 
 }
 
 /** Way of a collider to where it is expected at the end of the solve. */
-ColliderWay ContactMeetings::expectedWayOf(const SolveAhead& ahead, int collider) {
+ColliderWay ContactMeetings::expectedWayOf(const SolveAhead& ahead, int collider) const {
   const contact::Collider& c = ahead.world.colliders[collider];
   const BodyTwist now = twistOf(ahead.world, ahead.bodies, c.body);
   ColliderWay way{&c, ahead.contacts.watched.motion[collider].X_WC, now.centre, now};
@@ -86,17 +86,23 @@ void ContactMeetings::follow(const SolveAhead& ahead, std::size_t manifold, WayO
   if (way_.follow(*way, contacts.flush, ahead.world.colliders, contacts.watched.motion, room(manifold))) ++replaced_count_;
 }
 
-void ContactMeetings::lookAt(const SolveAhead& ahead, std::size_t manifold) {
-  const contact::ContactManifold& now = ahead.contacts.manifolds[manifold];
-  const contact::Collider &a = ahead.world.colliders[now.a], &b = ahead.world.colliders[now.b];
-  if (a.geometry->isHalfSpace() || b.geometry->isHalfSpace()) return;
-  if (now.pierced || ahead.contacts.crossings.find(now.a, now.b)) return;
+WayOfPair ContactMeetings::wayOfPair(const SolveAhead& ahead, const contact::ContactManifold& now) const {
   WayOfPair way{now, wayOf(ahead, now.a), wayOf(ahead, now.b)};
   way.dt = ahead.dt;
-  way.swing = ways_.swing(a.body) + ways_.swing(b.body);
-  if (!way_.isDoubtful(way)) return;
-  ways_.lead(a.body, &way.a.twist);
-  ways_.lead(b.body, &way.b.twist);
+  way.swing = ways_.swing(way.a.collider->body) + ways_.swing(way.b.collider->body);
+  return way;
+}
+
+bool ContactMeetings::isDoubtful(const SolveAhead& ahead, const contact::ContactManifold& now) const {
+  const contact::Collider &a = ahead.world.colliders[now.a], &b = ahead.world.colliders[now.b];
+  if (a.geometry->isHalfSpace() || b.geometry->isHalfSpace()) return false;
+  return !now.pierced && !ahead.contacts.crossings.find(now.a, now.b) && way_.isDoubtful(wayOfPair(ahead, now));
+}
+
+void ContactMeetings::lookAt(const SolveAhead& ahead, std::size_t manifold) {
+  WayOfPair way = wayOfPair(ahead, ahead.contacts.manifolds[manifold]);
+  ways_.lead(way.a.collider->body, &way.a.twist);
+  ways_.lead(way.b.collider->body, &way.b.twist);
   follow(ahead, manifold, &way);
 }
 
@@ -120,11 +126,13 @@ void ContactMeetings::look(const SolveAhead& ahead) {
   const std::vector<contact::ContactManifold>& manifolds = ahead.contacts.manifolds;
   replaced_count_ = 0;
   ways_.start(ahead.world, ahead.bodies, ahead.dt);
-  findSupports(ahead.world, manifolds);
+  findSupports(ahead.world, ahead.contacts);
+  is_doubtful_.resize(manifolds.size());
+  threads_->forAll(manifolds.size(), PAIRS_AT_ONCE, [&](std::size_t m, std::size_t) { is_doubtful_[m] = isDoubtful(ahead, manifolds[m]); });
   for (std::size_t m = 0; m < manifolds.size(); ++m) {
     if (contact::findPair(ahead.expected.pairs, manifolds[m].a, manifolds[m].b))
       lookAgain(ahead, m);
-    else
+    else if (is_doubtful_[m])
       lookAt(ahead, m);
   }
 }

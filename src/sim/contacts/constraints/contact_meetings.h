@@ -7,6 +7,7 @@
 #include "contacts/constraints/pair_way.h"
 #include "contacts/motion/body_ways.h"
 #include "contacts/search/found_contacts.h"
+#include "step_threads.h"
 
 namespace blem_sim::sim {
 
@@ -42,6 +43,9 @@ struct SolveAhead {
  */
 class ContactMeetings {
  public:
+  /** @param threads that look at pairs at once */
+  explicit ContactMeetings(StepThreads* threads) : threads_(threads) {}
+
   void look(const SolveAhead& ahead);
   /** Exchanges the contacts of these manifolds for those that are to be solved; a second time back. */
   void exchange(std::vector<contact::ContactManifold>* manifolds);
@@ -55,19 +59,23 @@ class ContactMeetings {
     std::size_t manifold;
     std::vector<contact::Contact> contacts;
   };
-  void findSupports(const SimulatedWorld& world, const std::vector<contact::ContactManifold>& manifolds);
+  void findSupports(const SimulatedWorld& world, const FoundContacts& contacts);
   ColliderWay wayOf(const SolveAhead& ahead, int collider) const;
-  ColliderWay expectedWayOf(const SolveAhead& ahead, int collider);
+  WayOfPair wayOfPair(const SolveAhead& ahead, const contact::ContactManifold& now) const;
+  ColliderWay expectedWayOf(const SolveAhead& ahead, int collider) const;
   double depthOf(const SimulatedWorld& world, int collider) const;
+  bool isDoubtful(const SolveAhead& ahead, const contact::ContactManifold& now) const;
   void lookAt(const SolveAhead& ahead, std::size_t manifold);
   void lookAgain(const SolveAhead& ahead, std::size_t manifold);
   void keepWhatTouches(const SolveAhead& ahead, std::size_t manifold);
   void follow(const SolveAhead& ahead, std::size_t manifold, WayOfPair* way);
   std::vector<contact::Contact>* room(std::size_t manifold);
 
+  StepThreads* threads_;
   std::vector<Support> supports_;  // by body
   BodyWays ways_;
   PairWay way_;
+  std::vector<char> is_doubtful_;  // by manifold
   std::vector<Replaced> replaced_;
   std::size_t replaced_count_ = 0;  // of them; the others are room
 };

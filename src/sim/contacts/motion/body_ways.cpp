@@ -40,7 +40,7 @@ void BodyWays::start(const SimulatedWorld& world, const std::vector<dynamics::Bo
   world_ = &world;
   bodies_ = &bodies;
   dt_ = dt;
-  parents_known_ = false;
+  findParents();
 }
 
 // A joint that closes a loop leads nothing: the first one of a body does.
@@ -58,7 +58,6 @@ void BodyWays::findParents() {
       if (parents_[spec.child] == NO_JOINT) parents_[spec.child] = spec.parent;
     }
   }
-  parents_known_ = true;
 }
 
 double BodyWays::swingOf(const ModelInfo& model) const {
@@ -68,12 +67,6 @@ double BodyWays::swingOf(const ModelInfo& model) const {
     size = std::max(size, 2 * (twist(body).centre - twist(model.bodies[0]).centre).norm());
   }
   return dt_ * turn * turn * size;
-}
-
-double BodyWays::swing(int body) {
-  if (body == dynamics::WORLD_BODY) return 0;
-  if (!parents_known_) findParents();
-  return swings_[body];
 }
 
 BodyTwist BodyWays::twist(int body) const { return twistOf(*world_, *bodies_, body); }
@@ -89,17 +82,13 @@ Pose BodyWays::ahead(int body) const {
   return ahead(parent) * screwMotion(own.centre, v, w, dt_);
 }
 
-bool BodyWays::isOnJoint(int body) {
-  if (body == dynamics::WORLD_BODY) return false;
-  if (!parents_known_) findParents();
-  return parents_[body] != NO_JOINT;
-}
+bool BodyWays::isOnJoint(int body) const { return body != dynamics::WORLD_BODY && parents_[body] != NO_JOINT; }
 
-void BodyWays::lead(int body, BodyTwist* way) {
+void BodyWays::lead(int body, BodyTwist* way) const {
   if (isOnJoint(body)) *way = screwOf(ahead(body), twist(body).centre, dt_);
 }
 
-void BodyWays::leadTo(int body, const Pose& X_WB, BodyTwist* way) {
+void BodyWays::leadTo(int body, const Pose& X_WB, BodyTwist* way) const {
   if (isOnJoint(body)) *way = screwOf(X_WB * (*bodies_)[body].X_WB.inverse(), twist(body).centre, dt_);
 }
 

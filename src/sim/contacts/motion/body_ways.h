@@ -16,17 +16,17 @@ class BodyWays {
    * velocity and the root its own: exact there, and all along on one hinge of the world. A body on no joint keeps the way it has.
    * @param way of the body from its start on
    */
-  void lead(int body, BodyTwist* way);
+  void lead(int body, BodyTwist* way) const;
   /** Makes a link's way the screw that leads it to a pose at the end of the solve. A body on no joint keeps the way it has. */
-  void leadTo(int body, const Pose& X_WB, BodyTwist* way);
+  void leadTo(int body, const Pose& X_WB, BodyTwist* way) const;
   /**
    * Speed [m/s] by which links of a tree swing each other within the solve, beside turning: what a body of the tree's size would give its
    * ends if it turned as fast as the fastest link. 0 for a body on no joint.
    */
-  double swing(int body);
+  double swing(int body) const { return body == dynamics::WORLD_BODY ? 0 : swings_[body]; }
 
  private:
-  bool isOnJoint(int body);
+  bool isOnJoint(int body) const;
   void findParents();
   double swingOf(const ModelInfo& model) const;
   Pose ahead(int body) const;
@@ -35,7 +35,6 @@ class BodyWays {
   const SimulatedWorld* world_ = nullptr;
   const std::vector<dynamics::BodyState>* bodies_ = nullptr;
   double dt_ = 0;
-  bool parents_known_ = false;
   std::vector<int> parents_;    // by body
   std::vector<double> swings_;  // by body
 };

@@ -18,8 +18,12 @@ struct FoundContacts {
   bool known = false;  ///< false: bodies or geometry changed other than by a step, so only the crossings count
   WatchedPairs watched;
   std::vector<contact::ContactManifold> manifolds;  ///< sorted by (a, b), none empty
+  std::vector<double> depths;                       ///< [m] of each manifold's deepest contact
   CrossingHistory crossings;                        ///< pairs that cross, or did and are not apart yet
   FlushSurfaces flush;                              ///< static surfaces that lie beside each other
+
+  /** [m] @param manifold one of manifolds */
+  double depthOf(const contact::ContactManifold& manifold) const { return depths[&manifold - manifolds.data()]; }
 };
 
 }  // namespace blem_sim::sim

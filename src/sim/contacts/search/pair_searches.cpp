@@ -1,7 +1,5 @@
 #include "contacts/search/pair_searches.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <utility>
 
@@ -19,29 +17,7 @@ Recovery lastApart(const FoundContacts& before, const Pose& X_AB_now, bool cross
 
 }  // namespace
 
-PairSearches::PairSearches(int threads)
-    : threads_(threads),
-      arena_(std::min(threads, tbb::this_task_arena::max_concurrency())),
-      workspaces_(static_cast<std::size_t>(arena_.max_concurrency())) {}
-
-/** Calls search(pair, thread) for all pairs, in any order and at once. */
-template <typename SearchOfOne>
-void PairSearches::run(std::size_t pairs, const SearchOfOne& search) {
-  if (threads_ == 1 || pairs < 2) {
-    for (std::size_t i = 0; i < pairs; ++i) search(i, 0);
-    return;
-  }
-  // One by one: some searches take a thousand times as long as others.
-  arena_.execute([&] {
-    tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, pairs, 1),
-        [&](const auto& range) {
-          const auto thread = static_cast<std::size_t>(tbb::this_task_arena::current_thread_index());
-          for (std::size_t i = range.begin(); i < range.end(); ++i) search(i, thread);
-        },
-        tbb::simple_partitioner());
-  });
-}
+PairSearches::PairSearches(StepThreads* threads) : threads_(threads), workspaces_(static_cast<std::size_t>(threads->count())) {}
 
 void PairSearches::find(const SimulatedWorld& world, const FoundContacts& before, const FadingPoints& fading, WatchedPairs* pairs,
                         FoundContacts* found) {
@@ -49,14 +25,15 @@ void PairSearches::find(const SimulatedWorld& world, const FoundContacts& before
   const std::vector<WatchedPair>& watched = found->watched.pairs;
   const std::vector<contact::ColliderMotion>& motion = found->watched.motion;
   makeRoom(watched.size(), &found->manifolds);
-  last_apart_.clear();
-  for (const WatchedPair& pair : watched)
-    last_apart_.push_back(lastApart(before, motion[pair.a].X_WC.inverse() * motion[pair.b].X_WC, fading.crosses(pair.a, pair.b), pair));
+  found->depths.resize(watched.size());
+  last_apart_.resize(watched.size());
   found->flush.watch(world.colliders, watched, fading);
   watch(watched);
-  run(watched.size(), [&](std::size_t i, std::size_t thread) {
+  // One by one: some searches take a thousand times as long as others.
+  threads_->forAll(watched.size(), 1, [&](std::size_t i, std::size_t thread) {
     const WatchedPair& pair = watched[i];
-    const Recovery& last = last_apart_[i];
+    Recovery& last = last_apart_[i];
+    last = lastApart(before, motion[pair.a].X_WC.inverse() * motion[pair.b].X_WC, fading.crosses(pair.a, pair.b), pair);
     contact::ContactManifold& manifold = found->manifolds[i];
     contact::narrowPhase({world.colliders[pair.a], motion[pair.a].X_WC}, {world.colliders[pair.b], motion[pair.b].X_WC},
                          {pair.known, last.known ? &last.X_AB : nullptr, &known_[i].memory}, &workspaces_[thread].search, &manifold);
@@ -64,9 +41,10 @@ void PairSearches::find(const SimulatedWorld& world, const FoundContacts& before
     manifold.b = pair.b;
     found->flush.dropCovered(world.colliders, motion, &workspaces_[thread].cover, &manifold);
     fading.apply(world.colliders, &manifold);
+    found->depths[i] = manifold.maxDepth();
   });
   found->crossings.goOn(before.crossings, last_apart_, found->manifolds);
-  keepWhatWasFound(watched.size(), &found->manifolds);
+  keepWhatWasFound(watched.size(), found);
   found->known = true;
 }
 
@@ -88,14 +66,16 @@ void PairSearches::makeRoom(std::size_t pairs, std::vector<contact::ContactManif
 }
 
 /** Keeps the manifolds with contacts. */
-void PairSearches::keepWhatWasFound(std::size_t pairs, std::vector<contact::ContactManifold>* manifolds) {
+void PairSearches::keepWhatWasFound(std::size_t pairs, FoundContacts* found) {
+  std::vector<contact::ContactManifold>& manifolds = found->manifolds;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < pairs; ++i) {
-    if ((*manifolds)[i].contacts.empty()) continue;
-    if (kept != i) std::swap((*manifolds)[kept], (*manifolds)[i]);
-    ++kept;
+    if (manifolds[i].contacts.empty()) continue;
+    if (kept != i) std::swap(manifolds[kept], manifolds[i]);
+    found->depths[kept++] = found->depths[i];
   }
-  for (; manifolds->size() > kept; manifolds->pop_back()) spare_manifolds_.push_back(std::move(manifolds->back()));
+  found->depths.resize(kept);
+  for (; manifolds.size() > kept; manifolds.pop_back()) spare_manifolds_.push_back(std::move(manifolds.back()));
 }
 
 /** Makes known_ the memories of these pairs, in their order. */

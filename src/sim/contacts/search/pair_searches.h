@@ -1,8 +1,6 @@
 // The narrow phase of many pairs, on several threads, each pair with its memory.
 #pragma once
 
-#include <tbb/task_arena.h>
-
 #include <cstddef>
 #include <vector>
 
@@ -12,6 +10,7 @@
 #include "build/simulated_world.h"
 #include "clouds/fading_points.h"
 #include "contacts/search/found_contacts.h"
+#include "step_threads.h"
 
 namespace blem_sim::sim {
 
@@ -19,8 +18,8 @@ namespace blem_sim::sim {
  *  no state. */
 class PairSearches {
  public:
-  /** @param threads that search pairs at once; the result is the same for any number */
-  explicit PairSearches(int threads);
+  /** @param threads that search pairs at once */
+  explicit PairSearches(StepThreads* threads);
 
   /**
    * Finds the contacts of pairs at their poses.
@@ -41,18 +40,15 @@ class PairSearches {
     int a, b;
     contact::NarrowPhaseMemory memory;
   };
-  template <typename SearchOfOne>
-  void run(std::size_t pairs, const SearchOfOne& search);
   void watch(const std::vector<WatchedPair>& pairs);
   void giveBack(const std::vector<WatchedPair>& pairs);
   contact::NarrowPhaseMemory takeSpare();
   void makeRoom(std::size_t pairs, std::vector<contact::ContactManifold>* manifolds);
-  void keepWhatWasFound(std::size_t pairs, std::vector<contact::ContactManifold>* manifolds);
+  void keepWhatWasFound(std::size_t pairs, FoundContacts* found);
 
   std::vector<Known> known_, before_;              // sorted by (a, b)
   std::vector<contact::NarrowPhaseMemory> spare_;  // of pairs that went
-  int threads_;
-  tbb::task_arena arena_;
+  StepThreads* threads_;
   /** Room of one thread. */
   struct Workspace {
     contact::NarrowPhaseWorkspace search;

@@ -112,14 +112,20 @@ void PairWatch::find(const StateAhead& ahead, WatchedPairs* watched) {
   watched->pairs.clear();
   watched->left_out.clear();
   at_one_place_.assign(world.colliders.size(), 0);
-  for (const contact::ColliderPair& pair :
-       broad_phase_.find(world.colliders, watched->motion, world.filter, BASE_MARGIN, std::numeric_limits<double>::infinity())) {
+  const std::vector<contact::ColliderPair>* near = nullptr;
+  threads_->with([&] {
+    near = &broad_phase_.find(world.colliders, watched->motion, world.filter, BASE_MARGIN, std::numeric_limits<double>::infinity());
+  });
+  for (const contact::ColliderPair& pair : *near) {
     if (world.disabled_pairs.count({pair.a, pair.b}) > 0) continue;
     if (isOneTooMany(world, watched->motion, pair))
       watched->left_out.push_back({pair.a, pair.b});
     else
-      watched->pairs.push_back({pair, knownMargin(ahead, watched->motion, pair)});
+      watched->pairs.push_back({pair, 0});
   }
+  threads_->forAll(watched->pairs.size(), PAIRS_AT_ONCE, [&](std::size_t i, std::size_t) {
+    watched->pairs[i].known = knownMargin(ahead, watched->motion, watched->pairs[i]);
+  });
 }
 
 }  // namespace blem_sim::sim

@@ -6,6 +6,7 @@
 #include "blem_sim/contact/broad_phase.h"
 #include "blem_sim/dynamics/world_types.h"
 #include "build/simulated_world.h"
+#include "step_threads.h"
 
 namespace blem_sim::sim {
 
@@ -42,6 +43,9 @@ struct StateAhead {
 /** Finds the pairs to be searched, in memory that is kept between steps. */
 class PairWatch {
  public:
+  /** @param threads that look at pairs at once */
+  explicit PairWatch(StepThreads* threads) : threads_(threads) {}
+
   /** Pairs that may touch within the time ahead. @param watched overwritten */
   void find(const StateAhead& ahead, WatchedPairs* watched);
   /** [m] by collider, as of the last find: farthest point of its geometry's box from the body's centre of mass; 0 for static ones. */
@@ -54,6 +58,7 @@ class PairWatch {
   void moveColliders(const StateAhead& ahead, std::vector<contact::ColliderMotion>* motion);
   bool isOneTooMany(const SimulatedWorld& world, const std::vector<contact::ColliderMotion>& motion, const contact::ColliderPair& pair);
 
+  StepThreads* threads_;
   std::vector<double> arms_;
   contact::BroadPhase broad_phase_;
   std::vector<int> at_one_place_;  // by collider: its pairs at one place

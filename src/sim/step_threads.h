@@ -1,0 +1,62 @@
+// Threads that share the loops of a step.
+#pragma once
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+
+namespace blem_sim::sim {
+
+constexpr std::size_t PAIRS_AT_ONCE = 64;  ///< pairs in a piece of a loop that looks at each for a microsecond or less
+
+/** Chance decides which thread takes a piece of a loop, so pieces must not depend on each other: then results are the same for any number
+ *  of threads. */
+class StepThreads {
+ public:
+  explicit StepThreads(int most) : arena_(std::min(most, tbb::this_task_arena::max_concurrency())), count_(arena_.max_concurrency()) {}
+
+  int count() const { return count_; }
+
+  /** Calls work(); loops of TBB in it keep to these threads. */
+  template <typename Work>
+  void with(const Work& work) {
+    arena_.execute(work);
+  }
+
+  /** Calls body(i, thread) for each i from 0 to count - 1, in any order and at once, thread from 0 to count() - 1; up to a `piece` of them
+   *  in the caller's thread alone. */
+  template <typename Body>
+  void forAll(std::size_t count, std::size_t piece, const Body& body) {
+    if (count_ == 1 || count <= piece) {
+      for (std::size_t i = 0; i < count; ++i) body(i, std::size_t{0});
+      return;
+    }
+    arena_.execute([&] {
+      const auto run = [&](const tbb::blocked_range<std::size_t>& range) {
+        const auto thread = static_cast<std::size_t>(tbb::this_task_arena::current_thread_index());
+        for (std::size_t i = range.begin(); i < range.end(); ++i) body(i, thread);
+      };
+      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, piece), run, tbb::simple_partitioner());
+    });
+  }
+
+  /** Whether holds(i) for any i from 0 to count - 1. */
+  template <typename Holds>
+  bool anyOf(std::size_t count, std::size_t piece, const Holds& holds) {
+    std::atomic<bool> found{false};
+    forAll(count, piece, [&](std::size_t i, std::size_t) {
+      if (!found.load(std::memory_order_relaxed) && holds(i)) found.store(true, std::memory_order_relaxed);
+    });
+    return found.load(std::memory_order_relaxed);
+  }
+
+ private:
+  tbb::task_arena arena_;
+  int count_;
+};
+
+}  // namespace blem_sim::sim
