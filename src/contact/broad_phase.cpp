@@ -12,10 +12,10 @@
 namespace blem_sim::contact {
 namespace {
 
-constexpr std::size_t SWEPT_AT_ONCE = 64;  // boxes: so few need no cells
-constexpr double CELL_OF_BOX = 2;          // cells are so many times as wide as the median box
+constexpr std::size_t SWEPT_AT_ONCE = 64;      // boxes: so few need no cells
+constexpr double CELL_OF_BOX = 2;              // cells are so many times as wide as the median box
 constexpr std::size_t SWEPT_IN_A_PIECE = 256;  // entries of boxes in cells, which a thread sweeps at once: some ten microseconds
-constexpr int LARGE = 16;                  // cells that a box may cover
+constexpr int LARGE = 16;                      // cells that a box may cover
 
 Vector3 halfExtents(const Box& box) { return 0.5 * (box.max() - box.min()); }
 

@@ -175,8 +175,7 @@ void Simulator::Impl::stepGuard(const MadeSolve& made, const FoundContacts& foun
 }
 
 bool Simulator::Impl::isTooLong(const MadeSolve& made, const FoundContacts& found, const std::vector<ClosePass>& close) {
-  return substeps_.isBeyondBound() || !close.empty() ||
-         usesUpLayer(world_.colliders, made, found, &threads_);
+  return substeps_.isBeyondBound() || !close.empty() || usesUpLayer(world_.colliders, made, found, &threads_);
 }
 
 void Simulator::Impl::rewind() {

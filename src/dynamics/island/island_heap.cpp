@@ -12,15 +12,21 @@ constexpr int LARGE_HEAP = 32;  // fewest that are swept first; of fewer only if
 constexpr double TURNS = 0.03;  // [rad/s] fastest turn of a heap that stands, slides or lands flat: Newton's method solves it
 constexpr double STILL = 1e-4;  // [rad/s] fastest turn of a crowd whose contacts keep their kinds
 constexpr int FEW_ITERATIONS = 30, CROWD_ITERATIONS = 8;  // most of Newton's method on a small heap that tumbles, on a mixed crowd
-constexpr int CROWD_STEPS = 3;                            // proximal steps of a crowd that stands
+// Proximal steps of a crowd that stands, and of a large heap in which something turns: it misses the tolerance after twelve as well.
+constexpr int FEW_STEPS = 3;
 // A heap tumbles if the first sweep changes impulses by more than this share of the largest. Sweeps end when they change impulses by less;
 // a quiet crowd sways for ever if they leave more, and motors of robots in a heap push as hard as the largest impulse.
 constexpr double TUMBLES = 1e-2, SWEPT = 1e-3, SWEPT_MIXED = 1e-4, SWEPT_FEW = 2e-5, SWEPT_QUIET = 1e-5;
 constexpr int FEW_SWEEPS = 30, CROWD_SWEEPS = 100;  // most of a quiet heap, which Newton's method polishes, and of a quiet crowd
-constexpr double NEARLY = 1e-4;                     // change of a crowd's impulses by the first sweep, beyond which polishing fails
+constexpr double NEARLY = 1e-4;                     // change of impulses by the first sweep, beyond which a large heap is not at rest
 // Softness of contacts while a quiet heap is polished: stiffer ones change their kinds too often.
 constexpr double POLISH_SOFTNESS = 300, KEPT_SOFTNESS = 100, INEXACT_POLISH = 0.02;
 constexpr int POLISH_WORK = 6000, FEWEST_POLISHES = 10, MOST_POLISHES = 60;  // iterations times trees
+
+NewtonSettings inFewSteps(NewtonSettings settings) {
+  settings.max_outer = std::min(settings.max_outer, FEW_STEPS);
+  return settings;
+}
 
 }  // namespace
 
@@ -41,6 +47,8 @@ NewtonReport IslandHeap::solve(const NewtonSettings& settings) {
   return report;
 }
 
+bool IslandHeap::isLarge() const { return island_->model.treeCount() >= LARGE_HEAP; }
+
 /** [rad/s] of the body that turns fastest. */
 double IslandHeap::fastestTurn() const {
   double fastest = 0;
@@ -54,15 +62,14 @@ double IslandHeap::fastestTurn() const {
 bool IslandHeap::solveWithoutSweeps(const NewtonSettings& settings, NewtonReport* report) {
   const double turn = fastestTurn();
   if (turn <= TURNS) return solveStanding(settings, turn <= STILL, report);
-  return island_->model.treeCount() < LARGE_HEAP && solveFew(settings, report);
+  return !isLarge() && solveFew(settings, report);
 }
 
-// Contacts of a crowd that settles do change their kinds: softer ones alone take half as many iterations.
+// Contacts of a large heap that settles do change their kinds: softer ones alone take half as many iterations.
 bool IslandHeap::solveStanding(const NewtonSettings& settings, bool still, NewtonReport* report) {
-  NewtonSettings few = settings;
-  const bool crowd = island_->model.isCrowd();
-  if (crowd) few.max_outer = std::min(few.max_outer, CROWD_STEPS);
-  *report = crowd && !still ? steps_->solveSoftened(few) : steps_->solvePredicted(few);
+  const bool settles = isLarge() && !still;
+  const NewtonSettings few = settles || island_->model.isCrowd() ? inFewSteps(settings) : settings;
+  *report = settles ? steps_->solveSoftened(few) : steps_->solvePredicted(few);
   return faultsWithCreep(*report, island_->terms()->contacts) <= 1;
 }
 
@@ -88,8 +95,10 @@ void IslandHeap::sweepAndPolish(const NewtonSettings& settings, NewtonReport* re
   const SweepReport sweeps = sweepOn(quiet);
   report->iterations += 1 + sweeps.sweeps;
   const NewtonReport found = adoptSwept(&report->iterations);
+  const bool nearly = first_change <= NEARLY;
   // Sweeps do not converge in towers, where a push has a long way to go.
-  finishSwept(settings, found, island_->model.isCrowd() ? first_change <= NEARLY : quiet || sweeps.last_change > SWEPT, report);
+  const bool polishes = island_->model.isCrowd() ? nearly : quiet || sweeps.last_change > SWEPT;
+  finishSwept(isLarge() && !nearly ? inFewSteps(settings) : settings, found, polishes, report);
 }
 
 void IslandHeap::finishSwept(const NewtonSettings& settings, const NewtonReport& found, bool polishes, NewtonReport* report) {
@@ -103,7 +112,7 @@ void IslandHeap::finishSwept(const NewtonSettings& settings, const NewtonReport&
 // Sweeps with motors of robots find what gives way; where it is quiet, or they leave faults, Newton's method goes on.
 void IslandHeap::sweepMixed(const NewtonSettings& settings, NewtonReport* report) {
   SweepReport sweeps;
-  const double enough = island_->model.treeCount() < LARGE_HEAP ? SWEPT_FEW : SWEPT_MIXED;
+  const double enough = isLarge() ? SWEPT_MIXED : SWEPT_FEW;
   if (!swept_->sweepWithMotors(SweepStart::PREVIOUS, enough, &sweeps)) return;
   report->iterations += sweeps.sweeps;
   const NewtonReport found = adoptSwept(&report->iterations);
@@ -114,7 +123,7 @@ void IslandHeap::sweepMixed(const NewtonSettings& settings, NewtonReport* report
 SweepReport IslandHeap::sweepOn(bool quiet) {
   const bool crowd = island_->model.isCrowd();
   if (quiet) return swept_->sweep(crowd ? CROWD_SWEEPS : FEW_SWEEPS, crowd ? SWEPT_QUIET : 0);
-  return swept_->sweep(SweptIsland::MOST_SWEEPS, island_->model.treeCount() < LARGE_HEAP ? SWEPT_FEW : SWEPT);
+  return swept_->sweep(SweptIsland::MOST_SWEEPS, isLarge() ? SWEPT : SWEPT_FEW);
 }
 
 // Light pushes may creep though they change by little of the largest one: they are swept on. @param sweeps to which those are added

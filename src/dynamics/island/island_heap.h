@@ -12,6 +12,7 @@ class IslandHeap {
   NewtonReport solve(const NewtonSettings& settings);
 
  private:
+  bool isLarge() const;
   double fastestTurn() const;
   bool solveWithoutSweeps(const NewtonSettings& settings, NewtonReport* report);
   bool solveStanding(const NewtonSettings& settings, bool still, NewtonReport* report);

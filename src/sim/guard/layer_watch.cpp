@@ -63,7 +63,8 @@ void LayerWatch::look(const FoundContacts& found, const std::vector<std::pair<in
 }
 
 /** @param first of the events of this look */
-void LayerWatch::addPassed(const FoundContacts& found, const std::vector<std::pair<int, int>>& passed, double time, std::size_t first, std::vector<LayerEventReport>* events) {
+void LayerWatch::addPassed(const FoundContacts& found, const std::vector<std::pair<int, int>>& passed, double time, std::size_t first,
+                           std::vector<LayerEventReport>* events) {
   for (const std::pair<int, int>& pair : passed) {
     const auto at = std::lower_bound(outside_.begin(), outside_.end(), pair);
     if (at != outside_.end() && *at == pair) continue;

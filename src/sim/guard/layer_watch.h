@@ -20,8 +20,7 @@ class LayerWatch {
    * @param found contacts of the state at `time` [s]
    * @param passed pairs that used up their layers on the way from there to the next state, whatever its contacts; sorted
    */
-  void look(const FoundContacts& found, const std::vector<std::pair<int, int>>& passed, double time,
-            std::vector<LayerEventReport>* events);
+  void look(const FoundContacts& found, const std::vector<std::pair<int, int>>& passed, double time, std::vector<LayerEventReport>* events);
   /** Forgets all pairs: none is outside. */
   void clear() { outside_.clear(); }
   /** Forgets the pairs of a collider whose slot another one may take; no event tells it. */
@@ -31,8 +30,8 @@ class LayerWatch {
   void restore(const std::vector<contact::Collider>& colliders, geometry::StateReader* reader);
 
  private:
-  void addPassed(const FoundContacts& found, const std::vector<std::pair<int, int>>& passed, double time,
-                 std::size_t first, std::vector<LayerEventReport>* events);
+  void addPassed(const FoundContacts& found, const std::vector<std::pair<int, int>>& passed, double time, std::size_t first,
+                 std::vector<LayerEventReport>* events);
 
   std::vector<std::pair<int, int>> outside_;       // sorted
   std::vector<std::pair<int, int>> next_outside_;  // work space of look

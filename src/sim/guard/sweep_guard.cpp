@@ -34,7 +34,8 @@ const std::vector<ClosePass>& SweepGuard::look(const SimulatedWorld& world, cons
   moveColliders(world, made, arms);
   const std::vector<WatchedPair>& pairs = made.start.watched.pairs;
   nearness_.resize(pairs.size());
-  threads_->forAll(pairs.size(), PAIRS_AT_ONCE, [&](std::size_t i, std::size_t) { nearness_[i] = nearnessOf(world, made, fading, pairs[i]); });
+  threads_->forAll(pairs.size(), PAIRS_AT_ONCE,
+                   [&](std::size_t i, std::size_t) { nearness_[i] = nearnessOf(world, made, fading, pairs[i]); });
   for (std::size_t i = 0; i < pairs.size(); ++i)
     if (std::isfinite(nearness_[i].distance)) lookAt(world, pairs[i].a, pairs[i].b, nearness_[i]);
   if (leavesWhatWasSearched(world, made.start.watched)) lookAtOthers(world, made.start.watched);

@@ -58,7 +58,7 @@ class SweepGuard {
   std::vector<double> bends_;                    // [m] by collider: how far its way may lie beside a straight one
   std::vector<double> turns_;                    // [rad] by model: largest of its links in the solve
   contact::BroadPhase other_pairs_;
-  std::vector<Nearness> nearness_;               // by watched pair
+  std::vector<Nearness> nearness_;  // by watched pair
   std::vector<ClosePass> close_;
 };
 

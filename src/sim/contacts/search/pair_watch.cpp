@@ -123,9 +123,8 @@ void PairWatch::find(const StateAhead& ahead, WatchedPairs* watched) {
     else
       watched->pairs.push_back({pair, 0});
   }
-  threads_->forAll(watched->pairs.size(), PAIRS_AT_ONCE, [&](std::size_t i, std::size_t) {
-    watched->pairs[i].known = knownMargin(ahead, watched->motion, watched->pairs[i]);
-  });
+  threads_->forAll(watched->pairs.size(), PAIRS_AT_ONCE,
+                   [&](std::size_t i, std::size_t) { watched->pairs[i].known = knownMargin(ahead, watched->motion, watched->pairs[i]); });
 }
 
 }  // namespace blem_sim::sim
