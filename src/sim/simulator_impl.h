@@ -29,7 +29,7 @@
 #include "inputs/input_writer.h"
 #include "part_reports.h"
 #include "sensors/sensor_set.h"
-#include "step_threads.h"
+#include "threads/step_threads.h"
 
 namespace blem_sim::sim {
 

@@ -7,7 +7,7 @@
 
 #include "blem_sim/contact/collider.h"
 #include "contacts/constraints/made_solve.h"
-#include "step_threads.h"
+#include "threads/step_threads.h"
 
 namespace blem_sim::sim {
 

@@ -8,7 +8,7 @@
 #include "build/simulated_world.h"
 #include "clouds/fading_points.h"
 #include "contacts/constraints/made_solve.h"
-#include "step_threads.h"
+#include "threads/step_threads.h"
 
 namespace blem_sim::sim {
 
@@ -39,7 +39,7 @@ class SweepGuard {
                                      const FadingPoints& fading);
 
  private:
-  /** Of a pair at the start of the solve. */
+  /** A pair at the start of the solve. */
   struct Nearness {
     double distance;  // [m] of the bare meshes, at least; infinite: they cannot come close in the solve
     bool known;       // contacts are known

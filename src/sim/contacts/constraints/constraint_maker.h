@@ -10,7 +10,7 @@
 #include "build/simulated_world.h"
 #include "contacts/constraints/contact_meetings.h"
 #include "contacts/constraints/layer_stops.h"
-#include "step_threads.h"
+#include "threads/step_threads.h"
 
 namespace blem_sim::sim {
 

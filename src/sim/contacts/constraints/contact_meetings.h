@@ -7,7 +7,7 @@
 #include "contacts/constraints/pair_way.h"
 #include "contacts/motion/body_ways.h"
 #include "contacts/search/found_contacts.h"
-#include "step_threads.h"
+#include "threads/step_threads.h"
 
 namespace blem_sim::sim {
 

@@ -10,7 +10,7 @@
 #include "build/simulated_world.h"
 #include "clouds/fading_points.h"
 #include "contacts/search/found_contacts.h"
-#include "step_threads.h"
+#include "threads/step_threads.h"
 
 namespace blem_sim::sim {
 

@@ -6,7 +6,7 @@
 #include "blem_sim/contact/broad_phase.h"
 #include "blem_sim/dynamics/world_types.h"
 #include "build/simulated_world.h"
-#include "step_threads.h"
+#include "threads/step_threads.h"
 
 namespace blem_sim::sim {
 
