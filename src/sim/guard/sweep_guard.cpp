@@ -114,7 +114,8 @@ bool SweepGuard::leavesWhatWasSearched(const SimulatedWorld& world, const Watche
 void SweepGuard::lookAtOthers(const SimulatedWorld& world, const WatchedPairs& watched) {
   const std::size_t of_watched = close_.size();
   const double any = std::numeric_limits<double>::infinity();
-  for (const contact::ColliderPair& pair : other_pairs_.find(world.colliders, motion_, world.filter, 0, any)) {
+  const auto* others = threads_->with([&] { return &other_pairs_.find(world.colliders, motion_, world.filter, 0, any); });
+  for (const contact::ColliderPair& pair : *others) {
     const contact::Collider &a = world.colliders[pair.a], &b = world.colliders[pair.b];
     if (!canPass(a, b) || world.disabled_pairs.count({pair.a, pair.b}) > 0 || contact::findPair(watched.pairs, pair.a, pair.b)) continue;
     lookAt(world, pair.a, pair.b, {a.radius + b.radius, false});

@@ -21,10 +21,10 @@ class StepThreads {
 
   int count() const { return count_; }
 
-  /** Calls work(); loops of TBB in it keep to these threads. */
+  /** @return work(); loops of TBB in it keep to these threads */
   template <typename Work>
-  void with(const Work& work) {
-    arena_.execute(work);
+  auto with(const Work& work) {
+    return arena_.execute(work);
   }
 
   /** Calls body(i, thread) for each i from 0 to count - 1, in any order and at once, thread from 0 to count() - 1; up to a `piece` of them

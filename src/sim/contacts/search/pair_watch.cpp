@@ -112,9 +112,8 @@ void PairWatch::find(const StateAhead& ahead, WatchedPairs* watched) {
   watched->pairs.clear();
   watched->left_out.clear();
   at_one_place_.assign(world.colliders.size(), 0);
-  const std::vector<contact::ColliderPair>* near = nullptr;
-  threads_->with([&] {
-    near = &broad_phase_.find(world.colliders, watched->motion, world.filter, BASE_MARGIN, std::numeric_limits<double>::infinity());
+  const auto* near = threads_->with([&] {
+    return &broad_phase_.find(world.colliders, watched->motion, world.filter, BASE_MARGIN, std::numeric_limits<double>::infinity());
   });
   for (const contact::ColliderPair& pair : *near) {
     if (world.disabled_pairs.count({pair.a, pair.b}) > 0) continue;
