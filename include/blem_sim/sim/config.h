@@ -238,6 +238,7 @@ struct ObjectConfig {
 struct SimulationConfig {
   double time_step = 0.001;
   double real_time_factor = 1.0;
+  bool busy_wait = false;  ///< of the node: between steps the stepping thread does not sleep
   bool paused = false;
   Vector3 gravity = Vector3(0, 0, -9.81);
   std::uint64_t random_seed = 1;

@@ -25,11 +25,13 @@ double threadSeconds() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
+StepPacer pacerOf(const sim::SimulationConfig& config) { return {config.real_time_factor, config.time_step, config.busy_wait}; }
+
 }  // namespace
 
 SimulationLoop::SimulationLoop(sim::Simulator* simulator)
     : simulator_(simulator),
-      pacer_(simulator->config().real_time_factor, simulator->config().time_step),
+      pacer_(pacerOf(simulator->config())),
       stamped_commands_(simulator),
       paused_(simulator->config().paused) {}
 
@@ -57,8 +59,8 @@ void SimulationLoop::run(ros::CallbackQueue* callbacks, const std::function<void
   for (const auto& publisher : publishers_) publisher->resumed();
   pacer_.restart(StepPacer::Clock::now());
   while (ros::ok()) {
-    const double wait = paused_ ? LONGEST_WAIT : std::min(LONGEST_WAIT, pacer_.wait(StepPacer::Clock::now()));
-    serveCallbacks(callbacks, wait);
+    const double sleep = paused_ ? LONGEST_WAIT : std::min(LONGEST_WAIT, pacer_.sleep(StepPacer::Clock::now()));
+    serveCallbacks(callbacks, sleep);
     serve(paused_);
     if (paused_ || pacer_.wait(StepPacer::Clock::now()) > 0) continue;
     if (!step()) continue;
@@ -128,7 +130,7 @@ void SimulationLoop::restore(const sim::SimulationState& state) {
 }
 
 void SimulationLoop::paceChanged() {
-  pacer_ = StepPacer(simulator_->config().real_time_factor, simulator_->config().time_step);
+  pacer_ = pacerOf(simulator_->config());
   for (const auto& act : on_pace_changed_) act();
 }
 

@@ -64,6 +64,7 @@ SimulationConfig parseConfig(const YAML::Node& root, const std::string& source, 
   config.base_directory = base_directory;
   reader.read("time_step", &config.time_step, NumberRange::positive());
   reader.read("real_time_factor", &config.real_time_factor, NumberRange::notNegative());
+  reader.read("busy_wait", &config.busy_wait);
   reader.read("paused", &config.paused);
   reader.read("gravity", &config.gravity);
   reader.read("random_seed", &config.random_seed);

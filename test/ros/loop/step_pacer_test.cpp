@@ -40,6 +40,17 @@ TEST(StepPacer, WaitsForTheNextStep) {
   EXPECT_EQ(pacer.wait(start + milliseconds(3)), 0);
 }
 
+TEST(StepPacer, SleepsUntilTheNextStepUnlessItWaitsBusily) {
+  const Clock::time_point start = Clock::now();
+  for (const bool is_busy : {false, true}) {
+    StepPacer pacer(1.0, 0.001, is_busy);
+    pacer.restart(start);
+    pacer.stepped(start);
+    EXPECT_NEAR(pacer.wait(start), 0.001, 1e-9);
+    EXPECT_NEAR(pacer.sleep(start), is_busy ? 0 : 0.001, 1e-9);
+  }
+}
+
 TEST(StepPacer, NoBurstAfterAStall) {
   const Clock::time_point start = Clock::now();
   StepPacer pacer(1.0, 0.001);
