@@ -19,7 +19,8 @@ constexpr int EASY = 10, ENOUGH_LEFT = 20;  // iterations of a proximal step who
 // get more, as long as a step takes an iteration.
 constexpr double CREEPS = 1e-3;    // [m/s]
 constexpr int ENOUGH_TO_END = 30;  // iterations that are left for a last step
-constexpr double SETTLED = 1e-4;   // of the largest impulse: largest change of one by a heap's last proximal step
+// Of the largest impulse: largest change of one by a heap's last proximal step, and from time step to time step by its only one.
+constexpr double SETTLED = 1e-4, NEARLY_SETTLED = 1e-2;
 
 void count(const NewtonRun& run, NewtonReport* report) {
   report->iterations += run.iterations;
@@ -51,6 +52,19 @@ NewtonReport ProximalSteps::solve(const NewtonSettings& settings) {
 NewtonReport ProximalSteps::solvePredicted(const NewtonSettings& settings) {
   newton_->predict();
   NewtonReport report = solve(settings);
+  ++report.iterations;
+  return report;
+}
+
+NewtonReport ProximalSteps::solveNext(const NewtonSettings& settings) {
+  newton_->predict();
+  NewtonReport report;
+  const bool solved = solveHard(settings, &report);
+  if (!solved) solveSoft(settings, &report);
+  if (solved && newton_->iterate().reactions().contacts().areSettled(NEARLY_SETTLED))
+    newton_->finish(&report);
+  else
+    finish(settings, &report);
   ++report.iterations;
   return report;
 }

@@ -13,7 +13,10 @@ class ProximalSteps {
   NewtonReport solve(const NewtonSettings& settings);
   /** The same from the iterate that a first step as if all went on as it was leads to. */
   NewtonReport solvePredicted(const NewtonSettings& settings);
-  /** The same from the iterate at hand with softer contacts alone, for crowds: stiff ones change their kinds in many dear iterations. */
+  /** The same, but one proximal step is enough where impulses are nearly the last time step's: that led here, and the next one leads on. */
+  NewtonReport solveNext(const NewtonSettings& settings);
+  /** The same as solve from the iterate at hand with softer contacts alone, for crowds: stiff ones change their kinds in many dear
+   * iterations. */
   NewtonReport solveSoftened(const NewtonSettings& settings);
   /** Goes on from an iterate until momentum, joints and Coulomb's law hold, and reads the answer. @param report of what led to it */
   void finish(const NewtonSettings& settings, NewtonReport* report);

@@ -69,18 +69,27 @@ BLEM_SIM_LANES void divideFree(const double* l, int count, double* blocks) {
 
 namespace {
 
+// Two columns at a time, whose two lower rows share a vector.
 BLEM_SIM_LANES void subtractNarrow(const double* b, const double* a, int count, const std::size_t* at, double* values) {
+  FourRows factors[FREE][FREE / 2];  // of the lower rows
+  for (int k = 0; k < FREE; ++k)
+    for (int j = 0; j < FREE; j += 2)
+      factors[k][j / 2] = FourRows{b[FREE * k + j], b[FREE * k + j], b[FREE * k + j + 1], b[FREE * k + j + 1]};
   for (int n = 0; n < count; ++n, a += FREE_BLOCK) {
     double* c = values + at[n];
-    for (int j = 0; j < FREE; ++j, c += FREE) {
-      FourRows upper = fourRows(a) * b[j];
-      Two lower = two(a) * b[j];
+    FourRows twice[FREE];
+    for (int k = 0; k < FREE; ++k) twice[k] = FourRows{a[FREE * k + 4], a[FREE * k + 5], a[FREE * k + 4], a[FREE * k + 5]};
+    for (int j = 0; j < FREE; j += 2, c += 2 * FREE) {
+      FourRows left = fourRows(a) * b[j], right = fourRows(a) * b[j + 1], lower = twice[0] * factors[0][j / 2];
       for (int k = 1; k < FREE; ++k) {
-        upper += fourRows(a + FREE * k) * b[FREE * k + j];
-        lower += two(a + FREE * k) * b[FREE * k + j];
+        left += fourRows(a + FREE * k) * b[FREE * k + j];
+        right += fourRows(a + FREE * k) * b[FREE * k + j + 1];
+        lower += twice[k] * factors[k][j / 2];
       }
-      fourRows(c) -= upper;
-      two(c) -= lower;
+      fourRows(c) -= left;
+      fourRows(c + FREE) -= right;
+      two(c) -= Two{lower[0], lower[1]};
+      two(c + FREE) -= Two{lower[2], lower[3]};
     }
   }
 }

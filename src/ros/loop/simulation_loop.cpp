@@ -30,10 +30,7 @@ StepPacer pacerOf(const sim::SimulationConfig& config) { return {config.real_tim
 }  // namespace
 
 SimulationLoop::SimulationLoop(sim::Simulator* simulator)
-    : simulator_(simulator),
-      pacer_(pacerOf(simulator->config())),
-      stamped_commands_(simulator),
-      paused_(simulator->config().paused) {}
+    : simulator_(simulator), pacer_(pacerOf(simulator->config())), stamped_commands_(simulator), paused_(simulator->config().paused) {}
 
 void SimulationLoop::publish(const sim::StepReport& report) {
   const StepPacer::Clock::time_point start = StepPacer::Clock::now();

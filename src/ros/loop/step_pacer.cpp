@@ -11,7 +11,9 @@ StepPacer::Clock::duration toDuration(double seconds) {
 }  // namespace
 
 StepPacer::StepPacer(double real_time_factor, double time_step, bool is_busy)
-    : period_(real_time_factor > 0 ? toDuration(time_step / real_time_factor) : Clock::duration::zero()), due_(Clock::now()), is_busy_(is_busy) {}
+    : period_(real_time_factor > 0 ? toDuration(time_step / real_time_factor) : Clock::duration::zero()),
+      due_(Clock::now()),
+      is_busy_(is_busy) {}
 
 void StepPacer::restart(Clock::time_point now) { due_ = now; }
 
