@@ -19,7 +19,7 @@ constexpr int EASY = 10, ENOUGH_LEFT = 20;  // iterations of a proximal step who
 // get more, as long as a step takes an iteration.
 constexpr double CREEPS = 1e-3;    // [m/s]
 constexpr int ENOUGH_TO_END = 30;  // iterations that are left for a last step
-// Of the largest impulse: largest change of one by a heap's last proximal step, and from time step to time step by its only one.
+// Largest change of an impulse, of the largest one: by a heap's last proximal step, and since the last time step where it makes one alone.
 constexpr double SETTLED = 1e-4, NEARLY_SETTLED = 1e-2;
 
 void count(const NewtonRun& run, NewtonReport* report) {
