@@ -8,15 +8,17 @@
 namespace blem_sim::dynamics {
 namespace {
 
-constexpr int LARGE_HEAP = 32;  // fewest that are swept first; of fewer only if Newton's first iterations fail
+constexpr int LARGE_HEAP = 32;  // fewest whose contacts are softened while they stand
+constexpr double UNEVEN = 10;   // heaviest over lightest body of a small heap that sweeps do not solve: Newton's method does
 constexpr double TURNS = 0.03;  // [rad/s] fastest turn of a heap that stands, slides or lands flat: Newton's method solves it
 constexpr double STILL = 1e-4;  // [rad/s] fastest turn of a crowd whose contacts keep their kinds
-constexpr int FEW_ITERATIONS = 30, CROWD_ITERATIONS = 8;  // most of Newton's method on a small heap that tumbles, on a mixed crowd
+constexpr int FEW_ITERATIONS = 30, CROWD_ITERATIONS = 8;  // most of Newton's method on a mixed heap that tumbles, on a mixed crowd
 // Proximal steps of a crowd that stands, and of a large heap in which something turns: it misses the tolerance after twelve as well.
 constexpr int FEW_STEPS = 3;
 // A heap tumbles if the first sweep changes impulses by more than this share of the largest. Sweeps end when they change impulses by less;
 // a quiet crowd sways for ever if they leave more, and motors of robots in a heap push as hard as the largest impulse.
-constexpr double TUMBLES = 1e-2, SWEPT = 1e-3, SWEPT_MIXED = 1e-4, SWEPT_FEW = 2e-5, SWEPT_QUIET = 1e-5;
+constexpr double TUMBLES = 1e-2, SWEPT = 1e-3, SWEPT_SMALL = 1e-4, SWEPT_MIXED = 1e-4, SWEPT_FEW = 2e-5, SWEPT_QUIET = 1e-5;
+constexpr double STANDING = 100;  // times the gradient's tolerance: of a large heap that stands, whose next step goes on from there
 constexpr int FEW_SWEEPS = 30, CROWD_SWEEPS = 100;  // most of a quiet heap, which Newton's method polishes, and of a quiet crowd
 constexpr double NEARLY = 1e-4;                     // change of impulses by the first sweep, beyond which a large heap is not at rest
 // Softness of contacts while a quiet heap is polished: stiffer ones change their kinds too often.
@@ -26,6 +28,11 @@ constexpr int POLISH_WORK = 6000, FEWEST_POLISHES = 10, MOST_POLISHES = 60;  // 
 NewtonSettings inFewSteps(NewtonSettings settings) {
   settings.max_outer = std::min(settings.max_outer, FEW_STEPS);
   return settings;
+}
+
+NewtonSettings standing(NewtonSettings settings) {
+  settings.gradient_tolerance *= STANDING;
+  return inFewSteps(settings);
 }
 
 }  // namespace
@@ -41,13 +48,27 @@ NewtonReport IslandHeap::solve(const NewtonSettings& settings) {
   NewtonReport report;
   if (island_->model.isMixedHeap()) {
     if (!solveFew(settings, &report)) sweepMixed(settings, &report);
-  } else if (!solveWithoutSweeps(settings, &report)) {
-    sweepAndPolish(settings, &report);
+  } else {
+    const double turn = fastestTurn();
+    const bool stands = turn <= TURNS || (!isLarge() && !sweepsWell());
+    if (!stands || !solveStanding(settings, turn <= STILL, &report)) sweepAndPolish(settings, &report);
   }
   return report;
 }
 
 bool IslandHeap::isLarge() const { return island_->model.treeCount() >= LARGE_HEAP; }
+
+/** Whether sweeps take few rounds: among free bodies of like masses. */
+bool IslandHeap::sweepsWell() const {
+  double lightest = INFINITY, heaviest = 0;
+  for (const int tree : island_->model.trees) {
+    const ForestTree& t = island_->tree(tree);
+    const double mass = island_->motion.composite[t.first_node].mass;
+    lightest = std::min(lightest, mass);
+    heaviest = t.dofCount() > 6 ? INFINITY : std::max(heaviest, mass);
+  }
+  return heaviest <= UNEVEN * lightest;
+}
 
 /** [rad/s] of the body that turns fastest. */
 double IslandHeap::fastestTurn() const {
@@ -58,27 +79,20 @@ double IslandHeap::fastestTurn() const {
 }
 
 // Contacts of a heap that turns slowly hardly ever change their kinds: a tower, a wall, a heap at rest, a stack that slides. Newton's
-// method runs where it may succeed at its price. @return whether it did
-bool IslandHeap::solveWithoutSweeps(const NewtonSettings& settings, NewtonReport* report) {
-  const double turn = fastestTurn();
-  if (turn <= TURNS) return solveStanding(settings, turn <= STILL, report);
-  return !isLarge() && solveFew(settings, report);
-}
-
-// Contacts of a large heap that settles do change their kinds: softer ones alone take half as many iterations. A crowd that is still
-// changes so little from step to step that it has settled sooner with a proximal step each than with three.
+// method alone solves it. Those of a large heap that settles do change: softer ones take half as many iterations. A crowd that is still
+// changes so little from step to step that it has settled sooner with a proximal step each than with three. @return whether it is solved
 bool IslandHeap::solveStanding(const NewtonSettings& settings, bool still, NewtonReport* report) {
   if (isLarge() && !still)
-    *report = steps_->solveSoftened(inFewSteps(settings));
+    *report = steps_->solveSoftened(standing(settings));
   else if (island_->model.isCrowd())
-    *report = steps_->solveNext(inFewSteps(settings));
+    *report = steps_->solveNext(standing(settings));
   else
     *report = steps_->solvePredicted(settings);
   return faultsWithCreep(*report, island_->terms()->contacts) <= 1;
 }
 
-// Solves the hard problem alone, in few iterations: for bodies that tumble, but move much as in the step before. A crowd's result must be
-// exact: the least imbalance would set it in motion again.
+// Solves a mixed heap's hard problem alone, in few iterations: it may move much as in the step before. A crowd's result must be exact:
+// the least imbalance would set it in motion again.
 bool IslandHeap::solveFew(const NewtonSettings& settings, NewtonReport* report) {
   const bool crowd = island_->model.isCrowd();
   NewtonSettings few = settings;
@@ -101,7 +115,8 @@ void IslandHeap::sweepAndPolish(const NewtonSettings& settings, NewtonReport* re
   const NewtonReport found = adoptSwept(&report->iterations);
   const bool nearly = first_change <= NEARLY;
   // Sweeps do not converge in towers, where a push has a long way to go.
-  const bool polishes = island_->model.isCrowd() ? nearly : quiet || sweeps.last_change > SWEPT;
+  const bool faulty = sweeps.last_change > SWEPT || faultsWithCreep(found, island_->terms()->contacts) > 1;
+  const bool polishes = island_->model.isCrowd() ? nearly : quiet || faulty;
   finishSwept(isLarge() && !nearly ? inFewSteps(settings) : settings, found, polishes, report);
 }
 
@@ -127,7 +142,7 @@ void IslandHeap::sweepMixed(const NewtonSettings& settings, NewtonReport* report
 SweepReport IslandHeap::sweepOn(bool quiet) {
   const bool crowd = island_->model.isCrowd();
   if (quiet) return swept_->sweep(crowd ? CROWD_SWEEPS : FEW_SWEEPS, crowd ? SWEPT_QUIET : 0);
-  return swept_->sweep(SweptIsland::MOST_SWEEPS, isLarge() ? SWEPT : SWEPT_FEW);
+  return swept_->sweep(SweptIsland::MOST_SWEEPS, isLarge() ? SWEPT : SWEPT_SMALL);
 }
 
 // Light pushes may creep though they change by little of the largest one: they are swept on. @param sweeps to which those are added

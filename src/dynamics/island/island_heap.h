@@ -13,8 +13,8 @@ class IslandHeap {
 
  private:
   bool isLarge() const;
+  bool sweepsWell() const;
   double fastestTurn() const;
-  bool solveWithoutSweeps(const NewtonSettings& settings, NewtonReport* report);
   bool solveStanding(const NewtonSettings& settings, bool still, NewtonReport* report);
   bool solveFew(const NewtonSettings& settings, NewtonReport* report);
   void sweepAndPolish(const NewtonSettings& settings, NewtonReport* report);

@@ -14,6 +14,7 @@ constexpr int SOFT_STAGES = 2;
 constexpr double CONTACT_SOFTNESS[SOFT_STAGES] = {1000, 30};
 constexpr double JOINT_SOFTNESS[SOFT_STAGES] = {10, 3};
 constexpr double CROWD_SOFTNESS = 10;       // of the last one's: stiff contacts of a crowd change their kinds in many dear iterations
+constexpr int MORE_ITERATIONS = 6;          // first ones of a still crowd: soft contacts would cost three times as many
 constexpr int EASY = 10, ENOUGH_LEFT = 20;  // iterations of a proximal step whose slips are mixed, and of those that are left then
 // Contacts of a light body between heavy ones still creep so fast after the proximal steps that suffice elsewhere: they
 // get more, as long as a step takes an iteration.
@@ -44,7 +45,7 @@ void ProximalSteps::start(const IslandAtHand& island, NewtonLoop* newton) {
 
 NewtonReport ProximalSteps::solve(const NewtonSettings& settings) {
   NewtonReport report;
-  if (!solveHard(settings, &report)) solveSoft(settings, &report);
+  if (!solveHard(settings, FIRST_ITERATIONS, &report)) solveSoft(settings, &report);
   finish(settings, &report);
   return report;
 }
@@ -59,7 +60,7 @@ NewtonReport ProximalSteps::solvePredicted(const NewtonSettings& settings) {
 NewtonReport ProximalSteps::solveNext(const NewtonSettings& settings) {
   newton_->predict();
   NewtonReport report;
-  const bool solved = solveHard(settings, &report);
+  const bool solved = solveHard(settings, MORE_ITERATIONS, &report);
   if (!solved) solveSoft(settings, &report);
   if (solved && newton_->iterate().reactions().contacts().areSettled(NEARLY_SETTLED))
     newton_->finish(&report);
@@ -78,13 +79,13 @@ NewtonReport ProximalSteps::solveSoftened(const NewtonSettings& settings) {
 
 // Most steps are like the one before: the hard problem is solved in a few iterations. If idle joints stray, or are not known to do right,
 // all are live, and everything is begun again.
-bool ProximalSteps::solveHard(const NewtonSettings& settings, NewtonReport* report) {
+bool ProximalSteps::solveHard(const NewtonSettings& settings, int patience, NewtonReport* report) {
   for (;;) {
     RunLimits limits = limitsOf(settings, 0, *report);
-    limits.patience = FIRST_ITERATIONS;
+    limits.patience = patience;
     const NewtonRun run = newton_->run(limits);
     count(run, report);
-    const bool solved = run.gradient <= settings.gradient_tolerance || run.iterations < FIRST_ITERATIONS;
+    const bool solved = run.gradient <= settings.gradient_tolerance || run.iterations < patience;
     const bool all_live = newton_->iterate().live().idleDofs().empty();
     if (all_live ? !run.strayed : solved) return solved;
     newton_->beginAllLive();

@@ -22,7 +22,7 @@ class ProximalSteps {
   void finish(const NewtonSettings& settings, NewtonReport* report);
 
  private:
-  bool solveHard(const NewtonSettings& settings, NewtonReport* report);
+  bool solveHard(const NewtonSettings& settings, int patience, NewtonReport* report);
   void solveSoft(const NewtonSettings& settings, NewtonReport* report);
   void runSoftened(double contact, double joint, const NewtonSettings& settings, NewtonReport* report);
   bool isLawful(const NewtonSettings& settings, const NewtonReport& report) const;

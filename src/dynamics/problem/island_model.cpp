@@ -5,7 +5,7 @@
 namespace blem_sim::dynamics {
 namespace {
 
-constexpr int HEAP = 4;      // fewest free bodies of an island that is swept while it tumbles
+constexpr int HEAP = 2;      // fewest free bodies of an island that is swept while it tumbles
 constexpr int MIXED = 8;     // trees beyond the number of joints of an island that is swept while it tumbles: a sweep visits every joint
 constexpr int CROWD = 150;   // most trees of an island whose Hessian is cheap to factor
 constexpr double HARD = 10;  // times the fastest correction of depth: a push that makes the whole island so fast is hard
