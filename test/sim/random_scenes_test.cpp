@@ -37,7 +37,7 @@ INSTANTIATE_TEST_SUITE_P(Seeds, RandomScenesFound,
                          ::testing::Values(std::pair(28, 1.0), std::pair(52, 1.0), std::pair(61, 1.0), std::pair(74, 1.0),
                                            std::pair(103, 1.0), std::pair(163, 1.0), std::pair(180, 1.0), std::pair(236, 1.0),
                                            std::pair(265, 1.0), std::pair(3937, 0.25), std::pair(5694, 0.3), std::pair(8854, 0.35),
-                                           std::pair(9600, 0.1), std::pair(41328, 0.14)));
+                                           std::pair(9600, 0.1), std::pair(41328, 0.14), std::pair(86531, 0.2)));
 
 }  // namespace
 }  // namespace blem_sim::sim

@@ -104,11 +104,6 @@ Pace paceOf(const FreeStart& start, const StepInput& input, const Eigen::VectorX
   return turning > TOO_FAST ? Pace::TOO_FAST : Pace::SLOW;
 }
 
-/** Whether this step made the tree fast: at the velocities that were solved it is beyond what may be solved with products. */
-bool isSpinning(const FreeStart& solved, const StepInput& input, const Eigen::VectorXd& mass_velocity) {
-  return !isSlow(solved, input, turningOf(solved, mass_velocity)) && !isTied(solved, mass_velocity);
-}
-
 // Joints that answer stiffly keep their velocity on the way, as far as motor, friction and limits reach.
 void setHold(const JointTerm& joint, double velocity, double inertia, FreeMotion* way) {
   const bool holds = joint.stiffness(velocity) > HOLDS * inertia;
@@ -166,15 +161,16 @@ void followMomentum(const Forest& forest, int tree, const Vector3& target, Fores
 }
 
 // The velocities of the solve, taken on to the end of the step without velocity products, may have more energy there. The island loses it:
-// all velocities shrink alike, so that mimic joints and loops keep their relations.
+// all velocities shrink alike, so that mimic joints and loops keep their relations. Momenta are those of the velocities from then on: the
+// next step would find others by energy that nobody knows of.
 void brake(const Forest& forest, const std::vector<int>& trees, ForestMotion* motion, SolverSpace* space) {
   const double solved = dotProduct(forest, trees, space->velocity, space->mass_velocity);
   for (const int tree : trees) multiply({forest, tree, motion->mass}, motion->velocity, &space->mass_velocity, &space->paths);
   const double there = dotProduct(forest, trees, motion->velocity, space->mass_velocity);
-  if (!(there > solved)) return;
+  const double share = there > solved ? std::sqrt(std::max(0.0, solved) / there) : 1;  // below nothing by rounding
   for (const int tree : trees) {
     const ForestTree& t = forest.trees()[tree];
-    motion->velocity.segment(t.first_dof, t.dofCount()) *= std::sqrt(std::max(0.0, solved) / there);  // below nothing by rounding
+    motion->velocity.segment(t.first_dof, t.dofCount()) *= share;
     takeMomentum(forest, tree, motion, space);
   }
 }
@@ -189,10 +185,10 @@ void addFreeAcceleration(const Forest& forest, int tree, ForestMotion* motion, S
   for (int i = t.first_node; i < t.node_end; ++i) motion->drift[i] += space->twist[i];
 }
 
-// The tree is followed on its way from now on, without the products that its free momentum took.
-void setFast(const Forest& forest, const StepInput& input, int tree, ForestMotion* motion, SolverSpace* space) {
+// The tree is followed on its way from now on, or braked, without the products that its free momentum took.
+void setPace(Pace pace, const Forest& forest, const StepInput& input, int tree, ForestMotion* motion, SolverSpace* space) {
   const ForestTree& t = forest.trees()[tree];
-  motion->pace[tree] = Pace::FAST;
+  motion->pace[tree] = pace;
   for (int k = t.first_dof; k < t.dof_end; ++k) {
     space->free_momentum[k] += input.dt * productsShare(t, k) * motion->products[k];
     motion->products[k] = 0;
@@ -232,7 +228,7 @@ void setFreeMomentum(const TreeAhead& ahead, ForestMotion* motion, SolverSpace* 
 void followAlone(const Forest& forest, const StepInput& input, int tree, ForestMotion* motion, SolverSpace* space) {
   const FreeStart start{forest, tree, input.dt, *motion, motion->velocity};
   const bool follows = motion->pace[tree] == Pace::SLOW && !isDriven(forest, tree, input) && !isTied(start, space->mass_velocity);
-  if (follows) setFast(forest, input, tree, motion, space);
+  if (follows) setPace(Pace::FAST, forest, input, tree, motion, space);
 }
 
 void addEfforts(const StepInput& input, const IslandTerms& terms, SolverSpace* space) {
@@ -247,9 +243,10 @@ double correctProducts(const TreeAhead& ahead, ForestMotion* motion, SolverSpace
   space->gradient.segment(first, count) = motion->products.segment(first, count);
   space->direction.segment(first, count) = 0.5 * (motion->velocity.segment(first, count) + space->velocity.segment(first, count));
   computeProducts(forest, tree, space->direction, motion);
-  if (isSpinning({forest, tree, input.dt, *motion, space->velocity}, input, space->mass_velocity)) {
+  const Pace pace = paceOf({forest, tree, input.dt, *motion, space->velocity}, input, space->mass_velocity);
+  if (pace != Pace::SLOW) {
     motion->products.segment(first, count) = space->gradient.segment(first, count);
-    setFast(forest, input, tree, motion, space);
+    setPace(pace, forest, input, tree, motion, space);
     return INFINITY;
   }
   double worst = 0;
