@@ -188,7 +188,7 @@ NewtonReport ArticulatedStepper::solveBounded(const TermSource& source, Island* 
 bool ArticulatedStepper::leap(const TermSource& source, Island* island) {
   const TouchedIsland touched{island->model, *island->solver.terms(), island->contacts};
   if (!island->impacts.expect(source, touched)) return false;
-  for (const int tree : island->model.trees) followAlone(forest_, source.input, tree, &motion_, &space_);
+  for (const int tree : island->model.trees) followAlone(ahead(source, *island, tree), &motion_, &space_);
   return island->impacts.happen(source, touched, &impact_space_, &space_);
 }
 

@@ -38,6 +38,7 @@ struct ChainOptions {
   double fold = 0;          ///< [rad] of every second link against the others
   double bend = 0;          ///< [rad] of each link against the one before
   int slider = -1;          ///< joint that is prismatic, along its link
+  int follower = -1;        ///< link whose joint follows the first one, and turns as much
   Vector3 gravity{0, 0, -9.81};
 };
 
@@ -61,6 +62,7 @@ class Chain {
       X_WL = X_WL * joint.X_PJ * Pose(Eigen::AngleAxisd(angle, joint.axis));
       dynamics::BodySpec spec = rod(links[i]);
       spec.X_WB = X_WL;
+      if (static_cast<int>(i) == options.follower) joint.mimic_joint = 0, joint.mimic_offset = angle - world.jointState(0).position;
       joint.child = world.addBody(spec);
       joint.parent = grounded ? dynamics::WORLD_BODY : joint.child - 1;
       if (!grounded || options.held) world.addJoint(joint, angle);

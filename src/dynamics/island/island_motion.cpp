@@ -186,11 +186,11 @@ void addFreeAcceleration(const Forest& forest, int tree, ForestMotion* motion, S
 }
 
 // The tree is followed on its way from now on, or braked, without the products that its free momentum took.
-void setPace(Pace pace, const Forest& forest, const StepInput& input, int tree, ForestMotion* motion, SolverSpace* space) {
-  const ForestTree& t = forest.trees()[tree];
-  motion->pace[tree] = pace;
+void setPace(Pace pace, const TreeAhead& ahead, ForestMotion* motion, SolverSpace* space) {
+  const ForestTree& t = ahead.forest.trees()[ahead.tree];
+  motion->pace[ahead.tree] = pace;
   for (int k = t.first_dof; k < t.dof_end; ++k) {
-    space->free_momentum[k] += input.dt * productsShare(t, k) * motion->products[k];
+    space->free_momentum[k] += ahead.input.dt * productsShare(t, k) * motion->products[k];
     motion->products[k] = 0;
   }
 }
@@ -225,10 +225,11 @@ void setFreeMomentum(const TreeAhead& ahead, ForestMotion* motion, SolverSpace* 
   }
 }
 
-void followAlone(const Forest& forest, const StepInput& input, int tree, ForestMotion* motion, SolverSpace* space) {
+void followAlone(const TreeAhead& ahead, ForestMotion* motion, SolverSpace* space) {
+  const auto& [forest, scene, input, tree, touched] = ahead;
   const FreeStart start{forest, tree, input.dt, *motion, motion->velocity};
   const bool follows = motion->pace[tree] == Pace::SLOW && !isDriven(forest, tree, input) && !isTied(start, space->mass_velocity);
-  if (follows) setPace(Pace::FAST, forest, input, tree, motion, space);
+  if (follows) setPace(Pace::FAST, ahead, motion, space);
 }
 
 void addEfforts(const StepInput& input, const IslandTerms& terms, SolverSpace* space) {
@@ -246,7 +247,7 @@ double correctProducts(const TreeAhead& ahead, ForestMotion* motion, SolverSpace
   const Pace pace = paceOf({forest, tree, input.dt, *motion, space->velocity}, input, space->mass_velocity);
   if (pace != Pace::SLOW) {
     motion->products.segment(first, count) = space->gradient.segment(first, count);
-    setPace(pace, forest, input, tree, motion, space);
+    setPace(pace, ahead, motion, space);
     return INFINITY;
   }
   double worst = 0;

@@ -29,7 +29,7 @@ struct TreeAhead {
 void setFreeMomentum(const TreeAhead& ahead, ForestMotion* motion, SolverSpace* space);
 
 /** A tree that nothing drives or ties is fast in this step, whatever its speed. After setFreeMomentum, before the solve. */
-void followAlone(const Forest& forest, const StepInput& input, int tree, ForestMotion* motion, SolverSpace* space);
+void followAlone(const TreeAhead& ahead, ForestMotion* motion, SolverSpace* space);
 
 /** Follows the free motion of fast trees from the velocities that were solved. @return false if one was too fast to be followed */
 bool followFast(const SolvedIsland& island, const ForestMotion& motion, const SolverSpace& space, FreeMotion* way);

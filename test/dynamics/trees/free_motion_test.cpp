@@ -201,6 +201,30 @@ TEST(FreeMotion, SaysWhatIsTooFast) {
   }
 }
 
+// A chain two of whose joints follow each other goes no free way. Beyond its pace it is braked, and carries no momentum that its velocities
+// do not have: such a one made 3 J to 500 in a step.
+TEST(FreeMotion, OfJointsThatFollowEachOtherIsBrakedBeyondItsPace) {
+  ChainOptions options;
+  options.held = false, options.alternates = true, options.bend = 0.4, options.follower = 4;
+  options.gravity = Vector3::Zero();
+  for (const double spin : {50.0, 200.0, 1000.0, 5000.0}) {
+    Chain chain(TAPER, options);
+    BodyState state = chain.world.bodyState(5);
+    state.w_WB = {0, spin, 0.3 * spin};
+    chain.world.setBodyState(5, state);
+    chain.step(DT);  // makes the velocities follow each other
+    double most = 0;
+    const double first = chain.world.kineticEnergy();
+    int fast = 0;
+    for (int i = 0; i < 2000; ++i) {
+      fast += chain.step(DT).too_fast;
+      most = std::max(most, chain.world.kineticEnergy());
+    }
+    EXPECT_LE(most, 1.1 * first) << spin;
+    EXPECT_EQ(fast > 0, spin >= 1000) << spin;
+  }
+}
+
 // Held joints owe the impulses of their way: these are part of the state.
 TEST(FreeMotion, ReplaysFromASavedState) {
   ChainOptions options;
