@@ -11,6 +11,10 @@ FadingRecords::Directions FadingRecords::addDirections(const EdgesAtVertex& edge
 }
 
 std::uint32_t FadingRecords::addShape(const MeshSide& side, int face, const PlaneReach& reach) {
+  if (corners_.empty()) {
+    corners_.reserve(FIRST_SHAPES);
+    reaches_.reserve(FIRST_SHAPES);
+  }
   kernels::FaceCorners& corners = corners_.emplace_back();
   for (int k = 0; k < 3; ++k) corners.of[k] = vec4(side.mesh.vertices[side.mesh.elements[face][k]], 0);
   reaches_.push_back(reach);

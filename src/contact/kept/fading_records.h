@@ -52,6 +52,7 @@ class FadingRecords {
 
  private:
   static constexpr std::uint32_t UNKNOWN = 0xFFFFFFFF;
+  static constexpr std::size_t FIRST_SHAPES = 8;  // for which there is room at once: a kilobyte
 
   Directions addDirections(const EdgesAtVertex& edges);
   std::uint32_t addShape(const MeshSide& side, int face, const PlaneReach& reach);
