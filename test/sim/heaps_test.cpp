@@ -55,7 +55,7 @@ TEST(Heaps, SixtyCubesTumbleWithoutTrouble) {
 TEST(Heaps, SmallOnesMissCoulombsLawByLittleWhileTheyTumble) {
   Simulator simulator(heapInBin(30, 1, dynamics::SolverSettings()), model::UriResolver());
   int tumbling = 0;
-  for (int i = 0; i < (SANITIZED ? 250 : 700); ++i) {
+  for (int i = 0; i < (SANITIZED ? 450 : 700); ++i) {
     const StepReport& report = simulator.step();
     double largest = 0;
     for (const ContactReport& contact : report.contacts) largest = std::max(largest, contact.force.norm());
