@@ -65,7 +65,7 @@ bool IslandHeap::sweepsWell() const {
     const ForestTree& t = island_->tree(tree);
     const double mass = island_->motion.composite[t.first_node].mass;
     lightest = std::min(lightest, mass);
-    heaviest = t.dofCount() > 6 ? INFINITY : std::max(heaviest, mass);
+    heaviest = t.free && t.dofCount() == 6 ? std::max(heaviest, mass) : INFINITY;
   }
   return heaviest <= UNEVEN * lightest;
 }
