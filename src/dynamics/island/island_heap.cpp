@@ -50,8 +50,8 @@ NewtonReport IslandHeap::solve(const NewtonSettings& settings) {
     if (!solveFew(settings, &report)) sweepMixed(settings, &report);
   } else {
     const double turn = fastestTurn();
-    const bool stands = turn <= TURNS || (!isLarge() && !sweepsWell());
-    if (!stands || !solveStanding(settings, turn <= STILL, &report)) sweepAndPolish(settings, &report);
+    const bool newton_alone = turn <= TURNS || (!isLarge() && !sweepsWell());
+    if (!newton_alone || !solveStanding(settings, turn <= STILL, &report)) sweepAndPolish(settings, &report);
   }
   return report;
 }
