@@ -17,12 +17,12 @@ int sweepsToNothing(bool led) {
   lead.start(0);
   lead.beginRun();
   double numbers[2] = {1, -1};
-  Led ways[2];
+  double before[2] = {};
   int sweeps = 0;
   for (; std::max(std::abs(numbers[0]), std::abs(numbers[1])) > 1e-6; ++sweeps) {
     double change = 0;
+    lead.move(numbers, numbers + 2, before);
     for (int i = 0; i < 2; ++i) {
-      lead.move(&numbers[i], &ways[i]);
       change += std::pow(RATES[i] * numbers[i], 2);
       numbers[i] -= RATES[i] * numbers[i];
     }
@@ -39,51 +39,46 @@ TEST(SweepLead, NeedsAFractionOfTheSweeps) {
 
 TEST(SweepLead, FirstSweepOfARunMovesNothing) {
   SweepLead lead;
-  Led way;
-  double number = 1;
+  double number = 1, before = 0;
   lead.beginRun();
-  lead.move(&number, &way);
+  lead.move(&number, &number + 1, &before);
   EXPECT_EQ(number, 1);
   number = 0.5;
   lead.take(0.25);
-  lead.move(&number, &way);
-  EXPECT_EQ(number, 0.5) << "there is no direction yet";
-  number = 0.4;
-  lead.take(0.01);
-  lead.move(&number, &way);
-  EXPECT_LT(number, 0.4);
+  lead.move(&number, &number + 1, &before);
+  EXPECT_EQ(number, 0.5 - lead.share() * 0.5) << "moved on by a share of the change";
+  EXPECT_GT(lead.share(), 0);
+  EXPECT_EQ(before, 0.5);
   lead.beginRun();
-  const double before = number;
-  lead.move(&number, &way);
-  EXPECT_EQ(number, before);
+  const double last = number;
+  lead.move(&number, &number + 1, &before);
+  EXPECT_EQ(number, last);
 }
 
 TEST(SweepLead, StandsStillOnceChangesGrow) {
   SweepLead lead;
-  Led way;
-  double number = 1;
+  double number = 1, before = 0;
   lead.beginRun();
   for (const double change : {0.01, 0.01, 0.01}) {
-    lead.move(&number, &way);
+    lead.move(&number, &number + 1, &before);
     number -= 0.1;
     lead.take(change);
   }
-  lead.move(&number, &way);
+  EXPECT_GT(lead.share(), 0);
   lead.take(0.02);
-  const double before = number;
-  lead.move(&number, &way);
-  EXPECT_EQ(number, before);
+  const double last = number;
+  lead.move(&number, &number + 1, &before);
+  EXPECT_EQ(number, last);
 }
 
 TEST(SweepLead, MovesVelocitiesAsItMovesNumbers) {
   SweepLead lead;
   lead.start(3);
   lead.beginRun();
-  double velocities[3] = {1, 2, 3}, number = 2;
-  Led way;
+  double velocities[3] = {1, 2, 3}, number = 2, before = 0;
   for (int sweep = 0; sweep < 5; ++sweep) {
-    lead.move(1, 3, velocities);
-    lead.move(&number, &way);
+    lead.moveVelocities(1, 3, velocities);
+    lead.move(&number, &number + 1, &before);
     EXPECT_EQ(velocities[1], number);
     EXPECT_EQ(velocities[0], 1) << "outside of the range";
     velocities[1] *= 0.9;

@@ -11,6 +11,13 @@
 
 namespace blem_sim::dynamics {
 
+#ifdef BLEM_SIM_AVX512
+inline bool hasAvx512() {
+  static const bool has = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq");
+  return has;
+}
+#endif
+
 constexpr int LANES = 4;
 using Lanes = double[LANES];
 using VectorLanes = double[3][LANES];

@@ -15,8 +15,8 @@ using TwistLanes = double[6][SWEEP_LANES];
 
 /** One contact of each of eight pairs: its constants while they are swept. */
 struct alignas(8 * SWEEP_LANES) SweepContact {
-  SweepVectors point;    ///< about the reference point of the pair's first body
-  SweepVectors axis[3];  ///< the normal, and two directions across it
+  SweepVectors point;           ///< about the reference point of the pair's first body
+  SweepVectors normal, across;  ///< the first two axes; the third one completes them
   SweepLanes friction, compliance, target;
   SweepLanes offset[2];           ///< [m/s] across the normal: by which the bodies' paths bend apart
   SweepLanes normal_gain;         ///< [kg] of the normal row, compliance included
@@ -28,8 +28,7 @@ struct alignas(8 * SWEEP_LANES) SweepContact {
 /** Variables of a sweep: impulses along the axes [N s]. */
 struct alignas(8 * SWEEP_LANES) SweepImpulse {
   SweepVectors now;     ///< those found
-  SweepVectors change;  ///< by the last sweep
-  SweepVectors search;  ///< along which sweeps are led on
+  SweepVectors before;  ///< those that the sweep before found
 };
 
 /** Eight pairs at most, no body in two of them. Lanes without a pair have contacts that never act. */
@@ -57,6 +56,7 @@ struct SweepBodies {
 struct SweptContacts {
   const SweepContact *begin, *end;
   SweepImpulse* impulses;
+  double lead = 0;  ///< share of the last change by which an impulse moves on before its visit
 };
 
 /** A lane's contact from a term; null: one that never acts. */
@@ -86,8 +86,6 @@ void sweep(const SweepGroup& group, const SweptContacts& contacts, const TwistLa
 /** The same with the bodies' velocities instead of twists and wrenches. @param velocity of all bodies, each angular, then linear */
 void sweepFree(const SweepBodies& bodies, const SweptContacts& contacts, double* velocity, SweepChange* change);
 
-/** Impulses move on by `share` of the last search direction, which the last changes join. */
-void moveOn(double share, SweepImpulse* begin, SweepImpulse* end);
 /** Impulses times a factor. */
 void scale(double factor, SweepImpulse* begin, SweepImpulse* end);
 

@@ -6,7 +6,7 @@
 namespace blem_sim::dynamics {
 namespace {
 
-constexpr std::size_t GROUPS_AT_ONCE = 8, IMPULSES_AT_ONCE = 256, NUMBERS_AT_ONCE = 1024;  // sizes of chunks: some microseconds each
+constexpr std::size_t GROUPS_AT_ONCE = 8, NUMBERS_AT_ONCE = 1024;  // sizes of chunks: some microseconds each
 
 Vector6 columnOf(const TwistLanes& lanes, int lane) {
   Vector6 out;
@@ -138,19 +138,12 @@ void IslandSweeps::sweepGroup(std::size_t index, Eigen::VectorXd* velocity) {
   sweepFree(bodies_[index], contactsOf(group), velocities_.numbers(), &changes_[index]);
 }
 
-IslandSweeps::Range IslandSweeps::contactsOf(const GroupRange& groups) const {
-  return groups.first == groups.end ? Range{0, 0} : Range{groups_[groups.first].first, groups_[groups.end - 1].end};
-}
-
 // Regions have no body in common, so threads share them, and each stays with its own.
 void IslandSweeps::sweepRegion(int region, Eigen::VectorXd* velocity) {
   const GroupRange groups = order_.groupsOf(region);
-  if (joints_.empty()) {
-    const Range contacts = contactsOf(groups);
-    lead_.move(impulses_.data() + contacts.first, impulses_.data() + contacts.end);
+  if (joints_.empty())
     for (const NumberRange* v = velocities_.begin(region); v != velocities_.end(region); ++v)
-      lead_.move(v->first, v->end, velocities_.numbers());
-  }
+      lead_.moveVelocities(v->first, v->end, velocities_.numbers());
   for (std::size_t g = groups.first; g < groups.end; ++g) sweepGroup(g, velocity);
 }
 
@@ -162,12 +155,9 @@ void IslandSweeps::sweepBorder(Eigen::VectorXd* velocity) {
 
 // All threads lead one region on.
 void IslandSweeps::leadTogether(int region) {
-  const Range contacts = contactsOf(order_.groupsOf(region));
-  island_->team->forRanges(contacts.first, contacts.end, IMPULSES_AT_ONCE,
-                           [&](std::size_t first, std::size_t end) { lead_.move(impulses_.data() + first, impulses_.data() + end); });
   for (const NumberRange* v = velocities_.begin(region); v != velocities_.end(region); ++v)
     island_->team->forRanges(v->first, v->end, NUMBERS_AT_ONCE,
-                             [&](std::size_t first, std::size_t end) { lead_.move(first, end, velocities_.numbers()); });
+                             [&](std::size_t first, std::size_t end) { lead_.moveVelocities(first, end, velocities_.numbers()); });
 }
 
 // Joints of any region are visited first, so all regions are led on before.

@@ -43,10 +43,6 @@ class IslandSweeps {
   void read(const Eigen::VectorXd& velocity, IslandTerms* terms) const;
 
  private:
-  /** Places from `first` on, before `end`. */
-  struct Range {
-    int first, end;
-  };
   bool arrange(SweepStart start, Eigen::VectorXd* velocity);
   bool loadResponse();
   void loadContacts(SweepStart start);
@@ -65,9 +61,8 @@ class IslandSweeps {
   void sweepGroup(std::size_t group, Eigen::VectorXd* velocity);
   void sweepTrees(std::size_t group, Eigen::VectorXd* velocity);
   void push(const SweepGroup& group, const TwistLanes& wrench, Eigen::VectorXd* velocity) const;
-  Range contactsOf(const GroupRange& groups) const;
   SweptContacts contactsOf(const SweepGroup& group) {
-    return {contacts_.data() + group.first, contacts_.data() + group.end, impulses_.data() + group.first};
+    return {contacts_.data() + group.first, contacts_.data() + group.end, impulses_.data() + group.first, lead_.share()};
   }
 
   const IslandAtHand* island_ = nullptr;

@@ -58,8 +58,8 @@ void SweptJoints::AxisRow::scale(double factor) {
 }
 
 void SweptJoints::AxisRow::lead(const SweepLead& lead) {
-  Led* of = led;
-  for (double* impulse : {&motor, &dry, &lower, &upper}) lead.move(impulse, of++);
+  double* of = before;
+  for (double* impulse : {&motor, &dry, &lower, &upper}) lead.move(impulse, impulse + 1, of++);
 }
 
 void SweptJoints::AxisRow::read(double v, JointTerm* joint) const {
@@ -148,7 +148,7 @@ void SweptJoints::loadLoop(std::size_t index, SweepStart start, IslandResponse* 
 void SweptJoints::lead(const SweepLead& lead) {
   for (JointRow& row : joint_rows_) row.axis.lead(lead);
   for (LoopRow& row : loop_rows_) {
-    for (int r = 0; r < 6; ++r) lead.move(&row.impulse[r], &row.led[r]);
+    lead.move(row.impulse.data(), row.impulse.data() + row.impulse.size(), row.before);
     row.axis.lead(lead);
   }
 }

@@ -44,7 +44,7 @@ class SweptJoints {
   struct AxisRow {
     double response = 0;  // [1/kg or 1/(kg m^2)] of the joint's velocity
     double motor = 0, dry = 0, lower = 0, upper = 0;
-    Led led[4];  // the ways of those
+    double before[4] = {};  // those that the sweep before found
 
     AxisRow() = default;
     AxisRow(const JointTerm& joint, double axis_response, SweepStart start);
@@ -69,10 +69,10 @@ class SweptJoints {
   };
   struct LoopRow {
     ResponsePair pair;
-    Matrix6 inverse;  // of the forbidden rows' response
-    Vector6 impulse;  // of forbidden rows
-    Led led[6];       // its way
-    AxisRow axis;     // the free one
+    Matrix6 inverse;        // of the forbidden rows' response
+    Vector6 impulse;        // of forbidden rows
+    double before[6] = {};  // that found by the sweep before
+    AxisRow axis;           // the free one
   };
   void loadJoint(int term, SweepStart start, IslandResponse* response);
   void loadLoop(std::size_t loop, SweepStart start, IslandResponse* response);

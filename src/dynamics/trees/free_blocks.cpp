@@ -96,8 +96,6 @@ BLEM_SIM_LANES void subtractNarrow(const double* b, const double* a, int count, 
 
 #ifdef BLEM_SIM_AVX512
 
-bool hasAvx512() { return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq"); }
-
 /** The same sums, a column of six rows in a vector of eight. */
 BLEM_SIM_AVX512 void subtractWide(const double* b, const double* a, int count, const std::size_t* at, double* values) {
   constexpr __mmask8 ALL = 0xff;
@@ -124,8 +122,7 @@ BLEM_SIM_AVX512 void subtractWide(const double* b, const double* a, int count, c
 
 void subtractFree(const double* b, const double* a, int count, const std::size_t* at, double* values) {
 #ifdef BLEM_SIM_AVX512
-  static const bool wide = hasAvx512();
-  if (wide) return subtractWide(b, a, count, at, values);
+  if (hasAvx512()) return subtractWide(b, a, count, at, values);
 #endif
   subtractNarrow(b, a, count, at, values);
 }

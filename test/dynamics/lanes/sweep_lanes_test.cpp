@@ -129,18 +129,42 @@ TEST_F(SweepLanes, OfFreeBodiesDoWhatThoseOfTreesDo) {
 
 TEST_F(SweepLanes, MomentumFollowsFromImpulses) {
   const Eigen::VectorXd before = velocity_;
+  SweepImpulse start[CONTACTS];
+  std::copy(impulses_, impulses_ + CONTACTS, start);
   SweepChange change;
   sweepFree(bodies_, {contacts_, contacts_ + CONTACTS, impulses_}, velocity_.data(), &change);
   for (int lane = 0; lane < SWEEP_LANES; ++lane) {
     if (lane == WITHOUT_PAIR) continue;
     Vector3 force = Vector3::Zero();
-    for (int c = 0; c < CONTACTS; ++c)
-      for (int axis = 0; axis < 3; ++axis)
-        for (int i = 0; i < 3; ++i) force[i] += impulses_[c].change[axis][lane] * contacts_[c].axis[axis][i][lane];
+    for (int c = 0; c < CONTACTS; ++c) force += readLane(contacts_[c], impulses_[c], lane) - readLane(contacts_[c], start[c], lane);
     const Vector3 a = (velocity_ - before).segment<3>(12 * lane + 3), b = (velocity_ - before).segment<3>(12 * lane + 9);
     EXPECT_TRUE(a.isApprox(bodies_.a.inverse_mass[lane] * force, 1e-12)) << lane;
     EXPECT_TRUE((b + bodies_.b.inverse_mass[lane] * force).isZero(1e-12)) << lane;
   }
+}
+
+TEST_F(SweepLanes, ImpulsesMoveOnBeforeTheirVisit) {
+  constexpr double LEAD = 0.4;
+  SweepImpulse moved[CONTACTS];
+  for (int c = 0; c < CONTACTS; ++c)
+    for (int axis = 0; axis < 3; ++axis)
+      for (int lane = 0; lane < SWEEP_LANES; ++lane) {
+        impulses_[c].now[axis][lane] += 0.01 * uniform();
+        moved[c].before[axis][lane] = 0;
+        const double change = impulses_[c].now[axis][lane] - impulses_[c].before[axis][lane];
+        moved[c].now[axis][lane] = impulses_[c].now[axis][lane] + LEAD * change;
+      }
+  const SweepImpulse found = impulses_[0];
+  Eigen::VectorXd velocity = velocity_;
+  SweepChange change;
+  sweepFree(bodies_, {contacts_, contacts_ + CONTACTS, impulses_, LEAD}, velocity_.data(), &change);
+  sweepFree(bodies_, {contacts_, contacts_ + CONTACTS, moved}, velocity.data(), &change);
+  EXPECT_EQ(velocity_, velocity);
+  for (int axis = 0; axis < 3; ++axis)
+    for (int lane = 0; lane < SWEEP_LANES; ++lane) {
+      EXPECT_EQ(impulses_[0].now[axis][lane], moved[0].now[axis][lane]);
+      EXPECT_EQ(impulses_[0].before[axis][lane], found.now[axis][lane]) << "the next sweep moves on from there";
+    }
 }
 
 }  // namespace
