@@ -16,9 +16,10 @@ double productsShare(const ForestTree& tree, int dof) { return tree.free && dof 
 // energy to keep, and one that tumbles momenta as well. Of a robot that stands, or is bolted down, motors and friction tell how much energy
 // comes and goes.
 constexpr double SLOW_ALONE = 1e-4, SLOW_AT_WORK = 1e-3;
-constexpr double SLOW_BEND = 1e-3;   // [rad] of a hinge in a step: beyond, products that are none at its start may be there at its end
-constexpr double TUMBLING = 0.4;     // [rad/s] of a free root: a robot that sways on its feet turns less
-constexpr double SMALL_TURN = 0.05;  // [rad] of a free root in a step: beyond, products of the step's start are not those of its end
+constexpr double SLOW_BEND = 1e-3;    // [rad] of a hinge in a step: beyond, products that are none at its start may be there at its end
+constexpr double SLOW_ASTRAY = 1e-7;  // [J] of the energy of a tree that nothing drives
+constexpr double TUMBLING = 0.4;      // [rad/s] of a free root: a robot that sways on its feet turns less
+constexpr double SMALL_TURN = 0.05;   // [rad] of a free root in a step: beyond, products of the step's start are not those of its end
 // Trees that are tied are solved with their products. Beyond this the products would add energy without bound:
 // they are left out, and the trees are braked.
 constexpr double TOO_FAST = 0.1;
@@ -89,17 +90,22 @@ double bend(const FreeStart& start) {
   return most;
 }
 
-bool isSlow(const FreeStart& start, const StepInput& input, double turning) {
-  if (turning > SLOW_AT_WORK || bend(start) > SLOW_BEND) return false;
-  if (turning <= SLOW_ALONE) return true;
+/** @param energy [J] twice the tree's kinetic energy, a share of which goes astray that grows with the square of its bend */
+bool isSlow(const FreeStart& start, const StepInput& input, double turning, double energy) {
+  const double bent = bend(start);
+  if (turning > SLOW_AT_WORK || bent > SLOW_BEND) return false;
+  const bool exact = turning <= SLOW_ALONE, astray = bent * bent * energy > SLOW_ASTRAY;
+  if (exact && !astray) return true;
   const ForestTree& t = start.forest.trees()[start.tree];
-  const bool tumbles = t.free && start.velocity.segment<3>(t.first_dof).norm() > TUMBLING;
+  const bool tumbles = !exact && t.free && start.velocity.segment<3>(t.first_dof).norm() > TUMBLING;
   return !tumbles && isDriven(start.forest, start.tree, input);
 }
 
 Pace paceOf(const FreeStart& start, const StepInput& input, const Eigen::VectorXd& mass_velocity) {
   const double turning = turningOf(start, mass_velocity);
-  if (isSlow(start, input, turning)) return Pace::SLOW;
+  const ForestTree& t = start.forest.trees()[start.tree];
+  const double energy = start.velocity.segment(t.first_dof, t.dofCount()).dot(mass_velocity.segment(t.first_dof, t.dofCount()));
+  if (isSlow(start, input, turning, energy)) return Pace::SLOW;
   if (!isTied(start, mass_velocity)) return Pace::FAST;
   return turning > TOO_FAST ? Pace::TOO_FAST : Pace::SLOW;
 }

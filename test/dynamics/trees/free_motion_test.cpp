@@ -90,6 +90,30 @@ TEST(FreeMotion, FreeChainKeepsItsMomenta) {
   }
 }
 
+// Steps so short that joints hardly turn in them, of two bars that turn about pins and have much energy for that.
+TEST(FreeMotion, ShortStepsOfFastBarsMissLessThanAMicrojoule) {
+  ChainOptions options;
+  options.gravity = Vector3::Zero();
+  Chain chain({{1, 0.3}, {1, 0.3}}, options);
+  const Vector3 upper(0, 8, 0), lower(0, -7, 0), half(0.15, 0, 0);
+  for (int link = 0; link < 2; ++link) {
+    BodyState state = chain.world.bodyState(link);
+    state.w_WB = link == 0 ? upper : lower;
+    state.v_WCom = link == 0 ? upper.cross(half) : Vector3(2 * upper.cross(half) + lower.cross(half));
+    chain.world.setBodyState(link, state);
+  }
+  for (const double dt : {6.6e-5, 3e-5, 1e-5}) {
+    double worst = 0;
+    for (int i = 0; i < 5000; ++i) {
+      const double before = chain.world.kineticEnergy();
+      chain.step(dt);
+      worst = std::max(worst, std::abs(chain.world.kineticEnergy() - before));
+    }
+    EXPECT_LT(worst, 5e-7) << dt;
+  }
+  EXPECT_GT(chain.world.kineticEnergy(), 2);
+}
+
 // An arm that turns about a vertical axis, and a link that slides along it: angular momentum about the axis and energy stay. By
 // both, the speed of the link along the arm is known.
 TEST(FreeMotion, SliderInASpinningArm) {
