@@ -12,7 +12,7 @@ FLOORS = {
     "model": ["checks", "soup", "ply", "clouds"],
     "contact": ["features", "kernels", "neighbourhood", "kept", "evaluation", "merging", "search"],
     "reduction": ["lanes", "patches", "choice"],
-    "dynamics": ["lanes", "scene", "trees", "problem", "iterate", "newton", "sweeps", "island", "ode"],
+    "dynamics": ["lanes", "scene", "trees", "free_way", "problem", "iterate", "newton", "sweeps", "island", "ode"],
     "sim": ["numbers", "threads", "config", "gazebo", "commands", "build", "clouds", "contacts", "guard", "sensors", "state", "inputs", "controllers"],
     "ros": ["messages", "sending", "loop", "clouds", "publishers", "services", "settings", "saving", "attachments", "controllers"],
     "sim/contacts": ["motion", "search", "constraints"],

@@ -23,9 +23,8 @@ constexpr double SMALL_TURN = 0.05;   // [rad] of a free root in a step: beyond,
 // Trees that are tied are solved with their products. Beyond this the products would add energy without bound:
 // they are left out, and the trees are braked.
 constexpr double TOO_FAST = 0.1;
-constexpr double AT_REST = 1e-30;      // [J] twice the energy of a tree whose velocities are rounding: so are its products
-constexpr double HELD_AT_MOST = 1e-3;  // of a tree's energy: share of joints that follow each other, which are held where it is fast
-constexpr double HOLDS = 0.5;          // of a dof's inertia: a joint that answers more stiffly keeps its velocity on the way
+constexpr double AT_REST = 1e-30;  // [J] twice the energy of a tree whose velocities are rounding: so are its products
+constexpr double HOLDS = 0.5;      // of a dof's inertia: a joint that answers more stiffly keeps its velocity on the way
 
 // Change of the velocities of a tree by its velocity products in a step, over the velocities in the frame of its centre of mass; in the
 // norm of the energy, each dof's inertia taken alone; the more, the further the root turns. `mass_velocity`: M times the velocity.
@@ -57,25 +56,18 @@ bool isDriven(const Forest& forest, int tree, const StepInput& input) {
                      [&](const ForestNode& n) { return n.dofs == 1 && drives(input.drives[n.joint]); });
 }
 
-/** Whether the tree cannot go its way by itself: loops tie it, mimic joints to another tree, or some that move. Fingers that follow each
- * other and hardly move are held. @param mass_velocity M times the velocity */
-bool isTied(const FreeStart& start, const Eigen::VectorXd& mass_velocity) {
-  const Forest& forest = start.forest;
-  const auto belongs = [&](int node) { return node >= 0 && forest.nodes()[node].tree == start.tree; };
-  const auto ties = [&](const LoopClosure& l) { return belongs(l.child) || belongs(l.parent); };
-  if (std::any_of(forest.loops().begin(), forest.loops().end(), ties)) return true;
-  double held = 0;
-  for (const MimicRelation& m : forest.mimics()) {
-    if (belongs(m.node) != belongs(m.master)) return true;
-    if (!belongs(m.node)) continue;
-    for (const int node : {m.node, m.master}) {
-      const int k = forest.nodes()[node].first_dof;
-      held += start.motion.mass[forest.diagonal(k)] * start.velocity[k] * start.velocity[k];
-    }
-  }
-  if (held == 0) return false;
-  const ForestTree& t = forest.trees()[start.tree];
-  return held > HELD_AT_MOST * start.velocity.segment(t.first_dof, t.dofCount()).dot(mass_velocity.segment(t.first_dof, t.dofCount()));
+/** Whether the tree cannot go its way by itself: loops tie it, or mimic joints to another tree. */
+bool isTied(const Forest& forest, int tree) {
+  const auto belongs = [&](int node) { return node >= 0 && forest.nodes()[node].tree == tree; };
+  const auto closes = [&](const LoopClosure& l) { return belongs(l.child) || belongs(l.parent); };
+  const auto leads_away = [&](const MimicRelation& m) { return belongs(m.node) != belongs(m.master); };
+  return std::any_of(forest.loops().begin(), forest.loops().end(), closes) ||
+         std::any_of(forest.mimics().begin(), forest.mimics().end(), leads_away);
+}
+
+bool hasMimics(const Forest& forest, int tree) {
+  return std::any_of(forest.mimics().begin(), forest.mimics().end(),
+                     [&](const MimicRelation& m) { return forest.nodes()[m.node].tree == tree; });
 }
 
 /** [rad] Largest turn of a hinge in a step at these velocities, if the tree's mass matrix depends on it. */
@@ -106,7 +98,7 @@ Pace paceOf(const FreeStart& start, const StepInput& input, const Eigen::VectorX
   const ForestTree& t = start.forest.trees()[start.tree];
   const double energy = start.velocity.segment(t.first_dof, t.dofCount()).dot(mass_velocity.segment(t.first_dof, t.dofCount()));
   if (isSlow(start, input, turning, energy)) return Pace::SLOW;
-  if (!isTied(start, mass_velocity)) return Pace::FAST;
+  if (!isTied(start.forest, start.tree)) return Pace::FAST;
   return turning > TOO_FAST ? Pace::TOO_FAST : Pace::SLOW;
 }
 
@@ -114,20 +106,20 @@ Pace paceOf(const FreeStart& start, const StepInput& input, const Eigen::VectorX
 void setHold(const JointTerm& joint, double velocity, double inertia, FreeMotion* way) {
   const bool holds = joint.stiffness(velocity) > HOLDS * inertia;
   const double reach = (joint.motor_gain > 0 ? joint.motor_bound : 0) + joint.dry_bound;
-  way->held[joint.dof] = holds;
+  way->held()[joint.dof] = holds;
   way->most[joint.dof] = joint.lowerImpulse(velocity) > 0 ? INFINITY : reach;
   way->least[joint.dof] = joint.upperImpulse(velocity) > 0 ? -INFINITY : -reach;
 }
 
-// Joints that follow each other keep their velocities on the way, and so their relation.
+// Of joints that follow each other both keep their velocities on the way, or none.
 void holdMimics(const Forest& forest, int tree, FreeMotion* way) {
   for (const MimicRelation& mimic : forest.mimics()) {
-    if (forest.nodes()[mimic.node].tree != tree) continue;
-    for (const int node : {mimic.node, mimic.master}) {
-      const int dof = forest.nodes()[node].first_dof;
-      way->held[dof] = true;
-      way->least[dof] = -INFINITY;
-      way->most[dof] = INFINITY;
+    const int dof = forest.nodes()[mimic.node].first_dof, master = forest.nodes()[mimic.master].first_dof;
+    if (forest.nodes()[mimic.node].tree != tree || (!way->held()[dof] && !way->held()[master])) continue;
+    for (const int k : {dof, master}) {
+      way->held()[k] = true;
+      way->least[k] = -INFINITY;
+      way->most[k] = INFINITY;
     }
   }
 }
@@ -220,7 +212,8 @@ void setFreeMomentum(const TreeAhead& ahead, ForestMotion* motion, SolverSpace* 
   multiply({forest, tree, motion->mass}, motion->velocity, &space->mass_velocity, &space->paths);
   const FreeStart start{forest, tree, input.dt, *motion, motion->velocity};
   motion->pace[tree] = paceOf(start, input, space->mass_velocity);
-  if (isFast(*motion, tree) && touched && !isDriven(forest, tree, input)) addFreeAcceleration(forest, tree, motion, space);
+  if (isFast(*motion, tree) && touched && !isDriven(forest, tree, input) && !hasMimics(forest, tree))
+    addFreeAcceleration(forest, tree, motion, space);
   if (motion->pace[tree] != Pace::SLOW) motion->products.segment(first, count).setZero();
   space->free_momentum.segment(first, count) = space->mass_velocity.segment(first, count);
   if (t.free) space->free_momentum.segment<6>(first) = motion->momentum[tree];
@@ -233,8 +226,7 @@ void setFreeMomentum(const TreeAhead& ahead, ForestMotion* motion, SolverSpace* 
 
 void followAlone(const TreeAhead& ahead, ForestMotion* motion, SolverSpace* space) {
   const auto& [forest, scene, input, tree, touched] = ahead;
-  const FreeStart start{forest, tree, input.dt, *motion, motion->velocity};
-  const bool follows = motion->pace[tree] == Pace::SLOW && !isDriven(forest, tree, input) && !isTied(start, space->mass_velocity);
+  const bool follows = motion->pace[tree] == Pace::SLOW && !isDriven(forest, tree, input) && !isTied(forest, tree);
   if (follows) setPace(Pace::FAST, ahead, motion, space);
 }
 
@@ -274,8 +266,9 @@ bool followFast(const SolvedIsland& island, const ForestMotion& motion, const So
   for (const int tree : trees) {
     followed &= motion.pace[tree] != Pace::TOO_FAST;
     if (!isFast(motion, tree)) continue;
+    const FreeStart start{island.forest, tree, island.dt, motion, space.velocity};
     holdMimics(island.forest, tree, way);
-    followed &= way->follow({island.forest, tree, island.dt, motion, space.velocity}, space.mass_velocity).followed;
+    followed &= way->follow(start, space.mass_velocity).followed;
   }
   return followed;
 }

@@ -1,10 +1,10 @@
 // Motion of an island's trees before and after its problem is solved.
 #pragma once
 
+#include "free_way/free_motion.h"
 #include "problem/solved_island.h"
 #include "problem/solver_space.h"
 #include "scene/stepper.h"
-#include "trees/free_motion.h"
 
 namespace blem_sim::dynamics {
 

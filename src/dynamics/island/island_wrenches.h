@@ -1,9 +1,9 @@
 // Wrenches of an island's joints over an accepted step.
 #pragma once
 
+#include "free_way/free_motion.h"
 #include "problem/solved_island.h"
 #include "problem/solver_space.h"
-#include "trees/free_motion.h"
 
 namespace blem_sim::dynamics {
 

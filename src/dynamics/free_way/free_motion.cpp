@@ -1,11 +1,11 @@
-#include "trees/free_motion.h"
+#include "free_way/free_motion.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
+#include "free_way/rigid_turn.h"
 #include "lanes/lanes.h"
-#include "trees/rigid_turn.h"
 
 namespace blem_sim::dynamics {
 namespace {
@@ -15,13 +15,6 @@ constexpr double TOO_INEXACT = 1e-3;   // likewise: no longer the same motion
 constexpr double SUB_STEP_TURN = 0.5;  // [rad] of the fastest body in the first try's sub-steps
 constexpr int MAX_SUB_STEPS = 64;
 constexpr double FASTER = 4;  // by no more than this is kinetic energy between bodies put right
-
-Matrix6 matrixOf(const SpatialInertia& inertia) {
-  Matrix6 m;
-  const Matrix3 moment = crossMatrix(inertia.first_moment);
-  m << inertia.rotational, moment, -moment, inertia.mass * Matrix3::Identity();
-  return m;
-}
 
 /** Inertia about the own centre of mass. */
 Matrix3 centralInertia(const SpatialInertia& inertia) {
@@ -53,14 +46,12 @@ void normalise(Eigen::Vector4d* turn) { *turn /= turn->norm(); }
 }  // namespace
 
 void FreeMotion::resize(const Forest& forest) {
-  const std::size_t nodes = forest.nodes().size(), dofs = forest.dofCount(), trees = forest.trees().size();
+  const std::size_t dofs = forest.dofCount(), trees = forest.trees().size();
   at_.resize(forest);
   at_.mass = {};
-  articulated_.resize(nodes);
-  for (auto* v : {&bias_, &pull_, &acceleration_}) v->resize(nodes);
-  for (auto* v : {&start_position_, &lack_, &inverse_}) v->assign(dofs, 0);
-  for (auto* v : {&start_velocity_, &rate_, &sum_position_, &sum_velocity_, &effort_, &sum_effort_, &owed_}) v->setZero(dofs);
-  held.assign(dofs, 0);
+  bodies_.resize(forest);
+  start_position_.assign(dofs, 0);
+  for (auto* v : {&start_velocity_, &sum_position_, &sum_velocity_, &sum_effort_, &owed_}) v->setZero(dofs);
   for (auto* v : {&least, &most}) v->assign(dofs, 0);
   drift_.assign(trees, Vector3::Zero());
   spin_.assign(trees, Vector3::Zero());
@@ -75,70 +66,6 @@ void FreeMotion::place(const Forest& forest, int tree, const RootPose& root) {
   placeBodies(forest, tree, &at_);
   computeBodies(forest, tree, &at_);
   computeTwists(forest, tree, at_, at_.velocity, &at_.twist);
-}
-
-// Articulated inertia and bias of all that a node carries [Featherstone 2008, 7.3], all about the tree's reference; added to its parent's.
-void FreeMotion::articulate(const Forest& forest, int node) {
-  const ForestNode& n = forest.nodes()[node];
-  if (n.joint < 0) return;
-  Matrix6& inertia = articulated_[node];
-  Vector6& bias = bias_[node];
-  const int k = n.first_dof;
-  const bool turns = n.dofs == 1 && !held[k];
-  if (turns) {
-    const Vector6& s = at_.subspace[k];
-    pull_[node].noalias() = inertia * s;
-    inverse_[k] = 1 / (s.dot(pull_[node]) + n.armature);
-    lack_[k] = -s.dot(bias);
-  }
-  if (n.parent < 0) return;
-  Vector6& up = bias_[n.parent];
-  up += bias;
-  if (!turns) {
-    up.noalias() += inertia * at_.drift[node];
-    articulated_[n.parent] += inertia;
-    return;
-  }
-  const Vector6& pull = pull_[node];
-  up.noalias() += inertia * at_.drift[node];
-  up += pull * (inverse_[k] * (lack_[k] - pull.dot(at_.drift[node])));
-  articulated_[n.parent] += inertia;
-  const Vector6 scaled = inverse_[k] * pull;
-  articulated_[n.parent].noalias() -= pull * scaled.transpose();
-}
-
-// Accelerations of all dofs, and the efforts that held joints need.
-BLEM_SIM_LANES void FreeMotion::accelerate(const Forest& forest, int tree) {
-  const ForestTree& t = forest.trees()[tree];
-  for (int i = t.first_node; i < t.node_end; ++i) {
-    const ForestNode& n = forest.nodes()[i];
-    at_.drift[i].setZero();
-    if (n.dofs == 1 && n.parent >= 0)
-      at_.drift[i] = crossMotion(at_.twist[n.parent], at_.subspace[n.first_dof] * at_.velocity[n.first_dof]);
-    bias_[i] = crossForce(at_.twist[i], at_.inertia[i].times(at_.twist[i]));
-    articulated_[i] = matrixOf(at_.inertia[i]);
-  }
-  for (int i = t.node_end - 1; i >= t.first_node; --i) articulate(forest, i);
-  for (int i = t.first_node; i < t.node_end; ++i) {
-    const ForestNode& n = forest.nodes()[i];
-    Vector6& a = acceleration_[i];
-    if (n.joint < 0) {
-      a = -articulated_[i].llt().solve(bias_[i]);
-      rate_.segment<6>(n.first_dof) = a;
-      continue;
-    }
-    a = at_.drift[i];
-    if (n.parent >= 0) a += acceleration_[n.parent];
-    if (n.dofs == 0) continue;
-    const int k = n.first_dof;
-    if (held[k]) {
-      rate_[k] = 0;
-      effort_[k] = at_.subspace[k].dot(articulated_[i] * a + bias_[i]);
-    } else {
-      rate_[k] = inverse_[k] * (lack_[k] - pull_[i].dot(a));
-      a += at_.subspace[k] * rate_[k];
-    }
-  }
 }
 
 // A sub-step of Runge and Kutta's fourth order, from the poses where the tree is placed; it is placed at the end.
@@ -164,16 +91,16 @@ void FreeMotion::subStep(const Forest& forest, int tree, double dt, RootPose* ro
     place(forest, tree, *root);
   };
   for (int stage = 0; stage < 4; ++stage) {
-    if (stage > 0) moveTo(SHARE[stage] * dt, at_.velocity, rate_, rate);
-    accelerate(forest, tree);
+    if (stage > 0) moveTo(SHARE[stage] * dt, at_.velocity, bodies_.acceleration(), rate);
+    bodies_.accelerate(forest, tree, &at_);
     if (t.free) {
       const Vector6& twist = at_.twist[t.first_node];
       rate = {turnRate(angular(twist), root->turn), velocityAt(twist, root->origin - at_.reference[tree])};
     }
     for (int k = t.first_dof; k < t.dof_end; ++k) {
       sum_position_[k] += WEIGHT[stage] * at_.velocity[k];
-      sum_velocity_[k] += WEIGHT[stage] * rate_[k];
-      if (held[k]) sum_effort_[k] += WEIGHT[stage] * effort_[k];
+      sum_velocity_[k] += WEIGHT[stage] * bodies_.acceleration()[k];
+      sum_effort_[k] += WEIGHT[stage] * bodies_.effort(k);
     }
     sum.turn += WEIGHT[stage] * rate.turn;
     sum.origin += WEIGHT[stage] * rate.origin;
@@ -189,6 +116,7 @@ void FreeMotion::setOut(const FreeStart& start) {
   std::copy(motion.position.begin() + t.first_node, motion.position.begin() + t.node_end, at_.position.begin() + t.first_node);
   at_.velocity.segment(t.first_dof, t.dofCount()) = velocity.segment(t.first_dof, t.dofCount());
   at_.reference[tree] = motion.reference[tree];
+  bodies_.start(forest, tree);
   owed_.segment(t.first_dof, t.dofCount()).setZero();
   RootPose root{Eigen::Vector4d::UnitW(), Vector3::Zero()};
   if (t.free) {
@@ -221,7 +149,7 @@ double FreeMotion::work(const Forest& forest, int tree) const {
   const ForestTree& t = forest.trees()[tree];
   double sum = 0;
   for (int k = t.first_dof; k < t.dof_end; ++k)
-    if (held[k]) sum += owed_[k] * at_.velocity[k];
+    if (held()[k]) sum += owed_[k] * at_.velocity[k];
   return sum;
 }
 
@@ -230,8 +158,8 @@ bool FreeMotion::letGo(const Forest& forest, int tree) {
   const ForestTree& t = forest.trees()[tree];
   bool some = false;
   for (int k = t.first_dof; k < t.dof_end; ++k) {
-    if (!held[k] || (owed_[k] >= least[k] && owed_[k] <= most[k])) continue;
-    held[k] = 0;
+    if (!held()[k] || (owed_[k] >= least[k] && owed_[k] <= most[k])) continue;
+    held()[k] = 0;
     some = true;
   }
   return some;
@@ -320,7 +248,7 @@ void FreeMotion::correct(const Forest& forest, int tree, double energy_wanted) {
     at_.velocity.segment<6>(t.first_dof) += turnAbout(spin, com) + spatial(Vector3::Zero(), linear(missing) / whole.mass);
     computeTwists(forest, tree, at_, at_.velocity, &at_.twist);
   }
-  if (std::any_of(held.begin() + t.first_dof, held.begin() + t.dof_end, [](char h) { return h != 0; })) return;
+  if (std::any_of(held().begin() + t.first_dof, held().begin() + t.dof_end, [](char h) { return h != 0; })) return;
   const double inner = energy(forest, tree) - locked_energy, ratio = (energy_wanted - locked_energy) / inner;
   if (!(inner > 0)) return;
   const double speed = std::sqrt(std::clamp(ratio, 0.0, FASTER));

@@ -1,7 +1,7 @@
 // Way of a tree through a step under its own momentum alone: fast trees follow it instead of a straight one.
 #pragma once
 
-#include "trees/forest_motion.h"
+#include "free_way/articulated_bodies.h"
 
 namespace blem_sim::dynamics {
 
@@ -32,7 +32,8 @@ class FreeMotion {
   void resize(const Forest& forest);
 
   /** Per dof: whether it keeps its velocity on the way. To be set before `follow`, which lets go of those that cannot. */
-  std::vector<char> held;
+  std::vector<char>& held() { return bodies_.held; }
+  const std::vector<char>& held() const { return bodies_.held; }
   /** Per dof [N m s or N s]: least and largest impulse that it can supply to do so. */
   std::vector<double> least, most;
 
@@ -56,8 +57,6 @@ class FreeMotion {
     Vector3 origin;
   };
   void place(const Forest& forest, int tree, const RootPose& root);
-  void accelerate(const Forest& forest, int tree);
-  void articulate(const Forest& forest, int node);
   void subStep(const Forest& forest, int tree, double dt, RootPose* root);
   void run(const FreeStart& start, int steps);
   double energy(const Forest& forest, int tree) const;
@@ -71,12 +70,10 @@ class FreeMotion {
   int firstSteps(const Forest& forest, int tree, double dt) const;
 
   ForestMotion at_;  ///< at the instant at hand; the reference is that of the step's start, a free tree's centre of mass stands still
-  // Per node.
-  std::vector<Matrix6> articulated_;
-  std::vector<Vector6> bias_, pull_, acceleration_;
+  ArticulatedBodies bodies_;
   // Per dof.
-  std::vector<double> start_position_, lack_, inverse_;
-  Eigen::VectorXd start_velocity_, rate_, sum_position_, sum_velocity_, effort_, sum_effort_, owed_;
+  std::vector<double> start_position_;
+  Eigen::VectorXd start_velocity_, sum_position_, sum_velocity_, sum_effort_, owed_;
   // Per tree.
   std::vector<Vector3> drift_;  ///< [m/s] of a free tree's centre of mass
   std::vector<Vector3> spin_;   ///< [kg m^2/s] of a free tree about it

@@ -1,4 +1,4 @@
-#include "trees/rigid_turn.h"
+#include "free_way/rigid_turn.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

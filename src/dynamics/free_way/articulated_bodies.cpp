@@ -1,0 +1,153 @@
+#include "free_way/articulated_bodies.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+
+#include "lanes/lanes.h"
+
+namespace blem_sim::dynamics {
+namespace {
+
+Matrix6 matrixOf(const SpatialInertia& inertia) {
+  Matrix6 m;
+  const Matrix3 moment = crossMatrix(inertia.first_moment);
+  m << inertia.rotational, moment, -moment, inertia.mass * Matrix3::Identity();
+  return m;
+}
+
+}  // namespace
+
+void ArticulatedBodies::resize(const Forest& forest) {
+  const std::size_t nodes = forest.nodes().size(), dofs = forest.dofCount(), ties = forest.mimics().size();
+  articulated_.resize(nodes);
+  for (auto* v : {&bias_, &pull_, &acceleration_}) v->resize(nodes);
+  for (auto* v : {&lack_, &inverse_}) v->assign(dofs, 0);
+  for (auto* v : {&rate_, &effort_}) v->setZero(dofs);
+  held.assign(dofs, 0);
+  ties_.reserve(ties);
+  strays_.setZero(ties, ties);
+  wanted_.setZero(ties);
+}
+
+void ArticulatedBodies::start(const Forest& forest, int tree) {
+  ties_.clear();
+  for (const MimicRelation& m : forest.mimics()) {
+    const ForestNode &node = forest.nodes()[m.node], &master = forest.nodes()[m.master];
+    const bool free = !held[node.first_dof] && !held[master.first_dof];
+    if (free && node.tree == tree && master.tree == tree) ties_.push_back({node.first_dof, master.first_dof, m.multiplier});
+  }
+  const ForestTree& t = forest.trees()[tree];
+  effort_.segment(t.first_dof, t.dofCount()).setZero();
+}
+
+// Articulated inertia of all that a node carries, about the tree's reference; added to its parent's.
+void ArticulatedBodies::articulate(const Forest& forest, int node, const ForestMotion& at) {
+  const ForestNode& n = forest.nodes()[node];
+  if (n.joint < 0) return;
+  const Matrix6& inertia = articulated_[node];
+  const bool turns = this->turns(n);
+  if (turns) {
+    const Vector6& s = at.subspace[n.first_dof];
+    pull_[node].noalias() = inertia * s;
+    inverse_[n.first_dof] = 1 / (s.dot(pull_[node]) + n.armature);
+  }
+  if (n.parent < 0) return;
+  articulated_[n.parent] += inertia;
+  if (!turns) return;
+  const Vector6 scaled = inverse_[n.first_dof] * pull_[node];
+  articulated_[n.parent].noalias() -= pull_[node] * scaled.transpose();
+}
+
+// Bias of all that a node carries, likewise.
+void ArticulatedBodies::collect(const Forest& forest, int node, const ForestMotion& at) {
+  const ForestNode& n = forest.nodes()[node];
+  if (n.joint < 0) return;
+  const Vector6& bias = bias_[node];
+  const int k = n.first_dof;
+  const bool turns = this->turns(n);
+  if (turns) lack_[k] = effort_[k] - at.subspace[k].dot(bias);
+  if (n.parent < 0) return;
+  Vector6& up = bias_[n.parent];
+  up += bias;
+  up.noalias() += articulated_[node] * at.drift[node];
+  if (turns) up += pull_[node] * (inverse_[k] * (lack_[k] - pull_[node].dot(at.drift[node])));
+}
+
+BLEM_SIM_LANES void ArticulatedBodies::articulateAll(const Forest& forest, int tree, const ForestMotion& at) {
+  const ForestTree& t = forest.trees()[tree];
+  for (int i = t.first_node; i < t.node_end; ++i) articulated_[i] = matrixOf(at.inertia[i]);
+  for (int i = t.node_end - 1; i >= t.first_node; --i) articulate(forest, i, at);
+}
+
+// Accelerations by the efforts at hand. @param moves with the velocities at the instant; else from rest
+BLEM_SIM_LANES void ArticulatedBodies::solve(const Forest& forest, int tree, bool moves, ForestMotion* at) {
+  const ForestTree& t = forest.trees()[tree];
+  for (int i = t.first_node; i < t.node_end; ++i) {
+    const ForestNode& n = forest.nodes()[i];
+    at->drift[i].setZero();
+    bias_[i].setZero();
+    if (!moves) continue;
+    bias_[i] = crossForce(at->twist[i], at->inertia[i].times(at->twist[i]));
+    if (n.dofs == 1 && n.parent >= 0)
+      at->drift[i] = crossMotion(at->twist[n.parent], at->subspace[n.first_dof] * at->velocity[n.first_dof]);
+  }
+  for (int i = t.node_end - 1; i >= t.first_node; --i) collect(forest, i, *at);
+  for (int i = t.first_node; i < t.node_end; ++i) {
+    const ForestNode& n = forest.nodes()[i];
+    Vector6& a = acceleration_[i];
+    if (n.joint < 0) {
+      a = -articulated_[i].llt().solve(bias_[i]);
+      rate_.segment<6>(n.first_dof) = a;
+      continue;
+    }
+    a = at->drift[i];
+    if (n.parent >= 0) a += acceleration_[n.parent];
+    if (n.dofs == 0) continue;
+    const int k = n.first_dof;
+    if (held[k]) {
+      rate_[k] = 0;
+      effort_[k] = at->subspace[k].dot(articulated_[i] * a + bias_[i]);
+    } else {
+      rate_[k] = inverse_[k] * (lack_[k] - pull_[i].dot(a));
+      a += at->subspace[k] * rate_[k];
+    }
+  }
+}
+
+void ArticulatedBodies::relax() {
+  for (const Tie& tie : ties_) effort_[tie.dof] = effort_[tie.master] = 0;
+}
+
+void ArticulatedBodies::pull(const Tie& tie, double effort) {
+  effort_[tie.dof] += effort;
+  effort_[tie.master] -= tie.multiplier * effort;
+}
+
+// Efforts by which ties keep their relations: accelerations answer linearly.
+void ArticulatedBodies::findEfforts(const Forest& forest, int tree, ForestMotion* at) {
+  const auto count = static_cast<Eigen::Index>(ties_.size());
+  const auto stray = [this](const Tie& tie) { return rate_[tie.dof] - tie.multiplier * rate_[tie.master]; };
+  for (Eigen::Index i = 0; i < count; ++i) wanted_[i] = -stray(ties_[i]);
+  for (Eigen::Index by = 0; by < count; ++by) {
+    pull(ties_[by], 1);
+    solve(forest, tree, false, at);
+    for (Eigen::Index i = 0; i < count; ++i) strays_(i, by) = stray(ties_[i]);
+    relax();
+  }
+  Eigen::Ref<Eigen::MatrixXd> strays = strays_.topLeftCorner(count, count);
+  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(strays);
+  auto wanted = wanted_.head(count);
+  factor.solveInPlace(wanted);
+  for (Eigen::Index i = 0; i < count; ++i) pull(ties_[i], wanted[i]);
+}
+
+void ArticulatedBodies::accelerate(const Forest& forest, int tree, ForestMotion* at) {
+  articulateAll(forest, tree, *at);
+  relax();
+  solve(forest, tree, true, at);
+  if (ties_.empty()) return;
+  findEfforts(forest, tree, at);
+  solve(forest, tree, true, at);
+}
+
+}  // namespace blem_sim::dynamics
