@@ -111,17 +111,25 @@ void setHold(const JointTerm& joint, double velocity, double inertia, FreeMotion
   way->least[joint.dof] = joint.upperImpulse(velocity) > 0 ? -INFINITY : -reach;
 }
 
-// Of joints that follow each other both keep their velocities on the way, or none.
+// Joints that follow the same one keep their velocities on the way, and so does that one, or none of them.
 void holdMimics(const Forest& forest, int tree, FreeMotion* way) {
-  for (const MimicRelation& mimic : forest.mimics()) {
-    const int dof = forest.nodes()[mimic.node].first_dof, master = forest.nodes()[mimic.master].first_dof;
-    if (forest.nodes()[mimic.node].tree != tree || (!way->held()[dof] && !way->held()[master])) continue;
-    for (const int k : {dof, master}) {
-      way->held()[k] = true;
-      way->least[k] = -INFINITY;
-      way->most[k] = INFINITY;
-    }
-  }
+  const auto hold = [way](int dof) {
+    way->held()[dof] = true;
+    way->least[dof] = -INFINITY;
+    way->most[dof] = INFINITY;
+  };
+  const auto forMimics = [&](const auto& visit) {
+    for (const MimicRelation& m : forest.mimics())
+      if (forest.nodes()[m.node].tree == tree) visit(forest.nodes()[m.node].first_dof, forest.nodes()[m.master].first_dof);
+  };
+  forMimics([&](int dof, int master) {
+    if (way->held()[dof]) hold(master);
+  });
+  forMimics([&](int dof, int master) {
+    if (!way->held()[master]) return;
+    hold(master);
+    hold(dof);
+  });
 }
 
 void turn(double dt, const Vector3& spin, Matrix3* R) {
