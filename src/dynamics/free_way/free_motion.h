@@ -23,9 +23,9 @@ struct FreeMotionReport {
 
 /**
  * Geodesic motion of trees: joints turn as they may, nothing acts from outside. Kinetic energy and a free tree's momenta are kept to
- * rounding. Held dofs keep their velocities and supply the impulses for it. A tree of several dofs is followed by sub-steps of
- * Runge and Kutta's fourth order, twice as many as long as energy is missed; a rigid body by turns about its principal axes
- * [McLachlan 1993], which are symplectic. Bounded, allocates nothing.
+ * rounding. Held dofs keep their velocities and supply the impulses for it; mimic joints follow their masters. A tree of several dofs is
+ * followed by sub-steps of Runge and Kutta's fourth order, twice as many as long as energy is missed; a rigid body by turns about its
+ * principal axes [McLachlan 1993], which are symplectic. Bounded, allocates nothing.
  */
 class FreeMotion {
  public:
@@ -46,7 +46,7 @@ class FreeMotion {
   /** Rate of change of a node's momentum on the way, at the middle of its centre of mass's, about the reference at the start.
    *  @param motion at the start @param set_out twist with which the node sets out */
   Vector6 momentumRate(const Forest& forest, int node, double dt, const ForestMotion& motion, const Vector6& set_out) const;
-  /** [N m s or N s] Impulse by which a held dof kept its velocity on the way. */
+  /** [N m s or N s] Impulse by which a held dof kept its velocity on the way, a mimic joint followed its master, or a master led. */
   double owed(int dof) const { return owed_[dof]; }
   /** Origin of a node's joint at the middle of the step, in the world. */
   Vector3 middleJoint(int node, const ForestMotion& motion) const;

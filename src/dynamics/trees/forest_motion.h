@@ -36,7 +36,7 @@ struct ForestMotion {
   Eigen::VectorXd next_velocity;  ///< end of the step
   Eigen::VectorXd products;       ///< velocity products: forces less M dv/dt
   Eigen::VectorXd applied;        ///< gravity and outside wrenches
-  Eigen::VectorXd owed;           ///< [N m s or N s] impulses that kept dofs' velocities on their free way; the next step supplies them
+  Eigen::VectorXd owed;  ///< [N m s or N s] impulses that held dofs, or led mimic joints, on their free way; the next step supplies them
   // Per packed entry.
   std::vector<double> mass;  ///< joint space inertia; zero where room is left
   // Per tree.
