@@ -41,9 +41,9 @@ struct SweepGroup {
 
 /** Velocity of eight bodies, and their inverse inertias. Lanes of the static world, or without a pair, stay at zero. */
 struct alignas(8 * SWEEP_LANES) BodyLanes {
-  int first[SWEEP_LANES];                  ///< of the six numbers of its velocity; -1: none
   double inverse_inertia[6][SWEEP_LANES];  ///< [1/(kg m^2)] lower triangle by rows, world axes
   SweepLanes inverse_mass;                 ///< [1/kg]
+  int first[SWEEP_LANES];                  ///< of the six numbers of its velocity; -1: none
 };
 
 /** Bodies of a group that are all free. */

@@ -164,7 +164,7 @@ struct FirstOfFan {
 
   void add(const ShearedFan& sheared, const Corner<double> (&corners)[3], std::int64_t number, double nearest, unsigned lanes) {
     for (int part = 0; part < FAN_PARTS; ++part) {
-      Doubles there;
+      Doubles there = {};
       Mask takes = sheared.through(part, corners, &there);
       if (bitsOf(takes) == 0) continue;
       Doubles& first = t.part[part];
