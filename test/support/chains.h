@@ -1,6 +1,7 @@
 // Chains of rods and spinning bodies that nothing drives: scenes whose energy and momenta theory knows.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -33,12 +34,12 @@ inline dynamics::BodySpec rod(const ChainLink& link) {
 }
 
 struct ChainOptions {
-  bool held = true;         ///< by the world, with a joint
-  bool alternates = false;  ///< axes in turn y and z of the links, else all y
-  double fold = 0;          ///< [rad] of every second link against the others
-  double bend = 0;          ///< [rad] of each link against the one before
-  int slider = -1;          ///< joint that is prismatic, along its link
-  int follower = -1;        ///< link whose joint follows the first one, and turns as much
+  bool held = true;            ///< by the world, with a joint
+  bool alternates = false;     ///< axes in turn y and z of the links, else all y
+  double fold = 0;             ///< [rad] of every second link against the others
+  double bend = 0;             ///< [rad] of each link against the one before
+  int slider = -1;             ///< joint that is prismatic, along its link
+  std::vector<int> followers;  ///< links whose joints follow the first one, and turn as much
   Vector3 gravity{0, 0, -9.81};
 };
 
@@ -62,7 +63,8 @@ class Chain {
       X_WL = X_WL * joint.X_PJ * Pose(Eigen::AngleAxisd(angle, joint.axis));
       dynamics::BodySpec spec = rod(links[i]);
       spec.X_WB = X_WL;
-      if (static_cast<int>(i) == options.follower) joint.mimic_joint = 0, joint.mimic_offset = angle - world.jointState(0).position;
+      if (std::count(options.followers.begin(), options.followers.end(), static_cast<int>(i)) > 0)
+        joint.mimic_joint = 0, joint.mimic_offset = angle - world.jointState(0).position;
       joint.child = world.addBody(spec);
       joint.parent = grounded ? dynamics::WORLD_BODY : joint.child - 1;
       if (!grounded || options.held) world.addJoint(joint, angle);

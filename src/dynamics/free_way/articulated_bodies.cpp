@@ -20,9 +20,9 @@ Matrix6 matrixOf(const SpatialInertia& inertia) {
 void ArticulatedBodies::resize(const Forest& forest) {
   const std::size_t nodes = forest.nodes().size(), dofs = forest.dofCount(), ties = forest.mimics().size();
   articulated_.resize(nodes);
-  for (auto* v : {&bias_, &pull_, &acceleration_}) v->resize(nodes);
+  for (auto* v : {&bias_, &pull_, &node_acceleration_}) v->resize(nodes);
   for (auto* v : {&lack_, &inverse_}) v->assign(dofs, 0);
-  for (auto* v : {&rate_, &effort_}) v->setZero(dofs);
+  for (auto* v : {&acceleration_, &effort_}) v->setZero(dofs);
   held.assign(dofs, 0);
   ties_.reserve(ties);
   strays_.setZero(ties, ties);
@@ -94,22 +94,22 @@ BLEM_SIM_LANES void ArticulatedBodies::solve(const Forest& forest, int tree, boo
   for (int i = t.node_end - 1; i >= t.first_node; --i) collect(forest, i, *at);
   for (int i = t.first_node; i < t.node_end; ++i) {
     const ForestNode& n = forest.nodes()[i];
-    Vector6& a = acceleration_[i];
+    Vector6& a = node_acceleration_[i];
     if (n.joint < 0) {
       a = -articulated_[i].llt().solve(bias_[i]);
-      rate_.segment<6>(n.first_dof) = a;
+      acceleration_.segment<6>(n.first_dof) = a;
       continue;
     }
     a = at->drift[i];
-    if (n.parent >= 0) a += acceleration_[n.parent];
+    if (n.parent >= 0) a += node_acceleration_[n.parent];
     if (n.dofs == 0) continue;
     const int k = n.first_dof;
     if (held[k]) {
-      rate_[k] = 0;
+      acceleration_[k] = 0;
       effort_[k] = at->subspace[k].dot(articulated_[i] * a + bias_[i]);
     } else {
-      rate_[k] = inverse_[k] * (lack_[k] - pull_[i].dot(a));
-      a += at->subspace[k] * rate_[k];
+      acceleration_[k] = inverse_[k] * (lack_[k] - pull_[i].dot(a));
+      a += at->subspace[k] * acceleration_[k];
     }
   }
 }
@@ -118,7 +118,7 @@ void ArticulatedBodies::relax() {
   for (const Tie& tie : ties_) effort_[tie.dof] = effort_[tie.master] = 0;
 }
 
-void ArticulatedBodies::pull(const Tie& tie, double effort) {
+void ArticulatedBodies::addEffort(const Tie& tie, double effort) {
   effort_[tie.dof] += effort;
   effort_[tie.master] -= tie.multiplier * effort;
 }
@@ -126,10 +126,10 @@ void ArticulatedBodies::pull(const Tie& tie, double effort) {
 // Efforts by which ties keep their relations: accelerations answer linearly.
 void ArticulatedBodies::findEfforts(const Forest& forest, int tree, ForestMotion* at) {
   const auto count = static_cast<Eigen::Index>(ties_.size());
-  const auto stray = [this](const Tie& tie) { return rate_[tie.dof] - tie.multiplier * rate_[tie.master]; };
+  const auto stray = [this](const Tie& tie) { return acceleration_[tie.dof] - tie.multiplier * acceleration_[tie.master]; };
   for (Eigen::Index i = 0; i < count; ++i) wanted_[i] = -stray(ties_[i]);
   for (Eigen::Index by = 0; by < count; ++by) {
-    pull(ties_[by], 1);
+    addEffort(ties_[by], 1);
     solve(forest, tree, false, at);
     for (Eigen::Index i = 0; i < count; ++i) strays_(i, by) = stray(ties_[i]);
     relax();
@@ -138,7 +138,7 @@ void ArticulatedBodies::findEfforts(const Forest& forest, int tree, ForestMotion
   const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(strays);
   auto wanted = wanted_.head(count);
   factor.solveInPlace(wanted);
-  for (Eigen::Index i = 0; i < count; ++i) pull(ties_[i], wanted[i]);
+  for (Eigen::Index i = 0; i < count; ++i) addEffort(ties_[i], wanted[i]);
 }
 
 void ArticulatedBodies::accelerate(const Forest& forest, int tree, ForestMotion* at) {

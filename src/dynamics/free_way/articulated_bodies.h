@@ -18,7 +18,7 @@ class ArticulatedBodies {
   void accelerate(const Forest& forest, int tree, ForestMotion* at);
 
   /** Per dof. */
-  const Eigen::VectorXd& acceleration() const { return rate_; }
+  const Eigen::VectorXd& acceleration() const { return acceleration_; }
   /** [N m or N] Effort by which a dof keeps its velocity, follows another dof, or leads one; else 0. */
   double effort(int dof) const { return effort_[dof]; }
 
@@ -35,14 +35,14 @@ class ArticulatedBodies {
   void collect(const Forest& forest, int node, const ForestMotion& at);
   void findEfforts(const Forest& forest, int tree, ForestMotion* at);
   void relax();
-  void pull(const Tie& tie, double effort);
+  void addEffort(const Tie& tie, double effort);
 
   // Per node.
   std::vector<Matrix6> articulated_;
-  std::vector<Vector6> bias_, pull_, acceleration_;
+  std::vector<Vector6> bias_, pull_, node_acceleration_;
   // Per dof.
   std::vector<double> lack_, inverse_;
-  Eigen::VectorXd rate_, effort_;
+  Eigen::VectorXd acceleration_, effort_;
   std::vector<Tie> ties_;   // of the tree
   Eigen::MatrixXd strays_;  // accelerations by which ties are missed, by a unit effort of each
   Eigen::VectorXd wanted_;  // effort by tie

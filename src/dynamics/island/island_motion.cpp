@@ -26,17 +26,23 @@ constexpr double TOO_FAST = 0.1;
 constexpr double AT_REST = 1e-30;  // [J] twice the energy of a tree whose velocities are rounding: so are its products
 constexpr double HOLDS = 0.5;      // of a dof's inertia: a joint that answers more stiffly keeps its velocity on the way
 
+/** [J] Twice the kinetic energy. @param mass_velocity M times the velocity */
+double twiceEnergy(const FreeStart& start, const Eigen::VectorXd& mass_velocity) {
+  const ForestTree& t = start.forest.trees()[start.tree];
+  double energy = 0;
+  for (int k = t.first_dof; k < t.dof_end; ++k) energy += start.velocity[k] * mass_velocity[k];
+  return energy;
+}
+
 // Change of the velocities of a tree by its velocity products in a step, over the velocities in the frame of its centre of mass; in the
 // norm of the energy, each dof's inertia taken alone; the more, the further the root turns. `mass_velocity`: M times the velocity.
 double turningOf(const FreeStart& start, const Eigen::VectorXd& mass_velocity) {
   const auto [forest, tree, dt, motion, velocity] = start;
   const ForestTree& t = forest.trees()[tree];
-  double change = 0, energy = 0;
-  for (int k = t.first_dof; k < t.dof_end; ++k) {
-    change += motion.products[k] * motion.products[k] / motion.mass[forest.diagonal(k)];
-    energy += velocity[k] * mass_velocity[k];
-  }
+  double change = 0;
+  for (int k = t.first_dof; k < t.dof_end; ++k) change += motion.products[k] * motion.products[k] / motion.mass[forest.diagonal(k)];
   if (!(change > 0)) return 0;
+  const double energy = twiceEnergy(start, mass_velocity);
   if (!t.free) return dt * std::sqrt(change / std::max(energy, AT_REST));
   const double inner = energy - mass_velocity.segment<3>(t.first_dof + 3).squaredNorm() / motion.composite[t.first_node].mass;
   const double turn = dt * velocity.segment<3>(t.first_dof).norm();
@@ -95,9 +101,7 @@ bool isSlow(const FreeStart& start, const StepInput& input, double turning, doub
 
 Pace paceOf(const FreeStart& start, const StepInput& input, const Eigen::VectorXd& mass_velocity) {
   const double turning = turningOf(start, mass_velocity);
-  const ForestTree& t = start.forest.trees()[start.tree];
-  const double energy = start.velocity.segment(t.first_dof, t.dofCount()).dot(mass_velocity.segment(t.first_dof, t.dofCount()));
-  if (isSlow(start, input, turning, energy)) return Pace::SLOW;
+  if (isSlow(start, input, turning, twiceEnergy(start, mass_velocity))) return Pace::SLOW;
   if (!isTied(start.forest, start.tree)) return Pace::FAST;
   return turning > TOO_FAST ? Pace::TOO_FAST : Pace::SLOW;
 }

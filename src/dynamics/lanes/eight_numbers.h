@@ -6,8 +6,6 @@
 
 #include "lanes/lane_vectors.h"
 
-#pragma GCC diagnostic ignored "-Wpsabi"  // of functions that are always inlined
-
 namespace blem_sim::dynamics {
 
 using Four = double __attribute__((vector_size(8 * LANES), aligned(8), may_alias));
@@ -84,36 +82,7 @@ BLEM_SIM_INLINE void put(const TwoFours& x, EightLanes* lanes) {
 
 /** A vector of each lane. */
 template <typename Numbers>
-struct EightTriples {
-  Numbers x, y, z;
-};
-template <typename Numbers>
-BLEM_SIM_INLINE EightTriples<Numbers> triples(const double (&v)[3][2 * LANES]) {
+BLEM_SIM_INLINE TripleOf<Numbers> triples(const double (&v)[3][2 * LANES]) {
   return {numbers<Numbers>(v[0]), numbers<Numbers>(v[1]), numbers<Numbers>(v[2])};
 }
-template <typename Numbers>
-BLEM_SIM_INLINE Numbers dot(const EightTriples<Numbers>& a, const EightTriples<Numbers>& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-template <typename Numbers>
-BLEM_SIM_INLINE EightTriples<Numbers> cross(const EightTriples<Numbers>& a, const EightTriples<Numbers>& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-template <typename Numbers>
-BLEM_SIM_INLINE EightTriples<Numbers> operator+(const EightTriples<Numbers>& a, const EightTriples<Numbers>& b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-template <typename Numbers>
-BLEM_SIM_INLINE EightTriples<Numbers> operator-(const EightTriples<Numbers>& a, const EightTriples<Numbers>& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-template <typename Numbers>
-BLEM_SIM_INLINE EightTriples<Numbers> operator-(const EightTriples<Numbers>& a) {
-  return {-a.x, -a.y, -a.z};
-}
-template <typename Numbers>
-BLEM_SIM_INLINE EightTriples<Numbers> operator*(const Numbers& s, const EightTriples<Numbers>& a) {
-  return {s * a.x, s * a.y, s * a.z};
-}
-
 }  // namespace blem_sim::dynamics

@@ -36,7 +36,7 @@ BLEM_SIM_INLINE Six respond(const double (&r)[21][SWEEP_LANES], int l, const Six
 /** Angular and linear velocities of eight bodies. */
 template <typename Numbers>
 struct EightBodies {
-  EightTriples<Numbers> angular, linear;
+  TripleOf<Numbers> angular, linear;
 };
 
 template <typename Numbers>
@@ -61,8 +61,7 @@ BLEM_SIM_INLINE void scatter(const EightBodies<Numbers>& v, double* const (&to)[
 
 /** Adds the changes of velocity by a torque about the centres of mass and a force. */
 template <typename Numbers>
-BLEM_SIM_INLINE void push(const BodyLanes& body, const EightTriples<Numbers>& torque, const EightTriples<Numbers>& force,
-                          EightBodies<Numbers>* v) {
+BLEM_SIM_INLINE void push(const BodyLanes& body, const TripleOf<Numbers>& torque, const TripleOf<Numbers>& force, EightBodies<Numbers>* v) {
   const auto part = [&body](int i) { return numbers<Numbers>(body.inverse_inertia[i]); };
   const Numbers xx = part(0), xy = part(1), yy = part(2), xz = part(3), yz = part(4), zz = part(5);
   v->angular.x += xx * torque.x + xy * torque.y + xz * torque.z;
@@ -98,11 +97,11 @@ BLEM_SIM_INLINE Numbers movedOn(double lead, int axis, SweepImpulse* impulse) {
 
 /** Visits a contact of each lane, whose points have the relative velocity u. @return changes of the impulses that were moved on */
 template <typename Numbers>
-BLEM_SIM_INLINE EightTriples<Numbers> visit(const SweepContact& c, double lead, const EightTriples<Numbers>& u, SweepImpulse* impulse,
-                                            EightChanges<Numbers>* changes) {
+BLEM_SIM_INLINE TripleOf<Numbers> visit(const SweepContact& c, double lead, const TripleOf<Numbers>& u, SweepImpulse* impulse,
+                                        EightChanges<Numbers>* changes) {
   const auto part = [](const SweepLanes& lanes) { return numbers<Numbers>(lanes); };
   const Numbers zero = {}, one = Numbers{} + 1.0;
-  const EightTriples<Numbers> n = triples<Numbers>(c.normal), s = triples<Numbers>(c.across), t = cross(n, s);
+  const TripleOf<Numbers> n = triples<Numbers>(c.normal), s = triples<Numbers>(c.across), t = cross(n, s);
   const Numbers g_n = movedOn<Numbers>(lead, 0, impulse), g_s = movedOn<Numbers>(lead, 1, impulse),
                 g_t = movedOn<Numbers>(lead, 2, impulse);
   const Numbers miss = dot(n, u) + part(c.compliance) * g_n - part(c.target);
@@ -136,11 +135,11 @@ BLEM_SIM_INLINE void sweepFreeAs(const SweepBodies& bodies, const SweptContacts&
   }
   EightChanges<Numbers> changes;
   EightBodies<Numbers> a = gatherBodies<Numbers>(of_a), b = gatherBodies<Numbers>(of_b);
-  const EightTriples<Numbers> shift = triples<Numbers>(bodies.shift);
+  const TripleOf<Numbers> shift = triples<Numbers>(bodies.shift);
   for (const SweepContact* c = contacts.begin; c != contacts.end; ++c, ++impulse) {
-    const EightTriples<Numbers> p_a = triples<Numbers>(c->point), p_b = p_a - shift;
-    const EightTriples<Numbers> u = (a.linear + cross(a.angular, p_a)) - (b.linear + cross(b.angular, p_b));
-    const EightTriples<Numbers> f = visit(*c, contacts.lead, u, impulse, &changes);
+    const TripleOf<Numbers> p_a = triples<Numbers>(c->point), p_b = p_a - shift;
+    const TripleOf<Numbers> u = (a.linear + cross(a.angular, p_a)) - (b.linear + cross(b.angular, p_b));
+    const TripleOf<Numbers> f = visit(*c, contacts.lead, u, impulse, &changes);
     push(bodies.a, cross(p_a, f), f, &a);
     push(bodies.b, cross(f, p_b), -f, &b);
   }
@@ -158,10 +157,6 @@ BLEM_SIM_AVX512 void sweepFreeWide(const SweepBodies& bodies, const SweptContact
   sweepFreeAs<Eight>(bodies, contacts, velocity, change);
 }
 #endif
-
-}  // namespace
-
-namespace {
 
 BLEM_SIM_INLINE Triple forceOf(const SweepContact& c, const SweepImpulse& impulse, int lane) {
   const Triple n = at(c.normal, lane), s = at(c.across, lane);
@@ -246,8 +241,8 @@ BLEM_SIM_LANES void sweep(const SweepGroup& group, const SweptContacts& contacts
     for (int lane = 0; lane < SWEEP_LANES; ++lane) twist[i][lane] = start[i][lane];
   for (const SweepContact* c = contacts.begin; c != contacts.end; ++c, ++impulse) {
     const auto part = [&twist](int i) { return numbers<TwoFours>(twist[i]); };
-    const EightTriples<TwoFours> p = triples<TwoFours>(c->point), w = {part(0), part(1), part(2)}, v = {part(3), part(4), part(5)};
-    const EightTriples<TwoFours> f = visit(*c, contacts.lead, v + cross(w, p), impulse, &changes), m = cross(p, f);
+    const TripleOf<TwoFours> p = triples<TwoFours>(c->point), w = {part(0), part(1), part(2)}, v = {part(3), part(4), part(5)};
+    const TripleOf<TwoFours> f = visit(*c, contacts.lead, v + cross(w, p), impulse, &changes), m = cross(p, f);
     for (int lane = 0; lane < SWEEP_LANES; ++lane) {
       const Six given = {{m.x[lane], m.y[lane], m.z[lane]}, {f.x[lane], f.y[lane], f.z[lane]}};
       add(given, lane, &given_so_far);

@@ -228,7 +228,7 @@ TEST(FreeMotion, SaysWhatIsTooFast) {
 // Efforts by which one joint follows another do no work.
 TEST(FreeMotion, OfJointsThatFollowEachOtherKeepsEnergyAndMomenta) {
   ChainOptions options;
-  options.alternates = true, options.bend = 0.4, options.follower = 4;
+  options.alternates = true, options.bend = 0.4, options.followers = {4};
   options.gravity = Vector3::Zero();
   for (const bool held : {false, true}) {
     options.held = held;
@@ -248,6 +248,27 @@ TEST(FreeMotion, OfJointsThatFollowEachOtherKeepsEnergyAndMomenta) {
       EXPECT_NEAR(last.position - first.position, chain.world.jointSpec(follower).mimic_offset, 1e-12);
       EXPECT_EQ(chain.too_fast, 0);
     }
+  }
+}
+
+// The motor of one joint holds all that follow the same one with it, whichever the forest names first.
+TEST(FreeMotion, OfJointsThatFollowAHeldOneKeepsTheirRelation) {
+  ChainOptions options;
+  options.alternates = true, options.bend = 0.4, options.followers = {2, 4};
+  options.gravity = Vector3::Zero();
+  for (const int driven : {2, 4}) {
+    Chain chain(TAPER, options);
+    chain.drives[driven].damping = 100;
+    BodyState state = chain.world.bodyState(5);
+    state.w_WB = {0, 1000, 300};
+    chain.world.setBodyState(5, state);
+    chain.step(DT);  // makes the velocities follow each other
+    for (int i = 0; i < 100; ++i) {
+      chain.step(DT);
+      for (const int follower : options.followers)
+        EXPECT_NEAR(chain.world.jointState(follower).velocity, chain.world.jointState(0).velocity, 1e-9) << i;
+    }
+    EXPECT_EQ(chain.too_fast, 0);
   }
 }
 
