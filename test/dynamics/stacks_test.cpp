@@ -152,5 +152,55 @@ TEST(Stacks, TumblingCubesComeToRestWithoutGainingEnergy) {
   for (int b = 0; b < world.bodyCount(); ++b) EXPECT_LT(world.bodyState(b).v_WCom.norm(), 1e-9);
 }
 
+/** A plank on the plane that carries forty cubes, each let fall from a height of its own: one island, as large as heaps that may stop. */
+struct LadenPlank {
+  LadenPlank(const Vector3& gravity, double friction, double drop) : world(gravity, {}) {
+    surface.friction = friction;
+    world.addBody(boxBody("plank", 10, PLANK, {0, 0, 0.05}));
+    for (int i = 0; i < CUBES; ++i)
+      world.addBody(boxBody("cube", 1, CUBE, {0.2 * (i % 10 - 4.5), 0.2 * (i / 10 - 1.5), 0.15 + drop * (i % 7) / 6}));
+  }
+
+  const SolveResult& step() {
+    contacts.clear();
+    boxOnPlane(world, 0, PLANK, Vector3::UnitZ(), 0, surface, &contacts);
+    for (int i = 1; i <= CUBES; ++i) boxOnBox(world, i, CUBE, 0, PLANK, {}, &contacts);
+    return world.step(1e-3, contacts, {});
+  }
+  double speed() const {
+    double worst = 0;
+    for (int i = 0; i < world.bodyCount(); ++i) worst = std::max({worst, world.bodyState(i).v_WCom.norm(), world.bodyState(i).w_WB.norm()});
+    return worst;
+  }
+
+  static constexpr int CUBES = 40;
+  const Vector3 PLANK{2, 0.8, 0.1};
+  World world;
+  Surface surface;
+  std::vector<ContactConstraint> contacts;
+};
+
+// It stops: no speed is left, not even one of rounding, and its last forces bear it.
+TEST(Stacks, ALadenPlankComesToRestWhole) {
+  LadenPlank plank(GRAVITY, 0.5, 0.01);
+  for (int i = 0; i < 1000; ++i) plank.step();
+  for (int i = 0; i < 100; ++i) {
+    const SolveResult& result = plank.step();
+    ASSERT_EQ(plank.speed(), 0) << i;
+    double ground = 0;
+    for (std::size_t c = 0; c < plank.contacts.size(); ++c)
+      if (plank.contacts[c].body_b == WORLD_BODY) ground += result.contact_forces[c].z();
+    ASSERT_NEAR(ground, 50 * G, 1e-4);
+  }
+}
+
+// What hardly moves, but is driven, goes on: on a slope of 1e-5 without friction.
+TEST(Stacks, ALadenPlankStartsOnTheFaintestSlope) {
+  const double slope = 1e-5;
+  LadenPlank plank(Vector3(slope * G, 0, -G), 0, 0);
+  for (int i = 0; i < 1000; ++i) plank.step();
+  for (int i = 0; i < plank.world.bodyCount(); ++i) EXPECT_NEAR(plank.world.bodyState(i).v_WCom.x(), slope * G, 0.01 * slope * G) << i;
+}
+
 }  // namespace
 }  // namespace blem_sim::dynamics

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "newton/island_faults.h"
+#include "problem/island_velocity.h"
 
 namespace blem_sim::dynamics {
 namespace {
@@ -12,6 +13,7 @@ constexpr int LARGE_HEAP = 32;  // fewest whose contacts are softened while they
 constexpr double UNEVEN = 10;   // heaviest over lightest body of a small heap that sweeps do not solve: Newton's method does
 constexpr double TURNS = 0.03;  // [rad/s] fastest turn of a heap that stands, slides or lands flat: Newton's method solves it
 constexpr double STILL = 1e-4;  // [rad/s] fastest turn of a crowd whose contacts keep their kinds
+constexpr double STOPS = 1e-6;  // [rad/s or m/s] fastest dof of a large heap that may stop
 constexpr int FEW_ITERATIONS = 30, CROWD_ITERATIONS = 8;  // most of Newton's method on a mixed heap that tumbles, on a mixed crowd
 // Proximal steps of a crowd that stands, and of a large heap in which something turns: it misses the tolerance after twelve as well.
 constexpr int FEW_STEPS = 3;
@@ -76,6 +78,28 @@ double IslandHeap::fastestTurn() const {
   for (const int tree : island_->model.trees)
     fastest = std::max(fastest, island_->space->first_velocity.segment<3>(island_->tree(tree).first_dof).squaredNorm());
   return std::sqrt(fastest);
+}
+
+bool IslandHeap::hardlyMoves() const {
+  double fastest = 0;
+  forDofs(*island_, [&](int k) { fastest = std::max(fastest, std::abs(island_->space->first_velocity[k])); });
+  return fastest <= STOPS;
+}
+
+// A heap that settles creeps on for long by what each step misses of Coulomb's law. It need not: it is at rest before.
+bool IslandHeap::stops(const NewtonSettings& settings, NewtonReport* report) {
+  if (!isLarge() || !hardlyMoves()) return false;
+  SolverSpace& s = *island_->space;
+  for (ContactTerm& c : island_->terms()->contacts) c.impulse = c.previous;
+  forDofs(*island_, [&s](int k) { s.velocity[k] = 0; });
+  report->iterations = 1;
+  report->gradient = newton_->adopt();
+  newton_->finish(report);
+  if (isExact(standing(settings), *report)) return true;
+  returnToFirst(*island_);
+  multiplyMass(*island_, s.velocity, &s.mass_velocity);
+  newton_->begin();
+  return false;
 }
 
 // Contacts of a heap that turns slowly hardly ever change their kinds: a tower, a wall, a heap at rest, a stack that slides. Newton's

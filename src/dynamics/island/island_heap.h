@@ -9,12 +9,16 @@ namespace blem_sim::dynamics {
 class IslandHeap {
  public:
   void start(const IslandAtHand& island, NewtonLoop* newton, ProximalSteps* steps, SweptIsland* swept);
+  /** Whether a large heap that hardly moves solves its step if it stops, with the impulses of the last one: then it does, and that is the
+   *  answer. Else the velocities at hand are the first ones again. */
+  bool stops(const NewtonSettings& settings, NewtonReport* report);
   NewtonReport solve(const NewtonSettings& settings);
 
  private:
   bool isLarge() const;
   bool sweepsWell() const;
   double fastestTurn() const;
+  bool hardlyMoves() const;
   bool solveStanding(const NewtonSettings& settings, bool still, NewtonReport* report);
   bool solveFew(const NewtonSettings& settings, NewtonReport* report);
   void sweepAndPolish(const NewtonSettings& settings, NewtonReport* report);

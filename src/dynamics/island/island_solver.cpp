@@ -1,5 +1,7 @@
 #include "island/island_solver.h"
 
+#include <cmath>
+
 #include "island/island_bounds.h"
 #include "newton/island_faults.h"
 #include "problem/island_velocity.h"
@@ -15,24 +17,51 @@ NewtonReport IslandSolver::solve(const Forest& forest, const ForestMotion& motio
                                  SolverSpace* space) {
   found_.mimic_impulses.clear();
   island_.emplace(IslandAtHand{forest, motion, model, &found_, space, team_.get()});
+  if (fliesAlone()) return fly();
   newton_.start(*island_);
   steps_.start(*island_, &newton_);
   swept_.start(*island_, &newton_);
   heap_.start(*island_, &newton_, &steps_, &swept_);
   const double tolerance = island_->model.isHeap() ? HEAP_TOLERANCE * settings.gradient_tolerance : settings.gradient_tolerance;
+  keepFirst(*island_);
   NewtonReport report;
+  if (island_->model.isHeap() && heap_.stops(settings, &report)) return report;
   report.gradient = newton_.firstGradient(tolerance);
   if (report.gradient <= tolerance) {
     steps_.finish(settings, &report);
     return report;
   }
-  keepFirst(*island_);
   report = isSwept() ? heap_.solve(settings) : steps_.solvePredicted(settings);
   recoverFromFaults(settings, &report);
   return report;
 }
 
+bool IslandSolver::fliesAlone() const {
+  const IslandTerms& terms = found_.terms;
+  return terms.contacts.empty() && terms.joints.empty() && terms.loops.empty() && island_->model.mimics.empty();
+}
+
+// Nothing acts on the island but what its free momentum has: that gives its velocities.
+NewtonReport IslandSolver::fly() {
+  const IslandAtHand& island = *island_;
+  SolverSpace& s = *island.space;
+  setKinetic(island);
+  forDofs(island, [&s](int k) { s.direction[k] = -s.kinetic[k]; });
+  for (const int tree : island.model.trees) {
+    factorTree({island.forest, tree, island.motion.mass}, &s.hessian);
+    solveTree(island.forest, tree, s.hessian, &s.direction, &s.paths);
+  }
+  multiplyMass(island, s.direction, &s.mass_direction);
+  forDofs(island, [&s, &island](int k) {
+    s.velocity[k] += s.direction[k];
+    s.mass_velocity[k] = s.free_momentum[k] + (s.kinetic[k] + s.mass_direction[k]);
+    s.scale[k] = 1 / std::sqrt(island.motion.mass[island.forest.diagonal(k)]);
+  });
+  return {};
+}
+
 NewtonReport IslandSolver::solveAgain(const NewtonSettings& settings) {
+  if (fliesAlone()) return fly();
   setKinetic(*island_);
   keepFirst(*island_);
   NewtonReport report = isSwept() ? heap_.solve(settings) : steps_.solve(settings);

@@ -39,6 +39,8 @@ class IslandSolver {
   IslandTerms* terms() { return &found_.terms; }
 
  private:
+  bool fliesAlone() const;
+  NewtonReport fly();
   bool isSwept() const { return island_->model.isHeap() || island_->model.isMixedHeap(); }
   void recoverFromFaults(const NewtonSettings& settings, NewtonReport* report);
 
