@@ -39,7 +39,7 @@ class ArticulatedStepper : public Stepper {
       : settings_(settings), arena_(std::min(settings.threads, tbb::this_task_arena::max_concurrency())) {}
 
   void step(Scene* scene, const StepInput& input, SolveResult* result) override;
-  void save(const Scene& scene, geometry::StateWriter* writer) const override;
+  void save(const Scene& scene, geometry::StateWriter* writer) override;
   void restore(const Scene& scene, geometry::StateReader* reader) override;
   bool agreesWith(const Scene& scene) const override;
   void forgetContacts(const std::vector<std::uint64_t>& ids, const ContactRenames& go_on) override { memory_.forgetContacts(ids, go_on); }
@@ -362,10 +362,10 @@ void ArticulatedStepper::step(Scene* scene, const StepInput& input, SolveResult*
 
 // The same words for a world that was just made and for one that was brought back to its beginning: trees changed from outside are left
 // out.
-void ArticulatedStepper::save(const Scene& scene, geometry::StateWriter* writer) const {
+void ArticulatedStepper::save(const Scene& scene, geometry::StateWriter* writer) {
+  rebuild(scene);
   memory_.save(scene, writer);
-  const int trees = structure_ == scene.structure() ? static_cast<int>(forest_.trees().size()) : 0;
-  for (int tree = 0; tree < trees; ++tree) {
+  for (int tree = 0; tree < static_cast<int>(forest_.trees().size()); ++tree) {
     if (!isOurs(scene, tree)) continue;
     writer->word(tree);
     saveTree(forest_, tree, motion_, writer);

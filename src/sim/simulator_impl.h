@@ -62,7 +62,8 @@ struct Simulator::Impl {
   const std::vector<BodyLoad>& loadsNow();
   /** Solves the substep. None if the state is not finite any more; the last finite one is then restored. */
   std::optional<MadeSolve> solve(const SolverContacts& contacts, const std::vector<dynamics::JointDrive>& drives);
-  WatchedPairs& broadPhase();
+  /** Pairs that may meet within this part (0 to 1) of a step. @param faster states that bodies may get to as well; null: none are known */
+  WatchedPairs& broadPhase(const std::vector<dynamics::BodyState>* faster, double part);
   /** @param pairs swapped for those of a state before */
   const FoundContacts& narrowPhase(WatchedPairs* pairs);
   bool hasEarlyPushes(const MadeSolve& made, const FoundContacts& found);

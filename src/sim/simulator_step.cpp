@@ -34,8 +34,10 @@ const StepReport& Simulator::Impl::step() {
     const SolverContacts& constraints = reduction();
     const std::optional<MadeSolve> made = solve(constraints, drives);
     if (!made) return stop();
-    // Contacts at the new state: the guard judges by them, and the next solve starts from them.
-    WatchedPairs& pairs = broadPhase();
+    // Contacts at the new state: the guard judges by them, and the next solve, of the rest of the step or of the next one, starts from
+    // them.
+    const double left = substeps_.fractionAfter();
+    WatchedPairs& pairs = left > 0 ? broadPhase(foreseen(), left) : broadPhase(nullptr, 1);
     const FoundContacts& found = narrowPhase(&pairs);
     if (hasEarlyPushes(*made, found))
       repeatSubstep(drives);
@@ -74,7 +76,7 @@ void Simulator::Impl::startStep() {
 }
 
 void Simulator::Impl::findFirstContacts() {
-  narrowPhase(&broadPhase());
+  narrowPhase(&broadPhase(nullptr, 1));
   startFromFound();
 }
 
@@ -137,11 +139,9 @@ std::optional<MadeSolve> Simulator::Impl::solve(const SolverContacts& contacts, 
   return std::nullopt;
 }
 
-WatchedPairs& Simulator::Impl::broadPhase() {
+WatchedPairs& Simulator::Impl::broadPhase(const std::vector<dynamics::BodyState>* faster, double part) {
   const StageTimer timer(&report_.profile, Stage::BROAD_PHASE);
-  // The next solve goes on with the rest of the step, or with the next one.
-  const double left = substeps_.fractionAfter();
-  pair_watch_.find({world_, bodies_, left > 0 ? foreseen() : nullptr, (left > 0 ? left : 1) * config_.time_step}, &pairs_);
+  pair_watch_.find({world_, bodies_, faster, part * config_.time_step}, &pairs_);
   return pairs_;
 }
 

@@ -54,6 +54,23 @@ INSTANTIATE_TEST_SUITE_P(Laws, Bounces,
                          ::testing::Values(Law{0.2, 0}, Law{0.2, 0.3}, Law{0.5, 1}, Law{0.8, 0}, Law{0.8, 0.3}, Law{1, 0.3}, Law{1, 1},
                                            Law{0, 0.3, 0.5}, Law{0.2, 0.3, 0.75}, Law{0.8, 1, 0.2}, Law{1, 0.5, 0.5}, Law{1, 1, 0}));
 
+// A finger on a slide that meets a wall head on cannot be rubbed: its friction was 0 / 0, and the simulation stopped.
+TEST(Restitution, ASliderBouncesOffAWall) {
+  BouncingBodies scene(Vector3::Zero(), surfaceOf(0.8, 0.5));
+  JointSpec slide;
+  slide.name = "slide";
+  slide.kind = JointKind::PRISMATIC;
+  slide.child = scene.addSphere(1, 0.05, {0, 0, 0});
+  slide.axis = Vector3::UnitX();
+  scene.world.addJoint(slide, 0);
+  scene.walls.push_back({-Vector3::UnitX(), -0.1});
+  BodyState state = scene.world.bodyState(slide.child);
+  state.v_WCom = Vector3::UnitX();
+  scene.world.setBodyState(slide.child, state);
+  for (int i = 0; i < 100; ++i) ASSERT_TRUE(scene.step(DT).finite) << i;
+  EXPECT_NEAR(scene.world.bodyState(slide.child).v_WCom.x(), -0.8, 1e-9);
+}
+
 class Cradles : public ::testing::TestWithParam<double> {};
 
 // 0.80 of the energy was left, and several balls went off.

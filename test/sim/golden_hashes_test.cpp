@@ -16,7 +16,7 @@
 #include "sim/simulation_scene.h"
 #include "sim/state/saved_scene.h"
 #include "soak/heap.h"
-#include "support/random_scene.h"
+#include "support/random/random_scene.h"
 #include "support/shared_packages.h"
 #include "support/throw_scene.h"
 

@@ -1,9 +1,9 @@
-// Three hundred random scenes; scripts/validate_random_scenes runs thousands, or one of them alone.
+// Three hundred random scenes, and some in which things happen; scripts/validate_random_scenes runs thousands, or one of them alone.
 #include <gtest/gtest.h>
 
 #include <utility>
 
-#include "support/random_scene_run.h"
+#include "support/random/eventful_scene.h"
 #include "support/sanitizers.h"
 
 namespace blem_sim::sim {
@@ -38,6 +38,27 @@ INSTANTIATE_TEST_SUITE_P(Seeds, RandomScenesFound,
                                            std::pair(103, 1.0), std::pair(163, 1.0), std::pair(180, 1.0), std::pair(236, 1.0),
                                            std::pair(265, 1.0), std::pair(3937, 0.25), std::pair(5694, 0.3), std::pair(8854, 0.35),
                                            std::pair(9600, 0.1), std::pair(41328, 0.14), std::pair(86531, 0.2)));
+
+void expectSoundWhateverHappens(std::uint64_t seed) {
+  SceneOutcome outcome;
+  EventfulScene(seed, &outcome).run(0.2);
+  EXPECT_FALSE(outcome.failed()) << outcome.failure << ": " << outcome.details << "\n"
+                                 << randomScene(seed).description << "\nscripts/validate_random_scenes --eventful --seed " << seed;
+}
+
+class EventfulScenes : public ::testing::TestWithParam<int> {};
+
+TEST_P(EventfulScenes, ComeBackAndStayFinite) {
+  for (int i = 0; i < samples(10); ++i) expectSoundWhateverHappens(1 + static_cast<std::uint64_t>(10 * GetParam() + i));
+}
+INSTANTIATE_TEST_SUITE_P(Groups, EventfulScenes, ::testing::Range(0, 8));
+
+/** Seeds that failed once. */
+class EventfulScenesFound : public ::testing::TestWithParam<int> {};
+
+TEST_P(EventfulScenesFound, AreSound) { expectSoundWhateverHappens(static_cast<std::uint64_t>(GetParam())); }
+// A model that came, or went, just before the state was saved; a slider that hits a stone; links in tension.
+INSTANTIATE_TEST_SUITE_P(Seeds, EventfulScenesFound, ::testing::Values(672, 676, 715, 1372, 3527));
 
 }  // namespace
 }  // namespace blem_sim::sim

@@ -10,7 +10,7 @@
 
 #include "sim/simulation_scene.h"
 #include "support/bare_meshes.h"
-#include "support/scene_numbers.h"
+#include "support/random/scene_numbers.h"
 
 namespace blem_sim {
 

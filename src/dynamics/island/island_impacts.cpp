@@ -142,7 +142,7 @@ double IslandImpacts::stop(Meeting* m) {
 
 // A friction impulse of at most so much that lowers the kinetic energy: a projected gradient's.
 double IslandImpacts::rub(double most, Meeting* m) {
-  if (m->friction == 0) return 0;
+  if (m->friction == 0 || !(rows_.inverseMassAcross(m->row) > 0)) return 0;
   const Vector3 slip = rows_.velocity(m->row, space_->velocity);
   Vector3 impulse = m->impulse;
   impulse.tail<2>() -= slip.tail<2>() / rows_.inverseMassAcross(m->row);

@@ -160,14 +160,12 @@ void integrate(const Forest& forest, int tree, double dt, ForestMotion* motion) 
 }
 
 // Moves a flying tree so that its centre of mass is where its momentum leads: joints that turn while the root moves would lead it astray.
+// All of it is placed anew from its root, as a restored one is.
 void followMomentum(const Forest& forest, int tree, const Vector3& target, ForestMotion* motion) {
   const ForestTree& t = forest.trees()[tree];
-  const Vector3 shift = target - (motion->reference[tree] + motion->tree_com[tree]);
-  motion->reference[tree] += shift;
-  for (int i = t.first_node; i < t.node_end; ++i) {
-    motion->origin[i] += shift;
-    motion->joint_origin[i] += shift;
-  }
+  motion->origin[t.first_node] += target - (motion->reference[tree] + motion->tree_com[tree]);
+  placeBodies(forest, tree, motion);
+  computeInertias(forest, tree, motion);
 }
 
 // The velocities of the solve, taken on to the end of the step without velocity products, may have more energy there. The island loses it:

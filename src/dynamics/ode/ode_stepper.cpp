@@ -75,7 +75,7 @@ class OdeStepper : public Stepper {
     jointWrenches(*scene, start_, input, *result, &result->joint_wrenches);
   }
 
-  void save(const Scene&, geometry::StateWriter* writer) const override {
+  void save(const Scene&, geometry::StateWriter* writer) override {
     memory_.save(writer);
     solver_->save(writer);
     mimics_.save(writer);

@@ -72,9 +72,10 @@ int ImpactRows::add(const Forest& forest, const ForestMotion& motion, const Body
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) response(i, j) += rows.col(i).dot(rows.col(3 + j));
   }
-  entry.normal = response(0, 0) > IMMOVABLE_POINT ? response(0, 0) : 0;
   const double mean = 0.5 * (response(1, 1) + response(2, 2));
-  entry.across = mean + std::hypot(0.5 * (response(1, 1) - response(2, 2)), response(1, 2));
+  const double across_most = mean + std::hypot(0.5 * (response(1, 1) - response(2, 2)), response(1, 2));
+  entry.normal = response(0, 0) > IMMOVABLE_POINT ? response(0, 0) : 0;
+  entry.across = across_most > IMMOVABLE_POINT ? across_most : 0;
   contacts_.push_back(entry);
   return static_cast<int>(contacts_.size()) - 1;
 }

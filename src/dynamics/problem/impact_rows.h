@@ -45,7 +45,7 @@ class ImpactRows {
 
   /** Inverse mass [1/kg] along the normal; 0 if nothing can move there. */
   double inverseMass(int contact) const { return contacts_[contact].normal; }
-  /** Largest inverse mass [1/kg] across the normal. */
+  /** Largest inverse mass [1/kg] across the normal; 0 if nothing can move there. */
   double inverseMassAcross(int contact) const { return contacts_[contact].across; }
 
  private:

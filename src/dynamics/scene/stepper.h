@@ -26,7 +26,8 @@ class Stepper {
   /** Advances the bodies by input.dt under gravity, pending wrenches, drives and contacts, and fills the result.
    *  A stepper that notices that a step broke down says finite = false and leaves the scene as it was. */
   virtual void step(Scene* scene, const StepInput& input, SolveResult* result) = 0;
-  virtual void save(const Scene& scene, geometry::StateWriter* writer) const = 0;
+  /** Saves its memory as the next step would find it: of bodies and joints that came or went since the last one, too. */
+  virtual void save(const Scene& scene, geometry::StateWriter* writer) = 0;
   /** The scene is already restored. */
   virtual void restore(const Scene& scene, geometry::StateReader* reader) = 0;
   /** Whether, after a restore, the stepper's memory of bodies agrees with their states. */

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "sim/contacts/near_miss_scene.h"
-#include "support/scene_numbers.h"
+#include "support/random/scene_numbers.h"
 
 namespace blem_sim::sim {
 namespace {

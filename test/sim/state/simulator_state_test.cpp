@@ -1,6 +1,7 @@
 // Save, restore, reset, hash; geometry that comes and goes.
 #include "blem_sim/geometry/input_error.h"
 #include "sim/simulation_scene.h"
+#include "support/random/random_robot.h"
 
 namespace blem_sim::sim {
 namespace {
@@ -58,6 +59,41 @@ TEST(SimulatorState, RestoredInMidContactItReplaysBitForBit) {
   other.restore(saved);
   stepFor(&other, 0.3);
   EXPECT_EQ(other.stateHash(), end);
+}
+
+// Its bodies were shifted after they had been placed, and lost their last bits when they were placed anew.
+TEST(SimulatorState, ARobotInFlightComesBackToTheSameBits) {
+  SceneNumbers numbers(1);
+  for (int robot = 0; robot < 8; ++robot) {
+    SimulationConfig config;
+    config.robots = {randomTree(&numbers, "thrown", {0, 0, 5}, 0.2).config};
+    config.robots[0].fixed_base = false;
+    Simulator simulator(config, model::UriResolver()), other(config, model::UriResolver());
+    for (int i = 0; i < 50; ++i) {
+      other.restore(simulator.save());
+      simulator.step();
+      other.step();
+      ASSERT_EQ(other.stateHash(), simulator.stateHash()) << robot << " " << i;
+    }
+  }
+}
+
+// Models that came or went since the last step were not saved as the next step finds them.
+TEST(SimulatorState, SavedWhereAModelCameOrWentItGoesOnByTheSameBits) {
+  Simulator simulator(busyScene(), model::UriResolver());
+  stepFor(&simulator, 0.05);
+  const auto expectSame = [&](const char* when) {
+    const SimulationState saved = simulator.save();
+    stepFor(&simulator, 0.01);
+    const std::uint64_t end = simulator.stateHash();
+    simulator.restore(saved);
+    stepFor(&simulator, 0.01);
+    EXPECT_EQ(simulator.stateHash(), end) << when;
+  };
+  simulator.spawn(robot("visitor", pendulumUrdf(), true));
+  expectSame("came");
+  simulator.removeModel("visitor");
+  expectSame("went");
 }
 
 TEST(SimulatorState, RefusesAStateOfOtherModels) {

@@ -11,7 +11,7 @@
 #include <cstring>
 #include <map>
 
-#include "support/random_scene_run.h"
+#include "support/random/eventful_scene.h"
 
 namespace blem_sim {
 namespace {
@@ -21,6 +21,7 @@ struct Options {
   int jobs = 1;
   double duration = 1, patience = 60;  // [s] simulated; of processor time per scene
   bool verbose = false;
+  bool eventful = false;  ///< models come and go, things are moved, states come back
 };
 
 /** A scene that runs in another process. */
@@ -50,7 +51,10 @@ void tellHowFar(int) {
   signal(SIGXCPU, tellHowFar);
   setrlimit(RLIMIT_CPU, &limit);
   try {
-    runRandomScene(seed, options.duration, &running);
+    if (options.eventful)
+      EventfulScene(seed, &running).run(options.duration);
+    else
+      runRandomScene(seed, options.duration, &running);
   } catch (const std::exception& error) {
     running.fail("refused", error.what());
   }
@@ -142,7 +146,9 @@ void tell(const SceneOutcome& outcome, const Options& options) {
               1e3 * outcome.worst_step);
   for (int bit = 0; bit < STATUS_BITS; ++bit)
     if (outcome.bits[bit] > 0) std::printf(" %s:%d", sim::STEP_STATUS[bit].name, outcome.bits[bit]);
-  if (outcome.failed()) std::printf(" | scripts/validate_random_scenes --seed %llu", static_cast<unsigned long long>(outcome.seed));
+  if (outcome.failed())
+    std::printf(" | scripts/validate_random_scenes%s --seed %llu", options.eventful ? " --eventful" : "",
+                static_cast<unsigned long long>(outcome.seed));
   std::printf("\n");
   std::fflush(stdout);
 }
@@ -189,6 +195,8 @@ int main(int count, char** words) {
       options.patience = std::atof(value());
     else if (word == "--verbose")
       options.verbose = true;
+    else if (word == "--eventful")
+      options.eventful = true;
     else {
       std::fprintf(stderr, "%s: unknown argument '%s'\n", words[0], words[i]);
       return 2;

@@ -12,7 +12,7 @@
 #include "sim/simulation_scene.h"
 #include "support/bare_meshes.h"
 #include "support/rain/element_grid.h"
-#include "support/scene_numbers.h"
+#include "support/random/scene_numbers.h"
 
 namespace blem_sim {
 

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "soak/figures.h"
-#include "support/random_scene.h"
+#include "support/random/random_scene.h"
 
 namespace blem_sim {
 
@@ -40,6 +40,7 @@ class SceneWatch {
   SceneWatch(const RandomScene& scene, const sim::Simulator& simulator, SceneOutcome* outcome)
       : scene_(scene), simulator_(simulator), outcome_(*outcome) {
     start_ = simulator.report().energy + lag(simulator.report());
+    gained_before_ = outcome->gained;
     for (const dynamics::BodyState& body : simulator.report().bodies) above_.push_back(body.X_WB.translation().z() > scene.floor);
   }
 
@@ -63,7 +64,7 @@ class SceneWatch {
     if (!std::isfinite(rise)) return;
     scale_ = std::max({scale_, simulator_.world().kineticEnergy(), std::abs(rise)});
     lag_ = std::max(lag_, lag(report));
-    const double unsaid = rise - outcome_.gained - lag_;
+    const double unsaid = rise - (outcome_.gained - gained_before_) - lag_;
     if (scene_.passive && unsaid > 1e-3 * scale_ + 1e-6)
       outcome_.fail("energy unsaid", fmt::format("{:.3g} J at {:.3f} s", unsaid, report.time));
   }
@@ -79,7 +80,7 @@ class SceneWatch {
   void lookAtFloor(const sim::StepReport& report) {
     if (told_ & (sim::CONTACT_UNRELIABLE | sim::STATE_NOT_FINITE)) return;
     for (const sim::ModelInfo& model : simulator_.models()) {
-      if (model.kind != sim::ModelKind::OBJECT) continue;
+      if (!model.alive || model.kind != sim::ModelKind::OBJECT) continue;
       const int body = model.bodies[0];
       const double height = report.bodies[body].X_WB.translation().z();
       if (above_[body] && height < scene_.floor)
@@ -93,7 +94,7 @@ class SceneWatch {
   SceneOutcome& outcome_;
   std::vector<bool> above_;
   std::uint32_t told_ = 0;
-  double start_ = 0, scale_ = 0, lag_ = 0;
+  double start_ = 0, scale_ = 0, lag_ = 0, gained_before_ = 0;
 };
 
 /** @param duration [s] simulated @param out told step by step */

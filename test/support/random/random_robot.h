@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "blem_sim/sim/simulator.h"
-#include "support/scene_numbers.h"
+#include "support/random/scene_numbers.h"
 
 namespace blem_sim {
 

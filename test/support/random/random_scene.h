@@ -9,8 +9,8 @@
 
 #include "blem_sim/geometry/triangle_mesh.h"
 #include "sim/simulation_scene.h"
-#include "support/random_robot.h"
-#include "support/scene_numbers.h"
+#include "support/random/random_robot.h"
+#include "support/random/scene_numbers.h"
 
 namespace blem_sim {
 
