@@ -72,7 +72,7 @@ SimulationState Simulator::Impl::content() const {
   state.world = world_.world.save();
   geometry::StateWriter writer(&state);
   writer.flag(stopped_);
-  energy_balance_.save(&writer);
+  energy_balance_.save(world_.world.bodyCount(), &writer);
   for (std::size_t joint = 0; joint < world_.motors.size(); ++joint)
     if (world_.world.hasJoint(static_cast<int>(joint))) world_.motors[joint].save(&writer);
   sensors_.save(&writer);

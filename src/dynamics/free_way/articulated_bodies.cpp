@@ -18,24 +18,30 @@ Matrix6 matrixOf(const SpatialInertia& inertia) {
 }  // namespace
 
 void ArticulatedBodies::resize(const Forest& forest) {
-  const std::size_t nodes = forest.nodes().size(), dofs = forest.dofCount(), ties = forest.mimics().size();
+  const std::size_t nodes = forest.nodes().size(), dofs = forest.dofCount();
   articulated_.resize(nodes);
   for (auto* v : {&bias_, &pull_, &node_acceleration_}) v->resize(nodes);
   for (auto* v : {&lack_, &inverse_}) v->assign(dofs, 0);
   for (auto* v : {&acceleration_, &effort_}) v->setZero(dofs);
   held.assign(dofs, 0);
-  ties_.reserve(ties);
-  strays_.setZero(ties, ties);
-  wanted_.setZero(ties);
+  ties_.assign(forest.trees().size(), TreeTies());
+  for (const MimicRelation& m : forest.mimics()) {
+    const ForestNode &node = forest.nodes()[m.node], &master = forest.nodes()[m.master];
+    if (node.tree == master.tree) ties_[node.tree].all.push_back({node.first_dof, master.first_dof, m.multiplier});
+  }
+  for (TreeTies& ties : ties_) {
+    const auto count = static_cast<Eigen::Index>(ties.all.size());
+    ties.kept.reserve(ties.all.size());
+    ties.strays.setZero(count, count);
+    ties.wanted.setZero(count);
+  }
 }
 
 void ArticulatedBodies::start(const Forest& forest, int tree) {
-  ties_.clear();
-  for (const MimicRelation& m : forest.mimics()) {
-    const ForestNode &node = forest.nodes()[m.node], &master = forest.nodes()[m.master];
-    const bool free = !held[node.first_dof] && !held[master.first_dof];
-    if (free && node.tree == tree && master.tree == tree) ties_.push_back({node.first_dof, master.first_dof, m.multiplier});
-  }
+  TreeTies& ties = ties_[tree];
+  ties.kept.clear();
+  for (const Tie& tie : ties.all)
+    if (!held[tie.dof] && !held[tie.master]) ties.kept.push_back(tie);
   const ForestTree& t = forest.trees()[tree];
   effort_.segment(t.first_dof, t.dofCount()).setZero();
 }
@@ -114,8 +120,8 @@ BLEM_SIM_LANES void ArticulatedBodies::solve(const Forest& forest, int tree, boo
   }
 }
 
-void ArticulatedBodies::relax() {
-  for (const Tie& tie : ties_) effort_[tie.dof] = effort_[tie.master] = 0;
+void ArticulatedBodies::relax(int tree) {
+  for (const Tie& tie : ties_[tree].kept) effort_[tie.dof] = effort_[tie.master] = 0;
 }
 
 void ArticulatedBodies::addEffort(const Tie& tie, double effort) {
@@ -125,27 +131,28 @@ void ArticulatedBodies::addEffort(const Tie& tie, double effort) {
 
 // Efforts by which ties keep their relations: accelerations answer linearly.
 void ArticulatedBodies::findEfforts(const Forest& forest, int tree, ForestMotion* at) {
-  const auto count = static_cast<Eigen::Index>(ties_.size());
+  const std::vector<Tie>& ties = ties_[tree].kept;
+  const auto count = static_cast<Eigen::Index>(ties.size());
+  Eigen::Ref<Eigen::MatrixXd> strays = ties_[tree].strays.topLeftCorner(count, count);
+  Eigen::Ref<Eigen::VectorXd> wanted = ties_[tree].wanted.head(count);
   const auto stray = [this](const Tie& tie) { return acceleration_[tie.dof] - tie.multiplier * acceleration_[tie.master]; };
-  for (Eigen::Index i = 0; i < count; ++i) wanted_[i] = -stray(ties_[i]);
+  for (Eigen::Index i = 0; i < count; ++i) wanted[i] = -stray(ties[i]);
   for (Eigen::Index by = 0; by < count; ++by) {
-    addEffort(ties_[by], 1);
+    addEffort(ties[by], 1);
     solve(forest, tree, false, at);
-    for (Eigen::Index i = 0; i < count; ++i) strays_(i, by) = stray(ties_[i]);
-    relax();
+    for (Eigen::Index i = 0; i < count; ++i) strays(i, by) = stray(ties[i]);
+    relax(tree);
   }
-  Eigen::Ref<Eigen::MatrixXd> strays = strays_.topLeftCorner(count, count);
   const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(strays);
-  auto wanted = wanted_.head(count);
   factor.solveInPlace(wanted);
-  for (Eigen::Index i = 0; i < count; ++i) addEffort(ties_[i], wanted[i]);
+  for (Eigen::Index i = 0; i < count; ++i) addEffort(ties[i], wanted[i]);
 }
 
 void ArticulatedBodies::accelerate(const Forest& forest, int tree, ForestMotion* at) {
   articulateAll(forest, tree, *at);
-  relax();
+  relax(tree);
   solve(forest, tree, true, at);
-  if (ties_.empty()) return;
+  if (ties_[tree].kept.empty()) return;
   findEfforts(forest, tree, at);
   solve(forest, tree, true, at);
 }

@@ -5,7 +5,8 @@
 
 namespace blem_sim::dynamics {
 
-/** Nothing acts from outside. Held dofs keep their velocities; joints that follow others of the tree do so by efforts that do no work. */
+/** Nothing acts from outside. Held dofs keep their velocities; joints that follow others of the tree do so by efforts that do no work.
+ *  Trees share nothing that they write. */
 class ArticulatedBodies {
  public:
   void resize(const Forest& forest);
@@ -28,13 +29,19 @@ class ArticulatedBodies {
     int dof, master;
     double multiplier;
   };
+  /** Ties within one tree. */
+  struct TreeTies {
+    std::vector<Tie> all, kept;  // kept: of dofs that are not held
+    Eigen::MatrixXd strays;      // accelerations by which ties are missed, by a unit effort of each
+    Eigen::VectorXd wanted;      // effort by tie
+  };
   bool turns(const ForestNode& node) const { return node.dofs == 1 && !held[node.first_dof]; }
   void articulateAll(const Forest& forest, int tree, const ForestMotion& at);
   void articulate(const Forest& forest, int node, const ForestMotion& at);
   void solve(const Forest& forest, int tree, bool moves, ForestMotion* at);
   void collect(const Forest& forest, int node, const ForestMotion& at);
   void findEfforts(const Forest& forest, int tree, ForestMotion* at);
-  void relax();
+  void relax(int tree);
   void addEffort(const Tie& tie, double effort);
 
   // Per node.
@@ -43,9 +50,7 @@ class ArticulatedBodies {
   // Per dof.
   std::vector<double> lack_, inverse_;
   Eigen::VectorXd acceleration_, effort_;
-  std::vector<Tie> ties_;   // of the tree
-  Eigen::MatrixXd strays_;  // accelerations by which ties are missed, by a unit effort of each
-  Eigen::VectorXd wanted_;  // effort by tie
+  std::vector<TreeTies> ties_;  // per tree
 };
 
 }  // namespace blem_sim::dynamics

@@ -189,10 +189,11 @@ void EnergyBalance::holdBack() {
   }
 }
 
-void EnergyBalance::save(geometry::StateWriter* writer) const {
+// Bodies that came since the last solve hold nothing.
+void EnergyBalance::save(int bodies, geometry::StateWriter* writer) const {
   const bool any = std::any_of(held_.begin(), held_.end(), [](double held) { return held != 0; });
-  writer->number(any ? static_cast<double>(held_.size()) : 0);
-  if (any) writer->numbers(held_.data(), held_.size());
+  writer->number(any ? bodies : 0);
+  for (std::size_t b = 0; any && b < static_cast<std::size_t>(bodies); ++b) writer->number(b < held_.size() ? held_[b] : 0);
 }
 
 void EnergyBalance::restore(int bodies, geometry::StateReader* reader) {

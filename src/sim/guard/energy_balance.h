@@ -47,7 +47,8 @@ class EnergyBalance {
 
   /** Forgets the energy that is held back: no impact is to bounce. */
   void clear() { held_.assign(held_.size(), 0); }
-  void save(geometry::StateWriter* writer) const;
+  /** @param bodies of the world */
+  void save(int bodies, geometry::StateWriter* writer) const;
   /** @param bodies number of the world's bodies: energy is held back for each of them, or for none */
   void restore(int bodies, geometry::StateReader* reader);
 

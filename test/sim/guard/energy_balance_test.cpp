@@ -130,13 +130,13 @@ TEST(EnergyBalance, TheBoundGrowsWithWhatMoves) {
 
 TEST(EnergyBalance, ReadsWhatItWrote) {
   EnergyBalance balance{dynamics::SolverSettings()};
-  const auto numbers_of_balance = [&] {
+  const auto numbers_of_balance = [&](int bodies) {
     geometry::StateContent saved;
     geometry::StateWriter writer(&saved);
-    balance.save(&writer);
+    balance.save(bodies, &writer);
     return saved.numbers;
   };
-  EXPECT_EQ(numbers_of_balance(), std::vector<double>{0});
+  EXPECT_EQ(numbers_of_balance(2), std::vector<double>{0});
   for (const std::vector<double>& bad : {std::vector<double>{}, {2, 1}, {-1}, {NAN}, {1e300}}) {
     const geometry::StateContent content{bad, {}};
     geometry::StateReader reader(content);
@@ -145,7 +145,8 @@ TEST(EnergyBalance, ReadsWhatItWrote) {
   const geometry::StateContent held{{2, 0.5, 0}, {}};
   geometry::StateReader reader(held);
   balance.restore(2, &reader);
-  EXPECT_EQ(numbers_of_balance(), held.numbers);
+  EXPECT_EQ(numbers_of_balance(2), held.numbers);
+  EXPECT_EQ(numbers_of_balance(3), (std::vector<double>{3, 0.5, 0, 0}));  // a body came
 }
 
 /** Every bit that was set in so long. */
