@@ -50,6 +50,8 @@ std::uint64_t hashAfter(std::uint64_t seed, int threads, int steps) {
   RandomScene scene = randomScene(seed);
   scene.config.solver.threads = threads;
   Simulator simulator(scene.config, model::UriResolver());
+  for (std::size_t i = 0; i < scene.commands.size(); ++i)
+    if (!scene.commands[i].joints.empty()) simulator.commandJoints(static_cast<int>(i), scene.commands[i]);
   for (int i = 0; i < steps; ++i) simulator.step();
   return simulator.stateHash();
 }
