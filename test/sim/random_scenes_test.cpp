@@ -76,8 +76,8 @@ class EventfulScenesFound : public ::testing::TestWithParam<int> {};
 
 TEST_P(EventfulScenesFound, AreSound) { expectSoundWhateverHappens(static_cast<std::uint64_t>(GetParam())); }
 // A model that came, or went, just before the state was saved; a slider that hits a stone; links in tension; a model that came while
-// another one bounced.
-INSTANTIATE_TEST_SUITE_P(Seeds, EventfulScenesFound, ::testing::Values(672, 676, 715, 1372, 3527, 12865));
+// another one bounced; a contact that turned round.
+INSTANTIATE_TEST_SUITE_P(Seeds, EventfulScenesFound, ::testing::Values(672, 676, 715, 1372, 3527, 12865, 20178));
 
 }  // namespace
 }  // namespace blem_sim::sim

@@ -95,7 +95,8 @@ BLEM_SIM_LANES void expect(ContactBlock* begin, ContactBlock* end) {
       // A slipping contact is on its cone, where De Saxce's term just undoes the slip's share. A sticking one creeps on as it did.
       const bool slipped = size >= STICKING * b->friction[lane] * push;
       const double u_n = b->target[lane] - (slipped ? 0 : b->friction[lane] * slip) - b->compliance[lane] * push;
-      const Triple past = u_n * normal - (size > NO_FRICTION * push ? slip / size : 0) * held, change = u - past;
+      const double rubbed = NO_FRICTION * (push > 0 ? push : 0);
+      const Triple past = u_n * normal - (size > rubbed ? slip / size : 0) * held, change = u - past;
       respondLane(*b, lane, past, {0, 0, 0});
       const bool acts = push > 0, sticks = b->kind[lane] == ContactBlock::STICK;
       const double n = acts ? b->normal_gain[lane] : 0, t = acts ? b->tangent_gain[lane] : 0;

@@ -236,6 +236,23 @@ TEST(JointExpectation, IsTheLineThroughTheProximalPoint) {
   EXPECT_DOUBLE_EQ(term.expect(0.2).stiffness, 10);
 }
 
+// What crossed a thin thing is pushed the other way from then on. Slip over friction was 0 / 0, and the simulation stopped.
+TEST_F(Lane, AContactThatTurnedRoundOpens) {
+  ContactTerm terms[LANES - 1] = {contact(), contact(), contact()};
+  for (ContactTerm& term : terms) {
+    term.normal = -Vector3::UnitX();
+    term.previous = 0.8 * Vector3::UnitX();
+    term.slip = 0;
+  }
+  ContactBlock b = block(terms);
+  expect(&b, &b + 1);
+  Matrix6 stiffness;
+  EXPECT_FALSE(stiffnessOf(&b, &b + 1, &stiffness));
+  EXPECT_TRUE(stiffness.isZero(0));
+  EXPECT_TRUE(wrenchOf(&b, &b + 1).isZero(0));
+  EXPECT_EQ(b.kind[0], ContactBlock::OPEN);
+}
+
 TEST_F(Lane, WithoutAContactNeverActsHoweverFast) {
   const ContactTerm terms[LANES - 1] = {contact(), contact(), contact()};
   for (const double speed : {0.5, 2.0, 1e3}) {
