@@ -236,7 +236,7 @@ TEST(JointExpectation, IsTheLineThroughTheProximalPoint) {
   EXPECT_DOUBLE_EQ(term.expect(0.2).stiffness, 10);
 }
 
-// What crossed a thin thing is pushed the other way from then on. Slip over friction was 0 / 0, and the simulation stopped.
+// A body that crossed a thin one is pushed the other way from then on. Slip over friction was 0 / 0, and the simulation stopped.
 TEST_F(Lane, AContactThatTurnedRoundOpens) {
   ContactTerm terms[LANES - 1] = {contact(), contact(), contact()};
   for (ContactTerm& term : terms) {
