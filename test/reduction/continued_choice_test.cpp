@@ -95,5 +95,30 @@ TEST(ContinuedChoice, IsNotSureWithoutTheDeepestOrWithOthersThanK) {
   EXPECT_FALSE(goes_on(20));
 }
 
+// Hulls leave out contacts that are deeper by some roundings. The choice read in front of its room then: it was another one from thread to
+// thread.
+TEST(WrenchChoice, WithoutTheDeepestOfAllTakesTheDeepestThatIsThere) {
+  Noise noise(13);
+  WrenchChoice used;
+  for (int round = 0; round < 50; ++round) {
+    Contacts contacts = variedRing(&noise, 0.05, 0.01, 1e-9);
+    contacts[7].depth = 3e-8;
+    contacts[20].depth = 1.5e-8;
+    std::vector<int> members(contacts.size()), chosen, again;
+    std::iota(members.begin(), members.end(), 0);
+    members.erase(members.begin() + 7);
+    bool ready = true;
+    const PatchScale scale(contacts, &ready);
+    const ChoiceQuestion asked{contacts, members, scale, 5, {}};
+    std::vector<int> candidates = members;
+    used.choose(asked, &candidates, &chosen);
+    candidates = members;
+    WrenchChoice().choose(asked, &candidates, &again);
+    ASSERT_EQ(sorted(chosen), sorted(again)) << round;
+    ASSERT_EQ(chosen.size(), 5u);
+    EXPECT_NE(std::find(chosen.begin(), chosen.end(), 20), chosen.end());
+  }
+}
+
 }  // namespace
 }  // namespace blem_sim::reduction

@@ -49,20 +49,29 @@ WrenchDirections makeDirections() {
   return directions;
 }
 
-// Index of the deepest candidate; of those that are as deep but for rounding the farthest along UNCOMMON_DIRECTION, so that the names of
-// vertices do not decide.
-int deepest(const std::vector<contact::Contact>& contacts, const std::vector<int>& candidates, const PatchScale& scale) {
+// Index of the farthest along UNCOMMON_DIRECTION among the candidates of at least this depth; -1 if there is none.
+int farthestAsDeep(const std::vector<contact::Contact>& contacts, const std::vector<int>& candidates, double depth) {
   int best = -1;
   double farthest = 0;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const contact::Contact& contact = contacts[candidates[i]];
-    if (!scale.isDeepest(contact)) continue;
+    if (contact.depth < depth) continue;
     const double place = contact::UNCOMMON_DIRECTION.dot(contact.point);
     if (best >= 0 && place <= farthest) continue;
     best = static_cast<int>(i);
     farthest = place;
   }
   return best;
+}
+
+// Index of the deepest candidate; of those that are as deep but for rounding the farthest, so that the names of vertices do not decide.
+// Hulls may have left out contacts that are deeper by some roundings.
+int deepest(const std::vector<contact::Contact>& contacts, const std::vector<int>& candidates, const PatchScale& scale) {
+  const int best = farthestAsDeep(contacts, candidates, scale.depth() - DEPTH_TIE);
+  if (best >= 0) return best;
+  double depth = -std::numeric_limits<double>::infinity();
+  for (const int candidate : candidates) depth = std::max(depth, contacts[candidate].depth);
+  return farthestAsDeep(contacts, candidates, depth - DEPTH_TIE);
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ class WrenchChoice {
    * A choice made before is gone on with, completed by the same rule, while it spans nearly as much as a fresh one: among equals no noise
    * decides anew from step to step.
    * The result depends on the sets given only, not on their order.
-   * Precondition: candidates are there, the deepest of the members among them.
+   * Precondition: candidates are there.
    * @param candidates those of the members that may be extreme; reordered
    * @param chosen overwritten by indices
    * @return lack of those chosen in the candidates' wrenches, in the direction that lacks most, of a unit force; lengths in the scale's
