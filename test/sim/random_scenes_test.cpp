@@ -12,11 +12,17 @@ namespace {
 const int GROUPS = 20, SCENES_OF_GROUP = samples(15);
 constexpr double START = 0.15;  // [s] of each of three hundred: all of them in less than a minute
 
+/** @param options of the script that runs the scene again */
+void expectSound(const SceneOutcome& outcome, const char* options = "") {
+  EXPECT_FALSE(outcome.failed()) << outcome.failure << ": " << outcome.details << "\n"
+                                 << randomScene(outcome.seed).description << "\nscripts/validate_random_scenes" << options << " --seed "
+                                 << outcome.seed;
+}
+
 void expectSound(std::uint64_t seed, double duration) {
   SceneOutcome outcome;
   runRandomScene(seed, duration, &outcome);
-  EXPECT_FALSE(outcome.failed()) << outcome.failure << ": " << outcome.details << "\n"
-                                 << randomScene(seed).description << "\nscripts/validate_random_scenes --seed " << seed;
+  expectSound(outcome);
 }
 
 class RandomScenes : public ::testing::TestWithParam<int> {};
@@ -42,16 +48,14 @@ INSTANTIATE_TEST_SUITE_P(Seeds, RandomScenesFound,
 void expectSoundWhateverHappens(std::uint64_t seed) {
   SceneOutcome outcome;
   EventfulScene(seed, &outcome).run(0.2);
-  EXPECT_FALSE(outcome.failed()) << outcome.failure << ": " << outcome.details << "\n"
-                                 << randomScene(seed).description << "\nscripts/validate_random_scenes --eventful --seed " << seed;
+  expectSound(outcome, " --eventful");
 }
 
 std::uint64_t hashAfter(std::uint64_t seed, int threads, int steps) {
   RandomScene scene = randomScene(seed);
   scene.config.solver.threads = threads;
   Simulator simulator(scene.config, model::UriResolver());
-  for (std::size_t i = 0; i < scene.commands.size(); ++i)
-    if (!scene.commands[i].joints.empty()) simulator.commandJoints(static_cast<int>(i), scene.commands[i]);
+  commandRobots(scene, &simulator);
   for (int i = 0; i < steps; ++i) simulator.step();
   return simulator.stateHash();
 }

@@ -1,7 +1,5 @@
 #include "island/island_solver.h"
 
-#include <cmath>
-
 #include "island/island_bounds.h"
 #include "newton/island_faults.h"
 #include "problem/island_velocity.h"
@@ -52,11 +50,11 @@ NewtonReport IslandSolver::fly() {
     solveTree(island.forest, tree, s.hessian, &s.direction, &s.paths);
   }
   multiplyMass(island, s.direction, &s.mass_direction);
-  forDofs(island, [&s, &island](int k) {
+  forDofs(island, [&s](int k) {
     s.velocity[k] += s.direction[k];
     s.mass_velocity[k] = s.free_momentum[k] + (s.kinetic[k] + s.mass_direction[k]);
-    s.scale[k] = 1 / std::sqrt(island.motion.mass[island.forest.diagonal(k)]);
   });
+  setScale(island);
   return {};
 }
 

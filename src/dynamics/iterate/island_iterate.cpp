@@ -13,7 +13,7 @@ void IslandIterate::start(const IslandAtHand& island) {
   const std::vector<MimicFold>& mimics = island.model.mimics;
   for (const MimicFold& m : mimics) s.velocity[m.dof] = m.multiplier * s.velocity[m.master];
   if (!mimics.empty()) multiplyMass(island, s.velocity, &s.mass_velocity);
-  forDofs(island, [&](int k) { s.scale[k] = 1 / std::sqrt(island.motion.mass[island.forest.diagonal(k)]); });
+  setScale(island);
   setKinetic(island);
   live_.find(island);
   begin();

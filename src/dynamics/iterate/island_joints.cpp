@@ -1,11 +1,6 @@
 #include "iterate/island_joints.h"
 
 namespace blem_sim::dynamics {
-namespace {
-
-constexpr int NO_DOF = -1;  // of a lane without a joint
-
-}  // namespace
 
 void IslandJoints::order(const IslandAtHand& island, const LiveParts& live) {
   island_ = &island;
@@ -26,7 +21,7 @@ void IslandJoints::order(const IslandAtHand& island, const LiveParts& live) {
   for (std::size_t b = 0; b < blocks_.size(); ++b) {
     for (int lane = 0; lane < LANES; ++lane) {
       const JointTerm* term = termOf(b, lane);
-      blocks_[b].dof[lane] = term ? term->dof : NO_DOF;
+      blocks_[b].dof[lane] = term ? term->dof : JointTerm().dof;
       blocks_[b].velocity[lane] = term ? island.space->velocity[term->dof] : 0;
     }
   }

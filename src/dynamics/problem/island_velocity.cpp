@@ -14,6 +14,10 @@ double kineticEnergy(const IslandAtHand& island, const Eigen::VectorXd& velocity
   return 0.5 * dotProduct(island.forest, island.model.trees, velocity, island.space->mass_direction);
 }
 
+void setScale(const IslandAtHand& island) {
+  forDofs(island, [&island](int k) { island.space->scale[k] = 1 / std::sqrt(island.motion.mass[island.forest.diagonal(k)]); });
+}
+
 void setKinetic(const IslandAtHand& island) {
   SolverSpace& s = *island.space;
   forDofs(island, [&s](int k) { s.kinetic[k] = s.mass_velocity[k] - s.free_momentum[k]; });

@@ -10,6 +10,8 @@ void multiplyMass(const IslandAtHand& island, const Eigen::VectorXd& v, Eigen::V
 /** [J] Kinetic energy at a velocity. Overwrites space->mass_direction. */
 double kineticEnergy(const IslandAtHand& island, const Eigen::VectorXd& velocity);
 
+/** Scale of each dof: over the root of its own inertia. */
+void setScale(const IslandAtHand& island);
 /** M (v - v*) at the velocities in the space, M times them given there, too. */
 void setKinetic(const IslandAtHand& island);
 /** Keeps the velocities in the space, and M (v - v*), as the first ones. */

@@ -19,8 +19,7 @@ class EventfulScene {
         when_(seed + 77),
         outcome_(*outcome) {
     outcome_.seed = seed;
-    for (std::size_t i = 0; i < scene_.commands.size(); ++i)
-      if (!scene_.commands[i].joints.empty()) simulator_.commandJoints(static_cast<int>(i), scene_.commands[i]);
+    commandRobots(scene_, &simulator_);
   }
 
   void run(double duration) {
@@ -40,15 +39,15 @@ class EventfulScene {
 
   void happen() {
     const std::uint64_t before = simulator_.stateHash();
-    const std::string what = events_.happen(&simulator_);
-    if (what.empty()) {
+    const Event event = events_.happen(&simulator_);
+    if (event.refused) {
       if (simulator_.stateHash() != before) fail("refused, but changed");
       return;
     }
-    last_ = what;
+    last_ = event.name;
     watch_.reset();
     scene_.floor = -INFINITY;
-    scene_.passive = scene_.passive && RandomEvents::leavesPassive(what);
+    scene_.passive = scene_.passive && event.passive;
   }
 
   // Saves, goes on, comes back, and goes on in the same way.

@@ -16,53 +16,55 @@
 
 namespace blem_sim {
 
+/** A call that was made. */
+struct Event {
+  std::string name;      ///< in words
+  bool refused = false;  ///< as InputError
+  bool passive = false;  ///< it gives nothing energy later on: no motor, load or model came
+};
+
 /** Draws calls from a seed. Models that it spawns are about as large as the scene's. */
 class RandomEvents {
  public:
   /** @param size [m] of a body, typically */
   RandomEvents(std::uint64_t seed, double size) : numbers_(seed), size_(size) {}
 
-  /**
-   * Makes one call.
-   * @return it in words; empty if it was refused, as InputError
-   */
-  std::string happen(sim::Simulator* simulator) {
+  /** Makes one call. */
+  Event happen(sim::Simulator* simulator) {
     simulator_ = simulator;
-    const std::vector<std::pair<const char*, std::function<void()>>> events{
-        {"moved", [this] { moveModel(); }},
-        {"moved onto another", [this] { moveOnto(); }},
-        {"pushed", [this] { push(); }},
-        {"effort", [this] { effort(); }},
-        {"spawned", [this] { spawn(); }},
-        {"removed", [this] { simulator_->removeModel(anyModel()); }},
-        {"attached", [this] { attach(); }},
-        {"detached", [this] { simulator_->detach(anyModel()); }},
-        {"physics", [this] { setPhysics(); }},
-        {"inertial", [this] { setInertial(); }},
-        {"joint", [this] { setJoint(); }},
-        {"friction", [this] { simulator_->setFriction(anyModelIndex(), numbers_.chance(0.1) ? NAN : numbers_.uniform(0, 2)); }},
-        {"joint positions", [this] { setPositions(); }},
-        {"commanded", [this] { command(); }},
-        {"environment", [this] { loadEnvironment(); }},
-        {"unloaded", [this] { simulator_->unloadEnvironment(anyModel()); }},
-        {"model reset", [this] { simulator_->resetModel(anyModelIndex()); }},
-        {"world reset", [this] { simulator_->resetWorld(); }},
-        {"simulation reset", [this] { simulator_->resetSimulation(); }},
+    struct Row {
+      const char* name;
+      bool passive;
+      std::function<void()> call;
     };
-    const auto& [name, call] = events[numbers_.count(0, static_cast<int>(events.size()) - 1)];
+    const std::vector<Row> rows{
+        {"moved", true, [this] { moveModel(); }},
+        {"moved onto another", true, [this] { moveOnto(); }},
+        {"pushed", false, [this] { push(); }},
+        {"effort", false, [this] { effort(); }},
+        {"spawned", false, [this] { spawn(); }},
+        {"removed", true, [this] { simulator_->removeModel(anyModel()); }},
+        {"attached", false, [this] { attach(); }},
+        {"detached", false, [this] { simulator_->detach(anyModel()); }},
+        {"physics", true, [this] { setPhysics(); }},
+        {"inertial", false, [this] { setInertial(); }},
+        {"joint", false, [this] { setJoint(); }},
+        {"friction", true, [this] { simulator_->setFriction(anyModelIndex(), numbers_.chance(0.1) ? NAN : numbers_.uniform(0, 2)); }},
+        {"joint positions", false, [this] { setPositions(); }},
+        {"commanded", false, [this] { command(); }},
+        {"environment", false, [this] { loadEnvironment(); }},
+        {"unloaded", false, [this] { simulator_->unloadEnvironment(anyModel()); }},
+        {"model reset", true, [this] { simulator_->resetModel(anyModelIndex()); }},
+        {"world reset", false, [this] { simulator_->resetWorld(); }},
+        {"simulation reset", false, [this] { simulator_->resetSimulation(); }},
+    };
+    const Row& row = rows[numbers_.count(0, static_cast<int>(rows.size()) - 1)];
     try {
-      call();
+      row.call();
     } catch (const InputError&) {
-      return "";
+      return {row.name, true, row.passive};
     }
-    return name;
-  }
-
-  /** Whether what happened gives nothing energy later on: no motor, load or model that came. */
-  static bool leavesPassive(const std::string& event) {
-    for (const char* passive : {"moved", "moved onto another", "friction", "removed", "model reset", "physics"})
-      if (event == passive) return true;
-    return false;
+    return {row.name, false, row.passive};
   }
 
  private:

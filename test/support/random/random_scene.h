@@ -202,4 +202,9 @@ inline RandomScene randomScene(std::uint64_t seed) {
   return scene;
 }
 
+inline void commandRobots(const RandomScene& scene, sim::Simulator* simulator) {
+  for (std::size_t i = 0; i < scene.commands.size(); ++i)
+    if (!scene.commands[i].joints.empty()) simulator->commandJoints(static_cast<int>(i), scene.commands[i]);
+}
+
 }  // namespace blem_sim

@@ -103,8 +103,7 @@ inline void runRandomScene(std::uint64_t seed, double duration, SceneOutcome* ou
   outcome.seed = seed;
   const RandomScene scene = randomScene(seed);
   sim::Simulator simulator(scene.config, model::UriResolver());
-  for (std::size_t i = 0; i < scene.commands.size(); ++i)
-    if (!scene.commands[i].joints.empty()) simulator.commandJoints(static_cast<int>(i), scene.commands[i]);
+  commandRobots(scene, &simulator);
   SceneWatch watch(scene, simulator, &outcome);
   const long steps = std::lround(duration / scene.config.time_step);
   for (long i = 0; i < steps && !outcome.failed(); ++i) {
