@@ -5,6 +5,7 @@
 #include "blem_sim/geometry/bvh_traversal.h"
 #include "evaluation/retraction.h"
 #include "evaluation/world_contact.h"
+#include "kept/still_pair.h"
 #include "merging/merge_contacts.h"
 #include "search/contact_search.h"
 
@@ -129,7 +130,16 @@ void meshHalfSpace(const MeshOverPlane& pair, double range, SearchRoom* room, Co
 }  // namespace
 
 struct NarrowPhaseMemory::Impl {
+  StillPair still;
   ContactSearchMemory search;
+
+  /** meshMesh() if the pair has moved or is new. */
+  void find(const MeshPair& pair, const Pose* X_AB_apart, SearchRoom* room, ContactManifold* out) {
+    const bool same = still.isSame(pair);
+    if (same && still.hasContacts()) return still.recall(out);
+    meshMesh(pair, X_AB_apart, &search, room, out);
+    if (same) still.keep(*out);
+  }
 };
 
 NarrowPhaseMemory::NarrowPhaseMemory() : impl_(std::make_unique<Impl>()) {}
@@ -161,7 +171,11 @@ void narrowPhase(const PlacedCollider& a, const PlacedCollider& b, const NarrowP
   } else if (a_is_half_space) {
     meshHalfSpace({b, a, {Side::FIXED, {r_b, r_a}}}, out->layer + asked.margin, room, out);
   } else {
-    meshMesh(meshPair(a, b, asked.margin), asked.X_AB_apart, asked.memory ? &asked.memory->impl_->search : nullptr, room, out);
+    const MeshPair pair = meshPair(a, b, asked.margin);
+    if (asked.memory)
+      asked.memory->impl_->find(pair, asked.X_AB_apart, room, out);
+    else
+      meshMesh(pair, asked.X_AB_apart, nullptr, room, out);
   }
 }
 

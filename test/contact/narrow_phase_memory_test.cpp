@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "contact/contact_shapes.h"
@@ -17,6 +18,8 @@ bool sameBits(const Contact& a, const Contact& b) {
   return a.id == b.id && a.pierced == b.pierced && std::memcmp(a.point.data(), b.point.data(), sizeof(Vector3)) == 0 &&
          std::memcmp(a.normal_BA.data(), b.normal_BA.data(), sizeof(Vector3)) == 0 && a.depth == b.depth;
 }
+
+Collider cubeOfWidth(double width) { return makeCollider(geometry::boxMesh(Vector3::Constant(width)), KEPT_WIDTH); }
 
 /** Along a path, contacts with and without a memory. @return their number, and whether meshes crossed and did not */
 struct Followed {
@@ -177,6 +180,67 @@ TEST(NarrowPhaseMemory, AnotherGeometryIsNotTakenForTheOneBefore) {
     ASSERT_EQ(remembered.contacts.size(), fresh.contacts.size());
     for (std::size_t i = 0; i < fresh.contacts.size(); ++i) EXPECT_TRUE(sameBits(remembered.contacts[i], fresh.contacts[i]));
   }
+}
+
+/** The path, with stops of four steps. */
+std::function<Pose(int)> haltingly(const std::function<Pose(int)>& path) {
+  return [=](int step) { return path(step - step % 5); };
+}
+
+TEST(NarrowPhaseMemory, StillPairsHaveTheSameBits) {
+  geometry::RandomShapes random(10);
+  const Collider hills = makeCollider(hillMesh(random, 0.3, 60, 0.001), 0), cube = cubeOfWidth(0.05);
+  const Followed followed = follow(cube, hills, 200, haltingly(wandering({0, 0, 0.025}, 0.004, 0.02)), noMargin);
+  EXPECT_GT(followed.contacts, 200u);
+  EXPECT_TRUE(followed.crossed && followed.apart);
+  EXPECT_GT(follow(cube, hills, 20, haltingly(wandering({0, 0, 0.027}, 0.001, 0.02)), [](int step) { return 1e-4 * (step % 2); }).contacts,
+            200u);
+}
+
+/** Contacts of a cube on a plate, both still, with a memory that has seen them stand still. */
+struct CubeAtRest {
+  Collider cube = cubeOfWidth(0.05);
+  Collider plate = makeCollider(geometry::boxMesh({0.3, 0.3, 0.02}), 0);
+  Pose X_WC = makePose({0, 0, 0.0365});
+  const Pose* X_AB_apart = nullptr;
+  NarrowPhaseMemory memory;
+
+  ContactManifold find(const Pose& X_WP, NarrowPhaseMemory* known) {
+    ContactManifold found;
+    narrowPhase({cube, X_WP * X_WC}, {plate, X_WP}, {0, X_AB_apart, known}, searchRoom(), &found);
+    return found;
+  }
+  void expectFresh(const Pose& X_WP) {
+    const ContactManifold remembered = find(X_WP, &memory), fresh = find(X_WP, nullptr);
+    ASSERT_EQ(remembered.contacts.size(), fresh.contacts.size());
+    ASSERT_FALSE(fresh.contacts.empty());
+    for (std::size_t i = 0; i < fresh.contacts.size(); ++i) EXPECT_TRUE(sameBits(remembered.contacts[i], fresh.contacts[i]));
+  }
+  void rest() {
+    for (int i = 0; i < 4; ++i) expectFresh(Pose::Identity());
+  }
+};
+
+TEST(NarrowPhaseMemory, StillPairsKnowTheirLayersAndPlaces) {
+  CubeAtRest at;
+  at.rest();
+  at.cube.radius *= 1.25;
+  at.expectFresh(Pose::Identity());
+  at.rest();
+  std::swap(at.cube.radius, at.plate.radius);
+  at.expectFresh(Pose::Identity());
+  at.rest();
+  at.expectFresh(makePose({0.1, 0, 0}));  // both are moved alike
+}
+
+TEST(NarrowPhaseMemory, StillPairsThatCrossKnowWhereTheyCameFrom) {
+  CubeAtRest at;
+  at.X_WC = makePose({0, 0, 0.03});
+  const Pose above = makePose({0, 0, -0.05}), below = makePose({0, 0, 0.05});
+  at.X_AB_apart = &above;
+  at.rest();
+  at.X_AB_apart = &below;
+  at.expectFresh(Pose::Identity());
 }
 
 }  // namespace
