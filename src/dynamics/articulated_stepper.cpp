@@ -348,6 +348,7 @@ void ArticulatedStepper::step(Scene* scene, const StepInput& input, SolveResult*
   result->axis_efforts.assign(scene->joints().size(), 0);
   result->joint_wrenches.assign(scene->joints().size(), Wrench());
   result->free_work.assign(scene->joints().size(), 0);
+  result->free_efforts.assign(scene->joints().size(), 0);
   forEachIsland([&](Island* island) { solveIsland(*scene, input, island); });
   // Nothing was changed yet: a step that broke down leaves everything as it was.
   result->finite = (space_.velocity.array().abs() < FASTEST).all();

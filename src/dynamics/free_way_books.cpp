@@ -15,14 +15,16 @@ void addFreeWays(const SolvedIsland& island, const ForestMotion& motion, double 
   }
 }
 
-/** Adds work(node, dof, effort) [J] of each joint of the island's trees. */
+/** Adds work(node, dof, effort) [J] of each joint of the island's trees, and what it owes, by its sign. */
 template <typename Work>
-void addFreeWork(const SolvedIsland& island, const Work& work, SolveResult* result) {
+void addFreeWork(const SolvedIsland& island, const ForestMotion& motion, double sign, const Work& work, SolveResult* result) {
   for (const int tree : island.model.trees) {
     const ForestTree& t = island.forest.trees()[tree];
     for (int i = t.first_node; i < t.node_end; ++i) {
       const ForestNode& n = island.forest.nodes()[i];
-      if (n.dofs == 1) result->free_work[n.joint] += work(i, n.first_dof, result->axis_efforts[n.joint]);
+      if (n.dofs != 1) continue;
+      result->free_work[n.joint] += work(i, n.first_dof, result->axis_efforts[n.joint]);
+      result->free_efforts[n.joint] += sign * motion.owed[n.first_dof] / island.dt;
     }
   }
 }
@@ -38,7 +40,7 @@ void bookBeforeWay(const SolvedIsland& island, const ForestMotion& motion, Solve
     const double solved = motion.next_velocity[k];
     return effort * (motion.position[node] + 0.5 * island.dt * solved) - 0.5 * motion.owed[k] * (motion.velocity[k] + solved);
   };
-  addFreeWork(island, work, result);
+  addFreeWork(island, motion, -1, work, result);
 }
 
 // Held joints went their way at the velocity that was solved.
@@ -47,7 +49,7 @@ void bookAfterWay(const SolvedIsland& island, const ForestMotion& motion, SolveR
   const auto work = [&](int node, int k, double effort) {
     return motion.owed[k] * motion.next_velocity[k] - effort * (motion.position[node] - 0.5 * island.dt * motion.velocity[k]);
   };
-  addFreeWork(island, work, result);
+  addFreeWork(island, motion, 1, work, result);
 }
 
 }  // namespace blem_sim::dynamics

@@ -7,7 +7,8 @@
 
 namespace blem_sim::dynamics {
 
-/** First part of the result's free_ways and free_work, which were set to zero. After the solve, before the island's trees move. */
+/** First part of the result's free_ways, free_work and free_efforts, which were set to zero. After the solve, before the island's trees
+ * move. */
 void bookBeforeWay(const SolvedIsland& island, const ForestMotion& motion, SolverSpace* space, SolveResult* result);
 
 /** The other part, at the end of their way. */

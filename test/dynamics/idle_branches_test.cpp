@@ -51,7 +51,7 @@ struct Hanger {
     for (int j = 0; j < world.jointCount(); ++j) {
       const double v = world.jointState(j).velocity, friction = result.axis_efforts[j] - drives[j].effort;
       // The wrench follows from the bodies' motion, the effort from the joint's law.
-      EXPECT_NEAR(result.joint_wrenches[j].torque.dot(axes[j]), result.axis_efforts[j], 1e-6) << j;
+      EXPECT_NEAR(result.joint_wrenches[j].torque.dot(axes[j]), result.axis_efforts[j] + result.free_efforts[j], 1e-6) << j;
       EXPECT_LE(std::abs(friction), FRICTION * (1 + 1e-12)) << j;
       const bool slip = std::abs(v) > 1e-6;
       if (slip) {

@@ -107,6 +107,9 @@ struct SolveResult {
                                         ///< the step; from motion (Newton-Euler over the step), not from a residual
   std::vector<double> motor_efforts;    ///< [N m or N] of the motors alone, along the axes
   std::vector<double> axis_efforts;     ///< [N m or N] of motors, outside efforts, friction and mimic joints' pull along the axes
+  std::vector<double> free_efforts;     ///< [N m or N] what joints took along their axes to keep their velocities on a free way, which
+                                        ///< axis_efforts of the next step hold, less what those of this one hold of the last
+                                        ///< way's; empty: none known
   std::vector<double> apparent_work;    ///< [J] per contact: apparent work, at most, of departures and slips that loads end within the
                                         ///< step, and of bent paths; empty where a stepper does not know it
   std::vector<Vector3> free_ways;       ///< [m] per body: by how much its centre of mass went beside the way of the mean velocity over what

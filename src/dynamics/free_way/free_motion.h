@@ -46,8 +46,6 @@ class FreeMotion {
   /** Rate of change of a node's momentum on the way, at the middle of its centre of mass's, about the reference at the start.
    *  @param motion at the start @param set_out twist with which the node sets out */
   Vector6 momentumRate(const Forest& forest, int node, double dt, const ForestMotion& motion, const Vector6& set_out) const;
-  /** [N m s or N s] Impulse by which a held dof kept its velocity on the way, a mimic joint followed its master, or a master led. */
-  double owed(int dof) const { return owed_[dof]; }
   /** Origin of a node's joint at the middle of the step, in the world. */
   Vector3 middleJoint(int node, const ForestMotion& motion) const;
 

@@ -111,8 +111,9 @@ void setHold(const JointTerm& joint, double velocity, double inertia, FreeMotion
   const bool holds = joint.stiffness(velocity) > HOLDS * inertia;
   const double reach = (joint.motor_gain > 0 ? joint.motor_bound : 0) + joint.dry_bound;
   way->held()[joint.dof] = holds;
-  way->most[joint.dof] = joint.lowerImpulse(velocity) > 0 ? INFINITY : reach;
-  way->least[joint.dof] = joint.upperImpulse(velocity) > 0 ? -INFINITY : -reach;
+  const double lower = joint.lowerImpulse(velocity), upper = joint.upperImpulse(velocity);
+  way->most[joint.dof] = lower > 0 ? INFINITY : reach + upper;
+  way->least[joint.dof] = upper > 0 ? -INFINITY : -reach - lower;
 }
 
 // Joints that follow the same one keep their velocities on the way, and so does that one, or none of them.

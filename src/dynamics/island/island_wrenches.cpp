@@ -26,11 +26,6 @@ Wrench atJoint(const Vector6& through, const Vector3& arm) {
   return {linear(at_origin), angular(at_origin)};
 }
 
-/** Adds an effort [N m or N] along the axis of a node's joint. */
-void addAlongAxis(const ForestNode& node, double effort, const Vector3& axis, Wrench* wrench) {
-  (node.kind == JointKind::REVOLUTE ? wrench->torque : wrench->force) += effort * axis;
-}
-
 /** An island's motion at the start of its way, room to reckon in, and the wrenches that are asked for. */
 struct WrenchBooks {
   const SolvedIsland& island;
@@ -65,9 +60,7 @@ void setSolvedWrenches(const WrenchBooks& books, int tree) {
     if (node.parent >= 0) motion->node_change[node.parent] += through;
     if (node.joint < 0) continue;
     if (motion->pace[tree] != Pace::FAST) through += motion->node_force[i];
-    Wrench& wrench = (*wrenches)[node.joint];
-    wrench = atJoint(through, motion->reference[tree] - motion->joint_origin[i]);
-    if (node.dofs == 1) addAlongAxis(node, motion->owed[node.first_dof] / dt, motion->joint_axis[i], &wrench);
+    (*wrenches)[node.joint] = atJoint(through, motion->reference[tree] - motion->joint_origin[i]);
   }
 }
 
@@ -87,7 +80,6 @@ void addWayWrenches(const WrenchBooks& books, const FreeMotion& way, int tree) {
     const Wrench added = atJoint(space->wrench[i], motion->reference[tree] - way.middleJoint(i, *motion));
     wrench.force += added.force;
     wrench.torque += added.torque;
-    if (node.dofs == 1) addAlongAxis(node, -way.owed(node.first_dof) / island.dt, motion->joint_axis[i], &wrench);
   }
 }
 
