@@ -11,6 +11,7 @@
 #include "island/island.h"
 #include "island/island_motion.h"
 #include "island/island_wrenches.h"
+#include "island/tree_state.h"
 #include "kept_trees.h"
 #include "problem/contact_work.h"
 #include "problem/make_terms.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "island/island_motion.h"
+#include "island/tree_state.h"
 
 namespace blem_sim::dynamics {
 namespace {

@@ -47,9 +47,4 @@ double correctProducts(const TreeAhead& ahead, ForestMotion* motion, SolverSpace
 /** Moves the trees to the end of the step. Islands with a tree that is too fast gain no energy on the way. */
 void advanceIsland(const SolvedIsland& island, const FreeMotion& way, ForestMotion* motion, SolverSpace* space);
 
-void saveTree(const Forest& forest, int tree, const ForestMotion& motion, geometry::StateWriter* writer);
-void restoreTree(const Forest& forest, int tree, ForestMotion* motion, geometry::StateReader* reader);
-/** Whether the bodies of the scene stand where the tree has them, but for rounding. */
-bool standsAt(const Forest& forest, int tree, const ForestMotion& motion, const Scene& scene);
-
 }  // namespace blem_sim::dynamics
