@@ -192,8 +192,13 @@ LoadedSurface cloudSurface(SensedCloud cloud, const CloudOptions& options, const
 LoadedSurface meshSurface(geometry::TriangleMesh mesh, const std::string& source) {
   LoadedSurface surface;
   surface.report.name = surface.report.source = source;
+  // A triangle of a message that names a vertex twice is malformed, as one of a file is: no segment.
+  const auto collapsed = std::remove_if(mesh.elements.begin(), mesh.elements.end(),
+                                        [](const Vector3i& e) { return e[0] == e[1] || e[1] == e[2] || e[2] == e[0]; });
+  const int dropped = static_cast<int>(mesh.elements.end() - collapsed);
+  mesh.elements.erase(collapsed, mesh.elements.end());
   setTriangles(
-      {std::move(mesh), 0, 1, 0, {}, {}}, Mending::ON, [](const char*, double) {}, &surface);
+      {std::move(mesh), 0, 1, dropped, {}, {}}, Mending::ON, [](const char*, double) {}, &surface);
   noteDropped(&surface.report);
   if (surface.mesh->elements.empty()) throw InputError(source + ": no triangle with an area is left");
   return surface;

@@ -306,6 +306,32 @@ TEST(LiveMesh, RecordedMeshesGiveTheSameBits) {
   EXPECT_EQ(simulator.stateHash(), replayed.stateHash());
 }
 
+/** Every fourth triangle names a vertex twice. */
+geometry::TriangleMesh malformedFloor() {
+  geometry::TriangleMesh mesh = geometry::gridMesh(0.4, 0.4, 8, 8);
+  for (std::size_t i = 0; i < mesh.elements.size(); i += 4) mesh.elements[i][2] = mesh.elements[i][0];
+  return mesh;
+}
+
+TEST(LiveMesh, TrianglesThatNameAVertexTwiceAreNoSegments) {
+  SimulationConfig config = cubeAboveMesh();
+  config.environments[0].live.type = LiveConfig::Type::MESH;
+  Simulator simulator(config, model::UriResolver()), replayed(config, model::UriResolver());
+  Twin twin(&replayed);
+  simulator.watch(&twin);
+  CloudSurface surface = makeMeshSurface(malformedFloor(), "live");
+  EXPECT_EQ(surface.report.degenerate, 32);
+  EXPECT_EQ(surface.report.triangles, 96);
+  EXPECT_EQ(surface.report.segments, 0);
+  simulator.updateCloud("live", &surface);
+  stepFor(&simulator, 0.1);
+  simulator.watch(nullptr);
+  EXPECT_EQ(simulator.stateHash(), replayed.stateHash());
+  geometry::TriangleMesh nothing = geometry::gridMesh(1, 1, 1, 1);
+  for (Vector3i& e : nothing.elements) e[2] = e[0];
+  EXPECT_THROW(makeMeshSurface(nothing, "live"), InputError);
+}
+
 TEST(LiveMesh, SlotsAreUsedAgainHoweverOften) {
   Simulator simulator(cubeAboveMesh(), model::UriResolver());
   SeenFloor floor(0.16, 0.0002, 0.02);
