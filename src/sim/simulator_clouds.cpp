@@ -358,6 +358,7 @@ void Simulator::Impl::endFading() {
       if (collider == live.cloud) continue;
       forgetContacts({collider});
       world_.removeShape(collider);
+      layout_.clear();
     }
   }
 }

@@ -282,6 +282,21 @@ TEST(LiveMesh, ResetEndsAllFading) {
   EXPECT_EQ(simulator.stateHash(), fresh.stateHash());
 }
 
+TEST(LiveMesh, AStateSavedAfterAResetKnowsThatFadingHasEnded) {
+  Simulator simulator(cubeAboveMesh(), model::UriResolver()), fresh(cubeAboveMesh(), model::UriResolver());
+  SeenFloor floor(0.2);
+  exchange(&simulator, floor.next());
+  stepFor(&simulator, 0.5);
+  const model::SensedCloud last = floor.next();
+  exchange(&simulator, last);
+  simulator.save();
+  simulator.resetSimulation();
+  exchange(&fresh, last);
+  EXPECT_EQ(simulator.save().layout, fresh.save().layout);
+  fresh.restore(simulator.save());
+  EXPECT_EQ(simulator.stateHash(), fresh.stateHash());
+}
+
 /** Gives the calls of one simulation to another. */
 class Twin : public SimulatorWatcher {
  public:
