@@ -49,9 +49,9 @@ class JointSpline {
   explicit JointSpline(double position);
   /**
    * From `now` on: follows the present spline until the new trajectory's start, then the new knots (times absolute, strictly
-   * increasing). As joint_trajectory_controller has it: knots at or before `now` are dropped; the first one left is reached by a bridge
-   * from the present spline, of that knot's own order; between two knots the lower of their orders counts. Nothing changes if all were
-   * in the past. No knots given: hold the spline's present position.
+   * increasing). As joint_trajectory_controller has it: knots at or before `now`, or before the start, are dropped; the first one left is
+   * reached by a bridge from the present spline, of that knot's own order; between two knots the lower of their orders counts. Nothing
+   * changes if none is left. No knots given: hold the spline's present position.
    * @param continuous positions are taken to the turn nearest to the present one.
    */
   void splice(double now, double start, std::vector<Knot> knots, bool continuous);

@@ -99,6 +99,8 @@ void JointSpline::splice(double now, double start, std::vector<Knot> knots, bool
     return;
   }
   knots.erase(knots.begin(), firstAfter(knots, now));
+  // Points of negative times, before a start that is still to come, are as old as those before now.
+  knots.erase(knots.begin(), std::find_if(knots.begin(), knots.end(), [&](const Knot& knot) { return knot.time >= start; }));
   if (knots.empty()) return;
   lowerOrders(&knots);
 

@@ -19,11 +19,12 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-[[noreturn]] void refuseOld(double last, double next) {
+/** @param first [s] earliest time of a point */
+[[noreturn]] void refuseOld(double last, double first) {
   throw GoalRefused(GoalError::INVALID_GOAL,
-                    fmt::format("trajectory: all points lie before the next step, the last by {:.6g} s; date them later, or set the "
-                                "header's stamp to 0, which means now",
-                                next - last));
+                    fmt::format("trajectory: all points lie before the next step or the trajectory's start, the last by {:.6g} s; date "
+                                "them later, or set the header's stamp to 0, which means now",
+                                first - last));
 }
 
 }  // namespace
@@ -122,10 +123,12 @@ TrajectoryController::Plan TrajectoryController::planFor(const JointTrajectory& 
   }
   const double next = simulator_->time() + simulator_->config().time_step;
   const double start = trajectory.start_time > 0 ? trajectory.start_time : next;
-  const auto is_old = [&](const TrajectoryPoint& point) { return start + point.time_from_start <= next + SAME_TIME; };
+  const auto is_old = [&](const TrajectoryPoint& point) {
+    return point.time_from_start < 0 || start + point.time_from_start <= next + SAME_TIME;
+  };
   const auto first = std::find_if_not(trajectory.points.begin(), trajectory.points.end(), is_old);
   const double last = start + trajectory.points.back().time_from_start;
-  if (first == trajectory.points.end()) refuseOld(last, next);
+  if (first == trajectory.points.end()) refuseOld(last, std::max(start, next));
   Plan plan{{trajectory.joints, std::max(start, next), {first, trajectory.points.end()}}, std::max(start, next), last, 0};
   plan.old_points = static_cast<int>(first - trajectory.points.begin());
   for (TrajectoryPoint& point : plan.trajectory.points) point.time_from_start = start + point.time_from_start - plan.start;

@@ -106,6 +106,15 @@ TEST(JointSpline, PointsInThePastAreDropped) {
   expectSample(spline.sample(11.5), 6.5, 1, 0, 1e-15);
 }
 
+TEST(JointSpline, PointsBeforeAStartToComeAreDropped) {
+  JointSpline spline(5);
+  spline.splice(10, 12, {linear(11, -100), linear(11.9, -50), linear(13, 7)}, false);
+  expectSample(spline.sample(11.5), 5, 0, 0, 0);
+  expectSample(spline.sample(12.5), 6, 2, 0, 1e-15);
+  spline.splice(12.5, 20, {linear(14, -100), linear(15, -50)}, false);
+  expectSample(spline.sample(12.75), 6.5, 2, 0, 1e-15);
+}
+
 TEST(JointSpline, TheOldOneRunsUntilTheNewOneStarts) {
   JointSpline old(0), spliced(0);
   const std::vector<Knot> first = {cubic(1, 1, 2), cubic(3, -1, 0), quintic(6, 4, 0, 0)};

@@ -108,6 +108,20 @@ TEST_F(TrajectoryControllerTest, OldPointsAreDroppedAndAllOldIsRefused) {
   EXPECT_EQ(controller_->command(path({{-1, {5, 5}}, {0.1, {0.2, 0.1}}})), 1) << "a negative time is old";
 }
 
+TEST_F(TrajectoryControllerTest, PointsBeforeAStartToComeAreOld) {
+  make();
+  stepFor(&simulator_, 1);
+  EXPECT_EQ(refusalOf(goalOf(path({{-0.3, {1, 1}}, {-0.1, {2, 2}}}, 2))), GoalError::INVALID_GOAL);
+  EXPECT_EQ(controller_->accept(goalOf(path({{-0.1, {5, 5}}, {1, {0.3, 0.1}}}, 1.5))), 1);
+  stepFor(&simulator_, 0.45);
+  EXPECT_NEAR(controller_->state()[0].desired.position, 0, 1e-9);
+  const SimulationState state = simulator_.save();
+  simulator_.restore(state);
+  const auto outcome = outcomeWithin(1.2);
+  ASSERT_TRUE(outcome);
+  EXPECT_EQ(outcome->end, GoalEnd::SUCCEEDED);
+}
+
 TEST_F(TrajectoryControllerTest, AnEmptyTrajectoryHoldsTheActualPosition) {
   make();
   controller_->command(path({{0.5, {1, 1}}}));
