@@ -54,7 +54,7 @@ class ArticulatedStepper : public Stepper {
   NewtonSettings settingsFor(const Island& island) const;
   bool leap(const TermSource& source, Island* island);
   TreeAhead ahead(const TermSource& source, const Island& island, int tree) const;
-  NewtonReport solveTwice(const TermSource& source, const NewtonSettings& newton, Island* island);
+  NewtonReport solveCorrected(const TermSource& source, const NewtonSettings& newton, const NewtonReport& solved, Island* island);
   NewtonReport solveBounded(const TermSource& source, Island* island);
   void reckonWork(bool leaps, Island* island);
   void solveIsland(const Scene& scene, const StepInput& input, Island* island);
@@ -170,19 +170,21 @@ TreeAhead ArticulatedStepper::ahead(const TermSource& source, const Island& isla
   return {forest_, source.scene, source.input, tree, !island.contacts.empty()};
 }
 
-// Solves with velocity products at the middle of the step, again where their first guess was not good enough.
-NewtonReport ArticulatedStepper::solveTwice(const TermSource& source, const NewtonSettings& newton, Island* island) {
-  const NewtonReport first = island->solver.solve(forest_, motion_, island->model, newton, &space_);
+// Takes velocity products at the middle of the step as it was solved, and solves again where those before were not good enough.
+NewtonReport ArticulatedStepper::solveCorrected(const TermSource& source, const NewtonSettings& newton, const NewtonReport& solved,
+                                                Island* island) {
   double change = 0;
   for (const int tree : island->model.trees) change = std::max(change, correctProducts(ahead(source, *island, tree), &motion_, &space_));
-  return change <= SAME_PRODUCTS ? first : afterAll(first, island->solver.solveAgain(newton));
+  return change <= SAME_PRODUCTS ? solved : afterAll(solved, island->solver.solveAgain(newton));
 }
 
 NewtonReport ArticulatedStepper::solveBounded(const TermSource& source, Island* island) {
   const NewtonSettings newton = settingsFor(*island);
-  const NewtonReport report = solveTwice(source, newton, island);
+  const NewtonReport first = island->solver.solve(forest_, motion_, island->model, newton, &space_);
+  const NewtonReport report = solveCorrected(source, newton, first, island);
   if (!island->solver.limitCorrections(settings_.max_correction_speed)) return report;
-  return afterAll(report, island->solver.solveAgain(newton));
+  // Products of velocities that only corrections gave would push what stands still.
+  return solveCorrected(source, newton, afterAll(report, island->solver.solveAgain(newton)), island);
 }
 
 // Trees that an impact meets are followed as if they were fast: their speed after it is not known yet. @return whether an impact happened

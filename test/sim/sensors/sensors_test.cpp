@@ -278,5 +278,30 @@ TEST(MotorCurrentSensor, EffortOverTorqueConstant) {
   EXPECT_DOUBLE_EQ(reading<MotorCurrentReading>(geared.report(), 0).currents[0], value.efforts[0] / (40 * 0.5));
 }
 
+/** A bar of 1 kg on a hinge, a ball 5 cm from it in the ground, so that friction locks it. */
+std::string lockedBarUrdf() {
+  return R"(<robot name="arm"><link name="base"/><link name="bar">
+<inertial><origin xyz="0.25 0 0"/><mass value="1"/><inertia ixx="0.001" iyy="0.02" izz="0.02" ixy="0" ixz="0" iyz="0"/></inertial>
+<collision><origin xyz="0.05 0 0"/><geometry><sphere radius="0.05"/></geometry></collision></link>
+<joint name="hinge" type="continuous"><parent link="base"/><child link="bar"/><axis xyz="0 1 0"/></joint></robot>)";
+}
+
+TEST(ForceTorqueSensor, WhatStandsLockedInTheGroundFeelsNoPushOfCorrectionsThatWereGivenUp) {
+  SimulationConfig config;
+  config.gravity = Vector3::Zero();
+  config.environments = {ground()};
+  config.robots = {robot("arm", lockedBarUrdf(), true)};
+  config.robots[0].X_WR = makePose({0, 0, 0.0485});
+  config.robots[0].sensors = {forceTorque("hinge", "hinge", "child", "parent_to_child")};
+  Simulator simulator(config, model::UriResolver());
+  for (int i = 0; i < 20; ++i) {
+    const StepReport& report = simulator.step();
+    EXPECT_EQ(report.contacts.size(), 1u);
+    EXPECT_LT(report.bodies[0].w_WB.norm(), 1e-9);
+    EXPECT_LT(reading<ForceTorqueReading>(report, 0).force.norm(), 1e-6);
+    EXPECT_LT(forceOfWorld(report).norm(), 1e-6);
+  }
+}
+
 }  // namespace
 }  // namespace blem_sim::sim
