@@ -200,13 +200,17 @@ SunkSurface Simulator::Impl::belowBuried(const LiveGround& live, const InnerPoin
   for (const BuriedPoints& buried : inner.buried) farthest = std::max(farthest, wayOut(buried, live));
   SunkSurface below;
   below.radius = surface.radius + farthest;
-  std::vector<Vector3> places;
+  std::vector<SunkPoint> points;
   for (const BuriedPoints& buried : inner.buried) {
     const std::size_t stride = 1 + buried.vertices.size() / MOST_RISING;
-    for (std::size_t i = 0; i < buried.vertices.size(); i += stride) {
-      below.sunk.push_back({static_cast<int>(places.size()), wayOut(buried, live) - buried.way + buried.ways[i]});
-      places.push_back(surface.geometry->mesh().vertices[buried.vertices[i]] - farthest * (surface.X_BC.linear().transpose() * wayUp()));
-    }
+    for (std::size_t i = 0; i < buried.vertices.size(); i += stride)
+      points.push_back({buried.vertices[i], wayOut(buried, live) - buried.way + buried.ways[i]});
+  }
+  // A point in two bodies is one.
+  std::vector<Vector3> places;
+  for (const SunkPoint& point : byVertex(std::move(points))) {
+    below.sunk.push_back({static_cast<int>(places.size()), point.sink});
+    places.push_back(surface.geometry->mesh().vertices[point.vertex] - farthest * (surface.X_BC.linear().transpose() * wayUp()));
   }
   below.mesh = geometry::pointCloudMesh(places, nullptr);
   return below;

@@ -482,6 +482,19 @@ TEST(LiveMesh, AStateSavedWhileABodyIsLiftedIsRestoredToTheSameBits) {
   EXPECT_EQ(simulator.stateHash(), end);
 }
 
+TEST(LiveMesh, CornersInTwoBodiesThatCrossRiseOnce) {
+  SimulationConfig config = cubeAboveMesh(0.05);
+  config.objects.push_back(box("other", Vector3::Constant(0.1), 1, {0.061, 0.002, 0.05}));
+  Simulator simulator(config, model::UriResolver());
+  exchange(&simulator, SeenFloor(0.3, 0).next(0.005));
+  const SimulationState state = simulator.save();
+  stepFor(&simulator, 0.05);
+  const std::uint64_t end = simulator.stateHash();
+  simulator.restore(state);
+  stepFor(&simulator, 0.05);
+  EXPECT_EQ(simulator.stateHash(), end);
+}
+
 TEST(LiveMesh, SettingsThatDoNotReachItAreTold) {
   SimulationConfig config = cubeAboveMesh();
   EXPECT_TRUE(Simulator(config, model::UriResolver()).notes().empty());
