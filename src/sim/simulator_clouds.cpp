@@ -331,6 +331,7 @@ void Simulator::Impl::updateCloud(const std::string& environment, CloudSurface* 
   const int leaving = addFading(live, std::move(remains), true);
   const InnerPoints inner = innerPoints(world_, bodies_, live.cloud, live.is_mesh ? wayUp() : Vector3::Zero());
   const int rising = addFading(live, belowBuried(live, inner), false);
+  partWelded();  // what is welded to the environment touches none of its new surfaces
 
   fading_.setUp(wayUp());
   searchBeside(model);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "blem_sim/geometry/input_error.h"
+#include "blem_sim/sim/named_parts.h"
 #include "blem_sim/sim/simulator_input.h"
 #include "sim/simulation_scene.h"
 #include "support/sanitizers.h"
@@ -493,6 +494,20 @@ TEST(LiveMesh, CornersInTwoBodiesThatCrossRiseOnce) {
   simulator.restore(state);
   stepFor(&simulator, 0.05);
   EXPECT_EQ(simulator.stateHash(), end);
+}
+
+TEST(LiveMesh, WhatIsWeldedToItDoesNotTouchTheNextOne) {
+  Simulator simulator(cubeAboveMesh(0.053), model::UriResolver());
+  SeenFloor floor(0.2);
+  exchange(&simulator, floor.next());
+  simulator.attach("cube", findLink(simulator, "live::link", "test"), INFINITY, INFINITY);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_TRUE(simulator.step().contacts.empty()) << i;
+    exchange(&simulator, floor.next());
+  }
+  simulator.detach("cube");
+  stepFor(&simulator, 0.1);
+  EXPECT_FALSE(simulator.report().contacts.empty());
 }
 
 TEST(LiveMesh, SettingsThatDoNotReachItAreTold) {
