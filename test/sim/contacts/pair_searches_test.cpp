@@ -1,4 +1,7 @@
 // Pairs searched at once.
+#include <limits>
+
+#include "contacts/search/pair_searches.h"
 #include "sim/simulation_scene.h"
 
 namespace blem_sim::sim {
@@ -31,6 +34,47 @@ TEST(PairSearches, AStateRestoredElsewhereGoesOnTheSame) {
   stepFor(&first, 0.2);
   stepFor(&second, 0.2);
   EXPECT_EQ(first.stateHash(), second.stateHash());
+}
+
+/** Adds a box and a sheet through its middle. */
+void addCrossing(SimulatedWorld* to) {
+  SimulatedWorld& world = *to;
+  const auto add = [&world](geometry::TriangleMesh mesh, int body) {
+    contact::Collider collider;
+    collider.name = body == dynamics::WORLD_BODY ? "sheet" : "box";
+    collider.body = body;
+    collider.model = world.addModel(collider.name, ModelKind::OBJECT, 20);
+    collider.geometry =
+        std::make_shared<const contact::CollisionGeometry>(std::make_shared<const geometry::TriangleMesh>(std::move(mesh)));
+    world.addCollider(collider, 0.001, {}, {});
+  };
+  dynamics::BodySpec spec;
+  spec.inertial = {1, Vector3::Zero(), Matrix3::Identity()};
+  add(geometry::gridMesh(1, 1, 1, 1), dynamics::WORLD_BODY);
+  add(geometry::boxMesh(Vector3::Constant(0.1)), world.addBody(spec));
+}
+
+TEST(PairSearches, APairWhosePiercedContactsHaveFadedAwayStillCrosses) {
+  SimulatedWorld world(Vector3::Zero(), dynamics::SolverSettings());
+  addCrossing(&world);
+  std::vector<dynamics::BodyState> bodies;
+  world.bodyStates(&bodies);
+  FadingPoints fading;
+  constexpr double AWAY = std::numeric_limits<double>::infinity();
+  fading.add(0, -0.001, {{0, AWAY}, {1, AWAY}, {2, AWAY}, {3, AWAY}});
+  StepThreads threads(1);
+  PairWatch watch(&threads);
+  PairSearches searches(&threads);
+  WatchedPairs pairs;
+  FoundContacts before, found;
+  watch.find({world, bodies, nullptr, 0.001}, &pairs);
+  searches.find(world, before, fading, &pairs, &found);
+  EXPECT_TRUE(found.manifolds.empty());
+  EXPECT_NE(found.crossings.find(0, 1), nullptr);
+  fading.addCrossing(0, 1);
+  watch.find({world, bodies, nullptr, 0.001}, &pairs);
+  searches.find(world, before, fading, &pairs, &found);
+  EXPECT_TRUE(found.crossings.empty()) << "crossed when the sheet came";
 }
 
 }  // namespace

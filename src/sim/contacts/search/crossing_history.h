@@ -1,6 +1,7 @@
 // Pairs of colliders whose bare meshes cross, and the poses in which they were last apart.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "blem_sim/contact/collider.h"
@@ -29,9 +30,11 @@ class CrossingHistory {
   void clear() { recoveries_.clear(); }
   /**
    * Becomes the history of the next state: pairs that cross there, and those of the history before that are not apart yet.
-   * @param last_apart of the pairs searched, sorted by (a, b) @param manifolds of the first of them each
+   * @param last_apart of the pairs searched, sorted by (a, b) @param crossed whether their bare meshes cross @param manifolds theirs, as
+   * what fades has left them
    */
-  void goOn(const CrossingHistory& before, const std::vector<Recovery>& last_apart, const std::vector<contact::ContactManifold>& manifolds);
+  void goOn(const CrossingHistory& before, const std::vector<Recovery>& last_apart, const std::vector<std::uint8_t>& crossed,
+            const std::vector<contact::ContactManifold>& manifolds);
   void forget(int collider);
   void save(geometry::StateWriter* writer) const;
   /** @param colliders whose pairs they may be */

@@ -27,6 +27,7 @@ void PairSearches::find(const SimulatedWorld& world, const FoundContacts& before
   makeRoom(watched.size(), &found->manifolds);
   found->depths.resize(watched.size());
   last_apart_.resize(watched.size());
+  crossed_.resize(watched.size());
   found->flush.watch(world.colliders, watched, fading);
   watch(watched);
   // One by one: some searches take a thousand times as long as others.
@@ -39,11 +40,12 @@ void PairSearches::find(const SimulatedWorld& world, const FoundContacts& before
                          {pair.known, last.known ? &last.X_AB : nullptr, &known_[i].memory}, &workspaces_[thread].search, &manifold);
     manifold.a = pair.a;
     manifold.b = pair.b;
+    crossed_[i] = manifold.pierced && !fading.crosses(pair.a, pair.b);
     found->flush.dropCovered(world.colliders, motion, &workspaces_[thread].cover, &manifold);
     fading.apply(world.colliders, &manifold);
     found->depths[i] = manifold.maxDepth();
   });
-  found->crossings.goOn(before.crossings, last_apart_, found->manifolds);
+  found->crossings.goOn(before.crossings, last_apart_, crossed_, found->manifolds);
   keepWhatWasFound(watched.size(), found);
   found->known = true;
 }

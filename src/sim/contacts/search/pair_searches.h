@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "blem_sim/contact/collider_pairs.h"
@@ -56,6 +57,7 @@ class PairSearches {
   };
   std::vector<Workspace> workspaces_;                      // by thread
   std::vector<Recovery> last_apart_;                       // by pair
+  std::vector<std::uint8_t> crossed_;                      // by pair: bare meshes cross, also where what fades bears no more
   std::vector<contact::ContactManifold> spare_manifolds_;  // only their memory
 };
 
