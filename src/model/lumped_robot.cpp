@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "blem_sim/geometry/input_error.h"
@@ -90,6 +92,12 @@ class Lumping {
         fmt::format("planar joint '{}' becomes the joints {}/x, {}/y and {}/yaw", joint.name, joint.name, joint.name, joint.name));
   }
 
+  /** Whether a fixed joint was kept at the root link of a body. */
+  bool isKeptApart(const LumpedBody& body) const {
+    return std::any_of(robot_.joints.begin(), robot_.joints.end(),
+                       [&](const JointModel& joint) { return joint.child == body.links.front() && joint.type == JointType::FIXED; });
+  }
+
   void addInertial(int index, bool is_fixed_base) {
     LumpedBody& body = lumped_.bodies[index];
     if (body.links.empty()) return;
@@ -103,6 +111,10 @@ class Lumping {
     if (is_fixed_base) return;
     const std::string who = fmt::format("{}: link '{}'", robot_.source, body.name);
     if (!given) takeInertialOfShapes(&body);
+    if (!(body.inertial.mass > 0) && isKeptApart(body))
+      throw InputError(fmt::format("{}: a force_torque sensor at its fixed joint keeps it a body of its own, but its mass is {} kg; give it a "
+                                   "positive mass, or leave the sensor out",
+                                   who, body.inertial.mass));
     if (!(body.inertial.mass > 0))
       throw InputError(fmt::format("{}: it moves, but its mass is {} kg; give it a positive mass", who, body.inertial.mass));
     repairInertia(who, &body.inertial, &lumped_.notes);
