@@ -218,7 +218,8 @@ TEST(LumpedRobot, inertiasAreRepairedOrRefused) {
 TEST(LumpedRobot, massesOfLumpedLinksMayBeZero) {
   const RobotModel robot = loadRobot(link("a", "1") + link("b", "0") + jointOf("ab", "fixed", "a", "b"));
   EXPECT_EQ(lumpFixedJoints(robot, {}, false).bodies[0].inertial.mass, 1);
-  EXPECT_TRUE(isOneLineWith(refusal([&] { lumpFixedJoints(robot, {"ab"}, false); }), {"link 'b'", "mass is 0 kg", "force_torque", "leave the sensor out"}));
+  EXPECT_TRUE(isOneLineWith(refusal([&] { lumpFixedJoints(robot, {"ab"}, false); }),
+                            {"link 'b'", "mass is 0 kg", "force_torque", "leave the sensor out"}));
 }
 
 }  // namespace

@@ -44,8 +44,7 @@ void addCrossing(SimulatedWorld* to) {
     collider.name = body == dynamics::WORLD_BODY ? "sheet" : "box";
     collider.body = body;
     collider.model = world.addModel(collider.name, ModelKind::OBJECT, 20);
-    collider.geometry =
-        std::make_shared<const contact::CollisionGeometry>(std::make_shared<const geometry::TriangleMesh>(std::move(mesh)));
+    collider.geometry = std::make_shared<const contact::CollisionGeometry>(std::make_shared<const geometry::TriangleMesh>(std::move(mesh)));
     world.addCollider(collider, 0.001, {}, {});
   };
   dynamics::BodySpec spec;

@@ -21,6 +21,7 @@ struct ManyLinks {
     }
     for (int i = 0; i < CONTACTS; ++i) {
       ContactReport contact;
+      contact.point = contact.normal_BA = Vector3::Zero();
       contact.collider_a = 7 * i % (MODELS * LINKS);
       contact.collider_b = (11 * i + 1) % (MODELS * LINKS);
       contacts.push_back(contact);

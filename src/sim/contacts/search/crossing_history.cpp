@@ -18,8 +18,8 @@ bool isRigid(const Pose& X) {
 
 const Recovery* CrossingHistory::find(int a, int b) const { return contact::findPair(recoveries_, a, b); }
 
-void CrossingHistory::goOn(const CrossingHistory& before, const std::vector<Recovery>& last_apart,
-                           const std::vector<std::uint8_t>& crossed, const std::vector<contact::ContactManifold>& manifolds) {
+void CrossingHistory::goOn(const CrossingHistory& before, const std::vector<Recovery>& last_apart, const std::vector<std::uint8_t>& crossed,
+                           const std::vector<contact::ContactManifold>& manifolds) {
   recoveries_.clear();
   for (std::size_t i = 0; i < last_apart.size(); ++i) {
     const contact::ContactManifold& manifold = manifolds[i];
