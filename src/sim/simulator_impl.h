@@ -210,6 +210,8 @@ struct Simulator::Impl {
   void moveRigidly(int model, int body, const dynamics::BodyState& to);
   void moveModel(int body, const dynamics::BodyState& to);
   void setJointPositions(int robot, const std::vector<std::string>& joints, const std::vector<double>& positions);
+  /** @throws InputError: no model, or one that is gone */
+  void requireAlive(int model) const;
   void resetModel(int model);
   /** Bodies, joints, motors and loads of a model as they were at the start. */
   void restart(const ModelInfo& model, int robot);

@@ -104,12 +104,19 @@ std::vector<std::uint64_t> Simulator::Impl::forgetPairs(const std::vector<int>& 
   return ids;
 }
 
+void Simulator::Impl::requireAlive(int model) const {
+  if (model < 0 || model >= static_cast<int>(world_.models.size()) || !world_.models[model].alive)
+    throw InputError(fmt::format("model {}: there is none in this slot; take the index of one that is alive", model));
+}
+
 void Simulator::Impl::setLinkInertial(int body, int link, const geometry::MassProperties& inertial) {
   const int model = modelOfBody(body), index = world_.robotOf(model);
   if (index < 0) {
     world_.world.setInertial(body, inertial);
   } else {
     RobotInfo& robot = world_.robots[index];
+    if (link < 0 || link >= static_cast<int>(robot.description->links.size()))
+      throw InputError(fmt::format("'{}': has no link {}; its links are 0 to {}", robot.name, link, robot.description->links.size() - 1));
     const auto description = std::make_shared<model::RobotModel>(*robot.description);
     description->links[link].inertial = inertial;
     const auto lumped =
@@ -180,6 +187,7 @@ JointGains Simulator::motorGains(int robot, int joint) const {
 }
 
 void Simulator::setFriction(int model, double friction) {
+  impl_->requireAlive(model);
   const std::string& name = models().at(model).name;
   if (!(friction >= 0) || !isCommand(friction))
     throw InputError(fmt::format("'{}': friction: is {:g}; give it a finite number of at least 0", name, friction));

@@ -197,6 +197,7 @@ void Simulator::Impl::restart(const ModelInfo& model, int robot) {
 }
 
 void Simulator::Impl::resetModel(int index) {
+  requireAlive(index);
   detachAll(index);
   restart(world_.models.at(index), world_.robotOf(index));
   forgetContacts(world_.collidersOf(index));

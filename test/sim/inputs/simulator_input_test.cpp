@@ -165,6 +165,19 @@ TEST(SimulatorInput, ARefusedCallIsNotTold) {
   EXPECT_TRUE(notes.inputs.empty());
 }
 
+TEST(SimulatorInput, WhatARecordCouldNotNameIsRefusedOrToldAsItIs) {
+  Simulator simulator(sceneWithCloud(), model::UriResolver()), again(sceneWithCloud(), model::UriResolver());
+  InputNotes notes(&simulator);
+  const int cube = simulator.modelIndex("cube"), body = simulator.models()[cube].bodies[0], root = simulator.robots()[0].bodies.back();
+  simulator.setLinkInertial(body, 0, {2, Vector3::Zero(), Matrix3::Identity()});
+  applyInput(notes.inputs.back().second, &again);
+  EXPECT_EQ(simulator.stateHash(), again.stateHash());
+  EXPECT_THROW(simulator.setLinkInertial(root, -1, {2, Vector3::Zero(), Matrix3::Identity()}), InputError);
+  simulator.removeModel("cube");
+  EXPECT_THROW(simulator.resetModel(cube), InputError);
+  EXPECT_THROW(simulator.setFriction(cube, 0.5), InputError);
+}
+
 TEST(SimulatorInput, ABoundaryWidthToBeChosenIsChosenAgain) {
   Simulator simulator(sceneWithCloud(), model::UriResolver()), again(sceneWithCloud(), model::UriResolver());
   InputNotes notes(&simulator);
