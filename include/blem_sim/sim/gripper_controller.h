@@ -38,7 +38,7 @@ class GripperController {
   GripperState state() const;
 
  private:
-  int robot() const { return simulator_->robotIndex(robot_); }
+  int robot() const;  ///< @throws InputError: it was removed
   const RobotInfo& robotInfo() const { return simulator_->robots()[robot()]; }
   struct Goal {
     double position = 0;     ///< [m or rad]

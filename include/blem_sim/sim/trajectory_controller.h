@@ -93,7 +93,7 @@ class TrajectoryController {
   std::vector<JointSample> query(double time) const;
 
  private:
-  int robot() const { return simulator_->robotIndex(robot_); }
+  int robot() const;  ///< @throws InputError: it was removed
   const RobotInfo& robotInfo() const { return simulator_->robots()[robot()]; }
   /** A joint on its way to a goal. */
   struct GoalJoint {

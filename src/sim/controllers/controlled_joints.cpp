@@ -32,4 +32,10 @@ std::vector<int> controlledJoints(const RobotInfo& robot, const ControllerConfig
   return joints;
 }
 
+int controlledRobot(const Simulator& simulator, const ControllerConfig& config, const std::string& robot) {
+  const int index = simulator.robotIndex(robot);
+  if (index < 0) throw InputError(fmt::format("controller '{}': its robot '{}' was removed; make another controller", config.name, robot));
+  return index;
+}
+
 }  // namespace blem_sim::sim

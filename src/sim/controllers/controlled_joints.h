@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "blem_sim/sim/controller_config.h"
-#include "blem_sim/sim/simulator_types.h"
+#include "blem_sim/sim/simulator.h"
 
 namespace blem_sim::sim {
 
@@ -14,5 +14,8 @@ namespace blem_sim::sim {
  * @throws InputError: a joint is unknown or mimics another one
  */
 std::vector<int> controlledJoints(const RobotInfo& robot, const ControllerConfig& config);
+
+/** Index of the robot of a controller. @throws InputError: it was removed */
+int controlledRobot(const Simulator& simulator, const ControllerConfig& config, const std::string& robot);
 
 }  // namespace blem_sim::sim

@@ -19,6 +19,8 @@ int onlyJoint(const RobotInfo& robot, const ControllerConfig& config) {
 
 }  // namespace
 
+int GripperController::robot() const { return controlledRobot(*simulator_, config_, robot_); }
+
 GripperController::GripperController(Simulator* simulator, int robot, ControllerConfig config)
     : simulator_(simulator),
       robot_(simulator->robots().at(robot).name),

@@ -29,6 +29,8 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
 
 }  // namespace
 
+int TrajectoryController::robot() const { return controlledRobot(*simulator_, config_, robot_); }
+
 TrajectoryController::TrajectoryController(Simulator* simulator, int robot, ControllerConfig config)
     : simulator_(simulator),
       robot_(simulator->robots().at(robot).name),

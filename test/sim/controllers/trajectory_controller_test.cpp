@@ -195,6 +195,15 @@ TEST_F(TrajectoryControllerTest, QueriesTellThePathAndNotThePast) {
   EXPECT_TRUE(isOneLineWith(refusal([&] { controller_->query(0.3); }), {"0.3 s", "0.5 s"}));
 }
 
+TEST_F(TrajectoryControllerTest, OfARobotThatWasRemovedSaysSo) {
+  make();
+  controller_->accept(goalOf(path({{1, {1, 1}}})));
+  simulator_.removeModel(simulator_.robots()[0].name);
+  simulator_.step();
+  EXPECT_TRUE(isOneLineWith(refusal([&] { controller_->update(); }), {"controller", "was removed"}));
+  EXPECT_TRUE(isOneLineWith(refusal([&] { controller_->state(); }), {"was removed"}));
+}
+
 TEST_F(TrajectoryControllerTest, HalfATurnGoesTheWayOfTheNumbers) {
   make();
   const auto spinTo = [&](double target) {
