@@ -105,6 +105,21 @@ void fetchDescriptions(const std::string& source, sim::SimulationConfig* config)
   }
 }
 
+/** Names that only ROS can refuse. @throws InputError */
+void checkNames(const std::string& source, const sim::SimulationConfig& config) {
+  const std::string cure = "' is no ROS name; use letters, digits, _ and /, a letter or / first";
+  for (std::size_t i = 0; i < config.robots.size(); ++i) {
+    const std::string& name_space = config.robots[i].name_space;
+    if (!name_space.empty() && !isRosName(name_space))
+      throw InputError(source + ": robots[" + std::to_string(i) + "].namespace: '" + name_space + cure);
+  }
+  for (std::size_t i = 0; i < config.environments.size(); ++i) {
+    const std::string& topic = config.environments[i].live.topic;
+    if (!topic.empty() && !isRosName(topic))
+      throw InputError(source + ": environments[" + std::to_string(i) + "].topic: '" + topic + cure);
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> serviceFolders(const sim::SimulationConfig& config) {
@@ -153,6 +168,7 @@ NodeParameters readParameters(const ros::NodeHandle& private_node) {
   }
   sim::SimulationConfig config = sim::parseConfig(parameters, source, directoryOf(config_file));
   fetchDescriptions(source, &config);
+  checkNames(source, config);
   for (sim::RobotConfig& robot : config.robots) {
     robot.pid_gains = pidGainsIn(robot.name_space);
     if (robot.tf_prefix.empty()) robot.tf_prefix = tfPrefixIn(robot.name_space);

@@ -85,6 +85,18 @@ class StartupTest(unittest.TestCase):
         self.parameters["robots"][0]["sensors"][1]["topic"] = "tilt"
         self.assert_refused(self.parameters, "tilt")
 
+    def test_names_that_are_none(self):
+        for name in ("~own", "two words"):
+            self.setUp()
+            self.parameters["robots"][0]["namespace"] = name
+            self.assert_refused(self.parameters, "robots[0].namespace", name, "use letters")
+            self.setUp()
+            self.parameters["robots"][0]["odom"] = {"topic": name}
+            self.assert_refused(self.parameters, "odom.topic", name, "use letters")
+            self.setUp()
+            self.parameters["environments"].append({"name": "live", "topic": name})
+            self.assert_refused(self.parameters, "environments[1].topic", name, "use letters")
+
     def test_interrupt_ends_it_cleanly(self):
         for paused in (False, True):
             self.parameters["paused"] = paused

@@ -1,7 +1,6 @@
 #include "controllers/robot_controllers.h"
 
 #include <ros/console.h>
-#include <ros/names.h>
 
 #include <algorithm>
 #include <optional>
@@ -11,6 +10,7 @@
 #include "controllers/controller_parameters.h"
 #include "controllers/gripper_server.h"
 #include "controllers/trajectory_server.h"
+#include "messages/ros_names.h"
 
 namespace blem_sim::node {
 
@@ -71,8 +71,7 @@ std::optional<std::vector<sim::ControllerConfig>> configuredOf(const sim::Simula
 }
 
 void checkName(const std::string& name) {
-  std::string error;
-  if (name.empty() || name.front() == '/' || !ros::names::validate(name, error))
+  if (!isRosName(name) || name.front() == '/')
     throw InputError("controllers: '" + name + "' is no name in a ROS namespace; use letters, digits, _ and /");
 }
 

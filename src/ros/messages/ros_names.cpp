@@ -25,6 +25,11 @@ std::string tfPrefixIn(const std::string& name_space) {
   return prefix;
 }
 
+bool isRosName(const std::string& name) {
+  std::string error;
+  return !name.empty() && name.front() != '~' && ros::names::validate(name, error);
+}
+
 std::string sharedJoint(const sim::RobotInfo& a, const sim::RobotInfo& b) {
   const auto resolved = [](const sim::RobotInfo& robot) { return ros::names::clean("/" + robot.name_space); };
   if (resolved(a) != resolved(b)) return "";

@@ -16,6 +16,10 @@ std::string namedFrame(const sim::RobotInfo& robot, const std::string& name);
 /** The parameter tf_prefix that robot_state_publisher finds in a name space or above it; empty if there is none. */
 std::string tfPrefixIn(const std::string& name_space);
 
+/** False for what roscpp takes for no name of a topic or namespace; private names, which begin with ~, are none either: nothing here is
+ *  meant below the node. */
+bool isRosName(const std::string& name);
+
 /** Name of a joint that two robots of one namespace both have, so that they would take each other's commands; empty if there is none. */
 std::string sharedJoint(const sim::RobotInfo& a, const sim::RobotInfo& b);
 

@@ -1,7 +1,5 @@
 #include "publishers/robot_publishers.h"
 
-#include <ros/names.h>
-
 #include "blem_sim/geometry/input_error.h"
 #include "messages/conversions.h"
 #include "messages/joint_messages.h"
@@ -18,8 +16,7 @@ const std::string& nameOf(const sim::RobotInfo& robot) { return robot.name; }
 
 /** Topic of a robot's odometry. @throws InputError if it is none */
 const std::string& topicOf(const sim::RobotInfo& robot) {
-  std::string error;
-  if (ros::names::validate(robot.odom.topic, error)) return robot.odom.topic;
+  if (isRosName(robot.odom.topic)) return robot.odom.topic;
   throw InputError("robots: " + robot.name + ": odom.topic: '" + robot.odom.topic + "' is no ROS topic; use letters, digits, _ and /");
 }
 

@@ -1,6 +1,5 @@
 #include "publishers/sensor_publisher.h"
 
-#include <ros/names.h>
 #include <tf2_msgs/TFMessage.h>
 #include <boost/make_shared.hpp>
 
@@ -225,8 +224,7 @@ void SensorPublisher::modelsChanged() {
 }
 
 void SensorPublisher::checkTopic(const sim::SensorInfo& sensor, const std::string& topic, std::set<std::string>* names) const {
-  std::string error;
-  if (topic.empty() || !ros::names::validate(topic, error))
+  if (!isRosName(topic))
     throw InputError("sensors: " + sensor.config.name + ": '" + topic + "' is no ROS topic; use letters, digits, _ and /");
   const std::string name = nodeOf(sensor).resolveName(topic);
   if (!names->insert(name).second)

@@ -3,7 +3,6 @@
 #include <blem_sim/DeleteLight.h>
 #include <blem_sim/GetLightProperties.h>
 #include <blem_sim/SetLightProperties.h>
-#include <ros/names.h>
 
 #include "blem_sim/geometry/input_error.h"
 #include "messages/pid_gains.h"
@@ -36,8 +35,7 @@ void checkRequest(const SpawnModel::Request& request) {
   if (request.model_name.empty()) throw InputError("model_name: is empty; give the model a name");
   if (request.model_xml.empty()) throw InputError("model_xml: is empty; give the text of a URDF");
   if (request.model_xml.size() > LARGEST_URDF) throw InputError("model_xml: is larger than 64 MB; let meshes be files");
-  std::string error;
-  if (!request.robot_namespace.empty() && !ros::names::validate(request.robot_namespace, error))
+  if (!request.robot_namespace.empty() && !isRosName(request.robot_namespace))
     throw InputError("robot_namespace: '" + request.robot_namespace + "' is no ROS name; use letters, digits, _ and /");
 }
 
@@ -78,7 +76,7 @@ void SpawnServices::spawn(const SpawnModel::Request& request, SpawnModel::Respon
   try {
     checkJoints(simulator, request.model_name);
     loop_->modelsChanged();
-  } catch (const InputError&) {
+  } catch (...) {
     remove(request.model_name);
     throw;
   }

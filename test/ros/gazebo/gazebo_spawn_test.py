@@ -125,7 +125,7 @@ class GazeboSpawnTest(unittest.TestCase):
         before = models()
         for word, answer in (("taken", spawn("cube", BALL)), ("robot_namespace", spawn("second", self.arm)), ("model_xml", spawn("a", "")),
                              ("model_name", spawn("", BALL)), ("::", spawn("a::b", BALL)), ("a", spawn("a", "<robot")),
-                             ("robot_namespace", spawn("a", self.arm, "no name!")), ("initial_pose", spawn("a", BALL, x=float("nan"))),
+                             ("robot_namespace", spawn("a", self.arm, "no name!")), ("robot_namespace", spawn("a", self.arm, "~a")), ("initial_pose", spawn("a", BALL, x=float("nan"))),
                              ("reference_frame", spawn("a", BALL, frame="nowhere")), ("nobody", delete("nobody"))):
             self.assertFalse(answer.success, word)
             self.assertIn(word, answer.status_message)
