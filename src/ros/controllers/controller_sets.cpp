@@ -18,7 +18,8 @@ void ControllerSets::modelsChanged() {
 
 void ControllerSets::add(int robot) {
   const sim::RobotInfo& info = simulator_->robots()[robot];
-  const std::string place = node_.resolveName(info.name_space);
+  // Where its services are: "" and "/" are one place, "arm" and "/arm/" are.
+  const std::string place = ros::NodeHandle(node_, info.name_space).resolveName("controller_manager");
   const auto known = sets_.find(place);
   if (known != sets_.end()) {
     if (known->second.robot != info.name)

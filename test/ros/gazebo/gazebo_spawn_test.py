@@ -11,6 +11,7 @@ import rostest
 from geometry_msgs.msg import Point, Pose
 from sensor_msgs.msg import Imu, JointState
 from tf2_msgs.msg import TFMessage
+from trajectory_msgs.msg import JointTrajectoryPoint
 from visualization_msgs.msg import MarkerArray
 
 from blem_sim import msg, srv
@@ -21,6 +22,7 @@ import sim_client
 from sim_client import Recorder, service, wait_until
 
 sim_client.NODE = "/gazebo"
+ACTION = "/joint_trajectory_controller/follow_joint_trajectory"
 DATA = os.path.join(rospkg.RosPack().get_path("blem_sim"), "test", "data", "ros")
 ARM = os.path.join(DATA, "arm_on_base.urdf")
 # Sums of gazebo_msgs, as its generated code has them.
@@ -135,6 +137,20 @@ class GazeboSpawnTest(unittest.TestCase):
         self.assertLess(len(long_name.status_message), 1000)
         self.assertEqual(models(), before)
         sim_client.step(10)
+
+    def test_the_root_and_no_namespace_are_one(self):
+        answer = spawn("post", POST, "/", x=-2, z=2)
+        self.assertTrue(answer.success, answer.status_message)
+        goals = rospy.Publisher(ACTION + "/goal", msg.FollowJointTrajectoryActionGoal, queue_size=1)
+        results = Recorder(ACTION + "/result", msg.FollowJointTrajectoryActionResult)
+        self.addCleanup(results.stop)
+        wait_until(lambda: goals.get_num_connections() and results.connected(), "the action")
+        goal = msg.FollowJointTrajectoryActionGoal()
+        goal.goal.trajectory.joint_names = ["shoulder"]
+        goal.goal.trajectory.points = [JointTrajectoryPoint(positions=[0.1], time_from_start=rospy.Duration(0.1))]
+        goals.publish(goal)
+        rospy.rostime.wallsleep(sim_client.SETTLE)
+        self.assertEqual([result.result.error_string for result in results.messages()], [])  # no second robot's controller refuses it
 
     def test_one_body_is_an_object(self):
         markers = Recorder("/gazebo/object_markers", MarkerArray)
