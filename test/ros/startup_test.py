@@ -97,6 +97,12 @@ class StartupTest(unittest.TestCase):
             self.parameters["environments"].append({"name": "live", "topic": name})
             self.assert_refused(self.parameters, "environments[1].topic", name, "use letters")
 
+    def test_topics_of_the_node_itself(self):
+        for topic in ("/clock", "joint_states", "odom"):
+            self.setUp()
+            self.parameters["robots"][0]["sensors"][1]["topic"] = topic
+            self.assert_refused(self.parameters, "/" + topic.strip("/"), "another")
+
     def test_interrupt_ends_it_cleanly(self):
         for paused in (False, True):
             self.parameters["paused"] = paused

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "sending/immediate_queue.h"
+#include "sending/own_topic.h"
 #include "sending/poll_rounds.h"
 
 namespace blem_sim::node {
@@ -31,7 +32,7 @@ class GreetingPublisher {
     };
     ros::AdvertiseOptions options = ros::AdvertiseOptions::create<Message>(topic, queue_size, greet, ros::SubscriberStatusCallback(),
                                                                            ros::VoidConstPtr(), ImmediateQueue::instance());
-    publisher_ = node->advertise(options);
+    publisher_ = advertiseOwn(node, options);
   }
 
   /** @param message not to be changed any more while others hold it */

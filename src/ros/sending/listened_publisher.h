@@ -8,6 +8,7 @@
 #include <string>
 
 #include "sending/immediate_queue.h"
+#include "sending/own_topic.h"
 
 namespace blem_sim::node {
 
@@ -23,7 +24,7 @@ class ListenedPublisher {
     const auto goes = [listeners](const ros::SingleSubscriberPublisher&) { --*listeners; };
     ros::AdvertiseOptions options =
         ros::AdvertiseOptions::create<Message>(topic, queue_size, comes, goes, ros::VoidConstPtr(), ImmediateQueue::instance());
-    made.publisher_ = node->advertise(options);
+    made.publisher_ = advertiseOwn(node, options);
     return made;
   }
 

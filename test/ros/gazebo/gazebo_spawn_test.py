@@ -138,6 +138,21 @@ class GazeboSpawnTest(unittest.TestCase):
         self.assertEqual(models(), before)
         sim_client.step(10)
 
+    def test_topic_of_the_node_is_refused_and_leaves_nothing(self):
+        before = models()
+        block = """<gazebo reference="hand"><sensor name="eye" type="imu"><plugin name="p" filename="libgazebo_ros_imu_sensor.so">
+          <topicName>%s</topicName></plugin></sensor></gazebo></robot>"""
+        answer = spawn("second", self.arm.replace("</robot>", block % "/clock"), "second", x=2)
+        self.assertFalse(answer.success)
+        self.assertIn("/clock", answer.status_message)
+        self.assertEqual(models(), before)
+        self.assertFalse({"/second/odom", "/second/joint_states"} & published())
+        joints = Recorder("/joint_states", JointState)
+        self.addCleanup(joints.stop)
+        wait_until(joints.connected, "the configured robot's joint states")
+        sim_client.step(100)
+        joints.wait_for(5)
+
     def test_the_root_and_no_namespace_are_one(self):
         answer = spawn("post", POST, "/", x=-2, z=2)
         self.assertTrue(answer.success, answer.status_message)
