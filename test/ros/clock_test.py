@@ -64,6 +64,15 @@ class ClockTest(unittest.TestCase):
         times = self.times()
         self.assertTrue(all(a < b for a, b in zip(times, times[1:])))
 
+    def test_reset_at_the_start_tells_no_stamp_twice(self):
+        self.pause_and_settle()
+        sim_client.reset_simulation()
+        sim_client.wait_until(lambda: self.times()[-1] == 0, "the stamp of a reset")
+        self.clock.clear()
+        sim_client.reset_simulation()
+        self.wait_for_stamp(sim_client.step(2).stamp)
+        self.assertEqual(self.times(), [int(TIME_STEP * 1e9), int(2 * TIME_STEP * 1e9)])
+
     def test_late_subscriber_knows_the_time_during_a_pause(self):
         sim_client.pause()
         now = sim_client.step(1).stamp

@@ -14,18 +14,20 @@ ClockPublisher::ClockPublisher(ros::NodeHandle node, double rate, StepSender* se
 
 void ClockPublisher::publish(const sim::StepReport& report) {
   const ros::Time now = toStamp(report.time);
-  if (published_ && now <= last_) return;
+  // A restart may lead back, but not to the stamp that everybody has.
+  if (published_ && (restarted_ ? now == last_ : now <= last_)) return;
   if (!schedule_.due(report.time)) return;
   const auto message = messages_.spare();
   message->clock = now;
   sender_->add(&publisher_, message);
   published_ = true;
+  restarted_ = false;
   last_ = now;
 }
 
 void ClockPublisher::timeRestarted() {
   schedule_.restart();
-  published_ = false;
+  restarted_ = true;
 }
 
 }  // namespace blem_sim::node

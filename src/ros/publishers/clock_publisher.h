@@ -24,6 +24,7 @@ class ClockPublisher : public StepPublisher {
   PublishSchedule schedule_;
   StepSender* sender_;
   bool published_ = false;
+  bool restarted_ = false;  ///< and nothing was published since
   ros::Time last_;
 };
 
