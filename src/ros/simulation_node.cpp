@@ -11,6 +11,7 @@
 #include "clouds/live_clouds.h"
 #include "controllers/controller_sets.h"
 #include "loop/checkpoint.h"
+#include "loop/logger_services.h"
 #include "loop/simulation_loop.h"
 #include "parameters.h"
 #include "publishers/clock_publisher.h"
@@ -80,6 +81,7 @@ struct SimulationNode::Impl {
   std::unique_ptr<LiveSettings> settings;
   std::unique_ptr<StateServices> states;
   std::unique_ptr<RecordServices> records;
+  ros::ServiceServer loggers = advertiseLoggers(private_node);
 
   void addPublishers() {
     // The clock goes last: a node that wakes by it finds the messages of that time on their way.

@@ -13,6 +13,7 @@ import rospkg
 import rospy
 import rostest
 import yaml
+from roscpp.srv import GetLoggers
 from rosgraph_msgs.msg import Clock
 
 from blem_sim.srv import LoadEnvironment, RestoreState, SaveState
@@ -115,6 +116,16 @@ class StartupTest(unittest.TestCase):
         process = self.start(self.parameters)
         self.wait_until_ready(process)
         rosnode.kill_nodes([NAME])
+        self.assertEqual(process.wait(timeout=20), 0)
+
+    def test_loggers_are_listed_and_logging_goes_on(self):
+        process = self.start(self.parameters)
+        self.wait_until_ready(process)
+        for _ in range(3):
+            loggers = rospy.ServiceProxy(NAME + "/get_loggers", GetLoggers)().loggers
+            self.assertIn(("ros.blem_sim", "info"), [(logger.name, logger.level) for logger in loggers])
+            self.assertFalse(rospy.ServiceProxy(NAME + "/load_environment", LoadEnvironment)(name="a", uri="nowhere").success)
+        process.send_signal(signal.SIGINT)
         self.assertEqual(process.wait(timeout=20), 0)
 
     def test_services_use_no_files_if_they_are_not_allowed_to(self):
