@@ -4,8 +4,15 @@
 #include <ros/node_handle.h>
 #include <ros/param.h>
 
+#include <csignal>
+
 #include "sending/poll_rounds.h"
 #include "simulation_node.h"
+
+namespace {
+/** Ends the node between two steps, with its files whole. roscpp does so for SIGINT; docker, systemd and kill send SIGTERM. */
+void endBetweenSteps(int) { ros::requestShutdown(); }
+}  // namespace
 
 int main(int argc, char** argv) {
   ros::init(argc, argv, "blem_sim");
@@ -16,8 +23,10 @@ int main(int argc, char** argv) {
   const ros::NodeHandle handle;
   try {
     blem_sim::node::SimulationNode node;
+    std::signal(SIGTERM, endBetweenSteps);  // not earlier: nothing is lost while it loads
     node.run();
   } catch (const std::exception& error) {
+    if (ros::isShuttingDown()) return 0;  // it was told to end while it started, and roscpp gave it nothing any more
     ROS_FATAL("%s", error.what());
     ros::shutdown();
     return 2;

@@ -7,6 +7,7 @@ import tempfile
 import time
 import unittest
 
+import rosbag
 import rosgraph
 import rosnode
 import rospkg
@@ -106,11 +107,22 @@ class StartupTest(unittest.TestCase):
 
     def test_interrupt_ends_it_cleanly(self):
         for paused in (False, True):
-            self.parameters["paused"] = paused
-            process = self.start(self.parameters)
-            self.wait_until_ready(process)
-            process.send_signal(signal.SIGINT)
-            self.assertEqual(process.wait(timeout=20), 0)
+            for told in (signal.SIGINT, signal.SIGTERM):
+                self.parameters["paused"] = paused
+                process = self.start(self.parameters)
+                self.wait_until_ready(process)
+                process.send_signal(told)
+                self.assertEqual(process.wait(timeout=20), 0)
+
+    def test_record_is_whole_after_a_termination(self):
+        record = os.path.join(tempfile.mkdtemp(dir="/tmp"), "inputs.bag")
+        self.parameters["record"] = record
+        process = self.start(self.parameters)
+        self.wait_until_ready(process)
+        process.send_signal(signal.SIGTERM)
+        self.assertEqual(process.wait(timeout=20), 0)
+        with rosbag.Bag(record) as bag:
+            self.assertGreater(bag.get_message_count(), 0)
 
     def test_rosnode_kill_ends_it(self):
         process = self.start(self.parameters)
