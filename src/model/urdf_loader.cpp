@@ -45,7 +45,7 @@ urdf::ModelInterfaceSharedPtr parseQuietly(const std::string& xml, const std::st
   const std::lock_guard<std::mutex> lock(handler_mutex);
   const UrdfdomMessages messages;
   const urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(xml);
-  if (!model) {
+  if (!model || !messages.firstError().empty()) {  // a model with errors lacks parts of its links
     throw InputError(
         fmt::format("{}: not a URDF: {}; correct it (check_urdf FILE says more)", source, geometry::oneLine(messages.firstError())));
   }
@@ -164,7 +164,7 @@ void addNotes(RobotModel* robot) {
 
 RobotModel readRobot(const std::string& xml, const std::string& source, CollisionShapeReader* shapes, const LoadProgress& progress) {
   const UrdfOutline outline = checkUrdf(xml, source);
-  const urdf::ModelInterfaceSharedPtr model = parseQuietly(xml, source);
+  const urdf::ModelInterfaceSharedPtr model = parseQuietly(outline.simulated, source);
   RobotModel robot;
   robot.name = model->getName();
   robot.source = source;

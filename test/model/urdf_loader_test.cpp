@@ -113,6 +113,29 @@ TEST(UrdfLoader, primitivesStandInTheLinksFrame) {
   EXPECT_EQ(shapes[2].report.boundary_width, 0.25);
 }
 
+TEST(UrdfLoader, whatIsOnlyDrawnTakesNothingAway) {
+  const std::string inertial =
+      R"(<inertial><mass value="2"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>)";
+  for (const char* visual : {"", "<geometry/>", "<geometry><capsule radius=\"1\" length=\"1\"/></geometry>", "<geometry><mesh/></geometry>",
+                             "<origin xyz=\"0 0\"/><geometry><sphere radius=\"1 \"/></geometry>", "<material/>"}) {
+    const RobotModel robot = load("<material name=\"m\"/><material name=\"m\"/><link name=\"a\">" + inertial + "<visual>" + visual + "</visual>" +
+                                  collision("<box size=\"1 1 1\"/>") + "</link>");
+    EXPECT_EQ(robot.links[0].collisions.size(), 1u) << visual;
+    EXPECT_EQ(robot.links[0].inertial->mass, 2) << visual;
+  }
+}
+
+TEST(UrdfLoader, whiteSpaceAroundNumbersMeansNothing) {
+  const RobotModel robot = load(
+      "<link name=\"a\"><inertial><mass value=\" 2 \"/><inertia ixx=\"1 \" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"3\n\"/></inertial>" +
+      collision("<sphere radius=\"0.5 \"/>", " 1\t2\n3 ") + "</link>");
+  EXPECT_EQ(robot.links[0].inertial->mass, 2);
+  EXPECT_EQ(robot.links[0].inertial->inertia(2, 2), 3);
+  ASSERT_EQ(robot.links[0].collisions.size(), 1u);
+  EXPECT_EQ(robot.links[0].collisions[0].radius, 0.5);
+  EXPECT_EQ(robot.links[0].collisions[0].mesh->vertices[0], Vector3(1, 2, 3));
+}
+
 TEST(UrdfLoader, cylinderWithSpheresAtItsEndsIsOneCapsule) {
   const std::string ends = collision("<sphere radius=\"0.1\"/>", "1.5 0 0") + collision("<sphere radius=\"0.1\"/>", "0.5 0 0");
   const std::string middle = collision("<cylinder radius=\"0.1\" length=\"1\"/>", "1 0 0", "0 1.5707963267948966 0");

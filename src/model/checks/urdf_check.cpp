@@ -13,6 +13,7 @@
 #include "blem_sim/geometry/input_error.h"
 #include "blem_sim/geometry/one_line.h"
 #include "checks/urdf_gazebo.h"
+#include "checks/urdf_text.h"
 #include "checks/urdf_transmissions.h"
 #include "checks/urdf_tree_check.h"
 
@@ -233,6 +234,7 @@ UrdfOutline checkUrdf(const std::string& xml, const std::string& source) {
   outline.gazebo = readGazeboBlocks(robot, &outline.notes);
   for (const auto& [name, count] : left_out)
     outline.notes.push_back(fmt::format("<{}> left out ({} of them): it is not simulated", name, count));
+  outline.simulated = simulatedText(xml, &document);
   return outline;
 }
 

@@ -15,6 +15,7 @@ struct UrdfOutline {
   std::vector<Transmission> transmissions;
   std::vector<GazeboBlock> gazebo;
   std::vector<std::string> notes;
+  std::string simulated;  ///< the text that urdfdom shall read
 };
 
 /**
