@@ -76,7 +76,9 @@ class Matcher {
       : mesh_(mesh), topology_(topology), borders_(borders), nearest_(borders.size(), std::numeric_limits<double>::infinity()) {}
 
   void find() {
-    PlaceGrid grid(CRACK_WIDTH, static_cast<int>(borders_.size()));
+    const double reach = longestReach(borders_);
+    if (!(reach > 0)) return;
+    PlaceGrid grid(reach, static_cast<int>(borders_.size()));
     for (int f = 0; f < static_cast<int>(borders_.size()); ++f) {
       const Vector3 middle = 0.5 * (mesh_.vertices[borders_[f].a] + mesh_.vertices[borders_[f].b]);
       grid.visitNear(middle, [&](int e) { add(e, f); });
@@ -137,6 +139,12 @@ bool mayContinue(const Border& e, const Border& f) {
 }
 
 double reachOf(const Border& e, const Border& f) { return std::min(CRACK_WIDTH, REACH_OF_LENGTH * std::min(e.length, f.length)); }
+
+double longestReach(const std::vector<Border>& borders) {
+  double longest = 0;
+  for (const Border& border : borders) longest = std::max(longest, reachOf(border, border));
+  return longest;
+}
 
 bool areNeighbours(const TriangleMesh& mesh, const MeshTopology& topology, int vertex, int other) {
   const VertexEdges edges = topology.edgesOf(vertex);

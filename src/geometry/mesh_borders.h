@@ -26,6 +26,10 @@ bool mayContinue(const Border& e, const Border& f);
 /** Largest distance [m] of the borders' ends for a join: CRACK_WIDTH, less for short edges. */
 double reachOf(const Border& e, const Border& f);
 
+/** Largest reach [m] of all pairs: what is further apart is not joined. Small for meshes of small triangles, of which many lie within
+ *  CRACK_WIDTH. */
+double longestReach(const std::vector<Border>& borders);
+
 /** Whether two vertices are the ends of one edge of the mesh. */
 bool areNeighbours(const TriangleMesh& mesh, const MeshTopology& topology, int vertex, int other);
 

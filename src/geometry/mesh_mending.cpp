@@ -39,6 +39,7 @@ std::vector<double> kept(const std::vector<double>& values, const TriangleMesh& 
 /** Joins and splits borders. @param noise of the vertices [m], where known from the vertices joined @return false if nothing was to be
  * done; then the mesh is as it was */
 bool closeCracks(const MeshTopology& topology, TriangleMesh* mesh, std::vector<double>* noise, MeshReport* report, MeshMending* what) {
+  if (mesh->bounds().diagonal().norm() <= CRACK_WIDTH) return false;  // all of it fits into a crack
   const std::vector<Border> borders = bordersOf(*mesh, topology);
   if (borders.empty()) return false;
   VertexClusters clusters(static_cast<int>(mesh->vertices.size()));

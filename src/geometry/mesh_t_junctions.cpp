@@ -39,7 +39,7 @@ class OverlapFinder {
       segments.elements.emplace_back(first, first + 1, first + 1);
     }
     const Bvh tree(segments);
-    visitLeafPairs(tree, tree, Pose::Identity(), CRACK_WIDTH, [&](std::uint32_t leaf, std::uint32_t other) {
+    visitLeafPairs(tree, tree, Pose::Identity(), longestReach(borders_), [&](std::uint32_t leaf, std::uint32_t other) {
       const Bvh::Node &first = tree.nodes()[leaf], &second = tree.nodes()[other];
       for (std::uint32_t i = first.first; i < first.first + first.count; ++i) {
         for (std::uint32_t j = second.first; j < second.first + second.count; ++j) {
