@@ -167,6 +167,7 @@ void SimulationNode::run() {
   ROS_INFO("ready: %zu robots, %zu models, %zu colliders, time step %g s%s", simulator.robots().size(), simulator.models().size(),
            simulator.colliders().size(), simulator.config().time_step, impl_->loop.paused() ? ", paused" : "");
   impl_->loop.run(&impl_->callbacks, [this](bool paused) { impl_->diagnostics->serve(paused); });
+  impl_->recorder.end();
 }
 
 }  // namespace blem_sim::node

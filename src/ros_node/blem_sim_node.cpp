@@ -4,14 +4,29 @@
 #include <ros/node_handle.h>
 #include <ros/param.h>
 
+#include <chrono>
 #include <csignal>
+#include <cstdlib>
+#include <thread>
 
+#include "loop/checkpoint.h"
 #include "sending/poll_rounds.h"
 #include "simulation_node.h"
 
 namespace {
-/** Ends the node between two steps, with its files whole. roscpp does so for SIGINT; docker, systemd and kill send SIGTERM. */
-void endBetweenSteps(int) { ros::requestShutdown(); }
+/** Ends the node between two steps, with its files whole. roscpp does so for SIGINT; docker, systemd, clusters and kill send SIGTERM. */
+void endBetweenSteps(int) {
+  blem_sim::node::keepCheckpoints();  // a cluster that takes its machine back starts the node again
+  ros::requestShutdown();
+}
+
+/** Ends the program even if a thread, which may make a surface of a large cloud, takes longer. All files are whole by then. */
+void endSoon() {
+  std::thread([] {
+    std::this_thread::sleep_for(std::chrono::seconds(2));
+    std::_Exit(0);
+  }).detach();
+}
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -25,6 +40,7 @@ int main(int argc, char** argv) {
     blem_sim::node::SimulationNode node;
     std::signal(SIGTERM, endBetweenSteps);  // not earlier: nothing is lost while it loads
     node.run();
+    endSoon();
   } catch (const std::exception& error) {
     if (ros::isShuttingDown()) return 0;  // it was told to end while it started, and roscpp gave it nothing any more
     ROS_FATAL("%s", error.what());

@@ -1,6 +1,9 @@
 #!/usr/bin/python3
 """Bad parameters are refused with one line and exit code 2; a good node starts, and stops when it is told to."""
+import array
+import math
 import os
+import random
 import signal
 import subprocess
 import tempfile
@@ -16,13 +19,20 @@ import rostest
 import yaml
 from roscpp.srv import GetLoggers
 from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import PointCloud2, PointField
 
 from blem_sim.srv import LoadEnvironment, RestoreState, SaveState
-from sim_client import Recorder
+from sim_client import Recorder, wait_until
 
 NAME = "/starting_blem_sim"
 DATA = os.path.join(rospkg.RosPack().get_path("blem_sim"), "test", "data", "ros")
 WORLD = os.path.join(DATA, "world.yaml")
+
+
+def on_sphere(rng):
+    point = [rng.gauss(0, 1) for _ in "xyz"]
+    length = math.sqrt(sum(x * x for x in point))
+    return [x / length for x in point]
 
 
 class StartupTest(unittest.TestCase):
@@ -123,6 +133,36 @@ class StartupTest(unittest.TestCase):
         self.assertEqual(process.wait(timeout=20), 0)
         with rosbag.Bag(record) as bag:
             self.assertGreater(bag.get_message_count(), 0)
+
+    def test_checkpoint_stays_after_a_termination(self):
+        self.parameters["checkpoint_period"] = 0.05
+        self.parameters["checkpoint_file"] = os.path.join(tempfile.mkdtemp(dir="/tmp"), "kept.state")
+        for told, stays in ((signal.SIGTERM, True), (signal.SIGINT, False)):
+            process = self.start(self.parameters)
+            self.wait_until_ready(process)
+            wait_until(lambda: os.path.exists(self.parameters["checkpoint_file"]), "a checkpoint")
+            process.send_signal(told)
+            self.assertEqual(process.wait(timeout=20), 0)
+            self.assertEqual(os.path.exists(self.parameters["checkpoint_file"]), stays)
+
+    def test_ends_while_a_cloud_is_made_into_a_surface(self):
+        outliers = {"statistical_outliers": {"neighbours": 30, "factor": 2}}
+        self.parameters["environments"].append({"name": "live", "topic": "/large", "cloud": {"as": "mesh", "mesher": "poisson", "cell": 0.004, "filters": [outliers]}})
+        process = self.start(self.parameters)
+        self.wait_until_ready(process)
+        clouds = rospy.Publisher("/large", PointCloud2, queue_size=1)
+        wait_until(clouds.get_num_connections, "the node to listen")
+        count = 400000
+        message = PointCloud2(height=1, width=count, point_step=12, row_step=12 * count)
+        message.header.frame_id = "world"
+        message.fields = [PointField(axis, 4 * i, PointField.FLOAT32, 1) for i, axis in enumerate("xyz")]
+        rng = random.Random(1)
+        places = array.array("f", (x for _ in range(count) for x in on_sphere(rng)))
+        message.data = places.tobytes()
+        clouds.publish(message)
+        time.sleep(1.5)
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.wait(timeout=8), 0)
 
     def test_rosnode_kill_ends_it(self):
         process = self.start(self.parameters)

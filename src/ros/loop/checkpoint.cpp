@@ -2,12 +2,19 @@
 
 #include <ros/console.h>
 
+#include <atomic>
 #include <filesystem>
 
 #include "blem_sim/geometry/input_error.h"
 #include "blem_sim/sim/state_file.h"
 
 namespace blem_sim::node {
+
+namespace {
+std::atomic<bool> checkpoints_stay{false};
+}  // namespace
+
+void keepCheckpoints() { checkpoints_stay = true; }
 
 Checkpoint::Checkpoint(sim::Simulator* simulator, const std::string& file)
     : simulator_(simulator), file_(file), schedule_(1 / simulator->config().checkpoint_period) {
@@ -17,6 +24,7 @@ Checkpoint::Checkpoint(sim::Simulator* simulator, const std::string& file)
 }
 
 Checkpoint::~Checkpoint() {
+  if (checkpoints_stay) return;
   std::error_code error;
   std::filesystem::remove(file_, error);
 }

@@ -8,7 +8,11 @@
 
 namespace blem_sim::node {
 
-/** Writes the state into a file every checkpoint_period; a node that ends in order takes the file away. */
+/** From now on checkpoints stay when the node ends. May be called by a signal's handler. */
+void keepCheckpoints();
+
+/** Writes the state into a file every checkpoint_period; a node that ends in order takes the file away, but for
+ *  keepCheckpoints(). */
 class Checkpoint : public StepPublisher {
  public:
   /** Goes on from the file, if it is there. One that does not fit is put aside as FILE.refused. @param file absolute */

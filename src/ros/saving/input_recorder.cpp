@@ -18,7 +18,9 @@ constexpr std::size_t STEPS_PER_MESSAGE = 100;
 InputRecorder::InputRecorder(sim::Simulator* simulator, const std::string& configuration)
     : simulator_(simulator), configuration_(configuration), first_layout_(simulator->save().layout) {}
 
-InputRecorder::~InputRecorder() {
+InputRecorder::~InputRecorder() { end(); }
+
+void InputRecorder::end() {
   try {
     if (!file_.empty()) stop();
   } catch (const InputError& error) {

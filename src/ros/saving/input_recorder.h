@@ -22,6 +22,8 @@ class InputRecorder : public sim::SimulatorWatcher {
   void start(const std::string& file);
   /** Ends the record. @return in words, its length @throws InputError if there is none, or its end cannot be written */
   std::string stop();
+  /** Ends the record if there is one; what fails is logged. */
+  void end();
 
   void told(const sim::SimulatorInput& input) override;
   void stepped() override;
