@@ -115,8 +115,7 @@ void checkNames(const std::string& source, const sim::SimulationConfig& config) 
   }
   for (std::size_t i = 0; i < config.environments.size(); ++i) {
     const std::string& topic = config.environments[i].live.topic;
-    if (!topic.empty() && !isRosName(topic))
-      throw InputError(source + ": environments[" + std::to_string(i) + "].topic: '" + topic + cure);
+    if (!topic.empty() && !isRosName(topic)) throw InputError(source + ": environments[" + std::to_string(i) + "].topic: '" + topic + cure);
   }
 }
 

@@ -114,12 +114,11 @@ TEST(UrdfLoader, primitivesStandInTheLinksFrame) {
 }
 
 TEST(UrdfLoader, whatIsOnlyDrawnTakesNothingAway) {
-  const std::string inertial =
-      R"(<inertial><mass value="2"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>)";
+  const std::string inertial = R"(<inertial><mass value="2"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>)";
   for (const char* visual : {"", "<geometry/>", "<geometry><capsule radius=\"1\" length=\"1\"/></geometry>", "<geometry><mesh/></geometry>",
                              "<origin xyz=\"0 0\"/><geometry><sphere radius=\"1 \"/></geometry>", "<material/>"}) {
-    const RobotModel robot = load("<material name=\"m\"/><material name=\"m\"/><link name=\"a\">" + inertial + "<visual>" + visual + "</visual>" +
-                                  collision("<box size=\"1 1 1\"/>") + "</link>");
+    const RobotModel robot = load("<material name=\"m\"/><material name=\"m\"/><link name=\"a\">" + inertial + "<visual>" + visual +
+                                  "</visual>" + collision("<box size=\"1 1 1\"/>") + "</link>");
     EXPECT_EQ(robot.links[0].collisions.size(), 1u) << visual;
     EXPECT_EQ(robot.links[0].inertial->mass, 2) << visual;
   }
@@ -127,7 +126,8 @@ TEST(UrdfLoader, whatIsOnlyDrawnTakesNothingAway) {
 
 TEST(UrdfLoader, whiteSpaceAroundNumbersMeansNothing) {
   const RobotModel robot = load(
-      "<link name=\"a\"><inertial><mass value=\" 2 \"/><inertia ixx=\"1 \" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"3\n\"/></inertial>" +
+      "<link name=\"a\"><inertial><mass value=\" 2 \"/><inertia ixx=\"1 \" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" "
+      "izz=\"3\n\"/></inertial>" +
       collision("<sphere radius=\"0.5 \"/>", " 1\t2\n3 ") + "</link>");
   EXPECT_EQ(robot.links[0].inertial->mass, 2);
   EXPECT_EQ(robot.links[0].inertial->inertia(2, 2), 3);

@@ -8,9 +8,33 @@ namespace {
 
 using Element = tinyxml2::XMLElement;
 
-const std::set<std::string> NUMBERS = {"value", "ixx", "ixy", "ixz", "iyy", "iyz", "izz", "xyz", "rpy", "size", "radius", "length",
-                                       "scale", "lower", "upper", "effort", "velocity", "damping", "friction", "multiplier", "offset",
-                                       "rising", "falling", "k_position", "k_velocity", "soft_lower_limit", "soft_upper_limit"};
+const std::set<std::string> NUMBERS = {"value",
+                                       "ixx",
+                                       "ixy",
+                                       "ixz",
+                                       "iyy",
+                                       "iyz",
+                                       "izz",
+                                       "xyz",
+                                       "rpy",
+                                       "size",
+                                       "radius",
+                                       "length",
+                                       "scale",
+                                       "lower",
+                                       "upper",
+                                       "effort",
+                                       "velocity",
+                                       "damping",
+                                       "friction",
+                                       "multiplier",
+                                       "offset",
+                                       "rising",
+                                       "falling",
+                                       "k_position",
+                                       "k_velocity",
+                                       "soft_lower_limit",
+                                       "soft_upper_limit"};
 
 void removeChildren(Element* parent, const char* name) {
   while (Element* child = parent->FirstChildElement(name)) parent->DeleteChild(child);
