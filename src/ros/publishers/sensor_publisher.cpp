@@ -248,7 +248,7 @@ void SensorPublisher::publishMountings() {
     transform.transform = toTransform(mounting->X_LF);
     message.transforms.push_back(transform);
   }
-  if (message.transforms.empty()) return;
+  if (message.transforms.empty()) return mountings_.shutdown();
   mountings_ = node_.advertise<tf2_msgs::TFMessage>("/tf_static", 1, true);
   mountings_.publish(message);
 }

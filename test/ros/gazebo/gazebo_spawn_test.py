@@ -153,6 +153,20 @@ class GazeboSpawnTest(unittest.TestCase):
         sim_client.step(100)
         joints.wait_for(5)
 
+    def test_frames_of_sensors_go_with_their_robot(self):
+        block = """<gazebo reference="hand"><sensor name="eye" type="imu"><pose>0 0 0.1 0 0 0</pose>
+          <plugin name="p" filename="libgazebo_ros_imu_sensor.so"/></sensor></gazebo></robot>"""
+        answer = spawn("second", self.arm.replace("</robot>", block), "second", x=2)
+        self.assertTrue(answer.success, answer.status_message)
+        frames = Recorder("/tf_static", TFMessage)
+        self.assertIn("eye_frame", [transform.child_frame_id.split("/")[-1] for transform in frames.wait_for(1)[0].transforms])
+        frames.stop()
+        self.assertTrue(delete("second").success)
+        late = Recorder("/tf_static", TFMessage)
+        self.addCleanup(late.stop)
+        rospy.rostime.wallsleep(sim_client.SETTLE)
+        self.assertEqual(late.messages(), [])
+
     def test_the_root_and_no_namespace_are_one(self):
         answer = spawn("post", POST, "/", x=-2, z=2)
         self.assertTrue(answer.success, answer.status_message)
