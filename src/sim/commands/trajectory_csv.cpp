@@ -14,6 +14,7 @@ namespace blem_sim::sim {
 
 namespace {
 
+const std::string BYTE_ORDER_MARK = "\xef\xbb\xbf";  // of UTF-8, with which spreadsheets begin a file
 const std::string TIME = "time";
 const std::string VELOCITY_SUFFIX = "_vel";
 
@@ -130,6 +131,7 @@ JointTrajectory loadTrajectoryCsv(const std::string& file, const std::vector<std
   int number = 0;
   for (std::string line; std::getline(stream, line);) {
     ++number;
+    if (number == 1 && line.compare(0, BYTE_ORDER_MARK.size(), BYTE_ORDER_MARK) == 0) line.erase(0, BYTE_ORDER_MARK.size());
     const std::string content = trimmed(line);
     if (content.empty() || content.front() == '#') continue;
     if (columns.count == 0) {

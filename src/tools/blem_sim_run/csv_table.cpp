@@ -29,11 +29,16 @@ void put(std::ostream& stream, double value) {
 }  // namespace
 
 CsvTable::CsvTable(const sim::Simulator& simulator, const std::string& file, double rate)
-    : simulator_(simulator), stream_(file), rate_(rate) {
+    : simulator_(simulator), file_(file), stream_(file), rate_(rate) {
   if (!stream_) throw InputError(fmt::format("{}: cannot be written; check the folder", file));
   for (const sim::SensorInfo& sensor : simulator.sensors())
     readings_.emplace_back(sim::sensorFields(simulator, sensor).size(), std::numeric_limits<double>::quiet_NaN());
   writeHeader();
+}
+
+void CsvTable::close() {
+  stream_.close();
+  if (!stream_) throw InputError(fmt::format("{}: its rows could not all be written; make room on its disk", file_));
 }
 
 void CsvTable::writeHeader() {

@@ -18,12 +18,15 @@ class CsvTable {
   /** @param rate [Hz], 0 = every step @throws InputError if the file cannot be written */
   CsvTable(const sim::Simulator& simulator, const std::string& file, double rate);
   void add(const sim::StepReport& report);
+  /** Ends the file. @throws InputError if rows are not in it */
+  void close();
 
  private:
   void writeHeader();
   void writeRow(const sim::StepReport& report);
 
   const sim::Simulator& simulator_;
+  std::string file_;
   std::ofstream stream_;
   double rate_ = 0;
   std::vector<std::vector<double>> readings_;  ///< last ones, per sensor; NaN before the first

@@ -56,14 +56,16 @@ bool stepThrough(const RunOptions& options, sim::Simulator* simulator, RunRecord
   std::unique_ptr<CsvTable> table;
   if (!options.csv.empty()) table = std::make_unique<CsvTable>(*simulator, options.csv, options.csv_rate);
   const auto steps = static_cast<std::uint64_t>(std::llround(options.duration / simulator->config().time_step));
-  for (std::uint64_t step = 0; step < steps; ++step) {
+  bool finite = true;
+  for (std::uint64_t step = 0; step < steps && finite; ++step) {
     const sim::StepReport& report = simulator->step();
     record->add(report);
     if (table) table->add(report);
-    if (report.status & sim::STATE_NOT_FINITE) return false;
-    progress->show(step, report.time);
+    finite = (report.status & sim::STATE_NOT_FINITE) == 0;
+    if (finite) progress->show(step, report.time);
   }
-  return true;
+  if (table) table->close();
+  return finite;
 }
 
 void writeReport(const RunOptions& options, const RunRecord& record, const RunTimes& times, const std::vector<std::string>& notes) {

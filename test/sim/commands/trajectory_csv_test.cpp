@@ -38,6 +38,10 @@ TEST_F(TrajectoryCsv, ReadsVelocities) {
   EXPECT_TRUE(ignored_.empty());
 }
 
+TEST_F(TrajectoryCsv, ReadsWhatSpreadsheetsWrite) {
+  EXPECT_EQ(load("\xef\xbb\xbftime,hip\r\n0,1\r\n").points[0].positions, std::vector<double>{1});
+}
+
 TEST_F(TrajectoryCsv, AJointThatIsNamedLikeAVelocityIsAJoint) {
   const JointTrajectory trajectory = load("time,knee,knee_vel\n0,1,2\n");
   EXPECT_EQ(trajectory.joints, (std::vector<std::string>{"knee", "knee_vel"}));
