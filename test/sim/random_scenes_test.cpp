@@ -45,10 +45,10 @@ INSTANTIATE_TEST_SUITE_P(Seeds, RandomScenesFound,
                                            std::pair(265, 1.0), std::pair(3937, 0.25), std::pair(5694, 0.3), std::pair(8854, 0.35),
                                            std::pair(9600, 0.1), std::pair(41328, 0.14), std::pair(86531, 0.2)));
 
-void expectSoundWhateverHappens(std::uint64_t seed) {
+void expectSoundWhateverHappens(std::uint64_t seed, bool live = false) {
   SceneOutcome outcome;
-  EventfulScene(seed, &outcome).run(0.2);
-  expectSound(outcome, " --eventful");
+  EventfulScene(seed, live, &outcome).run(0.2);
+  expectSound(outcome, live ? " --live" : " --eventful");
 }
 
 std::uint64_t hashAfter(std::uint64_t seed, int threads, int steps) {
@@ -74,6 +74,13 @@ TEST_P(EventfulScenes, ComeBackAndStayFinite) {
   for (int i = 0; i < samples(10); ++i) expectSoundWhateverHappens(1 + static_cast<std::uint64_t>(10 * GetParam() + i));
 }
 INSTANTIATE_TEST_SUITE_P(Groups, EventfulScenes, ::testing::Range(0, 8));
+
+class LiveScenes : public ::testing::TestWithParam<int> {};
+
+TEST_P(LiveScenes, ComeBackAndGoOnAsTheirTwins) {
+  for (int i = 0; i < samples(10); ++i) expectSoundWhateverHappens(1 + static_cast<std::uint64_t>(10 * GetParam() + i), true);
+}
+INSTANTIATE_TEST_SUITE_P(Groups, LiveScenes, ::testing::Range(0, 6));
 
 /** Seeds that failed once. */
 class EventfulScenesFound : public ::testing::TestWithParam<int> {};

@@ -22,6 +22,7 @@ struct Options {
   double duration = 1, patience = 60;  // [s] simulated; of processor time per scene
   bool verbose = false;
   bool eventful = false;  ///< models come and go, things are moved, states come back
+  bool live = false;      ///< and live surfaces are exchanged
 };
 
 /** A scene that runs in another process. */
@@ -52,7 +53,7 @@ void tellHowFar(int) {
   setrlimit(RLIMIT_CPU, &limit);
   try {
     if (options.eventful)
-      EventfulScene(seed, &running).run(options.duration);
+      EventfulScene(seed, options.live, &running).run(options.duration);
     else
       runRandomScene(seed, options.duration, &running);
   } catch (const std::exception& error) {
@@ -147,7 +148,10 @@ void tell(const SceneOutcome& outcome, const Options& options) {
   for (int bit = 0; bit < STATUS_BITS; ++bit)
     if (outcome.bits[bit] > 0) std::printf(" %s:%d", sim::STEP_STATUS[bit].name, outcome.bits[bit]);
   if (outcome.failed())
-    std::printf(" | scripts/validate_random_scenes%s --seed %llu", options.eventful ? " --eventful" : "",
+    std::printf(" | scripts/validate_random_scenes%s --seed %llu",
+                options.live       ? " --live"
+                : options.eventful ? " --eventful"
+                                   : "",
                 static_cast<unsigned long long>(outcome.seed));
   std::printf("\n");
   std::fflush(stdout);
@@ -195,9 +199,10 @@ int main(int count, char** words) {
       options.patience = std::atof(value());
     else if (word == "--verbose")
       options.verbose = true;
-    else if (word == "--eventful")
+    else if (word == "--eventful" || word == "--live") {
       options.eventful = true;
-    else {
+      options.live = word == "--live";
+    } else {
       std::fprintf(stderr, "%s: unknown argument '%s'\n", words[0], words[i]);
       return 2;
     }

@@ -1,31 +1,62 @@
-// Runs a random scene to which random things happen, and sees whether what is refused changes nothing and what is saved comes back.
+// Runs a random scene to which random things happen, and sees whether what is refused changes nothing, what is saved comes back, and, with
+// live surfaces, a twin on two threads that hears of the calls goes on alike.
 #pragma once
 
 #include <optional>
 #include <string>
 
+#include "blem_sim/sim/simulator_input.h"
 #include "support/random/random_events.h"
 #include "support/random/random_scene_run.h"
+#include "support/random/random_surfaces.h"
 
 namespace blem_sim {
 
+/** A simulation that hears of what is done to another one. */
+class Twin : public sim::SimulatorWatcher {
+ public:
+  /** @param events whose calls it hears of */
+  Twin(sim::SimulationConfig config, const RandomEvents& events)
+      : simulator(withThreads(std::move(config)), model::UriResolver()), events_(events) {}
+  void told(const sim::SimulatorInput& input) override {
+    if (input.call == "spawn")
+      simulator.spawn(events_.lastSpawned());
+    else
+      applyInput(input, &simulator);
+  }
+  void stepped() override { simulator.step(); }
+
+  sim::Simulator simulator;
+
+ private:
+  static sim::SimulationConfig withThreads(sim::SimulationConfig config) {
+    config.solver.threads = 2;
+    return config;
+  }
+
+  const RandomEvents& events_;
+};
+
 class EventfulScene {
  public:
-  /** @param outcome told step by step */
-  EventfulScene(std::uint64_t seed, SceneOutcome* outcome)
+  /** @param live there are live surfaces as well, and a twin @param outcome told step by step */
+  EventfulScene(std::uint64_t seed, bool live, SceneOutcome* outcome)
       : scene_(randomScene(seed)),
-        simulator_(scene_.config, model::UriResolver()),
+        surfaces_(seed + 500009, sizeOf(seed)),
+        simulator_(configOf(live), model::UriResolver()),
         events_(seed + 1000003, sizeOf(seed)),
         when_(seed + 77),
         outcome_(*outcome) {
     outcome_.seed = seed;
+    if (live) simulator_.watch(&twin_.emplace(scene_.config, events_));
     commandRobots(scene_, &simulator_);
   }
 
   void run(double duration) {
     const long steps = std::lround(duration / scene_.config.time_step);
     for (long i = 0; i < steps && !outcome_.failed(); ++i) {
-      if (when_.chance(0.06)) happen();
+      if (when_.chance(0.06)) happen([this] { return events_.happen(&simulator_); });
+      if (twin_ && when_.chance(0.06)) happen([this] { return surfaces_.happen(&simulator_); });
       if (when_.chance(0.02)) comeBack();
       if (!outcome_.failed()) step();
     }
@@ -37,9 +68,15 @@ class EventfulScene {
     return randomTraits(&numbers).size;
   }
 
-  void happen() {
+  const sim::SimulationConfig& configOf(bool live) {
+    if (live) surfaces_.addTo(&scene_.config);
+    return scene_.config;
+  }
+
+  template <typename Call>
+  void happen(const Call& call) {
     const std::uint64_t before = simulator_.stateHash();
-    const Event event = events_.happen(&simulator_);
+    const Event event = call();
     if (event.refused) {
       if (simulator_.stateHash() != before) fail("refused, but changed");
       return;
@@ -75,10 +112,13 @@ class EventfulScene {
     else
       watch_->look(report, seconds);
     if (report.status & sim::STATE_NOT_FINITE) fail("not finite");
+    if (twin_ && twin_->simulator.stateHash() != simulator_.stateHash()) fail("its twin goes on by other bits");
   }
   void fail(const std::string& kind) { outcome_.fail(kind, fmt::format("at {:.3f} s, after: {}", simulator_.time(), last_)); }
 
   RandomScene scene_;
+  RandomSurfaces surfaces_;
+  std::optional<Twin> twin_;
   sim::Simulator simulator_;
   RandomEvents events_;
   SceneNumbers when_;

@@ -67,6 +67,9 @@ class RandomEvents {
     return {row.name, false, row.passive};
   }
 
+  /** The robot that was spawned last, with its gains, which a watcher is not told. */
+  const sim::RobotConfig& lastSpawned() const { return last_spawned_; }
+
  private:
   int anyModelIndex() { return numbers_.count(0, static_cast<int>(simulator_->models().size()) - 1); }
   std::string anyModel() { return simulator_->models()[anyModelIndex()].name; }
@@ -130,8 +133,8 @@ class RandomEvents {
   void spawn() {
     const int body = anyRoot();
     const Vector3 near = body < 0 ? Vector3::Zero() : Vector3(simulator_->world().bodyState(body).X_WB.translation());
-    RandomRobot robot = randomTree(&numbers_, fmt::format("spawned{}", spawned_++), near + Vector3(0, 0, 3 * size_), size_);
-    simulator_->spawn(robot.config);
+    last_spawned_ = randomTree(&numbers_, fmt::format("spawned{}", spawned_++), near + Vector3(0, 0, 3 * size_), size_).config;
+    simulator_->spawn(last_spawned_);
   }
   void attach() {
     const int model = anyModelIndex();
@@ -194,6 +197,7 @@ class RandomEvents {
   SceneNumbers numbers_;
   double size_;
   sim::Simulator* simulator_ = nullptr;
+  sim::RobotConfig last_spawned_;
   int spawned_ = 0, loaded_ = 0;
 };
 
