@@ -19,7 +19,6 @@ namespace {
 
 const char* const WORLD_LINK = "world";                     // root link of a URDF that is fixed to the world
 constexpr double SHORTEST_STEP = 1e-6, LONGEST_STEP = 0.1;  // [s]
-constexpr double LARGEST_GRAVITY = 1e4;                     // [m/s^2]
 
 ObjectConfig objectOf(const RobotConfig& robot) {
   ObjectConfig object;

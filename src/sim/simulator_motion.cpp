@@ -7,13 +7,13 @@
 
 #include "blem_sim/geometry/far_origin.h"
 #include "blem_sim/geometry/input_error.h"
+#include "config/scene_limits.h"
 #include "numbers/nearest_name.h"
 #include "simulator_impl.h"
 
 namespace blem_sim::sim {
 namespace {
 
-constexpr double FASTEST = 1e5;      // [m/s] and [rad/s]
 constexpr double SAME_PLACE = 1e-6;  // of a fixed base's pose
 
 /** Motion of a frame of a robot: its pose, and the velocity of its origin and of its axes. */

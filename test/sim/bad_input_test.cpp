@@ -39,7 +39,7 @@ std::vector<BadField> badFields() {
   using C = SimulationConfig*;
   return {
       {"time_step", [](C c, double x) { c->time_step = x; }, NOT_POSITIVE},
-      {"gravity", [](C c, double x) { c->gravity.z() = x; }, NO_NUMBER},
+      {"gravity", [](C c, double x) { c->gravity.z() = x; }, {NAN, INFINITE, -INFINITE, 1e5, -1e300}},
       {"solver.cfm", [](C c, double x) { c->solver.cfm = x; }, NEGATIVE},
       {"solver.correction_fraction", [](C c, double x) { c->solver.correction_fraction = x; }, {NAN, -1, 1.5}},
       {"solver.max_correction_speed", [](C c, double x) { c->solver.max_correction_speed = x; }, NEGATIVE},
@@ -50,7 +50,7 @@ std::vector<BadField> badFields() {
       {"contact.restitution", [](C c, double x) { c->contact.surface.restitution = x; }, {NAN, -0.1, 1.1}},
       {"contact.stiffness", [](C c, double x) { c->contact.surface.stiffness = x; }, {NAN, 0, -1e5}},
       {"contact.damping", [](C c, double x) { c->contact.surface.damping = x; }, NEGATIVE_OR_NAN},
-      {"contact.boundary_width", [](C c, double x) { c->contact.boundary_width = x; }, NEGATIVE},
+      {"contact.boundary_width", [](C c, double x) { c->contact.boundary_width = x; }, {NAN, INFINITE, -1, 1e4, 1e300}},
       {"contact.max_contacts_per_object", [](C c, double x) { c->contact.max_contacts_per_object = static_cast<int>(x); }, {0, -1}},
       {"environments: ground: friction", [](C c, double x) { c->environments[0].contact.friction = x; }, NEGATIVE},
       {"environments: ground: pose", [](C c, double x) { c->environments[0].X_WE.translation().x() = x; }, NO_PLACE},
@@ -60,7 +60,7 @@ std::vector<BadField> badFields() {
       {"objects: cube: stiffness", [](C c, double x) { c->objects[0].contact.stiffness = x; }, {NAN, 0, -1e5}},
       {"objects: cube: pose", [](C c, double x) { c->objects[0].X_WO.translation().z() = x; }, NO_PLACE},
       {"objects: cube: mesh_pose", [](C c, double x) { c->objects[0].X_OM.linear()(0, 0) = x; }, {NAN, 3}},
-      {"objects: cube: velocity", [](C c, double x) { c->objects[0].angular_velocity.x() = x; }, NO_NUMBER},
+      {"objects: cube: velocity", [](C c, double x) { c->objects[0].angular_velocity.x() = x; }, {NAN, INFINITE, -INFINITE, 1e6, 1e300}},
       {"objects: cube: inertia", [](C c, double x) { c->objects[0].inertia = Matrix3(x * Matrix3::Identity()); }, {NAN, INFINITE, 0, -1}},
       {"objects: cube: max_contacts", [](C c, double x) { c->objects[0].max_contacts = static_cast<int>(x); }, {0, -7}},
       {"objects: cube: com", [](C c, double x) { c->objects[0].com = Vector3(0, x, 0); }, NO_NUMBER},

@@ -14,6 +14,7 @@
 #include "blem_sim/geometry/input_error.h"
 #include "build/contact_settings.h"
 #include "build/robot_builder.h"
+#include "config/scene_limits.h"
 #include "gazebo/gazebo_robot.h"
 
 namespace blem_sim::sim {
@@ -173,8 +174,9 @@ void WorldBuilder::addRobot(const RobotConfig& config, SimulatedWorld* world) {
 
 void WorldBuilder::addObject(const ObjectConfig& config, SimulatedWorld* world) {
   world->checkNewName(config.name, "objects");
-  if (!config.linear_velocity.allFinite() || !config.angular_velocity.allFinite())
-    throw InputError(fmt::format("objects: {}: velocity: numbers must be finite", config.name));
+  const auto isVelocity = [](const Vector3& v) { return (v.array().abs() <= FASTEST).all(); };
+  if (!isVelocity(config.linear_velocity) || !isVelocity(config.angular_velocity))
+    throw InputError(fmt::format("objects: {}: velocity: needs finite numbers, not beyond {:g} m/s and rad/s", config.name, FASTEST));
   LoadWatch watch(log_, config.name);
   if (config.urdf.empty() && config.urdf_xml.empty())
     addMeshObject(config, &watch, world);

@@ -39,6 +39,9 @@ class Fields {
     if (!X.linear().isUnitary(1e-6) || X.linear().determinant() < 0)
       throw InputError(fmt::format("{}{}: is no rotation; give it orthogonal unit axes, right-handed", where_, field));
   }
+  void width(const BoundaryWidth& width) const {
+    number("boundary_width", width.metres, {0, WIDEST_LAYER, false, "metres from 0 to 1000"});
+  }
   void scale(const Vector3& scale) const {
     if (!scale.allFinite() || (scale.array() == 0).any())
       throw InputError(fmt::format("{}scale: needs three finite numbers other than 0", where_));
@@ -55,7 +58,7 @@ class Fields {
     if (const auto fault = faultOf(sensor.type, sensor.rays)) throw InputError(where_ + fault->key + ": " + fault->why);
   }
   void overrides(const ContactOverrides& o) const {
-    if (o.boundary_width) number("boundary_width", o.boundary_width->metres, NumberRange::notNegative());
+    if (o.boundary_width) width(*o.boundary_width);
     number("friction", o.friction, NumberRange::notNegative());
     number("restitution", o.restitution, NumberRange::fraction());
     number("impact_friction_factor", o.impact_friction_factor, NumberRange::fraction());
@@ -81,7 +84,7 @@ void checkSolver(const dynamics::SolverSettings& solver) {
 
 void checkContact(const ContactConfig& contact) {
   const Fields fields("contact.");
-  fields.number("boundary_width", contact.boundary_width.metres, NumberRange::notNegative());
+  fields.width(contact.boundary_width);
   fields.surface(contact.surface);
   fields.atLeastOne("max_contacts_per_robot", contact.max_contacts_per_robot);
   fields.atLeastOne("max_contacts_per_object", contact.max_contacts_per_object);
@@ -146,7 +149,8 @@ void checkConfig(const SimulationConfig& config) {
   if (models > MOST_MODELS)
     throw InputError(fmt::format("objects: {} environments, robots and objects are more than the {} that are simulated; give fewer", models,
                                  MOST_MODELS));
-  if (!config.gravity.allFinite()) throw InputError("gravity: needs three finite numbers, such as [0, 0, -9.81]");
+  if (!(config.gravity.array().abs() <= LARGEST_GRAVITY).all())
+    throw InputError(fmt::format("gravity: needs three numbers, not beyond {:g} m/s^2, such as [0, 0, -9.81]", LARGEST_GRAVITY));
   checkSolver(config.solver);
   checkContact(config.contact);
   for (const EnvironmentConfig& environment : config.environments) checkEnvironment(environment);
