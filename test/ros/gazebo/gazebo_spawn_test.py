@@ -242,6 +242,11 @@ class GazeboSpawnTest(unittest.TestCase):
         self.assertAlmostEqual(place("ball").z, 2)
         again = ["rosrun", "blem_sim", "spawn_model", "-urdf", "-param", "ball_description", "-model", "ball"]
         self.assertNotEqual(subprocess.call(again), 0)
+        odd = ["-urdf", "-file", ARM, "-model", "odd", "-J", "shoulder", "half"]
+        refused = subprocess.run(["rosrun", "blem_sim", "spawn_model"] + odd, stderr=subprocess.PIPE, universal_newlines=True)
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("position of shoulder: 'half' is no number", refused.stderr)
+        self.assertNotIn("odd", models())
 
     def test_z_configured_robot_goes_with_its_sensors(self):
         imu = Recorder("/imu", Imu)
