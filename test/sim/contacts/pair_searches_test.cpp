@@ -1,5 +1,9 @@
 // Pairs searched at once.
+#include <algorithm>
 #include <limits>
+#include <memory>
+#include <utility>
+#include <vector>
 
 #include "contacts/search/pair_searches.h"
 #include "sim/simulation_scene.h"
@@ -36,21 +40,46 @@ TEST(PairSearches, AStateRestoredElsewhereGoesOnTheSame) {
   EXPECT_EQ(first.stateHash(), second.stateHash());
 }
 
-/** Adds a box and a sheet through its middle. */
-void addCrossing(SimulatedWorld* to) {
-  SimulatedWorld& world = *to;
-  const auto add = [&world](geometry::TriangleMesh mesh, int body) {
-    contact::Collider collider;
-    collider.name = body == dynamics::WORLD_BODY ? "sheet" : "box";
-    collider.body = body;
-    collider.model = world.addModel(collider.name, ModelKind::OBJECT, 20);
-    collider.geometry = std::make_shared<const contact::CollisionGeometry>(std::make_shared<const geometry::TriangleMesh>(std::move(mesh)));
-    world.addCollider(collider, 0.001, {}, {});
-  };
+constexpr double LAYER = 0.0001;  // [m] of each collider
+
+void addMesh(geometry::TriangleMesh mesh, int body, SimulatedWorld* world) {
+  contact::Collider collider;
+  collider.name = body == dynamics::WORLD_BODY ? "sheet" : "box";
+  collider.body = body;
+  collider.model = world->addModel(collider.name, ModelKind::OBJECT, 20);
+  collider.geometry = std::make_shared<const contact::CollisionGeometry>(std::make_shared<const geometry::TriangleMesh>(std::move(mesh)));
+  world->addCollider(collider, LAYER, {}, {});
+}
+
+void addBox(double width, const Vector3& place, SimulatedWorld* world) {
   dynamics::BodySpec spec;
   spec.inertial = {1, Vector3::Zero(), Matrix3::Identity()};
-  add(geometry::gridMesh(1, 1, 1, 1), dynamics::WORLD_BODY);
-  add(geometry::boxMesh(Vector3::Constant(0.1)), world.addBody(spec));
+  spec.X_WB.translation() = place;
+  addMesh(geometry::boxMesh(Vector3::Constant(width)), world->world.addBody(spec), world);
+}
+
+/** Adds a box and a sheet through its middle. */
+void addCrossing(SimulatedWorld* world) {
+  addMesh(geometry::gridMesh(1, 1, 1, 1), dynamics::WORLD_BODY, world);
+  addBox(0.1, Vector3::Zero(), world);
+}
+
+// At 8 m/s two boxes of a millimetre would see all of each other, and thousands of contacts where meshes are rough.
+TEST(PairSearches, SmallThingsLookNoFartherThanTheirLength) {
+  for (const double width : {0.001, 0.1}) {
+    SimulatedWorld world(Vector3::Zero(), dynamics::SolverSettings());
+    addBox(width, Vector3::Zero(), &world);
+    addBox(width, Vector3(0, 0, width + 0.003), &world);
+    std::vector<dynamics::BodyState> bodies;
+    world.bodyStates(&bodies);
+    bodies[1].v_WCom.z() = -8;
+    StepThreads threads(1);
+    PairWatch watch(&threads);
+    WatchedPairs pairs;
+    watch.find({world, bodies, nullptr, 0.001}, &pairs);
+    ASSERT_EQ(pairs.pairs.size(), 1u);
+    EXPECT_NEAR(pairs.pairs[0].known, std::min(width + 2 * LAYER, 0.005), 1e-12);
+  }
 }
 
 TEST(PairSearches, APairWhosePiercedContactsHaveFadedAwayStillCrosses) {
@@ -60,7 +89,7 @@ TEST(PairSearches, APairWhosePiercedContactsHaveFadedAwayStillCrosses) {
   world.bodyStates(&bodies);
   FadingPoints fading;
   constexpr double AWAY = std::numeric_limits<double>::infinity();
-  fading.add(0, -0.001, {{0, AWAY}, {1, AWAY}, {2, AWAY}, {3, AWAY}});
+  fading.add(0, -LAYER, {{0, AWAY}, {1, AWAY}, {2, AWAY}, {3, AWAY}});
   StepThreads threads(1);
   PairWatch watch(&threads);
   PairSearches searches(&threads);

@@ -34,6 +34,18 @@ contact::Contact seenFromStart(const WayOfPair& pair, const contact::Contact& co
   return seen;
 }
 
+void sortById(std::vector<contact::Contact>* contacts) {
+  std::sort(contacts->begin(), contacts->end(), [](const contact::Contact& a, const contact::Contact& b) { return a.id < b.id; });
+}
+
+/** The contact of an id among contacts sorted by id; null if there is none. */
+template <typename It>
+const contact::Contact* find(It begin, It end, std::uint64_t id) {
+  const auto place =
+      std::lower_bound(begin, end, id, [](const contact::Contact& contact, std::uint64_t wanted) { return contact.id < wanted; });
+  return place != end && place->id == id ? &*place : nullptr;
+}
+
 }  // namespace
 
 bool PairWay::isDoubtful(const WayOfPair& pair) const {
@@ -96,9 +108,8 @@ bool PairWay::search(const WayOfPair& pair, const FlushSurfaces& flush, const st
 }
 
 bool PairWay::isMetAsItIs(const contact::Contact& contact) const {
-  return std::any_of(met_.contacts.begin(), met_.contacts.end(), [&](const contact::Contact& met) {
-    return met.id == contact.id && (met.normal_BA - contact.normal_BA).norm() < SAME_NORMAL;
-  });
+  const contact::Contact* const met = find(met_.contacts.begin(), met_.contacts.end(), contact.id);
+  return met && (met->normal_BA - contact.normal_BA).norm() < SAME_NORMAL;
 }
 
 bool PairWay::follow(const WayOfPair& pair, const FlushSurfaces& flush, const std::vector<contact::Collider>& colliders,
@@ -108,22 +119,21 @@ bool PairWay::follow(const WayOfPair& pair, const FlushSurfaces& flush, const st
     if (touches(contact)) touching_.push_back(contact.id);
   std::sort(touching_.begin(), touching_.end());
   if (!search(pair, flush, colliders, motion)) return false;
+  sortById(&met_.contacts);
   contacts->clear();
   for (const contact::Contact& contact : pair.now.contacts)
     if (!acts(pair, contact) || (touches_ && isMetAsItIs(contact))) contacts->push_back(contact);
   const std::size_t kept = contacts->size();
   if (kept == pair.now.contacts.size()) return false;
-  const auto isKept = [&](std::uint64_t id) {
-    return std::any_of(contacts->begin(), contacts->begin() + kept, [id](const contact::Contact& contact) { return contact.id == id; });
-  };
+  sortById(contacts);
   for (const contact::Contact& contact : met_.contacts) {
-    if (isKept(contact.id)) continue;
+    if (find(contacts->begin(), contacts->begin() + kept, contact.id)) continue;
     contact::Contact seen = seenFromStart(pair, contact, met_time_);
     if (reach(pair, seen) < -TOUCHING) continue;  // behind the pair by then
     if (!touches_) seen.depth = std::min(seen.depth, -(reach(pair, seen) + TOUCHING));
     contacts->push_back(seen);
   }
-  std::sort(contacts->begin(), contacts->end(), [](const contact::Contact& a, const contact::Contact& b) { return a.id < b.id; });
+  sortById(contacts);
   return true;
 }
 

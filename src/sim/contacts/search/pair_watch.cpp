@@ -13,7 +13,8 @@ namespace {
 constexpr double BASE_MARGIN = 0.0005;         // [m], or
 constexpr double BASE_MARGIN_OF_LENGTH = 0.1;  // of the shorter collider
 // Contacts farther than this are not searched: before they come close, the step guard ends the substep.
-constexpr double LEAST_MAX_MARGIN = 0.005;  // [m], or
+// Beyond their own length, small things see each other whole: contacts of all their features.
+constexpr double LEAST_MAX_MARGIN = 0.005;  // [m], at most the length of the shorter collider, or
 constexpr double MAX_MARGIN_OF_LAYER = 2;   // layers
 constexpr double UNGUARDED_MARGIN = 0.1;    // [m] where there is no layer, and over half-spaces: 66 m/s at 1 ms
 // Forces may speed a body up during the step; a margin covers this times the present motion.
@@ -37,8 +38,16 @@ double extentOf(const contact::Collider& collider) {
   return collider.geometry->bounds().sizes().maxCoeff() + 2 * collider.radius;
 }
 
+/** Length [m] of the shorter collider. */
+double lengthOf(const contact::Collider& a, const contact::Collider& b) { return std::min(extentOf(a), extentOf(b)); }
+
 double baseMargin(const contact::Collider& a, const contact::Collider& b) {
-  return std::min(BASE_MARGIN, BASE_MARGIN_OF_LENGTH * std::min(extentOf(a), extentOf(b)));
+  return std::min(BASE_MARGIN, BASE_MARGIN_OF_LENGTH * lengthOf(a, b));
+}
+
+/** Largest margin [m] where a step guard ends the substep. */
+double guardedMargin(const contact::Collider& a, const contact::Collider& b, double layer) {
+  return std::max(std::min(LEAST_MAX_MARGIN, lengthOf(a, b)), MAX_MARGIN_OF_LAYER * layer);
 }
 
 /** WatchedPair::known: most [m] that two colliders can approach each other, moving on as they do, or if one of them is stopped dead. */
@@ -46,7 +55,7 @@ double knownMargin(const StateAhead& ahead, const std::vector<contact::ColliderM
   const contact::Collider &a = ahead.world.colliders[pair.a], &b = ahead.world.colliders[pair.b];
   const double layer = a.radius + b.radius;
   const bool guarded = layer > 0 && !a.geometry->isHalfSpace() && !b.geometry->isHalfSpace();
-  const double most = std::min(pair.margin, guarded ? std::max(LEAST_MAX_MARGIN, MAX_MARGIN_OF_LAYER * layer) : UNGUARDED_MARGIN);
+  const double most = std::min(pair.margin, guarded ? guardedMargin(a, b, layer) : UNGUARDED_MARGIN);
   const double base = baseMargin(a, b);
   if (most <= base) return most;
   const double alone = std::max(motion[pair.a].reach, motion[pair.b].reach) / REACH_FACTOR, least = std::max(alone, base);
