@@ -14,6 +14,9 @@ namespace {
 constexpr double SAME = 1e-9;  // [m] partners as near as each other
 /** Borders overlap if they lie side by side over this many times the distance allowed: crossing or touching ends are none. */
 constexpr double MIN_OVERLAP = 3;
+/** Pairs of borders that are looked at, at most: seconds. Surfaces have tens per border; long borders all across each other have as many
+ *  as there are pairs. */
+constexpr std::size_t MOST_PAIRS = 20000000, MOST_PAIRS_PER_BORDER = 500;
 
 /** The point of a segment that is nearest to p, from 0 at the beginning to 1 at the end. */
 double nearestParameter(const Vector3& p, const Vector3& from, const Vector3& to) {
@@ -29,9 +32,13 @@ struct Overlap {
 class OverlapFinder {
  public:
   OverlapFinder(const TriangleMesh& mesh, const std::vector<Border>& borders)
-      : mesh_(mesh), borders_(borders), nearest_(borders.size(), std::numeric_limits<double>::infinity()) {}
+      : mesh_(mesh),
+        borders_(borders),
+        most_pairs_(std::max(MOST_PAIRS, MOST_PAIRS_PER_BORDER * borders.size())),
+        nearest_(borders.size(), std::numeric_limits<double>::infinity()) {}
 
-  void find() {
+  /** @return false if there are too many pairs to look at; then there are no overlaps */
+  bool find() {
     TriangleMesh segments;
     for (const Border& border : borders_) {
       const int first = static_cast<int>(segments.vertices.size());
@@ -39,14 +46,18 @@ class OverlapFinder {
       segments.elements.emplace_back(first, first + 1, first + 1);
     }
     const Bvh tree(segments);
-    visitLeafPairs(tree, tree, Pose::Identity(), longestReach(borders_), [&](std::uint32_t leaf, std::uint32_t other) {
+    const auto may_go_on = [&](std::uint32_t, std::uint32_t) { return pairs_ <= most_pairs_; };
+    visitLeafPairsIf({tree, tree, Pose::Identity()}, longestReach(borders_), may_go_on, [&](std::uint32_t leaf, std::uint32_t other) {
       const Bvh::Node &first = tree.nodes()[leaf], &second = tree.nodes()[other];
+      pairs_ += static_cast<std::size_t>(first.count) * second.count;
       for (std::uint32_t i = first.first; i < first.first + first.count; ++i) {
         for (std::uint32_t j = second.first; j < second.first + second.count; ++j) {
           if (tree.order()[i] < tree.order()[j]) add(tree.order()[i], tree.order()[j]);
         }
       }
     });
+    if (pairs_ > most_pairs_) overlaps_.clear();
+    return pairs_ <= most_pairs_;
   }
 
   const std::vector<Overlap>& overlaps() const { return overlaps_; }
@@ -86,6 +97,8 @@ class OverlapFinder {
 
   const TriangleMesh& mesh_;
   const std::vector<Border>& borders_;
+  const std::size_t most_pairs_;
+  std::size_t pairs_ = 0;
   std::vector<double> nearest_;
   std::vector<Overlap> overlaps_;
 };
@@ -162,7 +175,7 @@ std::vector<EdgeSplit> joinOverlapping(const TriangleMesh& mesh, const MeshTopol
                                        VertexClusters* clusters, MeshMending* what) {
   if (borders.empty()) return {};
   OverlapFinder finder(mesh, borders);
-  finder.find();
+  what->given_up = !finder.find();
   OverlapJoiner joiner(mesh, finder, topology, clusters);
   for (const Overlap& overlap : finder.overlaps()) {
     if (!finder.isNearest(overlap)) continue;

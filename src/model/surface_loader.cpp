@@ -85,6 +85,7 @@ geometry::TriangleMesh mended(geometry::TriangleMesh&& cleaned, geometry::MeshRe
   geometry::MeshMending what;
   geometry::TriangleMesh mesh = geometry::mendMesh(std::move(cleaned), report, &what, topology);
   if (what.cracks > 0) report->notes.push_back(fmt::format("{} cracks up to {:.3g} um closed", what.cracks, what.widest_crack / MICRO));
+  if (what.given_up) report->notes.push_back("T-junctions stay: too many open edges lie across each other; give a mesh that is a surface");
   if (what.split_edges > 0) report->notes.push_back(fmt::format("{} edges split at T-junctions", what.split_edges));
   if (what.flattened > 0)
     report->notes.push_back(

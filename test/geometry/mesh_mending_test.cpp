@@ -292,5 +292,17 @@ TEST(MeshMending, RobotsMoveByLittle) {
   }
 }
 
+TEST(MeshMending, bordersAllAcrossEachOtherAreLeftAlone) {
+  RandomShapes random(7);
+  TriangleMesh soup;
+  for (int i = 0; i < 6000; ++i) {
+    for (int corner = 0; corner < 3; ++corner) soup.vertices.push_back(random.point(1).cwiseProduct(Vector3(1, 1, 0)));
+    soup.elements.emplace_back(3 * i, 3 * i + 1, 3 * i + 2);
+  }
+  const Mended mended(soup);
+  EXPECT_TRUE(mended.what.given_up) << "it would take time as the square of their number";
+  EXPECT_TRUE(mended.same());
+}
+
 }  // namespace
 }  // namespace blem_sim::geometry

@@ -11,6 +11,7 @@ struct MeshMending {
   int cracks = 0;           ///< pairs of border edges joined end to end
   double widest_crack = 0;  ///< [m] largest distance between ends that were joined
   int split_edges = 0;      ///< border edges split where corners of other triangles lie on them (T-junctions)
+  bool given_up = false;    ///< T-junctions stay: too many border edges lie across each other to look at all pairs
   int planes = 0;           ///< nearly planar patches made planar
   int flattened = 0;        ///< vertices moved for that
   double farthest = 0;      ///< [m] the longest such move
