@@ -6,7 +6,7 @@
 
 namespace blem_sim::reduction {
 
-constexpr int SPRING_DIRECTIONS = 32;
+constexpr int SPRING_DIRECTIONS = 96;  // so many that each corner of a rectangle has a fifth of them, however it is turned
 
 struct alignas(64) SpringRow {
   double of[SPRING_DIRECTIONS];  ///< by direction

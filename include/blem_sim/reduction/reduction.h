@@ -94,7 +94,7 @@ class ReductionMemory {
 
 /**
  * Sets Contact::weight where surfaces are compliant, for reduced contacts of one manifold: the springs at the corners of a rectangle, an
- * edge or a point count fully, those of a patch with more corners by the share of 32 directions in which each lies farthest out. A patch
+ * edge or a point count fully, those of a patch with more corners by the share of 96 directions in which each lies farthest out. A patch
  * is as stiff as five springs at most, whatever its tessellation; contacts at one place share.
  */
 void weighSprings(std::vector<contact::Contact>& contacts, ReductionWorkspace* workspace);
