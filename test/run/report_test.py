@@ -123,7 +123,20 @@ class ReportTest(RunCase):
         last = json.loads((self.folder / "r.json").read_text())
         self.assertEqual(float(rows[-1]["arm::shoulder"]), last["joints"]["arm::shoulder"]["position"])
         self.assertEqual(float(rows[-1]["cube::link_z"]), last["bodies"]["cube::link"]["xyz"][2])
+        self.assertIn("arm::base_x", rows[-1])
         self.assertNotEqual(rows[-1]["shoulder_wrench.force_z"], "")
+
+    def test_the_table_of_a_fixed_base(self):
+        done = self.run_program("world.yaml", "--set", "robots.0.fixed_base=true", "--duration", 0.01, "--csv", "out.csv", "--report", "r.json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        header = (self.folder / "out.csv").read_text().splitlines()[0].split(",")
+        self.assertIn("arm::shoulder", header)
+        self.assertIn("cube::link_x", header)
+        self.assertEqual([name for name in header if name.startswith("arm::") and name.endswith("_x")], [], "no part of it is free")
+
+    def test_a_trajectory_that_a_spreadsheet_saved(self):
+        self.write("motion.csv", "\ufefftime,shoulder,elbow\r\n0,0.3,0\r\n")  # with a byte order mark
+        self.report("world.yaml", "--duration", 0.01, "--trajectory", "motion.csv")
 
     def test_settings(self):
         report = self.report("world.yaml", "--duration", 0.1, "--set", "time_step=0.002", "--set", "robots[0].sensors=[]")

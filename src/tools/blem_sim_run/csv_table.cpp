@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "blem_sim/geometry/input_error.h"
 #include "blem_sim/sim/sensor_values.h"
@@ -14,10 +15,15 @@ namespace {
 
 /** Bodies whose pose a row holds: the first of each free robot and object. */
 std::vector<int> freeBodies(const sim::Simulator& simulator) {
+  std::set<int> fixed;
+  for (const sim::RobotInfo& robot : simulator.robots())
+    if (robot.fixed_base) fixed.insert(robot.model);
   std::vector<int> bodies;
-  for (const sim::ModelInfo& model : simulator.models())
-    if (model.kind != sim::ModelKind::ENVIRONMENT && !model.bodies.empty() && model.bodies[0] != dynamics::WORLD_BODY)
+  for (std::size_t m = 0; m < simulator.models().size(); ++m) {
+    const sim::ModelInfo& model = simulator.models()[m];
+    if (model.kind != sim::ModelKind::ENVIRONMENT && !model.bodies.empty() && fixed.count(static_cast<int>(m)) == 0)
       bodies.push_back(model.bodies[0]);
+  }
   return bodies;
 }
 

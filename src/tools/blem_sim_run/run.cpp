@@ -51,10 +51,8 @@ class Progress {
   Clock::time_point shown_ = Clock::now();
 };
 
-/** Steps until the time is up or the state is not finite. */
-bool stepThrough(const RunOptions& options, sim::Simulator* simulator, RunRecord* record, Progress* progress) {
-  std::unique_ptr<CsvTable> table;
-  if (!options.csv.empty()) table = std::make_unique<CsvTable>(*simulator, options.csv, options.csv_rate);
+/** Steps until the time is up or the state is not finite. @param table may be null */
+bool stepThrough(const RunOptions& options, sim::Simulator* simulator, RunRecord* record, CsvTable* table, Progress* progress) {
   const auto steps = static_cast<std::uint64_t>(std::llround(options.duration / simulator->config().time_step));
   bool finite = true;
   for (std::uint64_t step = 0; step < steps && finite; ++step) {
@@ -64,7 +62,6 @@ bool stepThrough(const RunOptions& options, sim::Simulator* simulator, RunRecord
     finite = (report.status & sim::STATE_NOT_FINITE) == 0;
     if (finite) progress->show(step, report.time);
   }
-  if (table) table->close();
   return finite;
 }
 
@@ -92,15 +89,18 @@ bool run(const RunOptions& options) {
   if (!options.trajectory.empty()) commandTrajectory(options.trajectory, &simulator, &notes);
 
   RunRecord record(simulator, options.stats_from);
+  std::unique_ptr<CsvTable> table;
+  if (!options.csv.empty()) table = std::make_unique<CsvTable>(simulator, options.csv, options.csv_rate);
   Progress progress(static_cast<std::uint64_t>(std::llround(options.duration / config.time_step)));
   const Clock::time_point start = Clock::now();
   const std::clock_t cpu_start = std::clock();
-  const bool finite = stepThrough(options, &simulator, &record, &progress);
+  const bool finite = stepThrough(options, &simulator, &record, table.get(), &progress);
   const RunTimes times{static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC, secondsSince(start)};
   progress.end(notes);
 
   if (!options.save_state.empty()) sim::saveState(simulator.save(), options.save_state);
   writeReport(options, record, times, notes);
+  if (table) table->close();
   if (!finite) std::fprintf(stderr, "blem_sim_run: the state stopped being finite at t = %.6g s\n", simulator.time());
   return finite;
 }
