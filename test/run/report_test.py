@@ -138,6 +138,14 @@ class ReportTest(RunCase):
         self.write("motion.csv", "\ufefftime,shoulder,elbow\r\n0,0.3,0\r\n")  # with a byte order mark
         self.report("world.yaml", "--duration", 0.01, "--trajectory", "motion.csv")
 
+    def test_what_a_state_has_brought_along_is_noted(self):
+        self.report("world.yaml", "--duration", 0.01, "--save-state", "s.state")
+        same = self.report("world.yaml", "--duration", 0.01, "--load-state", "s.state")
+        self.assertFalse(any("s.state" in note for note in same["notes"]), same["notes"])
+        other = self.report("world.yaml", "--duration", 0.01, "--load-state", "s.state", "--set", "gravity=[0, 0, -1.6]", "--seed", 7)
+        self.assertEqual(other["state_hash"], same["state_hash"])
+        self.assertEqual(len([note for note in other["notes"] if "s.state" in note]), 2, other["notes"])
+
     def test_settings(self):
         report = self.report("world.yaml", "--duration", 0.1, "--set", "time_step=0.002", "--set", "robots[0].sensors=[]")
         self.assertEqual(report["steps"], 50)

@@ -65,6 +65,15 @@ bool stepThrough(const RunOptions& options, sim::Simulator* simulator, RunRecord
   return finite;
 }
 
+/** Goes on from a saved state, and notes what it has brought along in place of what was asked for. */
+void loadState(const RunOptions& options, sim::Simulator* simulator, std::vector<std::string>* notes) {
+  simulator->restore(sim::loadState(options.load_state));
+  const Vector3 &asked = simulator->config().gravity, &g = simulator->gravity();
+  if (g != asked)
+    notes->push_back(fmt::format("gravity: [{}, {}, {}] of {} holds, not the configuration's", g.x(), g.y(), g.z(), options.load_state));
+  if (options.seed) notes->push_back(fmt::format("random_seed: the numbers of {} go on, not those of --seed", options.load_state));
+}
+
 void writeReport(const RunOptions& options, const RunRecord& record, const RunTimes& times, const std::vector<std::string>& notes) {
   if (options.report.empty()) {
     record.write(times, notes, std::cout);
@@ -85,7 +94,7 @@ bool run(const RunOptions& options) {
   const sim::LoadLog log{[](const std::string& line) { std::fprintf(stderr, "blem_sim_run: %s\n", line.c_str()); }};
   sim::Simulator simulator(config, model::UriResolver(options.packages), log);
   std::vector<std::string> notes = simulator.notes();
-  if (!options.load_state.empty()) simulator.restore(sim::loadState(options.load_state));
+  if (!options.load_state.empty()) loadState(options, &simulator, &notes);
   if (!options.trajectory.empty()) commandTrajectory(options.trajectory, &simulator, &notes);
 
   RunRecord record(simulator, options.stats_from);
