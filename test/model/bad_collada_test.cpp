@@ -81,6 +81,8 @@ TEST(BadCollada, soundOnesThatLookLikeItAreLoaded) {
   const auto trianglesIn = [&](const std::string& bytes) { return loadSurface(folder.write("a.dae", bytes)).report.triangles; };
   EXPECT_EQ(trianglesIn(collada(FACE)), 1);
   EXPECT_EQ(trianglesIn(collada(polylist("1", "3"))), 1);
+  const std::string none = "<triangles count='0'>" + INPUT + "<input semantic='VERTEX' source='#v' offset='1'/><p></p></triangles>";
+  EXPECT_EQ(trianglesIn(collada(none + FACE)), 1);
   EXPECT_EQ(trianglesIn(collada(FACE, onTop(6), tower(6, 2))), 1) << "64 at one place";
 }
 

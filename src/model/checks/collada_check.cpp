@@ -94,13 +94,14 @@ class ColladaCheck {
     double there = 0, corners = 0;
     for (const Element* p = primitive.FirstChildElement("p"); p; p = p->NextSiblingElement("p")) there += wholeNumbers(*p).size();
     const double announced = count(primitive, "count", true);
-    if (announced > there + 1)
+    if (announced > there + 1)  // an empty list may have a count of 0 or 1
       refuse(fmt::format("<{}> announces {:.0f} of them, but <p> names {:.0f} vertices", primitive.Name(), announced, there));
     if (const Element* vcount = primitive.FirstChildElement("vcount"))
       for (const double of_one : wholeNumbers(*vcount)) corners += of_one;
     if (corners > there) refuse(fmt::format("<vcount> announces {:.0f} corners, but <p> names {:.0f} vertices", corners, there));
     for (const Element* input = primitive.FirstChildElement("input"); input; input = input->NextSiblingElement("input"))
-      if (count(*input, "offset", false) > there) refuse(fmt::format("<input> has an offset beyond the {:.0f} vertices of <p>", there));
+      if (there > 0 && count(*input, "offset", false) > there)
+        refuse(fmt::format("<input> has an offset beyond the {:.0f} vertices of <p>", there));
   }
 
   void checkUnit(const Element& unit) const {
