@@ -135,6 +135,14 @@ inline dynamics::BodyState bodyOf(const Simulator& simulator, const std::string&
   return simulator.report().bodies[simulator.models()[simulator.modelIndex(model)].bodies[0]];
 }
 
+/** Pushes a model of some ug with the largest load there is: its next state is out of all bounds. */
+inline void tearAway(const std::string& model, Simulator* simulator) {
+  BodyLoad load;
+  load.body = simulator->models()[simulator->modelIndex(model)].bodies[0];
+  load.wrench.force.x() = LARGEST_COMMAND;
+  simulator->applyLoad(load, {0, -1});
+}
+
 /** [N] of all contacts that fixed surfaces have with bodies. */
 inline Vector3 forceOfWorld(const StepReport& report) {
   Vector3 force = Vector3::Zero();
