@@ -14,8 +14,8 @@ const std::string FACE = "<triangles count='1'>" + INPUT + "<p>0 1 2</p></triang
 const std::string NODE = "<node id='a'><instance_geometry url='#g'/></node>";
 
 /** One triangle, in the faces and nodes told. */
-std::string collada(const std::string& faces, const std::string& scene = NODE, const std::string& more_nodes = "",
-                    const std::string& unit = "1") {
+std::string colladaText(const std::string& faces, const std::string& scene = NODE, const std::string& more_nodes = "",
+                        const std::string& unit = "1") {
   return "<COLLADA version='1.4.1'><asset><unit meter='" + unit +
          "'/></asset><library_geometries><geometry id='g'><mesh><source id='s'><float_array id='f' count='9'>0 0 0 1 0 0 0 1 "
          "0</float_array>"
@@ -54,21 +54,21 @@ TEST(BadCollada, isRefusedInOneLine) {
   const struct {
     std::string bytes, words;
   } rows[] = {
-      {collada("<triangles count='1'>" + INPUT + "<p>0 1.5 2</p></triangles>"), "'1.5' where the number of a vertex belongs"},
-      {collada("<triangles count='1'>" + INPUT + "<p>0 -1 2</p></triangles>"), "'-1' where the number of a vertex belongs"},
-      {collada("<triangles count='1'>" + INPUT + "<p>0 1 99999999999</p></triangles>"), "'99999999999'"},
-      {collada("<polygons count='1'>" + INPUT + "<p>0 1, 2</p></polygons>"), "'1,'"},
-      {collada(FACE + lines), "<p> has 'x'"},
-      {collada("<triangles count='2147483647'>" + INPUT + "<p>0 1 2</p></triangles>"), "announces 2147483647 of them"},
-      {collada(far_input), "an offset beyond the 3 vertices"},
-      {collada(polylist("1", "x")), "<vcount> has 'x'"},
-      {collada(polylist("1", "2000000000")), "2000000000 corners"},
-      {collada(polylist("2000000000", "3")), "announces 2000000000 of them"},
-      {collada(FACE, "<node id='a'>" + instanceOf("a") + "</node>"), "node 'a' instances itself"},
-      {collada(FACE, onTop(31), tower(31, 2)), "instance each other more than 1000000 times"},
-      {collada(FACE, onTop(100000), tower(100000, 1)), "in a row"},
-      {collada(FACE, NODE, "", "x"), "<unit> needs a number above 0"},
-      {collada(FACE, NODE, "", "-1"), "<unit> needs a number above 0"},
+      {colladaText("<triangles count='1'>" + INPUT + "<p>0 1.5 2</p></triangles>"), "'1.5' where the number of a vertex belongs"},
+      {colladaText("<triangles count='1'>" + INPUT + "<p>0 -1 2</p></triangles>"), "'-1' where the number of a vertex belongs"},
+      {colladaText("<triangles count='1'>" + INPUT + "<p>0 1 99999999999</p></triangles>"), "'99999999999'"},
+      {colladaText("<polygons count='1'>" + INPUT + "<p>0 1, 2</p></polygons>"), "'1,'"},
+      {colladaText(FACE + lines), "<p> has 'x'"},
+      {colladaText("<triangles count='2147483647'>" + INPUT + "<p>0 1 2</p></triangles>"), "announces 2147483647 of them"},
+      {colladaText(far_input), "an offset beyond the 3 vertices"},
+      {colladaText(polylist("1", "x")), "<vcount> has 'x'"},
+      {colladaText(polylist("1", "2000000000")), "2000000000 corners"},
+      {colladaText(polylist("2000000000", "3")), "announces 2000000000 of them"},
+      {colladaText(FACE, "<node id='a'>" + instanceOf("a") + "</node>"), "node 'a' instances itself"},
+      {colladaText(FACE, onTop(31), tower(31, 2)), "instance each other more than 1000000 times"},
+      {colladaText(FACE, onTop(100000), tower(100000, 1)), "in a row"},
+      {colladaText(FACE, NODE, "", "x"), "<unit> needs a number above 0"},
+      {colladaText(FACE, NODE, "", "-1"), "<unit> needs a number above 0"},
   };
   for (const auto& row : rows) {
     const std::string text = refusalOf(row.bytes);
@@ -79,11 +79,11 @@ TEST(BadCollada, isRefusedInOneLine) {
 TEST(BadCollada, soundOnesThatLookLikeItAreLoaded) {
   const TemporaryFolder folder;
   const auto trianglesIn = [&](const std::string& bytes) { return loadSurface(folder.write("a.dae", bytes)).report.triangles; };
-  EXPECT_EQ(trianglesIn(collada(FACE)), 1);
-  EXPECT_EQ(trianglesIn(collada(polylist("1", "3"))), 1);
+  EXPECT_EQ(trianglesIn(colladaText(FACE)), 1);
+  EXPECT_EQ(trianglesIn(colladaText(polylist("1", "3"))), 1);
   const std::string none = "<triangles count='0'>" + INPUT + "<input semantic='VERTEX' source='#v' offset='1'/><p></p></triangles>";
-  EXPECT_EQ(trianglesIn(collada(none + FACE)), 1);
-  EXPECT_EQ(trianglesIn(collada(FACE, onTop(6), tower(6, 2))), 1) << "64 at one place";
+  EXPECT_EQ(trianglesIn(colladaText(none + FACE)), 1);
+  EXPECT_EQ(trianglesIn(colladaText(FACE, onTop(6), tower(6, 2))), 1) << "64 at one place";
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ TEST(PairSearches, AStateRestoredElsewhereGoesOnTheSame) {
   EXPECT_EQ(first.stateHash(), second.stateHash());
 }
 
-constexpr double LAYER = 0.0001;  // [m] of each collider
+constexpr double THIN_LAYER = 0.0001;  // [m] of each collider
 
 void addMesh(geometry::TriangleMesh mesh, int body, SimulatedWorld* world) {
   contact::Collider collider;
@@ -48,7 +48,7 @@ void addMesh(geometry::TriangleMesh mesh, int body, SimulatedWorld* world) {
   collider.body = body;
   collider.model = world->addModel(collider.name, ModelKind::OBJECT, 20);
   collider.geometry = std::make_shared<const contact::CollisionGeometry>(std::make_shared<const geometry::TriangleMesh>(std::move(mesh)));
-  world->addCollider(collider, LAYER, {}, {});
+  world->addCollider(collider, THIN_LAYER, {}, {});
 }
 
 void addBox(double width, const Vector3& place, SimulatedWorld* world) {
@@ -78,7 +78,7 @@ TEST(PairSearches, SmallThingsLookNoFartherThanTheirLength) {
     WatchedPairs pairs;
     watch.find({world, bodies, nullptr, 0.001}, &pairs);
     ASSERT_EQ(pairs.pairs.size(), 1u);
-    EXPECT_NEAR(pairs.pairs[0].known, std::min(width + 2 * LAYER, 0.005), 1e-12);
+    EXPECT_NEAR(pairs.pairs[0].known, std::min(width + 2 * THIN_LAYER, 0.005), 1e-12);
   }
 }
 
@@ -89,7 +89,7 @@ TEST(PairSearches, APairWhosePiercedContactsHaveFadedAwayStillCrosses) {
   world.bodyStates(&bodies);
   FadingPoints fading;
   constexpr double AWAY = std::numeric_limits<double>::infinity();
-  fading.add(0, -LAYER, {{0, AWAY}, {1, AWAY}, {2, AWAY}, {3, AWAY}});
+  fading.add(0, -THIN_LAYER, {{0, AWAY}, {1, AWAY}, {2, AWAY}, {3, AWAY}});
   StepThreads threads(1);
   PairWatch watch(&threads);
   PairSearches searches(&threads);

@@ -39,15 +39,15 @@ double extentOf(const contact::Collider& collider) {
 }
 
 /** Length [m] of the shorter collider. */
-double lengthOf(const contact::Collider& a, const contact::Collider& b) { return std::min(extentOf(a), extentOf(b)); }
+double shorterLength(const contact::Collider& a, const contact::Collider& b) { return std::min(extentOf(a), extentOf(b)); }
 
 double baseMargin(const contact::Collider& a, const contact::Collider& b) {
-  return std::min(BASE_MARGIN, BASE_MARGIN_OF_LENGTH * lengthOf(a, b));
+  return std::min(BASE_MARGIN, BASE_MARGIN_OF_LENGTH * shorterLength(a, b));
 }
 
 /** Largest margin [m] where a step guard ends the substep. */
 double guardedMargin(const contact::Collider& a, const contact::Collider& b, double layer) {
-  return std::max(std::min(LEAST_MAX_MARGIN, lengthOf(a, b)), MAX_MARGIN_OF_LAYER * layer);
+  return std::max(std::min(LEAST_MAX_MARGIN, shorterLength(a, b)), MAX_MARGIN_OF_LAYER * layer);
 }
 
 /** WatchedPair::known: most [m] that two colliders can approach each other, moving on as they do, or if one of them is stopped dead. */
