@@ -103,7 +103,7 @@ class BadInputTest(RunCase):
     def test_files_that_cannot_be_written(self):
         self.assert_refused(["nowhere/r.json"], "world.yaml", "--duration", 0.001, "--report", "nowhere/r.json")
         self.assert_refused(["nowhere/t.csv"], "world.yaml", "--duration", 0.001, "--csv", "nowhere/t.csv")
-        self.assert_refused(["/dev/full", "rows"], "world.yaml", "--duration", 0.01, "--csv", "/dev/full")
+        self.assert_refused(["/dev/full", "rows"], "world.yaml", "--duration", 0.01, "--csv", "/dev/full", "--report", "r.json")
 
 
 if __name__ == "__main__":
