@@ -18,7 +18,7 @@ void ControllerSets::modelsChanged() {
 
 void ControllerSets::add(int robot) {
   const sim::RobotInfo& info = simulator_->robots()[robot];
-  // Where its services are: "" and "/" are one place, "arm" and "/arm/" are.
+  // The place of its services: "" and "/" are one, "arm" and "/arm/" are.
   const std::string place = ros::NodeHandle(node_, info.name_space).resolveName("controller_manager");
   const auto known = sets_.find(place);
   if (known != sets_.end()) {
