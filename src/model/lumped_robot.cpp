@@ -5,6 +5,7 @@
 #include "blem_sim/geometry/input_error.h"
 #include "blem_sim/model/robot_model.h"
 #include "inertia.h"
+#include "mimic_limits.h"
 
 namespace blem_sim::model {
 namespace {
@@ -29,6 +30,7 @@ class Lumping {
     }
     for (std::size_t body = 0; body < lumped_.bodies.size(); ++body) addInertial(static_cast<int>(body), body == 0 && fixed_base);
     addVirtualInertials();
+    bringLimitsTogether(&lumped_);
     return std::move(lumped_);
   }
 

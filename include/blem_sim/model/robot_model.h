@@ -129,10 +129,19 @@ struct LumpedRobot {
   double mass() const;
 };
 
+/** What a joint follows in the end, through chains of joints that mimic others: its position is multiplier * that of `joint` + offset. */
+struct MimicLeader {
+  int joint = -1;  ///< of the robot's joints; -1: one that it does not have
+  double multiplier = 1, offset = 0;
+};
+/** @param follower one of the robot's joints that mimic another */
+MimicLeader mimicLeader(const LumpedRobot& robot, const LumpedJoint& follower);
+
 /**
  * Lumps links that are joined by fixed joints, except across the joints named in `keep` (a force-torque sensor sits there; names of other
  * joints change nothing). The two virtual bodies of a planar joint weigh a thousandth of the body they carry and have no links.
  * A body without any inertial gets one from its collision shapes at 1000 kg/m^3 (or 0.01 kg, 1 cm, without a shape) and a note.
+ * A joint that others follow is bounded to where their limits let it go, with a note; limits that would leave it no way are not kept.
  * @throws InputError if a moving body's mass is given as zero or negative, or its inertia is not positive definite beyond repair.
  */
 LumpedRobot lumpFixedJoints(const RobotModel& robot, const std::set<std::string>& keep, bool fixed_base);

@@ -6,7 +6,7 @@
 namespace blem_sim::sim {
 namespace {
 
-constexpr double SAG_ANGLE = 1e-3;                 // [rad] by which gravity turns a joint at most; smaller is stiffer
+constexpr double SAG_ANGLE = 1e-3;                 // [rad] by which weight and friction turn a joint at most; smaller is stiffer
 constexpr double SAG_LENGTH = 1e-4;                // [m] the same for sliders
 constexpr double LEAST_FREQUENCY = 2 * M_PI * 10;  // [rad/s] of a joint and what its child carries
 
@@ -96,12 +96,25 @@ double lightInertia(const JointLoad& load) {
   return rest > 0 ? child * rest / (child + rest) : child;
 }
 
+void addFollowers(const model::LumpedRobot& robot, std::vector<JointLoad>* loads) {
+  for (std::size_t j = 0; j < robot.joints.size(); ++j) {
+    if (!robot.joints[j].mimic) continue;
+    const model::MimicLeader leader = model::mimicLeader(robot, robot.joints[j]);
+    const JointLoad& follower = (*loads)[j];
+    JointLoad& load = (*loads)[leader.joint];
+    const double ratio = std::abs(leader.multiplier);
+    load.child.inertia += ratio * ratio * follower.child.inertia;
+    load.child.weight += ratio * follower.child.weight;
+    load.friction += ratio * follower.friction;
+  }
+}
+
 JointGains computedGains(const JointLoad& load, const model::LumpedJoint& joint, double effort_limit) {
   constexpr double SQUARED = LEAST_FREQUENCY * LEAST_FREQUENCY;
   const double sag = joint.type == model::JointType::PRISMATIC ? SAG_LENGTH : SAG_ANGLE;
-  const double weight = std::min(std::max(load.child.weight, load.rest.weight), effort_limit);
+  const double held = std::min(std::max(load.child.weight, load.rest.weight) + load.friction, effort_limit);
   JointGains gains;
-  gains.p = std::max(weight / sag, load.child.inertia * SQUARED);
+  gains.p = std::max(held / sag, load.child.inertia * SQUARED);
   // A motor too weak for the rest, such as a finger's, need not damp the rest: that would slow it down.
   const double damped = std::min(std::max(load.child.inertia, load.rest.inertia), gains.p / SQUARED);
   gains.d = 2 * std::sqrt(gains.p * damped);

@@ -17,7 +17,8 @@ struct JointSide {
 /** A joint parts a tree in two: what its child carries, and the rest, which it has to carry when the child stands on the ground. */
 struct JointLoad {
   JointSide child;
-  JointSide rest;  ///< zero where the root is part of the world
+  JointSide rest;       ///< zero where the root is part of the world
+  double friction = 0;  ///< [N m or N] dry
 };
 
 /**
@@ -33,9 +34,12 @@ std::vector<JointLoad> jointLoads(const model::LumpedRobot& robot, const std::ve
  */
 double lightInertia(const JointLoad& load);
 
+/** Adds the loads of joints that mimic others to those of the joints that they follow, whose motors move them. */
+void addFollowers(const model::LumpedRobot& robot, std::vector<JointLoad>* loads);
+
 /**
- * Gains of the implicit law that hold a pose: p lets the heavier side sag by 1 mrad (sliders 0.1 mm) at most, with no more effort than the
- * limit, and swings the child at 10 Hz at least; d is critical damping of the heavier side.
+ * Gains of the implicit law that hold a pose: p lets friction and the weight of the heavier side keep the joint off by 1 mrad (sliders
+ * 0.1 mm) at most, with no more effort than the limit, and swings the child at 10 Hz at least; d is critical damping of the heavier side.
  */
 JointGains computedGains(const JointLoad& load, const model::LumpedJoint& joint, double effort_limit);
 

@@ -15,18 +15,23 @@ namespace {
 constexpr std::size_t LISTED_JOINTS = 12;  // in a note
 constexpr double VELOCITY_TIME = 1;        // [s] in which a joint that keeps a velocity lags by as much as gravity sags one that holds
 
+JointFriction frictionOf(const RobotConfig& config, const model::LumpedJoint& joint) {
+  return byJoint(config.joint_friction, joint.name, JointFriction{joint.dry_friction, joint.viscous_friction});
+}
+
 /** Writes the motors of one robot, joint by joint. */
 class MotorWriter {
  public:
   MotorWriter(const RobotConfig& config, const model::RobotModel& model, RobotMotors* motors)
       : config_(config), model_(model), motors_(*motors) {}
 
-  void add(const model::LumpedJoint& joint, const JointLoad& load) {
+  /** @param moved load of the motor: the joint's own, and those of joints that follow it */
+  void add(const model::LumpedJoint& joint, const JointLoad& load, const JointLoad& moved) {
     MotorSettings settings;
     settings.commanded = joint.moves() && !joint.mimic;
     settings.continuous = joint.type == model::JointType::CONTINUOUS;
     if (joint.moves()) {
-      settings.friction = byJoint(config_.joint_friction, joint.name, JointFriction{joint.dry_friction, joint.viscous_friction});
+      settings.friction = frictionOf(config_, joint);
       settings.effort_limit = byJoint(config_.effort_limits, joint.name, joint.limits.effort);
       settings.law = byJoint(config_.motor, joint.name, MotorLaw::IMPLICIT_PD);
       settings.velocity_limit = velocityLimit(joint);
@@ -34,9 +39,8 @@ class MotorWriter {
       settings.inertia = lightInertia(load);
       settings.command_timeout = config_.command_timeout;
     }
-    if (settings.commanded) addGains(joint, load, &settings);
-    if (settings.commanded && settings.effort_limit == 0 && settings.gains.p + settings.gains.d > 0)
-      motors_.notes.push_back(fmt::format("joint '{}' has an effort limit of 0, so its motor does nothing; set effort_limits", joint.name));
+    if (settings.commanded) addGains(joint, moved, &settings);
+    if (settings.commanded && settings.gains.p + settings.gains.d > 0) addWeakness(joint.name, settings.effort_limit, moved.friction);
     motors_.settings.push_back(settings);
   }
 
@@ -86,6 +90,16 @@ class MotorWriter {
     }
   }
 
+  void addWeakness(const std::string& joint, double limit, double friction) {
+    if (limit == 0)
+      motors_.notes.push_back(fmt::format("joint '{}' has an effort limit of 0, so its motor does nothing; set effort_limits", joint));
+    else if (friction >= limit)
+      motors_.notes.push_back(
+          fmt::format("joint '{}' has dry friction of {:.4g}, and its motor gives {:.4g} at most, so it does not move it; set "
+                      "joint_friction or effort_limits",
+                      joint, friction, limit));
+  }
+
   static std::string listed(const std::vector<std::string>& items) {
     const std::size_t count = std::min(items.size(), LISTED_JOINTS);
     const std::string words = fmt::format("{}", fmt::join(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(count), ", "));
@@ -125,13 +139,17 @@ void checkMotors(const RobotConfig& config) {
 RobotMotors robotMotors(const RobotConfig& config, const model::RobotModel& model, const model::LumpedRobot& robot,
                         const std::vector<double>& positions, double gravity) {
   std::vector<JointLoad> loads = jointLoads(robot, positions, config.fixed_base, gravity);
-  RobotMotors motors;
-  MotorWriter writer(config, model, &motors);
   for (std::size_t j = 0; j < robot.joints.size(); ++j) {
     const model::LumpedJoint& joint = robot.joints[j];
-    if (joint.moves()) loads[j].child.inertia += byJoint(config.armature, joint.name, 0.0);
-    writer.add(joint, loads[j]);
+    if (!joint.moves()) continue;
+    loads[j].child.inertia += byJoint(config.armature, joint.name, 0.0);
+    loads[j].friction = frictionOf(config, joint).dry;
   }
+  std::vector<JointLoad> moved = loads;
+  addFollowers(robot, &moved);
+  RobotMotors motors;
+  MotorWriter writer(config, model, &motors);
+  for (std::size_t j = 0; j < robot.joints.size(); ++j) writer.add(robot.joints[j], loads[j], moved[j]);
   writer.addNotes();
   return motors;
 }

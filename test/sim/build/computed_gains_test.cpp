@@ -93,6 +93,45 @@ TEST(ComputedGains, APendulumHoldsItsPoseAndDoesNotRing) {
   }
 }
 
+/** A hinge with friction, and a finger that follows it at -3 times its angle, with friction of its own and limits that do not fit. */
+std::string stiffHandUrdf() {
+  const std::string arm = pendulumUrdf(R"(<dynamics friction="12" damping="0"/>)");
+  return arm.substr(0, arm.rfind("</robot>")) +
+         R"(<link name="finger"><inertial><origin xyz="0 0 0.1"/><mass value="0.5"/>
+            <inertia ixx="0.001" iyy="0.001" izz="0.001" ixy="0" ixz="0" iyz="0"/></inertial></link>
+            <joint name="knuckle" type="revolute"><parent link="base"/><child link="finger"/><axis xyz="0 1 0"/>
+            <limit lower="50" upper="60" effort="5" velocity="10"/><dynamics friction="2"/><mimic joint="hinge" multiplier="-3"/></joint></robot>)";
+}
+
+TEST(ComputedGains, CarryFrictionAndWhatFollows) {
+  const model::LumpedRobot robot = lumped(stiffHandUrdf(), true);
+  std::vector<JointLoad> loads = jointLoads(robot, {0, 0}, true, G);
+  loads[0].friction = 12;
+  loads[1].friction = 2;
+  addFollowers(robot, &loads);
+  EXPECT_NEAR(loads[0].friction, 12 + 3 * 2, 1e-12);
+  EXPECT_NEAR(loads[0].child.weight, PENDULUM_WEIGHT + 3 * 0.5 * 0.1 * G, 1e-12);
+  EXPECT_NEAR(loads[0].child.inertia, PENDULUM_INERTIA + 9 * (0.001 + 0.5 * 0.01), 1e-12);
+  const JointGains gains = computedGains(loads[0], robot.joints[0], 200);
+  EXPECT_NEAR(gains.p, (loads[0].child.weight + 18) / 1e-3, 1e-9);
+  EXPECT_NEAR(computedGains(loads[0], robot.joints[0], 20).p, 20 / 1e-3, 1e-9) << "more than the motor has";
+}
+
+TEST(ComputedGains, ReachTargetsAgainstFriction) {
+  for (const char* stepper : {"articulated", "world_step", "quick_step"}) {
+    SimulationConfig config = heldPendulum();
+    config.solver.stepper = stepper;
+    config.robots[0].urdf_xml = stiffHandUrdf();
+    Simulator simulator(config, model::UriResolver());
+    for (const double target : {0.4, -0.7, 0.0, 1.5}) {
+      simulator.commandJoints(0, {{"hinge"}, {target}, {}, {}});
+      stepFor(&simulator, 2);
+      EXPECT_NEAR(simulator.report().joints[0].position, target, 1.001e-3) << stepper;
+      EXPECT_NEAR(simulator.report().joints[1].position, -3 * simulator.report().joints[0].position, 1e-5) << stepper;
+    }
+  }
+}
+
 SimulationConfig heldChain(MotorLaw law) {
   SimulationConfig config;
   config.robots = {robot("chain", chainUrdf(6, "revolute", 1e4), true)};
@@ -146,6 +185,9 @@ TEST(ComputedGains, AreTold) {
   EXPECT_NE(note.find("and 38 more"), std::string::npos) << note;
   EXPECT_NE(noteOf(heldChain(MotorLaw::PID), "motor: pid").find("joint1, joint2"), std::string::npos);
   EXPECT_EQ(noteOf(heldChain(MotorLaw::IMPLICIT_PD), "motor: pid"), "");
+  SimulationConfig stuck = heldPendulum();
+  stuck.robots[0].urdf_xml = pendulumUrdf(R"(<dynamics friction="200"/>)");
+  EXPECT_NE(noteOf(stuck, "'hinge' has dry friction of 200").find("set joint_friction or effort_limits"), std::string::npos);
   SimulationConfig free = heldPendulum();
   free.robots[0].motors = MotorDefault::FREE;
   EXPECT_NE(noteOf(free, "move freely").find("hinge"), std::string::npos);
