@@ -21,6 +21,7 @@ class BadInputTest(RunCase):
         self.assert_refused(["--set", "NAME=VALUE"], "world.yaml", "--set", "gravity")
         self.assert_refused(["CONFIG.yaml"], "--duration", 1)
         self.assert_refused(["none.yaml", "cannot be read"], "none.yaml")
+        self.assert_refused([".", "is a folder"], ".")
 
     def test_settings(self):
         self.assert_refused(["contact.frction", "'friction'"], "world.yaml", "--set", "contact.frction=1")

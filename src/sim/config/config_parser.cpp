@@ -94,6 +94,7 @@ SimulationConfig loadConfigFile(const std::string& file) {
 }
 
 YAML::Node loadYamlFile(const std::string& file) {
+  if (std::filesystem::is_directory(file)) throw InputError(fmt::format("{}: is a folder; give a YAML file in it", file));
   try {
     checkYamlSize(file);
     return YAML::LoadFile(file);
