@@ -23,6 +23,10 @@ class BadInputTest(RunCase):
         self.assert_refused(["none.yaml", "cannot be read"], "none.yaml")
         self.assert_refused([".", "is a folder"], ".")
 
+    def test_empty_values(self):
+        for option in ("--report", "--csv", "--trajectory", "--save-state", "--load-state"):
+            self.assert_refused([option, "is empty"], "world.yaml", "--duration", 0.001, option, "")
+
     def test_settings(self):
         self.assert_refused(["contact.frction", "'friction'"], "world.yaml", "--set", "contact.frction=1")
         self.assert_refused(["robots.1", "item"], "world.yaml", "--set", "robots.1.name=b")

@@ -258,6 +258,7 @@ def test_picture_without_xvfb_is_refused(tmp_path):
     (["world.yaml", "."], "ends in .png"),
     (["world.yaml", "nowhere/a.png"], "there is no folder"),
     (["world.yaml", "world.yaml", "--video"], "is a file"),
+    (["world.yaml", ""], "OUT.png is empty"),
     (["world.yaml", "a.png", "--camera", "1,2,3"], "--camera: '1,2,3' is not"),
     (["world.yaml", "a.png", "--camera", "1,2,3,4,5,nan"], "--camera"),
     (["world.yaml", "a.png", "--camera", "1,2,3,1,2,3"], "the eye is where it looks at"),

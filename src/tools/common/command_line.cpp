@@ -15,6 +15,11 @@ double numberOf(const std::string& option, const std::string& text) {
   return value;
 }
 
+std::string textOf(const std::string& option, const std::string& text) {
+  if (text.empty()) throw InputError(fmt::format("{}: its value is empty; give one, or leave the option out", option));
+  return text;
+}
+
 std::pair<std::string, std::string> assignment(const std::string& option, const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0) throw InputError(fmt::format("{}: '{}' is not NAME=VALUE", option, text));

@@ -28,12 +28,15 @@ using FlagTable = std::map<std::string, bool Options::*>;
 /** @throws InputError unless `text` is a finite number of at least 0 */
 double numberOf(const std::string& option, const std::string& text);
 
+/** @throws InputError for an empty text, as scripts make of variables that are not set */
+std::string textOf(const std::string& option, const std::string& text);
+
 /** @return NAME, VALUE @throws InputError unless `text` is NAME=VALUE */
 std::pair<std::string, std::string> assignment(const std::string& option, const std::string& text);
 
 template <class Options>
 TakeValue<Options> text(std::string Options::*field) {
-  return [field](Options& options, const std::string&, const std::string& value) { options.*field = value; };
+  return [field](Options& options, const std::string& option, const std::string& value) { options.*field = textOf(option, value); };
 }
 
 template <class Options>

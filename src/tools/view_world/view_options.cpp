@@ -89,6 +89,7 @@ const OptionTable<ViewOptions>& optionTable() {
 }
 
 void checkOutput(const ViewOptions& options) {
+  if (options.output.empty()) throw InputError("OUT.png is empty; give the picture's name");
   const std::filesystem::path output(options.output);
   const bool folder = std::filesystem::is_directory(output);
   const std::filesystem::path parent = std::filesystem::absolute(output).parent_path();
