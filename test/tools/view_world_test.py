@@ -261,6 +261,7 @@ def test_picture_without_xvfb_is_refused(tmp_path):
     (["world.yaml", ""], "OUT.png is empty"),
     (["world.yaml", "a.png", "--camera", "1,2,3"], "--camera: '1,2,3' is not"),
     (["world.yaml", "a.png", "--camera", "1,2,3,4,5,nan"], "--camera"),
+    (["world.yaml", "a.png", "--camera", "1,2,3,4,5,6,"], "--camera: '1,2,3,4,5,6,' is not"),
     (["world.yaml", "a.png", "--camera", "1,2,3,1,2,3"], "the eye is where it looks at"),
     (["world.yaml", "a.png", "--size", "101x100"], "even numbers"),
     (["world.yaml", "a.png", "--size", "100x100000"], "even numbers"),

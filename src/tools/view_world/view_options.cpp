@@ -44,7 +44,7 @@ std::vector<double> numbersOf(const std::string& text, char separator, std::size
   std::vector<double> numbers;
   for (double number = 0; stream >> number && std::isfinite(number);) {
     numbers.push_back(number);
-    if (stream.peek() != separator) break;
+    if (numbers.size() == count || stream.peek() != separator) break;
     stream.get();
   }
   const bool whole = numbers.size() == count && stream.peek() == std::istringstream::traits_type::eof();
