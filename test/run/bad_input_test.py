@@ -1,4 +1,5 @@
 """Bad input: exit status 2 and one line that names file, field and cure."""
+import os
 import sys
 import unittest
 
@@ -109,6 +110,12 @@ class BadInputTest(RunCase):
         self.assert_refused(["nowhere/r.json"], "world.yaml", "--duration", 0.001, "--report", "nowhere/r.json")
         self.assert_refused(["nowhere/t.csv"], "world.yaml", "--duration", 0.001, "--csv", "nowhere/t.csv")
         self.assert_refused(["/dev/full", "rows"], "world.yaml", "--duration", 0.01, "--csv", "/dev/full", "--report", "r.json")
+
+    def test_states_do_not_take_the_place_of_what_is_no_file(self):
+        pipe = self.folder / "pipe"
+        os.mkfifo(str(pipe))
+        self.assert_refused(["pipe", "no file"], "world.yaml", "--duration", 0.001, "--save-state", "pipe")
+        self.assertTrue(pipe.is_fifo())
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -45,9 +46,17 @@ std::string folderOf(const std::string& file) {
   return slash == std::string::npos ? "." : file.substr(0, slash + 1);
 }
 
+/** @throws InputError for a folder, a pipe or a device: the whole file would take its place, /dev/null's too where root runs this */
+void checkReplaceable(const std::string& file) {
+  struct stat status {};
+  if (::stat(file.c_str(), &status) == 0 && !S_ISREG(status.st_mode))
+    throw InputError(fmt::format("{}: cannot be written: it is no file; give the name of a file", file));
+}
+
 }  // namespace
 
 void writeWhole(const std::string& file, const std::string& bytes) {
+  checkReplaceable(file);
   const std::string draft = file + ".part";
   ::unlink(draft.c_str());  // a link of that name would lead elsewhere
   bool written = false;
