@@ -30,7 +30,12 @@ void endSoon() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  ros::init(argc, argv, "blem_sim");
+  try {
+    ros::init(argc, argv, "blem_sim");
+  } catch (const std::exception& error) {
+    ROS_FATAL("command line: %s; use letters, digits, _ and / in the node's name and in remappings, a letter first", error.what());
+    return 2;
+  }
   blem_sim::node::PollRounds::instance().watchBegin();
   // The parameter is set before the node starts its own clock, which asks for it.
   if (!ros::param::has("/use_sim_time")) ros::param::set("/use_sim_time", true);

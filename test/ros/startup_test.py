@@ -78,6 +78,13 @@ class StartupTest(unittest.TestCase):
         self.parameters["time_step"] = "fast"
         self.assert_refused(self.parameters, "time_step")
 
+    def test_node_name_that_is_none(self):
+        command = ["rosrun", "blem_sim", "blem_sim_node", "__name:=two words"]
+        done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
+        self.assertEqual(done.returncode, 2, done.stdout)
+        self.assertIn("FATAL", done.stdout)
+        self.assertIn("two words", done.stdout)
+
     def test_missing_mesh(self):
         self.parameters["environments"][0]["uri"] = "no_such_mesh.off"
         self.assert_refused(self.parameters, "no_such_mesh.off")
