@@ -94,6 +94,15 @@ YAML::Node describedRobots(YAML::Node row, const std::string& file, const std::s
   return robots;
 }
 
+/** Adds one more environment; what is no list is left to parseConfig to refuse. */
+void addEnvironment(const std::string& uri, YAML::Node* parameters) {
+  YAML::Node row(YAML::NodeType::Map);
+  row["name"] = "environment";
+  row["uri"] = uri;
+  YAML::Node environments = (*parameters)["environments"];
+  if (!environments.IsDefined() || environments.IsNull() || environments.IsSequence()) environments.push_back(row);
+}
+
 void fetchDescriptions(const std::string& source, sim::SimulationConfig* config) {
   for (sim::RobotConfig& robot : config->robots) {
     if (robot.description_param.empty()) continue;
@@ -159,12 +168,7 @@ NodeParameters readParameters(const ros::NodeHandle& private_node) {
   if (!parameters["robots"].IsDefined()) {
     parameters["robots"] = describedRobots(robot_row, description_file, directoryOf(config_file), source);
   }
-  if (!environment.empty()) {
-    YAML::Node row(YAML::NodeType::Map);
-    row["name"] = "environment";
-    row["uri"] = environment;
-    parameters["environments"].push_back(row);
-  }
+  if (!environment.empty()) addEnvironment(environment, &parameters);
   sim::SimulationConfig config = sim::parseConfig(parameters, source, directoryOf(config_file));
   fetchDescriptions(source, &config);
   checkNames(source, config);

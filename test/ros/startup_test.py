@@ -78,6 +78,11 @@ class StartupTest(unittest.TestCase):
         self.parameters["time_step"] = "fast"
         self.assert_refused(self.parameters, "time_step")
 
+    def test_environment_beside_what_is_no_list(self):
+        for value in (5, "", {"a": 1}):
+            self.parameters.update(environments=value, environment="cube.off")
+            self.assert_refused(self.parameters, NAME, "environments", "must be a list")
+
     def test_node_name_that_is_none(self):
         command = ["rosrun", "blem_sim", "blem_sim_node", "__name:=two words"]
         done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
