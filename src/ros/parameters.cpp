@@ -157,7 +157,8 @@ NodeParameters readParameters(const ros::NodeHandle& private_node) {
   const std::string source = private_node.getNamespace();
   XmlRpc::XmlRpcValue given;
   YAML::Node parameters(YAML::NodeType::Map);
-  if (ros::param::get(source, given) && given.getType() == XmlRpc::XmlRpcValue::TypeStruct) parameters = toYaml(given);
+  if (ros::param::get(source, given)) parameters = toYaml(given);
+  if (!parameters.IsMap()) throw InputError(source + ": the node's parameters must be a map of keys, as config/default.yaml has them");
 
   takeGazeboKeys(&parameters);
   const std::string config_file = takeText(&parameters, "config_file", source);

@@ -83,6 +83,10 @@ class StartupTest(unittest.TestCase):
             self.parameters.update(environments=value, environment="cube.off")
             self.assert_refused(self.parameters, NAME, "environments", "must be a list")
 
+    def test_parameters_that_are_no_map(self):
+        for value in (5, [1, 2]):
+            self.assert_refused(value, NAME, "must be a map of keys")
+
     def test_node_name_that_is_none(self):
         command = ["rosrun", "blem_sim", "blem_sim_node", "__name:=two words"]
         done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
