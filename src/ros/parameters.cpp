@@ -84,8 +84,9 @@ YAML::Node describedRobots(YAML::Node row, const std::string& file, const std::s
     const std::string path = model::UriResolver().resolve(file, base_directory);
     xml = readFile(path, source);
     row["urdf"] = path;
-  } else if (ros::param::get(DEFAULT_DESCRIPTION, xml)) {
-    row["description_param"] = DEFAULT_DESCRIPTION;
+  } else if (ros::param::has(DEFAULT_DESCRIPTION)) {
+    ros::param::get(DEFAULT_DESCRIPTION, xml);
+    row["description_param"] = DEFAULT_DESCRIPTION;  // what is no text is refused where all descriptions are fetched
   } else {
     return robots;
   }
@@ -107,9 +108,9 @@ void fetchDescriptions(const std::string& source, sim::SimulationConfig* config)
   for (sim::RobotConfig& robot : config->robots) {
     if (robot.description_param.empty()) continue;
     const std::string parameter = ros::names::resolve(robot.description_param);
-    if (!ros::param::get(parameter, robot.urdf_xml)) {
+    if (!ros::param::get(parameter, robot.urdf_xml) || robot.urdf_xml.empty()) {
       throw InputError(source + ": robots: " + robot.name + ": description_param: there is no string parameter " + parameter +
-                       "; set it before the node starts, or give urdf: FILE");
+                       ", or it is empty; set it before the node starts, or give urdf: FILE");
     }
   }
 }

@@ -87,6 +87,13 @@ class StartupTest(unittest.TestCase):
         for value in (5, [1, 2]):
             self.assert_refused(value, NAME, "must be a map of keys")
 
+    def test_robot_description_that_is_no_text(self):
+        self.addCleanup(rospy.delete_param, "/robot_description")
+        del self.parameters["robots"]
+        for value in (5, {"a": 1}, ""):
+            rospy.set_param("/robot_description", value)
+            self.assert_refused(self.parameters, "description_param", "/robot_description", "set it")
+
     def test_node_name_that_is_none(self):
         command = ["rosrun", "blem_sim", "blem_sim_node", "__name:=two words"]
         done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
