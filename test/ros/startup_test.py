@@ -4,6 +4,7 @@ import array
 import math
 import os
 import random
+import resource
 import signal
 import subprocess
 import tempfile
@@ -21,18 +22,25 @@ from roscpp.srv import GetLoggers
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import PointCloud2, PointField
 
-from blem_sim.srv import LoadEnvironment, RestoreState, SaveState
+from blem_sim.srv import LoadEnvironment, RestoreState, SaveState, StartRecord, StopRecord
 from sim_client import Recorder, wait_until
 
 NAME = "/starting_blem_sim"
 DATA = os.path.join(rospkg.RosPack().get_path("blem_sim"), "test", "data", "ros")
 WORLD = os.path.join(DATA, "world.yaml")
+LARGEST = 65536  # [bytes] of a file, where the disk is to be full
 
 
 def on_sphere(rng):
     point = [rng.gauss(0, 1) for _ in "xyz"]
     length = math.sqrt(sum(x * x for x in point))
     return [x / length for x in point]
+
+
+def fill_disk():
+    """In a child: files are as on a full disk beyond a size."""
+    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (LARGEST, LARGEST))
 
 
 class StartupTest(unittest.TestCase):
@@ -43,11 +51,11 @@ class StartupTest(unittest.TestCase):
             self.parameters = yaml.safe_load(stream)
         self.parameters["config_file"] = WORLD
 
-    def start(self, parameters):
+    def start(self, parameters, **options):
         rospy.set_param(NAME, parameters)
         self.output = tempfile.TemporaryFile(mode="w+")
         command = ["rosrun", "blem_sim", "blem_sim_node", "__name:=" + NAME.strip("/")]
-        process = subprocess.Popen(command, stdout=self.output, stderr=subprocess.STDOUT)
+        process = subprocess.Popen(command, stdout=self.output, stderr=subprocess.STDOUT, **options)
         self.addCleanup(lambda: process.poll() is None and process.kill())
         return process
 
@@ -156,6 +164,35 @@ class StartupTest(unittest.TestCase):
         self.assertEqual(process.wait(timeout=20), 0)
         with rosbag.Bag(record) as bag:
             self.assertGreater(bag.get_message_count(), 0)
+
+    def test_records_begin_after_one_that_its_disk_did_not_take(self):
+        folder = tempfile.mkdtemp(dir="/tmp")
+        self.parameters.update(file_roots=[folder], real_time_factor=0)
+        process = self.start(self.parameters, preexec_fn=fill_disk)
+        self.wait_until_ready(process)
+        full, whole = (os.path.join(folder, name) for name in ("full.bag", "whole.bag"))
+        begin, end = rospy.ServiceProxy(NAME + "/start_record", StartRecord), rospy.ServiceProxy(NAME + "/stop_record", StopRecord)
+        self.assertTrue(begin(full).success)
+        wait_until(lambda: os.path.getsize(full) == LARGEST, "a full disk")
+        wait_until(lambda: begin(whole).success, "the next record")
+        self.assertTrue(end().success)
+        self.assertEqual(subprocess.call(["rosrun", "blem_sim", "replay", whole]), 0)
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.wait(timeout=20), 0)
+
+    def test_record_ends_with_its_terminal(self):
+        folder = tempfile.mkdtemp(dir="/tmp")
+        self.parameters["file_roots"] = [folder]
+        process = self.start(self.parameters)
+        self.wait_until_ready(process)
+        command = ["rosrun", "blem_sim", "record", "--node", NAME, os.path.join(folder, "run.bag")]
+        recorder = subprocess.Popen(command, stdout=subprocess.PIPE, universal_newlines=True)
+        self.assertIn("records into", recorder.stdout.readline())
+        recorder.send_signal(signal.SIGHUP)
+        self.assertIn("steps", recorder.communicate(timeout=20)[0])
+        self.assertEqual(recorder.returncode, 0)
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.wait(timeout=20), 0)
 
     def test_checkpoint_stays_after_a_termination(self):
         self.parameters["checkpoint_period"] = 0.05

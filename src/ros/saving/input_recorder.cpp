@@ -33,17 +33,19 @@ void InputRecorder::write(const char* topic, const Message& message) {
   // A reader goes by the stamps, so they differ.
   const ros::WallTime now = ros::WallTime::now();
   last_stamp_ = std::max(ros::Time(now.sec, now.nsec), last_stamp_ + ros::Duration(0, 1));
-  bag_.write(topic, last_stamp_, message);
+  bag_->write(topic, last_stamp_, message);
 }
 
 void InputRecorder::start(const std::string& file) {
   if (!file_.empty()) throw InputError("record: " + file_ + " is being recorded; stop it first");
   if (simulator_->save().layout != first_layout_)
     throw InputError("record: models or settings have changed since the node started; start the node with record: FILE");
+  bag_ = std::make_unique<rosbag::Bag>();
   try {
-    bag_.open(file, rosbag::bagmode::Write);
+    bag_->open(file, rosbag::bagmode::Write);
     write(START_TOPIC, startMessage(*simulator_, configuration_));
   } catch (const rosbag::BagException& error) {
+    closeBag();
     throw InputError("record: " + file + ": cannot be written: " + error.what() + "; check the folder and its disk");
   }
   file_ = file;
@@ -60,7 +62,7 @@ std::string InputRecorder::stop() {
   if (file_.empty()) throw InputError("record: " + file + ": its end could not be written; the log says why");
   simulator_->watch(nullptr);
   file_.clear();
-  bag_.close();
+  if (!closeBag()) throw InputError("record: " + file + ": its end could not be written; make room on its disk and record again");
   return std::to_string(steps_.first) + " steps, " + std::to_string(inputs_) + " inputs in " + file;
 }
 
@@ -92,10 +94,17 @@ void InputRecorder::giveUp(const char* why) {
   ROS_ERROR("record: %s ends after step %lu: %s; make room and record again", file_.c_str(), static_cast<unsigned long>(steps_.first), why);
   simulator_->watch(nullptr);
   file_.clear();
+  closeBag();
+}
+
+bool InputRecorder::closeBag() {
   try {
-    bag_.close();
+    bag_->close();
+    bag_.reset();
+    return true;
   } catch (const rosbag::BagException&) {
-    // The first error was told.
+    static_cast<void>(bag_.release());
+    return false;
   }
 }
 

@@ -4,6 +4,7 @@
 #include <blem_sim/RecordedSteps.h>
 #include <rosbag/bag.h>
 
+#include <memory>
 #include <string>
 
 #include "blem_sim/sim/simulator.h"
@@ -34,11 +35,14 @@ class InputRecorder : public sim::SimulatorWatcher {
   void writeSteps();
   /** Ends the record without its last message. */
   void giveUp(const char* why);
+  /** Closes the bag. One that cannot write its end stays in memory: its destructor would write again, throw, and end the node.
+   *  @return whether its end is written */
+  bool closeBag();
 
   sim::Simulator* simulator_;
   std::string configuration_, first_layout_;
-  std::string file_;  // empty: nothing is recorded
-  rosbag::Bag bag_;
+  std::string file_;                  // empty: nothing is recorded
+  std::unique_ptr<rosbag::Bag> bag_;  // while it records
   ros::Time last_stamp_;
   RecordedSteps steps_;  // that are not written yet
   std::uint64_t inputs_ = 0;
