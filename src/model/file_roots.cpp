@@ -12,10 +12,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr int MOST_LINKS = 40;  // in a row, as Linux follows them
+
+/** Target of a link that leads to no file yet: whoever writes through it makes that file. */
+fs::path writtenAt(fs::path path) {
+  std::error_code error;
+  for (int links = 0; links < MOST_LINKS && fs::is_symlink(fs::symlink_status(path, error)) && !fs::exists(path, error); ++links)
+    path = path.parent_path() / fs::read_symlink(path, error);
+  return path;
+}
+
 /** Path without links, dots and a slash at its end; empty if it cannot be followed. */
 fs::path followed(const std::string& path) {
   std::error_code error;
-  const fs::path whole = fs::weakly_canonical(fs::absolute(path, error), error);
+  const fs::path whole = fs::weakly_canonical(writtenAt(fs::absolute(path, error)), error);
   if (error) return {};
   return whole.has_filename() ? whole : whole.parent_path();
 }

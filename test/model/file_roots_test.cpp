@@ -23,10 +23,13 @@ TEST(FileRoots, HoldFilesBelowThemAlone) {
   std::ofstream(folder / "secret.off") << "x";
   fs::remove(allowed / "link.off");
   fs::create_symlink(folder / "secret.off", allowed / "link.off");
+  for (const char* link : {"nowhere.bag", "first.bag"}) fs::remove(allowed / link);
+  fs::create_symlink(folder / "not_there_yet.bag", allowed / "nowhere.bag");
+  fs::create_symlink("nowhere.bag", allowed / "first.bag");
   const FileRoots roots({allowed.string() + "/"});
   EXPECT_NO_THROW(roots.require((allowed / "deep" / "new.state").string()));
-  for (const fs::path& path :
-       {folder / "secret.off", allowed / ".." / "secret.off", allowed / "link.off", folder / "allowed_not" / "a.off"})
+  for (const fs::path& path : {folder / "secret.off", allowed / ".." / "secret.off", allowed / "link.off", allowed / "nowhere.bag",
+                               allowed / "first.bag", folder / "allowed_not" / "a.off"})
     EXPECT_THROW(roots.require(path.string()), InputError) << path;
   EXPECT_THROW(FileRoots(std::vector<std::string>{}).require((allowed / "a").string()), InputError);
   UriResolver resolver;
