@@ -248,6 +248,15 @@ class GazeboSpawnTest(unittest.TestCase):
         self.assertIn("position of shoulder: 'half' is no number", refused.stderr)
         self.assertNotIn("odd", models())
 
+    def script(self, *flags, **options):
+        return subprocess.run(["rosrun", "blem_sim", "spawn_model"] + list(flags), stdout=subprocess.PIPE, stderr=subprocess.PIPE, **options)
+
+    def test_script_takes_negative_numbers_with_exponents(self):
+        done = self.script("-urdf", "-file", ARM, "-model", "scripted", "-robot_namespace", "scripted", "-x", "-2.5e-1", "-J", "shoulder", "-2e-1")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertAlmostEqual(place("scripted").x, -0.25, delta=1e-6)
+        self.assertAlmostEqual(service("get_joint_properties", srv.GetJointProperties)("scripted::shoulder").position[0], -0.2, delta=1e-6)
+
     def test_z_configured_robot_goes_with_its_sensors(self):
         imu = Recorder("/imu", Imu)
         self.addCleanup(imu.stop)
