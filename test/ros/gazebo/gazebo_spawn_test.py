@@ -257,6 +257,17 @@ class GazeboSpawnTest(unittest.TestCase):
         self.assertAlmostEqual(place("scripted").x, -0.25, delta=1e-6)
         self.assertAlmostEqual(service("get_joint_properties", srv.GetJointProperties)("scripted::shoulder").position[0], -0.2, delta=1e-6)
 
+    def test_script_refuses_in_words(self):
+        rospy.set_param("/number", 5)
+        rospy.set_param("/map", {"a": 1})
+        for flags, word in ((("-param", "number"), "/number is no text"), (("-param", "map"), "/map is no text"), (("-param", ""), "is no text"),
+                            (("-stdin",), "standard input"), (("-file", ARM, "-R", "inf"), "'inf'"), (("-file", ARM, "-J", "shoulder", "nan"), "'nan'")):
+            done = self.script("-model", "odd", *flags, input=b"\xff\xfe")
+            self.assertNotEqual(done.returncode, 0)
+            self.assertIn(word, done.stderr.decode())
+            self.assertNotIn("Traceback", done.stderr.decode())
+        self.assertNotIn("odd", models())
+
     def test_z_configured_robot_goes_with_its_sensors(self):
         imu = Recorder("/imu", Imu)
         self.addCleanup(imu.stop)
