@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """Models come and go by Gazebo's services, in a node named gazebo that empty_world.launch starts; the types have Gazebo's md5."""
 import os
+import signal
 import subprocess
 import sys
 import unittest
@@ -267,6 +268,18 @@ class GazeboSpawnTest(unittest.TestCase):
             self.assertIn(word, done.stderr.decode())
             self.assertNotIn("Traceback", done.stderr.decode())
         self.assertNotIn("odd", models())
+
+    def test_script_ends_though_its_node_is_gone(self):
+        services = [rospy.Service("/fleeting/" + name, kind, lambda request: (True, ""))
+                    for name, kind in (("spawn_urdf_model", srv.SpawnModel), ("delete_model", srv.DeleteModel))]
+        command = ["rosrun", "blem_sim", "spawn_model", "-urdf", "-file", ARM, "-model", "odd", "-gazebo_namespace", "/fleeting", "-b"]
+        process = subprocess.Popen(command, stdout=subprocess.PIPE, universal_newlines=True)
+        self.addCleanup(lambda: process.poll() is None and process.kill())
+        self.assertIn("spawn_model:", process.stdout.readline())
+        for offered in services:
+            offered.shutdown()
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.wait(timeout=20), 0)
 
     def test_z_configured_robot_goes_with_its_sensors(self):
         imu = Recorder("/imu", Imu)
