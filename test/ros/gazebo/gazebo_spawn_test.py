@@ -281,6 +281,12 @@ class GazeboSpawnTest(unittest.TestCase):
         process.send_signal(signal.SIGINT)
         self.assertEqual(process.wait(timeout=20), 0)
 
+    def test_script_takes_a_model_back_whose_joints_are_refused(self):
+        done = self.script("-urdf", "-file", ARM, "-model", "odd", "-robot_namespace", "odd", "-J", "elbow", "1")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("'elbow'", done.stderr.decode())
+        self.assertNotIn("odd", models())
+
     def test_z_configured_robot_goes_with_its_sensors(self):
         imu = Recorder("/imu", Imu)
         self.addCleanup(imu.stop)
