@@ -4,6 +4,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import unittest
 
 import rospkg
@@ -286,6 +287,18 @@ class GazeboSpawnTest(unittest.TestCase):
         self.assertEqual(done.returncode, 1)
         self.assertIn("'elbow'", done.stderr.decode())
         self.assertNotIn("odd", models())
+
+    def test_script_says_what_it_waits_for(self):
+        for flags, word in ((("-gazebo_namespace", "/nowhere"), "/nowhere"), (("-wait", "nobody"), "nobody")):
+            command = ["rosrun", "blem_sim", "spawn_model", "-urdf", "-file", ARM, "-model", "odd"] + list(flags)
+            process = subprocess.Popen(command, stderr=subprocess.PIPE, universal_newlines=True)
+            self.addCleanup(lambda: process.poll() is None and process.kill())
+            stopped = threading.Timer(20, process.kill)
+            stopped.start()
+            line = process.stderr.readline()
+            self.assertTrue("waits for" in line and word in line, line)
+            process.kill()
+            stopped.cancel()
 
     def test_z_configured_robot_goes_with_its_sensors(self):
         imu = Recorder("/imu", Imu)
