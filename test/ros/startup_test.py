@@ -180,6 +180,20 @@ class StartupTest(unittest.TestCase):
         process.send_signal(signal.SIGINT)
         self.assertEqual(process.wait(timeout=20), 0)
 
+    def test_record_of_a_node_that_was_killed_is_whole_up_to_its_end(self):
+        record = os.path.join(tempfile.mkdtemp(dir="/tmp"), "inputs.bag")
+        self.parameters["record"] = record
+        process = self.start(self.parameters)
+        self.wait_until_ready(process)
+        time.sleep(1)
+        process.kill()
+        process.wait()
+        subprocess.check_call(["rosbag", "reindex", "-q", record])
+        with rosbag.Bag(record) as bag:
+            self.assertEqual(bag.get_message_count("record/start"), 1)
+        done = subprocess.run(["rosrun", "blem_sim", "replay", record], stderr=subprocess.PIPE, universal_newlines=True)
+        self.assertIn("cut short", done.stderr)
+
     def test_record_ends_with_its_terminal(self):
         folder = tempfile.mkdtemp(dir="/tmp")
         self.parameters["file_roots"] = [folder]

@@ -12,6 +12,7 @@ namespace blem_sim::node {
 namespace {
 
 constexpr std::size_t STEPS_PER_MESSAGE = 100;
+constexpr std::uint32_t CHUNK = 16384;  // [bytes] that a killed node loses at most: rosbag reindex finds chunks that were ended
 
 }  // namespace
 
@@ -44,6 +45,7 @@ void InputRecorder::start(const std::string& file) {
   try {
     bag_->open(file, rosbag::bagmode::Write);
     write(START_TOPIC, startMessage(*simulator_, configuration_));
+    bag_->setChunkThreshold(CHUNK);  // ends the chunk of the beginning, too
   } catch (const rosbag::BagException& error) {
     closeBag();
     throw InputError("record: " + file + ": cannot be written: " + error.what() + "; check the folder and its disk");
