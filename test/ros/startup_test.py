@@ -267,6 +267,16 @@ class StartupTest(unittest.TestCase):
         process.send_signal(signal.SIGINT)
         self.assertEqual(process.wait(timeout=20), 0)
 
+    def test_another_clock_is_told(self):
+        clock = rospy.Publisher("/clock", Clock, queue_size=1)
+        self.addCleanup(clock.unregister)
+        process = self.start(self.parameters)
+        self.wait_until_ready(process)
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.wait(timeout=20), 0)
+        self.output.seek(0)
+        self.assertIn("/clock: is published by %s too" % rospy.get_name(), self.output.read())
+
     def test_sim_time_is_set_if_it_was_not(self):
         master = rosgraph.Master("/startup_test")
         if master.hasParam("/use_sim_time"):
