@@ -1,8 +1,12 @@
 #!/usr/bin/python3
 """Trajectories and joint commands move the joints; bad ones are refused and the node lives on."""
 import math
+import os
+import subprocess
+import tempfile
 import unittest
 
+import rospkg
 import rospy
 import rostest
 from rosgraph_msgs.msg import Log
@@ -11,6 +15,8 @@ from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 
 import sim_client
 from sim_client import Recorder, wait_until
+
+SCRIPT = os.path.join(rospkg.RosPack().get_path("blem_sim"), "scripts", "play_trajectory")
 
 
 def trajectory(joints, points):
@@ -103,6 +109,35 @@ class CommandsTest(unittest.TestCase):
         self.assert_refused(publisher, JointState(name=["elbow"], position=[1]), "elbow")
         self.assert_refused(publisher, JointState(name=["shoulder"], position=[math.nan]), "shoulder")
         self.assert_refused(publisher, JointState(name=["shoulder"], position=[1, 2]))
+
+    def play(self, content, *flags):
+        """Exit code and errors of play_trajectory, while steps are made."""
+        file = os.path.join(tempfile.mkdtemp(dir="/tmp"), "motion.csv")
+        with open(file, "wb") as stream:
+            stream.write(content)
+        command = [SCRIPT, file] + list(flags)
+        process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, universal_newlines=True)
+        self.addCleanup(lambda: process.poll() is None and process.kill())
+        wait_until(lambda: sim_client.step(50) and process.poll() is not None, "the script's end")
+        return process.returncode, process.stderr.read()
+
+    def test_script_plays_a_file_with_a_byte_order_mark_and_other_columns(self):
+        code, text = self.play(b"\xef\xbb\xbftime,shoulder,remark\n0,0,begins\n\n0.2,-0.4,ends\n", "--approach", "0.1")
+        self.assertEqual(code, 0, text)
+        self.assertAlmostEqual(self.position_after(1000), -0.4, delta=0.03)
+
+    def test_script_refuses_bad_files_in_one_line(self):
+        for content, words in ((b"time,shoulder\n0,abc\n", "motion.csv:2: 'abc'"), (b"time,shoulder\n0,0\n0.3\n", "motion.csv:3: has 1 cells"),
+                               (b"time,shoulder\n0,0,1\n", "motion.csv:2: has 3 cells"), (b"time,shoulder\n0,nan\n", "'nan'"),
+                               (b"time,shoulder\n0,0\ninf,0\n", "'inf'"), (b"time,shoulder\n0,0\n1e12,0\n", "'1e12'"),
+                               (b"time,shoulder,shoulder\n0,0,0\n", "twice"), (b"\xff\xfe\x00", "motion.csv: is no CSV file")):
+            code, text = self.play(content)
+            self.assertEqual(code, 2, text)
+            self.assertIn(words, text)
+            self.assertEqual(text.count("\n"), 1, text)
+        code, text = self.play(b"time,shoulder\n0,0\n", "--approach", "inf")
+        self.assertEqual(code, 2, text)
+        self.assertIn("'inf'", text)
 
 
 if __name__ == "__main__":
