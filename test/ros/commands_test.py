@@ -126,6 +126,10 @@ class CommandsTest(unittest.TestCase):
         self.assertEqual(code, 0, text)
         self.assertAlmostEqual(self.position_after(1000), -0.4, delta=0.03)
 
+    def test_rosrun_finds_one_script(self):
+        done = subprocess.run(["rosrun", "blem_sim", "play_trajectory", "--help"], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        self.assertEqual(done.returncode, 0, done.stdout)
+
     def test_script_refuses_bad_files_in_one_line(self):
         for content, words in ((b"time,shoulder\n0,abc\n", "motion.csv:2: 'abc'"), (b"time,shoulder\n0,0\n0.3\n", "motion.csv:3: has 1 cells"),
                                (b"time,shoulder\n0,0,1\n", "motion.csv:2: has 3 cells"), (b"time,shoulder\n0,nan\n", "'nan'"),
