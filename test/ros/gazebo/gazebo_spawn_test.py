@@ -1,15 +1,18 @@
 #!/usr/bin/python3
 """Models come and go by Gazebo's services, in a node named gazebo that empty_world.launch starts; the types have Gazebo's md5."""
 import os
+import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import threading
 import unittest
 
 import rospkg
 import rospy
 import rostest
+import yaml
 from geometry_msgs.msg import Point, Pose
 from sensor_msgs.msg import Imu, JointState
 from tf2_msgs.msg import TFMessage
@@ -249,6 +252,16 @@ class GazeboSpawnTest(unittest.TestCase):
         self.assertEqual(refused.returncode, 2)
         self.assertIn("position of shoulder: 'half' is no number", refused.stderr)
         self.assertNotIn("odd", models())
+
+    def test_launch_file_takes_yaml_by_any_of_its_endings(self):
+        folder = tempfile.mkdtemp(dir="/tmp")
+        for ending in ("yaml", "yml", "YAML"):
+            world = os.path.join(folder, "world." + ending)
+            shutil.copy(os.path.join(DATA, "world.yaml"), world)
+            command = ["roslaunch", "--dump-params", "blem_sim", "empty_world.launch", "world_name:=" + world]
+            parameters = yaml.safe_load(subprocess.check_output(command))
+            self.assertEqual(parameters["/gazebo/config_file"], world)
+            self.assertIn("/gazebo/objects", parameters)
 
     def script(self, *flags, **options):
         return subprocess.run(["rosrun", "blem_sim", "spawn_model"] + list(flags), stdout=subprocess.PIPE, stderr=subprocess.PIPE, **options)
