@@ -123,6 +123,11 @@ class LayerEventsTest(unittest.TestCase):
         for word in PAIR + ("boundary_width", "<failure"):
             self.assertIn(word, words)
 
+    def test_judge_knows_its_parameters(self):
+        code, words = self.judged(unpause, duration=0.1, patience=20, max_energy_gaine=1e9, max_of_layer=100)
+        self.assertEqual(code, 1, words)
+        self.assertIn("max_energy_gaine: unknown parameter; the nearest known one is 'max_energy_gained'", words.replace("&apos;", "'"))
+
     def test_judge_ignores_what_it_is_told_to(self):
         code, words = self.judged(unpause, duration=0.5, patience=20, ignore_until=0.4)
         self.assertEqual(code, 0, words)
