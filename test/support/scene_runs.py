@@ -22,6 +22,14 @@ def program():
     return path
 
 
+def require_known(names, known):
+    """Ends the program, before its first run, if a name is none of the known ones."""
+    unknown = [name for name in names if name not in known]
+    if unknown:
+        print("%s: there is no %s; there are: %s" % (pathlib.Path(sys.argv[0]).name, ", ".join(unknown), " ".join(known)), file=sys.stderr)
+        sys.exit(2)
+
+
 def world(name, **choices):
     """A world as a configuration; choices are those of convert_world."""
     options = argparse.Namespace(motor="implicit_pd", sensors=True, self_collision=False, start_at=None)
