@@ -51,13 +51,14 @@ void InputRecorder::start(const std::string& file) {
     throw InputError("record: " + file + ": cannot be written: " + error.what() + "; check the folder and its disk");
   }
   file_ = file;
+  given_up_.clear();
   steps_ = RecordedSteps();
   inputs_ = 0;
   simulator_->watch(this);
 }
 
 std::string InputRecorder::stop() {
-  if (file_.empty()) throw InputError("record: nothing is being recorded; start it first");
+  if (file_.empty()) throw InputError(given_up_.empty() ? "record: nothing is being recorded; start it first" : given_up_);
   const std::string file = file_;
   steps_.last = true;
   writeSteps();
@@ -93,7 +94,8 @@ void InputRecorder::writeSteps() {
 }
 
 void InputRecorder::giveUp(const char* why) {
-  ROS_ERROR("record: %s ends after step %lu: %s; make room and record again", file_.c_str(), static_cast<unsigned long>(steps_.first), why);
+  given_up_ = "record: " + file_ + " ends after step " + std::to_string(steps_.first) + ": " + why + "; make room and record again";
+  ROS_ERROR("%s", given_up_.c_str());
   simulator_->watch(nullptr);
   file_.clear();
   closeBag();

@@ -42,6 +42,7 @@ class InputRecorder : public sim::SimulatorWatcher {
   sim::Simulator* simulator_;
   std::string configuration_, first_layout_;
   std::string file_;                  // empty: nothing is recorded
+  std::string given_up_;              // why the last record ended by itself
   std::unique_ptr<rosbag::Bag> bag_;  // while it records
   ros::Time last_stamp_;
   RecordedSteps steps_;  // that are not written yet
