@@ -24,6 +24,7 @@ namespace {
 constexpr double FASTEST = 1e100;       // [m/s or rad/s]: at higher speeds ODE could not normalise the state it gets
 constexpr double SAME_PRODUCTS = 1e-9;  // [sqrt(kg) m/s] change of the free momentum that needs no second pass
 
+constexpr int MOST_LIMITS = 4;       // times that a step's corrections are limited anew
 constexpr std::size_t SHARED = 300;  // contacts of an island that threads share
 constexpr double LIGHT = 0.01;       // [kg] mass of the lightest tree of an island, below which tolerances shrink
 constexpr std::uint64_t NO_MORE_TREES = ~0ull;
@@ -181,10 +182,11 @@ NewtonReport ArticulatedStepper::solveCorrected(const TermSource& source, const 
 NewtonReport ArticulatedStepper::solveBounded(const TermSource& source, Island* island) {
   const NewtonSettings newton = settingsFor(*island);
   const NewtonReport first = island->solver.solve(forest_, motion_, island->model, newton, &space_);
-  const NewtonReport report = solveCorrected(source, newton, first, island);
-  if (!island->solver.limitCorrections(settings_.max_correction_speed)) return report;
-  // Products of velocities that only corrections gave would push what stands still.
-  return solveCorrected(source, newton, afterAll(report, island->solver.solveAgain(newton)), island);
+  NewtonReport report = solveCorrected(source, newton, first, island);
+  // Products of velocities that only corrections gave would push what stands still. Others may push where some have given up.
+  for (int k = 0; k < MOST_LIMITS && island->solver.limitCorrections(settings_.max_correction_speed); ++k)
+    report = solveCorrected(source, newton, afterAll(report, island->solver.solveAgain(newton)), island);
+  return report;
 }
 
 // Trees that an impact meets are followed as if they were fast: their speed after it is not known yet. @return whether an impact happened

@@ -16,6 +16,8 @@ NewtonReport IslandSolver::solve(const Forest& forest, const ForestMotion& motio
   found_.mimic_impulses.clear();
   island_.emplace(IslandAtHand{forest, motion, model, &found_, space, team_.get()});
   if (fliesAlone()) return fly();
+  made_joints_ = found_.terms.joints;
+  made_loops_ = found_.terms.loops;
   newton_.start(*island_);
   steps_.start(*island_, &newton_);
   swept_.start(*island_, &newton_);
@@ -73,8 +75,20 @@ void IslandSolver::recoverFromFaults(const NewtonSettings& settings, NewtonRepor
 
 bool IslandSolver::limitCorrections(double speed) {
   if (!boundCorrections(*island_, speed)) return false;
+  forgetReactions();
   newton_.begin();
   return true;
+}
+
+// Stops and loops that held against those corrections would go on holding, and contacts against them, although nothing asks for it.
+void IslandSolver::forgetReactions() {
+  found_.terms.joints = made_joints_;
+  for (std::size_t l = 0; l < made_loops_.size(); ++l) {
+    LoopTerm& loop = found_.terms.loops[l];
+    const Vector6 target = loop.target;
+    loop = made_loops_[l];
+    loop.target = target;
+  }
 }
 
 }  // namespace blem_sim::dynamics

@@ -42,10 +42,13 @@ class IslandSolver {
   bool fliesAlone() const;
   NewtonReport fly();
   bool isSwept() const { return island_->model.isHeap() || island_->model.isMixedHeap(); }
+  void forgetReactions();
   void recoverFromFaults(const NewtonSettings& settings, NewtonReport* report);
 
   std::optional<IslandAtHand> island_;
   IslandAnswer found_;
+  std::vector<JointTerm> made_joints_;  // as they were before the solve
+  std::vector<LoopTerm> made_loops_;
   std::unique_ptr<Team> team_ = std::make_unique<Team>();
   NewtonLoop newton_;
   ProximalSteps steps_;
