@@ -17,14 +17,20 @@ constexpr double HOLDS = 0.5;  // of a dof's inertia: a joint that answers more 
 
 bool isFast(const ForestMotion& motion, int tree) { return motion.pace[tree] == Pace::FAST; }
 
+// What presses on a limit all the time: what it bore in the solve, but what stopped the joint or paid for the last way. Only by so much may
+// it give way: else it would push the joint off in the next step. @param toward_stop [rad/s or m/s] by which the joint was faster before
+double pressOn(double impulse, double owed, double toward_stop, double inertia) {
+  return impulse > 0 ? std::max(0.0, impulse - owed - inertia * std::max(0.0, toward_stop)) : 0;
+}
+
 // Joints that answer stiffly keep their velocity on the way, as far as motor, friction and limits reach.
-void setHold(const JointTerm& joint, double velocity, double inertia, FreeMotion* way) {
-  const bool holds = joint.stiffness(velocity) > HOLDS * inertia;
+void setHold(const JointTerm& joint, double velocity, const ForestMotion& motion, double inertia, FreeMotion* way) {
+  const int k = joint.dof;
   const double reach = (joint.motor_gain > 0 ? joint.motor_bound : 0) + joint.dry_bound;
-  way->held()[joint.dof] = holds;
-  const double lower = joint.lowerImpulse(velocity), upper = joint.upperImpulse(velocity);
-  way->most[joint.dof] = lower > 0 ? INFINITY : reach + upper;
-  way->least[joint.dof] = upper > 0 ? -INFINITY : -reach - lower;
+  const double lower = joint.lowerImpulse(velocity), upper = joint.upperImpulse(velocity), faster = velocity - motion.velocity[k];
+  way->held()[k] = joint.stiffness(velocity) > HOLDS * inertia;
+  way->most[k] = lower > 0 ? INFINITY : reach + pressOn(upper, -motion.owed[k], -faster, inertia);
+  way->least[k] = upper > 0 ? -INFINITY : -reach - pressOn(lower, motion.owed[k], faster, inertia);
 }
 
 // Joints that follow the same one keep their velocities on the way, and so does that one, or none of them.
@@ -184,7 +190,7 @@ bool followFast(const SolvedIsland& island, const ForestMotion& motion, const So
   const auto turns = [&](int tree) { return motion.pace[tree] != Pace::SLOW; };
   if (std::none_of(trees.begin(), trees.end(), turns)) return true;
   bool followed = true;
-  for (const JointTerm& j : island.found.joints) setHold(j, space.velocity[j.dof], motion.mass[island.forest.diagonal(j.dof)], way);
+  for (const JointTerm& j : island.found.joints) setHold(j, space.velocity[j.dof], motion, motion.mass[island.forest.diagonal(j.dof)], way);
   for (const int tree : trees) {
     followed &= motion.pace[tree] != Pace::TOO_FAST;
     if (!isFast(motion, tree)) continue;

@@ -151,5 +151,56 @@ TEST(WorkingMotion, StopOfASliderBearsTheCentrifugalForce) {
   }
 }
 
+constexpr double SLIDER_ARM = 0.35;  // [m] from the pivot of an ArmWithSlider to the slider's centre of mass at its stop
+
+/** An arm that spins about its end, and on it a slider of 0.3 kg, `room` off the stop on its inner side. */
+struct ArmWithSlider : Chain {
+  ArmWithSlider(double spin, double room, double inwards) : Chain({{1, 0.3}, {0.3, 0.1}}, options()) {
+    world.setJointLimits(1, -room, 10);
+    for (int body = 0; body < 2; ++body) {
+      BodyState state = world.bodyState(body);
+      state.w_WB = {0, spin, 0};
+      state.v_WCom = state.w_WB.cross(state.X_WB * world.bodySpec(body).inertial.com) - body * inwards * Vector3::UnitX();
+      world.setBodyState(body, state);
+    }
+    first_energy = world.kineticEnergy();
+  }
+  static ChainOptions options() {
+    ChainOptions options;
+    options.gravity = Vector3::Zero();
+    options.slider = 1;
+    return options;
+  }
+};
+
+// What stopped the slider in one step presses on nothing in the next, where it would push the slider off.
+TEST(WorkingMotion, StopThatWasHitDoesNotPushOff) {
+  for (const double spin : {5, 20, 40}) {
+    for (const double inwards : {3, 30}) {
+      ArmWithSlider chain(spin, 0.02, inwards);
+      double energy = chain.world.kineticEnergy();
+      for (int i = 0; i < 100; ++i) {
+        chain.step(DT);
+        ASSERT_LT(chain.world.kineticEnergy() - energy, 1e-10) << spin << ", " << inwards << ", " << i;
+        energy = chain.world.kineticEnergy();
+      }
+    }
+  }
+}
+
+// An effort that is little more than the centrifugal force keeps the slider on its inner stop.
+TEST(WorkingMotion, StopGivesWayToAllThatPressesOnIt) {
+  constexpr double SPIN = 30;
+  for (const double share : {0.2, 0.55, 0.75, 0.95}) {
+    ArmWithSlider chain(SPIN, 0, 0);
+    chain.drives[1].effort = -0.3 * SPIN * SPIN * SLIDER_ARM / share;
+    for (int i = 0; i < 500; ++i) {
+      chain.step(DT);
+      ASSERT_NEAR(chain.world.jointState(1).position, 0, 1e-9) << share << ", " << i;
+    }
+    EXPECT_NEAR(chain.world.kineticEnergy() / chain.first_energy, 1, 1e-9) << share;
+  }
+}
+
 }  // namespace
 }  // namespace blem_sim::dynamics
