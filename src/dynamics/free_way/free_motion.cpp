@@ -51,7 +51,7 @@ void FreeMotion::resize(const Forest& forest) {
   at_.mass = {};
   bodies_.resize(forest);
   start_position_.assign(dofs, 0);
-  for (auto* v : {&start_velocity_, &sum_position_, &sum_velocity_, &sum_effort_, &owed_}) v->setZero(dofs);
+  for (auto* v : {&start_velocity_, &sum_position_, &sum_velocity_, &sum_effort_, &owed_, &supplied_}) v->setZero(dofs);
   for (auto* v : {&least, &most}) v->assign(dofs, 0);
   drift_.assign(trees, Vector3::Zero());
   spin_.assign(trees, Vector3::Zero());
@@ -153,15 +153,19 @@ double FreeMotion::work(const Forest& forest, int tree) const {
   return sum;
 }
 
-// Joints that would have to supply more than they can are held no longer; those near their bounds may follow at the next try.
+// Joints that would have to supply more than they can are held no longer, and those that follow them; those near their bounds may follow at
+// the next try. What joints that follow another one supply counts as that one's.
 bool FreeMotion::letGo(const Forest& forest, int tree) {
   const ForestTree& t = forest.trees()[tree];
+  supplied_.segment(t.first_dof, t.dofCount()) = owed_.segment(t.first_dof, t.dofCount());
+  forFollowers(forest, tree, [&](int dof, int master, double multiplier) { supplied_[master] += multiplier * owed_[dof]; });
   bool some = false;
   for (int k = t.first_dof; k < t.dof_end; ++k) {
-    if (!held()[k] || (owed_[k] >= least[k] && owed_[k] <= most[k])) continue;
+    if (!held()[k] || (supplied_[k] >= least[k] && supplied_[k] <= most[k])) continue;
     held()[k] = 0;
     some = true;
   }
+  forFollowers(forest, tree, [&](int dof, int master, double) { held()[dof] &= held()[master]; });
   return some;
 }
 

@@ -34,7 +34,7 @@ class FreeMotion {
   /** Per dof: whether it keeps its velocity on the way. To be set before `follow`, which lets go of those that cannot. */
   std::vector<char>& held() { return bodies_.held; }
   const std::vector<char>& held() const { return bodies_.held; }
-  /** Per dof [N m s or N s]: least and largest impulse that it can supply to do so. */
+  /** Per dof [N m s or N s]: least and largest impulse that it can supply to do so, with those that follow it. */
   std::vector<double> least, most;
 
   /** Follows a tree from its present poses. @param mass_velocity M times the velocity at the start */
@@ -71,7 +71,7 @@ class FreeMotion {
   ArticulatedBodies bodies_;
   // Per dof.
   std::vector<double> start_position_;
-  Eigen::VectorXd start_velocity_, sum_position_, sum_velocity_, sum_effort_, owed_;
+  Eigen::VectorXd start_velocity_, sum_position_, sum_velocity_, sum_effort_, owed_, supplied_;
   // Per tree.
   std::vector<Vector3> drift_;  ///< [m/s] of a free tree's centre of mass
   std::vector<Vector3> spin_;   ///< [kg m^2/s] of a free tree about it

@@ -17,40 +17,60 @@ constexpr double HOLDS = 0.5;  // of a dof's inertia: a joint that answers more 
 
 bool isFast(const ForestMotion& motion, int tree) { return motion.pace[tree] == Pace::FAST; }
 
+/** What moves with a dof, seen there: itself and, by mimic relations, others. */
+struct MovedAlong {
+  double inertia = 0;  ///< [kg m^2 or kg] at most
+  double owed = 0;     ///< [N m s or N s] by their last way
+};
+
+// Inertias of joints that move together are at most the square of the sum of their roots.
+MovedAlong movedAlong(const Forest& forest, const ForestMotion& motion, int dof) {
+  const auto dofOf = [&](int node) { return forest.nodes()[node].first_dof; };
+  int master = dof;
+  double multiplier = 1;
+  for (const MimicRelation& m : forest.mimics())
+    if (dofOf(m.node) == dof) master = dofOf(m.master), multiplier = m.multiplier;
+  const auto root = [&](int k) { return std::sqrt(motion.mass[forest.diagonal(k)]); };
+  double inertia_root = root(master), owed = motion.owed[master];
+  for (const MimicRelation& m : forest.mimics()) {
+    if (dofOf(m.master) != master) continue;
+    inertia_root += std::abs(m.multiplier) * root(dofOf(m.node));
+    owed += m.multiplier * motion.owed[dofOf(m.node)];
+  }
+  return {inertia_root * inertia_root / (multiplier * multiplier), owed / multiplier};
+}
+
 // What presses on a limit all the time: what it bore in the solve, but what stopped the joint or paid for the last way. Only by so much may
-// it give way: else it would push the joint off in the next step. @param toward_stop [rad/s or m/s] by which the joint was faster before
-double pressOn(double impulse, double owed, double toward_stop, double inertia) {
-  return impulse > 0 ? std::max(0.0, impulse - owed - inertia * std::max(0.0, toward_stop)) : 0;
+// it give way: else it would push the joint off in the next step.
+// @param side 1: the lower limit, -1: the upper one @param change [rad/s or m/s] of the joint's velocity
+double pressOn(double side, double impulse, double change, const MovedAlong& along) {
+  return impulse > 0 ? std::max(0.0, impulse - side * along.owed - along.inertia * std::max(0.0, side * change)) : 0;
 }
 
 // Joints that answer stiffly keep their velocity on the way, as far as motor, friction and limits reach.
-void setHold(const JointTerm& joint, double velocity, const ForestMotion& motion, double inertia, FreeMotion* way) {
+void setHold(const JointTerm& joint, double velocity, const Forest& forest, const ForestMotion& motion, FreeMotion* way) {
   const int k = joint.dof;
   const double reach = (joint.motor_gain > 0 ? joint.motor_bound : 0) + joint.dry_bound;
-  const double lower = joint.lowerImpulse(velocity), upper = joint.upperImpulse(velocity), faster = velocity - motion.velocity[k];
-  way->held()[k] = joint.stiffness(velocity) > HOLDS * inertia;
-  way->most[k] = lower > 0 ? INFINITY : reach + pressOn(upper, -motion.owed[k], -faster, inertia);
-  way->least[k] = upper > 0 ? -INFINITY : -reach - pressOn(lower, motion.owed[k], faster, inertia);
+  const double lower = joint.lowerImpulse(velocity), upper = joint.upperImpulse(velocity), change = velocity - motion.velocity[k];
+  const MovedAlong along = lower > 0 || upper > 0 ? movedAlong(forest, motion, k) : MovedAlong();
+  way->held()[k] = joint.stiffness(velocity) > HOLDS * motion.mass[forest.diagonal(k)];
+  way->most[k] = lower > 0 ? INFINITY : reach + pressOn(-1, upper, change, along);
+  way->least[k] = upper > 0 ? -INFINITY : -reach - pressOn(1, lower, change, along);
 }
 
-// Joints that follow the same one keep their velocities on the way, and so does that one, or none of them.
+// A share of a bound that may be infinite.
+double times(double multiplier, double bound) { return multiplier == 0 ? 0 : multiplier * bound; }
+
+// Joints that follow the same one keep their velocities on the way, and so does that one, or none of them: as far as all of them reach.
 void holdMimics(const Forest& forest, int tree, FreeMotion* way) {
-  const auto hold = [way](int dof) {
-    way->held()[dof] = true;
+  forFollowers(forest, tree, [&](int dof, int master, double) { way->held()[master] |= way->held()[dof]; });
+  forFollowers(forest, tree, [&](int dof, int master, double multiplier) {
+    way->held()[dof] = way->held()[master];
+    const double one = times(multiplier, way->least[dof]), other = times(multiplier, way->most[dof]);
+    way->least[master] += std::min(one, other);
+    way->most[master] += std::max(one, other);
     way->least[dof] = -INFINITY;
     way->most[dof] = INFINITY;
-  };
-  const auto forMimics = [&](const auto& visit) {
-    for (const MimicRelation& m : forest.mimics())
-      if (forest.nodes()[m.node].tree == tree) visit(forest.nodes()[m.node].first_dof, forest.nodes()[m.master].first_dof);
-  };
-  forMimics([&](int dof, int master) {
-    if (way->held()[dof]) hold(master);
-  });
-  forMimics([&](int dof, int master) {
-    if (!way->held()[master]) return;
-    hold(master);
-    hold(dof);
   });
 }
 
@@ -190,7 +210,7 @@ bool followFast(const SolvedIsland& island, const ForestMotion& motion, const So
   const auto turns = [&](int tree) { return motion.pace[tree] != Pace::SLOW; };
   if (std::none_of(trees.begin(), trees.end(), turns)) return true;
   bool followed = true;
-  for (const JointTerm& j : island.found.joints) setHold(j, space.velocity[j.dof], motion, motion.mass[island.forest.diagonal(j.dof)], way);
+  for (const JointTerm& j : island.found.joints) setHold(j, space.velocity[j.dof], island.forest, motion, way);
   for (const int tree : trees) {
     followed &= motion.pace[tree] != Pace::TOO_FAST;
     if (!isFast(motion, tree)) continue;

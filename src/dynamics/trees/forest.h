@@ -92,4 +92,11 @@ class Forest {
   std::vector<int> row_start_, row_length_, columns_;
 };
 
+/** Calls visit(dof, dof of the master, multiplier) for each joint of a tree that follows another. */
+template <typename Visit>
+void forFollowers(const Forest& forest, int tree, const Visit& visit) {
+  for (const MimicRelation& m : forest.mimics())
+    if (forest.nodes()[m.node].tree == tree) visit(forest.nodes()[m.node].first_dof, forest.nodes()[m.master].first_dof, m.multiplier);
+}
+
 }  // namespace blem_sim::dynamics
