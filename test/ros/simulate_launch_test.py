@@ -1,9 +1,12 @@
 #!/usr/bin/python3
 """simulate.launch with a URDF, an environment and Gazebo's node name: the robot is there, its frames too, scripts for Gazebo work."""
+import subprocess
+import tempfile
 import unittest
 
 import rospy
 import rostest
+import yaml
 from nav_msgs.msg import Odometry
 from sensor_msgs.msg import JointState
 from std_srvs.srv import Empty
@@ -14,7 +17,23 @@ from blem_sim.msg import ModelStates
 from sim_client import PATIENCE, Recorder, wait_until
 
 
+def node_parameters(*arguments):
+    """Parameters that a launch file of this package sets, without a start."""
+    return yaml.safe_load(subprocess.check_output(["roslaunch", "--dump-params", "blem_sim", *arguments]))
+
+
 class SimulateLaunchTest(unittest.TestCase):
+    def test_yaml_holds_where_no_argument_is_given(self):
+        with tempfile.NamedTemporaryFile("w", suffix=".yaml") as world:
+            world.write("{paused: true, real_time_factor: 0, robots: []}")
+            world.flush()
+            for launch, argument, node in (("simulate.launch", "config", "/blem_sim"), ("empty_world.launch", "world_name", "/gazebo")):
+                chosen = [launch, "%s:=%s" % (argument, world.name)]
+                left = node_parameters(*chosen)
+                self.assertEqual((left[node + "/paused"], left[node + "/real_time_factor"]), (True, 0), launch)
+                given = node_parameters(*chosen, "paused:=false", "real_time_factor:=2")
+                self.assertEqual((given[node + "/paused"], given[node + "/real_time_factor"]), (False, 2), launch)
+
     def test_robot_and_environment_are_there(self):
         models = Recorder("/gazebo/model_states", ModelStates)
         self.assertEqual(set(models.wait_for(1)[0].name), {"arm_on_base", "environment"})
