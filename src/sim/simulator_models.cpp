@@ -8,6 +8,7 @@
 #include <set>
 
 #include "blem_sim/geometry/input_error.h"
+#include "build/robot_builder.h"
 #include "config/config_check.h"
 #include "config/scene_limits.h"
 #include "gazebo/gazebo_robot.h"
@@ -17,7 +18,6 @@
 namespace blem_sim::sim {
 namespace {
 
-const char* const WORLD_LINK = "world";                     // root link of a URDF that is fixed to the world
 constexpr double SHORTEST_STEP = 1e-6, LONGEST_STEP = 0.1;  // [s]
 
 ObjectConfig objectOf(const RobotConfig& robot) {

@@ -131,6 +131,15 @@ void RobotBuilder::nameFrames() {
   info_.publish_tf = config_.publish_tf;
   info_.odom = config_.odom;
   info_.tf_prefix = framePrefix(config_, *model_, world_->robots, &start_notes_);
+  if (info_.root_link == WORLD_LINK) tellOfWorldLink();
+}
+
+void RobotBuilder::tellOfWorldLink() {
+  if (!config_.fixed_base)
+    start_notes_.push_back("its root link 'world' moves freely; set fixed_base to hold it");
+  else if (info_.tf_prefix.empty() && !config_.X_WR.isApprox(Pose::Identity()))
+    start_notes_.push_back(
+        "its root link 'world' is the frame 'world' on /tf, which does not show its pose; rename the link, or set tf_prefix");
 }
 
 void RobotBuilder::setSelfCollision() {

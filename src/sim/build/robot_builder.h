@@ -15,6 +15,9 @@
 
 namespace blem_sim::sim {
 
+/** Root link of a URDF that is the frame of the world on /tf; a robot that is spawned with it is fixed. */
+inline constexpr const char* WORLD_LINK = "world";
+
 /** Lives while one robot is added. */
 class RobotBuilder {
  public:
@@ -43,6 +46,8 @@ class RobotBuilder {
   void narrowLayers(const std::vector<double>& shares);
   std::string linkOf(const contact::Collider& collider) const { return model_->links[collider.link].name; }
   void nameFrames();
+  /** Notes on a root link of the name that the frame of the world has. */
+  void tellOfWorldLink();
   void setSelfCollision();
   void addSensors(int robot);
   /** Says where the axes of a wrench and their origin are. */

@@ -70,7 +70,7 @@ void readRobotValues(GazeboReader* reader, RobotConfig* config) {
   std::optional<bool> is_static;
   reader->read("static", &is_static);
   if (is_static.value_or(false) && !config->fixed_base)
-    reader->fault("static", "a robot is fixed by its root link; it is left out: set fixed_base, or name the root link world");
+    reader->fault("static", "a robot is fixed by its root link; it is left out: set fixed_base, or name the root link world and spawn it");
 }
 
 }  // namespace

@@ -43,6 +43,22 @@ bool mentions(const std::vector<std::string>& notes, const std::string& words) {
   return std::any_of(notes.begin(), notes.end(), [&](const std::string& note) { return note.find(words) != std::string::npos; });
 }
 
+TEST(RobotBuilder, TellsOfARootLinkWorldThatIsNotTheWorld) {
+  const char* const post = R"(<robot name="post"><link name="world"/><link name="bar"><inertial><mass value="1"/>
+    <inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial></link>
+    <joint name="swing" type="continuous"><parent link="world"/><child link="bar"/><axis xyz="0 1 0"/></joint></robot>)";
+  SimulationConfig config;
+  config.robots = {robot("post", post, false)};
+  const auto tells = [&](const std::string& words) { return mentions(Simulator(config, model::UriResolver()).notes(), words); };
+  EXPECT_TRUE(tells("post: its root link 'world' moves freely"));
+  config.robots[0].fixed_base = true;
+  EXPECT_FALSE(tells("root link")) << "it is the world";
+  config.robots[0].X_WR = makePose({0, 0, 0.2});
+  EXPECT_TRUE(tells("post: its root link 'world' is the frame 'world'"));
+  config.robots[0].tf_prefix = "left";
+  EXPECT_FALSE(tells("root link")) << "a frame of its own";
+}
+
 TEST(RobotBuilder, StandsWhereItIsTold) {
   SimulationConfig config = scene();
   config.robots[0].initial_positions = {{"shoulder", 0.5}, {"finger_a", 0.02}};
