@@ -155,7 +155,6 @@ void addNotes(RobotModel* robot) {
     const bool ranged = joint.type == JointType::REVOLUTE || joint.type == JointType::PRISMATIC;
     if (ranged && joint.limits.lower == joint.limits.upper)
       robot->notes.push_back(fmt::format("joint '{}': lower and upper limit are both {}: it cannot move", joint.name, joint.limits.lower));
-    if (joint.limits.effort == 0) robot->notes.push_back(fmt::format("joint '{}': effort limit 0: its motor can do nothing", joint.name));
   }
   const bool touches =
       std::any_of(robot->links.begin(), robot->links.end(), [](const LinkModel& link) { return !link.collisions.empty(); });

@@ -193,6 +193,20 @@ TEST(ComputedGains, AreTold) {
   EXPECT_NE(noteOf(free, "move freely").find("hinge"), std::string::npos);
 }
 
+TEST(ComputedGains, AnEffortLimitOf0IsToldOnceUnlessTheConfigurationHasAnother) {
+  SimulationConfig config;
+  config.robots = {robot("chain", chainUrdf(1, "revolute", 0), true)};
+  config.robots[0].motors = MotorDefault::COMPUTED;
+  const auto told = [&] {
+    const Simulator simulator(config, model::UriResolver());
+    const auto tells = [](const std::string& note) { return note.find("effort limit") != std::string::npos; };
+    return std::count_if(simulator.notes().begin(), simulator.notes().end(), tells);
+  };
+  EXPECT_EQ(told(), 1);
+  config.robots[0].effort_limits = {{"joint1", 50}};
+  EXPECT_EQ(told(), 0);
+}
+
 // Gazebo moves what a transmission names.
 TEST(ComputedGains, OnlyForTransmissionsIfAsked) {
   for (const bool with : {false, true}) {
