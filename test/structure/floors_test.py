@@ -1,6 +1,7 @@
 """The floors of a room: its sub-folders, of which the lower ones know nothing of the upper ones; small folders, files with names of their own."""
 import collections
 import pathlib
+import re
 
 from source_files import INCLUDE_IN_QUOTES, ROOT, sources
 
@@ -46,6 +47,14 @@ def wrong_include(room, path, include):
 def files_of(room):
     """Paths in the room's folder."""
     return [path.relative_to(ROOT / "src" / room) for path in sources("src/" + room)]
+
+
+def test_document_names_every_floor():
+    """In the rooms' table, the lowest first."""
+    rows = dict(re.findall(r"^\| (\w+) \| (.*) \|$", (ROOT / "docs/architecture.md").read_text(), re.MULTILINE))
+    for room in ROOMS:
+        named = [name for name in re.findall(r"`(\w+)`", rows[room]) if name in FLOORS[room]]
+        assert list(dict.fromkeys(named)) == FLOORS[room], room
 
 
 def test_includes_point_down_inside_rooms():
