@@ -1,5 +1,6 @@
 """Bad input: exit status 2 and one line that names file, field and cure."""
 import os
+import subprocess
 import sys
 import unittest
 
@@ -116,6 +117,12 @@ class BadInputTest(RunCase):
         os.mkfifo(str(pipe))
         self.assert_refused(["pipe", "no file"], "world.yaml", "--duration", 0.001, "--save-state", "pipe")
         self.assertTrue(pipe.is_fifo())
+
+    def test_standard_output_on_a_full_disk(self):
+        with open("/dev/full", "w") as full:
+            done = subprocess.run([self.program, "world.yaml", "--duration", "0.001"], cwd=str(self.folder), stdout=full, stderr=subprocess.PIPE, text=True)
+        self.assertEqual((done.returncode, done.stderr.count("\n")), (2, 1), done.stderr)
+        self.assertIn("standard output", done.stderr)
 
 
 if __name__ == "__main__":

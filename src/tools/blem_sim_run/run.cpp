@@ -77,6 +77,7 @@ void loadState(const RunOptions& options, sim::Simulator* simulator, std::vector
 void writeReport(const RunOptions& options, const RunRecord& record, const RunTimes& times, const std::vector<std::string>& notes) {
   if (options.report.empty()) {
     record.write(times, notes, std::cout);
+    if (!std::cout.flush()) throw InputError("the report on standard output could not all be written; make room on its disk");
     return;
   }
   std::ofstream stream(options.report);
