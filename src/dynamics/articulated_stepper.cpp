@@ -183,7 +183,7 @@ NewtonReport ArticulatedStepper::solveBounded(const TermSource& source, Island* 
   const NewtonSettings newton = settingsFor(*island);
   const NewtonReport first = island->solver.solve(forest_, motion_, island->model, newton, &space_);
   NewtonReport report = solveCorrected(source, newton, first, island);
-  // Products of velocities that only corrections gave would push what stands still. Others may push where some have given up.
+  // Products of velocities that only corrections gave would push what stands still. Where contacts have given up, others may push as hard.
   for (int k = 0; k < MOST_LIMITS && island->solver.limitCorrections(settings_.max_correction_speed); ++k)
     report = solveCorrected(source, newton, afterAll(report, island->solver.solveAgain(newton)), island);
   return report;
