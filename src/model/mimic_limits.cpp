@@ -16,7 +16,7 @@ struct Range {
   double length() const { return upper - lower; }
 };
 
-/** Where the follower's limits let its leader go, within the leader's own; of length 0 or less: nowhere. */
+/** Range of the leader's positions at which both hold their limits; of length 0 or less: none. */
 Range wayOf(const MimicLeader& leader, const JointLimits& of_leader, const JointLimits& of_follower) {
   const Range own{of_leader.lower, of_leader.upper};
   if (leader.multiplier == 0) {

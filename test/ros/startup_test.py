@@ -146,22 +146,24 @@ class StartupTest(unittest.TestCase):
             self.parameters["robots"][0]["sensors"][1]["topic"] = topic
             self.assert_refused(self.parameters, "/" + topic.strip("/"), "another")
 
+    def end(self, process, told):
+        process.send_signal(told)
+        self.assertEqual(process.wait(timeout=20), 0)
+
     def test_interrupt_ends_it_cleanly(self):
         for paused in (False, True):
             for told in (signal.SIGINT, signal.SIGTERM):
                 self.parameters["paused"] = paused
                 process = self.start(self.parameters)
                 self.wait_until_ready(process)
-                process.send_signal(told)
-                self.assertEqual(process.wait(timeout=20), 0)
+                self.end(process, told)
 
     def test_record_is_whole_after_a_termination(self):
         record = os.path.join(tempfile.mkdtemp(dir="/tmp"), "inputs.bag")
         self.parameters["record"] = record
         process = self.start(self.parameters)
         self.wait_until_ready(process)
-        process.send_signal(signal.SIGTERM)
-        self.assertEqual(process.wait(timeout=20), 0)
+        self.end(process, signal.SIGTERM)
         with rosbag.Bag(record) as bag:
             self.assertGreater(bag.get_message_count(), 0)
 
@@ -181,8 +183,7 @@ class StartupTest(unittest.TestCase):
         wait_until(lambda: begin(whole).success, "the next record")
         self.assertTrue(end().success)
         self.assertEqual(subprocess.call(["rosrun", "blem_sim", "replay", whole]), 0)
-        process.send_signal(signal.SIGINT)
-        self.assertEqual(process.wait(timeout=20), 0)
+        self.end(process, signal.SIGINT)
 
     def test_record_of_a_node_that_was_killed_is_whole_up_to_its_end(self):
         record = os.path.join(tempfile.mkdtemp(dir="/tmp"), "inputs.bag")
@@ -209,8 +210,7 @@ class StartupTest(unittest.TestCase):
         recorder.send_signal(signal.SIGHUP)
         self.assertIn("steps", recorder.communicate(timeout=20)[0])
         self.assertEqual(recorder.returncode, 0)
-        process.send_signal(signal.SIGINT)
-        self.assertEqual(process.wait(timeout=20), 0)
+        self.end(process, signal.SIGINT)
 
     def test_checkpoint_stays_after_a_termination(self):
         self.parameters["checkpoint_period"] = 0.05
@@ -255,8 +255,7 @@ class StartupTest(unittest.TestCase):
             loggers = rospy.ServiceProxy(NAME + "/get_loggers", GetLoggers)().loggers
             self.assertIn(("ros.blem_sim", "info"), [(logger.name, logger.level) for logger in loggers])
             self.assertFalse(rospy.ServiceProxy(NAME + "/load_environment", LoadEnvironment)(name="a", uri="nowhere").success)
-        process.send_signal(signal.SIGINT)
-        self.assertEqual(process.wait(timeout=20), 0)
+        self.end(process, signal.SIGINT)
 
     def test_services_use_no_files_if_they_are_not_allowed_to(self):
         self.parameters["allow_file_services"] = False
@@ -268,16 +267,14 @@ class StartupTest(unittest.TestCase):
             answer = rospy.ServiceProxy(NAME + "/" + name, kind)(**request)
             self.assertFalse(answer.success)
             self.assertIn("allow_file_services", answer.status_message)
-        process.send_signal(signal.SIGINT)
-        self.assertEqual(process.wait(timeout=20), 0)
+        self.end(process, signal.SIGINT)
 
     def test_another_clock_is_told(self):
         clock = rospy.Publisher("/clock", Clock, queue_size=1)
         self.addCleanup(clock.unregister)
         process = self.start(self.parameters)
         self.wait_until_ready(process)
-        process.send_signal(signal.SIGINT)
-        self.assertEqual(process.wait(timeout=20), 0)
+        self.end(process, signal.SIGINT)
         self.output.seek(0)
         self.assertIn("/clock: is published by %s too" % rospy.get_name(), self.output.read())
 
@@ -288,8 +285,7 @@ class StartupTest(unittest.TestCase):
         process = self.start(self.parameters)
         self.wait_until_ready(process)
         self.assertIs(master.getParam("/use_sim_time"), True)
-        process.send_signal(signal.SIGINT)
-        self.assertEqual(process.wait(timeout=20), 0)
+        self.end(process, signal.SIGINT)
 
     def test_robot_from_the_parameter_robot_description(self):
         with open(os.path.join(DATA, "arm_on_base.urdf")) as stream:
@@ -301,8 +297,7 @@ class StartupTest(unittest.TestCase):
         while "/joint_states" not in dict(rospy.get_published_topics()) and time.time() < deadline:
             time.sleep(0.05)
         self.assertIn("/joint_states", dict(rospy.get_published_topics()))
-        process.send_signal(signal.SIGINT)
-        self.assertEqual(process.wait(timeout=20), 0)
+        self.end(process, signal.SIGINT)
         rospy.delete_param("/robot_description")
 
 

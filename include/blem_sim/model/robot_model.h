@@ -129,7 +129,7 @@ struct LumpedRobot {
   double mass() const;
 };
 
-/** What a joint follows in the end, through chains of joints that mimic others: its position is multiplier * that of `joint` + offset. */
+/** Joint at the head of a chain of joints that mimic each other: a follower's position is multiplier * that of `joint` + offset. */
 struct MimicLeader {
   int joint = -1;  ///< of the robot's joints; -1: one that it does not have
   double multiplier = 1, offset = 0;

@@ -17,7 +17,7 @@ constexpr double HOLDS = 0.5;  // of a dof's inertia: a joint that answers more 
 
 bool isFast(const ForestMotion& motion, int tree) { return motion.pace[tree] == Pace::FAST; }
 
-/** What moves with a dof, seen there: itself and, by mimic relations, others. */
+/** Inertia and debt of a dof and of those that mimic relations move with it, seen at that dof. */
 struct MovedAlong {
   double inertia = 0;  ///< [kg m^2 or kg] at most
   double owed = 0;     ///< [N m s or N s] by their last way
@@ -28,8 +28,11 @@ MovedAlong movedAlong(const Forest& forest, const ForestMotion& motion, int dof)
   const auto dofOf = [&](int node) { return forest.nodes()[node].first_dof; };
   int master = dof;
   double multiplier = 1;
-  for (const MimicRelation& m : forest.mimics())
-    if (dofOf(m.node) == dof) master = dofOf(m.master), multiplier = m.multiplier;
+  for (const MimicRelation& m : forest.mimics()) {
+    if (dofOf(m.node) != dof) continue;
+    master = dofOf(m.master);
+    multiplier = m.multiplier;
+  }
   const auto root = [&](int k) { return std::sqrt(motion.mass[forest.diagonal(k)]); };
   double inertia_root = root(master), owed = motion.owed[master];
   for (const MimicRelation& m : forest.mimics()) {
@@ -40,8 +43,8 @@ MovedAlong movedAlong(const Forest& forest, const ForestMotion& motion, int dof)
   return {inertia_root * inertia_root / (multiplier * multiplier), owed / multiplier};
 }
 
-// What presses on a limit all the time: what it bore in the solve, but what stopped the joint or paid for the last way. Only by so much may
-// it give way: else it would push the joint off in the next step.
+// Lasting push on a limit: the impulse that it bore in the solve, without those that stopped the joint or paid for the last way. A limit
+// that gave way by more would push the joint off in the next step.
 // @param side 1: the lower limit, -1: the upper one @param change [rad/s or m/s] of the joint's velocity
 double pressOn(double side, double impulse, double change, const MovedAlong& along) {
   return impulse > 0 ? std::max(0.0, impulse - side * along.owed - along.inertia * std::max(0.0, side * change)) : 0;
