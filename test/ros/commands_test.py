@@ -16,7 +16,7 @@ from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 import sim_client
 from sim_client import Recorder, wait_until
 
-SCRIPT = os.path.join(rospkg.RosPack().get_path("blem_sim"), "scripts", "play_trajectory")
+SCRIPT = os.path.join(rospkg.RosPack().get_path("blem_sim"), "scripts", "ros", "play_trajectory")
 
 
 def trajectory(joints, points):

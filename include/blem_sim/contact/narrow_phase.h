@@ -34,8 +34,8 @@ class NarrowPhaseMemory {
   NarrowPhaseMemory& operator=(NarrowPhaseMemory&&) noexcept;
 
  private:
-  friend void narrowPhase(const PlacedCollider&, const PlacedCollider&, const NarrowPhaseQuestion&, NarrowPhaseWorkspace*,
-                          ContactManifold*);
+  friend void narrowPhase(const PlacedCollider& a, const PlacedCollider& b, const NarrowPhaseQuestion& asked,
+                          NarrowPhaseWorkspace* workspace, ContactManifold* out);
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
@@ -50,8 +50,8 @@ class NarrowPhaseWorkspace {
   NarrowPhaseWorkspace& operator=(NarrowPhaseWorkspace&&) noexcept;
 
  private:
-  friend void narrowPhase(const PlacedCollider&, const PlacedCollider&, const NarrowPhaseQuestion&, NarrowPhaseWorkspace*,
-                          ContactManifold*);
+  friend void narrowPhase(const PlacedCollider& a, const PlacedCollider& b, const NarrowPhaseQuestion& asked,
+                          NarrowPhaseWorkspace* workspace, ContactManifold* out);
   struct Impl;
   std::unique_ptr<Impl> impl_;  // none before the first search
 };

@@ -73,7 +73,7 @@ TriangleMesh boxMesh(const Vector3& size);
 /** Closed cylinder about z, centred, with `sides` sides on the circumscribed circle of the true cylinder's radius. */
 TriangleMesh cylinderMesh(double radius, double length, int sides = 64);
 
-/** Regular grid of 2 nx ny triangles in z = 0, centred. @param size [m] along x and y */
+/** Regular grid of 2 nx ny triangles in z = 0, centred. @param size_x, size_y [m] */
 TriangleMesh gridMesh(double size_x, double size_y, int nx, int ny);
 
 /** Icosphere: 20 * 4^level triangles, vertices on the sphere of the given radius [m]. */

@@ -58,7 +58,7 @@ struct LoadedSurface {
 /**
  * Loads triangles (STL, PLY, OBJ, OFF, DAE by assimp: node transforms, DAE units, polygons split) or points (PCD, PLY
  * without faces), scales, cleans and mends them. A mirroring scale or node keeps the outside outside.
- * COLLADA as in rviz and MoveIt: <unit meter> is applied, <up_axis> is not, so that x, y, z of the file stay x, y, z of the link.
+ * COLLADA as in rviz and MoveIt: `<unit meter>` is applied, `<up_axis>` is not, so that x, y, z of the file stay x, y, z of the link.
  * A PCD's VIEWPOINT is not applied either; the report says so.
  * @param file resolved path @param scale factors per axis, none zero @param cloud for files of points, or a mesh's vertices as points
  * @param progress may be empty
@@ -94,7 +94,7 @@ struct UrdfOptions {
 };
 
 /**
- * Parses URDF text. Limits of 1e6 and more mean none. Elements that are not simulated are noted; <gazebo> blocks are kept as texts.
+ * Parses URDF text. Limits of 1e6 and more mean none. Elements that are not simulated are noted; `<gazebo>` blocks are kept as texts.
  * @param source for messages @throws InputError
  */
 RobotModel loadUrdf(const std::string& xml, const std::string& source, const UriResolver& resolver, const UrdfOptions& options = {});

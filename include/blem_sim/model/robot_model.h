@@ -80,7 +80,7 @@ struct RobotModel {
   std::vector<LinkModel> links;
   std::vector<JointModel> joints;
   std::vector<Transmission> transmissions;
-  std::vector<GazeboBlock> gazebo;  ///< <gazebo> blocks in the file's order
+  std::vector<GazeboBlock> gazebo;  ///< `<gazebo>` blocks in the file's order
   int root = 0;                     ///< index of the root link
   std::vector<std::string> notes;   ///< repairs and parts left out, in words
 

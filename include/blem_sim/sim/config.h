@@ -90,7 +90,7 @@ enum class MotorLaw { PID, IMPLICIT_PD };
 /** Motors of joints without gains. */
 enum class MotorDefault {
   COMPUTED,       ///< gains computed from what the joints carry: the robot holds its pose
-  TRANSMISSIONS,  ///< the same where the URDF has a <transmission>, as Gazebo needs it; others are free
+  TRANSMISSIONS,  ///< the same where the URDF has a `<transmission>`, as Gazebo needs it; others are free
   FREE,           ///< none: joints move freely, friction stays
 };
 
@@ -200,7 +200,7 @@ struct RobotConfig {
   std::vector<std::pair<std::string, std::string>> disable_collisions;
   ContactOverrides contact;
   std::map<std::string, ContactOverrides> links;
-  std::map<std::string, ContactOverrides> described_links;  ///< of the URDF's <gazebo> blocks; beaten by contact and links
+  std::map<std::string, ContactOverrides> described_links;  ///< of the URDF's `<gazebo>` blocks; beaten by contact and links
   std::map<std::string, JointGains> gains;                  ///< by joint, "default"
   std::map<std::string, JointGains> pid_gains;   ///< by joint, of gazebo_ros_control; gains beat them, names of no joint are left out
   MotorDefault motors = MotorDefault::COMPUTED;  ///< of joints that gains do not name
