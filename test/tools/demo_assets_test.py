@@ -17,7 +17,7 @@ MESHES, CONFIG, URDF = ROOT / "meshes", ROOT / "config", ROOT / "urdf"
 
 
 def load_script(name):
-    spec = importlib.util.spec_from_file_location(name, str(ROOT / "scripts" / (name + ".py")))
+    spec = importlib.util.spec_from_file_location(name, str(ROOT / "scripts" / "support" / (name + ".py")))
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
@@ -71,13 +71,13 @@ def test_every_mesh_made_is_kept(made_meshes):
 
 @pytest.mark.parametrize("name", ["blem_humanoid.urdf", "demo_gripper.urdf", "demo_watcher.urdf"])
 def test_urdf_is_what_make_demo_robots_makes(name, tmp_path):
-    subprocess.run(["/usr/bin/python3", str(ROOT / "scripts" / "make_demo_robots.py"), str(tmp_path)], check=True)
+    subprocess.run(["/usr/bin/python3", str(ROOT / "scripts" / "support" / "make_demo_robots.py"), str(tmp_path)], check=True)
     assert (tmp_path / name).read_text() == (URDF / name).read_text()
 
 
 @pytest.mark.parametrize("name", ["demo_humanoid_sway.csv", "demo_gripper_mug.csv", "demo_robot_with_eyes.csv"])
 def test_trajectory_is_what_make_demo_motions_makes(name, tmp_path):
-    subprocess.run(["/usr/bin/python3", str(ROOT / "scripts" / "make_demo_motions.py"), str(tmp_path)], check=True)
+    subprocess.run(["/usr/bin/python3", str(ROOT / "scripts" / "support" / "make_demo_motions.py"), str(tmp_path)], check=True)
     assert (tmp_path / name).read_text() == (CONFIG / name).read_text()
 
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Writes the demos' trajectories, config/demo_*.csv, and tells the humanoid's start pose on the scanned floor.
 
-Usage: scripts/make_demo_motions.py [OUT_DIR]     default: config/ of this package
-       scripts/make_demo_motions.py --pose        prints root height and joint positions for the YAML files
+Usage: scripts/support/make_demo_motions.py [OUT_DIR]     default: config/ of this package
+       scripts/support/make_demo_motions.py --pose        prints root height and joint positions for the YAML files
 """
 import math
 import os
@@ -10,7 +10,7 @@ import struct
 import sys
 import xml.etree.ElementTree as xml
 
-ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..")
+ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
 
 THIGH, SHIN, ANKLE_HEIGHT = 0.26, 0.26, 0.06  # [m] between the joints, and from the ankle down to the sole
 HIP = (0.0, 0.085, -0.05)                     # [m] of the left hip in the pelvis

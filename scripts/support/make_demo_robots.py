@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 """Writes urdf/blem_humanoid.urdf, urdf/demo_gripper.urdf and urdf/demo_watcher.urdf; inertias are those of the link meshes at uniform density.
 
-Usage: scripts/make_demo_robots.py [OUT_DIR]     default: urdf/ of this package
+Usage: scripts/support/make_demo_robots.py [OUT_DIR]     default: urdf/ of this package
 """
 import os
 import struct
 import sys
 
-ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..")
+ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
 
 COLOURS = {
     "white": "0.92 0.93 0.95 1",
@@ -123,7 +123,7 @@ def joint(name, kind, parent, child, xyz, axis, limits, effort, velocity, rpy=(0
 
 
 def head_of(robot):
-    text = '<?xml version="1.0"?>\n<!-- Made by scripts/make_demo_robots.py; inertias from the link meshes. -->\n<robot name="%s">\n' % robot
+    text = '<?xml version="1.0"?>\n<!-- Made by scripts/support/make_demo_robots.py; inertias from the link meshes. -->\n<robot name="%s">\n' % robot
     for name, rgba in COLOURS.items():
         text += '  <material name="%s"><color rgba="%s"/></material>\n' % (name, rgba)
     return text
