@@ -52,8 +52,8 @@ FIGURES = {
         "combs": ("as many as brute force finds: 20 pairs of edges, four pairs of triangles each", method.combs_case)},
                  lambda folder: method.combs(folder.resolve(), APART)[0], 0.001, COMBS_VIEW),
     6: of_method("boundary-layer regime and crossing", "unambiguous while meshes are apart, less robust once they cross", {
-        "in_the_layer": ("within the layer, never CONTACT_UNRELIABLE", method.regime_case(APART)),
-        "crossed": ("beyond the layer, says CONTACT_UNRELIABLE, and comes apart", method.regime_case(CROSSED))},
+        "in_the_layer": ("within the layer, never CONTACT_UNRELIABLE", method.regime_case(APART, False)),
+        "crossed": ("beyond the layer, says CONTACT_UNRELIABLE, and comes apart", method.regime_case(CROSSED, True))},
                  lambda folder: method.combs(folder.resolve(), CROSSED)[0], 0.001, COMBS_VIEW),
     7: of_method("time against the number of contacts", "mean 10 ms generation, 2 ms clustering, 25 ms response", {
         "timing": ("contacts grow tenfold, 20 kept at most, none crosses; times stated", timing_case)},
