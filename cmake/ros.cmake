@@ -25,7 +25,8 @@ install(TARGETS blem_sim_geometry blem_sim_model blem_sim_contact blem_sim_reduc
 install(DIRECTORY include/${PROJECT_NAME}/ DESTINATION ${CATKIN_PACKAGE_INCLUDE_DESTINATION})
 foreach(folder launch config rviz urdf meshes)
   if(IS_DIRECTORY ${PROJECT_SOURCE_DIR}/${folder})
-    install(DIRECTORY ${folder} DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION})
+    # figure.launch runs scripts of the source folder.
+    install(DIRECTORY ${folder} DESTINATION ${CATKIN_PACKAGE_SHARE_DESTINATION} PATTERN figure.launch EXCLUDE)
   endif()
 endforeach()
 
