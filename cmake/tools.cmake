@@ -12,6 +12,9 @@ if(run_sources)
   target_compile_definitions(blem_sim_run PRIVATE
     BLEM_SIM_VERSION="${version} \(${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}\)")
   target_link_libraries(blem_sim_run blem_sim_tools)
+  if(BLEM_SIM_WITH_ROS)
+    install(TARGETS blem_sim_run RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})
+  endif()
 endif()
 
 # The makers of meshes/, kept so that these can be made again; the test of the geometry room runs them.
