@@ -4,6 +4,7 @@ import os
 import pathlib
 import sqlite3
 import subprocess
+import time
 
 import pytest
 import yaml
@@ -75,6 +76,13 @@ class SweepCase:
         assert done.returncode == 2, done.stdout + done.stderr
         assert done.stderr.count("\n") == 1 and done.stderr.startswith("blem_sim_sweep: "), done.stderr
         return done.stderr
+
+
+def wait_until(condition, seconds=60):
+    deadline = time.time() + seconds
+    while not condition():
+        assert time.time() < deadline, "waited in vain"
+        time.sleep(0.01)
 
 
 def column(rows, name):

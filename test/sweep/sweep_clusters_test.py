@@ -7,7 +7,7 @@ import time
 
 import pytest
 
-from sweep_case import ROOT, column
+from sweep_case import ROOT, column, wait_until
 
 sys.path.insert(0, str(ROOT / "scripts" / "sweep"))
 from sweeping import slurm_jobs  # noqa: E402
@@ -43,13 +43,6 @@ def queue(case):
     return folder
 
 
-def wait_until(condition):
-    deadline = time.time() + 60
-    while not condition() and time.time() < deadline:
-        time.sleep(0.01)
-    assert condition()
-
-
 def same_as_local(case, *options):
     case.write_sweep(parameters={"contact.friction": [0.1, -1, 0.3]})
     local = case.run(status=1)
@@ -82,6 +75,9 @@ def test_jobs_of_a_killed_sweep_are_taken_over(case, queue):
     assert second.wait(20) == 1
     assert (queue / "jobs").read_text() == "job\n", "nothing was submitted twice"
     assert (queue / "cancelled").read_text() == "1\n"
+    for name in ("hold", "queued"):
+        (queue / name).unlink()
+    assert column(case.run("--on", "slurm"), "status") == ["done"] * 3
 
 
 def test_jobs_that_leave_no_outcome(case, queue, monkeypatch):

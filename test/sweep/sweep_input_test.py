@@ -139,6 +139,7 @@ def test_random_samples_have_their_distribution():
     mean = sum(point["a"] for point in points) / 4000
     assert abs(mean - 3) < 0.03 and abs(sum((point["a"] - mean) ** 2 for point in points) / 4000 - 0.25) < 0.02
     assert 2 <= min(point["b"] for point in points) < 2.01 and 3.99 < max(point["b"] for point in points) < 4
+    assert abs(sum((point["a"] - 3) * (point["b"] - 3) for point in points) / 4000) < 0.02, "one parameter tells nothing of another"
     assert points[:100] == DESIGNS["random"](parameters, 100, 1), "more samples begin with the same ones"
     alone = DESIGNS["random"]({"b": parameters["b"]}, 100, 1)
     assert [point["b"] for point in alone] == [point["b"] for point in points[:100]], "another parameter moves no value"

@@ -1,14 +1,16 @@
 """blem_sim_sweep runs what it is told, once, resumes, and tells what failed."""
 import math
 import os
+import pathlib
 import shutil
 import signal
+import sqlite3
 import subprocess
 import time
 
 import pytest
 
-from sweep_case import EXAMPLE, PROGRAM, ROOT, column
+from sweep_case import EXAMPLE, PROGRAM, ROOT, column, wait_until
 
 ANGLE, GRAVITY, TIME, STEP = math.radians(20), 9.81, 0.5, 0.001
 SLOPE = 0.5  # friction
@@ -60,15 +62,52 @@ def test_the_same_table_however_many_at_once(case):
     assert all(float(row["position"]) < 0 for row in one)
 
 
+@pytest.mark.parametrize("count", [1, 2])
+def test_so_many_at_once(case, count):
+    case.write_sweep(parameters={"contact.friction": [0.1, 0.2, 0.3, 0.4]})
+    case.watch("echo 1 >>%s; sleep 0.15; echo -1 >>%s" % (case.folder / "turns", case.folder / "turns"))
+    case.run("--on", "local:%d" % count)
+    turns = [int(word) for word in (case.folder / "turns").read_text().split()]
+    assert max(sum(turns[:k]) for k in range(len(turns))) == count
+
+
+def test_what_ended_unrecorded_is_not_run_again(case):
+    """As a sweep leaves it that is killed between a run's end and its record."""
+    case.write_sweep()
+    expected = case.run()
+    with sqlite3.connect(str(case.out / "runs.sqlite")) as base:
+        base.execute("UPDATE runs SET status = 'running', wall_s = NULL")
+    case.watch()
+    assert case.run() == expected and case.starts() == []
+
+
+def test_runs_end_with_a_killed_sweep(case):
+    case.write_sweep()
+    case.watch("echo $$ >pid; sleep 30")
+    killed = subprocess.Popen(case.command("--on", "local:1"), env=case.environment)
+    wait_until(lambda: "".join(path.read_text() for path in case.out.glob("runs/*/pid")).endswith("\n"))
+    process = next(case.out.glob("runs/*/pid")).read_text().strip()
+    assert lives(process)
+    killed.kill()
+    killed.wait()
+    wait_until(lambda: not lives(process), 10)
+
+
+def lives(process):
+    """Whether a process goes on; what has ended may wait for its parent to hear of it."""
+    try:
+        return "\nState:\tZ" not in (pathlib.Path("/proc") / process / "status").read_text()
+    except OSError:
+        return False
+
+
 def test_resumes_after_it_was_killed(case):
     case.write_sweep(parameters={"contact.friction": {"from": 0.1, "to": 0.3, "steps": 12}})
     expected = case.run()
     shutil.rmtree(str(case.out))
     case.watch("sleep 0.1")
     killed = subprocess.Popen(case.command("--on", "local:2"), env=case.environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    deadline = time.time() + 60
-    while len(list(case.out.glob("runs/*/outcome.json"))) < 4 and time.time() < deadline:
-        time.sleep(0.01)
+    wait_until(lambda: len(list(case.out.glob("runs/*/outcome.json"))) >= 4)
     killed.kill()
     killed.wait()
     time.sleep(0.3)  # the runs that went on ended with it
@@ -84,9 +123,7 @@ def test_an_interrupt_ends_the_runs_and_tells_how_to_go_on(case):
     case.write_sweep()
     case.watch("[ -e %s ] || sleep 30" % (case.folder / "fast"))
     stopped = subprocess.Popen(case.command("--on", "local:1"), env=case.environment, stderr=subprocess.PIPE, universal_newlines=True)
-    deadline = time.time() + 60
-    while not case.starts() and time.time() < deadline:
-        time.sleep(0.01)
+    wait_until(case.starts)
     stopped.send_signal(signal.SIGINT)
     _, said = stopped.communicate(timeout=20)
     assert stopped.returncode == 1 and said == "blem_sim_sweep: stopped; the same command goes on from here\n"
@@ -192,9 +229,7 @@ def test_two_at_one_place(case):
     case.watch("sleep 30")
     first = subprocess.Popen(case.command(), env=case.environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     try:
-        deadline = time.time() + 60
-        while not case.starts() and time.time() < deadline:
-            time.sleep(0.01)
+        wait_until(case.starts)
         assert "another blem_sim_sweep is at work" in case.refusal()
     finally:
         os.kill(first.pid, signal.SIGTERM)
