@@ -1,4 +1,6 @@
 """Bad sweeps are refused at the door, in one line with file, field and cure; designs hold what they promise."""
+import sqlite3
+import subprocess
 import sys
 
 import pytest
@@ -89,6 +91,43 @@ def test_command_line(case):
         assert all(word in line for word in words), line
     (case.folder / "sweep.yaml").unlink()
     assert "cannot be read" in case.refusal()
+
+
+def test_results_that_cannot_be_used(case):
+    case.write_sweep(measure=MEASURE)
+    case.run()
+    base = case.out / "runs.sqlite"
+    base.write_bytes(b"no data base at all" * 100)
+    assert "runs.sqlite: " in case.refusal() and "move it away" in case.refusal()
+    base.unlink()
+    case.run()
+    with sqlite3.connect(str(base)) as changed:
+        changed.execute("DROP TABLE figures")
+        changed.execute("CREATE TABLE figures (other)")
+    assert "runs.sqlite: no such column" in case.refusal()
+
+
+def test_a_configuration_that_is_none(case):
+    case.write_sweep()
+    for text, words in (("- a\n", "no map"), ("a: [\n", "not YAML"), ("a: 1\na: 2\n", "there twice")):
+        case.write("world.yaml", text)
+        assert "world.yaml" in case.refusal() and words in case.refusal()
+
+
+def test_texts_are_not_drawn(case):
+    pytest.importorskip("matplotlib", reason="python3-matplotlib is not installed")
+    case.write_sweep(duration=0.001, plots=[{"x": "contact.friction", "y": "hash"}])
+    done = case.call()
+    assert done.returncode == 2 and "sweep.yaml: plots: y: hash is '" in done.stderr and done.stderr.count("\n") == 1
+    assert len(case.rows()) == 3, "the table is there"
+
+
+def test_a_reader_that_leaves(case):
+    case.write_sweep(parameters={"contact.friction": {"from": 0, "to": 1, "steps": 3000}})
+    listed = subprocess.Popen(case.command("--dry-run"), env=case.environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    listed.stdout.readline()
+    listed.stdout.close()
+    assert listed.stderr.read() == b"" and listed.wait(60) == 1
 
 
 def test_programs_that_are_none(case):

@@ -1,5 +1,7 @@
 """blem_sim_sweep from its command line to its exit status."""
+import os
 import signal
+import sqlite3
 import sys
 
 from sweeping.checked_yaml import InputError
@@ -39,6 +41,12 @@ def main(arguments):
         return work(sweep, runs, options)
     except InputError as error:
         print("blem_sim_sweep: %s" % error, file=sys.stderr)
+        return BAD_INPUT
+    except BrokenPipeError:
+        sys.stdout = open(os.devnull, "w")  # the reader has gone; nothing is left to be told
+        return FAILED
+    except sqlite3.Error as error:
+        print("blem_sim_sweep: %s/runs.sqlite: %s; make room, move it away, or name another --out" % (options.out, error), file=sys.stderr)
         return BAD_INPUT
     except OSError as error:
         print("blem_sim_sweep: %s: %s; make room, or name another --out" % (error.filename or "results", error.strerror), file=sys.stderr)
