@@ -20,6 +20,8 @@ set(BLEM_SIM_CATKIN_COMPONENTS
   visualization_msgs)
 find_package(catkin REQUIRED COMPONENTS message_generation ${BLEM_SIM_CATKIN_COMPONENTS})
 
+# Before generate_messages, which then leaves blem_sim/__init__.py of src/python alone, in the devel space and where it is installed.
+catkin_python_setup()
 file(GLOB messages CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/msg ${PROJECT_SOURCE_DIR}/msg/*.msg)
 file(GLOB services CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/srv ${PROJECT_SOURCE_DIR}/srv/*.srv)
 file(GLOB actions CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/action ${PROJECT_SOURCE_DIR}/action/*.action)

@@ -13,6 +13,7 @@ BELOW = {
     "dynamics": ["contact", "model", "geometry"],
     "sim": ["dynamics", "reduction", "contact", "model", "geometry"],
     "ros": ["sim", "dynamics", "reduction", "contact", "model", "geometry"],
+    "python": ["sim", "dynamics", "reduction", "contact", "model", "geometry"],
 }
 
 # First component (or whole name) of a library's headers -> the rooms that may include them.
@@ -20,7 +21,8 @@ LIBRARIES = {
     "ode": ["dynamics"],
     "urdf_model": ["model"], "urdf_parser": ["model"], "urdf_world": ["model"], "urdf_exception": ["model"], "console_bridge": ["model"],
     "assimp": ["model"], "pcl": ["model"],
-    "yaml-cpp": ["sim", "ros"],
+    "yaml-cpp": ["sim", "ros", "python"],
+    "pybind11": ["python"],
     "ros": ["ros"], "tf2_ros": ["ros"], "tf2": ["ros"], "actionlib": ["ros"], "diagnostic_updater": ["ros"], "rosbag": ["ros"], "blem_sim_msgs": ["ros"],
     "XmlRpcValue.h": ["ros"], "xmlrpcpp": ["ros"],
 }
@@ -65,6 +67,8 @@ def test_the_rule_sees_wrong_includes():
     assert wrong_include("sim", "ros/ros.h")
     assert wrong_include("dynamics", "sensor_msgs/JointState.h")
     assert wrong_include("dynamics", "blem_sim/StepReport.h")
+    assert wrong_include("sim", "pybind11/pybind11.h")
+    assert wrong_include("python", "ros/ros.h")
     assert wrong_include("ros", "blem_sim/StepReport.h") is None
     assert wrong_include("sim", "blem_sim/dynamics/world.h") is None
 

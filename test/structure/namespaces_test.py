@@ -4,7 +4,7 @@ import re
 from source_files import ROOT, sources
 
 NAMESPACES = {"geometry": "geometry", "model": "model", "contact": "contact", "reduction": "reduction", "dynamics": "dynamics", "sim": "sim",
-              "ros": "node"}
+              "ros": "node", "python": "python"}
 # The vocabulary of every room.
 SHARED = ["include/blem_sim/geometry/types.h", "include/blem_sim/geometry/input_error.h"]
 OPENED = re.compile(r"^namespace (blem_sim[\w:]*) \{", re.MULTILINE)

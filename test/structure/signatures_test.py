@@ -42,6 +42,8 @@ def long_signatures(text):
         name = NAME.search(code, max(0, bracket.start() - 60), bracket.start())
         if not name or RETURNED.search(code[max(0, name.start() - 20):name.start()]):
             continue
+        if name[1].isupper():  # a macro, whose arguments are no parameters
+            continue
         each = parts(arguments(code, bracket.start()))
         if len(each) > MOST_PARAMETERS and all(PARAMETER.match(part) or WITHOUT_NAME.match(part) for part in each):
             yield name[1]

@@ -23,12 +23,20 @@ void refuseTopics(const sim::SimulationConfig& config) {
 
 }  // namespace
 
-sim::SimulationConfig readConfig(const std::string& file, const std::vector<std::pair<std::string, std::string>>& settings) {
-  YAML::Node root = sim::loadYamlFile(file);
+ConfigDocument readDocument(const std::string& file) {
+  return {sim::loadYamlFile(file), file, std::filesystem::absolute(file).parent_path().string()};
+}
+
+sim::SimulationConfig configOf(const ConfigDocument& document, const std::vector<std::pair<std::string, std::string>>& settings) {
+  YAML::Node root = document.root;
   for (const auto& [path, value] : settings) overrideSetting(&root, path, value);
-  const sim::SimulationConfig config = sim::parseConfig(root, file, std::filesystem::absolute(file).parent_path().string());
+  const sim::SimulationConfig config = sim::parseConfig(root, document.source, document.folder);
   refuseTopics(config);
   return config;
+}
+
+sim::SimulationConfig readConfig(const std::string& file, const std::vector<std::pair<std::string, std::string>>& settings) {
+  return configOf(readDocument(file), settings);
 }
 
 void commandTrajectory(const std::string& file, sim::Simulator* simulator, std::vector<std::string>* notes) {

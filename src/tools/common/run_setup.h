@@ -1,6 +1,8 @@
 // Start of a run without ROS: its configuration, its motion.
 #pragma once
 
+#include <yaml-cpp/yaml.h>
+
 #include <string>
 #include <utility>
 #include <vector>
@@ -9,10 +11,22 @@
 
 namespace blem_sim {
 
+/** A configuration that is not read yet. */
+struct ConfigDocument {
+  YAML::Node root;
+  std::string source;  ///< the file, or what messages call it
+  std::string folder;  ///< of relative files
+};
+
+/** @throws InputError: the file cannot be read, or is no YAML */
+ConfigDocument readDocument(const std::string& file);
+
 /**
  * Reads a configuration. @param settings key.path, value: replaced before it is read, in order
  * @throws InputError for what it is refused for, and for environments that only a node can have
  */
+sim::SimulationConfig configOf(const ConfigDocument& document, const std::vector<std::pair<std::string, std::string>>& settings);
+/** The same of a file. */
 sim::SimulationConfig readConfig(const std::string& file, const std::vector<std::pair<std::string, std::string>>& settings);
 
 /**
