@@ -11,6 +11,7 @@ if(run_sources)
   string(REGEX REPLACE ".*<version>(.*)</version>.*" "\\1" version "${version}")
   target_compile_definitions(blem_sim_run PRIVATE
     BLEM_SIM_VERSION="${version} \(${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}\)")
+  target_include_directories(blem_sim_run PRIVATE ${PROJECT_SOURCE_DIR}/src/sim)
   target_link_libraries(blem_sim_run blem_sim_tools)
   if(BLEM_SIM_WITH_ROS)
     install(TARGETS blem_sim_run RUNTIME DESTINATION ${CATKIN_PACKAGE_BIN_DESTINATION})

@@ -19,6 +19,9 @@ blem_sim_run CONFIG.yaml [options]
   --package NAME=DIR      where package://NAME is; asked before ROS_PACKAGE_PATH; may be repeated
   --trajectory FILE.csv   commanded at the start to the first robot that has joints of its columns: time [s], one column per joint,
                           NAME_vel for velocities; other columns are ignored with a note
+  --stop NAME=EXPR        ends the run after the first step after which EXPR holds: 'fallen=hubo::torso.z < 0.4'; may be repeated.
+                          Names: time, energy, status bits, MODEL::LINK.x .y .z .speed .roll .pitch .yaw, MODEL::JOINT.position
+                          .velocity .effort ("NAME" in quotes if it has other signs); + - * /, comparisons, and or not, abs sqrt
   --report OUT.json       where the report goes (standard output)
   --stats-from S          [s] simulated time from which on sensors are averaged (0)
   --csv OUT.csv           joints, free bodies and sensors over time
@@ -53,6 +56,7 @@ const OptionTable<RunOptions>& optionTable() {
       {"--seed", [](RunOptions& o, const std::string& option, const std::string& value) { o.seed = seedNumber(option, value); }},
       {"--set",
        [](RunOptions& o, const std::string& option, const std::string& value) { o.settings.push_back(assignment(option, value)); }},
+      {"--stop", [](RunOptions& o, const std::string& option, const std::string& value) { o.stops.push_back(assignment(option, value)); }},
       {"--package",
        [](RunOptions& o, const std::string& option, const std::string& value) { o.packages.insert(assignment(option, value)); }},
   };

@@ -15,6 +15,7 @@ struct RunOptions {
   std::string config;
   double duration = 10;                                       ///< [s] simulated
   std::vector<std::pair<std::string, std::string>> settings;  ///< --set key.path=value, in order
+  std::vector<std::pair<std::string, std::string>> stops;     ///< --stop name=expression, in order
   std::string trajectory;
   double stats_from = 0;  ///< [s] simulated
   std::string csv;

@@ -20,6 +20,7 @@
 #include "csv_table.h"
 #include "run_record.h"
 #include "run_setup.h"
+#include "stop_expression.h"
 
 namespace blem_sim {
 
@@ -51,16 +52,30 @@ class Progress {
   Clock::time_point shown_ = Clock::now();
 };
 
-/** Steps until the time is up or the state is not finite. @param table may be null */
+/** Expressions of --stop, with their names. */
+std::vector<std::pair<std::string, StopExpression>> compileStops(const RunOptions& options, const sim::Simulator& simulator) {
+  std::vector<std::pair<std::string, StopExpression>> stops;
+  if (options.stops.empty()) return stops;
+  const Quantities quantities = quantitiesOf(simulator);
+  for (const auto& [name, text] : options.stops) stops.emplace_back(name, StopExpression(name, text, quantities));
+  return stops;
+}
+
+/** Steps until the time is up, a stop holds or the state is not finite. @param table may be null */
 bool stepThrough(const RunOptions& options, sim::Simulator* simulator, RunRecord* record, CsvTable* table, Progress* progress) {
   const auto steps = static_cast<std::uint64_t>(std::llround(options.duration / simulator->config().time_step));
-  bool finite = true;
-  for (std::uint64_t step = 0; step < steps && finite; ++step) {
+  const auto stops = compileStops(options, *simulator);
+  bool finite = true, stopped = false;
+  for (std::uint64_t step = 0; step < steps && finite && !stopped; ++step) {
     const sim::StepReport& report = simulator->step();
     record->add(report);
     if (table) table->add(report);
     finite = (report.status & sim::STATE_NOT_FINITE) == 0;
     if (finite) progress->show(step, report.time);
+    for (auto stop = stops.begin(); stop != stops.end() && !stopped; ++stop) {
+      stopped = stop->second.holds(report);
+      if (stopped) record->stop(stop->first);
+    }
   }
   return finite;
 }

@@ -44,6 +44,11 @@ void RunRecord::add(const sim::StepReport& report) {
     sensors_[static_cast<std::size_t>(sample.sensor)].add(sim::sensorValues(sample.reading).values);
 }
 
+void RunRecord::stop(const std::string& name) {
+  stopped_ = name;
+  stop_time_ = simulator_.time();
+}
+
 void RunRecord::addDepth(const sim::StepReport& report) {
   const bool deeper =
       report.max_of_layer > deepest_.of_layer || (report.max_of_layer == deepest_.of_layer && report.max_depth > deepest_.depth);
@@ -67,6 +72,12 @@ void RunRecord::write(const RunTimes& times, const std::vector<std::string>& not
   json.key("wall_s").value(times.wall);
   json.key("real_time_factor").value(times.wall > 0 ? simulated / times.wall : 0);
   json.key("state_hash").value(fmt::format("{:016x}", simulator_.stateHash()));
+  if (!stopped_.empty()) {
+    json.key("stopped").openObject();
+    json.key("name").value(stopped_);
+    json.key("time_s").value(stop_time_);
+    json.closeObject();
+  }
   writeStatus(json);
   writeProfile(json);
   writeContacts(json);

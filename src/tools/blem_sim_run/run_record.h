@@ -24,6 +24,8 @@ class RunRecord {
   /** @param stats_from [s] simulated time after which sensors count */
   RunRecord(const sim::Simulator& simulator, double stats_from);
   void add(const sim::StepReport& report);
+  /** The run ends now, for the reason of this name. */
+  void stop(const std::string& name);
   void write(const RunTimes& times, const std::vector<std::string>& notes, std::ostream& stream) const;
 
  private:
@@ -46,6 +48,8 @@ class RunRecord {
   std::uint64_t steps_ = 0, raw_contacts_ = 0, reduced_contacts_ = 0;
   int most_reduced_contacts_ = 0;
   double wrench_error_ = 0;
+  std::string stopped_;  ///< name of the --stop; empty without one
+  double stop_time_ = 0;
   std::vector<std::uint64_t> status_steps_;  ///< per bit
   std::array<Distribution, static_cast<int>(sim::Stage::COUNT)> stages_;
   Distribution step_;

@@ -1,0 +1,44 @@
+// --stop: an expression over a step's report, compiled before the run.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "blem_sim/sim/simulator.h"
+
+namespace blem_sim {
+
+/** Numbers of a step by name. */
+using Quantities = std::map<std::string, std::function<double(const sim::StepReport&)>>;
+
+/**
+ * Names: time [s], energy [J], status bits (0 or 1), MODEL::LINK.x .y .z [m] .speed [m/s] .roll .pitch .yaw [rad], MODEL::JOINT.position
+ * .velocity .effort.
+ */
+Quantities quantitiesOf(const sim::Simulator& simulator);
+
+/** Numbers, names, + - * /, comparisons, and, or, not, abs, sqrt, parentheses. A comparison with NaN is false, but != is true. */
+class StopExpression {
+ public:
+  /** @param option name of the stop, for errors @throws InputError: no expression, an unknown name (names the nearest) */
+  StopExpression(const std::string& option, const std::string& text, const Quantities& quantities);
+  /** Whether it is neither 0 nor NaN. Allocates nothing. */
+  bool holds(const sim::StepReport& report) const;
+
+ private:
+  friend class StopParser;
+  struct Node {
+    std::string operation;  ///< "number", "name" or an operator
+    int left = -1, right = -1;
+    double number = 0;
+    std::function<double(const sim::StepReport&)> quantity;
+  };
+  double value(int node, const sim::StepReport& report) const;
+
+  std::vector<Node> nodes_;
+  int root_ = -1;
+};
+
+}  // namespace blem_sim
