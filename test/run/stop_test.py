@@ -25,6 +25,7 @@ class StopTest(RunCase):
     def test_operators_and_names(self):
         for holds in ("1 + 2 * 3 == 7", "(1 + 2) * 3 == 9", "7 - 2 - 1 == 4", "8 / 2 / 2 == 2", "not 1 > 2", "0 or 1 and 1", "-abs(-2) < -1",
                       "sqrt(9) == 3", "not sqrt(-1) <= 1", "cube::link.z < 0.09 and cube::link.z > 0.05",
+                      "1e-3 + 1e+3 > 1000", "min(2, 1) == 1 and max(2, 1) == 2",
                       '"arm::shoulder.position" > 0', "abs(cube::link.yaw - 0.3) < 0.1", "STATE_NOT_FINITE == 0"):
             self.assertIsNotNone(self.stopped("it=" + holds), holds)
         for fails in ("0", "1 > 2", "sqrt(-1)", "sqrt(-1) == sqrt(-1)", "(1 or 1) and 0", "cube::link.speed < 0"):
@@ -32,8 +33,15 @@ class StopTest(RunCase):
 
     def test_bad_expressions_are_refused_in_one_line(self):
         self.assertIn("the nearest known name is 'cube::link.z'", self.refusal("world.yaml", "--stop", "low=cube::lnk.z < 1"))
-        for bad in ("", "1 +", "(1", "1)", "1 2", "1..2 < 3", '"arm', "abs 1", "(" * 500, "- " * 500 + "1", "1" + "+1" * 500):
+        for bad in ("", "1 +", "(1", "1)", "1 2", "1..2 < 3", '"arm', "abs 1", "max(1)", "1e+", "(" * 500, "- " * 500 + "1", "1" + "+1" * 500):
             self.assertIn("--stop it", self.refusal("world.yaml", "--stop", "it=" + bad))
+
+    def test_refused_stops_leave_the_table_of_an_earlier_run(self):
+        table = self.write("rows.csv", "kept")
+        self.refusal("world.yaml", "--csv", table, "--stop", "it=nothing > 1")
+        with open(table) as stream:
+            self.assertEqual(stream.read(), "kept")
+        self.assertIn("given twice", self.refusal("world.yaml", "--stop", "it=1", "--stop", "it=0"))
 
     def test_garbage_is_refused_or_read(self):
         dice = random.Random(7)

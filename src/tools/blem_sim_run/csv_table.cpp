@@ -3,11 +3,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 #include <set>
 
 #include "blem_sim/geometry/input_error.h"
-#include "blem_sim/sim/sensor_values.h"
 
 namespace blem_sim {
 
@@ -35,10 +33,8 @@ void put(std::ostream& stream, double value) {
 }  // namespace
 
 CsvTable::CsvTable(const sim::Simulator& simulator, const std::string& file, double rate)
-    : simulator_(simulator), file_(file), stream_(file), rate_(rate) {
+    : simulator_(simulator), file_(file), stream_(file), rate_(rate), readings_(simulator) {
   if (!stream_) throw InputError(fmt::format("{}: cannot be written; check the folder", file));
-  for (const sim::SensorInfo& sensor : simulator.sensors())
-    readings_.emplace_back(sim::sensorFields(simulator, sensor).size(), std::numeric_limits<double>::quiet_NaN());
   writeHeader();
 }
 
@@ -54,16 +50,12 @@ void CsvTable::writeHeader() {
       for (const char* suffix : {"", "_vel", "_effort", "_desired"}) stream_ << ',' << robot.name << "::" << joint << suffix;
   for (const int body : freeBodies(simulator_))
     for (const char* suffix : {"_x", "_y", "_z", "_qx", "_qy", "_qz", "_qw"}) stream_ << ',' << simulator_.bodyName(body) << suffix;
-  const std::vector<std::string> names = sim::sensorNames(simulator_);
-  for (std::size_t sensor = 0; sensor < names.size(); ++sensor)
-    for (const std::string& field : sim::sensorFields(simulator_, simulator_.sensors()[sensor]))
-      stream_ << ',' << names[sensor] << '.' << field;
+  for (const std::string& name : readings_.names()) stream_ << ',' << name;
   stream_ << '\n';
 }
 
 void CsvTable::add(const sim::StepReport& report) {
-  for (const sim::SensorSample& sample : report.samples)
-    readings_[static_cast<std::size_t>(sample.sensor)] = sim::sensorValues(sample.reading).values;
+  readings_.add(report);
   // Instant n / rate is due in the first step that reaches it; the tolerance absorbs the rounding of step times.
   const double tolerance = 1e-6 * report.dt;
   const bool due = rate_ <= 0 || std::floor((report.time + tolerance) * rate_) > std::floor((report.time - report.dt + tolerance) * rate_);
@@ -86,8 +78,7 @@ void CsvTable::writeRow(const sim::StepReport& report) {
     for (const double value : {X_WB.translation().x(), X_WB.translation().y(), X_WB.translation().z(), q.x(), q.y(), q.z(), q.w()})
       put(stream_, value);
   }
-  for (const std::vector<double>& reading : readings_)
-    for (const double value : reading) put(stream_, value);
+  for (const double value : readings_.values()) put(stream_, value);
   stream_ << '\n';
 }
 

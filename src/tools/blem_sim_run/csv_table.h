@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "blem_sim/sim/simulator.h"
+#include "last_readings.h"
 
 namespace blem_sim {
 
@@ -29,7 +30,7 @@ class CsvTable {
   std::string file_;
   std::ofstream stream_;
   double rate_ = 0;
-  std::vector<std::vector<double>> readings_;  ///< last ones, per sensor; NaN before the first
+  LastReadings readings_;
 };
 
 }  // namespace blem_sim

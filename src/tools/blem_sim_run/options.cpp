@@ -21,7 +21,8 @@ blem_sim_run CONFIG.yaml [options]
                           NAME_vel for velocities; other columns are ignored with a note
   --stop NAME=EXPR        ends the run after the first step after which EXPR holds: 'fallen=hubo::torso.z < 0.4'; may be repeated.
                           Names: time, energy, status bits, MODEL::LINK.x .y .z .speed .roll .pitch .yaw, MODEL::JOINT.position
-                          .velocity .effort ("NAME" in quotes if it has other signs); + - * /, comparisons, and or not, abs sqrt
+                          .velocity .effort, SENSOR.FIELD as in --csv ("NAME" in quotes if it has other signs);
+                          + - * /, comparisons, and or not, abs sqrt min max
   --report OUT.json       where the report goes (standard output)
   --stats-from S          [s] simulated time from which on sensors are averaged (0)
   --csv OUT.csv           joints, free bodies and sensors over time

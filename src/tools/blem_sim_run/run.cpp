@@ -52,32 +52,28 @@ class Progress {
   Clock::time_point shown_ = Clock::now();
 };
 
-/** Expressions of --stop, with their names. */
-std::vector<std::pair<std::string, StopExpression>> compileStops(const RunOptions& options, const sim::Simulator& simulator) {
-  std::vector<std::pair<std::string, StopExpression>> stops;
-  if (options.stops.empty()) return stops;
-  const Quantities quantities = quantitiesOf(simulator);
-  for (const auto& [name, text] : options.stops) stops.emplace_back(name, StopExpression(name, text, quantities));
-  return stops;
-}
+/** What follows a run, step by step. */
+struct Observers {
+  RunRecord* record;
+  CsvTable* table;  ///< null without --csv
+  StopConditions* stops;
+  Progress* progress;
+};
 
-/** Steps until the time is up, a stop holds or the state is not finite. @param table may be null */
-bool stepThrough(const RunOptions& options, sim::Simulator* simulator, RunRecord* record, CsvTable* table, Progress* progress) {
-  const auto steps = static_cast<std::uint64_t>(std::llround(options.duration / simulator->config().time_step));
-  const auto stops = compileStops(options, *simulator);
-  bool finite = true, stopped = false;
-  for (std::uint64_t step = 0; step < steps && finite && !stopped; ++step) {
+/** Steps until the time is up, a stop holds or the state is not finite. Returns whether it is finite. */
+bool stepThrough(std::uint64_t steps, sim::Simulator* simulator, const Observers& observers) {
+  for (std::uint64_t step = 0; step < steps; ++step) {
     const sim::StepReport& report = simulator->step();
-    record->add(report);
-    if (table) table->add(report);
-    finite = (report.status & sim::STATE_NOT_FINITE) == 0;
-    if (finite) progress->show(step, report.time);
-    for (auto stop = stops.begin(); stop != stops.end() && !stopped; ++stop) {
-      stopped = stop->second.holds(report);
-      if (stopped) record->stop(stop->first);
+    observers.record->add(report);
+    if (observers.table) observers.table->add(report);
+    if ((report.status & sim::STATE_NOT_FINITE) != 0) return false;
+    observers.progress->show(step, report.time);
+    if (const std::string* stop = observers.stops->met(report)) {
+      observers.record->stop(*stop);
+      return true;
     }
   }
-  return finite;
+  return true;
 }
 
 /** Goes on from a saved state, and notes what it has brought along in place of what was asked for. */
@@ -113,13 +109,15 @@ bool run(const RunOptions& options) {
   if (!options.load_state.empty()) loadState(options, &simulator, &notes);
   if (!options.trajectory.empty()) commandTrajectory(options.trajectory, &simulator, &notes);
 
+  StopConditions stops(simulator, options.stops);
   RunRecord record(simulator, options.stats_from);
   std::unique_ptr<CsvTable> table;
   if (!options.csv.empty()) table = std::make_unique<CsvTable>(simulator, options.csv, options.csv_rate);
-  Progress progress(static_cast<std::uint64_t>(std::llround(options.duration / config.time_step)));
+  const auto steps = static_cast<std::uint64_t>(std::llround(options.duration / config.time_step));
+  Progress progress(steps);
   const Clock::time_point start = Clock::now();
   const std::clock_t cpu_start = std::clock();
-  const bool finite = stepThrough(options, &simulator, &record, table.get(), &progress);
+  const bool finite = stepThrough(steps, &simulator, {&record, table.get(), &stops, &progress});
   const RunTimes times{static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC, secondsSince(start)};
   progress.end(notes);
 

@@ -27,6 +27,8 @@ double applied(const std::string& operation, double a, double b) {
   if (operation == "-") return a - b;
   if (operation == "*") return a * b;
   if (operation == "/") return a / b;
+  if (operation == "min") return std::min(a, b);
+  if (operation == "max") return std::max(a, b);
   if (operation == "<") return a < b;
   if (operation == "<=") return a <= b;
   if (operation == ">") return a > b;
@@ -66,7 +68,7 @@ void addBody(const sim::Simulator& simulator, int body, Quantities* quantities) 
 
 }  // namespace
 
-Quantities quantitiesOf(const sim::Simulator& simulator) {
+Quantities quantitiesOf(const sim::Simulator& simulator, const LastReadings& readings) {
   Quantities quantities;
   quantities["time"] = [](const sim::StepReport& report) { return report.time; };
   quantities["energy"] = [](const sim::StepReport& report) { return report.energy; };
@@ -84,6 +86,8 @@ Quantities quantitiesOf(const sim::Simulator& simulator) {
       quantities[name + ".effort"] = [j](const sim::StepReport& report) { return report.joints[j].effort; };
     }
   }
+  for (std::size_t i = 0; i < readings.names().size(); ++i)
+    quantities[readings.names()[i]] = [&readings, i](const sim::StepReport&) { return readings.values()[i]; };
   return quantities;
 }
 
@@ -148,6 +152,8 @@ class StopParser {
     if (accept("-")) return nested("negative", [&] { return unary(); });
     for (const char* function : {"abs", "sqrt"})
       if (accept(function)) return nested(function, [&] { return parenthesis(); });
+    for (const char* function : {"min", "max"})
+      if (accept(function)) return nested("", [&] { return pair(function); });
     skipSpace();
     if (at_ < text_.size() && text_[at_] == '(') return nested("", [&] { return parenthesis(); });
     return atom();
@@ -158,14 +164,22 @@ class StopParser {
     if (!accept(")")) refuse("')'");
     return node;
   }
+  int pair(const std::string& operation) {
+    if (!accept("(")) refuse("'('");
+    const int left = level(0);
+    if (!accept(",")) refuse("','");
+    const int right = level(0);
+    if (!accept(")")) refuse("')'");
+    return add(operation, left, right);
+  }
   int atom() {
+    if (at_ < text_.size() && std::string(DIGITS).append(".").find(text_[at_]) != std::string::npos) return number();
     const std::size_t end = std::min(text_.find_first_not_of(NAME_LETTERS, at_), text_.size());
     const bool quoted = at_ < text_.size() && text_[at_] == '"';
     const std::size_t quote = quoted ? text_.find('"', at_ + 1) : std::string::npos;
     if (quoted && quote == std::string::npos) refuse("a name that ends with '\"'");
     const std::string word = quoted ? text_.substr(at_ + 1, quote - at_ - 1) : text_.substr(at_, end - at_);
     if (!quoted && word.empty()) refuse("a number or a name");
-    if (!quoted && std::string(DIGITS).append(".").find(word[0]) != std::string::npos) return number(word);
     const auto found = quantities_.find(word);
     if (found == quantities_.end()) refuseName(word);
     at_ = quoted ? quote + 1 : end;
@@ -173,7 +187,13 @@ class StopParser {
     nodes_.back().quantity = found->second;
     return node;
   }
-  int number(const std::string& word) {
+  /** Digits, a point and an exponent, with or without a sign. */
+  int number() {
+    std::size_t end = std::min(text_.find_first_not_of(NAME_LETTERS, at_), text_.size());
+    const bool exponent =
+        end < text_.size() && (text_[end] == '+' || text_[end] == '-') && (text_[end - 1] == 'e' || text_[end - 1] == 'E');
+    if (exponent) end = std::min(text_.find_first_not_of(DIGITS, end + 1), text_.size());
+    const std::string word = text_.substr(at_, end - at_);
     std::istringstream stream(word);
     stream.imbue(std::locale::classic());
     double value = 0;
@@ -215,6 +235,25 @@ double StopExpression::value(int index, const sim::StepReport& report) const {
   if (node.operation == "and") return isTrue(a) && isTrue(value(node.right, report));
   if (node.operation == "or") return isTrue(a) || isTrue(value(node.right, report));
   return applied(node.operation, a, value(node.right, report));
+}
+
+StopConditions::StopConditions(const sim::Simulator& simulator, const std::vector<std::pair<std::string, std::string>>& stops)
+    : readings_(simulator) {
+  if (stops.empty()) return;
+  const Quantities quantities = quantitiesOf(simulator, readings_);
+  for (const auto& [name, text] : stops) {
+    for (const auto& [earlier, expression] : stops_)
+      if (earlier == name) throw InputError(fmt::format("--stop {}: the name is given twice; each stop needs its own", name));
+    stops_.emplace_back(name, StopExpression(name, text, quantities));
+  }
+}
+
+const std::string* StopConditions::met(const sim::StepReport& report) {
+  if (stops_.empty()) return nullptr;
+  readings_.add(report);
+  for (const auto& [name, expression] : stops_)
+    if (expression.holds(report)) return &name;
+  return nullptr;
 }
 
 }  // namespace blem_sim
