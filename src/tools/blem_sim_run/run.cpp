@@ -52,7 +52,7 @@ class Progress {
   Clock::time_point shown_ = Clock::now();
 };
 
-/** What follows a run, step by step. */
+/** Observers of a run, each called after every step. */
 struct Observers {
   RunRecord* record;
   CsvTable* table;  ///< null without --csv
