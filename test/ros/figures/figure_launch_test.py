@@ -47,6 +47,16 @@ class FigureLaunchTest(unittest.TestCase):
             self.assertIn("jaemiHubo", world.model_names)
             joints = rospy.wait_for_message("/joint_states", JointState, PATIENCE)
             self.assertEqual(len(joints.name), 57)
+            self.assertTrue(self.moves(joints), "the figure's motion is not played")
+
+    @staticmethod
+    def moves(first):
+        """Whether a joint comes to be 0.05 rad from where it was."""
+        for _ in range(20 * PATIENCE):
+            now = rospy.wait_for_message("/joint_states", JointState, PATIENCE)
+            if max(abs(a - b) for a, b in zip(now.position, first.position)) > 0.05:
+                return True
+        return False
 
     def test_missing_data_are_said_in_a_line(self):
         done = subprocess.run(["roslaunch", "blem_sim", "figure.launch", "figure:=9", "data:=/nowhere"],
