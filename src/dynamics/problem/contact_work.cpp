@@ -5,11 +5,8 @@
 namespace blem_sim::dynamics {
 namespace {
 
-// Rigid contacts end with their target. Compliant ones may end faster: their springs' push at a departure is real work.
-double lostDeparture(const ContactTerm& c, double before) {
-  const double end = c.compliance > 0 ? c.normal.dot(c.velocity) : c.target;
-  return std::max(0.0, before - std::max(0.0, end));
-}
+// Rigid contacts end with their target. Compliant ones are booked with their springs.
+double lostDeparture(const ContactTerm& c, double before) { return c.compliance > 0 ? 0 : std::max(0.0, before - std::max(0.0, c.target)); }
 
 }  // namespace
 

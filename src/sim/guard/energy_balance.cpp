@@ -17,6 +17,16 @@ double correctionSpeed(const dynamics::ContactConstraint& c, bool recovers, doub
   return recovers && c.damping > 0 ? c.stiffness * c.depth / c.damping : 0;
 }
 
+/**
+ * [J] Apparent work of a spring that turns round within a step of dt: its impulse follows from depth and speed at the end, and is booked
+ * along the mean velocity. Of one that obeys its law it is all that is booked, less than 0 unless it turns.
+ * @param before,after [m/s] speeds apart
+ */
+double turnWork(const dynamics::ContactConstraint& spring, double before, double after, double dt) {
+  const double way = 0.5 * dt * (before + after);
+  return std::max(0.0, -way * (0.25 * spring.stiffness * dt * (before + 3 * after) + spring.damping * after));
+}
+
 /** Displacements of points of bodies; contacts of one body follow on each other. */
 class Displacements {
  public:
@@ -135,17 +145,21 @@ void EnergyBalance::bookJoints(const dynamics::World& world, double dt, const dy
   }
 }
 
-// Books the energy of springs; those that part crossed meshes hold none.
+// Books the energy of springs; those that part crossed meshes hold none. Depths are those of half a step before: their change is the way of
+// the mean velocity, as for weights. Without this, what sinks into a spring out of rest would gain the half of its weight's work.
 void EnergyBalance::bookSprings(const MadeSolve& made) {
   Displacements a(made.before, made.after), b(made.before, made.after);
   for (std::size_t i = 0; i < made.contacts.constraints.size(); ++i) {
     const dynamics::ContactConstraint& contact = made.contacts.constraints[i];
     if (!isSpring(contact) || made.contacts.solved[i].recovers) continue;
     const Vector3 apart = a.of(contact.point, contact.body_a) - b.of(contact.point, contact.body_b);
-    const double old_depth = std::max(0.0, contact.depth), depth = std::max(0.0, contact.depth - contact.normal_BA.dot(apart));
+    const double old_speed = normalSpeed(contact, made.before), speed = normalSpeed(contact, made.after);
+    const double old_depth = std::max(0.0, contact.depth + 0.5 * made.dt * old_speed);
+    const double depth = std::max(0.0, contact.depth - contact.normal_BA.dot(apart) + 0.5 * made.dt * speed);
     Book& book = bookOf(contact);
     book.rise += 0.5 * contact.stiffness * (square(depth) - square(old_depth));
     book.moved += 0.5 * contact.stiffness * std::max(square(depth), square(old_depth));
+    if (!made.result.contact_forces[i].isZero(0)) book.on_purpose += turnWork(contact, old_speed, speed, made.dt);
   }
 }
 
