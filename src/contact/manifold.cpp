@@ -49,11 +49,20 @@ MeshPlace placeInPlane(const CollisionGeometry& geometry, int first, const Vecto
 double curvature(const Collider& collider, std::uint64_t id, bool is_a, double depth) {
   const FeatureKind kind = featureOf(id, is_a).kind;
   if (kind == FeatureKind::FACE || kind == FeatureKind::HALF_SPACE) return 0;
-  const double radius = collider.geometry->hasOnlyPoints() ? collider.radius - 0.5 * depth : 0;
+  const bool is_round = collider.geometry->hasOnlyPoints() || rimRadius(collider, id, is_a) > 0;
+  const double radius = is_round ? collider.radius - 0.5 * depth : 0;
   return radius > 0 ? 1 / radius : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace
+
+double rimRadius(const Collider& collider, std::uint64_t id, bool is_a) {
+  if (collider.body < 0 || !collider.geometry->cylinder()) return 0;
+  const Feature own = featureOf(id, is_a);
+  const FeatureKind other = featureOf(id, !is_a).kind;
+  const bool is_rim = own.kind == FeatureKind::VERTEX && own.index >= 2 * collider.geometry->cylinder()->sides;
+  return is_rim && (other == FeatureKind::FACE || other == FeatureKind::HALF_SPACE) ? collider.geometry->cylinder()->radius : 0;
+}
 
 double rollingRadius(const Collider& a, const Collider& b, const Contact& contact) {
   const double sum = curvature(a, contact.id, true, contact.depth) + curvature(b, contact.id, false, contact.depth);

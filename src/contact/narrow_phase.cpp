@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "blem_sim/geometry/bvh_traversal.h"
+#include "cylinders/on_cylinders.h"
 #include "evaluation/retraction.h"
 #include "evaluation/world_contact.h"
 #include "kept/still_pair.h"
@@ -177,6 +178,7 @@ void narrowPhase(const PlacedCollider& a, const PlacedCollider& b, const NarrowP
     else
       meshMesh(pair, asked.X_AB_apart, nullptr, room, out);
   }
+  moveOntoCylinders(a, b, out->layer + asked.margin, out);
 }
 
 }  // namespace blem_sim::contact

@@ -1,6 +1,7 @@
 // The meshes of plain shapes. All are wound outwards.
 #include <cmath>
 
+#include "blem_sim/geometry/cylinder.h"
 #include "blem_sim/geometry/triangle_mesh.h"
 
 namespace blem_sim::geometry {
@@ -37,6 +38,26 @@ TriangleMesh cylinderMesh(double radius, double length, int sides) {
     mesh.elements.emplace_back(top, upper, next_upper);
   }
   return mesh;
+}
+
+std::optional<Cylinder> cylinderBehind(const TriangleMesh& mesh) {
+  constexpr double SAME = 1e-9;  // of the radius and the length
+  const std::size_t sides = mesh.elements.size() / 4;
+  if (sides < 3 || mesh.elements.size() != 4 * sides || mesh.vertices.size() != 2 * sides + 2) return std::nullopt;
+  const Vector3 bottom = mesh.vertices[2 * sides], top = mesh.vertices[2 * sides + 1], along = top - bottom;
+  Cylinder cylinder;
+  cylinder.sides = static_cast<int>(sides);
+  cylinder.half_length = 0.5 * along.norm();
+  cylinder.radius = (mesh.vertices[0] - bottom).norm();
+  const Vector3 axis = along.normalized(), first = (mesh.vertices[0] - bottom).normalized();
+  cylinder.X_GK.linear() << first, axis.cross(first), axis;
+  cylinder.X_GK.translation() = 0.5 * (bottom + top);
+  for (std::size_t v = 0; v < 2 * sides; ++v) {
+    const double angle = 2 * M_PI * (v / 2) / sides, z = v % 2 == 0 ? -cylinder.half_length : cylinder.half_length;
+    const Vector3 expected = cylinder.X_GK * Vector3(cylinder.radius * std::cos(angle), cylinder.radius * std::sin(angle), z);
+    if (!((mesh.vertices[v] - expected).norm() < SAME * (cylinder.radius + cylinder.half_length))) return std::nullopt;
+  }
+  return cylinder;
 }
 
 TriangleMesh gridMesh(double size_x, double size_y, int nx, int ny) {

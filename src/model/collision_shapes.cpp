@@ -103,9 +103,12 @@ CollisionShape CollisionShapeReader::readOne(const urdf::Collision& collision, c
   const Pose X_LC = toPose(collision.origin);
   if (const urdf::Sphere* sphere = asSphere(collision))
     return primitive(geometry::pointMesh(X_LC.translation()), sphere->radius, fmt::format("sphere of radius {} m", sphere->radius));
-  if (const urdf::Cylinder* cylinder = asCylinder(collision))
-    return primitive(geometry::transformed(geometry::cylinderMesh(cylinder->radius, cylinder->length), X_LC), 0,
-                     fmt::format("cylinder of radius {} m and length {} m", cylinder->radius, cylinder->length));
+  if (const urdf::Cylinder* cylinder = asCylinder(collision)) {
+    CollisionShape shape = primitive(geometry::transformed(geometry::cylinderMesh(cylinder->radius, cylinder->length), X_LC), 0,
+                                     fmt::format("cylinder of radius {} m and length {} m", cylinder->radius, cylinder->length));
+    shape.cylinder = geometry::cylinderBehind(*shape.mesh);
+    return shape;
+  }
   if (collision.geometry->type == urdf::Geometry::BOX) {
     const urdf::Vector3& size = static_cast<const urdf::Box&>(*collision.geometry).dim;
     return primitive(geometry::transformed(geometry::boxMesh(Vector3(size.x, size.y, size.z)), X_LC), 0,

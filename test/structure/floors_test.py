@@ -11,7 +11,7 @@ MOST_FILES = 25
 FLOORS = {
     "geometry": ["threads"],
     "model": ["checks", "soup", "ply", "clouds"],
-    "contact": ["features", "kernels", "neighbourhood", "kept", "evaluation", "merging", "search"],
+    "contact": ["features", "kernels", "neighbourhood", "kept", "evaluation", "merging", "search", "cylinders"],
     "reduction": ["lanes", "patches", "choice"],
     "dynamics": ["lanes", "scene", "trees", "free_way", "problem", "iterate", "newton", "sweeps", "island", "ode"],
     "sim": ["numbers", "threads", "config", "gazebo", "commands", "build", "clouds", "contacts", "guard", "sensors", "state", "inputs", "controllers"],

@@ -4,10 +4,12 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "blem_sim/geometry/bvh.h"
+#include "blem_sim/geometry/cylinder.h"
 #include "blem_sim/geometry/mesh_topology.h"
 #include "blem_sim/geometry/triangle_mesh.h"
 
@@ -32,9 +34,10 @@ SurfaceProperties combineSurfaces(const SurfaceProperties& a, const SurfacePrope
 /** Geometry that contact searches, shared by all its copies: a mesh with its topology and tree, or a half-space. Immutable. */
 class CollisionGeometry {
  public:
-  /** @param topology of the mesh, if it is at hand */
+  /** @param topology of the mesh, if it is at hand @param cylinder that the mesh stands for; contacts are those of the cylinder */
   explicit CollisionGeometry(std::shared_ptr<const geometry::TriangleMesh> mesh,
-                             std::shared_ptr<const geometry::MeshTopology> topology = nullptr);
+                             std::shared_ptr<const geometry::MeshTopology> topology = nullptr,
+                             std::optional<geometry::Cylinder> cylinder = std::nullopt);
   /** The solid half-space normal . x <= offset; normal is made unit. */
   static std::shared_ptr<const CollisionGeometry> halfSpace(const Vector3& normal, double offset);
 
@@ -42,6 +45,7 @@ class CollisionGeometry {
   const geometry::TriangleMesh& mesh() const { return *mesh_; }
   bool hasOnlyTriangles() const { return only_triangles_; }  ///< at least one, and neither segments nor points
   bool hasOnlyPoints() const { return only_points_; }        ///< at least one: a ball, or those of a cloud
+  const std::optional<geometry::Cylinder>& cylinder() const { return cylinder_; }
   const geometry::MeshTopology& topology() const { return *topology_; }
   const geometry::Bvh& bvh() const { return bvh_; }
   /** Per node of the tree: whether an element below it owns a vertex or an edge. Two nodes that own nothing have no contact. */
@@ -62,6 +66,7 @@ class CollisionGeometry {
   geometry::Bvh bvh_;
   std::vector<std::uint8_t> owners_;
   std::uint64_t identity_ = 0;
+  std::optional<geometry::Cylinder> cylinder_;
   bool only_triangles_ = false, only_points_ = false;
   Box bounds_;
   Vector3 normal_ = Vector3::UnitZ();

@@ -46,9 +46,13 @@ struct MeshPlace {
  */
 MeshPlace placeOf(std::uint64_t id, bool of_a, const CollisionGeometry& geometry, const Vector3& p);
 
+/** [m] Radius of a rim of a moving cylinder whose lowest point made a contact of this id on a plane; 0 if none did. */
+double rimRadius(const Collider& collider, std::uint64_t id, bool is_a);
+
 /**
  * [m] Radius on which a contact rolls over both colliders [Montana 1988]: the ball's if a ball meets something flat, of two balls half
- * their harmonic mean. Edges and corners of meshes stand on one point of theirs, 0: their layers are thin.
+ * their harmonic mean, the layer's around a rim that rolls (rimRadius). Edges and corners of meshes stand on one point of theirs, 0: their
+ * layers are thin.
  */
 double rollingRadius(const Collider& a, const Collider& b, const Contact& contact);
 

@@ -79,9 +79,11 @@ using ContactRenames = std::vector<ContactRename>;
 /** One contact as the solver takes it. */
 struct ContactConstraint {
   int body_a = WORLD_BODY, body_b = WORLD_BODY;
-  Vector3 point, normal_BA;  ///< world
-  double depth = 0;          ///< [m], negative = gap
-  double rolling = 0;        ///< [m] radius on which it rolls over both bodies; 0: it stands on one point of a body. For `articulated`
+  Vector3 point, normal_BA;       ///< world
+  double depth = 0;               ///< [m], negative = gap
+  double rolling = 0;             ///< [m] radius on which it rolls over both bodies; 0: it stands on one point of a body. For `articulated`
+  Vector3 rim = Vector3::Zero();  ///< world: axis of a cylinder that rolls on the lowest point of a rim, as long as the rim's radius [m];
+                                  ///< zero: none does. For `articulated`
   double friction = 0, restitution = 0;
   double impact_friction_factor = 1;  ///< 0 to 1: friction in impacts over friction; only `articulated` knows it
   double impact_friction_speed = 0;   ///< [m/s] closing speed up to which that factor does not act

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "blem_sim/geometry/triangle_mesh.h"
+#include "blem_sim/geometry/cylinder.h"
 #include "blem_sim/model/gazebo_blocks.h"
 
 namespace blem_sim::model {
@@ -16,10 +16,12 @@ namespace blem_sim::model {
 /** Mass [kg], centre of mass [m] and inertia [kg m^2] about the centre of mass, both in the axes of the frame they are given in. */
 using Inertial = geometry::MassProperties;
 
-/** One collision shape. Spheres are a point, capsules a segment, with their radius as boundary; all else is a mesh of triangles. */
+/** One collision shape. Spheres are a point, capsules a segment, with their radius as boundary; all else is a mesh of triangles, whose
+ * cylinder is known where it stands for one. */
 struct CollisionShape {
   std::shared_ptr<const geometry::TriangleMesh> mesh;  ///< in the link's frame, scaled and cleaned
   double radius = 0;                                   ///< [m] > 0: this is the boundary, exactly; 0: the configured boundary width applies
+  std::optional<geometry::Cylinder> cylinder;          ///< that the mesh stands for
   geometry::MeshReport report;
 };
 

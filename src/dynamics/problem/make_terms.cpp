@@ -145,14 +145,28 @@ PairDrift pairDrift(const TermSource& s, const BodyPair& pair, const Vector3& an
   return drift;
 }
 
+/**
+ * [m/s^2] By how much the acceleration of a contact that rolls on differs from that of the point that touches. A ball's contact stays below
+ * its centre; a rim's is its lowest point, while its axis turns.
+ * @param spin [rad/s] of one body against the other
+ */
+Vector3 rollsOnBy(const ContactConstraint& c, const Vector3& normal, const Vector3& spin) {
+  const Vector3 as_ball = c.rolling * spin.dot(normal) * spin;
+  if (c.rim.isZero(0)) return as_ball;
+  const double radius = c.rim.norm();
+  const Vector3 axis = c.rim / radius, across = normal - normal.dot(axis) * axis;  // across: away from the lowest point; sine of the lean
+  const double spin_about_axis = spin.dot(axis) - normal.dot(axis) * spin.dot(across) / across.squaredNorm();
+  return as_ball + radius * spin_about_axis * spin.cross(axis.cross(across.normalized()));
+}
+
 // A sticking contact shall not have moved at the end of the step, along paths that bend. One that rolls goes on over both bodies: where
 // they spin about its normal, it does not take part in the bend of a point that it leaves.
-Vector3 bendAt(const TermSource& s, const BodyPair& pair, const ContactTerm& contact, double rolling) {
+Vector3 bendAt(const TermSource& s, const BodyPair& pair, const ContactTerm& contact, const ContactConstraint& c) {
   Vector3 drift = pairDrift(s, pair, contact.point).point;
-  if (rolling > 0) {
+  if (c.rolling > 0 || !c.rim.isZero(0)) {
     Vector3 spin = angular(s.motion.node_twist[pair.a]);
     if (pair.b >= 0) spin -= angular(s.motion.node_twist[pair.b]);
-    drift += rolling * spin.dot(contact.normal) * spin;
+    drift += rollsOnBy(c, contact.normal, spin);
   }
   return 0.5 * s.input.dt * (drift - drift.dot(contact.normal) * contact.normal);
 }
@@ -192,7 +206,7 @@ ContactTerm contactTerm(const TermSource& s, const ContactConstraint& c, const B
   ContactTerm term;
   term.point = c.point - s.motion.reference[s.forest.nodes()[pair.a].tree];
   term.normal = termSign(c) * c.normal_BA;
-  term.bend = bendAt(s, pair, term, c.rolling);
+  term.bend = bendAt(s, pair, term, c);
   term.friction = c.friction;
   term.target = std::abs(c.depth) > NO_GAP ? row.speed : 0;
   term.compliance = row.compliance / s.input.dt;

@@ -27,7 +27,7 @@ void RobotBuilder::addColliders(SurfaceLibrary* surfaces) {
       collider.X_BC = body == dynamics::WORLD_BODY ? config_.X_WR * placement.X_BL : placement.X_BL;
       geometry::MeshReport report = shape.report;
       ContactSettings settings = of_link;
-      const auto geometry = surfaces->geometry(shape.mesh);
+      const auto geometry = surfaces->geometry(shape.mesh, nullptr, shape.cylinder);
       surfaces->chooseWidth(*geometry, needs, shape.radius, &settings, &report);
       collider.geometry = surfaces->fitted(geometry, settings, shape.radius, &report);
       const bool has_layer = !(shape.radius > 0) && !settings.shrink;

@@ -89,10 +89,11 @@ SharedSurface SurfaceLibrary::load(const std::string& file, const Vector3& scale
 }
 
 std::shared_ptr<const contact::CollisionGeometry> SurfaceLibrary::geometry(const std::shared_ptr<const geometry::TriangleMesh>& mesh,
-                                                                           const std::shared_ptr<const geometry::MeshTopology>& topology) {
+                                                                           const std::shared_ptr<const geometry::MeshTopology>& topology,
+                                                                           const std::optional<geometry::Cylinder>& cylinder) {
   OfMesh& held = meshes_[mesh.get()];
   if (auto known = held.geometry.lock()) return known;
-  const auto made = std::make_shared<const contact::CollisionGeometry>(mesh, topology);
+  const auto made = std::make_shared<const contact::CollisionGeometry>(mesh, topology, cylinder);
   held = {made, std::nullopt};
   return made;
 }
@@ -127,8 +128,9 @@ std::shared_ptr<const contact::CollisionGeometry> SurfaceLibrary::fitted(const s
   // Another geometry may have got the address of one that is gone.
   if (!made || held.original.lock() != geometry) {
     geometry::MeshShrinking what;
-    made = std::make_shared<const contact::CollisionGeometry>(
-        std::make_shared<const geometry::TriangleMesh>(geometry::shrinkMesh(geometry->mesh(), r, &what)));
+    const auto mesh = std::make_shared<const geometry::TriangleMesh>(geometry::shrinkMesh(geometry->mesh(), r, &what));
+    made = std::make_shared<const contact::CollisionGeometry>(mesh, nullptr,
+                                                              geometry->cylinder() ? geometry::cylinderBehind(*mesh) : std::nullopt);
     held = {geometry, made, wordsFor(what, r)};
   }
   report->notes.push_back(held.note);

@@ -33,9 +33,10 @@ class SurfaceLibrary {
       : mending_(mending), time_step_(time_step) {}
   /** @throws InputError as loadSurface does */
   SharedSurface load(const std::string& file, const Vector3& scale, const model::CloudOptions& cloud, const model::LoadProgress& progress);
-  /** @param topology of the mesh, if it is at hand */
+  /** @param topology of the mesh, if it is at hand @param cylinder that the mesh stands for */
   std::shared_ptr<const contact::CollisionGeometry> geometry(const std::shared_ptr<const geometry::TriangleMesh>& mesh,
-                                                             const std::shared_ptr<const geometry::MeshTopology>& topology = nullptr);
+                                                             const std::shared_ptr<const geometry::MeshTopology>& topology = nullptr,
+                                                             const std::optional<geometry::Cylinder>& cylinder = std::nullopt);
   /**
    * Chooses the boundary width where the settings leave it open.
    * @param needs of its use; those of the geometry and the settings are found here @param own_radius as in fitted

@@ -262,7 +262,7 @@ void WorldBuilder::addUrdfObject(const ObjectConfig& config, LoadWatch* watch, S
       collider.X_BC = lumped.link_placement[link].X_BL;
       geometry::MeshReport report = shape.report;
       ContactSettings settings = of_link;
-      const auto geometry = surfaces_.geometry(shape.mesh);
+      const auto geometry = surfaces_.geometry(shape.mesh, nullptr, shape.cylinder);
       surfaces_.chooseWidth(*geometry, needs, shape.radius, &settings, &report);
       collider.geometry = surfaces_.fitted(geometry, settings, shape.radius, &report);
       world->addCollider(collider, shape.radius > 0 ? shape.radius : settings.boundary_width.metres, settings.surface, report);

@@ -18,6 +18,19 @@ constexpr double BENT = 0.02;  // of the layer: a way that bends less is straigh
 /** Turn [rad] between two poses, at least. */
 double turnAtMost(const Pose& from, const Pose& to) { return TURN_OF_CHORD * (to.linear() - from.linear()).norm(); }
 
+/** Way of a cylinder's surface, which spin about its axis leaves where it is, about its middle. */
+contact::GeometrySweep wayOfCylinder(const contact::Collider& collider, const Pose& from, const Pose& to) {
+  const Pose X_BK = collider.X_BC * collider.geometry->cylinder()->X_GK, before = from * X_BK, after = to * X_BK;
+  const Eigen::AngleAxisd turn(Quaternion::FromTwoVectors(before.linear().col(2), after.linear().col(2)));
+  contact::GeometrySweep sweep;
+  sweep.centre = before.translation();
+  sweep.shift = after.translation() - before.translation();
+  sweep.turn = turn.angle() * turn.axis();
+  return sweep;
+}
+
+bool isCylinder(const contact::Collider& collider) { return collider.geometry && collider.geometry->cylinder(); }
+
 bool hasArea(const contact::CollisionGeometry& geometry) { return geometry.mesh().isTriangle(0); }
 
 bool canPass(const contact::Collider& a, const contact::Collider& b) {
@@ -64,6 +77,10 @@ void SweepGuard::moveColliders(const SimulatedWorld& world, const MadeSolve& mad
     const Vector3& com = world.world.bodySpec(body).inertial.com;
     const Pose &from = made.before[body].X_WB, &to = made.after[body].X_WB;
     motion_[i].reach = (to * com - from * com).norm() + turnAtMost(from, to) * arms[i];
+    if (!isCylinder(world.colliders[i])) continue;
+    const contact::GeometrySweep way = wayOfCylinder(world.colliders[i], from, to);
+    const double arm = 0.5 * world.colliders[i].geometry->bounds().diagonal().norm() + world.colliders[i].radius;
+    motion_[i].reach = std::min(motion_[i].reach, way.shift.norm() + way.turn.norm() * arm);
   }
   bendWays(world, made.before, made.after);
 }
@@ -91,9 +108,11 @@ void SweepGuard::bendWays(const SimulatedWorld& world, const std::vector<dynamic
 
 contact::GeometrySweep SweepGuard::sweepOf(const SimulatedWorld& world, int collider) const {
   contact::GeometrySweep sweep;
-  sweep.X_WC = motion_[collider].X_WC;
   const int body = world.colliders[collider].body;
-  if (body == dynamics::WORLD_BODY) return sweep;
+  if (body != dynamics::WORLD_BODY && isCylinder(world.colliders[collider]))
+    sweep = wayOfCylinder(world.colliders[collider], (*before_)[body].X_WB, (*after_)[body].X_WB);
+  sweep.X_WC = motion_[collider].X_WC;
+  if (body == dynamics::WORLD_BODY || isCylinder(world.colliders[collider])) return sweep;
   const Vector3& com = world.world.bodySpec(body).inertial.com;
   const Pose &from = (*before_)[body].X_WB, &to = (*after_)[body].X_WB;
   sweep.centre = from * com;

@@ -21,6 +21,12 @@ std::uint64_t mixed(std::uint64_t x) {  // splitmix64's finalizer [Steele 2014]
   return x ^ (x >> 31);
 }
 
+/** Unit, world: axis of a cylinder on a body. */
+Vector3 axisOf(const SimulatedWorld& world, const contact::Collider& cylinder) {
+  const Pose X_BK = cylinder.X_BC * cylinder.geometry->cylinder()->X_GK;
+  return world.world.bodyState(cylinder.body).X_WB.linear() * X_BK.linear().col(2);
+}
+
 /** Constraint of a contact, rigid, without friction. */
 dynamics::ContactConstraint constraintOf(const SimulatedWorld& world, const contact::ContactManifold& manifold,
                                          const contact::Contact& contact) {
@@ -32,6 +38,11 @@ dynamics::ContactConstraint constraintOf(const SimulatedWorld& world, const cont
   constraint.normal_BA = contact.normal_BA;
   constraint.depth = contact.depth;
   constraint.rolling = contact::rollingRadius(a, b, contact);
+  for (const bool is_a : {true, false}) {
+    const contact::Collider& collider = is_a ? a : b;
+    const double rim = contact::rimRadius(collider, contact.id, is_a);
+    if (rim > 0) constraint.rim = rim * axisOf(world, collider);
+  }
   constraint.id = worldContactId(manifold.a, manifold.b, contact.id);
   return constraint;
 }

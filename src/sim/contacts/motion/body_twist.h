@@ -23,6 +23,11 @@ struct BodyTwist {
   }
 };
 
+/** The twist without its spin about an axis through p: that of a cylinder's surface, which such a spin leaves where it is. */
+inline BodyTwist withoutSpin(const BodyTwist& twist, const Vector3& p, const Vector3& axis) {
+  return {p, twist.at(p), twist.w - twist.w.dot(axis) * axis};
+}
+
 /** Twist of a body about its centre of mass; none of the world's. @param bodies their states, by slot */
 inline BodyTwist twistOf(const SimulatedWorld& world, const std::vector<dynamics::BodyState>& bodies, int body) {
   if (body == dynamics::WORLD_BODY) return {};

@@ -1,0 +1,21 @@
+// The cylinder that a mesh of flat sides stands for.
+#pragma once
+
+#include <optional>
+
+#include "blem_sim/geometry/triangle_mesh.h"
+
+namespace blem_sim::geometry {
+
+/** A solid cylinder; vertices 2 i and 2 i + 1 of its mesh (cylinderMesh) lie on its lower and upper rim. */
+struct Cylinder {
+  Pose X_GK = Pose::Identity();  ///< its frame in the mesh's: z along the axis, origin in the middle, x towards the mesh's first line
+  double radius = 0;             ///< [m]
+  double half_length = 0;        ///< [m]
+  int sides = 0;                 ///< of the mesh
+};
+
+/** The cylinder behind a mesh by cylinderMesh that was moved, turned or shrunk; none if its rims have no common radius. */
+std::optional<Cylinder> cylinderBehind(const TriangleMesh& mesh);
+
+}  // namespace blem_sim::geometry

@@ -1,0 +1,174 @@
+#include "cylinders/on_cylinders.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "blem_sim/contact/contact_order.h"
+#include "evaluation/world_contact.h"
+#include "features/mesh_pair.h"
+#include "features/tolerances.h"
+
+namespace blem_sim::contact {
+namespace {
+
+// Sines of the lean from which on a rim has a lowest point, and beyond which it rolls on it and its other vertices fade.
+constexpr double LEANS = 1e-3, ROLLS = 0.05;
+constexpr double ON_MESH = 1e-7;  // [m] from the mesh; points farther away are those of contacts that fade
+
+/** A cylinder in the world, and the surface that it meets. */
+class RoundSide {
+ public:
+  RoundSide(const PlacedCollider& own, const PlacedCollider& other, bool is_a)
+      : own_(own),
+        other_(other),
+        cylinder_(*own.collider.geometry->cylinder()),
+        is_a_(is_a),
+        is_named_by_place_(own.collider.body >= 0),
+        X_WK_(own.X_WC * cylinder_.X_GK),
+        X_KO_(X_WK_.inverse() * other.X_WC) {}
+
+  /** Moves a contact of the mesh onto the cylinder. */
+  void move(Contact* contact) const;
+
+ private:
+  Feature ownFeature(const Contact& contact) const { return featureOf(contact.id, is_a_); }
+  Feature otherFeature(const Contact& contact) const { return featureOf(contact.id, !is_a_); }
+  /** A rim as a whole; the middle of the flat end, which has no contacts, lends its name. */
+  Feature rim(bool is_upper) const { return {FeatureKind::VERTEX, 2 * cylinder_.sides + is_upper}; }
+  void rename(const Feature& own, Contact* contact) const;
+  /** Unit, in the cylinder's frame: towards the other surface. */
+  Vector3 towardsOther(const Contact& contact) const { return X_WK_.linear().transpose() * (is_a_ ? -1 : 1) * contact.normal_BA; }
+  void overPlane(int vertex, Contact* contact) const;
+  void atPoint(Contact* contact) const;
+  bool isOnMesh(const Vector3& p) const;
+  bool project(const Vector3& q, Vector3* x) const;
+  bool nearestPair(const Feature& other, Vector3* x, Vector3* q) const;
+
+  const PlacedCollider &own_, &other_;
+  const geometry::Cylinder& cylinder_;
+  const bool is_a_, is_named_by_place_;
+  const Pose X_WK_, X_KO_;
+};
+
+bool isRim(const geometry::Cylinder& cylinder, const Feature& feature) {
+  return feature.kind == FeatureKind::VERTEX && feature.index < 2 * cylinder.sides;
+}
+
+void RoundSide::rename(const Feature& own, Contact* contact) const {
+  if (!is_named_by_place_) return;
+  const Feature other = otherFeature(*contact);
+  contact->id = is_a_ ? contactId(own, other) : contactId(other, own);
+}
+
+void RoundSide::move(Contact* contact) const {
+  const Feature own = ownFeature(*contact), other = otherFeature(*contact);
+  if (contact->pierced) return;
+  if (other.kind == FeatureKind::FACE || other.kind == FeatureKind::HALF_SPACE) {
+    if (isRim(cylinder_, own)) overPlane(own.index, contact);
+  } else {
+    atPoint(contact);
+  }
+}
+
+void RoundSide::overPlane(int vertex, Contact* contact) const {
+  const Vector3 towards = towardsOther(*contact);
+  const double lean = std::hypot(towards.x(), towards.y());
+  if (lean < LEANS) return;
+  const int sides = cylinder_.sides;
+  const double step = 2 * M_PI / sides, lowest = std::atan2(towards.y(), towards.x());
+  const int nearest_line = static_cast<int>(std::lround(lowest / step) + sides) % sides, line = vertex / 2;
+  const int from_lowest = (line - nearest_line + sides) % sides;
+  if (from_lowest == 0) {
+    const double angle = step * line;
+    const Vector3 way = cylinder_.radius * Vector3(std::cos(lowest) - std::cos(angle), std::sin(lowest) - std::sin(angle), 0);
+    const double lower = way.dot(towards);
+    contact->point += X_WK_.linear() * (way - 0.5 * lower * towards);
+    contact->depth += lower;
+  } else {
+    contact->depth -= cylinder_.radius * std::max(0.0, lean - ROLLS);
+  }
+  if (lean < ROLLS) return;
+  rename(from_lowest == 0 ? rim(vertex % 2 == 1) : Feature{FeatureKind::VERTEX, 2 * from_lowest + vertex % 2}, contact);
+}
+
+/** Whether a point of the cylinder's frame lies on the mesh's mantle. */
+bool RoundSide::isOnMesh(const Vector3& p) const {
+  const double half = M_PI / cylinder_.sides, turn = std::remainder(std::atan2(p.y(), p.x()) - half, 2 * half);
+  const double mantle = cylinder_.radius * std::cos(half) / std::cos(turn);
+  return std::abs(p.z()) <= cylinder_.half_length + ON_MESH && std::abs(std::hypot(p.x(), p.y()) - mantle) <= ON_MESH;
+}
+
+/** Nearest point of mantle or rim. @return false if it is on a flat end, or q is inside */
+bool RoundSide::project(const Vector3& q, Vector3* x) const {
+  const double from_axis = std::hypot(q.x(), q.y()), z = std::clamp(q.z(), -cylinder_.half_length, cylinder_.half_length);
+  if (from_axis <= cylinder_.radius) return false;
+  *x = {cylinder_.radius / from_axis * q.x(), cylinder_.radius / from_axis * q.y(), z};
+  return true;
+}
+
+/** Nearest points of the cylinder and of the other's vertex or edge, from near ones on. @return false if none is on mantle or rim */
+bool RoundSide::nearestPair(const Feature& other, Vector3* x, Vector3* q) const {
+  if (other.kind == FeatureKind::VERTEX) return project(*q, x);
+  const CollisionGeometry& geometry = *other_.collider.geometry;
+  const auto ends = geometry.topology().ends(geometry.mesh(), other.index);
+  const Vector3 start = X_KO_ * geometry.mesh().vertices[ends[0]], along = X_KO_ * geometry.mesh().vertices[ends[1]] - start;
+  const double across2 = along.head<2>().squaredNorm(), length2 = along.squaredNorm();
+  const auto pointAt = [&](double part) -> Vector3 { return start + std::clamp(part, 0.0, 1.0) * along; };
+  if (across2 > MIN_EDGE_SINE * MIN_EDGE_SINE * length2) {
+    const Vector3 beside_axis = pointAt(-start.head<2>().dot(along.head<2>()) / across2);
+    if (std::abs(beside_axis.z()) <= cylinder_.half_length) {
+      *q = beside_axis;
+      return project(*q, x);
+    }
+  }
+  constexpr int TIMES = 4;
+  for (int i = 0; i < TIMES; ++i) {
+    if (!project(*q, x)) return false;
+    *q = pointAt((*x - start).dot(along) / length2);
+  }
+  return project(*q, x);
+}
+
+void RoundSide::atPoint(Contact* contact) const {
+  const double own_radius = own_.collider.radius, layer = own_radius + other_.collider.radius, gap_of_mesh = layer - contact->depth;
+  const Pose X_KW = X_WK_.inverse();
+  if (!isOnMesh(X_KW * witnessOf(*contact, own_radius, is_a_))) return;
+  Vector3 x, q = X_KW * witnessOf(*contact, other_.collider.radius, !is_a_);
+  if (!nearestPair(otherFeature(*contact), &x, &q)) return;
+  const double gap = (x - q).norm();
+  if (gap <= TOUCH || gap > gap_of_mesh + ON_MESH) return;
+  const Vector3 normal = (x - q) / gap;  // from the other to the cylinder
+  contact->normal_BA = X_WK_.linear() * (is_a_ ? normal : Vector3(-normal));
+  contact->depth = layer - gap;
+  contact->point = X_WK_ * Vector3(x - (own_radius - 0.5 * contact->depth) * normal);
+  const bool is_at_rim = std::abs(x.z()) >= cylinder_.half_length;
+  rename(is_at_rim ? rim(x.z() > 0) : Feature{FeatureKind::FACE, 0}, contact);
+}
+
+/** Of contacts with one name, which several sides of a mesh had, the deepest stays. */
+void dropRepeated(std::vector<Contact>* contacts) {
+  std::sort(contacts->begin(), contacts->end(), [](const Contact& a, const Contact& b) {
+    return a.id != b.id ? a.id < b.id : a.depth != b.depth ? a.depth > b.depth : contactBefore(a, b);
+  });
+  contacts->erase(std::unique(contacts->begin(), contacts->end(), [](const Contact& a, const Contact& b) { return a.id == b.id; }),
+                  contacts->end());
+}
+
+}  // namespace
+
+void moveOntoCylinders(const PlacedCollider& a, const PlacedCollider& b, double range, ContactManifold* manifold) {
+  if (manifold->contacts.empty() || (!a.collider.geometry->cylinder() && !b.collider.geometry->cylinder())) return;
+  for (const bool is_a : {true, false}) {
+    const PlacedCollider &own = is_a ? a : b, &other = is_a ? b : a;
+    if (!own.collider.geometry->cylinder()) continue;
+    const RoundSide side(own, other, is_a);
+    for (Contact& contact : manifold->contacts) side.move(&contact);
+  }
+  std::vector<Contact>& contacts = manifold->contacts;
+  contacts.erase(
+      std::remove_if(contacts.begin(), contacts.end(), [&](const Contact& contact) { return manifold->layer - contact.depth > range; }),
+      contacts.end());
+  dropRepeated(&contacts);
+}
+
+}  // namespace blem_sim::contact

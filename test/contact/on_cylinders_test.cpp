@@ -1,0 +1,152 @@
+// Cylinders: their contacts are those of the cylinder, however its mesh is turned.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "blem_sim/geometry/cylinder.h"
+#include "contact/contact_shapes.h"
+#include "features/mesh_pair.h"
+
+namespace blem_sim::contact {
+namespace {
+
+constexpr double WHEEL = 0.05, HALF_WIDTH = 0.02, WHEEL_LAYER = 0.0025;  // [m]
+
+/** A wheel about its z axis, on a body. */
+Collider wheel() {
+  Collider collider;
+  const auto mesh = std::make_shared<const geometry::TriangleMesh>(geometry::cylinderMesh(WHEEL, 2 * HALF_WIDTH));
+  collider.geometry = std::make_shared<const CollisionGeometry>(mesh, nullptr, geometry::cylinderBehind(*mesh));
+  collider.radius = WHEEL_LAYER;
+  collider.body = 0;
+  return collider;
+}
+
+/** A wheel whose axis leans by an angle off the level, turned about its axis, its middle at a height. */
+Pose rolled(double height, double lean, double turn, double heading = 0.3) {
+  const Matrix3 R = (Eigen::AngleAxisd(heading, Vector3::UnitZ()) * Eigen::AngleAxisd(-M_PI / 2 + lean, Vector3::UnitX()) *
+                     Eigen::AngleAxisd(turn, Vector3::UnitZ()))
+                        .toRotationMatrix();
+  Pose X = Pose::Identity();
+  X.linear() = R;
+  X.translation() = Vector3(0.013, -0.007, height);
+  return X;
+}
+
+/** [m] Height of a rim's lowest point. */
+double lowestOfRim(const Pose& X_WK, bool is_upper) {
+  const Vector3 axis = X_WK.linear().col(2);
+  return X_WK.translation().z() + (is_upper ? 1 : -1) * HALF_WIDTH * axis.z() - WHEEL * std::hypot(axis.x(), axis.y());
+}
+
+TEST(CylinderBehindAMesh, IsFoundWhereItWasMoved) {
+  const Pose X = makePose({1, 2, 3}, {0.3, 0.2, 0.1});
+  const geometry::TriangleMesh mesh = geometry::transformed(geometry::cylinderMesh(0.3, 0.8), X);
+  const auto found = geometry::cylinderBehind(mesh);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->radius, 0.3, 1e-12);
+  EXPECT_NEAR(found->half_length, 0.4, 1e-12);
+  EXPECT_NEAR((found->X_GK.matrix() - X.matrix()).norm(), 0, 1e-9);
+  geometry::TriangleMesh dented = mesh;
+  dented.vertices[7].x() += 1e-6;
+  EXPECT_FALSE(geometry::cylinderBehind(dented));
+  EXPECT_FALSE(geometry::cylinderBehind(geometry::boxMesh(Vector3::Ones())));
+}
+
+TEST(OnCylinders, LowestPointsOfTheRimsTouchAPlaneHoweverTheMeshIsTurned) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> angle(-M_PI, M_PI), lean(-1.2, 1.2);
+  const Collider ground = makeHalfSpace(Vector3::UnitZ(), 0), tiles = makeCollider(geometry::gridMesh(2, 2, 7, 5), 0), round = wheel();
+  for (int i = 0; i < 200; ++i) {
+    const Pose X = rolled(WHEEL, i < 100 ? 0 : lean(random), angle(random));
+    const double lower = std::min(lowestOfRim(X, false), lowestOfRim(X, true));
+    Pose touching = X;
+    touching.translation().z() += WHEEL_LAYER - lower - 1e-4;  // 0.1 mm deep
+    for (const Collider* below : {&ground, &tiles}) {
+      const ContactManifold manifold = contactsOf(round, touching, *below, Pose::Identity());
+      EXPECT_NEAR(manifold.maxDepth(), 1e-4, 1e-12);
+      int touch = 0;
+      for (const Contact& contact : manifold.contacts) {
+        EXPECT_NEAR((contact.normal_BA - Vector3::UnitZ()).norm(), 0, 1e-9);
+        if (contact.depth < 0) continue;
+        ++touch;
+        const bool is_upper = (touching.inverse() * contact.point).z() > 0;
+        EXPECT_NEAR(contact.depth, WHEEL_LAYER - lowestOfRim(touching, is_upper), 1e-12);
+        EXPECT_EQ(rimRadius(round, contact.id, true), WHEEL);
+        const Vector3 axis = touching.linear().col(2), arm = contact.point - touching.translation();
+        EXPECT_NEAR(axis.cross(Vector3::UnitZ()).dot(arm), 0, 1e-12);  // straight below the axis
+      }
+      EXPECT_EQ(touch, i < 100 ? 2 : 1);
+    }
+  }
+}
+
+TEST(OnCylinders, ContactsKeepTheirNamesWhileTheWheelRolls) {
+  const Collider ground = makeHalfSpace(Vector3::UnitZ(), 0), round = wheel();
+  std::set<std::uint64_t> names;
+  for (int i = 0; i < 500; ++i)
+    for (const Contact& contact : contactsOf(round, rolled(WHEEL + 0.9 * WHEEL_LAYER, 0, 0.013 * i), ground, Pose::Identity()).contacts)
+      names.insert(contact.id);
+  EXPECT_EQ(names.size(), 2u);
+}
+
+TEST(OnCylinders, AFlatEndStandsOnAllOfItsRim) {
+  const Collider ground = makeHalfSpace(Vector3::UnitZ(), 0);
+  Pose standing = Pose::Identity();
+  standing.translation().z() = HALF_WIDTH + 0.9 * WHEEL_LAYER;
+  EXPECT_EQ(contactsOf(wheel(), standing, ground, Pose::Identity()).contacts.size(), 64u);
+}
+
+TEST(OnCylinders, BallsMeetMantleAndRim) {
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> angle(-M_PI, M_PI);
+  const Collider ball = makeCollider(geometry::pointMesh(Vector3::Zero()), 0.01), round = wheel();
+  for (int i = 0; i < 200; ++i) {
+    const Pose X = rolled(0, 0.4, angle(random));
+    const double around = angle(random), beyond = i % 2 == 0 ? 0 : 0.005, out = i % 2 == 0 ? 0.0124 : 0.01;
+    const Vector3 p((WHEEL + out) * std::cos(around), (WHEEL + out) * std::sin(around), i % 2 == 0 ? 0.011 : HALF_WIDTH + beyond);
+    const ContactManifold manifold = contactsOf(round, X, ball, makePose(X * p));
+    ASSERT_EQ(manifold.contacts.size(), 1u);
+    EXPECT_NEAR(manifold.contacts[0].depth, WHEEL_LAYER + 0.01 - std::hypot(out, beyond), 1e-12);
+    const Vector3 inwards = X.linear().transpose() * manifold.contacts[0].normal_BA;
+    EXPECT_NEAR(inwards.head<2>().dot(p.head<2>().normalized()), -out / std::hypot(out, beyond), 1e-9);
+  }
+}
+
+/** [m] Distance of a solid wheel from the y axis: a convex function along it. */
+double distanceFromEdge(const Pose& X_WK) {
+  const Pose X_KW = X_WK.inverse();
+  const auto distance = [&](double y) {
+    const Vector3 q = X_KW * Vector3(0, y, 0);
+    return std::hypot(std::max(0.0, std::abs(q.z()) - HALF_WIDTH), std::max(0.0, q.head<2>().norm() - WHEEL));
+  };
+  double lower = -0.2, upper = 0.2;
+  for (int i = 0; i < 100; ++i) {
+    const double left = lower + (upper - lower) / 3, right = upper - (upper - lower) / 3;
+    (distance(left) < distance(right) ? upper : lower) = distance(left) < distance(right) ? right : left;
+  }
+  return distance(0.5 * (lower + upper));
+}
+
+TEST(OnCylinders, MantleAndRimsMeetAKerb) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> angle(-M_PI, M_PI);
+  const Collider kerb = makeCollider(geometry::boxMesh({1, 1, 1}), 0), round = wheel();
+  const Pose X_WKerb = makePose({-0.5, 0, -0.5});  // its upper edge is the y axis
+  for (const double askew : {0.0, 1e-4, 0.2, 0.7, 1.3}) {
+    for (int i = 0; i < 100; ++i) {
+      Pose X = Pose::Identity();
+      X.linear() = (Eigen::AngleAxisd(askew, Vector3::UnitZ()) * Eigen::AngleAxisd(M_PI / 2, Vector3::UnitX()) *
+                    Eigen::AngleAxisd(angle(random), Vector3::UnitZ()))
+                       .toRotationMatrix();
+      X.translation() = Vector3(0.03, 0.02, 0.2);
+      while (distanceFromEdge(X) > 1e-3) X.translation().z() -= 0.5 * (distanceFromEdge(X) - 0.9e-3);
+      const ContactManifold manifold = contactsOf(round, X, kerb, X_WKerb);
+      EXPECT_NEAR(WHEEL_LAYER - manifold.maxDepth(), distanceFromEdge(X), 1e-8) << askew << " " << i;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace blem_sim::contact
