@@ -25,7 +25,7 @@ class StopTest(RunCase):
     def test_operators_and_names(self):
         for holds in ("1 + 2 * 3 == 7", "(1 + 2) * 3 == 9", "7 - 2 - 1 == 4", "8 / 2 / 2 == 2", "not 1 > 2", "0 or 1 and 1", "-abs(-2) < -1",
                       "sqrt(9) == 3", "not sqrt(-1) <= 1", "cube::link.z < 0.09 and cube::link.z > 0.05",
-                      "1e-3 + 1e+3 > 1000", "min(2, 1) == 1 and max(2, 1) == 2",
+                      "1e-3 + 1e+3 > 1000", "1 <= 1 and 1 >= 1 and 1 != 2 and not (1 < 1 or 1 > 1 or 1 != 1 or 1 == 2 or 2 <= 1)", "min(2, 1) == 1 and max(2, 1) == 2",
                       "base_contact.force_z > 1",
                       '"arm::shoulder.position" > 0', "abs(cube::link.yaw - 0.3) < 0.1", "STATE_NOT_FINITE == 0"):
             self.assertIsNotNone(self.stopped("it=" + holds), holds)

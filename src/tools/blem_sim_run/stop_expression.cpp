@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <locale>
+#include <optional>
 #include <sstream>
 #include <utility>
 
@@ -18,26 +20,72 @@ namespace {
 
 const int MOST_NESTING = 100;
 const std::size_t COMPARISONS = 2;  ///< level in LEVELS, where `not` stands
-const std::array<std::vector<std::string>, 5> LEVELS = {{{"or"}, {"and"}, {"<=", ">=", "==", "!=", "<", ">"}, {"+", "-"}, {"*", "/"}}};
+using Tokens = std::vector<std::pair<const char*, StopOperation>>;
+/** Operators between two operands, the loosest first; of those that begin alike the longest first. */
+const std::array<Tokens, 5> LEVELS = {{
+    {{"or", StopOperation::OR}},
+    {{"and", StopOperation::AND}},
+    {{"<=", StopOperation::LESS_OR_EQUAL},
+     {">=", StopOperation::GREATER_OR_EQUAL},
+     {"==", StopOperation::EQUAL},
+     {"!=", StopOperation::NOT_EQUAL},
+     {"<", StopOperation::LESS},
+     {">", StopOperation::GREATER}},
+    {{"+", StopOperation::PLUS}, {"-", StopOperation::MINUS}},
+    {{"*", StopOperation::TIMES}, {"/", StopOperation::DIVIDE}},
+}};
+const Tokens FUNCTIONS = {{"abs", StopOperation::ABS}, {"sqrt", StopOperation::SQRT}};
+const Tokens PAIR_FUNCTIONS = {{"min", StopOperation::MIN}, {"max", StopOperation::MAX}};
 const char* const DIGITS = "0123456789";
 const char* const NAME_LETTERS = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789:.";
 
-double applied(const std::string& operation, double a, double b) {
-  if (operation == "+") return a + b;
-  if (operation == "-") return a - b;
-  if (operation == "*") return a * b;
-  if (operation == "/") return a / b;
-  if (operation == "min") return std::min(a, b);
-  if (operation == "max") return std::max(a, b);
-  if (operation == "<") return a < b;
-  if (operation == "<=") return a <= b;
-  if (operation == ">") return a > b;
-  if (operation == ">=") return a >= b;
-  if (operation == "==") return a == b;
-  return a != b;
-}
-
 bool isTrue(double value) { return value != 0 && !std::isnan(value); }
+
+/** Value of an operator; one of a single operand takes no b. */
+double applied(StopOperation operation, double a, double b) {
+  switch (operation) {
+    case StopOperation::NEGATIVE:
+      return -a;
+    case StopOperation::ABS:
+      return std::abs(a);
+    case StopOperation::SQRT:
+      return std::sqrt(a);
+    case StopOperation::NOT:
+      return !isTrue(a);
+    case StopOperation::AND:
+      return isTrue(a) && isTrue(b);
+    case StopOperation::OR:
+      return isTrue(a) || isTrue(b);
+    case StopOperation::LESS:
+      return a < b;
+    case StopOperation::LESS_OR_EQUAL:
+      return a <= b;
+    case StopOperation::GREATER:
+      return a > b;
+    case StopOperation::GREATER_OR_EQUAL:
+      return a >= b;
+    case StopOperation::EQUAL:
+      return a == b;
+    case StopOperation::NOT_EQUAL:
+      return a != b;
+    case StopOperation::PLUS:
+      return a + b;
+    case StopOperation::MINUS:
+      return a - b;
+    case StopOperation::TIMES:
+      return a * b;
+    case StopOperation::DIVIDE:
+      return a / b;
+    case StopOperation::MIN:
+      return std::min(a, b);
+    case StopOperation::MAX:
+      return std::max(a, b);
+    case StopOperation::NUMBER:
+    case StopOperation::NAME:
+      break;  // operands
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
 
 void addBody(const sim::Simulator& simulator, int body, Quantities* quantities) {
   const std::string name = simulator.bodyName(body);
@@ -121,41 +169,40 @@ class StopParser {
     at_ = end;
     return true;
   }
-  int add(const std::string& operation, int left, int right) {
+  int add(StopOperation operation, int left, int right) {
     nodes_.push_back({operation, left, right, 0, {}});
     return static_cast<int>(nodes_.size()) - 1;
   }
-  std::string acceptOneOf(const std::vector<std::string>& tokens) {
-    for (const std::string& token : tokens)
-      if (accept(token)) return token;
-    return {};
+  /** Takes one of the tokens if it comes next. */
+  std::optional<StopOperation> acceptOneOf(const Tokens& tokens) {
+    for (const auto& [token, operation] : tokens)
+      if (accept(token)) return operation;
+    return std::nullopt;
   }
   int level(std::size_t depth) {
     if (depth == LEVELS.size()) return unary();
-    if (depth == COMPARISONS && accept("not")) return nested("not", [&] { return level(COMPARISONS); });
+    if (depth == COMPARISONS && accept("not")) return add(StopOperation::NOT, nested([&] { return level(COMPARISONS); }), -1);
     int left = level(depth + 1);
-    for (std::string token = acceptOneOf(LEVELS[depth]); !token.empty(); token = acceptOneOf(LEVELS[depth])) {
+    for (auto operation = acceptOneOf(LEVELS[depth]); operation; operation = acceptOneOf(LEVELS[depth])) {
       if (++operators_ > MOST_NESTING) throw InputError(fmt::format("{}: more than {} operators", where_, MOST_NESTING));
       const int right = level(depth + 1);
-      left = add(token, left, right);
+      left = add(*operation, left, right);
     }
     return left;
   }
   template <typename Inner>
-  int nested(const std::string& operation, Inner inner) {
+  int nested(Inner inner) {
     if (++nesting_ > MOST_NESTING) throw InputError(fmt::format("{}: nested more than {} deep", where_, MOST_NESTING));
     const int node = inner();
     --nesting_;
-    return operation.empty() ? node : add(operation, node, -1);
+    return node;
   }
   int unary() {
-    if (accept("-")) return nested("negative", [&] { return unary(); });
-    for (const char* function : {"abs", "sqrt"})
-      if (accept(function)) return nested(function, [&] { return parenthesis(); });
-    for (const char* function : {"min", "max"})
-      if (accept(function)) return nested("", [&] { return pair(function); });
+    if (accept("-")) return add(StopOperation::NEGATIVE, nested([&] { return unary(); }), -1);
+    if (const auto function = acceptOneOf(FUNCTIONS)) return add(*function, nested([&] { return parenthesis(); }), -1);
+    if (const auto function = acceptOneOf(PAIR_FUNCTIONS)) return nested([&] { return pair(*function); });
     skipSpace();
-    if (at_ < text_.size() && text_[at_] == '(') return nested("", [&] { return parenthesis(); });
+    if (at_ < text_.size() && text_[at_] == '(') return nested([&] { return parenthesis(); });
     return atom();
   }
   int parenthesis() {
@@ -164,7 +211,7 @@ class StopParser {
     if (!accept(")")) refuse("')'");
     return node;
   }
-  int pair(const std::string& operation) {
+  int pair(StopOperation operation) {
     if (!accept("(")) refuse("'('");
     const int left = level(0);
     if (!accept(",")) refuse("','");
@@ -183,7 +230,7 @@ class StopParser {
     const auto found = quantities_.find(word);
     if (found == quantities_.end()) refuseName(word);
     at_ = quoted ? quote + 1 : end;
-    const int node = add("name", -1, -1);
+    const int node = add(StopOperation::NAME, -1, -1);
     nodes_.back().quantity = found->second;
     return node;
   }
@@ -199,7 +246,7 @@ class StopParser {
     double value = 0;
     if (!(stream >> value) || stream.peek() != std::istringstream::traits_type::eof()) refuse("a number");
     at_ += word.size();
-    const int node = add("number", -1, -1);
+    const int node = add(StopOperation::NUMBER, -1, -1);
     nodes_.back().number = value;
     return node;
   }
@@ -225,16 +272,12 @@ bool StopExpression::holds(const sim::StepReport& report) const { return isTrue(
 
 double StopExpression::value(int index, const sim::StepReport& report) const {
   const Node& node = nodes_[static_cast<std::size_t>(index)];
-  if (node.operation == "number") return node.number;
-  if (node.operation == "name") return node.quantity(report);
+  if (node.operation == StopOperation::NUMBER) return node.number;
+  if (node.operation == StopOperation::NAME) return node.quantity(report);
   const double a = value(node.left, report);
-  if (node.operation == "negative") return -a;
-  if (node.operation == "abs") return std::abs(a);
-  if (node.operation == "sqrt") return std::sqrt(a);
-  if (node.operation == "not") return isTrue(a) ? 0 : 1;
-  if (node.operation == "and") return isTrue(a) && isTrue(value(node.right, report));
-  if (node.operation == "or") return isTrue(a) || isTrue(value(node.right, report));
-  return applied(node.operation, a, value(node.right, report));
+  if (node.operation == StopOperation::AND && !isTrue(a)) return 0;
+  if (node.operation == StopOperation::OR && isTrue(a)) return 1;
+  return applied(node.operation, a, node.right < 0 ? 0 : value(node.right, report));
 }
 
 StopConditions::StopConditions(const sim::Simulator& simulator, const std::vector<std::pair<std::string, std::string>>& stops)

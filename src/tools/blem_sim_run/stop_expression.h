@@ -21,6 +21,30 @@ using Quantities = std::map<std::string, std::function<double(const sim::StepRep
  */
 Quantities quantitiesOf(const sim::Simulator& simulator, const LastReadings& readings);
 
+/** Operands, and the operators on one or two of them. */
+enum class StopOperation {
+  NUMBER,
+  NAME,
+  NEGATIVE,
+  ABS,
+  SQRT,
+  NOT,
+  AND,
+  OR,
+  LESS,
+  LESS_OR_EQUAL,
+  GREATER,
+  GREATER_OR_EQUAL,
+  EQUAL,
+  NOT_EQUAL,
+  PLUS,
+  MINUS,
+  TIMES,
+  DIVIDE,
+  MIN,
+  MAX
+};
+
 /** Numbers, names, + - * /, comparisons, and, or, not, abs, sqrt, min, max, parentheses. A comparison with NaN is false, but != is true. */
 class StopExpression {
  public:
@@ -32,7 +56,7 @@ class StopExpression {
  private:
   friend class StopParser;
   struct Node {
-    std::string operation;  ///< "number", "name" or an operator
+    StopOperation operation = StopOperation::NUMBER;
     int left = -1, right = -1;
     double number = 0;
     std::function<double(const sim::StepReport&)> quantity;
