@@ -20,7 +20,7 @@ int indexOf(const std::vector<Named>& items, const std::string& name) {
 
 }  // namespace
 
-Simulator::Impl::Impl(const SimulationConfig& config, const model::UriResolver& resolver, LoadLog log)
+Simulator::Impl::Impl(const SimulationConfig& config, const model::UriResolver& resolver, LoadLog log, const Impl* loaded)
     : config_((checkConfig(config), config)),
       world_(config.gravity, config.solver),
       builder_(config.contact, config.time_step, config.base_directory, resolver, std::move(log)),
@@ -30,6 +30,7 @@ Simulator::Impl::Impl(const SimulationConfig& config, const model::UriResolver& 
       constraint_maker_(config.contact, &threads_),
       sweep_guard_(&threads_),
       energy_balance_(config.solver) {
+  if (loaded) builder_.learnFrom(loaded->builder_);
   for (const EnvironmentConfig& environment : config_.environments) {
     builder_.addEnvironment(environment, &world_);
     addLive(environment);
@@ -62,8 +63,8 @@ void Simulator::Impl::forgetLayers(const std::string& model) {
   layout_.clear();
 }
 
-Simulator::Simulator(const SimulationConfig& config, const model::UriResolver& resolver, LoadLog log)
-    : impl_(std::make_unique<Impl>(config, resolver, std::move(log))) {}
+Simulator::Simulator(const SimulationConfig& config, const model::UriResolver& resolver, LoadLog log, const Simulator* loaded)
+    : impl_(std::make_unique<Impl>(config, resolver, std::move(log), loaded ? loaded->impl_.get() : nullptr)) {}
 Simulator::~Simulator() = default;
 
 void Simulator::watch(SimulatorWatcher* watcher) { impl_->watcher_ = watcher; }

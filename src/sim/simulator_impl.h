@@ -49,7 +49,7 @@ struct LiveGround {
 };
 
 struct Simulator::Impl {
-  Impl(const SimulationConfig& config, const model::UriResolver& resolver, LoadLog log);
+  Impl(const SimulationConfig& config, const model::UriResolver& resolver, LoadLog log, const Impl* loaded);
 
   // One step, stage by stage: simulator_step.cpp. Values that a stage gives are valid until it gives the next.
   const StepReport& step();

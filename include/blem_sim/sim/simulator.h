@@ -20,7 +20,11 @@ namespace blem_sim::sim {
  */
 class Simulator {
  public:
-  Simulator(const SimulationConfig& config, const model::UriResolver& resolver, LoadLog log = {});
+  /**
+   * @param loaded another simulation, with the same resolver: surfaces and robots that it holds are shared instead of read again, unless
+   * their files were written since. It may end at any time after the constructor, and the result does not depend on it.
+   */
+  Simulator(const SimulationConfig& config, const model::UriResolver& resolver, LoadLog log = {}, const Simulator* loaded = nullptr);
   ~Simulator();
   Simulator(const Simulator&) = delete;
   Simulator& operator=(const Simulator&) = delete;

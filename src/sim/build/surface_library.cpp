@@ -70,12 +70,21 @@ void SurfaceLibrary::forgetWhatIsGone() {
   forgetExpired(&meshes_, &enough_meshes_, gone);
 }
 
+void SurfaceLibrary::learnFrom(const SurfaceLibrary& other) {
+  if (mending_ != other.mending_) return;
+  files_ = other.files_;
+  shrunk_ = other.shrunk_;
+  meshes_ = other.meshes_;
+}
+
 SharedSurface SurfaceLibrary::load(const std::string& file, const Vector3& scale, const model::CloudOptions& cloud,
                                    const model::LoadProgress& progress) {
   const std::string key = fmt::format("{}|{} {} {}|{}", file, scale.x(), scale.y(), scale.z(), wordsFor(cloud));
   forgetWhatIsGone();
   Entry& entry = files_[key];
-  if (const auto held = entry.geometry.lock()) return {held, entry.radius, entry.report, entry.origin};
+  const FileStamp stamp = stampOf(file);
+  const auto held = entry.geometry.lock();
+  if (held && entry.stamp == stamp) return {held, entry.radius, entry.report, entry.origin};
   model::LoadedSurface surface = model::loadSurface(file, scale, cloud, mending_, progress);
   progress("topology and tree of " + surface.report.name, 1 - model::TREE_FRACTION);
   const Vector3 origin = geometry::farOrigin(surface.mesh->bounds());
@@ -84,7 +93,7 @@ SharedSurface SurfaceLibrary::load(const std::string& file, const Vector3& scale
     surface.report.notes.push_back(farAway(origin));
   }
   const auto made = geometry(surface.mesh, surface.topology);
-  entry = {made, surface.radius, surface.report, origin};
+  entry = {made, surface.radius, surface.report, origin, stamp};
   return {made, surface.radius, surface.report, origin};
 }
 

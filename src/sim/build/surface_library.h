@@ -11,6 +11,7 @@
 #include "blem_sim/contact/collider.h"
 #include "blem_sim/model/loaders.h"
 #include "build/contact_settings.h"
+#include "build/file_stamp.h"
 #include "build/widths/chosen_width.h"
 
 namespace blem_sim::sim {
@@ -25,12 +26,14 @@ struct SharedSurface {
   Vector3 origin = Vector3::Zero();
 };
 
-/** Gives the same geometry for the same file and settings, or the same mesh, while anybody holds it. */
+/** Gives the same geometry for the same file, unless it was written since, and settings, or the same mesh, while anybody holds it. */
 class SurfaceLibrary {
  public:
   /** @param time_step [s] by which boundary widths are chosen */
   explicit SurfaceLibrary(model::Mending mending = model::Mending::ON, double time_step = 0.001)
       : mending_(mending), time_step_(time_step) {}
+  /** Gives what the other one knows, if it mends as this one does. Precondition: this one knows nothing. */
+  void learnFrom(const SurfaceLibrary& other);
   /** @throws InputError as loadSurface does */
   SharedSurface load(const std::string& file, const Vector3& scale, const model::CloudOptions& cloud, const model::LoadProgress& progress);
   /** @param topology of the mesh, if it is at hand @param cylinder that the mesh stands for */
@@ -68,6 +71,7 @@ class SurfaceLibrary {
     double radius = 0;
     geometry::MeshReport report;
     Vector3 origin = Vector3::Zero();
+    FileStamp stamp;
   };
   /** A mesh lives as long as its geometry. */
   struct OfMesh {

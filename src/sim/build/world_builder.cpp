@@ -81,6 +81,16 @@ UrdfSource sourceOf(const RobotConfig& config) {
   return {"robots: " + config.name, config.urdf, config.urdf_xml, config.description_param};
 }
 
+/** Files that a description was read from, as they are now. */
+std::vector<std::pair<std::string, FileStamp>> filesOf(const model::RobotModel& model) {
+  std::set<std::string> files = {model.source};
+  for (const model::LinkModel& link : model.links)
+    for (const model::CollisionShape& shape : link.collisions) files.insert(shape.report.source);
+  std::vector<std::pair<std::string, FileStamp>> stamps;
+  for (const std::string& file : files) stamps.emplace_back(file, stampOf(file));
+  return stamps;
+}
+
 int addFreeBody(const std::string& name, const geometry::MassProperties& inertial, const ObjectConfig& config, SimulatedWorld* world) {
   dynamics::BodySpec spec;
   spec.name = name;
@@ -91,6 +101,11 @@ int addFreeBody(const std::string& name, const geometry::MassProperties& inertia
 }
 
 }  // namespace
+
+void WorldBuilder::learnFrom(const WorldBuilder& other) {
+  surfaces_.learnFrom(other.surfaces_);
+  if (contact_.mending == other.contact_.mending) descriptions_ = other.descriptions_;
+}
 
 SharedSurface WorldBuilder::load(const std::string& uri, const Vector3& scale, const model::CloudOptions& cloud, const std::string& where,
                                  LoadWatch* watch) {
@@ -143,11 +158,15 @@ std::shared_ptr<const model::RobotModel> WorldBuilder::description(const UrdfSou
                                  urdf.parameter.empty() ? "" : " (the parameter " + urdf.parameter + " is not read here)"));
   }
   const std::string key = text ? urdf.xml : resolver_.resolve(urdf.file, base_directory_);
-  const auto known = descriptions_.find(key);
-  if (known != descriptions_.end())
-    if (auto model = known->second.lock()) return model;
+  const std::string place = text ? base_directory_ + '\n' + key : key;
+  const auto known = descriptions_.find(place);
+  if (known != descriptions_.end()) {
+    const auto model = known->second.model.lock();
+    const auto isSame = [](const auto& file) { return file.second == stampOf(file.first); };
+    if (model && std::all_of(known->second.files.begin(), known->second.files.end(), isSame)) return model;
+  }
   for (auto old = descriptions_.begin(); old != descriptions_.end();)
-    old = old->second.expired() ? descriptions_.erase(old) : std::next(old);
+    old = old->second.model.expired() ? descriptions_.erase(old) : std::next(old);
   const std::string source = urdf.parameter.empty() ? urdf.where : urdf.parameter;
   model::UrdfOptions options;
   options.mending = contact_.mending;
@@ -155,7 +174,7 @@ std::shared_ptr<const model::RobotModel> WorldBuilder::description(const UrdfSou
   if (text) options.base = base_directory_;
   const auto model = std::make_shared<const model::RobotModel>(text ? model::loadUrdf(key, source, resolver_, options)
                                                                     : model::loadUrdfFile(key, resolver_, options));
-  descriptions_[key] = model;
+  descriptions_[place] = {model, filesOf(*model)};
   return model;
 }
 

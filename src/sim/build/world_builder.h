@@ -4,9 +4,12 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "blem_sim/model/loaders.h"
 #include "blem_sim/sim/config.h"
+#include "build/file_stamp.h"
 #include "build/load_watch.h"
 #include "build/simulated_world.h"
 #include "build/surface_library.h"
@@ -31,6 +34,9 @@ class WorldBuilder {
         log_(std::move(log)),
         surfaces_(contact.mending, time_step) {}
 
+  /** Lets later loads use what the other one has loaded and the world still holds, but files that were written since. Precondition: the
+   *  resolvers are alike. */
+  void learnFrom(const WorldBuilder& other);
   void addEnvironment(const EnvironmentConfig& config, SimulatedWorld* world);
   void addRobot(const RobotConfig& config, SimulatedWorld* world);
   void addObject(const ObjectConfig& config, SimulatedWorld* world);
@@ -40,6 +46,12 @@ class WorldBuilder {
   void restrictFiles(const model::FileRoots& roots) { resolver_.restrictTo(roots); }
 
  private:
+  /** A description, and its files as they were read. */
+  struct Described {
+    std::weak_ptr<const model::RobotModel> model;
+    std::vector<std::pair<std::string, FileStamp>> files;
+  };
+
   void addMeshObject(const ObjectConfig& config, LoadWatch* watch, SimulatedWorld* world);
   void addUrdfObject(const ObjectConfig& config, LoadWatch* watch, SimulatedWorld* world);
   SharedSurface load(const std::string& uri, const Vector3& scale, const model::CloudOptions& cloud, const std::string& where,
@@ -52,7 +64,7 @@ class WorldBuilder {
   model::UriResolver resolver_;
   const LoadLog log_;
   SurfaceLibrary surfaces_;
-  std::map<std::string, std::weak_ptr<const model::RobotModel>> descriptions_;  ///< by file or text
+  std::map<std::string, Described> descriptions_;  ///< by file, or by folder and text
 };
 
 }  // namespace blem_sim::sim
