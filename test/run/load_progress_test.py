@@ -27,9 +27,9 @@ def strip_ply(width):
 
 class LoadProgressTest(RunCase):
 
-    def lines_of(self, width, returncode):
+    def lines_of(self, width, returncode, *arguments):
         pathlib.Path(self.folder, "strip.ply").write_bytes(strip_ply(width))
-        done = self.run_program(self.write("long.yaml", SCENE), "--duration", 0.001)
+        done = self.run_program(self.write("long.yaml", SCENE), "--duration", 0.001, *arguments)
         self.assertEqual(done.returncode, returncode, done.stderr)
         return done.stderr.splitlines()
 
@@ -44,6 +44,11 @@ class LoadProgressTest(RunCase):
         # A strip has as many vertices as triangles, and two edges to each.
         self.assertLess(float(told.group(1)) * 1e6 / TRIANGLES, 105)
         self.assertGreaterEqual(float(told.group(2)), 1)
+
+    def test_the_runs_of_a_batch_load_once(self):
+        self.write("runs.jsonl", "{}\n" + '{"config": "none.yaml"}\n' + "{}\n")
+        lines = self.lines_of(0.01, 2, "--batch", "runs.jsonl")
+        self.assertEqual(len([line for line in lines if line.startswith("blem_sim_run: loaded strip: ")]), 1, lines)
 
     def test_one_that_fails_ends_with_the_reason(self):
         lines = self.lines_of(0, 2)

@@ -161,7 +161,7 @@ class ReportTest(RunCase):
     def test_help(self):
         done = self.run_program("--help")
         self.assertEqual(done.returncode, 0)
-        for option in ("--duration", "--set", "--trajectory", "--stats-from", "--csv", "--csv-rate", "--report", "--seed", "--package"):
+        for option in ("--duration", "--set", "--trajectory", "--stats-from", "--csv", "--csv-rate", "--report", "--seed", "--package", "--stop", "--batch"):
             self.assertIn(option, done.stdout)
 
     def test_version(self):

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+
+#include "utf8.h"
 
 namespace blem_sim {
 
@@ -10,23 +13,29 @@ namespace {
 
 const std::size_t INDENTED_LEVELS = 2;  ///< deeper ones stay on their line, so that a report reads as a table
 
-std::string escaped(const std::string& text) {
+const char* const REPLACEMENT = "\xef\xbf\xbd";  ///< U+FFFD
+
+}  // namespace
+
+std::string quotedJson(const std::string& text) {
   std::string quoted = "\"";
-  for (const char letter : text) {
+  for (std::size_t at = 0, length = 0; at < text.size(); at += std::max<std::size_t>(length, 1)) {
+    const char letter = text[at];
+    length = utf8Length(text, at);
     if (letter == '"' || letter == '\\')
       quoted += std::string("\\") + letter;
     else if (static_cast<unsigned char>(letter) < 0x20)
       quoted += fmt::format("\\u{:04x}", static_cast<int>(letter));
     else
-      quoted += letter;
+      quoted += length == 0 ? REPLACEMENT : text.substr(at, length);
   }
   return quoted + "\"";
 }
 
-}  // namespace
+bool JsonWriter::onLinesOfItsOwn() const { return layout_ == Layout::INDENTED && empty_.size() <= INDENTED_LEVELS; }
 
 void JsonWriter::newLine() {
-  if (empty_.size() <= INDENTED_LEVELS) stream_ << '\n' << std::string(2 * empty_.size(), ' ');
+  if (onLinesOfItsOwn()) stream_ << '\n' << std::string(2 * empty_.size(), ' ');
 }
 
 void JsonWriter::separate() {
@@ -35,7 +44,7 @@ void JsonWriter::separate() {
     return;
   }
   if (empty_.empty()) return;
-  if (!empty_.back()) stream_ << (empty_.size() <= INDENTED_LEVELS ? "," : ", ");
+  if (!empty_.back()) stream_ << (onLinesOfItsOwn() ? "," : ", ");
   empty_.back() = false;
   newLine();
 }
@@ -47,7 +56,7 @@ void JsonWriter::open(char bracket) {
 }
 
 void JsonWriter::close(char bracket) {
-  const bool indented = !empty_.back() && empty_.size() <= INDENTED_LEVELS;
+  const bool indented = !empty_.back() && onLinesOfItsOwn();
   empty_.pop_back();
   if (indented) newLine();
   stream_ << bracket;
@@ -66,7 +75,7 @@ void JsonWriter::closeList() { close(']'); }
 
 JsonWriter& JsonWriter::key(const std::string& name) {
   separate();
-  stream_ << escaped(name) << ": ";
+  stream_ << quotedJson(name) << ": ";
   after_key_ = true;
   return *this;
 }
@@ -83,7 +92,7 @@ void JsonWriter::value(std::uint64_t number) {
 
 void JsonWriter::value(const std::string& text) {
   separate();
-  stream_ << escaped(text);
+  stream_ << quotedJson(text);
 }
 
 template <typename Values>

@@ -10,10 +10,14 @@
 
 namespace blem_sim {
 
+/** The text as a JSON string. Bytes that are no UTF-8, as messages quote them from files, become U+FFFD. */
+std::string quotedJson(const std::string& text);
+
 /** Text, number or list on its way into a document. Objects are opened and closed by hand. */
 class JsonWriter {
  public:
-  explicit JsonWriter(std::ostream& stream) : stream_(stream) {}
+  enum class Layout { INDENTED, ONE_LINE };
+  explicit JsonWriter(std::ostream& stream, Layout layout = Layout::INDENTED) : stream_(stream), layout_(layout) {}
 
   void openObject();
   void closeObject();
@@ -35,11 +39,13 @@ class JsonWriter {
   void separate();
   void open(char bracket);
   void close(char bracket);
+  bool onLinesOfItsOwn() const;
   void newLine();
   template <typename Values>
   void list(const Values& values);
 
   std::ostream& stream_;
+  Layout layout_;
   std::vector<bool> empty_;  ///< per open bracket: nothing in it yet
   bool after_key_ = false;
 };

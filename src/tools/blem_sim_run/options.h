@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "command_line.h"
+
 namespace blem_sim {
 
 struct RunOptions {
@@ -24,9 +26,14 @@ struct RunOptions {
   std::optional<std::uint64_t> seed;
   std::map<std::string, std::string> packages;
   std::string save_state, load_state;
+  std::string batch;  ///< file of runs, one per line; empty: a single run
+  std::string name;   ///< of a run of a batch
 };
 
 extern const char* const RUN_USAGE;
+
+/** Options of a run that take a value. */
+const OptionTable<RunOptions>& runOptionTable();
 
 /** @throws InputError for an unknown option, a missing or malformed value, no configuration */
 RunOptions parseOptions(const std::vector<std::string>& arguments);

@@ -18,6 +18,7 @@
 #include "blem_sim/sim/simulator.h"
 #include "blem_sim/sim/state_file.h"
 #include "csv_table.h"
+#include "numbers/nearest_name.h"
 #include "run_record.h"
 #include "run_setup.h"
 #include "stop_expression.h"
@@ -33,12 +34,15 @@ double secondsSince(Clock::time_point start) { return std::chrono::duration<doub
 /** Progress of a run as a line on a terminal; nothing elsewhere. */
 class Progress {
  public:
-  explicit Progress(std::uint64_t steps) : steps_(steps), on_terminal_(isatty(STDERR_FILENO) == 1) {}
+  /** @param name of a run of a batch, or empty */
+  Progress(std::uint64_t steps, const std::string& name)
+      : steps_(steps), label_(name.empty() ? "" : sim::shownName(name) + " "), on_terminal_(isatty(STDERR_FILENO) == 1) {}
 
   void show(std::uint64_t step, double time) {
     if (!on_terminal_ || secondsSince(shown_) < 0.2) return;
     shown_ = Clock::now();
-    std::fprintf(stderr, "\r%3.0f %%  t = %.3f s ", 100.0 * static_cast<double>(step) / static_cast<double>(steps_), time);
+    std::fprintf(stderr, "\r%s%3.0f %%  t = %.3f s ", label_.c_str(), 100.0 * static_cast<double>(step) / static_cast<double>(steps_),
+                 time);
   }
   void end(const std::vector<std::string>& notes) const {
     if (!on_terminal_) return;
@@ -48,6 +52,7 @@ class Progress {
 
  private:
   std::uint64_t steps_;
+  std::string label_;
   bool on_terminal_;
   Clock::time_point shown_ = Clock::now();
 };
@@ -58,22 +63,27 @@ struct Observers {
   CsvTable* table;  ///< null without --csv
   StopConditions* stops;
   Progress* progress;
+  const EndSignal* signal;  ///< null: none is taken
 };
 
-/** Steps until the time is up, a stop holds or the state is not finite. Returns whether it is finite. */
-bool stepThrough(std::uint64_t steps, sim::Simulator* simulator, const Observers& observers) {
+/** Steps until the time is up, a stop holds, a signal came or the state is not finite. */
+RunEnd stepThrough(std::uint64_t steps, sim::Simulator* simulator, const Observers& observers) {
   for (std::uint64_t step = 0; step < steps; ++step) {
+    if (observers.signal && observers.signal->number() != 0) {
+      observers.record->interrupt(observers.signal->name());
+      return RunEnd::INTERRUPTED;
+    }
     const sim::StepReport& report = simulator->step();
     observers.record->add(report);
     if (observers.table) observers.table->add(report);
-    if ((report.status & sim::STATE_NOT_FINITE) != 0) return false;
+    if ((report.status & sim::STATE_NOT_FINITE) != 0) return RunEnd::NOT_FINITE;
     observers.progress->show(step, report.time);
     if (const std::string* stop = observers.stops->met(report)) {
       observers.record->stop(*stop);
-      return true;
+      return RunEnd::FINISHED;
     }
   }
-  return true;
+  return RunEnd::FINISHED;
 }
 
 /** Goes on from a saved state, and notes what it has brought along in place of what was asked for. */
@@ -85,47 +95,64 @@ void loadState(const RunOptions& options, sim::Simulator* simulator, std::vector
   if (options.seed) notes->push_back(fmt::format("random_seed: the numbers of {} go on, not those of --seed", options.load_state));
 }
 
-void writeReport(const RunOptions& options, const RunRecord& record, const RunTimes& times, const std::vector<std::string>& notes) {
+/** Writes the report to the file that options name, or to standard output. */
+void writeReport(const RunOptions& options, const RunRecord& record, const RunFacts& facts) {
   if (options.report.empty()) {
-    record.write(times, notes, std::cout);
+    JsonWriter json(std::cout);
+    record.write(facts, json);
     if (!std::cout.flush()) throw InputError("the report on standard output could not all be written; make room on its disk");
     return;
   }
   std::ofstream stream(options.report);
-  record.write(times, notes, stream);
+  JsonWriter json(stream);
+  record.write(facts, json);
   stream.close();
   if (!stream) throw InputError(fmt::format("{}: cannot be written; check the folder", options.report));
 }
 
-}  // namespace
-
-bool run(const RunOptions& options) {
+sim::SimulationConfig configOf(const RunOptions& options) {
   std::vector<std::pair<std::string, std::string>> settings = options.settings;
   if (options.seed) settings.emplace_back("random_seed", std::to_string(*options.seed));
-  const sim::SimulationConfig config = readConfig(options.config, settings);
-  const sim::LoadLog log{[](const std::string& line) { std::fprintf(stderr, "blem_sim_run: %s\n", line.c_str()); }};
-  sim::Simulator simulator(config, model::UriResolver(options.packages), log);
-  std::vector<std::string> notes = simulator.notes();
-  if (!options.load_state.empty()) loadState(options, &simulator, &notes);
-  if (!options.trajectory.empty()) commandTrajectory(options.trajectory, &simulator, &notes);
+  return readConfig(options.config, settings);
+}
+
+void tell(const std::string& line) { std::fprintf(stderr, "blem_sim_run: %s\n", line.c_str()); }
+
+}  // namespace
+
+RunEnd run(const RunOptions& options, BatchSide* batch) {
+  const sim::SimulationConfig config = configOf(options);
+  std::unique_ptr<sim::Simulator> alone;
+  std::unique_ptr<sim::Simulator>& place = batch ? batch->last : alone;
+  place = std::make_unique<sim::Simulator>(config, model::UriResolver(options.packages), sim::LoadLog{tell}, place.get());
+  sim::Simulator& simulator = *place;
+  RunFacts facts{options.name, {}, simulator.notes()};
+  if (!options.load_state.empty()) loadState(options, &simulator, &facts.notes);
+  if (!options.trajectory.empty()) commandTrajectory(options.trajectory, &simulator, &facts.notes);
 
   StopConditions stops(simulator, options.stops);
   RunRecord record(simulator, options.stats_from);
   std::unique_ptr<CsvTable> table;
   if (!options.csv.empty()) table = std::make_unique<CsvTable>(simulator, options.csv, options.csv_rate);
   const auto steps = static_cast<std::uint64_t>(std::llround(options.duration / config.time_step));
-  Progress progress(steps);
+  Progress progress(steps, options.name);
   const Clock::time_point start = Clock::now();
   const std::clock_t cpu_start = std::clock();
-  const bool finite = stepThrough(steps, &simulator, {&record, table.get(), &stops, &progress});
-  const RunTimes times{static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC, secondsSince(start)};
-  progress.end(notes);
+  const RunEnd end = stepThrough(steps, &simulator, {&record, table.get(), &stops, &progress, batch ? batch->signal : nullptr});
+  facts.times = {static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC, secondsSince(start)};
+  progress.end(facts.notes);
 
-  if (!options.save_state.empty()) sim::saveState(simulator.save(), options.save_state);
-  writeReport(options, record, times, notes);
+  if (!options.save_state.empty() && end != RunEnd::INTERRUPTED) sim::saveState(simulator.save(), options.save_state);
+  if (!batch || !options.report.empty()) writeReport(options, record, facts);
   if (table) table->close();
-  if (!finite) std::fprintf(stderr, "blem_sim_run: the state stopped being finite at t = %.6g s\n", simulator.time());
-  return finite;
+  if (batch) {
+    JsonWriter json(*batch->result, JsonWriter::Layout::ONE_LINE);
+    record.write(facts, json);
+  }
+  if (end == RunEnd::NOT_FINITE)
+    tell(fmt::format("{}the state stopped being finite at t = {:.6g} s", batch ? sim::shownName(options.name) + ": " : "",
+                     simulator.time()));
+  return end;
 }
 
 }  // namespace blem_sim

@@ -62,15 +62,15 @@ void RunRecord::addDepth(const sim::StepReport& report) {
   }
 }
 
-void RunRecord::write(const RunTimes& times, const std::vector<std::string>& notes, std::ostream& stream) const {
-  JsonWriter json(stream);
+void RunRecord::write(const RunFacts& facts, JsonWriter& json) const {
   const double simulated = static_cast<double>(steps_) * simulator_.config().time_step;
   json.openObject();
+  if (!facts.name.empty()) json.key("name").value(facts.name);
   json.key("simulated_s").value(simulated);
   json.key("steps").value(steps_);
-  json.key("cpu_s").value(times.cpu);
-  json.key("wall_s").value(times.wall);
-  json.key("real_time_factor").value(times.wall > 0 ? simulated / times.wall : 0);
+  json.key("cpu_s").value(facts.times.cpu);
+  json.key("wall_s").value(facts.times.wall);
+  json.key("real_time_factor").value(facts.times.wall > 0 ? simulated / facts.times.wall : 0);
   json.key("state_hash").value(fmt::format("{:016x}", simulator_.stateHash()));
   if (!stopped_.empty()) {
     json.key("stopped").openObject();
@@ -78,6 +78,7 @@ void RunRecord::write(const RunTimes& times, const std::vector<std::string>& not
     json.key("time_s").value(stop_time_);
     json.closeObject();
   }
+  if (!interrupted_.empty()) json.key("interrupted").value(interrupted_);
   writeStatus(json);
   writeProfile(json);
   writeContacts(json);
@@ -87,7 +88,7 @@ void RunRecord::write(const RunTimes& times, const std::vector<std::string>& not
   json.key("energy_J").value(simulator_.report().energy);
   trust_.write(simulator_, json);
   writeLoadReport(json);
-  json.key("notes").value(notes);
+  json.key("notes").value(facts.notes);
   json.closeObject();
 }
 

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <map>
-#include <ostream>
 #include <string>
 #include <vector>
 
@@ -19,6 +18,13 @@ struct RunTimes {
   double cpu = 0, wall = 0;
 };
 
+/** Facts about a run that its steps do not tell. */
+struct RunFacts {
+  std::string name;  ///< of a run of a batch, or empty
+  RunTimes times;
+  std::vector<std::string> notes;
+};
+
 class RunRecord {
  public:
   /** @param stats_from [s] simulated time after which sensors count */
@@ -26,7 +32,9 @@ class RunRecord {
   void add(const sim::StepReport& report);
   /** The run ends now, for the reason of this name. */
   void stop(const std::string& name);
-  void write(const RunTimes& times, const std::vector<std::string>& notes, std::ostream& stream) const;
+  /** A signal of this name ends the run now. */
+  void interrupt(const std::string& signal) { interrupted_ = signal; }
+  void write(const RunFacts& facts, JsonWriter& json) const;
 
  private:
   struct Deepest {
@@ -50,6 +58,7 @@ class RunRecord {
   double wrench_error_ = 0;
   std::string stopped_;  ///< name of the --stop; empty without one
   double stop_time_ = 0;
+  std::string interrupted_;                  ///< name of the signal; empty without one
   std::vector<std::uint64_t> status_steps_;  ///< per bit
   std::array<Distribution, static_cast<int>(sim::Stage::COUNT)> stages_;
   Distribution step_;
