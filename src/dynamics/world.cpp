@@ -154,7 +154,7 @@ const SolveResult& World::step(double dt, const std::vector<ContactConstraint>& 
   impl.result.finite = impl.advance(input);
   if (impl.result.finite) {
     for (std::size_t j = 0; j < drives.size(); ++j) impl.scene.joints()[j].last_effort = impl.result.motor_efforts[j];
-    readJoints(&impl.scene, &impl.joints);
+    readJoints(dt, &impl.scene, &impl.joints);
     impl.joints_known = true;
   } else {
     impl.result.contact_forces.assign(contacts.size(), Vector3::Zero());

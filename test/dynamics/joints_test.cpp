@@ -59,6 +59,26 @@ TEST(Joints, FullTurnsAreCounted) {
   EXPECT_NEAR(world.jointState(hinge).position, 21.5 - 4 * M_PI, 2e-3);
 }
 
+/** A rotor at 60,000 turns a minute: a whole turn in each step of 1 ms, which its poses do not show. */
+TEST(Joints, FullTurnsOfFastRotorsAreCounted) {
+  constexpr double SPEED = 1000 * 2 * M_PI;
+  for (const char* stepper : {"articulated", "world_step", "quick_step"}) {
+    SolverSettings settings;
+    settings.stepper = stepper;
+    World world(Vector3::Zero(), settings);
+    const int body = world.addBody(boxBody("rotor", 1, {0.1, 0.1, 0.02}, Vector3::Zero()));
+    const int hinge = world.addJoint(jointSpec(JointKind::REVOLUTE, WORLD_BODY, body, Pose::Identity(), Vector3::UnitZ()));
+    for (const double way : {1.0, -0.7}) {
+      BodyState spinning;
+      spinning.w_WB.z() = way * SPEED;
+      world.setBodyState(body, spinning);
+      world.resetJointPosition(hinge, 0);
+      for (int i = 0; i < 100; ++i) world.step(DT, {}, {JointDrive()});
+      EXPECT_NEAR(world.jointState(hinge).position, way * SPEED * 100 * DT, 1e-6) << stepper;
+    }
+  }
+}
+
 TEST(Joints, PrismaticMovesAlongItsAxisOnATurningParent) {
   World world(Vector3::Zero(), {});
   const int arm = world.addBody(bar(1, 5)), carriage = world.addBody(boxBody("carriage", 1, {0.1, 0.1, 0.1}, {0.5, 0, 0.2}));

@@ -73,12 +73,15 @@ double inverseInertia(const Scene& scene, int joint) {
   return sum;
 }
 
-void readJoints(Scene* scene, std::vector<JointState>* states) {
+// A rotor may make more than half a turn in a step: the full turns are those nearest to where its velocity leads.
+void readJoints(double dt, Scene* scene, std::vector<JointState>* states) {
   states->resize(scene->joints().size());
   for (std::size_t j = 0; j < scene->joints().size(); ++j) {
     const int joint = static_cast<int>(j);
     JointSlot& slot = scene->joints()[j];
-    (*states)[j] = {jointPosition(*scene, joint), jointVelocity(*scene, joint), slot.last_effort};
+    const double velocity = jointVelocity(*scene, joint);
+    slot.last_position += dt * velocity;
+    (*states)[j] = {jointPosition(*scene, joint), velocity, slot.last_effort};
     if (slot.joint) slot.last_position = (*states)[j].position;
   }
 }

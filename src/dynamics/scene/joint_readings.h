@@ -15,8 +15,8 @@ double jointVelocity(const Scene& scene, int joint);
 Vector3 jointAxis(const Scene& scene, int joint);
 /** Origin of the joint frame J in the world, J being fixed to the parent, whose state is given by the slot's bits. */
 Vector3 jointOrigin(const Scene& scene, int joint, const std::vector<BodyBits>& bits);
-/** States of all joints; notes their positions, which tell the full turns. */
-void readJoints(Scene* scene, std::vector<JointState>* states);
+/** States of all joints after a step of dt [s]; notes their positions, which tell the full turns. */
+void readJoints(double dt, Scene* scene, std::vector<JointState>* states);
 
 /** Inertia [kg m^2] of a body about its centre of mass, world axes. */
 Matrix3 inertiaInWorld(const Scene& scene, int body, const Matrix3& R_WB);
